@@ -1,0 +1,278 @@
+"""A recording comes back as it was written, in every format, whole or in batches."""
+
+import gzip
+import json
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from zerorate_tools.errors import BadRecording, InFile
+from zerorate_tools.recordings import (
+    Scales,
+    open_recording,
+    read_recording,
+    recording_from_columns,
+    recording_writer,
+    write_recording,
+)
+from zerorate_tools.recordings.checks import GAP
+
+SCALES = Scales("MPU-6050", 25.0, 131.0, 16384.0, 340.0, 36.53, {"latitude_deg": 48.1})
+FORMATS = ["run.parquet", "run.csv", "run.csv.gz"]
+
+
+def a_recording(n=10, **extra):
+    rng = np.random.default_rng(1)
+    names = ("gx", "gy", "gz", "ax", "ay", "az", "temp")
+    readings = {name: rng.integers(-32768, 32768, n) for name in names}
+    return recording_from_columns({"t_us": np.arange(n) * 40_000, **readings, **extra}, SCALES)
+
+
+@pytest.mark.parametrize("file_name", FORMATS)
+def test_a_recording_comes_back_as_it_was_written(tmp_path, file_name):
+    written = a_recording(vdd_mv=np.arange(10) + 3300)
+    write_recording(written, tmp_path / file_name)
+    read = read_recording(tmp_path / file_name)
+    assert read.scales == SCALES
+    assert read.name == "run"
+    assert read.column_names == written.column_names
+    for name in written.columns:
+        np.testing.assert_array_equal(read.columns[name], written.columns[name])
+
+
+@pytest.mark.parametrize("file_name", FORMATS)
+def test_batches_join_to_the_whole(tmp_path, file_name):
+    write_recording(a_recording(1000), tmp_path / file_name)
+    parts = list(open_recording(tmp_path / file_name).batches(rows=300))
+    assert max(len(part["t_us"]) for part in parts) <= 300
+    joined = np.concatenate([part["gx"] for part in parts])
+    np.testing.assert_array_equal(joined, read_recording(tmp_path / file_name).columns["gx"])
+
+
+def test_parquet_row_groups_are_read_only_as_they_are_needed(tmp_path, monkeypatch):
+    with recording_writer(tmp_path / "run.parquet", list(a_recording().columns), SCALES) as writer:
+        for start in range(5):
+            batch = a_recording().columns
+            writer.append(batch | {"t_us": batch["t_us"] + start * 400_000})
+    opened = open_recording(tmp_path / "run.parquet")
+    assert opened.n_samples == 50
+    assert pq.ParquetFile(tmp_path / "run.parquet").num_row_groups == 5
+    before = pa.total_allocated_bytes()
+    next(opened.batches(rows=10))
+    assert pa.total_allocated_bytes() - before < 1 << 20
+
+
+@settings(max_examples=20, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    st.lists(st.integers(-(2**31), 2**31 - 1), min_size=1, max_size=50), st.sampled_from(FORMATS)
+)
+def test_any_32_bit_extra_channel_survives(tmp_path, values, file_name):
+    recording = a_recording(len(values), load=np.array(values, np.int64))
+    write_recording(recording, tmp_path / file_name)
+    assert read_recording(tmp_path / file_name).columns["load"].tolist() == values
+
+
+def test_without_acceleration_and_temperature_no_such_scales_are_needed(tmp_path):
+    columns = {name: np.arange(3) for name in ("t_us", "gx", "gy", "gz")}
+    recording = recording_from_columns(columns, Scales("X", 1.0, 100.0))
+    write_recording(recording, tmp_path / "run.csv")
+    read = read_recording(tmp_path / "run.csv")
+    assert not read.has_accel and not read.has_temp
+    assert "accel_lsb_per_g" not in json.loads((tmp_path / "run.json").read_text())
+
+
+def test_a_frame_holds_raw_integers_and_the_scales():
+    frame = a_recording().to_frame()
+    assert list(frame.columns) == ["t_us", "gx", "gy", "gz", "ax", "ay", "az", "temp"]
+    assert frame.attrs["zerorate"]["gyro_lsb_per_dps"] == 131.0
+
+
+def test_physical_units_follow_the_scales():
+    columns = {"gx": [131], "gy": [0], "gz": [-262], "ax": [0], "ay": [0], "az": [16384]}
+    recording = recording_from_columns({"t_us": [0], **columns, "temp": [0]}, SCALES)
+    assert recording.gyro_dps().tolist() == [[1.0, 0.0, -2.0]]
+    assert recording.accel_g().tolist() == [[0.0, 0.0, 1.0]]
+    assert recording.temp_degc().tolist() == [36.53]
+    assert recording.samples().tolist() == [[0, 0, 16384, 0, 131, 0, -262]]
+
+
+@pytest.mark.parametrize("file_name", FORMATS)
+def test_nothing_half_written_stays_when_writing_fails(tmp_path, file_name):
+    with (
+        pytest.raises(RuntimeError),
+        recording_writer(tmp_path / file_name, list(a_recording().columns), SCALES) as writer,
+    ):
+        writer.append(a_recording().columns)
+        raise RuntimeError("power cut")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("file_name", FORMATS)
+def test_a_failed_write_leaves_the_older_file_alone(tmp_path, file_name):
+    write_recording(a_recording(), tmp_path / file_name)
+    with (
+        pytest.raises(KeyError),
+        recording_writer(tmp_path / file_name, list(a_recording().columns), SCALES) as writer,
+    ):
+        writer.append({"t_us": np.arange(1)})
+    assert len(read_recording(tmp_path / file_name)) == 10
+
+
+def test_a_folder_that_is_not_there_is_named(tmp_path):
+    with pytest.raises(InFile, match="nowhere.*name a folder"):
+        write_recording(a_recording(), tmp_path / "nowhere" / "run.parquet")
+
+
+# Bad input: each ends in one line that names the file, the row where there is one, and what to do.
+
+HEADER = "t_us,gx,gy,gz"
+
+
+@pytest.fixture
+def csv_of(tmp_path):
+    def write(text, scales=None):
+        (tmp_path / "bad.csv").write_text(text)
+        scales = {"sensor": "X", "odr_hz": 1, "gyro_lsb_per_dps": 1} if scales is None else scales
+        (tmp_path / "bad.json").write_text(
+            scales if isinstance(scales, str) else json.dumps(scales)
+        )
+        return tmp_path / "bad.csv"
+
+    return write
+
+
+@pytest.mark.parametrize(
+    ("text", "complaint"),
+    [
+        ("", "empty file"),
+        (f"{HEADER}\n", "no data row"),
+        ("t_us,gx,gy\n0,1,2\n", "column gz is missing.*zerorate import"),
+        (f"{HEADER},gx\n0,1,2,3,4\n", "column gx comes twice"),
+        (f"{HEADER},ax\n0,1,2,3,4\n", "only ax is there"),
+        (f"{HEADER}\n0,1,2,3\n1,1.5,2,3\n", "row 2: gx is '1.5', no integer"),
+        (f"{HEADER}\n0,1,2,3\n1,one,2,3\n", "row 2: gx is 'one', no integer"),
+        (f"{HEADER}\n0,1,2,3\n1,nan,2,3\n", "row 2: gx has no value; drop the row"),
+        (f"{HEADER}\n0,1,2,3\n1,,2,3\n", "row 2: gx has no value"),
+        (f"{HEADER},vdd_mv\n0,1,2,3,4\n1,1,2,3,\n", "row 2: vdd_mv has no value; fill the gaps"),
+        (f"{HEADER}\n0,1,2,3\n1,1,2\n", "row 2: 3 cells where the header names 4"),
+        (f"{HEADER}\n5,1,2,3\n9,1,2,3\n7,1,2,3\n", "row 3: time goes backwards, from 9 to 7 us"),
+        (f"{HEADER}\n0,1,2,3\n1,99999999999,2,3\n", "row 2: gx is 99999999999, more than 32 bits"),
+        (f"{HEADER}\n0,1,2,3\n1,99999999999999999999,2,3\n", "bad.csv"),
+        (f"{HEADER},temp\n0,1,2,3,4\n", "lack temp_lsb_per_degc.*drop column temp"),
+        (f"{HEADER},ax,ay,az\n0,1,2,3,4,5,6\n", "lack accel_lsb_per_g"),
+    ],
+)
+def test_a_bad_csv_is_refused_in_one_line(csv_of, text, complaint):
+    path = csv_of(text)
+    with pytest.raises(BadRecording, match=complaint) as raised:
+        read_recording(path)
+    assert "\n" not in str(raised.value) and "bad." in str(raised.value)
+
+
+@pytest.mark.parametrize(
+    ("scales", "complaint"),
+    [
+        ("{", "bad.json: the scales are not JSON .line 1"),
+        ("[]", "no JSON object"),
+        ({"odr_hz": 1, "gyro_lsb_per_dps": 1}, "lack the sensor's name"),
+        ({"sensor": "X", "gyro_lsb_per_dps": 1}, "lack odr_hz"),
+        ({"sensor": "X", "odr_hz": 0, "gyro_lsb_per_dps": 1}, "odr_hz is 0"),
+        ({"sensor": "X", "odr_hz": "fast", "gyro_lsb_per_dps": 1}, "odr_hz is 'fast', no number"),
+        ('{"sensor": "X", "odr_hz": NaN, "gyro_lsb_per_dps": 1}', "odr_hz is nan"),
+    ],
+)
+def test_bad_scales_are_refused_in_one_line(csv_of, scales, complaint):
+    path = csv_of(f"{HEADER}\n0,1,2,3\n", scales)
+    with pytest.raises(BadRecording, match=complaint):
+        read_recording(path)
+
+
+def test_a_csv_without_scales_says_what_to_write(csv_of):
+    path = csv_of(f"{HEADER}\n0,1,2,3\n")
+    path.with_name("bad.json").unlink()
+    with pytest.raises(BadRecording, match="bad.json with the scales is missing"):
+        read_recording(path)
+
+
+def test_time_going_backwards_between_batches_is_seen(tmp_path):
+    t_us = np.r_[np.arange(100), np.arange(50, 100)]
+    columns = {name: t_us for name in ("t_us", "gx", "gy", "gz")}
+    write_recording(recording_from_columns(columns, Scales("X", 1, 1)), tmp_path / "bad.parquet")
+    with pytest.raises(BadRecording, match="row 101: time goes backwards, from 99 to 50 us"):
+        list(open_recording(tmp_path / "bad.parquet").batches(rows=100))
+
+
+def test_a_truncated_gzip_is_refused(tmp_path):
+    write_recording(a_recording(5000), tmp_path / "run.csv.gz")
+    whole = (tmp_path / "run.csv.gz").read_bytes()
+    for length in (5, len(whole) // 2, len(whole) - 4):
+        (tmp_path / "run.csv.gz").write_bytes(whole[:length])
+        with pytest.raises(BadRecording, match="cut off or damaged"):
+            read_recording(tmp_path / "run.csv.gz")
+
+
+def test_a_truncated_parquet_is_refused(tmp_path):
+    write_recording(a_recording(5000), tmp_path / "run.parquet")
+    whole = (tmp_path / "run.parquet").read_bytes()
+    for length, complaint in ((0, "empty file"), (100, "cut off"), (len(whole) - 9, "cut off")):
+        (tmp_path / "run.parquet").write_bytes(whole[:length])
+        with pytest.raises(BadRecording, match=complaint):
+            read_recording(tmp_path / "run.parquet")
+
+
+def test_a_parquet_without_scales_is_refused(tmp_path):
+    pq.write_table(pa.table({"t_us": [0], "gx": [1], "gy": [1], "gz": [1]}), tmp_path / "x.parquet")
+    with pytest.raises(BadRecording, match="no scales .schema metadata"):
+        read_recording(tmp_path / "x.parquet")
+
+
+@pytest.mark.parametrize(
+    ("values", "complaint"),
+    [
+        ([1.0, float("nan")], "row 2: gx is nan"),
+        ([1.0, 2.5], "column gx holds double, not integers"),
+        (["a", "b"], "column gx holds string, not integers"),
+        ([1, None], "row 2: gx has no value"),
+    ],
+)
+def test_wrong_types_in_a_parquet_are_refused(tmp_path, values, complaint):
+    table = pa.table({"t_us": [0, 1], "gx": values, "gy": [1, 1], "gz": [1, 1]})
+    scales = json.dumps({"sensor": "X", "odr_hz": 1, "gyro_lsb_per_dps": 1}).encode()
+    pq.write_table(table.replace_schema_metadata({b"zerorate": scales}), tmp_path / "x.parquet")
+    with pytest.raises(BadRecording, match=complaint):
+        read_recording(tmp_path / "x.parquet")
+
+
+def test_gaps_of_an_extra_channel_are_kept_when_asked(csv_of):
+    path = csv_of(f"{HEADER},vdd_mv\n0,1,2,3,4\n1,1,2,3,\n")
+    assert read_recording(path, keep_gaps=True).columns["vdd_mv"].tolist() == [4, GAP]
+
+
+@pytest.mark.parametrize(
+    ("name", "complaint"),
+    [("none.csv", "no such file"), ("run.xlsx", "neither .csv"), (".", "is a folder")],
+)
+def test_what_is_no_recording_at_all_is_refused(tmp_path, name, complaint):
+    (tmp_path / "run.xlsx").write_bytes(b"PK")
+    with pytest.raises(BadRecording, match=complaint):
+        open_recording(tmp_path / name)
+
+
+def test_text_in_another_encoding_is_refused(tmp_path):
+    (tmp_path / "x.csv").write_bytes(b"\xff\xfe\x00t\n")
+    (tmp_path / "x.json").write_text("{}")
+    with pytest.raises(BadRecording, match="not text"):
+        open_recording(tmp_path / "x.csv")
+
+
+def test_a_gzip_that_is_none_is_refused(tmp_path):
+    (tmp_path / "x.csv.gz").write_text(HEADER)
+    with pytest.raises(BadRecording, match="cut off or damaged"):
+        open_recording(tmp_path / "x.csv.gz")
+    with gzip.open(tmp_path / "x.csv.gz", "wb"):
+        pass
+    with pytest.raises(BadRecording, match="empty file"):
+        open_recording(tmp_path / "x.csv.gz")

@@ -1,0 +1,87 @@
+"""The one entry point, `zerorate`: sub-commands are thin calls of public functions."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+from importlib.util import find_spec
+
+from .errors import ZerorateError
+
+COMMANDS = (
+    *("demo", "import", "record", "simulate", "replay", "close", "allan", "model"),
+    *("flash", "fleet", "watch", "bench", "runtimes"),
+)
+_INTERRUPTED = 130
+_BROKEN_PIPE = 141
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one sub-command and return its exit code.
+
+    0 is well done, 2 bad input (one line on standard error), 130 interrupted.
+    """
+    try:
+        arguments = parser().parse_args(argv)
+        return arguments.run(arguments) or 0
+    except ZerorateError as error:
+        return _complain(str(error), error.exit_code)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return _BROKEN_PIPE
+    except OSError as error:
+        return _complain(_in_words(error), ZerorateError.exit_code)
+    except KeyboardInterrupt:
+        return _complain("interrupted; nothing half-written was left", _INTERRUPTED)
+
+
+def parser() -> argparse.ArgumentParser:
+    """The parser with every sub-command whose module is there."""
+    top = argparse.ArgumentParser(
+        prog="zerorate",
+        description="Keeps a MEMS gyroscope's zero-rate output at zero.",
+        epilog="`zerorate COMMAND --help` says more of each.",
+    )
+    top.add_argument("--version", action=_Version)
+    subparsers = top.add_subparsers(metavar="COMMAND", required=True)
+    for name in COMMANDS:
+        module = _module_of(name)
+        if find_spec(module) is not None:
+            import_module(module).add_parser(subparsers)
+    return top
+
+
+def _module_of(command: str) -> str:
+    # `import` is a word of the language, so its module cannot bear that name alone
+    return f"{__package__}.commands.{'import_' if command == 'import' else command}"
+
+
+class _Version(argparse.Action):
+    def __init__(self, option_strings: Sequence[str], dest: str) -> None:
+        super().__init__(option_strings, dest, nargs=0, help="print the version and exit")
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        from importlib.metadata import PackageNotFoundError, version
+
+        try:
+            print("zerorate", version("zerorate"))
+        except PackageNotFoundError:
+            print("zerorate, not installed")
+        parser.exit()
+
+
+def _complain(message: str, exit_code: int) -> int:
+    print(f"zerorate: {message}", file=sys.stderr)
+    return exit_code
+
+
+def _in_words(error: OSError) -> str:
+    text = error.strerror or str(error) or type(error).__name__
+    return f"{error.filename}: {text}" if error.filename else text
+
+
+if __name__ == "__main__":
+    sys.exit(main())

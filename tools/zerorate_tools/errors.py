@@ -1,0 +1,54 @@
+"""What goes wrong in words for a person: the command line prints one line of it and exits."""
+
+from __future__ import annotations
+
+from os import PathLike
+
+
+class ZerorateError(Exception):
+    """Every error that the tools raise on purpose; its text is one line."""
+
+    exit_code = 2
+
+    def __init__(self, message: str) -> None:
+        super().__init__(" ".join(str(message).split()))
+
+
+class InFile(ZerorateError):
+    """An error at a place in a file.
+
+    path: the file; problem: what is wrong; do: what the reader can do about it;
+    row: 1-based data row (a header is not counted), or None.
+    """
+
+    def __init__(
+        self,
+        path: str | PathLike[str],
+        problem: str,
+        *,
+        row: int | None = None,
+        do: str = "",
+    ) -> None:
+        place = str(path) if row is None else f"{path}: row {row}"
+        super().__init__(f"{place}: {problem}" + (f"; {do}" if do else ""))
+        self.path, self.problem, self.row, self.do = path, problem, row, do
+
+
+class BadRecording(InFile):
+    """A recording that cannot be read, or is not what it claims to be."""
+
+
+class BadModel(InFile):
+    """An effect model that cannot be read, is damaged, or belongs to another device."""
+
+
+class BadDescription(InFile):
+    """A simulated device's description with an unknown or impossible entry."""
+
+
+class MissingRuntime(ZerorateError):
+    """An interpreter that was asked for is not on this machine."""
+
+
+class MissingLibrary(ZerorateError):
+    """An optional Python package that this file format or command needs is not installed."""

@@ -1,0 +1,17 @@
+"""Recordings: CSV or Parquet with integer columns in raw LSB and their scales (design.md)."""
+
+from .reading import OpenRecording, open_recording, read_recording
+from .recording import Recording
+from .scales import Scales
+from .writing import recording_from_columns, recording_writer, write_recording
+
+__all__ = [
+    "OpenRecording",
+    "Recording",
+    "Scales",
+    "open_recording",
+    "read_recording",
+    "recording_from_columns",
+    "recording_writer",
+    "write_recording",
+]

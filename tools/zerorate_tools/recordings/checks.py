@@ -1,0 +1,120 @@
+"""What a batch of samples must be before anything learns from it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from ..errors import BadRecording
+from .recording import ACCEL, GYRO, TEMP, TIME, Columns
+from .scales import Scales, missing_scale
+
+GAP = -(2**31)
+"""Stands for a missing value of an extra channel when gaps are kept."""
+
+_LIMIT = 2**31 - 1
+
+
+def check_names(names: list[str], path: Path) -> None:
+    """Raise BadRecording if a needed column is missing or a name comes twice."""
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        raise BadRecording(path, f"column {twice} comes twice", do="rename or drop one")
+    missing = [name for name in (TIME, *GYRO) if name not in names]
+    if missing:
+        do = "turn a foreign recording into this form with `zerorate import`"
+        raise BadRecording(path, f"column {', '.join(missing)} is missing", do=do)
+    accel = [name for name in ACCEL if name in names]
+    if accel and len(accel) < 3:
+        have = ", ".join(accel)
+        raise BadRecording(path, f"of ax ay az only {have} is there", do="give all three or none")
+
+
+def check_scales(scales: Scales, names: list[str], path: Path, scales_path: Path) -> None:
+    """Raise BadRecording if these columns need a scale that is not given."""
+    key = missing_scale(scales, names)
+    if key is not None:
+        column = TEMP if key.startswith("temp") else "ax ay az"
+        do = f"add it, or drop column {column}"
+        raise BadRecording(
+            scales_path, f"the scales lack {key}, and {path.name} has {column}", do=do
+        )
+
+
+class BatchChecker:
+    """Turns Arrow batches into integer columns, refusing what is no recording.
+
+    keep_gaps: missing values of extra channels become GAP instead of an error.
+    """
+
+    def __init__(self, path: Path, keep_gaps: bool = False) -> None:
+        self._path, self._keep_gaps = path, keep_gaps
+        self._rows, self._last_us = 0, None
+
+    def columns(self, batch: pa.RecordBatch) -> Columns:
+        """Columns of one batch: t_us int64, the others int32. Raises BadRecording."""
+        out = {name: self._integers(name, batch.column(name)) for name in batch.schema.names}
+        self._check_time(out[TIME])
+        self._rows += batch.num_rows
+        return out
+
+    def finish(self) -> None:
+        """Raise BadRecording if no batch had a row."""
+        if self._rows == 0:
+            raise BadRecording(self._path, "no data row", do="record again, or name another file")
+
+    def _integers(self, name: str, values: pa.Array) -> np.ndarray:
+        if not pa.types.is_integer(values.type):
+            self._refuse_type(name, values)
+        if values.null_count:
+            values = self._without_gaps(name, values)
+        wide = values.to_numpy(zero_copy_only=False)
+        if name == TIME:
+            return wide.astype(np.int64, copy=False)
+        return self._narrow(name, wide)
+
+    def _without_gaps(self, name: str, values: pa.Array) -> pa.Array:
+        extra = name not in (TIME, *GYRO, *ACCEL, TEMP)
+        if extra and self._keep_gaps:
+            return pc.fill_null(values.cast(pa.int64()), GAP)
+        row = self._row(int(np.argmax(values.is_null().to_numpy(zero_copy_only=False))))
+        do = f"fill the gaps or drop column {name}" if extra else "drop the row"
+        raise BadRecording(self._path, f"{name} has no value", row=row, do=do)
+
+    def _narrow(self, name: str, wide: np.ndarray) -> np.ndarray:
+        if wide.dtype.itemsize >= 4 and wide.dtype != np.int32:
+            outside = (wide > _LIMIT) | (wide < -_LIMIT - 1)
+            if outside.any():
+                at = int(np.argmax(outside))
+                problem = f"{name} is {wide[at]}, more than 32 bits"
+                raise BadRecording(self._path, problem, row=self._row(at), do="scale the column")
+        return wide.astype(np.int32, copy=False)
+
+    def _refuse_type(self, name: str, values: pa.Array) -> None:
+        if pa.types.is_floating(values.type):
+            bad = ~np.isfinite(values.to_numpy(zero_copy_only=False))
+            if bad.any():
+                at = int(np.argmax(bad))
+                problem = f"{name} is {values[at].as_py()}"
+                raise BadRecording(self._path, problem, row=self._row(at), do="drop the row")
+        do = "give raw LSB as integers, or convert with `zerorate import`"
+        raise BadRecording(self._path, f"column {name} holds {values.type}, not integers", do=do)
+
+    def _check_time(self, t_us: np.ndarray) -> None:
+        if not len(t_us):
+            return
+        before = t_us[0] if self._last_us is None else self._last_us
+        backwards = np.diff(t_us, prepend=before) < 0
+        if backwards.any():
+            at = int(np.argmax(backwards))
+            earlier = t_us[at - 1] if at else before
+            problem = f"time goes backwards, from {earlier} to {t_us[at]} us"
+            do = "sort or cut the recording there (one recording is one power-on)"
+            raise BadRecording(self._path, problem, row=self._row(at), do=do)
+        self._last_us = t_us[-1]
+
+    def _row(self, at: int) -> int:
+        return self._rows + at + 1

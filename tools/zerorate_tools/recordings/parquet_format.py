@@ -1,0 +1,71 @@
+"""Parquet with the scales as schema metadata under the key `zerorate`."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from ..errors import BadRecording
+from .checks import check_names
+from .recording import TIME
+from .scales import Scales, scales_from_text
+
+SUFFIXES = (".parquet",)
+_KEY = b"zerorate"
+
+
+def open_file(path: Path) -> pq.ParquetFile:
+    """The opened Parquet file. Raises BadRecording."""
+    if path.stat().st_size == 0:
+        raise BadRecording(path, "empty file", do="record again, or name another file")
+    try:
+        return pq.ParquetFile(path, pre_buffer=False)
+    except (pa.ArrowInvalid, OSError) as error:
+        problem = "no Parquet file, or cut off"
+        raise BadRecording(path, problem, do="copy the file again") from error
+
+
+def read_scales(file: pq.ParquetFile, path: Path) -> Scales:
+    """The scales in the schema's metadata. Raises BadRecording."""
+    text = (file.schema_arrow.metadata or {}).get(_KEY)
+    if text is None:
+        problem = "no scales (schema metadata `zerorate`)"
+        do = "write it with zerorate_tools.write_recording, or convert with `zerorate import`"
+        raise BadRecording(path, problem, do=do)
+    return scales_from_text(text, path)
+
+
+def batches(file: pq.ParquetFile, path: Path, rows: int) -> Iterator[pa.RecordBatch]:
+    """Arrow batches of at most `rows`, row groups read as they are needed. Raises BadRecording."""
+    try:
+        yield from file.iter_batches(batch_size=rows, use_threads=False)
+    except (pa.ArrowInvalid, OSError) as error:
+        problem = "the Parquet data is damaged"
+        raise BadRecording(path, problem, do="copy the file again") from error
+
+
+class ParquetWriter:
+    """Appends batches to a Parquet file, one row group each."""
+
+    def __init__(self, path: Path, names: list[str], scales: Scales) -> None:
+        check_names(names, path)
+        types = [(name, pa.int64() if name == TIME else pa.int32()) for name in names]
+        metadata = {_KEY: json.dumps(scales.to_json()).encode()}
+        self._schema = pa.schema(types, metadata=metadata)
+        self._writer = pq.ParquetWriter(str(path), self._schema, compression="zstd")
+
+    def append(self, columns: dict[str, Any]) -> None:
+        """Write one batch of equally long columns."""
+        arrays = [
+            pa.array(columns[name], self._schema.field(name).type) for name in self._schema.names
+        ]
+        self._writer.write_batch(pa.RecordBatch.from_arrays(arrays, schema=self._schema))
+
+    def close(self) -> None:
+        """Write the footer and close the file."""
+        self._writer.close()

@@ -1,0 +1,94 @@
+"""Recordings read whole, or in batches without ever holding the whole."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import BadRecording
+from . import csv_format, parquet_format
+from .checks import BatchChecker, check_names, check_scales
+from .recording import Columns, Recording, in_order
+from .scales import Scales
+
+
+class OpenRecording:
+    """A recording on disk: `scales`, `column_names`, and its samples in batches.
+
+    n_samples: number of samples where the format knows it beforehand (Parquet), else None.
+    """
+
+    def __init__(self, path: str | PathLike[str], keep_gaps: bool = False) -> None:
+        self.path = Path(path)
+        self.name = recording_name(self.path)
+        self.n_samples: int | None = None
+        self._keep_gaps, self._parquet = keep_gaps, None
+        scales_path = self._read_header()
+        check_names(self.column_names, self.path)
+        check_scales(self.scales, self.column_names, self.path, scales_path)
+
+    scales: Scales
+    column_names: list[str]
+
+    def batches(self, rows: int = 65536) -> Iterator[Columns]:
+        """Yield dicts of int arrays, each at most `rows` long. Raises BadRecording."""
+        checker = BatchChecker(self.path, self._keep_gaps)
+        for batch in self._arrow_batches(rows):
+            for start in range(0, batch.num_rows, rows):
+                yield checker.columns(batch.slice(start, rows))
+        checker.finish()
+
+    def _read_header(self) -> Path:
+        if not self.path.is_file():
+            what = "is a folder" if self.path.is_dir() else "no such file"
+            raise BadRecording(self.path, what, do="name a recording (.csv, .csv.gz or .parquet)")
+        if self.path.name.endswith(csv_format.SUFFIXES):
+            self._names = csv_format.read_names(self.path)
+            self.scales = csv_format.read_scales(self.path)
+            self.column_names = list(self._names)
+            return csv_format.scales_path(self.path)
+        if self.path.name.endswith(parquet_format.SUFFIXES):
+            self._parquet = parquet_format.open_file(self.path)
+            self.scales = parquet_format.read_scales(self._parquet, self.path)
+            self.column_names = list(self._parquet.schema_arrow.names)
+            self.n_samples = self._parquet.metadata.num_rows
+            return self.path
+        do = "turn it into .parquet with `zerorate import`"
+        raise BadRecording(self.path, "neither .csv, .csv.gz nor .parquet", do=do)
+
+    def _arrow_batches(self, rows: int) -> Iterator:
+        if self._parquet is not None:
+            return parquet_format.batches(self._parquet, self.path, rows)
+        return csv_format.batches(self.path, self._names)
+
+
+def open_recording(path: str | PathLike[str], *, keep_gaps: bool = False) -> OpenRecording:
+    """Open a recording for streaming; its header and scales are read and checked now.
+
+    keep_gaps: missing values of extra channels become `checks.GAP` instead of an error.
+    Raises BadRecording.
+    """
+    return OpenRecording(path, keep_gaps)
+
+
+def read_recording(path: str | PathLike[str], *, keep_gaps: bool = False) -> Recording:
+    """Read a recording whole: .csv or .csv.gz with .json beside, or .parquet (design.md).
+
+    Raises BadRecording, naming file, row (1-based) and what to do.
+    """
+    opened = open_recording(path, keep_gaps=keep_gaps)
+    parts = list(opened.batches(rows=1 << 20))
+    names = in_order(opened.column_names)
+    columns = {name: np.concatenate([part[name] for part in parts]) for name in names}
+    return Recording(columns, opened.scales, opened.name, opened.path)
+
+
+def recording_name(path: Path) -> str:
+    """The file's name without its suffixes."""
+    name = path.name
+    for suffix in (".gz", ".csv", ".parquet"):
+        name = name.removesuffix(suffix)
+    return name

@@ -1,0 +1,86 @@
+"""What one LSB of each reading means."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from os import PathLike
+from typing import Any
+
+from ..errors import BadRecording
+
+_ALWAYS = ("odr_hz", "gyro_lsb_per_dps")
+_ACCEL = ("accel_lsb_per_g",)
+_TEMP = ("temp_lsb_per_degc", "temp_offset_degc")
+
+
+@dataclass(frozen=True)
+class Scales:
+    """Sensor, output data rate and scales of a recording (design.md, Recordings).
+
+    degC = raw / temp_lsb_per_degc + temp_offset_degc. A scale whose columns are absent may be None.
+    `more` keeps every other key of the JSON (units of extra channels, latitude, attitude, source).
+    """
+
+    sensor: str
+    odr_hz: float
+    gyro_lsb_per_dps: float
+    accel_lsb_per_g: float | None = None
+    temp_lsb_per_degc: float | None = None
+    temp_offset_degc: float | None = None
+    more: Mapping[str, Any] = field(default_factory=dict)
+
+    def to_json(self) -> dict[str, Any]:
+        """The dict that travels as JSON: absent scales left out, `more` beside the rest."""
+        known = {key: getattr(self, key) for key in ("sensor", *_ALWAYS, *_ACCEL, *_TEMP)}
+        return {k: v for k, v in known.items() if v is not None} | dict(self.more)
+
+    def temp_degc(self, raw: Any) -> Any:
+        """Raw temperature readings in degC. Raises ValueError where there is no such scale."""
+        if self.temp_lsb_per_degc is None or self.temp_offset_degc is None:
+            raise ValueError("these scales have no temperature")
+        return raw / self.temp_lsb_per_degc + self.temp_offset_degc
+
+
+def scales_from_text(text: str | bytes, path: str | PathLike[str]) -> Scales:
+    """Scales out of JSON text. Raises BadRecording that names `path`, line and what to do."""
+    try:
+        values = json.loads(text)
+    except json.JSONDecodeError as error:
+        problem = (
+            f"the scales are not JSON (line {error.lineno}, column {error.colno}: {error.msg})"
+        )
+        raise BadRecording(path, problem, do="correct the text there") from error
+    except UnicodeDecodeError as error:
+        raise BadRecording(path, "the scales are not text", do="write them as JSON") from error
+    if not isinstance(values, dict):
+        raise BadRecording(path, "the scales are no JSON object", do='write {"sensor": ...}')
+    return _from_dict(values, path)
+
+
+def _from_dict(values: dict[str, Any], path: str | PathLike[str]) -> Scales:
+    if not isinstance(values.get("sensor"), str):
+        raise BadRecording(path, "the scales lack the sensor's name", do='add "sensor": "MPU-6050"')
+    for key in _ALWAYS:
+        if key not in values:
+            raise BadRecording(path, f"the scales lack {key}", do="add it as a number above 0")
+    numbers = {k: _number(values[k], k, path) for k in (*_ALWAYS, *_ACCEL, *_TEMP) if k in values}
+    more = {k: v for k, v in values.items() if k not in numbers and k != "sensor"}
+    return Scales(sensor=values["sensor"], more=more, **numbers)
+
+
+def _number(value: Any, key: str, path: str | PathLike[str]) -> float:
+    is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    if not is_number or not math.isfinite(value):
+        raise BadRecording(path, f"{key} is {value!r}, no number", do="write a number")
+    if key != "temp_offset_degc" and value <= 0:
+        raise BadRecording(path, f"{key} is {value!r}", do="write a number above 0")
+    return float(value)
+
+
+def missing_scale(scales: Scales, column_names: list[str]) -> str | None:
+    """The first scale that these columns need and the scales lack, or None."""
+    needed = [*(_ACCEL if "ax" in column_names else ()), *(_TEMP if "temp" in column_names else ())]
+    return next((key for key in needed if getattr(scales, key) is None), None)

@@ -1,0 +1,72 @@
+"""Recordings written whole or batch by batch, appearing only when complete."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import BadRecording
+from . import csv_format, parquet_format
+from .atomic import written_beside
+from .checks import check_scales
+from .csv_format import CsvWriter
+from .parquet_format import ParquetWriter
+from .recording import Recording
+from .scales import Scales
+
+_ROWS = 1 << 16
+
+
+def write_recording(recording: Recording, path: str | PathLike[str]) -> None:
+    """Write .parquet, or .csv / .csv.gz with .json beside it.
+
+    Raises BadRecording for another suffix or for columns without scales.
+    """
+    with recording_writer(path, recording.column_names, recording.scales) as writer:
+        for first in range(0, len(recording), _ROWS):
+            writer.append(recording.between(first, first + _ROWS).columns)
+
+
+@contextmanager
+def recording_writer(
+    path: str | PathLike[str], column_names: list[str], scales: Scales
+) -> Iterator[CsvWriter | ParquetWriter]:
+    """Yield a writer whose `append(columns)` takes one batch (dict of int arrays) at a time.
+
+    The file appears under its name when the block ends without an exception, else not at all.
+    Raises BadRecording for another suffix or for columns without scales.
+    """
+    path = Path(path)
+    check_scales(scales, column_names, path, path)
+    with ExitStack() as files:
+        if path.name.endswith(csv_format.SUFFIXES):
+            temporary = files.enter_context(written_beside(path))
+            beside = files.enter_context(written_beside(csv_format.scales_path(path)))
+            beside.write_text(json.dumps(scales.to_json(), indent=2) + "\n")
+            writer: CsvWriter | ParquetWriter = CsvWriter(temporary, column_names)
+        elif path.name.endswith(parquet_format.SUFFIXES):
+            temporary = files.enter_context(written_beside(path))
+            writer = ParquetWriter(temporary, column_names, scales)
+        else:
+            do = "end the name in .parquet, .csv or .csv.gz"
+            raise BadRecording(path, "no format goes by this name", do=do)
+        try:
+            yield writer
+        finally:
+            writer.close()
+
+
+def recording_from_columns(
+    columns: Mapping[str, np.ndarray], scales: Scales, name: str = "recording"
+) -> Recording:
+    """A Recording out of integer arrays of any width: t_us becomes int64, the others int32."""
+    narrow = {
+        key: np.asarray(values).astype(np.int64 if key == "t_us" else np.int32, copy=False)
+        for key, values in columns.items()
+    }
+    return Recording(narrow, scales, name)
