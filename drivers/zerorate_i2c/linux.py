@@ -1,0 +1,45 @@
+"""An I2C bus of a Linux board, through smbus2, with the two methods the driver needs."""
+
+_I2C_FUNC_I2C = 0x00000001
+_BLOCK_MAX = 32
+
+
+class LinuxI2C:
+    """Bus number, device path ("/dev/i2c-1") or an open smbus2.SMBus.
+
+    Reads go by I2C_RDWR (a repeated start, any length). Where the adapter lacks it they go by SMBus
+    block reads, and then max_burst is 32: a longer one raises ValueError, as it could not be one
+    transfer. max_burst is 0 where there is no limit. OSError of the kernel passes through.
+    """
+
+    def __init__(self, bus):
+        from smbus2 import SMBus, i2c_msg
+
+        self._message = i2c_msg
+        self._owned = isinstance(bus, (int, str))
+        self._bus = SMBus(bus) if self._owned else bus
+        self._raw = bool(int(self._bus.funcs) & _I2C_FUNC_I2C)
+        self.max_burst = 0 if self._raw else _BLOCK_MAX
+
+    def readfrom_mem_into(self, addr, memaddr, buf):
+        """Fill buf from the chip at addr, from register memaddr on."""
+        if self._raw:
+            read = self._message.read(addr, len(buf))
+            self._bus.i2c_rdwr(self._message.write(addr, [memaddr]), read)
+            buf[:] = bytes(read)
+        elif len(buf) > _BLOCK_MAX:
+            raise ValueError(f"this adapter reads {_BLOCK_MAX} bytes at most at once")
+        else:
+            buf[:] = bytes(self._bus.read_i2c_block_data(addr, memaddr, len(buf)))
+
+    def writeto_mem(self, addr, memaddr, buf):
+        """Write buf to the chip at addr, from register memaddr on."""
+        if self._raw:
+            self._bus.i2c_rdwr(self._message.write(addr, bytes([memaddr]) + bytes(buf)))
+        else:
+            self._bus.write_i2c_block_data(addr, memaddr, list(buf))
+
+    def close(self):
+        """Close the bus when this object opened it."""
+        if self._owned:
+            self._bus.close()

@@ -1,0 +1,248 @@
+"""One chip of the MPU-6050 family: set-up, whole samples, and its faults found and answered."""
+
+from . import clock as system_clock
+from .parts import part_by_id, part_by_name
+from .settings import (
+    ACCEL_LSB_PER_G,
+    ACCEL_RANGES_G,
+    GYRO_LSB_PER_DPS,
+    GYRO_RANGES_DPS,
+    choose_divider,
+    choose_filter,
+    index_of,
+    register_settings,
+)
+
+try:
+    from micropython import const
+except ImportError:
+
+    def const(value):
+        return value
+
+
+_ACCEL_XOUT_H = const(0x3B)
+_PWR_MGMT_1 = const(0x6B)
+_WHO_AM_I = const(0x75)
+_DEVICE_RESET = const(0x80)
+_RESET_MS = const(100)
+_WORDS = const(7)
+_ENODEV = const(19)
+_FROZEN_PERIODS = const(16)
+
+FRESH = const(0)  # a sample
+VERIFIED = const(1)  # a sample, and the configuration was read back right just before it
+RESTARTED = const(2)  # no sample: the configuration was lost and has been written again
+SUSPECT = const(3)  # no measurement can look like this frame: do not learn from it
+
+
+def decode(burst, sample):
+    """Seven big-endian 16-bit words of burst to signed integers in sample."""
+    for i in range(_WORDS):
+        word = burst[2 * i] << 8 | burst[2 * i + 1]
+        sample[i] = word - ((word & 0x8000) << 1)
+
+
+class MPU6050:
+    """A chip at address on i2c, configured and awake when the constructor returns.
+
+    full_scale_dps is 250, 500, 1000 or 2000; full_scale_g 2, 4, 8 or 16; odr_hz the output data
+    rate; dlpf_hz the gyro's low-pass bandwidth (None: the widest below half of odr_hz). The
+    values taken are attributes: odr_hz, dlpf_hz, gyro_lsb_per_dps, accel_lsb_per_g,
+    temp_lsb_per_degc, temp_offset_degc, fifo_bytes, part, who_am_i.
+
+    The configuration is read back every check_every samples; a transfer is tried 1 + retries
+    times. Raises ValueError for a value no part can take, OSError where no part, an unknown part
+    or one that does not keep its configuration answers. part names the part where its WHO_AM_I
+    is of no genuine one, for example part="MPU-6500".
+    """
+
+    def __init__(
+        self,
+        i2c,
+        address=0x68,
+        full_scale_dps=250,
+        full_scale_g=2,
+        odr_hz=100,
+        dlpf_hz=None,
+        part=None,
+        check_every=100,
+        retries=2,
+        clock=None,
+    ):
+        self.i2c = i2c
+        self.address = address
+        self.clock = clock or system_clock
+        self.bus_errors = 0
+        self.restarts = 0
+        self.read_backs = 0
+        self.suspects = 0
+        self.repeats = 0
+        self._retries = retries
+        self._check_every = check_every
+        self._until_check = check_every
+        self._byte = bytearray(1)
+        self._burst = bytearray(2 * _WORDS)
+        self._previous = bytearray(2 * _WORDS)
+        self._frozen = False
+        gyro_code = index_of(full_scale_dps, GYRO_RANGES_DPS, "full_scale_dps")
+        accel_code = index_of(full_scale_g, ACCEL_RANGES_G, "full_scale_g")
+        row = self._identify(part)
+        self.part = row[1]
+        self.temp_lsb_per_degc = row[2]
+        self.temp_offset_degc = row[3]
+        self.fifo_bytes = row[4]
+        self.start_up_ms = row[5]
+        self.kind = row[6]
+        dlpf_code, self.dlpf_hz = choose_filter(self.kind, odr_hz, dlpf_hz)
+        divider, self.odr_hz = choose_divider(dlpf_code, odr_hz)
+        self.period_us = round(1000000 / self.odr_hz)
+        self.full_scale_dps = full_scale_dps
+        self.full_scale_g = full_scale_g
+        self.gyro_lsb_per_dps = GYRO_LSB_PER_DPS[gyro_code]
+        self.accel_lsb_per_g = ACCEL_LSB_PER_G[accel_code]
+        self.binding = bytes([self.who_am_i, gyro_code, accel_code, dlpf_code])
+        self._settings = register_settings(self.kind, gyro_code, accel_code, dlpf_code, divider)
+        self._configure()
+        self._changed_us = self.clock.ticks_us()
+
+    def read(self, sample):
+        """Fill sample, array('i') of ax ay az temp gx gy gz in raw LSB, from one burst.
+
+        Returns FRESH, VERIFIED, RESTARTED or SUSPECT. What was learned from samples since the
+        last VERIFIED is in doubt after RESTARTED and after OSError, which passes when the bus
+        fails 1 + retries times or another part answers. Allocates nothing while all is well.
+        """
+        status = FRESH
+        if self._until_check <= 0:
+            if self._frozen or not self.check():
+                self.restart()
+                return RESTARTED
+            status = VERIFIED
+        self._until_check -= 1
+        self._read_burst()
+        decode(self._burst, sample)
+        if self._is_suspect():
+            self.suspects += 1
+            self._until_check = 0
+            return SUSPECT
+        return status
+
+    def check(self):
+        """True when every register set still reads back as it was written.
+
+        Raises OSError when the id read is no longer the one of the constructor.
+        """
+        self._until_check = 0
+        who_am_i = self.read_register(_WHO_AM_I)
+        if who_am_i != self.who_am_i:
+            raise OSError(_ENODEV, self._describe(who_am_i, f"was 0x{self.who_am_i:02x}"))
+        settings = self._settings
+        for i in range(0, len(settings), 2):
+            if self.read_register(settings[i]) != settings[i + 1]:
+                return False
+        self.read_backs += 1
+        self._until_check = self._check_every
+        return True
+
+    def restart(self):
+        """Reset the chip and write its configuration again; OSError when it does not keep it."""
+        self.restarts += 1
+        self._configure()
+
+    def keep_setting(self, register, value):
+        """Write a register now and after every restart, and read it back with the others."""
+        settings = self._settings
+        for i in range(0, len(settings), 2):
+            if settings[i] == register:
+                settings[i + 1] = value
+                break
+        else:
+            settings.extend(bytes([register, value]))
+        self.write_register(register, value)
+
+    def read_register(self, register):
+        """One register's value."""
+        self.read_into(register, self._byte)
+        return self._byte[0]
+
+    def write_register(self, register, value):
+        """Write one register."""
+        self._byte[0] = value
+        self.i2c.writeto_mem(self.address, register, self._byte)
+
+    def read_into(self, register, buffer):
+        """Fill buffer from register on; OSError after 1 + retries failures."""
+        for _ in range(self._retries):
+            try:
+                self.i2c.readfrom_mem_into(self.address, register, buffer)
+                return
+            except OSError:
+                self.bus_errors += 1
+        try:
+            self.i2c.readfrom_mem_into(self.address, register, buffer)
+        except OSError:
+            self.bus_errors += 1
+            self._until_check = 0
+            raise
+
+    def temperature_degc(self, raw):
+        """Degrees Celsius of a raw temperature reading, by this part's formula."""
+        return raw / self.temp_lsb_per_degc + self.temp_offset_degc
+
+    def _identify(self, name):
+        try:
+            self.who_am_i = self.read_register(_WHO_AM_I)
+        except OSError as error:
+            reason = (
+                "nothing answers at I2C address 0x{:02x}, no id was read: check power, wiring, AD0"
+            )
+            raise OSError(error.args[0], reason.format(self.address))
+        row = part_by_id(self.who_am_i) if name is None else part_by_name(name)
+        if row is None or self.who_am_i in (0x00, 0xFF):
+            raise OSError(_ENODEV, self._describe(self.who_am_i, self._advice()))
+        return row
+
+    def _advice(self):
+        if self.who_am_i in (0x00, 0xFF):
+            return "a dead bus: check pull-ups and wiring"
+        return "no part known: if you know which one it is, name it, as in part='MPU-6500'"
+
+    def _describe(self, who_am_i, rest):
+        row = part_by_id(who_am_i)
+        name = f" ({row[1]})" if row else ""
+        text = "I2C address 0x{:02x} answers with WHO_AM_I 0x{:02x}{}: {}"
+        return text.format(self.address, who_am_i, name, rest)
+
+    def _configure(self):
+        self._frozen = False
+        self.write_register(_PWR_MGMT_1, _DEVICE_RESET)
+        self.clock.sleep_ms(_RESET_MS)
+        settings = self._settings
+        for i in range(0, len(settings), 2):
+            self.write_register(settings[i], settings[i + 1])
+        if not self.check():
+            self._until_check = 0
+            raise OSError(_ENODEV, self._describe(self.who_am_i, "does not keep what is written"))
+        self.clock.sleep_ms(self.start_up_ms)
+        self._changed_us = self.clock.ticks_us()
+
+    def _read_burst(self):
+        self._burst, self._previous = self._previous, self._burst
+        self.read_into(_ACCEL_XOUT_H, self._burst)
+
+    def _is_suspect(self):
+        burst = self._burst
+        if burst != self._previous:
+            self._changed_us = self.clock.ticks_us()
+            return self._is_one_word_repeated(burst)
+        self.repeats += 1
+        still_us = self.clock.ticks_diff(self.clock.ticks_us(), self._changed_us)
+        self._frozen = still_us > _FROZEN_PERIODS * self.period_us
+        return self._frozen or self._is_one_word_repeated(burst)
+
+    def _is_one_word_repeated(self, burst):
+        for i in range(2, 2 * _WORDS):
+            if burst[i] != burst[i & 1]:
+                return False
+        return True

@@ -1,0 +1,133 @@
+"""The fake chip behaves as the register map says, and refuses what it does not say."""
+
+import pytest
+from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050, UnknownRegister
+from zerorate_fakes.registers import PARTS
+
+
+def burst(bus, register, length):
+    data = bytearray(length)
+    bus.readfrom_mem_into(0x68, register, data)
+    return bytes(data)
+
+
+def test_an_mpu6050_powers_up_asleep_with_only_two_registers_set():
+    chip = FakeMPU6050()
+    held = {i: value for i, value in enumerate(chip.registers) if value}
+    assert held == {0x6B: 0x40, 0x75: 0x68}
+
+
+@pytest.mark.parametrize("part", sorted(PARTS))
+def test_every_part_answers_with_its_own_id(part):
+    assert burst(FakeI2C(FakeMPU6050(part=part)), 0x75, 1)[0] == PARTS[part][1]
+
+
+def test_an_undocumented_register_cannot_be_read():
+    with pytest.raises(UnknownRegister, match="0x05 of MPU-6050"):
+        burst(FakeI2C(FakeMPU6050()), 0x05, 1)
+
+
+def test_a_register_only_to_be_read_cannot_be_written():
+    with pytest.raises(UnknownRegister, match="written"):
+        FakeI2C(FakeMPU6050()).writeto_mem(0x68, 0x75, b"\x00")
+
+
+def test_a_burst_counts_up_and_runs_out_of_the_map():
+    with pytest.raises(UnknownRegister, match="0x76"):
+        burst(FakeI2C(FakeMPU6050()), 0x75, 2)
+
+
+def test_asleep_the_data_stay_as_they_are():
+    chip = FakeMPU6050([[1] * 7, [2] * 7])
+    chip.step()
+    assert burst(FakeI2C(chip), 0x3B, 14) == bytes(14)
+
+
+def test_awake_a_burst_is_the_sample_in_big_endian_words():
+    chip = FakeMPU6050([[1, -2, 3, -4, 5, -6, 32767]])
+    chip.write(0x6B, 1)
+    chip.step()
+    assert burst(FakeI2C(chip), 0x3B, 14).hex() == "0001fffe0003fffc0005fffa7fff"
+
+
+def test_data_ready_is_cleared_by_reading_it():
+    chip = FakeMPU6050()
+    chip.write(0x6B, 1)
+    chip.step()
+    bus = FakeI2C(chip)
+    assert burst(bus, 0x3A, 1) == b"\x01"
+    assert burst(bus, 0x3A, 1) == b"\x00"
+
+
+def test_the_sample_clock_keeps_the_rate_that_the_registers_give():
+    chip = FakeMPU6050()
+    clock = FakeClock(chip)
+    chip.write(0x6B, 1)
+    chip.write(0x1A, 3)
+    chip.write(0x19, 9)
+    clock.advance_us(chip.start_up_us + 1000000)
+    assert chip.samples_made == 100
+
+
+def test_no_sample_is_made_during_start_up():
+    chip = FakeMPU6050()
+    chip.write(0x6B, 1)
+    chip.advance_us(chip.start_up_us)
+    assert chip.samples_made == 0
+
+
+def test_the_reset_bit_brings_back_reset_values():
+    chip = FakeMPU6050()
+    chip.write(0x6B, 1)
+    chip.write(0x1B, 0x18)
+    chip.write(0x6B, 0x80)
+    assert chip.asleep and chip.registers[0x1B] == 0
+
+
+def test_the_fifo_is_read_at_one_address():
+    chip = FakeMPU6050([[1, 2, 3, 4, 5, 6, 7]])
+    for register, value in ((0x6B, 1), (0x23, 0xF8), (0x6A, 0x40)):
+        chip.write(register, value)
+    chip.step()
+    bus = FakeI2C(chip)
+    assert burst(bus, 0x72, 2) == b"\x00\x0e"
+    assert burst(bus, 0x74, 14) == bytes([0, 1, 0, 2, 0, 3, 0, 4, 0, 5, 0, 6, 0, 7])
+    assert burst(bus, 0x72, 2) == b"\x00\x00"
+
+
+def test_a_full_fifo_loses_its_oldest_bytes_and_tells_once():
+    chip = FakeMPU6050([[row] * 7 for row in range(80)])
+    for register, value in ((0x6B, 1), (0x23, 0xF8), (0x6A, 0x40)):
+        chip.write(register, value)
+    while chip.step():
+        pass
+    bus = FakeI2C(chip)
+    assert burst(bus, 0x3A, 1)[0] & 0x10
+    assert not burst(bus, 0x3A, 1)[0] & 0x10
+    assert burst(bus, 0x72, 2) == (1024).to_bytes(2, "big")
+    assert len(set(burst(bus, 0x74, 14)[1::2])) == 2  # 1024 is no multiple of 14: out of step
+
+
+def test_a_standby_axis_keeps_its_last_word():
+    chip = FakeMPU6050([[5] * 7, [9] * 7])
+    chip.write(0x6B, 1)
+    chip.step()
+    chip.write(0x6C, 0x04)
+    chip.step()
+    assert burst(FakeI2C(chip), 0x43, 6) == b"\x00\x05\x00\x09\x00\x09"
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        [[1, 2, 3, 4, 5, 6, -7]],
+        bytes([0, 1, 0, 2, 0, 3, 0, 4, 0, 5, 0, 6, 0xFF, 0xF9]),
+        __import__("array").array("h", [1, 2, 3, 4, 5, 6, -7]),
+    ],
+    ids=["iterable", "frames", "array"],
+)
+def test_a_recording_may_be_an_iterable_frames_or_an_array(source):
+    chip = FakeMPU6050(source)
+    chip.write(0x6B, 1)
+    assert chip.step() and not chip.step()
+    assert burst(FakeI2C(chip), 0x43, 6).hex() == "00050006fff9"

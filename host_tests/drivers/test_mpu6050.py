@@ -1,0 +1,153 @@
+"""The driver brings a chip up, reads whole samples and says what it is talking to."""
+
+import pytest
+from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050
+from zerorate_fakes.registers import PARTS as FAKE_PARTS
+from zerorate_i2c.mpu6050 import FRESH, MPU6050, VERIFIED
+from zerorate_i2c.parts import PARTS
+
+FACTS = {  # reference: data sheets, temperature formula and FIFO size by WHO_AM_I
+    0x68: (340.0, 36.53, 1024),
+    0x70: (333.87, 21.0, 512),
+    0x71: (333.87, 21.0, 512),
+    0x73: (333.87, 21.0, 512),
+    0x74: (333.87, 21.0, 512),
+    0x78: (333.87, 21.0, None),
+    0x11: (326.8, 25.0, 1008),
+    0x12: (326.8, 25.0, 1008),
+    0xAF: (326.8, 25.0, 512),
+    0xAE: (326.8, 25.0, 512),
+    0xA6: (326.8, 25.0, 512),
+    0x98: (326.8, 25.0, 4096),
+    0x20: (326.8, 25.0, 1024),
+    0xA9: (326.8, 25.0, 512),
+    0x19: (326.8, 25.0, None),
+}
+
+
+def test_the_table_of_parts_has_every_id_once_known():
+    assert {row[0] for row in PARTS} == set(FACTS)
+
+
+@pytest.mark.parametrize("part", sorted(FAKE_PARTS))
+def test_every_part_comes_up_with_its_own_formula(make_bench, part):
+    imu = make_bench(part=part).imu
+    lsb_per_degc, offset_degc, fifo_bytes = FACTS[imu.who_am_i]
+    assert imu.part == part
+    assert imu.temperature_degc(1000) == pytest.approx(1000 / lsb_per_degc + offset_degc)
+    assert fifo_bytes in (None, imu.fifo_bytes)
+
+
+def test_a_read_fills_seven_signed_words(make_bench):
+    bench = make_bench(source=[[1, -2, 3, -4, 5, -6, -32768]])
+    assert bench.read() == FRESH
+    assert list(bench.sample) == [1, -2, 3, -4, 5, -6, -32768]
+
+
+def test_a_read_is_one_burst(bench):
+    before = bench.bus.transfers
+    bench.read()
+    assert bench.bus.transfers == before + 1
+
+
+@pytest.mark.parametrize(
+    "dps, lsb_per_dps", [(250, 131.0), (500, 65.5), (1000, 32.8), (2000, 16.4)]
+)
+def test_the_gyro_range_sets_bits_and_scale(make_bench, dps, lsb_per_dps):
+    bench = make_bench(full_scale_dps=dps)
+    assert bench.imu.gyro_lsb_per_dps == lsb_per_dps
+    assert bench.chip.registers[0x1B] >> 3 & 3 == [250, 500, 1000, 2000].index(dps)
+
+
+def test_the_icm20690_has_its_range_one_bit_lower(make_bench):
+    assert make_bench(part="ICM-20690", full_scale_dps=2000).chip.registers[0x1B] == 0x0C
+
+
+@pytest.mark.parametrize("g, lsb_per_g", [(2, 16384.0), (4, 8192.0), (8, 4096.0), (16, 2048.0)])
+def test_the_accel_range_sets_bits_and_scale(make_bench, g, lsb_per_g):
+    bench = make_bench(full_scale_g=g)
+    assert bench.imu.accel_lsb_per_g == lsb_per_g
+    assert bench.chip.registers[0x1C] >> 3 == [2, 4, 8, 16].index(g)
+
+
+@pytest.mark.parametrize(
+    "odr_hz, divider, kept_hz", [(100, 9, 100), (25, 39, 25), (300, 2, 1000 / 3)]
+)
+def test_the_sample_rate_is_the_nearest_the_divider_gives(make_bench, odr_hz, divider, kept_hz):
+    bench = make_bench(odr_hz=odr_hz)
+    assert bench.chip.registers[0x19] == divider
+    assert bench.imu.odr_hz == pytest.approx(kept_hz)
+
+
+@pytest.mark.parametrize("part, bandwidth_hz", [("MPU-6050", 42), ("MPU-6500", 41)])
+def test_the_filter_defaults_to_the_widest_below_half_the_rate(make_bench, part, bandwidth_hz):
+    bench = make_bench(part=part, odr_hz=100)
+    assert bench.imu.dlpf_hz == bandwidth_hz
+    assert bench.chip.registers[0x1A] == 3
+
+
+def test_the_accelerometer_of_later_parts_is_filtered_alike(make_bench):
+    assert make_bench(part="MPU-9250").chip.registers[0x1D] == 3
+
+
+@pytest.mark.parametrize(
+    "options, said",
+    [
+        ({"full_scale_dps": 300}, "full_scale_dps is one of"),
+        ({"full_scale_g": 3}, "full_scale_g is one of"),
+        ({"odr_hz": 2}, "odr_hz is"),
+        ({"odr_hz": 0}, "odr_hz is"),
+        ({"dlpf_hz": 1}, "dlpf_hz is one of"),
+        ({"named": "LSM6DS3"}, "no part is called LSM6DS3"),
+    ],
+)
+def test_a_value_no_part_can_take_is_a_value_error(make_bench, options, said):
+    with pytest.raises(ValueError, match=said):
+        make_bench(**options)
+
+
+@pytest.mark.parametrize("who_am_i", [0x72, 0x00, 0xFF, 0x47])
+def test_an_unknown_id_is_an_os_error_with_address_and_id(who_am_i):
+    bus = FakeI2C({0x69: FakeMPU6050(who_am_i=who_am_i)})
+    with pytest.raises(OSError, match=f"address 0x69 .*0x{who_am_i:02x}"):
+        MPU6050(bus, address=0x69, clock=FakeClock())
+
+
+def test_no_chip_is_an_os_error_with_the_address():
+    with pytest.raises(OSError, match="address 0x68, no id") as caught:
+        MPU6050(FakeI2C({}), clock=FakeClock())
+    assert caught.value.errno == 19
+
+
+def test_an_id_of_no_genuine_part_comes_up_when_the_part_is_named():
+    bus = FakeI2C(FakeMPU6050(part="MPU-6500", who_am_i=0x72))
+    imu = MPU6050(bus, part="mpu6500", clock=FakeClock())
+    assert imu.part == "MPU-6500" and imu.who_am_i == 0x72
+
+
+def test_a_board_sold_as_mpu6050_that_answers_0x98_gets_the_icm20689_formula():
+    imu = MPU6050(FakeI2C(FakeMPU6050(part="ICM-20689")), clock=FakeClock())
+    assert imu.temperature_degc(0) == 25.0
+
+
+def test_samples_of_the_start_up_are_not_read(make_bench):
+    bench = make_bench(linked=True)
+    assert bench.chip.samples_made > 0
+
+
+def test_the_configuration_is_read_back_every_so_many_samples(make_bench):
+    bench = make_bench(check_every=10)
+    statuses = [bench.read() for _ in range(21)]
+    assert [i for i, status in enumerate(statuses) if status == VERIFIED] == [10, 20]
+
+
+def test_a_kept_setting_survives_a_restart(bench):
+    bench.imu.keep_setting(0x38, 0x01)
+    bench.imu.restart()
+    assert bench.chip.registers[0x38] == 0x01
+
+
+def test_the_binding_names_chip_range_and_filter(make_bench):
+    assert make_bench().imu.binding != make_bench(full_scale_dps=500).imu.binding
+    assert make_bench().imu.binding != make_bench(part="MPU-6500").imu.binding
+    assert make_bench().imu.binding != make_bench(dlpf_hz=20).imu.binding

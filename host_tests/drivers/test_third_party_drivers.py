@@ -1,0 +1,75 @@
+"""Published drivers that know nothing of the fake come up on it and read what it holds."""
+
+import sys
+import types
+from math import degrees, radians
+
+import pytest
+from zerorate_fakes import FakeI2C, FakeMPU6050
+from zerorate_fakes.circuitpython import CircuitPythonI2C
+from zerorate_fakes.smbus import SMBus
+
+STANDARD_GRAVITY = 9.80665
+FIRST = [1000, -2000, 16000, -3000, 655, -1310, 32767]
+SECOND = [255, 255, 255, 255, 255, 255, 255]
+THIRD = [256, 256, 256, 256, 256, 256, 256]
+
+
+@pytest.fixture
+def chip():
+    return FakeMPU6050([FIRST, SECOND, THIRD])
+
+
+class TestAdafruitCircuitPython:
+    @pytest.fixture
+    def sensor(self, chip):
+        adafruit_mpu6050 = pytest.importorskip("adafruit_mpu6050")
+        return adafruit_mpu6050.MPU6050(CircuitPythonI2C(FakeI2C(chip)))
+
+    def test_it_wakes_the_chip_and_sets_its_range(self, chip, sensor):
+        assert not chip.asleep
+        assert sensor.gyro_range == 1
+        assert chip.registers[0x1B] == 0x08
+
+    def test_it_reads_what_the_chip_holds(self, chip, sensor):
+        chip.step()
+        assert sensor.gyro == pytest.approx([radians(v / 65.5) for v in FIRST[4:]])
+        assert sensor.acceleration == pytest.approx(
+            [v / 16384 * STANDARD_GRAVITY for v in FIRST[:3]]
+        )
+        assert sensor.temperature == pytest.approx(-3000 / 340 + 36.53)
+
+    def test_its_axes_are_of_different_samples_as_it_reads_each_alone(self, chip, sensor):
+        chip.step()
+        sensor.i2c_device.i2c._bus.between_bytes = lambda i: chip.step() if i == 1 else None
+        rates_lsb = [degrees(rate) * 65.5 for rate in sensor.gyro]
+        assert rates_lsb == pytest.approx([FIRST[4], SECOND[5], THIRD[6]])
+
+    def test_its_signal_path_reset_sets_only_reserved_bits(self, chip, sensor):
+        assert (0x68, 0x38) in chip.reserved_writes
+
+
+class TestMpu6050Raspberrypi:
+    @pytest.fixture
+    def sensor(self, chip, monkeypatch):
+        self.bus = FakeI2C(chip)
+        smbus = types.ModuleType("smbus")
+        smbus.SMBus = lambda number: SMBus(self.bus)
+        monkeypatch.setitem(sys.modules, "smbus", smbus)
+        monkeypatch.delitem(sys.modules, "mpu6050.mpu6050", raising=False)
+        monkeypatch.delitem(sys.modules, "mpu6050", raising=False)
+        return pytest.importorskip("mpu6050").mpu6050(0x68)
+
+    def test_it_reads_what_the_chip_holds(self, chip, sensor):
+        chip.step()
+        gyro = sensor.get_gyro_data()
+        assert [gyro["x"], gyro["y"], gyro["z"]] == pytest.approx([v / 131 for v in FIRST[4:]])
+        assert sensor.get_accel_data(g=True)["y"] == pytest.approx(FIRST[1] / 16384)
+        assert sensor.get_temp() == pytest.approx(-3000 / 340 + 36.53)
+
+    def test_a_sample_between_its_two_byte_reads_tears_the_word(self, chip, sensor):
+        chip.step()
+        chip.step()
+        self.bus.between_bytes = lambda i: chip.step()
+        torn = sensor.read_i2c_word(0x43)
+        assert torn == 0  # high byte of 255, low byte of 256: neither was ever measured

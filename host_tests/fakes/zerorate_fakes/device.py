@@ -1,0 +1,215 @@
+"""One chip of the MPU-6050 family, register by register.
+
+Left out: the auxiliary I2C master, motion detection and the DMP; their registers only keep values.
+"""
+
+from .fifo import Fifo
+from .registers import PARTS, READ, WRITE, access_of
+from .source import samples_of
+
+_SELF_TEST_X = 0x0D
+_SMPLRT_DIV = 0x19
+_CONFIG = 0x1A
+_GYRO_CONFIG = 0x1B
+_ACCEL_CONFIG = 0x1C
+_ACCEL_CONFIG2 = 0x1D
+_FIFO_EN = 0x23
+_INT_PIN_CFG = 0x37
+_INT_ENABLE = 0x38
+_INT_STATUS = 0x3A
+_ACCEL_XOUT_H = 0x3B
+_GYRO_ZOUT_L = 0x48
+_SIGNAL_PATH_RESET = 0x68
+_USER_CTRL = 0x6A
+_PWR_MGMT_1 = 0x6B
+_PWR_MGMT_2 = 0x6C
+_FIFO_COUNT_H = 0x72
+_FIFO_COUNT_L = 0x73
+_FIFO_R_W = 0x74
+_WHO_AM_I = 0x75
+
+_DATA_RDY = 0x01
+_FIFO_OFLOW = 0x10
+# FIFO_EN bit and PWR_MGMT_2 standby bit of each data word ax ay az temp gx gy gz
+_FIFO_BIT = (0x08, 0x08, 0x08, 0x80, 0x40, 0x20, 0x10)
+_STANDBY_BIT = (0x20, 0x10, 0x08, 0x00, 0x04, 0x02, 0x01)
+
+
+class UnknownRegister(Exception):
+    """An address that the data sheet does not document, or an access it does not allow."""
+
+
+class FakeMPU6050:
+    """A chip just powered: registers at their reset values, asleep where the part wakes so.
+
+    source gives one sample for each tick of the sample clock (see source.samples_of); its words
+    are served as they are, whatever range is set. Time passes by step() and advance_us() only.
+    who_am_i overrides the part's id, as boards sold with another chip than named do.
+    """
+
+    def __init__(self, source=None, part="MPU-6050", who_am_i=None):
+        if part not in PARTS:
+            raise ValueError("no part is called {}; known: {}".format(part, ", ".join(PARTS)))
+        ranges, chip_id, self._pwr_reset, self._config_reset, size, start_up_us, shift = PARTS[part]
+        self.part = part
+        self.who_am_i = chip_id if who_am_i is None else who_am_i
+        self.start_up_us = start_up_us
+        self.fs_shift = shift
+        self._fifo_bytes = size
+        self.samples_made = 0
+        self.shadowed = True
+        self.frozen = False
+        self.interrupt = None
+        self.reserved_writes = []
+        self.self_test_response = [0] * 7
+        self._size_chosen = part in ("ICM-20689", "ICM-20690")
+        self._access = access_of(ranges)
+        self._trim = bytearray(16)
+        self._samples = samples_of(source)
+        self._latched = bytearray(14)
+        self.power_up()
+
+    def power_up(self):
+        """Reset values everywhere, as after power came (back) or DEVICE_RESET."""
+        self.registers = bytearray(256)
+        self.registers[_PWR_MGMT_1] = self._pwr_reset
+        self.registers[_CONFIG] = self._config_reset
+        self.registers[_WHO_AM_I] = self.who_am_i
+        self.registers[_SELF_TEST_X : _SELF_TEST_X + 4] = self._trim[:4]
+        if self._access[0]:
+            self.registers[0:3] = self._trim[4:7]
+        self.fifo = Fifo(512 if self._size_chosen else self._fifo_bytes)
+        self._awake_us = 0
+        self._phase_us = 0
+
+    def set_self_test(self, codes, gyro_codes, response):
+        """Burn factory trim: four bytes at 0x0D, three at 0x00, LSB that each word's ST bit adds."""
+        self._trim[0:4] = bytes(codes)
+        self._trim[4:7] = bytes(gyro_codes)
+        self.self_test_response = list(response)
+        self.power_up()
+
+    @property
+    def asleep(self):
+        return bool(self.registers[_PWR_MGMT_1] & 0x40)
+
+    @property
+    def period_us(self):
+        """Sample period that SMPLRT_DIV and CONFIG give: 8 kHz without the filter, else 1 kHz."""
+        unfiltered = self.registers[_CONFIG] & 7 in (0, 7)
+        return (125 if unfiltered else 1000) * (1 + self.registers[_SMPLRT_DIV])
+
+    def advance_us(self, us):
+        """Let us microseconds pass; awake and started up, the sample clock ticks in them."""
+        while us > 0 and not self.asleep:
+            waiting = self.start_up_us - self._awake_us
+            passed = min(us, waiting if waiting > 0 else self.period_us - self._phase_us)
+            us -= passed
+            self._awake_us += passed
+            if waiting <= 0:
+                self._phase_us += passed
+                if self._phase_us >= self.period_us:
+                    self._phase_us = 0
+                    self.step()
+
+    def step(self):
+        """One tick of the sample clock now; False when the source has no more.
+
+        Asleep, the source's sample is lost and the registers keep what they hold.
+        """
+        sample = next(self._samples, None)
+        if sample is None:
+            return False
+        self.samples_made += 1
+        if not self.asleep:
+            self._awake_us = self.start_up_us
+            if not self.frozen:
+                self._store(sample)
+            self._fill_fifo()
+            self.registers[_INT_STATUS] |= _DATA_RDY
+            if self.interrupt and self.registers[_INT_ENABLE] & _DATA_RDY:
+                self.interrupt()
+        return True
+
+    def begin_read(self):
+        """Latch the data words, so that one burst is one sample (unless shadowed is False)."""
+        self._latched[:] = self.registers[_ACCEL_XOUT_H : _GYRO_ZOUT_L + 1]
+
+    def read(self, register):
+        """The byte at register, with what reading it changes."""
+        self._require(register, READ)
+        if register == _FIFO_R_W:
+            return self.fifo.get()
+        if register == _FIFO_COUNT_H:
+            self.registers[_FIFO_COUNT_L] = self.fifo.count & 0xFF
+            return self.fifo.count >> 8
+        if self.shadowed and _ACCEL_XOUT_H <= register <= _GYRO_ZOUT_L:
+            return self._latched[register - _ACCEL_XOUT_H]
+        value = self.registers[register]
+        if register == _INT_STATUS:
+            if self.fifo.overflowed:
+                value |= _FIFO_OFLOW
+            self.fifo.overflowed = False
+        if register == _INT_STATUS or self.registers[_INT_PIN_CFG] & 0x10:
+            self.registers[_INT_STATUS] = 0
+        return value
+
+    def write(self, register, value):
+        """Put value at register, with what writing it starts."""
+        self._require(register, WRITE)
+        if register == _PWR_MGMT_1 and value & 0x80:
+            self.power_up()
+            return
+        if register == _PWR_MGMT_1 and self.asleep and not value & 0x40:
+            self._awake_us = 0
+            self._phase_us = 0
+        if register == _SIGNAL_PATH_RESET:
+            if value & 0xF8:
+                self.reserved_writes.append((register, value))
+            value = 0
+        if register == _FIFO_R_W:
+            self.fifo.put(value)
+        if register == _ACCEL_CONFIG2 and self._size_chosen:
+            self.fifo = Fifo(512 << (value >> 6))
+        if register == _USER_CTRL:
+            value = self._user_control(value)
+        self.registers[register] = value
+
+    def next_register(self, register):
+        """Where a burst goes on: FIFO_R_W is read again, everything else counts up."""
+        return register if register == _FIFO_R_W else (register + 1) & 0xFF
+
+    def _require(self, register, kind):
+        if not self._access[register] & kind:
+            verb = "read" if kind == READ else "written"
+            text = "register 0x{:02x} of {} is not to be {}"
+            raise UnknownRegister(text.format(register, self.part, verb))
+
+    def _user_control(self, value):
+        if value & 0x04:
+            self.fifo.clear()
+        return value & ~0x0F & 0xFF
+
+    def _store(self, sample):
+        standby = self.registers[_PWR_MGMT_2]
+        for i in range(7):
+            if standby & _STANDBY_BIT[i] or (i == 3 and self.registers[_PWR_MGMT_1] & 0x08):
+                continue
+            word = max(-32768, min(32767, sample[i] + self._self_test(i))) & 0xFFFF
+            self.registers[_ACCEL_XOUT_H + 2 * i] = word >> 8
+            self.registers[_ACCEL_XOUT_H + 2 * i + 1] = word & 0xFF
+
+    def _self_test(self, i):
+        config = self.registers[_ACCEL_CONFIG if i < 3 else _GYRO_CONFIG]
+        if i == 3 or not config & (0x80 >> (i % 4)):
+            return 0
+        return self.self_test_response[i]
+
+    def _fill_fifo(self):
+        if not self.registers[_USER_CTRL] & 0x40:
+            return
+        self.fifo.keep_oldest = bool(self._access[0] and self.registers[_CONFIG] & 0x40)
+        for i in range(7):
+            if self.registers[_FIFO_EN] & _FIFO_BIT[i]:
+                self.fifo.put(self.registers[_ACCEL_XOUT_H + 2 * i])
+                self.fifo.put(self.registers[_ACCEL_XOUT_H + 2 * i + 1])
