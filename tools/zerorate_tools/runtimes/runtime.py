@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 import subprocess
 import tempfile
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
@@ -35,7 +36,7 @@ class Job:
     stdin: bytes
 
 
-class Runtime:
+class Runtime(ABC):
     """An interpreter; sub-classes say by which command a job is run on it.
 
     name: as given to `find`; viper: whether `@micropython.viper` compiles **and** is right there.
@@ -44,9 +45,9 @@ class Runtime:
     name: str
     viper: bool
 
+    @abstractmethod
     def command(self, job: Job) -> list[str]:
         """The command line that runs `job`, to be started in `job.folder`."""
-        raise NotImplementedError
 
     def environment(self, job: Job) -> dict[str, str] | None:
         """The environment of that command; None is this process's own."""

@@ -21,9 +21,9 @@ if (job.heap !== null) {
     options.heapsize = job.heap;
 }
 const micropython = await loadMicroPython(options);
-copyIn(job.folder, "/work", () => true);
+loadFolder(job.folder, "/work", () => true);
 job.modules.forEach((folder, i) => {
-    copyIn(folder, `/modules${i}`, (name) => name.endsWith(".py") || name.endsWith(".mpy"));
+    loadFolder(folder, `/modules${i}`, (name) => name.endsWith(".py") || name.endsWith(".mpy"));
 });
 micropython.FS.chdir("/work");
 micropython.runPython(
@@ -34,7 +34,7 @@ micropython.runPython(
 process.exitCode = run(fs.readFileSync(path.join(job.folder, job.script), "utf8"));
 options.stdout.flush();
 options.stderr.flush();
-copyOut();
+saveFiles();
 
 function run(source) {
     try {
@@ -83,14 +83,14 @@ function writerTo(descriptor) {
     return write;
 }
 
-function copyIn(from, to, wanted) {
+function loadFolder(from, to, wanted) {
     micropython.FS.mkdirTree(to);
     for (const entry of fs.readdirSync(from, { withFileTypes: true })) {
         const source = path.join(from, entry.name);
         const target = `${to}/${entry.name}`;
         if (fs.statSync(source).isDirectory()) {
             if (!entry.name.startsWith(".") && entry.name !== "__pycache__") {
-                copyIn(source, target, wanted);
+                loadFolder(source, target, wanted);
             }
         } else if (wanted(entry.name)) {
             micropython.FS.writeFile(target, fs.readFileSync(source));
@@ -98,7 +98,7 @@ function copyIn(from, to, wanted) {
     }
 }
 
-function copyOut() {
+function saveFiles() {
     for (const name of job.files_out) {
         if (micropython.FS.analyzePath(`/work/${name}`).exists) {
             const target = path.join(job.folder, name);

@@ -1,0 +1,79 @@
+# Each target does all of its own set-up: a fresh machine needs Python 3.10+, pip or venv, and make.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+PYTEST_ARGS ?= -n auto
+
+.PHONY: demo test lint typecheck pytest viper lock wasm runtimes node wheel clean
+
+demo: $(VENV)/.tools wasm  ## the whole job on built-in input, no hardware
+	$(BIN)/zerorate demo
+
+test: lint typecheck pytest  ## everything that CI runs
+
+lint: $(VENV)/.dev
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/codespell
+
+# Kernel files are checked as their viper twins, where ptr8 and ptr32 mean something.
+TWINS := $(wildcard firmware/zerorate/viper/*.py)
+KERNELS := $(patsubst firmware/zerorate/viper/%,firmware/zerorate/%,$(TWINS))
+BOARD := $(sort $(TWINS) $(filter-out $(KERNELS),$(wildcard firmware/zerorate/*.py)) \
+	$(filter-out %/linux.py,$(wildcard drivers/zerorate_i2c/*.py)))
+
+typecheck: $(VENV)/.dev $(VENV)/.board-stubs
+	$(BIN)/mypy --config-file mypy-board.ini $(BOARD)
+	$(BIN)/mypy
+
+pytest: $(VENV)/.dev runtimes
+	$(BIN)/python -m pytest $(PYTEST_ARGS)
+
+viper: $(VENV)/.dev  ## write firmware/zerorate/viper from the kernel files
+	$(BIN)/python -m zerorate_tools.viper_twins firmware/zerorate
+
+wasm: $(VENV)/.tools node
+	$(BIN)/python -m zerorate_tools.runtimes get wasm
+
+# What cannot be had is left out by the tests, which say so; ZERORATE_REQUIRE makes them fail.
+runtimes: $(VENV)/.dev node
+	-$(BIN)/python -m zerorate_tools.runtimes get wasm x86 armhf valgrind
+
+node: $(VENV)/.tools
+	@$(BIN)/python -m zerorate_tools.runtimes.node || \
+		$(BIN)/python -m pip install --quiet -r requirements/node.txt
+
+# Without ensurepip (Debian's python3 without python3-venv) the machine's own pip fills the folder.
+$(BIN)/python:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' || \
+		{ echo "zerorate needs Python 3.10 or newer; name one: make PYTHON=python3.12 ..."; exit 1; }
+	$(PYTHON) -m venv $(VENV) || { $(PYTHON) -m venv --without-pip --clear $(VENV) && \
+		$(PYTHON) -m pip --python $@ install pip; }
+
+$(VENV)/.tools: requirements/tools.txt pyproject.toml | $(BIN)/python
+	$(BIN)/python -m pip install --quiet -r requirements/tools.txt
+	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation -e .
+	touch $@
+
+$(VENV)/.dev: requirements/dev.txt $(VENV)/.tools
+	$(BIN)/python -m pip install --quiet -r requirements/dev.txt
+	touch $@
+
+$(VENV)/.board-stubs: requirements/dev.txt $(VENV)/.dev
+	rm -rf $(VENV)/board-stubs
+	$(BIN)/python -m pip install --quiet --no-deps --target $(VENV)/board-stubs \
+		$$(grep -oE '^micropython-(rp2|stdlib)-stubs==[^ ;]+' requirements/dev.txt)
+	touch $@
+
+# The two locks agree: the larger one is resolved under the smaller one's versions.
+COMPILE := uv pip compile --quiet --universal --python-version 3.10 --no-header
+lock: $(VENV)/.dev  ## resolve the lock files again
+	$(BIN)/$(COMPILE) pyproject.toml requirements/build.in --extra tools -o requirements/tools.txt
+	$(BIN)/$(COMPILE) pyproject.toml --all-extras -c requirements/tools.txt -o requirements/dev.txt
+	$(BIN)/$(COMPILE) requirements/node.in -o requirements/node.txt
+
+wheel: $(VENV)/.dev
+	$(BIN)/uv build --quiet --out-dir dist
+
+clean:
+	rm -rf $(VENV) dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
