@@ -1,0 +1,42 @@
+"""`zerorate simulate`: recordings from a described device."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+
+def add_parser(subparsers) -> None:
+    """Register the sub-command."""
+    parser = subparsers.add_parser(
+        "simulate",
+        help="make recordings of a described device",
+        description="Make recordings of a device described in TOML or YAML, or of a bundled one.",
+    )
+    parser.add_argument("description", nargs="?", help=".toml, .yaml, or a bundled scenario's name")
+    parser.add_argument("--out", type=Path, metavar="FILE", help=".parquet, .csv or .csv.gz")
+    parser.add_argument("--truth", type=Path, metavar="FILE", help="the true bias too (.parquet)")
+    parser.add_argument("--session", type=int, metavar="N", help="this power-on only, 1-based")
+    parser.add_argument("--seed", type=int, metavar="N", help="instead of the description's")
+    parser.add_argument("--list", action="store_true", help="list the bundled scenarios")
+    parser.set_defaults(run=run, refuse=parser.error)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Simulate and say which files were written."""
+    from ..progress import progress
+    from ..simulate import bundled_names, load_description, simulate_to_files
+
+    if arguments.list:
+        print("\n".join(bundled_names()))
+        return 0
+    if arguments.description is None or arguments.out is None:
+        arguments.refuse("a description and --out FILE are needed (or --list)")
+    described = load_description(arguments.description)
+    options = {"truth": arguments.truth, "session": arguments.session, "seed": arguments.seed}
+    total = 1 if arguments.session else len(described.sessions)
+    with progress(f"simulating {described.name}", total) as done:
+        files = simulate_to_files(described, arguments.out, **options, done=done)
+    for file in files:
+        print(file)
+    return 0

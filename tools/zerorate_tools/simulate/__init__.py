@@ -1,0 +1,16 @@
+"""Recordings of devices that never were, with the truth behind them."""
+
+from .description import bundled_names, load_description
+from .device import Truth, simulate, simulate_sessions
+from .output import read_truth, simulate_to_files, write_truth
+
+__all__ = [
+    "Truth",
+    "bundled_names",
+    "load_description",
+    "read_truth",
+    "simulate",
+    "simulate_sessions",
+    "simulate_to_files",
+    "write_truth",
+]

@@ -1,0 +1,223 @@
+"""The simulated device: true world in, integer readings and the truth behind them out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from os import PathLike
+
+import numpy as np
+
+from ..errors import BadDescription
+from ..recordings import Recording, Scales, recording_from_columns
+from . import noise
+from .description import Description, Sensor, Table, axes, load_description
+from .effects import RATE_EFFECTS, lagged
+from .randomness import stream
+from .scaling import coefficients, waveform
+from .world import World, build
+
+
+@dataclass
+class Truth:
+    """What no recording tells: per sample of the recording, in its order.
+
+    bias_lsb (n, 3): true zero-rate output, raw LSB (everything but the rate, what is proportional
+    to it, white noise and rounding); still (n,) bool: nothing turned; attitude (n, 4): unit
+    quaternion w x y z, body to world; rate_dps (n, 3): true rate; temp_degc (n,): of the die;
+    effects_dps: per effect of the description its (3,) coefficients.
+    """
+
+    t_us: np.ndarray
+    bias_lsb: np.ndarray
+    still: np.ndarray
+    attitude: np.ndarray
+    rate_dps: np.ndarray
+    temp_degc: np.ndarray
+    effects_dps: list[np.ndarray]
+
+
+def simulate(
+    description: str | PathLike[str] | Table | Description,
+    *,
+    session: int = 1,
+    seed: int | None = None,
+) -> tuple[Recording, Truth]:
+    """One power-on (1-based `session`) of a described device: its recording, and the truth.
+
+    description: .toml, .yaml, the name of a bundled scenario, or a dict of the same entries.
+    seed: instead of the description's. The same seed gives the same recording, bit for bit.
+    Raises BadDescription.
+    """
+    described = load_description(description)
+    if not 1 <= session <= len(described.sessions):
+        do = f"choose of 1 to {len(described.sessions)}"
+        raise BadDescription(described.path, f"there is no session {session}", do=do)
+    return next(_sessions(described, [session], seed))
+
+
+def simulate_sessions(
+    description: str | PathLike[str] | Table | Description, *, seed: int | None = None
+) -> Iterator[tuple[Recording, Truth]]:
+    """Every power-on of a described device, in turn: see `simulate`."""
+    described = load_description(description)
+    return _sessions(described, range(1, len(described.sessions) + 1), seed)
+
+
+def _sessions(described: Description, numbers, seed: int | None):
+    seed = described.seed if seed is None else seed
+    # a wanted size is over all sessions, so then all worlds must be known before the first
+    sized = any("rms_dps" in effect for effect in described.effects)
+    everyone = range(1, len(described.sessions) + 1)
+    worlds = {n: build(described, n, seed) for n in everyone} if sized else {}
+    found = [
+        coefficients(described, i, list(worlds.values()), seed)
+        for i, effect in enumerate(described.effects)
+        if effect.get("kind") != "timing"
+    ]
+    effects = [effect for effect in described.effects if effect.get("kind") != "timing"]
+    for number in numbers:
+        world = worlds.pop(number, None) or build(described, number, seed)
+        yield _measured(described, world, list(zip(effects, found)), seed)
+
+
+def _measured(described: Description, world: World, effects: list, seed: int):
+    sensor, number = described.sensor, world.number
+    zero_rate = _zero_rate_dps(described, world, seed)
+    late = world.rate_dps.copy()
+    for effect, per_unit in effects:
+        added = waveform(world, effect, described.path) * per_unit
+        if effect["kind"] in RATE_EFFECTS:
+            late += added
+        else:
+            zero_rate += added
+    t_us, late = _timed(described, world, late, seed)
+    readings = late + zero_rate + _white(described, world, seed)
+    columns = {"t_us": t_us, **_counts("g", readings * sensor.gyro_lsb_per_dps)}
+    columns |= _surroundings(sensor, world, stream(seed, number, "accelerometer"))
+    columns |= _channel_columns(world, seed)
+    name = described.name if len(described.sessions) == 1 else f"{described.name}-{number}"
+    recording = recording_from_columns(columns, _scales(described), name)
+    truth = Truth(
+        t_us=recording.columns["t_us"],
+        bias_lsb=zero_rate * sensor.gyro_lsb_per_dps,
+        still=world.still,
+        attitude=world.attitude,
+        rate_dps=world.rate_dps,
+        temp_degc=world.temp_degc,
+        effects_dps=[per_unit for _, per_unit in effects],
+    )
+    return recording, truth
+
+
+def _zero_rate_dps(described: Description, world: World, seed: int) -> np.ndarray:
+    bias, path = described.bias, described.path
+    warm = world.temp_degc[:, None] - 25
+    b = [axes(getattr(bias, f"b{i}"), f"bias.b{i}", path) for i in range(4)]
+    total = b[0] + warm * (b[1] + warm * (b[2] + warm * b[3]))
+    turn_on = axes(bias.turn_on_dps, "bias.turn_on_dps", path)
+    total += turn_on * stream(seed, world.number, "turn-on").standard_normal(3)
+    return total + _coloured(described, world, seed)
+
+
+def _coloured(described: Description, world: World, seed: int) -> np.ndarray:
+    n, dt_s, given = len(world.t_s), world.dt_s, described.noise
+    louder = described.sessions[world.number - 1].noise_scale
+    total = np.zeros((n, 3))
+
+    def size(key: str) -> np.ndarray:
+        return louder * axes(getattr(given, key), f"noise.{key}", described.path)
+
+    def rng(purpose: str) -> np.random.Generator:
+        return stream(seed, world.number, purpose)
+
+    if size("bias_instability_dps").any():
+        total += noise.flicker(rng("flicker"), n, dt_s, size("bias_instability_dps"))
+    if size("random_walk_dps").any():
+        total += noise.random_walk(rng("walk"), n, dt_s, size("random_walk_dps"))
+    if size("telegraph_dps").any():
+        jumps = size("telegraph_dps")
+        total += noise.telegraph(rng("telegraph"), n, dt_s, jumps, given.telegraph_mean_s)
+    if size("coloured_dps").any():
+        rms = size("coloured_dps")
+        total += noise.power_law(rng("coloured"), n, dt_s, rms, given.coloured_exponent)
+    return total
+
+
+def _white(described: Description, world: World, seed: int) -> np.ndarray:
+    sensor, given, n = described.sensor, described.noise, len(world.t_s)
+    louder = described.sessions[world.number - 1].noise_scale
+    rng = stream(seed, world.number, "white")
+    white = rng.standard_normal((n, 3)) * (_white_rms_dps(sensor) * louder)
+    if given.outlier_dps and given.outlier_per_hour:
+        far = stream(seed, world.number, "outliers")
+        white += noise.outliers(far, n, world.dt_s, given.outlier_dps, given.outlier_per_hour)
+    return white
+
+
+def _white_rms_dps(sensor: Sensor) -> float:
+    if sensor.gyro_noise_dps_rt_hz is not None:
+        return sensor.gyro_noise_dps_rt_hz * np.sqrt(sensor.odr_hz / 2)
+    return sensor.gyro_noise_dps * _averaging(sensor)
+
+
+def _averaging(sensor: Sensor) -> float:
+    # below the rate at which noise was given, a reading is the mean of a block
+    return np.sqrt(sensor.odr_hz / (sensor.gyro_noise_at_hz or sensor.odr_hz))
+
+
+def _timed(described: Description, world: World, rate_dps: np.ndarray, seed: int):
+    t_s, stamps = world.t_s, world.t_s
+    for effect in described.effects:
+        if effect.get("kind") != "timing":
+            continue
+        delay_s = effect.get("delay_ms", 0.0) / 1000
+        rate_dps = np.stack([np.interp(t_s - delay_s, t_s, axis) for axis in rate_dps.T], axis=1)
+        jitter = stream(seed, world.number, "jitter").standard_normal(len(t_s))
+        stamps = t_s * (1 + effect.get("clock_ppm", 0.0) * 1e-6)
+        stamps = stamps + jitter * effect.get("jitter_us", 0.0) * 1e-6
+        stamps = np.maximum.accumulate(np.maximum(stamps, 0.0))
+    return np.rint(stamps * 1e6).astype(np.int64), rate_dps
+
+
+def _counts(letter: str, values_lsb: np.ndarray) -> dict[str, np.ndarray]:
+    counts = np.clip(np.rint(values_lsb), -32768, 32767).astype(np.int32)
+    return {letter + axis: counts[:, i] for i, axis in enumerate("xyz")}
+
+
+def _surroundings(sensor: Sensor, world: World, rng: np.random.Generator) -> dict[str, np.ndarray]:
+    n, quieter, columns = len(world.t_s), _averaging(sensor), {}
+    if sensor.accel:
+        shaken = rng.standard_normal((n, 3)) * (sensor.accel_noise_g * quieter)
+        force = world.accel_g + shaken + axes(sensor.accel_bias_g, "sensor.accel_bias_g", "")
+        columns |= _counts("a", force * sensor.accel_lsb_per_g)
+    if sensor.temp:
+        read = lagged(world.temp_degc, sensor.temp_lag_s, world.dt_s)
+        read = read + rng.standard_normal(n) * (sensor.temp_noise_degc * quieter)
+        raw = (read - sensor.temp_offset_degc) * sensor.temp_lsb_per_degc
+        columns["temp"] = np.clip(np.rint(raw), -32768, 32767).astype(np.int32)
+    return columns
+
+
+def _channel_columns(world: World, seed: int) -> dict[str, np.ndarray]:
+    columns = {}
+    for name, channel in world.channels.items():
+        if channel.recorded:
+            rng = stream(seed, world.number, f"reading {name}")
+            read = channel.values + rng.standard_normal(len(world.t_s)) * channel.noise
+            columns[name] = np.rint(read / channel.lsb).astype(np.int32)
+    return columns
+
+
+def _scales(described: Description) -> Scales:
+    sensor = described.sensor
+    where = {} if described.latitude_deg is None else {"latitude_deg": described.latitude_deg}
+    return Scales(
+        sensor=sensor.name,
+        odr_hz=sensor.odr_hz,
+        gyro_lsb_per_dps=sensor.gyro_lsb_per_dps,
+        accel_lsb_per_g=sensor.accel_lsb_per_g if sensor.accel else None,
+        temp_lsb_per_degc=sensor.temp_lsb_per_degc if sensor.temp else None,
+        temp_offset_degc=sensor.temp_offset_degc if sensor.temp else None,
+        more=where,
+    )

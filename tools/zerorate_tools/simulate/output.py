@@ -1,0 +1,84 @@
+"""Simulated recordings on disk, the truth in a file of its own."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from ..recordings import write_recording
+from ..recordings.atomic import written_beside
+from .description import load_description
+from .device import Truth, simulate, simulate_sessions
+
+_QUATERNION = ("qw", "qx", "qy", "qz")
+
+
+def simulate_to_files(
+    description: str | PathLike[str],
+    out: str | PathLike[str],
+    *,
+    truth: str | PathLike[str] | None = None,
+    session: int | None = None,
+    seed: int | None = None,
+    done: Callable[[float], None] = lambda sessions: None,
+) -> list[Path]:
+    """Write the recording of each session, or of one; return the files' names.
+
+    Several sessions become out-1.parquet, out-2.parquet, ...; the truth is only written where
+    `truth` names a Parquet file for it, numbered likewise. done(1) is called after each session.
+    Raises BadDescription, InFile.
+    """
+    described = load_description(description)
+    many = session is None and len(described.sessions) > 1
+    if session is None:
+        made = simulate_sessions(described, seed=seed)
+    else:
+        made = iter([simulate(described, session=session, seed=seed)])
+    files = []
+    for number, (recording, behind) in enumerate(made, start=1):
+        files.append(_numbered(Path(out), number) if many else Path(out))
+        write_recording(recording, files[-1])
+        if truth is not None:
+            write_truth(behind, _numbered(Path(truth), number) if many else Path(truth))
+        done(1)
+    return files
+
+
+def _numbered(path: Path, number: int) -> Path:
+    stem, dot, suffixes = path.name.partition(".")
+    return path.with_name(f"{stem}-{number}{dot}{suffixes}")
+
+
+def write_truth(truth: Truth, path: str | PathLike[str]) -> None:
+    """Write a truth as Parquet: t_us, bias_g?_lsb, still, qw..qz, rate_g?_dps, temp_degc."""
+    columns = {"t_us": truth.t_us, "still": truth.still, "temp_degc": truth.temp_degc}
+    for i, axis in enumerate("xyz"):
+        columns[f"bias_g{axis}_lsb"] = truth.bias_lsb[:, i]
+        columns[f"rate_g{axis}_dps"] = truth.rate_dps[:, i]
+    columns |= {name: truth.attitude[:, i] for i, name in enumerate(_QUATERNION)}
+    effects = json.dumps([list(per_unit) for per_unit in truth.effects_dps]).encode()
+    table = pa.table(columns).replace_schema_metadata({b"zerorate-truth": effects})
+    with written_beside(path) as temporary:
+        pq.write_table(table, temporary)
+
+
+def read_truth(path: str | PathLike[str]) -> Truth:
+    """Read what `write_truth` wrote."""
+    table = pq.read_table(path)
+    columns = {name: table[name].to_numpy() for name in table.column_names}
+    effects = json.loads(table.schema.metadata[b"zerorate-truth"])
+    return Truth(
+        t_us=columns["t_us"],
+        bias_lsb=np.stack([columns[f"bias_g{axis}_lsb"] for axis in "xyz"], axis=1),
+        still=columns["still"],
+        attitude=np.stack([columns[name] for name in _QUATERNION], axis=1),
+        rate_dps=np.stack([columns[f"rate_g{axis}_dps"] for axis in "xyz"], axis=1),
+        temp_degc=columns["temp_degc"],
+        effects_dps=[np.array(per_unit) for per_unit in effects],
+    )

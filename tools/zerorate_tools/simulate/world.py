@@ -1,0 +1,135 @@
+"""What truly happens around the sensor in one session, before any of it is measured."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..errors import BadDescription
+from .attitude import facing, integrate, into_body, multiply, rotation
+from .channels import CHANNELS, Channel, Clock
+from .description import Description, Session
+from .motion import MOTIONS, Start, face_up
+from .paths import durations, path, seconds
+from .randomness import stream
+
+_EARTH_DPS = 360 / 86164.0905
+UP = np.array([0.0, 0.0, 1.0])
+
+
+@dataclass
+class World:
+    """One session's truth: (n,) times s, die temperature degC and still flag; (n, 3) rate dps and
+    specific force g in the body; (n, 4) attitude; channels by name; number is 1-based."""
+
+    number: int
+    t_s: np.ndarray
+    dt_s: float
+    temp_degc: np.ndarray
+    rate_dps: np.ndarray
+    accel_g: np.ndarray
+    attitude: np.ndarray
+    still: np.ndarray
+    channels: dict[str, Channel]
+
+
+def build(description: Description, number: int, seed: int) -> World:
+    """The world of session `number` (1-based). Raises BadDescription."""
+    session = description.sessions[number - 1]
+    dt_s = 1.0 / description.sensor.odr_hz
+    session, lengths = _varied(session, stream(seed, number, "temperature"))
+    n = max(int(round(_duration_s(session, lengths) / dt_s)), 1)
+    t_s = np.arange(n) * dt_s
+    temp = path(t_s, session.start_degc, session.temperature, lengths)
+    rate, attitude, accel = _moved(description, session, t_s, stream(seed, number, "motion"))
+    still = ~rate.any(axis=1)
+    if description.latitude_deg is not None:
+        rate = rate + into_body(attitude, earth_rate_dps(description.latitude_deg))
+    world = World(number, t_s, dt_s, temp, rate, accel, attitude, still, {})
+    for name, table in description.channels.items():
+        rng = stream(seed, number, f"channel {name}")
+        world.channels[name] = _channel(world, name, table, rng, description.path)
+    return world
+
+
+def earth_rate_dps(latitude_deg: float) -> np.ndarray:
+    """(3,) Earth's rotation in the world frame: x east, y north, z up."""
+    latitude = np.radians(latitude_deg)
+    return _EARTH_DPS * np.array([0.0, np.cos(latitude), np.sin(latitude)])
+
+
+def _varied(session: Session, rng: np.random.Generator) -> tuple[Session, list[float]]:
+    spread = session.vary_degc
+    start = session.start_degc + spread * rng.standard_normal()
+    segments = [
+        {**s, "to": s["to"] + spread * rng.standard_normal()} if "to" in s else s
+        for s in session.temperature
+    ]
+    lengths = durations(session.start_degc, session.temperature)
+    factors = np.exp(session.vary_time * rng.standard_normal(len(lengths)))
+    varied = Session(**{**vars(session), "start_degc": start, "temperature": segments})
+    return varied, [length * factor for length, factor in zip(lengths, factors)]
+
+
+def _duration_s(session: Session, lengths: list[float]) -> float:
+    return session.s + 60 * session.minutes + 3600 * session.hours or sum(lengths)
+
+
+def _moved(
+    description: Description, session: Session, t_s: np.ndarray, rng: np.random.Generator
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    n, dt_s = len(t_s), 1.0 / description.sensor.odr_hz
+    rate, push, attitude = np.zeros((n, 3)), np.zeros((n, 3)), np.empty((n, 4))
+    now, first, turn = _first_attitude(session, rng), 0, 0
+    schedule = session.motion or [{"kind": "rest", "s": session.duration_s * 10}]
+    while first < n:
+        bout = _drawn(schedule[turn % len(schedule)], rng)
+        last = min(first + max(int(round(seconds(bout) / dt_s)), 1), n)
+        start = Start(rng, np.arange(1, last - first + 1) * dt_s, dt_s, into_body(now, UP))
+        moved = _bout(bout, start, description.path)
+        rate[first:last] = moved.rate_dps
+        if moved.push_g is not None:
+            push[first:last] = moved.push_g
+        turns = moved.rate_dps.any()
+        attitude[first:last] = integrate(moved.rate_dps, dt_s, now) if turns else now
+        now, first, turn = attitude[last - 1], last, turn + 1
+    return rate, attitude, into_body(attitude, UP) + push
+
+
+def _first_attitude(session: Session, rng: np.random.Generator) -> np.ndarray:
+    lean = rng.standard_normal(3) * session.tilt_deg
+    heading = rotation(np.array([0.0, 0.0, session.heading_deg]))
+    return multiply(heading, multiply(facing(face_up(session.face)), rotation(lean)))
+
+
+def _drawn(bout: Mapping[str, Any], rng: np.random.Generator) -> dict[str, Any]:
+    return {
+        key: rng.uniform(*value) if isinstance(value, list) and len(value) == 2 else value
+        for key, value in bout.items()
+    }
+
+
+def _bout(bout: dict[str, Any], start: Start, path: str) -> Any:
+    options = {k: v for k, v in bout.items() if k not in ("kind", "s", "minutes", "hours")}
+    try:
+        return MOTIONS[bout["kind"]](start, **options)
+    except (TypeError, KeyError, ValueError) as error:
+        raise BadDescription(path, f"motion {bout['kind']}: {error}", do="correct it") from error
+
+
+def _channel(
+    world: World, name: str, table: Mapping[str, Any], rng: np.random.Generator, path: str
+) -> Channel:
+    options = dict(table)
+    how = {key: options.pop(key) for key in ("recorded", "lsb", "noise") if key in options}
+    kind = options.pop("kind", None)
+    try:
+        if kind == "copy":
+            return Channel(world.channels[options["of"]].values, **how)
+        return Channel(CHANNELS[kind](Clock(rng, world.t_s, world.dt_s), **options), **how)
+    except (TypeError, KeyError, ValueError) as error:
+        do = f"choose kind of {', '.join(CHANNELS)}, copy, and its options"
+        raise BadDescription(path, f"channel {name}: {error}", do=do) from error
