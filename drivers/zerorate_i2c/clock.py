@@ -1,9 +1,9 @@
-"""The clock the driver waits and measures by; any object with these three functions will do."""
+"""The clock the driver waits and measures by; any object with these four functions will do."""
 
 import time
 
 try:
-    from time import sleep_ms, ticks_diff, ticks_us
+    from time import sleep_ms, ticks_add, ticks_diff, ticks_us
 except ImportError:
 
     def ticks_us():
@@ -14,9 +14,13 @@ except ImportError:
         """Microseconds from start to end."""
         return end - start
 
+    def ticks_add(ticks, delta):
+        """The time delta microseconds after ticks."""
+        return ticks + delta
+
     def sleep_ms(milliseconds):
         """Wait."""
         time.sleep(milliseconds / 1000)
 
 
-__all__ = ["sleep_ms", "ticks_diff", "ticks_us"]
+__all__ = ["sleep_ms", "ticks_add", "ticks_diff", "ticks_us"]

@@ -36,10 +36,11 @@ RESTARTED = const(2)  # no sample: the configuration was lost and has been writt
 SUSPECT = const(3)  # no measurement can look like this frame: do not learn from it
 
 
-def decode(burst, sample):
-    """Seven big-endian 16-bit words of burst to signed integers in sample."""
+def decode(frames, start, sample):
+    """Seven big-endian 16-bit words of frames from start on to signed integers in sample."""
     for i in range(_WORDS):
-        word = burst[2 * i] << 8 | burst[2 * i + 1]
+        word = frames[start] << 8 | frames[start + 1]
+        start += 2
         sample[i] = word - ((word & 0x8000) << 1)
 
 
@@ -82,6 +83,8 @@ class MPU6050:
         self._check_every = check_every
         self._until_check = check_every
         self._byte = bytearray(1)
+        self._register = 0
+        self._target = self._byte
         self._burst = bytearray(2 * _WORDS)
         self._previous = bytearray(2 * _WORDS)
         self._frozen = False
@@ -103,7 +106,7 @@ class MPU6050:
         self.accel_lsb_per_g = ACCEL_LSB_PER_G[accel_code]
         self.binding = bytes([self.who_am_i, gyro_code, accel_code, dlpf_code])
         self._settings = register_settings(self.kind, gyro_code, accel_code, dlpf_code, divider)
-        self._configure()
+        self.configure()
         self._changed_us = self.clock.ticks_us()
 
     def read(self, sample):
@@ -113,20 +116,40 @@ class MPU6050:
         last VERIFIED is in doubt after RESTARTED and after OSError, which passes when the bus
         fails 1 + retries times or another part answers. Allocates nothing while all is well.
         """
-        status = FRESH
-        if self._until_check <= 0:
-            if self._frozen or not self.check():
-                self.restart()
-                return RESTARTED
-            status = VERIFIED
-        self._until_check -= 1
-        self._read_burst()
-        decode(self._burst, sample)
+        status = self.verify(1)
+        if status == RESTARTED:
+            return RESTARTED
+        self.read_sample(sample)
         if self._is_suspect():
-            self.suspects += 1
-            self._until_check = 0
+            self.doubt(self._frozen)
             return SUSPECT
         return status
+
+    def read_sample(self, sample):
+        """Fill sample from one burst, unexamined."""
+        self._burst, self._previous = self._previous, self._burst
+        self.read_into(_ACCEL_XOUT_H, self._burst)
+        decode(self._burst, 0, sample)
+
+    def verify(self, samples):
+        """Read the configuration back if it is time to, samples more being taken on trust.
+
+        Returns FRESH when it was not time, VERIFIED, or RESTARTED after configuring again.
+        """
+        if self._until_check > 0:
+            self._until_check -= samples
+            return FRESH
+        if self._frozen or not self.check():
+            self.restart()
+            return RESTARTED
+        self._until_check -= samples
+        return VERIFIED
+
+    def doubt(self, frozen):
+        """Count a frame that is no measurement: verify before the next; frozen needs a restart."""
+        self.suspects += 1
+        self._until_check = 0
+        self._frozen = frozen
 
     def check(self):
         """True when every register set still reads back as it was written.
@@ -137,18 +160,31 @@ class MPU6050:
         who_am_i = self.read_register(_WHO_AM_I)
         if who_am_i != self.who_am_i:
             raise OSError(_ENODEV, self._describe(who_am_i, f"was 0x{self.who_am_i:02x}"))
-        settings = self._settings
-        for i in range(0, len(settings), 2):
-            if self.read_register(settings[i]) != settings[i + 1]:
+        for i in range(0, len(self._settings), 2):
+            if not self._is_kept(i):
                 return False
         self.read_backs += 1
         self._until_check = self._check_every
         return True
 
+    def configure(self):
+        """Reset the chip, write its configuration and wait until it measures."""
+        self._frozen = False
+        self.write_register(_PWR_MGMT_1, _DEVICE_RESET)
+        self.clock.sleep_ms(_RESET_MS)
+        settings = self._settings
+        for i in range(0, len(settings), 2):
+            self.write_register(settings[i], settings[i + 1])
+        if not self.check():
+            self._until_check = 0
+            raise OSError(_ENODEV, self._describe(self.who_am_i, "does not keep what is written"))
+        self.clock.sleep_ms(self.start_up_ms)
+        self._changed_us = self.clock.ticks_us()
+
     def restart(self):
         """Reset the chip and write its configuration again; OSError when it does not keep it."""
         self.restarts += 1
-        self._configure()
+        self.configure()
 
     def keep_setting(self, register, value):
         """Write a register now and after every restart, and read it back with the others."""
@@ -173,18 +209,9 @@ class MPU6050:
 
     def read_into(self, register, buffer):
         """Fill buffer from register on; OSError after 1 + retries failures."""
-        for _ in range(self._retries):
-            try:
-                self.i2c.readfrom_mem_into(self.address, register, buffer)
-                return
-            except OSError:
-                self.bus_errors += 1
-        try:
-            self.i2c.readfrom_mem_into(self.address, register, buffer)
-        except OSError:
-            self.bus_errors += 1
-            self._until_check = 0
-            raise
+        self._register = register
+        self._target = buffer
+        self._transfer()
 
     def temperature_degc(self, raw):
         """Degrees Celsius of a raw temperature reading, by this part's formula."""
@@ -214,22 +241,28 @@ class MPU6050:
         text = "I2C address 0x{:02x} answers with WHO_AM_I 0x{:02x}{}: {}"
         return text.format(self.address, who_am_i, name, rest)
 
-    def _configure(self):
-        self._frozen = False
-        self.write_register(_PWR_MGMT_1, _DEVICE_RESET)
-        self.clock.sleep_ms(_RESET_MS)
-        settings = self._settings
-        for i in range(0, len(settings), 2):
-            self.write_register(settings[i], settings[i + 1])
-        if not self.check():
-            self._until_check = 0
-            raise OSError(_ENODEV, self._describe(self.who_am_i, "does not keep what is written"))
-        self.clock.sleep_ms(self.start_up_ms)
-        self._changed_us = self.clock.ticks_us()
+    def _is_kept(self, i):
+        return self.read_register(self._settings[i]) == self._settings[i + 1]
 
-    def _read_burst(self):
-        self._burst, self._previous = self._previous, self._burst
-        self.read_into(_ACCEL_XOUT_H, self._burst)
+    # Arguments by attribute: a frame with an exception handler has room for 8 words, not 11.
+    def _transfer(self):
+        try:
+            self.i2c.readfrom_mem_into(self.address, self._register, self._target)
+        except OSError:
+            if not self._retry():
+                raise
+
+    def _retry(self):
+        self._until_check = 0
+        for _ in range(self._retries):
+            self.bus_errors += 1
+            try:
+                self.i2c.readfrom_mem_into(self.address, self._register, self._target)
+                return True
+            except OSError:
+                pass
+        self.bus_errors += 1
+        return False
 
     def _is_suspect(self):
         burst = self._burst
@@ -242,7 +275,7 @@ class MPU6050:
         return self._frozen or self._is_one_word_repeated(burst)
 
     def _is_one_word_repeated(self, burst):
-        for i in range(2, 2 * _WORDS):
+        for i in range(2, 2 * _WORDS):  # noqa: SIM110 (a generator would allocate)
             if burst[i] != burst[i & 1]:
                 return False
         return True

@@ -25,6 +25,10 @@ class FakeClock:
         """Microseconds from start to end."""
         return end - start
 
+    def ticks_add(self, ticks, delta):
+        """The time delta microseconds after ticks."""
+        return ticks + delta
+
     def sleep_ms(self, milliseconds):
         """Let time pass at once."""
         self.advance_us(1000 * milliseconds)

@@ -83,7 +83,7 @@ class FakeMPU6050:
         self._phase_us = 0
 
     def set_self_test(self, codes, gyro_codes, response):
-        """Burn factory trim: four bytes at 0x0D, three at 0x00, LSB that each word's ST bit adds."""
+        """Burn factory trim: bytes at 0x0D and at 0x00; LSB each word's self-test bit adds."""
         self._trim[0:4] = bytes(codes)
         self._trim[4:7] = bytes(gyro_codes)
         self.self_test_response = list(response)

@@ -42,3 +42,21 @@ class BusWires:
             self._bits = max(0, self._bits - 1)
         if name == "sda" and rose and self._driven["scl"]:
             self._bus.sda_held_bits = 0
+
+
+class InterruptPin:
+    """The pin that a chip's INT goes to; calls its handler at every data-ready pulse."""
+
+    IRQ_RISING = 1
+
+    def __init__(self, chip):
+        self._handler = None
+        chip.interrupt = self._pulse
+
+    def irq(self, handler, trigger):
+        """As machine.Pin.irq."""
+        self._handler = handler
+
+    def _pulse(self):
+        if self._handler:
+            self._handler(self)

@@ -1,0 +1,59 @@
+"""The chip's interrupt pin: when each sample became ready, taken without allocation."""
+
+try:
+    from micropython import const
+except ImportError:
+
+    def const(value):
+        return value
+
+
+_INT_PIN_CFG = const(0x37)
+_INT_ENABLE = const(0x38)
+_ANY_READ_CLEARS = const(0x10)
+_DATA_RDY_EN = const(0x01)
+
+
+class DataReady:
+    """Data-ready pulses of imu, an MPU6050, on pin, a machine.Pin wired to the chip's INT.
+
+    After take() or wait(): dt_us is the time from the sample taken before to the newest one, and
+    missed counts the samples in between that nobody took.
+    """
+
+    def __init__(self, imu, pin):
+        self.imu = imu
+        self.missed = 0
+        self.dt_us = 0
+        self._clock = imu.clock
+        self._edges = 0
+        self._taken = 0
+        self._edge_us = self._clock.ticks_us()
+        self._taken_us = self._edge_us
+        imu.keep_setting(_INT_PIN_CFG, _ANY_READ_CLEARS)
+        imu.keep_setting(_INT_ENABLE, _DATA_RDY_EN)
+        pin.irq(handler=self._on_edge, trigger=pin.IRQ_RISING)
+
+    def take(self):
+        """True when a sample became ready since the last take; read it now."""
+        edges = self._edges
+        if edges == self._taken:
+            return False
+        edge_us = self._edge_us
+        self.missed += ((edges - self._taken) & 0xFFFF) - 1
+        self.dt_us = self._clock.ticks_diff(edge_us, self._taken_us)
+        self._taken = edges
+        self._taken_us = edge_us
+        return True
+
+    def wait(self, timeout_ms):
+        """take() as soon as there is one, looking every millisecond; False after timeout_ms."""
+        for _ in range(timeout_ms):
+            if self.take():
+                return True
+            self._clock.sleep_ms(1)
+        return self.take()
+
+    def _on_edge(self, pin):
+        self._edge_us = self._clock.ticks_us()
+        self._edges = (self._edges + 1) & 0xFFFF

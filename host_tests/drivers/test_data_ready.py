@@ -1,0 +1,61 @@
+"""Data-ready pulses give each sample its time and count those that nobody took."""
+
+import pytest
+from zerorate_fakes.pins import InterruptPin
+from zerorate_i2c.data_ready import DataReady
+
+
+@pytest.fixture
+def bench(make_bench):
+    return make_bench(linked=True)
+
+
+@pytest.fixture
+def ready(bench):
+    return DataReady(bench.imu, InterruptPin(bench.chip))
+
+
+def test_without_a_pulse_there_is_nothing_to_take(ready):
+    assert not ready.take()
+
+
+def test_a_pulse_is_taken_once(bench, ready):
+    bench.clock.advance_us(10000)
+    assert ready.take()
+    assert not ready.take()
+
+
+def test_the_time_between_samples_is_that_of_the_pulses(bench, ready):
+    for late_us in (0, 3000, 6000):
+        bench.clock.advance_us(10000 + late_us)
+        ready.take()
+        bench.clock.advance_us(10000 - late_us)
+        ready.take()
+        assert ready.dt_us == pytest.approx(10000, abs=6001)
+
+
+def test_samples_nobody_took_are_counted_and_their_time_kept(bench, ready):
+    bench.clock.advance_us(10000)
+    ready.take()
+    bench.clock.advance_us(50000)
+    ready.take()
+    assert ready.missed == 4
+    assert ready.dt_us == 50000
+
+
+def test_waiting_ends_with_the_next_sample(bench, ready):
+    assert ready.wait(20)
+    assert bench.chip.samples_made > 0
+
+
+def test_waiting_for_a_sleeping_chip_ends(bench, ready):
+    bench.chip.power_up()
+    before_us = bench.clock.now_us
+    assert not ready.wait(50)
+    assert bench.clock.now_us - before_us == 50000
+
+
+def test_the_interrupt_survives_a_restart(bench, ready):
+    bench.imu.restart()
+    ready.take()
+    assert ready.wait(20)

@@ -1,0 +1,150 @@
+"""Every fault of a real bus: an error passes or the chip is set up again; nothing false is given."""
+
+import pytest
+from zerorate_fakes import FakeMPU6050
+from zerorate_fakes.pins import BusWires
+from zerorate_i2c.bus_recovery import free_bus
+from zerorate_i2c.mpu6050 import FRESH, RESTARTED, SUSPECT, VERIFIED
+
+
+def read_some(bench, count=5):
+    return [bench.read() for _ in range(count)]
+
+
+def test_a_single_nack_is_tried_again_and_counted(bench):
+    bench.bus.fault("nack")
+    assert bench.read() == FRESH
+    assert bench.imu.bus_errors == 1
+
+
+def test_after_a_bus_error_the_configuration_is_read_back(bench):
+    bench.bus.fault("nack")
+    bench.read()
+    assert bench.read() == VERIFIED
+
+
+def test_a_lasting_nack_passes_after_bounded_retries_and_leaves_the_sample(bench):
+    read_some(bench)
+    before = list(bench.sample)
+    transfers = bench.bus.transfers
+    bench.bus.fault("nack", times=None)
+    with pytest.raises(OSError):
+        bench.read()
+    assert bench.bus.transfers - transfers == 3
+    assert list(bench.sample) == before
+
+
+@pytest.mark.parametrize("at_byte", range(14))
+def test_a_bus_gone_in_mid_burst_gives_no_half_sample(bench, at_byte):
+    read_some(bench)
+    before = list(bench.sample)
+    bench.bus.fault("gone", times=3, at_byte=at_byte)
+    with pytest.raises(OSError):
+        bench.read()
+    assert list(bench.sample) == before
+    assert bench.read() == VERIFIED
+
+
+@pytest.mark.parametrize("kind", ["all_ff", "all_00"])
+def test_a_dead_bus_is_suspect_at_once_and_an_error_next(bench, kind):
+    read_some(bench)
+    bench.bus.fault(kind, times=None)
+    assert bench.read() == SUSPECT
+    with pytest.raises(OSError, match="a dead bus|was 0x68"):
+        bench.read()
+
+
+def test_a_dead_bus_that_comes_back_goes_on_verified(bench):
+    bench.bus.fault("all_ff", times=1)
+    assert [bench.read(), bench.read()] == [SUSPECT, VERIFIED]
+
+
+def test_data_frozen_for_sixteen_periods_are_suspect_and_the_chip_is_restarted(bench):
+    read_some(bench)
+    bench.chip.frozen = True
+    statuses = read_some(bench, 20)
+    first = statuses.index(SUSPECT)
+    assert first <= 18
+    assert statuses[first + 1] == RESTARTED
+
+
+def test_polling_faster_than_the_chip_samples_is_not_frozen_data(bench):
+    bench.chip.step()
+    assert {bench.imu.read(bench.sample) for _ in range(50)} == {FRESH}
+    assert bench.imu.repeats == 49
+
+
+def test_a_burst_is_one_sample_even_when_the_chip_samples_in_its_middle(bench):
+    bench.bus.between_bytes = lambda i: bench.chip.step() if i == 6 else None
+    for _ in range(20):
+        bench.read()
+        words = list(bench.sample)
+        assert len({(word - 257 * place) % 30000 for place, word in enumerate(words)}) == 1
+
+
+def test_a_brown_out_is_found_by_the_next_read_back(make_bench):
+    bench = make_bench(check_every=25)
+    read_some(bench, 30)
+    bench.chip.power_up()
+    statuses = read_some(bench, 25)
+    assert RESTARTED in statuses
+    assert VERIFIED not in statuses[: statuses.index(RESTARTED)]
+    assert bench.imu.restarts == 1
+    assert not bench.chip.asleep
+
+
+def test_a_brown_out_that_blanks_the_data_is_found_at_the_next_read(bench):
+    read_some(bench)
+    bench.chip.power_up()
+    assert read_some(bench, 2) == [SUSPECT, RESTARTED]
+
+
+@pytest.mark.parametrize("register", [0x19, 0x1A, 0x1B, 0x1C, 0x6B, 0x6C])
+def test_any_register_changed_behind_the_driver_is_restored(make_bench, register):
+    bench = make_bench(check_every=10)
+    wanted = bench.chip.registers[register]
+    bench.chip.registers[register] = wanted ^ 0x02
+    assert RESTARTED in read_some(bench, 12)
+    assert bench.chip.registers[register] == wanted
+
+
+def test_another_part_on_the_bus_is_an_error_that_names_both(make_bench):
+    bench = make_bench(check_every=10)
+    other = FakeMPU6050(part="MPU-6500")
+    bench.bus.devices[0x68] = other
+    with pytest.raises(OSError, match="0x70 .MPU-6500.*was 0x68"):
+        read_some(bench, 12)
+    with pytest.raises(OSError):
+        bench.imu.read(bench.sample)
+
+
+def test_a_chip_that_keeps_nothing_is_an_error_and_not_a_loop(bench):
+    bench.chip.write = lambda register, value: None
+    bench.chip.registers[0x1A] = 0
+    with pytest.raises(OSError, match="does not keep"):
+        bench.imu.restart()
+
+
+@pytest.mark.parametrize("bits", range(1, 10))
+def test_sda_held_low_is_freed_by_clocks_and_a_stop(bench, bits):
+    bench.bus.hold_sda(bits)
+    wires = BusWires(bench.bus)
+    with pytest.raises(OSError):
+        bench.read()
+    assert free_bus(wires.scl, wires.sda, bench.clock)
+    assert wires.clocks <= 10
+    assert bench.read() == VERIFIED
+
+
+def test_sda_shorted_to_ground_is_said_and_not_waited_for(bench):
+    bench.bus.hold_sda(1000)
+    wires = BusWires(bench.bus)
+    before_us = bench.clock.now_us
+    assert not free_bus(wires.scl, wires.sda, bench.clock)
+    assert bench.clock.now_us - before_us < 30000
+
+
+def test_a_free_bus_is_left_with_both_wires_high(bench):
+    wires = BusWires(bench.bus)
+    assert free_bus(wires.scl, wires.sda, bench.clock)
+    assert (wires.scl.value(), wires.sda.value()) == (1, 1)

@@ -1,0 +1,233 @@
+"""Samples out of the FIFO come whole, in order, with the right time, and losses are counted."""
+
+import pytest
+from zerorate_i2c.fifo import EMPTY, Fifo
+from zerorate_i2c.mpu6050 import FRESH, RESTARTED, SUSPECT, VERIFIED
+
+PERIOD_US = 10000
+
+
+class FifoBench:
+    """A linked bench whose recording has a calm temperature, and what was delivered from it."""
+
+    def __init__(self, make_bench, **options):
+        rows = [[300, -7, 16000, 100 + n % 50, 5000, -2570, n] for n in range(6000)]
+        self.bench = make_bench(source=rows, linked=True, **options)
+        self.chip, self.bus, self.clock = self.bench.chip, self.bench.bus, self.bench.clock
+        self.imu = self.bench.imu
+        self.fifo = Fifo(self.imu)
+        self.numbers = []
+        self.times_us = []
+        self.statuses = []
+        self.now_us = 0
+
+    def run(self, us):
+        self.clock.advance_us(us)
+
+    def drain(self):
+        """Read until empty; the statuses."""
+        statuses = []
+        for _ in range(2000):
+            status = self.fifo.read(self.bench.sample)
+            if status == EMPTY:
+                break
+            statuses.append(status)
+            if status in (FRESH, VERIFIED):
+                self.now_us += self.fifo.dt_us
+                self.numbers.append(self.bench.sample[6])
+                self.times_us.append(self.now_us)
+        return statuses
+
+    def slips_us(self):
+        """Delivered time minus true time, from the first sample on."""
+        first = self.numbers[0] * PERIOD_US - self.times_us[0]
+        pairs = zip(self.numbers, self.times_us, strict=True)
+        return [at_us + first - number * PERIOD_US for number, at_us in pairs]
+
+    def missing(self):
+        return self.chip.samples_made - self.numbers[0] - len(self.numbers)
+
+
+@pytest.fixture
+def fifo_bench(make_bench):
+    return FifoBench(make_bench)
+
+
+def test_nothing_waiting_is_empty(fifo_bench):
+    assert fifo_bench.fifo.read(fifo_bench.bench.sample) == EMPTY
+
+
+def test_frames_come_in_order_and_none_is_lost(fifo_bench):
+    for pause_us in (35000, 10000, 200000, 5000, 400000):
+        fifo_bench.run(pause_us)
+        fifo_bench.drain()
+    assert fifo_bench.numbers == list(range(fifo_bench.numbers[0], fifo_bench.numbers[-1] + 1))
+    assert fifo_bench.missing() == 0
+    assert fifo_bench.fifo.lost == 0
+
+
+def test_time_steps_are_the_period_when_nothing_is_lost(fifo_bench):
+    for _ in range(20):
+        fifo_bench.run(35000)
+        fifo_bench.drain()
+    assert max(abs(slip) for slip in fifo_bench.slips_us()) <= PERIOD_US
+
+
+def test_several_frames_go_by_one_transfer(fifo_bench):
+    fifo_bench.run(80000)
+    before = fifo_bench.bus.transfers
+    for _ in range(8):
+        assert fifo_bench.fifo.read(fifo_bench.bench.sample) == FRESH
+    assert fifo_bench.bus.transfers - before == 3
+
+
+def test_a_chip_that_runs_fast_does_not_outrun_the_clock(fifo_bench):
+    fifo_bench.imu.period_us = 10300
+    for _ in range(200):
+        fifo_bench.run(50000)
+        fifo_bench.drain()
+    assert max(abs(slip) for slip in fifo_bench.slips_us()) <= 2 * PERIOD_US
+
+
+def test_an_overflow_is_told_counted_and_kept_right_in_time(fifo_bench):
+    fifo_bench.run(100000)
+    fifo_bench.drain()
+    fifo_bench.run(1500000)
+    fifo_bench.drain()
+    fifo_bench.run(100000)
+    fifo_bench.drain()
+    assert fifo_bench.fifo.overflows == 1
+    assert abs(fifo_bench.fifo.lost - fifo_bench.missing()) <= 1
+    assert fifo_bench.missing() >= 150
+    assert max(abs(slip) for slip in fifo_bench.slips_us()) <= PERIOD_US
+
+
+@pytest.mark.parametrize("lost_bytes", [1, 2, 7, 13])
+def test_lost_alignment_is_found_before_a_frame_of_it_is_delivered(fifo_bench, lost_bytes):
+    fifo_bench.run(100000)
+    fifo_bench.drain()
+    fifo_bench.run(100000)
+    for _ in range(lost_bytes):
+        fifo_bench.chip.fifo.get()
+    fifo_bench.drain()
+    fifo_bench.run(100000)
+    fifo_bench.drain()
+    assert fifo_bench.fifo.misalignments == 1
+    assert fifo_bench.numbers == sorted(fifo_bench.numbers)
+    assert all(number < 6000 for number in fifo_bench.numbers)
+    assert abs(fifo_bench.fifo.lost - fifo_bench.missing()) <= 1
+    assert max(abs(slip) for slip in fifo_bench.slips_us()) <= PERIOD_US
+
+
+def test_lost_alignment_that_the_count_hides_is_found_by_temperature(fifo_bench):
+    fifo_bench.run(100000)
+    fifo_bench.drain()
+    fifo_bench.run(100000)
+    for _ in range(4):
+        fifo_bench.chip.fifo.get()
+    for _ in range(4):
+        fifo_bench.chip.fifo.put(0)
+    statuses = fifo_bench.drain()
+    assert fifo_bench.fifo.misalignments == 1
+    assert SUSPECT in statuses
+
+
+def test_a_frame_half_written_when_counted_is_no_loss(fifo_bench):
+    fifo_bench.run(100000)
+    fifo_bench.drain()
+    fifo_bench.run(50000)
+    chip = fifo_bench.chip
+    late = []
+    frame = [chip.registers[0x3B + i] for i in range(14)]
+    for byte in frame[:6]:
+        chip.fifo.put(byte)
+    reads = []
+
+    def finish(i):
+        reads.append(i)
+        if len(reads) == 3 and not late:
+            late.append(True)
+            for byte in frame[6:]:
+                chip.fifo.put(byte)
+
+    fifo_bench.bus.between_bytes = finish
+    fifo_bench.drain()
+    assert fifo_bench.fifo.misalignments == 0
+    assert fifo_bench.fifo.lost == 0
+
+
+def test_a_bus_lost_in_mid_burst_costs_samples_but_not_alignment(fifo_bench):
+    fifo_bench.run(100000)
+    fifo_bench.drain()
+    fifo_bench.run(100000)
+    fifo_bench.bus.fault("gone", skip=2, at_byte=20)
+    fifo_bench.drain()
+    fifo_bench.run(100000)
+    fifo_bench.drain()
+    assert fifo_bench.imu.bus_errors == 1
+    assert abs(fifo_bench.fifo.lost - fifo_bench.missing()) <= 1
+    assert max(abs(slip) for slip in fifo_bench.slips_us()) <= PERIOD_US
+
+
+def test_a_brown_out_restarts_the_chip_with_its_fifo(fifo_bench):
+    fifo_bench.run(100000)
+    fifo_bench.drain()
+    fifo_bench.chip.power_up()
+    statuses = []
+    for _ in range(10):
+        fifo_bench.run(100000)
+        statuses += fifo_bench.drain()
+    assert RESTARTED in statuses
+    assert fifo_bench.imu.restarts == 1
+    assert fifo_bench.chip.registers[0x23] == 0xF8
+    assert statuses[-1] == FRESH
+
+
+def test_frozen_frames_are_suspect_and_restart_the_chip(fifo_bench):
+    fifo_bench.run(100000)
+    fifo_bench.drain()
+    fifo_bench.chip.frozen = True
+    fifo_bench.run(300000)
+    statuses = fifo_bench.drain()
+    assert SUSPECT in statuses and RESTARTED in statuses
+
+
+@pytest.mark.parametrize("kind", ["all_ff", "all_00"])
+def test_a_dead_bus_ends_in_an_error_and_never_in_a_sample(fifo_bench, kind):
+    fifo_bench.run(100000)
+    fifo_bench.drain()
+    delivered = len(fifo_bench.numbers)
+    fifo_bench.bus.fault(kind, times=None)
+    with pytest.raises(OSError):
+        for _ in range(30):
+            fifo_bench.run(50000)
+            fifo_bench.drain()
+    assert len(fifo_bench.numbers) == delivered
+
+
+def test_the_configuration_is_read_back_while_frames_flow(make_bench):
+    bench = FifoBench(make_bench, check_every=40)
+    statuses = []
+    for _ in range(20):
+        bench.run(100000)
+        statuses += bench.drain()
+    assert statuses.count(VERIFIED) >= 4
+
+
+@pytest.mark.parametrize(
+    "part, size", [("MPU-6500", 512), ("ICM-20602", 1008), ("ICM-20689", 4096)]
+)
+def test_each_part_overflows_at_its_own_size(make_bench, part, size):
+    bench = FifoBench(make_bench, part=part)
+    bench.run(10000 * (size // 14 - 2))
+    bench.drain()
+    assert bench.fifo.overflows == 0
+    bench.run(10000 * (size // 14 + 2))
+    bench.drain()
+    assert bench.fifo.overflows == 1
+
+
+def test_a_bus_of_short_transfers_gets_short_batches(make_bench):
+    bench = make_bench()
+    bench.bus.max_burst = 32
+    assert len(Fifo(bench.imu)._views) == 2
