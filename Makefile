@@ -37,7 +37,7 @@ wasm: $(VENV)/.tools node
 
 # What cannot be had is left out by the tests, which say so; ZERORATE_REQUIRE makes them fail.
 runtimes: $(VENV)/.dev node
-	-$(BIN)/python -m zerorate_tools.runtimes get wasm x86 armhf valgrind
+	-$(BIN)/python -m zerorate_tools.runtimes get wasm x86 armhf x64 valgrind
 
 node: $(VENV)/.tools
 	@$(BIN)/python -m zerorate_tools.runtimes.node || \

@@ -18,6 +18,7 @@ from zerorate_tools.runtimes.runtime import Runtime
 from zerorate_tools.runtimes.unix_port import fetch_folder
 
 _FOLDER = "valgrind-debian13"
+_LOG = ".callgrind.log"
 _COLLECTED = re.compile(r"Collected : (\d+)")
 
 
@@ -33,11 +34,11 @@ def instructions(
 ) -> int:
     """Instructions of a whole run, start-up included: compare two lengths, never totals.
 
-    runtime: the x86 interpreter; run: the other arguments of Runtime.run.
+    runtime: the x86 interpreter; run: Runtime.run's modules, files_in, heap, stdin and timeout.
     Raises MissingRuntime without valgrind, ZerorateError when the script fails.
     """
-    result = runtime.run(script, args, prefix=_command(), check=True, **run)
-    counted = _COLLECTED.search(result.stderr)
+    result = runtime.run(script, args, prefix=_command(), files_out=[_LOG], check=True, **run)
+    counted = _COLLECTED.search(result.files[_LOG].decode())
     if counted is None:
         raise ZerorateError(f"callgrind counted nothing on {runtime.name}")
     return int(counted.group(1))
@@ -59,5 +60,5 @@ def _command() -> list[str]:
             " fetches it"
         )
     library = f"VALGRIND_LIB={folder / 'usr/libexec/valgrind'}"
-    options = ["--tool=callgrind", f"--callgrind-out-file={os.devnull}"]
+    options = ["--tool=callgrind", f"--log-file={_LOG}", f"--callgrind-out-file={os.devnull}"]
     return ["env", library, str(folder / "usr/bin/valgrind.bin"), *options]

@@ -1,0 +1,75 @@
+"""What every area's tests stand on: the interpreters, the checkout, the real recordings."""
+
+import os
+from pathlib import Path
+
+import pytest
+from zerorate_tools.errors import MissingRuntime
+from zerorate_tools.runtimes import NAMES, available, find, how_to_get
+
+_REPOSITORY = Path(__file__).resolve().parents[1]
+_REQUIRED = frozenset(filter(None, os.environ.get("ZERORATE_REQUIRE", "").split(",")))
+
+
+def pytest_configure():
+    unknown = _REQUIRED - set(NAMES)
+    if unknown:
+        raise pytest.UsageError(f"ZERORATE_REQUIRE names {sorted(unknown)}; known: {NAMES}")
+
+
+def pytest_terminal_summary(terminalreporter):
+    left_out = [name for name in NAMES if name not in available()]
+    if not left_out:
+        terminalreporter.write_line("interpreters: all of " + ", ".join(NAMES))
+    for name in left_out:
+        terminalreporter.write_line(f"interpreter left out: {name}; {how_to_get(name)}")
+
+
+def interpreter(name):
+    """The interpreter, or a skip that says how to get it; a failure where it is required."""
+    try:
+        return find(name)
+    except MissingRuntime as missing:
+        if name in _REQUIRED:
+            pytest.fail(f"{name} is named in ZERORATE_REQUIRE: {missing}", pytrace=False)
+        pytest.skip(str(missing))
+
+
+@pytest.fixture(scope="session", params=NAMES)
+def runtime(request):
+    """Each of the four interpreters on which the firmware's state must be the same."""
+    return interpreter(request.param)
+
+
+@pytest.fixture(scope="session", params=[name for name in NAMES if name != "cpython"])
+def micropython(request):
+    """Each of the three MicroPythons."""
+    return interpreter(request.param)
+
+
+@pytest.fixture(scope="session", params=["x86", "armhf"])
+def viper_runtime(request):
+    """Each MicroPython on which viper can be used."""
+    return interpreter(request.param)
+
+
+@pytest.fixture(scope="session")
+def find_runtime():
+    """The function that finds an interpreter by name, skipping or failing as the others do."""
+    return interpreter
+
+
+@pytest.fixture(scope="session")
+def repository():
+    """The checkout's folder."""
+    return _REPOSITORY
+
+
+@pytest.fixture(scope="session")
+def real_data():
+    """The folder of real recordings: $ZERORATE_DATA, else shared/data beside the checkout."""
+    named = os.environ.get("ZERORATE_DATA")
+    folder = Path(named) if named else _REPOSITORY.parent / "shared" / "data"
+    if not folder.is_dir():
+        pytest.skip(f"no real recordings in {folder}; ZERORATE_DATA names their folder")
+    return folder

@@ -1,0 +1,69 @@
+"""Bytecode frames: a hot function's must stay on the C stack, or every call takes a heap block."""
+
+import pytest
+from zerorate_tools.errors import ZerorateError
+from zerorate_tools.runtimes.frames import WORDS_ON_STACK, frame_words
+from zerorate_tools.viper_twins import hot_functions, kernel_files
+
+
+@pytest.fixture(scope="module")
+def x86(find_runtime):
+    return find_runtime("x86")
+
+
+def adder(terms):
+    names = [f"x{i}" for i in range(terms)]
+    return f"def add({', '.join(names)}):\n    return {' + '.join(names)}\n"
+
+
+def test_locals_and_temporaries_are_counted(x86, tmp_path):
+    source = tmp_path / "add.py"
+    source.write_text(adder(9))
+    assert frame_words(x86, source)["add"] == 9 + 2
+
+
+def test_a_handler_costs_three_words(x86, tmp_path):
+    source = tmp_path / "guarded.py"
+    text = "def {}(a):\n    {}\n        return a\n    {}\n        return a\n"
+    source.write_text(text.format("plain", "if a:", "else:"))
+    plain = frame_words(x86, source)["plain"]
+    source.write_text(text.format("guarded", "try:", "finally:"))
+    assert frame_words(x86, source)["guarded"] >= plain + 3
+
+
+@pytest.mark.parametrize(("terms", "fate"), [(9, "kept"), (10, "collected")])
+def test_a_frame_above_the_limit_takes_heap_at_every_call(x86, tmp_path, terms, fate):
+    source = tmp_path / "add.py"
+    source.write_text(adder(terms))
+    assert (frame_words(x86, source)["add"] > WORDS_ON_STACK) == (fate == "collected")
+    # What is taken is given back on return: only the collection that it brings on can be seen.
+    script = f"""
+import gc
+from add import add
+gc.collect()
+bytearray(20000)
+gc.threshold(30000)
+before = gc.mem_alloc()
+for i in range(2000):
+    add({", ".join("1" * terms)})
+print("kept" if gc.mem_alloc() > before - 10000 else "collected")
+"""
+    assert x86.run(script, modules=[tmp_path], check=True).stdout.strip() == fate
+
+
+def test_a_file_that_does_not_compile_is_named(x86, tmp_path):
+    source = tmp_path / "broken.py"
+    source.write_text("def (:\n")
+    with pytest.raises(ZerorateError, match="broken.py does not compile on x86"):
+        frame_words(x86, source)
+
+
+def test_every_hot_function_of_every_kernel_keeps_its_frame_on_the_stack(x86, repository):
+    files = kernel_files(repository / "firmware" / "zerorate")
+    assert files
+    for file in files:
+        words = frame_words(x86, file)
+        hot = hot_functions(file)
+        assert hot
+        large = {name: words[name] for name in hot if words[name] > WORDS_ON_STACK}
+        assert large == {}, f"{file.name}: at most {WORDS_ON_STACK} words"

@@ -1,0 +1,118 @@
+"""The viper twins: made from the kernel files, committed fresh, and equal in what they do."""
+
+import pytest
+from zerorate_tools.viper_twins import BadKernel, hot_functions, kernel_files, stale, twin, write
+
+KERNEL = '''"""What it does."""
+
+try:
+    from micropython import const
+except ImportError:
+
+    def const(value):
+        return value
+
+
+def ptr32(array):
+    return array
+
+
+_STEP = const(3)
+
+
+def gather(s: ptr32, c: ptr32, n: int) -> int:
+    total = 0
+    for i in range(n):
+        s[i] = (s[i] * _STEP - c[i]) >> 1
+        total += s[i] if s[i] < 100 else s[i] // 7
+    return total
+
+
+def pass_on(s, c, n: int) -> int:
+    p = ptr32(s)
+    p[0] += 1
+    return int(gather(s, c, n)) ^ (p[1] & 255)
+
+
+def in_the_open(s):
+    return len(s)
+'''
+
+DRIVE = """
+from array import array
+from {package} import kernel
+s = array("i", [(k * 7919) % 20011 - 10000 for k in range(40)])
+c = array("i", [(k * 104729) % 4001 - 2000 for k in range(40)])
+print([kernel.pass_on(s, c, 40) for k in range(6)], kernel.in_the_open(s), list(s))
+"""
+
+
+@pytest.fixture
+def package(tmp_path):
+    folder = tmp_path / "pack"
+    folder.mkdir()
+    (folder / "__init__.py").write_text("")
+    (folder / "kernel.py").write_text(KERNEL)
+    (folder / "object.py").write_text(
+        "class Whole:\n    def use(self, n: int):\n        return n\n"
+    )
+    return folder
+
+
+def test_only_files_with_pointer_parameters_are_kernels(package):
+    assert [path.name for path in kernel_files(package)] == ["kernel.py"]
+
+
+def test_annotated_functions_are_hot(package):
+    assert hot_functions(package / "kernel.py") == ["gather", "pass_on"]
+
+
+def test_every_annotated_function_and_no_other_is_decorated(package):
+    lines = twin(package / "kernel.py", ["kernel"]).splitlines()
+    decorated = [lines[i + 1] for i, line in enumerate(lines) if line == "@micropython.viper"]
+    assert [line.split("(")[0] for line in decorated] == ["def gather", "def pass_on"]
+
+
+def test_a_twin_has_no_stand_in_for_pointers(package):
+    assert "def ptr32" not in twin(package / "kernel.py", ["kernel"])
+
+
+def test_a_twin_imports_other_modules_from_one_package_up(package):
+    file = package / "kernel.py"
+    file.write_text("from .kernel2 import f\nfrom .object import Whole\n" + KERNEL)
+    text = twin(file, ["kernel", "kernel2"])
+    assert "from .kernel2 import f" in text
+    assert "from ..object import Whole" in text
+
+
+def test_a_decorated_kernel_is_refused_with_its_line(package):
+    file = package / "kernel.py"
+    file.write_text(KERNEL.replace("def gather", "@staticmethod\ndef gather"))
+    with pytest.raises(BadKernel, match=r"kernel.py: row 19: gather has a decorator"):
+        twin(file, ["kernel"])
+
+
+def test_a_changed_kernel_and_a_lost_one_make_twins_stale(package):
+    write(package)
+    assert stale(package) == []
+    (package / "viper" / "lost.py").write_text("")
+    (package / "kernel.py").write_text(KERNEL.replace("const(3)", "const(5)"))
+    assert [path.name for path in stale(package)] == ["kernel.py", "lost.py"]
+    write(package)
+    assert stale(package) == []
+
+
+def test_a_twin_does_what_its_kernel_does(package, viper_runtime):
+    write(package)
+    plain, viper = (
+        viper_runtime.run(DRIVE.format(package=p), modules=[package.parent], check=True).stdout
+        for p in ("pack", "pack.viper")
+    )
+    assert len(plain) > 200
+    assert plain == viper
+
+
+def test_the_committed_twins_are_fresh(repository):
+    firmware = repository / "firmware" / "zerorate"
+    assert kernel_files(firmware)
+    assert stale(firmware) == [], "`make viper` writes them again"
