@@ -1,4 +1,4 @@
-"""Every fault of a real bus: an error passes or the chip is set up again; nothing false is given."""
+"""Every fault of a real bus: an error passes or the chip is set up again, nothing false given."""
 
 import pytest
 from zerorate_fakes import FakeMPU6050

@@ -5,13 +5,10 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from zerorate_tools.errors import MissingRuntime
-from zerorate_tools.runtimes import NAMES, find
 
 ROOT = Path(__file__).resolve().parents[2]
 SCRIPTS = Path(__file__).parent / "on_micropython"
 MODULES = [ROOT / "drivers", ROOT / "host_tests" / "fakes"]
-MICROPYTHONS = [name for name in NAMES if name != "cpython"]
 HOT = {
     "mpu6050.py": {
         "decode",
@@ -41,30 +38,21 @@ STATE_WORDS = 11
 WORDS_A_HANDLER = 3
 
 
-def runtime(name):
-    try:
-        return find(name)
-    except MissingRuntime as missing:
-        pytest.skip(str(missing))
+def run(runtime, script):
+    return runtime.run(SCRIPTS / script, modules=MODULES, check=True).stdout.strip()
 
 
-def run(name, script):
-    return runtime(name).run(SCRIPTS / script, modules=MODULES, check=True).stdout.strip()
+def test_a_recording_with_faults_reads_as_on_cpython(micropython, find_runtime):
+    script = "read_whole_recording.py"
+    assert run(micropython, script) == run(find_runtime("cpython"), script)
 
 
-@pytest.mark.parametrize("name", MICROPYTHONS)
-def test_a_recording_with_faults_reads_as_on_cpython(name):
-    assert run(name, "read_whole_recording.py") == run("cpython", "read_whole_recording.py")
+def test_two_thousand_reads_under_heap_lock(micropython):
+    assert run(micropython, "read_without_heap.py") == "39 True 0"
 
 
-@pytest.mark.parametrize("name", MICROPYTHONS)
-def test_two_thousand_reads_under_heap_lock(name):
-    assert run(name, "read_without_heap.py") == "39 True 0"
-
-
-def frames(source):
+def frames(x86, source):
     """{function: words of its frame} as the x86 interpreter's compiler prints them."""
-    x86 = runtime("x86")
     command = [*x86.launcher, str(x86.executable), "-v", "-v", "-v", str(source)]
     printed = subprocess.run(command, capture_output=True, text=True, check=False).stdout
     block = r"code block '(\w+)'.*?\(N_STATE (\d+)\)\n\(N_EXC_STACK (\d+)\)"
@@ -73,7 +61,7 @@ def frames(source):
 
 
 @pytest.mark.parametrize("module", sorted(HOT))
-def test_no_frame_of_the_hot_path_goes_to_the_heap(module):
-    words = frames(ROOT / "drivers" / "zerorate_i2c" / module)
+def test_no_frame_of_the_hot_path_goes_to_the_heap(find_runtime, module):
+    words = frames(find_runtime("x86"), ROOT / "drivers" / "zerorate_i2c" / module)
     assert HOT[module] <= set(words)
     assert {name: n for name, n in words.items() if name in HOT[module] and n > STATE_WORDS} == {}

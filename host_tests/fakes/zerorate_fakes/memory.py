@@ -1,0 +1,45 @@
+"""A memory that loses power: a storage of bytes cut at a chosen byte, or with one bit turned."""
+
+
+class PowerCut(Exception):
+    """The power went in the middle of a write."""
+
+
+class FakeMemory:
+    """size bytes of EEPROM with the two methods of a storage.
+
+    cut_after n lets n more bytes be written, then raises PowerCut; the byte being written then
+    becomes torn_byte (None: stays as it was).
+    """
+
+    def __init__(self, size, erased=0xFF):
+        self.bytes = bytearray([erased] * size)
+        self.written = 0
+        self.cut_after = None
+        self.torn_byte = None
+        self.broken = False
+
+    def readblock(self, offset, buf):
+        """Fill buf."""
+        if self.broken:
+            raise OSError(5)
+        for i in range(len(buf)):
+            buf[i] = self.bytes[offset + i]
+
+    def writeblock(self, offset, buf):
+        """Write buf, byte by byte."""
+        if self.broken:
+            raise OSError(5)
+        for i in range(len(buf)):
+            if self.cut_after == 0:
+                if self.torn_byte is not None:
+                    self.bytes[offset + i] = self.torn_byte
+                raise PowerCut
+            if self.cut_after is not None:
+                self.cut_after -= 1
+            self.bytes[offset + i] = buf[i]
+            self.written += 1
+
+    def flip(self, bit):
+        """Turn one bit, counted over all bytes."""
+        self.bytes[bit >> 3] ^= 1 << (bit & 7)

@@ -1,0 +1,319 @@
+"""What was learned survives a power cut at any byte and any one bit turned, or is not believed."""
+
+from array import array
+from binascii import crc32
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from zerorate import store as stores
+from zerorate.crc32 import checksum, plain_crc32
+from zerorate.save_schedule import SaveSchedule
+from zerorate.storage import BlockDeviceStorage, FileStorage
+from zerorate.store import Store
+from zerorate_fakes.memory import FakeMemory, PowerCut
+
+BINDING = bytes([0x68, 0, 0, 3])
+WORDS = 12
+OLD = array("i", [7, -8, 2**29, -(2**30), 2**30 - 1, 0, -1, 5, 6, 7, 8, 9])
+NEW = array("i", [-value // 3 for value in OLD])
+BLANK = array("i", [99] * WORDS)
+
+
+def make_store(memory, **options):
+    return Store(memory, options.pop("binding", BINDING), 4 * WORDS, **options)
+
+
+def loaded(memory, **options):
+    """(reason, payload) as after the next power-on."""
+    payload = array("i", BLANK)
+    return make_store(memory, **options).load(payload), payload
+
+
+@pytest.fixture
+def memory():
+    return FakeMemory(4096)
+
+
+@pytest.fixture
+def memory_of_two(memory):
+    """Both slots whole: OLD, then NEW."""
+    store = make_store(memory)
+    assert store.save(OLD) and store.save(NEW)
+    return memory
+
+
+def test_what_is_saved_is_loaded(memory):
+    assert make_store(memory).save(OLD)
+    assert loaded(memory) == (stores.LOADED, OLD)
+
+
+def test_plain_bytes_are_stored_as_they_are(memory):
+    store = Store(memory, BINDING, 5)
+    assert store.save(b"\x00\xff\x80\x01\x7f")
+    payload = bytearray(5)
+    assert store.load(payload) == stores.LOADED
+    assert payload == b"\x00\xff\x80\x01\x7f"
+
+
+@pytest.mark.parametrize("erased", [0x00, 0xFF])
+def test_a_memory_never_written_is_empty_and_leaves_the_payload(erased):
+    assert loaded(FakeMemory(4096, erased)) == (stores.EMPTY, BLANK)
+
+
+def test_saves_go_to_the_slots_in_turn(memory):
+    store = make_store(memory)
+    slots = []
+    for payload in (OLD, NEW, OLD, NEW):
+        before = bytes(memory.bytes)
+        store.save(payload)
+        changed = [i for i in range(len(before)) if memory.bytes[i] != before[i]]
+        slots.append({i // store.slot_bytes for i in changed})
+    assert slots == [{0}, {1}, {0}, {1}]
+
+
+def test_nothing_is_written_outside_the_two_slots(memory):
+    store = make_store(memory, base=100)
+    for _ in range(4):
+        store.save(NEW)
+    assert set(memory.bytes[:100]) == {0xFF}
+    assert set(memory.bytes[100 + 2 * store.slot_bytes :]) == {0xFF}
+
+
+@pytest.mark.parametrize("torn_byte", [None, 0x00, 0xFF, 0x5A])
+def test_power_cut_at_every_byte_of_every_write_loads_the_newest_whole(memory, torn_byte):
+    saved = [None, OLD, NEW, OLD, NEW]
+    store = make_store(memory)
+    for before, after in zip(saved, saved[1:], strict=False):
+        image = bytes(memory.bytes)
+        for cut in range(store.slot_bytes):
+            memory.bytes[:] = image
+            memory.cut_after, memory.torn_byte = cut, torn_byte
+            with pytest.raises(PowerCut):
+                make_store(memory).save(after)
+            memory.cut_after = None
+            reason, payload = loaded(memory)
+            allowed = (
+                (before, after)
+                if torn_byte is not None and cut == store.slot_bytes - 1
+                else (before,)
+            )
+            if reason == stores.LOADED:
+                assert payload in allowed
+            else:
+                assert before is None and payload == BLANK
+                assert reason in (stores.EMPTY, stores.DAMAGED)
+        memory.bytes[:] = image
+        memory.torn_byte = None
+        assert make_store(memory).save(after)
+
+
+def test_after_a_power_cut_the_next_save_spares_the_whole_slot(memory_of_two):
+    memory_of_two.cut_after = 10
+    with pytest.raises(PowerCut):
+        make_store(memory_of_two).save(OLD)
+    memory_of_two.cut_after = 10
+    with pytest.raises(PowerCut):
+        make_store(memory_of_two).save(OLD)
+    memory_of_two.cut_after = None
+    assert loaded(memory_of_two) == (stores.LOADED, NEW)
+
+
+def test_every_bit_turned_in_either_slot_loads_the_newest_whole(memory_of_two):
+    slot_bits = 8 * make_store(memory_of_two).slot_bytes
+    for bit in range(2 * slot_bits):
+        memory_of_two.flip(bit)
+        in_newest = bit >= slot_bits
+        assert loaded(memory_of_two) == (stores.LOADED, OLD if in_newest else NEW), bit
+        memory_of_two.flip(bit)
+
+
+def test_a_bit_turned_in_both_slots_is_a_clean_start(memory_of_two):
+    slot_bits = 8 * make_store(memory_of_two).slot_bytes
+    for bit in range(slot_bits):
+        memory_of_two.flip(bit)
+        memory_of_two.flip(slot_bits + (bit * 7 + 3) % slot_bits)
+        assert loaded(memory_of_two) == (stores.DAMAGED, BLANK)
+        memory_of_two.flip(bit)
+        memory_of_two.flip(slot_bits + (bit * 7 + 3) % slot_bits)
+
+
+@given(noise=st.binary(min_size=200, max_size=200))
+def test_noise_is_never_loaded_and_never_raises(noise):
+    memory = FakeMemory(4096)
+    memory.bytes[:200] = noise
+    reason, payload = loaded(memory)
+    assert reason != stores.LOADED and payload == BLANK
+
+
+@pytest.mark.parametrize("binding", [bytes([0x70, 0, 0, 3]), bytes([0x68, 1, 0, 3]), bytes([0x68])])
+def test_another_chip_range_or_filter_is_refused_by_name(memory_of_two, binding):
+    reason, payload = loaded(memory_of_two, binding=binding)
+    assert reason == stores.OTHER_BINDING and payload == BLANK
+    assert "another chip" in stores.REASONS[reason]
+
+
+def test_a_chip_that_comes_back_finds_its_own_slot(memory_of_two):
+    assert make_store(memory_of_two, binding=b"\x70").save(OLD)
+    assert loaded(memory_of_two) == (stores.LOADED, NEW)
+
+
+def test_an_older_version_loads_where_it_is_taken_and_says_which(memory):
+    make_store(memory, version=3).save(OLD)
+    store = make_store(memory, version=4, older=(2, 3))
+    payload = array("i", BLANK)
+    assert store.load(payload) == stores.LOADED
+    assert (payload, store.loaded_version) == (OLD, 3)
+
+
+def test_an_older_version_is_else_refused_by_name(memory):
+    make_store(memory, version=3).save(OLD)
+    reason, payload = loaded(memory, version=4)
+    assert (reason, payload) == (stores.OTHER_VERSION, BLANK)
+    assert "version" in stores.REASONS[reason]
+
+
+def test_a_record_of_another_size_is_refused_by_name(memory):
+    Store(memory, BINDING, 20, pitch=512).save(bytes(20))
+    assert loaded(memory, pitch=512) == (stores.OTHER_SIZE, BLANK)
+
+
+def test_a_storage_that_fails_is_a_reason_and_not_an_exception(memory_of_two):
+    memory_of_two.broken = True
+    assert loaded(memory_of_two) == (stores.UNREADABLE, BLANK)
+    store = make_store(memory_of_two)
+    assert not store.save(OLD)
+    assert store.failures == 1
+
+
+def test_a_write_that_does_not_stick_is_a_failed_save(memory):
+    memory.writeblock = lambda offset, buf: None
+    assert not make_store(memory).save(OLD)
+
+
+def test_every_reason_has_words():
+    assert len(stores.REASONS) == stores.UNREADABLE + 1
+
+
+@pytest.mark.parametrize(
+    "options", [{"binding": bytes(9)}, {"version": 256}, {"pitch": 10}], ids=lambda o: next(iter(o))
+)
+def test_what_does_not_fit_is_a_value_error(memory, options):
+    with pytest.raises(ValueError):
+        make_store(memory, **options)
+
+
+def test_a_payload_of_another_length_is_a_value_error(memory):
+    with pytest.raises(ValueError, match="48 bytes"):
+        make_store(memory).save(array("i", [1]))
+
+
+class TestFile:
+    @pytest.fixture
+    def path(self, tmp_path):
+        return tmp_path / "learned.bin"
+
+    def test_what_is_saved_is_loaded(self, path):
+        for payload in (OLD, NEW, OLD):
+            assert make_store(FileStorage(path)).save(payload)
+        assert loaded(FileStorage(path)) == (stores.LOADED, OLD)
+
+    def test_a_missing_file_is_empty(self, path):
+        assert loaded(FileStorage(path)) == (stores.EMPTY, BLANK)
+
+    def test_a_file_cut_short_at_any_byte_is_never_wrong(self, path):
+        store = make_store(FileStorage(path))
+        store.save(OLD)
+        store.save(NEW)
+        whole = path.read_bytes()
+        for length in range(len(whole)):
+            path.write_bytes(whole[:length])
+            reason, payload = loaded(FileStorage(path))
+            if length >= store.slot_bytes:
+                assert (reason, payload) == (stores.LOADED, OLD)
+            else:
+                assert reason in (stores.EMPTY, stores.DAMAGED) and payload == BLANK
+
+    def test_a_folder_in_its_place_is_a_reason(self, tmp_path):
+        assert loaded(FileStorage(tmp_path)) == (stores.UNREADABLE, BLANK)
+
+
+class FakeFlash:
+    """A block device whose writes can only clear bits of what was erased."""
+
+    BLOCK = 256
+
+    def __init__(self, blocks):
+        self.bytes = bytearray(self.BLOCK * blocks)
+        self.erased = []
+
+    def readblocks(self, block, buf, offset):
+        start = block * self.BLOCK + offset
+        buf[:] = self.bytes[start : start + len(buf)]
+
+    def writeblocks(self, block, buf, offset):
+        start = block * self.BLOCK + offset
+        for i, byte in enumerate(buf):
+            self.bytes[start + i] &= byte
+
+    def ioctl(self, operation, block):
+        assert operation == 6
+        self.erased.append(block)
+        start = block * self.BLOCK
+        self.bytes[start : start + self.BLOCK] = b"\xff" * self.BLOCK
+
+
+def test_on_flash_each_slot_has_an_erase_block_of_its_own():
+    flash = FakeFlash(8)
+    for payload in (OLD, NEW, OLD):
+        storage = BlockDeviceStorage(flash, 5, FakeFlash.BLOCK)
+        assert make_store(storage, pitch=FakeFlash.BLOCK).save(payload)
+    storage = BlockDeviceStorage(flash, 5, FakeFlash.BLOCK)
+    assert loaded(storage, pitch=FakeFlash.BLOCK) == (stores.LOADED, OLD)
+    assert flash.erased == [5, 6, 5]
+
+
+@given(st.binary(max_size=300))
+def test_the_plain_checksum_is_the_interpreters(data):
+    plain, own = bytearray(4), bytearray(4)
+    plain_crc32(data, len(data), plain)
+    checksum(data, len(data), own)
+    assert plain == own == crc32(data).to_bytes(4, "little")
+
+
+class TestSchedule:
+    @pytest.fixture
+    def schedule(self, memory):
+        return SaveSchedule(make_store(memory), 3, tolerance=10, writes_a_day=24)
+
+    def test_what_changed_little_is_not_written(self, schedule):
+        assert not schedule.offer(OLD, [9, -9, 0], 0)
+
+    def test_what_changed_by_the_tolerance_is(self, schedule):
+        assert schedule.offer(OLD, [0, -10, 0], 0)
+
+    def test_what_was_loaded_needs_no_writing(self, schedule):
+        schedule.loaded([1000, 2000, 3000])
+        assert not schedule.offer(OLD, [1001, 2001, 2999], 5)
+
+    def test_a_day_of_wild_changes_stays_within_the_budget(self, schedule, memory):
+        for second in range(0, 86400, 7):
+            schedule.offer(OLD, [second * 50, 0, 0], second)
+        assert schedule.store.saves == 24
+        assert memory.written == 24 * schedule.store.slot_bytes
+        assert schedule.postponed > 0
+
+    def test_a_failed_write_also_counts_against_the_budget(self, schedule, memory):
+        memory.broken = True
+        assert [schedule.offer(OLD, [100, 0, 0], second) for second in range(100)] == [False] * 100
+        assert schedule.store.failures == 1
+
+
+def test_cuts_and_turned_bits_end_alike_on_micropython_to_the_last_byte(micropython, find_runtime):
+    root = Path(__file__).resolve().parents[2]
+    script = Path(__file__).parent / "on_micropython" / "store_cut_and_turned.py"
+    modules = [root / "firmware", root / "host_tests" / "fakes"]
+    on_cpython = find_runtime("cpython").run(script, modules=modules, check=True).stdout
+    assert micropython.run(script, modules=modules, check=True).stdout == on_cpython
+    assert on_cpython.strip().endswith("2639f4cb")
