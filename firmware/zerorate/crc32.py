@@ -3,7 +3,7 @@
 try:
     from binascii import crc32 as _crc32
 except ImportError:
-    _crc32 = None
+    _crc32 = None  # type: ignore[assignment]
 
 # CRC of each nibble in big-endian words, its halves apart: 32 bits are no small int on most boards.
 _UPPER = (

@@ -1,8 +1,8 @@
 """Where a store's bytes live: anything with readblock(offset, buf) and writeblock(offset, buf).
 
 readblock fills buf with what stands at byte offset; writeblock puts buf there and returns when it
-is durable. Both may raise OSError. Bytes never written may read as anything. An EEPROM or FRAM
-driver needs these two methods and no more; erasing flash is the storage's own business.
+is durable. Both may raise OSError. Bytes never written may read as anything. The driver of an
+EEPROM needs these two methods and no more; erasing flash is the storage's own business.
 """
 
 import os
