@@ -40,7 +40,7 @@ runtimes: $(VENV)/.dev node
 	-$(BIN)/python -m zerorate_tools.runtimes get wasm x86 armhf x64 valgrind
 
 node: $(VENV)/.tools
-	@$(BIN)/python -m zerorate_tools.runtimes.node || \
+	@$(BIN)/python -m zerorate_tools.runtimes node || \
 		$(BIN)/python -m pip install --quiet -r requirements/node.txt
 
 # Without ensurepip (Debian's python3 without python3-venv) the machine's own pip fills the folder.

