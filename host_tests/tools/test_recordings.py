@@ -199,7 +199,7 @@ def test_a_csv_without_scales_says_what_to_write(csv_of):
 
 def test_time_going_backwards_between_batches_is_seen(tmp_path):
     t_us = np.r_[np.arange(100), np.arange(50, 100)]
-    columns = {name: t_us for name in ("t_us", "gx", "gy", "gz")}
+    columns = dict.fromkeys(("t_us", "gx", "gy", "gz"), t_us)
     write_recording(recording_from_columns(columns, Scales("X", 1, 1)), tmp_path / "bad.parquet")
     with pytest.raises(BadRecording, match="row 101: time goes backwards, from 99 to 50 us"):
         list(open_recording(tmp_path / "bad.parquet").batches(rows=100))

@@ -434,7 +434,7 @@ def test_the_device_that_never_rests_never_rests():
     _, truth = simulate("never-rests")
     assert not truth.still.any()
     periodic = np.abs(truth.rate_dps).max(axis=1).reshape(-1, 200).max(axis=1) > 20
-    assert 0.6 < periodic.mean()
+    assert periodic.mean() > 0.6
     assert np.abs(truth.bias_lsb / 131).max() == pytest.approx(6, abs=0.3)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from os import PathLike
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from . import csv_format, parquet_format
 from .checks import BatchChecker, check_names, check_scales
 from .recording import Columns, Recording, in_order
 from .scales import Scales
+
+if TYPE_CHECKING:
+    import pyarrow.parquet as pq
 
 
 class OpenRecording:
@@ -25,7 +29,8 @@ class OpenRecording:
         self.path = Path(path)
         self.name = recording_name(self.path)
         self.n_samples: int | None = None
-        self._keep_gaps, self._parquet = keep_gaps, None
+        self._keep_gaps = keep_gaps
+        self._parquet: pq.ParquetFile | None = None
         scales_path = self._read_header()
         check_names(self.column_names, self.path)
         check_scales(self.scales, self.column_names, self.path, scales_path)
@@ -51,10 +56,10 @@ class OpenRecording:
             self.column_names = list(self._names)
             return csv_format.scales_path(self.path)
         if self.path.name.endswith(parquet_format.SUFFIXES):
-            self._parquet = parquet_format.open_file(self.path)
-            self.scales = parquet_format.read_scales(self._parquet, self.path)
-            self.column_names = list(self._parquet.schema_arrow.names)
-            self.n_samples = self._parquet.metadata.num_rows
+            file = self._parquet = parquet_format.open_file(self.path)
+            self.scales = parquet_format.read_scales(file, self.path)
+            self.column_names = list(file.schema_arrow.names)
+            self.n_samples = file.metadata.num_rows
             return self.path
         do = "turn it into .parquet with `zerorate import`"
         raise BadRecording(self.path, "neither .csv, .csv.gz nor .parquet", do=do)

@@ -122,7 +122,7 @@ _TOP = (
 )
 
 
-def load_description(source: str | PathLike[str] | Table) -> Description:
+def load_description(source: str | PathLike[str] | Table | Description) -> Description:
     """Read .toml, .yaml or .yml, a bundled scenario's bare name, or a dict.
 
     Raises BadDescription naming the entry, MissingLibrary without the reader it needs.

@@ -186,7 +186,8 @@ def _counts(letter: str, values_lsb: np.ndarray) -> dict[str, np.ndarray]:
 
 
 def _surroundings(sensor: Sensor, world: World, rng: np.random.Generator) -> dict[str, np.ndarray]:
-    n, quieter, columns = len(world.t_s), _averaging(sensor), {}
+    n, quieter = len(world.t_s), _averaging(sensor)
+    columns: dict[str, np.ndarray] = {}
     if sensor.accel:
         shaken = rng.standard_normal((n, 3)) * (sensor.accel_noise_g * quieter)
         force = world.accel_g + shaken + axes(sensor.accel_bias_g, "sensor.accel_bias_g", "")
@@ -200,7 +201,7 @@ def _surroundings(sensor: Sensor, world: World, rng: np.random.Generator) -> dic
 
 
 def _channel_columns(world: World, seed: int) -> dict[str, np.ndarray]:
-    columns = {}
+    columns: dict[str, np.ndarray] = {}
     for name, channel in world.channels.items():
         if channel.recorded:
             rng = stream(seed, world.number, f"reading {name}")

@@ -13,14 +13,14 @@ import pyarrow.parquet as pq
 
 from ..recordings import write_recording
 from ..recordings.atomic import written_beside
-from .description import load_description
+from .description import Description, Table, load_description
 from .device import Truth, simulate, simulate_sessions
 
 _QUATERNION = ("qw", "qx", "qy", "qz")
 
 
 def simulate_to_files(
-    description: str | PathLike[str],
+    description: str | PathLike[str] | Table | Description,
     out: str | PathLike[str],
     *,
     truth: str | PathLike[str] | None = None,

@@ -45,7 +45,7 @@ def build(description: Description, number: int, seed: int) -> World:
     t_s = np.arange(n) * dt_s
     temp = path(t_s, session.start_degc, session.temperature, lengths)
     rate, attitude, accel = _moved(description, session, t_s, stream(seed, number, "motion"))
-    still = ~rate.any(axis=1)
+    still = np.logical_not(rate.any(axis=1))
     if description.latitude_deg is not None:
         rate = rate + into_body(attitude, earth_rate_dps(description.latitude_deg))
     world = World(number, t_s, dt_s, temp, rate, accel, attitude, still, {})
@@ -87,7 +87,7 @@ def _moved(
     schedule = session.motion or [{"kind": "rest", "s": session.duration_s * 10}]
     while first < n:
         bout = _drawn(schedule[turn % len(schedule)], rng)
-        last = min(first + max(int(round(seconds(bout) / dt_s)), 1), n)
+        last = min(first + max(int(round((seconds(bout) or 0.0) / dt_s)), 1), n)
         start = Start(rng, np.arange(1, last - first + 1) * dt_s, dt_s, into_body(now, UP))
         moved = _bout(bout, start, description.path)
         rate[first:last] = moved.rate_dps

@@ -1,0 +1,78 @@
+"""`zerorate import`: foreign recordings into the project's own form."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+_EPILOG = """\
+A mapping names a column of the recording, where it comes from, and its unit:
+  --map gx=gyro_x:rad/s --map temp=T:degc --map t_us=time:ms --map vdd_mv=volts:x1000
+units: time s ms us ns; rates dps mdps rad/s lsb; acceleration g mg m/s2 lsb; temperature degc k
+degf lsb; an extra channel takes a factor. A unit at the end of a column's name (gx_dps) is seen.
+An (n, 3) variable of a .mat has columns name[0], name[1], name[2].
+"""
+
+
+def add_parser(subparsers) -> None:
+    """Register the sub-command."""
+    parser = subparsers.add_parser(
+        "import",
+        help="turn a foreign recording into this form",
+        description="Turn CSV, TSV, Parquet, .mat, PX4 ULog or ArduPilot DataFlash into a "
+        "recording, and say what was dropped and why.",
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("source", type=Path, metavar="SRC")
+    parser.add_argument("--out", type=Path, required=True, metavar="FILE")
+    parser.add_argument("--map", action="append", default=[], type=_mapping, metavar="NAME=COLUMN")
+    parser.add_argument("--hz", type=_above_zero, help="samples a second, without time stamps")
+    parser.add_argument("--sensor", metavar="NAME")
+    parser.add_argument("--gyro-lsb-per-dps", type=_above_zero, metavar="N")
+    parser.add_argument("--accel-lsb-per-g", type=_above_zero, metavar="N")
+    parser.add_argument("--temp-lsb-per-degc", type=_above_zero, metavar="N")
+    parser.add_argument("--temp-offset-degc", type=float, metavar="N")
+    for kind in ("time", "gyro", "accel", "temp"):
+        parser.add_argument(f"--{kind}-unit", metavar="UNIT", help="where a mapping names none")
+    parser.add_argument("--layout", metavar="NAME", help="a known layout, or `table` for none")
+    parser.add_argument("--instance", type=int, default=0, help="of several sensors in a log")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Import and print the report."""
+    from ..importers import Options, import_recording
+    from ..progress import progress
+
+    known = {key: getattr(arguments, key) for key in Options.__dataclass_fields__}
+    units = {k: getattr(arguments, f"{k}_unit") for k in ("time", "gyro", "accel", "temp")}
+    with progress(f"importing {arguments.source.name}"):
+        report = import_recording(
+            arguments.source,
+            arguments.out,
+            options=Options(**known),
+            mapping=arguments.map,
+            units={kind: unit.lower() for kind, unit in units.items() if unit},
+            layout=arguments.layout,
+            instance=arguments.instance,
+        )
+    print(arguments.out)
+    for line in report.lines():
+        print(" ", line)
+
+
+def _mapping(text: str):
+    from ..importers import parsed_mapping
+
+    try:
+        return parsed_mapping(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from error
+
+
+def _above_zero(text: str) -> float:
+    value = float(text)
+    if not value > 0:
+        raise argparse.ArgumentTypeError(f"{text} is not above 0")
+    return value

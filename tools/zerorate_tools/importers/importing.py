@@ -1,0 +1,82 @@
+"""Which reader a file needs, and the whole way from it to a recording on disk."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from os import PathLike
+from pathlib import Path
+
+from ..errors import BadRecording
+from ..recordings import Recording, write_recording
+from ..recordings.reading import recording_name
+from . import layouts
+from .conversion import Options, Report, converted
+from .table import Mapped, foreign_from_table, read_table
+
+
+def import_recording(
+    source: str | PathLike[str],
+    out: str | PathLike[str],
+    *,
+    options: Options | None = None,
+    mapping: Sequence[Mapped] = (),
+    units: Mapping[str, str] | None = None,
+    layout: str | None = None,
+    instance: int = 0,
+) -> Report:
+    """Convert a foreign file and write it as `out` (.parquet, .csv, .csv.gz); say what was lost.
+
+    The arguments are those of `read_foreign`. Raises BadRecording, MissingLibrary.
+    """
+    recording, report = read_foreign(
+        source, options=options, mapping=mapping, units=units, layout=layout, instance=instance
+    )
+    write_recording(recording, out)
+    return report
+
+
+def read_foreign(
+    source: str | PathLike[str],
+    *,
+    options: Options | None = None,
+    mapping: Sequence[Mapped] = (),
+    units: Mapping[str, str] | None = None,
+    layout: str | None = None,
+    instance: int = 0,
+) -> tuple[Recording, Report]:
+    """Read a foreign file: ULog (.ulg), DataFlash (.bin, .log), or a table with a mapping.
+
+    mapping: columns of a table and their units; units: by kind (time, gyro, accel, temp) where the
+    mapping has none; layout: one of `layouts.NAMES` instead of recognising it, or "table" to
+    recognise none; instance: which of several sensors in a flight log.
+    Raises BadRecording, MissingLibrary.
+    """
+    path = Path(source)
+    if not path.is_file():
+        what = "is a folder" if path.is_dir() else "no such file"
+        raise BadRecording(path, what, do="name a file to import")
+    if path.stat().st_size == 0:
+        raise BadRecording(path, "empty file", do="name another file")
+    foreign = _read(path, mapping, units, layout, instance)
+    recording, report = converted(foreign, options or Options(), path)
+    recording.name = recording_name(path)
+    return recording, report
+
+
+def _read(path: Path, mapping, units, layout: str | None, instance: int):
+    if layout is None and not mapping:
+        layout = layouts.recognised(path)
+    if layout not in (None, "table"):
+        foreign = layouts.layout(layout).read(path)
+        foreign.notes.insert(0, f"recognised as {layout}")
+        return foreign
+    suffix = path.suffix.lower()
+    if suffix in (".ulg", ".ulog"):
+        from .ulog import read_ulog
+
+        return read_ulog(path, instance)
+    if suffix in (".bin", ".log"):
+        from .dataflash import read_dataflash
+
+        return read_dataflash(path, instance)
+    return foreign_from_table(read_table(path), mapping, path, units)
