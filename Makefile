@@ -33,14 +33,14 @@ viper: $(VENV)/.dev  ## write firmware/zerorate/viper from the kernel files
 	$(BIN)/python -m zerorate_tools.viper_twins firmware/zerorate
 
 wasm: $(VENV)/.tools node
-	$(BIN)/python -m zerorate_tools.runtimes get wasm
+	$(BIN)/zerorate runtimes get wasm
 
 # What cannot be had is left out by the tests, which say so; ZERORATE_REQUIRE makes them fail.
 runtimes: $(VENV)/.dev node
-	-$(BIN)/python -m zerorate_tools.runtimes get wasm x86 armhf x64 valgrind
+	-$(BIN)/zerorate runtimes get wasm x86 armhf x64 valgrind
 
 node: $(VENV)/.tools
-	@$(BIN)/python -m zerorate_tools.runtimes node || \
+	@$(BIN)/zerorate runtimes node >/dev/null 2>&1 || \
 		$(BIN)/python -m pip install --quiet -r requirements/node.txt
 
 # Without ensurepip (Debian's python3 without python3-venv) the machine's own pip fills the folder.

@@ -37,5 +37,5 @@ def test_a_script_that_fails_is_not_counted(per_item):
 def test_a_missing_valgrind_says_how_to_get_it(find_runtime, tmp_path, monkeypatch):
     x86 = find_runtime("x86")
     monkeypatch.setenv("ZERORATE_CACHE", str(tmp_path))
-    with pytest.raises(MissingRuntime, match="runtimes get valgrind"):
+    with pytest.raises(MissingRuntime, match="zerorate runtimes get valgrind"):
         instructions_per_item(x86, EMPTY.format("pass"), 1, 2)

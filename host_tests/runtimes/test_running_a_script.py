@@ -168,7 +168,7 @@ def test_an_unknown_name_lists_the_known_ones():
 def test_an_interpreter_that_is_not_fetched_says_how_to_get_it(tmp_path, monkeypatch):
     monkeypatch.setenv("ZERORATE_CACHE", str(tmp_path))
     for name in ("wasm", "x86", "armhf"):
-        with pytest.raises(MissingRuntime, match=f"zerorate_tools.runtimes get {name}"):
+        with pytest.raises(MissingRuntime, match=f"zerorate runtimes get {name}"):
             find(name)
 
 

@@ -4,7 +4,7 @@
     result = find("x86").run(Path("main.py"), modules=[Path("firmware")], files_in={"a.bin": data},
                              files_out=["b.bin"])
 
-`python -m zerorate_tools.runtimes get wasm x86 armhf` fetches them, `... list` shows them.
+`zerorate runtimes get wasm x86 armhf` fetches them, `zerorate runtimes list` shows them.
 """
 
 from zerorate_tools.runtimes.catalogue import NAMES, available, fetch, find, how_to_get

