@@ -1,0 +1,139 @@
+"""The command line: what it lists, what it says when something is wrong, and how it ends."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import zerorate_tools
+from zerorate_tools import cli
+from zerorate_tools.recordings import Scales, read_recording, recording_writer
+
+SCALES = Scales("X", 1.0, 1.0)
+
+
+def zerorate(*words, cwd=None, **more):
+    """Run the command in a process of its own."""
+    command = [sys.executable, "-m", "zerorate_tools.cli", *map(str, words)]
+    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=60, **more)
+
+
+def test_help_lists_every_command_that_is_there():
+    listed = zerorate("--help").stdout
+    for name in ("import", "simulate"):
+        assert f"\n    {name} " in listed
+
+
+def test_a_command_whose_module_is_not_there_is_not_listed(monkeypatch, capsys):
+    monkeypatch.setattr(cli, "COMMANDS", ("simulate", "imagine"))
+    with pytest.raises(SystemExit):
+        cli.main(["--help"])
+    assert "simulate" in (listed := capsys.readouterr().out) and "imagine" not in listed
+
+
+def test_help_imports_nothing_that_a_command_needs():
+    heavy = ("numpy", "pandas", "pyarrow", "scipy", "numba", "rich", "matplotlib", "plotly", "dask")
+    code = (
+        "import sys\nfrom zerorate_tools import cli\n"
+        "try: cli.main(['--help'])\nexcept SystemExit: pass\n"
+        f"sys.exit(' '.join(name for name in {heavy!r} if name in sys.modules) or 0)"
+    )
+    ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert ran.returncode == 0, ran.stderr
+
+
+def test_the_version_is_the_packages():
+    assert zerorate_tools.__version__ in zerorate("--version").stdout
+
+
+def test_bad_input_ends_in_one_line_and_2(tmp_path):
+    (tmp_path / "in.csv").write_text("t_s,gx_dps,gy_dps,gz_dps\n")
+    ran = zerorate("import", tmp_path / "in.csv", "--out", tmp_path / "out.parquet")
+    assert ran.returncode == 2
+    assert ran.stderr.startswith("zerorate: ") and ran.stderr.count("\n") == 1
+    assert "in.csv" in ran.stderr and "no data row" in ran.stderr
+    assert [p.name for p in tmp_path.iterdir()] == ["in.csv"]
+
+
+def test_a_folder_that_is_not_there_ends_in_one_line_and_2(tmp_path):
+    ran = zerorate("simulate", "car", "--out", tmp_path / "nowhere" / "run.parquet")
+    assert ran.returncode == 2
+    assert "nowhere" in ran.stderr and ran.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    "words",
+    [[], ["fly"], ["simulate"], ["import", "x"], ["import", "x", "--out", "y", "--hz", "0"]],
+)
+def test_wrong_words_end_in_2_with_the_usage(words):
+    ran = zerorate(*words)
+    assert ran.returncode == 2
+    assert "usage: zerorate" in ran.stderr and "Traceback" not in ran.stderr
+
+
+def test_an_error_of_the_bus_is_one_line(monkeypatch, capsys):
+    def fail(arguments):
+        raise OSError(5, "Input/output error", "/dev/i2c-1")
+
+    monkeypatch.setattr(cli, "parser", lambda: _Parser(fail))
+    assert cli.main([]) == 2
+    assert capsys.readouterr().err == "zerorate: /dev/i2c-1: Input/output error\n"
+
+
+class _Parser:
+    """Parses nothing and runs what it was given."""
+
+    def __init__(self, run):
+        self.run = run
+
+    def parse_args(self, argv):
+        return self
+
+
+def test_an_interrupt_ends_in_130_and_leaves_nothing_half_written(tmp_path, monkeypatch, capsys):
+    def interrupted(arguments):
+        with recording_writer(tmp_path / "run.csv", ["t_us", "gx", "gy", "gz"], SCALES) as writer:
+            writer.append(dict.fromkeys(("t_us", "gx", "gy", "gz"), np.arange(9)))
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(cli, "parser", lambda: _Parser(interrupted))
+    assert cli.main([]) == 130
+    assert capsys.readouterr().err == "zerorate: interrupted; nothing half-written was left\n"
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_import_prints_what_it_did(tmp_path):
+    rows = "".join(f"{i},1,{i},3\n" for i in range(5)) + "9,0,0,0\n"
+    (tmp_path / "in.csv").write_text("t_s,gx_dps,gy_dps,gz_dps\n" + rows)
+    ran = zerorate("import", "in.csv", "--out", "out.csv.gz", cwd=tmp_path)
+    assert ran.returncode == 0, ran.stderr
+    assert "out.csv.gz" in ran.stdout and "5 of 6 rows written" in ran.stdout
+    assert "dropped 1 rows: all readings are zero" in ran.stdout
+    assert read_recording(tmp_path / "out.csv.gz").columns["gz"].tolist() == [393] * 5
+
+
+def test_import_takes_a_mapping_and_refuses_a_wrong_one(tmp_path):
+    (tmp_path / "in.csv").write_text("a,b,c\n1,2,3\n4,5,6\n")
+    words = ["import", "in.csv", "--out", "out.parquet", "--hz", "10"]
+    maps = ["--map", "gx=a:dps", "--map", "gy=b:dps", "--map", "gz=c:dps"]
+    assert zerorate(*words, *maps, cwd=tmp_path).returncode == 0
+    assert read_recording(tmp_path / "out.parquet").columns["gx"].tolist() == [131, 524]
+    ran = zerorate(*words, "--map", "gx=a:knots", cwd=tmp_path)
+    assert ran.returncode == 2 and "unit 'knots' of gx is none of dps" in ran.stderr
+
+
+def test_simulate_writes_every_session_and_lists_its_scenarios(tmp_path):
+    listed = zerorate("simulate", "--list").stdout.split()
+    assert "warm-up-a" in listed
+    words = ["--seed", "3", "--session", "1", "--truth", "t.parquet"]
+    ran = zerorate("simulate", "turntable", "--out", "run.parquet", *words, cwd=tmp_path)
+    assert ran.returncode == 0, ran.stderr
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["run.parquet", "t.parquet"]
+
+
+def test_the_public_names_are_there_and_nothing_else_is():
+    for name in zerorate_tools.__all__:
+        assert callable(getattr(zerorate_tools, name))
+        assert name in dir(zerorate_tools)
+    with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
+        _ = zerorate_tools.nonsense
