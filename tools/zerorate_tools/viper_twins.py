@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import ast
 import sys
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 
 from zerorate_tools.errors import InFile
+from zerorate_tools.viper_calls import POINTERS, let_it_call
 
-_POINTERS = ("ptr8", "ptr32")
 _NOTE = "# Generated from zerorate/{name} by `make viper`: edit that file, not this one.\n"
 
 
@@ -23,9 +23,9 @@ class BadKernel(InFile):
 
 
 def kernel_files(package: Path) -> list[Path]:
-    """The files of `package` with a function that takes a ptr8 or ptr32, sorted by name."""
+    """The files of `package` with annotated functions, which only kernels have; sorted by name."""
     files = sorted(package.glob("*.py"))
-    return [path for path in files if _takes_pointers(_parsed(path))]
+    return [path for path in files if _annotated(_parsed(path))]
 
 
 def hot_functions(path: Path) -> list[str]:
@@ -33,8 +33,11 @@ def hot_functions(path: Path) -> list[str]:
     return [node.name for node in _annotated(_parsed(path))]
 
 
-def twin(path: Path, kernels: Sequence[str]) -> str:
-    """The text of a kernel file's twin; kernels: names of all kernel modules, which it may import.
+def twin(path: Path, kernels: Sequence[str], results: Collection[str] = ()) -> str:
+    """The text of a kernel file's twin.
+
+    kernels: names of all kernel modules, which it may import; results: names of all kernels that
+    return something.
 
     Raises BadKernel for a function that is decorated already, or an import that mixes kernels and
     other modules.
@@ -49,6 +52,7 @@ def twin(path: Path, kernels: Sequence[str]) -> str:
     for node in _annotated(tree):
         if node.decorator_list:
             raise BadKernel(path, f"{node.name} has a decorator", row=node.lineno)
+        let_it_call(lines, node, results)
         lines[node.lineno - 1] = "@micropython.viper\n" + lines[node.lineno - 1]
     first = _end_of_docstring(tree)
     text = "".join([*lines[:first], "\nimport micropython\n\n", *lines[first:]])
@@ -59,7 +63,9 @@ def twins(package: Path) -> dict[Path, str]:
     """Path and text of every twin of `package`, its __init__.py included."""
     files = kernel_files(package)
     names = [path.stem for path in files]
-    made = {package / "viper" / path.name: twin(path, names) for path in files}
+    functions = [f for path in files for f in _annotated(_parsed(path))]
+    results = {f.name for f in functions if f.returns}
+    made = {package / "viper" / path.name: twin(path, names, results) for path in files}
     return {package / "viper" / "__init__.py": "", **made}
 
 
@@ -92,16 +98,11 @@ def _annotated(tree: ast.Module) -> list[ast.FunctionDef]:
     return [f for f in functions if f.returns or any(a.annotation for a in f.args.args)]
 
 
-def _takes_pointers(tree: ast.Module) -> bool:
-    arguments = [a.annotation for function in _annotated(tree) for a in function.args.args]
-    return any(isinstance(a, ast.Name) and a.id in _POINTERS for a in arguments)
-
-
 def _stands_in_for_a_pointer(node: ast.stmt) -> bool:
     """Is this what gives ptr8 or ptr32 a meaning on CPython? Viper has its own."""
     if isinstance(node, ast.Assign):
-        return all(isinstance(t, ast.Name) and t.id in _POINTERS for t in node.targets)
-    return isinstance(node, ast.FunctionDef) and node.name in _POINTERS
+        return all(isinstance(t, ast.Name) and t.id in POINTERS for t in node.targets)
+    return isinstance(node, ast.FunctionDef) and node.name in POINTERS
 
 
 def _blank(lines: list[str], node: ast.stmt) -> None:

@@ -1,0 +1,77 @@
+"""The bias at this temperature: which estimator, line or aggregate speaks for it.
+
+Document 000, paragraphs on the determination of the bias: the estimator of this temperature where
+it is stable and more stable than the fit, else the fit, else the temperature-independent one.
+"""
+
+try:
+    from micropython import const
+except ImportError:
+
+    def const(value):
+        return value
+
+
+ptr32 = None
+
+
+from .estimators import find
+from .fit import line_q8
+
+NONE = const(0)
+ANY_TEMPERATURE = const(1)
+FIT = const(2)
+HERE = const(3)
+
+_FIT_LOW_Q4 = const(19)
+_FIT_HIGH_Q4 = const(20)
+_FIT_SAMPLES = const(21)
+_FIT_POINTS = const(22)
+_BEYOND = const(29)
+_KIND = const(30)
+_ESTIMATORS = const(32)
+
+_LITERAL = const(21)
+_ENOUGH = const(31)
+_STABLE = const(34)
+_SHARE_Q8 = const(35)
+_BEYOND_Q4 = const(36)
+
+
+def choose(s: ptr32, c: ptr32, a: int, temp: int) -> int:
+    """Return the source of the bias at `temp` and note whether it lies beyond the fitted range."""
+    s[a + _BEYOND] = 0
+    e = find(s, c, a, temp)
+    if e > 0:
+        e = s[e + 3]
+        if e >= c[_STABLE] and e >= (s[a + _FIT_SAMPLES] >> 8) * c[_SHARE_Q8]:
+            return HERE
+    if s[a + _FIT_POINTS]:
+        e = (temp << 4) + c[_BEYOND_Q4]
+        if e < s[a + _FIT_LOW_Q4]:
+            s[a + _BEYOND] = 1
+        e = (temp << 4) - c[_BEYOND_Q4]
+        if e > s[a + _FIT_HIGH_Q4]:
+            s[a + _BEYOND] = 1
+        return FIT
+    if s[a + _ESTIMATORS + 3] >= c[_ENOUGH]:
+        return ANY_TEMPERATURE
+    return NONE
+
+
+def curve_q8(s: ptr32, c: ptr32, a: int, temp: int) -> int:
+    """Return the learned bias at `temp`: LSB, Q8; 0 while there is none.
+
+    By the document a stable estimator of this temperature speaks alone. Else it speaks through
+    the local line, which also knows how the bias changes within a degree.
+    """
+    kind = choose(s, c, a, temp)
+    s[a + _KIND] = kind
+    if kind == NONE:
+        return 0
+    if kind == ANY_TEMPERATURE or s[a + _FIT_POINTS] == 0:
+        return s[a + _ESTIMATORS + 2]
+    if kind == HERE and c[_LITERAL]:
+        kind = find(s, c, a, temp)
+        return s[kind + 2]
+    return line_q8(s, a, temp << 4)

@@ -1,0 +1,124 @@
+"""The user's object: one sample in, the same sample out without its zero-rate output."""
+
+from array import array
+
+from .explain import explain
+from .kernels import estimators, step
+from .settings import Sensor, settings
+
+LIMITS = {
+    "window_s": 0.5,
+    "segment_s": 2.5,
+    "still_dps": 0.3,
+    "still_g": 0.03,
+    "turn_dps": 0.06,
+    "change_dps": 0.08,
+    "slew_dps_per_s": 0.5,
+    "range_dps": 40.0,
+    "narrowest_dps": 0.5,
+    "step_degc": 1.0,
+    "margin_degc": 0.15,
+    "promote_s": 10.0,
+    "halve_after_s": 3600.0,
+    "fit_s": 2.0,
+    "counted_s": 20.0,
+    "local_degc": 3.0,
+    "stable_s": 2.5,
+    "share": 0.125,
+    "beyond_degc": 0.5,
+    "refit_degc": 0.25,
+    "floor_dps": 0.003,
+    "gate_dps": 0.3,
+    "insist_s": 60.0,
+    "walk_dps": 0.002,
+    "walk_least_dps": 0.0003,
+    "walk_most_dps": 0.05,
+    "turn_on_dps": 0.1,
+}
+
+
+class Corrector:
+    """Learns the bias of three axes while the device lives, and subtracts it.
+
+    sensor: a Sensor, or None for an MPU-6050 at +-250 dps and 100 Hz. bins: 4..19 an histogram;
+    short, long: estimators an axis. document: the literal rules of document 000 (every reading
+    learned, mean of the most significant bin, split in halves, one straight line). every: learn
+    every reading, moving or still, by this project's own rules. ignore_outside: readings outside
+    a histogram are ignored instead of extending it. Any key of LIMITS may be given by name, in
+    its unit. Raises ValueError.
+    """
+
+    def __init__(
+        self,
+        sensor=None,
+        bins=8,
+        short=3,
+        long=5,
+        document=False,
+        every=False,
+        ignore_outside=False,
+        **limits,
+    ):
+        self.sensor = sensor or Sensor()
+        chosen = dict(LIMITS)
+        for name in limits:
+            if name not in chosen:
+                raise ValueError("no such setting: %s" % name)
+            chosen[name] = limits[name]
+        self.settings = settings(
+            self.sensor, bins, short, long, document, document or every, ignore_outside, chosen
+        )
+        c = self.settings
+        self.state = array("i", [0] * (c[0] + 3 * c[13]))
+        self.reset()
+
+    def reset(self):
+        """Forget everything that was learned."""
+        s = self.state
+        c = self.settings
+        for axis in range(3):
+            a = c[0] + axis * c[13]
+            for i in range(a, a + c[13]):
+                s[i] = 0
+            estimators.reset(s, c, a)
+            s[a + 26] = c[44]
+        self.power_on()
+
+    def power_on(self):
+        """Begin a new power-on with what `state` holds: its curves stand, its offsets do not."""
+        s = self.state
+        c = self.settings
+        for i in range(c[0]):
+            s[i] = 0
+        for axis in range(3):
+            a = c[0] + axis * c[13]
+            s[a + 1] = 0
+            s[a + 24] = 0
+            s[a + 25] = c[45]
+            s[a + 27] = 0
+            s[a + 28] = 0
+            s[a + 31] = -32768
+
+    def update(self, sample, dt_us):
+        """Learn from `sample` and correct its rates in place; allocates nothing.
+
+        sample: array('i') ax ay az temp gx gy gz, raw LSB; dt_us: since the sample before.
+        Returns 0, or the guard's name for a frame that is not a good reading (see guard.py).
+        """
+        return step.step(self.state, self.settings, sample, dt_us)
+
+    def bias_lsb(self, axis):
+        """Return what is subtracted from that axis now, LSB."""
+        return (self.state[55 + axis] + self.state[61 + axis]) / 256
+
+    def quality_lsb(self, axis):
+        """Return the one-sigma uncertainty of that axis' bias, LSB."""
+        return self.state[70 + axis] / 256
+
+    def source(self, axis):
+        """Return where that axis' bias comes from: a constant of bias.py."""
+        return self.state[73 + axis]
+
+    def explain(self):
+        """Return a sentence or two on what is being learned, or why nothing is."""
+        return explain(self.state, self.settings, self.sensor)

@@ -1,0 +1,215 @@
+"""One sample's way through the firmware, and the work that a full window leaves behind.
+
+Learning is spread over the samples of the next window, one small piece a sample, so that no sample
+waits for a whole refit.
+"""
+
+try:
+    from micropython import const
+except ImportError:
+
+    def const(value):
+        return value
+
+
+ptr32 = None
+
+
+from .bias import curve_q8
+from .estimators import learn
+from .fit import centre, lean, settle, stretch, weigh
+from .fixed import root
+from .guard import check
+from .recent import absorb, grown_q8, hand_over
+from .stillness import gather, judge
+
+_GOOD = const(8)
+_ELAPSED_US = const(16)
+_TOTALS = const(42)
+_TEMP_TOTAL = const(45)
+_TEMP = const(47)
+_LEARN_TEMP = const(52)
+_PHASE = const(53)
+_OUT_Q8 = const(55)
+_CARRY_Q8 = const(58)
+_EFFECT_Q8 = const(61)
+_TARGET_Q8 = const(67)
+_QUALITY_Q8 = const(70)
+_SOURCE = const(73)
+
+_TOTAL = const(0)
+_WEIGHT = const(1)
+_OFFSET_Q8 = const(24)
+_AGE_MS = const(28)
+_KIND = const(30)
+_FIT_TEMP = const(31)
+
+_AXES = const(0)
+_SHIFT = const(4)
+_SEGMENTS = const(5)
+_SLEW_Q8 = const(11)
+_PIECES = const(12)
+_AXIS_WORDS = const(13)
+_ALL = const(25)
+_STALE_LSB = const(43)
+_EVERY = const(46)
+
+
+def correct(s: ptr32, c: ptr32, x: ptr32):
+    """Subtract the bias from the frame in place.
+
+    What rounding to whole LSB leaves over is carried to the next sample, so that no angle is lost
+    in the sum. The bias follows its target no faster than the slew limit.
+    """
+    i = 0
+    while i < 3:
+        d = s[_TARGET_Q8 + i] - s[_OUT_Q8 + i]
+        if d > c[_SLEW_Q8]:
+            d = c[_SLEW_Q8]
+        elif d < -c[_SLEW_Q8]:
+            d = -c[_SLEW_Q8]
+        s[_OUT_Q8 + i] += d
+        d = (x[4 + i] << 8) - s[_OUT_Q8 + i] - s[_EFFECT_Q8 + i] + s[_CARRY_Q8 + i]
+        x[4 + i] = (d + 128) >> 8
+        s[_CARRY_Q8 + i] = d - (x[4 + i] << 8)
+        i += 1
+
+
+def publish(s: ptr32, c: ptr32, a: int, axis: int):
+    """Write the axis' bias, source and quality for the temperature of the latest window."""
+    bias = s[_TEMP]
+    bias = curve_q8(s, c, a, bias) + s[a + _OFFSET_Q8]
+    s[_TARGET_Q8 + axis] = bias
+    if s[_SOURCE + axis] == 0:
+        s[_OUT_Q8 + axis] = bias
+    s[_SOURCE + axis] = s[a + _KIND]
+    bias = grown_q8(s, a)
+    if bias < 0x3FFFFF:
+        bias = root(bias << 8)
+    else:
+        bias = root(bias) << 4
+    s[_QUALITY_Q8 + axis] = bias
+
+
+def stale(s: ptr32, c: ptr32, a: int) -> int:
+    """Return 1 if the line must be fitted again: something learned, or the temperature moved."""
+    d = s[_TEMP] - s[a + _FIT_TEMP]
+    if s[a + _WEIGHT] or c[_EVERY] or d > c[_STALE_LSB] or d < -c[_STALE_LSB]:
+        s[a + _FIT_TEMP] = s[_TEMP]
+        return 1
+    return 0
+
+
+def refit(s: ptr32, c: ptr32, a: int, piece: int):
+    """Do one piece of the axis' line: 2 weighs, then two points a piece, then it settles."""
+    half = c[_ALL] >> 1
+    piece -= 2
+    if piece == 0:
+        weigh(s, c, a)
+        return
+    i = ((piece - 1) << 1) + 1
+    if piece <= half:
+        centre(s, c, a, i)
+        i += 1
+        if i < c[_ALL]:
+            centre(s, c, a, i)
+        if piece == half:
+            stretch(s, c, a)
+        return
+    i -= half << 1
+    lean(s, c, a, i)
+    i += 1
+    if i < c[_ALL]:
+        lean(s, c, a, i)
+    if piece == half << 1:
+        settle(s, c, a)
+
+
+def advance(s: ptr32, c: ptr32):
+    """Do the next piece of work: an axis absorbs, learns, refits its line and publishes."""
+    last = ((c[_ALL] >> 1) << 1) + 3
+    axis = (s[_PHASE] - 1) // (last + 1)
+    piece = (s[_PHASE] - 1) % (last + 1)
+    a = c[_AXES] + axis * c[_AXIS_WORDS]
+    s[_PHASE] += 1
+    if piece == 0:
+        if s[a + _WEIGHT] and absorb(s, c, a) == 0:
+            s[a + _WEIGHT] = 0
+    elif piece == 1:
+        if s[a + _WEIGHT]:
+            learn(s, c, a)
+        if stale(s, c, a) == 0:
+            s[_PHASE] += last - 2
+    elif piece < last:
+        refit(s, c, a, piece)
+    else:
+        if s[a + _WEIGHT] and c[_EVERY] == 0:
+            hand_over(s, c, a)
+        s[a + _WEIGHT] = 0
+        publish(s, c, a, axis)
+        if axis == 2:
+            s[_PHASE] = 0
+
+
+def close(s: ptr32, c: ptr32):
+    """Close a full window: what it says, and the work that follows from it."""
+    while s[_PHASE]:
+        advance(s, c)
+    still = judge(s, c)
+    if still:
+        s[_LEARN_TEMP] = s[_TEMP_TOTAL] // c[_SEGMENTS]
+    i = 0
+    while i < 3:
+        a = c[_AXES] + i * c[_AXIS_WORDS]
+        s[a + _AGE_MS] += s[_ELAPSED_US] // 1000
+        if s[a + _AGE_MS] > 0x3FFFFFF:
+            s[a + _AGE_MS] = 0x3FFFFFF
+        if still and c[_EVERY] == 0:
+            s[a + _TOTAL] = s[_TOTALS + i]
+            s[a + _WEIGHT] = c[_SEGMENTS] << c[_SHIFT]
+        i += 1
+    s[_ELAPSED_US] = 0
+    s[_PHASE] = 1
+
+
+def learn_at_once(s: ptr32, c: ptr32, x: ptr32):
+    """Learn this very reading, moving or still, as the document does: it has no stillness test."""
+    s[_LEARN_TEMP] = x[3]
+    i = 0
+    while i < 3:
+        a = c[_AXES] + i * c[_AXIS_WORDS]
+        s[a + _TOTAL] = x[4 + i]
+        s[a + _WEIGHT] = 1
+        learn(s, c, a)
+        s[a + _WEIGHT] = 0
+        i += 1
+
+
+def wake(s: ptr32, c: ptr32, x: ptr32):
+    """Publish at the first frame after power-on what is already known for its temperature."""
+    s[_TEMP] = x[3]
+    s[_PHASE] = 1
+    while s[_PHASE]:
+        advance(s, c)
+
+
+def step(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
+    """Take the frame `x`, `dt_us` after the one before, and correct it in place.
+
+    Returns what the guard says of it; frames of all zeros or ones and beyond are left as they are.
+    """
+    kind = check(s, c, x, dt_us)
+    if kind == 0:
+        if s[_GOOD] == 1:
+            wake(s, c, x)
+        if c[_EVERY]:
+            learn_at_once(s, c, x)
+        if gather(s, c, x):
+            close(s, c)
+    i = c[_PIECES]
+    while i > 0 and s[_PHASE]:
+        advance(s, c)
+        i -= 1
+    if kind < 3:
+        correct(s, c, x)
+    return kind

@@ -1,0 +1,247 @@
+# Generated from zerorate/estimators.py by `make viper`: edit that file, not this one.
+"""The estimators of one axis: any temperature, short term and long term.
+
+Document 000, paragraphs on "bias estimators": estimator 0 takes every reading; 1..short are a
+least-recently-used cache of the latest temperatures; the others keep a wide range of temperatures.
+An estimator at word `e` of the state:
+
+    e      temperature it is for, raw LSB, or _FREE
+    e+1    mean temperature of its readings, raw LSB, Q4
+    e+2    its bias, LSB, Q8
+    e+3    readings it stands for
+    e+4..  its histogram
+
+The axis block at word `a` begins with what `corrector.py` names; the estimators follow it.
+"""
+
+import micropython
+
+
+try:
+    from micropython import const
+except ImportError:
+
+    def const(value):
+        return value
+
+
+from .histogram import add, clear, halve, population, read_out_q8
+
+_FREE = const(-1048576)
+
+_TOTAL = const(0)
+_WEIGHT = const(1)
+_CURRENT = const(2)
+_COLDEST = const(3)
+_HOTTEST = const(4)
+_LEARNED = const(5)
+_ORDER = const(6)
+_ESTIMATORS = const(32)
+
+_SCRATCH = const(7)
+_LEARN_TEMP = const(52)
+
+_FIRST_SHORT = const(14)
+_BINS = const(16)
+_SHORT = const(24)
+_WORDS = const(26)
+_STEP_LSB = const(27)
+_MARGIN_LSB = const(28)
+_PROMOTE = const(29)
+_HALVE_AFTER = const(30)
+_FIRST_LONG = const(47)
+_END = const(15)
+
+
+@micropython.viper
+def reset(s_, c_, a: int):
+    """Forget everything: no temperature seen, all estimators free and empty."""
+    s = ptr32(s_)
+    c = ptr32(c_)
+    s[a + _CURRENT] = 0
+    s[a + _COLDEST] = 32767
+    s[a + _HOTTEST] = -32768
+    s[a + _LEARNED] = 0
+    i = 0
+    e = a + _ESTIMATORS
+    while e < a + c[_END]:
+        s[e] = _FREE
+        s[e + 1] = 0
+        s[e + 2] = 0
+        s[e + 3] = 0
+        clear(s_, c_, e + 4, 0)
+        if i > 0 and i <= c[_SHORT]:
+            s[a + _ORDER + i - 1] = e
+        e += c[_WORDS]
+        i += 1
+
+
+@micropython.viper
+def find(s: ptr32, c: ptr32, a: int, temp: int) -> int:
+    """Return the estimator for `temp`, or 0.
+
+    The one in use keeps a temperature that is a margin beyond its own degree, so that noise at
+    the boundary does not push the others out of the cache.
+    """
+    half = c[_STEP_LSB] >> 1
+    e = s[a + _CURRENT]
+    if e > 0:
+        d = temp - s[e]
+        if d <= half + c[_MARGIN_LSB] and d >= -half - c[_MARGIN_LSB]:
+            return e
+    e = a + c[_FIRST_SHORT]
+    while e < a + c[_END]:
+        d = temp - s[e]
+        if d < half and d >= -half:
+            return e
+        e += c[_WORDS]
+    return 0
+
+
+@micropython.viper
+def touch(s: ptr32, c: ptr32, a: int, e: int):
+    """Make the short-term estimator the most recently used; a long-term one has no order."""
+    if e < a + c[_FIRST_LONG]:
+        k = a + _ORDER
+        held = e
+        while s[k] != e:
+            d = s[k]
+            s[k] = held
+            held = d
+            k += 1
+        s[k] = held
+
+
+@micropython.viper
+def third(s: ptr32, a: int, temp: int) -> int:
+    """Return in which third of the observed temperature range `temp` lies: 0, 1 or 2."""
+    span = s[a + _HOTTEST] - s[a + _COLDEST] + 1
+    part = (temp - s[a + _COLDEST]) * 3 // span
+    if part < 0:
+        return 0
+    if part > 2:
+        return 2
+    return part
+
+
+@micropython.viper
+def richest(s_, c: ptr32, a: int, part: int) -> int:
+    """Return the long-term estimator with most samples in that third of the range, or 0."""
+    s = ptr32(s_)
+    best = 0
+    e = a + c[_FIRST_LONG]
+    while e < a + c[_END]:
+        if s[e] != _FREE and int(third(s_, a, s[e])) == part:
+            if best == 0 or s[e + 3] > s[best + 3]:
+                best = e
+        e += c[_WORDS]
+    return best
+
+
+@micropython.viper
+def protected(s_, c_, a: int, e: int) -> int:
+    """Return 1 if the long-term estimator is the richest of a third the candidate is not in."""
+    s = ptr32(s_)
+    part = int(third(s_, a, s[e]))
+    if part == s[_SCRATCH]:
+        return 0
+    if int(richest(s_, c_, a, part)) == e:
+        return 1
+    return 0
+
+
+@micropython.viper
+def victim(s_, c_, a: int, e: int) -> int:
+    """Return the long-term estimator that the short-term one `e` may replace, or `e` itself."""
+    s = ptr32(s_)
+    c = ptr32(c_)
+    s[_SCRATCH] = int(third(s_, a, s[e]))
+    found = e
+    d = a + c[_FIRST_LONG]
+    while d < a + c[_END]:
+        if s[d] == _FREE:
+            return d
+        if s[d + 3] < s[found + 3] and int(protected(s_, c_, a, d)) == 0:
+            found = d
+        d += c[_WORDS]
+    return found
+
+
+@micropython.viper
+def copy(s: ptr32, c: ptr32, to: int, e: int):
+    """Copy one estimator over another."""
+    i = 0
+    while i < c[_WORDS]:
+        s[to + i] = s[e + i]
+        i += 1
+
+
+@micropython.viper
+def make_room(s_, c_, a: int, temp: int) -> int:
+    """Return a short-term estimator made free for `temp`; the one it was may become long-term."""
+    s = ptr32(s_)
+    c = ptr32(c_)
+    e = s[a + _ORDER - 1 + c[_SHORT]]
+    if s[e] != _FREE and s[e + 3] >= c[_PROMOTE]:
+        k = int(victim(s_, c_, a, e))
+        if k != e:
+            copy(s_, c_, k, e)
+    # centres lie on a grid, so that the same temperature comes back to the same estimator
+    s[e] = (temp + (c[_STEP_LSB] >> 1)) // c[_STEP_LSB] * c[_STEP_LSB]
+    s[e + 1] = temp << 4
+    s[e + 3] = 0
+    return e
+
+
+@micropython.viper
+def feed(s_, c_, a: int, e: int):
+    """Add the axis' waiting readings to the estimator and renew what is kept of it."""
+    s = ptr32(s_)
+    c = ptr32(c_)
+    if s[e + 3] == 0:
+        k = s[a + _TOTAL] // s[a + _WEIGHT]
+        clear(s_, c_, e + 4, k)
+        s[e + 1] = s[_LEARN_TEMP] << 4
+    if int(add(s_, c_, e + 4, a)) == 0:
+        return
+    k = int(population(s_, e + 4, c[_BINS]))
+    s[e + 3] = k
+    s[e + 2] = int(read_out_q8(s_, e + 4, c[_BINS]))
+    if k < s[a + _WEIGHT]:
+        k = s[a + _WEIGHT]
+    k = ((s[_LEARN_TEMP] << 4) - s[e + 1]) * s[a + _WEIGHT] // k
+    s[e + 1] += k
+
+
+@micropython.viper
+def age(s_, c: ptr32, a: int):
+    """Halve the counts of the long-term estimators, so that an old outlier does not stay."""
+    s = ptr32(s_)
+    e = a + c[_FIRST_LONG]
+    while e < a + c[_END]:
+        halve(s_, e + 4, c[_BINS])
+        s[e + 3] = int(population(s_, e + 4, c[_BINS]))
+        e += c[_WORDS]
+
+
+@micropython.viper
+def learn(s_, c_, a: int):
+    """Learn the axis' waiting readings: any-temperature estimator, then that of the temperature."""
+    s = ptr32(s_)
+    c = ptr32(c_)
+    temp = s[_LEARN_TEMP]
+    if temp < s[a + _COLDEST]:
+        s[a + _COLDEST] = temp
+    if temp > s[a + _HOTTEST]:
+        s[a + _HOTTEST] = temp
+    feed(s_, c_, a, a + _ESTIMATORS)
+    e = int(find(s_, c_, a, temp))
+    if e == 0:
+        e = int(make_room(s_, c_, a, temp))
+    touch(s_, c_, a, e)
+    s[a + _CURRENT] = e
+    feed(s_, c_, a, e)
+    s[a + _LEARNED] += s[a + _WEIGHT]
+    if s[a + _LEARNED] >= c[_HALVE_AFTER]:
+        s[a + _LEARNED] = 0
+        age(s_, c_, a)

@@ -1,0 +1,170 @@
+# Generated from zerorate/recent.py by `make viper`: edit that file, not this one.
+"""What the curve over temperature does not explain lately: turn-on offset, lag, drift.
+
+One number an axis, added to the learned curve: a random walk seen through the mean of every still
+segment, weighed by a scalar Kalman filter. How fast it walks is learned from how far each segment
+lies from what was expected. A segment that lies implausibly far is learned only when it insists:
+a constant turn about the vertical looks just like it, but does not last.
+
+Variances are LSB^2 in Q8, the walk LSB^2/s in Q16.
+"""
+
+import micropython
+
+
+try:
+    from micropython import const
+except ImportError:
+
+    def const(value):
+        return value
+
+
+from .bias import curve_q8
+
+_TOTAL = const(0)
+_WEIGHT = const(1)
+_BEFORE_Q8 = const(23)
+_OFFSET_Q8 = const(24)
+_VARIANCE_Q8 = const(25)
+_WALK_Q16 = const(26)
+_SUSPECT = const(27)
+_AGE_MS = const(28)
+_KIND = const(30)
+
+_NOISE_Q8 = const(49)
+_LEARN_TEMP = const(52)
+# the fit's scratch words, free while a segment is absorbed
+_MEAN_NOISE_Q8 = const(76)
+_GROWN_Q8 = const(77)
+
+_FLOOR_Q8 = const(37)
+_GATE_Q4 = const(38)
+_INSIST = const(39)
+_WALK_LEAST_Q16 = const(40)
+_WALK_MOST_Q16 = const(41)
+
+
+@micropython.viper
+def grown_q8(s: ptr32, a: int) -> int:
+    """Return the offset's variance now: what it was, and what it has walked since."""
+    seconds = s[a + _AGE_MS] >> 10
+    if seconds > 2047:
+        seconds = 2047
+    return s[a + _VARIANCE_Q8] + (((s[a + _WALK_Q16] >> 4) * seconds) >> 4)
+
+
+@micropython.viper
+def error_q4(s_, c_, a: int) -> int:
+    """Return how far the waiting segment lies from what was expected: LSB, Q4."""
+    s = ptr32(s_)
+    before = s[_LEARN_TEMP]
+    before = int(curve_q8(s_, c_, a, before))
+    s[a + _BEFORE_Q8] = before
+    mean = s[a + _TOTAL] % s[a + _WEIGHT]
+    mean = (mean << 8) // s[a + _WEIGHT]
+    mean += (s[a + _TOTAL] // s[a + _WEIGHT]) << 8
+    return (mean - before - s[a + _OFFSET_Q8]) >> 4
+
+
+@micropython.viper
+def plausible(s: ptr32, c: ptr32, a: int, error: int) -> int:
+    """Return 1 if the error is within the gate or six sigma, or has insisted long enough."""
+    far = error if error >= 0 else -error
+    if far > 0x7FFF:
+        far = 0x7FFF
+    if far <= c[_GATE_Q4] or far * far // 36 < s[_GROWN_Q8] + s[_MEAN_NOISE_Q8]:
+        s[a + _SUSPECT] = 0
+        return 1
+    s[a + _SUSPECT] += 1
+    if s[a + _SUSPECT] < c[_INSIST]:
+        return 0
+    s[a + _SUSPECT] = 0
+    s[a + _OFFSET_Q8] += error << 4
+    return 2
+
+
+@micropython.viper
+def rewalk(s: ptr32, c: ptr32, a: int, excess: int):
+    """Learn the speed of the walk from the squared error that noise does not explain."""
+    age = (s[a + _AGE_MS] >> 6) + 1
+    if excess > 0x1FFFFF:
+        excess = 0x1FFFFF
+    if excess < -0x1FFFFF:
+        excess = -0x1FFFFF
+    speed = ((excess << 8) // age) << 4
+    if speed > c[_WALK_MOST_Q16]:
+        speed = c[_WALK_MOST_Q16]
+    # long gaps tell more of the walk than neighbours do
+    if age > 1023:
+        age = 1023
+    speed = (speed - s[a + _WALK_Q16]) >> 4
+    speed = speed * age // (age + 1024) << 4
+    s[a + _WALK_Q16] += speed
+    if s[a + _WALK_Q16] < c[_WALK_LEAST_Q16]:
+        s[a + _WALK_Q16] = c[_WALK_LEAST_Q16]
+
+
+@micropython.viper
+def gain_q14(variance: int, noise: int) -> int:
+    """Return variance / (variance + noise) in Q14."""
+    while variance + noise > 0x7FFF:
+        variance = variance >> 1
+        noise = noise >> 1
+    return (variance << 14) // (variance + noise + 1)
+
+
+@micropython.viper
+def follow(s_, c_, a: int, error: int):
+    """Move the offset towards the error by the Kalman gain, and learn the walk from the error."""
+    s = ptr32(s_)
+    if error > 16383:
+        error = 16383
+    if error < -16383:
+        error = -16383
+    excess = error * error - s[a + _VARIANCE_Q8]
+    excess -= s[_MEAN_NOISE_Q8]
+    rewalk(s_, c_, a, excess)
+    excess = int(gain_q14(s[_GROWN_Q8], s[_MEAN_NOISE_Q8]))
+    s[a + _OFFSET_Q8] += (excess * error) >> 10
+    s[a + _VARIANCE_Q8] = (excess * s[_MEAN_NOISE_Q8]) >> 14
+
+
+@micropython.viper
+def absorb(s_, c_, a: int) -> int:
+    """Take the waiting segment into the offset; return 1 if the estimators may learn it.
+
+    The very first one is all curve and no offset.
+    """
+    s = ptr32(s_)
+    c = ptr32(c_)
+    s[_MEAN_NOISE_Q8] = s[_NOISE_Q8] // (3 * s[a + _WEIGHT]) + c[_FLOOR_Q8]
+    error = int(error_q4(s_, c_, a))
+    if s[a + _KIND] == 0:
+        s[a + _SUSPECT] = -1
+        s[a + _OFFSET_Q8] = 0
+        s[a + _VARIANCE_Q8] = s[_MEAN_NOISE_Q8]
+        s[a + _AGE_MS] = 0
+        return 1
+    s[_GROWN_Q8] = int(grown_q8(s_, a))
+    verdict = int(plausible(s_, c_, a, error))
+    if verdict == 0:
+        return 0
+    if verdict == 1:
+        follow(s_, c_, a, error)
+    else:
+        s[a + _VARIANCE_Q8] = s[_MEAN_NOISE_Q8]
+    s[a + _AGE_MS] = 0
+    return 1
+
+
+@micropython.viper
+def hand_over(s_, c_, a: int):
+    """Keep the level: what the curve has just learned at this temperature leaves the offset."""
+    s = ptr32(s_)
+    if s[a + _SUSPECT] < 0:
+        s[a + _SUSPECT] = 0
+    else:
+        after = s[_LEARN_TEMP]
+        after = int(curve_q8(s_, c_, a, after))
+        s[a + _OFFSET_Q8] += s[a + _BEFORE_Q8] - after

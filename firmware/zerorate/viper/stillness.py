@@ -1,0 +1,209 @@
+# Generated from zerorate/stillness.py by `make viper`: edit that file, not this one.
+"""Still, moving or turning: judged from windows of gyroscope and accelerometer.
+
+Nothing here assumes a small bias: only the spread of the rates, their change from window to window
+and the direction of gravity count. A constant turn about the vertical leaves all three alone and
+cannot be told from a bias; a turn about any other axis moves gravity.
+"""
+
+import micropython
+
+
+try:
+    from micropython import const
+except ImportError:
+
+    def const(value):
+        return value
+
+
+UNKNOWN = const(0)
+STILL = const(1)
+MOVING = const(2)
+TURNING = const(3)
+SHAKEN = const(4)
+SHIFTED = const(5)
+
+_ELAPSED_US = const(16)
+_N = const(17)
+_DIRTY = const(18)
+_REFERENCE = const(19)
+_SUM = const(26)
+_SQUARE_ACCEL = const(33)
+_REST = const(34)
+_SQUARE_GYRO = const(35)
+_ANCHOR = const(36)
+_FIRST = const(39)
+_TOTAL = const(42)
+_TEMP_TOTAL = const(45)
+_STILLNESS = const(46)
+_TEMP = const(47)
+_SEGMENT = const(48)
+_NOISE_Q8 = const(49)
+_AGE_MS = const(50)
+_TIP_Q8 = const(51)
+_EFFECT_Q8 = const(61)
+_EFFECT_SUM = const(64)
+
+_WINDOW = const(3)
+_SHIFT = const(4)
+_SEGMENTS = const(5)
+_DEVIATION = const(6)
+_SPREAD_GYRO_Q8 = const(7)
+_SPREAD_ACCEL_Q8 = const(8)
+_TIP_LIMIT_Q8 = const(9)
+_CHANGE_Q4 = const(10)
+
+
+@micropython.viper
+def gather(s: ptr32, c: ptr32, x: ptr32) -> int:
+    """Add the frame `x` to the window; return 1 when the window is full, else 0."""
+    i = 0
+    if s[_N] == 0:
+        while i < 7:
+            s[_REFERENCE + i] = x[i]
+            s[_SUM + i] = 0
+            i += 1
+        s[_SQUARE_ACCEL] = 0
+        s[_SQUARE_GYRO] = 0
+        s[_EFFECT_SUM] = 0
+        s[_EFFECT_SUM + 1] = 0
+        s[_EFFECT_SUM + 2] = 0
+        s[_DIRTY] = 0
+    s[_N] += 1
+    if s[_DIRTY] == 0:
+        i = 0
+        while i < 7:
+            d = x[i] - s[_REFERENCE + i]
+            if d > c[_DEVIATION] or d < -c[_DEVIATION]:
+                s[_DIRTY] = 1
+                d = 0
+            s[_SUM + i] += d
+            if i < 3:
+                s[_SQUARE_ACCEL] += d * d
+            elif i > 3:
+                s[_SQUARE_GYRO] += d * d
+                s[_EFFECT_SUM + i - 4] += s[_EFFECT_Q8 + i - 4]
+            i += 1
+    if s[_N] < c[_WINDOW]:
+        return 0
+    return 1
+
+
+@micropython.viper
+def spread_q8(s: ptr32, c: ptr32, first: int, square: int) -> int:
+    """Return the window's variance in LSB^2, Q8, summed over three channels from `first`."""
+    i = 0
+    while i < 3:
+        mean_q4 = (s[first + i] << 4) >> c[_SHIFT]
+        square -= (mean_q4 * s[first + i]) >> 4
+        i += 1
+    if square < 0:
+        square = 0
+    return square << (8 - c[_SHIFT])
+
+
+@micropython.viper
+def tip_q8(s: ptr32, c: ptr32) -> int:
+    """Return how far gravity has moved since the rest began: squared LSB, Q8."""
+    i = 0
+    square = 0
+    while i < 3:
+        d = (s[_REFERENCE + i] << 4) + ((s[_SUM + i] << 4) >> c[_SHIFT]) - s[_ANCHOR + i]
+        if d > 8191:
+            d = 8191
+        if d < -8191:
+            d = -8191
+        square += d * d
+        i += 1
+    return square
+
+
+@micropython.viper
+def change_q4(s: ptr32, c: ptr32) -> int:
+    """Return the largest change of a window's mean rate since the segment began: LSB, Q4."""
+    i = 0
+    most = 0
+    while i < 3:
+        d = (s[_REFERENCE + 4 + i] << 4) + ((s[_SUM + 4 + i] << 4) >> c[_SHIFT]) - s[_FIRST + i]
+        if d < 0:
+            d = -d
+        if d > most:
+            most = d
+        i += 1
+    return most
+
+
+@micropython.viper
+def begin(s: ptr32, c: ptr32, anchored: int):
+    """Begin a segment with this window; without `anchored` a new rest as well."""
+    i = 0
+    while i < 3:
+        if anchored == 0:
+            s[_ANCHOR + i] = (s[_REFERENCE + i] << 4) + ((s[_SUM + i] << 4) >> c[_SHIFT])
+        s[_FIRST + i] = (s[_REFERENCE + 4 + i] << 4) + ((s[_SUM + 4 + i] << 4) >> c[_SHIFT])
+        s[_TOTAL + i] = 0
+        i += 1
+    s[_TEMP_TOTAL] = 0
+    s[_SEGMENT] = 0
+    s[_REST] = 1
+
+
+@micropython.viper
+def look(s_, c_) -> int:
+    """Return what the full window says: STILL, MOVING, SHAKEN, TURNING or SHIFTED."""
+    s = ptr32(s_)
+    c = ptr32(c_)
+    if s[_DIRTY]:
+        return MOVING
+    noise_q8 = int(spread_q8(s_, c_, _SUM + 4, s[_SQUARE_GYRO]))
+    if noise_q8 > c[_SPREAD_GYRO_Q8]:
+        return MOVING
+    shake_q8 = int(spread_q8(s_, c_, _SUM, s[_SQUARE_ACCEL]))
+    if shake_q8 > c[_SPREAD_ACCEL_Q8]:
+        return SHAKEN
+    s[_NOISE_Q8] += (noise_q8 - s[_NOISE_Q8]) >> 3
+    if s[_REST] == 0:
+        return STILL
+    s[_TIP_Q8] = int(tip_q8(s_, c_))
+    # gravity's two window means differ by noise alone: 18 = 2 x (3 sigma)^2
+    if s[_TIP_Q8] > c[_TIP_LIMIT_Q8] + 18 * (shake_q8 >> c[_SHIFT]):
+        return TURNING
+    if s[_SEGMENT] and int(change_q4(s_, c_)) > c[_CHANGE_Q4]:
+        return SHIFTED
+    return STILL
+
+
+@micropython.viper
+def judge(s_, c_) -> int:
+    """Close the full window; return 1 when it completes a still segment, else 0.
+
+    A segment's sums are then in the shared block, and the next window begins a new one of the
+    same rest, whose gravity still is the anchor: the longer a rest, the slower the turns it shows.
+    """
+    s = ptr32(s_)
+    c = ptr32(c_)
+    state = int(look(s_, c_))
+    s[_STILLNESS] = state
+    s[_TEMP] = s[_REFERENCE + 3] + (s[_SUM + 3] >> c[_SHIFT])
+    s[_N] = 0
+    if state == MOVING or state == SHAKEN:
+        s[_REST] = 0
+        return 0
+    if state != STILL or s[_REST] == 0:
+        begin(s_, c_, 0)
+    elif s[_SEGMENT] == 0:
+        begin(s_, c_, 1)
+    i = 0
+    while i < 3:
+        total = s[_REFERENCE + 4 + i] << c[_SHIFT]
+        total -= (s[_EFFECT_SUM + i] + 128) >> 8
+        total += s[_SUM + 4 + i]
+        s[_TOTAL + i] += total
+        i += 1
+    s[_TEMP_TOTAL] += s[_TEMP]
+    s[_SEGMENT] += 1
+    if s[_SEGMENT] < c[_SEGMENTS]:
+        return 0
+    s[_SEGMENT] = 0
+    return 1
