@@ -23,7 +23,7 @@ _STEP = const(3)
 def gather(s: ptr32, c: ptr32, n: int) -> int:
     total = 0
     for i in range(n):
-        s[i] = (s[i] * _STEP - c[i]) >> 1
+        s[i] = (s[i] * _STEP - c[i]) >> 2
         total += s[i] if s[i] < 100 else s[i] // 7
     return total
 
@@ -32,6 +32,15 @@ def pass_on(s, c, n: int) -> int:
     p = ptr32(s)
     p[0] += 1
     return int(gather(s, c, n)) ^ (p[1] & 255)
+
+
+def outer(s: ptr32, c: ptr32, n: int) -> int:
+    """A kernel that calls kernels."""
+    s[2] += gather(s, c, n) & 1
+    gather(s, c, n)
+    if gather(s, c, n - 1) > gather(s, c, pass_on(s, c, 1) & 3):
+        return s[1]
+    return gather(s, c, n) - 1
 
 
 def in_the_open(s):
@@ -44,6 +53,22 @@ from {package} import kernel
 s = array("i", [(k * 7919) % 20011 - 10000 for k in range(40)])
 c = array("i", [(k * 104729) % 4001 - 2000 for k in range(40)])
 print([kernel.pass_on(s, c, 40) for k in range(6)], kernel.in_the_open(s), list(s))
+print([kernel.outer(s, c, 40) for k in range(6)], list(s))
+"""
+
+UNDER_LOCK = """
+import gc, micropython
+from array import array
+from pack.viper import kernel
+s, c = array("i", [5] * 40), array("i", [3] * 40)
+def drive():
+    for i in range(20):
+        kernel.outer(s, c, 40)
+drive()
+micropython.heap_lock()
+drive()
+micropython.heap_unlock()
+print("nothing taken")
 """
 
 
@@ -64,13 +89,13 @@ def test_only_files_with_pointer_parameters_are_kernels(package):
 
 
 def test_annotated_functions_are_hot(package):
-    assert hot_functions(package / "kernel.py") == ["gather", "pass_on"]
+    assert hot_functions(package / "kernel.py") == ["gather", "pass_on", "outer"]
 
 
 def test_every_annotated_function_and_no_other_is_decorated(package):
     lines = twin(package / "kernel.py", ["kernel"]).splitlines()
     decorated = [lines[i + 1] for i, line in enumerate(lines) if line == "@micropython.viper"]
-    assert [line.split("(")[0] for line in decorated] == ["def gather", "def pass_on"]
+    assert [line.split("(")[0] for line in decorated] == ["def gather", "def pass_on", "def outer"]
 
 
 def test_a_twin_has_no_stand_in_for_pointers(package):
@@ -110,6 +135,22 @@ def test_a_twin_does_what_its_kernel_does(package, viper_runtime):
     )
     assert len(plain) > 200
     assert plain == viper
+
+
+def test_a_kernel_that_calls_kernels_takes_nothing_from_the_heap(package, viper_runtime):
+    write(package)
+    result = viper_runtime.run(UNDER_LOCK, modules=[package.parent], check=True)
+    assert result.stdout.strip() == "nothing taken"
+
+
+def test_arrays_are_passed_on_as_objects_and_results_taken_as_integers(package):
+    write(package)
+    text = (package / "viper" / "kernel.py").read_text()
+    assert "def outer(s_, c_, n: int) -> int:" in text
+    assert (
+        "    s = ptr32(s_)\n    s[2] += int(gather(s_, c_, n)) & 1\n    gather(s_, c_, n)\n" in text
+    )
+    assert "int(gather(s_, c_, int(pass_on(s_, c_, 1)) & 3))" in text
 
 
 def test_the_committed_twins_are_fresh(repository):
