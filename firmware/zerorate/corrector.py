@@ -6,6 +6,12 @@ from .explain import explain
 from .kernels import estimators, step
 from .settings import Sensor, settings
 
+# words of the state that applications and tools may read
+OUT_Q8 = 55
+EFFECT_Q8 = 61
+QUALITY_Q8 = 70
+SOURCE = 73
+
 LIMITS = {
     "window_s": 0.5,
     "segment_s": 2.5,
@@ -109,15 +115,15 @@ class Corrector:
 
     def bias_lsb(self, axis):
         """Return what is subtracted from that axis now, LSB."""
-        return (self.state[55 + axis] + self.state[61 + axis]) / 256
+        return (self.state[OUT_Q8 + axis] + self.state[EFFECT_Q8 + axis]) / 256
 
     def quality_lsb(self, axis):
         """Return the one-sigma uncertainty of that axis' bias, LSB."""
-        return self.state[70 + axis] / 256
+        return self.state[QUALITY_Q8 + axis] / 256
 
     def source(self, axis):
         """Return where that axis' bias comes from: a constant of bias.py."""
-        return self.state[73 + axis]
+        return self.state[SOURCE + axis]
 
     def explain(self):
         """Return a sentence or two on what is being learned, or why nothing is."""

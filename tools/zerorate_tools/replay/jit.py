@@ -7,11 +7,12 @@ import hashlib
 import importlib.util
 import sys
 import types
+from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 
 import numba
-import numpy as np
+from zerorate.corrector import EFFECT_Q8, OUT_Q8, QUALITY_Q8, SOURCE
 
 from zerorate_tools.runtimes.cache import cache_folder
 from zerorate_tools.viper_twins import hot_functions, kernel_files
@@ -73,7 +74,7 @@ def _imports(path: Path) -> set[str]:
 
 
 @lru_cache(maxsize=1)
-def compiled_run() -> object:
+def compiled_run() -> Callable[..., None]:
     """run(state, settings, samples, dt_us, bias_q8, source, quality_q8, verdict), compiled."""
     step = compiled_kernels().step.step
 
@@ -82,17 +83,8 @@ def compiled_run() -> object:
         for i in range(len(samples)):
             verdict[i] = step(state, settings, samples[i], dt_us[i])
             for axis in range(3):
-                bias_q8[i, axis] = state[55 + axis] + state[61 + axis]
-                quality_q8[i, axis] = state[70 + axis]
-                source[i, axis] = state[73 + axis]
+                bias_q8[i, axis] = state[OUT_Q8 + axis] + state[EFFECT_Q8 + axis]
+                quality_q8[i, axis] = state[QUALITY_Q8 + axis]
+                source[i, axis] = state[SOURCE + axis]
 
     return run
-
-
-def run(state: np.ndarray, settings: np.ndarray, samples: np.ndarray, dt_us: np.ndarray):
-    """Run the firmware over `samples` (n x 7 int32, corrected in place) from `state`."""
-    n = len(samples)
-    bias_q8, quality_q8 = np.empty((n, 3), np.int32), np.empty((n, 3), np.int32)
-    source, verdict = np.empty((n, 3), np.int8), np.empty(n, np.int8)
-    compiled_run()(state, settings, samples, dt_us, bias_q8, source, quality_q8, verdict)
-    return bias_q8, source, quality_q8, verdict

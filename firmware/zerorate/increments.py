@@ -1,0 +1,130 @@
+"""Samples gathered into nodes of a fixed time: one rotation and one specific force each.
+
+The ring keeps, a node and axis in one word, the increment (Q13 rad, 15 bits) above the mean force
+(Q12 g, 15 bits). What rounding leaves over stays for the next node, so no angle is lost in the sum.
+"""
+
+try:
+    from micropython import const
+except ImportError:
+
+    def const(value):
+        return value
+
+
+ptr32 = None
+
+
+_ELAPSED_US = const(0)
+_COUNT = const(1)
+_PHI = const(2)
+_FORCE = const(5)
+_HEAD = const(8)
+_FILLED = const(9)
+_NEW = const(10)
+_TURNED = const(19)
+_PULLED = const(51)
+_BIAS_Q24 = const(57)
+_FAST = const(64)
+_AGE = const(66)
+_CONING = const(222)
+_RING = const(240)
+
+_NODE_US = const(0)
+_GAIN = const(1)
+_GAIN_SHIFT = const(2)
+_SHIFT = const(3)
+_FORCE_GAIN = const(4)
+_NODES = const(8)
+
+_TWO_RAD_Q24 = const(0x1FFFFFF)
+_MOST = const(0x3FFF)
+_MOST_FORCE = const(0x7FFF)
+
+
+def within(value: int, most: int) -> int:
+    """Return value held within +-most."""
+    if value > most:
+        return most
+    if value < -most:
+        return -most
+    return value
+
+
+def coning(s: ptr32, j: int, k: int) -> int:
+    """Return half the cross product's component of turned angle and increment, Q24 rad."""
+    first = ((s[_PHI + j] + 0x200) >> 10) * ((s[_TURNED + k] + 0x100) >> 9)
+    return (first - ((s[_PHI + k] + 0x200) >> 10) * ((s[_TURNED + j] + 0x100) >> 9) + 32) >> 6
+
+
+def carried(s: ptr32, j: int, k: int) -> int:
+    """Return what turning back to the node's start adds to the force on an axis, Q12 g."""
+    first = ((s[_PHI + j] + 0x400) >> 11) * s[_PULLED + k]
+    return (first - ((s[_PHI + k] + 0x400) >> 11) * s[_PULLED + j] + 0x1000) >> 13
+
+
+def gather(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
+    """Add the frame `x` to the node; return 1 when the node is full, else 0."""
+    factor = (dt_us * c[_GAIN]) >> c[_GAIN_SHIFT]
+    i = 0
+    while i < 3:
+        s[_TURNED + i] = (x[4 + i] * factor + (1 << (c[_SHIFT] - 1))) >> c[_SHIFT]
+        s[_PULLED + i] = int(within((x[i] * c[_FORCE_GAIN] + 0x1000) >> 13, _MOST_FORCE))
+        i += 1
+    s[_CONING] = int(coning(s, 1, 2))
+    s[_CONING + 1] = int(coning(s, 2, 0))
+    s[_CONING + 2] = int(coning(s, 0, 1))
+    s[_FORCE] += s[_PULLED] + int(carried(s, 1, 2))
+    s[_FORCE + 1] += s[_PULLED + 1] + int(carried(s, 2, 0))
+    s[_FORCE + 2] += s[_PULLED + 2] + int(carried(s, 0, 1))
+    i = 0
+    while i < 3:
+        factor = s[_PHI + i] + s[_TURNED + i] + s[_CONING + i]
+        s[_PHI + i] = int(within(factor, _TWO_RAD_Q24))
+        if s[_PHI + i] != factor:
+            s[_FAST] = c[_NODES]
+        i += 1
+    s[_COUNT] += 1
+    s[_ELAPSED_US] += dt_us
+    if s[_ELAPSED_US] < c[_NODE_US]:
+        return 0
+    return 1
+
+
+def close(s: ptr32, c: ptr32):
+    """Write the full node to the ring and begin the next one.
+
+    The node's last sample reaches over its end: the bias' share of that belongs to the next node.
+    """
+    over = s[_ELAPSED_US] - c[_NODE_US]
+    a = _RING + 3 * s[_HEAD]
+    i = 0
+    while i < 3:
+        share = ((s[_BIAS_Q24 + i] >> 8) * ((over << 10) // c[_NODE_US])) >> 2
+        angle = (s[_PHI + i] - share + 0x400) >> 11
+        angle = int(within(angle, _MOST))
+        s[_PHI + i] = s[_PHI + i] - (angle << 11)
+        angle = angle << 15
+        share = int(within(s[_FORCE + i] // s[_COUNT], _MOST))
+        s[a + i] = angle + (share & 0x7FFF)
+        s[_FORCE + i] = 0
+        i += 1
+    s[_COUNT] = 0
+    s[_ELAPSED_US] = over
+    s[_HEAD] += 1
+    if s[_HEAD] >= c[_NODES]:
+        s[_HEAD] = 0
+    if s[_FILLED] < c[_NODES]:
+        s[_FILLED] += 1
+    s[_NEW] += 1
+    s[_AGE] += 1
+    if s[_FAST] > 0:
+        s[_FAST] -= 1
+
+
+def restart(s: ptr32):
+    """Forget the node and the window, after a gap in time or a bad reading."""
+    i = 0
+    while i < _NEW + 1:
+        s[i] = 0
+        i += 1

@@ -1,0 +1,135 @@
+"""Numbers of 27 significant bits in two words of the state: mantissa, exponent.
+
+The least squares of a window span more orders of magnitude than 31 bits, and a float is a heap
+object on a board. A number at word `a` is s[a] * 2^s[a+1]; |s[a]| is in 2^27..2^28, or 0.
+"""
+
+try:
+    from micropython import const
+except ImportError:
+
+    def const(value):
+        return value
+
+
+ptr32 = None
+
+
+_LOW = const(0x3FFF)
+_LEAST = const(0x8000000)
+_MOST = const(0x10000000)
+_NOTHING = const(-4096)
+
+
+def put(s: ptr32, d: int, m: int, e: int):
+    """Store m * 2^e at word d."""
+    if m == 0:
+        s[d] = 0
+        s[d + 1] = _NOTHING
+        return
+    while m < 0x80000 and m >= -0x80000:
+        m = m << 8
+        e -= 8
+    while m < _LEAST and m >= -_LEAST:
+        m = m << 1
+        e -= 1
+    while m >= _MOST or m < -_MOST:
+        m = m >> 1
+        e += 1
+    s[d] = m
+    s[d + 1] = e
+
+
+def copy(s: ptr32, d: int, a: int, words: int):
+    """Copy words from a to d."""
+    while words > 0:
+        words -= 1
+        s[d + words] = s[a + words]
+
+
+def multiply(s: ptr32, d: int, a: int, b: int):
+    """Store the product of the numbers at a and b at d."""
+    m = s[a]
+    n = s[b]
+    middle = (m & _LOW) * (n >> 14) + (m >> 14) * (n & _LOW)
+    middle += ((m & _LOW) * (n & _LOW)) >> 14
+    put(s, d, (m >> 14) * (n >> 14) + (middle >> 14), s[a + 1] + s[b + 1] + 28)
+
+
+def add(s: ptr32, d: int, a: int, b: int):
+    """Store the sum of the numbers at a and b at d."""
+    m = s[a]
+    n = s[b]
+    e = s[a + 1]
+    shift = e - s[b + 1]
+    if shift < 0:
+        e = s[b + 1]
+        shift = m
+        m = n
+        n = shift
+        shift = e - s[a + 1]
+    if shift > 28:
+        n = 0
+    else:
+        n = n >> shift
+    put(s, d, m + n, e)
+
+
+def subtract(s: ptr32, d: int, a: int, b: int):
+    """Store the number at a less the one at b at d; d is not a."""
+    put(s, d, -s[b], s[b + 1])
+    add(s, d, a, d)
+
+
+def divide(s: ptr32, d: int, a: int, b: int):
+    """Store a / b at d; 0 where b is 0."""
+    m = s[a]
+    n = s[b]
+    q = 0
+    if n < 0:
+        m = -m
+        n = -n
+    sign = 1
+    if m < 0:
+        m = -m
+        sign = -1
+    i = 0
+    while i < 28 and n > 0:
+        q = q << 1
+        if m >= n:
+            m -= n
+            q += 1
+        m = m << 1
+        i += 1
+    put(s, d, sign * q, s[a + 1] - s[b + 1] - 27)
+
+
+def whole(s: ptr32, a: int, shift: int) -> int:
+    """Return the number at a times 2^shift as an integer, held within +-(2^29 - 1)."""
+    m = s[a]
+    shift += s[a + 1]
+    if shift > 1 and m != 0:
+        m = 0x1FFFFFFF if m > 0 else -0x1FFFFFFF
+    elif shift >= 0:
+        m = m << shift
+    elif shift > -30:
+        m = (m + (1 << (-shift - 1))) >> -shift
+    else:
+        m = 0
+    return m
+
+
+def root_of(s: ptr32, d: int, a: int):
+    """Store the square root of the number at a, not negative, at d, to 14 bits."""
+    m = s[a]
+    e = s[a + 1]
+    if e & 1:
+        m = m >> 1
+        e += 1
+    bit = 1 << 14
+    found = 0
+    while bit:
+        if (found + bit) * (found + bit) <= m:
+            found += bit
+        bit = bit >> 1
+    put(s, d, found, e >> 1)

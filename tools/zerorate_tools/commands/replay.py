@@ -1,0 +1,79 @@
+"""`zerorate replay`: the firmware over a recording."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+
+def add_parser(subparsers) -> None:
+    """Register the sub-command."""
+    parser = subparsers.add_parser(
+        "replay",
+        help="run the firmware over a recording",
+        description="Run the firmware over a recording, learning as it goes, and write per sample "
+        "the bias, its source and its quality.",
+    )
+    parser.add_argument("log", type=Path, metavar="LOG")
+    parser.add_argument("--out", type=Path, required=True, metavar="FILE", help="a .parquet")
+    parser.add_argument(
+        "--runtime",
+        default="numba",
+        metavar="NAME",
+        help="numba (default), cpython, wasm, x86, armhf, or the path of a MicroPython",
+    )
+    parser.add_argument("--state", type=Path, metavar="FILE", help="write the final state's bytes")
+    parser.add_argument("--from-state", type=Path, metavar="FILE", help="start from it")
+    parser.add_argument(
+        "--resume", action="store_true", help="with --from-state: the same power-on goes on"
+    )
+    parser.add_argument(
+        "--document", action="store_true", help="the literal rules of the patent document"
+    )
+    parser.add_argument("--every", action="store_true", help="learn every reading, moving or still")
+    parser.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        type=_setting,
+        metavar="NAME=VALUE",
+        help="a setting of the firmware, for example step_degc=2",
+    )
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Replay and print what it did."""
+    from ..progress import progress
+    from ..recordings import open_recording
+    from ..replay import replay
+
+    options: dict[str, object] = dict(arguments.set)
+    options.update(document=arguments.document, every=arguments.every)
+    total = open_recording(arguments.log).n_samples
+    with progress(f"replaying {arguments.log.name}", total) as advance:
+        done = replay(
+            arguments.log,
+            arguments.out,
+            runtime=arguments.runtime,
+            state=arguments.state,
+            from_state=arguments.from_state,
+            resume=arguments.resume,
+            options=options,
+            advance=advance,
+        )
+    print(f"{arguments.out}: {done.samples} samples")
+    print("  verdicts:", _shares(done.verdicts, done.samples))
+    print("  source of the bias:", _shares(done.sources, done.samples))
+    for line in done.explanation.splitlines():
+        print(" ", line)
+
+
+def _shares(counts: dict[str, int], total: int) -> str:
+    return ", ".join(f"{name} {number} ({number / total:.1%})" for name, number in counts.items())
+
+
+def _setting(text: str) -> tuple[str, float]:
+    name, _, value = text.partition("=")
+    number = float(value)
+    return name, int(number) if name in ("bins", "short", "long") else number

@@ -1,0 +1,160 @@
+"""Who runs the firmware over a recording: Numba, CPython, or a MicroPython."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+import tempfile
+from abc import ABC, abstractmethod
+from array import array
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from zerorate import Corrector
+from zerorate.corrector import EFFECT_Q8, OUT_Q8, QUALITY_Q8, SOURCE
+
+from ..errors import ZerorateError
+from .samples import Frames
+
+_OUTPUT = np.dtype([("verdict", "<i4"), ("bias", "<i4", 3), ("source", "<i4", 3), ("q", "<i4", 3)])
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What the firmware made of a batch, each (n, 3) but `verdict` (n,): see guard.py, bias.py.
+
+    bias_q8: what is subtracted from the sample, LSB in Q8; quality_q8: one sigma, LSB in Q8.
+    """
+
+    t_us: NDArray[np.int64]
+    frames: NDArray[np.int32]
+    bias_q8: NDArray[np.int32]
+    source: NDArray[np.int8]
+    quality_q8: NDArray[np.int32]
+    verdict: NDArray[np.int8]
+
+
+class Engine(ABC):
+    """Runs batches of frames from `corrector`'s state on, which it leaves as the firmware did."""
+
+    @abstractmethod
+    def run(self, corrector: Corrector, batches: Iterable[Frames]) -> Iterator[Outcome]:
+        """Yield an Outcome for each batch; the corrector's state is final when it is exhausted."""
+
+
+def engine(name: str) -> Engine:
+    """The engine of that name: numba, cpython, wasm, x86, armhf, or a MicroPython executable.
+
+    Raises MissingRuntime.
+    """
+    if name == "numba":
+        return NumbaEngine()
+    if name == "cpython":
+        return CPythonEngine()
+    from ..runtimes import find
+
+    return InterpreterEngine(find(name))
+
+
+class NumbaEngine(Engine):
+    """The kernels compiled to machine code, in this process; CPython where Numba is absent."""
+
+    def run(self, corrector: Corrector, batches: Iterable[Frames]) -> Iterator[Outcome]:
+        try:
+            from .jit import compiled_run
+        except ImportError:
+            print("zerorate: no Numba here, the replay runs on plain CPython", file=sys.stderr)
+            yield from CPythonEngine().run(corrector, batches)
+            return
+        run = compiled_run()
+        state = np.frombuffer(corrector.state, np.int32)
+        settings = np.array(corrector.settings, np.int32)
+        for batch in batches:
+            n = len(batch)
+            bias, quality = np.empty((n, 3), np.int32), np.empty((n, 3), np.int32)
+            source, verdict = np.empty((n, 3), np.int8), np.empty(n, np.int8)
+            run(state, settings, batch.frames, batch.dt_us, bias, source, quality, verdict)
+            yield Outcome(batch.t_us, batch.frames, bias, source, quality, verdict)
+
+
+class CPythonEngine(Engine):
+    """The firmware as it stands, in this process."""
+
+    def run(self, corrector: Corrector, batches: Iterable[Frames]) -> Iterator[Outcome]:
+        for batch in batches:
+            rows = np.empty(len(batch), _OUTPUT)
+            frame = array("i", [0] * 7)
+            for i in range(len(batch)):
+                frame[:] = array("i", batch.frames[i].tolist())
+                rows[i] = self._one(corrector, frame, int(batch.dt_us[i]))
+                batch.frames[i] = frame
+            yield _outcome(batch, rows)
+
+    @staticmethod
+    def _one(corrector: Corrector, frame: array, dt_us: int) -> tuple:
+        verdict = corrector.update(frame, dt_us)
+        s = corrector.state
+        bias = [s[OUT_Q8 + axis] + s[EFFECT_Q8 + axis] for axis in range(3)]
+        return verdict, bias, s[SOURCE : SOURCE + 3], s[QUALITY_Q8 : QUALITY_Q8 + 3]
+
+
+class InterpreterEngine(Engine):
+    """The firmware on a MicroPython of its own; the recording goes in and out through files."""
+
+    def __init__(self, runtime) -> None:
+        self._runtime = runtime
+
+    def run(self, corrector: Corrector, batches: Iterable[Frames]) -> Iterator[Outcome]:
+        with tempfile.TemporaryDirectory(prefix="zerorate-replay-") as scratch:
+            kept, recording = [], Path(scratch) / "frames.bin"
+            with recording.open("wb") as file:
+                for batch in batches:
+                    kept.append(batch)
+                    file.write(np.c_[batch.dt_us, batch.frames].astype("<i4").tobytes())
+            result = self._runtime.run(
+                Path(__file__).with_name("on_interpreter.py"),
+                modules=[staged_packages(Path(scratch), ("zerorate",))],
+                files_in={
+                    "frames.bin": recording,
+                    "settings.bin": corrector.settings.tobytes(),
+                    "state.bin": corrector.state.tobytes(),
+                },
+                files_out=["state.bin", "out.bin"],
+                heap=4 << 20,
+                check=True,
+            )
+        yield from self._outcomes(corrector, kept, result.files)
+
+    def _outcomes(
+        self, corrector: Corrector, kept: list[Frames], files: dict[str, bytes]
+    ) -> Iterator[Outcome]:
+        rows = np.frombuffer(files["out.bin"], np.dtype([("o", _OUTPUT), ("x", "<i4", 7)]))
+        if len(rows) != sum(map(len, kept)):
+            raise ZerorateError(f"{self._runtime.name} lost samples of the replay")
+        corrector.state[:] = array("i", files["state.bin"])
+        start = 0
+        for batch in kept:
+            part = rows[start : start + len(batch)]
+            batch.frames[:] = part["x"]
+            start += len(batch)
+            yield _outcome(batch, part["o"])
+
+
+def _outcome(batch: Frames, rows: NDArray) -> Outcome:
+    source, verdict = rows["source"].astype(np.int8), rows["verdict"].astype(np.int8)
+    return Outcome(batch.t_us, batch.frames, rows["bias"], source, rows["q"], verdict)
+
+
+def staged_packages(folder: Path, names: tuple[str, ...]) -> Path:
+    """Copy installed packages into `folder`/board, which a MicroPython then has on its path."""
+    for name in names:
+        spec = find_spec(name)
+        if spec is None or spec.origin is None:
+            raise ZerorateError(f"the package {name} is not installed beside zerorate_tools")
+        ignored = shutil.ignore_patterns("__pycache__")
+        shutil.copytree(Path(spec.origin).parent, folder / "board" / name, ignore=ignored)
+    return folder / "board"

@@ -1,0 +1,125 @@
+"""`replay`: a recording through the firmware, on any interpreter, in bounded memory."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Callable
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+from zerorate import Corrector
+
+from ..errors import InFile, ZerorateError
+from ..recordings import Recording, open_recording
+from ..recordings.atomic import written_beside
+from ..recordings.reading import OpenRecording
+from .engines import Outcome, engine
+from .samples import frames_in_batches, sensor_of
+from .writing import SOURCES, VERDICTS, ReplayWriter, table
+
+
+@dataclass
+class Replay:
+    """What a replay did.
+
+    state: the final state's bytes (int32, little-endian); verdicts, sources: samples of each kind;
+    explanation: the firmware's own words at the end; frame: the table, unless it went to a file.
+    """
+
+    samples: int = 0
+    state: bytes = b""
+    verdicts: dict[str, int] = field(default_factory=dict)
+    sources: dict[str, int] = field(default_factory=dict)
+    explanation: str = ""
+    table: pa.Table | None = None
+
+    def count(self, outcome: Outcome) -> None:
+        """Add a batch to the counts."""
+        self.samples += len(outcome.t_us)
+        _count(self.verdicts, VERDICTS, outcome.verdict)
+        _count(self.sources, SOURCES, outcome.source.min(axis=1))
+
+
+def replay(
+    log: str | PathLike[str] | Recording,
+    out: str | PathLike[str] | None = None,
+    *,
+    runtime: str = "numba",
+    state: str | PathLike[str] | None = None,
+    from_state: str | PathLike[str] | None = None,
+    resume: bool = False,
+    options: dict[str, object] | None = None,
+    advance: Callable[[float], None] = lambda n: None,
+) -> Replay:
+    """Run the firmware over `log` and return what it did.
+
+    log: a recording or its path; out: the Parquet to write, None for a table in memory;
+    runtime: numba, cpython, wasm, x86, armhf or the path of a MicroPython; state: file for the
+    final state's bytes; from_state: file to start from, as a new power-on, or, with resume, as if
+    the two recordings were one; options: keywords of zerorate.Corrector; advance: called with the
+    number of samples done. Raises ZerorateError (BadRecording, MissingRuntime, ...).
+    """
+    recording = log if isinstance(log, Recording) else open_recording(log)
+    corrector = corrector_for(recording, options or {})
+    if from_state is not None:
+        load_state(corrector, Path(from_state), resume)
+    outcomes = engine(runtime).run(corrector, frames_in_batches(recording))
+    done = Replay()
+    with ExitStack() as files:
+        sink = _sink(done, out, files)
+        for outcome in outcomes:
+            done.count(outcome)
+            sink(outcome)
+            advance(len(outcome.t_us))
+        done.state = np.asarray(corrector.state, "<i4").tobytes()
+        if state is not None:
+            files.enter_context(written_beside(state)).write_bytes(done.state)
+    done.explanation = corrector.explain()
+    return done
+
+
+def corrector_for(recording: OpenRecording | Recording, options: dict[str, object]) -> Corrector:
+    """The firmware's object for a recording's sensor. Raises ZerorateError for bad options."""
+    try:
+        return Corrector(sensor_of(recording.scales), **options)
+    except (TypeError, ValueError) as error:
+        raise ZerorateError(f"{recording.name}: {error}") from error
+
+
+def load_state(corrector: Corrector, path: Path, resume: bool) -> None:
+    """Put a state file into the corrector. Raises InFile."""
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise InFile(path, str(error.strerror), do="name a file that --state wrote") from error
+    wanted = len(corrector.state) * 4
+    if len(content) != wanted:
+        problem = f"{len(content)} bytes where a state with these settings has {wanted}"
+        raise InFile(path, problem, do="use the settings it was written with")
+    corrector.state[:] = array("i", np.frombuffer(content, "<i4").tolist())
+    if not resume:
+        corrector.power_on()
+
+
+def _sink(done: Replay, out, files: ExitStack) -> Callable[[Outcome], None]:
+    if out is not None:
+        writer = ReplayWriter(files.enter_context(written_beside(out)))
+        files.callback(writer.close)
+        return writer.write
+    parts: list[pa.Table] = []
+
+    def keep(outcome: Outcome) -> None:
+        parts.append(table(outcome))
+
+    files.callback(lambda: setattr(done, "table", pa.concat_tables(parts) if parts else None))
+    return keep
+
+
+def _count(counts: dict[str, int], names: tuple[str, ...], codes: np.ndarray) -> None:
+    for code, number in enumerate(np.bincount(codes.astype(np.int64), minlength=len(names))):
+        if number:
+            counts[names[code]] = counts.get(names[code], 0) + int(number)

@@ -1,0 +1,67 @@
+"""A recording's columns as the frames that the firmware reads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from zerorate import Sensor
+
+from ..recordings import Recording, Scales
+from ..recordings.reading import OpenRecording
+
+FRAME = ("ax", "ay", "az", "temp", "gx", "gy", "gz")
+_MOST_US = 1 << 29
+
+
+@dataclass(frozen=True)
+class Frames:
+    """Samples as the board sees them.
+
+    t_us: (n,) int64; frames: (n, 7) int32 in the order of FRAME, 0 for an absent channel;
+    dt_us: (n,) int32 since the sample before, the nominal period for the very first.
+    """
+
+    t_us: NDArray[np.int64]
+    frames: NDArray[np.int32]
+    dt_us: NDArray[np.int32]
+
+    def __len__(self) -> int:
+        return len(self.t_us)
+
+
+def sensor_of(scales: Scales) -> Sensor:
+    """The firmware's Sensor for a recording's scales; absent channels have scale 0."""
+    return Sensor(
+        odr_hz=scales.odr_hz,
+        gyro_lsb_per_dps=scales.gyro_lsb_per_dps,
+        accel_lsb_per_g=scales.accel_lsb_per_g or 0.0,
+        temp_lsb_per_degc=scales.temp_lsb_per_degc or 0.0,
+        temp_offset_degc=scales.temp_offset_degc or 0.0,
+    )
+
+
+def frames_in_batches(recording: OpenRecording | Recording, rows: int = 65536) -> Iterator[Frames]:
+    """Yield a recording as Frames of at most `rows` samples each."""
+    before = None
+    for columns in _batches(recording, rows):
+        t_us = np.asarray(columns["t_us"], np.int64)
+        if before is None:
+            before = int(t_us[0] - round(1e6 / recording.scales.odr_hz))
+        steps = np.diff(t_us, prepend=before)
+        before = int(t_us[-1])
+        frames = np.zeros((len(t_us), 7), np.int32)
+        for i, name in enumerate(FRAME):
+            if name in columns:
+                frames[:, i] = columns[name]
+        yield Frames(t_us, frames, np.clip(steps, -_MOST_US, _MOST_US).astype(np.int32))
+
+
+def _batches(recording: OpenRecording | Recording, rows: int) -> Iterator[dict]:
+    if isinstance(recording, OpenRecording):
+        yield from recording.batches(rows)
+        return
+    for start in range(0, len(recording.columns["t_us"]), rows):
+        yield {name: values[start : start + rows] for name, values in recording.columns.items()}

@@ -1,0 +1,65 @@
+"""The replay's Parquet: per sample the bias, its source and its quality (design.md)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from .engines import Outcome
+
+SOURCES = ("none", "any-temperature", "fit", "this-temperature", "in-motion", "accelerometer")
+VERDICTS = (
+    "good",
+    "repeat",
+    "rail",
+    "all-zero",
+    "all-ones",
+    "temperature-jump",
+    "time-stood-still",
+    "time-leapt",
+)
+_AXES = "xyz"
+
+
+def table(outcome: Outcome) -> pa.Table:
+    """One batch as a table.
+
+    `source` is the least trusted of the three axes' and `quality_lsb` the worst; `quality_g?` are
+    each axis' own.
+    """
+    columns: dict[str, pa.Array] = {"t_us": pa.array(outcome.t_us)}
+    for i, axis in enumerate(_AXES):
+        columns[f"bias_g{axis}"] = pa.array(outcome.bias_q8[:, i] / 256.0)
+    columns["source"] = _named(outcome.source.min(axis=1), SOURCES)
+    quality = outcome.quality_q8 / np.float32(256.0)
+    columns["quality_lsb"] = pa.array(quality.max(axis=1))
+    for i, axis in enumerate(_AXES):
+        columns[f"quality_g{axis}"] = pa.array(quality[:, i])
+    columns["verdict"] = _named(outcome.verdict, VERDICTS)
+    return pa.table(columns)
+
+
+def _named(codes: np.ndarray, names: tuple[str, ...]) -> pa.Array:
+    return pa.DictionaryArray.from_arrays(codes.astype(np.int8), list(names))
+
+
+class ReplayWriter:
+    """Writes batches to one Parquet file as they come."""
+
+    def __init__(self, path: Path) -> None:
+        self._path, self._writer = path, None
+
+    def write(self, outcome: Outcome) -> None:
+        """Append a batch."""
+        batch = table(outcome)
+        if self._writer is None:
+            self._writer = pq.ParquetWriter(self._path, batch.schema, compression="zstd")
+        self._writer.write_table(batch)
+
+    def close(self) -> None:
+        """Finish the file."""
+        if self._writer is not None:
+            self._writer.close()
