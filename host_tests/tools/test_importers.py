@@ -157,7 +157,9 @@ def test_a_column_that_is_not_there_and_a_gap_in_a_channel_are_named(tmp_path):
                    load=[1, np.nan])  # fmt: skip
     with pytest.raises(BadRecording, match="no column 'weight'; choose of t_s, gx_dps"):
         read_foreign(source, mapping=[parsed_mapping("load=weight")])
-    with pytest.raises(BadRecording, match="row 2: load is no number; fill the gaps"):
+    with pytest.raises(
+        BadRecording, match="row 2: load is nan, no integer of 32 bits; fill the gaps"
+    ):
         read_foreign(source, mapping=[parsed_mapping("load=load")])
 
 

@@ -3,7 +3,7 @@
 from .conversion import Options, Report
 from .importing import import_recording, read_foreign
 from .layouts.hipnuc_bins import read_bins
-from .table import Mapped, parsed_mapping
+from .mapping import Mapped, parsed_mapping
 
 __all__ = [
     "Mapped",

@@ -70,7 +70,7 @@ def converted(foreign: Foreign, options: Options, path: Path) -> tuple[Recording
     for name, values in columns.items():
         if name != "t_us":
             columns[name] = _clipped(name, values, report)
-    recording = recording_from_columns({**columns, **foreign.extra}, scales, path.name)
+    recording = recording_from_columns({**columns, **_extra(foreign, path)}, scales, path.name)
     report.rows_written, report.dropped = len(t_us), foreign.dropped
     report.notes = [*foreign.notes, *_absent(foreign)]
     return recording, report
@@ -94,9 +94,8 @@ def _stamps_us(foreign: Foreign, options: Options, path: Path) -> np.ndarray:
     hz = options.hz or foreign.odr_hz
     if not hz:
         raise BadRecording(path, "the source has no time stamps", do=foreign.hint_hz)
-    index = foreign.index if foreign.index is not None else np.arange(len(foreign.gyro))
     foreign.notes.append(f"no time stamps in the source: counted at {hz:g} Hz")
-    return np.rint(index * (1e6 / hz)).astype(np.int64)
+    return np.rint(foreign.index * (1e6 / hz)).astype(np.int64)
 
 
 def _scales(foreign: Foreign, options: Options, path: Path, t_us: np.ndarray) -> Scales:
@@ -154,6 +153,19 @@ def _temp_counts(temp: np.ndarray, foreign: Foreign, scales: Scales) -> np.ndarr
     assert scales.temp_lsb_per_degc is not None and scales.temp_offset_degc is not None
     raw = (temp - scales.temp_offset_degc) * scales.temp_lsb_per_degc
     return np.rint(raw / foreign.temp_step_lsb) * foreign.temp_step_lsb
+
+
+def _extra(foreign: Foreign, path: Path) -> dict[str, np.ndarray]:
+    for name, values in foreign.extra.items():
+        bad = np.logical_not(np.abs(values) < 2**31)
+        if bad.any():
+            at = int(np.argmax(bad))
+            do = f"fill the gaps or leave {name} out"
+            if np.isfinite(values[at]):
+                do = f"scale it down: --map {name}=COLUMN:x0.001"
+            problem = f"{name} is {values[at]:g}, no integer of 32 bits"
+            raise BadRecording(path, problem, row=int(foreign.index[at]) + 1, do=do)
+    return {name: np.rint(values) for name, values in foreign.extra.items()}
 
 
 def _clipped(name: str, values: np.ndarray, report: Report) -> np.ndarray:

@@ -11,7 +11,8 @@ from ..recordings import Recording, write_recording
 from ..recordings.reading import recording_name
 from . import layouts
 from .conversion import Options, Report, converted
-from .table import Mapped, foreign_from_table, read_table
+from .mapping import Mapped, foreign_from_table
+from .table import read_table
 
 
 def import_recording(

@@ -20,8 +20,18 @@ def load_matlab(path: Path) -> dict[str, Any]:
     except NotImplementedError as error:
         do = "save it in MATLAB with -v7"
         raise BadRecording(path, "a .mat of version 7.3 (HDF5)", do=do) from error
-    except (ValueError, TypeError, OSError, EOFError, scipy.io.matlab.MatReadError) as error:
+    except Exception as error:  # SciPy raises whatever its parser stumbles over
         raise BadRecording(path, "no .mat file, or cut off", do="copy the file again") from error
+
+
+def variable_names(path: Path) -> set[str]:
+    """Names of a .mat's variables; none where it cannot be read."""
+    import scipy.io
+
+    try:
+        return {name for name, *_ in scipy.io.whosmat(path)}
+    except Exception:  # SciPy raises whatever its parser stumbles over
+        return set()
 
 
 def read_matlab(path: Path) -> dict[str, np.ndarray]:

@@ -10,12 +10,14 @@ import numpy as np
 
 from ..errors import BadDescription
 from ..recordings import Recording, Scales, recording_from_columns
-from . import noise
-from .description import Description, Sensor, Table, axes, load_description
+from .description import load_description
 from .effects import RATE_EFFECTS, lagged
+from .entries import axes
 from .randomness import stream
 from .scaling import coefficients, waveform
+from .schema import Description, Sensor, Table
 from .world import World, build
+from .zero_rate import averaging, white_dps, zero_rate_dps
 
 
 @dataclass
@@ -83,7 +85,7 @@ def _sessions(described: Description, numbers, seed: int | None):
 
 def _measured(described: Description, world: World, effects: list, seed: int):
     sensor, number = described.sensor, world.number
-    zero_rate = _zero_rate_dps(described, world, seed)
+    zero_rate = zero_rate_dps(described, world, seed)
     late = world.rate_dps.copy()
     for effect, per_unit in effects:
         added = waveform(world, effect, described.path) * per_unit
@@ -92,7 +94,7 @@ def _measured(described: Description, world: World, effects: list, seed: int):
         else:
             zero_rate += added
     t_us, late = _timed(described, world, late, seed)
-    readings = late + zero_rate + _white(described, world, seed)
+    readings = late + zero_rate + white_dps(described, world, seed)
     columns = {"t_us": t_us, **_counts("g", readings * sensor.gyro_lsb_per_dps)}
     columns |= _surroundings(sensor, world, stream(seed, number, "accelerometer"))
     columns |= _channel_columns(world, seed)
@@ -108,62 +110,6 @@ def _measured(described: Description, world: World, effects: list, seed: int):
         effects_dps=[per_unit for _, per_unit in effects],
     )
     return recording, truth
-
-
-def _zero_rate_dps(described: Description, world: World, seed: int) -> np.ndarray:
-    bias, path = described.bias, described.path
-    warm = world.temp_degc[:, None] - 25
-    b = [axes(getattr(bias, f"b{i}"), f"bias.b{i}", path) for i in range(4)]
-    total = b[0] + warm * (b[1] + warm * (b[2] + warm * b[3]))
-    turn_on = axes(bias.turn_on_dps, "bias.turn_on_dps", path)
-    total += turn_on * stream(seed, world.number, "turn-on").standard_normal(3)
-    return total + _coloured(described, world, seed)
-
-
-def _coloured(described: Description, world: World, seed: int) -> np.ndarray:
-    n, dt_s, given = len(world.t_s), world.dt_s, described.noise
-    louder = described.sessions[world.number - 1].noise_scale
-    total = np.zeros((n, 3))
-
-    def size(key: str) -> np.ndarray:
-        return louder * axes(getattr(given, key), f"noise.{key}", described.path)
-
-    def rng(purpose: str) -> np.random.Generator:
-        return stream(seed, world.number, purpose)
-
-    if size("bias_instability_dps").any():
-        total += noise.flicker(rng("flicker"), n, dt_s, size("bias_instability_dps"))
-    if size("random_walk_dps").any():
-        total += noise.random_walk(rng("walk"), n, dt_s, size("random_walk_dps"))
-    if size("telegraph_dps").any():
-        jumps = size("telegraph_dps")
-        total += noise.telegraph(rng("telegraph"), n, dt_s, jumps, given.telegraph_mean_s)
-    if size("coloured_dps").any():
-        rms = size("coloured_dps")
-        total += noise.power_law(rng("coloured"), n, dt_s, rms, given.coloured_exponent)
-    return total
-
-
-def _white(described: Description, world: World, seed: int) -> np.ndarray:
-    sensor, given, n = described.sensor, described.noise, len(world.t_s)
-    louder = described.sessions[world.number - 1].noise_scale
-    rng = stream(seed, world.number, "white")
-    white = rng.standard_normal((n, 3)) * (_white_rms_dps(sensor) * louder)
-    if given.outlier_dps and given.outlier_per_hour:
-        far = stream(seed, world.number, "outliers")
-        white += noise.outliers(far, n, world.dt_s, given.outlier_dps, given.outlier_per_hour)
-    return white
-
-
-def _white_rms_dps(sensor: Sensor) -> float:
-    if sensor.gyro_noise_dps_rt_hz is not None:
-        return sensor.gyro_noise_dps_rt_hz * np.sqrt(sensor.odr_hz / 2)
-    return sensor.gyro_noise_dps * _averaging(sensor)
-
-
-def _averaging(sensor: Sensor) -> float:
-    # below the rate at which noise was given, a reading is the mean of a block
-    return np.sqrt(sensor.odr_hz / (sensor.gyro_noise_at_hz or sensor.odr_hz))
 
 
 def _timed(described: Description, world: World, rate_dps: np.ndarray, seed: int):
@@ -186,7 +132,7 @@ def _counts(letter: str, values_lsb: np.ndarray) -> dict[str, np.ndarray]:
 
 
 def _surroundings(sensor: Sensor, world: World, rng: np.random.Generator) -> dict[str, np.ndarray]:
-    n, quieter = len(world.t_s), _averaging(sensor)
+    n, quieter = len(world.t_s), averaging(sensor)
     columns: dict[str, np.ndarray] = {}
     if sensor.accel:
         shaken = rng.standard_normal((n, 3)) * (sensor.accel_noise_g * quieter)

@@ -9,7 +9,7 @@ import numpy as np
 
 _EDGE_S = 1.0
 _G_MPS2 = 9.80665
-_FACES = {s + n: np.eye(3)[i] * f for i, n in enumerate("xyz") for s, f in (("+", 1), ("-", -1))}
+FACES = {s + n: np.eye(3)[i] * f for i, n in enumerate("xyz") for s, f in (("+", 1), ("-", -1))}
 _AXES = {name: np.eye(3)[i] for i, name in enumerate("xyz")}
 
 
@@ -102,7 +102,7 @@ def car(start: Start, *, dps: float = 2.0, mps: float = 12.0, rough_g: float = 0
 
 def pose(start: Start, *, face: str = "+z") -> Bout:
     """Turned over until this face (+x -x +y -y +z -z) is up."""
-    target = _FACES[face]
+    target = FACES[face]
     axis = np.cross(target, start.up)
     if np.linalg.norm(axis) < 1e-6:
         axis = np.cross(np.roll(np.abs(target), 1), start.up)
@@ -130,7 +130,7 @@ def body_axis(axis: object, start: Start) -> np.ndarray:
 
 def face_up(face: str) -> np.ndarray:
     """(3,) body direction of a face name such as +z."""
-    return _FACES[face]
+    return FACES[face]
 
 
 def _level(start: Start) -> np.ndarray:

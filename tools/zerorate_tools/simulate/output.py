@@ -13,8 +13,9 @@ import pyarrow.parquet as pq
 
 from ..recordings import write_recording
 from ..recordings.atomic import written_beside
-from .description import Description, Table, load_description
+from .description import load_description
 from .device import Truth, simulate, simulate_sessions
+from .schema import Description, Table
 
 _QUATERNION = ("qw", "qx", "qy", "qz")
 

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from ..errors import BadDescription
-from .description import Description, axes
 from .effects import EFFECTS, RATE_EFFECTS
+from .entries import axes
 from .randomness import stream
+from .schema import Description
 from .world import World
 
 _ALWAYS = ("kind", "dps", "rms_dps", "beyond_temperature", "session")

@@ -11,10 +11,10 @@ import numpy as np
 from ..errors import BadDescription
 from .attitude import facing, integrate, into_body, multiply, rotation
 from .channels import CHANNELS, Channel, Clock
-from .description import Description, Session
 from .motion import MOTIONS, Start, face_up
 from .paths import durations, path, seconds
 from .randomness import stream
+from .schema import Description, Session
 
 _EARTH_DPS = 360 / 86164.0905
 UP = np.array([0.0, 0.0, 1.0])

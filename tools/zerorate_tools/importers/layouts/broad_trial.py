@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ..foreign import Foreign
-from ..matlab import load_matlab
+from ..matlab import load_matlab, variable_names
 from ..units import RATE_DPS
 
 _RAD_S_PER_LSB = 0.001065297
@@ -23,13 +23,8 @@ def recognises(path: Path) -> bool:
     """By its variables."""
     if path.suffix.lower() != ".mat":
         return False
-    import scipy.io
-
-    try:
-        names = {name for name, *_ in scipy.io.whosmat(path)}
-    except (ValueError, NotImplementedError, OSError, TypeError):
-        return False
-    return {"imu_gyr", "imu_acc", "opt_quat", "movement", "sampling_rate"} <= names
+    needed = {"imu_gyr", "imu_acc", "opt_quat", "movement", "sampling_rate"}
+    return needed <= variable_names(path)
 
 
 def read(path: Path) -> Foreign:
@@ -37,8 +32,8 @@ def read(path: Path) -> Foreign:
     trial = load_matlab(path)
     seen = np.isfinite(trial["opt_quat"]).all(axis=1, keepdims=True)
     optical = np.where(seen, trial["opt_quat"], 0.0) / _QUATERNION_LSB
-    extra = {f"opt_q{n}": np.rint(optical[:, i]).astype(np.int64) for i, n in enumerate("wxyz")}
-    extra["moving"] = trial["movement"].ravel().astype(np.int64)
+    extra = {f"opt_q{n}": optical[:, i] for i, n in enumerate("wxyz")}
+    extra["moving"] = trial["movement"].ravel().astype(float)
     reference = {name: {"role": "reference", "lsb": _QUATERNION_LSB} for name in extra}
     reference["moving"] = {"role": "reference", "lsb": 1}
     return Foreign(

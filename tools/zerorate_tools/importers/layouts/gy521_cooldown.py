@@ -36,7 +36,7 @@ def read(path: Path) -> Foreign:
         accel=np.stack([table[f"a{axis}"] for axis in "xyz"], axis=1),
         temp=table["gtemp"],
         temp_step_lsb=16,
-        extra={n: np.rint(table[c] * f).astype(np.int64) for n, (c, f) in _EXTRA.items()},
+        extra={name: table[column] * factor for name, (column, factor) in _EXTRA.items()},
         sensor="MPU-6050",
         lsb={
             "gyro_lsb_per_dps": 131.0,

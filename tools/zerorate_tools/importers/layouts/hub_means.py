@@ -24,7 +24,7 @@ def recognises(path: Path) -> bool:
 def read(path: Path) -> Foreign:
     """RB has time and heater power (dc, %); RX and TH have neither."""
     table = read_table(path)
-    heater = {"heater_pct": table["dc"].astype(np.int64)} if "dc" in table else {}
+    heater = {"heater_pct": table["dc"]} if "dc" in table else {}
     return Foreign(
         time_s=table.get("time"),
         gyro=np.stack([table[f"{axis}axis"] for axis in "xyz"], axis=1),

@@ -42,7 +42,7 @@ def read(path: Path) -> Foreign:
         gyro=table[:, 6:9] * RATE_DPS["rad/s"],
         accel=table[:, 3:6] * ACCEL_G["m/s2"],
         temp=table[:, 9],
-        extra={"pressure_pa": np.rint(table[:, 10] * 1000).astype(np.int64)},
+        extra={"pressure_pa": table[:, 10] * 1000},
         index=np.array(index),
         sensor="VN-200",
         lsb={

@@ -1,0 +1,109 @@
+"""The entries of a simulated device's description, with their units."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from .paths import durations
+
+Table = Mapping[str, Any]
+
+
+@dataclass
+class Sensor:
+    """The part. gyro_noise_dps is the rms of a reading at gyro_noise_at_hz (default odr_hz).
+
+    Below that rate readings are block averages: their noise falls with the root of the rate.
+    gyro_noise_dps_rt_hz, where given, takes its place. temp_lag_s: the reading follows the die.
+    """
+
+    name: str = "MPU-6050"
+    odr_hz: float = 100.0
+    gyro_lsb_per_dps: float = 131.0
+    accel_lsb_per_g: float = 16384.0
+    temp_lsb_per_degc: float = 340.0
+    temp_offset_degc: float = 36.53
+    gyro_noise_dps: float = 0.05
+    gyro_noise_at_hz: float | None = None
+    gyro_noise_dps_rt_hz: float | None = None
+    accel_noise_g: float = 0.004
+    accel_bias_g: Any = 0.0
+    temp_noise_degc: float = 0.02
+    temp_lag_s: float = 0.0
+    accel: bool = True
+    temp: bool = True
+
+
+@dataclass
+class Bias:
+    """bias = b0 + b1 (T-25) + b2 (T-25)^2 + b3 (T-25)^3, dps; turn_on_dps: deviation a power-on."""
+
+    b0: Any = 0.0
+    b1: Any = 0.0
+    b2: Any = 0.0
+    b3: Any = 0.0
+    turn_on_dps: Any = 0.0
+
+
+@dataclass
+class Noise:
+    """Beyond white: Allan floor, random walk dps/sqrt(s), and what is worse (each may be x y z).
+
+    telegraph_dps jumps with telegraph_mean_s; coloured_dps rms of density f**-coloured_exponent;
+    outlier_dps deviation of outlier_per_hour single readings. The walk starts at 0 at power-on.
+    """
+
+    bias_instability_dps: Any = 0.0
+    random_walk_dps: Any = 0.0
+    telegraph_dps: Any = 0.0
+    telegraph_mean_s: float = 300.0
+    coloured_dps: Any = 0.0
+    coloured_exponent: float = 1.5
+    outlier_dps: float = 0.0
+    outlier_per_hour: float = 0.0
+
+
+@dataclass
+class Session:
+    """One power-on: how warm, how moved, how long (default: as long as the temperature path).
+
+    vary_degc, vary_time: deviation of each temperature (degC) and duration (relative), drawn anew
+    a session. motion is repeated to the end; a pair [low, high] in it is drawn anew each time.
+    """
+
+    start_degc: float = 25.0
+    temperature: list[Table] = field(default_factory=list)
+    motion: list[Table] = field(default_factory=list)
+    face: str = "+z"
+    tilt_deg: float = 0.0
+    heading_deg: float = 0.0
+    noise_scale: float = 1.0
+    vary_degc: float = 0.0
+    vary_time: float = 0.0
+    s: float = 0.0
+    minutes: float = 0.0
+    hours: float = 0.0
+
+    @property
+    def duration_s(self) -> float:
+        """Seconds of this power-on."""
+        given = self.s + 60 * self.minutes + 3600 * self.hours
+        return given or sum(durations(self.start_degc, self.temperature))
+
+
+@dataclass
+class Description:
+    """A device with its power-ons, extra channels and effects."""
+
+    sensor: Sensor
+    bias: Bias
+    noise: Noise
+    sessions: list[Session]
+    channels: dict[str, Table]
+    effects: list[Table]
+    name: str = "simulated"
+    seed: int = 1
+    latitude_deg: float | None = None
+    path: str = "description"
