@@ -104,6 +104,19 @@ def test_a_missing_node_says_where_it_comes_from(monkeypatch):
         fetch("wasm")
 
 
+def test_what_npm_complains_of_is_told_in_one_line(tmp_path, monkeypatch, capsys):
+    npm = tmp_path / "npm"
+    npm.write_text(
+        "#!/bin/sh\necho 'npm error the network is gone' >&2\n"
+        "echo 'npm error A complete log is in x' >&2\nexit 1\n"
+    )
+    npm.chmod(0o755)
+    monkeypatch.setattr("zerorate_tools.runtimes.wasm.node_command", lambda: ["node"])
+    monkeypatch.setattr("zerorate_tools.runtimes.wasm.npm_command", lambda: [str(npm)])
+    assert main(["runtimes", "get", "wasm"]) == 2
+    assert capsys.readouterr().err.endswith(": the network is gone\n")
+
+
 def test_the_list_tells_how_to_get_each_that_is_missing(capsys):
     assert main(["runtimes", "list"]) == 0
     lines = capsys.readouterr().out.splitlines()

