@@ -75,6 +75,8 @@ class Corrector:
             self.sensor, bins, short, long, document, document or every, ignore_outside, chosen
         )
         c = self.settings
+        walk_lsb = chosen["walk_dps"] * self.sensor.gyro_lsb_per_dps
+        self._walk_q16 = max(1, int(walk_lsb * walk_lsb * 65536))
         self.state = array("i", [0] * (c[0] + 3 * c[13]))
         self.reset()
 
@@ -87,7 +89,7 @@ class Corrector:
             for i in range(a, a + c[13]):
                 s[i] = 0
             estimators.reset(s, c, a)
-            s[a + 26] = c[44]
+            s[a + 26] = self._walk_q16
         self.power_on()
 
     def power_on(self):

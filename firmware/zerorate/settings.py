@@ -3,7 +3,7 @@
 from array import array
 
 WORDS = 48
-SHARED = 88
+SHARED = 92
 
 
 def power_of_two(samples):
@@ -81,7 +81,7 @@ def windows(c, sensor, limits):
     c[8] = squared(limits["still_g"] * accel * 16)
     seconds = max(1, c[5] - 1) * window_s
     c[9] = squared(limits["turn_dps"] * seconds * 0.0174533 * accel * 16)
-    c[10] = max(4, int(limits["change_dps"] * lsb * 16))
+    c[10] = squared(limits["change_dps"] * lsb * 16)
     c[11] = max(1, min(1 << 24, int(limits["slew_dps_per_s"] * lsb * 256 / sensor.odr_hz)))
 
 
@@ -139,5 +139,5 @@ def recent_of(c, sensor, limits):
     c[39] = max(3, int(limits["insist_s"] / segment_s + 0.5))
     c[40] = squared(limits["walk_least_dps"] * lsb * 256)
     c[41] = squared(limits["walk_most_dps"] * lsb * 256, 1 << 23)
-    c[44] = squared(limits["walk_dps"] * lsb * 256, 1 << 23)
+    c[44] = max(1, int(limits["turn_dps"] * lsb * 256))
     c[45] = squared(limits["turn_on_dps"] * lsb * 16)

@@ -26,6 +26,8 @@ from .stillness import gather, judge
 _GOOD = const(8)
 _ELAPSED_US = const(16)
 _TOTALS = const(42)
+_STILLNESS = const(46)
+_SEGMENT = const(48)
 _TEMP_TOTAL = const(45)
 _TEMP = const(47)
 _LEARN_TEMP = const(52)
@@ -51,6 +53,7 @@ _SLEW_Q8 = const(11)
 _PIECES = const(12)
 _AXIS_WORDS = const(13)
 _ALL = const(25)
+_FORETOLD_Q8 = const(44)
 _STALE_LSB = const(43)
 _EVERY = const(46)
 
@@ -79,6 +82,8 @@ def publish(s: ptr32, c: ptr32, a: int, axis: int):
     """Write the axis' bias, source and quality for the temperature of the latest window."""
     bias = s[_TEMP]
     bias = curve_q8(s, c, a, bias) + s[a + _OFFSET_Q8]
+    if s[a + _KIND] == 0:
+        return
     s[_TARGET_Q8 + axis] = bias
     if s[_SOURCE + axis] == 0:
         s[_OUT_Q8 + axis] = bias
@@ -151,6 +156,22 @@ def advance(s: ptr32, c: ptr32):
             s[_PHASE] = 0
 
 
+def foretell(s: ptr32, c: ptr32, a: int, axis: int):
+    """Publish the mean of the first rest before it is long enough to be learned from.
+
+    It is taken back at once when the rest turns out to be none.
+    """
+    level = 0
+    s[_SOURCE + axis] = 0
+    if s[_STILLNESS] == 1 and s[_SEGMENT] > 0:
+        a = s[_SEGMENT] << c[_SHIFT]
+        level = ((s[_TOTALS + axis] // a) << 8) + ((s[_TOTALS + axis] % a) << 8) // a
+        s[_SOURCE + axis] = 1
+        s[_QUALITY_Q8 + axis] = c[_FORETOLD_Q8]
+    s[_TARGET_Q8 + axis] = level
+    s[_OUT_Q8 + axis] = level
+
+
 def close(s: ptr32, c: ptr32):
     """Close a full window: what it says, and the work that follows from it."""
     while s[_PHASE]:
@@ -164,6 +185,8 @@ def close(s: ptr32, c: ptr32):
         s[a + _AGE_MS] += s[_ELAPSED_US] // 1000
         if s[a + _AGE_MS] > 0x3FFFFFF:
             s[a + _AGE_MS] = 0x3FFFFFF
+        if s[a + _KIND] == 0 and c[_EVERY] == 0:
+            foretell(s, c, a, i)
         if still and c[_EVERY] == 0:
             s[a + _TOTAL] = s[_TOTALS + i]
             s[a + _WEIGHT] = c[_SEGMENTS] << c[_SHIFT]

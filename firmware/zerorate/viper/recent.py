@@ -35,8 +35,8 @@ _KIND = const(30)
 _NOISE_Q8 = const(49)
 _LEARN_TEMP = const(52)
 # the fit's scratch words, free while a segment is absorbed
-_MEAN_NOISE_Q8 = const(76)
-_GROWN_Q8 = const(77)
+_MEAN_NOISE_Q8 = const(80)
+_GROWN_Q8 = const(81)
 
 _FLOOR_Q8 = const(37)
 _GATE_Q4 = const(38)

@@ -27,6 +27,8 @@ from .stillness import gather, judge
 _GOOD = const(8)
 _ELAPSED_US = const(16)
 _TOTALS = const(42)
+_STILLNESS = const(46)
+_SEGMENT = const(48)
 _TEMP_TOTAL = const(45)
 _TEMP = const(47)
 _LEARN_TEMP = const(52)
@@ -52,6 +54,7 @@ _SLEW_Q8 = const(11)
 _PIECES = const(12)
 _AXIS_WORDS = const(13)
 _ALL = const(25)
+_FORETOLD_Q8 = const(44)
 _STALE_LSB = const(43)
 _EVERY = const(46)
 
@@ -83,6 +86,8 @@ def publish(s_, c_, a: int, axis: int):
     s = ptr32(s_)
     bias = s[_TEMP]
     bias = int(curve_q8(s_, c_, a, bias)) + s[a + _OFFSET_Q8]
+    if s[a + _KIND] == 0:
+        return
     s[_TARGET_Q8 + axis] = bias
     if s[_SOURCE + axis] == 0:
         s[_OUT_Q8 + axis] = bias
@@ -162,6 +167,23 @@ def advance(s_, c_):
 
 
 @micropython.viper
+def foretell(s: ptr32, c: ptr32, a: int, axis: int):
+    """Publish the mean of the first rest before it is long enough to be learned from.
+
+    It is taken back at once when the rest turns out to be none.
+    """
+    level = 0
+    s[_SOURCE + axis] = 0
+    if s[_STILLNESS] == 1 and s[_SEGMENT] > 0:
+        a = s[_SEGMENT] << c[_SHIFT]
+        level = ((s[_TOTALS + axis] // a) << 8) + ((s[_TOTALS + axis] % a) << 8) // a
+        s[_SOURCE + axis] = 1
+        s[_QUALITY_Q8 + axis] = c[_FORETOLD_Q8]
+    s[_TARGET_Q8 + axis] = level
+    s[_OUT_Q8 + axis] = level
+
+
+@micropython.viper
 def close(s_, c_):
     """Close a full window: what it says, and the work that follows from it."""
     s = ptr32(s_)
@@ -177,6 +199,8 @@ def close(s_, c_):
         s[a + _AGE_MS] += s[_ELAPSED_US] // 1000
         if s[a + _AGE_MS] > 0x3FFFFFF:
             s[a + _AGE_MS] = 0x3FFFFFF
+        if s[a + _KIND] == 0 and c[_EVERY] == 0:
+            foretell(s_, c_, a, i)
         if still and c[_EVERY] == 0:
             s[a + _TOTAL] = s[_TOTALS + i]
             s[a + _WEIGHT] = c[_SEGMENTS] << c[_SHIFT]

@@ -44,6 +44,8 @@ _AGE_MS = const(50)
 _TIP_Q8 = const(51)
 _EFFECT_Q8 = const(61)
 _EFFECT_SUM = const(64)
+_SQUARE_STEP = const(76)
+_LAST = const(77)
 
 _WINDOW = const(3)
 _SHIFT = const(4)
@@ -52,7 +54,7 @@ _DEVIATION = const(6)
 _SPREAD_GYRO_Q8 = const(7)
 _SPREAD_ACCEL_Q8 = const(8)
 _TIP_LIMIT_Q8 = const(9)
-_CHANGE_Q4 = const(10)
+_CHANGE_Q8 = const(10)
 
 
 @micropython.viper
@@ -66,6 +68,10 @@ def gather(s: ptr32, c: ptr32, x: ptr32) -> int:
             i += 1
         s[_SQUARE_ACCEL] = 0
         s[_SQUARE_GYRO] = 0
+        s[_SQUARE_STEP] = 0
+        s[_LAST] = 0
+        s[_LAST + 1] = 0
+        s[_LAST + 2] = 0
         s[_EFFECT_SUM] = 0
         s[_EFFECT_SUM + 1] = 0
         s[_EFFECT_SUM + 2] = 0
@@ -83,7 +89,11 @@ def gather(s: ptr32, c: ptr32, x: ptr32) -> int:
                 s[_SQUARE_ACCEL] += d * d
             elif i > 3:
                 s[_SQUARE_GYRO] += d * d
-                s[_EFFECT_SUM + i - 4] += s[_EFFECT_Q8 + i - 4]
+                e = d - s[_LAST - 4 + i]
+                s[_SQUARE_STEP] += e * e
+                s[_LAST - 4 + i] = d
+                e = s[_EFFECT_Q8 - 4 + i]
+                s[_EFFECT_SUM - 4 + i] += e
             i += 1
     if s[_N] < c[_WINDOW]:
         return 0
@@ -150,6 +160,21 @@ def begin(s: ptr32, c: ptr32, anchored: int):
 
 
 @micropython.viper
+def white(s: ptr32, c: ptr32, spread: int) -> int:
+    """Return 1 if neighbouring samples of the gyroscope share nothing: noise, not motion.
+
+    von Neumann's ratio: the mean squared step is twice the variance for white noise, less for
+    whatever is slower and more for what alternates.
+    """
+    step = s[_SQUARE_STEP] << (8 - c[_SHIFT])
+    spread = spread >> 4
+    step = step >> 4
+    if step > spread + (spread >> 1) - (spread >> 3) and step < 3 * spread - (spread >> 2):
+        return 1
+    return 0
+
+
+@micropython.viper
 def look(s_, c_) -> int:
     """Return what the full window says: STILL, MOVING, SHAKEN, TURNING or SHIFTED."""
     s = ptr32(s_)
@@ -157,7 +182,7 @@ def look(s_, c_) -> int:
     if s[_DIRTY]:
         return MOVING
     noise_q8 = int(spread_q8(s_, c_, _SUM + 4, s[_SQUARE_GYRO]))
-    if noise_q8 > c[_SPREAD_GYRO_Q8]:
+    if noise_q8 > c[_SPREAD_GYRO_Q8] and int(white(s_, c_, noise_q8)) == 0:
         return MOVING
     shake_q8 = int(spread_q8(s_, c_, _SUM, s[_SQUARE_ACCEL]))
     if shake_q8 > c[_SPREAD_ACCEL_Q8]:
@@ -169,8 +194,13 @@ def look(s_, c_) -> int:
     # gravity's two window means differ by noise alone: 18 = 2 x (3 sigma)^2
     if s[_TIP_Q8] > c[_TIP_LIMIT_Q8] + 18 * (shake_q8 >> c[_SHIFT]):
         return TURNING
-    if s[_SEGMENT] and int(change_q4(s_, c_)) > c[_CHANGE_Q4]:
-        return SHIFTED
+    if s[_SEGMENT]:
+        shake_q8 = int(change_q4(s_, c_))
+        if shake_q8 > 0x7FFF:
+            return SHIFTED
+        # noise alone lets the means of one axis differ: 14 = 2 / 3 x (4.5 sigma)^2
+        if shake_q8 * shake_q8 > c[_CHANGE_Q8] + 14 * (noise_q8 >> c[_SHIFT]):
+            return SHIFTED
     return STILL
 
 

@@ -29,13 +29,13 @@ def firmware_package() -> Path:
 
 @lru_cache(maxsize=1)
 def compiled_kernels() -> types.SimpleNamespace:
-    """The kernel modules with every function compiled (at its first call), by module name.
+    """The kernels behind `step` with every function compiled (at its first call), by module.
 
     They are a private copy: the firmware modules that others import stay plain Python. Machine
     code is cached in a folder named by a hash of all kernel sources, for Numba itself notices
     no change in a file that a function calls into.
     """
-    files = _in_order_of_imports(kernel_files(firmware_package()))
+    files = _in_order_of_imports("step", kernel_files(firmware_package()))
     digest = hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()[:16]
     numba.config.CACHE_DIR = str(cache_folder() / "numba" / digest)
     sys.modules[_PACKAGE] = types.ModuleType(_PACKAGE)
@@ -55,16 +55,19 @@ def _compiled(path: Path) -> types.ModuleType:
     return module
 
 
-def _in_order_of_imports(files: list[Path]) -> list[Path]:
-    """Files sorted so that each stands behind those that it imports."""
-    waiting = {path.stem: path for path in files}
-    done: list[Path] = []
-    while waiting:
-        ready = [name for name, path in waiting.items() if not _imports(path) & set(waiting)]
-        if not ready:
-            raise ImportError(f"kernel files import each other in a circle: {sorted(waiting)}")
-        done += [waiting.pop(name) for name in ready]
-    return done
+def _in_order_of_imports(root: str, files: list[Path]) -> list[Path]:
+    """The file named `root` and all that it imports, each behind those that it imports."""
+    known = {path.stem: path for path in files}
+    done: dict[str, Path] = {}
+
+    def visit(name: str) -> None:
+        if name in known and name not in done:
+            for other in sorted(_imports(known[name])):
+                visit(other)
+            done[name] = known[name]
+
+    visit(root)
+    return list(done.values())
 
 
 def _imports(path: Path) -> set[str]:
