@@ -20,7 +20,7 @@ from zerorate_tools.simulate import simulate
 from . import foreign_files
 
 PATIENT = settings(
-    max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+    max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
 NAMES = ("t_us", "gx", "gy", "gz")
 CELLS = st.one_of(

@@ -14,6 +14,7 @@ from zerorate_tools.simulate import (
 )
 
 AXES = ("gx", "gy", "gz")
+OTHERS = ("ax", "ay", "az", "temp")
 
 
 def device(minutes=10, odr_hz=20.0, **more):
@@ -452,6 +453,17 @@ def test_the_day_moves_half_the_time_over_25_degc():
     assert np.ptp(truth.temp_degc) == pytest.approx(25, abs=0.5)
 
 
+@pytest.mark.parametrize("name", ["hysteresis", "late-load", "unrecorded"])
+def test_the_chamber_scenarios_differ_by_their_effect_alone(name):
+    plain, truth = simulate("nothing", session=2)
+    other, changed = simulate(name, session=2)
+    added = (changed.bias_lsb - truth.bias_lsb) / 131
+    assert 0.005 < added.std() < 0.05
+    assert (other.columns["temp"] == plain.columns["temp"]).all()
+    assert set(other.columns) == set(plain.columns) == {"t_us", *AXES, *OTHERS, "vdd_mv", "load"}
+    assert np.abs((other.gyro_lsb() - plain.gyro_lsb()) / 131 - added).max() < 1.01 / 131
+
+
 # Files, and what is refused
 
 
@@ -469,7 +481,7 @@ def test_files_hold_the_recordings_and_the_truth_only_where_asked(tmp_path):
 def test_the_recording_says_nothing_of_the_effect():
     effect = {"kind": "kink", "knee_degc": 35.0, "dps": 0.01}
     recording, _ = simulate(device(effect=[effect]))
-    assert set(recording.columns) == {"t_us", *AXES, "ax", "ay", "az", "temp"}
+    assert set(recording.columns) == {"t_us", *AXES, *OTHERS}
     assert recording.scales.more == {}
 
 

@@ -19,7 +19,7 @@ from .scales import Scales, scales_from_text
 
 SUFFIXES = (".csv", ".csv.gz")
 _NO_VALUE = ("", "nan", "na", "null", "none")
-_BLOCK_BYTES = 1 << 22
+_BLOCK_BYTES = 1 << 20
 
 
 def scales_path(path: Path) -> Path:
@@ -64,7 +64,7 @@ def _open(path: Path, names: list[str]) -> pyarrow.csv.CSVStreamingReader:
     return pyarrow.csv.open_csv(
         str(path),
         read_options=pyarrow.csv.ReadOptions(
-            block_size=_BLOCK_BYTES, column_names=names, skip_rows=1
+            block_size=_BLOCK_BYTES, column_names=names, skip_rows=1, use_threads=False
         ),
         convert_options=pyarrow.csv.ConvertOptions(
             column_types={name: pa.int64() for name in names},

@@ -17,6 +17,8 @@ from .scales import Scales, scales_from_text
 
 SUFFIXES = (".parquet",)
 _KEY = b"zerorate"
+# columns stream through this much each, so that one huge row group costs no more than many small
+_BUFFER_BYTES = 1 << 16
 
 
 def open_file(path: Path) -> pq.ParquetFile:
@@ -24,7 +26,7 @@ def open_file(path: Path) -> pq.ParquetFile:
     if path.stat().st_size == 0:
         raise BadRecording(path, "empty file", do="record again, or name another file")
     try:
-        return pq.ParquetFile(path, pre_buffer=False)
+        return pq.ParquetFile(path, pre_buffer=False, buffer_size=_BUFFER_BYTES)
     except (pa.ArrowInvalid, OSError) as error:
         problem = "no Parquet file, or cut off"
         raise BadRecording(path, problem, do="copy the file again") from error
