@@ -1,0 +1,107 @@
+"""Replaying recordings: every engine gives the same bits, and bad input leaves nothing behind."""
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+from zerorate_tools.cli import main
+from zerorate_tools.errors import InFile, ZerorateError
+from zerorate_tools.recordings import write_recording
+from zerorate_tools.replay import replay
+from zerorate_tools.simulate import simulate
+
+DESCRIPTION = {
+    "name": "short",
+    "seed": 3,
+    "sensor": {"odr_hz": 50.0, "gyro_noise_dps": 0.05},
+    "bias": {"b0": [5.0, -2.0, 0.5], "b1": [0.05, -0.03, 0.02]},
+    "session": [
+        {
+            "start_degc": 22.0,
+            "temperature": [{"to": 30.0, "minutes": 3}],
+            "motion": [{"kind": "rest", "s": 20}, {"kind": "hand", "s": 15, "dps": [60, 80]}],
+        }
+    ],
+}
+
+
+@pytest.fixture(scope="module")
+def simulated():
+    return simulate(DESCRIPTION)
+
+
+@pytest.fixture(scope="module")
+def log(simulated, tmp_path_factory):
+    path = tmp_path_factory.mktemp("replay") / "short.parquet"
+    write_recording(simulated[0], path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def reference(log):
+    return replay(log, runtime="numba")
+
+
+def test_every_interpreter_gives_the_bits_that_numba_gives(runtime, log, reference):
+    done = replay(log, runtime=runtime.name)
+    assert done.state == reference.state
+    assert done.table.equals(reference.table)
+
+
+def test_the_bias_found_is_the_one_simulated(simulated, reference):
+    recording, truth = simulated
+    later = recording.columns["t_us"] > 100e6
+    for i, axis in enumerate("xyz"):
+        error = np.asarray(reference.table[f"bias_g{axis}"]) - truth.bias_lsb[:, i]
+        # 20 mdps: half a degree is crossed between two rests
+        assert np.sqrt(np.mean(error[later] ** 2)) < 0.020 * 131
+
+
+def test_a_recording_cut_in_two_and_resumed_ends_in_the_same_state(simulated, reference, tmp_path):
+    recording, _ = simulated
+    half = len(recording.columns["t_us"]) // 2
+    parts = [slice(None, half), slice(half, None)]
+    first, second = (
+        type(recording)({k: v[p] for k, v in recording.columns.items()}, recording.scales, "part")
+        for p in parts
+    )
+    state = tmp_path / "state.bin"
+    replay(first, state=state)
+    assert replay(second, from_state=state, resume=True).state == reference.state
+
+
+def test_a_new_power_on_knows_its_bias_from_the_first_sample(log, reference, tmp_path):
+    state = tmp_path / "state.bin"
+    state.write_bytes(reference.state)
+    assert replay(log).sources["none"] > 0
+    assert "none" not in replay(log, from_state=state).sources
+
+
+def test_the_command_writes_the_columns_of_the_design(log, tmp_path, capsys):
+    out = tmp_path / "out.parquet"
+    assert main(["replay", str(log), "--out", str(out)]) == 0
+    table = pq.read_table(out)
+    wanted = {"t_us", "bias_gx", "bias_gy", "bias_gz", "source", "quality_lsb"}
+    assert wanted <= set(table.column_names)
+    assert table.num_rows == pq.read_metadata(log).num_rows
+    assert "source of the bias" in capsys.readouterr().out
+
+
+def test_a_state_of_another_shape_is_refused_by_name(log, tmp_path):
+    state = tmp_path / "state.bin"
+    state.write_bytes(b"\0" * 100)
+    with pytest.raises(InFile, match="state.bin: 100 bytes"):
+        replay(log, from_state=state)
+
+
+def test_an_unknown_setting_is_refused(log):
+    with pytest.raises(ZerorateError, match="no such setting: colour"):
+        replay(log, options={"colour": 1})
+
+
+def test_a_broken_recording_leaves_no_output(tmp_path, capsys):
+    bad = tmp_path / "bad.parquet"
+    bad.write_bytes(b"PAR1 not really")
+    out = tmp_path / "out.parquet"
+    assert main(["replay", str(bad), "--out", str(out)]) == 2
+    assert list(tmp_path.iterdir()) == [bad]
+    assert capsys.readouterr().err.count("\n") == 1
