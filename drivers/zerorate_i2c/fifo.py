@@ -77,6 +77,11 @@ class Fifo:
                 return status
         return self._deliver(sample, status)
 
+    def stop(self):
+        """Leave the chip without its FIFO."""
+        self.imu.keep_setting(_USER_CTRL, 0)
+        self.imu.keep_setting(_FIFO_EN, 0)
+
     def _load(self):
         """Fill the block with the oldest frames; EMPTY, RESTARTED, or what verify said."""
         status = self.imu.verify(len(self._views))

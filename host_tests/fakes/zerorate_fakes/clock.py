@@ -31,4 +31,4 @@ class FakeClock:
 
     def sleep_ms(self, milliseconds):
         """Let time pass at once."""
-        self.advance_us(1000 * milliseconds)
+        self.advance_us(int(1000 * milliseconds))

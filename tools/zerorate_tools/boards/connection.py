@@ -1,0 +1,37 @@
+"""A MicroPython board on a serial port, through mpremote's raw REPL."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from ..errors import MissingLibrary, ZerorateError
+
+
+class BoardError(ZerorateError):
+    """A board that does not answer, or does not do what it was told."""
+
+
+@contextmanager
+def connected(port: str, *, restart: bool = True) -> Iterator:
+    """Yield mpremote's transport with the board in its raw REPL, what it ran interrupted.
+
+    restart: with a soft reset, so that nothing is left in memory. Raises MissingLibrary without
+    mpremote and BoardError for a port that cannot be opened or a board that says nothing.
+    """
+    try:
+        from mpremote.transport import TransportError
+        from mpremote.transport_serial import SerialTransport
+    except ImportError as error:
+        raise MissingLibrary("mpremote is not installed: pip install 'zerorate[tools]'") from error
+    try:
+        transport = SerialTransport(port, timeout=2)
+    except TransportError as error:
+        raise BoardError(f"{port}: cannot be opened; is the board plugged in?") from error
+    try:
+        transport.enter_raw_repl(soft_reset=restart)
+        yield transport
+    except TransportError as error:
+        raise BoardError(f"{port}: {error}; is MicroPython on this board?") from error
+    finally:
+        transport.close()

@@ -1,0 +1,64 @@
+"""The firmware and the driver put on a board: the packages' own files, nothing else."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib.util import find_spec
+from pathlib import Path, PurePosixPath
+
+from .connection import connected
+
+PACKAGES = ("zerorate", "zerorate_i2c")
+# Parts of the packages that a board has no use for.
+_HOST_ONLY = {"zerorate_i2c/linux.py"}
+_LIBRARY = PurePosixPath("lib")
+
+
+def package_files(package: str) -> dict[PurePosixPath, Path]:
+    """Path below lib on the board -> file, for every file of a package that a board needs."""
+    spec = find_spec(package)
+    if spec is None or not spec.submodule_search_locations:
+        raise ModuleNotFoundError(f"{package} is not installed beside zerorate_tools")
+    root = Path(next(iter(spec.submodule_search_locations)))
+    found = {PurePosixPath(package, *p.relative_to(root).parts): p for p in root.rglob("*.py")}
+    return {name: found[name] for name in sorted(found) if str(name) not in _HOST_ONLY}
+
+
+def flash(
+    port: str,
+    dry_run: bool = False,
+    main: Path | None = None,
+    say: Callable[[str], None] = print,
+) -> int:
+    """Copy the packages to lib on the board at port, and main (a file) to main.py; total bytes.
+
+    Every file is told to say with its size; dry_run only tells. Files that are the same there
+    already stay. Raises BoardError.
+    """
+    files = {
+        _LIBRARY / name: p for package in PACKAGES for name, p in package_files(package).items()
+    }
+    if main is not None:
+        files[PurePosixPath("main.py")] = Path(main)
+    total = 0
+    for name, path in files.items():
+        total += path.stat().st_size
+        if dry_run:
+            say(f"{path.stat().st_size:8d}  {name}")
+    if not dry_run:
+        with connected(port) as board:
+            for name, path in files.items():
+                say(f"{path.stat().st_size:8d}  {name}  {_put(board, name, path)}")
+    say(f"{total:8d}  bytes in {len(files)} files" + (" (dry run)" if dry_run else ""))
+    return total
+
+
+def _put(board, name: PurePosixPath, path: Path) -> str:
+    data = path.read_bytes()
+    for folder in reversed(name.parents[:-1]):
+        if not board.fs_exists(str(folder)):
+            board.fs_mkdir(str(folder))
+    if board.fs_exists(str(name)) and board.fs_readfile(str(name)) == data:
+        return "the same already"
+    board.fs_writefile(str(name), data)
+    return "written"

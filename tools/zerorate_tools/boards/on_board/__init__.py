@@ -1,0 +1,1 @@
+"""Text that is sent to boards and run there; never imported on the host."""

@@ -1,0 +1,137 @@
+"""A recording from a board: its frames over the serial port, with every drop counted."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable
+from importlib.resources import files
+from pathlib import Path
+
+from ..recordings import recording_writer
+from .connection import BoardError, connected
+from .frames import MESSAGE, SAMPLE, SAMPLE_BYTES, SCALES, FrameReader, sample_of
+from .recorder import COLUMNS, Recorded, Recorder, scales_of
+
+_TICKS = 1 << 30
+_SILENCE_S = 10.0
+_VERIFIED, _SUSPECT, _SEEN_BEFORE = 1, 3, 0x80
+
+
+def record_port(
+    port: str,
+    out: Path,
+    *,
+    seconds: float | None = None,
+    setup: str = "",
+    done: Callable[[float], None] = lambda seconds: None,
+) -> Recorded:
+    """Start the streamer on the board at port and record what it sends into out.
+
+    setup: MicroPython source that makes `imu`, an MPU6050 (default: I2C(0), the driver's defaults).
+    seconds None records until KeyboardInterrupt. Raises BoardError for a board that is silent for
+    10 s or cannot run the streamer; what had come by then is kept.
+    """
+    with connected(port) as board:
+        board.exec_raw_no_follow(program(setup or _default_setup()))
+        stream = BoardStream(board.serial, port)
+        scales = stream.scales()
+        with recording_writer(out, COLUMNS, scales) as writer:
+            recorder = Recorder(writer.append, 1e6 / scales.odr_hz, Recorded())
+            failure = stream.record(recorder, seconds, done)
+            recorder.confirm() if failure is None else recorder.discard()
+            recorder.flush()
+        board.serial.write(b"\x03\x03")
+    if failure:
+        raise failure
+    return recorder.result
+
+
+def program(setup: str) -> str:
+    """What the board runs: the streamer's own text, then setup, then the stream."""
+    streamer = files(__package__).joinpath("on_board/stream.py").read_text(encoding="utf-8")
+    return f"{streamer}\n{setup}\nstream(imu)\n"
+
+
+def _default_setup() -> str:
+    return files(__package__).joinpath("on_board/default_setup.py").read_text(encoding="utf-8")
+
+
+class BoardStream:
+    """What comes from a board that streams: scales, samples and messages."""
+
+    def __init__(self, serial, port: str) -> None:
+        self._serial = serial
+        self._port = port
+        self._reader = FrameReader()
+        self._ticks_us: int | None = None
+        self._t_us = 0
+        self._sequence: int | None = None
+        self._heard = time.monotonic()
+        self._tail = b""
+        self._queue: list[tuple[int, bytes]] = []
+
+    def scales(self):
+        """The first scales that come. Raises BoardError with what the board said instead."""
+        while True:
+            for kind, payload in self._frames():
+                if kind == SCALES:
+                    return scales_of({**json.loads(payload), "source": self._port})
+
+    def record(self, recorder: Recorder, seconds: float | None, done) -> BoardError | None:
+        """Hand samples to recorder until time is up; the error that ended it, if one did."""
+        begun = time.monotonic()
+        reported = begun
+        try:
+            while seconds is None or time.monotonic() - begun < seconds:
+                for kind, payload in self._frames():
+                    self._take(recorder, kind, payload)
+                recorder.result.bytes_skipped = self._reader.skipped
+                done(time.monotonic() - reported)
+                reported = time.monotonic()
+        except BoardError as error:
+            return error
+        except KeyboardInterrupt:
+            pass
+        return None
+
+    def _take(self, recorder: Recorder, kind: int, payload: bytes) -> None:
+        if kind == SAMPLE and len(payload) == SAMPLE_BYTES:
+            self._take_sample(recorder, payload)
+        elif kind == MESSAGE and payload.startswith(b"restarted"):
+            recorder.result.restarts += 1
+            recorder.discard()
+        elif kind == MESSAGE:
+            recorder.result.bus_errors += 1
+
+    def _take_sample(self, recorder: Recorder, payload: bytes) -> None:
+        sequence, ticks_us, status, words = sample_of(payload)
+        if self._ticks_us is not None:
+            self._t_us += (ticks_us - self._ticks_us) % _TICKS
+        self._ticks_us = ticks_us
+        if self._sequence is not None:
+            recorder.result.dropped += (sequence - self._sequence - 1) % 65536
+        self._sequence = sequence
+        if status & ~_SEEN_BEFORE == _VERIFIED:
+            recorder.confirm()
+        if status & ~_SEEN_BEFORE == _SUSPECT:
+            recorder.result.doubtful += 1
+        elif not status & _SEEN_BEFORE:
+            recorder.add(self._t_us, words)
+
+    def _frames(self) -> list[tuple[int, bytes]]:
+        data = self._serial.read(max(1, self._serial.in_waiting))
+        if data:
+            self._heard = time.monotonic()
+            self._tail = (self._tail + data)[-4096:]
+        elif time.monotonic() - self._heard > _SILENCE_S:
+            raise BoardError(f"{self._port}: silent for {_SILENCE_S:.0f} s")
+        frames = list(self._reader.feed(data))
+        if not frames and b"Traceback" in self._tail:
+            raise BoardError(f"{self._port}: the board says: {_last_line(self._tail)}")
+        return frames
+
+
+def _last_line(text: bytes) -> str:
+    lines = [line.strip("\x04\r >") for line in text.decode(errors="replace").split("\n")]
+    return [line for line in lines if line][-1]

@@ -1,0 +1,117 @@
+"""Rows of a recording being made: written in batches, believed only when the chip was verified."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..recordings import Scales
+
+COLUMNS = ["t_us", "ax", "ay", "az", "temp", "gx", "gy", "gz"]
+_BATCH = 2048
+
+
+@dataclass
+class Recorded:
+    """What a recording came to: samples written, lost on the way (never seen), dropped as doubtful.
+
+    dropped: frames a board sent that never arrived (among the lost); bytes_skipped: in no frame;
+    restarts: the chip had to be configured again; bus_errors: transfers that failed.
+    """
+
+    samples: int = 0
+    lost: int = 0
+    doubtful: int = 0
+    restarts: int = 0
+    bus_errors: int = 0
+    dropped: int = 0
+    bytes_skipped: int = 0
+    seconds: float = 0.0
+
+    @property
+    def rate_hz(self) -> float:
+        """Samples a second, over the time between the first and the last."""
+        return (self.samples - 1) / self.seconds if self.seconds > 0 else 0.0
+
+    def __str__(self) -> str:
+        text = (
+            f"{self.samples} samples in {self.seconds:.1f} s ({self.rate_hz:.1f} Hz), "
+            f"{self.lost} lost, {self.doubtful} dropped as doubtful"
+        )
+        for count, what in (
+            (self.restarts, "restarts of the chip"),
+            (self.bus_errors, "bus errors"),
+            (self.dropped, "frames dropped by the port"),
+            (self.bytes_skipped, "bytes skipped"),
+        ):
+            text += f", {count} {what}" if count else ""
+        return text
+
+
+class Recorder:
+    """Takes samples one by one and hands them to append(columns) in batches.
+
+    Rows wait until confirm() says that the chip was configured right all the while, and discard()
+    drops those that wait. Time starts at 0 with the first row and must not go backwards.
+    """
+
+    def __init__(
+        self, append: Callable[[dict[str, np.ndarray]], None], period_us: float, result: Recorded
+    ) -> None:
+        self._append = append
+        self._period_us = period_us
+        self.result = result
+        self._waiting: list[tuple[int, ...]] = []
+        self._confirmed: list[tuple[int, ...]] = []
+        self._start_us: int | None = None
+        self._expected_us = 0.0
+
+    def add(self, t_us: int, sample: Sequence[int]) -> None:
+        """One sample of seven words at t_us on any clock; gaps in time count as lost samples."""
+        if self._start_us is None:
+            self._start_us = t_us
+            self._expected_us = float(t_us)
+        self._count_lost(t_us)
+        self._waiting.append((t_us - self._start_us, *sample))
+
+    def _count_lost(self, t_us: int) -> None:
+        """A sample may be late, and the chip's clock off by a few percent, without any lost."""
+        late_us = t_us - self._expected_us
+        if late_us > 1.5 * self._period_us:
+            missing = round(late_us / self._period_us)
+            self.result.lost += missing
+            self._expected_us += missing * self._period_us
+            late_us = t_us - self._expected_us
+        self._expected_us += self._period_us + late_us / 16
+
+    def confirm(self) -> None:
+        """What waits is good."""
+        self._confirmed += self._waiting
+        self._waiting.clear()
+        if len(self._confirmed) >= _BATCH:
+            self.flush()
+
+    def discard(self) -> None:
+        """What waits is in doubt."""
+        self.result.doubtful += len(self._waiting)
+        self._waiting.clear()
+
+    def flush(self) -> None:
+        """Hand over what is confirmed."""
+        if not self._confirmed:
+            return
+        rows = np.array(self._confirmed, dtype=np.int64)
+        self.result.samples += len(rows)
+        self.result.seconds = float(rows[-1, 0]) / 1e6
+        columns = dict(zip(COLUMNS, rows.T, strict=True))
+        self._append({k: v if k == "t_us" else v.astype(np.int32) for k, v in columns.items()})
+        self._confirmed.clear()
+
+
+def scales_of(values: dict) -> Scales:
+    """Scales from the attributes of a driver, or from the header a board sends."""
+    known = ("odr_hz", "gyro_lsb_per_dps", "accel_lsb_per_g", "temp_lsb_per_degc")
+    numbers = {name: float(values[name]) for name in (*known, "temp_offset_degc")}
+    return Scales(sensor=str(values["part"]), more={"source": str(values["source"])}, **numbers)

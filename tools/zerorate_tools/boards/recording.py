@@ -1,0 +1,48 @@
+"""One command for both: a Linux I2C bus by its device path, a board by its serial port."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+from ..errors import MissingLibrary
+from .recorder import Recorded
+
+_BUS = re.compile(r"/dev/i2c-\d+|\d+")
+
+
+def record(
+    port_or_bus: str,
+    out: str | Path,
+    *,
+    seconds: float | None = None,
+    done: Callable[[float], None] = lambda seconds: None,
+    **options,
+) -> Recorded:
+    """Record from /dev/i2c-N (or N) or from a board on a serial port into out.
+
+    seconds None records until KeyboardInterrupt. options: see record_bus and record_port. Raises
+    MissingLibrary without smbus2 or mpremote, ZerorateError for a board that does not answer,
+    OSError for a bus that does not.
+    """
+    if _BUS.fullmatch(port_or_bus):
+        return _record_linux(port_or_bus, Path(out), seconds=seconds, done=done, **options)
+    from .port import record_port
+
+    return record_port(port_or_bus, Path(out), seconds=seconds, done=done, **options)
+
+
+def _record_linux(bus: str, out: Path, **options) -> Recorded:
+    from zerorate_i2c.linux import LinuxI2C
+
+    from .bus import record_bus
+
+    try:
+        i2c = LinuxI2C(int(bus) if bus.isdigit() else bus)
+    except ImportError as error:
+        raise MissingLibrary("smbus2 is not installed: pip install 'zerorate[linux]'") from error
+    try:
+        return record_bus(i2c, out, source=bus, **options)
+    finally:
+        i2c.close()
