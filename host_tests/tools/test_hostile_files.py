@@ -87,7 +87,7 @@ def test_any_bytes_as_a_foreign_recording(tmp_path, content, name):
 def whole_files(tmp_path):
     """One small sound file of each kind that is read byte by byte."""
     stamps, rates = np.arange(20) * 4000, np.ones(20)
-    topic = {"timestamp": ("uint64_t", stamps)} | {a: ("float", rates) for a in "xyz"}
+    topic = {"timestamp": ("uint64_t", stamps)} | dict.fromkeys("xyz", ("float", rates))
     foreign_files.ulog(tmp_path / "x.ulg", {"sensor_gyro": topic})
     foreign_files.dataflash(tmp_path / "x.bin", [(i, 0, *[0.5] * 7) for i in range(20)])
     lines = "\n".join([foreign_files.vectornav_line((0.01, 0.02, 0.03))] * 9)

@@ -18,7 +18,12 @@ from zerorate_tools.importers import (
     read_bins,
     read_foreign,
 )
-from zerorate_tools.recordings import read_recording
+from zerorate_tools.recordings import (
+    Scales,
+    read_recording,
+    recording_from_columns,
+    write_recording,
+)
 
 from . import foreign_files
 
@@ -168,6 +173,16 @@ def test_a_truncated_gzip_is_refused(tmp_path):
     (tmp_path / "in.csv.gz").write_bytes(whole[:-20])
     with pytest.raises(BadRecording, match="cut off or damaged"):
         read_foreign(tmp_path / "in.csv.gz")
+
+
+def test_a_recording_in_this_form_only_changes_its_format(tmp_path):
+    columns = {name: np.arange(5) for name in ("t_us", "gx", "gy", "gz", "load")}
+    write_recording(recording_from_columns(columns, Scales("X", 10, 77)), tmp_path / "in.csv")
+    report = import_recording(tmp_path / "in.csv", tmp_path / "out.parquet")
+    recording = read_recording(tmp_path / "out.parquet")
+    assert recording.columns["load"].tolist() == [0, 1, 2, 3, 4]
+    assert recording.scales.gyro_lsb_per_dps == 77
+    assert told(report, "in this form already")
 
 
 # Other formats

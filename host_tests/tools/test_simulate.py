@@ -8,10 +8,14 @@ from zerorate_tools.simulate import (
     bundled_names,
     load_description,
     read_truth,
+    reference,
     simulate,
     simulate_sessions,
     simulate_to_files,
 )
+from zerorate_tools.simulate.channels import CHANNELS
+from zerorate_tools.simulate.effects import EFFECTS
+from zerorate_tools.simulate.motion import MOTIONS
 
 AXES = ("gx", "gy", "gz")
 OTHERS = ("ax", "ay", "az", "temp")
@@ -462,6 +466,14 @@ def test_the_chamber_scenarios_differ_by_their_effect_alone(name):
     assert (other.columns["temp"] == plain.columns["temp"]).all()
     assert set(other.columns) == set(plain.columns) == {"t_us", *AXES, *OTHERS, "vdd_mv", "load"}
     assert np.abs((other.gyro_lsb() - plain.gyro_lsb()) / 131 - added).max() < 1.01 / 131
+
+
+def test_the_reference_names_every_entry_that_is_taken():
+    text = reference()
+    for name in ("gyro_noise_at_hz = none", "turntable", "late", "peak-temperature", "delay_s=0.0"):
+        assert name in text
+    for kinds in (MOTIONS, CHANNELS, EFFECTS):
+        assert all(f"\n  {kind} " in text for kind in kinds)
 
 
 # Files, and what is refused

@@ -19,19 +19,20 @@ def add_parser(subparsers) -> None:
     parser.add_argument("--session", type=int, metavar="N", help="this power-on only, 1-based")
     parser.add_argument("--seed", type=int, metavar="N", help="instead of the description's")
     parser.add_argument("--list", action="store_true", help="list the bundled scenarios")
+    parser.add_argument("--entries", action="store_true", help="what a description may say")
     parser.set_defaults(run=run, refuse=parser.error)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Simulate and say which files were written."""
     from ..progress import progress
-    from ..simulate import bundled_names, load_description, simulate_to_files
+    from ..simulate import bundled_names, load_description, reference, simulate_to_files
 
-    if arguments.list:
-        print("\n".join(bundled_names()))
+    if arguments.list or arguments.entries:
+        print("\n".join(bundled_names()) if arguments.list else reference())
         return 0
     if arguments.description is None or arguments.out is None:
-        arguments.refuse("a description and --out FILE are needed (or --list)")
+        arguments.refuse("a description and --out FILE are needed (or --list, --entries)")
     described = load_description(arguments.description)
     options = {"truth": arguments.truth, "session": arguments.session, "seed": arguments.seed}
     total = 1 if arguments.session else len(described.sessions)

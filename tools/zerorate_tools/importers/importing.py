@@ -7,7 +7,7 @@ from os import PathLike
 from pathlib import Path
 
 from ..errors import BadRecording
-from ..recordings import Recording, write_recording
+from ..recordings import Recording, open_recording, read_recording, write_recording
 from ..recordings.reading import recording_name
 from . import layouts
 from .conversion import Options, Report, converted
@@ -45,7 +45,7 @@ def read_foreign(
     layout: str | None = None,
     instance: int = 0,
 ) -> tuple[Recording, Report]:
-    """Read a foreign file: ULog (.ulg), DataFlash (.bin, .log), or a table with a mapping.
+    """Read ULog (.ulg), DataFlash (.bin, .log), a table with a mapping, or this form itself.
 
     mapping: columns of a table and their units; units: by kind (time, gyro, accel, temp) where the
     mapping has none; layout: one of `layouts.NAMES` instead of recognising it, or "table" to
@@ -58,10 +58,20 @@ def read_foreign(
         raise BadRecording(path, what, do="name a file to import")
     if path.stat().st_size == 0:
         raise BadRecording(path, "empty file", do="name another file")
+    if layout is None and not mapping and (own := _own_form(path)) is not None:
+        return own, Report(len(own), len(own), notes=["a recording in this form already"])
     foreign = _read(path, mapping, units, layout, instance)
     recording, report = converted(foreign, options or Options(), path)
     recording.name = recording_name(path)
     return recording, report
+
+
+def _own_form(path: Path) -> Recording | None:
+    try:
+        open_recording(path)
+    except BadRecording:
+        return None
+    return read_recording(path)
 
 
 def _read(path: Path, mapping, units, layout: str | None, instance: int):

@@ -3,12 +3,14 @@
 from .description import bundled_names, load_description
 from .device import Truth, simulate, simulate_sessions
 from .output import read_truth, simulate_to_files, write_truth
+from .reference import reference
 
 __all__ = [
     "Truth",
     "bundled_names",
     "load_description",
     "read_truth",
+    "reference",
     "simulate",
     "simulate_sessions",
     "simulate_to_files",

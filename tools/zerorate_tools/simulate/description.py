@@ -83,7 +83,7 @@ def _yaml(data: bytes) -> Any:
 
 def _from_table(top: Any, path: str) -> Description:
     if not isinstance(top, Mapping):
-        raise BadDescription(path, "no table of entries", do="see `zerorate simulate --help`")
+        raise BadDescription(path, "no table of entries", do="see `zerorate simulate --entries`")
     known(top, _TOP, "", path)
     description = Description(
         sensor=filled(Sensor, top.get("sensor", {}), "sensor", path),
