@@ -1,0 +1,93 @@
+"""What the search finds on simulated devices, and what it leaves alone. The tables are `zerorate
+bench loop`.
+"""
+
+import pytest
+from zerorate_tools.loop.confounding import label
+from zerorate_tools.loop.judge import judge
+from zerorate_tools.loop.select import select
+from zerorate_tools.loop.simulated import HOSTILE, simulate
+from zerorate_tools.loop.single import split
+
+
+def look(device):
+    selection = select(device.sessions[:-1])
+    return selection, judge(selection, device.sessions[-1:])
+
+
+def names(selection):
+    return [n for f in selection.found for n in (label(f.candidate), *f.confounded_with)]
+
+
+@pytest.mark.parametrize("kind", ["plain", *HOSTILE])
+def test_nothing_is_found_where_there_is_noise_alone(kind):
+    for seed in (1, 2, 3):
+        assert names(select(simulate(seed, noise_kind=kind).sessions[:-1])) == []
+
+
+@pytest.mark.parametrize(
+    "effect",
+    [
+        "temperature-quadratic",
+        "temperature-kink",
+        "thermal-lag",
+        "thermal-hysteresis",
+        "linear-acceleration",
+        "supply-temperature",
+        "scale-factor",
+    ],
+)
+def test_an_undeclared_effect_of_three_floors_is_found_named_and_removed(effect):
+    selection, judgement = look(simulate(11, [(effect, 3.0)]))
+    assert effect in names(selection)
+    assert judgement.gains[0] > 10
+    assert judgement.after_rms < judgement.before_rms
+
+
+def test_a_square_of_a_delayed_channel_is_tied_to_that_channel():
+    selection, _ = look(simulate(12, [("load-squared-delayed", 3.0)]))
+    assert selection.found and selection.found[0].candidate.sources == ["load"]
+
+
+def test_two_effects_at_once_are_both_named():
+    selection, _ = look(simulate(13, [("thermal-hysteresis", 3.0), ("supply-voltage", 3.0)]))
+    assert {"thermal-hysteresis", "supply-voltage"} <= set(names(selection))
+
+
+def test_a_cause_nobody_recorded_is_never_confirmed_and_said_to_be_left():
+    for seed in (21, 22, 23):
+        selection, judgement = look(simulate(seed, hidden=5.0))
+        assert not any(judgement.confidence(i) == "confirmed" for i in range(len(selection.found)))
+        assert judgement.excess.left
+
+
+def test_a_step_is_listed_with_its_time_and_size_and_not_corrected():
+    device = simulate(31, [("step", 4.0)])
+    selection, judgement = look(device)
+    assert selection.found == [] and len(selection.steps) == 1
+    step = selection.steps[0]
+    jump = (
+        device.sessions[step.session].rate_dps[step.block]
+        - device.sessions[step.session].rate_dps[step.block - 1]
+    )
+    assert (step.size_dps * jump > 0).all()
+    assert judgement.before_rms == judgement.after_rms
+
+
+def test_one_recording_alone_is_split_in_time_with_gaps():
+    train, locked, folds = split(simulate(1, sessions=1).sessions[0])
+    assert not (train.available & locked.available).any()
+    assert sum(f.available.sum() for f in folds) < train.available.sum()
+    border = [
+        abs(i - j) for i in train.available.nonzero()[0] for j in locked.available.nonzero()[0]
+    ]
+    assert min(border) > 3
+
+
+def test_one_recording_alone_still_shows_a_large_effect():
+    train, locked, folds = split(
+        simulate(41, [("thermal-hysteresis", 5.0)], sessions=1).sessions[0]
+    )
+    selection = select([train], folds)
+    assert "thermal-hysteresis" in names(selection)
+    assert judge(selection, [locked]).gains[0] > 5

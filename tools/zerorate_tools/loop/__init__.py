@@ -1,0 +1,3 @@
+"""The loop: from recordings of one device to the effects that its model lacks, and how sure they
+are.
+"""

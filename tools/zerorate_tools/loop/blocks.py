@@ -1,0 +1,62 @@
+"""From ticks to the blocks that the loop fits."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .sessions import Session
+from .still import still_ticks
+from .ticks import Ticks
+
+BLOCK_S = 20.0
+_MOST_BLOCKS = 1500
+_LEAST_STILL = 0.25
+
+
+def block_seconds(ticks: list[Ticks]) -> float:
+    """20 s, or longer where ticks are long or sessions would have more than 1500 blocks; the same
+    for all.
+    """
+    tick_s = max(t.tick_s for t in ticks)
+    longest = max(len(t.count) * t.tick_s for t in ticks)
+    want = max(BLOCK_S, longest / _MOST_BLOCKS)
+    return tick_s * max(1, int(np.ceil(want / tick_s - 1e-9))) if tick_s < want else tick_s
+
+
+def session_of(ticks: Ticks, block_s: float) -> Session:
+    """Block means of the rate's still part, tick means of the rest, times counted from the first
+    sample.
+    """
+    per = max(1, round(block_s / ticks.tick_s))
+    blocks = len(ticks.count) // per
+    m = blocks * per
+    still = still_ticks(ticks)[:m]
+    rate, used = ticks.rate[:m], still
+    if ticks.reference is not None:
+        used = ticks.count[:m] > 0
+        rate = rate - ticks.reference[:m]
+    weight = np.where(used, ticks.count[:m], 0.0)
+    total = weight.reshape(blocks, per).sum(axis=1)
+    values = np.where(used[:, None], rate, 0.0) * weight[:, None]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean = values.reshape(blocks, per, 3).sum(axis=1) / total[:, None]
+    share = used.reshape(blocks, per).mean(axis=1)
+    mean[share < _LEAST_STILL] = np.nan
+    return Session(
+        ticks.name, per * ticks.tick_s, per, mean, np.where(share < _LEAST_STILL, 0.0, share),
+        sources_of(ticks, m), ticks.start_us,
+    )  # fmt: skip
+
+
+def sources_of(ticks: Ticks, m: int) -> dict[str, np.ndarray]:
+    """The first m ticks of every source by the names that effect slots know."""
+    out = {}
+    if ticks.temp is not None:
+        out["temp"] = ticks.temp[:m]
+    if ticks.accel is not None:
+        out.update({f"acc_{a}": ticks.accel[:m, i] for i, a in enumerate("xyz")})
+        out["vib"] = ticks.vib[:m]
+    if ticks.reference is not None:
+        out.update({f"rate_{a}": ticks.reference[:m, i] for i, a in enumerate("xyz")})
+    out.update({n: v[:m] for n, v in ticks.extra.items()})
+    return out

@@ -1,0 +1,57 @@
+"""Whether what is left of the three axes moves together: the mark of one cause, recorded or not."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.stats import chi2
+
+_LOWEST = (3, 6, 12, 24)
+
+
+def _whitened(regression, fit, terms):
+    """(sessions) list of (N, 3) residuals in units of their own noise at the fitted colour."""
+    out = []
+    z = regression.stack(terms)
+    for i in range(len(z)):
+        b = np.array([fit.base.coefficients[a, g] for a, g in enumerate(fit.base.best)]).T
+        out.append(regression.y[i] - z[i] @ b)
+    return out
+
+
+def coherence(regression, terms) -> tuple[float, np.ndarray]:
+    """(p, direction): p of the lowest frequencies' correlation between axes, and their common
+    direction in dps.
+
+    Bartlett's test of independence of the axes' lowest DCT coefficients, each scaled by its noise;
+    Bonferroni over the numbers of coefficients tried. Sessions with gaps are tested on their
+    contrasts' smoothest part.
+    """
+    fit = regression.fit(terms)
+    residual = _whitened(regression, fit, terms)
+    p, at = 1.0, _LOWEST[0]
+    for lowest in _LOWEST:
+        rows = np.vstack([_scaled(regression, fit, i, r)[:lowest] for i, r in enumerate(residual)])
+        sign, logdet = np.linalg.slogdet(np.corrcoef(rows.T) + 1e-9 * np.eye(3))
+        this = chi2.sf(-max(len(rows) - 1 - 11 / 6, 1.0) * logdet, 3) * len(_LOWEST)
+        if this < p:
+            p, at = this, lowest
+    low = np.vstack([r[:at] / regression.scale[i] for i, r in enumerate(residual)])
+    return min(p, 1.0), low.T @ low / len(low)
+
+
+def _scaled(regression, fit, i, residual):
+    spectrum = regression.whiteners[i].spectrum
+    own = np.column_stack([spectrum[g] for g in fit.base.best])[: len(residual)]
+    return residual / np.sqrt(own) / regression.scale[i]
+
+
+def turned_axes(regression, terms) -> np.ndarray:
+    """(3, 3) axes scaled to equal white noise, the first along what is common to the lowest
+    frequencies.
+    """
+    fit = regression.fit(terms)
+    count = sum(w.coefficients for w in regression.whiteners)
+    white = np.sqrt([fit.base.rss[a, g] / count for a, g in enumerate(fit.base.best)])
+    _, covariance = coherence(regression, terms)
+    values, vectors = np.linalg.eigh(covariance / np.outer(white, white))
+    return vectors[:, ::-1].T / white

@@ -1,0 +1,81 @@
+"""What competes with a found effect within the noise, and which of the tied ones to name."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from .catalogue import Candidate
+from .refine import refined
+
+#: Effects within this many nats of the best are named beside it.
+NATS = 3.0
+_WORTH_REFINING = 15.0
+
+
+def rivals(regression, terms, chosen, candidates, ratios) -> list[Candidate]:
+    """The chosen and all that fit nearly as well in its place, refined, the simplest first.
+
+    ratios: (K,) of the candidates beside the same terms.
+    """
+    best = regression.gains(terms, [chosen.terms]).sum()
+    tried = {label(chosen): (chosen, best)}
+    for i in np.argsort(-ratios):
+        c = candidates[i]
+        if label(c) in tried or ratios[i] < best - 2 * _WORTH_REFINING:
+            continue
+        c = refined(regression, terms, c)
+        tried[label(c)] = (c, regression.gains(terms, [c.terms]).sum())
+    top = max(r for _, r in tried.values())
+    near = [c for c, r in tried.values() if r > top - 2 * NATS]
+    return sorted(near, key=complexity)
+
+
+def complexity(candidate) -> tuple[int, int]:
+    """What a tie is broken by: a catalogue's effect before a form of any channel, then fewer free
+    parameters.
+    """
+    family = 0 if candidate.family == "catalogue" else 1
+    forms = (
+        "channel",
+        "channel-lag",
+        "channel-square",
+        "channel-product",
+        "channel-rate",
+        "channel-kink",
+    )
+    order = forms.index(candidate.kind) if candidate.kind in forms else len(forms)
+    return family, order if family else len(candidate.refine)
+
+
+def label(candidate) -> str:
+    """The kind, with the channels for forms of any channel."""
+    if candidate.kind.startswith("channel"):
+        return f"{candidate.kind}({', '.join(candidate.sources)})"
+    return candidate.kind
+
+
+def named(c: Candidate, coefficients: np.ndarray) -> Candidate:
+    """The candidate under the name that its refined parameters and (terms, 3) coefficients deserve.
+
+    Rate and lag of temperature are one basis: below a time constant of 50 s it is called a rate. A
+    matrix on the
+    rates is a scale factor where its diagonal holds most of it.
+    """
+    if c.kind in ("thermal-rate", "thermal-lag"):
+        slow = c.terms[0].lag_s > 50.0
+        mode, kind = ("difference", "thermal-lag") if slow else ("rate", "thermal-rate")
+        return replace(c, kind=kind, terms=(replace(c.terms[0], lag_mode=mode),))
+    if c.kind == "rate-scale":
+        diagonal = (np.diag(coefficients) ** 2).sum()
+        share = diagonal / (coefficients**2).sum()
+        kind = (
+            "scale-factor"
+            if share > 0.9
+            else "cross-axis"
+            if share < 0.1
+            else "scale-factor+cross-axis"
+        )
+        return replace(c, kind=kind)
+    return c

@@ -1,0 +1,117 @@
+"""Data quality before any regression: what is refused, what is set aside, what is said."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..errors import ZerorateError
+from .sessions import Session
+
+LEAST_BLOCKS = 15
+_COPY = 0.99999
+_SETTINGS = (
+    "sensor",
+    "odr_hz",
+    "gyro_lsb_per_dps",
+    "accel_lsb_per_g",
+    "temp_lsb_per_degc",
+    "temp_offset_degc",
+)
+
+
+class CannotClose(ZerorateError):
+    """Recordings from which nothing can be learned; the text says what is needed."""
+
+
+@dataclass
+class GateReport:
+    """What was set aside: faults by recording, dropped channels by reason, sentences for the
+    report.
+    """
+
+    faults: dict[str, dict[str, int]] = field(default_factory=dict)
+    dropped: dict[str, str] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+
+
+def same_settings(ticks: list) -> None:
+    """Raise CannotClose for a session of another sensor or scale, or for the same recording twice."""
+    first = ticks[0]
+    for t in ticks[1:]:
+        for name in _SETTINGS:
+            one, other = getattr(first.scales, name), getattr(t.scales, name)
+            if one != other:
+                raise CannotClose(
+                    f"{t.name}: {name} is {other}, but {one} in {first.name}; "
+                    "sessions must be of one device with one setting"
+                )
+    seen: dict[str, str] = {}
+    for t in ticks:
+        if t.digest in seen:
+            raise CannotClose(
+                f"{t.name} holds the same samples as {seen[t.digest]}; name each recording once"
+            )
+        seen[t.digest] = t.name
+
+
+def enough(session: Session) -> None:
+    """Raise CannotClose where too little of a recording is still."""
+    still = int(session.available.sum())
+    minutes = LEAST_BLOCKS * session.block_s / 60
+    if session.blocks < LEAST_BLOCKS:
+        have = session.blocks * session.block_s / 60
+        raise CannotClose(
+            f"{session.name}: {have:.1f} minutes are too short; "
+            f"{minutes:.0f} minutes at rest are needed, better an hour"
+        )
+    if still < LEAST_BLOCKS:
+        raise CannotClose(
+            f"{session.name}: only {still * session.block_s / 60:.1f} minutes are still; "
+            f"{minutes:.0f} minutes at rest are needed: leave the device untouched for longer"
+        )
+
+
+def usable_channels(sessions: list[Session], report: GateReport) -> None:
+    """Take out of the sessions every source that is constant, copied or not in all of them; say so
+    in the report.
+    """
+    names = list(dict.fromkeys(n for s in sessions for n in s.sources))
+    for name in names:
+        reason = _unusable(name, sessions)
+        if reason:
+            report.dropped[name] = reason
+            for s in sessions:
+                s.sources.pop(name, None)
+    kept = [n for n in names if n not in report.dropped]
+    for i, name in enumerate(kept):
+        twin = next(
+            (o for o in kept[:i] if o not in report.dropped and _copies(o, name, sessions)), None
+        )
+        if twin:
+            report.dropped[name] = f"a copy of {twin}: the two cannot be told apart"
+            for s in sessions:
+                s.sources.pop(name)
+
+
+def _unusable(name, sessions):
+    missing = [s.name for s in sessions if name not in s.sources]
+    if missing:
+        return f"not in {', '.join(missing)}"
+    if not all(np.isfinite(s.sources[name]).all() for s in sessions):
+        return "no values"
+    if name not in ("acc_x", "acc_y", "acc_z") and all(
+        np.ptp(s.sources[name]) == 0 for s in sessions
+    ):
+        return "constant"
+    return None
+
+
+def _copies(a, b, sessions):
+    if a.startswith(("acc_", "rate_")) and b.startswith(("acc_", "rate_")):
+        return False
+    x = np.concatenate([s.sources[a] - s.sources[a].mean() for s in sessions])
+    y = np.concatenate([s.sources[b] - s.sources[b].mean() for s in sessions])
+    scale = np.sqrt((x @ x) * (y @ y))
+    return bool(scale > 0 and abs(x @ y) / scale > _COPY)

@@ -1,0 +1,69 @@
+"""The colour of the noise in the DCT of a session: white + flicker + random walk, or something
+steeper.
+
+Random walk is exactly diagonal in a DCT-II without its mean (the DCT-II diagonalises D'D of the
+first difference D),
+white noise too; flicker is taken as the square root of the random walk's spectrum, a Whittle
+approximation.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.fft import dct
+
+_FLICKER = (0.0, 0.01, 0.03, 0.08, 0.2, 0.5, 1.3, 3.5)
+_WALK = (0.0, 0.004, 0.012, 0.03, 0.07, 0.15, 0.4, 1.0, 3.0)
+_STEEP = (0.01, 0.025, 0.06, 0.15, 0.4, 1.0)
+_STEEP_FLICKER = (0.0, 0.08)
+
+
+@dataclass(frozen=True)
+class Shape:
+    """Noise spectrum relative to its white part: corner frequencies, in radians per block."""
+
+    flicker: float
+    walk: float
+    steep: float
+    slope: int  # of the steep part: 3 or 4; 0 when there is none
+
+
+def shapes() -> list[Shape]:
+    """The grid over which the noise is refitted with every candidate."""
+    plain = [Shape(f, r, 0.0, 0) for f in _FLICKER for r in _WALK]
+    steep = [Shape(f, 0.0, c, a) for a in (3, 4) for c in _STEEP for f in _STEEP_FLICKER]
+    return plain + steep
+
+
+GRID = shapes()
+IS_STEEP = np.array([s.slope > 0 for s in GRID])
+#: Steep noise can stand for any smooth effect, so it must be worth this many nats an axis to be
+#: believed.
+STEEP_NATS = 3.0
+LOG_PRIOR = np.where(IS_STEEP, -STEEP_NATS, 0.0)
+
+
+def frequency(n: int) -> np.ndarray:
+    """(n - 1,) 2 sin(pi k / 2n), k = 1..n-1: the DCT's frequencies as a first difference sees
+    them.
+    """
+    return 2.0 * np.sin(np.pi * np.arange(1, n) / (2 * n))
+
+
+def spectra(n: int) -> np.ndarray:
+    """(shapes, n - 1) relative variance of each DCT coefficient of a session of n blocks."""
+    phi = frequency(n)
+    rows = []
+    for s in GRID:
+        row = 1.0 + s.flicker / phi + (s.walk / phi) ** 2
+        rows.append(row + (s.steep / phi) ** s.slope if s.slope else row)
+    return np.array(rows)
+
+
+def transform(columns: np.ndarray) -> np.ndarray:
+    """Orthonormal DCT-II along the first axis without its mean: a session's turn-on offset is
+    gone.
+    """
+    return dct(columns, axis=0, norm="ortho")[1:]

@@ -1,0 +1,250 @@
+"""Find an effect, add it, look again: until nothing passes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from . import confounding, events
+from .basis import Term
+from .catalogue import Candidate, ranges
+from .catalogue import candidates as all_candidates
+from .common_cause import coherence, turned_axes
+from .decide import Decision, decide, smallest_ratio
+from .detectable import smallest_dps
+from .refine import refined
+from .regression import Regression
+from .sessions import Session
+
+MOST_EFFECTS = 6
+_KINDS_TRIED = 4
+_TURN_BELOW = 1e-3
+
+
+@dataclass
+class Found:
+    """An accepted effect, with its rivals and what the locks said of it."""
+
+    candidate: Candidate
+    decision: Decision
+    confounded_with: list[str] = field(default_factory=list)
+
+
+@dataclass
+class Selection:
+    """What the training sessions show."""
+
+    found: list[Found]
+    steps: list[events.Step]
+    refused: list[tuple[str, str]]
+    outliers: int
+    regression: Regression
+    straight: tuple[Term, ...]
+    bend: tuple[Term, ...]
+    pool: list[Candidate]
+    smallest_dps: dict[str, float]
+
+    @property
+    def terms(self) -> list[Term]:
+        """Slots of every found effect, in the order found."""
+        return [t for f in self.found for t in f.candidate.terms]
+
+
+def straight_line(sessions: list[Session]) -> tuple[Term, ...]:
+    """What the firmware's estimators take anyway: the line over temperature, never clamped."""
+    span = ranges(sessions).get("temp")
+    return (Term("temp", centre=span[2]),) if span and span[0] < span[1] else ()
+
+
+class Search:
+    """The state of one search over some sessions."""
+
+    def __init__(self, sessions: list[Session], folds: list[Session] | None = None):
+        self.regression = Regression(sessions)
+        self.folds = Regression(folds) if folds else None
+        self.straight = straight_line(sessions)
+        self.bend = tuple(replace(t, power=2) for t in self.straight)
+        self.pool = all_candidates(sessions)
+        self.singles = [c.terms[0] for c in self.pool if len(c.terms) == 1]
+        self.found: list[Found] = []
+        self.steps: list[events.Step] = []
+        self.refused: list[tuple[str, str]] = []
+        self.dropped: set[str] = set()
+
+    def terms(self, leave: int | None = None) -> list[Term]:
+        return [t for i, f in enumerate(self.found) if i != leave for t in f.candidate.terms]
+
+    def run(self) -> Selection:
+        while len(self.found) < MOST_EFFECTS and self._add_one():
+            self._drop_idle()
+        self._list_steps()
+        self._name_rivals()
+        r = self.regression
+        smallest = self._smallest()
+        return Selection(
+            self.found,
+            self.steps,
+            self.refused,
+            r.outliers,
+            r,
+            self.straight,
+            self.bend,
+            self.pool,
+            smallest,
+        )
+
+    def _smallest(self):
+        r = self.regression
+        axes = r.axes
+        r.turn(np.eye(3))
+        bent = [c for c in self.pool if c.kind != "temperature-quadratic"]
+        quadratic = [c for c in self.pool if c.kind == "temperature-quadratic"]
+        out = smallest_dps(r, [*self.straight, *self.terms()], quadratic, self._tried)
+        out.update(smallest_dps(r, [*self.straight, *self.bend, *self.terms()], bent, self._tried))
+        r.turn(axes)
+        return out
+
+    def _look_afresh(self):
+        r = self.regression
+        r.turn(np.eye(3))
+        nuisances = [*self.straight, *self.bend, *self.terms()]
+        r.settle(nuisances)
+        if coherence(r, nuisances)[0] < _TURN_BELOW:
+            r.turn(turned_axes(r, nuisances))
+            r.settle(nuisances)
+        if self.folds:
+            self.folds.turn(r.axes)
+            self.folds.settle(nuisances)
+
+    def _nuisances(self, candidate: Candidate) -> list[Term]:
+        bend = () if candidate.kind == "temperature-quadratic" else self.bend
+        return [*self.straight, *bend, *self.terms()]
+
+    def _ratios(self):
+        """Ratios beside the straight line alone (for choosing) and with the bend too (for
+        testing).
+        """
+        r, groups = self.regression, [c.terms for c in self.pool]
+        choose = r.gains([*self.straight, *self.terms()], groups).sum(axis=1)
+        test = r.gains([*self.straight, *self.bend, *self.terms()], groups).sum(axis=1)
+        test = np.where([c.kind == "temperature-quadratic" for c in self.pool], choose, test)
+        return choose, test
+
+    def _tried(self, candidate: Candidate) -> int:
+        """Candidates paid for: every kind of a family has an equal share of its level, split over
+        the kind's grid.
+        """
+        kinds = {c.kind for c in self.pool if c.family == candidate.family}
+        return len(kinds) * sum(c.kind == candidate.kind for c in self.pool)
+
+    def _add_one(self) -> bool:
+        self._look_afresh()
+        while True:
+            accepted, blocked = self._best_candidate()
+            if accepted:
+                self.found.append(accepted)
+                return True
+            if not blocked:
+                return False
+
+    def _best_candidate(self) -> tuple[Found | None, bool]:
+        choose, test = self._ratios()
+        dof = np.array([3 * len(c.terms) for c in self.pool])
+        need = np.array(
+            [smallest_ratio(c.family, 3 * len(c.terms), self._tried(c)) for c in self.pool]
+        )
+        passing = np.flatnonzero(test > need)
+        passing = passing[np.argsort(-(choose - 2.0 * dof)[passing])]
+        if self._step_is_larger(test[passing].max() if len(passing) else 0.0):
+            return None, True
+        kinds: list[str] = []
+        for i in passing:
+            c = self.pool[i]
+            if (
+                c.kind in kinds
+                or len(kinds) >= _KINDS_TRIED
+                or confounding.label(c) in self.dropped
+            ):
+                continue
+            kinds.append(c.kind)
+            found = self._consider(c)
+            if found:
+                return found, False
+        return None, False
+
+    def _step_is_larger(self, ratio: float) -> bool:
+        if len(self.steps) >= events.MOST_PER_SESSION * len(self.regression.sessions):
+            return False
+        step = events.strongest(self.regression, [*self.straight, *self.bend, *self.terms()])
+        if not events.is_event(step) or step.ratio < ratio:
+            return False
+        self._take_step(step)
+        return True
+
+    def _take_step(self, step):
+        self.steps.append(step)
+        self.regression.set_events([events.column(self.regression, s) for s in self.steps])
+
+    def _consider(self, c: Candidate) -> Found | None:
+        nuisances = self._nuisances(c)
+        best = refined(self.regression, [*self.straight, *self.terms()], c)
+        ratio = float(self.regression.gains(nuisances, [best.terms]).sum())
+        decision = decide(
+            self.regression,
+            self.folds or self.regression,
+            nuisances,
+            best,
+            ratio,
+            self._tried(c),
+            self.singles,
+        )
+        if decision.accepted:
+            return Found(best, decision)
+        self.refused.append((confounding.label(best), decision.reason))
+        return None
+
+    def _drop_idle(self):
+        """An effect that the later ones explain is taken out again; the others' parameters are
+        refined together.
+        """
+        for i in reversed(range(len(self.found))):
+            c = self.found[i].candidate
+            rest = [*self.straight, *self.terms(leave=i)]
+            ratio = self.regression.gains(rest, [c.terms]).sum()
+            if ratio < smallest_ratio(c.family, 3 * len(c.terms), self._tried(c)):
+                self.refused.append((confounding.label(c), "explained by effects found later"))
+                self.dropped.add(confounding.label(c))
+                del self.found[i]
+            else:
+                self.found[i].candidate = refined(self.regression, rest, c)
+
+    def _list_steps(self):
+        """Steps again from none, beside the effects found."""
+        self.steps = []
+        self.regression.set_events([])
+        self._look_afresh()
+        self.steps = events.find_all(self.regression, [*self.straight, *self.bend, *self.terms()])
+
+    def _name_rivals(self):
+        for i, f in enumerate(self.found):
+            rest = [*self.straight, *self.terms(leave=i)]
+            ratios = self.regression.gains(rest, [c.terms for c in self.pool]).sum(axis=1)
+            near = confounding.rivals(self.regression, rest, f.candidate, self.pool, ratios)
+            f.candidate = self._named(rest, near[0])
+            others = [confounding.label(self._named(rest, c)) for c in near[1:]]
+            f.confounded_with = [
+                n for n in dict.fromkeys(others) if n != confounding.label(f.candidate)
+            ]
+
+    def _named(self, rest, candidate):
+        fit = self.regression.fit([*rest, *candidate.terms])
+        return confounding.named(candidate, fit.coefficients[len(rest) :])
+
+
+def select(sessions: list[Session], folds: list[Session] | None = None) -> Selection:
+    """Everything that the training sessions show.
+
+    folds: pieces of a single session, left out in turn where there are no further sessions.
+    """
+    return Search(sessions, folds).run()

@@ -1,0 +1,65 @@
+"""One power-on session of one device as the loop sees it: block means of the still rate, tick
+means of everything else.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+
+@dataclass
+class Session:
+    """A power-on session.
+
+    rate_dps: (n, 3) mean rate of each block's still part, NaN where there is none.
+    weight: (n,) share of the block that was still, 0..1.
+    sources: name -> (n * ticks_per_block,) tick means, no NaN (gaps held), units as in effect-
+    slots.
+    """
+
+    name: str
+    block_s: float
+    ticks_per_block: int
+    rate_dps: np.ndarray
+    weight: np.ndarray
+    sources: dict[str, np.ndarray] = field(default_factory=dict)
+    start_us: int = 0
+    noise_dps: np.ndarray | None = None
+
+    @property
+    def blocks(self) -> int:
+        """Number of blocks, still or not."""
+        return len(self.rate_dps)
+
+    @property
+    def tick_s(self) -> float:
+        """Seconds per tick: the period at which effect slots are updated."""
+        return self.block_s / self.ticks_per_block
+
+    @property
+    def available(self) -> np.ndarray:
+        """(n,) bool: blocks with a usable rate."""
+        return np.isfinite(self.rate_dps).all(axis=1) & (self.weight > 0)
+
+    def block_mean(self, ticks: np.ndarray) -> np.ndarray:
+        """Mean over each block of a (n * ticks_per_block,) series."""
+        return ticks.reshape(self.blocks, self.ticks_per_block).mean(axis=1)
+
+    def time_s(self) -> np.ndarray:
+        """(n * ticks_per_block,) seconds since power-on at the middle of each tick."""
+        return (np.arange(self.blocks * self.ticks_per_block) + 0.5) * self.tick_s
+
+    def source(self, name: str) -> np.ndarray:
+        """Ticks of a source by name; `time` and `one` are always there. Raises KeyError."""
+        if name == "time":
+            return self.time_s()
+        if name == "one":
+            return np.ones(self.blocks * self.ticks_per_block)
+        return self.sources[name]
+
+
+def common_sources(sessions: list[Session]) -> list[str]:
+    """Names of the sources that every session has, in the first session's order."""
+    return [n for n in sessions[0].sources if all(n in s.sources for s in sessions)]

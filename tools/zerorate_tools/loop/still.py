@@ -1,0 +1,71 @@
+"""Which ticks were still, judged without assuming a small bias."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.ndimage import binary_dilation, median_filter
+
+_SPREAD = 2.0  # times the quiet spread
+_OFF_DPS = 1.0  # from the running middle of quiet ticks
+_QUIET_SHARE = 0.2
+_WINDOW_S = 900.0
+
+
+def still_ticks(ticks) -> np.ndarray:
+    """(m,) bool. Quiet: the rate's spread within a tick is near that of the quietest ticks.
+    Still: its mean is also
+    near the running middle of quiet ticks, so a steady turn does not count; a turn below 1 dps is
+    told by the
+    accelerometer alone, if its axis is not vertical."""
+    there = ticks.count > 0
+    if not there.any():
+        return there
+    quiet = there & _is_quiet(ticks, there)
+    middle = _running_middle(ticks.rate, quiet, max(3, int(_WINDOW_S / ticks.tick_s) | 1))
+    near = (np.abs(ticks.rate - middle) < _OFF_DPS).all(axis=1)
+    still = quiet & near
+    if ticks.accel is not None:
+        still &= _gravity_holds(ticks, there)
+    return still
+
+
+def _is_quiet(ticks, there):
+    if np.median(ticks.count[there]) < 4:
+        return there
+    moving = np.zeros(len(there), bool)
+    for a in range(3):
+        spread = np.sqrt(ticks.rate_var[:, a])
+        quiet = np.quantile(spread[there], _QUIET_SHARE)
+        moving |= ~(spread <= _SPREAD * quiet + 1.0 / ticks.scales.gyro_lsb_per_dps)
+    return ~binary_dilation(moving, iterations=1)
+
+
+def _running_middle(rate, quiet, window):
+    """(m, 3) median of quiet ticks around each; the whole recording's where there are none."""
+    out = np.empty_like(rate)
+    at = np.flatnonzero(quiet)
+    for a in range(3):
+        if len(at) < 3:
+            out[:, a] = np.nanmedian(rate[:, a])
+            continue
+        values = rate[at, a]
+        middle = median_filter(values, min(window, len(values) | 1), mode="nearest")
+        out[:, a] = np.interp(np.arange(len(rate)), at, middle)
+    return out
+
+
+def _gravity_holds(ticks, there):
+    """(m,) bool: the direction of gravity does not turn by more than its own noise allows over ten
+    ticks.
+    """
+    lag = max(1, int(10.0 / ticks.tick_s))
+    if len(there) <= 2 * lag:
+        return np.ones(len(there), bool)
+    smooth = np.column_stack(
+        [median_filter(ticks.accel[:, a], 5, mode="nearest") for a in range(3)]
+    )
+    turned = np.zeros(len(there))
+    change = np.linalg.norm(smooth[2 * lag :] - smooth[: -2 * lag], axis=1)
+    turned[lag:-lag] = change
+    usual = np.quantile(change, 0.5)
+    return turned < max(8.0 * usual, 0.03)

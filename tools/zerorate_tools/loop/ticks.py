@@ -1,0 +1,211 @@
+"""A recording streamed once into one-second ticks: means and spreads, with bad readings set aside
+and counted.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass, field
+from os import PathLike
+
+import numpy as np
+from scipy.signal import lfilter
+
+from ..recordings import open_recording
+from ..recordings.checks import GAP
+from ..recordings.recording import ACCEL, COLUMNS, GYRO, TEMP, TIME
+
+TICK_S = 1.0
+_RAIL = 32767
+#: First-order high-pass of the acceleration for its vibration, per sample.
+_VIBRATION_ALPHA = 1.0 / 32.0
+REFERENCE = ("ref_gx", "ref_gy", "ref_gz")
+
+
+@dataclass
+class Ticks:
+    """Sums per tick. count: (m,) good samples; rate, rate_var: (m, 3) dps, dps^2; others (m,) or
+    (m, 3).
+    """
+
+    name: str
+    scales: object
+    tick_s: float
+    start_us: int
+    count: np.ndarray
+    rate: np.ndarray
+    rate_var: np.ndarray
+    accel: np.ndarray | None
+    accel_var: np.ndarray | None
+    vib: np.ndarray | None
+    temp: np.ndarray | None
+    reference: np.ndarray | None
+    extra: dict[str, np.ndarray]
+    faults: dict[str, int] = field(default_factory=dict)
+    samples: int = 0
+    digest: str = ""
+
+
+class _Sums:
+    """Growing sums per tick of named columns."""
+
+    def __init__(self):
+        self.sums: dict[str, np.ndarray] = {}
+
+    def add(self, name, tick, values, size):
+        total = np.bincount(tick, values, minlength=size)
+        old = self.sums.get(name)
+        if old is not None:
+            total[: len(old)] += old
+        self.sums[name] = total
+
+    def get(self, name, size):
+        return np.pad(self.sums[name], (0, size - len(self.sums[name])))
+
+
+class _Vibration:
+    """Squared distance of each acceleration from its slow part, the filter's state kept between
+    batches.
+    """
+
+    def __init__(self):
+        self.state = None
+
+    def __call__(self, accel: np.ndarray) -> np.ndarray:
+        keep = 1.0 - _VIBRATION_ALPHA
+        if self.state is None:
+            self.state = keep * accel[:1]
+        slow, self.state = lfilter([_VIBRATION_ALPHA], [1.0, -keep], accel, axis=0, zi=self.state)
+        return ((accel - slow) ** 2).sum(axis=1)
+
+
+def read_ticks(path: str | PathLike[str], tick_s: float = TICK_S) -> Ticks:
+    """Stream a recording of any length into ticks. Raises BadRecording.
+
+    A recording slower than one sample a tick gets longer ticks, so that each holds one.
+    """
+    opened = open_recording(path, keep_gaps=True)
+    tick_s = max(tick_s, round(1.0 / opened.scales.odr_hz, 3))
+    reader = _Reader(opened.scales, opened.column_names, tick_s)
+    for batch in opened.batches(rows=1 << 18):
+        reader.add(batch)
+    return reader.result(opened.name)
+
+
+class _Reader:
+    def __init__(self, scales, names, tick_s):
+        self.scales, self.names, self.tick_s = scales, names, tick_s
+        self.sums, self.vibration = _Sums(), _Vibration()
+        self.start, self.size, self.samples = None, 0, 0
+        self.previous = None
+        self.faults = {"clipped": 0, "repeated": 0, "all-zero": 0, "temperature-jump": 0}
+        self.digest = hashlib.sha256()
+        self.centre = None
+        self.extra = [n for n in names if n not in COLUMNS and n not in REFERENCE]
+
+    def add(self, batch):
+        t_us = batch[TIME]
+        if not len(t_us):
+            return
+        gyro = np.column_stack([batch[n] for n in GYRO])
+        if self.start is None:
+            self.start, self.centre = int(t_us[0]), gyro[:256].mean(axis=0)
+        self.digest.update(np.ascontiguousarray(gyro[:4096]).tobytes())
+        self.samples += len(t_us)
+        tick = ((t_us - self.start) / (self.tick_s * 1e6)).astype(np.int64)
+        self.size = max(self.size, int(tick[-1]) + 1)
+        good = self._good(batch, gyro)
+        self._channels(batch, tick)
+        tick, gyro = tick[good], gyro[good]
+        self.sums.add("count", tick, np.ones(len(tick)), self.size)
+        self._moments("gyro", tick, (gyro - self.centre) / self.scales.gyro_lsb_per_dps)
+        if "ax" in self.names:
+            accel = np.column_stack([batch[n] for n in ACCEL])[good] / self.scales.accel_lsb_per_g
+            self._moments("accel", tick, accel)
+            if len(accel):
+                self.sums.add("vib", tick, self.vibration(accel), self.size)
+
+    def _moments(self, name, tick, values):
+        for a in range(3):
+            self.sums.add(f"{name}{a}", tick, values[:, a], self.size)
+            self.sums.add(f"{name}{a}^2", tick, values[:, a] ** 2, self.size)
+
+    def _channels(self, batch, tick):
+        for name in [*self.extra, *([TEMP] if TEMP in self.names else []), *self._reference()]:
+            there = batch[name] != GAP
+            self.sums.add(name, tick[there], batch[name][there].astype(float), self.size)
+            self.sums.add(f"{name} count", tick[there], np.ones(int(there.sum())), self.size)
+
+    def _reference(self):
+        return list(REFERENCE) if all(n in self.names for n in REFERENCE) else []
+
+    def _good(self, batch, gyro):
+        """(n,) bool: no rail, no exact repeat of the whole sample, no frame of zeros, no leap of
+        temperature.
+        """
+        frame = np.column_stack([batch[n] for n in self.names if n in COLUMNS and n != TIME])
+        before = np.vstack(
+            [self.previous if self.previous is not None else frame[:1] + 1, frame[:-1]]
+        )
+        self.previous = frame[-1:]
+        clipped = (np.abs(gyro) >= _RAIL).any(axis=1)
+        repeated = (frame == before).all(axis=1) & (self.scales.odr_hz > 2.0)
+        zero = (frame == 0).all(axis=1)
+        bad = {"clipped": clipped, "repeated": repeated, "all-zero": zero}
+        if TEMP in self.names:
+            at = [n for n in self.names if n in COLUMNS and n != TIME].index(TEMP)
+            bad["temperature-jump"] = (np.abs(frame[:, at] - before[:, at]) >= 400) & (
+                self.scales.odr_hz > 2.0
+            )
+            bad["temperature-jump"][0] &= self.samples > len(frame)
+        for name, mask in bad.items():
+            self.faults[name] += int(mask.sum())
+        return ~np.logical_or.reduce(list(bad.values()))
+
+    def _mean(self, name):
+        total, count = self.sums.get(name, self.size), self.sums.get(f"{name} count", self.size)
+        return _gap_filled(np.where(count > 0, total / np.maximum(count, 1), np.nan))
+
+    def _triple(self, name, count):
+        mean = (
+            np.column_stack([self.sums.get(f"{name}{a}", self.size) for a in range(3)])
+            / count[:, None]
+        )
+        square = (
+            np.column_stack([self.sums.get(f"{name}{a}^2", self.size) for a in range(3)])
+            / count[:, None]
+        )
+        return mean, np.maximum(square - mean**2, 0.0)
+
+    def result(self, name):
+        raw = self.sums.get("count", self.size)
+        count = np.where(raw > 0, raw, np.nan)
+        rate, rate_var = self._triple("gyro", count)
+        rate = rate + self.centre / self.scales.gyro_lsb_per_dps
+        accel = accel_var = vib = temp = reference = None
+        if "ax" in self.names:
+            accel, accel_var = self._triple("accel", count)
+            vib = _gap_filled(self.sums.get("vib", self.size) / count)
+            accel = np.column_stack([_gap_filled(accel[:, a]) for a in range(3)])
+        if TEMP in self.names:
+            temp = self.scales.temp_degc(self._mean(TEMP))
+        if self._reference():
+            reference = (
+                np.column_stack([self._mean(n) for n in REFERENCE]) / self.scales.gyro_lsb_per_dps
+            )
+        extra = {
+            n: self._mean(n) for n in self.extra if np.any(self.sums.get(f"{n} count", self.size))
+        }
+        return Ticks(
+            name, self.scales, self.tick_s, self.start, raw, rate, rate_var, accel, accel_var, vib,
+            temp,
+            reference, extra, self.faults, self.samples, self.digest.hexdigest(),
+        )  # fmt: skip
+
+
+def _gap_filled(values: np.ndarray) -> np.ndarray:
+    """Gaps bridged by a straight line, the ends held; all-NaN stays so."""
+    good = np.isfinite(values)
+    if not good.any():
+        return values
+    return np.interp(np.arange(len(values)), np.flatnonzero(good), values[good])
