@@ -1,8 +1,6 @@
 """Foreign recordings come out as integers in LSB, and every loss is told."""
 
 import gzip
-import os
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -376,15 +374,6 @@ def test_bins_without_time_are_a_table_and_no_recording(tmp_path):
 # The real ones, where they are
 
 
-@pytest.fixture(scope="module")
-def data():
-    beside = Path(__file__).parents[3] / "shared" / "data"
-    folder = Path(os.environ.get("ZERORATE_DATA", beside))
-    if not folder.is_dir():
-        pytest.skip("no real recordings: set ZERORATE_DATA to their folder")
-    return folder
-
-
 @pytest.mark.parametrize(
     ("pattern", "hz", "files"),
     [
@@ -396,8 +385,8 @@ def data():
         ("broad/02*.mat", None, 1),
     ],
 )
-def test_every_real_recording_is_imported(data, tmp_path, pattern, hz, files):
-    found = sorted(data.glob(pattern))
+def test_every_real_recording_is_imported(real_data, tmp_path, pattern, hz, files):
+    found = sorted(real_data.glob(pattern))
     assert len(found) == files
     for number, source in enumerate(found):
         out = tmp_path / f"{number}.parquet"
@@ -406,8 +395,8 @@ def test_every_real_recording_is_imported(data, tmp_path, pattern, hz, files):
         assert len(read_recording(out)) == report.rows_written
 
 
-def test_the_real_mpu6050_comes_back_to_integers(data):
-    for source in data.glob("mpu6050-unmoved/*.csv.gz"):
+def test_the_real_mpu6050_comes_back_to_integers(real_data):
+    for source in real_data.glob("mpu6050-unmoved/*.csv.gz"):
         frame = pd.read_csv(source)
         frame = frame[frame["temp_C"] != 0]
         recording, _ = read_foreign(source)
@@ -415,6 +404,6 @@ def test_the_real_mpu6050_comes_back_to_integers(data):
         assert np.abs(recording.gyro_lsb() - printed * 131).max() < 0.001
 
 
-def test_the_real_bins_are_read(data):
-    assert len(read_bins(data / "hipnuc-bins" / "unitA_ac697ea.log")) == 30
-    assert len(read_bins(data / "hipnuc-bins" / "unitB_d6f064e.log")) == 34
+def test_the_real_bins_are_read(real_data):
+    assert len(read_bins(real_data / "hipnuc-bins" / "unitA_ac697ea.log")) == 30
+    assert len(read_bins(real_data / "hipnuc-bins" / "unitB_d6f064e.log")) == 34
