@@ -336,6 +336,7 @@ def test_a_delay_between_stamp_and_reading_shows_in_motion():
 # Outside any catalogue
 
 
+POSE = {"kind": "pose", "s": 5}
 LOAD = {"load": {"kind": "levels", "low": 0.0, "high": 100.0, "mean_s": 200.0}}
 
 
@@ -385,6 +386,18 @@ def test_an_effect_of_wanted_size_has_it_over_all_sessions():
     parts = [truth.bias_lsb - truth.bias_lsb.mean(axis=0) for _, truth in simulate_sessions(sized)]
     rms = np.sqrt((np.concatenate(parts) ** 2).mean(axis=0)) / 1000
     assert rms == pytest.approx([0.01, 0.02, 0.03], rel=0.02)
+
+
+def test_a_matrix_of_wanted_size_keeps_its_proportions():
+    faces = [b for f in ("+x", "-y", "-z") for b in (POSE | {"face": f}, {"kind": "rest", "s": 15})]
+    matrix = [[1.0, 0, 0], [0, 0, 0], [0.5, 0, 0]]
+    effect = {"kind": "linear-g", "matrix": matrix, "rms_dps": 0.01}
+    turned = {"minutes": 1, "effect": [effect], "every_session": {"motion": faces}}
+    _, truth = simulate(device(**turned))
+    added = (truth.bias_lsb / 1000 - truth.bias_lsb[truth.still].mean(axis=0) / 1000)[truth.still]
+    assert np.sqrt((added**2).mean()) == pytest.approx(0.01, rel=0.02)
+    assert added[:, 2] == pytest.approx(added[:, 0] / 2)
+    assert (added[:, 1] == 0).all()
 
 
 def test_beyond_temperature_the_size_is_what_a_parabola_leaves():
@@ -517,7 +530,9 @@ def test_yaml_and_toml_describe_alike(tmp_path):
         (device(every_session={"motion": [{"kind": "rest", "s": 1, "dps": 1}]}), "motion rest"),
         (device(every_session={"temperature": [{"to": 5}]}), "a temperature has no duration"),
         (device(effect=[{"kind": "magic"}]), "effect 'magic' is unknown; choose of hysteresis"),
+        (device(effect=[{"dps": 1.0}]), "effect None is unknown"),
         (device(effect=[{"kind": "kink", "at": 3}]), "effect kink"),
+        (device(effect=[{"kind": "timing", "late_ms": 3}]), "effect timing.late_ms is unknown"),
         (
             device(effect=[{"kind": "supply", "dps": 1}]),
             "no channel 'vdd_mv'; add .channels.vdd_mv",

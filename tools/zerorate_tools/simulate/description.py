@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import BadDescription, MissingLibrary
-from .entries import filled, is_number, known, table, tables
+from .effects import EFFECTS, TIMING
+from .entries import check_value, filled, is_number, known, table, tables
 from .motion import FACES, MOTIONS
 from .paths import seconds
 from .schema import Bias, Description, Noise, Sensor, Session, Table
@@ -91,7 +92,7 @@ def _from_table(top: Any, path: str) -> Description:
         noise=filled(Noise, top.get("noise", {}), "noise", path),
         sessions=_sessions(top, path),
         channels=_channels(top, path),
-        effects=tables(top.get("effect", []), "effect", path),
+        effects=_effects(top, path),
         path=path,
         **_scalars(top, path),
     )
@@ -115,6 +116,20 @@ def _sessions(top: Table, path: str) -> list[Session]:
 def _channels(top: Table, path: str) -> dict[str, Table]:
     given = table(top.get("channels", {}), "channels", path)
     return {name: table(one, f"channels.{name}", path) for name, one in given.items()}
+
+
+def _effects(top: Table, path: str) -> list[Table]:
+    given = tables(top.get("effect", []), "effect", path)
+    for effect in given:
+        kind = effect.get("kind")
+        if kind == "timing":
+            known(effect, ("kind", *TIMING), "effect timing", path)
+            for key in TIMING:
+                check_value(effect.get(key, 0.0), "float", f"effect timing.{key}", path)
+        elif str(kind) not in EFFECTS:
+            do = f"choose of {', '.join(EFFECTS)}, timing"
+            raise BadDescription(path, f"effect {kind!r} is unknown", do=do)
+    return given
 
 
 def _scalars(top: Table, path: str) -> dict[str, Any]:

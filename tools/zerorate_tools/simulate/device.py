@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from os import PathLike
 
@@ -66,35 +66,28 @@ def simulate_sessions(
     return _sessions(described, range(1, len(described.sessions) + 1), seed)
 
 
-def _sessions(described: Description, numbers, seed: int | None):
+def _sessions(described: Description, numbers: Iterable[int], seed: int | None):
     seed = described.seed if seed is None else seed
-    # a wanted size is over all sessions, so then all worlds must be known before the first
-    sized = any("rms_dps" in effect for effect in described.effects)
-    everyone = range(1, len(described.sessions) + 1)
-    worlds = {n: build(described, n, seed) for n in everyone} if sized else {}
-    found = [
-        coefficients(described, i, list(worlds.values()), seed)
-        for i, effect in enumerate(described.effects)
-        if effect.get("kind") != "timing"
-    ]
-    effects = [effect for effect in described.effects if effect.get("kind") != "timing"]
+    everyone = (build(described, n + 1, seed) for n in range(len(described.sessions)))
+    per_unit = coefficients(described, everyone, seed)
     for number in numbers:
-        world = worlds.pop(number, None) or build(described, number, seed)
-        yield _measured(described, world, list(zip(effects, found)), seed)
+        yield _measured(described, build(described, number, seed), per_unit, seed)
 
 
-def _measured(described: Description, world: World, effects: list, seed: int):
+def _measured(described: Description, world: World, per_unit: list[np.ndarray], seed: int):
     sensor, number = described.sensor, world.number
     zero_rate = zero_rate_dps(described, world, seed)
-    late = world.rate_dps.copy()
-    for effect, per_unit in effects:
-        added = waveform(world, effect, described.path) * per_unit
+    rate = world.rate_dps.copy()
+    for effect, coefficient in zip(described.effects, per_unit):
+        if effect["kind"] == "timing":
+            continue
+        added = waveform(world, effect, described.path) * coefficient
         if effect["kind"] in RATE_EFFECTS:
-            late += added
+            rate += added
         else:
             zero_rate += added
-    t_us, late = _timed(described, world, late, seed)
-    readings = late + zero_rate + white_dps(described, world, seed)
+    t_us, rate = _timed(described, world, rate, seed)
+    readings = rate + zero_rate + white_dps(described, world, seed)
     columns = {"t_us": t_us, **_counts("g", readings * sensor.gyro_lsb_per_dps)}
     columns |= _surroundings(sensor, world, stream(seed, number, "accelerometer"))
     columns |= _channel_columns(world, seed)
@@ -107,7 +100,7 @@ def _measured(described: Description, world: World, effects: list, seed: int):
         attitude=world.attitude,
         rate_dps=world.rate_dps,
         temp_degc=world.temp_degc,
-        effects_dps=[per_unit for _, per_unit in effects],
+        effects_dps=per_unit,
     )
     return recording, truth
 
@@ -115,7 +108,7 @@ def _measured(described: Description, world: World, effects: list, seed: int):
 def _timed(described: Description, world: World, rate_dps: np.ndarray, seed: int):
     t_s, stamps = world.t_s, world.t_s
     for effect in described.effects:
-        if effect.get("kind") != "timing":
+        if effect["kind"] != "timing":
             continue
         delay_s = effect.get("delay_ms", 0.0) / 1000
         rate_dps = np.stack([np.interp(t_s - delay_s, t_s, axis) for axis in rate_dps.T], axis=1)

@@ -146,6 +146,8 @@ EFFECTS: dict[str, Callable[..., np.ndarray]] = {
     "step": step,
     "channel": channel,
 }
+TIMING = ("delay_ms", "clock_ppm", "jitter_us")
+"""Options of kind timing, which no waveform has."""
 RATE_EFFECTS = ("scale", "scale-temperature")
 """These are no zero-rate output: they are in the reading, not in the true bias."""
 

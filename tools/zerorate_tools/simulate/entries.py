@@ -32,11 +32,12 @@ def filled(cls: type, given: Any, where: str, path: str) -> Any:
     fields = {f.name: f for f in dataclasses.fields(cls)}
     known(entries, tuple(fields), where, path)
     for key, value in entries.items():
-        _check_value(value, str(fields[key].type), f"{where}.{key}", path)
+        check_value(value, str(fields[key].type), f"{where}.{key}", path)
     return cls(**entries)
 
 
-def _check_value(value: Any, wanted: str, where: str, path: str) -> None:
+def check_value(value: Any, wanted: str, where: str, path: str) -> None:
+    """Raise BadDescription unless the value is of the wanted annotation (Any: one number or 3)."""
     if wanted == "Any":
         axes(value, where, path)
     elif wanted.startswith("list"):
