@@ -110,6 +110,11 @@ def test_allocating_under_heap_lock_is_a_memory_error(micropython):
     assert said == ["counting takes nothing", "a list is refused"]
 
 
+def test_a_script_that_fails_under_heap_lock_ends(micropython):
+    script = "import micropython\nmicropython.heap_lock()\n[1, 2, 3]\n"
+    assert micropython.run(script, timeout=60).returncode == 1
+
+
 def test_small_integers_have_31_bits(micropython):
     script = """
 import micropython

@@ -26,12 +26,24 @@ job.modules.forEach((folder, i) => {
     loadFolder(folder, `/modules${i}`, (name) => name.endsWith(".py") || name.endsWith(".mpy"));
 });
 micropython.FS.chdir("/work");
-micropython.runPython(
-    "import sys\n" +
-        `sys.argv[:] = ${JSON.stringify([job.script, ...job.argv])}\n` +
-        `sys.path[:] = ['', '.frozen'] + ${JSON.stringify(job.modules.map((_, i) => `/modules${i}`))}\n`,
-);
-process.exitCode = run(fs.readFileSync(path.join(job.folder, job.script), "utf8"));
+micropython.runPython(`
+import sys
+sys.argv[:] = ${JSON.stringify([job.script, ...job.argv])}
+sys.path[:] = ['', '.frozen'] + ${JSON.stringify(job.modules.map((_, i) => `/modules${i}`))}
+del sys
+`);
+// An exception that leaves the interpreter while the heap is locked would never end.
+process.exitCode = run(`
+import micropython as _micropython
+with open(${JSON.stringify(job.script)}) as _script:
+    _script = compile(_script.read(), ${JSON.stringify(job.script)}, "exec")
+try:
+    exec(_script)
+finally:
+    _micropython.heap_lock()
+    while _micropython.heap_unlock():
+        pass
+`);
 options.stdout.flush();
 options.stderr.flush();
 saveFiles();
