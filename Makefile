@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PYTEST_ARGS ?= -n auto
 
-.PHONY: demo test lint typecheck pytest viper lock wasm runtimes node wheel clean
+.PHONY: demo test lint typecheck typecheck-tools pytest viper lock wasm runtimes node wheel clean
 
 demo: $(VENV)/.tools wasm  ## the whole job on built-in input, no hardware
 	$(BIN)/zerorate demo
@@ -24,6 +24,8 @@ BOARD := $(sort $(TWINS) $(filter-out $(KERNELS),$(wildcard firmware/zerorate/*.
 
 typecheck: $(VENV)/.dev $(VENV)/.board-stubs
 	$(BIN)/mypy --config-file mypy-board.ini $(BOARD)
+
+typecheck-tools: $(VENV)/.dev  ## the host tools; not yet part of `make test`
 	$(BIN)/mypy
 
 pytest: $(VENV)/.dev runtimes
