@@ -87,6 +87,20 @@ def test_without_acceleration_and_temperature_no_such_scales_are_needed(tmp_path
     assert "accel_lsb_per_g" not in json.loads((tmp_path / "run.json").read_text())
 
 
+@pytest.mark.parametrize("file_name", FORMATS)
+@pytest.mark.parametrize("name", ['<script>alert("x")</script>', "a,b", "Spannung µV", ""])
+def test_strangers_channel_names_survive(tmp_path, name, file_name):
+    write_recording(a_recording(3, **{name: np.arange(3)}), tmp_path / file_name)
+    assert read_recording(tmp_path / file_name).columns[name].tolist() == [0, 1, 2]
+
+
+@pytest.mark.parametrize("file_name", FORMATS)
+def test_a_channel_name_of_two_lines_is_refused(tmp_path, file_name):
+    with pytest.raises(BadRecording, match=r"column name 'new\\nline' is not printable"):
+        write_recording(a_recording(3, **{"new\nline": np.arange(3)}), tmp_path / file_name)
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_a_frame_holds_raw_integers_and_the_scales():
     frame = a_recording().to_frame()
     assert list(frame.columns) == ["t_us", "gx", "gy", "gz", "ax", "ay", "az", "temp"]

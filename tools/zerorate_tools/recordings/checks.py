@@ -19,7 +19,10 @@ _LIMIT = 2**31 - 1
 
 
 def check_names(names: list[str], path: Path) -> None:
-    """Raise BadRecording if a needed column is missing or a name comes twice."""
+    """Raise BadRecording if a needed column is missing, or a name comes twice or is no line."""
+    broken = next((name for name in names if not name.isprintable()), None)
+    if broken is not None:
+        raise BadRecording(path, f"column name {broken!r} is not printable", do="rename it")
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
         raise BadRecording(path, f"column {twice} comes twice", do="rename or drop one")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import gzip
+import io
 import zlib
 from collections.abc import Iterator
 from pathlib import Path
@@ -120,9 +121,12 @@ class CsvWriter:
         check_names(names, path)
         types = [(name, pa.int64() if name == TIME else pa.int32()) for name in names]
         self._schema = pa.schema(types)
-        options = pyarrow.csv.WriteOptions(quoting_style="needed", quoting_header="needed")
+        options = pyarrow.csv.WriteOptions(include_header=False, quoting_style="none")
         compression = "gzip" if path.name.endswith(".gz") else None
         self._file = pa.output_stream(str(path), compression=compression)
+        header = io.StringIO()
+        csv.writer(header, lineterminator="\n").writerow(names)
+        self._file.write(header.getvalue().encode())
         self._writer = pyarrow.csv.CSVWriter(self._file, self._schema, write_options=options)
 
     def append(self, columns: dict[str, Any]) -> None:
