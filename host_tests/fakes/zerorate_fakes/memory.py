@@ -23,8 +23,7 @@ class FakeMemory:
         """Fill buf."""
         if self.broken:
             raise OSError(5)
-        for i in range(len(buf)):
-            buf[i] = self.bytes[offset + i]
+        buf[:] = self.bytes[offset : offset + len(buf)]
 
     def writeblock(self, offset, buf):
         """Write buf, byte by byte."""

@@ -56,7 +56,8 @@ def _run(feed, imu: MPU6050, recorder: Recorder, seconds, done) -> OSError | Non
     begun = good = reported = imu.clock.ticks_us()
     while seconds is None or imu.clock.ticks_diff(good, begun) < seconds * 1e6:
         try:
-            _note(recorder, *feed.read(sample), sample)
+            status, t_us, is_new = feed.read(sample)
+            _note(recorder, status, t_us, sample if is_new else None)
             good = imu.clock.ticks_us()
         except OSError as error:
             recorder.discard()
@@ -71,12 +72,12 @@ def _run(feed, imu: MPU6050, recorder: Recorder, seconds, done) -> OSError | Non
     return None
 
 
-def _note(recorder: Recorder, status: int, t_us: int, is_new: bool, sample: array) -> None:
+def _note(recorder: Recorder, status: int, t_us: int, sample: array | None) -> None:
     if status == RESTARTED:
         recorder.discard()
     elif status == VERIFIED:
         recorder.confirm()
-    if is_new:
+    if sample is not None:
         recorder.add(t_us, sample)
 
 

@@ -76,7 +76,7 @@ class Streamer:
                 status = imu.read(self.sample)
             except OSError as error:
                 self.send_text(3, "bus: " + str(error))
-                time.sleep_ms(100)
+                imu.clock.sleep_ms(100)
                 continue
             if status == RESTARTED:
                 self.send_text(3, "restarted")
@@ -94,10 +94,10 @@ def _put(buffer, at, value, count):
 
 def every(period_us):
     """A wait() for boards without the interrupt wired: twice as often as samples come."""
-    pause_us = period_us // 2
+    pause_s = period_us / 2e6
 
     def wait():
-        time.sleep_us(pause_us)
+        time.sleep(pause_s)
 
     return wait
 

@@ -1,0 +1,13 @@
+# Generated from zerorate/copying.py by `make viper`: edit that file, not this one.
+"""Copies flat state, as the checkpoint of what was learned."""
+
+import micropython
+
+
+@micropython.viper
+def copy(source: ptr32, target: ptr32, length: int):
+    """Put the first `length` words of `source` into `target`."""
+    i = 0
+    while i < length:
+        target[i] = source[i]
+        i += 1

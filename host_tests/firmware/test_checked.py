@@ -1,0 +1,85 @@
+"""What was learned since the chip was last known to be configured right can be taken back."""
+
+import random
+from array import array
+
+import pytest
+from zerorate import checked
+from zerorate.checked import CheckedCorrector
+from zerorate.corrector import Corrector, Sensor
+
+
+class Feed:
+    """A corrector at rest, fed from outside."""
+
+    def __init__(self):
+        self.checked = CheckedCorrector(Corrector(Sensor(odr_hz=100.0)))
+        self.random = random.Random(3)
+        self.sample = array("i", [0] * 7)
+
+    def rest(self, count, bias_lsb, status=checked.FRESH, first_status=None):
+        for number in range(count):
+            noise = self.random.gauss
+            gyro = [round(noise(bias_lsb, 6.5)) for _ in range(3)]
+            accel = [round(noise(mean, 40)) for mean in (0, 0, 16384)]
+            for place, word in enumerate([*accel, round(noise(-3000, 8)), *gyro]):
+                self.sample[place] = word
+            said = first_status if number == 0 and first_status is not None else status
+            self.checked.update(self.sample, 10000, said)
+
+    def bias_lsb(self):
+        return self.checked.corrector.bias_lsb(0)
+
+
+@pytest.fixture
+def feed():
+    feed = Feed()
+    feed.rest(6000, 100)
+    return feed
+
+
+def test_a_bias_is_learned(feed):
+    assert feed.bias_lsb() == pytest.approx(100, abs=1)
+
+
+def test_what_came_after_the_last_read_back_is_forgotten_to_the_last_bit(feed):
+    feed.rest(1, 100, checked.VERIFIED)
+    feed.checked.keep()
+    kept = array("i", feed.checked.corrector.state)
+    feed.rest(6000, 900)
+    assert feed.checked.corrector.state != kept
+    feed.checked.take_back()
+    assert feed.checked.corrector.state == kept
+    assert feed.checked.taken_back == 1
+
+
+def test_a_verified_sample_keeps_what_came_before_it_and_not_itself(feed):
+    before = array("i", feed.checked.corrector.state)
+    feed.rest(1, 100, checked.VERIFIED)
+    assert feed.checked.corrector.state != before
+    feed.checked.take_back()
+    assert feed.checked.corrector.state == before
+
+
+def test_a_restart_takes_back_and_begins_a_new_power_on(feed):
+    feed.checked.keep()
+    feed.rest(3000, 900)
+    assert not feed.checked.update(feed.sample, 10000, checked.RESTARTED)
+    feed.rest(3000, 100)
+    assert feed.bias_lsb() == pytest.approx(100, abs=1)
+
+
+@pytest.mark.parametrize("status", [checked.RESTARTED, checked.SUSPECT])
+def test_a_sample_that_is_none_is_not_touched_and_counted(feed, status):
+    before = list(feed.sample)
+    assert not feed.checked.update(feed.sample, 10000, status)
+    assert list(feed.sample) == before
+    assert feed.checked.refused == 1
+
+
+def test_the_time_of_refused_samples_goes_to_the_next(feed):
+    passed_us = []
+    feed.checked.corrector.update = lambda sample, dt_us: passed_us.append(dt_us)
+    for status in (checked.FRESH, checked.SUSPECT, checked.SUSPECT, checked.FRESH):
+        feed.checked.update(feed.sample, 10000, status)
+    assert passed_us == [10000, 30000]
