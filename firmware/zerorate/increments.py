@@ -23,12 +23,13 @@ _HEAD = const(8)
 _FILLED = const(9)
 _NEW = const(10)
 _TURNED = const(19)
-_PULLED = const(51)
+_PULLED = const(210)
 _BIAS_Q24 = const(57)
 _FAST = const(64)
 _AGE = const(66)
-_CONING = const(222)
-_RING = const(240)
+_CONING = const(202)
+_CARRIED = const(205)
+_RING = const(228)
 
 _NODE_US = const(0)
 _GAIN = const(1)
@@ -63,27 +64,26 @@ def carried(s: ptr32, j: int, k: int) -> int:
     return (first - ((s[_PHI + k] + 0x400) >> 11) * s[_PULLED + j] + 0x1000) >> 13
 
 
-def gather(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
-    """Add the frame `x` to the node; return 1 when the node is full, else 0."""
-    factor = (dt_us * c[_GAIN]) >> c[_GAIN_SHIFT]
+def convert(s: ptr32, c: ptr32, x: ptr32, factor: int):
+    """Write the frame's turns, Q24 rad, and forces, Q12 g, to scratch words."""
     i = 0
+    half = 1 << (c[_SHIFT] - 1)
     while i < 3:
-        s[_TURNED + i] = (x[4 + i] * factor + (1 << (c[_SHIFT] - 1))) >> c[_SHIFT]
+        s[_TURNED + i] = (x[4 + i] * factor + half) >> c[_SHIFT]
         s[_PULLED + i] = int(within((x[i] * c[_FORCE_GAIN] + 0x1000) >> 13, _MOST_FORCE))
         i += 1
+
+
+def gather(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
+    """Add the frame `x` to the node; return 1 when the node is full, else 0."""
+    convert(s, c, x, (dt_us * c[_GAIN]) >> c[_GAIN_SHIFT])
     s[_CONING] = int(coning(s, 1, 2))
     s[_CONING + 1] = int(coning(s, 2, 0))
     s[_CONING + 2] = int(coning(s, 0, 1))
-    s[_FORCE] += s[_PULLED] + int(carried(s, 1, 2))
-    s[_FORCE + 1] += s[_PULLED + 1] + int(carried(s, 2, 0))
-    s[_FORCE + 2] += s[_PULLED + 2] + int(carried(s, 0, 1))
-    i = 0
-    while i < 3:
-        factor = s[_PHI + i] + s[_TURNED + i] + s[_CONING + i]
-        s[_PHI + i] = int(within(factor, _TWO_RAD_Q24))
-        if s[_PHI + i] != factor:
-            s[_FAST] = c[_NODES]
-        i += 1
+    s[_CARRIED] = int(carried(s, 1, 2))
+    s[_CARRIED + 1] = int(carried(s, 2, 0))
+    s[_CARRIED + 2] = int(carried(s, 0, 1))
+    advance(s, c)
     s[_COUNT] += 1
     s[_ELAPSED_US] += dt_us
     if s[_ELAPSED_US] < c[_NODE_US]:
@@ -91,26 +91,41 @@ def gather(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
     return 1
 
 
+def advance(s: ptr32, c: ptr32):
+    """Add what the frame turned and pulled to the node."""
+    i = 0
+    while i < 3:
+        s[_FORCE + i] += s[_PULLED + i] + s[_CARRIED + i]
+        angle = s[_PHI + i] + s[_TURNED + i] + s[_CONING + i]
+        s[_PHI + i] = int(within(angle, _TWO_RAD_Q24))
+        if s[_PHI + i] != angle:
+            s[_FAST] = c[_NODES]
+        i += 1
+
+
 def close(s: ptr32, c: ptr32):
     """Write the full node to the ring and begin the next one.
 
     The node's last sample reaches over its end: the bias' share of that belongs to the next node.
     """
-    over = s[_ELAPSED_US] - c[_NODE_US]
+    s[_ELAPSED_US] -= c[_NODE_US]
     a = _RING + 3 * s[_HEAD]
     i = 0
     while i < 3:
-        share = ((s[_BIAS_Q24 + i] >> 8) * ((over << 10) // c[_NODE_US])) >> 2
-        angle = (s[_PHI + i] - share + 0x400) >> 11
-        angle = int(within(angle, _MOST))
-        s[_PHI + i] = s[_PHI + i] - (angle << 11)
-        angle = angle << 15
-        share = int(within(s[_FORCE + i] // s[_COUNT], _MOST))
-        s[a + i] = angle + (share & 0x7FFF)
+        over = (s[_ELAPSED_US] << 10) // c[_NODE_US]
+        over = ((s[_BIAS_Q24 + i] >> 8) * over) >> 2
+        angle = int(within((s[_PHI + i] - over + 0x400) >> 11, _MOST))
+        s[_PHI + i] -= angle << 11
+        over = int(within(s[_FORCE + i] // s[_COUNT], _MOST))
+        s[a + i] = (angle << 15) + (over & 0x7FFF)
         s[_FORCE + i] = 0
         i += 1
     s[_COUNT] = 0
-    s[_ELAPSED_US] = over
+    next_node(s, c)
+
+
+def next_node(s: ptr32, c: ptr32):
+    """Go to the next place of the ring."""
     s[_HEAD] += 1
     if s[_HEAD] >= c[_NODES]:
         s[_HEAD] = 0

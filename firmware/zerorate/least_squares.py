@@ -19,24 +19,27 @@ from .real import add, copy, divide, multiply, put, subtract
 
 _STAGE = const(12)
 _SUMS = const(85)
-_G = const(148)
-_P = const(168)
-_PRIOR = const(180)
-_PRIOR_MEAN = const(192)
-_BIAS = const(198)
-_D = const(204)
-_HOLD = const(210)
-_OMEGA = const(216)
-_T = const(222)
-_T1 = const(224)
-_T2 = const(226)
-_T3 = const(228)
+_G = const(33)
+_P = const(148)
+_PRIOR = const(160)
+_PRIOR_MEAN = const(172)
+_BIAS = const(178)
+_D = const(184)
+_HOLD = const(190)
+_OMEGA = const(196)
+_T = const(202)
+_T1 = const(204)
+_T2 = const(206)
+_T3 = const(208)
+_ENERGY = const(222)
 
 _WALK = const(12)
-_FLOOR_TILT = const(16)
-_FLOOR_HEADING = const(18)
-_SPREAD = const(25)
-_LIMIT = const(26)
+_SPREAD = const(21)
+
+# .005 and .01 rad, and .7 rad a window: beyond that a step is not linear
+_FLOOR_TILT_Q24 = const(419)
+_FLOOR_HEADING_Q24 = const(1678)
+_LIMIT_Q24 = const(11744051)
 
 
 def place(i: int, j: int) -> int:
@@ -46,21 +49,18 @@ def place(i: int, j: int) -> int:
     return _G + 2 * (4 * i - ((i * (i + 1)) >> 1) + j)
 
 
-def element(s: ptr32, d: int, prior: int, h: int, e: int):
-    """Store at d the prior's number plus the sums of three components at word h, by their weights.
+def element(s: ptr32, d: int, h: int, e: int):
+    """Store at d the number at _T plus the sums of three components at word h, by their weights.
 
     e: the exponent of those sums.
     """
-    if prior:
-        copy(s, _T, prior, 2)
-    else:
-        put(s, _T, 0, 0)
     i = 0
-    while i < 3:
-        put(s, _T1, s[h + 21 * i], e)
-        multiply(s, _T1, _T1, _OMEGA + 2 * i)
+    while i < 6:
+        put(s, _T1, s[h], e)
+        multiply(s, _T1, _T1, _OMEGA + i)
         add(s, _T, _T, _T1)
-        i += 1
+        h += 21
+        i += 2
     copy(s, d, _T, 2)
 
 
@@ -71,20 +71,30 @@ def matrix_element(s: ptr32, n: int):
     while j > 2:
         i += 1
         j -= 3 - i
-    element(s, int(place(i, j)), _PRIOR + 2 * n, _SUMS + n, 2 * (s[_STAGE] - 26 - 3 + 3) + 10)
+    j = int(place(i, j))
+    copy(s, _T, _PRIOR + 2 * n, 2)
+    i = 2 * s[_STAGE] - 42
+    element(s, j, _SUMS + n, i)
 
 
 def right_side(s: ptr32, i: int):
     """Build the right-hand side's element i: the slopes, and the prior's pull to its mean."""
     d = int(place(i, 3))
-    element(s, d, 0, _SUMS + 6 + i, s[_STAGE] - 26 + 10)
+    j = s[_STAGE] - 16
+    put(s, _T, 0, 0)
+    element(s, d, _SUMS + 6 + i, j)
     j = 0
     while j < 3:
         subtract(s, _T1, _PRIOR_MEAN + 2 * j, _BIAS + 2 * j)
-        multiply(s, _T1, _T1, int(prior_place(i, j)))
+        multiply_by_prior(s, int(prior_place(i, j)))
         add(s, d, d, _T1)
         j += 1
-    put(s, int(place(3, 3)), 0, 0)
+    put(s, _G + 18, 0, 0)
+
+
+def multiply_by_prior(s: ptr32, a: int):
+    """Multiply the number at _T1 by the prior's number at a."""
+    multiply(s, _T1, _T1, a)
 
 
 def prior_place(i: int, j: int) -> int:
@@ -100,8 +110,9 @@ def sweep(s: ptr32, k: int):
     After pivots 0, 1, 2 it holds the negative inverse and, in its fourth column, the solution
     (Beaton's operator; stable for a positive definite matrix).
     """
+    d = int(place(k, k))
     put(s, _T, 1, 0)
-    divide(s, _T, _T, int(place(k, k)))
+    divide(s, _T, _T, d)
     i = 0
     while i < 4:
         if i != k:
@@ -110,52 +121,63 @@ def sweep(s: ptr32, k: int):
     i = 0
     while i < 4:
         if i != k:
-            multiply(s, int(place(i, k)), int(place(i, k)), _T)
+            d = int(place(i, k))
+            multiply(s, d, d, _T)
         i += 1
-    put(s, int(place(k, k)), -s[_T], s[_T + 1])
+    d = int(place(k, k))
+    put(s, d, -s[_T], s[_T + 1])
 
 
 def sweep_row(s: ptr32, k: int, i: int):
     """Take the pivot's row from row i, from the diagonal on; _T holds one over the pivot."""
-    multiply(s, _T1, int(place(i, k)), _T)
+    d = int(place(i, k))
+    multiply(s, _T1, d, _T)
     j = i
     while j < 4:
         if j != k:
-            multiply(s, _T2, _T1, int(place(k, j)))
-            subtract(s, _T3, int(place(i, j)), _T2)
-            copy(s, int(place(i, j)), _T3, 2)
+            d = int(place(k, j))
+            multiply(s, _T2, _T1, d)
+            d = int(place(i, j))
+            subtract(s, _T3, d, _T2)
+            copy(s, d, _T3, 2)
         j += 1
 
 
 def covariance(s: ptr32, d: int):
     """Store the negative of the six numbers of the swept matrix at d."""
+    a = _G
     i = 0
-    while i < 3:
-        j = i
-        while j < 3:
-            put(s, d, -s[int(place(i, j))], s[int(place(i, j)) + 1])
-            d += 2
-            j += 1
+    while i < 6:
+        if i == 3 or i == 5:
+            a += 2
+        put(s, d, -s[a], s[a + 1])
+        d += 2
+        a += 2
         i += 1
 
 
 def spread_prior(s: ptr32, c: ptr32, nodes: int):
     """Put the covariance, grown by the bias' random walk over so many nodes, into the matrix."""
     i = 0
-    p = _P
-    while i < 3:
-        j = i
-        while j < 3:
-            copy(s, int(place(i, j)), p, 2)
-            p += 2
-            j += 1
-        put(s, int(place(i, 3)), 0, 0)
-        put(s, _T, c[_WALK], c[_WALK + 1])
-        put(s, _T1, nodes, 0)
-        multiply(s, _T, _T, _T1)
-        add(s, int(place(i, i)), int(place(i, i)), _T)
+    d = _G
+    while i < 20:
+        put(s, _G + i, 0, 0)
+        i += 2
+    i = 0
+    while i < 6:
+        if i == 3 or i == 5:
+            d += 2
+        copy(s, d, _P + 2 * i, 2)
+        d += 2
         i += 1
-    put(s, int(place(3, 3)), 0, 0)
+    put(s, _T, c[_WALK], c[_WALK + 1])
+    put(s, _T1, nodes, 0)
+    multiply(s, _T, _T, _T1)
+    i = 0
+    while i < 3:
+        d = int(place(i, i))
+        add(s, d, d, _T)
+        i += 1
 
 
 def magnitude(s: ptr32, a: int):
@@ -172,14 +194,16 @@ def less(s: ptr32, a: int, b: int) -> int:
     return 0
 
 
-def step(s: ptr32, c: ptr32):
+def step(s: ptr32):
     """Take the solution as this pass' slope at _D, no longer than the step that stays linear."""
-    i = 0
-    put(s, _T, c[_LIMIT], c[_LIMIT + 1] - s[_STAGE])
+    i = -s[_STAGE]
+    put(s, _T, _LIMIT_Q24, i)
     copy(s, _T1, _T, 2)
+    i = 0
     while i < 3:
-        copy(s, _D + 2 * i, int(place(i, 3)), 2)
-        copy(s, _T2, _D + 2 * i, 2)
+        d = int(place(i, 3))
+        copy(s, _D + 2 * i, d, 2)
+        copy(s, _T2, d, 2)
         magnitude(s, _T2)
         if int(less(s, _T1, _T2)):
             copy(s, _T1, _T2, 2)
@@ -192,43 +216,48 @@ def step(s: ptr32, c: ptr32):
 
 
 def shape(s: ptr32, d: int, m: int, y: int):
-    """Store at d what the slope at _D leaves of a shape, whose sums are at m and y."""
+    """Store at d the square of what the slope at _D leaves of a shape, with sums at m and y."""
     put(s, _T, s[y], 0)
     i = 0
-    while i < 3:
-        put(s, _T1, s[m + i], s[_STAGE] - 26)
-        multiply(s, _T1, _T1, _D + 2 * i)
+    while i < 6:
+        y = s[_STAGE] - 26
+        put(s, _T1, s[m], y)
+        y = _D + i
+        multiply(s, _T1, _T1, y)
         subtract(s, _T2, _T, _T1)
         copy(s, _T, _T2, 2)
-        i += 1
+        m += 1
+        i += 2
     multiply(s, d, _T, _T)
 
 
-def noise(s: ptr32, c: ptr32, i: int):
+def noise(s: ptr32, i: int):
     """Store component i's noise energy at the neighbouring shapes, with its floor, at _OMEGA.
 
     Mean squares of the shapes under the taper: .7111 and .0277 a node.
     """
-    d = _OMEGA + 2 * i
     a = _SUMS + 21 * i
-    shape(s, d, a + 13, a + 19)
-    put(s, _T, 11520, -14 - s[_STAGE])
-    multiply(s, d, d, _T)
+    d = _OMEGA + 2 * i
+    shape(s, _T3, a + 13, a + 19)
+    put(s, _T, 11520, -14)
+    multiply(s, d, _T3, _T)
     shape(s, _T3, a + 16, a + 20)
-    put(s, _T, 18482, -10 - s[_STAGE])
+    put(s, _T, 18482, -10)
     multiply(s, _T3, _T3, _T)
-    add(s, d, d, _T3)
-    a = _FLOOR_TILT
+    add(s, _T3, _T3, d)
+    a = s[_T3 + 1] - s[_STAGE]
+    put(s, _T3, s[_T3], a)
+    a = _FLOOR_TILT_Q24
     if i == 2:
-        a = _FLOOR_HEADING
-    put(s, _T, c[a], c[a + 1])
-    add(s, d, d, _T)
+        a = _FLOOR_HEADING_Q24
+    put(s, _T, a, 0)
+    add(s, d, _T3, _T)
 
 
 def weights(s: ptr32, c: ptr32):
     """Turn noise energies into weights: both tilts alike, none below what earlier windows had.
 
-    The energies in use are left at _G, as six words.
+    The energies in use are left at _ENERGY.
     """
     add(s, _T, _OMEGA, _OMEGA + 2)
     put(s, _OMEGA, s[_T], s[_T + 1] - 1)
@@ -237,7 +266,7 @@ def weights(s: ptr32, c: ptr32):
     while i < 6:
         if int(less(s, _OMEGA + i, _HOLD + i)):
             copy(s, _OMEGA + i, _HOLD + i, 2)
-        copy(s, _G + i, _OMEGA + i, 2)
+        copy(s, _ENERGY + i, _OMEGA + i, 2)
         weigh(s, c, _OMEGA + i)
         i += 2
 
@@ -257,3 +286,29 @@ def held_weights(s: ptr32, c: ptr32):
         copy(s, _OMEGA + i, _HOLD + i, 2)
         weigh(s, c, _OMEGA + i)
         i += 2
+
+
+def own_square(s: ptr32, i: int):
+    """Store the sum of squares of component i's own M at _T1; the sums are in order 00 .. 22."""
+    a = _SUMS + 24 * i
+    if i == 2:
+        a -= 1
+    i = 2 * s[_STAGE] - 42
+    put(s, _T1, s[a], i)
+
+
+def own_slope(s: ptr32, i: int):
+    """Store component i's own slope at _D, as the document takes it: no other axis, no prior."""
+    own_square(s, i)
+    a = s[_STAGE] - 16
+    put(s, _T, s[_SUMS + 22 * i + 6], a)
+    divide(s, _D + 2 * i, _T, _T1)
+
+
+def own_variance(s: ptr32, c: ptr32, i: int):
+    """Put the variance of component i's own slope on the matrix' diagonal, negative."""
+    own_square(s, i)
+    put(s, _T, -c[_SPREAD], 0)
+    multiply(s, _T, _T, _OMEGA + 2 * i)
+    i = int(place(i, i))
+    divide(s, i, _T, _T1)

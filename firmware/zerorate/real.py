@@ -15,6 +15,8 @@ except ImportError:
 ptr32 = None
 
 
+from .fixed import root
+
 _LOW = const(0x3FFF)
 _LEAST = const(0x8000000)
 _MOST = const(0x10000000)
@@ -47,32 +49,37 @@ def copy(s: ptr32, d: int, a: int, words: int):
         s[d + words] = s[a + words]
 
 
+def high_product(m: int, n: int) -> int:
+    """Return (m * n) >> 28 for |m|, |n| <= 2^28, to within a unit."""
+    low = ((m & _LOW) * (n & _LOW)) >> 14
+    low += (m & _LOW) * (n >> 14)
+    low += (m >> 14) * (n & _LOW)
+    return (m >> 14) * (n >> 14) + (low >> 14)
+
+
 def multiply(s: ptr32, d: int, a: int, b: int):
     """Store the product of the numbers at a and b at d."""
-    m = s[a]
-    n = s[b]
-    middle = (m & _LOW) * (n >> 14) + (m >> 14) * (n & _LOW)
-    middle += ((m & _LOW) * (n & _LOW)) >> 14
-    put(s, d, (m >> 14) * (n >> 14) + (middle >> 14), s[a + 1] + s[b + 1] + 28)
+    m = int(high_product(s[a], s[b]))
+    a = s[a + 1] + s[b + 1] + 28
+    put(s, d, m, a)
 
 
 def add(s: ptr32, d: int, a: int, b: int):
     """Store the sum of the numbers at a and b at d."""
-    m = s[a]
-    n = s[b]
-    e = s[a + 1]
-    shift = e - s[b + 1]
-    if shift < 0:
-        e = s[b + 1]
-        shift = m
-        m = n
-        n = shift
-        shift = e - s[a + 1]
-    if shift > 28:
-        n = 0
+    if s[a + 1] < s[b + 1]:
+        add_smaller(s, d, b, a)
     else:
-        n = n >> shift
-    put(s, d, m + n, e)
+        add_smaller(s, d, a, b)
+
+
+def add_smaller(s: ptr32, d: int, a: int, b: int):
+    """Store the sum of the numbers at a and b at d; the exponent at b is not the greater one."""
+    shift = s[a + 1] - s[b + 1]
+    m = s[a]
+    if shift <= 28:
+        m += s[b] >> shift
+    shift = s[a + 1]
+    put(s, d, m, shift)
 
 
 def subtract(s: ptr32, d: int, a: int, b: int):
@@ -81,27 +88,32 @@ def subtract(s: ptr32, d: int, a: int, b: int):
     add(s, d, a, d)
 
 
-def divide(s: ptr32, d: int, a: int, b: int):
-    """Store a / b at d; 0 where b is 0."""
-    m = s[a]
-    n = s[b]
+def quotient_q27(m: int, n: int) -> int:
+    """Return m / n in Q27, for 0 <= m < 2 n <= 2^29, n > 0."""
     q = 0
-    if n < 0:
-        m = -m
-        n = -n
-    sign = 1
-    if m < 0:
-        m = -m
-        sign = -1
     i = 0
-    while i < 28 and n > 0:
+    while i < 28:
         q = q << 1
         if m >= n:
             m -= n
             q += 1
         m = m << 1
         i += 1
-    put(s, d, sign * q, s[a + 1] - s[b + 1] - 27)
+    return q
+
+
+def divide(s: ptr32, d: int, a: int, b: int):
+    """Store a / b at d; 0 where b is 0."""
+    m = s[a] if s[a] >= 0 else -s[a]
+    n = s[b] if s[b] >= 0 else -s[b]
+    if n:
+        m = int(quotient_q27(m, n))
+    else:
+        m = 0
+    if (s[a] ^ s[b]) < 0:
+        m = -m
+    n = s[a + 1] - s[b + 1] - 27
+    put(s, d, m, n)
 
 
 def whole(s: ptr32, a: int, shift: int) -> int:
@@ -126,10 +138,5 @@ def root_of(s: ptr32, d: int, a: int):
     if e & 1:
         m = m >> 1
         e += 1
-    bit = 1 << 14
-    found = 0
-    while bit:
-        if (found + bit) * (found + bit) <= m:
-            found += bit
-        bit = bit >> 1
-    put(s, d, found, e >> 1)
+    m = int(root(m))
+    put(s, d, m, e >> 1)

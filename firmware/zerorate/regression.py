@@ -29,9 +29,9 @@ _SUM_R = const(42)
 _WEIGHT = const(60)
 _SECOND = const(61)
 _THIRD = const(62)
-_M = const(222)
-_WM = const(225)
-_CENTRE = const(230)
+_M = const(202)
+_WM = const(205)
+_CENTRE = const(213)
 
 _S = const(6)
 _A = const(9)
@@ -40,15 +40,20 @@ _SHAPES_M = const(13)
 _SHAPES_Y = const(19)
 
 
-def taper(s: ptr32, k: int, stage: int):
-    """Write the weight and the two shapes times the weight of node k of 2^stage, Q10."""
+def taper(s: ptr32, k: int, stage: int, even: int):
+    """Write the weight and the two shapes times the taper of node k of 2^stage, Q10.
+
+    even: the weight itself is 1, as in the document; the shapes stay tapered.
+    """
     t = (2 * k + 1 - (1 << stage)) << (10 - stage)
-    square = (t * t) >> 10
-    weight = ((1024 - square) * (1024 - square)) >> 10
-    s[_WEIGHT] = weight
-    s[_SECOND] = ((7 * square - 1024) * weight) >> 10
-    s[_THIRD] = ((((3 * square - 1024) * t) >> 10) * weight) >> 10
-    s[_TOTAL] += weight
+    k = (t * t) >> 10
+    stage = ((1024 - k) * (1024 - k)) >> 10
+    s[_SECOND] = ((7 * k - 1024) * stage) >> 10
+    s[_THIRD] = ((((3 * k - 1024) * t) >> 10) * stage) >> 10
+    if even:
+        stage = 1024
+    s[_WEIGHT] = stage
+    s[_TOTAL] += stage
 
 
 def regressors(s: ptr32, row: int, shift: int):
@@ -92,31 +97,38 @@ def mean(s: ptr32, total: int) -> int:
     return (total << 8) // (s[_TOTAL] >> 2)
 
 
+def refer(s: ptr32, d: int, a: int, mean: int):
+    """Take (the word at a times mean) >> 10 from the word at d."""
+    a = int(scaled(s[a] << 5, mean, 15))
+    s[d] -= a
+
+
 def centre(s: ptr32, a: int, row: int, shift: int):
     """Refer the sums at a to the weighted means, and the next traversal's M to its mean.
 
     The mean of y replaces its sum. The row of the matrix at _CENTRE is where M begins.
     """
-    y = int(mean(s, s[a + _MEAN]))
-    s[a + _MEAN] = y
-    h = a
+    s[a + _MEAN] = int(mean(s, s[a + _MEAN]))
     i = 0
+    row += _CENTRE
     while i < 3:
         s[_M + i] = int(mean(s, s[a + _A + i]))
-        s[_CENTRE + row + i] -= s[_M + i] << shift
-        s[a + _S + i] -= int(scaled(s[a + _A + i] << 5, y, 15))
+        s[row + i] = s[row + i] - (s[_M + i] << shift)
         i += 1
     i = 0
+    row = a
+    s[_WM] = s[a + _MEAN]
     while i < 3:
-        h = int(centre_row(s, a, h, i))
+        shift = a + _A + i
+        refer(s, shift - 3, shift, s[_WM])
+        row = int(centre_row(s, shift, row, i))
         i += 1
 
 
-def centre_row(s: ptr32, a: int, h: int, i: int) -> int:
-    """Refer row i of the square sums at word h to the means; return where the next row is."""
-    k = i
+def centre_row(s: ptr32, a: int, h: int, k: int) -> int:
+    """Refer a row of the square sums, from word h on, to the means; return where the next is."""
     while k < 3:
-        s[h] -= int(scaled(s[a + _A + i] << 5, s[_M + k], 15))
+        refer(s, h, a, s[_M + k])
         h += 1
         k += 1
     return h

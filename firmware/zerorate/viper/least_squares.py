@@ -20,24 +20,27 @@ from .real import add, copy, divide, multiply, put, subtract
 
 _STAGE = const(12)
 _SUMS = const(85)
-_G = const(148)
-_P = const(168)
-_PRIOR = const(180)
-_PRIOR_MEAN = const(192)
-_BIAS = const(198)
-_D = const(204)
-_HOLD = const(210)
-_OMEGA = const(216)
-_T = const(222)
-_T1 = const(224)
-_T2 = const(226)
-_T3 = const(228)
+_G = const(33)
+_P = const(148)
+_PRIOR = const(160)
+_PRIOR_MEAN = const(172)
+_BIAS = const(178)
+_D = const(184)
+_HOLD = const(190)
+_OMEGA = const(196)
+_T = const(202)
+_T1 = const(204)
+_T2 = const(206)
+_T3 = const(208)
+_ENERGY = const(222)
 
 _WALK = const(12)
-_FLOOR_TILT = const(16)
-_FLOOR_HEADING = const(18)
-_SPREAD = const(25)
-_LIMIT = const(26)
+_SPREAD = const(21)
+
+# .005 and .01 rad, and .7 rad a window: beyond that a step is not linear
+_FLOOR_TILT_Q24 = const(419)
+_FLOOR_HEADING_Q24 = const(1678)
+_LIMIT_Q24 = const(11744051)
 
 
 @micropython.viper
@@ -49,22 +52,19 @@ def place(i: int, j: int) -> int:
 
 
 @micropython.viper
-def element(s_, d: int, prior: int, h: int, e: int):
-    """Store at d the prior's number plus the sums of three components at word h, by their weights.
+def element(s_, d: int, h: int, e: int):
+    """Store at d the number at _T plus the sums of three components at word h, by their weights.
 
     e: the exponent of those sums.
     """
     s = ptr32(s_)
-    if prior:
-        copy(s_, _T, prior, 2)
-    else:
-        put(s_, _T, 0, 0)
     i = 0
-    while i < 3:
-        put(s_, _T1, s[h + 21 * i], e)
-        multiply(s_, _T1, _T1, _OMEGA + 2 * i)
+    while i < 6:
+        put(s_, _T1, s[h], e)
+        multiply(s_, _T1, _T1, _OMEGA + i)
         add(s_, _T, _T, _T1)
-        i += 1
+        h += 21
+        i += 2
     copy(s_, d, _T, 2)
 
 
@@ -77,7 +77,10 @@ def matrix_element(s_, n: int):
     while j > 2:
         i += 1
         j -= 3 - i
-    element(s_, int(int(place(i, j))), _PRIOR + 2 * n, _SUMS + n, 2 * (s[_STAGE] - 26 - 3 + 3) + 10)
+    j = int(int(place(i, j)))
+    copy(s_, _T, _PRIOR + 2 * n, 2)
+    i = 2 * s[_STAGE] - 42
+    element(s_, j, _SUMS + n, i)
 
 
 @micropython.viper
@@ -85,14 +88,22 @@ def right_side(s_, i: int):
     """Build the right-hand side's element i: the slopes, and the prior's pull to its mean."""
     s = ptr32(s_)
     d = int(int(place(i, 3)))
-    element(s_, d, 0, _SUMS + 6 + i, s[_STAGE] - 26 + 10)
+    j = s[_STAGE] - 16
+    put(s_, _T, 0, 0)
+    element(s_, d, _SUMS + 6 + i, j)
     j = 0
     while j < 3:
         subtract(s_, _T1, _PRIOR_MEAN + 2 * j, _BIAS + 2 * j)
-        multiply(s_, _T1, _T1, int(int(prior_place(i, j))))
+        multiply_by_prior(s_, int(int(prior_place(i, j))))
         add(s_, d, d, _T1)
         j += 1
-    put(s_, int(int(place(3, 3))), 0, 0)
+    put(s_, _G + 18, 0, 0)
+
+
+@micropython.viper
+def multiply_by_prior(s_, a: int):
+    """Multiply the number at _T1 by the prior's number at a."""
+    multiply(s_, _T1, _T1, a)
 
 
 @micropython.viper
@@ -111,8 +122,9 @@ def sweep(s_, k: int):
     (Beaton's operator; stable for a positive definite matrix).
     """
     s = ptr32(s_)
+    d = int(int(place(k, k)))
     put(s_, _T, 1, 0)
-    divide(s_, _T, _T, int(int(place(k, k))))
+    divide(s_, _T, _T, d)
     i = 0
     while i < 4:
         if i != k:
@@ -121,21 +133,26 @@ def sweep(s_, k: int):
     i = 0
     while i < 4:
         if i != k:
-            multiply(s_, int(int(place(i, k))), int(int(place(i, k))), _T)
+            d = int(int(place(i, k)))
+            multiply(s_, d, d, _T)
         i += 1
-    put(s_, int(int(place(k, k))), -s[_T], s[_T + 1])
+    d = int(int(place(k, k)))
+    put(s_, d, -s[_T], s[_T + 1])
 
 
 @micropython.viper
 def sweep_row(s_, k: int, i: int):
     """Take the pivot's row from row i, from the diagonal on; _T holds one over the pivot."""
-    multiply(s_, _T1, int(int(place(i, k))), _T)
+    d = int(int(place(i, k)))
+    multiply(s_, _T1, d, _T)
     j = i
     while j < 4:
         if j != k:
-            multiply(s_, _T2, _T1, int(int(place(k, j))))
-            subtract(s_, _T3, int(int(place(i, j))), _T2)
-            copy(s_, int(int(place(i, j))), _T3, 2)
+            d = int(int(place(k, j)))
+            multiply(s_, _T2, _T1, d)
+            d = int(int(place(i, j)))
+            subtract(s_, _T3, d, _T2)
+            copy(s_, d, _T3, 2)
         j += 1
 
 
@@ -143,13 +160,14 @@ def sweep_row(s_, k: int, i: int):
 def covariance(s_, d: int):
     """Store the negative of the six numbers of the swept matrix at d."""
     s = ptr32(s_)
+    a = _G
     i = 0
-    while i < 3:
-        j = i
-        while j < 3:
-            put(s_, d, -s[int(int(place(i, j)))], s[int(int(place(i, j))) + 1])
-            d += 2
-            j += 1
+    while i < 6:
+        if i == 3 or i == 5:
+            a += 2
+        put(s_, d, -s[a], s[a + 1])
+        d += 2
+        a += 2
         i += 1
 
 
@@ -157,20 +175,25 @@ def covariance(s_, d: int):
 def spread_prior(s_, c: ptr32, nodes: int):
     """Put the covariance, grown by the bias' random walk over so many nodes, into the matrix."""
     i = 0
-    p = _P
-    while i < 3:
-        j = i
-        while j < 3:
-            copy(s_, int(int(place(i, j))), p, 2)
-            p += 2
-            j += 1
-        put(s_, int(int(place(i, 3))), 0, 0)
-        put(s_, _T, c[_WALK], c[_WALK + 1])
-        put(s_, _T1, nodes, 0)
-        multiply(s_, _T, _T, _T1)
-        add(s_, int(int(place(i, i))), int(int(place(i, i))), _T)
+    d = _G
+    while i < 20:
+        put(s_, _G + i, 0, 0)
+        i += 2
+    i = 0
+    while i < 6:
+        if i == 3 or i == 5:
+            d += 2
+        copy(s_, d, _P + 2 * i, 2)
+        d += 2
         i += 1
-    put(s_, int(int(place(3, 3))), 0, 0)
+    put(s_, _T, c[_WALK], c[_WALK + 1])
+    put(s_, _T1, nodes, 0)
+    multiply(s_, _T, _T, _T1)
+    i = 0
+    while i < 3:
+        d = int(int(place(i, i)))
+        add(s_, d, d, _T)
+        i += 1
 
 
 @micropython.viper
@@ -192,15 +215,17 @@ def less(s_, a: int, b: int) -> int:
 
 
 @micropython.viper
-def step(s_, c: ptr32):
+def step(s_):
     """Take the solution as this pass' slope at _D, no longer than the step that stays linear."""
     s = ptr32(s_)
-    i = 0
-    put(s_, _T, c[_LIMIT], c[_LIMIT + 1] - s[_STAGE])
+    i = -s[_STAGE]
+    put(s_, _T, _LIMIT_Q24, i)
     copy(s_, _T1, _T, 2)
+    i = 0
     while i < 3:
-        copy(s_, _D + 2 * i, int(int(place(i, 3))), 2)
-        copy(s_, _T2, _D + 2 * i, 2)
+        d = int(int(place(i, 3)))
+        copy(s_, _D + 2 * i, d, 2)
+        copy(s_, _T2, d, 2)
         magnitude(s_, _T2)
         if int(int(less(s_, _T1, _T2))):
             copy(s_, _T1, _T2, 2)
@@ -214,47 +239,52 @@ def step(s_, c: ptr32):
 
 @micropython.viper
 def shape(s_, d: int, m: int, y: int):
-    """Store at d what the slope at _D leaves of a shape, whose sums are at m and y."""
+    """Store at d the square of what the slope at _D leaves of a shape, with sums at m and y."""
     s = ptr32(s_)
     put(s_, _T, s[y], 0)
     i = 0
-    while i < 3:
-        put(s_, _T1, s[m + i], s[_STAGE] - 26)
-        multiply(s_, _T1, _T1, _D + 2 * i)
+    while i < 6:
+        y = s[_STAGE] - 26
+        put(s_, _T1, s[m], y)
+        y = _D + i
+        multiply(s_, _T1, _T1, y)
         subtract(s_, _T2, _T, _T1)
         copy(s_, _T, _T2, 2)
-        i += 1
+        m += 1
+        i += 2
     multiply(s_, d, _T, _T)
 
 
 @micropython.viper
-def noise(s_, c: ptr32, i: int):
+def noise(s_, i: int):
     """Store component i's noise energy at the neighbouring shapes, with its floor, at _OMEGA.
 
     Mean squares of the shapes under the taper: .7111 and .0277 a node.
     """
     s = ptr32(s_)
-    d = _OMEGA + 2 * i
     a = _SUMS + 21 * i
-    shape(s_, d, a + 13, a + 19)
-    put(s_, _T, 11520, -14 - s[_STAGE])
-    multiply(s_, d, d, _T)
+    d = _OMEGA + 2 * i
+    shape(s_, _T3, a + 13, a + 19)
+    put(s_, _T, 11520, -14)
+    multiply(s_, d, _T3, _T)
     shape(s_, _T3, a + 16, a + 20)
-    put(s_, _T, 18482, -10 - s[_STAGE])
+    put(s_, _T, 18482, -10)
     multiply(s_, _T3, _T3, _T)
-    add(s_, d, d, _T3)
-    a = _FLOOR_TILT
+    add(s_, _T3, _T3, d)
+    a = s[_T3 + 1] - s[_STAGE]
+    put(s_, _T3, s[_T3], a)
+    a = _FLOOR_TILT_Q24
     if i == 2:
-        a = _FLOOR_HEADING
-    put(s_, _T, c[a], c[a + 1])
-    add(s_, d, d, _T)
+        a = _FLOOR_HEADING_Q24
+    put(s_, _T, a, 0)
+    add(s_, d, _T3, _T)
 
 
 @micropython.viper
 def weights(s_, c_):
     """Turn noise energies into weights: both tilts alike, none below what earlier windows had.
 
-    The energies in use are left at _G, as six words.
+    The energies in use are left at _ENERGY.
     """
     s = ptr32(s_)
     add(s_, _T, _OMEGA, _OMEGA + 2)
@@ -264,7 +294,7 @@ def weights(s_, c_):
     while i < 6:
         if int(int(less(s_, _OMEGA + i, _HOLD + i))):
             copy(s_, _OMEGA + i, _HOLD + i, 2)
-        copy(s_, _G + i, _OMEGA + i, 2)
+        copy(s_, _ENERGY + i, _OMEGA + i, 2)
         weigh(s_, c_, _OMEGA + i)
         i += 2
 
@@ -286,3 +316,34 @@ def held_weights(s_, c_):
         copy(s_, _OMEGA + i, _HOLD + i, 2)
         weigh(s_, c_, _OMEGA + i)
         i += 2
+
+
+@micropython.viper
+def own_square(s_, i: int):
+    """Store the sum of squares of component i's own M at _T1; the sums are in order 00 .. 22."""
+    s = ptr32(s_)
+    a = _SUMS + 24 * i
+    if i == 2:
+        a -= 1
+    i = 2 * s[_STAGE] - 42
+    put(s_, _T1, s[a], i)
+
+
+@micropython.viper
+def own_slope(s_, i: int):
+    """Store component i's own slope at _D, as the document takes it: no other axis, no prior."""
+    s = ptr32(s_)
+    own_square(s_, i)
+    a = s[_STAGE] - 16
+    put(s_, _T, s[_SUMS + 22 * i + 6], a)
+    divide(s_, _D + 2 * i, _T, _T1)
+
+
+@micropython.viper
+def own_variance(s_, c: ptr32, i: int):
+    """Put the variance of component i's own slope on the matrix' diagonal, negative."""
+    own_square(s_, i)
+    put(s_, _T, -c[_SPREAD], 0)
+    multiply(s_, _T, _T, _OMEGA + 2 * i)
+    i = int(int(place(i, i)))
+    divide(s_, i, _T, _T1)

@@ -30,9 +30,9 @@ _SUM_R = const(42)
 _WEIGHT = const(60)
 _SECOND = const(61)
 _THIRD = const(62)
-_M = const(222)
-_WM = const(225)
-_CENTRE = const(230)
+_M = const(202)
+_WM = const(205)
+_CENTRE = const(213)
 
 _S = const(6)
 _A = const(9)
@@ -42,15 +42,20 @@ _SHAPES_Y = const(19)
 
 
 @micropython.viper
-def taper(s: ptr32, k: int, stage: int):
-    """Write the weight and the two shapes times the weight of node k of 2^stage, Q10."""
+def taper(s: ptr32, k: int, stage: int, even: int):
+    """Write the weight and the two shapes times the taper of node k of 2^stage, Q10.
+
+    even: the weight itself is 1, as in the document; the shapes stay tapered.
+    """
     t = (2 * k + 1 - (1 << stage)) << (10 - stage)
-    square = (t * t) >> 10
-    weight = ((1024 - square) * (1024 - square)) >> 10
-    s[_WEIGHT] = weight
-    s[_SECOND] = ((7 * square - 1024) * weight) >> 10
-    s[_THIRD] = ((((3 * square - 1024) * t) >> 10) * weight) >> 10
-    s[_TOTAL] += weight
+    k = (t * t) >> 10
+    stage = ((1024 - k) * (1024 - k)) >> 10
+    s[_SECOND] = ((7 * k - 1024) * stage) >> 10
+    s[_THIRD] = ((((3 * k - 1024) * t) >> 10) * stage) >> 10
+    if even:
+        stage = 1024
+    s[_WEIGHT] = stage
+    s[_TOTAL] += stage
 
 
 @micropython.viper
@@ -99,33 +104,42 @@ def mean(s: ptr32, total: int) -> int:
 
 
 @micropython.viper
+def refer(s: ptr32, d: int, a: int, mean: int):
+    """Take (the word at a times mean) >> 10 from the word at d."""
+    a = int(int(scaled(s[a] << 5, mean, 15)))
+    s[d] -= a
+
+
+@micropython.viper
 def centre(s_, a: int, row: int, shift: int):
     """Refer the sums at a to the weighted means, and the next traversal's M to its mean.
 
     The mean of y replaces its sum. The row of the matrix at _CENTRE is where M begins.
     """
     s = ptr32(s_)
-    y = int(int(mean(s_, s[a + _MEAN])))
-    s[a + _MEAN] = y
-    h = a
+    s[a + _MEAN] = int(int(mean(s_, s[a + _MEAN])))
     i = 0
+    row += _CENTRE
     while i < 3:
         s[_M + i] = int(int(mean(s_, s[a + _A + i])))
-        s[_CENTRE + row + i] -= s[_M + i] << shift
-        s[a + _S + i] -= int(int(scaled(s[a + _A + i] << 5, y, 15)))
+        s[row + i] = s[row + i] - (s[_M + i] << shift)
         i += 1
     i = 0
+    row = a
+    s[_WM] = s[a + _MEAN]
     while i < 3:
-        h = int(int(centre_row(s_, a, h, i)))
+        shift = a + _A + i
+        refer(s_, shift - 3, shift, s[_WM])
+        row = int(int(centre_row(s_, shift, row, i)))
         i += 1
 
 
 @micropython.viper
-def centre_row(s: ptr32, a: int, h: int, i: int) -> int:
-    """Refer row i of the square sums at word h to the means; return where the next row is."""
-    k = i
+def centre_row(s_, a: int, h: int, k: int) -> int:
+    """Refer a row of the square sums, from word h on, to the means; return where the next is."""
+    s = ptr32(s_)
     while k < 3:
-        s[h] -= int(int(scaled(s[a + _A + i] << 5, s[_M + k], 15)))
+        refer(s_, h, a, s[_M + k])
         h += 1
         k += 1
     return h

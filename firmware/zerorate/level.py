@@ -1,0 +1,153 @@
+"""The level frame of a window: where its mean specific force points up."""
+
+try:
+    from micropython import const
+except ImportError:
+
+    def const(value):
+        return value
+
+
+ptr32 = None
+
+
+from .attitude import heading_q12, rotation
+from .fixed import root
+from .increments import within
+
+_Q = const(25)
+_START = const(29)
+_R = const(33)
+_Y = const(51)
+_WEIGHT = const(60)
+_UP = const(63)
+_TOTAL = const(18)
+_LAST = const(23)
+_TURNS = const(24)
+_SUMS = const(85)
+_TILT = const(97)
+_OTHER_TILT = const(118)
+_M = const(202)
+_CENTRE = const(213)
+
+_WRAP_Q12 = const(25736)
+_MOST_Q12 = const(0x7FFF)
+
+
+def begin_attitude(s: ptr32):
+    """Set the quaternion to the window's first attitude."""
+    i = 0
+    while i < 4:
+        s[_Q + i] = s[_START + i] << 14
+        i += 1
+    s[_LAST] = 0
+    s[_TURNS] = 0
+
+
+def look_along(s: ptr32, scale: int):
+    """Set _START to the quaternion at _M divided by its length, which is `scale`, as Q14."""
+    i = 0
+    while i < 4:
+        s[_START + i] = (s[_M + i] << 14) // scale
+        i += 1
+
+
+def find_up(s: ptr32):
+    """Set _START to the least turn that makes the mean force vertical, in either sense."""
+    x = s[_OTHER_TILT]
+    y = -s[_TILT]
+    z = s[_UP]
+    while x > 8191 or x < -8191 or y > 8191 or y < -8191 or z > 8191 or z < -8191:
+        x = x >> 1
+        y = y >> 1
+        z = z >> 1
+    scale = int(root(x * x + y * y + z * z))
+    over = z < 0
+    if over:
+        y = -y
+        z = -z
+    s[_M] = scale + z
+    s[_M + 1] = y
+    s[_M + 2] = -x
+    s[_M + 3] = 0
+    scale = int(root(s[_M] * s[_M] + x * x + y * y))
+    if over:
+        s[_M + 3] = x
+        s[_M + 2] = 0
+        s[_M + 1] = s[_M]
+        s[_M] = -y
+    if scale == 0:
+        s[_M] = 1
+        scale = 1
+    look_along(s, scale)
+
+
+def lean_back(s: ptr32):
+    """Turn _START by the mean tilts that the traversal left, Q12 rad."""
+    x = int(within(-s[_TILT], 4096)) << 1
+    y = int(within(-s[_OTHER_TILT], 4096)) << 1
+    s[_M] = s[_START] - ((x * s[_START + 1] + y * s[_START + 2]) >> 14)
+    s[_M + 1] = s[_START + 1] + ((x * s[_START] + y * s[_START + 3]) >> 14)
+    s[_M + 2] = s[_START + 2] + ((y * s[_START] - x * s[_START + 3]) >> 14)
+    s[_M + 3] = s[_START + 3] + ((x * s[_START + 2] - y * s[_START + 1]) >> 14)
+    i = 0
+    x = 0
+    while i < 4:
+        s[_M + i] = s[_M + i] >> 1
+        x += s[_M + i] * s[_M + i]
+        i += 1
+    look_along(s, int(root(x)))
+
+
+def turn_centre(s: ptr32, shift: int):
+    """Set _CENTRE from the means of M in the first attitude's own frame."""
+    begin_attitude(s)
+    rotation(s)
+    i = 0
+    while i < 3:
+        k = 0
+        while k < 3:
+            s[_CENTRE + 3 * i + k] = -(int(turned_mean(s, i, k)) << shift)
+            k += 1
+        i += 1
+
+
+def turned_mean(s: ptr32, i: int, k: int) -> int:
+    """Return row i of the rotation times column k of the means of M."""
+    j = 0
+    total = 0
+    while j < 3:
+        mean = (s[_SUMS + 21 * j + 9 + k] << 8) // (s[_TOTAL] >> 2)
+        total += (s[_R + 3 * i + j] * mean) >> 2
+        j += 1
+    return total >> 12
+
+
+def force_q12(s: ptr32, a: int, row: int) -> int:
+    """Return a component of the node's specific force in the level frame, Q12 g."""
+    i = 0
+    total = 0
+    while i < 3:
+        # the force is the low 15 bits of the word, signed
+        total += s[_R + row + i] * (((s[a + i] & 0x7FFF) ^ 0x4000) - 0x4000)
+        i += 1
+    return (total + 0x2000) >> 14
+
+
+def observe(s: ptr32, a: int):
+    """Write both tilts and the heading of the node at word a, Q12 rad."""
+    force = int(force_q12(s, a, 3))
+    s[_Y] = -int(within(force, _MOST_Q12))
+    force = int(force_q12(s, a, 0))
+    s[_Y + 1] = int(within(force, _MOST_Q12))
+    force = int(force_q12(s, a, 6))
+    s[_UP] += (s[_WEIGHT] * force + 512) >> 10
+    force = int(heading_q12(s))
+    a = force - s[_LAST]
+    s[_LAST] = force
+    if a > _WRAP_Q12:
+        s[_TURNS] -= 1
+    elif a < -_WRAP_Q12:
+        s[_TURNS] += 1
+    force += int(within(s[_TURNS], 3)) * 51472
+    s[_Y + 2] = int(within(force, _MOST_Q12))

@@ -1,0 +1,89 @@
+"""The settings and the state of the source in motion, made once."""
+
+from array import array
+from math import ceil, pi
+
+STATE_WORDS = 228
+_SPARE_NODES = 24
+_ALGEBRA = 90
+
+
+def _real(value):
+    """Return mantissa and exponent of a positive number, as real.py holds them."""
+    exponent = 0
+    while value < 1 << 27:
+        value *= 2
+        exponent -= 1
+    while value >= 1 << 28:
+        value /= 2
+        exponent += 1
+    return int(value), exponent
+
+
+def motion_settings(
+    odr_hz=100.0,
+    gyro_lsb_per_dps=131.0,
+    accel_lsb_per_g=16384.0,
+    node_s=0.125,
+    longest_stage=7,
+    passes=3,
+    document=False,
+    start_dps=20.0,
+    walk_dps=0.003,
+    spread=9,
+    least_dps=5.0,
+    least_up_g=0.85,
+    patience=6,
+    settled_dps=0.005,
+):
+    """Return the settings as array('i'), 23 words.
+
+    odr_hz: samples a second; node_s: time of a node; longest_stage: the window is 2^that nodes;
+    start_dps: one sigma of the bias before anything is known; walk_dps: its random walk a root
+    second; spread: the variance of a slope over that of the noise beside it; least_dps: mean rate
+    below which a window is not motion. Raises ValueError.
+    """
+    if not 4 <= longest_stage <= 8 or not 1 <= passes <= 8 or not odr_hz * node_s >= 1:
+        raise ValueError("a window needs 16..256 nodes of one sample or more, and 1..8 passes")
+    longest = 1 << longest_stage
+    steps = (passes + 1) * longest + _ALGEBRA
+    rad_per_lsb_us = pi / 180 / gyro_lsb_per_dps * 1e-6 * (1 << 24)
+    sample_us = 1e6 / odr_hz
+    shift = 0
+    while rad_per_lsb_us * sample_us * (1 << shift) < 4096 and shift < 20:
+        shift += 1
+    gain_shift = 0
+    while rad_per_lsb_us * (1 << shift) * (1 << gain_shift) < 1024 and gain_shift < 28:
+        gain_shift += 1
+    unit = node_s * (1 << 24) * pi / 180
+    c = [0] * 23
+    c[0] = int(node_s * 1e6)
+    c[1] = int(rad_per_lsb_us * (1 << shift) * (1 << gain_shift) + 0.5)
+    c[2] = gain_shift
+    c[3] = shift
+    c[4] = int((1 << 25) / accel_lsb_per_g + 0.5)
+    c[5] = ceil(steps / (_SPARE_NODES * node_s * odr_hz))
+    c[6] = int(2 * sample_us)
+    c[7] = int(least_dps * node_s * pi / 180 * (1 << 13))
+    c[8] = longest + _SPARE_NODES
+    c[9] = passes
+    c[10], c[11] = _real(gyro_lsb_per_dps * 256 / unit)
+    c[12], c[13] = _real((walk_dps * unit) ** 2 * node_s)
+    c[14], c[15] = _real((start_dps * unit) ** 2)
+    c[16] = longest
+    c[17] = longest_stage - 3
+    c[18] = int(least_up_g * 4096)
+    c[19] = patience
+    c[20] = 1 if document else 0
+    c[21] = spread
+    c[22] = int(settled_dps * unit)
+    return array("i", c)
+
+
+def motion_state(settings):
+    """Return the state as array('i'), nothing known yet."""
+    from .motion_verdict import clear
+
+    state = array("i", [0] * (STATE_WORDS + 3 * settings[8]))
+    clear(state, settings)
+    return state

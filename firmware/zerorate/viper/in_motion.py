@@ -1,0 +1,350 @@
+# Generated from zerorate/in_motion.py by `make viper`: edit that file, not this one.
+"""The bias from motion that returns: the slope of integrated orientation over a stored window.
+
+Document 002: store the rates, find the stretch that moves, integrate it to orientation, fit a
+line, take the slope as bias, remove it, integrate again. Two forms:
+
+- the document's own: each axis' slope of the orientation vector is that axis' bias;
+- the default: tilt comes from gravity in the level frame, only the heading from the assumption
+  that it returns; slopes are mapped to the body by the integrated rotation matrix, tapered, and
+  joined with what earlier windows know by weights that the window's own residual sets.
+
+A window grows from 2 s while nothing is known, for a large bias turns a long one too far to be
+linear. Work is spread: a few nodes or one piece of algebra a sample. The state is one array('i')
+of 228 words and 3 a node; motion_settings.py makes the settings.
+"""
+
+import micropython
+
+
+try:
+    from micropython import const
+except ImportError:
+
+    def const(value):
+        return value
+
+
+from .attitude import normalise, rotation, sines, turn
+from .increments import close, gather, restart
+from .least_squares import (
+    covariance,
+    held_weights,
+    matrix_element,
+    noise,
+    own_slope,
+    own_variance,
+    right_side,
+    spread_prior,
+    step,
+    sweep,
+    weights,
+)
+from .level import begin_attitude, find_up, lean_back, observe, turn_centre
+from .motion_verdict import finish, note_slope, start_window
+from .real import add, whole
+from .regression import centre, first_sums, regressors, second_sums, taper
+
+NOTHING_YET = const(0)
+GROWING = const(1)
+LEARNED = const(2)
+STILL = const(3)
+TURNED = const(4)
+TOO_FAST = const(5)
+LOST = const(6)
+GAP = const(7)
+
+_LENGTH = const(11)
+_STAGE = const(12)
+_JOB = const(13)
+_PASS = const(14)
+_K = const(15)
+_FIRST = const(16)
+_REASON = const(17)
+_TOTAL = const(18)
+_HALF = const(19)
+_R = const(33)
+_SUM_R = const(42)
+_Y = const(51)
+_CARRY = const(54)
+_BIAS_Q24 = const(57)
+_Q = const(25)
+_UP = const(63)
+_TRAFFIC = const(65)
+_AGE = const(66)
+_SUMS = const(85)
+_PRIOR = const(160)
+_BIAS = const(178)
+_D = const(184)
+_CENTRE = const(213)
+_RING = const(228)
+
+_VISITS = const(5)
+_LONGEST_GAP_US = const(6)
+_NODES = const(8)
+_PASSES = const(9)
+_SETTLED = const(22)
+_DOCUMENT = const(20)
+
+_IDLE = const(0)
+_TRAVERSE = const(1)
+_SOLVE = const(2)
+
+
+@micropython.viper
+def update(s_, c_, x_, dt_us: int) -> int:
+    """Take the raw frame `x` (ax ay az temp gx gy gz), dt_us after the one before.
+
+    Returns 1 in the sample in which a new bias was learned, else 0.
+    """
+    s = ptr32(s_)
+    c = ptr32(c_)
+    if dt_us <= 0 or dt_us > c[_LONGEST_GAP_US]:
+        restart(s_)
+        s[_JOB] = _IDLE
+        s[_REASON] = GAP
+        return 0
+    if int(int(gather(s_, c_, x_, dt_us))):
+        close(s_, c_)
+    if s[_JOB] == _IDLE:
+        if int(int(start_window(s_, c_))):
+            begin_traversal(s_)
+        return 0
+    return int(int(work(s_, c_)))
+
+
+@micropython.viper
+def work(s_, c_) -> int:
+    """Do the next nodes of a traversal, or the next piece of algebra."""
+    s = ptr32(s_)
+    c = ptr32(c_)
+    if s[_JOB] == _SOLVE:
+        return int(int(solve(s_, c_)))
+    i = c[_VISITS]
+    while i > 0 and s[_JOB] == _TRAVERSE:
+        visit(s_, c_)
+        i -= 1
+    return 0
+
+
+@micropython.viper
+def begin_traversal(s_):
+    """Begin at the window's first node with the bias of this pass removed."""
+    s = ptr32(s_)
+    i = 0
+    while i < 63:
+        s[_SUMS + i] = 0
+        i += 1
+    i = 0
+    while i < 3:
+        s[_BIAS_Q24 + i] = int(int(whole(s_, _BIAS + 2 * i, 0)))
+        s[_CARRY + i] = 0
+        i += 1
+    i = 0
+    while i < 9:
+        s[_SUM_R + i] = s[_CENTRE + i]
+        i += 1
+    s[_UP] = 0
+    s[_TOTAL] = 0
+    s[_TRAFFIC] = 0
+    s[_K] = 0
+    s[_JOB] = _TRAVERSE
+    begin_attitude(s_)
+
+
+@micropython.viper
+def visit(s_, c: ptr32):
+    """Integrate over one node and add it to the sums."""
+    s = ptr32(s_)
+    a = s[_FIRST] + s[_K]
+    if a >= c[_NODES]:
+        a -= c[_NODES]
+    a = _RING + 3 * a
+    taper(s_, s[_K], s[_STAGE], c[_DOCUMENT])
+    rotation(s_)
+    if c[_DOCUMENT]:
+        observe_vector(s_)
+    else:
+        observe(s_, a)
+    sum_up(s_)
+    remove_bias(s_, a)
+    sines(s_)
+    turn(s_)
+    normalise(s_)
+    s[_K] += 1
+    if s[_K] >= s[_LENGTH]:
+        s[_K] = 0
+        s[_JOB] = _SOLVE
+
+
+@micropython.viper
+def observe_vector(s: ptr32):
+    """Take the rotation vector from the start, Q12 rad, and let each slope be its own axis'."""
+    i = 0
+    while i < 9:
+        s[_R + i] = 0
+        i += 1
+    i = 0
+    while i < 3:
+        s[_R + 4 * i] = 0x4000
+        s[_Y + i] = s[_Q + 1 + i] >> 15
+        if s[_Q] < 0:
+            s[_Y + i] = -s[_Y + i]
+        i += 1
+
+
+@micropython.viper
+def sum_up(s_):
+    """Add the node to the sums of the three components, M taken at the node's start."""
+    s = ptr32(s_)
+    i = 0
+    while i < 9:
+        s[_SUM_R + i] += s[_R + i] >> 1
+        i += 1
+    i = 0
+    while i < 3:
+        regressors(s_, _SUM_R + 3 * i, s[_STAGE])
+        first_sums(s_, _SUMS + 21 * i, s[_Y + i])
+        second_sums(s_, _SUMS + 21 * i)
+        i += 1
+    i = 0
+    while i < 9:
+        s[_SUM_R + i] += s[_R + i] - (s[_R + i] >> 1)
+        i += 1
+
+
+@micropython.viper
+def remove_bias(s: ptr32, a: int):
+    """Take the bias from the node's increment and write its half angles, Q14 rad.
+
+    What the bias has below a unit is carried from node to node.
+    """
+    i = 0
+    while i < 3:
+        s[_CARRY + i] += s[_BIAS_Q24 + i]
+        part = (s[_CARRY + i] + 0x400) >> 11
+        s[_CARRY + i] -= part << 11
+        part = (s[a + i] >> 15) - part
+        s[_HALF + i] = part
+        s[_TRAFFIC] += part if part > 0 else -part
+        i += 1
+
+
+@micropython.viper
+def solve(s_, c_) -> int:
+    """Do one piece of the algebra that follows a traversal; return 1 if a bias was learned."""
+    s = ptr32(s_)
+    c = ptr32(c_)
+    k = s[_K]
+    s[_K] = k + 1
+    if c[_DOCUMENT]:
+        return int(int(solve_document(s_, c_, k)))
+    if s[_PASS] == 0:
+        level_and_prior(s_, c_, k)
+        return 0
+    if k < 3:
+        centre(s_, _SUMS + 21 * k, 3 * k, s[_STAGE])
+    elif k == 3:
+        lean_back(s_)
+    elif k < 16:
+        normal_equations(s_, k - 4)
+    elif k == 16:
+        step(s_)
+    elif k < 20:
+        noise(s_, k - 17)
+    elif k == 20:
+        weights(s_, c_)
+        if int(int(last_pass(s_, c_))) == 0:
+            remove_slope(s_, c_)
+    elif k < 33:
+        normal_equations(s_, k - 21)
+    elif k == 33:
+        step(s_)
+        s[_PASS] = c[_PASSES]
+        remove_slope(s_, c_)
+    else:
+        s[_JOB] = _IDLE
+        return int(int(finish(s_, c_)))
+    return 0
+
+
+@micropython.viper
+def normal_equations(s_, n: int):
+    """Build element n of the normal equations, or sweep them: 6 of the matrix, 3, 3 sweeps."""
+    if n < 6:
+        matrix_element(s_, n)
+    elif n < 9:
+        right_side(s_, n - 6)
+    else:
+        sweep(s_, n - 9)
+
+
+@micropython.viper
+def solve_document(s_, c_, k: int) -> int:
+    """Do one piece of the document's own form; return 1 if a bias was learned."""
+    s = ptr32(s_)
+    c = ptr32(c_)
+    if k < 3:
+        centre(s_, _SUMS + 21 * k, 3 * k, s[_STAGE])
+    elif k < 6:
+        own_slope(s_, k - 3)
+    elif k < 9:
+        noise(s_, k - 6)
+    elif k == 9:
+        if int(int(last_pass(s_, c_))):
+            s[_PASS] = c[_PASSES]
+        remove_slope(s_, c_)
+    elif k < 13:
+        own_variance(s_, c_, k - 10)
+    else:
+        s[_JOB] = _IDLE
+        return int(int(finish(s_, c_)))
+    return 0
+
+
+@micropython.viper
+def level_and_prior(s_, c_, k: int):
+    """After the first traversal: find the level frame, then invert the covariance."""
+    s = ptr32(s_)
+    if k == 0:
+        find_up(s_)
+        turn_centre(s_, s[_STAGE])
+    elif k == 1:
+        spread_prior(s_, c_, s[_AGE])
+    elif k < 5:
+        sweep(s_, k - 2)
+    else:
+        covariance(s_, _PRIOR)
+        held_weights(s_, c_)
+        s[_PASS] = 1
+        begin_traversal(s_)
+
+
+@micropython.viper
+def last_pass(s_, c: ptr32) -> int:
+    """Return 1 if the slope is below its threshold or this was the last pass allowed."""
+    s = ptr32(s_)
+    if s[_PASS] >= c[_PASSES]:
+        return 1
+    i = 0
+    while i < 3:
+        slope = int(int(whole(s_, _D + 2 * i, 0)))
+        if slope > c[_SETTLED] or slope < -c[_SETTLED]:
+            return 0
+        i += 1
+    return 1
+
+
+@micropython.viper
+def remove_slope(s_, c_):
+    """Add this pass' slope to the bias, note it, and integrate again unless it was the last."""
+    s = ptr32(s_)
+    c = ptr32(c_)
+    i = 0
+    while i < 6:
+        add(s_, _BIAS + i, _BIAS + i, _D + i)
+        i += 2
+    note_slope(s_, c_)
+    if s[_PASS] < c[_PASSES]:
+        s[_PASS] += 1
+        begin_traversal(s_)

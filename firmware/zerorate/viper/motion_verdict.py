@@ -1,0 +1,272 @@
+# Generated from zerorate/motion_verdict.py by `make viper`: edit that file, not this one.
+"""Whether a window in motion may teach a bias, and what is kept of it.
+
+Refused: a window that hardly moves (the still source's), one that turned faster than the nodes
+hold, one whose mean force is not 1 g along one direction (the integration lost its way), and one
+that contradicts what is known: a turn that stays turned. Contradiction that lasts is believed.
+"""
+
+import micropython
+
+
+try:
+    from micropython import const
+except ImportError:
+
+    def const(value):
+        return value
+
+
+from .least_squares import covariance, less, place
+from .real import add, copy, multiply, put, root_of, subtract, whole
+
+GROWING = const(1)
+LEARNED = const(2)
+STILL = const(3)
+TURNED = const(4)
+TOO_FAST = const(5)
+LOST = const(6)
+
+_HEAD = const(8)
+_FILLED = const(9)
+_NEW = const(10)
+_LENGTH = const(11)
+_STAGE = const(12)
+_PASS = const(14)
+_FIRST = const(16)
+_REASON = const(17)
+_TOTAL = const(18)
+_START = const(29)
+_UP = const(63)
+_FAST = const(64)
+_TRAFFIC = const(65)
+_AGE = const(66)
+_ACCEPTED = const(67)
+_REFUSED = const(68)
+_AGAINST = const(69)
+_OUT_Q8 = const(70)
+_QUALITY_Q8 = const(73)
+_SLOPES_Q8 = const(76)
+_G = const(33)
+_P = const(148)
+_PRIOR_MEAN = const(172)
+_BIAS = const(178)
+_D = const(184)
+_HOLD = const(190)
+_T = const(202)
+_T1 = const(204)
+_CENTRE = const(213)
+_ENERGY = const(222)
+
+_LEAST_TRAFFIC = const(7)
+_NODES = const(8)
+_LSB = const(10)
+_WALK = const(12)
+_START_VARIANCE = const(14)
+_LONGEST = const(16)
+_SHORTEST_STAGE = const(17)
+_LEAST_UP = const(18)
+_PATIENCE = const(19)
+_DOCUMENT = const(20)
+
+_SETTLED_AFTER = const(3)
+
+
+@micropython.viper
+def clear(s_, c: ptr32):
+    """Know nothing: no bias, the widest covariance, the shortest window."""
+    s = ptr32(s_)
+    i = 0
+    while i < 3:
+        put(s_, _BIAS + 2 * i, 0, 0)
+        s[_QUALITY_Q8 + i] = 0x1FFFFFFF
+        i += 1
+    s[_ACCEPTED] = 0
+    s[_AGAINST] = 0
+    s[_STAGE] = c[_SHORTEST_STAGE]
+    if c[_DOCUMENT]:
+        s[_STAGE] = c[_SHORTEST_STAGE] + 3
+    s[_LENGTH] = 1 << s[_STAGE]
+
+
+@micropython.viper
+def know_nothing(s_, c: ptr32, tilt: int, heading: int):
+    """Set the prior to the widest one about no bias, and the noise energies, Q24 rad^2."""
+    i = 0
+    while i < 6:
+        put(s_, _P + 2 * i, 0, 0)
+        i += 1
+    put(s_, _P, c[_START_VARIANCE], c[_START_VARIANCE + 1])
+    copy(s_, _P + 6, _P, 2)
+    copy(s_, _P + 10, _P, 2)
+    i = 0
+    while i < 3:
+        put(s_, _PRIOR_MEAN + 2 * i, 0, 0)
+        if i == 2:
+            tilt = heading
+        put(s_, _HOLD + 2 * i, tilt, 0)
+        i += 1
+
+
+@micropython.viper
+def start_window(s_, c_) -> int:
+    """Begin a window if enough is new; return 1 if it begins."""
+    s = ptr32(s_)
+    c = ptr32(c_)
+    n = s[_LENGTH]
+    if s[_FILLED] < n or s[_NEW] < (n >> 1):
+        return 0
+    if s[_FAST]:
+        s[_NEW] = 0
+        s[_REASON] = TOO_FAST
+        return 0
+    s[_NEW] = 0
+    s[_PASS] = 0
+    if c[_DOCUMENT]:
+        s[_PASS] = 1
+    s[_FIRST] = s[_HEAD] - n
+    if s[_FIRST] < 0:
+        s[_FIRST] += c[_NODES]
+    if n < c[_LONGEST]:
+        know_nothing(s_, c_, 6711, 41943)
+    elif s[_ACCEPTED] == 0:
+        know_nothing(s_, c_, 167772, 1509949)
+    else:
+        copy(s_, _PRIOR_MEAN, _BIAS, 6)
+    n = 0
+    while n < 9:
+        s[_CENTRE + n] = 0
+        n += 1
+    s[_START] = 0x4000
+    s[_START + 1] = 0
+    s[_START + 2] = 0
+    s[_START + 3] = 0
+    return 1
+
+
+@micropython.viper
+def note_slope(s_, c: ptr32):
+    """Note the slope of this pass, LSB in Q8, for who wants to see it."""
+    s = ptr32(s_)
+    i = 0
+    a = s[_PASS] - 1
+    if a > 2:
+        a = 2
+    a = _SLOPES_Q8 + 3 * a
+    while i < 3:
+        put(s_, _T, c[_LSB], c[_LSB + 1])
+        multiply(s_, _T, _T, _D + 2 * i)
+        s[a + i] = int(int(whole(s_, _T, 0)))
+        i += 1
+
+
+@micropython.viper
+def verdict(s_, c_) -> int:
+    """Return why the window teaches nothing, or LEARNED."""
+    s = ptr32(s_)
+    c = ptr32(c_)
+    if s[_FAST]:
+        return TOO_FAST
+    if s[_TRAFFIC] < (c[_LEAST_TRAFFIC] << s[_STAGE]):
+        return STILL
+    if c[_DOCUMENT] or s[_LENGTH] < c[_LONGEST]:
+        return LEARNED
+    if (s[_UP] << 8) // (s[_TOTAL] >> 2) < c[_LEAST_UP]:
+        return LOST
+    if s[_ACCEPTED] >= _SETTLED_AFTER and int(int(contradicts(s_, c_))):
+        return TURNED
+    return LEARNED
+
+
+@micropython.viper
+def contradicts(s_, c: ptr32) -> int:
+    """Return 1 if an axis moved by more than four sigma of what was known, else 0."""
+    s = ptr32(s_)
+    i = 0
+    d = _P
+    while i < 3:
+        put(s_, _T, s[_AGE], 4)
+        put(s_, _T1, c[_WALK], c[_WALK + 1])
+        multiply(s_, _T, _T, _T1)
+        put(s_, _T1, s[d], s[d + 1] + 4)
+        add(s_, _T, _T, _T1)
+        subtract(s_, _T1, _BIAS + 2 * i, _PRIOR_MEAN + 2 * i)
+        multiply(s_, _T1, _T1, _T1)
+        if int(int(less(s_, _T, _T1))):
+            return 1
+        d += 6 - 2 * i
+        i += 1
+    return 0
+
+
+@micropython.viper
+def finish(s_, c_) -> int:
+    """Keep or refuse the window's bias; return 1 if it was learned."""
+    s = ptr32(s_)
+    c = ptr32(c_)
+    reason = int(int(verdict(s_, c_)))
+    s[_REASON] = reason
+    if reason != LEARNED:
+        refuse(s_, c_, reason)
+        return 0
+    if s[_LENGTH] < c[_LONGEST]:
+        s[_LENGTH] = s[_LENGTH] << 1
+        s[_STAGE] += 1
+        s[_REASON] = GROWING
+        return 0
+    covariance(s_, _P)
+    keep_noise(s_)
+    s[_ACCEPTED] += 1
+    s[_AGAINST] = 0
+    s[_AGE] = 0
+    publish(s_, c_)
+    return 1
+
+
+@micropython.viper
+def refuse(s_, c_, reason: int):
+    """Take back the window's bias; widen or forget what is known if this goes on for long."""
+    s = ptr32(s_)
+    c = ptr32(c_)
+    i = 0
+    copy(s_, _BIAS, _PRIOR_MEAN, 6)
+    s[_REFUSED] += 1
+    if reason != TURNED and reason != LOST:
+        return
+    s[_AGAINST] += 1
+    if s[_AGAINST] < c[_PATIENCE]:
+        return
+    s[_AGAINST] = 0
+    if reason == LOST:
+        clear(s_, c_)
+        return
+    while i < 12:
+        put(s_, _P + i, s[_P + i], s[_P + i + 1] + 4)
+        i += 2
+
+
+@micropython.viper
+def keep_noise(s_):
+    """Hold this window's noise energies for the next, a little less."""
+    i = 0
+    while i < 6:
+        put(s_, _T, 13107, -14)
+        multiply(s_, _HOLD + i, _ENERGY + i, _T)
+        i += 2
+
+
+@micropython.viper
+def publish(s_, c: ptr32):
+    """Write bias and one-sigma uncertainty of each axis, LSB in Q8."""
+    s = ptr32(s_)
+    i = 0
+    while i < 3:
+        put(s_, _T, c[_LSB], c[_LSB + 1])
+        multiply(s_, _T1, _T, _BIAS + 2 * i)
+        s[_OUT_Q8 + i] = int(int(whole(s_, _T1, 0)))
+        copy(s_, _T1, int(int(place(i, i))), 2)
+        put(s_, _T1, -s[_T1], s[_T1 + 1])
+        root_of(s_, _T1, _T1)
+        multiply(s_, _T1, _T1, _T)
+        s[_QUALITY_Q8 + i] = int(int(whole(s_, _T1, 0)))
+        i += 1

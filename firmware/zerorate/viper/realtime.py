@@ -1,0 +1,343 @@
+# Generated from zerorate/realtime.py by `make viper`: edit that file, not this one.
+"""The bias against the accelerometer: counters of signs, stepped by a fixed value.
+
+Document 003: a time interval of sub-units; in each, the angular rate that a pair of accelerometer
+axes implies, its deviation from the gyroscope's, a counter; at the end of the interval the offset
+moves by a first value if the counter says so. The axis x has the pair (y, z), and so round.
+
+With gravity g and rate w in the body frame g' = -w x g, so the pair's angle turns by
+    atan2(gy, gz)' = wx - gx (wy gy + wz gz) / (gy^2 + gz^2):
+the last term couples the other axes in. It is subtracted less its mean over 16 s, which is bias;
+where gravity lies within 45 deg of the axis the sub-unit is not counted for it. Both sides are
+means over the sub-unit of an angle, the gyroscope's being its running integral, so both see the
+same motion in the same way.
+
+The document's own form has one step, counts every sign and ends an interval after so many
+sub-units; the default has a dead band, ends it after so many counted ones, doubles the step while
+all signs agree and halves it when the counter turns.
+"""
+
+import micropython
+
+
+try:
+    from micropython import const
+except ImportError:
+
+    def const(value):
+        return value
+
+
+from .atan2 import atan2_q13
+from .fixed import scaled
+
+NOTHING_YET = const(0)
+COUNTING = const(1)
+NOT_ONE_G = const(2)
+GAP = const(3)
+
+_ELAPSED_US = const(0)
+_N = const(1)
+_ANGLE = const(2)
+_ANGLES = const(5)
+_FORCES = const(8)
+_LAST_ANGLE = const(11)
+_LAST_PAIR = const(14)
+_LAST_COUPLED = const(17)
+_LAST_GOOD = const(20)
+_UNIT = const(21)
+_COUNTER = const(22)
+_COUNTED = const(25)
+_OFFSET_Q8 = const(28)
+_QUALITY_Q8 = const(31)
+_STEP_Q8 = const(34)
+_OBSERVED = const(37)
+_SIGN = const(40)
+_TURNS = const(43)
+_RIPPLE_Q8 = const(46)
+_REASON = const(49)
+_SKIPPED = const(50)
+_MEAN_ALONG = const(51)
+
+_SUB_UNIT_US = const(0)
+_GAIN = const(1)
+_GAIN_SHIFT = const(2)
+_SHIFT = const(3)
+_UNITS = const(4)
+_THRESHOLD = const(5)
+_DEAD_Q13 = const(6)
+_COARSE_Q8 = const(7)
+_FINE_Q8 = const(8)
+_ONE_G_LSB = const(9)
+_LONGEST_GAP_US = const(10)
+_DOCUMENT = const(11)
+
+_UNKNOWN_Q8 = const(0x1FFFFFFF)
+_PI_Q13 = const(25736)
+_ONE_G_Q24 = const(0x1000000)
+_BAND_Q24 = const(0x300000)
+_HALF_Q24 = const(0x800000)
+_MOST_Q13 = const(0x7FFF)
+
+
+@micropython.viper
+def clear(s: ptr32, c: ptr32):
+    """Forget the offsets and everything counted."""
+    i = 0
+    while i < _MEAN_ALONG + 3:
+        s[i] = 0
+        i += 1
+    i = 0
+    while i < 3:
+        s[_STEP_Q8 + i] = c[_COARSE_Q8]
+        s[_QUALITY_Q8 + i] = _UNKNOWN_Q8
+        i += 1
+
+
+@micropython.viper
+def update(s_, c_, x_, dt_us: int) -> int:
+    """Take the raw frame `x`, dt_us after the one before; return 1 where an interval ended."""
+    s = ptr32(s_)
+    c = ptr32(c_)
+    if dt_us <= 0 or dt_us > c[_LONGEST_GAP_US]:
+        s[_ELAPSED_US] = 0
+        s[_N] = 0
+        s[_LAST_GOOD] = 0
+        s[_REASON] = GAP
+        begin_unit(s_)
+        return 0
+    gather(s_, x_, (dt_us * c[_GAIN]) >> c[_GAIN_SHIFT], c[_SHIFT])
+    s[_ELAPSED_US] += dt_us
+    s[_N] += 1
+    if s[_ELAPSED_US] < c[_SUB_UNIT_US]:
+        return 0
+    s[_ELAPSED_US] -= c[_SUB_UNIT_US]
+    end_unit(s_, c_)
+    s[_UNIT] += 1
+    return int(int(end_interval(s_, c_)))
+
+
+@micropython.viper
+def gather(s: ptr32, x: ptr32, factor: int, shift: int):
+    """Add the frame to the sub-unit: the running angle, Q22 rad, its sum, Q13, and the forces."""
+    i = 0
+    while i < 3:
+        turned = (x[4 + i] << 8) - s[_OFFSET_Q8 + i]
+        turned = int(int(scaled(turned, factor, shift)))
+        turned += s[_ANGLE + i]
+        s[_ANGLE + i] = turned
+        turned = turned >> 9
+        s[_ANGLES + i] += turned
+        s[_FORCES + i] += x[i]
+        i += 1
+
+
+@micropython.viper
+def begin_unit(s: ptr32):
+    """Begin the sums of a sub-unit."""
+    i = 0
+    s[_N] = 0
+    while i < 3:
+        s[_ANGLE + i] = 0
+        s[_ANGLES + i] = 0
+        s[_FORCES + i] = 0
+        i += 1
+
+
+@micropython.viper
+def end_unit(s_, c_):
+    """Count the sub-unit's deviations, where the force is near 1 g."""
+    s = ptr32(s_)
+    c = ptr32(c_)
+    i = 0
+    square = 0
+    while i < 3:
+        # a mean rate of 8 g cannot be gravity, and would not fit
+        force = ((s[_FORCES + i] // s[_N]) << 12) // c[_ONE_G_LSB]
+        if force > 8191 or force < -8191:
+            force = 8191
+        s[_FORCES + i] = force
+        square += force * force
+        i += 1
+    i = _ONE_G_Q24 - square
+    if i > _BAND_Q24 or i < -_BAND_Q24:
+        s[_LAST_GOOD] = 0
+        s[_SKIPPED] += 1
+        s[_REASON] = NOT_ONE_G
+    else:
+        s[_REASON] = COUNTING
+        i = 0
+        while i < 3:
+            compare(s_, c_, i, square)
+            i += 1
+    begin_unit(s_)
+
+
+@micropython.viper
+def compare(s_, c_, i: int, square: int):
+    """Compare the axis' angle with its pair's since the sub-unit before, and count."""
+    s = ptr32(s_)
+    square -= s[_FORCES + i] * s[_FORCES + i]
+    bit = 1 << i
+    if square < _HALF_Q24 or int(int(too_far(s[_ANGLE + i] >> 9))):
+        s[_LAST_GOOD] = s[_LAST_GOOD] & ~bit
+        return
+    square = int(int(since_last(s_, i, square >> 12)))
+    if s[_LAST_GOOD] & bit:
+        count(s_, c_, i, square)
+    s[_LAST_GOOD] = s[_LAST_GOOD] | bit
+
+
+@micropython.viper
+def too_far(turned: int) -> int:
+    """Return 1 if a sub-unit turned by 4 rad or more: its angles may wrap."""
+    if turned > _MOST_Q13 or turned < -_MOST_Q13:
+        return 1
+    return 0
+
+
+@micropython.viper
+def since_last(s_, i: int, square: int) -> int:
+    """Return the gyroscope's mean turn since the last sub-unit less the pair's, Q13 rad."""
+    s = ptr32(s_)
+    mean = s[_ANGLES + i] // s[_N]
+    deviation = mean - s[_LAST_ANGLE + i] + s[_LAST_PAIR + i]
+    s[_LAST_ANGLE + i] = mean - (s[_ANGLE + i] >> 9)
+    mean = int(int(pair_angle_q13(s_, i)))
+    s[_LAST_PAIR + i] = mean
+    deviation -= mean
+    mean = int(int(coupled_q13(s_, i, square >> 2)))
+    deviation -= (mean + s[_LAST_COUPLED + i]) >> 1
+    s[_LAST_COUPLED + i] = mean
+    while deviation > _PI_Q13:
+        deviation -= 2 * _PI_Q13
+    while deviation < -_PI_Q13:
+        deviation += 2 * _PI_Q13
+    return deviation
+
+
+@micropython.viper
+def pair_angle_q13(s: ptr32, i: int) -> int:
+    """Return the angle of the mean force in the plane of the axis' pair."""
+    j = i + 1 if i < 2 else 0
+    i = i - 1 if i > 0 else 2
+    return int(int(atan2_q13(s[_FORCES + j], s[_FORCES + i])))
+
+
+@micropython.viper
+def along_q12(s: ptr32, j: int, k: int) -> int:
+    """Return how far the axes j and k turned about gravity in the sub-unit, Q12 rad."""
+    first = int(int(held(s[_ANGLE + j] >> 9))) * s[_FORCES + j]
+    return (first + int(int(held(s[_ANGLE + k] >> 9))) * s[_FORCES + k]) >> 13
+
+
+@micropython.viper
+def coupled_q13(s_, i: int, square: int) -> int:
+    """Return what the other axes turn the pair's angle by in a sub-unit; square: Q10.
+
+    Their mean over the last 16 s or so is left out: it is their bias, not a turn.
+    """
+    s = ptr32(s_)
+    j = i + 1 if i < 2 else 0
+    k = i - 1 if i > 0 else 2
+    k = int(int(along_q12(s_, j, k)))
+    j = s[_MEAN_ALONG + i]
+    j += ((k << 8) - j) >> 5
+    s[_MEAN_ALONG + i] = j
+    k -= j >> 8
+    return (k * (s[_FORCES + i] >> 1)) // square
+
+
+@micropython.viper
+def held(angle: int) -> int:
+    """Return the angle held within 4 rad."""
+    if angle > _MOST_Q13:
+        return _MOST_Q13
+    if angle < -_MOST_Q13:
+        return -_MOST_Q13
+    return angle
+
+
+@micropython.viper
+def count(s: ptr32, c: ptr32, i: int, deviation: int):
+    """Move the axis' counter by the deviation's sign."""
+    s[_COUNTED + i] += 1
+    s[_OBSERVED + i] += 1
+    if deviation > c[_DEAD_Q13]:
+        s[_COUNTER + i] += 1
+    elif deviation < -c[_DEAD_Q13]:
+        s[_COUNTER + i] -= 1
+
+
+@micropython.viper
+def end_interval(s_, c_) -> int:
+    """Step the offsets whose interval is over; return 1 if there was one.
+
+    The document's interval is so many sub-units; by default so many that were counted.
+    """
+    s = ptr32(s_)
+    c = ptr32(c_)
+    i = 0
+    ended = 0
+    while i < 3:
+        if s[_COUNTED + i] >= c[_UNITS] or (c[_DOCUMENT] and s[_UNIT] >= c[_UNITS]):
+            end_axis(s_, c_, i)
+            ended = 1
+        i += 1
+    if s[_UNIT] >= c[_UNITS]:
+        s[_UNIT] = 0
+    return ended
+
+
+@micropython.viper
+def end_axis(s_, c_, i: int):
+    """Step the axis' offset if its counter passed the threshold; begin its next interval."""
+    s = ptr32(s_)
+    c = ptr32(c_)
+    if c[_DOCUMENT] == 0:
+        size_step(s_, c_, i)
+    step(s_, c_, i)
+    judge(s_, c_, i)
+    s[_COUNTER + i] = 0
+    s[_COUNTED + i] = 0
+
+
+@micropython.viper
+def size_step(s: ptr32, c: ptr32, i: int):
+    """Double the step while all signs agree; halve it when the counter turns."""
+    most = s[_COUNTER + i]
+    sign = 1
+    if most < 0:
+        most = -most
+        sign = -1
+    if most <= c[_THRESHOLD]:
+        return
+    if s[_SIGN + i] == -sign:
+        s[_TURNS + i] += 1
+        if s[_STEP_Q8 + i] > c[_FINE_Q8]:
+            s[_STEP_Q8 + i] = s[_STEP_Q8 + i] >> 1
+    elif most >= s[_COUNTED + i] and s[_STEP_Q8 + i] < c[_COARSE_Q8] * 4:
+        s[_STEP_Q8 + i] = s[_STEP_Q8 + i] << 1
+    s[_SIGN + i] = sign
+
+
+@micropython.viper
+def step(s: ptr32, c: ptr32, i: int):
+    """Move the offset by its step if the counter passed the threshold."""
+    moved = 0
+    if s[_COUNTER + i] > c[_THRESHOLD]:
+        moved = s[_STEP_Q8 + i]
+        s[_OFFSET_Q8 + i] += moved
+    elif s[_COUNTER + i] < -c[_THRESHOLD]:
+        moved = s[_STEP_Q8 + i]
+        s[_OFFSET_Q8 + i] -= moved
+    # ripple: the mean step of the latest eight intervals or so
+    s[_RIPPLE_Q8 + i] += (moved - s[_RIPPLE_Q8 + i]) >> 3
+
+
+@micropython.viper
+def judge(s: ptr32, c: ptr32, i: int):
+    """Write one sigma: known once the signs have turned twice, then by the ripple's size."""
+    if s[_TURNS + i] < 3 and c[_DOCUMENT] == 0:
+        return
+    s[_QUALITY_Q8 + i] = (s[_RIPPLE_Q8 + i] << 1) + s[_STEP_Q8 + i] + (c[_FINE_Q8] << 2)
