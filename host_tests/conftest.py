@@ -3,12 +3,17 @@
 import os
 from pathlib import Path
 
+import hypothesis
 import pytest
 from zerorate_tools.errors import MissingRuntime
 from zerorate_tools.runtimes import NAMES, available, find, how_to_get
 
 _REPOSITORY = Path(__file__).resolve().parents[1]
 _REQUIRED = frozenset(filter(None, os.environ.get("ZERORATE_REQUIRE", "").split(",")))
+
+# No limits by the clock: machines differ, and are busy.
+hypothesis.settings.register_profile("zerorate", deadline=None)
+hypothesis.settings.load_profile("zerorate")
 
 
 def pytest_configure():
