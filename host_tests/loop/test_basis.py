@@ -67,3 +67,8 @@ def test_an_unbounded_term_survives_json_without_infinities():
     assert Term.from_dict(json.loads(json.dumps(Term("time").to_dict(), allow_nan=False))) == Term(
         "time"
     )
+
+
+def test_a_delay_holds_the_first_value_until_it_is_over():
+    v = evaluate(Term("load", delay_s=3.0), sources_of(load=np.arange(6.0)), 1.0)
+    assert v.tolist() == [0, 0, 0, 0, 1, 2]

@@ -1,6 +1,6 @@
 """The float reference of an effect slot: what the firmware's integer kernels compute once per tick.
 
-Order: clamp, centre, [power first], lag or memory, knot, power, second source, decay.
+Order: clamp, centre, delay, [power first], lag or memory, knot, power, second source, decay.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ class Term:
     centre: float = 0.0
     power: int = 1
     power_first: bool = False
+    delay_s: float = 0.0
     lag_s: float = 0.0
     lag_mode: str = "none"  # none, lag, difference, rate
     memory: str = "none"  # none, backlash, peak
@@ -55,6 +56,12 @@ def first_order_lag(u: np.ndarray, lag_s: float, tick_s: float) -> np.ndarray:
     return z
 
 
+def delayed(u: np.ndarray, ticks: int) -> np.ndarray:
+    """u so many ticks ago; before the power-on, its first value."""
+    ticks = min(max(ticks, 0), len(u))
+    return np.concatenate([np.full(ticks, u[0]), u[: len(u) - ticks]])
+
+
 def play(u: np.ndarray, width: float) -> np.ndarray:
     """Backlash (play) operator: p = min(max(p, u - width/2), u + width/2), p starting at the first
     u.
@@ -84,6 +91,8 @@ def _remembered(term: Term, u: np.ndarray, tick_s: float) -> np.ndarray:
 def evaluate(term: Term, sources, tick_s: float) -> np.ndarray:
     """(m,) basis at each tick. `sources` is called with a name and returns the (m,) tick means."""
     u = np.clip(sources(term.source), term.lo, term.hi) - term.centre
+    if term.delay_s:
+        u = delayed(u, round(term.delay_s / tick_s))
     if term.power_first:
         u = u**term.power
     v = _remembered(term, u, tick_s)

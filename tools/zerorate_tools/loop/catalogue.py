@@ -54,6 +54,12 @@ GENERIC = (
     ("channel", {}, {}),
     ("channel-square", {"power": 2}, {"centre": ("mean", "lo", "hi")}),
     ("channel-lag", {"lag_mode": "lag"}, {"lag_s": (60.0, 180.0, 540.0, 1600.0)}),
+    ("channel-delay", {}, {"delay_s": (40.0, 80.0, 120.0, 160.0, 220.0, 300.0)}),
+    (
+        "channel-delay-square",
+        {"power": 2},
+        {"delay_s": (40.0, 80.0, 120.0, 160.0, 220.0, 300.0), "centre": ("mean", "lo")},
+    ),
     ("channel-rate", {"lag_mode": "rate"}, {"lag_s": (40.0, 160.0)}),
     (
         "channel-lag-square",
@@ -70,6 +76,7 @@ _OWN = ("temp", "acc_x", "acc_y", "acc_z", "rate_x", "rate_y", "rate_z", "vib")
 #: Parameters refined after the grid, with the limits they may take.
 REFINED = {
     "lag_s": (8.0, 7200.0),
+    "delay_s": (1.0, 1200.0),
     "decay_s": (40.0, 14400.0),
     "width": (0.3, 30.0),
     "knot": None,

@@ -37,7 +37,7 @@ class GateReport:
 
 
 def same_settings(ticks: list) -> None:
-    """Raise CannotClose for a session of another sensor or scale, or for the same recording twice."""
+    """Raise CannotClose for a session of another sensor or scale, or a recording given twice."""
     first = ticks[0]
     for t in ticks[1:]:
         for name in _SETTINGS:

@@ -45,16 +45,16 @@ def temperature_path(rng: np.random.Generator, ticks: int, tick_s: float) -> np.
     """(ticks,) degC: chamber-like ramps up and down at three rates with holds, and the part's own
     heating.
     """
-    hours = ticks * tick_s / 3600.0
-    t, level, points = 0.0, rng.uniform(16, 22), [(0.0, 0.0)]
-    points[0] = (0.0, level)
+    stretch = max(1.0, ticks * tick_s / 3600.0 / 4)
+    t, level = 0.0, rng.uniform(17, 20)
+    points, high = [(t, level)], True
     while t < ticks * tick_s:
-        step = rng.uniform(8, 16) * (1 if level < 30 else -1)
-        ramp_s = abs(step) / rng.choice([0.012, 0.025, 0.05]) * max(1.0, hours / 4)
-        t, level = t + ramp_s, level + step
-        points.append((t, level))
-        t += rng.uniform(60, 400) * max(1.0, hours / 4)
-        points.append((t, level))
+        to = rng.uniform(33, 36) if high else rng.choice([rng.uniform(17, 20), rng.uniform(23, 29)])
+        t += abs(to - level) / rng.choice([0.015, 0.025, 0.05]) * stretch
+        points.append((t, to))
+        t += rng.uniform(60, 400) * stretch
+        points.append((t, to))
+        level, high = to, not high
     at = (np.arange(ticks) + 0.5) * tick_s
     ambient = np.interp(at, *np.array(points).T)
     return first_order_lag(ambient, 60.0, tick_s) + 8.0 * (1 - np.exp(-at / rng.uniform(300, 600)))

@@ -1,0 +1,84 @@
+"""The whole loop over the sessions of one device, from blocks to a judgement."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .blocks import block_seconds, session_of
+from .floor import floor_dps
+from .gate import CannotClose, GateReport, enough, same_settings, usable_channels
+from .judge import Judgement, judge
+from .select import Selection, select
+from .sessions import Session
+from .single import split
+from .ticks import Ticks
+
+
+@dataclass
+class Analysis:
+    """What was fitted on what, what was found, and what the locked part says of it."""
+
+    sessions: list[Session]
+    train: list[Session]
+    locked: list[Session]
+    selection: Selection
+    judgement: Judgement
+    floor_dps: np.ndarray
+    gate: GateReport = field(default_factory=GateReport)
+
+    @property
+    def single(self) -> bool:
+        """Whether one recording was split in time."""
+        return len(self.sessions) == 1
+
+    @property
+    def coefficients(self) -> np.ndarray:
+        """(straight line and terms, 3) dps per unit, fitted together on the training part."""
+        s = self.selection
+        return s.regression.fit([*s.straight, *s.terms]).coefficients
+
+    def confidence(self, i: int) -> str:
+        """confirmed or tentative; one power-on alone confirms nothing."""
+        return "tentative" if self.single else self.judgement.confidence(i)
+
+
+def analyse(
+    sessions: list[Session], holdout: int | None = None, gate: GateReport | None = None
+) -> Analysis:
+    """Run the loop. holdout: index of the session to lock away, the last by default."""
+    gate = gate or GateReport()
+    if len(sessions) == 1:
+        train_part, locked_part, folds = split(sessions[0])
+        train, locked = [train_part], [locked_part]
+        selection = select(train, folds)
+    else:
+        at = len(sessions) - 1 if holdout is None else holdout
+        train, locked = [s for i, s in enumerate(sessions) if i != at], [sessions[at]]
+        selection = select(train)
+    judgement = judge(selection, locked)
+    whole = [*selection.straight, *selection.terms]
+    return Analysis(
+        sessions, train, locked, selection, judgement, floor_dps(judgement.whole, whole), gate
+    )
+
+
+def sessions_of(ticks: list[Ticks]) -> tuple[list[Session], GateReport]:
+    """Gate recordings and make them sessions of equal blocks. Raises CannotClose."""
+    gate = GateReport({t.name: t.faults for t in ticks})
+    same_settings(ticks)
+    sessions = [session_of(t, block_seconds(ticks)) for t in ticks]
+    kept = []
+    for s in sessions:
+        try:
+            enough(s)
+            kept.append(s)
+        except CannotClose as problem:
+            if len(sessions) == 1:
+                raise
+            gate.notes.append(f"left out: {problem}")
+    if not kept:
+        raise CannotClose("; ".join(n.removeprefix("left out: ") for n in gate.notes))
+    usable_channels(kept, gate)
+    return kept, gate

@@ -1,0 +1,160 @@
+"""report.json, as design.md has it, with what a person needs beside it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .analysis import Analysis
+from .confounding import label
+from .intervals import block_bootstrap, rms
+from .judge import judge
+from .model import slots
+from .single import WEAKER
+from .unexplained import measure_next, not_excluded, what_is_known
+
+CAUSE_UNKNOWN = "time since power-on; cause not identified"
+
+
+def report(analysis: Analysis) -> dict:
+    """Plain values, ready for JSON. Every figure in mdps is of the locked part."""
+    j = analysis.judgement
+    low, high = block_bootstrap(j.residual_after, rms)
+    return {
+        "split": _split(analysis),
+        "floor_mdps": _mdps(analysis.floor_dps),
+        "before_mdps": _mdps(j.before_dps),
+        "after_mdps": _mdps(j.after_dps),
+        "ci95_mdps": {
+            "before": _interval(j.residual_before),
+            "after": [[a, b] for a, b in zip(_mdps(low), _mdps(high))],
+        },
+        "steps": _steps(analysis),
+        "events": _events(analysis),
+        "unexplained": {
+            "rms_mdps": _mdps(j.after_dps),
+            "what_is_known": what_is_known(analysis, j.after_dps),
+            "measure_next": measure_next(analysis),
+            "cannot_be_shown_by_these_recordings": not_excluded(analysis),
+        },
+        "smallest_detectable_mdps": {
+            k: round(1e3 * v, 3) for k, v in analysis.selection.smallest_dps.items()
+        },
+        "turn_on_offset_dps": [[float(x) for x in o] for o in j.offsets_dps],
+        "gate": _gate(analysis),
+        "verdict": verdict(analysis),
+    }
+
+
+def verdict(analysis: Analysis) -> str:
+    """nothing-found, effects-found or unexplained-residual."""
+    if analysis.selection.found:
+        return "effects-found"
+    return "unexplained-residual" if analysis.judgement.excess.left else "nothing-found"
+
+
+def _mdps(values) -> list[float]:
+    return [round(float(1e3 * v), 4) for v in values]
+
+
+def _interval(parts):
+    low, high = block_bootstrap(parts, rms)
+    return [[a, b] for a, b in zip(_mdps(low), _mdps(high))]
+
+
+def _split(analysis):
+    out = {
+        "unit": "time within one recording" if analysis.single else "power-on session",
+        "train": [s.name for s in analysis.train],
+        "test": [s.name for s in analysis.locked],
+        "block_s": analysis.sessions[0].block_s,
+        "blocks": {s.name: int(s.available.sum()) for s in analysis.sessions},
+    }
+    if analysis.single:
+        out["how_much_weaker"] = WEAKER
+    return out
+
+
+def _steps(analysis):
+    """Effects in the order found, each with the locked part's error before and after it."""
+    selection, out = analysis.selection, []
+    fitted = slots(selection, analysis.coefficients)
+    so_far = [_after(analysis, k) for k in range(len(selection.found) + 1)]
+    at = 0
+    for i, f in enumerate(selection.found):
+        own = fitted[at : at + len(f.candidate.terms)]
+        at += len(own)
+        before, after = so_far[i], so_far[i + 1]
+        out.append(
+            {
+                "effect": label(f.candidate),
+                "sources": f.candidate.sources,
+                "parameters": _parameters(own),
+                "coefficients": {s["source"]: s["coefficient_dps"] for s in own},
+                "confidence": analysis.confidence(i),
+                "before_mdps": _mdps(before.after_dps),
+                "after_mdps": _mdps(after.after_dps),
+                "ci95_mdps": _interval(after.residual_after),
+                "p_value": f.decision.p_value,
+                "confounded_with": f.confounded_with,
+                "likelihood_ratio": round(f.decision.ratio, 2),
+                "noise_inflation": round(f.decision.inflation, 2),
+                "nats_on_sessions_left_out": [round(float(g), 2) for g in f.decision.session_gains],
+                "nats_on_locked": round(float(analysis.judgement.gains[i]), 2),
+                "said": _said(f),
+            }
+        )
+    return out
+
+
+def _parameters(own):
+    skip = ("effect", "coefficient_dps")
+    return [{k: v for k, v in s.items() if k not in skip and v not in (None, "none")} for s in own]
+
+
+def _said(found):
+    kind, sources = found.candidate.kind, ", ".join(found.candidate.sources)
+    if kind in ("time-drift", "power-on-transient"):
+        return CAUSE_UNKNOWN
+    if kind.startswith("channel"):
+        return f"not in the catalogue; depends on {sources}; mechanism unknown"
+    return f"{kind} of {sources}"
+
+
+def _after(analysis, effects: int):
+    """The judgement of the first so many effects alone."""
+    from dataclasses import replace
+
+    found = analysis.selection.found[:effects]
+    return judge(replace(analysis.selection, found=found), analysis.locked)
+
+
+def _events(analysis):
+    whole = analysis.judgement.whole
+    out = []
+    for step in analysis.judgement.steps:
+        s = whole.sessions[step.session]
+        out.append(
+            {
+                "kind": "step",
+                "t_us": int(s.start_us + step.block * s.block_s * 1e6),
+                "recording": s.name,
+                "size_mdps": _mdps(step.size_dps),
+                "p_value": step.p_value,
+            }
+        )
+    return out
+
+
+def _gate(analysis):
+    return {
+        "faults": analysis.gate.faults,
+        "channels_dropped": analysis.gate.dropped,
+        "notes": analysis.gate.notes,
+        "blocks_set_aside": analysis.selection.outliers,
+        "considered_and_refused": [list(r) for r in dict.fromkeys(analysis.selection.refused)],
+    }
+
+
+def as_json(value):
+    """NumPy scalars as plain numbers, for `json.dumps(default=...)`."""
+    return np.asarray(value).tolist()
