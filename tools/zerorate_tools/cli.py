@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from importlib import import_module
 from importlib.util import find_spec
 
+from . import __version__
 from .errors import ZerorateError
 
 COMMANDS = (
@@ -45,7 +46,7 @@ def parser() -> argparse.ArgumentParser:
         description="Keeps a MEMS gyroscope's zero-rate output at zero.",
         epilog="`zerorate COMMAND --help` says more of each.",
     )
-    top.add_argument("--version", action=_Version)
+    top.add_argument("--version", action="version", version=f"zerorate {__version__}")
     subparsers = top.add_subparsers(metavar="COMMAND", required=True)
     for name in COMMANDS:
         module = _module_of(name)
@@ -57,20 +58,6 @@ def parser() -> argparse.ArgumentParser:
 def _module_of(command: str) -> str:
     # `import` is a word of the language, so its module cannot bear that name alone
     return f"{__package__}.commands.{'import_' if command == 'import' else command}"
-
-
-class _Version(argparse.Action):
-    def __init__(self, option_strings: Sequence[str], dest: str) -> None:
-        super().__init__(option_strings, dest, nargs=0, help="print the version and exit")
-
-    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
-        from importlib.metadata import PackageNotFoundError, version
-
-        try:
-            print("zerorate", version("zerorate"))
-        except PackageNotFoundError:
-            print("zerorate, not installed")
-        parser.exit()
 
 
 def _complain(message: str, exit_code: int) -> int:
