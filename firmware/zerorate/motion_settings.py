@@ -4,7 +4,7 @@ from array import array
 from math import ceil, pi
 
 STATE_WORDS = 228
-_SPARE_NODES = 24
+_SPARE_NODES = 22
 _ALGEBRA = 90
 
 

@@ -229,7 +229,7 @@ def keep_noise(s: ptr32):
     """Hold this window's noise energies for the next, a little less."""
     i = 0
     while i < 6:
-        put(s, _T, 13107, -14)
+        put(s, _T, 11469, -14)
         multiply(s, _HOLD + i, _ENERGY + i, _T)
         i += 2
 
