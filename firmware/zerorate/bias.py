@@ -22,6 +22,8 @@ NONE = const(0)
 ANY_TEMPERATURE = const(1)
 FIT = const(2)
 HERE = const(3)
+IN_MOTION = const(4)
+ACCELEROMETER = const(5)
 
 _FIT_LOW_Q4 = const(19)
 _FIT_HIGH_Q4 = const(20)
@@ -36,6 +38,7 @@ _ENOUGH = const(31)
 _STABLE = const(34)
 _SHARE_Q8 = const(35)
 _BEYOND_Q4 = const(36)
+_EVERY = const(46)
 
 
 def choose(s: ptr32, c: ptr32, a: int, temp: int) -> int:
@@ -54,7 +57,9 @@ def choose(s: ptr32, c: ptr32, a: int, temp: int) -> int:
         if e > s[a + _FIT_HIGH_Q4]:
             s[a + _BEYOND] = 1
         return FIT
-    if s[a + _ESTIMATORS + 3] >= c[_ENOUGH]:
+    e = s[a + _ESTIMATORS + 3]
+    # by the document it must be stable; a vetted rest is worth something from the first on
+    if e >= c[_ENOUGH] or (e > 0 and c[_EVERY] == 0):
         return ANY_TEMPERATURE
     return NONE
 

@@ -11,6 +11,9 @@ OUT_Q8 = 55
 EFFECT_Q8 = 61
 QUALITY_Q8 = 70
 SOURCE = 73
+IN_MOTION = 4
+# words of the motion source's state
+MOTION_BIAS = 70
 
 LIMITS = {
     "window_s": 0.5,
@@ -40,6 +43,8 @@ LIMITS = {
     "walk_least_dps": 0.0003,
     "walk_most_dps": 0.05,
     "turn_on_dps": 0.1,
+    "motion_most_dps": 0.15,
+    "motion_full_dps": 0.01,
 }
 
 
@@ -50,8 +55,8 @@ class Corrector:
     short, long: estimators an axis. document: the literal rules of document 000 (every reading
     learned, mean of the most significant bin, split in halves, one straight line). every: learn
     every reading, moving or still, by this project's own rules. ignore_outside: readings outside
-    a histogram are ignored instead of extending it. Any key of LIMITS may be given by name, in
-    its unit. Raises ValueError.
+    a histogram are ignored instead of extending it. motion: learn in motion as well (document
+    002). Any key of LIMITS may be given by name, in its unit. Raises ValueError.
     """
 
     def __init__(
@@ -63,6 +68,7 @@ class Corrector:
         document=False,
         every=False,
         ignore_outside=False,
+        motion=False,
         **limits,
     ):
         self.sensor = sensor or Sensor()
@@ -75,10 +81,27 @@ class Corrector:
             self.sensor, bins, short, long, document, document or every, ignore_outside, chosen
         )
         c = self.settings
+        self.motion = None
+        self.motion_settings = None
+        self._observe_motion = None
+        if motion:
+            self._learn_in_motion()
         walk_lsb = chosen["walk_dps"] * self.sensor.gyro_lsb_per_dps
         self._walk_q16 = max(1, int(walk_lsb * walk_lsb * 65536))
         self.state = array("i", [0] * (c[0] + 3 * c[13]))
         self.reset()
+
+    def _learn_in_motion(self):
+        # loaded here, so that who does not learn in motion has no memory taken by it
+        from .motion_kernels import in_motion
+        from .motion_settings import motion_settings, motion_state
+
+        sensor = self.sensor
+        self._observe_motion = in_motion.update
+        self.motion_settings = motion_settings(
+            sensor.odr_hz, sensor.gyro_lsb_per_dps, sensor.accel_lsb_per_g
+        )
+        self.motion = motion_state(self.motion_settings)
 
     def reset(self):
         """Forget everything that was learned."""
@@ -113,7 +136,14 @@ class Corrector:
         sample: array('i') ax ay az temp gx gy gz, raw LSB; dt_us: since the sample before.
         Returns 0, or the guard's name for a frame that is not a good reading (see guard.py).
         """
-        return step.step(self.state, self.settings, sample, dt_us)
+        if self.motion is None:
+            return step.step(self.state, self.settings, sample, dt_us)
+        kind = step.observe(self.state, self.settings, sample, dt_us)
+        if kind == 0 and self._observe_motion(self.motion, self.motion_settings, sample, dt_us):
+            step.consider(self.state, self.settings, self.motion, MOTION_BIAS, IN_MOTION)
+        if kind < 3:
+            step.correct(self.state, self.settings, sample)
+        return kind
 
     def bias_lsb(self, axis):
         """Return what is subtracted from that axis now, LSB."""

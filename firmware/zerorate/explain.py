@@ -15,10 +15,17 @@ STILLNESS = (
     "The device rests.",
     "Nothing is learned: the gyroscope sees motion.",
     "Nothing is learned: gravity turns, so the device turns slowly.",
-    "Nothing is learned: the accelerometer sees shaking.",
+    "Nothing is learned: the accelerometer sees motion.",
     "Nothing is learned: the rate has shifted within the rest.",
 )
-SOURCES = ("no bias yet", "any temperature", "the fit over temperature", "this temperature")
+SOURCES = (
+    "no bias yet",
+    "any temperature",
+    "the fit over temperature",
+    "this temperature",
+    "motion",
+    "the accelerometer",
+)
 
 
 def explain(s, c, sensor):

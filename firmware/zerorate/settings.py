@@ -2,7 +2,7 @@
 
 from array import array
 
-WORDS = 48
+WORDS = 52
 SHARED = 92
 
 
@@ -103,8 +103,8 @@ def bins_of(c, sensor, bins, every, document, limits):
 
 def estimators_of(c, sensor, short, long, document, limits):
     """The estimators and the line through them."""
-    if not 1 <= short <= 8 or not 1 <= long or short + long > 18:
-        raise ValueError("short must be 1..8 and short + long at most 18")
+    if not 1 <= short <= 6 or not 1 <= long or short + long > 18:
+        raise ValueError("short must be 1..6 and short + long at most 18")
     degree = sensor.temp_lsb_per_degc or 1000.0
     rate = sensor.odr_hz
     c[24] = short
@@ -141,3 +141,5 @@ def recent_of(c, sensor, limits):
     c[41] = squared(limits["walk_most_dps"] * lsb * 256, 1 << 23)
     c[44] = max(1, int(limits["turn_dps"] * lsb * 256))
     c[45] = squared(limits["turn_on_dps"] * lsb * 16)
+    c[48] = max(1, min(8191, int(limits["motion_most_dps"] * lsb * 64)))
+    c[49] = int(min(1 << 29, 256 * squared(limits["motion_full_dps"] * lsb * 64)))

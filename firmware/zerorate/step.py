@@ -23,6 +23,7 @@ from .guard import check
 from .recent import absorb, grown_q8, hand_over
 from .stillness import gather, judge
 
+_SCRATCH = const(7)
 _GOOD = const(8)
 _ELAPSED_US = const(16)
 _TOTALS = const(42)
@@ -41,6 +42,8 @@ _SOURCE = const(73)
 
 _TOTAL = const(0)
 _WEIGHT = const(1)
+_READING = const(12)
+_FROM = const(13)
 _OFFSET_Q8 = const(24)
 _AGE_MS = const(28)
 _KIND = const(30)
@@ -55,6 +58,8 @@ _AXIS_WORDS = const(13)
 _ALL = const(25)
 _FORETOLD_Q8 = const(44)
 _STALE_LSB = const(43)
+_MOST_SIGMA_Q6 = const(48)
+_FULL_WEIGHT_Q12 = const(49)
 _EVERY = const(46)
 
 
@@ -87,7 +92,7 @@ def publish(s: ptr32, c: ptr32, a: int, axis: int):
     s[_TARGET_Q8 + axis] = bias
     if s[_SOURCE + axis] == 0:
         s[_OUT_Q8 + axis] = bias
-    s[_SOURCE + axis] = s[a + _KIND]
+    s[_SOURCE + axis] = s[a + _FROM] if s[a + _FROM] else s[a + _KIND]
     bias = grown_q8(s, a)
     if bias < 0x3FFFFF:
         bias = root(bias << 8)
@@ -156,20 +161,27 @@ def advance(s: ptr32, c: ptr32):
             s[_PHASE] = 0
 
 
-def foretell(s: ptr32, c: ptr32, a: int, axis: int):
+def foresay(s: ptr32, axis: int, bias: int, quality: int):
+    """Publish a bias, LSB Q8, before anything was learned; 0 takes it back."""
+    s[_TARGET_Q8 + axis] = bias
+    s[_OUT_Q8 + axis] = bias
+    s[_QUALITY_Q8 + axis] = quality
+    s[_SOURCE + axis] = 1
+
+
+def foretell(s: ptr32, c: ptr32, axis: int):
     """Publish the mean of the first rest before it is long enough to be learned from.
 
     It is taken back at once when the rest turns out to be none.
     """
-    level = 0
-    s[_SOURCE + axis] = 0
     if s[_STILLNESS] == 1 and s[_SEGMENT] > 0:
-        a = s[_SEGMENT] << c[_SHIFT]
-        level = ((s[_TOTALS + axis] // a) << 8) + ((s[_TOTALS + axis] % a) << 8) // a
-        s[_SOURCE + axis] = 1
-        s[_QUALITY_Q8 + axis] = c[_FORETOLD_Q8]
-    s[_TARGET_Q8 + axis] = level
-    s[_OUT_Q8 + axis] = level
+        n = s[_SEGMENT] << c[_SHIFT]
+        level = (s[_TOTALS + axis] // n) << 8
+        level += ((s[_TOTALS + axis] % n) << 8) // n
+        foresay(s, axis, level, c[_FORETOLD_Q8])
+    elif s[_SOURCE + axis] == 1:
+        foresay(s, axis, 0, 0)
+        s[_SOURCE + axis] = 0
 
 
 def close(s: ptr32, c: ptr32):
@@ -186,10 +198,11 @@ def close(s: ptr32, c: ptr32):
         if s[a + _AGE_MS] > 0x3FFFFFF:
             s[a + _AGE_MS] = 0x3FFFFFF
         if s[a + _KIND] == 0 and c[_EVERY] == 0:
-            foretell(s, c, a, i)
+            foretell(s, c, i)
         if still and c[_EVERY] == 0:
             s[a + _TOTAL] = s[_TOTALS + i]
             s[a + _WEIGHT] = c[_SEGMENTS] << c[_SHIFT]
+            s[a + _READING] = 0
         i += 1
     s[_ELAPSED_US] = 0
     s[_PHASE] = 1
@@ -216,11 +229,8 @@ def wake(s: ptr32, c: ptr32, x: ptr32):
         advance(s, c)
 
 
-def step(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
-    """Take the frame `x`, `dt_us` after the one before, and correct it in place.
-
-    Returns what the guard says of it; frames of all zeros or ones and beyond are left as they are.
-    """
+def observe(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
+    """Learn from the frame `x`, `dt_us` after the one before; return what the guard says of it."""
     kind = check(s, c, x, dt_us)
     if kind == 0:
         if s[_GOOD] == 1:
@@ -233,6 +243,61 @@ def step(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
     while i > 0 and s[_PHASE]:
         advance(s, c)
         i -= 1
+    return kind
+
+
+def step(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
+    """Learn from the frame and correct it in place; return what the guard says of it.
+
+    Frames of all zeros or ones and beyond (see guard.py) are left as they are.
+    """
+    kind = observe(s, c, x, dt_us)
     if kind < 3:
         correct(s, c, x)
     return kind
+
+
+def speak(s: ptr32, c: ptr32, m: ptr32, w: int, axis: int):
+    """Publish what another source found, whatever its quality, while nothing was learned at all."""
+    if s[c[_AXES] + axis * c[_AXIS_WORDS] + _KIND] == 0:
+        w += axis
+        if m[w + 3] < 0x200000:
+            s[_TARGET_Q8 + axis] = m[w]
+            s[_OUT_Q8 + axis] = m[w]
+            s[_QUALITY_Q8 + axis] = m[w + 3]
+            s[_SOURCE + axis] = s[_SCRATCH]
+
+
+def offer(s: ptr32, c: ptr32, m: ptr32, w: int, axis: int):
+    """Let an axis absorb and learn the bias that another source found: LSB Q8 at m[w+axis].
+
+    Its one sigma stands three words on. It weighs as many still readings as its quality is worth.
+    """
+    a = c[_AXES] + axis * c[_AXIS_WORDS]
+    w += axis
+    sigma = m[w + 3] >> 2
+    if s[a + _WEIGHT] or sigma > c[_MOST_SIGMA_Q6]:
+        return
+    w = m[w] - s[_EFFECT_Q8 + axis]
+    axis = c[_FULL_WEIGHT_Q12] // (sigma * sigma + 1)
+    if axis > 256:
+        axis = 256
+    if axis > 0:
+        s[a + _WEIGHT] = axis
+        s[a + _TOTAL] = (w >> 4) * axis >> 4
+        s[a + _READING] = (((sigma * sigma) >> 4) << 3) + s[_SCRATCH]
+
+
+def consider(s: ptr32, c: ptr32, m: ptr32, w: int, source: int):
+    """Take the bias that another source has found for three axes into the one decision."""
+    while s[_PHASE]:
+        advance(s, c)
+    s[_LEARN_TEMP] = s[_TEMP]
+    s[_SCRATCH] = source
+    speak(s, c, m, w, 0)
+    speak(s, c, m, w, 1)
+    speak(s, c, m, w, 2)
+    offer(s, c, m, w, 0)
+    offer(s, c, m, w, 1)
+    offer(s, c, m, w, 2)
+    s[_PHASE] = 1

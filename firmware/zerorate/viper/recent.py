@@ -24,6 +24,8 @@ from .bias import curve_q8
 
 _TOTAL = const(0)
 _WEIGHT = const(1)
+_READING = const(12)
+_FROM = const(13)
 _BEFORE_Q8 = const(23)
 _OFFSET_Q8 = const(24)
 _VARIANCE_Q8 = const(25)
@@ -131,6 +133,26 @@ def follow(s_, c_, a: int, error: int):
 
 
 @micropython.viper
+def adopt(s_, c: ptr32, a: int, error: int) -> int:
+    """Let what another source found be the level if it is better known than the level is.
+
+    That source is a filter itself: to weigh its results into another one counted them twice.
+    """
+    s = ptr32(s_)
+    noise = (s[a + _READING] >> 3) + c[_FLOOR_Q8]
+    if s[a + _KIND] == 0:
+        s[a + _SUSPECT] = -1
+    elif noise >= int(grown_q8(s_, a)):
+        return 1
+    else:
+        s[a + _OFFSET_Q8] += error << 4
+    s[a + _FROM] = s[a + _READING] & 7
+    s[a + _VARIANCE_Q8] = noise
+    s[a + _AGE_MS] = 0
+    return 1
+
+
+@micropython.viper
 def absorb(s_, c_, a: int) -> int:
     """Take the waiting segment into the offset; return 1 if the estimators may learn it.
 
@@ -140,6 +162,9 @@ def absorb(s_, c_, a: int) -> int:
     c = ptr32(c_)
     s[_MEAN_NOISE_Q8] = s[_NOISE_Q8] // (3 * s[a + _WEIGHT]) + c[_FLOOR_Q8]
     error = int(error_q4(s_, c_, a))
+    if s[a + _READING]:
+        return int(adopt(s_, c_, a, error))
+    s[a + _FROM] = 0
     if s[a + _KIND] == 0:
         s[a + _SUSPECT] = -1
         s[a + _OFFSET_Q8] = 0

@@ -24,6 +24,7 @@ from .guard import check
 from .recent import absorb, grown_q8, hand_over
 from .stillness import gather, judge
 
+_SCRATCH = const(7)
 _GOOD = const(8)
 _ELAPSED_US = const(16)
 _TOTALS = const(42)
@@ -42,6 +43,8 @@ _SOURCE = const(73)
 
 _TOTAL = const(0)
 _WEIGHT = const(1)
+_READING = const(12)
+_FROM = const(13)
 _OFFSET_Q8 = const(24)
 _AGE_MS = const(28)
 _KIND = const(30)
@@ -56,6 +59,8 @@ _AXIS_WORDS = const(13)
 _ALL = const(25)
 _FORETOLD_Q8 = const(44)
 _STALE_LSB = const(43)
+_MOST_SIGMA_Q6 = const(48)
+_FULL_WEIGHT_Q12 = const(49)
 _EVERY = const(46)
 
 
@@ -91,7 +96,7 @@ def publish(s_, c_, a: int, axis: int):
     s[_TARGET_Q8 + axis] = bias
     if s[_SOURCE + axis] == 0:
         s[_OUT_Q8 + axis] = bias
-    s[_SOURCE + axis] = s[a + _KIND]
+    s[_SOURCE + axis] = s[a + _FROM] if s[a + _FROM] else s[a + _KIND]
     bias = int(grown_q8(s_, a))
     if bias < 0x3FFFFF:
         bias = int(root(bias << 8))
@@ -167,20 +172,29 @@ def advance(s_, c_):
 
 
 @micropython.viper
-def foretell(s: ptr32, c: ptr32, a: int, axis: int):
+def foresay(s: ptr32, axis: int, bias: int, quality: int):
+    """Publish a bias, LSB Q8, before anything was learned; 0 takes it back."""
+    s[_TARGET_Q8 + axis] = bias
+    s[_OUT_Q8 + axis] = bias
+    s[_QUALITY_Q8 + axis] = quality
+    s[_SOURCE + axis] = 1
+
+
+@micropython.viper
+def foretell(s_, c: ptr32, axis: int):
     """Publish the mean of the first rest before it is long enough to be learned from.
 
     It is taken back at once when the rest turns out to be none.
     """
-    level = 0
-    s[_SOURCE + axis] = 0
+    s = ptr32(s_)
     if s[_STILLNESS] == 1 and s[_SEGMENT] > 0:
-        a = s[_SEGMENT] << c[_SHIFT]
-        level = ((s[_TOTALS + axis] // a) << 8) + ((s[_TOTALS + axis] % a) << 8) // a
-        s[_SOURCE + axis] = 1
-        s[_QUALITY_Q8 + axis] = c[_FORETOLD_Q8]
-    s[_TARGET_Q8 + axis] = level
-    s[_OUT_Q8 + axis] = level
+        n = s[_SEGMENT] << c[_SHIFT]
+        level = (s[_TOTALS + axis] // n) << 8
+        level += ((s[_TOTALS + axis] % n) << 8) // n
+        foresay(s_, axis, level, c[_FORETOLD_Q8])
+    elif s[_SOURCE + axis] == 1:
+        foresay(s_, axis, 0, 0)
+        s[_SOURCE + axis] = 0
 
 
 @micropython.viper
@@ -200,10 +214,11 @@ def close(s_, c_):
         if s[a + _AGE_MS] > 0x3FFFFFF:
             s[a + _AGE_MS] = 0x3FFFFFF
         if s[a + _KIND] == 0 and c[_EVERY] == 0:
-            foretell(s_, c_, a, i)
+            foretell(s_, c_, i)
         if still and c[_EVERY] == 0:
             s[a + _TOTAL] = s[_TOTALS + i]
             s[a + _WEIGHT] = c[_SEGMENTS] << c[_SHIFT]
+            s[a + _READING] = 0
         i += 1
     s[_ELAPSED_US] = 0
     s[_PHASE] = 1
@@ -236,11 +251,8 @@ def wake(s_, c_, x: ptr32):
 
 
 @micropython.viper
-def step(s_, c_, x_, dt_us: int) -> int:
-    """Take the frame `x`, `dt_us` after the one before, and correct it in place.
-
-    Returns what the guard says of it; frames of all zeros or ones and beyond are left as they are.
-    """
+def observe(s_, c_, x_, dt_us: int) -> int:
+    """Learn from the frame `x`, `dt_us` after the one before; return what the guard says of it."""
     s = ptr32(s_)
     c = ptr32(c_)
     kind = int(check(s_, c_, x_, dt_us))
@@ -255,6 +267,66 @@ def step(s_, c_, x_, dt_us: int) -> int:
     while i > 0 and s[_PHASE]:
         advance(s_, c_)
         i -= 1
+    return kind
+
+
+@micropython.viper
+def step(s_, c_, x_, dt_us: int) -> int:
+    """Learn from the frame and correct it in place; return what the guard says of it.
+
+    Frames of all zeros or ones and beyond (see guard.py) are left as they are.
+    """
+    kind = int(observe(s_, c_, x_, dt_us))
     if kind < 3:
         correct(s_, c_, x_)
     return kind
+
+
+@micropython.viper
+def speak(s: ptr32, c: ptr32, m: ptr32, w: int, axis: int):
+    """Publish what another source found, whatever its quality, while nothing was learned at all."""
+    if s[c[_AXES] + axis * c[_AXIS_WORDS] + _KIND] == 0:
+        w += axis
+        if m[w + 3] < 0x200000:
+            s[_TARGET_Q8 + axis] = m[w]
+            s[_OUT_Q8 + axis] = m[w]
+            s[_QUALITY_Q8 + axis] = m[w + 3]
+            s[_SOURCE + axis] = s[_SCRATCH]
+
+
+@micropython.viper
+def offer(s: ptr32, c: ptr32, m: ptr32, w: int, axis: int):
+    """Let an axis absorb and learn the bias that another source found: LSB Q8 at m[w+axis].
+
+    Its one sigma stands three words on. It weighs as many still readings as its quality is worth.
+    """
+    a = c[_AXES] + axis * c[_AXIS_WORDS]
+    w += axis
+    sigma = m[w + 3] >> 2
+    if s[a + _WEIGHT] or sigma > c[_MOST_SIGMA_Q6]:
+        return
+    w = m[w] - s[_EFFECT_Q8 + axis]
+    axis = c[_FULL_WEIGHT_Q12] // (sigma * sigma + 1)
+    if axis > 256:
+        axis = 256
+    if axis > 0:
+        s[a + _WEIGHT] = axis
+        s[a + _TOTAL] = (w >> 4) * axis >> 4
+        s[a + _READING] = (((sigma * sigma) >> 4) << 3) + s[_SCRATCH]
+
+
+@micropython.viper
+def consider(s_, c_, m_, w: int, source: int):
+    """Take the bias that another source has found for three axes into the one decision."""
+    s = ptr32(s_)
+    while s[_PHASE]:
+        advance(s_, c_)
+    s[_LEARN_TEMP] = s[_TEMP]
+    s[_SCRATCH] = source
+    speak(s_, c_, m_, w, 0)
+    speak(s_, c_, m_, w, 1)
+    speak(s_, c_, m_, w, 2)
+    offer(s_, c_, m_, w, 0)
+    offer(s_, c_, m_, w, 1)
+    offer(s_, c_, m_, w, 2)
+    s[_PHASE] = 1

@@ -31,6 +31,7 @@ def add_parser(subparsers) -> None:
         "--document", action="store_true", help="the literal rules of the patent document"
     )
     parser.add_argument("--every", action="store_true", help="learn every reading, moving or still")
+    parser.add_argument("--motion", action="store_true", help="learn in motion as well")
     parser.add_argument(
         "--set",
         action="append",
@@ -49,7 +50,7 @@ def run(arguments: argparse.Namespace) -> None:
     from ..replay import replay
 
     options: dict[str, object] = dict(arguments.set)
-    options.update(document=arguments.document, every=arguments.every)
+    options.update(document=arguments.document, every=arguments.every, motion=arguments.motion)
     total = open_recording(arguments.log).n_samples
     with progress(f"replaying {arguments.log.name}", total) as advance:
         done = replay(

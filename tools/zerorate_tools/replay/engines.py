@@ -20,6 +20,7 @@ from zerorate.corrector import EFFECT_Q8, OUT_Q8, QUALITY_Q8, SOURCE
 from ..errors import ZerorateError
 from .samples import Frames
 
+_NOTHING = array("i", [0])
 _OUTPUT = np.dtype([("verdict", "<i4"), ("bias", "<i4", 3), ("source", "<i4", 3), ("q", "<i4", 3)])
 
 
@@ -70,14 +71,19 @@ class NumbaEngine(Engine):
             print("zerorate: no Numba here, the replay runs on plain CPython", file=sys.stderr)
             yield from CPythonEngine().run(corrector, batches)
             return
-        run = compiled_run()
+        run = compiled_run(corrector.motion is not None)
         state = np.frombuffer(corrector.state, np.int32)
         settings = np.array(corrector.settings, np.int32)
+        motion = np.frombuffer(corrector.motion or _NOTHING, np.int32)
+        how = np.array(corrector.motion_settings or _NOTHING, np.int32)
         for batch in batches:
             n = len(batch)
             bias, quality = np.empty((n, 3), np.int32), np.empty((n, 3), np.int32)
             source, verdict = np.empty((n, 3), np.int8), np.empty(n, np.int8)
-            run(state, settings, batch.frames, batch.dt_us, bias, source, quality, verdict)
+            run(
+                *(state, settings, motion, how, batch.frames, batch.dt_us),
+                *(bias, source, quality, verdict),
+            )
             yield Outcome(batch.t_us, batch.frames, bias, source, quality, verdict)
 
 
@@ -122,8 +128,10 @@ class InterpreterEngine(Engine):
                     "frames.bin": recording,
                     "settings.bin": corrector.settings.tobytes(),
                     "state.bin": corrector.state.tobytes(),
+                    "motion_settings.bin": (corrector.motion_settings or array("i")).tobytes(),
+                    "motion.bin": (corrector.motion or array("i")).tobytes(),
                 },
-                files_out=["state.bin", "out.bin"],
+                files_out=["state.bin", "motion.bin", "out.bin"],
                 heap=4 << 20,
                 check=True,
             )
@@ -136,6 +144,8 @@ class InterpreterEngine(Engine):
         if len(rows) != sum(map(len, kept)):
             raise ZerorateError(f"{self._runtime.name} lost samples of the replay")
         corrector.state[:] = array("i", files["state.bin"])
+        if corrector.motion is not None:
+            corrector.motion[:] = array("i", files["motion.bin"])
         start = 0
         for batch in kept:
             part = rows[start : start + len(batch)]

@@ -7,12 +7,12 @@ import hashlib
 import importlib.util
 import sys
 import types
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 from pathlib import Path
 
 import numba
-from zerorate.corrector import EFFECT_Q8, OUT_Q8, QUALITY_Q8, SOURCE
+from zerorate.corrector import EFFECT_Q8, IN_MOTION, MOTION_BIAS, OUT_Q8, QUALITY_Q8, SOURCE
 
 from zerorate_tools.runtimes.cache import cache_folder
 from zerorate_tools.viper_twins import hot_functions, kernel_files
@@ -27,15 +27,15 @@ def firmware_package() -> Path:
     return Path(spec.origin).parent
 
 
-@lru_cache(maxsize=1)
-def compiled_kernels() -> types.SimpleNamespace:
-    """The kernels behind `step` with every function compiled (at its first call), by module.
+@lru_cache(maxsize=2)
+def compiled_kernels(*roots: str) -> types.SimpleNamespace:
+    """The kernels behind `roots` with every function compiled (at its first call), by module.
 
     They are a private copy: the firmware modules that others import stay plain Python. Machine
     code is cached in a folder named by a hash of all kernel sources, for Numba itself notices
     no change in a file that a function calls into.
     """
-    files = _in_order_of_imports("step", kernel_files(firmware_package()))
+    files = _in_order_of_imports(roots, kernel_files(firmware_package()))
     digest = hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()[:16]
     numba.config.CACHE_DIR = str(cache_folder() / "numba" / digest)
     sys.modules[_PACKAGE] = types.ModuleType(_PACKAGE)
@@ -55,8 +55,8 @@ def _compiled(path: Path) -> types.ModuleType:
     return module
 
 
-def _in_order_of_imports(root: str, files: list[Path]) -> list[Path]:
-    """The file named `root` and all that it imports, each behind those that it imports."""
+def _in_order_of_imports(roots: Sequence[str], files: list[Path]) -> list[Path]:
+    """The files named `roots` and all that they import, each behind those that it imports."""
     known = {path.stem: path for path in files}
     done: dict[str, Path] = {}
 
@@ -66,7 +66,8 @@ def _in_order_of_imports(root: str, files: list[Path]) -> list[Path]:
                 visit(other)
             done[name] = known[name]
 
-    visit(root)
+    for root in roots:
+        visit(root)
     return list(done.values())
 
 
@@ -76,18 +77,49 @@ def _imports(path: Path) -> set[str]:
     return {n.module for n in froms if n.module}
 
 
-@lru_cache(maxsize=1)
-def compiled_run() -> Callable[..., None]:
-    """run(state, settings, samples, dt_us, bias_q8, source, quality_q8, verdict), compiled."""
-    step = compiled_kernels().step.step
+@lru_cache(maxsize=2)
+def compiled_run(motion: bool = False) -> Callable[..., None]:
+    """run(s, c, m, k, samples, dt_us, bias_q8, source, quality_q8, verdict), compiled.
+
+    What `Corrector.update` does for each row; with `motion` the source in motion is asked as well,
+    whose state and settings are m and k.
+    """
+    kernels = compiled_kernels("step", "in_motion") if motion else compiled_kernels("step")
+    update = _update_in_motion(kernels) if motion else _update(kernels)
 
     @numba.njit
-    def run(state, settings, samples, dt_us, bias_q8, source, quality_q8, verdict):
+    def run(s, c, m, k, samples, dt_us, bias_q8, source, quality_q8, verdict):
         for i in range(len(samples)):
-            verdict[i] = step(state, settings, samples[i], dt_us[i])
+            verdict[i] = update(s, c, m, k, samples[i], dt_us[i])
             for axis in range(3):
-                bias_q8[i, axis] = state[OUT_Q8 + axis] + state[EFFECT_Q8 + axis]
-                quality_q8[i, axis] = state[QUALITY_Q8 + axis]
-                source[i, axis] = state[SOURCE + axis]
+                bias_q8[i, axis] = s[OUT_Q8 + axis] + s[EFFECT_Q8 + axis]
+                quality_q8[i, axis] = s[QUALITY_Q8 + axis]
+                source[i, axis] = s[SOURCE + axis]
 
     return run
+
+
+def _update(kernels: types.SimpleNamespace) -> Callable[..., int]:
+    step = kernels.step.step
+
+    @numba.njit
+    def update(s, c, m, k, x, dt_us):
+        return step(s, c, x, dt_us)
+
+    return update
+
+
+def _update_in_motion(kernels: types.SimpleNamespace) -> Callable[..., int]:
+    observe, consider, correct = kernels.step.observe, kernels.step.consider, kernels.step.correct
+    in_motion = kernels.in_motion.update
+
+    @numba.njit
+    def update(s, c, m, k, x, dt_us):
+        kind = observe(s, c, x, dt_us)
+        if kind == 0 and in_motion(m, k, x, dt_us):
+            consider(s, c, m, MOTION_BIAS, IN_MOTION)
+        if kind < 3:
+            correct(s, c, x)
+        return kind
+
+    return update

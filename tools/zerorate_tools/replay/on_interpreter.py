@@ -2,8 +2,7 @@
 
 from array import array
 
-from zerorate.corrector import EFFECT_Q8, OUT_Q8, QUALITY_Q8, SOURCE
-from zerorate.kernels import step
+from zerorate.corrector import EFFECT_Q8, OUT_Q8, QUALITY_Q8, SOURCE, Corrector
 
 _ROWS = 256
 
@@ -13,11 +12,21 @@ def whole(name):
         return array("i", file.read())
 
 
-settings = whole("settings.bin")
-state = whole("state.bin")
+def store(name, words):
+    with open(name, "wb") as file:
+        file.write(words)
+
+
+# the settings come from the host: single-precision floats would round some of them elsewhere
+motion = whole("motion.bin")
+corrector = Corrector(motion=len(motion) > 0)
+corrector.settings = whole("settings.bin")
+corrector.state = state = whole("state.bin")
+if motion:
+    corrector.motion_settings = whole("motion_settings.bin")
+    corrector.motion = motion
 frame = array("i", [0] * 7)
 out = array("i", [0] * 17)
-take = step.step
 words = bytearray(32 * _ROWS)
 
 with open("frames.bin", "rb") as source, open("out.bin", "wb") as target:
@@ -29,7 +38,7 @@ with open("frames.bin", "rb") as source, open("out.bin", "wb") as target:
         for i in range(count):
             for k in range(7):
                 frame[k] = rows[8 * i + 1 + k]
-            out[0] = take(state, settings, frame, rows[8 * i])
+            out[0] = corrector.update(frame, rows[8 * i])
             for axis in range(3):
                 out[1 + axis] = state[OUT_Q8 + axis] + state[EFFECT_Q8 + axis]
                 out[4 + axis] = state[SOURCE + axis]
@@ -37,5 +46,5 @@ with open("frames.bin", "rb") as source, open("out.bin", "wb") as target:
             for k in range(7):
                 out[10 + k] = frame[k]
             target.write(out)
-with open("state.bin", "wb") as target:
-    target.write(state)
+store("state.bin", state)
+store("motion.bin", corrector.motion or b"")

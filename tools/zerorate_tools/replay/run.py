@@ -75,7 +75,7 @@ def replay(
             done.count(outcome)
             sink(outcome)
             advance(len(outcome.t_us))
-        done.state = np.asarray(corrector.state, "<i4").tobytes()
+        done.state = state_bytes(corrector)
         if state is not None:
             files.enter_context(written_beside(state)).write_bytes(done.state)
     done.explanation = corrector.explain()
@@ -96,13 +96,21 @@ def load_state(corrector: Corrector, path: Path, resume: bool) -> None:
         content = path.read_bytes()
     except OSError as error:
         raise InFile(path, str(error.strerror), do="name a file that --state wrote") from error
-    wanted = len(corrector.state) * 4
+    wanted = len(state_bytes(corrector))
     if len(content) != wanted:
         problem = f"{len(content)} bytes where a state with these settings has {wanted}"
         raise InFile(path, problem, do="use the settings it was written with")
-    corrector.state[:] = array("i", np.frombuffer(content, "<i4").tolist())
+    words = array("i", np.frombuffer(content, "<i4").tolist())
+    corrector.state[:] = words[: len(corrector.state)]
+    if corrector.motion is not None:
+        corrector.motion[:] = words[len(corrector.state) :]
     if not resume:
         corrector.power_on()
+
+
+def state_bytes(corrector: Corrector) -> bytes:
+    """The state of the estimators, then that of the source in motion where it is on."""
+    return np.asarray(corrector.state + (corrector.motion or array("i")), "<i4").tobytes()
 
 
 def _sink(done: Replay, out, files: ExitStack) -> Callable[[Outcome], None]:
