@@ -1,7 +1,10 @@
 """The command line: what it lists, what it says when something is wrong, and how it ends."""
 
+import io
 import subprocess
 import sys
+from contextlib import redirect_stderr, redirect_stdout
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
@@ -12,10 +15,31 @@ from zerorate_tools.recordings import Scales, read_recording, recording_writer
 SCALES = Scales("X", 1.0, 1.0)
 
 
-def zerorate(*words, cwd=None, **more):
-    """Run the command in a process of its own."""
-    command = [sys.executable, "-m", "zerorate_tools.cli", *map(str, words)]
-    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=60, **more)
+@dataclass
+class Ended:
+    """How a command ended: its exit code and what it printed."""
+
+    returncode: int
+    stdout: str
+    stderr: str
+
+
+def zerorate(*words):
+    """Run the command in this process."""
+    out, err = io.StringIO(), io.StringIO()
+    with redirect_stdout(out), redirect_stderr(err):
+        try:
+            code = cli.main([str(word) for word in words])
+        except SystemExit as ended:
+            code = ended.code
+    return Ended(code, out.getvalue(), err.getvalue())
+
+
+def test_the_module_runs_as_a_program_and_its_exit_code_reaches_the_shell(tmp_path):
+    words = [sys.executable, "-m", "zerorate_tools.cli", "import", "none.csv", "--out", "x.csv"]
+    ran = subprocess.run(words, capture_output=True, text=True)
+    assert ran.returncode == 2
+    assert ran.stderr == "zerorate: none.csv: no such file; name a file to import\n"
 
 
 def test_help_lists_every_command_that_is_there():
@@ -102,31 +126,34 @@ def test_an_interrupt_ends_in_130_and_leaves_nothing_half_written(tmp_path, monk
     assert list(tmp_path.iterdir()) == []
 
 
-def test_import_prints_what_it_did(tmp_path):
+def test_import_prints_what_it_did(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     rows = "".join(f"{i},1,{i},3\n" for i in range(5)) + "9,0,0,0\n"
     (tmp_path / "in.csv").write_text("t_s,gx_dps,gy_dps,gz_dps\n" + rows)
-    ran = zerorate("import", "in.csv", "--out", "out.csv.gz", cwd=tmp_path)
+    ran = zerorate("import", "in.csv", "--out", "out.csv.gz")
     assert ran.returncode == 0, ran.stderr
     assert "out.csv.gz" in ran.stdout and "5 of 6 rows written" in ran.stdout
     assert "dropped 1 rows: all readings are zero" in ran.stdout
     assert read_recording(tmp_path / "out.csv.gz").columns["gz"].tolist() == [393] * 5
 
 
-def test_import_takes_a_mapping_and_refuses_a_wrong_one(tmp_path):
+def test_import_takes_a_mapping_and_refuses_a_wrong_one(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     (tmp_path / "in.csv").write_text("a,b,c\n1,2,3\n4,5,6\n")
     words = ["import", "in.csv", "--out", "out.parquet", "--hz", "10"]
     maps = ["--map", "gx=a:dps", "--map", "gy=b:dps", "--map", "gz=c:dps"]
-    assert zerorate(*words, *maps, cwd=tmp_path).returncode == 0
+    assert zerorate(*words, *maps).returncode == 0
     assert read_recording(tmp_path / "out.parquet").columns["gx"].tolist() == [131, 524]
-    ran = zerorate(*words, "--map", "gx=a:knots", cwd=tmp_path)
+    ran = zerorate(*words, "--map", "gx=a:knots")
     assert ran.returncode == 2 and "unit 'knots' of gx is none of dps" in ran.stderr
 
 
-def test_simulate_writes_every_session_and_lists_its_scenarios(tmp_path):
+def test_simulate_writes_every_session_and_lists_its_scenarios(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     listed = zerorate("simulate", "--list").stdout.split()
     assert "warm-up-a" in listed
     words = ["--seed", "3", "--session", "1", "--truth", "t.parquet"]
-    ran = zerorate("simulate", "turntable", "--out", "run.parquet", *words, cwd=tmp_path)
+    ran = zerorate("simulate", "turntable", "--out", "run.parquet", *words)
     assert ran.returncode == 0, ran.stderr
     assert sorted(p.name for p in tmp_path.iterdir()) == ["run.parquet", "t.parquet"]
 

@@ -18,6 +18,7 @@ from zerorate_tools.recordings import (
     recording_writer,
     write_recording,
 )
+from zerorate_tools.recordings.atomic import written_beside
 from zerorate_tools.recordings.checks import GAP
 
 SCALES = Scales("MPU-6050", 25.0, 131.0, 16384.0, 340.0, 36.53, {"latitude_deg": 48.1})
@@ -139,8 +140,13 @@ def test_a_failed_write_leaves_the_older_file_alone(tmp_path, file_name):
 
 
 def test_a_folder_that_is_not_there_is_named(tmp_path):
-    with pytest.raises(InFile, match="nowhere.*name a folder"):
+    with pytest.raises(BadRecording, match="no folder .*nowhere; make it first"):
         write_recording(a_recording(), tmp_path / "nowhere" / "run.parquet")
+
+
+def test_a_name_without_a_format_is_refused(tmp_path):
+    with pytest.raises(BadRecording, match="no format goes by this name; end the name in .parquet"):
+        write_recording(a_recording(), tmp_path / "run.xlsx")
 
 
 # Bad input: each ends in one line that names the file, the row where there is one, and what to do.
@@ -293,3 +299,18 @@ def test_a_gzip_that_is_none_is_refused(tmp_path):
         pass
     with pytest.raises(BadRecording, match="empty file"):
         open_recording(tmp_path / "x.csv.gz")
+
+
+def test_a_file_written_beside_replaces_the_older_one_only_when_all_went_well(tmp_path):
+    (tmp_path / "report.html").write_text("old")
+    with pytest.raises(ValueError), written_beside(tmp_path / "report.html") as temporary:
+        temporary.write_text("half")
+        raise ValueError
+    assert (tmp_path / "report.html").read_text() == "old"
+    with written_beside(tmp_path / "report.html") as temporary:
+        temporary.write_text("new")
+    assert [p.name for p in tmp_path.iterdir()] == ["report.html"]
+    assert (tmp_path / "report.html").read_text() == "new"
+    with pytest.raises(InFile, match="cannot be written.*name a folder that exists"):
+        with written_beside(tmp_path / "nowhere" / "x"):
+            pass

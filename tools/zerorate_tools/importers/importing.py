@@ -7,7 +7,7 @@ from os import PathLike
 from pathlib import Path
 
 from ..errors import BadRecording
-from ..recordings import Recording, open_recording, read_recording, write_recording
+from ..recordings import Recording, check_output, open_recording, read_recording, write_recording
 from ..recordings.reading import recording_name
 from . import layouts
 from .conversion import Options, Report, converted
@@ -29,6 +29,7 @@ def import_recording(
 
     The arguments are those of `read_foreign`. Raises BadRecording, MissingLibrary.
     """
+    check_output(out)
     recording, report = read_foreign(
         source, options=options, mapping=mapping, units=units, layout=layout, instance=instance
     )

@@ -3,12 +3,13 @@
 from .reading import OpenRecording, open_recording, read_recording
 from .recording import Recording
 from .scales import Scales
-from .writing import recording_from_columns, recording_writer, write_recording
+from .writing import check_output, recording_from_columns, recording_writer, write_recording
 
 __all__ = [
     "OpenRecording",
     "Recording",
     "Scales",
+    "check_output",
     "open_recording",
     "read_recording",
     "recording_from_columns",

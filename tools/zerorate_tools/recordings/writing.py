@@ -32,6 +32,16 @@ def write_recording(recording: Recording, path: str | PathLike[str]) -> None:
             writer.append(recording.between(first, first + _ROWS).columns)
 
 
+def check_output(path: str | PathLike[str]) -> None:
+    """Raise BadRecording if no recording can be written there: ask before long work."""
+    path = Path(path)
+    if not path.name.endswith((*csv_format.SUFFIXES, *parquet_format.SUFFIXES)):
+        do = "end the name in .parquet, .csv or .csv.gz"
+        raise BadRecording(path, "no format goes by this name", do=do)
+    if not path.parent.is_dir():
+        raise BadRecording(path, f"there is no folder {path.parent}", do="make it first")
+
+
 @contextmanager
 def recording_writer(
     path: str | PathLike[str], column_names: list[str], scales: Scales
@@ -42,6 +52,7 @@ def recording_writer(
     Raises BadRecording for another suffix or for columns without scales.
     """
     path = Path(path)
+    check_output(path)
     check_scales(scales, column_names, path, path)
     with ExitStack() as files:
         if path.name.endswith(csv_format.SUFFIXES):
@@ -49,12 +60,9 @@ def recording_writer(
             beside = files.enter_context(written_beside(csv_format.scales_path(path)))
             beside.write_text(json.dumps(scales.to_json(), indent=2) + "\n")
             writer: CsvWriter | ParquetWriter = CsvWriter(temporary, column_names)
-        elif path.name.endswith(parquet_format.SUFFIXES):
+        else:
             temporary = files.enter_context(written_beside(path))
             writer = ParquetWriter(temporary, column_names, scales)
-        else:
-            do = "end the name in .parquet, .csv or .csv.gz"
-            raise BadRecording(path, "no format goes by this name", do=do)
         try:
             yield writer
         finally:

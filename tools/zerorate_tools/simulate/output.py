@@ -11,7 +11,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from ..recordings import write_recording
+from ..recordings import check_output, write_recording
 from ..recordings.atomic import written_beside
 from .description import load_description
 from .device import Truth, simulate, simulate_sessions
@@ -36,6 +36,7 @@ def simulate_to_files(
     Raises BadDescription, InFile.
     """
     described = load_description(description)
+    check_output(out)
     many = session is None and len(described.sessions) > 1
     if session is None:
         made = simulate_sessions(described, seed=seed)
