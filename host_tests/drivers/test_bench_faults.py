@@ -5,7 +5,6 @@ from zerorate_tools.bench import faults
 from zerorate_tools.bench.bus_faults import FAULTS, run_fault
 from zerorate_tools.bench.store_faults import StoreUnderFaults
 
-
 LEARNED_FROM = pytest.mark.xfail(reason="one torn word in a window still passes as rest")
 NAMES = [pytest.param(n, marks=LEARNED_FROM) if n == "torn-words" else n for n in sorted(FAULTS)]
 

@@ -8,8 +8,10 @@ import subprocess
 import sys
 import time
 from array import array
+from contextlib import contextmanager
 from pathlib import Path
 
+from zerorate.corrector import Corrector, Sensor
 from zerorate_i2c.linux import LinuxI2C
 from zerorate_i2c.mpu6050 import MPU6050, SUSPECT
 from zerorate_tools.boards import record
@@ -18,10 +20,18 @@ from zerorate_tools.recordings import read_recording
 HERE = Path(__file__).parent
 
 
-def play(rate_hz, seconds):
-    """Start a process that plays into the bus."""
-    player = [sys.executable, str(HERE / "player.py"), "0", str(rate_hz), str(seconds)]
-    return subprocess.Popen(player, stdout=subprocess.PIPE, text=True)
+@contextmanager
+def playing(rate_hz):
+    """A process that plays into the bus, from its first sample on."""
+    command = [sys.executable, str(HERE / "player.py"), "0", str(rate_hz)]
+    player = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    if player.stdout.readline() != "playing\n":
+        raise SystemExit("the player does not play")
+    try:
+        yield
+    finally:
+        player.kill()
+        player.wait()
 
 
 def recorded(rate_hz, seconds, out):
@@ -41,8 +51,6 @@ def recorded(rate_hz, seconds, out):
 
 def corrected(rate_hz, seconds):
     """Run driver and corrector on the live bus; the bias learned in LSB."""
-    from zerorate.corrector import Corrector, Sensor
-
     imu = MPU6050(LinuxI2C(0), odr_hz=rate_hz)
     corrector = Corrector(Sensor(odr_hz=imu.odr_hz))
     sample = array("i", [0] * 7)
@@ -62,16 +70,12 @@ def corrected(rate_hz, seconds):
 
 
 def main(rate_hz, seconds):
-    """Play twice: once for the recorder, once for the corrector."""
-    player = play(rate_hz, seconds + 10)
-    time.sleep(2)
-    result = {"record": recorded(rate_hz, seconds, "/tmp/run.csv")}
-    result["player"] = player.communicate()[0].strip()
-    player = play(rate_hz, seconds + 5)
-    time.sleep(1)
-    result["corrector"] = corrected(rate_hz, seconds)
-    result["second_player"] = player.communicate()[0].strip()
-    print("RESULT " + json.dumps(result))
+    """Record, then correct."""
+    with playing(rate_hz):
+        recording = recorded(rate_hz, seconds, "/tmp/run.csv")
+    with playing(rate_hz):
+        correction = corrected(rate_hz, seconds)
+    print("RESULT " + json.dumps({"record": recording, "corrector": correction}))
 
 
 if __name__ == "__main__":

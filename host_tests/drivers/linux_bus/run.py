@@ -29,6 +29,6 @@ def run_guest(rate_hz: float = 25, seconds: float = 20) -> dict:
     console = machine.boot(f"{settings} {python} {rate_hz} {seconds}\n", _TIME_LIMIT_S)
     found = [line for line in console.splitlines() if line.startswith("RESULT ")]
     if not found:
-        last = " | ".join(console.splitlines()[-4:])
+        last = " | ".join(line for line in console.splitlines()[-6:] if line)
         raise ZerorateError(f"the emulated Linux machine came to no result: {last}")
     return json.loads(found[-1][len("RESULT ") :])

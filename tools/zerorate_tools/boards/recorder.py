@@ -11,6 +11,7 @@ from ..recordings import Scales
 
 COLUMNS = ["t_us", "ax", "ay", "az", "temp", "gx", "gy", "gz"]
 _BATCH = 2048
+_STAYS_LATE = 8
 
 
 @dataclass
@@ -67,6 +68,7 @@ class Recorder:
         self._confirmed: list[tuple[int, ...]] = []
         self._start_us: int | None = None
         self._expected_us = 0.0
+        self._late_in_a_row = 0
 
     def add(self, t_us: int, sample: Sequence[int]) -> None:
         """One sample of seven words at t_us on any clock; gaps in time count as lost samples."""
@@ -77,14 +79,20 @@ class Recorder:
         self._waiting.append((t_us - self._start_us, *sample))
 
     def _count_lost(self, t_us: int) -> None:
-        """A sample may be late, and the chip's clock off by a few percent, without any lost."""
-        late_us = t_us - self._expected_us
-        if late_us > 1.5 * self._period_us:
-            missing = round(late_us / self._period_us)
+        """A sample may be late, and the chip's clock off by a few percent, without any lost.
+
+        So a gap counts when it is long, or when the samples stay late after it.
+        """
+        late = (t_us - self._expected_us) / self._period_us
+        self._late_in_a_row = self._late_in_a_row + 1 if late > 0.5 else 0
+        if late > 1.7 or self._late_in_a_row == _STAYS_LATE:
+            missing = max(1, round(late))
             self.result.lost += missing
             self._expected_us += missing * self._period_us
-            late_us = t_us - self._expected_us
-        self._expected_us += self._period_us + late_us / 16
+            late -= missing
+            self._late_in_a_row = 0
+        follow = 0 if self._late_in_a_row else late / 8
+        self._expected_us += (1 + follow) * self._period_us
 
     def confirm(self) -> None:
         """What waits is good."""

@@ -1,0 +1,162 @@
+"""A recording from a bus holds every verified sample once, whatever happens on the way."""
+
+import numpy as np
+import pytest
+from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050
+from zerorate_tools.boards.bus import record_bus
+from zerorate_tools.boards.recorder import Recorded, Recorder
+from zerorate_tools.recordings import read_recording
+
+
+def counting():
+    number = 0
+    while True:
+        yield (number % 7, 3, 16384, -3000 + number % 5, 40, -20 - number % 3, number)
+        number += 1
+
+
+class Machine:
+    """A bus with a chip, and the file recorded from it."""
+
+    def __init__(self, folder):
+        self.chip = FakeMPU6050(counting())
+        self.clock = FakeClock(self.chip)
+        self.bus = FakeI2C(self.chip, clock=self.clock)
+        self.out = folder / "run.parquet"
+
+    def record(self, seconds=10, **options):
+        return record_bus(self.bus, self.out, seconds=seconds, time_source=self.clock, **options)
+
+    def columns(self):
+        return read_recording(self.out).columns
+
+    def at(self, seconds, what):
+        """Do something when so many seconds have passed."""
+        passed_us = self.clock.advance_us
+        due = [(self.clock.now_us + seconds * 1e6, what)]
+
+        def advance_us(us):
+            passed_us(us)
+            while due and self.clock.now_us >= due[0][0]:
+                due.pop()[1]()
+
+        self.clock.advance_us = advance_us
+
+
+class NoFifo(FakeI2C):
+    """A bus as i2c-stub makes it: registers, but no FIFO."""
+
+    def readfrom_mem_into(self, addr, memaddr, buf):
+        super().readfrom_mem_into(addr, memaddr, buf)
+        if memaddr == 0x72:
+            buf[:] = bytes(len(buf))
+
+
+@pytest.fixture
+def machine(tmp_path):
+    return Machine(tmp_path)
+
+
+@pytest.fixture
+def polled(tmp_path):
+    machine = Machine(tmp_path)
+    machine.bus = NoFifo(machine.chip, clock=machine.clock)
+    return machine
+
+
+@pytest.mark.parametrize("kind", ["machine", "polled"])
+def test_every_sample_is_recorded_once_with_its_time(request, kind):
+    machine = request.getfixturevalue(kind)
+    result = machine.record(odr_hz=100)
+    columns = machine.columns()
+    assert result.samples == len(columns["gz"]) == pytest.approx(1000, abs=60)
+    assert (np.diff(columns["gz"]) == 1).all()
+    assert result.lost == result.doubtful == 0
+    assert np.diff(columns["t_us"]).mean() == pytest.approx(10000, rel=0.01)
+    assert result.rate_hz == pytest.approx(100, rel=0.01)
+
+
+def test_the_scales_are_those_of_the_chip(machine):
+    machine.record(seconds=1, full_scale_dps=2000, full_scale_g=16)
+    scales = read_recording(machine.out).scales
+    assert (scales.gyro_lsb_per_dps, scales.accel_lsb_per_g) == (16.4, 2048.0)
+    assert scales.odr_hz == 100.0
+
+
+@pytest.mark.parametrize("kind", ["machine", "polled"])
+def test_a_brown_out_costs_samples_but_gives_no_false_one(request, kind):
+    machine = request.getfixturevalue(kind)
+    machine.at(3.3, machine.chip.power_up)
+    result = machine.record()
+    columns = machine.columns()
+    assert result.restarts == 1
+    assert (columns["ax"] == columns["gz"] % 7).all()
+    assert (np.diff(columns["gz"]) > 0).all()
+
+
+@pytest.mark.parametrize("kind", ["machine", "polled"])
+def test_a_bus_that_fails_for_a_while_is_waited_for(request, kind):
+    machine = request.getfixturevalue(kind)
+    machine.at(3, lambda: machine.bus.fault("nack", times=30))
+    result = machine.record()
+    assert result.bus_errors >= 30
+    assert result.samples > 800
+    assert result.lost > 0
+
+
+def test_a_bus_that_fails_for_good_keeps_what_was_verified_and_passes_the_error(machine):
+    machine.at(5, lambda: machine.bus.fault("nack", times=None))
+    with pytest.raises(OSError):
+        machine.record(seconds=60)
+    assert len(machine.columns()["gz"]) == pytest.approx(400, abs=100)
+
+
+def test_another_chip_ends_the_recording_with_an_error_that_names_it(machine):
+    other = FakeMPU6050(counting(), part="MPU-6500")
+    machine.at(5, lambda: machine.bus.devices.update({0x68: other}))
+    with pytest.raises(OSError, match="MPU-6500"):
+        machine.record(seconds=60)
+
+
+def test_no_chip_writes_no_file(machine):
+    machine.bus.devices.clear()
+    with pytest.raises(OSError, match="nothing answers"):
+        machine.record()
+    assert not machine.out.exists()
+
+
+def test_control_c_ends_a_recording_that_is_then_whole(machine):
+    def interrupt():
+        raise KeyboardInterrupt
+
+    machine.at(4, interrupt)
+    result = machine.record(seconds=None)
+    assert result.samples == len(machine.columns()["gz"]) > 300
+
+
+class TestLostSamples:
+    @pytest.fixture
+    def lost(self):
+        def count(times_us):
+            recorder = Recorder(lambda columns: None, 10000, Recorded())
+            for t_us in times_us:
+                recorder.add(int(t_us), [0] * 7)
+            return recorder.result.lost
+
+        return count
+
+    def test_a_steady_clock_loses_none(self, lost):
+        assert lost(np.arange(1000) * 10000) == 0
+
+    @pytest.mark.parametrize("percent", [-3, 3])
+    def test_a_chip_whose_clock_is_off_loses_none(self, lost, percent):
+        assert lost(np.arange(5000) * 10000 * (1 + percent / 100)) == 0
+
+    def test_jitter_loses_none(self, lost):
+        jitter = np.random.default_rng(1).uniform(-4500, 4500, 2000)
+        assert lost(np.arange(2000) * 10000 + jitter) == 0
+
+    @pytest.mark.parametrize("missing", [1, 2, 17, 500])
+    def test_a_gap_counts_what_is_missing(self, lost, missing):
+        times = np.arange(1000) * 10000
+        assert lost(np.delete(times, range(300, 300 + missing))) == missing
