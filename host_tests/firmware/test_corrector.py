@@ -1,0 +1,119 @@
+"""What an application does with the corrector: settings, checkpoints, the store, and words."""
+
+from array import array
+
+import pytest
+from zerorate import Corrector, Sensor
+from zerorate.store import EMPTY, LOADED, OTHER_BINDING, Store
+
+RATES = (800, -300, 40)
+PERIOD_US = 10000
+
+
+class Memory:
+    """A storage of bytes."""
+
+    def __init__(self, size):
+        self.content = bytearray(b"\xff" * size)
+
+    def readblock(self, offset, buf):
+        buf[:] = self.content[offset : offset + len(buf)]
+
+    def writeblock(self, offset, buf):
+        self.content[offset : offset + len(buf)] = buf
+
+
+def rest(corrector, samples, rates=RATES, temp=1000):
+    """Feed a resting device: a fixed dither stands for noise, so that frames are no repeats."""
+    frame = array("i", [0] * 7)
+    for n in range(samples):
+        dither = (n * 7) % 13 - 6
+        words = (3, dither, 16384 - dither, temp, *(rate + dither for rate in rates))
+        for i in range(7):
+            frame[i] = words[i]
+        corrector.update(frame, PERIOD_US)
+    return frame
+
+
+@pytest.fixture
+def learned():
+    corrector = Corrector()
+    rest(corrector, 1000)
+    return corrector
+
+
+def store_for(corrector, binding=b"\x68\0\0\0", memory=None):
+    size = 4 * len(corrector.state)
+    return Store(memory or Memory(2 * size + 100), binding, size)
+
+
+def test_a_resting_device_reads_zero(learned):
+    frame = rest(learned, 13)
+    assert [abs(frame[4 + i]) <= 7 for i in range(3)] == [True] * 3
+    assert [learned.bias_lsb(i) for i in range(3)] == pytest.approx(RATES, abs=0.5)
+
+
+def test_rounding_loses_no_angle(learned):
+    total = [0, 0, 0]
+    for _ in range(520):
+        frame = rest(learned, 1)
+        total = [t + frame[4 + i] for i, t in enumerate(total)]
+    # the dither of rest(1) is -6 each time; what is left is the bias error, below 0.5 LSB
+    assert [t / 520 + 6 for t in total] == pytest.approx([0, 0, 0], abs=0.5)
+
+
+def test_what_was_learned_since_the_checkpoint_is_taken_back(learned):
+    learned.checkpoint()
+    kept = list(learned.state[92:])
+    rest(learned, 2000, rates=(830, -320, 60))
+    assert list(learned.state[92:]) != kept
+    learned.take_back()
+    assert list(learned.state[92:]) == kept
+    assert learned.taken_back == 1
+
+
+def test_without_a_checkpoint_everything_is_taken_back(learned):
+    learned.take_back()
+    assert list(learned.state[92:]) == list(Corrector().state[92:])
+
+
+def test_after_a_power_cut_the_first_sample_is_corrected(learned):
+    store = store_for(learned)
+    assert learned.save(store)
+    again = Corrector()
+    assert again.load(store_for(again, memory=store.storage)) == LOADED
+    frame = rest(again, 1)
+    assert [abs(frame[4 + i]) <= 7 for i in range(3)] == [True] * 3
+
+
+def test_a_store_that_is_empty_or_of_another_chip_leaves_a_clean_start(learned):
+    fresh = Corrector()
+    assert fresh.load(store_for(fresh)) == EMPTY
+    store = store_for(learned)
+    learned.save(store)
+    other = store_for(fresh, binding=b"\x70\0\0\0", memory=store.storage)
+    assert fresh.load(other) == OTHER_BINDING
+    assert list(fresh.state) == list(Corrector().state)
+
+
+@pytest.mark.parametrize(
+    ("keywords", "sentence"),
+    [
+        ({"bins": 20}, "bins must be 4..19"),
+        ({"short": 0}, "short must be 1..6"),
+        ({"colour": 1}, "no such setting: colour"),
+    ],
+)
+def test_a_setting_that_cannot_be_is_refused_in_words(keywords, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        Corrector(**keywords)
+
+
+def test_a_sensor_that_cannot_be_is_refused_in_words():
+    with pytest.raises(ValueError, match="odr_hz must be"):
+        Sensor(odr_hz=0)
+
+
+def test_it_says_what_it_lacks():
+    text = Corrector(Sensor(accel_lsb_per_g=0, temp_lsb_per_degc=0)).explain()
+    assert "slow turn cannot be told" in text and "any temperature only" in text
