@@ -28,8 +28,8 @@ def arc_q13(z: int) -> int:
 
 def atan2_q13(y: int, x: int) -> int:
     """Return the angle of (x, y) in Q13 rad, -pi..pi; |x|, |y| < 2^30. 0 where both are 0."""
-    a = x if x >= 0 else -x
-    b = y if y >= 0 else -y
+    a = x if x >= 0 else 0 - x
+    b = y if y >= 0 else 0 - y
     while a >= 0x8000 or b >= 0x8000:
         a = a >> 1
         b = b >> 1

@@ -47,8 +47,8 @@ def within(value: int, most: int) -> int:
     """Return value held within +-most."""
     if value > most:
         return most
-    if value < -most:
-        return -most
+    if value < 0 - most:
+        return 0 - most
     return value
 
 

@@ -68,14 +68,14 @@ def find_up(s: ptr32):
         z = -z
     s[_M] = scale + z
     s[_M + 1] = y
-    s[_M + 2] = -x
+    s[_M + 2] = 0 - x
     s[_M + 3] = 0
     scale = int(root(s[_M] * s[_M] + x * x + y * y))
     if over:
         s[_M + 3] = x
         s[_M + 2] = 0
         s[_M + 1] = s[_M]
-        s[_M] = -y
+        s[_M] = 0 - y
     if scale == 0:
         s[_M] = 1
         scale = 1

@@ -125,7 +125,7 @@ def whole(s: ptr32, a: int, shift: int) -> int:
     elif shift >= 0:
         m = m << shift
     elif shift > -30:
-        m = (m + (1 << (-shift - 1))) >> -shift
+        m = (m + (1 << (-1 - shift))) >> (0 - shift)
     else:
         m = 0
     return m

@@ -168,7 +168,7 @@ def compare(s: ptr32, c: ptr32, i: int, square: int):
     square -= s[_FORCES + i] * s[_FORCES + i]
     bit = 1 << i
     if square < _HALF_Q24 or int(too_far(s[_ANGLE + i] >> 9)):
-        s[_LAST_GOOD] = s[_LAST_GOOD] & ~bit
+        s[_LAST_GOOD] = s[_LAST_GOOD] & (7 - bit)
         return
     square = int(since_last(s, i, square >> 12))
     if s[_LAST_GOOD] & bit:
@@ -284,11 +284,11 @@ def size_step(s: ptr32, c: ptr32, i: int):
         sign = -1
     if most <= c[_THRESHOLD]:
         return
-    if s[_SIGN + i] == -sign:
+    if s[_SIGN + i] + sign == 0:
         s[_TURNS + i] += 1
         if s[_STEP_Q8 + i] > c[_FINE_Q8]:
             s[_STEP_Q8 + i] = s[_STEP_Q8 + i] >> 1
-    elif most >= s[_COUNTED + i] and s[_STEP_Q8 + i] < c[_COARSE_Q8] * 4:
+    elif most >= s[_COUNTED + i] and s[_STEP_Q8 + i] < c[_COARSE_Q8] * 8:
         s[_STEP_Q8 + i] = s[_STEP_Q8 + i] << 1
     s[_SIGN + i] = sign
 

@@ -14,7 +14,7 @@ def realtime_settings(
     units=8,
     threshold=3,
     dead_dps=0.03,
-    coarse_dps=0.4,
+    coarse_dps=0.1,
     fine_dps=0.0125,
     document=False,
 ):

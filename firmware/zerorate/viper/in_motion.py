@@ -226,7 +226,7 @@ def remove_bias(s: ptr32, a: int):
         s[_CARRY + i] -= part << 11
         part = (s[a + i] >> 15) - part
         s[_HALF + i] = part
-        s[_TRAFFIC] += part if part > 0 else -part
+        s[_TRAFFIC] += part if part > 0 else 0 - part
         i += 1
 
 

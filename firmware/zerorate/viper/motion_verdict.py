@@ -250,7 +250,7 @@ def keep_noise(s_):
     """Hold this window's noise energies for the next, a little less."""
     i = 0
     while i < 6:
-        put(s_, _T, 13107, -14)
+        put(s_, _T, 11469, -14)
         multiply(s_, _HOLD + i, _ENERGY + i, _T)
         i += 2
 

@@ -180,7 +180,7 @@ def compare(s_, c_, i: int, square: int):
     square -= s[_FORCES + i] * s[_FORCES + i]
     bit = 1 << i
     if square < _HALF_Q24 or int(int(too_far(s[_ANGLE + i] >> 9))):
-        s[_LAST_GOOD] = s[_LAST_GOOD] & ~bit
+        s[_LAST_GOOD] = s[_LAST_GOOD] & (7 - bit)
         return
     square = int(int(since_last(s_, i, square >> 12)))
     if s[_LAST_GOOD] & bit:
@@ -312,11 +312,11 @@ def size_step(s: ptr32, c: ptr32, i: int):
         sign = -1
     if most <= c[_THRESHOLD]:
         return
-    if s[_SIGN + i] == -sign:
+    if s[_SIGN + i] + sign == 0:
         s[_TURNS + i] += 1
         if s[_STEP_Q8 + i] > c[_FINE_Q8]:
             s[_STEP_Q8 + i] = s[_STEP_Q8 + i] >> 1
-    elif most >= s[_COUNTED + i] and s[_STEP_Q8 + i] < c[_COARSE_Q8] * 4:
+    elif most >= s[_COUNTED + i] and s[_STEP_Q8 + i] < c[_COARSE_Q8] * 8:
         s[_STEP_Q8 + i] = s[_STEP_Q8 + i] << 1
     s[_SIGN + i] = sign
 
