@@ -80,7 +80,7 @@ def gather(s: ptr32, c: ptr32, x: ptr32) -> int:
         while i < 7:
             d = x[i] - s[_REFERENCE + i]
             if d > c[_DEVIATION] or d < -c[_DEVIATION]:
-                s[_DIRTY] = 1
+                s[_DIRTY] = i + 1
                 d = 0
             s[_SUM + i] += d
             if i < 3:
@@ -169,8 +169,10 @@ def white(s: ptr32, c: ptr32, spread: int) -> int:
 
 def look(s: ptr32, c: ptr32) -> int:
     """Return what the full window says: STILL, MOVING, SHAKEN, TURNING or SHIFTED."""
-    if s[_DIRTY]:
+    if s[_DIRTY] > 3:
         return MOVING
+    if s[_DIRTY]:
+        return SHAKEN
     noise_q8 = spread_q8(s, c, _SUM + 4, s[_SQUARE_GYRO])
     if noise_q8 > c[_SPREAD_GYRO_Q8] and white(s, c, noise_q8) == 0:
         return MOVING

@@ -82,7 +82,7 @@ def gather(s: ptr32, c: ptr32, x: ptr32) -> int:
         while i < 7:
             d = x[i] - s[_REFERENCE + i]
             if d > c[_DEVIATION] or d < -c[_DEVIATION]:
-                s[_DIRTY] = 1
+                s[_DIRTY] = i + 1
                 d = 0
             s[_SUM + i] += d
             if i < 3:
@@ -179,8 +179,10 @@ def look(s_, c_) -> int:
     """Return what the full window says: STILL, MOVING, SHAKEN, TURNING or SHIFTED."""
     s = ptr32(s_)
     c = ptr32(c_)
-    if s[_DIRTY]:
+    if s[_DIRTY] > 3:
         return MOVING
+    if s[_DIRTY]:
+        return SHAKEN
     noise_q8 = int(spread_q8(s_, c_, _SUM + 4, s[_SQUARE_GYRO]))
     if noise_q8 > c[_SPREAD_GYRO_Q8] and int(white(s_, c_, noise_q8)) == 0:
         return MOVING
