@@ -24,6 +24,7 @@ _COUNTS = const(8)
 _ELAPSED_US = const(16)
 _N = const(17)
 _DIRTY = const(18)
+_MOST_US = const(0x1FFFFFFF)  # two of them fit 31 bits: repeats may come for hours
 _REST = const(34)
 _LEAP_US = const(1)
 _JUMP_LSB = const(2)
@@ -74,7 +75,7 @@ def check(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
         s[_N] = 0
         s[_DIRTY] = 0
         s[_REST] = 0
-    elif dt_us > 0:
+    elif dt_us > 0 and dt_us <= c[_LEAP_US]:
         dt_us += s[_ELAPSED_US]
-        s[_ELAPSED_US] = dt_us
+        s[_ELAPSED_US] = dt_us if dt_us < _MOST_US else _MOST_US
     return i

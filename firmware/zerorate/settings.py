@@ -34,8 +34,8 @@ class Sensor:
         temp_lsb_per_degc=340.0,
         temp_offset_degc=36.53,
     ):
-        if not 0.001 <= odr_hz <= 8000:
-            raise ValueError("odr_hz must be 0.001..8000, not %s" % odr_hz)
+        if not 0.01 <= odr_hz <= 8000:
+            raise ValueError("odr_hz must be 0.01..8000, not %s" % odr_hz)
         if not 1 <= gyro_lsb_per_dps <= 8000:
             raise ValueError("gyro_lsb_per_dps must be 1..8000, not %s" % gyro_lsb_per_dps)
         if not 0 <= accel_lsb_per_g <= 32768:
@@ -73,7 +73,7 @@ def windows(c, sensor, limits):
     c[3] = 1 << c[4]
     window_s = c[3] / sensor.odr_hz
     c[5] = max(1, min(4, int(limits["segment_s"] / window_s + 0.5)))
-    c[1] = int(min(1000e6, max(0.1e6, 10e6 / sensor.odr_hz)))
+    c[1] = int(min(0x1FFFFFFF, max(0.1e6, 10e6 / sensor.odr_hz)))
     jump_degc = max(400 / 340, 0.5 / sensor.odr_hz)
     c[2] = int(jump_degc * sensor.temp_lsb_per_degc) or 0xFFFF
     c[6] = 511
