@@ -15,12 +15,6 @@ IN_MOTION = 4
 # words of the motion source's state
 MOTION_BIAS = 70
 
-_COUNTS_END = 16
-_ELAPSED_US = 16
-_N = 17
-_DIRTY = 18
-_REST = 34
-
 LIMITS = {
     "window_s": 0.5,
     "segment_s": 2.5,
@@ -87,8 +81,6 @@ class Corrector:
             self.sensor, bins, short, long, document, document or every, ignore_outside, chosen
         )
         c = self.settings
-        self.taken_back = 0
-        self._kept = None
         self.motion = None
         self.motion_settings = None
         self._observe_motion = None
@@ -149,36 +141,7 @@ class Corrector:
         kind = step.observe(self.state, self.settings, sample, dt_us)
         if kind == 0 and self._observe_motion(self.motion, self.motion_settings, sample, dt_us):
             step.consider(self.state, self.settings, self.motion, MOTION_BIAS, IN_MOTION)
-        if kind < 3:
-            step.correct(self.state, self.settings, sample)
-        return kind
-
-    def checkpoint(self):
-        """Remember the state: up to here the chip's configuration was read back right.
-
-        The first call takes as much memory again as the state; later ones allocate nothing.
-        """
-        if self._kept is None:
-            self._kept = array("i", self.state)
-        for i in range(len(self.state)):
-            self._kept[i] = self.state[i]
-
-    def take_back(self):
-        """Forget what was learned since the last checkpoint, for the chip may have been astray.
-
-        Without a checkpoint everything is forgotten. The guard's counters stay.
-        """
-        s = self.state
-        if self._kept is None:
-            self.reset()
-        else:
-            for i in range(_COUNTS_END, len(s)):
-                s[i] = self._kept[i]
-        s[_ELAPSED_US] = 0
-        s[_N] = 0
-        s[_DIRTY] = 0
-        s[_REST] = 0
-        self.taken_back += 1
+        return step.finish(self.state, self.settings, sample, kind)
 
     def load(self, store):
         """Begin a power-on with what `store` holds; returns its reason, 0 if it was loaded.

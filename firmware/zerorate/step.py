@@ -246,11 +246,18 @@ def observe(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
     return kind
 
 
-def step(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
-    """Learn from the frame and correct it in place; return what the guard says of it.
+def finish(s: ptr32, c: ptr32, x: ptr32, kind: int) -> int:
+    """Correct the frame in place and return its kind.
 
     Frames of all zeros or ones and beyond (see guard.py) are left as they are.
     """
+    if kind < 3:
+        correct(s, c, x)
+    return kind
+
+
+def step(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
+    """Learn from the frame and correct it in place; return what the guard says of it."""
     kind = observe(s, c, x, dt_us)
     if kind < 3:
         correct(s, c, x)

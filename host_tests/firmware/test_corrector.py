@@ -62,21 +62,6 @@ def test_rounding_loses_no_angle(learned):
     assert [t / 520 + 6 for t in total] == pytest.approx([0, 0, 0], abs=0.5)
 
 
-def test_what_was_learned_since_the_checkpoint_is_taken_back(learned):
-    learned.checkpoint()
-    kept = list(learned.state[92:])
-    rest(learned, 2000, rates=(830, -320, 60))
-    assert list(learned.state[92:]) != kept
-    learned.take_back()
-    assert list(learned.state[92:]) == kept
-    assert learned.taken_back == 1
-
-
-def test_without_a_checkpoint_everything_is_taken_back(learned):
-    learned.take_back()
-    assert list(learned.state[92:]) == list(Corrector().state[92:])
-
-
 def test_after_a_power_cut_the_first_sample_is_corrected(learned):
     store = store_for(learned)
     assert learned.save(store)

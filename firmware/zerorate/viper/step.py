@@ -271,11 +271,19 @@ def observe(s_, c_, x_, dt_us: int) -> int:
 
 
 @micropython.viper
-def step(s_, c_, x_, dt_us: int) -> int:
-    """Learn from the frame and correct it in place; return what the guard says of it.
+def finish(s_, c_, x_, kind: int) -> int:
+    """Correct the frame in place and return its kind.
 
     Frames of all zeros or ones and beyond (see guard.py) are left as they are.
     """
+    if kind < 3:
+        correct(s_, c_, x_)
+    return kind
+
+
+@micropython.viper
+def step(s_, c_, x_, dt_us: int) -> int:
+    """Learn from the frame and correct it in place; return what the guard says of it."""
     kind = int(observe(s_, c_, x_, dt_us))
     if kind < 3:
         correct(s_, c_, x_)

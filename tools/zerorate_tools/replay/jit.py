@@ -110,7 +110,7 @@ def _update(kernels: types.SimpleNamespace) -> Callable[..., int]:
 
 
 def _update_in_motion(kernels: types.SimpleNamespace) -> Callable[..., int]:
-    observe, consider, correct = kernels.step.observe, kernels.step.consider, kernels.step.correct
+    observe, consider, finish = kernels.step.observe, kernels.step.consider, kernels.step.finish
     in_motion = kernels.in_motion.update
 
     @numba.njit
@@ -118,8 +118,6 @@ def _update_in_motion(kernels: types.SimpleNamespace) -> Callable[..., int]:
         kind = observe(s, c, x, dt_us)
         if kind == 0 and in_motion(m, k, x, dt_us):
             consider(s, c, m, MOTION_BIAS, IN_MOTION)
-        if kind < 3:
-            correct(s, c, x)
-        return kind
+        return finish(s, c, x, kind)
 
     return update
