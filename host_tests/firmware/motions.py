@@ -1,0 +1,59 @@
+"""Simulated motion for the two sources that learn without rest, in raw LSB with its true bias."""
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+GYRO_LSB_PER_DPS = 131.0
+ACCEL_LSB_PER_G = 16384.0
+
+
+class Motion:
+    """A device at +-250 dps and +-2 g. samples: (n, 7) ints; bias_dps: (3,)."""
+
+    def __init__(self, attitude, bias_dps, hz, seed, shake_g=0.1):
+        random = np.random.default_rng(seed)
+        count = len(attitude) - 1
+        rates = np.degrees((attitude[:-1].inv() * attitude[1:]).as_rotvec()) * hz
+        up = np.tile([0.0, 0.0, 1.0], (count, 1))
+        t = np.arange(count) / hz
+        for axis in range(3):
+            cycle = 2 * np.pi * random.uniform(0.5, 2.5) * t
+            up[:, axis] += shake_g * np.sin(cycle + random.uniform(0, 6.28))
+        force = attitude[:-1].inv().apply(up) + random.normal(0, 0.004, (count, 3))
+        rates = rates + bias_dps + random.normal(0, 0.05, (count, 3))
+        samples = np.zeros((count, 7))
+        samples[:, :3] = force * ACCEL_LSB_PER_G
+        samples[:, 4:] = rates * GYRO_LSB_PER_DPS
+        self.samples = np.clip(np.round(samples), -32768, 32767).astype(int)
+        self.bias_dps = np.asarray(bias_dps)
+        self.hz = hz
+
+
+def pose(seed):
+    """A random attitude."""
+    return Rotation.from_rotvec(np.random.default_rng(seed).normal(0, 1.2, 3))
+
+
+def swinging(seed, seconds, hz=50.0, bias_dps=None, turn_dps=None, start=None):
+    """All axes swing at 20 to 120 dps about a mean attitude; turn_dps: heading rate, per sample."""
+    random = np.random.default_rng(seed)
+    t = np.arange(int(seconds * hz) + 1) / hz
+    angles = np.zeros((len(t), 3))
+    for axis in range(3):
+        cycle = 2 * np.pi * random.uniform(0.4, 2.0)
+        peak = np.radians(random.uniform(20, 120)) / cycle
+        angles[:, axis] = peak * np.sin(cycle * t + random.uniform(0, 6.28))
+    attitude = (pose(seed) if start is None else start) * Rotation.from_rotvec(angles)
+    if turn_dps is not None:
+        heading = np.cumsum(np.resize(turn_dps, len(t))) / hz
+        attitude = Rotation.from_rotvec(np.radians(heading)[:, None] * [0, 0, 1]) * attitude
+    bias_dps = random.uniform(-6, 6, 3) if bias_dps is None else bias_dps
+    return Motion(attitude, bias_dps, hz, seed)
+
+
+def turning(seconds, dps, axis, hz=50.0, bias_dps=(1.0, -2.0, 3.0), start=None, seed=0):
+    """A steady turn about an axis of the room, e.g. [1, 0, 0] for a turntable on its side."""
+    t = np.arange(int(seconds * hz) + 1) / hz
+    turn = Rotation.from_rotvec(np.radians(dps) * t[:, None] * np.asarray(axis))
+    start = Rotation.identity() if start is None else start
+    return Motion(turn * start, bias_dps, hz, seed, shake_g=0.0)

@@ -1,0 +1,297 @@
+"""The source in motion: what it learns, what it refuses, and its integers."""
+
+from array import array
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+from zerorate import atan2, attitude, in_motion, real
+from zerorate.motion_settings import motion_settings, motion_state
+from zerorate.realtime_settings import realtime_settings, realtime_state
+
+from . import motions
+
+BIAS, SIGMA, REASON, LEARNED, REFUSED, SLOPES = 70, 73, 17, 67, 68, 76
+HALF, Q = 19, 25
+
+
+class Learner:
+    """The source fed with recordings; windows: (seconds, bias dps, sigma dps) of each learned."""
+
+    def __init__(self, hz=50.0, **options):
+        self.settings = motion_settings(odr_hz=hz, **options)
+        self.state = motion_state(self.settings)
+        self.windows = []
+        self.reasons = set()
+        self.seconds = 0.0
+
+    def feed(self, motion, keep=list):
+        dt_us = round(1e6 / motion.hz)
+        scale = 256 * motions.GYRO_LSB_PER_DPS
+        for sample in motion.samples.tolist():
+            self.seconds += 1 / motion.hz
+            if in_motion.update(self.state, self.settings, keep(sample), dt_us):
+                bias, sigma = (np.array(self.state[a : a + 3]) / scale for a in (BIAS, SIGMA))
+                self.windows.append((self.seconds, bias, sigma))
+            self.reasons.add(self.state[REASON])
+        return self
+
+    def errors_mdps(self, bias_dps, after_s=0.0):
+        return np.array([1000 * (b - bias_dps) for t, b, _ in self.windows if t >= after_s])
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_device_that_never_rests_is_known_to_30_mdps_after_two_minutes(seed):
+    motion = motions.swinging(seed, 170)
+    errors = Learner().feed(motion).errors_mdps(motion.bias_dps, after_s=120)
+    assert len(errors) >= 5
+    assert np.sqrt((errors**2).mean()) < 30
+
+
+def test_a_bias_of_eighteen_dps_is_learned():
+    motion = motions.swinging(5, 150, bias_dps=[18.0, -15.0, 17.0])
+    errors = Learner().feed(motion).errors_mdps(motion.bias_dps, after_s=120)
+    assert len(errors) and np.abs(errors).max() < 100
+
+
+def test_the_truth_lies_within_two_sigma_at_least_ninety_times_of_a_hundred():
+    inside = []
+    for seed in range(10, 16):
+        motion = motions.swinging(seed, 120)
+        learner = Learner().feed(motion)
+        inside += [np.abs(b - motion.bias_dps) < 2 * s for _, b, s in learner.windows]
+    assert len(inside) > 50
+    assert np.mean(inside) >= 0.9
+
+
+@pytest.mark.parametrize(
+    "motion",
+    [
+        motions.turning(100, 0.5, [1.0, 0.0, 0.0]),
+        motions.turning(100, 0.0, [1.0, 0.0, 0.0]),
+        motions.turning(100, 2.0, [0.0, 0.0, 1.0]),
+    ],
+    ids=["a turntable about a level axis", "a rest", "a slow turn of a car"],
+)
+def test_what_does_not_move_to_and_fro_teaches_nothing(motion):
+    learner = Learner().feed(motion)
+    assert learner.windows == []
+    assert in_motion.STILL in learner.reasons
+
+
+@pytest.mark.parametrize(("dps", "seconds"), [(3.0, 25), (12.0, 60)])
+def test_less_than_a_twentieth_of_a_turn_that_stays_turned_is_learned(dps, seconds):
+    turn = np.zeros((140 + seconds) * 50 + 1)
+    turn[140 * 50 :] = dps
+    motion = motions.swinging(1, 140 + seconds, turn_dps=turn)
+    errors = Learner().feed(motion).errors_mdps(motion.bias_dps, after_s=140)
+    assert len(errors) >= 3
+    assert np.abs(errors).max() < 1000 * dps / 20
+
+
+def test_a_bias_that_contradicts_what_is_known_is_refused_and_believed_when_it_lasts():
+    before = motions.swinging(1, 140, bias_dps=[1.0, 2.0, 3.0])
+    after = motions.swinging(1, 160, bias_dps=[5.0, -2.0, 3.0])
+    learner = Learner().feed(before)
+    assert np.abs(learner.errors_mdps(before.bias_dps)[-1]).max() < 60
+    learner.feed(after)
+    assert in_motion.TURNED in learner.reasons
+    assert learner.state[REFUSED] > 0
+    assert np.abs(learner.errors_mdps(after.bias_dps)[-1]).max() < 300
+
+
+def test_a_turn_beyond_what_a_node_holds_is_refused():
+    learner = Learner(gyro_lsb_per_dps=16.4).feed(motions.turning(40, 200.0, [1.0, 0.0, 0.0]))
+    assert learner.windows == []
+    assert in_motion.TOO_FAST in learner.reasons
+
+
+def test_a_gap_in_time_begins_a_new_window():
+    motion = motions.swinging(2, 10)
+    learner = Learner().feed(motion)
+    assert learner.state[9] > 0
+    in_motion.update(learner.state, learner.settings, motion.samples[0].tolist(), 500000)
+    assert learner.state[9] == 0
+    assert learner.state[REASON] == in_motion.GAP
+
+
+def test_each_pass_of_the_documents_own_form_leaves_a_smaller_slope():
+    learner = Learner(document=True).feed(motions.swinging(3, 20))
+    slopes = np.abs(np.array(learner.state[SLOPES : SLOPES + 9])).reshape(3, 3).max(axis=1)
+    assert len(learner.windows) == 1
+    assert slopes[0] > slopes[1] > slopes[2] > 0
+
+
+def test_the_documents_own_form_finds_the_bias_of_a_swing_about_one_axis():
+    t = np.arange(30 * 50 + 1) / 50
+    swing = Rotation.from_rotvec(0.35 * np.sin(2 * np.pi * t)[:, None] * [1, 0, 0])
+    motion = motions.Motion(swing, [2.0, 0.3, -0.3], 50.0, 0)
+    learner = Learner(document=True).feed(motion)
+    assert np.abs(learner.errors_mdps(motion.bias_dps)).max() < 250
+
+
+def test_both_sources_take_three_kilobytes():
+    k, c = motion_settings(), realtime_settings()
+    words = len(k) + len(motion_state(k)) + len(c) + len(realtime_state(c))
+    print("both sources:", 4 * words, "bytes")
+    assert 4 * words <= 3072
+
+
+@pytest.mark.parametrize("options", [{"longest_stage": 3}, {"passes": 0}, {"odr_hz": 2.0}])
+def test_settings_that_cannot_work_are_refused(options):
+    with pytest.raises(ValueError, match="window"):
+        motion_settings(**options)
+
+
+def integrated_error_deg(steps):
+    """Degrees between the kernel's quaternion and float64's after steps of half angles, Q14."""
+    state = array("i", [0] * 60)
+    state[Q] = 1 << 28
+    truth = Rotation.identity()
+    for half in steps:
+        state[HALF : HALF + 3] = array("i", [int(h) for h in half])
+        attitude.sines(state)
+        attitude.turn(state)
+        attitude.normalise(state)
+        truth = truth * Rotation.from_rotvec(2 * np.asarray(half) / (1 << 14))
+    w, x, y, z = state[Q : Q + 4]
+    return np.degrees((truth.inv() * Rotation.from_quat([x, y, z, w])).magnitude())
+
+
+@pytest.mark.parametrize(("most_rad", "limit_deg"), [(0.05, 0.01), (0.2, 0.04), (0.5, 0.15)])
+def test_a_window_integrates_like_a_float64_quaternion(most_rad, limit_deg):
+    errors = []
+    for seed in range(20):
+        random = np.random.default_rng(seed)
+        steps = np.round(random.uniform(-most_rad, most_rad, (128, 3)) * (1 << 13))
+        errors.append(integrated_error_deg(steps))
+    print(f"128 increments within {most_rad} rad: worst {max(errors):.4f} deg")
+    assert 0 < max(errors) < limit_deg
+
+
+@given(st.integers(-(1 << 29), 1 << 29), st.integers(-(1 << 29), 1 << 29))
+def test_the_angle_of_a_vector_is_right_to_two_units(y, x):
+    if abs(x) + abs(y) > 100:
+        assert abs(atan2.atan2_q13(y, x) - 8192 * np.arctan2(y, x)) < 2 + 8192 / 100
+
+
+numbers = st.floats(1e-20, 1e20) | st.floats(-1e20, -1e-20)
+
+
+def stored(state, at, value):
+    mantissa, exponent = np.frexp(value)
+    real.put(state, at, int(mantissa * (1 << 29)), int(exponent) - 29)
+
+
+def value_at(state, at):
+    return float(np.ldexp(float(state[at]), state[at + 1]))
+
+
+@pytest.mark.parametrize(
+    ("kernel", "exact"),
+    [
+        (real.multiply, lambda a, b: a * b),
+        (real.divide, lambda a, b: a / b),
+        (real.add, lambda a, b: a + b),
+        (real.subtract, lambda a, b: a - b),
+    ],
+    ids=["multiply", "divide", "add", "subtract"],
+)
+@given(a=numbers, b=numbers)
+def test_numbers_in_two_words_keep_25_bits(kernel, exact, a, b):
+    state = array("i", [0] * 6)
+    stored(state, 0, a)
+    stored(state, 2, b)
+    kernel(state, 4, 0, 2)
+    largest = max(abs(a), abs(b)) if kernel in (real.add, real.subtract) else abs(exact(a, b))
+    assert abs(value_at(state, 4) - exact(a, b)) <= largest / (1 << 25)
+
+
+class I31(int):
+    """An integer that asserts that whatever is computed with it fits 31 bits."""
+
+
+def _checked(name):
+    plain = getattr(int, name)
+
+    def operate(*operands):
+        result = plain(*operands)
+        assert result is NotImplemented or -(1 << 30) <= result < 1 << 30, (name, operands)
+        return result if result is NotImplemented else I31(result)
+
+    return operate
+
+
+for _name in ("add", "sub", "mul", "floordiv", "lshift", "rshift", "and", "or", "xor"):
+    setattr(I31, f"__{_name}__", _checked(f"__{_name}__"))
+    setattr(I31, f"__r{_name}__", _checked(f"__r{_name}__"))
+I31.__neg__ = _checked("__neg__")
+
+
+class Words(list):
+    """Words that are read as checking integers."""
+
+    def __getitem__(self, at):
+        found = super().__getitem__(at)
+        return found if isinstance(at, slice) else I31(found)
+
+
+def wild(seed, count=1500):
+    """Samples at the rails and beyond reason."""
+    motion = motions.swinging(seed, count / 50)
+    random = np.random.default_rng(seed)
+    motion.samples = random.choice([-32768, 32767, 0, 12345], (count, 7))
+    return motion
+
+
+@pytest.mark.parametrize("document", [False, True])
+@pytest.mark.parametrize("make", [motions.swinging, wild], ids=["a swing", "rails"])
+def test_every_intermediate_fits_31_bits(make, document):
+    learner = Learner(document=document, longest_stage=5)
+    learner.state, learner.settings = Words(learner.state), Words(learner.settings)
+    learner.feed(make(4, 30), keep=Words)
+    assert learner.state[14] >= 0
+
+
+@pytest.fixture(scope="module")
+def feed_on(repository):
+    """feed_on(runtime, kernels) -> the motion's state by a MicroPython whose heap is locked."""
+
+    def run(runtime, kernels, motion):
+        result = runtime.run(
+            repository / "host_tests" / "firmware" / "on_micropython" / "motion_without_heap.py",
+            [kernels, "in_motion", str(len(motion.samples))],
+            modules=[repository / "firmware"],
+            files_in={"samples.bin": motion.samples.astype(np.int32).tobytes()},
+            files_out=["state.bin"],
+            check=True,
+        )
+        return result.files["state.bin"]
+
+    return run
+
+
+@pytest.fixture(scope="module")
+def short_motion():
+    return motions.swinging(7, 44, hz=25.0)
+
+
+@pytest.fixture(scope="module")
+def expected(short_motion):
+    learner = Learner(hz=25.0, longest_stage=5).feed(short_motion)
+    assert learner.windows
+    return learner.state.tobytes()
+
+
+def test_bytecode_learns_what_cpython_learns_and_allocates_nothing(
+    micropython, feed_on, short_motion, expected
+):
+    assert feed_on(micropython, "plain", short_motion) == expected
+
+
+def test_viper_learns_what_cpython_learns_and_allocates_nothing(
+    viper_runtime, feed_on, short_motion, expected
+):
+    assert feed_on(viper_runtime, "viper", short_motion) == expected

@@ -1,0 +1,146 @@
+"""The source against the accelerometer: what it finds, what it cannot see, and its integers."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+from zerorate import realtime
+from zerorate.realtime_settings import realtime_settings, realtime_state
+
+from . import motions
+
+OFFSET, SIGMA, STEP, OBSERVED, REASON, SKIPPED = 28, 31, 34, 37, 49, 50
+LEANING = Rotation.from_rotvec([0.5, -0.6, 0.2])
+
+
+class Counter:
+    """The source fed with recordings; trace: (seconds, offsets dps, sigma dps) an interval."""
+
+    def __init__(self, hz=50.0, **options):
+        self.settings = realtime_settings(odr_hz=hz, **options)
+        self.state = realtime_state(self.settings)
+        self.trace = []
+        self.seconds = 0.0
+
+    def feed(self, motion):
+        dt_us = round(1e6 / motion.hz)
+        scale = 256 * motions.GYRO_LSB_PER_DPS
+        for sample in motion.samples.tolist():
+            self.seconds += 1 / motion.hz
+            if realtime.update(self.state, self.settings, sample, dt_us):
+                offset, sigma = (np.array(self.state[a : a + 3]) / scale for a in (OFFSET, SIGMA))
+                self.trace.append((self.seconds, offset, sigma))
+        return self
+
+    def errors_mdps(self, bias_dps, after_s=0.0):
+        return np.array([1000 * (b - bias_dps) for t, b, _ in self.trace if t >= after_s])
+
+
+def test_a_leaning_device_at_rest_is_known_to_50_mdps():
+    motion = motions.turning(400, 0.0, [1, 0, 0], start=LEANING)
+    counter = Counter().feed(motion)
+    errors = counter.errors_mdps(motion.bias_dps, after_s=200)[:, :2]
+    assert len(errors) > 20
+    assert counter.state[OBSERVED + 2] == 0, "gravity is within 45 deg of z"
+    assert np.sqrt((errors**2).mean()) < 50
+
+
+def test_a_turntable_about_a_level_axis_is_not_taken_for_bias():
+    motion = motions.turning(600, 0.5, [1, 0, 0], bias_dps=(0.0, 0.0, 0.0))
+    counter = Counter().feed(motion)
+    x = counter.errors_mdps(motion.bias_dps, after_s=100)[:, 0]
+    assert counter.state[OBSERVED] > 1000
+    assert np.abs(x).max() < 150, "the turn is 500"
+
+
+def test_an_axis_along_gravity_is_not_observed_and_its_offset_stays():
+    motion = motions.turning(60, 0.0, [1, 0, 0])
+    counter = Counter().feed(motion)
+    observed = counter.state[OBSERVED : OBSERVED + 3]
+    assert observed[0] > 100 and observed[1] > 100
+    assert observed[2] == 0
+    assert counter.state[OFFSET + 2] == 0
+
+
+def test_sub_units_without_one_g_are_not_counted():
+    motion = motions.turning(20, 0.0, [1, 0, 0])
+    motion.samples[:, :3] = motion.samples[:, :3] * 13 // 10
+    counter = Counter().feed(motion)
+    assert counter.state[SKIPPED] >= 39
+    assert list(counter.state[OBSERVED : OBSERVED + 3]) == [0, 0, 0]
+    assert counter.state[REASON] == realtime.NOT_ONE_G
+
+
+def test_the_documents_own_form_moves_by_one_step_an_interval():
+    motion = motions.turning(60, 0.0, [1, 0, 0], start=LEANING)
+    counter = Counter(document=True, coarse_dps=0.05, threshold=0).feed(motion)
+    offsets = np.array([offset for _, offset, _ in counter.trace])
+    steps = np.abs(np.diff(offsets, axis=0))
+    assert len(offsets) == 15
+    assert set(np.round(steps.ravel() * 131 * 256)) <= {0, int(0.05 * 131 * 256)}
+
+
+def test_steps_grow_while_all_signs_agree_and_shrink_when_they_turn():
+    motion = motions.turning(400, 0.0, [1, 0, 0], start=LEANING, bias_dps=(8.0, 0.0, 0.0))
+    counter = Counter()
+    steps = []
+    for part in np.array_split(motion.samples, 100):
+        motion.samples = part
+        steps.append(counter.feed(motion).state[STEP])
+    assert max(steps) == 8 * counter.settings[7]
+    assert steps[-1] < counter.settings[7]
+
+
+def test_the_truth_lies_within_two_sigma_at_least_ninety_times_of_a_hundred():
+    inside = []
+    for seed in range(6):
+        motion = motions.turning(200, 0.0, [1, 0, 0], start=motions.pose(seed), seed=seed)
+        counter = Counter().feed(motion)
+        for _, offset, sigma in counter.trace:
+            known = sigma < 1000
+            inside += list((np.abs(offset - motion.bias_dps) < 2 * sigma)[known])
+    assert len(inside) > 100
+    assert np.mean(inside) >= 0.9
+
+
+@pytest.mark.parametrize("options", [{"threshold": 8}, {"odr_hz": 1.0}])
+def test_settings_that_cannot_work_are_refused(options):
+    with pytest.raises(ValueError, match="sub-unit"):
+        realtime_settings(**options)
+
+
+@pytest.fixture(scope="module")
+def short_motion():
+    return motions.turning(80, 3.0, [1.0, 0.0, 0.0], hz=25.0, start=LEANING)
+
+
+@pytest.fixture(scope="module")
+def count_on(repository):
+    """count_on(runtime, kernels, motion) -> the state by a MicroPython whose heap is locked."""
+
+    def run(runtime, kernels, motion):
+        result = runtime.run(
+            repository / "host_tests" / "firmware" / "on_micropython" / "motion_without_heap.py",
+            [kernels, "realtime", str(len(motion.samples))],
+            modules=[repository / "firmware"],
+            files_in={"samples.bin": motion.samples.astype(np.int32).tobytes()},
+            files_out=["state.bin"],
+            check=True,
+        )
+        return result.files["state.bin"]
+
+    return run
+
+
+def test_bytecode_counts_what_cpython_counts_and_allocates_nothing(
+    micropython, count_on, short_motion
+):
+    expected = Counter(hz=25.0).feed(short_motion)
+    assert expected.trace
+    assert count_on(micropython, "plain", short_motion) == expected.state.tobytes()
+
+
+def test_viper_counts_what_cpython_counts_and_allocates_nothing(
+    viper_runtime, count_on, short_motion
+):
+    expected = Counter(hz=25.0).feed(short_motion)
+    assert count_on(viper_runtime, "viper", short_motion) == expected.state.tobytes()
