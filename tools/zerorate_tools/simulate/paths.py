@@ -33,8 +33,8 @@ def path(
 ) -> np.ndarray:
     """(n,) values at t_s; after the last segment the last value holds.
 
-    Segment: `to` alone is a ramp, `to` with tau_s an exponential towards it, `cycle` with
-    period_minutes a sine of that amplitude about the value reached, neither a hold.
+    Segment: `to` alone is a ramp; `to` with tau_s an exponential that arrives there at its end;
+    `cycle` with period_minutes a sine of that amplitude about the value reached; neither a hold.
     """
     out, value, begin = np.full(len(t_s), float(start)), float(start), 0.0
     for segment, length in zip(segments, lengths):
@@ -50,5 +50,6 @@ def _segment(u: np.ndarray, value: float, segment: Mapping[str, Any], length: fl
     if "cycle" in segment:
         return value + segment["cycle"] * np.sin(2 * np.pi * u / (segment["period_minutes"] * 60))
     if "tau_s" in segment:
-        return value + (segment["to"] - value) * -np.expm1(-u / segment["tau_s"])
+        tau_s = segment["tau_s"]
+        return value + (segment["to"] - value) * np.expm1(-u / tau_s) / np.expm1(-length / tau_s)
     return value + (segment.get("to", value) - value) * u / length

@@ -30,7 +30,7 @@ class Sensor:
     gyro_noise_dps_rt_hz: float | None = None
     accel_noise_g: float = 0.004
     accel_bias_g: Any = 0.0
-    temp_noise_degc: float = 0.02
+    temp_noise_degc: float = 0.05
     temp_lag_s: float = 0.0
     accel: bool = True
     temp: bool = True
