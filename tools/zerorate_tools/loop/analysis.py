@@ -10,6 +10,7 @@ from .blocks import block_seconds, session_of
 from .floor import floor_dps
 from .gate import CannotClose, GateReport, enough, same_settings, usable_channels
 from .judge import Judgement, judge
+from .line import deployed
 from .select import Selection, select
 from .sessions import Session
 from .single import split
@@ -35,9 +36,8 @@ class Analysis:
 
     @property
     def coefficients(self) -> np.ndarray:
-        """(straight line and terms, 3) dps per unit, fitted together on the training part."""
-        s = self.selection
-        return s.regression.fit([*s.straight, *s.terms]).coefficients
+        """(straight line and terms, 3) dps per unit, as deployed."""
+        return deployed(self.selection)[1]
 
     def confidence(self, i: int) -> str:
         """confirmed or tentative; one power-on alone confirms nothing."""

@@ -9,18 +9,23 @@ from .still import still_ticks
 from .ticks import Ticks
 
 BLOCK_S = 20.0
+_WANTED_BLOCKS = 150
 _MOST_BLOCKS = 1500
+_MOST_ALONE = 250
 _LEAST_STILL = 0.25
 
 
 def block_seconds(ticks: list[Ticks]) -> float:
-    """20 s, or longer where ticks are long or sessions would have more than 1500 blocks; the same
-    for all.
+    """Length of a block, a whole number of ticks, the same for all sessions.
+
+    20 s; shorter where the longest session would have fewer than 150 of them, longer where it would
+    have more than 1500. One recording alone, which is cut into parts with gaps, gets at most 250.
     """
     tick_s = max(t.tick_s for t in ticks)
     longest = max(len(t.count) * t.tick_s for t in ticks)
-    want = max(BLOCK_S, longest / _MOST_BLOCKS)
-    return tick_s * max(1, int(np.ceil(want / tick_s - 1e-9))) if tick_s < want else tick_s
+    most = _MOST_BLOCKS if len(ticks) > 1 else _MOST_ALONE
+    want = max(min(BLOCK_S, longest / _WANTED_BLOCKS), longest / most)
+    return tick_s * max(1, int(np.ceil(want / tick_s - 1e-9)))
 
 
 def session_of(ticks: Ticks, block_s: float) -> Session:

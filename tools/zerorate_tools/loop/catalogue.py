@@ -161,9 +161,8 @@ def candidates(sessions: list[Session]) -> list[Candidate]:
     out = []
     for kind, source, fixed, grids in CATALOGUE:
         for name in supply if source == "supply" else [source]:
-            if (name in varied or name in ("one", "time")) and fixed.get(
-                "second", "temp"
-            ) in varied + [None]:
+            there = name in varied or name in ("one", "time")
+            if there and (fixed.get("second") is None or fixed["second"] in varied):
                 out += _expand(kind, name, fixed, grids, "catalogue", span)
     for kind, names, fixed in GROUPS:
         if any(n in varied for n in names) and all(n in span for n in names):

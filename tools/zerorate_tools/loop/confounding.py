@@ -15,7 +15,9 @@ _WORTH_REFINING = 15.0
 
 
 def rivals(regression, terms, chosen, candidates, ratios) -> list[Candidate]:
-    """The chosen and all that fit nearly as well in its place, refined, the simplest first.
+    """All that fit as well or nearly so in the chosen one's place, refined, the simplest first.
+
+    The first is the one to name: the chosen, or a simpler one that ties with it.
 
     ratios: (K,) of the candidates beside the same terms.
     """
@@ -28,8 +30,12 @@ def rivals(regression, terms, chosen, candidates, ratios) -> list[Candidate]:
         c = refined(regression, terms, c)
         tried[label(c)] = (c, regression.gains(terms, [c.terms]).sum())
     top = max(r for _, r in tried.values())
-    near = [c for c, r in tried.values() if r > top - 2 * NATS]
-    return sorted(near, key=complexity)
+    near = [c for c, r in tried.values() if r > top - 2 * NATS and c is not chosen]
+    tied = tried[label(chosen)][1] > top - 2 * NATS
+    simpler = [c for c in near if tied and complexity(c) < complexity(chosen)]
+    first = min(simpler, key=complexity, default=chosen)
+    rest = [chosen, *near] if first is not chosen else near
+    return [first, *(c for c in rest if c is not first)]
 
 
 def complexity(candidate) -> tuple[int, int]:

@@ -13,6 +13,7 @@ from ..recordings.atomic import written_beside
 from ..recordings.recording import TIME
 from .analysis import Analysis
 from .basis import evaluate
+from .line import deployed
 from .sessions import Session
 
 _AXES = ("gx", "gy", "gz")
@@ -24,9 +25,7 @@ def tick_bias(analysis: Analysis, session: Session, after: bool) -> np.ndarray:
     The float reference of what the firmware's kernels do. The offset is that of the first still
     minute of a locked session, of the whole session where it was fitted.
     """
-    s = analysis.selection
-    terms = [*s.straight, *(s.terms if after else [])]
-    coefficients = s.regression.fit(terms).coefficients
+    terms, coefficients = deployed(analysis.selection, after)
     model = np.zeros((session.blocks * session.ticks_per_block, 3))
     for term, c in zip(terms, coefficients):
         model += np.outer(evaluate(term, session.source, session.tick_s), c)

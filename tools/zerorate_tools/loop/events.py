@@ -83,7 +83,14 @@ def _scores(regression, terms, s, at, chunk=256):
         x = [np.zeros((len(v), heaviside.shape[1])) for v in z]
         x[s] = w.prepare(heaviside)
         g = _sparse_gram(regression, z, x, s)
-        out.append(ratios(g, fit_base(g, regression.scale), regression.scale).sum(axis=1))
+        out.append(
+            ratios(
+                g,
+                fit_base(g, regression.scale, regression.steep),
+                regression.scale,
+                regression.steep,
+            ).sum(axis=1)
+        )
     return np.concatenate(out)
 
 

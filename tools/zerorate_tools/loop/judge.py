@@ -9,6 +9,7 @@ import numpy as np
 from . import events
 from .excess import Excess, excess
 from .left_out import session_misfit
+from .line import deployed
 from .regression import Regression, predicted
 from .select import Selection
 from .sessions import Session
@@ -53,11 +54,15 @@ class Judgement:
 def judge(selection: Selection, locked: list[Session]) -> Judgement:
     """Judge what was selected on training sessions by sessions that no fit has seen."""
     train = selection.regression
-    before_fit = train.fit(selection.straight)
+    fitted = {s.name: s for s in train.sessions}
+    before, after = (
+        [
+            _scored(s, predicted(*deployed(selection, effects), s), fitted.get(s.name))
+            for s in locked
+        ]
+        for effects in (False, True)
+    )
     both = [*selection.straight, *selection.terms]
-    after_fit = train.fit(both)
-    before = [_scored(s, predicted(selection.straight, before_fit.coefficients, s)) for s in locked]
-    after = [_scored(s, predicted(both, after_fit.coefficients, s)) for s in locked]
     whole = Regression([*train.sessions, *locked])
     whole.settle(both)
     steps = events.find_all(whole, both)
@@ -74,11 +79,16 @@ def judge(selection: Selection, locked: list[Session]) -> Judgement:
     )
 
 
-def _scored(session: Session, model: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Residual with the turn-on offset of the session's first still minute taken, that minute
-    unscored.
+def _scored(session: Session, model: np.ndarray, fitted: Session | None = None):
+    """Residual (n, 3) with the turn-on offset taken, and that offset (3,).
+
+    The offset is that of the session's first still minute, which is not scored; or, where another
+    part of the same power-on was fitted, the mean of that part.
     """
     residual = np.where(session.available[:, None], session.rate_dps - model, np.nan)
+    if fitted is not None:
+        offset = (fitted.rate_dps - model)[fitted.available].mean(axis=0)
+        return residual - offset, offset
     first = np.flatnonzero(session.available)[: max(1, round(_FIRST_STILL_S / session.block_s))]
     offset = residual[first].mean(axis=0)
     residual = residual - offset

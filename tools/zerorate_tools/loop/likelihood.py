@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .gram import Gram
-from .noise import LOG_PRIOR
+from .noise import LOG_PRIOR, NO_STEEP
 
 _RIDGE = 1e-10
 
@@ -48,13 +48,13 @@ class Base:
         return float(self.loglik.max(axis=1).sum())
 
 
-def _loglik(rss, logdet, count, scale_term):
-    prior = LOG_PRIOR.reshape(-1, *[1] * (rss.ndim - 1))
+def _loglik(rss, logdet, count, scale_term, steep=True):
+    prior = (LOG_PRIOR if steep else NO_STEEP).reshape(-1, *[1] * (rss.ndim - 1))
     return prior - 0.5 * count * np.log(np.maximum(rss, 1e-300) / count) - 0.5 * logdet - scale_term
 
 
-def fit_base(g: Gram, scale: np.ndarray) -> Base:
-    """Fit of the nuisances. scale: (S, A) relative noise of each session."""
+def fit_base(g: Gram, scale: np.ndarray, steep: bool = True) -> Base:
+    """Fit of the nuisances. scale: (S, A) noise of each session; steep: allow such noise."""
     axes, count = g.yy.shape[2], g.count.sum()
     logdet = g.logdet.sum(axis=0)
     rss, ll, coef, inv = [], [], [], []
@@ -68,11 +68,11 @@ def fit_base(g: Gram, scale: np.ndarray) -> Base:
         rss.append(r)
         coef.append(b)
         inv.append(inverse)
-        ll.append(_loglik(r, logdet, count, (g.count * np.log(scale[:, a])).sum()))
+        ll.append(_loglik(r, logdet, count, (g.count * np.log(scale[:, a])).sum(), steep))
     return Base(np.array(rss), np.array(ll), np.array(coef), inv)
 
 
-def ratios(g: Gram, base: Base, scale: np.ndarray) -> np.ndarray:
+def ratios(g: Gram, base: Base, scale: np.ndarray, steep: bool = True) -> np.ndarray:
     """(K, A) twice the gain in log likelihood of each candidate, per axis, noise refitted."""
     out = np.empty((g.xx.shape[2], g.yy.shape[2]))
     count, logdet = g.count.sum(), g.logdet.sum(axis=0)
@@ -84,7 +84,7 @@ def ratios(g: Gram, base: Base, scale: np.ndarray) -> np.ndarray:
         xy = np.tensordot(w, g.xy[..., a], 1) - np.einsum("gki,gi->gk", xz, base.coefficients[a])
         gain = np.where(xx > 1e-6 * xx0, xy**2 / np.maximum(xx, 1e-300), 0.0)
         rss = np.maximum(base.rss[a][:, None] - gain, 1e-9 * base.rss[a][:, None])
-        ll = _loglik(rss, logdet[:, None], count, (g.count * np.log(scale[:, a])).sum())
+        ll = _loglik(rss, logdet[:, None], count, (g.count * np.log(scale[:, a])).sum(), steep)
         out[:, a] = 2 * (ll.max(axis=0) - base.loglik[a].max())
     return np.maximum(out, 0.0)
 

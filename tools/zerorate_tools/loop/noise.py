@@ -43,6 +43,7 @@ IS_STEEP = np.array([s.slope > 0 for s in GRID])
 #: believed.
 STEEP_NATS = 3.0
 LOG_PRIOR = np.where(IS_STEEP, -STEEP_NATS, 0.0)
+NO_STEEP = np.where(IS_STEEP, -1e12, 0.0)
 
 
 def frequency(n: int) -> np.ndarray:

@@ -38,6 +38,7 @@ class Regression:
         self.whiteners = whiteners or [whitener(s.available) for s in sessions]
         self.rate = [s.rate_dps for s in sessions]
         self.outliers = 0
+        self.steep = True  # whether the noise may be steeper than a random walk
         self.axes = np.eye(3)
         self._cache: dict[Term, list[np.ndarray]] = {}
         self._extra: list[list[np.ndarray]] = []
@@ -95,7 +96,7 @@ class Regression:
 
     def fit(self, terms) -> Fit:
         """Joint fit with the noise's colour refitted."""
-        base = fit_base(self.gram(terms), self.scale)
+        base = fit_base(self.gram(terms), self.scale, self.steep)
         best = np.array([base.coefficients[a, i] for a, i in enumerate(base.best)])
         return Fit(np.linalg.solve(self.axes, best[:, : len(terms)]).T, base, base.total)
 
@@ -120,12 +121,12 @@ class Regression:
         for at in range(0, len(single), chunk):
             part = single[at : at + chunk]
             g = self.gram(terms, [candidates[i][0] for i in part])
-            out[part] = ratios(g, fit_base(g, self.scale), self.scale)
+            out[part] = ratios(g, fit_base(g, self.scale, self.steep), self.scale, self.steep)
         base = None
         for i, c in enumerate(candidates):
             if len(c) > 1:
-                base = base or fit_base(self.gram(terms), self.scale)
-                more = fit_base(self.gram([*terms, *c]), self.scale)
+                base = base or fit_base(self.gram(terms), self.scale, self.steep)
+                more = fit_base(self.gram([*terms, *c]), self.scale, self.steep)
                 out[i] = 2 * (more.loglik.max(axis=1) - base.loglik.max(axis=1))
         return np.maximum(out, 0.0)
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from . import confounding, events
 from .basis import Term
+from .bends import find_bends
 from .catalogue import Candidate, ranges
 from .catalogue import candidates as all_candidates
 from .common_cause import coherence, turned_axes
@@ -44,6 +45,7 @@ class Selection:
     bend: tuple[Term, ...]
     pool: list[Candidate]
     smallest_dps: dict[str, float]
+    bends: int = 0  # of the effects found, how many at the start are bends of a single recording
 
     @property
     def terms(self) -> list[Term]:
@@ -71,11 +73,14 @@ class Search:
         self.steps: list[events.Step] = []
         self.refused: list[tuple[str, str]] = []
         self.dropped: set[str] = set()
+        self.bends = 0
 
     def terms(self, leave: int | None = None) -> list[Term]:
         return [t for i, f in enumerate(self.found) if i != leave for t in f.candidate.terms]
 
     def run(self) -> Selection:
+        if self.folds:
+            self._bend_first()
         while len(self.found) < MOST_EFFECTS and self._add_one():
             self._drop_idle()
         self._list_steps()
@@ -92,6 +97,7 @@ class Search:
             self.bend,
             self.pool,
             smallest,
+            self.bends,
         )
 
     def _smallest(self):
@@ -104,6 +110,13 @@ class Search:
         out.update(smallest_dps(r, [*self.straight, *self.bend, *self.terms()], bent, self._tried))
         r.turn(axes)
         return out
+
+    def _bend_first(self):
+        bends = find_bends(
+            self.regression, self.folds.sessions, self.straight, self.pool, self._tried
+        )
+        self.found = [Found(c, d) for c, d in bends]
+        self.bends = len(self.found)
 
     def _look_afresh(self):
         r = self.regression
@@ -190,15 +203,8 @@ class Search:
         nuisances = self._nuisances(c)
         best = refined(self.regression, [*self.straight, *self.terms()], c)
         ratio = float(self.regression.gains(nuisances, [best.terms]).sum())
-        decision = decide(
-            self.regression,
-            self.folds or self.regression,
-            nuisances,
-            best,
-            ratio,
-            self._tried(c),
-            self.singles,
-        )
+        tried, folds = self._tried(c), self.folds or self.regression
+        decision = decide(self.regression, folds, nuisances, best, ratio, tried, self.singles)
         if decision.accepted:
             return Found(best, decision)
         self.refused.append((confounding.label(best), decision.reason))
@@ -208,7 +214,7 @@ class Search:
         """An effect that the later ones explain is taken out again; the others' parameters are
         refined together.
         """
-        for i in reversed(range(len(self.found))):
+        for i in reversed(range(self.bends, len(self.found))):
             c = self.found[i].candidate
             rest = [*self.straight, *self.terms(leave=i)]
             ratio = self.regression.gains(rest, [c.terms]).sum()
@@ -231,6 +237,11 @@ class Search:
             rest = [*self.straight, *self.terms(leave=i)]
             ratios = self.regression.gains(rest, [c.terms for c in self.pool]).sum(axis=1)
             near = confounding.rivals(self.regression, rest, f.candidate, self.pool, ratios)
+            if i < self.bends:
+                near = [
+                    f.candidate,
+                    *(c for c in near if c is not f.candidate and c.family == "catalogue"),
+                ]
             f.candidate = self._named(rest, near[0])
             others = [confounding.label(self._named(rest, c)) for c in near[1:]]
             f.confounded_with = [

@@ -11,12 +11,14 @@ from dataclasses import replace
 
 import numpy as np
 
+from .basis import block_basis
 from .sessions import Session
 
 #: Shares of the recording's time that are locked away; inside, so that no range is extrapolated.
 _LOCKED = ((0.28, 0.42), (0.66, 0.80))
 _FOLDS = 5
 _GAP_SHARE = 0.03
+_WORTH = 0.1
 WEAKER = (
     "One recording only: stretches of it were held out instead of a whole power-on. An effect that "
     "repeats at every power-on cannot be told from one that happened once, and a slow cause spans "
@@ -45,3 +47,33 @@ def split(session: Session) -> tuple[Session, Session, list[Session]]:
         for i, p in enumerate(pieces)
     ]
     return _only(session, train, session.name), _only(session, locked, session.name), folds
+
+
+def bend_gains(folds: list[Session], terms, candidate) -> np.ndarray:
+    """(folds,) nats by which each piece is better predicted from the others with the candidate.
+
+    Ordinary least squares with one offset for all pieces, as they are of one power-on; a piece
+    counts as a tenth of its blocks, neighbours being alike.
+    """
+    squares = np.array(
+        [[_misfit(folds, i, t) for i in range(len(folds))] for t in (terms, [*terms, *candidate])]
+    )
+    blocks = np.array([f.available.sum() for f in folds])[:, None]
+    variance = squares[1].sum(axis=0) / blocks.sum()
+    return (0.5 * _WORTH * (squares[0] - squares[1]) / variance).sum(axis=1)
+
+
+def _misfit(folds, i, terms):
+    """(3,) squares left in piece i by a fit to the others."""
+
+    def stack(parts):
+        x = [np.column_stack([block_basis(t, p) for t in terms])[p.available] for p in parts]
+        return np.vstack(x), np.vstack([p.rate_dps[p.available] for p in parts])
+
+    x, y = stack([f for j, f in enumerate(folds) if j != i])
+    centre, scale = x.mean(axis=0), np.maximum(x.std(axis=0), 1e-300)
+    design = np.column_stack([np.ones(len(x)), (x - centre) / scale])
+    coefficients = np.linalg.lstsq(design, y, rcond=1e-10)[0]
+    x, y = stack([folds[i]])
+    left = y - np.column_stack([np.ones(len(x)), (x - centre) / scale]) @ coefficients
+    return (left**2).sum(axis=0)

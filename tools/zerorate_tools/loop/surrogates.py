@@ -55,7 +55,9 @@ def null_ratios(regression, terms, candidate, pool, seed: int = 0) -> NullRatios
     x = [np.column_stack([regression.columns(t)[i] for t in pick]) for i in range(len(z))]
     x = [c * rng.normal(size=c.shape) for c in x]
     g = gram(regression.whiteners, left, z, x)
-    score = ratios(g, fit_base(g, regression.scale), regression.scale).sum(axis=1)
+    score = ratios(
+        g, fit_base(g, regression.scale, regression.steep), regression.scale, regression.steep
+    ).sum(axis=1)
     dof = regression.y[0].shape[1]
     mean = max(float(score.mean()), dof)
     return NullRatios(mean, max(float(score.var()), 2 * mean**2 / dof), dof)
