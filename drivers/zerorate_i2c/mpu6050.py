@@ -50,7 +50,7 @@ class MPU6050:
     full_scale_dps is 250, 500, 1000 or 2000; full_scale_g 2, 4, 8 or 16; odr_hz the output data
     rate; dlpf_hz the gyro's low-pass bandwidth (None: the widest below half of odr_hz). The
     values taken are attributes: odr_hz, dlpf_hz, gyro_lsb_per_dps, accel_lsb_per_g,
-    temp_lsb_per_degc, temp_offset_degc, fifo_bytes, part, who_am_i.
+    temp_lsb_per_degc, temp_offset_degc (these five together: scales), fifo_bytes, part, who_am_i.
 
     The configuration is read back every check_every samples; a transfer is tried 1 + retries
     times. Raises ValueError for a value no part can take, OSError where no part, an unknown part
@@ -104,6 +104,7 @@ class MPU6050:
         self.full_scale_g = full_scale_g
         self.gyro_lsb_per_dps = GYRO_LSB_PER_DPS[gyro_code]
         self.accel_lsb_per_g = ACCEL_LSB_PER_G[accel_code]
+        self.scales = (self.odr_hz, self.gyro_lsb_per_dps, self.accel_lsb_per_g) + row[2:4]
         self.binding = bytes([self.who_am_i, gyro_code, accel_code, dlpf_code])
         self._settings = register_settings(self.kind, gyro_code, accel_code, dlpf_code, divider)
         self.configure()
