@@ -1,0 +1,210 @@
+"""The device's reader of model.bin: whole, of a known version, made for this chip, or refused.
+
+Little-endian:
+    0 "ZRM"  3 version (1)  4 size of all u16  6 slots  7 inputs  8 tables  9 channels  10 0 0
+    12 binding: chip id, gyro range, accel range, filter, each 255 where it was not known
+    16 tick in us u32
+    20 five doubles: gyro LSB/dps, accel LSB/g, temp LSB/degC, temp offset degC, odr Hz
+    60 inputs: kind, shift, offset, i32 each
+    then slots: 30 i32 each, words 0..29 of model.py, with indices of inputs, second inputs and tables
+    then tables: 9 i32 each, Q24
+    then texts, each a length byte and UTF-8: sensor, channels, what each slot corrects
+    then CRC-32 of all before it
+"""
+
+from struct import unpack_from
+
+from .crc32 import checksum
+
+try:
+    from micropython import const
+except ImportError:
+
+    def const(value):
+        return value
+
+
+SLOTS = 8
+CHANNELS = 8
+
+LOADED = const(0)
+UNREADABLE = const(1)
+NO_MODEL = const(2)
+TRUNCATED = const(3)
+DAMAGED = const(4)
+OTHER_VERSION = const(5)
+OTHER_CHIP = const(6)
+OTHER_RANGE = const(7)
+OTHER_FILTER = const(8)
+OTHER_SCALE = const(9)
+TOO_LARGE = const(10)
+IMPOSSIBLE = const(11)
+REASONS = (
+    "loaded",
+    "the file cannot be read",
+    "this is no effect model",
+    "the model is cut short",
+    "the model is damaged: its checksum differs",
+    "the model is of another version",
+    "the model was made for another chip",
+    "the model was made for another range",
+    "the model was made for another filter",
+    "the model was made for other scales",
+    "the model has more than fits",
+    "the model holds what cannot be",
+)
+
+_VERSION = const(1)
+_BODY = const(60)
+_INPUT = const(32)
+_SLOT = const(112)
+_TABLE = const(432)
+_RING = const(450)
+_SLOT_WORDS = const(40)
+_MOST_INPUTS = const(12)
+_MOST_TABLES = const(2)
+_MOST_RINGS = const(2)
+_ANY = const(255)
+_NONE = const(-0x3FFFFFFF)
+_LIMIT = const(0x4000000)
+_INSTANT = const(10)
+_EXTRA = const(16)
+
+
+def judge(data):
+    """Say whether data is a whole model of this version."""
+    if len(data) < 4 or bytes(data[:3]) != b"ZRM":
+        return NO_MODEL
+    if data[3] != _VERSION:
+        return OTHER_VERSION
+    if len(data) < _BODY + 4 or len(data) < data[4] | data[5] << 8:
+        return TRUNCATED
+    crc = bytearray(4)
+    checksum(data, len(data) - 4, crc)
+    if bytes(data[-4:]) != bytes(crc) or len(data) != data[4] | data[5] << 8:
+        return DAMAGED
+    if data[6] > SLOTS or data[7] > _MOST_INPUTS or data[8] > _MOST_TABLES or data[9] > CHANNELS:
+        return TOO_LARGE
+    return LOADED
+
+
+def compare(data, sensor, binding):
+    """Say whether the model was made for this chip, range and filter, and for these scales."""
+    if binding is not None:
+        for i in range(4):
+            if data[12 + i] != _ANY and i < len(binding) and data[12 + i] != binding[i]:
+                return (OTHER_CHIP, OTHER_RANGE, OTHER_RANGE, OTHER_FILTER)[i]
+    gyro, accel, temp, offset, _ = unpack_from("<5d", data, 20)
+    if not alike(gyro, sensor.gyro_lsb_per_dps):
+        return OTHER_RANGE
+    if accel and not alike(accel, sensor.accel_lsb_per_g):
+        return OTHER_RANGE
+    if temp and not alike(temp, sensor.temp_lsb_per_degc):
+        return OTHER_SCALE
+    if temp and abs(offset - sensor.temp_offset_degc) > 0.01:
+        return OTHER_SCALE
+    return LOADED
+
+
+def alike(one, other):
+    """Say whether two scales are the same to single precision and then some."""
+    return abs(one - other) <= 0.0001 * abs(one)
+
+
+def fill(e, data, sensor):
+    """Put the model's integers into e; IMPOSSIBLE where the kernels could not live with them."""
+    e[1] = data[7]
+    tick_us = unpack_from("<I", data, 16)[0]
+    need = _BODY + 12 * data[7] + 120 * data[6] + 36 * data[8] + 4
+    if need > len(data) or not 10000 <= tick_us < 1 << 29:
+        return IMPOSSIBLE
+    e[2] = tick_us
+    e[6] = int(2e6 * data[6] / (sensor.odr_hz * tick_us)) + 1
+    at = _BODY
+    for i in range(data[7]):
+        for j in range(3):
+            if not put(e, _INPUT + 6 * i + j, data, at):
+                return IMPOSSIBLE
+            at += 4
+        if not 0 <= e[_INPUT + 6 * i] < _EXTRA + CHANNELS or not 0 <= e[_INPUT + 6 * i + 1] <= 15:
+            return IMPOSSIBLE
+    for i in range(data[6]):
+        a = _SLOT + _SLOT_WORDS * i
+        for j in range(30):
+            if not put(e, a + j, data, at):
+                return IMPOSSIBLE
+            at += 4
+        if not link(e, a, data[8]):
+            return IMPOSSIBLE
+    for i in range(9 * data[8]):
+        if not put(e, _TABLE + i, data, at):
+            return IMPOSSIBLE
+        at += 4
+    return LOADED
+
+
+def put(e, to, data, at):
+    """Put the integer at `at` into e[to]; False where it leaves what kernels can bear."""
+    value = unpack_from("<i", data, at)[0]
+    if value != _NONE and not -(1 << 29) < value < 1 << 29:
+        return False
+    e[to] = value
+    return True
+
+
+def link(e, a, tables):
+    """Turn the slot's indices into words of e and check its numbers; False where they are wrong."""
+    if not 0 <= e[a] < e[1] or not -1 <= e[a + 12] < e[1] or not -1 <= e[a + 19] < tables:
+        return False
+    if not -1 <= e[a + 27] < _MOST_RINGS or not 0 <= e[a + 28] <= 63 * e[a + 29]:
+        return False
+    instant = _INSTANT <= e[_INPUT + 6 * e[a]] < _EXTRA
+    if e[a + 12] >= 0 and _INSTANT <= e[_INPUT + 6 * e[a + 12]] < _EXTRA:
+        instant = True
+    if instant and (e[a + 7] or e[a + 17] or e[a + 27] >= 0):
+        return False
+    if not bounded(e, a):
+        return False
+    e[a] = _INPUT + 6 * e[a] + 5
+    e[a + 12] = _INPUT + 6 * e[a + 12] + 5 if e[a + 12] >= 0 else 0
+    e[a + 19] = _TABLE + 9 * e[a + 19] if e[a + 19] >= 0 else 0
+    e[a + 27] = _RING + 66 * e[a + 27] if e[a + 27] >= 0 else 0
+    for i in range(3):
+        e[a + 30 + i] = e[a + 24 + i]
+    e[a + 33] = 1 if instant else 0
+    e[9] += e[a + 33]
+    return True
+
+
+def bounded(e, a):
+    """Say whether every number of the slot keeps the kernels within 31 bits."""
+    for f in (a, a + 12):
+        most = max(abs(e[f + 1] - e[f + 3]), abs(e[f + 2] - e[f + 3]))
+        if not -8 <= e[f + 4] <= 23 or e[f + 1] > e[f + 2]:
+            return False
+        if (most << e[f + 4] if e[f + 4] >= 0 else most >> -e[f + 4]) > 1 << 24:
+            return False
+    if not 1 <= e[a + 29] <= 256:
+        return False
+    for f in (8, 17):
+        if not 0 <= e[a + f] <= 1 << 15 or not 0 <= e[a + f + 1] <= 13:
+            return False
+    if not 1 <= e[a + 5] <= 3 or not 0 <= e[a + 7] <= 5 or not 15 <= e[a + 23] <= 30:
+        return False
+    if e[a + 19] >= 0 and not 15 <= e[a + 22] <= 30:
+        return False
+    for i in range(3):
+        if abs(e[a + 24 + i]) >> max(0, e[a + 23] - 24) > 1 << 28 or abs(e[a + 24 + i]) > _LIMIT:
+            return False
+    return abs(e[a + 10]) <= 1 << 25 and (e[a + 11] == _NONE or abs(e[a + 11]) <= 1 << 25)
+
+
+def texts(data):
+    """The texts of a whole model: sensor, channels, what each slot corrects."""
+    at = _BODY + 12 * data[7] + 120 * data[6] + 36 * data[8]
+    found = []
+    while at < len(data) - 4:
+        end = at + 1 + data[at]
+        found.append(bytes(data[at + 1 : end]).decode())
+        at = end
+    return tuple(found)

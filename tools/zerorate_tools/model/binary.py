@@ -1,0 +1,212 @@
+"""model.bin: bytes of a model and back, to the last bit. The layout: firmware/zerorate/model_file.py."""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from collections.abc import Sequence
+from dataclasses import replace
+from os import PathLike
+
+from ..errors import BadModel
+from ..recordings import Scales
+from .model import (
+    FRAME,
+    MOST_CHANNELS,
+    MOST_INPUTS,
+    MOST_RINGS,
+    MOST_SLOTS,
+    MOST_TABLES,
+    ONE,
+    RATES,
+    TABLE_POINTS,
+    TIME,
+    VIBRATION,
+    Binding,
+    CannotDeploy,
+    Input,
+    Model,
+    Slot,
+    is_channel,
+    sources_of,
+)
+from .scaling import Unit, inputs_for
+from .slot_words import slot_of, words_of
+
+VERSION = 1
+_HEAD = struct.Struct("<3sBHBBBBxx4BI5d")
+_INPUT, _SLOT, _TABLE = struct.Struct("<3i"), struct.Struct("<30i"), struct.Struct("<9i")
+_KINDS = (*FRAME, VIBRATION, TIME, ONE, *RATES)
+_FIRST_CHANNEL = 16
+_ANY = 255
+_Q24 = 1 << 24
+
+
+def build_model(
+    slots: Sequence[Slot], scales: Scales, *, binding: Binding | None = None, tick_s: float = 1.0
+) -> Model:
+    """The model that the firmware will run: every number as its integers hold it.
+
+    Raises CannotDeploy for what does not fit its slots.
+    """
+    model = Model(tuple(slots), scales, binding or Binding(), round(tick_s * 1e6))
+    inputs = inputs_for(model.slots, scales, model.tick_s)
+    return decoded(encoded(replace(model, inputs=inputs)))
+
+
+def encoded(model: Model) -> bytes:
+    """The bytes of model.bin. Raises CannotDeploy."""
+    _check_room(model)
+    places = {(i.name, i.of_the_sample): at for at, i in enumerate(model.inputs)}
+    channels = model.channels
+    body = [_INPUT.pack(_kind(i, channels), i.shift, i.offset) for i in model.inputs]
+    tables: list[tuple[float, ...]] = []
+    rings = 0
+    unit_of = _units(model)
+    for slot in model.slots:
+        index = {name: places[name, now] for name, now in slot.sources()}
+        if slot.table:
+            tables.append(slot.table)
+        own = (len(tables) - 1 if slot.table else -1, rings if slot.has_delay(model.tick_s) else -1)
+        rings += own[1] >= 0
+        body.append(_SLOT.pack(*words_of(slot, unit_of, index.__getitem__, model.tick_s, *own)))
+    body += [_TABLE.pack(*(round(v * _Q24) for v in table)) for table in tables]
+    body += [_text(t) for t in (model.scales.sensor, *channels, *(s.effect for s in model.slots))]
+    body_bytes = b"".join(body)
+    size = _HEAD.size + len(body_bytes) + 4
+    head = _HEAD.pack(
+        *(b"ZRM", VERSION, size, len(model.slots), len(model.inputs), len(tables), len(channels)),
+        *(_ANY if code is None else code for code in _codes(model.binding)),
+        model.tick_us,
+        *_doubles(model.scales),
+    )
+    return head + body_bytes + struct.pack("<I", zlib.crc32(head + body_bytes))
+
+
+def decoded(data: bytes, path: str | PathLike[str] = "model.bin") -> Model:
+    """The model in the bytes of model.bin. Raises BadModel, which names `path`."""
+    head = _checked_head(data, path)
+    try:
+        return _decoded_body(data, head)
+    except (CannotDeploy, struct.error, ValueError, IndexError, KeyError, ArithmeticError) as error:
+        problem = f"holds what no model holds ({error})"
+        raise BadModel(path, problem, do="write it again with `zerorate close`") from error
+
+
+def _checked_head(data: bytes, path: str | PathLike[str]) -> tuple:
+    if data[:3] != b"ZRM":
+        raise BadModel(path, "is no effect model", do="name a model.bin or model.json")
+    if len(data) > 3 and data[3] != VERSION:
+        problem = f"is of version {data[3]}; this tool reads {VERSION}"
+        raise BadModel(path, problem, do="write it again with this zerorate")
+    if len(data) < _HEAD.size + 4 or len(data) < _HEAD.unpack_from(data)[2]:
+        raise BadModel(path, f"is cut short at byte {len(data)}", do="copy it again")
+    (crc,) = struct.unpack("<I", data[-4:])
+    head = _HEAD.unpack_from(data)
+    if crc != zlib.crc32(data[:-4]) or len(data) != head[2]:
+        raise BadModel(path, "is damaged: its checksum differs", do="copy it again")
+    return head
+
+
+def _decoded_body(data: bytes, head: tuple) -> Model:
+    n_slots, n_inputs, n_tables, n_channels = head[3:7]
+    at = _HEAD.size
+    raw_inputs = [_INPUT.unpack_from(data, at + _INPUT.size * i) for i in range(n_inputs)]
+    at += _INPUT.size * n_inputs
+    rows = [_SLOT.unpack_from(data, at + _SLOT.size * i) for i in range(n_slots)]
+    at += _SLOT.size * n_slots
+    tables = [_TABLE.unpack_from(data, at + _TABLE.size * i) for i in range(n_tables)]
+    texts = _texts(data, at + _TABLE.size * n_tables)
+    sensor, channels, effects = texts[0], texts[1 : 1 + n_channels], texts[1 + n_channels :]
+    inputs = tuple(_input(raw, channels) for raw in raw_inputs)
+    scales = _scales(sensor, head[12:17])
+    model = Model((), scales, Binding(*(None if c == _ANY else c for c in head[7:11])), head[11])
+    model = replace(model, inputs=inputs)
+    slots = []
+    for row, effect in zip(rows, effects, strict=True):
+        table = [v / _Q24 for v in tables[row[19]]] if row[19] >= 0 else None
+        slot = slot_of(row, lambda i: inputs[i].name, _units(model), model.tick_s, table)
+        slots.append(replace(slot, effect=effect, table=_short_table(table)))
+    whole = replace(model, slots=tuple(slots))
+    if encoded(whole) != data:
+        raise CannotDeploy("its numbers do not belong together")
+    return whole
+
+
+def _short_table(table: Sequence[float] | None) -> tuple[float, ...] | None:
+    if table is None:
+        return None
+    return tuple(
+        next(s for d in range(1, 18) if round((s := float(f"{v:.{d}g}")) * _Q24) == v * _Q24)
+        for v in table
+    )
+
+
+def _units(model: Model):
+    inputs = {i.name: i for i in model.inputs}
+    return lambda name: Unit(inputs.get(name, Input(name)), model.scales, model.tick_s)
+
+
+def _check_room(model: Model) -> None:
+    tables = [s.table for s in model.slots if s.table]
+    for what, number, most in (
+        ("effect slots", len(model.slots), MOST_SLOTS),
+        ("sources", len(model.inputs), MOST_INPUTS),
+        ("tables", len(tables), MOST_TABLES),
+        ("delays", sum(s.has_delay(model.tick_s) for s in model.slots), MOST_RINGS),
+        ("extra channels", len(model.channels), MOST_CHANNELS),
+    ):
+        if number > most:
+            raise CannotDeploy(f"the firmware has room for {most} {what}, the model needs {number}")
+    for table in tables:
+        if len(table) != TABLE_POINTS or any(not abs(v) <= 1 for v in table):
+            raise CannotDeploy(f"a table has {TABLE_POINTS} values within -1..1")
+    if set(sources_of(model.slots)) - {(i.name, i.of_the_sample) for i in model.inputs}:
+        raise CannotDeploy("a slot follows a source that is no input of the model")
+    if not 10_000 <= model.tick_us < 1 << 29:
+        raise CannotDeploy(f"a tick of {model.tick_s:g} s; 0.01..536 s are possible")
+
+
+def _kind(source: Input, channels: Sequence[str]) -> int:
+    if is_channel(source.name):
+        return _FIRST_CHANNEL + list(channels).index(source.name)
+    if source.of_the_sample:
+        return _KINDS.index(ONE) + 1 + RATES.index(source.name)
+    return _KINDS.index(source.name)
+
+
+def _input(raw: Sequence[int], channels: Sequence[str]) -> Input:
+    kind, shift, offset = raw
+    if kind >= _FIRST_CHANNEL:
+        return Input(channels[kind - _FIRST_CHANNEL], False, shift, offset)
+    return Input(_KINDS[kind], kind > _KINDS.index(ONE), shift, offset)
+
+
+def _codes(binding: Binding) -> tuple[int | None, ...]:
+    return binding.chip_id, binding.gyro_range, binding.accel_range, binding.filter
+
+
+def _doubles(scales: Scales) -> tuple[float, ...]:
+    values = (scales.accel_lsb_per_g, scales.temp_lsb_per_degc, scales.temp_offset_degc)
+    return scales.gyro_lsb_per_dps, *(v or 0.0 for v in values), scales.odr_hz
+
+
+def _scales(sensor: str, doubles: Sequence[float]) -> Scales:
+    gyro, accel, temp, offset, odr_hz = doubles
+    return Scales(sensor, odr_hz, gyro, accel or None, temp or None, offset if temp else None)
+
+
+def _text(text: str) -> bytes:
+    data = text.encode()
+    if len(data) > 63:
+        raise CannotDeploy(f"the name {text!r} is longer than 63 bytes")
+    return bytes([len(data)]) + data
+
+
+def _texts(data: bytes, at: int) -> list[str]:
+    found = []
+    while at < len(data) - 4:
+        end = at + 1 + data[at]
+        found.append(data[at + 1 : end].decode())
+        at = end
+    return found

@@ -1,0 +1,43 @@
+"""A model in its two files."""
+
+from __future__ import annotations
+
+from os import PathLike
+from pathlib import Path
+
+from ..errors import BadModel
+from ..recordings.atomic import written_beside
+from .binary import decoded, encoded
+from .model import CannotDeploy, Model
+from .text import from_json, to_json
+
+
+def read_model(path: str | PathLike[str]) -> Model:
+    """The model in a model.bin or model.json, told apart by what is in it. Raises BadModel.
+
+    One from model.json is as its integers hold it, as if it had been read from its model.bin.
+    """
+    path = Path(path)
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        problem = "no such file" if not path.exists() else f"cannot be read: {error.strerror}"
+        raise BadModel(path, problem, do="name a model.bin or model.json") from error
+    if data[:1] != b"{" and data.lstrip()[:1] != b"{":
+        return decoded(data, path)
+    model = from_json(data, path)
+    try:
+        return decoded(encoded(model), path)
+    except CannotDeploy as error:
+        raise BadModel(path, str(error), do="correct it") from error
+
+
+def write_model(model: Model, folder: str | PathLike[str]) -> tuple[Path, Path]:
+    """Write model.json and model.bin into the folder; return their paths. Raises ZerorateError."""
+    data = encoded(model)
+    paths = Path(folder) / "model.json", Path(folder) / "model.bin"
+    with written_beside(paths[0]) as temporary:
+        temporary.write_text(to_json(decoded(data)), encoding="utf-8")
+    with written_beside(paths[1]) as temporary:
+        temporary.write_bytes(data)
+    return paths

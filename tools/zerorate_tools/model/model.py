@@ -1,0 +1,104 @@
+"""An effect model as a person reads it: slots of a basis with coefficients, and for which chip."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from ..errors import ZerorateError
+from ..loop.basis import Term
+from ..recordings import Scales
+
+MOST_SLOTS, MOST_INPUTS, MOST_TABLES, MOST_RINGS, MOST_CHANNELS = 8, 12, 2, 2, 8
+TABLE_POINTS = 9
+RATES = ("rate_x", "rate_y", "rate_z")
+FRAME = ("acc_x", "acc_y", "acc_z", "temp", *RATES)
+VIBRATION, TIME, ONE = "vib", "time", "one"
+
+
+class CannotDeploy(ZerorateError):
+    """An effect that the firmware's slots cannot hold; the text says which and why."""
+
+
+@dataclass(frozen=True)
+class Slot:
+    """One effect: coefficient_dps (x, y, z), dps per unit of the term's basis.
+
+    effect: what it corrects, for people; table: nine values within +-1 at equal distances over
+    the term's range, which take the place of its power, or None.
+    """
+
+    term: Term
+    coefficient_dps: tuple[float, float, float]
+    effect: str = ""
+    table: tuple[float, ...] | None = None
+
+    @property
+    def is_of_the_sample(self) -> bool:
+        """Whether it is computed for every sample: it follows the rate and remembers nothing."""
+        t = self.term
+        remembers = t.lag_mode != "none" or t.memory != "none" or t.decay_s + t.delay_s > 0
+        return not remembers and (t.source in RATES or t.second in RATES)
+
+    def has_delay(self, tick_s: float) -> bool:
+        """Whether it needs a ring of the firmware to remember its source in."""
+        return round(self.term.delay_s / tick_s) > 0
+
+    def sources(self) -> list[tuple[str, bool]]:
+        """(name, whether of the very sample) of what it follows."""
+        names = [self.term.source, *([self.term.second] if self.term.second else [])]
+        return [(n, self.is_of_the_sample and n in RATES) for n in names]
+
+
+@dataclass(frozen=True)
+class Input:
+    """A source as the board sees it: (reading - offset) >> shift, mean of a tick.
+
+    of_the_sample: the rate of the very sample instead of the tick's mean.
+    """
+
+    name: str
+    of_the_sample: bool = False
+    shift: int = 0
+    offset: int = 0
+
+
+@dataclass(frozen=True)
+class Binding:
+    """The chip's id and the codes of its ranges and filter, as its registers say; None: unknown."""
+
+    chip_id: int | None = None
+    gyro_range: int | None = None
+    accel_range: int | None = None
+    filter: int | None = None
+
+
+@dataclass(frozen=True)
+class Model:
+    """What model.json and model.bin hold. tick_us: period of the slots."""
+
+    slots: tuple[Slot, ...]
+    scales: Scales
+    binding: Binding = field(default_factory=Binding)
+    tick_us: int = 1_000_000
+    inputs: tuple[Input, ...] = ()
+
+    @property
+    def tick_s(self) -> float:
+        """Seconds of a tick."""
+        return self.tick_us / 1e6
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Names of the extra channels that the application has to give, in their order."""
+        return tuple(i.name for i in self.inputs if is_channel(i.name))
+
+
+def is_channel(name: str) -> bool:
+    """Whether a source is none of the sensor's own."""
+    return name not in (*FRAME, VIBRATION, TIME, ONE)
+
+
+def sources_of(slots: Sequence[Slot]) -> list[tuple[str, bool]]:
+    """(name, of the very sample) of every input that the slots need, each once, in order."""
+    return list(dict.fromkeys(source for slot in slots for source in slot.sources()))

@@ -1,0 +1,155 @@
+"""model.json: the readable twin of model.bin."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, fields
+from os import PathLike
+from typing import Any
+
+from ..errors import BadModel
+from ..loop.basis import Term
+from ..recordings import Scales
+from .model import Binding, Input, Model, Slot
+
+FORMAT = "zerorate-model"
+_VERSION = 1
+
+
+def to_json(model: Model) -> str:
+    """The text of model.json, from which `from_json` makes the very same model."""
+    scales = Scales(**{**vars(model.scales), "more": {}})
+    values = {
+        "format": FORMAT,
+        "version": _VERSION,
+        "scales": scales.to_json(),
+        "binding": asdict(model.binding),
+        "tick_us": model.tick_us,
+        "inputs": [asdict(i) for i in model.inputs],
+        "slots": [_slot_values(s) for s in model.slots],
+    }
+    return json.dumps(values, indent=2, allow_nan=False) + "\n"
+
+
+def _slot_values(slot: Slot) -> dict[str, Any]:
+    values = {"effect": slot.effect, **slot.term.to_dict()}
+    values["coefficient_dps"] = list(slot.coefficient_dps)
+    if slot.table:
+        values["table"] = list(slot.table)
+    return values
+
+
+def from_json(text: str | bytes, path: str | PathLike[str] = "model.json") -> Model:
+    """The model that the text describes. Raises BadModel, which names `path` and the entry."""
+    try:
+        values = json.loads(text)
+    except (json.JSONDecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise BadModel(path, f"is no JSON ({error})", do="correct the text there") from error
+    if not isinstance(values, dict) or values.get("format") != FORMAT:
+        raise BadModel(path, "is no effect model", do="name a model.bin or model.json")
+    if values.get("version") != _VERSION:
+        problem = f"is of version {values.get('version')!r}; this tool reads {_VERSION}"
+        raise BadModel(path, problem, do="write it again with this zerorate")
+    entry = "scales"
+    try:
+        scales = _scales(values["scales"])
+        entry = "binding"
+        binding = Binding(**{k: _code(v) for k, v in values["binding"].items()})
+        entry = "tick_us"
+        tick_us = _whole(values["tick_us"])
+        entry = "inputs"
+        inputs = tuple(_input(v) for v in values["inputs"])
+        slots = []
+        for number, slot in enumerate(values["slots"], 1):
+            entry = f"slot {number}"
+            slots.append(_slot(slot))
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
+        what = f"lacks {error}" if isinstance(error, KeyError) else str(error)
+        raise BadModel(path, f"{entry}: {what}", do="correct it") from error
+    return Model(tuple(slots), scales, binding, tick_us, inputs)
+
+
+def _scales(values: Mapping[str, Any]) -> Scales:
+    names = [f.name for f in fields(Scales) if f.name not in ("sensor", "more")]
+    numbers = {n: _number(values[n], n) for n in names if values.get(n) is not None}
+    if min(v for n, v in numbers.items() if n != "temp_offset_degc") <= 0:
+        raise ValueError("a scale is not above 0")
+    return Scales(sensor=_string(values["sensor"], "sensor"), **numbers)  # type: ignore[arg-type]
+
+
+def _input(values: Mapping[str, Any]) -> Input:
+    shift, offset = _whole(values["shift"]), _whole(values["offset"])
+    if not 0 <= shift <= 15 or abs(offset) >= 1 << 29:
+        raise ValueError(f"shift {shift} or offset {offset} is out of range")
+    return Input(_string(values["name"], "name"), values["of_the_sample"] is True, shift, offset)
+
+
+_NUMBERS = ("centre", "delay_s", "lag_s", "width", "decay_s", "second_centre")
+_LIMITS = ("lo", "hi", "second_lo", "second_hi")
+
+
+def _slot(values: Mapping[str, Any]) -> Slot:
+    term = {f.name: values[f.name] for f in fields(Term) if f.name in values}
+    for name in term:
+        optional = name in _LIMITS or name == "knot"
+        if name in (*_NUMBERS, *_LIMITS, "knot") and not (optional and term[name] is None):
+            term[name] = _number(term[name], name)
+    _check_choices(term)
+    coefficients = [_number(v, "coefficient_dps") for v in values["coefficient_dps"]]
+    if len(coefficients) != 3:
+        raise ValueError("coefficient_dps has three numbers")
+    table = values.get("table")
+    effect = _string(values.get("effect", ""), "effect")
+    return Slot(
+        Term.from_dict(term),
+        (coefficients[0], coefficients[1], coefficients[2]),
+        effect,
+        tuple(_number(v, "table") for v in table) if table else None,
+    )
+
+
+def _check_choices(term: Mapping[str, Any]) -> None:
+    _string(term["source"], "source")
+    if term.get("second") is not None:
+        _string(term["second"], "second")
+    for name, choices in (
+        ("power", (1, 2, 3)),
+        ("power_first", (False, True)),
+        ("lag_mode", ("none", "lag", "difference", "rate")),
+        ("memory", ("none", "backlash", "peak")),
+    ):
+        if name in term and term[name] not in choices:
+            raise ValueError(f"{name} is {term[name]!r}, none of {choices}")
+    for name in ("delay_s", "lag_s", "width", "decay_s"):
+        if term.get(name, 0.0) < 0:
+            raise ValueError(f"{name} is negative")
+    if term.get("lag_mode", "none") != "none" and not term.get("lag_s"):
+        raise ValueError("a lag needs lag_s")
+
+
+def _number(value: Any, name: str) -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise ValueError(f"{name} is {value!r}, no number")
+    if not math.isfinite(value):
+        raise ValueError(f"{name} is not finite")
+    return float(value)
+
+
+def _whole(value: Any) -> int:
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise ValueError(f"{value!r} is no whole number")
+    return value
+
+
+def _code(value: Any) -> int | None:
+    if value is not None and not 0 <= _whole(value) < 255:
+        raise ValueError(f"{value} is no byte below 255")
+    return value
+
+
+def _string(value: Any, name: str) -> str:
+    if not isinstance(value, str):
+        raise ValueError(f"{name} is {value!r}, no text")
+    return value
