@@ -1,0 +1,38 @@
+"""What the firmware's tests stand on: the trace on every interpreter, run once each."""
+
+from functools import cache, lru_cache
+from pathlib import Path
+
+import pytest
+
+from . import trace
+from .trace_on_host import on_cpython
+
+_HERE = Path(__file__).parent
+
+
+@pytest.fixture(scope="session")
+def trace_on_host():
+    """trace_on_host(mode) -> (final state, bias of every sample), bytes, by CPython."""
+    return lru_cache(maxsize=None)(on_cpython)
+
+
+@pytest.fixture(scope="session")
+def trace_on(repository):
+    """trace_on(runtime, kernels, mode) -> the same by a MicroPython whose heap is locked.
+
+    kernels: "plain" (bytecode) or "viper". Raises ZerorateError where anything was allocated.
+    """
+
+    @cache
+    def run(runtime, kernels, mode):
+        result = runtime.run(
+            _HERE / "on_micropython" / "trace_without_heap.py",
+            [kernels, mode, trace.UPDATES[mode]],
+            modules=[repository / "firmware", _HERE],
+            files_out=["state.bin", "bias.bin"],
+            check=True,
+        )
+        return result.files["state.bin"], result.files["bias.bin"]
+
+    return run

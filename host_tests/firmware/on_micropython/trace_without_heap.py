@@ -1,0 +1,51 @@
+"""Runs the trace with the heap locked; writes the final state and every sample's bias.
+
+Arguments: plain or viper, a mode of trace.MODES, how many updates.
+"""
+
+import sys
+import trace
+from array import array
+
+import zerorate.corrector as corrector_file
+import zerorate.kernels as kernels
+from micropython import heap_lock, heap_unlock
+from zerorate import Corrector, Sensor
+
+_STRETCH = 500
+
+which, mode, updates = sys.argv[1], sys.argv[2], int(sys.argv[3])
+if which == "plain":
+    from zerorate import estimators, step
+
+    corrector_file.estimators, corrector_file.step = estimators, step
+elif not kernels.VIPER:
+    raise SystemExit("no viper here")
+
+options = dict(trace.LIMITS)
+options.update(trace.MODES[mode])
+corrector = Corrector(Sensor(*trace.SENSOR), **options)
+frame = array("i", [0] * 7)
+generator = array("i", trace.GENERATOR)
+biases = array("i", [0] * (3 * _STRETCH))
+
+
+def stretch(first):
+    s = corrector.state
+    for n in range(_STRETCH):
+        dt_us = trace.fill(frame, first + n, generator)
+        corrector.update(frame, dt_us)
+        for axis in range(3):
+            biases[3 * n + axis] = s[corrector_file.OUT_Q8 + axis]
+
+
+with open("bias.bin", "wb") as file:
+    for first in range(0, updates, _STRETCH):
+        heap_lock()
+        try:
+            stretch(first)
+        finally:
+            heap_unlock()  # the WebAssembly port hangs on an error under the lock
+        file.write(biases)
+with open("state.bin", "wb") as file:
+    file.write(corrector.state)

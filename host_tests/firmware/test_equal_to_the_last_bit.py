@@ -1,0 +1,55 @@
+"""One trace gives one state and one bias for every sample, whoever runs the firmware."""
+
+import json
+
+import numpy as np
+import pytest
+
+from . import trace
+from .trace_on_host import GOLDEN, checksums, on_numba
+
+modes = pytest.mark.parametrize("mode", sorted(trace.MODES))
+
+
+def same(one, other):
+    """Assert equal (state, biases) and say where they part."""
+    for name, a, b, words in zip(("sample", "word of the state"), one[::-1], other[::-1], (3, 1)):
+        a, b = (np.frombuffer(x, np.int32).reshape(-1, words) for x in (a, b))
+        assert a.shape == b.shape
+        apart = np.flatnonzero((a != b).any(axis=1))
+        assert not len(apart), f"{name} {apart[0]}: {a[apart[0]]} and {b[apart[0]]}"
+
+
+@modes
+def test_bytecode_gives_what_cpython_gives_and_allocates_nothing(
+    micropython, mode, trace_on, trace_on_host
+):
+    same(trace_on(micropython, "plain", mode), trace_on_host(mode))
+
+
+@modes
+def test_viper_gives_what_cpython_gives_and_allocates_nothing(
+    viper_runtime, mode, trace_on, trace_on_host
+):
+    same(trace_on(viper_runtime, "viper", mode), trace_on_host(mode))
+
+
+def test_the_kernels_that_numba_compiled_give_what_cpython_gives(trace_on_host):
+    for mode in trace.MODES:  # in one test, for compiling them takes a while
+        same(on_numba(mode), trace_on_host(mode))
+
+
+@modes
+def test_the_numbers_are_those_that_were_committed(mode, trace_on_host):
+    golden = json.loads(GOLDEN.read_text(encoding="utf-8"))
+    assert checksums(*trace_on_host(mode)) == golden[mode], (
+        "the firmware gives other numbers; if that is meant: python -m host_tests.golden"
+    )
+
+
+def test_a_difference_of_one_bit_in_one_bias_is_found(trace_on_host):
+    state, biases = trace_on_host("every")
+    turned = bytearray(biases)
+    turned[12 * 1234] ^= 1
+    with pytest.raises(AssertionError, match="sample 1234"):
+        same((state, bytes(turned)), (state, biases))

@@ -1,0 +1,133 @@
+"""An update allocates nothing, whatever happens in it.
+
+The trace runs under a locked heap in test_equal_to_the_last_bit.py, where every interpreter gives
+the same state; so what happens in it here happens there.
+"""
+
+from collections import Counter
+
+import pytest
+from zerorate import bias, estimators, guard, histogram, recent, step, stillness
+from zerorate_tools.errors import ZerorateError
+
+from . import trace
+from .trace_on_host import on_cpython
+
+_FREE = -1048576
+
+
+class Events:
+    """Counts what the kernels do in this process; equal states mean equal events elsewhere."""
+
+    def __init__(self, patch):
+        self.patch = patch
+        self.seen = Counter()
+        for kernel in ("merge", "open_gap", "share_evenly", "share_by_mean", "halve"):
+            self.count(histogram, kernel)
+        self.count(histogram, "recentre", lambda args, result: result)
+        self.count(histogram, "place", lambda args, result: "outside" if result < 0 else "")
+        self.count(estimators, "halve")
+        self.count(estimators, "age")
+        self.count(estimators, "make_room", before=self.of_the_oldest)
+        self.count(estimators, "copy", before=lambda s, c, to, e: s[to] != _FREE)
+        self.count(step, "settle")
+        self.count(recent, "plausible", lambda args, result: result)
+
+    @staticmethod
+    def of_the_oldest(s, c, a, temp):
+        return s[s[a + 6 - 1 + c[24]]] != _FREE
+
+    def count(self, module, name, after=None, before=None):
+        plain = getattr(module, name)
+
+        def counting(*args):
+            found = before(*args) if before else ""
+            result = plain(*args)
+            self.seen[name, after(args, result) if after else found] += 1
+            return result
+
+        self.patch.setattr(module, name, counting)
+
+    def look(self, corrector, verdict):
+        """Count what the state shows after an update."""
+        s, c = corrector.state, corrector.settings
+        self.seen["verdict", verdict] += 1
+        self.seen["stillness", s[46]] += 1
+        for axis in range(3):
+            a = c[0] + axis * c[13]
+            self.seen["source", s[73 + axis]] += 1
+            self.seen["beyond", s[a + 29]] += 1
+            self.seen["suspect", min(1, max(0, s[a + 27]))] += 1
+
+
+@pytest.fixture(scope="module", params=sorted(trace.MODES))
+def events(request):
+    with pytest.MonkeyPatch.context() as patch:
+        counted = Events(patch)
+        on_cpython(request.param, counted.look)
+        yield request.param, counted.seen
+
+
+ALWAYS = {
+    "eviction": ("make_room", True),
+    "merge": ("merge", ""),
+    "split": ("open_gap", ""),
+    "halving": ("halve", ""),
+    "periodic halving": ("age", ""),
+    "refit": ("settle", ""),
+    "no bias yet": ("source", bias.NONE),
+    "fallback": ("source", bias.ANY_TEMPERATURE),
+    "the temperature's own": ("source", bias.HERE),
+    "good": ("verdict", guard.GOOD),
+    "repeat": ("verdict", guard.REPEAT),
+    "rail": ("verdict", guard.RAIL),
+    "all zero": ("verdict", guard.ALL_ZERO),
+    "all ones": ("verdict", guard.ALL_ONES),
+    "temperature jump": ("verdict", guard.TEMPERATURE_JUMP),
+    "time stood still": ("verdict", guard.TIME_STOOD_STILL),
+    "time leapt": ("verdict", guard.TIME_LEAPT),
+    "unknown": ("stillness", stillness.UNKNOWN),
+    "still": ("stillness", stillness.STILL),
+    "moving": ("stillness", stillness.MOVING),
+    "turning": ("stillness", stillness.TURNING),
+    "shaken": ("stillness", stillness.SHAKEN),
+    "shifted": ("stillness", stillness.SHIFTED),
+}
+LINE = {
+    "promotion": ("copy", False),
+    "line": ("source", bias.FIT),
+    "beyond": ("beyond", 1),
+}
+IN_MODE = {
+    "default": {
+        **LINE,
+        "replacement": ("copy", True),
+        "recentre": ("recentre", 1),
+        "share by mean": ("share_by_mean", ""),
+        "held back": ("plausible", 0),
+        "insisted": ("plausible", 2),
+        "suspect": ("suspect", 1),
+    },
+    "every": {**LINE, "recentre": ("recentre", 1), "share by mean": ("share_by_mean", "")},
+    "document": {**LINE, "replacement": ("copy", True), "share evenly": ("share_evenly", "")},
+    "ignoring": {"ignored": ("place", "outside")},
+}
+
+
+def test_the_trace_covers_every_event(events):
+    mode, seen = events
+    missing = [name for name, event in {**ALWAYS, **IN_MODE[mode]}.items() if not seen[event]]
+    assert missing == [], f"{mode}: {dict(seen)}"
+
+
+def test_one_allocation_under_the_lock_would_be_found(micropython):
+    script = """
+from micropython import heap_lock, heap_unlock
+heap_lock()
+try:
+    found = [1, 2]
+finally:
+    heap_unlock()
+"""
+    with pytest.raises(ZerorateError, match="MemoryError"):
+        micropython.run(script, check=True)

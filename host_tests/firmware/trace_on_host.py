@@ -1,0 +1,63 @@
+"""The trace through the firmware in this process, by CPython or compiled by Numba."""
+
+import json
+import zlib
+from array import array
+from pathlib import Path
+
+import numpy as np
+from zerorate import Corrector, Sensor
+from zerorate.corrector import OUT_Q8
+from zerorate_tools.replay.engines import engine
+from zerorate_tools.replay.samples import Frames
+
+from . import trace
+
+GOLDEN = Path(__file__).resolve().parents[1] / "golden" / "trace.json"
+
+
+def corrector_for(mode):
+    """The corrector that runs the trace in that mode."""
+    return Corrector(Sensor(*trace.SENSOR), **trace.LIMITS, **trace.MODES[mode])
+
+
+def frames(updates):
+    """((n, 7) int32 frames, (n,) int32 dt_us) of the whole trace."""
+    frame, generator = array("i", [0] * 7), array("i", trace.GENERATOR)
+    rows, dt_us = np.empty((updates, 7), np.int32), np.empty(updates, np.int32)
+    for n in range(updates):
+        dt_us[n] = trace.fill(frame, n, generator)
+        rows[n] = frame
+    return rows, dt_us
+
+
+def on_cpython(mode, watch=lambda corrector, verdict: None):
+    """(final state, bias of every sample), bytes; watch: called after each update."""
+    corrector = corrector_for(mode)
+    frame, generator = array("i", [0] * 7), array("i", trace.GENERATOR)
+    biases = array("i")
+    for n in range(trace.UPDATES[mode]):
+        dt_us = trace.fill(frame, n, generator)
+        watch(corrector, corrector.update(frame, dt_us))
+        biases.extend(corrector.state[OUT_Q8 : OUT_Q8 + 3])
+    return corrector.state.tobytes(), biases.tobytes()
+
+
+def on_numba(mode):
+    """The same by the kernels that Numba compiled."""
+    corrector = corrector_for(mode)
+    rows, dt_us = frames(trace.UPDATES[mode])
+    batch = Frames(np.cumsum(dt_us, dtype=np.int64), rows, dt_us)
+    (outcome,) = engine("numba").run(corrector, [batch])
+    return corrector.state.tobytes(), outcome.bias_q8.tobytes()
+
+
+def checksums(state, biases):
+    """What is committed of a run: {"state": CRC-32, "bias": CRC-32}, hexadecimal."""
+    return {"state": f"{zlib.crc32(state):08x}", "bias": f"{zlib.crc32(biases):08x}"}
+
+
+def renew_golden():
+    """Write what this firmware makes of the trace into host_tests/golden, on purpose."""
+    golden = {mode: checksums(*on_cpython(mode)) for mode in trace.MODES}
+    GOLDEN.write_text(json.dumps(golden, indent=2) + "\n", encoding="utf-8")
