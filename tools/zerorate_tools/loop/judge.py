@@ -56,10 +56,7 @@ def judge(selection: Selection, locked: list[Session]) -> Judgement:
     train = selection.regression
     fitted = {s.name: s for s in train.sessions}
     before, after = (
-        [
-            _scored(s, predicted(*deployed(selection, effects), s), fitted.get(s.name))
-            for s in locked
-        ]
+        [scored(s, predicted(*deployed(selection, effects), s), fitted.get(s.name)) for s in locked]
         for effects in (False, True)
     )
     both = [*selection.straight, *selection.terms]
@@ -79,7 +76,7 @@ def judge(selection: Selection, locked: list[Session]) -> Judgement:
     )
 
 
-def _scored(session: Session, model: np.ndarray, fitted: Session | None = None):
+def scored(session: Session, model: np.ndarray, fitted: Session | None = None):
     """Residual (n, 3) with the turn-on offset taken, and that offset (3,).
 
     The offset is that of the session's first still minute, which is not scored; or, where another

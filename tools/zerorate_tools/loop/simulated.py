@@ -260,7 +260,8 @@ def shapes_of(rng: np.random.Generator, sessions: list[Session]) -> dict:
         "supply-temperature": _term(
             source="vdd_mv", centre=3300.0, second="temp", second_centre=float(temp.mean())
         ),
-        "load-squared-delayed": _term(source="load", power=2, lag_s=u(100, 250), lag_mode="lag"),
+        "load-squared-delayed": _term(source="load", power=2, delay_s=u(100, 250)),
+        "load-squared-lagged": _term(source="load", power=2, lag_s=u(100, 250), lag_mode="lag"),
         "load-kink": _term(source="load", knot=u(0.4, 0.7)),
         "load-humidity": _term(source="load", centre=0.5, second="humidity", second_centre=45.0),
         "temperature-peak": _term(source="temp", memory="peak"),
