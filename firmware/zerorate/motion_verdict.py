@@ -161,9 +161,19 @@ def verdict(s: ptr32, c: ptr32) -> int:
         return LEARNED
     if (s[_UP] << 8) // (s[_TOTAL] >> 2) < c[_LEAST_UP]:
         return LOST
-    if s[_ACCEPTED] >= _SETTLED_AFTER and int(contradicts(s, c)):
+    if s[_ACCEPTED] >= _SETTLED_AFTER and (int(contradicts(s, c)) or int(louder(s))):
         return TURNED
     return LEARNED
+
+
+def louder(s: ptr32) -> int:
+    """Return 1 if the tilt's noise amplitude is over sixteen times what was held, else 0.
+
+    A bias that jumped leaves this: what is known holds the slope back, and what that leaves is
+    taken for noise. A turn of heading does too, and so is not looked at.
+    """
+    put(s, _T, s[_HOLD], s[_HOLD + 1] + 8)
+    return int(less(s, _T, _ENERGY))
 
 
 def contradicts(s: ptr32, c: ptr32) -> int:
@@ -220,8 +230,9 @@ def refuse(s: ptr32, c: ptr32, reason: int):
     if reason == LOST:
         clear(s, c)
         return
+    copy(s, _HOLD, _ENERGY, 6)
     while i < 12:
-        put(s, _P + i, s[_P + i], s[_P + i + 1] + 4)
+        put(s, _P + i, s[_P + i], s[_P + i + 1] + 8)
         i += 2
 
 

@@ -173,9 +173,21 @@ def verdict(s_, c_) -> int:
         return LEARNED
     if (s[_UP] << 8) // (s[_TOTAL] >> 2) < c[_LEAST_UP]:
         return LOST
-    if s[_ACCEPTED] >= _SETTLED_AFTER and int(int(contradicts(s_, c_))):
+    if s[_ACCEPTED] >= _SETTLED_AFTER and (int(int(contradicts(s_, c_))) or int(int(louder(s_)))):
         return TURNED
     return LEARNED
+
+
+@micropython.viper
+def louder(s_) -> int:
+    """Return 1 if the tilt's noise amplitude is over sixteen times what was held, else 0.
+
+    A bias that jumped leaves this: what is known holds the slope back, and what that leaves is
+    taken for noise. A turn of heading does too, and so is not looked at.
+    """
+    s = ptr32(s_)
+    put(s_, _T, s[_HOLD], s[_HOLD + 1] + 8)
+    return int(int(less(s_, _T, _ENERGY)))
 
 
 @micropython.viper
@@ -240,8 +252,9 @@ def refuse(s_, c_, reason: int):
     if reason == LOST:
         clear(s_, c_)
         return
+    copy(s_, _HOLD, _ENERGY, 6)
     while i < 12:
-        put(s_, _P + i, s[_P + i], s[_P + i + 1] + 4)
+        put(s_, _P + i, s[_P + i], s[_P + i + 1] + 8)
         i += 2
 
 
