@@ -12,6 +12,7 @@ from zerorate_tools.errors import BadRecording
 from zerorate_tools.importers import (
     Options,
     import_recording,
+    layouts,
     parsed_mapping,
     read_bins,
     read_foreign,
@@ -76,6 +77,23 @@ def test_usual_names_and_units_in_names_need_no_mapping(tmp_path):
     assert recording.columns["gx"].tolist() == np.rint(np.degrees([0.1, 0.2]) * 131).tolist()
     assert told(report, "131 LSB per dps chosen")
     assert told(report, "no temperature") and told(report, "no acceleration")
+
+
+def test_a_layout_can_be_named_or_forbidden(tmp_path):
+    (tmp_path / "in.csv").write_text("temp,xaxis,yaxis,zaxis\n20.0,0.1,0.2,0.3\n")
+    with pytest.raises(BadRecording, match="no layout 'hub'; choose of table, adis16405_counts"):
+        read_foreign(tmp_path / "in.csv", layout="hub")
+    hub, _ = read_foreign(tmp_path / "in.csv", layout="hub_means", options=Options(hz=1))
+    assert hub.scales.gyro_lsb_per_dps == 1000
+    with pytest.raises(BadRecording, match="no column for gx"):
+        read_foreign(tmp_path / "in.csv", layout="table", options=Options(hz=1))
+
+
+def test_a_file_of_another_layout_than_named_is_refused(tmp_path):
+    source = table(tmp_path / "in.csv", t_s=[0, 1], gx_dps=[1, 1], gy_dps=[1, 1], gz_dps=[1, 1])
+    for name in layouts.NAMES:
+        with pytest.raises(BadRecording):
+            read_foreign(source, layout=name, options=Options(hz=1))
 
 
 def test_tabs_and_semicolons_are_seen(tmp_path):

@@ -254,6 +254,13 @@ def test_a_thermometer_that_lags_reads_late():
     assert late[1700] == pytest.approx(1.0, abs=0.02)
 
 
+def test_a_thermometer_that_moves_in_steps():
+    stepped = {"temp_step_lsb": 32.0}
+    recording, truth = simulate(device(60, 1.0, sensor=stepped, every_session=WARM_UP))
+    assert set(recording.columns["temp"] % 32) == {0}
+    assert recording.temp_degc() == pytest.approx(truth.temp_degc, abs=16.5 / 340)
+
+
 def test_a_power_on_transient_restarts_at_each_power_on():
     effect = {"kind": "power-on", "tau_s": 300.0, "dps": 0.2}
     for _, truth in simulate_sessions(device(20, 1.0, effect=[effect], sessions=2)):

@@ -78,7 +78,12 @@ def _own_form(path: Path) -> Recording | None:
 def _read(path: Path, mapping, units, layout: str | None, instance: int):
     if layout is None and not mapping:
         layout = layouts.recognised(path)
+    if layout not in (None, "table", *layouts.NAMES):
+        do = f"choose of table, {', '.join(layouts.NAMES)}"
+        raise BadRecording(path, f"there is no layout {layout!r}", do=do)
     if layout not in (None, "table"):
+        if not layouts.layout(layout).recognises(path):
+            raise BadRecording(path, f"not of layout {layout}", do="leave --layout out")
         foreign = layouts.layout(layout).read(path)
         foreign.notes.insert(0, f"recognised as {layout}")
         return foreign

@@ -96,9 +96,9 @@ def _from_table(top: Any, path: str) -> Description:
         path=path,
         **_scalars(top, path),
     )
-    if description.sensor.odr_hz <= 0 or description.sensor.gyro_lsb_per_dps <= 0:
-        do = "write numbers above 0"
-        raise BadDescription(path, "sensor: odr_hz or gyro_lsb_per_dps is not above 0", do=do)
+    for key in ("odr_hz", "gyro_lsb_per_dps", "temp_step_lsb"):
+        if getattr(description.sensor, key) <= 0:
+            raise BadDescription(path, f"sensor.{key} is not above 0", do="write a number above 0")
     for number, session in enumerate(description.sessions, start=1):
         _check_session(session, f"session {number}", path)
     return description

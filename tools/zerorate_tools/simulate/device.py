@@ -135,7 +135,8 @@ def _surroundings(sensor: Sensor, world: World, rng: np.random.Generator) -> dic
         read = lagged(world.temp_degc, sensor.temp_lag_s, world.dt_s)
         read = read + rng.standard_normal(n) * (sensor.temp_noise_degc * quieter)
         raw = (read - sensor.temp_offset_degc) * sensor.temp_lsb_per_degc
-        columns["temp"] = np.clip(np.rint(raw), -32768, 32767).astype(np.int32)
+        stepped = np.rint(np.rint(raw / sensor.temp_step_lsb) * sensor.temp_step_lsb)
+        columns["temp"] = np.clip(stepped, -32768, 32767).astype(np.int32)
     return columns
 
 

@@ -16,7 +16,8 @@ class Sensor:
     """The part. gyro_noise_dps is the rms of a reading at gyro_noise_at_hz (default odr_hz).
 
     Below that rate readings are block averages: their noise falls with the root of the rate.
-    gyro_noise_dps_rt_hz, where given, takes its place. temp_lag_s: the reading follows the die.
+    gyro_noise_dps_rt_hz, where given, takes its place. temp_lag_s: the reading follows the die;
+    temp_step_lsb: it moves in steps (32 on one real MPU-6050, 16 on a GY-521).
     """
 
     name: str = "MPU-6050"
@@ -32,6 +33,7 @@ class Sensor:
     accel_bias_g: Any = 0.0
     temp_noise_degc: float = 0.05
     temp_lag_s: float = 0.0
+    temp_step_lsb: float = 1.0
     accel: bool = True
     temp: bool = True
 
