@@ -109,6 +109,8 @@ def test_raw_counts_stay_as_they_are_and_need_their_scale(tmp_path):
     source = table(tmp_path / "in.csv", gx=[7, -9], gy=[1, 1], gz=[0, 3])
     with pytest.raises(BadRecording, match="unit of column 'gx' is not known.*--map gx=gx:UNIT"):
         read_foreign(source)
+    with pytest.raises(BadRecording, match="unit of column 'gx' cannot be 'knots'"):
+        read_foreign(source, units={"gyro": "knots"})
     with pytest.raises(BadRecording, match="scale of raw counts.*give --gyro-lsb-per-dps"):
         read_foreign(source, units={"gyro": "lsb"}, options=Options(hz=100))
     scaled = Options(hz=100, gyro_lsb_per_dps=16.4)

@@ -130,8 +130,9 @@ def _usual(table: Table, names: Sequence[str]) -> str | None:
 
 def _unit(mapped: Mapped, kind: str, units: Mapping[str, str], path: Path) -> str:
     unit = mapped.unit or unit_in_name(mapped.target, mapped.column) or units.get(kind)
-    if unit is None:
+    if unit not in units_of(mapped.target):
         known = ", ".join(units_of(mapped.target))
         do = f"write --map {mapped.target}={mapped.column}:UNIT with one of {known}"
-        raise BadRecording(path, f"the unit of column {mapped.column!r} is not known", do=do)
+        what = "is not known" if unit is None else f"cannot be {unit!r}"
+        raise BadRecording(path, f"the unit of column {mapped.column!r} {what}", do=do)
     return unit
