@@ -22,7 +22,7 @@ def found():
 def test_every_row_recorded_is_a_sample_played_and_in_order(found):
     record = found["record"]
     assert record["rows"] == record["samples"] > 100
-    assert record["out_of_order"] == 0
+    assert record["false_rows"] == record["out_of_order"] == 0
 
 
 def test_the_samples_lost_are_counted(found):

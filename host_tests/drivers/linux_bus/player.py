@@ -1,9 +1,10 @@
-"""Plays samples into i2c-stub's registers at a steady rate, as a chip would make them.
+"""Plays a recording into i2c-stub's registers at a steady rate, as a chip would make it.
 
-Arguments: bus number, rate in Hz. Says "playing" once the first sample stands, and plays until
-terminated. gz counts the samples, so that a reader's losses show.
+Arguments: bus number, rate in Hz, recording (CSV). Says "playing" once the first sample stands, and
+plays the recording again and again until terminated.
 """
 
+import csv
 import sys
 import time
 
@@ -12,31 +13,25 @@ from smbus2 import SMBus
 _WHO_AM_I = 0x75
 _ACCEL_XOUT_H = 0x3B
 _ADDRESS = 0x68
+_WORDS = ("ax", "ay", "az", "temp", "gx", "gy", "gz")
 
 
-def words(number):
-    """ax ay az temp gx gy gz of a chip at rest, with a little noise from the number."""
-    noise = number * 1103515245 + 12345 >> 8
-    return [
-        noise % 11 - 5,
-        noise // 11 % 13 - 6,
-        16384 + noise % 7,
-        -3000 + number // 500,
-        40 + noise % 9,
-        -25 + noise // 9 % 9,
-        number % 30000,
-    ]
+def frames(path):
+    """Fourteen bytes a row, as the data registers hold them."""
+    with open(path, newline="") as file:
+        rows = [[int(row[word]) for word in _WORDS] for row in csv.DictReader(file)]
+    return [[byte for word in row for byte in (word >> 8 & 0xFF, word & 0xFF)] for row in rows]
 
 
-def main(bus, rate_hz):
+def main(bus, rate_hz, path):
     """Play for ever."""
+    played = frames(path)
     begun = time.monotonic()
     number = 0
     with SMBus(bus) as i2c:
         i2c.write_byte_data(_ADDRESS, _WHO_AM_I, 0x68)
         while True:
-            data = [byte for word in words(number) for byte in (word >> 8 & 0xFF, word & 0xFF)]
-            i2c.write_i2c_block_data(_ADDRESS, _ACCEL_XOUT_H, data)
+            i2c.write_i2c_block_data(_ADDRESS, _ACCEL_XOUT_H, played[number % len(played)])
             if number == 0:
                 print("playing", flush=True)
             number += 1
@@ -44,4 +39,4 @@ def main(bus, rate_hz):
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]), float(sys.argv[2]))
+    main(int(sys.argv[1]), float(sys.argv[2]), sys.argv[3])

@@ -26,7 +26,7 @@ def run_guest(rate_hz: float = 25, seconds: float = 20) -> dict:
     path = ":".join(str(_ROOT / folder) for folder in folders)
     settings = f"PYTHONPATH={shlex.quote(path)} PYTHONDONTWRITEBYTECODE=1"
     python = f"{shlex.quote(sys.executable)} {shlex.quote(str(_GUEST))}"
-    console = machine.boot(f"{settings} {python} {rate_hz} {seconds}\n", _TIME_LIMIT_S)
+    console = machine.boot(f"{settings} {python} {rate_hz} {seconds} 2>&1 | cat\n", _TIME_LIMIT_S)
     found = [line for line in console.splitlines() if line.startswith("RESULT ")]
     if not found:
         last = " | ".join(line for line in console.splitlines()[-6:] if line)

@@ -1,8 +1,8 @@
 """Each fault of a real bus put on a fake one forty times, a device at rest learning all the while.
 
 A sample handed out as good is false when a word of it was not among the last few samples that the
-chip measured, or all of it was handed out before. It was learned from when the corrector took it, did not take it back, and said
-of no window of the second after it that nothing is learned.
+chip measured, or all of it was handed out before. It was learned from when the corrector took it,
+did not take it back, and said of no window of the second after it that nothing is learned.
 """
 
 from __future__ import annotations
