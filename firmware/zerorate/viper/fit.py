@@ -6,7 +6,9 @@ neighbourhood of one temperature: an estimator `d` away counts 1 / (1 + (d/local
 samples, and samples beyond `_COUNTED` add nothing, for then drift, not noise, is what is left.
 
 Temperatures are raw LSB in Q4, biases LSB in Q8. A fit runs in steps, each a bounded piece of work:
-weigh, centre (one a point), stretch, lean (one a point), settle.
+weigh, centre (one a point), lean (one a point), settle. Distances over temperature are shifted
+left until the range fills 26 bits; the two sums of products float, for a point may weigh 65000
+times another.
 """
 
 import micropython
@@ -20,12 +22,12 @@ except ImportError:
         return value
 
 
-from .fixed import fraction_q27, ratio_q26, scaled
+from .fixed import floating_ratio_q26, fraction_q27, room, scaled
 
 _FREE = const(-1048576)
 
 _FIT_T0_Q4 = const(14)
-_FIT_MEAN_T_Q10 = const(15)
+_FIT_MEAN_T = const(15)
 _FIT_MEAN_B_Q11 = const(16)
 _FIT_SLOPE_Q26 = const(17)
 _FIT_SHIFT = const(18)
@@ -36,19 +38,18 @@ _FIT_POINTS = const(22)
 _ESTIMATORS = const(32)
 
 _TEMP = const(47)
-_SUM_W = const(80)
-_SUM_T = const(81)
-_SUM_B = const(82)
-_SUM_TT = const(83)
-_SUM_TB = const(84)
-_FIRST_T_Q4 = const(85)
-_FIRST_B_Q8 = const(86)
-_LOW_Q4 = const(87)
-_HIGH_Q4 = const(88)
-_SAMPLES = const(89)
-_POINTS = const(90)
-_STRETCH = const(91)
+_SUM_T = const(80)
+_SUM_B = const(81)
+_SUM_TT = const(82)  # and by how much it is shifted left
+_SUM_TB = const(84)  # and by how much it is shifted left
+_FIRST_T_Q4 = const(86)
+_FIRST_B_Q8 = const(87)
+_LOW_Q4 = const(88)
+_HIGH_Q4 = const(89)
+_SAMPLES = const(90)
+_POINTS = const(91)
 _WEIGHTS = const(92)  # one word an estimator, the axes follow
+_SUM_W = const(92)  # in the place of the first, which has no temperature
 
 _FIRST_SHORT = const(14)
 _END = const(15)
@@ -63,8 +64,8 @@ _LOCAL_SHIFT = const(42)
 @micropython.viper
 def weigh(s: ptr32, c: ptr32, a: int):
     """Weigh the estimators that have enough samples, for a line that serves this temperature."""
-    w = _SUM_W
-    while w < _WEIGHTS:
+    w = _SUM_T
+    while w <= _SUM_W:
         s[w] = 0
         w += 1
     i = _WEIGHTS + 1
@@ -98,16 +99,26 @@ def weigh(s: ptr32, c: ptr32, a: int):
 
 
 @micropython.viper
-def centre(s: ptr32, c: ptr32, a: int, i: int):
-    """Add estimator i to the weighted means, and make its weight a share of 1 in Q27."""
+def stretch(s: ptr32) -> int:
+    """Return the shift that makes the range of temperatures fill 26 bits."""
+    w = s[_HIGH_Q4] - s[_LOW_Q4]
+    w = int(room(w))
+    return w - 1
+
+
+@micropython.viper
+def centre(s_, c: ptr32, a: int, i: int):
+    """Add estimator i to the weighted means."""
+    s = ptr32(s_)
     w = s[_WEIGHTS + i]
     if w == 0:
         return
-    w = int(fraction_q27(w, s[_SUM_W]))
-    s[_WEIGHTS + i] = w
+    d = s[_SUM_W]
+    w = int(fraction_q27(w, d))
     a += i * c[_WORDS] + _ESTIMATORS
-    d = s[a + 1] - s[_FIRST_T_Q4]
-    d = int(scaled(w, d << 6, 27))
+    d = int(stretch(s_))
+    d = (s[a + 1] - s[_FIRST_T_Q4]) << d
+    d = int(scaled(w, d, 27))
     s[_SUM_T] += d
     d = s[a + 2] - s[_FIRST_B_Q8]
     d = int(scaled(w, d << 3, 27))
@@ -115,67 +126,72 @@ def centre(s: ptr32, c: ptr32, a: int, i: int):
 
 
 @micropython.viper
-def stretch(s: ptr32, c: ptr32, a: int):
-    """Find the shift that makes the largest distance from the mean temperature fill 27 bits."""
-    most = 0
-    i = _WEIGHTS + 1
-    a += c[_FIRST_SHORT]
-    while i < _WEIGHTS + c[_ALL]:
-        if s[i]:
-            d = s[a + 1] - s[_FIRST_T_Q4]
-            d = (d << 6) - s[_SUM_T]
-            if d < 0:
-                d = -d
-            if d > most:
-                most = d
-        i += 1
-        a += c[_WORDS]
-    s[_STRETCH] = 0
-    while most and most < 0x4000000:
-        most = most << 1
-        s[_STRETCH] += 1
+def add_product(s: ptr32, k: int, p: int, q: int, r: int):
+    """Add p * q * r, each below 2^27, to the floating sum at word k: mantissa, shift."""
+    if p == 0 or q == 0 or r == 0:
+        return
+    h = int(room(p))
+    i = int(room(q))
+    p = int(scaled(p << h, q << i, 27))
+    h += i
+    i = int(room(r))
+    p = int(scaled(p, r << i, 27))
+    h += i - 2
+    i = int(room(p))
+    p = p << i >> 2
+    h += i
+    if s[k] == 0:
+        s[k + 1] = h
+    i = h - s[k + 1]
+    if i >= 0:
+        p = p >> (i if i < 30 else 30)
+    else:
+        s[k] = s[k] >> (0 - i if i > -30 else 30)
+        s[k + 1] = h
+    s[k] += p
 
 
 @micropython.viper
-def lean(s: ptr32, c: ptr32, a: int, i: int):
+def lean(s_, c: ptr32, a: int, i: int):
     """Add estimator i to the weighted variance and covariance."""
+    s = ptr32(s_)
     w = s[_WEIGHTS + i]
     if w == 0:
         return
     a += i * c[_WORDS] + _ESTIMATORS
-    u = ((s[a + 1] - s[_FIRST_T_Q4]) << 6) - s[_SUM_T]
-    u = u << s[_STRETCH]
-    v = ((s[a + 2] - s[_FIRST_B_Q8]) << 3) - s[_SUM_B]
-    v = int(scaled(u, v, 27))
-    v = int(scaled(w, v, 27))
-    s[_SUM_TB] += v
-    u = int(scaled(u, u, 27))
-    u = int(scaled(w, u, 27))
-    s[_SUM_TT] += u
+    i = int(stretch(s_))
+    i = ((s[a + 1] - s[_FIRST_T_Q4]) << i) - s[_SUM_T]
+    a = ((s[a + 2] - s[_FIRST_B_Q8]) << 3) - s[_SUM_B]
+    add_product(s_, _SUM_TT, w, i, i)
+    add_product(s_, _SUM_TB, w, i, a)
 
 
 @micropython.viper
-def settle(s: ptr32, c: ptr32, a: int):
+def settle(s_, c: ptr32, a: int):
     """Write the finished line into the axis block; no points leave it empty."""
+    s = ptr32(s_)
     s[a + _FIT_POINTS] = s[_POINTS]
     s[a + _FIT_SAMPLES] = s[_SAMPLES]
     s[a + _FIT_T0_Q4] = s[_FIRST_T_Q4]
-    s[a + _FIT_MEAN_T_Q10] = s[_SUM_T]
+    s[a + _FIT_MEAN_T] = s[_SUM_T]
     s[a + _FIT_MEAN_B_Q11] = (s[_FIRST_B_Q8] << 3) + s[_SUM_B]
-    s[a + _FIT_SLOPE_Q26] = int(ratio_q26(s[_SUM_TB], s[_SUM_TT]))
-    s[a + _FIT_SHIFT] = s[_STRETCH]
+    slope = s[_SUM_TT + 1] - s[_SUM_TB + 1]
+    slope = int(floating_ratio_q26(s[_SUM_TB], s[_SUM_TT], slope))
+    s[a + _FIT_SLOPE_Q26] = slope
+    s[a + _FIT_SHIFT] = int(stretch(s_))
     s[a + _FIT_LOW_Q4] = s[_LOW_Q4]
     s[a + _FIT_HIGH_Q4] = s[_HIGH_Q4]
 
 
 @micropython.viper
 def line_q8(s: ptr32, a: int, temp_q4: int) -> int:
-    """Return the line's bias at `temp_q4`: LSB, Q8; far outside it is held where 28 bits end."""
-    u = ((temp_q4 - s[a + _FIT_T0_Q4]) << 6) - s[a + _FIT_MEAN_T_Q10]
-    most = 0xFFFFFFF >> s[a + _FIT_SHIFT]
+    """Return the line's bias at `temp_q4`: LSB, Q8; far outside it is held where 27 bits end."""
+    u = temp_q4 - s[a + _FIT_T0_Q4]
+    most = 0x7FFFFFF >> s[a + _FIT_SHIFT]
     if u > most:
         u = most
-    if u < -most:
-        u = -most
-    u = int(scaled(s[a + _FIT_SLOPE_Q26], u << s[a + _FIT_SHIFT], 26))
+    if u < 0 - most:
+        u = 0 - most
+    u = (u << s[a + _FIT_SHIFT]) - s[a + _FIT_MEAN_T]
+    u = int(scaled(s[a + _FIT_SLOPE_Q26], u, 26))
     return (s[a + _FIT_MEAN_B_Q11] + u + 4) >> 3
