@@ -1,0 +1,1 @@
+"""What the firmware costs and how well it does, beside everyone else, on the same samples."""

@@ -1,0 +1,68 @@
+"""Accuracy beside the peers, all on the same samples in one run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..simulate import simulate_sessions
+from .peers import OURS, PEERS, Given, Peer, given
+
+SCENARIOS = ("warm-up-a", "warm-up-b", "warm-up-c")
+SEEDS = (1, 2, 3, 4, 5)
+FIRST_S = 15.0
+DAY = ("mean of the first 10 s", "imufusion", "vqf, clip 25 dps", *OURS)
+
+Figures = dict[str, dict[str, float]]
+
+
+def rms_mdps(error_dps: NDArray[np.float64]) -> float:
+    """Root of the mean square over samples and axes, mdps."""
+    return float(np.sqrt(np.mean(np.square(error_dps))) * 1000)
+
+
+def sessions_of(name: str, seed: int) -> tuple[list[Given], list[NDArray[np.float64]]]:
+    """A bundled scenario's sessions as given to peers, and each one's true bias (n, 3), dps."""
+    sessions, truths = [], []
+    for recording, truth in simulate_sessions(name, seed=seed):
+        sessions.append(given(recording, truth.still))
+        truths.append(truth.bias_lsb / recording.scales.gyro_lsb_per_dps)
+    return sessions, truths
+
+
+def second_power_on(
+    name: str,
+    peers: Mapping[str, Peer] = PEERS,
+    seeds: Sequence[int] = SEEDS,
+    advance: Callable[[float], None] = lambda n: None,
+) -> Figures:
+    """Session 2 of a scenario: peer -> {"all": RMS, "first": RMS of the first 15 s}, mdps.
+
+    Each is the median over `seeds`.
+    """
+    every: dict[str, list[tuple[float, float]]] = {peer: [] for peer in peers}
+    for seed in seeds:
+        sessions, truths = sessions_of(name, seed)
+        for peer, bias in peers.items():
+            error = bias(sessions)[-1] - truths[-1]
+            first = round(FIRST_S * sessions[-1].odr_hz)
+            every[peer].append((rms_mdps(error), rms_mdps(error[:first])))
+            advance(1)
+    medians = {peer: np.median(found, axis=0) for peer, found in every.items()}
+    return {peer: {"all": float(m[0]), "first": float(m[1])} for peer, m in medians.items()}
+
+
+def day(
+    seed: int = 1,
+    peers: Sequence[str] = DAY,
+    advance: Callable[[float], None] = lambda n: None,
+) -> dict[str, float]:
+    """The simulated day: peer -> RMS over all samples, mdps."""
+    sessions, truths = sessions_of("day", seed)
+    found = {}
+    for peer in peers:
+        found[peer] = rms_mdps(PEERS[peer](sessions)[0] - truths[0])
+        advance(1)
+    return found

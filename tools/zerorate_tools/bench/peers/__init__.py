@@ -1,0 +1,30 @@
+"""Ways to a gyroscope's bias, each a function of the sessions' samples.
+
+A peer takes a sequence of Given, one a power-on, and returns for each the bias (n, 3) in dps that
+it would have subtracted from each sample; NaN where it cannot be run (a channel is absent).
+"""
+
+from .cubic import ardupilot_cubic, px4_cubic
+from .firmware import Peer, firmware
+from .first_seconds import first_seconds
+from .fusion import fusion
+from .given import Given, given
+from .vqf_filter import vqf_clip_raised, vqf_default
+
+ONLINE: dict[str, Peer] = {
+    "mean of the first 10 s": first_seconds,
+    "imufusion": fusion,
+    "vqf": vqf_default,
+    "vqf, clip 25 dps": vqf_clip_raised,
+}
+OFFLINE: dict[str, Peer] = {
+    "PX4-style cubic (offline, true rests given)": px4_cubic,
+    "ArduPilot-style cubic (offline, true rests given)": ardupilot_cubic,
+}
+OURS: dict[str, Peer] = {
+    "zerorate, the document's rules": firmware(document=True),
+    "zerorate": firmware(),
+}
+PEERS = {**ONLINE, **OFFLINE, **OURS}
+
+__all__ = ["OFFLINE", "ONLINE", "OURS", "PEERS", "Given", "Peer", "firmware", "given"]

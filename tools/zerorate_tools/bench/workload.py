@@ -1,0 +1,55 @@
+"""What the cost benchmarks run: one motion-and-rest cycle in the middle of a simulated warm-up."""
+
+from __future__ import annotations
+
+from array import array
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from zerorate import Corrector
+
+from ..replay.engines import engine
+from ..replay.run import corrector_for
+from ..replay.samples import Frames, frames_in_batches
+from ..simulate import simulate
+
+SCENARIO = "warm-up-b"
+CYCLE = 6000
+_BEFORE = 120_000
+
+
+@dataclass(frozen=True)
+class Workload:
+    """Frames (n, 8) int32 of dt_us and seven words, the settings, and the state they start from."""
+
+    rows: NDArray[np.int32]
+    settings: NDArray[np.int32]
+    state: NDArray[np.int32]
+
+    def files(self) -> dict[str, bytes]:
+        """The files that the programs under test read."""
+        parts = {"frames": self.rows, "settings": self.settings, "state": self.state}
+        return {f"{name}.bin": part.astype("<i4").tobytes() for name, part in parts.items()}
+
+
+def workload(samples: int = 2 * CYCLE) -> Workload:
+    """`samples` frames after twenty minutes of warming, when every estimator is in use."""
+    recording, _ = simulate(SCENARIO, session=1, seed=1)
+    corrector = corrector_for(recording, {})
+    batches = list(frames_in_batches(recording, rows=_BEFORE))
+    for _ in engine("numba").run(corrector, batches[:1]):
+        pass
+    return Workload(_rows(batches[1])[:samples], _words(corrector.settings), _state(corrector))
+
+
+def _rows(batch: Frames) -> NDArray[np.int32]:
+    return np.c_[batch.dt_us, batch.frames].astype(np.int32)
+
+
+def _state(corrector: Corrector) -> NDArray[np.int32]:
+    return _words(corrector.state)
+
+
+def _words(values: array) -> NDArray[np.int32]:
+    return np.array(values, np.int32)
