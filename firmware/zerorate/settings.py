@@ -118,7 +118,7 @@ def estimators_of(c, sensor, short, long, document, limits):
     c[29] = max(2, int(limits["promote_s"] * rate))
     c[30] = max(16, min(1 << 28, int(limits["halve_after_s"] * rate)))
     c[31] = max(2, int(limits["fit_s"] * rate))
-    c[32] = 0xFFFFF // c[25] if document else max(16, min(8192, int(limits["counted_s"] * rate)))
+    c[32] = 0xFFFFF // (c[25] - 1) if document else max(16, min(8192, int(limits["counted_s"] * rate)))
     c[42] = 0
     while (int(degree * 16) >> (c[42] + 1)) >= 8:
         c[42] += 1

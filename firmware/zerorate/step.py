@@ -17,7 +17,7 @@ ptr32 = None
 
 from .bias import curve_q8
 from .estimators import learn
-from .fit import centre, lean, settle, stretch, weigh
+from .fit import centre, lean, settle, weigh
 from .fixed import root
 from .guard import check
 from .recent import absorb, grown_q8, hand_over
@@ -123,8 +123,6 @@ def refit(s: ptr32, c: ptr32, a: int, piece: int):
         i += 1
         if i < c[_ALL]:
             centre(s, c, a, i)
-        if piece == half:
-            stretch(s, c, a)
         return
     i -= half << 1
     lean(s, c, a, i)

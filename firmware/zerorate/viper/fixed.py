@@ -63,6 +63,57 @@ def ratio_q26(a: int, b: int) -> int:
 
 
 @micropython.viper
+def room(value: int) -> int:
+    """Return by how much |value| < 2^30 can be shifted left until it fills 27 bits; 27 for 0."""
+    if value < 0:
+        value = 0 - value
+    shift = 0
+    if value == 0:
+        return 27
+    if value < 0x800:
+        value = value << 16
+        shift = 16
+    if value < 0x80000:
+        value = value << 8
+        shift += 8
+    if value < 0x800000:
+        value = value << 4
+        shift += 4
+    if value < 0x2000000:
+        value = value << 2
+        shift += 2
+    if value < 0x4000000:
+        shift += 1
+    return shift
+
+
+@micropython.viper
+def floating_ratio_q26(a: int, b: int, exponent: int) -> int:
+    """Return a / b * 2^exponent in Q26, saturated at +-4, for |a|, b < 2^30; 0 where b is 0."""
+    if a == 0 or b <= 0:
+        return 0
+    while a > 0x7FFFFFF or a < -0x7FFFFFF:
+        a = a >> 1
+        exponent += 1
+    while b > 0x7FFFFFF:
+        b = b >> 1
+        exponent -= 1
+    shift = int(room(a))
+    a = a << shift
+    exponent -= shift
+    shift = int(room(b))
+    b = b << shift
+    exponent += shift
+    a = int(ratio_q26(a, b))
+    while exponent > 0:
+        if a > 0x7FFFFFF or a < -0x7FFFFFF:
+            return 0xFFFFFFF if a > 0 else -0xFFFFFFF
+        a = a << 1
+        exponent -= 1
+    return a >> (0 - exponent if exponent > -30 else 30)
+
+
+@micropython.viper
 def root(square: int) -> int:
     """Return the integer square root of 0 <= square < 2^30."""
     bit = 1 << 14

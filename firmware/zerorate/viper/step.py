@@ -18,7 +18,7 @@ except ImportError:
 
 from .bias import curve_q8
 from .estimators import learn
-from .fit import centre, lean, settle, stretch, weigh
+from .fit import centre, lean, settle, weigh
 from .fixed import root
 from .guard import check
 from .recent import absorb, grown_q8, hand_over
@@ -130,8 +130,6 @@ def refit(s_, c_, a: int, piece: int):
         i += 1
         if i < c[_ALL]:
             centre(s_, c_, a, i)
-        if piece == half:
-            stretch(s_, c_, a)
         return
     i -= half << 1
     lean(s_, c_, a, i)

@@ -1,0 +1,113 @@
+"""The line over temperature in integers against the same line in exact fractions."""
+
+from fractions import Fraction
+
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from zerorate import Corrector, bias, fit, step
+
+from .tolerances import LINE_LSB
+
+_FREE = -1048576
+_RAIL_Q8 = 32767 * 256
+
+points = st.lists(
+    st.tuples(
+        st.integers(-32768 * 16, 32767 * 16),  # temperature, raw LSB Q4
+        st.integers(-5240 * 256, 5240 * 256),  # bias: +-40 dps at 131 LSB/dps, Q8
+        st.integers(2, 131000),  # readings
+    ),
+    min_size=1,
+    max_size=8,
+)
+
+
+class Axis:
+    """The first axis of a corrector by the document, whose estimators the test fills."""
+
+    def __init__(self):
+        corrector = Corrector(document=True, fit_s=0.02)
+        self.s, self.c = corrector.state, corrector.settings
+        self.a = self.c[0]
+
+    def fit(self, points):
+        """Fit the line through (temperature Q4, bias Q8, readings) in the pieces of an update."""
+        s, c = self.s, self.c
+        for k in range(c[25] - 1):
+            e = self.a + c[14] + k * c[26]
+            s[e], s[e + 1], s[e + 2], s[e + 3] = _FREE, 0, 0, 0
+            if k < len(points):
+                s[e], s[e + 1 : e + 4] = points[k][0] >> 4, type(s)("i", points[k])
+        for piece in range(2, (c[25] >> 1) * 2 + 3):
+            step.refit(s, c, self.a, piece)
+        return self
+
+    def line_lsb(self, temp_q4):
+        return fit.line_q8(self.s, self.a, temp_q4) / 256
+
+    def choose(self, temp):
+        """(source, whether beyond the fitted range) at a raw temperature."""
+        return bias.choose(self.s, self.c, self.a, temp), self.s[self.a + 29]
+
+
+@pytest.fixture(scope="module")
+def axis():
+    return Axis()
+
+
+def exact_line(points):
+    """The weighted least-squares line of the points: temperature Q4 -> bias Q8, a Fraction."""
+    weight = sum(w for _, _, w in points)
+    t0 = Fraction(sum(t * w for t, _, w in points), weight)
+    b0 = Fraction(sum(b * w for _, b, w in points), weight)
+    variance = sum(w * (t - t0) ** 2 for t, _, w in points)
+    covariance = sum(w * (t - t0) * (b - b0) for t, b, w in points)
+    slope = covariance / variance if variance else Fraction(0)
+    return lambda t: b0 + slope * (t - t0)
+
+
+@settings(max_examples=400, deadline=None)
+@given(points=points, between=st.floats(0, 1))
+def test_the_line_is_the_exact_one_everywhere_in_the_fitted_range(axis, points, between):
+    exact = exact_line(points)
+    low, high = min(points)[0], max(points)[0]
+    # a steep line through a light point may leave what a reading can be: it is held there
+    assume(max(abs(exact(low)), abs(exact(high))) <= _RAIL_Q8)
+    axis.fit(points)
+    for temp_q4 in (low, high, low + int((high - low) * between), *(t for t, _, _ in points)):
+        assert abs(axis.line_lsb(temp_q4) - exact(temp_q4) / 256) <= LINE_LSB
+
+
+def test_one_point_gives_its_own_bias_at_any_temperature(axis):
+    axis.fit([(4000 * 16, -700 * 256 + 77, 250)])
+    for temp_q4 in (-32768 * 16, 4000 * 16, 32767 * 16):
+        assert axis.line_lsb(temp_q4) == pytest.approx(-700 + 77 / 256, abs=LINE_LSB)
+
+
+def test_two_points_are_both_met_however_unlike_their_weights(axis):
+    axis.fit([(0, 100 * 256, 131000), (340 * 16, 300 * 256, 2)])
+    assert axis.line_lsb(0) == pytest.approx(100, abs=LINE_LSB)
+    assert axis.line_lsb(340 * 16) == pytest.approx(300, abs=LINE_LSB)
+
+
+def test_points_of_one_temperature_give_their_weighted_mean(axis):
+    axis.fit([(800, 100 * 256, 300), (800, 200 * 256, 100), (800, 200 * 256, 100)])
+    assert axis.line_lsb(800) == pytest.approx(140, abs=LINE_LSB)
+    assert axis.line_lsb(90000) == pytest.approx(140, abs=LINE_LSB)
+
+
+def test_no_points_leave_no_line(axis):
+    axis.fit([])
+    assert axis.choose(1000) == (bias.NONE, 0)
+
+
+def test_a_temperature_within_the_fitted_range_is_not_beyond_it(axis):
+    axis.fit([(0, 0, 60000), (3400 * 16, 256, 60000)])
+    assert axis.choose(1700) == (bias.FIT, 0)
+
+
+@pytest.mark.parametrize("temp", [-400, 3800])
+def test_beyond_the_fitted_range_a_flag_says_so(axis, temp):
+    axis.fit([(0, 0, 60000), (3400 * 16, 256, 60000)])
+    assert axis.choose(temp) == (bias.FIT, 1)
