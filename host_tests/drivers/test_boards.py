@@ -5,10 +5,13 @@ import threading
 from pathlib import Path
 
 import pytest
+from zerorate_fakes import FakeI2C, FakeMPU6050
+from zerorate_fakes.smbus import SMBus
 from zerorate_tools.boards import flash, record
 from zerorate_tools.boards.connection import BoardError
 from zerorate_tools.boards.flashing import package_files
 from zerorate_tools.boards.frames import MESSAGE, SAMPLE, FrameReader, encode
+from zerorate_tools.errors import ZerorateError
 from zerorate_tools.recordings import read_recording
 
 from host_tests.drivers.unix_board import UnixBoard
@@ -116,6 +119,22 @@ def board_says(board, source):
 
     with connected(board.port) as transport:
         return transport.exec(source).decode().strip()
+
+
+class TestLinuxBus:
+    @pytest.fixture
+    def bus(self, monkeypatch):
+        smbus2 = pytest.importorskip("smbus2")
+        bus = SMBus(FakeI2C(FakeMPU6050()))
+        monkeypatch.setattr(smbus2, "SMBus", lambda number: bus)
+
+    def test_a_setting_no_part_can_take_is_one_line(self, bus, tmp_path):
+        with pytest.raises(ZerorateError, match="/dev/i2c-1: full_scale_dps is one of"):
+            record("/dev/i2c-1", tmp_path / "run.csv", full_scale_dps=300)
+
+    def test_no_such_bus_is_an_os_error(self, tmp_path):
+        with pytest.raises(OSError):
+            record("/dev/i2c-99999", tmp_path / "run.csv")
 
 
 class TestFrames:

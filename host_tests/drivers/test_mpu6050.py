@@ -151,3 +151,12 @@ def test_the_binding_names_chip_range_and_filter(make_bench):
     assert make_bench().imu.binding != make_bench(full_scale_dps=500).imu.binding
     assert make_bench().imu.binding != make_bench(part="MPU-6500").imu.binding
     assert make_bench().imu.binding != make_bench(dlpf_hz=20).imu.binding
+
+
+def test_a_chip_with_ad0_high_answers_at_0x69():
+    imu = MPU6050(FakeI2C({0x69: FakeMPU6050()}), address=0x69, clock=FakeClock())
+    assert (imu.address, imu.who_am_i) == (0x69, 0x68)
+
+
+def test_the_scales_are_in_the_order_in_which_the_firmware_takes_them(make_bench):
+    assert make_bench(full_scale_dps=500).imu.scales == (100.0, 65.5, 16384.0, 340.0, 36.53)

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
-from ..errors import MissingLibrary
+from ..errors import MissingLibrary, ZerorateError
 from .recorder import Recorded
 
 _BUS = re.compile(r"/dev/i2c-\d+|\d+")
@@ -23,8 +23,8 @@ def record(
     """Record from /dev/i2c-N (or N) or from a board on a serial port into out.
 
     seconds None records until KeyboardInterrupt. options: see record_bus and record_port. Raises
-    MissingLibrary without smbus2 or mpremote, ZerorateError for a board that does not answer,
-    OSError for a bus that does not.
+    MissingLibrary without smbus2 or mpremote, ZerorateError for a board that does not answer or a
+    setting that no part can take, OSError for a bus that does not.
     """
     if _BUS.fullmatch(port_or_bus):
         return _record_linux(port_or_bus, Path(out), seconds=seconds, done=done, **options)
@@ -44,5 +44,7 @@ def _record_linux(bus: str, out: Path, **options) -> Recorded:
         raise MissingLibrary("smbus2 is not installed: pip install 'zerorate[linux]'") from error
     try:
         return record_bus(i2c, out, source=bus, **options)
+    except ValueError as error:
+        raise ZerorateError(f"{bus}: {error}") from error
     finally:
         i2c.close()
