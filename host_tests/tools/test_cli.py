@@ -128,8 +128,8 @@ def test_an_interrupt_ends_in_130_and_leaves_nothing_half_written(tmp_path, monk
 
 def test_import_prints_what_it_did(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    rows = "".join(f"{i},1,{i},3\n" for i in range(5)) + "9,0,0,0\n"
-    (tmp_path / "in.csv").write_text("t_s,gx_dps,gy_dps,gz_dps\n" + rows)
+    rows = "".join(f"{i},1,{i},3,20\n" for i in range(5)) + "9,0,0,0,0\n"
+    (tmp_path / "in.csv").write_text("t_s,gx_dps,gy_dps,gz_dps,temp_C\n" + rows)
     ran = zerorate("import", "in.csv", "--out", "out.csv.gz")
     assert ran.returncode == 0, ran.stderr
     assert "out.csv.gz" in ran.stdout and "5 of 6 rows written" in ran.stdout

@@ -133,6 +133,7 @@ def test_rows_that_are_no_samples_are_dropped_and_counted(tmp_path):
         gx_dps=[1, 0, 1, 1, 1, np.nan, 1],
         gy_dps=[1, 0, 1, 300, 1, 1, 1],
         gz_dps=[1, 0, 1, 1, 1, 1, 1],
+        temp_c=[20, 0, 20, 20, 20, 20, 20],
     )
     recording, report = read_foreign(source, options=Options(gyro_lsb_per_dps=131))
     assert recording.columns["t_us"].tolist() == [0, 2_000_000, 3_000_000]
@@ -144,6 +145,11 @@ def test_rows_that_are_no_samples_are_dropped_and_counted(tmp_path):
     assert told(report, "gy: 1 readings at the end of the 16-bit range (clipped)")
 
 
+def test_three_zero_rates_alone_may_be_a_sample(tmp_path):
+    source = table(tmp_path / "in.csv", t_s=[0, 1], gx_dps=[1, 0], gy_dps=[0, 0], gz_dps=[0, 0])
+    assert len(read_foreign(source)[0]) == 2
+
+
 @pytest.mark.parametrize(
     ("text", "complaint"),
     [
@@ -152,7 +158,7 @@ def test_rows_that_are_no_samples_are_dropped_and_counted(tmp_path):
         ("a,b\n1,2\n", "no column for gx, gy, gz; map it: --map gx=COLUMN"),
         ("gx_dps,gy_dps,gz_dps\n1,2,3\n", "no time stamps; give --hz"),
         ("t_s,gx_dps,gy_dps,gz_dps\n1,2,3,4\n", "time stands still"),
-        ("t_s,gx_dps,gy_dps,gz_dps\n1,0,0,0\n", "no sample is left; 1 rows: all readings"),
+        ("t_s,gx_dps,gy_dps,gz_dps,temp_c\n1,0,0,0,0\n", "no sample is left; 1 rows: all readings"),
     ],
 )
 def test_a_table_that_cannot_be_imported_says_why(tmp_path, text, complaint):

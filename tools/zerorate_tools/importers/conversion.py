@@ -80,8 +80,11 @@ def _drop_no_samples(foreign: Foreign) -> None:
     given = [foreign.gyro, foreign.accel, None if foreign.temp is None else foreign.temp[:, None]]
     table = np.hstack([part for part in given if part is not None])
     foreign.keep(np.isfinite(table).all(axis=1), "a reading is no number")
-    rates = [part for part in (foreign.gyro, foreign.accel) if part is not None]
-    foreign.keep((np.hstack(rates) != 0).any(axis=1), "all readings are zero")
+    # three rates alone may well be zero on a coarse scale; with gravity, or 0 degC, they are none
+    beside = foreign.accel if foreign.accel is not None else foreign.temp
+    if beside is not None:
+        readings = np.column_stack([foreign.gyro, beside])
+        foreign.keep((readings != 0).any(axis=1), "all readings are zero")
     if foreign.time_s is not None:
         foreign.keep(np.isfinite(foreign.time_s), "the time stamp is no number")
         latest = np.maximum.accumulate(foreign.time_s)

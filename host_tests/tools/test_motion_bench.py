@@ -1,0 +1,65 @@
+"""The measurements of bias without rest: the truth of a trial, and the passes of a window."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+from zerorate_tools.bench import passes
+from zerorate_tools.bench.broad import Trial, true_bias
+from zerorate_tools.bench.peers import given
+from zerorate_tools.bench.peers.sources import Source
+
+HZ = 100.0
+BIAS_DPS = np.array([0.4, -0.3, 0.2])
+
+
+@pytest.fixture(scope="module")
+def trial():
+    """Ten seconds of rest, forty of swinging, ten of rest, seen through frames 2 deg apart."""
+    t = np.arange(int(60 * HZ)) / HZ
+    moving = (t >= 10) & (t < 50)
+    cycles = 2 * np.pi * (t - 10)[:, None] * [0.4, 0.55, 0.7]
+    swing = np.where(moving[:, None], np.sin(cycles), 0) * [0.3, -0.2, 0.4]
+    attitude = Rotation.from_rotvec(swing)
+    rate = np.degrees((attitude[:-1].inv() * attitude[1:]).as_rotvec()) * HZ
+    apart = Rotation.from_rotvec([0.02, -0.02, 0.03])
+    random = np.random.default_rng(1)
+    rate = apart.inv().apply(np.vstack([rate, [0, 0, 0]])) + BIAS_DPS
+    force = (attitude * apart).inv().apply([0, 0, 1.0]) + random.normal(0, 0.004, (len(t), 3))
+    quaternion = attitude.as_quat()[:, [3, 0, 1, 2]]
+    quaternion[2000:2100] = np.nan
+    return Trial("made", HZ, rate + random.normal(0, 0.05, rate.shape), force, quaternion, moving)
+
+
+def test_the_true_bias_is_found_through_frames_that_are_not_aligned(trial):
+    truth = true_bias(trial)
+    assert np.abs(truth.bias_dps - BIAS_DPS).max() < 0.02
+    assert np.abs(truth.motion_dps - BIAS_DPS).max() < 0.05
+    assert (truth.sigma_dps < 0.01).all()
+
+
+def test_the_motion_of_a_trial_begins_and_ends_moving(trial):
+    part = trial.in_motion()
+    assert part.moving[0] and part.moving[-1]
+    assert len(part.rate_dps) == len(part.attitude) == 4000
+
+
+def test_a_source_is_measured_from_nothing_with_its_honesty(trial):
+    source = Source("in_motion")
+    one = given(trial.in_motion().recording())
+    source.truth_dps = [np.tile(BIAS_DPS, (len(one.rate_dps), 1))]
+    bias = source([one])[0]
+    assert not bias[0].any()
+    assert np.abs(bias[-1] - BIAS_DPS).max() < 0.2
+    assert source.learned > 0
+    assert np.mean(source.within) >= 0.9
+
+
+def test_every_pass_of_a_window_is_seen_and_levels_the_orientation(trial, tmp_path):
+    found = list(passes.windows(trial.in_motion().recording(), document=True))
+    window = found[0]
+    assert window.orientation_deg.shape == (3, 128, 3)
+    drift = np.abs(np.polyfit(np.arange(128), window.orientation_deg[0], 1)[0])
+    left = np.abs(np.polyfit(np.arange(128), window.orientation_deg[-1], 1)[0])
+    assert left.max() < drift.max() / 5
+    passes.plot(window, tmp_path / "window.png")
+    assert (tmp_path / "window.png").read_bytes().startswith(b"\x89PNG")
