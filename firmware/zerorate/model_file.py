@@ -6,7 +6,7 @@ Little-endian:
     16 tick in us u32
     20 five doubles: gyro LSB/dps, accel LSB/g, temp LSB/degC, temp offset degC, odr Hz
     60 inputs: kind, shift, offset, i32 each
-    then slots: 30 i32 each, words 0..29 of model.py, with indices of inputs, second inputs and tables
+    then slots: 30 i32 each, words 0..29 of model.py, but indices of inputs and tables
     then tables: 9 i32 each, Q24
     then texts, each a length byte and UTF-8: sensor, channels, what each slot corrects
     then CRC-32 of all before it

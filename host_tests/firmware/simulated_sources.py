@@ -1,0 +1,82 @@
+"""Hours of sources for the effect slots: raw samples for the firmware, tick means for the float
+reference, of the same columns."""
+
+from array import array
+
+import numpy as np
+from scipy.signal import lfilter
+from zerorate import Sensor, effects
+from zerorate.model import EffectModel
+from zerorate.model_file import LOADED, REASONS
+from zerorate_tools.model import build_model, encoded
+from zerorate_tools.recordings import Scales
+
+SCALES = Scales("MPU-6050", 2.0, 131.0, 16384.0, 340.0, 36.53)
+SENSOR = Sensor(2.0)
+FRAME = ("ax", "ay", "az", "temp", "gx", "gy", "gz")
+A_TICK = 2
+HOURS = 2
+_SAMPLES = HOURS * 3600 * A_TICK
+
+
+def columns(seed=1):
+    """Raw columns at 2 Hz: warming, cooling, shaking, turning, a supply that sags, a load."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(_SAMPLES) / A_TICK
+    start, rise = rng.uniform(5, 30), rng.uniform(5, 25)
+    temp = start + rise * (1 - np.exp(-t / rng.uniform(300, 2000)))
+    temp += rng.uniform(1, 5) * np.sin(t / rng.uniform(200, 900)) + rng.normal(0, 0.02, _SAMPLES)
+    shaken = 60 * (1 + 8 * (t % 700 > 400))
+    found = {
+        "ax": rng.normal(0, shaken) + 3000 * np.sin(t / 500),
+        "ay": rng.normal(900, 60, _SAMPLES),
+        "az": rng.normal(16384, shaken),
+        "temp": (temp - SCALES.temp_offset_degc) * SCALES.temp_lsb_per_degc,
+        "gx": 90 * 131 * np.sin(t / 7) + rng.normal(0, 6, _SAMPLES),
+        "gy": rng.normal(300, 6, _SAMPLES),
+        "gz": rng.normal(-90, 6, _SAMPLES),
+        "vdd_mv": 5000 + 60 * np.sin(t / 300) - 5 * (t % 900 > 450),
+        "pressure_pa": 101325 + 400 * np.sin(t / 1100),
+    }
+    return {name: np.round(values).astype(np.int64) for name, values in found.items()}
+
+
+def tick_means(raw):
+    """sources(name) -> (m,) as the float reference wants them."""
+    accel = np.column_stack([raw[n] for n in FRAME[:3]]) / SCALES.accel_lsb_per_g
+    slow, _ = lfilter([1 / 32], [1, -31 / 32], accel, axis=0, zi=31 / 32 * accel[:1])
+    ticks = _SAMPLES // A_TICK
+    samples = {
+        "temp": SCALES.temp_degc(raw["temp"]),
+        "vib": ((accel - slow) ** 2).sum(axis=1),
+        **{f"acc_{a}": accel[:, i] for i, a in enumerate("xyz")},
+        **{f"rate_{a}": raw[f"g{a}"] / SCALES.gyro_lsb_per_dps for a in "xyz"},
+        **{n: raw[n].astype(float) for n in raw if n not in FRAME},
+    }
+    means = {n: v.reshape(ticks, A_TICK).mean(axis=1) for n, v in samples.items()}
+    means["time"] = np.arange(ticks) + 0.5
+    means["one"] = np.ones(ticks)
+    return means.__getitem__
+
+
+def loaded(slots, scales=SCALES, sensor=SENSOR, tick_s=1.0):
+    """An EffectModel with these slots, by way of the bytes of model.bin."""
+    model = EffectModel()
+    reason = model.load(encoded(build_model(slots, scales, tick_s=tick_s)), sensor)
+    assert reason == LOADED, REASONS[reason]
+    return model
+
+
+def on_firmware(model, raw, dt_us=500000, good=lambda n: 1):
+    """(n, 3) effects of every sample, dps."""
+    state, frame = array("i", [0] * 64), array("i", [0] * 7)
+    rows = np.column_stack([raw[n] for n in FRAME]).tolist()
+    channels = [raw[n].tolist() for n in model.channels]
+    out = np.empty((len(rows), 3))
+    for n, row in enumerate(rows):
+        frame[:] = array("i", row)
+        for i, values in enumerate(channels):
+            model.channel(i, values[n])
+        effects.sense(state, model.e, frame, dt_us, good(n))
+        out[n] = state[61:64]
+    return out / 256 / SCALES.gyro_lsb_per_dps
