@@ -1,0 +1,97 @@
+"""The firmware's two sources that need no rest, each on its own, without the decision."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...replay.jit import compiled_kernels
+from .given import Given
+
+_MOTION_WORDS = (70, 73)
+_REALTIME_WORDS = (28, 31)
+
+
+class Source:
+    """A source as a peer; calling it returns each session's bias (n, 3), dps, 0 while unknown.
+
+    name: in_motion or realtime; options: keywords of its settings. After a call, `within` holds
+    for every learned value and axis whether the truth given in `truth_dps` lay within two sigma.
+    """
+
+    def __init__(self, name: str, **options: object) -> None:
+        self.name = name
+        self.options = options
+        self.truth_dps: Sequence[NDArray[np.float64]] | None = None
+        self.within: list[bool] = []
+        self.learned = 0
+
+    def __call__(self, sessions: Sequence[Given]) -> list[NDArray[np.float64]]:
+        """Run every session from nothing."""
+        self.within, self.learned = [], 0
+        return [self._biases(number, one) for number, one in enumerate(sessions)]
+
+    def _biases(self, number: int, one: Given) -> NDArray[np.float64]:
+        state, settings, (bias_at, sigma_at) = self._made(one)
+        lsb = 256 * one.recording.scales.gyro_lsb_per_dps
+        columns = one.recording.columns
+        rows = np.zeros((len(one.rate_dps), 7), np.int32)
+        for place, name in enumerate(("ax", "ay", "az", "", "gx", "gy", "gz")):
+            if name:
+                rows[:, place] = columns[name]
+        dt_us = np.diff(columns["t_us"], prepend=2 * columns["t_us"][0] - columns["t_us"][1])
+        learned = np.zeros(len(rows), bool)
+        words = np.zeros((len(rows), 2, 3), np.int32)
+        _loop(self.name)(state, settings, rows, dt_us, (bias_at, sigma_at), learned, words)
+        for i in np.flatnonzero(learned):
+            self._judge(number, i, words[i, 0] / lsb, words[i, 1] / lsb)
+        return words[:, 0] / lsb
+
+    def _made(self, one: Given) -> tuple:
+        scales = one.recording.scales
+        sensor = (scales.odr_hz, scales.gyro_lsb_per_dps, scales.accel_lsb_per_g)
+        if self.name == "in_motion":
+            from zerorate.motion_settings import motion_settings, motion_state
+
+            settings = motion_settings(*sensor, **self.options)
+            state, at = motion_state(settings), _MOTION_WORDS
+        else:
+            from zerorate.realtime_settings import realtime_settings, realtime_state
+
+            settings = realtime_settings(*sensor, **self.options)
+            state, at = realtime_state(settings), _REALTIME_WORDS
+        return np.array(state, np.int32), np.array(settings, np.int32), at
+
+    def _judge(
+        self, number: int, i: int, bias: NDArray[np.float64], sigma: NDArray[np.float64]
+    ) -> None:
+        self.learned += 1
+        if self.truth_dps is None:
+            return
+        known = sigma < 1000
+        inside = np.abs(bias - self.truth_dps[number][i]) < 2 * sigma
+        self.within += inside[known].tolist()
+
+
+@lru_cache(maxsize=2)
+def _loop(name: str) -> Callable:
+    """The compiled loop of a source's update over a recording; what it writes is held."""
+    import numba
+
+    update = getattr(compiled_kernels(name), name).update
+
+    @numba.njit
+    def run(state, settings, rows, dt_us, at, learned, words):
+        for i in range(len(rows)):
+            if i > 0:
+                words[i] = words[i - 1]
+            if update(state, settings, rows[i], dt_us[i]):
+                learned[i] = True
+                for axis in range(3):
+                    words[i, 0, axis] = state[at[0] + axis]
+                    words[i, 1, axis] = state[at[1] + axis]
+
+    return run
