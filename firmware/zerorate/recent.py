@@ -120,7 +120,8 @@ def follow(s: ptr32, c: ptr32, a: int, error: int):
     rewalk(s, c, a, excess)
     excess = gain_q14(s[_GROWN_Q8], s[_MEAN_NOISE_Q8])
     s[a + _OFFSET_Q8] += (excess * error) >> 10
-    s[a + _VARIANCE_Q8] = (excess * s[_MEAN_NOISE_Q8]) >> 14
+    error = (excess * (s[_MEAN_NOISE_Q8] & 0x3FFF)) >> 14
+    s[a + _VARIANCE_Q8] = excess * (s[_MEAN_NOISE_Q8] >> 14) + error
 
 
 def adopt(s: ptr32, c: ptr32, a: int, error: int) -> int:
