@@ -1,7 +1,8 @@
 """One chip of the MPU-6050 family: set-up, whole samples, and its faults found and answered."""
 
 from . import clock as system_clock
-from .parts import part_by_id, part_by_name
+from .identity import identify, require_same, wrong_device
+from .registers import Registers
 from .settings import (
     ACCEL_LSB_PER_G,
     ACCEL_RANGES_G,
@@ -23,11 +24,9 @@ except ImportError:
 
 _ACCEL_XOUT_H = const(0x3B)
 _PWR_MGMT_1 = const(0x6B)
-_WHO_AM_I = const(0x75)
 _DEVICE_RESET = const(0x80)
 _RESET_MS = const(100)
 _WORDS = const(7)
-_ENODEV = const(19)
 _FROZEN_PERIODS = const(16)
 
 FRESH = const(0)  # a sample
@@ -44,7 +43,7 @@ def decode(frames, start, sample):
         sample[i] = word - ((word & 0x8000) << 1)
 
 
-class MPU6050:
+class MPU6050(Registers):
     """A chip at address on i2c, configured and awake when the constructor returns.
 
     full_scale_dps is 250, 500, 1000 or 2000; full_scale_g 2, 4, 8 or 16; odr_hz the output data
@@ -71,26 +70,21 @@ class MPU6050:
         retries=2,
         clock=None,
     ):
-        self.i2c = i2c
-        self.address = address
+        super().__init__(i2c, address, retries)
         self.clock = clock or system_clock
-        self.bus_errors = 0
         self.restarts = 0
         self.read_backs = 0
         self.suspects = 0
         self.repeats = 0
-        self._retries = retries
         self._check_every = check_every
         self._until_check = check_every
-        self._byte = bytearray(1)
-        self._register = 0
-        self._target = self._byte
+        self._errors_seen = 0
         self._burst = bytearray(2 * _WORDS)
         self._previous = bytearray(2 * _WORDS)
         self._frozen = False
         gyro_code = index_of(full_scale_dps, GYRO_RANGES_DPS, "full_scale_dps")
         accel_code = index_of(full_scale_g, ACCEL_RANGES_G, "full_scale_g")
-        row = self._identify(part)
+        self.who_am_i, row = identify(self, part)
         self.part = row[1]
         self.temp_lsb_per_degc = row[2]
         self.temp_offset_degc = row[3]
@@ -137,7 +131,7 @@ class MPU6050:
 
         Returns FRESH when it was not time, VERIFIED, or RESTARTED after configuring again.
         """
-        if self._until_check > 0:
+        if self._until_check > 0 and self.bus_errors == self._errors_seen:
             self._until_check -= samples
             return FRESH
         if self._frozen or not self.check():
@@ -158,13 +152,12 @@ class MPU6050:
         Raises OSError when the id read is no longer the one of the constructor.
         """
         self._until_check = 0
-        who_am_i = self.read_register(_WHO_AM_I)
-        if who_am_i != self.who_am_i:
-            raise OSError(_ENODEV, self._describe(who_am_i, f"was 0x{self.who_am_i:02x}"))
+        require_same(self, self.who_am_i)
         for i in range(0, len(self._settings), 2):
             if not self._is_kept(i):
                 return False
         self.read_backs += 1
+        self._errors_seen = self.bus_errors
         self._until_check = self._check_every
         return True
 
@@ -178,7 +171,7 @@ class MPU6050:
             self.write_register(settings[i], settings[i + 1])
         if not self.check():
             self._until_check = 0
-            raise OSError(_ENODEV, self._describe(self.who_am_i, "does not keep what is written"))
+            raise wrong_device(self, self.who_am_i, "does not keep what is written")
         self.clock.sleep_ms(self.start_up_ms)
         self._changed_us = self.clock.ticks_us()
 
@@ -198,72 +191,12 @@ class MPU6050:
             settings.extend(bytes([register, value]))
         self.write_register(register, value)
 
-    def read_register(self, register):
-        """One register's value."""
-        self.read_into(register, self._byte)
-        return self._byte[0]
-
-    def write_register(self, register, value):
-        """Write one register."""
-        self._byte[0] = value
-        self.i2c.writeto_mem(self.address, register, self._byte)
-
-    def read_into(self, register, buffer):
-        """Fill buffer from register on; OSError after 1 + retries failures."""
-        self._register = register
-        self._target = buffer
-        self._transfer()
-
     def temperature_degc(self, raw):
         """Degrees Celsius of a raw temperature reading, by this part's formula."""
         return raw / self.temp_lsb_per_degc + self.temp_offset_degc
 
-    def _identify(self, name):
-        try:
-            self.who_am_i = self.read_register(_WHO_AM_I)
-        except OSError as error:
-            reason = (
-                "nothing answers at I2C address 0x{:02x}, no id was read: check power, wiring, AD0"
-            )
-            raise OSError(error.args[0], reason.format(self.address))
-        row = part_by_id(self.who_am_i) if name is None else part_by_name(name)
-        if row is None or self.who_am_i in (0x00, 0xFF):
-            raise OSError(_ENODEV, self._describe(self.who_am_i, self._advice()))
-        return row
-
-    def _advice(self):
-        if self.who_am_i in (0x00, 0xFF):
-            return "a dead bus: check pull-ups and wiring"
-        return "no part known: if you know which one it is, name it, as in part='MPU-6500'"
-
-    def _describe(self, who_am_i, rest):
-        row = part_by_id(who_am_i)
-        name = f" ({row[1]})" if row else ""
-        text = "I2C address 0x{:02x} answers with WHO_AM_I 0x{:02x}{}: {}"
-        return text.format(self.address, who_am_i, name, rest)
-
     def _is_kept(self, i):
         return self.read_register(self._settings[i]) == self._settings[i + 1]
-
-    # Arguments by attribute: a frame with an exception handler has room for 8 words, not 11.
-    def _transfer(self):
-        try:
-            self.i2c.readfrom_mem_into(self.address, self._register, self._target)
-        except OSError:
-            if not self._retry():
-                raise
-
-    def _retry(self):
-        self._until_check = 0
-        for _ in range(self._retries):
-            self.bus_errors += 1
-            try:
-                self.i2c.readfrom_mem_into(self.address, self._register, self._target)
-                return True
-            except OSError:
-                pass
-        self.bus_errors += 1
-        return False
 
     def _is_suspect(self):
         burst = self._burst

@@ -1,11 +1,15 @@
 """Copies flat state, as the checkpoint of what was learned."""
 
-ptr32 = None
+
+def ptr32(words):
+    return words
 
 
-def copy(source: ptr32, target: ptr32, length: int):
+def copy(source, target, length: int):
     """Put the first `length` words of `source` into `target`."""
+    s = ptr32(source)
+    t = ptr32(target)
     i = 0
     while i < length:
-        target[i] = source[i]
+        t[i] = s[i]
         i += 1

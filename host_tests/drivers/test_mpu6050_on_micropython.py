@@ -10,17 +10,10 @@ ROOT = Path(__file__).resolve().parents[2]
 SCRIPTS = Path(__file__).parent / "on_micropython"
 MODULES = [ROOT / "drivers", ROOT / "host_tests" / "fakes"]
 HOT = {
-    "mpu6050.py": {
-        "decode",
-        "read",
-        "check",
-        "verify",
-        "doubt",
-        "read_register",
-        "read_into",
-        "_is_kept",
-    }
-    | {"read_sample", "_transfer", "_is_suspect", "_is_one_word_repeated"},
+    "mpu6050.py": {"decode", "read", "read_sample", "verify", "doubt", "check", "_is_kept"}
+    | {"_is_suspect", "_is_one_word_repeated"},
+    "registers.py": {"read_register", "read_into", "_transfer"},
+    "identity.py": {"require_same"},
     "fifo.py": {
         "read",
         "_load",

@@ -2,6 +2,7 @@
 
 import random
 from array import array
+from pathlib import Path
 
 import pytest
 from zerorate import checked
@@ -83,3 +84,9 @@ def test_the_time_of_refused_samples_goes_to_the_next(feed):
     for status in (checked.FRESH, checked.SUSPECT, checked.SUSPECT, checked.FRESH):
         feed.checked.update(feed.sample, 10000, status)
     assert passed_us == [10000, 30000]
+
+
+def test_checkpoints_take_nothing_from_the_heap(micropython, repository):
+    script = Path(__file__).parent / "on_micropython" / "checked_without_heap.py"
+    said = micropython.run(script, modules=[repository / "firmware"], check=True)
+    assert said.stdout.strip() == "True 1"

@@ -5,9 +5,11 @@ import micropython
 
 
 @micropython.viper
-def copy(source: ptr32, target: ptr32, length: int):
+def copy(source, target, length: int):
     """Put the first `length` words of `source` into `target`."""
+    s = ptr32(source)
+    t = ptr32(target)
     i = 0
     while i < length:
-        target[i] = source[i]
+        t[i] = s[i]
         i += 1
