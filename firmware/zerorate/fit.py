@@ -103,6 +103,15 @@ def stretch(s: ptr32) -> int:
     return w - 1
 
 
+def within(s: ptr32, t: int) -> int:
+    """Return `t` held in the range that was weighed: readings learned since may have moved it."""
+    if t < s[_LOW_Q4]:
+        return s[_LOW_Q4]
+    if t > s[_HIGH_Q4]:
+        return s[_HIGH_Q4]
+    return t
+
+
 def centre(s: ptr32, c: ptr32, a: int, i: int):
     """Add estimator i to the weighted means."""
     w = s[_WEIGHTS + i]
@@ -111,8 +120,9 @@ def centre(s: ptr32, c: ptr32, a: int, i: int):
     d = s[_SUM_W]
     w = fraction_q27(w, d)
     a += i * c[_WORDS] + _ESTIMATORS
-    d = stretch(s)
-    d = (s[a + 1] - s[_FIRST_T_Q4]) << d
+    d = s[a + 1]
+    d = within(s, d) - s[_FIRST_T_Q4]
+    d = d << stretch(s)
     d = scaled(w, d, 27)
     s[_SUM_T] += d
     d = s[a + 2] - s[_FIRST_B_Q8]
@@ -151,8 +161,9 @@ def lean(s: ptr32, c: ptr32, a: int, i: int):
     if w == 0:
         return
     a += i * c[_WORDS] + _ESTIMATORS
-    i = stretch(s)
-    i = ((s[a + 1] - s[_FIRST_T_Q4]) << i) - s[_SUM_T]
+    i = s[a + 1]
+    i = within(s, i) - s[_FIRST_T_Q4]
+    i = (i << stretch(s)) - s[_SUM_T]
     a = ((s[a + 2] - s[_FIRST_B_Q8]) << 3) - s[_SUM_B]
     add_product(s, _SUM_TT, w, i, i)
     add_product(s, _SUM_TB, w, i, a)

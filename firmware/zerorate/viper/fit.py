@@ -107,6 +107,16 @@ def stretch(s: ptr32) -> int:
 
 
 @micropython.viper
+def within(s: ptr32, t: int) -> int:
+    """Return `t` held in the range that was weighed: readings learned since may have moved it."""
+    if t < s[_LOW_Q4]:
+        return s[_LOW_Q4]
+    if t > s[_HIGH_Q4]:
+        return s[_HIGH_Q4]
+    return t
+
+
+@micropython.viper
 def centre(s_, c: ptr32, a: int, i: int):
     """Add estimator i to the weighted means."""
     s = ptr32(s_)
@@ -116,8 +126,9 @@ def centre(s_, c: ptr32, a: int, i: int):
     d = s[_SUM_W]
     w = int(fraction_q27(w, d))
     a += i * c[_WORDS] + _ESTIMATORS
-    d = int(stretch(s_))
-    d = (s[a + 1] - s[_FIRST_T_Q4]) << d
+    d = s[a + 1]
+    d = int(within(s_, d)) - s[_FIRST_T_Q4]
+    d = d << int(stretch(s_))
     d = int(scaled(w, d, 27))
     s[_SUM_T] += d
     d = s[a + 2] - s[_FIRST_B_Q8]
@@ -159,8 +170,9 @@ def lean(s_, c: ptr32, a: int, i: int):
     if w == 0:
         return
     a += i * c[_WORDS] + _ESTIMATORS
-    i = int(stretch(s_))
-    i = ((s[a + 1] - s[_FIRST_T_Q4]) << i) - s[_SUM_T]
+    i = s[a + 1]
+    i = int(within(s_, i)) - s[_FIRST_T_Q4]
+    i = (i << int(stretch(s_))) - s[_SUM_T]
     a = ((s[a + 2] - s[_FIRST_B_Q8]) << 3) - s[_SUM_B]
     add_product(s_, _SUM_TT, w, i, i)
     add_product(s_, _SUM_TB, w, i, a)
