@@ -82,12 +82,12 @@ def find(s: ptr32, c: ptr32, a: int, temp: int) -> int:
     e = s[a + _CURRENT]
     if e > 0:
         d = temp - s[e]
-        if d <= half + c[_MARGIN_LSB] and d >= -half - c[_MARGIN_LSB]:
+        if d <= half + c[_MARGIN_LSB] and d >= 0 - half - c[_MARGIN_LSB]:
             return e
     e = a + c[_FIRST_SHORT]
     while e < a + c[_END]:
         d = temp - s[e]
-        if d < half and d >= -half:
+        if d < half and d >= 0 - half:
             return e
         e += c[_WORDS]
     return 0

@@ -67,7 +67,7 @@ def error_q4(s: ptr32, c: ptr32, a: int) -> int:
 
 def plausible(s: ptr32, c: ptr32, a: int, error: int) -> int:
     """Return 1 if the error is within the gate or six sigma, or has insisted long enough."""
-    far = error if error >= 0 else -error
+    far = error if error >= 0 else 0 - error
     if far > 0x7FFF:
         far = 0x7FFF
     if far <= c[_GATE_Q4] or far * far // 36 < s[_GROWN_Q8] + s[_MEAN_NOISE_Q8]:
@@ -88,7 +88,12 @@ def rewalk(s: ptr32, c: ptr32, a: int, excess: int):
         excess = 0x1FFFFF
     if excess < -0x1FFFFF:
         excess = -0x1FFFFF
-    speed = ((excess << 8) // age) << 4
+    speed = (excess << 8) // age
+    if speed > 0x1FFFFFF:
+        speed = 0x1FFFFFF
+    if speed < -0x1FFFFFF:
+        speed = -0x1FFFFFF
+    speed = speed << 4
     if speed > c[_WALK_MOST_Q16]:
         speed = c[_WALK_MOST_Q16]
     # long gaps tell more of the walk than neighbours do

@@ -62,7 +62,7 @@ def centred(e: ptr32, f: int) -> int:
     u -= e[f + 3]
     f = e[f + 4]
     if f < 0:
-        return u >> -f
+        return u >> (0 - f)
     return u << f
 
 
@@ -96,7 +96,7 @@ def between(e: ptr32, ring: int, back: int, part: int, step: int) -> int:
     u = e[ring + 2 + ((e[ring] - back) & 63)]
     d = e[ring + 2 + ((e[ring] - back - 1) & 63)] - u
     if d < 0:
-        return u - (((-d >> 4) * part // step) << 4)
+        return u - ((((0 - d) >> 4) * part // step) << 4)
     return u + (((d >> 4) * part // step) << 4)
 
 
