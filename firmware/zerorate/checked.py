@@ -27,9 +27,14 @@ VERIFIED = const(1)
 RESTARTED = const(2)
 SUSPECT = const(3)
 
+# Words of the state that stay: the guard's last frame and its counts.
+_COUNTED = const(16)
+
 
 class CheckedCorrector:
     """`corrector` (a Corrector) with a checkpoint of its state, as large again.
+
+    What it learns in motion, where it does, is in the checkpoint too.
 
     taken_back counts the times that learning was taken back, refused the samples not passed on.
     """
@@ -38,8 +43,11 @@ class CheckedCorrector:
         self.corrector = corrector
         self.taken_back = 0
         self.refused = 0
-        self._length = len(corrector.state)
-        self._kept = array("i", corrector.state)
+        self._live = [corrector.state]
+        self._first = [_COUNTED, 0]
+        if corrector.motion is not None:
+            self._live.append(corrector.motion)
+        self._kept = [array("i", state) for state in self._live]
         self._passed_us = 0
 
     def update(self, sample, dt_us, status=FRESH):
@@ -67,9 +75,11 @@ class CheckedCorrector:
 
     def keep(self):
         """What is learned up to now is right."""
-        copying.copy(self.corrector.state, self._kept, self._length)
+        for i in range(len(self._live)):
+            copying.copy(self._live[i], self._kept[i], 0, len(self._kept[i]))
 
     def take_back(self):
         """Forget what was learned since keep(); also for a bus that failed for good."""
-        copying.copy(self._kept, self.corrector.state, self._length)
+        for i in range(len(self._live)):
+            copying.copy(self._kept[i], self._live[i], self._first[i], len(self._kept[i]))
         self.taken_back += 1

@@ -5,11 +5,11 @@ def ptr32(words):
     return words
 
 
-def copy(source, target, length: int):
-    """Put the first `length` words of `source` into `target`."""
+def copy(source, target, first: int, end: int):
+    """Put the words from `first` up to `end` of `source` into `target`."""
     s = ptr32(source)
     t = ptr32(target)
-    i = 0
-    while i < length:
+    i = first
+    while i < end:
         t[i] = s[i]
         i += 1

@@ -89,7 +89,7 @@ class Store:
         except OSError:
             return UNREADABLE
         self.loaded_version = self._record[_AT_VERSION]
-        _unpack(self._record, _HEADER, payload, self.size)
+        unpack(self._record, _HEADER, payload, self.size)
         return LOADED
 
     def save(self, payload):
@@ -191,12 +191,12 @@ class Store:
             )
             + self.binding
         )
-        _pack(payload, record, _HEADER, self.size)
+        pack(payload, record, _HEADER, self.size)
         checksum(record, _HEADER + self.size, self._crc)
         record[_HEADER + self.size :] = self._crc
 
 
-def _pack(payload, record, at, size):
+def pack(payload, record, at, size):
     """Payload into record from at on, words little-endian whatever the machine."""
     if len(payload) == size:
         record[at : at + size] = payload
@@ -209,8 +209,8 @@ def _pack(payload, record, at, size):
         at += 4
 
 
-def _unpack(record, at, payload, size):
-    """The reverse of _pack."""
+def unpack(record, at, payload, size):
+    """The reverse of pack."""
     if len(payload) == size:
         payload[:] = record[at : at + size]
         return

@@ -1,0 +1,78 @@
+"""All that a device has learned, and its effect model, on one storage: a store for each.
+
+The state changes all day and the model when a person brings one, so each has its own two slots:
+a cut in the writing of one never costs the other.
+"""
+
+from .crc32 import checksum
+from .store import LOADED, Store, pack
+
+try:
+    from micropython import const
+except ImportError:
+
+    def const(value):
+        return value
+
+
+MODEL_BYTES = const(2048)
+_STATE_VERSION = const(1)
+_AT_MODEL_SIZE = const(4)
+
+
+class LearnedStore:
+    """The stores of `corrector`, a Corrector, on `storage` (see storage.py) from byte `base` on.
+
+    binding: MPU6050.binding, the chip's id, range and filter; the state is bound to the
+    corrector's settings as well. pitch: distance of slots, an erase block of flash (default: no
+    gap). end is the first byte behind both. Raises ValueError for a pitch that is too small.
+    """
+
+    def __init__(self, storage, binding, corrector, base=0, pitch=0):
+        self.corrector = corrector
+        size = 4 * len(corrector.state)
+        bound = bytes(binding) + _fingerprint(corrector.settings)
+        self.state = Store(storage, bound, size, _STATE_VERSION, base=base, pitch=pitch)
+        base += 2 * (pitch or self.state.slot_bytes)
+        self.model = Store(storage, binding, MODEL_BYTES, base=base, pitch=pitch)
+        self.end = base + 2 * (pitch or self.model.slot_bytes)
+
+    def load(self):
+        """Put what was learned into the corrector and begin a power-on; LOADED or why not.
+
+        store.REASONS says each result in words; the corrector is as it was when it is not LOADED.
+        """
+        return self.corrector.load(self.state)
+
+    def save(self, payload=None):
+        """Write what the corrector has learned; False when the storage failed.
+
+        payload is for SaveSchedule, which hands over the corrector's state.
+        """
+        return self.corrector.save(self.state)
+
+    def load_model(self):
+        """The bytes of the effect model, for EffectModel.load, or b"" (see model.load's reason)."""
+        padded = bytearray(MODEL_BYTES)
+        if self.model.load(padded) != LOADED:
+            return b""
+        return bytes(padded[: padded[_AT_MODEL_SIZE] | padded[_AT_MODEL_SIZE + 1] << 8])
+
+    def save_model(self, data):
+        """Write an effect model, the bytes of model.bin; False when the storage failed.
+
+        Raises ValueError for one that is too large.
+        """
+        if len(data) > MODEL_BYTES:
+            raise ValueError(f"a model of {len(data)} bytes does not fit {MODEL_BYTES}")
+        return self.model.save(bytes(data) + bytes(MODEL_BYTES - len(data)))
+
+
+def _fingerprint(settings):
+    """Four bytes that differ between settings."""
+    size = 4 * len(settings)
+    words = bytearray(size)
+    pack(settings, words, 0, size)
+    out = bytearray(4)
+    checksum(words, size, out)
+    return bytes(out)
