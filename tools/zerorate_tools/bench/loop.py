@@ -142,7 +142,7 @@ def real_sessions(device: Device):
 
 
 def real_noise(data: Path, folder: Path) -> list[str]:
-    """Block means of the real statics, one .npy each in a folder; their paths."""
+    """Block means of the real recordings at rest, one .npy each in a folder; their paths."""
     import pyarrow.parquet as pq
 
     paths = []

@@ -114,13 +114,27 @@ def is_supply(name: str) -> bool:
     return any(part in name.lower() for part in SUPPLY_NAMES)
 
 
+#: Share of its range by which the source of a difference may leave it.
+_MARGIN = 0.1
+
+
+def _is_bounded(fields: dict) -> bool:
+    """Whether a basis stays in its fitted range though its source leaves its own.
+
+    Backlash, the difference from a lag and a rate do: holding their source at the edge would break
+    their memory and extrapolate nothing less.
+    """
+    return fields.get("lag_mode") in ("difference", "rate") or fields.get("memory") == "backlash"
+
+
 def _fields(choice: dict, span: dict, source: str) -> dict:
     lo, hi, mean = span.get(source, (0.0, 1.0, 0.0))
     fields = dict(choice)
     centre = fields.get("centre", "mean")
     fields["centre"] = {"mean": mean, "lo": lo, "hi": hi}.get(centre, centre)
     if source != "one":
-        fields.update(lo=lo, hi=hi)
+        margin = _MARGIN * (hi - lo) if _is_bounded(fields) else 0.0
+        fields.update(lo=lo - margin, hi=hi + margin)
     else:
         fields["centre"] = 0.0
     if source == "time":

@@ -8,11 +8,13 @@ from os import PathLike
 from pathlib import Path
 
 from ..errors import ZerorateError
+from ..model import write_model
+from ..recordings import open_recording
 from ..recordings.atomic import written_beside
 from .analysis import Analysis, analyse, sessions_of
 from .corrected import write_corrected
 from .gate import CannotClose
-from .model import VERSION, slots
+from .model import model_of
 from .report import as_json, report
 from .ticks import read_ticks
 
@@ -57,27 +59,18 @@ def close(
     holdout: str | PathLike[str] | None = None,
     advance: Callable[[float], None] = lambda n: None,
 ) -> dict:
-    """Run the loop and write report.json, model.json and corrected.parquet into a folder.
+    """Run the loop; write report.json, model.json, model.bin and corrected.parquet into a folder.
 
-    Returns what report.json holds. Raises ZerorateError (BadRecording, CannotClose).
+    Returns what report.json holds. Raises ZerorateError (BadRecording, CannotClose, CannotDeploy).
     """
     analysis = load(logs, holdout, advance)
     folder = Path(out)
     folder.mkdir(parents=True, exist_ok=True)
+    model = model_of(analysis, open_recording(logs[0]).scales)
     result = report(analysis)
-    _write(folder / "report.json", result)
-    _write(folder / "model.json", model_json(analysis))
+    with written_beside(folder / "report.json") as temporary:
+        text = json.dumps(result, indent=1, allow_nan=False, default=as_json)
+        temporary.write_text(text, encoding="utf-8")
+    write_model(model, folder)
     write_corrected(analysis, list(logs), folder / "corrected.parquet")
     return result
-
-
-def model_json(analysis: Analysis) -> dict:
-    """The model in words: slots with their fields as `basis.Term` has them."""
-    found = slots(analysis.selection, analysis.coefficients)
-    return {"version": VERSION, "tick_s": analysis.sessions[0].tick_s, "slots": found}
-
-
-def _write(path, value):
-    with written_beside(path) as temporary:
-        text = json.dumps(value, indent=1, allow_nan=False, default=as_json)
-        temporary.write_text(text, encoding="utf-8")

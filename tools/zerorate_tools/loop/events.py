@@ -11,6 +11,7 @@ from .gram import gram
 from .likelihood import fit_base, ratios
 
 MOST_PER_SESSION = 4
+_COARSE = 200  # places tried in a session before the best one's surroundings
 _EDGE = 5  # blocks at either end where a step cannot be told from the offset
 
 
@@ -31,14 +32,18 @@ def strongest(regression, terms) -> Step | None:
     """
     best, tried = None, 0
     for s, session in enumerate(regression.sessions):
-        at = np.arange(_EDGE, session.blocks - _EDGE + 1)
-        tried += len(at)
+        last = session.blocks - _EDGE
+        tried += max(0, last + 1 - _EDGE)
+        stride = max(1, session.blocks // _COARSE)
+        at = np.arange(_EDGE, last + 1, stride)
         if not len(at):
             continue
-        score = _scores(regression, terms, s, at)
+        middle = at[_scores(regression, terms, s, at).argmax()]
+        near = np.arange(max(_EDGE, middle - stride), min(last, middle + stride) + 1)
+        score = _scores(regression, terms, s, near)
         i = int(score.argmax())
         if best is None or score[i] > best.ratio:
-            best = Step(s, int(at[i]), np.zeros(3), float(score[i]), 1.0)
+            best = Step(s, int(near[i]), np.zeros(3), float(score[i]), 1.0)
     if best:
         best.p_value = family_p(best.ratio, regression.y[0].shape[1], tried)
     return best

@@ -54,18 +54,14 @@ class Judgement:
 def judge(selection: Selection, locked: list[Session]) -> Judgement:
     """Judge what was selected on training sessions by sessions that no fit has seen."""
     train = selection.regression
-    fitted = {s.name: s for s in train.sessions}
-    before, after = (
-        [scored(s, predicted(*deployed(selection, effects), s), fitted.get(s.name)) for s in locked]
-        for effects in (False, True)
-    )
+    before, after = (residuals(selection, locked, effects) for effects in (False, True))
     both = [*selection.straight, *selection.terms]
     whole = Regression([*train.sessions, *locked])
     whole.settle(both)
     steps = events.find_all(whole, both)
     return Judgement(
-        _rms([r for r, _ in before]),
-        _rms([r for r, _ in after]),
+        rms_dps([r for r, _ in before]),
+        rms_dps([r for r, _ in after]),
         _gains(whole, selection, len(train.sessions)),
         excess(whole, both),
         [r for r, _ in before],
@@ -74,6 +70,13 @@ def judge(selection: Selection, locked: list[Session]) -> Judgement:
         steps,
         whole,
     )
+
+
+def residuals(selection: Selection, locked: list[Session], effects: bool = True) -> list:
+    """(residual, offset) of each locked session, with the effects found or with the line alone."""
+    fitted = {s.name: s for s in selection.regression.sessions}
+    terms, coefficients = deployed(selection, effects)
+    return [scored(s, predicted(terms, coefficients, s), fitted.get(s.name)) for s in locked]
 
 
 def scored(session: Session, model: np.ndarray, fitted: Session | None = None):
@@ -93,7 +96,8 @@ def scored(session: Session, model: np.ndarray, fitted: Session | None = None):
     return residual, offset
 
 
-def _rms(residuals: list[np.ndarray]) -> np.ndarray:
+def rms_dps(residuals: list[np.ndarray]) -> np.ndarray:
+    """(3,) RMS over all blocks scored."""
     return np.sqrt(np.nanmean(np.vstack(residuals) ** 2, axis=0))
 
 

@@ -1,31 +1,24 @@
-"""The found effects as data: what model.json holds and model.bin is made from."""
+"""The found effects as slots of a model that the firmware runs."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from .basis import Term
+from ..model import Model, Slot, build_model
 from .select import Selection
 
-VERSION = 1
 
-
-def slots(selection: Selection, coefficients: np.ndarray) -> list[dict]:
-    """One dict a slot: effect, term fields, coefficient per axis in dps per unit of its basis.
-
-    coefficients: (straight line and terms, 3), as `Analysis.coefficients`.
-    """
+def slots(selection: Selection, coefficients: np.ndarray) -> list[Slot]:
+    """Slots in the order found. coefficients: (straight line and terms, 3) dps, as deployed."""
     kinds = [f.candidate.kind for f in selection.found for _ in f.candidate.terms]
     rows = coefficients[len(selection.straight) :]
     return [
-        {"effect": kind, **term.to_dict(), "coefficient_dps": [float(c) for c in row]}
+        Slot(term, tuple(float(c) for c in row), kind)
         for kind, term, row in zip(kinds, selection.terms, rows)
     ]
 
 
-def terms_of(slots: list[dict]) -> tuple[list[Term], np.ndarray]:
-    """Terms and (terms, 3) coefficients of `slots`' dicts."""
-    own = ("effect", "coefficient_dps")
-    terms = [Term.from_dict({k: v for k, v in s.items() if k not in own}) for s in slots]
-    rows = np.array([s["coefficient_dps"] for s in slots]).reshape(len(slots), 3)
-    return terms, rows
+def model_of(analysis, scales) -> Model:
+    """The model of an analysis, every number as the integers hold it. Raises CannotDeploy."""
+    found = slots(analysis.selection, analysis.coefficients)
+    return build_model(found, scales, tick_s=analysis.sessions[0].tick_s)

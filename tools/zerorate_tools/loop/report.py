@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from .analysis import Analysis
 from .confounding import label
 from .intervals import block_bootstrap, rms
-from .judge import judge
+from .judge import residuals, rms_dps
 from .model import slots
 from .single import WEAKER
 from .unexplained import measure_next, not_excluded, what_is_known
@@ -89,11 +91,11 @@ def _steps(analysis):
                 "effect": label(f.candidate),
                 "sources": f.candidate.sources,
                 "parameters": _parameters(own),
-                "coefficients": {s["source"]: s["coefficient_dps"] for s in own},
+                "coefficients": {s.term.source: list(s.coefficient_dps) for s in own},
                 "confidence": analysis.confidence(i),
-                "before_mdps": _mdps(before.after_dps),
-                "after_mdps": _mdps(after.after_dps),
-                "ci95_mdps": _interval(after.residual_after),
+                "before_mdps": _mdps(rms_dps(before)),
+                "after_mdps": _mdps(rms_dps(after)),
+                "ci95_mdps": _interval(after),
                 "p_value": f.decision.p_value,
                 "confounded_with": f.confounded_with,
                 "likelihood_ratio": round(f.decision.ratio, 2),
@@ -107,8 +109,8 @@ def _steps(analysis):
 
 
 def _parameters(own):
-    skip = ("effect", "coefficient_dps")
-    return [{k: v for k, v in s.items() if k not in skip and v not in (None, "none")} for s in own]
+    rows = [s.term.to_dict() for s in own]
+    return [{k: v for k, v in row.items() if v not in (None, "none")} for row in rows]
 
 
 def _said(found):
@@ -120,12 +122,11 @@ def _said(found):
     return f"{kind} of {sources}"
 
 
-def _after(analysis, effects: int):
-    """The judgement of the first so many effects alone."""
-    from dataclasses import replace
-
+def _after(analysis, effects: int) -> list[np.ndarray]:
+    """Residuals of the locked part under the first so many effects alone."""
     found = analysis.selection.found[:effects]
-    return judge(replace(analysis.selection, found=found), analysis.locked)
+    some = replace(analysis.selection, found=found, bends=min(effects, analysis.selection.bends))
+    return [r for r, _ in residuals(some, analysis.locked)]
 
 
 def _events(analysis):

@@ -49,7 +49,7 @@ def _running_middle(rate, quiet, window):
             out[:, a] = np.nanmedian(rate[:, a])
             continue
         values = rate[at, a]
-        middle = median_filter(values, min(window, len(values) | 1), mode="nearest")
+        middle = median_filter(values, min(window, len(values) | 1), mode="reflect")
         out[:, a] = np.interp(np.arange(len(rate)), at, middle)
     return out
 

@@ -158,9 +158,11 @@ class _Reader:
                 self.scales.odr_hz > 2.0
             )
             bad["temperature-jump"][0] &= self.samples > len(frame)
-        for name, mask in bad.items():
-            self.faults[name] += int(mask.sum())
-        return ~np.logical_or.reduce(list(bad.values()))
+        seen = np.zeros(len(frame), bool)
+        for name, mask in bad.items():  # a sample counts once, for the first of its faults
+            self.faults[name] += int((mask & ~seen).sum())
+            seen |= mask
+        return ~seen
 
     def _mean(self, name):
         total, count = self.sums.get(name, self.size), self.sums.get(f"{name} count", self.size)

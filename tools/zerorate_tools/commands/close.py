@@ -1,0 +1,32 @@
+"""`zerorate close`: find what the model lacks, add it, and say what is left."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+
+def add_parser(subparsers) -> None:
+    """Register the sub-command."""
+    parser = subparsers.add_parser(
+        "close",
+        help="find effects that the model lacks, and correct them",
+        description="Each LOG is one power-on of one device. One of them is held out and looked at "
+        "once, at the end; with a single LOG, stretches of its time are.",
+    )
+    parser.add_argument("logs", type=Path, nargs="+", metavar="LOG")
+    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder to write")
+    parser.add_argument("--holdout", metavar="LOG", help="which to hold out (default: the last)")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Close the loop and print what was found."""
+    from ..loop.close import close
+    from ..loop.words import in_words
+    from ..progress import progress
+
+    with progress("reading", len(arguments.logs)) as advance:
+        result = close(arguments.logs, arguments.out, arguments.holdout, advance)
+    print(in_words(result))
+    print(f"written: {arguments.out}")
