@@ -7,9 +7,9 @@ from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050
 from zerorate_i2c.mpu6050 import MPU6050
 
 
-def recording(rows, first=0):
-    """rows samples, all words different, each word spanning more than its low byte."""
-    return [[257 * (7 * row + word + 1) % 30000 for word in range(7)] for row in range(first, rows)]
+def recording(rows):
+    """rows samples, all words different, their high bytes changing as they go."""
+    return [[1000 * word + 3 * row for word in range(7)] for row in range(rows)]
 
 
 class Bench:

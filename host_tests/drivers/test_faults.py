@@ -79,7 +79,47 @@ def test_a_burst_is_one_sample_even_when_the_chip_samples_in_its_middle(bench):
     for _ in range(20):
         bench.read()
         words = list(bench.sample)
-        assert len({(word - 257 * place) % 30000 for place, word in enumerate(words)}) == 1
+        assert len({word - 1000 * place for place, word in enumerate(words)}) == 1
+
+
+class TestAChipWithoutShadowRegisters:
+    """A clone that changes its data registers while they are read."""
+
+    @pytest.fixture
+    def clone(self, make_bench):
+        rows = [[250 + row % 12 for _ in range(7)] for row in range(2000)]
+        for row in rows:
+            row[0] += 1
+        bench = make_bench(source=rows)
+        bench.chip.shadowed = False
+        return bench
+
+    def tear(self, clone, at_byte):
+        """One read in which the chip samples after at_byte."""
+        steps = []
+
+        def step(i):
+            if i == at_byte and not steps:
+                steps.append(clone.chip.step())
+
+        clone.bus.between_bytes = step
+        clone.read()
+        clone.bus.between_bytes = None
+        return list(clone.sample)
+
+    @pytest.mark.parametrize("at_byte", [0, 2, 6, 8, 12])
+    def test_a_torn_word_is_read_again_and_counted(self, clone, at_byte):
+        clone.read()
+        for _ in range(100):
+            assert max(abs(word - 256) for word in self.tear(clone, at_byte)) < 20
+        assert clone.imu.torn > 5
+
+    def test_motion_is_read_again_and_not_counted(self, make_bench):
+        bench = make_bench(source=[[300 * row + word for word in range(7)] for row in range(50)])
+        for row in range(50):
+            bench.read()
+            assert list(bench.sample) == [300 * row + word for word in range(7)]
+        assert bench.imu.torn == 0
 
 
 def test_a_brown_out_is_found_by_the_next_read_back(make_bench):

@@ -45,6 +45,7 @@ def test_a_read_fills_seven_signed_words(make_bench):
 
 
 def test_a_read_is_one_burst(bench):
+    bench.read()
     before = bench.bus.transfers
     bench.read()
     assert bench.bus.transfers == before + 1

@@ -110,7 +110,7 @@ class Bench:
     def detections(self) -> int:
         """A number that grows with every sign of trouble that anything gave."""
         fifo = self.fifo.overflows + self.fifo.misalignments if self.fifo else 0
-        return self.signs + self.errors + fifo + self.imu.bus_errors
+        return self.signs + self.errors + fifo + self.imu.bus_errors + self.imu.torn
 
     def _read(self) -> None:
         if self.fifo:
@@ -196,11 +196,11 @@ def frozen_data(bench: Bench) -> None:
 
 def torn_words(bench: Bench) -> None:
     """A clone whose data registers change in the middle of a word, until a word is torn."""
-    before = bench.watch.false_samples
-    while bench.watch.false_samples == before:
-        at_byte = 8 + 2 * (bench.now % 3)
+    before = bench.imu.torn + bench.watch.false_samples
+    while bench.imu.torn + bench.watch.false_samples == before:
+        pending = [8 + 2 * (bench.now % 3)]
         bench.chip.shadowed = False
-        bench.bus.between_bytes = lambda i, at=at_byte: bench.chip.step() if i == at else None
+        bench.bus.between_bytes = lambda i, at=pending: i in at and bench.chip.step() and at.clear()
         bench.run(1)
         bench.bus.between_bytes = None
         bench.chip.shadowed = True
