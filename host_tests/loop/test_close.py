@@ -171,3 +171,23 @@ def test_a_steady_turn_is_not_stillness(tmp_path):
     write_recording(Recording(columns, Scales("MPU-6050", 20.0, 131.0), "turning"), path)
     still = still_ticks(read_ticks(path))
     assert not still[5:55].any() and still[70:290].all()
+
+
+def test_two_sessions_leave_one_to_choose_on_and_one_to_judge_by(hysteresis):
+    analysis = load(hysteresis[:2])
+    assert [s.name for s in analysis.train] == ["session-1"]
+    assert "thermal-hysteresis" in [f.candidate.kind for f in analysis.selection.found]
+
+
+def test_long_recordings_with_long_gaps_get_longer_blocks(hysteresis, tmp_path):
+    rng = np.random.default_rng(3)
+    n = 8 * 3600
+    columns = {"t_us": np.arange(n, dtype=np.int64) * 1_000_000}
+    for name in ("gx", "gy", "gz"):
+        columns[name] = rng.normal(0, 20, n).astype(np.int32)
+    keep = (np.arange(n) // 1800) % 2 == 0
+    columns = {k: v[keep] for k, v in columns.items()}
+    path = tmp_path / "gaps.parquet"
+    write_recording(Recording(columns, SCALES.__class__("MPU-6050", 1.0, 13100.0), "gaps"), path)
+    sessions, _ = sessions_of([read_ticks(path)])
+    assert sessions[0].blocks <= 250

@@ -6,14 +6,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .blocks import block_seconds, session_of
+from .blocks import sessions_from
 from .floor import floor_dps
 from .gate import CannotClose, GateReport, enough, same_settings, usable_channels
 from .judge import Judgement, judge
 from .line import deployed
 from .select import Selection, select
 from .sessions import Session
-from .single import split
+from .single import pieces, split
 from .ticks import Ticks
 
 
@@ -56,7 +56,7 @@ def analyse(
     else:
         at = len(sessions) - 1 if holdout is None else holdout
         train, locked = [s for i, s in enumerate(sessions) if i != at], [sessions[at]]
-        selection = select(train)
+        selection = select(train, pieces(train[0]) if len(train) == 1 else None)
     judgement = judge(selection, locked)
     whole = [*selection.straight, *selection.terms]
     return Analysis(
@@ -68,7 +68,7 @@ def sessions_of(ticks: list[Ticks]) -> tuple[list[Session], GateReport]:
     """Gate recordings and make them sessions of equal blocks. Raises CannotClose."""
     gate = GateReport({t.name: t.faults for t in ticks})
     same_settings(ticks)
-    sessions = [session_of(t, block_seconds(ticks)) for t in ticks]
+    sessions = sessions_from(ticks)
     kept = []
     for s in sessions:
         try:

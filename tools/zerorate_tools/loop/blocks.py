@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from .gram import can_be_bridged
 from .sessions import Session
 from .still import still_ticks
 from .ticks import Ticks
@@ -11,7 +12,7 @@ from .ticks import Ticks
 BLOCK_S = 20.0
 _WANTED_BLOCKS = 150
 _MOST_BLOCKS = 1500
-_MOST_ALONE = 250
+_MOST_WITH_GAPS = 250
 _LEAST_STILL = 0.25
 
 
@@ -21,11 +22,24 @@ def block_seconds(ticks: list[Ticks]) -> float:
     20 s; shorter where the longest session would have fewer than 150 of them, longer where it would
     have more than 1500. One recording alone, which is cut into parts with gaps, gets at most 250.
     """
-    tick_s = max(t.tick_s for t in ticks)
     longest = max(len(t.count) * t.tick_s for t in ticks)
-    most = _MOST_BLOCKS if len(ticks) > 1 else _MOST_ALONE
-    want = max(min(BLOCK_S, longest / _WANTED_BLOCKS), longest / most)
-    return tick_s * max(1, int(np.ceil(want / tick_s - 1e-9)))
+    most = _MOST_BLOCKS if len(ticks) > 1 else _MOST_WITH_GAPS
+    return _whole_ticks(ticks, max(min(BLOCK_S, longest / _WANTED_BLOCKS), longest / most))
+
+
+def sessions_from(ticks: list[Ticks]) -> list[Session]:
+    """Sessions of equal blocks; at most 250 where one has long gaps, which cost their cube."""
+    sessions = [session_of(t, block_seconds(ticks)) for t in ticks]
+    if all(can_be_bridged(s.available) for s in sessions):
+        return sessions
+    longest = max(s.blocks * s.block_s for s in sessions)
+    block_s = _whole_ticks(ticks, max(sessions[0].block_s, longest / _MOST_WITH_GAPS))
+    return [session_of(t, block_s) for t in ticks]
+
+
+def _whole_ticks(ticks, want_s):
+    tick_s = max(t.tick_s for t in ticks)
+    return tick_s * max(1, int(np.ceil(want_s / tick_s - 1e-9)))
 
 
 def session_of(ticks: Ticks, block_s: float) -> Session:

@@ -99,15 +99,18 @@ def _contrasts(n: int) -> np.ndarray:
 _BRIDGE, _BRIDGED_SHARE = 5, 0.1
 
 
+def can_be_bridged(available: np.ndarray) -> bool:
+    """Whether the blocks missing are few and apart."""
+    edges = np.flatnonzero(np.diff(np.r_[0, ~available, 0].astype(int)))
+    longest = (edges[1::2] - edges[::2]).max(initial=0)
+    return bool(longest <= _BRIDGE and (~available).mean() <= _BRIDGED_SHARE)
+
+
 def whitener(available: np.ndarray) -> Whitener:
     """The cheapest one that the gaps allow."""
     if available.all():
         return Whitener(available)
-    edges = np.flatnonzero(np.diff(np.r_[0, ~available, 0].astype(int)))
-    longest = (edges[1::2] - edges[::2]).max()
-    if longest <= _BRIDGE and (~available).mean() <= _BRIDGED_SHARE:
-        return BridgedWhitener(available)
-    return GappyWhitener(available)
+    return BridgedWhitener(available) if can_be_bridged(available) else GappyWhitener(available)
 
 
 @dataclass

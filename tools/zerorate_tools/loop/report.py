@@ -14,6 +14,8 @@ from .model import slots
 from .single import WEAKER
 from .unexplained import measure_next, not_excluded, what_is_known
 
+#: To be replaced where the firmware's kernels make the prediction.
+MEASURED_BY = "float reference of the effect slots and the line, block means"
 CAUSE_UNKNOWN = "time since power-on; cause not identified"
 
 
@@ -23,6 +25,7 @@ def report(analysis: Analysis) -> dict:
     low, high = block_bootstrap(j.residual_after, rms)
     return {
         "split": _split(analysis),
+        "measured_by": MEASURED_BY,
         "floor_mdps": _mdps(analysis.floor_dps),
         "before_mdps": _mdps(j.before_dps),
         "after_mdps": _mdps(j.after_dps),

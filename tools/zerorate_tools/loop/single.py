@@ -39,14 +39,19 @@ def split(session: Session) -> tuple[Session, Session, list[Session]]:
     for first, last in _LOCKED:
         locked |= (at >= first) & (at < last)
         near |= (at >= first - _GAP_SHARE) & (at < last + _GAP_SHARE)
-    train = ~near
-    pieces = np.array_split(np.flatnonzero(train), _FOLDS)
+    train = _only(session, ~near, session.name)
+    return train, _only(session, locked, session.name), pieces(train)
+
+
+def pieces(session: Session) -> list[Session]:
+    """Five pieces of what a session has, with gaps, to leave out in turn."""
+    n = session.blocks
+    parts = np.array_split(np.flatnonzero(session.available), _FOLDS)
     gap = max(1, int(_GAP_SHARE * n / 2))
-    folds = [
+    return [
         _only(session, np.isin(np.arange(n), p[gap:-gap]), f"{session.name} part {i + 1}")
-        for i, p in enumerate(pieces)
+        for i, p in enumerate(parts)
     ]
-    return _only(session, train, session.name), _only(session, locked, session.name), folds
 
 
 def bend_gains(folds: list[Session], terms, candidate) -> np.ndarray:
