@@ -69,6 +69,16 @@ def test_the_sample_clock_keeps_the_rate_that_the_registers_give():
     assert chip.samples_made == 100
 
 
+def test_a_shorter_period_set_in_mid_sample_loses_no_time():
+    chip = FakeMPU6050()
+    for register, value in ((0x6B, 1), (0x1A, 3), (0x19, 99)):
+        chip.write(register, value)
+    chip.advance_us(chip.start_up_us + 80000)
+    chip.write(0x19, 9)
+    chip.advance_us(100000)
+    assert chip.samples_made == 11
+
+
 def test_no_sample_is_made_during_start_up():
     chip = FakeMPU6050()
     chip.write(0x6B, 1)

@@ -48,6 +48,10 @@ def test_a_thousand_frames_of_the_fifo_under_heap_lock(micropython):
     assert run(micropython, "fifo_without_heap.py") == "1000 True 0 4"
 
 
+def test_two_thousand_interrupts_under_heap_lock(micropython):
+    assert run(micropython, "data_ready_without_heap.py") == "1000 1000"
+
+
 def frames(x86, source):
     """{function: words of its frame} as the x86 interpreter's compiler prints them."""
     command = [*x86.launcher, str(x86.executable), "-v", "-v", "-v", str(source)]

@@ -50,11 +50,10 @@ class FakeMPU6050:
     def __init__(self, source=None, part="MPU-6050", who_am_i=None):
         if part not in PARTS:
             raise ValueError("no part is called {}; known: {}".format(part, ", ".join(PARTS)))
-        ranges, chip_id, self._pwr_reset, self._config_reset, size, start_up_us, shift = PARTS[part]
+        ranges, chip_id, self._pwr_reset, self._config_reset, size, start_up_us = PARTS[part]
         self.part = part
         self.who_am_i = chip_id if who_am_i is None else who_am_i
         self.start_up_us = start_up_us
-        self.fs_shift = shift
         self._fifo_bytes = size
         self.samples_made = 0
         self.shadowed = True
@@ -103,7 +102,7 @@ class FakeMPU6050:
         """Let us microseconds pass; awake and started up, the sample clock ticks in them."""
         while us > 0 and not self.asleep:
             waiting = self.start_up_us - self._awake_us
-            passed = min(us, waiting if waiting > 0 else self.period_us - self._phase_us)
+            passed = min(us, waiting if waiting > 0 else max(0, self.period_us - self._phase_us))
             us -= passed
             self._awake_us += passed
             if waiting <= 0:
