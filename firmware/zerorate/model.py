@@ -17,7 +17,7 @@ Q24 and 36 remainder, 37 decay's and 38, 39 value Q24.
 
 from array import array
 
-from .model_file import LOADED, NO_MODEL, UNREADABLE, compare, fill, judge, texts
+from .model_file import IMPOSSIBLE, LOADED, NO_MODEL, UNREADABLE, compare, fill, judge, texts
 
 try:
     from micropython import const
@@ -75,6 +75,9 @@ class EffectModel:
             reason = fill(self.e, data, sensor)
         if reason == LOADED:
             self.channels = texts(data)[1 : 1 + data[9]]
+            if len(self.channels) < data[9]:
+                reason = IMPOSSIBLE
+        if reason == LOADED:
             self.power_on()
             self.e[0] = data[6]
         self.reason = reason

@@ -180,7 +180,7 @@ def bounded(e, a):
     """Say whether every number of the slot keeps the kernels within 31 bits."""
     for f in (a, a + 12):
         most = max(abs(e[f + 1] - e[f + 3]), abs(e[f + 2] - e[f + 3]))
-        if not -8 <= e[f + 4] <= 23 or e[f + 1] > e[f + 2]:
+        if not -8 <= e[f + 4] <= 24 or e[f + 1] > e[f + 2]:
             return False
         if (most << e[f + 4] if e[f + 4] >= 0 else most >> -e[f + 4]) > 1 << 24:
             return False
@@ -200,11 +200,14 @@ def bounded(e, a):
 
 
 def texts(data):
-    """The texts of a whole model: sensor, channels, what each slot corrects."""
+    """The texts of a whole model: sensor, channels, what each slot corrects; none if not UTF-8."""
     at = _BODY + 12 * data[7] + 120 * data[6] + 36 * data[8]
     found = []
-    while at < len(data) - 4:
-        end = at + 1 + data[at]
-        found.append(bytes(data[at + 1 : end]).decode())
-        at = end
+    try:
+        while at < len(data) - 4:
+            end = at + 1 + data[at]
+            found.append(bytes(data[at + 1 : end]).decode())
+            at = end
+    except ValueError:
+        return ()
     return tuple(found)

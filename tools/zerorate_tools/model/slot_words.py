@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -75,8 +75,7 @@ def _most(words: Sequence[int]) -> int:
 
 def _largest_shift(most: int) -> int:
     """The largest shift that keeps `most` within 2^24."""
-    shift = _Q - most.bit_length()
-    return shift + 1 if most << (shift + 1) == 1 << _Q and shift >= -1 else shift
+    return _Q - (most - 1).bit_length()
 
 
 def _shift(term: Term, source: Sequence[int], knot_q8: float | None) -> int:
@@ -87,6 +86,8 @@ def _shift(term: Term, source: Sequence[int], knot_q8: float | None) -> int:
         if _memory(term) in MEMORIES[2:]:
             low, high = -(source[2] - source[1]), source[2] - source[1]
         if knot_q8 is not None:
+            if abs(knot_q8) > 2 * most:
+                raise CannotDeploy(f"the knot of an effect of {term.source} is far off its range")
             low, high = 0, max(1, math.ceil(high - knot_q8))
         most = max(most, abs(low), abs(high))
     return _largest_shift(most)
@@ -95,6 +96,8 @@ def _shift(term: Term, source: Sequence[int], knot_q8: float | None) -> int:
 def _memory(term: Term) -> str:
     if term.lag_mode != "none" and term.memory != "none":
         raise CannotDeploy(f"an effect of {term.source} has both a lag and a memory; use two")
+    if term.lag_mode != "none" and not term.lag_s > 0:
+        raise CannotDeploy(f"an effect of {term.source} has a lag of {term.lag_s:g} s")
     return term.lag_mode if term.lag_mode != "none" else term.memory
 
 
@@ -261,18 +264,23 @@ def _numbers(term: Term) -> list[str]:
 def _shortest(slot: Slot, name: str, is_same: Callable[[Slot], bool]) -> Slot:
     """The slot with the number of that name in as few digits as mean the same."""
     value = getattr(slot.term, name)
-    for digits in range(1, 18):
-        shorter: dict[str, Any] = {name: float(f"{value:.{digits}g}")}
+    for number in _shorter(value):
+        shorter: dict[str, Any] = {name: number}
         trial = replace(slot, term=replace(slot.term, **shorter))
         if is_same(trial):
             return trial
     return slot
 
 
+def _shorter(value: float) -> Iterator[float]:
+    yield 0.0
+    yield from (float(f"{value:.{digits}g}") for digits in range(1, 18))
+
+
 def _shortest_of(exact, axis: int, slot: Slot, is_same: Callable[[Slot], bool]) -> Slot:
-    for digits in range(1, 18):
+    for number in _shorter(exact[axis]):
         values = list(exact)
-        values[axis] = float(f"{exact[axis]:.{digits}g}")
+        values[axis] = number
         trial = replace(slot, coefficient_dps=tuple(values))
         if is_same(trial):
             return trial

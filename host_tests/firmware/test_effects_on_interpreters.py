@@ -1,0 +1,83 @@
+"""Effect slots give the same on every interpreter, and take nothing from the heap."""
+
+from array import array
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from zerorate import Sensor, effects
+from zerorate.model import EffectModel
+from zerorate_tools.loop.basis import Term
+from zerorate_tools.model import Binding, Slot, build_model, encoded
+
+from .simulated_sources import SCALES
+
+_HERE = Path(__file__).parent
+UPDATES = 4000
+TEMP = ("temp", 20.0, 45.0, 32.0)
+SLOTS = [
+    Slot(Term(*TEMP, lag_mode="rate", lag_s=20.0), (0.3, -0.2, 0.1)),
+    Slot(Term(*TEMP, lag_mode="lag", lag_s=300.0, power=3, decay_s=900.0), (1e-4, 2e-4, 0.0)),
+    Slot(Term(*TEMP, memory="backlash", width=2.0, knot=0.3), (0.3, -0.2, 0.1)),
+    Slot(Term(*TEMP, memory="peak", power=2), (0.01, -0.02, 0.005)),
+    Slot(Term("rate_x", -200.0, 200.0, second="temp", second_lo=0, second_hi=60), (1e-3, 0, 1e-4)),
+    Slot(Term("vib", 0.0, 0.2), (1.0, -2.0, 3.0), table=(0, 0.1, 0.3, 0.2, 0, -1, 1, 0.5, 0)),
+    Slot(Term("vdd_mv", 4900.0, 5100.0, 5000.0, delay_s=90.0, power=2), (1e-4, 2e-5, 0.0)),
+    Slot(Term("time", 0.0, 900.0), (1e-4, 2e-5, 0.0)),
+]
+
+
+@pytest.fixture(scope="module")
+def model_bin():
+    return encoded(build_model(SLOTS, SCALES, binding=Binding(0x68, 0, 0, 3)))
+
+
+@pytest.fixture(scope="module")
+def on_host(model_bin):
+    """(UPDATES, 3) effects and the final array, by CPython."""
+    model = EffectModel()
+    assert model.load(model_bin, Sensor(4.0)) == 0
+    state, frame, out = array("i", [0] * 64), array("i", [0] * 7), []
+    did = set()
+    for k in range(UPDATES):
+        frame[:] = array("i", [(k * (i + 3) * 7919 >> 3) % 9001 - 4500 for i in range(7)])
+        frame[3] = k * 3 - 6000
+        model.channel("vdd_mv", 5000 + k % 97)
+        effects.sense(state, model.e, frame, 3000000 if k % 211 == 0 else 250000, int(k % 13 > 0))
+        out.append(state[61:64])
+        did |= {i for i in range(len(SLOTS)) if model.e[112 + 40 * i + 39]}
+    assert did == set(range(len(SLOTS)))
+    return np.array(out), np.array(model.e)
+
+
+@pytest.fixture(scope="module")
+def on_interpreter(repository, model_bin):
+    @cache
+    def run(runtime, kernels):
+        result = runtime.run(
+            _HERE / "on_micropython" / "effects_without_heap.py",
+            [kernels],
+            modules=[repository / "firmware"],
+            files_in={"model.bin": model_bin},
+            files_out=["out.bin"],
+            check=True,
+        )
+        words = np.frombuffer(result.files["out.bin"], "<i4")
+        return words[: 3 * UPDATES].reshape(-1, 3), words[3 * UPDATES :]
+
+    return run
+
+
+def test_the_trace_is_of_many_values(on_host):
+    assert len(np.unique(on_host[0], axis=0)) > 500
+
+
+def test_bytecode_gives_what_cpython_gives(micropython, on_interpreter, on_host):
+    for one, other in zip(on_interpreter(micropython, "plain"), on_host):
+        np.testing.assert_array_equal(one, other)
+
+
+def test_viper_gives_what_cpython_gives(viper_runtime, on_interpreter, on_host):
+    for one, other in zip(on_interpreter(viper_runtime, "viper"), on_host):
+        np.testing.assert_array_equal(one, other)

@@ -1,0 +1,285 @@
+"""model.json and model.bin are exact twins; what does not belong to a device is refused by name."""
+
+import json
+from dataclasses import replace
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from zerorate import Sensor, model_file
+from zerorate.model import EffectModel
+from zerorate_tools.cli import main
+from zerorate_tools.errors import BadModel
+from zerorate_tools.loop.basis import Term
+from zerorate_tools.model import (
+    Binding,
+    CannotDeploy,
+    Slot,
+    build_model,
+    decoded,
+    encoded,
+    from_json,
+    read_model,
+    to_json,
+    write_model,
+)
+from zerorate_tools.model.words import differences
+from zerorate_tools.recordings import Scales
+
+SCALES = Scales("MPU-6050", 100.0, 131.0, 16384.0, 340.0, 36.53)
+BINDING = Binding(0x68, 0, 0, 3)
+DEVICE = bytes([0x68, 0, 0, 3])
+SLOTS = [
+    Slot(Term("temp", 20, 45, 32.5, power=2), (0.001, -0.002, 0.0003), "temperature-quadratic"),
+    Slot(Term("temp", 20, 45, 32.5, lag_mode="rate", lag_s=20), (0.3, -0.2, 0.1), "thermal-rate"),
+    Slot(Term("one", decay_s=240), (0.05, 0.1, -0.1), "power-on-transient"),
+    Slot(Term("temp", 20, 45, 30), (0.1, 0, 0), table=(0, 0.25, 0.5, 0.7, 1, 0.5, 0, -0.5, -1)),
+    Slot(Term("load", 0, 250, 100, delay_s=150, power=2), (1e-6, 2e-6, -1e-5), "load"),
+    Slot(Term("vdd_mv", 4900, 5100, 5000, second="temp", second_lo=20, second_hi=45), (1e-5,) * 3),
+]
+
+
+@pytest.fixture
+def model():
+    return build_model(SLOTS, SCALES, binding=BINDING)
+
+
+@pytest.fixture
+def files(model, tmp_path):
+    return write_model(model, tmp_path)
+
+
+def test_numbers_stay_as_they_were_written(model):
+    assert model.slots == tuple(SLOTS)
+    assert model.channels == ("load", "vdd_mv")
+
+
+def finite(lo, hi):
+    return st.floats(lo, hi, allow_nan=False, allow_subnormal=False)
+
+
+@st.composite
+def any_slot(draw):
+    source = draw(st.sampled_from(["temp", "acc_x", "vib", "time", "one", "vdd_mv", "rate_z"]))
+    largest = {"temp": 80, "acc_x": 2, "vib": 4, "time": 90000, "rate_z": 250}.get(source, 1e6)
+    lo, hi = sorted(draw(st.tuples(finite(-largest, largest), finite(-largest, largest))))
+    lo, hi = lo + 0.0, hi + 0.0  # no negative zero
+    fields = {} if source == "one" else {"lo": lo, "hi": hi, "centre": draw(finite(lo, hi))}
+    remembers = draw(st.sampled_from(["", "lag", "difference", "rate", "backlash", "peak"]))
+    if remembers in ("lag", "difference", "rate"):
+        fields.update(lag_mode=remembers, lag_s=draw(finite(8, 7200)))
+    elif remembers:
+        fields.update(memory=remembers, width=draw(finite(0, largest)))
+    if draw(st.booleans()):
+        fields.update(knot=draw(finite(-largest / 4, largest / 4)))
+    if draw(st.booleans()):
+        fields.update(decay_s=draw(finite(40, 14400)))
+    if draw(st.booleans()):
+        fields.update(second="temp", second_lo=0.0, second_hi=60.0, second_centre=30.1)
+    fields.update(power=draw(st.integers(1, 3)), power_first=draw(st.booleans()))
+    coefficients = draw(st.tuples(*[finite(-1e-3, 1e-3)] * 3))
+    return Slot(Term(source, **fields), coefficients, draw(st.sampled_from(["", "kink", "\u00e9"])))
+
+
+@given(slots=st.lists(any_slot(), max_size=8), gyro=finite(10.0, 2000.0), tick_s=finite(0.5, 20.0))
+@settings(max_examples=60, deadline=None)
+def test_json_and_bytes_are_exact_twins_of_any_model(slots, gyro, tick_s):
+    try:
+        model = build_model(slots, replace(SCALES, gyro_lsb_per_dps=gyro), tick_s=tick_s)
+    except CannotDeploy:
+        return
+    data = encoded(model)
+    assert decoded(data) == model
+    assert from_json(to_json(model)) == model
+    assert encoded(from_json(to_json(decoded(data)))) == data
+    sensor = Sensor(100.0, gyro)
+    assert EffectModel().load(data, sensor) == model_file.LOADED
+
+
+def test_what_is_built_differs_from_what_was_wanted_by_rounding_alone():
+    wanted = Slot(Term("temp", 20.123456, 45, 32.5, lag_mode="lag", lag_s=123.456789), (1 / 3,) * 3)
+    built = build_model([wanted], SCALES).slots[0]
+    assert built.term.lo == pytest.approx(20.123456, abs=1e-5)
+    assert built.term.lag_s == pytest.approx(123.456789, rel=3e-5)
+    assert built.coefficient_dps == pytest.approx((1 / 3,) * 3, rel=2e-6)
+
+
+def test_the_two_files_are_the_same_model(files, model):
+    text, data = files
+    assert (text.name, data.name) == ("model.json", "model.bin")
+    assert read_model(text) == read_model(data) == model
+
+
+def load(data, sensor=None, binding=DEVICE):
+    return EffectModel().load(data, sensor or Sensor(), binding)
+
+
+def test_the_firmware_takes_what_was_made_for_it(model):
+    held = EffectModel()
+    assert held.load(encoded(model), Sensor(), DEVICE) == model_file.LOADED
+    assert held.channels == ("load", "vdd_mv")
+    assert held.e[0] == len(SLOTS)
+    assert not held.channel("humidity", 3)
+
+
+@pytest.mark.parametrize(
+    ("sensor", "binding", "reason"),
+    [
+        (Sensor(), bytes([0x70, 0, 0, 3]), model_file.OTHER_CHIP),
+        (Sensor(), bytes([0x68, 1, 0, 3]), model_file.OTHER_RANGE),
+        (Sensor(), bytes([0x68, 0, 2, 3]), model_file.OTHER_RANGE),
+        (Sensor(), bytes([0x68, 0, 0, 4]), model_file.OTHER_FILTER),
+        (Sensor(gyro_lsb_per_dps=65.5), None, model_file.OTHER_RANGE),
+        (Sensor(accel_lsb_per_g=8192.0), None, model_file.OTHER_RANGE),
+        (Sensor(temp_lsb_per_degc=333.87), None, model_file.OTHER_SCALE),
+        (Sensor(temp_offset_degc=21.0), None, model_file.OTHER_SCALE),
+    ],
+)
+def test_the_firmware_refuses_another_device_by_name(model, sensor, binding, reason):
+    assert load(encoded(model), sensor, binding) == reason
+    assert len(model_file.REASONS) == 12
+
+
+def test_a_binding_that_was_not_known_fits_any_device():
+    data = encoded(build_model(SLOTS, SCALES))
+    assert load(data, binding=bytes([0x99, 1, 2, 6])) == model_file.LOADED
+
+
+def test_every_cut_and_every_turned_bit_is_refused(model):
+    data = encoded(model)
+    cuts = {load(data[:n]) for n in range(len(data))}
+    assert cuts == {model_file.NO_MODEL, model_file.TRUNCATED}
+    seen = set()
+    for bit in range(8 * len(data)):
+        turned = bytearray(data)
+        turned[bit // 8] ^= 1 << bit % 8
+        seen.add(load(turned))
+        if bit % 7 == 0:
+            with pytest.raises(BadModel):
+                decoded(bytes(turned))
+    refused = {model_file.NO_MODEL, model_file.OTHER_VERSION, model_file.TRUNCATED}
+    assert seen == refused | {model_file.DAMAGED}
+
+
+@given(noise=st.binary(max_size=300), at=st.integers(0, 1200))
+@settings(max_examples=60, deadline=None)
+def test_bytes_of_any_kind_with_a_right_checksum_never_raise(noise, at):
+    import struct
+    import zlib
+
+    data = bytearray(encoded(build_model(SLOTS, SCALES)))[:-4]
+    data[at : at + len(noise)] = noise
+    data[4:6] = struct.pack("<H", len(data) + 4)
+    whole = bytes(data) + struct.pack("<I", zlib.crc32(data))
+    assert 0 <= load(whole, binding=None) < len(model_file.REASONS)
+    try:
+        assert encoded(decoded(whole)) == whole
+    except BadModel:
+        pass
+
+
+def test_a_file_that_is_not_there_is_a_reason_and_no_error(tmp_path):
+    held = EffectModel()
+    assert held.load_file(str(tmp_path / "none.bin"), Sensor()) == model_file.UNREADABLE
+    assert held.e[0] == 0
+
+
+def test_a_refused_model_leaves_none(model):
+    held = EffectModel()
+    held.load(encoded(model), Sensor())
+    held.load(encoded(model), Sensor(), bytes([1, 0, 0, 3]))
+    assert held.e[0] == 0
+
+
+@pytest.mark.parametrize(
+    ("slots", "why"),
+    [
+        ([SLOTS[0]] * 9, "room for 8 effect slots"),
+        ([SLOTS[4]] * 3, "room for 2 delays"),
+        ([SLOTS[3]] * 3, "room for 2 tables"),
+        ([replace(SLOTS[3], table=(2.0,) * 9)], "within -1..1"),
+        ([replace(SLOTS[0], coefficient_dps=(1e3, 0, 0))], "could move the rate by"),
+        ([Slot(Term("temp", lag_mode="lag", lag_s=1e9), (1e-3,) * 3)], "too long"),
+        ([Slot(Term("x", lag_mode="lag", lag_s=9, memory="peak"), (1e-6,) * 3)], "both a lag"),
+    ],
+)
+def test_what_does_not_fit_the_slots_says_so(slots, why):
+    with pytest.raises(CannotDeploy, match=why):
+        build_model(slots, SCALES)
+
+
+def test_a_source_without_a_scale_says_so():
+    with pytest.raises(CannotDeploy, match="scales have none"):
+        build_model(SLOTS[:1], Scales("G", 100.0, 131.0))
+
+
+def broken_json(model, **changes):
+    values = json.loads(to_json(model))
+    for path, value in changes.items():
+        *parents, last = path.split("__")
+        at = values
+        for parent in parents:
+            at = at[int(parent) if parent.isdigit() else parent]
+        at[int(last) if last.isdigit() else last] = value
+    return json.dumps(values)
+
+
+@pytest.mark.parametrize(
+    ("changes", "where"),
+    [
+        ({"format": "png"}, "no effect model"),
+        ({"version": 2}, "version 2"),
+        ({"tick_us": "soon"}, "tick_us"),
+        ({"scales__gyro_lsb_per_dps": -1}, "scales"),
+        ({"binding__chip_id": 4000}, "binding"),
+        ({"inputs__0__shift": 99}, "inputs"),
+        ({"slots__1__lag_mode": "sideways"}, "slot 2: lag_mode"),
+        ({"slots__0__coefficient_dps": [1, 2]}, "slot 1: coefficient_dps"),
+        ({"slots__2__decay_s": -5}, "slot 3: decay_s"),
+        ({"slots__0__power": 7}, "slot 1: power"),
+    ],
+)
+def test_a_wrong_entry_is_named(model, changes, where):
+    with pytest.raises(BadModel, match=where):
+        from_json(broken_json(model, **changes))
+
+
+def test_show_says_what_a_model_corrects(files, capsys):
+    assert main(["model", "show", str(files[1])]) == 0
+    shown = capsys.readouterr().out
+    assert "2. thermal-rate: temp less 32.5 degC, its rate a second over 20 s" in shown
+    assert "load less 100, 150 s ago, to the power of 2" in shown
+    assert "the application gives: load, vdd_mv" in shown
+
+
+def test_check_asks_the_firmware(files, capsys):
+    assert main(["model", "check", str(files[1]), "--chip-id", "0x68"]) == 0
+    assert main(["model", "check", str(files[0]), "--chip-id", "0x70"]) == 2
+    assert "model.json: refused by the firmware: the model was made for another chip" in (
+        capsys.readouterr().err
+    )
+
+
+def test_check_finds_a_twin_that_is_none(files, model, capsys):
+    other = replace(model, slots=model.slots[:2])
+    files[1].write_bytes(encoded(build_model(other.slots, SCALES, binding=BINDING)))
+    assert main(["model", "check", str(files[0])]) == 2
+    assert "not the twin of model.bin" in capsys.readouterr().err
+
+
+def test_diff_says_what_differs_and_only_that(files, model, tmp_path, capsys):
+    assert main(["model", "diff", *map(str, files)]) == 0
+    assert "the same to the last bit" in capsys.readouterr().out
+    changed = replace(SLOTS[0], coefficient_dps=(0.001, -0.0021, 0.0003))
+    other = build_model([changed, *SLOTS[1:]], SCALES, binding=BINDING)
+    (tmp_path / "b").mkdir()
+    write_model(other, tmp_path / "b")
+    assert main(["model", "diff", str(files[0]), str(tmp_path / "b" / "model.bin")]) == 1
+    assert differences(model, other) == capsys.readouterr().out.splitlines()
+    assert len(differences(model, other)) == 1
+    assert "-0.002, 0.0003) and (0.001, -0.0021" in differences(model, other)[0]
+
+
+def test_a_missing_file_is_one_line(capsys, tmp_path):
+    assert main(["model", "show", str(tmp_path / "model.bin")]) == 2
+    assert "no such file" in capsys.readouterr().err
