@@ -2,7 +2,6 @@
 
 from array import array
 
-from .explain import explain
 from .kernels import estimators, step
 from .settings import Sensor, settings
 
@@ -20,7 +19,7 @@ LIMITS = {
     "segment_s": 2.5,
     "still_dps": 0.3,
     "still_g": 0.03,
-    "turn_dps": 0.06,
+    "turn_dps": 0.03,
     "change_dps": 0.08,
     "slew_dps_per_s": 0.5,
     "range_dps": 40.0,
@@ -43,6 +42,7 @@ LIMITS = {
     "walk_least_dps": 0.0003,
     "walk_most_dps": 0.05,
     "turn_on_dps": 0.1,
+    "slope_dps_per_degc": 0.02,
     "motion_most_dps": 0.15,
     "motion_full_dps": 0.01,
 }
@@ -172,4 +172,6 @@ class Corrector:
 
     def explain(self):
         """Return a sentence or two on what is being learned, or why nothing is."""
+        from .explain import explain  # words that take no heap until somebody asks
+
         return explain(self.state, self.settings, self.sensor)

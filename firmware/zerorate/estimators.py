@@ -38,10 +38,12 @@ _ORDER = const(6)
 _ESTIMATORS = const(32)
 
 _SCRATCH = const(7)
+_LEAST = const(80)
 _LEARN_TEMP = const(52)
 
 _FIRST_SHORT = const(14)
 _BINS = const(16)
+_LITERAL = const(21)
 _SHORT = const(24)
 _WORDS = const(26)
 _STEP_LSB = const(27)
@@ -139,18 +141,74 @@ def protected(s: ptr32, c: ptr32, a: int, e: int) -> int:
     return 0
 
 
-def victim(s: ptr32, c: ptr32, a: int, e: int) -> int:
-    """Return the long-term estimator that the short-term one `e` may replace, or `e` itself."""
-    s[_SCRATCH] = third(s, a, s[e])
+def outermost(s: ptr32, c: ptr32, a: int, e: int) -> int:
+    """Return 1 if no other long-term estimator is colder, or none is hotter."""
+    colder = 1
+    hotter = 1
+    d = a + c[_FIRST_LONG]
+    while d < a + c[_END]:
+        if s[d] != _FREE and s[d] < s[e]:
+            colder = 0
+        if s[d] > s[e]:
+            hotter = 0
+        d += c[_WORDS]
+    return colder | hotter
+
+
+def distance(s: ptr32, c: ptr32, a: int, e: int) -> int:
+    """Return how far the nearest other long-term estimator's temperature is from that of `e`."""
+    nearest = 0xFFFFF
+    d = a + c[_FIRST_LONG]
+    while d < a + c[_END]:
+        gap = s[d] - s[e]
+        if gap < 0:
+            gap = -gap
+        if d != e and gap < nearest:
+            nearest = gap
+        d += c[_WORDS]
+    return nearest
+
+
+def most_crowded(s: ptr32, c: ptr32, a: int, e: int) -> int:
+    """Return the unprotected long-term estimator with the nearest neighbour, or `e` itself.
+
+    After minutes at a temperature more samples tell nothing new of it, but a temperature that
+    nobody remembers has to be guessed: the default keeps them apart, and the outermost ones.
+    """
+    found = e
+    s[_LEAST] = distance(s, c, a, e)
+    d = a + c[_FIRST_LONG]
+    while d < a + c[_END]:
+        if distance(s, c, a, d) < s[_LEAST] and outermost(s, c, a, d) == 0:
+            if protected(s, c, a, d) == 0:
+                s[_LEAST] = distance(s, c, a, d)
+                found = d
+        d += c[_WORDS]
+    return found
+
+
+def poorest(s: ptr32, c: ptr32, a: int, e: int) -> int:
+    """Return the unprotected long-term estimator with fewest samples, fewer than `e`, or `e`."""
     found = e
     d = a + c[_FIRST_LONG]
     while d < a + c[_END]:
-        if s[d] == _FREE:
-            return d
         if s[d + 3] < s[found + 3] and protected(s, c, a, d) == 0:
             found = d
         d += c[_WORDS]
     return found
+
+
+def victim(s: ptr32, c: ptr32, a: int, e: int) -> int:
+    """Return the long-term estimator that the short-term one `e` may replace, or `e` itself."""
+    s[_SCRATCH] = third(s, a, s[e])
+    d = a + c[_FIRST_LONG]
+    while d < a + c[_END]:
+        if s[d] == _FREE:
+            return d
+        d += c[_WORDS]
+    if c[_LITERAL]:
+        return poorest(s, c, a, e)
+    return most_crowded(s, c, a, e)
 
 
 def copy(s: ptr32, c: ptr32, to: int, e: int):

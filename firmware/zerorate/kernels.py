@@ -3,8 +3,8 @@
 import sys
 
 try:
-    # viper loads are unsigned in 64-bit words, and CPython has no viper
-    if sys.maxsize >> 31:
+    # viper loads are unsigned in 64-bit words; what loads no native code has no viper either
+    if sys.maxsize >> 31 or not getattr(sys.implementation, "_mpy", 0) >> 10:
         raise ImportError
     from .viper import estimators, histogram, step
 

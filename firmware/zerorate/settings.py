@@ -118,7 +118,9 @@ def estimators_of(c, sensor, short, long, document, limits):
     c[29] = max(2, int(limits["promote_s"] * rate))
     c[30] = max(16, min(1 << 28, int(limits["halve_after_s"] * rate)))
     c[31] = max(2, int(limits["fit_s"] * rate))
-    c[32] = 0xFFFFF // (c[25] - 1) if document else max(16, min(8192, int(limits["counted_s"] * rate)))
+    c[32] = (
+        0xFFFFF // (c[25] - 1) if document else max(16, min(8192, int(limits["counted_s"] * rate)))
+    )
     c[42] = 0
     while (int(degree * 16) >> (c[42] + 1)) >= 8:
         c[42] += 1
@@ -141,5 +143,7 @@ def recent_of(c, sensor, limits):
     c[41] = squared(limits["walk_most_dps"] * lsb * 256, 1 << 23)
     c[44] = max(1, int(limits["turn_dps"] * lsb * 256))
     c[45] = squared(limits["turn_on_dps"] * lsb * 16)
+    slope = limits["slope_dps_per_degc"] * lsb / (sensor.temp_lsb_per_degc or 1000.0)
+    c[50] = max(1, min(4095, int(slope * 65536)))
     c[48] = max(1, min(8191, int(limits["motion_most_dps"] * lsb * 64)))
     c[49] = int(min(1 << 29, 256 * squared(limits["motion_full_dps"] * lsb * 64)))

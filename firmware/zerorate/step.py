@@ -20,7 +20,7 @@ from .estimators import learn
 from .fit import centre, lean, settle, weigh
 from .fixed import root
 from .guard import check
-from .recent import absorb, grown_q8, hand_over
+from .recent import absorb, beyond_q8, grown_q8, hand_over
 from .stillness import gather, judge
 
 _SCRATCH = const(7)
@@ -57,6 +57,7 @@ _PIECES = const(12)
 _AXIS_WORDS = const(13)
 _ALL = const(25)
 _FORETOLD_Q8 = const(44)
+_FLOOR_Q8 = const(37)
 _STALE_LSB = const(43)
 _MOST_SIGMA_Q6 = const(48)
 _FULL_WEIGHT_Q12 = const(49)
@@ -93,7 +94,9 @@ def publish(s: ptr32, c: ptr32, a: int, axis: int):
     if s[_SOURCE + axis] == 0:
         s[_OUT_Q8 + axis] = bias
     s[_SOURCE + axis] = s[a + _FROM] if s[a + _FROM] else s[a + _KIND]
-    bias = grown_q8(s, a)
+    # flicker noise is common to all rests: no mean of theirs is better known than that
+    bias = grown_q8(s, a) + (c[_FLOOR_Q8] << 1)
+    bias += beyond_q8(s, c, a)
     if bias < 0x3FFFFF:
         bias = root(bias << 8)
     else:

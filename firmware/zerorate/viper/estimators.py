@@ -39,10 +39,12 @@ _ORDER = const(6)
 _ESTIMATORS = const(32)
 
 _SCRATCH = const(7)
+_LEAST = const(80)
 _LEARN_TEMP = const(52)
 
 _FIRST_SHORT = const(14)
 _BINS = const(16)
+_LITERAL = const(21)
 _SHORT = const(24)
 _WORDS = const(26)
 _STEP_LSB = const(27)
@@ -151,20 +153,84 @@ def protected(s_, c_, a: int, e: int) -> int:
 
 
 @micropython.viper
+def outermost(s: ptr32, c: ptr32, a: int, e: int) -> int:
+    """Return 1 if no other long-term estimator is colder, or none is hotter."""
+    colder = 1
+    hotter = 1
+    d = a + c[_FIRST_LONG]
+    while d < a + c[_END]:
+        if s[d] != _FREE and s[d] < s[e]:
+            colder = 0
+        if s[d] > s[e]:
+            hotter = 0
+        d += c[_WORDS]
+    return colder | hotter
+
+
+@micropython.viper
+def distance(s: ptr32, c: ptr32, a: int, e: int) -> int:
+    """Return how far the nearest other long-term estimator's temperature is from that of `e`."""
+    nearest = 0xFFFFF
+    d = a + c[_FIRST_LONG]
+    while d < a + c[_END]:
+        gap = s[d] - s[e]
+        if gap < 0:
+            gap = -gap
+        if d != e and gap < nearest:
+            nearest = gap
+        d += c[_WORDS]
+    return nearest
+
+
+@micropython.viper
+def most_crowded(s_, c_, a: int, e: int) -> int:
+    """Return the unprotected long-term estimator with the nearest neighbour, or `e` itself.
+
+    After minutes at a temperature more samples tell nothing new of it, but a temperature that
+    nobody remembers has to be guessed: the default keeps them apart, and the outermost ones.
+    """
+    s = ptr32(s_)
+    c = ptr32(c_)
+    found = e
+    s[_LEAST] = int(distance(s_, c_, a, e))
+    d = a + c[_FIRST_LONG]
+    while d < a + c[_END]:
+        if int(distance(s_, c_, a, d)) < s[_LEAST] and int(outermost(s_, c_, a, d)) == 0:
+            if int(protected(s_, c_, a, d)) == 0:
+                s[_LEAST] = int(distance(s_, c_, a, d))
+                found = d
+        d += c[_WORDS]
+    return found
+
+
+@micropython.viper
+def poorest(s_, c_, a: int, e: int) -> int:
+    """Return the unprotected long-term estimator with fewest samples, fewer than `e`, or `e`."""
+    s = ptr32(s_)
+    c = ptr32(c_)
+    found = e
+    d = a + c[_FIRST_LONG]
+    while d < a + c[_END]:
+        if s[d + 3] < s[found + 3] and int(protected(s_, c_, a, d)) == 0:
+            found = d
+        d += c[_WORDS]
+    return found
+
+
+@micropython.viper
 def victim(s_, c_, a: int, e: int) -> int:
     """Return the long-term estimator that the short-term one `e` may replace, or `e` itself."""
     s = ptr32(s_)
     c = ptr32(c_)
     s[_SCRATCH] = int(third(s_, a, s[e]))
-    found = e
     d = a + c[_FIRST_LONG]
     while d < a + c[_END]:
         if s[d] == _FREE:
             return d
-        if s[d + 3] < s[found + 3] and int(protected(s_, c_, a, d)) == 0:
-            found = d
         d += c[_WORDS]
-    return found
+    if c[_LITERAL]:
+        return int(poorest(s_, c_, a, e))
+    return int(most_crowded(s_, c_, a, e))
 
 
 @micropython.viper

@@ -27,6 +27,9 @@ _WEIGHT = const(1)
 _READING = const(12)
 _FROM = const(13)
 _BEFORE_Q8 = const(23)
+_FIT_LOW_Q4 = const(19)
+_FIT_HIGH_Q4 = const(20)
+_FIT_POINTS = const(22)
 _OFFSET_Q8 = const(24)
 _VARIANCE_Q8 = const(25)
 _WALK_Q16 = const(26)
@@ -34,6 +37,7 @@ _SUSPECT = const(27)
 _AGE_MS = const(28)
 _KIND = const(30)
 
+_TEMP = const(47)
 _NOISE_Q8 = const(49)
 _LEARN_TEMP = const(52)
 # the fit's scratch words, free while a segment is absorbed
@@ -45,6 +49,7 @@ _GATE_Q4 = const(38)
 _INSIST = const(39)
 _WALK_LEAST_Q16 = const(40)
 _WALK_MOST_Q16 = const(41)
+_SLOPE_Q16 = const(50)
 
 
 @micropython.viper
@@ -54,6 +59,22 @@ def grown_q8(s: ptr32, a: int) -> int:
     if seconds > 2047:
         seconds = 2047
     return s[a + _VARIANCE_Q8] + (((s[a + _WALK_Q16] >> 4) * seconds) >> 4)
+
+
+@micropython.viper
+def beyond_q8(s: ptr32, c: ptr32, a: int) -> int:
+    """Return the variance that this temperature adds where it lies outside the fitted range."""
+    d = (s[_TEMP] << 4) - s[a + _FIT_HIGH_Q4]
+    if d < 0:
+        d = s[a + _FIT_LOW_Q4] - (s[_TEMP] << 4)
+    if d < 0 or s[a + _FIT_POINTS] == 0:
+        return 0
+    if d > 0x3FFFF:
+        d = 0x3FFFF
+    d = (d * c[_SLOPE_Q16]) >> 16
+    if d > 0x3FFF:
+        d = 0x3FFF
+    return d * d
 
 
 @micropython.viper
@@ -106,7 +127,9 @@ def rewalk(s: ptr32, c: ptr32, a: int, excess: int):
     if age > 1023:
         age = 1023
     speed = (speed - s[a + _WALK_Q16]) >> 4
-    speed = speed * age // (age + 1024) << 4
+    age = age * age
+    age = age // ((age + 0x100000) >> 10)
+    speed = (speed * age >> 10) << 4
     s[a + _WALK_Q16] += speed
     if s[a + _WALK_Q16] < c[_WALK_LEAST_Q16]:
         s[a + _WALK_Q16] = c[_WALK_LEAST_Q16]

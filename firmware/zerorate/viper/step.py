@@ -21,7 +21,7 @@ from .estimators import learn
 from .fit import centre, lean, settle, weigh
 from .fixed import root
 from .guard import check
-from .recent import absorb, grown_q8, hand_over
+from .recent import absorb, beyond_q8, grown_q8, hand_over
 from .stillness import gather, judge
 
 _SCRATCH = const(7)
@@ -58,6 +58,7 @@ _PIECES = const(12)
 _AXIS_WORDS = const(13)
 _ALL = const(25)
 _FORETOLD_Q8 = const(44)
+_FLOOR_Q8 = const(37)
 _STALE_LSB = const(43)
 _MOST_SIGMA_Q6 = const(48)
 _FULL_WEIGHT_Q12 = const(49)
@@ -89,6 +90,7 @@ def correct(s: ptr32, c: ptr32, x: ptr32):
 def publish(s_, c_, a: int, axis: int):
     """Write the axis' bias, source and quality for the temperature of the latest window."""
     s = ptr32(s_)
+    c = ptr32(c_)
     bias = s[_TEMP]
     bias = int(curve_q8(s_, c_, a, bias)) + s[a + _OFFSET_Q8]
     if s[a + _KIND] == 0:
@@ -97,7 +99,9 @@ def publish(s_, c_, a: int, axis: int):
     if s[_SOURCE + axis] == 0:
         s[_OUT_Q8 + axis] = bias
     s[_SOURCE + axis] = s[a + _FROM] if s[a + _FROM] else s[a + _KIND]
-    bias = int(grown_q8(s_, a))
+    # flicker noise is common to all rests: no mean of theirs is better known than that
+    bias = int(grown_q8(s_, a)) + (c[_FLOOR_Q8] << 1)
+    bias += int(beyond_q8(s_, c_, a))
     if bias < 0x3FFFFF:
         bias = int(root(bias << 8))
     else:

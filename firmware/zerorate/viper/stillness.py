@@ -95,6 +95,10 @@ def gather(s: ptr32, c: ptr32, x: ptr32) -> int:
                 e = s[_EFFECT_Q8 - 4 + i]
                 s[_EFFECT_SUM - 4 + i] += e
             i += 1
+    else:
+        # the thermometer is read in motion as well, and one reading of it is noise
+        d = x[3] - s[_REFERENCE + 3]
+        s[_SUM + 3] += d
     if s[_N] < c[_WINDOW]:
         return 0
     return 1
@@ -193,8 +197,8 @@ def look(s_, c_) -> int:
     if s[_REST] == 0:
         return STILL
     s[_TIP_Q8] = int(tip_q8(s_, c_))
-    # gravity's two window means differ by noise alone: 18 = 2 x (3 sigma)^2
-    if s[_TIP_Q8] > c[_TIP_LIMIT_Q8] + 18 * (shake_q8 >> c[_SHIFT]):
+    # gravity's two window means differ by noise alone: 6 is three sigma of three axes together
+    if s[_TIP_Q8] > c[_TIP_LIMIT_Q8] + 6 * (shake_q8 >> c[_SHIFT]):
         return TURNING
     if s[_SEGMENT]:
         shake_q8 = int(change_q4(s_, c_))
