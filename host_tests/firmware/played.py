@@ -1,0 +1,39 @@
+"""Whole signals through the firmware that Numba compiled, for tests that need many readings."""
+
+import numpy as np
+from zerorate import Corrector, Sensor
+from zerorate_tools.replay.engines import engine
+from zerorate_tools.replay.samples import Frames
+
+ODR_HZ = 100.0
+LSB = 131.0
+NOISE_LSB = 6.5
+
+
+def rest(seconds, seed=1, bias_dps=(0.0, 0.0, 0.0), temp=0, odr_hz=ODR_HZ):
+    """(n, 7) float frames of a device at rest on its back, before rounding."""
+    n = int(seconds * odr_hz)
+    draw = np.random.default_rng(seed)
+    frames = np.zeros((n, 7))
+    frames[:, :3] = (0, 0, 16384) + draw.normal(0, 40, (n, 3))
+    frames[:, 3] = temp + draw.normal(0, 8, n)
+    frames[:, 4:] = np.asarray(bias_dps) * LSB + draw.normal(0, NOISE_LSB, (n, 3))
+    return frames
+
+
+def play(frames, corrector=None, dt_us=None, **options):
+    """(corrector, outcome) after the frames, rounded and held at the rails."""
+    corrector = corrector or Corrector(Sensor(), **options)
+    words = np.clip(np.rint(frames), -32768, 32767).astype(np.int32)
+    if dt_us is None:
+        dt_us = np.full(len(words), round(1e6 / corrector.sensor.odr_hz))
+    dt_us = np.asarray(dt_us, np.int32)
+    (outcome,) = engine("numba").run(corrector, [Frames(np.cumsum(dt_us), words, dt_us)])
+    return corrector, outcome
+
+
+def estimators(corrector):
+    """Every estimator's words of every axis, bytes: equal if nothing was learned between."""
+    c = corrector.settings
+    axes = (c[0] + axis * c[13] for axis in range(3))
+    return b"".join(corrector.state[a + 32 : a + c[15]].tobytes() for a in axes)

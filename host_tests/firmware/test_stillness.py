@@ -1,0 +1,106 @@
+"""What counts as a rest, and what explain() says where there is none."""
+
+import numpy as np
+import pytest
+from zerorate import Corrector, Sensor
+
+from .played import LSB, estimators, play, rest
+from .tolerances import LEARNED_LSB
+
+BIAS_DPS = (0.4, -0.3, 0.2)
+
+
+def turning(rate_dps, seconds=60, axis=0, seed=1):
+    """A device that turns at a constant rate about a level axis (0, 1) or the vertical (2)."""
+    frames = rest(seconds, seed, BIAS_DPS)
+    angle = np.radians(rate_dps) * np.arange(len(frames)) / 100
+    frames[:, 4 + axis] += rate_dps * LSB
+    if axis < 2:
+        frames[:, 2] += 16384 * (np.cos(angle) - 1)
+        frames[:, 1 - axis] += 16384 * np.sin(angle) * (1 if axis == 0 else -1)
+    return frames
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+@pytest.mark.parametrize("rate_dps", [-3, -1, -0.5, -0.1, 0.1, 0.5, 1, 3])
+def test_a_slow_turn_about_a_level_axis_is_never_learned(rate_dps, axis):
+    corrector, _ = play(rest(20, 7, BIAS_DPS))
+    for seed in range(3):
+        play(turning(rate_dps, 60, axis, seed), corrector)
+        assert corrector.bias_lsb(axis) == pytest.approx(BIAS_DPS[axis] * LSB, abs=LEARNED_LSB)
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+@pytest.mark.parametrize("rate_dps", [-3, -1, -0.5, -0.1, 0.1, 0.5, 1, 3])
+def test_a_slow_turn_from_power_on_is_learned_by_no_estimator(rate_dps, axis):
+    corrector, _ = play(rest(0.01))
+    before = estimators(corrector)
+    play(turning(rate_dps, 120, axis), corrector)
+    assert estimators(corrector) == before
+
+
+def test_a_turn_about_the_vertical_is_learned_once_it_insists():
+    corrector, _ = play(turning(0, 30, axis=2))
+    assert corrector.bias_lsb(2) == pytest.approx(0.2 * LSB, abs=LEARNED_LSB)
+    play(turning(1, 20, axis=2, seed=2), corrector)
+    assert corrector.bias_lsb(2) == pytest.approx(0.2 * LSB, abs=LEARNED_LSB)
+    assert "held back" in corrector.explain()
+    play(turning(1, 120, axis=2, seed=3), corrector)
+    assert corrector.bias_lsb(2) == pytest.approx(1.2 * LSB, abs=LEARNED_LSB)
+
+
+# Numbers of a sensor hub's own tests: 400 Hz, a bias of 150 mdps, 70 mdps of noise.
+
+
+def hub(seconds, seed=1):
+    frames = rest(seconds, seed, (0.15, 0.15, 0.15), odr_hz=400)
+    return frames, Corrector(Sensor(odr_hz=400.0))
+
+
+def test_a_hub_is_calibrated_within_20_s_to_20_mdps():
+    frames, corrector = hub(20)
+    frames[:, 4:] += np.random.default_rng(9).normal(0, 0.05 * LSB, (len(frames), 3))
+    play(frames, corrector)
+    for axis in range(3):
+        assert corrector.source(axis) > 0
+        assert abs(corrector.bias_lsb(axis) / LSB - 0.15) < 0.020
+
+
+@pytest.mark.parametrize("hz", [2.0, 2.1, 4.3])
+def test_a_sinusoid_of_550_mdps_is_no_rest(hz):
+    frames, corrector = hub(20)
+    wave = 0.55 * LSB * np.sin(2 * np.pi * hz * np.arange(len(frames)) / 400)
+    frames[:, 4:] += wave[:, None]
+    play(frames[:1], corrector)
+    before = estimators(corrector)
+    play(frames[1:], corrector)
+    assert estimators(corrector) == before
+    assert "the gyroscope sees motion" in corrector.explain()
+
+
+def test_a_reading_that_is_still_for_11_s_at_10_hz_is_learned():
+    frames = rest(11, 1, (0.15, 0.15, 0.15), odr_hz=10)
+    corrector, _ = play(frames, Corrector(Sensor(odr_hz=10.0)))
+    assert min(corrector.source(axis) for axis in range(3)) > 0
+
+
+def test_shaking_that_only_the_accelerometer_sees_is_said():
+    frames = rest(20)
+    frames[:, 0] += np.random.default_rng(4).normal(0, 1500, len(frames))
+    corrector, _ = play(frames)
+    assert corrector.source(0) == 0
+    assert "the accelerometer sees motion" in corrector.explain()
+
+
+def test_a_rest_is_said():
+    corrector, _ = play(rest(20))
+    assert "The device rests" in corrector.explain()
+
+
+def test_a_slow_turn_is_said():
+    said = set()
+    corrector, _ = play(rest(2))
+    for seed in range(12):
+        play(turning(0.5, 1, 0, seed), corrector)
+        said.add(corrector.explain().splitlines()[0])
+    assert "Nothing is learned: gravity turns, so the device turns slowly." in said
