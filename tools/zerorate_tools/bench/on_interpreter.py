@@ -1,6 +1,6 @@
 """Runs on a MicroPython: COUNT CALL KIND [REPEATS] as the C yardstick does.
 
-KIND is bytecode or viper. With REPEATS times.bin gets the fewest ns that each sample took.
+KIND is bytecode or viper. With REPEATS times.bin gets the fewest us that each sample took.
 """
 
 import sys
@@ -32,14 +32,14 @@ def drive(count, take, s, c, rows, x):
 
 
 def time_each(count, take, s, c, rows, x, fewest):
-    clock = time.time_ns
+    clock = time.ticks_us
     for i in range(count):
         for k in range(7):
             x[k] = rows[8 * i + 1 + k]
         dt = rows[8 * i]
         start = clock()
         take(s, c, x, dt)
-        spent = clock() - start
+        spent = time.ticks_diff(clock(), start)
         if spent < fewest[i]:
             fewest[i] = spent
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 from pathlib import Path
 
 
@@ -10,7 +11,63 @@ def add_parser(subparsers) -> None:
     """Register the sub-command and its benches."""
     parser = subparsers.add_parser("bench", help="measure what this project claims")
     benches = parser.add_subparsers(dest="bench", metavar="BENCH", required=True)
+    add_accuracy(benches)
+    add_cost(benches)
     add_faults(benches)
+
+
+def add_accuracy(benches) -> None:
+    """Register `bench accuracy`."""
+    parser = benches.add_parser("accuracy", help="the bias error beside everyone else's")
+    add_outputs(parser)
+    parser.set_defaults(run=run_accuracy)
+
+
+def add_cost(benches) -> None:
+    """Register `bench cost`."""
+    parser = benches.add_parser("cost", help="instructions, heap, sizes and replay speed")
+    add_outputs(parser)
+    parser.set_defaults(run=run_cost)
+
+
+def add_outputs(parser) -> None:
+    """The two places where a report can go."""
+    parser.add_argument("--out", type=Path, metavar="FILE", help="write Markdown, not print it")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures there too")
+
+
+def run_accuracy(arguments: argparse.Namespace) -> None:
+    """Measure and write."""
+    from ..bench.accuracy_report import STEPS, accuracy, in_markdown
+    from ..progress import progress
+
+    with progress("measuring accuracy", STEPS) as advance:
+        found = accuracy(advance)
+    write_report(arguments, in_markdown(found), found)
+
+
+def run_cost(arguments: argparse.Namespace) -> None:
+    """Measure and write."""
+    from ..bench.cost import STEPS, cost, in_markdown
+    from ..progress import progress
+
+    with progress("measuring cost", STEPS) as advance:
+        found = cost(advance)
+    write_report(arguments, in_markdown(found), found)
+
+
+def write_report(arguments: argparse.Namespace, text: str, found: dict) -> None:
+    """Print the Markdown or write it, and write the figures where they are wanted."""
+    from ..recordings.atomic import written_beside
+
+    if arguments.out is None:
+        print(text)
+    else:
+        with written_beside(arguments.out) as temporary:
+            temporary.write_text(text, encoding="utf-8")
+    if arguments.json is not None:
+        with written_beside(arguments.json) as temporary:
+            temporary.write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
 
 
 def add_faults(benches) -> None:

