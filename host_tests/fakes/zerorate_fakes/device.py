@@ -169,7 +169,7 @@ class FakeMPU6050:
         if register == _FIFO_R_W:
             self.fifo.put(value)
         if register == _ACCEL_CONFIG2 and self._size_chosen:
-            self.fifo = Fifo(512 << (value >> 6))
+            self.fifo = Fifo(min(self._fifo_bytes, 512 << (value >> 6)))
         if register == _USER_CTRL:
             value = self._user_control(value)
         self.registers[register] = value
