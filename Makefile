@@ -42,7 +42,7 @@ runtimes: $(VENV)/.dev node
 	-$(BIN)/zerorate runtimes get wasm x86 armhf x64 valgrind
 
 node: $(VENV)/.tools
-	@$(BIN)/zerorate runtimes node >/dev/null 2>&1 || \
+	-@$(BIN)/zerorate runtimes node >/dev/null 2>&1 || \
 		$(BIN)/python -m pip install --quiet -r requirements/node.txt
 
 # Without ensurepip (Debian's python3 without python3-venv) the machine's own pip fills the folder.
