@@ -5,6 +5,9 @@ from zerorate_tools.errors import ZerorateError
 from zerorate_tools.runtimes.frames import WORDS_ON_STACK, frame_words
 from zerorate_tools.viper_twins import hot_functions, kernel_files
 
+# What the user's object runs at every sample, outside the kernels.
+HOT_METHODS = {"corrector.py": ("update", "_ask_others"), "model.py": ("channel",)}
+
 
 @pytest.fixture(scope="module")
 def x86(find_runtime):
@@ -66,3 +69,9 @@ def test_every_hot_function_of_every_kernel_keeps_its_frame_on_the_stack(x86, re
         frames |= {f"{file.name} {name}": words[name] for name in hot_functions(file)}
     assert len(frames) > len(files) > 0
     assert {name: words for name, words in frames.items() if words > WORDS_ON_STACK} == {}
+
+
+@pytest.mark.parametrize("name", HOT_METHODS)
+def test_every_method_of_an_update_keeps_its_frame_on_the_stack(x86, repository, name):
+    words = frame_words(x86, repository / "firmware" / "zerorate" / name)
+    assert {m: words[m] for m in HOT_METHODS[name] if words[m] > WORDS_ON_STACK} == {}
