@@ -1,12 +1,11 @@
-"""What the curve over temperature does not explain lately: turn-on offset, lag, drift.
+"""What the curve over temperature does not explain lately: turn-on offset, lag, drift."""
 
-One number an axis, added to the learned curve: a random walk seen through the mean of every still
-segment, weighed by a scalar Kalman filter. How fast it walks is learned from how far each segment
-lies from what was expected. A segment that lies implausibly far is learned only when it insists:
-a constant turn about the vertical looks just like it, but does not last.
-
-Variances are LSB^2 in Q8, the walk LSB^2/s in Q16.
-"""
+# One number an axis, added to the learned curve: a random walk seen through the mean of every still
+# segment, weighed by a scalar Kalman filter. How fast it walks is learned from how far each segment
+# lies from what was expected. A segment that lies implausibly far is learned only when it insists:
+# a constant turn about the vertical looks just like it, but does not last.
+#
+# Variances are LSB^2 in Q8, the walk LSB^2/s in Q16.
 
 try:
     from micropython import const

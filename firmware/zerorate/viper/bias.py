@@ -1,12 +1,11 @@
 # Generated from zerorate/bias.py by `make viper`: edit that file, not this one.
-"""The bias at this temperature: which estimator, line or aggregate speaks for it.
-
-Document 000, paragraphs on the determination of the bias: the estimator of this temperature where
-it is stable and more stable than the fit, else the fit, else the temperature-independent one.
-"""
+"""The bias at this temperature: which estimator, line or aggregate speaks for it."""
 
 import micropython
 
+
+# Document 000, paragraphs on the determination of the bias: the estimator of this temperature where
+# it is stable and more stable than the fit, else the fit, else the temperature-independent one.
 
 try:
     from micropython import const

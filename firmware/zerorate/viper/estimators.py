@@ -1,21 +1,20 @@
 # Generated from zerorate/estimators.py by `make viper`: edit that file, not this one.
-"""The estimators of one axis: any temperature, short term and long term.
-
-Document 000, paragraphs on "bias estimators": estimator 0 takes every reading; 1..short are a
-least-recently-used cache of the latest temperatures; the others keep a wide range of temperatures.
-An estimator at word `e` of the state:
-
-    e      temperature it is for, raw LSB, or _FREE
-    e+1    mean temperature of its readings, raw LSB, Q4
-    e+2    its bias, LSB, Q8
-    e+3    readings it stands for
-    e+4..  its histogram
-
-The axis block at word `a` begins with what `corrector.py` names; the estimators follow it.
-"""
+"""The estimators of one axis: any temperature, short term and long term."""
 
 import micropython
 
+
+# Document 000, paragraphs on "bias estimators": estimator 0 takes every reading; 1..short are a
+# least-recently-used cache of the latest temperatures; the others keep a wide range of temperatures.
+# An estimator at word `e` of the state:
+#
+#     e      temperature it is for, raw LSB, or _FREE
+#     e+1    mean temperature of its readings, raw LSB, Q4
+#     e+2    its bias, LSB, Q8
+#     e+3    readings it stands for
+#     e+4..  its histogram
+#
+# The axis block at word `a` begins with what `corrector.py` names; the estimators follow it.
 
 try:
     from micropython import const

@@ -1,18 +1,17 @@
 # Generated from zerorate/fit.py by `make viper`: edit that file, not this one.
-"""The sample-weighted least-squares line through an axis' estimators, in integers.
-
-Document 000, "a least squares fit may be performed". `local` > 0 turns it into a line through the
-neighbourhood of one temperature: an estimator `d` away counts 1 / (1 + (d/local)^2) of its
-samples, and samples beyond `_COUNTED` add nothing, for then drift, not noise, is what is left.
-
-Temperatures are raw LSB in Q4, biases LSB in Q8. A fit runs in steps, each a bounded piece of work:
-weigh, centre (one a point), lean (one a point), settle. Distances over temperature are shifted
-left until the range fills 26 bits; the two sums of products float, for a point may weigh 65000
-times another.
-"""
+"""The sample-weighted least-squares line through an axis' estimators, in integers."""
 
 import micropython
 
+
+# Document 000, "a least squares fit may be performed". `local` > 0 turns it into a line through
+# the neighbourhood of one temperature: an estimator `d` away counts 1 / (1 + (d/local)^2) of its
+# samples, and samples beyond `_COUNTED` add nothing, for then drift, not noise, is what is left.
+#
+# Temperatures are raw LSB in Q4, biases LSB in Q8. A fit runs in steps, each a bounded piece of
+# work: weigh, centre (one a point), lean (one a point), settle. Distances over temperature are shifted
+# left until the range fills 26 bits; the two sums of products float, for a point may weigh 65000
+# times another.
 
 try:
     from micropython import const

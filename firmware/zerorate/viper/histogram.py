@@ -1,17 +1,16 @@
 # Generated from zerorate/histogram.py by `make viper`: edit that file, not this one.
-"""The adaptive histogram: few bins that crowd where the readings do.
-
-Document 000: "represents a plurality of gyroscope readings ... in a histogram", bin significance,
-"adapting bin widths". A histogram at word `h` of the state is
-
-    h .. h+bins           lower edge << 14 | population, the last one the upper edge of all
-    h+bins+1 .. h+2*bins  sum of the readings of each bin, LSB
-
-`readings` may come one by one (weight 1) or as the sum of `weight` readings of a still stretch.
-"""
+"""The adaptive histogram: few bins that crowd where the readings do."""
 
 import micropython
 
+
+# Document 000: "represents a plurality of gyroscope readings ... in a histogram", bin significance,
+# "adapting bin widths". A histogram at word `h` of the state is
+#
+#     h .. h+bins           lower edge << 14 | population, the last one the upper edge of all
+#     h+bins+1 .. h+2*bins  sum of the readings of each bin, LSB
+#
+# `readings` may come one by one (weight 1) or as the sum of `weight` readings of a still stretch.
 
 try:
     from micropython import const

@@ -1,0 +1,26 @@
+"""How much memory the firmware takes."""
+
+import subprocess
+from pathlib import Path
+
+from zerorate import Corrector
+
+from .tolerances import IMPORT_BYTES, STATE_BYTES
+
+
+def test_the_state_of_three_axes_stays_within_its_limit(capsys):
+    size = len(Corrector().state) * 4
+    with capsys.disabled():
+        print(f"\nstate of three axes: {size} bytes")
+    assert 0 < size <= STATE_BYTES
+
+
+def test_importing_the_firmware_takes_no_more_heap_than_it_may(find_runtime, repository, capsys):
+    wasm = find_runtime("wasm")
+    script = Path(__file__).parent / "on_micropython" / "heap_of_import.mjs"
+    command = [*wasm.node, script, wasm.package, repository / "firmware", "zerorate"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    taken = int(done.stdout)
+    with capsys.disabled():
+        print(f"\nheap of `import zerorate` on wasm: {taken} bytes")
+    assert 8192 < taken <= IMPORT_BYTES
