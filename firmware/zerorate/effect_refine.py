@@ -1,0 +1,259 @@
+"""Coefficients that go on learning on the board, off by default: another unit of the same part.
+
+A Kalman filter (R. E. Kalman, 1960) whose state is, for each axis, an offset that walks, a straight
+line over temperature, and how far each slot's coefficient is from the model's; the three axes have
+one covariance. It is told each still segment's rate less what the model's own effects say, so
+neither the turn-on offset nor the line is taken for an effect. No coefficient leaves the model's
+own by more than the bound. Numbers are those of real.py; words of `e`: see model.py.
+"""
+
+try:
+    from micropython import const
+except ImportError:
+
+    def const(value):
+        return value
+
+
+ptr32 = None
+
+
+from .real import add, divide, multiply, put, subtract, whole
+
+_ON = const(26)
+_BOUND_EIGHTHS = const(27)
+
+_TOTALS = const(42)
+_TEMP = const(47)
+
+_PHASE = const(582)
+_STATES = const(583)
+_RATE_Q8 = const(584)
+_FIRST_TEMP = const(587)
+_SEEN = const(588)
+_A = const(590)
+_B = const(592)
+_S = const(594)
+_ERROR = const(596)
+_PHI = const(602)
+_GAIN = const(622)
+_THETA = const(642)
+_P = const(702)
+_ROW = const(20)
+
+_SLOT = const(112)
+_WORDS = const(40)
+_SHIFT = const(23)
+_COEFFICIENT = const(24)
+_OWN = const(30)
+_INSTANT = const(33)
+_VALUE = const(39)
+
+_WARM_UP = const(64)
+_MOST_RATE = const(0x1FFFFF)
+# exponents of 2: variance of a segment's mean and of the offset's walk a segment, LSB^2
+_NOISE = const(-2)
+_WALK = const(-10)
+
+
+def mean_q8(total: int, n: int) -> int:
+    """Return total / n in Q8, for 0 < n < 2^20, within 2^21."""
+    sign = 1
+    if total < 0:
+        total = -total
+        sign = -1
+    if total // n > 8191:
+        return sign * _MOST_RATE
+    return sign * (((total // n) << 8) + ((total % n) << 8) // n)
+
+
+def observe(s: ptr32, e: ptr32, n: int):
+    """Take a still segment of n samples whose totals, less the effects, stand in s.
+
+    Nothing happens where refinement is off or the segment before is still at work in `refine`.
+    """
+    if e[_ON] == 0 or e[_PHASE]:
+        return
+    if e[_SEEN] == 0:
+        e[_FIRST_TEMP] = s[_TEMP]
+    put(e, _PHI, 1, 0)
+    i = s[_TEMP] - e[_FIRST_TEMP]
+    put(e, _PHI + 2, i, -8)
+    i = 0
+    while i < 3:
+        e[_RATE_Q8 + i] = mean_q8(s[_TOTALS + i], n)
+        i += 1
+    i = 2
+    while i < e[_STATES]:
+        n = _SLOT + (i - 2) * _WORDS
+        put(e, _PHI + 2 * i, e[n + _VALUE], -24)
+        if e[n + _INSTANT]:
+            put(e, _PHI + 2 * i, 0, 0)
+        i += 1
+    e[_PHASE] = 1
+
+
+def product(e: ptr32, to: int, a: int, b: int):
+    """Store at `to` the scalar product of the states at a and b."""
+    put(e, to, 0, 0)
+    i = e[_STATES]
+    while i > 0:
+        multiply(e, _A, a, b)
+        add(e, to, to, _A)
+        a += 2
+        b += 2
+        i -= 1
+
+
+def miss(e: ptr32, axis: int):
+    """Note by how much the axis' rate, with the learned effects, misses what the filter says."""
+    i = _THETA + axis * _ROW
+    product(e, _B, i, _PHI)
+    put(e, _A, e[_RATE_Q8 + axis], -8)
+    i = _ERROR + 2 * axis
+    subtract(e, i, _A, _B)
+    restore(e, axis, i)
+
+
+def put_learned(e: ptr32, a: int, axis: int):
+    """Store at _A how far the slot's coefficient is from the model's own, LSB at a value of 1."""
+    m = e[a + _COEFFICIENT + axis]
+    m -= e[a + _OWN + axis]
+    a = 10 - e[a + _SHIFT]
+    put(e, _A, m, a)
+
+
+def restore(e: ptr32, axis: int, to: int):
+    """Add at `to` what the learned part of the axis' coefficients has taken from the rate."""
+    a = _SLOT
+    i = _PHI + 4
+    while i < _PHI + 2 * e[_STATES]:
+        put_learned(e, a, axis)
+        multiply(e, _A, _A, i)
+        add(e, to, to, _A)
+        a += _WORDS
+        i += 2
+
+
+def believe(e: ptr32, i: int):
+    """Let state i of each axis, and its row of the covariance, learn from the misses."""
+    divide(e, _B, _GAIN + 2 * i, _S)
+    axis = 0
+    while axis < 3:
+        multiply(e, _A, _B, _ERROR + 2 * axis)
+        at = _THETA + axis * _ROW + 2 * i
+        add(e, at, at, _A)
+        axis += 1
+    at = _P + i * _ROW
+    i = 0
+    while i < e[_STATES]:
+        multiply(e, _A, _B, _GAIN + 2 * i)
+        put(e, _A, -e[_A], e[_A + 1])
+        add(e, at, at, _A)
+        at += 2
+        i += 1
+
+
+def bound(e: ptr32, a: int) -> int:
+    """Return how far a coefficient of the slot may go: a share of the model's largest."""
+    most = 0
+    i = 0
+    while i < 3:
+        m = e[a + _OWN + i]
+        if m < 0:
+            m = -m
+        if m > most:
+            most = m
+        i += 1
+    return (most >> 3) * e[_BOUND_EIGHTHS]
+
+
+def move(e: ptr32, a: int, state: int):
+    """Set the slot's coefficients to the model's own plus what was learned, within the bound."""
+    most = bound(e, a)
+    state = _THETA + 2 * state
+    shift = e[a + _SHIFT] - 10
+    i = 3
+    while i > 0:
+        d = whole(e, state, shift)
+        if d > most:
+            d = most
+        elif d < -most:
+            d = -most
+        e[a + _COEFFICIENT] = e[a + _OWN] + d
+        a += 1
+        state += _ROW
+        i -= 1
+
+
+def refine(e: ptr32):
+    """Do the next piece of learning from the latest segment; nothing when all is done."""
+    n = e[_STATES]
+    i = e[_PHASE] - 1
+    if i < 0:
+        return
+    e[_PHASE] += 1
+    if i < n:
+        if i == 0:
+            put(e, _A, 1, _WALK)
+            add(e, _P, _P, _A)
+        product(e, _GAIN + 2 * i, _P + i * _ROW, _PHI)
+    elif i == n:
+        product(e, _S, _GAIN, _PHI)
+        put(e, _A, 1, _NOISE)
+        add(e, _S, _S, _A)
+    elif i < n + 4:
+        miss(e, i - n - 1)
+    elif i < 2 * n + 4:
+        believe(e, i - n - 4)
+    else:
+        i = 2
+        while i < n and e[_SEEN] >= _WARM_UP:
+            move(e, _SLOT + (i - 2) * _WORDS, i)
+            i += 1
+        e[_PHASE] = 0
+        if e[_SEEN] < 0xFFFF:
+            e[_SEEN] += 1
+
+
+def renew(e: ptr32):
+    """Begin a power-on: the offset is as unknown as at first, all else is kept."""
+    e[_PHASE] = 0
+    e[_SEEN] = 0
+    i = 0
+    while i < e[_STATES]:
+        put(e, _P + 2 * i, 0, 0)
+        put(e, _P + i * _ROW, 0, 0)
+        i += 1
+    put(e, _P, 1, 24)
+    i = 0
+    while i < 3:
+        put(e, _THETA + i * _ROW, 0, 0)
+        i += 1
+
+
+def doubt(e: ptr32, a: int, p: int):
+    """Store at p the variance of the slot's coefficients: the bound is one sigma."""
+    m = bound(e, a)
+    a = 10 - e[a + _SHIFT]
+    put(e, _A, m, a)
+    multiply(e, p, _A, _A)
+
+
+def begin(e: ptr32, slots: int):
+    """Know nothing yet of any unit: each coefficient is the model's, give or take the bound."""
+    e[_STATES] = slots + 2
+    i = 0
+    while i < 30:
+        put(e, _THETA + 2 * i, 0, 0)
+        i += 1
+    i = 0
+    while i < 100:
+        put(e, _P + 2 * i, 0, 0)
+        i += 1
+    put(e, _P + _ROW + 2, 1, 6)
+    i = 0
+    while i < slots:
+        doubt(e, _SLOT + i * _WORDS, _P + (i + 2) * (_ROW + 2))
+        i += 1
+    renew(e)

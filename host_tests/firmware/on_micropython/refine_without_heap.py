@@ -1,0 +1,38 @@
+"""Refinement with the heap locked; writes the whole array. Argument: plain or viper."""
+
+import sys
+from array import array
+
+from micropython import heap_lock, heap_unlock
+from zerorate.model import EffectModel
+from zerorate.settings import Sensor
+
+if sys.argv[1] == "viper":
+    from zerorate.viper.effect_refine import observe, refine
+else:
+    from zerorate.effect_refine import observe, refine
+
+model = EffectModel()
+assert model.load_file("model.bin", Sensor(2.0)) == 0
+model.refine()
+state = array("i", [0] * 64)
+
+
+def drive():
+    e = model.e
+    for n in range(120):
+        for slot in range(e[0]):
+            e[112 + 40 * slot + 39] = (n * (slot + 3) * 7919 >> 2) % 40001 * 400 - 8000000
+        for axis in range(3):
+            state[42 + axis] = n * (axis + 5) * 104729 % 60013 - 20000
+        state[47] = n * 31 - 2000
+        observe(state, e, 64)
+        while e[582]:
+            refine(e)
+
+
+heap_lock()
+drive()
+heap_unlock()
+with open("out.bin", "wb") as file:
+    file.write(model.e)
