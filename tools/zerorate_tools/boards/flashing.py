@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from hashlib import sha256
 from importlib.util import find_spec
 from pathlib import Path, PurePosixPath
 
@@ -58,7 +59,15 @@ def _put(board, name: PurePosixPath, path: Path) -> str:
     for folder in reversed(name.parents[:-1]):
         if not board.fs_exists(str(folder)):
             board.fs_mkdir(str(folder))
-    if board.fs_exists(str(name)) and board.fs_readfile(str(name)) == data:
+    if _is_there(board, name, data):
         return "the same already"
     board.fs_writefile(str(name), data)
     return "written"
+
+
+def _is_there(board, name: PurePosixPath, data: bytes) -> bool:
+    """By its hash, which the board works out where it can."""
+    try:
+        return board.fs_hashfile(str(name), "sha256") == sha256(data).digest()
+    except FileNotFoundError:
+        return False
