@@ -42,7 +42,7 @@ def on_host(model_bin):
     did = set()
     for k in range(UPDATES):
         frame[:] = array("i", [(k * (i + 3) * 7919 >> 3) % 9001 - 4500 for i in range(7)])
-        frame[3] = k * 3 - 6000
+        frame[3] = 6000 - abs(k * 6 - 12000)
         model.channel("vdd_mv", 5000 + k % 97)
         effects.sense(state, model.e, frame, 3000000 if k % 211 == 0 else 250000, int(k % 13 > 0))
         out.append(state[61:64])

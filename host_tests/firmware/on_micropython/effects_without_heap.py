@@ -25,7 +25,7 @@ def drive(first):
         k = first + n
         for i in range(7):
             frame[i] = (k * (i + 3) * 7919 >> 3) % 9001 - 4500
-        frame[3] = k * 3 - 6000
+        frame[3] = 6000 - abs(k * 6 - 12000)
         model.channel("vdd_mv", 5000 + k % 97)
         sense(state, e, frame, 3000000 if k % 211 == 0 else 250000, 1 if k % 13 else 0)
         for i in range(3):
