@@ -1,8 +1,8 @@
 """Allan deviation of a rate, and the floor below which no bias model can go.
 
 IEEE Std 952-1997 Annex C (overlapped form after NIST SP 1065, 5.2.4). White noise falls as
-tau^-1/2, flicker is flat
-(0.664 of the bias instability), a random walk rises as tau^1/2; the lowest point is the floor.
+tau^-1/2, flicker is flat (0.664 of the bias instability), a random walk rises as tau^1/2; the
+lowest point is the floor.
 """
 
 from __future__ import annotations
@@ -39,9 +39,8 @@ def overlapping(
 
 @dataclass(frozen=True)
 class Noise:
-    """Noise of one axis in blocks of `block_s`, each in dps: white and walk are standard
-    deviations per block,
-    flicker is that of the white noise which a half-order integrator turns into it.
+    """Noise of one axis in blocks of `block_s`, each in dps: white and walk are standard deviations
+    per block, flicker is that of the white noise which a half-order integrator turns into it.
     """
 
     block_s: float

@@ -114,14 +114,14 @@ def _outcome(device, sessions, noise_dps):
         [f.confounded_with for f in found],
         [verdict.confidence(i) for i in range(len(found))],
         len(selection.steps),
-        verdict.excess.left,
-        verdict.before_rms / unit,
-        verdict.after_rms / unit,
+        bool(verdict.excess.left),
+        float(verdict.before_rms / unit),
+        float(verdict.after_rms / unit),
     )
 
 
 def real_sessions(device: Device):
-    """A quiet real recording cut into sessions, with simulated channels that mean nothing beside."""
+    """A quiet real recording cut into sessions, simulated channels that mean nothing beside."""
     from ..loop.sessions import Session
     from ..loop.simulated import BLOCK_S, TICKS, channels
 

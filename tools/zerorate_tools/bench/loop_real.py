@@ -1,4 +1,4 @@
-"""The loop on the real recordings: before, after, the floor, and a cubic over temperature beside it."""
+"""The loop on real recordings: before, after, the floor, and a cubic over temperature beside."""
 
 from __future__ import annotations
 

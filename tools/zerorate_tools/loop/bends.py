@@ -1,10 +1,9 @@
 """Curvature in temperature from one recording alone.
 
 One course of temperature cannot tell a bent bias from smooth drift; the part's data sheet can:
-every bias bends. So
-here, and only here, no noise steeper than a random walk is allowed, and what decides is how well
-pieces of the
-recording are predicted from the others. Such a bend is never more than tentative.
+every bias bends. So here, and only here, no noise steeper than a random walk is allowed, and what
+decides is how well pieces of the recording are predicted from the others. Such a bend is never more
+than tentative.
 """
 
 from __future__ import annotations

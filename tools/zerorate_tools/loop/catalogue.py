@@ -1,9 +1,7 @@
-"""What a bias can follow: a table of effects with grids of their parameters, and forms for any
-recorded channel.
+"""What a bias can follow: a table of effects, and forms for any recorded channel.
 
 To add an effect, add a row. A row is (kind, source, fields of the slot, grids of further fields);
-the slot is
-`basis.Term`. Grids are coarse: the parameters of what is found are refined afterwards.
+the slot is `basis.Term`. Grids are coarse: what is found is refined afterwards.
 """
 
 from __future__ import annotations

@@ -66,8 +66,7 @@ def named(c: Candidate, coefficients: np.ndarray) -> Candidate:
     """The candidate under the name that its refined parameters and (terms, 3) coefficients deserve.
 
     Rate and lag of temperature are one basis: below a time constant of 50 s it is called a rate. A
-    matrix on the
-    rates is a scale factor where its diagonal holds most of it.
+    matrix on the rates is a scale factor where its diagonal holds most of it.
     """
     if c.kind in ("thermal-rate", "thermal-lag"):
         slow = c.terms[0].lag_s > 50.0

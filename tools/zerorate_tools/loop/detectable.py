@@ -16,8 +16,8 @@ def smallest_dps(regression, nuisances, pool, tried) -> dict[str, float]:
     in ten.
 
     tried: function of a candidate, how many it pays for. What offset, straight line and bend take
-    is not counted.
-    The best of a kind's grid is named. Kinds that the sessions cannot show are absent.
+    is not counted. The best of a kind's grid is named. Kinds that the sessions cannot show are
+    absent.
     """
     single = [c for c in pool if len(c.terms) == 1]
     if not single:

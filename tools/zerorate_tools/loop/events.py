@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.stats import chi2
 
 from .decide import LEVEL, family_p
 from .gram import gram
@@ -30,7 +31,7 @@ def strongest(regression, terms) -> Step | None:
     """The step of the largest likelihood ratio in any session, or None where sessions are too
     short.
     """
-    best, tried = None, 0
+    best, tried, every = None, 0, []
     for s, session in enumerate(regression.sessions):
         last = session.blocks - _EDGE
         tried += max(0, last + 1 - _EDGE)
@@ -38,14 +39,18 @@ def strongest(regression, terms) -> Step | None:
         at = np.arange(_EDGE, last + 1, stride)
         if not len(at):
             continue
-        middle = at[_scores(regression, terms, s, at).argmax()]
+        coarse = _scores(regression, terms, s, at)
+        every.append(coarse)
+        middle = at[coarse.argmax()]
         near = np.arange(max(_EDGE, middle - stride), min(last, middle + stride) + 1)
         score = _scores(regression, terms, s, near)
         i = int(score.argmax())
         if best is None or score[i] > best.ratio:
             best = Step(s, int(near[i]), np.zeros(3), float(score[i]), 1.0)
     if best:
-        best.p_value = family_p(best.ratio, regression.y[0].shape[1], tried)
+        axes = regression.y[0].shape[1]
+        usual = np.median(np.concatenate(every)) / chi2.median(axes)
+        best.p_value = family_p(best.ratio / max(1.0, usual), axes, tried)
     return best
 
 

@@ -1,5 +1,5 @@
-"""Whether more is left than the noise of a part: something common to the axes, or smoother than
-any noise.
+"""Whether more is left than the noise of a part: something common to the axes, or smoother than any
+noise.
 """
 
 from __future__ import annotations

@@ -2,8 +2,7 @@
 session by session.
 
 Everything the loop asks for afterwards (likelihoods with the noise refitted, sessions left out,
-surrogates) is
-a sum of these over sessions.
+surrogates) is a sum of these over sessions.
 """
 
 from __future__ import annotations
@@ -74,8 +73,8 @@ class GappyWhitener(Whitener):
 
 
 class BridgedWhitener(Whitener):
-    """The same for a session with a few blocks missing: bridged by a straight line, in every
-    column alike.
+    """The same for a session with a few blocks missing: bridged by a straight line, in every column
+    alike.
     """
 
     def __init__(self, available: np.ndarray):
@@ -141,9 +140,7 @@ def _pairs(w: Whitener, left, right):
 
 
 def gram(whiteners: list[Whitener], y: list, z: list, x: list | None = None) -> Gram:
-    """Products of prepared columns, one entry of each list a session: y (N, A), z (N, J), x (N,
-    K).
-    """
+    """Products of prepared columns, a session an entry: y (N, A), z (N, J), x (N, K)."""
     x = x if x is not None else [np.zeros((len(v), 0)) for v in y]
     parts = []
     for w, ys, zs, xs in zip(whiteners, y, z, x):

@@ -21,8 +21,8 @@ _FIRST_STILL_S = 60.0
 
 @dataclass
 class Judgement:
-    """What the locked sessions say. *_dps: (3,) RMS; residual_*: (n, 3) of each locked session,
-    NaN where unscored.
+    """What the locked sessions say. *_dps: (3,) RMS; residual_*: (n, 3) of each locked session, NaN
+    where unscored.
     """
 
     before_dps: np.ndarray

@@ -1,9 +1,8 @@
-"""The straight line over temperature as the firmware's estimators learn it: equal weights, not
-the noise's.
+"""The straight line over temperature as the firmware's estimators learn it: equal weights, not the
+noise's.
 
 The loop's effects are fitted by generalised least squares; what is learned on the board is not, so
-before and after
-are both judged with an ordinary least-squares line on the rates less the effects.
+before and after are both judged with an ordinary least-squares line on the rates less the effects.
 """
 
 from __future__ import annotations
@@ -15,8 +14,8 @@ from .regression import predicted
 
 
 def ordinary(terms, sessions, effects=(), coefficients=None) -> np.ndarray:
-    """(terms, 3) dps per unit by least squares over blocks, an offset a session, effects
-    subtracted first.
+    """(terms, 3) dps per unit by least squares over blocks, an offset a session, effects subtracted
+    first.
     """
     x, y = [], []
     for s in sessions:

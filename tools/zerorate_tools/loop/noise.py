@@ -2,9 +2,8 @@
 steeper.
 
 Random walk is exactly diagonal in a DCT-II without its mean (the DCT-II diagonalises D'D of the
-first difference D),
-white noise too; flicker is taken as the square root of the random walk's spectrum, a Whittle
-approximation.
+first difference D), white noise too; flicker is taken as the square root of the random walk's
+spectrum, a Whittle approximation.
 """
 
 from __future__ import annotations
@@ -47,9 +46,7 @@ NO_STEEP = np.where(IS_STEEP, -1e12, 0.0)
 
 
 def frequency(n: int) -> np.ndarray:
-    """(n - 1,) 2 sin(pi k / 2n), k = 1..n-1: the DCT's frequencies as a first difference sees
-    them.
-    """
+    """(n - 1,) 2 sin(pi k / 2n), k = 1..n-1: the DCT's frequencies for a first difference."""
     return 2.0 * np.sin(np.pi * np.arange(1, n) / (2 * n))
 
 
@@ -64,7 +61,5 @@ def spectra(n: int) -> np.ndarray:
 
 
 def transform(columns: np.ndarray) -> np.ndarray:
-    """Orthonormal DCT-II along the first axis without its mean: a session's turn-on offset is
-    gone.
-    """
+    """Orthonormal DCT-II along the first axis, its mean (the turn-on offset) left out."""
     return dct(columns, axis=0, norm="ortho")[1:]

@@ -135,9 +135,7 @@ class Search:
         return [*self.straight, *bend, *self.terms()]
 
     def _ratios(self):
-        """Ratios beside the straight line alone (for choosing) and with the bend too (for
-        testing).
-        """
+        """Ratios beside the straight line (for choosing) and beside the bend too (for testing)."""
         r, groups = self.regression, [c.terms for c in self.pool]
         choose = r.gains([*self.straight, *self.terms()], groups).sum(axis=1)
         test = r.gains([*self.straight, *self.bend, *self.terms()], groups).sum(axis=1)

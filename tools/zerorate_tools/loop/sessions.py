@@ -1,5 +1,5 @@
-"""One power-on session of one device as the loop sees it: block means of the still rate, tick
-means of everything else.
+"""One power-on session of one device as the loop sees it: block means of the still rate, tick means
+of everything else.
 """
 
 from __future__ import annotations
@@ -13,10 +13,9 @@ import numpy as np
 class Session:
     """A power-on session.
 
-    rate_dps: (n, 3) mean rate of each block's still part, NaN where there is none.
-    weight: (n,) share of the block that was still, 0..1.
-    sources: name -> (n * ticks_per_block,) tick means, no NaN (gaps held), units as in effect-
-    slots.
+    rate_dps: (n, 3) mean rate of each block's still part, NaN where there is none. weight: (n,)
+    share of the block that was still, 0..1. sources: name -> (n * ticks_per_block,) tick means, no
+    NaN (gaps held), units as in effect- slots.
     """
 
     name: str

@@ -1,8 +1,8 @@
 """A fast simulated device at block level, for the loop's tests and its table of false alarms.
 
 Noise, temperature path and channels are drawn from a seed; an effect is scaled to a multiple of the
-noise's floor by
-what of it survives a refit of offset, T and T^2 (what those take is no news to any model).
+noise's floor by what of it survives a refit of offset, T and T^2 (what those take is no news to any
+model).
 """
 
 from __future__ import annotations
@@ -151,8 +151,8 @@ def simulate(
     hidden: float = 0.0,
     bare: bool = False,
 ) -> Device:
-    """A device. effects: (name of `shapes_of`, size in floors); hidden: size of a cause that is
-    not recorded.
+    """A device. effects: (name of `shapes_of`, size in floors); hidden: size of a cause that is not
+    recorded.
 
     bare: temperature only, no further channels.
     """

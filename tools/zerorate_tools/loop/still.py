@@ -12,11 +12,10 @@ _WINDOW_S = 900.0
 
 
 def still_ticks(ticks) -> np.ndarray:
-    """(m,) bool. Quiet: the rate's spread within a tick is near that of the quietest ticks.
-    Still: its mean is also
-    near the running middle of quiet ticks, so a steady turn does not count; a turn below 1 dps is
-    told by the
-    accelerometer alone, if its axis is not vertical."""
+    """(m,) bool. Quiet: the rate's spread within a tick is near that of the quietest ticks. Still:
+    its mean is also near the running middle of quiet ticks, so a steady turn does not count; a turn
+    below 1 dps is told by the accelerometer alone, if its axis is not vertical.
+    """
     there = ticks.count > 0
     if not there.any():
         return there

@@ -1,13 +1,10 @@
 """What irrelevant channels score on this device's own noise.
 
 A surrogate keeps the spectrum of some candidate's column in every session and loses its phase: its
-DCT coefficients
-are multiplied by random numbers. Surrogates are scored on what the candidate under test leaves, so
-a true effect
-does not raise them. On quiet real recordings, and wherever few slow coefficients decide, such
-ratios are above theory
-and have longer tails: a gamma distribution of their mean and variance takes the place of chi-
-squared.
+DCT coefficients are multiplied by random numbers. Surrogates are scored on what the candidate under
+test leaves, so a true effect does not raise them. On quiet real recordings, and wherever few slow
+coefficients decide, such ratios are above theory and have longer tails: a gamma distribution of
+their mean and variance takes the place of chi- squared.
 """
 
 from __future__ import annotations
