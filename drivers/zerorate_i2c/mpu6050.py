@@ -55,7 +55,10 @@ class MPU6050(Registers):
     The configuration is read back every check_every samples; a transfer is tried 1 + retries
     times. Raises ValueError for a value no part can take, OSError where no part, an unknown part
     or one that does not keep its configuration answers. part names the part where its WHO_AM_I
-    is of no genuine one, for example part="MPU-6500".
+    is of no genuine one, for example part="MPU-6500". clock has the functions of clock.py.
+
+    Counters: bus_errors, read_backs (of the configuration, right), restarts, suspects (frames that
+    are no measurement), repeats (samples read before), torn (read again and found different).
     """
 
     def __init__(
