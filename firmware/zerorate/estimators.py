@@ -1,7 +1,7 @@
 """The estimators of one axis: any temperature, short term and long term."""
 
 # Document 000, paragraphs on "bias estimators": estimator 0 takes every reading; 1..short are a
-# least-recently-used cache of the latest temperatures; the others keep a wide range of temperatures.
+# least-recently-used cache of the latest temperatures; the others keep a wide range of them.
 # An estimator at word `e` of the state:
 #
 #     e      temperature it is for, raw LSB, or _FREE

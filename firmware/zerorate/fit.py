@@ -5,9 +5,9 @@
 # samples, and samples beyond `_COUNTED` add nothing, for then drift, not noise, is what is left.
 #
 # Temperatures are raw LSB in Q4, biases LSB in Q8. A fit runs in steps, each a bounded piece of
-# work: weigh, centre (one a point), lean (one a point), settle. Distances over temperature are shifted
-# left until the range fills 26 bits; the two sums of products float, for a point may weigh 65000
-# times another.
+# work: weigh, centre (one a point), lean (one a point), settle. Distances over temperature are
+# shifted left until the range fills 26 bits; the two sums of products float, for a point may weigh
+# 65000 times another.
 
 try:
     from micropython import const

@@ -1,0 +1,150 @@
+"""The estimators of one axis against a model cache: what is kept, evicted, promoted, replaced."""
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from zerorate import Corrector, Sensor, estimators
+
+FREE = -1048576
+STEP = 340
+PROMOTE = 50
+
+
+class Axis:
+    """The first axis of a corrector, taught directly."""
+
+    def __init__(self, **limits):
+        limits = {"promote_s": PROMOTE / 100, **limits}
+        corrector = Corrector(Sensor(), document=True, **limits)
+        self.s, self.c = corrector.state, corrector.settings
+        self.a = self.c[0]
+
+    def learn(self, temp, reading=0, weight=1):
+        self.s[self.a], self.s[self.a + 1], self.s[52] = reading * weight, weight, temp
+        estimators.learn(self.s, self.c, self.a)
+
+    def each(self, first, end):
+        """[(temperature, readings)] of the estimators between two offsets, FREE ones too."""
+        words = range(self.a + first, self.a + end, self.c[26])
+        return [(self.s[e], self.s[e + 3]) for e in words]
+
+    @property
+    def short(self):
+        return self.each(self.c[14], self.c[47])
+
+    @property
+    def long(self):
+        return self.each(self.c[47], self.c[15])
+
+    @property
+    def recent_first(self):
+        """Temperatures of the short-term estimators, latest used first."""
+        order = self.s[self.a + 6 : self.a + 6 + self.c[24]]
+        return [self.s[e] for e in order if self.s[e] != FREE]
+
+
+@pytest.fixture
+def axis():
+    return Axis()
+
+
+degrees = st.integers(-20, 60)
+
+
+@settings(max_examples=60, deadline=None)
+@given(visits=st.lists(degrees, min_size=1, max_size=60))
+def test_the_short_term_estimators_are_a_least_recently_used_cache(visits):
+    axis = Axis(promote_s=1000.0)  # nothing is promoted
+    model = []
+    for degree in visits:
+        axis.learn(degree * STEP)
+        if degree * STEP in model:
+            model.remove(degree * STEP)
+        model = [degree * STEP, *model][:3]
+        assert axis.recent_first == model
+    assert {temp for temp, _ in axis.long} == {FREE}
+
+
+@settings(max_examples=60, deadline=None)
+@given(visits=st.lists(st.tuples(degrees, st.sampled_from([1, 30, 60, 300])), max_size=60))
+def test_long_term_estimators_have_enough_samples_and_are_replaced_by_richer_ones(visits):
+    axis = Axis()
+    for degree, weight in visits:
+        before, evicted = axis.long, dict(axis.short)
+        axis.learn(degree * STEP, 0, weight)
+        for (was, had), (now, has) in zip(before, axis.long):
+            if now == was:
+                continue
+            assert evicted[now] == has
+            assert has >= PROMOTE
+            assert was == FREE or has > had
+
+
+def thirds(axis, temps):
+    s, a = axis.s, axis.a
+    return [estimators.third(s, a, temp) for temp in temps]
+
+
+@settings(max_examples=60, deadline=None)
+@given(visits=st.lists(st.tuples(degrees, st.sampled_from([60, 100, 300, 500])), min_size=12))
+def test_the_richest_of_another_third_is_never_replaced(visits):
+    axis = Axis()
+    for degree, weight in visits:
+        before = axis.long
+        s, a = axis.s, axis.a
+        oldest = s[s[a + 6 + axis.c[24] - 1]]
+        axis.learn(degree * STEP, 0, weight)
+        gone = [k for k, (was, now) in enumerate(zip(before, axis.long)) if was[0] != now[0]]
+        for k in gone:
+            if before[k][0] == FREE:
+                continue
+            here, candidate = thirds(axis, [before[k][0], oldest])
+            rivals = [n for t, n in before if t != FREE and thirds(axis, [t]) == [here]]
+            assert here == candidate or before[k][1] < max(rivals) or rivals.count(max(rivals)) > 1
+
+
+def test_a_short_visit_is_not_promoted(axis):
+    axis.learn(0, 0, PROMOTE - 1)
+    for degree in (10, 20, 30):
+        axis.learn(degree * STEP)
+    assert {temp for temp, _ in axis.long} == {FREE}
+
+
+def test_a_long_visit_is_promoted_when_it_is_evicted(axis):
+    axis.learn(0, 5, PROMOTE)
+    for degree in (10, 20):
+        axis.learn(degree * STEP)
+    assert (0, PROMOTE) not in axis.long
+    axis.learn(30 * STEP)
+    assert (0, PROMOTE) in axis.long
+
+
+def test_a_promoted_temperature_goes_on_learning_where_it_is(axis):
+    axis.learn(0, 5, PROMOTE)
+    for degree in (10, 20, 30):
+        axis.learn(degree * STEP)
+    axis.learn(0, 5, 10)
+    assert (0, PROMOTE + 10) in axis.long
+    assert 0 not in [temp for temp, _ in axis.short]
+
+
+def test_long_term_counts_are_halved_periodically():
+    axis = Axis(halve_after_s=4.0)
+    axis.learn(0, 5, 100)
+    for degree in (10, 20, 30):
+        axis.learn(degree * STEP, 0, 90)
+    assert dict(axis.long)[0] == 100
+    axis.learn(30 * STEP, 0, 40)  # 410 readings, the period is 400
+    assert dict(axis.long)[0] == 50
+
+
+@settings(max_examples=40, deadline=None)
+@given(noise=st.lists(st.integers(-50, 50), min_size=30, max_size=200))
+def test_noise_at_a_boundary_of_two_degrees_does_not_thrash_the_cache(noise):
+    axis = Axis(promote_s=1000.0)
+    axis.learn(40 * STEP)
+    axis.learn(20 * STEP)
+    for n in noise:
+        axis.learn(STEP // 2 + n)  # on the boundary of degree 0 and degree 1
+    assert len(axis.recent_first) == 3
+    assert {20 * STEP, 40 * STEP} < set(axis.recent_first)

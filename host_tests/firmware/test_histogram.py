@@ -1,0 +1,177 @@
+"""The adaptive histogram keeps its promises whatever is added to it."""
+
+from array import array
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from zerorate import Corrector, histogram
+
+MODES = {
+    "default": {},
+    "every": {"every": True},
+    "document": {"document": True},
+    "ignoring": {"document": True, "ignore_outside": True, "range_dps": 10.0},
+    "19 bins": {"every": True, "bins": 19},
+    "4 bins": {"document": True, "bins": 4},
+}
+modes = pytest.mark.parametrize("mode", sorted(MODES))
+
+near = st.integers(-60, 60)
+far = st.integers(-32768, 32767)
+chunks = st.lists(st.tuples(st.one_of(near, far), st.sampled_from([1, 2, 64, 256, 1024])))
+
+
+class Histogram:
+    """One histogram behind the shared words that the kernels use."""
+
+    def __init__(self, mode):
+        self.c = Corrector(**MODES[mode]).settings
+        self.bins = self.c[16]
+        self.h = 10
+        self.s = array("i", [0] * (self.h + 2 * self.bins + 1))
+        histogram.clear(self.s, self.c, self.h, 0)
+
+    def add(self, reading, weight=1):
+        """Add `weight` readings at once; 1, or 0 if they were ignored."""
+        self.s[8], self.s[9] = reading * weight, weight
+        return histogram.add(self.s, self.c, self.h, 8)
+
+    @property
+    def edges(self):
+        return [self.s[self.h + i] >> 14 for i in range(self.bins + 1)]
+
+    @property
+    def counts(self):
+        return [self.s[self.h + i] & 0x3FFF for i in range(self.bins)]
+
+    @property
+    def sums(self):
+        return list(self.s[self.h + self.bins + 1 :])
+
+    @property
+    def widths(self):
+        return [b - a for a, b in zip(self.edges, self.edges[1:])]
+
+    @property
+    def read_out(self):
+        return histogram.read_out_q8(self.s, self.h, self.bins) / 256
+
+
+def filled(mode, readings):
+    made = Histogram(mode)
+    for reading, weight in readings:
+        made.add(reading, weight)
+    return made
+
+
+def sound(made):
+    """Assert what always holds."""
+    assert all(width > 0 for width in made.widths)
+    assert all(count >= 0 for count in made.counts)
+    assert all(total == 0 for total, count in zip(made.sums, made.counts) if count == 0)
+
+
+@modes
+def test_all_bins_are_equal_and_empty_at_first(mode):
+    made = Histogram(mode)
+    assert len(set(made.widths)) == 1
+    assert made.counts == [0] * made.bins
+
+
+@modes
+@settings(max_examples=40, deadline=None)
+@given(readings=chunks)
+def test_edges_increase_strictly_always(mode, readings):
+    made = Histogram(mode)
+    for reading, weight in readings:
+        made.add(reading, weight)
+        sound(made)
+
+
+@settings(max_examples=60, deadline=None)
+@given(readings=chunks, pair=st.integers(0, 6), bin=st.integers(0, 7))
+@pytest.mark.parametrize("share", [histogram.share_evenly, histogram.share_by_mean])
+def test_split_and_merge_preserve_count_and_sum(share, readings, pair, bin):
+    made = filled("document", readings)
+    if bin in (pair, pair + 1):
+        bin = (pair + 2) % 8
+    if made.widths[bin] < 2:
+        return
+    count, total = sum(made.counts), sum(made.sums)
+    if made.counts[pair] + made.counts[pair + 1] > 0x3FFF:
+        return
+    histogram.merge(made.s, made.h, made.bins, pair)
+    bin -= 1 if pair < bin else 0
+    histogram.open_gap(made.s, made.h, made.bins, bin)
+    share(made.s, made.h, made.bins, bin)
+    assert (sum(made.counts), sum(made.sums)) == (count, total)
+    sound(made)
+
+
+@modes
+@settings(max_examples=60, deadline=None)
+@given(readings=chunks)
+def test_halving_loses_no_more_than_rounding(mode, readings):
+    made = filled(mode, readings)
+    counts, sums = made.counts, made.sums
+    histogram.halve(made.s, made.h, made.bins)
+    for before, after, total, left in zip(counts, made.counts, sums, made.sums):
+        assert after == before // 2
+        if after:
+            assert left / after == pytest.approx(total / before, abs=1 / after)
+    sound(made)
+
+
+def test_what_would_overflow_a_count_is_halved_first():
+    made = Histogram("every")
+    for _ in range(200):
+        made.add(7, 256)
+    assert 0x2000 - 256 <= sum(made.counts) <= 0x3FFF
+    assert made.read_out == pytest.approx(7, abs=0.01)
+
+
+@pytest.mark.parametrize("mode", ["document", "every", "default"])
+def test_no_bin_gets_narrower_by_splitting_than_it_may(mode):
+    made = Histogram(mode)
+    for n in range(20000):
+        made.add(100 + n * 7919 % 3)
+    best = histogram.most_significant(made.s, made.h, made.bins)
+    assert made.edges[best] <= 101 < made.edges[best + 1]
+    assert made.widths[best] >= made.c[19]
+    assert min(made.widths) >= 1
+
+
+@pytest.mark.parametrize("reading", [-32768, -20000, 20000, 32767])
+def test_a_reading_outside_extends_the_extreme_bin(reading):
+    made = Histogram("document")
+    inner = made.edges[1:-1]
+    found = histogram.place(made.s, made.c, made.h, reading)
+    assert found == (0 if reading < 0 else made.bins - 1)
+    assert made.edges[0] <= reading < made.edges[-1]
+    assert made.edges[1:-1] == inner
+
+
+@pytest.mark.parametrize("reading", [-32768, -20000, 20000, 32767])
+def test_a_reading_outside_is_ignored_by_option(reading):
+    made = Histogram("ignoring")
+    before = bytes(made.s)
+    assert made.add(reading) == 0
+    made.s[8], made.s[9] = 0, 0
+    assert bytes(made.s) == before
+
+
+def test_the_bias_is_the_mean_of_the_bin_with_most_readings_for_its_width():
+    made = Histogram("document")
+    for k, (edge, count, total) in enumerate(
+        [(-800, 90, -40000), (-100, 40, -2000), (0, 30, 475), (20, 99, 9900), (800, 0, 0)]
+    ):
+        made.s[made.h + k] = edge << 14 | count
+        made.s[made.h + made.bins + 1 + k] = total
+    for k in range(5, made.bins + 1):
+        made.s[made.h + k] = (1000 + k) << 14
+    assert made.read_out == pytest.approx(475 / 30, abs=1 / 256)  # 30 / 20 LSB is most
+
+
+def test_an_empty_histogram_reads_zero():
+    assert Histogram("document").read_out == 0
