@@ -33,6 +33,8 @@ pytest: $(VENV)/.dev runtimes
 
 viper: $(VENV)/.dev  ## write firmware/zerorate/viper from the kernel files
 	$(BIN)/python -m zerorate_tools.viper_twins firmware/zerorate
+	$(BIN)/python -m zerorate_tools.boards.manifests
+	$(BIN)/python -m zerorate_tools.bench.c_program host_tests/yardstick/yardstick.c
 
 wasm: $(VENV)/.tools node
 	$(BIN)/zerorate runtimes get wasm

@@ -11,8 +11,10 @@ EFFECT_Q8 = 61
 QUALITY_Q8 = 70
 SOURCE = 73
 IN_MOTION = 4
-# words of the motion source's state
+ACCELEROMETER = 5
+# words of the other sources' states
 MOTION_BIAS = 70
+LEVEL_BIAS = 28
 
 LIMITS = {
     "window_s": 0.5,
@@ -56,7 +58,8 @@ class Corrector:
     learned, mean of the most significant bin, split in halves, one straight line). every: learn
     every reading, moving or still, by this project's own rules. ignore_outside: readings outside
     a histogram are ignored instead of extending it. motion: learn in motion as well (document
-    002). Any key of LIMITS may be given by name, in its unit. Raises ValueError.
+    002); accelerometer: against gravity as well (003). Any key of LIMITS may be given by name, in
+    its unit. Raises ValueError.
     """
 
     def __init__(
@@ -69,6 +72,7 @@ class Corrector:
         every=False,
         ignore_outside=False,
         motion=False,
+        accelerometer=False,
         **limits,
     ):
         self.sensor = sensor or Sensor()
@@ -81,11 +85,19 @@ class Corrector:
             self.sensor, bins, short, long, document, document or every, ignore_outside, chosen
         )
         c = self.settings
+        self.effects = None
         self.motion = None
         self.motion_settings = None
+        self.level = None
+        self.level_settings = None
+        self._sense = None
         self._observe_motion = None
+        self._observe_level = None
+        self._alone = not motion and not accelerometer
         if motion:
             self._learn_in_motion()
+        if accelerometer:
+            self._learn_by_level()
         walk_lsb = chosen["walk_dps"] * self.sensor.gyro_lsb_per_dps
         self._walk_q16 = max(1, int(walk_lsb * walk_lsb * 65536))
         self.state = array("i", [0] * (c[0] + 3 * c[13]))
@@ -103,6 +115,17 @@ class Corrector:
         )
         self.motion = motion_state(self.motion_settings)
 
+    def _learn_by_level(self):
+        from .motion_kernels import realtime
+        from .realtime_settings import realtime_settings, realtime_state
+
+        sensor = self.sensor
+        self._observe_level = realtime.update
+        self.level_settings = realtime_settings(
+            sensor.odr_hz, sensor.gyro_lsb_per_dps, sensor.accel_lsb_per_g
+        )
+        self.level = realtime_state(self.level_settings)
+
     def reset(self):
         """Forget everything that was learned."""
         s = self.state
@@ -119,6 +142,8 @@ class Corrector:
         """Begin a new power-on with what `state` holds: its curves stand, its offsets do not."""
         s = self.state
         c = self.settings
+        if self.effects is not None:
+            self.effects.power_on()
         for i in range(c[0]):
             s[i] = 0
         for axis in range(3):
@@ -136,12 +161,39 @@ class Corrector:
         sample: array('i') ax ay az temp gx gy gz, raw LSB; dt_us: since the sample before.
         Returns 0, or the guard's name for a frame that is not a good reading (see guard.py).
         """
-        if self.motion is None:
+        if self._alone:
             return step.step(self.state, self.settings, sample, dt_us)
-        kind = step.observe(self.state, self.settings, sample, dt_us)
-        if kind == 0 and self._observe_motion(self.motion, self.motion_settings, sample, dt_us):
-            step.consider(self.state, self.settings, self.motion, MOTION_BIAS, IN_MOTION)
+        return self._update_with_others(sample, dt_us)
+
+    # small frames: one of more than eleven words would take heap at every call
+    def _update_with_others(self, sample, dt_us):
+        kind = step.examine(self.state, self.settings, sample, dt_us)
+        if self.effects is not None:
+            self._sense_effects(sample, dt_us, kind)
+        step.admit(self.state, self.settings, sample, kind)
+        if kind == 0:
+            self._ask_others(sample, dt_us)
         return step.finish(self.state, self.settings, sample, kind)
+
+    def _sense_effects(self, sample, dt_us, kind):
+        kind = 0 if kind else 1
+        self._sense(self.state, self.effects.e, sample, dt_us, kind)
+
+    def _ask_others(self, sample, dt_us):
+        if self.motion is not None:
+            if self._observe_motion(self.motion, self.motion_settings, sample, dt_us):
+                step.consider(self.state, self.settings, self.motion, MOTION_BIAS, IN_MOTION)
+        if self.level is not None:
+            if self._observe_level(self.level, self.level_settings, sample, dt_us):
+                step.consider(self.state, self.settings, self.level, LEVEL_BIAS, ACCELEROMETER)
+
+    def use_model(self, effects):
+        """Correct by an effect model (model.EffectModel, loaded) before anything is learned."""
+        from .effect_kernels import sense
+
+        self._sense = sense
+        self.effects = effects
+        self._alone = False
 
     def load(self, store):
         """Begin a power-on with what `store` holds; returns its reason, 0 if it was loaded.

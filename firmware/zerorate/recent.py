@@ -121,6 +121,8 @@ def rewalk(s: ptr32, c: ptr32, a: int, excess: int):
     speed = (speed - s[a + _WALK_Q16]) >> 4
     age = age * age
     age = age // ((age + 0x100000) >> 10)
+    if age < 40:
+        age = 40
     speed = (speed * age >> 10) << 4
     s[a + _WALK_Q16] += speed
     if s[a + _WALK_Q16] < c[_WALK_LEAST_Q16]:

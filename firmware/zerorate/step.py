@@ -1,8 +1,7 @@
-"""One sample's way through the firmware, and the work that a full window leaves behind.
+"""One sample's way through the firmware, and the work that a full window leaves behind."""
 
-Learning is spread over the samples of the next window, one small piece a sample, so that no sample
-waits for a whole refit.
-"""
+# Learning is spread over the samples of the next window, one small piece a sample, so that no
+# sample waits for a whole refit.
 
 try:
     from micropython import const
@@ -230,9 +229,13 @@ def wake(s: ptr32, c: ptr32, x: ptr32):
         advance(s, c)
 
 
-def observe(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
-    """Learn from the frame `x`, `dt_us` after the one before; return what the guard says of it."""
-    kind = check(s, c, x, dt_us)
+def examine(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
+    """Return what the guard says of the frame `x`, `dt_us` after the one before."""
+    return check(s, c, x, dt_us)
+
+
+def admit(s: ptr32, c: ptr32, x: ptr32, kind: int) -> int:
+    """Learn from an examined frame, and do a piece of the work that waits; return its kind."""
     if kind == 0:
         if s[_GOOD] == 1:
             wake(s, c, x)
@@ -259,7 +262,8 @@ def finish(s: ptr32, c: ptr32, x: ptr32, kind: int) -> int:
 
 def step(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
     """Learn from the frame and correct it in place; return what the guard says of it."""
-    kind = observe(s, c, x, dt_us)
+    kind = check(s, c, x, dt_us)
+    admit(s, c, x, kind)
     if kind < 3:
         correct(s, c, x)
     return kind

@@ -317,6 +317,9 @@ static void recent_rewalk(int32_t *s, int32_t *c, int32_t a, int32_t excess) {
     speed = ((speed - s[(a + 26)]) >> 4);
     age = (age * age);
     age = floor_div(age, ((age + 1048576) >> 10));
+    if (age < 40) {
+        age = 40;
+    }
     speed = shift_left(((speed * age) >> 10), 4);
     s[(a + 26)] = (s[(a + 26)] + speed);
     if (s[(a + 26)] < c[40]) {
@@ -1514,10 +1517,8 @@ static void step_close(int32_t *s, int32_t *c) {
     s[53] = 1;
 }
 
-static int32_t step_observe(int32_t *s, int32_t *c, int32_t *x, int32_t dt_us) {
+static int32_t step_admit(int32_t *s, int32_t *c, int32_t *x, int32_t kind) {
     int32_t i = 0;
-    int32_t kind = 0;
-    kind = guard_check(s, c, x, dt_us);
     if (kind == 0) {
         if (s[8] == 1) {
             step_wake(s, c, x);
@@ -1560,7 +1561,8 @@ static void step_correct(int32_t *s, int32_t *c, int32_t *x) {
 
 static int32_t step_step(int32_t *s, int32_t *c, int32_t *x, int32_t dt_us) {
     int32_t kind = 0;
-    kind = step_observe(s, c, x, dt_us);
+    kind = guard_check(s, c, x, dt_us);
+    step_admit(s, c, x, kind);
     if (kind < 3) {
         step_correct(s, c, x);
     }

@@ -1,12 +1,11 @@
 # Generated from zerorate/step.py by `make viper`: edit that file, not this one.
-"""One sample's way through the firmware, and the work that a full window leaves behind.
-
-Learning is spread over the samples of the next window, one small piece a sample, so that no sample
-waits for a whole refit.
-"""
+"""One sample's way through the firmware, and the work that a full window leaves behind."""
 
 import micropython
 
+
+# Learning is spread over the samples of the next window, one small piece a sample, so that no
+# sample waits for a whole refit.
 
 try:
     from micropython import const
@@ -253,11 +252,16 @@ def wake(s_, c_, x: ptr32):
 
 
 @micropython.viper
-def observe(s_, c_, x_, dt_us: int) -> int:
-    """Learn from the frame `x`, `dt_us` after the one before; return what the guard says of it."""
+def examine(s_, c_, x_, dt_us: int) -> int:
+    """Return what the guard says of the frame `x`, `dt_us` after the one before."""
+    return int(check(s_, c_, x_, dt_us))
+
+
+@micropython.viper
+def admit(s_, c_, x_, kind: int) -> int:
+    """Learn from an examined frame, and do a piece of the work that waits; return its kind."""
     s = ptr32(s_)
     c = ptr32(c_)
-    kind = int(check(s_, c_, x_, dt_us))
     if kind == 0:
         if s[_GOOD] == 1:
             wake(s_, c_, x_)
@@ -286,7 +290,8 @@ def finish(s_, c_, x_, kind: int) -> int:
 @micropython.viper
 def step(s_, c_, x_, dt_us: int) -> int:
     """Learn from the frame and correct it in place; return what the guard says of it."""
-    kind = int(observe(s_, c_, x_, dt_us))
+    kind = int(check(s_, c_, x_, dt_us))
+    admit(s_, c_, x_, kind)
     if kind < 3:
         correct(s_, c_, x_)
     return kind

@@ -31,6 +31,10 @@ def add_parser(subparsers) -> None:
         "--document", action="store_true", help="the literal rules of the patent document"
     )
     parser.add_argument("--every", action="store_true", help="learn every reading, moving or still")
+    parser.add_argument("--model", type=Path, metavar="FILE", help="an effect model to load")
+    parser.add_argument(
+        "--accelerometer", action="store_true", help="learn against gravity as well"
+    )
     parser.add_argument("--motion", action="store_true", help="learn in motion as well")
     parser.add_argument(
         "--set",
@@ -51,6 +55,7 @@ def run(arguments: argparse.Namespace) -> None:
 
     options: dict[str, object] = dict(arguments.set)
     options.update(document=arguments.document, every=arguments.every, motion=arguments.motion)
+    options.update(accelerometer=arguments.accelerometer)
     total = open_recording(arguments.log).n_samples
     with progress(f"replaying {arguments.log.name}", total) as advance:
         done = replay(
@@ -60,6 +65,7 @@ def run(arguments: argparse.Namespace) -> None:
             state=arguments.state,
             from_state=arguments.from_state,
             resume=arguments.resume,
+            model=arguments.model,
             options=options,
             advance=advance,
         )

@@ -18,9 +18,11 @@ from zerorate import Corrector
 from zerorate.corrector import EFFECT_Q8, OUT_Q8, QUALITY_Q8, SOURCE
 
 from ..errors import ZerorateError
+from ..recordings.checks import GAP
 from .samples import Frames
 
 _NOTHING = array("i", [0])
+_OTHERS = ("motion.bin", "motion_settings.bin", "level.bin", "level_settings.bin", "effects.bin")
 _OUTPUT = np.dtype([("verdict", "<i4"), ("bias", "<i4", 3), ("source", "<i4", 3), ("q", "<i4", 3)])
 
 
@@ -37,6 +39,15 @@ class Outcome:
     source: NDArray[np.int8]
     quality_q8: NDArray[np.int32]
     verdict: NDArray[np.int8]
+
+
+def others_of(corrector: Corrector) -> tuple[array | None, ...]:
+    """The arrays of the sources and the model that are on, None for each that is not."""
+    effects = corrector.effects.e if corrector.effects is not None else None
+    return (
+        *(corrector.motion, corrector.motion_settings),
+        *(corrector.level, corrector.level_settings, effects),
+    )
 
 
 class Engine(ABC):
@@ -71,17 +82,17 @@ class NumbaEngine(Engine):
             print("zerorate: no Numba here, the replay runs on plain CPython", file=sys.stderr)
             yield from CPythonEngine().run(corrector, batches)
             return
-        run = compiled_run(corrector.motion is not None)
+        on = [x is not None for x in (corrector.motion, corrector.level, corrector.effects)]
+        run = compiled_run(*on)
         state = np.frombuffer(corrector.state, np.int32)
         settings = np.array(corrector.settings, np.int32)
-        motion = np.frombuffer(corrector.motion or _NOTHING, np.int32)
-        how = np.array(corrector.motion_settings or _NOTHING, np.int32)
+        others = tuple(np.frombuffer(words or _NOTHING, np.int32) for words in others_of(corrector))
         for batch in batches:
             n = len(batch)
             bias, quality = np.empty((n, 3), np.int32), np.empty((n, 3), np.int32)
             source, verdict = np.empty((n, 3), np.int8), np.empty(n, np.int8)
             run(
-                *(state, settings, motion, how, batch.frames, batch.dt_us),
+                *(state, settings, others, batch.frames, batch.dt_us, batch.extra),
                 *(bias, source, quality, verdict),
             )
             yield Outcome(batch.t_us, batch.frames, bias, source, quality, verdict)
@@ -96,6 +107,9 @@ class CPythonEngine(Engine):
             frame = array("i", [0] * 7)
             for i in range(len(batch)):
                 frame[:] = array("i", batch.frames[i].tolist())
+                for k, value in enumerate(batch.extra[i].tolist()):
+                    if value != GAP:
+                        corrector.effects.channel(k, value)
                 rows[i] = self._one(corrector, frame, int(batch.dt_us[i]))
                 batch.frames[i] = frame
             yield _outcome(batch, rows)
@@ -120,18 +134,22 @@ class InterpreterEngine(Engine):
             with recording.open("wb") as file:
                 for batch in batches:
                     kept.append(batch)
-                    file.write(np.c_[batch.dt_us, batch.frames].astype("<i4").tobytes())
+                    rows = np.c_[batch.dt_us, batch.frames, batch.extra]
+                    file.write(rows.astype("<i4").tobytes())
             result = self._runtime.run(
                 Path(__file__).with_name("on_interpreter.py"),
+                [kept[0].extra.shape[1] if kept else 0],
                 modules=[staged_packages(Path(scratch), ("zerorate",))],
                 files_in={
                     "frames.bin": recording,
                     "settings.bin": corrector.settings.tobytes(),
                     "state.bin": corrector.state.tobytes(),
-                    "motion_settings.bin": (corrector.motion_settings or array("i")).tobytes(),
-                    "motion.bin": (corrector.motion or array("i")).tobytes(),
+                    **{
+                        name: (words or array("i")).tobytes()
+                        for name, words in zip(_OTHERS, others_of(corrector))
+                    },
                 },
-                files_out=["state.bin", "motion.bin", "out.bin"],
+                files_out=["state.bin", "out.bin", *_OTHERS],
                 heap=4 << 20,
                 check=True,
             )
@@ -144,8 +162,9 @@ class InterpreterEngine(Engine):
         if len(rows) != sum(map(len, kept)):
             raise ZerorateError(f"{self._runtime.name} lost samples of the replay")
         corrector.state[:] = array("i", files["state.bin"])
-        if corrector.motion is not None:
-            corrector.motion[:] = array("i", files["motion.bin"])
+        for name, words in zip(_OTHERS, others_of(corrector)):
+            if words is not None:
+                words[:] = array("i", files[name])
         start = 0
         for batch in kept:
             part = rows[start : start + len(batch)]

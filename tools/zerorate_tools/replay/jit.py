@@ -12,12 +12,24 @@ from functools import lru_cache
 from pathlib import Path
 
 import numba
-from zerorate.corrector import EFFECT_Q8, IN_MOTION, MOTION_BIAS, OUT_Q8, QUALITY_Q8, SOURCE
+from zerorate.corrector import (
+    ACCELEROMETER,
+    EFFECT_Q8,
+    IN_MOTION,
+    LEVEL_BIAS,
+    MOTION_BIAS,
+    OUT_Q8,
+    QUALITY_Q8,
+    SOURCE,
+)
 
+from zerorate_tools.recordings.checks import GAP
 from zerorate_tools.runtimes.cache import cache_folder
 from zerorate_tools.viper_twins import hot_functions, kernel_files
 
 _PACKAGE = "zerorate_compiled"
+# first word of the extra channels in the effects' array
+EXTRA = 104
 
 
 def firmware_package() -> Path:
@@ -27,7 +39,7 @@ def firmware_package() -> Path:
     return Path(spec.origin).parent
 
 
-@lru_cache(maxsize=2)
+@lru_cache(maxsize=8)
 def compiled_kernels(*roots: str) -> types.SimpleNamespace:
     """The kernels behind `roots` with every function compiled (at its first call), by module.
 
@@ -77,20 +89,26 @@ def _imports(path: Path) -> set[str]:
     return {n.module for n in froms if n.module}
 
 
-@lru_cache(maxsize=2)
-def compiled_run(motion: bool = False) -> Callable[..., None]:
-    """run(s, c, m, k, samples, dt_us, bias_q8, source, quality_q8, verdict), compiled.
+@lru_cache(maxsize=8)
+def compiled_run(
+    motion: bool = False, level: bool = False, effects: bool = False
+) -> Callable[..., None]:
+    """run(s, c, others, samples, dt_us, extra, bias_q8, source, quality_q8, verdict), compiled.
 
-    What `Corrector.update` does for each row; with `motion` the source in motion is asked as well,
-    whose state and settings are m and k.
+    What `Corrector.update` does for each row. others: state and settings of the source in motion,
+    of the accelerometer's, and the effects' array, each used where it is on; extra: (n, channels)
+    int32, what the application passes in for the model's extra channels.
     """
-    kernels = compiled_kernels("step", "in_motion") if motion else compiled_kernels("step")
-    update = _update_in_motion(kernels) if motion else _update(kernels)
+    roots = ["step", *["in_motion"] * motion, *["realtime"] * level, *["effects"] * effects]
+    update = _update(compiled_kernels(*roots), motion, level, effects)
 
     @numba.njit
-    def run(s, c, m, k, samples, dt_us, bias_q8, source, quality_q8, verdict):
+    def run(s, c, others, samples, dt_us, extra, bias_q8, source, quality_q8, verdict):
         for i in range(len(samples)):
-            verdict[i] = update(s, c, m, k, samples[i], dt_us[i])
+            for k in range(extra.shape[1]):
+                if extra[i, k] != GAP:
+                    others[4][EXTRA + k] = extra[i, k]
+            verdict[i] = update(s, c, others, samples[i], dt_us[i])
             for axis in range(3):
                 bias_q8[i, axis] = s[OUT_Q8 + axis] + s[EFFECT_Q8 + axis]
                 quality_q8[i, axis] = s[QUALITY_Q8 + axis]
@@ -99,25 +117,37 @@ def compiled_run(motion: bool = False) -> Callable[..., None]:
     return run
 
 
-def _update(kernels: types.SimpleNamespace) -> Callable[..., int]:
-    step = kernels.step.step
+def _update(
+    kernels: types.SimpleNamespace, motion: bool, level: bool, effects: bool
+) -> Callable[..., int]:
+    step = kernels.step
+    examine, admit, finish, consider = step.examine, step.admit, step.finish, step.consider
+    in_motion = kernels.in_motion.update if motion else _never
+    by_level = kernels.realtime.update if level else _never
+    sense = kernels.effects.sense if effects else _nothing
 
     @numba.njit
-    def update(s, c, m, k, x, dt_us):
-        return step(s, c, x, dt_us)
-
-    return update
-
-
-def _update_in_motion(kernels: types.SimpleNamespace) -> Callable[..., int]:
-    observe, consider, finish = kernels.step.observe, kernels.step.consider, kernels.step.finish
-    in_motion = kernels.in_motion.update
-
-    @numba.njit
-    def update(s, c, m, k, x, dt_us):
-        kind = observe(s, c, x, dt_us)
-        if kind == 0 and in_motion(m, k, x, dt_us):
-            consider(s, c, m, MOTION_BIAS, IN_MOTION)
+    def update(s, c, others, x, dt_us):
+        m, k, r, q, e = others
+        kind = examine(s, c, x, dt_us)
+        if effects:
+            sense(s, e, x, dt_us, 0 if kind else 1)
+        admit(s, c, x, kind)
+        if kind == 0:
+            if motion and in_motion(m, k, x, dt_us):
+                consider(s, c, m, MOTION_BIAS, IN_MOTION)
+            if level and by_level(r, q, x, dt_us):
+                consider(s, c, r, LEVEL_BIAS, ACCELEROMETER)
         return finish(s, c, x, kind)
 
     return update
+
+
+@numba.njit
+def _never(state, settings, x, dt_us):
+    return 0
+
+
+@numba.njit
+def _nothing(s, e, x, dt_us, good):
+    return 0

@@ -1,10 +1,15 @@
 """Runs on a MicroPython: frames.bin through the firmware's kernels, state.bin and out.bin back."""
 
+import sys
 from array import array
 
 from zerorate.corrector import EFFECT_Q8, OUT_Q8, QUALITY_Q8, SOURCE, Corrector
+from zerorate.model import EffectModel
 
 _ROWS = 256
+_GAP = -0x80000000
+# first word of the extra channels in the effects' array
+_EXTRA = 104
 
 
 def whole(name):
@@ -19,26 +24,42 @@ def store(name, words):
 
 # the settings come from the host: single-precision floats would round some of them elsewhere
 motion = whole("motion.bin")
-corrector = Corrector(motion=len(motion) > 0)
+level = whole("level.bin")
+effects = whole("effects.bin")
+corrector = Corrector(motion=len(motion) > 0, accelerometer=len(level) > 0)
 corrector.settings = whole("settings.bin")
 corrector.state = state = whole("state.bin")
 if motion:
     corrector.motion_settings = whole("motion_settings.bin")
     corrector.motion = motion
+if level:
+    corrector.level_settings = whole("level_settings.bin")
+    corrector.level = level
+channels = 0
+if effects:
+    model = EffectModel()
+    model.e = effects
+    corrector.use_model(model)
+    channels = int(sys.argv[1])
+row_words = 8 + channels
 frame = array("i", [0] * 7)
 out = array("i", [0] * 17)
-words = bytearray(32 * _ROWS)
+words = bytearray(4 * row_words * _ROWS)
 
 with open("frames.bin", "rb") as source, open("out.bin", "wb") as target:
     while True:
-        count = source.readinto(words) // 32
+        count = source.readinto(words) // (4 * row_words)
         if count == 0:
             break
         rows = array("i", words)
         for i in range(count):
+            start = row_words * i
             for k in range(7):
-                frame[k] = rows[8 * i + 1 + k]
-            out[0] = corrector.update(frame, rows[8 * i])
+                frame[k] = rows[start + 1 + k]
+            for k in range(channels):
+                if rows[start + 8 + k] != _GAP:
+                    effects[_EXTRA + k] = rows[start + 8 + k]
+            out[0] = corrector.update(frame, rows[start])
             for axis in range(3):
                 out[1 + axis] = state[OUT_Q8 + axis] + state[EFFECT_Q8 + axis]
                 out[4 + axis] = state[SOURCE + axis]
@@ -47,4 +68,8 @@ with open("frames.bin", "rb") as source, open("out.bin", "wb") as target:
                 out[10 + k] = frame[k]
             target.write(out)
 store("state.bin", state)
-store("motion.bin", corrector.motion or b"")
+store("motion.bin", motion)
+store("level.bin", level)
+store("effects.bin", effects)
+store("motion_settings.bin", whole("motion_settings.bin"))
+store("level_settings.bin", whole("level_settings.bin"))

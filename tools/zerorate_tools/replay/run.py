@@ -13,11 +13,11 @@ import numpy as np
 import pyarrow as pa
 from zerorate import Corrector
 
-from ..errors import InFile, ZerorateError
+from ..errors import BadModel, InFile, ZerorateError
 from ..recordings import Recording, open_recording
 from ..recordings.atomic import written_beside
 from ..recordings.reading import OpenRecording
-from .engines import Outcome, engine
+from .engines import Outcome, engine, others_of
 from .samples import frames_in_batches, sensor_of
 from .writing import SOURCES, VERDICTS, ReplayWriter, table
 
@@ -52,6 +52,7 @@ def replay(
     state: str | PathLike[str] | None = None,
     from_state: str | PathLike[str] | None = None,
     resume: bool = False,
+    model: str | PathLike[str] | None = None,
     options: dict[str, object] | None = None,
     advance: Callable[[float], None] = lambda n: None,
 ) -> Replay:
@@ -60,14 +61,17 @@ def replay(
     log: a recording or its path; out: the Parquet to write, None for a table in memory;
     runtime: numba, cpython, wasm, x86, armhf or the path of a MicroPython; state: file for the
     final state's bytes; from_state: file to start from, as a new power-on, or, with resume, as if
-    the two recordings were one; options: keywords of zerorate.Corrector; advance: called with the
+    the two recordings were one; model: effect model (model.bin or model.json);
+    options: keywords of zerorate.Corrector; advance: called with the
     number of samples done. Raises ZerorateError (BadRecording, MissingRuntime, ...).
     """
     recording = log if isinstance(log, Recording) else open_recording(log)
     corrector = corrector_for(recording, options or {})
+    channels = load_model(corrector, Path(model), recording) if model is not None else ()
     if from_state is not None:
         load_state(corrector, Path(from_state), resume)
-    outcomes = engine(runtime).run(corrector, frames_in_batches(recording))
+    batches = frames_in_batches(recording, channels=channels)
+    outcomes = engine(runtime).run(corrector, batches)
     done = Replay()
     with ExitStack() as files:
         sink = _sink(done, out, files)
@@ -101,16 +105,44 @@ def load_state(corrector: Corrector, path: Path, resume: bool) -> None:
         problem = f"{len(content)} bytes where a state with these settings has {wanted}"
         raise InFile(path, problem, do="use the settings it was written with")
     words = array("i", np.frombuffer(content, "<i4").tolist())
-    corrector.state[:] = words[: len(corrector.state)]
-    if corrector.motion is not None:
-        corrector.motion[:] = words[len(corrector.state) :]
+    for part in _parts(corrector):
+        part[:] = words[: len(part)]
+        words = words[len(part) :]
     if not resume:
         corrector.power_on()
 
 
 def state_bytes(corrector: Corrector) -> bytes:
-    """The state of the estimators, then that of the source in motion where it is on."""
-    return np.asarray(corrector.state + (corrector.motion or array("i")), "<i4").tobytes()
+    """The state of the estimators, then those of the other sources and the model that are on."""
+    return np.concatenate(_parts(corrector)).astype("<i4").tobytes()
+
+
+def _parts(corrector: Corrector) -> list[array]:
+    motion, _, level, _, effects = others_of(corrector)
+    return [part for part in (corrector.state, motion, level, effects) if part is not None]
+
+
+def load_model(corrector: Corrector, path: Path, recording) -> tuple[str, ...]:
+    """Give the corrector an effect model; returns the extra channels it follows.
+
+    Raises BadModel where it is refused, or follows a channel that the recording lacks.
+    """
+    from zerorate.model import EffectModel
+    from zerorate.model_file import LOADED, REASONS
+
+    from ..model import encoded, read_model
+
+    effects = EffectModel()
+    reason = effects.load(encoded(read_model(path)), corrector.sensor)
+    if reason != LOADED:
+        raise BadModel(path, f"the firmware refuses it: {REASONS[reason]}")
+    names = recording.column_names if isinstance(recording, OpenRecording) else recording.columns
+    absent = [name for name in effects.channels if name not in names]
+    if absent:
+        problem = f"it follows the channel {absent[0]}, which {recording.name} lacks"
+        raise BadModel(path, problem, do="record that channel")
+    corrector.use_model(effects)
+    return tuple(effects.channels)
 
 
 def _sink(done: Replay, out, files: ExitStack) -> Callable[[Outcome], None]:

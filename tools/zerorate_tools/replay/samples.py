@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,12 +21,14 @@ class Frames:
     """Samples as the board sees them.
 
     t_us: (n,) int64; frames: (n, 7) int32 in the order of FRAME, 0 for an absent channel;
-    dt_us: (n,) int32 since the sample before, the nominal period for the very first.
+    dt_us: (n,) int32 since the sample before, the nominal period for the very first; extra:
+    (n, channels) int32, the extra channels that were asked for.
     """
 
     t_us: NDArray[np.int64]
     frames: NDArray[np.int32]
     dt_us: NDArray[np.int32]
+    extra: NDArray[np.int32]
 
     def __len__(self) -> int:
         return len(self.t_us)
@@ -43,8 +45,10 @@ def sensor_of(scales: Scales) -> Sensor:
     )
 
 
-def frames_in_batches(recording: OpenRecording | Recording, rows: int = 65536) -> Iterator[Frames]:
-    """Yield a recording as Frames of at most `rows` samples each."""
+def frames_in_batches(
+    recording: OpenRecording | Recording, rows: int = 65536, channels: Sequence[str] = ()
+) -> Iterator[Frames]:
+    """Yield a recording as Frames of at most `rows` samples each, with these extra channels."""
     before = None
     for columns in _batches(recording, rows):
         t_us = np.asarray(columns["t_us"], np.int64)
@@ -56,7 +60,10 @@ def frames_in_batches(recording: OpenRecording | Recording, rows: int = 65536) -
         for i, name in enumerate(FRAME):
             if name in columns:
                 frames[:, i] = columns[name]
-        yield Frames(t_us, frames, np.clip(steps, -_MOST_US, _MOST_US).astype(np.int32))
+        extra = np.zeros((len(t_us), len(channels)), np.int32)
+        for i, name in enumerate(channels):
+            extra[:, i] = columns[name]
+        yield Frames(t_us, frames, np.clip(steps, -_MOST_US, _MOST_US).astype(np.int32), extra)
 
 
 def _batches(recording: OpenRecording | Recording, rows: int) -> Iterator[dict]:
