@@ -178,7 +178,7 @@ def move(e: ptr32, a: int, state: int):
         d = whole(e, state, shift)
         if d > most:
             d = most
-        elif d < -most:
+        elif d < 0 - most:
             d = -most
         e[a + _COEFFICIENT] = e[a + _OWN] + d
         a += 1

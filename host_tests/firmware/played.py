@@ -1,9 +1,12 @@
 """Whole signals through the firmware that Numba compiled, for tests that need many readings."""
 
+from dataclasses import replace
+
 import numpy as np
 from zerorate import Corrector, Sensor
+from zerorate_tools.recordings import Recording, Scales
 from zerorate_tools.replay.engines import engine
-from zerorate_tools.replay.samples import Frames
+from zerorate_tools.replay.samples import FRAME, frames_in_batches
 
 ODR_HZ = 100.0
 LSB = 131.0
@@ -21,15 +24,23 @@ def rest(seconds, seed=1, bias_dps=(0.0, 0.0, 0.0), temp=0, odr_hz=ODR_HZ):
     return frames
 
 
+def by_numba(corrector, words, dt_us):
+    """The outcome of (n, 7) int32 frames, dt_us after one another, by the compiled kernels."""
+    columns = dict(zip(FRAME, words.T), t_us=np.cumsum(dt_us, dtype=np.int64))
+    recording = Recording(columns, Scales("MPU-6050", corrector.sensor.odr_hz, LSB))
+    (batch,) = frames_in_batches(recording, rows=len(words))
+    batch = replace(batch, dt_us=np.asarray(dt_us, np.int32))  # a recording's first is nominal
+    (outcome,) = engine("numba").run(corrector, [batch])
+    return outcome
+
+
 def play(frames, corrector=None, dt_us=None, **options):
     """(corrector, outcome) after the frames, rounded and held at the rails."""
     corrector = corrector or Corrector(Sensor(), **options)
     words = np.clip(np.rint(frames), -32768, 32767).astype(np.int32)
     if dt_us is None:
         dt_us = np.full(len(words), round(1e6 / corrector.sensor.odr_hz))
-    dt_us = np.asarray(dt_us, np.int32)
-    (outcome,) = engine("numba").run(corrector, [Frames(np.cumsum(dt_us), words, dt_us)])
-    return corrector, outcome
+    return corrector, by_numba(corrector, words, dt_us)
 
 
 def estimators(corrector):

@@ -8,10 +8,9 @@ from pathlib import Path
 import numpy as np
 from zerorate import Corrector, Sensor
 from zerorate.corrector import OUT_Q8
-from zerorate_tools.replay.engines import engine
-from zerorate_tools.replay.samples import Frames
 
 from . import trace
+from .played import by_numba
 
 GOLDEN = Path(__file__).resolve().parents[1] / "golden" / "trace.json"
 
@@ -46,9 +45,7 @@ def on_cpython(mode, watch=lambda corrector, verdict: None):
 def on_numba(mode):
     """The same by the kernels that Numba compiled."""
     corrector = corrector_for(mode)
-    rows, dt_us = frames(trace.UPDATES[mode])
-    batch = Frames(np.cumsum(dt_us, dtype=np.int64), rows, dt_us)
-    (outcome,) = engine("numba").run(corrector, [batch])
+    outcome = by_numba(corrector, *frames(trace.UPDATES[mode]))
     return corrector.state.tobytes(), outcome.bias_q8.tobytes()
 
 

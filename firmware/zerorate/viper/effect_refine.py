@@ -195,7 +195,7 @@ def move(e_, a: int, state: int):
         d = int(whole(e_, state, shift))
         if d > most:
             d = most
-        elif d < -most:
+        elif d < 0 - most:
             d = -most
         e[a + _COEFFICIENT] = e[a + _OWN] + d
         a += 1
