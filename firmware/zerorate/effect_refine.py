@@ -179,7 +179,7 @@ def move(e: ptr32, a: int, state: int):
         if d > most:
             d = most
         elif d < 0 - most:
-            d = -most
+            d = 0 - most
         e[a + _COEFFICIENT] = e[a + _OWN] + d
         a += 1
         state += _ROW
