@@ -13,7 +13,7 @@ from .surrogates import null_ratios
 #: Family-wise levels: the chance that anything of the family passes the first lock on a device
 #: with nothing in it.
 #: Forms of any channel are many, most of them slow and without physics behind them: they pay more.
-LEVEL = {"catalogue": 4e-3, "generic": 5e-5, "step": 5e-4}
+LEVEL = {"catalogue": 2.5e-3, "generic": 5e-5, "step": 5e-4}
 #: Nats that left-out sessions must gain in all.
 LEAST_GAIN = 3.0
 
@@ -57,6 +57,6 @@ def decide(regression, folds, nuisances, candidate, ratio: float, tried: int, po
             False, p, ratio, d, np.array([]), "no better than irrelevant channels on this noise"
         )
     gain = gains(folds, nuisances, candidate.terms)
-    enough = gain.sum() > LEAST_GAIN and (gain > 0).sum() >= max(1, len(gain) - 1 - len(gain) // 5)
+    enough = gain.sum() > LEAST_GAIN and (gain > 0).sum() >= max(1, len(gain) - len(gain) // 4)
     reason = "" if enough else "does not predict the sessions left out"
     return Decision(bool(enough), p, ratio, d, gain, reason)
