@@ -62,7 +62,7 @@ def negated_locals(tree):
     own = {id(n.value) for n in ast.walk(tree) if isinstance(n, ast.Assign)}
     for node in ast.walk(tree):
         if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub) and id(node) not in own:
-            if isinstance(node.operand, ast.Name):
+            if isinstance(node.operand, ast.Name) and not node.operand.id.isupper():
                 yield f"{node.operand.id} in line {node.lineno}"
 
 
