@@ -168,16 +168,17 @@ class Corrector:
     # small frames: one of more than eleven words would take heap at every call
     def _update_with_others(self, sample, dt_us):
         kind = step.examine(self.state, self.settings, sample, dt_us)
-        if self.effects is not None:
-            self._sense_effects(sample, dt_us, kind)
+        self._sense_effects(sample, dt_us, kind)
         step.admit(self.state, self.settings, sample, kind)
         if kind == 0:
             self._ask_others(sample, dt_us)
         return step.finish(self.state, self.settings, sample, kind)
 
     def _sense_effects(self, sample, dt_us, kind):
-        kind = 0 if kind else 1
-        self._sense(self.state, self.effects.e, sample, dt_us, kind)
+        effects = self.effects
+        if effects is not None:
+            kind = 0 if kind else 1
+            self._sense(self.state, effects.e, sample, dt_us, kind)
 
     def _ask_others(self, sample, dt_us):
         if self.motion is not None:
@@ -189,9 +190,9 @@ class Corrector:
 
     def use_model(self, effects):
         """Correct by an effect model (model.EffectModel, loaded) before anything is learned."""
-        from .effect_kernels import sense
+        from .effect_kernels import effects as kernels
 
-        self._sense = sense
+        self._sense = kernels.sense
         self.effects = effects
         self._alone = False
 

@@ -1,10 +1,10 @@
-"""The kernel of the effect slots, loaded only by who has a model."""
+"""The kernels of the effect slots, loaded only by who has a model."""
 
 from .kernels import VIPER
 
 if VIPER:
-    from .viper.effects import sense
+    from .viper import effects
 else:
-    from .effects import sense
+    from . import effects
 
-__all__ = ("sense",)
+__all__ = ("effects",)

@@ -170,11 +170,11 @@ def foresay(s: ptr32, axis: int, bias: int, quality: int):
 
 
 def foretell(s: ptr32, c: ptr32, axis: int):
-    """Publish the mean of the first rest before it is long enough to be learned from.
+    """Publish the mean of the first rest, two windows long, before it is long enough to be learned from.
 
     It is taken back at once when the rest turns out to be none.
     """
-    if s[_STILLNESS] == 1 and s[_SEGMENT] > 0:
+    if s[_STILLNESS] == 1 and s[_SEGMENT] > 1:
         n = s[_SEGMENT] << c[_SHIFT]
         level = (s[_TOTALS + axis] // n) << 8
         level += ((s[_TOTALS + axis] % n) << 8) // n

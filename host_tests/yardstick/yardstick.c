@@ -1472,7 +1472,7 @@ static void step_foresay(int32_t *s, int32_t axis, int32_t bias, int32_t quality
 static void step_foretell(int32_t *s, int32_t *c, int32_t axis) {
     int32_t level = 0;
     int32_t n = 0;
-    if ((s[46] == 1) && (s[48] > 0)) {
+    if ((s[46] == 1) && (s[48] > 1)) {
         n = shift_left(s[48], c[4]);
         level = shift_left(floor_div(s[(42 + axis)], n), 8);
         level = (level + floor_div(shift_left(floor_mod(s[(42 + axis)], n), 8), n));

@@ -183,12 +183,12 @@ def foresay(s: ptr32, axis: int, bias: int, quality: int):
 
 @micropython.viper
 def foretell(s_, c: ptr32, axis: int):
-    """Publish the mean of the first rest before it is long enough to be learned from.
+    """Publish the mean of the first rest, two windows long, before it is long enough to be learned from.
 
     It is taken back at once when the rest turns out to be none.
     """
     s = ptr32(s_)
-    if s[_STILLNESS] == 1 and s[_SEGMENT] > 0:
+    if s[_STILLNESS] == 1 and s[_SEGMENT] > 1:
         n = s[_SEGMENT] << c[_SHIFT]
         level = (s[_TOTALS + axis] // n) << 8
         level += ((s[_TOTALS + axis] % n) << 8) // n

@@ -146,7 +146,7 @@ def _head(cells: Sequence[str]) -> list[str]:
 def run(
     data: str | PathLike[str] | None = None, json_path: str | PathLike[str] | None = None
 ) -> dict:
-    """Measure, print the tables and return all figures; with json_path write them too.
+    """Measure and return all figures; with json_path write them too.
 
     data: the folder of BROAD's .mat files; without it only the simulated table is made.
     """
@@ -154,7 +154,6 @@ def run(
     found: dict = {"simulated": simulated(ways)}
     if data is not None:
         found["broad"] = on_broad(ways, Path(data))
-    print(table(found))
     if json_path is not None:
         with written_beside(Path(json_path)) as temporary:
             temporary.write_text(json.dumps(found, indent=2) + "\n")
@@ -167,7 +166,7 @@ def main() -> None:
     parser.add_argument("--data", metavar="FOLDER", help="BROAD's .mat files")
     parser.add_argument("--json", metavar="FILE")
     arguments = parser.parse_args()
-    run(arguments.data, arguments.json)
+    print(table(run(arguments.data, arguments.json)))
 
 
 if __name__ == "__main__":

@@ -14,6 +14,8 @@ def add_parser(subparsers) -> None:
     add_accuracy(benches)
     add_cost(benches)
     add_faults(benches)
+    add_loop(benches)
+    add_motion(benches)
 
 
 def add_accuracy(benches) -> None:
@@ -86,3 +88,38 @@ def run_faults(arguments: argparse.Namespace) -> int:
     from ..bench.faults import passed, run
 
     return 0 if passed(run(arguments.json)) else 1
+
+
+def add_loop(benches) -> None:
+    """Register `bench loop`."""
+    parser = benches.add_parser("loop", help="what closing the loop finds, and what it invents")
+    parser.add_argument("--nulls", type=int, default=200, metavar="N", help="recordings of nothing")
+    parser.add_argument("--seeds", type=int, default=20, metavar="N", help="devices an effect")
+    parser.add_argument("--processes", type=int, default=2, metavar="N")
+    parser.add_argument("--data", type=Path, metavar="DIR", help="folder of real recordings")
+    add_outputs(parser)
+    parser.set_defaults(run=run_loop)
+
+
+def run_loop(arguments: argparse.Namespace) -> None:
+    """Measure and write."""
+    from ..bench.loop import markdown, run
+
+    found = run(arguments.nulls, arguments.seeds, arguments.processes, data=arguments.data)
+    write_report(arguments, markdown(found), found)
+
+
+def add_motion(benches) -> None:
+    """Register `bench motion`."""
+    parser = benches.add_parser("motion", help="the bias learned in motion beside vqf's")
+    parser.add_argument("--data", type=Path, metavar="DIR", help="folder of BROAD trials (.mat)")
+    add_outputs(parser)
+    parser.set_defaults(run=run_motion)
+
+
+def run_motion(arguments: argparse.Namespace) -> None:
+    """Measure and write."""
+    from ..bench.motion import run, table
+
+    found = run(arguments.data)
+    write_report(arguments, table(found), found)
