@@ -170,7 +170,7 @@ def foresay(s: ptr32, axis: int, bias: int, quality: int):
 
 
 def foretell(s: ptr32, c: ptr32, axis: int):
-    """Publish the mean of the first rest, two windows long, before it is long enough to be learned from.
+    """Publish the mean of the first rest once it is two windows long, before it is learned from.
 
     It is taken back at once when the rest turns out to be none.
     """

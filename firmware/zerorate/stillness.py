@@ -1,8 +1,8 @@
 """Still, moving or turning: judged from windows of gyroscope and accelerometer."""
 
 # Nothing here assumes a small bias: only the spread of the rates, their change from window to
-# window and the direction of gravity count. A constant turn about the vertical leaves all three alone and
-# cannot be told from a bias; a turn about any other axis moves gravity.
+# window and the direction of gravity count. A constant turn about the vertical leaves all three
+# alone and cannot be told from a bias; a turn about any other axis moves gravity.
 
 try:
     from micropython import const

@@ -124,11 +124,12 @@ class BoardStream:
         if data:
             self._heard = time.monotonic()
             self._tail = (self._tail + data)[-4096:]
+        elif b"Traceback" in self._tail:
+            # only when no more of it comes is its last line the one that says what is wrong
+            raise BoardError(f"{self._port}: the board says: {_last_line(self._tail)}")
         elif time.monotonic() - self._heard > _SILENCE_S:
             raise BoardError(f"{self._port}: silent for {_SILENCE_S:.0f} s")
         frames = list(self._reader.feed(data))
-        if not frames and b"Traceback" in self._tail:
-            raise BoardError(f"{self._port}: the board says: {_last_line(self._tail)}")
         return frames
 
 
