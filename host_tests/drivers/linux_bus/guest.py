@@ -27,8 +27,8 @@ from zerorate_tools.recordings import (
 )
 
 HERE = Path(__file__).parent
-PLAYED = "/tmp/played.csv"
-RECORDED = "/tmp/recorded.csv"
+PLAYED = "/dev/shm/played.csv"
+RECORDED = "/dev/shm/recorded.csv"
 BIAS_LSB = (44, -21, 0)
 
 
