@@ -50,6 +50,12 @@ LIMITS = {
 }
 
 
+def copy(to, words):
+    """Copy an array over another: not every board's arrays take an assignment to a slice."""
+    for i in range(len(words)):
+        to[i] = words[i]
+
+
 class Corrector:
     """Learns the bias of three axes while the device lives, and subtracts it.
 
@@ -126,6 +132,17 @@ class Corrector:
         )
         self.level = realtime_state(self.level_settings)
 
+    def _forget_motion(self):
+        # their windows hold what the chip sent before, right or not
+        if self.motion is not None:
+            from .motion_settings import motion_state
+
+            copy(self.motion, motion_state(self.motion_settings))
+        if self.level is not None:
+            from .realtime_settings import realtime_state
+
+            copy(self.level, realtime_state(self.level_settings))
+
     def reset(self):
         """Forget everything that was learned."""
         s = self.state
@@ -144,6 +161,7 @@ class Corrector:
         c = self.settings
         if self.effects is not None:
             self.effects.power_on()
+        self._forget_motion()
         for i in range(c[0]):
             s[i] = 0
         for axis in range(3):

@@ -102,3 +102,12 @@ def test_a_sensor_that_cannot_be_is_refused_in_words():
 def test_it_says_what_it_lacks():
     text = Corrector(Sensor(accel_lsb_per_g=0, temp_lsb_per_degc=0)).explain()
     assert "slow turn cannot be told" in text and "any temperature only" in text
+
+
+def test_a_new_power_on_forgets_what_the_other_sources_were_watching():
+    corrector = Corrector(motion=True, accelerometer=True)
+    fresh = list(corrector.motion), list(corrector.level)
+    rest(corrector, 500)
+    assert (list(corrector.motion), list(corrector.level)) != fresh
+    corrector.power_on()
+    assert (list(corrector.motion), list(corrector.level)) == fresh
