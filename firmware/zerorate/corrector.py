@@ -47,6 +47,7 @@ LIMITS = {
     "slope_dps_per_degc": 0.02,
     "motion_most_dps": 0.15,
     "motion_full_dps": 0.01,
+    "motion_start_dps": 20.0,
 }
 
 
@@ -99,9 +100,9 @@ class Corrector:
         self._sense = None
         self._observe_motion = None
         self._observe_level = None
-        self._alone = not motion and not accelerometer
+        self.alone = not motion and not accelerometer
         if motion:
-            self._learn_in_motion()
+            self._learn_in_motion(chosen["motion_start_dps"])
         if accelerometer:
             self._learn_by_level()
         walk_lsb = chosen["walk_dps"] * self.sensor.gyro_lsb_per_dps
@@ -109,7 +110,7 @@ class Corrector:
         self.state = array("i", [0] * (c[0] + 3 * c[13]))
         self.reset()
 
-    def _learn_in_motion(self):
+    def _learn_in_motion(self, start_dps):
         # loaded here, so that who does not learn in motion has no memory taken by it
         from .motion_kernels import in_motion
         from .motion_settings import motion_settings, motion_state
@@ -117,7 +118,11 @@ class Corrector:
         sensor = self.sensor
         self._observe_motion = in_motion.update
         self.motion_settings = motion_settings(
-            sensor.odr_hz, sensor.gyro_lsb_per_dps, sensor.accel_lsb_per_g
+            sensor.odr_hz,
+            sensor.gyro_lsb_per_dps,
+            sensor.accel_lsb_per_g,
+            start_dps=start_dps,
+            temp_lsb_per_degc=sensor.temp_lsb_per_degc,
         )
         self.motion = motion_state(self.motion_settings)
 
@@ -156,7 +161,7 @@ class Corrector:
         self.power_on()
 
     def power_on(self):
-        """Begin a new power-on with what `state` holds: its curves stand, its offsets do not."""
+        """Begin a new power-on with what `state` holds: its curves stand, half of its offsets."""
         s = self.state
         c = self.settings
         if self.effects is not None:
@@ -167,7 +172,7 @@ class Corrector:
         for axis in range(3):
             a = c[0] + axis * c[13]
             s[a + 1] = 0
-            s[a + 24] = 0
+            s[a + 24] >>= 1
             s[a + 25] = c[45]
             s[a + 27] = 0
             s[a + 28] = 0
@@ -179,7 +184,7 @@ class Corrector:
         sample: array('i') ax ay az temp gx gy gz, raw LSB; dt_us: since the sample before.
         Returns 0, or the guard's name for a frame that is not a good reading (see guard.py).
         """
-        if self._alone:
+        if self.alone:
             return step.step(self.state, self.settings, sample, dt_us)
         return self._update_with_others(sample, dt_us)
 
@@ -205,6 +210,9 @@ class Corrector:
         if self.level is not None:
             if self._observe_level(self.level, self.level_settings, sample, dt_us):
                 step.consider(self.state, self.settings, self.level, LEVEL_BIAS, ACCELEROMETER)
+        effects = self.effects
+        if effects is not None and effects.attend:
+            effects.attend(self.state, self.settings, effects.e)
 
     def use_model(self, effects):
         """Correct by an effect model (model.EffectModel, loaded) before anything is learned."""
@@ -212,7 +220,7 @@ class Corrector:
 
         self._sense = kernels.sense
         self.effects = effects
-        self._alone = False
+        self.alone = False
 
     def load(self, store):
         """Begin a power-on with what `store` holds; returns its reason, 0 if it was loaded.
@@ -245,4 +253,4 @@ class Corrector:
         """Return a sentence or two on what is being learned, or why nothing is."""
         from .explain import explain  # words that take no heap until somebody asks
 
-        return explain(self.state, self.settings, self.sensor)
+        return explain(self)

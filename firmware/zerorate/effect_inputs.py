@@ -69,12 +69,17 @@ def extra(e: ptr32, a: int) -> int:
         v = 0x1FFFFFFF
     elif v < -0x1FFFFFFF:
         v = -0x1FFFFFFF
-    v = (v - e[a + _OFFSET]) >> e[a + _SHIFT]
-    if v > 32767:
-        v = 32767
-    elif v < -32768:
-        v = -32768
-    return v
+    v -= e[a + _OFFSET]
+    a = e[a + _SHIFT]
+    if a > 0:
+        v = v >> a
+        a = 0
+    a = 0 - a
+    if v > 32767 >> a:
+        v = 32767 >> a
+    elif v < -(32768 >> a):
+        v = -(32768 >> a)
+    return v << a
 
 
 def accumulate(e: ptr32, x: ptr32):

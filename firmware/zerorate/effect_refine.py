@@ -23,8 +23,13 @@ from .real import add, divide, multiply, put, subtract, whole
 _ON = const(26)
 _BOUND_EIGHTHS = const(27)
 
+_N = const(17)
 _TOTALS = const(42)
+_STILLNESS = const(46)
 _TEMP = const(47)
+_SEGMENT = const(48)
+_SHIFT_OF_WINDOW = const(4)
+_SEGMENTS = const(5)
 
 _PHASE = const(582)
 _STATES = const(583)
@@ -91,6 +96,14 @@ def observe(s: ptr32, e: ptr32, n: int):
             put(e, _PHI + 2 * i, 0, 0)
         i += 1
     e[_PHASE] = 1
+
+
+def attend(s: ptr32, c: ptr32, e: ptr32):
+    """After a good frame: take the still segment that it has completed, or go on with the last."""
+    if s[_N] == 0 and s[_STILLNESS] == 1 and s[_SEGMENT] == 0:
+        observe(s, e, c[_SEGMENTS] << c[_SHIFT_OF_WINDOW])
+    elif e[_PHASE]:
+        refine(e)
 
 
 def product(e: ptr32, to: int, a: int, b: int):

@@ -35,6 +35,7 @@ _NOW_Q14 = const(16)
 _SLOT = const(112)
 _WORDS = const(40)
 _INSTANT = const(33)
+_STARTED = const(34)
 _VALUE = const(39)
 
 _EFFECT_Q8 = const(61)
@@ -65,6 +66,27 @@ def pass_time(e: ptr32, dt_us: int):
     close_tick(e)
 
 
+def begin_early(e: ptr32, x: ptr32):
+    """Let the first reading of a power-on speak until the first tick ends.
+
+    Else a rest within that tick would be learned with all that the model explains.
+    """
+    e[_RUNNING] = 2
+    e[_PENDING] += 1
+    close_tick(e)
+    accumulate(e, x)
+
+
+def begin_again(e: ptr32):
+    """Forget the early tick: time and memories begin with the first whole one."""
+    e[_RUNNING] = 3
+    e[_HALF_TICKS] = 1
+    i = e[_SLOTS]
+    while i > 0:
+        i -= 1
+        e[_SLOT + i * _WORDS + _STARTED] = 0
+
+
 def run_slot(e: ptr32):
     """Compute the next slot of the tick; behind the last one hold the sum until the next tick."""
     i = e[_PHASE]
@@ -83,6 +105,8 @@ def run_slot(e: ptr32):
     if i == e[_SLOTS]:
         i = 0
         e[_PENDING] -= 1
+        if e[_RUNNING] == 2:
+            begin_again(e)
         e[_HELD_Q14] = e[_SUM_Q14]
         e[_HELD_Q14 + 1] = e[_SUM_Q14 + 1]
         e[_HELD_Q14 + 2] = e[_SUM_Q14 + 2]
@@ -110,6 +134,8 @@ def sense(s: ptr32, e: ptr32, x: ptr32, dt_us: int, good: int):
     pass_time(e, dt_us)
     if good:
         accumulate(e, x)
+        if e[_RUNNING] == 1:
+            begin_early(e, x)
     dt_us = e[_PIECES]
     while dt_us > 0 and e[_PENDING] > 0:
         run_slot(e)

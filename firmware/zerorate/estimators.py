@@ -258,14 +258,19 @@ def age(s: ptr32, c: ptr32, a: int):
         e += c[_WORDS]
 
 
-def learn(s: ptr32, c: ptr32, a: int):
-    """Learn the axis' waiting readings: any-temperature estimator, then that of the temperature."""
+def learn_anywhere(s: ptr32, c: ptr32, a: int):
+    """Learn the axis' waiting readings in the estimator of any temperature."""
     temp = s[_LEARN_TEMP]
     if temp < s[a + _COLDEST]:
         s[a + _COLDEST] = temp
     if temp > s[a + _HOTTEST]:
         s[a + _HOTTEST] = temp
     feed(s, c, a, a + _ESTIMATORS)
+
+
+def learn_here(s: ptr32, c: ptr32, a: int):
+    """Learn them in the estimator of their temperature; where there is none one is made free."""
+    temp = s[_LEARN_TEMP]
     e = find(s, c, a, temp)
     if e == 0:
         e = make_room(s, c, a, temp)

@@ -28,8 +28,11 @@ SOURCES = (
 )
 
 
-def explain(s, c, sensor):
-    """Return the text for the state `s` under the settings `c`."""
+def explain(corrector):
+    """Return the text for a Corrector."""
+    s = corrector.state
+    c = corrector.settings
+    sensor = corrector.sensor
     lines = [STILLNESS[s[46]]]
     if s[46] == 1:
         lines.append("%d of %d windows of a still segment." % (s[48], c[5]))
@@ -42,6 +45,10 @@ def explain(s, c, sensor):
         lines.append("Without an accelerometer a slow turn cannot be told from a bias.")
     if not sensor.temp_lsb_per_degc:
         lines.append("Without a thermometer the bias is learned for any temperature only.")
+    if corrector.motion is not None or corrector.level is not None:
+        from .explain_sources import explain_sources
+
+        lines.extend(explain_sources(corrector))
     return "\n".join(lines)
 
 

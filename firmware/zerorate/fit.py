@@ -4,8 +4,7 @@
 # the neighbourhood of one temperature: an estimator `d` away counts 1 / (1 + (d/local)^2) of its
 # samples, and samples beyond `_COUNTED` add nothing, for then drift, not noise, is what is left.
 #
-# Temperatures are raw LSB in Q4, biases LSB in Q8. A fit runs in steps, each a bounded piece of
-# work: weigh, centre (one a point), lean (one a point), settle. Distances over temperature are
+# Temperatures are raw LSB in Q4, biases LSB in Q8. Distances over temperature are
 # shifted left until the range fills 26 bits; the two sums of products float, for a point may weigh
 # 65000 times another.
 
@@ -181,6 +180,20 @@ def settle(s: ptr32, c: ptr32, a: int):
     s[a + _FIT_SHIFT] = stretch(s)
     s[a + _FIT_LOW_Q4] = s[_LOW_Q4]
     s[a + _FIT_HIGH_Q4] = s[_HIGH_Q4]
+
+
+def draw_line(s: ptr32, c: ptr32, a: int):
+    """Fit the axis' line through its estimators."""
+    weigh(s, c, a)
+    i = 1
+    while i < c[_ALL]:
+        centre(s, c, a, i)
+        i += 1
+    i = 1
+    while i < c[_ALL]:
+        lean(s, c, a, i)
+        i += 1
+    settle(s, c, a)
 
 
 def line_q8(s: ptr32, a: int, temp_q4: int) -> int:

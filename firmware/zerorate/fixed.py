@@ -110,9 +110,12 @@ def floating_ratio_q26(a: int, b: int, exponent: int) -> int:
 def root(square: int) -> int:
     """Return the integer square root of 0 <= square < 2^30."""
     bit = 1 << 14
+    if square < 0x1000000:
+        bit = 1 << 11
     found = 0
     while bit:
-        if (found + bit) * (found + bit) <= square:
-            found += bit
+        more = found + bit
+        if more * more <= square:
+            found = more
         bit = bit >> 1
     return found

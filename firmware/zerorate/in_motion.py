@@ -10,7 +10,7 @@ line, take the slope as bias, remove it, integrate again. Two forms:
 
 A window grows from 2 s while nothing is known, for a large bias turns a long one too far to be
 linear. Work is spread: a few nodes or one piece of algebra a sample. The state is one array('i')
-of 228 words and 3 a node; motion_settings.py makes the settings.
+of 240 words and 3 a node; motion_settings.py makes the settings.
 """
 
 try:
@@ -41,8 +41,9 @@ from .least_squares import (
 )
 from .level import begin_attitude, find_up, lean_back, observe, turn_centre
 from .motion_verdict import finish, note_slope, start_window
-from .real import add, whole
+from .real import add, copy, whole
 from .regression import centre, first_sums, regressors, second_sums, taper
+from .thermal import carry, follow_temperature
 
 NOTHING_YET = const(0)
 GROWING = const(1)
@@ -70,18 +71,20 @@ _BIAS_Q24 = const(57)
 _Q = const(25)
 _UP = const(63)
 _TRAFFIC = const(65)
-_AGE = const(66)
+_ACCEPTED = const(67)
 _SUMS = const(85)
 _PRIOR = const(160)
+_PRIOR_MEAN = const(172)
 _BIAS = const(178)
 _D = const(184)
 _CENTRE = const(213)
-_RING = const(228)
+_RING = const(240)
 
 _VISITS = const(5)
 _LONGEST_GAP_US = const(6)
 _NODES = const(8)
 _PASSES = const(9)
+_LONGEST = const(16)
 _SETTLED = const(22)
 _DOCUMENT = const(20)
 
@@ -101,6 +104,7 @@ def update(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
         s[_REASON] = GAP
         return 0
     if int(gather(s, c, x, dt_us)):
+        follow_temperature(s, x[3])
         close(s, c)
     if s[_JOB] == _IDLE:
         if int(start_window(s, c)):
@@ -286,9 +290,14 @@ def level_and_prior(s: ptr32, c: ptr32, k: int):
         find_up(s)
         turn_centre(s, s[_STAGE])
     elif k == 1:
-        spread_prior(s, c, s[_AGE])
-    elif k < 5:
-        sweep(s, k - 2)
+        k = 1 if s[_LENGTH] == c[_LONGEST] and s[_ACCEPTED] > 0 else 0
+        carry(s, c, k)
+        if k:
+            copy(s, _BIAS, _PRIOR_MEAN, 6)
+    elif k == 2:
+        spread_prior(s)
+    elif k < 6:
+        sweep(s, k - 3)
     else:
         covariance(s, _PRIOR)
         held_weights(s, c)

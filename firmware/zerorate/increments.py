@@ -29,7 +29,7 @@ _FAST = const(64)
 _AGE = const(66)
 _CONING = const(202)
 _CARRIED = const(205)
-_RING = const(228)
+_RING = const(240)
 
 _NODE_US = const(0)
 _GAIN = const(1)

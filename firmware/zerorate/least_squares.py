@@ -33,7 +33,6 @@ _T2 = const(206)
 _T3 = const(208)
 _ENERGY = const(222)
 
-_WALK = const(12)
 _SPREAD = const(21)
 
 # .005 and .01 rad, and .7 rad a window: beyond that a step is not linear
@@ -156,8 +155,8 @@ def covariance(s: ptr32, d: int):
         i += 1
 
 
-def spread_prior(s: ptr32, c: ptr32, nodes: int):
-    """Put the covariance, grown by the bias' random walk over so many nodes, into the matrix."""
+def spread_prior(s: ptr32):
+    """Put the covariance into the matrix."""
     i = 0
     d = _G
     while i < 20:
@@ -169,14 +168,6 @@ def spread_prior(s: ptr32, c: ptr32, nodes: int):
             d += 2
         copy(s, d, _P + 2 * i, 2)
         d += 2
-        i += 1
-    put(s, _T, c[_WALK], c[_WALK + 1])
-    put(s, _T1, nodes, 0)
-    multiply(s, _T, _T, _T1)
-    i = 0
-    while i < 3:
-        d = int(place(i, i))
-        add(s, d, d, _T)
         i += 1
 
 

@@ -1,13 +1,13 @@
 """An effect model in the firmware: one array with its numbers and all that is running.
 
-Words of `e`, array('i') of WORDS: 0 slots, 1 inputs, 2 tick_us, 3 elapsed_us, 4 ticks to compute,
-5 slot to compute, 6 slots a sample, 7 half ticks since power-on, 8 runs, 9 slots of the sample
-itself, 10..12 sum and 13..15 held sum and 16..18 sum with the sample's own, LSB Q14, 20..25
-vibration, 26 refinement is on and 27 its bound; at 32 inputs of 6: kind, shift, offset, sum, count,
-value Q8; at 104 channels, as the application gave them; at 112 slots of 40; at 432 tables of 9; at
-450 rings of 66: newest, ticks since it, 64 kept; from 582 refinement: piece to do, states, three
-rates Q8, first temperature, segments seen, and from 590 reals: scratch, at 602 regressors, 622
-gains, 642 states of the axes, 702 covariance.
+Words of `e`, array('i') of WORDS: 0 slots, 1 inputs, 2 tick_us, 3 elapsed_us, 4 ticks to compute, 5
+slot to compute, 6 slots a sample, 7 half ticks since power-on, 8 runs (2 in the first tick, then
+3), 9 slots of the sample itself, 10..12 sum and 13..15 held sum and 16..18 sum with the sample's
+own, LSB Q14, 20..25 vibration, 26 refinement is on and 27 its bound; at 32 inputs of 6: kind,
+shift, offset, sum, count, value Q8; at 104 channels, as the application gave them; at 112 slots of
+40; at 432 tables of 9; at 450 rings of 66: newest, ticks since it, 64 kept; from 582 refinement:
+piece to do, states, three rates Q8, first temperature, segments seen, and from 590 reals: scratch,
+at 602 regressors, 622 gains, 642 states of the axes, 702 covariance.
 A slot: 0 input's value's word, 1 lowest, 2 highest, 3 centre, each Q8, 4 shift to Q24; 5 power,
 6 power first, 7 memory (lag, difference, rate, backlash, peak: 1..5), 8 lag's mantissa, 9 its
 shift, 10 half the backlash, 11 knot; 12..16 as 0..4 for the second source (12: 0 is none);
@@ -19,7 +19,6 @@ Q24 and 36 remainder, 37 decay's and 38, 39 value Q24.
 
 from array import array
 
-from .effect_refine import begin, renew
 from .model_file import IMPOSSIBLE, LOADED, NO_MODEL, UNREADABLE, compare, fill, judge, texts
 
 try:
@@ -45,13 +44,15 @@ _ONE = const(9)
 class EffectModel:
     """An effect model and its running state, in `e`; with no model loaded e[0] is 0.
 
-    channels: names of the extra channels that the model follows, in the order of their index.
+    channels: names of the extra channels that the model follows, in the order of their index;
+    attend: the kernel that refines coefficients, None while it is off.
     """
 
     def __init__(self):
         self.e = array("i", [0] * WORDS)
         self.channels = ()
         self.reason = NO_MODEL
+        self.attend = None
 
     def load_file(self, path, sensor, binding=None):
         """As load, from a file."""
@@ -82,7 +83,6 @@ class EffectModel:
                 reason = IMPOSSIBLE
         if reason == LOADED:
             self.e[0] = data[6]
-            begin(self.e, data[6])
             self.power_on()
         self.reason = reason
         return reason
@@ -93,6 +93,7 @@ class EffectModel:
             self.e[i] = 0
         self.channels = ()
         self.reason = NO_MODEL
+        self.attend = None
 
     def power_on(self):
         """Begin a power-on: time, means, lags and memories anew; coefficients stay."""
@@ -104,7 +105,10 @@ class EffectModel:
             e[a + 3] = 0
             e[a + 4] = 0
             e[a + 5] = 256 if e[a] == _ONE else _NONE
-        renew(e)
+        if e[26]:
+            from .refine_kernels import effect_refine
+
+            effect_refine.renew(e)
         for i in range(_CHANNELS):
             e[_CHANNEL + i] = _NONE
         for a in range(_SLOT, _TABLE, _SLOT_WORDS):
@@ -114,8 +118,9 @@ class EffectModel:
     def refine(self, bound=0.5):
         """Let the coefficients of the loaded model go on learning from rests, from now on.
 
-        bound: how far each may leave the model's, as a share of the slot's largest, 0..1; 0 ends
-        it and puts the model's own back. Raises ValueError.
+        What they have learned is forgotten when the model is loaded anew. bound: how far each may
+        leave the model's, as a share of the slot's largest, 0..1; 0 ends it and puts the model's
+        own back. Raises ValueError.
         """
         if not 0 <= bound <= 1:
             raise ValueError("bound is 0..1")
@@ -124,7 +129,10 @@ class EffectModel:
         e[26] = 1 if e[27] else 0
         for a in range(_SLOT, _SLOT + _SLOT_WORDS * e[0], _SLOT_WORDS):
             e[a + 24], e[a + 25], e[a + 26] = e[a + 30], e[a + 31], e[a + 32]
-        begin(e, e[0])
+        from .refine_kernels import effect_refine  # a few kB that nobody else needs
+
+        effect_refine.begin(e, e[0])
+        self.attend = effect_refine.attend if e[26] else None
 
     def channel(self, name, value):
         """Say what an extra channel, by name or index, reads now (an int); False: no such one.

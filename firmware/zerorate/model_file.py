@@ -126,7 +126,8 @@ def fill(e, data, sensor):
             if not put(e, _INPUT + 6 * i + j, data, at):
                 return IMPOSSIBLE
             at += 4
-        if not 0 <= e[_INPUT + 6 * i] < _EXTRA + CHANNELS or not 0 <= e[_INPUT + 6 * i + 1] <= 15:
+        kind, shift = e[_INPUT + 6 * i], e[_INPUT + 6 * i + 1]
+        if not 0 <= kind < _EXTRA + CHANNELS or not (-8 if kind >= _EXTRA else 0) <= shift <= 15:
             return IMPOSSIBLE
     for i in range(data[6]):
         a = _SLOT + _SLOT_WORDS * i

@@ -1,10 +1,10 @@
 """The settings and the state of the source in motion, made once."""
 
 from array import array
-from math import ceil, pi
+from math import ceil, log, pi
 
-STATE_WORDS = 228
-_SPARE_NODES = 22
+STATE_WORDS = 240
+_SPARE_NODES = 17
 _ALGEBRA = 90
 
 
@@ -29,19 +29,23 @@ def motion_settings(
     passes=3,
     document=False,
     start_dps=20.0,
-    walk_dps=0.003,
-    spread=9,
+    walk_dps=0.0007,
+    temp_lsb_per_degc=340.0,
+    slope_dps_per_degc=0.03,
+    bend_degc=64.0,
+    spread=10,
     least_dps=5.0,
     least_up_g=0.85,
     patience=6,
     settled_dps=0.005,
 ):
-    """Return the settings as array('i'), 23 words.
+    """Return the settings as array('i'), 26 words.
 
     odr_hz: samples a second; node_s: time of a node; longest_stage: the window is 2^that nodes;
     start_dps: one sigma of the bias before anything is known; walk_dps: its random walk a root
-    second; spread: the variance of a slope over that of the noise beside it; least_dps: mean rate
-    below which a window is not motion. Raises ValueError.
+    second; slope_dps_per_degc: one sigma of its slope over temperature, which grows as much again
+    over bend_degc; spread: the variance of a window's slope over that of the noise beside it;
+    least_dps: mean rate below which a window is not motion. Raises ValueError.
     """
     if not 4 <= longest_stage <= 8 or not 1 <= passes <= 8 or not odr_hz * node_s >= 1:
         raise ValueError("a window needs 16..256 nodes of one sample or more, and 1..8 passes")
@@ -56,7 +60,7 @@ def motion_settings(
     while rad_per_lsb_us * (1 << shift) * (1 << gain_shift) < 1024 and gain_shift < 28:
         gain_shift += 1
     unit = node_s * (1 << 24) * pi / 180
-    c = [0] * 23
+    c = [0] * 26
     c[0] = int(node_s * 1e6)
     c[1] = int(rad_per_lsb_us * (1 << shift) * (1 << gain_shift) + 0.5)
     c[2] = gain_shift
@@ -77,6 +81,9 @@ def motion_settings(
     c[20] = 1 if document else 0
     c[21] = spread
     c[22] = int(settled_dps * unit)
+    if temp_lsb_per_degc:
+        c[23], c[24] = _real((slope_dps_per_degc * unit / temp_lsb_per_degc) ** 2)
+        c[25] = int(log(bend_degc * temp_lsb_per_degc) / log(2) + 0.5)
     return array("i", c)
 
 

@@ -17,7 +17,8 @@ ptr32 = None
 
 
 from .least_squares import covariance, less, place
-from .real import add, copy, multiply, put, root_of, subtract, whole
+from .real import copy, multiply, put, root_of, subtract, whole
+from .thermal import forget_slopes, learn_slopes, present
 
 GROWING = const(1)
 LEARNED = const(2)
@@ -39,7 +40,6 @@ _START = const(29)
 _UP = const(63)
 _FAST = const(64)
 _TRAFFIC = const(65)
-_AGE = const(66)
 _ACCEPTED = const(67)
 _REFUSED = const(68)
 _AGAINST = const(69)
@@ -60,7 +60,6 @@ _ENERGY = const(222)
 _LEAST_TRAFFIC = const(7)
 _NODES = const(8)
 _LSB = const(10)
-_WALK = const(12)
 _START_VARIANCE = const(14)
 _LONGEST = const(16)
 _SHORTEST_STAGE = const(17)
@@ -78,6 +77,7 @@ def clear(s: ptr32, c: ptr32):
         put(s, _BIAS + 2 * i, 0, 0)
         s[_QUALITY_Q8 + i] = 0x1FFFFFFF
         i += 1
+    forget_slopes(s, c)
     s[_ACCEPTED] = 0
     s[_AGAINST] = 0
     s[_STAGE] = c[_SHORTEST_STAGE]
@@ -161,7 +161,7 @@ def verdict(s: ptr32, c: ptr32) -> int:
         return LEARNED
     if (s[_UP] << 8) // (s[_TOTAL] >> 2) < c[_LEAST_UP]:
         return LOST
-    if s[_ACCEPTED] >= _SETTLED_AFTER and (int(contradicts(s, c)) or int(louder(s))):
+    if s[_ACCEPTED] >= _SETTLED_AFTER and (int(contradicts(s)) or int(louder(s))):
         return TURNED
     return LEARNED
 
@@ -176,16 +176,12 @@ def louder(s: ptr32) -> int:
     return int(less(s, _T, _ENERGY))
 
 
-def contradicts(s: ptr32, c: ptr32) -> int:
+def contradicts(s: ptr32) -> int:
     """Return 1 if an axis moved by more than four sigma of what was known, else 0."""
     i = 0
     d = _P
     while i < 3:
-        put(s, _T, s[_AGE], 4)
-        put(s, _T1, c[_WALK], c[_WALK + 1])
-        multiply(s, _T, _T, _T1)
-        put(s, _T1, s[d], s[d + 1] + 4)
-        add(s, _T, _T, _T1)
+        put(s, _T, s[d], s[d + 1] + 4)
         subtract(s, _T1, _BIAS + 2 * i, _PRIOR_MEAN + 2 * i)
         multiply(s, _T1, _T1, _T1)
         if int(less(s, _T, _T1)):
@@ -207,11 +203,11 @@ def finish(s: ptr32, c: ptr32) -> int:
         s[_STAGE] += 1
         s[_REASON] = GROWING
         return 0
+    learn_slopes(s)
     covariance(s, _P)
     keep_noise(s)
     s[_ACCEPTED] += 1
     s[_AGAINST] = 0
-    s[_AGE] = 0
     publish(s, c)
     return 1
 
@@ -250,7 +246,8 @@ def publish(s: ptr32, c: ptr32):
     i = 0
     while i < 3:
         put(s, _T, c[_LSB], c[_LSB + 1])
-        multiply(s, _T1, _T, _BIAS + 2 * i)
+        present(s, i)
+        multiply(s, _T1, _T1, _T)
         s[_OUT_Q8 + i] = int(whole(s, _T1, 0))
         copy(s, _T1, int(place(i, i)), 2)
         put(s, _T1, -s[_T1], s[_T1 + 1])

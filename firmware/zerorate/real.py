@@ -140,3 +140,17 @@ def root_of(s: ptr32, d: int, a: int):
         e += 1
     m = int(root(m))
     put(s, d, m, e >> 1)
+
+
+def pack(s: ptr32, d: int, a: int):
+    """Store the number at a in the one word d: 23 bits and an exponent of -96..31, else 0."""
+    e = s[a + 1] + 96
+    if s[a] == 0 or e < 0 or e > 127:
+        s[d] = 0
+    else:
+        s[d] = ((s[a] >> 5) << 7) + e
+
+
+def unpack(s: ptr32, d: int, a: int):
+    """Store the number packed in word a at d."""
+    put(s, d, (s[a] >> 7) << 5, (s[a] & 127) - 96)

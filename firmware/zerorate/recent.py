@@ -36,12 +36,16 @@ _AGE_MS = const(28)
 _KIND = const(30)
 
 _TEMP = const(47)
+_RESTS = const(54)
 _NOISE_Q8 = const(49)
 _LEARN_TEMP = const(52)
 # the fit's scratch words, free while a segment is absorbed
 _MEAN_NOISE_Q8 = const(80)
 _GROWN_Q8 = const(81)
 
+_AXES = const(0)
+_AXIS_WORDS = const(13)
+_TURN_ON_Q8 = const(45)
 _FLOOR_Q8 = const(37)
 _GATE_Q4 = const(38)
 _INSIST = const(39)
@@ -85,11 +89,16 @@ def error_q4(s: ptr32, c: ptr32, a: int) -> int:
 
 
 def plausible(s: ptr32, c: ptr32, a: int, error: int) -> int:
-    """Return 1 if the error is within the gate or six sigma, or has insisted long enough."""
+    """Return 1 if the error is within the gate or six sigma, or has insisted long enough.
+
+    A temperature at which nothing was learned yet widens the six sigma by the slope that is left.
+    """
     far = error if error >= 0 else 0 - error
     if far > 0x7FFF:
         far = 0x7FFF
-    if far <= c[_GATE_Q4] or far * far // 36 < s[_GROWN_Q8] + s[_MEAN_NOISE_Q8]:
+    if far <= c[_GATE_Q4]:
+        far = 0
+    if far * far // 36 <= s[_GROWN_Q8] + s[_MEAN_NOISE_Q8] + beyond_q8(s, c, a):
         s[a + _SUSPECT] = 0
         return 1
     s[a + _SUSPECT] += 1
@@ -152,15 +161,48 @@ def follow(s: ptr32, c: ptr32, a: int, error: int):
     s[a + _VARIANCE_Q8] = excess * (s[_MEAN_NOISE_Q8] >> 14) + error
 
 
+def level_q8(s: ptr32, c: ptr32, a: int) -> int:
+    """Return the axis' turn-on offset, LSB in Q8: what the curve must not learn of this power-on.
+
+    It is what the first minute of rests lies off the curve, less the share that the curve itself
+    may be off where it is asked beyond what it has learned.
+    """
+    k = c[_AXES] - 3 + (a - c[_AXES]) // c[_AXIS_WORDS]
+    if s[_RESTS] < c[_INSIST]:
+        off = s[a + _OFFSET_Q8] >> 4
+        if off > 0x3FFF:
+            off = 0x3FFF
+        if off < -0x3FFF:
+            off = -0x3FFF
+        usual = off * off
+        if usual < c[_TURN_ON_Q8]:
+            usual = c[_TURN_ON_Q8]
+        s[k] = beyond_q8(s, c, a)
+        usual = gain_q14(s[k], usual)
+        s[k] = s[a + _OFFSET_Q8] - (off * usual >> 10)
+    return s[k]
+
+
+def let_learn(s: ptr32, c: ptr32, a: int):
+    """Take the turn-on offset out of what the estimators are about to learn."""
+    if a == c[_AXES] and s[_RESTS] < c[_INSIST]:
+        s[_RESTS] += 1
+    off = level_q8(s, c, a)
+    n = s[a + _WEIGHT]
+    s[a + _TOTAL] -= (off >> 8) * n + ((off & 0xFF) * n + 128 >> 8)
+
+
 def adopt(s: ptr32, c: ptr32, a: int, error: int) -> int:
     """Let what another source found be the level if it is better known than the level is.
 
-    That source is a filter itself: to weigh its results into another one counted them twice.
+    That source is a filter itself: to weigh its results into another one counted them twice, and
+    what it says supersedes what it said before.
     """
     noise = (s[a + _READING] >> 3) + c[_FLOOR_Q8]
     if s[a + _KIND] == 0:
         s[a + _SUSPECT] = -1
-    elif noise >= grown_q8(s, a):
+        s[_RESTS] = c[_INSIST]
+    elif noise >= grown_q8(s, a) and s[a + _FROM] != s[a + _READING] & 7:
         return 1
     else:
         s[a + _OFFSET_Q8] += error << 4
@@ -177,11 +219,23 @@ def absorb(s: ptr32, c: ptr32, a: int) -> int:
     """
     s[_MEAN_NOISE_Q8] = s[_NOISE_Q8] // (3 * s[a + _WEIGHT]) + c[_FLOOR_Q8]
     error = error_q4(s, c, a)
+    if believe(s, c, a, error) == 0:
+        return 0
+    let_learn(s, c, a)
+    return 1
+
+
+def believe(s: ptr32, c: ptr32, a: int, error: int) -> int:
+    """Let the waiting segment, which lies so far from what was expected, move the offset, or not.
+
+    Returns 1 if the estimators may learn it.
+    """
     if s[a + _READING]:
         return adopt(s, c, a, error)
     s[a + _FROM] = 0
     if s[a + _KIND] == 0:
         s[a + _SUSPECT] = -1
+        s[_RESTS] = c[_INSIST]
         s[a + _OFFSET_Q8] = 0
         s[a + _VARIANCE_Q8] = s[_MEAN_NOISE_Q8]
         s[a + _AGE_MS] = 0

@@ -3,7 +3,7 @@
 from array import array
 
 WORDS = 52
-SHARED = 92
+SHARED = 95
 
 
 def power_of_two(samples):
@@ -60,8 +60,7 @@ def settings(sensor, bins, short, long, document, every, ignore_outside, limits)
     recent_of(c, sensor, limits)
     c[0] = SHARED + c[25]
     c[13] = 32 + c[25] * c[26]
-    pieces = 3 * ((c[25] >> 1) * 2 + 4)
-    c[12] = pieces // c[3] + 1
+    c[12] = 9 // c[3] + 1
     return c
 
 
@@ -76,7 +75,6 @@ def windows(c, sensor, limits):
     c[1] = int(min(0x1FFFFFFF, max(0.1e6, 10e6 / sensor.odr_hz)))
     jump_degc = max(400 / 340, 0.5 / sensor.odr_hz)
     c[2] = int(jump_degc * sensor.temp_lsb_per_degc) or 0xFFFF
-    c[6] = 511
     c[7] = squared(limits["still_dps"] * lsb * 16)
     c[8] = squared(limits["still_g"] * accel * 16)
     seconds = max(1, c[5] - 1) * window_s

@@ -1,7 +1,7 @@
 """One sample's way through the firmware, and the work that a full window leaves behind."""
 
-# Learning is spread over the samples of the next window, one small piece a sample, so that no
-# sample waits for a whole refit.
+# Learning is spread over the samples of the next window, a piece a sample, so that no sample waits
+# for all of it. What an axis without anything to learn does is small: three share a sample.
 
 try:
     from micropython import const
@@ -15,8 +15,8 @@ ptr32 = None
 
 
 from .bias import curve_q8
-from .estimators import learn
-from .fit import centre, lean, settle, weigh
+from .estimators import learn_anywhere, learn_here
+from .fit import draw_line
 from .fixed import root
 from .guard import check
 from .recent import absorb, beyond_q8, grown_q8, hand_over
@@ -54,7 +54,6 @@ _SEGMENTS = const(5)
 _SLEW_Q8 = const(11)
 _PIECES = const(12)
 _AXIS_WORDS = const(13)
-_ALL = const(25)
 _FORETOLD_Q8 = const(44)
 _FLOOR_Q8 = const(37)
 _STALE_LSB = const(43)
@@ -62,25 +61,7 @@ _MOST_SIGMA_Q6 = const(48)
 _FULL_WEIGHT_Q12 = const(49)
 _EVERY = const(46)
 
-
-def correct(s: ptr32, c: ptr32, x: ptr32):
-    """Subtract the bias from the frame in place.
-
-    What rounding to whole LSB leaves over is carried to the next sample, so that no angle is lost
-    in the sum. The bias follows its target no faster than the slew limit.
-    """
-    i = 0
-    while i < 3:
-        d = s[_TARGET_Q8 + i] - s[_OUT_Q8 + i]
-        if d > c[_SLEW_Q8]:
-            d = c[_SLEW_Q8]
-        elif d < -c[_SLEW_Q8]:
-            d = -c[_SLEW_Q8]
-        s[_OUT_Q8 + i] += d
-        d = (x[4 + i] << 8) - s[_OUT_Q8 + i] - s[_EFFECT_Q8 + i] + s[_CARRY_Q8 + i]
-        x[4 + i] = (d + 128) >> 8
-        s[_CARRY_Q8 + i] = d - (x[4 + i] << 8)
-        i += 1
+_PIECES_AN_AXIS = const(3)
 
 
 def publish(s: ptr32, c: ptr32, a: int, axis: int):
@@ -112,53 +93,39 @@ def stale(s: ptr32, c: ptr32, a: int) -> int:
     return 0
 
 
-def refit(s: ptr32, c: ptr32, a: int, piece: int):
-    """Do one piece of the axis' line: 2 weighs, then two points a piece, then it settles."""
-    half = c[_ALL] >> 1
-    piece -= 2
-    if piece == 0:
-        weigh(s, c, a)
-        return
-    i = ((piece - 1) << 1) + 1
-    if piece <= half:
-        centre(s, c, a, i)
-        i += 1
-        if i < c[_ALL]:
-            centre(s, c, a, i)
-        return
-    i -= half << 1
-    lean(s, c, a, i)
-    i += 1
-    if i < c[_ALL]:
-        lean(s, c, a, i)
-    if piece == half << 1:
-        settle(s, c, a)
-
-
 def advance(s: ptr32, c: ptr32):
-    """Do the next piece of work: an axis absorbs, learns, refits its line and publishes."""
-    last = ((c[_ALL] >> 1) << 1) + 3
-    axis = (s[_PHASE] - 1) // (last + 1)
-    piece = (s[_PHASE] - 1) % (last + 1)
-    a = c[_AXES] + axis * c[_AXIS_WORDS]
-    s[_PHASE] += 1
-    if piece == 0:
-        if s[a + _WEIGHT] and absorb(s, c, a) == 0:
+    """Do the next piece of work; axes that have next to nothing to do are done on the way.
+
+    An axis absorbs a segment and learns it for any temperature; learns it for its temperature;
+    draws its line again and publishes.
+    """
+    axis = (s[_PHASE] - 1) // _PIECES_AN_AXIS
+    piece = (s[_PHASE] - 1) % _PIECES_AN_AXIS
+    busy = 0
+    while busy == 0 and axis < 3:
+        a = c[_AXES] + axis * c[_AXIS_WORDS]
+        if piece == 0:
+            busy = s[a + _WEIGHT]
+            if busy and absorb(s, c, a) == 0:
+                s[a + _WEIGHT] = 0  # held back
+            if s[a + _WEIGHT]:
+                learn_anywhere(s, c, a)
+        elif piece == 1:
+            learn_here(s, c, a)
+            busy = 1
+        if s[a + _WEIGHT] and piece < 2:
+            piece += 1
+        else:
+            if stale(s, c, a):
+                draw_line(s, c, a)
+                busy = 1
+            if s[a + _WEIGHT] and c[_EVERY] == 0:
+                hand_over(s, c, a)
             s[a + _WEIGHT] = 0
-    elif piece == 1:
-        if s[a + _WEIGHT]:
-            learn(s, c, a)
-        if stale(s, c, a) == 0:
-            s[_PHASE] += last - 2
-    elif piece < last:
-        refit(s, c, a, piece)
-    else:
-        if s[a + _WEIGHT] and c[_EVERY] == 0:
-            hand_over(s, c, a)
-        s[a + _WEIGHT] = 0
-        publish(s, c, a, axis)
-        if axis == 2:
-            s[_PHASE] = 0
+            publish(s, c, a, axis)
+            axis += 1
+            piece = 0
+    s[_PHASE] = axis * _PIECES_AN_AXIS + piece + 1 if axis < 3 else 0
 
 
 def foresay(s: ptr32, axis: int, bias: int, quality: int):
@@ -172,8 +139,10 @@ def foresay(s: ptr32, axis: int, bias: int, quality: int):
 def foretell(s: ptr32, c: ptr32, axis: int):
     """Publish the mean of the first rest once it is two windows long, before it is learned from.
 
-    It is taken back at once when the rest turns out to be none.
+    It is taken back at once when the rest turns out to be none. Another source's bias stands.
     """
+    if s[_SOURCE + axis] > 1:
+        return
     if s[_STILLNESS] == 1 and s[_SEGMENT] > 1:
         n = s[_SEGMENT] << c[_SHIFT]
         level = (s[_TOTALS + axis] // n) << 8
@@ -216,7 +185,8 @@ def learn_at_once(s: ptr32, c: ptr32, x: ptr32):
         a = c[_AXES] + i * c[_AXIS_WORDS]
         s[a + _TOTAL] = x[4 + i]
         s[a + _WEIGHT] = 1
-        learn(s, c, a)
+        learn_anywhere(s, c, a)
+        learn_here(s, c, a)
         s[a + _WEIGHT] = 0
         i += 1
 
@@ -251,31 +221,45 @@ def admit(s: ptr32, c: ptr32, x: ptr32, kind: int) -> int:
 
 
 def finish(s: ptr32, c: ptr32, x: ptr32, kind: int) -> int:
-    """Correct the frame in place and return its kind.
+    """Subtract the bias from the frame in place and return its kind.
 
-    Frames of all zeros or ones and beyond (see guard.py) are left as they are.
+    What rounding to whole LSB leaves over is carried to the next sample, so that no angle is lost
+    in the sum. The bias follows its target no faster than the slew limit. Frames of all zeros or
+    ones and beyond (see guard.py) are left as they are.
     """
-    if kind < 3:
-        correct(s, c, x)
+    i = 0
+    while i < 3 and kind < 3:
+        d = s[_TARGET_Q8 + i] - s[_OUT_Q8 + i]
+        if d > c[_SLEW_Q8]:
+            d = c[_SLEW_Q8]
+        elif d < -c[_SLEW_Q8]:
+            d = -c[_SLEW_Q8]
+        s[_OUT_Q8 + i] += d
+        d = (x[4 + i] << 8) - s[_OUT_Q8 + i] - s[_EFFECT_Q8 + i] + s[_CARRY_Q8 + i]
+        x[4 + i] = (d + 128) >> 8
+        s[_CARRY_Q8 + i] = d - (x[4 + i] << 8)
+        i += 1
     return kind
 
 
 def step(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
     """Learn from the frame and correct it in place; return what the guard says of it."""
-    kind = check(s, c, x, dt_us)
+    kind = examine(s, c, x, dt_us)
     admit(s, c, x, kind)
-    if kind < 3:
-        correct(s, c, x)
-    return kind
+    return finish(s, c, x, kind)
 
 
 def speak(s: ptr32, c: ptr32, m: ptr32, w: int, axis: int):
-    """Publish what another source found, whatever its quality, while nothing was learned at all."""
+    """Publish what another source found before anything was learned, if only roughly known.
+
+    Eight times the uncertainty that may teach; beyond that a guess was often worse than none.
+    """
     if s[c[_AXES] + axis * c[_AXIS_WORDS] + _KIND] == 0:
         w += axis
-        if m[w + 3] < 0x200000:
+        if m[w + 3] >> 5 < c[_MOST_SIGMA_Q6]:
             s[_TARGET_Q8 + axis] = m[w]
-            s[_OUT_Q8 + axis] = m[w]
+            if s[_SOURCE + axis] == 0:
+                s[_OUT_Q8 + axis] = m[w]
             s[_QUALITY_Q8 + axis] = m[w + 3]
             s[_SOURCE + axis] = s[_SCRATCH]
 

@@ -48,7 +48,6 @@ _LAST = const(77)
 _WINDOW = const(3)
 _SHIFT = const(4)
 _SEGMENTS = const(5)
-_DEVIATION = const(6)
 _SPREAD_GYRO_Q8 = const(7)
 _SPREAD_ACCEL_Q8 = const(8)
 _TIP_LIMIT_Q8 = const(9)
@@ -78,7 +77,7 @@ def gather(s: ptr32, c: ptr32, x: ptr32) -> int:
         i = 0
         while i < 7:
             d = x[i] - s[_REFERENCE + i]
-            if d > c[_DEVIATION] or d < -c[_DEVIATION]:
+            if (d + 512) >> 10:  # beyond ten bits: the squares of a window fit 31
                 s[_DIRTY] = i + 1
                 d = 0
             s[_SUM + i] += d

@@ -6,9 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from zerorate import Sensor, effects
+from zerorate.corrector import EFFECT_Q8
 from zerorate_tools.loop.basis import Term, evaluate
 from zerorate_tools.model import Slot
 
@@ -120,7 +121,14 @@ ANY_TERM = st.fixed_dictionaries(
 )
 
 
+NARROW = {
+    **{"source": "vdd_mv", "basis": "backlash", "second": None, "scale_s": 1.0},
+    "share": (0.14145443813121708, 0.25),
+}
+
+
 @given(chosen=ANY_TERM)
+@example(chosen=NARROW)
 @settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_any_slot_stays_below_a_tenth_of_the_floor(chosen, warm_up):
     low, high = CENTRES[chosen["source"]]
@@ -220,7 +228,18 @@ def test_no_sample_computes_more_than_its_share(warm_up, monkeypatch):
         before = len(counted)
         effects.sense(state, model.e, frame, 10000, 1)
         most = max(most, len(counted) - before)
-    assert (most, len(counted)) == (1, 8 * 4)
+    # once for the first sample, which speaks for the first tick, and once for each of four ticks
+    assert (most, len(counted)) == (1, 8 * 5)
+
+
+def test_the_first_sample_speaks_until_the_first_tick_ends():
+    slot = Slot(Term("temp", 0.0, 60.0, 20.0), (0.1, 0, 0))
+    model = loaded([slot], sensor=Sensor(100.0))
+    ten_above = still_frame(round((30.0 - 36.53) * 340))
+    state = array("i", [0] * 64)
+    for _ in range(3):
+        effects.sense(state, model.e, ten_above, 10000, 1)
+    assert state[EFFECT_Q8] / 256 / 131 == pytest.approx(1.0, abs=0.001)
 
 
 def still_frame(temp=0):

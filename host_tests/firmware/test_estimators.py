@@ -21,7 +21,8 @@ class Axis:
 
     def learn(self, temp, reading=0, weight=1):
         self.s[self.a], self.s[self.a + 1], self.s[52] = reading * weight, weight, temp
-        estimators.learn(self.s, self.c, self.a)
+        estimators.learn_anywhere(self.s, self.c, self.a)
+        estimators.learn_here(self.s, self.c, self.a)
 
     def each(self, first, end):
         """[(temperature, readings)] of the estimators between two offsets, FREE ones too."""

@@ -5,7 +5,7 @@ from fractions import Fraction
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from zerorate import Corrector, bias, fit, step
+from zerorate import Corrector, bias, fit
 
 from .tolerances import LINE_LSB
 
@@ -39,8 +39,7 @@ class Axis:
             s[e], s[e + 1], s[e + 2], s[e + 3] = _FREE, 0, 0, 0
             if k < len(points):
                 s[e], s[e + 1 : e + 4] = points[k][0] >> 4, type(s)("i", points[k])
-        for piece in range(2, (c[25] >> 1) * 2 + 3):
-            step.refit(s, c, self.a, piece)
+        fit.draw_line(s, c, self.a)
         return self
 
     def line_lsb(self, temp_q4):

@@ -50,6 +50,30 @@ def test_a_device_that_never_rests_is_known_to_30_mdps_after_two_minutes(seed):
     assert np.sqrt((errors**2).mean()) < 30
 
 
+def warming(seed, seconds, degc, dps_per_degc):
+    """A swing while the thermometer climbs by degc and the bias with it."""
+    motion = motions.swinging(seed, seconds, bias_dps=[0.0, 0.0, 0.0])
+    climb = np.linspace(0, degc, len(motion.samples))
+    motion.bias_dps = climb[:, None] * np.asarray(dps_per_degc)
+    motion.samples[:, 3] = np.round(climb * 340)
+    motion.samples[:, 4:] += np.round(motion.bias_dps * motions.GYRO_LSB_PER_DPS).astype(int)
+    return motion
+
+
+def test_a_bias_that_follows_the_temperature_is_followed_without_a_lag():
+    motion = warming(2, 300, degc=20.0, dps_per_degc=[0.03, -0.05, 0.04])
+
+    def error_mdps(**options):
+        learner = Learner(**options).feed(motion)
+        late = [(t, b) for t, b, _ in learner.windows if t > 150]
+        truth = [motion.bias_dps[round(t * motion.hz) - 1] for t, _ in late]
+        return 1000 * np.abs(np.mean([b for _, b in late] - np.array(truth), axis=0))
+
+    with_slope, without = error_mdps(), error_mdps(slope_dps_per_degc=1e-6)
+    print("mean error with a slope", with_slope, "without", without, "mdps")
+    assert with_slope.max() < 40 < without.max()
+
+
 def test_a_bias_of_eighteen_dps_is_learned():
     motion = motions.swinging(5, 150, bias_dps=[18.0, -15.0, 17.0])
     errors = Learner().feed(motion).errors_mdps(motion.bias_dps, after_s=120)

@@ -7,7 +7,7 @@ the same state; so what happens in it here happens there.
 from collections import Counter
 
 import pytest
-from zerorate import bias, estimators, guard, histogram, recent, step, stillness
+from zerorate import bias, estimators, fit, guard, histogram, recent, stillness
 from zerorate_tools.errors import ZerorateError
 
 from . import trace
@@ -30,7 +30,7 @@ class Events:
         self.count(estimators, "age")
         self.count(estimators, "make_room", before=self.of_the_oldest)
         self.count(estimators, "copy", before=lambda s, c, to, e: s[to] != _FREE)
-        self.count(step, "settle")
+        self.count(fit, "settle")
         self.count(recent, "plausible", lambda args, result: result)
 
     @staticmethod

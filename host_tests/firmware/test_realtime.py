@@ -7,6 +7,7 @@ from zerorate import realtime
 from zerorate.realtime_settings import realtime_settings, realtime_state
 
 from . import motions
+from .checked import Words, checked
 
 OFFSET, SIGMA, STEP, OBSERVED, REASON, SKIPPED = 28, 31, 34, 37, 49, 50
 LEANING = Rotation.from_rotvec([0.5, -0.6, 0.2])
@@ -106,6 +107,33 @@ def test_the_truth_lies_within_two_sigma_at_least_ninety_times_of_a_hundred():
 def test_settings_that_cannot_work_are_refused(options):
     with pytest.raises(ValueError, match="sub-unit"):
         realtime_settings(**options)
+
+
+def at_the_rails():
+    """Samples beyond reason, with and without 1 g."""
+    motion = motions.turning(60, 0.0, [1, 0, 0], start=LEANING)
+    random = np.random.default_rng(3)
+    motion.samples[:, 4:] = random.choice([-32768, 32767, 0, 12345], (len(motion.samples), 3))
+    half = len(motion.samples) // 2
+    motion.samples[half:, :3] = random.choice([-32768, 32767, 0], (len(motion.samples) - half, 3))
+    return motion
+
+
+def a_fast_swing():
+    """Samples of all axes swinging, gravity seen by every pair in turn."""
+    return motions.swinging(11, 60, bias_dps=[8.0, -9.0, 10.0])
+
+
+@pytest.mark.parametrize("document", [False, True])
+@pytest.mark.parametrize("lsb", [16.4, 131.0])
+@pytest.mark.parametrize("make", [at_the_rails, a_fast_swing])
+def test_every_intermediate_fits_31_bits(make, lsb, document):
+    counter = Counter(document=document, gyro_lsb_per_dps=lsb)
+    state, settings = Words(counter.state), Words(counter.settings)
+    motion = make()
+    for sample in motion.samples.tolist():
+        realtime.update(state, settings, Words(sample), checked(round(1e6 / motion.hz)))
+    assert max(state[OBSERVED : OBSERVED + 3]) > 20
 
 
 @pytest.fixture(scope="module")

@@ -1,9 +1,7 @@
 """How much memory the firmware takes."""
 
-import subprocess
-from pathlib import Path
-
 from zerorate import Corrector
+from zerorate_tools.bench.memory import import_heap_bytes
 
 from .tolerances import IMPORT_BYTES, STATE_BYTES
 
@@ -16,11 +14,8 @@ def test_the_state_of_three_axes_stays_within_its_limit(capsys):
 
 
 def test_importing_the_firmware_takes_no_more_heap_than_it_may(find_runtime, repository, capsys):
-    wasm = find_runtime("wasm")
-    script = Path(__file__).parent / "on_micropython" / "heap_of_import.mjs"
-    command = [*wasm.node, script, wasm.package, repository / "firmware", "zerorate"]
-    done = subprocess.run(command, capture_output=True, text=True, check=True)
-    taken = int(done.stdout)
+    find_runtime("wasm")
+    taken = import_heap_bytes(repository / "firmware")
     with capsys.disabled():
         print(f"\nheap of `import zerorate` on wasm: {taken} bytes")
     assert 8192 < taken <= IMPORT_BYTES

@@ -107,7 +107,8 @@ def test_a_missing_node_says_where_it_comes_from(monkeypatch):
 def test_what_npm_complains_of_is_told_in_one_line(tmp_path, monkeypatch, capsys):
     npm = tmp_path / "npm"
     npm.write_text(
-        "#!/bin/sh\necho 'npm error the network is gone' >&2\n"
+        "#!/bin/sh\necho 'npm error request to x failed, reason: the network is gone' >&2\n"
+        "echo 'npm error If you are behind a proxy, see npm help config' >&2\n"
         "echo 'npm error A complete log is in x' >&2\nexit 1\n"
     )
     npm.chmod(0o755)

@@ -18,23 +18,39 @@ def work():
     return workload(COUNT)
 
 
-def on_cpython(work):
-    state, settings = array("i", work.state.tolist()), array("i", work.settings.tolist())
-    for row in work.rows.tolist():
-        step.step(state, settings, array("i", row[1:]), row[0])
-    return state.tobytes()
-
-
-def test_c_ends_in_the_state_that_python_ends_in(work, repository, tmp_path):
-    source = tmp_path / "yardstick.c"
+@pytest.fixture(scope="module")
+def program(repository, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("yardstick")
+    source = folder / "yardstick.c"
     source.write_text(program_in_c(repository / "firmware" / "zerorate"))
     try:
-        program = compiled(source, tmp_path / "yardstick", "host")
+        return compiled(source, folder / "yardstick", "host")
     except MissingRuntime as missing:
         pytest.skip(str(missing))
-    done = program.run("\n", [COUNT, 1], files_in=work.files(), files_out=["state.out"], check=True)
+
+
+def on_cpython(work):
+    """(state, verdict and corrected words of every frame), bytes."""
+    state, settings = array("i", work.state.tolist()), array("i", work.settings.tolist())
+    frames = array("i")
+    for row in work.rows.tolist():
+        frame = array("i", row[1:])
+        frames.append(step.step(state, settings, frame, row[0]))
+        frames.extend(frame)
+    return state.tobytes(), frames.tobytes()
+
+
+@pytest.mark.parametrize("at_once", [1, 64])
+def test_c_ends_in_the_state_that_python_ends_in(work, program, at_once):
+    done = program.run(
+        "\n",
+        [COUNT, 1, at_once],
+        files_in=work.files(),
+        files_out=["state.out", "frames.out"],
+        check=True,
+    )
     assert done.files["state.out"] != work.files()["state.bin"]
-    assert done.files["state.out"] == on_cpython(work)
+    assert (done.files["state.out"], done.files["frames.out"]) == on_cpython(work)
 
 
 def test_the_committed_text_is_fresh(repository):

@@ -82,6 +82,10 @@ static int32_t guard_check(int32_t *s, int32_t *c, int32_t *x, int32_t dt_us) {
     return i;
 }
 
+static int32_t step_examine(int32_t *s, int32_t *c, int32_t *x, int32_t dt_us) {
+    return guard_check(s, c, x, dt_us);
+}
+
 static int32_t stillness_gather(int32_t *s, int32_t *c, int32_t *x) {
     int32_t d = 0;
     int32_t e = 0;
@@ -109,7 +113,7 @@ static int32_t stillness_gather(int32_t *s, int32_t *c, int32_t *x) {
         i = 0;
         while (i < 7) {
             d = (x[i] - s[(19 + i)]);
-            if ((d > c[6]) || (d < (-c[6]))) {
+            if (((d + 512) >> 10)) {
                 s[18] = (i + 1);
                 d = 0;
             }
@@ -136,6 +140,35 @@ static int32_t stillness_gather(int32_t *s, int32_t *c, int32_t *x) {
         return 0;
     }
     return 1;
+}
+
+static int32_t step_stale(int32_t *s, int32_t *c, int32_t a) {
+    int32_t d = 0;
+    d = (s[47] - s[(a + 31)]);
+    if (s[(a + 1)] || c[46] || (d > c[43]) || (d < (-c[43]))) {
+        s[(a + 31)] = s[47];
+        return 1;
+    }
+    return 0;
+}
+
+static int32_t recent_beyond_q8(int32_t *s, int32_t *c, int32_t a) {
+    int32_t d = 0;
+    d = (shift_left(s[47], 4) - s[(a + 20)]);
+    if (d < 0) {
+        d = (s[(a + 19)] - shift_left(s[47], 4));
+    }
+    if ((d < 0) || (s[(a + 22)] == 0)) {
+        return 0;
+    }
+    if (d > 262143) {
+        d = 262143;
+    }
+    d = ((d * c[50]) >> 16);
+    if (d > 16383) {
+        d = 16383;
+    }
+    return (d * d);
 }
 
 static int32_t estimators_find(int32_t *s, int32_t *c, int32_t a, int32_t temp) {
@@ -232,18 +265,6 @@ static int32_t bias_curve_q8(int32_t *s, int32_t *c, int32_t a, int32_t temp) {
     return fit_line_q8(s, a, shift_left(temp, 4));
 }
 
-static int32_t recent_error_q4(int32_t *s, int32_t *c, int32_t a) {
-    int32_t before = 0;
-    int32_t mean = 0;
-    before = s[52];
-    before = bias_curve_q8(s, c, a, before);
-    s[(a + 23)] = before;
-    mean = floor_mod(s[(a + 0)], s[(a + 1)]);
-    mean = floor_div(shift_left(mean, 8), s[(a + 1)]);
-    mean = (mean + shift_left(floor_div(s[(a + 0)], s[(a + 1)]), 8));
-    return (((mean - before) - s[(a + 24)]) >> 4);
-}
-
 static int32_t recent_grown_q8(int32_t *s, int32_t a) {
     int32_t seconds = 0;
     seconds = (s[(a + 28)] >> 10);
@@ -253,133 +274,45 @@ static int32_t recent_grown_q8(int32_t *s, int32_t a) {
     return (s[(a + 25)] + (((s[(a + 26)] >> 4) * seconds) >> 4));
 }
 
-static int32_t recent_plausible(int32_t *s, int32_t *c, int32_t a, int32_t error) {
-    int32_t far = 0;
-    far = ((error >= 0) ? error : (0 - error));
-    if (far > 32767) {
-        far = 32767;
+static int32_t fixed_root(int32_t square) {
+    int32_t bit = 0;
+    int32_t found = 0;
+    int32_t more = 0;
+    bit = shift_left(1, 14);
+    if (square < 16777216) {
+        bit = shift_left(1, 11);
     }
-    if ((far <= c[38]) || (floor_div((far * far), 36) < (s[81] + s[80]))) {
-        s[(a + 27)] = 0;
-        return 1;
-    }
-    s[(a + 27)] = (s[(a + 27)] + 1);
-    if (s[(a + 27)] < c[39]) {
-        return 0;
-    }
-    s[(a + 27)] = 0;
-    s[(a + 24)] = (s[(a + 24)] + shift_left(error, 4));
-    return 2;
-}
-
-static int32_t recent_adopt(int32_t *s, int32_t *c, int32_t a, int32_t error) {
-    int32_t noise = 0;
-    noise = ((s[(a + 12)] >> 3) + c[37]);
-    if (s[(a + 30)] == 0) {
-        s[(a + 27)] = (-1);
-    } else {
-        if (noise >= recent_grown_q8(s, a)) {
-            return 1;
-        } else {
-            s[(a + 24)] = (s[(a + 24)] + shift_left(error, 4));
+    found = 0;
+    while (bit) {
+        more = (found + bit);
+        if ((more * more) <= square) {
+            found = more;
         }
+        bit = (bit >> 1);
     }
-    s[(a + 13)] = (s[(a + 12)] & 7);
-    s[(a + 25)] = noise;
-    s[(a + 28)] = 0;
-    return 1;
+    return found;
 }
 
-static void recent_rewalk(int32_t *s, int32_t *c, int32_t a, int32_t excess) {
-    int32_t age = 0;
-    int32_t speed = 0;
-    age = ((s[(a + 28)] >> 6) + 1);
-    if (excess > 2097151) {
-        excess = 2097151;
-    }
-    if (excess < (-2097151)) {
-        excess = (-2097151);
-    }
-    speed = floor_div(shift_left(excess, 8), age);
-    if (speed > 33554431) {
-        speed = 33554431;
-    }
-    if (speed < (-33554431)) {
-        speed = (-33554431);
-    }
-    speed = shift_left(speed, 4);
-    if (speed > c[41]) {
-        speed = c[41];
-    }
-    if (age > 1023) {
-        age = 1023;
-    }
-    speed = ((speed - s[(a + 26)]) >> 4);
-    age = (age * age);
-    age = floor_div(age, ((age + 1048576) >> 10));
-    if (age < 40) {
-        age = 40;
-    }
-    speed = shift_left(((speed * age) >> 10), 4);
-    s[(a + 26)] = (s[(a + 26)] + speed);
-    if (s[(a + 26)] < c[40]) {
-        s[(a + 26)] = c[40];
-    }
-}
-
-static int32_t recent_gain_q14(int32_t variance, int32_t noise) {
-    while ((variance + noise) > 32767) {
-        variance = (variance >> 1);
-        noise = (noise >> 1);
-    }
-    return floor_div(shift_left(variance, 14), ((variance + noise) + 1));
-}
-
-static void recent_follow(int32_t *s, int32_t *c, int32_t a, int32_t error) {
-    int32_t excess = 0;
-    if (error > 16383) {
-        error = 16383;
-    }
-    if (error < (-16383)) {
-        error = (-16383);
-    }
-    excess = ((error * error) - s[(a + 25)]);
-    excess = (excess - s[80]);
-    recent_rewalk(s, c, a, excess);
-    excess = recent_gain_q14(s[81], s[80]);
-    s[(a + 24)] = (s[(a + 24)] + ((excess * error) >> 10));
-    error = ((excess * (s[80] & 16383)) >> 14);
-    s[(a + 25)] = ((excess * (s[80] >> 14)) + error);
-}
-
-static int32_t recent_absorb(int32_t *s, int32_t *c, int32_t a) {
-    int32_t error = 0;
-    int32_t verdict = 0;
-    s[80] = (floor_div(s[49], (3 * s[(a + 1)])) + c[37]);
-    error = recent_error_q4(s, c, a);
-    if (s[(a + 12)]) {
-        return recent_adopt(s, c, a, error);
-    }
-    s[(a + 13)] = 0;
+static void step_publish(int32_t *s, int32_t *c, int32_t a, int32_t axis) {
+    int32_t bias = 0;
+    bias = s[47];
+    bias = (bias_curve_q8(s, c, a, bias) + s[(a + 24)]);
     if (s[(a + 30)] == 0) {
-        s[(a + 27)] = (-1);
-        s[(a + 24)] = 0;
-        s[(a + 25)] = s[80];
-        s[(a + 28)] = 0;
-        return 1;
+        return;
     }
-    s[81] = recent_grown_q8(s, a);
-    verdict = recent_plausible(s, c, a, error);
-    if (verdict == 0) {
-        return 0;
+    s[(67 + axis)] = bias;
+    if (s[(73 + axis)] == 0) {
+        s[(55 + axis)] = bias;
     }
-    if (verdict == 1) {
-        recent_follow(s, c, a, error);
+    s[(73 + axis)] = (s[(a + 13)] ? s[(a + 13)] : s[(a + 30)]);
+    bias = (recent_grown_q8(s, a) + shift_left(c[37], 1));
+    bias = (bias + recent_beyond_q8(s, c, a));
+    if (bias < 4194303) {
+        bias = fixed_root(shift_left(bias, 8));
     } else {
-        s[(a + 25)] = s[80];
+        bias = shift_left(fixed_root(bias), 4);
     }
-    s[(a + 28)] = 0;
-    return 1;
+    s[(70 + axis)] = bias;
 }
 
 static int32_t histogram_population(int32_t *s, int32_t h, int32_t bins) {
@@ -687,6 +620,18 @@ static void estimators_feed(int32_t *s, int32_t *c, int32_t a, int32_t e) {
     s[(e + 1)] = (s[(e + 1)] + k);
 }
 
+static void estimators_learn_anywhere(int32_t *s, int32_t *c, int32_t a) {
+    int32_t temp = 0;
+    temp = s[52];
+    if (temp < s[(a + 3)]) {
+        s[(a + 3)] = temp;
+    }
+    if (temp > s[(a + 4)]) {
+        s[(a + 4)] = temp;
+    }
+    estimators_feed(s, c, a, (a + 32));
+}
+
 static void estimators_touch(int32_t *s, int32_t *c, int32_t a, int32_t e) {
     int32_t d = 0;
     int32_t held = 0;
@@ -867,17 +812,10 @@ static void estimators_age(int32_t *s, int32_t *c, int32_t a) {
     }
 }
 
-static void estimators_learn(int32_t *s, int32_t *c, int32_t a) {
+static void estimators_learn_here(int32_t *s, int32_t *c, int32_t a) {
     int32_t e = 0;
     int32_t temp = 0;
     temp = s[52];
-    if (temp < s[(a + 3)]) {
-        s[(a + 3)] = temp;
-    }
-    if (temp > s[(a + 4)]) {
-        s[(a + 4)] = temp;
-    }
-    estimators_feed(s, c, a, (a + 32));
     e = estimators_find(s, c, a, temp);
     if (e == 0) {
         e = estimators_make_room(s, c, a, temp);
@@ -890,108 +828,6 @@ static void estimators_learn(int32_t *s, int32_t *c, int32_t a) {
         s[(a + 5)] = 0;
         estimators_age(s, c, a);
     }
-}
-
-static int32_t step_stale(int32_t *s, int32_t *c, int32_t a) {
-    int32_t d = 0;
-    d = (s[47] - s[(a + 31)]);
-    if (s[(a + 1)] || c[46] || (d > c[43]) || (d < (-c[43]))) {
-        s[(a + 31)] = s[47];
-        return 1;
-    }
-    return 0;
-}
-
-static int32_t fixed_room(int32_t value) {
-    int32_t shift = 0;
-    if (value < 0) {
-        value = (0 - value);
-    }
-    shift = 0;
-    if (value == 0) {
-        return 27;
-    }
-    if (value < 2048) {
-        value = shift_left(value, 16);
-        shift = 16;
-    }
-    if (value < 524288) {
-        value = shift_left(value, 8);
-        shift = (shift + 8);
-    }
-    if (value < 8388608) {
-        value = shift_left(value, 4);
-        shift = (shift + 4);
-    }
-    if (value < 33554432) {
-        value = shift_left(value, 2);
-        shift = (shift + 2);
-    }
-    if (value < 67108864) {
-        shift = (shift + 1);
-    }
-    return shift;
-}
-
-static void fit_add_product(int32_t *s, int32_t k, int32_t p, int32_t q, int32_t r) {
-    int32_t h = 0;
-    int32_t i = 0;
-    if ((p == 0) || (q == 0) || (r == 0)) {
-        return;
-    }
-    h = fixed_room(p);
-    i = fixed_room(q);
-    p = fixed_scaled(shift_left(p, h), shift_left(q, i), 27);
-    h = (h + i);
-    i = fixed_room(r);
-    p = fixed_scaled(p, shift_left(r, i), 27);
-    h = (h + (i - 2));
-    i = fixed_room(p);
-    p = (shift_left(p, i) >> 2);
-    h = (h + i);
-    if (s[k] == 0) {
-        s[(k + 1)] = h;
-    }
-    i = (h - s[(k + 1)]);
-    if (i >= 0) {
-        p = (p >> ((i < 30) ? i : 30));
-    } else {
-        s[k] = (s[k] >> ((i > (-30)) ? (0 - i) : 30));
-        s[(k + 1)] = h;
-    }
-    s[k] = (s[k] + p);
-}
-
-static int32_t fit_within(int32_t *s, int32_t t) {
-    if (t < s[88]) {
-        return s[88];
-    }
-    if (t > s[89]) {
-        return s[89];
-    }
-    return t;
-}
-
-static int32_t fit_stretch(int32_t *s) {
-    int32_t w = 0;
-    w = (s[89] - s[88]);
-    w = fixed_room(w);
-    return (w - 1);
-}
-
-static void fit_lean(int32_t *s, int32_t *c, int32_t a, int32_t i) {
-    int32_t w = 0;
-    w = s[(92 + i)];
-    if (w == 0) {
-        return;
-    }
-    a = (a + ((i * c[26]) + 32));
-    i = s[(a + 1)];
-    i = (fit_within(s, i) - s[86]);
-    i = (shift_left(i, fit_stretch(s)) - s[80]);
-    a = (shift_left((s[(a + 2)] - s[87]), 3) - s[81]);
-    fit_add_product(s, 82, w, i, i);
-    fit_add_product(s, 84, w, i, a);
 }
 
 static void fit_weigh(int32_t *s, int32_t *c, int32_t a) {
@@ -1042,38 +878,35 @@ static void fit_weigh(int32_t *s, int32_t *c, int32_t a) {
     }
 }
 
-static int32_t fixed_fraction_q27(int32_t a, int32_t b) {
-    int32_t i = 0;
-    int32_t q = 0;
-    q = 0;
-    i = 0;
-    while (i < 3) {
-        a = shift_left(a, 9);
-        q = (shift_left(q, 9) + floor_div(a, b));
-        a = floor_mod(a, b);
-        i = (i + 1);
+static int32_t fixed_room(int32_t value) {
+    int32_t shift = 0;
+    if (value < 0) {
+        value = (0 - value);
     }
-    return q;
-}
-
-static void fit_centre(int32_t *s, int32_t *c, int32_t a, int32_t i) {
-    int32_t d = 0;
-    int32_t w = 0;
-    w = s[(92 + i)];
-    if (w == 0) {
-        return;
+    shift = 0;
+    if (value == 0) {
+        return 27;
     }
-    d = s[92];
-    w = fixed_fraction_q27(w, d);
-    a = (a + ((i * c[26]) + 32));
-    d = s[(a + 1)];
-    d = (fit_within(s, d) - s[86]);
-    d = shift_left(d, fit_stretch(s));
-    d = fixed_scaled(w, d, 27);
-    s[80] = (s[80] + d);
-    d = (s[(a + 2)] - s[87]);
-    d = fixed_scaled(w, shift_left(d, 3), 27);
-    s[81] = (s[81] + d);
+    if (value < 2048) {
+        value = shift_left(value, 16);
+        shift = 16;
+    }
+    if (value < 524288) {
+        value = shift_left(value, 8);
+        shift = (shift + 8);
+    }
+    if (value < 8388608) {
+        value = shift_left(value, 4);
+        shift = (shift + 4);
+    }
+    if (value < 33554432) {
+        value = shift_left(value, 2);
+        shift = (shift + 2);
+    }
+    if (value < 67108864) {
+        shift = (shift + 1);
+    }
+    return shift;
 }
 
 static int32_t fixed_ratio_q26(int32_t a, int32_t b) {
@@ -1136,6 +969,13 @@ static int32_t fixed_floating_ratio_q26(int32_t a, int32_t b, int32_t exponent) 
     return (a >> ((exponent > (-30)) ? (0 - exponent) : 30));
 }
 
+static int32_t fit_stretch(int32_t *s) {
+    int32_t w = 0;
+    w = (s[89] - s[88]);
+    w = fixed_room(w);
+    return (w - 1);
+}
+
 static void fit_settle(int32_t *s, int32_t *c, int32_t a) {
     int32_t slope = 0;
     s[(a + 22)] = s[91];
@@ -1151,88 +991,108 @@ static void fit_settle(int32_t *s, int32_t *c, int32_t a) {
     s[(a + 20)] = s[89];
 }
 
-static void step_refit(int32_t *s, int32_t *c, int32_t a, int32_t piece) {
-    int32_t half = 0;
+static int32_t fixed_fraction_q27(int32_t a, int32_t b) {
     int32_t i = 0;
-    half = (c[25] >> 1);
-    piece = (piece - 2);
-    if (piece == 0) {
-        fit_weigh(s, c, a);
+    int32_t q = 0;
+    q = 0;
+    i = 0;
+    while (i < 3) {
+        a = shift_left(a, 9);
+        q = (shift_left(q, 9) + floor_div(a, b));
+        a = floor_mod(a, b);
+        i = (i + 1);
+    }
+    return q;
+}
+
+static int32_t fit_within(int32_t *s, int32_t t) {
+    if (t < s[88]) {
+        return s[88];
+    }
+    if (t > s[89]) {
+        return s[89];
+    }
+    return t;
+}
+
+static void fit_centre(int32_t *s, int32_t *c, int32_t a, int32_t i) {
+    int32_t d = 0;
+    int32_t w = 0;
+    w = s[(92 + i)];
+    if (w == 0) {
         return;
     }
-    i = (shift_left((piece - 1), 1) + 1);
-    if (piece <= half) {
+    d = s[92];
+    w = fixed_fraction_q27(w, d);
+    a = (a + ((i * c[26]) + 32));
+    d = s[(a + 1)];
+    d = (fit_within(s, d) - s[86]);
+    d = shift_left(d, fit_stretch(s));
+    d = fixed_scaled(w, d, 27);
+    s[80] = (s[80] + d);
+    d = (s[(a + 2)] - s[87]);
+    d = fixed_scaled(w, shift_left(d, 3), 27);
+    s[81] = (s[81] + d);
+}
+
+static void fit_add_product(int32_t *s, int32_t k, int32_t p, int32_t q, int32_t r) {
+    int32_t h = 0;
+    int32_t i = 0;
+    if ((p == 0) || (q == 0) || (r == 0)) {
+        return;
+    }
+    h = fixed_room(p);
+    i = fixed_room(q);
+    p = fixed_scaled(shift_left(p, h), shift_left(q, i), 27);
+    h = (h + i);
+    i = fixed_room(r);
+    p = fixed_scaled(p, shift_left(r, i), 27);
+    h = (h + (i - 2));
+    i = fixed_room(p);
+    p = (shift_left(p, i) >> 2);
+    h = (h + i);
+    if (s[k] == 0) {
+        s[(k + 1)] = h;
+    }
+    i = (h - s[(k + 1)]);
+    if (i >= 0) {
+        p = (p >> ((i < 30) ? i : 30));
+    } else {
+        s[k] = (s[k] >> ((i > (-30)) ? (0 - i) : 30));
+        s[(k + 1)] = h;
+    }
+    s[k] = (s[k] + p);
+}
+
+static void fit_lean(int32_t *s, int32_t *c, int32_t a, int32_t i) {
+    int32_t w = 0;
+    w = s[(92 + i)];
+    if (w == 0) {
+        return;
+    }
+    a = (a + ((i * c[26]) + 32));
+    i = s[(a + 1)];
+    i = (fit_within(s, i) - s[86]);
+    i = (shift_left(i, fit_stretch(s)) - s[80]);
+    a = (shift_left((s[(a + 2)] - s[87]), 3) - s[81]);
+    fit_add_product(s, 82, w, i, i);
+    fit_add_product(s, 84, w, i, a);
+}
+
+static void fit_draw_line(int32_t *s, int32_t *c, int32_t a) {
+    int32_t i = 0;
+    fit_weigh(s, c, a);
+    i = 1;
+    while (i < c[25]) {
         fit_centre(s, c, a, i);
         i = (i + 1);
-        if (i < c[25]) {
-            fit_centre(s, c, a, i);
-        }
-        return;
     }
-    i = (i - shift_left(half, 1));
-    fit_lean(s, c, a, i);
-    i = (i + 1);
-    if (i < c[25]) {
+    i = 1;
+    while (i < c[25]) {
         fit_lean(s, c, a, i);
+        i = (i + 1);
     }
-    if (piece == shift_left(half, 1)) {
-        fit_settle(s, c, a);
-    }
-}
-
-static int32_t recent_beyond_q8(int32_t *s, int32_t *c, int32_t a) {
-    int32_t d = 0;
-    d = (shift_left(s[47], 4) - s[(a + 20)]);
-    if (d < 0) {
-        d = (s[(a + 19)] - shift_left(s[47], 4));
-    }
-    if ((d < 0) || (s[(a + 22)] == 0)) {
-        return 0;
-    }
-    if (d > 262143) {
-        d = 262143;
-    }
-    d = ((d * c[50]) >> 16);
-    if (d > 16383) {
-        d = 16383;
-    }
-    return (d * d);
-}
-
-static int32_t fixed_root(int32_t square) {
-    int32_t bit = 0;
-    int32_t found = 0;
-    bit = shift_left(1, 14);
-    found = 0;
-    while (bit) {
-        if (((found + bit) * (found + bit)) <= square) {
-            found = (found + bit);
-        }
-        bit = (bit >> 1);
-    }
-    return found;
-}
-
-static void step_publish(int32_t *s, int32_t *c, int32_t a, int32_t axis) {
-    int32_t bias = 0;
-    bias = s[47];
-    bias = (bias_curve_q8(s, c, a, bias) + s[(a + 24)]);
-    if (s[(a + 30)] == 0) {
-        return;
-    }
-    s[(67 + axis)] = bias;
-    if (s[(73 + axis)] == 0) {
-        s[(55 + axis)] = bias;
-    }
-    s[(73 + axis)] = (s[(a + 13)] ? s[(a + 13)] : s[(a + 30)]);
-    bias = (recent_grown_q8(s, a) + shift_left(c[37], 1));
-    bias = (bias + recent_beyond_q8(s, c, a));
-    if (bias < 4194303) {
-        bias = fixed_root(shift_left(bias, 8));
-    } else {
-        bias = shift_left(fixed_root(bias), 4);
-    }
-    s[(70 + axis)] = bias;
+    fit_settle(s, c, a);
 }
 
 static void recent_hand_over(int32_t *s, int32_t *c, int32_t a) {
@@ -1246,43 +1106,236 @@ static void recent_hand_over(int32_t *s, int32_t *c, int32_t a) {
     }
 }
 
+static int32_t recent_error_q4(int32_t *s, int32_t *c, int32_t a) {
+    int32_t before = 0;
+    int32_t mean = 0;
+    before = s[52];
+    before = bias_curve_q8(s, c, a, before);
+    s[(a + 23)] = before;
+    mean = floor_mod(s[(a + 0)], s[(a + 1)]);
+    mean = floor_div(shift_left(mean, 8), s[(a + 1)]);
+    mean = (mean + shift_left(floor_div(s[(a + 0)], s[(a + 1)]), 8));
+    return (((mean - before) - s[(a + 24)]) >> 4);
+}
+
+static int32_t recent_gain_q14(int32_t variance, int32_t noise) {
+    while ((variance + noise) > 32767) {
+        variance = (variance >> 1);
+        noise = (noise >> 1);
+    }
+    return floor_div(shift_left(variance, 14), ((variance + noise) + 1));
+}
+
+static int32_t recent_level_q8(int32_t *s, int32_t *c, int32_t a) {
+    int32_t k = 0;
+    int32_t off = 0;
+    int32_t usual = 0;
+    k = ((c[0] - 3) + floor_div((a - c[0]), c[13]));
+    if (s[54] < c[39]) {
+        off = (s[(a + 24)] >> 4);
+        if (off > 16383) {
+            off = 16383;
+        }
+        if (off < (-16383)) {
+            off = (-16383);
+        }
+        usual = (off * off);
+        if (usual < c[45]) {
+            usual = c[45];
+        }
+        s[k] = recent_beyond_q8(s, c, a);
+        usual = recent_gain_q14(s[k], usual);
+        s[k] = (s[(a + 24)] - ((off * usual) >> 10));
+    }
+    return s[k];
+}
+
+static void recent_let_learn(int32_t *s, int32_t *c, int32_t a) {
+    int32_t n = 0;
+    int32_t off = 0;
+    if ((a == c[0]) && (s[54] < c[39])) {
+        s[54] = (s[54] + 1);
+    }
+    off = recent_level_q8(s, c, a);
+    n = s[(a + 1)];
+    s[(a + 0)] = (s[(a + 0)] - (((off >> 8) * n) + ((((off & 255) * n) + 128) >> 8)));
+}
+
+static int32_t recent_plausible(int32_t *s, int32_t *c, int32_t a, int32_t error) {
+    int32_t far = 0;
+    far = ((error >= 0) ? error : (0 - error));
+    if (far > 32767) {
+        far = 32767;
+    }
+    if (far <= c[38]) {
+        far = 0;
+    }
+    if (floor_div((far * far), 36) <= ((s[81] + s[80]) + recent_beyond_q8(s, c, a))) {
+        s[(a + 27)] = 0;
+        return 1;
+    }
+    s[(a + 27)] = (s[(a + 27)] + 1);
+    if (s[(a + 27)] < c[39]) {
+        return 0;
+    }
+    s[(a + 27)] = 0;
+    s[(a + 24)] = (s[(a + 24)] + shift_left(error, 4));
+    return 2;
+}
+
+static int32_t recent_adopt(int32_t *s, int32_t *c, int32_t a, int32_t error) {
+    int32_t noise = 0;
+    noise = ((s[(a + 12)] >> 3) + c[37]);
+    if (s[(a + 30)] == 0) {
+        s[(a + 27)] = (-1);
+        s[54] = c[39];
+    } else {
+        if ((noise >= recent_grown_q8(s, a)) && (s[(a + 13)] != (s[(a + 12)] & 7))) {
+            return 1;
+        } else {
+            s[(a + 24)] = (s[(a + 24)] + shift_left(error, 4));
+        }
+    }
+    s[(a + 13)] = (s[(a + 12)] & 7);
+    s[(a + 25)] = noise;
+    s[(a + 28)] = 0;
+    return 1;
+}
+
+static void recent_rewalk(int32_t *s, int32_t *c, int32_t a, int32_t excess) {
+    int32_t age = 0;
+    int32_t speed = 0;
+    age = ((s[(a + 28)] >> 6) + 1);
+    if (excess > 2097151) {
+        excess = 2097151;
+    }
+    if (excess < (-2097151)) {
+        excess = (-2097151);
+    }
+    speed = floor_div(shift_left(excess, 8), age);
+    if (speed > 33554431) {
+        speed = 33554431;
+    }
+    if (speed < (-33554431)) {
+        speed = (-33554431);
+    }
+    speed = shift_left(speed, 4);
+    if (speed > c[41]) {
+        speed = c[41];
+    }
+    if (age > 1023) {
+        age = 1023;
+    }
+    speed = ((speed - s[(a + 26)]) >> 4);
+    age = (age * age);
+    age = floor_div(age, ((age + 1048576) >> 10));
+    if (age < 40) {
+        age = 40;
+    }
+    speed = shift_left(((speed * age) >> 10), 4);
+    s[(a + 26)] = (s[(a + 26)] + speed);
+    if (s[(a + 26)] < c[40]) {
+        s[(a + 26)] = c[40];
+    }
+}
+
+static void recent_follow(int32_t *s, int32_t *c, int32_t a, int32_t error) {
+    int32_t excess = 0;
+    if (error > 16383) {
+        error = 16383;
+    }
+    if (error < (-16383)) {
+        error = (-16383);
+    }
+    excess = ((error * error) - s[(a + 25)]);
+    excess = (excess - s[80]);
+    recent_rewalk(s, c, a, excess);
+    excess = recent_gain_q14(s[81], s[80]);
+    s[(a + 24)] = (s[(a + 24)] + ((excess * error) >> 10));
+    error = ((excess * (s[80] & 16383)) >> 14);
+    s[(a + 25)] = ((excess * (s[80] >> 14)) + error);
+}
+
+static int32_t recent_believe(int32_t *s, int32_t *c, int32_t a, int32_t error) {
+    int32_t verdict = 0;
+    if (s[(a + 12)]) {
+        return recent_adopt(s, c, a, error);
+    }
+    s[(a + 13)] = 0;
+    if (s[(a + 30)] == 0) {
+        s[(a + 27)] = (-1);
+        s[54] = c[39];
+        s[(a + 24)] = 0;
+        s[(a + 25)] = s[80];
+        s[(a + 28)] = 0;
+        return 1;
+    }
+    s[81] = recent_grown_q8(s, a);
+    verdict = recent_plausible(s, c, a, error);
+    if (verdict == 0) {
+        return 0;
+    }
+    if (verdict == 1) {
+        recent_follow(s, c, a, error);
+    } else {
+        s[(a + 25)] = s[80];
+    }
+    s[(a + 28)] = 0;
+    return 1;
+}
+
+static int32_t recent_absorb(int32_t *s, int32_t *c, int32_t a) {
+    int32_t error = 0;
+    s[80] = (floor_div(s[49], (3 * s[(a + 1)])) + c[37]);
+    error = recent_error_q4(s, c, a);
+    if (recent_believe(s, c, a, error) == 0) {
+        return 0;
+    }
+    recent_let_learn(s, c, a);
+    return 1;
+}
+
 static void step_advance(int32_t *s, int32_t *c) {
     int32_t a = 0;
     int32_t axis = 0;
-    int32_t last = 0;
+    int32_t busy = 0;
     int32_t piece = 0;
-    last = (shift_left((c[25] >> 1), 1) + 3);
-    axis = floor_div((s[53] - 1), (last + 1));
-    piece = floor_mod((s[53] - 1), (last + 1));
-    a = (c[0] + (axis * c[13]));
-    s[53] = (s[53] + 1);
-    if (piece == 0) {
-        if (s[(a + 1)] && (recent_absorb(s, c, a) == 0)) {
-            s[(a + 1)] = 0;
-        }
-    } else {
-        if (piece == 1) {
-            if (s[(a + 1)]) {
-                estimators_learn(s, c, a);
+    axis = floor_div((s[53] - 1), 3);
+    piece = floor_mod((s[53] - 1), 3);
+    busy = 0;
+    while ((busy == 0) && (axis < 3)) {
+        a = (c[0] + (axis * c[13]));
+        if (piece == 0) {
+            busy = s[(a + 1)];
+            if (busy && (recent_absorb(s, c, a) == 0)) {
+                s[(a + 1)] = 0;
             }
-            if (step_stale(s, c, a) == 0) {
-                s[53] = (s[53] + (last - 2));
+            if (s[(a + 1)]) {
+                estimators_learn_anywhere(s, c, a);
             }
         } else {
-            if (piece < last) {
-                step_refit(s, c, a, piece);
-            } else {
-                if (s[(a + 1)] && (c[46] == 0)) {
-                    recent_hand_over(s, c, a);
-                }
-                s[(a + 1)] = 0;
-                step_publish(s, c, a, axis);
-                if (axis == 2) {
-                    s[53] = 0;
-                }
+            if (piece == 1) {
+                estimators_learn_here(s, c, a);
+                busy = 1;
             }
         }
+        if (s[(a + 1)] && (piece < 2)) {
+            piece = (piece + 1);
+        } else {
+            if (step_stale(s, c, a)) {
+                fit_draw_line(s, c, a);
+                busy = 1;
+            }
+            if (s[(a + 1)] && (c[46] == 0)) {
+                recent_hand_over(s, c, a);
+            }
+            s[(a + 1)] = 0;
+            step_publish(s, c, a, axis);
+            axis = (axis + 1);
+            piece = 0;
+        }
     }
+    s[53] = ((axis < 3) ? (((axis * 3) + piece) + 1) : 0);
 }
 
 static void step_wake(int32_t *s, int32_t *c, int32_t *x) {
@@ -1302,7 +1355,8 @@ static void step_learn_at_once(int32_t *s, int32_t *c, int32_t *x) {
         a = (c[0] + (i * c[13]));
         s[(a + 0)] = x[(4 + i)];
         s[(a + 1)] = 1;
-        estimators_learn(s, c, a);
+        estimators_learn_anywhere(s, c, a);
+        estimators_learn_here(s, c, a);
         s[(a + 1)] = 0;
         i = (i + 1);
     }
@@ -1472,6 +1526,9 @@ static void step_foresay(int32_t *s, int32_t axis, int32_t bias, int32_t quality
 static void step_foretell(int32_t *s, int32_t *c, int32_t axis) {
     int32_t level = 0;
     int32_t n = 0;
+    if (s[(73 + axis)] > 1) {
+        return;
+    }
     if ((s[46] == 1) && (s[48] > 1)) {
         n = shift_left(s[48], c[4]);
         level = shift_left(floor_div(s[(42 + axis)], n), 8);
@@ -1538,11 +1595,11 @@ static int32_t step_admit(int32_t *s, int32_t *c, int32_t *x, int32_t kind) {
     return kind;
 }
 
-static void step_correct(int32_t *s, int32_t *c, int32_t *x) {
+static int32_t step_finish(int32_t *s, int32_t *c, int32_t *x, int32_t kind) {
     int32_t d = 0;
     int32_t i = 0;
     i = 0;
-    while (i < 3) {
+    while ((i < 3) && (kind < 3)) {
         d = (s[(67 + i)] - s[(55 + i)]);
         if (d > c[11]) {
             d = c[11];
@@ -1557,16 +1614,277 @@ static void step_correct(int32_t *s, int32_t *c, int32_t *x) {
         s[(58 + i)] = (d - shift_left(x[(4 + i)], 8));
         i = (i + 1);
     }
+    return kind;
 }
 
 static int32_t step_step(int32_t *s, int32_t *c, int32_t *x, int32_t dt_us) {
     int32_t kind = 0;
-    kind = guard_check(s, c, x, dt_us);
+    kind = step_examine(s, c, x, dt_us);
     step_admit(s, c, x, kind);
-    if (kind < 3) {
-        step_correct(s, c, x);
+    return step_finish(s, c, x, kind);
+}
+
+static int32_t block_stretch(int32_t *s, int32_t *c, int32_t n) {
+    int32_t i = 0;
+    if (s[53] || (s[17] == 0) || c[46] || (c[1] > 2097151)) {
+        return 0;
     }
-    return kind;
+    if ((s[8] == 0) || (s[8] > 536870400)) {
+        return 0;
+    }
+    i = 0;
+    while (i < 3) {
+        if (s[(55 + i)] != s[(67 + i)]) {
+            return 0;
+        }
+        if ((s[((19 + 4) + i)] > 32000) || (s[((19 + 4) + i)] < (-32000))) {
+            return 0;
+        }
+        i = (i + 1);
+    }
+    i = ((c[3] - 1) - s[17]);
+    return ((i < n) ? i : n);
+}
+
+static void block_account(int32_t *s, int32_t *f, int32_t p, int32_t taken, int32_t elapsed_us) {
+    s[0] = f[(p - 7)];
+    s[1] = f[(p - 6)];
+    s[2] = f[(p - 5)];
+    s[3] = f[(p - 4)];
+    s[8] = (s[8] + taken);
+    s[17] = (s[17] + taken);
+    elapsed_us = (elapsed_us + s[16]);
+    s[16] = ((elapsed_us < 536870911) ? elapsed_us : 536870911);
+}
+
+static int32_t block_take(int32_t *s, int32_t *f, int32_t *c, int32_t first, int32_t n) {
+    int32_t a = 0;
+    int32_t b = 0;
+    int32_t bias_x = 0;
+    int32_t bias_y = 0;
+    int32_t bias_z = 0;
+    int32_t d = 0;
+    int32_t dt = 0;
+    int32_t due_x = 0;
+    int32_t due_y = 0;
+    int32_t due_z = 0;
+    int32_t dx = 0;
+    int32_t dy = 0;
+    int32_t dz = 0;
+    int32_t elapsed_us = 0;
+    int32_t far = 0;
+    int32_t g = 0;
+    int32_t i = 0;
+    int32_t last_t = 0;
+    int32_t last_x = 0;
+    int32_t last_y = 0;
+    int32_t last_z = 0;
+    int32_t leap_us = 0;
+    int32_t least_jump = 0;
+    int32_t left = 0;
+    int32_t most_jump = 0;
+    int32_t moving = 0;
+    int32_t p = 0;
+    int32_t ref_a = 0;
+    int32_t ref_b = 0;
+    int32_t ref_c = 0;
+    int32_t ref_t = 0;
+    int32_t ref_x = 0;
+    int32_t ref_y = 0;
+    int32_t ref_z = 0;
+    int32_t square_accel = 0;
+    int32_t square_gyro = 0;
+    int32_t square_step = 0;
+    int32_t sum_a = 0;
+    int32_t sum_b = 0;
+    int32_t sum_c = 0;
+    int32_t sum_t = 0;
+    int32_t sum_x = 0;
+    int32_t sum_y = 0;
+    int32_t sum_z = 0;
+    int32_t t = 0;
+    int32_t usual_us = 0;
+    int32_t x = 0;
+    int32_t y = 0;
+    int32_t z = 0;
+    p = shift_left(first, 3);
+    left = n;
+    moving = s[18];
+    leap_us = c[1];
+    usual_us = leap_us;
+    elapsed_us = 0;
+    most_jump = (c[2] - 1);
+    least_jump = (1 - c[2]);
+    last_t = s[3];
+    last_x = s[4];
+    last_y = s[5];
+    last_z = s[6];
+    ref_a = s[19];
+    ref_b = s[(19 + 1)];
+    ref_c = s[(19 + 2)];
+    ref_t = s[(19 + 3)];
+    ref_x = s[(19 + 4)];
+    ref_y = s[(19 + 5)];
+    ref_z = s[(19 + 6)];
+    sum_a = s[26];
+    sum_b = s[(26 + 1)];
+    sum_c = s[(26 + 2)];
+    sum_t = s[(26 + 3)];
+    sum_x = s[(26 + 4)];
+    sum_y = s[(26 + 5)];
+    sum_z = s[(26 + 6)];
+    square_accel = s[33];
+    square_gyro = s[35];
+    square_step = s[76];
+    bias_x = (s[55] + s[61]);
+    bias_y = (s[(55 + 1)] + s[(61 + 1)]);
+    bias_z = (s[(55 + 2)] + s[(61 + 2)]);
+    due_x = ((s[58] + 128) - bias_x);
+    due_y = ((s[(58 + 1)] + 128) - bias_y);
+    due_z = ((s[(58 + 2)] + 128) - bias_z);
+    while (left) {
+        dt = f[p];
+        if (dt != usual_us) {
+            if ((dt <= 0) || (dt > leap_us)) {
+                break;
+            }
+            usual_us = dt;
+        }
+        t = f[(p + 4)];
+        d = (t - last_t);
+        if ((d > most_jump) || (d < least_jump)) {
+            break;
+        }
+        x = f[(p + 5)];
+        y = f[(p + 6)];
+        z = f[(p + 7)];
+        if ((x == last_x) && (y == last_y) && (z == last_z)) {
+            break;
+        }
+        if ((x == y) && (y == z)) {
+            break;
+        }
+        if (moving) {
+            if (((((x + 16384) | (y + 16384)) | (z + 16384)) >> 15)) {
+                if ((x > 32766) || (y > 32766) || (z > 32766)) {
+                    break;
+                }
+                if ((x < (-32767)) || (y < (-32767)) || (z < (-32767))) {
+                    break;
+                }
+            }
+            sum_t = (sum_t + (t - ref_t));
+        } else {
+            a = (f[(p + 1)] - ref_a);
+            b = (f[(p + 2)] - ref_b);
+            g = (f[(p + 3)] - ref_c);
+            d = (t - ref_t);
+            dx = (x - ref_x);
+            dy = (y - ref_y);
+            dz = (z - ref_z);
+            far = ((((a + 512) | (b + 512)) | (g + 512)) | (d + 512));
+            if ((((((dx + 512) | (dy + 512)) | (dz + 512)) | far) >> 10)) {
+                break;
+            }
+            sum_a = (sum_a + a);
+            sum_b = (sum_b + b);
+            sum_c = (sum_c + g);
+            sum_t = (sum_t + d);
+            sum_x = (sum_x + dx);
+            sum_y = (sum_y + dy);
+            sum_z = (sum_z + dz);
+            square_accel = (square_accel + (((a * a) + (b * b)) + (g * g)));
+            square_gyro = (square_gyro + (((dx * dx) + (dy * dy)) + (dz * dz)));
+            a = (x - last_x);
+            b = (y - last_y);
+            g = (z - last_z);
+            square_step = (square_step + (((a * a) + (b * b)) + (g * g)));
+        }
+        elapsed_us = (elapsed_us + dt);
+        last_t = t;
+        last_x = x;
+        last_y = y;
+        last_z = z;
+        d = (shift_left(x, 8) + due_x);
+        f[(p + 5)] = (d >> 8);
+        due_x = ((d & 255) - bias_x);
+        d = (shift_left(y, 8) + due_y);
+        f[(p + 6)] = (d >> 8);
+        due_y = ((d & 255) - bias_y);
+        d = (shift_left(z, 8) + due_z);
+        f[(p + 7)] = (d >> 8);
+        due_z = ((d & 255) - bias_z);
+        f[p] = 0;
+        p = (p + 8);
+        left = (left - 1);
+    }
+    left = (n - left);
+    if (left == 0) {
+        return 0;
+    }
+    block_account(s, f, p, left, elapsed_us);
+    s[4] = last_x;
+    s[5] = last_y;
+    s[6] = last_z;
+    s[(26 + 3)] = sum_t;
+    s[58] = ((due_x + bias_x) - 128);
+    s[(58 + 1)] = ((due_y + bias_y) - 128);
+    s[(58 + 2)] = ((due_z + bias_z) - 128);
+    if (moving) {
+        return left;
+    }
+    s[26] = sum_a;
+    s[(26 + 1)] = sum_b;
+    s[(26 + 2)] = sum_c;
+    s[(26 + 4)] = sum_x;
+    s[(26 + 5)] = sum_y;
+    s[(26 + 6)] = sum_z;
+    s[33] = square_accel;
+    s[35] = square_gyro;
+    s[76] = square_step;
+    s[77] = (last_x - ref_x);
+    s[(77 + 1)] = (last_y - ref_y);
+    s[(77 + 2)] = (last_z - ref_z);
+    i = 0;
+    while (i < 3) {
+        s[(64 + i)] = (s[(64 + i)] + (s[(61 + i)] * left));
+        i = (i + 1);
+    }
+    return left;
+}
+
+static void block_one(int32_t *s, int32_t *f, int32_t *c, int32_t *x, int32_t p) {
+    int32_t i = 0;
+    i = 0;
+    while (i < 7) {
+        x[i] = f[((p + 1) + i)];
+        i = (i + 1);
+    }
+    i = f[p];
+    f[p] = step_step(s, c, x, i);
+    i = 0;
+    while (i < 7) {
+        f[((p + 1) + i)] = x[i];
+        i = (i + 1);
+    }
+}
+
+static void block_block(int32_t *s, int32_t *f, int32_t *c, int32_t *x, int32_t n) {
+    int32_t i = 0;
+    int32_t k = 0;
+    i = 0;
+    while (i < n) {
+        k = (n - i);
+        k = block_stretch(s, c, k);
+        if (k) {
+            k = block_take(s, f, c, i, k);
+        }
+        if (k == 0) {
+            block_one(s, f, c, x, shift_left(i, 3));
+            k = 1;
+        }
+        i = (i + k);
+    }
 }
 
 #include <stdio.h>
@@ -1599,7 +1917,8 @@ int main(int argc, char **argv) {
     int32_t *frames = whole("frames.bin");
     size_t count = argc > 2 ? (size_t)atoi(argv[1]) : 0;
     int call = argc > 2 && atoi(argv[2]);
-    int times = argc > 3 ? atoi(argv[3]) : 1;
+    size_t at_once = argc > 3 ? (size_t)atoi(argv[3]) : 1;
+    int times = argc > 4 ? atoi(argv[4]) : 1;
     int32_t x[7];
     if (count > words / 8) exit(2);
     int32_t *first_state = malloc(state_words * 4);
@@ -1608,7 +1927,11 @@ int main(int argc, char **argv) {
     memcpy(first_state, s, state_words * 4);
     memcpy(first_frames, frames, words * 4);
 again:
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; at_once > 1 && i < count; i += at_once) {
+        int32_t most = (int32_t)(count - i < at_once ? count - i : at_once);
+        if (call) block_block(s, frames + 8 * i, c, x, most);
+    }
+    for (size_t i = 0; at_once == 1 && i < count; i++) {
         int32_t *frame = frames + 8 * i;
         memcpy(x, frame + 1, sizeof x);
         if (call) frame[0] = step_step(s, c, x, frame[0]);

@@ -1,7 +1,8 @@
 """Writes firmware/zerorate/viper/X.py from every kernel file firmware/zerorate/X.py.
 
 The decorator is handled by MicroPython's compiler, so it cannot be chosen at run time in one file:
-the plain file is what people edit, its twin has `@micropython.viper` before every annotated def.
+the plain file is what people edit, its twin has `@micropython.viper` before every annotated def,
+and says in fewer machine instructions what the plain one says for people (see twins/).
 `make viper` runs this; host_tests/runtimes/test_viper_twins.py fails while a twin is stale.
 """
 
@@ -9,11 +10,18 @@ from __future__ import annotations
 
 import ast
 import sys
-from collections.abc import Collection, Sequence
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from zerorate_tools.errors import InFile
-from zerorate_tools.viper_calls import POINTERS, let_it_call
+from zerorate_tools.kernel_rules import is_kernel
+from zerorate_tools.twins.calling import able_to_call
+from zerorate_tools.twins.folding import folded
+from zerorate_tools.twins.inlining import POINTERS, Inliner, Kernels, calls
+from zerorate_tools.twins.pointers import with_pointers
+from zerorate_tools.twins.sources import all_kernels, kernel_file
+from zerorate_tools.twins.wording import in_cheap_words
 
 _NOTE = "# Generated from zerorate/{name} by `make viper`: edit that file, not this one.\n"
 
@@ -33,40 +41,63 @@ def hot_functions(path: Path) -> list[str]:
     return [node.name for node in _annotated(_parsed(path))]
 
 
-def twin(path: Path, kernels: Sequence[str], results: Collection[str] = ()) -> str:
-    """The text of a kernel file's twin.
+class Twins:
+    """The twins of a package's kernel files. Raises BadKernel for one that cannot have any."""
 
-    kernels: names of all kernel modules, which it may import; results: names of all kernels that
-    return something.
+    def __init__(self, paths: Sequence[Path]) -> None:
+        for path in paths:
+            _check(path, [p.stem for p in paths])
+        self._kernels = all_kernels([kernel_file(path) for path in paths])
+        self._results = {name for name, f in self._kernels.items() if f.returns}
+        self._inliner = Inliner(self._kernels)
+        self._flat = {name: self._flattened(name) for name in self._kernels}
+        roots = _roots(self._kernels, set(_asked_for(paths)))
+        self._needed = _reached(self._flat, roots)
 
-    Raises BadKernel for a function that is decorated already, or an import that mixes kernels and
-    other modules.
-    """
-    tree = _parsed(path)
-    lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
-    for node in tree.body:
-        if isinstance(node, ast.ImportFrom) and node.level == 1:
-            lines[node.lineno - 1] = _one_package_up(path, node, lines[node.lineno - 1], kernels)
-        elif _stands_in_for_a_pointer(node):
-            _blank(lines, node)
-    for node in _annotated(tree):
-        if node.decorator_list:
-            raise BadKernel(path, f"{node.name} has a decorator", row=node.lineno)
-        let_it_call(lines, node, results)
-        lines[node.lineno - 1] = "@micropython.viper\n" + lines[node.lineno - 1]
-    first = _end_of_docstring(tree)
-    text = "".join([*lines[:first], "\nimport micropython\n\n", *lines[first:]])
-    return _NOTE.format(name=path.name) + _at_most_two_blank_lines(text)
+    def text(self, path: Path) -> str:
+        """The text of a kernel file's twin; empty if it is written out wherever it is needed."""
+        tree = _parsed(path)
+        names = [f"{path.stem}.{f.name}" for f in _annotated(tree)]
+        made = {name: self._flat[name] for name in names if name in self._needed}
+        if not made:
+            return ""
+        others = sorted(
+            {_callee(c) for f in made.values() for c in calls(f, self._kernels)} - {*names}
+        )
+        local = _local_names(names, others)
+        imports = [_import_line(name, local[name]) for name in others]
+        plain = [ast.unparse(node) for node in self._plain_code(tree)]
+        written = [self._written(function, local) for function in made.values()]
+        head = [_NOTE.format(name=path.name) + _docstring(tree), "import micropython"]
+        parts = ["\n\n".join([*head, *(["\n".join(imports)] if imports else []), *plain]), *written]
+        return "\n\n\n".join(parts) + "\n"
+
+    def _flattened(self, name: str) -> ast.FunctionDef:
+        function = with_pointers(folded(self._inliner.flat(name)))
+        return in_cheap_words(function)
+
+    def _plain_code(self, tree: ast.Module) -> list[ast.stmt]:
+        """What is neither kernel nor made for kernels: code of the board beside them."""
+        body = tree.body[1:] if ast.get_docstring(tree) else tree.body
+        kept = [node for node in body if not _is_for_kernels(node)]
+        modules = {name.partition(".")[0] for name in self._kernels}
+        for node in kept:
+            if isinstance(node, ast.ImportFrom) and node.level == 1:
+                node.level = 1 if node.module in modules else 2
+        return kept if any(isinstance(n, (ast.FunctionDef, ast.ClassDef)) for n in kept) else []
+
+    def _written(self, function: ast.FunctionDef, local: Mapping[str, str]) -> str:
+        able_to_call(function, local, self._results)
+        function.decorator_list = [ast.parse("micropython.viper", mode="eval").body]
+        return ast.unparse(ast.fix_missing_locations(function))
 
 
 def twins(package: Path) -> dict[Path, str]:
     """Path and text of every twin of `package`, its __init__.py included."""
     files = kernel_files(package)
-    names = [path.stem for path in files]
-    functions = [f for path in files for f in _annotated(_parsed(path))]
-    results = {f.name for f in functions if f.returns}
-    made = {package / "viper" / path.name: twin(path, names, results) for path in files}
-    return {package / "viper" / "__init__.py": "", **made}
+    made = Twins(files)
+    texts = {package / "viper" / path.name: made.text(path) for path in files}
+    return {package / "viper" / "__init__.py": "", **{p: t for p, t in texts.items() if t}}
 
 
 def stale(package: Path) -> list[Path]:
@@ -94,42 +125,83 @@ def _parsed(path: Path) -> ast.Module:
 
 
 def _annotated(tree: ast.Module) -> list[ast.FunctionDef]:
-    functions = [node for node in tree.body if isinstance(node, ast.FunctionDef)]
-    return [f for f in functions if f.returns or any(a.annotation for a in f.args.args)]
+    return [n for n in tree.body if isinstance(n, ast.FunctionDef) and is_kernel(n)]
 
 
-def _stands_in_for_a_pointer(node: ast.stmt) -> bool:
-    """Is this what gives ptr8 or ptr32 a meaning on CPython? Viper has its own."""
+def _check(path: Path, kernels: Sequence[str]) -> None:
+    tree = _parsed(path)
+    for function in _annotated(tree):
+        if function.decorator_list:
+            raise BadKernel(path, f"{function.name} has a decorator", row=function.lineno)
+    for node in tree.body:
+        if isinstance(node, ast.ImportFrom) and node.level == 1:
+            sources = [node.module] if node.module else [alias.name for alias in node.names]
+            if len({name in kernels for name in sources}) > 1:
+                problem = "imports kernels and other modules in one line"
+                raise BadKernel(path, problem, row=node.lineno)
+
+
+def _asked_for(paths: Sequence[Path]) -> Iterator[str]:
+    """The names that code beside the kernels may mean kernels by."""
+    for path in sorted({file for one in paths for file in one.parent.glob("*.py")}):
+        tree = _parsed(path)
+        nodes = _annotated(tree) if path in paths else []
+        own = {id(n) for function in nodes for n in ast.walk(function)}
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Attribute) and id(node) not in own:
+                yield node.attr
+            elif isinstance(node, ast.ImportFrom) and path not in paths:
+                yield from (alias.name for alias in node.names)
+
+
+def _roots(kernels: Kernels, asked_for: Collection[str]) -> set[str]:
+    """The kernels that code beside them may ask for, and those that no kernel calls."""
+    called = {_callee(call) for function in kernels.values() for call in calls(function, kernels)}
+    return {n for n in kernels if n.rpartition(".")[2] in asked_for or n not in called}
+
+
+def _reached(kernels: Kernels, roots: Collection[str]) -> set[str]:
+    """The roots and all that they call."""
+    found: set[str] = set()
+    left = list(roots)
+    while left:
+        name = left.pop()
+        if name not in found:
+            found.add(name)
+            left += [_callee(call) for call in calls(kernels[name], kernels)]
+    return found
+
+
+def _callee(call: ast.Call) -> str:
+    return call.func.id  # type: ignore[attr-defined]
+
+
+def _local_names(own: Sequence[str], others: Sequence[str]) -> dict[str, str]:
+    """Full name -> the name in the twin: the short one, unless two have the same."""
+    short = Counter(name.rpartition(".")[2] for name in [*own, *others])
+    names = {name: name.rpartition(".")[2] for name in own}
+    for name in others:
+        simple = name.rpartition(".")[2]
+        names[name] = simple if short[simple] == 1 else name.replace(".", "_")
+    return names
+
+
+def _import_line(name: str, local: str) -> str:
+    module, _, simple = name.rpartition(".")
+    return f"from .{module} import {simple}" + (f" as {local}" if local != simple else "")
+
+
+def _docstring(tree: ast.Module) -> str:
+    text = ast.get_docstring(tree)
+    return f'"""{text}"""' if text else ""
+
+
+def _is_for_kernels(node: ast.stmt) -> bool:
+    if isinstance(node, ast.FunctionDef):
+        return is_kernel(node) or node.name in POINTERS
     if isinstance(node, ast.Assign):
         return all(isinstance(t, ast.Name) and t.id in POINTERS for t in node.targets)
-    return isinstance(node, ast.FunctionDef) and node.name in POINTERS
-
-
-def _blank(lines: list[str], node: ast.stmt) -> None:
-    for number in range(node.lineno - 1, node.end_lineno or node.lineno):
-        lines[number] = ""
-
-
-def _one_package_up(path: Path, node: ast.ImportFrom, line: str, kernels: Sequence[str]) -> str:
-    sources = [node.module] if node.module else [alias.name for alias in node.names]
-    outside = [name for name in sources if name not in kernels]
-    if not outside:
-        return line
-    if len(outside) < len(sources):
-        raise BadKernel(path, "imports kernels and other modules in one line", row=node.lineno)
-    return line.replace("from .", "from ..", 1)
-
-
-def _end_of_docstring(tree: ast.Module) -> int:
-    if ast.get_docstring(tree) is None:
-        return 0
-    return tree.body[0].end_lineno or 0
-
-
-def _at_most_two_blank_lines(text: str) -> str:
-    while "\n\n\n\n" in text:
-        text = text.replace("\n\n\n\n", "\n\n\n")
-    return text
+    return False
 
 
 def main(arguments: Sequence[str]) -> int:

@@ -4,49 +4,36 @@
 import micropython
 
 
-try:
-    from micropython import const
-except ImportError:
-
-    def const(value):
-        return value
-
-
-_HALF_PI_Q13 = const(12868)
-_PI_Q13 = const(25736)
-
-
-@micropython.viper
-def arc_q13(z: int) -> int:
-    """Return atan(z) in Q13 rad for z in Q15, 0..1; to within a unit (1.2e-4 rad).
-
-    Odd minimax polynomial of degree 9 (Abramowitz and Stegun 4.4.49, error below 1e-5).
-    """
-    square = (z * z) >> 15
-    sum_q15 = 683
-    sum_q15 = ((sum_q15 * square) >> 15) - 2790
-    sum_q15 = ((sum_q15 * square) >> 15) + 5903
-    sum_q15 = ((sum_q15 * square) >> 15) - 10823
-    sum_q15 = ((sum_q15 * square) >> 15) + 32764
-    return ((sum_q15 * z >> 15) + 2) >> 2
-
-
 @micropython.viper
 def atan2_q13(y: int, x: int) -> int:
-    """Return the angle of (x, y) in Q13 rad, -pi..pi; |x|, |y| < 2^30. 0 where both are 0."""
     a = x if x >= 0 else 0 - x
     b = y if y >= 0 else 0 - y
-    while a >= 0x8000 or b >= 0x8000:
+    while a >= 32768 or b >= 32768:
         a = a >> 1
         b = b >> 1
     if a >= b:
-        if a == 0:
+        if not a:
             return 0
-        angle = int(int(arc_q13((b << 15) // a)))
+        arc_q13_z = (b << 15) // a
+        arc_q13_square = arc_q13_z * arc_q13_z >> 15
+        arc_q13_sum_q15 = 683
+        arc_q13_sum_q15 = (683 * arc_q13_square >> 15) - 2790
+        arc_q13_sum_q15 = (arc_q13_sum_q15 * arc_q13_square >> 15) + 5903
+        arc_q13_sum_q15 = (arc_q13_sum_q15 * arc_q13_square >> 15) - 10823
+        arc_q13_sum_q15 = (arc_q13_sum_q15 * arc_q13_square >> 15) + 32764
+        angle = (arc_q13_sum_q15 * arc_q13_z >> 15) + 2 >> 2
     else:
-        angle = _HALF_PI_Q13 - int(int(arc_q13((a << 15) // b)))
-    if x < 0:
-        angle = _PI_Q13 - angle
-    if y < 0:
+        arc_q13_z = (a << 15) // b
+        arc_q13_square = arc_q13_z * arc_q13_z >> 15
+        arc_q13_sum_q15 = 683
+        arc_q13_sum_q15 = (683 * arc_q13_square >> 15) - 2790
+        arc_q13_sum_q15 = (arc_q13_sum_q15 * arc_q13_square >> 15) + 5903
+        arc_q13_sum_q15 = (arc_q13_sum_q15 * arc_q13_square >> 15) - 10823
+        arc_q13_sum_q15 = (arc_q13_sum_q15 * arc_q13_square >> 15) + 32764
+        arc_q13_result = (arc_q13_sum_q15 * arc_q13_z >> 15) + 2 >> 2
+        angle = 12868 - arc_q13_result
+    if x >> 30:
+        angle = 25736 - angle
+    if y >> 30:
         angle = -angle
     return angle

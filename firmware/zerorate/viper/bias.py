@@ -4,85 +4,93 @@
 import micropython
 
 
-# Document 000, paragraphs on the determination of the bias: the estimator of this temperature where
-# it is stable and more stable than the fit, else the fit, else the temperature-independent one.
-
-try:
-    from micropython import const
-except ImportError:
-
-    def const(value):
-        return value
-
-
-from .estimators import find
-from .fit import line_q8
-
-NONE = const(0)
-ANY_TEMPERATURE = const(1)
-FIT = const(2)
-HERE = const(3)
-IN_MOTION = const(4)
-ACCELEROMETER = const(5)
-
-_FIT_LOW_Q4 = const(19)
-_FIT_HIGH_Q4 = const(20)
-_FIT_SAMPLES = const(21)
-_FIT_POINTS = const(22)
-_BEYOND = const(29)
-_KIND = const(30)
-_ESTIMATORS = const(32)
-
-_LITERAL = const(21)
-_ENOUGH = const(31)
-_STABLE = const(34)
-_SHARE_Q8 = const(35)
-_BEYOND_Q4 = const(36)
-_EVERY = const(46)
-
-
 @micropython.viper
-def choose(s_, c_, a: int, temp: int) -> int:
-    """Return the source of the bias at `temp` and note whether it lies beyond the fitted range."""
-    s = ptr32(s_)
-    c = ptr32(c_)
-    s[a + _BEYOND] = 0
-    e = int(find(s_, c_, a, temp))
-    if e > 0:
-        e = s[e + 3]
-        if e >= c[_STABLE] and e >= (s[a + _FIT_SAMPLES] >> 8) * c[_SHARE_Q8]:
-            return HERE
-    if s[a + _FIT_POINTS]:
-        e = (temp << 4) + c[_BEYOND_Q4]
-        if e < s[a + _FIT_LOW_Q4]:
-            s[a + _BEYOND] = 1
-        e = (temp << 4) - c[_BEYOND_Q4]
-        if e > s[a + _FIT_HIGH_Q4]:
-            s[a + _BEYOND] = 1
-        return FIT
-    e = s[a + _ESTIMATORS + 3]
-    # by the document it must be stable; a vetted rest is worth something from the first on
-    if e >= c[_ENOUGH] or (e > 0 and c[_EVERY] == 0):
-        return ANY_TEMPERATURE
-    return NONE
-
-
-@micropython.viper
-def curve_q8(s_, c_, a: int, temp: int) -> int:
-    """Return the learned bias at `temp`: LSB, Q8; 0 while there is none.
-
-    By the document a stable estimator of this temperature speaks alone. Else it speaks through
-    the local line, which also knows how the bias changes within a degree.
-    """
-    s = ptr32(s_)
-    c = ptr32(c_)
-    kind = int(choose(s_, c_, a, temp))
-    s[a + _KIND] = kind
-    if kind == NONE:
+def curve_q8(s: ptr32, c: ptr32, a: int, temp: int) -> int:
+    s_a = ptr32(int(s) + (a << 2))
+    while True:
+        s_a[29] = 0
+        while True:
+            choose_find_half = c[27] >> 1
+            choose_find_e = s_a[2]
+            if choose_find_e > 0:
+                choose_find_d = temp - s[choose_find_e]
+                if choose_find_d <= choose_find_half + c[28] and choose_find_d >= 0 - choose_find_half - c[28]:
+                    choose_e = choose_find_e
+                    break
+            choose_find_e = a + c[14]
+            choose_find_left = 0
+            while choose_find_e < a + c[15]:
+                choose_find_d = temp - s[choose_find_e]
+                if choose_find_d < choose_find_half and choose_find_d >= 0 - choose_find_half:
+                    choose_e = choose_find_e
+                    choose_find_left = 1
+                    break
+                choose_find_e = choose_find_e + c[26]
+            if choose_find_left:
+                break
+            choose_e = 0
+            break
+        if choose_e > 0:
+            choose_e = s[choose_e + 3]
+            if choose_e >= c[34] and choose_e >= (s_a[21] >> 8) * c[35]:
+                kind = 3
+                break
+        if s_a[22]:
+            choose_e = (temp << 4) + c[36]
+            if choose_e < s_a[19]:
+                s_a[29] = 1
+            choose_e = (temp << 4) - c[36]
+            if choose_e > s_a[20]:
+                s_a[29] = 1
+            kind = 2
+            break
+        choose_e = s_a[35]
+        if choose_e >= c[31] or (choose_e > 0 and (not c[46])):
+            kind = 1
+            break
+        kind = 0
+        break
+    s_a[30] = kind
+    if not kind:
         return 0
-    if kind == ANY_TEMPERATURE or s[a + _FIT_POINTS] == 0:
-        return s[a + _ESTIMATORS + 2]
-    if kind == HERE and c[_LITERAL]:
-        kind = int(find(s_, c_, a, temp))
+    if not kind - 1 or not s_a[22]:
+        return s_a[34]
+    if not kind - 3 and c[21]:
+        while True:
+            find_half = c[27] >> 1
+            find_e = s_a[2]
+            if find_e > 0:
+                find_d = temp - s[find_e]
+                if find_d <= find_half + c[28] and find_d >= 0 - find_half - c[28]:
+                    kind = find_e
+                    break
+            find_e = a + c[14]
+            find_left = 0
+            while find_e < a + c[15]:
+                find_d = temp - s[find_e]
+                if find_d < find_half and find_d >= 0 - find_half:
+                    kind = find_e
+                    find_left = 1
+                    break
+                find_e = find_e + c[26]
+            if find_left:
+                break
+            kind = 0
+            break
         return s[kind + 2]
-    return int(line_q8(s_, a, temp << 4))
+    line_q8_temp_q4 = temp << 4
+    line_q8_u = line_q8_temp_q4 - s_a[14]
+    line_q8_most = 134217727 >> s_a[18]
+    if line_q8_u > line_q8_most:
+        line_q8_u = line_q8_most
+    if line_q8_u < 0 - line_q8_most:
+        line_q8_u = 0 - line_q8_most
+    line_q8_u = (line_q8_u << s_a[18]) - s_a[15]
+    line_q8_scaled_a = s_a[17]
+    line_q8_scaled_b = line_q8_u
+    line_q8_scaled_high = line_q8_scaled_b >> 15
+    line_q8_scaled_b = line_q8_scaled_b & 32767
+    line_q8_scaled_middle = (line_q8_scaled_a >> 15) * line_q8_scaled_b + (line_q8_scaled_a & 32767) * line_q8_scaled_high + ((line_q8_scaled_a & 32767) * line_q8_scaled_b >> 15)
+    line_q8_scaled_high = (line_q8_scaled_a >> 15) * line_q8_scaled_high
+    line_q8_u = (line_q8_scaled_high << 4) + (line_q8_scaled_middle >> 11)
+    return s_a[16] + line_q8_u + 4 >> 3

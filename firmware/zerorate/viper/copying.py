@@ -6,10 +6,9 @@ import micropython
 
 @micropython.viper
 def copy(source, target, first: int, end: int):
-    """Put the words from `first` up to `end` of `source` into `target`."""
     s = ptr32(source)
     t = ptr32(target)
     i = first
     while i < end:
         t[i] = s[i]
-        i += 1
+        i = i + 1

@@ -4,224 +4,226 @@
 Order: clamp, centre, delay, [power first], lag or memory, knot, table or power, second source,
 decay.
 The tool scales each slot so that no stage leaves +-1 (2^24), and 1 stands for the largest value
-that the fitted range allows. Words of a slot: see model.py.
-"""
+that the fitted range allows. Words of a slot: see model.py."""
 
 import micropython
 
-
-try:
-    from micropython import const
-except ImportError:
-
-    def const(value):
-        return value
-
-
 from .fixed import scaled
-
-_NONE = const(-0x3FFFFFFF)
-_ONE = const(0x1000000)
-
-_POWER = const(5)
-_POWER_FIRST = const(6)
-_MEMORY = const(7)
-_LAG = const(8)
-_HALF_WIDTH = const(10)
-_KNOT = const(11)
-_SECOND = const(12)
-_DECAY = const(17)
-_TABLE = const(19)
-_COEFFICIENT_SHIFT = const(23)
-_COEFFICIENT = const(24)
-_RING = const(27)
-_DELAY = const(28)
-_STEP = const(29)
-_STARTED = const(34)
-_STATE = const(35)
-_DECAYED = const(37)
-_VALUE = const(39)
-
-_KEPT = const(64)
-
-_LAGGED = const(1)
-_RATE = const(3)
-_BACKLASH = const(4)
-
-
-@micropython.viper
-def centred(e: ptr32, f: int) -> int:
-    """Return the source at field f, held within its fitted range, less its centre, in Q24."""
-    u = e[e[f]]
-    if u == _NONE:
-        return _NONE
-    if u < e[f + 1]:
-        u = e[f + 1]
-    elif u > e[f + 2]:
-        u = e[f + 2]
-    u -= e[f + 3]
-    f = e[f + 4]
-    if f < 0:
-        return u >> (0 - f)
-    return u << f
-
-
-@micropython.viper
-def delayed(e_, a: int, u: int) -> int:
-    """Return u of so many ticks ago, and keep this one; before the first tick u was as then.
-
-    The ring keeps one of so many ticks; between two a straight line is taken.
-    """
-    e = ptr32(e_)
-    ring = e[a + _RING]
-    if e[a + _STARTED] == 0:
-        e[ring] = 0
-        e[ring + 1] = 0
-        while e[ring] < _KEPT:
-            e[ring + 2 + e[ring]] = u
-            e[ring] += 1
-        e[ring] = 0
-    elif e[ring + 1] == 0:
-        e[ring] = (e[ring] + 1) & 63
-        e[ring + 2 + e[ring]] = u
-    u = e[a + _DELAY] - e[ring + 1]
-    e[ring + 1] = (e[ring + 1] + 1) % e[a + _STEP]
-    a = e[a + _STEP]
-    return int(between(e_, ring, u // a, u % a, a))
-
-
-@micropython.viper
-def between(e: ptr32, ring: int, back: int, part: int, step: int) -> int:
-    """Return what the ring kept so many steps back, and a part of a step farther back."""
-    u = e[ring + 2 + ((e[ring] - back) & 63)]
-    d = e[ring + 2 + ((e[ring] - back - 1) & 63)] - u
-    if d < 0:
-        return u - ((((0 - d) >> 4) * part // step) << 4)
-    return u + (((d >> 4) * part // step) << 4)
 
 
 @micropython.viper
 def power(v: int, n: int) -> int:
-    """Return v to the n, 1..3, in Q24."""
     u = v
     while n > 1:
-        u = int(scaled(u, v, 24))
-        n -= 1
+        scaled_b = v
+        scaled_high = scaled_b >> 15
+        scaled_b = scaled_b & 32767
+        scaled_middle = (u >> 15) * scaled_b + (u & 32767) * scaled_high + ((u & 32767) * scaled_b >> 15)
+        scaled_high = (u >> 15) * scaled_high
+        u = (scaled_high << 6) + (scaled_middle >> 9)
+        n = n - 1
     return u
 
 
 @micropython.viper
 def approach(e: ptr32, z: int, f: int, u: int):
-    """Move the first-order lag at z by e[f] / 2^(15 + e[f+1]) of its way to u.
-
-    The word behind z keeps what is below a unit, so that no lag is too long to arrive.
-    """
-    d = u - e[z]
+    e_z = ptr32(int(e) + (z << 2))
+    d = u - e_z[0]
     u = e[f + 1] + 3
     t = (d >> 12) * e[f]
-    d = (d & 0xFFF) * e[f] + e[z + 1]
+    d = (d & 4095) * e[f] + e_z[1]
     f = t >> u
-    d += (t - (f << u)) << 12
-    u += 12
+    d = (t - (f << u) << 12) + d
+    u = u + 12
     t = d >> u
-    e[z] += f + t
-    e[z + 1] = d - (t << u)
-
-
-@micropython.viper
-def start(e: ptr32, a: int, u: int):
-    """Begin the slot's memory at its first tick of the power-on."""
-    e[a + _STARTED] = 1
-    e[a + _STATE] = u
-    e[a + _STATE + 1] = 0
-    e[a + _DECAYED] = _ONE
-    e[a + _DECAYED + 1] = 0
-
-
-@micropython.viper
-def remembered(e_, a: int, u: int) -> int:
-    """Return u with the slot's lag or memory: see loop.basis of the tools, the float reference."""
-    e = ptr32(e_)
-    kind = e[a + _MEMORY]
-    a += _STATE
-    if kind <= _RATE:
-        approach(e_, a, a - _STATE + _LAG, u)
-        return e[a] if kind == _LAGGED else u - e[a]
-    p = e[a]
-    if kind == _BACKLASH:
-        kind = e[a - _STATE + _HALF_WIDTH]
-        if p < u - kind:
-            p = u - kind
-        elif p > u + kind:
-            p = u + kind
-    elif p < u:
-        p = u
-    e[a] = p
-    return p - u
+    e_z[0] = f + t + e_z[0]
+    e_z[1] = d - (t << u)
 
 
 @micropython.viper
 def looked_up(e: ptr32, a: int, v: int) -> int:
-    """Return what the slot's table of nine equally spaced points says at v, held at its ends."""
-    table = e[a + _TABLE]
-    v = int(scaled(v - e[a + _TABLE + 1], e[a + _TABLE + 2], e[a + _TABLE + 3]))
+    e_a = ptr32(int(e) + (a << 2))
+    table = e_a[19]
+    e_table = ptr32(int(e) + (table << 2))
+    scaled_a = v - e_a[20]
+    scaled_b = e_a[21]
+    scaled_shift = e_a[22]
+    scaled_high = scaled_b >> 15
+    scaled_b = scaled_b & 32767
+    scaled_middle = (scaled_a >> 15) * scaled_b + (scaled_a & 32767) * scaled_high + ((scaled_a & 32767) * scaled_b >> 15)
+    scaled_high = (scaled_a >> 15) * scaled_high
+    v = (scaled_high << 30 - scaled_shift) + (scaled_middle >> scaled_shift - 15)
     if v <= 0:
-        return e[table]
-    if v >= 8 * _ONE:
-        return e[table + 8]
-    table += v >> 24
-    return e[table] + int(scaled(e[table + 1] - e[table], v & 0xFFFFFF, 24))
+        return e_table[0]
+    if v >= 134217728:
+        return e_table[8]
+    table = (v >> 24) + table
+    e_table = ptr32(int(e) + (table << 2))
+    scaled_a = e_table[1] - e_table[0]
+    scaled_b = v & 16777215
+    scaled_high = scaled_b >> 15
+    scaled_b = scaled_b & 32767
+    scaled_middle = (scaled_a >> 15) * scaled_b + (scaled_a & 32767) * scaled_high + ((scaled_a & 32767) * scaled_b >> 15)
+    scaled_high = (scaled_a >> 15) * scaled_high
+    scaled_result = (scaled_high << 6) + (scaled_middle >> 9)
+    return e_table[0] + scaled_result
 
 
 @micropython.viper
 def basis(e_, a: int) -> int:
-    """Run the slot at word a for a tick; return its value in Q24, 0 while a source is unknown."""
     e = ptr32(e_)
-    v = int(centred(e_, a))
-    w = _ONE
-    if e[a + _SECOND]:
-        w = int(centred(e_, a + _SECOND))
-    if v == _NONE or w == _NONE:
+    e_a = ptr32(int(e) + (a << 2))
+    centred_f = a
+    e_centred_f = ptr32(int(e) + (centred_f << 2))
+    centred_u = e[e_centred_f[0]]
+    if not centred_u - -1073741823:
+        v = -1073741823
+    else:
+        if centred_u < e_centred_f[1]:
+            centred_u = e_centred_f[1]
+        elif centred_u > e_centred_f[2]:
+            centred_u = e_centred_f[2]
+        centred_u = centred_u - e_centred_f[3]
+        centred_f = e_centred_f[4]
+        e_centred_f = ptr32(int(e) + (centred_f << 2))
+        if centred_f >> 30:
+            v = centred_u >> 0 - centred_f
+        else:
+            v = centred_u << centred_f
+    w = 16777216
+    if e_a[12]:
+        centred_f = a + 12
+        e_centred_f = ptr32(int(e) + (centred_f << 2))
+        centred_u = e[e_centred_f[0]]
+        if not centred_u - -1073741823:
+            w = -1073741823
+        else:
+            if centred_u < e_centred_f[1]:
+                centred_u = e_centred_f[1]
+            elif centred_u > e_centred_f[2]:
+                centred_u = e_centred_f[2]
+            centred_u = centred_u - e_centred_f[3]
+            centred_f = e_centred_f[4]
+            e_centred_f = ptr32(int(e) + (centred_f << 2))
+            if centred_f >> 30:
+                w = centred_u >> 0 - centred_f
+            else:
+                w = centred_u << centred_f
+    if not v - -1073741823 or not w - -1073741823:
         return 0
-    if e[a + _RING]:
-        v = int(delayed(e_, a, v))
-    if e[a + _POWER_FIRST]:
-        v = int(power(v, e[a + _POWER]))
-    if e[a + _STARTED] == 0:
-        start(e_, a, v)
-    if e[a + _MEMORY]:
-        v = int(remembered(e_, a, v))
-    if e[a + _KNOT] != _NONE:
-        v -= e[a + _KNOT]
-        if v < 0:
+    if e_a[27]:
+        delayed_a = a
+        e_delayed_a = ptr32(int(e) + (delayed_a << 2))
+        delayed_u = v
+        delayed_ring = e_delayed_a[27]
+        e_delayed_ring = ptr32(int(e) + (delayed_ring << 2))
+        if not e_delayed_a[34]:
+            e_delayed_ring[0] = 0
+            e_delayed_ring[1] = 0
+            while e_delayed_ring[0] < 64:
+                e[delayed_ring + 2 + e_delayed_ring[0]] = delayed_u
+                e_delayed_ring[0] = e_delayed_ring[0] + 1
+            e_delayed_ring[0] = 0
+        elif not e_delayed_ring[1]:
+            e_delayed_ring[0] = e_delayed_ring[0] + 1 & 63
+            e[delayed_ring + 2 + e_delayed_ring[0]] = delayed_u
+        delayed_u = e_delayed_a[28] - e_delayed_ring[1]
+        e_delayed_ring[1] = (e_delayed_ring[1] + 1) % e_delayed_a[29]
+        delayed_a = e_delayed_a[29]
+        e_delayed_a = ptr32(int(e) + (delayed_a << 2))
+        delayed_between_back = delayed_u // delayed_a
+        delayed_between_part = delayed_u % delayed_a
+        delayed_between_u = e[delayed_ring + 2 + (e_delayed_ring[0] - delayed_between_back & 63)]
+        delayed_between_d = e[delayed_ring + 2 + (e_delayed_ring[0] - delayed_between_back - 1 & 63)] - delayed_between_u
+        if delayed_between_d >> 30:
+            v = delayed_between_u - ((0 - delayed_between_d >> 4) * delayed_between_part // delayed_a << 4)
+        else:
+            v = ((delayed_between_d >> 4) * delayed_between_part // delayed_a << 4) + delayed_between_u
+    if e_a[6]:
+        power_n = e_a[5]
+        power_u = v
+        while power_n > 1:
+            power_scaled_b = v
+            power_scaled_high = power_scaled_b >> 15
+            power_scaled_b = power_scaled_b & 32767
+            power_scaled_middle = (power_u >> 15) * power_scaled_b + (power_u & 32767) * power_scaled_high + ((power_u & 32767) * power_scaled_b >> 15)
+            power_scaled_high = (power_u >> 15) * power_scaled_high
+            power_u = (power_scaled_high << 6) + (power_scaled_middle >> 9)
+            power_n = power_n - 1
+        v = power_u
+    if not e_a[34]:
+        e_a[34] = 1
+        e_a[35] = v
+        e_a[36] = 0
+        e_a[37] = 16777216
+        e_a[38] = 0
+    if e_a[7]:
+        remembered_a = a
+        e_remembered_a = ptr32(int(e) + (remembered_a << 2))
+        remembered_kind = e_remembered_a[7]
+        remembered_a = remembered_a + 35
+        e_remembered_a = ptr32(int(e) + (remembered_a << 2))
+        if remembered_kind <= 3:
+            remembered_approach_f = remembered_a - 27
+            remembered_approach_u = v
+            remembered_approach_d = remembered_approach_u - e_remembered_a[0]
+            remembered_approach_u = e[remembered_approach_f + 1] + 3
+            remembered_approach_t = (remembered_approach_d >> 12) * e[remembered_approach_f]
+            remembered_approach_d = (remembered_approach_d & 4095) * e[remembered_approach_f] + e_remembered_a[1]
+            remembered_approach_f = remembered_approach_t >> remembered_approach_u
+            remembered_approach_d = (remembered_approach_t - (remembered_approach_f << remembered_approach_u) << 12) + remembered_approach_d
+            remembered_approach_u = remembered_approach_u + 12
+            remembered_approach_t = remembered_approach_d >> remembered_approach_u
+            e_remembered_a[0] = remembered_approach_f + remembered_approach_t + e_remembered_a[0]
+            e_remembered_a[1] = remembered_approach_d - (remembered_approach_t << remembered_approach_u)
+            v = e_remembered_a[0] if remembered_kind == 1 else v - e_remembered_a[0]
+        else:
+            remembered_p = e_remembered_a[0]
+            if not remembered_kind - 4:
+                remembered_kind = e[remembered_a - 25]
+                if remembered_p < v - remembered_kind:
+                    remembered_p = v - remembered_kind
+                elif remembered_p > v + remembered_kind:
+                    remembered_p = v + remembered_kind
+            elif remembered_p < v:
+                remembered_p = v
+            e_remembered_a[0] = remembered_p
+            v = remembered_p - v
+    if e_a[11] - -1073741823:
+        v = v - e_a[11]
+        if v >> 30:
             v = 0
-    if e[a + _TABLE]:
+    if e_a[19]:
         v = int(looked_up(e_, a, v))
-    elif e[a + _POWER_FIRST] == 0:
-        v = int(power(v, e[a + _POWER]))
-    if e[a + _SECOND]:
+    elif not e_a[6]:
+        v = int(power(v, e_a[5]))
+    if e_a[12]:
         v = int(scaled(v, w, 24))
-    if e[a + _DECAY]:
-        v = int(scaled(v, e[a + _DECAYED], 24))
-        approach(e_, a + _DECAYED, a + _DECAY, 0)
+    if e_a[17]:
+        v = int(scaled(v, e_a[37], 24))
+        approach(e_, a + 37, a + 17, 0)
     return v
 
 
 @micropython.viper
 def contribute(e: ptr32, a: int, to: int):
-    """Add the slot's value times its coefficients to three sums in Q14 LSB."""
-    v = e[a + _VALUE]
-    shift = e[a + _COEFFICIENT_SHIFT]
-    a += _COEFFICIENT
+    v = e[a + 39]
+    shift = e[a + 23]
+    a = a + 24
     i = 3
     while i > 0:
-        d = int(scaled(v, e[a], shift))
-        d += e[to]
-        if d > 0x1FFFFFFF:
-            d = 0x1FFFFFFF
-        elif d < -0x1FFFFFFF:
-            d = -0x1FFFFFFF
+        scaled_b = e[a]
+        scaled_high = scaled_b >> 15
+        scaled_b = scaled_b & 32767
+        scaled_middle = (v >> 15) * scaled_b + (v & 32767) * scaled_high + ((v & 32767) * scaled_b >> 15)
+        scaled_high = (v >> 15) * scaled_high
+        d = (scaled_high << 30 - shift) + (scaled_middle >> shift - 15)
+        d = d + e[to]
+        if d > 536870911:
+            d = 536870911
+        elif d < -536870911:
+            d = -536870911
         e[to] = d
-        to += 1
-        a += 1
-        i -= 1
+        to = to + 1
+        a = a + 1
+        i = i - 1

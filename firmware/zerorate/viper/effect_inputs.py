@@ -1,165 +1,114 @@
 # Generated from zerorate/effect_inputs.py by `make viper`: edit that file, not this one.
 """The sources of the effect slots: means over a tick of what the samples and the application say.
 
-A source's value is in Q8 of its integer. Words of an input: see model.py.
-"""
+A source's value is in Q8 of its integer. Words of an input: see model.py."""
 
 import micropython
 
 
-try:
-    from micropython import const
-except ImportError:
-
-    def const(value):
-        return value
-
-
-_NONE = const(-0x3FFFFFFF)
-
-_SLOW_Q8 = const(20)
-_SQUARES = const(23)
-_SHAKEN = const(25)
-_HALF_TICKS = const(7)
-
-_SHIFT = const(1)
-_OFFSET = const(2)
-_SUM = const(3)
-_N = const(4)
-_VALUE = const(5)
-_WORDS = const(6)
-_INPUTS = const(32)
-_COUNT = const(1)
-
-_VIBRATION = const(7)
-_TIME = const(8)
-_INSTANT = const(10)
-_EXTRA = const(16)
-_EXTRAS = const(104)
-_MOST = const(16383)
-
-
 @micropython.viper
-def shake(e: ptr32, x: ptr32):
-    """Add the frame's squared acceleration, less its slow part, to the tick's vibration.
-
-    The sum has its lower 15 bits apart. Each axis counts up to 18900 LSB, 1.15 g at +-2 g.
-    """
-    total = 0
-    i = 0
-    while i < 3:
-        d = x[i] << 8
-        slow = e[_SLOW_Q8 + i] if e[_SHAKEN] else d
-        slow += (d - slow + 16) >> 5
-        e[_SLOW_Q8 + i] = slow
-        d = (d - slow + 128) >> 8
-        if d > 18900 or d < -18900:
-            d = 18900
-        total += d * d
-        i += 1
-    e[_SHAKEN] = 1
-    e[_SQUARES] += total & 0x7FFF
-    e[_SQUARES + 1] += total >> 15
-
-
-@micropython.viper
-def extra(e: ptr32, a: int) -> int:
-    """Return what the application last said of the input's channel, in 16 bits, or _NONE."""
-    v = e[_EXTRAS + e[a] - _EXTRA]
-    if v == _NONE:
-        return _NONE
-    if v > 0x1FFFFFFF:
-        v = 0x1FFFFFFF
-    elif v < -0x1FFFFFFF:
-        v = -0x1FFFFFFF
-    v = (v - e[a + _OFFSET]) >> e[a + _SHIFT]
-    if v > 32767:
-        v = 32767
-    elif v < -32768:
-        v = -32768
-    return v
-
-
-@micropython.viper
-def accumulate(e_, x_):
-    """Add the frame x, and the application's channels, to the tick."""
-    e = ptr32(e_)
-    x = ptr32(x_)
-    a = _INPUTS
-    end = a + _WORDS * e[_COUNT]
+def accumulate(e: ptr32, x: ptr32):
+    a = 32
+    e_a = ptr32(int(e) + (a << 2))
+    end = 6 * e[1] + 32
     while a < end:
-        v = e[a]
-        if v >= _EXTRA:
-            v = int(extra(e_, a))
-        elif v >= _INSTANT:
-            e[a + _VALUE] = x[v - _INSTANT + 4] << 8
-            v = _NONE
-        elif v < _VIBRATION:
+        v = e_a[0]
+        if v >= 16:
+            extra_a = a
+            extra_v = e[e[extra_a] + 88]
+            if not extra_v - -1073741823:
+                v = -1073741823
+            else:
+                if extra_v > 536870911:
+                    extra_v = 536870911
+                elif extra_v < -536870911:
+                    extra_v = -536870911
+                extra_v = extra_v - e[extra_a + 2]
+                extra_a = e[extra_a + 1]
+                if extra_a > 0:
+                    extra_v = extra_v >> extra_a
+                    extra_a = 0
+                extra_a = 0 - extra_a
+                if extra_v > 32767 >> extra_a:
+                    extra_v = 32767 >> extra_a
+                elif extra_v < -(32768 >> extra_a):
+                    extra_v = -(32768 >> extra_a)
+                v = extra_v << extra_a
+        elif v >= 10:
+            e_a[5] = x[v - 6] << 8
+            v = -1073741823
+        elif v < 7:
             v = x[v]
-        elif v == _VIBRATION:
-            shake(e_, x_)
+        elif not v - 7:
+            shake_total = 0
+            shake_d = x[0] << 8
+            shake_slow = e[20] if e[25] else shake_d
+            shake_slow = (shake_d - shake_slow + 16 >> 5) + shake_slow
+            e[20] = shake_slow
+            shake_d = shake_d - shake_slow + 128 >> 8
+            if shake_d > 18900 or shake_d < -18900:
+                shake_d = 18900
+            shake_total = shake_d * shake_d + shake_total
+            shake_d = x[1] << 8
+            shake_slow = e[21] if e[25] else shake_d
+            shake_slow = (shake_d - shake_slow + 16 >> 5) + shake_slow
+            e[21] = shake_slow
+            shake_d = shake_d - shake_slow + 128 >> 8
+            if shake_d > 18900 or shake_d < -18900:
+                shake_d = 18900
+            shake_total = shake_d * shake_d + shake_total
+            shake_d = x[2] << 8
+            shake_slow = e[22] if e[25] else shake_d
+            shake_slow = (shake_d - shake_slow + 16 >> 5) + shake_slow
+            e[22] = shake_slow
+            shake_d = shake_d - shake_slow + 128 >> 8
+            if shake_d > 18900 or shake_d < -18900:
+                shake_d = 18900
+            shake_total = shake_d * shake_d + shake_total
+            e[25] = 1
+            e[23] = (shake_total & 32767) + e[23]
+            e[24] = (shake_total >> 15) + e[24]
             v = 0
         else:
-            v = _NONE
-        if v != _NONE and e[a + _N] < _MOST:
-            e[a + _SUM] += v
-            e[a + _N] += 1
-        a += _WORDS
+            v = -1073741823
+        if v - -1073741823 and e_a[4] < 16383:
+            e_a[3] = e_a[3] + v
+            e_a[4] = e_a[4] + 1
+        a = a + 6
+        e_a = ptr32(int(e) + (a << 2))
 
 
 @micropython.viper
-def mean_q8(total: int, n: int) -> int:
-    """Return total / n in Q8 for n < 2^14, rounded."""
-    sign = 1
-    if total < 0:
-        total = -total
-        sign = -1
-    return sign * (((total // n) << 8) + (((total % n) << 8) + (n >> 1)) // n)
-
-
-@micropython.viper
-def mean_square_q8(e: ptr32, n: int, shift: int) -> int:
-    """Return the tick's vibration, LSB^2 / 2^shift in Q8, at most 2^15."""
-    low = ((e[_SQUARES + 1] % n) << 15) + e[_SQUARES]
-    mean = ((e[_SQUARES + 1] // n) << 15) + low // n
-    e[_SQUARES] = 0
-    e[_SQUARES + 1] = 0
-    if mean >> shift > 32767:
-        return 0x7FFFFF
-    if shift >= 8:
-        return mean >> (shift - 8)
-    return (mean << (8 - shift)) + ((((low % n) << 8) // n) >> shift)
-
-
-@micropython.viper
-def close_tick(e_):
-    """Turn the sums of the tick into the values of the sources; those without samples stay."""
-    e = ptr32(e_)
-    a = _INPUTS
-    end = a + _WORDS * e[_COUNT]
+def close_tick(e: ptr32):
+    a = 32
+    e_a = ptr32(int(e) + (a << 2))
+    end = 6 * e[1] + 32
     while a < end:
-        if e[a + _N]:
-            if e[a] == _VIBRATION:
-                e[a + _VALUE] = int(mean_square_q8(e_, e[a + _N], e[a + _SHIFT]))
+        if e_a[4]:
+            if not e_a[0] - 7:
+                mean_square_q8_n = e_a[4]
+                mean_square_q8_shift = e_a[1]
+                mean_square_q8_low = (e[24] % mean_square_q8_n << 15) + e[23]
+                mean_square_q8_mean = (e[24] // mean_square_q8_n << 15) + mean_square_q8_low // mean_square_q8_n
+                e[23] = 0
+                e[24] = 0
+                if mean_square_q8_mean >> mean_square_q8_shift > 32767:
+                    mean_square_q8_result = 8388607
+                elif mean_square_q8_shift >= 8:
+                    mean_square_q8_result = mean_square_q8_mean >> mean_square_q8_shift - 8
+                else:
+                    mean_square_q8_result = (mean_square_q8_mean << 8 - mean_square_q8_shift) + ((mean_square_q8_low % mean_square_q8_n << 8) // mean_square_q8_n >> mean_square_q8_shift)
+                e_a[5] = mean_square_q8_result
             else:
-                e[a + _VALUE] = int(mean_q8(e[a + _SUM], e[a + _N]))
-        e[a + _SUM] = 0
-        e[a + _N] = 0
-        a += _WORDS
-
-
-@micropython.viper
-def tell_time(e: ptr32):
-    """Give the source that is the time since power-on the middle of the tick, in half ticks."""
-    a = _INPUTS
-    end = a + _WORDS * e[_COUNT]
-    while a < end:
-        if e[a] == _TIME:
-            shift = e[a + _SHIFT]
-            if e[_HALF_TICKS] >> shift > 32767:
-                e[a + _VALUE] = 0x7FFFFF
-            elif shift > 8:
-                e[a + _VALUE] = e[_HALF_TICKS] >> (shift - 8)
-            else:
-                e[a + _VALUE] = e[_HALF_TICKS] << (8 - shift)
-        a += _WORDS
+                effect_inputs_mean_q8_total = e_a[3]
+                effect_inputs_mean_q8_n = e_a[4]
+                effect_inputs_mean_q8_sign = 1
+                if effect_inputs_mean_q8_total >> 30:
+                    effect_inputs_mean_q8_total = -effect_inputs_mean_q8_total
+                    effect_inputs_mean_q8_sign = -1
+                effect_inputs_mean_q8_result = ((effect_inputs_mean_q8_total // effect_inputs_mean_q8_n << 8) + ((effect_inputs_mean_q8_total % effect_inputs_mean_q8_n << 8) + (effect_inputs_mean_q8_n >> 1)) // effect_inputs_mean_q8_n) * effect_inputs_mean_q8_sign
+                e_a[5] = effect_inputs_mean_q8_result
+        e_a[3] = 0
+        e_a[4] = 0
+        a = a + 6
+        e_a = ptr32(int(e) + (a << 2))

@@ -5,280 +5,518 @@ A Kalman filter (R. E. Kalman, 1960) whose state is, for each axis, an offset th
 line over temperature, and how far each slot's coefficient is from the model's; the three axes have
 one covariance. It is told each still segment's rate less what the model's own effects say, so
 neither the turn-on offset nor the line is taken for an effect. No coefficient leaves the model's
-own by more than the bound. Numbers are those of real.py; words of `e`: see model.py.
-"""
+own by more than the bound. Numbers are those of real.py; words of `e`: see model.py."""
 
 import micropython
 
-
-try:
-    from micropython import const
-except ImportError:
-
-    def const(value):
-        return value
-
-
-from .real import add, divide, multiply, put, subtract, whole
-
-_ON = const(26)
-_BOUND_EIGHTHS = const(27)
-
-_TOTALS = const(42)
-_TEMP = const(47)
-
-_PHASE = const(582)
-_STATES = const(583)
-_RATE_Q8 = const(584)
-_FIRST_TEMP = const(587)
-_SEEN = const(588)
-_A = const(590)
-_B = const(592)
-_S = const(594)
-_ERROR = const(596)
-_PHI = const(602)
-_GAIN = const(622)
-_THETA = const(642)
-_P = const(702)
-_ROW = const(20)
-
-_SLOT = const(112)
-_WORDS = const(40)
-_SHIFT = const(23)
-_COEFFICIENT = const(24)
-_OWN = const(30)
-_INSTANT = const(33)
-_VALUE = const(39)
-
-_WARM_UP = const(64)
-_MOST_RATE = const(0x1FFFFF)
-# exponents of 2: variance of a segment's mean and of the offset's walk a segment, LSB^2
-_NOISE = const(-2)
-_WALK = const(-10)
+from .real import add_smaller
+from .real import divide
+from .real import multiply
+from .real import subtract
 
 
 @micropython.viper
-def mean_q8(total: int, n: int) -> int:
-    """Return total / n in Q8, for 0 < n < 2^20, within 2^21."""
-    sign = 1
-    if total < 0:
-        total = -total
-        sign = -1
-    if total // n > 8191:
-        return sign * _MOST_RATE
-    return sign * (((total // n) << 8) + ((total % n) << 8) // n)
-
-
-@micropython.viper
-def observe(s: ptr32, e_, n: int):
-    """Take a still segment of n samples whose totals, less the effects, stand in s.
-
-    Nothing happens where refinement is off or the segment before is still at work in `refine`.
-    """
+def attend(s: ptr32, c: ptr32, e_):
     e = ptr32(e_)
-    if e[_ON] == 0 or e[_PHASE]:
-        return
-    if e[_SEEN] == 0:
-        e[_FIRST_TEMP] = s[_TEMP]
-    put(e_, _PHI, 1, 0)
-    i = s[_TEMP] - e[_FIRST_TEMP]
-    put(e_, _PHI + 2, i, -8)
-    i = 0
-    while i < 3:
-        e[_RATE_Q8 + i] = int(mean_q8(s[_TOTALS + i], n))
-        i += 1
-    i = 2
-    while i < e[_STATES]:
-        n = _SLOT + (i - 2) * _WORDS
-        put(e_, _PHI + 2 * i, e[n + _VALUE], -24)
-        if e[n + _INSTANT]:
-            put(e_, _PHI + 2 * i, 0, 0)
-        i += 1
-    e[_PHASE] = 1
+    if not s[17] and (not s[46] - 1) and (not s[48]):
+        effect_refine_observe_n = c[5] << c[4]
+        if not e[26] or e[582]:
+            pass
+        else:
+            if not e[588]:
+                e[587] = s[47]
+            effect_refine_observe_put_m = 1
+            effect_refine_observe_put_e = 0
+            while effect_refine_observe_put_m < 524288 and effect_refine_observe_put_m >= -524288:
+                effect_refine_observe_put_m = effect_refine_observe_put_m << 8
+                effect_refine_observe_put_e = effect_refine_observe_put_e - 8
+            while effect_refine_observe_put_m < 134217728 and effect_refine_observe_put_m >= -134217728:
+                effect_refine_observe_put_m = effect_refine_observe_put_m << 1
+                effect_refine_observe_put_e = effect_refine_observe_put_e - 1
+            while effect_refine_observe_put_m >= 268435456 or effect_refine_observe_put_m < -268435456:
+                effect_refine_observe_put_m = effect_refine_observe_put_m >> 1
+                effect_refine_observe_put_e = effect_refine_observe_put_e + 1
+            e[602] = effect_refine_observe_put_m
+            e[603] = effect_refine_observe_put_e
+            effect_refine_observe_i = s[47] - e[587]
+            effect_refine_observe_put_d = 604
+            e_effect_refine_observe_put_d = ptr32(int(e) + (effect_refine_observe_put_d << 2))
+            effect_refine_observe_put_m = effect_refine_observe_i
+            effect_refine_observe_put_e = -8
+            if not effect_refine_observe_put_m:
+                e[604] = 0
+                e[605] = -4096
+            else:
+                while effect_refine_observe_put_m < 524288 and effect_refine_observe_put_m >= -524288:
+                    effect_refine_observe_put_m = effect_refine_observe_put_m << 8
+                    effect_refine_observe_put_e = effect_refine_observe_put_e - 8
+                while effect_refine_observe_put_m < 134217728 and effect_refine_observe_put_m >= -134217728:
+                    effect_refine_observe_put_m = effect_refine_observe_put_m << 1
+                    effect_refine_observe_put_e = effect_refine_observe_put_e - 1
+                while effect_refine_observe_put_m >= 268435456 or effect_refine_observe_put_m < -268435456:
+                    effect_refine_observe_put_m = effect_refine_observe_put_m >> 1
+                    effect_refine_observe_put_e = effect_refine_observe_put_e + 1
+                e[604] = effect_refine_observe_put_m
+                e[605] = effect_refine_observe_put_e
+            effect_refine_observe_i = 0
+            effect_refine_observe_effect_refine_mean_q8_total = s[42]
+            effect_refine_observe_effect_refine_mean_q8_sign = 1
+            if effect_refine_observe_effect_refine_mean_q8_total >> 30:
+                effect_refine_observe_effect_refine_mean_q8_total = -effect_refine_observe_effect_refine_mean_q8_total
+                effect_refine_observe_effect_refine_mean_q8_sign = -1
+            if effect_refine_observe_effect_refine_mean_q8_total // effect_refine_observe_n > 8191:
+                effect_refine_observe_effect_refine_mean_q8_result = effect_refine_observe_effect_refine_mean_q8_sign * 2097151
+            else:
+                effect_refine_observe_effect_refine_mean_q8_result = ((effect_refine_observe_effect_refine_mean_q8_total // effect_refine_observe_n << 8) + (effect_refine_observe_effect_refine_mean_q8_total % effect_refine_observe_n << 8) // effect_refine_observe_n) * effect_refine_observe_effect_refine_mean_q8_sign
+            e[584] = effect_refine_observe_effect_refine_mean_q8_result
+            effect_refine_observe_effect_refine_mean_q8_total = s[43]
+            effect_refine_observe_effect_refine_mean_q8_sign = 1
+            if effect_refine_observe_effect_refine_mean_q8_total >> 30:
+                effect_refine_observe_effect_refine_mean_q8_total = -effect_refine_observe_effect_refine_mean_q8_total
+                effect_refine_observe_effect_refine_mean_q8_sign = -1
+            if effect_refine_observe_effect_refine_mean_q8_total // effect_refine_observe_n > 8191:
+                effect_refine_observe_effect_refine_mean_q8_result = effect_refine_observe_effect_refine_mean_q8_sign * 2097151
+            else:
+                effect_refine_observe_effect_refine_mean_q8_result = ((effect_refine_observe_effect_refine_mean_q8_total // effect_refine_observe_n << 8) + (effect_refine_observe_effect_refine_mean_q8_total % effect_refine_observe_n << 8) // effect_refine_observe_n) * effect_refine_observe_effect_refine_mean_q8_sign
+            e[585] = effect_refine_observe_effect_refine_mean_q8_result
+            effect_refine_observe_effect_refine_mean_q8_total = s[44]
+            effect_refine_observe_effect_refine_mean_q8_sign = 1
+            if effect_refine_observe_effect_refine_mean_q8_total >> 30:
+                effect_refine_observe_effect_refine_mean_q8_total = -effect_refine_observe_effect_refine_mean_q8_total
+                effect_refine_observe_effect_refine_mean_q8_sign = -1
+            if effect_refine_observe_effect_refine_mean_q8_total // effect_refine_observe_n > 8191:
+                effect_refine_observe_effect_refine_mean_q8_result = effect_refine_observe_effect_refine_mean_q8_sign * 2097151
+            else:
+                effect_refine_observe_effect_refine_mean_q8_result = ((effect_refine_observe_effect_refine_mean_q8_total // effect_refine_observe_n << 8) + (effect_refine_observe_effect_refine_mean_q8_total % effect_refine_observe_n << 8) // effect_refine_observe_n) * effect_refine_observe_effect_refine_mean_q8_sign
+            e[586] = effect_refine_observe_effect_refine_mean_q8_result
+            effect_refine_observe_i = 3
+            effect_refine_observe_i = 2
+            while effect_refine_observe_i < e[583]:
+                effect_refine_observe_n = (effect_refine_observe_i - 2) * 40 + 112
+                effect_refine_observe_put_d = 2 * effect_refine_observe_i + 602
+                e_effect_refine_observe_put_d = ptr32(int(e) + (effect_refine_observe_put_d << 2))
+                effect_refine_observe_put_m = e[effect_refine_observe_n + 39]
+                effect_refine_observe_put_e = -24
+                if not effect_refine_observe_put_m:
+                    e_effect_refine_observe_put_d[0] = 0
+                    e_effect_refine_observe_put_d[1] = -4096
+                else:
+                    while effect_refine_observe_put_m < 524288 and effect_refine_observe_put_m >= -524288:
+                        effect_refine_observe_put_m = effect_refine_observe_put_m << 8
+                        effect_refine_observe_put_e = effect_refine_observe_put_e - 8
+                    while effect_refine_observe_put_m < 134217728 and effect_refine_observe_put_m >= -134217728:
+                        effect_refine_observe_put_m = effect_refine_observe_put_m << 1
+                        effect_refine_observe_put_e = effect_refine_observe_put_e - 1
+                    while effect_refine_observe_put_m >= 268435456 or effect_refine_observe_put_m < -268435456:
+                        effect_refine_observe_put_m = effect_refine_observe_put_m >> 1
+                        effect_refine_observe_put_e = effect_refine_observe_put_e + 1
+                    e_effect_refine_observe_put_d[0] = effect_refine_observe_put_m
+                    e_effect_refine_observe_put_d[1] = effect_refine_observe_put_e
+                if e[effect_refine_observe_n + 33]:
+                    effect_refine_observe_put_d = 2 * effect_refine_observe_i + 602
+                    e_effect_refine_observe_put_d = ptr32(int(e) + (effect_refine_observe_put_d << 2))
+                    effect_refine_observe_put_m = 0
+                    effect_refine_observe_put_e = 0
+                    e_effect_refine_observe_put_d[0] = 0
+                    e_effect_refine_observe_put_d[1] = -4096
+                effect_refine_observe_i = effect_refine_observe_i + 1
+            e[582] = 1
+    elif e[582]:
+        refine(e_)
 
 
 @micropython.viper
 def product(e_, to: int, a: int, b: int):
-    """Store at `to` the scalar product of the states at a and b."""
     e = ptr32(e_)
-    put(e_, to, 0, 0)
-    i = e[_STATES]
+    e_to = ptr32(int(e) + (to << 2))
+    e_to[0] = 0
+    e_to[1] = -4096
+    i = e[583]
     while i > 0:
-        multiply(e_, _A, a, b)
-        add(e_, to, to, _A)
-        a += 2
-        b += 2
-        i -= 1
+        multiply(e_, 590, a, b)
+        if e_to[1] < e[591]:
+            add_smaller(e_, to, 590, to)
+        else:
+            add_smaller(e_, to, to, 590)
+        a = a + 2
+        b = b + 2
+        i = i - 1
 
 
 @micropython.viper
-def miss(e_, axis: int):
-    """Note by how much the axis' rate, with the learned effects, misses what the filter says."""
-    e = ptr32(e_)
-    i = _THETA + axis * _ROW
-    product(e_, _B, i, _PHI)
-    put(e_, _A, e[_RATE_Q8 + axis], -8)
-    i = _ERROR + 2 * axis
-    subtract(e_, i, _A, _B)
-    restore(e_, axis, i)
-
-
-@micropython.viper
-def put_learned(e_, a: int, axis: int):
-    """Store at _A how far the slot's coefficient is from the model's own, LSB at a value of 1."""
-    e = ptr32(e_)
-    m = e[a + _COEFFICIENT + axis]
-    m -= e[a + _OWN + axis]
-    a = 10 - e[a + _SHIFT]
-    put(e_, _A, m, a)
-
-
-@micropython.viper
-def restore(e_, axis: int, to: int):
-    """Add at `to` what the learned part of the axis' coefficients has taken from the rate."""
-    e = ptr32(e_)
-    a = _SLOT
-    i = _PHI + 4
-    while i < _PHI + 2 * e[_STATES]:
-        put_learned(e_, a, axis)
-        multiply(e_, _A, _A, i)
-        add(e_, to, to, _A)
-        a += _WORDS
-        i += 2
-
-
-@micropython.viper
-def believe(e_, i: int):
-    """Let state i of each axis, and its row of the covariance, learn from the misses."""
-    e = ptr32(e_)
-    divide(e_, _B, _GAIN + 2 * i, _S)
-    axis = 0
-    while axis < 3:
-        multiply(e_, _A, _B, _ERROR + 2 * axis)
-        at = _THETA + axis * _ROW + 2 * i
-        add(e_, at, at, _A)
-        axis += 1
-    at = _P + i * _ROW
-    i = 0
-    while i < e[_STATES]:
-        multiply(e_, _A, _B, _GAIN + 2 * i)
-        put(e_, _A, -e[_A], e[_A + 1])
-        add(e_, at, at, _A)
-        at += 2
-        i += 1
-
-
-@micropython.viper
-def bound(e: ptr32, a: int) -> int:
-    """Return how far a coefficient of the slot may go: a share of the model's largest."""
-    most = 0
-    i = 0
-    while i < 3:
-        m = e[a + _OWN + i]
-        if m < 0:
-            m = -m
-        if m > most:
-            most = m
-        i += 1
-    return (most >> 3) * e[_BOUND_EIGHTHS]
-
-
-@micropython.viper
-def move(e_, a: int, state: int):
-    """Set the slot's coefficients to the model's own plus what was learned, within the bound."""
-    e = ptr32(e_)
-    most = int(bound(e_, a))
-    state = _THETA + 2 * state
-    shift = e[a + _SHIFT] - 10
+def move(e: ptr32, a: int, state: int):
+    e_a = ptr32(int(e) + (a << 2))
+    bound_most = 0
+    bound_m = e_a[30]
+    if bound_m >> 30:
+        bound_m = -bound_m
+    if bound_m > 0:
+        bound_most = bound_m
+    bound_m = e_a[31]
+    if bound_m >> 30:
+        bound_m = -bound_m
+    if bound_m > bound_most:
+        bound_most = bound_m
+    bound_m = e_a[32]
+    if bound_m >> 30:
+        bound_m = -bound_m
+    if bound_m > bound_most:
+        bound_most = bound_m
+    most = (bound_most >> 3) * e[27]
+    state = 2 * state + 642
+    shift = e_a[23] - 10
     i = 3
     while i > 0:
-        d = int(whole(e_, state, shift))
+        whole_shift = shift
+        whole_m = e[state]
+        whole_shift = whole_shift + e[state + 1]
+        if whole_shift > 1 and whole_m:
+            whole_m = 536870911 if whole_m > 0 else -536870911
+        elif not whole_shift >> 30:
+            whole_m = whole_m << whole_shift
+        elif whole_shift > -30:
+            whole_m = (1 << -1 - whole_shift) + whole_m >> 0 - whole_shift
+        else:
+            whole_m = 0
+        d = whole_m
         if d > most:
             d = most
         elif d < 0 - most:
             d = 0 - most
-        e[a + _COEFFICIENT] = e[a + _OWN] + d
-        a += 1
-        state += _ROW
-        i -= 1
+        e_a[24] = e_a[30] + d
+        a = a + 1
+        e_a = ptr32(int(e) + (a << 2))
+        state = state + 20
+        i = i - 1
 
 
 @micropython.viper
 def refine(e_):
-    """Do the next piece of learning from the latest segment; nothing when all is done."""
     e = ptr32(e_)
-    n = e[_STATES]
-    i = e[_PHASE] - 1
-    if i < 0:
+    n = e[583]
+    i = e[582] - 1
+    if i >> 30:
         return
-    e[_PHASE] += 1
+    e[582] = e[582] + 1
     if i < n:
-        if i == 0:
-            put(e_, _A, 1, _WALK)
-            add(e_, _P, _P, _A)
-        product(e_, _GAIN + 2 * i, _P + i * _ROW, _PHI)
-    elif i == n:
-        product(e_, _S, _GAIN, _PHI)
-        put(e_, _A, 1, _NOISE)
-        add(e_, _S, _S, _A)
+        if not i:
+            put_m = 1
+            put_e = -10
+            while put_m < 524288 and put_m >= -524288:
+                put_m = put_m << 8
+                put_e = put_e - 8
+            while put_m < 134217728 and put_m >= -134217728:
+                put_m = put_m << 1
+                put_e = put_e - 1
+            while put_m >= 268435456 or put_m < -268435456:
+                put_m = put_m >> 1
+                put_e = put_e + 1
+            e[590] = put_m
+            e[591] = put_e
+            if e[703] < e[591]:
+                add_smaller(e_, 702, 590, 702)
+            else:
+                add_smaller(e_, 702, 702, 590)
+        product(e_, 2 * i + 622, i * 20 + 702, 602)
+    elif not i - n:
+        product(e_, 594, 622, 602)
+        put_m = 1
+        put_e = -2
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        e[590] = put_m
+        e[591] = put_e
+        if e[595] < e[591]:
+            add_smaller(e_, 594, 590, 594)
+        else:
+            add_smaller(e_, 594, 594, 590)
     elif i < n + 4:
-        miss(e_, i - n - 1)
+        miss_axis = i - n - 1
+        miss_i = miss_axis * 20 + 642
+        product(e_, 592, miss_i, 602)
+        miss_put_m = e[miss_axis + 584]
+        miss_put_e = -8
+        if not miss_put_m:
+            e[590] = 0
+            e[591] = -4096
+        else:
+            while miss_put_m < 524288 and miss_put_m >= -524288:
+                miss_put_m = miss_put_m << 8
+                miss_put_e = miss_put_e - 8
+            while miss_put_m < 134217728 and miss_put_m >= -134217728:
+                miss_put_m = miss_put_m << 1
+                miss_put_e = miss_put_e - 1
+            while miss_put_m >= 268435456 or miss_put_m < -268435456:
+                miss_put_m = miss_put_m >> 1
+                miss_put_e = miss_put_e + 1
+            e[590] = miss_put_m
+            e[591] = miss_put_e
+        miss_i = 2 * miss_axis + 596
+        subtract(e_, miss_i, 590, 592)
+        miss_restore_a = 112
+        miss_restore_i = 606
+        while miss_restore_i < 2 * e[583] + 602:
+            miss_restore_put_learned_a = miss_restore_a
+            miss_restore_put_learned_m = e[miss_restore_put_learned_a + 24 + miss_axis]
+            miss_restore_put_learned_m = miss_restore_put_learned_m - e[miss_restore_put_learned_a + 30 + miss_axis]
+            miss_restore_put_learned_a = 10 - e[miss_restore_put_learned_a + 23]
+            miss_restore_put_learned_put_m = miss_restore_put_learned_m
+            miss_restore_put_learned_put_e = miss_restore_put_learned_a
+            if not miss_restore_put_learned_put_m:
+                e[590] = 0
+                e[591] = -4096
+            else:
+                while miss_restore_put_learned_put_m < 524288 and miss_restore_put_learned_put_m >= -524288:
+                    miss_restore_put_learned_put_m = miss_restore_put_learned_put_m << 8
+                    miss_restore_put_learned_put_e = miss_restore_put_learned_put_e - 8
+                while miss_restore_put_learned_put_m < 134217728 and miss_restore_put_learned_put_m >= -134217728:
+                    miss_restore_put_learned_put_m = miss_restore_put_learned_put_m << 1
+                    miss_restore_put_learned_put_e = miss_restore_put_learned_put_e - 1
+                while miss_restore_put_learned_put_m >= 268435456 or miss_restore_put_learned_put_m < -268435456:
+                    miss_restore_put_learned_put_m = miss_restore_put_learned_put_m >> 1
+                    miss_restore_put_learned_put_e = miss_restore_put_learned_put_e + 1
+                e[590] = miss_restore_put_learned_put_m
+                e[591] = miss_restore_put_learned_put_e
+            multiply(e_, 590, 590, miss_restore_i)
+            if e[miss_i + 1] < e[591]:
+                add_smaller(e_, miss_i, 590, miss_i)
+            else:
+                add_smaller(e_, miss_i, miss_i, 590)
+            miss_restore_a = miss_restore_a + 40
+            miss_restore_i = miss_restore_i + 2
     elif i < 2 * n + 4:
-        believe(e_, i - n - 4)
+        effect_refine_believe_i = i - n - 4
+        divide(e_, 592, 2 * effect_refine_believe_i + 622, 594)
+        multiply(e_, 590, 592, 596)
+        effect_refine_believe_at = 2 * effect_refine_believe_i + 642
+        if e[effect_refine_believe_at + 1] < e[591]:
+            add_smaller(e_, effect_refine_believe_at, 590, effect_refine_believe_at)
+        else:
+            add_smaller(e_, effect_refine_believe_at, effect_refine_believe_at, 590)
+        multiply(e_, 590, 592, 598)
+        effect_refine_believe_at = 2 * effect_refine_believe_i + 662
+        if e[effect_refine_believe_at + 1] < e[591]:
+            add_smaller(e_, effect_refine_believe_at, 590, effect_refine_believe_at)
+        else:
+            add_smaller(e_, effect_refine_believe_at, effect_refine_believe_at, 590)
+        multiply(e_, 590, 592, 600)
+        effect_refine_believe_at = 2 * effect_refine_believe_i + 682
+        if e[effect_refine_believe_at + 1] < e[591]:
+            add_smaller(e_, effect_refine_believe_at, 590, effect_refine_believe_at)
+        else:
+            add_smaller(e_, effect_refine_believe_at, effect_refine_believe_at, 590)
+        effect_refine_believe_at = effect_refine_believe_i * 20 + 702
+        effect_refine_believe_i = 0
+        while effect_refine_believe_i < e[583]:
+            multiply(e_, 590, 592, 2 * effect_refine_believe_i + 622)
+            effect_refine_believe_put_m = -e[590]
+            effect_refine_believe_put_e = e[591]
+            if not effect_refine_believe_put_m:
+                e[590] = 0
+                e[591] = -4096
+            else:
+                while effect_refine_believe_put_m < 524288 and effect_refine_believe_put_m >= -524288:
+                    effect_refine_believe_put_m = effect_refine_believe_put_m << 8
+                    effect_refine_believe_put_e = effect_refine_believe_put_e - 8
+                while effect_refine_believe_put_m < 134217728 and effect_refine_believe_put_m >= -134217728:
+                    effect_refine_believe_put_m = effect_refine_believe_put_m << 1
+                    effect_refine_believe_put_e = effect_refine_believe_put_e - 1
+                while effect_refine_believe_put_m >= 268435456 or effect_refine_believe_put_m < -268435456:
+                    effect_refine_believe_put_m = effect_refine_believe_put_m >> 1
+                    effect_refine_believe_put_e = effect_refine_believe_put_e + 1
+                e[590] = effect_refine_believe_put_m
+                e[591] = effect_refine_believe_put_e
+            if e[effect_refine_believe_at + 1] < e[591]:
+                add_smaller(e_, effect_refine_believe_at, 590, effect_refine_believe_at)
+            else:
+                add_smaller(e_, effect_refine_believe_at, effect_refine_believe_at, 590)
+            effect_refine_believe_at = effect_refine_believe_at + 2
+            effect_refine_believe_i = effect_refine_believe_i + 1
     else:
         i = 2
-        while i < n and e[_SEEN] >= _WARM_UP:
-            move(e_, _SLOT + (i - 2) * _WORDS, i)
-            i += 1
-        e[_PHASE] = 0
-        if e[_SEEN] < 0xFFFF:
-            e[_SEEN] += 1
+        while i < n and e[588] >= 64:
+            move(e_, (i - 2) * 40 + 112, i)
+            i = i + 1
+        e[582] = 0
+        if e[588] < 65535:
+            e[588] = e[588] + 1
 
 
 @micropython.viper
-def renew(e_):
-    """Begin a power-on: the offset is as unknown as at first, all else is kept."""
-    e = ptr32(e_)
-    e[_PHASE] = 0
-    e[_SEEN] = 0
+def renew(e: ptr32):
+    e[582] = 0
+    e[588] = 0
     i = 0
-    while i < e[_STATES]:
-        put(e_, _P + 2 * i, 0, 0)
-        put(e_, _P + i * _ROW, 0, 0)
-        i += 1
-    put(e_, _P, 1, 24)
+    while i < e[583]:
+        put_d = 2 * i + 702
+        put_m = 0
+        put_e = 0
+        e[put_d] = 0
+        e[put_d + 1] = -4096
+        put_d = i * 20 + 702
+        put_m = 0
+        put_e = 0
+        e[put_d] = 0
+        e[put_d + 1] = -4096
+        i = i + 1
+    put_m = 1
+    put_e = 24
+    while put_m < 524288 and put_m >= -524288:
+        put_m = put_m << 8
+        put_e = put_e - 8
+    while put_m < 134217728 and put_m >= -134217728:
+        put_m = put_m << 1
+        put_e = put_e - 1
+    while put_m >= 268435456 or put_m < -268435456:
+        put_m = put_m >> 1
+        put_e = put_e + 1
+    e[702] = put_m
+    e[703] = put_e
     i = 0
-    while i < 3:
-        put(e_, _THETA + i * _ROW, 0, 0)
-        i += 1
-
-
-@micropython.viper
-def doubt(e_, a: int, p: int):
-    """Store at p the variance of the slot's coefficients: the bound is one sigma."""
-    e = ptr32(e_)
-    m = int(bound(e_, a))
-    a = 10 - e[a + _SHIFT]
-    put(e_, _A, m, a)
-    multiply(e_, p, _A, _A)
+    put_d = 642
+    put_m = 0
+    put_e = 0
+    e[642] = 0
+    e[643] = -4096
+    put_d = 662
+    put_m = 0
+    put_e = 0
+    e[662] = 0
+    e[663] = -4096
+    put_d = 682
+    put_m = 0
+    put_e = 0
+    e[682] = 0
+    e[683] = -4096
+    i = 3
 
 
 @micropython.viper
 def begin(e_, slots: int):
-    """Know nothing yet of any unit: each coefficient is the model's, give or take the bound."""
     e = ptr32(e_)
-    e[_STATES] = slots + 2
+    e[583] = slots + 2
     i = 0
     while i < 30:
-        put(e_, _THETA + 2 * i, 0, 0)
-        i += 1
+        put_d = 2 * i + 642
+        put_m = 0
+        put_e = 0
+        e[put_d] = 0
+        e[put_d + 1] = -4096
+        i = i + 1
     i = 0
     while i < 100:
-        put(e_, _P + 2 * i, 0, 0)
-        i += 1
-    put(e_, _P + _ROW + 2, 1, 6)
+        put_d = 2 * i + 702
+        put_m = 0
+        put_e = 0
+        e[put_d] = 0
+        e[put_d + 1] = -4096
+        i = i + 1
+    put_d = 724
+    put_m = 1
+    put_e = 6
+    while put_m < 524288 and put_m >= -524288:
+        put_m = put_m << 8
+        put_e = put_e - 8
+    while put_m < 134217728 and put_m >= -134217728:
+        put_m = put_m << 1
+        put_e = put_e - 1
+    while put_m >= 268435456 or put_m < -268435456:
+        put_m = put_m >> 1
+        put_e = put_e + 1
+    e[724] = put_m
+    e[725] = put_e
     i = 0
     while i < slots:
-        doubt(e_, _SLOT + i * _WORDS, _P + (i + 2) * (_ROW + 2))
-        i += 1
-    renew(e_)
+        doubt_a = i * 40 + 112
+        e_doubt_a = ptr32(int(e) + (doubt_a << 2))
+        doubt_p = (i + 2) * 22 + 702
+        doubt_bound_most = 0
+        doubt_bound_m = e_doubt_a[30]
+        if doubt_bound_m >> 30:
+            doubt_bound_m = -doubt_bound_m
+        if doubt_bound_m > 0:
+            doubt_bound_most = doubt_bound_m
+        doubt_bound_m = e_doubt_a[31]
+        if doubt_bound_m >> 30:
+            doubt_bound_m = -doubt_bound_m
+        if doubt_bound_m > doubt_bound_most:
+            doubt_bound_most = doubt_bound_m
+        doubt_bound_m = e_doubt_a[32]
+        if doubt_bound_m >> 30:
+            doubt_bound_m = -doubt_bound_m
+        if doubt_bound_m > doubt_bound_most:
+            doubt_bound_most = doubt_bound_m
+        doubt_m = (doubt_bound_most >> 3) * e[27]
+        doubt_a = 10 - e_doubt_a[23]
+        e_doubt_a = ptr32(int(e) + (doubt_a << 2))
+        doubt_put_m = doubt_m
+        doubt_put_e = doubt_a
+        if not doubt_put_m:
+            e[590] = 0
+            e[591] = -4096
+        else:
+            while doubt_put_m < 524288 and doubt_put_m >= -524288:
+                doubt_put_m = doubt_put_m << 8
+                doubt_put_e = doubt_put_e - 8
+            while doubt_put_m < 134217728 and doubt_put_m >= -134217728:
+                doubt_put_m = doubt_put_m << 1
+                doubt_put_e = doubt_put_e - 1
+            while doubt_put_m >= 268435456 or doubt_put_m < -268435456:
+                doubt_put_m = doubt_put_m >> 1
+                doubt_put_e = doubt_put_e + 1
+            e[590] = doubt_put_m
+            e[591] = doubt_put_e
+        multiply(e_, doubt_p, 590, 590)
+        i = i + 1
+    e[582] = 0
+    e[588] = 0
+    renew_i = 0
+    while renew_i < e[583]:
+        renew_put_d = 2 * renew_i + 702
+        renew_put_m = 0
+        renew_put_e = 0
+        e[renew_put_d] = 0
+        e[renew_put_d + 1] = -4096
+        renew_put_d = renew_i * 20 + 702
+        renew_put_m = 0
+        renew_put_e = 0
+        e[renew_put_d] = 0
+        e[renew_put_d + 1] = -4096
+        renew_i = renew_i + 1
+    renew_put_m = 1
+    renew_put_e = 24
+    while renew_put_m < 524288 and renew_put_m >= -524288:
+        renew_put_m = renew_put_m << 8
+        renew_put_e = renew_put_e - 8
+    while renew_put_m < 134217728 and renew_put_m >= -134217728:
+        renew_put_m = renew_put_m << 1
+        renew_put_e = renew_put_e - 1
+    while renew_put_m >= 268435456 or renew_put_m < -268435456:
+        renew_put_m = renew_put_m >> 1
+        renew_put_e = renew_put_e + 1
+    e[702] = renew_put_m
+    e[703] = renew_put_e
+    renew_i = 0
+    renew_put_d = 642
+    renew_put_m = 0
+    renew_put_e = 0
+    e[642] = 0
+    e[643] = -4096
+    renew_put_d = 662
+    renew_put_m = 0
+    renew_put_e = 0
+    e[662] = 0
+    e[663] = -4096
+    renew_put_d = 682
+    renew_put_m = 0
+    renew_put_e = 0
+    e[682] = 0
+    e[683] = -4096
+    renew_i = 3

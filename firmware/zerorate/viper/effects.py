@@ -3,132 +3,101 @@
 
 Slots are computed once a tick (1 s) on the means of the tick, one slot a sample, so that no sample
 waits for all of them; what depends on the rate itself is computed for every sample. One array `e`
-holds the model and its running state: see model.py for its words.
-"""
+holds the model and its running state: see model.py for its words."""
 
 import micropython
 
-
-try:
-    from micropython import const
-except ImportError:
-
-    def const(value):
-        return value
-
-
-from .effect_basis import basis, contribute
-from .effect_inputs import accumulate, close_tick, tell_time
-
-_SLOTS = const(0)
-_TICK_US = const(2)
-_ELAPSED_US = const(3)
-_PENDING = const(4)
-_PHASE = const(5)
-_PIECES = const(6)
-_HALF_TICKS = const(7)
-_RUNNING = const(8)
-_INSTANT_SLOTS = const(9)
-_SUM_Q14 = const(10)
-_HELD_Q14 = const(13)
-_NOW_Q14 = const(16)
-
-_SLOT = const(112)
-_WORDS = const(40)
-_INSTANT = const(33)
-_VALUE = const(39)
-
-_EFFECT_Q8 = const(61)
-_MOST_PENDING = const(4096)
-_MOST_TICKS = const(0x1FFFF000)
-
-
-@micropython.viper
-def pass_time(e_, dt_us: int):
-    """Let dt_us go by; where ticks end, take their means and ask for their slots.
-
-    The first sample of a power-on is the beginning of the first tick.
-    """
-    e = ptr32(e_)
-    if e[_RUNNING] == 0:
-        e[_RUNNING] = 1
-        return
-    if dt_us <= 0:
-        return
-    dt_us += e[_ELAPSED_US]
-    if dt_us < e[_TICK_US]:
-        e[_ELAPSED_US] = dt_us
-        return
-    e[_ELAPSED_US] = dt_us % e[_TICK_US]
-    dt_us = e[_PENDING] + dt_us // e[_TICK_US]
-    if dt_us > _MOST_PENDING:
-        e[_HALF_TICKS] += (dt_us - _MOST_PENDING) << 1
-        dt_us = _MOST_PENDING
-    e[_PENDING] = dt_us
-    close_tick(e_)
-
-
-@micropython.viper
-def run_slot(e_):
-    """Compute the next slot of the tick; behind the last one hold the sum until the next tick."""
-    e = ptr32(e_)
-    i = e[_PHASE]
-    if i == 0:
-        tell_time(e_)
-        if e[_HALF_TICKS] < _MOST_TICKS:
-            e[_HALF_TICKS] += 2
-        e[_SUM_Q14] = 0
-        e[_SUM_Q14 + 1] = 0
-        e[_SUM_Q14 + 2] = 0
-    a = _SLOT + i * _WORDS
-    if e[a + _INSTANT] == 0:
-        e[a + _VALUE] = int(basis(e_, a))
-        contribute(e_, a, _SUM_Q14)
-    i += 1
-    if i == e[_SLOTS]:
-        i = 0
-        e[_PENDING] -= 1
-        e[_HELD_Q14] = e[_SUM_Q14]
-        e[_HELD_Q14 + 1] = e[_SUM_Q14 + 1]
-        e[_HELD_Q14 + 2] = e[_SUM_Q14 + 2]
-    e[_PHASE] = i
-
-
-@micropython.viper
-def add_instant(e_):
-    """Add to what is held what the slots of this very sample say."""
-    e = ptr32(e_)
-    a = _SLOT
-    i = e[_SLOTS]
-    while i > 0:
-        if e[a + _INSTANT]:
-            e[a + _VALUE] = int(basis(e_, a))
-            contribute(e_, a, _NOW_Q14)
-        a += _WORDS
-        i -= 1
+from .effect_basis import basis
+from .effect_basis import contribute
+from .effect_inputs import accumulate
+from .effect_inputs import close_tick
 
 
 @micropython.viper
 def sense(s: ptr32, e_, x_, dt_us: int, good: int):
-    """Take the frame x, dt_us after the one before, and leave the effects' sum, LSB Q8, in s.
-
-    good: 0 for a frame that is no reading, of which only the time counts. Call it before the
-    frame is gathered and corrected; do not call it where e[0], the number of slots, is 0.
-    """
     e = ptr32(e_)
-    pass_time(e_, dt_us)
+    pass_time_dt_us = dt_us
+    if not e[8]:
+        e[8] = 1
+    elif pass_time_dt_us <= 0:
+        pass
+    else:
+        pass_time_dt_us = pass_time_dt_us + e[3]
+        if pass_time_dt_us < e[2]:
+            e[3] = pass_time_dt_us
+        else:
+            e[3] = pass_time_dt_us % e[2]
+            pass_time_dt_us = pass_time_dt_us // e[2] + e[4]
+            if pass_time_dt_us > 4096:
+                e[7] = (pass_time_dt_us - 4096 << 1) + e[7]
+                pass_time_dt_us = 4096
+            e[4] = pass_time_dt_us
+            close_tick(e_)
     if good:
         accumulate(e_, x_)
-    dt_us = e[_PIECES]
-    while dt_us > 0 and e[_PENDING] > 0:
-        run_slot(e_)
-        dt_us -= 1
-    e[_NOW_Q14] = e[_HELD_Q14]
-    e[_NOW_Q14 + 1] = e[_HELD_Q14 + 1]
-    e[_NOW_Q14 + 2] = e[_HELD_Q14 + 2]
-    if e[_INSTANT_SLOTS] and good:
-        add_instant(e_)
+        if not e[8] - 1:
+            e[8] = 2
+            e[4] = e[4] + 1
+            close_tick(e_)
+            accumulate(e_, x_)
+    dt_us = e[6]
+    while dt_us > 0 and e[4] > 0:
+        run_slot_i = e[5]
+        if not run_slot_i:
+            run_slot_tell_time_a = 32
+            e_run_slot_tell_time_a = ptr32(int(e) + (run_slot_tell_time_a << 2))
+            run_slot_tell_time_end = 6 * e[1] + 32
+            while run_slot_tell_time_a < run_slot_tell_time_end:
+                if not e_run_slot_tell_time_a[0] - 8:
+                    run_slot_tell_time_shift = e_run_slot_tell_time_a[1]
+                    if e[7] >> run_slot_tell_time_shift > 32767:
+                        e_run_slot_tell_time_a[5] = 8388607
+                    elif run_slot_tell_time_shift > 8:
+                        e_run_slot_tell_time_a[5] = e[7] >> run_slot_tell_time_shift - 8
+                    else:
+                        e_run_slot_tell_time_a[5] = e[7] << 8 - run_slot_tell_time_shift
+                run_slot_tell_time_a = run_slot_tell_time_a + 6
+                e_run_slot_tell_time_a = ptr32(int(e) + (run_slot_tell_time_a << 2))
+            if e[7] < 536866816:
+                e[7] = e[7] + 2
+            e[10] = 0
+            e[11] = 0
+            e[12] = 0
+        run_slot_a = run_slot_i * 40 + 112
+        e_run_slot_a = ptr32(int(e) + (run_slot_a << 2))
+        if not e_run_slot_a[33]:
+            e_run_slot_a[39] = int(basis(e_, run_slot_a))
+            contribute(e_, run_slot_a, 10)
+        run_slot_i = run_slot_i + 1
+        if not run_slot_i - e[0]:
+            run_slot_i = 0
+            e[4] = e[4] - 1
+            if not e[8] - 2:
+                e[8] = 3
+                e[7] = 1
+                run_slot_begin_again_i = e[0]
+                while run_slot_begin_again_i > 0:
+                    run_slot_begin_again_i = run_slot_begin_again_i - 1
+                    e[run_slot_begin_again_i * 40 + 146] = 0
+            e[13] = e[10]
+            e[14] = e[11]
+            e[15] = e[12]
+        e[5] = run_slot_i
+        dt_us = dt_us - 1
+    e[16] = e[13]
+    e[17] = e[14]
+    e[18] = e[15]
+    if e[9] and good:
+        add_instant_a = 112
+        add_instant_i = e[0]
+        while add_instant_i > 0:
+            if e[add_instant_a + 33]:
+                e[add_instant_a + 39] = int(basis(e_, add_instant_a))
+                contribute(e_, add_instant_a, 16)
+            add_instant_a = add_instant_a + 40
+            add_instant_i = add_instant_i - 1
     dt_us = 0
-    while dt_us < 3:
-        s[_EFFECT_Q8 + dt_us] = (e[_NOW_Q14 + dt_us] + 32) >> 6
-        dt_us += 1
+    s[61] = e[16] + 32 >> 6
+    s[62] = e[17] + 32 >> 6
+    s[63] = e[18] + 32 >> 6
+    dt_us = 3

@@ -4,122 +4,24 @@
 import micropython
 
 
-try:
-    from micropython import const
-except ImportError:
-
-    def const(value):
-        return value
-
-
-_LOW = const(0x7FFF)
-
-
 @micropython.viper
 def scaled(a: int, b: int, shift: int) -> int:
-    """Return (a * b) >> shift for |a|, |b| < 2^28 and shift 15..30, to within one unit."""
     high = b >> 15
-    b = b & _LOW
-    middle = (a >> 15) * b + (a & _LOW) * high + (((a & _LOW) * b) >> 15)
+    b = b & 32767
+    middle = (a >> 15) * b + (a & 32767) * high + ((a & 32767) * b >> 15)
     high = (a >> 15) * high
-    return (high << (30 - shift)) + (middle >> (shift - 15))
-
-
-@micropython.viper
-def fraction_q27(a: int, b: int) -> int:
-    """Return a / b in Q27 for 0 <= a <= b < 2^20, b > 0."""
-    q = 0
-    i = 0
-    while i < 3:
-        a = a << 9
-        q = (q << 9) + a // b
-        a = a % b
-        i += 1
-    return q
-
-
-@micropython.viper
-def ratio_q26(a: int, b: int) -> int:
-    """Return a / b in Q26, saturated at +-4, for |a| < 2^28 and 0 <= b < 2^28; 0 where b is 0."""
-    sign = 1
-    if a < 0:
-        a = -a
-        sign = -1
-    if b == 0:
-        return 0
-    if a >> 2 >= b:
-        return sign * 0xFFFFFFF
-    q = a // b
-    a = a % b
-    i = 0
-    while i < 26:
-        a = a << 1
-        q = q << 1
-        if a >= b:
-            a -= b
-            q += 1
-        i += 1
-    return sign * q
-
-
-@micropython.viper
-def room(value: int) -> int:
-    """Return by how much |value| < 2^30 can be shifted left until it fills 27 bits; 27 for 0."""
-    if value < 0:
-        value = 0 - value
-    shift = 0
-    if value == 0:
-        return 27
-    if value < 0x800:
-        value = value << 16
-        shift = 16
-    if value < 0x80000:
-        value = value << 8
-        shift += 8
-    if value < 0x800000:
-        value = value << 4
-        shift += 4
-    if value < 0x2000000:
-        value = value << 2
-        shift += 2
-    if value < 0x4000000:
-        shift += 1
-    return shift
-
-
-@micropython.viper
-def floating_ratio_q26(a: int, b: int, exponent: int) -> int:
-    """Return a / b * 2^exponent in Q26, saturated at +-4, for |a|, b < 2^30; 0 where b is 0."""
-    if a == 0 or b <= 0:
-        return 0
-    while a > 0x7FFFFFF or a < -0x7FFFFFF:
-        a = a >> 1
-        exponent += 1
-    while b > 0x7FFFFFF:
-        b = b >> 1
-        exponent -= 1
-    shift = int(room(a))
-    a = a << shift
-    exponent -= shift
-    shift = int(room(b))
-    b = b << shift
-    exponent += shift
-    a = int(ratio_q26(a, b))
-    while exponent > 0:
-        if a > 0x7FFFFFF or a < -0x7FFFFFF:
-            return 0xFFFFFFF if a > 0 else -0xFFFFFFF
-        a = a << 1
-        exponent -= 1
-    return a >> (0 - exponent if exponent > -30 else 30)
+    return (high << 30 - shift) + (middle >> shift - 15)
 
 
 @micropython.viper
 def root(square: int) -> int:
-    """Return the integer square root of 0 <= square < 2^30."""
-    bit = 1 << 14
+    bit = 16384
+    if square < 16777216:
+        bit = 2048
     found = 0
     while bit:
-        if (found + bit) * (found + bit) <= square:
-            found += bit
+        more = found + bit
+        if more * more <= square:
+            found = more
         bit = bit >> 1
     return found

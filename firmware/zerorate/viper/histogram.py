@@ -4,138 +4,50 @@
 import micropython
 
 
-# Document 000: "represents a plurality of gyroscope readings ... in a histogram", bin significance,
-# "adapting bin widths". A histogram at word `h` of the state is
-#
-#     h .. h+bins           lower edge << 14 | population, the last one the upper edge of all
-#     h+bins+1 .. h+2*bins  sum of the readings of each bin, LSB
-#
-# `readings` may come one by one (weight 1) or as the sum of `weight` readings of a still stretch.
-
-try:
-    from micropython import const
-except ImportError:
-
-    def const(value):
-        return value
-
-
-_MOST = const(0x3FFF)
-_SCRATCH = const(7)
-
-_BINS = const(16)
-_LOW_LSB = const(17)
-_WIDTH_LSB = const(18)
-_NARROWEST_LSB = const(19)
-_RATIO = const(20)
-_LITERAL = const(21)
-_IGNORE_OUTSIDE = const(22)
-_ENOUGH = const(23)
-_EVERY = const(46)
-
-
 @micropython.viper
 def clear(s: ptr32, c: ptr32, h: int, middle: int):
-    """Make all bins equal and empty, about `middle`; about 0 where moving readings come as well."""
     i = 0
-    if c[_EVERY]:
+    if c[46]:
         middle = 0
-    while i <= c[_BINS]:
-        s[h + i] = (middle + c[_LOW_LSB] + i * c[_WIDTH_LSB]) << 14
-        i += 1
-    while i <= c[_BINS] + c[_BINS]:
+    while i <= c[16]:
+        s[h + i] = middle + c[17] + i * c[18] << 14
+        i = i + 1
+    while i <= c[16] + c[16]:
         s[h + i] = 0
-        i += 1
-
-
-@micropython.viper
-def population(s: ptr32, h: int, bins: int) -> int:
-    """Return the number of readings that the histogram stands for."""
-    count = 0
-    while bins > 0:
-        bins -= 1
-        count += s[h + bins] & _MOST
-    return count
+        i = i + 1
 
 
 @micropython.viper
 def halve(s: ptr32, h: int, bins: int):
-    """Halve every population; each bin keeps its mean, whatever the halving rounds away."""
     i = 0
     while i < bins:
-        count = s[h + i] & _MOST
+        count = s[h + i] & 16383
         if count:
             total = s[h + bins + 1 + i]
             rest = total % count
-            total = total // count * (count >> 1) + rest * (count >> 1) // count
+            total = total // count * (count >> 1) + (count >> 1) * rest // count
             s[h + bins + 1 + i] = total
-            count = s[h + i] - ((count + 1) >> 1)
+            count = s[h + i] - (count + 1 >> 1)
             s[h + i] = count
-        i += 1
-
-
-@micropython.viper
-def place(s: ptr32, c: ptr32, h: int, reading: int) -> int:
-    """Return the bin of `reading`, or -1 if it is outside and readings outside are ignored."""
-    k = c[_BINS]
-    if reading < (s[h] >> 14):
-        if c[_IGNORE_OUTSIDE]:
-            return -1
-        s[h] = (reading << 14) + (s[h] & _MOST)
-    elif reading >= (s[h + k] >> 14):
-        if c[_IGNORE_OUTSIDE]:
-            return -1
-        s[h + k] = (reading + 1) << 14
-    k -= 1
-    while reading < (s[h + k] >> 14):
-        k -= 1
-    return k
-
-
-@micropython.viper
-def merge(s: ptr32, h: int, bins: int, p: int):
-    """Join the bins p and p+1 and close the gap; the last bin's place is free then."""
-    s[h + p] += s[h + p + 1] & _MOST
-    s[h + bins + 1 + p] += s[h + bins + 2 + p]
-    p += 1
-    while p < bins:
-        s[h + p] = s[h + p + 1]
-        if p < bins - 1:
-            s[h + bins + 1 + p] = s[h + bins + 2 + p]
-        p += 1
-
-
-@micropython.viper
-def open_gap(s: ptr32, h: int, bins: int, j: int):
-    """Move the bins above j one place up; bin j's halves share its place and the free one."""
-    k = bins
-    while k > j:
-        s[h + k] = s[h + k - 1]
-        if k > j + 1:
-            s[h + bins + k] = s[h + bins + k - 1]
-        k -= 1
-    width = (s[h + j + 2] >> 14) - (s[h + j] >> 14)
-    s[h + j + 1] = ((s[h + j] >> 14) + (width >> 1)) << 14
+        i = i + 1
 
 
 @micropython.viper
 def share_evenly(s: ptr32, h: int, bins: int, j: int):
-    """Give the upper half of a split bin j half of its population and of its sum (the document)."""
-    count = s[h + j] & _MOST
+    count = s[h + j] & 16383
     total = s[h + bins + 1 + j]
     upper = count >> 1
     s[h + j] -= upper
     s[h + j + 1] += upper
     if count:
-        upper = (total // count) * upper + (total % count) * upper // count
+        upper = total // count * upper + total % count * upper // count
     s[h + bins + 2 + j] = upper
     s[h + bins + 1 + j] = total - upper
 
 
 @micropython.viper
 def share_by_mean(s: ptr32, h: int, bins: int, j: int):
-    """Give all that a split bin j held to the half that holds its mean, which it so keeps."""
-    count = s[h + j] & _MOST
+    count = s[h + j] & 16383
     total = s[h + bins + 1 + j]
     if total >= (s[h + j + 1] >> 14) * count:
         s[h + j] -= count
@@ -147,151 +59,118 @@ def share_by_mean(s: ptr32, h: int, bins: int, j: int):
 
 
 @micropython.viper
-def emptiest(s: ptr32, c: ptr32, h: int, j: int) -> int:
-    """Return the lower bin of the emptiest adjacent pair without bin j.
-
-    By the document the pair with the fewest readings, else the one with the lowest significance.
-    """
-    s[_SCRATCH] = 0x3FFFFFFF
-    found = 0
-    i = h
-    while i < h + c[_BINS] - 1:
-        if i != h + j and i + 1 != h + j:
-            count = s[i] & _MOST
-            count += s[i + 1] & _MOST
-            if c[_LITERAL] == 0:
-                count = (count << 12) // ((s[i + 2] >> 14) - (s[i] >> 14))
-            if count < s[_SCRATCH]:
-                s[_SCRATCH] = count
-                found = i - h
-        i += 1
-    return found
-
-
-@micropython.viper
-def fullest(s: ptr32, h: int, bins: int) -> int:
-    """Return the bin with the largest population."""
-    j = 0
-    while bins > 0:
-        bins -= 1
-        if (s[h + bins] & _MOST) >= (s[h + j] & _MOST):
-            j = bins
-    return j
-
-
-@micropython.viper
-def crowded(s: ptr32, c: ptr32, h: int, j: int, p: int) -> int:
-    """Return 1 if bin j is full enough beside the emptiest pair p to be split, else 0."""
-    j += h
-    p += h
-    count = s[j] & _MOST
-    pair = (s[p] & _MOST) + (s[p + 1] & _MOST)
-    if c[_LITERAL] == 0:
-        if count < c[_ENOUGH]:
-            return 0
-        count = (count << 12) // ((s[j + 1] >> 14) - (s[j] >> 14))
-        pair = (pair << 12) // ((s[p + 2] >> 14) - (s[p] >> 14))
-    if count > c[_RATIO] * pair:
-        return 1
-    return 0
-
-
-@micropython.viper
-def recentre(s: ptr32, c: ptr32, h: int, k: int) -> int:
-    """Slide the narrow bin k under its mean, so that what it cuts off it cuts off evenly.
-
-    Returns 1 if it moved. A mean in the middle of a bin much wider than the noise is unbiased;
-    that of a bin that cuts the noise on one side is not. No reading changes its bin.
-    """
-    if k == 0 or k == c[_BINS] - 1:
-        return 0
-    by = s[h + k + 1 + c[_BINS]]
-    h += k
-    width = (s[h + 1] >> 14) - (s[h] >> 14)
-    k = s[h] & _MOST
-    if k < c[_ENOUGH] or width >= 4 * c[_NARROWEST_LSB]:
-        return 0
-    by = by // k - (s[h] >> 14) - (width >> 1)
-    if by < (width >> 4) and by > -(width >> 4):
-        return 0
-    if (s[h] >> 14) + by <= (s[h - 1] >> 14) or (s[h + 1] >> 14) + by >= (s[h + 2] >> 14):
-        return 0
-    s[h] += by << 14
-    s[h + 1] += by << 14
-    return 1
-
-
-@micropython.viper
-def adapt(s_, c_, h: int, k: int) -> int:
-    """Split the bin that crowds (by the document the fullest, else k) and merge the emptiest pair.
-
-    Returns 1 if the edges changed.
-    """
+def adapt(s_, c: ptr32, h: int, k: int) -> int:
     s = ptr32(s_)
-    c = ptr32(c_)
-    if c[_LITERAL]:
-        k = int(fullest(s_, h, c[_BINS]))
-    elif int(recentre(s_, c_, h, k)):
-        halve(s_, h, c[_BINS])
-        return 1
-    if (s[h + k + 1] >> 14) - (s[h + k] >> 14) < 2 * c[_NARROWEST_LSB]:
-        return 0
-    pair = int(emptiest(s_, c_, h, k))
-    if int(crowded(s_, c_, h, k, pair)) == 0:
-        return 0
-    merge(s_, h, c[_BINS], pair)
-    if pair < k:
-        k -= 1
-    open_gap(s_, h, c[_BINS], k)
-    if c[_LITERAL]:
-        share_evenly(s_, h, c[_BINS], k)
+    if c[21]:
+        fullest_bins = c[16]
+        fullest_j = 0
+        while fullest_bins > 0:
+            fullest_bins = fullest_bins - 1
+            if s[h + fullest_bins] & 16383 >= s[h + fullest_j] & 16383:
+                fullest_j = fullest_bins
+        k = fullest_j
     else:
-        share_by_mean(s_, h, c[_BINS], k)
-        halve(s_, h, c[_BINS])
-    return 1
-
-
-@micropython.viper
-def add(s_, c_, h: int, a: int) -> int:
-    """Add the readings that wait at word `a`: their sum, then how many they are.
-
-    Returns 1, or 0 if they were ignored.
-    """
-    s = ptr32(s_)
-    c = ptr32(c_)
-    k = s[a] // s[a + 1]
-    k = int(place(s_, c_, h, k))
-    if k < 0:
+        recentre_h = h
+        s_recentre_h = ptr32(int(s) + (recentre_h << 2))
+        recentre_k = k
+        if not recentre_k or not recentre_k - (c[16] - 1):
+            recentre_result = 0
+        else:
+            recentre_by = s[recentre_h + recentre_k + 1 + c[16]]
+            recentre_h = recentre_h + recentre_k
+            s_recentre_h = ptr32(int(s) + (recentre_h << 2))
+            recentre_width = (s_recentre_h[1] >> 14) - (s_recentre_h[0] >> 14)
+            recentre_k = s_recentre_h[0] & 16383
+            if recentre_k < c[23] or recentre_width >= 4 * c[19]:
+                recentre_result = 0
+            else:
+                recentre_by = recentre_by // recentre_k - (s_recentre_h[0] >> 14) - (recentre_width >> 1)
+                if recentre_by < recentre_width >> 4 and recentre_by > -(recentre_width >> 4):
+                    recentre_result = 0
+                elif (s_recentre_h[0] >> 14) + recentre_by <= s[recentre_h - 1] >> 14 or (s_recentre_h[1] >> 14) + recentre_by >= s_recentre_h[2] >> 14:
+                    recentre_result = 0
+                else:
+                    s_recentre_h[0] = (recentre_by << 14) + s_recentre_h[0]
+                    s_recentre_h[1] = (recentre_by << 14) + s_recentre_h[1]
+                    recentre_result = 1
+        if recentre_result:
+            halve_bins = c[16]
+            halve_i = 0
+            while halve_i < halve_bins:
+                halve_count = s[h + halve_i] & 16383
+                if halve_count:
+                    halve_total = s[h + halve_bins + 1 + halve_i]
+                    halve_rest = halve_total % halve_count
+                    halve_total = halve_total // halve_count * (halve_count >> 1) + (halve_count >> 1) * halve_rest // halve_count
+                    s[h + halve_bins + 1 + halve_i] = halve_total
+                    halve_count = s[h + halve_i] - (halve_count + 1 >> 1)
+                    s[h + halve_i] = halve_count
+                halve_i = halve_i + 1
+            return 1
+    if (s[h + k + 1] >> 14) - (s[h + k] >> 14) < 2 * c[19]:
         return 0
-    while (s[h + k] & _MOST) + s[a + 1] > _MOST:
-        halve(s_, h, c[_BINS])
-    s[h + k] += s[a + 1]
-    s[h + k + 1 + c[_BINS]] += s[a]
-    adapt(s_, c_, h, k)
-    return 1
-
-
-@micropython.viper
-def most_significant(s: ptr32, h: int, bins: int) -> int:
-    """Return the bin with the largest population for its width."""
-    best = h
-    i = h + 1
-    while i < h + bins:
-        # cross-multiplied: 2^14 readings x 2^16 LSB stay below 2^30
-        mine = (s[i] & _MOST) * ((s[best + 1] >> 14) - (s[best] >> 14))
-        if mine > (s[best] & _MOST) * ((s[i + 1] >> 14) - (s[i] >> 14)):
-            best = i
-        i += 1
-    return best - h
-
-
-@micropython.viper
-def read_out_q8(s_, h: int, bins: int) -> int:
-    """Return the mean of the most significant bin in LSB, Q8; 0 where the histogram is empty."""
-    s = ptr32(s_)
-    k = int(most_significant(s_, h, bins))
-    count = s[h + k] & _MOST
-    if count == 0:
+    s[7] = 1073741823
+    emptiest_found = 0
+    emptiest_i = h
+    s_emptiest_i = ptr32(int(s) + (emptiest_i << 2))
+    while emptiest_i < h + c[16] - 1:
+        if emptiest_i - (h + k) and emptiest_i + 1 - (h + k):
+            emptiest_count = s_emptiest_i[0] & 16383
+            emptiest_count = (s_emptiest_i[1] & 16383) + emptiest_count
+            if not c[21]:
+                emptiest_count = (emptiest_count << 12) // ((s_emptiest_i[2] >> 14) - (s_emptiest_i[0] >> 14))
+            if emptiest_count < s[7]:
+                s[7] = emptiest_count
+                emptiest_found = emptiest_i - h
+        emptiest_i = emptiest_i + 1
+        s_emptiest_i = ptr32(int(s) + (emptiest_i << 2))
+    pair = emptiest_found
+    crowded_j = k
+    crowded_p = pair
+    s_crowded_p = ptr32(int(s) + (crowded_p << 2))
+    while True:
+        crowded_j = crowded_j + h
+        crowded_p = crowded_p + h
+        s_crowded_p = ptr32(int(s) + (crowded_p << 2))
+        crowded_count = s[crowded_j] & 16383
+        crowded_pair = (s_crowded_p[0] & 16383) + (s_crowded_p[1] & 16383)
+        if not c[21]:
+            if crowded_count < c[23]:
+                crowded_result = 0
+                break
+            crowded_count = (crowded_count << 12) // ((s[crowded_j + 1] >> 14) - (s[crowded_j] >> 14))
+            crowded_pair = (crowded_pair << 12) // ((s_crowded_p[2] >> 14) - (s_crowded_p[0] >> 14))
+        if crowded_count > c[20] * crowded_pair:
+            crowded_result = 1
+            break
+        crowded_result = 0
+        break
+    if not crowded_result:
         return 0
-    total = s[h + bins + 1 + k]
-    return ((total // count) << 8) + ((total % count) << 8) // count
+    merge_bins = c[16]
+    merge_p = pair
+    s[h + merge_p] += s[h + merge_p + 1] & 16383
+    s[h + merge_bins + 1 + merge_p] += s[h + merge_bins + 2 + merge_p]
+    merge_p = merge_p + 1
+    while merge_p < merge_bins:
+        s[h + merge_p] = s[h + merge_p + 1]
+        if merge_p < merge_bins - 1:
+            s[h + merge_bins + 1 + merge_p] = s[h + merge_bins + 2 + merge_p]
+        merge_p = merge_p + 1
+    if pair < k:
+        k = k - 1
+    open_gap_bins = c[16]
+    open_gap_k = open_gap_bins
+    while open_gap_k > k:
+        s[h + open_gap_k] = s[h + open_gap_k - 1]
+        if open_gap_k > k + 1:
+            s[h + open_gap_bins + open_gap_k] = s[h + open_gap_bins + open_gap_k - 1]
+        open_gap_k = open_gap_k - 1
+    open_gap_width = (s[h + k + 2] >> 14) - (s[h + k] >> 14)
+    s[h + k + 1] = (s[h + k] >> 14) + (open_gap_width >> 1) << 14
+    if c[21]:
+        share_evenly(s_, h, c[16], k)
+    else:
+        share_by_mean(s_, h, c[16], k)
+        halve(s_, h, c[16])
+    return 1

@@ -2,348 +2,708 @@
 """The window's normal equations: prior, weights, solution and its covariance.
 
 Ten real numbers at _G: the upper triangle of a 3 x 3 matrix with a right-hand side as its fourth
-column (00 01 02 0y 11 12 1y 22 2y yy). Bias in Q24 rad a node, orientation in Q12 rad.
-"""
+column (00 01 02 0y 11 12 1y 22 2y yy). Bias in Q24 rad a node, orientation in Q12 rad."""
 
 import micropython
 
-
-try:
-    from micropython import const
-except ImportError:
-
-    def const(value):
-        return value
-
-
-from .real import add, copy, divide, multiply, put, subtract
-
-_STAGE = const(12)
-_SUMS = const(85)
-_G = const(33)
-_P = const(148)
-_PRIOR = const(160)
-_PRIOR_MEAN = const(172)
-_BIAS = const(178)
-_D = const(184)
-_HOLD = const(190)
-_OMEGA = const(196)
-_T = const(202)
-_T1 = const(204)
-_T2 = const(206)
-_T3 = const(208)
-_ENERGY = const(222)
-
-_WALK = const(12)
-_SPREAD = const(21)
-
-# .005 and .01 rad, and .7 rad a window: beyond that a step is not linear
-_FLOOR_TILT_Q24 = const(419)
-_FLOOR_HEADING_Q24 = const(1678)
-_LIMIT_Q24 = const(11744051)
+from .real import add_smaller
+from .real import divide
+from .real import multiply
+from .real import subtract
 
 
 @micropython.viper
 def place(i: int, j: int) -> int:
-    """Return the word of element i, j of the matrix at _G; i and j 0..3."""
     if i > j:
-        return _G + 2 * (4 * j - ((j * (j + 1)) >> 1) + i)
-    return _G + 2 * (4 * i - ((i * (i + 1)) >> 1) + j)
+        return (4 * j - ((j + 1) * j >> 1) + i) * 2 + 33
+    return (4 * i - ((i + 1) * i >> 1) + j) * 2 + 33
 
 
 @micropython.viper
 def element(s_, d: int, h: int, e: int):
-    """Store at d the number at _T plus the sums of three components at word h, by their weights.
-
-    e: the exponent of those sums.
-    """
     s = ptr32(s_)
     i = 0
     while i < 6:
-        put(s_, _T1, s[h], e)
-        multiply(s_, _T1, _T1, _OMEGA + i)
-        add(s_, _T, _T, _T1)
-        h += 21
-        i += 2
-    copy(s_, d, _T, 2)
-
-
-@micropython.viper
-def matrix_element(s_, n: int):
-    """Build element n of six of the matrix, in the order of the sums and the prior."""
-    s = ptr32(s_)
-    i = 0
-    j = n
-    while j > 2:
-        i += 1
-        j -= 3 - i
-    j = int(int(place(i, j)))
-    copy(s_, _T, _PRIOR + 2 * n, 2)
-    i = 2 * s[_STAGE] - 42
-    element(s_, j, _SUMS + n, i)
-
-
-@micropython.viper
-def right_side(s_, i: int):
-    """Build the right-hand side's element i: the slopes, and the prior's pull to its mean."""
-    s = ptr32(s_)
-    d = int(int(place(i, 3)))
-    j = s[_STAGE] - 16
-    put(s_, _T, 0, 0)
-    element(s_, d, _SUMS + 6 + i, j)
-    j = 0
-    while j < 3:
-        subtract(s_, _T1, _PRIOR_MEAN + 2 * j, _BIAS + 2 * j)
-        multiply_by_prior(s_, int(int(prior_place(i, j))))
-        add(s_, d, d, _T1)
-        j += 1
-    put(s_, _G + 18, 0, 0)
-
-
-@micropython.viper
-def multiply_by_prior(s_, a: int):
-    """Multiply the number at _T1 by the prior's number at a."""
-    multiply(s_, _T1, _T1, a)
+        put_m = s[h]
+        put_e = e
+        if not put_m:
+            s[204] = 0
+            s[205] = -4096
+        else:
+            while put_m < 524288 and put_m >= -524288:
+                put_m = put_m << 8
+                put_e = put_e - 8
+            while put_m < 134217728 and put_m >= -134217728:
+                put_m = put_m << 1
+                put_e = put_e - 1
+            while put_m >= 268435456 or put_m < -268435456:
+                put_m = put_m >> 1
+                put_e = put_e + 1
+            s[204] = put_m
+            s[205] = put_e
+        multiply(s_, 204, 204, i + 196)
+        if s[203] < s[205]:
+            add_smaller(s_, 202, 204, 202)
+        else:
+            add_smaller(s_, 202, 202, 204)
+        h = h + 21
+        i = i + 2
+    real_copy_words = 2
+    while real_copy_words > 0:
+        real_copy_words = real_copy_words - 1
+        s[d + real_copy_words] = s[real_copy_words + 202]
 
 
 @micropython.viper
 def prior_place(i: int, j: int) -> int:
-    """Return the word of element i, j of the prior's six numbers."""
     if i > j:
-        return _PRIOR + 2 * (3 * j - ((j * (j + 1)) >> 1) + i)
-    return _PRIOR + 2 * (3 * i - ((i * (i + 1)) >> 1) + j)
+        return (3 * j - ((j + 1) * j >> 1) + i) * 2 + 160
+    return (3 * i - ((i + 1) * i >> 1) + j) * 2 + 160
 
 
 @micropython.viper
 def sweep(s_, k: int):
-    """Sweep the matrix on pivot k.
-
-    After pivots 0, 1, 2 it holds the negative inverse and, in its fourth column, the solution
-    (Beaton's operator; stable for a positive definite matrix).
-    """
     s = ptr32(s_)
-    d = int(int(place(k, k)))
-    put(s_, _T, 1, 0)
-    divide(s_, _T, _T, d)
+    if k > k:
+        d = (4 * k - ((k + 1) * k >> 1) + k) * 2 + 33
+    else:
+        d = (4 * k - ((k + 1) * k >> 1) + k) * 2 + 33
+    put_m = 1
+    put_e = 0
+    if not put_m:
+        s[202] = 0
+        s[202 + 1] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s[202] = put_m
+        s[202 + 1] = put_e
+    divide(s_, 202, 202, d)
     i = 0
     while i < 4:
-        if i != k:
-            sweep_row(s_, k, i)
-        i += 1
+        if i - k:
+            if i > k:
+                sweep_row_d = (4 * k - ((k + 1) * k >> 1) + i) * 2 + 33
+            else:
+                sweep_row_d = (4 * i - ((i + 1) * i >> 1) + k) * 2 + 33
+            multiply(s_, 204, sweep_row_d, 202)
+            sweep_row_j = i
+            while sweep_row_j < 4:
+                if sweep_row_j - k:
+                    if k > sweep_row_j:
+                        sweep_row_d = (4 * sweep_row_j - ((sweep_row_j + 1) * sweep_row_j >> 1) + k) * 2 + 33
+                    else:
+                        sweep_row_d = (4 * k - ((k + 1) * k >> 1) + sweep_row_j) * 2 + 33
+                    multiply(s_, 206, 204, sweep_row_d)
+                    if i > sweep_row_j:
+                        sweep_row_d = (4 * sweep_row_j - ((sweep_row_j + 1) * sweep_row_j >> 1) + i) * 2 + 33
+                    else:
+                        sweep_row_d = (4 * i - ((i + 1) * i >> 1) + sweep_row_j) * 2 + 33
+                    subtract(s_, 208, sweep_row_d, 206)
+                    sweep_row_real_copy_words = 2
+                    while sweep_row_real_copy_words > 0:
+                        sweep_row_real_copy_words = sweep_row_real_copy_words - 1
+                        s[sweep_row_d + sweep_row_real_copy_words] = s[208 + sweep_row_real_copy_words]
+                sweep_row_j = sweep_row_j + 1
+        i = i + 1
     i = 0
     while i < 4:
-        if i != k:
-            d = int(int(place(i, k)))
-            multiply(s_, d, d, _T)
-        i += 1
-    d = int(int(place(k, k)))
-    put(s_, d, -s[_T], s[_T + 1])
+        if i - k:
+            if i > k:
+                d = (4 * k - ((k + 1) * k >> 1) + i) * 2 + 33
+            else:
+                d = (4 * i - ((i + 1) * i >> 1) + k) * 2 + 33
+            multiply(s_, d, d, 202)
+        i = i + 1
+    if k > k:
+        d = (4 * k - ((k + 1) * k >> 1) + k) * 2 + 33
+    else:
+        d = (4 * k - ((k + 1) * k >> 1) + k) * 2 + 33
+    put_m = -s[202]
+    put_e = s[202 + 1]
+    if not put_m:
+        s[d] = 0
+        s[d + 1] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s[d] = put_m
+        s[d + 1] = put_e
 
 
 @micropython.viper
-def sweep_row(s_, k: int, i: int):
-    """Take the pivot's row from row i, from the diagonal on; _T holds one over the pivot."""
-    d = int(int(place(i, k)))
-    multiply(s_, _T1, d, _T)
-    j = i
-    while j < 4:
-        if j != k:
-            d = int(int(place(k, j)))
-            multiply(s_, _T2, _T1, d)
-            d = int(int(place(i, j)))
-            subtract(s_, _T3, d, _T2)
-            copy(s_, d, _T3, 2)
-        j += 1
+def covariance(s: ptr32, d: int):
+    s_d = ptr32(int(s) + (d << 2))
+    a = 33
+    put_m = -s[33]
+    put_e = s[34]
+    if not put_m:
+        s_d[0] = 0
+        s_d[1] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s_d[0] = put_m
+        s_d[1] = put_e
+    d = d + 2
+    s_d = ptr32(int(s) + (d << 2))
+    a = a + 2
+    put_m = -s[a]
+    put_e = s[a + 1]
+    if not put_m:
+        s_d[0] = 0
+        s_d[1] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s_d[0] = put_m
+        s_d[1] = put_e
+    d = d + 2
+    s_d = ptr32(int(s) + (d << 2))
+    a = a + 2
+    put_m = -s[a]
+    put_e = s[a + 1]
+    if not put_m:
+        s_d[0] = 0
+        s_d[1] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s_d[0] = put_m
+        s_d[1] = put_e
+    d = d + 2
+    s_d = ptr32(int(s) + (d << 2))
+    a = a + 2
+    a = a + 2
+    put_m = -s[a]
+    put_e = s[a + 1]
+    if not put_m:
+        s_d[0] = 0
+        s_d[1] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s_d[0] = put_m
+        s_d[1] = put_e
+    d = d + 2
+    s_d = ptr32(int(s) + (d << 2))
+    a = a + 2
+    put_m = -s[a]
+    put_e = s[a + 1]
+    if not put_m:
+        s_d[0] = 0
+        s_d[1] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s_d[0] = put_m
+        s_d[1] = put_e
+    d = d + 2
+    s_d = ptr32(int(s) + (d << 2))
+    a = a + 2
+    a = a + 2
+    put_m = -s[a]
+    put_e = s[a + 1]
+    if not put_m:
+        s_d[0] = 0
+        s_d[1] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s_d[0] = put_m
+        s_d[1] = put_e
+    d = d + 2
+    s_d = ptr32(int(s) + (d << 2))
+    a = a + 2
 
 
 @micropython.viper
-def covariance(s_, d: int):
-    """Store the negative of the six numbers of the swept matrix at d."""
-    s = ptr32(s_)
-    a = _G
+def spread_prior(s: ptr32):
     i = 0
-    while i < 6:
-        if i == 3 or i == 5:
-            a += 2
-        put(s_, d, -s[a], s[a + 1])
-        d += 2
-        a += 2
-        i += 1
-
-
-@micropython.viper
-def spread_prior(s_, c: ptr32, nodes: int):
-    """Put the covariance, grown by the bias' random walk over so many nodes, into the matrix."""
-    i = 0
-    d = _G
+    d = 33
     while i < 20:
-        put(s_, _G + i, 0, 0)
-        i += 2
+        put_d = i + 33
+        s_put_d = ptr32(int(s) + (put_d << 2))
+        s_put_d[0] = 0
+        s_put_d[1] = -4096
+        i = i + 2
     i = 0
-    while i < 6:
-        if i == 3 or i == 5:
-            d += 2
-        copy(s_, d, _P + 2 * i, 2)
-        d += 2
-        i += 1
-    put(s_, _T, c[_WALK], c[_WALK + 1])
-    put(s_, _T1, nodes, 0)
-    multiply(s_, _T, _T, _T1)
-    i = 0
-    while i < 3:
-        d = int(int(place(i, i)))
-        add(s_, d, d, _T)
-        i += 1
-
-
-@micropython.viper
-def magnitude(s_, a: int):
-    """Make the number at a positive."""
-    s = ptr32(s_)
-    if s[a] < 0:
-        put(s_, a, -s[a], s[a + 1])
-
-
-@micropython.viper
-def less(s_, a: int, b: int) -> int:
-    """Return 1 if the number at a is less than the one at b, else 0; uses _T3."""
-    s = ptr32(s_)
-    subtract(s_, _T3, a, b)
-    if s[_T3] < 0:
-        return 1
-    return 0
+    real_copy_words = 2
+    while real_copy_words > 0:
+        real_copy_words = real_copy_words - 1
+        s[real_copy_words + 33] = s[real_copy_words + 148]
+    d = d + 2
+    real_copy_words = 2
+    while real_copy_words > 0:
+        real_copy_words = real_copy_words - 1
+        s[d + real_copy_words] = s[real_copy_words + 150]
+    d = d + 2
+    real_copy_words = 2
+    while real_copy_words > 0:
+        real_copy_words = real_copy_words - 1
+        s[d + real_copy_words] = s[real_copy_words + 152]
+    d = d + 2
+    d = d + 2
+    real_copy_words = 2
+    while real_copy_words > 0:
+        real_copy_words = real_copy_words - 1
+        s[d + real_copy_words] = s[real_copy_words + 154]
+    d = d + 2
+    real_copy_words = 2
+    while real_copy_words > 0:
+        real_copy_words = real_copy_words - 1
+        s[d + real_copy_words] = s[real_copy_words + 156]
+    d = d + 2
+    d = d + 2
+    real_copy_words = 2
+    while real_copy_words > 0:
+        real_copy_words = real_copy_words - 1
+        s[d + real_copy_words] = s[real_copy_words + 158]
+    d = d + 2
+    i = 6
 
 
 @micropython.viper
 def step(s_):
-    """Take the solution as this pass' slope at _D, no longer than the step that stays linear."""
     s = ptr32(s_)
-    i = -s[_STAGE]
-    put(s_, _T, _LIMIT_Q24, i)
-    copy(s_, _T1, _T, 2)
+    i = -s[12]
+    put_m = 11744051
+    put_e = i
+    while put_m < 524288 and put_m >= -524288:
+        put_m = put_m << 8
+        put_e = put_e - 8
+    while put_m < 134217728 and put_m >= -134217728:
+        put_m = put_m << 1
+        put_e = put_e - 1
+    while put_m >= 268435456 or put_m < -268435456:
+        put_m = put_m >> 1
+        put_e = put_e + 1
+    s[202] = put_m
+    s[203] = put_e
+    real_copy_words = 2
+    while real_copy_words > 0:
+        real_copy_words = real_copy_words - 1
+        s[real_copy_words + 204] = s[real_copy_words + 202]
     i = 0
-    while i < 3:
-        d = int(int(place(i, 3)))
-        copy(s_, _D + 2 * i, d, 2)
-        copy(s_, _T2, d, 2)
-        magnitude(s_, _T2)
-        if int(int(less(s_, _T1, _T2))):
-            copy(s_, _T1, _T2, 2)
-        i += 1
-    divide(s_, _T, _T, _T1)
+    real_copy_words = 2
+    while real_copy_words > 0:
+        real_copy_words = real_copy_words - 1
+        s[real_copy_words + 184] = s[real_copy_words + 39]
+    real_copy_words = 2
+    while real_copy_words > 0:
+        real_copy_words = real_copy_words - 1
+        s[real_copy_words + 206] = s[real_copy_words + 39]
+    if s[206] >> 30:
+        magnitude_put_m = -s[206]
+        magnitude_put_e = s[207]
+        if not magnitude_put_m:
+            s[206] = 0
+            s[207] = -4096
+        else:
+            while magnitude_put_m < 524288 and magnitude_put_m >= -524288:
+                magnitude_put_m = magnitude_put_m << 8
+                magnitude_put_e = magnitude_put_e - 8
+            while magnitude_put_m < 134217728 and magnitude_put_m >= -134217728:
+                magnitude_put_m = magnitude_put_m << 1
+                magnitude_put_e = magnitude_put_e - 1
+            while magnitude_put_m >= 268435456 or magnitude_put_m < -268435456:
+                magnitude_put_m = magnitude_put_m >> 1
+                magnitude_put_e = magnitude_put_e + 1
+            s[206] = magnitude_put_m
+            s[207] = magnitude_put_e
+    subtract(s_, 208, 204, 206)
+    if s[208] >> 30:
+        less_result = 1
+    else:
+        less_result = 0
+    if less_result:
+        real_copy_words = 2
+        while real_copy_words > 0:
+            real_copy_words = real_copy_words - 1
+            s[real_copy_words + 204] = s[real_copy_words + 206]
+    real_copy_words = 2
+    while real_copy_words > 0:
+        real_copy_words = real_copy_words - 1
+        s[real_copy_words + 186] = s[real_copy_words + 45]
+    real_copy_words = 2
+    while real_copy_words > 0:
+        real_copy_words = real_copy_words - 1
+        s[real_copy_words + 206] = s[real_copy_words + 45]
+    if s[206] >> 30:
+        magnitude_put_m = -s[206]
+        magnitude_put_e = s[207]
+        if not magnitude_put_m:
+            s[206] = 0
+            s[207] = -4096
+        else:
+            while magnitude_put_m < 524288 and magnitude_put_m >= -524288:
+                magnitude_put_m = magnitude_put_m << 8
+                magnitude_put_e = magnitude_put_e - 8
+            while magnitude_put_m < 134217728 and magnitude_put_m >= -134217728:
+                magnitude_put_m = magnitude_put_m << 1
+                magnitude_put_e = magnitude_put_e - 1
+            while magnitude_put_m >= 268435456 or magnitude_put_m < -268435456:
+                magnitude_put_m = magnitude_put_m >> 1
+                magnitude_put_e = magnitude_put_e + 1
+            s[206] = magnitude_put_m
+            s[207] = magnitude_put_e
+    subtract(s_, 208, 204, 206)
+    if s[208] >> 30:
+        less_result = 1
+    else:
+        less_result = 0
+    if less_result:
+        real_copy_words = 2
+        while real_copy_words > 0:
+            real_copy_words = real_copy_words - 1
+            s[real_copy_words + 204] = s[real_copy_words + 206]
+    real_copy_words = 2
+    while real_copy_words > 0:
+        real_copy_words = real_copy_words - 1
+        s[real_copy_words + 188] = s[real_copy_words + 49]
+    real_copy_words = 2
+    while real_copy_words > 0:
+        real_copy_words = real_copy_words - 1
+        s[real_copy_words + 206] = s[real_copy_words + 49]
+    if s[206] >> 30:
+        magnitude_put_m = -s[206]
+        magnitude_put_e = s[207]
+        if not magnitude_put_m:
+            s[206] = 0
+            s[207] = -4096
+        else:
+            while magnitude_put_m < 524288 and magnitude_put_m >= -524288:
+                magnitude_put_m = magnitude_put_m << 8
+                magnitude_put_e = magnitude_put_e - 8
+            while magnitude_put_m < 134217728 and magnitude_put_m >= -134217728:
+                magnitude_put_m = magnitude_put_m << 1
+                magnitude_put_e = magnitude_put_e - 1
+            while magnitude_put_m >= 268435456 or magnitude_put_m < -268435456:
+                magnitude_put_m = magnitude_put_m >> 1
+                magnitude_put_e = magnitude_put_e + 1
+            s[206] = magnitude_put_m
+            s[207] = magnitude_put_e
+    subtract(s_, 208, 204, 206)
+    if s[208] >> 30:
+        less_result = 1
+    else:
+        less_result = 0
+    if less_result:
+        real_copy_words = 2
+        while real_copy_words > 0:
+            real_copy_words = real_copy_words - 1
+            s[real_copy_words + 204] = s[real_copy_words + 206]
+    i = 3
+    divide(s_, 202, 202, 204)
     i = 0
     while i < 6:
-        multiply(s_, _D + i, _D + i, _T)
-        i += 2
+        multiply(s_, i + 184, i + 184, 202)
+        i = i + 2
 
 
 @micropython.viper
 def shape(s_, d: int, m: int, y: int):
-    """Store at d the square of what the slope at _D leaves of a shape, with sums at m and y."""
     s = ptr32(s_)
-    put(s_, _T, s[y], 0)
+    put_m = s[y]
+    put_e = 0
+    if not put_m:
+        s[202] = 0
+        s[203] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s[202] = put_m
+        s[203] = put_e
     i = 0
     while i < 6:
-        y = s[_STAGE] - 26
-        put(s_, _T1, s[m], y)
-        y = _D + i
-        multiply(s_, _T1, _T1, y)
-        subtract(s_, _T2, _T, _T1)
-        copy(s_, _T, _T2, 2)
-        m += 1
-        i += 2
-    multiply(s_, d, _T, _T)
+        y = s[12] - 26
+        put_m = s[m]
+        put_e = y
+        if not put_m:
+            s[204] = 0
+            s[205] = -4096
+        else:
+            while put_m < 524288 and put_m >= -524288:
+                put_m = put_m << 8
+                put_e = put_e - 8
+            while put_m < 134217728 and put_m >= -134217728:
+                put_m = put_m << 1
+                put_e = put_e - 1
+            while put_m >= 268435456 or put_m < -268435456:
+                put_m = put_m >> 1
+                put_e = put_e + 1
+            s[204] = put_m
+            s[205] = put_e
+        y = i + 184
+        multiply(s_, 204, 204, y)
+        subtract(s_, 206, 202, 204)
+        real_copy_words = 2
+        while real_copy_words > 0:
+            real_copy_words = real_copy_words - 1
+            s[real_copy_words + 202] = s[real_copy_words + 206]
+        m = m + 1
+        i = i + 2
+    multiply(s_, d, 202, 202)
 
 
 @micropython.viper
 def noise(s_, i: int):
-    """Store component i's noise energy at the neighbouring shapes, with its floor, at _OMEGA.
-
-    Mean squares of the shapes under the taper: .7111 and .0277 a node.
-    """
     s = ptr32(s_)
-    a = _SUMS + 21 * i
-    d = _OMEGA + 2 * i
-    shape(s_, _T3, a + 13, a + 19)
-    put(s_, _T, 11520, -14)
-    multiply(s_, d, _T3, _T)
-    shape(s_, _T3, a + 16, a + 20)
-    put(s_, _T, 18482, -10)
-    multiply(s_, _T3, _T3, _T)
-    add(s_, _T3, _T3, d)
-    a = s[_T3 + 1] - s[_STAGE]
-    put(s_, _T3, s[_T3], a)
-    a = _FLOOR_TILT_Q24
-    if i == 2:
-        a = _FLOOR_HEADING_Q24
-    put(s_, _T, a, 0)
-    add(s_, d, _T3, _T)
+    a = 21 * i + 85
+    d = 2 * i + 196
+    shape(s_, 208, a + 13, a + 19)
+    put_m = 11520
+    put_e = -14
+    while put_m < 524288 and put_m >= -524288:
+        put_m = put_m << 8
+        put_e = put_e - 8
+    while put_m < 134217728 and put_m >= -134217728:
+        put_m = put_m << 1
+        put_e = put_e - 1
+    while put_m >= 268435456 or put_m < -268435456:
+        put_m = put_m >> 1
+        put_e = put_e + 1
+    s[202] = put_m
+    s[203] = put_e
+    multiply(s_, d, 208, 202)
+    shape(s_, 208, a + 16, a + 20)
+    put_m = 18482
+    put_e = -10
+    while put_m < 524288 and put_m >= -524288:
+        put_m = put_m << 8
+        put_e = put_e - 8
+    while put_m < 134217728 and put_m >= -134217728:
+        put_m = put_m << 1
+        put_e = put_e - 1
+    while put_m >= 268435456 or put_m < -268435456:
+        put_m = put_m >> 1
+        put_e = put_e + 1
+    s[202] = put_m
+    s[203] = put_e
+    multiply(s_, 208, 208, 202)
+    if s[209] < s[d + 1]:
+        add_smaller(s_, 208, d, 208)
+    else:
+        add_smaller(s_, 208, 208, d)
+    a = s[209] - s[12]
+    put_m = s[208]
+    put_e = a
+    if not put_m:
+        s[208] = 0
+        s[209] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s[208] = put_m
+        s[209] = put_e
+    a = 419
+    if not i - 2:
+        a = 1678
+    put_m = a
+    put_e = 0
+    if not put_m:
+        s[202] = 0
+        s[203] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s[202] = put_m
+        s[203] = put_e
+    if s[209] < s[203]:
+        add_smaller(s_, d, 202, 208)
+    else:
+        add_smaller(s_, d, 208, 202)
 
 
 @micropython.viper
 def weights(s_, c_):
-    """Turn noise energies into weights: both tilts alike, none below what earlier windows had.
-
-    The energies in use are left at _ENERGY.
-    """
     s = ptr32(s_)
-    add(s_, _T, _OMEGA, _OMEGA + 2)
-    put(s_, _OMEGA, s[_T], s[_T + 1] - 1)
-    copy(s_, _OMEGA + 2, _OMEGA, 2)
+    if s[197] < s[199]:
+        add_smaller(s_, 202, 198, 196)
+    else:
+        add_smaller(s_, 202, 196, 198)
+    put_m = s[202]
+    put_e = s[203] - 1
+    if not put_m:
+        s[196] = 0
+        s[197] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s[196] = put_m
+        s[197] = put_e
+    real_copy_d = 198
+    real_copy_words = 2
+    while real_copy_words > 0:
+        real_copy_words = real_copy_words - 1
+        s[real_copy_words + 198] = s[real_copy_words + 196]
     i = 0
     while i < 6:
-        if int(int(less(s_, _OMEGA + i, _HOLD + i))):
-            copy(s_, _OMEGA + i, _HOLD + i, 2)
-        copy(s_, _ENERGY + i, _OMEGA + i, 2)
-        weigh(s_, c_, _OMEGA + i)
-        i += 2
+        less_a = i + 196
+        less_b = i + 190
+        subtract(s_, 208, less_a, less_b)
+        if s[208] >> 30:
+            less_result = 1
+        else:
+            less_result = 0
+        if less_result:
+            real_copy_d = i + 196
+            real_copy_a = i + 190
+            real_copy_words = 2
+            while real_copy_words > 0:
+                real_copy_words = real_copy_words - 1
+                s[real_copy_d + real_copy_words] = s[real_copy_a + real_copy_words]
+        real_copy_d = i + 222
+        real_copy_a = i + 196
+        real_copy_words = 2
+        while real_copy_words > 0:
+            real_copy_words = real_copy_words - 1
+            s[real_copy_d + real_copy_words] = s[real_copy_a + real_copy_words]
+        weigh(s_, c_, i + 196)
+        i = i + 2
 
 
 @micropython.viper
 def weigh(s_, c: ptr32, a: int):
-    """Replace a noise energy by the weight it gives."""
-    put(s_, _T, c[_SPREAD], 0)
-    multiply(s_, _T1, _T, a)
-    put(s_, _T, 1, 0)
-    divide(s_, a, _T, _T1)
-
-
-@micropython.viper
-def held_weights(s_, c_):
-    """Set the weights from the noise energies held from earlier windows."""
-    i = 0
-    while i < 6:
-        copy(s_, _OMEGA + i, _HOLD + i, 2)
-        weigh(s_, c_, _OMEGA + i)
-        i += 2
-
-
-@micropython.viper
-def own_square(s_, i: int):
-    """Store the sum of squares of component i's own M at _T1; the sums are in order 00 .. 22."""
     s = ptr32(s_)
-    a = _SUMS + 24 * i
-    if i == 2:
-        a -= 1
-    i = 2 * s[_STAGE] - 42
-    put(s_, _T1, s[a], i)
+    put_m = c[21]
+    put_e = 0
+    if not put_m:
+        s[202] = 0
+        s[203] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s[202] = put_m
+        s[203] = put_e
+    multiply(s_, 204, 202, a)
+    put_m = 1
+    put_e = 0
+    while put_m < 524288 and put_m >= -524288:
+        put_m = put_m << 8
+        put_e = put_e - 8
+    while put_m < 134217728 and put_m >= -134217728:
+        put_m = put_m << 1
+        put_e = put_e - 1
+    while put_m >= 268435456 or put_m < -268435456:
+        put_m = put_m >> 1
+        put_e = put_e + 1
+    s[202] = put_m
+    s[203] = put_e
+    divide(s_, a, 202, 204)
 
 
 @micropython.viper
-def own_slope(s_, i: int):
-    """Store component i's own slope at _D, as the document takes it: no other axis, no prior."""
-    s = ptr32(s_)
-    own_square(s_, i)
-    a = s[_STAGE] - 16
-    put(s_, _T, s[_SUMS + 22 * i + 6], a)
-    divide(s_, _D + 2 * i, _T, _T1)
-
-
-@micropython.viper
-def own_variance(s_, c: ptr32, i: int):
-    """Put the variance of component i's own slope on the matrix' diagonal, negative."""
-    own_square(s_, i)
-    put(s_, _T, -c[_SPREAD], 0)
-    multiply(s_, _T, _T, _OMEGA + 2 * i)
-    i = int(int(place(i, i)))
-    divide(s_, i, _T, _T1)
+def own_square(s: ptr32, i: int):
+    a = 24 * i + 85
+    if not i - 2:
+        a = a - 1
+    i = 2 * s[12] - 42
+    put_m = s[a]
+    put_e = i
+    if not put_m:
+        s[204] = 0
+        s[205] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s[204] = put_m
+        s[205] = put_e

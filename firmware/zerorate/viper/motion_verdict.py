@@ -3,283 +3,620 @@
 
 Refused: a window that hardly moves (the still source's), one that turned faster than the nodes
 hold, one whose mean force is not 1 g along one direction (the integration lost its way), and one
-that contradicts what is known: a turn that stays turned. Contradiction that lasts is believed.
-"""
+that contradicts what is known: a turn that stays turned. Contradiction that lasts is believed."""
 
 import micropython
 
-
-try:
-    from micropython import const
-except ImportError:
-
-    def const(value):
-        return value
-
-
-from .least_squares import covariance, less, place
-from .real import add, copy, multiply, put, root_of, subtract, whole
-
-GROWING = const(1)
-LEARNED = const(2)
-STILL = const(3)
-TURNED = const(4)
-TOO_FAST = const(5)
-LOST = const(6)
-
-_HEAD = const(8)
-_FILLED = const(9)
-_NEW = const(10)
-_LENGTH = const(11)
-_STAGE = const(12)
-_PASS = const(14)
-_FIRST = const(16)
-_REASON = const(17)
-_TOTAL = const(18)
-_START = const(29)
-_UP = const(63)
-_FAST = const(64)
-_TRAFFIC = const(65)
-_AGE = const(66)
-_ACCEPTED = const(67)
-_REFUSED = const(68)
-_AGAINST = const(69)
-_OUT_Q8 = const(70)
-_QUALITY_Q8 = const(73)
-_SLOPES_Q8 = const(76)
-_G = const(33)
-_P = const(148)
-_PRIOR_MEAN = const(172)
-_BIAS = const(178)
-_D = const(184)
-_HOLD = const(190)
-_T = const(202)
-_T1 = const(204)
-_CENTRE = const(213)
-_ENERGY = const(222)
-
-_LEAST_TRAFFIC = const(7)
-_NODES = const(8)
-_LSB = const(10)
-_WALK = const(12)
-_START_VARIANCE = const(14)
-_LONGEST = const(16)
-_SHORTEST_STAGE = const(17)
-_LEAST_UP = const(18)
-_PATIENCE = const(19)
-_DOCUMENT = const(20)
-
-_SETTLED_AFTER = const(3)
+from .least_squares import covariance
+from .least_squares import place
+from .real import add_smaller
+from .real import multiply
+from .real import subtract
+from .thermal import learn_slopes
 
 
 @micropython.viper
-def clear(s_, c: ptr32):
-    """Know nothing: no bias, the widest covariance, the shortest window."""
-    s = ptr32(s_)
-    i = 0
-    while i < 3:
-        put(s_, _BIAS + 2 * i, 0, 0)
-        s[_QUALITY_Q8 + i] = 0x1FFFFFFF
-        i += 1
-    s[_ACCEPTED] = 0
-    s[_AGAINST] = 0
-    s[_STAGE] = c[_SHORTEST_STAGE]
-    if c[_DOCUMENT]:
-        s[_STAGE] = c[_SHORTEST_STAGE] + 3
-    s[_LENGTH] = 1 << s[_STAGE]
+def clear(s: ptr32, c: ptr32):
+    s[178] = 0
+    s[179] = -4096
+    s[73] = 536870911
+    s[180] = 0
+    s[181] = -4096
+    s[74] = 536870911
+    s[182] = 0
+    s[183] = -4096
+    s[75] = 536870911
+    forget_slopes_i = 0
+    forget_slopes_put_m = c[23]
+    forget_slopes_put_e = c[24]
+    if not forget_slopes_put_m:
+        s[188] = 0
+        s[189] = -4096
+    else:
+        while forget_slopes_put_m < 524288 and forget_slopes_put_m >= -524288:
+            forget_slopes_put_m = forget_slopes_put_m << 8
+            forget_slopes_put_e = forget_slopes_put_e - 8
+        while forget_slopes_put_m < 134217728 and forget_slopes_put_m >= -134217728:
+            forget_slopes_put_m = forget_slopes_put_m << 1
+            forget_slopes_put_e = forget_slopes_put_e - 1
+        while forget_slopes_put_m >= 268435456 or forget_slopes_put_m < -268435456:
+            forget_slopes_put_m = forget_slopes_put_m >> 1
+            forget_slopes_put_e = forget_slopes_put_e + 1
+        s[188] = forget_slopes_put_m
+        s[189] = forget_slopes_put_e
+    while forget_slopes_i < 9:
+        s[forget_slopes_i + 228] = 0
+        s[forget_slopes_i + 229] = 0
+        forget_slopes_pack_d = forget_slopes_i + 230
+        s_forget_slopes_pack_d = ptr32(int(s) + (forget_slopes_pack_d << 2))
+        forget_slopes_pack_e = s[189] + 96
+        if not s[188] or forget_slopes_pack_e >> 30 or forget_slopes_pack_e > 127:
+            s_forget_slopes_pack_d[0] = 0
+        else:
+            s_forget_slopes_pack_d[0] = (s[188] >> 5 << 7) + forget_slopes_pack_e
+        forget_slopes_i = forget_slopes_i + 3
+    s[67] = 0
+    s[69] = 0
+    s[12] = c[17]
+    if c[20]:
+        s[12] = c[17] + 3
+    s[11] = 1 << s[12]
 
 
 @micropython.viper
-def know_nothing(s_, c: ptr32, tilt: int, heading: int):
-    """Set the prior to the widest one about no bias, and the noise energies, Q24 rad^2."""
-    i = 0
-    while i < 6:
-        put(s_, _P + 2 * i, 0, 0)
-        i += 1
-    put(s_, _P, c[_START_VARIANCE], c[_START_VARIANCE + 1])
-    copy(s_, _P + 6, _P, 2)
-    copy(s_, _P + 10, _P, 2)
-    i = 0
-    while i < 3:
-        put(s_, _PRIOR_MEAN + 2 * i, 0, 0)
-        if i == 2:
-            tilt = heading
-        put(s_, _HOLD + 2 * i, tilt, 0)
-        i += 1
+def know_nothing(s: ptr32, c: ptr32, tilt: int, heading: int):
+    put_m = 0
+    put_e = 0
+    s[148] = 0
+    s[149] = -4096
+    put_m = 0
+    put_e = 0
+    s[150] = 0
+    s[151] = -4096
+    put_m = 0
+    put_e = 0
+    s[152] = 0
+    s[153] = -4096
+    put_m = 0
+    put_e = 0
+    s[154] = 0
+    s[155] = -4096
+    put_m = 0
+    put_e = 0
+    s[156] = 0
+    s[157] = -4096
+    put_m = 0
+    put_e = 0
+    s[158] = 0
+    s[159] = -4096
+    put_m = c[14]
+    put_e = c[15]
+    if not put_m:
+        s[148] = 0
+        s[149] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s[148] = put_m
+        s[149] = put_e
+    real_copy_words = 2
+    while real_copy_words > 0:
+        real_copy_words = real_copy_words - 1
+        s[real_copy_words + 154] = s[real_copy_words + 148]
+    real_copy_words = 2
+    while real_copy_words > 0:
+        real_copy_words = real_copy_words - 1
+        s[real_copy_words + 158] = s[real_copy_words + 148]
+    put_m = 0
+    put_e = 0
+    s[172] = 0
+    s[173] = -4096
+    put_m = tilt
+    put_e = 0
+    if not put_m:
+        s[190] = 0
+        s[191] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s[190] = put_m
+        s[191] = put_e
+    put_m = 0
+    put_e = 0
+    s[174] = 0
+    s[175] = -4096
+    put_m = tilt
+    put_e = 0
+    if not put_m:
+        s[192] = 0
+        s[193] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s[192] = put_m
+        s[193] = put_e
+    put_m = 0
+    put_e = 0
+    s[176] = 0
+    s[177] = -4096
+    tilt = heading
+    put_m = tilt
+    put_e = 0
+    if not put_m:
+        s[194] = 0
+        s[195] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s[194] = put_m
+        s[195] = put_e
 
 
 @micropython.viper
 def start_window(s_, c_) -> int:
-    """Begin a window if enough is new; return 1 if it begins."""
     s = ptr32(s_)
     c = ptr32(c_)
-    n = s[_LENGTH]
-    if s[_FILLED] < n or s[_NEW] < (n >> 1):
+    n = s[11]
+    if s[9] < n or s[10] < n >> 1:
         return 0
-    if s[_FAST]:
-        s[_NEW] = 0
-        s[_REASON] = TOO_FAST
+    if s[64]:
+        s[10] = 0
+        s[17] = 5
         return 0
-    s[_NEW] = 0
-    s[_PASS] = 0
-    if c[_DOCUMENT]:
-        s[_PASS] = 1
-    s[_FIRST] = s[_HEAD] - n
-    if s[_FIRST] < 0:
-        s[_FIRST] += c[_NODES]
-    if n < c[_LONGEST]:
+    s[10] = 0
+    s[14] = 0
+    if c[20]:
+        s[14] = 1
+    s[16] = s[8] - n
+    if s[16] >> 30:
+        s[16] = s[16] + c[8]
+    if n < c[16]:
         know_nothing(s_, c_, 6711, 41943)
-    elif s[_ACCEPTED] == 0:
+    elif not s[67]:
         know_nothing(s_, c_, 167772, 1509949)
     else:
-        copy(s_, _PRIOR_MEAN, _BIAS, 6)
+        real_copy_words = 6
+        while real_copy_words > 0:
+            real_copy_words = real_copy_words - 1
+            s[real_copy_words + 172] = s[real_copy_words + 178]
     n = 0
     while n < 9:
-        s[_CENTRE + n] = 0
-        n += 1
-    s[_START] = 0x4000
-    s[_START + 1] = 0
-    s[_START + 2] = 0
-    s[_START + 3] = 0
+        s[n + 213] = 0
+        n = n + 1
+    s[29] = 16384
+    s[30] = 0
+    s[31] = 0
+    s[32] = 0
     return 1
 
 
 @micropython.viper
-def note_slope(s_, c: ptr32):
-    """Note the slope of this pass, LSB in Q8, for who wants to see it."""
-    s = ptr32(s_)
-    i = 0
-    a = s[_PASS] - 1
-    if a > 2:
-        a = 2
-    a = _SLOPES_Q8 + 3 * a
-    while i < 3:
-        put(s_, _T, c[_LSB], c[_LSB + 1])
-        multiply(s_, _T, _T, _D + 2 * i)
-        s[a + i] = int(int(whole(s_, _T, 0)))
-        i += 1
-
-
-@micropython.viper
-def verdict(s_, c_) -> int:
-    """Return why the window teaches nothing, or LEARNED."""
-    s = ptr32(s_)
-    c = ptr32(c_)
-    if s[_FAST]:
-        return TOO_FAST
-    if s[_TRAFFIC] < (c[_LEAST_TRAFFIC] << s[_STAGE]):
-        return STILL
-    if c[_DOCUMENT] or s[_LENGTH] < c[_LONGEST]:
-        return LEARNED
-    if (s[_UP] << 8) // (s[_TOTAL] >> 2) < c[_LEAST_UP]:
-        return LOST
-    if s[_ACCEPTED] >= _SETTLED_AFTER and (int(int(contradicts(s_, c_))) or int(int(louder(s_)))):
-        return TURNED
-    return LEARNED
-
-
-@micropython.viper
 def louder(s_) -> int:
-    """Return 1 if the tilt's noise amplitude is over sixteen times what was held, else 0.
-
-    A bias that jumped leaves this: what is known holds the slope back, and what that leaves is
-    taken for noise. A turn of heading does too, and so is not looked at.
-    """
     s = ptr32(s_)
-    put(s_, _T, s[_HOLD], s[_HOLD + 1] + 8)
-    return int(int(less(s_, _T, _ENERGY)))
+    put_m = s[190]
+    put_e = s[191] + 8
+    if not put_m:
+        s[202] = 0
+        s[203] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s[202] = put_m
+        s[203] = put_e
+    subtract(s_, 208, 202, 222)
+    if s[208] >> 30:
+        return 1
+    return 0
 
 
 @micropython.viper
-def contradicts(s_, c: ptr32) -> int:
-    """Return 1 if an axis moved by more than four sigma of what was known, else 0."""
+def contradicts(s_) -> int:
     s = ptr32(s_)
-    i = 0
-    d = _P
-    while i < 3:
-        put(s_, _T, s[_AGE], 4)
-        put(s_, _T1, c[_WALK], c[_WALK + 1])
-        multiply(s_, _T, _T, _T1)
-        put(s_, _T1, s[d], s[d + 1] + 4)
-        add(s_, _T, _T, _T1)
-        subtract(s_, _T1, _BIAS + 2 * i, _PRIOR_MEAN + 2 * i)
-        multiply(s_, _T1, _T1, _T1)
-        if int(int(less(s_, _T, _T1))):
-            return 1
-        d += 6 - 2 * i
-        i += 1
+    d = 148
+    put_m = s[148]
+    put_e = s[149] + 4
+    if not put_m:
+        s[202] = 0
+        s[203] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s[202] = put_m
+        s[203] = put_e
+    subtract(s_, 204, 178, 172)
+    multiply(s_, 204, 204, 204)
+    subtract(s_, 208, 202, 204)
+    if s[208] >> 30:
+        less_result = 1
+    else:
+        less_result = 0
+    if less_result:
+        return 1
+    d = d + 6
+    put_m = s[d]
+    put_e = s[d + 1] + 4
+    if not put_m:
+        s[202] = 0
+        s[203] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s[202] = put_m
+        s[203] = put_e
+    subtract(s_, 204, 180, 174)
+    multiply(s_, 204, 204, 204)
+    subtract(s_, 208, 202, 204)
+    if s[208] >> 30:
+        less_result = 1
+    else:
+        less_result = 0
+    if less_result:
+        return 1
+    d = d + 4
+    put_m = s[d]
+    put_e = s[d + 1] + 4
+    if not put_m:
+        s[202] = 0
+        s[203] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s[202] = put_m
+        s[203] = put_e
+    subtract(s_, 204, 182, 176)
+    multiply(s_, 204, 204, 204)
+    subtract(s_, 208, 202, 204)
+    if s[208] >> 30:
+        less_result = 1
+    else:
+        less_result = 0
+    if less_result:
+        return 1
+    d = d + 2
     return 0
 
 
 @micropython.viper
 def finish(s_, c_) -> int:
-    """Keep or refuse the window's bias; return 1 if it was learned."""
     s = ptr32(s_)
     c = ptr32(c_)
-    reason = int(int(verdict(s_, c_)))
-    s[_REASON] = reason
-    if reason != LEARNED:
-        refuse(s_, c_, reason)
+    while True:
+        if s[64]:
+            reason = 5
+            break
+        if s[65] < c[7] << s[12]:
+            reason = 3
+            break
+        if c[20] or s[11] < c[16]:
+            reason = 2
+            break
+        if (s[63] << 8) // (s[18] >> 2) < c[18]:
+            reason = 6
+            break
+        if s[67] >= 3:
+            if int(contradicts(s_)) or int(louder(s_)):
+                reason = 4
+                break
+        reason = 2
+        break
+    s[17] = reason
+    if reason - 2:
+        refuse_i = 0
+        refuse_real_copy_words = 6
+        while refuse_real_copy_words > 0:
+            refuse_real_copy_words = refuse_real_copy_words - 1
+            s[refuse_real_copy_words + 178] = s[refuse_real_copy_words + 172]
+        s[68] = s[68] + 1
+        if reason - 4 and reason - 6:
+            pass
+        else:
+            s[69] = s[69] + 1
+            if s[69] < c[19]:
+                pass
+            else:
+                s[69] = 0
+                if not reason - 6:
+                    s[178] = 0
+                    s[179] = -4096
+                    s[73] = 536870911
+                    s[180] = 0
+                    s[181] = -4096
+                    s[74] = 536870911
+                    s[182] = 0
+                    s[183] = -4096
+                    s[75] = 536870911
+                    refuse_motion_verdict_clear_forget_slopes_i = 0
+                    refuse_motion_verdict_clear_forget_slopes_put_m = c[23]
+                    refuse_motion_verdict_clear_forget_slopes_put_e = c[24]
+                    if not refuse_motion_verdict_clear_forget_slopes_put_m:
+                        s[188] = 0
+                        s[189] = -4096
+                    else:
+                        while refuse_motion_verdict_clear_forget_slopes_put_m < 524288 and refuse_motion_verdict_clear_forget_slopes_put_m >= -524288:
+                            refuse_motion_verdict_clear_forget_slopes_put_m = refuse_motion_verdict_clear_forget_slopes_put_m << 8
+                            refuse_motion_verdict_clear_forget_slopes_put_e = refuse_motion_verdict_clear_forget_slopes_put_e - 8
+                        while refuse_motion_verdict_clear_forget_slopes_put_m < 134217728 and refuse_motion_verdict_clear_forget_slopes_put_m >= -134217728:
+                            refuse_motion_verdict_clear_forget_slopes_put_m = refuse_motion_verdict_clear_forget_slopes_put_m << 1
+                            refuse_motion_verdict_clear_forget_slopes_put_e = refuse_motion_verdict_clear_forget_slopes_put_e - 1
+                        while refuse_motion_verdict_clear_forget_slopes_put_m >= 268435456 or refuse_motion_verdict_clear_forget_slopes_put_m < -268435456:
+                            refuse_motion_verdict_clear_forget_slopes_put_m = refuse_motion_verdict_clear_forget_slopes_put_m >> 1
+                            refuse_motion_verdict_clear_forget_slopes_put_e = refuse_motion_verdict_clear_forget_slopes_put_e + 1
+                        s[188] = refuse_motion_verdict_clear_forget_slopes_put_m
+                        s[189] = refuse_motion_verdict_clear_forget_slopes_put_e
+                    while refuse_motion_verdict_clear_forget_slopes_i < 9:
+                        s[refuse_motion_verdict_clear_forget_slopes_i + 228] = 0
+                        s[refuse_motion_verdict_clear_forget_slopes_i + 229] = 0
+                        refuse_motion_verdict_clear_forget_slopes_pack_d = refuse_motion_verdict_clear_forget_slopes_i + 230
+                        s_refuse_motion_verdict_clear_forget_slopes_pack_d = ptr32(int(s) + (refuse_motion_verdict_clear_forget_slopes_pack_d << 2))
+                        refuse_motion_verdict_clear_forget_slopes_pack_e = s[189] + 96
+                        if not s[188] or refuse_motion_verdict_clear_forget_slopes_pack_e >> 30 or refuse_motion_verdict_clear_forget_slopes_pack_e > 127:
+                            s_refuse_motion_verdict_clear_forget_slopes_pack_d[0] = 0
+                        else:
+                            s_refuse_motion_verdict_clear_forget_slopes_pack_d[0] = (s[188] >> 5 << 7) + refuse_motion_verdict_clear_forget_slopes_pack_e
+                        refuse_motion_verdict_clear_forget_slopes_i = refuse_motion_verdict_clear_forget_slopes_i + 3
+                    s[67] = 0
+                    s[69] = 0
+                    s[12] = c[17]
+                    if c[20]:
+                        s[12] = c[17] + 3
+                    s[11] = 1 << s[12]
+                else:
+                    refuse_real_copy_words = 6
+                    while refuse_real_copy_words > 0:
+                        refuse_real_copy_words = refuse_real_copy_words - 1
+                        s[refuse_real_copy_words + 190] = s[refuse_real_copy_words + 222]
+                    while refuse_i < 12:
+                        refuse_put_d = refuse_i + 148
+                        s_refuse_put_d = ptr32(int(s) + (refuse_put_d << 2))
+                        refuse_put_m = s[refuse_i + 148]
+                        refuse_put_e = s[refuse_i + 149] + 8
+                        if not refuse_put_m:
+                            s_refuse_put_d[0] = 0
+                            s_refuse_put_d[1] = -4096
+                        else:
+                            while refuse_put_m < 524288 and refuse_put_m >= -524288:
+                                refuse_put_m = refuse_put_m << 8
+                                refuse_put_e = refuse_put_e - 8
+                            while refuse_put_m < 134217728 and refuse_put_m >= -134217728:
+                                refuse_put_m = refuse_put_m << 1
+                                refuse_put_e = refuse_put_e - 1
+                            while refuse_put_m >= 268435456 or refuse_put_m < -268435456:
+                                refuse_put_m = refuse_put_m >> 1
+                                refuse_put_e = refuse_put_e + 1
+                            s_refuse_put_d[0] = refuse_put_m
+                            s_refuse_put_d[1] = refuse_put_e
+                        refuse_i = refuse_i + 2
         return 0
-    if s[_LENGTH] < c[_LONGEST]:
-        s[_LENGTH] = s[_LENGTH] << 1
-        s[_STAGE] += 1
-        s[_REASON] = GROWING
+    if s[11] < c[16]:
+        s[11] = s[11] << 1
+        s[12] = s[12] + 1
+        s[17] = 1
         return 0
-    covariance(s_, _P)
-    keep_noise(s_)
-    s[_ACCEPTED] += 1
-    s[_AGAINST] = 0
-    s[_AGE] = 0
+    learn_slopes(s_)
+    covariance(s_, 148)
+    keep_noise_i = 0
+    while keep_noise_i < 6:
+        keep_noise_put_m = 11469
+        keep_noise_put_e = -14
+        while keep_noise_put_m < 524288 and keep_noise_put_m >= -524288:
+            keep_noise_put_m = keep_noise_put_m << 8
+            keep_noise_put_e = keep_noise_put_e - 8
+        while keep_noise_put_m < 134217728 and keep_noise_put_m >= -134217728:
+            keep_noise_put_m = keep_noise_put_m << 1
+            keep_noise_put_e = keep_noise_put_e - 1
+        while keep_noise_put_m >= 268435456 or keep_noise_put_m < -268435456:
+            keep_noise_put_m = keep_noise_put_m >> 1
+            keep_noise_put_e = keep_noise_put_e + 1
+        s[202] = keep_noise_put_m
+        s[203] = keep_noise_put_e
+        multiply(s_, keep_noise_i + 190, keep_noise_i + 222, 202)
+        keep_noise_i = keep_noise_i + 2
+    s[67] = s[67] + 1
+    s[69] = 0
     publish(s_, c_)
     return 1
 
 
 @micropython.viper
-def refuse(s_, c_, reason: int):
-    """Take back the window's bias; widen or forget what is known if this goes on for long."""
-    s = ptr32(s_)
-    c = ptr32(c_)
-    i = 0
-    copy(s_, _BIAS, _PRIOR_MEAN, 6)
-    s[_REFUSED] += 1
-    if reason != TURNED and reason != LOST:
-        return
-    s[_AGAINST] += 1
-    if s[_AGAINST] < c[_PATIENCE]:
-        return
-    s[_AGAINST] = 0
-    if reason == LOST:
-        clear(s_, c_)
-        return
-    copy(s_, _HOLD, _ENERGY, 6)
-    while i < 12:
-        put(s_, _P + i, s[_P + i], s[_P + i + 1] + 8)
-        i += 2
-
-
-@micropython.viper
-def keep_noise(s_):
-    """Hold this window's noise energies for the next, a little less."""
-    i = 0
-    while i < 6:
-        put(s_, _T, 11469, -14)
-        multiply(s_, _HOLD + i, _ENERGY + i, _T)
-        i += 2
-
-
-@micropython.viper
 def publish(s_, c: ptr32):
-    """Write bias and one-sigma uncertainty of each axis, LSB in Q8."""
     s = ptr32(s_)
     i = 0
     while i < 3:
-        put(s_, _T, c[_LSB], c[_LSB + 1])
-        multiply(s_, _T1, _T, _BIAS + 2 * i)
-        s[_OUT_Q8 + i] = int(int(whole(s_, _T1, 0)))
-        copy(s_, _T1, int(int(place(i, i))), 2)
-        put(s_, _T1, -s[_T1], s[_T1 + 1])
-        root_of(s_, _T1, _T1)
-        multiply(s_, _T1, _T1, _T)
-        s[_QUALITY_Q8 + i] = int(int(whole(s_, _T1, 0)))
-        i += 1
+        put_m = c[10]
+        put_e = c[11]
+        if not put_m:
+            s[202] = 0
+            s[203] = -4096
+        else:
+            while put_m < 524288 and put_m >= -524288:
+                put_m = put_m << 8
+                put_e = put_e - 8
+            while put_m < 134217728 and put_m >= -134217728:
+                put_m = put_m << 1
+                put_e = put_e - 1
+            while put_m >= 268435456 or put_m < -268435456:
+                put_m = put_m >> 1
+                put_e = put_e + 1
+            s[202] = put_m
+            s[203] = put_e
+        present_put_m = s[239] - s[238]
+        present_put_e = -8
+        if not present_put_m:
+            s[204] = 0
+            s[205] = -4096
+        else:
+            while present_put_m < 524288 and present_put_m >= -524288:
+                present_put_m = present_put_m << 8
+                present_put_e = present_put_e - 8
+            while present_put_m < 134217728 and present_put_m >= -134217728:
+                present_put_m = present_put_m << 1
+                present_put_e = present_put_e - 1
+            while present_put_m >= 268435456 or present_put_m < -268435456:
+                present_put_m = present_put_m >> 1
+                present_put_e = present_put_e + 1
+            s[204] = present_put_m
+            s[205] = present_put_e
+        present_unpack_a = 3 * i + 228
+        s_present_unpack_a = ptr32(int(s) + (present_unpack_a << 2))
+        present_unpack_put_m = s_present_unpack_a[0] >> 7 << 5
+        present_unpack_put_e = (s_present_unpack_a[0] & 127) - 96
+        if not present_unpack_put_m:
+            s[206] = 0
+            s[207] = -4096
+        else:
+            while present_unpack_put_m < 524288 and present_unpack_put_m >= -524288:
+                present_unpack_put_m = present_unpack_put_m << 8
+                present_unpack_put_e = present_unpack_put_e - 8
+            while present_unpack_put_m < 134217728 and present_unpack_put_m >= -134217728:
+                present_unpack_put_m = present_unpack_put_m << 1
+                present_unpack_put_e = present_unpack_put_e - 1
+            while present_unpack_put_m >= 268435456 or present_unpack_put_m < -268435456:
+                present_unpack_put_m = present_unpack_put_m >> 1
+                present_unpack_put_e = present_unpack_put_e + 1
+            s[206] = present_unpack_put_m
+            s[207] = present_unpack_put_e
+        multiply(s_, 204, 204, 206)
+        present_real_add_b = 2 * i + 178
+        if s[205] < s[present_real_add_b + 1]:
+            add_smaller(s_, 204, present_real_add_b, 204)
+        else:
+            add_smaller(s_, 204, 204, present_real_add_b)
+        multiply(s_, 204, 204, 202)
+        whole_shift = 0
+        whole_m = s[204]
+        whole_shift = whole_shift + s[205]
+        if whole_shift > 1 and whole_m:
+            whole_m = 536870911 if whole_m > 0 else -536870911
+        elif not whole_shift >> 30:
+            whole_m = whole_m << whole_shift
+        elif whole_shift > -30:
+            whole_m = (1 << -1 - whole_shift) + whole_m >> 0 - whole_shift
+        else:
+            whole_m = 0
+        whole_result = whole_m
+        s[i + 70] = whole_result
+        real_copy_a = int(place(i, i))
+        real_copy_words = 2
+        while real_copy_words > 0:
+            real_copy_words = real_copy_words - 1
+            s[real_copy_words + 204] = s[real_copy_a + real_copy_words]
+        put_m = -s[204]
+        put_e = s[205]
+        if not put_m:
+            s[204] = 0
+            s[205] = -4096
+        else:
+            while put_m < 524288 and put_m >= -524288:
+                put_m = put_m << 8
+                put_e = put_e - 8
+            while put_m < 134217728 and put_m >= -134217728:
+                put_m = put_m << 1
+                put_e = put_e - 1
+            while put_m >= 268435456 or put_m < -268435456:
+                put_m = put_m >> 1
+                put_e = put_e + 1
+            s[204] = put_m
+            s[205] = put_e
+        root_of_m = s[204]
+        root_of_e = s[205]
+        if root_of_e & 1:
+            root_of_m = root_of_m >> 1
+            root_of_e = root_of_e + 1
+        root_of_root_bit = 16384
+        if root_of_m < 16777216:
+            root_of_root_bit = 2048
+        root_of_root_found = 0
+        while root_of_root_bit:
+            root_of_root_more = root_of_root_found + root_of_root_bit
+            if root_of_root_more * root_of_root_more <= root_of_m:
+                root_of_root_found = root_of_root_more
+            root_of_root_bit = root_of_root_bit >> 1
+        root_of_m = root_of_root_found
+        root_of_put_m = root_of_m
+        root_of_put_e = root_of_e >> 1
+        if not root_of_put_m:
+            s[204] = 0
+            s[205] = -4096
+        else:
+            while root_of_put_m < 524288 and root_of_put_m >= -524288:
+                root_of_put_m = root_of_put_m << 8
+                root_of_put_e = root_of_put_e - 8
+            while root_of_put_m < 134217728 and root_of_put_m >= -134217728:
+                root_of_put_m = root_of_put_m << 1
+                root_of_put_e = root_of_put_e - 1
+            while root_of_put_m >= 268435456 or root_of_put_m < -268435456:
+                root_of_put_m = root_of_put_m >> 1
+                root_of_put_e = root_of_put_e + 1
+            s[204] = root_of_put_m
+            s[205] = root_of_put_e
+        multiply(s_, 204, 204, 202)
+        whole_shift = 0
+        whole_m = s[204]
+        whole_shift = whole_shift + s[205]
+        if whole_shift > 1 and whole_m:
+            whole_m = 536870911 if whole_m > 0 else -536870911
+        elif not whole_shift >> 30:
+            whole_m = whole_m << whole_shift
+        elif whole_shift > -30:
+            whole_m = (1 << -1 - whole_shift) + whole_m >> 0 - whole_shift
+        else:
+            whole_m = 0
+        whole_result = whole_m
+        s[i + 73] = whole_result
+        i = i + 1

@@ -2,159 +2,154 @@
 """Numbers of 27 significant bits in two words of the state: mantissa, exponent.
 
 The least squares of a window span more orders of magnitude than 31 bits, and a float is a heap
-object on a board. A number at word `a` is s[a] * 2^s[a+1]; |s[a]| is in 2^27..2^28, or 0.
-"""
+object on a board. A number at word `a` is s[a] * 2^s[a+1]; |s[a]| is in 2^27..2^28, or 0."""
 
 import micropython
 
 
-try:
-    from micropython import const
-except ImportError:
-
-    def const(value):
-        return value
-
-
-from .fixed import root
-
-_LOW = const(0x3FFF)
-_LEAST = const(0x8000000)
-_MOST = const(0x10000000)
-_NOTHING = const(-4096)
-
-
-@micropython.viper
-def put(s: ptr32, d: int, m: int, e: int):
-    """Store m * 2^e at word d."""
-    if m == 0:
-        s[d] = 0
-        s[d + 1] = _NOTHING
-        return
-    while m < 0x80000 and m >= -0x80000:
-        m = m << 8
-        e -= 8
-    while m < _LEAST and m >= -_LEAST:
-        m = m << 1
-        e -= 1
-    while m >= _MOST or m < -_MOST:
-        m = m >> 1
-        e += 1
-    s[d] = m
-    s[d + 1] = e
-
-
 @micropython.viper
 def copy(s: ptr32, d: int, a: int, words: int):
-    """Copy words from a to d."""
     while words > 0:
-        words -= 1
+        words = words - 1
         s[d + words] = s[a + words]
 
 
 @micropython.viper
-def high_product(m: int, n: int) -> int:
-    """Return (m * n) >> 28 for |m|, |n| <= 2^28, to within a unit."""
-    low = ((m & _LOW) * (n & _LOW)) >> 14
-    low += (m & _LOW) * (n >> 14)
-    low += (m >> 14) * (n & _LOW)
-    return (m >> 14) * (n >> 14) + (low >> 14)
-
-
-@micropython.viper
-def multiply(s_, d: int, a: int, b: int):
-    """Store the product of the numbers at a and b at d."""
-    s = ptr32(s_)
-    m = int(int(high_product(s[a], s[b])))
-    a = s[a + 1] + s[b + 1] + 28
-    put(s_, d, m, a)
-
-
-@micropython.viper
-def add(s_, d: int, a: int, b: int):
-    """Store the sum of the numbers at a and b at d."""
-    s = ptr32(s_)
-    if s[a + 1] < s[b + 1]:
-        add_smaller(s_, d, b, a)
+def multiply(s: ptr32, d: int, a: int, b: int):
+    s_d = ptr32(int(s) + (d << 2))
+    s_b = ptr32(int(s) + (b << 2))
+    high_product_m = s[a]
+    high_product_n = s_b[0]
+    high_product_low = (high_product_m & 16383) * (high_product_n & 16383) >> 14
+    high_product_low = (high_product_m & 16383) * (high_product_n >> 14) + high_product_low
+    high_product_low = (high_product_m >> 14) * (high_product_n & 16383) + high_product_low
+    m = (high_product_m >> 14) * (high_product_n >> 14) + (high_product_low >> 14)
+    a = s[a + 1] + s_b[1] + 28
+    put_m = m
+    put_e = a
+    if not put_m:
+        s_d[0] = 0
+        s_d[1] = -4096
     else:
-        add_smaller(s_, d, a, b)
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s_d[0] = put_m
+        s_d[1] = put_e
 
 
 @micropython.viper
-def add_smaller(s_, d: int, a: int, b: int):
-    """Store the sum of the numbers at a and b at d; the exponent at b is not the greater one."""
-    s = ptr32(s_)
-    shift = s[a + 1] - s[b + 1]
-    m = s[a]
+def add_smaller(s: ptr32, d: int, a: int, b: int):
+    s_d = ptr32(int(s) + (d << 2))
+    s_a = ptr32(int(s) + (a << 2))
+    s_b = ptr32(int(s) + (b << 2))
+    shift = s_a[1] - s_b[1]
+    m = s_a[0]
     if shift <= 28:
-        m += s[b] >> shift
-    shift = s[a + 1]
-    put(s_, d, m, shift)
+        m = (s_b[0] >> shift) + m
+    shift = s_a[1]
+    put_m = m
+    put_e = shift
+    if not put_m:
+        s_d[0] = 0
+        s_d[1] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s_d[0] = put_m
+        s_d[1] = put_e
 
 
 @micropython.viper
 def subtract(s_, d: int, a: int, b: int):
-    """Store the number at a less the one at b at d; d is not a."""
     s = ptr32(s_)
-    put(s_, d, -s[b], s[b + 1])
-    add(s_, d, a, d)
+    s_d = ptr32(int(s) + (d << 2))
+    s_b = ptr32(int(s) + (b << 2))
+    put_m = -s_b[0]
+    put_e = s_b[1]
+    if not put_m:
+        s_d[0] = 0
+        s_d[1] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s_d[0] = put_m
+        s_d[1] = put_e
+    if s[a + 1] < s_d[1]:
+        add_smaller(s_, d, d, a)
+    else:
+        add_smaller(s_, d, a, d)
 
 
 @micropython.viper
-def quotient_q27(m: int, n: int) -> int:
-    """Return m / n in Q27, for 0 <= m < 2 n <= 2^29, n > 0."""
-    q = 0
-    i = 0
-    while i < 28:
-        q = q << 1
-        if m >= n:
-            m -= n
-            q += 1
-        m = m << 1
-        i += 1
-    return q
-
-
-@micropython.viper
-def divide(s_, d: int, a: int, b: int):
-    """Store a / b at d; 0 where b is 0."""
-    s = ptr32(s_)
-    m = s[a] if s[a] >= 0 else -s[a]
-    n = s[b] if s[b] >= 0 else -s[b]
+def divide(s: ptr32, d: int, a: int, b: int):
+    s_d = ptr32(int(s) + (d << 2))
+    s_a = ptr32(int(s) + (a << 2))
+    s_b = ptr32(int(s) + (b << 2))
+    m = s_a[0] if s_a[0] >= 0 else -s_a[0]
+    n = s_b[0] if s_b[0] >= 0 else -s_b[0]
     if n:
-        m = int(int(quotient_q27(m, n)))
+        quotient_q27_m = m
+        quotient_q27_q = 0
+        quotient_q27_i = 0
+        while quotient_q27_i < 28:
+            quotient_q27_q = quotient_q27_q << 1
+            if quotient_q27_m >= n:
+                quotient_q27_m = quotient_q27_m - n
+                quotient_q27_q = quotient_q27_q + 1
+            quotient_q27_m = quotient_q27_m << 1
+            quotient_q27_i = quotient_q27_i + 1
+        m = quotient_q27_q
     else:
         m = 0
-    if (s[a] ^ s[b]) < 0:
+    if (s_a[0] ^ s_b[0]) >> 30:
         m = -m
-    n = s[a + 1] - s[b + 1] - 27
-    put(s_, d, m, n)
-
-
-@micropython.viper
-def whole(s: ptr32, a: int, shift: int) -> int:
-    """Return the number at a times 2^shift as an integer, held within +-(2^29 - 1)."""
-    m = s[a]
-    shift += s[a + 1]
-    if shift > 1 and m != 0:
-        m = 0x1FFFFFFF if m > 0 else -0x1FFFFFFF
-    elif shift >= 0:
-        m = m << shift
-    elif shift > -30:
-        m = (m + (1 << (-1 - shift))) >> (0 - shift)
+    n = s_a[1] - s_b[1] - 27
+    put_m = m
+    put_e = n
+    if not put_m:
+        s_d[0] = 0
+        s_d[1] = -4096
     else:
-        m = 0
-    return m
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s_d[0] = put_m
+        s_d[1] = put_e
 
 
 @micropython.viper
-def root_of(s_, d: int, a: int):
-    """Store the square root of the number at a, not negative, at d, to 14 bits."""
-    s = ptr32(s_)
-    m = s[a]
-    e = s[a + 1]
-    if e & 1:
-        m = m >> 1
-        e += 1
-    m = int(int(root(m)))
-    put(s_, d, m, e >> 1)
+def pack(s: ptr32, d: int, a: int):
+    s_d = ptr32(int(s) + (d << 2))
+    s_a = ptr32(int(s) + (a << 2))
+    e = s_a[1] + 96
+    if not s_a[0] or e >> 30 or e > 127:
+        s_d[0] = 0
+    else:
+        s_d[0] = (s_a[0] >> 5 << 7) + e

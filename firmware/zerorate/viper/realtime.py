@@ -14,330 +14,339 @@ same motion in the same way.
 
 The document's own form has one step, counts every sign and ends an interval after so many
 sub-units; the default has a dead band, ends it after so many counted ones, doubles the step while
-all signs agree and halves it when the counter turns.
-"""
+all signs agree and halves it when the counter turns."""
 
 import micropython
 
-
-try:
-    from micropython import const
-except ImportError:
-
-    def const(value):
-        return value
-
-
 from .atan2 import atan2_q13
-from .fixed import scaled
-
-NOTHING_YET = const(0)
-COUNTING = const(1)
-NOT_ONE_G = const(2)
-GAP = const(3)
-
-_ELAPSED_US = const(0)
-_N = const(1)
-_ANGLE = const(2)
-_ANGLES = const(5)
-_FORCES = const(8)
-_LAST_ANGLE = const(11)
-_LAST_PAIR = const(14)
-_LAST_COUPLED = const(17)
-_LAST_GOOD = const(20)
-_UNIT = const(21)
-_COUNTER = const(22)
-_COUNTED = const(25)
-_OFFSET_Q8 = const(28)
-_QUALITY_Q8 = const(31)
-_STEP_Q8 = const(34)
-_OBSERVED = const(37)
-_SIGN = const(40)
-_TURNS = const(43)
-_RIPPLE_Q8 = const(46)
-_REASON = const(49)
-_SKIPPED = const(50)
-_MEAN_ALONG = const(51)
-
-_SUB_UNIT_US = const(0)
-_GAIN = const(1)
-_GAIN_SHIFT = const(2)
-_SHIFT = const(3)
-_UNITS = const(4)
-_THRESHOLD = const(5)
-_DEAD_Q13 = const(6)
-_COARSE_Q8 = const(7)
-_FINE_Q8 = const(8)
-_ONE_G_LSB = const(9)
-_LONGEST_GAP_US = const(10)
-_DOCUMENT = const(11)
-
-_UNKNOWN_Q8 = const(0x1FFFFFFF)
-_PI_Q13 = const(25736)
-_ONE_G_Q24 = const(0x1000000)
-_BAND_Q24 = const(0x300000)
-_HALF_Q24 = const(0x800000)
-_MOST_Q13 = const(0x7FFF)
 
 
 @micropython.viper
 def clear(s: ptr32, c: ptr32):
-    """Forget the offsets and everything counted."""
     i = 0
-    while i < _MEAN_ALONG + 3:
+    while i < 54:
         s[i] = 0
-        i += 1
+        i = i + 1
     i = 0
-    while i < 3:
-        s[_STEP_Q8 + i] = c[_COARSE_Q8]
-        s[_QUALITY_Q8 + i] = _UNKNOWN_Q8
-        i += 1
+    s[34] = c[7]
+    s[31] = 536870911
+    s[35] = c[7]
+    s[32] = 536870911
+    s[36] = c[7]
+    s[33] = 536870911
+    i = 3
 
 
 @micropython.viper
-def update(s_, c_, x_, dt_us: int) -> int:
-    """Take the raw frame `x`, dt_us after the one before; return 1 where an interval ended."""
+def update(s_, c_, x: ptr32, dt_us: int) -> int:
     s = ptr32(s_)
     c = ptr32(c_)
-    if dt_us <= 0 or dt_us > c[_LONGEST_GAP_US]:
-        s[_ELAPSED_US] = 0
-        s[_N] = 0
-        s[_LAST_GOOD] = 0
-        s[_REASON] = GAP
-        begin_unit(s_)
+    if dt_us <= 0 or dt_us > c[10]:
+        s[0] = 0
+        s[1] = 0
+        s[20] = 0
+        s[49] = 3
+        begin_unit_i = 0
+        s[1] = 0
+        while begin_unit_i < 3:
+            s[2 + begin_unit_i] = 0
+            s[5 + begin_unit_i] = 0
+            s[8 + begin_unit_i] = 0
+            begin_unit_i = begin_unit_i + 1
         return 0
-    gather(s_, x_, (dt_us * c[_GAIN]) >> c[_GAIN_SHIFT], c[_SHIFT])
-    s[_ELAPSED_US] += dt_us
-    s[_N] += 1
-    if s[_ELAPSED_US] < c[_SUB_UNIT_US]:
+    realtime_gather_factor = dt_us * c[1] >> c[2]
+    realtime_gather_shift = c[3]
+    realtime_gather_i = 0
+    while realtime_gather_i < 3:
+        realtime_gather_turned = (x[4 + realtime_gather_i] << 8) - s[28 + realtime_gather_i]
+        realtime_gather_scaled_b = realtime_gather_factor
+        realtime_gather_scaled_high = realtime_gather_scaled_b >> 15
+        realtime_gather_scaled_b = realtime_gather_scaled_b & 32767
+        realtime_gather_scaled_middle = (realtime_gather_turned >> 15) * realtime_gather_scaled_b + (realtime_gather_turned & 32767) * realtime_gather_scaled_high + ((realtime_gather_turned & 32767) * realtime_gather_scaled_b >> 15)
+        realtime_gather_scaled_high = (realtime_gather_turned >> 15) * realtime_gather_scaled_high
+        realtime_gather_turned = (realtime_gather_scaled_high << 30 - realtime_gather_shift) + (realtime_gather_scaled_middle >> realtime_gather_shift - 15)
+        realtime_gather_turned = realtime_gather_turned + s[2 + realtime_gather_i]
+        s[2 + realtime_gather_i] = realtime_gather_turned
+        realtime_gather_turned = realtime_gather_turned >> 9
+        s[5 + realtime_gather_i] += realtime_gather_turned
+        s[8 + realtime_gather_i] += x[realtime_gather_i]
+        realtime_gather_i = realtime_gather_i + 1
+    s[0] = s[0] + dt_us
+    s[1] = s[1] + 1
+    if s[0] < c[0]:
         return 0
-    s[_ELAPSED_US] -= c[_SUB_UNIT_US]
-    end_unit(s_, c_)
-    s[_UNIT] += 1
-    return int(int(end_interval(s_, c_)))
-
-
-@micropython.viper
-def gather(s: ptr32, x: ptr32, factor: int, shift: int):
-    """Add the frame to the sub-unit: the running angle, Q22 rad, its sum, Q13, and the forces."""
-    i = 0
-    while i < 3:
-        turned = (x[4 + i] << 8) - s[_OFFSET_Q8 + i]
-        turned = int(int(scaled(turned, factor, shift)))
-        turned += s[_ANGLE + i]
-        s[_ANGLE + i] = turned
-        turned = turned >> 9
-        s[_ANGLES + i] += turned
-        s[_FORCES + i] += x[i]
-        i += 1
-
-
-@micropython.viper
-def begin_unit(s: ptr32):
-    """Begin the sums of a sub-unit."""
-    i = 0
-    s[_N] = 0
-    while i < 3:
-        s[_ANGLE + i] = 0
-        s[_ANGLES + i] = 0
-        s[_FORCES + i] = 0
-        i += 1
-
-
-@micropython.viper
-def end_unit(s_, c_):
-    """Count the sub-unit's deviations, where the force is near 1 g."""
-    s = ptr32(s_)
-    c = ptr32(c_)
-    i = 0
-    square = 0
-    while i < 3:
-        # a mean rate of 8 g cannot be gravity, and would not fit
-        force = ((s[_FORCES + i] // s[_N]) << 12) // c[_ONE_G_LSB]
-        if force > 8191 or force < -8191:
-            force = 8191
-        s[_FORCES + i] = force
-        square += force * force
-        i += 1
-    i = _ONE_G_Q24 - square
-    if i > _BAND_Q24 or i < -_BAND_Q24:
-        s[_LAST_GOOD] = 0
-        s[_SKIPPED] += 1
-        s[_REASON] = NOT_ONE_G
+    s[0] = s[0] - c[0]
+    end_unit_i = 0
+    end_unit_square = 0
+    while end_unit_i < 3:
+        end_unit_force = (s[8 + end_unit_i] // s[1] << 12) // c[9]
+        if end_unit_force > 8191 or end_unit_force < -8191:
+            end_unit_force = 8191
+        s[8 + end_unit_i] = end_unit_force
+        end_unit_square = end_unit_force * end_unit_force + end_unit_square
+        end_unit_i = end_unit_i + 1
+    end_unit_i = 16777216 - end_unit_square
+    if end_unit_i > 3145728 or end_unit_i < -3145728:
+        s[20] = 0
+        s[50] = s[50] + 1
+        s[49] = 2
     else:
-        s[_REASON] = COUNTING
-        i = 0
-        while i < 3:
-            compare(s_, c_, i, square)
-            i += 1
-    begin_unit(s_)
+        s[49] = 1
+        end_unit_i = 0
+        while end_unit_i < 3:
+            end_unit_compare_square = end_unit_square
+            end_unit_compare_square = end_unit_compare_square - s[8 + end_unit_i] * s[8 + end_unit_i]
+            end_unit_compare_bit = 1 << end_unit_i
+            if end_unit_compare_square < 8388608 or int(too_far(s[2 + end_unit_i] >> 9)):
+                s[20] = 7 - end_unit_compare_bit & s[20]
+            else:
+                end_unit_compare_since_last_square = end_unit_compare_square >> 12
+                end_unit_compare_since_last_mean = s[5 + end_unit_i] // s[1]
+                end_unit_compare_since_last_deviation = end_unit_compare_since_last_mean - s[11 + end_unit_i] + s[14 + end_unit_i]
+                s[11 + end_unit_i] = end_unit_compare_since_last_mean - (s[2 + end_unit_i] >> 9)
+                end_unit_compare_since_last_pair_angle_q13_i = end_unit_i
+                end_unit_compare_since_last_pair_angle_q13_j = end_unit_compare_since_last_pair_angle_q13_i + 1 if end_unit_compare_since_last_pair_angle_q13_i < 2 else 0
+                end_unit_compare_since_last_pair_angle_q13_i = end_unit_compare_since_last_pair_angle_q13_i - 1 if end_unit_compare_since_last_pair_angle_q13_i > 0 else 2
+                end_unit_compare_since_last_mean = int(atan2_q13(s[8 + end_unit_compare_since_last_pair_angle_q13_j], s[8 + end_unit_compare_since_last_pair_angle_q13_i]))
+                s[14 + end_unit_i] = end_unit_compare_since_last_mean
+                end_unit_compare_since_last_deviation = end_unit_compare_since_last_deviation - end_unit_compare_since_last_mean
+                end_unit_compare_since_last_coupled_q13_square = end_unit_compare_since_last_square >> 2
+                end_unit_compare_since_last_coupled_q13_j = end_unit_i + 1 if end_unit_i < 2 else 0
+                end_unit_compare_since_last_coupled_q13_k = end_unit_i - 1 if end_unit_i > 0 else 2
+                end_unit_compare_since_last_coupled_q13_along_q12_held_angle = s[2 + end_unit_compare_since_last_coupled_q13_j] >> 9
+                if end_unit_compare_since_last_coupled_q13_along_q12_held_angle > 32767:
+                    end_unit_compare_since_last_coupled_q13_along_q12_held_result = 32767
+                elif end_unit_compare_since_last_coupled_q13_along_q12_held_angle < -32767:
+                    end_unit_compare_since_last_coupled_q13_along_q12_held_result = -32767
+                else:
+                    end_unit_compare_since_last_coupled_q13_along_q12_held_result = end_unit_compare_since_last_coupled_q13_along_q12_held_angle
+                end_unit_compare_since_last_coupled_q13_along_q12_first = end_unit_compare_since_last_coupled_q13_along_q12_held_result * s[8 + end_unit_compare_since_last_coupled_q13_j]
+                end_unit_compare_since_last_coupled_q13_along_q12_held_angle = s[2 + end_unit_compare_since_last_coupled_q13_k] >> 9
+                if end_unit_compare_since_last_coupled_q13_along_q12_held_angle > 32767:
+                    end_unit_compare_since_last_coupled_q13_along_q12_held_result = 32767
+                elif end_unit_compare_since_last_coupled_q13_along_q12_held_angle < -32767:
+                    end_unit_compare_since_last_coupled_q13_along_q12_held_result = -32767
+                else:
+                    end_unit_compare_since_last_coupled_q13_along_q12_held_result = end_unit_compare_since_last_coupled_q13_along_q12_held_angle
+                end_unit_compare_since_last_coupled_q13_k = end_unit_compare_since_last_coupled_q13_along_q12_held_result * s[8 + end_unit_compare_since_last_coupled_q13_k] + end_unit_compare_since_last_coupled_q13_along_q12_first >> 13
+                end_unit_compare_since_last_coupled_q13_j = s[51 + end_unit_i]
+                end_unit_compare_since_last_coupled_q13_j = ((end_unit_compare_since_last_coupled_q13_k << 8) - end_unit_compare_since_last_coupled_q13_j >> 5) + end_unit_compare_since_last_coupled_q13_j
+                s[51 + end_unit_i] = end_unit_compare_since_last_coupled_q13_j
+                end_unit_compare_since_last_coupled_q13_k = end_unit_compare_since_last_coupled_q13_k - (end_unit_compare_since_last_coupled_q13_j >> 8)
+                end_unit_compare_since_last_mean = (s[8 + end_unit_i] >> 1) * end_unit_compare_since_last_coupled_q13_k // end_unit_compare_since_last_coupled_q13_square
+                end_unit_compare_since_last_deviation = end_unit_compare_since_last_deviation - (end_unit_compare_since_last_mean + s[17 + end_unit_i] >> 1)
+                s[17 + end_unit_i] = end_unit_compare_since_last_mean
+                while end_unit_compare_since_last_deviation > 25736:
+                    end_unit_compare_since_last_deviation = end_unit_compare_since_last_deviation - 2 * 25736
+                while end_unit_compare_since_last_deviation < -25736:
+                    end_unit_compare_since_last_deviation = 2 * 25736 + end_unit_compare_since_last_deviation
+                end_unit_compare_square = end_unit_compare_since_last_deviation
+                if s[20] & end_unit_compare_bit:
+                    s[25 + end_unit_i] += 1
+                    s[37 + end_unit_i] += 1
+                    if end_unit_compare_square > c[6]:
+                        s[22 + end_unit_i] += 1
+                    elif end_unit_compare_square < -c[6]:
+                        s[22 + end_unit_i] -= 1
+                s[20] = s[20] | end_unit_compare_bit
+            end_unit_i = end_unit_i + 1
+    end_unit_begin_unit_i = 0
+    s[1] = 0
+    while end_unit_begin_unit_i < 3:
+        s[2 + end_unit_begin_unit_i] = 0
+        s[5 + end_unit_begin_unit_i] = 0
+        s[8 + end_unit_begin_unit_i] = 0
+        end_unit_begin_unit_i = end_unit_begin_unit_i + 1
+    s[21] = s[21] + 1
+    return int(end_interval(s_, c_))
 
 
 @micropython.viper
-def compare(s_, c_, i: int, square: int):
-    """Compare the axis' angle with its pair's since the sub-unit before, and count."""
-    s = ptr32(s_)
-    square -= s[_FORCES + i] * s[_FORCES + i]
+def compare(s: ptr32, c: ptr32, i: int, square: int):
+    s_i = ptr32(int(s) + (i << 2))
+    square = square - s_i[8] * s_i[8]
     bit = 1 << i
-    if square < _HALF_Q24 or int(int(too_far(s[_ANGLE + i] >> 9))):
-        s[_LAST_GOOD] = s[_LAST_GOOD] & (7 - bit)
+    if square < 8388608 or int(too_far(s_i[2] >> 9)):
+        s[20] = 7 - bit & s[20]
         return
-    square = int(int(since_last(s_, i, square >> 12)))
-    if s[_LAST_GOOD] & bit:
-        count(s_, c_, i, square)
-    s[_LAST_GOOD] = s[_LAST_GOOD] | bit
+    since_last_square = square >> 12
+    since_last_mean = s_i[5] // s[1]
+    since_last_deviation = since_last_mean - s_i[11] + s_i[14]
+    s_i[11] = since_last_mean - (s_i[2] >> 9)
+    since_last_pair_angle_q13_i = i
+    since_last_pair_angle_q13_j = since_last_pair_angle_q13_i + 1 if since_last_pair_angle_q13_i < 2 else 0
+    since_last_pair_angle_q13_i = since_last_pair_angle_q13_i - 1 if since_last_pair_angle_q13_i > 0 else 2
+    since_last_mean = int(atan2_q13(s[since_last_pair_angle_q13_j + 8], s[since_last_pair_angle_q13_i + 8]))
+    s_i[14] = since_last_mean
+    since_last_deviation = since_last_deviation - since_last_mean
+    since_last_coupled_q13_square = since_last_square >> 2
+    since_last_coupled_q13_j = i + 1 if i < 2 else 0
+    since_last_coupled_q13_k = i - 1 if i > 0 else 2
+    since_last_coupled_q13_along_q12_held_angle = s[since_last_coupled_q13_j + 2] >> 9
+    if since_last_coupled_q13_along_q12_held_angle > 32767:
+        since_last_coupled_q13_along_q12_held_result = 32767
+    elif since_last_coupled_q13_along_q12_held_angle < -32767:
+        since_last_coupled_q13_along_q12_held_result = -32767
+    else:
+        since_last_coupled_q13_along_q12_held_result = since_last_coupled_q13_along_q12_held_angle
+    since_last_coupled_q13_along_q12_first = since_last_coupled_q13_along_q12_held_result * s[since_last_coupled_q13_j + 8]
+    since_last_coupled_q13_along_q12_held_angle = s[since_last_coupled_q13_k + 2] >> 9
+    if since_last_coupled_q13_along_q12_held_angle > 32767:
+        since_last_coupled_q13_along_q12_held_result = 32767
+    elif since_last_coupled_q13_along_q12_held_angle < -32767:
+        since_last_coupled_q13_along_q12_held_result = -32767
+    else:
+        since_last_coupled_q13_along_q12_held_result = since_last_coupled_q13_along_q12_held_angle
+    since_last_coupled_q13_k = since_last_coupled_q13_along_q12_held_result * s[since_last_coupled_q13_k + 8] + since_last_coupled_q13_along_q12_first >> 13
+    since_last_coupled_q13_j = s_i[51]
+    since_last_coupled_q13_j = ((since_last_coupled_q13_k << 8) - since_last_coupled_q13_j >> 5) + since_last_coupled_q13_j
+    s_i[51] = since_last_coupled_q13_j
+    since_last_coupled_q13_k = since_last_coupled_q13_k - (since_last_coupled_q13_j >> 8)
+    since_last_mean = (s_i[8] >> 1) * since_last_coupled_q13_k // since_last_coupled_q13_square
+    since_last_deviation = since_last_deviation - (since_last_mean + s_i[17] >> 1)
+    s_i[17] = since_last_mean
+    while since_last_deviation > 25736:
+        since_last_deviation = since_last_deviation - 51472
+    while since_last_deviation < -25736:
+        since_last_deviation = since_last_deviation + 51472
+    square = since_last_deviation
+    if s[20] & bit:
+        s_i[25] = s_i[25] + 1
+        s_i[37] = s_i[37] + 1
+        if square > c[6]:
+            s_i[22] = s_i[22] + 1
+        elif square < -c[6]:
+            s_i[22] = s_i[22] - 1
+    s[20] = s[20] | bit
 
 
 @micropython.viper
 def too_far(turned: int) -> int:
-    """Return 1 if a sub-unit turned by 4 rad or more: its angles may wrap."""
-    if turned > _MOST_Q13 or turned < -_MOST_Q13:
+    if turned > 32767 or turned < -32767:
         return 1
     return 0
 
 
 @micropython.viper
-def since_last(s_, i: int, square: int) -> int:
-    """Return the gyroscope's mean turn since the last sub-unit less the pair's, Q13 rad."""
-    s = ptr32(s_)
-    mean = s[_ANGLES + i] // s[_N]
-    deviation = mean - s[_LAST_ANGLE + i] + s[_LAST_PAIR + i]
-    s[_LAST_ANGLE + i] = mean - (s[_ANGLE + i] >> 9)
-    mean = int(int(pair_angle_q13(s_, i)))
-    s[_LAST_PAIR + i] = mean
-    deviation -= mean
-    mean = int(int(coupled_q13(s_, i, square >> 2)))
-    deviation -= (mean + s[_LAST_COUPLED + i]) >> 1
-    s[_LAST_COUPLED + i] = mean
-    while deviation > _PI_Q13:
-        deviation -= 2 * _PI_Q13
-    while deviation < -_PI_Q13:
-        deviation += 2 * _PI_Q13
-    return deviation
-
-
-@micropython.viper
-def pair_angle_q13(s: ptr32, i: int) -> int:
-    """Return the angle of the mean force in the plane of the axis' pair."""
-    j = i + 1 if i < 2 else 0
-    i = i - 1 if i > 0 else 2
-    return int(int(atan2_q13(s[_FORCES + j], s[_FORCES + i])))
-
-
-@micropython.viper
-def along_q12(s: ptr32, j: int, k: int) -> int:
-    """Return how far the axes j and k turned about gravity in the sub-unit, Q12 rad."""
-    first = int(int(held(s[_ANGLE + j] >> 9))) * s[_FORCES + j]
-    return (first + int(int(held(s[_ANGLE + k] >> 9))) * s[_FORCES + k]) >> 13
-
-
-@micropython.viper
-def coupled_q13(s_, i: int, square: int) -> int:
-    """Return what the other axes turn the pair's angle by in a sub-unit; square: Q10.
-
-    Their mean over the last 16 s or so is left out: it is their bias, not a turn.
-    """
-    s = ptr32(s_)
-    j = i + 1 if i < 2 else 0
-    k = i - 1 if i > 0 else 2
-    k = int(int(along_q12(s_, j, k)))
-    j = s[_MEAN_ALONG + i]
-    j += ((k << 8) - j) >> 5
-    s[_MEAN_ALONG + i] = j
-    k -= j >> 8
-    return (k * (s[_FORCES + i] >> 1)) // square
-
-
-@micropython.viper
-def held(angle: int) -> int:
-    """Return the angle held within 4 rad."""
-    if angle > _MOST_Q13:
-        return _MOST_Q13
-    if angle < -_MOST_Q13:
-        return -_MOST_Q13
-    return angle
-
-
-@micropython.viper
-def count(s: ptr32, c: ptr32, i: int, deviation: int):
-    """Move the axis' counter by the deviation's sign."""
-    s[_COUNTED + i] += 1
-    s[_OBSERVED + i] += 1
-    if deviation > c[_DEAD_Q13]:
-        s[_COUNTER + i] += 1
-    elif deviation < -c[_DEAD_Q13]:
-        s[_COUNTER + i] -= 1
-
-
-@micropython.viper
-def end_interval(s_, c_) -> int:
-    """Step the offsets whose interval is over; return 1 if there was one.
-
-    The document's interval is so many sub-units; by default so many that were counted.
-    """
-    s = ptr32(s_)
-    c = ptr32(c_)
-    i = 0
+def end_interval(s: ptr32, c: ptr32) -> int:
     ended = 0
-    while i < 3:
-        if s[_COUNTED + i] >= c[_UNITS] or (c[_DOCUMENT] and s[_UNIT] >= c[_UNITS]):
-            end_axis(s_, c_, i)
-            ended = 1
-        i += 1
-    if s[_UNIT] >= c[_UNITS]:
-        s[_UNIT] = 0
+    if s[25] >= c[4] or (c[11] and s[21] >= c[4]):
+        if not c[11]:
+            end_axis_size_step_most = s[22]
+            end_axis_size_step_sign = 1
+            if end_axis_size_step_most >> 30:
+                end_axis_size_step_most = -end_axis_size_step_most
+                end_axis_size_step_sign = -1
+            if end_axis_size_step_most <= c[5]:
+                pass
+            else:
+                if not s[40] + end_axis_size_step_sign:
+                    s[43] = s[43] + 1
+                    if s[34] > c[8]:
+                        s[34] = s[34] >> 1
+                elif end_axis_size_step_most >= s[25] and s[34] < c[7] * 8:
+                    s[34] = s[34] << 1
+                s[40] = end_axis_size_step_sign
+        end_axis_realtime_step_moved = 0
+        if s[22] > c[5]:
+            end_axis_realtime_step_moved = s[34]
+            s[28] = s[28] + end_axis_realtime_step_moved
+        elif s[22] < -c[5]:
+            end_axis_realtime_step_moved = s[34]
+            s[28] = s[28] - end_axis_realtime_step_moved
+        s[46] = (end_axis_realtime_step_moved - s[46] >> 3) + s[46]
+        if s[43] < 3 and (not c[11]):
+            pass
+        else:
+            s[31] = (s[46] << 1) + s[34] + (c[8] << 2)
+        s[22] = 0
+        s[25] = 0
+        ended = 1
+    if s[26] >= c[4] or (c[11] and s[21] >= c[4]):
+        if not c[11]:
+            end_axis_size_step_most = s[23]
+            end_axis_size_step_sign = 1
+            if end_axis_size_step_most >> 30:
+                end_axis_size_step_most = -end_axis_size_step_most
+                end_axis_size_step_sign = -1
+            if end_axis_size_step_most <= c[5]:
+                pass
+            else:
+                if not s[41] + end_axis_size_step_sign:
+                    s[44] = s[44] + 1
+                    if s[35] > c[8]:
+                        s[35] = s[35] >> 1
+                elif end_axis_size_step_most >= s[26] and s[35] < c[7] * 8:
+                    s[35] = s[35] << 1
+                s[41] = end_axis_size_step_sign
+        end_axis_realtime_step_moved = 0
+        if s[23] > c[5]:
+            end_axis_realtime_step_moved = s[35]
+            s[29] = s[29] + end_axis_realtime_step_moved
+        elif s[23] < -c[5]:
+            end_axis_realtime_step_moved = s[35]
+            s[29] = s[29] - end_axis_realtime_step_moved
+        s[47] = (end_axis_realtime_step_moved - s[47] >> 3) + s[47]
+        if s[44] < 3 and (not c[11]):
+            pass
+        else:
+            s[32] = (s[47] << 1) + s[35] + (c[8] << 2)
+        s[23] = 0
+        s[26] = 0
+        ended = 1
+    if s[27] >= c[4] or (c[11] and s[21] >= c[4]):
+        if not c[11]:
+            end_axis_size_step_most = s[24]
+            end_axis_size_step_sign = 1
+            if end_axis_size_step_most >> 30:
+                end_axis_size_step_most = -end_axis_size_step_most
+                end_axis_size_step_sign = -1
+            if end_axis_size_step_most <= c[5]:
+                pass
+            else:
+                if not s[42] + end_axis_size_step_sign:
+                    s[45] = s[45] + 1
+                    if s[36] > c[8]:
+                        s[36] = s[36] >> 1
+                elif end_axis_size_step_most >= s[27] and s[36] < c[7] * 8:
+                    s[36] = s[36] << 1
+                s[42] = end_axis_size_step_sign
+        end_axis_realtime_step_moved = 0
+        if s[24] > c[5]:
+            end_axis_realtime_step_moved = s[36]
+            s[30] = s[30] + end_axis_realtime_step_moved
+        elif s[24] < -c[5]:
+            end_axis_realtime_step_moved = s[36]
+            s[30] = s[30] - end_axis_realtime_step_moved
+        s[48] = (end_axis_realtime_step_moved - s[48] >> 3) + s[48]
+        if s[45] < 3 and (not c[11]):
+            pass
+        else:
+            s[33] = (s[48] << 1) + s[36] + (c[8] << 2)
+        s[24] = 0
+        s[27] = 0
+        ended = 1
+    if s[21] >= c[4]:
+        s[21] = 0
     return ended
 
 
 @micropython.viper
-def end_axis(s_, c_, i: int):
-    """Step the axis' offset if its counter passed the threshold; begin its next interval."""
-    s = ptr32(s_)
-    c = ptr32(c_)
-    if c[_DOCUMENT] == 0:
-        size_step(s_, c_, i)
-    step(s_, c_, i)
-    judge(s_, c_, i)
-    s[_COUNTER + i] = 0
-    s[_COUNTED + i] = 0
-
-
-@micropython.viper
-def size_step(s: ptr32, c: ptr32, i: int):
-    """Double the step while all signs agree; halve it when the counter turns."""
-    most = s[_COUNTER + i]
-    sign = 1
-    if most < 0:
-        most = -most
-        sign = -1
-    if most <= c[_THRESHOLD]:
-        return
-    if s[_SIGN + i] + sign == 0:
-        s[_TURNS + i] += 1
-        if s[_STEP_Q8 + i] > c[_FINE_Q8]:
-            s[_STEP_Q8 + i] = s[_STEP_Q8 + i] >> 1
-    elif most >= s[_COUNTED + i] and s[_STEP_Q8 + i] < c[_COARSE_Q8] * 8:
-        s[_STEP_Q8 + i] = s[_STEP_Q8 + i] << 1
-    s[_SIGN + i] = sign
-
-
-@micropython.viper
 def step(s: ptr32, c: ptr32, i: int):
-    """Move the offset by its step if the counter passed the threshold."""
+    s_i = ptr32(int(s) + (i << 2))
     moved = 0
-    if s[_COUNTER + i] > c[_THRESHOLD]:
-        moved = s[_STEP_Q8 + i]
-        s[_OFFSET_Q8 + i] += moved
-    elif s[_COUNTER + i] < -c[_THRESHOLD]:
-        moved = s[_STEP_Q8 + i]
-        s[_OFFSET_Q8 + i] -= moved
-    # ripple: the mean step of the latest eight intervals or so
-    s[_RIPPLE_Q8 + i] += (moved - s[_RIPPLE_Q8 + i]) >> 3
+    if s_i[22] > c[5]:
+        moved = s_i[34]
+        s_i[28] = s_i[28] + moved
+    elif s_i[22] < -c[5]:
+        moved = s_i[34]
+        s_i[28] = s_i[28] - moved
+    s_i[46] = (moved - s_i[46] >> 3) + s_i[46]
 
 
 @micropython.viper
 def judge(s: ptr32, c: ptr32, i: int):
-    """Write one sigma: known once the signs have turned twice, then by the ripple's size."""
-    if s[_TURNS + i] < 3 and c[_DOCUMENT] == 0:
+    s_i = ptr32(int(s) + (i << 2))
+    if s_i[43] < 3 and (not c[11]):
         return
-    s[_QUALITY_Q8 + i] = (s[_RIPPLE_Q8 + i] << 1) + s[_STEP_Q8 + i] + (c[_FINE_Q8] << 2)
+    s_i[31] = (s_i[46] << 1) + s_i[34] + (c[8] << 2)

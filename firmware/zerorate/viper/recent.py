@@ -3,223 +3,177 @@
 
 import micropython
 
-
-# One number an axis, added to the learned curve: a random walk seen through the mean of every still
-# segment, weighed by a scalar Kalman filter. How fast it walks is learned from how far each segment
-# lies from what was expected. A segment that lies implausibly far is learned only when it insists:
-# a constant turn about the vertical looks just like it, but does not last.
-#
-# Variances are LSB^2 in Q8, the walk LSB^2/s in Q16.
-
-try:
-    from micropython import const
-except ImportError:
-
-    def const(value):
-        return value
-
-
 from .bias import curve_q8
 
-_TOTAL = const(0)
-_WEIGHT = const(1)
-_READING = const(12)
-_FROM = const(13)
-_BEFORE_Q8 = const(23)
-_FIT_LOW_Q4 = const(19)
-_FIT_HIGH_Q4 = const(20)
-_FIT_POINTS = const(22)
-_OFFSET_Q8 = const(24)
-_VARIANCE_Q8 = const(25)
-_WALK_Q16 = const(26)
-_SUSPECT = const(27)
-_AGE_MS = const(28)
-_KIND = const(30)
-
-_TEMP = const(47)
-_NOISE_Q8 = const(49)
-_LEARN_TEMP = const(52)
-# the fit's scratch words, free while a segment is absorbed
-_MEAN_NOISE_Q8 = const(80)
-_GROWN_Q8 = const(81)
-
-_FLOOR_Q8 = const(37)
-_GATE_Q4 = const(38)
-_INSIST = const(39)
-_WALK_LEAST_Q16 = const(40)
-_WALK_MOST_Q16 = const(41)
-_SLOPE_Q16 = const(50)
-
 
 @micropython.viper
-def grown_q8(s: ptr32, a: int) -> int:
-    """Return the offset's variance now: what it was, and what it has walked since."""
-    seconds = s[a + _AGE_MS] >> 10
-    if seconds > 2047:
-        seconds = 2047
-    return s[a + _VARIANCE_Q8] + (((s[a + _WALK_Q16] >> 4) * seconds) >> 4)
-
-
-@micropython.viper
-def beyond_q8(s: ptr32, c: ptr32, a: int) -> int:
-    """Return the variance that this temperature adds where it lies outside the fitted range."""
-    d = (s[_TEMP] << 4) - s[a + _FIT_HIGH_Q4]
-    if d < 0:
-        d = s[a + _FIT_LOW_Q4] - (s[_TEMP] << 4)
-    if d < 0 or s[a + _FIT_POINTS] == 0:
-        return 0
-    if d > 0x3FFFF:
-        d = 0x3FFFF
-    d = (d * c[_SLOPE_Q16]) >> 16
-    if d > 0x3FFF:
-        d = 0x3FFF
-    return d * d
-
-
-@micropython.viper
-def error_q4(s_, c_, a: int) -> int:
-    """Return how far the waiting segment lies from what was expected: LSB, Q4."""
-    s = ptr32(s_)
-    before = s[_LEARN_TEMP]
-    before = int(curve_q8(s_, c_, a, before))
-    s[a + _BEFORE_Q8] = before
-    mean = s[a + _TOTAL] % s[a + _WEIGHT]
-    mean = (mean << 8) // s[a + _WEIGHT]
-    mean += (s[a + _TOTAL] // s[a + _WEIGHT]) << 8
-    return (mean - before - s[a + _OFFSET_Q8]) >> 4
-
-
-@micropython.viper
-def plausible(s: ptr32, c: ptr32, a: int, error: int) -> int:
-    """Return 1 if the error is within the gate or six sigma, or has insisted long enough."""
-    far = error if error >= 0 else 0 - error
-    if far > 0x7FFF:
-        far = 0x7FFF
-    if far <= c[_GATE_Q4] or far * far // 36 < s[_GROWN_Q8] + s[_MEAN_NOISE_Q8]:
-        s[a + _SUSPECT] = 0
-        return 1
-    s[a + _SUSPECT] += 1
-    if s[a + _SUSPECT] < c[_INSIST]:
-        return 0
-    s[a + _SUSPECT] = 0
-    s[a + _OFFSET_Q8] += error << 4
-    return 2
-
-
-@micropython.viper
-def rewalk(s: ptr32, c: ptr32, a: int, excess: int):
-    """Learn the speed of the walk from the squared error that noise does not explain."""
-    age = (s[a + _AGE_MS] >> 6) + 1
-    if excess > 0x1FFFFF:
-        excess = 0x1FFFFF
-    if excess < -0x1FFFFF:
-        excess = -0x1FFFFF
-    speed = (excess << 8) // age
-    if speed > 0x1FFFFFF:
-        speed = 0x1FFFFFF
-    if speed < -0x1FFFFFF:
-        speed = -0x1FFFFFF
-    speed = speed << 4
-    if speed > c[_WALK_MOST_Q16]:
-        speed = c[_WALK_MOST_Q16]
-    # long gaps tell more of the walk than neighbours do
-    if age > 1023:
-        age = 1023
-    speed = (speed - s[a + _WALK_Q16]) >> 4
-    age = age * age
-    age = age // ((age + 0x100000) >> 10)
-    if age < 40:
-        age = 40
-    speed = (speed * age >> 10) << 4
-    s[a + _WALK_Q16] += speed
-    if s[a + _WALK_Q16] < c[_WALK_LEAST_Q16]:
-        s[a + _WALK_Q16] = c[_WALK_LEAST_Q16]
-
-
-@micropython.viper
-def gain_q14(variance: int, noise: int) -> int:
-    """Return variance / (variance + noise) in Q14."""
-    while variance + noise > 0x7FFF:
-        variance = variance >> 1
-        noise = noise >> 1
-    return (variance << 14) // (variance + noise + 1)
-
-
-@micropython.viper
-def follow(s_, c_, a: int, error: int):
-    """Move the offset towards the error by the Kalman gain, and learn the walk from the error."""
-    s = ptr32(s_)
-    if error > 16383:
-        error = 16383
-    if error < -16383:
-        error = -16383
-    excess = error * error - s[a + _VARIANCE_Q8]
-    excess -= s[_MEAN_NOISE_Q8]
-    rewalk(s_, c_, a, excess)
-    excess = int(gain_q14(s[_GROWN_Q8], s[_MEAN_NOISE_Q8]))
-    s[a + _OFFSET_Q8] += (excess * error) >> 10
-    error = (excess * (s[_MEAN_NOISE_Q8] & 0x3FFF)) >> 14
-    s[a + _VARIANCE_Q8] = excess * (s[_MEAN_NOISE_Q8] >> 14) + error
-
-
-@micropython.viper
-def adopt(s_, c: ptr32, a: int, error: int) -> int:
-    """Let what another source found be the level if it is better known than the level is.
-
-    That source is a filter itself: to weigh its results into another one counted them twice.
-    """
-    s = ptr32(s_)
-    noise = (s[a + _READING] >> 3) + c[_FLOOR_Q8]
-    if s[a + _KIND] == 0:
-        s[a + _SUSPECT] = -1
-    elif noise >= int(grown_q8(s_, a)):
-        return 1
-    else:
-        s[a + _OFFSET_Q8] += error << 4
-    s[a + _FROM] = s[a + _READING] & 7
-    s[a + _VARIANCE_Q8] = noise
-    s[a + _AGE_MS] = 0
-    return 1
+def let_learn(s: ptr32, c: ptr32, a: int):
+    s_a = ptr32(int(s) + (a << 2))
+    if not a - c[0] and s[54] < c[39]:
+        s[54] = s[54] + 1
+    level_q8_k = c[0] - 3 + (a - c[0]) // c[13]
+    s_level_q8_k = ptr32(int(s) + (level_q8_k << 2))
+    if s[54] < c[39]:
+        level_q8_off = s_a[24] >> 4
+        if level_q8_off > 16383:
+            level_q8_off = 16383
+        if level_q8_off < -16383:
+            level_q8_off = -16383
+        level_q8_usual = level_q8_off * level_q8_off
+        if level_q8_usual < c[45]:
+            level_q8_usual = c[45]
+        level_q8_beyond_q8_d = (s[47] << 4) - s_a[20]
+        if level_q8_beyond_q8_d >> 30:
+            level_q8_beyond_q8_d = s_a[19] - (s[47] << 4)
+        if level_q8_beyond_q8_d >> 30 or not s_a[22]:
+            level_q8_beyond_q8_result = 0
+        else:
+            if level_q8_beyond_q8_d > 262143:
+                level_q8_beyond_q8_d = 262143
+            level_q8_beyond_q8_d = level_q8_beyond_q8_d * c[50] >> 16
+            if level_q8_beyond_q8_d > 16383:
+                level_q8_beyond_q8_d = 16383
+            level_q8_beyond_q8_result = level_q8_beyond_q8_d * level_q8_beyond_q8_d
+        s_level_q8_k[0] = level_q8_beyond_q8_result
+        level_q8_gain_q14_variance = s_level_q8_k[0]
+        level_q8_gain_q14_noise = level_q8_usual
+        while level_q8_gain_q14_variance + level_q8_gain_q14_noise > 32767:
+            level_q8_gain_q14_variance = level_q8_gain_q14_variance >> 1
+            level_q8_gain_q14_noise = level_q8_gain_q14_noise >> 1
+        level_q8_usual = (level_q8_gain_q14_variance << 14) // (level_q8_gain_q14_variance + level_q8_gain_q14_noise + 1)
+        s_level_q8_k[0] = s_a[24] - (level_q8_off * level_q8_usual >> 10)
+    off = s_level_q8_k[0]
+    n = s_a[1]
+    s_a[0] = s_a[0] - ((off >> 8) * n + ((off & 255) * n + 128 >> 8))
 
 
 @micropython.viper
 def absorb(s_, c_, a: int) -> int:
-    """Take the waiting segment into the offset; return 1 if the estimators may learn it.
-
-    The very first one is all curve and no offset.
-    """
     s = ptr32(s_)
     c = ptr32(c_)
-    s[_MEAN_NOISE_Q8] = s[_NOISE_Q8] // (3 * s[a + _WEIGHT]) + c[_FLOOR_Q8]
-    error = int(error_q4(s_, c_, a))
-    if s[a + _READING]:
-        return int(adopt(s_, c_, a, error))
-    s[a + _FROM] = 0
-    if s[a + _KIND] == 0:
-        s[a + _SUSPECT] = -1
-        s[a + _OFFSET_Q8] = 0
-        s[a + _VARIANCE_Q8] = s[_MEAN_NOISE_Q8]
-        s[a + _AGE_MS] = 0
-        return 1
-    s[_GROWN_Q8] = int(grown_q8(s_, a))
-    verdict = int(plausible(s_, c_, a, error))
-    if verdict == 0:
+    s_a = ptr32(int(s) + (a << 2))
+    s[80] = s[49] // (3 * s_a[1]) + c[37]
+    error_q4_before = s[52]
+    error_q4_before = int(curve_q8(s_, c_, a, error_q4_before))
+    s_a[23] = error_q4_before
+    error_q4_mean = s_a[0] % s_a[1]
+    error_q4_mean = (error_q4_mean << 8) // s_a[1]
+    error_q4_mean = (s_a[0] // s_a[1] << 8) + error_q4_mean
+    error = error_q4_mean - error_q4_before - s_a[24] >> 4
+    while True:
+        if s_a[12]:
+            recent_believe_adopt_noise = (s_a[12] >> 3) + c[37]
+            if not s_a[30]:
+                s_a[27] = -1
+                s[54] = c[39]
+            else:
+                recent_believe_adopt_grown_q8_seconds = s_a[28] >> 10
+                if recent_believe_adopt_grown_q8_seconds > 2047:
+                    recent_believe_adopt_grown_q8_seconds = 2047
+                recent_believe_adopt_grown_q8_result = ((s_a[26] >> 4) * recent_believe_adopt_grown_q8_seconds >> 4) + s_a[25]
+                if recent_believe_adopt_noise >= recent_believe_adopt_grown_q8_result and s_a[13] - (s_a[12] & 7):
+                    recent_believe_result = 1
+                    break
+                else:
+                    s_a[24] = (error << 4) + s_a[24]
+            s_a[13] = s_a[12] & 7
+            s_a[25] = recent_believe_adopt_noise
+            s_a[28] = 0
+            recent_believe_result = 1
+            break
+        s_a[13] = 0
+        if not s_a[30]:
+            s_a[27] = -1
+            s[54] = c[39]
+            s_a[24] = 0
+            s_a[25] = s[80]
+            s_a[28] = 0
+            recent_believe_result = 1
+            break
+        recent_believe_grown_q8_seconds = s_a[28] >> 10
+        if recent_believe_grown_q8_seconds > 2047:
+            recent_believe_grown_q8_seconds = 2047
+        recent_believe_grown_q8_result = ((s_a[26] >> 4) * recent_believe_grown_q8_seconds >> 4) + s_a[25]
+        s[81] = recent_believe_grown_q8_result
+        recent_believe_plausible_far = error if error >= 0 else 0 - error
+        if recent_believe_plausible_far > 32767:
+            recent_believe_plausible_far = 32767
+        if recent_believe_plausible_far <= c[38]:
+            recent_believe_plausible_far = 0
+        recent_believe_plausible_beyond_q8_d = (s[47] << 4) - s_a[20]
+        if recent_believe_plausible_beyond_q8_d >> 30:
+            recent_believe_plausible_beyond_q8_d = s_a[19] - (s[47] << 4)
+        if recent_believe_plausible_beyond_q8_d >> 30 or not s_a[22]:
+            recent_believe_plausible_beyond_q8_result = 0
+        else:
+            if recent_believe_plausible_beyond_q8_d > 262143:
+                recent_believe_plausible_beyond_q8_d = 262143
+            recent_believe_plausible_beyond_q8_d = recent_believe_plausible_beyond_q8_d * c[50] >> 16
+            if recent_believe_plausible_beyond_q8_d > 16383:
+                recent_believe_plausible_beyond_q8_d = 16383
+            recent_believe_plausible_beyond_q8_result = recent_believe_plausible_beyond_q8_d * recent_believe_plausible_beyond_q8_d
+        if recent_believe_plausible_far * recent_believe_plausible_far // 36 <= s[81] + s[80] + recent_believe_plausible_beyond_q8_result:
+            s_a[27] = 0
+            recent_believe_verdict = 1
+        else:
+            s_a[27] = s_a[27] + 1
+            if s_a[27] < c[39]:
+                recent_believe_verdict = 0
+            else:
+                s_a[27] = 0
+                s_a[24] = (error << 4) + s_a[24]
+                recent_believe_verdict = 2
+        if not recent_believe_verdict:
+            recent_believe_result = 0
+            break
+        if not recent_believe_verdict - 1:
+            recent_believe_follow_error = error
+            if recent_believe_follow_error > 16383:
+                recent_believe_follow_error = 16383
+            if recent_believe_follow_error < -16383:
+                recent_believe_follow_error = -16383
+            recent_believe_follow_excess = recent_believe_follow_error * recent_believe_follow_error - s_a[25]
+            recent_believe_follow_excess = recent_believe_follow_excess - s[80]
+            recent_believe_follow_rewalk_excess = recent_believe_follow_excess
+            recent_believe_follow_rewalk_age = (s_a[28] >> 6) + 1
+            if recent_believe_follow_rewalk_excess > 2097151:
+                recent_believe_follow_rewalk_excess = 2097151
+            if recent_believe_follow_rewalk_excess < -2097151:
+                recent_believe_follow_rewalk_excess = -2097151
+            recent_believe_follow_rewalk_speed = (recent_believe_follow_rewalk_excess << 8) // recent_believe_follow_rewalk_age
+            if recent_believe_follow_rewalk_speed > 33554431:
+                recent_believe_follow_rewalk_speed = 33554431
+            if recent_believe_follow_rewalk_speed < -33554431:
+                recent_believe_follow_rewalk_speed = -33554431
+            recent_believe_follow_rewalk_speed = recent_believe_follow_rewalk_speed << 4
+            if recent_believe_follow_rewalk_speed > c[41]:
+                recent_believe_follow_rewalk_speed = c[41]
+            if recent_believe_follow_rewalk_age > 1023:
+                recent_believe_follow_rewalk_age = 1023
+            recent_believe_follow_rewalk_speed = recent_believe_follow_rewalk_speed - s_a[26] >> 4
+            recent_believe_follow_rewalk_age = recent_believe_follow_rewalk_age * recent_believe_follow_rewalk_age
+            recent_believe_follow_rewalk_age = recent_believe_follow_rewalk_age // (recent_believe_follow_rewalk_age + 1048576 >> 10)
+            if recent_believe_follow_rewalk_age < 40:
+                recent_believe_follow_rewalk_age = 40
+            recent_believe_follow_rewalk_speed = recent_believe_follow_rewalk_speed * recent_believe_follow_rewalk_age >> 10 << 4
+            s_a[26] = s_a[26] + recent_believe_follow_rewalk_speed
+            if s_a[26] < c[40]:
+                s_a[26] = c[40]
+            recent_believe_follow_gain_q14_variance = s[81]
+            recent_believe_follow_gain_q14_noise = s[80]
+            while recent_believe_follow_gain_q14_variance + recent_believe_follow_gain_q14_noise > 32767:
+                recent_believe_follow_gain_q14_variance = recent_believe_follow_gain_q14_variance >> 1
+                recent_believe_follow_gain_q14_noise = recent_believe_follow_gain_q14_noise >> 1
+            recent_believe_follow_excess = (recent_believe_follow_gain_q14_variance << 14) // (recent_believe_follow_gain_q14_variance + recent_believe_follow_gain_q14_noise + 1)
+            s_a[24] = (recent_believe_follow_excess * recent_believe_follow_error >> 10) + s_a[24]
+            recent_believe_follow_error = (s[80] & 16383) * recent_believe_follow_excess >> 14
+            s_a[25] = (s[80] >> 14) * recent_believe_follow_excess + recent_believe_follow_error
+        else:
+            s_a[25] = s[80]
+        s_a[28] = 0
+        recent_believe_result = 1
+        break
+    if not recent_believe_result:
         return 0
-    if verdict == 1:
-        follow(s_, c_, a, error)
-    else:
-        s[a + _VARIANCE_Q8] = s[_MEAN_NOISE_Q8]
-    s[a + _AGE_MS] = 0
+    let_learn(s_, c_, a)
     return 1
-
-
-@micropython.viper
-def hand_over(s_, c_, a: int):
-    """Keep the level: what the curve has just learned at this temperature leaves the offset."""
-    s = ptr32(s_)
-    if s[a + _SUSPECT] < 0:
-        s[a + _SUSPECT] = 0
-    else:
-        after = s[_LEARN_TEMP]
-        after = int(curve_q8(s_, c_, a, after))
-        s[a + _OFFSET_Q8] += s[a + _BEFORE_Q8] - after

@@ -9,137 +9,55 @@ gravity in the level frame, the heading from the turn about it. The window is ta
 shapes 7 t^2 - 1 and 3 t^3 - t (orthogonal under that taper) measures the noise the slope has.
 
 Sums of one component, 21 words: 6 of M M', 3 of M y, 3 of M, 1 of y, 3 + 3 of M and 1 + 1 of y
-with the two shapes.
-"""
+with the two shapes."""
 
 import micropython
 
 
-try:
-    from micropython import const
-except ImportError:
-
-    def const(value):
-        return value
-
-
-from .fixed import scaled
-
-_TOTAL = const(18)
-_SUM_R = const(42)
-_WEIGHT = const(60)
-_SECOND = const(61)
-_THIRD = const(62)
-_M = const(202)
-_WM = const(205)
-_CENTRE = const(213)
-
-_S = const(6)
-_A = const(9)
-_MEAN = const(12)
-_SHAPES_M = const(13)
-_SHAPES_Y = const(19)
-
-
 @micropython.viper
-def taper(s: ptr32, k: int, stage: int, even: int):
-    """Write the weight and the two shapes times the taper of node k of 2^stage, Q10.
-
-    even: the weight itself is 1, as in the document; the shapes stay tapered.
-    """
-    t = (2 * k + 1 - (1 << stage)) << (10 - stage)
-    k = (t * t) >> 10
-    stage = ((1024 - k) * (1024 - k)) >> 10
-    s[_SECOND] = ((7 * k - 1024) * stage) >> 10
-    s[_THIRD] = ((((3 * k - 1024) * t) >> 10) * stage) >> 10
-    if even:
-        stage = 1024
-    s[_WEIGHT] = stage
-    s[_TOTAL] += stage
-
-
-@micropython.viper
-def regressors(s: ptr32, row: int, shift: int):
-    """Write a row of M and the weight times it to scratch words."""
+def centre(s: ptr32, a: int, row: int, shift: int):
+    s_a = ptr32(int(s) + (a << 2))
+    mean_total = s_a[12]
+    mean_result = (mean_total << 8) // (s[18] >> 2)
+    s_a[12] = mean_result
     i = 0
+    row = row + 213
     while i < 3:
-        m = (s[row + i] + (1 << (shift - 1))) >> shift
-        s[_M + i] = m
-        s[_WM + i] = (s[_WEIGHT] * m + 512) >> 10
-        i += 1
-
-
-@micropython.viper
-def first_sums(s: ptr32, a: int, y: int):
-    """Add a node to the sums at a that are linear in M and y, y in Q12 within 15 bits."""
-    i = 0
-    while i < 3:
-        s[a + _S + i] += (s[_WM + i] * y + 512) >> 10
-        s[a + _A + i] += s[_WM + i]
-        s[a + _SHAPES_M + i] += (s[_SECOND] * s[_M + i] + 512) >> 10
-        s[a + _SHAPES_M + 3 + i] += (s[_THIRD] * s[_M + i] + 512) >> 10
-        i += 1
-    s[a + _MEAN] += (s[_WEIGHT] * y + 512) >> 10
-    s[a + _SHAPES_Y] += (s[_SECOND] * y + 512) >> 10
-    s[a + _SHAPES_Y + 1] += (s[_THIRD] * y + 512) >> 10
-
-
-@micropython.viper
-def second_sums(s: ptr32, a: int):
-    """Add a node to the six sums at a that are square in M."""
-    i = 0
-    while i < 3:
-        k = i
-        while k < 3:
-            s[a] += (s[_WM + i] * s[_M + k] + 512) >> 10
-            a += 1
-            k += 1
-        i += 1
-
-
-@micropython.viper
-def mean(s: ptr32, total: int) -> int:
-    """Return the weighted mean whose weighted sum is `total`, of 21 bits."""
-    return (total << 8) // (s[_TOTAL] >> 2)
-
-
-@micropython.viper
-def refer(s: ptr32, d: int, a: int, mean: int):
-    """Take (the word at a times mean) >> 10 from the word at d."""
-    a = int(int(scaled(s[a] << 5, mean, 15)))
-    s[d] -= a
-
-
-@micropython.viper
-def centre(s_, a: int, row: int, shift: int):
-    """Refer the sums at a to the weighted means, and the next traversal's M to its mean.
-
-    The mean of y replaces its sum. The row of the matrix at _CENTRE is where M begins.
-    """
-    s = ptr32(s_)
-    s[a + _MEAN] = int(int(mean(s_, s[a + _MEAN])))
-    i = 0
-    row += _CENTRE
-    while i < 3:
-        s[_M + i] = int(int(mean(s_, s[a + _A + i])))
-        s[row + i] = s[row + i] - (s[_M + i] << shift)
-        i += 1
+        mean_total = s[a + 9 + i]
+        mean_result = (mean_total << 8) // (s[18] >> 2)
+        s[202 + i] = mean_result
+        s[row + i] = s[row + i] - (s[202 + i] << shift)
+        i = i + 1
     i = 0
     row = a
-    s[_WM] = s[a + _MEAN]
+    s[205] = s_a[12]
     while i < 3:
-        shift = a + _A + i
-        refer(s_, shift - 3, shift, s[_WM])
-        row = int(int(centre_row(s_, shift, row, i)))
-        i += 1
-
-
-@micropython.viper
-def centre_row(s_, a: int, h: int, k: int) -> int:
-    """Refer a row of the square sums, from word h on, to the means; return where the next is."""
-    s = ptr32(s_)
-    while k < 3:
-        refer(s_, h, a, s[_M + k])
-        h += 1
-        k += 1
-    return h
+        shift = a + 9 + i
+        refer_d = shift - 3
+        refer_a = shift
+        refer_mean = s[205]
+        refer_scaled_a = s[refer_a] << 5
+        refer_scaled_b = refer_mean
+        refer_scaled_high = refer_scaled_b >> 15
+        refer_scaled_b = refer_scaled_b & 32767
+        refer_scaled_middle = (refer_scaled_a >> 15) * refer_scaled_b + (refer_scaled_a & 32767) * refer_scaled_high + ((refer_scaled_a & 32767) * refer_scaled_b >> 15)
+        refer_scaled_high = (refer_scaled_a >> 15) * refer_scaled_high
+        refer_a = (refer_scaled_high << 30 - 15) + (refer_scaled_middle >> 15 - 15)
+        s[refer_d] = s[refer_d] - refer_a
+        centre_row_h = row
+        centre_row_k = i
+        while centre_row_k < 3:
+            centre_row_refer_a = shift
+            centre_row_refer_mean = s[202 + centre_row_k]
+            centre_row_refer_scaled_a = s[centre_row_refer_a] << 5
+            centre_row_refer_scaled_b = centre_row_refer_mean
+            centre_row_refer_scaled_high = centre_row_refer_scaled_b >> 15
+            centre_row_refer_scaled_b = centre_row_refer_scaled_b & 32767
+            centre_row_refer_scaled_middle = (centre_row_refer_scaled_a >> 15) * centre_row_refer_scaled_b + (centre_row_refer_scaled_a & 32767) * centre_row_refer_scaled_high + ((centre_row_refer_scaled_a & 32767) * centre_row_refer_scaled_b >> 15)
+            centre_row_refer_scaled_high = (centre_row_refer_scaled_a >> 15) * centre_row_refer_scaled_high
+            centre_row_refer_a = (centre_row_refer_scaled_high << 30 - 15) + (centre_row_refer_scaled_middle >> 15 - 15)
+            s[centre_row_h] = s[centre_row_h] - centre_row_refer_a
+            centre_row_h = centre_row_h + 1
+            centre_row_k = centre_row_k + 1
+        row = centre_row_h
+        i = i + 1

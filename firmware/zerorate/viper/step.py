@@ -3,345 +3,727 @@
 
 import micropython
 
-
-# Learning is spread over the samples of the next window, one small piece a sample, so that no
-# sample waits for a whole refit.
-
-try:
-    from micropython import const
-except ImportError:
-
-    def const(value):
-        return value
-
-
 from .bias import curve_q8
-from .estimators import learn
-from .fit import centre, lean, settle, weigh
-from .fixed import root
-from .guard import check
-from .recent import absorb, beyond_q8, grown_q8, hand_over
-from .stillness import gather, judge
-
-_SCRATCH = const(7)
-_GOOD = const(8)
-_ELAPSED_US = const(16)
-_TOTALS = const(42)
-_STILLNESS = const(46)
-_SEGMENT = const(48)
-_TEMP_TOTAL = const(45)
-_TEMP = const(47)
-_LEARN_TEMP = const(52)
-_PHASE = const(53)
-_OUT_Q8 = const(55)
-_CARRY_Q8 = const(58)
-_EFFECT_Q8 = const(61)
-_TARGET_Q8 = const(67)
-_QUALITY_Q8 = const(70)
-_SOURCE = const(73)
-
-_TOTAL = const(0)
-_WEIGHT = const(1)
-_READING = const(12)
-_FROM = const(13)
-_OFFSET_Q8 = const(24)
-_AGE_MS = const(28)
-_KIND = const(30)
-_FIT_TEMP = const(31)
-
-_AXES = const(0)
-_SHIFT = const(4)
-_SEGMENTS = const(5)
-_SLEW_Q8 = const(11)
-_PIECES = const(12)
-_AXIS_WORDS = const(13)
-_ALL = const(25)
-_FORETOLD_Q8 = const(44)
-_FLOOR_Q8 = const(37)
-_STALE_LSB = const(43)
-_MOST_SIGMA_Q6 = const(48)
-_FULL_WEIGHT_Q12 = const(49)
-_EVERY = const(46)
-
-
-@micropython.viper
-def correct(s: ptr32, c: ptr32, x: ptr32):
-    """Subtract the bias from the frame in place.
-
-    What rounding to whole LSB leaves over is carried to the next sample, so that no angle is lost
-    in the sum. The bias follows its target no faster than the slew limit.
-    """
-    i = 0
-    while i < 3:
-        d = s[_TARGET_Q8 + i] - s[_OUT_Q8 + i]
-        if d > c[_SLEW_Q8]:
-            d = c[_SLEW_Q8]
-        elif d < -c[_SLEW_Q8]:
-            d = -c[_SLEW_Q8]
-        s[_OUT_Q8 + i] += d
-        d = (x[4 + i] << 8) - s[_OUT_Q8 + i] - s[_EFFECT_Q8 + i] + s[_CARRY_Q8 + i]
-        x[4 + i] = (d + 128) >> 8
-        s[_CARRY_Q8 + i] = d - (x[4 + i] << 8)
-        i += 1
-
-
-@micropython.viper
-def publish(s_, c_, a: int, axis: int):
-    """Write the axis' bias, source and quality for the temperature of the latest window."""
-    s = ptr32(s_)
-    c = ptr32(c_)
-    bias = s[_TEMP]
-    bias = int(curve_q8(s_, c_, a, bias)) + s[a + _OFFSET_Q8]
-    if s[a + _KIND] == 0:
-        return
-    s[_TARGET_Q8 + axis] = bias
-    if s[_SOURCE + axis] == 0:
-        s[_OUT_Q8 + axis] = bias
-    s[_SOURCE + axis] = s[a + _FROM] if s[a + _FROM] else s[a + _KIND]
-    # flicker noise is common to all rests: no mean of theirs is better known than that
-    bias = int(grown_q8(s_, a)) + (c[_FLOOR_Q8] << 1)
-    bias += int(beyond_q8(s_, c_, a))
-    if bias < 0x3FFFFF:
-        bias = int(root(bias << 8))
-    else:
-        bias = int(root(bias)) << 4
-    s[_QUALITY_Q8 + axis] = bias
-
-
-@micropython.viper
-def stale(s: ptr32, c: ptr32, a: int) -> int:
-    """Return 1 if the line must be fitted again: something learned, or the temperature moved."""
-    d = s[_TEMP] - s[a + _FIT_TEMP]
-    if s[a + _WEIGHT] or c[_EVERY] or d > c[_STALE_LSB] or d < -c[_STALE_LSB]:
-        s[a + _FIT_TEMP] = s[_TEMP]
-        return 1
-    return 0
-
-
-@micropython.viper
-def refit(s_, c_, a: int, piece: int):
-    """Do one piece of the axis' line: 2 weighs, then two points a piece, then it settles."""
-    c = ptr32(c_)
-    half = c[_ALL] >> 1
-    piece -= 2
-    if piece == 0:
-        weigh(s_, c_, a)
-        return
-    i = ((piece - 1) << 1) + 1
-    if piece <= half:
-        centre(s_, c_, a, i)
-        i += 1
-        if i < c[_ALL]:
-            centre(s_, c_, a, i)
-        return
-    i -= half << 1
-    lean(s_, c_, a, i)
-    i += 1
-    if i < c[_ALL]:
-        lean(s_, c_, a, i)
-    if piece == half << 1:
-        settle(s_, c_, a)
+from .estimators import feed
+from .estimators import learn_here
+from .fit import draw_line
+from .recent import absorb
 
 
 @micropython.viper
 def advance(s_, c_):
-    """Do the next piece of work: an axis absorbs, learns, refits its line and publishes."""
     s = ptr32(s_)
     c = ptr32(c_)
-    last = ((c[_ALL] >> 1) << 1) + 3
-    axis = (s[_PHASE] - 1) // (last + 1)
-    piece = (s[_PHASE] - 1) % (last + 1)
-    a = c[_AXES] + axis * c[_AXIS_WORDS]
-    s[_PHASE] += 1
-    if piece == 0:
-        if s[a + _WEIGHT] and int(absorb(s_, c_, a)) == 0:
-            s[a + _WEIGHT] = 0
-    elif piece == 1:
-        if s[a + _WEIGHT]:
-            learn(s_, c_, a)
-        if int(stale(s_, c_, a)) == 0:
-            s[_PHASE] += last - 2
-    elif piece < last:
-        refit(s_, c_, a, piece)
-    else:
-        if s[a + _WEIGHT] and c[_EVERY] == 0:
-            hand_over(s_, c_, a)
-        s[a + _WEIGHT] = 0
-        publish(s_, c_, a, axis)
-        if axis == 2:
-            s[_PHASE] = 0
+    axis = (s[53] - 1) // 3
+    s_axis = ptr32(int(s) + (axis << 2))
+    piece = (s[53] - 1) % 3
+    busy = 0
+    while not busy and axis < 3:
+        a = axis * c[13] + c[0]
+        s_a = ptr32(int(s) + (a << 2))
+        if not piece:
+            busy = s_a[1]
+            if busy:
+                if not int(absorb(s_, c_, a)):
+                    s_a[1] = 0
+            if s_a[1]:
+                learn_anywhere_temp = s[52]
+                if learn_anywhere_temp < s_a[3]:
+                    s_a[3] = learn_anywhere_temp
+                if learn_anywhere_temp > s_a[4]:
+                    s_a[4] = learn_anywhere_temp
+                feed(s_, c_, a, a + 32)
+        elif not piece - 1:
+            learn_here(s_, c_, a)
+            busy = 1
+        if s_a[1] and piece < 2:
+            piece = piece + 1
+        else:
+            stale_d = s[47] - s_a[31]
+            if s_a[1] or c[46] or stale_d > c[43] or (stale_d < -c[43]):
+                s_a[31] = s[47]
+                stale_result = 1
+            else:
+                stale_result = 0
+            if stale_result:
+                draw_line(s_, c_, a)
+                busy = 1
+            if s_a[1] and (not c[46]):
+                if s_a[27] >> 30:
+                    s_a[27] = 0
+                else:
+                    hand_over_after = s[52]
+                    hand_over_after = int(curve_q8(s_, c_, a, hand_over_after))
+                    s_a[24] = s_a[23] - hand_over_after + s_a[24]
+            s_a[1] = 0
+            step_publish_bias = s[47]
+            step_publish_bias = int(curve_q8(s_, c_, a, step_publish_bias)) + s_a[24]
+            if not s_a[30]:
+                pass
+            else:
+                s_axis[67] = step_publish_bias
+                if not s_axis[73]:
+                    s_axis[55] = step_publish_bias
+                s_axis[73] = s_a[13] if s_a[13] else s_a[30]
+                step_publish_grown_q8_seconds = s_a[28] >> 10
+                if step_publish_grown_q8_seconds > 2047:
+                    step_publish_grown_q8_seconds = 2047
+                step_publish_grown_q8_result = ((s_a[26] >> 4) * step_publish_grown_q8_seconds >> 4) + s_a[25]
+                step_publish_bias = (c[37] << 1) + step_publish_grown_q8_result
+                step_publish_beyond_q8_d = (s[47] << 4) - s_a[20]
+                if step_publish_beyond_q8_d >> 30:
+                    step_publish_beyond_q8_d = s_a[19] - (s[47] << 4)
+                if step_publish_beyond_q8_d >> 30 or not s_a[22]:
+                    step_publish_beyond_q8_result = 0
+                else:
+                    if step_publish_beyond_q8_d > 262143:
+                        step_publish_beyond_q8_d = 262143
+                    step_publish_beyond_q8_d = step_publish_beyond_q8_d * c[50] >> 16
+                    if step_publish_beyond_q8_d > 16383:
+                        step_publish_beyond_q8_d = 16383
+                    step_publish_beyond_q8_result = step_publish_beyond_q8_d * step_publish_beyond_q8_d
+                step_publish_bias = step_publish_bias + step_publish_beyond_q8_result
+                if step_publish_bias < 4194303:
+                    step_publish_root_square = step_publish_bias << 8
+                    step_publish_root_bit = 16384
+                    if step_publish_root_square < 16777216:
+                        step_publish_root_bit = 2048
+                    step_publish_root_found = 0
+                    while step_publish_root_bit:
+                        step_publish_root_more = step_publish_root_found + step_publish_root_bit
+                        if step_publish_root_more * step_publish_root_more <= step_publish_root_square:
+                            step_publish_root_found = step_publish_root_more
+                        step_publish_root_bit = step_publish_root_bit >> 1
+                    step_publish_bias = step_publish_root_found
+                else:
+                    step_publish_root_bit = 16384
+                    if step_publish_bias < 16777216:
+                        step_publish_root_bit = 2048
+                    step_publish_root_found = 0
+                    while step_publish_root_bit:
+                        step_publish_root_more = step_publish_root_found + step_publish_root_bit
+                        if step_publish_root_more * step_publish_root_more <= step_publish_bias:
+                            step_publish_root_found = step_publish_root_more
+                        step_publish_root_bit = step_publish_root_bit >> 1
+                    step_publish_root_result = step_publish_root_found
+                    step_publish_bias = step_publish_root_result << 4
+                s_axis[70] = step_publish_bias
+            axis = axis + 1
+            s_axis = ptr32(int(s) + (axis << 2))
+            piece = 0
+    s[53] = axis * 3 + piece + 1 if axis < 3 else 0
 
 
 @micropython.viper
-def foresay(s: ptr32, axis: int, bias: int, quality: int):
-    """Publish a bias, LSB Q8, before anything was learned; 0 takes it back."""
-    s[_TARGET_Q8 + axis] = bias
-    s[_OUT_Q8 + axis] = bias
-    s[_QUALITY_Q8 + axis] = quality
-    s[_SOURCE + axis] = 1
-
-
-@micropython.viper
-def foretell(s_, c: ptr32, axis: int):
-    """Publish the mean of the first rest once it is two windows long, before it is learned from.
-
-    It is taken back at once when the rest turns out to be none.
-    """
-    s = ptr32(s_)
-    if s[_STILLNESS] == 1 and s[_SEGMENT] > 1:
-        n = s[_SEGMENT] << c[_SHIFT]
-        level = (s[_TOTALS + axis] // n) << 8
-        level += ((s[_TOTALS + axis] % n) << 8) // n
-        foresay(s_, axis, level, c[_FORETOLD_Q8])
-    elif s[_SOURCE + axis] == 1:
-        foresay(s_, axis, 0, 0)
-        s[_SOURCE + axis] = 0
+def foretell(s: ptr32, c: ptr32, axis: int):
+    s_axis = ptr32(int(s) + (axis << 2))
+    if s_axis[73] > 1:
+        return
+    if not s[46] - 1 and s[48] > 1:
+        n = s[48] << c[4]
+        level = s_axis[42] // n << 8
+        level = (s_axis[42] % n << 8) // n + level
+        foresay_quality = c[44]
+        s_axis[67] = level
+        s_axis[55] = level
+        s_axis[70] = foresay_quality
+        s_axis[73] = 1
+    elif not s_axis[73] - 1:
+        s_axis[67] = 0
+        s_axis[55] = 0
+        s_axis[70] = 0
+        s_axis[73] = 1
+        s_axis[73] = 0
 
 
 @micropython.viper
 def close(s_, c_):
-    """Close a full window: what it says, and the work that follows from it."""
     s = ptr32(s_)
     c = ptr32(c_)
-    while s[_PHASE]:
+    while s[53]:
         advance(s_, c_)
-    still = int(judge(s_, c_))
+    while True:
+        if s[18] > 3:
+            stillness_judge_state = 2
+            break
+        if s[18]:
+            stillness_judge_state = 4
+            break
+        stillness_judge_look_spread_q8_first = 26 + 4
+        stillness_judge_look_spread_q8_square = s[35]
+        stillness_judge_look_spread_q8_i = 0
+        while stillness_judge_look_spread_q8_i < 3:
+            stillness_judge_look_spread_q8_mean_q4 = s[stillness_judge_look_spread_q8_first + stillness_judge_look_spread_q8_i] << 4 >> c[4]
+            stillness_judge_look_spread_q8_square = stillness_judge_look_spread_q8_square - (stillness_judge_look_spread_q8_mean_q4 * s[stillness_judge_look_spread_q8_first + stillness_judge_look_spread_q8_i] >> 4)
+            stillness_judge_look_spread_q8_i = stillness_judge_look_spread_q8_i + 1
+        if stillness_judge_look_spread_q8_square >> 30:
+            stillness_judge_look_spread_q8_square = 0
+        stillness_judge_look_noise_q8 = stillness_judge_look_spread_q8_square << 8 - c[4]
+        if stillness_judge_look_noise_q8 > c[7]:
+            stillness_judge_look_white_spread = stillness_judge_look_noise_q8
+            stillness_judge_look_white_step = s[76] << 8 - c[4]
+            stillness_judge_look_white_spread = stillness_judge_look_white_spread >> 4
+            stillness_judge_look_white_step = stillness_judge_look_white_step >> 4
+            if stillness_judge_look_white_step > (stillness_judge_look_white_spread >> 1) + stillness_judge_look_white_spread - (stillness_judge_look_white_spread >> 3) and stillness_judge_look_white_step < 3 * stillness_judge_look_white_spread - (stillness_judge_look_white_spread >> 2):
+                stillness_judge_look_white_result = 1
+            else:
+                stillness_judge_look_white_result = 0
+            if not stillness_judge_look_white_result:
+                stillness_judge_state = 2
+                break
+        stillness_judge_look_spread_q8_square = s[33]
+        stillness_judge_look_spread_q8_i = 0
+        while stillness_judge_look_spread_q8_i < 3:
+            stillness_judge_look_spread_q8_mean_q4 = s[26 + stillness_judge_look_spread_q8_i] << 4 >> c[4]
+            stillness_judge_look_spread_q8_square = stillness_judge_look_spread_q8_square - (stillness_judge_look_spread_q8_mean_q4 * s[26 + stillness_judge_look_spread_q8_i] >> 4)
+            stillness_judge_look_spread_q8_i = stillness_judge_look_spread_q8_i + 1
+        if stillness_judge_look_spread_q8_square >> 30:
+            stillness_judge_look_spread_q8_square = 0
+        stillness_judge_look_shake_q8 = stillness_judge_look_spread_q8_square << 8 - c[4]
+        if stillness_judge_look_shake_q8 > c[8]:
+            stillness_judge_state = 4
+            break
+        s[49] = (stillness_judge_look_noise_q8 - s[49] >> 3) + s[49]
+        if not s[34]:
+            stillness_judge_state = 1
+            break
+        stillness_judge_look_tip_q8_i = 0
+        stillness_judge_look_tip_q8_square = 0
+        while stillness_judge_look_tip_q8_i < 3:
+            stillness_judge_look_tip_q8_d = (s[19 + stillness_judge_look_tip_q8_i] << 4) + (s[26 + stillness_judge_look_tip_q8_i] << 4 >> c[4]) - s[36 + stillness_judge_look_tip_q8_i]
+            if stillness_judge_look_tip_q8_d > 8191:
+                stillness_judge_look_tip_q8_d = 8191
+            if stillness_judge_look_tip_q8_d < -8191:
+                stillness_judge_look_tip_q8_d = -8191
+            stillness_judge_look_tip_q8_square = stillness_judge_look_tip_q8_d * stillness_judge_look_tip_q8_d + stillness_judge_look_tip_q8_square
+            stillness_judge_look_tip_q8_i = stillness_judge_look_tip_q8_i + 1
+        stillness_judge_look_tip_q8_result = stillness_judge_look_tip_q8_square
+        s[51] = stillness_judge_look_tip_q8_result
+        if s[51] > (stillness_judge_look_shake_q8 >> c[4]) * 6 + c[9]:
+            stillness_judge_state = 3
+            break
+        if s[48]:
+            stillness_judge_look_change_q4_i = 0
+            stillness_judge_look_change_q4_most = 0
+            while stillness_judge_look_change_q4_i < 3:
+                stillness_judge_look_change_q4_d = (s[19 + 4 + stillness_judge_look_change_q4_i] << 4) + (s[26 + 4 + stillness_judge_look_change_q4_i] << 4 >> c[4]) - s[39 + stillness_judge_look_change_q4_i]
+                if stillness_judge_look_change_q4_d >> 30:
+                    stillness_judge_look_change_q4_d = -stillness_judge_look_change_q4_d
+                if stillness_judge_look_change_q4_d > stillness_judge_look_change_q4_most:
+                    stillness_judge_look_change_q4_most = stillness_judge_look_change_q4_d
+                stillness_judge_look_change_q4_i = stillness_judge_look_change_q4_i + 1
+            stillness_judge_look_shake_q8 = stillness_judge_look_change_q4_most
+            if stillness_judge_look_shake_q8 > 32767:
+                stillness_judge_state = 5
+                break
+            if stillness_judge_look_shake_q8 * stillness_judge_look_shake_q8 > (stillness_judge_look_noise_q8 >> c[4]) * 14 + c[10]:
+                stillness_judge_state = 5
+                break
+        stillness_judge_state = 1
+        break
+        break
+    s[46] = stillness_judge_state
+    s[47] = (s[26 + 3] >> c[4]) + s[19 + 3]
+    s[17] = 0
+    if not stillness_judge_state - 2 or not stillness_judge_state - 4:
+        s[34] = 0
+        still = 0
+    else:
+        if stillness_judge_state - 1 or not s[34]:
+            stillness_judge_stillness_begin_i = 0
+            while stillness_judge_stillness_begin_i < 3:
+                if not 0:
+                    s[36 + stillness_judge_stillness_begin_i] = (s[19 + stillness_judge_stillness_begin_i] << 4) + (s[26 + stillness_judge_stillness_begin_i] << 4 >> c[4])
+                s[39 + stillness_judge_stillness_begin_i] = (s[19 + 4 + stillness_judge_stillness_begin_i] << 4) + (s[26 + 4 + stillness_judge_stillness_begin_i] << 4 >> c[4])
+                s[42 + stillness_judge_stillness_begin_i] = 0
+                stillness_judge_stillness_begin_i = stillness_judge_stillness_begin_i + 1
+            s[45] = 0
+            s[48] = 0
+            s[34] = 1
+        elif not s[48]:
+            stillness_judge_stillness_begin_i = 0
+            while stillness_judge_stillness_begin_i < 3:
+                if not 1:
+                    s[36 + stillness_judge_stillness_begin_i] = (s[19 + stillness_judge_stillness_begin_i] << 4) + (s[26 + stillness_judge_stillness_begin_i] << 4 >> c[4])
+                s[39 + stillness_judge_stillness_begin_i] = (s[19 + 4 + stillness_judge_stillness_begin_i] << 4) + (s[26 + 4 + stillness_judge_stillness_begin_i] << 4 >> c[4])
+                s[42 + stillness_judge_stillness_begin_i] = 0
+                stillness_judge_stillness_begin_i = stillness_judge_stillness_begin_i + 1
+            s[45] = 0
+            s[48] = 0
+            s[34] = 1
+        stillness_judge_i = 0
+        while stillness_judge_i < 3:
+            stillness_judge_total = s[19 + 4 + stillness_judge_i] << c[4]
+            stillness_judge_total = stillness_judge_total - (s[64 + stillness_judge_i] + 128 >> 8)
+            stillness_judge_total = stillness_judge_total + s[26 + 4 + stillness_judge_i]
+            s[42 + stillness_judge_i] += stillness_judge_total
+            stillness_judge_i = stillness_judge_i + 1
+        s[45] = s[45] + s[47]
+        s[48] = s[48] + 1
+        if s[48] < c[5]:
+            still = 0
+        else:
+            s[48] = 0
+            still = 1
     if still:
-        s[_LEARN_TEMP] = s[_TEMP_TOTAL] // c[_SEGMENTS]
+        s[52] = s[45] // c[5]
     i = 0
     while i < 3:
-        a = c[_AXES] + i * c[_AXIS_WORDS]
-        s[a + _AGE_MS] += s[_ELAPSED_US] // 1000
-        if s[a + _AGE_MS] > 0x3FFFFFF:
-            s[a + _AGE_MS] = 0x3FFFFFF
-        if s[a + _KIND] == 0 and c[_EVERY] == 0:
+        a = i * c[13] + c[0]
+        s_a = ptr32(int(s) + (a << 2))
+        s_a[28] = s[16] // 1000 + s_a[28]
+        if s_a[28] > 67108863:
+            s_a[28] = 67108863
+        if not s_a[30] and (not c[46]):
             foretell(s_, c_, i)
-        if still and c[_EVERY] == 0:
-            s[a + _TOTAL] = s[_TOTALS + i]
-            s[a + _WEIGHT] = c[_SEGMENTS] << c[_SHIFT]
-            s[a + _READING] = 0
-        i += 1
-    s[_ELAPSED_US] = 0
-    s[_PHASE] = 1
+        if still and (not c[46]):
+            s_a[0] = s[42 + i]
+            s_a[1] = c[5] << c[4]
+            s_a[12] = 0
+        i = i + 1
+    s[16] = 0
+    s[53] = 1
 
 
 @micropython.viper
-def learn_at_once(s_, c_, x: ptr32):
-    """Learn this very reading, moving or still, as the document does: it has no stillness test."""
+def examine(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
+    check_dt_us = dt_us
+    check_differ = 0
+    check_fresh = 0
+    check_jump = x[3] - s[3]
+    check_i = 0
+    if x[0] - x[0]:
+        check_differ = 1
+    if x[0] - s[0]:
+        check_fresh = 1
+    s[0] = x[0]
+    if x[1] - x[0]:
+        check_differ = 1
+    if x[1] - s[1]:
+        check_fresh = 1
+    s[1] = x[1]
+    if x[2] - x[0]:
+        check_differ = 1
+    if x[2] - s[2]:
+        check_fresh = 1
+    s[2] = x[2]
+    if x[3] - x[0]:
+        check_differ = 1
+    if x[3] - s[3]:
+        check_fresh = 1
+    s[3] = x[3]
+    if x[4] - x[0]:
+        check_differ = 1
+    if x[4] - s[4]:
+        check_fresh = 1
+    s[4] = x[4]
+    if x[5] - x[0]:
+        check_differ = 1
+    if x[5] - s[5]:
+        check_fresh = 1
+    s[5] = x[5]
+    if x[6] - x[0]:
+        check_differ = 1
+    if x[6] - s[6]:
+        check_fresh = 1
+    s[6] = x[6]
+    check_i = 7
+    check_i = 0
+    if not check_differ and (not x[0] or not x[0] - -1):
+        check_i = 3 - x[0]
+    elif not s[8]:
+        check_i = 0
+    elif check_dt_us <= 0:
+        check_i = 6
+    elif check_dt_us > c[1]:
+        check_i = 7
+    elif not check_fresh:
+        check_i = 1
+    elif check_jump >= c[2] or check_jump <= -c[2]:
+        check_i = 5
+    if not check_i:
+        check_jump = 4
+        if x[4] > 32766 or x[4] < -32767:
+            check_i = 2
+        if x[5] > 32766 or x[5] < -32767:
+            check_i = 2
+        if x[6] > 32766 or x[6] < -32767:
+            check_i = 2
+        check_jump = 7
+    check_i = check_i + 8
+    check_jump = s[check_i] + 1
+    s[check_i] = check_jump & 536870911
+    check_i = check_i - 8
+    if check_i > 1:
+        s[17] = 0
+        s[18] = 0
+        s[34] = 0
+    elif check_dt_us > 0 and check_dt_us <= c[1]:
+        check_dt_us = check_dt_us + s[16]
+        s[16] = check_dt_us if check_dt_us < 536870911 else 536870911
+    return check_i
+
+
+@micropython.viper
+def admit(s_, c_, x: ptr32, kind: int) -> int:
     s = ptr32(s_)
     c = ptr32(c_)
-    s[_LEARN_TEMP] = x[3]
-    i = 0
-    while i < 3:
-        a = c[_AXES] + i * c[_AXIS_WORDS]
-        s[a + _TOTAL] = x[4 + i]
-        s[a + _WEIGHT] = 1
-        learn(s_, c_, a)
-        s[a + _WEIGHT] = 0
-        i += 1
-
-
-@micropython.viper
-def wake(s_, c_, x: ptr32):
-    """Publish at the first frame after power-on what is already known for its temperature."""
-    s = ptr32(s_)
-    s[_TEMP] = x[3]
-    s[_PHASE] = 1
-    while s[_PHASE]:
-        advance(s_, c_)
-
-
-@micropython.viper
-def examine(s_, c_, x_, dt_us: int) -> int:
-    """Return what the guard says of the frame `x`, `dt_us` after the one before."""
-    return int(check(s_, c_, x_, dt_us))
-
-
-@micropython.viper
-def admit(s_, c_, x_, kind: int) -> int:
-    """Learn from an examined frame, and do a piece of the work that waits; return its kind."""
-    s = ptr32(s_)
-    c = ptr32(c_)
-    if kind == 0:
-        if s[_GOOD] == 1:
-            wake(s_, c_, x_)
-        if c[_EVERY]:
-            learn_at_once(s_, c_, x_)
-        if int(gather(s_, c_, x_)):
+    if not kind:
+        if not s[8] - 1:
+            s[47] = x[3]
+            s[53] = 1
+            while s[53]:
+                advance(s_, c_)
+        if c[46]:
+            s[52] = x[3]
+            learn_at_once_a = 0 * c[13] + c[0]
+            s_learn_at_once_a = ptr32(int(s) + (learn_at_once_a << 2))
+            s_learn_at_once_a[0] = x[4]
+            s_learn_at_once_a[1] = 1
+            learn_at_once_learn_anywhere_temp = s[52]
+            if learn_at_once_learn_anywhere_temp < s_learn_at_once_a[3]:
+                s_learn_at_once_a[3] = learn_at_once_learn_anywhere_temp
+            if learn_at_once_learn_anywhere_temp > s_learn_at_once_a[4]:
+                s_learn_at_once_a[4] = learn_at_once_learn_anywhere_temp
+            feed(s_, c_, learn_at_once_a, learn_at_once_a + 32)
+            learn_here(s_, c_, learn_at_once_a)
+            s_learn_at_once_a[1] = 0
+            learn_at_once_a = 1 * c[13] + c[0]
+            s_learn_at_once_a = ptr32(int(s) + (learn_at_once_a << 2))
+            s_learn_at_once_a[0] = x[5]
+            s_learn_at_once_a[1] = 1
+            learn_at_once_learn_anywhere_temp = s[52]
+            if learn_at_once_learn_anywhere_temp < s_learn_at_once_a[3]:
+                s_learn_at_once_a[3] = learn_at_once_learn_anywhere_temp
+            if learn_at_once_learn_anywhere_temp > s_learn_at_once_a[4]:
+                s_learn_at_once_a[4] = learn_at_once_learn_anywhere_temp
+            feed(s_, c_, learn_at_once_a, learn_at_once_a + 32)
+            learn_here(s_, c_, learn_at_once_a)
+            s_learn_at_once_a[1] = 0
+            learn_at_once_a = 2 * c[13] + c[0]
+            s_learn_at_once_a = ptr32(int(s) + (learn_at_once_a << 2))
+            s_learn_at_once_a[0] = x[6]
+            s_learn_at_once_a[1] = 1
+            learn_at_once_learn_anywhere_temp = s[52]
+            if learn_at_once_learn_anywhere_temp < s_learn_at_once_a[3]:
+                s_learn_at_once_a[3] = learn_at_once_learn_anywhere_temp
+            if learn_at_once_learn_anywhere_temp > s_learn_at_once_a[4]:
+                s_learn_at_once_a[4] = learn_at_once_learn_anywhere_temp
+            feed(s_, c_, learn_at_once_a, learn_at_once_a + 32)
+            learn_here(s_, c_, learn_at_once_a)
+            s_learn_at_once_a[1] = 0
+        if not s[17]:
+            s[19] = x[0]
+            s[26] = 0
+            s[20] = x[1]
+            s[27] = 0
+            s[21] = x[2]
+            s[28] = 0
+            s[22] = x[3]
+            s[29] = 0
+            s[23] = x[4]
+            s[30] = 0
+            s[24] = x[5]
+            s[31] = 0
+            s[25] = x[6]
+            s[32] = 0
+            s[33] = 0
+            s[35] = 0
+            s[76] = 0
+            s[77] = 0
+            s[78] = 0
+            s[79] = 0
+            s[64] = 0
+            s[65] = 0
+            s[66] = 0
+            s[18] = 0
+        s[17] = s[17] + 1
+        if not s[18]:
+            stillness_gather_d = x[0] - s[19]
+            if stillness_gather_d + 512 >> 10:
+                s[18] = 1
+                stillness_gather_d = 0
+            s[26] = s[26] + stillness_gather_d
+            s[33] = stillness_gather_d * stillness_gather_d + s[33]
+            stillness_gather_d = x[1] - s[20]
+            if stillness_gather_d + 512 >> 10:
+                s[18] = 2
+                stillness_gather_d = 0
+            s[27] = s[27] + stillness_gather_d
+            s[33] = stillness_gather_d * stillness_gather_d + s[33]
+            stillness_gather_d = x[2] - s[21]
+            if stillness_gather_d + 512 >> 10:
+                s[18] = 3
+                stillness_gather_d = 0
+            s[28] = s[28] + stillness_gather_d
+            s[33] = stillness_gather_d * stillness_gather_d + s[33]
+            stillness_gather_d = x[3] - s[22]
+            if stillness_gather_d + 512 >> 10:
+                s[18] = 4
+                stillness_gather_d = 0
+            s[29] = s[29] + stillness_gather_d
+            stillness_gather_d = x[4] - s[23]
+            if stillness_gather_d + 512 >> 10:
+                s[18] = 5
+                stillness_gather_d = 0
+            s[30] = s[30] + stillness_gather_d
+            s[35] = stillness_gather_d * stillness_gather_d + s[35]
+            stillness_gather_e = stillness_gather_d - s[77]
+            s[76] = stillness_gather_e * stillness_gather_e + s[76]
+            s[77] = stillness_gather_d
+            stillness_gather_e = s[61]
+            s[64] = s[64] + stillness_gather_e
+            stillness_gather_d = x[5] - s[24]
+            if stillness_gather_d + 512 >> 10:
+                s[18] = 6
+                stillness_gather_d = 0
+            s[31] = s[31] + stillness_gather_d
+            s[35] = stillness_gather_d * stillness_gather_d + s[35]
+            stillness_gather_e = stillness_gather_d - s[78]
+            s[76] = stillness_gather_e * stillness_gather_e + s[76]
+            s[78] = stillness_gather_d
+            stillness_gather_e = s[62]
+            s[65] = s[65] + stillness_gather_e
+            stillness_gather_d = x[6] - s[25]
+            if stillness_gather_d + 512 >> 10:
+                s[18] = 7
+                stillness_gather_d = 0
+            s[32] = s[32] + stillness_gather_d
+            s[35] = stillness_gather_d * stillness_gather_d + s[35]
+            stillness_gather_e = stillness_gather_d - s[79]
+            s[76] = stillness_gather_e * stillness_gather_e + s[76]
+            s[79] = stillness_gather_d
+            stillness_gather_e = s[63]
+            s[66] = s[66] + stillness_gather_e
+        else:
+            stillness_gather_d = x[3] - s[22]
+            s[29] = s[29] + stillness_gather_d
+        if s[17] < c[3]:
+            stillness_gather_result = 0
+        else:
+            stillness_gather_result = 1
+        if stillness_gather_result:
             close(s_, c_)
-    i = c[_PIECES]
-    while i > 0 and s[_PHASE]:
+    i = c[12]
+    while i > 0 and s[53]:
         advance(s_, c_)
-        i -= 1
+        i = i - 1
     return kind
 
 
 @micropython.viper
-def finish(s_, c_, x_, kind: int) -> int:
-    """Correct the frame in place and return its kind.
-
-    Frames of all zeros or ones and beyond (see guard.py) are left as they are.
-    """
-    if kind < 3:
-        correct(s_, c_, x_)
+def finish(s: ptr32, c: ptr32, x: ptr32, kind: int) -> int:
+    i = 0
+    s_i = ptr32(int(s) + (i << 2))
+    while i < 3 and kind < 3:
+        d = s_i[67] - s_i[55]
+        if d > c[11]:
+            d = c[11]
+        elif d < -c[11]:
+            d = -c[11]
+        s_i[55] = s_i[55] + d
+        d = (x[i + 4] << 8) - s_i[55] - s_i[61] + s_i[58]
+        x[i + 4] = d + 128 >> 8
+        s_i[58] = d - (x[i + 4] << 8)
+        i = i + 1
+        s_i = ptr32(int(s) + (i << 2))
     return kind
 
 
 @micropython.viper
-def step(s_, c_, x_, dt_us: int) -> int:
-    """Learn from the frame and correct it in place; return what the guard says of it."""
-    kind = int(check(s_, c_, x_, dt_us))
-    admit(s_, c_, x_, kind)
-    if kind < 3:
-        correct(s_, c_, x_)
+def step(s_, c_, x: ptr32, dt_us: int) -> int:
+    s = ptr32(s_)
+    c = ptr32(c_)
+    examine_check_dt_us = dt_us
+    examine_check_differ = 0
+    examine_check_fresh = 0
+    examine_check_jump = x[3] - s[3]
+    examine_check_i = 0
+    while examine_check_i < 7:
+        if x[examine_check_i] - x[0]:
+            examine_check_differ = 1
+        if x[examine_check_i] - s[examine_check_i]:
+            examine_check_fresh = 1
+        s[examine_check_i] = x[examine_check_i]
+        examine_check_i = examine_check_i + 1
+    examine_check_i = 0
+    if not examine_check_differ and (not x[0] or not x[0] - -1):
+        examine_check_i = 3 - x[0]
+    elif not s[8]:
+        examine_check_i = 0
+    elif examine_check_dt_us <= 0:
+        examine_check_i = 6
+    elif examine_check_dt_us > c[1]:
+        examine_check_i = 7
+    elif not examine_check_fresh:
+        examine_check_i = 1
+    elif examine_check_jump >= c[2] or examine_check_jump <= -c[2]:
+        examine_check_i = 5
+    if not examine_check_i:
+        examine_check_jump = 4
+        while examine_check_jump < 7:
+            if x[examine_check_jump] > 32766 or x[examine_check_jump] < -32767:
+                examine_check_i = 2
+            examine_check_jump = examine_check_jump + 1
+    examine_check_i = examine_check_i + 8
+    examine_check_jump = s[examine_check_i] + 1
+    s[examine_check_i] = examine_check_jump & 536870911
+    examine_check_i = examine_check_i - 8
+    if examine_check_i > 1:
+        s[17] = 0
+        s[18] = 0
+        s[34] = 0
+    elif examine_check_dt_us > 0 and examine_check_dt_us <= c[1]:
+        examine_check_dt_us = examine_check_dt_us + s[16]
+        s[16] = examine_check_dt_us if examine_check_dt_us < 536870911 else 536870911
+    kind = examine_check_i
+    if not kind:
+        if not s[8] - 1:
+            s[47] = x[3]
+            s[53] = 1
+            while s[53]:
+                advance(s_, c_)
+        if c[46]:
+            s[52] = x[3]
+            admit_learn_at_once_i = 0
+            while admit_learn_at_once_i < 3:
+                admit_learn_at_once_a = admit_learn_at_once_i * c[13] + c[0]
+                s_admit_learn_at_once_a = ptr32(int(s) + (admit_learn_at_once_a << 2))
+                s_admit_learn_at_once_a[0] = x[4 + admit_learn_at_once_i]
+                s_admit_learn_at_once_a[1] = 1
+                admit_learn_at_once_learn_anywhere_temp = s[52]
+                if admit_learn_at_once_learn_anywhere_temp < s_admit_learn_at_once_a[3]:
+                    s_admit_learn_at_once_a[3] = admit_learn_at_once_learn_anywhere_temp
+                if admit_learn_at_once_learn_anywhere_temp > s_admit_learn_at_once_a[4]:
+                    s_admit_learn_at_once_a[4] = admit_learn_at_once_learn_anywhere_temp
+                feed(s_, c_, admit_learn_at_once_a, admit_learn_at_once_a + 32)
+                learn_here(s_, c_, admit_learn_at_once_a)
+                s_admit_learn_at_once_a[1] = 0
+                admit_learn_at_once_i = admit_learn_at_once_i + 1
+        admit_stillness_gather_i = 0
+        if not s[17]:
+            while admit_stillness_gather_i < 7:
+                s[19 + admit_stillness_gather_i] = x[admit_stillness_gather_i]
+                s[26 + admit_stillness_gather_i] = 0
+                admit_stillness_gather_i = admit_stillness_gather_i + 1
+            s[33] = 0
+            s[35] = 0
+            s[76] = 0
+            s[77] = 0
+            s[77 + 1] = 0
+            s[77 + 2] = 0
+            s[64] = 0
+            s[64 + 1] = 0
+            s[64 + 2] = 0
+            s[18] = 0
+        s[17] = s[17] + 1
+        if not s[18]:
+            admit_stillness_gather_i = 0
+            while admit_stillness_gather_i < 7:
+                admit_stillness_gather_d = x[admit_stillness_gather_i] - s[19 + admit_stillness_gather_i]
+                if admit_stillness_gather_d + 512 >> 10:
+                    s[18] = admit_stillness_gather_i + 1
+                    admit_stillness_gather_d = 0
+                s[26 + admit_stillness_gather_i] += admit_stillness_gather_d
+                if admit_stillness_gather_i < 3:
+                    s[33] = admit_stillness_gather_d * admit_stillness_gather_d + s[33]
+                elif admit_stillness_gather_i > 3:
+                    s[35] = admit_stillness_gather_d * admit_stillness_gather_d + s[35]
+                    admit_stillness_gather_e = admit_stillness_gather_d - s[77 - 4 + admit_stillness_gather_i]
+                    s[76] = admit_stillness_gather_e * admit_stillness_gather_e + s[76]
+                    s[77 - 4 + admit_stillness_gather_i] = admit_stillness_gather_d
+                    admit_stillness_gather_e = s[61 - 4 + admit_stillness_gather_i]
+                    s[64 - 4 + admit_stillness_gather_i] += admit_stillness_gather_e
+                admit_stillness_gather_i = admit_stillness_gather_i + 1
+        else:
+            admit_stillness_gather_d = x[3] - s[19 + 3]
+            s[26 + 3] += admit_stillness_gather_d
+        if s[17] < c[3]:
+            admit_stillness_gather_result = 0
+        else:
+            admit_stillness_gather_result = 1
+        if admit_stillness_gather_result:
+            close(s_, c_)
+    admit_i = c[12]
+    while admit_i > 0 and s[53]:
+        advance(s_, c_)
+        admit_i = admit_i - 1
+    step_finish_i = 0
+    while step_finish_i < 3 and kind < 3:
+        step_finish_d = s[67 + step_finish_i] - s[55 + step_finish_i]
+        if step_finish_d > c[11]:
+            step_finish_d = c[11]
+        elif step_finish_d < -c[11]:
+            step_finish_d = -c[11]
+        s[55 + step_finish_i] += step_finish_d
+        step_finish_d = (x[4 + step_finish_i] << 8) - s[55 + step_finish_i] - s[61 + step_finish_i] + s[58 + step_finish_i]
+        x[4 + step_finish_i] = step_finish_d + 128 >> 8
+        s[58 + step_finish_i] = step_finish_d - (x[4 + step_finish_i] << 8)
+        step_finish_i = step_finish_i + 1
     return kind
-
-
-@micropython.viper
-def speak(s: ptr32, c: ptr32, m: ptr32, w: int, axis: int):
-    """Publish what another source found, whatever its quality, while nothing was learned at all."""
-    if s[c[_AXES] + axis * c[_AXIS_WORDS] + _KIND] == 0:
-        w += axis
-        if m[w + 3] < 0x200000:
-            s[_TARGET_Q8 + axis] = m[w]
-            s[_OUT_Q8 + axis] = m[w]
-            s[_QUALITY_Q8 + axis] = m[w + 3]
-            s[_SOURCE + axis] = s[_SCRATCH]
 
 
 @micropython.viper
 def offer(s: ptr32, c: ptr32, m: ptr32, w: int, axis: int):
-    """Let an axis absorb and learn the bias that another source found: LSB Q8 at m[w+axis].
-
-    Its one sigma stands three words on. It weighs as many still readings as its quality is worth.
-    """
-    a = c[_AXES] + axis * c[_AXIS_WORDS]
-    w += axis
+    a = axis * c[13] + c[0]
+    s_a = ptr32(int(s) + (a << 2))
+    w = w + axis
     sigma = m[w + 3] >> 2
-    if s[a + _WEIGHT] or sigma > c[_MOST_SIGMA_Q6]:
+    if s_a[1] or sigma > c[48]:
         return
-    w = m[w] - s[_EFFECT_Q8 + axis]
-    axis = c[_FULL_WEIGHT_Q12] // (sigma * sigma + 1)
+    w = m[w] - s[axis + 61]
+    axis = c[49] // (sigma * sigma + 1)
     if axis > 256:
         axis = 256
     if axis > 0:
-        s[a + _WEIGHT] = axis
-        s[a + _TOTAL] = (w >> 4) * axis >> 4
-        s[a + _READING] = (((sigma * sigma) >> 4) << 3) + s[_SCRATCH]
+        s_a[1] = axis
+        s_a[0] = (w >> 4) * axis >> 4
+        s_a[12] = (sigma * sigma >> 4 << 3) + s[7]
 
 
 @micropython.viper
 def consider(s_, c_, m_, w: int, source: int):
-    """Take the bias that another source has found for three axes into the one decision."""
     s = ptr32(s_)
-    while s[_PHASE]:
+    c = ptr32(c_)
+    m = ptr32(m_)
+    while s[53]:
         advance(s_, c_)
-    s[_LEARN_TEMP] = s[_TEMP]
-    s[_SCRATCH] = source
-    speak(s_, c_, m_, w, 0)
-    speak(s_, c_, m_, w, 1)
-    speak(s_, c_, m_, w, 2)
+    s[52] = s[47]
+    s[7] = source
+    speak_w = w
+    m_speak_w = ptr32(int(m) + (speak_w << 2))
+    if not s[0 * c[13] + c[0] + 30]:
+        speak_w = speak_w + 0
+        m_speak_w = ptr32(int(m) + (speak_w << 2))
+        if m_speak_w[3] >> 5 < c[48]:
+            s[67] = m_speak_w[0]
+            if not s[73]:
+                s[55] = m_speak_w[0]
+            s[70] = m_speak_w[3]
+            s[73] = s[7]
+    speak_w = w
+    m_speak_w = ptr32(int(m) + (speak_w << 2))
+    if not s[1 * c[13] + c[0] + 30]:
+        speak_w = speak_w + 1
+        m_speak_w = ptr32(int(m) + (speak_w << 2))
+        if m_speak_w[3] >> 5 < c[48]:
+            s[68] = m_speak_w[0]
+            if not s[74]:
+                s[56] = m_speak_w[0]
+            s[71] = m_speak_w[3]
+            s[74] = s[7]
+    speak_w = w
+    m_speak_w = ptr32(int(m) + (speak_w << 2))
+    if not s[2 * c[13] + c[0] + 30]:
+        speak_w = speak_w + 2
+        m_speak_w = ptr32(int(m) + (speak_w << 2))
+        if m_speak_w[3] >> 5 < c[48]:
+            s[69] = m_speak_w[0]
+            if not s[75]:
+                s[57] = m_speak_w[0]
+            s[72] = m_speak_w[3]
+            s[75] = s[7]
     offer(s_, c_, m_, w, 0)
     offer(s_, c_, m_, w, 1)
     offer(s_, c_, m_, w, 2)
-    s[_PHASE] = 1
+    s[53] = 1

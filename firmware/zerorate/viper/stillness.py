@@ -4,241 +4,145 @@
 import micropython
 
 
-# Nothing here assumes a small bias: only the spread of the rates, their change from window to
-# window and the direction of gravity count. A constant turn about the vertical leaves all three
-# alone and cannot be told from a bias; a turn about any other axis moves gravity.
-
-try:
-    from micropython import const
-except ImportError:
-
-    def const(value):
-        return value
-
-
-UNKNOWN = const(0)
-STILL = const(1)
-MOVING = const(2)
-TURNING = const(3)
-SHAKEN = const(4)
-SHIFTED = const(5)
-
-_ELAPSED_US = const(16)
-_N = const(17)
-_DIRTY = const(18)
-_REFERENCE = const(19)
-_SUM = const(26)
-_SQUARE_ACCEL = const(33)
-_REST = const(34)
-_SQUARE_GYRO = const(35)
-_ANCHOR = const(36)
-_FIRST = const(39)
-_TOTAL = const(42)
-_TEMP_TOTAL = const(45)
-_STILLNESS = const(46)
-_TEMP = const(47)
-_SEGMENT = const(48)
-_NOISE_Q8 = const(49)
-_AGE_MS = const(50)
-_TIP_Q8 = const(51)
-_EFFECT_Q8 = const(61)
-_EFFECT_SUM = const(64)
-_SQUARE_STEP = const(76)
-_LAST = const(77)
-
-_WINDOW = const(3)
-_SHIFT = const(4)
-_SEGMENTS = const(5)
-_DEVIATION = const(6)
-_SPREAD_GYRO_Q8 = const(7)
-_SPREAD_ACCEL_Q8 = const(8)
-_TIP_LIMIT_Q8 = const(9)
-_CHANGE_Q8 = const(10)
-
-
-@micropython.viper
-def gather(s: ptr32, c: ptr32, x: ptr32) -> int:
-    """Add the frame `x` to the window; return 1 when the window is full, else 0."""
-    i = 0
-    if s[_N] == 0:
-        while i < 7:
-            s[_REFERENCE + i] = x[i]
-            s[_SUM + i] = 0
-            i += 1
-        s[_SQUARE_ACCEL] = 0
-        s[_SQUARE_GYRO] = 0
-        s[_SQUARE_STEP] = 0
-        s[_LAST] = 0
-        s[_LAST + 1] = 0
-        s[_LAST + 2] = 0
-        s[_EFFECT_SUM] = 0
-        s[_EFFECT_SUM + 1] = 0
-        s[_EFFECT_SUM + 2] = 0
-        s[_DIRTY] = 0
-    s[_N] += 1
-    if s[_DIRTY] == 0:
-        i = 0
-        while i < 7:
-            d = x[i] - s[_REFERENCE + i]
-            if d > c[_DEVIATION] or d < -c[_DEVIATION]:
-                s[_DIRTY] = i + 1
-                d = 0
-            s[_SUM + i] += d
-            if i < 3:
-                s[_SQUARE_ACCEL] += d * d
-            elif i > 3:
-                s[_SQUARE_GYRO] += d * d
-                e = d - s[_LAST - 4 + i]
-                s[_SQUARE_STEP] += e * e
-                s[_LAST - 4 + i] = d
-                e = s[_EFFECT_Q8 - 4 + i]
-                s[_EFFECT_SUM - 4 + i] += e
-            i += 1
-    else:
-        # the thermometer is read in motion as well, and one reading of it is noise
-        d = x[3] - s[_REFERENCE + 3]
-        s[_SUM + 3] += d
-    if s[_N] < c[_WINDOW]:
-        return 0
-    return 1
-
-
-@micropython.viper
-def spread_q8(s: ptr32, c: ptr32, first: int, square: int) -> int:
-    """Return the window's variance in LSB^2, Q8, summed over three channels from `first`."""
-    i = 0
-    while i < 3:
-        mean_q4 = (s[first + i] << 4) >> c[_SHIFT]
-        square -= (mean_q4 * s[first + i]) >> 4
-        i += 1
-    if square < 0:
-        square = 0
-    return square << (8 - c[_SHIFT])
-
-
-@micropython.viper
-def tip_q8(s: ptr32, c: ptr32) -> int:
-    """Return how far gravity has moved since the rest began: squared LSB, Q8."""
-    i = 0
-    square = 0
-    while i < 3:
-        d = (s[_REFERENCE + i] << 4) + ((s[_SUM + i] << 4) >> c[_SHIFT]) - s[_ANCHOR + i]
-        if d > 8191:
-            d = 8191
-        if d < -8191:
-            d = -8191
-        square += d * d
-        i += 1
-    return square
-
-
-@micropython.viper
-def change_q4(s: ptr32, c: ptr32) -> int:
-    """Return the largest change of a window's mean rate since the segment began: LSB, Q4."""
-    i = 0
-    most = 0
-    while i < 3:
-        d = (s[_REFERENCE + 4 + i] << 4) + ((s[_SUM + 4 + i] << 4) >> c[_SHIFT]) - s[_FIRST + i]
-        if d < 0:
-            d = -d
-        if d > most:
-            most = d
-        i += 1
-    return most
-
-
 @micropython.viper
 def begin(s: ptr32, c: ptr32, anchored: int):
-    """Begin a segment with this window; without `anchored` a new rest as well."""
+    if not anchored:
+        s[36] = (s[19] << 4) + (s[26] << 4 >> c[4])
+    s[39] = (s[23] << 4) + (s[30] << 4 >> c[4])
+    s[42] = 0
+    if not anchored:
+        s[37] = (s[20] << 4) + (s[27] << 4 >> c[4])
+    s[40] = (s[24] << 4) + (s[31] << 4 >> c[4])
+    s[43] = 0
+    if not anchored:
+        s[38] = (s[21] << 4) + (s[28] << 4 >> c[4])
+    s[41] = (s[25] << 4) + (s[32] << 4 >> c[4])
+    s[44] = 0
+    s[45] = 0
+    s[48] = 0
+    s[34] = 1
+
+
+@micropython.viper
+def judge(s: ptr32, c: ptr32) -> int:
+    while True:
+        if s[18] > 3:
+            state = 2
+            break
+        if s[18]:
+            state = 4
+            break
+        look_spread_q8_first = 26 + 4
+        look_spread_q8_square = s[35]
+        look_spread_q8_i = 0
+        while look_spread_q8_i < 3:
+            look_spread_q8_mean_q4 = s[look_spread_q8_first + look_spread_q8_i] << 4 >> c[4]
+            look_spread_q8_square = look_spread_q8_square - (look_spread_q8_mean_q4 * s[look_spread_q8_first + look_spread_q8_i] >> 4)
+            look_spread_q8_i = look_spread_q8_i + 1
+        if look_spread_q8_square >> 30:
+            look_spread_q8_square = 0
+        look_noise_q8 = look_spread_q8_square << 8 - c[4]
+        if look_noise_q8 > c[7]:
+            look_white_spread = look_noise_q8
+            look_white_step = s[76] << 8 - c[4]
+            look_white_spread = look_white_spread >> 4
+            look_white_step = look_white_step >> 4
+            if look_white_step > (look_white_spread >> 1) + look_white_spread - (look_white_spread >> 3) and look_white_step < 3 * look_white_spread - (look_white_spread >> 2):
+                look_white_result = 1
+            else:
+                look_white_result = 0
+            if not look_white_result:
+                state = 2
+                break
+        look_spread_q8_square = s[33]
+        look_spread_q8_i = 0
+        while look_spread_q8_i < 3:
+            look_spread_q8_mean_q4 = s[26 + look_spread_q8_i] << 4 >> c[4]
+            look_spread_q8_square = look_spread_q8_square - (look_spread_q8_mean_q4 * s[26 + look_spread_q8_i] >> 4)
+            look_spread_q8_i = look_spread_q8_i + 1
+        if look_spread_q8_square >> 30:
+            look_spread_q8_square = 0
+        look_shake_q8 = look_spread_q8_square << 8 - c[4]
+        if look_shake_q8 > c[8]:
+            state = 4
+            break
+        s[49] = (look_noise_q8 - s[49] >> 3) + s[49]
+        if not s[34]:
+            state = 1
+            break
+        look_tip_q8_i = 0
+        look_tip_q8_square = 0
+        while look_tip_q8_i < 3:
+            look_tip_q8_d = (s[19 + look_tip_q8_i] << 4) + (s[26 + look_tip_q8_i] << 4 >> c[4]) - s[36 + look_tip_q8_i]
+            if look_tip_q8_d > 8191:
+                look_tip_q8_d = 8191
+            if look_tip_q8_d < -8191:
+                look_tip_q8_d = -8191
+            look_tip_q8_square = look_tip_q8_d * look_tip_q8_d + look_tip_q8_square
+            look_tip_q8_i = look_tip_q8_i + 1
+        look_tip_q8_result = look_tip_q8_square
+        s[51] = look_tip_q8_result
+        if s[51] > (look_shake_q8 >> c[4]) * 6 + c[9]:
+            state = 3
+            break
+        if s[48]:
+            look_change_q4_i = 0
+            look_change_q4_most = 0
+            while look_change_q4_i < 3:
+                look_change_q4_d = (s[19 + 4 + look_change_q4_i] << 4) + (s[26 + 4 + look_change_q4_i] << 4 >> c[4]) - s[39 + look_change_q4_i]
+                if look_change_q4_d >> 30:
+                    look_change_q4_d = -look_change_q4_d
+                if look_change_q4_d > look_change_q4_most:
+                    look_change_q4_most = look_change_q4_d
+                look_change_q4_i = look_change_q4_i + 1
+            look_shake_q8 = look_change_q4_most
+            if look_shake_q8 > 32767:
+                state = 5
+                break
+            if look_shake_q8 * look_shake_q8 > (look_noise_q8 >> c[4]) * 14 + c[10]:
+                state = 5
+                break
+        state = 1
+        break
+        break
+    s[46] = state
+    s[47] = (s[26 + 3] >> c[4]) + s[19 + 3]
+    s[17] = 0
+    if not state - 2 or not state - 4:
+        s[34] = 0
+        return 0
+    if state - 1 or not s[34]:
+        stillness_begin_i = 0
+        while stillness_begin_i < 3:
+            if not 0:
+                s[36 + stillness_begin_i] = (s[19 + stillness_begin_i] << 4) + (s[26 + stillness_begin_i] << 4 >> c[4])
+            s[39 + stillness_begin_i] = (s[19 + 4 + stillness_begin_i] << 4) + (s[26 + 4 + stillness_begin_i] << 4 >> c[4])
+            s[42 + stillness_begin_i] = 0
+            stillness_begin_i = stillness_begin_i + 1
+        s[45] = 0
+        s[48] = 0
+        s[34] = 1
+    elif not s[48]:
+        stillness_begin_i = 0
+        while stillness_begin_i < 3:
+            if not 1:
+                s[36 + stillness_begin_i] = (s[19 + stillness_begin_i] << 4) + (s[26 + stillness_begin_i] << 4 >> c[4])
+            s[39 + stillness_begin_i] = (s[19 + 4 + stillness_begin_i] << 4) + (s[26 + 4 + stillness_begin_i] << 4 >> c[4])
+            s[42 + stillness_begin_i] = 0
+            stillness_begin_i = stillness_begin_i + 1
+        s[45] = 0
+        s[48] = 0
+        s[34] = 1
     i = 0
     while i < 3:
-        if anchored == 0:
-            s[_ANCHOR + i] = (s[_REFERENCE + i] << 4) + ((s[_SUM + i] << 4) >> c[_SHIFT])
-        s[_FIRST + i] = (s[_REFERENCE + 4 + i] << 4) + ((s[_SUM + 4 + i] << 4) >> c[_SHIFT])
-        s[_TOTAL + i] = 0
-        i += 1
-    s[_TEMP_TOTAL] = 0
-    s[_SEGMENT] = 0
-    s[_REST] = 1
-
-
-@micropython.viper
-def white(s: ptr32, c: ptr32, spread: int) -> int:
-    """Return 1 if neighbouring samples of the gyroscope share nothing: noise, not motion.
-
-    von Neumann's ratio: the mean squared step is twice the variance for white noise, less for
-    whatever is slower and more for what alternates.
-    """
-    step = s[_SQUARE_STEP] << (8 - c[_SHIFT])
-    spread = spread >> 4
-    step = step >> 4
-    if step > spread + (spread >> 1) - (spread >> 3) and step < 3 * spread - (spread >> 2):
-        return 1
-    return 0
-
-
-@micropython.viper
-def look(s_, c_) -> int:
-    """Return what the full window says: STILL, MOVING, SHAKEN, TURNING or SHIFTED."""
-    s = ptr32(s_)
-    c = ptr32(c_)
-    if s[_DIRTY] > 3:
-        return MOVING
-    if s[_DIRTY]:
-        return SHAKEN
-    noise_q8 = int(spread_q8(s_, c_, _SUM + 4, s[_SQUARE_GYRO]))
-    if noise_q8 > c[_SPREAD_GYRO_Q8] and int(white(s_, c_, noise_q8)) == 0:
-        return MOVING
-    shake_q8 = int(spread_q8(s_, c_, _SUM, s[_SQUARE_ACCEL]))
-    if shake_q8 > c[_SPREAD_ACCEL_Q8]:
-        return SHAKEN
-    s[_NOISE_Q8] += (noise_q8 - s[_NOISE_Q8]) >> 3
-    if s[_REST] == 0:
-        return STILL
-    s[_TIP_Q8] = int(tip_q8(s_, c_))
-    # gravity's two window means differ by noise alone: 6 is three sigma of three axes together
-    if s[_TIP_Q8] > c[_TIP_LIMIT_Q8] + 6 * (shake_q8 >> c[_SHIFT]):
-        return TURNING
-    if s[_SEGMENT]:
-        shake_q8 = int(change_q4(s_, c_))
-        if shake_q8 > 0x7FFF:
-            return SHIFTED
-        # noise alone lets the means of one axis differ: 14 = 2 / 3 x (4.5 sigma)^2
-        if shake_q8 * shake_q8 > c[_CHANGE_Q8] + 14 * (noise_q8 >> c[_SHIFT]):
-            return SHIFTED
-    return STILL
-
-
-@micropython.viper
-def judge(s_, c_) -> int:
-    """Close the full window; return 1 when it completes a still segment, else 0.
-
-    A segment's sums are then in the shared block, and the next window begins a new one of the
-    same rest, whose gravity still is the anchor: the longer a rest, the slower the turns it shows.
-    """
-    s = ptr32(s_)
-    c = ptr32(c_)
-    state = int(look(s_, c_))
-    s[_STILLNESS] = state
-    s[_TEMP] = s[_REFERENCE + 3] + (s[_SUM + 3] >> c[_SHIFT])
-    s[_N] = 0
-    if state == MOVING or state == SHAKEN:
-        s[_REST] = 0
+        total = s[19 + 4 + i] << c[4]
+        total = total - (s[64 + i] + 128 >> 8)
+        total = total + s[26 + 4 + i]
+        s[42 + i] += total
+        i = i + 1
+    s[45] = s[45] + s[47]
+    s[48] = s[48] + 1
+    if s[48] < c[5]:
         return 0
-    if state != STILL or s[_REST] == 0:
-        begin(s_, c_, 0)
-    elif s[_SEGMENT] == 0:
-        begin(s_, c_, 1)
-    i = 0
-    while i < 3:
-        total = s[_REFERENCE + 4 + i] << c[_SHIFT]
-        total -= (s[_EFFECT_SUM + i] + 128) >> 8
-        total += s[_SUM + 4 + i]
-        s[_TOTAL + i] += total
-        i += 1
-    s[_TEMP_TOTAL] += s[_TEMP]
-    s[_SEGMENT] += 1
-    if s[_SEGMENT] < c[_SEGMENTS]:
-        return 0
-    s[_SEGMENT] = 0
+    s[48] = 0
     return 1

@@ -8,14 +8,17 @@ from zerorate.model import EffectModel
 from zerorate.settings import Sensor
 
 if sys.argv[1] == "viper":
-    from zerorate.viper.effect_refine import observe, refine
+    from zerorate.viper.effect_refine import attend
 else:
-    from zerorate.effect_refine import observe, refine
+    from zerorate.effect_refine import attend
 
 model = EffectModel()
 assert model.load_file("model.bin", Sensor(2.0)) == 0
 model.refine()
 state = array("i", [0] * 64)
+state[46] = 1  # still
+settings = array("i", [0] * 52)
+settings[4], settings[5] = 6, 1  # a segment of one window of 64 samples
 
 
 def drive():
@@ -26,9 +29,11 @@ def drive():
         for axis in range(3):
             state[42 + axis] = n * (axis + 5) * 104729 % 60013 - 20000
         state[47] = n * 31 - 2000
-        observe(state, e, 64)
+        state[17] = 0  # the window has just ended
+        attend(state, settings, e)
+        state[17] = 1
         while e[582]:
-            refine(e)
+            attend(state, settings, e)
 
 
 heap_lock()

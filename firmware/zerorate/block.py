@@ -1,0 +1,248 @@
+"""Many frames in one call, as a chip's FIFO gives them: what `step` does, faster."""
+
+# Between the first and the last frame of a window nearly every frame is a good reading, and nothing
+# but sums, counts and the correction changes. Such a stretch is taken here in one loop over locals,
+# which cost viper a third of what words of the state do. Whatever is not plain at one look (a
+# fault, a repeat, a frame that ends a rest, work that waits) is left to `step`, frame by frame;
+# both give the same, to the last bit.
+#
+# Its frame on the stack is too large for bytecode, which would take heap for it: it is imported
+# only where viper is.
+#
+# A frame of `f` is eight words: us since the frame before, ax ay az temp gx gy gz in raw LSB.
+
+try:
+    from micropython import const
+except ImportError:
+
+    def const(value):
+        return value
+
+
+ptr32 = None
+
+
+from .step import step
+
+_COUNT = const(8)
+_ELAPSED_US = const(16)
+_N = const(17)
+_DIRTY = const(18)
+_REFERENCE = const(19)
+_SUM = const(26)
+_SQUARE_ACCEL = const(33)
+_SQUARE_GYRO = const(35)
+_PHASE = const(53)
+_OUT_Q8 = const(55)
+_CARRY_Q8 = const(58)
+_EFFECT_Q8 = const(61)
+_EFFECT_SUM = const(64)
+_TARGET_Q8 = const(67)
+_SQUARE_STEP = const(76)
+_LAST = const(77)
+
+_LEAP_US = const(1)
+_JUMP_LSB = const(2)
+_WINDOW = const(3)
+_EVERY = const(46)
+
+_MOST_US = const(0x1FFFFFFF)
+_MOST_LEAP_US = const(0x1FFFFF)  # a window of them and _MOST_US fit 31 bits
+_NEARLY_MOST_COUNT = const(0x1FFFFE00)
+_FAR_FROM_RAILS = const(32000)
+
+
+def stretch(s: ptr32, c: ptr32, n: int) -> int:
+    """Return how many of the next n frames may be taken at one look: those within the window.
+
+    None while anything but a plain reading is to be done: a window begins, work waits, the
+    correction is on its way to its target, every reading is learned.
+    """
+    if s[_PHASE] or s[_N] == 0 or c[_EVERY] or c[_LEAP_US] > _MOST_LEAP_US:
+        return 0
+    if s[_COUNT] == 0 or s[_COUNT] > _NEARLY_MOST_COUNT:
+        return 0
+    i = 0
+    while i < 3:
+        if s[_OUT_Q8 + i] != s[_TARGET_Q8 + i]:
+            return 0
+        if s[_REFERENCE + 4 + i] > _FAR_FROM_RAILS or s[_REFERENCE + 4 + i] < -_FAR_FROM_RAILS:
+            return 0
+        i += 1
+    i = c[_WINDOW] - 1 - s[_N]
+    return i if i < n else n
+
+
+def account(s: ptr32, f: ptr32, p: int, taken: int, elapsed_us: int):
+    """Count the frames before word p of f that were taken; the last one is the frame before."""
+    s[0] = f[p - 7]
+    s[1] = f[p - 6]
+    s[2] = f[p - 5]
+    s[3] = f[p - 4]
+    s[_COUNT] += taken
+    s[_N] += taken
+    elapsed_us += s[_ELAPSED_US]
+    s[_ELAPSED_US] = elapsed_us if elapsed_us < _MOST_US else _MOST_US
+
+
+def take(s: ptr32, f: ptr32, c: ptr32, first: int, n: int) -> int:
+    """Take up to n frames from frame `first` on at one look each; return how many were taken."""
+    p = first << 3
+    left = n
+    moving = s[_DIRTY]
+    leap_us = c[_LEAP_US]
+    usual_us = leap_us
+    elapsed_us = 0
+    most_jump = c[_JUMP_LSB] - 1
+    least_jump = 1 - c[_JUMP_LSB]
+    last_t = s[3]
+    last_x = s[4]
+    last_y = s[5]
+    last_z = s[6]
+    ref_a = s[_REFERENCE]
+    ref_b = s[_REFERENCE + 1]
+    ref_c = s[_REFERENCE + 2]
+    ref_t = s[_REFERENCE + 3]
+    ref_x = s[_REFERENCE + 4]
+    ref_y = s[_REFERENCE + 5]
+    ref_z = s[_REFERENCE + 6]
+    sum_a = s[_SUM]
+    sum_b = s[_SUM + 1]
+    sum_c = s[_SUM + 2]
+    sum_t = s[_SUM + 3]
+    sum_x = s[_SUM + 4]
+    sum_y = s[_SUM + 5]
+    sum_z = s[_SUM + 6]
+    square_accel = s[_SQUARE_ACCEL]
+    square_gyro = s[_SQUARE_GYRO]
+    square_step = s[_SQUARE_STEP]
+    # a rate is (rate << 8) + due_x, shifted back: half an LSB and what was left over, less the bias
+    bias_x = s[_OUT_Q8] + s[_EFFECT_Q8]
+    bias_y = s[_OUT_Q8 + 1] + s[_EFFECT_Q8 + 1]
+    bias_z = s[_OUT_Q8 + 2] + s[_EFFECT_Q8 + 2]
+    due_x = s[_CARRY_Q8] + 128 - bias_x
+    due_y = s[_CARRY_Q8 + 1] + 128 - bias_y
+    due_z = s[_CARRY_Q8 + 2] + 128 - bias_z
+    while left:
+        dt = f[p]
+        if dt != usual_us:
+            if dt <= 0 or dt > leap_us:
+                break
+            usual_us = dt
+        t = f[p + 4]
+        d = t - last_t
+        if d > most_jump or d < least_jump:
+            break
+        x = f[p + 5]
+        y = f[p + 6]
+        z = f[p + 7]
+        if x == last_x and y == last_y and z == last_z:
+            break  # a repeat, perhaps
+        if x == y and y == z:
+            break  # all zeros or all ones, perhaps
+        if moving:
+            if ((x + 16384) | (y + 16384) | (z + 16384)) >> 15:
+                if x > 32766 or y > 32766 or z > 32766:
+                    break
+                if x < -32767 or y < -32767 or z < -32767:
+                    break
+            sum_t += t - ref_t
+        else:
+            a = f[p + 1] - ref_a
+            b = f[p + 2] - ref_b
+            g = f[p + 3] - ref_c
+            d = t - ref_t
+            dx = x - ref_x
+            dy = y - ref_y
+            dz = z - ref_z
+            far = (a + 512) | (b + 512) | (g + 512) | (d + 512)
+            if ((dx + 512) | (dy + 512) | (dz + 512) | far) >> 10:
+                break  # the window is no rest from here on
+            sum_a += a
+            sum_b += b
+            sum_c += g
+            sum_t += d
+            sum_x += dx
+            sum_y += dy
+            sum_z += dz
+            square_accel += a * a + b * b + g * g
+            square_gyro += dx * dx + dy * dy + dz * dz
+            a = x - last_x
+            b = y - last_y
+            g = z - last_z
+            square_step += a * a + b * b + g * g
+        elapsed_us += dt
+        last_t = t
+        last_x = x
+        last_y = y
+        last_z = z
+        d = (x << 8) + due_x
+        f[p + 5] = d >> 8
+        due_x = (d & 255) - bias_x
+        d = (y << 8) + due_y
+        f[p + 6] = d >> 8
+        due_y = (d & 255) - bias_y
+        d = (z << 8) + due_z
+        f[p + 7] = d >> 8
+        due_z = (d & 255) - bias_z
+        f[p] = 0
+        p += 8
+        left -= 1
+    left = n - left
+    if left == 0:
+        return 0
+    account(s, f, p, left, elapsed_us)
+    s[4] = last_x
+    s[5] = last_y
+    s[6] = last_z
+    s[_SUM + 3] = sum_t
+    s[_CARRY_Q8] = due_x + bias_x - 128
+    s[_CARRY_Q8 + 1] = due_y + bias_y - 128
+    s[_CARRY_Q8 + 2] = due_z + bias_z - 128
+    if moving:
+        return left
+    s[_SUM] = sum_a
+    s[_SUM + 1] = sum_b
+    s[_SUM + 2] = sum_c
+    s[_SUM + 4] = sum_x
+    s[_SUM + 5] = sum_y
+    s[_SUM + 6] = sum_z
+    s[_SQUARE_ACCEL] = square_accel
+    s[_SQUARE_GYRO] = square_gyro
+    s[_SQUARE_STEP] = square_step
+    s[_LAST] = last_x - ref_x
+    s[_LAST + 1] = last_y - ref_y
+    s[_LAST + 2] = last_z - ref_z
+    i = 0
+    while i < 3:
+        s[_EFFECT_SUM + i] += s[_EFFECT_Q8 + i] * left
+        i += 1
+    return left
+
+
+def one(s: ptr32, f: ptr32, c: ptr32, x: ptr32, p: int):
+    """Give the frame at word p of f to `step`; x: seven words of room."""
+    i = 0
+    while i < 7:
+        x[i] = f[p + 1 + i]
+        i += 1
+    i = f[p]
+    f[p] = step(s, c, x, i)
+    i = 0
+    while i < 7:
+        f[p + 1 + i] = x[i]
+        i += 1
+
+
+def block(s: ptr32, f: ptr32, c: ptr32, x: ptr32, n: int):
+    """Take n frames of f and correct each in place; its first word becomes the guard's verdict."""
+    i = 0
+    while i < n:
+        k = n - i
+        k = stretch(s, c, k)
+        if k:
+            k = take(s, f, c, i, k)
+        if k == 0:
+            one(s, f, c, x, i << 3)
+            k = 1
+        i += k

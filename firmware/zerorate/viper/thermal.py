@@ -1,0 +1,274 @@
+# Generated from zerorate/thermal.py by `make viper`: edit that file, not this one.
+"""How the bias found in motion follows the temperature, between one window and the next.
+
+A Kalman filter of two states an axis, bias and slope over temperature: the window's least squares
+are its measurement. A bias carried along its slope does not lag behind a ramp, and what the ramp
+teaches of the slope costs no more than its covariance with the bias.
+
+Three packed numbers an axis from _SLOPE on: the slope, its covariance with the bias, its variance;
+in Q24 rad a node and raw LSB of the thermometer."""
+
+import micropython
+
+from .real import add_smaller
+from .real import divide
+from .real import multiply
+from .real import subtract
+
+
+@micropython.viper
+def unpack_slope(s: ptr32, a: int):
+    s_a = ptr32(int(s) + (a << 2))
+    unpack_put_m = s_a[0] >> 7 << 5
+    unpack_put_e = (s_a[0] & 127) - 96
+    if not unpack_put_m:
+        s[184] = 0
+        s[185] = -4096
+    else:
+        while unpack_put_m < 524288 and unpack_put_m >= -524288:
+            unpack_put_m = unpack_put_m << 8
+            unpack_put_e = unpack_put_e - 8
+        while unpack_put_m < 134217728 and unpack_put_m >= -134217728:
+            unpack_put_m = unpack_put_m << 1
+            unpack_put_e = unpack_put_e - 1
+        while unpack_put_m >= 268435456 or unpack_put_m < -268435456:
+            unpack_put_m = unpack_put_m >> 1
+            unpack_put_e = unpack_put_e + 1
+        s[184] = unpack_put_m
+        s[185] = unpack_put_e
+    unpack_a = a + 1
+    s_unpack_a = ptr32(int(s) + (unpack_a << 2))
+    unpack_put_m = s_unpack_a[0] >> 7 << 5
+    unpack_put_e = (s_unpack_a[0] & 127) - 96
+    if not unpack_put_m:
+        s[186] = 0
+        s[187] = -4096
+    else:
+        while unpack_put_m < 524288 and unpack_put_m >= -524288:
+            unpack_put_m = unpack_put_m << 8
+            unpack_put_e = unpack_put_e - 8
+        while unpack_put_m < 134217728 and unpack_put_m >= -134217728:
+            unpack_put_m = unpack_put_m << 1
+            unpack_put_e = unpack_put_e - 1
+        while unpack_put_m >= 268435456 or unpack_put_m < -268435456:
+            unpack_put_m = unpack_put_m >> 1
+            unpack_put_e = unpack_put_e + 1
+        s[186] = unpack_put_m
+        s[187] = unpack_put_e
+    unpack_a = a + 2
+    s_unpack_a = ptr32(int(s) + (unpack_a << 2))
+    unpack_put_m = s_unpack_a[0] >> 7 << 5
+    unpack_put_e = (s_unpack_a[0] & 127) - 96
+    if not unpack_put_m:
+        s[188] = 0
+        s[189] = -4096
+    else:
+        while unpack_put_m < 524288 and unpack_put_m >= -524288:
+            unpack_put_m = unpack_put_m << 8
+            unpack_put_e = unpack_put_e - 8
+        while unpack_put_m < 134217728 and unpack_put_m >= -134217728:
+            unpack_put_m = unpack_put_m << 1
+            unpack_put_e = unpack_put_e - 1
+        while unpack_put_m >= 268435456 or unpack_put_m < -268435456:
+            unpack_put_m = unpack_put_m >> 1
+            unpack_put_e = unpack_put_e + 1
+        s[188] = unpack_put_m
+        s[189] = unpack_put_e
+
+
+@micropython.viper
+def pack_slope(s: ptr32, a: int):
+    s_a = ptr32(int(s) + (a << 2))
+    pack_e = s[185] + 96
+    if not s[184] or pack_e >> 30 or pack_e > 127:
+        s_a[0] = 0
+    else:
+        s_a[0] = (s[184] >> 5 << 7) + pack_e
+    pack_d = a + 1
+    s_pack_d = ptr32(int(s) + (pack_d << 2))
+    pack_e = s[187] + 96
+    if not s[186] or pack_e >> 30 or pack_e > 127:
+        s_pack_d[0] = 0
+    else:
+        s_pack_d[0] = (s[186] >> 5 << 7) + pack_e
+    pack_d = a + 2
+    s_pack_d = ptr32(int(s) + (pack_d << 2))
+    pack_e = s[189] + 96
+    if not s[188] or pack_e >> 30 or pack_e > 127:
+        s_pack_d[0] = 0
+    else:
+        s_pack_d[0] = (s[188] >> 5 << 7) + pack_e
+
+
+@micropython.viper
+def carry_axis(s_, c: ptr32, i: int):
+    s = ptr32(s_)
+    d = 3 * i + 228
+    unpack_slope(s_, d)
+    multiply(s_, 204, 184, 202)
+    real_add_d = 2 * i + 172
+    real_add_a = 2 * i + 172
+    if s[real_add_a + 1] < s[205]:
+        add_smaller(s_, real_add_d, 204, real_add_a)
+    else:
+        add_smaller(s_, real_add_d, real_add_a, 204)
+    multiply(s_, 204, 188, 202)
+    if s[187] < s[205]:
+        add_smaller(s_, 206, 204, 186)
+    else:
+        add_smaller(s_, 206, 186, 204)
+    if s[187] < s[207]:
+        add_smaller(s_, 204, 206, 186)
+    else:
+        add_smaller(s_, 204, 186, 206)
+    multiply(s_, 204, 204, 202)
+    put_m = s[204] if s[204] > 0 else 0
+    put_e = s[205]
+    if not put_m:
+        s[204] = 0
+        s[205] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s[204] = put_m
+        s[205] = put_e
+    if s[205] < s[209]:
+        add_smaller(s_, 204, 208, 204)
+    else:
+        add_smaller(s_, 204, 204, 208)
+    i = (7 - i) * i + 148
+    if s[i + 1] < s[205]:
+        add_smaller(s_, i, 204, i)
+    else:
+        add_smaller(s_, i, i, 204)
+    bend_i = s[202] if s[202] >= 0 else -s[202]
+    bend_put_m = bend_i
+    bend_put_e = s[203] - c[25]
+    if not bend_put_m:
+        s[204] = 0
+        s[205] = -4096
+    else:
+        while bend_put_m < 524288 and bend_put_m >= -524288:
+            bend_put_m = bend_put_m << 8
+            bend_put_e = bend_put_e - 8
+        while bend_put_m < 134217728 and bend_put_m >= -134217728:
+            bend_put_m = bend_put_m << 1
+            bend_put_e = bend_put_e - 1
+        while bend_put_m >= 268435456 or bend_put_m < -268435456:
+            bend_put_m = bend_put_m >> 1
+            bend_put_e = bend_put_e + 1
+        s[204] = bend_put_m
+        s[205] = bend_put_e
+    bend_put_m = c[23]
+    bend_put_e = c[24]
+    if not bend_put_m:
+        s[160] = 0
+        s[161] = -4096
+    else:
+        while bend_put_m < 524288 and bend_put_m >= -524288:
+            bend_put_m = bend_put_m << 8
+            bend_put_e = bend_put_e - 8
+        while bend_put_m < 134217728 and bend_put_m >= -134217728:
+            bend_put_m = bend_put_m << 1
+            bend_put_e = bend_put_e - 1
+        while bend_put_m >= 268435456 or bend_put_m < -268435456:
+            bend_put_m = bend_put_m >> 1
+            bend_put_e = bend_put_e + 1
+        s[160] = bend_put_m
+        s[161] = bend_put_e
+    multiply(s_, 204, 204, 160)
+    if s[189] < s[205]:
+        add_smaller(s_, 188, 204, 188)
+    else:
+        add_smaller(s_, 188, 188, 204)
+    put_m = s[206]
+    put_e = s[207]
+    if not put_m:
+        s[186] = 0
+        s[187] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s[186] = put_m
+        s[187] = put_e
+    pack_slope(s_, d)
+
+
+@micropython.viper
+def learn_slopes(s_):
+    s = ptr32(s_)
+    i = 0
+    while i < 3:
+        learn_slope_i = i
+        learn_slope_d = 3 * learn_slope_i + 228
+        unpack_slope(s_, learn_slope_d)
+        learn_slope_a = (7 - learn_slope_i) * learn_slope_i + 148
+        divide(s_, 202, 186, learn_slope_a)
+        subtract(s_, 204, 2 * learn_slope_i + 178, 2 * learn_slope_i + 172)
+        multiply(s_, 204, 204, 202)
+        if s[185] < s[205]:
+            add_smaller(s_, 184, 204, 184)
+        else:
+            add_smaller(s_, 184, 184, 204)
+        if learn_slope_i > learn_slope_i:
+            learn_slope_i = (4 * learn_slope_i - ((learn_slope_i + 1) * learn_slope_i >> 1) + learn_slope_i) * 2 + 33
+        else:
+            learn_slope_i = (4 * learn_slope_i - ((learn_slope_i + 1) * learn_slope_i >> 1) + learn_slope_i) * 2 + 33
+        if s[learn_slope_a + 1] < s[learn_slope_i + 1]:
+            add_smaller(s_, 204, learn_slope_i, learn_slope_a)
+        else:
+            add_smaller(s_, 204, learn_slope_a, learn_slope_i)
+        multiply(s_, 204, 204, 202)
+        multiply(s_, 204, 204, 202)
+        subtract(s_, 206, 188, 204)
+        learn_slope_put_m = s[206] if s[206] > 0 else 0
+        learn_slope_put_e = s[207]
+        if not learn_slope_put_m:
+            s[188] = 0
+            s[189] = -4096
+        else:
+            while learn_slope_put_m < 524288 and learn_slope_put_m >= -524288:
+                learn_slope_put_m = learn_slope_put_m << 8
+                learn_slope_put_e = learn_slope_put_e - 8
+            while learn_slope_put_m < 134217728 and learn_slope_put_m >= -134217728:
+                learn_slope_put_m = learn_slope_put_m << 1
+                learn_slope_put_e = learn_slope_put_e - 1
+            while learn_slope_put_m >= 268435456 or learn_slope_put_m < -268435456:
+                learn_slope_put_m = learn_slope_put_m >> 1
+                learn_slope_put_e = learn_slope_put_e + 1
+            s[188] = learn_slope_put_m
+            s[189] = learn_slope_put_e
+        learn_slope_put_m = -s[learn_slope_i]
+        learn_slope_put_e = s[learn_slope_i + 1]
+        if not learn_slope_put_m:
+            s[204] = 0
+            s[205] = -4096
+        else:
+            while learn_slope_put_m < 524288 and learn_slope_put_m >= -524288:
+                learn_slope_put_m = learn_slope_put_m << 8
+                learn_slope_put_e = learn_slope_put_e - 8
+            while learn_slope_put_m < 134217728 and learn_slope_put_m >= -134217728:
+                learn_slope_put_m = learn_slope_put_m << 1
+                learn_slope_put_e = learn_slope_put_e - 1
+            while learn_slope_put_m >= 268435456 or learn_slope_put_m < -268435456:
+                learn_slope_put_m = learn_slope_put_m >> 1
+                learn_slope_put_e = learn_slope_put_e + 1
+            s[204] = learn_slope_put_m
+            s[205] = learn_slope_put_e
+        multiply(s_, 186, 202, 204)
+        pack_slope(s_, learn_slope_d)
+        i = i + 1

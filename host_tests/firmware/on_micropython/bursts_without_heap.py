@@ -1,0 +1,56 @@
+"""Runs the trace in bursts with the heap locked; writes the final state and every frame.
+
+Arguments: plain or viper, a mode of trace.MODES, how many updates.
+"""
+
+import sys
+import trace
+from array import array
+
+import zerorate.bursts as bursts_file
+import zerorate.corrector as corrector_file
+import zerorate.kernels as kernels
+from micropython import heap_lock, heap_unlock
+from zerorate import Corrector, Sensor
+from zerorate.bursts import Bursts
+
+_MOST = 73
+
+which, mode, updates = sys.argv[1], sys.argv[2], int(sys.argv[3])
+if which == "plain":
+    from zerorate import estimators, step
+
+    corrector_file.estimators, corrector_file.step, bursts_file.block = estimators, step, None
+elif not kernels.VIPER:
+    raise SystemExit("no viper here")
+
+options = dict(trace.LIMITS)
+options.update(trace.MODES[mode])
+corrector = Corrector(Sensor(*trace.SENSOR), **options)
+bursts = Bursts(corrector)
+frame = array("i", [0] * 7)
+generator = array("i", trace.GENERATOR)
+burst = array("i", [0] * (8 * _MOST))
+
+
+def fill(first, count):
+    for n in range(count):
+        burst[8 * n] = trace.fill(frame, first + n, generator)
+        for i in range(7):
+            burst[8 * n + 1 + i] = frame[i]
+
+
+with open("frames.bin", "wb") as file:
+    first = 0
+    while first < updates:
+        count = min(1 + first * 7 % _MOST, updates - first)
+        fill(first, count)
+        heap_lock()
+        try:
+            bursts.update(burst, count)
+        finally:
+            heap_unlock()  # the WebAssembly port hangs on an error under the lock
+        file.write(bytes(burst)[: 32 * count])
+        first += count
+with open("state.bin", "wb") as file:
+    file.write(corrector.state)

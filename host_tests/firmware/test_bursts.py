@@ -1,0 +1,94 @@
+"""A burst of frames in one call leaves what the same frames leave one by one."""
+
+from array import array
+from pathlib import Path
+
+import pytest
+from zerorate import Corrector, block
+from zerorate.bursts import Bursts
+
+from . import trace
+from .trace_on_host import corrector_for, frames
+
+ON_BOARD = Path(__file__).parent / "on_micropython" / "bursts_without_heap.py"
+
+
+@pytest.fixture(scope="module", params=sorted(trace.MODES))
+def one_by_one(request):
+    """(mode, final state, eight words a frame: verdict and the corrected sample), bytes."""
+    corrector, words = corrector_for(request.param), array("i")
+    rows, dt_us = frames(trace.UPDATES[request.param])
+    for row, dt in zip(rows.tolist(), dt_us.tolist()):
+        frame = array("i", row)
+        words.append(corrector.update(frame, dt))
+        words.extend(frame)
+    return request.param, corrector.state.tobytes(), words.tobytes()
+
+
+def whole_trace(mode):
+    rows, dt_us = frames(trace.UPDATES[mode])
+    return [array("i", [dt, *row]) for row, dt in zip(rows.tolist(), dt_us.tolist())]
+
+
+@pytest.mark.parametrize("at_once", [1, 7, 73, 500])
+def test_the_kernel_gives_what_single_updates_give(one_by_one, at_once):
+    mode, state, words = one_by_one
+    corrector, done, room = corrector_for(mode), array("i"), array("i", [0] * 7)
+    rows = whole_trace(mode)
+    for first in range(0, len(rows), at_once):
+        burst = array("i", b"".join(row.tobytes() for row in rows[first : first + at_once]))
+        block.block(corrector.state, burst, corrector.settings, room, len(burst) // 8)
+        done.extend(burst)
+    assert done.tobytes() == words
+    assert corrector.state.tobytes() == state
+
+
+def test_most_frames_of_a_rest_are_taken_at_one_look(monkeypatch):
+    left = []
+    plain = block.step
+    monkeypatch.setattr(block, "step", lambda *args: left.append(1) or plain(*args))
+    rows = whole_trace("default")[:640]
+    corrector = corrector_for("default")
+    burst = array("i", b"".join(row.tobytes() for row in rows))
+    block.block(corrector.state, burst, corrector.settings, array("i", [0] * 7), len(rows))
+    assert 0 < len(left) < 640 / 2
+
+
+def test_a_corrector_without_viper_gives_the_same(one_by_one):
+    mode, state, words = one_by_one
+    corrector, rows = corrector_for(mode), whole_trace(mode)
+    burst = array("i", b"".join(row.tobytes() for row in rows))
+    Bursts(corrector).update(burst, len(rows))
+    assert (corrector.state.tobytes(), burst.tobytes()) == (state, words)
+
+
+def test_a_burst_reaches_the_other_sources_too():
+    single, burst = Corrector(motion=True), Corrector(motion=True)
+    rows = whole_trace("default")[:300]
+    words = array("i", b"".join(row.tobytes() for row in rows))
+    for row in rows:
+        single.update(row[1:], row[0])
+    Bursts(burst).update(words, len(rows))
+    assert list(burst.motion) == list(single.motion) != list(Corrector(motion=True).motion)
+
+
+def on_board(runtime, kernels, mode, repository):
+    return runtime.run(
+        ON_BOARD,
+        [kernels, mode, trace.UPDATES[mode]],
+        modules=[repository / "firmware", ON_BOARD.parents[1]],
+        files_out=["state.bin", "frames.bin"],
+        check=True,
+    ).files
+
+
+def test_bytecode_gives_the_same_and_allocates_nothing(one_by_one, micropython, repository):
+    mode, state, words = one_by_one
+    files = on_board(micropython, "plain", mode, repository)
+    assert (files["state.bin"], files["frames.bin"]) == (state, words)
+
+
+def test_viper_gives_the_same_and_allocates_nothing(one_by_one, viper_runtime, repository):
+    mode, state, words = one_by_one
+    files = on_board(viper_runtime, "viper", mode, repository)
+    assert (files["state.bin"], files["frames.bin"]) == (state, words)

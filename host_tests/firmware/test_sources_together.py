@@ -1,0 +1,123 @@
+"""Three sources and one decision: equal on every interpreter, no heap, no leap, in words."""
+
+from array import array
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+from zerorate import Corrector, Sensor
+
+from . import motions
+from .played import by_numba
+
+HZ = 25.0
+DT_US = 40000
+BIAS_DPS = np.array([1.0, -2.0, 3.0])
+OUT_Q8, SOURCE, LSB = 55, 73, 131.0
+MOTION_LEARNED, LEVEL_COUNTED = 67, 37
+
+
+@pytest.fixture(scope="module")
+def samples():
+    """(n, 7): a minute of swinging at a lean, then a quarter of one at rest."""
+    lean = Rotation.from_rotvec([0.5, -0.6, 0.2])
+    swing = motions.swinging(7, 60, hz=HZ, bias_dps=BIAS_DPS, start=lean)
+    rest = motions.turning(15, 0.0, [1, 0, 0], hz=HZ, bias_dps=BIAS_DPS, start=lean)
+    return np.vstack([swing.samples, rest.samples])
+
+
+def both(**options):
+    return Corrector(Sensor(HZ), motion=True, accelerometer=True, **options)
+
+
+def played(corrector, samples, look=lambda corrector: None):
+    for sample in samples.tolist():
+        corrector.update(array("i", sample), DT_US)
+        look(corrector)
+    return corrector
+
+
+def words(corrector):
+    return b"".join(x.tobytes() for x in (corrector.state, corrector.motion, corrector.level))
+
+
+@pytest.fixture(scope="module")
+def expected(samples):
+    corrector = played(both(), samples)
+    assert corrector.motion[MOTION_LEARNED] > 0
+    assert max(corrector.level[LEVEL_COUNTED : LEVEL_COUNTED + 3]) > 50
+    assert list(corrector.state[SOURCE : SOURCE + 3]) == [3, 3, 3], "the rest has the last word"
+    return words(corrector)
+
+
+def test_every_interpreter_decides_the_same_and_allocates_nothing(
+    micropython, repository, samples, expected
+):
+    result = micropython.run(
+        repository / "host_tests" / "firmware" / "on_micropython" / "sources_without_heap.py",
+        [str(len(samples))],
+        modules=[repository / "firmware"],
+        files_in={"samples.bin": samples.astype(np.int32).tobytes()},
+        files_out=["state.bin"],
+        check=True,
+    )
+    assert result.files["state.bin"] == expected
+
+
+def test_the_kernels_that_numba_compiled_decide_the_same(samples, expected):
+    corrector = both()
+    by_numba(corrector, samples.astype(np.int32), np.full(len(samples), DT_US))
+    assert words(corrector) == expected
+
+
+def test_the_output_slews_no_faster_than_stated_when_the_source_changes(samples):
+    """0.5 dps a second, once an axis has had its first bias at all."""
+    steps = {axis: [] for axis in range(3)}
+    last = {}
+
+    def look(corrector):
+        for axis in range(3):
+            bias = corrector.state[OUT_Q8 + axis] / 256 / LSB
+            if axis in last:
+                steps[axis].append(abs(bias - last[axis]))
+            if corrector.state[SOURCE + axis] > 1:
+                last[axis] = bias
+
+    played(both(), samples, look)
+    most = [max(found) * HZ for found in steps.values()]
+    print("steepest change of the output:", np.round(most, 3), "dps/s")
+    assert 0 < max(most) <= 0.5
+
+
+def test_it_says_what_each_source_is_doing(samples):
+    corrector = both()
+    fresh = corrector.explain()
+    assert "In motion: no window has been seen yet" in fresh
+    assert "Against gravity: no half-second has been seen yet" in fresh
+    played(corrector, samples[: round(40 * HZ)])
+    swinging = corrector.explain()
+    assert "In motion: the latest window taught a bias" in swinging
+    assert "Observable against gravity: gx for" in swinging
+    for _ in range(2):
+        played(corrector, samples[-round(15 * HZ) :])
+    assert "nothing is learned: it hardly moves" in corrector.explain()
+
+
+def test_it_says_which_axis_gravity_hides():
+    flat = motions.turning(20, 0.0, [1, 0, 0], hz=HZ)
+    text = played(both(), flat.samples).explain()
+    assert "gz not at all, gravity lies along it" in text
+    assert "gx for 1" in text
+
+
+def test_nothing_is_said_of_sources_that_are_off():
+    text = Corrector().explain()
+    assert "In motion" not in text and "gravity" not in text
+
+
+def test_a_rough_guess_is_not_put_out(samples):
+    """Beyond eight times what may teach, 1.2 dps, a first bias is kept back."""
+    corrector = both(motion_most_dps=0.0001)
+    played(corrector, samples[: round(40 * HZ)])
+    assert corrector.motion[MOTION_LEARNED] > 0
+    assert list(corrector.state[SOURCE : SOURCE + 3]) == [0, 0, 0]
