@@ -11,6 +11,7 @@ from zerorate_tools.boards import flash, record
 from zerorate_tools.boards.connection import BoardError
 from zerorate_tools.boards.flashing import package_files
 from zerorate_tools.boards.frames import MESSAGE, SAMPLE, FrameReader, encode
+from zerorate_tools.cli import main
 from zerorate_tools.errors import ZerorateError
 from zerorate_tools.recordings import read_recording
 
@@ -112,6 +113,21 @@ class TestRecord:
         with pytest.raises(BoardError):
             record(board.port, out, seconds=60, setup=SETUP)
         assert len(read_recording(out).columns["gz"]) > 0
+
+
+class TestWatch:
+    def test_a_board_is_watched_and_free_again_afterwards(self, board, tmp_path, capsys):
+        setup = tmp_path / "setup.py"
+        setup.write_text(SETUP)
+        options = ["--for", "3", "--every", "0.5", "--setup", str(setup)]
+        assert main(["watch", board.port, *options]) == 0
+        lines = capsys.readouterr().out.splitlines()
+        assert len(lines) >= 2 and all("bias dps" in line for line in lines)
+        assert board_says(board, "print('here')") == "here"
+
+    def test_no_board_is_one_line(self, capsys):
+        assert main(["watch", "/dev/ttyACM99"]) == 2
+        assert capsys.readouterr().err.count("\n") == 1
 
 
 def board_says(board, source):

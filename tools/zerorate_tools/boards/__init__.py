@@ -2,6 +2,6 @@
 
 from .flashing import flash
 from .recorder import Recorded
-from .recording import record
+from .recording import record, stream
 
-__all__ = ["Recorded", "flash", "record"]
+__all__ = ["Recorded", "flash", "record", "stream"]

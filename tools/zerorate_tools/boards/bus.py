@@ -10,8 +10,8 @@ from zerorate_i2c import clock
 from zerorate_i2c.fifo import EMPTY, Fifo
 from zerorate_i2c.mpu6050 import FRESH, MPU6050, RESTARTED, VERIFIED
 
-from ..recordings import recording_writer
-from .recorder import COLUMNS, Recorded, Recorder, scales_of
+from ..recordings import Scales, recording_writer
+from .recorder import COLUMNS, Recorded, Recorder, SampleTaker, scales_of
 
 _POLLS_A_PERIOD = 3
 _PATIENCE_S = 5.0
@@ -35,7 +35,7 @@ def record_bus(
     5 s; then OSError passes, and out holds what had been verified.
     """
     imu = MPU6050(i2c, clock=time_source, **options)
-    values = {name: getattr(imu, name) for name in (*_SCALES, "temp_offset_degc")}
+    values = {name: getattr(imu, name) for name in (*_SCALES, "temp_offset_degc", "binding")}
     result = Recorded()
     with recording_writer(out, COLUMNS, scales_of({**values, "source": source})) as writer:
         recorder = Recorder(writer.append, imu.period_us, result)
@@ -50,7 +50,27 @@ def record_bus(
     return result
 
 
-def _run(feed, imu: MPU6050, recorder: Recorder, seconds, done) -> OSError | None:
+def stream_bus(
+    i2c,
+    take: Callable[[Scales], SampleTaker],
+    *,
+    seconds: float | None = None,
+    source: str = "I2C",
+    done: Callable[[float], None] = lambda seconds: None,
+    time_source=clock,
+    **options,
+) -> None:
+    """As record_bus, into the SampleTaker that take(scales) makes."""
+    imu = MPU6050(i2c, clock=time_source, **options)
+    values = {name: getattr(imu, name) for name in (*_SCALES, "temp_offset_degc", "binding")}
+    recorder = take(scales_of({**values, "source": source}))
+    failure = _run(_feed(imu), imu, recorder, seconds, done)
+    recorder.flush()
+    if failure:
+        raise failure
+
+
+def _run(feed, imu: MPU6050, recorder: SampleTaker, seconds, done) -> OSError | None:
     """Feed the recorder until time is up; the error that ended it, if one did."""
     sample = array("i", [0] * 7)
     begun = good = reported = imu.clock.ticks_us()
@@ -72,7 +92,7 @@ def _run(feed, imu: MPU6050, recorder: Recorder, seconds, done) -> OSError | Non
     return None
 
 
-def _note(recorder: Recorder, status: int, t_us: int, sample: array | None) -> None:
+def _note(recorder: SampleTaker, status: int, t_us: int, sample: array | None) -> None:
     if status == RESTARTED:
         recorder.discard()
     elif status == VERIFIED:

@@ -8,10 +8,10 @@ from collections.abc import Callable
 from importlib.resources import files
 from pathlib import Path
 
-from ..recordings import recording_writer
+from ..recordings import Scales, recording_writer
 from .connection import BoardError, connected
 from .frames import MESSAGE, SAMPLE, SAMPLE_BYTES, SCALES, FrameReader, sample_of
-from .recorder import COLUMNS, Recorded, Recorder, scales_of
+from .recorder import COLUMNS, Recorded, Recorder, SampleTaker, scales_of
 
 _TICKS = 1 << 30
 _SILENCE_S = 10.0
@@ -47,6 +47,26 @@ def record_port(
     return recorder.result
 
 
+def stream_port(
+    port: str,
+    take: Callable[[Scales], SampleTaker],
+    *,
+    seconds: float | None = None,
+    setup: str = "",
+    done: Callable[[float], None] = lambda seconds: None,
+) -> None:
+    """As record_port, into the SampleTaker that take(scales) makes."""
+    with connected(port) as board:
+        board.exec_raw_no_follow(program(setup or _default_setup()))
+        stream = BoardStream(board.serial, port)
+        recorder = take(stream.scales())
+        failure = stream.record(recorder, seconds, done)
+        recorder.flush()
+        board.serial.write(b"\x03\x03")
+    if failure:
+        raise failure
+
+
 def program(setup: str) -> str:
     """What the board runs: the streamer's own text, then setup, then the stream."""
     streamer = files(__package__).joinpath("on_board/stream.py").read_text(encoding="utf-8")
@@ -78,7 +98,7 @@ class BoardStream:
                 if kind == SCALES:
                     return scales_of({**json.loads(payload), "source": self._port})
 
-    def record(self, recorder: Recorder, seconds: float | None, done) -> BoardError | None:
+    def record(self, recorder: SampleTaker, seconds: float | None, done) -> BoardError | None:
         """Hand samples to recorder until time is up; the error that ended it, if one did."""
         begun = time.monotonic()
         reported = begun
@@ -95,7 +115,7 @@ class BoardStream:
             pass
         return None
 
-    def _take(self, recorder: Recorder, kind: int, payload: bytes) -> None:
+    def _take(self, recorder: SampleTaker, kind: int, payload: bytes) -> None:
         if kind == SAMPLE and len(payload) == SAMPLE_BYTES:
             self._take_sample(recorder, payload)
         elif kind == MESSAGE and payload.startswith(b"restarted"):
@@ -104,7 +124,7 @@ class BoardStream:
         elif kind == MESSAGE:
             recorder.result.bus_errors += 1
 
-    def _take_sample(self, recorder: Recorder, payload: bytes) -> None:
+    def _take_sample(self, recorder: SampleTaker, payload: bytes) -> None:
         sequence, ticks_us, status, words = sample_of(payload)
         if self._ticks_us is not None:
             self._t_us += (ticks_us - self._ticks_us) % _TICKS

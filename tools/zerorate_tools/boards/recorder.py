@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
+from ..model.binding import KEY, NAMES
 from ..recordings import Scales
 
 COLUMNS = ["t_us", "ax", "ay", "az", "temp", "gx", "gy", "gz"]
@@ -49,6 +51,24 @@ class Recorded:
         ):
             text += f", {count} {what}" if count else ""
         return text
+
+
+class SampleTaker(Protocol):
+    """What a board or a bus can stream into; see Recorder."""
+
+    result: Recorded
+
+    def add(self, t_us: int, sample: Sequence[int]) -> None:
+        """One sample of seven words at t_us on any clock."""
+
+    def confirm(self) -> None:
+        """All since the last call are good."""
+
+    def discard(self) -> None:
+        """All since the last call are in doubt."""
+
+    def flush(self) -> None:
+        """No more comes."""
 
 
 class Recorder:
@@ -122,4 +142,7 @@ def scales_of(values: dict) -> Scales:
     """Scales from the attributes of a driver, or from the header a board sends."""
     known = ("odr_hz", "gyro_lsb_per_dps", "accel_lsb_per_g", "temp_lsb_per_degc")
     numbers = {name: float(values[name]) for name in (*known, "temp_offset_degc")}
-    return Scales(sensor=str(values["part"]), more={"source": str(values["source"])}, **numbers)
+    more: dict = {"source": str(values["source"])}
+    if "binding" in values:
+        more[KEY] = dict(zip(NAMES, map(int, values["binding"]), strict=True))
+    return Scales(sensor=str(values["part"]), more=more, **numbers)

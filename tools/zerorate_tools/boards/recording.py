@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from ..errors import MissingLibrary, ZerorateError
-from .recorder import Recorded
+from ..recordings import Scales
+from .recorder import Recorded, SampleTaker
 
 _BUS = re.compile(r"/dev/i2c-\d+|\d+")
 
@@ -33,17 +36,44 @@ def record(
     return record_port(port_or_bus, Path(out), seconds=seconds, done=done, **options)
 
 
-def _record_linux(bus: str, out: Path, **options) -> Recorded:
-    from zerorate_i2c.linux import LinuxI2C
+def stream(
+    port_or_bus: str,
+    take: Callable[[Scales], SampleTaker],
+    *,
+    seconds: float | None = None,
+    done: Callable[[float], None] = lambda seconds: None,
+    **options,
+) -> None:
+    """As record, but into the SampleTaker that take(scales) makes."""
+    if _BUS.fullmatch(port_or_bus):
+        from .bus import stream_bus
 
+        with _opened(port_or_bus) as i2c:
+            stream_bus(i2c, take, source=port_or_bus, seconds=seconds, done=done, **options)
+        return
+    from .port import stream_port
+
+    stream_port(port_or_bus, take, seconds=seconds, done=done, **options)
+
+
+def _record_linux(bus: str, out: Path, **options) -> Recorded:
     from .bus import record_bus
+
+    with _opened(bus) as i2c:
+        return record_bus(i2c, out, source=bus, **options)
+
+
+@contextmanager
+def _opened(bus: str) -> Iterator[Any]:
+    """The bus; what the driver refuses is said in a line."""
+    from zerorate_i2c.linux import LinuxI2C
 
     try:
         i2c = LinuxI2C(int(bus) if bus.isdigit() else bus)
     except ImportError as error:
         raise MissingLibrary("smbus2 is not installed: pip install 'zerorate[linux]'") from error
     try:
-        return record_bus(i2c, out, source=bus, **options)
+        yield i2c
     except ValueError as error:
         raise ZerorateError(f"{bus}: {error}") from error
     finally:

@@ -52,7 +52,7 @@ class Slot:
 
 @dataclass(frozen=True)
 class Input:
-    """A source as the board sees it: (reading - offset) >> shift, mean of a tick.
+    """A source as the board sees it: (reading - offset) / 2^shift in 16 bits, mean of a tick.
 
     of_the_sample: the rate of the very sample instead of the tick's mean.
     """

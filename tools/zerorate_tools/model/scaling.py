@@ -11,7 +11,7 @@ from .model import FRAME, ONE, TIME, VIBRATION, CannotDeploy, Input, Slot, is_ch
 #: A source's integers are of 16 bits, so in Q8 its limits are; without a limit it has these.
 LOWEST, HIGHEST = -0x800000, 0x7FFFFF
 _LARGEST = (1 << 15) - 1
-_MOST_SHIFT = 15
+_LEAST_SHIFT, _MOST_SHIFT = -8, 15
 
 
 class Unit:
@@ -19,7 +19,7 @@ class Unit:
 
     def __init__(self, source: Input, scales: Scales, tick_s: float) -> None:
         per_unit, zero = _lsb(source.name, scales, tick_s)
-        self.q8_per_unit = per_unit * 256 / (1 << source.shift)
+        self.q8_per_unit = per_unit * 256 / 2.0**source.shift
         self.zero = zero + source.offset / per_unit
 
     def q8(self, value: float) -> int:
@@ -69,9 +69,8 @@ def _input(name: str, now: bool, slots: Sequence[Slot], scales: Scales, tick_s: 
         return Input(name, now, _shift(max(abs(hi), 1.0)))
     if math.isinf(lo) or math.isinf(hi):
         return Input(name, now, _MOST_SHIFT - 1)
-    near = max(abs(lo), abs(hi)) <= _LARGEST
-    offset = 0 if near else round((lo + hi) / 2)
-    return Input(name, now, _shift(max(hi - offset, offset - lo)), offset)
+    offset = round((lo + hi) / 2)
+    return Input(name, now, _shift(max(hi - offset, offset - lo, 1.0), _LEAST_SHIFT), offset)
 
 
 def _limits(name: str, slots: Sequence[Slot]) -> list[float]:
@@ -81,8 +80,7 @@ def _limits(name: str, slots: Sequence[Slot]) -> list[float]:
     ]
 
 
-def _shift(largest: float) -> int:
-    shift = 0
-    while shift < _MOST_SHIFT and largest / (1 << shift) > _LARGEST:
+def _shift(largest: float, shift: int = 0) -> int:
+    while shift < _MOST_SHIFT and largest / 2.0**shift > _LARGEST:
         shift += 1
     return shift

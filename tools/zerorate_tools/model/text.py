@@ -81,7 +81,7 @@ def _scales(values: Mapping[str, Any]) -> Scales:
 
 def _input(values: Mapping[str, Any]) -> Input:
     shift, offset = _whole(values["shift"]), _whole(values["offset"])
-    if not 0 <= shift <= 15 or abs(offset) >= 1 << 29:
+    if not -8 <= shift <= 15 or abs(offset) >= 1 << 29:
         raise ValueError(f"shift {shift} or offset {offset} is out of range")
     return Input(_string(values["name"], "name"), values["of_the_sample"] is True, shift, offset)
 

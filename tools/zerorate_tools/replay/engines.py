@@ -9,6 +9,7 @@ from abc import ABC, abstractmethod
 from array import array
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -22,6 +23,8 @@ from ..recordings.checks import GAP
 from .samples import Frames
 
 _NOTHING = array("i", [0])
+#: Word of the effects' array: whether coefficients go on learning.
+REFINING = 26
 _OTHERS = ("motion.bin", "motion_settings.bin", "level.bin", "level_settings.bin", "effects.bin")
 _OUTPUT = np.dtype([("verdict", "<i4"), ("bias", "<i4", 3), ("source", "<i4", 3), ("q", "<i4", 3)])
 
@@ -39,6 +42,11 @@ class Outcome:
     source: NDArray[np.int8]
     quality_q8: NDArray[np.int32]
     verdict: NDArray[np.int8]
+
+    @cached_property
+    def least_source(self) -> NDArray[np.int8]:
+        """(n,) the least trusted of the three axes' sources."""
+        return np.minimum(np.minimum(self.source[:, 0], self.source[:, 1]), self.source[:, 2])
 
 
 def others_of(corrector: Corrector) -> tuple[array | None, ...]:
@@ -83,14 +91,16 @@ class NumbaEngine(Engine):
             yield from CPythonEngine().run(corrector, batches)
             return
         on = [x is not None for x in (corrector.motion, corrector.level, corrector.effects)]
-        run = compiled_run(*on)
+        refining = corrector.effects is not None and corrector.effects.e[REFINING] != 0
+        run = compiled_run(*on, refining)
         state = np.frombuffer(corrector.state, np.int32)
         settings = np.array(corrector.settings, np.int32)
         others = tuple(np.frombuffer(words or _NOTHING, np.int32) for words in others_of(corrector))
         for batch in batches:
             n = len(batch)
-            bias, quality = np.empty((n, 3), np.int32), np.empty((n, 3), np.int32)
-            source, verdict = np.empty((n, 3), np.int8), np.empty(n, np.int8)
+            # each axis lies together, as it will in a file
+            bias, quality = (np.empty((n, 3), np.int32, order="F") for _ in range(2))
+            source, verdict = np.empty((n, 3), np.int8, order="F"), np.empty(n, np.int8)
             run(
                 *(state, settings, others, batch.frames, batch.dt_us, batch.extra),
                 *(bias, source, quality, verdict),

@@ -5,11 +5,13 @@ from __future__ import annotations
 import ast
 import hashlib
 import importlib.util
+import shutil
 import sys
 import types
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import numba
 from zerorate.corrector import (
@@ -24,12 +26,19 @@ from zerorate.corrector import (
 )
 
 from zerorate_tools.recordings.checks import GAP
-from zerorate_tools.runtimes.cache import cache_folder
+from zerorate_tools.runtimes.cache import cache_folder, fill
 from zerorate_tools.viper_twins import hot_functions, kernel_files
 
 _PACKAGE = "zerorate_compiled"
-# first word of the extra channels in the effects' array
-EXTRA = 104
+_LOOP = Path(__file__).with_name("sample_loop.py")
+_STEPS = ("examine", "admit", "finish", "consider")
+_WORDS = {
+    **{"GAP": GAP, "OUT_Q8": OUT_Q8, "EFFECT_Q8": EFFECT_Q8, "QUALITY_Q8": QUALITY_Q8},
+    **{"SOURCE": SOURCE, "MOTION_BIAS": MOTION_BIAS, "LEVEL_BIAS": LEVEL_BIAS},
+    **{"IN_MOTION": IN_MOTION, "ACCELEROMETER": ACCELEROMETER},
+    # first word of the extra channels in the effects' array
+    "EXTRA": 104,
+}
 
 
 def firmware_package() -> Path:
@@ -45,25 +54,40 @@ def compiled_kernels(*roots: str) -> types.SimpleNamespace:
 
     They are a private copy: the firmware modules that others import stay plain Python. Machine
     code is cached in a folder named by a hash of all kernel sources, for Numba itself notices
-    no change in a file that a function calls into.
+    no change in a file that a function calls into; beside a copy of them, for it keeps code by a
+    source's place and time, and another installation has the same kernels elsewhere.
     """
     files = _in_order_of_imports(roots, kernel_files(firmware_package()))
-    digest = hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()[:16]
-    numba.config.CACHE_DIR = str(cache_folder() / "numba" / digest)
+    texts = [path.read_bytes() for path in (*files, _LOOP)]
+    digest = hashlib.sha256(b"".join([*texts, repr(_WORDS).encode()])).hexdigest()[:16]
+    kept = cache_folder() / "numba" / digest
+    numba.config.CACHE_DIR = str(kept)  # type: ignore[attr-defined]
+    copies = fill(kept / "sources", lambda draft: _copy([*files, _LOOP], draft))
     sys.modules[_PACKAGE] = types.ModuleType(_PACKAGE)
     sys.modules[_PACKAGE].__path__ = []
-    modules = {path.stem: _compiled(path) for path in files}
-    return types.SimpleNamespace(**modules)
+    modules = {path.stem: _compiled(copies / path.name) for path in files}
+    return types.SimpleNamespace(**modules, loop=copies / _LOOP.name)
+
+
+def _copy(files: Sequence[Path], folder: Path) -> None:
+    for path in files:
+        shutil.copy(path, folder)
 
 
 def _compiled(path: Path) -> types.ModuleType:
-    module = types.ModuleType(f"{_PACKAGE}.{path.stem}")
-    module.__file__ = str(path)
-    module.__package__ = _PACKAGE
-    sys.modules[module.__name__] = module
-    exec(compile(path.read_text(encoding="utf-8"), str(path), "exec"), module.__dict__)
+    module = _loaded(path, path.stem, {})
     for name in hot_functions(path):
         setattr(module, name, numba.njit(cache=True)(getattr(module, name)))
+    return module
+
+
+def _loaded(path: Path, name: str, given: Mapping[str, object]) -> types.ModuleType:
+    module = types.ModuleType(f"{_PACKAGE}.{name}")
+    module.__file__ = str(path)
+    module.__package__ = _PACKAGE
+    module.__dict__.update(given)
+    sys.modules[module.__name__] = module
+    exec(compile(path.read_text(encoding="utf-8"), str(path), "exec"), module.__dict__)
     return module
 
 
@@ -91,7 +115,7 @@ def _imports(path: Path) -> set[str]:
 
 @lru_cache(maxsize=8)
 def compiled_run(
-    motion: bool = False, level: bool = False, effects: bool = False
+    motion: bool = False, level: bool = False, effects: bool = False, refining: bool = False
 ) -> Callable[..., None]:
     """run(s, c, others, samples, dt_us, extra, bias_q8, source, quality_q8, verdict), compiled.
 
@@ -99,48 +123,22 @@ def compiled_run(
     of the accelerometer's, and the effects' array, each used where it is on; extra: (n, channels)
     int32, what the application passes in for the model's extra channels.
     """
-    roots = ["step", *["in_motion"] * motion, *["realtime"] * level, *["effects"] * effects]
-    update = _update(compiled_kernels(*roots), motion, level, effects)
-
-    @numba.njit
-    def run(s, c, others, samples, dt_us, extra, bias_q8, source, quality_q8, verdict):
-        for i in range(len(samples)):
-            for k in range(extra.shape[1]):
-                if extra[i, k] != GAP:
-                    others[4][EXTRA + k] = extra[i, k]
-            verdict[i] = update(s, c, others, samples[i], dt_us[i])
-            for axis in range(3):
-                bias_q8[i, axis] = s[OUT_Q8 + axis] + s[EFFECT_Q8 + axis]
-                quality_q8[i, axis] = s[QUALITY_Q8 + axis]
-                source[i, axis] = s[SOURCE + axis]
-
-    return run
-
-
-def _update(
-    kernels: types.SimpleNamespace, motion: bool, level: bool, effects: bool
-) -> Callable[..., int]:
-    step = kernels.step
-    examine, admit, finish, consider = step.examine, step.admit, step.finish, step.consider
-    in_motion = kernels.in_motion.update if motion else _never
-    by_level = kernels.realtime.update if level else _never
-    sense = kernels.effects.sense if effects else _nothing
-
-    @numba.njit
-    def update(s, c, others, x, dt_us):
-        m, k, r, q, e = others
-        kind = examine(s, c, x, dt_us)
-        if effects:
-            sense(s, e, x, dt_us, 0 if kind else 1)
-        admit(s, c, x, kind)
-        if kind == 0:
-            if motion and in_motion(m, k, x, dt_us):
-                consider(s, c, m, MOTION_BIAS, IN_MOTION)
-            if level and by_level(r, q, x, dt_us):
-                consider(s, c, r, LEVEL_BIAS, ACCELEROMETER)
-        return finish(s, c, x, kind)
-
-    return update
+    on = {"in_motion": motion, "realtime": level, "effects": effects, "effect_refine": refining}
+    kernels = compiled_kernels("step", *(root for root in on if on[root]))
+    given = {
+        **_WORDS,
+        **{name: getattr(kernels.step, name) for name in _STEPS},
+        **{"MOTION": motion, "LEVEL": level, "EFFECTS": effects, "REFINING": refining},
+        "in_motion": kernels.in_motion.update if motion else _never,
+        "by_level": kernels.realtime.update if level else _never,
+        "sense": kernels.effects.sense if effects else _nothing,
+        "attend": kernels.effect_refine.attend if refining else _no_coefficient,
+    }
+    # a name of its own: kept machine code of another loop of the same name would be taken for it
+    name = "_".join([kernels.loop.stem, *(root for root in on if on[root])])
+    loop: Any = _loaded(kernels.loop, name, given)
+    loop.update = numba.njit(cache=True)(loop.update)
+    return numba.njit(cache=True, nogil=True)(loop.run)
 
 
 @numba.njit
@@ -151,3 +149,8 @@ def _never(state, settings, x, dt_us):
 @numba.njit
 def _nothing(s, e, x, dt_us, good):
     return 0
+
+
+@numba.njit
+def _no_coefficient(s, c, e):
+    return

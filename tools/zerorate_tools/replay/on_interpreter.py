@@ -8,8 +8,9 @@ from zerorate.model import EffectModel
 
 _ROWS = 256
 _GAP = -0x80000000
-# first word of the extra channels in the effects' array
+# words of the effects' array: first extra channel, whether coefficients go on learning
 _EXTRA = 104
+_REFINING = 26
 
 
 def whole(name):
@@ -39,6 +40,10 @@ channels = 0
 if effects:
     model = EffectModel()
     model.e = effects
+    if effects[_REFINING]:
+        from zerorate.refine_kernels import effect_refine
+
+        model.attend = effect_refine.attend
     corrector.use_model(model)
     channels = int(sys.argv[1])
 row_words = 8 + channels

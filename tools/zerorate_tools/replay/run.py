@@ -8,6 +8,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyarrow as pa
@@ -21,13 +22,17 @@ from .engines import Outcome, engine, others_of
 from .samples import frames_in_batches, sensor_of
 from .writing import SOURCES, VERDICTS, ReplayWriter, table
 
+if TYPE_CHECKING:
+    import pandas
+
 
 @dataclass
 class Replay:
     """What a replay did.
 
     state: the final state's bytes (int32, little-endian); verdicts, sources: samples of each kind;
-    explanation: the firmware's own words at the end; frame: the table, unless it went to a file.
+    explanation: the firmware's own words at the end; table: a row a sample, as design.md has it,
+    unless it went to a file.
     """
 
     samples: int = 0
@@ -37,11 +42,20 @@ class Replay:
     explanation: str = ""
     table: pa.Table | None = None
 
+    def to_frame(self) -> pandas.DataFrame:
+        """The table, a row a sample: t_us, source, verdict; bias_g?, quality_g? and more in LSB.
+
+        Raises ValueError if it went to a file.
+        """
+        if self.table is None:
+            raise ValueError("the table went to a file: pandas.read_parquet reads it")
+        return self.table.to_pandas()
+
     def count(self, outcome: Outcome) -> None:
         """Add a batch to the counts."""
         self.samples += len(outcome.t_us)
         _count(self.verdicts, VERDICTS, outcome.verdict)
-        _count(self.sources, SOURCES, outcome.source.min(axis=1))
+        _count(self.sources, SOURCES, outcome.least_source)
 
 
 def replay(

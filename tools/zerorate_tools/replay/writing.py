@@ -33,11 +33,11 @@ def table(outcome: Outcome) -> pa.Table:
     columns: dict[str, pa.Array] = {"t_us": pa.array(outcome.t_us)}
     for i, axis in enumerate(_AXES):
         columns[f"bias_g{axis}"] = pa.array(outcome.bias_q8[:, i] / 256.0)
-    columns["source"] = _named(outcome.source.min(axis=1), SOURCES)
-    quality = outcome.quality_q8 / np.float32(256.0)
-    columns["quality_lsb"] = pa.array(quality.max(axis=1))
-    for i, axis in enumerate(_AXES):
-        columns[f"quality_g{axis}"] = pa.array(quality[:, i])
+    columns["source"] = _named(outcome.least_source, SOURCES)
+    quality = [outcome.quality_q8[:, i] / np.float32(256.0) for i in range(3)]
+    columns["quality_lsb"] = pa.array(np.maximum(np.maximum(*quality[:2]), quality[2]))
+    for axis, values in zip(_AXES, quality):
+        columns[f"quality_g{axis}"] = pa.array(values)
     columns["verdict"] = _named(outcome.verdict, VERDICTS)
     return pa.table(columns)
 
@@ -50,13 +50,22 @@ class ReplayWriter:
     """Writes batches to one Parquet file as they come."""
 
     def __init__(self, path: Path) -> None:
-        self._path, self._writer = path, None
+        self._path = path
+        self._writer: pq.ParquetWriter | None = None
 
     def write(self, outcome: Outcome) -> None:
         """Append a batch."""
         batch = table(outcome)
         if self._writer is None:
-            self._writer = pq.ParquetWriter(self._path, batch.schema, compression="zstd")
+            self._writer = pq.ParquetWriter(
+                self._path,
+                batch.schema,
+                compression="zstd",
+                # time never returns, and what was learned stays for long: no dictionary of those
+                use_dictionary=["source", "verdict"],
+                column_encoding={"t_us": "DELTA_BINARY_PACKED"},
+                write_statistics=["t_us"],
+            )
         self._writer.write_table(batch)
 
     def close(self) -> None:

@@ -34,7 +34,8 @@ def find_unix_port(name: str) -> UnixPort:
     folder = _folder(name)
     if not folder.is_dir():
         raise MissingRuntime(f"the {name} interpreter is not fetched yet")
-    launcher = _qemu_launcher(folder) if name == "armhf" else _loader(folder / _LOADERS[name])
+    emulated = name == "armhf"
+    launcher = (qemu_arm(), "-L", str(folder)) if emulated else _loader(folder / _LOADERS[name])
     # viper is never used on x64: its ptr32 loads are zero-extended in 64-bit words.
     return UnixPort(name, folder / "usr/bin/micropython", launcher, viper=name != "x64")
 
@@ -85,9 +86,10 @@ def _loader(loader: Path) -> tuple[str, ...]:
     return (str(loader), "--library-path", str(loader.parent))
 
 
-def _qemu_launcher(folder: Path) -> tuple[str, ...]:
+def qemu_arm() -> str:
+    """What runs armhf programs: the system's, else the fetched one. Raises MissingRuntime."""
     own = _qemu_folder() / _QEMU
     qemu = shutil.which("qemu-arm") or (str(own) if own.is_file() else None)
     if qemu is None:
         raise MissingRuntime("qemu-arm, which runs armhf programs, is missing")
-    return (qemu, "-L", str(folder))
+    return qemu

@@ -72,9 +72,11 @@ def _npm_install(folder: Path) -> None:
         text=True,
     )
     if done.returncode:
-        raise MissingRuntime(f"npm could not install {_PACKAGE}: {_complaint(done.stderr)}")
+        why = _complaint(done.stderr)
+        raise MissingRuntime(f"npm could not install {_PACKAGE}, is there a network? {why}")
 
 
 def _complaint(stderr: str) -> str:
     lines = [line for line in stderr.strip().splitlines() if "complete log" not in line]
-    return lines[-1].removeprefix("npm error").strip() if lines else "no message"
+    reasons = [line for line in lines if "reason:" in line] or lines[-1:] or ["no message"]
+    return reasons[0].removeprefix("npm error").strip()

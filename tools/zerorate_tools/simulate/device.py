@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from os import PathLike
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from ..errors import BadDescription
 from ..recordings import Recording, Scales, recording_from_columns
@@ -61,7 +62,12 @@ def simulate(
 def simulate_sessions(
     description: str | PathLike[str] | Table | Description, *, seed: int | None = None
 ) -> Iterator[tuple[Recording, Truth]]:
-    """Every power-on of a described device, in turn: see `simulate`."""
+    """Every power-on of a described device in turn: what it recorded, and the truth behind it.
+
+    description: .toml, .yaml, a bundled scenario's name, or a dict; seed: instead of its own. The
+    Truth has t_us (n,), bias_lsb (n, 3), rate_dps (n, 3), attitude (n, 4) wxyz, temp_degc (n,) and
+    still (n,). Raises BadDescription.
+    """
     described = load_description(description)
     return _sessions(described, range(1, len(described.sessions) + 1), seed)
 
@@ -111,7 +117,8 @@ def _timed(described: Description, world: World, rate_dps: np.ndarray, seed: int
         if effect["kind"] != "timing":
             continue
         delay_s = effect.get("delay_ms", 0.0) / 1000
-        rate_dps = np.stack([np.interp(t_s - delay_s, t_s, axis) for axis in rate_dps.T], axis=1)
+        # a straight line between samples would dampen quick motion, which is another error
+        rate_dps = CubicSpline(t_s, rate_dps)(np.maximum(t_s - delay_s, 0.0))
         jitter = stream(seed, world.number, "jitter").standard_normal(len(t_s))
         stamps = t_s * (1 + effect.get("clock_ppm", 0.0) * 1e-6)
         stamps = stamps + jitter * effect.get("jitter_us", 0.0) * 1e-6

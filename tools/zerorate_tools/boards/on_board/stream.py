@@ -51,6 +51,7 @@ class Streamer:
                     "accel_lsb_per_g": imu.accel_lsb_per_g,
                     "temp_lsb_per_degc": imu.temp_lsb_per_degc,
                     "temp_offset_degc": imu.temp_offset_degc,
+                    "binding": list(imu.binding),
                 }
             ),
         )
