@@ -3,8 +3,12 @@
 import json
 
 import pytest
-from zerorate_tools.bench.loop import Device, Outcome, devices, look, markdown, tables
-from zerorate_tools.bench.loop_real import hipnuc
+from zerorate_tools.bench.loop.chips import hipnuc
+from zerorate_tools.bench.loop.devices import CATALOGUE, Device, devices
+from zerorate_tools.bench.loop.figures import figures
+from zerorate_tools.bench.loop.look import Outcome, look
+from zerorate_tools.bench.loop.run import looked_at, markdown
+from zerorate_tools.bench.loop.wilson import interval
 
 
 def test_a_device_is_looked_at_and_judged():
@@ -13,33 +17,56 @@ def test_a_device_is_looked_at_and_judged():
     assert outcome.after < 1.2 < outcome.before
 
 
-def test_tables_count_what_was_found_named_and_made_worse():
+def test_figures_count_what_was_found_named_and_made_worse():
     effect = Device("2x", 1, (("vibration", 2.0),))
     outside = Device("outside", 1, (("load-kink", 2.0),))
     outcomes = [
-        Outcome(Device("null", 1)),
-        Outcome(Device("null", 2), ["time-drift"], [["time"]], [[]], ["tentative"], after=1.5),
+        Outcome(Device("nothing", 1)),
+        Outcome(Device("nothing", 2), ["time-drift"], [["time"]], [[]], ["tentative"], after=1.5),
         Outcome(effect, ["supply-voltage"], [["vdd_mv"]], [["vibration"]], ["confirmed"]),
         Outcome(effect),
         Outcome(outside, ["channel-kink(load)"], [["load"]], [[]], ["confirmed"]),
     ]
-    result = json.loads(json.dumps(tables(outcomes)))
-    assert result["false_alarms"]["null"]["found_percent"] == 50.0
-    assert result["false_alarms"]["null"]["confirmed_percent"] == 0.0
-    assert result["effects"]["2x"]["vibration"]["found_percent"] == 50.0
-    assert result["effects"]["2x"]["vibration"]["named_percent"] == 100.0
-    assert result["outside"]["load-kink"]["tied_to_right_channel_percent"] == 100.0
-    assert result["made_worse_percent"] == 20.0
-    assert "load-kink" in markdown(result)
+    by_name = {f.name: f for f in figures(outcomes)}
+    assert (by_name["found in nothing"].value, by_name["found in nothing"].met) == (50.0, False)
+    assert (by_name["2x vibration: found"].value, by_name["2x vibration: found"].met) == (50, False)
+    assert by_name["2x, named rightly of those found"].met
+    assert by_name["outside, 2x load-kink: tied to load"].value == 100.0
+    assert by_name["held-out error made worse by more than 2 %"].value == 20.0
+
+
+def test_a_share_of_none_of_two_hundred_may_still_be_two_percent():
+    low, high = interval(0, 200)
+    assert low == 0.0 and high == pytest.approx(0.0188, abs=1e-4)
 
 
 def test_the_whole_benchmark_has_the_numbers_asked_for():
     every = devices(200, 20, ["rest.npy"])
     rows = [d.row for d in every]
-    assert rows.count("null") == 200 and rows.count("real noise") == 200
-    assert sum(r.startswith("null, ") for r in rows) >= 200
-    assert len({d.effects[0][0] for d in every if d.row == "2x"}) == 16
-    assert len({(d.row, d.seed, d.effects) for d in every}) == len(every)
+    assert rows.count("nothing") == 200 and rows.count("real noise") == 100
+    assert sum(r.startswith("nothing, ") for r in rows) >= 300
+    twice = {d.effects[0][0] for d in every if d.row == "2x"}
+    assert set(CATALOGUE) < twice and len(CATALOGUE) == 14
+    assert len({d.key for d in every}) == len(every)
+
+
+def test_a_run_broken_off_is_taken_up_where_it_ended(tmp_path):
+    kept = tmp_path / "outcomes.jsonl"
+    every = [Device("nothing", seed) for seed in (1, 2, 3)]
+    whole = list(looked_at(every, kept=kept))
+    lines = kept.read_text().splitlines(keepends=True)
+    kept.write_text("".join(lines[:2]))
+    again = list(looked_at(every, kept=kept))
+    assert [o.found for o in again] == [o.found for o in whole]
+    assert kept.read_text().count("\n") == len(lines) == 3
+
+
+def test_figures_are_readable_with_limit_and_verdict():
+    rows = figures([Outcome(Device("nothing", 1), ["time-drift"]), Outcome(Device("nothing", 2))])
+    result = {"devices": 2, "figures": [f.to_dict() for f in rows]}
+    text = markdown(json.loads(json.dumps(result)))
+    assert "| found in nothing, all kinds | 50.0 |" in text
+    assert "| found in nothing | 50.0 | at most 0.5 | NO | 9.5-90.5 | 2 |" in text
 
 
 def test_a_curved_table_is_bent_and_a_straight_one_is_not(tmp_path):

@@ -7,10 +7,15 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .blocks import sessions_from
+from .earth import ROTATION, name_earth
 from .floor import floor_dps
-from .gate import CannotClose, GateReport, enough, same_settings, usable_channels
+from .gate import CannotClose, GateReport, enough, readable, same_settings, usable_channels
+from .in_motion import InMotion, in_motion, without_scales
 from .judge import Judgement, judge
 from .line import deployed
+from .lines import Line
+from .measured import Measured
+from .periodic import periodic
 from .select import Selection, select
 from .sessions import Session
 from .single import pieces, split
@@ -19,7 +24,11 @@ from .ticks import Ticks
 
 @dataclass
 class Analysis:
-    """What was fitted on what, what was found, and what the locked part says of it."""
+    """What was fitted on what, what was found, and what the locked part says of it.
+
+    motion, lines: what is not fitted on blocks at rest, `in_motion` and `periodic`; measured: what
+    the firmware's kernels made of it, None before `measure`, after which the judgement is by them.
+    """
 
     sessions: list[Session]
     train: list[Session]
@@ -28,6 +37,9 @@ class Analysis:
     judgement: Judgement
     floor_dps: np.ndarray
     gate: GateReport = field(default_factory=GateReport)
+    motion: InMotion = field(default_factory=InMotion)
+    lines: list[Line] = field(default_factory=list)
+    measured: Measured | None = None
 
     @property
     def single(self) -> bool:
@@ -40,8 +52,9 @@ class Analysis:
         return deployed(self.selection)[1]
 
     def confidence(self, i: int) -> str:
-        """confirmed or tentative; one power-on alone confirms nothing."""
-        return "tentative" if self.single else self.judgement.confidence(i)
+        """confirmed or tentative; one power-on alone, or what Earth can do, confirms nothing."""
+        unsure = self.single or ROTATION in self.selection.found[i].confounded_with
+        return "tentative" if unsure else self.judgement.confidence(i)
 
 
 def analyse(
@@ -49,24 +62,33 @@ def analyse(
 ) -> Analysis:
     """Run the loop. holdout: index of the session to lock away, the last by default."""
     gate = gate or GateReport()
+    at = len(sessions) - 1 if holdout is None else holdout
+    motion = in_motion(
+        [s for i, s in enumerate(sessions) if i != at] or sessions,
+        [sessions[at]] if len(sessions) > 1 else [],
+        len(sessions) == 1,
+    )
+    sessions = [without_scales(s, motion) for s in sessions]
     if len(sessions) == 1:
         train_part, locked_part, folds = split(sessions[0])
         train, locked = [train_part], [locked_part]
         selection = select(train, folds)
     else:
-        at = len(sessions) - 1 if holdout is None else holdout
         train, locked = [s for i, s in enumerate(sessions) if i != at], [sessions[at]]
         selection = select(train, pieces(train[0]) if len(train) == 1 else None)
     judgement = judge(selection, locked)
     whole = [*selection.straight, *selection.terms]
-    return Analysis(
-        sessions, train, locked, selection, judgement, floor_dps(judgement.whole, whole), gate
-    )
+    floor = floor_dps(judgement.whole, whole)
+    terms, coefficients = deployed(selection)
+    name_earth(selection.found, terms, coefficients, train)
+    lines = periodic(train, locked, terms, coefficients)
+    return Analysis(sessions, train, locked, selection, judgement, floor, gate, motion, lines)
 
 
 def sessions_of(ticks: list[Ticks]) -> tuple[list[Session], GateReport]:
     """Gate recordings and make them sessions of equal blocks. Raises CannotClose."""
     gate = GateReport({t.name: t.faults for t in ticks})
+    readable(ticks)
     same_settings(ticks)
     sessions = sessions_from(ticks)
     kept = []

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 from scipy.signal import lfilter
@@ -45,7 +46,9 @@ class Term:
     def from_dict(cls, values: dict) -> Term:
         """Inverse of `to_dict`."""
         infinite = {"lo": -math.inf, "second_lo": -math.inf, "hi": math.inf, "second_hi": math.inf}
-        filled = {k: infinite[k] if v is None and k in infinite else v for k, v in values.items()}
+        filled: dict[str, Any] = {
+            k: infinite[k] if v is None and k in infinite else v for k, v in values.items()
+        }
         return cls(**filled)
 
 

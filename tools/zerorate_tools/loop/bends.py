@@ -12,29 +12,31 @@ from .catalogue import Candidate
 from .decide import LEAST_GAIN, LEVEL, Decision, family_p
 from .single import bend_gains
 
-KINDS = ("temperature-quadratic", "temperature-cubic", "temperature-kink")
+KINDS = ("temperature-quadratic", "temperature-cubic", "temperature-curve", "temperature-kink")
 MOST = 3
-#: Nats by which a kink, which has a place to choose, must beat a power of temperature.
-_KINK_NATS = 5.0
+#: Of likelihood ratio, by which a kink, which has a place to choose, must beat a curve.
+_KINK_PAYS = 10.0
 
 
-def find_bends(regression, folds, straight, pool, tried) -> list[tuple[Candidate, Decision]]:
+def find_bends(regression, folds, straight, pool) -> list[tuple[Candidate, Decision]]:
     """Bends one after another while each predicts the pieces left out. folds: the pieces.
 
-    pool: candidates; tried: function of a candidate, how many it pays for.
+    pool: candidates, of which those of other kinds are passed over.
     """
+    bends = with_curve([c for c in pool if c.kind in KINDS])
     found: list[tuple[Candidate, Decision]] = []
     regression.steep = False
     while len(found) < MOST:
         terms = [*straight, *(t for c, _ in found for t in c.terms)]
-        bends = [c for c in pool if c.kind in KINDS and c.terms[0] not in terms]
-        ratios = regression.gains(terms, [c.terms for c in bends]).sum(axis=1)
+        left = [c for c in bends if not any(t in terms for t in c.terms)]
+        ratios = regression.gains(terms, [c.terms for c in left]).sum(axis=1)
         passing = []
-        for candidate, ratio in zip(bends, ratios):
-            p = family_p(float(ratio), 3, tried(candidate))
+        for candidate, ratio in zip(left, ratios):
+            p = family_p(float(ratio), 3 * len(candidate.terms), _tried(candidate, bends))
+            if p > LEVEL["catalogue"]:
+                continue
             gain = bend_gains(folds, terms, candidate.terms)
-            predicts = gain.sum() > LEAST_GAIN and 2 * (gain > 0).sum() > len(gain)
-            if p <= LEVEL["catalogue"] and predicts:
+            if gain.sum() > LEAST_GAIN and 2 * (gain > 0).sum() > len(gain):
                 passing.append((candidate, Decision(True, p, float(ratio), 1.0, gain)))
         if not passing:
             break
@@ -43,7 +45,21 @@ def find_bends(regression, folds, straight, pool, tried) -> list[tuple[Candidate
     return found
 
 
+def with_curve(bends: list[Candidate]) -> list[Candidate]:
+    """With quadratic and cubic as one: either alone may be hidden by the other."""
+    powers = [c.terms[0] for c in bends if c.kind in KINDS[:2]]
+    curve = [Candidate("temperature-curve", tuple(powers), "catalogue")] if len(powers) == 2 else []
+    return [*bends, *curve]
+
+
+def _tried(candidate: Candidate, bends: list[Candidate]) -> int:
+    """Every kind of bend has an equal share of the level, split over the kind's grid."""
+    kinds = {c.kind for c in bends}
+    return len(kinds) * sum(c.kind == candidate.kind for c in bends)
+
+
 def _worth(passing: tuple[Candidate, Decision]) -> float:
+    """Likelihood ratio less twice the parameters (Akaike), a kink paying for its place."""
     candidate, decision = passing
-    fine = _KINK_NATS if candidate.kind == "temperature-kink" else 0.0
-    return float(decision.session_gains.sum()) - fine
+    fine = _KINK_PAYS if candidate.kind == "temperature-kink" else 0.0
+    return decision.ratio - 6 * len(candidate.terms) - fine

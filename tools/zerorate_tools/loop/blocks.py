@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from .earth import earth_of
 from .gram import can_be_bridged
 from .sessions import Session
 from .still import still_ticks
-from .ticks import Ticks
+from .ticks import Ticks, gap_filled
+from .turns import turns_of
 
 BLOCK_S = 20.0
 _WANTED_BLOCKS = 150
@@ -50,10 +52,12 @@ def session_of(ticks: Ticks, block_s: float) -> Session:
     blocks = len(ticks.count) // per
     m = blocks * per
     still = still_ticks(ticks)[:m]
-    rate, used = ticks.rate[:m], still
+    earth = earth_of(ticks)
+    rate_at_rest = rate = ticks.rate[:m] - earth.rate_dps[:m]
+    used = still
     if ticks.reference is not None:
-        used = ticks.count[:m] > 0
-        rate = rate - ticks.reference[:m]
+        used = (ticks.count[:m] > 0) & np.isfinite(ticks.reference[:m]).all(axis=1)
+        rate = rate - np.where(used[:, None], ticks.reference[:m], 0.0)
     weight = np.where(used, ticks.count[:m], 0.0)
     total = weight.reshape(blocks, per).sum(axis=1)
     values = np.where(used[:, None], rate, 0.0) * weight[:, None]
@@ -63,8 +67,16 @@ def session_of(ticks: Ticks, block_s: float) -> Session:
     mean[share < _LEAST_STILL] = np.nan
     return Session(
         ticks.name, per * ticks.tick_s, per, mean, np.where(share < _LEAST_STILL, 0.0, share),
-        sources_of(ticks, m), ticks.start_us,
+        sources_of(ticks, m), ticks.start_us, earth=earth, delay=ticks.delay,
+        turns=turns_of(ticks), ticks_dps=np.where(still[:, None], rate_at_rest, np.nan),
+        quick=_quick(ticks), tick_weight=weight,
     )  # fmt: skip
+
+
+def _quick(ticks: Ticks):
+    if ticks.segments is None:
+        return None
+    return ticks.segments.at_rest(still_ticks(ticks), ticks.scales.odr_hz)
 
 
 def sources_of(ticks: Ticks, m: int) -> dict[str, np.ndarray]:
@@ -72,10 +84,10 @@ def sources_of(ticks: Ticks, m: int) -> dict[str, np.ndarray]:
     out = {}
     if ticks.temp is not None:
         out["temp"] = ticks.temp[:m]
-    if ticks.accel is not None:
+    if ticks.accel is not None and ticks.vib is not None:
         out.update({f"acc_{a}": ticks.accel[:m, i] for i, a in enumerate("xyz")})
         out["vib"] = ticks.vib[:m]
     if ticks.reference is not None:
-        out.update({f"rate_{a}": ticks.reference[:m, i] for i, a in enumerate("xyz")})
+        out.update({f"rate_{a}": gap_filled(ticks.reference[:m, i]) for i, a in enumerate("xyz")})
     out.update({n: v[:m] for n, v in ticks.extra.items()})
     return out

@@ -8,14 +8,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from itertools import product
+from typing import Any
 
 import numpy as np
 
 from .basis import Term, block_basis
 from .sessions import Session, common_sources
+from .turning import LEAST_RUNS
+from .turns import GIVEN
+
+Options = dict[str, Any]
 
 #: Physical effects; `knot` grids are shares of the source's range.
-CATALOGUE = (
+CATALOGUE: tuple[tuple[str, str, Options, Options], ...] = (
     ("temperature-quadratic", "temp", {"power": 2}, {}),
     ("temperature-cubic", "temp", {"power": 3}, {}),
     ("temperature-kink", "temp", {}, {"knot": (0.15, 0.25, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85)}),
@@ -41,14 +46,14 @@ CATALOGUE = (
 )
 
 #: Effects of several columns at once, each with a coefficient per axis.
-GROUPS = (
+GROUPS: tuple[tuple[str, tuple[str, ...], Options], ...] = (
     ("linear-acceleration", ("acc_x", "acc_y", "acc_z"), {}),
     ("squared-acceleration", ("acc_x", "acc_y", "acc_z"), {"power": 2, "centre": 0.0}),
     ("rate-scale", ("rate_x", "rate_y", "rate_z"), {}),
 )
 
 #: Forms for any channel, catalogue or not.
-GENERIC = (
+GENERIC: tuple[tuple[str, Options, Options], ...] = (
     ("channel", {}, {}),
     ("channel-square", {"power": 2}, {"centre": ("mean", "lo", "hi")}),
     ("channel-lag", {"lag_mode": "lag"}, {"lag_s": (60.0, 180.0, 540.0, 1600.0)}),
@@ -177,6 +182,8 @@ def candidates(sessions: list[Session]) -> list[Candidate]:
             if there and (fixed.get("second") is None or fixed["second"] in varied):
                 out += _expand(kind, name, fixed, grids, "catalogue", span)
     for kind, names, fixed in GROUPS:
+        if kind == "rate-scale" and _told_by_turns(sessions):
+            continue
         if any(n in varied for n in names) and all(n in span for n in names):
             terms = tuple(Term(n, **_fields(fixed, span, n)) for n in names)
             out.append(Candidate(kind, terms, "catalogue"))
@@ -184,6 +191,12 @@ def candidates(sessions: list[Session]) -> list[Candidate]:
     for i, name in enumerate(extra):
         out += _generic(name, [*(["temp"] if "temp" in varied else []), *extra[i + 1 :]], span)
     return [c for c in out if _is_finite(c, sessions)]
+
+
+def _told_by_turns(sessions: list[Session]) -> bool:
+    """Whether `in_motion` has found the scale of the rates by samples, which tell it better."""
+    runs = [s.turns.runs for s in sessions if s.turns and s.turns.beside == GIVEN]
+    return sum(len(r) for r in runs) >= LEAST_RUNS
 
 
 def _is_finite(candidate, sessions):

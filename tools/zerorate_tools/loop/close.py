@@ -12,8 +12,8 @@ from ..model import write_model
 from ..recordings import open_recording
 from ..recordings.atomic import written_beside
 from .analysis import Analysis, analyse, sessions_of
-from .corrected import write_corrected
 from .gate import CannotClose
+from .measure import measure
 from .model import model_of
 from .report import as_json, report
 from .ticks import read_ticks
@@ -58,19 +58,26 @@ def close(
     out: str | PathLike[str],
     holdout: str | PathLike[str] | None = None,
     advance: Callable[[float], None] = lambda n: None,
+    online: bool = False,
+    png: bool = False,
 ) -> dict:
-    """Run the loop; write report.json, model.json, model.bin and corrected.parquet into a folder.
+    """Run the loop; write report.html, report.json, model.json, model.bin and corrected.parquet.
 
-    Returns what report.json holds. Raises ZerorateError (BadRecording, CannotClose, CannotDeploy).
+    out: the folder, made where it is not there; online: what the learning firmware subtracts goes
+    into corrected.parquet, too; png: the report's plots as pictures, too; advance: called twice for
+    each recording. Returns what report.json holds. Raises ZerorateError (BadRecording,
+    CannotClose, CannotDeploy, Refused).
     """
+    from ..report import write_report  # its libraries are large
+
     analysis = load(logs, holdout, advance)
     folder = Path(out)
     folder.mkdir(parents=True, exist_ok=True)
     model = model_of(analysis, open_recording(logs[0]).scales)
-    result = report(analysis)
-    with written_beside(folder / "report.json") as temporary:
-        text = json.dumps(result, indent=1, allow_nan=False, default=as_json)
-        temporary.write_text(text, encoding="utf-8")
+    analysis = measure(analysis, logs, model, folder / "corrected.parquet", online, advance)
     write_model(model, folder)
-    write_corrected(analysis, list(logs), folder / "corrected.parquet")
+    result = json.loads(json.dumps(report(analysis), default=as_json))
+    with written_beside(folder / "report.json") as temporary:
+        temporary.write_text(json.dumps(result, indent=1, allow_nan=False), encoding="utf-8")
+    write_report(analysis, result, logs, folder, png)
     return result

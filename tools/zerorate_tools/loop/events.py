@@ -5,14 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.stats import chi2, gamma
 
-from .decide import LEVEL, family_p
+from .decide import LEVEL
 from .gram import gram
 from .likelihood import fit_base, ratios
 
 MOST_PER_SESSION = 4
 _COARSE = 200  # places tried in a session before the best one's surroundings
+_AWAY = 15  # blocks from a step at which a step beside it no longer shows it
 _EDGE = 5  # blocks at either end where a step cannot be told from the offset
 
 
@@ -40,7 +41,7 @@ def strongest(regression, terms) -> Step | None:
         if not len(at):
             continue
         coarse = _scores(regression, terms, s, at)
-        every.append(coarse)
+        every.append((s, at, coarse))
         middle = at[coarse.argmax()]
         near = np.arange(max(_EDGE, middle - stride), min(last, middle + stride) + 1)
         score = _scores(regression, terms, s, near)
@@ -48,10 +49,23 @@ def strongest(regression, terms) -> Step | None:
         if best is None or score[i] > best.ratio:
             best = Step(s, int(near[i]), np.zeros(3), float(score[i]), 1.0)
     if best:
-        axes = regression.y[0].shape[1]
-        usual = np.median(np.concatenate(every)) / chi2.median(axes)
-        best.p_value = family_p(best.ratio / max(1.0, usual), axes, tried)
+        best.p_value = min(1.0, _survival(best, every, regression.y[0].shape[1]) * tried)
     return best
+
+
+def _survival(best: Step, every: list, axes: int) -> float:
+    """Chance of a ratio at one place, by the ratios at the places away from the step itself.
+
+    On real noise they have a higher mean and a longer tail than chi-squared: a gamma distribution
+    of their mean and variance takes its place where that is longer.
+    """
+    away = [r[(s != best.session) | (np.abs(at - best.block) > _AWAY)] for s, at, r in every]
+    ratios = np.concatenate(away)
+    if len(ratios) < _EDGE:
+        return float(chi2.sf(best.ratio, axes))
+    mean = max(float(ratios.mean()), axes)
+    variance = max(float(ratios.var()), 2 * mean**2 / axes)
+    return float(gamma.sf(best.ratio, mean**2 / variance, scale=variance / mean))
 
 
 def is_event(step: Step | None) -> bool:
@@ -72,7 +86,7 @@ def find_all(regression, terms) -> list[Step]:
     regression.set_events([])
     while len(steps) < MOST_PER_SESSION * len(regression.sessions):
         step = strongest(regression, terms)
-        if not is_event(step):
+        if step is None or not is_event(step):
             break
         steps.append(step)
         regression.set_events([column(regression, s) for s in steps])

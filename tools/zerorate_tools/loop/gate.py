@@ -7,9 +7,20 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..errors import ZerorateError
+from ..model.binding import NAMES, binding_of
 from .sessions import Session
 
 LEAST_BLOCKS = 15
+#: Half of it is the turn-on minute, which nothing is judged by.
+LEAST_S = 120.0
+_MOST_FAULTY = 0.5
+#: What a sensor that gives such samples needs.
+_REMEDY = {
+    "clipped": "the rates are at the rails: choose a wider range",
+    "repeated": "the rates never change: poll no faster than the data rate, and check the bus",
+    "all-zero": "every word is 0: wake the sensor and check the bus",
+    "temperature-jump": "the temperature leaps: check the bus and the temperature's scale",
+}
 _COPY = 0.99999
 _SETTINGS = (
     "sensor",
@@ -47,6 +58,7 @@ def same_settings(ticks: list) -> None:
                     f"{t.name}: {name} is {other}, but {one} in {first.name}; "
                     "sessions must be of one device with one setting"
                 )
+        _same_chip(first, t)
     seen: dict[str, str] = {}
     for t in ticks:
         if t.digest in seen:
@@ -56,20 +68,42 @@ def same_settings(ticks: list) -> None:
         seen[t.digest] = t.name
 
 
+def readable(ticks: list) -> None:
+    """Raise CannotClose for a recording most of which are faults; the text says of which kind."""
+    for t in ticks:
+        for kind, count in t.faults.items():
+            if count > _MOST_FAULTY * t.samples:
+                raise CannotClose(
+                    f"{t.name}: {100 * count / t.samples:.0f} % of its samples are {kind}; "
+                    f"{_REMEDY[kind]}"
+                )
+
+
+def _same_chip(first, other) -> None:
+    one, its = binding_of(first.scales), binding_of(other.scales)
+    for name in NAMES:
+        a, b = getattr(one, name), getattr(its, name)
+        if a is not None and b is not None and a != b:
+            raise CannotClose(
+                f"{other.name}: its {name} is {b}, but {a} in {first.name}; "
+                "sessions must be of one device with one setting"
+            )
+
+
 def enough(session: Session) -> None:
     """Raise CannotClose where too little of a recording is still."""
-    still = int(session.available.sum())
-    minutes = LEAST_BLOCKS * session.block_s / 60
-    if session.blocks < LEAST_BLOCKS:
-        have = session.blocks * session.block_s / 60
+    needed_s = max(LEAST_BLOCKS * session.block_s, LEAST_S)
+    have_s = session.blocks * session.block_s
+    still_s = int(session.available.sum()) * session.block_s
+    if have_s < needed_s:
         raise CannotClose(
-            f"{session.name}: {have:.1f} minutes are too short; "
-            f"{minutes:.0f} minutes at rest are needed, better an hour"
+            f"{session.name}: {have_s / 60:.1f} minutes are too short; "
+            f"{needed_s / 60:.0f} minutes at rest are needed, better an hour"
         )
-    if still < LEAST_BLOCKS:
+    if still_s < needed_s:
         raise CannotClose(
-            f"{session.name}: only {still * session.block_s / 60:.1f} minutes are still; "
-            f"{minutes:.0f} minutes at rest are needed: leave the device untouched for longer"
+            f"{session.name}: only {still_s / 60:.1f} minutes are still; "
+            f"{needed_s / 60:.0f} minutes at rest are needed: leave the device untouched for longer"
         )
 
 

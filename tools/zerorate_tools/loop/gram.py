@@ -158,9 +158,9 @@ def gram(whiteners: list[Whitener], y: list, z: list, x: list | None = None) -> 
                 w.products(xs, xs),
             )
         )
-    stacked = [np.stack(p) for p in zip(*parts)]
+    yy, zy, zz, xy, xz, xx = (np.stack(p) for p in zip(*parts))
     return Gram(
-        *stacked,
-        np.stack([w.logdet for w in whiteners]),
-        np.array([w.coefficients for w in whiteners]),
+        *(yy, zy, zz, xy, xz, xx),
+        logdet=np.stack([w.logdet for w in whiteners]),
+        count=np.array([w.coefficients for w in whiteners]),
     )

@@ -5,6 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..model import Model, Slot, build_model
+from ..model.binding import binding_of
+from .in_motion import slots_of
+from .line import deployed
 from .select import Selection
 
 
@@ -13,12 +16,20 @@ def slots(selection: Selection, coefficients: np.ndarray) -> list[Slot]:
     kinds = [f.candidate.kind for f in selection.found for _ in f.candidate.terms]
     rows = coefficients[len(selection.straight) :]
     return [
-        Slot(term, tuple(float(c) for c in row), kind)
+        Slot(term, (float(row[0]), float(row[1]), float(row[2])), kind)
         for kind, term, row in zip(kinds, selection.terms, rows)
     ]
 
 
-def model_of(analysis, scales) -> Model:
-    """The model of an analysis, every number as the integers hold it. Raises CannotDeploy."""
-    found = slots(analysis.selection, analysis.coefficients)
-    return build_model(found, scales, tick_s=analysis.sessions[0].tick_s)
+def model_of(analysis, scales, effects: int | None = None) -> Model:
+    """The model of an analysis, every number as the integers hold it. Raises CannotDeploy.
+
+    effects: the first so many effects alone, fitted by themselves; None: all, with those of motion.
+    """
+    if effects is None:
+        found = [*slots(analysis.selection, analysis.coefficients), *slots_of(analysis.motion)]
+    else:
+        first = analysis.selection.first(effects)
+        found = slots(first, deployed(first)[1])
+    tick_s = analysis.sessions[0].tick_s
+    return build_model(found, scales, binding=binding_of(scales), tick_s=tick_s)

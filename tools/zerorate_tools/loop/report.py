@@ -2,39 +2,46 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from .analysis import Analysis
 from .confounding import label
 from .intervals import block_bootstrap, rms
 from .judge import residuals, rms_dps
+from .measured import AFTER, BEFORE, ONLINE, ONLINE_BEFORE
 from .model import slots
+from .periodic import QUICK_HZ
 from .single import WEAKER
+from .steps_beside import interference, steps_beside
 from .unexplained import measure_next, not_excluded, what_is_known
 
-#: To be replaced where the firmware's kernels make the prediction.
-MEASURED_BY = "float reference of the effect slots and the line, block means"
+#: Of an analysis that no recording was replayed for.
+FLOAT = "float reference of the effect slots and the line, means of blocks"
 CAUSE_UNKNOWN = "time since power-on; cause not identified"
 
 
 def report(analysis: Analysis) -> dict:
     """Plain values, ready for JSON. Every figure in mdps is of the locked part."""
     j = analysis.judgement
-    low, high = block_bootstrap(j.residual_after, rms)
     return {
         "split": _split(analysis),
-        "measured_by": MEASURED_BY,
+        "measured_by": analysis.measured.by if analysis.measured else FLOAT,
         "floor_mdps": _mdps(analysis.floor_dps),
         "before_mdps": _mdps(j.before_dps),
         "after_mdps": _mdps(j.after_dps),
         "ci95_mdps": {
             "before": _interval(j.residual_before),
-            "after": [[a, b] for a, b in zip(_mdps(low), _mdps(high))],
+            "after": _interval(j.residual_after),
         },
-        "steps": _steps(analysis),
+        "in_all": _in_all(analysis),
+        **_by_kernels(analysis),
+        "truth": _truth(analysis),
+        "steps": [
+            *_steps(analysis),
+            *steps_beside(analysis, _mdps(j.after_dps)),
+        ],
         "events": _events(analysis),
+        "interference": interference(analysis.lines),
         "unexplained": {
             "rms_mdps": _mdps(j.after_dps),
             "what_is_known": what_is_known(analysis, j.after_dps),
@@ -44,7 +51,6 @@ def report(analysis: Analysis) -> dict:
         "smallest_detectable_mdps": {
             k: round(1e3 * v, 3) for k, v in analysis.selection.smallest_dps.items()
         },
-        "turn_on_offset_dps": [[float(x) for x in o] for o in j.offsets_dps],
         "gate": _gate(analysis),
         "verdict": verdict(analysis),
     }
@@ -52,9 +58,13 @@ def report(analysis: Analysis) -> dict:
 
 def verdict(analysis: Analysis) -> str:
     """nothing-found, effects-found or unexplained-residual."""
-    if analysis.selection.found:
+    if analysis.selection.found or analysis.motion.found or _in_the_bias(analysis.lines):
         return "effects-found"
     return "unexplained-residual" if analysis.judgement.excess.left else "nothing-found"
+
+
+def _in_the_bias(lines):
+    return any(line.hz < QUICK_HZ for line in lines)
 
 
 def _mdps(values) -> list[float]:
@@ -64,6 +74,51 @@ def _mdps(values) -> list[float]:
 def _interval(parts):
     low, high = block_bootstrap(parts, rms)
     return [[a, b] for a, b in zip(_mdps(low), _mdps(high))]
+
+
+def _in_all(analysis):
+    """Root mean squares over the three axes together."""
+    j = analysis.judgement
+    return {
+        "before_mdps": round(1e3 * j.before_rms, 4),
+        "after_mdps": round(1e3 * j.after_rms, 4),
+        "floor_mdps": round(1e3 * float(rms(analysis.floor_dps)), 4),
+        "ci95_mdps": {
+            name: _mdps(block_bootstrap(parts, lambda rows: rms(rows.ravel())))
+            for name, parts in (("before", j.residual_before), ("after", j.residual_after))
+        },
+    }
+
+
+def _by_kernels(analysis):
+    """What only the firmware's kernels can tell: learning online, turn-on offset, rounding."""
+    m, floor = analysis.measured, analysis.floor_dps
+    if m is None:
+        offsets = analysis.judgement.offsets_dps
+        return {"turn_on_offset_dps": {"after": [[float(x) for x in o] for o in offsets]}}
+    before, after = m.residuals(ONLINE_BEFORE), m.residuals(ONLINE)
+    return {
+        "online": {
+            "before_mdps": _mdps(rms_dps(before)),
+            "after_mdps": _mdps(rms_dps(after)),
+            "ci95_mdps": {"before": _interval(before), "after": _interval(after)},
+        },
+        "turn_on_offset_dps": {
+            way: [[float(x) for x in o] for o in m.offsets(way)] for way in (BEFORE, AFTER)
+        },
+        "integer_rounding_mdps": _mdps(m.rounding_dps),
+        "integer_rounding_of_floor": round(float((m.rounding_dps / floor).max()), 4),
+    }
+
+
+def _truth(analysis):
+    """What the rates are compared with, at rest and in motion."""
+    earth, turns = analysis.sessions[0].earth, analysis.sessions[0].turns
+    some = turns is not None and any(s.turns.runs for s in analysis.sessions if s.turns)
+    return {
+        "at_rest": "zero rate; " + (earth.said if earth else "Earth's rotation is in the rates"),
+        "in_motion": turns.beside if some else "no reference: what moves is set aside",
+    }
 
 
 def _split(analysis):
@@ -94,7 +149,7 @@ def _steps(analysis):
                 "effect": label(f.candidate),
                 "sources": f.candidate.sources,
                 "parameters": _parameters(own),
-                "coefficients": {s.term.source: list(s.coefficient_dps) for s in own},
+                "coefficients": {_name(s, own): list(s.coefficient_dps) for s in own},
                 "confidence": analysis.confidence(i),
                 "before_mdps": _mdps(rms_dps(before)),
                 "after_mdps": _mdps(rms_dps(after)),
@@ -109,6 +164,13 @@ def _steps(analysis):
             }
         )
     return out
+
+
+def _name(slot, own):
+    """A slot's source, with its power where an effect has several slots of one source."""
+    term = slot.term
+    alone = sum(other.term.source == term.source for other in own) == 1
+    return term.source if alone else f"{term.source}^{term.power}"
 
 
 def _parameters(own):
@@ -127,9 +189,9 @@ def _said(found):
 
 def _after(analysis, effects: int) -> list[np.ndarray]:
     """Residuals of the locked part under the first so many effects alone."""
-    found = analysis.selection.found[:effects]
-    some = replace(analysis.selection, found=found, bends=min(effects, analysis.selection.bends))
-    return [r for r, _ in residuals(some, analysis.locked)]
+    if analysis.measured is not None:
+        return analysis.measured.with_first(effects)
+    return [r for r, _ in residuals(analysis.selection.first(effects), analysis.locked)]
 
 
 def _events(analysis):

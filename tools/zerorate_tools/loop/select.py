@@ -12,7 +12,7 @@ from .bends import find_bends
 from .catalogue import Candidate, ranges
 from .catalogue import candidates as all_candidates
 from .common_cause import coherence, turned_axes
-from .decide import Decision, decide, smallest_ratio
+from .decide import WEIGHT, Decision, decide, effective, smallest_ratio
 from .detectable import smallest_dps
 from .refine import refined
 from .regression import Regression
@@ -20,6 +20,7 @@ from .sessions import Session
 
 MOST_EFFECTS = 6
 _KINDS_TRIED = 4
+_START_S = 60.0
 _TURN_BELOW = 1e-3
 
 
@@ -46,6 +47,10 @@ class Selection:
     pool: list[Candidate]
     smallest_dps: dict[str, float]
     bends: int = 0  # of the effects found, how many at the start are bends of a single recording
+
+    def first(self, effects: int) -> Selection:
+        """The same with the first so many effects alone."""
+        return replace(self, found=self.found[:effects], bends=min(effects, self.bends))
 
     @property
     def terms(self) -> list[Term]:
@@ -74,6 +79,7 @@ class Search:
         self.refused: list[tuple[str, str]] = []
         self.dropped: set[str] = set()
         self.bends = 0
+        self._paid: dict[str, float] = {}
 
     def terms(self, leave: int | None = None) -> list[Term]:
         return [t for i, f in enumerate(self.found) if i != leave for t in f.candidate.terms]
@@ -112,9 +118,8 @@ class Search:
         return out
 
     def _bend_first(self):
-        bends = find_bends(
-            self.regression, self.folds.sessions, self.straight, self.pool, self._tried
-        )
+        assert self.folds is not None
+        bends = find_bends(self.regression, self.folds.sessions, self.straight, self.pool)
         self.found = [Found(c, d) for c, d in bends]
         self.bends = len(self.found)
 
@@ -142,12 +147,33 @@ class Search:
         test = np.where([c.kind == "temperature-quadratic" for c in self.pool], choose, test)
         return choose, test
 
-    def _tried(self, candidate: Candidate) -> int:
-        """Candidates paid for: every kind of a family has an equal share of its level, split over
-        the kind's grid.
+    def _tried(self, candidate: Candidate) -> float:
+        """Candidates paid for: every kind of a family has its share of the family's level, split
+        over as many as the kind's grid amounts to.
         """
+        if not self._paid:
+            self._paid = {kind: self._grid(kind) for kind in {c.kind for c in self.pool}}
         kinds = {c.kind for c in self.pool if c.family == candidate.family}
-        return len(kinds) * sum(c.kind == candidate.kind for c in self.pool)
+        shares = sum(WEIGHT.get(kind, 1.0) for kind in kinds)
+        return shares / WEIGHT.get(candidate.kind, 1.0) * self._paid.get(candidate.kind, 1.0)
+
+    def _grid(self, kind: str) -> float:
+        """As how many a kind's candidates count, beside the line and the bend."""
+        alike = [c.terms for c in self.pool if c.kind == kind]
+        if len(alike) == 1 or len(alike[0]) > 1:
+            return float(len(alike))
+        r = self.regression
+        beside = [*self.straight, *(self.bend if kind != "temperature-quadratic" else ())]
+        x = np.vstack(
+            [np.column_stack([r.columns(t[0])[i] for t in alike]) for i in range(len(r.y))]
+        )
+        z = np.vstack(
+            [
+                np.column_stack([r.columns(t)[i] for t in beside] or [np.zeros(len(y))])
+                for i, y in enumerate(r.y)
+            ]
+        )
+        return effective(x - z @ np.linalg.lstsq(z, x, rcond=1e-10)[0])
 
     def _add_one(self) -> bool:
         self._look_afresh()
@@ -188,7 +214,7 @@ class Search:
         if len(self.steps) >= events.MOST_PER_SESSION * len(self.regression.sessions):
             return False
         step = events.strongest(self.regression, [*self.straight, *self.bend, *self.terms()])
-        if not events.is_event(step) or step.ratio < ratio:
+        if step is None or not events.is_event(step) or step.ratio < ratio:
             return False
         self._take_step(step)
         return True
@@ -200,6 +226,9 @@ class Search:
     def _consider(self, c: Candidate) -> Found | None:
         nuisances = self._nuisances(c)
         best = refined(self.regression, [*self.straight, *self.terms()], c)
+        if self._is_a_start(best):
+            self.refused.append((confounding.label(best), "the start of a lag's own memory"))
+            return None
         ratio = float(self.regression.gains(nuisances, [best.terms]).sum())
         tried, folds = self._tried(c), self.folds or self.regression
         decision = decide(self.regression, folds, nuisances, best, ratio, tried, self.singles)
@@ -207,6 +236,14 @@ class Search:
             return Found(best, decision)
         self.refused.append((confounding.label(best), decision.reason))
         return None
+
+    def _is_a_start(self, candidate: Candidate) -> bool:
+        """Whether a transient is no longer than a found lag of temperature takes to forget what it
+        assumed before the power-on."""
+        lags = [t.lag_s for t in self.terms() if t.lag_mode != "none"]
+        if candidate.kind != "power-on-transient" or not lags:
+            return False
+        return candidate.terms[0].decay_s < _START_S + 2.0 * max(lags)
 
     def _drop_idle(self):
         """An effect that the later ones explain is taken out again; the others' parameters are

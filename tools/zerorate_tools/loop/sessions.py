@@ -8,6 +8,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from .earth import Earth
+from .lines import Spectrum
+from .turns import Turns
+
 
 @dataclass
 class Session:
@@ -15,7 +19,11 @@ class Session:
 
     rate_dps: (n, 3) mean rate of each block's still part, NaN where there is none. weight: (n,)
     share of the block that was still, 0..1. sources: name -> (n * ticks_per_block,) tick means, no
-    NaN (gaps held), units as in effect- slots.
+    NaN (gaps held), units as in effect slots. earth: Earth's rate, which rate_dps is without as
+    far as it is known. delay: (m, 2) of `timing.products`, where there is a reference.
+    turns: what tells the scale of the rates.
+    ticks_dps: (n * ticks_per_block, 3) rate of each tick at rest, NaN elsewhere; quick: spectrum of
+    the samples at rest; tick_weight: (n * ticks_per_block,) samples that count in rate_dps.
     """
 
     name: str
@@ -26,6 +34,12 @@ class Session:
     sources: dict[str, np.ndarray] = field(default_factory=dict)
     start_us: int = 0
     noise_dps: np.ndarray | None = None
+    earth: Earth | None = None
+    delay: np.ndarray | None = None
+    turns: Turns | None = None
+    ticks_dps: np.ndarray | None = None
+    quick: Spectrum | None = None
+    tick_weight: np.ndarray | None = None
 
     @property
     def blocks(self) -> int:

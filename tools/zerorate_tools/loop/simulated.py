@@ -7,6 +7,7 @@ model).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -144,7 +145,7 @@ def survivor_rms(parts: list[np.ndarray], sessions: list[Session], powers=(1, 2)
 
 def simulate(
     seed: int,
-    effects: list[tuple[str, float]] = (),
+    effects: Sequence[tuple[str, float]] = (),
     sessions: int = 4,
     hours: float = 1.0,
     noise_kind: str = "plain",

@@ -15,9 +15,10 @@ _LEAST_TICKS = 30
 
 
 def deviation_of(path: str | PathLike[str]) -> tuple[np.ndarray, np.ndarray]:
-    """Cluster times (k,) in s from one tick up, and Allan deviation (k, 3) in dps.
+    """Cluster times (k,) in s from one tick up, and Allan deviation (k, 3) in dps, at rest.
 
-    Raises CannotClose where less than thirty ticks in a row are still.
+    Of the longest still stretch, overlapping (IEEE Std 952-1997, annex C). Raises BadRecording, and
+    CannotClose where less than thirty ticks of 0.1 s in a row are still.
     """
     ticks = read_ticks(path, tick_s=0.1)
     first, last = longest_run(still_ticks(ticks) & (ticks.count > 0))

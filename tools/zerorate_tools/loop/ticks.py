@@ -5,31 +5,39 @@ and counted.
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from os import PathLike
+from pathlib import Path
 
 import numpy as np
 from scipy.signal import lfilter
 
-from ..recordings import open_recording
+from ..recordings import Scales, open_recording
 from ..recordings.checks import GAP
 from ..recordings.recording import ACCEL, COLUMNS, GYRO, TEMP, TIME
+from .beside_reference import WIDTH
+from .beside_reference import products as of_turning
+from .quick import Segments
+from .reference import Reference
+from .timing import change_of
+from .timing import products as of_timing
 
 TICK_S = 1.0
 _RAIL = 32767
 #: First-order high-pass of the acceleration for its vibration, per sample.
 _VIBRATION_ALPHA = 1.0 / 32.0
-REFERENCE = ("ref_gx", "ref_gy", "ref_gz")
 
 
 @dataclass
 class Ticks:
     """Sums per tick. count: (m,) good samples; rate, rate_var: (m, 3) dps, dps^2; others (m,) or
-    (m, 3).
+    (m, 3). reference: true rate, NaN where it is not known; attitude: (m, 4) body to world; delay:
+    (m, 2) of `timing.products`; turning: (m, WIDTH) of
+    `beside_reference.products`.
     """
 
     name: str
-    scales: object
+    scales: Scales
     tick_s: float
     start_us: int
     count: np.ndarray
@@ -44,6 +52,11 @@ class Ticks:
     faults: dict[str, int] = field(default_factory=dict)
     samples: int = 0
     digest: str = ""
+    attitude: np.ndarray | None = None
+    delay: np.ndarray | None = None
+    turning: np.ndarray | None = None
+    segments: Segments | None = None
+    path: Path | None = None
 
 
 class _Sums:
@@ -60,7 +73,9 @@ class _Sums:
         self.sums[name] = total
 
     def get(self, name, size):
-        return np.pad(self.sums[name], (0, size - len(self.sums[name])))
+        """(size,) sums; 0 where nothing was ever added, as of a recording all faulty."""
+        there = self.sums.get(name, np.zeros(0))
+        return np.pad(there, (0, size - len(there)))
 
 
 class _Vibration:
@@ -89,19 +104,22 @@ def read_ticks(path: str | PathLike[str], tick_s: float = TICK_S) -> Ticks:
     reader = _Reader(opened.scales, opened.column_names, tick_s)
     for batch in opened.batches(rows=1 << 18):
         reader.add(batch)
-    return reader.result(opened.name)
+    return replace(reader.result(opened.name), path=Path(path))
 
 
 class _Reader:
     def __init__(self, scales, names, tick_s):
         self.scales, self.names, self.tick_s = scales, names, tick_s
         self.sums, self.vibration = _Sums(), _Vibration()
-        self.start, self.size, self.samples = None, 0, 0
+        self.start: int | None = None
+        self.size = self.samples = 0
         self.previous = None
         self.faults = {"clipped": 0, "repeated": 0, "all-zero": 0, "temperature-jump": 0}
         self.digest = hashlib.sha256()
         self.centre = None
-        self.extra = [n for n in names if n not in COLUMNS and n not in REFERENCE]
+        self.reference = Reference(names, scales.gyro_lsb_per_dps)
+        self.segments = Segments()
+        self.extra = [n for n in names if n not in COLUMNS and n not in self.reference.names]
 
     def add(self, batch):
         t_us = batch[TIME]
@@ -116,9 +134,13 @@ class _Reader:
         self.size = max(self.size, int(tick[-1]) + 1)
         good = self._good(batch, gyro)
         self._channels(batch, tick)
+        if self.reference.names:
+            self._true_rate(batch, t_us, tick, gyro, good)
         tick, gyro = tick[good], gyro[good]
         self.sums.add("count", tick, np.ones(len(tick)), self.size)
-        self._moments("gyro", tick, (gyro - self.centre) / self.scales.gyro_lsb_per_dps)
+        rate = (gyro - self.centre) / self.scales.gyro_lsb_per_dps
+        self._moments("gyro", tick, rate)
+        self.segments.add(tick, rate)
         if "ax" in self.names:
             accel = np.column_stack([batch[n] for n in ACCEL])[good] / self.scales.accel_lsb_per_g
             self._moments("accel", tick, accel)
@@ -131,13 +153,31 @@ class _Reader:
             self.sums.add(f"{name}{a}^2", tick, values[:, a] ** 2, self.size)
 
     def _channels(self, batch, tick):
-        for name in [*self.extra, *([TEMP] if TEMP in self.names else []), *self._reference()]:
+        for name in [*self.extra, *([TEMP] if TEMP in self.names else [])]:
             there = batch[name] != GAP
             self.sums.add(name, tick[there], batch[name][there].astype(float), self.size)
             self.sums.add(f"{name} count", tick[there], np.ones(int(there.sum())), self.size)
 
-    def _reference(self):
-        return list(REFERENCE) if all(n in self.names for n in REFERENCE) else []
+    def _true_rate(self, batch, t_us, tick, gyro, good):
+        q = self.reference.quaternions(batch) if self.reference.attitude else None
+        rate = self.reference.rate_dps(t_us, batch, q)
+        known = good & np.isfinite(rate).all(axis=1)
+        self.sums.add("known", tick[known], np.ones(int(known.sum())), self.size)
+        for a in range(3):
+            self.sums.add(f"true{a}", tick[known], rate[known, a], self.size)
+        change = change_of(t_us, rate)
+        both = known & np.isfinite(change).all(axis=1)
+        miss = gyro[both] / self.scales.gyro_lsb_per_dps - rate[both]
+        self._columns_of("turning", tick[both], of_turning(miss, rate[both], change[both]))
+        self._columns_of("late", tick[both], of_timing(miss, change[both]))
+        if q is not None:
+            seen = np.isfinite(q[:, 0])
+            for i in range(4):
+                self.sums.add(f"attitude{i}", tick[seen], q[seen, i], self.size)
+
+    def _columns_of(self, name, tick, rows):
+        for i, column in enumerate(rows.T):
+            self.sums.add(f"{name}{i}", tick, column, self.size)
 
     def _good(self, batch, gyro):
         """(n,) bool: no rail, no exact repeat of the whole sample, no frame of zeros, no leap of
@@ -166,7 +206,7 @@ class _Reader:
 
     def _mean(self, name):
         total, count = self.sums.get(name, self.size), self.sums.get(f"{name} count", self.size)
-        return _gap_filled(np.where(count > 0, total / np.maximum(count, 1), np.nan))
+        return gap_filled(np.where(count > 0, total / np.maximum(count, 1), np.nan))
 
     def _triple(self, name, count):
         mean = (
@@ -187,25 +227,49 @@ class _Reader:
         accel = accel_var = vib = temp = reference = None
         if "ax" in self.names:
             accel, accel_var = self._triple("accel", count)
-            vib = _gap_filled(self.sums.get("vib", self.size) / count)
-            accel = np.column_stack([_gap_filled(accel[:, a]) for a in range(3)])
+            vib = gap_filled(self.sums.get("vib", self.size) / count)
+            accel = np.column_stack([gap_filled(accel[:, a]) for a in range(3)])
         if TEMP in self.names:
             temp = self.scales.temp_degc(self._mean(TEMP))
-        if self._reference():
-            reference = (
-                np.column_stack([self._mean(n) for n in REFERENCE]) / self.scales.gyro_lsb_per_dps
-            )
+        if self.reference.names:
+            reference = self._true_rates(raw)
         extra = {
             n: self._mean(n) for n in self.extra if np.any(self.sums.get(f"{n} count", self.size))
         }
+        delay, turning = self._turning()
         return Ticks(
-            name, self.scales, self.tick_s, self.start, raw, rate, rate_var, accel, accel_var, vib,
-            temp,
+            name, self.scales, self.tick_s, self.start or 0, raw, rate, rate_var,
+            accel, accel_var, vib, temp,
             reference, extra, self.faults, self.samples, self.digest.hexdigest(),
+            self._attitude(), delay, turning, self.segments,
         )  # fmt: skip
 
+    def _columns(self, name, number):
+        return np.column_stack([self.sums.get(f"{name}{i}", self.size) for i in range(number)])
 
-def _gap_filled(values: np.ndarray) -> np.ndarray:
+    def _true_rates(self, count):
+        """(m, 3) mean over the good samples of ticks in which all of them have a reference."""
+        known = self.sums.get("known", self.size)
+        whole = (known > 0) & (known >= count)
+        mean = self._columns("true", 3) / np.maximum(known, 1.0)[:, None]
+        return np.where(whole[:, None], mean, np.nan)
+
+    def _turning(self):
+        if not self.reference.names:
+            return None, None
+        return self._columns("late", 2), self._columns("turning", WIDTH)
+
+    def _attitude(self):
+        if not self.reference.attitude:
+            return None
+        total = self._columns("attitude", 4)
+        length = np.linalg.norm(total, axis=1, keepdims=True)
+        mean = np.where(length > 0, total / np.where(length > 0, length, 1.0), np.nan)
+        held = np.column_stack([gap_filled(mean[:, i]) for i in range(4)])
+        return held / np.linalg.norm(held, axis=1, keepdims=True)
+
+
+def gap_filled(values: np.ndarray) -> np.ndarray:
     """Gaps bridged by a straight line, the ends held; all-NaN stays so."""
     good = np.isfinite(values)
     if not good.any():

@@ -80,4 +80,5 @@ def not_excluded(analysis) -> list[str]:
     from .catalogue import CATALOGUE, GROUPS
 
     shown = {c.kind for c in analysis.selection.pool}
-    return [kind for kind, *_ in (*CATALOGUE, *GROUPS) if kind not in shown]
+    kinds = [row[0] for row in CATALOGUE] + [row[0] for row in GROUPS]
+    return [kind for kind in kinds if kind not in shown]

@@ -13,6 +13,7 @@ def in_words(result: dict) -> str:
     ]
     lines += [_effect(step) for step in result["steps"]] or ["found: nothing"]
     lines += [_event(event) for event in result["events"]]
+    lines += [_line(line) for line in result["interference"]]
     unexplained = result["unexplained"]
     lines.append(f"left: {unexplained['what_is_known']}")
     lines += [f"next: {what}" for what in unexplained["measure_next"]]
@@ -39,3 +40,11 @@ def _event(event):
     sizes = ", ".join(f"{v:+.2f}" for v in event["size_mdps"])
     at = event["t_us"] / 1e6
     return f"step in {event['recording']} at {at:.0f} s: {sizes} mdps (listed, never corrected)"
+
+
+def _line(line):
+    sizes = ", ".join(f"{v:.2f}" for v in line["size_mdps"])
+    return (
+        f"a line at {line['hz']:.5g} Hz of {sizes} mdps (listed: it averages out of the bias; one "
+        "that moves when the data rate moves by 2 % is an alias)"
+    )

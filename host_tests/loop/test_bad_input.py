@@ -1,0 +1,128 @@
+"""Recordings from which little can be learned end in a sentence that helps; nothing is invented."""
+
+import json
+
+import numpy as np
+import pytest
+from zerorate_tools.errors import ZerorateError
+from zerorate_tools.loop.close import load
+from zerorate_tools.loop.gate import CannotClose
+from zerorate_tools.recordings import Recording, Scales, write_recording
+
+N, HZ = 6000, 5.0
+MPU = Scales("MPU-6050", HZ, 131.0, 16384.0, 340.0, 36.53)
+
+
+def columns(seed, n=N):
+    """Twenty minutes at rest, the temperature going up and down."""
+    rng = np.random.default_rng(seed)
+    degc = 25 + 8 * np.sin(np.arange(n) / n * 6 + seed)
+    return {
+        "t_us": (np.arange(n) * 1e6 / HZ).astype(np.int64),
+        **{a: np.rint(rng.normal(30, 4, n)).astype(np.int32) for a in ("gx", "gy", "gz")},
+        **{a: np.rint(rng.normal(0, 60, n)).astype(np.int32) for a in ("ax", "ay")},
+        "az": np.rint(rng.normal(16384, 60, n)).astype(np.int32),
+        "temp": np.rint((degc - 36.53) * 340).astype(np.int32),
+    }
+
+
+@pytest.fixture
+def closed(tmp_path):
+    """Loop over recordings given as columns; scales: of each, the MPU-6050's by default."""
+
+    def run(every, scales=MPU):
+        paths = []
+        for i, one in enumerate(every):
+            paths.append(tmp_path / f"s{i}.parquet")
+            write_recording(Recording(one, scales, f"s{i}"), paths[-1])
+        return load(paths)
+
+    return run
+
+
+def invented(analysis):
+    return [f.candidate.kind for f in analysis.selection.found] + analysis.lines
+
+
+def wander(seed, n=N):
+    return np.cumsum(np.random.default_rng(seed + 50).normal(0, 3, n)).astype(np.int32)
+
+
+def test_a_constant_channel_is_set_aside_and_named(closed):
+    analysis = closed([{**columns(i), "vdd_mv": np.full(N, 3300)} for i in range(4)])
+    assert analysis.gate.dropped == {"vdd_mv": "constant"} and invented(analysis) == []
+
+
+def test_of_two_channels_that_are_copies_the_first_is_kept(closed):
+    analysis = closed([{**columns(i), "a": wander(i), "b": 3 * wander(i) + 2} for i in range(4)])
+    assert "copy of a" in analysis.gate.dropped["b"] and invented(analysis) == []
+
+
+def test_a_channel_that_one_recording_lacks_is_set_aside_and_named(closed):
+    every = [columns(i) for i in range(4)]
+    every[0]["load"] = wander(0)
+    assert closed(every).gate.dropped == {"load": "not in s1, s2, s3"}
+
+
+def test_an_extra_channel_with_gaps_is_bridged(tmp_path):
+    paths = []
+    for i in range(4):
+        one = {**columns(i), "hum": wander(i).astype(object)}
+        one["hum"][1000:2500] = one["hum"][::7] = ""
+        paths.append(tmp_path / f"s{i}.csv")
+        rows = zip(*one.values())
+        text = "\n".join([",".join(one), *(",".join(map(str, row)) for row in rows)])
+        paths[-1].write_text(text + "\n")
+        paths[-1].with_suffix(".json").write_text(json.dumps(MPU.to_json()))
+    analysis = load(paths)
+    assert np.isfinite(analysis.sessions[0].sources["hum"]).all() and invented(analysis) == []
+
+
+@pytest.mark.parametrize(
+    ("readings", "sentence"),
+    [
+        (32767, "100 % of its samples are clipped; .* choose a wider range"),
+        ("held", "100 % of its samples are repeated; the rates never change"),
+    ],
+)
+def test_a_sensor_that_reads_nothing_is_told_what_it_needs(closed, readings, sentence):
+    one = columns(1)
+    for name in one:
+        if name != "t_us":
+            one[name] = np.full(N, 7 if readings == "held" else readings, np.int32)
+    if readings != "held":
+        one["az"] = columns(1)["az"]
+    with pytest.raises(CannotClose, match=sentence):
+        closed([one])
+
+
+def test_a_minute_is_too_short_and_two_are_asked_for(closed):
+    with pytest.raises(CannotClose, match=r"s0: 1\.0 minutes are too short; 2 minutes at rest"):
+        closed([columns(1, 300)])
+
+
+def test_of_four_a_short_one_is_left_out_and_named(closed):
+    analysis = closed([*(columns(i) for i in range(3)), columns(4, 100)])
+    assert len(analysis.sessions) == 3 and "s3: 0.3 minutes" in analysis.gate.notes[0]
+
+
+def test_recordings_all_in_motion_are_told_to_rest(closed):
+    every = [columns(i) for i in range(2)]
+    for i, one in enumerate(every):
+        one["gz"] = np.rint(131 * 60 * np.sin(np.arange(N) / (2 + i))).astype(np.int32)
+    with pytest.raises(CannotClose, match="s1: only 0.0 minutes are still; .* untouched"):
+        closed(every)
+
+
+def test_a_clock_that_wraps_is_a_sentence_too(closed):
+    one = columns(1)
+    one["t_us"] = (one["t_us"] + 2**32 - 10**9) % 2**32
+    with pytest.raises(ZerorateError, match="row .*time goes backwards"):
+        closed([one])
+
+
+@pytest.mark.parametrize("lacking", [("temp",), ("ax", "ay", "az"), ("temp", "ax", "ay", "az")])
+def test_without_temperature_or_acceleration_the_rest_is_still_looked_at(closed, lacking):
+    every = [{k: v for k, v in columns(i).items() if k not in lacking} for i in range(4)]
+    analysis = closed(every)
+    assert invented(analysis) == [] and np.isfinite(analysis.judgement.after_dps).all()

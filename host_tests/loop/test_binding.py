@@ -1,0 +1,115 @@
+"""A model is made for one chip, range and filter; every other device refuses it, and says why."""
+
+import struct
+import zlib
+from dataclasses import replace
+
+import pytest
+from zerorate import Sensor
+from zerorate.model import EffectModel
+from zerorate.model_file import (
+    LOADED,
+    OTHER_CHIP,
+    OTHER_FILTER,
+    OTHER_RANGE,
+    OTHER_SCALE,
+    REASONS,
+)
+from zerorate_tools.loop.basis import Term
+from zerorate_tools.loop.close import close
+from zerorate_tools.loop.gate import CannotClose
+from zerorate_tools.loop.simulated import simulate
+from zerorate_tools.model import Binding, Slot, build_model, encoded, read_model
+from zerorate_tools.model.binding import binding_of
+from zerorate_tools.recordings import Scales, write_recording
+
+from .power_ons import SCALES, recording
+
+MPU6050 = Scales("MPU-6050", 100.0, 131.0, 16384.0, 340.0, 36.53)
+RECORDED = {"chip_id": 0x68, "gyro_range": 0, "accel_range": 0, "filter": 3}
+SLOT = Slot(Term("temp", 20, 45, 30), (0.01, 0.01, 0.01), "temperature")
+
+ON_A_BOARD = """
+from zerorate import Sensor
+from zerorate.model import EffectModel
+from zerorate.model_file import REASONS
+
+for binding in ((104, 0, 0, 3), (112, 0, 0, 3), (104, 1, 0, 3), (104, 0, 0, 4)):
+    print(REASONS[EffectModel().load_file("model.bin", Sensor(), bytes(binding))])
+print(REASONS[EffectModel().load_file("model.bin", Sensor(gyro_lsb_per_dps=65.5))])
+"""
+
+
+def test_what_the_recorder_wrote_is_the_binding():
+    assert binding_of(replace(MPU6050, more={"binding": RECORDED})) == Binding(0x68, 0, 0, 3)
+
+
+def test_of_a_foreign_recording_the_name_and_the_scales_tell_what_they_can():
+    assert binding_of(MPU6050) == Binding(0x68, 0, 0, None)
+    assert binding_of(replace(MPU6050, gyro_lsb_per_dps=16.4)).gyro_range == 3
+    assert binding_of(Scales("ADIS16405", 100.0, 20.0)) == Binding()
+
+
+def test_a_board_refuses_other_chips_ranges_and_filters(micropython, tmp_path, repository):
+    model = build_model([SLOT], MPU6050, binding=Binding(0x68, 0, 0, 3))
+    script = tmp_path / "load.py"
+    script.write_text(ON_A_BOARD)
+    said = micropython.run(
+        script,
+        modules=[repository / "firmware"],
+        files_in={"model.bin": encoded(model)},
+        check=True,
+    ).stdout.splitlines()
+    reasons = (LOADED, OTHER_CHIP, OTHER_RANGE, OTHER_FILTER, OTHER_RANGE)
+    assert said == [REASONS[r] for r in reasons]
+
+
+@pytest.mark.parametrize(
+    ("sensor", "reason"),
+    [
+        (Sensor(), LOADED),
+        (Sensor(gyro_lsb_per_dps=65.5), OTHER_RANGE),
+        (Sensor(accel_lsb_per_g=8192.0), OTHER_RANGE),
+        (Sensor(temp_lsb_per_degc=326.8, temp_offset_degc=25.0), OTHER_SCALE),
+    ],
+)
+def test_without_a_driver_the_scales_bind(sensor, reason):
+    model = build_model([SLOT], MPU6050, binding=binding_of(MPU6050))
+    assert EffectModel().load(encoded(model), sensor) == reason
+
+
+@pytest.fixture(scope="module")
+def sessions(tmp_path_factory):
+    """Power-ons of a chip that the recorder knew."""
+    folder = tmp_path_factory.mktemp("bound")
+
+    def written(session, **binding):
+        path = folder / f"{session.name}{len(list(folder.iterdir()))}.parquet"
+        scales = replace(SCALES, more={"binding": {**RECORDED, **binding}})
+        write_recording(replace(recording(session), scales=scales), path)
+        return path
+
+    return written
+
+
+def test_close_writes_the_binding_of_its_recordings(sessions, tmp_path):
+    device = simulate(7, [("thermal-hysteresis", 5.0)])
+    close([sessions(s) for s in device.sessions], tmp_path)
+    assert read_model(tmp_path / "model.bin").binding == Binding(0x68, 0, 0, 3)
+
+
+@pytest.mark.parametrize("name", ["chip_id", "filter"])
+def test_close_refuses_a_session_of_another_chip_or_filter_and_names_it(sessions, tmp_path, name):
+    first, second = simulate(8).sessions[:2]
+    logs = [sessions(first), sessions(second, **{name: 5})]
+    with pytest.raises(CannotClose, match=f"{logs[1].stem}: its {name} is 5, but"):
+        close(logs, tmp_path)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_flipped_binding_is_caught_by_the_checksum():
+    data = bytearray(encoded(build_model([SLOT], MPU6050, binding=Binding(0x68, 0, 0, 3))))
+    data[12] = 0x70
+    assert REASONS[EffectModel().load(bytes(data), Sensor())].startswith("the model is damaged")
+    data[-4:] = struct.pack("<I", zlib.crc32(data[:-4]))
+    assert EffectModel().load(bytes(data), Sensor(), bytes((0x68, 0, 0, 3))) == OTHER_CHIP

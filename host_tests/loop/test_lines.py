@@ -1,0 +1,74 @@
+"""Periodic interference: lines that stand out of coloured noise in every session."""
+
+import numpy as np
+import pytest
+from zerorate_tools.loop.lines import find, spectrum
+from zerorate_tools.loop.quick import SEGMENT, Segments
+from zerorate_tools.loop.simulated import flicker
+
+N, STEP_S = 3600, 1.0
+
+
+def coloured(rng):
+    walk = np.cumsum(rng.normal(0, 2e-4, (N, 3)), axis=0)
+    pink = np.column_stack([flicker(rng, N, 1e-3) for _ in range(3)])
+    return rng.normal(0, 3e-3, (N, 3)) + pink + walk
+
+
+def lines(rates):
+    spectra = [spectrum(r, STEP_S, 4096) for r in rates]
+    return find(spectra[:-1], spectra[-1:], 2.0 * 4096 / N, 10 / N)
+
+
+def test_coloured_noise_has_no_lines():
+    for seed in range(20):
+        rng = np.random.default_rng(seed)
+        assert lines([coloured(rng) for _ in range(4)]) == []
+
+
+@pytest.mark.parametrize("period_s", [7.3, 60.0, 240.0])
+def test_a_line_is_found_with_its_period_and_amplitude(period_s):
+    rng = np.random.default_rng(1)
+    t = np.arange(N) * STEP_S
+    size = np.array([4e-3, 1e-3, 3e-3])
+    rates = [
+        coloured(rng) + np.outer(np.sin(2 * np.pi * t / period_s + rng.uniform(0, 6)), size)
+        for _ in range(4)
+    ]
+    (line,) = lines(rates)
+    assert 1 / line.hz == pytest.approx(period_s, rel=0.06) and line.in_locked
+    assert line.amplitude_dps[0] == pytest.approx(size[0], rel=0.3)
+
+
+def test_a_broad_hump_is_said_once():
+    rng = np.random.default_rng(5)
+    rates = []
+    for _ in range(4):
+        spectrum_of = np.fft.rfft(coloured(rng), axis=0)
+        hz = np.fft.rfftfreq(N, STEP_S)
+        gain = 1 + 40 * np.exp(-(((hz - 0.2) / 0.006) ** 2))
+        rates.append(np.fft.irfft(spectrum_of * gain[:, None], N, axis=0))
+    found = lines(rates)
+    assert len(found) == 1 and found[0].hz == pytest.approx(0.2, abs=0.01)
+
+
+def test_a_line_of_one_session_alone_is_not_the_devices():
+    rng = np.random.default_rng(2)
+    rates = [coloured(rng) for _ in range(4)]
+    rates[0] += 0.01 * np.sin(2 * np.pi * np.arange(N) / 50)[:, None]
+    assert lines(rates) == []
+
+
+def test_segments_that_were_not_at_rest_are_left_out():
+    rng = np.random.default_rng(3)
+    rate = rng.normal(0, 0.05, (6 * SEGMENT, 3))
+    tick = np.arange(len(rate)) // 100
+    still = np.ones(tick[-1] + 1, bool)
+    still[0] = False
+    segments = Segments()
+    for part in np.array_split(np.arange(len(rate)), 7):
+        segments.add(tick[part], rate[part])
+    quick = segments.at_rest(still, 100.0)
+    assert quick.averages == 5
+    # the window widens a bin by half: 1.5 times what white noise has in one
+    assert quick.power[5:-5].mean() == pytest.approx(1.5 * 2 * 0.05**2 / SEGMENT, rel=0.1)

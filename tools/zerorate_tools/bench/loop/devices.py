@@ -1,0 +1,108 @@
+"""Every device of the tables: what is simulated, and the row that it counts for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+#: The fourteen effects of the catalogue that must be found at twice the floor.
+CATALOGUE = (
+    "temperature-quadratic",
+    "temperature-cubic",
+    "thermal-rate",
+    "thermal-lag",
+    "thermal-hysteresis",
+    "power-on-transient",
+    "time-drift",
+    "linear-acceleration",
+    "squared-acceleration",
+    "vibration",
+    "supply-voltage",
+    "supply-temperature",
+    "scale-factor",
+    "cross-axis",
+)
+KINK, STEP = "temperature-kink", "step"
+#: Effects outside the catalogue and the channels that they must be tied to.
+OUTSIDE = {
+    "load-squared-delayed": ("load",),
+    "load-squared-lagged": ("load",),
+    "load-kink": ("load",),
+    "load-humidity": ("load", "humidity"),
+    "temperature-peak": ("temp",),
+}
+PAIRS = (
+    ("thermal-hysteresis", "supply-voltage"),
+    ("thermal-lag", "vibration"),
+    ("power-on-transient", "linear-acceleration"),
+)
+#: Sizes in floors, all of which must come down to the noise.
+SIZES = (2.0, 3.0, 5.0)
+HIDDEN_FLOORS = 5.0
+_SEEDS = {"null": 10_000, "effect": 200_000, "hidden": 400_000, "real": 600_000, "pair": 800_000}
+NULL, REAL, OUT, HIDDEN, TWO = "nothing", "real noise", "outside", "not recorded", "two at once"
+
+
+@dataclass(frozen=True)
+class Device:
+    """What to simulate and which row of the tables it counts for.
+
+    effects: (name, size in floors); noise: a kind of `loop.simulated`; hidden: size in floors of a
+    cause that is not recorded; real: name of the recording whose noise it has.
+    """
+
+    row: str
+    seed: int
+    effects: tuple[tuple[str, float], ...] = ()
+    sessions: int = 4
+    noise: str = "plain"
+    hidden: float = 0.0
+    real: str | None = None
+
+    @property
+    def key(self) -> str:
+        """Its own name, by which a broken-off run is taken up again."""
+        effects = "+".join(f"{name}*{size:g}" for name, size in self.effects)
+        return f"{self.row}/{effects}/{self.seed}"
+
+
+def devices(nulls: int, seeds: int, real: list[str]) -> list[Device]:
+    """Every device: `nulls` of plain noise, a third as many of each hostile kind and half as many
+    of real noise and of causes not recorded; `seeds` of each effect.
+
+    real: names of quiet recordings, none for no row of real noise.
+    """
+    from ...loop.simulated import HOSTILE
+
+    plain = [Device(NULL, _SEEDS["null"] + i) for i in range(nulls)]
+    some = [*plain, *_effects(seeds), *_pairs(seeds), *_hidden(max(seeds, nulls // 2))]
+    for k, kind in enumerate(HOSTILE):
+        first = _SEEDS["null"] + 10_000 * (k + 1)
+        share = range(-(-nulls // 3))
+        some += [Device(f"{NULL}, {kind}", first + i, noise=kind) for i in share]
+    for i in range(-(-nulls // 2) if real else 0):
+        some.append(Device(REAL, _SEEDS["real"] + i, real=real[i % len(real)]))
+    return some
+
+
+def _effects(seeds: int) -> Iterator[Device]:
+    for i in range(seeds):
+        seed = _SEEDS["effect"] + i
+        for effect in (*CATALOGUE, KINK, STEP):
+            for size in SIZES:
+                yield Device(f"{size:g}x", seed, ((effect, size),))
+        for effect in OUTSIDE:
+            yield Device(OUT, seed, ((effect, 2.0),))
+
+
+def _hidden(number: int) -> Iterator[Device]:
+    for n in (4, 7):
+        for i in range(number):
+            seed = _SEEDS["hidden"] + 10_000 * n + i
+            yield Device(f"{HIDDEN}, {n} sessions", seed, sessions=n, hidden=HIDDEN_FLOORS)
+
+
+def _pairs(seeds: int) -> Iterator[Device]:
+    for k, pair in enumerate(PAIRS):
+        for i in range(seeds):
+            yield Device(TWO, _SEEDS["pair"] + 1000 * k + i, tuple((e, 2.0) for e in pair))

@@ -1,0 +1,179 @@
+"""The figures that the loop must reach, each with its limit, its interval and whether it does."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import asdict, dataclass
+from functools import partial
+
+import numpy as np
+
+from .devices import CATALOGUE, HIDDEN, KINK, NULL, OUT, OUTSIDE, REAL, STEP, TWO
+from .files import ROWS
+from .look import Outcome
+from .wilson import interval
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One row: what was measured on how many, the limit, the 95 % interval where it is a share.
+
+    value and limit: percent, or the unit that is named; at_most: on which side the limit lies, or
+    None where there is none.
+    """
+
+    name: str
+    value: float
+    limit: float | None
+    at_most: bool
+    devices: int
+    low: float | None = None
+    high: float | None = None
+    unit: str = "%"
+
+    @property
+    def met(self) -> bool | None:
+        """Whether the measured value keeps the limit; None without one."""
+        if self.limit is None:
+            return None
+        return self.value <= self.limit if self.at_most else self.value >= self.limit
+
+    def to_dict(self) -> dict:
+        """Plain values with the verdict."""
+        return {**asdict(self), "met": self.met}
+
+
+def share(
+    name: str,
+    group: Iterable[Outcome],
+    says: Callable[[Outcome], bool],
+    limit: float | None,
+    at_most: bool = False,
+) -> Figure:
+    """Percent of outcomes of which something holds."""
+    hits = [bool(says(o)) for o in group]
+    low, high = interval(sum(hits), len(hits))
+    value = 100.0 * sum(hits) / max(len(hits), 1)
+    return Figure(name, value, limit, at_most, len(hits), 100 * low, 100 * high)
+
+
+def figures(outcomes: list[Outcome]) -> list[Figure]:
+    """Every figure that simulated devices and quiet recordings give."""
+    rows: dict[str, list[Outcome]] = {}
+    for o in outcomes:
+        rows.setdefault(o.device.row, []).append(o)
+    return [
+        *_where_nothing_is(rows),
+        *_catalogue(rows),
+        *_outside(rows.get(OUT, [])),
+        *_unrecorded(rows),
+        *_removed(rows),
+        *_pairs(rows.get(TWO, [])),
+        *_from_files(rows),
+        *_made_worse(outcomes),
+    ]
+
+
+def _where_nothing_is(rows):
+    noise = [o for row, group in rows.items() if row.startswith(NULL) for o in group]
+    if noise:
+        yield share("found in nothing, all kinds", noise, lambda o: bool(o.found), 0.5, True)
+    for row, group in rows.items():
+        if row.startswith(NULL) or row == REAL:
+            limit = 2.0 if row == REAL else 0.5
+            yield share(f"found in {row}", group, lambda o: bool(o.found), limit, at_most=True)
+    for row, group in rows.items():
+        if row.startswith(NULL) or row == REAL:
+            yield share(f"step listed in {row}", group, lambda o: o.events > 0, None)
+
+
+def _by_effect(group: list[Outcome]) -> dict[str, list[Outcome]]:
+    out: dict[str, list[Outcome]] = {}
+    for o in group:
+        out.setdefault(" + ".join(e for e, _ in o.device.effects), []).append(o)
+    return out
+
+
+def _catalogue(rows):
+    twice = _by_effect(rows.get("2x", []))
+    for effect in (*CATALOGUE, KINK):
+        if effect in twice:
+            limit = 80.0 if effect == KINK else 98.0
+            yield share(f"2x {effect}: found", twice[effect], lambda o: bool(o.found), limit)
+    found = [o for e in (*CATALOGUE, KINK) for o in twice.get(e, []) if o.found]
+    if found:
+        yield share("2x, named rightly of those found", found, _named, 95.0)
+    if STEP in twice:
+        yield share("2x step: listed", twice[STEP], lambda o: o.events > 0, None)
+        yield share("2x step: corrected", twice[STEP], lambda o: bool(o.found), 0.5, at_most=True)
+
+
+def _named(o: Outcome) -> bool:
+    return all(o.named(e) for e, _ in o.device.effects)
+
+
+def _outside(group):
+    for effect, some in _by_effect(group).items():
+        channels = OUTSIDE[effect]
+        name = f"outside, 2x {effect}: tied to {' and '.join(channels)}"
+        yield share(name, some, partial(Outcome.tied_to, channels=channels), 90.0)
+
+
+def _unrecorded(rows):
+    for n, limit in ((4, 10.0), (7, 2.0)):
+        row = f"{HIDDEN}, {n} sessions"
+        if row in rows:
+            group = rows[row]
+            yield share(f"{row}: confirmed", group, lambda o: o.confirmed, limit, at_most=True)
+            yield share(f"{row}: tentative", group, lambda o: bool(o.found) > o.confirmed, None)
+            yield share(f"{row}: said to be left", group, lambda o: o.excess, None)
+
+
+def _from_files(rows):
+    for row, (_, effect, _) in ROWS.items():
+        group = rows.get(row, [])
+        if group and effect:
+            yield share(f"{row}: named", group, partial(Outcome.named, effect=effect), 98.0)
+        elif group:
+            yield share(f"{row}: found", group, lambda o: bool(o.found), None)
+            yield share(f"{row}: confirmed", group, lambda o: o.confirmed, 0.5, at_most=True)
+
+
+def _removed(rows):
+    """Mean over devices of the error after over that of the noise alone, by effect and in all."""
+    sizes = [row for row in ("2x", "3x", "5x") if row in rows]
+    for effect in (*CATALOGUE, KINK):
+        group = [o for row in sizes for o in _by_effect(rows[row]).get(effect, [])]
+        if group:
+            limit = 1.3 if effect == KINK else 1.1
+            after = np.array([o.after for o in group])
+            yield _times(f"2x-5x {effect}: error after, mean", after.mean(), limit, len(group))
+            yield _times(f"2x-5x {effect}: error after, rms", rms(after), None, len(group))
+    group = [o for row in sizes for o in rows[row] if o.device.effects[0][0] in CATALOGUE]
+    if group:
+        mean = float(np.mean([o.after for o in group]))
+        yield _times("2x-5x all fourteen: error after, mean", mean, 1.1, len(group))
+
+
+def rms(values: np.ndarray) -> float:
+    """Root mean square."""
+    return float(np.sqrt(np.mean(np.square(values))))
+
+
+def _times(name, value, limit, devices):
+    return Figure(name, float(value), limit, True, devices, unit="x noise")
+
+
+def _pairs(group):
+    for effects, some in _by_effect(group).items():
+        yield share(f"2x {effects}: both named", some, _named, 90.0)
+
+
+def _made_worse(outcomes):
+    blocks = [o for o in outcomes if o.device.row not in ROWS]
+    with_recorded = [o for o in blocks if not o.device.row.startswith(HIDDEN)]
+    name = "held-out error made worse by more than 2 %"
+    yield share(name, with_recorded, lambda o: o.worse, 2.0, at_most=True)
+    hidden = [o for o in blocks if o.device.row.startswith(HIDDEN)]
+    if hidden:
+        yield share(f"{name}, cause not recorded", hidden, lambda o: o.worse, 2.0, at_most=True)

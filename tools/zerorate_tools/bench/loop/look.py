@@ -1,0 +1,88 @@
+"""One device looked at: simulated, closed, and judged by a session that no fit has seen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from .devices import Device
+from .quiet import cut_into_sessions
+
+
+@dataclass
+class Outcome:
+    """What the loop said of a device. before, after: held-out RMS over that of the noise alone."""
+
+    device: Device
+    found: list[str] = field(default_factory=list)
+    sources: list[list[str]] = field(default_factory=list)
+    rivals: list[list[str]] = field(default_factory=list)
+    confidence: list[str] = field(default_factory=list)
+    events: int = 0
+    excess: bool = False
+    before: float = 1.0
+    after: float = 1.0
+    cpu_s: float = 0.0
+
+    def named(self, effect: str) -> bool:
+        """Whether an effect is among the named, or among what is confounded with one of them."""
+        everything = [*self.found, *(r for rivals in self.rivals for r in rivals)]
+        return any(effect in n.split("+") for n in everything)
+
+    def tied_to(self, channels: tuple[str, ...]) -> bool:
+        """Whether an effect found follows exactly these channels."""
+        return any(set(s) == set(channels) for s in self.sources)
+
+    @property
+    def confirmed(self) -> bool:
+        """Whether any effect is said to be sure."""
+        return "confirmed" in self.confidence
+
+    @property
+    def worse(self) -> bool:
+        """Whether the error held out has grown by more than 2 %."""
+        return self.after > 1.02 * self.before
+
+
+def look(device: Device) -> Outcome:
+    """Simulate a device, run the loop on it and judge by its last session."""
+    import time
+
+    from ...loop.simulated import simulate
+
+    began = time.process_time()
+    if device.real:
+        sessions, noise = cut_into_sessions(device.real, device.seed)
+    else:
+        made = simulate(
+            device.seed, list(device.effects), device.sessions, 1.0, device.noise, device.hidden
+        )
+        sessions, noise = made.sessions, made.noise_dps
+    outcome = judged(device, sessions, noise[-1])
+    outcome.cpu_s = time.process_time() - began
+    return outcome
+
+
+def judged(device: Device, sessions: list, noise_dps: np.ndarray) -> Outcome:
+    """What the loop says of sessions. noise_dps: (n, 3) of the last one, nothing else in it."""
+    from ...loop.confounding import label
+    from ...loop.judge import judge, scored
+    from ...loop.select import select
+
+    selection = select(sessions[:-1])
+    verdict = judge(selection, sessions[-1:])
+    alone, _ = scored(replace(sessions[-1], rate_dps=noise_dps), np.zeros(noise_dps.shape))
+    unit = float(np.sqrt(np.nanmean(alone**2)))
+    found = selection.found
+    return Outcome(
+        device,
+        [label(f.candidate) for f in found],
+        [f.candidate.sources for f in found],
+        [f.confounded_with for f in found],
+        [verdict.confidence(i) for i in range(len(found))],
+        len(selection.steps),
+        bool(verdict.excess.left),
+        float(verdict.before_rms / unit),
+        float(verdict.after_rms / unit),
+    )

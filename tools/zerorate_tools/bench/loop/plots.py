@@ -1,0 +1,93 @@
+"""Pictures of the real recordings: what was measured, and what the models leave of it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from . import chips
+from .real import cubic
+
+_COLOURS = {"line": "tab:gray", "after": "tab:blue", "cubic": "tab:orange"}
+
+
+def draw_recording(analysis, title: str, path: Path) -> None:
+    """Temperature, and an axis a panel: the rate less a straight line, less what was found, and
+    less a cubic; what was held out is shaded, the floor is a band."""
+    import matplotlib.pyplot as plt
+
+    session = analysis.sessions[0]
+    minutes = (np.arange(session.blocks) + 0.5) * session.block_s / 60
+    figure, panels = plt.subplots(4, 1, figsize=(9, 10), sharex=True, layout="constrained")
+    figure.suptitle(title)
+    _temperature(panels[0], session, minutes)
+    left = _left(analysis, session)
+    for axis, panel in enumerate(panels[1:]):
+        floor = 1e3 * analysis.floor_dps[axis]
+        panel.axhspan(-floor, floor, color="tab:green", alpha=0.2, label="floor")
+        for name, rows in left.items():
+            panel.plot(minutes, 1e3 * rows[:, axis], ".-", ms=3, lw=0.8, color=_COLOURS[name],
+                       label=name)  # fmt: skip
+        for locked in analysis.locked:
+            _shade(panel, minutes, locked.available)
+        panel.set_ylabel(f"{'xyz'[axis]}, mdps")
+    panels[1].legend(ncols=4, fontsize="small")
+    panels[-1].set_xlabel("minutes")
+    figure.savefig(path, dpi=80)
+    plt.close(figure)
+
+
+def _temperature(panel, session, minutes):
+    if "temp" in session.sources:
+        panel.plot(minutes, session.block_mean(session.sources["temp"]), color="tab:red")
+        panel.set_ylabel("degC")
+    else:
+        panel.text(0.5, 0.5, "no temperature recorded", transform=panel.transAxes, ha="center")
+
+
+def _left(analysis, session):
+    """Name -> (n, 3) dps left, with the offset of the part that was fitted."""
+    from ...loop.line import deployed
+    from ...loop.regression import predicted
+
+    models = {"line": deployed(analysis.selection, effects=False)}
+    if (rival := cubic(analysis)) is not None:
+        models["cubic"] = rival
+    if analysis.selection.found:
+        models["after"] = deployed(analysis.selection)
+    train = analysis.train[0].available
+    out = {}
+    for name, (terms, coefficients) in models.items():
+        rows = session.rate_dps - predicted(terms, coefficients, session)
+        out[name] = rows - np.nanmean(rows[train], axis=0)
+    return out
+
+
+def _shade(panel, minutes, mask):
+    edges = np.flatnonzero(np.diff(np.r_[0, mask.astype(int), 0]))
+    for first, last in zip(edges[::2], edges[1::2]):
+        panel.axvspan(minutes[first], minutes[min(last, len(minutes) - 1)], color="0.5", alpha=0.15)
+
+
+def draw_chip(path: Path, to: Path) -> None:
+    """A chip's table: bins, and what line, cubic and the chosen order leave of those held out."""
+    import matplotlib.pyplot as plt
+
+    table = chips.read(path)
+    even = np.arange(len(table.temp_degc)) % 2 == 0
+    train = table.of(even)
+    order = chips.chosen(train)
+    figure, panels = plt.subplots(3, 1, figsize=(8, 8), sharex=True, layout="constrained")
+    figure.suptitle(path.name)
+    for axis, panel in enumerate(panels):
+        for k, name in ((1, "line"), (3, "cubic"), (order, f"order {order}")):
+            rows = table.rate_dps - chips.fitted(train, table.temp_degc, k)
+            colour = _COLOURS.get(name, _COLOURS["after"])
+            panel.plot(table.temp_degc, 1e3 * rows[:, axis], color=colour, lw=0.8, label=name)
+            panel.plot(table.temp_degc[~even], 1e3 * rows[~even, axis], "o", ms=4, color=colour)
+        panel.set_ylabel(f"{'xyz'[axis]}, mdps left")
+    panels[0].legend(title="dots: bins held out", ncols=3, fontsize="small")
+    panels[-1].set_xlabel("degC")
+    figure.savefig(to, dpi=80)
+    plt.close(figure)

@@ -1,0 +1,116 @@
+"""The loop on real recordings: before, after, the floor, and a cubic over temperature beside."""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .chips import hipnuc, rms_mdps
+from .flips import flip
+
+#: Files, and the rows a second of those that carry no time stamps.
+RECORDINGS: tuple[tuple[str, float | None], ...] = (
+    ("lsm6ds3-hubs/RB.csv", None),
+    ("lsm6ds3-hubs/RX.csv", 1 / 15),
+    ("lsm6ds3-hubs/TH.csv", 1 / 15),
+    ("gy521-cooldown/cooldown.csv.gz", None),
+    ("vn200-flip/static_z-_z+_IMU0.csv.gz", 50.0),
+    ("vn200-flip/static_z-_z+_IMU1.csv.gz", 50.0),
+    ("mpu6050-unmoved/set-2_unmoved-with-x-pointing-forward-10min.csv.gz", None),
+    ("adis16405-static/adis_16405_imu1.parquet", 100.0),
+    ("adis16405-static/adis_16405_imu2.parquet", 100.0),
+)
+
+
+def real_rows(data: Path, plots: Path | None = None) -> dict[str, dict]:
+    """Name -> figures in mdps (RMS over the axes, held out) and what was found.
+
+    before, after: by the firmware's own kernels; after_float, cubic: by double precision.
+
+    plots: a folder for a PNG of each, or None.
+    """
+    rows = {}
+    if plots:
+        plots.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as scratch:
+        for name, hz in RECORDINGS:
+            if (data / name).exists():
+                rows[Path(name).name] = _recording(data / name, hz, Path(scratch), plots)
+    for path in sorted((data / "hipnuc-bins").glob("*.log")):
+        rows[path.name] = hipnuc(path)
+        if plots:
+            from .plots import draw_chip
+
+            draw_chip(path, plots / f"{path.stem}.png")
+    return rows
+
+
+def _recording(path: Path, hz: float | None, scratch: Path, plots: Path | None) -> dict:
+    from ...importers.conversion import Options
+    from ...importers.importing import import_recording
+    from ...loop.close import load
+    from ...loop.confounding import label
+    from ...loop.measure import measure
+    from ...loop.model import model_of
+    from ...recordings import open_recording
+
+    out = scratch / f"{path.parent.name}-{path.name.split('.')[0]}.parquet"
+    import_recording(path, out, options=Options(hz=hz) if hz else None)
+    analysis = load([out])
+    judgement, found = analysis.judgement, analysis.selection.found
+    rival = cubic_left(analysis)
+    model = model_of(analysis, open_recording(out).scales)
+    by_kernels = measure(analysis, [out], model, scratch / "corrected.parquet").judgement
+    row = {
+        "floor_mdps": rms_mdps(analysis.floor_dps),
+        "before_mdps": rms_mdps(by_kernels.before_dps),
+        "after_mdps": rms_mdps(by_kernels.after_dps),
+        "after_float_mdps": rms_mdps(judgement.after_dps),
+        "cubic_mdps": "no temperature" if rival is None else _rms(rival),
+        "found": ", ".join(f"{label(f.candidate)} (tentative)" for f in found) or "nothing",
+        "confounded_with": "; ".join(", ".join(f.confounded_with) for f in found),
+        "drift_unexplained": "yes" if judgement.excess.left else "no",
+        "steps_listed": len(judgement.steps),
+    }
+    if "vn200" in path.parent.name:
+        row["flip"] = flip(analysis.sessions[0], float(analysis.floor_dps[2]))
+    if plots:
+        from .plots import draw_recording
+
+        draw_recording(analysis, path.name, plots / f"{out.stem}.png")
+    return row
+
+
+def cubic(analysis) -> tuple[list, NDArray[np.float64]] | None:
+    """Terms and coefficients of a cubic over temperature fitted on the same training part, held at
+    its range; None without temperature."""
+    from ...loop.line import ordinary
+
+    if not analysis.selection.straight:
+        return None
+    train = analysis.selection.regression.sessions
+    seen = np.concatenate([s.block_mean(s.sources["temp"])[s.available] for s in train])
+    line = replace(analysis.selection.straight[0], lo=float(seen.min()), hi=float(seen.max()))
+    terms = [replace(line, power=k) for k in (1, 2, 3)]
+    return terms, ordinary(terms, train)
+
+
+def cubic_left(analysis) -> list[NDArray[np.float64]] | None:
+    """(n, 3) dps that the cubic leaves of each locked part, NaN where unscored."""
+    from ...loop.judge import scored
+    from ...loop.regression import predicted
+
+    fit = cubic(analysis)
+    if fit is None:
+        return None
+    fitted = {s.name: s for s in analysis.selection.regression.sessions}
+    return [scored(s, predicted(*fit, s), fitted.get(s.name))[0] for s in analysis.locked]
+
+
+def _rms(parts: list[NDArray[np.float64]]) -> float:
+    rows = np.vstack(parts)
+    return rms_mdps(rows[np.isfinite(rows).all(axis=1)])

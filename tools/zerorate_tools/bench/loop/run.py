@@ -1,0 +1,134 @@
+"""The whole benchmark of the loop, which can be broken off and taken up again."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import asdict
+from os import PathLike
+from pathlib import Path
+
+from ..real_recordings import data_folder
+from ..tables import machine, machine_line, table
+from .devices import Device, devices
+from .figures import Figure, figures
+from .files import ROWS, file_devices, look_at_files
+from .look import Outcome, look
+from .quiet import FOLDER, write_blocks
+from .size import figures_of, measured
+
+
+def run(
+    nulls: int = 200,
+    seeds: int = 20,
+    processes: int = 2,
+    data: str | PathLike[str] | None = None,
+    resume: str | PathLike[str] | None = None,
+    plots: str | PathLike[str] | None = None,
+    size: bool = True,
+    advance: Callable[[float], None] = lambda n: None,
+) -> dict:
+    """Run it and return the figures and tables as plain values; `markdown` makes them readable.
+
+    nulls: devices of each kind of nothing; seeds: devices an effect; data: folder of the real
+    recordings, else ZERORATE_DATA, else none; resume: a file of outcomes, one a line, that a run
+    broken off goes on from; plots: a folder for PNGs of the real recordings; size: time and memory
+    of a device of 4 sessions of 8 hours at 100 Hz.
+    """
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+        os.environ.setdefault(name, "1")
+    folder = Path(data) if data else data_folder()
+    with tempfile.TemporaryDirectory() as scratch:
+        quiet = write_blocks(folder, Path(scratch)) if folder and folder.is_dir() else []
+        os.environ[FOLDER] = scratch
+        every = [*devices(nulls, seeds, quiet), *file_devices(-(-seeds // 2))]
+        outcomes = list(looked_at(every, processes, Path(resume) if resume else None, advance))
+    rows = figures(outcomes)
+    if size:
+        rows += figures_of(measured())
+    result: dict = {"devices": len(outcomes), "machine": machine()}
+    result["cpu_s_a_device"] = sum(o.cpu_s for o in outcomes) / max(len(outcomes), 1)
+    if folder and folder.is_dir():
+        from .real import real_rows
+
+        result["real_recordings"] = real_rows(folder, Path(plots) if plots else None)
+    result["figures"] = [f.to_dict() for f in rows]
+    result["false_alarms"] = _examples(outcomes)
+    return result
+
+
+def looked_at(
+    every: list[Device],
+    processes: int = 1,
+    kept: Path | None = None,
+    advance: Callable[[float], None] = lambda n: None,
+) -> Iterator[Outcome]:
+    """The outcome of every device; what `kept` has already is not looked at again."""
+    known = _read(kept) if kept and kept.exists() else {}
+    left = [d for d in every if d.key not in known]
+    for d in every:
+        if d.key in known:
+            advance(1)
+            yield known[d.key]
+    with ProcessPoolExecutor(processes) as pool:
+        for outcome in pool.map(_look, left, chunksize=4):
+            if kept:
+                with kept.open("a", encoding="utf-8") as file:
+                    file.write(json.dumps(asdict(outcome)) + "\n")
+            advance(1)
+            yield outcome
+
+
+def _look(device: Device) -> Outcome:
+    return look_at_files(device) if device.row in ROWS else look(device)
+
+
+def _read(path: Path) -> dict[str, Outcome]:
+    out = {}
+    for line in path.read_text(encoding="utf-8").splitlines():
+        values = json.loads(line)
+        device = values.pop("device")
+        device["effects"] = tuple((name, size) for name, size in device["effects"])
+        outcome = Outcome(Device(**device), **values)
+        out[outcome.device.key] = outcome
+    return out
+
+
+def _examples(outcomes: list[Outcome], most: int = 20) -> list[list]:
+    """[row, seed, names] of devices without an effect in which one was found."""
+    nothing = [o for o in outcomes if not o.device.effects and o.found]
+    return [[o.device.row, o.device.seed, o.found, o.confidence] for o in nothing[:most]]
+
+
+def markdown(result: dict) -> str:
+    """The figures as Markdown, the missed ones first."""
+    rows = [Figure(**{k: v for k, v in f.items() if k != "met"}) for f in result["figures"]]
+    missed = [f.name for f in rows if f.met is False]
+    head = f"{len(missed)} of {sum(f.met is not None for f in rows)} figures missed"
+    head_line = f"# What closing the loop finds, on {result['devices']} devices"
+    parts = [head_line, "", "`zerorate bench loop` wrote this page. " + machine_line()]
+    parts += [f"{head}: {'; '.join(missed)}." if missed else "Every figure is reached.", ""]
+    header = ("figure", "measured", "limit", "reached", "95 % interval", "devices")
+    parts.append(table(header, [_cells(f) for f in rows]))
+    if "real_recordings" in result:
+        parts += ["## Real recordings", "", _real(result["real_recordings"])]
+    return "\n".join(parts)
+
+
+def _cells(f: Figure) -> tuple:
+    unit = "" if f.unit == "%" else f" {f.unit}"
+    sign = "at most" if f.at_most else "at least"
+    limit = "" if f.limit is None else f"{sign} {f.limit:g}"
+    span = "" if f.low is None else f"{f.low:.1f}-{f.high:.1f}"
+    digits = 1 if f.unit == "%" else 3
+    reached = {None: "", True: "yes", False: "NO"}[f.met]
+    return f.name, f"{f.value:.{digits}f}{unit}", limit, reached, span, f.devices
+
+
+def _real(rows: dict[str, dict]) -> str:
+    keys = list(dict.fromkeys(k for row in rows.values() for k in row))
+    header = ("recording", *(k.replace("_", " ") for k in keys))
+    return table(header, [(name, *(row.get(k, "") for k in keys)) for name, row in rows.items()])

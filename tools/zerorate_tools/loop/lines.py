@@ -1,0 +1,116 @@
+"""Periodic interference: lines in the spectrum of the rate at rest (heater PWM, mains, motors).
+
+A line is judged beside its own neighbourhood, never beside white noise: on coloured noise the usual
+false-alarm probabilities of a periodogram are wrong nine times in ten. It must stand out in every
+session. Its phase is free at each power-on, so it is said and not corrected.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import median_filter
+from scipy.optimize import nnls
+from scipy.stats import gamma
+
+LEVEL = 1e-6
+MOST = 3
+_NEAR = 24  # bins to either side that are the neighbourhood
+#: Power of a line to its neighbourhood's: in every session on its best axis, and on average where
+#: a session gives one periodogram, whose continuum is known badly at its slow end.
+_EACH_RATIO, _SINGLE_RATIO = 2.0, 12.0
+_EDGE_HZ = 0.96  # of half the rate: above, a padded spectrum's bins are not independent
+
+
+@dataclass(frozen=True)
+class Line:
+    """hz; amplitude_dps (3,) an axis; p_value over all frequencies; in_locked: seen there too."""
+
+    hz: float
+    amplitude_dps: np.ndarray
+    p_value: float
+    in_locked: bool = False
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """Power (K, 3), dps^2 an axis as a line's half squared amplitude, at K frequencies step_hz
+    apart from 0; averages: independent periodograms in it."""
+
+    power: np.ndarray
+    step_hz: float
+    averages: float
+
+
+def spectrum(rate_dps: np.ndarray, step_s: float, length: int) -> Spectrum:
+    """Of (m, 3) equally spaced rates, NaN where not at rest, padded to a length for all sessions.
+
+    Straight lines bridge what is not at rest; where that is more than a tenth, there is none.
+    """
+    there = np.isfinite(rate_dps).all(axis=1)
+    at = np.arange(len(rate_dps))
+    filled = np.column_stack([np.interp(at, at[there], column[there]) for column in rate_dps.T])
+    window = np.hanning(len(filled))[:, None]
+    filled = filled - filled.mean(axis=0)
+    bins = np.abs(np.fft.rfft(filled * window, length, axis=0)) / window.sum()
+    return Spectrum(2 * bins**2, 1.0 / (length * step_s), 1.0)
+
+
+def beside_neighbours(s: Spectrum, wide: float) -> np.ndarray:
+    """(K, 3) power in units of its neighbourhood's; wide: bins that one line covers."""
+    size = 2 * round(_NEAR * wide) + 1
+    shape = np.column_stack([_continuum(column) for column in s.power.T])
+    flat = s.power / shape
+    bias = gamma.median(s.averages) / s.averages
+    usual = median_filter(flat, size=(size, 1), mode="nearest") / bias
+    return flat / np.maximum(usual, 1e-300)
+
+
+def _continuum(power: np.ndarray) -> np.ndarray:
+    """(K,) white + flicker + random walk that a spectrum rides on: a slope is no line."""
+    k = np.maximum(np.arange(len(power)), 1.0)
+    basis = np.column_stack([np.ones(len(k)), len(k) / k, (len(k) / k) ** 2])
+    fit = np.full(len(power), np.median(power) + 1e-300)
+    clipped = power
+    for _ in range(6):
+        fit = basis @ nnls(basis[1:] / fit[1:, None], clipped[1:] / fit[1:])[0] + 1e-300
+        clipped = np.minimum(power, 4.0 * fit)
+    return fit
+
+
+def find(train: list[Spectrum], locked: list[Spectrum], wide: float, slowest_hz: float):
+    """Lines in all training sessions, the strongest first. wide: bins that one line covers."""
+    ratios = [beside_neighbours(s, wide) for s in train]
+    total = sum(s.averages for s in train) * 3
+    joint = sum(r.sum(axis=1) * s.averages for r, s in zip(ratios, train))
+    each = np.min([r.max(axis=1) for r in ratios], axis=0)
+    hz = np.arange(len(joint)) * train[0].step_hz
+    tried = max(len(joint) / wide, 1.0)
+    p = np.minimum(gamma.sf(joint, total) * tried, 1.0)
+    p[(hz < slowest_hz) | (each < _EACH_RATIO)] = 1.0
+    if total <= 3 * len(train):
+        p[joint < _SINGLE_RATIO * total] = 1.0
+    p[hz > _EDGE_HZ * hz[-1]] = 1.0
+    out: list[Line] = []
+    while len(out) < MOST and p.min() < LEVEL:
+        at = int(np.where(p < LEVEL, joint, 0.0).argmax())
+        out.append(_line(at, hz[at], float(p[at]), train, locked, wide))
+        p[_hump(p, at, round(3 * wide))] = 1.0
+    return out
+
+
+def _hump(p, at, reach):
+    """Slice around a line: what stands out beside it without a gap is the same hump."""
+    low = high = at
+    while low > 0 and (p[max(0, low - reach) : low] < LEVEL).any():
+        low -= 1
+    while (p[high + 1 : high + 1 + reach] < LEVEL).any():
+        high += 1
+    return slice(max(0, low - reach), high + reach + 1)
+
+
+def _line(at, hz, p, train, locked, wide):
+    power = np.mean([s.power[at] for s in train], axis=0)
+    seen = [beside_neighbours(s, wide)[at].max() > _EACH_RATIO for s in locked]
+    return Line(float(hz), np.sqrt(2 * power), p, bool(seen) and all(seen))
