@@ -1,0 +1,113 @@
+"""The kinds of outcome that a page must tell, and a browser to look at it with."""
+
+from functools import cache, partial
+
+import pytest
+from zerorate_tools.report import write_report
+
+from host_tests.report.devices import HOSTILE, HOSTILE_FILE, Closed, bundled, device
+
+HYSTERESIS = [("thermal-hysteresis", 5.0)]
+LOAD = [("load-squared-delayed", 5.0)]
+HOSTILE_FILES = [f"{HOSTILE_FILE} {i}" for i in range(4)]
+#: Outcome -> what makes recordings with it in a folder.
+OUTCOMES = {
+    "an effect": partial(device, seed=7, effects=HYSTERESIS),
+    "nothing": partial(device, seed=3),
+    "unexplained": partial(bundled, scenario="unrecorded"),
+    "one recording": partial(device, seed=7, effects=HYSTERESIS, names=["alone"]),
+    "no temperature": partial(device, seed=7, temp=False),
+    "hostile names": partial(device, seed=7, effects=LOAD, channel=HOSTILE, names=HOSTILE_FILES),
+}
+
+
+@pytest.fixture(scope="session")
+def outcome(tmp_path_factory):
+    """outcome(name) -> a Closed, its report written, made once."""
+
+    @cache
+    def make(name):
+        folder = tmp_path_factory.mktemp("closed")
+        closed = Closed(folder, OUTCOMES[name](folder))
+        closed.page = write_report(closed.analysis, closed.result, closed.logs, closed.folder)
+        return closed
+
+    return make
+
+
+@pytest.fixture(scope="session", params=OUTCOMES)
+def closed(request, outcome):
+    """Each kind of outcome."""
+    return outcome(request.param)
+
+
+@pytest.fixture(scope="session")
+def browser(chromium):
+    """A Chromium that calls nobody."""
+    playwright = pytest.importorskip("playwright.sync_api")
+    quiet = ["--disable-background-networking", "--disable-component-update", "--disable-sync"]
+    with playwright.sync_playwright() as driver:
+        browser = driver.chromium.launch(
+            executable_path=chromium, args=["--disable-gpu", "--no-first-run", *quiet]
+        )
+        yield browser
+        browser.close()
+
+
+# Ends a hang; a busy machine may take its time.
+_PATIENCE_MS = 600_000
+
+
+class Shown:
+    """A page that is open and drawn: `tab`, and what went wrong on the way there."""
+
+    def __init__(self, context, path):
+        self.address = path.as_uri()
+        self.complaints, self.requests = [], []
+        self.tab = context.new_page()
+        self.tab.set_default_timeout(_PATIENCE_MS)
+        self.tab.on("console", lambda message: self.complaints.append(message.text))
+        self.tab.on("pageerror", lambda error: self.complaints.append(str(error)))
+        self.tab.on("dialog", lambda dialog: self.complaints.append(dialog.message))
+        self.tab.on("request", lambda request: self.requests.append(request.url))
+        self.tab.add_init_script(SHIFTS)
+        self.tab.goto(self.address)
+        self.tab.wait_for_selector("html[data-drawn=all]", state="attached")
+
+
+SHIFTS = """
+window.shifted = 0;
+new PerformanceObserver((list) => {
+  for (const entry of list.getEntries()) if (!entry.hadRecentInput) window.shifted += entry.value;
+}).observe({ type: "layout-shift", buffered: true });
+"""
+PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True}
+DESK = {"viewport": {"width": 1440, "height": 900}}
+
+
+@pytest.fixture(scope="session")
+def show(browser):
+    """show(closed, phone, theme) -> its page as Shown, in a window of its own."""
+
+    def show(closed, phone=False, theme="light"):
+        context = browser.new_context(**(PHONE if phone else DESK), color_scheme=theme)
+        return Shown(context, closed.page)
+
+    return show
+
+
+@pytest.fixture(scope="session", params=["phone", "desk in the dark"])
+def shown(request, closed, show):
+    """Each outcome's page on a phone and on a desk, only to be looked at."""
+    phone = request.param == "phone"
+    page = show(closed, phone=phone, theme="light" if phone else "dark")
+    yield page
+    page.tab.context.close()
+
+
+@pytest.fixture
+def tab(outcome, show):
+    """The page of a device with an effect, to do with as one likes."""
+    page = show(outcome("an effect"))
+    yield page.tab
+    page.tab.context.close()

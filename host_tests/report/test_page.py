@@ -1,0 +1,125 @@
+"""What stands on the page: the numbers of report.json, and strangers' names as text only."""
+
+import json
+import re
+from html.parser import HTMLParser
+
+import pytest
+from zerorate_tools.report.figures import figure
+from zerorate_tools.report.words import corrects_at_rest, headline
+
+from host_tests.report.devices import HOSTILE
+
+
+class Reader(HTMLParser):
+    """Elements, the numbers said in <data>, and the text of each <script>."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.elements, self.numbers, self.scripts, self.h1 = [], [], [], ""
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        self.elements.append(tag)
+        if tag == "data":
+            self.numbers.append(float(dict(attributes)["value"]))
+
+    def handle_data(self, data):
+        if self.elements and self.elements[-1] == "script" and self.cdata_elem:
+            self.scripts.append(data)
+        if self.elements and self.elements[-1] == "h1" and not self.h1:
+            self.h1 = data
+
+
+def numbers_in(value):
+    """Every number anywhere in plain values."""
+    if isinstance(value, dict):
+        value = list(value.values())
+    if isinstance(value, list):
+        return {number for part in value for number in numbers_in(part)}
+    return {float(value)} if isinstance(value, int | float) else set()
+
+
+@pytest.fixture
+def read(closed):
+    return Reader(closed.page.read_text(encoding="utf-8"))
+
+
+def test_every_number_shown_is_one_of_the_report(closed, read):
+    assert len(read.numbers) > 20
+    assert set(read.numbers) <= numbers_in(closed.result)
+
+
+def test_before_after_and_floor_of_every_axis_are_shown_with_their_intervals(closed, read):
+    r = closed.result
+    keys = ("before_mdps", "after_mdps", "floor_mdps", "ci95_mdps")
+    assert numbers_in([r[key] for key in keys]) <= set(read.numbers)
+    assert numbers_in(r["smallest_detectable_mdps"]) <= set(read.numbers)
+
+
+def test_the_first_line_is_the_answer(closed, read):
+    assert read.h1 == headline(closed.result) + "."
+    assert figure(closed.result["in_all"]["after_mdps"]) in read.h1
+
+
+def test_it_is_one_file_of_less_than_six_megabytes(closed):
+    text = closed.page.read_text(encoding="utf-8")
+    assert closed.page.stat().st_size < 6_000_000
+    own = re.sub(r"<script>.*?</script>", "", text, count=1, flags=re.DOTALL)
+    assert re.findall(r"<(?:link|script|img|iframe)[^>]+(?:src|href)=.(?!data:,)", own) == []
+
+
+class TestAnswers:
+    def test_an_effect(self, outcome):
+        said = headline(outcome("an effect").result)
+        assert re.fullmatch(
+            r"On the session held out, the error fell from [\d.]+ to [\d.]+ mdps "
+            r"\(floor [\d.]+\)",
+            said,
+        )
+
+    def test_nothing(self, outcome):
+        assert headline(outcome("nothing").result).startswith("Nothing was found at rest")
+
+    def test_unexplained(self, outcome):
+        said = headline(outcome("unexplained").result)
+        assert "mdps are left that nothing recorded explains" in said
+
+    def test_one_recording(self, outcome):
+        closed = outcome("one recording")
+        assert headline(closed.result).startswith("On the stretches held out, ")
+        assert "nothing is confirmed before a second power-on" in closed.page.read_text()
+
+    def test_no_temperature(self, outcome):
+        text = outcome("no temperature").page.read_text()
+        assert "These recordings have no temperature" in text
+        assert "plot-residual-temperature" not in text
+
+    def test_an_effect_that_did_not_help_comes_with_a_warning(self, outcome):
+        closed = outcome("no temperature")
+        whole, some = closed.result["in_all"], any(map(corrects_at_rest, closed.result["steps"]))
+        warned = '<p class="warning">' in closed.page.read_text()
+        assert warned == (some and whole["after_mdps"] >= whole["before_mdps"])
+
+
+class TestHostileNames:
+    @pytest.fixture
+    def text(self, outcome):
+        return outcome("hostile names").page.read_text(encoding="utf-8")
+
+    def test_the_channel_was_found_and_is_named(self, outcome):
+        steps = outcome("hostile names").result["steps"]
+        assert [HOSTILE] in [step["sources"] for step in steps]
+
+    def test_names_make_no_element(self, text):
+        read = Reader(text)
+        assert read.elements.count("script") == 3
+        assert "img" not in read.elements
+
+    def test_the_data_within_the_page_is_whole(self, text):
+        plots = json.loads(re.search(r'id="plots">(.*?)</script>', text, re.DOTALL)[1])
+        labels = {panel["x_label"] for plot in plots for panel in plot["panels"]}
+        assert "\u2068delayed &lt;script&gt;\u2069" in labels
+
+    def test_no_template_of_a_name_is_worked_out(self, text):
+        assert "{{7*7}}" in text

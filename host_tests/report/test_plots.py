@@ -1,0 +1,155 @@
+"""What the plots hold, whoever draws them."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from zerorate_tools.loop.bends import KINDS as BENDS
+from zerorate_tools.loop.catalogue import CATALOGUE, GENERIC, GROUPS
+from zerorate_tools.report import kinds
+from zerorate_tools.report.allan_plot import longest
+from zerorate_tools.report.figures import chance, figure
+from zerorate_tools.report.held_out import held_out, trend
+from zerorate_tools.report.plot import thinned
+from zerorate_tools.report.png import picture, write_pngs
+from zerorate_tools.report.writing import plots_of
+
+from host_tests.report.devices import Closed, device
+
+
+@pytest.fixture(scope="module")
+def plots(outcome):
+    closed = outcome("an effect")
+    made, notes = plots_of(closed.analysis, closed.result, closed.logs, closed.folder)
+    assert notes == []
+    return {plot.key: plot for plot in made}
+
+
+@given(st.integers(0, 4000), st.integers(0, 2**32 - 1))
+def test_thinning_keeps_the_extremes_and_the_order(n, seed):
+    y = np.random.default_rng(seed).normal(size=n)
+    x, kept = thinned(np.arange(n), y, 300)
+    assert len(x) <= max(300, 0) and np.all(np.diff(x) > 0)
+    assert np.array_equal(kept, y[x])
+    if n:
+        assert kept.min() == y.min() and kept.max() == y.max()
+
+
+def test_thinning_keeps_a_gap():
+    y = np.ones(5000)
+    y[2000:3000] = np.nan
+    assert np.isnan(thinned(np.arange(5000), y, 100)[1]).any()
+
+
+def test_the_error_drawn_has_the_root_mean_square_that_is_said(outcome, plots):
+    for a in range(3):
+        for name in ("before", "after"):
+            drawn = [s for s in plots["residual-time"].series if s.panel == a and s.name == name]
+            rms = np.sqrt(np.nanmean(drawn[0].y ** 2))
+            said = outcome("an effect").result[f"{name}_mdps"][a]
+            assert rms == pytest.approx(said, abs=1e-4)
+
+
+def test_heating_and_cooling_are_told_apart(outcome):
+    session = outcome("an effect").analysis.locked[0]
+    told = trend(session)
+    step = np.diff(session.block_mean(session.sources["temp"]))
+    fast = np.abs(step) > 0.2
+    assert fast.sum() > 20
+    agree = told[1:][fast] == np.sign(step[fast])
+    assert agree.mean() > 0.9
+
+
+def test_every_scored_point_is_in_the_plot_over_temperature_once(outcome, plots):
+    scored = np.isfinite(held_out(outcome("an effect").analysis)[0].after_mdps[:, 0]).sum()
+    drawn = [s for s in plots["residual-temperature"].series if s.panel == 0]
+    assert sum(len(s.x) for s in drawn if s.views == ("after",)) == scored
+    assert sum(len(s.x) for s in drawn if s.views == ("before",)) == scored
+
+
+def test_slots_of_one_source_are_told_apart_and_drawn_as_one_curve(tmp_path):
+    effects = [("temperature-cubic", 20.0), ("temperature-quadratic", 10.0)]
+    closed = Closed(tmp_path, device(tmp_path, 1, effects, names=["alone"]))
+    made, _ = plots_of(closed.analysis, closed.result, closed.logs, closed.folder)
+    curve = next(plot for plot in made if plot.key == "effect-1")
+    step = closed.result["steps"][0]
+    assert step["effect"] == "temperature-curve"
+    assert list(step["coefficients"]) == ["temp^2", "temp^3"]
+    assert (curve.views, curve.panels[0].x_label) == ((), "temperature, °C")
+
+
+def test_an_effects_points_lie_about_its_curve(outcome):
+    closed = outcome("hostile names")
+    made, _ = plots_of(closed.analysis, closed.result, closed.logs, closed.folder)
+    effect = next(plot for plot in made if plot.key == "effect-1")
+    for a in range(3):
+        series = [s for s in effect.series if s.panel == a]
+        curve = next(s for s in series if s.name == "correction")
+        off = [s.y - np.interp(s.x, curve.x, curve.y) for s in series if s is not curve]
+        assert np.std(np.concatenate(off)) < np.ptp(curve.y) / 4
+
+
+def test_the_allan_deviation_is_of_the_longest_stretch_without_a_gap(outcome):
+    parts = held_out(outcome("one recording").analysis)
+    scored = np.isfinite(parts[0].after_mdps).all(axis=1)
+    runs = "".join("x" if there else " " for there in scored).split()
+    assert len(longest(parts)[2]) == max(map(len, runs))
+
+
+def test_the_floor_is_the_lowest_point_of_the_noise(outcome, plots):
+    for a, floor in enumerate(outcome("an effect").result["floor_mdps"]):
+        noise = [s for s in plots["allan"].series if s.panel == a and s.role == "floor"][0]
+        assert plots["allan"].panels[a].lines[0].value == floor
+        assert noise.y.min() == pytest.approx(floor, rel=0.05)
+
+
+def test_every_kind_that_can_be_found_has_words():
+    found = {kind for kind, *_ in (*CATALOGUE, *GROUPS, *GENERIC)} | set(BENDS)
+    assert found <= kinds.KINDS.keys()
+
+
+@pytest.mark.parametrize(
+    ("slot", "unit"),
+    [
+        ({"source": "temp", "power": 1}, "mdps per °C"),
+        ({"source": "temp", "power": 2}, "mdps per °C²"),
+        ({"source": "temp", "lag_mode": "rate"}, "mdps per (°C per s)"),
+        ({"source": "vdd_mv", "second": "temp"}, "mdps per (mV × °C)"),
+        ({"source": "load", "power": 2}, "mdps per (unit of load)²"),
+        ({"source": "one", "decay_s": 300.0}, "mdps"),
+    ],
+)
+def test_a_coefficient_has_its_unit(slot, unit):
+    assert kinds.per_unit(slot) == unit
+
+
+@pytest.mark.parametrize(
+    ("value", "said"),
+    [
+        *((26.3111, "26.3"), (0.808, "0.808"), (1234.5, "1,234"), (99.96, "100"), (-3.2, "−3.20")),
+        *((0, "0"), (5.9e-4, "0.000590"), (5.9e-5, "5.9 × 10⁻⁵"), (2.5e7, "2.5 × 10⁷")),
+    ],
+)
+def test_figures_have_three_digits(value, said):
+    assert figure(value) == said
+
+
+def test_a_chance_below_a_millionth_is_not_told_apart():
+    assert (chance(3e-51), chance(0.0011)) == ("below 10⁻⁶", "0.00110")
+
+
+def test_pictures_are_written_of_every_plot_whatever_the_names(outcome, tmp_path):
+    closed = outcome("hostile names")
+    made, _ = plots_of(closed.analysis, closed.result, closed.logs, closed.folder)
+    paths = write_pngs(made, tmp_path)
+    assert [p.name for p in paths] == [f"{plot.key}.png" for plot in made]
+    for path in paths:
+        assert path.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+
+
+def test_a_picture_shows_every_view(plots):
+    axes = picture(plots["residual-temperature"]).axes
+    assert [a.get_title(loc="left") for a in axes][::3] == [
+        "x axis, mdps, after",
+        "x axis, mdps, before",
+    ]

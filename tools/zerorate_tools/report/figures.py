@@ -1,0 +1,26 @@
+"""Numbers as a reader wants them: three digits, an exponent only where it cannot be avoided."""
+
+from __future__ import annotations
+
+_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_LEAST, _MOST = -4, 6
+
+
+def figure(value: float) -> str:
+    """Three significant digits: 26.3, 0.808, 1,240, 5.9 × 10⁻⁵."""
+    if value == 0:
+        return "0"
+    mantissa, _, exponent = f"{value:.2e}".partition("e")
+    size = int(exponent)
+    if _LEAST <= size < _MOST:
+        return _minus(f"{value:,.{max(0, 2 - size)}f}")
+    return _minus(f"{float(mantissa):.2g}") + f" × 10{str(size).translate(_SUPERSCRIPTS)}"
+
+
+def chance(p: float) -> str:
+    """A p-value; what is below a millionth is not told apart."""
+    return "below 10⁻⁶" if p < 1e-6 else figure(p)
+
+
+def _minus(text: str) -> str:
+    return text.replace("-", "−")

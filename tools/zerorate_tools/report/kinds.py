@@ -1,0 +1,182 @@
+"""Effects and channels in plain words: what each is called, what it means, and its units."""
+
+from __future__ import annotations
+
+from typing import Any
+
+#: Kind -> what a person calls it, and what it says of the device.
+KINDS: dict[str, tuple[str, str]] = {
+    "temperature-quadratic": (
+        "Bend over temperature",
+        "The bias follows a curve over temperature, where a straight line was assumed.",
+    ),
+    "temperature-cubic": (
+        "S-shaped bend over temperature",
+        "The bias bends one way when cold and the other way when hot.",
+    ),
+    "temperature-curve": (
+        "Curve over temperature",
+        "The bias follows a curve over temperature that is more than a bend.",
+    ),
+    "temperature-kink": (
+        "Kink over temperature",
+        "Above one temperature the bias follows another slope.",
+    ),
+    "thermal-rate": (
+        "Rate of temperature",
+        "The bias shifts while the temperature changes, the faster the more, and comes back when "
+        "it is held.",
+    ),
+    "thermal-lag": (
+        "Lag of the thermometer",
+        "The part that makes the bias warms later, or earlier, than the thermometer shows.",
+    ),
+    "thermal-hysteresis": (
+        "Thermal hysteresis",
+        "At one temperature the bias differs between heating and cooling, however slow either is.",
+    ),
+    "temperature-peak": (
+        "Memory of the highest temperature",
+        "The bias depends on the hottest that the part has been since power-on.",
+    ),
+    "power-on-transient": (
+        "Power-on transient",
+        "The bias settles after power-on, whatever the temperature does. It follows time since "
+        "power-on; the cause is not identified.",
+    ),
+    "time-drift": (
+        "Drift with time",
+        "The bias drifts with time since power-on; the cause is not identified.",
+    ),
+    "vibration": (
+        "Vibration",
+        "The bias shifts with the mean square of vibration (rectification).",
+    ),
+    "supply-voltage": ("Supply voltage", "The bias follows the supply voltage."),
+    "supply-temperature": (
+        "Supply voltage times temperature",
+        "The bias follows the supply voltage, by an amount that depends on temperature.",
+    ),
+    "linear-acceleration": (
+        "Acceleration",
+        "The bias follows acceleration, gravity's included: it depends on how the device lies.",
+    ),
+    "squared-acceleration": (
+        "Acceleration squared",
+        "The bias follows the square of acceleration, gravity's included.",
+    ),
+    "scale-factor": (
+        "Scale factor",
+        "The rates are too large or too small by a constant share.",
+    ),
+    "cross-axis": ("Cross-axis sensitivity", "A turn about one axis shows on the others."),
+    "scale-factor+cross-axis": (
+        "Scale factor and cross-axis sensitivity",
+        "The rates are off by a constant share, and a turn about one axis shows on the others.",
+    ),
+    "rate-scale": ("Scale factor or cross-axis sensitivity", "The error follows the rate of turn."),
+    "sample-timing": (
+        "Timing of the samples",
+        "The readings and those of the reference are not of the same moment. This is no bias.",
+    ),
+    "periodic-interference": (
+        "Periodic interference",
+        "Something with a fixed period gets into the rate: a heater's switching, mains, a motor.",
+    ),
+    "channel": ("in proportion", "The bias moves in proportion to it."),
+    "channel-square": ("its square", "The bias moves with its square."),
+    "channel-lag": ("lagged", "The bias follows it late, as through a first-order lag."),
+    "channel-delay": ("delayed", "The bias follows it some time later."),
+    "channel-delay-square": ("its square, delayed", "The bias follows its square some time later."),
+    "channel-rate": ("its rate of change", "The bias shifts while it changes."),
+    "channel-lag-square": (
+        "its square, lagged",
+        "The bias follows its square late, as through a first-order lag.",
+    ),
+    "channel-kink": ("above a threshold", "Only above a threshold does the bias follow it."),
+    "channel-peak": (
+        "memory of its highest value",
+        "The bias depends on its highest value since power-on.",
+    ),
+    "channel-product": ("a product", "The bias follows the product of the two."),
+}
+
+_SOURCES = {
+    "temp": ("temperature", "°C"),
+    "time": ("time since power-on", "s"),
+    "one": ("a constant", ""),
+    "vib": ("vibration", "g²"),
+    **{f"acc_{a}": (f"acceleration along {a}", "g") for a in "xyz"},
+    **{f"rate_{a}": (f"rate about {a}", "dps") for a in "xyz"},
+}
+
+
+def quantity(source: str) -> tuple[str, str]:
+    """A source's name in words and its unit; a channel of the user's keeps its own name."""
+    if source in _SOURCES:
+        return _SOURCES[source]
+    return source, "mV" if source.endswith("_mv") else ""
+
+
+def kind_of(effect: str) -> str:
+    """The kind in a report's `effect`, which may name channels in brackets."""
+    return effect.split("(", 1)[0]
+
+
+def title(effect: str, sources: list[str] | None = None) -> str:
+    """What a person calls the effect."""
+    kind = kind_of(effect)
+    words = KINDS.get(kind, (kind, ""))[0]
+    if not kind.startswith("channel"):
+        return words
+    named = sources or [part for part in effect.partition("(")[2].rstrip(")").split(", ") if part]
+    channels = " and ".join(quantity(name)[0] for name in named) or "any recorded channel"
+    return f"{channels}, {words}"
+
+
+def meaning(effect: str) -> str:
+    """One sentence on what the effect says of the device."""
+    said = KINDS.get(kind_of(effect), ("", ""))[1]
+    if kind_of(effect).startswith("channel"):
+        said += " It is in no catalogue: the mechanism is unknown."
+    return said
+
+
+def per_unit(parameters: dict[str, Any]) -> str:
+    """The unit of a coefficient, given a slot's parameters."""
+    unit = _power(quantity(parameters["source"]), parameters.get("power", 1))
+    if parameters.get("lag_mode") == "rate":
+        unit = f"({unit} per s)"
+    if parameters.get("second"):
+        unit = f"({unit} × {_power(quantity(parameters['second']), 1)})"
+    return "mdps" if parameters["source"] == "one" else f"mdps per {unit}"
+
+
+def _power(named: tuple[str, str], power: int) -> str:
+    name, unit = named
+    base = unit or f"unit of {name}"
+    return base if power == 1 else f"{base if unit else f'({base})'}{'²' if power == 2 else '³'}"
+
+
+#: Parameter of a slot -> what it is called, its unit, and the value at which it says nothing.
+_PARAMETERS = (
+    ("lag_s", "time constant", "s", 0.0),
+    ("delay_s", "delay", "s", 0.0),
+    ("width", "width", None, 0.0),
+    ("knot", "threshold above the centre", None, None),
+    ("decay_s", "decay time", "s", 0.0),
+    ("limit_dps", "held at the edge beyond", "dps", None),
+    ("hz", "frequency", "Hz", None),
+    ("period_s", "period", "s", None),
+    ("deviation_s", "standard deviation of it", "s", None),
+)
+
+
+def parameters(slot: dict[str, Any]) -> list[tuple[str, float, str]]:
+    """(name, value, unit) of what describes the slot beside its coefficients."""
+    own = quantity(slot.get("source", ""))[1]
+    return [
+        (name, slot[key], own if unit is None else unit)
+        for key, name, unit, idle in _PARAMETERS
+        if slot.get(key, idle) not in (None, idle)
+    ]

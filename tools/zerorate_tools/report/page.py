@@ -1,0 +1,112 @@
+"""report.html: one file that needs nothing else."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+from importlib.resources import files
+from typing import Any
+
+from . import kinds, words
+from .board import Deployment
+from .colours import ROLES
+from .figures import chance, figure
+from .plot import Plot
+from .plotly_form import plain
+from .safe_json import script_json
+
+# Heights in CSS pixels: of a panel in a stack, alone, beside others and under others, and of what
+# is about them (page.js).
+_STACKED_PX, _ALONE_PX, _BESIDE_PX, _UNDER_PX, _EDGE_PX = 120, 230, 300, 246, 64
+
+
+def page(
+    result: dict[str, Any],
+    plots: Sequence[Plot],
+    board: Deployment,
+    notes: Sequence[str],
+    made: str,
+) -> str:
+    """The page's text. result: what report.json holds; notes: why a plot is missing; made: by whom
+    and when.
+    """
+    from plotly.offline import get_plotlyjs
+
+    return (
+        _environment()
+        .get_template("page.html.j2")
+        .render(
+            r=result,
+            headline=words.headline(result),
+            plots={p.key: p for p in plots},
+            corrected=any(words.corrects_at_rest(step) for step in result["steps"]),
+            deployed=any(step["coefficients"] for step in result["steps"]),
+            board=board,
+            notes=notes,
+            made=made,
+            smallest=smallest(result),
+            faults=faults(result),
+            roles=ROLES,
+            data=script_json([plain(p) for p in plots]),
+            plotly_js=get_plotlyjs(),
+            style=_own("page.css"),
+            script=_own("page.js"),
+        )
+    )
+
+
+@lru_cache(maxsize=1)
+def _environment():
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    environment = Environment(
+        loader=PackageLoader(__package__, ""),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters.update(
+        figure=figure, chance=chance, sentence=words.sentence, capital=words.capital
+    )
+    environment.globals.update(
+        kinds=kinds, words=words, height=height, legend=legend, zip=zip, axes="xyz"
+    )
+    return environment
+
+
+def _own(name: str) -> str:
+    return files(__package__).joinpath(name).read_text(encoding="utf-8")
+
+
+def height(plot: Plot, narrow: bool) -> int:
+    """CSS pixels that the plot takes, known before it is drawn, so that nothing moves then."""
+    if plot.stacked:
+        each = _STACKED_PX if len(plot.panels) > 1 else _ALONE_PX
+        return round(_EDGE_PX + each * sum(p.share for p in plot.panels))
+    return _EDGE_PX + (_UNDER_PX * len(plot.panels) - 44 if narrow else _BESIDE_PX)
+
+
+def legend(plot: Plot) -> list[dict[str, str]]:
+    """Each name once, with the mark it is drawn by."""
+    seen: dict[str, dict[str, str]] = {}
+    for s in plot.series:
+        look = {"name": s.name, "role": s.role, "mark": s.mark, "symbol": s.symbol, "dash": s.dash}
+        seen.setdefault(s.name, look)
+    return list(seen.values())
+
+
+def smallest(result: dict[str, Any]) -> list[tuple[str, float]]:
+    """(effect in words, mdps), the best shown first."""
+    sizes = result["smallest_detectable_mdps"].items()
+    return [(kinds.title(kind), value) for kind, value in sorted(sizes, key=lambda item: item[1])]
+
+
+def faults(result: dict[str, Any]) -> list[tuple[str, str]]:
+    """(recording, its bad samples in words), of recordings that have any."""
+    rows = []
+    for name, counts in result["gate"]["faults"].items():
+        said = ", ".join(f"{count} {fault}" for fault, count in counts.items() if count)
+        if said:
+            rows.append((name, said))
+    return rows

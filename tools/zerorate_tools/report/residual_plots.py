@@ -1,0 +1,100 @@
+"""The error of the held-out part: against time, and against temperature by heating and cooling."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from .held_out import HeldOut
+from .plot import Line, Panel, Plot, Series, thinned
+
+AXES = ("x", "y", "z")
+TRENDS = ((1, "heating", "triangle-up"), (-1, "cooling", "triangle-down"), (0, "held", "circle"))
+
+
+def against_time(parts: list[HeldOut], events: list[dict]) -> Plot:
+    """Before and after by axis, the temperature below, steps as lines across."""
+    series, warm = [], any(p.temp_degc is not None for p in parts)
+    for part, start in zip(parts, _starts(parts)):
+        at = start + part.minutes
+        for a in range(3):
+            for name, error in (("before", part.before_mdps), ("after", part.after_mdps)):
+                x, y = thinned(at, error[:, a])
+                series.append(Series(a, x, y, name, name))
+        if part.temp_degc is not None:
+            x, y = thinned(at, part.temp_degc)
+            series.append(Series(3, x, y, "temperature", "context"))
+    label = f"minutes since the start of {', '.join(p.name for p in parts)}"
+    lines = (Line("y", 0.0, "context", dash="dot"), *_steps(parts, events))
+    panels = [Panel(f"{axis} axis, mdps", label, "mdps", lines=lines) for axis in AXES]
+    if warm:
+        panels.append(Panel("die temperature, °C", label, "°C", share=0.7))
+    return Plot(
+        key="residual-time",
+        title="Error against time",
+        caption="Means of the stretches at rest, as the board would have corrected them. The first "
+        "minute sets the turn-on offset and is not scored; gaps are motion, or time that was not "
+        "held out.",
+        description="Lines of the held-out error over time for each axis, before and after"
+        + (", with the die temperature below them." if warm else "."),
+        panels=tuple(panels),
+        series=tuple(series),
+        stacked=True,
+    )
+
+
+def against_temperature(parts: list[HeldOut]) -> Plot | None:
+    """Error over temperature, heating and cooling apart; None without a thermometer."""
+    parts = [p for p in parts if p.temp_degc is not None]
+    if not parts:
+        return None
+    series = []
+    for view in ("after", "before"):
+        for a in range(3):
+            for code, name, symbol in TRENDS:
+                x, y = _pooled(parts, view, a, code)
+                look: dict[str, Any] = {"mark": "points", "symbol": symbol, "views": (view,)}
+                series.append(Series(a, x, y, name, name, **look))
+    most = 1.08 * max(np.nanmax(np.abs(s.y), initial=1e-3) for s in series)
+    zero = (Line("y", 0.0, "context", dash="dot"),)
+    return Plot(
+        key="residual-temperature",
+        title="Error against temperature",
+        caption="A gap between heating and cooling at the same temperature is what no curve over "
+        "temperature can correct: hysteresis, a lag, or a rate. Both views have the same scale.",
+        description="Points of the held-out error over die temperature for each axis; triangles "
+        "pointing up are heating, down cooling, circles a held temperature.",
+        panels=tuple(
+            Panel(f"{axis} axis, mdps", "°C", "mdps", lines=zero, y_range=(-most, most))
+            for axis in AXES
+        ),
+        series=tuple(series),
+        views=("after", "before"),
+    )
+
+
+def _pooled(parts, view, axis, code):
+    x, y = [], []
+    for part in parts:
+        error = (part.after_mdps if view == "after" else part.before_mdps)[:, axis]
+        there = (part.trend == code) & np.isfinite(error)
+        x.append(part.temp_degc[there])
+        y.append(error[there])
+    return thinned(np.concatenate(x), np.concatenate(y))
+
+
+def _starts(parts):
+    """Minute at which each part begins when they are laid end to end."""
+    lengths = [p.minutes[-1] + p.block_s / 120 for p in parts]
+    return np.cumsum([0.0, *lengths[:-1]])
+
+
+def _steps(parts, events):
+    lines = []
+    for part, start in zip(parts, _starts(parts)):
+        for event in events:
+            if event["recording"] == part.name:
+                at = start + (event["t_us"] - part.start_us) / 60e6
+                lines.append(Line("x", at, "event", "step"))
+    return lines

@@ -1,0 +1,73 @@
+"""What a report says in sentences; every number in them is one of report.json."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .figures import figure
+from .kinds import title
+
+Report = dict[str, Any]
+
+
+def headline(result: Report) -> str:
+    """The answer in one line, plain text."""
+    whole = result["in_all"]
+    before, after, floor = (figure(whole[k]) for k in ("before_mdps", "after_mdps", "floor_mdps"))
+    where = _where(result)
+    if result["verdict"] == "unexplained-residual":
+        return f"{where}, {after} mdps are left that nothing recorded explains (floor {floor})"
+    if not any(corrects_at_rest(step) for step in result["steps"]):
+        return (
+            "Nothing was found at rest that the firmware does not already correct: "
+            f"{where[0].lower()}{where[1:]}, the error is {before} mdps (floor {floor})"
+        )
+    if whole["after_mdps"] < whole["before_mdps"]:
+        return f"{where}, the error fell from {before} to {after} mdps (floor {floor})"
+    return (
+        f"{where}, what was found did not help: the error went from {before} to {after} mdps "
+        f"(floor {floor})"
+    )
+
+
+def corrects_at_rest(step: Report) -> bool:
+    """Whether the step changes what is left at rest: what shows in motion, or is said only, not."""
+    return bool(step["coefficients"]) and "in_motion" not in step
+
+
+def _where(result: Report) -> str:
+    alone = "how_much_weaker" in result["split"]
+    return "On the stretches held out" if alone else "On the session held out"
+
+
+def how_sure(step: Report) -> str:
+    """What confirmed or tentative means here."""
+    if step["confidence"] == "confirmed" and not corrects_at_rest(step):
+        return "Confirmed: what was locked away and took no part in finding it shows it too."
+    if step["confidence"] == "confirmed":
+        return (
+            "Confirmed: it also lowers the error on the recording that was locked away and took no "
+            "part in finding it, and nothing beyond the part's own noise is left there."
+        )
+    return (
+        "Tentative: it was found in the recordings that were fitted on, but what was locked away "
+        "does not settle it. Record more before you rely on it."
+    )
+
+
+def found_in_short(result: Report) -> str:
+    """One sentence on what was found."""
+    names = [f"{title(s['effect'], s['sources'])} ({s['confidence']})" for s in result["steps"]]
+    if not names:
+        return "No effect was found beyond the line over temperature that the firmware learns."
+    return f"{len(names)} effect{'s' if len(names) > 1 else ''} found: {'; '.join(names)}."
+
+
+def capital(text: str) -> str:
+    """With a capital at its beginning."""
+    return text[:1].upper() + text[1:]
+
+
+def sentence(text: str) -> str:
+    """With a capital at its beginning and a full stop at its end."""
+    return capital(text) + ("" if text.endswith((".", "!", "?")) else ".")

@@ -1,0 +1,81 @@
+"""The report of a closed loop, written into a folder: one page, and pictures where wanted."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from .. import __version__
+from ..errors import ZerorateError
+from ..loop.analysis import Analysis
+from ..model import read_model
+from ..recordings.atomic import written_beside
+from .allan_plot import deviations
+from .board import deployment
+from .effect_plots import effect_plots
+from .estimator_plots import held_over_time, inside
+from .estimators import moments
+from .held_out import fitted_noise, held_out
+from .kinds import title
+from .page import page
+from .plot import Plot
+from .residual_plots import against_temperature, against_time
+from .summary_plot import at_a_glance
+
+#: Moments at which the firmware's state is looked at, of all recordings together.
+_MOST_MOMENTS = 120
+
+
+def write_report(
+    analysis: Analysis,
+    result: dict[str, Any],
+    logs: Sequence[str | PathLike[str]],
+    folder: str | PathLike[str],
+    png: bool = False,
+) -> Path:
+    """Write report.html, and with `png` plots/*.png, beside the model in `folder`; its path.
+
+    analysis: of `loop.close.load`; result: what report.json holds, whose numbers are shown;
+    logs: the recordings, replayed to show the estimators. Raises OSError.
+    """
+    folder = Path(folder)
+    plots, notes = plots_of(analysis, result, logs, folder)
+    board = deployment(folder, read_model(folder / "model.bin").channels)
+    text = page(result, plots, board, notes, f"zerorate {__version__}")
+    path = folder / "report.html"
+    with written_beside(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+    if png:
+        from .png import write_pngs
+
+        write_pngs(plots, folder / "plots")
+    return path
+
+
+def plots_of(
+    analysis: Analysis,
+    result: dict[str, Any],
+    logs: Sequence[str | PathLike[str]],
+    folder: str | PathLike[str],
+) -> tuple[list[Plot], list[str]]:
+    """Every plot that these recordings allow, and sentences on those that they do not."""
+    parts, notes = held_out(analysis), []
+    names = [title(s["effect"], s["sources"]) for s in result["steps"]]
+    plots: list[Plot | None] = [
+        at_a_glance(result),
+        against_time(parts, result["events"]),
+        against_temperature(parts),
+        deviations(parts, fitted_noise(analysis), result["floor_mdps"]),
+        *effect_plots(analysis, names),
+    ]
+    slots = any(step["coefficients"] for step in result["steps"])
+    model = Path(folder) / "model.bin" if slots else None
+    total_s = sum(s.blocks * s.block_s for s in analysis.sessions)
+    try:
+        seen = moments(logs, model, max(60.0, total_s / _MOST_MOMENTS))
+        plots += [held_over_time(seen), inside(seen)]
+    except ZerorateError as problem:
+        notes.append(f"The estimators are not shown: {problem}.")
+    return [p for p in plots if p is not None], notes
