@@ -1,0 +1,191 @@
+"""Many recordings at once: nothing stops the rest, and what was done stays done."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+from zerorate_tools.cli import main
+from zerorate_tools.errors import ZerorateError
+from zerorate_tools.fleet import devices_of, fleet
+from zerorate_tools.fleet.cluster import cluster, run_all
+from zerorate_tools.fleet.first_minutes import beginning, moving_from
+from zerorate_tools.model import read_model
+from zerorate_tools.recordings import read_recording, write_recording
+from zerorate_tools.replay import replay
+
+from .conftest import DEVICES
+
+
+def parts_in(out):
+    return sorted((out / "parts").glob("[!.]*.parquet"))
+
+
+def test_the_table_has_a_row_for_each_device_and_effect(done):
+    table = pq.read_table(done[1] / "fleet.parquet").to_pandas()
+    assert table.groupby("effect")["device"].nunique().to_dict() == {
+        "level": DEVICES,
+        "slope": DEVICES,
+        "curvature": DEVICES,
+    }
+    assert (table["error_x"] > 0).all() and not table["own_x"].isna().any()
+
+
+def test_what_is_common_is_told_from_what_is_each_devices_own(done):
+    level, slope, _ = done[0].report["effects"]
+    assert slope["verdict"][0] == "common"
+    assert "by device" in level["verdict"][2]
+    low, high = slope["ci95"][0]
+    assert low < 0.025 + 2 * 3e-4 * (done[0].report["reference_degc"] - 25) < high
+
+
+def test_the_prior_is_a_model_that_the_firmware_takes(done, data):
+    path = done[1] / "prior" / "model.bin"
+    assert {slot.term.source for slot in read_model(path).slots} == {"one", "temp"}
+    recording = beginning(str(next(data.rglob("*.parquet"))), 0.2)
+    moved = replay(moving_from(recording, 0.0), model=path)
+    assert np.abs(moved.table["bias_gx"].to_numpy()[-1]) > 1
+
+
+def test_left_out_devices_gain_by_the_prior(done):
+    gain = done[0].report["prior"]["benefit"]["scenarios"]["at-rest-for-10-s"]["gain"]
+    assert gain["ci95_mdps"][0] > 0 and gain["share_better"] > 0.7
+
+
+def test_a_second_run_does_nothing_again(done, data):
+    before = parts_in(done[1])
+    again = fleet(devices_of([data]), done[1], workers=1, minutes=None)
+    assert (again.resumed, again.tasks) == (DEVICES, 0)
+    assert parts_in(done[1]) == before
+    assert again.report["effects"] == done[0].report["effects"]
+
+
+def test_other_settings_are_another_run(data, tmp_path):
+    devices = devices_of([data])[:1]
+    first = fleet(devices, tmp_path, workers=1)
+    other = fleet(devices, tmp_path, workers=1, options={"step_degc": 2.0})
+    assert (first.resumed, other.resumed) == (0, 0)
+
+
+def test_a_run_cut_off_goes_on_where_it_stopped(data, tmp_path):
+    command = [sys.executable, "-m", "zerorate_tools.cli", "fleet", str(data)]
+    options = ["--out", str(tmp_path), "--workers", "1", "--devices-per-task", "1"]
+    run = subprocess.Popen([*command, *options], start_new_session=True)
+    while not parts_in(tmp_path) and run.poll() is None:
+        time.sleep(0.01)
+    os.killpg(run.pid, signal.SIGKILL)
+    run.wait()
+    kept = len(parts_in(tmp_path))
+    assert 1 <= kept < DEVICES
+    again = fleet(devices_of([data]), tmp_path, workers=1, devices_per_task=1, minutes=None)
+    assert (again.resumed, again.tasks) == (kept, DEVICES - kept)
+    assert again.report["devices"] == DEVICES and not again.report["failures"]
+
+
+@pytest.fixture
+def with_bad_ones(data, tmp_path):
+    """Two good recordings of one device, one damaged, and a device with nothing else."""
+    home = tmp_path / "in" / "device=mixed"
+    home.mkdir(parents=True)
+    for i, path in enumerate(sorted(data.rglob("*.parquet"))[:2]):
+        (home / f"s{i}.parquet").write_bytes(path.read_bytes())
+    (home / "s2.parquet").write_bytes(b"PAR1 and then nothing")
+    (tmp_path / "in" / "lone.csv").write_text("t_us,gx,gy,gz\n0,1,2,3\n")
+    return tmp_path
+
+
+def test_a_failed_recording_is_reported_and_stops_nothing(with_bad_ones, capsys):
+    out = with_bad_ones / "out"
+    assert main(["fleet", str(with_bad_ones / "in"), "--out", str(out), "--workers", "1"]) == 0
+    report = json.loads((out / "fleet.json").read_text())
+    assert (report["devices"], report["sessions"]) == (2, 2)
+    reasons = {Path(f["file"]).name: f["reason"] for f in report["failures"]}
+    assert set(reasons) == {"s2.parquet", "lone.csv"}
+    assert "cut off" in reasons["s2.parquet"] and "lone.json" in reasons["lone.csv"]
+    assert all("\n" not in reason for reason in reasons.values())
+    assert "2 left out" in capsys.readouterr().out
+
+
+def test_a_failed_device_is_tried_again_and_the_others_are_not(with_bad_ones):
+    devices = devices_of([with_bad_ones / "in"])
+    fleet(devices, with_bad_ones / "out", workers=1)
+    (with_bad_ones / "in" / "device=mixed" / "s2.parquet").unlink()
+    again = fleet(devices_of([with_bad_ones / "in"]), with_bad_ones / "out", workers=1)
+    assert [Path(f["file"]).name for f in again.report["failures"]] == ["lone.csv"]
+
+
+def test_close_on_a_recording_too_short_for_it_says_so(data, tmp_path):
+    whole = read_recording(next(data.rglob("*.parquet")))
+    write_recording(whole.between(0, 10 * 25), tmp_path / "short.parquet")
+    done = fleet(devices_of([tmp_path / "short.parquet"]), tmp_path, job="close", workers=1)
+    (failure,) = done.report["failures"]
+    assert failure["reason"].startswith("close: ") and "too short" in failure["reason"]
+
+
+def test_power_ons_of_a_device_remember_those_before(data, tmp_path):
+    path = sorted(data.rglob("*.parquet"))[0]
+    home = tmp_path / "in" / "device=a"
+    home.mkdir(parents=True)
+    for name in ("1.parquet", "2.parquet"):
+        (home / name).write_bytes(path.read_bytes())
+    fleet(devices_of([tmp_path / "in"]), tmp_path / "out", workers=1, keep=True)
+    first, second = (
+        pq.read_table(tmp_path / "out" / "devices" / "device=a" / f"{n}.replay.parquet")
+        for n in (1, 2)
+    )
+    assert first["source"][0].as_py() == "none"
+    assert second["source"][0].as_py() != "none"
+
+
+def double_or_die(batch):
+    if "die" in batch:
+        os._exit(1)
+    return [2 * item for item in batch]
+
+
+def test_a_batch_whose_worker_dies_costs_only_the_item_that_killed_it():
+    import distributed
+
+    with cluster(workers=1) as client:
+        batches = [["a", "die", "b"], ["c"]]
+        results = {tuple(b): result for b, result in run_all(client, double_or_die, batches)}
+    died = results.pop(("die",))
+    assert isinstance(died, distributed.scheduler.KilledWorker)
+    assert results == {("a",): ["aa"], ("b",): ["bb"], ("c",): ["cc"]}
+
+
+def test_more_batches_than_the_scheduler_may_hold_all_come_back(monkeypatch):
+    monkeypatch.setattr("zerorate_tools.fleet.cluster.MOST_WAITING", 3)
+    with cluster(workers=1) as client:
+        results = list(run_all(client, partial(map, abs), [[i] for i in range(20)]))
+    assert sorted(batch[0] for batch, _ in results) == list(range(20))
+
+
+def test_an_existing_cluster_is_used(data, tmp_path):
+    from distributed import LocalCluster
+
+    with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address="127.0.0.1:0") as there:
+        devices = devices_of([data])[:2]
+        done = fleet(devices, tmp_path, scheduler=there.scheduler_address)
+        assert done.report["sessions"] == 2
+        assert len(there.workers) == 1
+
+
+def test_a_scheduler_that_does_not_answer_is_said(data, tmp_path, monkeypatch):
+    monkeypatch.setattr("zerorate_tools.fleet.cluster._CONNECT_S", 0.2)
+    with pytest.raises(ZerorateError, match="no Dask scheduler answers"):
+        fleet(devices_of([data])[:1], tmp_path, scheduler="tcp://127.0.0.1:9")
+
+
+def test_motion_is_added_from_the_moment_that_was_named(data):
+    recording = read_recording(next(data.rglob("*.parquet")))
+    moved = moving_from(recording, 10.0)
+    change = moved.columns["gx"] != recording.columns["gx"]
+    assert not change[:250].any() and change[250:].mean() > 0.95

@@ -1,0 +1,123 @@
+"""Batches through Dask: on this machine's cores, or on a cluster that is there."""
+
+from __future__ import annotations
+
+import logging
+import os
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from ..errors import MissingLibrary, ZerorateError
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+#: So many tasks wait at the scheduler at most, whatever the size of the fleet.
+MOST_WAITING = 1000
+_CONNECT_S = 10
+
+
+@contextmanager
+def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterator[Client]:
+    """A client of the cluster at `scheduler`, or of one made here for as long as it is used.
+
+    workers: processes of the latter, one core each (default: all cores). Raises MissingLibrary
+    without Dask, ZerorateError for a scheduler that does not answer or whose workers lack zerorate.
+    """
+    try:
+        import dask
+        import distributed
+    except ImportError as error:
+        do = "pip install 'zerorate[tools,fleet]'"
+        raise MissingLibrary(f"many recordings at once need Dask: {do}") from error
+    if scheduler is not None:
+        with _client_of(distributed, scheduler) as client:
+            yield client
+        return
+    with (
+        # the first death of a worker tells as much as the fourth: see run_all
+        dask.config.set({"distributed.scheduler.allowed-failures": 0}),
+        distributed.LocalCluster(
+            n_workers=workers or os.cpu_count() or 1,
+            threads_per_worker=1,
+            dashboard_address="127.0.0.1:0",
+            silence_logs=logging.CRITICAL,
+        ) as local,
+        distributed.Client(local) as client,
+    ):
+        yield client
+
+
+def _client_of(distributed, address: str) -> Client:
+    try:
+        client = distributed.Client(address, timeout=_CONNECT_S)
+    except (OSError, ValueError) as error:
+        do = "name it as `dask scheduler` prints it, tcp://HOST:8786"
+        raise ZerorateError(f"{address}: no Dask scheduler answers there; {do}") from error
+    try:
+        if not client.wait_for_workers(1, timeout=_CONNECT_S):
+            client.submit(_knows_zerorate, pure=False).result()
+    except TimeoutError as error:
+        client.close()
+        raise ZerorateError(f"{address}: no worker there; start some: dask worker") from error
+    except ImportError as error:
+        client.close()
+        do = "install zerorate[tools,fleet] there"
+        raise ZerorateError(f"{address}: its workers lack {error.name}; {do}") from error
+    return client
+
+
+def _knows_zerorate() -> None:
+    from . import job  # noqa: F401
+
+
+def size_of(client: Client) -> int:
+    """Threads of all workers."""
+    return max(1, sum(client.nthreads().values()))
+
+
+def run_all(
+    client: Client, function: Callable[[list], Any], batches: Sequence[list]
+) -> Iterator[tuple[list, Any]]:
+    """Yield (batch, result) as they finish.
+
+    When a worker dies, Dask blames all that it had been given. So a blamed batch comes again an
+    item a task, and a blamed item once more with nothing beside it; the result of one whose worker
+    died even then is the exception, as is that of a function that raised.
+    """
+    from distributed import as_completed
+    from distributed.scheduler import KilledWorker
+
+    waiting = list(reversed(batches))
+    suspects: list[list] = []
+    under_way: dict[Any, list] = {}
+    finished = as_completed()
+
+    def submit(batch: list) -> None:
+        future = client.submit(function, batch, pure=False)
+        under_way[future.key] = batch
+        finished.add(future)
+
+    def go_on() -> bool:
+        """Whether one item is alone now."""
+        while waiting and len(under_way) < MOST_WAITING:
+            submit(waiting.pop())
+        if under_way or not suspects:
+            return False
+        submit(suspects.pop())
+        return True
+
+    alone = go_on()
+    for future in finished:
+        batch = under_way.pop(future.key)
+        error = future.exception() if future.status == "error" else None
+        blamed = isinstance(error, KilledWorker) and not alone
+        if blamed and len(batch) > 1:
+            waiting += [[item] for item in batch]
+        elif blamed:
+            suspects.append(batch)
+        else:
+            yield batch, error if error is not None else future.result()
+        future.release()
+        alone = go_on()

@@ -1,0 +1,116 @@
+"""Which recordings belong to which device."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from glob import glob, has_magic
+from os import PathLike
+from pathlib import Path
+from urllib.parse import unquote
+
+from ..errors import ZerorateError
+from ..recordings.csv_format import SUFFIXES as CSV
+from ..recordings.parquet_format import SUFFIXES as PARQUET
+from ..recordings.reading import recording_name
+
+_PARTITION = "device="
+
+
+@dataclass(frozen=True)
+class Device:
+    """A device and the files of its power-ons, in their order."""
+
+    name: str
+    recordings: tuple[str, ...]
+
+    @property
+    def size_bytes(self) -> int:
+        """Bytes of its recordings; a file that is gone counts none."""
+        return sum(p.stat().st_size for p in map(Path, self.recordings) if p.is_file())
+
+
+def devices_of(
+    sources: Iterable[str | PathLike[str]],
+    device_from: str | None = None,
+    without: str | PathLike[str] | None = None,
+) -> list[Device]:
+    """Group recordings by device, both in the order of their names (2 before 10).
+
+    sources: files, glob patterns, or folders, which are searched; device_from: a regular
+    expression whose first group, found in a file's path, names its device; without it a folder
+    `device=NAME` on the path does, else each file is a device of its own. without: a folder that
+    is left out. Raises ZerorateError.
+    """
+    pattern = _compiled(device_from)
+    found: dict[str, list[str]] = {}
+    for path in _files(sources, Path(without).resolve() if without else None):
+        found.setdefault(_device(path, pattern), []).append(str(path))
+    return [
+        Device(name, tuple(sorted(found[name], key=_natural)))
+        for name in sorted(found, key=_natural)
+    ]
+
+
+def _compiled(device_from: str | None) -> re.Pattern[str] | None:
+    if device_from is None:
+        return None
+    try:
+        pattern = re.compile(device_from)
+    except re.error as error:
+        raise ZerorateError(f"{device_from}: no regular expression: {error}") from error
+    if pattern.groups < 1:
+        raise ZerorateError(f"{device_from}: has no group; put the device's name in (brackets)")
+    return pattern
+
+
+def _files(sources: Iterable[str | PathLike[str]], without: Path | None) -> Iterator[Path]:
+    seen: set[Path] = set()
+    for source in sources:
+        some = False
+        for path in _expanded(str(source)):
+            real = path.resolve()
+            if without is not None and without in real.parents:
+                continue
+            some = True
+            if real not in seen:
+                seen.add(real)
+                yield path
+        if not some:
+            do = "name recordings (.parquet, .csv, .csv.gz), a pattern or a folder of them"
+            raise ZerorateError(f"{source}: no recording there; {do}")
+
+
+def _expanded(source: str) -> list[Path]:
+    path = Path(source)
+    if path.is_dir():
+        return [p for p in path.rglob("*") if _is_recording(p)]
+    if has_magic(source) and not path.exists():
+        return [p for place in sorted(glob(source, recursive=True)) for p in _in_place(Path(place))]
+    return [path] if path.exists() else []
+
+
+def _in_place(path: Path) -> list[Path]:
+    return [path] if path.is_file() else _expanded(str(path))
+
+
+def _is_recording(path: Path) -> bool:
+    # what begins with a dot is being written
+    named = path.name.endswith((*CSV, *PARQUET)) and not path.name.startswith(".")
+    return named and path.is_file()
+
+
+def _device(path: Path, pattern: re.Pattern[str] | None) -> str:
+    if pattern is not None:
+        match = pattern.search(path.as_posix())
+        if match is None or not match.group(1):
+            raise ZerorateError(f"{path}: --device-from finds no device in this path; correct it")
+        return match.group(1)
+    parts = [part for part in path.parts if part.startswith(_PARTITION)]
+    return unquote(parts[-1].removeprefix(_PARTITION)) if parts else recording_name(path)
+
+
+def _natural(text: str) -> list[tuple[bool, int, str]]:
+    parts = re.split(r"(\d+)", text)
+    return [(not p.isdecimal(), int(p) if p.isdecimal() else 0, p) for p in parts]

@@ -1,0 +1,120 @@
+"""A device's first minutes with and without a prior: how far the firmware's bias is off."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..loop.sessions import Session
+from ..recordings import Recording, open_recording
+from ..replay import replay
+from .job import one_line, still_session
+from .life import block_means, error_mdps
+from .prefilled import prefill
+
+#: How long a device rests before it moves, and from when on its error counts, both in seconds.
+SCENARIOS = {
+    "never-at-rest": (0.0, 0.0),
+    "at-rest-for-10-s": (10.0, 10.0),
+    "always-at-rest": (np.inf, 5.0),
+}
+WAYS = ("without", "prior", "prefilled")
+_MOTION_DPS, _MOTION_HZ = 30.0, 0.7
+_MOST_LSB = 32767
+
+#: Scenario -> way -> mdps.
+Trial = dict[str, dict[str, float]]
+
+
+@dataclass(frozen=True)
+class Prior:
+    """A prior on its way to a worker. model: bytes of model.bin; degc, bias_dps: its curve."""
+
+    model: bytes
+    degc: np.ndarray
+    bias_dps: np.ndarray
+
+
+def try_prior(prior: Prior, path: str, minutes: float) -> Trial:
+    """Scenario -> way -> error in mdps over the first minutes of a recording of a left-out device.
+
+    The firmware replays the recording as if the device had begun to move after its rest; the error
+    is the rms over axes and still blocks, after that rest, of the rate less the firmware's bias. An
+    empty dict where nothing is still. Raises BadRecording.
+    """
+    session, recording = still_session(path), beginning(path, minutes)
+    found: Trial = {}
+    with tempfile.TemporaryDirectory(prefix="zerorate-prior-") as scratch:
+        files = _files(prior, recording, Path(scratch))
+        for name, (rest_s, from_s) in SCENARIOS.items():
+            moved = moving_from(recording, rest_s)
+            errors = {
+                way: _error(moved, session, files[way], from_s, 60 * minutes) for way in files
+            }
+            if all(value is not None for value in errors.values()):
+                found[name] = {way: value for way, value in errors.items() if value is not None}
+    return found
+
+
+def try_batch(
+    priors: Sequence[Prior], minutes: float, batch: Sequence[tuple[str, str, int]]
+) -> dict[str, Trial | str]:
+    """One task: device -> `try_prior`, or why it failed, for each (device, path, its prior)."""
+    found: dict[str, Trial | str] = {}
+    for device, path, fold in batch:
+        try:
+            found[device] = try_prior(priors[fold], path, minutes)
+        except Exception as error:  # of a stranger's file; the others go on
+            found[device] = one_line(error)
+    return found
+
+
+def beginning(path: str, minutes: float) -> Recording:
+    """The first minutes of a recording, no more of it read. Raises BadRecording."""
+    opened, parts = open_recording(path), []
+    for batch in opened.batches(rows=8192):
+        parts.append(batch)
+        end_us = int(parts[0]["t_us"][0] + 60e6 * minutes)
+        if batch["t_us"][-1] >= end_us:
+            break
+    columns = {name: np.concatenate([p[name] for p in parts]) for name in parts[0]}
+    recording = Recording(columns, opened.scales, opened.name)
+    return recording.between(0, int(np.searchsorted(columns["t_us"], end_us)))
+
+
+def moving_from(recording: Recording, rest_s: float) -> Recording:
+    """The recording as if the device swung about all axes from rest_s on."""
+    columns = dict(recording.columns)
+    seconds = (columns["t_us"] - columns["t_us"][0]) * 1e-6
+    swing = _MOTION_DPS * recording.scales.gyro_lsb_per_dps * (seconds >= rest_s)
+    for phase, name in enumerate(("gx", "gy", "gz")):
+        added = swing * np.sin(2 * np.pi * (_MOTION_HZ * seconds + (phase + 0.5) / 3))
+        moved = np.clip(np.rint(columns[name] + added), -_MOST_LSB, _MOST_LSB)
+        columns[name] = moved.astype(np.int32)
+    return Recording(columns, recording.scales, recording.name)
+
+
+def _files(prior: Prior, recording: Recording, folder: Path) -> dict[str, dict[str, Any]]:
+    """Way -> what `replay` is given for it."""
+    model, state = folder / "model.bin", folder / "state.bin"
+    model.write_bytes(prior.model)
+    files: dict[str, dict[str, Any]] = {"without": {}, "prior": {"model": model}}
+    if recording.has_temp and len(prior.degc) > 1:
+        prefill(prior.degc, prior.bias_dps, recording.scales, state)
+        files["prefilled"] = {"from_state": state}
+    return files
+
+
+def _error(
+    recording: Recording, session: Session, files: dict[str, Any], from_s: float, to_s: float
+) -> float | None:
+    table = replay(recording, **files).table
+    assert table is not None
+    bias_dps = block_means(table.to_batches(), session) / recording.scales.gyro_lsb_per_dps
+    errors = error_mdps(session, bias_dps, from_s, to_s)
+    return None if errors is None else float(np.sqrt(np.mean(np.square(errors))))

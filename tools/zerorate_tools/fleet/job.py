@@ -1,0 +1,131 @@
+"""What is done with one device: its recordings in, plain values out, whatever is wrong with one."""
+
+from __future__ import annotations
+
+import resource
+import sys
+import tempfile
+import time
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, field
+from hashlib import sha256
+from json import dumps
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+from ..loop.blocks import session_of
+from ..loop.sessions import Session
+from ..loop.ticks import read_ticks
+from ..recordings import open_recording
+from .curve import curve_of
+from .devices import Device
+from .life import live_through
+
+JOBS = ("replay", "close")
+BLOCK_S = 5.0
+
+
+@dataclass(frozen=True)
+class Job:
+    """What to do with every device.
+
+    kind: replay or close; options: keywords of zerorate.Corrector; model: an effect model to load;
+    keep: folder for each device's own files (the replay's Parquet, or all that `close` writes).
+    """
+
+    kind: str = "replay"
+    options: dict[str, Any] = field(default_factory=dict)
+    model: str | None = None
+    keep: str | None = None
+
+    def fingerprint(self, device: Device) -> str:
+        """Changes with the job and with the recordings' names, sizes and times of change."""
+        stats = [(p, p.stat()) for p in map(Path, device.recordings) if p.exists()]
+        files = [[str(p), s.st_size, s.st_mtime_ns] for p, s in stats]
+        text = dumps([asdict(self), device.recordings, files], sort_keys=True)
+        return sha256(text.encode()).hexdigest()[:32]
+
+    def folder(self, device: Device) -> Path | None:
+        """Where a device's own files are kept, made if need be."""
+        if self.keep is None:
+            return None
+        path = Path(self.keep) / f"device={quote(device.name, safe='')}"
+        path.mkdir(parents=True, exist_ok=True)
+        return path
+
+
+def run_batch(job: Job, devices: Sequence[Device]) -> dict[str, Any]:
+    """Run the job on some devices: one task of the cluster.
+
+    Returns `devices` (see `run_device`), the worker's `peak_bytes` so far and the `seconds` and
+    `cpu_seconds` taken.
+    """
+    begun, cpu_begun = time.perf_counter(), time.process_time()
+    done = [run_device(job, device) for device in devices]
+    unit = 1 if sys.platform == "darwin" else 1024
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit
+    return {
+        "devices": done,
+        "peak_bytes": peak,
+        "seconds": time.perf_counter() - begun,
+        "cpu_seconds": time.process_time() - cpu_begun,
+    }
+
+
+def run_device(job: Job, device: Device) -> dict[str, Any]:
+    """Run the job on one device; never raises for what its recordings hold.
+
+    `failures` names each recording left out and why, `sessions` what was found in each of the
+    others, `curve` and `steps` what they show together.
+    """
+    failures: list[dict[str, str]] = []
+    sessions, summaries, good = [], [], []
+    with tempfile.TemporaryDirectory(prefix="zerorate-fleet-") as scratch:
+        for path in device.recordings:
+            try:
+                session = still_session(path)
+                state = Path(scratch) / "state.bin"
+                summaries.append(live_through(job, path, session, state, job.folder(device)))
+                sessions.append(session)
+                good.append(path)
+            except Exception as error:  # of a stranger's file; the fleet goes on
+                failures.append({"file": path, "reason": one_line(error)})
+    curve = curve_of(sessions) if sessions else None
+    return {
+        "device": device.name,
+        "fingerprint": job.fingerprint(device),
+        "sensor": _sensor(good, failures),
+        "sessions": summaries,
+        "curve": None if curve is None else curve.to_json(),
+        "steps": _steps(job, device, good, failures) if job.kind == "close" and good else [],
+        "failures": failures,
+    }
+
+
+def still_session(path: str) -> Session:
+    """A recording's still blocks. Raises BadRecording."""
+    return session_of(read_ticks(path), BLOCK_S)
+
+
+def one_line(error: BaseException) -> str:
+    """An exception in a line; those not raised on purpose with their kind."""
+    from ..errors import ZerorateError
+
+    text = " ".join(str(error).split())
+    return text if isinstance(error, ZerorateError) else f"{type(error).__name__}: {text}"
+
+
+def _sensor(good: Sequence[str], failures: list[dict[str, str]]) -> dict[str, Any] | None:
+    return open_recording(good[0]).scales.to_json() if good else None
+
+
+def _steps(job, device, good, failures) -> list[dict[str, Any]]:
+    from ..loop.close import close
+
+    with tempfile.TemporaryDirectory(prefix="zerorate-fleet-") as scratch:
+        try:
+            return close(list(good), job.folder(device) or scratch)["steps"]
+        except Exception as error:
+            failures.append({"file": device.name, "reason": f"close: {one_line(error)}"})
+            return []

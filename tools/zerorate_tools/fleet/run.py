@@ -1,0 +1,207 @@
+"""`zerorate fleet`: many devices' recordings in, one table, a report and a prior out."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pyarrow.parquet as pq
+
+from ..errors import ZerorateError
+from ..recordings.atomic import written_beside
+from ..recordings.scales import scales_from_text
+from .batches import in_batches
+from .benefit import Runner, benefit
+from .cluster import cluster, run_all, size_of
+from .curve import Curve
+from .devices import Device
+from .job import JOBS, Job, one_line, run_batch
+from .part import Part, curve_effects, part_of, step_effects
+from .parts import Parts
+from .prior import prior_json, write_prior
+from .rows import table_of
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+
+@dataclass
+class Fleet:
+    """What a run came to.
+
+    report: what fleet.json holds; resumed: devices that an earlier run had done; tasks, peak_bytes
+    busy_s and cpu_s: tasks of the cluster, the largest worker's memory and the seconds that all
+    tasks took, by the clock and by the processor;
+    start_s, work_s, conclude_s: seconds until the cluster stood, until the last device was done,
+    and from then on.
+    """
+
+    report: dict[str, Any] = field(default_factory=dict)
+    resumed: int = 0
+    tasks: int = 0
+    peak_bytes: int = 0
+    busy_s: float = 0.0
+    cpu_s: float = 0.0
+    start_s: float = 0.0
+    work_s: float = 0.0
+    conclude_s: float = 0.0
+
+
+def fleet(
+    devices: Sequence[Device],
+    out: str | PathLike[str],
+    *,
+    job: str = "replay",
+    scheduler: str | None = None,
+    workers: int | None = None,
+    devices_per_task: int | None = None,
+    options: dict[str, Any] | None = None,
+    model: str | PathLike[str] | None = None,
+    keep: bool = False,
+    minutes: float | None = 5.0,
+    advance: Callable[[float], None] = lambda n: None,
+) -> Fleet:
+    """Run devices (see `devices_of`) through replay or close, and estimate their part.
+
+    Writes fleet.parquet (a row for each device and effect), fleet.json, fleet.html and, from
+    five devices on, prior/model.bin for a new device, tried on devices left out over its first
+    `minutes` (None: not tried), into the folder `out`. Recordings that fail are named in the
+    report. Results are kept as they come: a second run over the same folder does only what is left.
+    options: keywords of zerorate.Corrector; keep: each device's own files too; advance: called with
+    devices done.
+    Raises ZerorateError.
+    """
+    if job not in JOBS:
+        raise ZerorateError(f"{job}: no such job; choose of {', '.join(JOBS)}")
+    folder = Path(out)
+    parts = Parts(folder)
+    own = str(folder.resolve() / "devices") if keep else None
+    work = Job(job, options or {}, str(Path(model).resolve()) if model else None, own)
+    devices = [_absolute(device) for device in devices]
+    wanted = {device.name: work.fingerprint(device) for device in devices}
+    done = parts.whole()
+    left = [device for device in devices if wanted[device.name] not in done]
+    fleet = Fleet(resumed=len(devices) - len(left))
+    advance(fleet.resumed)
+    begun = time.perf_counter()
+    with cluster(scheduler, workers) as client:
+        fleet.start_s = time.perf_counter() - begun
+        batches = in_batches(left, size_of(client), devices_per_task)
+        fleet.tasks = len(batches)
+        for batch, result in run_all(client, partial(run_batch, work), batches):
+            parts.add(_noted(fleet, result, batch, wanted))
+            advance(len(batch))
+        fleet.work_s = time.perf_counter() - begun - fleet.start_s
+        fleet.report = _conclude(parts.results(wanted), work, folder, minutes, client)
+        fleet.conclude_s = time.perf_counter() - begun - fleet.start_s - fleet.work_s
+    return fleet
+
+
+def _absolute(device: Device) -> Device:
+    return Device(device.name, tuple(str(Path(path).resolve()) for path in device.recordings))
+
+
+def _noted(
+    fleet: Fleet, result: Any, batch: Iterable[Device], wanted: dict[str, str]
+) -> list[dict[str, Any]]:
+    """The results of a batch; those of one whose worker died say that it did."""
+    if not isinstance(result, BaseException):
+        fleet.peak_bytes = max(fleet.peak_bytes, result["peak_bytes"])
+        fleet.busy_s += result["seconds"]
+        fleet.cpu_s += result["cpu_seconds"]
+        return result["devices"]
+    why = one_line(result)
+    if type(result).__name__ == "KilledWorker":
+        why = "the worker died on it, again and again; out of memory?"
+    nothing: dict[str, Any] = {"sensor": None, "sessions": [], "curve": None, "steps": []}
+    return [
+        {
+            "device": device.name,
+            "fingerprint": wanted[device.name],
+            **nothing,
+            "failures": [{"file": path, "reason": why} for path in device.recordings],
+        }
+        for device in batch
+    ]
+
+
+def _conclude(
+    results: Iterable[dict[str, Any]],
+    work: Job,
+    folder: Path,
+    minutes: float | None,
+    client: Client,
+) -> dict[str, Any]:
+    from .page import write_page
+
+    found = list(results)
+    sensor = _main_sensor(found)
+    mine = [r for r in found if r["curve"] and r["sensor"] and _kind(r["sensor"]) == sensor]
+    names, curves = [r["device"] for r in mine], [Curve.from_json(r["curve"]) for r in mine]
+    part = part_of(names, curves)
+    report = _report(found, mine, work, part)
+    if part is not None:
+        scales = scales_from_text(json.dumps(mine[0]["sensor"]), mine[0]["sessions"][0]["file"])
+        write_prior(part, scales, folder / "prior")
+        first = {r["device"]: r["sessions"][0]["file"] for r in mine}
+        run: Runner = partial(run_all, client)
+        report["prior"] = {**prior_json(part), "benefit": None}
+        if minutes is not None:
+            tried = benefit(names, curves, first, scales, minutes, run)
+            report["prior"]["benefit"] = tried
+    with written_beside(folder / "fleet.parquet") as temporary:
+        pq.write_table(table_of(found, part), temporary, compression="zstd")
+    with written_beside(folder / "fleet.json") as temporary:
+        temporary.write_text(json.dumps(report, indent=1), encoding="utf-8")
+    write_page(report, part, folder / "fleet.html")
+    return report
+
+
+def _kind(sensor: dict[str, Any]) -> tuple:
+    names = ("sensor", "gyro_lsb_per_dps", "temp_lsb_per_degc", "temp_offset_degc")
+    return tuple(sensor.get(name) for name in names)
+
+
+def _main_sensor(results: Sequence[dict[str, Any]]) -> tuple | None:
+    kinds = Counter(_kind(r["sensor"]) for r in results if r["sensor"])
+    return kinds.most_common(1)[0][0] if kinds else None
+
+
+def _report(found, mine, work: Job, part: Part | None) -> dict[str, Any]:
+    names = {r["device"] for r in mine}
+    others = [r["device"] for r in found if r["sensor"] and r["device"] not in names]
+    sessions = [s for r in found for s in r["sessions"]]
+    return {
+        "job": work.kind,
+        "sensor": mine[0]["sensor"]["sensor"] if mine else None,
+        "devices": len(found),
+        "devices_of_the_part": len(mine),
+        "left_out_of_the_part": others,
+        "sessions": len(sessions),
+        "samples": sum(s["samples"] for s in sessions),
+        "hours": sum(s["duration_s"] for s in sessions) / 3600,
+        "reference_degc": part.reference_degc if part else None,
+        "effects": curve_effects(part) if part else [],
+        "steps": step_effects(mine) if work.kind == "close" else [],
+        "prior": None,
+        "worst": _worst(found),
+        "failures": [{"device": r["device"], **f} for r in found for f in r["failures"]],
+    }
+
+
+def _worst(found: Sequence[dict[str, Any]], most: int = 10) -> list[dict[str, Any]]:
+    """The devices on which the firmware was furthest off in some power-on, worst first."""
+    rows = [
+        {"device": r["device"], "session": s["name"], "error_mdps": s["error_mdps"]}
+        for r in found
+        for s in r["sessions"]
+        if s["error_mdps"]
+    ]
+    return sorted(rows, key=lambda row: -max(row["error_mdps"]))[:most]

@@ -1,0 +1,103 @@
+"""A fleet's report in words, for the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from .run import Fleet
+
+_FAILURES = 10
+_SCENARIOS = {
+    "never-at-rest": "never at rest",
+    "at-rest-for-10-s": "at rest for 10 s, then moving",
+    "always-at-rest": "always at rest",
+}
+WAYS = {
+    "without": "without a prior",
+    "prior": "with the prior",
+    "prefilled": "with estimators filled instead",
+}
+
+
+def in_words(fleet: Fleet) -> str:
+    """What was done, what devices have in common, what the prior is worth, and what failed."""
+    return "\n".join(_lines(fleet))
+
+
+def scenario_in_words(name: str) -> str:
+    """A scenario of the prior's trial for people."""
+    return _SCENARIOS[name]
+
+
+def _lines(fleet: Fleet) -> Iterator[str]:
+    report = fleet.report
+    yield (
+        f"{report['devices']} devices, {report['sessions']} power-ons, "
+        f"{report['hours']:.1f} hours, {report['samples']:,} samples"
+    )
+    if fleet.resumed:
+        yield f"{fleet.resumed} of these devices were done by an earlier run"
+    for effect in report["effects"]:
+        yield from _effect(effect, report["reference_degc"])
+    for step in report["steps"]:
+        low, high = step["share_ci95"]
+        yield (
+            f"{step['effect']}: {step['verdict']}; in {step['devices']} of {step['of_devices']} "
+            f"devices ({low:.0%} to {high:.0%})"
+        )
+    if not report["effects"]:
+        yield "nothing said of the part: that takes five devices with readings at rest"
+    if report["prior"]:
+        yield from _prior(report["prior"])
+    yield from _failures(report["failures"])
+
+
+def _effect(effect: dict[str, Any], degc: float) -> Iterator[str]:
+    at = f" at {degc:g} degC" if effect["effect"] == "level" else ""
+    yield f"{effect['effect']}{at}, {effect['unit']}:"
+    rows = zip("xyz", effect["mean"], effect["ci95"], effect["deviation_between_devices"])
+    for (axis, mean, (low, high), deviation), verdict in zip(rows, effect["verdict"]):
+        yield (
+            f"  {axis}: mean {mean:+.3g} ({low:+.3g} to {high:+.3g}), "
+            f"devices differ by {deviation:.2g}: {verdict}"
+        )
+    if effect["unusual_devices"]:
+        yield f"  unlike the others: {_some(effect['unusual_devices'])}"
+
+
+def _prior(prior: dict[str, Any]) -> Iterator[str]:
+    tried = prior["benefit"]
+    yield f"a prior from {prior['devices']} devices: prior/model.bin"
+    if not tried:
+        yield "  not tried on devices left out: that takes ten"
+        return
+    yield (
+        f"  tried on {tried['devices']} devices left out, error in the first "
+        f"{tried['minutes']:g} minutes, mdps, median (95 % of devices below):"
+    )
+    for name, reason in list(tried["failed"].items())[:_FAILURES]:
+        yield f"  not tried on {name}: {reason}"
+    for name, found in tried["scenarios"].items():
+        both = ", ".join(
+            f"{words} {found[way]['median_mdps']:.3g} ({found[way]['p95_mdps']:.3g})"
+            for way, words in WAYS.items()
+            if way in found
+        )
+        yield f"  {_SCENARIOS[name]}: {both}"
+
+
+def _failures(failures: list[dict[str, str]]) -> Iterator[str]:
+    if not failures:
+        return
+    yield f"{len(failures)} left out:"
+    for failure in failures[:_FAILURES]:
+        reason = failure["reason"].removeprefix(failure["file"]).lstrip(": ")
+        yield f"  {failure['file']}: {reason}"
+    if len(failures) > _FAILURES:
+        yield f"  and {len(failures) - _FAILURES} more, all in fleet.json"
+
+
+def _some(names: list[str], most: int = 8) -> str:
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return ", ".join(names[:most]) + more
