@@ -1,0 +1,221 @@
+"""Watching a recording that somebody else is writing."""
+
+import signal
+import subprocess
+import sys
+import threading
+
+import numpy as np
+import pytest
+from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050
+from zerorate_tools.boards.bus import stream_bus
+from zerorate_tools.cli import main
+from zerorate_tools.errors import BadRecording
+from zerorate_tools.recordings import recording_writer, write_recording
+from zerorate_tools.replay import replay
+from zerorate_tools.simulate import simulate
+from zerorate_tools.watch import watch
+from zerorate_tools.watch.board import Watcher
+from zerorate_tools.watch.screen import Lines, sparkline
+from zerorate_tools.watch.tail import CsvTail
+from zerorate_tools.watch.watching import Wishes
+
+DESCRIPTION = {
+    "name": "run",
+    "seed": 4,
+    "sensor": {"odr_hz": 25.0},
+    "bias": {"b0": [1.5, -2.0, 0.5]},
+    "every_session": {"temperature": [{"to": 30.0, "minutes": 1}]},
+}
+
+
+@pytest.fixture(scope="module")
+def recording():
+    return simulate(DESCRIPTION)[0]
+
+
+@pytest.fixture
+def log(tmp_path, recording):
+    """A whole CSV and its scales; tests write parts of it elsewhere."""
+    path = tmp_path / "whole" / "run.csv"
+    path.parent.mkdir()
+    write_recording(recording, path)
+    return path
+
+
+class Writer:
+    """Writes a recording's text into a file piece by piece, rows cut in the middle as well."""
+
+    def __init__(self, log, folder):
+        self.text = log.read_bytes()
+        self.path = folder / "run.csv"
+        self.path.write_bytes(b"")
+        self.path.with_suffix(".json").write_bytes(log.with_suffix(".json").read_bytes())
+
+    def write(self, begin, end):
+        with self.path.open("ab") as file:
+            file.write(self.text[begin:end])
+
+
+@pytest.fixture
+def writer(log, tmp_path):
+    writer = Writer(log, tmp_path)
+    writer.write(0, 1000)
+    return writer
+
+
+def test_every_row_is_read_once_wherever_the_writer_was_interrupted(writer, recording):
+    tail, parts = CsvTail(writer.path), []
+    cuts = [*range(1000, len(writer.text), 777), len(writer.text)]
+    for begin, end in zip([1000, *cuts], cuts):
+        columns = tail.read()
+        parts += [columns] if columns else []
+        writer.write(begin, end)
+    parts.append(tail.read())
+    together = {name: np.concatenate([p[name] for p in parts]) for name in tail.column_names}
+    for name, values in recording.columns.items():
+        assert (together[name] == values).all()
+    assert tail.read() is None
+
+
+def test_the_firmware_is_where_a_replay_of_the_file_leaves_it(log, capsys):
+    live = watch(str(log), Wishes(once=True))
+    assert live.corrector.state.tobytes() == replay(log).state
+    assert live.bias_dps == pytest.approx([1.5, -2.0, 0.5], abs=0.02)
+    assert "x +1." in capsys.readouterr().out
+
+
+def test_a_writer_in_another_process_is_followed(writer, log, tmp_path):
+    program = (
+        "import sys, time\n"
+        "text = open(sys.argv[1], 'rb').read()\n"
+        "with open(sys.argv[2], 'ab', buffering=0) as file:\n"
+        "    for at in range(1000, len(text), 4001):\n"
+        "        file.write(text[at:at + 4001])\n"
+        "        time.sleep(0.02)\n"
+    )
+    command = [sys.executable, "-c", program, str(log), str(writer.path)]
+    stop = threading.Event()
+    with subprocess.Popen(command) as process:
+        lines = []
+
+        class Shown(Lines):
+            def show(self, live, notes):
+                lines.append(live.samples)
+                if process.poll() is not None and live.samples == len(writer.text.splitlines()) - 1:
+                    stop.set()
+
+        from zerorate_tools.watch.watching import Following
+
+        following = Following(CsvTail(writer.path), Wishes(every_s=0.01), Shown())
+        following._goes_on = lambda: not stop.is_set()
+        following.run()
+    assert len(set(lines)) > 3
+    assert following.live.corrector.state.tobytes() == replay(log).state
+
+
+def test_ctrl_c_ends_it_well(log):
+    command = [sys.executable, "-m", "zerorate_tools.cli", "watch", str(log), "--every", "0.1"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        first = process.stdout.readline()
+        process.send_signal(signal.SIGINT)
+        rest = process.stdout.read()
+    assert process.returncode == 0
+    assert "bias dps" in first and "Traceback" not in rest
+
+
+def test_a_file_that_stops_growing_is_said(log, monkeypatch, capsys):
+    monkeypatch.setattr("zerorate_tools.watch.watching._STALLED_S", 0.1)
+    monkeypatch.setattr("zerorate_tools.watch.watching._STALLED_SAMPLES", 1)
+    watch(str(log), Wishes(seconds=0.8, every_s=0.1))
+    assert "has not grown" in capsys.readouterr().out.splitlines()[-1]
+
+
+def test_rows_that_are_none_are_left_out_and_counted(writer, capsys):
+    whole = writer.text.rindex(b"\n", 0, 1000) + 1
+    writer.path.write_bytes(writer.text[:whole] + b"oops,1,2\n" + writer.text[whole:])
+    live = watch(str(writer.path), Wishes(once=True))
+    assert live.samples == len(writer.text.splitlines()) - 1
+    assert "1 rows left out: not 8 integers" in capsys.readouterr().out
+
+
+def test_a_file_begun_anew_is_a_new_power_on(writer):
+    tail = CsvTail(writer.path)
+    first = tail.read()
+    writer.path.write_bytes(writer.text[:500])
+    second = tail.read()
+    assert tail.restarts == 1
+    assert second["t_us"][0] == first["t_us"][0]
+
+
+def test_what_record_is_writing_is_found_before_it_has_its_name(tmp_path, recording):
+    out = tmp_path / "run.csv"
+    with recording_writer(out, recording.column_names, recording.scales) as writing:
+        writing.append(recording.between(0, 500).columns)
+        writing._file.flush()
+        assert not out.exists()
+        assert len(CsvTail(out).read()["t_us"]) == 500
+
+
+@pytest.mark.parametrize(
+    "name, said", [("a.parquet", "index at its end"), ("a.csv.gz", "gzip"), ("a.csv", "no such")]
+)
+def test_what_cannot_be_followed_is_said_in_a_line(tmp_path, capsys, name, said):
+    assert main(["watch", str(tmp_path / name)]) == 2
+    error = capsys.readouterr().err
+    assert said in error and error.count("\n") == 1
+
+
+def test_a_file_that_goes_away_is_said(writer):
+    tail = CsvTail(writer.path)
+    writer.path.unlink()
+    with pytest.raises(BadRecording, match="gone"):
+        tail.read()
+
+
+def test_a_name_is_shown_letter_by_letter_on_a_terminal(recording, tmp_path):
+    from io import StringIO
+
+    from rich.console import Console
+    from rich.live import Live as RichLive
+    from zerorate_tools.watch.live import Live
+    from zerorate_tools.watch.screen import Area
+
+    text = StringIO()
+    console = Console(file=text, force_terminal=True, width=120, color_system=None)
+    live = Live("[red]run[/red]", recording.scales, recording.column_names)
+    live.feed(recording.columns)
+    with RichLive(console=console, auto_refresh=False) as area:
+        Area(area).show(live, ["a note"])
+    shown = text.getvalue()
+    assert "[red]run[/red]" in shown and "a note" in shown
+    assert "temperature 29.9" in shown and "fit" in shown
+
+
+def test_a_chip_on_a_bus_is_watched():
+    samples = ((k % 7, k % 5, 16384, -3000, 40 + k % 3, -20, 10 + k % 2) for k in range(10**6))
+    chip = FakeMPU6050(samples)
+    clock = FakeClock(chip)
+    taken = []
+
+    def take(scales):
+        taken.append(Watcher("/dev/i2c-1", scales, Wishes(every_s=1e9), Lines()))
+        return taken[0]
+
+    stream_bus(FakeI2C(chip, clock=clock), take, seconds=20, time_source=clock)
+    live = taken[0].live
+    assert live.samples == pytest.approx(2000, abs=60)
+    assert live.bias_dps * 131 == pytest.approx([41, -20, 10.5], abs=0.5)
+
+
+def test_a_sparkline_goes_from_low_to_high():
+    assert sparkline(np.arange(8.0)) == "▁▂▃▄▅▆▇█"
+    assert sparkline(np.ones(3)) == "▁▁▁"
+    assert sparkline(np.zeros(0)) == ""
+    assert len(sparkline(np.random.default_rng(1).normal(size=500))) == 24
+
+
+def test_scales_missing_beside_the_file_are_said(writer):
+    writer.path.with_suffix(".json").unlink()
+    with pytest.raises(BadRecording, match="run.json"):
+        watch(str(writer.path), Wishes(once=True))

@@ -1,0 +1,52 @@
+"""`zerorate watch`: the firmware at work, live."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+
+def add_parser(subparsers) -> None:
+    """Register the sub-command."""
+    parser = subparsers.add_parser(
+        "watch",
+        help="the firmware live on a recording being written, or on a board",
+        description="Show rates, bias with its source and quality, temperature and what is being "
+        "learned, until Ctrl-C. SOURCE is a .csv that is being written (by `zerorate record` too), "
+        "a board's serial port, or /dev/i2c-N.",
+    )
+    parser.add_argument("source", metavar="SOURCE", help="run.csv, /dev/ttyACM0 or /dev/i2c-1")
+    parser.add_argument("--for", dest="seconds", type=_positive, metavar="SECONDS", help="then end")
+    parser.add_argument("--once", action="store_true", help="show what is there, and end")
+    parser.add_argument("--every", type=_positive, metavar="SECONDS", help="between two looks")
+    parser.add_argument("--plain", action="store_true", help="lines, on a terminal too")
+    parser.add_argument("--model", type=Path, metavar="FILE", help="an effect model to load")
+    parser.add_argument("--motion", action="store_true", help="learn in motion as well")
+    parser.add_argument(
+        "--accelerometer", action="store_true", help="learn against gravity as well"
+    )
+    parser.add_argument("--setup", type=Path, help="on a board: source that makes `imu`")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Watch; 1 where no sample ever came."""
+    from ..watch.watching import Wishes, watch
+
+    wishes = Wishes(
+        seconds=arguments.seconds,
+        once=arguments.once,
+        every_s=arguments.every,
+        plain=arguments.plain,
+        options={"motion": arguments.motion, "accelerometer": arguments.accelerometer},
+        model=arguments.model,
+        setup=arguments.setup.read_text(encoding="utf-8") if arguments.setup else "",
+    )
+    return 0 if watch(arguments.source, wishes) else 1
+
+
+def _positive(text: str) -> float:
+    number = float(text)
+    if not 0 < number < 1e9:
+        raise argparse.ArgumentTypeError(f"{text} is not above 0")
+    return number

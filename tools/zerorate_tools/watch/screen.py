@@ -1,0 +1,119 @@
+"""What a person sees: a screen that renews itself, or lines where there is no terminal."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Protocol
+
+import numpy as np
+
+from .live import Live
+
+_BARS = "▁▂▃▄▅▆▇█"
+_WIDTH = 24
+
+
+class Screen(Protocol):
+    """Takes what there is to say, as often as one likes."""
+
+    def show(self, live: Live, notes: list[str]) -> None:
+        """Show the firmware's state, and what is to be said of the source."""
+
+
+@contextmanager
+def screen(plain: bool = False) -> Iterator[Screen]:
+    """A screen for this terminal; lines on standard output where there is none, or `plain`."""
+    if plain or not sys.stdout.isatty():
+        yield Lines()
+        return
+    from rich.live import Live as RichLive
+
+    with RichLive(auto_refresh=False) as area:
+        yield Area(area)
+
+
+class Lines:
+    """A line each time, for a pipe, a log or a test."""
+
+    def show(self, live: Live, notes: list[str]) -> None:
+        """Print time, temperature, and per axis bias, quality and source."""
+        axes = zip("xyz", live.bias_dps, live.quality_dps, live.source)
+        biases = "  ".join(f"{a} {b:+.3f}±{q:.3f} {source}" for a, b, q, source in axes)
+        warm = "" if live.temp_degc is None else f"  {live.temp_degc:.1f} degC"
+        said = "; ".join([live.learning()[0], *notes])
+        print(f"{live.duration_s:8.1f} s{warm}  bias dps {biases}  | {said}", flush=True)
+
+
+class Area:
+    """A part of the terminal that is drawn anew."""
+
+    def __init__(self, area) -> None:
+        self._area = area
+
+    def show(self, live: Live, notes: list[str]) -> None:
+        """Draw it."""
+        from rich.console import Group
+        from rich.text import Text
+
+        # Text, not str: a file's name may hold what rich takes for markup
+        parts = [Text(headline(live), style="bold"), _table(live), Text(_temperature(live))]
+        parts += [Text(line) for line in _learning(live)]
+        parts += [Text(note, style="yellow") for note in notes]
+        parts.append(Text("Ctrl-C ends.", style="dim"))
+        self._area.update(Group(*parts), refresh=True)
+
+
+def headline(live: Live) -> str:
+    """Source, sensor, and how much came."""
+    minutes, seconds = divmod(int(live.duration_s), 60)
+    return (
+        f"{live.name}  {live.scales.sensor}  {minutes}:{seconds:02d} min, "
+        f"{live.samples:,} samples, {live.rate_hz:.1f} Hz"
+    )
+
+
+def sparkline(values: np.ndarray) -> str:
+    """Up to 24 bars of a series, from its lowest to its highest value."""
+    if not len(values):
+        return ""
+    at = np.linspace(0, len(values) - 1, min(_WIDTH, len(values))).astype(int)
+    low, high = float(values.min()), float(values.max())
+    share = (values[at] - low) / (high - low) if high > low else np.zeros(len(at))
+    return "".join(_BARS[int(s * (len(_BARS) - 1) + 0.5)] for s in share)
+
+
+def _table(live: Live):
+    from rich import box
+    from rich.table import Table
+
+    table = Table(box=box.SIMPLE_HEAD)
+    for name in ("", "rate dps", "corrected", "bias dps", "± one sigma"):
+        table.add_column(name, justify="right")
+    table.add_column("from")
+    table.add_column("bias of late")
+    past = np.array(live.history).reshape(-1, 3)
+    for i, source in enumerate(live.source):
+        signed = [f"{v[i]:+.3f}" for v in (live.rate_dps, live.left_dps, live.bias_dps)]
+        sigma = f"{live.quality_dps[i]:.3f}"
+        table.add_row(f"g{'xyz'[i]}", *signed, sigma, source, sparkline(past[:, i]))
+    return table
+
+
+def _temperature(live: Live) -> str:
+    if live.temp_degc is None:
+        return "no thermometer"
+    return f"temperature {live.temp_degc:.2f} degC"
+
+
+def _learning(live: Live) -> list[str]:
+    """The firmware's words but for what the table has: of an axis only what is behind its bias."""
+    said = []
+    for line in live.learning():
+        axis, behind, what = line.partition("; ")
+        if not line.startswith(("gx: bias", "gy: bias", "gz: bias")):
+            said.append(line)
+        elif behind:
+            said.append(f"{axis[:2]}: {what}")
+    return said
