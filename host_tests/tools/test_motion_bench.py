@@ -1,9 +1,8 @@
-"""The measurements of bias without rest: the truth of a trial, and the passes of a window."""
+"""The measurements of bias without rest: the truth of a trial, and what a source is worth."""
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from zerorate_tools.bench import passes
 from zerorate_tools.bench.broad import Trial, true_bias
 from zerorate_tools.bench.peers import given
 from zerorate_tools.bench.peers.sources import Source
@@ -52,14 +51,3 @@ def test_a_source_is_measured_from_nothing_with_its_honesty(trial):
     assert np.abs(bias[-1] - BIAS_DPS).max() < 0.2
     assert source.learned > 0
     assert np.mean(source.within) >= 0.9
-
-
-def test_every_pass_of_a_window_is_seen_and_levels_the_orientation(trial, tmp_path):
-    found = list(passes.windows(trial.in_motion().recording(), document=True))
-    window = found[0]
-    assert window.orientation_deg.shape == (3, 128, 3)
-    drift = np.abs(np.polyfit(np.arange(128), window.orientation_deg[0], 1)[0])
-    left = np.abs(np.polyfit(np.arange(128), window.orientation_deg[-1], 1)[0])
-    assert left.max() < drift.max() / 5
-    passes.plot(window, tmp_path / "window.png")
-    assert (tmp_path / "window.png").read_bytes().startswith(b"\x89PNG")

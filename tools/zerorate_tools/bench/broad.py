@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,9 +57,8 @@ class Trial:
         ):
             words = np.clip(np.round(values * scale), -32768, 32767).astype(np.int64)
             columns.update({letter + axis: words[:, i] for i, axis in enumerate("xyz")})
-        scales = Scales(
-            sensor="aktos-t", odr_hz=self.hz, temp_lsb_per_degc=0, temp_offset_degc=0, **_SCALES
-        )
+        named: dict[str, Any] = {**_SCALES, "temp_lsb_per_degc": 0, "temp_offset_degc": 0}
+        scales = Scales("aktos-t", self.hz, **named)
         return Recording(columns, scales, self.name)
 
 
@@ -102,7 +102,7 @@ def true_bias(trial: Trial) -> TrueBias:
 def _seen(trial: Trial, n: int) -> NDArray[np.int64]:
     """First samples of the spans at whose ends the optics saw the device."""
     starts = np.arange(0, len(trial.rate_dps) - n - 1, n)
-    seen = np.isfinite(trial.attitude).all(axis=1)
+    seen = np.asarray(np.isfinite(trial.attitude).all(axis=1))
     return starts[seen[starts] & seen[starts + n]]
 
 

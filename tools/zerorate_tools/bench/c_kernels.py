@@ -28,23 +28,25 @@ static inline int32_t shift_left(int32_t a, int32_t by) {
 """
 
 
-def kernels_in_c(package: Path, entry: tuple[str, str] = ("step", "step")) -> str:
-    """C text of `entry` (module, function) and all it calls, as `int32_t MODULE_FUNCTION(...)`.
+def kernels_in_c(package: Path, *entries: tuple[str, str]) -> str:
+    """C text of `entries` (module, function) and all they call, as `int32_t MODULE_FUNCTION(...)`.
 
     package: the folder of the firmware. Raises NotKernel for text outside the subset.
     """
     files = {path.stem: _File(path) for path in kernel_files(package)}
     order: list[tuple[str, str]] = []
-    _visit(files, entry, order)
+    for entry in entries:
+        _visit(files, entry, order)
     parts = [_PREAMBLE, *(files[module].function(name) for module, name in order)]
     return "\n".join(parts)
 
 
 def _visit(files: dict[str, _File], one: tuple[str, str], order: list[tuple[str, str]]) -> None:
-    """Append `one` to `order` behind everything that it calls."""
+    """Append `one` to `order` behind everything that it calls, unless it is there."""
+    if one in order:
+        return
     for called in files[one[0]].calls(one[1]):
-        if called not in order:
-            _visit(files, called, order)
+        _visit(files, called, order)
     order.append(one)
 
 
@@ -80,7 +82,7 @@ class _File:
         result = "static int32_t" if node.returns else "static void"
         lines = [f"{result} {self._name_in_c(name)}({head}) {{"]
         names = {n.id for n in ast.walk(node) if isinstance(n, ast.Name)}
-        stored = {n.id for n in ast.walk(node) if _is_stored(n)}
+        stored = {n.id for n in ast.walk(node) if isinstance(n, ast.Name) and _is_stored(n)}
         lines += [f"    int32_t {local} = 0;" for local in sorted(stored & names - set(parameters))]
         body = node.body[1 if ast.get_docstring(node) else 0 :]
         lines += [line for statement in body for line in self._statement(statement, "    ")]

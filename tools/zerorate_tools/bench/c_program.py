@@ -1,8 +1,9 @@
 """The C yardstick as a program: its text, how it is compiled, how it is run.
 
-Usage: `yardstick COUNT CALL [TIMES]` in a folder with settings.bin, state.bin and frames.bin (int32
-each; a frame is dt_us and seven words). It takes the first COUNT frames, with CALL 0 without
-calling the kernels, and writes state.out and frames.out (verdict and seven words each).
+Usage: `yardstick COUNT CALL AT_ONCE [TIMES]` in a folder with settings.bin, state.bin and
+frames.bin (int32 each; a frame is dt_us and seven words). It takes the first COUNT frames, AT_ONCE
+in one call, with CALL 0 without calling the kernels, and writes state.out and frames.out (verdict
+and seven words each).
 """
 
 from __future__ import annotations
@@ -16,13 +17,13 @@ from pathlib import Path
 
 from ..errors import MissingRuntime, ZerorateError
 from ..runtimes.runtime import Job, Runtime
+from ..runtimes.unix_port import qemu_arm
 from .c_kernels import kernels_in_c
 
 TARGETS = {"x86": "x86-linux-musl", "armhf": "arm-linux-musleabihf", "host": ""}
 _FLAGS = ("-O2", "-fwrapv", "-fno-sanitize=undefined")
 # the instruction sets that Debian's interpreters are built for
 _MACHINES = {"x86": ("-static", "-mcpu=i686"), "armhf": ("-static", "-mthumb")}
-_LAUNCHERS = {"armhf": ("qemu-arm",)}
 _MAIN = """
 #include <stdio.h>
 #include <stdlib.h>
@@ -54,7 +55,8 @@ int main(int argc, char **argv) {
     int32_t *frames = whole("frames.bin");
     size_t count = argc > 2 ? (size_t)atoi(argv[1]) : 0;
     int call = argc > 2 && atoi(argv[2]);
-    int times = argc > 3 ? atoi(argv[3]) : 1;
+    size_t at_once = argc > 3 ? (size_t)atoi(argv[3]) : 1;
+    int times = argc > 4 ? atoi(argv[4]) : 1;
     int32_t x[7];
     if (count > words / 8) exit(2);
     int32_t *first_state = malloc(state_words * 4);
@@ -63,7 +65,11 @@ int main(int argc, char **argv) {
     memcpy(first_state, s, state_words * 4);
     memcpy(first_frames, frames, words * 4);
 again:
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; at_once > 1 && i < count; i += at_once) {
+        int32_t most = (int32_t)(count - i < at_once ? count - i : at_once);
+        if (call) block_block(s, frames + 8 * i, c, x, most);
+    }
+    for (size_t i = 0; at_once == 1 && i < count; i++) {
         int32_t *frame = frames + 8 * i;
         memcpy(x, frame + 1, sizeof x);
         if (call) frame[0] = step_step(s, c, x, frame[0]);
@@ -83,7 +89,7 @@ again:
 
 def program_in_c(package: Path) -> str:
     """The whole program for the firmware in the folder `package`."""
-    return kernels_in_c(package) + _MAIN
+    return kernels_in_c(package, ("step", "step"), ("block", "block")) + _MAIN
 
 
 class CProgram(Runtime):
@@ -93,7 +99,7 @@ class CProgram(Runtime):
 
     def __init__(self, program: Path, target: str) -> None:
         self.name = f"C on {target}"
-        self._command = [*_LAUNCHERS.get(target, ()), str(program)]
+        self._command = [qemu_arm(), str(program)] if target == "armhf" else [str(program)]
 
     def command(self, job: Job) -> list[str]:
         return [*self._command, *job.args]

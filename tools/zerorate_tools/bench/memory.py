@@ -13,8 +13,10 @@ from zerorate import Corrector
 from ..errors import ZerorateError
 from ..replay.jit import firmware_package
 from ..runtimes import find
+from ..runtimes.wasm import find_wasm
 from .workload import Workload
 
+_IMPORT = Path(__file__).with_name("heap_of_import.mjs")
 ARCHITECTURES = ("armv6m", "armv7m", "armv7emsp", "xtensawin", "rv32imc")
 _UPDATES = """
 import gc
@@ -27,20 +29,15 @@ def drive(first, end):
         for k in range(7):
             x[k] = rows[8 * i + 1 + k]
         corrector.update(x, rows[8 * i])
+def taken(first, end):
+    before = gc.mem_alloc()
+    drive(first, end)
+    return gc.mem_alloc() - before
 drive(0, 600)
 gc.collect()
 gc.disable()
-before = gc.mem_alloc()
-drive(600, 1200)
-print((gc.mem_alloc() - before) / 600)
-"""
-_IMPORT = """
-import gc
-gc.collect()
-before = gc.mem_alloc()
-import zerorate
-gc.collect()
-print(gc.mem_alloc() - before)
+taken(0, 1)
+print((taken(600, 6600) - taken(600, 601)) / 5999)
 """
 
 
@@ -52,9 +49,19 @@ def heap_bytes_per_update(work: Workload) -> dict[str, float]:
     }
 
 
-def import_heap_bytes(name: str = "wasm") -> int:
-    """Heap that `import zerorate` keeps."""
-    return int(_number(name, _IMPORT, {}))
+def import_heap_bytes(firmware: Path | None = None) -> int:
+    """Heap that `import zerorate` keeps on the WebAssembly port, garbage collected.
+
+    firmware: the folder with the package; that of this installation by default. Raises
+    MissingRuntime.
+    """
+    wasm = find_wasm()
+    folder = firmware or firmware_package().parent
+    command = [*wasm.node, str(_IMPORT), str(wasm.package), str(folder), "zerorate"]
+    done = run(command, capture_output=True, text=True)
+    if done.returncode:
+        raise ZerorateError(f"the import failed on wasm: {done.stderr.strip()[-300:]}")
+    return int(done.stdout)
 
 
 def state_bytes() -> dict[str, int]:

@@ -1,17 +1,25 @@
-"""Runs on a MicroPython: COUNT CALL KIND [REPEATS] as the C yardstick does.
+"""Runs on a MicroPython: COUNT CALL AT_ONCE KIND [REPEATS], the first three as the C yardstick.
 
 KIND is bytecode or viper. With REPEATS times.bin gets the fewest us that each sample took.
 """
 
+import gc
 import sys
 import time
 from array import array
 
-count, call, kind = int(sys.argv[1]), int(sys.argv[2]), sys.argv[3]
-if kind == "viper":
-    from zerorate.viper import step
-else:
+import zerorate.bursts as bursts_file
+import zerorate.corrector as corrector_file
+from zerorate import Corrector, kernels
+from zerorate.bursts import Bursts
+
+count, call, at_once = int(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3])
+if sys.argv[4] == "bytecode":
     from zerorate import step
+
+    corrector_file.step, bursts_file.block = step, None
+elif not kernels.VIPER:
+    raise SystemExit("no viper here")
 
 
 def whole(name):
@@ -19,42 +27,62 @@ def whole(name):
         return array("i", file.read())
 
 
-def drive(count, take, s, c, rows, x):
+def one_by_one(count, take, rows, x):
     at = 0
     for _ in range(count):
         for k in range(7):
             x[k] = rows[at + 1 + k]
         if take:
-            rows[at] = take(s, c, x, rows[at])
+            rows[at] = take(x, rows[at])
         for k in range(7):
             rows[at + 1 + k] = x[k]
         at += 8
 
 
-def time_each(count, take, s, c, rows, x, fewest):
-    clock = time.ticks_us
+def by_bursts(count, take, rows, burst):
+    at = 0
+    while count > 0:
+        n = at_once if count > at_once else count
+        for k in range(8 * n):
+            burst[k] = rows[at + k]
+        if take:
+            take(burst, n)
+        for k in range(8 * n):
+            rows[at + k] = burst[k]
+        at += 8 * n
+        count -= n
+
+
+def time_each(count, take, rows, x, fewest):
+    clock = time.ticks_us  # type: ignore[attr-defined]
     for i in range(count):
         for k in range(7):
             x[k] = rows[8 * i + 1 + k]
         dt = rows[8 * i]
         start = clock()
-        take(s, c, x, dt)
-        spent = time.ticks_diff(clock(), start)
+        take(x, dt)
+        spent = time.ticks_diff(clock(), start)  # type: ignore[attr-defined]
         if spent < fewest[i]:
             fewest[i] = spent
 
 
-settings, state, frames = whole("settings.bin"), whole("state.bin"), whole("frames.bin")
-x = array("i", [0] * 7)
-if len(sys.argv) > 4:
+corrector = Corrector()
+corrector.settings, frames = whole("settings.bin"), whole("frames.bin")
+corrector.state = whole("state.bin")
+x, burst = array("i", [0] * 7), array("i", [0] * (8 * at_once))
+gc.collect()
+if len(sys.argv) > 5:
     fewest = array("i", [0x3FFFFFFF] * count)
-    for _ in range(int(sys.argv[4])):
-        time_each(count, step.step, array("i", state), settings, frames, x, fewest)
+    for _ in range(int(sys.argv[5])):
+        corrector.state = whole("state.bin")
+        time_each(count, corrector.update, frames, x, fewest)
     with open("times.bin", "wb") as file:
         file.write(fewest)
 else:
-    take = step.step if call else None
-    drive(count, take, state, settings, frames, x)
-    for name, words in (("state.out", state), ("frames.out", frames)):
+    if at_once > 1:
+        by_bursts(count, Bursts(corrector).update if call else None, frames, burst)
+    else:
+        one_by_one(count, corrector.update if call else None, frames, x)
+    for name, words in (("state.out", corrector.state), ("frames.out", frames)):
         with open(name, "wb") as file:
             file.write(words)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import platform
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib.metadata import PackageNotFoundError, version
 
 
@@ -33,9 +33,10 @@ def machine() -> dict[str, str]:
     return found
 
 
-def machine_line() -> str:
+def machine_line(found: Mapping[str, str] | None = None) -> str:
     """The same as one line of Markdown."""
-    return "Measured with " + ", ".join(f"{k} {v}" for k, v in machine().items()) + ".\n"
+    found = machine() if found is None else found
+    return "Measured with " + ", ".join(f"{k} {v}" for k, v in found.items()) + ".\n"
 
 
 def _processor() -> str:

@@ -18,13 +18,18 @@ ONLINE: dict[str, Peer] = {
     "vqf, clip 25 dps": vqf_clip_raised,
 }
 OFFLINE: dict[str, Peer] = {
-    "PX4-style cubic (offline, true rests given)": px4_cubic,
-    "ArduPilot-style cubic (offline, true rests given)": ardupilot_cubic,
+    "PX4-style cubic": px4_cubic,
+    "ArduPilot-style cubic": ardupilot_cubic,
 }
 OURS: dict[str, Peer] = {
     "zerorate, the document's rules": firmware(document=True),
     "zerorate": firmware(),
 }
 PEERS = {**ONLINE, **OFFLINE, **OURS}
+HOW = {
+    **dict.fromkeys(ONLINE, "online, from nothing"),
+    **dict.fromkeys(OFFLINE, "offline on session 1, true rests given"),
+    **dict.fromkeys(OURS, "online, unaided, no effect slot, session 1 from the store"),
+}
 
-__all__ = ["OFFLINE", "ONLINE", "OURS", "PEERS", "Given", "Peer", "firmware", "given"]
+__all__ = ["HOW", "OFFLINE", "ONLINE", "OURS", "PEERS", "Given", "Peer", "firmware", "given"]

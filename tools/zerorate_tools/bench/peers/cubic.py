@@ -47,7 +47,7 @@ def _fitted_on_the_first(sessions: Sequence[Given], points: Points) -> list[NDAr
     low, high = temp.min(), temp.max()
 
     def of(one: Given) -> NDArray[np.float64]:
-        held = np.clip(one.temp_degc, low, high) - _ABOUT_DEGC
+        held = np.clip(np.asarray(one.temp_degc), low, high) - _ABOUT_DEGC
         return np.stack([curve(held) for curve in curves], axis=1)
 
     return [of(one) for one in sessions]

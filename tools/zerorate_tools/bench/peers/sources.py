@@ -39,15 +39,15 @@ class Source:
         lsb = 256 * one.recording.scales.gyro_lsb_per_dps
         columns = one.recording.columns
         rows = np.zeros((len(one.rate_dps), 7), np.int32)
-        for place, name in enumerate(("ax", "ay", "az", "", "gx", "gy", "gz")):
-            if name:
+        for place, name in enumerate(("ax", "ay", "az", "temp", "gx", "gy", "gz")):
+            if name in columns:
                 rows[:, place] = columns[name]
         dt_us = np.diff(columns["t_us"], prepend=2 * columns["t_us"][0] - columns["t_us"][1])
         learned = np.zeros(len(rows), bool)
         words = np.zeros((len(rows), 2, 3), np.int32)
         _loop(self.name)(state, settings, rows, dt_us, (bias_at, sigma_at), learned, words)
         for i in np.flatnonzero(learned):
-            self._judge(number, i, words[i, 0] / lsb, words[i, 1] / lsb)
+            self._judge(number, int(i), words[i, 0] / lsb, words[i, 1] / lsb)
         return words[:, 0] / lsb
 
     def _made(self, one: Given) -> tuple:
@@ -56,7 +56,8 @@ class Source:
         if self.name == "in_motion":
             from zerorate.motion_settings import motion_settings, motion_state
 
-            settings = motion_settings(*sensor, **self.options)
+            degree = {"temp_lsb_per_degc": scales.temp_lsb_per_degc}
+            settings = motion_settings(*sensor, **degree, **self.options)
             state, at = motion_state(settings), _MOTION_WORDS
         else:
             from zerorate.realtime_settings import realtime_settings, realtime_state

@@ -1,0 +1,75 @@
+"""A figure beside its bound: met, missed or not measured, and said so in the table."""
+
+import pytest
+from zerorate_tools.bench.limits import ACCURACY, COST, limits_table, verdicts
+
+GOOD = {
+    "instructions_per_sample": {"bytecode": 60_000, "viper": 1_200, "c": 330},
+    "instructions_per_update": {"bytecode": 60_000, "viper": 1_200, "c": 330},
+    "worst_sample": {"ratio": 8.0},
+    "heap_bytes_per_update": 0.0,
+    "replay_samples_per_s": 2_500_000.0,
+    "replay_by_hours": {"1": {"peak_bytes": 300e6}, "100": {"peak_bytes": 330e6}},
+}
+
+
+def met(found, limits=COST):
+    return {verdict.limit.figure: verdict.met for verdict in verdicts(found, limits)}
+
+
+def test_good_figures_meet_every_limit_of_cost():
+    assert set(met(GOOD).values()) == {True}
+
+
+@pytest.mark.parametrize(
+    ("figure", "worse"),
+    [
+        (
+            COST[0].figure,
+            {"instructions_per_sample": {"bytecode": 60_000, "viper": 1_400, "c": 330}},
+        ),
+        (
+            COST[1].figure,
+            {"instructions_per_sample": {"bytecode": 12_000, "viper": 1_200, "c": 330}},
+        ),
+        (COST[2].figure, {"worst_sample": {"ratio": 10.5}}),
+        (COST[3].figure, {"heap_bytes_per_update": 0.1}),
+        (COST[4].figure, {"replay_samples_per_s": 1_999_999.0}),
+        (
+            COST[5].figure,
+            {"replay_by_hours": {"10": {"peak_bytes": 500e6}, "9": {"peak_bytes": 400e6}}},
+        ),
+        (
+            COST[6].figure,
+            {"instructions_per_update": {"bytecode": 60_000, "viper": 1_400, "c": 330}},
+        ),
+        (
+            COST[7].figure,
+            {"instructions_per_update": {"bytecode": 12_000, "viper": 1_200, "c": 330}},
+        ),
+    ],
+)
+def test_each_limit_of_cost_can_be_missed_and_alone_is(figure, worse):
+    assert [name for name, is_met in met(GOOD | worse).items() if not is_met] == [figure]
+
+
+def test_what_was_not_measured_is_neither_met_nor_missed():
+    found = GOOD | {"instructions_per_sample": None}
+    assert met(found)[COST[0].figure] is None
+    assert "not measured" in limits_table(verdicts(found, COST))
+
+
+def test_a_missed_limit_stands_out_in_the_table():
+    found = GOOD | {"worst_sample": {"ratio": 12.0}}
+    assert "| 12.0 x | at most 10 x | **no** |" in limits_table(verdicts(found, COST))
+
+
+def test_every_scenario_and_part_of_session_2_has_its_limit():
+    figures = {
+        f"warm-up-{name}": {"zerorate": {"all": everything, "first": first}}
+        for name, everything, first in (("a", 6.9, 20.1), ("b", 12.1, 39.0), ("c", 34.0, 50.1))
+    }
+    found = met({"session_2_rms_mdps": figures}, ACCURACY)
+    missed = [name for name, is_met in found.items() if not is_met]
+    assert len(found) == 6
+    assert missed == ["session 2, RMS, B", "session 2, first 15 s, A", "session 2, first 15 s, C"]

@@ -1,0 +1,59 @@
+"""A model of one unit, refined on another one of the same part."""
+
+import subprocess
+import sys
+
+from zerorate_tools.bench.second_unit import WAYS, SecondUnit, device, errors_mdps, table
+from zerorate_tools.loop.firmware import rows
+from zerorate_tools.replay.engines import InterpreterEngine, NumbaEngine
+from zerorate_tools.replay.samples import Frames
+
+NONE, AS_IT_IS, REFINED = WAYS
+
+
+def copied(frames):
+    return Frames(frames.t_us, frames.frames.copy(), frames.dt_us, frames.extra)
+
+
+def test_the_second_unit_is_left_less_than_half_when_it_refines_the_firsts_model():
+    errors = errors_mdps(seed=1)
+    assert errors[AS_IT_IS] < errors[NONE]
+    assert errors[REFINED] < 0.5 * errors[AS_IT_IS]
+
+
+def test_its_coefficients_move_towards_its_own():
+    unit, corrector = SecondUnit(seed=2), device(REFINED)
+    frames, _ = unit.power_on()
+    next(iter(NumbaEngine().run(corrector, [frames])))
+    e = corrector.effects.e
+    for slot, axis in ((0, 0), (0, 1), (1, 0)):
+        at = 112 + 40 * slot + axis
+        moved = e[at + 24] / e[at + 30]
+        own = unit.share[slot, axis]
+        assert abs(moved - own) < 0.7 * abs(1.0 - own), (slot, axis, moved, own)
+
+
+def test_the_table_has_a_row_for_every_way():
+    rows = table([{NONE: 3.0, AS_IT_IS: 2.0, REFINED: 1.0}]).splitlines()
+    assert rows[-1] == "| refined | 1.0 | 1.0 |" and len(rows) == 2 + len(WAYS)
+
+
+def test_a_board_refines_as_this_computer_does(micropython):
+    unit = SecondUnit(seed=3)
+    frames, _ = unit.power_on()
+    part = rows(frames, 0, 6000)
+    here, there = device(REFINED), device(REFINED)
+    expected = next(iter(NumbaEngine().run(here, [copied(part)])))
+    found = next(iter(InterpreterEngine(micropython).run(there, [copied(part)])))
+    assert (found.bias_q8 == expected.bias_q8).all()
+    assert there.effects.e == here.effects.e
+
+
+def test_loops_kept_on_disk_are_told_apart_by_who_loads_them():
+    script = "from zerorate_tools.bench.second_unit import *; print(sorted(errors_mdps(5).items()))"
+    first, again = (
+        subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+        for _ in range(2)
+    )
+    assert first.stdout == again.stdout == f"{sorted(errors_mdps(5).items())}\n"
+    assert len(set(errors_mdps(5).values())) == len(WAYS)

@@ -1,0 +1,54 @@
+"""The tables of `bench motion` say what each figure must be, and whether it is."""
+
+import pytest
+from zerorate_tools.bench.motion_table import LIMITS_MDPS, table
+
+
+@pytest.fixture
+def found():
+    """What the bench finds, every demand met."""
+
+    def row(*errors, learned=0, within=()):
+        return {"rms_mdps": list(errors), "learned": learned, "within": list(within)}
+
+    simulated = {
+        name: {"in motion": row(25.0), "decision": row(9.0, 10.0, within=[0.9, 1.0])}
+        for name in LIMITS_MDPS
+    }
+    settling = {"default": {"seconds": 40.0, "ripple_mdps": 9.0, "mean_mdps": 1.0}}
+    cost = {"in_motion": 9000.0, "realtime": 1900.0}
+    return {"simulated": simulated, "settling": settling, "cost": cost}
+
+
+def verdicts(found):
+    (line,) = (line for line in table(found).splitlines() if "is it?" in line)
+    return [cell.strip() for cell in line.split("|")[2:-1]]
+
+
+def test_every_demand_that_is_met_is_said_to_be(found):
+    assert verdicts(found) == ["yes"] * 4
+
+
+def test_one_seed_beyond_the_limit_is_one_too_many(found):
+    found["simulated"]["never-rests"]["decision"]["rms_mdps"][1] = 30.1
+    assert verdicts(found) == ["**no**", "yes", "yes", "yes"]
+
+
+def test_one_window_learned_on_a_turntable_is_one_too_many(found):
+    found["simulated"]["turntable"]["in motion"]["learned"] = 1
+    assert verdicts(found) == ["yes", "yes", "**no**", "yes"]
+
+
+def test_honesty_is_counted_in_percent(found):
+    assert "| decision | 95 % | 95 % | 95 % | 95 % |" in table(found)
+
+
+def test_the_decision_is_judged_beside_vqf_on_whole_trials(found):
+    def rows(error):
+        return {"trial": {"rms_mdps": [error] * 3}}
+
+    ways = {"vqf": rows(11.0), "decision": rows(3.0)}
+    found["broad"] = {"whole": ways, "motion": ways, "trials": {}}
+    assert "at or below vqf on the whole trial: yes" in table(found)
+    ways["decision"] = rows(12.0)
+    assert "at or below vqf on the whole trial: **no**" in table(found)

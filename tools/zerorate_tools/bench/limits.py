@@ -1,0 +1,115 @@
+"""What the figures of cost and accuracy must be, and whether they are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from .tables import number, table
+
+OURS = "zerorate"
+SESSION_2 = {
+    "all": {"warm-up-a": 7.0, "warm-up-b": 12.0, "warm-up-c": 35.0},
+    "first": {"warm-up-a": 20.0, "warm-up-b": 40.0, "warm-up-c": 50.0},
+}
+_PARTS = {"all": "RMS", "first": "first 15 s"}
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A figure's bound. measured: takes all figures, raises KeyError or TypeError without it."""
+
+    figure: str
+    bound: float
+    unit: str
+    measured: Callable[[Mapping[str, Any]], float]
+    at_least: bool = False
+
+    def verdict(self, found: Mapping[str, Any]) -> Verdict:
+        """This bound beside what was found."""
+        try:
+            value = self.measured(found)
+        except (KeyError, TypeError):
+            return Verdict(self, None)
+        return Verdict(self, float(value))
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """A bound and the figure measured for it, None where it could not be measured."""
+
+    limit: Limit
+    value: float | None
+
+    @property
+    def met(self) -> bool | None:
+        """Whether the bound is kept; None where nothing was measured."""
+        if self.value is None:
+            return None
+        if self.limit.at_least:
+            return self.value >= self.limit.bound
+        return self.value <= self.limit.bound
+
+    def to_json(self) -> dict[str, object]:
+        """figure, measured, at_most or at_least, unit, met."""
+        kind = "at_least" if self.limit.at_least else "at_most"
+        found = {"figure": self.limit.figure, "measured": self.value, kind: self.limit.bound}
+        return {**found, "unit": self.limit.unit, "met": self.met}
+
+
+def _instructions(
+    over: str, under: str, of: str = "instructions_per_sample"
+) -> Callable[[Mapping[str, Any]], float]:
+    def ratio(found: Mapping[str, Any]) -> float:
+        counts = found[of]
+        return counts[over] / counts[under]
+
+    return ratio
+
+
+def _growth(found: Mapping[str, Any]) -> float:
+    peaks = {float(h): figures["peak_bytes"] for h, figures in found["replay_by_hours"].items()}
+    return peaks[max(peaks)] / peaks[min(peaks)]
+
+
+def _error(name: str, part: str) -> Callable[[Mapping[str, Any]], float]:
+    return lambda found: found["session_2_rms_mdps"][name][OURS][part]
+
+
+_ALONE = "instructions_per_update"
+_by_bytecode_alone = _instructions("bytecode", "viper", _ALONE)
+COST = (
+    Limit("viper against C -O2, instructions in bursts", 4, "x", _instructions("viper", "c")),
+    Limit(
+        "viper against bytecode, fewer in bursts", 15, "x", _instructions("bytecode", "viper"), True
+    ),
+    Limit("worst sample against the median", 10, "x", lambda f: f["worst_sample"]["ratio"]),
+    Limit("heap an update", 0, "bytes", lambda f: f["heap_bytes_per_update"]),
+    Limit("replay on one core", 2e6, "samples/s", lambda f: f["replay_samples_per_s"], True),
+    Limit("replay's memory, longest against shortest", 1.2, "x", _growth),
+    Limit("viper against C -O2, alone", 4, "x", _instructions("viper", "c", _ALONE)),
+    Limit("viper against bytecode, fewer alone", 15, "x", _by_bytecode_alone, True),
+)
+ACCURACY = tuple(
+    Limit(f"session 2, {_PARTS[part]}, {name[-1].upper()}", bound, "mdps", _error(name, part))
+    for part, bounds in SESSION_2.items()
+    for name, bound in bounds.items()
+)
+
+
+def verdicts(found: Mapping[str, Any], limits: tuple[Limit, ...]) -> list[Verdict]:
+    """Each limit beside its figure."""
+    return [limit.verdict(found) for limit in limits]
+
+
+def limits_table(found: list[Verdict]) -> str:
+    """Markdown: figure, measured, bound, met."""
+    return table(["figure", "measured", "must be", "met"], [_row(verdict) for verdict in found])
+
+
+def _row(verdict: Verdict) -> list[str]:
+    limit = verdict.limit
+    measured = "not measured" if verdict.value is None else f"{number(verdict.value)} {limit.unit}"
+    bound = f"at {'least' if limit.at_least else 'most'} {limit.bound:,.10g} {limit.unit}"
+    return [limit.figure, measured, bound, {True: "yes", False: "**no**", None: "-"}[verdict.met]]
