@@ -41,6 +41,7 @@ def test_a_real_recording_goes_the_same_way(find_runtime, real_data, tmp_path):
     import_recording(source, log)
     shown = demo(log)
     assert shown.same_state
+    assert shown.truth_dps is None
     assert len(shown.bias_dps) == len(read_recording(log).columns["t_us"])
     assert shown.score.uncorrected_mdps > 2000
     assert shown.score.firmware_mdps < 10
@@ -53,6 +54,7 @@ def test_the_command_prints_the_error_before_and_after_and_draws(
     assert main(["demo", str(log), "--out", str(tmp_path / "out")]) == 0
     said = capsys.readouterr().out
     assert "uncorrected" in said and "equal to the last bit" in said
+    assert f"{tmp_path / 'out' / 'demo.png'}" in said
     assert (tmp_path / "out" / "demo.png").read_bytes().startswith(b"\x89PNG")
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
 from pathlib import Path
 
 
@@ -11,53 +12,123 @@ def add_parser(subparsers) -> None:
     parser = subparsers.add_parser(
         "demo",
         help="the whole job without hardware",
-        description="Play a recording, register by register, through an emulated chip on an "
-        "emulated I2C bus into the driver and the firmware on a real MicroPython; print the error "
-        "before and after and draw it.",
+        description="The whole job on a built-in device, no hardware: an emulated chip on an "
+        "emulated I2C bus, driver and firmware on a real MicroPython, the loop closed, and what it "
+        "found run by MicroPython again. With a LOG, that recording is played instead.",
     )
     parser.add_argument(
         "log", nargs="?", type=Path, metavar="LOG", help="a recording at rest; default: built-in"
     )
-    parser.add_argument("--out", type=Path, default=Path("zerorate-demo"), metavar="DIR")
+    parser.add_argument(
+        "--real",
+        action="store_true",
+        help="a real recording of the public BROAD data set instead, fetched once (3.6 MB)",
+    )
+    parser.add_argument(
+        "--out", type=Path, default=Path("zerorate-demo"), metavar="DIR", help="folder to write"
+    )
     parser.add_argument(
         "--runtime", default="wasm", metavar="NAME", help="wasm (default), x86, armhf, or a path"
     )
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run, refuse=parser.error)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Play, print, draw."""
-    from ..demo import demo
+    """Do the whole job, or play one recording."""
+    if arguments.real and arguments.log is not None:
+        arguments.refuse("--real brings its own recording: leave out LOG")
+    get_ready(arguments.runtime)
+    if arguments.real:
+        return run_real(arguments)
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    if arguments.log is not None:
+        return run_log(arguments)
+    return run_job(arguments)
+
+
+def get_ready(runtime: str) -> None:
+    """Fetch the interpreter where it is not there yet. Raises MissingRuntime."""
+    from ..errors import MissingRuntime
+    from ..progress import progress
+    from ..runtimes import NAMES, fetch, find
+
+    try:
+        find(runtime)
+    except MissingRuntime:
+        if runtime not in NAMES:
+            raise
+        with progress(f"fetching MicroPython ({runtime})"):
+            fetch(runtime)
+
+
+def run_log(arguments: argparse.Namespace) -> int:
+    """Play one recording; exit code 1 if the interpreters disagree."""
+    from ..demo import demo, story
     from ..demo.picture import draw
     from ..progress import progress
-    from ..recordings.atomic import written_beside
 
     with progress("playing through chip, bus, driver and firmware"):
         shown = demo(arguments.log, arguments.runtime)
-    arguments.out.mkdir(parents=True, exist_ok=True)
-    picture = arguments.out / "demo.png"
-    with written_beside(picture) as temporary:
-        draw(shown, temporary)
-    _print(shown)
-    print(f"picture: {picture}")
+    print("\n".join([*story.played(shown), *story.scored(shown)]))
+    print(story.ending([(draw_into(arguments.out, draw, shown), "bias, what is left, angle lost")]))
     return 0 if shown.same_state else 1
 
 
-def _print(shown) -> None:
-    columns = shown.recording.columns
-    minutes = (columns["t_us"][-1] - columns["t_us"][0]) / 60e6
-    print(f"{shown.recording.name}: {len(columns['t_us'])} samples, {minutes:.1f} min")
-    print(f"MicroPython ({shown.runtime}) says:")
-    for line in shown.said.splitlines():
-        print("  " + line)
-    equal = "equal to the last bit" if shown.same_state else "DIFFERENT, which is a defect"
-    print(f"its final state and that of the same kernels on this host: {equal}")
-    s = shown.score
-    print(f"after the first ten seconds, against the truth ({s.truth}):")
-    rows = (
-        ("uncorrected", s.uncorrected_mdps, s.uncorrected_deg),
-        ("mean of the first ten seconds", s.first_ten_s_mdps, s.first_ten_s_deg),
-        ("zerorate", s.firmware_mdps, s.firmware_deg),
-    )
-    for name, mdps, deg in rows:
-        print(f"  {name:30} {mdps:9.1f} mdps rms {deg:9.2f} deg lost by the end")
+def run_job(arguments: argparse.Namespace) -> int:
+    """Tell the whole story; exit code 1 if the interpreters disagree."""
+    from .. import demo
+    from ..demo import story
+    from ..demo.picture import draw_job
+    from ..progress import progress
+
+    folder, runtime = arguments.out, arguments.runtime
+    with progress("simulating a device"):
+        device = demo.make_device(folder)
+    print(story.opening(device, folder), flush=True)
+    with progress("playing its first power-on through chip, bus, driver and firmware"):
+        first = demo.first_power_on(device, runtime)
+    print(story.chapter_one(first), flush=True)
+    with progress("closing the loop"):
+        result = demo.closed(device, folder)
+    print(story.chapter_two(device, result), flush=True)
+    model = folder / "model.bin"
+    with progress("playing the last power-on without and with the model"):
+        before, after = demo.back_on_the_chip(device, model, runtime)
+    print(story.chapter_three(before, after, model))
+    drawn = draw_into(folder, draw_job, first, before, after)
+    print(story.ending([*reports(folder), (drawn, "power-on 1, and the last without and with it")]))
+    return 0 if all(shown.same_state for shown in (first, before, after)) else 1
+
+
+def run_real(arguments: argparse.Namespace) -> int:
+    """The firmware on a real recording, beside others."""
+    from ..demo import story
+    from ..demo.broad_trial import broad_trial
+    from ..demo.real import real
+    from ..progress import progress
+
+    with progress("fetching a trial of BROAD"):
+        trial = broad_trial()
+    with progress("running the firmware over it", 4) as advance:
+        shown = real(trial, arguments.runtime, advance)
+    print(story.real_trial(shown, arguments.runtime))
+    return 0
+
+
+def draw_into(folder: Path, draw: Callable[..., None], *shown) -> Path:
+    """Draw demo.png into a folder."""
+    from ..recordings.atomic import written_beside
+
+    path = folder / "demo.png"
+    with written_beside(path) as temporary:
+        draw(*shown, temporary)
+    return path
+
+
+def reports(folder: Path) -> list[tuple[Path, str]]:
+    """What closing the loop wrote for people."""
+    said = {
+        "report.html": "what was found and how sure, before and after: open it in a browser",
+        "model.json": "the effects found, to be read; `zerorate model show` says them in words",
+    }
+    return [(folder / name, what) for name, what in said.items() if (folder / name).exists()]

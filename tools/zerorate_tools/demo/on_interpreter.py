@@ -4,7 +4,9 @@ import sys
 from array import array
 
 from zerorate import Corrector, Sensor
-from zerorate.corrector import OUT_Q8, QUALITY_Q8, SOURCE
+from zerorate.corrector import EFFECT_Q8, OUT_Q8
+from zerorate.model import EffectModel
+from zerorate.model_file import LOADED, REASONS
 from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050
 from zerorate_i2c.mpu6050 import MPU6050, RESTARTED, SUSPECT
 
@@ -30,35 +32,57 @@ class Recording:
                 yield rows[8 * i + 1 : 8 * i + 8]
 
 
+def content(name):
+    try:
+        with open(name, "rb") as file:
+            return file.read()
+    except OSError:
+        return b""
+
+
+def switched_on(imu, odr_hz):
+    """A Corrector at power-on, with the learned state and the model that lie beside this script."""
+    scales = (imu.gyro_lsb_per_dps, imu.accel_lsb_per_g)
+    degrees = (imu.temp_lsb_per_degc, imu.temp_offset_degc)
+    corrector = Corrector(Sensor(odr_hz, *scales, *degrees))
+    if content("model.bin"):
+        model = EffectModel()
+        reason = model.load_file("model.bin", corrector.sensor, imu.binding)
+        print("effect model: " + REASONS[reason])
+        if reason == LOADED:
+            corrector.use_model(model)
+    learned = array("i", content("learned.bin"))
+    if learned:
+        for i in range(len(corrector.state)):
+            corrector.state[i] = learned[i]
+        corrector.power_on()
+    return corrector
+
+
 def play(recording, target, part, dps, g, odr_hz):
     chip = FakeMPU6050(recording, part=part)
     imu = MPU6050(
         FakeI2C(chip), full_scale_dps=dps, full_scale_g=g, odr_hz=odr_hz, clock=FakeClock()
     )
-    scales = (imu.gyro_lsb_per_dps, imu.accel_lsb_per_g)
-    degrees = (imu.temp_lsb_per_degc, imu.temp_offset_degc)
-    corrector = Corrector(Sensor(odr_hz, *scales, *degrees))
+    print(f"{imu.part} at 0x{imu.address:02X}, WHO_AM_I 0x{imu.who_am_i:02X}")
+    corrector = switched_on(imu, odr_hz)
+    state = corrector.state
     sample = array("i", [0] * 7)
-    row = array("i", [0] * 17)
+    row = array("i", [0] * 6)
     while chip.step():
         status = imu.read(sample)
-        row[0] = -1
         if status != RESTARTED and status != SUSPECT:
-            row[0] = corrector.update(sample, recording.dt_us)
+            corrector.update(sample, recording.dt_us)
         for i in range(3):
-            row[1 + i] = corrector.state[OUT_Q8 + i]
-            row[4 + i] = corrector.state[SOURCE + i]
-            row[7 + i] = corrector.state[QUALITY_Q8 + i]
-        for i in range(7):
-            row[10 + i] = sample[i]
+            row[i] = state[OUT_Q8 + i] + state[EFFECT_Q8 + i]
+            row[3 + i] = sample[4 + i]
         target.write(row)
-    print(f"{imu.part} at 0x{imu.address:02X}, WHO_AM_I 0x{imu.who_am_i:02X}")
     print(corrector.explain())
-    return corrector.state
+    return corrector
 
 
 with open("samples.bin", "rb") as source, open("out.bin", "wb") as target:
-    state = play(
+    corrector = play(
         Recording(source),
         target,
         sys.argv[1],
@@ -67,4 +91,6 @@ with open("samples.bin", "rb") as source, open("out.bin", "wb") as target:
         float(sys.argv[4]),
     )
 with open("state.bin", "wb") as file:
-    file.write(state)
+    file.write(corrector.state)
+    if corrector.effects is not None:
+        file.write(corrector.effects.e)

@@ -1,4 +1,4 @@
-"""The demo's picture: rates, bias and temperature, and the angle that is lost."""
+"""The demo's pictures: bias and temperature, what is left of the bias, the angle that is lost."""
 
 from __future__ import annotations
 
@@ -17,48 +17,87 @@ _COLOURS = ("#0072B2", "#D55E00", "#009E73")
 
 
 def draw(shown: Demo, path: Path) -> None:
-    """Write the picture as PNG."""
+    """Write the picture of one recording as PNG."""
     figure, (top, middle, bottom) = plt.subplots(3, 1, figsize=(9, 10), sharex=True)
-    minutes = seconds(shown.recording) / 60
-    _biases(top, shown, minutes)
-    _rest_of_rate(middle, shown, minutes)
-    _angles(bottom, shown, minutes)
+    _biases(top, shown)
+    _left(middle, shown, _most(shown))
+    middle.set_title("What is left of it, 5 s means", loc="left")
+    _angles(bottom, shown)
     bottom.set_xlabel("minutes since power-on")
-    figure.suptitle(f"{shown.recording.name} on MicroPython ({shown.runtime})")
+    _write(figure, path)
+
+
+def draw_job(first: Demo, before: Demo, after: Demo, path: Path) -> None:
+    """Write the picture of the whole job as PNG: the first power-on, the last without and with."""
+    figure, (top, middle, bottom) = plt.subplots(3, 1, figsize=(9, 10))
+    _biases(top, first)
+    most = max(_most(before), _most(after))
+    for axes, shown, name in (
+        (middle, before, "learning alone"),
+        (bottom, after, "with model.bin"),
+    ):
+        _left(axes, shown, most)
+        rms = f"{shown.score.firmware_mdps:.1f} mdps rms"
+        axes.set_title(f"Left of it in {shown.recording.name}, {name}: {rms}", loc="left")
+    bottom.set_xlabel("minutes since power-on")
+    _write(figure, path)
+
+
+def _write(figure, path: Path) -> None:
     figure.tight_layout()
     figure.savefig(path, dpi=110, format="png")
     plt.close(figure)
 
 
-def _biases(axes, shown: Demo, minutes) -> None:
+def _minutes(shown: Demo):
+    return seconds(shown.recording) / 60
+
+
+def _biases(axes, shown: Demo) -> None:
+    minutes = _minutes(shown)
     for i, axis in enumerate("xyz"):
         known = np.where(shown.bias_dps[:, i] == 0, np.nan, shown.bias_dps[:, i])
-        axes.plot(minutes, known, color=_COLOURS[i], label=f"bias found, g{axis}")
+        axes.plot(minutes, known, color=_COLOURS[i], label=f"g{axis}")
         if shown.truth_dps is not None:
             few = slice(None, None, max(1, len(minutes) // 200))
             axes.plot(minutes[few], shown.truth_dps[few, i], "k:", linewidth=1)
     axes.set_ylabel("dps")
-    axes.legend(loc="upper left", fontsize=8)
+    _legend_above(axes)
     scales = shown.recording.scales
     if scales.temp_lsb_per_degc and "temp" in shown.recording.columns:
         warm = axes.twinx()
-        warm.plot(minutes, scales.temp_degc(shown.recording.columns["temp"]), color="0.7")
-        warm.set_ylabel("die temperature, degC", color="0.4")
-    axes.set_title("Bias" + ("" if shown.truth_dps is None else " (dotted: the truth)"))
+        warm.plot(
+            minutes, scales.temp_degc(shown.recording.columns["temp"]), color="0.75", zorder=0
+        )
+        warm.set_ylabel("die temperature, degC (grey)", color="0.4")
+    truth = "" if shown.truth_dps is None else " (dotted: the truth)"
+    axes.set_title(f"Bias found in {shown.recording.name} on MicroPython{truth}", loc="left")
 
 
-def _rest_of_rate(axes, shown: Demo, minutes) -> None:
+def _legend_above(axes) -> None:
+    axes.legend(loc="lower right", bbox_to_anchor=(1, 1), ncol=3, fontsize=8, frameon=False)
+
+
+def _error_mdps(shown: Demo):
     target = rates(shown.recording) if shown.truth_dps is None else shown.truth_dps
-    error = (target - shown.bias_dps) * 1e3
+    return (target - shown.bias_dps) * 1e3
+
+
+def _left(axes, shown: Demo, most: float) -> None:
+    error = _error_mdps(shown)
     for i, axis in enumerate("xyz"):
-        axes.plot(minutes, _smoothed(error[:, i], shown), color=_COLOURS[i], label=f"g{axis}")
-    late = error[seconds(shown.recording) >= SETTLE_S]
-    smooth = np.concatenate([_smoothed(late[:, i], shown) for i in range(3)])
-    most = max(5.0, 1.5 * float(np.nanmax(np.abs(smooth))))
+        smooth = _smoothed(error[:, i], shown)
+        axes.plot(_minutes(shown), smooth, color=_COLOURS[i], label=f"g{axis}")
+    axes.axhline(0, color="0.8", linewidth=0.8, zorder=0)
     axes.set_ylim(-most, most)
     axes.set_ylabel("mdps")
-    axes.legend(loc="upper right", fontsize=8)
-    axes.set_title("What is left of it, 5 s means")
+    _legend_above(axes)
+
+
+def _most(shown: Demo) -> float:
+    late = _error_mdps(shown)[seconds(shown.recording) >= SETTLE_S]
+    smooth = np.concatenate([_smoothed(late[:, i], shown) for i in range(3)])
+    return max(5.0, 1.3 * float(np.nanmax(np.abs(smooth))))
 
 
 def _smoothed(values, shown: Demo):
@@ -66,8 +105,8 @@ def _smoothed(values, shown: Demo):
     return np.convolve(values, np.ones(width) / width, mode="same")
 
 
-def _angles(axes, shown: Demo, minutes) -> None:
-    t_s = seconds(shown.recording)
+def _angles(axes, shown: Demo) -> None:
+    minutes, t_s = _minutes(shown), seconds(shown.recording)
     rate = rates(shown.recording)
     target = rate if shown.truth_dps is None else shown.truth_dps
     later = t_s >= SETTLE_S
@@ -83,5 +122,5 @@ def _angles(axes, shown: Demo, minutes) -> None:
         axes.plot(minutes[later], np.maximum(lost, 1e-3), color=style, label=name)
     axes.set_yscale("log")
     axes.set_ylabel("degrees")
-    axes.legend(loc="lower right", fontsize=8)
-    axes.set_title("Angle lost by integration")
+    _legend_above(axes)
+    axes.set_title("Angle lost by integration", loc="left")

@@ -47,7 +47,8 @@ def score(
     steps = np.diff(t_s[later], append=t_s[-1])
     lost = [float(np.abs((error * steps[:, None]).sum(axis=0)).max()) for error in errors]
     truth = "the device rests, its rate is zero" if truth_dps is None else "the simulated bias"
-    return Score(*(1e3 * value for value in rms), *lost, truth)
+    mdps = [1e3 * value for value in rms]
+    return Score(mdps[0], mdps[1], mdps[2], lost[0], lost[1], lost[2], truth)
 
 
 def seconds(recording: Recording) -> NDArray[np.float64]:

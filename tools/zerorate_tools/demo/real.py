@@ -1,0 +1,82 @@
+"""`demo --real`: the firmware on a real recording, against the bias that optics tell."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.util import find_spec
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..bench.broad import Trial, TrueBias, true_bias
+from ..recordings import Recording
+from ..replay import replay
+
+WAYS = (
+    "uncorrected",
+    "mean of the first ten seconds",
+    "vqf",
+    "zerorate, from rests",
+    "zerorate, in motion and by gravity too",
+)
+WHOLE_FROM_S, MOTION_FROM_S = 10.0, 60.0
+_EVERY_SOURCE = {"motion": True, "accelerometer": True}
+
+
+@dataclass(frozen=True)
+class Real:
+    """A real trial: whole_mdps, motion_mdps: way -> RMS error over axes and time, mdps.
+
+    whole: the trial with the rests at its ends, from 10 s on; motion: as if switched on in
+    mid-motion, without any rest, from 60 s on. said: the firmware's own words after the whole
+    trial, every source on.
+    """
+
+    trial: Trial
+    truth: TrueBias
+    whole_mdps: dict[str, float]
+    motion_mdps: dict[str, float]
+    said: str
+
+
+def real(
+    trial: Trial, runtime: str = "wasm", advance: Callable[[float], None] = lambda n: None
+) -> Real:
+    """Run the firmware over `trial` on `runtime` and score it. Raises MissingRuntime.
+
+    advance: called with 1 after each of the four runs. vqf is left out where it is not installed.
+    """
+    truth = true_bias(trial)
+    rows, said = [], ""
+    for part, start_s in ((trial, WHOLE_FROM_S), (trial.in_motion(), MOTION_FROM_S)):
+        recording = part.recording()
+        biases = {way: _peer(way)(recording) for way in WAYS[:2]}
+        if find_spec("vqf") is not None:
+            biases["vqf"] = _peer("vqf")(recording)
+        for way, options in zip(WAYS[3:], ({}, _EVERY_SOURCE)):
+            done = replay(recording, runtime=runtime, options=dict(options))
+            biases[way] = _biases(done.table, recording)
+            advance(1)
+        said = said or done.explanation
+        first = round(start_s * trial.hz)
+        rows.append({way: _rms_mdps(bias[first:] - truth.bias_dps) for way, bias in biases.items()})
+    return Real(trial, truth, rows[0], rows[1], said)
+
+
+def _peer(way: str) -> Callable[[Recording], NDArray[np.float64]]:
+    from ..bench.peers import first_seconds, given, vqf_default
+
+    if way == "uncorrected":
+        return lambda recording: np.zeros((len(recording), 3))
+    peer = vqf_default if way == "vqf" else first_seconds
+    return lambda recording: peer([given(recording)])[0]
+
+
+def _biases(table, recording: Recording) -> NDArray[np.float64]:
+    lsb = recording.scales.gyro_lsb_per_dps
+    return np.stack([table[f"bias_g{axis}"].to_numpy() for axis in "xyz"], axis=1) / lsb
+
+
+def _rms_mdps(error_dps: NDArray[np.float64]) -> float:
+    return float(1e3 * np.sqrt(np.mean(np.square(error_dps))))

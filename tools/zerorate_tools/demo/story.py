@@ -1,0 +1,165 @@
+"""What a demo showed, told a chapter at a time: lines of text for a terminal."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+import textwrap
+from pathlib import Path
+
+import numpy as np
+
+from ..report.kinds import meaning
+from .broad_trial import CREDIT
+from .device import Device
+from .real import MOTION_FROM_S, WAYS, WHOLE_FROM_S, Real
+from .run import Demo
+from .score import seconds
+
+_IN = " " * 10
+_NEXT = """\
+What next
+  board with MicroPython   {zerorate} flash /dev/ttyACM0 --dry-run     (then without --dry-run)
+  Linux board, I2C bus     {zerorate} record /dev/i2c-1 --out run.parquet --seconds 600
+  your own test suite      {python} -m pydoc zerorate_fakes
+  recordings you have      {zerorate} import FILE --out run.parquet
+                           {zerorate} close RUN... --out closed     (each RUN is one power-on)"""
+
+
+def opening(device: Device, folder: Path) -> str:
+    """What is about to be shown, on what."""
+    return (
+        f"A simulated MPU-6050, switched on {len(device.logs)} times, carried about and put down.\n"
+        f"Its recordings are {folder / 'power-on-1.parquet'} to {device.logs[-1].name}."
+    )
+
+
+def chapter_one(shown: Demo) -> str:
+    """The chip, the bus, and what the firmware learned."""
+    return "\n".join(["", "1. The firmware learns", *played(shown), *scored(shown)])
+
+
+def played(shown: Demo) -> list[str]:
+    """What was played on what, the firmware's own words, and whether its state is the host's."""
+    minutes = seconds(shown.recording)[-1] / 60
+    equal = "equal to the last bit" if shown.same_state else "DIFFERENT, which is a defect"
+    name, count = shown.recording.name, len(shown.recording)
+    return [
+        f"   {name}: {count} samples, {minutes:.0f} minutes, through",
+        "   an emulated chip on an emulated I2C bus into driver and firmware on a real MicroPython",
+        f"   ({shown.runtime}). It says:",
+        *(f"     {line}" for line in shown.said.splitlines()),
+        f"   Its final state and that of the same firmware on this computer: {equal}.",
+    ]
+
+
+def scored(shown: Demo) -> list[str]:
+    """The error without anything, with the usual remedy, and with the firmware."""
+    s = shown.score
+    rows = (
+        ("uncorrected", s.uncorrected_mdps, s.uncorrected_deg),
+        ("mean of the first ten seconds", s.first_ten_s_mdps, s.first_ten_s_deg),
+        ("zerorate", s.firmware_mdps, s.firmware_deg),
+    )
+    head = f"   Error after ten seconds, against {s.truth}:"
+    return [head] + [
+        f"     {name:30}{mdps:9,.1f} mdps rms {deg:10,.1f} deg lost by the end"
+        for name, mdps, deg in rows
+    ]
+
+
+def chapter_two(device: Device, result: dict) -> str:
+    """What closing the loop found, and how much better that makes the locked power-on."""
+    first, last, locked = (
+        device.logs[0].stem,
+        device.logs[-2].stem,
+        ", ".join(result["split"]["test"]),
+    )
+    lines = [
+        "",
+        "2. The loop is closed: what does the firmware's model lack?",
+        f"   Fitted on {first} to {last}; {locked} was locked away and looked at once.",
+        *_found(result["steps"]),
+        *(f"   the truth, of which nobody told it: {words}" for words in device.hidden),
+        f"   Error in {locked}, offset taken from its first still minute, then frozen:",
+        "                    gx        gy        gz",
+    ]
+    for name in ("before", "after", "floor"):
+        values = "".join(f"{v:10.1f}" for v in result[f"{name}_mdps"])
+        lines.append(f"     {name:8}{values} mdps")
+    return "\n".join(lines)
+
+
+def _found(steps: list[dict]) -> list[str]:
+    lines = []
+    for step in steps:
+        lines.append(f"   found: {step['effect']} ({step['confidence']})")
+        lines += textwrap.wrap(
+            meaning(step["effect"]), 84, initial_indent=_IN, subsequent_indent=_IN
+        )
+    return lines or ["   found: nothing"]
+
+
+def chapter_three(before: Demo, after: Demo, model: Path) -> str:
+    """The same power-on on MicroPython, without and with the model."""
+    ratio = before.score.firmware_mdps / after.score.firmware_mdps
+    same = before.same_state and after.same_state
+    return "\n".join(
+        [
+            "",
+            f"3. Back on the chip: MicroPython loads {model.name}, {model.stat().st_size} bytes",
+            f"   {before.recording.name} once more, after the ones before it, learning as it goes:",
+            "                    gx        gy        gz",
+            f"     without {_axes(before)} mdps rms",
+            f"     with it {_axes(after)} mdps rms: {ratio:.1f} times better",
+            "   Final states equal to those of this computer: " + ("yes." if same else "NO."),
+        ]
+    )
+
+
+def _axes(shown: Demo) -> str:
+    late = seconds(shown.recording) >= 10
+    assert shown.truth_dps is not None
+    error = (shown.bias_dps - shown.truth_dps)[late]
+    return "".join(f"{1e3 * v:10.1f}" for v in np.sqrt(np.mean(error**2, axis=0)))
+
+
+def ending(files: list[tuple[Path, str]]) -> str:
+    """What to open, and each user's next command."""
+    width = max(len(str(path)) for path, _ in files)
+    looks = [f"  {str(path):{width}}   {what}" for path, what in files]
+    following = _NEXT.format(zerorate=_as_typed("zerorate"), python=_as_typed("python"))
+    return "\n".join(["", "Look at", *looks, "", following])
+
+
+def _as_typed(program: str) -> str:
+    """A program of this environment by name, or by its path where the shell would not find it."""
+    own = Path(sys.executable).with_name(program)
+    on_path = shutil.which(program)
+    if (on_path and Path(on_path) == own) or not own.exists():
+        return program
+    relative = os.path.relpath(own)
+    return str(own) if relative.startswith("..") else relative
+
+
+def real_trial(shown: Real, runtime: str) -> str:
+    """What the firmware made of a real recording, beside others."""
+    trial, truth = shown.trial, shown.truth
+    minutes, sigma_mdps = len(trial.rate_dps) / trial.hz / 60, 1e3 * truth.sigma_dps.max()
+    optical = " ".join(f"{v:+.3f}" for v in truth.bias_dps)
+    lines = [
+        f"{trial.name}: a real gyroscope, {minutes:.1f} minutes at {trial.hz:.0f} Hz,",
+        "in a hand, at rest at both ends, its attitude seen by cameras",
+        f"({CREDIT})",
+        f"true bias by the cameras: {optical} dps, one sigma {sigma_mdps:.0f} mdps",
+        "",
+        f"RMS error of the bias, mdps (firmware on {runtime}):",
+        f"{'':42}{'whole trial':>14}{'its motion alone':>20}",
+        f"{'':42}{f'from {WHOLE_FROM_S:.0f} s on':>14}{f'from {MOTION_FROM_S:.0f} s on':>20}",
+    ]
+    for way in (way for way in WAYS if way in shown.whole_mdps):
+        whole, motion = shown.whole_mdps[way], shown.motion_mdps[way]
+        lines.append(f"  {way:40}{whole:14,.1f}{motion:20,.1f}")
+    lines += ["", "What the firmware says at the end of the whole trial:"]
+    return "\n".join([*lines, *(f"  {line}" for line in shown.said.splitlines())])
