@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050
 from zerorate_fakes.smbus import SMBus
-from zerorate_tools.cli import parser
 
 HERE = Path(__file__).parent
 DOCUMENTS = ("faults.md", "wiring.md", "pico.md", "raspberry-pi.md", "unit-tests.md")
@@ -30,15 +29,6 @@ def test_the_example_is_the_one_in_the_document(repository):
     text = (repository / "examples" / "main.py").read_text()
     assert snippets(repository, "pico.md", "python")[0] == text
     assert len(text.splitlines()) <= 15
-
-
-@pytest.mark.parametrize("document", DOCUMENTS)
-def test_every_command_is_one(repository, document):
-    commands = [line for text in snippets(repository, document, "sh") for line in text.splitlines()]
-    for command in commands:
-        program, *arguments = command.split()
-        assert program == "zerorate"
-        assert parser().parse_args(arguments).run
 
 
 class TestPico:

@@ -1,0 +1,38 @@
+"""`make docs`: writes what in docs/ is made by a command: API, pictures, console output."""
+
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+
+from .api_page import api_page
+from .copied_tables import with_copied_tables
+from .data_way import data_way
+from .effect_table import with_effect_table
+from .option_tables import with_option_tables
+from .outputs import refreshed
+from .pages import blocks, pages
+
+
+def main(repository, only=()):
+    """Write the pages anew; only: names of those whose commands are run, `none`, all by default."""
+    docs = repository / "docs"
+    (docs / "api.md").write_text(api_page(repository), encoding="utf-8")
+    (docs / "data-way.svg").write_text(data_way(), encoding="utf-8")
+    for page in pages(repository):
+        if blocks(page, "console") and (not only or page.name in only):
+            print(page.relative_to(repository), flush=True)
+            with tempfile.TemporaryDirectory() as folder:
+                page.write_text(refreshed(page, folder), encoding="utf-8")
+                for picture in Path(folder).glob("shown/demo.png"):
+                    shutil.copy(picture, docs)
+        page.write_text(with_tables(page.read_text(encoding="utf-8"), docs), encoding="utf-8")
+
+
+def with_tables(text, docs):
+    """The text with all its marked places filled anew."""
+    return with_effect_table(with_copied_tables(with_option_tables(text), docs))
+
+
+if __name__ == "__main__":
+    main(Path(__file__).resolve().parents[2], sys.argv[1:])

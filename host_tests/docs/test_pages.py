@@ -1,0 +1,127 @@
+"""Every page: its commands parse, its output is what they print, its links lead somewhere."""
+
+import re
+import shlex
+
+import pytest
+from zerorate_tools.cli import parser
+
+from host_tests.docs.api_page import api_page
+from host_tests.docs.copied_tables import with_copied_tables
+from host_tests.docs.data_way import data_way
+from host_tests.docs.effect_table import with_effect_table
+from host_tests.docs.option_tables import commands_under, with_option_tables
+from host_tests.docs.outputs import commands, refreshed, same_but_for_rounding
+from host_tests.docs.pages import blocks, pages
+
+#: Pages whose programs run in tests of their own, on fakes of a board or a bus.
+ELSEWHERE = {"pico.md", "raspberry-pi.md", "unit-tests.md", "notebook.md"}
+_LINK = re.compile(r"\]\(([^)\s]+)\)")
+
+
+def read(page):
+    return page.read_text(encoding="utf-8")
+
+
+def zerorate_commands(page):
+    """Every `zerorate ...` of a page's shell and console blocks, without what a pipe adds."""
+    lines = [line for block in blocks(page, "sh") for line in block.text.splitlines()]
+    lines += [line for block in blocks(page, "console") for line in commands(block)]
+    return [line.partition(" | ")[0] for line in lines if line.startswith("zerorate ")]
+
+
+def test_every_command_is_taken_by_the_parser(repository):
+    checked = 0
+    for page in pages(repository):
+        for command in zerorate_commands(page):
+            assert parser().parse_args(shlex.split(command)[1:]).run, command
+            checked += 1
+    assert checked > 20
+
+
+def test_shell_blocks_hold_nothing_but_commands_of_this_project(repository):
+    for page in pages(repository):
+        for block in blocks(page, "sh"):
+            for line in block.text.splitlines():
+                assert line.startswith(("zerorate ", "mpremote ", "python -m ")), (page.name, line)
+
+
+def test_programs_run_and_console_blocks_show_what_their_commands_print(
+    repository, find_runtime, tmp_path
+):
+    find_runtime("wasm")
+    shown = [page for page in pages(repository)[1:] if blocks(page, "console", "python")]
+    assert shown
+    for page in (page for page in shown if page.name not in ELSEWHERE):
+        folder = tmp_path / page.stem
+        folder.mkdir()
+        fresh = refreshed(page, folder)
+        assert same_but_for_rounding(fresh, read(page)), (
+            f"`python -m host_tests.docs {page.name}` writes it anew:\n{fresh}"
+        )
+
+
+def test_the_api_is_what_the_docstrings_say(repository):
+    assert read(repository / "docs" / "api.md") == api_page(repository), "`make docs` writes it"
+
+
+def test_the_drawing_is_what_its_program_draws(repository):
+    assert read(repository / "docs" / "data-way.svg") == data_way(), "`make docs` draws it"
+
+
+@pytest.mark.parametrize(
+    "filled",
+    [
+        pytest.param(lambda text, docs: with_option_tables(text), id="options"),
+        pytest.param(with_copied_tables, id="copied"),
+        pytest.param(lambda text, docs: with_effect_table(text), id="effects"),
+    ],
+)
+def test_tables_are_what_they_are_made_from(repository, filled):
+    for page in pages(repository):
+        assert filled(read(page), repository / "docs") == read(page), "`make docs` writes them"
+
+
+def test_every_command_has_its_section(repository):
+    sections = re.findall(r"^## (\w+)$", read(repository / "docs" / "commands.md"), re.MULTILINE)
+    assert set(commands_under()) <= set(sections)
+
+
+def test_every_relative_link_leads_to_a_file_and_a_heading(repository):
+    for page in pages(repository):
+        for link in _LINK.findall(read(page)):
+            path, _, heading = link.partition("#")
+            target = (page.parent / path).resolve() if path else page
+            assert target.exists(), f"{page.name}: {link}"
+            if heading:
+                titles = re.findall(r"^#+ (.*)$", read(target), re.MULTILINE)
+                anchors = [
+                    re.sub(r"[^\w -]", "", t).strip().lower().replace(" ", "-") for t in titles
+                ]
+                assert heading in anchors, f"{page.name}: {link}"
+
+
+def test_every_page_is_in_the_index(repository):
+    index = read(repository / "docs" / "README.md")
+    names = {page.name for page in (repository / "docs").glob("*.md")} - {"README.md"}
+    assert [name for name in sorted(names) if f"({name})" not in index] == []
+
+
+def test_no_page_is_without_a_title(repository):
+    for page in pages(repository):
+        assert read(page).startswith("# "), page.name
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "same"),
+    [
+        ("x 26.311 mdps", "x 26.4 mdps", True),
+        ("x 26.311 mdps", "x 36.4 mdps", False),
+        ("found: lag", "found: rate", False),
+        ("1,234 samples", "1,234 samples, 3 lost", False),
+        ("offset -0.31", "offset +0.31", False),
+        ("a  b\n", "a b\n", True),
+    ],
+)
+def test_output_is_the_same_but_for_rounding(one, other, same):
+    assert same_but_for_rounding(one, other) is same
