@@ -4,12 +4,12 @@ VENV := .venv
 BIN := $(VENV)/bin
 PYTEST_ARGS ?= -n auto
 
-.PHONY: demo test lint typecheck typecheck-tools pytest viper lock wasm runtimes node wheel clean
+.PHONY: demo test lint typecheck typecheck-tools pytest viper docs lock wasm runtimes node wheel clean
 
 demo: $(VENV)/.tools wasm  ## the whole job on built-in input, no hardware
 	$(BIN)/zerorate demo
 
-test: lint typecheck pytest  ## everything that CI runs
+test: lint typecheck typecheck-tools pytest  ## everything that CI runs
 
 lint: $(VENV)/.dev
 	$(BIN)/ruff check .
@@ -18,14 +18,14 @@ lint: $(VENV)/.dev
 
 # Kernel files are checked as their viper twins, where ptr8 and ptr32 mean something.
 TWINS := $(wildcard firmware/zerorate/viper/*.py)
-KERNELS := $(patsubst firmware/zerorate/viper/%,firmware/zerorate/%,$(TWINS))
+KERNELS := $(shell grep -lE '^ptr(8|32) = None' firmware/zerorate/*.py)
 BOARD := $(sort $(TWINS) $(filter-out $(KERNELS),$(wildcard firmware/zerorate/*.py)) \
 	$(filter-out %/linux.py,$(wildcard drivers/zerorate_i2c/*.py)))
 
 typecheck: $(VENV)/.dev $(VENV)/.board-stubs
 	$(BIN)/mypy --config-file mypy-board.ini $(BOARD)
 
-typecheck-tools: $(VENV)/.dev  ## the host tools; not yet part of `make test`
+typecheck-tools: $(VENV)/.dev  ## the host tools
 	$(BIN)/mypy
 
 pytest: $(VENV)/.dev runtimes
@@ -35,6 +35,9 @@ viper: $(VENV)/.dev  ## write firmware/zerorate/viper from the kernel files
 	$(BIN)/python -m zerorate_tools.viper_twins firmware/zerorate
 	$(BIN)/python -m zerorate_tools.boards.manifests
 	$(BIN)/python -m zerorate_tools.bench.c_program host_tests/yardstick/yardstick.c
+
+docs: $(VENV)/.dev wasm  ## write what in docs/ and README.md is made by a command
+	$(BIN)/python -m host_tests.docs
 
 wasm: $(VENV)/.tools node
 	$(BIN)/zerorate runtimes get wasm
@@ -55,11 +58,13 @@ $(BIN)/python:
 		$(PYTHON) -m pip --python $@ install pip; }
 
 $(VENV)/.tools: requirements/tools.txt pyproject.toml | $(BIN)/python
+	@echo "Fetching the tools' Python packages into $(VENV), 225 MB, once"
 	$(BIN)/python -m pip install --quiet -r requirements/tools.txt
 	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation -e .
 	touch $@
 
 $(VENV)/.dev: requirements/dev.txt $(VENV)/.tools
+	@echo "Fetching what the tests need, once"
 	$(BIN)/python -m pip install --quiet -r requirements/dev.txt
 	touch $@
 
@@ -76,8 +81,8 @@ lock: $(VENV)/.dev  ## resolve the lock files again
 	$(BIN)/$(COMPILE) pyproject.toml --all-extras -c requirements/tools.txt -o requirements/dev.txt
 	$(BIN)/$(COMPILE) requirements/node.in -o requirements/node.txt
 
-wheel: $(VENV)/.dev
-	$(BIN)/uv build --quiet --out-dir dist
+wheel: $(VENV)/.tools  ## dist/*.whl and dist/*.tar.gz
+	$(BIN)/python -m hatchling build -d dist
 
 clean:
 	rm -rf $(VENV) dist .mypy_cache .ruff_cache .pytest_cache .hypothesis

@@ -1,6 +1,7 @@
-"""What every area's tests stand on: the interpreters, the checkout, the real recordings."""
+"""What every area's tests stand on: interpreters, browser, the checkout, the real recordings."""
 
 import os
+import shutil
 from pathlib import Path
 
 import hypothesis
@@ -9,6 +10,9 @@ from zerorate_tools.errors import MissingRuntime
 from zerorate_tools.runtimes import NAMES, available, find, how_to_get
 
 _REPOSITORY = Path(__file__).resolve().parents[1]
+_CHROMIUM = "chromium"
+_CHROMIUMS = (_CHROMIUM, "chromium-browser", "google-chrome")
+_NO_BROWSER = "install the system's package chromium"
 _REQUIRED = frozenset(filter(None, os.environ.get("ZERORATE_REQUIRE", "").split(",")))
 
 # No limits by the clock: machines differ, and are busy.
@@ -17,9 +21,10 @@ hypothesis.settings.load_profile("zerorate")
 
 
 def pytest_configure():
-    unknown = _REQUIRED - set(NAMES)
+    known = (*NAMES, _CHROMIUM)
+    unknown = _REQUIRED - set(known)
     if unknown:
-        raise pytest.UsageError(f"ZERORATE_REQUIRE names {sorted(unknown)}; known: {NAMES}")
+        raise pytest.UsageError(f"ZERORATE_REQUIRE names {sorted(unknown)}; known: {known}")
 
 
 def pytest_terminal_summary(terminalreporter):
@@ -28,6 +33,21 @@ def pytest_terminal_summary(terminalreporter):
         terminalreporter.write_line("interpreters: all of " + ", ".join(NAMES))
     for name in left_out:
         terminalreporter.write_line(f"interpreter left out: {name}; {how_to_get(name)}")
+    if _browser() is None:
+        terminalreporter.write_line(f"browser left out: {_CHROMIUM}; {_NO_BROWSER}")
+
+
+def _browser():
+    return next(filter(None, map(shutil.which, _CHROMIUMS)), None)
+
+
+@pytest.fixture(scope="session")
+def chromium():
+    """The path of this machine's Chromium."""
+    path = _browser()
+    if path is None and _CHROMIUM in _REQUIRED:
+        pytest.fail(f"{_CHROMIUM} is named in ZERORATE_REQUIRE: {_NO_BROWSER}", pytrace=False)
+    return path or pytest.skip(f"no Chromium here; {_NO_BROWSER}")
 
 
 def interpreter(name):

@@ -57,7 +57,7 @@ def test_the_two_locks_agree(requirements):
     assert differing == []
 
 
-@pytest.mark.parametrize("extra", ["tools", "linux", "dev"])
+@pytest.mark.parametrize("extra", ["tools", "linux", "fleet", "bench", "dev"])
 def test_every_need_is_locked_in_a_version_that_satisfies_it(requirements, extras, extra):
     locked = pins(requirements / ("tools.txt" if extra == "tools" else "dev.txt"))
     for need in extras[extra]:

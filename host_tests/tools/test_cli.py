@@ -48,6 +48,12 @@ def test_help_lists_every_command_that_is_there():
         assert f"\n    {name} " in listed
 
 
+def test_without_a_word_it_helps_and_says_where_to_begin():
+    ran = zerorate()
+    assert ran.returncode == 0
+    assert "zerorate demo" in ran.stdout
+
+
 def test_a_command_whose_module_is_not_there_is_not_listed(monkeypatch, capsys):
     monkeypatch.setattr(cli, "COMMANDS", ("simulate", "imagine"))
     with pytest.raises(SystemExit):
@@ -87,7 +93,7 @@ def test_a_folder_that_is_not_there_ends_in_one_line_and_2(tmp_path):
 
 @pytest.mark.parametrize(
     "words",
-    [[], ["fly"], ["simulate"], ["import", "x"], ["import", "x", "--out", "y", "--hz", "0"]],
+    [["fly"], ["simulate"], ["import", "x"], ["import", "x", "--out", "y", "--hz", "0"]],
 )
 def test_wrong_words_end_in_2_with_the_usage(words):
     ran = zerorate(*words)

@@ -16,6 +16,8 @@ COMMANDS = (
     *("demo", "import", "record", "simulate", "replay", "close", "allan", "model"),
     *("flash", "fleet", "watch", "bench", "runtimes"),
 )
+#: Libraries that come with another extra than `tools`.
+_EXTRAS = {"smbus2": "linux", "dask": "fleet", "distributed": "fleet", "imufusion": "bench"}
 _INTERRUPTED = 130
 _BROKEN_PIPE = 141
 
@@ -25,11 +27,14 @@ def main(argv: Sequence[str] | None = None) -> int:
 
     0 is well done, 2 bad input (one line on standard error), 130 interrupted.
     """
+    given = sys.argv[1:] if argv is None else argv
     try:
-        arguments = parser().parse_args(argv)
+        arguments = parser().parse_args(given or ["--help"])
         return arguments.run(arguments) or 0
     except ZerorateError as error:
         return _complain(str(error), error.exit_code)
+    except ModuleNotFoundError as error:
+        return _complain(_what_to_install(error), ZerorateError.exit_code)
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return _BROKEN_PIPE
@@ -44,7 +49,7 @@ def parser() -> argparse.ArgumentParser:
     top = argparse.ArgumentParser(
         prog="zerorate",
         description="Keeps a MEMS gyroscope's zero-rate output at zero.",
-        epilog="`zerorate COMMAND --help` says more of each.",
+        epilog="Begin with `zerorate demo`; `zerorate COMMAND --help` says more of each.",
     )
     top.add_argument("--version", action="version", version=f"zerorate {__version__}")
     subparsers = top.add_subparsers(metavar="COMMAND", required=True)
@@ -63,6 +68,15 @@ def _module_of(command: str) -> str:
 def _complain(message: str, exit_code: int) -> int:
     print(f"zerorate: {message}", file=sys.stderr)
     return exit_code
+
+
+def _what_to_install(error: ModuleNotFoundError) -> str:
+    """The extra that brings a missing library; a module of this project is a defect. Re-raises."""
+    library = (error.name or "").partition(".")[0]
+    if not library or library.startswith("zerorate"):
+        raise error
+    extra = _EXTRAS.get(library, "tools")
+    return f"this needs {library}, which is not installed; pip install 'zerorate[{extra}]'"
 
 
 def _in_words(error: OSError) -> str:

@@ -52,3 +52,7 @@ class MissingRuntime(ZerorateError):
 
 class MissingLibrary(ZerorateError):
     """An optional Python package that this file format or command needs is not installed."""
+
+
+class CannotFetch(ZerorateError):
+    """A file of a public data set that could not be had; the text says where else to get it."""

@@ -13,7 +13,7 @@ def add_parser(subparsers) -> None:
         help="Allan deviation of a recording at rest",
         description="Allan deviation of the longest still stretch (overlapping, IEEE Std 952).",
     )
-    parser.add_argument("log", type=Path, metavar="LOG")
+    parser.add_argument("log", type=Path, metavar="LOG", help="a recording, at rest for a while")
     parser.set_defaults(run=run)
 
 

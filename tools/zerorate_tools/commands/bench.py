@@ -6,30 +6,93 @@ import argparse
 import json
 from pathlib import Path
 
+_MORE = """\
+Without a BENCH it measures what a sample costs, the replay, and the bias error beside everyone
+else's, and says beside each figure what it must be: a quarter of an hour. The others are run by
+name. `--quick` is a look at the same tables in a few minutes, not to be quoted.
+"""
+_QUICK_HOURS = (1.0, 4.0)
+_QUICK_SEEDS = (1,)
+
 
 def add_parser(subparsers) -> None:
     """Register the sub-command and its benches."""
-    parser = subparsers.add_parser("bench", help="measure what this project claims")
-    benches = parser.add_subparsers(dest="bench", metavar="BENCH", required=True)
+    parser = subparsers.add_parser(
+        "bench", help="measure what this project claims", description=_MORE
+    )
+    add_extent(parser)
+    parser.set_defaults(run=run_main)
+    benches = parser.add_subparsers(dest="bench", metavar="BENCH")
     add_accuracy(benches)
     add_cost(benches)
     add_faults(benches)
+    add_fleet(benches)
     add_loop(benches)
     add_motion(benches)
+    add_peers(benches)
+    add_refine(benches)
+
+
+def add_extent(parser) -> None:
+    """How much is measured, and where the report goes."""
+    parser.add_argument("--quick", action="store_true", help="short recordings and one seed")
+    add_outputs(parser)
+
+
+def run_main(arguments: argparse.Namespace) -> None:
+    """Measure cost and accuracy and write one report."""
+    from ..bench.figures import in_markdown, measure, steps
+    from ..progress import progress
+
+    hours, seeds = extent(arguments)
+    with progress("measuring", steps(seeds)) as advance:
+        found = measure(hours, seeds, advance)
+    write_report(arguments, in_markdown(found), found)
+
+
+def extent(arguments: argparse.Namespace) -> tuple[tuple[float, ...], tuple[int, ...]]:
+    """Hours of the replays, and seeds."""
+    from ..bench.accuracy import SEEDS
+    from ..bench.replay_speed import HOURS
+
+    return (_QUICK_HOURS, _QUICK_SEEDS) if arguments.quick else (HOURS, SEEDS)
 
 
 def add_accuracy(benches) -> None:
     """Register `bench accuracy`."""
     parser = benches.add_parser("accuracy", help="the bias error beside everyone else's")
-    add_outputs(parser)
+    add_extent(parser)
     parser.set_defaults(run=run_accuracy)
+
+
+def run_accuracy(arguments: argparse.Namespace) -> None:
+    """Measure and write."""
+    from ..bench.accuracy_report import accuracy, in_markdown, steps
+    from ..progress import progress
+
+    _, seeds = extent(arguments)
+    with progress("measuring accuracy", steps(seeds)) as advance:
+        found = accuracy(advance, seeds)
+    write_report(arguments, in_markdown(found), found)
 
 
 def add_cost(benches) -> None:
     """Register `bench cost`."""
     parser = benches.add_parser("cost", help="instructions, heap, sizes and replay speed")
-    add_outputs(parser)
+    add_extent(parser)
     parser.set_defaults(run=run_cost)
+
+
+def run_cost(arguments: argparse.Namespace) -> None:
+    """Measure and write."""
+    from ..bench.cost import STEPS, cost
+    from ..bench.cost_report import in_markdown
+    from ..progress import progress
+
+    hours, _ = extent(arguments)
+    with progress("measuring cost", STEPS) as advance:
+        found = cost(advance, hours)
+    write_report(arguments, in_markdown(found), found)
 
 
 def add_outputs(parser) -> None:
@@ -38,27 +101,7 @@ def add_outputs(parser) -> None:
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures there too")
 
 
-def run_accuracy(arguments: argparse.Namespace) -> None:
-    """Measure and write."""
-    from ..bench.accuracy_report import STEPS, accuracy, in_markdown
-    from ..progress import progress
-
-    with progress("measuring accuracy", STEPS) as advance:
-        found = accuracy(advance)
-    write_report(arguments, in_markdown(found), found)
-
-
-def run_cost(arguments: argparse.Namespace) -> None:
-    """Measure and write."""
-    from ..bench.cost import STEPS, cost, in_markdown
-    from ..progress import progress
-
-    with progress("measuring cost", STEPS) as advance:
-        found = cost(advance)
-    write_report(arguments, in_markdown(found), found)
-
-
-def write_report(arguments: argparse.Namespace, text: str, found: dict) -> None:
+def write_report(arguments: argparse.Namespace, text: str, found: object) -> None:
     """Print the Markdown or write it, and write the figures where they are wanted."""
     from ..recordings.atomic import written_beside
 
@@ -90,6 +133,26 @@ def run_faults(arguments: argparse.Namespace) -> int:
     return 0 if passed(run(arguments.json)) else 1
 
 
+def add_fleet(benches) -> None:
+    """Register `bench fleet`."""
+    parser = benches.add_parser("fleet", help="many devices at once, and what a prior is worth")
+    sizes = {"type": int, "nargs": "+", "metavar": "N", "default": (100, 500, 2000)}
+    parser.add_argument("--devices", **sizes, help="sizes of the fleet (100 500 2000)")
+    add_outputs(parser)
+    parser.set_defaults(run=run_fleet)
+
+
+def run_fleet(arguments: argparse.Namespace) -> None:
+    """Measure and write."""
+    from ..bench.fleet import WORKERS, markdown, run, steps
+    from ..progress import progress
+
+    sizes = sorted(arguments.devices)
+    with progress("devices", steps(sizes, WORKERS)) as advance:
+        found = run(sizes, advance=advance)
+    write_report(arguments, markdown(found), found)
+
+
 def add_loop(benches) -> None:
     """Register `bench loop`."""
     parser = benches.add_parser("loop", help="what closing the loop finds, and what it invents")
@@ -97,6 +160,8 @@ def add_loop(benches) -> None:
     parser.add_argument("--seeds", type=int, default=20, metavar="N", help="devices an effect")
     parser.add_argument("--processes", type=int, default=2, metavar="N")
     parser.add_argument("--data", type=Path, metavar="DIR", help="folder of real recordings")
+    parser.add_argument("--resume", type=Path, metavar="FILE", help="outcomes: go on from them")
+    parser.add_argument("--plots", type=Path, metavar="DIR", help="PNGs of the real recordings")
     add_outputs(parser)
     parser.set_defaults(run=run_loop)
 
@@ -105,7 +170,8 @@ def run_loop(arguments: argparse.Namespace) -> None:
     """Measure and write."""
     from ..bench.loop import markdown, run
 
-    found = run(arguments.nulls, arguments.seeds, arguments.processes, data=arguments.data)
+    options = {name: getattr(arguments, name) for name in ("data", "resume", "plots")}
+    found = run(arguments.nulls, arguments.seeds, arguments.processes, **options)
     write_report(arguments, markdown(found), found)
 
 
@@ -117,9 +183,44 @@ def add_motion(benches) -> None:
     parser.set_defaults(run=run_motion)
 
 
+def add_refine(benches) -> None:
+    """Register `bench refine`."""
+    parser = benches.add_parser("refine", help="one unit's effect model on another unit, refined")
+    parser.add_argument("--seeds", type=int, default=20, metavar="N", help="units (default: 20)")
+    add_outputs(parser)
+    parser.set_defaults(run=run_refine)
+
+
+def run_refine(arguments: argparse.Namespace) -> None:
+    """Measure and write."""
+    from ..bench.second_unit import run, table
+
+    found = run(arguments.seeds)
+    write_report(arguments, table(found), found)
+
+
 def run_motion(arguments: argparse.Namespace) -> None:
     """Measure and write."""
-    from ..bench.motion import run, table
+    from ..bench.motion import run
+    from ..bench.motion_table import table
 
     found = run(arguments.data)
     write_report(arguments, table(found), found)
+
+
+def add_peers(benches) -> None:
+    """Register `bench peers`."""
+    parser = benches.add_parser("peers", help="what the figures of other filters hang on")
+    add_extent(parser)
+    parser.set_defaults(run=run_peers)
+
+
+def run_peers(arguments: argparse.Namespace) -> None:
+    """Measure and write."""
+    from ..bench.peer_differences import CASES, in_markdown, peer_differences
+    from ..progress import progress
+
+    _, seeds = extent(arguments)
+    with progress("simulating", len(CASES)) as advance:
+        found = peer_differences(seeds, advance)
+    write_report(arguments, in_markdown(found), {"cases": found})

@@ -17,6 +17,12 @@ def add_parser(subparsers) -> None:
     parser.add_argument("logs", type=Path, nargs="+", metavar="LOG")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder to write")
     parser.add_argument("--holdout", metavar="LOG", help="which to hold out (default: the last)")
+    parser.add_argument(
+        "--online",
+        action="store_true",
+        help="bias_online_g? in corrected.parquet: the firmware learning as it goes",
+    )
+    parser.add_argument("--png", action="store_true", help="the report's plots as pictures, too")
     parser.set_defaults(run=run)
 
 
@@ -25,8 +31,17 @@ def run(arguments: argparse.Namespace) -> None:
     from ..loop.close import close
     from ..loop.words import in_words
     from ..progress import progress
+    from ..report.words import headline
 
-    with progress("reading", len(arguments.logs)) as advance:
-        result = close(arguments.logs, arguments.out, arguments.holdout, advance)
+    with progress("reading, replaying", 2 * len(arguments.logs)) as advance:
+        result = close(
+            arguments.logs,
+            arguments.out,
+            arguments.holdout,
+            advance,
+            online=arguments.online,
+            png=arguments.png,
+        )
+    print(headline(result) + ".")
     print(in_words(result))
-    print(f"written: {arguments.out}")
+    print(f"report: {arguments.out / 'report.html'}")

@@ -19,24 +19,40 @@ def add_parser(subparsers) -> None:
     parser = subparsers.add_parser(
         "import",
         help="turn a foreign recording into this form",
-        description="Turn CSV, TSV, Parquet, .mat, PX4 ULog or ArduPilot DataFlash into a "
+        description="Turn CSV, TSV, Parquet, .mat, PX4 ULog or ArduPilot DataFlash into a\n"
         "recording, and say what was dropped and why.",
         epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("source", type=Path, metavar="SRC")
-    parser.add_argument("--out", type=Path, required=True, metavar="FILE")
-    parser.add_argument("--map", action="append", default=[], type=_mapping, metavar="NAME=COLUMN")
-    parser.add_argument("--hz", type=_above_zero, help="samples a second, without time stamps")
-    parser.add_argument("--sensor", metavar="NAME")
-    parser.add_argument("--gyro-lsb-per-dps", type=_above_zero, metavar="N")
-    parser.add_argument("--accel-lsb-per-g", type=_above_zero, metavar="N")
-    parser.add_argument("--temp-lsb-per-degc", type=_above_zero, metavar="N")
-    parser.add_argument("--temp-offset-degc", type=float, metavar="N")
+    parser.add_argument("source", type=Path, metavar="SRC", help="the foreign recording")
+    parser.add_argument(
+        "--out", type=Path, required=True, metavar="FILE", help=".parquet, .csv or .csv.gz"
+    )
+    parser.add_argument(
+        "--map",
+        action="append",
+        default=[],
+        type=_mapping,
+        metavar="NAME=COLUMN",
+        help="where a column comes from, and its unit (see below); may be repeated",
+    )
+    parser.add_argument(
+        "--hz", type=_above_zero, metavar="N", help="samples a second, without time stamps"
+    )
+    parser.add_argument("--sensor", metavar="NAME", help="the part, for the record")
+    chosen = "scale to write; chosen where it is not given"
+    parser.add_argument("--gyro-lsb-per-dps", type=_above_zero, metavar="N", help=chosen)
+    parser.add_argument("--accel-lsb-per-g", type=_above_zero, metavar="N", help=chosen)
+    parser.add_argument("--temp-lsb-per-degc", type=_above_zero, metavar="N", help=chosen)
+    parser.add_argument(
+        "--temp-offset-degc", type=float, metavar="N", help="temperature of a raw reading of 0"
+    )
     for kind in ("time", "gyro", "accel", "temp"):
         parser.add_argument(f"--{kind}-unit", metavar="UNIT", help="where a mapping names none")
     parser.add_argument("--layout", metavar="NAME", help="a known layout, or `table` for none")
-    parser.add_argument("--instance", type=int, default=0, help="of several sensors in a log")
+    parser.add_argument(
+        "--instance", type=int, default=0, metavar="N", help="of several sensors in a log (0)"
+    )
     parser.set_defaults(run=run)
 
 

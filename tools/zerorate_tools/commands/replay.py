@@ -14,7 +14,7 @@ def add_parser(subparsers) -> None:
         description="Run the firmware over a recording, learning as it goes, and write per sample "
         "the bias, its source and its quality.",
     )
-    parser.add_argument("log", type=Path, metavar="LOG")
+    parser.add_argument("log", type=Path, metavar="LOG", help="a recording")
     parser.add_argument("--out", type=Path, required=True, metavar="FILE", help="a .parquet")
     parser.add_argument(
         "--runtime",
@@ -36,6 +36,13 @@ def add_parser(subparsers) -> None:
         "--accelerometer", action="store_true", help="learn against gravity as well"
     )
     parser.add_argument("--motion", action="store_true", help="learn in motion as well")
+    parser.add_argument(
+        "--plot",
+        type=Path,
+        metavar="PATH",
+        help="draw the orientation before and after each pass of the source in motion: the latest "
+        "window into a .png, or a dozen into a folder",
+    )
     parser.add_argument(
         "--set",
         action="append",
@@ -74,6 +81,13 @@ def run(arguments: argparse.Namespace) -> None:
     print("  source of the bias:", _shares(done.sources, done.samples))
     for line in done.explanation.splitlines():
         print(" ", line)
+    if arguments.plot:
+        from ..replay.passes import plot_windows
+
+        start = {"start_dps": options["motion_start_dps"]} if "motion_start_dps" in options else {}
+        form = {"document": arguments.document, **start}
+        for picture in plot_windows(open_recording(arguments.log), arguments.plot, **form):
+            print(picture)
 
 
 def _shares(counts: dict[str, int], total: int) -> str:

@@ -1,0 +1,165 @@
+"""The wheel and the sdist: what they carry, and that they work where no checkout is."""
+
+import os
+import subprocess
+import sys
+import sysconfig
+import tarfile
+import zipfile
+from pathlib import Path
+
+import pytest
+
+PACKAGES = {
+    "zerorate": "firmware",
+    "zerorate_i2c": "drivers",
+    "zerorate_tools": "tools",
+    "zerorate_fakes": "host_tests/fakes",
+}
+#: Set by CI: dependencies come from the index, as a user's do, not from this environment.
+FROM_INDEX = "ZERORATE_INSTALL_FROM_INDEX" in os.environ
+
+
+def uv(*words, cwd=None):
+    """Run uv, or fail with what it said."""
+    command = [sys.executable, "-m", "uv", "--quiet", *map(str, words)]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=cwd)
+    assert done.returncode == 0, done.stderr
+
+
+def fresh_python(folder, base=sys.executable):
+    """The interpreter of a new virtual environment in `folder`, made with `base`."""
+    uv("venv", "--python", base, folder / "venv")
+    return folder / "venv" / ("Scripts" if os.name == "nt" else "bin") / "python"
+
+
+@pytest.fixture(scope="module")
+def built(repository, tmp_path_factory):
+    """(sdist, wheel), the wheel built from the sdist."""
+    folder = tmp_path_factory.mktemp("dist")
+    uv("build", "--no-build-isolation", "--python", sys.executable, "--out-dir", folder, repository)
+    (sdist,), (wheel,) = folder.glob("*.tar.gz"), folder.glob("*.whl")
+    return sdist, wheel
+
+
+@pytest.fixture(scope="module")
+def away(built, tmp_path_factory):
+    """run(*words) -> what a fresh environment with the wheel does, away from the checkout."""
+    folder = tmp_path_factory.mktemp("away")
+    python = fresh_python(folder)
+    if FROM_INDEX:
+        uv("pip", "install", "--python", python, f"{built[1]}[tools]")
+    else:
+        uv("pip", "install", "--python", python, "--no-deps", built[1])
+        # the libraries of this environment; a .pth in there, of the editable install, is not read
+        libraries = sysconfig.get_path("purelib")
+        (site,) = (folder / "venv").rglob("site-packages")
+        (site / "libraries.pth").write_text(libraries + "\n", encoding="utf-8")
+
+    def run(*words):
+        words = [python, *words]
+        return subprocess.run(words, capture_output=True, text=True, cwd=folder)
+
+    return run
+
+
+@pytest.fixture(scope="module")
+def bare(built, tmp_path_factory):
+    """run(*words) -> what an environment with the wheel alone does, without any extra."""
+    folder = tmp_path_factory.mktemp("bare")
+    python = fresh_python(folder)
+    uv("pip", "install", "--python", python, built[1])
+
+    def run(*words):
+        return subprocess.run([python, *words], capture_output=True, text=True, cwd=folder)
+
+    return run
+
+
+def sources(repository, package):
+    """The files of a package in the checkout, as named in a wheel."""
+    folder = repository / PACKAGES[package]
+    files = (path for path in (folder / package).rglob("*") if path.is_file())
+    names = (path.relative_to(folder).as_posix() for path in files)
+    return {name for name in names if "__pycache__" not in name}
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_the_wheel_carries_every_file_of_a_package_and_no_other(repository, built, package):
+    names = set(zipfile.ZipFile(built[1]).namelist())
+    carried = {name for name in names if name.startswith(f"{package}/")}
+    assert carried == sources(repository, package)
+
+
+def test_it_carries_twins_scenarios_layouts_and_templates(built):
+    names = zipfile.ZipFile(built[1]).namelist()
+    for part in (
+        "zerorate/viper/",
+        "zerorate_tools/simulate/scenarios/",
+        "zerorate_tools/importers/layouts/",
+        "zerorate_tools/runtimes/webassembly/",
+        "zerorate_tools/boards/on_board/",
+        "zerorate_tools/py.typed",
+    ):
+        assert [name for name in names if name.startswith(part)], part
+
+
+def test_the_sdist_has_what_a_checkout_needs_to_be_tested(built):
+    with tarfile.open(built[0]) as archive:
+        names = {name.partition("/")[2] for name in archive.getnames()}
+    wanted = {"Makefile", "README.md", "LICENSE", "requirements/dev.txt", "host_tests/conftest.py"}
+    assert wanted <= names
+
+
+def test_the_demo_runs_away_from_the_checkout(away, find_runtime):
+    find_runtime("x86")
+    done = away("-m", "zerorate_tools.cli", "demo", "--runtime", "x86")
+    assert done.returncode == 0, done.stderr
+    assert "found: thermal-hysteresis" in done.stdout
+
+
+def test_what_runs_is_the_wheel_and_not_the_checkout(away, repository):
+    done = away("-c", "import zerorate, zerorate_tools; print(zerorate.__file__)")
+    assert done.returncode == 0, done.stderr
+    assert not Path(done.stdout.strip()).is_relative_to(repository)
+
+
+def test_firmware_drivers_and_fakes_need_nothing_else(bare):
+    done = bare("-c", "import zerorate, zerorate_i2c.mpu6050, zerorate_fakes; zerorate.Corrector()")
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("version", ["3.10", "3.11", "3.12", "3.13"])
+def test_firmware_and_command_line_run_on_every_python_that_is_here(version, built, tmp_path):
+    words = [sys.executable, "-m", "uv", "python", "find", "--no-python-downloads", version]
+    found = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path)
+    if found.returncode:
+        pytest.skip(f"no Python {version} on this machine")
+    python = fresh_python(tmp_path, found.stdout.strip())
+    uv("pip", "install", "--python", python, built[1])
+    code = (
+        "from array import array; from zerorate import Corrector\n"
+        "Corrector().update(array('i', [0, 0, 16384, 0, 1, 2, 3]), 10000)\n"
+        "from zerorate_tools.cli import main; main([])"
+    )
+    done = subprocess.run([python, "-c", code], capture_output=True, text=True)
+    assert "zerorate demo" in done.stdout, done.stderr
+
+
+def test_without_its_extra_a_command_says_in_a_line_what_to_install(bare):
+    done = bare("-m", "zerorate_tools.cli", "simulate", "day", "--out", "day.parquet")
+    assert done.returncode == 2
+    (line,) = done.stderr.splitlines()
+    assert "pip install 'zerorate[tools]'" in line
+
+
+def test_help_needs_nothing_but_the_standard_library(bare):
+    code = (
+        "import sys; before = set(sys.modules); from zerorate_tools import cli\n"
+        "try: cli.main(['--help'])\n"
+        "except SystemExit: pass\n"
+        "new = {name.partition('.')[0] for name in set(sys.modules) - before}\n"
+        "print(sorted(new - sys.stdlib_module_names), file=sys.stderr)"
+    )
+    done = bare("-c", code)
+    assert done.stderr.strip() == "['zerorate_tools']"
