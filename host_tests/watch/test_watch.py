@@ -85,6 +85,12 @@ def test_the_firmware_is_where_a_replay_of_the_file_leaves_it(log, capsys):
     assert "x +1." in capsys.readouterr().out
 
 
+def test_once_prints_one_line_however_long_the_reading_takes(log, capsys, monkeypatch):
+    monkeypatch.setattr("zerorate_tools.watch.tail._MOST_BYTES", 4096)
+    watch(str(log), Wishes(once=True, every_s=0.0))
+    assert len(capsys.readouterr().out.splitlines()) == 1
+
+
 def test_a_writer_in_another_process_is_followed(writer, log, tmp_path):
     program = (
         "import sys, time\n"

@@ -81,8 +81,12 @@ class Following:
                 return
             else:
                 time.sleep(_POLL_S)
-            if self._clock() - self._looked >= every_s(self.wishes, self._shown):
+            if self._is_time_to_look():
                 self.look()
+
+    def _is_time_to_look(self) -> bool:
+        waited_s = self._clock() - self._looked
+        return not self.wishes.once and waited_s >= every_s(self.wishes, self._shown)
 
     def look(self) -> None:
         """Show what there is."""
