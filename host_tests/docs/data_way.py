@@ -48,7 +48,7 @@ _WORDS = (
     ("zerorate record", 254, 200, "small"),
     ("other logs:", 60, 288, "small"),
     ("zerorate import", 66, 318, "small"),
-    ("back to the board: mpremote, or a line of code", 610, 198, "small"),
+    ("back to the board: flash, or a line of code", 610, 198, "small"),
 )
 
 

@@ -65,4 +65,4 @@ def test_a_channel_is_named_so_that_python_reads_it_back():
 
 def test_a_folder_with_a_blank_is_quoted():
     told = deployment(Path("my out"), [])
-    assert "cp 'my out/model.bin' :model.bin" in told.commands
+    assert "--model 'my out/model.bin'" in told.commands

@@ -7,6 +7,7 @@ from hashlib import sha256
 from importlib.util import find_spec
 from pathlib import Path, PurePosixPath
 
+from ..errors import InFile
 from .connection import connected
 
 PACKAGES = ("zerorate", "zerorate_i2c")
@@ -30,32 +31,50 @@ def flash(
     dry_run: bool = False,
     main: Path | None = None,
     say: Callable[[str], None] = print,
+    model: Path | None = None,
 ) -> int:
-    """Copy the packages to lib on the board at port, and main (a file) to main.py; total bytes.
+    """Copy the packages to lib on the board at port; total bytes.
 
-    Every file is told to say with its size; dry_run only tells. Files that are the same there
-    already stay. Raises BoardError.
+    main: a file, copied to main.py; model: a model.bin or model.json, to model.bin, where
+    `EffectModel.load_file` finds it. Every file is told to say with its size; dry_run only tells.
+    Files that are the same there already stay. Raises BoardError, BadModel, InFile.
     """
-    files = {
-        _LIBRARY / name: p for package in PACKAGES for name, p in package_files(package).items()
-    }
-    if main is not None:
-        files[PurePosixPath("main.py")] = Path(main)
-    total = 0
-    for name, path in files.items():
-        total += path.stat().st_size
-        if dry_run:
-            say(f"{path.stat().st_size:8d}  {name}")
-    if not dry_run:
+    files = _contents(main, model)
+    total = sum(map(len, files.values()))
+    if dry_run:
+        for name, data in files.items():
+            say(f"{len(data):8d}  {name}")
+    else:
         with connected(port) as board:
-            for name, path in files.items():
-                say(f"{path.stat().st_size:8d}  {name}  {_put(board, name, path)}")
+            for name, data in files.items():
+                say(f"{len(data):8d}  {name}  {_put(board, name, data)}")
     say(f"{total:8d}  bytes in {len(files)} files" + (" (dry run)" if dry_run else ""))
     return total
 
 
-def _put(board, name: PurePosixPath, path: Path) -> str:
-    data = path.read_bytes()
+def _contents(main: Path | None, model: Path | None) -> dict[PurePosixPath, bytes]:
+    files = {
+        _LIBRARY / name: path.read_bytes()
+        for package in PACKAGES
+        for name, path in package_files(package).items()
+    }
+    if main is not None:
+        files[PurePosixPath("main.py")] = _read(Path(main))
+    if model is not None:
+        from ..model import encoded, read_model  # recording needs none of what these import
+
+        files[PurePosixPath("model.bin")] = encoded(read_model(model))
+    return files
+
+
+def _read(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise InFile(path, f"cannot be read: {error.strerror}", do="name a program") from error
+
+
+def _put(board, name: PurePosixPath, data: bytes) -> str:
     for folder in reversed(name.parents[:-1]):
         if not board.fs_exists(str(folder)):
             board.fs_mkdir(str(folder))

@@ -16,6 +16,7 @@ def add_parser(subparsers) -> None:
     parser.add_argument("port", metavar="PORT", help="serial port, such as /dev/ttyACM0 or COM3")
     parser.add_argument("--dry-run", action="store_true", help="list every file and its size only")
     parser.add_argument("--main", type=Path, metavar="FILE", help="copy FILE to main.py too")
+    parser.add_argument("--model", type=Path, metavar="FILE", help="copy FILE to model.bin too")
     parser.set_defaults(run=run)
 
 
@@ -23,4 +24,5 @@ def run(arguments: argparse.Namespace) -> None:
     """Copy, saying each file."""
     from ..boards import flash
 
-    flash(arguments.port, dry_run=arguments.dry_run, main=arguments.main)
+    a = arguments
+    flash(a.port, dry_run=a.dry_run, main=a.main, model=a.model)

@@ -32,11 +32,7 @@ class Deployment:
 def deployment(folder: Path, channels: Sequence[str]) -> Deployment:
     """What to type and to write for the model in `folder`, which follows these extra channels."""
     model = shlex.quote(str(folder / "model.bin"))
-    commands = (
-        f"zerorate model check {model}\n"
-        "zerorate flash /dev/ttyACM0\n"
-        f"mpremote connect /dev/ttyACM0 cp {model} :model.bin\n"
-    )
+    commands = f"zerorate model check {model}\nzerorate flash /dev/ttyACM0 --model {model}\n"
     lines = [f"effects.channel({name!r}, {_variable(name)})" for name in channels]
     return Deployment(commands, _LOAD, "".join(f"{line}\n" for line in lines))
 
