@@ -3,8 +3,10 @@ bench loop`.
 """
 
 import pytest
+from zerorate_tools.loop.analysis import analyse
 from zerorate_tools.loop.confounding import label
 from zerorate_tools.loop.judge import judge
+from zerorate_tools.loop.report import report
 from zerorate_tools.loop.select import select
 from zerorate_tools.loop.simulated import HOSTILE, simulate
 from zerorate_tools.loop.single import split
@@ -87,3 +89,13 @@ def test_one_recording_alone_still_shows_a_large_effect():
     selection = select([train], folds)
     assert "thermal-hysteresis" in names(selection)
     assert judge(selection, [locked]).gains[0] > 5
+
+
+def test_a_path_that_repeats_without_a_temperature_is_told_by_time_and_never_confirmed():
+    device = simulate(14, [("power-on-transient", 5.0)])
+    for s in device.sessions:
+        s.sources.clear()
+    analysis = analyse(device.sessions)
+    [step] = report(analysis)["steps"]
+    assert (step["effect"], step["confidence"]) == ("power-on-transient", "tentative")
+    assert "cause not identified; no temperature was recorded" in step["said"]

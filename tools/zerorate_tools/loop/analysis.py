@@ -52,9 +52,17 @@ class Analysis:
         return deployed(self.selection)[1]
 
     def confidence(self, i: int) -> str:
-        """confirmed or tentative; one power-on alone, or what Earth can do, confirms nothing."""
-        unsure = self.single or ROTATION in self.selection.found[i].confounded_with
+        """confirmed or tentative; one power-on alone, what Earth can do, or time alone where no
+        temperature was recorded, confirms nothing.
+        """
+        found = self.selection.found[i]
+        unsure = self.single or ROTATION in found.confounded_with or self.may_be_heat(i)
         return "tentative" if unsure else self.judgement.confidence(i)
+
+    def may_be_heat(self, i: int) -> bool:
+        """Whether the i-th effect follows time alone, and no temperature tells it from warming."""
+        blind = "temp" not in self.sessions[0].sources
+        return blind and not set(self.selection.found[i].candidate.sources) - {"time"}
 
 
 def analyse(

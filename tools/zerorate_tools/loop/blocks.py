@@ -7,6 +7,7 @@ import numpy as np
 from .earth import earth_of
 from .gram import can_be_bridged
 from .sessions import Session
+from .staircase import unstepped
 from .still import still_ticks
 from .ticks import Ticks, gap_filled
 from .turns import turns_of
@@ -79,11 +80,17 @@ def _quick(ticks: Ticks):
     return ticks.segments.at_rest(still_ticks(ticks), ticks.scales.odr_hz)
 
 
+def _temperature(ticks: Ticks) -> np.ndarray:
+    lsb_per_degc = ticks.scales.temp_lsb_per_degc
+    zero_degc = ticks.scales.temp_degc(0)
+    return zero_degc + unstepped((ticks.temp - zero_degc) * lsb_per_degc) / lsb_per_degc
+
+
 def sources_of(ticks: Ticks, m: int) -> dict[str, np.ndarray]:
     """The first m ticks of every source by the names that effect slots know."""
     out = {}
     if ticks.temp is not None:
-        out["temp"] = ticks.temp[:m]
+        out["temp"] = _temperature(ticks)[:m]
     if ticks.accel is not None and ticks.vib is not None:
         out.update({f"acc_{a}": ticks.accel[:m, i] for i, a in enumerate("xyz")})
         out["vib"] = ticks.vib[:m]

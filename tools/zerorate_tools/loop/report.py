@@ -18,6 +18,7 @@ from .unexplained import measure_next, not_excluded, what_is_known
 #: Of an analysis that no recording was replayed for.
 FLOAT = "float reference of the effect slots and the line, means of blocks"
 CAUSE_UNKNOWN = "time since power-on; cause not identified"
+NO_TEMPERATURE = "; no temperature was recorded, and the warm-up of every power-on looks like this"
 
 
 def report(analysis: Analysis) -> dict:
@@ -160,7 +161,7 @@ def _steps(analysis):
                 "noise_inflation": round(f.decision.inflation, 2),
                 "nats_on_sessions_left_out": [round(float(g), 2) for g in f.decision.session_gains],
                 "nats_on_locked": round(float(analysis.judgement.gains[i]), 2),
-                "said": _said(f),
+                "said": _said(f) + (NO_TEMPERATURE if analysis.may_be_heat(i) else ""),
             }
         )
     return out

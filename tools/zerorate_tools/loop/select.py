@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from . import confounding, events
+from .alike import all_but_same
 from .basis import Term
 from .bends import find_bends
 from .catalogue import Candidate, ranges
@@ -228,6 +229,11 @@ class Search:
         best = refined(self.regression, [*self.straight, *self.terms()], c)
         if self._is_a_start(best):
             self.refused.append((confounding.label(best), "the start of a lag's own memory"))
+            return None
+        if len(best.terms) == 1 and all_but_same(
+            best.terms[0], self.terms(), self.regression.sessions
+        ):
+            self.refused.append((confounding.label(best), "found already, all but the same"))
             return None
         ratio = float(self.regression.gains(nuisances, [best.terms]).sum())
         tried, folds = self._tried(c), self.folds or self.regression

@@ -3,29 +3,69 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.ndimage import binary_dilation, median_filter
+from scipy.ndimage import binary_dilation, binary_propagation, median_filter
 
 _SPREAD = 2.0  # times the quiet spread
 _OFF_DPS = 1.0  # from the running middle of quiet ticks
+#: Of the still ticks' own noise: beyond it, a tick beside a motion still belongs to that motion.
+_EDGE_SIGMAS = 4.0
 _QUIET_SHARE = 0.2
 _WINDOW_S = 900.0
+_SLOPE_LAG_S = 120.0
+#: Normal deviations in a median of absolute ones.
+_MAD = 1.4826
 
 
 def still_ticks(ticks) -> np.ndarray:
     """(m,) bool. Quiet: the rate's spread within a tick is near that of the quietest ticks. Still:
-    its mean is also near the running middle of quiet ticks, so a steady turn does not count; a turn
-    below 1 dps is told by the accelerometer alone, if its axis is not vertical.
+    its mean, less a line over temperature, is also near the running middle of quiet ticks, so a
+    steady turn does not count; a turn below 1 dps is told by the accelerometer alone, if its axis
+    is not vertical. Where a motion sets in or dies down slowly, all of it is motion.
     """
     there = ticks.count > 0
     if not there.any():
         return there
     quiet = there & _is_quiet(ticks, there)
-    middle = _running_middle(ticks.rate, quiet, max(3, int(_WINDOW_S / ticks.tick_s) | 1))
-    near = (np.abs(ticks.rate - middle) < _OFF_DPS).all(axis=1)
-    still = quiet & near
+    rate = _less_temperature(ticks, quiet)
+    middle = _running_middle(rate, quiet, max(3, int(_WINDOW_S / ticks.tick_s) | 1))
+    off = np.abs(rate - middle)
+    still = quiet & (off < _OFF_DPS).all(axis=1)
     if ticks.accel is not None:
         still &= _gravity_holds(ticks, there)
-    return still
+    return still & ~_edges(off, still, there)
+
+
+def _less_temperature(ticks, quiet):
+    """(m, 3) rate less a line over temperature: a fast ramp of a steep part is no motion.
+
+    The slope is the median of what quiet ticks two minutes apart show, weighed by how much the
+    temperature moved, so that neither a turn nor its ends count.
+    """
+    lag, at = max(1, round(_SLOPE_LAG_S / ticks.tick_s)), np.flatnonzero(quiet)
+    if ticks.temp is None or len(at) <= lag:
+        return ticks.rate
+    warmed = ticks.temp[at[lag:]] - ticks.temp[at[:-lag]]
+    moved = warmed != 0
+    if not moved.any():
+        return ticks.rate
+    slopes = (ticks.rate[at[lag:]] - ticks.rate[at[:-lag]])[moved] / warmed[moved, None]
+    slope = [_weighted_median(slopes[:, a], np.abs(warmed[moved])) for a in range(3)]
+    return ticks.rate - np.outer(ticks.temp - ticks.temp[at[0]], slope)
+
+
+def _weighted_median(values, weights):
+    order = np.argsort(values)
+    total = np.cumsum(weights[order])
+    return values[order[np.searchsorted(total, 0.5 * total[-1])]]
+
+
+def _edges(off, still, there):
+    """(m,) bool: ticks that lead without a break into motion and are off by more than noise."""
+    if still.sum() < 3:
+        return np.zeros(len(still), bool)
+    usual = _EDGE_SIGMAS * _MAD * np.median(off[still], axis=0)
+    moving = there & ~still
+    return binary_propagation(moving, mask=moving | (there & (off > usual).any(axis=1)))
 
 
 def _is_quiet(ticks, there):

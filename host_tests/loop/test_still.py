@@ -1,0 +1,50 @@
+"""What of a recording counts as rest."""
+
+import numpy as np
+import pytest
+from zerorate_tools.loop.still import still_ticks
+from zerorate_tools.loop.ticks import read_ticks
+from zerorate_tools.recordings import Recording, Scales, write_recording
+
+ODR = 20
+SCALES = Scales("MPU-6050", float(ODR), 131.0, None, 340.0, 36.53)
+
+
+@pytest.fixture
+def still(tmp_path):
+    """(m,) bool of a rate in dps and a temperature in degC, each a sample."""
+
+    def of(rate_dps, temp_degc):
+        n = len(rate_dps)
+        rng = np.random.default_rng(3)
+        columns = {"t_us": np.arange(n, dtype=np.int64) * (1_000_000 // ODR)}
+        for name in ("gx", "gy", "gz"):
+            columns[name] = np.round((rate_dps + rng.normal(0, 0.05, n)) * 131).astype(np.int32)
+        columns["temp"] = np.round((temp_degc - 36.53) * 340).astype(np.int32)
+        path = tmp_path / "run.parquet"
+        write_recording(Recording(columns, SCALES, "run"), path)
+        return still_ticks(read_ticks(path))
+
+    return of
+
+
+def test_a_steep_part_on_a_fast_ramp_is_still(still):
+    at_s = np.arange(ODR * 2400) / ODR
+    temp = 20 + np.abs((at_s - 300) % 1200 - 600) * 2.5 / 60  # up and down without a hold
+    assert still(0.35 * temp, temp).mean() > 0.99
+
+
+def test_a_turn_on_a_fast_ramp_is_no_rest(still):
+    at_s = np.arange(ODR * 2400) / ODR
+    temp = 20 + np.clip(at_s - 300, 0, 840) * 2.5 / 60
+    turning = (at_s >= 600) & (at_s < 700)
+    resting = still(0.35 * temp + 5.0 * turning, temp)
+    assert not resting[600:700].any() and resting[:590].all() and resting[710:].all()
+
+
+def test_a_turn_that_sets_in_slowly_is_motion_to_its_ends(still):
+    at_s = np.arange(ODR * 900) / ODR
+    swing = 2.0 * (1 - np.cos(2 * np.pi * np.clip(at_s - 400, 0, 60) / 60))
+    resting = still(swing, np.full(len(at_s), 25.0))
+    assert not resting[404:456].any()
+    assert resting[:395].all() and resting[465:].all()

@@ -1,0 +1,32 @@
+"""Whether an effect is all but the same as those found already."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from .basis import Term, block_basis
+from .sessions import Session
+
+#: Share of a term's squares that others must leave: with less, coefficients would be huge and
+#: opposite, which no integers hold and no other power-on repeats.
+_OWN_SHARE = 0.003
+
+
+def all_but_same(term: Term, others: Sequence[Term], sessions: list[Session]) -> bool:
+    """Whether others of its source leave next to nothing of a term within the sessions."""
+    same_source = [t for t in others if t.source == term.source]
+    if not same_source:
+        return False
+    own = _within(term, sessions)
+    design = np.column_stack([_within(t, sessions) for t in same_source])
+    design /= np.maximum(np.linalg.norm(design, axis=0), 1e-300)
+    left = own - design @ np.linalg.lstsq(design, own, rcond=1e-10)[0]
+    return bool(left @ left < _OWN_SHARE * (own @ own))
+
+
+def _within(term, sessions):
+    """(blocks,) basis of all sessions where there is a rate, less each session's own mean."""
+    parts = [block_basis(term, s)[s.available] for s in sessions]
+    return np.concatenate([p - p.mean() for p in parts])
