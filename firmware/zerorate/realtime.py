@@ -57,6 +57,7 @@ _RIPPLE_Q8 = const(46)
 _REASON = const(49)
 _SKIPPED = const(50)
 _MEAN_ALONG = const(51)
+_SPREAD_Q21 = const(54)
 
 _SUB_UNIT_US = const(0)
 _GAIN = const(1)
@@ -69,7 +70,7 @@ _COARSE_Q8 = const(7)
 _FINE_Q8 = const(8)
 _ONE_G_LSB = const(9)
 _LONGEST_GAP_US = const(10)
-_DOCUMENT = const(11)
+_PUSH_Q2 = const(11)
 
 _UNKNOWN_Q8 = const(0x1FFFFFFF)
 _PI_Q13 = const(25736)
@@ -77,12 +78,13 @@ _ONE_G_Q24 = const(0x1000000)
 _BAND_Q24 = const(0x300000)
 _HALF_Q24 = const(0x800000)
 _MOST_Q13 = const(0x7FFF)
+_RADIAN_Q13 = const(8192)
 
 
 def clear(s: ptr32, c: ptr32):
     """Forget the offsets and everything counted."""
     i = 0
-    while i < _MEAN_ALONG + 3:
+    while i < _SPREAD_Q21 + 1:
         s[i] = 0
         i += 1
     i = 0
@@ -242,10 +244,20 @@ def count(s: ptr32, c: ptr32, i: int, deviation: int):
     """Move the axis' counter by the deviation's sign."""
     s[_COUNTED + i] += 1
     s[_OBSERVED + i] += 1
+    spread(s, deviation)
     if deviation > c[_DEAD_Q13]:
         s[_COUNTER + i] += 1
     elif deviation < -c[_DEAD_Q13]:
         s[_COUNTER + i] -= 1
+
+
+def spread(s: ptr32, deviation: int):
+    """Follow how far the deviations go, over all axes, for half a minute or so."""
+    if deviation < 0:
+        deviation = -deviation
+    if deviation > _RADIAN_Q13:
+        deviation = _RADIAN_Q13
+    s[_SPREAD_Q21] += ((deviation << 8) - s[_SPREAD_Q21]) >> 6
 
 
 def end_interval(s: ptr32, c: ptr32) -> int:
@@ -256,7 +268,7 @@ def end_interval(s: ptr32, c: ptr32) -> int:
     i = 0
     ended = 0
     while i < 3:
-        if s[_COUNTED + i] >= c[_UNITS] or (c[_DOCUMENT] and s[_UNIT] >= c[_UNITS]):
+        if s[_COUNTED + i] >= c[_UNITS] or (c[_PUSH_Q2] == 0 and s[_UNIT] >= c[_UNITS]):
             end_axis(s, c, i)
             ended = 1
         i += 1
@@ -267,7 +279,7 @@ def end_interval(s: ptr32, c: ptr32) -> int:
 
 def end_axis(s: ptr32, c: ptr32, i: int):
     """Step the axis' offset if its counter passed the threshold; begin its next interval."""
-    if c[_DOCUMENT] == 0:
+    if c[_PUSH_Q2]:
         size_step(s, c, i)
     step(s, c, i)
     judge(s, c, i)
@@ -307,7 +319,9 @@ def step(s: ptr32, c: ptr32, i: int):
 
 
 def judge(s: ptr32, c: ptr32, i: int):
-    """Write one sigma: known once the signs have turned twice, then by the ripple's size."""
-    if s[_TURNS + i] < 3 and c[_DOCUMENT] == 0:
+    """Write one sigma: known once the signs have turned twice, by the ripple's size then, and by
+    how far the deviations go, for a motion may push always the same way."""
+    if s[_TURNS + i] < 3 and c[_PUSH_Q2]:
         return
-    s[_QUALITY_Q8 + i] = (s[_RIPPLE_Q8 + i] << 1) + s[_STEP_Q8 + i] + (c[_FINE_Q8] << 2)
+    pushed = (s[_SPREAD_Q21] * c[_PUSH_Q2]) >> 10
+    s[_QUALITY_Q8 + i] = (s[_RIPPLE_Q8 + i] << 1) + s[_STEP_Q8 + i] + (c[_FINE_Q8] << 2) + pushed

@@ -3,7 +3,10 @@
 from array import array
 from math import pi
 
-STATE_WORDS = 54
+STATE_WORDS = 55
+# Of how far the deviations go, what a motion that pushes always the same way hides from their
+# signs: at most a tenth on simulated strides (docs/motion.md), of which one sigma is some half.
+PUSH = 16
 
 
 def realtime_settings(
@@ -46,7 +49,7 @@ def realtime_settings(
     c[8] = max(1, int(fine_dps * q8))
     c[9] = int(accel_lsb_per_g)
     c[10] = int(2 * sample_us)
-    c[11] = 1 if document else 0
+    c[11] = 0 if document else max(1, int(4 * q8 * 180 / pi / 8192 / sub_unit_s / PUSH))
     return array("i", c)
 
 

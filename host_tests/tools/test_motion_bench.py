@@ -6,6 +6,7 @@ from scipy.spatial.transform import Rotation
 from zerorate_tools.bench.broad import Trial, true_bias
 from zerorate_tools.bench.peers import given
 from zerorate_tools.bench.peers.sources import Source
+from zerorate_tools.simulate import simulate
 
 HZ = 100.0
 BIAS_DPS = np.array([0.4, -0.3, 0.2])
@@ -50,4 +51,13 @@ def test_a_source_is_measured_from_nothing_with_its_honesty(trial):
     assert not bias[0].any()
     assert np.abs(bias[-1] - BIAS_DPS).max() < 0.2
     assert source.learned > 0
+    assert np.mean(source.within) >= 0.9
+
+
+def test_an_accelerometer_that_strides_push_says_how_unsure_it_is():
+    recording, truth = simulate("never-rests", session=1, seed=4)
+    source = Source("realtime")
+    source.truth_dps = [truth.bias_lsb / recording.scales.gyro_lsb_per_dps]
+    source([given(recording)])
+    assert len(source.within) > 500
     assert np.mean(source.within) >= 0.9

@@ -24,7 +24,7 @@ from .atan2 import atan2_q13
 @micropython.viper
 def clear(s: ptr32, c: ptr32):
     i = 0
-    while i < 54:
+    while i < 55:
         s[i] = 0
         i = i + 1
     i = 0
@@ -144,6 +144,12 @@ def update(s_, c_, x: ptr32, dt_us: int) -> int:
                 if s[20] & end_unit_compare_bit:
                     s[25 + end_unit_i] += 1
                     s[37 + end_unit_i] += 1
+                    end_unit_compare_count_spread_deviation = end_unit_compare_square
+                    if end_unit_compare_count_spread_deviation >> 30:
+                        end_unit_compare_count_spread_deviation = -end_unit_compare_count_spread_deviation
+                    if end_unit_compare_count_spread_deviation > 8192:
+                        end_unit_compare_count_spread_deviation = 8192
+                    s[54] = ((end_unit_compare_count_spread_deviation << 8) - s[54] >> 6) + s[54]
                     if end_unit_compare_square > c[6]:
                         s[22 + end_unit_i] += 1
                     elif end_unit_compare_square < -c[6]:
@@ -213,6 +219,12 @@ def compare(s: ptr32, c: ptr32, i: int, square: int):
     if s[20] & bit:
         s_i[25] = s_i[25] + 1
         s_i[37] = s_i[37] + 1
+        count_spread_deviation = square
+        if count_spread_deviation >> 30:
+            count_spread_deviation = -count_spread_deviation
+        if count_spread_deviation > 8192:
+            count_spread_deviation = 8192
+        s[54] = ((count_spread_deviation << 8) - s[54] >> 6) + s[54]
         if square > c[6]:
             s_i[22] = s_i[22] + 1
         elif square < -c[6]:
@@ -230,8 +242,8 @@ def too_far(turned: int) -> int:
 @micropython.viper
 def end_interval(s: ptr32, c: ptr32) -> int:
     ended = 0
-    if s[25] >= c[4] or (c[11] and s[21] >= c[4]):
-        if not c[11]:
+    if s[25] >= c[4] or (not c[11] and s[21] >= c[4]):
+        if c[11]:
             end_axis_size_step_most = s[22]
             end_axis_size_step_sign = 1
             if end_axis_size_step_most >> 30:
@@ -255,15 +267,16 @@ def end_interval(s: ptr32, c: ptr32) -> int:
             end_axis_realtime_step_moved = s[34]
             s[28] = s[28] - end_axis_realtime_step_moved
         s[46] = (end_axis_realtime_step_moved - s[46] >> 3) + s[46]
-        if s[43] < 3 and (not c[11]):
+        if s[43] < 3 and c[11]:
             pass
         else:
-            s[31] = (s[46] << 1) + s[34] + (c[8] << 2)
+            end_axis_realtime_judge_pushed = s[54] * c[11] >> 10
+            s[31] = (s[46] << 1) + s[34] + (c[8] << 2) + end_axis_realtime_judge_pushed
         s[22] = 0
         s[25] = 0
         ended = 1
-    if s[26] >= c[4] or (c[11] and s[21] >= c[4]):
-        if not c[11]:
+    if s[26] >= c[4] or (not c[11] and s[21] >= c[4]):
+        if c[11]:
             end_axis_size_step_most = s[23]
             end_axis_size_step_sign = 1
             if end_axis_size_step_most >> 30:
@@ -287,15 +300,16 @@ def end_interval(s: ptr32, c: ptr32) -> int:
             end_axis_realtime_step_moved = s[35]
             s[29] = s[29] - end_axis_realtime_step_moved
         s[47] = (end_axis_realtime_step_moved - s[47] >> 3) + s[47]
-        if s[44] < 3 and (not c[11]):
+        if s[44] < 3 and c[11]:
             pass
         else:
-            s[32] = (s[47] << 1) + s[35] + (c[8] << 2)
+            end_axis_realtime_judge_pushed = s[54] * c[11] >> 10
+            s[32] = (s[47] << 1) + s[35] + (c[8] << 2) + end_axis_realtime_judge_pushed
         s[23] = 0
         s[26] = 0
         ended = 1
-    if s[27] >= c[4] or (c[11] and s[21] >= c[4]):
-        if not c[11]:
+    if s[27] >= c[4] or (not c[11] and s[21] >= c[4]):
+        if c[11]:
             end_axis_size_step_most = s[24]
             end_axis_size_step_sign = 1
             if end_axis_size_step_most >> 30:
@@ -319,10 +333,11 @@ def end_interval(s: ptr32, c: ptr32) -> int:
             end_axis_realtime_step_moved = s[36]
             s[30] = s[30] - end_axis_realtime_step_moved
         s[48] = (end_axis_realtime_step_moved - s[48] >> 3) + s[48]
-        if s[45] < 3 and (not c[11]):
+        if s[45] < 3 and c[11]:
             pass
         else:
-            s[33] = (s[48] << 1) + s[36] + (c[8] << 2)
+            end_axis_realtime_judge_pushed = s[54] * c[11] >> 10
+            s[33] = (s[48] << 1) + s[36] + (c[8] << 2) + end_axis_realtime_judge_pushed
         s[24] = 0
         s[27] = 0
         ended = 1
@@ -347,6 +362,7 @@ def step(s: ptr32, c: ptr32, i: int):
 @micropython.viper
 def judge(s: ptr32, c: ptr32, i: int):
     s_i = ptr32(int(s) + (i << 2))
-    if s_i[43] < 3 and (not c[11]):
+    if s_i[43] < 3 and c[11]:
         return
-    s_i[31] = (s_i[46] << 1) + s_i[34] + (c[8] << 2)
+    pushed = s[54] * c[11] >> 10
+    s_i[31] = (s_i[46] << 1) + s_i[34] + (c[8] << 2) + pushed
