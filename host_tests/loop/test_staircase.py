@@ -24,6 +24,18 @@ def test_what_wavers_between_steps_is_left_as_it_is():
     assert unstepped(wavering) is wavering
 
 
+def test_a_noise_of_a_sixth_of_a_step_is_seen_through():
+    noise = np.random.default_rng(2).normal(0, 1 / 6, (len(WARMING), 25))
+    read = np.round(8 * WARMING[:, None] + noise).mean(axis=1)
+
+    def error_of_changes(course):
+        return np.diff(
+            (course - 8 * WARMING)[: len(course) // 20 * 20].reshape(-1, 20).mean(1)
+        ).std()
+
+    assert error_of_changes(unstepped(read)) < 0.7 * error_of_changes(read)
+
+
 def test_a_constant_is_left_as_it_is():
     assert (unstepped(np.full(50, 7.0)) == 7.0).all()
 

@@ -1,61 +1,91 @@
 """A slow channel in coarse steps, as a course that crosses from step to step when they change.
 
-Steps are an error in the regressor: fits that look at quick changes make its slope too small, and
-what is then left of a warm-up looks like an effect of its own, the same at each power-on.
+Steps are an error in the regressor: fits that look at quick changes make its slope too small, or
+take a rate of change for it, and what is then left of a warm-up looks like an effect of its own,
+the same at each power-on.
 """
 
 from __future__ import annotations
 
 import numpy as np
+from scipy.stats import norm
 
-#: Of a step, from a whole one: a mean further off is of samples that already waver between steps.
-_WHOLE = 0.02
+#: Of a step, from a whole one: a mean further off is of samples that waver between two steps.
+_WHOLE = 0.03
 #: Ticks that a step lasts on average where it is a staircase at all.
 _LONG = 5
+#: Deviations of the samples' own noise that are tried, in steps; more of it averages the steps out.
+_NOISES = (0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3)
+#: By how much the course must be less rough than what was read.
+_SMOOTHER = 0.95
+_ROUGH_TICKS = 20
 
 
 def unstepped(raw_lsb: np.ndarray) -> np.ndarray:
-    """(m,) means of an integer channel -> its likely course, where it stands on steps for most of
-    the time; where noise makes it waver all the time, the means are as good as they get.
+    """(m,) means of an integer channel -> its likely course, or the means themselves where it does
+    not stand on steps, or where no course is smoother.
     """
     level = np.round(raw_lsb)
-    if (np.abs(raw_lsb - level) > _WHOLE).mean() > 0.5:
+    changes = int((np.diff(level) != 0).sum())
+    if not 1 <= changes <= len(level) / _LONG:
         return raw_lsb
-    first = np.r_[0, np.flatnonzero(np.diff(level)) + 1]
-    if not 2 <= len(first) <= len(level) / _LONG:
-        return raw_lsb
-    return np.interp(np.arange(len(level)), *_nodes(first, level[first], len(level)))
+    courses = [_course(raw_lsb, noise) for noise in _NOISES]
+    rough = [_roughness(c) for c in courses]
+    best = int(np.argmin(rough))
+    return courses[best] if rough[best] < _SMOOTHER * _roughness(raw_lsb) else raw_lsb
 
 
-def _nodes(first, level, size):
-    """Places and values between which the course is straight: half-way where a step changes, and
-    what lies between two changes on the same side.
+def _roughness(course):
+    """RMS second difference of its means over a block."""
+    blocks = len(course) // _ROUGH_TICKS
+    means = course[: blocks * _ROUGH_TICKS].reshape(blocks, _ROUGH_TICKS).mean(axis=1)
+    return float(np.sqrt((np.diff(means, 2) ** 2).mean())) if blocks > 2 else np.inf
+
+
+def _course(raw, noise):
+    """Straight between what is known: ticks that waver tell how far from the change of step they
+    are, whole ones only that a step changed beside them.
     """
-    length = np.diff(np.r_[first, size])
+    whole = np.abs(raw - np.round(raw)) <= _WHOLE
+    low = np.floor(raw)
+    share = np.clip(raw - low, _WHOLE, 1.0 - _WHOLE)
+    told = np.clip(low + 0.5 + noise * norm.ppf(share), low, low + 1.0)
     at, value = [], []
-    for j, here in enumerate(level):
-        before = level[j - 1] if j else None
-        after = level[j + 1] if j + 1 < len(level) else None
-        if before is not None:
-            at.append(first[j] - 0.5)
-            value.append((before + here) / 2)
-        if before is None or after is None or (before - here) * (here - after) < 0:
-            enter = None if before is None else (length[j - 1] / 2, (before - here) / 2)
-            leave = None if after is None else (length[j + 1] / 2, (after - here) / 2)
-            more = _turning_back(length[j], enter, leave)
-            at += [first[j] - 0.5 + x for x, _ in more]
-            value += [here + v for _, v in more]
-    return at, value
+    for first, last in _stays(raw, whole):
+        nodes = _stay(raw, told, whole, first, last)
+        at += [x for x, _ in nodes]
+        value += [v for _, v in nodes]
+    at = np.r_[np.flatnonzero(~whole), at]
+    value = np.r_[told[~whole], value]
+    order = np.argsort(at, kind="stable")
+    return np.interp(np.arange(len(raw)), at[order], value[order])
 
 
-def _turning_back(length, enter, leave):
-    """Of a stay on one step, entered and left on one side: how far it goes to the step's middle, by
-    how long the neighbouring steps lasted. enter, leave: (ticks to the middle, value at the change)
-    or None at an end. Returns (place, value) beside the start and the middle of the step.
+def _stays(raw, whole):
+    """(first, one past last) of every run of whole ticks on one step."""
+    key = np.where(whole, np.round(raw), np.nan)
+    starts = np.flatnonzero(np.r_[True, key[1:] != key[:-1]])
+    ends = np.r_[starts[1:], len(raw)]
+    return [(int(a), int(b)) for a, b in zip(starts, ends) if whole[a]]
+
+
+def _stay(raw, told, whole, first, last):
+    """Nodes (place, value) of a stay on one step: where it is entered and left, and, where that is
+    on one side or at an end of the recording, as far to its middle as it lasts.
     """
-    rise, fall = (0.0 if side is None else side[0] for side in (enter, leave))
-    edge = (enter or leave)[1]
-    if rise + fall <= length:
-        return [(rise, 0.0), (length - fall, 0.0)]
-    reached = length / (rise + fall)
-    return [(length * rise / (rise + fall), edge * (1.0 - reached))]
+    here, nodes = round(raw[first]), []
+    enter = _side(raw, told, whole, first - 1, here)
+    leave = _side(raw, told, whole, last, here)
+    if enter is not None and whole[first - 1]:
+        nodes.append((first - 0.5, enter))
+    if leave is not None and enter is not None and (enter - here) * (leave - here) < 0:
+        return nodes
+    rise = (last - first) / 2 if enter is not None and leave is not None else 0.0
+    return [*nodes, (first + rise - 0.5 if enter is not None else first, float(here))]
+
+
+def _side(raw, told, whole, beside, here):
+    """The value where a stay meets the tick beside it, or None at an end of the recording."""
+    if not 0 <= beside < len(raw):
+        return None
+    return (round(raw[beside]) + here) / 2 if whole[beside] else told[beside]
