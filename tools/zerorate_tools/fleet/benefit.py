@@ -56,7 +56,8 @@ def benefit(
         found.update({name: r for name, r in result.items() if not isinstance(r, str)})
         failed.update({name: r for name, r in result.items() if isinstance(r, str)})
         advance(len(batch))
-    return {**_summary(found, minutes), "failed": failed}
+    in_order = {name: found[name] for name in tried if name in found}
+    return {**_summary(in_order, minutes), "failed": failed}
 
 
 def _prior(names, curves, fold_of, fold: int, scales: Scales) -> Prior:
