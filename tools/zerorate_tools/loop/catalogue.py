@@ -121,7 +121,7 @@ def is_supply(name: str) -> bool:
 _MARGIN = 0.1
 
 
-def _is_bounded(fields: dict) -> bool:
+def is_bounded(fields: dict) -> bool:
     """Whether a basis stays in its fitted range though its source leaves its own.
 
     Backlash, the difference from a lag and a rate do: holding their source at the edge would break
@@ -130,18 +130,26 @@ def _is_bounded(fields: dict) -> bool:
     return fields.get("lag_mode") in ("difference", "rate") or fields.get("memory") == "backlash"
 
 
+def _is_even(choice: dict) -> bool:
+    """Whether a basis is the same on either side of zero, so that one side shows the other."""
+    return choice.get("power") == 2 and choice.get("centre") == 0.0
+
+
 def _fields(choice: dict, span: dict, source: str) -> dict:
     lo, hi, mean = span.get(source, (0.0, 1.0, 0.0))
     fields = dict(choice)
     centre = fields.get("centre", "mean")
     fields["centre"] = {"mean": mean, "lo": lo, "hi": hi}.get(centre, centre)
     if source != "one":
-        margin = _MARGIN * (hi - lo) if _is_bounded(fields) else 0.0
+        margin = _MARGIN * (hi - lo) if is_bounded(fields) else 0.0
         fields.update(lo=lo - margin, hi=hi + margin)
     else:
         fields["centre"] = 0.0
     if source == "time":
         fields["centre"] = 0.0
+    if _is_even(choice):
+        reach = max(-fields["lo"], fields["hi"])
+        fields.update(lo=-reach, hi=reach)
     if "knot" in fields:
         fields["knot"] = lo + fields["knot"] * (hi - lo) - fields["centre"]
     if fields.get("second"):

@@ -18,6 +18,7 @@ from .detectable import smallest_dps
 from .refine import refined
 from .regression import Regression
 from .sessions import Session
+from .trust import follow_further
 
 MOST_EFFECTS = 6
 _KINDS_TRIED = 4
@@ -92,6 +93,8 @@ class Search:
             self._drop_idle()
         self._list_steps()
         self._name_rivals()
+        if not self.folds:
+            follow_further(self.regression, self.straight, self.found)
         r = self.regression
         smallest = self._smallest()
         return Selection(
