@@ -166,7 +166,7 @@ def close(s: ptr32, c: ptr32):
         s[a + _AGE_MS] += s[_ELAPSED_US] // 1000
         if s[a + _AGE_MS] > 0x3FFFFFF:
             s[a + _AGE_MS] = 0x3FFFFFF
-        if s[a + _KIND] == 0 and c[_EVERY] == 0:
+        if still == 0 and s[a + _KIND] == 0 and c[_EVERY] == 0:
             foretell(s, c, i)
         if still and c[_EVERY] == 0:
             s[a + _TOTAL] = s[_TOTALS + i]

@@ -1,4 +1,4 @@
-"""The bias of a power-on differs from the last one's; the curve over temperature does not."""
+"""How a power-on begins: with a first bias, and with an offset from the last one's curve."""
 
 from array import array
 from copy import deepcopy
@@ -6,6 +6,8 @@ from copy import deepcopy
 import numpy as np
 import pytest
 from zerorate import Corrector, Sensor
+
+from host_tests.firmware.played import LSB, play, rest
 
 SENSOR = Sensor(odr_hz=10.0)
 SLOPE_DPS, TURN_ON_DPS = 0.01, 0.2
@@ -63,3 +65,13 @@ def test_a_whole_power_on_is_corrected_by_its_own_offset(learned):
     learned = deepcopy(learned)
     power_on(learned, np.linspace(22, 30, 1200), TURN_ON_DPS, 4)
     assert learned.bias_lsb(0) / SENSOR.gyro_lsb_per_dps == pytest.approx(TURN_ON_DPS, abs=0.01)
+
+
+@pytest.mark.parametrize("odr_hz", [25.0, 100.0, 200.0])
+def test_the_very_first_bias_stands_while_it_is_being_learned(odr_hz):
+    frames = rest(6, bias_dps=(1.5, -2.2, 0.7), odr_hz=odr_hz)
+    corrector, outcome = play(frames, Corrector(Sensor(odr_hz=odr_hz)))
+    bias = outcome.bias_q8 / 256
+    known = np.maximum.accumulate(bias != 0)
+    assert known[-1].all() and not known[0].any()
+    assert np.abs(bias - np.array([1.5, -2.2, 0.7]) * LSB)[known].max() < 0.1 * LSB

@@ -1560,7 +1560,7 @@ static void step_close(int32_t *s, int32_t *c) {
         if (s[(a + 28)] > 67108863) {
             s[(a + 28)] = 67108863;
         }
-        if ((s[(a + 30)] == 0) && (c[46] == 0)) {
+        if ((still == 0) && (s[(a + 30)] == 0) && (c[46] == 0)) {
             step_foretell(s, c, i);
         }
         if (still && (c[46] == 0)) {

@@ -274,7 +274,7 @@ def close(s_, c_):
         s_a[28] = s[16] // 1000 + s_a[28]
         if s_a[28] > 67108863:
             s_a[28] = 67108863
-        if not s_a[30] and (not c[46]):
+        if not still and (not s_a[30]) and (not c[46]):
             foretell(s_, c_, i)
         if still and (not c[46]):
             s_a[0] = s[42 + i]
