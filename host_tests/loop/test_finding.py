@@ -2,6 +2,7 @@
 bench loop`.
 """
 
+import numpy as np
 import pytest
 from zerorate_tools.loop.analysis import analyse
 from zerorate_tools.loop.confounding import label
@@ -99,3 +100,23 @@ def test_a_path_that_repeats_without_a_temperature_is_told_by_time_and_never_con
     [step] = report(analysis)["steps"]
     assert (step["effect"], step["confidence"]) == ("power-on-transient", "tentative")
     assert "cause not identified; no temperature was recorded" in step["said"]
+
+
+def erring(seed):
+    """A line over temperature and noise, where the recorded temperature errs by 0.3 degC."""
+    device, rng = simulate(seed, bare=True), np.random.default_rng(seed)
+    for s, noise in zip(device.sessions, device.noise_dps):
+        at_s = s.time_s()
+        warm = 18 + 11 * (1 - np.exp(-at_s / 340)) + rng.normal(0, 2)
+        warm += rng.uniform(-2, 2) * np.sin(at_s / 3600 * rng.uniform(2, 4) + rng.uniform(0, 6))
+        walk = np.cumsum(rng.normal(size=len(at_s)))
+        wander = walk - np.convolve(np.r_[np.full(59, walk[0]), walk], np.ones(60) / 60, "valid")
+        s.sources["temp"] = warm + 0.3 * wander / wander.std()
+        s.rate_dps = noise + np.outer(s.block_mean(warm), [0.035, -0.001, -0.017])
+    return device
+
+
+def test_a_thermometer_that_errs_makes_no_effect_of_the_warm_up_that_makes_it_worse():
+    for seed in (1, 5):
+        selection, judgement = look(erring(seed))
+        assert judgement.after_rms < 1.1 * judgement.before_rms, names(selection)

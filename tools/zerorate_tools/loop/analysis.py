@@ -10,7 +10,7 @@ from .blocks import sessions_from
 from .earth import ROTATION, name_earth
 from .floor import floor_dps
 from .gate import CannotClose, GateReport, enough, readable, same_settings, usable_channels
-from .in_motion import InMotion, in_motion, without_scales
+from .in_motion import InMotion, in_motion, slots_of, without_scales
 from .judge import Judgement, judge
 from .line import deployed
 from .lines import Line
@@ -77,13 +77,14 @@ def analyse(
         len(sessions) == 1,
     )
     sessions = [without_scales(s, motion) for s in sessions]
+    taken = len(slots_of(motion))
     if len(sessions) == 1:
         train_part, locked_part, folds = split(sessions[0])
         train, locked = [train_part], [locked_part]
-        selection = select(train, folds)
+        selection = select(train, folds, taken)
     else:
         train, locked = [s for i, s in enumerate(sessions) if i != at], [sessions[at]]
-        selection = select(train, pieces(train[0]) if len(train) == 1 else None)
+        selection = select(train, pieces(train[0]) if len(train) == 1 else None, taken)
     judgement = judge(selection, locked)
     whole = [*selection.straight, *selection.terms]
     floor = floor_dps(judgement.whole, whole)

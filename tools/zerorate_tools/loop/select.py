@@ -15,8 +15,10 @@ from .catalogue import candidates as all_candidates
 from .common_cause import coherence, turned_axes
 from .decide import WEIGHT, Decision, decide, effective, smallest_ratio
 from .detectable import smallest_dps
+from .plain import growth
 from .refine import refined
 from .regression import Regression
+from .room import is_room
 from .sessions import Session
 from .trust import follow_further
 
@@ -24,6 +26,8 @@ MOST_EFFECTS = 6
 _KINDS_TRIED = 4
 _START_S = 60.0
 _TURN_BELOW = 1e-3
+#: Of the plain error of sessions left out, which for an effect that is there only drift makes grow.
+_MOST_GROWTH = 1.05
 
 
 @dataclass
@@ -69,7 +73,8 @@ def straight_line(sessions: list[Session]) -> tuple[Term, ...]:
 class Search:
     """The state of one search over some sessions."""
 
-    def __init__(self, sessions: list[Session], folds: list[Session] | None = None):
+    def __init__(self, sessions: list[Session], folds: list[Session] | None = None, taken: int = 0):
+        self.taken = taken
         self.regression = Regression(sessions)
         self.folds = Regression(folds) if folds else None
         self.straight = straight_line(sessions)
@@ -206,6 +211,7 @@ class Search:
                 c.kind in kinds
                 or len(kinds) >= _KINDS_TRIED
                 or confounding.label(c) in self.dropped
+                or not is_room([*self.terms(), *c.terms], self.taken)
             ):
                 continue
             kinds.append(c.kind)
@@ -233,18 +239,28 @@ class Search:
         if self._is_a_start(best):
             self.refused.append((confounding.label(best), "the start of a lag's own memory"))
             return None
-        if len(best.terms) == 1 and all_but_same(
-            best.terms[0], self.terms(), self.regression.sessions
-        ):
+        if self._is_twice(best, self.terms()):
             self.refused.append((confounding.label(best), "found already, all but the same"))
             return None
         ratio = float(self.regression.gains(nuisances, [best.terms]).sum())
         tried, folds = self._tried(c), self.folds or self.regression
         decision = decide(self.regression, folds, nuisances, best, ratio, tried, self.singles)
+        if decision.accepted and self._grows_with(best):
+            decision = replace(decision, accepted=False, reason="makes what is left out worse")
         if decision.accepted:
             return Found(best, decision)
         self.refused.append((confounding.label(best), decision.reason))
         return None
+
+    def _is_twice(self, candidate: Candidate, terms: list[Term]) -> bool:
+        """Whether the terms leave next to nothing of a candidate of one term."""
+        own = candidate.terms
+        return len(own) == 1 and all_but_same(own[0], terms, self.regression.sessions)
+
+    def _grows_with(self, candidate: Candidate) -> bool:
+        """Whether the plain error of what is left out grows with a candidate as deployed."""
+        folds = self.folds or self.regression
+        return growth(folds, self.straight, self.terms(), candidate.terms) > _MOST_GROWTH
 
     def _is_a_start(self, candidate: Candidate) -> bool:
         """Whether a transient is no longer than a found lag of temperature takes to forget what it
@@ -267,7 +283,9 @@ class Search:
                 self.dropped.add(confounding.label(c))
                 del self.found[i]
             else:
-                self.found[i].candidate = refined(self.regression, rest, c)
+                better = refined(self.regression, rest, c)
+                if not self._is_twice(better, rest):
+                    self.found[i].candidate = better
 
     def _list_steps(self):
         """Steps again from none, beside the effects found."""
@@ -281,6 +299,7 @@ class Search:
             rest = [*self.straight, *self.terms(leave=i)]
             ratios = self.regression.gains(rest, [c.terms for c in self.pool]).sum(axis=1)
             near = confounding.rivals(self.regression, rest, f.candidate, self.pool, ratios)
+            near = [c for c in near if c is f.candidate or not self._is_twice(c, rest)]
             if i < self.bends:
                 near = [
                     f.candidate,
@@ -297,9 +316,12 @@ class Search:
         return confounding.named(candidate, fit.coefficients[len(rest) :])
 
 
-def select(sessions: list[Session], folds: list[Session] | None = None) -> Selection:
-    """Everything that the training sessions show.
+def select(
+    sessions: list[Session], folds: list[Session] | None = None, taken: int = 0
+) -> Selection:
+    """Everything that the training sessions show, as far as the firmware has room for it.
 
-    folds: pieces of a single session, left out in turn where there are no further sessions.
+    folds: pieces of a single session, left out in turn where there are no further sessions; taken:
+    slots that what was found in motion needs.
     """
-    return Search(sessions, folds).run()
+    return Search(sessions, folds, taken).run()
