@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from .blocks import sessions_from
 from .earth import ROTATION, name_earth
@@ -65,6 +66,8 @@ class Analysis:
         return blind and not set(self.selection.found[i].candidate.sources) - {"time"}
 
 
+# The matrices are small: more threads wait for each other three times as long as one works.
+@threadpool_limits.wrap(limits=1, user_api="blas")
 def analyse(
     sessions: list[Session], holdout: int | None = None, gate: GateReport | None = None
 ) -> Analysis:
