@@ -12,6 +12,7 @@ from ..model import write_model
 from ..recordings import open_recording
 from ..recordings.atomic import written_beside
 from .analysis import Analysis, analyse, sessions_of
+from .deployable import deployable
 from .gate import CannotClose
 from .measure import measure
 from .model import model_of
@@ -73,7 +74,9 @@ def close(
     analysis = load(logs, holdout, advance)
     folder = Path(out)
     folder.mkdir(parents=True, exist_ok=True)
-    model = model_of(analysis, open_recording(logs[0]).scales)
+    scales = open_recording(logs[0]).scales
+    analysis = deployable(analysis, scales)
+    model = model_of(analysis, scales)
     analysis = measure(analysis, logs, model, folder / "corrected.parquet", online, advance)
     write_model(model, folder)
     result = json.loads(json.dumps(report(analysis), default=as_json))
