@@ -47,6 +47,16 @@ def test_an_undeclared_effect_of_three_floors_is_found_named_and_removed(effect)
     assert judgement.after_rms < judgement.before_rms
 
 
+def test_a_cubic_has_the_centre_that_the_part_has():
+    device = simulate(15)
+    for s in device.sessions:
+        from_centre = s.block_mean((s.sources["temp"] - 28.0) ** 3)
+        s.rate_dps += 4e-5 * from_centre[:, None] * [1.0, -0.7, 0.4]
+    selection, _ = look(device)
+    assert names(selection) == ["temperature-cubic"]
+    assert selection.terms[0].centre == pytest.approx(28.0, abs=0.5)
+
+
 def test_a_square_of_a_delayed_channel_is_tied_to_that_channel():
     selection, _ = look(simulate(12, [("load-squared-delayed", 3.0)]))
     assert selection.found and selection.found[0].candidate.sources == ["load"]
