@@ -26,6 +26,13 @@ def test_coloured_noise_has_no_lines():
         assert lines([coloured(rng) for _ in range(4)]) == []
 
 
+@pytest.mark.parametrize("seed", [216, 372])
+def test_the_humps_of_a_walk_in_one_short_recording_are_no_lines(seed):
+    rng = np.random.default_rng(seed)
+    rate = rng.normal(0, 1e-3, (880, 3)) + np.cumsum(rng.normal(0, 2e-4, (880, 3)), axis=0)
+    assert find([spectrum(rate, STEP_S, 1024)], [], 2.0 * 1024 / 880, 10 / 880) == []
+
+
 @pytest.mark.parametrize("period_s", [7.3, 60.0, 240.0])
 def test_a_line_is_found_with_its_period_and_amplitude(period_s):
     rng = np.random.default_rng(1)

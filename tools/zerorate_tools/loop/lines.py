@@ -17,6 +17,11 @@ from scipy.stats import gamma
 LEVEL = 1e-6
 MOST = 3
 _NEAR = 24  # bins to either side that are the neighbourhood
+_NEXT = (
+    2,
+    8,
+)  # bins, from and to, of the nearest of it, beside which a slow hump is no line either
+_HUMP = 0.8  # share of the nearest, whose few bins are known badly, that counts
 #: Power of a line to its neighbourhood's: in every session on its best axis, and on average where
 #: a session gives one periodogram, whose continuum is known badly at its slow end.
 _EACH_RATIO, _SINGLE_RATIO = 2.0, 12.0
@@ -58,13 +63,25 @@ def spectrum(rate_dps: np.ndarray, step_s: float, length: int) -> Spectrum:
 
 
 def beside_neighbours(s: Spectrum, wide: float) -> np.ndarray:
-    """(K, 3) power in units of its neighbourhood's; wide: bins that one line covers."""
+    """(K, 3) power in units of its neighbourhood's, near or nearest; wide: bins of one line."""
     size = 2 * round(_NEAR * wide) + 1
     shape = np.column_stack([_continuum(column) for column in s.power.T])
     flat = s.power / shape
     bias = gamma.median(s.averages) / s.averages
-    usual = median_filter(flat, size=(size, 1), mode="nearest") / bias
-    return flat / np.maximum(usual, 1e-300)
+    usual = median_filter(flat, size=(size, 1), mode="nearest")
+    slow = (
+        size // 2 + 1
+    )  # bins whose neighbourhood would reach below 0 Hz: noise has its humps there
+    nearest = median_filter(flat[: 2 * slow], footprint=_ring(wide), mode="mirror")[:slow]
+    usual[:slow] = np.maximum(usual[:slow], _HUMP * nearest)
+    return flat / np.maximum(usual / bias, 1e-300)
+
+
+def _ring(wide):
+    """(bins, 1) bool: the nearest neighbours without the line itself."""
+    inner, outer = (round(n * wide) for n in _NEXT)
+    away = np.abs(np.arange(-outer, outer + 1))
+    return (away > inner)[:, None]
 
 
 def _continuum(power: np.ndarray) -> np.ndarray:

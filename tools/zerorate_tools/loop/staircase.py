@@ -13,7 +13,7 @@ from scipy.stats import norm
 #: Of a step, from a whole one: a mean further off is of samples that waver between two steps.
 _WHOLE = 0.03
 #: Ticks that a step lasts on average where it is a staircase at all.
-_LONG = 5
+_LONG = 2
 #: Deviations of the samples' own noise that are tried, in steps; more of it averages the steps out.
 _NOISES = (0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3)
 #: By how much the course must be less rough than what was read.
