@@ -26,3 +26,8 @@ def test_a_lag_ten_times_as_long_is_one(sessions):
 
 def test_another_channel_is_one_however_like_it(sessions):
     assert not all_but_same(Term("vdd_mv"), [RATE, Term("load")], sessions)
+
+
+def test_a_cubic_beside_a_quadratic_is_one_wherever_its_centre_is(sessions):
+    square = Term("temp", centre=28.0, power=2)
+    assert not all_but_same(Term("temp", centre=10.0, power=3), [square], sessions)

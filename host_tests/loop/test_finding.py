@@ -130,3 +130,13 @@ def test_a_thermometer_that_errs_makes_no_effect_of_the_warm_up_that_makes_it_wo
     for seed in (1, 5):
         selection, judgement = look(erring(seed))
         assert judgement.after_rms < 1.1 * judgement.before_rms, names(selection)
+
+
+def test_a_rate_of_change_is_followed_where_another_day_begins_colder():
+    device = simulate(15, [("thermal-rate", 5.0)])
+    selection = select(device.sessions[:-1])
+    [term] = [f.candidate for f in selection.found][0].terms
+    seen = [s.block_mean(s.sources["temp"]) for s in device.sessions[:-1]]
+    low, high = min(map(np.min, seen)), max(map(np.max, seen))
+    assert term.lag_mode in ("rate", "difference")
+    assert term.lo < low - 0.4 * (high - low)

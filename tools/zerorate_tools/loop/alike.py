@@ -15,15 +15,22 @@ _OWN_SHARE = 0.003
 
 
 def all_but_same(term: Term, others: Sequence[Term], sessions: list[Session]) -> bool:
-    """Whether others of its source leave next to nothing of a term within the sessions."""
-    same_source = [t for t in others if t.source == term.source]
-    if not same_source:
+    """Whether others of its source with a memory leave next to nothing of a term with one.
+
+    Powers and kinks are none the worse for being much alike: nothing tells their places better.
+    """
+    same_source = [t for t in others if t.source == term.source and _has_memory(t)]
+    if not same_source or not _has_memory(term):
         return False
     own = _within(term, sessions)
     design = np.column_stack([_within(t, sessions) for t in same_source])
     design /= np.maximum(np.linalg.norm(design, axis=0), 1e-300)
     left = own - design @ np.linalg.lstsq(design, own, rcond=1e-10)[0]
     return bool(left @ left < _OWN_SHARE * (own @ own))
+
+
+def _has_memory(term):
+    return bool(term.lag_s or term.delay_s or term.decay_s or term.width)
 
 
 def _within(term, sessions):

@@ -119,7 +119,7 @@ def is_supply(name: str) -> bool:
 
 
 #: Share of its range by which the source of a difference may leave it.
-_MARGIN = 0.1
+_MARGIN = 0.5
 
 
 def is_bounded(fields: dict) -> bool:

@@ -51,8 +51,10 @@ def _course(raw, noise):
     share = np.clip(raw - low, _WHOLE, 1.0 - _WHOLE)
     told = np.clip(low + 0.5 + noise * norm.ppf(share), low, low + 1.0)
     at, value = [], []
-    for first, last in _stays(raw, whole):
-        nodes = _stay(raw, told, whole, first, last)
+    stays = _stays(raw, whole)
+    usual = float(np.median([last - first for first, last in stays] or [1])) / 2
+    for first, last in stays:
+        nodes = _stay(raw, told, whole, first, last, usual)
         at += [x for x, _ in nodes]
         value += [v for _, v in nodes]
     at = np.r_[np.flatnonzero(~whole), at]
@@ -69,9 +71,9 @@ def _stays(raw, whole):
     return [(int(a), int(b)) for a, b in zip(starts, ends) if whole[a]]
 
 
-def _stay(raw, told, whole, first, last):
+def _stay(raw, told, whole, first, last, usual):
     """Nodes (place, value) of a stay on one step: where it is entered and left, and, where that is
-    on one side or at an end of the recording, as far to its middle as it lasts.
+    on one side or at an end of the recording, its middle. usual: ticks from an edge to the middle.
     """
     here, nodes = round(raw[first]), []
     enter = _side(raw, told, whole, first - 1, here)
@@ -80,8 +82,11 @@ def _stay(raw, told, whole, first, last):
         nodes.append((first - 0.5, enter))
     if leave is not None and enter is not None and (enter - here) * (leave - here) < 0:
         return nodes
-    rise = (last - first) / 2 if enter is not None and leave is not None else 0.0
-    return [*nodes, (first + rise - 0.5 if enter is not None else first, float(here))]
+    length = last - first
+    if enter is not None and leave is not None:
+        return [*nodes, (first + length / 2 - 0.5, float(here))]
+    middle = min(usual, length - 1.0)
+    return [*nodes, (first + middle if enter is not None else last - 1 - middle, float(here))]
 
 
 def _side(raw, told, whole, beside, here):
