@@ -46,8 +46,13 @@ def find_bends(regression, folds, straight, pool) -> list[tuple[Candidate, Decis
 
 
 def with_curve(bends: list[Candidate]) -> list[Candidate]:
-    """With quadratic and cubic as one: either alone may be hidden by the other."""
-    powers = [c.terms[0] for c in bends if c.kind in KINDS[:2]]
+    """With quadratic and cubic as one: either alone may be hidden by the other.
+
+    Beside a quadratic a cubic is the same about any centre: the first stands for all.
+    """
+    first = {c.kind: c for c in reversed(bends) if c.kind in KINDS[:2]}
+    bends = [c for c in bends if first.get(c.kind, c) is c]
+    powers = [first[kind].terms[0] for kind in KINDS[:2] if kind in first]
     curve = [Candidate("temperature-curve", tuple(powers), "catalogue")] if len(powers) == 2 else []
     return [*bends, *curve]
 

@@ -22,8 +22,8 @@ Options = dict[str, Any]
 #: Physical effects; `knot` grids are shares of the source's range.
 CATALOGUE: tuple[tuple[str, str, Options, Options], ...] = (
     ("temperature-quadratic", "temp", {"power": 2}, {}),
-    # About another centre than its own it would take a quadratic in every axis beside it.
-    ("temperature-cubic", "temp", {"power": 3}, {"centre": ("mean",)}),
+    # About another centre than its own it takes a quadratic beside it, and kinks fit better.
+    ("temperature-cubic", "temp", {"power": 3}, {"centre": ("mean", "lo", "hi")}),
     ("temperature-kink", "temp", {}, {"knot": (0.15, 0.25, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85)}),
     ("thermal-rate", "temp", {"lag_mode": "rate"}, {"lag_s": (10.0, 20.0, 40.0)}),
     (
