@@ -28,7 +28,7 @@ LIMITS = {
     "narrowest_dps": 0.5,
     "step_degc": 1.0,
     "margin_degc": 0.15,
-    "promote_s": 10.0,
+    "promote_s": 4.0,
     "halve_after_s": 3600.0,
     "fit_s": 2.0,
     "counted_s": 20.0,

@@ -3,6 +3,7 @@
 # Document 000, "a least squares fit may be performed". `local` > 0 turns it into a line through
 # the neighbourhood of one temperature: an estimator `d` away counts 1 / (1 + (d/local)^2) of its
 # samples, and samples beyond `_COUNTED` add nothing, for then drift, not noise, is what is left.
+# At a slow rate all are scaled up, so that a few samples still tell near from far.
 #
 # Temperatures are raw LSB in Q4, biases LSB in Q8. Distances over temperature are
 # shifted left until the range fills 26 bits; the two sums of products float, for a point may weigh
@@ -56,6 +57,7 @@ _ENOUGH = const(31)
 _COUNTED = const(32)
 _LOCAL = const(33)
 _LOCAL_SHIFT = const(42)
+_NEAR = const(51)
 
 
 def weigh(s: ptr32, c: ptr32, a: int):
@@ -77,7 +79,7 @@ def weigh(s: ptr32, c: ptr32, a: int):
                 d = (s[e + 1] - (s[_TEMP] << 4)) >> c[_LOCAL_SHIFT]
                 if d > 0x3FFF or d < -0x3FFF:
                     d = 0x3FFF
-                w = (w * c[_LOCAL]) // (c[_LOCAL] + d * d) + 1
+                w = (w * c[_NEAR]) // (c[_LOCAL] + d * d) + 1
             if s[_POINTS] == 0:
                 s[_FIRST_T_Q4] = s[e + 1]
                 s[_FIRST_B_Q8] = s[e + 2]

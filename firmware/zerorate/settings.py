@@ -124,6 +124,7 @@ def estimators_of(c, sensor, short, long, document, limits):
         c[42] += 1
     unit = degree * 16 / (1 << c[42])
     c[33] = 0 if document else squared(limits["local_degc"] * unit, 1 << 14)
+    c[51] = c[33] * max(1, 2048 // c[32])
     c[34] = max(2, int(limits["stable_s"] * rate))
     c[35] = int(limits["share"] * 256)
     c[36] = int(limits["beyond_degc"] * degree * 16)

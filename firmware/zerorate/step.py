@@ -49,6 +49,7 @@ _KIND = const(30)
 _FIT_TEMP = const(31)
 
 _AXES = const(0)
+_WINDOW = const(3)
 _SHIFT = const(4)
 _SEGMENTS = const(5)
 _SLEW_Q8 = const(11)
@@ -191,14 +192,6 @@ def learn_at_once(s: ptr32, c: ptr32, x: ptr32):
         i += 1
 
 
-def wake(s: ptr32, c: ptr32, x: ptr32):
-    """Publish at the first frame after power-on what is already known for its temperature."""
-    s[_TEMP] = x[3]
-    s[_PHASE] = 1
-    while s[_PHASE]:
-        advance(s, c)
-
-
 def examine(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
     """Return what the guard says of the frame `x`, `dt_us` after the one before."""
     return check(s, c, x, dt_us)
@@ -207,12 +200,16 @@ def examine(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
 def admit(s: ptr32, c: ptr32, x: ptr32, kind: int) -> int:
     """Learn from an examined frame, and do a piece of the work that waits; return its kind."""
     if kind == 0:
-        if s[_GOOD] == 1:
-            wake(s, c, x)
-        if c[_EVERY]:
-            learn_at_once(s, c, x)
         if gather(s, c, x):
             close(s, c)
+        # for the temperature of the first frame; of every frame where a window lasts long
+        if s[_GOOD] == 1 or c[_WINDOW] == 4:
+            s[_TEMP] = x[3]
+            s[_PHASE] = 1
+            while s[_PHASE]:
+                advance(s, c)
+        if c[_EVERY]:
+            learn_at_once(s, c, x)
     i = c[_PIECES]
     while i > 0 and s[_PHASE]:
         advance(s, c)

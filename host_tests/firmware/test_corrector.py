@@ -111,3 +111,27 @@ def test_a_new_power_on_forgets_what_the_other_sources_were_watching():
     assert (list(corrector.motion), list(corrector.level)) != fresh
     corrector.power_on()
     assert (list(corrector.motion), list(corrector.level)) == fresh
+
+
+def warming(corrector, first, end):
+    """Feed a slow device at rest that warms by a degree a sample, its bias by ten LSB a degree.
+
+    Returns what was left of the first axis' bias in each sample, LSB.
+    """
+    left, frame = [], array("i", [0] * 7)
+    for degree in range(first, end):
+        bias, dither = 10 * degree, degree % 3 - 1
+        words = (3, dither, 16384, 100 * degree, bias + dither, dither - 300, 40 - dither)
+        for i in range(7):
+            frame[i] = words[i]
+        corrector.update(frame, 15_000_000)
+        left.append(frame[4] - dither)
+    return left
+
+
+def test_at_a_slow_rate_the_bias_follows_the_thermometer_at_every_sample():
+    corrector = Corrector(Sensor(1 / 15, temp_lsb_per_degc=100.0))
+    warming(corrector, 0, 40)
+    corrector.power_on()
+    # a window is four samples: the bias of its mean temperature would be up to 45 LSB late
+    assert max(abs(lsb) for lsb in warming(corrector, 8, 30)) <= 2

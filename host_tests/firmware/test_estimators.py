@@ -149,3 +149,11 @@ def test_noise_at_a_boundary_of_two_degrees_does_not_thrash_the_cache(noise):
         axis.learn(STEP // 2 + n)  # on the boundary of degree 0 and degree 1
     assert len(axis.recent_first) == 3
     assert {20 * STEP, 40 * STEP} < set(axis.recent_first)
+
+
+def test_a_temperature_passed_in_five_seconds_is_remembered():
+    corrector = Corrector()
+    axis = Axis(promote_s=corrector.settings[29] / 100)
+    for degree in range(6):
+        axis.learn(degree * STEP, 5, 500)
+    assert {0, STEP, 2 * STEP} <= {temp for temp, _ in axis.long}

@@ -5,7 +5,7 @@ from fractions import Fraction
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from zerorate import Corrector, bias, fit
+from zerorate import Corrector, Sensor, bias, fit
 
 from .tolerances import LINE_LSB
 
@@ -110,3 +110,19 @@ def test_a_temperature_within_the_fitted_range_is_not_beyond_it(axis):
 def test_beyond_the_fitted_range_a_flag_says_so(axis, temp):
     axis.fit([(0, 0, 60000), (3400 * 16, 256, 60000)])
     assert axis.choose(temp) == (bias.FIT, 1)
+
+
+def test_a_few_samples_of_a_slow_rate_still_tell_near_from_far():
+    slow, fast = (Corrector(Sensor(hz)) for hz in (1 / 15, 100.0))
+    for corrector, readings in ((slow, 4), (fast, 2000)):
+        s, c = corrector.state, corrector.settings
+        a = c[0]
+        for k, (degree, bias_lsb) in enumerate([(0, 0), (2, 20), (40, 0), (60, 0)]):
+            e = a + c[14] + k * c[26]
+            s[e], s[e + 1], s[e + 2], s[e + 3] = (
+                degree * 340, degree * 340 << 4, bias_lsb << 8, readings
+            )  # fmt: skip
+        s[47] = 2 * 340
+        fit.draw_line(s, c, a)
+    lines = [fit.line_q8(x.state, x.settings[0], 2 * 340 << 4) / 256 for x in (slow, fast)]
+    assert lines[0] == pytest.approx(lines[1], rel=0.05)

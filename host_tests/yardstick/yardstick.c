@@ -855,7 +855,7 @@ static void fit_weigh(int32_t *s, int32_t *c, int32_t a) {
                 if ((d > 16383) || (d < (-16383))) {
                     d = 16383;
                 }
-                w = (floor_div((w * c[33]), (c[33] + (d * d))) + 1);
+                w = (floor_div((w * c[51]), (c[33] + (d * d))) + 1);
             }
             if (s[91] == 0) {
                 s[86] = s[(e + 1)];
@@ -1338,30 +1338,6 @@ static void step_advance(int32_t *s, int32_t *c) {
     s[53] = ((axis < 3) ? (((axis * 3) + piece) + 1) : 0);
 }
 
-static void step_wake(int32_t *s, int32_t *c, int32_t *x) {
-    s[47] = x[3];
-    s[53] = 1;
-    while (s[53]) {
-        step_advance(s, c);
-    }
-}
-
-static void step_learn_at_once(int32_t *s, int32_t *c, int32_t *x) {
-    int32_t a = 0;
-    int32_t i = 0;
-    s[52] = x[3];
-    i = 0;
-    while (i < 3) {
-        a = (c[0] + (i * c[13]));
-        s[(a + 0)] = x[(4 + i)];
-        s[(a + 1)] = 1;
-        estimators_learn_anywhere(s, c, a);
-        estimators_learn_here(s, c, a);
-        s[(a + 1)] = 0;
-        i = (i + 1);
-    }
-}
-
 static int32_t stillness_spread_q8(int32_t *s, int32_t *c, int32_t first, int32_t square) {
     int32_t i = 0;
     int32_t mean_q4 = 0;
@@ -1574,17 +1550,37 @@ static void step_close(int32_t *s, int32_t *c) {
     s[53] = 1;
 }
 
+static void step_learn_at_once(int32_t *s, int32_t *c, int32_t *x) {
+    int32_t a = 0;
+    int32_t i = 0;
+    s[52] = x[3];
+    i = 0;
+    while (i < 3) {
+        a = (c[0] + (i * c[13]));
+        s[(a + 0)] = x[(4 + i)];
+        s[(a + 1)] = 1;
+        estimators_learn_anywhere(s, c, a);
+        estimators_learn_here(s, c, a);
+        s[(a + 1)] = 0;
+        i = (i + 1);
+    }
+}
+
 static int32_t step_admit(int32_t *s, int32_t *c, int32_t *x, int32_t kind) {
     int32_t i = 0;
     if (kind == 0) {
-        if (s[8] == 1) {
-            step_wake(s, c, x);
+        if (stillness_gather(s, c, x)) {
+            step_close(s, c);
+        }
+        if ((s[8] == 1) || (c[3] == 4)) {
+            s[47] = x[3];
+            s[53] = 1;
+            while (s[53]) {
+                step_advance(s, c);
+            }
         }
         if (c[46]) {
             step_learn_at_once(s, c, x);
-        }
-        if (stillness_gather(s, c, x)) {
-            step_close(s, c);
         }
     }
     i = c[12];

@@ -206,28 +206,6 @@ def one(s_, f: ptr32, c_, x: ptr32, p: int):
         s[16] = step_step_examine_check_dt_us if step_step_examine_check_dt_us < 536870911 else 536870911
     step_step_kind = step_step_examine_check_i
     if not step_step_kind:
-        if not s[8] - 1:
-            s[47] = x[3]
-            s[53] = 1
-            while s[53]:
-                advance(s_, c_)
-        if c[46]:
-            s[52] = x[3]
-            step_step_admit_learn_at_once_i = 0
-            while step_step_admit_learn_at_once_i < 3:
-                step_step_admit_learn_at_once_a = step_step_admit_learn_at_once_i * c[13] + c[0]
-                s_step_step_admit_learn_at_once_a = ptr32(int(s) + (step_step_admit_learn_at_once_a << 2))
-                s_step_step_admit_learn_at_once_a[0] = x[4 + step_step_admit_learn_at_once_i]
-                s_step_step_admit_learn_at_once_a[1] = 1
-                step_step_admit_learn_at_once_learn_anywhere_temp = s[52]
-                if step_step_admit_learn_at_once_learn_anywhere_temp < s_step_step_admit_learn_at_once_a[3]:
-                    s_step_step_admit_learn_at_once_a[3] = step_step_admit_learn_at_once_learn_anywhere_temp
-                if step_step_admit_learn_at_once_learn_anywhere_temp > s_step_step_admit_learn_at_once_a[4]:
-                    s_step_step_admit_learn_at_once_a[4] = step_step_admit_learn_at_once_learn_anywhere_temp
-                feed(s_, c_, step_step_admit_learn_at_once_a, step_step_admit_learn_at_once_a + 32)
-                learn_here(s_, c_, step_step_admit_learn_at_once_a)
-                s_step_step_admit_learn_at_once_a[1] = 0
-                step_step_admit_learn_at_once_i = step_step_admit_learn_at_once_i + 1
         step_step_admit_stillness_gather_i = 0
         if not s[17]:
             while step_step_admit_stillness_gather_i < 7:
@@ -272,6 +250,28 @@ def one(s_, f: ptr32, c_, x: ptr32, p: int):
             step_step_admit_stillness_gather_result = 1
         if step_step_admit_stillness_gather_result:
             close(s_, c_)
+        if not s[8] - 1 or not c[3] - 4:
+            s[47] = x[3]
+            s[53] = 1
+            while s[53]:
+                advance(s_, c_)
+        if c[46]:
+            s[52] = x[3]
+            step_step_admit_learn_at_once_i = 0
+            while step_step_admit_learn_at_once_i < 3:
+                step_step_admit_learn_at_once_a = step_step_admit_learn_at_once_i * c[13] + c[0]
+                s_step_step_admit_learn_at_once_a = ptr32(int(s) + (step_step_admit_learn_at_once_a << 2))
+                s_step_step_admit_learn_at_once_a[0] = x[4 + step_step_admit_learn_at_once_i]
+                s_step_step_admit_learn_at_once_a[1] = 1
+                step_step_admit_learn_at_once_learn_anywhere_temp = s[52]
+                if step_step_admit_learn_at_once_learn_anywhere_temp < s_step_step_admit_learn_at_once_a[3]:
+                    s_step_step_admit_learn_at_once_a[3] = step_step_admit_learn_at_once_learn_anywhere_temp
+                if step_step_admit_learn_at_once_learn_anywhere_temp > s_step_step_admit_learn_at_once_a[4]:
+                    s_step_step_admit_learn_at_once_a[4] = step_step_admit_learn_at_once_learn_anywhere_temp
+                feed(s_, c_, step_step_admit_learn_at_once_a, step_step_admit_learn_at_once_a + 32)
+                learn_here(s_, c_, step_step_admit_learn_at_once_a)
+                s_step_step_admit_learn_at_once_a[1] = 0
+                step_step_admit_learn_at_once_i = step_step_admit_learn_at_once_i + 1
     step_step_admit_i = c[12]
     while step_step_admit_i > 0 and s[53]:
         advance(s_, c_)

@@ -280,7 +280,7 @@ def draw_line(s_, c_, a: int):
                 fit_weigh_d = s_fit_weigh_e[1] - (s[47] << 4) >> c[42]
                 if fit_weigh_d > 16383 or fit_weigh_d < -16383:
                     fit_weigh_d = 16383
-                fit_weigh_w = fit_weigh_w * c[33] // (fit_weigh_d * fit_weigh_d + c[33]) + 1
+                fit_weigh_w = fit_weigh_w * c[51] // (fit_weigh_d * fit_weigh_d + c[33]) + 1
             if not s[91]:
                 s[86] = s_fit_weigh_e[1]
                 s[87] = s_fit_weigh_e[2]

@@ -369,49 +369,6 @@ def admit(s_, c_, x: ptr32, kind: int) -> int:
     s = ptr32(s_)
     c = ptr32(c_)
     if not kind:
-        if not s[8] - 1:
-            s[47] = x[3]
-            s[53] = 1
-            while s[53]:
-                advance(s_, c_)
-        if c[46]:
-            s[52] = x[3]
-            learn_at_once_a = 0 * c[13] + c[0]
-            s_learn_at_once_a = ptr32(int(s) + (learn_at_once_a << 2))
-            s_learn_at_once_a[0] = x[4]
-            s_learn_at_once_a[1] = 1
-            learn_at_once_learn_anywhere_temp = s[52]
-            if learn_at_once_learn_anywhere_temp < s_learn_at_once_a[3]:
-                s_learn_at_once_a[3] = learn_at_once_learn_anywhere_temp
-            if learn_at_once_learn_anywhere_temp > s_learn_at_once_a[4]:
-                s_learn_at_once_a[4] = learn_at_once_learn_anywhere_temp
-            feed(s_, c_, learn_at_once_a, learn_at_once_a + 32)
-            learn_here(s_, c_, learn_at_once_a)
-            s_learn_at_once_a[1] = 0
-            learn_at_once_a = 1 * c[13] + c[0]
-            s_learn_at_once_a = ptr32(int(s) + (learn_at_once_a << 2))
-            s_learn_at_once_a[0] = x[5]
-            s_learn_at_once_a[1] = 1
-            learn_at_once_learn_anywhere_temp = s[52]
-            if learn_at_once_learn_anywhere_temp < s_learn_at_once_a[3]:
-                s_learn_at_once_a[3] = learn_at_once_learn_anywhere_temp
-            if learn_at_once_learn_anywhere_temp > s_learn_at_once_a[4]:
-                s_learn_at_once_a[4] = learn_at_once_learn_anywhere_temp
-            feed(s_, c_, learn_at_once_a, learn_at_once_a + 32)
-            learn_here(s_, c_, learn_at_once_a)
-            s_learn_at_once_a[1] = 0
-            learn_at_once_a = 2 * c[13] + c[0]
-            s_learn_at_once_a = ptr32(int(s) + (learn_at_once_a << 2))
-            s_learn_at_once_a[0] = x[6]
-            s_learn_at_once_a[1] = 1
-            learn_at_once_learn_anywhere_temp = s[52]
-            if learn_at_once_learn_anywhere_temp < s_learn_at_once_a[3]:
-                s_learn_at_once_a[3] = learn_at_once_learn_anywhere_temp
-            if learn_at_once_learn_anywhere_temp > s_learn_at_once_a[4]:
-                s_learn_at_once_a[4] = learn_at_once_learn_anywhere_temp
-            feed(s_, c_, learn_at_once_a, learn_at_once_a + 32)
-            learn_here(s_, c_, learn_at_once_a)
-            s_learn_at_once_a[1] = 0
         if not s[17]:
             s[19] = x[0]
             s[26] = 0
@@ -504,6 +461,49 @@ def admit(s_, c_, x: ptr32, kind: int) -> int:
             stillness_gather_result = 1
         if stillness_gather_result:
             close(s_, c_)
+        if not s[8] - 1 or not c[3] - 4:
+            s[47] = x[3]
+            s[53] = 1
+            while s[53]:
+                advance(s_, c_)
+        if c[46]:
+            s[52] = x[3]
+            learn_at_once_a = 0 * c[13] + c[0]
+            s_learn_at_once_a = ptr32(int(s) + (learn_at_once_a << 2))
+            s_learn_at_once_a[0] = x[4]
+            s_learn_at_once_a[1] = 1
+            learn_at_once_learn_anywhere_temp = s[52]
+            if learn_at_once_learn_anywhere_temp < s_learn_at_once_a[3]:
+                s_learn_at_once_a[3] = learn_at_once_learn_anywhere_temp
+            if learn_at_once_learn_anywhere_temp > s_learn_at_once_a[4]:
+                s_learn_at_once_a[4] = learn_at_once_learn_anywhere_temp
+            feed(s_, c_, learn_at_once_a, learn_at_once_a + 32)
+            learn_here(s_, c_, learn_at_once_a)
+            s_learn_at_once_a[1] = 0
+            learn_at_once_a = 1 * c[13] + c[0]
+            s_learn_at_once_a = ptr32(int(s) + (learn_at_once_a << 2))
+            s_learn_at_once_a[0] = x[5]
+            s_learn_at_once_a[1] = 1
+            learn_at_once_learn_anywhere_temp = s[52]
+            if learn_at_once_learn_anywhere_temp < s_learn_at_once_a[3]:
+                s_learn_at_once_a[3] = learn_at_once_learn_anywhere_temp
+            if learn_at_once_learn_anywhere_temp > s_learn_at_once_a[4]:
+                s_learn_at_once_a[4] = learn_at_once_learn_anywhere_temp
+            feed(s_, c_, learn_at_once_a, learn_at_once_a + 32)
+            learn_here(s_, c_, learn_at_once_a)
+            s_learn_at_once_a[1] = 0
+            learn_at_once_a = 2 * c[13] + c[0]
+            s_learn_at_once_a = ptr32(int(s) + (learn_at_once_a << 2))
+            s_learn_at_once_a[0] = x[6]
+            s_learn_at_once_a[1] = 1
+            learn_at_once_learn_anywhere_temp = s[52]
+            if learn_at_once_learn_anywhere_temp < s_learn_at_once_a[3]:
+                s_learn_at_once_a[3] = learn_at_once_learn_anywhere_temp
+            if learn_at_once_learn_anywhere_temp > s_learn_at_once_a[4]:
+                s_learn_at_once_a[4] = learn_at_once_learn_anywhere_temp
+            feed(s_, c_, learn_at_once_a, learn_at_once_a + 32)
+            learn_here(s_, c_, learn_at_once_a)
+            s_learn_at_once_a[1] = 0
     i = c[12]
     while i > 0 and s[53]:
         advance(s_, c_)
@@ -578,28 +578,6 @@ def step(s_, c_, x: ptr32, dt_us: int) -> int:
         s[16] = examine_check_dt_us if examine_check_dt_us < 536870911 else 536870911
     kind = examine_check_i
     if not kind:
-        if not s[8] - 1:
-            s[47] = x[3]
-            s[53] = 1
-            while s[53]:
-                advance(s_, c_)
-        if c[46]:
-            s[52] = x[3]
-            admit_learn_at_once_i = 0
-            while admit_learn_at_once_i < 3:
-                admit_learn_at_once_a = admit_learn_at_once_i * c[13] + c[0]
-                s_admit_learn_at_once_a = ptr32(int(s) + (admit_learn_at_once_a << 2))
-                s_admit_learn_at_once_a[0] = x[4 + admit_learn_at_once_i]
-                s_admit_learn_at_once_a[1] = 1
-                admit_learn_at_once_learn_anywhere_temp = s[52]
-                if admit_learn_at_once_learn_anywhere_temp < s_admit_learn_at_once_a[3]:
-                    s_admit_learn_at_once_a[3] = admit_learn_at_once_learn_anywhere_temp
-                if admit_learn_at_once_learn_anywhere_temp > s_admit_learn_at_once_a[4]:
-                    s_admit_learn_at_once_a[4] = admit_learn_at_once_learn_anywhere_temp
-                feed(s_, c_, admit_learn_at_once_a, admit_learn_at_once_a + 32)
-                learn_here(s_, c_, admit_learn_at_once_a)
-                s_admit_learn_at_once_a[1] = 0
-                admit_learn_at_once_i = admit_learn_at_once_i + 1
         admit_stillness_gather_i = 0
         if not s[17]:
             while admit_stillness_gather_i < 7:
@@ -644,6 +622,28 @@ def step(s_, c_, x: ptr32, dt_us: int) -> int:
             admit_stillness_gather_result = 1
         if admit_stillness_gather_result:
             close(s_, c_)
+        if not s[8] - 1 or not c[3] - 4:
+            s[47] = x[3]
+            s[53] = 1
+            while s[53]:
+                advance(s_, c_)
+        if c[46]:
+            s[52] = x[3]
+            admit_learn_at_once_i = 0
+            while admit_learn_at_once_i < 3:
+                admit_learn_at_once_a = admit_learn_at_once_i * c[13] + c[0]
+                s_admit_learn_at_once_a = ptr32(int(s) + (admit_learn_at_once_a << 2))
+                s_admit_learn_at_once_a[0] = x[4 + admit_learn_at_once_i]
+                s_admit_learn_at_once_a[1] = 1
+                admit_learn_at_once_learn_anywhere_temp = s[52]
+                if admit_learn_at_once_learn_anywhere_temp < s_admit_learn_at_once_a[3]:
+                    s_admit_learn_at_once_a[3] = admit_learn_at_once_learn_anywhere_temp
+                if admit_learn_at_once_learn_anywhere_temp > s_admit_learn_at_once_a[4]:
+                    s_admit_learn_at_once_a[4] = admit_learn_at_once_learn_anywhere_temp
+                feed(s_, c_, admit_learn_at_once_a, admit_learn_at_once_a + 32)
+                learn_here(s_, c_, admit_learn_at_once_a)
+                s_admit_learn_at_once_a[1] = 0
+                admit_learn_at_once_i = admit_learn_at_once_i + 1
     admit_i = c[12]
     while admit_i > 0 and s[53]:
         advance(s_, c_)
