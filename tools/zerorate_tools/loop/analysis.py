@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from os import PathLike
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from ..recordings import open_recording
 from .blocks import sessions_from
+from .by_kernels import PiecesByKernels
+from .catalogue import extra_channels
 from .earth import ROTATION, name_earth
 from .floor import floor_dps
 from .gate import CannotClose, GateReport, enough, readable, same_settings, usable_channels
@@ -17,6 +22,7 @@ from .line import deployed
 from .lines import Line
 from .measured import Measured
 from .periodic import periodic
+from .power_on import PowerOn, ideal_dps
 from .select import Selection, select
 from .sessions import Session
 from .single import pieces, split
@@ -69,9 +75,14 @@ class Analysis:
 # The matrices are small: more threads wait for each other three times as long as one works.
 @threadpool_limits.wrap(limits=1, user_api="blas")
 def analyse(
-    sessions: list[Session], holdout: int | None = None, gate: GateReport | None = None
+    sessions: list[Session],
+    holdout: int | None = None,
+    gate: GateReport | None = None,
+    logs: Mapping[str, str | PathLike[str]] | None = None,
 ) -> Analysis:
-    """Run the loop. holdout: index of the session to lock away, the last by default."""
+    """Run the loop. holdout: index of the session to lock away, the last by default; logs: each
+    session's recording, for the firmware's own kernels to be run over where it stands alone.
+    """
     gate = gate or GateReport()
     at = len(sessions) - 1 if holdout is None else holdout
     motion = in_motion(
@@ -84,10 +95,11 @@ def analyse(
     if len(sessions) == 1:
         train_part, locked_part, folds = split(sessions[0])
         train, locked = [train_part], [locked_part]
-        selection = select(train, folds, taken)
     else:
         train, locked = [s for i, s in enumerate(sessions) if i != at], [sessions[at]]
-        selection = select(train, pieces(train[0]) if len(train) == 1 else None, taken)
+        folds = pieces(train[0]) if len(train) == 1 else []
+    by_kernels = _on_pieces(train[0], folds, motion, logs) if folds and logs else None
+    selection = select(train, folds, taken, by_kernels)
     judgement = judge(selection, locked)
     whole = [*selection.straight, *selection.terms]
     floor = floor_dps(judgement.whole, whole)
@@ -95,6 +107,14 @@ def analyse(
     name_earth(selection.found, terms, coefficients, train)
     lines = periodic(train, locked, terms, coefficients)
     return Analysis(sessions, train, locked, selection, judgement, floor, gate, motion, lines)
+
+
+def _on_pieces(train, folds, motion, logs):
+    log = logs[train.name]
+    scales, ideal = open_recording(log).scales, ideal_dps(train, motion)
+    channels, lsb = extra_channels(train), scales.gyro_lsb_per_dps
+    power_on = PowerOn(train, log, lsb, ideal, train.available, channels)
+    return PiecesByKernels(power_on, train, folds, scales)
 
 
 def sessions_of(ticks: list[Ticks]) -> tuple[list[Session], GateReport]:

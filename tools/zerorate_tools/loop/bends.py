@@ -8,41 +8,77 @@ than tentative.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Protocol
+
+import numpy as np
+
+from .basis import Term
 from .catalogue import Candidate
-from .decide import LEAST_GAIN, LEVEL, Decision, family_p
-from .single import bend_gains
+from .decide import LEVEL, Decision, family_p
+from .single import speaks_for
 
 KINDS = ("temperature-quadratic", "temperature-cubic", "temperature-curve", "temperature-kink")
-MOST = 3
 #: Of likelihood ratio, by which a kink, which has a place to choose, must beat a curve.
 _KINK_PAYS = 10.0
 
 
-def find_bends(regression, folds, straight, pool) -> list[tuple[Candidate, Decision]]:
-    """Bends one after another while each predicts the pieces left out. folds: the pieces.
+class JudgedOnPieces(Protocol):
+    """What an effect gains on pieces of a recording that are left out; `reason` of a refusal."""
+
+    reason: str
+
+    def __call__(
+        self, straight: Sequence[Term], found: Sequence[Term], candidate: Sequence[Term]
+    ) -> np.ndarray:
+        """(folds,) nats by which each piece is better predicted with the candidate."""
+
+
+@dataclass
+class Bends:
+    """The bend found, if any, with what was said of it, and kinds refused with the reason."""
+
+    found: list[tuple[Candidate, Decision]] = field(default_factory=list)
+    refused: list[tuple[str, str]] = field(default_factory=list)
+
+
+def find_bends(regression, judged: JudgedOnPieces, straight, pool) -> Bends:
+    """The likeliest bend that predicts the pieces left out, if one does.
 
     pool: candidates, of which those of other kinds are passed over.
     """
-    bends = with_curve([c for c in pool if c.kind in KINDS])
-    found: list[tuple[Candidate, Decision]] = []
+    every, bends = with_curve([c for c in pool if c.kind in KINDS]), Bends()
     regression.steep = False
-    while len(found) < MOST:
-        terms = [*straight, *(t for c, _ in found for t in c.terms)]
-        left = [c for c in bends if not any(t in terms for t in c.terms)]
-        ratios = regression.gains(terms, [c.terms for c in left]).sum(axis=1)
-        passing = []
-        for candidate, ratio in zip(left, ratios):
-            p = family_p(float(ratio), 3 * len(candidate.terms), _tried(candidate, bends))
-            if p > LEVEL["catalogue"]:
-                continue
-            gain = bend_gains(folds, terms, candidate.terms)
-            if gain.sum() > LEAST_GAIN and 2 * (gain > 0).sum() > len(gain):
-                passing.append((candidate, Decision(True, p, float(ratio), 1.0, gain)))
-        if not passing:
-            break
-        found.append(max(passing, key=_worth))
+    significant = sorted(_significant(regression, straight, every), key=_worth, reverse=True)
     regression.steep = True
-    return found
+    for candidate, decision in significant:
+        said = on_pieces(decision, judged, straight, (), candidate.terms)
+        if said.accepted:
+            bends.found.append((candidate, said))
+            break
+        bends.refused.append((candidate.kind, said.reason))
+    return bends
+
+
+def on_pieces(decision: Decision, judged: JudgedOnPieces, straight, found, candidate) -> Decision:
+    """A decision for a candidate, unless pieces left out speak against it."""
+    gain = judged(straight, found, candidate)
+    accepted = speaks_for(gain)
+    reason = "" if accepted else judged.reason
+    return replace(decision, accepted=accepted, session_gains=gain, reason=reason)
+
+
+def _significant(regression, straight, bends) -> list[tuple[Candidate, Decision]]:
+    """The likeliest of every kind that passes the first lock."""
+    ratios = regression.gains(straight, [c.terms for c in bends]).sum(axis=1)
+    best: dict[str, tuple[Candidate, Decision]] = {}
+    for candidate, ratio in sorted(zip(bends, ratios), key=lambda pair: -pair[1]):
+        p = family_p(float(ratio), 3 * len(candidate.terms), _tried(candidate, bends))
+        if p <= LEVEL["catalogue"]:
+            decision = Decision(True, p, float(ratio), 1.0, np.array([]))
+            best.setdefault(candidate.kind, (candidate, decision))
+    return list(best.values())
 
 
 def with_curve(bends: list[Candidate]) -> list[Candidate]:

@@ -113,6 +113,11 @@ def ranges(sessions: list[Session]) -> dict[str, tuple[float, float, float]]:
     return out
 
 
+def extra_channels(session: Session) -> tuple[str, ...]:
+    """Names of the channels that no sensor of its own has, in the session's order."""
+    return tuple(n for n in session.sources if n not in _OWN)
+
+
 def is_supply(name: str) -> bool:
     """Whether a channel's name says it is the supply voltage."""
     return any(part in name.lower() for part in SUPPLY_NAMES)

@@ -37,7 +37,7 @@ def load(
     at = None
     if holdout is not None:
         at = _index(holdout, logs, [t.name for t in ticks], [s.name for s in sessions])
-    return analyse(sessions, at, gate)
+    return analyse(sessions, at, gate, {t.name: log for t, log in zip(ticks, logs)})
 
 
 def _index(holdout, logs, names, kept):

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from copy import deepcopy
 
 import numpy as np
@@ -55,6 +56,13 @@ class Firmware:
             raise Refused(f"the firmware refuses the model: {REASONS[reason]}")
         self._corrector.use_model(effects)
         self._extra = [channels.index(name) for name in effects.channels]
+
+    def compile(self, frames: Frames) -> None:
+        """Compile what `run` needs, for one row, which is of another layout, and for many: to be
+        done before there are threads. frames: two samples at least; nothing is learned.
+        """
+        for count in (1, 2):
+            self.copy().run(rows(frames, 0, count))
 
     def copy(self) -> Firmware:
         """Another device in the very same state."""
@@ -111,3 +119,9 @@ def rows(frames: Frames, first: int, end: int) -> Frames:
     """Some of the samples."""
     part = slice(int(first), int(end))
     return Frames(frames.t_us[part], frames.frames[part], frames.dt_us[part], frames.extra[part])
+
+
+def at_once(runs: Sequence[Callable[..., np.ndarray]], *arguments) -> list[np.ndarray]:
+    """What every one of them returns; compiled kernels run beside each other."""
+    with ThreadPoolExecutor() as pool:
+        return [task.result() for task in [pool.submit(run, *arguments) for run in runs]]

@@ -15,13 +15,11 @@ from ..recordings.atomic import written_beside
 from ..recordings.reading import recording_name
 from .analysis import Analysis
 from .corrected import CorrectedWriter
-from .in_motion import rates_of_turning
 from .judge import Judgement, rms_dps
 from .measured import AFTER, BEFORE, ONLINE, Course, Measured, Measurement
 from .model import model_of
-from .power_on import PowerOn
+from .power_on import PowerOn, ideal_dps
 from .rounding import rounding_dps
-from .sessions import Session
 from .single import held_out
 
 
@@ -83,26 +81,12 @@ def power_ons_of(analysis: Analysis, logs, model: Model, scales: Scales) -> list
             s,
             paths[s.name],
             scales.gyro_lsb_per_dps,
-            ideal_dps(s, analysis),
+            ideal_dps(s, analysis.motion),
             held.get(s.name, s).available,
             model.channels,
         )
         for s in analysis.sessions
     ]
-
-
-def ideal_dps(session: Session, analysis: Analysis) -> np.ndarray:
-    """(n, 3) what an ideal bias would be: the rate read at rest, or beyond the true one.
-
-    Earth's rate is in what the firmware learns at rest, so only its change since the first still
-    minute is an error; what turning adds is the model's to remove.
-    """
-    rate = session.rate_dps + rates_of_turning(session, analysis.motion)
-    if session.earth is not None:
-        ticks = session.earth.rate_dps[: session.blocks * session.ticks_per_block]
-        first = np.flatnonzero(session.available)[: max(1, round(60.0 / session.block_s))]
-        rate = rate + ticks.reshape(session.blocks, -1, 3).mean(axis=1)[first].mean(axis=0)
-    return rate
 
 
 def models_of(analysis: Analysis, model: Model, scales: Scales) -> list[Model | None]:

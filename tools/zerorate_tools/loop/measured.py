@@ -8,7 +8,6 @@ over the held-out part once more learning as it goes.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -16,7 +15,7 @@ import numpy as np
 from ..model import Model
 from ..recordings import Scales
 from ..replay.samples import Frames
-from .firmware import Firmware, rows
+from .firmware import Firmware, at_once
 from .power_on import BlockMeans, PowerOn, turn_on
 
 BY = "the firmware's own kernels, with the model in its integer form; means of blocks"
@@ -95,9 +94,7 @@ class Measurement:
         self.begun: dict[str, list[Firmware]] = {}
         first = next(power_ons[0].frames())
         for device in self.devices[:2]:
-            # compiled before there are threads, for one row, which is of another layout, and many
-            device.copy().run(rows(first, 0, 1))
-            device.copy().run(rows(first, 0, 2))
+            device.compile(first)
 
     def learn(self) -> None:
         """Let every device live through the training sessions; remember how each began."""
@@ -108,7 +105,7 @@ class Measurement:
             self.begun[name] = [d.copy() for d in (self.devices[0], self.devices[-1])]
             for frames in p.frames():
                 may = True if self.learned is None else self.learned[p.blocks(frames)]
-                _at_once([d.run for d in self.devices], frames, may)
+                at_once([d.run for d in self.devices], frames, may)
 
     def course(self, name: str, online: bool, sink: Sink) -> Course:
         """Run the frozen devices over a session, and the learning ones where wanted."""
@@ -119,7 +116,7 @@ class Measurement:
             ways.update(self._online(name))
         means = {way: BlockMeans(p) for way in (*ways, AFTER)}
         for frames in p.frames():
-            biases = dict(zip(ways, _at_once(list(ways.values()), frames)))
+            biases = dict(zip(ways, at_once(list(ways.values()), frames)))
             biases.setdefault(AFTER, biases[BEFORE])
             for way, bias_q8 in biases.items():
                 means[way].add(frames, bias_q8)
@@ -161,9 +158,3 @@ class Measurement:
         time_s = (np.arange(p.session.blocks) + 0.5) * p.session.block_s
         residual = {way: rate - b for way, b in bias.items()}
         return Course(time_s, bias, residual, offsets, unscored)
-
-
-def _at_once(runs: Sequence[Callable[..., np.ndarray]], *arguments) -> list[np.ndarray]:
-    """What every one of them returns; compiled kernels run beside each other."""
-    with ThreadPoolExecutor() as pool:
-        return [task.result() for task in [pool.submit(run, *arguments) for run in runs]]

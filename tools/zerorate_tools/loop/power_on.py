@@ -11,6 +11,7 @@ import numpy as np
 from ..recordings import open_recording
 from ..replay.samples import Frames, frames_in_batches
 from .firmware import Firmware, rows
+from .in_motion import InMotion, rates_of_turning
 from .sessions import Session
 
 FIRST_STILL_S = 60.0
@@ -74,6 +75,20 @@ class PowerOn:
             edges = np.flatnonzero(np.diff(at)) + 1
             for a, b in zip(np.r_[0, edges], np.r_[edges, len(at)]):
                 yield int(at[a]), rows(frames, a, b)
+
+
+def ideal_dps(session: Session, motion: InMotion) -> np.ndarray:
+    """(n, 3) what an ideal bias would be: the rate read at rest, or beyond the true one.
+
+    Earth's rate is in what the firmware learns at rest, so only its change since the first still
+    minute is an error; what turning adds is the model's to remove.
+    """
+    rate = session.rate_dps + rates_of_turning(session, motion)
+    if session.earth is not None:
+        ticks = session.earth.rate_dps[: session.blocks * session.ticks_per_block]
+        first = np.flatnonzero(session.available)[: max(1, round(FIRST_STILL_S / session.block_s))]
+        rate = rate + ticks.reshape(session.blocks, -1, 3).mean(axis=1)[first].mean(axis=0)
+    return rate
 
 
 class BlockMeans:

@@ -9,7 +9,7 @@ import numpy as np
 from . import confounding, events
 from .alike import all_but_same
 from .basis import Term
-from .bends import find_bends
+from .bends import JudgedOnPieces, find_bends, on_pieces
 from .catalogue import Candidate, ranges
 from .catalogue import candidates as all_candidates
 from .common_cause import coherence, turned_axes
@@ -20,6 +20,7 @@ from .refine import refined
 from .regression import Regression
 from .room import is_room
 from .sessions import Session
+from .single import PiecesByLine
 from .trust import follow_further
 
 MOST_EFFECTS = 6
@@ -73,9 +74,16 @@ def straight_line(sessions: list[Session]) -> tuple[Term, ...]:
 class Search:
     """The state of one search over some sessions."""
 
-    def __init__(self, sessions: list[Session], folds: list[Session] | None = None, taken: int = 0):
+    def __init__(
+        self,
+        sessions: list[Session],
+        folds: list[Session] | None = None,
+        taken: int = 0,
+        on_pieces: JudgedOnPieces | None = None,
+    ):
         self.taken = taken
         self.regression = Regression(sessions)
+        self.on_pieces = on_pieces
         self.folds = Regression(folds) if folds else None
         self.straight = straight_line(sessions)
         self.bend = tuple(replace(t, power=2) for t in self.straight)
@@ -128,8 +136,10 @@ class Search:
 
     def _bend_first(self):
         assert self.folds is not None
-        bends = find_bends(self.regression, self.folds.sessions, self.straight, self.pool)
-        self.found = [Found(c, d) for c, d in bends]
+        judged = self.on_pieces or PiecesByLine(self.folds.sessions)
+        bends = find_bends(self.regression, judged, self.straight, self.pool)
+        self.found = [Found(c, d) for c, d in bends.found]
+        self.refused += bends.refused
         self.bends = len(self.found)
 
     def _look_afresh(self):
@@ -247,6 +257,8 @@ class Search:
         decision = decide(self.regression, folds, nuisances, best, ratio, tried, self.singles)
         if decision.accepted and self._grows_with(best):
             decision = replace(decision, accepted=False, reason="makes what is left out worse")
+        if decision.accepted and self.on_pieces:
+            decision = on_pieces(decision, self.on_pieces, self.straight, self.terms(), best.terms)
         if decision.accepted:
             return Found(best, decision)
         self.refused.append((confounding.label(best), decision.reason))
@@ -317,11 +329,15 @@ class Search:
 
 
 def select(
-    sessions: list[Session], folds: list[Session] | None = None, taken: int = 0
+    sessions: list[Session],
+    folds: list[Session] | None = None,
+    taken: int = 0,
+    on_pieces: JudgedOnPieces | None = None,
 ) -> Selection:
     """Everything that the training sessions show, as far as the firmware has room for it.
 
     folds: pieces of a single session, left out in turn where there are no further sessions; taken:
-    slots that what was found in motion needs.
+    slots that what was found in motion needs; on_pieces: what judges effects there, `PiecesByLine`
+    for bends alone by default.
     """
-    return Search(sessions, folds, taken).run()
+    return Search(sessions, folds, taken, on_pieces).run()

@@ -1,0 +1,127 @@
+"""One recording alone: an effect must gain on what the firmware learns without it."""
+
+import numpy as np
+import pytest
+from zerorate_tools.loop.bends import find_bends
+from zerorate_tools.loop.by_kernels import PiecesByKernels
+from zerorate_tools.loop.close import load
+from zerorate_tools.loop.measure import measure
+from zerorate_tools.loop.model import model_of
+from zerorate_tools.loop.power_on import PowerOn
+from zerorate_tools.loop.select import Search
+from zerorate_tools.loop.simulated import simulate
+from zerorate_tools.loop.single import PiecesByLine, nats, speaks_for, split
+from zerorate_tools.recordings import (
+    Recording,
+    Scales,
+    open_recording,
+    read_recording,
+    write_recording,
+)
+from zerorate_tools.replay.samples import frames_in_batches
+
+SCALES = Scales("MPU-6050", 1.0, 1310.0, 16384.0, 340.0, 36.53)
+#: Held-out error may grow by so much where a bend was added; the issue allows it in 2 % of devices.
+WORSE = 1.02
+
+
+def warm_up(folder, seed, bend_dps, odr_hz=1.0, hours=1.0):
+    """A recording at rest that warms once from 20 to 50 degC; bend_dps: of -1..1, the range."""
+    rng, n = np.random.default_rng(seed), int(hours * 3600 * odr_hz)
+    temp = 20 + 30 * (1 - np.exp(-np.arange(n) / odr_hz / 900)) / (1 - np.exp(-hours * 4))
+    u = (temp - 35) / 15
+    columns = {"t_us": (np.arange(n) / odr_hz * 1e6).astype(np.int64)}
+    for axis, line in (("x", 0.3), ("y", -0.2), ("z", 0.1)):
+        rate = line * u + bend_dps(u) + rng.normal(0, 0.004, n)
+        columns[f"g{axis}"] = np.round(rate * 1310).astype(np.int32)
+        columns[f"a{axis}"] = 16384 * (axis == "z") + rng.integers(-3, 4, n).astype(np.int32)
+    columns["temp"] = np.round((temp - 36.53) * 340).astype(np.int32)
+    scales = Scales("MPU-6050", odr_hz, 1310.0, 16384.0, 340.0, 36.53)
+    path = folder / f"warm-up-{seed}.parquet"
+    write_recording(Recording(columns, scales, path.stem), path)
+    return path
+
+
+def closed(path, folder):
+    """(kinds found, kernels' RMS before and after) of one recording alone."""
+    analysis = load([path])
+    model = model_of(analysis, open_recording(path).scales)
+    judgement = measure(analysis, [path], model, folder / "corrected.parquet").judgement
+    kinds = [f.candidate.kind for f in analysis.selection.found]
+    return kinds, judgement.before_rms, judgement.after_rms
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_cubic_over_few_rests_is_found_and_halves_the_error(seed, tmp_path):
+    path = warm_up(tmp_path, seed, lambda u: 0.15 * (u**3 - 0.6 * u), odr_hz=1 / 15)
+    kinds, before, after = closed(path, tmp_path)
+    assert kinds
+    assert after < 0.5 * before
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_bend_that_the_firmware_follows_by_itself_is_not_made_worse(seed, tmp_path):
+    _, before, after = closed(warm_up(tmp_path, seed, lambda u: 0.02 * u**2), tmp_path)
+    assert after <= WORSE * before
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_straight_line_is_left_to_the_firmware(seed, tmp_path):
+    kinds, before, after = closed(warm_up(tmp_path, seed, lambda u: 0.0 * u), tmp_path)
+    assert not kinds
+    assert after == before
+
+
+@pytest.fixture(scope="module")
+def bent():
+    session = simulate(3, [("temperature-quadratic", 20.0)], sessions=1, bare=True).sessions[0]
+    train, _, folds = split(session)
+    return Search([train], folds)
+
+
+def test_a_bend_that_pieces_speak_against_is_refused_with_the_reason(bent):
+    def judged(straight, found, candidate):
+        return np.array([-1.0, 0.1, 0.0, 0.1, -1.0])
+
+    judged.reason = "the kernels say no"
+    bends = find_bends(bent.regression, judged, bent.straight, bent.pool)
+    assert bends.found == []
+    assert ("temperature-quadratic", "the kernels say no") in bends.refused
+
+
+def test_of_bends_that_predict_the_pieces_the_likeliest_is_taken(bent):
+    judged = PiecesByLine(bent.folds.sessions)
+    bends = find_bends(bent.regression, judged, bent.straight, bent.pool)
+    assert [c.kind for c, _ in bends.found] == ["temperature-quadratic"]
+    assert bends.found[0][1].session_gains.sum() > 1
+
+
+def test_a_piece_far_off_either_way_does_not_drown_the_others():
+    before, after = np.full((5, 3), 1.0), np.full((5, 3), 0.8)
+    before[0], after[0] = 1e6, 1.01e6
+    gain = nats(before, after, [20] * 5)
+    assert gain[0] < 0 < gain[1:].min()
+    assert speaks_for(gain)
+
+
+def test_nothing_gained_is_nothing_that_speaks_for_an_effect():
+    assert not speaks_for(nats(np.ones((5, 3)), np.ones((5, 3)), [20] * 5))
+    assert not speaks_for(nats(np.ones((5, 3)), np.full((5, 3), np.inf), [20] * 5))
+
+
+def test_a_piece_left_out_is_not_learned(tmp_path):
+    path = warm_up(tmp_path, 1, lambda u: 0.0 * u)
+    session = load([path]).sessions[0]
+    train, _, folds = split(session)
+    other = read_recording(path)
+    inside_piece = np.repeat(folds[2].available, session.block_s)[: len(other)]
+    other.columns["gx"] += np.where(inside_piece, 100, 0).astype(np.int32)
+    write_recording(other, tmp_path / "other.parquet")
+    learned = []
+    for log in (path, tmp_path / "other.parquet"):
+        power_on = PowerOn(session, log, 1310.0, session.rate_dps, session.available, ())
+        devices = PiecesByKernels(power_on, train, folds, SCALES)._learned([None] * 5)
+        frames = next(iter(frames_in_batches(read_recording(path))))
+        learned.append([d.run(frames, learn=False)[:, 0] for d in devices])
+    same = [bool((a == b).all()) for a, b in zip(*learned)]
+    assert same == [False, False, True, False, False]
