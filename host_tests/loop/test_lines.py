@@ -2,8 +2,11 @@
 
 import numpy as np
 import pytest
+from zerorate_tools.loop.basis import Term
 from zerorate_tools.loop.lines import find, spectrum
+from zerorate_tools.loop.periodic import periodic
 from zerorate_tools.loop.quick import SEGMENT, Segments
+from zerorate_tools.loop.sessions import Session
 from zerorate_tools.loop.simulated import flicker
 
 N, STEP_S = 3600, 1.0
@@ -57,6 +60,22 @@ def test_a_broad_hump_is_said_once():
         rates.append(np.fft.irfft(spectrum_of * gain[:, None], N, axis=0))
     found = lines(rates)
     assert len(found) == 1 and found[0].hz == pytest.approx(0.2, abs=0.01)
+
+
+def test_the_steps_of_a_ramping_temperature_that_was_subtracted_are_no_line():
+    rng = np.random.default_rng(3)
+    temp = np.floor(8 * (20 + 0.04 * np.arange(N))) / 8
+    rate = Term("temp", lag_s=8.0, lag_mode="rate")
+    sessions = []
+    for name in ("a", "b", "c"):
+        whole = np.ones(N // 20)
+        ticks = coloured(rng)
+        block = ticks.reshape(-1, 20, 3).mean(axis=1)
+        session = Session(name, 20.0, 20, block, whole, {"temp": temp}, ticks_dps=ticks)
+        sessions.append(session)
+    alone = np.array([[0.0, 0.0, 0.0]])
+    assert periodic(sessions[:2], sessions[2:], [rate], alone) == []
+    assert periodic(sessions[:2], sessions[2:], [rate], np.array([[2.0, -1.5, 3.0]])) == []
 
 
 def test_a_line_of_one_session_alone_is_not_the_devices():

@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from .basis import evaluate
-from .lines import MOST, Line, find, spectrum
+from .lines import MOST, Line, Spectrum, find, spectrum
 
 _SLOWEST_CYCLES = 10
 _MOST_BRIDGED = 0.1
 _LEAST_TICKS = 400
 _HANN_BINS = 2.0
+_SUBTRACTED = 0.25  # share of a line's power that what was subtracted may have there
 #: From here on a line is in the samples and averages out of the bias; slower ones are in the bias.
 QUICK_HZ = 0.5
 _FOLDED_HZ = 0.02  # how well a quick line's frequency is known
@@ -41,7 +42,24 @@ def _slow(train, locked, terms, coefficients):
     shortest = min(len(r) for r in rates)
     wide = _HANN_BINS * length / shortest
     slowest = _SLOWEST_CYCLES / (shortest * step_s)
-    return find(spectra[: len(train)], spectra[len(train) :], wide, slowest)
+    found = find(spectra[: len(train)], spectra[len(train) :], wide, slowest)
+    models = [spectrum(_model(s, terms, coefficients), step_s, length) for s in train]
+    return [line for line in found if not _of_models(line, models)]
+
+
+def _of_models(line: Line, models: list[Spectrum]) -> bool:
+    """Whether what was subtracted has as much there: steps of a ramping temperature, for one."""
+    at = round(line.hz / models[0].step_hz)
+    subtracted = np.mean([2 * m.power[at] for m in models], axis=0)
+    return bool(subtracted.sum() > _SUBTRACTED * (line.amplitude_dps**2).sum())
+
+
+def _model(session, terms, coefficients):
+    """(m, 3) dps that the terms explain of each tick."""
+    out = np.zeros((session.blocks * session.ticks_per_block, 3))
+    for term, c in zip(terms, coefficients):
+        out += np.outer(evaluate(term, session.source, session.tick_s), c)
+    return out
 
 
 def _left(session, terms, coefficients):
@@ -51,9 +69,7 @@ def _left(session, terms, coefficients):
         return None
     if (~np.isfinite(rate).all(axis=1)).mean() > _MOST_BRIDGED:
         return None
-    for term, c in zip(terms, coefficients):
-        rate = rate - np.outer(evaluate(term, session.source, session.tick_s), c)
-    return rate
+    return rate - _model(session, terms, coefficients)
 
 
 def _quick(train, locked):
