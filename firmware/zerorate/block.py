@@ -2,14 +2,16 @@
 
 # Between the first and the last frame of a window nearly every frame is a good reading, and nothing
 # but sums, counts and the correction changes. Such a stretch is taken here in one loop over locals,
-# which cost viper a third of what words of the state do. Whatever is not plain at one look (a
-# fault, a repeat, a frame that ends a rest, work that waits) is left to `step`, frame by frame;
-# both give the same, to the last bit.
+# which cost viper a third of what words of the state do; a frame that begins a window or ends a
+# rest is gathered before and behind it. Whatever is not plain at one look (a fault, a repeat, work
+# that waits, a window's last frame) is left to `step`; both give the same, to the last bit.
 #
 # Its frame on the stack is too large for bytecode, which would take heap for it: it is imported
 # only where viper is.
 #
 # A frame of `f` is eight words: us since the frame before, ax ay az temp gx gy gz in raw LSB.
+# `r` is room for seven of them, and behind it two words that say what is left to do: a number as
+# an argument costs viper some hundred instructions.
 
 try:
     from micropython import const
@@ -23,6 +25,7 @@ ptr32 = None
 
 
 from .step import step
+from .stillness import gather
 
 _COUNT = const(8)
 _ELAPSED_US = const(16)
@@ -41,6 +44,9 @@ _TARGET_Q8 = const(67)
 _SQUARE_STEP = const(76)
 _LAST = const(77)
 
+_AT = const(7)  # the word of f at which the next frame begins
+_END = const(8)  # and that behind the last one
+
 _LEAP_US = const(1)
 _JUMP_LSB = const(2)
 _WINDOW = const(3)
@@ -52,25 +58,71 @@ _NEARLY_MOST_COUNT = const(0x1FFFFE00)
 _FAR_FROM_RAILS = const(32000)
 
 
-def stretch(s: ptr32, c: ptr32, n: int) -> int:
-    """Return how many of the next n frames may be taken at one look: those within the window.
+def stretch(s: ptr32, c: ptr32, r: ptr32) -> int:
+    """Return how many of the next frames may be taken at one look: those within the window.
 
-    None while anything but a plain reading is to be done: a window begins, work waits, the
-    correction is on its way to its target, every reading is learned.
+    None while anything but a plain reading is to be done: work waits, the correction is on its way
+    to its target, every reading is learned or published for its temperature.
     """
-    if s[_PHASE] or s[_N] == 0 or c[_EVERY] or c[_LEAP_US] > _MOST_LEAP_US:
+    if s[_PHASE] or c[_EVERY] or c[_WINDOW] == 4 or c[_LEAP_US] > _MOST_LEAP_US:
         return 0
     if s[_COUNT] == 0 or s[_COUNT] > _NEARLY_MOST_COUNT:
         return 0
-    i = 0
-    while i < 3:
-        if s[_OUT_Q8 + i] != s[_TARGET_Q8 + i]:
-            return 0
-        if s[_REFERENCE + 4 + i] > _FAR_FROM_RAILS or s[_REFERENCE + 4 + i] < -_FAR_FROM_RAILS:
-            return 0
-        i += 1
+    if s[_OUT_Q8] != s[_TARGET_Q8] or s[_OUT_Q8 + 1] != s[_TARGET_Q8 + 1]:
+        return 0
+    if s[_OUT_Q8 + 2] != s[_TARGET_Q8 + 2]:
+        return 0
     i = c[_WINDOW] - 1 - s[_N]
+    n = (r[_END] - r[_AT]) >> 3
     return i if i < n else n
+
+
+def plain(s: ptr32, f: ptr32, c: ptr32, p: int) -> int:
+    """Return 1 if the frame at word p of f is a good reading at one look."""
+    d = f[p + 4] - s[3]
+    if f[p] <= 0 or f[p] > c[_LEAP_US] or d >= c[_JUMP_LSB] or d <= -c[_JUMP_LSB]:
+        return 0
+    if f[p + 5] == s[4] and f[p + 6] == s[5] and f[p + 7] == s[6]:
+        return 0  # a repeat, perhaps
+    if f[p + 5] == f[p + 6] and f[p + 6] == f[p + 7]:
+        return 0  # all zeros or all ones, perhaps
+    if f[p + 5] > _FAR_FROM_RAILS or f[p + 6] > _FAR_FROM_RAILS or f[p + 7] > _FAR_FROM_RAILS:
+        return 0
+    if f[p + 5] < -_FAR_FROM_RAILS or f[p + 6] < -_FAR_FROM_RAILS or f[p + 7] < -_FAR_FROM_RAILS:
+        return 0
+    return 1
+
+
+def edge(s: ptr32, f: ptr32, c: ptr32, r: ptr32, k: int) -> int:  # inline
+    """Take the next frame, which may begin a window or end its rest, if k and it is plain.
+
+    Returns 0 if it was not taken. What begins a window is so far from the rails that what is near
+    to it is no rail either. Many short steps: a jump must not go far (see twins/jumps.py).
+    """
+    p = r[_AT]
+    if k:
+        k = plain(s, f, c, p)
+    if k:
+        i = 0
+        while i < 7:
+            r[i] = f[p + 1 + i]
+            s[i] = r[i]
+            i += 1
+        s[_COUNT] += 1
+        i = s[_ELAPSED_US] + f[p]
+        s[_ELAPSED_US] = i if i < _MOST_US else _MOST_US
+    if k:
+        gather(s, c, r)
+    if k:
+        i = 0
+        while i < 3:
+            d = (r[4 + i] << 8) - s[_OUT_Q8 + i] - s[_EFFECT_Q8 + i] + s[_CARRY_Q8 + i] + 128
+            f[p + 5 + i] = d >> 8
+            s[_CARRY_Q8 + i] = (d & 255) - 128
+            i += 1
+        f[p] = 0
+        r[_AT] = p + 8
+    return k
 
 
 def account(s: ptr32, f: ptr32, p: int, taken: int, elapsed_us: int):
@@ -85,10 +137,15 @@ def account(s: ptr32, f: ptr32, p: int, taken: int, elapsed_us: int):
     s[_ELAPSED_US] = elapsed_us if elapsed_us < _MOST_US else _MOST_US
 
 
-def take(s: ptr32, f: ptr32, c: ptr32, first: int, n: int) -> int:
-    """Take up to n frames from frame `first` on at one look each; return how many were taken."""
-    p = first << 3
-    left = n
+def take(s: ptr32, f: ptr32, c: ptr32, r: ptr32):
+    """Take frames at one look each, up to the window's last or to one that is not plain."""
+    left = stretch(s, c, r)
+    d = 1 if left and s[_N] == 0 else 0
+    n = edge(s, f, c, r, d)
+    if d:
+        left = left - 1 if n else 0
+    p = r[_AT]
+    n = left
     moving = s[_DIRTY]
     leap_us = c[_LEAP_US]
     usual_us = leap_us
@@ -188,61 +245,63 @@ def take(s: ptr32, f: ptr32, c: ptr32, first: int, n: int) -> int:
         f[p] = 0
         p += 8
         left -= 1
-    left = n - left
-    if left == 0:
-        return 0
-    account(s, f, p, left, elapsed_us)
-    s[4] = last_x
-    s[5] = last_y
-    s[6] = last_z
-    s[_SUM + 3] = sum_t
-    s[_CARRY_Q8] = due_x + bias_x - 128
-    s[_CARRY_Q8 + 1] = due_y + bias_y - 128
-    s[_CARRY_Q8 + 2] = due_z + bias_z - 128
-    if moving:
-        return left
-    s[_SUM] = sum_a
-    s[_SUM + 1] = sum_b
-    s[_SUM + 2] = sum_c
-    s[_SUM + 4] = sum_x
-    s[_SUM + 5] = sum_y
-    s[_SUM + 6] = sum_z
-    s[_SQUARE_ACCEL] = square_accel
-    s[_SQUARE_GYRO] = square_gyro
-    s[_SQUARE_STEP] = square_step
-    s[_LAST] = last_x - ref_x
-    s[_LAST + 1] = last_y - ref_y
-    s[_LAST + 2] = last_z - ref_z
-    i = 0
-    while i < 3:
-        s[_EFFECT_SUM + i] += s[_EFFECT_Q8 + i] * left
-        i += 1
-    return left
+    r[_AT] = p
+    n -= left
+    if n:
+        account(s, f, p, n, elapsed_us)
+        s[4] = last_x
+        s[5] = last_y
+        s[6] = last_z
+        s[_SUM + 3] = sum_t
+        s[_CARRY_Q8] = due_x + bias_x - 128
+        s[_CARRY_Q8 + 1] = due_y + bias_y - 128
+        s[_CARRY_Q8 + 2] = due_z + bias_z - 128
+    if n and moving == 0:
+        s[_SUM] = sum_a
+        s[_SUM + 1] = sum_b
+        s[_SUM + 2] = sum_c
+        s[_SUM + 4] = sum_x
+        s[_SUM + 5] = sum_y
+        s[_SUM + 6] = sum_z
+        s[_SQUARE_ACCEL] = square_accel
+        s[_SQUARE_GYRO] = square_gyro
+        s[_SQUARE_STEP] = square_step
+        s[_LAST] = last_x - ref_x
+        s[_LAST + 1] = last_y - ref_y
+        s[_LAST + 2] = last_z - ref_z
+        i = 0
+        while i < 3:
+            s[_EFFECT_SUM + i] += s[_EFFECT_Q8 + i] * n
+            i += 1
+    edge(s, f, c, r, left)
 
 
-def one(s: ptr32, f: ptr32, c: ptr32, x: ptr32, p: int):
-    """Give the frame at word p of f to `step`; x: seven words of room."""
+def one(s: ptr32, f: ptr32, c: ptr32, r: ptr32):  # call
+    """Give the next frame to `step`."""
+    p = r[_AT]
     i = 0
     while i < 7:
-        x[i] = f[p + 1 + i]
+        r[i] = f[p + 1 + i]
         i += 1
     i = f[p]
-    f[p] = step(s, c, x, i)
+    f[p] = step(s, c, r, i)
     i = 0
     while i < 7:
-        f[p + 1 + i] = x[i]
+        f[p + 1 + i] = r[i]
         i += 1
+    r[_AT] = p + 8
 
 
-def block(s: ptr32, f: ptr32, c: ptr32, x: ptr32, n: int):
-    """Take n frames of f and correct each in place; its first word becomes the guard's verdict."""
-    i = 0
-    while i < n:
-        k = n - i
-        k = stretch(s, c, k)
-        if k:
-            k = take(s, f, c, i, k)
-        if k == 0:
-            one(s, f, c, x, i << 3)
-            k = 1
-        i += k
+def block(s: ptr32, f: ptr32, c: ptr32, r: ptr32, n: int):
+    """Take n frames of f and correct each in place; its first word becomes the guard's verdict.
+
+    r: nine words of room.
+    """
+    r[_AT] = 0
+    r[_END] = n << 3
+    while r[_AT] < r[_END]:
+        n = r[_AT]
+        if s[_PHASE] == 0 and s[_N] < c[_WINDOW] - 1:
+            take(s, f, c, r)
+        if r[_AT] == n:
+            one(s, f, c, r)

@@ -4,19 +4,13 @@ from array import array
 
 from .kernels import VIPER
 
-if VIPER:
-    from .viper import block
-else:
-    # its frame on the stack is too large for bytecode
-    block = None  # type: ignore[assignment]
-
 
 class Bursts:
     """Gives `corrector` (a Corrector) many samples a call: with viper at a fraction of the cost."""
 
     def __init__(self, corrector):
         self.corrector = corrector
-        self._frame = array("i", [0] * 7)
+        self._frame = array("i", [0] * 9)
 
     def update(self, frames, count):
         """Do what `Corrector.update` does with each of `count` samples; allocates nothing.
@@ -24,13 +18,7 @@ class Bursts:
         frames: array('i') of eight words a sample: dt_us, then ax ay az temp gx gy gz. Rates are
         corrected in place, and each first word becomes what `Corrector.update` returns.
         """
-        if block is not None and self.corrector.alone:
-            self._at_once(self.corrector, frames, count)
-        else:
-            self._one_by_one(frames, count)
-
-    def _at_once(self, corrector, frames, count):
-        block.block(corrector.state, frames, corrector.settings, self._frame, count)
+        self._one_by_one(frames, count)
 
     def _one_by_one(self, frames, count):
         for i in range(count):
@@ -43,3 +31,9 @@ class Bursts:
         frames[at] = self.corrector.update(frame, frames[at])
         for k in range(7):
             frames[at + 1 + k] = frame[k]
+
+
+if VIPER:
+    from .viper.direct import update_burst
+
+    Bursts.update = update_burst  # type: ignore[method-assign]

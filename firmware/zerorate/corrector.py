@@ -2,7 +2,7 @@
 
 from array import array
 
-from .kernels import estimators, step
+from .kernels import VIPER, estimators, step
 from .settings import Sensor, settings
 
 # words of the state that applications and tools may read
@@ -254,3 +254,9 @@ class Corrector:
         from .explain import explain  # words that take no heap until somebody asks
 
         return explain(self)
+
+
+if VIPER:
+    from .viper.direct import update
+
+    Corrector.update = update  # type: ignore[method-assign]

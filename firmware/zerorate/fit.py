@@ -130,14 +130,15 @@ def centre(s: ptr32, c: ptr32, a: int, i: int):
     s[_SUM_B] += d
 
 
-def add_product(s: ptr32, k: int, p: int, q: int, r: int):
-    """Add p * q * r, each below 2^27, to the floating sum at word k: mantissa, shift."""
-    if p == 0 or q == 0 or r == 0:
+def add_product(s: ptr32, k: int, p: int, r: int):  # inline
+    """Add p * r, each below 2^27, to the floating sum at the word in k's low 7 bits.
+
+    The sum is mantissa and shift; by how much p is shifted already stands above those bits.
+    """
+    h = k >> 7
+    k = k & 127
+    if p == 0 or r == 0:
         return
-    h = room(p)
-    i = room(q)
-    p = scaled(p << h, q << i, 27)
-    h += i
     i = room(r)
     p = scaled(p, r << i, 27)
     h += i - 2
@@ -155,18 +156,19 @@ def add_product(s: ptr32, k: int, p: int, q: int, r: int):
     s[k] += p
 
 
-def lean(s: ptr32, c: ptr32, a: int, i: int):
+def lean(s: ptr32, c: ptr32, a: int, i: int):  # call
     """Add estimator i to the weighted variance and covariance."""
     w = s[_WEIGHTS + i]
-    if w == 0:
-        return
     a += i * c[_WORDS] + _ESTIMATORS
     i = s[a + 1]
     i = within(s, i) - s[_FIRST_T_Q4]
     i = (i << stretch(s)) - s[_SUM_T]
     a = ((s[a + 2] - s[_FIRST_B_Q8]) << 3) - s[_SUM_B]
-    add_product(s, _SUM_TT, w, i, i)
-    add_product(s, _SUM_TB, w, i, a)
+    k = room(w)
+    w = scaled(w << k, i << room(i), 27)
+    k = ((k + room(i)) << 7) + _SUM_TT
+    add_product(s, k, w, i)
+    add_product(s, k + _SUM_TB - _SUM_TT, w, a)
 
 
 def settle(s: ptr32, c: ptr32, a: int):
@@ -193,7 +195,8 @@ def draw_line(s: ptr32, c: ptr32, a: int):
         i += 1
     i = 1
     while i < c[_ALL]:
-        lean(s, c, a, i)
+        if s[_WEIGHTS + i]:
+            lean(s, c, a, i)
         i += 1
     settle(s, c, a)
 

@@ -6,12 +6,10 @@ try:
     # viper loads are unsigned in 64-bit words; what loads no native code has no viper either
     if sys.maxsize >> 31 or not getattr(sys.implementation, "_mpy", 0) >> 10:
         raise ImportError
-    from .viper import estimators, step
+    from .viper import estimators, step  # noqa: F401
 
     VIPER = True
 except (ImportError, SyntaxError, ValueError):
-    from . import estimators, step
+    from . import estimators, step  # noqa: F401
 
     VIPER = False
-
-__all__ = ("VIPER", "estimators", "step")

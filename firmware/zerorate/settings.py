@@ -2,9 +2,6 @@
 
 from array import array
 
-WORDS = 52
-SHARED = 95
-
 
 def power_of_two(samples):
     """Return the shift of the power of two nearest to `samples`, 2..8."""
@@ -50,15 +47,15 @@ class Sensor:
 
 
 def settings(sensor, bins, short, long, document, every, ignore_outside, limits):
-    """Return the kernels' settings, array('i') of WORDS; `limits` is as in `Corrector`."""
-    c = array("i", [0] * WORDS)
+    """Return the kernels' settings, array('i') of 52 words; `limits` is as in `Corrector`."""
+    c = array("i", [0] * 52)
     windows(c, sensor, limits)
     bins_of(c, sensor, bins, every, document, limits)
     c[22] = 1 if ignore_outside else 0
     c[46] = 1 if every else 0
     estimators_of(c, sensor, short, long, document, limits)
     recent_of(c, sensor, limits)
-    c[0] = SHARED + c[25]
+    c[0] = 95 + c[25]
     c[13] = 32 + c[25] * c[26]
     c[12] = 9 // c[3] + 1
     return c

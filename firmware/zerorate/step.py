@@ -65,7 +65,7 @@ _EVERY = const(46)
 _PIECES_AN_AXIS = const(3)
 
 
-def publish(s: ptr32, c: ptr32, a: int, axis: int):
+def publish(s: ptr32, c: ptr32, a: int, axis: int):  # call
     """Write the axis' bias, source and quality for the temperature of the latest window."""
     bias = s[_TEMP]
     bias = curve_q8(s, c, a, bias) + s[a + _OFFSET_Q8]
@@ -178,7 +178,7 @@ def close(s: ptr32, c: ptr32):
     s[_PHASE] = 1
 
 
-def learn_at_once(s: ptr32, c: ptr32, x: ptr32):
+def learn_at_once(s: ptr32, c: ptr32, x: ptr32):  # call
     """Learn this very reading, moving or still, as the document does: it has no stillness test."""
     s[_LEARN_TEMP] = x[3]
     i = 0
@@ -225,7 +225,9 @@ def finish(s: ptr32, c: ptr32, x: ptr32, kind: int) -> int:
     ones and beyond (see guard.py) are left as they are.
     """
     i = 0
-    while i < 3 and kind < 3:
+    if kind > 2:
+        return kind
+    while i < 3:
         d = s[_TARGET_Q8 + i] - s[_OUT_Q8 + i]
         if d > c[_SLEW_Q8]:
             d = c[_SLEW_Q8]

@@ -54,7 +54,7 @@ _TIP_LIMIT_Q8 = const(9)
 _CHANGE_Q8 = const(10)
 
 
-def gather(s: ptr32, c: ptr32, x: ptr32) -> int:
+def gather(s: ptr32, c: ptr32, x: ptr32) -> int:  # inline
     """Add the frame `x` to the window; return 1 when the window is full, else 0."""
     i = 0
     if s[_N] == 0:

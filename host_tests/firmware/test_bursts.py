@@ -33,7 +33,7 @@ def whole_trace(mode):
 @pytest.mark.parametrize("at_once", [1, 7, 73, 500])
 def test_the_kernel_gives_what_single_updates_give(one_by_one, at_once):
     mode, state, words = one_by_one
-    corrector, done, room = corrector_for(mode), array("i"), array("i", [0] * 7)
+    corrector, done, room = corrector_for(mode), array("i"), array("i", [0] * 9)
     rows = whole_trace(mode)
     for first in range(0, len(rows), at_once):
         burst = array("i", b"".join(row.tobytes() for row in rows[first : first + at_once]))
@@ -50,7 +50,7 @@ def test_most_frames_of_a_rest_are_taken_at_one_look(monkeypatch):
     rows = whole_trace("default")[:640]
     corrector = corrector_for("default")
     burst = array("i", b"".join(row.tobytes() for row in rows))
-    block.block(corrector.state, burst, corrector.settings, array("i", [0] * 7), len(rows))
+    block.block(corrector.state, burst, corrector.settings, array("i", [0] * 9), len(rows))
     assert 0 < len(left) < 640 / 2
 
 

@@ -8,7 +8,7 @@ from zerorate_tools.viper_twins import hot_functions, kernel_files
 # What the user's object runs at every sample, outside the kernels.
 HOT_METHODS = {
     "corrector.py": ("update", "_ask_others"),
-    "bursts.py": ("update", "_at_once", "_one_by_one", "_update_at"),
+    "bursts.py": ("update", "_one_by_one", "_update_at"),
     "model.py": ("channel",),
 }
 # Run as viper only, whose frames are not on the heap: bursts.py leaves it out elsewhere.

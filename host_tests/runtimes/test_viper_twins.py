@@ -264,7 +264,7 @@ def test_arrays_are_passed_on_as_objects_and_results_taken_as_integers(package, 
     text = (package / "viper" / "kernel.py").read_text()
     assert "def outer(s_, c_, n: int) -> int:" in text
     assert "    s = ptr32(s_)\n" in text
-    assert "int(gather(s_, c_, n)) & 1" in text and "\n    gather(s_, c_, n)\n" in text
+    assert "int(gather(c_, n, s_)) & 1" in text and "\n    gather(c_, n, s_)\n" in text
 
 
 def test_the_committed_twins_are_fresh(repository):

@@ -1035,16 +1035,14 @@ static void fit_centre(int32_t *s, int32_t *c, int32_t a, int32_t i) {
     s[81] = (s[81] + d);
 }
 
-static void fit_add_product(int32_t *s, int32_t k, int32_t p, int32_t q, int32_t r) {
+static void fit_add_product(int32_t *s, int32_t k, int32_t p, int32_t r) {
     int32_t h = 0;
     int32_t i = 0;
-    if ((p == 0) || (q == 0) || (r == 0)) {
+    h = (k >> 7);
+    k = (k & 127);
+    if ((p == 0) || (r == 0)) {
         return;
     }
-    h = fixed_room(p);
-    i = fixed_room(q);
-    p = fixed_scaled(shift_left(p, h), shift_left(q, i), 27);
-    h = (h + i);
     i = fixed_room(r);
     p = fixed_scaled(p, shift_left(r, i), 27);
     h = (h + (i - 2));
@@ -1065,18 +1063,19 @@ static void fit_add_product(int32_t *s, int32_t k, int32_t p, int32_t q, int32_t
 }
 
 static void fit_lean(int32_t *s, int32_t *c, int32_t a, int32_t i) {
+    int32_t k = 0;
     int32_t w = 0;
     w = s[(92 + i)];
-    if (w == 0) {
-        return;
-    }
     a = (a + ((i * c[26]) + 32));
     i = s[(a + 1)];
     i = (fit_within(s, i) - s[86]);
     i = (shift_left(i, fit_stretch(s)) - s[80]);
     a = (shift_left((s[(a + 2)] - s[87]), 3) - s[81]);
-    fit_add_product(s, 82, w, i, i);
-    fit_add_product(s, 84, w, i, a);
+    k = fixed_room(w);
+    w = fixed_scaled(shift_left(w, k), shift_left(i, fixed_room(i)), 27);
+    k = (shift_left((k + fixed_room(i)), 7) + 82);
+    fit_add_product(s, k, w, i);
+    fit_add_product(s, ((k + 84) - 82), w, a);
 }
 
 static void fit_draw_line(int32_t *s, int32_t *c, int32_t a) {
@@ -1089,7 +1088,9 @@ static void fit_draw_line(int32_t *s, int32_t *c, int32_t a) {
     }
     i = 1;
     while (i < c[25]) {
-        fit_lean(s, c, a, i);
+        if (s[(92 + i)]) {
+            fit_lean(s, c, a, i);
+        }
         i = (i + 1);
     }
     fit_settle(s, c, a);
@@ -1595,7 +1596,10 @@ static int32_t step_finish(int32_t *s, int32_t *c, int32_t *x, int32_t kind) {
     int32_t d = 0;
     int32_t i = 0;
     i = 0;
-    while ((i < 3) && (kind < 3)) {
+    if (kind > 2) {
+        return kind;
+    }
+    while (i < 3) {
         d = (s[(67 + i)] - s[(55 + i)]);
         if (d > c[11]) {
             d = c[11];
@@ -1620,26 +1624,81 @@ static int32_t step_step(int32_t *s, int32_t *c, int32_t *x, int32_t dt_us) {
     return step_finish(s, c, x, kind);
 }
 
-static int32_t block_stretch(int32_t *s, int32_t *c, int32_t n) {
+static int32_t block_stretch(int32_t *s, int32_t *c, int32_t *r) {
     int32_t i = 0;
-    if (s[53] || (s[17] == 0) || c[46] || (c[1] > 2097151)) {
+    int32_t n = 0;
+    if (s[53] || c[46] || (c[3] == 4) || (c[1] > 2097151)) {
         return 0;
     }
     if ((s[8] == 0) || (s[8] > 536870400)) {
         return 0;
     }
-    i = 0;
-    while (i < 3) {
-        if (s[(55 + i)] != s[(67 + i)]) {
-            return 0;
-        }
-        if ((s[((19 + 4) + i)] > 32000) || (s[((19 + 4) + i)] < (-32000))) {
-            return 0;
-        }
-        i = (i + 1);
+    if ((s[55] != s[67]) || (s[(55 + 1)] != s[(67 + 1)])) {
+        return 0;
+    }
+    if (s[(55 + 2)] != s[(67 + 2)]) {
+        return 0;
     }
     i = ((c[3] - 1) - s[17]);
+    n = ((r[8] - r[7]) >> 3);
     return ((i < n) ? i : n);
+}
+
+static int32_t block_plain(int32_t *s, int32_t *f, int32_t *c, int32_t p) {
+    int32_t d = 0;
+    d = (f[(p + 4)] - s[3]);
+    if ((f[p] <= 0) || (f[p] > c[1]) || (d >= c[2]) || (d <= (-c[2]))) {
+        return 0;
+    }
+    if ((f[(p + 5)] == s[4]) && (f[(p + 6)] == s[5]) && (f[(p + 7)] == s[6])) {
+        return 0;
+    }
+    if ((f[(p + 5)] == f[(p + 6)]) && (f[(p + 6)] == f[(p + 7)])) {
+        return 0;
+    }
+    if ((f[(p + 5)] > 32000) || (f[(p + 6)] > 32000) || (f[(p + 7)] > 32000)) {
+        return 0;
+    }
+    if ((f[(p + 5)] < (-32000)) || (f[(p + 6)] < (-32000)) || (f[(p + 7)] < (-32000))) {
+        return 0;
+    }
+    return 1;
+}
+
+static int32_t block_edge(int32_t *s, int32_t *f, int32_t *c, int32_t *r, int32_t k) {
+    int32_t d = 0;
+    int32_t i = 0;
+    int32_t p = 0;
+    p = r[7];
+    if (k) {
+        k = block_plain(s, f, c, p);
+    }
+    if (k) {
+        i = 0;
+        while (i < 7) {
+            r[i] = f[((p + 1) + i)];
+            s[i] = r[i];
+            i = (i + 1);
+        }
+        s[8] = (s[8] + 1);
+        i = (s[16] + f[p]);
+        s[16] = ((i < 536870911) ? i : 536870911);
+    }
+    if (k) {
+        stillness_gather(s, c, r);
+    }
+    if (k) {
+        i = 0;
+        while (i < 3) {
+            d = ((((shift_left(r[(4 + i)], 8) - s[(55 + i)]) - s[(61 + i)]) + s[(58 + i)]) + 128);
+            f[((p + 5) + i)] = (d >> 8);
+            s[(58 + i)] = ((d & 255) - 128);
+            i = (i + 1);
+        }
+        f[p] = 0;
+        r[7] = (p + 8);
+    }
+    return k;
 }
 
 static void block_account(int32_t *s, int32_t *f, int32_t p, int32_t taken, int32_t elapsed_us) {
@@ -1653,7 +1712,7 @@ static void block_account(int32_t *s, int32_t *f, int32_t p, int32_t taken, int3
     s[16] = ((elapsed_us < 536870911) ? elapsed_us : 536870911);
 }
 
-static int32_t block_take(int32_t *s, int32_t *f, int32_t *c, int32_t first, int32_t n) {
+static void block_take(int32_t *s, int32_t *f, int32_t *c, int32_t *r) {
     int32_t a = 0;
     int32_t b = 0;
     int32_t bias_x = 0;
@@ -1680,6 +1739,7 @@ static int32_t block_take(int32_t *s, int32_t *f, int32_t *c, int32_t first, int
     int32_t left = 0;
     int32_t most_jump = 0;
     int32_t moving = 0;
+    int32_t n = 0;
     int32_t p = 0;
     int32_t ref_a = 0;
     int32_t ref_b = 0;
@@ -1703,8 +1763,14 @@ static int32_t block_take(int32_t *s, int32_t *f, int32_t *c, int32_t first, int
     int32_t x = 0;
     int32_t y = 0;
     int32_t z = 0;
-    p = shift_left(first, 3);
-    left = n;
+    left = block_stretch(s, c, r);
+    d = ((left && (s[17] == 0)) ? 1 : 0);
+    n = block_edge(s, f, c, r, d);
+    if (d) {
+        left = (n ? (left - 1) : 0);
+    }
+    p = r[7];
+    n = left;
     moving = s[18];
     leap_us = c[1];
     usual_us = leap_us;
@@ -1814,72 +1880,70 @@ static int32_t block_take(int32_t *s, int32_t *f, int32_t *c, int32_t first, int
         p = (p + 8);
         left = (left - 1);
     }
-    left = (n - left);
-    if (left == 0) {
-        return 0;
+    r[7] = p;
+    n = (n - left);
+    if (n) {
+        block_account(s, f, p, n, elapsed_us);
+        s[4] = last_x;
+        s[5] = last_y;
+        s[6] = last_z;
+        s[(26 + 3)] = sum_t;
+        s[58] = ((due_x + bias_x) - 128);
+        s[(58 + 1)] = ((due_y + bias_y) - 128);
+        s[(58 + 2)] = ((due_z + bias_z) - 128);
     }
-    block_account(s, f, p, left, elapsed_us);
-    s[4] = last_x;
-    s[5] = last_y;
-    s[6] = last_z;
-    s[(26 + 3)] = sum_t;
-    s[58] = ((due_x + bias_x) - 128);
-    s[(58 + 1)] = ((due_y + bias_y) - 128);
-    s[(58 + 2)] = ((due_z + bias_z) - 128);
-    if (moving) {
-        return left;
+    if (n && (moving == 0)) {
+        s[26] = sum_a;
+        s[(26 + 1)] = sum_b;
+        s[(26 + 2)] = sum_c;
+        s[(26 + 4)] = sum_x;
+        s[(26 + 5)] = sum_y;
+        s[(26 + 6)] = sum_z;
+        s[33] = square_accel;
+        s[35] = square_gyro;
+        s[76] = square_step;
+        s[77] = (last_x - ref_x);
+        s[(77 + 1)] = (last_y - ref_y);
+        s[(77 + 2)] = (last_z - ref_z);
+        i = 0;
+        while (i < 3) {
+            s[(64 + i)] = (s[(64 + i)] + (s[(61 + i)] * n));
+            i = (i + 1);
+        }
     }
-    s[26] = sum_a;
-    s[(26 + 1)] = sum_b;
-    s[(26 + 2)] = sum_c;
-    s[(26 + 4)] = sum_x;
-    s[(26 + 5)] = sum_y;
-    s[(26 + 6)] = sum_z;
-    s[33] = square_accel;
-    s[35] = square_gyro;
-    s[76] = square_step;
-    s[77] = (last_x - ref_x);
-    s[(77 + 1)] = (last_y - ref_y);
-    s[(77 + 2)] = (last_z - ref_z);
-    i = 0;
-    while (i < 3) {
-        s[(64 + i)] = (s[(64 + i)] + (s[(61 + i)] * left));
-        i = (i + 1);
-    }
-    return left;
+    block_edge(s, f, c, r, left);
 }
 
-static void block_one(int32_t *s, int32_t *f, int32_t *c, int32_t *x, int32_t p) {
+static void block_one(int32_t *s, int32_t *f, int32_t *c, int32_t *r) {
     int32_t i = 0;
+    int32_t p = 0;
+    p = r[7];
     i = 0;
     while (i < 7) {
-        x[i] = f[((p + 1) + i)];
+        r[i] = f[((p + 1) + i)];
         i = (i + 1);
     }
     i = f[p];
-    f[p] = step_step(s, c, x, i);
+    f[p] = step_step(s, c, r, i);
     i = 0;
     while (i < 7) {
-        f[((p + 1) + i)] = x[i];
+        f[((p + 1) + i)] = r[i];
         i = (i + 1);
     }
+    r[7] = (p + 8);
 }
 
-static void block_block(int32_t *s, int32_t *f, int32_t *c, int32_t *x, int32_t n) {
-    int32_t i = 0;
-    int32_t k = 0;
-    i = 0;
-    while (i < n) {
-        k = (n - i);
-        k = block_stretch(s, c, k);
-        if (k) {
-            k = block_take(s, f, c, i, k);
+static void block_block(int32_t *s, int32_t *f, int32_t *c, int32_t *r, int32_t n) {
+    r[7] = 0;
+    r[8] = shift_left(n, 3);
+    while (r[7] < r[8]) {
+        n = r[7];
+        if ((s[53] == 0) && (s[17] < (c[3] - 1))) {
+            block_take(s, f, c, r);
         }
-        if (k == 0) {
-            block_one(s, f, c, x, shift_left(i, 3));
-            k = 1;
+        if (r[7] == n) {
+            block_one(s, f, c, r);
         }
-        i = (i + k);
     }
 }
 
@@ -1915,7 +1979,7 @@ int main(int argc, char **argv) {
     int call = argc > 2 && atoi(argv[2]);
     size_t at_once = argc > 3 ? (size_t)atoi(argv[3]) : 1;
     int times = argc > 4 ? atoi(argv[4]) : 1;
-    int32_t x[7];
+    int32_t x[9];
     if (count > words / 8) exit(2);
     int32_t *first_state = malloc(state_words * 4);
     int32_t *first_frames = malloc(words * 4);
@@ -1929,9 +1993,9 @@ again:
     }
     for (size_t i = 0; at_once == 1 && i < count; i++) {
         int32_t *frame = frames + 8 * i;
-        memcpy(x, frame + 1, sizeof x);
+        memcpy(x, frame + 1, 7 * sizeof *x);
         if (call) frame[0] = step_step(s, c, x, frame[0]);
-        memcpy(frame + 1, x, sizeof x);
+        memcpy(frame + 1, x, 7 * sizeof *x);
     }
     if (--times > 0) {
         memcpy(s, first_state, state_words * 4);

@@ -9,20 +9,32 @@ and says in fewer machine instructions what the plain one says for people (see t
 from __future__ import annotations
 
 import ast
+import copy
 import sys
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from itertools import product
 from pathlib import Path
 
-from zerorate_tools.errors import InFile
+from zerorate_tools.errors import InFile, ZerorateError
 from zerorate_tools.kernel_rules import is_kernel
-from zerorate_tools.twins.calling import able_to_call
+from zerorate_tools.twins.calling import able_to_call, passed_on
 from zerorate_tools.twins.folding import folded
-from zerorate_tools.twins.inlining import POINTERS, Inliner, Kernels, calls
+from zerorate_tools.twins.inlining import POINTERS, Inliner, callee, calls
+from zerorate_tools.twins.jumps import REACH, longest_jumps
+from zerorate_tools.twins.marks import marks
 from zerorate_tools.twins.pointers import with_pointers
-from zerorate_tools.twins.sources import all_kernels, kernel_file
+from zerorate_tools.twins.reaching import asked_for, reached, roots_of
+from zerorate_tools.twins.registers import Parameter, as_it_is, for_registers
+from zerorate_tools.twins.sources import all_kernels, annotated, kernel_file, parsed
 from zerorate_tools.twins.wording import in_cheap_words
 
+# nodes of the syntax tree that a function may have, each tried until its jumps are short enough
+_LARGEST = (4000, 2500, 1500, 1000, 700, 500, 350, 200, 0)
+# methods, which no kernel is
+_BY_HAND = "direct.py"
+# what room is kept for what parameters in registers change
+_SHORT_ENOUGH = REACH - 100
 _NOTE = "# Generated from zerorate/{name} by `make viper`: edit that file, not this one.\n"
 
 
@@ -33,12 +45,12 @@ class BadKernel(InFile):
 def kernel_files(package: Path) -> list[Path]:
     """The files of `package` with annotated functions, which only kernels have; sorted by name."""
     files = sorted(package.glob("*.py"))
-    return [path for path in files if _annotated(_parsed(path))]
+    return [path for path in files if annotated(parsed(path))]
 
 
 def hot_functions(path: Path) -> list[str]:
     """The names of a kernel file's annotated functions: those that run in every update."""
-    return [node.name for node in _annotated(_parsed(path))]
+    return [node.name for node in annotated(parsed(path))]
 
 
 class Twins:
@@ -49,32 +61,52 @@ class Twins:
             _check(path, [p.stem for p in paths])
         self._kernels = all_kernels([kernel_file(path) for path in paths])
         self._results = {name for name, f in self._kernels.items() if f.returns}
-        self._inliner = Inliner(self._kernels)
+        said = dict(mark for path in paths for mark in marks(path))
+        self._inliners = [Inliner(self._kernels, said, largest) for largest in _LARGEST]
+        roots = roots_of(self._kernels, set(asked_for(paths)))
+        self._signatures = {name: self._parameters(f, True) for name, f in self._kernels.items()}
         self._flat = {name: self._flattened(name) for name in self._kernels}
-        roots = _roots(self._kernels, set(_asked_for(paths)))
-        self._needed = _reached(self._flat, roots)
+        self._signatures = {n: self._parameters(f, n in roots) for n, f in self._flat.items()}
+        self._needed = reached(self._flat, roots)
 
     def text(self, path: Path) -> str:
         """The text of a kernel file's twin; empty if it is written out wherever it is needed."""
-        tree = _parsed(path)
-        names = [f"{path.stem}.{f.name}" for f in _annotated(tree)]
+        tree = parsed(path)
+        names = [f"{path.stem}.{f.name}" for f in annotated(tree)]
         made = {name: self._flat[name] for name in names if name in self._needed}
         if not made:
             return ""
         others = sorted(
-            {_callee(c) for f in made.values() for c in calls(f, self._kernels)} - {*names}
+            {callee(c) for f in made.values() for c in calls(f, self._kernels)} - {*names}
         )
         local = _local_names(names, others)
         imports = [_import_line(name, local[name]) for name in others]
         plain = [ast.unparse(node) for node in self._plain_code(tree)]
-        written = [self._written(function, local) for function in made.values()]
+        written = [self._written(name, function, local) for name, function in made.items()]
         head = [_NOTE.format(name=path.name) + _docstring(tree), "import micropython"]
         parts = ["\n\n".join([*head, *(["\n".join(imports)] if imports else []), *plain]), *written]
         return "\n\n\n".join(parts) + "\n"
 
     def _flattened(self, name: str) -> ast.FunctionDef:
-        function = with_pointers(folded(self._inliner.flat(name)))
-        return in_cheap_words(function)
+        """The largest function whose jumps every compiler can say."""
+        tried = ""
+        for inliner, unrolled in product(self._inliners, (True, False)):
+            function = in_cheap_words(with_pointers(folded(inliner.flat(name), unrolled)))
+            text = self._alone(name, function)
+            if text != tried and longest_jumps(text) <= [_SHORT_ENOUGH]:
+                return function
+            tried = text
+        raise ZerorateError(f"{name} has jumps of more than {_SHORT_ENOUGH} bytes")
+
+    def _parameters(self, function: ast.FunctionDef, fixed: bool) -> list[Parameter]:
+        passed = passed_on(function, self._kernels)
+        return (as_it_is if fixed else for_registers)(function, passed)
+
+    def _alone(self, name: str, function: ast.FunctionDef) -> str:
+        """A program of this function, with the parameters of the plain text everywhere."""
+        self._signatures[name] = self._parameters(function, True)
+        local = {name: name.replace(".", "_") for name in self._kernels}
+        return "import micropython\n" + self._written(name, copy.deepcopy(function), local)
 
     def _plain_code(self, tree: ast.Module) -> list[ast.stmt]:
         """What is neither kernel nor made for kernels: code of the board beside them."""
@@ -86,8 +118,8 @@ class Twins:
                 node.level = 1 if node.module in modules else 2
         return kept if any(isinstance(n, (ast.FunctionDef, ast.ClassDef)) for n in kept) else []
 
-    def _written(self, function: ast.FunctionDef, local: Mapping[str, str]) -> str:
-        able_to_call(function, local, self._results)
+    def _written(self, name: str, function: ast.FunctionDef, local: Mapping[str, str]) -> str:
+        able_to_call(function, name, self._signatures, local, self._results)
         function.decorator_list = [ast.parse("micropython.viper", mode="eval").body]
         return ast.unparse(ast.fix_missing_locations(function))
 
@@ -102,15 +134,19 @@ def twins(package: Path) -> dict[Path, str]:
 
 def stale(package: Path) -> list[Path]:
     """Twins that are missing, differ from their kernel file, or have lost it."""
-    wanted = twins(package)
-    there = set((package / "viper").glob("*.py"))
+    return _changed(package, twins(package))
+
+
+def _changed(package: Path, wanted: Mapping[Path, str]) -> list[Path]:
+    there = set((package / "viper").glob("*.py")) - {package / "viper" / _BY_HAND}
     changed = {p for p in there & set(wanted) if p.read_text(encoding="utf-8") != wanted[p]}
     return sorted(changed | (there ^ set(wanted)))
 
 
 def write(package: Path) -> list[Path]:
     """Write the twins and remove those without a kernel file; return what changed."""
-    wanted, changed = twins(package), stale(package)
+    wanted = twins(package)
+    changed = _changed(package, wanted)
     (package / "viper").mkdir(exist_ok=True)
     for path in changed:
         if path in wanted:
@@ -120,17 +156,9 @@ def write(package: Path) -> list[Path]:
     return changed
 
 
-def _parsed(path: Path) -> ast.Module:
-    return ast.parse(path.read_text(encoding="utf-8"), str(path))
-
-
-def _annotated(tree: ast.Module) -> list[ast.FunctionDef]:
-    return [n for n in tree.body if isinstance(n, ast.FunctionDef) and is_kernel(n)]
-
-
 def _check(path: Path, kernels: Sequence[str]) -> None:
-    tree = _parsed(path)
-    for function in _annotated(tree):
+    tree = parsed(path)
+    for function in annotated(tree):
         if function.decorator_list:
             raise BadKernel(path, f"{function.name} has a decorator", row=function.lineno)
     for node in tree.body:
@@ -139,41 +167,6 @@ def _check(path: Path, kernels: Sequence[str]) -> None:
             if len({name in kernels for name in sources}) > 1:
                 problem = "imports kernels and other modules in one line"
                 raise BadKernel(path, problem, row=node.lineno)
-
-
-def _asked_for(paths: Sequence[Path]) -> Iterator[str]:
-    """The names that code beside the kernels may mean kernels by."""
-    for path in sorted({file for one in paths for file in one.parent.glob("*.py")}):
-        tree = _parsed(path)
-        nodes = _annotated(tree) if path in paths else []
-        own = {id(n) for function in nodes for n in ast.walk(function)}
-        for node in ast.walk(tree):
-            if isinstance(node, ast.Attribute) and id(node) not in own:
-                yield node.attr
-            elif isinstance(node, ast.ImportFrom) and path not in paths:
-                yield from (alias.name for alias in node.names)
-
-
-def _roots(kernels: Kernels, asked_for: Collection[str]) -> set[str]:
-    """The kernels that code beside them may ask for, and those that no kernel calls."""
-    called = {_callee(call) for function in kernels.values() for call in calls(function, kernels)}
-    return {n for n in kernels if n.rpartition(".")[2] in asked_for or n not in called}
-
-
-def _reached(kernels: Kernels, roots: Collection[str]) -> set[str]:
-    """The roots and all that they call."""
-    found: set[str] = set()
-    left = list(roots)
-    while left:
-        name = left.pop()
-        if name not in found:
-            found.add(name)
-            left += [_callee(call) for call in calls(kernels[name], kernels)]
-    return found
-
-
-def _callee(call: ast.Call) -> str:
-    return call.func.id  # type: ignore[attr-defined]
 
 
 def _local_names(own: Sequence[str], others: Sequence[str]) -> dict[str, str]:

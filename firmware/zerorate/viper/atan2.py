@@ -5,7 +5,7 @@ import micropython
 
 
 @micropython.viper
-def atan2_q13(y: int, x: int) -> int:
+def atan2_q13(x: int, y: int) -> int:
     a = x if x >= 0 else 0 - x
     b = y if y >= 0 else 0 - y
     while a >= 32768 or b >= 32768:

@@ -8,18 +8,6 @@ import micropython
 
 
 @micropython.viper
-def turn(s: ptr32):
-    w = s[25] + 16384 >> 15
-    x = s[26] + 16384 >> 15
-    y = s[27] + 16384 >> 15
-    z = s[28] + 16384 >> 15
-    s[25] = (w * s[22] - x * s[19] - y * s[20] - z * s[21] >> 1) + s[25]
-    s[26] = (x * s[22] + w * s[19] + y * s[21] - z * s[20] >> 1) + s[26]
-    s[27] = (y * s[22] + w * s[20] + z * s[19] - x * s[21] >> 1) + s[27]
-    s[28] = (z * s[22] + w * s[21] + x * s[20] - y * s[19] >> 1) + s[28]
-
-
-@micropython.viper
 def rotation(s: ptr32):
     w = s[25] + 8192 >> 14
     x = s[26] + 8192 >> 14

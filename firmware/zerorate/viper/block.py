@@ -3,17 +3,172 @@
 
 import micropython
 
-from .estimators import feed
-from .estimators import learn_here
 from .step import advance
 from .step import close
+from .step import learn_at_once
 
 
 @micropython.viper
-def take(s: ptr32, f: ptr32, c: ptr32, first: int, n: int) -> int:
-    p = first << 3
+def take(s: ptr32, d: int, f_p: ptr32, r: ptr32, c: ptr32, f: ptr32):
+    if s[53] or c[46] or (not c[3] - 4) or (c[1] > 2097151):
+        left = 0
+    elif not s[8] or s[8] > 536870400:
+        left = 0
+    elif s[55] - s[67] or s[56] - s[68]:
+        left = 0
+    elif s[57] - s[69]:
+        left = 0
+    else:
+        block_stretch_i = c[3] - 1 - s[17]
+        block_stretch_n = r[8] - r[7] >> 3
+        left = block_stretch_i if block_stretch_i < block_stretch_n else block_stretch_n
+    d = 1 if left and s[17] == 0 else 0
+    edge_k = d
+    edge_p = r[7]
+    f_edge_p = ptr32(int(f) + (edge_p << 2))
+    if edge_k:
+        edge_plain_d = f_edge_p[4] - s[3]
+        if f_edge_p[0] <= 0 or f_edge_p[0] > c[1] or edge_plain_d >= c[2] or (edge_plain_d <= -c[2]):
+            edge_k = 0
+        elif not f_edge_p[5] - s[4] and (not f_edge_p[6] - s[5]) and (not f_edge_p[7] - s[6]):
+            edge_k = 0
+        elif not f_edge_p[5] - f_edge_p[6] and (not f_edge_p[6] - f_edge_p[7]):
+            edge_k = 0
+        elif f_edge_p[5] > 32000 or f_edge_p[6] > 32000 or f_edge_p[7] > 32000:
+            edge_k = 0
+        elif f_edge_p[5] < -32000 or f_edge_p[6] < -32000 or f_edge_p[7] < -32000:
+            edge_k = 0
+        else:
+            edge_k = 1
+    if edge_k:
+        edge_i = 0
+        r[0] = f_edge_p[1]
+        s[0] = r[0]
+        r[1] = f_edge_p[2]
+        s[1] = r[1]
+        r[2] = f_edge_p[3]
+        s[2] = r[2]
+        r[3] = f_edge_p[4]
+        s[3] = r[3]
+        r[4] = f_edge_p[5]
+        s[4] = r[4]
+        r[5] = f_edge_p[6]
+        s[5] = r[5]
+        r[6] = f_edge_p[7]
+        s[6] = r[6]
+        edge_i = 7
+        s[8] = s[8] + 1
+        edge_i = s[16] + f_edge_p[0]
+        s[16] = edge_i if edge_i < 536870911 else 536870911
+    if edge_k:
+        if not s[17]:
+            s[19] = r[0]
+            s[26] = 0
+            s[20] = r[1]
+            s[27] = 0
+            s[21] = r[2]
+            s[28] = 0
+            s[22] = r[3]
+            s[29] = 0
+            s[23] = r[4]
+            s[30] = 0
+            s[24] = r[5]
+            s[31] = 0
+            s[25] = r[6]
+            s[32] = 0
+            s[33] = 0
+            s[35] = 0
+            s[76] = 0
+            s[77] = 0
+            s[78] = 0
+            s[79] = 0
+            s[64] = 0
+            s[65] = 0
+            s[66] = 0
+            s[18] = 0
+        s[17] = s[17] + 1
+        if not s[18]:
+            edge_stillness_gather_d = r[0] - s[19]
+            if edge_stillness_gather_d + 512 >> 10:
+                s[18] = 1
+                edge_stillness_gather_d = 0
+            s[26] = s[26] + edge_stillness_gather_d
+            s[33] = edge_stillness_gather_d * edge_stillness_gather_d + s[33]
+            edge_stillness_gather_d = r[1] - s[20]
+            if edge_stillness_gather_d + 512 >> 10:
+                s[18] = 2
+                edge_stillness_gather_d = 0
+            s[27] = s[27] + edge_stillness_gather_d
+            s[33] = edge_stillness_gather_d * edge_stillness_gather_d + s[33]
+            edge_stillness_gather_d = r[2] - s[21]
+            if edge_stillness_gather_d + 512 >> 10:
+                s[18] = 3
+                edge_stillness_gather_d = 0
+            s[28] = s[28] + edge_stillness_gather_d
+            s[33] = edge_stillness_gather_d * edge_stillness_gather_d + s[33]
+            edge_stillness_gather_d = r[3] - s[22]
+            if edge_stillness_gather_d + 512 >> 10:
+                s[18] = 4
+                edge_stillness_gather_d = 0
+            s[29] = s[29] + edge_stillness_gather_d
+            edge_stillness_gather_d = r[4] - s[23]
+            if edge_stillness_gather_d + 512 >> 10:
+                s[18] = 5
+                edge_stillness_gather_d = 0
+            s[30] = s[30] + edge_stillness_gather_d
+            s[35] = edge_stillness_gather_d * edge_stillness_gather_d + s[35]
+            edge_stillness_gather_e = edge_stillness_gather_d - s[77]
+            s[76] = edge_stillness_gather_e * edge_stillness_gather_e + s[76]
+            s[77] = edge_stillness_gather_d
+            edge_stillness_gather_e = s[61]
+            s[64] = s[64] + edge_stillness_gather_e
+            edge_stillness_gather_d = r[5] - s[24]
+            if edge_stillness_gather_d + 512 >> 10:
+                s[18] = 6
+                edge_stillness_gather_d = 0
+            s[31] = s[31] + edge_stillness_gather_d
+            s[35] = edge_stillness_gather_d * edge_stillness_gather_d + s[35]
+            edge_stillness_gather_e = edge_stillness_gather_d - s[78]
+            s[76] = edge_stillness_gather_e * edge_stillness_gather_e + s[76]
+            s[78] = edge_stillness_gather_d
+            edge_stillness_gather_e = s[62]
+            s[65] = s[65] + edge_stillness_gather_e
+            edge_stillness_gather_d = r[6] - s[25]
+            if edge_stillness_gather_d + 512 >> 10:
+                s[18] = 7
+                edge_stillness_gather_d = 0
+            s[32] = s[32] + edge_stillness_gather_d
+            s[35] = edge_stillness_gather_d * edge_stillness_gather_d + s[35]
+            edge_stillness_gather_e = edge_stillness_gather_d - s[79]
+            s[76] = edge_stillness_gather_e * edge_stillness_gather_e + s[76]
+            s[79] = edge_stillness_gather_d
+            edge_stillness_gather_e = s[63]
+            s[66] = s[66] + edge_stillness_gather_e
+        else:
+            edge_stillness_gather_d = r[3] - s[22]
+            s[29] = s[29] + edge_stillness_gather_d
+        if s[17] < c[3]:
+            pass
+    if edge_k:
+        edge_i = 0
+        edge_d = (r[4] << 8) - s[55] - s[61] + s[58] + 128
+        f_edge_p[5] = edge_d >> 8
+        s[58] = (edge_d & 255) - 128
+        edge_d = (r[5] << 8) - s[56] - s[62] + s[59] + 128
+        f_edge_p[6] = edge_d >> 8
+        s[59] = (edge_d & 255) - 128
+        edge_d = (r[6] << 8) - s[57] - s[63] + s[60] + 128
+        f_edge_p[7] = edge_d >> 8
+        s[60] = (edge_d & 255) - 128
+        edge_i = 3
+        f_edge_p[0] = 0
+        r[7] = edge_p + 8
+    n = edge_k
+    if d:
+        left = left - 1 if n else 0
+    p = r[7]
     f_p = ptr32(int(f) + (p << 2))
-    left = n
+    n = left
     moving = s[18]
     leap_us = c[1]
     usual_us = leap_us
@@ -111,72 +266,243 @@ def take(s: ptr32, f: ptr32, c: ptr32, first: int, n: int) -> int:
         due_z = (d & 255) - bias_z
         f_p[0] = 0
         p = p + 8
-        f_p = ptr32(int(f) + (p << 2))
+        f_p = ptr32(int(f_p) + 32)
         left = left - 1
-    left = n - left
-    if not left:
-        return 0
-    account_elapsed_us = elapsed_us
-    s[0] = f[p - 7]
-    s[1] = f[p - 6]
-    s[2] = f[p - 5]
-    s[3] = f[p - 4]
-    s[8] = s[8] + left
-    s[17] = s[17] + left
-    account_elapsed_us = account_elapsed_us + s[16]
-    s[16] = account_elapsed_us if account_elapsed_us < 536870911 else 536870911
-    s[4] = last_x
-    s[5] = last_y
-    s[6] = last_z
-    s[29] = sum_t
-    s[58] = due_x + bias_x - 128
-    s[59] = due_y + bias_y - 128
-    s[60] = due_z + bias_z - 128
-    if moving:
-        return left
-    s[26] = sum_a
-    s[27] = sum_b
-    s[28] = sum_c
-    s[30] = sum_x
-    s[31] = sum_y
-    s[32] = sum_z
-    s[33] = square_accel
-    s[35] = square_gyro
-    s[76] = square_step
-    s[77] = last_x - ref_x
-    s[78] = last_y - ref_y
-    s[79] = last_z - ref_z
-    s[64] = s[61] * left + s[64]
-    s[65] = s[62] * left + s[65]
-    s[66] = s[63] * left + s[66]
-    return left
+    r[7] = p
+    n = n - left
+    if n:
+        account_elapsed_us = elapsed_us
+        s[0] = f[p - 7]
+        s[1] = f[p - 6]
+        s[2] = f[p - 5]
+        s[3] = f[p - 4]
+        s[8] = s[8] + n
+        s[17] = s[17] + n
+        account_elapsed_us = account_elapsed_us + s[16]
+        s[16] = account_elapsed_us if account_elapsed_us < 536870911 else 536870911
+        s[4] = last_x
+        s[5] = last_y
+        s[6] = last_z
+        s[29] = sum_t
+        s[58] = due_x + bias_x - 128
+        s[59] = due_y + bias_y - 128
+        s[60] = due_z + bias_z - 128
+    if n and (not moving):
+        s[26] = sum_a
+        s[27] = sum_b
+        s[28] = sum_c
+        s[30] = sum_x
+        s[31] = sum_y
+        s[32] = sum_z
+        s[33] = square_accel
+        s[35] = square_gyro
+        s[76] = square_step
+        s[77] = last_x - ref_x
+        s[78] = last_y - ref_y
+        s[79] = last_z - ref_z
+        s[64] = s[61] * n + s[64]
+        s[65] = s[62] * n + s[65]
+        s[66] = s[63] * n + s[66]
+    edge_k = left
+    edge_p = r[7]
+    f_edge_p = ptr32(int(f) + (edge_p << 2))
+    if edge_k:
+        edge_plain_d = f_edge_p[4] - s[3]
+        if f_edge_p[0] <= 0 or f_edge_p[0] > c[1] or edge_plain_d >= c[2] or (edge_plain_d <= -c[2]):
+            edge_k = 0
+        elif not f_edge_p[5] - s[4] and (not f_edge_p[6] - s[5]) and (not f_edge_p[7] - s[6]):
+            edge_k = 0
+        elif not f_edge_p[5] - f_edge_p[6] and (not f_edge_p[6] - f_edge_p[7]):
+            edge_k = 0
+        elif f_edge_p[5] > 32000 or f_edge_p[6] > 32000 or f_edge_p[7] > 32000:
+            edge_k = 0
+        elif f_edge_p[5] < -32000 or f_edge_p[6] < -32000 or f_edge_p[7] < -32000:
+            edge_k = 0
+        else:
+            edge_k = 1
+    if edge_k:
+        edge_i = 0
+        r[0] = f_edge_p[1]
+        s[0] = r[0]
+        r[1] = f_edge_p[2]
+        s[1] = r[1]
+        r[2] = f_edge_p[3]
+        s[2] = r[2]
+        r[3] = f_edge_p[4]
+        s[3] = r[3]
+        r[4] = f_edge_p[5]
+        s[4] = r[4]
+        r[5] = f_edge_p[6]
+        s[5] = r[5]
+        r[6] = f_edge_p[7]
+        s[6] = r[6]
+        edge_i = 7
+        s[8] = s[8] + 1
+        edge_i = s[16] + f_edge_p[0]
+        s[16] = edge_i if edge_i < 536870911 else 536870911
+    if edge_k:
+        if not s[17]:
+            s[19] = r[0]
+            s[26] = 0
+            s[20] = r[1]
+            s[27] = 0
+            s[21] = r[2]
+            s[28] = 0
+            s[22] = r[3]
+            s[29] = 0
+            s[23] = r[4]
+            s[30] = 0
+            s[24] = r[5]
+            s[31] = 0
+            s[25] = r[6]
+            s[32] = 0
+            s[33] = 0
+            s[35] = 0
+            s[76] = 0
+            s[77] = 0
+            s[78] = 0
+            s[79] = 0
+            s[64] = 0
+            s[65] = 0
+            s[66] = 0
+            s[18] = 0
+        s[17] = s[17] + 1
+        if not s[18]:
+            edge_stillness_gather_d = r[0] - s[19]
+            if edge_stillness_gather_d + 512 >> 10:
+                s[18] = 1
+                edge_stillness_gather_d = 0
+            s[26] = s[26] + edge_stillness_gather_d
+            s[33] = edge_stillness_gather_d * edge_stillness_gather_d + s[33]
+            edge_stillness_gather_d = r[1] - s[20]
+            if edge_stillness_gather_d + 512 >> 10:
+                s[18] = 2
+                edge_stillness_gather_d = 0
+            s[27] = s[27] + edge_stillness_gather_d
+            s[33] = edge_stillness_gather_d * edge_stillness_gather_d + s[33]
+            edge_stillness_gather_d = r[2] - s[21]
+            if edge_stillness_gather_d + 512 >> 10:
+                s[18] = 3
+                edge_stillness_gather_d = 0
+            s[28] = s[28] + edge_stillness_gather_d
+            s[33] = edge_stillness_gather_d * edge_stillness_gather_d + s[33]
+            edge_stillness_gather_d = r[3] - s[22]
+            if edge_stillness_gather_d + 512 >> 10:
+                s[18] = 4
+                edge_stillness_gather_d = 0
+            s[29] = s[29] + edge_stillness_gather_d
+            edge_stillness_gather_d = r[4] - s[23]
+            if edge_stillness_gather_d + 512 >> 10:
+                s[18] = 5
+                edge_stillness_gather_d = 0
+            s[30] = s[30] + edge_stillness_gather_d
+            s[35] = edge_stillness_gather_d * edge_stillness_gather_d + s[35]
+            edge_stillness_gather_e = edge_stillness_gather_d - s[77]
+            s[76] = edge_stillness_gather_e * edge_stillness_gather_e + s[76]
+            s[77] = edge_stillness_gather_d
+            edge_stillness_gather_e = s[61]
+            s[64] = s[64] + edge_stillness_gather_e
+            edge_stillness_gather_d = r[5] - s[24]
+            if edge_stillness_gather_d + 512 >> 10:
+                s[18] = 6
+                edge_stillness_gather_d = 0
+            s[31] = s[31] + edge_stillness_gather_d
+            s[35] = edge_stillness_gather_d * edge_stillness_gather_d + s[35]
+            edge_stillness_gather_e = edge_stillness_gather_d - s[78]
+            s[76] = edge_stillness_gather_e * edge_stillness_gather_e + s[76]
+            s[78] = edge_stillness_gather_d
+            edge_stillness_gather_e = s[62]
+            s[65] = s[65] + edge_stillness_gather_e
+            edge_stillness_gather_d = r[6] - s[25]
+            if edge_stillness_gather_d + 512 >> 10:
+                s[18] = 7
+                edge_stillness_gather_d = 0
+            s[32] = s[32] + edge_stillness_gather_d
+            s[35] = edge_stillness_gather_d * edge_stillness_gather_d + s[35]
+            edge_stillness_gather_e = edge_stillness_gather_d - s[79]
+            s[76] = edge_stillness_gather_e * edge_stillness_gather_e + s[76]
+            s[79] = edge_stillness_gather_d
+            edge_stillness_gather_e = s[63]
+            s[66] = s[66] + edge_stillness_gather_e
+        else:
+            edge_stillness_gather_d = r[3] - s[22]
+            s[29] = s[29] + edge_stillness_gather_d
+        if s[17] < c[3]:
+            pass
+    if edge_k:
+        edge_i = 0
+        edge_d = (r[4] << 8) - s[55] - s[61] + s[58] + 128
+        f_edge_p[5] = edge_d >> 8
+        s[58] = (edge_d & 255) - 128
+        edge_d = (r[5] << 8) - s[56] - s[62] + s[59] + 128
+        f_edge_p[6] = edge_d >> 8
+        s[59] = (edge_d & 255) - 128
+        edge_d = (r[6] << 8) - s[57] - s[63] + s[60] + 128
+        f_edge_p[7] = edge_d >> 8
+        s[60] = (edge_d & 255) - 128
+        edge_i = 3
+        f_edge_p[0] = 0
+        r[7] = edge_p + 8
 
 
 @micropython.viper
-def one(s_, f: ptr32, c_, x: ptr32, p: int):
-    s = ptr32(s_)
-    c = ptr32(c_)
+def one(s: ptr32, r: ptr32, c: ptr32, f: ptr32, s_, c_, r_):
+    p = r[7]
     f_p = ptr32(int(f) + (p << 2))
     i = 0
-    while i < 7:
-        x[i] = f[p + 1 + i]
-        i = i + 1
+    r[0] = f_p[1]
+    r[1] = f_p[2]
+    r[2] = f_p[3]
+    r[3] = f_p[4]
+    r[4] = f_p[5]
+    r[5] = f_p[6]
+    r[6] = f_p[7]
+    i = 7
     i = f_p[0]
     step_step_examine_check_dt_us = i
     step_step_examine_check_differ = 0
     step_step_examine_check_fresh = 0
-    step_step_examine_check_jump = x[3] - s[3]
+    step_step_examine_check_jump = r[3] - s[3]
     step_step_examine_check_i = 0
-    while step_step_examine_check_i < 7:
-        if x[step_step_examine_check_i] - x[0]:
-            step_step_examine_check_differ = 1
-        if x[step_step_examine_check_i] - s[step_step_examine_check_i]:
-            step_step_examine_check_fresh = 1
-        s[step_step_examine_check_i] = x[step_step_examine_check_i]
-        step_step_examine_check_i = step_step_examine_check_i + 1
+    if r[0] - r[0]:
+        step_step_examine_check_differ = 1
+    if r[0] - s[0]:
+        step_step_examine_check_fresh = 1
+    s[0] = r[0]
+    if r[1] - r[0]:
+        step_step_examine_check_differ = 1
+    if r[1] - s[1]:
+        step_step_examine_check_fresh = 1
+    s[1] = r[1]
+    if r[2] - r[0]:
+        step_step_examine_check_differ = 1
+    if r[2] - s[2]:
+        step_step_examine_check_fresh = 1
+    s[2] = r[2]
+    if r[3] - r[0]:
+        step_step_examine_check_differ = 1
+    if r[3] - s[3]:
+        step_step_examine_check_fresh = 1
+    s[3] = r[3]
+    if r[4] - r[0]:
+        step_step_examine_check_differ = 1
+    if r[4] - s[4]:
+        step_step_examine_check_fresh = 1
+    s[4] = r[4]
+    if r[5] - r[0]:
+        step_step_examine_check_differ = 1
+    if r[5] - s[5]:
+        step_step_examine_check_fresh = 1
+    s[5] = r[5]
+    if r[6] - r[0]:
+        step_step_examine_check_differ = 1
+    if r[6] - s[6]:
+        step_step_examine_check_fresh = 1
+    s[6] = r[6]
+    step_step_examine_check_i = 7
     step_step_examine_check_i = 0
-    if not step_step_examine_check_differ and (not x[0] or not x[0] - -1):
-        step_step_examine_check_i = 3 - x[0]
+    if not step_step_examine_check_differ and (not r[0] or not r[0] - -1):
+        step_step_examine_check_i = 3 - r[0]
     elif not s[8]:
         step_step_examine_check_i = 0
     elif step_step_examine_check_dt_us <= 0:
@@ -189,10 +515,13 @@ def one(s_, f: ptr32, c_, x: ptr32, p: int):
         step_step_examine_check_i = 5
     if not step_step_examine_check_i:
         step_step_examine_check_jump = 4
-        while step_step_examine_check_jump < 7:
-            if x[step_step_examine_check_jump] > 32766 or x[step_step_examine_check_jump] < -32767:
-                step_step_examine_check_i = 2
-            step_step_examine_check_jump = step_step_examine_check_jump + 1
+        if r[4] > 32766 or r[4] < -32767:
+            step_step_examine_check_i = 2
+        if r[5] > 32766 or r[5] < -32767:
+            step_step_examine_check_i = 2
+        if r[6] > 32766 or r[6] < -32767:
+            step_step_examine_check_i = 2
+        step_step_examine_check_jump = 7
     step_step_examine_check_i = step_step_examine_check_i + 8
     step_step_examine_check_jump = s[step_step_examine_check_i] + 1
     s[step_step_examine_check_i] = step_step_examine_check_jump & 536870911
@@ -206,130 +535,163 @@ def one(s_, f: ptr32, c_, x: ptr32, p: int):
         s[16] = step_step_examine_check_dt_us if step_step_examine_check_dt_us < 536870911 else 536870911
     step_step_kind = step_step_examine_check_i
     if not step_step_kind:
-        step_step_admit_stillness_gather_i = 0
         if not s[17]:
-            while step_step_admit_stillness_gather_i < 7:
-                s[19 + step_step_admit_stillness_gather_i] = x[step_step_admit_stillness_gather_i]
-                s[26 + step_step_admit_stillness_gather_i] = 0
-                step_step_admit_stillness_gather_i = step_step_admit_stillness_gather_i + 1
+            s[19] = r[0]
+            s[26] = 0
+            s[20] = r[1]
+            s[27] = 0
+            s[21] = r[2]
+            s[28] = 0
+            s[22] = r[3]
+            s[29] = 0
+            s[23] = r[4]
+            s[30] = 0
+            s[24] = r[5]
+            s[31] = 0
+            s[25] = r[6]
+            s[32] = 0
             s[33] = 0
             s[35] = 0
             s[76] = 0
             s[77] = 0
-            s[77 + 1] = 0
-            s[77 + 2] = 0
+            s[78] = 0
+            s[79] = 0
             s[64] = 0
-            s[64 + 1] = 0
-            s[64 + 2] = 0
+            s[65] = 0
+            s[66] = 0
             s[18] = 0
         s[17] = s[17] + 1
         if not s[18]:
-            step_step_admit_stillness_gather_i = 0
-            while step_step_admit_stillness_gather_i < 7:
-                step_step_admit_stillness_gather_d = x[step_step_admit_stillness_gather_i] - s[19 + step_step_admit_stillness_gather_i]
-                if step_step_admit_stillness_gather_d + 512 >> 10:
-                    s[18] = step_step_admit_stillness_gather_i + 1
-                    step_step_admit_stillness_gather_d = 0
-                s[26 + step_step_admit_stillness_gather_i] += step_step_admit_stillness_gather_d
-                if step_step_admit_stillness_gather_i < 3:
-                    s[33] = step_step_admit_stillness_gather_d * step_step_admit_stillness_gather_d + s[33]
-                elif step_step_admit_stillness_gather_i > 3:
-                    s[35] = step_step_admit_stillness_gather_d * step_step_admit_stillness_gather_d + s[35]
-                    step_step_admit_stillness_gather_e = step_step_admit_stillness_gather_d - s[77 - 4 + step_step_admit_stillness_gather_i]
-                    s[76] = step_step_admit_stillness_gather_e * step_step_admit_stillness_gather_e + s[76]
-                    s[77 - 4 + step_step_admit_stillness_gather_i] = step_step_admit_stillness_gather_d
-                    step_step_admit_stillness_gather_e = s[61 - 4 + step_step_admit_stillness_gather_i]
-                    s[64 - 4 + step_step_admit_stillness_gather_i] += step_step_admit_stillness_gather_e
-                step_step_admit_stillness_gather_i = step_step_admit_stillness_gather_i + 1
+            step_step_admit_stillness_gather_d = r[0] - s[19]
+            if step_step_admit_stillness_gather_d + 512 >> 10:
+                s[18] = 1
+                step_step_admit_stillness_gather_d = 0
+            s[26] = s[26] + step_step_admit_stillness_gather_d
+            s[33] = step_step_admit_stillness_gather_d * step_step_admit_stillness_gather_d + s[33]
+            step_step_admit_stillness_gather_d = r[1] - s[20]
+            if step_step_admit_stillness_gather_d + 512 >> 10:
+                s[18] = 2
+                step_step_admit_stillness_gather_d = 0
+            s[27] = s[27] + step_step_admit_stillness_gather_d
+            s[33] = step_step_admit_stillness_gather_d * step_step_admit_stillness_gather_d + s[33]
+            step_step_admit_stillness_gather_d = r[2] - s[21]
+            if step_step_admit_stillness_gather_d + 512 >> 10:
+                s[18] = 3
+                step_step_admit_stillness_gather_d = 0
+            s[28] = s[28] + step_step_admit_stillness_gather_d
+            s[33] = step_step_admit_stillness_gather_d * step_step_admit_stillness_gather_d + s[33]
+            step_step_admit_stillness_gather_d = r[3] - s[22]
+            if step_step_admit_stillness_gather_d + 512 >> 10:
+                s[18] = 4
+                step_step_admit_stillness_gather_d = 0
+            s[29] = s[29] + step_step_admit_stillness_gather_d
+            step_step_admit_stillness_gather_d = r[4] - s[23]
+            if step_step_admit_stillness_gather_d + 512 >> 10:
+                s[18] = 5
+                step_step_admit_stillness_gather_d = 0
+            s[30] = s[30] + step_step_admit_stillness_gather_d
+            s[35] = step_step_admit_stillness_gather_d * step_step_admit_stillness_gather_d + s[35]
+            step_step_admit_stillness_gather_e = step_step_admit_stillness_gather_d - s[77]
+            s[76] = step_step_admit_stillness_gather_e * step_step_admit_stillness_gather_e + s[76]
+            s[77] = step_step_admit_stillness_gather_d
+            step_step_admit_stillness_gather_e = s[61]
+            s[64] = s[64] + step_step_admit_stillness_gather_e
+            step_step_admit_stillness_gather_d = r[5] - s[24]
+            if step_step_admit_stillness_gather_d + 512 >> 10:
+                s[18] = 6
+                step_step_admit_stillness_gather_d = 0
+            s[31] = s[31] + step_step_admit_stillness_gather_d
+            s[35] = step_step_admit_stillness_gather_d * step_step_admit_stillness_gather_d + s[35]
+            step_step_admit_stillness_gather_e = step_step_admit_stillness_gather_d - s[78]
+            s[76] = step_step_admit_stillness_gather_e * step_step_admit_stillness_gather_e + s[76]
+            s[78] = step_step_admit_stillness_gather_d
+            step_step_admit_stillness_gather_e = s[62]
+            s[65] = s[65] + step_step_admit_stillness_gather_e
+            step_step_admit_stillness_gather_d = r[6] - s[25]
+            if step_step_admit_stillness_gather_d + 512 >> 10:
+                s[18] = 7
+                step_step_admit_stillness_gather_d = 0
+            s[32] = s[32] + step_step_admit_stillness_gather_d
+            s[35] = step_step_admit_stillness_gather_d * step_step_admit_stillness_gather_d + s[35]
+            step_step_admit_stillness_gather_e = step_step_admit_stillness_gather_d - s[79]
+            s[76] = step_step_admit_stillness_gather_e * step_step_admit_stillness_gather_e + s[76]
+            s[79] = step_step_admit_stillness_gather_d
+            step_step_admit_stillness_gather_e = s[63]
+            s[66] = s[66] + step_step_admit_stillness_gather_e
         else:
-            step_step_admit_stillness_gather_d = x[3] - s[19 + 3]
-            s[26 + 3] += step_step_admit_stillness_gather_d
+            step_step_admit_stillness_gather_d = r[3] - s[22]
+            s[29] = s[29] + step_step_admit_stillness_gather_d
         if s[17] < c[3]:
             step_step_admit_stillness_gather_result = 0
         else:
             step_step_admit_stillness_gather_result = 1
         if step_step_admit_stillness_gather_result:
-            close(s_, c_)
+            close(s_, 0, 0, c_, s_, c_)
         if not s[8] - 1 or not c[3] - 4:
-            s[47] = x[3]
+            s[47] = r[3]
             s[53] = 1
             while s[53]:
-                advance(s_, c_)
+                advance(0, c_, s_, s_, c_)
         if c[46]:
-            s[52] = x[3]
-            step_step_admit_learn_at_once_i = 0
-            while step_step_admit_learn_at_once_i < 3:
-                step_step_admit_learn_at_once_a = step_step_admit_learn_at_once_i * c[13] + c[0]
-                s_step_step_admit_learn_at_once_a = ptr32(int(s) + (step_step_admit_learn_at_once_a << 2))
-                s_step_step_admit_learn_at_once_a[0] = x[4 + step_step_admit_learn_at_once_i]
-                s_step_step_admit_learn_at_once_a[1] = 1
-                step_step_admit_learn_at_once_learn_anywhere_temp = s[52]
-                if step_step_admit_learn_at_once_learn_anywhere_temp < s_step_step_admit_learn_at_once_a[3]:
-                    s_step_step_admit_learn_at_once_a[3] = step_step_admit_learn_at_once_learn_anywhere_temp
-                if step_step_admit_learn_at_once_learn_anywhere_temp > s_step_step_admit_learn_at_once_a[4]:
-                    s_step_step_admit_learn_at_once_a[4] = step_step_admit_learn_at_once_learn_anywhere_temp
-                feed(s_, c_, step_step_admit_learn_at_once_a, step_step_admit_learn_at_once_a + 32)
-                learn_here(s_, c_, step_step_admit_learn_at_once_a)
-                s_step_step_admit_learn_at_once_a[1] = 0
-                step_step_admit_learn_at_once_i = step_step_admit_learn_at_once_i + 1
+            learn_at_once(s_, c_, r_, s_, c_)
     step_step_admit_i = c[12]
     while step_step_admit_i > 0 and s[53]:
-        advance(s_, c_)
+        advance(0, c_, s_, s_, c_)
         step_step_admit_i = step_step_admit_i - 1
-    step_step_step_finish_i = 0
-    while step_step_step_finish_i < 3 and step_step_kind < 3:
-        step_step_step_finish_d = s[67 + step_step_step_finish_i] - s[55 + step_step_step_finish_i]
+    if step_step_kind > 2:
+        step_step_result = step_step_kind
+    else:
+        step_step_step_finish_d = s[67] - s[55]
         if step_step_step_finish_d > c[11]:
             step_step_step_finish_d = c[11]
         elif step_step_step_finish_d < -c[11]:
             step_step_step_finish_d = -c[11]
-        s[55 + step_step_step_finish_i] += step_step_step_finish_d
-        step_step_step_finish_d = (x[4 + step_step_step_finish_i] << 8) - s[55 + step_step_step_finish_i] - s[61 + step_step_step_finish_i] + s[58 + step_step_step_finish_i]
-        x[4 + step_step_step_finish_i] = step_step_step_finish_d + 128 >> 8
-        s[58 + step_step_step_finish_i] = step_step_step_finish_d - (x[4 + step_step_step_finish_i] << 8)
-        step_step_step_finish_i = step_step_step_finish_i + 1
-    step_step_result = step_step_kind
+        s[55] = s[55] + step_step_step_finish_d
+        step_step_step_finish_d = (r[4] << 8) - s[55] - s[61] + s[58]
+        r[4] = step_step_step_finish_d + 128 >> 8
+        s[58] = step_step_step_finish_d - (r[4] << 8)
+        step_step_step_finish_d = s[68] - s[56]
+        if step_step_step_finish_d > c[11]:
+            step_step_step_finish_d = c[11]
+        elif step_step_step_finish_d < -c[11]:
+            step_step_step_finish_d = -c[11]
+        s[56] = s[56] + step_step_step_finish_d
+        step_step_step_finish_d = (r[5] << 8) - s[56] - s[62] + s[59]
+        r[5] = step_step_step_finish_d + 128 >> 8
+        s[59] = step_step_step_finish_d - (r[5] << 8)
+        step_step_step_finish_d = s[69] - s[57]
+        if step_step_step_finish_d > c[11]:
+            step_step_step_finish_d = c[11]
+        elif step_step_step_finish_d < -c[11]:
+            step_step_step_finish_d = -c[11]
+        s[57] = s[57] + step_step_step_finish_d
+        step_step_step_finish_d = (r[6] << 8) - s[57] - s[63] + s[60]
+        r[6] = step_step_step_finish_d + 128 >> 8
+        s[60] = step_step_step_finish_d - (r[6] << 8)
+        step_step_result = step_step_kind
     f_p[0] = step_step_result
     i = 0
-    while i < 7:
-        f[p + 1 + i] = x[i]
-        i = i + 1
+    f_p[1] = r[0]
+    f_p[2] = r[1]
+    f_p[3] = r[2]
+    f_p[4] = r[3]
+    f_p[5] = r[4]
+    f_p[6] = r[5]
+    f_p[7] = r[6]
+    i = 7
+    r[7] = p + 8
 
 
 @micropython.viper
-def block(s_, f_, c_, x_, n: int):
+def block(s_, f_, c_, r_, n: int):
     s = ptr32(s_)
     c = ptr32(c_)
-    i = 0
-    while i < n:
-        k = n - i
-        while True:
-            if s[53] or not s[17] or c[46] or (c[1] > 2097151):
-                k = 0
-                break
-            if not s[8] or s[8] > 536870400:
-                k = 0
-                break
-            block_stretch_i = 0
-            block_stretch_left = 0
-            while block_stretch_i < 3:
-                if s[block_stretch_i + 55] - s[block_stretch_i + 67]:
-                    k = 0
-                    block_stretch_left = 1
-                    break
-                if s[block_stretch_i + 23] > 32000 or s[block_stretch_i + 23] < -32000:
-                    k = 0
-                    block_stretch_left = 1
-                    break
-                block_stretch_i = block_stretch_i + 1
-            if block_stretch_left:
-                break
-            block_stretch_i = c[3] - 1 - s[17]
-            k = block_stretch_i if block_stretch_i < k else k
-            break
-        if k:
-            k = int(take(s_, f_, c_, i, k))
-        if not k:
-            one(s_, f_, c_, x_, i << 3)
-            k = 1
-        i = i + k
+    r = ptr32(r_)
+    r[7] = 0
+    r[8] = n << 3
+    while r[7] < r[8]:
+        n = r[7]
+        if not s[53] and s[17] < c[3] - 1:
+            take(s_, 0, 0, r_, c_, f_)
+        if not r[7] - n:
+            one(s_, r_, c_, f_, s_, c_, r_)

@@ -12,7 +12,7 @@ from .fixed import scaled
 
 
 @micropython.viper
-def power(v: int, n: int) -> int:
+def power(n: int, v: int) -> int:
     u = v
     while n > 1:
         scaled_b = v
@@ -26,7 +26,7 @@ def power(v: int, n: int) -> int:
 
 
 @micropython.viper
-def approach(e: ptr32, z: int, f: int, u: int):
+def approach(u: int, f: int, e: ptr32, z: int):
     e_z = ptr32(int(e) + (z << 2))
     d = u - e_z[0]
     u = e[f + 1] + 3
@@ -41,7 +41,50 @@ def approach(e: ptr32, z: int, f: int, u: int):
 
 
 @micropython.viper
-def looked_up(e: ptr32, a: int, v: int) -> int:
+def start(a: int, e: ptr32, u: int):
+    e_a = ptr32(int(e) + (a << 2))
+    e_a[34] = 1
+    e_a[35] = u
+    e_a[36] = 0
+    e_a[37] = 16777216
+    e_a[38] = 0
+
+
+@micropython.viper
+def remembered(u: int, a: int, e: ptr32) -> int:
+    e_a = ptr32(int(e) + (a << 2))
+    kind = e_a[7]
+    a = a + 35
+    e_a = ptr32(int(e_a) + 140)
+    if kind <= 3:
+        approach_f = a - 27
+        approach_u = u
+        approach_d = approach_u - e_a[0]
+        approach_u = e[approach_f + 1] + 3
+        approach_t = (approach_d >> 12) * e[approach_f]
+        approach_d = (approach_d & 4095) * e[approach_f] + e_a[1]
+        approach_f = approach_t >> approach_u
+        approach_d = (approach_t - (approach_f << approach_u) << 12) + approach_d
+        approach_u = approach_u + 12
+        approach_t = approach_d >> approach_u
+        e_a[0] = approach_f + approach_t + e_a[0]
+        e_a[1] = approach_d - (approach_t << approach_u)
+        return e_a[0] if kind == 1 else u - e_a[0]
+    p = e_a[0]
+    if not kind - 4:
+        kind = e[a - 25]
+        if p < u - kind:
+            p = u - kind
+        elif p > u + kind:
+            p = u + kind
+    elif p < u:
+        p = u
+    e_a[0] = p
+    return p - u
+
+
+@micropython.viper
+def looked_up(v: int, e: ptr32, a: int) -> int:
     e_a = ptr32(int(e) + (a << 2))
     table = e_a[19]
     e_table = ptr32(int(e) + (table << 2))
@@ -70,8 +113,7 @@ def looked_up(e: ptr32, a: int, v: int) -> int:
 
 
 @micropython.viper
-def basis(e_, a: int) -> int:
-    e = ptr32(e_)
+def basis(e: ptr32, a: int, e_) -> int:
     e_a = ptr32(int(e) + (a << 2))
     centred_f = a
     e_centred_f = ptr32(int(e) + (centred_f << 2))
@@ -140,73 +182,29 @@ def basis(e_, a: int) -> int:
         else:
             v = ((delayed_between_d >> 4) * delayed_between_part // delayed_a << 4) + delayed_between_u
     if e_a[6]:
-        power_n = e_a[5]
-        power_u = v
-        while power_n > 1:
-            power_scaled_b = v
-            power_scaled_high = power_scaled_b >> 15
-            power_scaled_b = power_scaled_b & 32767
-            power_scaled_middle = (power_u >> 15) * power_scaled_b + (power_u & 32767) * power_scaled_high + ((power_u & 32767) * power_scaled_b >> 15)
-            power_scaled_high = (power_u >> 15) * power_scaled_high
-            power_u = (power_scaled_high << 6) + (power_scaled_middle >> 9)
-            power_n = power_n - 1
-        v = power_u
+        v = int(power(e_a[5], v))
     if not e_a[34]:
-        e_a[34] = 1
-        e_a[35] = v
-        e_a[36] = 0
-        e_a[37] = 16777216
-        e_a[38] = 0
+        start(a, e_, v)
     if e_a[7]:
-        remembered_a = a
-        e_remembered_a = ptr32(int(e) + (remembered_a << 2))
-        remembered_kind = e_remembered_a[7]
-        remembered_a = remembered_a + 35
-        e_remembered_a = ptr32(int(e) + (remembered_a << 2))
-        if remembered_kind <= 3:
-            remembered_approach_f = remembered_a - 27
-            remembered_approach_u = v
-            remembered_approach_d = remembered_approach_u - e_remembered_a[0]
-            remembered_approach_u = e[remembered_approach_f + 1] + 3
-            remembered_approach_t = (remembered_approach_d >> 12) * e[remembered_approach_f]
-            remembered_approach_d = (remembered_approach_d & 4095) * e[remembered_approach_f] + e_remembered_a[1]
-            remembered_approach_f = remembered_approach_t >> remembered_approach_u
-            remembered_approach_d = (remembered_approach_t - (remembered_approach_f << remembered_approach_u) << 12) + remembered_approach_d
-            remembered_approach_u = remembered_approach_u + 12
-            remembered_approach_t = remembered_approach_d >> remembered_approach_u
-            e_remembered_a[0] = remembered_approach_f + remembered_approach_t + e_remembered_a[0]
-            e_remembered_a[1] = remembered_approach_d - (remembered_approach_t << remembered_approach_u)
-            v = e_remembered_a[0] if remembered_kind == 1 else v - e_remembered_a[0]
-        else:
-            remembered_p = e_remembered_a[0]
-            if not remembered_kind - 4:
-                remembered_kind = e[remembered_a - 25]
-                if remembered_p < v - remembered_kind:
-                    remembered_p = v - remembered_kind
-                elif remembered_p > v + remembered_kind:
-                    remembered_p = v + remembered_kind
-            elif remembered_p < v:
-                remembered_p = v
-            e_remembered_a[0] = remembered_p
-            v = remembered_p - v
+        v = int(remembered(v, a, e_))
     if e_a[11] - -1073741823:
         v = v - e_a[11]
         if v >> 30:
             v = 0
     if e_a[19]:
-        v = int(looked_up(e_, a, v))
+        v = int(looked_up(v, e_, a))
     elif not e_a[6]:
-        v = int(power(v, e_a[5]))
+        v = int(power(e_a[5], v))
     if e_a[12]:
-        v = int(scaled(v, w, 24))
+        v = int(scaled(w, v, 24))
     if e_a[17]:
-        v = int(scaled(v, e_a[37], 24))
-        approach(e_, a + 37, a + 17, 0)
+        v = int(scaled(e_a[37], v, 24))
+        approach(0, a + 17, e_, a + 37)
     return v
 
 
 @micropython.viper
-def contribute(e: ptr32, a: int, to: int):
+def contribute(to: int, a: int, e: ptr32):
     v = e[a + 39]
     shift = e[a + 23]
     a = a + 24

@@ -7,7 +7,7 @@ import micropython
 
 
 @micropython.viper
-def accumulate(e: ptr32, x: ptr32):
+def accumulate(shake_d: int, e: ptr32, shake_slow: int, x: ptr32):
     a = 32
     e_a = ptr32(int(e) + (a << 2))
     end = 6 * e[1] + 32
@@ -75,11 +75,11 @@ def accumulate(e: ptr32, x: ptr32):
             e_a[3] = e_a[3] + v
             e_a[4] = e_a[4] + 1
         a = a + 6
-        e_a = ptr32(int(e) + (a << 2))
+        e_a = ptr32(int(e_a) + 24)
 
 
 @micropython.viper
-def close_tick(e: ptr32):
+def close_tick(e_a: ptr32, e: ptr32):
     a = 32
     e_a = ptr32(int(e) + (a << 2))
     end = 6 * e[1] + 32
@@ -111,4 +111,4 @@ def close_tick(e: ptr32):
         e_a[3] = 0
         e_a[4] = 0
         a = a + 6
-        e_a = ptr32(int(e) + (a << 2))
+        e_a = ptr32(int(e_a) + 24)

@@ -12,6 +12,7 @@ import micropython
 from .real import add_smaller
 from .real import divide
 from .real import multiply
+from .real import put
 from .real import subtract
 
 
@@ -39,8 +40,6 @@ def attend(s: ptr32, c: ptr32, e_):
             e[602] = effect_refine_observe_put_m
             e[603] = effect_refine_observe_put_e
             effect_refine_observe_i = s[47] - e[587]
-            effect_refine_observe_put_d = 604
-            e_effect_refine_observe_put_d = ptr32(int(e) + (effect_refine_observe_put_d << 2))
             effect_refine_observe_put_m = effect_refine_observe_i
             effect_refine_observe_put_e = -8
             if not effect_refine_observe_put_m:
@@ -93,58 +92,140 @@ def attend(s: ptr32, c: ptr32, e_):
             effect_refine_observe_i = 2
             while effect_refine_observe_i < e[583]:
                 effect_refine_observe_n = (effect_refine_observe_i - 2) * 40 + 112
-                effect_refine_observe_put_d = 2 * effect_refine_observe_i + 602
-                e_effect_refine_observe_put_d = ptr32(int(e) + (effect_refine_observe_put_d << 2))
-                effect_refine_observe_put_m = e[effect_refine_observe_n + 39]
-                effect_refine_observe_put_e = -24
-                if not effect_refine_observe_put_m:
-                    e_effect_refine_observe_put_d[0] = 0
-                    e_effect_refine_observe_put_d[1] = -4096
-                else:
-                    while effect_refine_observe_put_m < 524288 and effect_refine_observe_put_m >= -524288:
-                        effect_refine_observe_put_m = effect_refine_observe_put_m << 8
-                        effect_refine_observe_put_e = effect_refine_observe_put_e - 8
-                    while effect_refine_observe_put_m < 134217728 and effect_refine_observe_put_m >= -134217728:
-                        effect_refine_observe_put_m = effect_refine_observe_put_m << 1
-                        effect_refine_observe_put_e = effect_refine_observe_put_e - 1
-                    while effect_refine_observe_put_m >= 268435456 or effect_refine_observe_put_m < -268435456:
-                        effect_refine_observe_put_m = effect_refine_observe_put_m >> 1
-                        effect_refine_observe_put_e = effect_refine_observe_put_e + 1
-                    e_effect_refine_observe_put_d[0] = effect_refine_observe_put_m
-                    e_effect_refine_observe_put_d[1] = effect_refine_observe_put_e
+                put(e[effect_refine_observe_n + 39], -24, 2 * effect_refine_observe_i + 602, e_)
                 if e[effect_refine_observe_n + 33]:
-                    effect_refine_observe_put_d = 2 * effect_refine_observe_i + 602
-                    e_effect_refine_observe_put_d = ptr32(int(e) + (effect_refine_observe_put_d << 2))
-                    effect_refine_observe_put_m = 0
-                    effect_refine_observe_put_e = 0
-                    e_effect_refine_observe_put_d[0] = 0
-                    e_effect_refine_observe_put_d[1] = -4096
+                    put(0, 0, 2 * effect_refine_observe_i + 602, e_)
                 effect_refine_observe_i = effect_refine_observe_i + 1
             e[582] = 1
     elif e[582]:
-        refine(e_)
+        refine(0, 0, e_, e_)
 
 
 @micropython.viper
-def product(e_, to: int, a: int, b: int):
-    e = ptr32(e_)
+def product(a: int, b: int, e: ptr32, to: int, e_):
     e_to = ptr32(int(e) + (to << 2))
     e_to[0] = 0
     e_to[1] = -4096
     i = e[583]
     while i > 0:
-        multiply(e_, 590, a, b)
+        multiply(0, a, e_, b, 590)
         if e_to[1] < e[591]:
-            add_smaller(e_, to, 590, to)
+            add_smaller(0, e_, 590, to, to)
         else:
-            add_smaller(e_, to, to, 590)
+            add_smaller(0, e_, to, 590, to)
         a = a + 2
         b = b + 2
         i = i - 1
 
 
 @micropython.viper
-def move(e: ptr32, a: int, state: int):
+def miss(restore_put_learned_put_m: int, restore_put_learned_put_e: int, put_m: int, e: ptr32, axis: int, e_):
+    i = axis * 20 + 642
+    product(i, 602, e_, 592, e_)
+    put_m = e[axis + 584]
+    put_e = -8
+    if not put_m:
+        e[590] = 0
+        e[591] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        e[590] = put_m
+        e[591] = put_e
+    i = 2 * axis + 596
+    subtract(0, e_, 590, 592, i, e_)
+    restore_a = 112
+    restore_i = 606
+    while restore_i < 2 * e[583] + 602:
+        restore_put_learned_a = restore_a
+        restore_put_learned_m = e[restore_put_learned_a + 24 + axis]
+        restore_put_learned_m = restore_put_learned_m - e[restore_put_learned_a + 30 + axis]
+        restore_put_learned_a = 10 - e[restore_put_learned_a + 23]
+        restore_put_learned_put_m = restore_put_learned_m
+        restore_put_learned_put_e = restore_put_learned_a
+        if not restore_put_learned_put_m:
+            e[590] = 0
+            e[591] = -4096
+        else:
+            while restore_put_learned_put_m < 524288 and restore_put_learned_put_m >= -524288:
+                restore_put_learned_put_m = restore_put_learned_put_m << 8
+                restore_put_learned_put_e = restore_put_learned_put_e - 8
+            while restore_put_learned_put_m < 134217728 and restore_put_learned_put_m >= -134217728:
+                restore_put_learned_put_m = restore_put_learned_put_m << 1
+                restore_put_learned_put_e = restore_put_learned_put_e - 1
+            while restore_put_learned_put_m >= 268435456 or restore_put_learned_put_m < -268435456:
+                restore_put_learned_put_m = restore_put_learned_put_m >> 1
+                restore_put_learned_put_e = restore_put_learned_put_e + 1
+            e[590] = restore_put_learned_put_m
+            e[591] = restore_put_learned_put_e
+        multiply(0, 590, e_, restore_i, 590)
+        if e[i + 1] < e[591]:
+            add_smaller(0, e_, 590, i, i)
+        else:
+            add_smaller(0, e_, i, 590, i)
+        restore_a = restore_a + 40
+        restore_i = restore_i + 2
+
+
+@micropython.viper
+def believe(put_m: int, put_e: int, e: ptr32, i: int, e_):
+    divide(0, e_, 2 * i + 622, 594, 592)
+    multiply(0, 592, e_, 596, 590)
+    at = 2 * i + 642
+    if e[at + 1] < e[591]:
+        add_smaller(0, e_, 590, at, at)
+    else:
+        add_smaller(0, e_, at, 590, at)
+    multiply(0, 592, e_, 598, 590)
+    at = 2 * i + 662
+    if e[at + 1] < e[591]:
+        add_smaller(0, e_, 590, at, at)
+    else:
+        add_smaller(0, e_, at, 590, at)
+    multiply(0, 592, e_, 600, 590)
+    at = 2 * i + 682
+    if e[at + 1] < e[591]:
+        add_smaller(0, e_, 590, at, at)
+    else:
+        add_smaller(0, e_, at, 590, at)
+    at = i * 20 + 702
+    i = 0
+    while i < e[583]:
+        multiply(0, 592, e_, 2 * i + 622, 590)
+        put_m = -e[590]
+        put_e = e[591]
+        if not put_m:
+            e[590] = 0
+            e[591] = -4096
+        else:
+            while put_m < 524288 and put_m >= -524288:
+                put_m = put_m << 8
+                put_e = put_e - 8
+            while put_m < 134217728 and put_m >= -134217728:
+                put_m = put_m << 1
+                put_e = put_e - 1
+            while put_m >= 268435456 or put_m < -268435456:
+                put_m = put_m >> 1
+                put_e = put_e + 1
+            e[590] = put_m
+            e[591] = put_e
+        if e[at + 1] < e[591]:
+            add_smaller(0, e_, 590, at, at)
+        else:
+            add_smaller(0, e_, at, 590, at)
+        at = at + 2
+        i = i + 1
+
+
+@micropython.viper
+def move(whole_m: int, state: int, e: ptr32, a: int):
     e_a = ptr32(int(e) + (a << 2))
     bound_most = 0
     bound_m = e_a[30]
@@ -185,14 +266,13 @@ def move(e: ptr32, a: int, state: int):
             d = 0 - most
         e_a[24] = e_a[30] + d
         a = a + 1
-        e_a = ptr32(int(e) + (a << 2))
+        e_a = ptr32(int(e_a) + 4)
         state = state + 20
         i = i - 1
 
 
 @micropython.viper
-def refine(e_):
-    e = ptr32(e_)
+def refine(put_m: int, put_e: int, e: ptr32, e_):
     n = e[583]
     i = e[582] - 1
     if i >> 30:
@@ -214,12 +294,12 @@ def refine(e_):
             e[590] = put_m
             e[591] = put_e
             if e[703] < e[591]:
-                add_smaller(e_, 702, 590, 702)
+                add_smaller(0, e_, 590, 702, 702)
             else:
-                add_smaller(e_, 702, 702, 590)
-        product(e_, 2 * i + 622, i * 20 + 702, 602)
+                add_smaller(0, e_, 702, 590, 702)
+        product(i * 20 + 702, 602, e_, 2 * i + 622, e_)
     elif not i - n:
-        product(e_, 594, 622, 602)
+        product(622, 602, e_, 594, e_)
         put_m = 1
         put_e = -2
         while put_m < 524288 and put_m >= -524288:
@@ -234,115 +314,17 @@ def refine(e_):
         e[590] = put_m
         e[591] = put_e
         if e[595] < e[591]:
-            add_smaller(e_, 594, 590, 594)
+            add_smaller(0, e_, 590, 594, 594)
         else:
-            add_smaller(e_, 594, 594, 590)
+            add_smaller(0, e_, 594, 590, 594)
     elif i < n + 4:
-        miss_axis = i - n - 1
-        miss_i = miss_axis * 20 + 642
-        product(e_, 592, miss_i, 602)
-        miss_put_m = e[miss_axis + 584]
-        miss_put_e = -8
-        if not miss_put_m:
-            e[590] = 0
-            e[591] = -4096
-        else:
-            while miss_put_m < 524288 and miss_put_m >= -524288:
-                miss_put_m = miss_put_m << 8
-                miss_put_e = miss_put_e - 8
-            while miss_put_m < 134217728 and miss_put_m >= -134217728:
-                miss_put_m = miss_put_m << 1
-                miss_put_e = miss_put_e - 1
-            while miss_put_m >= 268435456 or miss_put_m < -268435456:
-                miss_put_m = miss_put_m >> 1
-                miss_put_e = miss_put_e + 1
-            e[590] = miss_put_m
-            e[591] = miss_put_e
-        miss_i = 2 * miss_axis + 596
-        subtract(e_, miss_i, 590, 592)
-        miss_restore_a = 112
-        miss_restore_i = 606
-        while miss_restore_i < 2 * e[583] + 602:
-            miss_restore_put_learned_a = miss_restore_a
-            miss_restore_put_learned_m = e[miss_restore_put_learned_a + 24 + miss_axis]
-            miss_restore_put_learned_m = miss_restore_put_learned_m - e[miss_restore_put_learned_a + 30 + miss_axis]
-            miss_restore_put_learned_a = 10 - e[miss_restore_put_learned_a + 23]
-            miss_restore_put_learned_put_m = miss_restore_put_learned_m
-            miss_restore_put_learned_put_e = miss_restore_put_learned_a
-            if not miss_restore_put_learned_put_m:
-                e[590] = 0
-                e[591] = -4096
-            else:
-                while miss_restore_put_learned_put_m < 524288 and miss_restore_put_learned_put_m >= -524288:
-                    miss_restore_put_learned_put_m = miss_restore_put_learned_put_m << 8
-                    miss_restore_put_learned_put_e = miss_restore_put_learned_put_e - 8
-                while miss_restore_put_learned_put_m < 134217728 and miss_restore_put_learned_put_m >= -134217728:
-                    miss_restore_put_learned_put_m = miss_restore_put_learned_put_m << 1
-                    miss_restore_put_learned_put_e = miss_restore_put_learned_put_e - 1
-                while miss_restore_put_learned_put_m >= 268435456 or miss_restore_put_learned_put_m < -268435456:
-                    miss_restore_put_learned_put_m = miss_restore_put_learned_put_m >> 1
-                    miss_restore_put_learned_put_e = miss_restore_put_learned_put_e + 1
-                e[590] = miss_restore_put_learned_put_m
-                e[591] = miss_restore_put_learned_put_e
-            multiply(e_, 590, 590, miss_restore_i)
-            if e[miss_i + 1] < e[591]:
-                add_smaller(e_, miss_i, 590, miss_i)
-            else:
-                add_smaller(e_, miss_i, miss_i, 590)
-            miss_restore_a = miss_restore_a + 40
-            miss_restore_i = miss_restore_i + 2
+        miss(0, 0, 0, e_, i - n - 1, e_)
     elif i < 2 * n + 4:
-        effect_refine_believe_i = i - n - 4
-        divide(e_, 592, 2 * effect_refine_believe_i + 622, 594)
-        multiply(e_, 590, 592, 596)
-        effect_refine_believe_at = 2 * effect_refine_believe_i + 642
-        if e[effect_refine_believe_at + 1] < e[591]:
-            add_smaller(e_, effect_refine_believe_at, 590, effect_refine_believe_at)
-        else:
-            add_smaller(e_, effect_refine_believe_at, effect_refine_believe_at, 590)
-        multiply(e_, 590, 592, 598)
-        effect_refine_believe_at = 2 * effect_refine_believe_i + 662
-        if e[effect_refine_believe_at + 1] < e[591]:
-            add_smaller(e_, effect_refine_believe_at, 590, effect_refine_believe_at)
-        else:
-            add_smaller(e_, effect_refine_believe_at, effect_refine_believe_at, 590)
-        multiply(e_, 590, 592, 600)
-        effect_refine_believe_at = 2 * effect_refine_believe_i + 682
-        if e[effect_refine_believe_at + 1] < e[591]:
-            add_smaller(e_, effect_refine_believe_at, 590, effect_refine_believe_at)
-        else:
-            add_smaller(e_, effect_refine_believe_at, effect_refine_believe_at, 590)
-        effect_refine_believe_at = effect_refine_believe_i * 20 + 702
-        effect_refine_believe_i = 0
-        while effect_refine_believe_i < e[583]:
-            multiply(e_, 590, 592, 2 * effect_refine_believe_i + 622)
-            effect_refine_believe_put_m = -e[590]
-            effect_refine_believe_put_e = e[591]
-            if not effect_refine_believe_put_m:
-                e[590] = 0
-                e[591] = -4096
-            else:
-                while effect_refine_believe_put_m < 524288 and effect_refine_believe_put_m >= -524288:
-                    effect_refine_believe_put_m = effect_refine_believe_put_m << 8
-                    effect_refine_believe_put_e = effect_refine_believe_put_e - 8
-                while effect_refine_believe_put_m < 134217728 and effect_refine_believe_put_m >= -134217728:
-                    effect_refine_believe_put_m = effect_refine_believe_put_m << 1
-                    effect_refine_believe_put_e = effect_refine_believe_put_e - 1
-                while effect_refine_believe_put_m >= 268435456 or effect_refine_believe_put_m < -268435456:
-                    effect_refine_believe_put_m = effect_refine_believe_put_m >> 1
-                    effect_refine_believe_put_e = effect_refine_believe_put_e + 1
-                e[590] = effect_refine_believe_put_m
-                e[591] = effect_refine_believe_put_e
-            if e[effect_refine_believe_at + 1] < e[591]:
-                add_smaller(e_, effect_refine_believe_at, 590, effect_refine_believe_at)
-            else:
-                add_smaller(e_, effect_refine_believe_at, effect_refine_believe_at, 590)
-            effect_refine_believe_at = effect_refine_believe_at + 2
-            effect_refine_believe_i = effect_refine_believe_i + 1
+        believe(0, 0, e_, i - n - 4, e_)
     else:
         i = 2
         while i < n and e[588] >= 64:
-            move(e_, (i - 2) * 40 + 112, i)
+            move(0, i, e_, (i - 2) * 40 + 112)
             i = i + 1
         e[582] = 0
         if e[588] < 65535:
@@ -473,7 +455,7 @@ def begin(e_, slots: int):
                 doubt_put_e = doubt_put_e + 1
             e[590] = doubt_put_m
             e[591] = doubt_put_e
-        multiply(e_, doubt_p, 590, 590)
+        multiply(0, 590, e_, 590, doubt_p)
         i = i + 1
     e[582] = 0
     e[588] = 0

@@ -32,14 +32,14 @@ def sense(s: ptr32, e_, x_, dt_us: int, good: int):
                 e[7] = (pass_time_dt_us - 4096 << 1) + e[7]
                 pass_time_dt_us = 4096
             e[4] = pass_time_dt_us
-            close_tick(e_)
+            close_tick(0, e_)
     if good:
-        accumulate(e_, x_)
+        accumulate(0, e_, 0, x_)
         if not e[8] - 1:
             e[8] = 2
             e[4] = e[4] + 1
-            close_tick(e_)
-            accumulate(e_, x_)
+            close_tick(0, e_)
+            accumulate(0, e_, 0, x_)
     dt_us = e[6]
     while dt_us > 0 and e[4] > 0:
         run_slot_i = e[5]
@@ -57,7 +57,7 @@ def sense(s: ptr32, e_, x_, dt_us: int, good: int):
                     else:
                         e_run_slot_tell_time_a[5] = e[7] << 8 - run_slot_tell_time_shift
                 run_slot_tell_time_a = run_slot_tell_time_a + 6
-                e_run_slot_tell_time_a = ptr32(int(e) + (run_slot_tell_time_a << 2))
+                e_run_slot_tell_time_a = ptr32(int(e_run_slot_tell_time_a) + 24)
             if e[7] < 536866816:
                 e[7] = e[7] + 2
             e[10] = 0
@@ -66,8 +66,8 @@ def sense(s: ptr32, e_, x_, dt_us: int, good: int):
         run_slot_a = run_slot_i * 40 + 112
         e_run_slot_a = ptr32(int(e) + (run_slot_a << 2))
         if not e_run_slot_a[33]:
-            e_run_slot_a[39] = int(basis(e_, run_slot_a))
-            contribute(e_, run_slot_a, 10)
+            e_run_slot_a[39] = int(basis(e_, run_slot_a, e_))
+            contribute(10, run_slot_a, e_)
         run_slot_i = run_slot_i + 1
         if not run_slot_i - e[0]:
             run_slot_i = 0
@@ -92,8 +92,8 @@ def sense(s: ptr32, e_, x_, dt_us: int, good: int):
         add_instant_i = e[0]
         while add_instant_i > 0:
             if e[add_instant_a + 33]:
-                e[add_instant_a + 39] = int(basis(e_, add_instant_a))
-                contribute(e_, add_instant_a, 16)
+                e[add_instant_a + 39] = int(basis(e_, add_instant_a, e_))
+                contribute(16, add_instant_a, e_)
             add_instant_a = add_instant_a + 40
             add_instant_i = add_instant_i - 1
     dt_us = 0

@@ -76,6 +76,63 @@ def protected(s: ptr32, c: ptr32, a: int, e: int) -> int:
 
 
 @micropython.viper
+def most_crowded(distance_gap: int, distance_d: int, c: ptr32, s: ptr32, a: int, e: int, s_, c_) -> int:
+    found = e
+    distance_nearest = 1048575
+    distance_d = a + c[47]
+    while distance_d < a + c[15]:
+        distance_gap = s[distance_d] - s[e]
+        if distance_gap >> 30:
+            distance_gap = -distance_gap
+        if distance_d - e and distance_gap < distance_nearest:
+            distance_nearest = distance_gap
+        distance_d = distance_d + c[26]
+    distance_result = distance_nearest
+    s[80] = distance_result
+    d = a + c[47]
+    s_d = ptr32(int(s) + (d << 2))
+    while d < a + c[15]:
+        distance_nearest = 1048575
+        distance_d = a + c[47]
+        while distance_d < a + c[15]:
+            distance_gap = s[distance_d] - s_d[0]
+            if distance_gap >> 30:
+                distance_gap = -distance_gap
+            if distance_d - d and distance_gap < distance_nearest:
+                distance_nearest = distance_gap
+            distance_d = distance_d + c[26]
+        distance_result = distance_nearest
+        if distance_result < s[80]:
+            outermost_colder = 1
+            outermost_hotter = 1
+            outermost_d = a + c[47]
+            while outermost_d < a + c[15]:
+                if s[outermost_d] - -1048576 and s[outermost_d] < s_d[0]:
+                    outermost_colder = 0
+                if s[outermost_d] > s_d[0]:
+                    outermost_hotter = 0
+                outermost_d = outermost_d + c[26]
+            outermost_result = outermost_colder | outermost_hotter
+            if not outermost_result:
+                if not int(protected(s_, c_, a, d)):
+                    distance_nearest = 1048575
+                    distance_d = a + c[47]
+                    while distance_d < a + c[15]:
+                        distance_gap = s[distance_d] - s_d[0]
+                        if distance_gap >> 30:
+                            distance_gap = -distance_gap
+                        if distance_d - d and distance_gap < distance_nearest:
+                            distance_nearest = distance_gap
+                        distance_d = distance_d + c[26]
+                    distance_result = distance_nearest
+                    s[80] = distance_result
+                    found = d
+        d = d + c[26]
+        s_d = ptr32(int(s) + (d << 2))
+    return found
+
+
+@micropython.viper
 def copy(s: ptr32, c: ptr32, to: int, e: int):
     i = 0
     while i < c[26]:
@@ -84,9 +141,57 @@ def copy(s: ptr32, c: ptr32, to: int, e: int):
 
 
 @micropython.viper
-def feed(s_, c_, a: int, e: int):
-    s = ptr32(s_)
-    c = ptr32(c_)
+def make_room(victim_d: int, victim_poorest_d: int, c: ptr32, s: ptr32, a: int, temp: int, s_, c_) -> int:
+    s_a = ptr32(int(s) + (a << 2))
+    e = s[a + 5 + c[24]]
+    s_e = ptr32(int(s) + (e << 2))
+    if s_e[0] - -1048576 and s_e[3] >= c[29]:
+        while True:
+            victim_third_temp = s_e[0]
+            victim_third_span = s_a[4] - s_a[3] + 1
+            victim_third_part = (victim_third_temp - s_a[3]) * 3 // victim_third_span
+            if victim_third_part >> 30:
+                victim_third_result = 0
+            elif victim_third_part > 2:
+                victim_third_result = 2
+            else:
+                victim_third_result = victim_third_part
+            s[7] = victim_third_result
+            victim_d = a + c[47]
+            victim_left = 0
+            while victim_d < a + c[15]:
+                if not s[victim_d] - -1048576:
+                    k = victim_d
+                    victim_left = 1
+                    break
+                victim_d = victim_d + c[26]
+            if victim_left:
+                break
+            if c[21]:
+                victim_poorest_found = e
+                victim_poorest_d = a + c[47]
+                while victim_poorest_d < a + c[15]:
+                    if s[victim_poorest_d + 3] < s[victim_poorest_found + 3]:
+                        if not int(protected(s_, c_, a, victim_poorest_d)):
+                            victim_poorest_found = victim_poorest_d
+                    victim_poorest_d = victim_poorest_d + c[26]
+                k = victim_poorest_found
+                break
+            k = int(most_crowded(0, 0, c_, s_, a, e, s_, c_))
+            break
+        if k - e:
+            estimators_copy_i = 0
+            while estimators_copy_i < c[26]:
+                s[k + estimators_copy_i] = s[e + estimators_copy_i]
+                estimators_copy_i = estimators_copy_i + 1
+    s_e[0] = ((c[27] >> 1) + temp) // c[27] * c[27]
+    s_e[1] = temp << 4
+    s_e[3] = 0
+    return e
+
+
+@micropython.viper
+def feed(histogram_add_halve_count: int, histogram_add_halve_i: int, s: ptr32, c: ptr32, e: int, a: int, s_, c_):
     s_a = ptr32(int(s) + (a << 2))
     s_e = ptr32(int(s) + (e << 2))
     if not s_e[3]:
@@ -141,7 +246,7 @@ def feed(s_, c_, a: int, e: int):
                 histogram_add_halve_i = histogram_add_halve_i + 1
         s[histogram_add_h + histogram_add_k] += s_a[1]
         s[histogram_add_h + histogram_add_k + 1 + c[16]] += s_a[0]
-        adapt(s_, c_, histogram_add_h, histogram_add_k)
+        adapt(histogram_add_h, 0, s_, c_, histogram_add_k, s_, c_)
         histogram_add_result = 1
     if not histogram_add_result:
         return
@@ -177,37 +282,7 @@ def feed(s_, c_, a: int, e: int):
 
 
 @micropython.viper
-def age(s: ptr32, c: ptr32, a: int):
-    e = a + c[47]
-    while e < a + c[15]:
-        halve_h = e + 4
-        halve_bins = c[16]
-        halve_i = 0
-        while halve_i < halve_bins:
-            halve_count = s[halve_h + halve_i] & 16383
-            if halve_count:
-                halve_total = s[halve_h + halve_bins + 1 + halve_i]
-                halve_rest = halve_total % halve_count
-                halve_total = halve_total // halve_count * (halve_count >> 1) + (halve_count >> 1) * halve_rest // halve_count
-                s[halve_h + halve_bins + 1 + halve_i] = halve_total
-                halve_count = s[halve_h + halve_i] - (halve_count + 1 >> 1)
-                s[halve_h + halve_i] = halve_count
-            halve_i = halve_i + 1
-        population_h = e + 4
-        population_bins = c[16]
-        population_count = 0
-        while population_bins > 0:
-            population_bins = population_bins - 1
-            population_count = (s[population_h + population_bins] & 16383) + population_count
-        population_result = population_count
-        s[e + 3] = population_result
-        e = e + c[26]
-
-
-@micropython.viper
-def learn_here(s_, c_, a: int):
-    s = ptr32(s_)
-    c = ptr32(c_)
+def learn_here(age_halve_count: int, age_halve_i: int, s: ptr32, c: ptr32, a: int, s_, c_):
     s_a = ptr32(int(s) + (a << 2))
     temp = s[52]
     while True:
@@ -232,103 +307,7 @@ def learn_here(s_, c_, a: int):
         e = 0
         break
     if not e:
-        make_room_e = s[a + 5 + c[24]]
-        s_make_room_e = ptr32(int(s) + (make_room_e << 2))
-        if s_make_room_e[0] - -1048576 and s_make_room_e[3] >= c[29]:
-            while True:
-                make_room_victim_third_temp = s_make_room_e[0]
-                make_room_victim_third_span = s_a[4] - s_a[3] + 1
-                make_room_victim_third_part = (make_room_victim_third_temp - s_a[3]) * 3 // make_room_victim_third_span
-                if make_room_victim_third_part >> 30:
-                    make_room_victim_third_result = 0
-                elif make_room_victim_third_part > 2:
-                    make_room_victim_third_result = 2
-                else:
-                    make_room_victim_third_result = make_room_victim_third_part
-                s[7] = make_room_victim_third_result
-                make_room_victim_d = a + c[47]
-                make_room_victim_left = 0
-                while make_room_victim_d < a + c[15]:
-                    if not s[make_room_victim_d] - -1048576:
-                        make_room_k = make_room_victim_d
-                        make_room_victim_left = 1
-                        break
-                    make_room_victim_d = make_room_victim_d + c[26]
-                if make_room_victim_left:
-                    break
-                if c[21]:
-                    make_room_victim_poorest_found = make_room_e
-                    make_room_victim_poorest_d = a + c[47]
-                    while make_room_victim_poorest_d < a + c[15]:
-                        if s[make_room_victim_poorest_d + 3] < s[make_room_victim_poorest_found + 3]:
-                            if not int(protected(s_, c_, a, make_room_victim_poorest_d)):
-                                make_room_victim_poorest_found = make_room_victim_poorest_d
-                        make_room_victim_poorest_d = make_room_victim_poorest_d + c[26]
-                    make_room_k = make_room_victim_poorest_found
-                    break
-                make_room_victim_most_crowded_found = make_room_e
-                make_room_victim_most_crowded_distance_nearest = 1048575
-                make_room_victim_most_crowded_distance_d = a + c[47]
-                while make_room_victim_most_crowded_distance_d < a + c[15]:
-                    make_room_victim_most_crowded_distance_gap = s[make_room_victim_most_crowded_distance_d] - s_make_room_e[0]
-                    if make_room_victim_most_crowded_distance_gap >> 30:
-                        make_room_victim_most_crowded_distance_gap = -make_room_victim_most_crowded_distance_gap
-                    if make_room_victim_most_crowded_distance_d - make_room_e and make_room_victim_most_crowded_distance_gap < make_room_victim_most_crowded_distance_nearest:
-                        make_room_victim_most_crowded_distance_nearest = make_room_victim_most_crowded_distance_gap
-                    make_room_victim_most_crowded_distance_d = make_room_victim_most_crowded_distance_d + c[26]
-                make_room_victim_most_crowded_distance_result = make_room_victim_most_crowded_distance_nearest
-                s[80] = make_room_victim_most_crowded_distance_result
-                make_room_victim_most_crowded_d = a + c[47]
-                s_make_room_victim_most_crowded_d = ptr32(int(s) + (make_room_victim_most_crowded_d << 2))
-                while make_room_victim_most_crowded_d < a + c[15]:
-                    make_room_victim_most_crowded_distance_nearest = 1048575
-                    make_room_victim_most_crowded_distance_d = a + c[47]
-                    while make_room_victim_most_crowded_distance_d < a + c[15]:
-                        make_room_victim_most_crowded_distance_gap = s[make_room_victim_most_crowded_distance_d] - s_make_room_victim_most_crowded_d[0]
-                        if make_room_victim_most_crowded_distance_gap >> 30:
-                            make_room_victim_most_crowded_distance_gap = -make_room_victim_most_crowded_distance_gap
-                        if make_room_victim_most_crowded_distance_d - make_room_victim_most_crowded_d and make_room_victim_most_crowded_distance_gap < make_room_victim_most_crowded_distance_nearest:
-                            make_room_victim_most_crowded_distance_nearest = make_room_victim_most_crowded_distance_gap
-                        make_room_victim_most_crowded_distance_d = make_room_victim_most_crowded_distance_d + c[26]
-                    make_room_victim_most_crowded_distance_result = make_room_victim_most_crowded_distance_nearest
-                    if make_room_victim_most_crowded_distance_result < s[80]:
-                        make_room_victim_most_crowded_outermost_colder = 1
-                        make_room_victim_most_crowded_outermost_hotter = 1
-                        make_room_victim_most_crowded_outermost_d = a + c[47]
-                        while make_room_victim_most_crowded_outermost_d < a + c[15]:
-                            if s[make_room_victim_most_crowded_outermost_d] - -1048576 and s[make_room_victim_most_crowded_outermost_d] < s_make_room_victim_most_crowded_d[0]:
-                                make_room_victim_most_crowded_outermost_colder = 0
-                            if s[make_room_victim_most_crowded_outermost_d] > s_make_room_victim_most_crowded_d[0]:
-                                make_room_victim_most_crowded_outermost_hotter = 0
-                            make_room_victim_most_crowded_outermost_d = make_room_victim_most_crowded_outermost_d + c[26]
-                        make_room_victim_most_crowded_outermost_result = make_room_victim_most_crowded_outermost_colder | make_room_victim_most_crowded_outermost_hotter
-                        if not make_room_victim_most_crowded_outermost_result:
-                            if not int(protected(s_, c_, a, make_room_victim_most_crowded_d)):
-                                make_room_victim_most_crowded_distance_nearest = 1048575
-                                make_room_victim_most_crowded_distance_d = a + c[47]
-                                while make_room_victim_most_crowded_distance_d < a + c[15]:
-                                    make_room_victim_most_crowded_distance_gap = s[make_room_victim_most_crowded_distance_d] - s_make_room_victim_most_crowded_d[0]
-                                    if make_room_victim_most_crowded_distance_gap >> 30:
-                                        make_room_victim_most_crowded_distance_gap = -make_room_victim_most_crowded_distance_gap
-                                    if make_room_victim_most_crowded_distance_d - make_room_victim_most_crowded_d and make_room_victim_most_crowded_distance_gap < make_room_victim_most_crowded_distance_nearest:
-                                        make_room_victim_most_crowded_distance_nearest = make_room_victim_most_crowded_distance_gap
-                                    make_room_victim_most_crowded_distance_d = make_room_victim_most_crowded_distance_d + c[26]
-                                make_room_victim_most_crowded_distance_result = make_room_victim_most_crowded_distance_nearest
-                                s[80] = make_room_victim_most_crowded_distance_result
-                                make_room_victim_most_crowded_found = make_room_victim_most_crowded_d
-                    make_room_victim_most_crowded_d = make_room_victim_most_crowded_d + c[26]
-                    s_make_room_victim_most_crowded_d = ptr32(int(s) + (make_room_victim_most_crowded_d << 2))
-                make_room_k = make_room_victim_most_crowded_found
-                break
-            if make_room_k - make_room_e:
-                make_room_estimators_copy_i = 0
-                while make_room_estimators_copy_i < c[26]:
-                    s[make_room_k + make_room_estimators_copy_i] = s[make_room_e + make_room_estimators_copy_i]
-                    make_room_estimators_copy_i = make_room_estimators_copy_i + 1
-        s_make_room_e[0] = ((c[27] >> 1) + temp) // c[27] * c[27]
-        s_make_room_e[1] = temp << 4
-        s_make_room_e[3] = 0
-        e = make_room_e
+        e = int(make_room(0, 0, c_, s_, a, temp, s_, c_))
     if e < a + c[47]:
         touch_k = a + 6
         s_touch_k = ptr32(int(s) + (touch_k << 2))
@@ -338,11 +317,34 @@ def learn_here(s_, c_, a: int):
             s_touch_k[0] = touch_held
             touch_held = touch_d
             touch_k = touch_k + 1
-            s_touch_k = ptr32(int(s) + (touch_k << 2))
+            s_touch_k = ptr32(int(s_touch_k) + 4)
         s_touch_k[0] = touch_held
     s_a[2] = e
-    feed(s_, c_, a, e)
+    feed(0, 0, s_, c_, e, a, s_, c_)
     s_a[5] = s_a[5] + s_a[1]
     if s_a[5] >= c[30]:
         s_a[5] = 0
-        age(s_, c_, a)
+        age_e = a + c[47]
+        while age_e < a + c[15]:
+            age_halve_h = age_e + 4
+            age_halve_bins = c[16]
+            age_halve_i = 0
+            while age_halve_i < age_halve_bins:
+                age_halve_count = s[age_halve_h + age_halve_i] & 16383
+                if age_halve_count:
+                    age_halve_total = s[age_halve_h + age_halve_bins + 1 + age_halve_i]
+                    age_halve_rest = age_halve_total % age_halve_count
+                    age_halve_total = age_halve_total // age_halve_count * (age_halve_count >> 1) + (age_halve_count >> 1) * age_halve_rest // age_halve_count
+                    s[age_halve_h + age_halve_bins + 1 + age_halve_i] = age_halve_total
+                    age_halve_count = s[age_halve_h + age_halve_i] - (age_halve_count + 1 >> 1)
+                    s[age_halve_h + age_halve_i] = age_halve_count
+                age_halve_i = age_halve_i + 1
+            age_population_h = age_e + 4
+            age_population_bins = c[16]
+            age_population_count = 0
+            while age_population_bins > 0:
+                age_population_bins = age_population_bins - 1
+                age_population_count = (s[age_population_h + age_population_bins] & 16383) + age_population_count
+            age_population_result = age_population_count
+            s[age_e + 3] = age_population_result
+            age_e = age_e + c[26]

@@ -18,7 +18,7 @@ def clear(s: ptr32, c: ptr32, h: int, middle: int):
 
 
 @micropython.viper
-def halve(s: ptr32, h: int, bins: int):
+def halve(count: int, h: int, s: ptr32, bins: int):
     i = 0
     while i < bins:
         count = s[h + i] & 16383
@@ -33,7 +33,31 @@ def halve(s: ptr32, h: int, bins: int):
 
 
 @micropython.viper
-def share_evenly(s: ptr32, h: int, bins: int, j: int):
+def merge(p: int, h: int, s: ptr32, bins: int):
+    s[h + p] += s[h + p + 1] & 16383
+    s[h + bins + 1 + p] += s[h + bins + 2 + p]
+    p = p + 1
+    while p < bins:
+        s[h + p] = s[h + p + 1]
+        if p < bins - 1:
+            s[h + bins + 1 + p] = s[h + bins + 2 + p]
+        p = p + 1
+
+
+@micropython.viper
+def open_gap(h: int, s: ptr32, j: int, bins: int):
+    k = bins
+    while k > j:
+        s[h + k] = s[h + k - 1]
+        if k > j + 1:
+            s[h + bins + k] = s[h + bins + k - 1]
+        k = k - 1
+    width = (s[h + j + 2] >> 14) - (s[h + j] >> 14)
+    s[h + j + 1] = (s[h + j] >> 14) + (width >> 1) << 14
+
+
+@micropython.viper
+def share_evenly(h: int, j: int, s: ptr32, bins: int):
     count = s[h + j] & 16383
     total = s[h + bins + 1 + j]
     upper = count >> 1
@@ -46,7 +70,7 @@ def share_evenly(s: ptr32, h: int, bins: int, j: int):
 
 
 @micropython.viper
-def share_by_mean(s: ptr32, h: int, bins: int, j: int):
+def share_by_mean(h: int, j: int, s: ptr32, bins: int):
     count = s[h + j] & 16383
     total = s[h + bins + 1 + j]
     if total >= (s[h + j + 1] >> 14) * count:
@@ -59,8 +83,25 @@ def share_by_mean(s: ptr32, h: int, bins: int, j: int):
 
 
 @micropython.viper
-def adapt(s_, c: ptr32, h: int, k: int) -> int:
-    s = ptr32(s_)
+def crowded(j: int, s: ptr32, p: int, c: ptr32, h: int) -> int:
+    s_p = ptr32(int(s) + (p << 2))
+    j = j + h
+    p = p + h
+    s_p = ptr32(int(s) + (p << 2))
+    count = s[j] & 16383
+    pair = (s_p[0] & 16383) + (s_p[1] & 16383)
+    if not c[21]:
+        if count < c[23]:
+            return 0
+        count = (count << 12) // ((s[j + 1] >> 14) - (s[j] >> 14))
+        pair = (pair << 12) // ((s_p[2] >> 14) - (s_p[0] >> 14))
+    if count > c[20] * pair:
+        return 1
+    return 0
+
+
+@micropython.viper
+def adapt(h: int, halve_count: int, s: ptr32, c: ptr32, k: int, s_, c_) -> int:
     if c[21]:
         fullest_bins = c[16]
         fullest_j = 0
@@ -123,54 +164,17 @@ def adapt(s_, c: ptr32, h: int, k: int) -> int:
                 s[7] = emptiest_count
                 emptiest_found = emptiest_i - h
         emptiest_i = emptiest_i + 1
-        s_emptiest_i = ptr32(int(s) + (emptiest_i << 2))
+        s_emptiest_i = ptr32(int(s_emptiest_i) + 4)
     pair = emptiest_found
-    crowded_j = k
-    crowded_p = pair
-    s_crowded_p = ptr32(int(s) + (crowded_p << 2))
-    while True:
-        crowded_j = crowded_j + h
-        crowded_p = crowded_p + h
-        s_crowded_p = ptr32(int(s) + (crowded_p << 2))
-        crowded_count = s[crowded_j] & 16383
-        crowded_pair = (s_crowded_p[0] & 16383) + (s_crowded_p[1] & 16383)
-        if not c[21]:
-            if crowded_count < c[23]:
-                crowded_result = 0
-                break
-            crowded_count = (crowded_count << 12) // ((s[crowded_j + 1] >> 14) - (s[crowded_j] >> 14))
-            crowded_pair = (crowded_pair << 12) // ((s_crowded_p[2] >> 14) - (s_crowded_p[0] >> 14))
-        if crowded_count > c[20] * crowded_pair:
-            crowded_result = 1
-            break
-        crowded_result = 0
-        break
-    if not crowded_result:
+    if not int(crowded(k, s_, pair, c_, h)):
         return 0
-    merge_bins = c[16]
-    merge_p = pair
-    s[h + merge_p] += s[h + merge_p + 1] & 16383
-    s[h + merge_bins + 1 + merge_p] += s[h + merge_bins + 2 + merge_p]
-    merge_p = merge_p + 1
-    while merge_p < merge_bins:
-        s[h + merge_p] = s[h + merge_p + 1]
-        if merge_p < merge_bins - 1:
-            s[h + merge_bins + 1 + merge_p] = s[h + merge_bins + 2 + merge_p]
-        merge_p = merge_p + 1
+    merge(pair, h, s_, c[16])
     if pair < k:
         k = k - 1
-    open_gap_bins = c[16]
-    open_gap_k = open_gap_bins
-    while open_gap_k > k:
-        s[h + open_gap_k] = s[h + open_gap_k - 1]
-        if open_gap_k > k + 1:
-            s[h + open_gap_bins + open_gap_k] = s[h + open_gap_bins + open_gap_k - 1]
-        open_gap_k = open_gap_k - 1
-    open_gap_width = (s[h + k + 2] >> 14) - (s[h + k] >> 14)
-    s[h + k + 1] = (s[h + k] >> 14) + (open_gap_width >> 1) << 14
+    open_gap(h, s_, k, c[16])
     if c[21]:
-        share_evenly(s_, h, c[16], k)
+        share_evenly(h, k, s_, c[16])
     else:
-        share_by_mean(s_, h, c[16], k)
-        halve(s_, h, c[16])
+        share_by_mean(h, k, s_, c[16])
+        halve(0, h, s_, c[16])
     return 1

@@ -17,8 +17,8 @@ import micropython
 
 from .atan2 import atan2_q13
 from .attitude import rotation
-from .attitude import turn
 from .fixed import root
+from .increments import close
 from .least_squares import covariance
 from .least_squares import element
 from .least_squares import noise
@@ -36,7 +36,8 @@ from .real import divide
 from .real import multiply
 from .real import subtract
 from .regression import centre
-from .thermal import carry_axis
+from .thermal import carry
+from .thermal import follow_temperature
 
 
 @micropython.viper
@@ -104,185 +105,22 @@ def update(s_, c_, x: ptr32, dt_us: int) -> int:
     else:
         increments_gather_result = 1
     if increments_gather_result:
-        follow_temperature_temp = x[3]
-        follow_temperature_temp = follow_temperature_temp << 8
-        if not s[9]:
-            s[237] = follow_temperature_temp
-            s[239] = follow_temperature_temp
-        s[237] = (follow_temperature_temp - s[237] + 32 >> 6) + s[237]
-        s[239] = (follow_temperature_temp - s[239] + 2 >> 2) + s[239]
-        s[0] = s[0] - c[0]
-        increments_close_a = 3 * s[8] + 240
-        increments_close_i = 0
-        while increments_close_i < 3:
-            increments_close_over = (s[0] << 10) // c[0]
-            increments_close_over = (s[57 + increments_close_i] >> 8) * increments_close_over >> 2
-            increments_close_increments_within_value = s[2 + increments_close_i] - increments_close_over + 1024 >> 11
-            if increments_close_increments_within_value > 16383:
-                increments_close_angle = 16383
-            elif increments_close_increments_within_value < 0 - 16383:
-                increments_close_angle = 0 - 16383
-            else:
-                increments_close_angle = increments_close_increments_within_value
-            s[2 + increments_close_i] -= increments_close_angle << 11
-            increments_close_increments_within_value = s[5 + increments_close_i] // s[1]
-            if increments_close_increments_within_value > 16383:
-                increments_close_over = 16383
-            elif increments_close_increments_within_value < 0 - 16383:
-                increments_close_over = 0 - 16383
-            else:
-                increments_close_over = increments_close_increments_within_value
-            s[increments_close_a + increments_close_i] = (increments_close_angle << 15) + (increments_close_over & 32767)
-            s[5 + increments_close_i] = 0
-            increments_close_i = increments_close_i + 1
-        s[1] = 0
-        s[8] = s[8] + 1
-        if s[8] >= c[8]:
-            s[8] = 0
-        if s[9] < c[8]:
-            s[9] = s[9] + 1
-        s[10] = s[10] + 1
-        s[66] = s[66] + 1
-        if s[64] > 0:
-            s[64] = s[64] - 1
+        follow_temperature(s_, x[3])
+        close(s_, c_)
     if not s[13]:
-        if int(start_window(s_, c_)):
+        if int(start_window(s_, c_, s_, c_)):
             begin_traversal(s_)
         return 0
-    return int(work(s_, c_))
+    return int(work(s_, c_, s_, c_))
 
 
 @micropython.viper
-def work(s_, c_) -> int:
-    s = ptr32(s_)
-    c = ptr32(c_)
+def work(s: ptr32, c: ptr32, s_, c_) -> int:
     if not s[13] - 2:
-        solve_k = s[15]
-        s[15] = solve_k + 1
-        if c[20]:
-            if solve_k < 3:
-                centre(s_, 21 * solve_k + 85, 3 * solve_k, s[12])
-            elif solve_k < 6:
-                solve_solve_document_own_slope_i = solve_k - 3
-                own_square(s_, solve_solve_document_own_slope_i)
-                solve_solve_document_own_slope_a = s[12] - 16
-                solve_solve_document_own_slope_put_m = s[22 * solve_solve_document_own_slope_i + 91]
-                solve_solve_document_own_slope_put_e = solve_solve_document_own_slope_a
-                if not solve_solve_document_own_slope_put_m:
-                    s[202] = 0
-                    s[203] = -4096
-                else:
-                    while solve_solve_document_own_slope_put_m < 524288 and solve_solve_document_own_slope_put_m >= -524288:
-                        solve_solve_document_own_slope_put_m = solve_solve_document_own_slope_put_m << 8
-                        solve_solve_document_own_slope_put_e = solve_solve_document_own_slope_put_e - 8
-                    while solve_solve_document_own_slope_put_m < 134217728 and solve_solve_document_own_slope_put_m >= -134217728:
-                        solve_solve_document_own_slope_put_m = solve_solve_document_own_slope_put_m << 1
-                        solve_solve_document_own_slope_put_e = solve_solve_document_own_slope_put_e - 1
-                    while solve_solve_document_own_slope_put_m >= 268435456 or solve_solve_document_own_slope_put_m < -268435456:
-                        solve_solve_document_own_slope_put_m = solve_solve_document_own_slope_put_m >> 1
-                        solve_solve_document_own_slope_put_e = solve_solve_document_own_slope_put_e + 1
-                    s[202] = solve_solve_document_own_slope_put_m
-                    s[203] = solve_solve_document_own_slope_put_e
-                divide(s_, 2 * solve_solve_document_own_slope_i + 184, 202, 204)
-            elif solve_k < 9:
-                noise(s_, solve_k - 6)
-            elif not solve_k - 9:
-                if int(last_pass(s_, c_)):
-                    s[14] = c[9]
-                remove_slope(s_, c_)
-            elif solve_k < 13:
-                solve_solve_document_own_variance_i = solve_k - 10
-                own_square(s_, solve_solve_document_own_variance_i)
-                solve_solve_document_own_variance_put_m = -c[21]
-                solve_solve_document_own_variance_put_e = 0
-                if not solve_solve_document_own_variance_put_m:
-                    s[202] = 0
-                    s[203] = -4096
-                else:
-                    while solve_solve_document_own_variance_put_m < 524288 and solve_solve_document_own_variance_put_m >= -524288:
-                        solve_solve_document_own_variance_put_m = solve_solve_document_own_variance_put_m << 8
-                        solve_solve_document_own_variance_put_e = solve_solve_document_own_variance_put_e - 8
-                    while solve_solve_document_own_variance_put_m < 134217728 and solve_solve_document_own_variance_put_m >= -134217728:
-                        solve_solve_document_own_variance_put_m = solve_solve_document_own_variance_put_m << 1
-                        solve_solve_document_own_variance_put_e = solve_solve_document_own_variance_put_e - 1
-                    while solve_solve_document_own_variance_put_m >= 268435456 or solve_solve_document_own_variance_put_m < -268435456:
-                        solve_solve_document_own_variance_put_m = solve_solve_document_own_variance_put_m >> 1
-                        solve_solve_document_own_variance_put_e = solve_solve_document_own_variance_put_e + 1
-                    s[202] = solve_solve_document_own_variance_put_m
-                    s[203] = solve_solve_document_own_variance_put_e
-                multiply(s_, 202, 202, 2 * solve_solve_document_own_variance_i + 196)
-                if solve_solve_document_own_variance_i > solve_solve_document_own_variance_i:
-                    solve_solve_document_own_variance_i = (4 * solve_solve_document_own_variance_i - ((solve_solve_document_own_variance_i + 1) * solve_solve_document_own_variance_i >> 1) + solve_solve_document_own_variance_i) * 2 + 33
-                else:
-                    solve_solve_document_own_variance_i = (4 * solve_solve_document_own_variance_i - ((solve_solve_document_own_variance_i + 1) * solve_solve_document_own_variance_i >> 1) + solve_solve_document_own_variance_i) * 2 + 33
-                divide(s_, solve_solve_document_own_variance_i, 202, 204)
-            else:
-                s[13] = 0
-                return int(finish(s_, c_))
-            return 0
-        if not s[14]:
-            level_and_prior(s_, c_, solve_k)
-            return 0
-        if solve_k < 3:
-            centre(s_, 21 * solve_k + 85, 3 * solve_k, s[12])
-        elif not solve_k - 3:
-            solve_lean_back_increments_within_value = -s[97]
-            if solve_lean_back_increments_within_value > 4096:
-                solve_lean_back_increments_within_result = 4096
-            elif solve_lean_back_increments_within_value < -4096:
-                solve_lean_back_increments_within_result = -4096
-            else:
-                solve_lean_back_increments_within_result = solve_lean_back_increments_within_value
-            solve_lean_back_x = solve_lean_back_increments_within_result << 1
-            solve_lean_back_increments_within_value = -s[118]
-            if solve_lean_back_increments_within_value > 4096:
-                solve_lean_back_increments_within_result = 4096
-            elif solve_lean_back_increments_within_value < -4096:
-                solve_lean_back_increments_within_result = -4096
-            else:
-                solve_lean_back_increments_within_result = solve_lean_back_increments_within_value
-            solve_lean_back_y = solve_lean_back_increments_within_result << 1
-            s[202] = s[29] - (solve_lean_back_x * s[30] + solve_lean_back_y * s[31] >> 14)
-            s[203] = (solve_lean_back_x * s[29] + solve_lean_back_y * s[32] >> 14) + s[30]
-            s[204] = (solve_lean_back_y * s[29] - solve_lean_back_x * s[32] >> 14) + s[31]
-            s[205] = (solve_lean_back_x * s[31] - solve_lean_back_y * s[30] >> 14) + s[32]
-            solve_lean_back_x = 0
-            s[202] = s[202] >> 1
-            solve_lean_back_x = s[202] * s[202] + solve_lean_back_x
-            s[203] = s[203] >> 1
-            solve_lean_back_x = s[203] * s[203] + solve_lean_back_x
-            s[204] = s[204] >> 1
-            solve_lean_back_x = s[204] * s[204] + solve_lean_back_x
-            s[205] = s[205] >> 1
-            solve_lean_back_x = s[205] * s[205] + solve_lean_back_x
-            solve_lean_back_look_along_scale = int(root(solve_lean_back_x))
-            s[29] = (s[202] << 14) // solve_lean_back_look_along_scale
-            s[30] = (s[203] << 14) // solve_lean_back_look_along_scale
-            s[31] = (s[204] << 14) // solve_lean_back_look_along_scale
-            s[32] = (s[205] << 14) // solve_lean_back_look_along_scale
-        elif solve_k < 16:
-            normal_equations(s_, solve_k - 4)
-        elif not solve_k - 16:
-            step(s_)
-        elif solve_k < 20:
-            noise(s_, solve_k - 17)
-        elif not solve_k - 20:
-            weights(s_, c_)
-            if not int(last_pass(s_, c_)):
-                remove_slope(s_, c_)
-        elif solve_k < 33:
-            normal_equations(s_, solve_k - 21)
-        elif not solve_k - 33:
-            step(s_)
-            s[14] = c[9]
-            remove_slope(s_, c_)
-        else:
-            s[13] = 0
-            return int(finish(s_, c_))
-        return 0
+        return int(solve(0, 0, s_, c_, s_, c_))
     i = c[5]
     while i > 0 and (not s[13] - 1):
-        visit(s_, c_)
+        visit(s_, 0, c_, s_)
         i = i - 1
     return 0
 
@@ -355,8 +193,7 @@ def begin_traversal(s: ptr32):
 
 
 @micropython.viper
-def visit(s_, c: ptr32):
-    s = ptr32(s_)
+def visit(s: ptr32, sum_up_i: int, c: ptr32, s_):
     a = s[16] + s[15]
     if a >= c[8]:
         a = a - c[8]
@@ -377,48 +214,53 @@ def visit(s_, c: ptr32):
     if c[20]:
         observe_vector_i = 0
         while observe_vector_i < 9:
-            s[33 + observe_vector_i] = 0
+            s[observe_vector_i + 33] = 0
             observe_vector_i = observe_vector_i + 1
         observe_vector_i = 0
-        while observe_vector_i < 3:
-            s[4 * observe_vector_i + 33] = 16384
-            s[51 + observe_vector_i] = s[25 + 1 + observe_vector_i] >> 15
-            if s[25] >> 30:
-                s[51 + observe_vector_i] = -s[51 + observe_vector_i]
-            observe_vector_i = observe_vector_i + 1
+        s[33] = 16384
+        s[51] = s[26] >> 15
+        if s[25] >> 30:
+            s[51] = -s[51]
+        s[37] = 16384
+        s[52] = s[27] >> 15
+        if s[25] >> 30:
+            s[52] = -s[52]
+        s[41] = 16384
+        s[53] = s[28] >> 15
+        if s[25] >> 30:
+            s[53] = -s[53]
+        observe_vector_i = 3
     else:
         level_observe_a = a
-        level_observe_force_q12_i = 0
+        s_level_observe_a = ptr32(int(s) + (level_observe_a << 2))
         level_observe_force_q12_total = 0
-        while level_observe_force_q12_i < 3:
-            level_observe_force_q12_total = ((s[level_observe_a + level_observe_force_q12_i] & 32767 ^ 16384) - 16384) * s[33 + 3 + level_observe_force_q12_i] + level_observe_force_q12_total
-            level_observe_force_q12_i = level_observe_force_q12_i + 1
+        level_observe_force_q12_total = ((s_level_observe_a[0] & 32767 ^ 16384) - 16384) * s[36] + level_observe_force_q12_total
+        level_observe_force_q12_total = ((s_level_observe_a[1] & 32767 ^ 16384) - 16384) * s[37] + level_observe_force_q12_total
+        level_observe_force_q12_total = ((s_level_observe_a[2] & 32767 ^ 16384) - 16384) * s[38] + level_observe_force_q12_total
         level_observe_force = level_observe_force_q12_total + 8192 >> 14
         if level_observe_force > 32767:
             level_observe_increments_within_result = 32767
-        elif level_observe_force < 0 - 32767:
-            level_observe_increments_within_result = 0 - 32767
+        elif level_observe_force < -32767:
+            level_observe_increments_within_result = -32767
         else:
             level_observe_increments_within_result = level_observe_force
         s[51] = -level_observe_increments_within_result
-        level_observe_force_q12_i = 0
         level_observe_force_q12_total = 0
-        while level_observe_force_q12_i < 3:
-            level_observe_force_q12_total = ((s[level_observe_a + level_observe_force_q12_i] & 32767 ^ 16384) - 16384) * s[33 + 0 + level_observe_force_q12_i] + level_observe_force_q12_total
-            level_observe_force_q12_i = level_observe_force_q12_i + 1
+        level_observe_force_q12_total = ((s_level_observe_a[0] & 32767 ^ 16384) - 16384) * s[33] + level_observe_force_q12_total
+        level_observe_force_q12_total = ((s_level_observe_a[1] & 32767 ^ 16384) - 16384) * s[34] + level_observe_force_q12_total
+        level_observe_force_q12_total = ((s_level_observe_a[2] & 32767 ^ 16384) - 16384) * s[35] + level_observe_force_q12_total
         level_observe_force = level_observe_force_q12_total + 8192 >> 14
         if level_observe_force > 32767:
             level_observe_increments_within_result = 32767
-        elif level_observe_force < 0 - 32767:
-            level_observe_increments_within_result = 0 - 32767
+        elif level_observe_force < -32767:
+            level_observe_increments_within_result = -32767
         else:
             level_observe_increments_within_result = level_observe_force
-        s[51 + 1] = level_observe_increments_within_result
-        level_observe_force_q12_i = 0
+        s[52] = level_observe_increments_within_result
         level_observe_force_q12_total = 0
-        while level_observe_force_q12_i < 3:
-            level_observe_force_q12_total = ((s[level_observe_a + level_observe_force_q12_i] & 32767 ^ 16384) - 16384) * s[33 + 6 + level_observe_force_q12_i] + level_observe_force_q12_total
-            level_observe_force_q12_i = level_observe_force_q12_i + 1
+        level_observe_force_q12_total = ((s_level_observe_a[0] & 32767 ^ 16384) - 16384) * s[39] + level_observe_force_q12_total
+        level_observe_force_q12_total = ((s_level_observe_a[1] & 32767 ^ 16384) - 16384) * s[40] + level_observe_force_q12_total
+        level_observe_force_q12_total = ((s_level_observe_a[2] & 32767 ^ 16384) - 16384) * s[41] + level_observe_force_q12_total
         level_observe_force = level_observe_force_q12_total + 8192 >> 14
         s[63] = (s[60] * level_observe_force + 512 >> 10) + s[63]
         level_observe_heading_q12_w = s[25] + 8192 >> 14
@@ -427,8 +269,9 @@ def visit(s_, c: ptr32):
         level_observe_heading_q12_z = s[28] + 8192 >> 14
         level_observe_heading_q12_real = level_observe_heading_q12_w * s[29] + level_observe_heading_q12_x * s[30] + level_observe_heading_q12_y * s[31] + level_observe_heading_q12_z * s[32]
         level_observe_heading_q12_z = level_observe_heading_q12_z * s[29] - level_observe_heading_q12_w * s[32] - level_observe_heading_q12_x * s[31] + level_observe_heading_q12_y * s[30]
-        level_observe_force = int(atan2_q13(level_observe_heading_q12_z, level_observe_heading_q12_real))
+        level_observe_force = int(atan2_q13(level_observe_heading_q12_real, level_observe_heading_q12_z))
         level_observe_a = level_observe_force - s[23]
+        s_level_observe_a = ptr32(int(s) + (level_observe_a << 2))
         s[23] = level_observe_force
         if level_observe_a > 25736:
             s[24] = s[24] - 1
@@ -437,49 +280,193 @@ def visit(s_, c: ptr32):
         level_observe_increments_within_value = s[24]
         if level_observe_increments_within_value > 3:
             level_observe_increments_within_result = 3
-        elif level_observe_increments_within_value < 0 - 3:
-            level_observe_increments_within_result = 0 - 3
+        elif level_observe_increments_within_value < -3:
+            level_observe_increments_within_result = -3
         else:
             level_observe_increments_within_result = level_observe_increments_within_value
         level_observe_force = level_observe_increments_within_result * 51472 + level_observe_force
         if level_observe_force > 32767:
             level_observe_increments_within_result = 32767
-        elif level_observe_force < 0 - 32767:
-            level_observe_increments_within_result = 0 - 32767
+        elif level_observe_force < -32767:
+            level_observe_increments_within_result = -32767
         else:
             level_observe_increments_within_result = level_observe_force
-        s[51 + 2] = level_observe_increments_within_result
-    sum_up(s_)
-    remove_bias_i = 0
-    while remove_bias_i < 3:
-        s[54 + remove_bias_i] += s[57 + remove_bias_i]
-        remove_bias_part = s[54 + remove_bias_i] + 1024 >> 11
-        s[54 + remove_bias_i] -= remove_bias_part << 11
-        remove_bias_part = (s[a + remove_bias_i] >> 15) - remove_bias_part
-        s[19 + remove_bias_i] = remove_bias_part
-        s[65] = (remove_bias_part if remove_bias_part > 0 else 0 - remove_bias_part) + s[65]
-        remove_bias_i = remove_bias_i + 1
-    sines_square = s[19] * s[19] + s[19 + 1] * s[19 + 1] + s[19 + 2] * s[19 + 2] >> 14
+        s[53] = level_observe_increments_within_result
+    sum_up_i = 0
+    while sum_up_i < 9:
+        s[sum_up_i + 42] += s[sum_up_i + 33] >> 1
+        sum_up_i = sum_up_i + 1
+    sum_up_i = 0
+    sum_up_regressors_shift = s[12]
+    sum_up_regressors_m = (1 << sum_up_regressors_shift - 1) + s[42] >> sum_up_regressors_shift
+    s[202] = sum_up_regressors_m
+    s[205] = s[60] * sum_up_regressors_m + 512 >> 10
+    sum_up_regressors_m = (1 << sum_up_regressors_shift - 1) + s[43] >> sum_up_regressors_shift
+    s[203] = sum_up_regressors_m
+    s[206] = s[60] * sum_up_regressors_m + 512 >> 10
+    sum_up_regressors_m = (1 << sum_up_regressors_shift - 1) + s[44] >> sum_up_regressors_shift
+    s[204] = sum_up_regressors_m
+    s[207] = s[60] * sum_up_regressors_m + 512 >> 10
+    sum_up_first_sums_y = s[51]
+    s[91] = (s[205] * sum_up_first_sums_y + 512 >> 10) + s[91]
+    s[94] = s[94] + s[205]
+    s[98] = (s[61] * s[202] + 512 >> 10) + s[98]
+    s[101] = (s[62] * s[202] + 512 >> 10) + s[101]
+    s[92] = (s[206] * sum_up_first_sums_y + 512 >> 10) + s[92]
+    s[95] = s[95] + s[206]
+    s[99] = (s[61] * s[203] + 512 >> 10) + s[99]
+    s[102] = (s[62] * s[203] + 512 >> 10) + s[102]
+    s[93] = (s[207] * sum_up_first_sums_y + 512 >> 10) + s[93]
+    s[96] = s[96] + s[207]
+    s[100] = (s[61] * s[204] + 512 >> 10) + s[100]
+    s[103] = (s[62] * s[204] + 512 >> 10) + s[103]
+    s[97] = (s[60] * sum_up_first_sums_y + 512 >> 10) + s[97]
+    s[104] = (s[61] * sum_up_first_sums_y + 512 >> 10) + s[104]
+    s[105] = (s[62] * sum_up_first_sums_y + 512 >> 10) + s[105]
+    sum_up_second_sums_a = 85
+    s[85] = (s[205] * s[202] + 512 >> 10) + s[85]
+    sum_up_second_sums_a = sum_up_second_sums_a + 1
+    s[sum_up_second_sums_a] = (s[205] * s[203] + 512 >> 10) + s[sum_up_second_sums_a]
+    sum_up_second_sums_a = sum_up_second_sums_a + 1
+    s[sum_up_second_sums_a] = (s[205] * s[204] + 512 >> 10) + s[sum_up_second_sums_a]
+    sum_up_second_sums_a = sum_up_second_sums_a + 1
+    s[sum_up_second_sums_a] = (s[206] * s[203] + 512 >> 10) + s[sum_up_second_sums_a]
+    sum_up_second_sums_a = sum_up_second_sums_a + 1
+    s[sum_up_second_sums_a] = (s[206] * s[204] + 512 >> 10) + s[sum_up_second_sums_a]
+    sum_up_second_sums_a = sum_up_second_sums_a + 1
+    s[sum_up_second_sums_a] = (s[207] * s[204] + 512 >> 10) + s[sum_up_second_sums_a]
+    sum_up_second_sums_a = sum_up_second_sums_a + 1
+    sum_up_regressors_shift = s[12]
+    sum_up_regressors_m = (1 << sum_up_regressors_shift - 1) + s[45] >> sum_up_regressors_shift
+    s[202] = sum_up_regressors_m
+    s[205] = s[60] * sum_up_regressors_m + 512 >> 10
+    sum_up_regressors_m = (1 << sum_up_regressors_shift - 1) + s[46] >> sum_up_regressors_shift
+    s[203] = sum_up_regressors_m
+    s[206] = s[60] * sum_up_regressors_m + 512 >> 10
+    sum_up_regressors_m = (1 << sum_up_regressors_shift - 1) + s[47] >> sum_up_regressors_shift
+    s[204] = sum_up_regressors_m
+    s[207] = s[60] * sum_up_regressors_m + 512 >> 10
+    sum_up_first_sums_y = s[52]
+    s[112] = (s[205] * sum_up_first_sums_y + 512 >> 10) + s[112]
+    s[115] = s[115] + s[205]
+    s[119] = (s[61] * s[202] + 512 >> 10) + s[119]
+    s[122] = (s[62] * s[202] + 512 >> 10) + s[122]
+    s[113] = (s[206] * sum_up_first_sums_y + 512 >> 10) + s[113]
+    s[116] = s[116] + s[206]
+    s[120] = (s[61] * s[203] + 512 >> 10) + s[120]
+    s[123] = (s[62] * s[203] + 512 >> 10) + s[123]
+    s[114] = (s[207] * sum_up_first_sums_y + 512 >> 10) + s[114]
+    s[117] = s[117] + s[207]
+    s[121] = (s[61] * s[204] + 512 >> 10) + s[121]
+    s[124] = (s[62] * s[204] + 512 >> 10) + s[124]
+    s[118] = (s[60] * sum_up_first_sums_y + 512 >> 10) + s[118]
+    s[125] = (s[61] * sum_up_first_sums_y + 512 >> 10) + s[125]
+    s[126] = (s[62] * sum_up_first_sums_y + 512 >> 10) + s[126]
+    sum_up_second_sums_a = 106
+    s[106] = (s[205] * s[202] + 512 >> 10) + s[106]
+    sum_up_second_sums_a = sum_up_second_sums_a + 1
+    s[sum_up_second_sums_a] = (s[205] * s[203] + 512 >> 10) + s[sum_up_second_sums_a]
+    sum_up_second_sums_a = sum_up_second_sums_a + 1
+    s[sum_up_second_sums_a] = (s[205] * s[204] + 512 >> 10) + s[sum_up_second_sums_a]
+    sum_up_second_sums_a = sum_up_second_sums_a + 1
+    s[sum_up_second_sums_a] = (s[206] * s[203] + 512 >> 10) + s[sum_up_second_sums_a]
+    sum_up_second_sums_a = sum_up_second_sums_a + 1
+    s[sum_up_second_sums_a] = (s[206] * s[204] + 512 >> 10) + s[sum_up_second_sums_a]
+    sum_up_second_sums_a = sum_up_second_sums_a + 1
+    s[sum_up_second_sums_a] = (s[207] * s[204] + 512 >> 10) + s[sum_up_second_sums_a]
+    sum_up_second_sums_a = sum_up_second_sums_a + 1
+    sum_up_regressors_shift = s[12]
+    sum_up_regressors_m = (1 << sum_up_regressors_shift - 1) + s[48] >> sum_up_regressors_shift
+    s[202] = sum_up_regressors_m
+    s[205] = s[60] * sum_up_regressors_m + 512 >> 10
+    sum_up_regressors_m = (1 << sum_up_regressors_shift - 1) + s[49] >> sum_up_regressors_shift
+    s[203] = sum_up_regressors_m
+    s[206] = s[60] * sum_up_regressors_m + 512 >> 10
+    sum_up_regressors_m = (1 << sum_up_regressors_shift - 1) + s[50] >> sum_up_regressors_shift
+    s[204] = sum_up_regressors_m
+    s[207] = s[60] * sum_up_regressors_m + 512 >> 10
+    sum_up_first_sums_y = s[53]
+    s[133] = (s[205] * sum_up_first_sums_y + 512 >> 10) + s[133]
+    s[136] = s[136] + s[205]
+    s[140] = (s[61] * s[202] + 512 >> 10) + s[140]
+    s[143] = (s[62] * s[202] + 512 >> 10) + s[143]
+    s[134] = (s[206] * sum_up_first_sums_y + 512 >> 10) + s[134]
+    s[137] = s[137] + s[206]
+    s[141] = (s[61] * s[203] + 512 >> 10) + s[141]
+    s[144] = (s[62] * s[203] + 512 >> 10) + s[144]
+    s[135] = (s[207] * sum_up_first_sums_y + 512 >> 10) + s[135]
+    s[138] = s[138] + s[207]
+    s[142] = (s[61] * s[204] + 512 >> 10) + s[142]
+    s[145] = (s[62] * s[204] + 512 >> 10) + s[145]
+    s[139] = (s[60] * sum_up_first_sums_y + 512 >> 10) + s[139]
+    s[146] = (s[61] * sum_up_first_sums_y + 512 >> 10) + s[146]
+    s[147] = (s[62] * sum_up_first_sums_y + 512 >> 10) + s[147]
+    sum_up_second_sums_a = 127
+    s[127] = (s[205] * s[202] + 512 >> 10) + s[127]
+    sum_up_second_sums_a = sum_up_second_sums_a + 1
+    s[sum_up_second_sums_a] = (s[205] * s[203] + 512 >> 10) + s[sum_up_second_sums_a]
+    sum_up_second_sums_a = sum_up_second_sums_a + 1
+    s[sum_up_second_sums_a] = (s[205] * s[204] + 512 >> 10) + s[sum_up_second_sums_a]
+    sum_up_second_sums_a = sum_up_second_sums_a + 1
+    s[sum_up_second_sums_a] = (s[206] * s[203] + 512 >> 10) + s[sum_up_second_sums_a]
+    sum_up_second_sums_a = sum_up_second_sums_a + 1
+    s[sum_up_second_sums_a] = (s[206] * s[204] + 512 >> 10) + s[sum_up_second_sums_a]
+    sum_up_second_sums_a = sum_up_second_sums_a + 1
+    s[sum_up_second_sums_a] = (s[207] * s[204] + 512 >> 10) + s[sum_up_second_sums_a]
+    sum_up_second_sums_a = sum_up_second_sums_a + 1
+    sum_up_i = 3
+    sum_up_i = 0
+    while sum_up_i < 9:
+        s[sum_up_i + 42] += s[sum_up_i + 33] - (s[sum_up_i + 33] >> 1)
+        sum_up_i = sum_up_i + 1
+    s[54] = s[54] + s[57]
+    remove_bias_part = s[54] + 1024 >> 11
+    s[54] = s[54] - (remove_bias_part << 11)
+    remove_bias_part = (s[a] >> 15) - remove_bias_part
+    s[19] = remove_bias_part
+    s[65] = (remove_bias_part if remove_bias_part > 0 else 0 - remove_bias_part) + s[65]
+    s[55] = s[55] + s[58]
+    remove_bias_part = s[55] + 1024 >> 11
+    s[55] = s[55] - (remove_bias_part << 11)
+    remove_bias_part = (s[a + 1] >> 15) - remove_bias_part
+    s[20] = remove_bias_part
+    s[65] = (remove_bias_part if remove_bias_part > 0 else 0 - remove_bias_part) + s[65]
+    s[56] = s[56] + s[59]
+    remove_bias_part = s[56] + 1024 >> 11
+    s[56] = s[56] - (remove_bias_part << 11)
+    remove_bias_part = (s[a + 2] >> 15) - remove_bias_part
+    s[21] = remove_bias_part
+    s[65] = (remove_bias_part if remove_bias_part > 0 else 0 - remove_bias_part) + s[65]
+    sines_square = s[19] * s[19] + s[20] * s[20] + s[21] * s[21] >> 14
     sines_fourth = (sines_square >> 1) * (sines_square >> 1) >> 12
     sines_factor = 16384 - (sines_square * 2731 >> 14) + (sines_fourth * 137 >> 14)
-    sines_i = 0
-    while sines_i < 3:
-        s[19 + sines_i] = s[19 + sines_i] * sines_factor + 2048 >> 12
-        sines_i = sines_i + 1
+    s[19] = s[19] * sines_factor + 2048 >> 12
+    s[20] = s[20] * sines_factor + 2048 >> 12
+    s[21] = s[21] * sines_factor + 2048 >> 12
     sines_factor = ((sines_fourth >> 1) * (sines_square >> 1) >> 12) * 23
     s[22] = (sines_fourth * 2731 >> 14) - (sines_square << 1) - (sines_factor >> 12)
-    turn(s_)
-    normalise_i = 0
+    turn_w = s[25] + 16384 >> 15
+    turn_x = s[26] + 16384 >> 15
+    turn_y = s[27] + 16384 >> 15
+    turn_z = s[28] + 16384 >> 15
+    s[25] = (turn_w * s[22] - turn_x * s[19] - turn_y * s[20] - turn_z * s[21] >> 1) + s[25]
+    s[26] = (turn_x * s[22] + turn_w * s[19] + turn_y * s[21] - turn_z * s[20] >> 1) + s[26]
+    s[27] = (turn_y * s[22] + turn_w * s[20] + turn_z * s[19] - turn_x * s[21] >> 1) + s[27]
+    s[28] = (turn_z * s[22] + turn_w * s[21] + turn_x * s[20] - turn_y * s[19] >> 1) + s[28]
     normalise_excess = -268435456
-    while normalise_i < 4:
-        normalise_part = s[25 + normalise_i] + 8192 >> 14
-        normalise_excess = normalise_part * normalise_part + normalise_excess
-        normalise_i = normalise_i + 1
+    normalise_part = s[25] + 8192 >> 14
+    normalise_excess = normalise_part * normalise_part + normalise_excess
+    normalise_part = s[26] + 8192 >> 14
+    normalise_excess = normalise_part * normalise_part + normalise_excess
+    normalise_part = s[27] + 8192 >> 14
+    normalise_excess = normalise_part * normalise_part + normalise_excess
+    normalise_part = s[28] + 8192 >> 14
+    normalise_excess = normalise_part * normalise_part + normalise_excess
     normalise_excess = normalise_excess >> 14
-    normalise_i = 0
-    while normalise_i < 4:
-        s[25 + normalise_i] = s[25 + normalise_i] - ((s[25 + normalise_i] + 8192 >> 14) * normalise_excess >> 1)
-        normalise_i = normalise_i + 1
+    s[25] = s[25] - ((s[25] + 8192 >> 14) * normalise_excess >> 1)
+    s[26] = s[26] - ((s[26] + 8192 >> 14) * normalise_excess >> 1)
+    s[27] = s[27] - ((s[27] + 8192 >> 14) * normalise_excess >> 1)
+    s[28] = s[28] - ((s[28] + 8192 >> 14) * normalise_excess >> 1)
     s[15] = s[15] + 1
     if s[15] >= s[11]:
         s[15] = 0
@@ -487,53 +474,134 @@ def visit(s_, c: ptr32):
 
 
 @micropython.viper
-def sum_up(s: ptr32):
-    i = 0
-    while i < 9:
-        s[42 + i] += s[33 + i] >> 1
-        i = i + 1
-    i = 0
-    while i < 3:
-        regressors_row = 3 * i + 42
-        regressors_shift = s[12]
-        regressors_i = 0
-        while regressors_i < 3:
-            regressors_m = (1 << regressors_shift - 1) + s[regressors_row + regressors_i] >> regressors_shift
-            s[202 + regressors_i] = regressors_m
-            s[205 + regressors_i] = s[60] * regressors_m + 512 >> 10
-            regressors_i = regressors_i + 1
-        first_sums_a = 21 * i + 85
-        s_first_sums_a = ptr32(int(s) + (first_sums_a << 2))
-        first_sums_y = s[51 + i]
-        first_sums_i = 0
-        while first_sums_i < 3:
-            s[first_sums_a + 6 + first_sums_i] += s[205 + first_sums_i] * first_sums_y + 512 >> 10
-            s[first_sums_a + 9 + first_sums_i] += s[205 + first_sums_i]
-            s[first_sums_a + 13 + first_sums_i] += s[61] * s[202 + first_sums_i] + 512 >> 10
-            s[first_sums_a + 13 + 3 + first_sums_i] += s[62] * s[202 + first_sums_i] + 512 >> 10
-            first_sums_i = first_sums_i + 1
-        s_first_sums_a[12] = (s[60] * first_sums_y + 512 >> 10) + s_first_sums_a[12]
-        s_first_sums_a[19] = (s[61] * first_sums_y + 512 >> 10) + s_first_sums_a[19]
-        s[first_sums_a + 19 + 1] += s[62] * first_sums_y + 512 >> 10
-        second_sums_a = 21 * i + 85
-        second_sums_i = 0
-        while second_sums_i < 3:
-            second_sums_k = second_sums_i
-            while second_sums_k < 3:
-                s[second_sums_a] = (s[205 + second_sums_i] * s[202 + second_sums_k] + 512 >> 10) + s[second_sums_a]
-                second_sums_a = second_sums_a + 1
-                second_sums_k = second_sums_k + 1
-            second_sums_i = second_sums_i + 1
-        i = i + 1
-    i = 0
-    while i < 9:
-        s[42 + i] += s[33 + i] - (s[33 + i] >> 1)
-        i = i + 1
+def solve(solve_document_own_slope_put_m: int, solve_document_own_variance_put_m: int, s: ptr32, c: ptr32, s_, c_) -> int:
+    k = s[15]
+    s[15] = k + 1
+    if c[20]:
+        if k < 3:
+            centre(s_, s[12], 3 * k, 21 * k + 85)
+        elif k < 6:
+            solve_document_own_slope_i = k - 3
+            own_square(0, s_, solve_document_own_slope_i)
+            solve_document_own_slope_a = s[12] - 16
+            solve_document_own_slope_put_m = s[22 * solve_document_own_slope_i + 91]
+            solve_document_own_slope_put_e = solve_document_own_slope_a
+            if not solve_document_own_slope_put_m:
+                s[202] = 0
+                s[203] = -4096
+            else:
+                while solve_document_own_slope_put_m < 524288 and solve_document_own_slope_put_m >= -524288:
+                    solve_document_own_slope_put_m = solve_document_own_slope_put_m << 8
+                    solve_document_own_slope_put_e = solve_document_own_slope_put_e - 8
+                while solve_document_own_slope_put_m < 134217728 and solve_document_own_slope_put_m >= -134217728:
+                    solve_document_own_slope_put_m = solve_document_own_slope_put_m << 1
+                    solve_document_own_slope_put_e = solve_document_own_slope_put_e - 1
+                while solve_document_own_slope_put_m >= 268435456 or solve_document_own_slope_put_m < -268435456:
+                    solve_document_own_slope_put_m = solve_document_own_slope_put_m >> 1
+                    solve_document_own_slope_put_e = solve_document_own_slope_put_e + 1
+                s[202] = solve_document_own_slope_put_m
+                s[203] = solve_document_own_slope_put_e
+            divide(0, s_, 202, 204, 2 * solve_document_own_slope_i + 184)
+        elif k < 9:
+            noise(0, 0, s_, k - 6, s_)
+        elif not k - 9:
+            if int(last_pass(c_, s_)):
+                s[14] = c[9]
+            remove_slope(0, 0, s_, c_, s_)
+        elif k < 13:
+            solve_document_own_variance_i = k - 10
+            own_square(0, s_, solve_document_own_variance_i)
+            solve_document_own_variance_put_m = -c[21]
+            solve_document_own_variance_put_e = 0
+            if not solve_document_own_variance_put_m:
+                s[202] = 0
+                s[203] = -4096
+            else:
+                while solve_document_own_variance_put_m < 524288 and solve_document_own_variance_put_m >= -524288:
+                    solve_document_own_variance_put_m = solve_document_own_variance_put_m << 8
+                    solve_document_own_variance_put_e = solve_document_own_variance_put_e - 8
+                while solve_document_own_variance_put_m < 134217728 and solve_document_own_variance_put_m >= -134217728:
+                    solve_document_own_variance_put_m = solve_document_own_variance_put_m << 1
+                    solve_document_own_variance_put_e = solve_document_own_variance_put_e - 1
+                while solve_document_own_variance_put_m >= 268435456 or solve_document_own_variance_put_m < -268435456:
+                    solve_document_own_variance_put_m = solve_document_own_variance_put_m >> 1
+                    solve_document_own_variance_put_e = solve_document_own_variance_put_e + 1
+                s[202] = solve_document_own_variance_put_m
+                s[203] = solve_document_own_variance_put_e
+            multiply(0, 202, s_, 2 * solve_document_own_variance_i + 196, 202)
+            if solve_document_own_variance_i > solve_document_own_variance_i:
+                solve_document_own_variance_i = (4 * solve_document_own_variance_i - ((solve_document_own_variance_i + 1) * solve_document_own_variance_i >> 1) + solve_document_own_variance_i) * 2 + 33
+            else:
+                solve_document_own_variance_i = (4 * solve_document_own_variance_i - ((solve_document_own_variance_i + 1) * solve_document_own_variance_i >> 1) + solve_document_own_variance_i) * 2 + 33
+            divide(0, s_, 202, 204, solve_document_own_variance_i)
+        else:
+            s[13] = 0
+            return int(finish(s_, c_))
+        return 0
+    if not s[14]:
+        level_and_prior(0, s_, 0, k, c_, s_, c_)
+        return 0
+    if k < 3:
+        centre(s_, s[12], 3 * k, 21 * k + 85)
+    elif not k - 3:
+        lean_back_increments_within_value = -s[97]
+        if lean_back_increments_within_value > 4096:
+            lean_back_increments_within_result = 4096
+        elif lean_back_increments_within_value < -4096:
+            lean_back_increments_within_result = -4096
+        else:
+            lean_back_increments_within_result = lean_back_increments_within_value
+        lean_back_x = lean_back_increments_within_result << 1
+        lean_back_increments_within_value = -s[118]
+        if lean_back_increments_within_value > 4096:
+            lean_back_increments_within_result = 4096
+        elif lean_back_increments_within_value < -4096:
+            lean_back_increments_within_result = -4096
+        else:
+            lean_back_increments_within_result = lean_back_increments_within_value
+        lean_back_y = lean_back_increments_within_result << 1
+        s[202] = s[29] - (lean_back_x * s[30] + lean_back_y * s[31] >> 14)
+        s[203] = (lean_back_x * s[29] + lean_back_y * s[32] >> 14) + s[30]
+        s[204] = (lean_back_y * s[29] - lean_back_x * s[32] >> 14) + s[31]
+        s[205] = (lean_back_x * s[31] - lean_back_y * s[30] >> 14) + s[32]
+        lean_back_x = 0
+        s[202] = s[202] >> 1
+        lean_back_x = s[202] * s[202] + lean_back_x
+        s[203] = s[203] >> 1
+        lean_back_x = s[203] * s[203] + lean_back_x
+        s[204] = s[204] >> 1
+        lean_back_x = s[204] * s[204] + lean_back_x
+        s[205] = s[205] >> 1
+        lean_back_x = s[205] * s[205] + lean_back_x
+        lean_back_look_along_scale = int(root(lean_back_x))
+        s[29] = (s[202] << 14) // lean_back_look_along_scale
+        s[30] = (s[203] << 14) // lean_back_look_along_scale
+        s[31] = (s[204] << 14) // lean_back_look_along_scale
+        s[32] = (s[205] << 14) // lean_back_look_along_scale
+    elif k < 16:
+        normal_equations(s_, k - 4, s_)
+    elif not k - 16:
+        step(s_)
+    elif k < 20:
+        noise(0, 0, s_, k - 17, s_)
+    elif not k - 20:
+        weights(0, s_, 0, s_, c_)
+        if not int(last_pass(c_, s_)):
+            remove_slope(0, 0, s_, c_, s_)
+    elif k < 33:
+        normal_equations(s_, k - 21, s_)
+    elif not k - 33:
+        step(s_)
+        s[14] = c[9]
+        remove_slope(0, 0, s_, c_, s_)
+    else:
+        s[13] = 0
+        return int(finish(s_, c_))
+    return 0
 
 
 @micropython.viper
-def normal_equations(s_, n: int):
-    s = ptr32(s_)
+def normal_equations(s: ptr32, n: int, s_):
     if n < 6:
         matrix_element_i = 0
         matrix_element_j = n
@@ -550,7 +618,7 @@ def normal_equations(s_, n: int):
             matrix_element_real_copy_words = matrix_element_real_copy_words - 1
             s[matrix_element_real_copy_words + 202] = s[matrix_element_real_copy_a + matrix_element_real_copy_words]
         matrix_element_i = 2 * s[12] - 42
-        element(s_, matrix_element_j, n + 85, matrix_element_i)
+        element(0, 0, s_, n + 85, matrix_element_j, matrix_element_i, s_)
     elif n < 9:
         right_side_i = n - 6
         if right_side_i > 3:
@@ -560,40 +628,38 @@ def normal_equations(s_, n: int):
         right_side_j = s[12] - 16
         s[202] = 0
         s[203] = -4096
-        element(s_, right_side_d, right_side_i + 91, right_side_j)
+        element(0, 0, s_, right_side_i + 91, right_side_d, right_side_j, s_)
         right_side_j = 0
-        subtract(s_, 204, 172, 178)
+        subtract(0, s_, 172, 178, 204, s_)
         right_side_multiply_by_prior_a = int(prior_place(right_side_i, 0))
-        multiply(s_, 204, 204, right_side_multiply_by_prior_a)
+        multiply(0, 204, s_, right_side_multiply_by_prior_a, 204)
         if s[right_side_d + 1] < s[205]:
-            add_smaller(s_, right_side_d, 204, right_side_d)
+            add_smaller(0, s_, 204, right_side_d, right_side_d)
         else:
-            add_smaller(s_, right_side_d, right_side_d, 204)
-        subtract(s_, 204, 174, 180)
+            add_smaller(0, s_, right_side_d, 204, right_side_d)
+        subtract(0, s_, 174, 180, 204, s_)
         right_side_multiply_by_prior_a = int(prior_place(right_side_i, 1))
-        multiply(s_, 204, 204, right_side_multiply_by_prior_a)
+        multiply(0, 204, s_, right_side_multiply_by_prior_a, 204)
         if s[right_side_d + 1] < s[205]:
-            add_smaller(s_, right_side_d, 204, right_side_d)
+            add_smaller(0, s_, 204, right_side_d, right_side_d)
         else:
-            add_smaller(s_, right_side_d, right_side_d, 204)
-        subtract(s_, 204, 176, 182)
+            add_smaller(0, s_, right_side_d, 204, right_side_d)
+        subtract(0, s_, 176, 182, 204, s_)
         right_side_multiply_by_prior_a = int(prior_place(right_side_i, 2))
-        multiply(s_, 204, 204, right_side_multiply_by_prior_a)
+        multiply(0, 204, s_, right_side_multiply_by_prior_a, 204)
         if s[right_side_d + 1] < s[205]:
-            add_smaller(s_, right_side_d, 204, right_side_d)
+            add_smaller(0, s_, 204, right_side_d, right_side_d)
         else:
-            add_smaller(s_, right_side_d, right_side_d, 204)
+            add_smaller(0, s_, right_side_d, 204, right_side_d)
         right_side_j = 3
         s[51] = 0
         s[52] = -4096
     else:
-        sweep(s_, n - 9)
+        sweep(0, 0, s_, n - 9, s_)
 
 
 @micropython.viper
-def level_and_prior(s_, c_, k: int):
-    s = ptr32(s_)
-    c = ptr32(c_)
+def level_and_prior(turn_centre_turned_mean_j: int, s: ptr32, turn_centre_turned_mean_total: int, k: int, c: ptr32, s_, c_):
     if not k:
         find_up_x = s[118]
         find_up_y = -s[97]
@@ -668,75 +734,18 @@ def level_and_prior(s_, c_, k: int):
             turn_centre_i = turn_centre_i + 1
     elif not k - 1:
         k = 1 if s[11] == c[16] and s[67] > 0 else 0
-        carry_i = 0
-        carry_put_m = s[237] - s[238]
-        carry_put_e = -8
-        if not carry_put_m:
-            s[202] = 0
-            s[202 + 1] = -4096
-        else:
-            while carry_put_m < 524288 and carry_put_m >= -524288:
-                carry_put_m = carry_put_m << 8
-                carry_put_e = carry_put_e - 8
-            while carry_put_m < 134217728 and carry_put_m >= -134217728:
-                carry_put_m = carry_put_m << 1
-                carry_put_e = carry_put_e - 1
-            while carry_put_m >= 268435456 or carry_put_m < -268435456:
-                carry_put_m = carry_put_m >> 1
-                carry_put_e = carry_put_e + 1
-            s[202] = carry_put_m
-            s[202 + 1] = carry_put_e
-        carry_put_m = c[12]
-        carry_put_e = c[12 + 1]
-        if not carry_put_m:
-            s[206] = 0
-            s[206 + 1] = -4096
-        else:
-            while carry_put_m < 524288 and carry_put_m >= -524288:
-                carry_put_m = carry_put_m << 8
-                carry_put_e = carry_put_e - 8
-            while carry_put_m < 134217728 and carry_put_m >= -134217728:
-                carry_put_m = carry_put_m << 1
-                carry_put_e = carry_put_e - 1
-            while carry_put_m >= 268435456 or carry_put_m < -268435456:
-                carry_put_m = carry_put_m >> 1
-                carry_put_e = carry_put_e + 1
-            s[206] = carry_put_m
-            s[206 + 1] = carry_put_e
-        carry_put_m = s[66]
-        carry_put_e = 0
-        if not carry_put_m:
-            s[204] = 0
-            s[204 + 1] = -4096
-        else:
-            while carry_put_m < 524288 and carry_put_m >= -524288:
-                carry_put_m = carry_put_m << 8
-                carry_put_e = carry_put_e - 8
-            while carry_put_m < 134217728 and carry_put_m >= -134217728:
-                carry_put_m = carry_put_m << 1
-                carry_put_e = carry_put_e - 1
-            while carry_put_m >= 268435456 or carry_put_m < -268435456:
-                carry_put_m = carry_put_m >> 1
-                carry_put_e = carry_put_e + 1
-            s[204] = carry_put_m
-            s[204 + 1] = carry_put_e
-        multiply(s_, 208, 206, 204)
-        while carry_i < 3 and k:
-            carry_axis(s_, c_, carry_i)
-            carry_i = carry_i + 1
-        s[238] = s[237]
-        s[66] = 0
+        carry(0, 0, k, s_, c_, s_, c_)
         if k:
             real_copy_words = 6
             while real_copy_words > 0:
                 real_copy_words = real_copy_words - 1
                 s[178 + real_copy_words] = s[172 + real_copy_words]
     elif not k - 2:
-        spread_prior(s_)
+        spread_prior(0, s_)
     elif k < 6:
-        sweep(s_, k - 3)
+        sweep(0, 0, s_, k - 3, s_)
     else:
-        covariance(s_, 160)
+        covariance(0, 0, 160, s_)
         held_weights_i = 0
         while held_weights_i < 6:
             held_weights_real_copy_d = 196 + held_weights_i
@@ -745,14 +754,14 @@ def level_and_prior(s_, c_, k: int):
             while held_weights_real_copy_words > 0:
                 held_weights_real_copy_words = held_weights_real_copy_words - 1
                 s[held_weights_real_copy_d + held_weights_real_copy_words] = s[held_weights_real_copy_a + held_weights_real_copy_words]
-            weigh(s_, c_, 196 + held_weights_i)
+            weigh(0, 0, s_, c_, 196 + held_weights_i, s_)
             held_weights_i = held_weights_i + 2
         s[14] = 1
         begin_traversal(s_)
 
 
 @micropython.viper
-def last_pass(s: ptr32, c: ptr32) -> int:
+def last_pass(c: ptr32, s: ptr32) -> int:
     if s[14] >= c[9]:
         return 1
     whole_shift = 0
@@ -801,17 +810,16 @@ def last_pass(s: ptr32, c: ptr32) -> int:
 
 
 @micropython.viper
-def remove_slope(s_, c: ptr32):
-    s = ptr32(s_)
+def remove_slope(note_slope_put_m: int, note_slope_put_e: int, s: ptr32, c: ptr32, s_):
     i = 0
     while i < 6:
         real_add_d = i + 178
         real_add_a = i + 178
         real_add_b = i + 184
         if s[real_add_a + 1] < s[real_add_b + 1]:
-            add_smaller(s_, real_add_d, real_add_b, real_add_a)
+            add_smaller(0, s_, real_add_b, real_add_a, real_add_d)
         else:
-            add_smaller(s_, real_add_d, real_add_a, real_add_b)
+            add_smaller(0, s_, real_add_a, real_add_b, real_add_d)
         i = i + 2
     note_slope_a = s[14] - 1
     if note_slope_a > 2:
@@ -834,7 +842,7 @@ def remove_slope(s_, c: ptr32):
             note_slope_put_e = note_slope_put_e + 1
         s[202] = note_slope_put_m
         s[203] = note_slope_put_e
-    multiply(s_, 202, 202, 184)
+    multiply(0, 202, s_, 184, 202)
     note_slope_whole_shift = 0
     note_slope_whole_m = s[202]
     note_slope_whole_shift = note_slope_whole_shift + s[203]
@@ -865,7 +873,7 @@ def remove_slope(s_, c: ptr32):
             note_slope_put_e = note_slope_put_e + 1
         s[202] = note_slope_put_m
         s[203] = note_slope_put_e
-    multiply(s_, 202, 202, 186)
+    multiply(0, 202, s_, 186, 202)
     note_slope_whole_shift = 0
     note_slope_whole_m = s[202]
     note_slope_whole_shift = note_slope_whole_shift + s[203]
@@ -896,7 +904,7 @@ def remove_slope(s_, c: ptr32):
             note_slope_put_e = note_slope_put_e + 1
         s[202] = note_slope_put_m
         s[203] = note_slope_put_e
-    multiply(s_, 202, 202, 188)
+    multiply(0, 202, s_, 188, 202)
     note_slope_whole_shift = 0
     note_slope_whole_m = s[202]
     note_slope_whole_shift = note_slope_whole_shift + s[203]

@@ -20,8 +20,7 @@ def place(i: int, j: int) -> int:
 
 
 @micropython.viper
-def element(s_, d: int, h: int, e: int):
-    s = ptr32(s_)
+def element(put_m: int, put_e: int, s: ptr32, h: int, d: int, e: int, s_):
     i = 0
     while i < 6:
         put_m = s[h]
@@ -41,11 +40,11 @@ def element(s_, d: int, h: int, e: int):
                 put_e = put_e + 1
             s[204] = put_m
             s[205] = put_e
-        multiply(s_, 204, 204, i + 196)
+        multiply(0, 204, s_, i + 196, 204)
         if s[203] < s[205]:
-            add_smaller(s_, 202, 204, 202)
+            add_smaller(0, s_, 204, 202, 202)
         else:
-            add_smaller(s_, 202, 202, 204)
+            add_smaller(0, s_, 202, 204, 202)
         h = h + 21
         i = i + 2
     real_copy_words = 2
@@ -62,72 +61,199 @@ def prior_place(i: int, j: int) -> int:
 
 
 @micropython.viper
-def sweep(s_, k: int):
-    s = ptr32(s_)
+def sweep(sweep_row_real_copy_words: int, put_m: int, s: ptr32, k: int, s_):
     if k > k:
         d = (4 * k - ((k + 1) * k >> 1) + k) * 2 + 33
     else:
         d = (4 * k - ((k + 1) * k >> 1) + k) * 2 + 33
     put_m = 1
     put_e = 0
-    if not put_m:
-        s[202] = 0
-        s[202 + 1] = -4096
-    else:
-        while put_m < 524288 and put_m >= -524288:
-            put_m = put_m << 8
-            put_e = put_e - 8
-        while put_m < 134217728 and put_m >= -134217728:
-            put_m = put_m << 1
-            put_e = put_e - 1
-        while put_m >= 268435456 or put_m < -268435456:
-            put_m = put_m >> 1
-            put_e = put_e + 1
-        s[202] = put_m
-        s[202 + 1] = put_e
-    divide(s_, 202, 202, d)
-    i = 0
-    while i < 4:
-        if i - k:
-            if i > k:
-                sweep_row_d = (4 * k - ((k + 1) * k >> 1) + i) * 2 + 33
+    while put_m < 524288 and put_m >= -524288:
+        put_m = put_m << 8
+        put_e = put_e - 8
+    while put_m < 134217728 and put_m >= -134217728:
+        put_m = put_m << 1
+        put_e = put_e - 1
+    while put_m >= 268435456 or put_m < -268435456:
+        put_m = put_m >> 1
+        put_e = put_e + 1
+    s[202] = put_m
+    s[203] = put_e
+    divide(0, s_, 202, d, 202)
+    if 0 - k:
+        if 0 > k:
+            sweep_row_d = (4 * k - ((k + 1) * k >> 1)) * 2 + 33
+        else:
+            sweep_row_d = 2 * k + 33
+        multiply(0, sweep_row_d, s_, 202, 204)
+        if 0 - k:
+            if k > 0:
+                sweep_row_d = 2 * k + 33
             else:
-                sweep_row_d = (4 * i - ((i + 1) * i >> 1) + k) * 2 + 33
-            multiply(s_, 204, sweep_row_d, 202)
-            sweep_row_j = i
-            while sweep_row_j < 4:
-                if sweep_row_j - k:
-                    if k > sweep_row_j:
-                        sweep_row_d = (4 * sweep_row_j - ((sweep_row_j + 1) * sweep_row_j >> 1) + k) * 2 + 33
-                    else:
-                        sweep_row_d = (4 * k - ((k + 1) * k >> 1) + sweep_row_j) * 2 + 33
-                    multiply(s_, 206, 204, sweep_row_d)
-                    if i > sweep_row_j:
-                        sweep_row_d = (4 * sweep_row_j - ((sweep_row_j + 1) * sweep_row_j >> 1) + i) * 2 + 33
-                    else:
-                        sweep_row_d = (4 * i - ((i + 1) * i >> 1) + sweep_row_j) * 2 + 33
-                    subtract(s_, 208, sweep_row_d, 206)
-                    sweep_row_real_copy_words = 2
-                    while sweep_row_real_copy_words > 0:
-                        sweep_row_real_copy_words = sweep_row_real_copy_words - 1
-                        s[sweep_row_d + sweep_row_real_copy_words] = s[208 + sweep_row_real_copy_words]
-                sweep_row_j = sweep_row_j + 1
-        i = i + 1
-    i = 0
-    while i < 4:
-        if i - k:
-            if i > k:
-                d = (4 * k - ((k + 1) * k >> 1) + i) * 2 + 33
+                sweep_row_d = (4 * k - ((k + 1) * k >> 1)) * 2 + 33
+            multiply(0, 204, s_, sweep_row_d, 206)
+            sweep_row_d = 33
+            subtract(0, s_, 33, 206, 208, s_)
+            sweep_row_real_copy_words = 2
+            while sweep_row_real_copy_words > 0:
+                sweep_row_real_copy_words = sweep_row_real_copy_words - 1
+                s[sweep_row_real_copy_words + 33] = s[sweep_row_real_copy_words + 208]
+        if 1 - k:
+            if k > 1:
+                sweep_row_d = (k + 3) * 2 + 33
             else:
-                d = (4 * i - ((i + 1) * i >> 1) + k) * 2 + 33
-            multiply(s_, d, d, 202)
-        i = i + 1
+                sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 1) * 2 + 33
+            multiply(0, 204, s_, sweep_row_d, 206)
+            sweep_row_d = 35
+            subtract(0, s_, 35, 206, 208, s_)
+            sweep_row_real_copy_words = 2
+            while sweep_row_real_copy_words > 0:
+                sweep_row_real_copy_words = sweep_row_real_copy_words - 1
+                s[sweep_row_real_copy_words + 35] = s[sweep_row_real_copy_words + 208]
+        if 2 - k:
+            if k > 2:
+                sweep_row_d = (k + 5) * 2 + 33
+            else:
+                sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 2) * 2 + 33
+            multiply(0, 204, s_, sweep_row_d, 206)
+            sweep_row_d = 37
+            subtract(0, s_, 37, 206, 208, s_)
+            sweep_row_real_copy_words = 2
+            while sweep_row_real_copy_words > 0:
+                sweep_row_real_copy_words = sweep_row_real_copy_words - 1
+                s[sweep_row_real_copy_words + 37] = s[sweep_row_real_copy_words + 208]
+        if 3 - k:
+            if k > 3:
+                sweep_row_d = (k + 6) * 2 + 33
+            else:
+                sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 3) * 2 + 33
+            multiply(0, 204, s_, sweep_row_d, 206)
+            sweep_row_d = 39
+            subtract(0, s_, 39, 206, 208, s_)
+            sweep_row_real_copy_words = 2
+            while sweep_row_real_copy_words > 0:
+                sweep_row_real_copy_words = sweep_row_real_copy_words - 1
+                s[sweep_row_real_copy_words + 39] = s[sweep_row_real_copy_words + 208]
+    if 1 - k:
+        if 1 > k:
+            sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 1) * 2 + 33
+        else:
+            sweep_row_d = (k + 3) * 2 + 33
+        multiply(0, sweep_row_d, s_, 202, 204)
+        if 1 - k:
+            if k > 1:
+                sweep_row_d = (k + 3) * 2 + 33
+            else:
+                sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 1) * 2 + 33
+            multiply(0, 204, s_, sweep_row_d, 206)
+            sweep_row_d = 41
+            subtract(0, s_, 41, 206, 208, s_)
+            sweep_row_real_copy_words = 2
+            while sweep_row_real_copy_words > 0:
+                sweep_row_real_copy_words = sweep_row_real_copy_words - 1
+                s[sweep_row_real_copy_words + 41] = s[sweep_row_real_copy_words + 208]
+        if 2 - k:
+            if k > 2:
+                sweep_row_d = (k + 5) * 2 + 33
+            else:
+                sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 2) * 2 + 33
+            multiply(0, 204, s_, sweep_row_d, 206)
+            sweep_row_d = 43
+            subtract(0, s_, 43, 206, 208, s_)
+            sweep_row_real_copy_words = 2
+            while sweep_row_real_copy_words > 0:
+                sweep_row_real_copy_words = sweep_row_real_copy_words - 1
+                s[sweep_row_real_copy_words + 43] = s[sweep_row_real_copy_words + 208]
+        if 3 - k:
+            if k > 3:
+                sweep_row_d = (k + 6) * 2 + 33
+            else:
+                sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 3) * 2 + 33
+            multiply(0, 204, s_, sweep_row_d, 206)
+            sweep_row_d = 45
+            subtract(0, s_, 45, 206, 208, s_)
+            sweep_row_real_copy_words = 2
+            while sweep_row_real_copy_words > 0:
+                sweep_row_real_copy_words = sweep_row_real_copy_words - 1
+                s[sweep_row_real_copy_words + 45] = s[sweep_row_real_copy_words + 208]
+    if 2 - k:
+        if 2 > k:
+            sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 2) * 2 + 33
+        else:
+            sweep_row_d = (k + 5) * 2 + 33
+        multiply(0, sweep_row_d, s_, 202, 204)
+        if 2 - k:
+            if k > 2:
+                sweep_row_d = (k + 5) * 2 + 33
+            else:
+                sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 2) * 2 + 33
+            multiply(0, 204, s_, sweep_row_d, 206)
+            sweep_row_d = 47
+            subtract(0, s_, 47, 206, 208, s_)
+            sweep_row_real_copy_words = 2
+            while sweep_row_real_copy_words > 0:
+                sweep_row_real_copy_words = sweep_row_real_copy_words - 1
+                s[sweep_row_real_copy_words + 47] = s[sweep_row_real_copy_words + 208]
+        if 3 - k:
+            if k > 3:
+                sweep_row_d = (k + 6) * 2 + 33
+            else:
+                sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 3) * 2 + 33
+            multiply(0, 204, s_, sweep_row_d, 206)
+            sweep_row_d = 49
+            subtract(0, s_, 49, 206, 208, s_)
+            sweep_row_real_copy_words = 2
+            while sweep_row_real_copy_words > 0:
+                sweep_row_real_copy_words = sweep_row_real_copy_words - 1
+                s[sweep_row_real_copy_words + 49] = s[sweep_row_real_copy_words + 208]
+    if 3 - k:
+        if 3 > k:
+            sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 3) * 2 + 33
+        else:
+            sweep_row_d = (k + 6) * 2 + 33
+        multiply(0, sweep_row_d, s_, 202, 204)
+        if 3 - k:
+            if k > 3:
+                sweep_row_d = (k + 6) * 2 + 33
+            else:
+                sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 3) * 2 + 33
+            multiply(0, 204, s_, sweep_row_d, 206)
+            sweep_row_d = 51
+            subtract(0, s_, 51, 206, 208, s_)
+            sweep_row_real_copy_words = 2
+            while sweep_row_real_copy_words > 0:
+                sweep_row_real_copy_words = sweep_row_real_copy_words - 1
+                s[sweep_row_real_copy_words + 51] = s[sweep_row_real_copy_words + 208]
+    if 0 - k:
+        if 0 > k:
+            d = (4 * k - ((k + 1) * k >> 1)) * 2 + 33
+        else:
+            d = 2 * k + 33
+        multiply(0, d, s_, 202, d)
+    if 1 - k:
+        if 1 > k:
+            d = (4 * k - ((k + 1) * k >> 1) + 1) * 2 + 33
+        else:
+            d = (k + 3) * 2 + 33
+        multiply(0, d, s_, 202, d)
+    if 2 - k:
+        if 2 > k:
+            d = (4 * k - ((k + 1) * k >> 1) + 2) * 2 + 33
+        else:
+            d = (k + 5) * 2 + 33
+        multiply(0, d, s_, 202, d)
+    if 3 - k:
+        if 3 > k:
+            d = (4 * k - ((k + 1) * k >> 1) + 3) * 2 + 33
+        else:
+            d = (k + 6) * 2 + 33
+        multiply(0, d, s_, 202, d)
     if k > k:
         d = (4 * k - ((k + 1) * k >> 1) + k) * 2 + 33
     else:
         d = (4 * k - ((k + 1) * k >> 1) + k) * 2 + 33
     put_m = -s[202]
-    put_e = s[202 + 1]
+    put_e = s[203]
     if not put_m:
         s[d] = 0
         s[d + 1] = -4096
@@ -146,7 +272,7 @@ def sweep(s_, k: int):
 
 
 @micropython.viper
-def covariance(s: ptr32, d: int):
+def covariance(put_m: int, put_e: int, d: int, s: ptr32):
     s_d = ptr32(int(s) + (d << 2))
     a = 33
     put_m = -s[33]
@@ -167,7 +293,7 @@ def covariance(s: ptr32, d: int):
         s_d[0] = put_m
         s_d[1] = put_e
     d = d + 2
-    s_d = ptr32(int(s) + (d << 2))
+    s_d = ptr32(int(s_d) + 8)
     a = a + 2
     put_m = -s[a]
     put_e = s[a + 1]
@@ -187,7 +313,7 @@ def covariance(s: ptr32, d: int):
         s_d[0] = put_m
         s_d[1] = put_e
     d = d + 2
-    s_d = ptr32(int(s) + (d << 2))
+    s_d = ptr32(int(s_d) + 8)
     a = a + 2
     put_m = -s[a]
     put_e = s[a + 1]
@@ -207,48 +333,7 @@ def covariance(s: ptr32, d: int):
         s_d[0] = put_m
         s_d[1] = put_e
     d = d + 2
-    s_d = ptr32(int(s) + (d << 2))
-    a = a + 2
-    a = a + 2
-    put_m = -s[a]
-    put_e = s[a + 1]
-    if not put_m:
-        s_d[0] = 0
-        s_d[1] = -4096
-    else:
-        while put_m < 524288 and put_m >= -524288:
-            put_m = put_m << 8
-            put_e = put_e - 8
-        while put_m < 134217728 and put_m >= -134217728:
-            put_m = put_m << 1
-            put_e = put_e - 1
-        while put_m >= 268435456 or put_m < -268435456:
-            put_m = put_m >> 1
-            put_e = put_e + 1
-        s_d[0] = put_m
-        s_d[1] = put_e
-    d = d + 2
-    s_d = ptr32(int(s) + (d << 2))
-    a = a + 2
-    put_m = -s[a]
-    put_e = s[a + 1]
-    if not put_m:
-        s_d[0] = 0
-        s_d[1] = -4096
-    else:
-        while put_m < 524288 and put_m >= -524288:
-            put_m = put_m << 8
-            put_e = put_e - 8
-        while put_m < 134217728 and put_m >= -134217728:
-            put_m = put_m << 1
-            put_e = put_e - 1
-        while put_m >= 268435456 or put_m < -268435456:
-            put_m = put_m >> 1
-            put_e = put_e + 1
-        s_d[0] = put_m
-        s_d[1] = put_e
-    d = d + 2
-    s_d = ptr32(int(s) + (d << 2))
+    s_d = ptr32(int(s_d) + 8)
     a = a + 2
     a = a + 2
     put_m = -s[a]
@@ -269,12 +354,53 @@ def covariance(s: ptr32, d: int):
         s_d[0] = put_m
         s_d[1] = put_e
     d = d + 2
-    s_d = ptr32(int(s) + (d << 2))
+    s_d = ptr32(int(s_d) + 8)
+    a = a + 2
+    put_m = -s[a]
+    put_e = s[a + 1]
+    if not put_m:
+        s_d[0] = 0
+        s_d[1] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s_d[0] = put_m
+        s_d[1] = put_e
+    d = d + 2
+    s_d = ptr32(int(s_d) + 8)
+    a = a + 2
+    a = a + 2
+    put_m = -s[a]
+    put_e = s[a + 1]
+    if not put_m:
+        s_d[0] = 0
+        s_d[1] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s_d[0] = put_m
+        s_d[1] = put_e
+    d = d + 2
+    s_d = ptr32(int(s_d) + 8)
     a = a + 2
 
 
 @micropython.viper
-def spread_prior(s: ptr32):
+def spread_prior(real_copy_words: int, s: ptr32):
     i = 0
     d = 33
     while i < 20:
@@ -367,7 +493,7 @@ def step(s_):
                 magnitude_put_e = magnitude_put_e + 1
             s[206] = magnitude_put_m
             s[207] = magnitude_put_e
-    subtract(s_, 208, 204, 206)
+    subtract(0, s_, 204, 206, 208, s_)
     if s[208] >> 30:
         less_result = 1
     else:
@@ -403,7 +529,7 @@ def step(s_):
                 magnitude_put_e = magnitude_put_e + 1
             s[206] = magnitude_put_m
             s[207] = magnitude_put_e
-    subtract(s_, 208, 204, 206)
+    subtract(0, s_, 204, 206, 208, s_)
     if s[208] >> 30:
         less_result = 1
     else:
@@ -439,7 +565,7 @@ def step(s_):
                 magnitude_put_e = magnitude_put_e + 1
             s[206] = magnitude_put_m
             s[207] = magnitude_put_e
-    subtract(s_, 208, 204, 206)
+    subtract(0, s_, 204, 206, 208, s_)
     if s[208] >> 30:
         less_result = 1
     else:
@@ -450,16 +576,15 @@ def step(s_):
             real_copy_words = real_copy_words - 1
             s[real_copy_words + 204] = s[real_copy_words + 206]
     i = 3
-    divide(s_, 202, 202, 204)
+    divide(0, s_, 202, 204, 202)
     i = 0
     while i < 6:
-        multiply(s_, i + 184, i + 184, 202)
+        multiply(0, i + 184, s_, 202, i + 184)
         i = i + 2
 
 
 @micropython.viper
-def shape(s_, d: int, m: int, y: int):
-    s = ptr32(s_)
+def shape(put_m: int, put_e: int, real_copy_words: int, s: ptr32, y: int, m: int, d: int, s_):
     put_m = s[y]
     put_e = 0
     if not put_m:
@@ -498,23 +623,22 @@ def shape(s_, d: int, m: int, y: int):
             s[204] = put_m
             s[205] = put_e
         y = i + 184
-        multiply(s_, 204, 204, y)
-        subtract(s_, 206, 202, 204)
+        multiply(0, 204, s_, y, 204)
+        subtract(0, s_, 202, 204, 206, s_)
         real_copy_words = 2
         while real_copy_words > 0:
             real_copy_words = real_copy_words - 1
             s[real_copy_words + 202] = s[real_copy_words + 206]
         m = m + 1
         i = i + 2
-    multiply(s_, d, 202, 202)
+    multiply(0, 202, s_, 202, d)
 
 
 @micropython.viper
-def noise(s_, i: int):
-    s = ptr32(s_)
+def noise(put_m: int, put_e: int, s: ptr32, i: int, s_):
     a = 21 * i + 85
     d = 2 * i + 196
-    shape(s_, 208, a + 13, a + 19)
+    shape(0, 0, 0, s_, a + 19, a + 13, 208, s_)
     put_m = 11520
     put_e = -14
     while put_m < 524288 and put_m >= -524288:
@@ -528,8 +652,8 @@ def noise(s_, i: int):
         put_e = put_e + 1
     s[202] = put_m
     s[203] = put_e
-    multiply(s_, d, 208, 202)
-    shape(s_, 208, a + 16, a + 20)
+    multiply(0, 208, s_, 202, d)
+    shape(0, 0, 0, s_, a + 20, a + 16, 208, s_)
     put_m = 18482
     put_e = -10
     while put_m < 524288 and put_m >= -524288:
@@ -543,11 +667,11 @@ def noise(s_, i: int):
         put_e = put_e + 1
     s[202] = put_m
     s[203] = put_e
-    multiply(s_, 208, 208, 202)
+    multiply(0, 208, s_, 202, 208)
     if s[209] < s[d + 1]:
-        add_smaller(s_, 208, d, 208)
+        add_smaller(0, s_, d, 208, 208)
     else:
-        add_smaller(s_, 208, 208, d)
+        add_smaller(0, s_, 208, d, 208)
     a = s[209] - s[12]
     put_m = s[208]
     put_e = a
@@ -587,18 +711,17 @@ def noise(s_, i: int):
         s[202] = put_m
         s[203] = put_e
     if s[209] < s[203]:
-        add_smaller(s_, d, 202, 208)
+        add_smaller(0, s_, 202, 208, d)
     else:
-        add_smaller(s_, d, 208, 202)
+        add_smaller(0, s_, 208, 202, d)
 
 
 @micropython.viper
-def weights(s_, c_):
-    s = ptr32(s_)
+def weights(real_copy_words: int, s: ptr32, real_copy_d: int, s_, c_):
     if s[197] < s[199]:
-        add_smaller(s_, 202, 198, 196)
+        add_smaller(0, s_, 198, 196, 202)
     else:
-        add_smaller(s_, 202, 196, 198)
+        add_smaller(0, s_, 196, 198, 202)
     put_m = s[202]
     put_e = s[203] - 1
     if not put_m:
@@ -625,7 +748,7 @@ def weights(s_, c_):
     while i < 6:
         less_a = i + 196
         less_b = i + 190
-        subtract(s_, 208, less_a, less_b)
+        subtract(0, s_, less_a, less_b, 208, s_)
         if s[208] >> 30:
             less_result = 1
         else:
@@ -643,13 +766,12 @@ def weights(s_, c_):
         while real_copy_words > 0:
             real_copy_words = real_copy_words - 1
             s[real_copy_d + real_copy_words] = s[real_copy_a + real_copy_words]
-        weigh(s_, c_, i + 196)
+        weigh(0, 0, s_, c_, i + 196, s_)
         i = i + 2
 
 
 @micropython.viper
-def weigh(s_, c: ptr32, a: int):
-    s = ptr32(s_)
+def weigh(put_m: int, put_e: int, s: ptr32, c: ptr32, a: int, s_):
     put_m = c[21]
     put_e = 0
     if not put_m:
@@ -667,7 +789,7 @@ def weigh(s_, c: ptr32, a: int):
             put_e = put_e + 1
         s[202] = put_m
         s[203] = put_e
-    multiply(s_, 204, 202, a)
+    multiply(0, 202, s_, a, 204)
     put_m = 1
     put_e = 0
     while put_m < 524288 and put_m >= -524288:
@@ -681,11 +803,11 @@ def weigh(s_, c: ptr32, a: int):
         put_e = put_e + 1
     s[202] = put_m
     s[203] = put_e
-    divide(s_, a, 202, 204)
+    divide(0, s_, 202, 204, a)
 
 
 @micropython.viper
-def own_square(s: ptr32, i: int):
+def own_square(put_m: int, s: ptr32, i: int):
     a = 24 * i + 85
     if not i - 2:
         a = a - 1

@@ -9,10 +9,13 @@ import micropython
 
 from .least_squares import covariance
 from .least_squares import place
-from .real import add_smaller
 from .real import multiply
+from .real import put
+from .real import root_of
 from .real import subtract
+from .real import whole
 from .thermal import learn_slopes
+from .thermal import present
 
 
 @micropython.viper
@@ -64,7 +67,7 @@ def clear(s: ptr32, c: ptr32):
 
 
 @micropython.viper
-def know_nothing(s: ptr32, c: ptr32, tilt: int, heading: int):
+def know_nothing(put_m: int, put_e: int, real_copy_words: int, s: ptr32, tilt: int, c: ptr32, heading: int):
     put_m = 0
     put_e = 0
     s[148] = 0
@@ -181,9 +184,7 @@ def know_nothing(s: ptr32, c: ptr32, tilt: int, heading: int):
 
 
 @micropython.viper
-def start_window(s_, c_) -> int:
-    s = ptr32(s_)
-    c = ptr32(c_)
+def start_window(s: ptr32, c: ptr32, s_, c_) -> int:
     n = s[11]
     if s[9] < n or s[10] < n >> 1:
         return 0
@@ -199,9 +200,9 @@ def start_window(s_, c_) -> int:
     if s[16] >> 30:
         s[16] = s[16] + c[8]
     if n < c[16]:
-        know_nothing(s_, c_, 6711, 41943)
+        know_nothing(0, 0, 0, s_, 6711, c_, 41943)
     elif not s[67]:
-        know_nothing(s_, c_, 167772, 1509949)
+        know_nothing(0, 0, 0, s_, 167772, c_, 1509949)
     else:
         real_copy_words = 6
         while real_copy_words > 0:
@@ -219,8 +220,7 @@ def start_window(s_, c_) -> int:
 
 
 @micropython.viper
-def louder(s_) -> int:
-    s = ptr32(s_)
+def louder(put_m: int, s: ptr32, s_) -> int:
     put_m = s[190]
     put_e = s[191] + 8
     if not put_m:
@@ -238,15 +238,14 @@ def louder(s_) -> int:
             put_e = put_e + 1
         s[202] = put_m
         s[203] = put_e
-    subtract(s_, 208, 202, 222)
+    subtract(0, s_, 202, 222, 208, s_)
     if s[208] >> 30:
         return 1
     return 0
 
 
 @micropython.viper
-def contradicts(s_) -> int:
-    s = ptr32(s_)
+def contradicts(put_m: int, put_e: int, s: ptr32, s_) -> int:
     d = 148
     put_m = s[148]
     put_e = s[149] + 4
@@ -265,9 +264,9 @@ def contradicts(s_) -> int:
             put_e = put_e + 1
         s[202] = put_m
         s[203] = put_e
-    subtract(s_, 204, 178, 172)
-    multiply(s_, 204, 204, 204)
-    subtract(s_, 208, 202, 204)
+    subtract(0, s_, 178, 172, 204, s_)
+    multiply(0, 204, s_, 204, 204)
+    subtract(0, s_, 202, 204, 208, s_)
     if s[208] >> 30:
         less_result = 1
     else:
@@ -292,9 +291,9 @@ def contradicts(s_) -> int:
             put_e = put_e + 1
         s[202] = put_m
         s[203] = put_e
-    subtract(s_, 204, 180, 174)
-    multiply(s_, 204, 204, 204)
-    subtract(s_, 208, 202, 204)
+    subtract(0, s_, 180, 174, 204, s_)
+    multiply(0, 204, s_, 204, 204)
+    subtract(0, s_, 202, 204, 208, s_)
     if s[208] >> 30:
         less_result = 1
     else:
@@ -319,9 +318,9 @@ def contradicts(s_) -> int:
             put_e = put_e + 1
         s[202] = put_m
         s[203] = put_e
-    subtract(s_, 204, 182, 176)
-    multiply(s_, 204, 204, 204)
-    subtract(s_, 208, 202, 204)
+    subtract(0, s_, 182, 176, 204, s_)
+    multiply(0, 204, s_, 204, 204)
+    subtract(0, s_, 202, 204, 208, s_)
     if s[208] >> 30:
         less_result = 1
     else:
@@ -350,7 +349,7 @@ def finish(s_, c_) -> int:
             reason = 6
             break
         if s[67] >= 3:
-            if int(contradicts(s_)) or int(louder(s_)):
+            if int(contradicts(0, 0, s_, s_)) or int(louder(0, s_, s_)):
                 reason = 4
                 break
         reason = 2
@@ -448,8 +447,8 @@ def finish(s_, c_) -> int:
         s[12] = s[12] + 1
         s[17] = 1
         return 0
-    learn_slopes(s_)
-    covariance(s_, 148)
+    learn_slopes(0, 0, 0, s_, s_)
+    covariance(0, 0, 148, s_)
     keep_noise_i = 0
     while keep_noise_i < 6:
         keep_noise_put_m = 11469
@@ -465,158 +464,136 @@ def finish(s_, c_) -> int:
             keep_noise_put_e = keep_noise_put_e + 1
         s[202] = keep_noise_put_m
         s[203] = keep_noise_put_e
-        multiply(s_, keep_noise_i + 190, keep_noise_i + 222, 202)
+        multiply(0, keep_noise_i + 222, s_, 202, keep_noise_i + 190)
         keep_noise_i = keep_noise_i + 2
     s[67] = s[67] + 1
     s[69] = 0
-    publish(s_, c_)
+    publish(0, 0, 0, s_, c_, s_)
     return 1
 
 
 @micropython.viper
-def publish(s_, c: ptr32):
-    s = ptr32(s_)
-    i = 0
-    while i < 3:
-        put_m = c[10]
-        put_e = c[11]
-        if not put_m:
-            s[202] = 0
-            s[203] = -4096
-        else:
-            while put_m < 524288 and put_m >= -524288:
-                put_m = put_m << 8
-                put_e = put_e - 8
-            while put_m < 134217728 and put_m >= -134217728:
-                put_m = put_m << 1
-                put_e = put_e - 1
-            while put_m >= 268435456 or put_m < -268435456:
-                put_m = put_m >> 1
-                put_e = put_e + 1
-            s[202] = put_m
-            s[203] = put_e
-        present_put_m = s[239] - s[238]
-        present_put_e = -8
-        if not present_put_m:
-            s[204] = 0
-            s[205] = -4096
-        else:
-            while present_put_m < 524288 and present_put_m >= -524288:
-                present_put_m = present_put_m << 8
-                present_put_e = present_put_e - 8
-            while present_put_m < 134217728 and present_put_m >= -134217728:
-                present_put_m = present_put_m << 1
-                present_put_e = present_put_e - 1
-            while present_put_m >= 268435456 or present_put_m < -268435456:
-                present_put_m = present_put_m >> 1
-                present_put_e = present_put_e + 1
-            s[204] = present_put_m
-            s[205] = present_put_e
-        present_unpack_a = 3 * i + 228
-        s_present_unpack_a = ptr32(int(s) + (present_unpack_a << 2))
-        present_unpack_put_m = s_present_unpack_a[0] >> 7 << 5
-        present_unpack_put_e = (s_present_unpack_a[0] & 127) - 96
-        if not present_unpack_put_m:
-            s[206] = 0
-            s[207] = -4096
-        else:
-            while present_unpack_put_m < 524288 and present_unpack_put_m >= -524288:
-                present_unpack_put_m = present_unpack_put_m << 8
-                present_unpack_put_e = present_unpack_put_e - 8
-            while present_unpack_put_m < 134217728 and present_unpack_put_m >= -134217728:
-                present_unpack_put_m = present_unpack_put_m << 1
-                present_unpack_put_e = present_unpack_put_e - 1
-            while present_unpack_put_m >= 268435456 or present_unpack_put_m < -268435456:
-                present_unpack_put_m = present_unpack_put_m >> 1
-                present_unpack_put_e = present_unpack_put_e + 1
-            s[206] = present_unpack_put_m
-            s[207] = present_unpack_put_e
-        multiply(s_, 204, 204, 206)
-        present_real_add_b = 2 * i + 178
-        if s[205] < s[present_real_add_b + 1]:
-            add_smaller(s_, 204, present_real_add_b, 204)
-        else:
-            add_smaller(s_, 204, 204, present_real_add_b)
-        multiply(s_, 204, 204, 202)
-        whole_shift = 0
-        whole_m = s[204]
-        whole_shift = whole_shift + s[205]
-        if whole_shift > 1 and whole_m:
-            whole_m = 536870911 if whole_m > 0 else -536870911
-        elif not whole_shift >> 30:
-            whole_m = whole_m << whole_shift
-        elif whole_shift > -30:
-            whole_m = (1 << -1 - whole_shift) + whole_m >> 0 - whole_shift
-        else:
-            whole_m = 0
-        whole_result = whole_m
-        s[i + 70] = whole_result
-        real_copy_a = int(place(i, i))
-        real_copy_words = 2
-        while real_copy_words > 0:
-            real_copy_words = real_copy_words - 1
-            s[real_copy_words + 204] = s[real_copy_a + real_copy_words]
-        put_m = -s[204]
-        put_e = s[205]
-        if not put_m:
-            s[204] = 0
-            s[205] = -4096
-        else:
-            while put_m < 524288 and put_m >= -524288:
-                put_m = put_m << 8
-                put_e = put_e - 8
-            while put_m < 134217728 and put_m >= -134217728:
-                put_m = put_m << 1
-                put_e = put_e - 1
-            while put_m >= 268435456 or put_m < -268435456:
-                put_m = put_m >> 1
-                put_e = put_e + 1
-            s[204] = put_m
-            s[205] = put_e
-        root_of_m = s[204]
-        root_of_e = s[205]
-        if root_of_e & 1:
-            root_of_m = root_of_m >> 1
-            root_of_e = root_of_e + 1
-        root_of_root_bit = 16384
-        if root_of_m < 16777216:
-            root_of_root_bit = 2048
-        root_of_root_found = 0
-        while root_of_root_bit:
-            root_of_root_more = root_of_root_found + root_of_root_bit
-            if root_of_root_more * root_of_root_more <= root_of_m:
-                root_of_root_found = root_of_root_more
-            root_of_root_bit = root_of_root_bit >> 1
-        root_of_m = root_of_root_found
-        root_of_put_m = root_of_m
-        root_of_put_e = root_of_e >> 1
-        if not root_of_put_m:
-            s[204] = 0
-            s[205] = -4096
-        else:
-            while root_of_put_m < 524288 and root_of_put_m >= -524288:
-                root_of_put_m = root_of_put_m << 8
-                root_of_put_e = root_of_put_e - 8
-            while root_of_put_m < 134217728 and root_of_put_m >= -134217728:
-                root_of_put_m = root_of_put_m << 1
-                root_of_put_e = root_of_put_e - 1
-            while root_of_put_m >= 268435456 or root_of_put_m < -268435456:
-                root_of_put_m = root_of_put_m >> 1
-                root_of_put_e = root_of_put_e + 1
-            s[204] = root_of_put_m
-            s[205] = root_of_put_e
-        multiply(s_, 204, 204, 202)
-        whole_shift = 0
-        whole_m = s[204]
-        whole_shift = whole_shift + s[205]
-        if whole_shift > 1 and whole_m:
-            whole_m = 536870911 if whole_m > 0 else -536870911
-        elif not whole_shift >> 30:
-            whole_m = whole_m << whole_shift
-        elif whole_shift > -30:
-            whole_m = (1 << -1 - whole_shift) + whole_m >> 0 - whole_shift
-        else:
-            whole_m = 0
-        whole_result = whole_m
-        s[i + 73] = whole_result
-        i = i + 1
+def publish(put_m: int, put_e: int, real_copy_words: int, s: ptr32, c: ptr32, s_):
+    put_m = c[10]
+    put_e = c[11]
+    if not put_m:
+        s[202] = 0
+        s[203] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s[202] = put_m
+        s[203] = put_e
+    present(0, 0, s_, 0, s_)
+    multiply(0, 204, s_, 202, 204)
+    whole_shift = 0
+    whole_m = s[204]
+    whole_shift = whole_shift + s[205]
+    if whole_shift > 1 and whole_m:
+        whole_m = 536870911 if whole_m > 0 else -536870911
+    elif not whole_shift >> 30:
+        whole_m = whole_m << whole_shift
+    elif whole_shift > -30:
+        whole_m = (1 << -1 - whole_shift) + whole_m >> 0 - whole_shift
+    else:
+        whole_m = 0
+    whole_result = whole_m
+    s[70] = whole_result
+    real_copy_a = int(place(0, 0))
+    real_copy_words = 2
+    while real_copy_words > 0:
+        real_copy_words = real_copy_words - 1
+        s[real_copy_words + 204] = s[real_copy_a + real_copy_words]
+    put(-s[204], s[205], 204, s_)
+    root_of(0, s_, 204, 204)
+    multiply(0, 204, s_, 202, 204)
+    s[73] = int(whole(0, 204, s_))
+    put_m = c[10]
+    put_e = c[11]
+    if not put_m:
+        s[202] = 0
+        s[203] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s[202] = put_m
+        s[203] = put_e
+    present(0, 0, s_, 1, s_)
+    multiply(0, 204, s_, 202, 204)
+    whole_shift = 0
+    whole_m = s[204]
+    whole_shift = whole_shift + s[205]
+    if whole_shift > 1 and whole_m:
+        whole_m = 536870911 if whole_m > 0 else -536870911
+    elif not whole_shift >> 30:
+        whole_m = whole_m << whole_shift
+    elif whole_shift > -30:
+        whole_m = (1 << -1 - whole_shift) + whole_m >> 0 - whole_shift
+    else:
+        whole_m = 0
+    whole_result = whole_m
+    s[71] = whole_result
+    real_copy_a = int(place(1, 1))
+    real_copy_words = 2
+    while real_copy_words > 0:
+        real_copy_words = real_copy_words - 1
+        s[real_copy_words + 204] = s[real_copy_a + real_copy_words]
+    put(-s[204], s[205], 204, s_)
+    root_of(0, s_, 204, 204)
+    multiply(0, 204, s_, 202, 204)
+    s[74] = int(whole(0, 204, s_))
+    put_m = c[10]
+    put_e = c[11]
+    if not put_m:
+        s[202] = 0
+        s[203] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s[202] = put_m
+        s[203] = put_e
+    present(0, 0, s_, 2, s_)
+    multiply(0, 204, s_, 202, 204)
+    whole_shift = 0
+    whole_m = s[204]
+    whole_shift = whole_shift + s[205]
+    if whole_shift > 1 and whole_m:
+        whole_m = 536870911 if whole_m > 0 else -536870911
+    elif not whole_shift >> 30:
+        whole_m = whole_m << whole_shift
+    elif whole_shift > -30:
+        whole_m = (1 << -1 - whole_shift) + whole_m >> 0 - whole_shift
+    else:
+        whole_m = 0
+    whole_result = whole_m
+    s[72] = whole_result
+    real_copy_a = int(place(2, 2))
+    real_copy_words = 2
+    while real_copy_words > 0:
+        real_copy_words = real_copy_words - 1
+        s[real_copy_words + 204] = s[real_copy_a + real_copy_words]
+    put(-s[204], s[205], 204, s_)
+    root_of(0, s_, 204, 204)
+    multiply(0, 204, s_, 202, 204)
+    s[75] = int(whole(0, 204, s_))

@@ -8,6 +8,26 @@ import micropython
 
 
 @micropython.viper
+def put(m: int, e: int, d: int, s: ptr32):
+    s_d = ptr32(int(s) + (d << 2))
+    if not m:
+        s_d[0] = 0
+        s_d[1] = -4096
+        return
+    while m < 524288 and m >= -524288:
+        m = m << 8
+        e = e - 8
+    while m < 134217728 and m >= -134217728:
+        m = m << 1
+        e = e - 1
+    while m >= 268435456 or m < -268435456:
+        m = m >> 1
+        e = e + 1
+    s_d[0] = m
+    s_d[1] = e
+
+
+@micropython.viper
 def copy(s: ptr32, d: int, a: int, words: int):
     while words > 0:
         words = words - 1
@@ -15,7 +35,7 @@ def copy(s: ptr32, d: int, a: int, words: int):
 
 
 @micropython.viper
-def multiply(s: ptr32, d: int, a: int, b: int):
+def multiply(put_m: int, a: int, s: ptr32, b: int, d: int):
     s_d = ptr32(int(s) + (d << 2))
     s_b = ptr32(int(s) + (b << 2))
     high_product_m = s[a]
@@ -45,7 +65,7 @@ def multiply(s: ptr32, d: int, a: int, b: int):
 
 
 @micropython.viper
-def add_smaller(s: ptr32, d: int, a: int, b: int):
+def add_smaller(put_m: int, s: ptr32, a: int, b: int, d: int):
     s_d = ptr32(int(s) + (d << 2))
     s_a = ptr32(int(s) + (a << 2))
     s_b = ptr32(int(s) + (b << 2))
@@ -74,8 +94,7 @@ def add_smaller(s: ptr32, d: int, a: int, b: int):
 
 
 @micropython.viper
-def subtract(s_, d: int, a: int, b: int):
-    s = ptr32(s_)
+def subtract(put_m: int, s: ptr32, a: int, b: int, d: int, s_):
     s_d = ptr32(int(s) + (d << 2))
     s_b = ptr32(int(s) + (b << 2))
     put_m = -s_b[0]
@@ -96,13 +115,13 @@ def subtract(s_, d: int, a: int, b: int):
         s_d[0] = put_m
         s_d[1] = put_e
     if s[a + 1] < s_d[1]:
-        add_smaller(s_, d, d, a)
+        add_smaller(0, s_, d, a, d)
     else:
-        add_smaller(s_, d, a, d)
+        add_smaller(0, s_, a, d, d)
 
 
 @micropython.viper
-def divide(s: ptr32, d: int, a: int, b: int):
+def divide(put_m: int, s: ptr32, a: int, b: int, d: int):
     s_d = ptr32(int(s) + (d << 2))
     s_a = ptr32(int(s) + (a << 2))
     s_b = ptr32(int(s) + (b << 2))
@@ -127,6 +146,60 @@ def divide(s: ptr32, d: int, a: int, b: int):
     n = s_a[1] - s_b[1] - 27
     put_m = m
     put_e = n
+    if not put_m:
+        s_d[0] = 0
+        s_d[1] = -4096
+    else:
+        while put_m < 524288 and put_m >= -524288:
+            put_m = put_m << 8
+            put_e = put_e - 8
+        while put_m < 134217728 and put_m >= -134217728:
+            put_m = put_m << 1
+            put_e = put_e - 1
+        while put_m >= 268435456 or put_m < -268435456:
+            put_m = put_m >> 1
+            put_e = put_e + 1
+        s_d[0] = put_m
+        s_d[1] = put_e
+
+
+@micropython.viper
+def whole(shift: int, a: int, s: ptr32) -> int:
+    s_a = ptr32(int(s) + (a << 2))
+    m = s_a[0]
+    shift = shift + s_a[1]
+    if shift > 1 and m:
+        m = 536870911 if m > 0 else -536870911
+    elif not shift >> 30:
+        m = m << shift
+    elif shift > -30:
+        m = (1 << -1 - shift) + m >> 0 - shift
+    else:
+        m = 0
+    return m
+
+
+@micropython.viper
+def root_of(put_m: int, s: ptr32, a: int, d: int):
+    s_d = ptr32(int(s) + (d << 2))
+    s_a = ptr32(int(s) + (a << 2))
+    m = s_a[0]
+    e = s_a[1]
+    if e & 1:
+        m = m >> 1
+        e = e + 1
+    root_bit = 16384
+    if m < 16777216:
+        root_bit = 2048
+    root_found = 0
+    while root_bit:
+        root_more = root_found + root_bit
+        if root_more * root_more <= m:
+            root_found = root_more
+        root_bit = root_bit >> 1
+    m = root_found
+    put_m = m
+    put_e = e >> 1
     if not put_m:
         s_d[0] = 0
         s_d[1] = -4096

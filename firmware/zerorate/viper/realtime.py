@@ -94,67 +94,7 @@ def update(s_, c_, x: ptr32, dt_us: int) -> int:
         s[49] = 1
         end_unit_i = 0
         while end_unit_i < 3:
-            end_unit_compare_square = end_unit_square
-            end_unit_compare_square = end_unit_compare_square - s[8 + end_unit_i] * s[8 + end_unit_i]
-            end_unit_compare_bit = 1 << end_unit_i
-            if end_unit_compare_square < 8388608 or int(too_far(s[2 + end_unit_i] >> 9)):
-                s[20] = 7 - end_unit_compare_bit & s[20]
-            else:
-                end_unit_compare_since_last_square = end_unit_compare_square >> 12
-                end_unit_compare_since_last_mean = s[5 + end_unit_i] // s[1]
-                end_unit_compare_since_last_deviation = end_unit_compare_since_last_mean - s[11 + end_unit_i] + s[14 + end_unit_i]
-                s[11 + end_unit_i] = end_unit_compare_since_last_mean - (s[2 + end_unit_i] >> 9)
-                end_unit_compare_since_last_pair_angle_q13_i = end_unit_i
-                end_unit_compare_since_last_pair_angle_q13_j = end_unit_compare_since_last_pair_angle_q13_i + 1 if end_unit_compare_since_last_pair_angle_q13_i < 2 else 0
-                end_unit_compare_since_last_pair_angle_q13_i = end_unit_compare_since_last_pair_angle_q13_i - 1 if end_unit_compare_since_last_pair_angle_q13_i > 0 else 2
-                end_unit_compare_since_last_mean = int(atan2_q13(s[8 + end_unit_compare_since_last_pair_angle_q13_j], s[8 + end_unit_compare_since_last_pair_angle_q13_i]))
-                s[14 + end_unit_i] = end_unit_compare_since_last_mean
-                end_unit_compare_since_last_deviation = end_unit_compare_since_last_deviation - end_unit_compare_since_last_mean
-                end_unit_compare_since_last_coupled_q13_square = end_unit_compare_since_last_square >> 2
-                end_unit_compare_since_last_coupled_q13_j = end_unit_i + 1 if end_unit_i < 2 else 0
-                end_unit_compare_since_last_coupled_q13_k = end_unit_i - 1 if end_unit_i > 0 else 2
-                end_unit_compare_since_last_coupled_q13_along_q12_held_angle = s[2 + end_unit_compare_since_last_coupled_q13_j] >> 9
-                if end_unit_compare_since_last_coupled_q13_along_q12_held_angle > 32767:
-                    end_unit_compare_since_last_coupled_q13_along_q12_held_result = 32767
-                elif end_unit_compare_since_last_coupled_q13_along_q12_held_angle < -32767:
-                    end_unit_compare_since_last_coupled_q13_along_q12_held_result = -32767
-                else:
-                    end_unit_compare_since_last_coupled_q13_along_q12_held_result = end_unit_compare_since_last_coupled_q13_along_q12_held_angle
-                end_unit_compare_since_last_coupled_q13_along_q12_first = end_unit_compare_since_last_coupled_q13_along_q12_held_result * s[8 + end_unit_compare_since_last_coupled_q13_j]
-                end_unit_compare_since_last_coupled_q13_along_q12_held_angle = s[2 + end_unit_compare_since_last_coupled_q13_k] >> 9
-                if end_unit_compare_since_last_coupled_q13_along_q12_held_angle > 32767:
-                    end_unit_compare_since_last_coupled_q13_along_q12_held_result = 32767
-                elif end_unit_compare_since_last_coupled_q13_along_q12_held_angle < -32767:
-                    end_unit_compare_since_last_coupled_q13_along_q12_held_result = -32767
-                else:
-                    end_unit_compare_since_last_coupled_q13_along_q12_held_result = end_unit_compare_since_last_coupled_q13_along_q12_held_angle
-                end_unit_compare_since_last_coupled_q13_k = end_unit_compare_since_last_coupled_q13_along_q12_held_result * s[8 + end_unit_compare_since_last_coupled_q13_k] + end_unit_compare_since_last_coupled_q13_along_q12_first >> 13
-                end_unit_compare_since_last_coupled_q13_j = s[51 + end_unit_i]
-                end_unit_compare_since_last_coupled_q13_j = ((end_unit_compare_since_last_coupled_q13_k << 8) - end_unit_compare_since_last_coupled_q13_j >> 5) + end_unit_compare_since_last_coupled_q13_j
-                s[51 + end_unit_i] = end_unit_compare_since_last_coupled_q13_j
-                end_unit_compare_since_last_coupled_q13_k = end_unit_compare_since_last_coupled_q13_k - (end_unit_compare_since_last_coupled_q13_j >> 8)
-                end_unit_compare_since_last_mean = (s[8 + end_unit_i] >> 1) * end_unit_compare_since_last_coupled_q13_k // end_unit_compare_since_last_coupled_q13_square
-                end_unit_compare_since_last_deviation = end_unit_compare_since_last_deviation - (end_unit_compare_since_last_mean + s[17 + end_unit_i] >> 1)
-                s[17 + end_unit_i] = end_unit_compare_since_last_mean
-                while end_unit_compare_since_last_deviation > 25736:
-                    end_unit_compare_since_last_deviation = end_unit_compare_since_last_deviation - 2 * 25736
-                while end_unit_compare_since_last_deviation < -25736:
-                    end_unit_compare_since_last_deviation = 2 * 25736 + end_unit_compare_since_last_deviation
-                end_unit_compare_square = end_unit_compare_since_last_deviation
-                if s[20] & end_unit_compare_bit:
-                    s[25 + end_unit_i] += 1
-                    s[37 + end_unit_i] += 1
-                    end_unit_compare_count_spread_deviation = end_unit_compare_square
-                    if end_unit_compare_count_spread_deviation >> 30:
-                        end_unit_compare_count_spread_deviation = -end_unit_compare_count_spread_deviation
-                    if end_unit_compare_count_spread_deviation > 8192:
-                        end_unit_compare_count_spread_deviation = 8192
-                    s[54] = ((end_unit_compare_count_spread_deviation << 8) - s[54] >> 6) + s[54]
-                    if end_unit_compare_square > c[6]:
-                        s[22 + end_unit_i] += 1
-                    elif end_unit_compare_square < -c[6]:
-                        s[22 + end_unit_i] -= 1
-                s[20] = s[20] | end_unit_compare_bit
+            compare(s_, c_, end_unit_i, end_unit_square)
             end_unit_i = end_unit_i + 1
     end_unit_begin_unit_i = 0
     s[1] = 0
@@ -182,7 +122,7 @@ def compare(s: ptr32, c: ptr32, i: int, square: int):
     since_last_pair_angle_q13_i = i
     since_last_pair_angle_q13_j = since_last_pair_angle_q13_i + 1 if since_last_pair_angle_q13_i < 2 else 0
     since_last_pair_angle_q13_i = since_last_pair_angle_q13_i - 1 if since_last_pair_angle_q13_i > 0 else 2
-    since_last_mean = int(atan2_q13(s[since_last_pair_angle_q13_j + 8], s[since_last_pair_angle_q13_i + 8]))
+    since_last_mean = int(atan2_q13(s[since_last_pair_angle_q13_i + 8], s[since_last_pair_angle_q13_j + 8]))
     s_i[14] = since_last_mean
     since_last_deviation = since_last_deviation - since_last_mean
     since_last_coupled_q13_square = since_last_square >> 2

@@ -3,19 +3,161 @@
 
 import micropython
 
-from .bias import curve_q8
 from .estimators import feed
 from .estimators import learn_here
 from .fit import draw_line
 from .recent import absorb
+from .recent import hand_over
 
 
 @micropython.viper
-def advance(s_, c_):
-    s = ptr32(s_)
-    c = ptr32(c_)
-    axis = (s[53] - 1) // 3
+def publish(curve_q8_choose_find_e: int, curve_q8_choose_find_d: int, c: ptr32, s: ptr32, a: int, axis: int):
+    s_a = ptr32(int(s) + (a << 2))
     s_axis = ptr32(int(s) + (axis << 2))
+    bias = s[47]
+    while True:
+        s_a[29] = 0
+        while True:
+            curve_q8_choose_find_half = c[27] >> 1
+            curve_q8_choose_find_e = s_a[2]
+            if curve_q8_choose_find_e > 0:
+                curve_q8_choose_find_d = bias - s[curve_q8_choose_find_e]
+                if curve_q8_choose_find_d <= curve_q8_choose_find_half + c[28] and curve_q8_choose_find_d >= 0 - curve_q8_choose_find_half - c[28]:
+                    curve_q8_choose_e = curve_q8_choose_find_e
+                    break
+            curve_q8_choose_find_e = a + c[14]
+            curve_q8_choose_find_left = 0
+            while curve_q8_choose_find_e < a + c[15]:
+                curve_q8_choose_find_d = bias - s[curve_q8_choose_find_e]
+                if curve_q8_choose_find_d < curve_q8_choose_find_half and curve_q8_choose_find_d >= 0 - curve_q8_choose_find_half:
+                    curve_q8_choose_e = curve_q8_choose_find_e
+                    curve_q8_choose_find_left = 1
+                    break
+                curve_q8_choose_find_e = curve_q8_choose_find_e + c[26]
+            if curve_q8_choose_find_left:
+                break
+            curve_q8_choose_e = 0
+            break
+        if curve_q8_choose_e > 0:
+            curve_q8_choose_e = s[curve_q8_choose_e + 3]
+            if curve_q8_choose_e >= c[34] and curve_q8_choose_e >= (s_a[21] >> 8) * c[35]:
+                curve_q8_kind = 3
+                break
+        if s_a[22]:
+            curve_q8_choose_e = (bias << 4) + c[36]
+            if curve_q8_choose_e < s_a[19]:
+                s_a[29] = 1
+            curve_q8_choose_e = (bias << 4) - c[36]
+            if curve_q8_choose_e > s_a[20]:
+                s_a[29] = 1
+            curve_q8_kind = 2
+            break
+        curve_q8_choose_e = s_a[35]
+        if curve_q8_choose_e >= c[31] or (curve_q8_choose_e > 0 and (not c[46])):
+            curve_q8_kind = 1
+            break
+        curve_q8_kind = 0
+        break
+    s_a[30] = curve_q8_kind
+    if not curve_q8_kind:
+        curve_q8_result = 0
+    elif not curve_q8_kind - 1 or not s_a[22]:
+        curve_q8_result = s_a[34]
+    elif not curve_q8_kind - 3 and c[21]:
+        while True:
+            curve_q8_find_half = c[27] >> 1
+            curve_q8_find_e = s_a[2]
+            if curve_q8_find_e > 0:
+                curve_q8_find_d = bias - s[curve_q8_find_e]
+                if curve_q8_find_d <= curve_q8_find_half + c[28] and curve_q8_find_d >= 0 - curve_q8_find_half - c[28]:
+                    curve_q8_kind = curve_q8_find_e
+                    break
+            curve_q8_find_e = a + c[14]
+            curve_q8_find_left = 0
+            while curve_q8_find_e < a + c[15]:
+                curve_q8_find_d = bias - s[curve_q8_find_e]
+                if curve_q8_find_d < curve_q8_find_half and curve_q8_find_d >= 0 - curve_q8_find_half:
+                    curve_q8_kind = curve_q8_find_e
+                    curve_q8_find_left = 1
+                    break
+                curve_q8_find_e = curve_q8_find_e + c[26]
+            if curve_q8_find_left:
+                break
+            curve_q8_kind = 0
+            break
+        curve_q8_result = s[curve_q8_kind + 2]
+    else:
+        curve_q8_line_q8_temp_q4 = bias << 4
+        curve_q8_line_q8_u = curve_q8_line_q8_temp_q4 - s_a[14]
+        curve_q8_line_q8_most = 134217727 >> s_a[18]
+        if curve_q8_line_q8_u > curve_q8_line_q8_most:
+            curve_q8_line_q8_u = curve_q8_line_q8_most
+        if curve_q8_line_q8_u < 0 - curve_q8_line_q8_most:
+            curve_q8_line_q8_u = 0 - curve_q8_line_q8_most
+        curve_q8_line_q8_u = (curve_q8_line_q8_u << s_a[18]) - s_a[15]
+        curve_q8_line_q8_scaled_a = s_a[17]
+        curve_q8_line_q8_scaled_b = curve_q8_line_q8_u
+        curve_q8_line_q8_scaled_high = curve_q8_line_q8_scaled_b >> 15
+        curve_q8_line_q8_scaled_b = curve_q8_line_q8_scaled_b & 32767
+        curve_q8_line_q8_scaled_middle = (curve_q8_line_q8_scaled_a >> 15) * curve_q8_line_q8_scaled_b + (curve_q8_line_q8_scaled_a & 32767) * curve_q8_line_q8_scaled_high + ((curve_q8_line_q8_scaled_a & 32767) * curve_q8_line_q8_scaled_b >> 15)
+        curve_q8_line_q8_scaled_high = (curve_q8_line_q8_scaled_a >> 15) * curve_q8_line_q8_scaled_high
+        curve_q8_line_q8_u = (curve_q8_line_q8_scaled_high << 4) + (curve_q8_line_q8_scaled_middle >> 11)
+        curve_q8_result = s_a[16] + curve_q8_line_q8_u + 4 >> 3
+    bias = curve_q8_result + s_a[24]
+    if not s_a[30]:
+        return
+    s_axis[67] = bias
+    if not s_axis[73]:
+        s_axis[55] = bias
+    s_axis[73] = s_a[13] if s_a[13] else s_a[30]
+    grown_q8_seconds = s_a[28] >> 10
+    if grown_q8_seconds > 2047:
+        grown_q8_seconds = 2047
+    grown_q8_result = ((s_a[26] >> 4) * grown_q8_seconds >> 4) + s_a[25]
+    bias = (c[37] << 1) + grown_q8_result
+    beyond_q8_d = (s[47] << 4) - s_a[20]
+    if beyond_q8_d >> 30:
+        beyond_q8_d = s_a[19] - (s[47] << 4)
+    if beyond_q8_d >> 30 or not s_a[22]:
+        beyond_q8_result = 0
+    else:
+        if beyond_q8_d > 262143:
+            beyond_q8_d = 262143
+        beyond_q8_d = beyond_q8_d * c[50] >> 16
+        if beyond_q8_d > 16383:
+            beyond_q8_d = 16383
+        beyond_q8_result = beyond_q8_d * beyond_q8_d
+    bias = bias + beyond_q8_result
+    if bias < 4194303:
+        root_square = bias << 8
+        root_bit = 16384
+        if root_square < 16777216:
+            root_bit = 2048
+        root_found = 0
+        while root_bit:
+            root_more = root_found + root_bit
+            if root_more * root_more <= root_square:
+                root_found = root_more
+            root_bit = root_bit >> 1
+        bias = root_found
+    else:
+        root_bit = 16384
+        if bias < 16777216:
+            root_bit = 2048
+        root_found = 0
+        while root_bit:
+            root_more = root_found + root_bit
+            if root_more * root_more <= bias:
+                root_found = root_more
+            root_bit = root_bit >> 1
+        root_result = root_found
+        bias = root_result << 4
+    s_axis[70] = bias
+
+
+@micropython.viper
+def advance(s_a: ptr32, c: ptr32, s: ptr32, s_, c_):
+    axis = (s[53] - 1) // 3
     piece = (s[53] - 1) % 3
     busy = 0
     while not busy and axis < 3:
@@ -24,7 +166,7 @@ def advance(s_, c_):
         if not piece:
             busy = s_a[1]
             if busy:
-                if not int(absorb(s_, c_, a)):
+                if not int(absorb(0, 0, c_, s_, a, s_, c_)):
                     s_a[1] = 0
             if s_a[1]:
                 learn_anywhere_temp = s[52]
@@ -32,9 +174,9 @@ def advance(s_, c_):
                     s_a[3] = learn_anywhere_temp
                 if learn_anywhere_temp > s_a[4]:
                     s_a[4] = learn_anywhere_temp
-                feed(s_, c_, a, a + 32)
+                feed(0, 0, s_, c_, a + 32, a, s_, c_)
         elif not piece - 1:
-            learn_here(s_, c_, a)
+            learn_here(0, 0, s_, c_, a, s_, c_)
             busy = 1
         if s_a[1] and piece < 2:
             piece = piece + 1
@@ -46,102 +188,21 @@ def advance(s_, c_):
             else:
                 stale_result = 0
             if stale_result:
-                draw_line(s_, c_, a)
+                draw_line(0, 0, 0, s_, c_, a, s_, c_)
                 busy = 1
             if s_a[1] and (not c[46]):
-                if s_a[27] >> 30:
-                    s_a[27] = 0
-                else:
-                    hand_over_after = s[52]
-                    hand_over_after = int(curve_q8(s_, c_, a, hand_over_after))
-                    s_a[24] = s_a[23] - hand_over_after + s_a[24]
+                hand_over(0, 0, c_, s_, a)
             s_a[1] = 0
-            step_publish_bias = s[47]
-            step_publish_bias = int(curve_q8(s_, c_, a, step_publish_bias)) + s_a[24]
-            if not s_a[30]:
-                pass
-            else:
-                s_axis[67] = step_publish_bias
-                if not s_axis[73]:
-                    s_axis[55] = step_publish_bias
-                s_axis[73] = s_a[13] if s_a[13] else s_a[30]
-                step_publish_grown_q8_seconds = s_a[28] >> 10
-                if step_publish_grown_q8_seconds > 2047:
-                    step_publish_grown_q8_seconds = 2047
-                step_publish_grown_q8_result = ((s_a[26] >> 4) * step_publish_grown_q8_seconds >> 4) + s_a[25]
-                step_publish_bias = (c[37] << 1) + step_publish_grown_q8_result
-                step_publish_beyond_q8_d = (s[47] << 4) - s_a[20]
-                if step_publish_beyond_q8_d >> 30:
-                    step_publish_beyond_q8_d = s_a[19] - (s[47] << 4)
-                if step_publish_beyond_q8_d >> 30 or not s_a[22]:
-                    step_publish_beyond_q8_result = 0
-                else:
-                    if step_publish_beyond_q8_d > 262143:
-                        step_publish_beyond_q8_d = 262143
-                    step_publish_beyond_q8_d = step_publish_beyond_q8_d * c[50] >> 16
-                    if step_publish_beyond_q8_d > 16383:
-                        step_publish_beyond_q8_d = 16383
-                    step_publish_beyond_q8_result = step_publish_beyond_q8_d * step_publish_beyond_q8_d
-                step_publish_bias = step_publish_bias + step_publish_beyond_q8_result
-                if step_publish_bias < 4194303:
-                    step_publish_root_square = step_publish_bias << 8
-                    step_publish_root_bit = 16384
-                    if step_publish_root_square < 16777216:
-                        step_publish_root_bit = 2048
-                    step_publish_root_found = 0
-                    while step_publish_root_bit:
-                        step_publish_root_more = step_publish_root_found + step_publish_root_bit
-                        if step_publish_root_more * step_publish_root_more <= step_publish_root_square:
-                            step_publish_root_found = step_publish_root_more
-                        step_publish_root_bit = step_publish_root_bit >> 1
-                    step_publish_bias = step_publish_root_found
-                else:
-                    step_publish_root_bit = 16384
-                    if step_publish_bias < 16777216:
-                        step_publish_root_bit = 2048
-                    step_publish_root_found = 0
-                    while step_publish_root_bit:
-                        step_publish_root_more = step_publish_root_found + step_publish_root_bit
-                        if step_publish_root_more * step_publish_root_more <= step_publish_bias:
-                            step_publish_root_found = step_publish_root_more
-                        step_publish_root_bit = step_publish_root_bit >> 1
-                    step_publish_root_result = step_publish_root_found
-                    step_publish_bias = step_publish_root_result << 4
-                s_axis[70] = step_publish_bias
+            publish(0, 0, c_, s_, a, axis)
             axis = axis + 1
-            s_axis = ptr32(int(s) + (axis << 2))
             piece = 0
     s[53] = axis * 3 + piece + 1 if axis < 3 else 0
 
 
 @micropython.viper
-def foretell(s: ptr32, c: ptr32, axis: int):
-    s_axis = ptr32(int(s) + (axis << 2))
-    if s_axis[73] > 1:
-        return
-    if not s[46] - 1 and s[48] > 1:
-        n = s[48] << c[4]
-        level = s_axis[42] // n << 8
-        level = (s_axis[42] % n << 8) // n + level
-        foresay_quality = c[44]
-        s_axis[67] = level
-        s_axis[55] = level
-        s_axis[70] = foresay_quality
-        s_axis[73] = 1
-    elif not s_axis[73] - 1:
-        s_axis[67] = 0
-        s_axis[55] = 0
-        s_axis[70] = 0
-        s_axis[73] = 1
-        s_axis[73] = 0
-
-
-@micropython.viper
-def close(s_, c_):
-    s = ptr32(s_)
-    c = ptr32(c_)
+def close(s: ptr32, stillness_judge_look_spread_q8_i: int, stillness_judge_look_tip_q8_d: int, c: ptr32, s_, c_):
     while s[53]:
-        advance(s_, c_)
+        advance(0, c_, s_, s_, c_)
     while True:
         if s[18] > 3:
             stillness_judge_state = 2
@@ -275,7 +336,23 @@ def close(s_, c_):
         if s_a[28] > 67108863:
             s_a[28] = 67108863
         if not still and (not s_a[30]) and (not c[46]):
-            foretell(s_, c_, i)
+            if s[73 + i] > 1:
+                pass
+            elif not s[46] - 1 and s[48] > 1:
+                foretell_n = s[48] << c[4]
+                foretell_level = s[42 + i] // foretell_n << 8
+                foretell_level = (s[42 + i] % foretell_n << 8) // foretell_n + foretell_level
+                foretell_foresay_quality = c[44]
+                s[67 + i] = foretell_level
+                s[55 + i] = foretell_level
+                s[70 + i] = foretell_foresay_quality
+                s[73 + i] = 1
+            elif not s[73 + i] - 1:
+                s[67 + i] = 0
+                s[55 + i] = 0
+                s[70 + i] = 0
+                s[73 + i] = 1
+                s[73 + i] = 0
         if still and (not c[46]):
             s_a[0] = s[42 + i]
             s_a[1] = c[5] << c[4]
@@ -283,6 +360,47 @@ def close(s_, c_):
         i = i + 1
     s[16] = 0
     s[53] = 1
+
+
+@micropython.viper
+def learn_at_once(s: ptr32, c: ptr32, x: ptr32, s_, c_):
+    s[52] = x[3]
+    a = 0 * c[13] + c[0]
+    s_a = ptr32(int(s) + (a << 2))
+    s_a[0] = x[4]
+    s_a[1] = 1
+    learn_anywhere_temp = s[52]
+    if learn_anywhere_temp < s_a[3]:
+        s_a[3] = learn_anywhere_temp
+    if learn_anywhere_temp > s_a[4]:
+        s_a[4] = learn_anywhere_temp
+    feed(0, 0, s_, c_, a + 32, a, s_, c_)
+    learn_here(0, 0, s_, c_, a, s_, c_)
+    s_a[1] = 0
+    a = 1 * c[13] + c[0]
+    s_a = ptr32(int(s) + (a << 2))
+    s_a[0] = x[5]
+    s_a[1] = 1
+    learn_anywhere_temp = s[52]
+    if learn_anywhere_temp < s_a[3]:
+        s_a[3] = learn_anywhere_temp
+    if learn_anywhere_temp > s_a[4]:
+        s_a[4] = learn_anywhere_temp
+    feed(0, 0, s_, c_, a + 32, a, s_, c_)
+    learn_here(0, 0, s_, c_, a, s_, c_)
+    s_a[1] = 0
+    a = 2 * c[13] + c[0]
+    s_a = ptr32(int(s) + (a << 2))
+    s_a[0] = x[6]
+    s_a[1] = 1
+    learn_anywhere_temp = s[52]
+    if learn_anywhere_temp < s_a[3]:
+        s_a[3] = learn_anywhere_temp
+    if learn_anywhere_temp > s_a[4]:
+        s_a[4] = learn_anywhere_temp
+    feed(0, 0, s_, c_, a + 32, a, s_, c_)
+    learn_here(0, 0, s_, c_, a, s_, c_)
+    s_a[1] = 0
 
 
 @micropython.viper
@@ -365,9 +483,10 @@ def examine(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
 
 
 @micropython.viper
-def admit(s_, c_, x: ptr32, kind: int) -> int:
+def admit(s_, c_, x_, kind: int) -> int:
     s = ptr32(s_)
     c = ptr32(c_)
+    x = ptr32(x_)
     if not kind:
         if not s[17]:
             s[19] = x[0]
@@ -460,92 +579,101 @@ def admit(s_, c_, x: ptr32, kind: int) -> int:
         else:
             stillness_gather_result = 1
         if stillness_gather_result:
-            close(s_, c_)
+            close(s_, 0, 0, c_, s_, c_)
         if not s[8] - 1 or not c[3] - 4:
             s[47] = x[3]
             s[53] = 1
             while s[53]:
-                advance(s_, c_)
+                advance(0, c_, s_, s_, c_)
         if c[46]:
-            s[52] = x[3]
-            learn_at_once_a = 0 * c[13] + c[0]
-            s_learn_at_once_a = ptr32(int(s) + (learn_at_once_a << 2))
-            s_learn_at_once_a[0] = x[4]
-            s_learn_at_once_a[1] = 1
-            learn_at_once_learn_anywhere_temp = s[52]
-            if learn_at_once_learn_anywhere_temp < s_learn_at_once_a[3]:
-                s_learn_at_once_a[3] = learn_at_once_learn_anywhere_temp
-            if learn_at_once_learn_anywhere_temp > s_learn_at_once_a[4]:
-                s_learn_at_once_a[4] = learn_at_once_learn_anywhere_temp
-            feed(s_, c_, learn_at_once_a, learn_at_once_a + 32)
-            learn_here(s_, c_, learn_at_once_a)
-            s_learn_at_once_a[1] = 0
-            learn_at_once_a = 1 * c[13] + c[0]
-            s_learn_at_once_a = ptr32(int(s) + (learn_at_once_a << 2))
-            s_learn_at_once_a[0] = x[5]
-            s_learn_at_once_a[1] = 1
-            learn_at_once_learn_anywhere_temp = s[52]
-            if learn_at_once_learn_anywhere_temp < s_learn_at_once_a[3]:
-                s_learn_at_once_a[3] = learn_at_once_learn_anywhere_temp
-            if learn_at_once_learn_anywhere_temp > s_learn_at_once_a[4]:
-                s_learn_at_once_a[4] = learn_at_once_learn_anywhere_temp
-            feed(s_, c_, learn_at_once_a, learn_at_once_a + 32)
-            learn_here(s_, c_, learn_at_once_a)
-            s_learn_at_once_a[1] = 0
-            learn_at_once_a = 2 * c[13] + c[0]
-            s_learn_at_once_a = ptr32(int(s) + (learn_at_once_a << 2))
-            s_learn_at_once_a[0] = x[6]
-            s_learn_at_once_a[1] = 1
-            learn_at_once_learn_anywhere_temp = s[52]
-            if learn_at_once_learn_anywhere_temp < s_learn_at_once_a[3]:
-                s_learn_at_once_a[3] = learn_at_once_learn_anywhere_temp
-            if learn_at_once_learn_anywhere_temp > s_learn_at_once_a[4]:
-                s_learn_at_once_a[4] = learn_at_once_learn_anywhere_temp
-            feed(s_, c_, learn_at_once_a, learn_at_once_a + 32)
-            learn_here(s_, c_, learn_at_once_a)
-            s_learn_at_once_a[1] = 0
+            learn_at_once(s_, c_, x_, s_, c_)
     i = c[12]
     while i > 0 and s[53]:
-        advance(s_, c_)
+        advance(0, c_, s_, s_, c_)
         i = i - 1
     return kind
 
 
 @micropython.viper
 def finish(s: ptr32, c: ptr32, x: ptr32, kind: int) -> int:
-    i = 0
-    s_i = ptr32(int(s) + (i << 2))
-    while i < 3 and kind < 3:
-        d = s_i[67] - s_i[55]
-        if d > c[11]:
-            d = c[11]
-        elif d < -c[11]:
-            d = -c[11]
-        s_i[55] = s_i[55] + d
-        d = (x[i + 4] << 8) - s_i[55] - s_i[61] + s_i[58]
-        x[i + 4] = d + 128 >> 8
-        s_i[58] = d - (x[i + 4] << 8)
-        i = i + 1
-        s_i = ptr32(int(s) + (i << 2))
+    if kind > 2:
+        return kind
+    d = s[67] - s[55]
+    if d > c[11]:
+        d = c[11]
+    elif d < -c[11]:
+        d = -c[11]
+    s[55] = s[55] + d
+    d = (x[4] << 8) - s[55] - s[61] + s[58]
+    x[4] = d + 128 >> 8
+    s[58] = d - (x[4] << 8)
+    d = s[68] - s[56]
+    if d > c[11]:
+        d = c[11]
+    elif d < -c[11]:
+        d = -c[11]
+    s[56] = s[56] + d
+    d = (x[5] << 8) - s[56] - s[62] + s[59]
+    x[5] = d + 128 >> 8
+    s[59] = d - (x[5] << 8)
+    d = s[69] - s[57]
+    if d > c[11]:
+        d = c[11]
+    elif d < -c[11]:
+        d = -c[11]
+    s[57] = s[57] + d
+    d = (x[6] << 8) - s[57] - s[63] + s[60]
+    x[6] = d + 128 >> 8
+    s[60] = d - (x[6] << 8)
     return kind
 
 
 @micropython.viper
-def step(s_, c_, x: ptr32, dt_us: int) -> int:
+def step(s_, c_, x_, dt_us: int) -> int:
     s = ptr32(s_)
     c = ptr32(c_)
+    x = ptr32(x_)
     examine_check_dt_us = dt_us
     examine_check_differ = 0
     examine_check_fresh = 0
     examine_check_jump = x[3] - s[3]
     examine_check_i = 0
-    while examine_check_i < 7:
-        if x[examine_check_i] - x[0]:
-            examine_check_differ = 1
-        if x[examine_check_i] - s[examine_check_i]:
-            examine_check_fresh = 1
-        s[examine_check_i] = x[examine_check_i]
-        examine_check_i = examine_check_i + 1
+    if x[0] - x[0]:
+        examine_check_differ = 1
+    if x[0] - s[0]:
+        examine_check_fresh = 1
+    s[0] = x[0]
+    if x[1] - x[0]:
+        examine_check_differ = 1
+    if x[1] - s[1]:
+        examine_check_fresh = 1
+    s[1] = x[1]
+    if x[2] - x[0]:
+        examine_check_differ = 1
+    if x[2] - s[2]:
+        examine_check_fresh = 1
+    s[2] = x[2]
+    if x[3] - x[0]:
+        examine_check_differ = 1
+    if x[3] - s[3]:
+        examine_check_fresh = 1
+    s[3] = x[3]
+    if x[4] - x[0]:
+        examine_check_differ = 1
+    if x[4] - s[4]:
+        examine_check_fresh = 1
+    s[4] = x[4]
+    if x[5] - x[0]:
+        examine_check_differ = 1
+    if x[5] - s[5]:
+        examine_check_fresh = 1
+    s[5] = x[5]
+    if x[6] - x[0]:
+        examine_check_differ = 1
+    if x[6] - s[6]:
+        examine_check_fresh = 1
+    s[6] = x[6]
+    examine_check_i = 7
     examine_check_i = 0
     if not examine_check_differ and (not x[0] or not x[0] - -1):
         examine_check_i = 3 - x[0]
@@ -561,10 +689,13 @@ def step(s_, c_, x: ptr32, dt_us: int) -> int:
         examine_check_i = 5
     if not examine_check_i:
         examine_check_jump = 4
-        while examine_check_jump < 7:
-            if x[examine_check_jump] > 32766 or x[examine_check_jump] < -32767:
-                examine_check_i = 2
-            examine_check_jump = examine_check_jump + 1
+        if x[4] > 32766 or x[4] < -32767:
+            examine_check_i = 2
+        if x[5] > 32766 or x[5] < -32767:
+            examine_check_i = 2
+        if x[6] > 32766 or x[6] < -32767:
+            examine_check_i = 2
+        examine_check_jump = 7
     examine_check_i = examine_check_i + 8
     examine_check_jump = s[examine_check_i] + 1
     s[examine_check_i] = examine_check_jump & 536870911
@@ -578,93 +709,143 @@ def step(s_, c_, x: ptr32, dt_us: int) -> int:
         s[16] = examine_check_dt_us if examine_check_dt_us < 536870911 else 536870911
     kind = examine_check_i
     if not kind:
-        admit_stillness_gather_i = 0
         if not s[17]:
-            while admit_stillness_gather_i < 7:
-                s[19 + admit_stillness_gather_i] = x[admit_stillness_gather_i]
-                s[26 + admit_stillness_gather_i] = 0
-                admit_stillness_gather_i = admit_stillness_gather_i + 1
+            s[19] = x[0]
+            s[26] = 0
+            s[20] = x[1]
+            s[27] = 0
+            s[21] = x[2]
+            s[28] = 0
+            s[22] = x[3]
+            s[29] = 0
+            s[23] = x[4]
+            s[30] = 0
+            s[24] = x[5]
+            s[31] = 0
+            s[25] = x[6]
+            s[32] = 0
             s[33] = 0
             s[35] = 0
             s[76] = 0
             s[77] = 0
-            s[77 + 1] = 0
-            s[77 + 2] = 0
+            s[78] = 0
+            s[79] = 0
             s[64] = 0
-            s[64 + 1] = 0
-            s[64 + 2] = 0
+            s[65] = 0
+            s[66] = 0
             s[18] = 0
         s[17] = s[17] + 1
         if not s[18]:
-            admit_stillness_gather_i = 0
-            while admit_stillness_gather_i < 7:
-                admit_stillness_gather_d = x[admit_stillness_gather_i] - s[19 + admit_stillness_gather_i]
-                if admit_stillness_gather_d + 512 >> 10:
-                    s[18] = admit_stillness_gather_i + 1
-                    admit_stillness_gather_d = 0
-                s[26 + admit_stillness_gather_i] += admit_stillness_gather_d
-                if admit_stillness_gather_i < 3:
-                    s[33] = admit_stillness_gather_d * admit_stillness_gather_d + s[33]
-                elif admit_stillness_gather_i > 3:
-                    s[35] = admit_stillness_gather_d * admit_stillness_gather_d + s[35]
-                    admit_stillness_gather_e = admit_stillness_gather_d - s[77 - 4 + admit_stillness_gather_i]
-                    s[76] = admit_stillness_gather_e * admit_stillness_gather_e + s[76]
-                    s[77 - 4 + admit_stillness_gather_i] = admit_stillness_gather_d
-                    admit_stillness_gather_e = s[61 - 4 + admit_stillness_gather_i]
-                    s[64 - 4 + admit_stillness_gather_i] += admit_stillness_gather_e
-                admit_stillness_gather_i = admit_stillness_gather_i + 1
+            admit_stillness_gather_d = x[0] - s[19]
+            if admit_stillness_gather_d + 512 >> 10:
+                s[18] = 1
+                admit_stillness_gather_d = 0
+            s[26] = s[26] + admit_stillness_gather_d
+            s[33] = admit_stillness_gather_d * admit_stillness_gather_d + s[33]
+            admit_stillness_gather_d = x[1] - s[20]
+            if admit_stillness_gather_d + 512 >> 10:
+                s[18] = 2
+                admit_stillness_gather_d = 0
+            s[27] = s[27] + admit_stillness_gather_d
+            s[33] = admit_stillness_gather_d * admit_stillness_gather_d + s[33]
+            admit_stillness_gather_d = x[2] - s[21]
+            if admit_stillness_gather_d + 512 >> 10:
+                s[18] = 3
+                admit_stillness_gather_d = 0
+            s[28] = s[28] + admit_stillness_gather_d
+            s[33] = admit_stillness_gather_d * admit_stillness_gather_d + s[33]
+            admit_stillness_gather_d = x[3] - s[22]
+            if admit_stillness_gather_d + 512 >> 10:
+                s[18] = 4
+                admit_stillness_gather_d = 0
+            s[29] = s[29] + admit_stillness_gather_d
+            admit_stillness_gather_d = x[4] - s[23]
+            if admit_stillness_gather_d + 512 >> 10:
+                s[18] = 5
+                admit_stillness_gather_d = 0
+            s[30] = s[30] + admit_stillness_gather_d
+            s[35] = admit_stillness_gather_d * admit_stillness_gather_d + s[35]
+            admit_stillness_gather_e = admit_stillness_gather_d - s[77]
+            s[76] = admit_stillness_gather_e * admit_stillness_gather_e + s[76]
+            s[77] = admit_stillness_gather_d
+            admit_stillness_gather_e = s[61]
+            s[64] = s[64] + admit_stillness_gather_e
+            admit_stillness_gather_d = x[5] - s[24]
+            if admit_stillness_gather_d + 512 >> 10:
+                s[18] = 6
+                admit_stillness_gather_d = 0
+            s[31] = s[31] + admit_stillness_gather_d
+            s[35] = admit_stillness_gather_d * admit_stillness_gather_d + s[35]
+            admit_stillness_gather_e = admit_stillness_gather_d - s[78]
+            s[76] = admit_stillness_gather_e * admit_stillness_gather_e + s[76]
+            s[78] = admit_stillness_gather_d
+            admit_stillness_gather_e = s[62]
+            s[65] = s[65] + admit_stillness_gather_e
+            admit_stillness_gather_d = x[6] - s[25]
+            if admit_stillness_gather_d + 512 >> 10:
+                s[18] = 7
+                admit_stillness_gather_d = 0
+            s[32] = s[32] + admit_stillness_gather_d
+            s[35] = admit_stillness_gather_d * admit_stillness_gather_d + s[35]
+            admit_stillness_gather_e = admit_stillness_gather_d - s[79]
+            s[76] = admit_stillness_gather_e * admit_stillness_gather_e + s[76]
+            s[79] = admit_stillness_gather_d
+            admit_stillness_gather_e = s[63]
+            s[66] = s[66] + admit_stillness_gather_e
         else:
-            admit_stillness_gather_d = x[3] - s[19 + 3]
-            s[26 + 3] += admit_stillness_gather_d
+            admit_stillness_gather_d = x[3] - s[22]
+            s[29] = s[29] + admit_stillness_gather_d
         if s[17] < c[3]:
             admit_stillness_gather_result = 0
         else:
             admit_stillness_gather_result = 1
         if admit_stillness_gather_result:
-            close(s_, c_)
+            close(s_, 0, 0, c_, s_, c_)
         if not s[8] - 1 or not c[3] - 4:
             s[47] = x[3]
             s[53] = 1
             while s[53]:
-                advance(s_, c_)
+                advance(0, c_, s_, s_, c_)
         if c[46]:
-            s[52] = x[3]
-            admit_learn_at_once_i = 0
-            while admit_learn_at_once_i < 3:
-                admit_learn_at_once_a = admit_learn_at_once_i * c[13] + c[0]
-                s_admit_learn_at_once_a = ptr32(int(s) + (admit_learn_at_once_a << 2))
-                s_admit_learn_at_once_a[0] = x[4 + admit_learn_at_once_i]
-                s_admit_learn_at_once_a[1] = 1
-                admit_learn_at_once_learn_anywhere_temp = s[52]
-                if admit_learn_at_once_learn_anywhere_temp < s_admit_learn_at_once_a[3]:
-                    s_admit_learn_at_once_a[3] = admit_learn_at_once_learn_anywhere_temp
-                if admit_learn_at_once_learn_anywhere_temp > s_admit_learn_at_once_a[4]:
-                    s_admit_learn_at_once_a[4] = admit_learn_at_once_learn_anywhere_temp
-                feed(s_, c_, admit_learn_at_once_a, admit_learn_at_once_a + 32)
-                learn_here(s_, c_, admit_learn_at_once_a)
-                s_admit_learn_at_once_a[1] = 0
-                admit_learn_at_once_i = admit_learn_at_once_i + 1
+            learn_at_once(s_, c_, x_, s_, c_)
     admit_i = c[12]
     while admit_i > 0 and s[53]:
-        advance(s_, c_)
+        advance(0, c_, s_, s_, c_)
         admit_i = admit_i - 1
-    step_finish_i = 0
-    while step_finish_i < 3 and kind < 3:
-        step_finish_d = s[67 + step_finish_i] - s[55 + step_finish_i]
-        if step_finish_d > c[11]:
-            step_finish_d = c[11]
-        elif step_finish_d < -c[11]:
-            step_finish_d = -c[11]
-        s[55 + step_finish_i] += step_finish_d
-        step_finish_d = (x[4 + step_finish_i] << 8) - s[55 + step_finish_i] - s[61 + step_finish_i] + s[58 + step_finish_i]
-        x[4 + step_finish_i] = step_finish_d + 128 >> 8
-        s[58 + step_finish_i] = step_finish_d - (x[4 + step_finish_i] << 8)
-        step_finish_i = step_finish_i + 1
+    if kind > 2:
+        return kind
+    step_finish_d = s[67] - s[55]
+    if step_finish_d > c[11]:
+        step_finish_d = c[11]
+    elif step_finish_d < -c[11]:
+        step_finish_d = -c[11]
+    s[55] = s[55] + step_finish_d
+    step_finish_d = (x[4] << 8) - s[55] - s[61] + s[58]
+    x[4] = step_finish_d + 128 >> 8
+    s[58] = step_finish_d - (x[4] << 8)
+    step_finish_d = s[68] - s[56]
+    if step_finish_d > c[11]:
+        step_finish_d = c[11]
+    elif step_finish_d < -c[11]:
+        step_finish_d = -c[11]
+    s[56] = s[56] + step_finish_d
+    step_finish_d = (x[5] << 8) - s[56] - s[62] + s[59]
+    x[5] = step_finish_d + 128 >> 8
+    s[59] = step_finish_d - (x[5] << 8)
+    step_finish_d = s[69] - s[57]
+    if step_finish_d > c[11]:
+        step_finish_d = c[11]
+    elif step_finish_d < -c[11]:
+        step_finish_d = -c[11]
+    s[57] = s[57] + step_finish_d
+    step_finish_d = (x[6] << 8) - s[57] - s[63] + s[60]
+    x[6] = step_finish_d + 128 >> 8
+    s[60] = step_finish_d - (x[6] << 8)
     return kind
 
 
 @micropython.viper
-def offer(s: ptr32, c: ptr32, m: ptr32, w: int, axis: int):
+def offer(axis: int, w: int, c: ptr32, s: ptr32, m: ptr32):
     a = axis * c[13] + c[0]
     s_a = ptr32(int(s) + (a << 2))
     w = w + axis
@@ -687,14 +868,14 @@ def consider(s_, c_, m_, w: int, source: int):
     c = ptr32(c_)
     m = ptr32(m_)
     while s[53]:
-        advance(s_, c_)
+        advance(0, c_, s_, s_, c_)
     s[52] = s[47]
     s[7] = source
     speak_w = w
     m_speak_w = ptr32(int(m) + (speak_w << 2))
     if not s[0 * c[13] + c[0] + 30]:
         speak_w = speak_w + 0
-        m_speak_w = ptr32(int(m) + (speak_w << 2))
+        m_speak_w = ptr32(int(m_speak_w) + 0)
         if m_speak_w[3] >> 5 < c[48]:
             s[67] = m_speak_w[0]
             if not s[73]:
@@ -705,7 +886,7 @@ def consider(s_, c_, m_, w: int, source: int):
     m_speak_w = ptr32(int(m) + (speak_w << 2))
     if not s[1 * c[13] + c[0] + 30]:
         speak_w = speak_w + 1
-        m_speak_w = ptr32(int(m) + (speak_w << 2))
+        m_speak_w = ptr32(int(m_speak_w) + 4)
         if m_speak_w[3] >> 5 < c[48]:
             s[68] = m_speak_w[0]
             if not s[74]:
@@ -716,14 +897,14 @@ def consider(s_, c_, m_, w: int, source: int):
     m_speak_w = ptr32(int(m) + (speak_w << 2))
     if not s[2 * c[13] + c[0] + 30]:
         speak_w = speak_w + 2
-        m_speak_w = ptr32(int(m) + (speak_w << 2))
+        m_speak_w = ptr32(int(m_speak_w) + 8)
         if m_speak_w[3] >> 5 < c[48]:
             s[69] = m_speak_w[0]
             if not s[75]:
                 s[57] = m_speak_w[0]
             s[72] = m_speak_w[3]
             s[75] = s[7]
-    offer(s_, c_, m_, w, 0)
-    offer(s_, c_, m_, w, 1)
-    offer(s_, c_, m_, w, 2)
+    offer(0, w, c_, s_, m_)
+    offer(1, w, c_, s_, m_)
+    offer(2, w, c_, s_, m_)
     s[53] = 1

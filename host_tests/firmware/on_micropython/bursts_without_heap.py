@@ -7,8 +7,9 @@ import sys
 import trace
 from array import array
 
-import zerorate.bursts as bursts_file
-import zerorate.corrector as corrector_file
+if sys.argv[1] == "plain":
+    sys.modules["zerorate.viper"] = sys  # has nothing of it, so that bytecode is chosen
+
 import zerorate.kernels as kernels
 from micropython import heap_lock, heap_unlock
 from zerorate import Corrector, Sensor
@@ -17,12 +18,8 @@ from zerorate.bursts import Bursts
 _MOST = 73
 
 which, mode, updates = sys.argv[1], sys.argv[2], int(sys.argv[3])
-if which == "plain":
-    from zerorate import estimators, step
-
-    corrector_file.estimators, corrector_file.step, bursts_file.block = estimators, step, None
-elif not kernels.VIPER:
-    raise SystemExit("no viper here")
+if kernels.VIPER != (which == "viper"):
+    raise SystemExit("no " + which + " here")
 
 options = dict(trace.LIMITS)
 options.update(trace.MODES[mode])

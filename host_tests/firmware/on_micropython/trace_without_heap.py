@@ -7,6 +7,9 @@ import sys
 import trace
 from array import array
 
+if sys.argv[1] == "plain":
+    sys.modules["zerorate.viper"] = sys  # has nothing of it, so that bytecode is chosen
+
 import zerorate.corrector as corrector_file
 import zerorate.kernels as kernels
 from micropython import heap_lock, heap_unlock
@@ -15,12 +18,8 @@ from zerorate import Corrector, Sensor
 _STRETCH = 500
 
 which, mode, updates = sys.argv[1], sys.argv[2], int(sys.argv[3])
-if which == "plain":
-    from zerorate import estimators, step
-
-    corrector_file.estimators, corrector_file.step = estimators, step
-elif not kernels.VIPER:
-    raise SystemExit("no viper here")
+if kernels.VIPER != (which == "viper"):
+    raise SystemExit("no " + which + " here")
 
 options = dict(trace.LIMITS)
 options.update(trace.MODES[mode])

@@ -57,7 +57,7 @@ int main(int argc, char **argv) {
     int call = argc > 2 && atoi(argv[2]);
     size_t at_once = argc > 3 ? (size_t)atoi(argv[3]) : 1;
     int times = argc > 4 ? atoi(argv[4]) : 1;
-    int32_t x[7];
+    int32_t x[9];
     if (count > words / 8) exit(2);
     int32_t *first_state = malloc(state_words * 4);
     int32_t *first_frames = malloc(words * 4);
@@ -71,9 +71,9 @@ again:
     }
     for (size_t i = 0; at_once == 1 && i < count; i++) {
         int32_t *frame = frames + 8 * i;
-        memcpy(x, frame + 1, sizeof x);
+        memcpy(x, frame + 1, 7 * sizeof *x);
         if (call) frame[0] = step_step(s, c, x, frame[0]);
-        memcpy(frame + 1, x, sizeof x);
+        memcpy(frame + 1, x, 7 * sizeof *x);
     }
     if (--times > 0) {
         memcpy(s, first_state, state_words * 4);

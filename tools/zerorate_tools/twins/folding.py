@@ -6,7 +6,7 @@ import ast
 import copy
 import operator
 
-from .inlining import LARGEST, assigned, is_stored, names_stored, size
+from .inlining import assigned, is_stored, names_stored, size
 
 MOST_ROUNDS = 8
 MOST_NODES = 2000
@@ -33,12 +33,11 @@ _COMPARED = {
 }
 
 
-def folded(function: ast.FunctionDef) -> ast.FunctionDef:
+def folded(function: ast.FunctionDef, unrolled: bool = True) -> ast.FunctionDef:
     """The function with what is known beforehand worked out; locals that nobody reads are gone."""
     made = copy.deepcopy(function)
-    made.body = _block(made.body, {}) or [ast.Pass()]
-    if size(made) > max(LARGEST, size(function)):
-        made = copy.deepcopy(function)  # too long when unrolled
+    if unrolled:
+        made.body = _block(made.body, {}) or [ast.Pass()]
     while unread := _unread(made):
         made.body = _without(made.body, unread) or [ast.Pass()]
     return made

@@ -12,13 +12,12 @@ import copy
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
 
+from .marks import CALL, INLINE
 from .returns import Deliver, without_returns
 
 # nodes of the syntax tree: what is written out wherever it is called, and what where it is so once
 SMALL = 180
 ONCE = 1500
-# what a function may become: a conditional jump of more than 4 KB goes astray in Thumb code
-LARGEST = 1500
 
 POINTERS = ("ptr8", "ptr32")
 
@@ -35,6 +34,11 @@ def calls(node: ast.AST, kernels: Collection[str]) -> Iterator[ast.Call]:
     for n in ast.walk(node):
         if isinstance(n, ast.Call) and isinstance(n.func, ast.Name) and n.func.id in kernels:
             yield n
+
+
+def callee(call: ast.Call) -> str:
+    """The name of what is called; empty where it is no name."""
+    return getattr(call.func, "id", "")
 
 
 def is_stored(node: ast.AST) -> bool:
@@ -58,12 +62,16 @@ def assigned(name: str, value: ast.expr) -> ast.Assign:
 
 
 class Inliner:
-    """kernels: full name -> function, whose calls name their callees in full."""
+    """kernels: full name -> function, whose calls name their callees in full.
 
-    def __init__(self, kernels: Kernels) -> None:
-        self._kernels = kernels
+    marks: INLINE of those that are written out wherever they are called, CALL of those that are
+    called in every case; largest: nodes that a function may grow to.
+    """
+
+    def __init__(self, kernels: Kernels, marks: Mapping[str, str], largest: int) -> None:
+        self._kernels, self._marks, self._largest = kernels, marks, largest
         self._flat: dict[str, ast.FunctionDef] = {}
-        self._sites = Counter(_name(c) for f in kernels.values() for c in calls(f, kernels))
+        self._sites = Counter(callee(c) for f in kernels.values() for c in calls(f, kernels))
         self._simple = Counter(name.rpartition(".")[2] for name in kernels)
         self._arrays: set[str] = set()
         self._grown = 0
@@ -82,8 +90,9 @@ class Inliner:
 
     def _worth(self, name: str) -> bool:
         large = size(self.flat(name))
-        most = ONCE if self._sites[name] == 1 else SMALL
-        return large <= most and large + self._grown <= LARGEST
+        mark = self._marks.get(name)
+        most = ONCE if self._sites[name] == 1 or mark == INLINE else SMALL
+        return mark != CALL and large <= min(most, self._largest - self._grown)
 
     def _block(self, statements: list[ast.stmt]) -> list[ast.stmt]:
         return [made for statement in statements for made in self._statement(statement)]
@@ -108,15 +117,15 @@ class Inliner:
         """Is it `s[i] += f(s)`, where f may write what was read before it was called?"""
         if not isinstance(node, ast.AugAssign) or not isinstance(node.target, ast.Subscript):
             return False
-        callees = [_name(call) for call in calls(node.value, self._kernels)]
+        callees = [callee(call) for call in calls(node.value, self._kernels)]
         return not all(_is_pure(self.flat(name)) for name in callees)
 
     def _is_inlined(self, node: ast.expr) -> bool:
-        if not isinstance(node, ast.Call) or _name(node) not in self._kernels:
+        if not isinstance(node, ast.Call) or callee(node) not in self._kernels:
             return False
-        passed = zip(kinds(self._kernels[_name(node)]).values(), node.args)
+        passed = zip(kinds(self._kernels[callee(node)]).values(), node.args)
         arrays = [getattr(argument, "id", "") for kind, argument in passed if kind in POINTERS]
-        return self._arrays.issuperset(arrays) and self._worth(_name(node))
+        return self._arrays.issuperset(arrays) and self._worth(callee(node))
 
     def _before_a_test(self, node: ast.If) -> list[ast.stmt]:
         """What must stand before an if whose condition calls; `a and f()` becomes two ifs."""
@@ -139,9 +148,9 @@ class Inliner:
             assert isinstance(call, ast.Call)
             if not self._is_inlined(call):
                 return [], value
-            if _loads_before(value, call) and not _is_pure(self.flat(_name(call))):
+            if _loads_before(value, call) and not _is_pure(self.flat(callee(call))):
                 return [], value
-            result = f"{self._prefix(_name(call))}_result" + (f"_{count}" if count > 1 else "")
+            result = f"{self._prefix(callee(call))}_result" + (f"_{count}" if count > 1 else "")
             body = self._in_place(call, _kept_in(result))
             rest = _Replace(call, ast.Name(result, ast.Load())).visit(value)
             more, rest = self._hoisted(rest, count + 1)
@@ -150,7 +159,7 @@ class Inliner:
 
     def _in_place(self, call: ast.Call, deliver: Deliver | None) -> list[ast.stmt]:
         """The callee's statements; deliver: None where its returns are the caller's own."""
-        name = _name(call)
+        name = callee(call)
         function = copy.deepcopy(self.flat(name))
         prefix = self._prefix(name)
         self._grown += size(function)
@@ -192,10 +201,6 @@ def _delivery(node: ast.stmt) -> Deliver | None:
 
 def _kept_in(target: str) -> Deliver:
     return lambda value: [assigned(target, value)] if value else []
-
-
-def _name(call: ast.Call) -> str:
-    return getattr(call.func, "id", "")
 
 
 def _as_evaluated(node: ast.AST) -> Iterator[ast.AST]:

@@ -63,6 +63,16 @@ class _Put:
                 made.append(assigned(f"{array}_{at}", value))
         return made
 
+    def _moved(self, at: str, by: int) -> list[ast.stmt]:
+        """The statements that move the pointers on with `at`."""
+        made: list[ast.stmt] = []
+        for array, name in sorted(self._chosen):
+            if name == at:
+                kind = self._arrays[array]
+                to = f"{kind}(int({array}_{at}) + {by << _SHIFTS[kind]})"
+                made.append(assigned(f"{array}_{at}", ast.parse(to, mode="eval").body))
+        return made
+
     def block(self, statements: list[ast.stmt]) -> list[ast.stmt]:
         made: list[ast.stmt] = []
         for node in statements:
@@ -74,6 +84,9 @@ class _Put:
         return made
 
     def _behind(self, node: ast.stmt | ast.expr) -> list[ast.stmt]:
+        if isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Name):
+            if isinstance(node.op, ast.Add) and isinstance(node.value, ast.Constant):
+                return self._moved(node.target.id, node.value.value)  # type: ignore[arg-type]
         stored = [n.id for n in ast.walk(node) if is_stored(n)]  # type: ignore[attr-defined]
         return [pointer for name in stored for pointer in self.pointers(name)]
 

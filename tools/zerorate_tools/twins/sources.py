@@ -10,6 +10,16 @@ from pathlib import Path
 from ..kernel_rules import is_kernel
 
 
+def parsed(path: Path) -> ast.Module:
+    """The syntax tree of a file."""
+    return ast.parse(path.read_text(encoding="utf-8"), str(path))
+
+
+def annotated(tree: ast.Module) -> list[ast.FunctionDef]:
+    """The kernels of a file: its functions with annotated parameters."""
+    return [n for n in tree.body if isinstance(n, ast.FunctionDef) and is_kernel(n)]
+
+
 @dataclass(frozen=True)
 class KernelFile:
     """A file with kernels: its functions call others by "module.function"."""
@@ -25,24 +35,18 @@ class KernelFile:
 
 def kernel_file(path: Path) -> KernelFile:
     """Read a kernel file."""
-    tree = ast.parse(path.read_text(encoding="utf-8"), str(path))
+    tree = parsed(path)
     constants = dict(_constants(tree))
-    own = {node.name: f"{path.stem}.{node.name}" for node in _kernels(tree)}
+    own = {node.name: f"{path.stem}.{node.name}" for node in annotated(tree)}
     names = {**dict(_imported(tree)), **own}
     resolve = _Resolve(constants, names)
-    functions = {f"{path.stem}.{f.name}": _body_resolved(f, resolve) for f in _kernels(tree)}
+    functions = {f"{path.stem}.{f.name}": _body_resolved(f, resolve) for f in annotated(tree)}
     return KernelFile(path, functions)
 
 
 def all_kernels(files: Sequence[KernelFile]) -> dict[str, ast.FunctionDef]:
     """Qualified name -> function, of all files."""
     return {name: function for file in files for name, function in file.functions.items()}
-
-
-def _kernels(tree: ast.Module) -> Iterator[ast.FunctionDef]:
-    for node in tree.body:
-        if isinstance(node, ast.FunctionDef) and is_kernel(node):
-            yield node
 
 
 def _constants(tree: ast.Module) -> Iterator[tuple[str, int]]:
