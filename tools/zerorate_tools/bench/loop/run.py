@@ -11,6 +11,8 @@ from dataclasses import asdict
 from os import PathLike
 from pathlib import Path
 
+from threadpoolctl import threadpool_limits
+
 from ..real_recordings import data_folder
 from ..tables import machine, machine_line, table
 from .devices import Device, devices
@@ -38,8 +40,6 @@ def run(
     broken off goes on from; plots: a folder for PNGs of the real recordings; size: time and memory
     of a device of 4 sessions of 8 hours at 100 Hz.
     """
-    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
-        os.environ.setdefault(name, "1")
     folder = Path(data) if data else data_folder()
     with tempfile.TemporaryDirectory() as scratch:
         quiet = write_blocks(folder, Path(scratch)) if folder and folder.is_dir() else []
@@ -73,7 +73,7 @@ def looked_at(
         if d.key in known:
             advance(1)
             yield known[d.key]
-    with ProcessPoolExecutor(processes) as pool:
+    with ProcessPoolExecutor(processes, initializer=threadpool_limits, initargs=(1,)) as pool:
         for outcome in pool.map(_look, left, chunksize=4):
             if kept:
                 with kept.open("a", encoding="utf-8") as file:
