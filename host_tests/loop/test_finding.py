@@ -140,3 +140,11 @@ def test_a_rate_of_change_is_followed_where_another_day_begins_colder():
     low, high = min(map(np.min, seen)), max(map(np.max, seen))
     assert term.lag_mode in ("rate", "difference")
     assert term.lo < low - 0.4 * (high - low)
+
+
+def test_a_step_in_every_power_on_is_listed_in_every_one():
+    device = simulate(16)
+    for s, at in zip(device.sessions, (50, 90, 130, 70)):
+        s.rate_dps[at:] += 8 * device.floor_dps * [1, -1, 1]
+    steps = select(device.sessions[:-1]).steps
+    assert sorted((s.session, s.block) for s in steps) == [(0, 50), (1, 90), (2, 130)]

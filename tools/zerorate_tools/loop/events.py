@@ -54,12 +54,13 @@ def strongest(regression, terms) -> Step | None:
 
 
 def _survival(best: Step, every: list, axes: int) -> float:
-    """Chance of a ratio at one place, by the ratios at the places away from the step itself.
+    """Chance of a ratio at one place, by the ratios at the places away from each session's largest,
+    which may be a step, too.
 
     On real noise they have a higher mean and a longer tail than chi-squared: a gamma distribution
     of their mean and variance takes its place where that is longer.
     """
-    away = [r[(s != best.session) | (np.abs(at - best.block) > _AWAY)] for s, at, r in every]
+    away = [r[np.abs(at - at[r.argmax()]) > _AWAY] for _, at, r in every]
     ratios = np.concatenate(away)
     if len(ratios) < _EDGE:
         return float(chi2.sf(best.ratio, axes))
