@@ -51,7 +51,10 @@ def turned_axes(regression, terms) -> np.ndarray:
     """
     fit = regression.fit(terms)
     count = sum(w.coefficients for w in regression.whiteners)
-    white = np.sqrt([fit.base.rss[a, g] / count for a, g in enumerate(fit.base.best)])
+    left = np.array([fit.base.rss[a, g] for a, g in enumerate(fit.base.best)])
+    if not (left > 0).all():  # columns all but alike explain everything
+        return np.eye(3)
+    white = np.sqrt(left / count)
     _, covariance = coherence(regression, terms)
     values, vectors = np.linalg.eigh(covariance / np.outer(white, white))
     return vectors[:, ::-1].T / white

@@ -141,6 +141,8 @@ class Search:
         self.found = [Found(c, d) for c, d in bends.found]
         self.refused += bends.refused
         self.bends = len(self.found)
+        if any(t.power == 2 for t in self.terms()):
+            self.bend = ()
 
     def _look_afresh(self):
         r = self.regression
