@@ -149,9 +149,13 @@ def take(s: ptr32, f: ptr32, c: ptr32, r: ptr32):
     moving = s[_DIRTY]
     leap_us = c[_LEAP_US]
     usual_us = leap_us
+    since = p
     elapsed_us = 0
     most_jump = c[_JUMP_LSB] - 1
     least_jump = 1 - c[_JUMP_LSB]
+    # what is as near to the temperature before costs one comparison less
+    near = 256 if c[_JUMP_LSB] > 256 else 0
+    near_bits = 9 if near else 0
     last_t = s[3]
     last_x = s[4]
     last_y = s[5]
@@ -173,7 +177,7 @@ def take(s: ptr32, f: ptr32, c: ptr32, r: ptr32):
     square_accel = s[_SQUARE_ACCEL]
     square_gyro = s[_SQUARE_GYRO]
     square_step = s[_SQUARE_STEP]
-    # a rate is (rate << 8) + due_x, shifted back: half an LSB and what was left over, less the bias
+    # what is due to a rate, Q8: half an LSB and what was left over, less the bias
     bias_x = s[_OUT_Q8] + s[_EFFECT_Q8]
     bias_y = s[_OUT_Q8 + 1] + s[_EFFECT_Q8 + 1]
     bias_z = s[_OUT_Q8 + 2] + s[_EFFECT_Q8 + 2]
@@ -181,15 +185,17 @@ def take(s: ptr32, f: ptr32, c: ptr32, r: ptr32):
     due_y = s[_CARRY_Q8 + 1] + 128 - bias_y
     due_z = s[_CARRY_Q8 + 2] + 128 - bias_z
     while left:
-        dt = f[p]
-        if dt != usual_us:
-            if dt <= 0 or dt > leap_us:
+        if f[p] != usual_us:
+            if f[p] <= 0 or f[p] > leap_us:
                 break
-            usual_us = dt
+            elapsed_us += ((p - since) >> 3) * usual_us
+            since = p
+            usual_us = f[p]
         t = f[p + 4]
         d = t - last_t
-        if d > most_jump or d < least_jump:
-            break
+        if (d + near) >> near_bits:
+            if d > most_jump or d < least_jump:
+                break
         x = f[p + 5]
         y = f[p + 6]
         z = f[p + 7]
@@ -228,25 +234,22 @@ def take(s: ptr32, f: ptr32, c: ptr32, r: ptr32):
             b = y - last_y
             g = z - last_z
             square_step += a * a + b * b + g * g
-        elapsed_us += dt
         last_t = t
         last_x = x
         last_y = y
         last_z = z
-        d = (x << 8) + due_x
-        f[p + 5] = d >> 8
-        due_x = (d & 255) - bias_x
-        d = (y << 8) + due_y
-        f[p + 6] = d >> 8
-        due_y = (d & 255) - bias_y
-        d = (z << 8) + due_z
-        f[p + 7] = d >> 8
-        due_z = (d & 255) - bias_z
+        f[p + 5] = (due_x >> 8) + x
+        due_x = (due_x & 255) - bias_x
+        f[p + 6] = (due_y >> 8) + y
+        due_y = (due_y & 255) - bias_y
+        f[p + 7] = (due_z >> 8) + z
+        due_z = (due_z & 255) - bias_z
         f[p] = 0
         p += 8
         left -= 1
     r[_AT] = p
     n -= left
+    elapsed_us += ((p - since) >> 3) * usual_us
     if n:
         account(s, f, p, n, elapsed_us)
         s[4] = last_x

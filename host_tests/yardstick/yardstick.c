@@ -1719,7 +1719,6 @@ static void block_take(int32_t *s, int32_t *f, int32_t *c, int32_t *r) {
     int32_t bias_y = 0;
     int32_t bias_z = 0;
     int32_t d = 0;
-    int32_t dt = 0;
     int32_t due_x = 0;
     int32_t due_y = 0;
     int32_t due_z = 0;
@@ -1740,6 +1739,8 @@ static void block_take(int32_t *s, int32_t *f, int32_t *c, int32_t *r) {
     int32_t most_jump = 0;
     int32_t moving = 0;
     int32_t n = 0;
+    int32_t near = 0;
+    int32_t near_bits = 0;
     int32_t p = 0;
     int32_t ref_a = 0;
     int32_t ref_b = 0;
@@ -1748,6 +1749,7 @@ static void block_take(int32_t *s, int32_t *f, int32_t *c, int32_t *r) {
     int32_t ref_x = 0;
     int32_t ref_y = 0;
     int32_t ref_z = 0;
+    int32_t since = 0;
     int32_t square_accel = 0;
     int32_t square_gyro = 0;
     int32_t square_step = 0;
@@ -1774,9 +1776,12 @@ static void block_take(int32_t *s, int32_t *f, int32_t *c, int32_t *r) {
     moving = s[18];
     leap_us = c[1];
     usual_us = leap_us;
+    since = p;
     elapsed_us = 0;
     most_jump = (c[2] - 1);
     least_jump = (1 - c[2]);
+    near = ((c[2] > 256) ? 256 : 0);
+    near_bits = (near ? 9 : 0);
     last_t = s[3];
     last_x = s[4];
     last_y = s[5];
@@ -1805,17 +1810,20 @@ static void block_take(int32_t *s, int32_t *f, int32_t *c, int32_t *r) {
     due_y = ((s[(58 + 1)] + 128) - bias_y);
     due_z = ((s[(58 + 2)] + 128) - bias_z);
     while (left) {
-        dt = f[p];
-        if (dt != usual_us) {
-            if ((dt <= 0) || (dt > leap_us)) {
+        if (f[p] != usual_us) {
+            if ((f[p] <= 0) || (f[p] > leap_us)) {
                 break;
             }
-            usual_us = dt;
+            elapsed_us = (elapsed_us + (((p - since) >> 3) * usual_us));
+            since = p;
+            usual_us = f[p];
         }
         t = f[(p + 4)];
         d = (t - last_t);
-        if ((d > most_jump) || (d < least_jump)) {
-            break;
+        if (((d + near) >> near_bits)) {
+            if ((d > most_jump) || (d < least_jump)) {
+                break;
+            }
         }
         x = f[(p + 5)];
         y = f[(p + 6)];
@@ -1862,26 +1870,23 @@ static void block_take(int32_t *s, int32_t *f, int32_t *c, int32_t *r) {
             g = (z - last_z);
             square_step = (square_step + (((a * a) + (b * b)) + (g * g)));
         }
-        elapsed_us = (elapsed_us + dt);
         last_t = t;
         last_x = x;
         last_y = y;
         last_z = z;
-        d = (shift_left(x, 8) + due_x);
-        f[(p + 5)] = (d >> 8);
-        due_x = ((d & 255) - bias_x);
-        d = (shift_left(y, 8) + due_y);
-        f[(p + 6)] = (d >> 8);
-        due_y = ((d & 255) - bias_y);
-        d = (shift_left(z, 8) + due_z);
-        f[(p + 7)] = (d >> 8);
-        due_z = ((d & 255) - bias_z);
+        f[(p + 5)] = ((due_x >> 8) + x);
+        due_x = ((due_x & 255) - bias_x);
+        f[(p + 6)] = ((due_y >> 8) + y);
+        due_y = ((due_y & 255) - bias_y);
+        f[(p + 7)] = ((due_z >> 8) + z);
+        due_z = ((due_z & 255) - bias_z);
         f[p] = 0;
         p = (p + 8);
         left = (left - 1);
     }
     r[7] = p;
     n = (n - left);
+    elapsed_us = (elapsed_us + (((p - since) >> 3) * usual_us));
     if (n) {
         block_account(s, f, p, n, elapsed_us);
         s[4] = last_x;

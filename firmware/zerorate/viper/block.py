@@ -9,7 +9,7 @@ from .step import learn_at_once
 
 
 @micropython.viper
-def take(s: ptr32, d: int, f_p: ptr32, r: ptr32, c: ptr32, f: ptr32):
+def take(f_p: ptr32, s: ptr32, r: ptr32, c: ptr32, f: ptr32):
     if s[53] or c[46] or (not c[3] - 4) or (c[1] > 2097151):
         left = 0
     elif not s[8] or s[8] > 536870400:
@@ -172,9 +172,12 @@ def take(s: ptr32, d: int, f_p: ptr32, r: ptr32, c: ptr32, f: ptr32):
     moving = s[18]
     leap_us = c[1]
     usual_us = leap_us
+    since = p
     elapsed_us = 0
     most_jump = c[2] - 1
     least_jump = 1 - c[2]
+    near = 256 if c[2] > 256 else 0
+    near_bits = 9 if near else 0
     last_t = s[3]
     last_x = s[4]
     last_y = s[5]
@@ -203,15 +206,17 @@ def take(s: ptr32, d: int, f_p: ptr32, r: ptr32, c: ptr32, f: ptr32):
     due_y = s[59] + 128 - bias_y
     due_z = s[60] + 128 - bias_z
     while left:
-        dt = f_p[0]
-        if dt - usual_us:
-            if dt <= 0 or dt > leap_us:
+        if f_p[0] - usual_us:
+            if f_p[0] <= 0 or f_p[0] > leap_us:
                 break
-            usual_us = dt
+            elapsed_us = (p - since >> 3) * usual_us + elapsed_us
+            since = p
+            usual_us = f_p[0]
         t = f_p[4]
         d = t - last_t
-        if d > most_jump or d < least_jump:
-            break
+        if d + near >> near_bits:
+            if d > most_jump or d < least_jump:
+                break
         x = f_p[5]
         y = f_p[6]
         z = f_p[7]
@@ -250,26 +255,23 @@ def take(s: ptr32, d: int, f_p: ptr32, r: ptr32, c: ptr32, f: ptr32):
             b = y - last_y
             g = z - last_z
             square_step = a * a + b * b + g * g + square_step
-        elapsed_us = elapsed_us + dt
         last_t = t
         last_x = x
         last_y = y
         last_z = z
-        d = (x << 8) + due_x
-        f_p[5] = d >> 8
-        due_x = (d & 255) - bias_x
-        d = (y << 8) + due_y
-        f_p[6] = d >> 8
-        due_y = (d & 255) - bias_y
-        d = (z << 8) + due_z
-        f_p[7] = d >> 8
-        due_z = (d & 255) - bias_z
+        f_p[5] = (due_x >> 8) + x
+        due_x = (due_x & 255) - bias_x
+        f_p[6] = (due_y >> 8) + y
+        due_y = (due_y & 255) - bias_y
+        f_p[7] = (due_z >> 8) + z
+        due_z = (due_z & 255) - bias_z
         f_p[0] = 0
         p = p + 8
         f_p = ptr32(int(f_p) + 32)
         left = left - 1
     r[7] = p
     n = n - left
+    elapsed_us = (p - since >> 3) * usual_us + elapsed_us
     if n:
         account_elapsed_us = elapsed_us
         s[0] = f[p - 7]
@@ -626,17 +628,17 @@ def one(s: ptr32, r: ptr32, c: ptr32, f: ptr32, s_, c_, r_):
         else:
             step_step_admit_stillness_gather_result = 1
         if step_step_admit_stillness_gather_result:
-            close(s_, 0, 0, c_, s_, c_)
+            close(0, s_, 0, c_, s_, c_)
         if not s[8] - 1 or not c[3] - 4:
             s[47] = r[3]
             s[53] = 1
             while s[53]:
-                advance(0, c_, s_, s_, c_)
+                advance(c_, s_, s_, c_)
         if c[46]:
             learn_at_once(s_, c_, r_, s_, c_)
     step_step_admit_i = c[12]
     while step_step_admit_i > 0 and s[53]:
-        advance(0, c_, s_, s_, c_)
+        advance(c_, s_, s_, c_)
         step_step_admit_i = step_step_admit_i - 1
     if step_step_kind > 2:
         step_step_result = step_step_kind
@@ -692,6 +694,6 @@ def block(s_, f_, c_, r_, n: int):
     while r[7] < r[8]:
         n = r[7]
         if not s[53] and s[17] < c[3] - 1:
-            take(s_, 0, 0, r_, c_, f_)
+            take(0, s_, r_, c_, f_)
         if not r[7] - n:
             one(s_, r_, c_, f_, s_, c_, r_)

@@ -51,7 +51,7 @@ def start(a: int, e: ptr32, u: int):
 
 
 @micropython.viper
-def remembered(u: int, a: int, e: ptr32) -> int:
+def remembered(a: int, u: int, e: ptr32) -> int:
     e_a = ptr32(int(e) + (a << 2))
     kind = e_a[7]
     a = a + 35
@@ -186,7 +186,7 @@ def basis(e: ptr32, a: int, e_) -> int:
     if not e_a[34]:
         start(a, e_, v)
     if e_a[7]:
-        v = int(remembered(v, a, e_))
+        v = int(remembered(a, v, e_))
     if e_a[11] - -1073741823:
         v = v - e_a[11]
         if v >> 30:

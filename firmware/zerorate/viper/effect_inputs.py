@@ -7,7 +7,7 @@ import micropython
 
 
 @micropython.viper
-def accumulate(shake_d: int, e: ptr32, shake_slow: int, x: ptr32):
+def accumulate(e: ptr32, x: ptr32):
     a = 32
     e_a = ptr32(int(e) + (a << 2))
     end = 6 * e[1] + 32
@@ -79,7 +79,7 @@ def accumulate(shake_d: int, e: ptr32, shake_slow: int, x: ptr32):
 
 
 @micropython.viper
-def close_tick(e_a: ptr32, e: ptr32):
+def close_tick(e: ptr32):
     a = 32
     e_a = ptr32(int(e) + (a << 2))
     end = 6 * e[1] + 32

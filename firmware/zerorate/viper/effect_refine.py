@@ -98,7 +98,7 @@ def attend(s: ptr32, c: ptr32, e_):
                 effect_refine_observe_i = effect_refine_observe_i + 1
             e[582] = 1
     elif e[582]:
-        refine(0, 0, e_, e_)
+        refine(e_, e_)
 
 
 @micropython.viper
@@ -108,18 +108,18 @@ def product(a: int, b: int, e: ptr32, to: int, e_):
     e_to[1] = -4096
     i = e[583]
     while i > 0:
-        multiply(0, a, e_, b, 590)
+        multiply(a, e_, b, 590)
         if e_to[1] < e[591]:
-            add_smaller(0, e_, 590, to, to)
+            add_smaller(e_, 590, to, to)
         else:
-            add_smaller(0, e_, to, 590, to)
+            add_smaller(e_, to, 590, to)
         a = a + 2
         b = b + 2
         i = i - 1
 
 
 @micropython.viper
-def miss(restore_put_learned_put_m: int, restore_put_learned_put_e: int, put_m: int, e: ptr32, axis: int, e_):
+def miss(restore_put_learned_put_m: int, restore_put_learned_put_e: int, e: ptr32, axis: int, e_):
     i = axis * 20 + 642
     product(i, 602, e_, 592, e_)
     put_m = e[axis + 584]
@@ -140,7 +140,7 @@ def miss(restore_put_learned_put_m: int, restore_put_learned_put_e: int, put_m: 
         e[590] = put_m
         e[591] = put_e
     i = 2 * axis + 596
-    subtract(0, e_, 590, 592, i, e_)
+    subtract(e_, 592, i, 590, e_)
     restore_a = 112
     restore_i = 606
     while restore_i < 2 * e[583] + 602:
@@ -165,40 +165,40 @@ def miss(restore_put_learned_put_m: int, restore_put_learned_put_e: int, put_m: 
                 restore_put_learned_put_e = restore_put_learned_put_e + 1
             e[590] = restore_put_learned_put_m
             e[591] = restore_put_learned_put_e
-        multiply(0, 590, e_, restore_i, 590)
+        multiply(590, e_, restore_i, 590)
         if e[i + 1] < e[591]:
-            add_smaller(0, e_, 590, i, i)
+            add_smaller(e_, 590, i, i)
         else:
-            add_smaller(0, e_, i, 590, i)
+            add_smaller(e_, i, 590, i)
         restore_a = restore_a + 40
         restore_i = restore_i + 2
 
 
 @micropython.viper
 def believe(put_m: int, put_e: int, e: ptr32, i: int, e_):
-    divide(0, e_, 2 * i + 622, 594, 592)
-    multiply(0, 592, e_, 596, 590)
+    divide(e_, 2 * i + 622, 594, 592)
+    multiply(592, e_, 596, 590)
     at = 2 * i + 642
     if e[at + 1] < e[591]:
-        add_smaller(0, e_, 590, at, at)
+        add_smaller(e_, 590, at, at)
     else:
-        add_smaller(0, e_, at, 590, at)
-    multiply(0, 592, e_, 598, 590)
+        add_smaller(e_, at, 590, at)
+    multiply(592, e_, 598, 590)
     at = 2 * i + 662
     if e[at + 1] < e[591]:
-        add_smaller(0, e_, 590, at, at)
+        add_smaller(e_, 590, at, at)
     else:
-        add_smaller(0, e_, at, 590, at)
-    multiply(0, 592, e_, 600, 590)
+        add_smaller(e_, at, 590, at)
+    multiply(592, e_, 600, 590)
     at = 2 * i + 682
     if e[at + 1] < e[591]:
-        add_smaller(0, e_, 590, at, at)
+        add_smaller(e_, 590, at, at)
     else:
-        add_smaller(0, e_, at, 590, at)
+        add_smaller(e_, at, 590, at)
     at = i * 20 + 702
     i = 0
     while i < e[583]:
-        multiply(0, 592, e_, 2 * i + 622, 590)
+        multiply(592, e_, 2 * i + 622, 590)
         put_m = -e[590]
         put_e = e[591]
         if not put_m:
@@ -217,15 +217,15 @@ def believe(put_m: int, put_e: int, e: ptr32, i: int, e_):
             e[590] = put_m
             e[591] = put_e
         if e[at + 1] < e[591]:
-            add_smaller(0, e_, 590, at, at)
+            add_smaller(e_, 590, at, at)
         else:
-            add_smaller(0, e_, at, 590, at)
+            add_smaller(e_, at, 590, at)
         at = at + 2
         i = i + 1
 
 
 @micropython.viper
-def move(whole_m: int, state: int, e: ptr32, a: int):
+def move(state: int, e: ptr32, a: int):
     e_a = ptr32(int(e) + (a << 2))
     bound_most = 0
     bound_m = e_a[30]
@@ -272,7 +272,7 @@ def move(whole_m: int, state: int, e: ptr32, a: int):
 
 
 @micropython.viper
-def refine(put_m: int, put_e: int, e: ptr32, e_):
+def refine(e: ptr32, e_):
     n = e[583]
     i = e[582] - 1
     if i >> 30:
@@ -294,9 +294,9 @@ def refine(put_m: int, put_e: int, e: ptr32, e_):
             e[590] = put_m
             e[591] = put_e
             if e[703] < e[591]:
-                add_smaller(0, e_, 590, 702, 702)
+                add_smaller(e_, 590, 702, 702)
             else:
-                add_smaller(0, e_, 702, 590, 702)
+                add_smaller(e_, 702, 590, 702)
         product(i * 20 + 702, 602, e_, 2 * i + 622, e_)
     elif not i - n:
         product(622, 602, e_, 594, e_)
@@ -314,17 +314,17 @@ def refine(put_m: int, put_e: int, e: ptr32, e_):
         e[590] = put_m
         e[591] = put_e
         if e[595] < e[591]:
-            add_smaller(0, e_, 590, 594, 594)
+            add_smaller(e_, 590, 594, 594)
         else:
-            add_smaller(0, e_, 594, 590, 594)
+            add_smaller(e_, 594, 590, 594)
     elif i < n + 4:
-        miss(0, 0, 0, e_, i - n - 1, e_)
+        miss(0, 0, e_, i - n - 1, e_)
     elif i < 2 * n + 4:
         believe(0, 0, e_, i - n - 4, e_)
     else:
         i = 2
         while i < n and e[588] >= 64:
-            move(0, i, e_, (i - 2) * 40 + 112)
+            move(i, e_, (i - 2) * 40 + 112)
             i = i + 1
         e[582] = 0
         if e[588] < 65535:
@@ -455,7 +455,7 @@ def begin(e_, slots: int):
                 doubt_put_e = doubt_put_e + 1
             e[590] = doubt_put_m
             e[591] = doubt_put_e
-        multiply(0, 590, e_, 590, doubt_p)
+        multiply(590, e_, 590, doubt_p)
         i = i + 1
     e[582] = 0
     e[588] = 0

@@ -32,14 +32,14 @@ def sense(s: ptr32, e_, x_, dt_us: int, good: int):
                 e[7] = (pass_time_dt_us - 4096 << 1) + e[7]
                 pass_time_dt_us = 4096
             e[4] = pass_time_dt_us
-            close_tick(0, e_)
+            close_tick(e_)
     if good:
-        accumulate(0, e_, 0, x_)
+        accumulate(e_, x_)
         if not e[8] - 1:
             e[8] = 2
             e[4] = e[4] + 1
-            close_tick(0, e_)
-            accumulate(0, e_, 0, x_)
+            close_tick(e_)
+            accumulate(e_, x_)
     dt_us = e[6]
     while dt_us > 0 and e[4] > 0:
         run_slot_i = e[5]

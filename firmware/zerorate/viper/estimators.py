@@ -39,7 +39,7 @@ def reset(s: ptr32, c: ptr32, a: int):
 
 
 @micropython.viper
-def protected(s: ptr32, c: ptr32, a: int, e: int) -> int:
+def protected(c: ptr32, s: ptr32, a: int, e: int) -> int:
     s_a = ptr32(int(s) + (a << 2))
     third_temp = s[e]
     third_span = s_a[4] - s_a[3] + 1
@@ -76,7 +76,7 @@ def protected(s: ptr32, c: ptr32, a: int, e: int) -> int:
 
 
 @micropython.viper
-def most_crowded(distance_gap: int, distance_d: int, c: ptr32, s: ptr32, a: int, e: int, s_, c_) -> int:
+def most_crowded(distance_d: int, distance_gap: int, c: ptr32, s: ptr32, a: int, e: int, s_, c_) -> int:
     found = e
     distance_nearest = 1048575
     distance_d = a + c[47]
@@ -114,7 +114,7 @@ def most_crowded(distance_gap: int, distance_d: int, c: ptr32, s: ptr32, a: int,
                 outermost_d = outermost_d + c[26]
             outermost_result = outermost_colder | outermost_hotter
             if not outermost_result:
-                if not int(protected(s_, c_, a, d)):
+                if not int(protected(c_, s_, a, d)):
                     distance_nearest = 1048575
                     distance_d = a + c[47]
                     while distance_d < a + c[15]:
@@ -141,7 +141,7 @@ def copy(s: ptr32, c: ptr32, to: int, e: int):
 
 
 @micropython.viper
-def make_room(victim_d: int, victim_poorest_d: int, c: ptr32, s: ptr32, a: int, temp: int, s_, c_) -> int:
+def make_room(victim_d: int, c: ptr32, victim_poorest_d: int, a: int, s: ptr32, temp: int, s_, c_) -> int:
     s_a = ptr32(int(s) + (a << 2))
     e = s[a + 5 + c[24]]
     s_e = ptr32(int(s) + (e << 2))
@@ -172,7 +172,7 @@ def make_room(victim_d: int, victim_poorest_d: int, c: ptr32, s: ptr32, a: int, 
                 victim_poorest_d = a + c[47]
                 while victim_poorest_d < a + c[15]:
                     if s[victim_poorest_d + 3] < s[victim_poorest_found + 3]:
-                        if not int(protected(s_, c_, a, victim_poorest_d)):
+                        if not int(protected(c_, s_, a, victim_poorest_d)):
                             victim_poorest_found = victim_poorest_d
                     victim_poorest_d = victim_poorest_d + c[26]
                 k = victim_poorest_found
@@ -191,7 +191,7 @@ def make_room(victim_d: int, victim_poorest_d: int, c: ptr32, s: ptr32, a: int, 
 
 
 @micropython.viper
-def feed(histogram_add_halve_count: int, histogram_add_halve_i: int, s: ptr32, c: ptr32, e: int, a: int, s_, c_):
+def feed(histogram_add_histogram_place_k: int, histogram_add_halve_i: int, s: ptr32, c: ptr32, e: int, a: int, s_, c_):
     s_a = ptr32(int(s) + (a << 2))
     s_e = ptr32(int(s) + (e << 2))
     if not s_e[3]:
@@ -246,7 +246,7 @@ def feed(histogram_add_halve_count: int, histogram_add_halve_i: int, s: ptr32, c
                 histogram_add_halve_i = histogram_add_halve_i + 1
         s[histogram_add_h + histogram_add_k] += s_a[1]
         s[histogram_add_h + histogram_add_k + 1 + c[16]] += s_a[0]
-        adapt(histogram_add_h, 0, s_, c_, histogram_add_k, s_, c_)
+        adapt(histogram_add_h, s_, c_, histogram_add_k, s_, c_)
         histogram_add_result = 1
     if not histogram_add_result:
         return
@@ -282,7 +282,7 @@ def feed(histogram_add_halve_count: int, histogram_add_halve_i: int, s: ptr32, c
 
 
 @micropython.viper
-def learn_here(age_halve_count: int, age_halve_i: int, s: ptr32, c: ptr32, a: int, s_, c_):
+def learn_here(find_e: int, s: ptr32, age_halve_i: int, c: ptr32, a: int, s_, c_):
     s_a = ptr32(int(s) + (a << 2))
     temp = s[52]
     while True:
@@ -307,7 +307,7 @@ def learn_here(age_halve_count: int, age_halve_i: int, s: ptr32, c: ptr32, a: in
         e = 0
         break
     if not e:
-        e = int(make_room(0, 0, c_, s_, a, temp, s_, c_))
+        e = int(make_room(0, c_, 0, a, s_, temp, s_, c_))
     if e < a + c[47]:
         touch_k = a + 6
         s_touch_k = ptr32(int(s) + (touch_k << 2))

@@ -18,7 +18,7 @@ def clear(s: ptr32, c: ptr32, h: int, middle: int):
 
 
 @micropython.viper
-def halve(count: int, h: int, s: ptr32, bins: int):
+def halve(h: int, s: ptr32, bins: int):
     i = 0
     while i < bins:
         count = s[h + i] & 16383
@@ -83,7 +83,7 @@ def share_by_mean(h: int, j: int, s: ptr32, bins: int):
 
 
 @micropython.viper
-def crowded(j: int, s: ptr32, p: int, c: ptr32, h: int) -> int:
+def crowded(j: int, p: int, s: ptr32, h: int, c: ptr32) -> int:
     s_p = ptr32(int(s) + (p << 2))
     j = j + h
     p = p + h
@@ -101,7 +101,7 @@ def crowded(j: int, s: ptr32, p: int, c: ptr32, h: int) -> int:
 
 
 @micropython.viper
-def adapt(h: int, halve_count: int, s: ptr32, c: ptr32, k: int, s_, c_) -> int:
+def adapt(h: int, s: ptr32, c: ptr32, k: int, s_, c_) -> int:
     if c[21]:
         fullest_bins = c[16]
         fullest_j = 0
@@ -166,7 +166,7 @@ def adapt(h: int, halve_count: int, s: ptr32, c: ptr32, k: int, s_, c_) -> int:
         emptiest_i = emptiest_i + 1
         s_emptiest_i = ptr32(int(s_emptiest_i) + 4)
     pair = emptiest_found
-    if not int(crowded(k, s_, pair, c_, h)):
+    if not int(crowded(k, pair, s_, h, c_)):
         return 0
     merge(pair, h, s_, c[16])
     if pair < k:
@@ -176,5 +176,5 @@ def adapt(h: int, halve_count: int, s: ptr32, c: ptr32, k: int, s_, c_) -> int:
         share_evenly(h, k, s_, c[16])
     else:
         share_by_mean(h, k, s_, c[16])
-        halve(0, h, s_, c[16])
+        halve(h, s_, c[16])
     return 1

@@ -117,7 +117,7 @@ def update(s_, c_, x: ptr32, dt_us: int) -> int:
 @micropython.viper
 def work(s: ptr32, c: ptr32, s_, c_) -> int:
     if not s[13] - 2:
-        return int(solve(0, 0, s_, c_, s_, c_))
+        return int(solve(s_, c_, s_, c_))
     i = c[5]
     while i > 0 and (not s[13] - 1):
         visit(s_, 0, c_, s_)
@@ -474,7 +474,7 @@ def visit(s: ptr32, sum_up_i: int, c: ptr32, s_):
 
 
 @micropython.viper
-def solve(solve_document_own_slope_put_m: int, solve_document_own_variance_put_m: int, s: ptr32, c: ptr32, s_, c_) -> int:
+def solve(s: ptr32, c: ptr32, s_, c_) -> int:
     k = s[15]
     s[15] = k + 1
     if c[20]:
@@ -482,7 +482,7 @@ def solve(solve_document_own_slope_put_m: int, solve_document_own_variance_put_m
             centre(s_, s[12], 3 * k, 21 * k + 85)
         elif k < 6:
             solve_document_own_slope_i = k - 3
-            own_square(0, s_, solve_document_own_slope_i)
+            own_square(s_, solve_document_own_slope_i)
             solve_document_own_slope_a = s[12] - 16
             solve_document_own_slope_put_m = s[22 * solve_document_own_slope_i + 91]
             solve_document_own_slope_put_e = solve_document_own_slope_a
@@ -501,16 +501,16 @@ def solve(solve_document_own_slope_put_m: int, solve_document_own_variance_put_m
                     solve_document_own_slope_put_e = solve_document_own_slope_put_e + 1
                 s[202] = solve_document_own_slope_put_m
                 s[203] = solve_document_own_slope_put_e
-            divide(0, s_, 202, 204, 2 * solve_document_own_slope_i + 184)
+            divide(s_, 202, 204, 2 * solve_document_own_slope_i + 184)
         elif k < 9:
             noise(0, 0, s_, k - 6, s_)
         elif not k - 9:
-            if int(last_pass(c_, s_)):
+            if int(last_pass(s_, c_)):
                 s[14] = c[9]
-            remove_slope(0, 0, s_, c_, s_)
+            remove_slope(0, s_, c_, s_)
         elif k < 13:
             solve_document_own_variance_i = k - 10
-            own_square(0, s_, solve_document_own_variance_i)
+            own_square(s_, solve_document_own_variance_i)
             solve_document_own_variance_put_m = -c[21]
             solve_document_own_variance_put_e = 0
             if not solve_document_own_variance_put_m:
@@ -528,12 +528,12 @@ def solve(solve_document_own_slope_put_m: int, solve_document_own_variance_put_m
                     solve_document_own_variance_put_e = solve_document_own_variance_put_e + 1
                 s[202] = solve_document_own_variance_put_m
                 s[203] = solve_document_own_variance_put_e
-            multiply(0, 202, s_, 2 * solve_document_own_variance_i + 196, 202)
+            multiply(202, s_, 2 * solve_document_own_variance_i + 196, 202)
             if solve_document_own_variance_i > solve_document_own_variance_i:
                 solve_document_own_variance_i = (4 * solve_document_own_variance_i - ((solve_document_own_variance_i + 1) * solve_document_own_variance_i >> 1) + solve_document_own_variance_i) * 2 + 33
             else:
                 solve_document_own_variance_i = (4 * solve_document_own_variance_i - ((solve_document_own_variance_i + 1) * solve_document_own_variance_i >> 1) + solve_document_own_variance_i) * 2 + 33
-            divide(0, s_, 202, 204, solve_document_own_variance_i)
+            divide(s_, 202, 204, solve_document_own_variance_i)
         else:
             s[13] = 0
             return int(finish(s_, c_))
@@ -586,14 +586,14 @@ def solve(solve_document_own_slope_put_m: int, solve_document_own_variance_put_m
         noise(0, 0, s_, k - 17, s_)
     elif not k - 20:
         weights(0, s_, 0, s_, c_)
-        if not int(last_pass(c_, s_)):
-            remove_slope(0, 0, s_, c_, s_)
+        if not int(last_pass(s_, c_)):
+            remove_slope(0, s_, c_, s_)
     elif k < 33:
         normal_equations(s_, k - 21, s_)
     elif not k - 33:
         step(s_)
         s[14] = c[9]
-        remove_slope(0, 0, s_, c_, s_)
+        remove_slope(0, s_, c_, s_)
     else:
         s[13] = 0
         return int(finish(s_, c_))
@@ -630,27 +630,27 @@ def normal_equations(s: ptr32, n: int, s_):
         s[203] = -4096
         element(0, 0, s_, right_side_i + 91, right_side_d, right_side_j, s_)
         right_side_j = 0
-        subtract(0, s_, 172, 178, 204, s_)
+        subtract(s_, 178, 204, 172, s_)
         right_side_multiply_by_prior_a = int(prior_place(right_side_i, 0))
-        multiply(0, 204, s_, right_side_multiply_by_prior_a, 204)
+        multiply(204, s_, right_side_multiply_by_prior_a, 204)
         if s[right_side_d + 1] < s[205]:
-            add_smaller(0, s_, 204, right_side_d, right_side_d)
+            add_smaller(s_, 204, right_side_d, right_side_d)
         else:
-            add_smaller(0, s_, right_side_d, 204, right_side_d)
-        subtract(0, s_, 174, 180, 204, s_)
+            add_smaller(s_, right_side_d, 204, right_side_d)
+        subtract(s_, 180, 204, 174, s_)
         right_side_multiply_by_prior_a = int(prior_place(right_side_i, 1))
-        multiply(0, 204, s_, right_side_multiply_by_prior_a, 204)
+        multiply(204, s_, right_side_multiply_by_prior_a, 204)
         if s[right_side_d + 1] < s[205]:
-            add_smaller(0, s_, 204, right_side_d, right_side_d)
+            add_smaller(s_, 204, right_side_d, right_side_d)
         else:
-            add_smaller(0, s_, right_side_d, 204, right_side_d)
-        subtract(0, s_, 176, 182, 204, s_)
+            add_smaller(s_, right_side_d, 204, right_side_d)
+        subtract(s_, 182, 204, 176, s_)
         right_side_multiply_by_prior_a = int(prior_place(right_side_i, 2))
-        multiply(0, 204, s_, right_side_multiply_by_prior_a, 204)
+        multiply(204, s_, right_side_multiply_by_prior_a, 204)
         if s[right_side_d + 1] < s[205]:
-            add_smaller(0, s_, 204, right_side_d, right_side_d)
+            add_smaller(s_, 204, right_side_d, right_side_d)
         else:
-            add_smaller(0, s_, right_side_d, 204, right_side_d)
+            add_smaller(s_, right_side_d, 204, right_side_d)
         right_side_j = 3
         s[51] = 0
         s[52] = -4096
@@ -734,7 +734,7 @@ def level_and_prior(turn_centre_turned_mean_j: int, s: ptr32, turn_centre_turned
             turn_centre_i = turn_centre_i + 1
     elif not k - 1:
         k = 1 if s[11] == c[16] and s[67] > 0 else 0
-        carry(0, 0, k, s_, c_, s_, c_)
+        carry(0, k, s_, c_, s_, c_)
         if k:
             real_copy_words = 6
             while real_copy_words > 0:
@@ -754,14 +754,14 @@ def level_and_prior(turn_centre_turned_mean_j: int, s: ptr32, turn_centre_turned
             while held_weights_real_copy_words > 0:
                 held_weights_real_copy_words = held_weights_real_copy_words - 1
                 s[held_weights_real_copy_d + held_weights_real_copy_words] = s[held_weights_real_copy_a + held_weights_real_copy_words]
-            weigh(0, 0, s_, c_, 196 + held_weights_i, s_)
+            weigh(0, s_, c_, 196 + held_weights_i, s_)
             held_weights_i = held_weights_i + 2
         s[14] = 1
         begin_traversal(s_)
 
 
 @micropython.viper
-def last_pass(c: ptr32, s: ptr32) -> int:
+def last_pass(s: ptr32, c: ptr32) -> int:
     if s[14] >= c[9]:
         return 1
     whole_shift = 0
@@ -810,16 +810,16 @@ def last_pass(c: ptr32, s: ptr32) -> int:
 
 
 @micropython.viper
-def remove_slope(note_slope_put_m: int, note_slope_put_e: int, s: ptr32, c: ptr32, s_):
+def remove_slope(note_slope_put_m: int, s: ptr32, c: ptr32, s_):
     i = 0
     while i < 6:
         real_add_d = i + 178
         real_add_a = i + 178
         real_add_b = i + 184
         if s[real_add_a + 1] < s[real_add_b + 1]:
-            add_smaller(0, s_, real_add_b, real_add_a, real_add_d)
+            add_smaller(s_, real_add_b, real_add_a, real_add_d)
         else:
-            add_smaller(0, s_, real_add_a, real_add_b, real_add_d)
+            add_smaller(s_, real_add_a, real_add_b, real_add_d)
         i = i + 2
     note_slope_a = s[14] - 1
     if note_slope_a > 2:
@@ -842,7 +842,7 @@ def remove_slope(note_slope_put_m: int, note_slope_put_e: int, s: ptr32, c: ptr3
             note_slope_put_e = note_slope_put_e + 1
         s[202] = note_slope_put_m
         s[203] = note_slope_put_e
-    multiply(0, 202, s_, 184, 202)
+    multiply(202, s_, 184, 202)
     note_slope_whole_shift = 0
     note_slope_whole_m = s[202]
     note_slope_whole_shift = note_slope_whole_shift + s[203]
@@ -873,7 +873,7 @@ def remove_slope(note_slope_put_m: int, note_slope_put_e: int, s: ptr32, c: ptr3
             note_slope_put_e = note_slope_put_e + 1
         s[202] = note_slope_put_m
         s[203] = note_slope_put_e
-    multiply(0, 202, s_, 186, 202)
+    multiply(202, s_, 186, 202)
     note_slope_whole_shift = 0
     note_slope_whole_m = s[202]
     note_slope_whole_shift = note_slope_whole_shift + s[203]
@@ -904,7 +904,7 @@ def remove_slope(note_slope_put_m: int, note_slope_put_e: int, s: ptr32, c: ptr3
             note_slope_put_e = note_slope_put_e + 1
         s[202] = note_slope_put_m
         s[203] = note_slope_put_e
-    multiply(0, 202, s_, 188, 202)
+    multiply(202, s_, 188, 202)
     note_slope_whole_shift = 0
     note_slope_whole_m = s[202]
     note_slope_whole_shift = note_slope_whole_shift + s[203]

@@ -40,11 +40,11 @@ def element(put_m: int, put_e: int, s: ptr32, h: int, d: int, e: int, s_):
                 put_e = put_e + 1
             s[204] = put_m
             s[205] = put_e
-        multiply(0, 204, s_, i + 196, 204)
+        multiply(204, s_, i + 196, 204)
         if s[203] < s[205]:
-            add_smaller(0, s_, 204, 202, 202)
+            add_smaller(s_, 204, 202, 202)
         else:
-            add_smaller(0, s_, 202, 204, 202)
+            add_smaller(s_, 202, 204, 202)
         h = h + 21
         i = i + 2
     real_copy_words = 2
@@ -61,7 +61,7 @@ def prior_place(i: int, j: int) -> int:
 
 
 @micropython.viper
-def sweep(sweep_row_real_copy_words: int, put_m: int, s: ptr32, k: int, s_):
+def sweep(put_m: int, sweep_row_real_copy_words: int, s: ptr32, k: int, s_):
     if k > k:
         d = (4 * k - ((k + 1) * k >> 1) + k) * 2 + 33
     else:
@@ -79,21 +79,21 @@ def sweep(sweep_row_real_copy_words: int, put_m: int, s: ptr32, k: int, s_):
         put_e = put_e + 1
     s[202] = put_m
     s[203] = put_e
-    divide(0, s_, 202, d, 202)
+    divide(s_, 202, d, 202)
     if 0 - k:
         if 0 > k:
             sweep_row_d = (4 * k - ((k + 1) * k >> 1)) * 2 + 33
         else:
             sweep_row_d = 2 * k + 33
-        multiply(0, sweep_row_d, s_, 202, 204)
+        multiply(sweep_row_d, s_, 202, 204)
         if 0 - k:
             if k > 0:
                 sweep_row_d = 2 * k + 33
             else:
                 sweep_row_d = (4 * k - ((k + 1) * k >> 1)) * 2 + 33
-            multiply(0, 204, s_, sweep_row_d, 206)
+            multiply(204, s_, sweep_row_d, 206)
             sweep_row_d = 33
-            subtract(0, s_, 33, 206, 208, s_)
+            subtract(s_, 206, 208, 33, s_)
             sweep_row_real_copy_words = 2
             while sweep_row_real_copy_words > 0:
                 sweep_row_real_copy_words = sweep_row_real_copy_words - 1
@@ -103,9 +103,9 @@ def sweep(sweep_row_real_copy_words: int, put_m: int, s: ptr32, k: int, s_):
                 sweep_row_d = (k + 3) * 2 + 33
             else:
                 sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 1) * 2 + 33
-            multiply(0, 204, s_, sweep_row_d, 206)
+            multiply(204, s_, sweep_row_d, 206)
             sweep_row_d = 35
-            subtract(0, s_, 35, 206, 208, s_)
+            subtract(s_, 206, 208, 35, s_)
             sweep_row_real_copy_words = 2
             while sweep_row_real_copy_words > 0:
                 sweep_row_real_copy_words = sweep_row_real_copy_words - 1
@@ -115,9 +115,9 @@ def sweep(sweep_row_real_copy_words: int, put_m: int, s: ptr32, k: int, s_):
                 sweep_row_d = (k + 5) * 2 + 33
             else:
                 sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 2) * 2 + 33
-            multiply(0, 204, s_, sweep_row_d, 206)
+            multiply(204, s_, sweep_row_d, 206)
             sweep_row_d = 37
-            subtract(0, s_, 37, 206, 208, s_)
+            subtract(s_, 206, 208, 37, s_)
             sweep_row_real_copy_words = 2
             while sweep_row_real_copy_words > 0:
                 sweep_row_real_copy_words = sweep_row_real_copy_words - 1
@@ -127,9 +127,9 @@ def sweep(sweep_row_real_copy_words: int, put_m: int, s: ptr32, k: int, s_):
                 sweep_row_d = (k + 6) * 2 + 33
             else:
                 sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 3) * 2 + 33
-            multiply(0, 204, s_, sweep_row_d, 206)
+            multiply(204, s_, sweep_row_d, 206)
             sweep_row_d = 39
-            subtract(0, s_, 39, 206, 208, s_)
+            subtract(s_, 206, 208, 39, s_)
             sweep_row_real_copy_words = 2
             while sweep_row_real_copy_words > 0:
                 sweep_row_real_copy_words = sweep_row_real_copy_words - 1
@@ -139,15 +139,15 @@ def sweep(sweep_row_real_copy_words: int, put_m: int, s: ptr32, k: int, s_):
             sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 1) * 2 + 33
         else:
             sweep_row_d = (k + 3) * 2 + 33
-        multiply(0, sweep_row_d, s_, 202, 204)
+        multiply(sweep_row_d, s_, 202, 204)
         if 1 - k:
             if k > 1:
                 sweep_row_d = (k + 3) * 2 + 33
             else:
                 sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 1) * 2 + 33
-            multiply(0, 204, s_, sweep_row_d, 206)
+            multiply(204, s_, sweep_row_d, 206)
             sweep_row_d = 41
-            subtract(0, s_, 41, 206, 208, s_)
+            subtract(s_, 206, 208, 41, s_)
             sweep_row_real_copy_words = 2
             while sweep_row_real_copy_words > 0:
                 sweep_row_real_copy_words = sweep_row_real_copy_words - 1
@@ -157,9 +157,9 @@ def sweep(sweep_row_real_copy_words: int, put_m: int, s: ptr32, k: int, s_):
                 sweep_row_d = (k + 5) * 2 + 33
             else:
                 sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 2) * 2 + 33
-            multiply(0, 204, s_, sweep_row_d, 206)
+            multiply(204, s_, sweep_row_d, 206)
             sweep_row_d = 43
-            subtract(0, s_, 43, 206, 208, s_)
+            subtract(s_, 206, 208, 43, s_)
             sweep_row_real_copy_words = 2
             while sweep_row_real_copy_words > 0:
                 sweep_row_real_copy_words = sweep_row_real_copy_words - 1
@@ -169,9 +169,9 @@ def sweep(sweep_row_real_copy_words: int, put_m: int, s: ptr32, k: int, s_):
                 sweep_row_d = (k + 6) * 2 + 33
             else:
                 sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 3) * 2 + 33
-            multiply(0, 204, s_, sweep_row_d, 206)
+            multiply(204, s_, sweep_row_d, 206)
             sweep_row_d = 45
-            subtract(0, s_, 45, 206, 208, s_)
+            subtract(s_, 206, 208, 45, s_)
             sweep_row_real_copy_words = 2
             while sweep_row_real_copy_words > 0:
                 sweep_row_real_copy_words = sweep_row_real_copy_words - 1
@@ -181,15 +181,15 @@ def sweep(sweep_row_real_copy_words: int, put_m: int, s: ptr32, k: int, s_):
             sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 2) * 2 + 33
         else:
             sweep_row_d = (k + 5) * 2 + 33
-        multiply(0, sweep_row_d, s_, 202, 204)
+        multiply(sweep_row_d, s_, 202, 204)
         if 2 - k:
             if k > 2:
                 sweep_row_d = (k + 5) * 2 + 33
             else:
                 sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 2) * 2 + 33
-            multiply(0, 204, s_, sweep_row_d, 206)
+            multiply(204, s_, sweep_row_d, 206)
             sweep_row_d = 47
-            subtract(0, s_, 47, 206, 208, s_)
+            subtract(s_, 206, 208, 47, s_)
             sweep_row_real_copy_words = 2
             while sweep_row_real_copy_words > 0:
                 sweep_row_real_copy_words = sweep_row_real_copy_words - 1
@@ -199,9 +199,9 @@ def sweep(sweep_row_real_copy_words: int, put_m: int, s: ptr32, k: int, s_):
                 sweep_row_d = (k + 6) * 2 + 33
             else:
                 sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 3) * 2 + 33
-            multiply(0, 204, s_, sweep_row_d, 206)
+            multiply(204, s_, sweep_row_d, 206)
             sweep_row_d = 49
-            subtract(0, s_, 49, 206, 208, s_)
+            subtract(s_, 206, 208, 49, s_)
             sweep_row_real_copy_words = 2
             while sweep_row_real_copy_words > 0:
                 sweep_row_real_copy_words = sweep_row_real_copy_words - 1
@@ -211,15 +211,15 @@ def sweep(sweep_row_real_copy_words: int, put_m: int, s: ptr32, k: int, s_):
             sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 3) * 2 + 33
         else:
             sweep_row_d = (k + 6) * 2 + 33
-        multiply(0, sweep_row_d, s_, 202, 204)
+        multiply(sweep_row_d, s_, 202, 204)
         if 3 - k:
             if k > 3:
                 sweep_row_d = (k + 6) * 2 + 33
             else:
                 sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 3) * 2 + 33
-            multiply(0, 204, s_, sweep_row_d, 206)
+            multiply(204, s_, sweep_row_d, 206)
             sweep_row_d = 51
-            subtract(0, s_, 51, 206, 208, s_)
+            subtract(s_, 206, 208, 51, s_)
             sweep_row_real_copy_words = 2
             while sweep_row_real_copy_words > 0:
                 sweep_row_real_copy_words = sweep_row_real_copy_words - 1
@@ -229,25 +229,25 @@ def sweep(sweep_row_real_copy_words: int, put_m: int, s: ptr32, k: int, s_):
             d = (4 * k - ((k + 1) * k >> 1)) * 2 + 33
         else:
             d = 2 * k + 33
-        multiply(0, d, s_, 202, d)
+        multiply(d, s_, 202, d)
     if 1 - k:
         if 1 > k:
             d = (4 * k - ((k + 1) * k >> 1) + 1) * 2 + 33
         else:
             d = (k + 3) * 2 + 33
-        multiply(0, d, s_, 202, d)
+        multiply(d, s_, 202, d)
     if 2 - k:
         if 2 > k:
             d = (4 * k - ((k + 1) * k >> 1) + 2) * 2 + 33
         else:
             d = (k + 5) * 2 + 33
-        multiply(0, d, s_, 202, d)
+        multiply(d, s_, 202, d)
     if 3 - k:
         if 3 > k:
             d = (4 * k - ((k + 1) * k >> 1) + 3) * 2 + 33
         else:
             d = (k + 6) * 2 + 33
-        multiply(0, d, s_, 202, d)
+        multiply(d, s_, 202, d)
     if k > k:
         d = (4 * k - ((k + 1) * k >> 1) + k) * 2 + 33
     else:
@@ -493,7 +493,7 @@ def step(s_):
                 magnitude_put_e = magnitude_put_e + 1
             s[206] = magnitude_put_m
             s[207] = magnitude_put_e
-    subtract(0, s_, 204, 206, 208, s_)
+    subtract(s_, 206, 208, 204, s_)
     if s[208] >> 30:
         less_result = 1
     else:
@@ -529,7 +529,7 @@ def step(s_):
                 magnitude_put_e = magnitude_put_e + 1
             s[206] = magnitude_put_m
             s[207] = magnitude_put_e
-    subtract(0, s_, 204, 206, 208, s_)
+    subtract(s_, 206, 208, 204, s_)
     if s[208] >> 30:
         less_result = 1
     else:
@@ -565,7 +565,7 @@ def step(s_):
                 magnitude_put_e = magnitude_put_e + 1
             s[206] = magnitude_put_m
             s[207] = magnitude_put_e
-    subtract(0, s_, 204, 206, 208, s_)
+    subtract(s_, 206, 208, 204, s_)
     if s[208] >> 30:
         less_result = 1
     else:
@@ -576,15 +576,15 @@ def step(s_):
             real_copy_words = real_copy_words - 1
             s[real_copy_words + 204] = s[real_copy_words + 206]
     i = 3
-    divide(0, s_, 202, 204, 202)
+    divide(s_, 202, 204, 202)
     i = 0
     while i < 6:
-        multiply(0, i + 184, s_, 202, i + 184)
+        multiply(i + 184, s_, 202, i + 184)
         i = i + 2
 
 
 @micropython.viper
-def shape(put_m: int, put_e: int, real_copy_words: int, s: ptr32, y: int, m: int, d: int, s_):
+def shape(put_m: int, real_copy_words: int, put_e: int, s: ptr32, y: int, m: int, d: int, s_):
     put_m = s[y]
     put_e = 0
     if not put_m:
@@ -623,15 +623,15 @@ def shape(put_m: int, put_e: int, real_copy_words: int, s: ptr32, y: int, m: int
             s[204] = put_m
             s[205] = put_e
         y = i + 184
-        multiply(0, 204, s_, y, 204)
-        subtract(0, s_, 202, 204, 206, s_)
+        multiply(204, s_, y, 204)
+        subtract(s_, 204, 206, 202, s_)
         real_copy_words = 2
         while real_copy_words > 0:
             real_copy_words = real_copy_words - 1
             s[real_copy_words + 202] = s[real_copy_words + 206]
         m = m + 1
         i = i + 2
-    multiply(0, 202, s_, 202, d)
+    multiply(202, s_, 202, d)
 
 
 @micropython.viper
@@ -652,7 +652,7 @@ def noise(put_m: int, put_e: int, s: ptr32, i: int, s_):
         put_e = put_e + 1
     s[202] = put_m
     s[203] = put_e
-    multiply(0, 208, s_, 202, d)
+    multiply(208, s_, 202, d)
     shape(0, 0, 0, s_, a + 20, a + 16, 208, s_)
     put_m = 18482
     put_e = -10
@@ -667,11 +667,11 @@ def noise(put_m: int, put_e: int, s: ptr32, i: int, s_):
         put_e = put_e + 1
     s[202] = put_m
     s[203] = put_e
-    multiply(0, 208, s_, 202, 208)
+    multiply(208, s_, 202, 208)
     if s[209] < s[d + 1]:
-        add_smaller(0, s_, d, 208, 208)
+        add_smaller(s_, d, 208, 208)
     else:
-        add_smaller(0, s_, 208, d, 208)
+        add_smaller(s_, 208, d, 208)
     a = s[209] - s[12]
     put_m = s[208]
     put_e = a
@@ -711,17 +711,17 @@ def noise(put_m: int, put_e: int, s: ptr32, i: int, s_):
         s[202] = put_m
         s[203] = put_e
     if s[209] < s[203]:
-        add_smaller(0, s_, 202, 208, d)
+        add_smaller(s_, 202, 208, d)
     else:
-        add_smaller(0, s_, 208, 202, d)
+        add_smaller(s_, 208, 202, d)
 
 
 @micropython.viper
 def weights(real_copy_words: int, s: ptr32, real_copy_d: int, s_, c_):
     if s[197] < s[199]:
-        add_smaller(0, s_, 198, 196, 202)
+        add_smaller(s_, 198, 196, 202)
     else:
-        add_smaller(0, s_, 196, 198, 202)
+        add_smaller(s_, 196, 198, 202)
     put_m = s[202]
     put_e = s[203] - 1
     if not put_m:
@@ -748,7 +748,7 @@ def weights(real_copy_words: int, s: ptr32, real_copy_d: int, s_, c_):
     while i < 6:
         less_a = i + 196
         less_b = i + 190
-        subtract(0, s_, less_a, less_b, 208, s_)
+        subtract(s_, less_b, 208, less_a, s_)
         if s[208] >> 30:
             less_result = 1
         else:
@@ -766,12 +766,12 @@ def weights(real_copy_words: int, s: ptr32, real_copy_d: int, s_, c_):
         while real_copy_words > 0:
             real_copy_words = real_copy_words - 1
             s[real_copy_d + real_copy_words] = s[real_copy_a + real_copy_words]
-        weigh(0, 0, s_, c_, i + 196, s_)
+        weigh(0, s_, c_, i + 196, s_)
         i = i + 2
 
 
 @micropython.viper
-def weigh(put_m: int, put_e: int, s: ptr32, c: ptr32, a: int, s_):
+def weigh(put_m: int, s: ptr32, c: ptr32, a: int, s_):
     put_m = c[21]
     put_e = 0
     if not put_m:
@@ -789,7 +789,7 @@ def weigh(put_m: int, put_e: int, s: ptr32, c: ptr32, a: int, s_):
             put_e = put_e + 1
         s[202] = put_m
         s[203] = put_e
-    multiply(0, 202, s_, a, 204)
+    multiply(202, s_, a, 204)
     put_m = 1
     put_e = 0
     while put_m < 524288 and put_m >= -524288:
@@ -803,11 +803,11 @@ def weigh(put_m: int, put_e: int, s: ptr32, c: ptr32, a: int, s_):
         put_e = put_e + 1
     s[202] = put_m
     s[203] = put_e
-    divide(0, s_, 202, 204, a)
+    divide(s_, 202, 204, a)
 
 
 @micropython.viper
-def own_square(put_m: int, s: ptr32, i: int):
+def own_square(s: ptr32, i: int):
     a = 24 * i + 85
     if not i - 2:
         a = a - 1

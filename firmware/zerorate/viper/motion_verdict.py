@@ -220,7 +220,7 @@ def start_window(s: ptr32, c: ptr32, s_, c_) -> int:
 
 
 @micropython.viper
-def louder(put_m: int, s: ptr32, s_) -> int:
+def louder(s: ptr32, s_) -> int:
     put_m = s[190]
     put_e = s[191] + 8
     if not put_m:
@@ -238,14 +238,14 @@ def louder(put_m: int, s: ptr32, s_) -> int:
             put_e = put_e + 1
         s[202] = put_m
         s[203] = put_e
-    subtract(0, s_, 202, 222, 208, s_)
+    subtract(s_, 222, 208, 202, s_)
     if s[208] >> 30:
         return 1
     return 0
 
 
 @micropython.viper
-def contradicts(put_m: int, put_e: int, s: ptr32, s_) -> int:
+def contradicts(put_m: int, s: ptr32, s_) -> int:
     d = 148
     put_m = s[148]
     put_e = s[149] + 4
@@ -264,9 +264,9 @@ def contradicts(put_m: int, put_e: int, s: ptr32, s_) -> int:
             put_e = put_e + 1
         s[202] = put_m
         s[203] = put_e
-    subtract(0, s_, 178, 172, 204, s_)
-    multiply(0, 204, s_, 204, 204)
-    subtract(0, s_, 202, 204, 208, s_)
+    subtract(s_, 172, 204, 178, s_)
+    multiply(204, s_, 204, 204)
+    subtract(s_, 204, 208, 202, s_)
     if s[208] >> 30:
         less_result = 1
     else:
@@ -291,9 +291,9 @@ def contradicts(put_m: int, put_e: int, s: ptr32, s_) -> int:
             put_e = put_e + 1
         s[202] = put_m
         s[203] = put_e
-    subtract(0, s_, 180, 174, 204, s_)
-    multiply(0, 204, s_, 204, 204)
-    subtract(0, s_, 202, 204, 208, s_)
+    subtract(s_, 174, 204, 180, s_)
+    multiply(204, s_, 204, 204)
+    subtract(s_, 204, 208, 202, s_)
     if s[208] >> 30:
         less_result = 1
     else:
@@ -318,9 +318,9 @@ def contradicts(put_m: int, put_e: int, s: ptr32, s_) -> int:
             put_e = put_e + 1
         s[202] = put_m
         s[203] = put_e
-    subtract(0, s_, 182, 176, 204, s_)
-    multiply(0, 204, s_, 204, 204)
-    subtract(0, s_, 202, 204, 208, s_)
+    subtract(s_, 176, 204, 182, s_)
+    multiply(204, s_, 204, 204)
+    subtract(s_, 204, 208, 202, s_)
     if s[208] >> 30:
         less_result = 1
     else:
@@ -349,7 +349,7 @@ def finish(s_, c_) -> int:
             reason = 6
             break
         if s[67] >= 3:
-            if int(contradicts(0, 0, s_, s_)) or int(louder(0, s_, s_)):
+            if int(contradicts(0, s_, s_)) or int(louder(s_, s_)):
                 reason = 4
                 break
         reason = 2
@@ -464,16 +464,16 @@ def finish(s_, c_) -> int:
             keep_noise_put_e = keep_noise_put_e + 1
         s[202] = keep_noise_put_m
         s[203] = keep_noise_put_e
-        multiply(0, keep_noise_i + 222, s_, 202, keep_noise_i + 190)
+        multiply(keep_noise_i + 222, s_, 202, keep_noise_i + 190)
         keep_noise_i = keep_noise_i + 2
     s[67] = s[67] + 1
     s[69] = 0
-    publish(0, 0, 0, s_, c_, s_)
+    publish(0, 0, s_, c_, s_)
     return 1
 
 
 @micropython.viper
-def publish(put_m: int, put_e: int, real_copy_words: int, s: ptr32, c: ptr32, s_):
+def publish(put_m: int, real_copy_words: int, s: ptr32, c: ptr32, s_):
     put_m = c[10]
     put_e = c[11]
     if not put_m:
@@ -491,8 +491,8 @@ def publish(put_m: int, put_e: int, real_copy_words: int, s: ptr32, c: ptr32, s_
             put_e = put_e + 1
         s[202] = put_m
         s[203] = put_e
-    present(0, 0, s_, 0, s_)
-    multiply(0, 204, s_, 202, 204)
+    present(s_, 0, s_)
+    multiply(204, s_, 202, 204)
     whole_shift = 0
     whole_m = s[204]
     whole_shift = whole_shift + s[205]
@@ -512,8 +512,8 @@ def publish(put_m: int, put_e: int, real_copy_words: int, s: ptr32, c: ptr32, s_
         real_copy_words = real_copy_words - 1
         s[real_copy_words + 204] = s[real_copy_a + real_copy_words]
     put(-s[204], s[205], 204, s_)
-    root_of(0, s_, 204, 204)
-    multiply(0, 204, s_, 202, 204)
+    root_of(s_, 204, 204)
+    multiply(204, s_, 202, 204)
     s[73] = int(whole(0, 204, s_))
     put_m = c[10]
     put_e = c[11]
@@ -532,8 +532,8 @@ def publish(put_m: int, put_e: int, real_copy_words: int, s: ptr32, c: ptr32, s_
             put_e = put_e + 1
         s[202] = put_m
         s[203] = put_e
-    present(0, 0, s_, 1, s_)
-    multiply(0, 204, s_, 202, 204)
+    present(s_, 1, s_)
+    multiply(204, s_, 202, 204)
     whole_shift = 0
     whole_m = s[204]
     whole_shift = whole_shift + s[205]
@@ -553,8 +553,8 @@ def publish(put_m: int, put_e: int, real_copy_words: int, s: ptr32, c: ptr32, s_
         real_copy_words = real_copy_words - 1
         s[real_copy_words + 204] = s[real_copy_a + real_copy_words]
     put(-s[204], s[205], 204, s_)
-    root_of(0, s_, 204, 204)
-    multiply(0, 204, s_, 202, 204)
+    root_of(s_, 204, 204)
+    multiply(204, s_, 202, 204)
     s[74] = int(whole(0, 204, s_))
     put_m = c[10]
     put_e = c[11]
@@ -573,8 +573,8 @@ def publish(put_m: int, put_e: int, real_copy_words: int, s: ptr32, c: ptr32, s_
             put_e = put_e + 1
         s[202] = put_m
         s[203] = put_e
-    present(0, 0, s_, 2, s_)
-    multiply(0, 204, s_, 202, 204)
+    present(s_, 2, s_)
+    multiply(204, s_, 202, 204)
     whole_shift = 0
     whole_m = s[204]
     whole_shift = whole_shift + s[205]
@@ -594,6 +594,6 @@ def publish(put_m: int, put_e: int, real_copy_words: int, s: ptr32, c: ptr32, s_
         real_copy_words = real_copy_words - 1
         s[real_copy_words + 204] = s[real_copy_a + real_copy_words]
     put(-s[204], s[205], 204, s_)
-    root_of(0, s_, 204, 204)
-    multiply(0, 204, s_, 202, 204)
+    root_of(s_, 204, 204)
+    multiply(204, s_, 202, 204)
     s[75] = int(whole(0, 204, s_))

@@ -35,7 +35,7 @@ def copy(s: ptr32, d: int, a: int, words: int):
 
 
 @micropython.viper
-def multiply(put_m: int, a: int, s: ptr32, b: int, d: int):
+def multiply(a: int, s: ptr32, b: int, d: int):
     s_d = ptr32(int(s) + (d << 2))
     s_b = ptr32(int(s) + (b << 2))
     high_product_m = s[a]
@@ -65,7 +65,7 @@ def multiply(put_m: int, a: int, s: ptr32, b: int, d: int):
 
 
 @micropython.viper
-def add_smaller(put_m: int, s: ptr32, a: int, b: int, d: int):
+def add_smaller(s: ptr32, a: int, b: int, d: int):
     s_d = ptr32(int(s) + (d << 2))
     s_a = ptr32(int(s) + (a << 2))
     s_b = ptr32(int(s) + (b << 2))
@@ -94,7 +94,7 @@ def add_smaller(put_m: int, s: ptr32, a: int, b: int, d: int):
 
 
 @micropython.viper
-def subtract(put_m: int, s: ptr32, a: int, b: int, d: int, s_):
+def subtract(s: ptr32, b: int, d: int, a: int, s_):
     s_d = ptr32(int(s) + (d << 2))
     s_b = ptr32(int(s) + (b << 2))
     put_m = -s_b[0]
@@ -115,13 +115,13 @@ def subtract(put_m: int, s: ptr32, a: int, b: int, d: int, s_):
         s_d[0] = put_m
         s_d[1] = put_e
     if s[a + 1] < s_d[1]:
-        add_smaller(0, s_, d, a, d)
+        add_smaller(s_, d, a, d)
     else:
-        add_smaller(0, s_, a, d, d)
+        add_smaller(s_, a, d, d)
 
 
 @micropython.viper
-def divide(put_m: int, s: ptr32, a: int, b: int, d: int):
+def divide(s: ptr32, a: int, b: int, d: int):
     s_d = ptr32(int(s) + (d << 2))
     s_a = ptr32(int(s) + (a << 2))
     s_b = ptr32(int(s) + (b << 2))
@@ -180,7 +180,7 @@ def whole(shift: int, a: int, s: ptr32) -> int:
 
 
 @micropython.viper
-def root_of(put_m: int, s: ptr32, a: int, d: int):
+def root_of(s: ptr32, a: int, d: int):
     s_d = ptr32(int(s) + (d << 2))
     s_a = ptr32(int(s) + (a << 2))
     m = s_a[0]

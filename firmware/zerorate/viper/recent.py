@@ -5,7 +5,7 @@ import micropython
 
 
 @micropython.viper
-def absorb(error_q4_curve_q8_choose_find_e: int, error_q4_curve_q8_choose_find_d: int, c: ptr32, s: ptr32, a: int, s_, c_) -> int:
+def absorb(error_q4_curve_q8_choose_find_e: int, c: ptr32, error_q4_curve_q8_choose_find_d: int, a: int, s: ptr32, s_, c_) -> int:
     s_a = ptr32(int(s) + (a << 2))
     s[80] = s[49] // (3 * s_a[1]) + c[37]
     error_q4_before = s[52]
@@ -102,7 +102,7 @@ def absorb(error_q4_curve_q8_choose_find_e: int, error_q4_curve_q8_choose_find_d
     error_q4_mean = (error_q4_mean << 8) // s_a[1]
     error_q4_mean = (s_a[0] // s_a[1] << 8) + error_q4_mean
     error = error_q4_mean - error_q4_before - s_a[24] >> 4
-    if not int(believe(s_, c_, error, a)):
+    if not int(believe(s_, error, c_, a)):
         return 0
     if not a - c[0] and s[54] < c[39]:
         s[54] = s[54] + 1
@@ -144,7 +144,7 @@ def absorb(error_q4_curve_q8_choose_find_e: int, error_q4_curve_q8_choose_find_d
 
 
 @micropython.viper
-def believe(s: ptr32, c: ptr32, error: int, a: int) -> int:
+def believe(s: ptr32, error: int, c: ptr32, a: int) -> int:
     s_a = ptr32(int(s) + (a << 2))
     if s_a[12]:
         adopt_noise = (s_a[12] >> 3) + c[37]
@@ -256,7 +256,7 @@ def believe(s: ptr32, c: ptr32, error: int, a: int) -> int:
 
 
 @micropython.viper
-def hand_over(curve_q8_choose_find_e: int, curve_q8_choose_find_d: int, c: ptr32, s: ptr32, a: int):
+def hand_over(curve_q8_choose_find_e: int, c: ptr32, curve_q8_choose_find_d: int, a: int, s: ptr32):
     s_a = ptr32(int(s) + (a << 2))
     if s_a[27] >> 30:
         s_a[27] = 0

@@ -11,7 +11,7 @@ from .recent import hand_over
 
 
 @micropython.viper
-def publish(curve_q8_choose_find_e: int, curve_q8_choose_find_d: int, c: ptr32, s: ptr32, a: int, axis: int):
+def publish(curve_q8_choose_find_e: int, c: ptr32, curve_q8_choose_find_d: int, a: int, s: ptr32, axis: int):
     s_a = ptr32(int(s) + (a << 2))
     s_axis = ptr32(int(s) + (axis << 2))
     bias = s[47]
@@ -156,7 +156,7 @@ def publish(curve_q8_choose_find_e: int, curve_q8_choose_find_d: int, c: ptr32, 
 
 
 @micropython.viper
-def advance(s_a: ptr32, c: ptr32, s: ptr32, s_, c_):
+def advance(c: ptr32, s: ptr32, s_, c_):
     axis = (s[53] - 1) // 3
     piece = (s[53] - 1) % 3
     busy = 0
@@ -166,7 +166,7 @@ def advance(s_a: ptr32, c: ptr32, s: ptr32, s_, c_):
         if not piece:
             busy = s_a[1]
             if busy:
-                if not int(absorb(0, 0, c_, s_, a, s_, c_)):
+                if not int(absorb(0, c_, 0, a, s_, s_, c_)):
                     s_a[1] = 0
             if s_a[1]:
                 learn_anywhere_temp = s[52]
@@ -176,7 +176,7 @@ def advance(s_a: ptr32, c: ptr32, s: ptr32, s_, c_):
                     s_a[4] = learn_anywhere_temp
                 feed(0, 0, s_, c_, a + 32, a, s_, c_)
         elif not piece - 1:
-            learn_here(0, 0, s_, c_, a, s_, c_)
+            learn_here(0, s_, 0, c_, a, s_, c_)
             busy = 1
         if s_a[1] and piece < 2:
             piece = piece + 1
@@ -191,18 +191,18 @@ def advance(s_a: ptr32, c: ptr32, s: ptr32, s_, c_):
                 draw_line(0, 0, 0, s_, c_, a, s_, c_)
                 busy = 1
             if s_a[1] and (not c[46]):
-                hand_over(0, 0, c_, s_, a)
+                hand_over(0, c_, 0, a, s_)
             s_a[1] = 0
-            publish(0, 0, c_, s_, a, axis)
+            publish(0, c_, 0, a, s_, axis)
             axis = axis + 1
             piece = 0
     s[53] = axis * 3 + piece + 1 if axis < 3 else 0
 
 
 @micropython.viper
-def close(s: ptr32, stillness_judge_look_spread_q8_i: int, stillness_judge_look_tip_q8_d: int, c: ptr32, s_, c_):
+def close(stillness_judge_look_spread_q8_i: int, s: ptr32, stillness_judge_look_tip_q8_i: int, c: ptr32, s_, c_):
     while s[53]:
-        advance(0, c_, s_, s_, c_)
+        advance(c_, s_, s_, c_)
     while True:
         if s[18] > 3:
             stillness_judge_state = 2
@@ -375,7 +375,7 @@ def learn_at_once(s: ptr32, c: ptr32, x: ptr32, s_, c_):
     if learn_anywhere_temp > s_a[4]:
         s_a[4] = learn_anywhere_temp
     feed(0, 0, s_, c_, a + 32, a, s_, c_)
-    learn_here(0, 0, s_, c_, a, s_, c_)
+    learn_here(0, s_, 0, c_, a, s_, c_)
     s_a[1] = 0
     a = 1 * c[13] + c[0]
     s_a = ptr32(int(s) + (a << 2))
@@ -387,7 +387,7 @@ def learn_at_once(s: ptr32, c: ptr32, x: ptr32, s_, c_):
     if learn_anywhere_temp > s_a[4]:
         s_a[4] = learn_anywhere_temp
     feed(0, 0, s_, c_, a + 32, a, s_, c_)
-    learn_here(0, 0, s_, c_, a, s_, c_)
+    learn_here(0, s_, 0, c_, a, s_, c_)
     s_a[1] = 0
     a = 2 * c[13] + c[0]
     s_a = ptr32(int(s) + (a << 2))
@@ -399,7 +399,7 @@ def learn_at_once(s: ptr32, c: ptr32, x: ptr32, s_, c_):
     if learn_anywhere_temp > s_a[4]:
         s_a[4] = learn_anywhere_temp
     feed(0, 0, s_, c_, a + 32, a, s_, c_)
-    learn_here(0, 0, s_, c_, a, s_, c_)
+    learn_here(0, s_, 0, c_, a, s_, c_)
     s_a[1] = 0
 
 
@@ -579,17 +579,17 @@ def admit(s_, c_, x_, kind: int) -> int:
         else:
             stillness_gather_result = 1
         if stillness_gather_result:
-            close(s_, 0, 0, c_, s_, c_)
+            close(0, s_, 0, c_, s_, c_)
         if not s[8] - 1 or not c[3] - 4:
             s[47] = x[3]
             s[53] = 1
             while s[53]:
-                advance(0, c_, s_, s_, c_)
+                advance(c_, s_, s_, c_)
         if c[46]:
             learn_at_once(s_, c_, x_, s_, c_)
     i = c[12]
     while i > 0 and s[53]:
-        advance(0, c_, s_, s_, c_)
+        advance(c_, s_, s_, c_)
         i = i - 1
     return kind
 
@@ -800,17 +800,17 @@ def step(s_, c_, x_, dt_us: int) -> int:
         else:
             admit_stillness_gather_result = 1
         if admit_stillness_gather_result:
-            close(s_, 0, 0, c_, s_, c_)
+            close(0, s_, 0, c_, s_, c_)
         if not s[8] - 1 or not c[3] - 4:
             s[47] = x[3]
             s[53] = 1
             while s[53]:
-                advance(0, c_, s_, s_, c_)
+                advance(c_, s_, s_, c_)
         if c[46]:
             learn_at_once(s_, c_, x_, s_, c_)
     admit_i = c[12]
     while admit_i > 0 and s[53]:
-        advance(0, c_, s_, s_, c_)
+        advance(c_, s_, s_, c_)
         admit_i = admit_i - 1
     if kind > 2:
         return kind
@@ -868,7 +868,7 @@ def consider(s_, c_, m_, w: int, source: int):
     c = ptr32(c_)
     m = ptr32(m_)
     while s[53]:
-        advance(0, c_, s_, s_, c_)
+        advance(c_, s_, s_, c_)
     s[52] = s[47]
     s[7] = source
     speak_w = w

@@ -27,7 +27,7 @@ def follow_temperature(s: ptr32, temp: int):
 
 
 @micropython.viper
-def present(put_m: int, unpack_put_m: int, s: ptr32, i: int, s_):
+def present(s: ptr32, i: int, s_):
     put_m = s[239] - s[238]
     put_e = -8
     if not put_m:
@@ -64,16 +64,16 @@ def present(put_m: int, unpack_put_m: int, s: ptr32, i: int, s_):
             unpack_put_e = unpack_put_e + 1
         s[206] = unpack_put_m
         s[207] = unpack_put_e
-    multiply(0, 204, s_, 206, 204)
+    multiply(204, s_, 206, 204)
     real_add_b = 2 * i + 178
     if s[205] < s[real_add_b + 1]:
-        add_smaller(0, s_, real_add_b, 204, 204)
+        add_smaller(s_, real_add_b, 204, 204)
     else:
-        add_smaller(0, s_, 204, real_add_b, 204)
+        add_smaller(s_, 204, real_add_b, 204)
 
 
 @micropython.viper
-def unpack_slope(unpack_put_m: int, unpack_put_e: int, s: ptr32, a: int):
+def unpack_slope(unpack_put_m: int, s: ptr32, a: int):
     s_a = ptr32(int(s) + (a << 2))
     unpack_put_m = s_a[0] >> 7 << 5
     unpack_put_e = (s_a[0] & 127) - 96
@@ -157,7 +157,7 @@ def pack_slope(s: ptr32, a: int):
 
 
 @micropython.viper
-def carry(put_m: int, put_e: int, known: int, s: ptr32, c: ptr32, s_, c_):
+def carry(put_m: int, known: int, s: ptr32, c: ptr32, s_, c_):
     i = 0
     put_m = s[237] - s[238]
     put_e = -8
@@ -210,35 +210,35 @@ def carry(put_m: int, put_e: int, known: int, s: ptr32, c: ptr32, s_, c_):
             put_e = put_e + 1
         s[204] = put_m
         s[205] = put_e
-    multiply(0, 206, s_, 204, 208)
+    multiply(206, s_, 204, 208)
     while i < 3 and known:
-        carry_axis(0, 0, 0, s_, i, c_, s_)
+        carry_axis(0, 0, s_, i, c_, s_)
         i = i + 1
     s[238] = s[237]
     s[66] = 0
 
 
 @micropython.viper
-def carry_axis(bend_put_m: int, put_m: int, bend_put_e: int, s: ptr32, i: int, c: ptr32, s_):
+def carry_axis(bend_put_m: int, put_m: int, s: ptr32, i: int, c: ptr32, s_):
     d = 3 * i + 228
-    unpack_slope(0, 0, s_, d)
-    multiply(0, 184, s_, 202, 204)
+    unpack_slope(0, s_, d)
+    multiply(184, s_, 202, 204)
     real_add_d = 2 * i + 172
     real_add_a = 2 * i + 172
     if s[real_add_a + 1] < s[205]:
-        add_smaller(0, s_, 204, real_add_a, real_add_d)
+        add_smaller(s_, 204, real_add_a, real_add_d)
     else:
-        add_smaller(0, s_, real_add_a, 204, real_add_d)
-    multiply(0, 188, s_, 202, 204)
+        add_smaller(s_, real_add_a, 204, real_add_d)
+    multiply(188, s_, 202, 204)
     if s[187] < s[205]:
-        add_smaller(0, s_, 204, 186, 206)
+        add_smaller(s_, 204, 186, 206)
     else:
-        add_smaller(0, s_, 186, 204, 206)
+        add_smaller(s_, 186, 204, 206)
     if s[187] < s[207]:
-        add_smaller(0, s_, 206, 186, 204)
+        add_smaller(s_, 206, 186, 204)
     else:
-        add_smaller(0, s_, 186, 206, 204)
-    multiply(0, 204, s_, 202, 204)
+        add_smaller(s_, 186, 206, 204)
+    multiply(204, s_, 202, 204)
     put_m = s[204] if s[204] > 0 else 0
     put_e = s[205]
     if not put_m:
@@ -257,14 +257,14 @@ def carry_axis(bend_put_m: int, put_m: int, bend_put_e: int, s: ptr32, i: int, c
         s[204] = put_m
         s[205] = put_e
     if s[205] < s[209]:
-        add_smaller(0, s_, 208, 204, 204)
+        add_smaller(s_, 208, 204, 204)
     else:
-        add_smaller(0, s_, 204, 208, 204)
+        add_smaller(s_, 204, 208, 204)
     i = (7 - i) * i + 148
     if s[i + 1] < s[205]:
-        add_smaller(0, s_, 204, i, i)
+        add_smaller(s_, 204, i, i)
     else:
-        add_smaller(0, s_, i, 204, i)
+        add_smaller(s_, i, 204, i)
     bend_i = s[202] if s[202] >= 0 else -s[202]
     bend_put_m = bend_i
     bend_put_e = s[203] - c[25]
@@ -300,11 +300,11 @@ def carry_axis(bend_put_m: int, put_m: int, bend_put_e: int, s: ptr32, i: int, c
             bend_put_e = bend_put_e + 1
         s[160] = bend_put_m
         s[161] = bend_put_e
-    multiply(0, 204, s_, 160, 204)
+    multiply(204, s_, 160, 204)
     if s[189] < s[205]:
-        add_smaller(0, s_, 204, 188, 188)
+        add_smaller(s_, 204, 188, 188)
     else:
-        add_smaller(0, s_, 188, 204, 188)
+        add_smaller(s_, 188, 204, 188)
     put_m = s[206]
     put_e = s[207]
     if not put_m:
@@ -331,26 +331,26 @@ def learn_slopes(learn_slope_put_m: int, learn_slope_put_e: int, learn_slope_i: 
     while i < 3:
         learn_slope_i = i
         learn_slope_d = 3 * learn_slope_i + 228
-        unpack_slope(0, 0, s_, learn_slope_d)
+        unpack_slope(0, s_, learn_slope_d)
         learn_slope_a = (7 - learn_slope_i) * learn_slope_i + 148
-        divide(0, s_, 186, learn_slope_a, 202)
-        subtract(0, s_, 2 * learn_slope_i + 178, 2 * learn_slope_i + 172, 204, s_)
-        multiply(0, 204, s_, 202, 204)
+        divide(s_, 186, learn_slope_a, 202)
+        subtract(s_, 2 * learn_slope_i + 172, 204, 2 * learn_slope_i + 178, s_)
+        multiply(204, s_, 202, 204)
         if s[185] < s[205]:
-            add_smaller(0, s_, 204, 184, 184)
+            add_smaller(s_, 204, 184, 184)
         else:
-            add_smaller(0, s_, 184, 204, 184)
+            add_smaller(s_, 184, 204, 184)
         if learn_slope_i > learn_slope_i:
             learn_slope_i = (4 * learn_slope_i - ((learn_slope_i + 1) * learn_slope_i >> 1) + learn_slope_i) * 2 + 33
         else:
             learn_slope_i = (4 * learn_slope_i - ((learn_slope_i + 1) * learn_slope_i >> 1) + learn_slope_i) * 2 + 33
         if s[learn_slope_a + 1] < s[learn_slope_i + 1]:
-            add_smaller(0, s_, learn_slope_i, learn_slope_a, 204)
+            add_smaller(s_, learn_slope_i, learn_slope_a, 204)
         else:
-            add_smaller(0, s_, learn_slope_a, learn_slope_i, 204)
-        multiply(0, 204, s_, 202, 204)
-        multiply(0, 204, s_, 202, 204)
-        subtract(0, s_, 188, 204, 206, s_)
+            add_smaller(s_, learn_slope_a, learn_slope_i, 204)
+        multiply(204, s_, 202, 204)
+        multiply(204, s_, 202, 204)
+        subtract(s_, 204, 206, 188, s_)
         learn_slope_put_m = s[206] if s[206] > 0 else 0
         learn_slope_put_e = s[207]
         if not learn_slope_put_m:
@@ -385,6 +385,6 @@ def learn_slopes(learn_slope_put_m: int, learn_slope_put_e: int, learn_slope_i: 
                 learn_slope_put_e = learn_slope_put_e + 1
             s[204] = learn_slope_put_m
             s[205] = learn_slope_put_e
-        multiply(0, 202, s_, 204, 186)
+        multiply(202, s_, 204, 186)
         pack_slope(s_, learn_slope_d)
         i = i + 1

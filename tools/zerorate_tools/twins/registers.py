@@ -55,12 +55,14 @@ def for_registers(function: ast.FunctionDef, passed: Collection[str]) -> list[Pa
     return made + [Parameter(f"{name}_", "", places[name]) for name in own if name in passed]
 
 
-def _count(node: ast.AST, rounds: int, used: Counter[str]) -> None:
-    """Add the uses of each name, those in a loop many times; what is passed on is not used."""
+def _count(node: ast.AST, rounds: float, used: Counter[str]) -> None:
+    """Add the uses of each name: many in a loop, half a one in a branch, none where passed on."""
     if isinstance(node, (ast.While, ast.For)):
         rounds *= _ROUNDS
+    if isinstance(node, ast.If):
+        rounds /= 2
     if isinstance(node, ast.Name):
-        used[node.id] += rounds
+        used[node.id] += rounds  # type: ignore[assignment]
     for child in ast.iter_child_nodes(node):
         passed_on = isinstance(node, ast.Call) and "." in getattr(node.func, "id", "")
         if not (passed_on and isinstance(child, ast.Name)):
