@@ -126,3 +126,42 @@ def test_without_temperature_or_acceleration_the_rest_is_still_looked_at(closed,
     every = [{k: v for k, v in columns(i).items() if k not in lacking} for i in range(4)]
     analysis = closed(every)
     assert invented(analysis) == [] and np.isfinite(analysis.judgement.after_dps).all()
+
+
+@pytest.mark.parametrize("name", ["count", "known", "vib count", "gyro0"])
+def test_a_channel_of_any_name_leaves_the_rates_alone(closed, name):
+    every = [columns(i) for i in range(3)]
+    for one in every:
+        one[name] = np.arange(N) * 1000
+    analysis, plain = closed(every), closed([columns(i) for i in range(3)])
+    rate, expected = (a.sessions[0].rate_dps for a in (analysis, plain))
+    assert rate == pytest.approx(expected, nan_ok=True)
+    assert invented(analysis) == []
+
+
+def test_a_channel_named_like_a_source_of_the_model_is_set_aside_and_named(closed):
+    every = [{**columns(i), "vib": np.arange(N)} for i in range(3)]
+    assert "rename the column" in closed(every).gate.dropped["vib"]
+
+
+def test_a_recording_that_is_mostly_a_gap_is_told_to_be_cut(closed):
+    one = columns(1)
+    one["t_us"][N // 2 :] += 10 * 3600 * 1_000_000
+    with pytest.raises(CannotClose, match="s0: nothing for 10.0 h of its .* cut it there"):
+        closed([one])
+
+
+def test_a_temperature_at_the_rails_is_no_temperature(closed):
+    every = [columns(i) for i in range(3)]
+    for i, one in enumerate(every):
+        one["temp"][np.random.default_rng(i).integers(0, N, N // 50)] = -32768
+    analysis = closed(every)
+    assert invented(analysis) == []
+    assert all(np.ptp(s.sources["temp"]) < 20 for s in analysis.sessions)
+
+
+def test_an_accelerometer_that_gives_nothing_is_none(closed):
+    every = [
+        {**columns(i), "ax": np.zeros(N), "ay": np.zeros(N), "az": np.zeros(N)} for i in range(3)
+    ]
+    assert invented(closed(every)) == []

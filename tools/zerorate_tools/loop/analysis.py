@@ -15,7 +15,15 @@ from .by_kernels import PiecesByKernels
 from .catalogue import extra_channels
 from .earth import ROTATION, name_earth
 from .floor import floor_dps
-from .gate import CannotClose, GateReport, enough, readable, same_settings, usable_channels
+from .gate import (
+    CannotClose,
+    GateReport,
+    enough,
+    readable,
+    same_settings,
+    usable_channels,
+    without_long_gaps,
+)
 from .in_motion import InMotion, in_motion, slots_of, without_scales
 from .judge import Judgement, judge
 from .line import deployed
@@ -24,7 +32,7 @@ from .measured import Measured
 from .periodic import periodic
 from .power_on import PowerOn, ideal_dps
 from .select import Selection, select
-from .sessions import Session
+from .sessions import OWN_SOURCES, Session
 from .single import pieces, split
 from .ticks import Ticks
 
@@ -122,6 +130,7 @@ def sessions_of(ticks: list[Ticks]) -> tuple[list[Session], GateReport]:
     gate = GateReport({t.name: t.faults for t in ticks})
     readable(ticks)
     same_settings(ticks)
+    without_long_gaps(ticks)
     sessions = sessions_from(ticks)
     kept = []
     for s in sessions:
@@ -134,5 +143,7 @@ def sessions_of(ticks: list[Ticks]) -> tuple[list[Session], GateReport]:
             gate.notes.append(f"left out: {problem}")
     if not kept:
         raise CannotClose("; ".join(n.removeprefix("left out: ") for n in gate.notes))
+    for name in {n for t in ticks for n in t.extra if n in OWN_SOURCES}:
+        gate.dropped[name] = "named like a source of the model's own: rename the column"
     usable_channels(kept, gate)
     return kept, gate

@@ -59,7 +59,10 @@ def turns_between_rests(ticks, still: np.ndarray) -> list[Between]:
 
 
 def _angle_deg(one, other):
-    cosine = one @ other / (np.linalg.norm(one) * np.linalg.norm(other))
+    length = np.linalg.norm(one) * np.linalg.norm(other)
+    if not length > 0:  # an accelerometer that gives nothing
+        return 0.0
+    cosine = one @ other / length
     return np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
 
 

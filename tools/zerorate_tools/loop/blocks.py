@@ -6,7 +6,7 @@ import numpy as np
 
 from .earth import earth_of
 from .gram import can_be_bridged
-from .sessions import Session
+from .sessions import OWN_SOURCES, Session
 from .staircase import unstepped
 from .still import still_ticks
 from .ticks import Ticks, gap_filled
@@ -96,5 +96,5 @@ def sources_of(ticks: Ticks, m: int) -> dict[str, np.ndarray]:
         out["vib"] = ticks.vib[:m]
     if ticks.reference is not None:
         out.update({f"rate_{a}": gap_filled(ticks.reference[:m, i]) for i, a in enumerate("xyz")})
-    out.update({n: v[:m] for n, v in ticks.extra.items()})
+    out.update({n: v[:m] for n, v in ticks.extra.items() if n not in OWN_SOURCES})
     return out

@@ -14,6 +14,7 @@ LEAST_BLOCKS = 15
 #: Half of it is the turn-on minute, which nothing is judged by.
 LEAST_S = 120.0
 _MOST_FAULTY = 0.5
+_MOST_GAP = 0.5
 #: What a sensor that gives such samples needs.
 _REMEDY = {
     "clipped": "the rates are at the rails: choose a wider range",
@@ -77,6 +78,19 @@ def readable(ticks: list) -> None:
                     f"{t.name}: {100 * count / t.samples:.0f} % of its samples are {kind}; "
                     f"{_REMEDY[kind]}"
                 )
+
+
+def without_long_gaps(ticks: list) -> None:
+    """Raise CannotClose for a recording most of whose time nothing was recorded."""
+    for t in ticks:
+        filled = np.flatnonzero(t.count > 0)
+        longest = int(np.diff(filled).max(initial=0))
+        if longest > _MOST_GAP * len(t.count):
+            raise CannotClose(
+                f"{t.name}: nothing for {longest * t.tick_s / 3600:.1f} h of its "
+                f"{len(t.count) * t.tick_s / 3600:.1f} h; cut it there: what follows is a "
+                "recording of its own"
+            )
 
 
 def _same_chip(first, other) -> None:

@@ -12,6 +12,20 @@ from .earth import Earth
 from .lines import Spectrum
 from .turns import Turns
 
+#: Sources of effect slots that are not extra channels, whose names extra channels cannot have.
+OWN_SOURCES = (
+    "one",
+    "time",
+    "temp",
+    "vib",
+    "acc_x",
+    "acc_y",
+    "acc_z",
+    "rate_x",
+    "rate_y",
+    "rate_z",
+)
+
 
 @dataclass
 class Session:

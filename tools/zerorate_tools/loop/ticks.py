@@ -133,7 +133,7 @@ class _Reader:
         tick = ((t_us - self.start) / (self.tick_s * 1e6)).astype(np.int64)
         self.size = max(self.size, int(tick[-1]) + 1)
         good = self._good(batch, gyro)
-        self._channels(batch, tick)
+        self._channels(batch, tick, good)
         if self.reference.names:
             self._true_rate(batch, t_us, tick, gyro, good)
         tick, gyro = tick[good], gyro[good]
@@ -152,11 +152,12 @@ class _Reader:
             self.sums.add(f"{name}{a}", tick, values[:, a], self.size)
             self.sums.add(f"{name}{a}^2", tick, values[:, a] ** 2, self.size)
 
-    def _channels(self, batch, tick):
+    def _channels(self, batch, tick, good):
         for name in [*self.extra, *([TEMP] if TEMP in self.names else [])]:
-            there = batch[name] != GAP
-            self.sums.add(name, tick[there], batch[name][there].astype(float), self.size)
-            self.sums.add(f"{name} count", tick[there], np.ones(int(there.sum())), self.size)
+            there = good if name == TEMP else batch[name] != GAP
+            key = _key(name)
+            self.sums.add(key, tick[there], batch[name][there].astype(float), self.size)
+            self.sums.add(f"{key} count", tick[there], np.ones(int(there.sum())), self.size)
 
     def _true_rate(self, batch, t_us, tick, gyro, good):
         q = self.reference.quaternions(batch) if self.reference.attitude else None
@@ -194,10 +195,10 @@ class _Reader:
         bad = {"clipped": clipped, "repeated": repeated, "all-zero": zero}
         if TEMP in self.names:
             at = [n for n in self.names if n in COLUMNS and n != TIME].index(TEMP)
-            bad["temperature-jump"] = (np.abs(frame[:, at] - before[:, at]) >= 400) & (
-                self.scales.odr_hz > 2.0
-            )
+            leap = np.abs(frame[:, at] - before[:, at]) >= 400
+            bad["temperature-jump"] = leap & (self.scales.odr_hz > 2.0)
             bad["temperature-jump"][0] &= self.samples > len(frame)
+            bad["temperature-jump"] |= np.abs(frame[:, at]) >= _RAIL
         seen = np.zeros(len(frame), bool)
         for name, mask in bad.items():  # a sample counts once, for the first of its faults
             self.faults[name] += int((mask & ~seen).sum())
@@ -205,7 +206,7 @@ class _Reader:
         return ~seen
 
     def _mean(self, name):
-        total, count = self.sums.get(name, self.size), self.sums.get(f"{name} count", self.size)
+        total, count = (self.sums.get(_key(name) + of, self.size) for of in ("", " count"))
         return gap_filled(np.where(count > 0, total / np.maximum(count, 1), np.nan))
 
     def _triple(self, name, count):
@@ -234,7 +235,9 @@ class _Reader:
         if self.reference.names:
             reference = self._true_rates(raw)
         extra = {
-            n: self._mean(n) for n in self.extra if np.any(self.sums.get(f"{n} count", self.size))
+            n: self._mean(n)
+            for n in self.extra
+            if np.any(self.sums.get(f"{_key(n)} count", self.size))
         }
         delay, turning = self._turning()
         return Ticks(
@@ -267,6 +270,11 @@ class _Reader:
         mean = np.where(length > 0, total / np.where(length > 0, length, 1.0), np.nan)
         held = np.column_stack([gap_filled(mean[:, i]) for i in range(4)])
         return held / np.linalg.norm(held, axis=1, keepdims=True)
+
+
+def _key(channel: str) -> str:
+    """Of a channel's sums, which no channel's name can make another sum's."""
+    return f"channel {channel}"
 
 
 def gap_filled(values: np.ndarray) -> np.ndarray:
