@@ -148,3 +148,18 @@ def test_a_step_in_every_power_on_is_listed_in_every_one():
         s.rate_dps[at:] += 8 * device.floor_dps * [1, -1, 1]
     steps = select(device.sessions[:-1]).steps
     assert sorted((s.session, s.block) for s in steps) == [(0, 50), (1, 90), (2, 130)]
+
+
+def test_a_source_that_one_session_alone_shows_does_not_hide_what_the_others_show():
+    device = simulate(5000014, [("squared-acceleration", 5.0)])
+    y = [s.block_mean(s.sources["acc_y"]) ** 2 for s in device.sessions[:3]]
+    assert np.ptp(y[0]) < 0.1 and np.ptp(y[2]) < 0.1
+    assert "squared-acceleration" in names(select(device.sessions[:-1]))
+
+
+@pytest.mark.parametrize(
+    ("seed", "effect"), [(5000093, "supply-temperature"), (5000039, "vibration")]
+)
+def test_bursts_that_an_effect_explains_are_no_outliers(seed, effect):
+    selection = select(simulate(seed, [(effect, 5.0)]).sessions[:-1])
+    assert (names(selection)[0], selection.outliers, selection.steps) == (effect, 0, [])

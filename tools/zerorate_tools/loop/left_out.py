@@ -4,17 +4,34 @@ from __future__ import annotations
 
 import numpy as np
 
+#: Of coefficients about zero, over their size in all sessions: wide, so that only what the other
+#: sessions all but fail to show is held back.
+_SPREAD = 3.0
 
-def session_misfit(g, s: int, colour, variance, scale: np.ndarray) -> float:
+
+def spread_of(coefficients: np.ndarray, own: slice) -> np.ndarray:
+    """(J,) about zero of the (A, J) coefficients fitted on all sessions; infinite but for the own
+    ones of a candidate.
+    """
+    out = np.full(coefficients.shape[1], np.inf)
+    size = np.sqrt((coefficients[:, own] ** 2).mean(axis=0))
+    out[own] = _SPREAD * np.maximum(size, 1e-300)
+    return out
+
+
+def session_misfit(g, s: int, colour, variance, scale: np.ndarray, spread=None) -> float:
     """Weighted squares of session s left by coefficients fitted on the other sessions of a Gram.
 
-    colour: (A,) grid index and variance: (A,) dps^2 at which every fit is weighted; scale: (S, A).
+    colour: (A,) grid index and variance: (A,) dps^2 at which every fit is weighted; scale: (S, A);
+    spread: (J,) of coefficients about zero, known before the fit, infinite where it is not.
     """
     others = np.arange(len(g.count)) != s
     total = 0.0
     for a, c in enumerate(colour):
         w = scale[:, a] ** -2.0
         zz = np.tensordot(w[others], g.zz[others, c], 1)
+        if spread is not None:
+            zz = zz + np.diag(variance[a] / spread**2)
         zy = w[others] @ g.zy[others, c, :, a]
         b = np.linalg.lstsq(zz, zy, rcond=1e-12)[0]
         rss = g.yy[s, c, a] - 2 * g.zy[s, c, :, a] @ b + b @ g.zz[s, c] @ b
@@ -27,16 +44,20 @@ def gains(regression, terms, candidate) -> np.ndarray:
     without.
 
     The noise is the one fitted with the candidate in, the same for both, so that only the
-    prediction differs.
+    prediction differs. A column of the candidate that the other sessions do not show is worth
+    nothing there, not anything: its coefficients are of the size that all sessions give.
     """
     full = regression.fit([*terms, *candidate])
     colour = full.base.best
     count = sum(w.coefficients for w in regression.whiteners)
     variance = np.array([full.base.rss[a, c] / count for a, c in enumerate(colour)])
+    fitted = np.array([full.base.coefficients[a, c] for a, c in enumerate(colour)])
+    spread = spread_of(fitted, slice(len(terms), len(terms) + len(candidate)))
     misfit = []
-    for chosen in (terms, [*terms, *candidate]):
+    for chosen, known in ((terms, None), ([*terms, *candidate], spread)):
         g = regression.gram(chosen)
+        each = range(len(g.count))
         misfit.append(
-            [session_misfit(g, s, colour, variance, regression.scale) for s in range(len(g.count))]
+            [session_misfit(g, s, colour, variance, regression.scale, known) for s in each]
         )
     return 0.5 * (np.array(misfit[0]) - np.array(misfit[1]))

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from .basis import Term
+from .left_out import spread_of
 from .line import ordinary
 from .regression import predicted
 
@@ -25,18 +26,21 @@ def growth(
     if len(regression.sessions) < 2:
         return 1.0
     without = _square(regression, straight, terms)
-    return float(np.sqrt(_square(regression, straight, [*terms, *candidate]) / without))
+    beside = _square(regression, straight, [*terms, *candidate], len(candidate))
+    return float(np.sqrt(beside / without))
 
 
-def _square(regression, straight, effects):
-    """Sum over sessions, blocks and axes, in units of each axis's own noise."""
+def _square(regression, straight, effects, last=0):
+    """Sum over sessions, blocks and axes. last: how many of the effects are the candidate's."""
     every = [*straight, *effects]
     fit = regression.fit(every)
     g = regression.gram(every)
+    best = np.array([fit.base.coefficients[a, c] for a, c in enumerate(fit.base.best)])
+    spread = spread_of(best, slice(len(every) - last, len(every)))
     total = 0.0
     for s, session in enumerate(regression.sessions):
         others = [o for i, o in enumerate(regression.sessions) if i != s]
-        fitted = _fitted_without(regression, g, fit, s)[len(straight) : len(every)]
+        fitted = _fitted_without(regression, g, fit, s, spread)[len(straight) : len(every)]
         model = predicted(effects, fitted, session)
         if straight:
             line = ordinary(straight, others, effects, fitted)
@@ -46,13 +50,15 @@ def _square(regression, straight, effects):
     return total
 
 
-def _fitted_without(regression, g, fit, session):
+def _fitted_without(regression, g, fit, session, spread):
     """(columns, 3) dps per unit by generalised least squares on the other sessions."""
     others = np.arange(len(g.count)) != session
     turned = []
     for a, colour in enumerate(fit.base.best):
         w = regression.scale[others, a] ** -2.0
         zz = np.tensordot(w, g.zz[others, colour], 1)
+        variance = fit.base.rss[a, colour] / g.count.sum()
+        zz = zz + np.diag(variance / spread**2)
         zy = w @ g.zy[others, colour, :, a]
         turned.append(np.linalg.lstsq(zz, zy, rcond=1e-12)[0])
     return np.linalg.solve(regression.axes, np.array(turned)).T

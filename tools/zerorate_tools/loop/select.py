@@ -227,10 +227,26 @@ class Search:
             ):
                 continue
             kinds.append(c.kind)
-            found = self._consider(c)
+            found = self._beside_outliers(c)
             if found:
                 return found, False
         return None, False
+
+    def _beside_outliers(self, c: Candidate) -> Found | None:
+        """As `_consider`, but a block that the candidate explains is no outlier."""
+        if not self.regression.outliers:
+            return self._consider(c)
+        nuisances = self._nuisances(c)
+        self._settle([*nuisances, *c.terms])
+        found = self._consider(c)
+        if not found:
+            self._settle([*self.straight, *self.bend, *self.terms()])
+        return found
+
+    def _settle(self, terms):
+        for r in (self.regression, self.folds):
+            if r:
+                r.settle(terms)
 
     def _step_is_larger(self, ratio: float) -> bool:
         if len(self.steps) >= events.MOST_PER_SESSION * len(self.regression.sessions):
