@@ -1,6 +1,7 @@
 """Runs on a MicroPython: COUNT CALL AT_ONCE KIND [REPEATS], the first three as the C yardstick.
 
-KIND is bytecode or viper. With REPEATS times.bin gets the fewest us that each sample took.
+KIND is bytecode or viper. With REPEATS times.bin gets the fewest us that each sample took, or, with
+AT_ONCE above 1, the whole is done so often, each time from the same state.
 """
 
 import gc
@@ -50,6 +51,17 @@ def by_bursts(count, take, rows, burst):
         count -= n
 
 
+def again_and_again(count, take, rows, state, rounds):
+    first_rows, first_state = array("i", rows), array("i", state)
+    for _ in range(rounds):
+        memoryview(rows)[:] = memoryview(first_rows)
+        memoryview(state)[:] = memoryview(first_state)
+        for at in range(0, count, at_once):
+            burst = memoryview(rows)[8 * at :]
+            if take:
+                take(burst, at_once if count - at > at_once else count - at)
+
+
 def time_each(count, take, rows, x, fewest):
     clock = time.ticks_us  # type: ignore[attr-defined]
     for i in range(count):
@@ -68,7 +80,10 @@ corrector.settings, frames = whole("settings.bin"), whole("frames.bin")
 corrector.state = whole("state.bin")
 x, burst = array("i", [0] * 7), array("i", [0] * (8 * at_once))
 gc.collect()
-if len(sys.argv) > 5:
+if len(sys.argv) > 5 and at_once > 1:
+    take = Bursts(corrector).update if call else None
+    again_and_again(count, take, frames, corrector.state, int(sys.argv[5]))
+elif len(sys.argv) > 5:
     fewest = array("i", [0x3FFFFFFF] * count)
     for _ in range(int(sys.argv[5])):
         corrector.state = whole("state.bin")
