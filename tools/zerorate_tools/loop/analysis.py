@@ -36,6 +36,10 @@ from .sessions import OWN_SOURCES, Session
 from .single import pieces, split
 from .ticks import Ticks
 
+#: Power-ons to fit on below which nothing is confirmed: of two, one in two devices has a chance
+#: agreement of all signs.
+LEAST_CONFIRMING = 3
+
 
 @dataclass
 class Analysis:
@@ -62,16 +66,21 @@ class Analysis:
         return len(self.sessions) == 1
 
     @property
+    def few(self) -> bool:
+        """Whether so few power-ons were fitted that all may agree by chance."""
+        return len(self.train) < LEAST_CONFIRMING
+
+    @property
     def coefficients(self) -> np.ndarray:
         """(straight line and terms, 3) dps per unit, as deployed."""
         return deployed(self.selection)[1]
 
     def confidence(self, i: int) -> str:
-        """confirmed or tentative; one power-on alone, what Earth can do, or time alone where no
-        temperature was recorded, confirms nothing.
+        """confirmed or tentative; with fewer than three power-ons to fit on, for what Earth can do,
+        and for time alone where no temperature was recorded, nothing is confirmed.
         """
         found = self.selection.found[i]
-        unsure = self.single or ROTATION in found.confounded_with or self.may_be_heat(i)
+        unsure = self.few or ROTATION in found.confounded_with or self.may_be_heat(i)
         return "tentative" if unsure else self.judgement.confidence(i)
 
     def may_be_heat(self, i: int) -> bool:

@@ -21,7 +21,7 @@ def steps_beside(analysis: Analysis, after_mdps: list[float]) -> list[dict]:
     if motion.timing is not None and motion.timing.found:
         out.append({**_timing(motion.timing), **same})
     slow = (line for line in analysis.lines if line.hz < QUICK_HZ)
-    return [*out, *({**_line(line, analysis.single), **same} for line in slow)]
+    return [*out, *({**_line(line, analysis.few), **same} for line in slow)]
 
 
 def interference(lines: list[Line]) -> list[dict]:
@@ -69,7 +69,7 @@ def _timing(t: Timing) -> dict:
     }
 
 
-def _line(line: Line, single: bool) -> dict:
+def _line(line: Line, few: bool) -> dict:
     size = ", ".join(f"{1e3 * a:.2f}" for a in np.atleast_1d(line.amplitude_dps))
     return {
         "effect": "periodic-interference",
@@ -77,7 +77,7 @@ def _line(line: Line, single: bool) -> dict:
         "parameters": [{"hz": line.hz, "period_s": 1.0 / line.hz}],
         "coefficients": {},
         "amplitude_mdps": [float(1e3 * a) for a in line.amplitude_dps],
-        "confidence": "confirmed" if line.in_locked and not single else "tentative",
+        "confidence": "confirmed" if line.in_locked and not few else "tentative",
         "p_value": line.p_value,
         "said": f"a line at {line.hz:.5g} Hz of {size} mdps; its phase is free at each power-on, "
         "so not corrected; record at a data rate 2 % higher: a line that moves is an alias",
