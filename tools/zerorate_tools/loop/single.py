@@ -21,8 +21,8 @@ _FOLDS = 5
 _GAP_SHARE = 0.03
 _WORTH = 0.1
 #: Nats that pieces left out must gain in all. Of 310 simulated bends that the likelihood shows, at
-#: two to five floors, 33 made the held-out error worse by more than 2 %; 285 and 26 of them pass. To
-#: ask for more costs more of the bends that help: at 1 nat it is 256 and 22.
+#: two to five floors, 33 made the held-out error worse by more than 2 %; 285 and 26 of them pass.
+#: To ask for more costs more of the bends that help: at 1 nat it is 256 and 22.
 LEAST_NATS = 0.0
 WEAKER = (
     "One recording only: stretches of it were held out instead of a whole power-on. An effect that "
