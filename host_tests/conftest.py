@@ -50,6 +50,19 @@ def chromium():
     return path or pytest.skip(f"no Chromium here; {_NO_BROWSER}")
 
 
+@pytest.fixture(scope="session")
+def browser(chromium):
+    """A Chromium that calls nobody; one for all, as a second driver beside it does not start."""
+    playwright = pytest.importorskip("playwright.sync_api")
+    quiet = ["--disable-background-networking", "--disable-component-update", "--disable-sync"]
+    with playwright.sync_playwright() as driver:
+        browser = driver.chromium.launch(
+            executable_path=chromium, args=["--disable-gpu", "--no-first-run", *quiet]
+        )
+        yield browser
+        browser.close()
+
+
 def interpreter(name):
     """The interpreter, or a skip that says how to get it; a failure where it is required."""
     try:

@@ -39,18 +39,15 @@ def test_a_fleet_too_small_for_a_part_has_a_page_too(tmp_path):
     assert "it takes five devices" in (tmp_path / "fleet.html").read_text()
 
 
-def test_chromium_draws_every_plot_without_a_word(done, chromium):
-    playwright = pytest.importorskip("playwright.sync_api")
+def test_chromium_draws_every_plot_without_a_word(done, browser):
     said = []
-    with playwright.sync_playwright() as driver:
-        browser = driver.chromium.launch(executable_path=chromium, args=["--disable-gpu"])
-        page = browser.new_page(viewport={"width": 390, "height": 844})
-        page.on("console", lambda message: said.append(message.text))
-        page.on("pageerror", lambda error: said.append(str(error)))
-        page.goto((done[1] / "fleet.html").as_uri())
-        page.wait_for_selector("html[data-drawn=all]", state="attached")
-        drawn = page.evaluate("document.querySelectorAll('.canvas .main-svg').length")
-        wide = page.evaluate("document.documentElement.scrollWidth")
-        browser.close()
+    page = browser.new_page(viewport={"width": 390, "height": 844})
+    page.on("console", lambda message: said.append(message.text))
+    page.on("pageerror", lambda error: said.append(str(error)))
+    page.goto((done[1] / "fleet.html").as_uri())
+    page.wait_for_selector("html[data-drawn=all]", state="attached")
+    drawn = page.evaluate("document.querySelectorAll('.canvas .main-svg').length")
+    wide = page.evaluate("document.documentElement.scrollWidth")
+    page.close()
     assert said == []
     assert drawn >= 3 and wide <= 390

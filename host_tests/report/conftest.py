@@ -41,19 +41,6 @@ def closed(request, outcome):
     return outcome(request.param)
 
 
-@pytest.fixture(scope="session")
-def browser(chromium):
-    """A Chromium that calls nobody."""
-    playwright = pytest.importorskip("playwright.sync_api")
-    quiet = ["--disable-background-networking", "--disable-component-update", "--disable-sync"]
-    with playwright.sync_playwright() as driver:
-        browser = driver.chromium.launch(
-            executable_path=chromium, args=["--disable-gpu", "--no-first-run", *quiet]
-        )
-        yield browser
-        browser.close()
-
-
 # Ends a hang; a busy machine may take its time.
 _PATIENCE_MS = 600_000
 
