@@ -91,6 +91,8 @@
     if (!line.text) return;
     layout.annotations.push({
       text: line.text, showarrow: false, font: { size: 11, color: own.color },
+      // upright where there is little room, for the lines are closer than their names are long
+      textangle: flat || wide.matches ? 0 : -90,
       xref: flat ? x + " domain" : x, yref: flat ? y : y + " domain", xanchor: flat ? "right" : "left", yanchor: flat ? "bottom" : "top",
       x: flat ? 1 : line.value, y: flat ? (panel.log ? Math.log10(line.value) : line.value) : 1,
     });
