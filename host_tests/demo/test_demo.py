@@ -67,3 +67,17 @@ def test_a_scale_that_no_chip_has_is_refused_in_one_line(find_runtime, log, tmp_
     write_recording(type(recording)(recording.columns, scales, "odd"), odd)
     assert main(["demo", str(odd), "--out", str(tmp_path / "out")]) == 2
     assert "zerorate replay" in capsys.readouterr().err
+
+
+def test_a_recording_shorter_than_its_score_is_refused_in_one_line(micropython, tmp_path, capsys):
+    short = simulate(
+        {
+            "name": "short",
+            "session": [{"start_degc": 25, "temperature": [{"to": 25.0, "minutes": 0.1}]}],
+        }
+    )[0]
+    write_recording(short, tmp_path / "short.parquet")
+    words = ["demo", str(tmp_path / "short.parquet"), "--out", str(tmp_path / "shown")]
+    assert main([*words, "--runtime", micropython.name]) == 2
+    said = capsys.readouterr().err
+    assert "6.0 s are too short" in said and said.count("\n") == 1

@@ -78,3 +78,18 @@ def test_the_command_draws_what_it_replayed(swinging, tmp_path, capsys):
     assert main(["replay", str(log), "--motion", *options, "--plot", str(picture)]) == 0
     assert str(picture) in capsys.readouterr().out
     assert picture.stat().st_size > 10_000
+
+
+def test_readings_too_slow_for_a_window_are_said_in_a_line(tmp_path, capsys):
+    slow = simulate(
+        {
+            "name": "slow",
+            "sensor": {"odr_hz": 5.0},
+            "session": [{"start_degc": 25, "temperature": [{"to": 25.0, "minutes": 1}]}],
+        }
+    )[0]
+    write_recording(slow, tmp_path / "slow.parquet")
+    words = ["replay", str(tmp_path / "slow.parquet"), "--out", str(tmp_path / "bias.parquet")]
+    assert main([*words, "--plot", str(tmp_path / "window.png")]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith("zerorate: slow: ") and said.count("\n") == 1

@@ -96,5 +96,8 @@ def _shares(counts: dict[str, int], total: int) -> str:
 
 def _setting(text: str) -> tuple[str, float]:
     name, _, value = text.partition("=")
-    number = float(value)
+    try:
+        number = float(value)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(f"{text}: not of the form NAME=NUMBER") from error
     return name, int(number) if name in ("bins", "short", "long") else number

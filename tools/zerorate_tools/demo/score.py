@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import BadRecording
 from ..recordings import Recording
 
 SETTLE_S = 10.0
@@ -33,8 +34,14 @@ class Score:
 def score(
     recording: Recording, bias_dps: NDArray[np.float64], truth_dps: NDArray[np.float64] | None
 ) -> Score:
-    """Score `bias_dps` (n, 3) against the true bias, or against a true rate of zero."""
+    """Score `bias_dps` (n, 3) against the true bias, or against a true rate of zero.
+
+    Raises BadRecording where nothing is left after SETTLE_S.
+    """
     t_s = seconds(recording)
+    if t_s[-1] < SETTLE_S:
+        problem = f"{t_s[-1]:.1f} s are too short: errors count from {SETTLE_S:.0f} s on"
+        raise BadRecording(recording.name, problem, do="record a minute at rest, or longer")
     rate_dps = rates(recording)
     first = rate_dps[t_s < SETTLE_S].mean(axis=0)
     later = t_s >= SETTLE_S

@@ -50,7 +50,10 @@ def windows(recording: OpenRecording | Recording, **options: object) -> Iterator
 
     sensor = sensor_of(recording.scales)
     scales = (sensor.odr_hz, sensor.gyro_lsb_per_dps, sensor.accel_lsb_per_g)
-    settings = motion_settings(*scales, temp_lsb_per_degc=sensor.temp_lsb_per_degc, **options)
+    try:
+        settings = motion_settings(*scales, temp_lsb_per_degc=sensor.temp_lsb_per_degc, **options)
+    except ValueError as error:
+        raise ZerorateError(f"{recording.name}: {error}") from error
     state = motion_state(settings)
     # no node is visited by update itself: each is seen one by one below
     settings[_VISITS] = 0
