@@ -225,3 +225,9 @@ def test_scales_missing_beside_the_file_are_said(writer):
     writer.path.with_suffix(".json").unlink()
     with pytest.raises(BadRecording, match="run.json"):
         watch(str(writer.path), Wishes(once=True))
+
+
+def test_a_bias_that_is_not_known_has_no_sigma(log, capsys):
+    log.write_text("".join(log.read_text().splitlines(keepends=True)[:6]))
+    watch(str(log), Wishes(once=True))
+    assert "x none  y none  z none" in capsys.readouterr().out

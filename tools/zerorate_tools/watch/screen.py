@@ -40,10 +40,15 @@ class Lines:
     def show(self, live: Live, notes: list[str]) -> None:
         """Print time, temperature, and per axis bias, quality and source."""
         axes = zip("xyz", live.bias_dps, live.quality_dps, live.source)
-        biases = "  ".join(f"{a} {b:+.3f}±{q:.3f} {source}" for a, b, q, source in axes)
+        biases = "  ".join(f"{axis} {_bias(*known)}" for axis, *known in axes)
         warm = "" if live.temp_degc is None else f"  {live.temp_degc:.1f} degC"
         said = "; ".join([live.learning()[0], *notes])
         print(f"{live.duration_s:8.1f} s{warm}  bias dps {biases}  | {said}", flush=True)
+
+
+def _bias(bias_dps: float, quality_dps: float, source: str) -> str:
+    # a bias that nobody knows is not known to +-0
+    return "none" if source == "none" else f"{bias_dps:+.3f}±{quality_dps:.3f} {source}"
 
 
 class Area:
@@ -96,7 +101,7 @@ def _table(live: Live):
     past = np.array(live.history).reshape(-1, 3)
     for i, source in enumerate(live.source):
         signed = [f"{v[i]:+.3f}" for v in (live.rate_dps, live.left_dps, live.bias_dps)]
-        sigma = f"{live.quality_dps[i]:.3f}"
+        sigma = "" if source == "none" else f"{live.quality_dps[i]:.3f}"
         table.add_row(f"g{'xyz'[i]}", *signed, sigma, source, sparkline(past[:, i]))
     return table
 
