@@ -14,7 +14,9 @@ def add_parser(subparsers) -> None:
         description="Each LOG is one power-on of one device. One of them is held out and looked at "
         "once, at the end; with a single LOG, stretches of its time are.",
     )
-    parser.add_argument("logs", type=Path, nargs="+", metavar="LOG")
+    parser.add_argument(
+        "logs", type=Path, nargs="+", metavar="LOG", help="a recording of one power-on"
+    )
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder to write")
     parser.add_argument("--holdout", metavar="LOG", help="which to hold out (default: the last)")
     parser.add_argument(

@@ -20,7 +20,9 @@ def add_parser(subparsers) -> None:
         "recordings", nargs="+", metavar="RECORDING", help="files, patterns, or folders of them"
     )
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder to write")
-    parser.add_argument("--job", choices=("replay", "close"), default="replay")
+    parser.add_argument(
+        "--job", choices=("replay", "close"), default="replay", help="run for each (replay)"
+    )
     parser.add_argument(
         "--device-from",
         metavar="REGEX",
@@ -29,7 +31,11 @@ def add_parser(subparsers) -> None:
     parser.add_argument("--keep", action="store_true", help="keep each device's own files too")
     parser.add_argument("--model", type=Path, metavar="FILE", help="an effect model to load")
     parser.add_argument(
-        "--minutes", type=_positive, default=5.0, help="of a new device, to try the prior on (5)"
+        "--minutes",
+        type=_positive,
+        default=5.0,
+        metavar="N",
+        help="of a new device, to try the prior on (5)",
     )
     group = parser.add_argument_group("where it runs")
     group.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster that is there")

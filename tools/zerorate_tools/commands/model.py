@@ -59,6 +59,7 @@ def run_check(arguments: argparse.Namespace) -> None:
     """Print that the model would be loaded, or raise why not."""
     from ..model import Binding
     from ..model.check import check_model
+    from ..model.words import slots_in_words
     from ..recordings import open_recording
 
     device = Binding(
@@ -66,7 +67,7 @@ def run_check(arguments: argparse.Namespace) -> None:
     )
     scales = open_recording(arguments.log).scales if arguments.log else None
     model = check_model(arguments.file, device=device, scales=scales)
-    print(f"{arguments.file}: good, {len(model.slots)} effect slots")
+    print(f"{arguments.file}: good, {slots_in_words(model)}")
 
 
 def run_diff(arguments: argparse.Namespace) -> int:

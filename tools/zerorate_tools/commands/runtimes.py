@@ -42,7 +42,7 @@ def list_all(arguments: argparse.Namespace) -> None:
 
     for name in (*NAMES, "x64"):
         try:
-            print(f"{name:8} {'viper' if find(name).viper else 'no viper'}")
+            print(f"{name:8} ready, {'viper' if find(name).viper else 'no viper'}")
         except MissingRuntime as error:
             print(f"{name:8} missing: {error}")
 

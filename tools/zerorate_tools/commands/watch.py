@@ -25,7 +25,9 @@ def add_parser(subparsers) -> None:
     parser.add_argument(
         "--accelerometer", action="store_true", help="learn against gravity as well"
     )
-    parser.add_argument("--setup", type=Path, help="on a board: source that makes `imu`")
+    parser.add_argument(
+        "--setup", type=Path, metavar="FILE", help="on a board: source that makes `imu`"
+    )
     parser.set_defaults(run=run)
 
 

@@ -80,11 +80,16 @@ def _prior(prior: dict[str, Any]) -> Iterator[str]:
         yield f"  not tried on {name}: {reason}"
     for name, found in tried["scenarios"].items():
         both = ", ".join(
-            f"{words} {found[way]['median_mdps']:.3g} ({found[way]['p95_mdps']:.3g})"
+            f"{words} {_mdps(found[way]['median_mdps'])} ({_mdps(found[way]['p95_mdps'])})"
             for way, words in WAYS.items()
             if way in found
         )
         yield f"  {_SCENARIOS[name]}: {both}"
+
+
+def _mdps(value: float) -> str:
+    """Three digits, and no power of ten where there are more before the point."""
+    return f"{value:,.0f}" if value >= 999.5 else f"{value:.3g}"
 
 
 def _failures(failures: list[dict[str, str]]) -> Iterator[str]:

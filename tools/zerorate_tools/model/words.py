@@ -22,7 +22,7 @@ def in_words(model: Model) -> str:
     """The whole model, a slot a paragraph."""
     scales, size = model.scales, len(encoded(model))
     lines = [
-        f"{len(model.slots)} effect slots, {size} bytes, one tick in {model.tick_s:g} s",
+        f"{slots_in_words(model)}, {size} bytes, one tick in {model.tick_s:g} s",
         f"for {scales.sensor} at {scales.odr_hz:g} Hz, {scales.gyro_lsb_per_dps:g} LSB/dps; "
         + _binding(model),
     ]
@@ -32,6 +32,12 @@ def in_words(model: Model) -> str:
         lines += ["", f"{number}. {slot.effect or 'effect'}: {basis_in_words(slot)}"]
         lines += [f"   {line}" for line in _numbers(slot)]
     return "\n".join(lines)
+
+
+def slots_in_words(model: Model) -> str:
+    """How many effect slots it has: `1 effect slot`."""
+    count = len(model.slots)
+    return f"{count} effect slot" + ("" if count == 1 else "s")
 
 
 def _binding(model: Model) -> str:

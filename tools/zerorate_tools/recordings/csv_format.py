@@ -34,7 +34,10 @@ def read_scales(path: Path) -> Scales:
     try:
         return scales_from_text(beside.read_bytes(), beside)
     except FileNotFoundError as error:
-        do = 'write {"sensor": ..., "odr_hz": ..., "gyro_lsb_per_dps": ...} there'
+        do = (
+            'write {"sensor": ..., "odr_hz": ..., "gyro_lsb_per_dps": ...} there, '
+            "or turn a foreign CSV into a recording with `zerorate import`"
+        )
         problem = f"{beside.name} with the scales is missing beside it"
         raise BadRecording(path, problem, do=do) from error
 
