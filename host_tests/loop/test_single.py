@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from zerorate_tools.loop.analysis import analyse
 from zerorate_tools.loop.bends import find_bends
 from zerorate_tools.loop.by_kernels import PiecesByKernels
 from zerorate_tools.loop.close import load
@@ -132,3 +133,15 @@ def test_a_piece_left_out_is_not_learned(tmp_path):
         learned.append([d.run(frames, learn=False)[:, 0] for d in devices])
     same = [bool((a == b).all()) for a, b in zip(*learned)]
     assert same == [False, False, True, False, False]
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+def test_rests_that_are_few_and_far_between_teach_no_bend(seed):
+    (session,) = simulate(seed, [("temperature-cubic", 20.0)], sessions=1, bare=True).sessions
+    rests = np.arange(session.blocks) % 8 < 2
+    session.rate_dps[~rests] = np.nan
+    session.weight[~rests] = 0.0
+    found = analyse([session]).selection
+    assert not found.bends
+    assert any("too few rests" in reason for _, reason in found.refused)

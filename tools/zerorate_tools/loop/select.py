@@ -25,6 +25,8 @@ from .trust import follow_further
 
 MOST_EFFECTS = 6
 _KINDS_TRIED = 4
+#: Blocks at rest in each piece of one recording, below which its bends are not looked for.
+_LEAST_OF_A_PIECE = 6
 _START_S = 60.0
 _TURN_BELOW = 1e-3
 #: Of the plain error of sessions left out, which for an effect that is there only drift makes grow.
@@ -136,6 +138,9 @@ class Search:
 
     def _bend_first(self):
         assert self.folds is not None
+        if min(s.available.sum() for s in self.folds.sessions) < _LEAST_OF_A_PIECE:
+            self.refused.append(("temperature-curve", "too few rests to tell by pieces left out"))
+            return
         judged = self.on_pieces or PiecesByLine(self.folds.sessions)
         bends = find_bends(self.regression, judged, self.straight, self.pool)
         self.found = [Found(c, d) for c, d in bends.found]

@@ -10,7 +10,9 @@ _ORIENTATION = "hold the device in six orientations, each twice, at constant tem
 _COOLING = "a cool-down at the same rate as the warm-up (tells lag, rate and hysteresis apart)"
 _SUPPLY = "record the supply voltage, and step it by 100 mV up and down at constant temperature"
 _POWER = "three power-ons at constant temperature, one of them a warm restart"
-_MORE = "more power-ons: with 3 to fit on, a chance agreement of all signs is common; 6 or more"
+_MORE = "more power-ons: {}; 6 or more to fit on"
+_FEW = "with fewer than 3 to fit on nothing is confirmed"
+_CHANCE = "with {} to fit on, a chance agreement of all signs is common"
 _UNRECORDED = "a logger of humidity and board temperature beside the device, one screw loosened"
 _LONGER = "an hour or more at rest in each recording"
 
@@ -49,7 +51,8 @@ def measure_next(analysis) -> list[str]:
     kinds = {f.candidate.kind for f in found}
     out = []
     if len(sessions) < 5:
-        out.append(_MORE)
+        fitted = len(sessions) - 1
+        out.append(_MORE.format(_FEW if fitted < 3 else _CHANCE.format(fitted)))
     if "temp" in sessions[0].sources and not any(_cools(s) for s in sessions):
         out.append(_COOLING)
     if kinds & {"power-on-transient", "time-drift"}:

@@ -33,7 +33,8 @@ def _axes(mdps):
 def _effect(step):
     rivals = step["confounded_with"]
     tie = f"; cannot be told from {', '.join(rivals)}" if rivals else ""
-    return f"found: {step['effect']} ({step['confidence']}){tie}; {step['said']}"
+    said = step["said"].removeprefix(step["effect"]).strip()
+    return f"found: {step['effect']} {said}".rstrip() + f" ({step['confidence']}){tie}"
 
 
 def _event(event):
