@@ -142,21 +142,6 @@ class TestWatch:
         assert len(lines) >= 2 and all("bias dps" in line for line in lines)
         assert board_says(board, "print('here')") == "here"
 
-    def test_the_readable_twin_of_a_model_goes_to_the_board_as_model_bin(
-        self, blank_board, tmp_path, monkeypatch
-    ):
-        monkeypatch.setattr("zerorate_tools.boards.flashing.PACKAGES", ("zerorate",))
-        slot = Slot(Term("temp", 20, 45, 32.5, power=2), (0.001, -0.002, 0.0003))
-        scales = Scales("MPU-6050", 100.0, 131.0, 16384.0, 340.0, 36.53)
-        readable, binary = write_model(build_model([slot], scales), tmp_path)
-        flash(blank_board.port, model=readable, say=lambda line: None)
-        assert (blank_board.folder / "model.bin").read_bytes() == binary.read_bytes()
-
-    @pytest.mark.parametrize("option", ["main", "model"])
-    def test_a_file_that_is_not_there_is_one_line_before_anything_is_written(self, option):
-        with pytest.raises(ZerorateError, match="nowhere.*: (no such file|cannot be read)"):
-            flash("/dev/no-such-port", **{option: Path("nowhere")})
-
     def test_no_board_is_one_line(self, capsys):
         assert main(["watch", "/dev/ttyACM99"]) == 2
         assert capsys.readouterr().err.count("\n") == 1

@@ -6,7 +6,7 @@ from zerorate_tools.recordings import Recording, Scales
 SCALES = Scales("MPU-6050", 1.0, 1310.0, 16384.0, 340.0, 36.53)
 
 
-def recording(session):
+def recording(session, scales=SCALES):
     """A simulated session as one raw sample a second, which is one tick."""
     ticks = session.blocks * 20
     at = (np.arange(ticks) + 0.5) / 20 - 0.5
@@ -15,8 +15,8 @@ def recording(session):
     columns = {"t_us": np.arange(ticks, dtype=np.int64) * 1_000_000}
     for a, name in enumerate(("gx", "gy", "gz")):
         rate = np.interp(at, np.arange(session.blocks), session.rate_dps[:, a])
-        columns[name] = np.round(rate * 1310.0).astype(np.int32)
+        columns[name] = np.round(rate * scales.gyro_lsb_per_dps).astype(np.int32)
     for name, g in zip(("ax", "ay", "az"), (0, 0, 16384)):
         columns[name] = g + np.arange(ticks, dtype=np.int32) % 7
     columns["temp"] = np.round((temp - 36.53) * 340).astype(np.int32)
-    return Recording(columns, SCALES, session.name)
+    return Recording(columns, scales, session.name)

@@ -15,25 +15,14 @@ from zerorate_tools.loop.still import still_ticks
 from zerorate_tools.loop.ticks import read_ticks
 from zerorate_tools.recordings import Recording, Scales, write_recording
 
-SCALES = Scales("MPU-6050", 1.0, 1310.0, 16384.0, 340.0, 36.53)
+from . import power_ons
+from .power_ons import SCALES
 
 
 def recording(session, scales=SCALES):
-    """A simulated session as one raw sample a second, which is one tick."""
-    ticks = session.blocks * 20
-    at = (np.arange(ticks) + 0.5) / 20 - 0.5
-    t = np.interp(
-        np.arange(ticks) / 5, np.arange(len(session.sources["temp"])), session.sources["temp"]
-    )
-    rate = [np.interp(at, np.arange(session.blocks), session.rate_dps[:, a]) for a in range(3)]
-    columns = {"t_us": np.arange(ticks, dtype=np.int64) * 1_000_000}
-    for name, r in zip(("gx", "gy", "gz"), rate):
-        columns[name] = np.round(r * scales.gyro_lsb_per_dps).astype(np.int32)
-    for name, g in zip(("ax", "ay", "az"), (0, 0, 16384)):
-        columns[name] = np.full(ticks, g, np.int32) + np.arange(ticks, dtype=np.int32) % 7
-    columns["temp"] = np.round((t - 36.53) * 340).astype(np.int32)
-    load_ = np.repeat(session.sources["load"], 5) * 100
-    columns["load"] = np.round(load_).astype(np.int32)
+    """A power-on with a load beside it, in hundredths."""
+    columns = dict(power_ons.recording(session, scales).columns)
+    columns["load"] = np.round(np.repeat(session.sources["load"], 5) * 100).astype(np.int32)
     return Recording(columns, scales, session.name)
 
 
