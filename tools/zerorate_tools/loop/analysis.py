@@ -25,7 +25,7 @@ from .gate import (
     without_long_gaps,
 )
 from .in_motion import InMotion, in_motion, slots_of, without_scales
-from .judge import Judgement, judge
+from .judge import Judgement
 from .line import deployed
 from .lines import Line
 from .measured import Measured
@@ -35,6 +35,7 @@ from .select import Selection, select
 from .sessions import OWN_SOURCES, Session
 from .single import pieces, split
 from .ticks import Ticks
+from .uphold import upheld
 
 #: Power-ons to fit on below which nothing is confirmed: of two, one in two devices has a chance
 #: agreement of all signs.
@@ -117,7 +118,7 @@ def analyse(
         folds = pieces(train[0]) if len(train) == 1 else []
     by_kernels = _on_pieces(train[0], folds, motion, logs) if folds and logs else None
     selection = select(train, folds, taken, by_kernels)
-    judgement = judge(selection, locked)
+    selection, judgement = upheld(selection, locked)
     whole = [*selection.straight, *selection.terms]
     floor = floor_dps(judgement.whole, whole)
     terms, coefficients = deployed(selection)

@@ -31,9 +31,7 @@ def deployable(analysis: Analysis, scales: Scales) -> Analysis:
 
 
 def _without(analysis, i):
-    old = analysis.selection
-    found = [f for k, f in enumerate(old.found) if k != i]
-    selection = replace(old, found=found, bends=old.bends - (i < old.bends))
+    selection = analysis.selection.without(i)
     judgement = judge(selection, analysis.locked)
     floor = floor_dps(judgement.whole, [*selection.straight, *selection.terms])
     return replace(analysis, selection=selection, judgement=judgement, floor_dps=floor)

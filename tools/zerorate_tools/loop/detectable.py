@@ -6,18 +6,17 @@ import numpy as np
 from scipy.stats import norm
 
 from .basis import block_basis
-from .decide import smallest_ratio
 
 _POWER = 0.9
 
 
-def smallest_dps(regression, nuisances, pool, tried) -> dict[str, float]:
+def smallest_dps(regression, nuisances, pool, needed) -> dict[str, float]:
     """Kind -> RMS in dps over the blocks, equal on the three axes, that would be found nine times
     in ten.
 
-    tried: function of a candidate, how many it pays for. What offset, straight line and bend take
-    is not counted. The best of a kind's grid is named. Kinds that the sessions cannot show are
-    absent.
+    needed: function of a candidate, the likelihood ratio that it needs. What offset, straight line
+    and bend take is not counted. The best of a kind's grid is named. Kinds that the sessions cannot
+    show are absent.
     """
     single = [c for c in pool if len(c.terms) == 1]
     if not single:
@@ -29,7 +28,7 @@ def smallest_dps(regression, nuisances, pool, tried) -> dict[str, float]:
     for c, info in zip(single, information):
         if info <= 0:
             continue
-        need = (np.sqrt(smallest_ratio(c.family, 3, tried(c))) + norm.ppf(_POWER)) ** 2
+        need = (np.sqrt(needed(c)) + norm.ppf(_POWER)) ** 2
         size = np.sqrt(need / info) * _own_rms(c.terms[0], nuisances, regression.sessions)
         out[c.kind] = min(out.get(c.kind, np.inf), float(size))
     return out

@@ -218,6 +218,7 @@ def _gate(analysis):
         "channels_dropped": analysis.gate.dropped,
         "notes": analysis.gate.notes,
         "blocks_set_aside": analysis.selection.outliers,
+        "withdrawn": [list(r) for r in analysis.selection.withdrawn],
         "considered_and_refused": [list(r) for r in dict.fromkeys(analysis.selection.refused)],
     }
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from scipy.stats import chi2
 
-from . import confounding, events
+from . import by_time, confounding, events
 from .alike import all_but_same
 from .basis import Term
 from .bends import JudgedOnPieces, find_bends, on_pieces
@@ -56,10 +57,16 @@ class Selection:
     pool: list[Candidate]
     smallest_dps: dict[str, float]
     bends: int = 0  # of the effects found, how many at the start are bends of a single recording
+    withdrawn: list[tuple[str, str]] = field(default_factory=list)  # see `uphold`
 
     def first(self, effects: int) -> Selection:
         """The same with the first so many effects alone."""
         return replace(self, found=self.found[:effects], bends=min(effects, self.bends))
+
+    def without(self, effect: int) -> Selection:
+        """The same without one of the effects."""
+        found = [f for i, f in enumerate(self.found) if i != effect]
+        return replace(self, found=found, bends=self.bends - (effect < self.bends))
 
     @property
     def terms(self) -> list[Term]:
@@ -131,8 +138,8 @@ class Search:
         r.turn(np.eye(3))
         bent = [c for c in self.pool if c.kind != "temperature-quadratic"]
         quadratic = [c for c in self.pool if c.kind == "temperature-quadratic"]
-        out = smallest_dps(r, [*self.straight, *self.terms()], quadratic, self._tried)
-        out.update(smallest_dps(r, [*self.straight, *self.bend, *self.terms()], bent, self._tried))
+        out = smallest_dps(r, [*self.straight, *self.terms()], quadratic, self._needed)
+        out.update(smallest_dps(r, [*self.straight, *self.bend, *self.terms()], bent, self._needed))
         r.turn(axes)
         return out
 
@@ -201,6 +208,23 @@ class Search:
         )
         return effective(x - z @ np.linalg.lstsq(z, x, rcond=1e-10)[0])
 
+    def _is_by_time(self, c: Candidate) -> bool:
+        """Whether it follows time alone and there are power-ons at which it must come again."""
+        return by_time.follows_time(c) and not self.folds and len(self.regression.sessions) > 1
+
+    def _least_ratio(self, c: Candidate) -> float:
+        """The likelihood ratio below which a candidate is not looked at."""
+        if self._is_by_time(c):
+            return float(chi2.isf(by_time.WORTH_ASKING, 3))
+        return smallest_ratio(c.family, 3 * len(c.terms), self._tried(c))
+
+    def _needed(self, c: Candidate) -> float:
+        """The likelihood ratio at which a candidate is found, where the noise is as it seems."""
+        if self._is_by_time(c):
+            sessions = len(self.regression.sessions)
+            return by_time.smallest_square(self._tried(c), 3, sessions)
+        return smallest_ratio(c.family, 3, self._tried(c))
+
     def _add_one(self) -> bool:
         self._look_afresh()
         while True:
@@ -214,9 +238,7 @@ class Search:
     def _best_candidate(self) -> tuple[Found | None, bool]:
         choose, test = self._ratios()
         dof = np.array([3 * len(c.terms) for c in self.pool])
-        need = np.array(
-            [smallest_ratio(c.family, 3 * len(c.terms), self._tried(c)) for c in self.pool]
-        )
+        need = np.array([self._least_ratio(c) for c in self.pool])
         passing = np.flatnonzero(test > need)
         passing = passing[np.argsort(-(choose - 2.0 * dof)[passing])]
         if self._step_is_larger(test[passing].max() if len(passing) else 0.0):
@@ -276,8 +298,7 @@ class Search:
             self.refused.append((confounding.label(best), "found already, all but the same"))
             return None
         ratio = float(self.regression.gains(nuisances, [best.terms]).sum())
-        tried, folds = self._tried(c), self.folds or self.regression
-        decision = decide(self.regression, folds, nuisances, best, ratio, tried, self.singles)
+        decision = self._decision(nuisances, best, ratio)
         if decision.accepted and self._grows_with(best):
             decision = replace(decision, accepted=False, reason="makes what is left out worse")
         if decision.accepted and self.on_pieces:
@@ -286,6 +307,12 @@ class Search:
             return Found(best, decision)
         self.refused.append((confounding.label(best), decision.reason))
         return None
+
+    def _decision(self, nuisances, c: Candidate, ratio: float) -> Decision:
+        r, tried = self.regression, self._tried(c)
+        if self._is_by_time(c):
+            return by_time.considered(r, nuisances, c, ratio, tried)
+        return decide(r, self.folds or r, nuisances, c, ratio, tried, self.singles)
 
     def _is_twice(self, candidate: Candidate, terms: list[Term]) -> bool:
         """Whether the terms leave next to nothing of a candidate of one term."""
@@ -312,8 +339,7 @@ class Search:
         for i in reversed(range(self.bends, len(self.found))):
             c = self.found[i].candidate
             rest = [*self.straight, *self.terms(leave=i)]
-            ratio = self.regression.gains(rest, [c.terms]).sum()
-            if ratio < smallest_ratio(c.family, 3 * len(c.terms), self._tried(c)):
+            if self._is_idle(c, rest):
                 self.refused.append((confounding.label(c), "explained by effects found later"))
                 self.dropped.add(confounding.label(c))
                 del self.found[i]
@@ -321,6 +347,12 @@ class Search:
                 better = refined(self.regression, rest, c)
                 if not self._is_twice(better, rest):
                     self.found[i].candidate = better
+
+    def _is_idle(self, c: Candidate, rest: list[Term]) -> bool:
+        if self._is_by_time(c):
+            chance = by_time.chance(self.regression, rest, c.terms)
+            return chance * self._tried(c) > by_time.LEVEL
+        return float(self.regression.gains(rest, [c.terms]).sum()) < self._least_ratio(c)
 
     def _list_steps(self):
         """Steps again from none, beside the effects found."""

@@ -12,6 +12,7 @@ def in_words(result: dict) -> str:
         f"floor         {_axes(result['floor_mdps'])}",
     ]
     lines += [_effect(step) for step in result["steps"]] or ["found: nothing"]
+    lines += [f"withdrawn: {what}: {why}" for what, why in result["gate"]["withdrawn"]]
     lines += [_event(event) for event in result["events"]]
     lines += [_line(line) for line in result["interference"]]
     unexplained = result["unexplained"]

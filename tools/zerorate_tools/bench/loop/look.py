@@ -67,11 +67,11 @@ def look(device: Device) -> Outcome:
 def judged(device: Device, sessions: list, noise_dps: np.ndarray) -> Outcome:
     """What the loop says of sessions. noise_dps: (n, 3) of the last one, nothing else in it."""
     from ...loop.confounding import label
-    from ...loop.judge import judge, scored
+    from ...loop.judge import scored
     from ...loop.select import select
+    from ...loop.uphold import upheld
 
-    selection = select(sessions[:-1])
-    verdict = judge(selection, sessions[-1:])
+    selection, verdict = upheld(select(sessions[:-1]), sessions[-1:])
     alone, _ = scored(replace(sessions[-1], rate_dps=noise_dps), np.zeros(noise_dps.shape))
     unit = float(np.sqrt(np.nanmean(alone**2)))
     found = selection.found
