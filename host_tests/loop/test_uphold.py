@@ -1,5 +1,7 @@
 """What the session held out speaks against is taken out again."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from zerorate_tools.loop.analysis import analyse
@@ -44,6 +46,12 @@ def test_what_noise_steeper_than_a_walk_feigns_is_withdrawn():
     selection = select(sessions[:-1])
     assert kinds(selection) == ["time-drift"]
     assert kinds(upheld(selection, sessions[-1:])[0]) == []
+
+
+def test_the_bend_of_a_single_recording_is_judged_elsewhere(turning_about):
+    selection = replace(select(turning_about[:-1]), bends=1)
+    left, judgement = upheld(selection, turning_about[-1:])
+    assert judgement.gains[0] < 0 and kinds(left) == ["time-drift"]
 
 
 def test_a_cause_that_rests_in_the_session_held_out_stays():

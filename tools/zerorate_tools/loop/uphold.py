@@ -3,6 +3,9 @@
 An effect that is there hardly ever makes a power-on that no fit has seen less likely; what noise
 alone made of the others does more often than not. Above all noise steeper than a random walk, which
 drifts at every power-on, but each time another way.
+
+Bends of a single recording stay: there the noise's walk is the bend, likelihoods say nothing of it,
+and the firmware's own error on pieces left out has judged it already.
 """
 
 from __future__ import annotations
@@ -35,10 +38,10 @@ def upheld(selection: Selection, locked: list[Session]) -> tuple[Selection, Judg
 
 def _spoken_against(selection: Selection, judgement: Judgement) -> int | None:
     """Index of the effect that the locked sessions lose most by, if they lose enough."""
-    if not selection.found:
+    gains = judgement.gains[selection.bends :]
+    if not (gains < -MOST_LOST).any():
         return None
-    worst = int(judgement.gains.argmin())
-    return worst if judgement.gains[worst] < -MOST_LOST else None
+    return selection.bends + int(gains.argmin())
 
 
 def _said(judgement: Judgement, i: int, without: Judgement) -> str:
