@@ -16,18 +16,18 @@ def sessions():
 
 
 def test_a_rate_with_nearly_the_same_lag_is_no_second_effect(sessions):
-    assert all_but_same(replace(RATE, lag_s=20.3), [RATE], sessions)
+    assert all_but_same([replace(RATE, lag_s=20.3)], [RATE], sessions)
 
 
 def test_a_lag_ten_times_as_long_is_one(sessions):
     slow = Term("temp", lag_s=200.0, lag_mode="difference")
-    assert not all_but_same(slow, [RATE], sessions)
+    assert not all_but_same([slow], [RATE], sessions)
 
 
 def test_another_channel_is_one_however_like_it(sessions):
-    assert not all_but_same(Term("vdd_mv"), [RATE, Term("load")], sessions)
+    assert not all_but_same([Term("vdd_mv")], [RATE, Term("load")], sessions)
 
 
 def test_a_cubic_beside_a_quadratic_is_one_wherever_its_centre_is(sessions):
     square = Term("temp", centre=28.0, power=2)
-    assert not all_but_same(Term("temp", centre=10.0, power=3), [square], sessions)
+    assert not all_but_same([Term("temp", centre=10.0, power=3)], [square], sessions)

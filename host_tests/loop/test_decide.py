@@ -36,5 +36,5 @@ def test_the_shares_of_a_family_add_up_to_its_level():
     search = Search(simulate(1).sessions[:-1])
     for family in ("catalogue", "generic"):
         kinds = {c.kind: c for c in search.pool if c.family == family}
-        shares = [search._grid(kind) / search._tried(c) for kind, c in kinds.items()]
+        shares = [search.prices.grid(kind) / search.prices.tried(c) for kind, c in kinds.items()]
         assert sum(shares) == pytest.approx(1.0)

@@ -14,11 +14,15 @@ from .sessions import Session
 _OWN_SHARE = 0.003
 
 
-def all_but_same(term: Term, others: Sequence[Term], sessions: list[Session]) -> bool:
-    """Whether others of its source with a memory leave next to nothing of a term with one.
+def all_but_same(terms: Sequence[Term], others: Sequence[Term], sessions: list[Session]) -> bool:
+    """Whether others of its source with a memory leave next to nothing of an effect of one term
+    with one.
 
     Powers and kinks are none the worse for being much alike: nothing tells their places better.
     """
+    if len(terms) != 1:
+        return False
+    [term] = terms
     same_source = [t for t in others if t.source == term.source and _has_memory(t)]
     if not same_source or not _has_memory(term):
         return False

@@ -31,7 +31,8 @@ from .lines import Line
 from .measured import Measured
 from .periodic import periodic
 from .power_on import PowerOn, ideal_dps
-from .select import Selection, select
+from .select import select
+from .selection import Selection
 from .sessions import OWN_SOURCES, Session
 from .single import pieces, split
 from .ticks import Ticks

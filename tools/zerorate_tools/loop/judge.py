@@ -11,7 +11,7 @@ from .excess import Excess, excess
 from .left_out import session_misfit
 from .line import deployed
 from .regression import Regression, predicted
-from .select import Selection
+from .selection import Selection
 from .sessions import Session
 
 #: Nats that a locked session must gain for an effect to count as seen there.

@@ -8,7 +8,7 @@ from ..model import Model, Slot, build_model
 from ..model.binding import binding_of
 from .in_motion import slots_of
 from .line import deployed
-from .select import Selection
+from .selection import Selection
 
 
 def slots(selection: Selection, coefficients: np.ndarray) -> list[Slot]:

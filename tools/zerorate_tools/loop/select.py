@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
-from scipy.stats import chi2
 
 from . import by_time, confounding, events
 from .alike import all_but_same
@@ -14,12 +14,15 @@ from .bends import JudgedOnPieces, find_bends, on_pieces
 from .catalogue import Candidate, ranges
 from .catalogue import candidates as all_candidates
 from .common_cause import coherence, turned_axes
-from .decide import WEIGHT, Decision, decide, effective, smallest_ratio
+from .decide import Decision, decide
 from .detectable import smallest_dps
+from .naming import name_found
 from .plain import growth
+from .price import Prices
 from .refine import refined
 from .regression import Regression
 from .room import is_room
+from .selection import Found, Selection
 from .sessions import Session
 from .single import PiecesByLine
 from .trust import follow_further
@@ -32,46 +35,6 @@ _START_S = 60.0
 _TURN_BELOW = 1e-3
 #: Of the plain error of sessions left out, which for an effect that is there only drift makes grow.
 _MOST_GROWTH = 1.05
-
-
-@dataclass
-class Found:
-    """An accepted effect, with its rivals and what the locks said of it."""
-
-    candidate: Candidate
-    decision: Decision
-    confounded_with: list[str] = field(default_factory=list)
-
-
-@dataclass
-class Selection:
-    """What the training sessions show."""
-
-    found: list[Found]
-    steps: list[events.Step]
-    refused: list[tuple[str, str]]
-    outliers: int
-    regression: Regression
-    straight: tuple[Term, ...]
-    bend: tuple[Term, ...]
-    pool: list[Candidate]
-    smallest_dps: dict[str, float]
-    bends: int = 0  # of the effects found, how many at the start are bends of a single recording
-    withdrawn: list[tuple[str, str]] = field(default_factory=list)  # see `uphold`
-
-    def first(self, effects: int) -> Selection:
-        """The same with the first so many effects alone."""
-        return replace(self, found=self.found[:effects], bends=min(effects, self.bends))
-
-    def without(self, effect: int) -> Selection:
-        """The same without one of the effects."""
-        found = [f for i, f in enumerate(self.found) if i != effect]
-        return replace(self, found=found, bends=self.bends - (effect < self.bends))
-
-    @property
-    def terms(self) -> list[Term]:
-        """Slots of every found effect, in the order found."""
-        return [t for f in self.found for t in f.candidate.terms]
 
 
 def straight_line(sessions: list[Session]) -> tuple[Term, ...]:
@@ -103,7 +66,12 @@ class Search:
         self.refused: list[tuple[str, str]] = []
         self.dropped: set[str] = set()
         self.bends = 0
-        self._paid: dict[str, float] = {}
+
+    @cached_property
+    def prices(self) -> Prices:
+        """What each candidate must reach, beside the bend that one recording may have shown."""
+        power_ons = not self.folds and len(self.regression.sessions) > 1
+        return Prices(self.regression, self.pool, self.straight, self.bend, power_ons)
 
     def terms(self, leave: int | None = None) -> list[Term]:
         return [t for i, f in enumerate(self.found) if i != leave for t in f.candidate.terms]
@@ -114,7 +82,7 @@ class Search:
         while len(self.found) < MOST_EFFECTS and self._add_one():
             self._drop_idle()
         self._list_steps()
-        self._name_rivals()
+        name_found(self.regression, self.straight, self.found, self.pool, self.bends)
         if not self.folds:
             follow_further(self.regression, self.straight, self.found)
         r = self.regression
@@ -138,8 +106,10 @@ class Search:
         r.turn(np.eye(3))
         bent = [c for c in self.pool if c.kind != "temperature-quadratic"]
         quadratic = [c for c in self.pool if c.kind == "temperature-quadratic"]
-        out = smallest_dps(r, [*self.straight, *self.terms()], quadratic, self._needed)
-        out.update(smallest_dps(r, [*self.straight, *self.bend, *self.terms()], bent, self._needed))
+        out = smallest_dps(r, [*self.straight, *self.terms()], quadratic, self.prices.needed)
+        out.update(
+            smallest_dps(r, [*self.straight, *self.bend, *self.terms()], bent, self.prices.needed)
+        )
         r.turn(axes)
         return out
 
@@ -180,51 +150,6 @@ class Search:
         test = np.where([c.kind == "temperature-quadratic" for c in self.pool], choose, test)
         return choose, test
 
-    def _tried(self, candidate: Candidate) -> float:
-        """Candidates paid for: every kind of a family has its share of the family's level, split
-        over as many as the kind's grid amounts to.
-        """
-        if not self._paid:
-            self._paid = {kind: self._grid(kind) for kind in {c.kind for c in self.pool}}
-        kinds = {c.kind for c in self.pool if c.family == candidate.family}
-        shares = sum(WEIGHT.get(kind, 1.0) for kind in kinds)
-        return shares / WEIGHT.get(candidate.kind, 1.0) * self._paid.get(candidate.kind, 1.0)
-
-    def _grid(self, kind: str) -> float:
-        """As how many a kind's candidates count, beside the line and the bend."""
-        alike = [c.terms for c in self.pool if c.kind == kind]
-        if len(alike) == 1 or len(alike[0]) > 1:
-            return float(len(alike))
-        r = self.regression
-        beside = [*self.straight, *(self.bend if kind != "temperature-quadratic" else ())]
-        x = np.vstack(
-            [np.column_stack([r.columns(t[0])[i] for t in alike]) for i in range(len(r.y))]
-        )
-        z = np.vstack(
-            [
-                np.column_stack([r.columns(t)[i] for t in beside] or [np.zeros(len(y))])
-                for i, y in enumerate(r.y)
-            ]
-        )
-        return effective(x - z @ np.linalg.lstsq(z, x, rcond=1e-10)[0])
-
-    def _is_by_time(self, c: Candidate) -> bool:
-        """Whether it follows time alone and there are power-ons at which it must come again."""
-        return by_time.follows_time(c) and not self.folds and len(self.regression.sessions) > 1
-
-    def _least_ratio(self, c: Candidate) -> float:
-        """The likelihood ratio below which a candidate is not looked at."""
-        if self._is_by_time(c):
-            return float(chi2.isf(by_time.WORTH_ASKING, 3))
-        return smallest_ratio(c.family, 3 * len(c.terms), self._tried(c))
-
-    def _needed(self, c: Candidate) -> float:
-        """The likelihood ratio at which a candidate is found, where the noise is as it seems."""
-        if self._is_by_time(c):
-            sessions = len(self.regression.sessions)
-            return by_time.smallest_square(self._tried(c), 3, sessions)
-        return smallest_ratio(c.family, 3, self._tried(c))
-
     def _add_one(self) -> bool:
         self._look_afresh()
         while True:
@@ -238,7 +163,7 @@ class Search:
     def _best_candidate(self) -> tuple[Found | None, bool]:
         choose, test = self._ratios()
         dof = np.array([3 * len(c.terms) for c in self.pool])
-        need = np.array([self._least_ratio(c) for c in self.pool])
+        need = np.array([self.prices.least_ratio(c) for c in self.pool])
         passing = np.flatnonzero(test > need)
         passing = passing[np.argsort(-(choose - 2.0 * dof)[passing])]
         if self._step_is_larger(test[passing].max() if len(passing) else 0.0):
@@ -294,7 +219,7 @@ class Search:
         if self._is_a_start(best):
             self.refused.append((confounding.label(best), "the start of a lag's own memory"))
             return None
-        if self._is_twice(best, self.terms()):
+        if all_but_same(best.terms, self.terms(), self.regression.sessions):
             self.refused.append((confounding.label(best), "found already, all but the same"))
             return None
         ratio = float(self.regression.gains(nuisances, [best.terms]).sum())
@@ -309,15 +234,10 @@ class Search:
         return None
 
     def _decision(self, nuisances, c: Candidate, ratio: float) -> Decision:
-        r, tried = self.regression, self._tried(c)
-        if self._is_by_time(c):
+        r, tried = self.regression, self.prices.tried(c)
+        if self.prices.is_by_time(c):
             return by_time.considered(r, nuisances, c, ratio, tried)
         return decide(r, self.folds or r, nuisances, c, ratio, tried, self.singles)
-
-    def _is_twice(self, candidate: Candidate, terms: list[Term]) -> bool:
-        """Whether the terms leave next to nothing of a candidate of one term."""
-        own = candidate.terms
-        return len(own) == 1 and all_but_same(own[0], terms, self.regression.sessions)
 
     def _grows_with(self, candidate: Candidate) -> bool:
         """Whether the plain error of what is left out grows with a candidate as deployed."""
@@ -345,14 +265,14 @@ class Search:
                 del self.found[i]
             else:
                 better = refined(self.regression, rest, c)
-                if not self._is_twice(better, rest):
+                if not all_but_same(better.terms, rest, self.regression.sessions):
                     self.found[i].candidate = better
 
     def _is_idle(self, c: Candidate, rest: list[Term]) -> bool:
-        if self._is_by_time(c):
+        if self.prices.is_by_time(c):
             chance = by_time.chance(self.regression, rest, c.terms)
-            return chance * self._tried(c) > by_time.LEVEL
-        return float(self.regression.gains(rest, [c.terms]).sum()) < self._least_ratio(c)
+            return chance * self.prices.tried(c) > by_time.LEVEL
+        return float(self.regression.gains(rest, [c.terms]).sum()) < self.prices.least_ratio(c)
 
     def _list_steps(self):
         """Steps again from none, beside the effects found."""
@@ -360,27 +280,6 @@ class Search:
         self.regression.set_events([])
         self._look_afresh()
         self.steps = events.find_all(self.regression, [*self.straight, *self.bend, *self.terms()])
-
-    def _name_rivals(self):
-        for i, f in enumerate(self.found):
-            rest = [*self.straight, *self.terms(leave=i)]
-            ratios = self.regression.gains(rest, [c.terms for c in self.pool]).sum(axis=1)
-            near = confounding.rivals(self.regression, rest, f.candidate, self.pool, ratios)
-            near = [c for c in near if c is f.candidate or not self._is_twice(c, rest)]
-            if i < self.bends:
-                near = [
-                    f.candidate,
-                    *(c for c in near if c is not f.candidate and c.family == "catalogue"),
-                ]
-            f.candidate = self._named(rest, near[0])
-            others = [confounding.label(self._named(rest, c)) for c in near[1:]]
-            f.confounded_with = [
-                n for n in dict.fromkeys(others) if n != confounding.label(f.candidate)
-            ]
-
-    def _named(self, rest, candidate):
-        fit = self.regression.fit([*rest, *candidate.terms])
-        return confounding.named(candidate, fit.coefficients[len(rest) :])
 
 
 def select(

@@ -14,7 +14,7 @@ from dataclasses import replace
 
 from .confounding import label
 from .judge import Judgement, judge
-from .select import Selection
+from .selection import Selection
 from .sessions import Session
 
 #: Nats that the locked sessions may lose: a cause that rests there says nothing, not no.
