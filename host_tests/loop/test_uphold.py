@@ -1,10 +1,13 @@
 """What the session held out speaks against is taken out again."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
+from zerorate_tools.loop import uphold
 from zerorate_tools.loop.analysis import analyse
+from zerorate_tools.loop.judge import judge
 from zerorate_tools.loop.report import report
 from zerorate_tools.loop.select import select
 from zerorate_tools.loop.simulated import simulate
@@ -14,6 +17,12 @@ from zerorate_tools.loop.words import in_words
 
 def kinds(selection):
     return [f.candidate.kind for f in selection.found]
+
+
+def doubting(judge, selection, locked):
+    """The judgement with a likelihood that speaks against everything."""
+    judgement = judge(selection, locked)
+    return replace(judgement, gains=np.full_like(judgement.gains, -2.0))
 
 
 @pytest.fixture(scope="module")
@@ -48,10 +57,13 @@ def test_what_noise_steeper_than_a_walk_feigns_is_withdrawn():
     assert kinds(upheld(selection, sessions[-1:])[0]) == []
 
 
-def test_the_bend_of_a_single_recording_is_judged_elsewhere(turning_about):
-    selection = replace(select(turning_about[:-1]), bends=1)
-    left, judgement = upheld(selection, turning_about[-1:])
-    assert judgement.gains[0] < 0 and kinds(left) == ["time-drift"]
+def test_what_makes_the_error_smaller_stays_whatever_its_likelihood(turning_about, monkeypatch):
+    selection = select(turning_about[:-1])
+    doubted = partial(doubting, judge)
+    monkeypatch.setattr(uphold, "judge", doubted)
+    left, judgement = upheld(selection, turning_about[1:2])
+    assert judgement.gains[0] < -1 and judgement.after_rms < judgement.before_rms
+    assert kinds(left) == ["time-drift"] and not left.withdrawn
 
 
 def test_a_cause_that_rests_in_the_session_held_out_stays():

@@ -4,8 +4,8 @@ An effect that is there hardly ever makes a power-on that no fit has seen less l
 alone made of the others does more often than not. Above all noise steeper than a random walk, which
 drifts at every power-on, but each time another way.
 
-Bends of a single recording stay: there the noise's walk is the bend, likelihoods say nothing of it,
-and the firmware's own error on pieces left out has judged it already.
+Both must: the likelihood, which looks where the noise is small, and the plain error, which is what
+counts in the end and where slow noise has most to say.
 """
 
 from __future__ import annotations
@@ -27,21 +27,19 @@ def upheld(selection: Selection, locked: list[Session]) -> tuple[Selection, Judg
     What is taken out is said in `Selection.withdrawn`, with the error that it would have left.
     """
     judgement = judge(selection, locked)
-    while (worst := _spoken_against(selection, judgement)) is not None:
+    for worst in _spoken_against(judgement):
         less = selection.without(worst)
         without = judge(less, locked)
-        said = (label(selection.found[worst].candidate), _said(judgement, worst, without))
-        selection = replace(less, withdrawn=[*less.withdrawn, said])
-        judgement = without
+        if without.after_rms <= judgement.after_rms:
+            name = label(selection.found[worst].candidate)
+            said = (name, _said(judgement, worst, without))
+            return upheld(replace(less, withdrawn=[*less.withdrawn, said]), locked)
     return selection, judgement
 
 
-def _spoken_against(selection: Selection, judgement: Judgement) -> int | None:
-    """Index of the effect that the locked sessions lose most by, if they lose enough."""
-    gains = judgement.gains[selection.bends :]
-    if not (gains < -MOST_LOST).any():
-        return None
-    return selection.bends + int(gains.argmin())
+def _spoken_against(judgement: Judgement) -> list[int]:
+    """Indices of the effects that the locked sessions lose nats by, the worst first."""
+    return [int(i) for i in judgement.gains.argsort() if judgement.gains[i] < -MOST_LOST]
 
 
 def _said(judgement: Judgement, i: int, without: Judgement) -> str:
