@@ -5,6 +5,7 @@ bench loop`.
 import numpy as np
 import pytest
 from zerorate_tools.loop.analysis import analyse
+from zerorate_tools.loop.basis import Term, block_basis
 from zerorate_tools.loop.confounding import label
 from zerorate_tools.loop.judge import judge
 from zerorate_tools.loop.report import report
@@ -60,6 +61,18 @@ def test_a_cubic_has_the_centre_that_the_part_has():
 def test_a_square_of_a_delayed_channel_is_tied_to_that_channel():
     selection, _ = look(simulate(12, [("load-squared-delayed", 3.0)]))
     assert selection.found and selection.found[0].candidate.sources == ["load"]
+
+
+def test_a_delay_is_found_wherever_it_lies_though_the_channel_leaps():
+    device = simulate(12)
+    for s in device.sessions:
+        s.sources["load"] = (s.sources["load"] > 0.5).astype(float)
+        late = block_basis(Term("load", delay_s=193.0), s)
+        s.rate_dps += np.outer(late, 4.0 * device.floor_dps)
+    selection, _ = look(device)
+    [found] = selection.found
+    assert found.candidate.sources == ["load"]
+    assert found.candidate.terms[0].delay_s == pytest.approx(193.0, abs=5.0)
 
 
 def test_two_effects_at_once_are_both_named():

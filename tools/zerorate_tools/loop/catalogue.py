@@ -53,16 +53,19 @@ GROUPS: tuple[tuple[str, tuple[str, ...], Options], ...] = (
     ("rate-scale", ("rate_x", "rate_y", "rate_z"), {}),
 )
 
+#: A channel that switches shows its delay to the block: between the grid's points nothing is seen.
+_DELAYS_S = tuple(float(s) for s in range(20, 340, 20))
+
 #: Forms for any channel, catalogue or not.
 GENERIC: tuple[tuple[str, Options, Options], ...] = (
     ("channel", {}, {}),
     ("channel-square", {"power": 2}, {"centre": ("mean", "lo", "hi")}),
     ("channel-lag", {"lag_mode": "lag"}, {"lag_s": (60.0, 180.0, 540.0, 1600.0)}),
-    ("channel-delay", {}, {"delay_s": (40.0, 80.0, 120.0, 160.0, 220.0, 300.0)}),
+    ("channel-delay", {}, {"delay_s": _DELAYS_S}),
     (
         "channel-delay-square",
         {"power": 2},
-        {"delay_s": (40.0, 80.0, 120.0, 160.0, 220.0, 300.0), "centre": ("mean", "lo")},
+        {"delay_s": _DELAYS_S, "centre": ("mean", "lo")},
     ),
     ("channel-rate", {"lag_mode": "rate"}, {"lag_s": (40.0, 160.0)}),
     (
