@@ -54,7 +54,8 @@ GROUPS: tuple[tuple[str, tuple[str, ...], Options], ...] = (
 )
 
 #: A channel that switches shows its delay to the block: between the grid's points nothing is seen.
-_DELAYS_S = tuple(float(s) for s in range(20, 340, 20))
+DELAY_STEP_S = 20.0
+_DELAYS_S = tuple(DELAY_STEP_S * i for i in range(1, 17))
 
 #: Forms for any channel, catalogue or not.
 GENERIC: tuple[tuple[str, Options, Options], ...] = (

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from .catalogue import REFINED, Candidate
+from .catalogue import DELAY_STEP_S, REFINED, Candidate
 
 _ROUNDS = 2
 
@@ -23,26 +23,37 @@ def refined(regression, terms, candidate: Candidate) -> Candidate:
 def _along(regression, terms, candidate, name):
     term = candidate.terms[0]
     at = getattr(term, name)
-    low, high, to, back = _interval(term, name, at)
 
-    def worse(x):
-        trial = replace(term, **{name: float(back(x))})
+    def worse(value):
+        trial = replace(term, **{name: float(value)})
         gain = regression.gains(terms, [(trial,)]).sum()
         regression.forget(trial)
         return -gain
 
-    found = minimize_scalar(
-        worse, bounds=(to(low), to(high)), method="bounded", options={"xatol": 0.02, "maxiter": 14}
-    )
-    if found.fun > worse(to(at)):
-        return candidate
-    return replace(candidate, terms=(replace(term, **{name: float(back(found.x))}),))
+    best, least = at, worse(at)
+    for low, high, to, back in _intervals(term, name, at):
+        found = minimize_scalar(
+            lambda x, back=back: worse(back(x)),
+            bounds=(to(low), to(high)),
+            method="bounded",
+            options={"xatol": 0.02, "maxiter": 14},
+        )
+        if found.fun <= least:
+            best, least = float(back(found.x)), found.fun
+    return replace(candidate, terms=(replace(term, **{name: best}),))
 
 
-def _interval(term, name, at):
+def _intervals(term, name, at):
+    """Where to look, and the scale on which to: a delay also between its neighbours on the grid,
+    for a channel that leaps shows it there alone.
+    """
     limits = REFINED[name]
     if limits:
-        return max(at / 2.2, limits[0]), min(at * 2.2, limits[1]), np.log, np.exp
-    span = term.hi - term.lo
-    unit = span or 1.0
-    return at - 0.2 * span, at + 0.2 * span, (lambda v: v / unit), (lambda v: v * unit)
+        yield max(at / 2.2, limits[0]), min(at * 2.2, limits[1]), np.log, np.exp
+    else:
+        span = term.hi - term.lo
+        unit = span or 1.0
+        yield at - 0.2 * span, at + 0.2 * span, (lambda v: v / unit), (lambda v: v * unit)
+    if name == "delay_s":
+        step = DELAY_STEP_S
+        yield max(at - step, 1.0), at + step, (lambda v: v / step), (lambda v: v * step)
