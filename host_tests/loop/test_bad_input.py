@@ -58,6 +58,14 @@ def test_of_two_channels_that_are_copies_the_first_is_kept(closed):
     assert "copy of a" in analysis.gate.dropped["b"] and invented(analysis) == []
 
 
+def test_a_channel_with_the_gyroscopes_own_noise_is_no_cause(closed):
+    every = [columns(i) for i in range(4)]
+    for one in every:
+        one["rate2"] = 7 * one["gy"] + 40
+    analysis = closed(every)
+    assert "own noise" in analysis.gate.dropped["rate2"] and invented(analysis) == []
+
+
 def test_a_channel_that_one_recording_lacks_is_set_aside_and_named(closed):
     every = [columns(i) for i in range(4)]
     every[0]["load"] = wander(0)

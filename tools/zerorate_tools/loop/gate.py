@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.stats import spearmanr
 
 from ..errors import ZerorateError
 from ..model.binding import NAMES, binding_of
-from .sessions import Session
+from .sessions import OWN_SOURCES, Session
 
 LEAST_BLOCKS = 15
 #: Half of it is the turn-on minute, which nothing is judged by.
@@ -23,6 +24,9 @@ _REMEDY = {
     "temperature-jump": "the temperature leaps: check the bus and the temperature's scale",
 }
 _COPY = 0.99999
+#: Rank correlation of what a channel and a rate change by from tick to tick, where white noise is
+#: most of a rate's change: no cause has the sensor's own noise.
+_OWN_NOISE = 0.9
 _SETTINGS = (
     "sensor",
     "odr_hz",
@@ -153,7 +157,24 @@ def _unusable(name, sessions):
         np.ptp(s.sources[name]) == 0 for s in sessions
     ):
         return "constant"
+    if name not in OWN_SOURCES and all(_has_the_noise(s, name) for s in sessions):
+        return "it has the gyroscope's own noise: a copy of what is to be explained, no cause of it"
     return None
+
+
+def _has_the_noise(session: Session, name: str) -> bool:
+    """Whether a channel changes from tick to tick as the rate about an axis does."""
+    if session.ticks_dps is None:
+        return False
+    own = np.diff(session.sources[name][: len(session.ticks_dps)])
+    rates = np.diff(session.ticks_dps, axis=0)
+    there = np.isfinite(rates).all(axis=1) & (own != 0)
+    if there.sum() < max(LEAST_BLOCKS, 0.5 * len(own)):
+        return False
+    if np.ptp(own[there]) == 0:
+        return False
+    alike = [abs(spearmanr(own[there], r).statistic) for r in rates[there].T if np.ptp(r) > 0]
+    return max(alike, default=0.0) > _OWN_NOISE
 
 
 def _copies(a, b, sessions):
