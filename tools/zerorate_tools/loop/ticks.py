@@ -24,6 +24,8 @@ from .timing import products as of_timing
 
 TICK_S = 1.0
 _RAIL = 32767
+#: Samples a tick below which it is taken to hold one.
+_ALONE = 1.5
 #: First-order high-pass of the acceleration for its vibration, per sample.
 _VIBRATION_ALPHA = 1.0 / 32.0
 
@@ -127,7 +129,7 @@ class _Reader:
             return
         gyro = np.column_stack([batch[n] for n in GYRO])
         if self.start is None:
-            self.start, self.centre = int(t_us[0]), gyro[:256].mean(axis=0)
+            self.start, self.centre = self._start_us(t_us), gyro[:256].mean(axis=0)
         self.digest.update(np.ascontiguousarray(gyro[:4096]).tobytes())
         self.samples += len(t_us)
         tick = ((t_us - self.start) / (self.tick_s * 1e6)).astype(np.int64)
@@ -146,6 +148,13 @@ class _Reader:
             self._moments("accel", tick, accel)
             if len(accel):
                 self.sums.add("vib", tick, self.vibration(accel), self.size)
+
+    def _start_us(self, t_us):
+        """Of the first tick. Where a tick holds one sample, that is in its middle, so that neither
+        jitter nor a rate that is not quite what it says puts two into one and none in the next.
+        """
+        alone = self.scales.odr_hz * self.tick_s < _ALONE
+        return int(t_us[0]) - (round(0.5e6 * self.tick_s) if alone else 0)
 
     def _moments(self, name, tick, values):
         for a in range(3):
