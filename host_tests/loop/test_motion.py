@@ -4,8 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from zerorate_tools.loop import events
 from zerorate_tools.loop.blocks import session_of
 from zerorate_tools.loop.in_motion import in_motion, slots_of, without_scales
+from zerorate_tools.loop.regression import Regression
 from zerorate_tools.loop.ticks import read_ticks
 from zerorate_tools.recordings import write_recording
 from zerorate_tools.simulate import simulate_sessions
@@ -82,3 +84,12 @@ def test_the_scale_is_a_slot_of_each_rate_that_subtracts_what_was_added(tmp_path
 def test_readings_that_come_late_are_said_with_how_late(tmp_path):
     _, motion = shown(tmp_path, [LATE], attitude=True)
     assert motion.timing.found and motion.timing.delay_s == pytest.approx(5e-3, rel=0.05)
+
+
+def test_no_step_of_the_bias_is_listed_in_the_midst_of_motion(tmp_path):
+    made = sessions(tmp_path, [], HANDLED, attitude=True)
+    moved = np.flatnonzero(made[1].moved)
+    assert len(moved) > 5
+    made[1].rate_dps[moved[2] :] += 5.0
+    listed = events.find_all(Regression(made), [])
+    assert all(s.block not in (*moved, *(moved + 1)) for s in listed if s.session == 1)

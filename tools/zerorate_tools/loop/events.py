@@ -37,13 +37,16 @@ def strongest(regression, terms) -> Step | None:
         last = session.blocks - _EDGE
         tried += max(0, last + 1 - _EDGE)
         stride = max(1, session.blocks // _COARSE)
+        ground = _ground(session)
         at = np.arange(_EDGE, last + 1, stride)
+        at = at[ground[at]]
         if not len(at):
             continue
         coarse = _scores(regression, terms, s, at)
         every.append((s, at, coarse))
         middle = at[coarse.argmax()]
         near = np.arange(max(_EDGE, middle - stride), min(last, middle + stride) + 1)
+        near = near[ground[near]]
         score = _scores(regression, terms, s, near)
         i = int(score.argmax())
         if best is None or score[i] > best.ratio:
@@ -51,6 +54,12 @@ def strongest(regression, terms) -> Step | None:
     if best:
         best.p_value = min(1.0, _survival(best, every, regression.y[0].shape[1]) * tried)
     return best
+
+
+def _ground(session) -> np.ndarray:
+    """(n,) bool: where a step may be: in motion a scale factor's error leaps, not the bias."""
+    moved = session.moved
+    return ~(moved | np.r_[False, moved[:-1]])
 
 
 def _survival(best: Step, every: list, axes: int) -> float:

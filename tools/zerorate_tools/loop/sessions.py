@@ -70,6 +70,14 @@ class Session:
         """(n,) bool: blocks with a usable rate."""
         return np.isfinite(self.rate_dps).all(axis=1) & (self.weight > 0)
 
+    @property
+    def moved(self) -> np.ndarray:
+        """(n,) bool: blocks whose rate is known beside a reference though they were not at rest."""
+        if self.ticks_dps is None:
+            return np.zeros(self.blocks, bool)
+        at_rest = np.isfinite(self.ticks_dps).all(axis=1).astype(float)
+        return self.available & (self.block_mean(at_rest) < 0.5)
+
     def block_mean(self, ticks: np.ndarray) -> np.ndarray:
         """Mean over each block of a (n * ticks_per_block,) series."""
         return ticks.reshape(self.blocks, self.ticks_per_block).mean(axis=1)
