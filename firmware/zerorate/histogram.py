@@ -199,6 +199,8 @@ def recentre(s: ptr32, c: ptr32, h: int, k: int) -> int:
     if k < c[_ENOUGH] or width >= 4 * c[_NARROWEST_LSB]:
         return 0
     by = by // k - (s[h] >> 14) - (width >> 1)
+    if width < 32:
+        width = 32  # a step of one LSB either way is rounding
     if by < (width >> 4) and by > -(width >> 4):
         return 0
     if (s[h] >> 14) + by <= (s[h - 1] >> 14) or (s[h + 1] >> 14) + by >= (s[h + 2] >> 14):

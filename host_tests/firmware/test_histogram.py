@@ -1,11 +1,12 @@
 """The adaptive histogram keeps its promises whatever is added to it."""
 
+import random
 from array import array
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from zerorate import Corrector, histogram
+from zerorate import Corrector, Sensor, histogram
 
 MODES = {
     "default": {},
@@ -25,8 +26,8 @@ chunks = st.lists(st.tuples(st.one_of(near, far), st.sampled_from([1, 2, 64, 256
 class Histogram:
     """One histogram behind the shared words that the kernels use."""
 
-    def __init__(self, mode):
-        self.c = Corrector(**MODES[mode]).settings
+    def __init__(self, mode, sensor=None):
+        self.c = Corrector(sensor, **MODES[mode]).settings
         self.bins = self.c[16]
         self.h = 10
         self.s = array("i", [0] * (self.h + 2 * self.bins + 1))
@@ -175,3 +176,14 @@ def test_the_bias_is_the_mean_of_the_bin_with_most_readings_for_its_width():
 
 def test_an_empty_histogram_reads_zero():
     assert Histogram("document").read_out == 0
+
+
+@pytest.mark.parametrize("lsb_per_dps", [131.0, 65.5, 32.8, 16.4])
+@pytest.mark.parametrize("mean_lsb", [0.0, 0.3, 0.5, -3.02])
+def test_what_was_learned_is_kept_in_every_range(lsb_per_dps, mean_lsb):
+    sensor = Sensor(gyro_lsb_per_dps=lsb_per_dps)
+    made, rng = Histogram("default", sensor), random.Random(1)
+    for _ in range(3000):
+        made.add(round(rng.gauss(mean_lsb, 0.06 * lsb_per_dps)))
+    assert sum(made.counts) > 1500
+    assert made.read_out == pytest.approx(mean_lsb, abs=0.3)

@@ -471,6 +471,9 @@ static int32_t histogram_recentre(int32_t *s, int32_t *c, int32_t h, int32_t k) 
         return 0;
     }
     by = ((floor_div(by, k) - (s[h] >> 14)) - (width >> 1));
+    if (width < 32) {
+        width = 32;
+    }
     if ((by < (width >> 4)) && (by > (-(width >> 4)))) {
         return 0;
     }

@@ -126,6 +126,8 @@ def adapt(h: int, s: ptr32, c: ptr32, k: int, s_, c_) -> int:
                 recentre_result = 0
             else:
                 recentre_by = recentre_by // recentre_k - (s_recentre_h[0] >> 14) - (recentre_width >> 1)
+                if recentre_width < 32:
+                    recentre_width = 32
                 if recentre_by < recentre_width >> 4 and recentre_by > -(recentre_width >> 4):
                     recentre_result = 0
                 elif (s_recentre_h[0] >> 14) + recentre_by <= s[recentre_h - 1] >> 14 or (s_recentre_h[1] >> 14) + recentre_by >= s_recentre_h[2] >> 14:
