@@ -64,9 +64,9 @@ def test_in_noise_alone_the_chance_is_hardly_smaller_than_it_says():
 
 
 def test_more_power_ons_show_a_smaller_drift():
-    needed = [by_time.smallest_square(4.0, 3, sessions) for sessions in (2, 3, 6)]
-    assert needed == sorted(needed, reverse=True)
-    assert 15 < needed[-1]
+    each = [by_time.smallest_square(4.0, 3, sessions) / sessions for sessions in (2, 3, 6)]
+    assert each == sorted(each, reverse=True)
+    assert 2 < each[-1] < each[0] < 10
 
 
 def test_only_what_needs_no_channel_follows_time():

@@ -18,8 +18,9 @@ from .decide import Decision
 from .left_out import gains
 
 #: The chance that anything following time passes on a device with nothing in it, both questions
-#: taken together.
-LEVEL = 1e-4
+#: taken together: by the power-ons fitted, and with the one held out among them. Noise steeper than
+#: a random walk drifts alike at three power-ons by chance, and hardly at four.
+LEVEL, LEVEL_OF_ALL = 1e-3, 1e-6
 #: Of the likelihood ratio alone, below which neither question is put.
 WORTH_ASKING = 0.01
 #: By how much the lowest frequencies' share of the noise differs between the axes of one part: the
@@ -43,7 +44,12 @@ def considered(regression, terms, candidate: Candidate, ratio: float, tried: flo
     p = min(1.0, chance(regression, terms, candidate.terms) * tried)
     gain = gains(regression, terms, candidate.terms)
     reason = "" if p <= LEVEL else "no more than the noise's own walk, power-on by power-on"
-    return Decision(p <= LEVEL, p, ratio, 1.0, gain, reason)
+    return Decision(p <= LEVEL, p, ratio, 1.0, gain, reason, tried)
+
+
+def comes_again(whole, terms, candidate: Candidate, tried: float) -> bool:
+    """Whether it is there by all power-ons together, those held out among them (`whole`)."""
+    return chance(whole, terms, candidate.terms) * tried <= LEVEL_OF_ALL
 
 
 def chance(regression, terms, candidate) -> float:
@@ -116,11 +122,18 @@ def _by_session(g, colour, a, weight):
 
 
 def smallest_square(tried: float, axes: int, sessions: int) -> float:
-    """Square of the mean in its own variance that passes, where the power-ons' spread is noise."""
+    """Square of the mean of so many sessions in its own variance that passes by them, and with one
+    more, where the power-ons' spread is noise."""
+    alone = _square(LEVEL / tried, axes, sessions)
+    held_out = _square(LEVEL_OF_ALL / tried, axes, sessions + 1)
+    return max(alone, held_out * sessions / (sessions + 1))
+
+
+def _square(level: float, axes: int, sessions: int) -> float:
     free = axes * (sessions - 1) + _WORTH
 
     def excess(square):
         chances = chi2.sf(square, axes), f.sf(square / axes, axes, free)
-        return np.log(together(*chances) * tried / LEVEL)
+        return np.log(together(*chances) / level)
 
     return float(brentq(excess, 1.0, 500.0))

@@ -27,7 +27,7 @@ MOST_LOST = 3.0
 
 @dataclass
 class Decision:
-    """What the locks said of a candidate."""
+    """What the locks said of a candidate. tried: candidates that p_value has paid for."""
 
     accepted: bool
     p_value: float
@@ -35,6 +35,7 @@ class Decision:
     inflation: float
     session_gains: np.ndarray
     reason: str = ""
+    tried: float = 1.0
 
 
 def family_p(ratio: float, dof: int, tried: float) -> float:
