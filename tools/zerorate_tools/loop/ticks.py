@@ -18,7 +18,7 @@ from ..recordings.recording import ACCEL, COLUMNS, GYRO, TEMP, TIME
 from .beside_reference import WIDTH
 from .beside_reference import products as of_turning
 from .quick import Segments
-from .reference import Reference
+from .reference import Reference, declared
 from .timing import change_of
 from .timing import products as of_timing
 
@@ -131,7 +131,8 @@ class _Reader:
         self.centre = None
         self.reference = Reference(names, scales.gyro_lsb_per_dps)
         self.segments = Segments()
-        self.extra = [n for n in names if n not in COLUMNS and n not in self.reference.names]
+        known = {*COLUMNS, *self.reference.names, *declared(scales.more)}
+        self.extra = [n for n in names if n not in known]
 
     def add(self, batch):
         t_us = batch[TIME]
