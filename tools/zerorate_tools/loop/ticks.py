@@ -96,10 +96,10 @@ class _Vibration:
         return ((accel - slow) ** 2).sum(axis=1)
 
 
-def tick_seconds(path: str | PathLike[str]) -> float:
+def tick_seconds(path: str | PathLike[str], least_s: float = TICK_S) -> float:
     """Length of a recording's ticks: longer where it is slower than one sample a tick, so that each
     holds one. Raises BadRecording."""
-    return max(TICK_S, _of_one_sample(open_recording(path)))
+    return max(least_s, _of_one_sample(open_recording(path)))
 
 
 def _of_one_sample(opened: OpenRecording) -> float:
