@@ -56,12 +56,15 @@
     return out;
   }
 
-  // Labels of a logarithmic axis: every decade, or 1, 2 and 5 of it where there are hardly two.
+  // Labels of a logarithmic axis: every decade, or some of each where there are hardly two.
   function marks(plot, number, letter) {
-    const values = plot.series.filter((s) => s.panel === number).flatMap((s) => s[letter]).filter((v) => v > 0);
-    if (Math.max(...values) > 40 * Math.min(...values)) return { dtick: 1 };
-    const first = Math.floor(Math.log10(Math.min(...values))) - 2;
-    const at = [...Array(6).keys()].flatMap((k) => [1, 2, 5].map((n) => Number(n + "e" + (first + k))));
+    const drawn = plot.series.filter((s) => s.panel === number).flatMap((s) => s[letter]);
+    const across = plot.panels[number].lines.filter((line) => line.axis === letter).map((line) => line.value);
+    const values = [...drawn, ...across].filter((v) => v > 0);
+    const least = Math.min(...values), times = Math.max(...values) / least;
+    if (times > 40) return { dtick: 1 };
+    const first = Math.floor(Math.log10(least)) - 1, of = times > 6 ? [1, 2, 5] : [1, 1.5, 2, 3, 5, 7];
+    const at = [...Array(5).keys()].flatMap((k) => of.map((n) => Number(n + "e" + (first + k))));
     return { tickvals: at, ticktext: at.map(String) };
   }
 
