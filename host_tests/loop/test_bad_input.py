@@ -1,6 +1,7 @@
 """Recordings from which little can be learned end in a sentence that helps; nothing is invented."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -30,11 +31,11 @@ def columns(seed, n=N):
 def closed(tmp_path):
     """Loop over recordings given as columns; scales: of each, the MPU-6050's by default."""
 
-    def run(every, scales=MPU):
+    def run(every, *scales):
         paths = []
         for i, one in enumerate(every):
             paths.append(tmp_path / f"s{i}.parquet")
-            write_recording(Recording(one, scales, f"s{i}"), paths[-1])
+            write_recording(Recording(one, scales[i] if scales else MPU, f"s{i}"), paths[-1])
         return load(paths)
 
     return run
@@ -173,3 +174,25 @@ def test_an_accelerometer_that_gives_nothing_is_none(closed):
         {**columns(i), "ax": np.zeros(N), "ay": np.zeros(N), "az": np.zeros(N)} for i in range(3)
     ]
     assert invented(closed(every)) == []
+
+
+def test_power_ons_whose_clocks_differ_a_little_are_of_one_device(closed):
+    clocks = [replace(MPU, odr_hz=HZ * k) for k in (1.0, 1.0002, 0.97)]
+    assert len(closed([columns(i) for i in range(3)], *clocks).sessions) == 3
+
+
+def test_rows_of_fifteen_seconds_lie_alike_in_every_power_on(closed):
+    slow = [{**columns(i, 480), "t_us": 15_000_000 * np.arange(480)} for i in range(3)]
+    sessions = closed(slow, *(replace(MPU, odr_hz=hz) for hz in (1 / 15, 0.0667, 0.066))).sessions
+    assert len({(s.block_s, s.ticks_per_block) for s in sessions}) == 1
+
+
+def test_another_data_rate_is_another_setting(closed):
+    with pytest.raises(CannotClose, match="odr_hz is 2.5, but 5.0 in s0"):
+        closed([columns(0), columns(1)], MPU, replace(MPU, odr_hz=HZ / 2))
+
+
+def test_scales_that_an_import_chose_are_told_how_to_agree(closed):
+    wider = replace(MPU, sensor="unknown", gyro_lsb_per_dps=65.5)
+    with pytest.raises(CannotClose, match="import both with --gyro-lsb-per-dps N"):
+        closed([columns(0), columns(1)], replace(MPU, sensor="unknown"), wider)

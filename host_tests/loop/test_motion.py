@@ -5,10 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from zerorate_tools.loop import events
+from zerorate_tools.loop.analysis import analyse
 from zerorate_tools.loop.blocks import session_of
 from zerorate_tools.loop.in_motion import in_motion, slots_of, without_scales
 from zerorate_tools.loop.regression import Regression
 from zerorate_tools.loop.ticks import read_ticks
+from zerorate_tools.loop.unexplained import not_excluded
 from zerorate_tools.recordings import write_recording
 from zerorate_tools.simulate import simulate_sessions
 
@@ -70,6 +72,11 @@ def test_scale_and_cross_axis_are_named_and_measured(tmp_path, effect, kind, mat
     assert motion.scales.kind == kind and motion.scales.confirmed
     assert motion.scales.matrix == pytest.approx(matrix, abs=0.002)
     assert motion.scales.after < 0.4 * motion.scales.before
+
+
+def test_a_scale_that_turns_would_show_is_not_said_to_be_beyond_the_recordings(tmp_path):
+    made = sessions(tmp_path, [], HANDLED, attitude=True)
+    assert "rate-scale" not in not_excluded(analyse(made))
 
 
 def test_the_scale_is_a_slot_of_each_rate_that_subtracts_what_was_added(tmp_path):

@@ -10,6 +10,14 @@ from host_tests.report.devices import HOSTILE, HOSTILE_FILE, Closed, bundled, de
 HYSTERESIS = [("thermal-hysteresis", 5.0)]
 LOAD = [("load-squared-delayed", 5.0)]
 HOSTILE_FILES = [f"{HOSTILE_FILE} {i}" for i in range(4)]
+#: A step in a recording whose name has no place to break at.
+LONG_STEP = {
+    "kind": "step",
+    "t_us": 38_000_000,
+    "recording": "21_undisturbed_fast_combined_" * 2,
+    "size_mdps": [-33.26, 196.33, 2078.44],
+    "p_value": 1e-9,
+}
 #: Outcome -> what makes recordings with it in a folder.
 OUTCOMES = {
     "an effect": partial(device, seed=7, effects=HYSTERESIS),
@@ -29,6 +37,8 @@ def outcome(tmp_path_factory):
     def make(name):
         folder = tmp_path_factory.mktemp("closed")
         closed = Closed(folder, OUTCOMES[name](folder))
+        if name == "hostile names":
+            closed.result["events"].append(LONG_STEP)
         closed.page = write_report(closed.analysis, closed.result, closed.logs, closed.folder)
         return closed
 

@@ -5,6 +5,7 @@ import re
 from html.parser import HTMLParser
 
 import pytest
+from zerorate_tools.loop.turns import GIVEN
 from zerorate_tools.report.figures import figure
 from zerorate_tools.report.words import corrects_at_rest, headline
 
@@ -80,6 +81,15 @@ class TestAnswers:
 
     def test_nothing(self, outcome):
         assert headline(outcome("nothing").result).startswith("Nothing was found at rest")
+
+    def test_nothing_beside_a_reference_is_not_said_of_rests_alone(self, outcome):
+        result = outcome("nothing").result
+        beside = {**result, "truth": {**result["truth"], "in_motion": GIVEN}}
+        assert headline(beside).startswith("Nothing was found in the bias, beside the reference, ")
+
+    def test_where_something_is_left_the_firmware_does_not_correct_all(self, outcome):
+        said = outcome("unexplained").page.read_text()
+        assert "nothing to load: what is left, nothing that was recorded explains" in said
 
     def test_unexplained(self, outcome):
         said = headline(outcome("unexplained").result)

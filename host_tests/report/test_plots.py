@@ -1,5 +1,7 @@
 """What the plots hold, whoever draws them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -12,6 +14,7 @@ from zerorate_tools.report.figures import chance, figure
 from zerorate_tools.report.held_out import held_out, trend
 from zerorate_tools.report.plot import thinned
 from zerorate_tools.report.png import picture, write_pngs
+from zerorate_tools.report.residual_plots import against_time
 from zerorate_tools.report.writing import plots_of
 
 from host_tests.report.devices import Closed, device
@@ -33,6 +36,17 @@ def test_thinning_keeps_the_extremes_and_the_order(n, seed):
     assert np.array_equal(kept, y[x])
     if n:
         assert kept.min() == y.min() and kept.max() == y.max()
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [("run-4", "run-4"), ("29_disturbed_stationary", "what was held out")],
+)
+def test_the_label_of_the_time_axis_fits_a_phone(outcome, name, said):
+    [part] = held_out(outcome("an effect").analysis)
+    panel = against_time([replace(part, name=name)], []).panels[-1]
+    assert panel.x_label == f"minutes since the start of {name}"
+    assert panel.x_narrow == f"minutes since the start of {said}"
 
 
 def test_thinning_keeps_a_gap():

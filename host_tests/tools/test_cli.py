@@ -143,6 +143,16 @@ def test_import_prints_what_it_did(tmp_path, monkeypatch):
     assert read_recording(tmp_path / "out.csv.gz").columns["gz"].tolist() == [393] * 5
 
 
+def test_import_takes_a_fraction_as_a_rate(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "in.csv").write_text("gx_dps,gy_dps,gz_dps\n" + "0.1,0.2,0.3\n" * 3)
+    words = ["import", "in.csv", "--out", "out.parquet", "--hz"]
+    assert zerorate(*words, "1/15").returncode == 0
+    assert [zerorate(*words, bad).returncode for bad in ("1/0", "fast", "1/")] == [2, 2, 2]
+    t_us = read_recording(tmp_path / "out.parquet").columns["t_us"]
+    assert t_us.tolist() == [0, 15_000_000, 30_000_000]
+
+
 def test_import_takes_a_mapping_and_refuses_a_wrong_one(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "in.csv").write_text("a,b,c\n1,2,3\n4,5,6\n")

@@ -19,9 +19,12 @@ def add_parser(subparsers) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Print the deviation by cluster time, and its lowest point."""
-    from ..loop.stretch import deviation_of
+    from ..allan import overlapping
+    from ..loop.stretch import still_stretch
 
-    tau_s, deviation_dps = deviation_of(arguments.log)
+    rate_dps, each_s = still_stretch(arguments.log)
+    tau_s, deviation_dps = overlapping(rate_dps, each_s)
+    print(f"the longest stretch at rest: {len(rate_dps) * each_s:,.1f} s")
     print("   tau_s     x_mdps     y_mdps     z_mdps")
     for tau, row in zip(tau_s, deviation_dps):
         print(f"{tau:8.2f} " + " ".join(f"{1e3 * v:10.4f}" for v in row))

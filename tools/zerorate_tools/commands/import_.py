@@ -37,7 +37,7 @@ def add_parser(subparsers) -> None:
         help="where a column comes from, and its unit (see below); may be repeated",
     )
     parser.add_argument(
-        "--hz", type=_above_zero, metavar="N", help="samples a second, without time stamps"
+        "--hz", type=_hz, metavar="N", help="samples a second, or 1/15, without time stamps"
     )
     parser.add_argument("--sensor", metavar="NAME", help="the part, for the record")
     chosen = "scale to write; chosen where it is not given"
@@ -85,6 +85,12 @@ def _mapping(text: str):
         return parsed_mapping(text)
     except ValueError as error:
         raise argparse.ArgumentTypeError(str(error)) from error
+
+
+def _hz(text: str) -> float:
+    """A rate, or a fraction: 0.0666667 for 1/15 would be a row off after some hours."""
+    over, slash, under = text.partition("/")
+    return _above_zero(over) / (_above_zero(under) if slash else 1.0)
 
 
 def _above_zero(text: str) -> float:

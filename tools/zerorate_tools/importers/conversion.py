@@ -143,7 +143,7 @@ def _mean_hz(t_us: np.ndarray, path: Path) -> float:
     span = float(t_us[-1] - t_us[0])
     if span <= 0:
         raise BadRecording(path, "time stands still", do="give --hz, samples a second")
-    return round((len(t_us) - 1) / span * 1e6, 4)
+    return float(f"{(len(t_us) - 1) / span * 1e6:.6g}")
 
 
 def _counts(values: np.ndarray, letter: str, foreign: Foreign, lsb: float | None) -> np.ndarray:

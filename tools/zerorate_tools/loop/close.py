@@ -17,7 +17,7 @@ from .gate import CannotClose
 from .measure import measure
 from .model import model_of
 from .report import as_json, report
-from .ticks import read_ticks
+from .ticks import read_ticks, tick_seconds
 
 
 def load(
@@ -29,9 +29,9 @@ def load(
 
     holdout: the recording to lock away, the last by default; advance: called for each recording.
     """
-    ticks = []
+    ticks, tick_s = [], max(map(tick_seconds, logs))
     for log in logs:
-        ticks.append(read_ticks(log))
+        ticks.append(read_ticks(log, tick_s))
         advance(1)
     sessions, gate = sessions_of(ticks)
     at = None

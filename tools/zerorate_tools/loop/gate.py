@@ -27,6 +27,8 @@ _COPY = 0.99999
 #: Rank correlation of what a channel and a rate change by from tick to tick, where white noise is
 #: most of a rate's change: no cause has the sensor's own noise.
 _OWN_NOISE = 0.9
+#: Of a data rate: so far two recordings of one device may be apart, each by its own clock.
+_MOST_RATE_APART = 0.05
 _SETTINGS = (
     "sensor",
     "odr_hz",
@@ -58,10 +60,10 @@ def same_settings(ticks: list) -> None:
     for t in ticks[1:]:
         for name in _SETTINGS:
             one, other = getattr(first.scales, name), getattr(t.scales, name)
-            if one != other:
+            if not _alike(name, one, other):
                 raise CannotClose(
                     f"{t.name}: {name} is {other}, but {one} in {first.name}; "
-                    "sessions must be of one device with one setting"
+                    f"sessions must be of one device with one setting{_how_alike(name, one, other)}"
                 )
         _same_chip(first, t)
     seen: dict[str, str] = {}
@@ -71,6 +73,20 @@ def same_settings(ticks: list) -> None:
                 f"{t.name} holds the same samples as {seen[t.digest]}; name each recording once"
             )
         seen[t.digest] = t.name
+
+
+def _alike(name, one, other) -> bool:
+    """Whether two recordings may have these settings: equal, a data rate within five percent."""
+    if name == "odr_hz":
+        return abs(one - other) <= _MOST_RATE_APART * max(one, other)
+    return one == other
+
+
+def _how_alike(name, one, other) -> str:
+    """How to import what differs by the scale that an import chose alone."""
+    if "_lsb_" not in name or one is None or other is None:
+        return ""
+    return f": if only the imports differ, import both with --{name.replace('_', '-')} N"
 
 
 def readable(ticks: list) -> None:

@@ -7,6 +7,8 @@ and all four 0 where it was not seen.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from ..simulate.attitude import multiply
@@ -23,6 +25,14 @@ def attitude_names(names: list[str]) -> tuple[str, ...] | None:
             if all(n in names for n in four):
                 return four
     return None
+
+
+def declared(more: Mapping[str, object]) -> set[str]:
+    """Columns that a recording's scales declare a reference, as an import does; no bias follows
+    them."""
+    channels = more.get("channels")
+    said = channels.items() if isinstance(channels, dict) else ()
+    return {n for n, c in said if isinstance(c, dict) and c.get("role") == "reference"}
 
 
 class Reference:

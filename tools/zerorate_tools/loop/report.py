@@ -219,7 +219,10 @@ def _gate(analysis):
         "notes": analysis.gate.notes,
         "blocks_set_aside": analysis.selection.outliers,
         "withdrawn": [list(r) for r in analysis.selection.withdrawn],
-        "considered_and_refused": [list(r) for r in dict.fromkeys(analysis.selection.refused)],
+        "considered_and_refused": [
+            [what, why.replace("sessions", "pieces") if analysis.single else why]
+            for what, why in dict.fromkeys(analysis.selection.refused)
+        ],
     }
 
 

@@ -12,13 +12,13 @@ from pathlib import Path
 import numpy as np
 from scipy.signal import lfilter
 
-from ..recordings import Scales, open_recording
+from ..recordings import OpenRecording, Scales, open_recording
 from ..recordings.checks import GAP
 from ..recordings.recording import ACCEL, COLUMNS, GYRO, TEMP, TIME
 from .beside_reference import WIDTH
 from .beside_reference import products as of_turning
 from .quick import Segments
-from .reference import Reference
+from .reference import Reference, declared
 from .timing import change_of
 from .timing import products as of_timing
 
@@ -96,13 +96,23 @@ class _Vibration:
         return ((accel - slow) ** 2).sum(axis=1)
 
 
+def tick_seconds(path: str | PathLike[str], least_s: float = TICK_S) -> float:
+    """Length of a recording's ticks: longer where it is slower than one sample a tick, so that each
+    holds one. Raises BadRecording."""
+    return max(least_s, _of_one_sample(open_recording(path)))
+
+
+def _of_one_sample(opened: OpenRecording) -> float:
+    return round(1.0 / opened.scales.odr_hz, 3)
+
+
 def read_ticks(path: str | PathLike[str], tick_s: float = TICK_S) -> Ticks:
     """Stream a recording of any length into ticks. Raises BadRecording.
 
-    A recording slower than one sample a tick gets longer ticks, so that each holds one.
+    tick_s: what all recordings of a device have alike; never less than `tick_seconds` of this one.
     """
     opened = open_recording(path, keep_gaps=True)
-    tick_s = max(tick_s, round(1.0 / opened.scales.odr_hz, 3))
+    tick_s = max(tick_s, _of_one_sample(opened))
     reader = _Reader(opened.scales, opened.column_names, tick_s)
     for batch in opened.batches(rows=1 << 18):
         reader.add(batch)
@@ -121,7 +131,8 @@ class _Reader:
         self.centre = None
         self.reference = Reference(names, scales.gyro_lsb_per_dps)
         self.segments = Segments()
-        self.extra = [n for n in names if n not in COLUMNS and n not in self.reference.names]
+        known = {*COLUMNS, *self.reference.names, *declared(scales.more)}
+        self.extra = [n for n in names if n not in known]
 
     def add(self, batch):
         t_us = batch[TIME]

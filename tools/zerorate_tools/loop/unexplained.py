@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from .catalogue import is_supply, varies
+from .measured import BEFORE
 
 _ORIENTATION = "hold the device in six orientations, each twice, at constant temperature"
 _COOLING = "a cool-down at the same rate as the warm-up (tells lag, rate and hysteresis apart)"
@@ -15,6 +16,18 @@ _FEW = "with fewer than 3 to fit on nothing is confirmed"
 _CHANCE = "with {} to fit on, a chance agreement of all signs is common"
 _UNRECORDED = "a logger of humidity and board temperature beside the device, one screw loosened"
 _LONGER = "an hour or more at rest in each recording"
+_ONE_DEVICE = (
+    "make sure that all recordings are of one device: {} begins {:.2g} dps away from what the "
+    "others taught"
+)
+_WHOLE_RANGE = (
+    "the whole range of temperature in every power-on: {} goes from {:.0f} to {:.0f} degC, what "
+    "was fitted from {:.0f} to {:.0f}"
+)
+#: Beyond it, a turn-on offset is rather another device's: parts repeat theirs far better.
+_ANOTHERS_DPS = 0.5
+#: Share of what is held out at temperatures that nothing fitted has seen, and by how much.
+_UNSEEN_SHARE, _UNSEEN_DEGC = 0.25, 1.0
 
 
 def what_is_known(analysis, after_dps: np.ndarray) -> str:
@@ -49,7 +62,7 @@ def measure_next(analysis) -> list[str]:
     """What to record so that more could be told, the most useful first."""
     sessions, found = analysis.sessions, analysis.selection.found
     kinds = {f.candidate.kind for f in found}
-    out = []
+    out = [*_another_device(analysis), *_other_temperatures(analysis)]
     if len(sessions) < 5:
         fitted = len(sessions) - 1
         out.append(_MORE.format(_FEW if fitted < 3 else _CHANCE.format(fitted)))
@@ -68,6 +81,34 @@ def measure_next(analysis) -> list[str]:
     return out
 
 
+def _another_device(analysis):
+    """The question whether what is held out is of the same device, where it begins far off."""
+    if analysis.single:
+        return []
+    m = analysis.measured
+    offsets = m.offsets(BEFORE) if m else analysis.judgement.offsets_dps
+    far = [(float(np.abs(o).max()), s.name) for o, s in zip(offsets, analysis.locked)]
+    return [_ONE_DEVICE.format(name, dps) for dps, name in far if dps > _ANOTHERS_DPS]
+
+
+def _other_temperatures(analysis):
+    """The range to record, where much of what is held out lies outside of what was fitted."""
+    if analysis.single or "temp" not in analysis.sessions[0].sources:
+        return []
+    seen = np.concatenate([_temperatures(s) for s in analysis.train])
+    out = []
+    for s in analysis.locked:
+        t = _temperatures(s)
+        outside = (t < seen.min() - _UNSEEN_DEGC) | (t > seen.max() + _UNSEEN_DEGC)
+        if outside.mean() > _UNSEEN_SHARE:
+            out.append(_WHOLE_RANGE.format(s.name, t.min(), t.max(), seen.min(), seen.max()))
+    return out
+
+
+def _temperatures(session):
+    return session.block_mean(session.sources["temp"])[session.available]
+
+
 def _cools(session):
     t = session.block_mean(session.sources["temp"])
     return (t.max() - t)[int(t.argmax()) :].max() > 0.5 * np.ptp(t)
@@ -83,5 +124,7 @@ def not_excluded(analysis) -> list[str]:
     from .catalogue import CATALOGUE, GROUPS
 
     shown = {c.kind for c in analysis.selection.pool}
+    if analysis.motion.turning is not None:
+        shown.add("rate-scale")
     kinds = [row[0] for row in CATALOGUE] + [row[0] for row in GROUPS]
     return [kind for kind in kinds if kind not in shown]

@@ -41,8 +41,9 @@ def deviations(parts: list[HeldOut], noise: list[Noise], floor_mdps: list[float]
         key="allan",
         title="Allan deviation",
         caption="How far two neighbouring averages differ, by how long is averaged. The dotted "
-        "curve is what the part's own noise gives, which no model takes away; its lowest point is "
-        "the floor. Towards its right end few averages are left, and chance bends the curves.",
+        "curve is what the part's own noise gives, which no model takes away; its lowest point "
+        "within a session is the floor. Towards the right end few averages are left, and chance "
+        "bends the curves.",
         description="Allan deviation of the held-out error for each axis on logarithmic scales: "
         "before, after, the part's noise alone, and the floor as a horizontal line.",
         panels=tuple(panels),

@@ -56,21 +56,32 @@
     return out;
   }
 
+  // Labels of a logarithmic axis: every decade, or some of each where there are hardly two.
+  function marks(plot, number, letter) {
+    const drawn = plot.series.filter((s) => s.panel === number).flatMap((s) => s[letter]);
+    const across = plot.panels[number].lines.filter((line) => line.axis === letter).map((line) => line.value);
+    const values = [...drawn, ...across].filter((v) => v > 0);
+    const least = Math.min(...values), times = Math.max(...values) / least;
+    if (times > 40) return { dtick: 1 };
+    const first = Math.floor(Math.log10(least)) - 1, of = times > 6 ? [1, 2, 5] : [1, 1.5, 2, 3, 5, 7];
+    const at = [...Array(5).keys()].flatMap((k) => of.map((n) => Number(n + "e" + (first + k))));
+    return { tickvals: at, ticktext: at.map(String) };
+  }
+
   function axes(plot, panel, number, place, layout) {
     const last = number === plot.panels.length - 1;
     const named = panel.y_names.length > 0;
     const common = {
       gridcolor: css("--rule"), zeroline: false, automargin: false, type: panel.log ? "log" : "linear",
-      tickfont: { size: 11, color: css("--muted") }, nticks: panel.log ? undefined : 6,
-      dtick: panel.log ? 1 : undefined, ticks: "",
+      tickfont: { size: 11, color: css("--muted") }, nticks: panel.log ? undefined : 6, ticks: "",
     };
     layout["xaxis" + suffix(number)] = {
-      ...common, domain: place.x, anchor: "y" + suffix(number), range: panel.x_range || undefined,
+      ...common, ...(panel.log ? marks(plot, number, "x") : {}), domain: place.x, anchor: "y" + suffix(number), range: panel.x_range || undefined,
       matches: plot.stacked && number ? "x" : undefined, showticklabels: !plot.stacked || last,
-      title: (plot.stacked || !wide.matches) && !last ? undefined : { text: panel.x_label, font: { size: 12, color: css("--muted") }, standoff: 6 },
+      title: (plot.stacked || !wide.matches) && !last ? undefined : { text: wide.matches ? panel.x_label : panel.x_narrow, font: { size: 12, color: css("--muted") }, standoff: 6 },
     };
     layout["yaxis" + suffix(number)] = {
-      ...common, domain: place.y, anchor: "x" + suffix(number), range: panel.y_range || undefined, nticks: panel.log ? undefined : 5,
+      ...common, ...(panel.log ? marks(plot, number, "y") : {}), domain: place.y, anchor: "x" + suffix(number), range: panel.y_range || undefined, nticks: panel.log ? undefined : 5,
       ...(named ? { tickvals: panel.y_names.map((_, i) => -i), ticktext: panel.y_names, showgrid: false, range: [0.6 - panel.y_names.length, 0.5] } : {}),
     };
     layout.annotations.push({

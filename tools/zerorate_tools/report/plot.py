@@ -49,7 +49,8 @@ class Line:
 class Panel:
     """One pair of axes; units are said in the title and in the label of x.
 
-    y_names: what y = 0, -1, -2, ... stand for, where it counts rows; share: of the height.
+    y_names: what y = 0, -1, -2, ... stand for, where it counts rows; share: of the height;
+    x_narrow: the label of x where a phone has no room for the whole one.
     """
 
     title: str
@@ -61,6 +62,7 @@ class Panel:
     y_range: tuple[float, float] | None = None
     y_names: tuple[str, ...] = ()
     share: float = 1.0
+    x_narrow: str = ""
 
 
 @dataclass(frozen=True)

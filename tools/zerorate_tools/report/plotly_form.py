@@ -36,6 +36,7 @@ def _panel(panel: Panel) -> dict[str, Any]:
         **asdict(panel),
         "title": markup(panel.title),
         "x_label": markup(panel.x_label),
+        "x_narrow": markup(panel.x_narrow or panel.x_label),
         "lines": [_line(line) for line in panel.lines],
     }
 

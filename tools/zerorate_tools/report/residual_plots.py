@@ -10,6 +10,8 @@ from .held_out import HeldOut
 from .plot import Line, Panel, Plot, Series, thinned
 
 AXES = ("x", "y", "z")
+#: Letters of an axis' label for which a phone has room.
+_LONGEST_LABEL = 48
 TRENDS = ((1, "heating", "triangle-up"), (-1, "cooling", "triangle-down"), (0, "held", "circle"))
 
 
@@ -26,16 +28,21 @@ def against_time(parts: list[HeldOut], events: list[dict]) -> Plot:
             x, y = thinned(at, part.temp_degc)
             series.append(Series(3, x, y, "temperature", "context"))
     label = f"minutes since the start of {', '.join(p.name for p in parts)}"
+    brief = (
+        label if len(label) <= _LONGEST_LABEL else "minutes since the start of what was held out"
+    )
     lines = (Line("y", 0.0, "context", dash="dot"), *_steps(parts, events))
-    panels = [Panel(f"{axis} axis, mdps", label, "mdps", lines=lines) for axis in AXES]
+    panels = [
+        Panel(f"{axis} axis, mdps", label, "mdps", lines=lines, x_narrow=brief) for axis in AXES
+    ]
     if warm:
-        panels.append(Panel("die temperature, °C", label, "°C", share=0.7))
+        panels.append(Panel("die temperature, °C", label, "°C", share=0.7, x_narrow=brief))
     return Plot(
         key="residual-time",
         title="Error against time",
-        caption="Means of the stretches at rest, as the board would have corrected them. The first "
-        "minute sets the turn-on offset and is not scored; gaps are motion, or time that was not "
-        "held out.",
+        caption="Means of the stretches at rest, and of motion where a reference was given, as the "
+        "board would have corrected them. The first minute sets the turn-on offset and is not "
+        "scored; gaps are motion, or time that was not held out.",
         description="Lines of the held-out error over time for each axis, before and after"
         + (", with the die temperature below them." if warm else "."),
         panels=tuple(panels),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from ..loop.turns import GIVEN
 from .figures import figure
 from .kinds import title
 
@@ -19,7 +20,7 @@ def headline(result: Report) -> str:
         return f"{where}, {after} mdps are left that nothing recorded explains (floor {floor})"
     if not any(corrects_at_rest(step) for step in result["steps"]):
         return (
-            "Nothing was found at rest that the firmware does not already correct: "
+            f"Nothing was found {_what(result)} that the firmware does not already correct: "
             f"{where[0].lower()}{where[1:]}, the error is {before} mdps (floor {floor})"
         )
     if whole["after_mdps"] < whole["before_mdps"]:
@@ -33,6 +34,12 @@ def headline(result: Report) -> str:
 def corrects_at_rest(step: Report) -> bool:
     """Whether the step changes what is left at rest: what shows in motion, or is said only, not."""
     return bool(step["coefficients"]) and "in_motion" not in step
+
+
+def _what(result: Report) -> str:
+    """What was looked at: rests, or motion too, where the true rate is known."""
+    beside = result.get("truth", {}).get("in_motion") == GIVEN
+    return "in the bias, beside the reference," if beside else "at rest"
 
 
 def _where(result: Report) -> str:

@@ -37,5 +37,5 @@ def read(path: Path) -> Foreign:
             "temp_offset_degc": 0.0,
         },
         notes=["rows are means, printed to 0.01 dps and 0.1 degC: 1000 LSB/dps holds them exactly"],
-        hint_hz="give --hz, rows a second (the hubs wrote one row every 15 s: --hz 0.0666667)",
+        hint_hz="give --hz, rows a second (the hubs wrote one row every 15 s: --hz 1/15)",
     )

@@ -52,7 +52,7 @@ def read(path: Path) -> Foreign:
             "temp_offset_degc": 0.0,
         },
         dropped=dropped,
-        hint_hz="give --hz, lines a second (--hz 50 is assumed of the flips)",
+        hint_hz="give --hz, lines a second that the unit was set to send",
     )
     foreign.notes.append("131 LSB/dps: rounds by 2.2 mdps rms, a seventeenth of the noise")
     return foreign
