@@ -1,10 +1,13 @@
 """Replaying recordings: every engine gives the same bits, and bad input leaves nothing behind."""
 
 import numpy as np
+import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 from zerorate_tools.cli import main
 from zerorate_tools.errors import InFile, ZerorateError
+from zerorate_tools.loop.basis import Term
+from zerorate_tools.model import Slot, build_model, write_model
 from zerorate_tools.recordings import write_recording
 from zerorate_tools.replay import replay
 from zerorate_tools.simulate import simulate
@@ -104,6 +107,38 @@ def test_the_command_writes_the_columns_of_the_design(log, tmp_path, capsys):
     assert wanted <= set(table.column_names)
     assert table.num_rows == pq.read_metadata(log).num_rows
     assert "source of the bias" in capsys.readouterr().out
+
+
+@pytest.fixture
+def with_supply(log, tmp_path):
+    """A function that writes the log with a channel vdd_mv, a list in which None is a gap."""
+
+    def write(name, values):
+        channel = pa.array(values, pa.int32())
+        pq.write_table(pq.read_table(log).append_column("vdd_mv", channel), tmp_path / name)
+        return tmp_path / name
+
+    return write
+
+
+def test_gaps_in_a_channel_that_nobody_follows_change_nothing(with_supply, reference):
+    samples = reference.samples
+    assert replay(with_supply("gaps.parquet", [None] * samples)).state == reference.state
+
+
+@pytest.mark.parametrize("engine", ["numba", "cpython"])
+def test_a_model_goes_on_with_a_channels_last_value_in_its_gaps(
+    simulated, with_supply, reference, tmp_path, engine
+):
+    slot = Slot(Term("vdd_mv", 4900.0, 5100.0, 5000.0), (1e-3, 2e-3, -1e-3))
+    write_model(build_model([slot], simulated[0].scales), tmp_path)
+    held = [4950 + i // 500 for i in range(reference.samples)]
+    gaps = [value if i % 500 == 0 else None for i, value in enumerate(held)]
+    logs = with_supply("held.parquet", held), with_supply("gaps.parquet", gaps)
+    whole, with_gaps = (
+        replay(each, model=tmp_path / "model.bin", runtime=engine) for each in logs
+    )
+    assert with_gaps.table.equals(whole.table) and with_gaps.state != reference.state
 
 
 def test_a_state_of_another_shape_is_refused_by_name(log, tmp_path):

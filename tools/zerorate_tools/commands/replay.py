@@ -63,8 +63,8 @@ def run(arguments: argparse.Namespace) -> None:
     options: dict[str, object] = dict(arguments.set)
     options.update(document=arguments.document, every=arguments.every, motion=arguments.motion)
     options.update(accelerometer=arguments.accelerometer)
-    total = open_recording(arguments.log).n_samples
-    with progress(f"replaying {arguments.log.name}", total) as advance:
+    recording = open_recording(arguments.log, keep_gaps=True)
+    with progress(f"replaying {arguments.log.name}", recording.n_samples) as advance:
         done = replay(
             arguments.log,
             arguments.out,
@@ -86,7 +86,7 @@ def run(arguments: argparse.Namespace) -> None:
 
         start = {"start_dps": options["motion_start_dps"]} if "motion_start_dps" in options else {}
         form = {"document": arguments.document, **start}
-        for picture in plot_windows(open_recording(arguments.log), arguments.plot, **form):
+        for picture in plot_windows(recording, arguments.plot, **form):
             print(picture)
 
 

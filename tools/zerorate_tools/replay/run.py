@@ -79,7 +79,7 @@ def replay(
     options: keywords of zerorate.Corrector; advance: called with the
     number of samples done. Raises ZerorateError (BadRecording, MissingRuntime, ...).
     """
-    recording = log if isinstance(log, Recording) else open_recording(log)
+    recording = log if isinstance(log, Recording) else open_recording(log, keep_gaps=True)
     corrector = corrector_for(recording, options or {})
     channels = load_model(corrector, Path(model), recording) if model is not None else ()
     if from_state is not None:
