@@ -269,6 +269,15 @@ def test_wrong_types_in_a_parquet_are_refused(tmp_path, values, complaint):
         read_recording(tmp_path / "x.parquet")
 
 
+def test_an_extra_channel_of_fractions_is_told_to_be_integers_gaps_or_not(tmp_path):
+    columns = {"t_us": [0, 1], "gx": [1, 1], "gy": [1, 1], "gz": [1, 1]}
+    table = pa.table({**columns, "vdd_mv": [4.0, float("nan")]})
+    scales = json.dumps(SCALES.to_json()).encode()
+    pq.write_table(table.replace_schema_metadata({b"zerorate": scales}), tmp_path / "x.parquet")
+    with pytest.raises(BadRecording, match="column vdd_mv holds double, not integers"):
+        read_recording(tmp_path / "x.parquet", keep_gaps=True)
+
+
 def test_gaps_of_an_extra_channel_are_kept_when_asked(csv_of):
     path = csv_of(f"{HEADER},vdd_mv\n0,1,2,3,4\n1,1,2,3,\n")
     assert read_recording(path, keep_gaps=True).columns["vdd_mv"].tolist() == [4, GAP]

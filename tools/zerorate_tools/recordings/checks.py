@@ -80,7 +80,7 @@ class BatchChecker:
         return self._narrow(name, wide)
 
     def _without_gaps(self, name: str, values: pa.Array) -> pa.Array:
-        extra = name not in (TIME, *GYRO, *ACCEL, TEMP)
+        extra = _is_extra(name)
         if extra and self._keep_gaps:
             return pc.fill_null(values.cast(pa.int64()), GAP)
         row = self._row(int(np.argmax(values.is_null().to_numpy(zero_copy_only=False))))
@@ -97,7 +97,7 @@ class BatchChecker:
         return wide.astype(np.int32, copy=False)
 
     def _refuse_type(self, name: str, values: pa.Array) -> None:
-        if pa.types.is_floating(values.type):
+        if pa.types.is_floating(values.type) and not _is_extra(name):
             bad = ~np.isfinite(values.to_numpy(zero_copy_only=False))
             if bad.any():
                 at = int(np.argmax(bad))
@@ -121,3 +121,7 @@ class BatchChecker:
 
     def _row(self, at: int) -> int:
         return self._rows + at + 1
+
+
+def _is_extra(name: str) -> bool:
+    return name not in (TIME, *GYRO, *ACCEL, TEMP)
