@@ -87,6 +87,8 @@ def test_a_store_that_is_empty_or_of_another_chip_leaves_a_clean_start(learned):
         ({"bins": 20}, "bins must be 4..19"),
         ({"short": 0}, "short must be 1..6"),
         ({"colour": 1}, "no such setting: colour"),
+        ({"sensor": Sensor(5.0), "motion": True}, "in motion needs 8 Hz or more, not 5"),
+        ({"sensor": Sensor(2.5), "accelerometer": True}, "gravity needs 4 Hz or more, not 2.5"),
     ],
 )
 def test_a_setting_that_cannot_be_is_refused_in_words(keywords, sentence):
