@@ -13,10 +13,10 @@ FAULTS = (
 STILLNESS = (
     "No full window has been seen yet.",
     "The device rests.",
-    "Nothing is learned: the gyroscope sees motion.",
-    "Nothing is learned: gravity turns, so the device turns slowly.",
-    "Nothing is learned: the accelerometer sees motion.",
-    "Nothing is learned: the rate has shifted within the rest.",
+    "No rest to learn from: the gyroscope sees motion.",
+    "No rest to learn from: gravity turns, so the device turns slowly.",
+    "No rest to learn from: the accelerometer sees motion.",
+    "No rest to learn from: the rate has shifted within it.",
 )
 SOURCES = (
     "no bias yet",

@@ -4,11 +4,11 @@ MOTION = (
     "no window has been seen yet",
     "the first windows grow",
     "the latest window taught a bias",
-    "nothing is learned: it hardly moves",
-    "nothing is learned: it turns and stays turned, or contradicts what is known",
-    "nothing is learned: it turns too fast",
-    "nothing is learned: the mean force is not 1 g in one direction",
-    "nothing is learned: samples were missing",
+    "the latest window taught nothing: it hardly moves",
+    "the latest window taught nothing: it turns and stays turned, or contradicts what is known",
+    "the latest window taught nothing: it turns too fast",
+    "the latest window taught nothing: the mean force is not 1 g in one direction",
+    "the latest window taught nothing: samples were missing",
 )
 LEVEL = (
     "no half-second has been seen yet",
