@@ -6,6 +6,7 @@ from array import array
 from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass, field
+from inspect import signature
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyarrow as pa
 from zerorate import Corrector
+from zerorate.corrector import LIMITS
 
 from ..errors import BadModel, InFile, ZerorateError
 from ..recordings import Recording, open_recording
@@ -102,6 +104,10 @@ def replay(
 
 def corrector_for(recording: OpenRecording | Recording, options: dict[str, object]) -> Corrector:
     """The firmware's object for a recording's sensor. Raises ZerorateError for bad options."""
+    known = {*signature(Corrector).parameters, *LIMITS} - {"sensor", "limits"}
+    unknown = next((name for name in options if name not in known), None)
+    if unknown is not None:
+        raise ZerorateError(f"no such setting: {unknown}; there are {', '.join(sorted(known))}")
     try:
         return Corrector(sensor_of(recording.scales), **options)
     except (TypeError, ValueError) as error:
