@@ -135,9 +135,7 @@ def test_a_model_goes_on_with_a_channels_last_value_in_its_gaps(
     held = [4950 + i // 500 for i in range(reference.samples)]
     gaps = [value if i % 500 == 0 else None for i, value in enumerate(held)]
     logs = with_supply("held.parquet", held), with_supply("gaps.parquet", gaps)
-    whole, with_gaps = (
-        replay(each, model=tmp_path / "model.bin", runtime=engine) for each in logs
-    )
+    whole, with_gaps = (replay(each, model=tmp_path / "model.bin", runtime=engine) for each in logs)
     assert with_gaps.table.equals(whole.table) and with_gaps.state != reference.state
 
 
