@@ -4,6 +4,11 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ..recordings.reading import OpenRecording
+    from ..replay.passes import Window
 
 
 def add_parser(subparsers) -> None:
@@ -64,6 +69,7 @@ def run(arguments: argparse.Namespace) -> None:
     options.update(document=arguments.document, every=arguments.every, motion=arguments.motion)
     options.update(accelerometer=arguments.accelerometer)
     recording = open_recording(arguments.log, keep_gaps=True)
+    taught = _to_plot(recording, arguments) if arguments.plot else []
     with progress(f"replaying {arguments.log.name}", recording.n_samples) as advance:
         done = replay(
             arguments.log,
@@ -84,10 +90,16 @@ def run(arguments: argparse.Namespace) -> None:
     if arguments.plot:
         from ..replay.passes import plot_windows
 
-        start = {"start_dps": options["motion_start_dps"]} if "motion_start_dps" in options else {}
-        form = {"document": arguments.document, **start}
-        for picture in plot_windows(recording, arguments.plot, **form):
+        for picture in plot_windows(taught, arguments.plot):
             print(picture)
+
+
+def _to_plot(recording: OpenRecording, arguments: argparse.Namespace) -> list[Window]:
+    from ..replay.passes import windows_to_plot
+
+    options = dict(arguments.set)
+    start = {"start_dps": options["motion_start_dps"]} if "motion_start_dps" in options else {}
+    return windows_to_plot(recording, arguments.plot, document=arguments.document, **start)
 
 
 def _shares(counts: dict[str, int], total: int) -> str:

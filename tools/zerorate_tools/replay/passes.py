@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ZerorateError
+from ..errors import InFile, ZerorateError
 from ..recordings import Recording
 from ..recordings.atomic import written_beside
 from ..recordings.reading import OpenRecording
@@ -88,17 +88,31 @@ def _passes(state, settings, work) -> NDArray[np.float64]:
     return np.degrees(np.array([seen[number] for number in sorted(seen)]) / (1 << 12))
 
 
-def plot_windows(recording: OpenRecording | Recording, path: Path, **options: object) -> list[Path]:
-    """Draw the windows that taught a bias and return the pictures' paths.
+def windows_to_plot(
+    recording: OpenRecording | Recording, path: Path, **options: object
+) -> list[Window]:
+    """The windows that taught a bias; nothing is written yet, but could be: all else is refused.
 
-    path: a .png for the latest of them, else a folder for up to twelve, evenly spaced.
-    Raises ZerorateError where no window taught one.
+    path: as of `plot_windows`; options: as of `windows`. Raises ZerorateError where no window
+    taught one, or where the picture's folder is not there; ModuleNotFoundError without Matplotlib.
     """
+    import matplotlib.figure  # noqa: F401
+
+    if path.suffix == ".png" and not path.parent.is_dir():
+        raise InFile(path, "its folder is not there", do="name a folder that exists and is yours")
     found = list(windows(recording, **options))
     taught = [window for window in found if window.reason == "learned"]
     if not taught:
         seen = sorted({window.reason for window in found}) or ["no full window"]
         raise ZerorateError(f"{recording.name}: no window in motion to plot: {', '.join(seen)}")
+    return taught
+
+
+def plot_windows(taught: list[Window], path: Path) -> list[Path]:
+    """Draw windows and return the pictures' paths.
+
+    path: a .png for the latest of them, else a folder for up to twelve, evenly spaced.
+    """
     if path.suffix == ".png":
         plot(taught[-1], path)
         return [path]
