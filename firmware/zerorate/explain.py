@@ -52,13 +52,18 @@ def explain(corrector):
     return "\n".join(lines)
 
 
+def without_sign(dps):
+    """Return a rate in which -0.0004, which is shown as zero, is zero."""
+    return round(dps, 3) + 0.0
+
+
 def axis_text(s, c, sensor, axis):
     """Return one line on one axis."""
     a = c[0] + axis * c[13]
     lsb = sensor.gyro_lsb_per_dps
     text = "g%s: bias %.3f dps from %s, +-%.3f dps" % (
         "xyz"[axis],
-        s[55 + axis] / 256 / lsb,
+        without_sign(s[55 + axis] / 256 / lsb),
         SOURCES[s[73 + axis]],
         s[70 + axis] / 256 / lsb,
     )

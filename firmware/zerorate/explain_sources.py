@@ -1,5 +1,7 @@
 """Says in words what the sources that need no rest are doing: in motion, and against gravity."""
 
+from .explain import without_sign
+
 MOTION = (
     "no window has been seen yet",
     "the first windows grow",
@@ -54,7 +56,7 @@ def found(s, a, sensor):
     for axis in range(3):
         if s[a + 3 + axis] < _UNKNOWN_Q8:
             lsb = 256 * sensor.gyro_lsb_per_dps
-            pair = (s[a + axis] / lsb, s[a + 3 + axis] / lsb)
+            pair = (without_sign(s[a + axis] / lsb), s[a + 3 + axis] / lsb)
             text.append("g%s %.3f +-%.3f" % (("xyz"[axis],) + pair))
     return "; %s dps." % ", ".join(text) if text else "."
 

@@ -4,6 +4,7 @@ from array import array
 
 import pytest
 from zerorate import Corrector, Sensor
+from zerorate.corrector import MOTION_BIAS, OUT_Q8, SOURCE
 from zerorate.store import EMPTY, LOADED, OTHER_BINDING, Store
 
 RATES = (800, -300, 40)
@@ -104,6 +105,15 @@ def test_a_sensor_that_cannot_be_is_refused_in_words():
 def test_it_says_what_it_lacks():
     text = Corrector(Sensor(accel_lsb_per_g=0, temp_lsb_per_degc=0)).explain()
     assert "slow turn cannot be told" in text and "any temperature only" in text
+
+
+def test_a_bias_shown_as_zero_has_no_sign():
+    corrector = Corrector(motion=True)
+    corrector.state[SOURCE] = 4
+    corrector.state[OUT_Q8] = corrector.motion[MOTION_BIAS] = -10
+    corrector.motion[MOTION_BIAS + 3] = 100
+    text = corrector.explain()
+    assert "gx: bias 0.000 dps" in text and "; gx 0.000 +-" in text
 
 
 def test_a_new_power_on_forgets_what_the_other_sources_were_watching():

@@ -14,6 +14,7 @@ from ..errors import InFile, ZerorateError
 from ..recordings import Recording
 from ..recordings.atomic import written_beside
 from ..recordings.reading import OpenRecording
+from ..signs import fixed
 from .samples import frames_in_batches, sensor_of
 
 _JOB, _PASS, _REASON, _Y, _SLOPES = 13, 14, 17, 51, 76
@@ -137,7 +138,7 @@ def plot(window: Window, path: str | PathLike[str]) -> None:
             line = np.polynomial.Polynomial.fit(t, values, 1)
             (drawn,) = panel.plot(t, values, label=name)
             panel.plot(t, line(t), "--", color=drawn.get_color(), linewidth=0.8)
-        slopes = ", ".join(f"{slope:+.3f}" for slope in window.slopes_dps[number])
+        slopes = ", ".join(fixed(slope, 3, "+") for slope in window.slopes_dps[number])
         when = "before" if number == 0 else f"after pass {number}"
         panel.set_title(f"{when}; pass {number + 1} finds a slope of {slopes} dps", fontsize=9)
         panel.set_ylabel("deg")
