@@ -1,5 +1,8 @@
 """Replaying recordings: every engine gives the same bits, and bad input leaves nothing behind."""
 
+import shutil
+
+import numba
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
@@ -9,7 +12,8 @@ from zerorate_tools.errors import InFile, ZerorateError
 from zerorate_tools.loop.basis import Term
 from zerorate_tools.model import Slot, build_model, write_model
 from zerorate_tools.recordings import write_recording
-from zerorate_tools.replay import replay
+from zerorate_tools.replay import jit, replay
+from zerorate_tools.runtimes.cache import fill
 from zerorate_tools.simulate import simulate
 
 DESCRIPTION = {
@@ -158,6 +162,23 @@ def test_a_broken_recording_leaves_no_output(tmp_path, capsys):
     assert main(["replay", str(bad), "--out", str(out)]) == 2
     assert list(tmp_path.iterdir()) == [bad]
     assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_what_is_compiled_is_what_was_hashed_though_a_kernel_changes_meanwhile(
+    repository, tmp_path, monkeypatch
+):
+    package = shutil.copytree(repository / "firmware" / "zerorate", tmp_path / "zerorate")
+
+    def changed_meanwhile(folder, build):
+        (package / "fixed.py").write_text("# changed")
+        return fill(folder, build)
+
+    monkeypatch.setenv("ZERORATE_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setattr(numba.config, "CACHE_DIR", "")
+    monkeypatch.setattr(jit, "firmware_package", lambda: package)
+    monkeypatch.setattr(jit, "fill", changed_meanwhile)
+    kernels = jit.compiled_kernels.__wrapped__("fixed")
+    assert (kernels.loop.parent / "fixed.py").read_text() != "# changed"
 
 
 def test_choices_of_sources_in_one_process_are_compiled_apart(simulated):
