@@ -47,6 +47,8 @@ def motion_settings(
     over bend_degc; spread: the variance of a window's slope over that of the noise beside it;
     least_dps: mean rate below which a window is not motion. Raises ValueError.
     """
+    if not accel_lsb_per_g:
+        raise ValueError("learning in motion needs an accelerometer")
     if not odr_hz * node_s >= 1:
         least_hz = 1 / node_s
         raise ValueError("learning in motion needs %g Hz or more, not %g" % (least_hz, odr_hz))

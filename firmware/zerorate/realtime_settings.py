@@ -26,6 +26,8 @@ def realtime_settings(
     units: sub-units an interval; threshold: what a counter must pass; coarse_dps, fine_dps: first
     and smallest step. document: one step of coarse_dps and no dead band. Raises ValueError.
     """
+    if not accel_lsb_per_g:
+        raise ValueError("learning by gravity needs an accelerometer")
     if not odr_hz * sub_unit_s >= 2:
         least_hz = 2 / sub_unit_s
         raise ValueError("learning by gravity needs %g Hz or more, not %g" % (least_hz, odr_hz))

@@ -9,6 +9,7 @@ from zerorate.store import EMPTY, LOADED, OTHER_BINDING, Store
 
 RATES = (800, -300, 40)
 PERIOD_US = 10000
+BLIND = Sensor(accel_lsb_per_g=0.0)
 
 
 class Memory:
@@ -90,6 +91,8 @@ def test_a_store_that_is_empty_or_of_another_chip_leaves_a_clean_start(learned):
         ({"colour": 1}, "no such setting: colour"),
         ({"sensor": Sensor(5.0), "motion": True}, "in motion needs 8 Hz or more, not 5"),
         ({"sensor": Sensor(2.5), "accelerometer": True}, "gravity needs 4 Hz or more, not 2.5"),
+        ({"sensor": BLIND, "motion": True}, "in motion needs an accelerometer"),
+        ({"sensor": BLIND, "accelerometer": True}, "gravity needs an accelerometer"),
     ],
 )
 def test_a_setting_that_cannot_be_is_refused_in_words(keywords, sentence):
