@@ -70,9 +70,7 @@ def test_parquet_row_groups_are_read_only_as_they_are_needed(tmp_path):
 
 
 @settings(max_examples=20, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(
-    st.lists(st.integers(-(2**31), 2**31 - 1), min_size=1, max_size=50), st.sampled_from(FORMATS)
-)
+@given(st.lists(st.integers(GAP + 1, 2**31 - 1), min_size=1, max_size=50), st.sampled_from(FORMATS))
 def test_any_32_bit_extra_channel_survives(tmp_path, values, file_name):
     recording = a_recording(len(values), load=np.array(values, np.int64))
     write_recording(recording, tmp_path / file_name)

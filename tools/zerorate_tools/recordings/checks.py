@@ -13,7 +13,7 @@ from .recording import ACCEL, GYRO, TEMP, TIME, Columns
 from .scales import Scales, missing_scale
 
 GAP = -(2**31)
-"""Stands for a missing value of an extra channel when gaps are kept."""
+"""Stands for a missing value of an extra channel when gaps are kept, and when they are written."""
 
 _LIMIT = 2**31 - 1
 
@@ -45,6 +45,11 @@ def check_scales(scales: Scales, names: list[str], path: Path, scales_path: Path
         raise BadRecording(
             scales_path, f"the scales lack {key}, and {path.name} has {column}", do=do
         )
+
+
+def arrow_column(name: str, values: np.ndarray, kind: pa.DataType) -> pa.Array:
+    """A column to be written: where an extra channel is GAP it has no value."""
+    return pa.array(values, kind, mask=np.asarray(values) == GAP if _is_extra(name) else None)
 
 
 class BatchChecker:
