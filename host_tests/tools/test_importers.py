@@ -175,6 +175,7 @@ def test_a_table_that_cannot_be_imported_says_why(tmp_path, text, complaint):
         ("gx", "no mapping: write gx=COLUMN:UNIT"),
         ("gx=w:furlongs", "unit 'furlongs' of gx is none of dps"),
         ("load=w:dps", "an extra channel takes a factor: load=w:x100"),
+        ("t=time:s", "t is none of t_us, gx, .*, temp, and"),
     ],
 )
 def test_a_mapping_that_is_none_says_how(words, complaint):
