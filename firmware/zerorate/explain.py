@@ -44,7 +44,7 @@ def explain(corrector):
     if not sensor.accel_lsb_per_g:
         lines.append("Without an accelerometer a slow turn cannot be told from a bias.")
     if not sensor.temp_lsb_per_degc:
-        lines.append("Without a thermometer the bias is learned for any temperature only.")
+        lines.append("Without a thermometer all temperatures count as one.")
     if corrector.motion is not None or corrector.level is not None:
         from .explain_sources import explain_sources
 

@@ -107,7 +107,7 @@ def test_a_sensor_that_cannot_be_is_refused_in_words():
 
 def test_it_says_what_it_lacks():
     text = Corrector(Sensor(accel_lsb_per_g=0, temp_lsb_per_degc=0)).explain()
-    assert "slow turn cannot be told" in text and "any temperature only" in text
+    assert "slow turn cannot be told" in text and "all temperatures count as one" in text
 
 
 def test_a_bias_shown_as_zero_has_no_sign():
