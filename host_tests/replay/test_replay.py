@@ -155,6 +155,12 @@ def test_an_unknown_setting_is_refused_and_those_there_are_are_named(log):
         replay(log, options={"colour": 1})
 
 
+def test_a_name_of_another_format_is_refused(log, tmp_path):
+    with pytest.raises(InFile, match="bias.csv: a replay is written as Parquet"):
+        replay(log, tmp_path / "bias.csv")
+    assert not any(tmp_path.iterdir())
+
+
 def test_a_broken_recording_leaves_no_output(tmp_path, capsys):
     bad = tmp_path / "bad.parquet"
     bad.write_bytes(b"PAR1 not really")

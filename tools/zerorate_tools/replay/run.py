@@ -81,6 +81,8 @@ def replay(
     options: keywords of zerorate.Corrector; advance: called with the
     number of samples done. Raises ZerorateError (BadRecording, MissingRuntime, ...).
     """
+    if out is not None and Path(out).suffix != ".parquet":
+        raise InFile(out, "a replay is written as Parquet", do="end the name in .parquet")
     recording = log if isinstance(log, Recording) else open_recording(log, keep_gaps=True)
     corrector = corrector_for(recording, options or {})
     channels = load_model(corrector, Path(model), recording) if model is not None else ()
