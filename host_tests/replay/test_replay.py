@@ -150,6 +150,12 @@ def test_a_state_of_another_shape_is_refused_by_name(log, tmp_path):
         replay(log, from_state=state)
 
 
+def test_to_resume_from_nothing_is_refused(log, tmp_path, capsys):
+    with pytest.raises(SystemExit):
+        main(["replay", str(log), "--resume", "--out", str(tmp_path / "bias.parquet")])
+    assert "give --from-state, too" in capsys.readouterr().err
+
+
 def test_an_unknown_setting_is_refused_and_those_there_are_are_named(log):
     with pytest.raises(ZerorateError, match="no such setting: colour; .*bins, .*step_degc, "):
         replay(log, options={"colour": 1})

@@ -56,7 +56,7 @@ def add_parser(subparsers) -> None:
         metavar="NAME=VALUE",
         help="a setting of the firmware, for example step_degc=2",
     )
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run, refuse=parser.error)
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -65,6 +65,8 @@ def run(arguments: argparse.Namespace) -> None:
     from ..recordings import open_recording
     from ..replay import replay
 
+    if arguments.resume and arguments.from_state is None:
+        arguments.refuse("--resume goes on from a state: give --from-state, too")
     options: dict[str, object] = dict(arguments.set)
     options.update(document=arguments.document, every=arguments.every, motion=arguments.motion)
     options.update(accelerometer=arguments.accelerometer)
