@@ -13,10 +13,10 @@ FAULTS = (
 STILLNESS = (
     "No full window has been seen yet.",
     "The device rests.",
-    "Nothing is learned: the gyroscope sees motion.",
-    "Nothing is learned: gravity turns, so the device turns slowly.",
-    "Nothing is learned: the accelerometer sees motion.",
-    "Nothing is learned: the rate has shifted within the rest.",
+    "No rest to learn from: the gyroscope sees motion.",
+    "No rest to learn from: gravity turns, so the device turns slowly.",
+    "No rest to learn from: the accelerometer sees motion.",
+    "No rest to learn from: the rate has shifted within it.",
 )
 SOURCES = (
     "no bias yet",
@@ -44,12 +44,17 @@ def explain(corrector):
     if not sensor.accel_lsb_per_g:
         lines.append("Without an accelerometer a slow turn cannot be told from a bias.")
     if not sensor.temp_lsb_per_degc:
-        lines.append("Without a thermometer the bias is learned for any temperature only.")
+        lines.append("Without a thermometer all temperatures count as one.")
     if corrector.motion is not None or corrector.level is not None:
         from .explain_sources import explain_sources
 
         lines.extend(explain_sources(corrector))
     return "\n".join(lines)
+
+
+def without_sign(dps):
+    """Return a rate in which -0.0004, which is shown as zero, is zero."""
+    return round(dps, 3) + 0.0
 
 
 def axis_text(s, c, sensor, axis):
@@ -58,7 +63,7 @@ def axis_text(s, c, sensor, axis):
     lsb = sensor.gyro_lsb_per_dps
     text = "g%s: bias %.3f dps from %s, +-%.3f dps" % (
         "xyz"[axis],
-        s[55 + axis] / 256 / lsb,
+        without_sign(s[55 + axis] / 256 / lsb),
         SOURCES[s[73 + axis]],
         s[70 + axis] / 256 / lsb,
     )

@@ -1,14 +1,16 @@
 """Says in words what the sources that need no rest are doing: in motion, and against gravity."""
 
+from .explain import without_sign
+
 MOTION = (
     "no window has been seen yet",
     "the first windows grow",
     "the latest window taught a bias",
-    "nothing is learned: it hardly moves",
-    "nothing is learned: it turns and stays turned, or contradicts what is known",
-    "nothing is learned: it turns too fast",
-    "nothing is learned: the mean force is not 1 g in one direction",
-    "nothing is learned: samples were missing",
+    "the latest window taught nothing: it hardly moves",
+    "the latest window taught nothing: it turns and stays turned, or contradicts what is known",
+    "the latest window taught nothing: it turns too fast",
+    "the latest window taught nothing: the mean force is not 1 g in one direction",
+    "the latest window taught nothing: samples were missing",
 )
 LEVEL = (
     "no half-second has been seen yet",
@@ -54,7 +56,7 @@ def found(s, a, sensor):
     for axis in range(3):
         if s[a + 3 + axis] < _UNKNOWN_Q8:
             lsb = 256 * sensor.gyro_lsb_per_dps
-            pair = (s[a + axis] / lsb, s[a + 3 + axis] / lsb)
+            pair = (without_sign(s[a + axis] / lsb), s[a + 3 + axis] / lsb)
             text.append("g%s %.3f +-%.3f" % (("xyz"[axis],) + pair))
     return "; %s dps." % ", ".join(text) if text else "."
 

@@ -47,8 +47,13 @@ def motion_settings(
     over bend_degc; spread: the variance of a window's slope over that of the noise beside it;
     least_dps: mean rate below which a window is not motion. Raises ValueError.
     """
-    if not 4 <= longest_stage <= 8 or not 1 <= passes <= 8 or not odr_hz * node_s >= 1:
-        raise ValueError("a window needs 16..256 nodes of one sample or more, and 1..8 passes")
+    if not accel_lsb_per_g:
+        raise ValueError("learning in motion needs an accelerometer")
+    if not odr_hz * node_s >= 1:
+        least_hz = 1 / node_s
+        raise ValueError("learning in motion needs %g Hz or more, not %g" % (least_hz, odr_hz))
+    if not 4 <= longest_stage <= 8 or not 1 <= passes <= 8:
+        raise ValueError("a window needs 16..256 nodes, and 1..8 passes")
     longest = 1 << longest_stage
     steps = (passes + 1) * longest + _ALGEBRA
     rad_per_lsb_us = pi / 180 / gyro_lsb_per_dps * 1e-6 * (1 << 24)

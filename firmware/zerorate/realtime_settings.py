@@ -26,8 +26,13 @@ def realtime_settings(
     units: sub-units an interval; threshold: what a counter must pass; coarse_dps, fine_dps: first
     and smallest step. document: one step of coarse_dps and no dead band. Raises ValueError.
     """
-    if not odr_hz * sub_unit_s >= 2 or not 0 <= threshold < units:
-        raise ValueError("a sub-unit needs two samples, and a threshold below the sub-units")
+    if not accel_lsb_per_g:
+        raise ValueError("learning by gravity needs an accelerometer")
+    if not odr_hz * sub_unit_s >= 2:
+        least_hz = 2 / sub_unit_s
+        raise ValueError("learning by gravity needs %g Hz or more, not %g" % (least_hz, odr_hz))
+    if not 0 <= threshold < units:
+        raise ValueError("the threshold must be below the sub-units")
     per_lsb_us = pi / 180 / gyro_lsb_per_dps * 1e-6 * (1 << 22) / 256
     sample_us = 1e6 / odr_hz
     shift = 15

@@ -81,3 +81,4 @@ def test_a_recording_shorter_than_its_score_is_refused_in_one_line(micropython, 
     assert main([*words, "--runtime", micropython.name]) == 2
     said = capsys.readouterr().err
     assert "6.0 s are too short" in said and said.count("\n") == 1
+    assert not (tmp_path / "shown").exists()

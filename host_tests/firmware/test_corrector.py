@@ -4,10 +4,12 @@ from array import array
 
 import pytest
 from zerorate import Corrector, Sensor
+from zerorate.corrector import MOTION_BIAS, OUT_Q8, SOURCE
 from zerorate.store import EMPTY, LOADED, OTHER_BINDING, Store
 
 RATES = (800, -300, 40)
 PERIOD_US = 10000
+BLIND = Sensor(accel_lsb_per_g=0.0)
 
 
 class Memory:
@@ -87,6 +89,10 @@ def test_a_store_that_is_empty_or_of_another_chip_leaves_a_clean_start(learned):
         ({"bins": 20}, "bins must be 4..19"),
         ({"short": 0}, "short must be 1..6"),
         ({"colour": 1}, "no such setting: colour"),
+        ({"sensor": Sensor(5.0), "motion": True}, "in motion needs 8 Hz or more, not 5"),
+        ({"sensor": Sensor(2.5), "accelerometer": True}, "gravity needs 4 Hz or more, not 2.5"),
+        ({"sensor": BLIND, "motion": True}, "in motion needs an accelerometer"),
+        ({"sensor": BLIND, "accelerometer": True}, "gravity needs an accelerometer"),
     ],
 )
 def test_a_setting_that_cannot_be_is_refused_in_words(keywords, sentence):
@@ -101,7 +107,16 @@ def test_a_sensor_that_cannot_be_is_refused_in_words():
 
 def test_it_says_what_it_lacks():
     text = Corrector(Sensor(accel_lsb_per_g=0, temp_lsb_per_degc=0)).explain()
-    assert "slow turn cannot be told" in text and "any temperature only" in text
+    assert "slow turn cannot be told" in text and "all temperatures count as one" in text
+
+
+def test_a_bias_shown_as_zero_has_no_sign():
+    corrector = Corrector(motion=True)
+    corrector.state[SOURCE] = 4
+    corrector.state[OUT_Q8] = corrector.motion[MOTION_BIAS] = -10
+    corrector.motion[MOTION_BIAS + 3] = 100
+    text = corrector.explain()
+    assert "gx: bias 0.000 dps" in text and "; gx 0.000 +-" in text
 
 
 def test_a_new_power_on_forgets_what_the_other_sources_were_watching():

@@ -97,10 +97,11 @@ def test_it_says_what_each_source_is_doing(samples):
     played(corrector, samples[: round(40 * HZ)])
     swinging = corrector.explain()
     assert "In motion: the latest window taught a bias" in swinging
+    assert "othing is learned" not in swinging
     assert "Observable against gravity: gx for" in swinging
     for _ in range(2):
         played(corrector, samples[-round(15 * HZ) :])
-    assert "nothing is learned: it hardly moves" in corrector.explain()
+    assert "In motion: the latest window taught nothing: it hardly moves" in corrector.explain()
 
 
 def test_it_says_which_axis_gravity_hides():

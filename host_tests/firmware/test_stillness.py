@@ -103,4 +103,4 @@ def test_a_slow_turn_is_said():
     for seed in range(12):
         play(turning(0.5, 1, 0, seed), corrector)
         said.add(corrector.explain().splitlines()[0])
-    assert "Nothing is learned: gravity turns, so the device turns slowly." in said
+    assert "No rest to learn from: gravity turns, so the device turns slowly." in said

@@ -34,7 +34,13 @@ def test_names_of_strangers_are_only_names(hostile):
 
 def test_a_fleet_too_small_for_a_part_has_a_page_too(tmp_path):
     report = {"devices": 1, "sessions": 0, "hours": 0.0, "sensor": None, "effects": [], "steps": []}
-    report |= {"prior": None, "worst": [], "failures": [], "left_out_of_the_part": []}
+    report |= {
+        "job": "replay",
+        "prior": None,
+        "worst": [],
+        "failures": [],
+        "left_out_of_the_part": [],
+    }
     write_page(report, None, tmp_path / "fleet.html")
     assert "it takes five devices" in (tmp_path / "fleet.html").read_text()
 

@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -13,10 +14,11 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 from zerorate_tools.cli import main
-from zerorate_tools.errors import ZerorateError
+from zerorate_tools.errors import MissingLibrary, ZerorateError
 from zerorate_tools.fleet import devices_of, fleet
 from zerorate_tools.fleet.cluster import cluster, run_all
 from zerorate_tools.fleet.first_minutes import beginning, moving_from
+from zerorate_tools.fleet.words import in_words
 from zerorate_tools.model import read_model
 from zerorate_tools.recordings import read_recording, write_recording
 from zerorate_tools.replay import replay
@@ -57,6 +59,13 @@ def test_the_prior_is_a_model_that_the_firmware_takes(done, data):
 def test_left_out_devices_gain_by_the_prior(done):
     gain = done[0].report["prior"]["benefit"]["scenarios"]["at-rest-for-10-s"]["gain"]
     assert gain["ci95_mdps"][0] > 0 and gain["share_better"] > 0.7
+
+
+def test_a_prior_is_tried_over_no_more_minutes_than_were_recorded(done, data, tmp_path):
+    shutil.copytree(done[1] / "parts", tmp_path / "parts")
+    again = fleet(devices_of([data]), tmp_path, workers=1)
+    assert again.report["prior"]["benefit"]["minutes"] == 1.5
+    assert "error in the first 1.5 minutes" in in_words(again)
 
 
 def test_a_second_run_does_nothing_again(done, data):
@@ -127,6 +136,20 @@ def test_close_on_a_recording_too_short_for_it_says_so(data, tmp_path):
     done = fleet(devices_of([tmp_path / "short.parquet"]), tmp_path, job="close", workers=1)
     (failure,) = done.report["failures"]
     assert failure["reason"].startswith("close: ") and "too short" in failure["reason"]
+
+
+def test_close_that_finds_nothing_says_so(data, tmp_path):
+    logs = sorted(data.rglob("*.parquet"))[:1]
+    done = fleet(devices_of(logs), tmp_path, job="close", workers=1)
+    assert "close found no effect in any device" in in_words(done)
+    assert "found no effect in any device" in (tmp_path / "fleet.html").read_text()
+
+
+def test_without_dask_nothing_is_left_behind(data, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "dask", None)
+    with pytest.raises(MissingLibrary):
+        fleet(devices_of([data]), tmp_path / "out")
+    assert not (tmp_path / "out").exists()
 
 
 def test_power_ons_of_a_device_remember_those_before(data, tmp_path):

@@ -112,7 +112,18 @@ def test_a_minute_is_too_short_and_two_are_asked_for(closed):
 
 def test_of_four_a_short_one_is_left_out_and_named(closed):
     analysis = closed([*(columns(i) for i in range(3)), columns(4, 100)])
-    assert len(analysis.sessions) == 3 and "s3: 0.3 minutes" in analysis.gate.notes[0]
+    assert len(analysis.sessions) == 3 and "s3: 0.2 minutes" in analysis.gate.notes[0]
+
+
+def test_beside_an_hour_a_short_one_is_told_why_it_needs_more_than_alone(closed):
+    analysis = closed([*(columns(i, 60 * 60 * 5) for i in range(2)), columns(4, 1400)])
+    (note,) = analysis.gate.notes
+    assert "s2: 4.6 minutes are too short; 5 minutes at rest are needed (15 blocks of 20 s" in note
+
+
+def test_what_is_there_is_never_said_to_be_what_is_needed(closed):
+    with pytest.raises(CannotClose, match=r"s0: 1\.9 minutes are too short; 2 minutes at rest"):
+        closed([columns(1, 590)])
 
 
 def test_recordings_all_in_motion_are_told_to_rest(closed):

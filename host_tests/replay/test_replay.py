@@ -1,12 +1,19 @@
 """Replaying recordings: every engine gives the same bits, and bad input leaves nothing behind."""
 
+import shutil
+
+import numba
 import numpy as np
+import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 from zerorate_tools.cli import main
 from zerorate_tools.errors import InFile, ZerorateError
+from zerorate_tools.loop.basis import Term
+from zerorate_tools.model import Slot, build_model, write_model
 from zerorate_tools.recordings import write_recording
-from zerorate_tools.replay import replay
+from zerorate_tools.replay import jit, replay
+from zerorate_tools.runtimes.cache import fill
 from zerorate_tools.simulate import simulate
 
 DESCRIPTION = {
@@ -106,6 +113,36 @@ def test_the_command_writes_the_columns_of_the_design(log, tmp_path, capsys):
     assert "source of the bias" in capsys.readouterr().out
 
 
+@pytest.fixture
+def with_supply(log, tmp_path):
+    """A function that writes the log with a channel vdd_mv, a list in which None is a gap."""
+
+    def write(name, values):
+        channel = pa.array(values, pa.int32())
+        pq.write_table(pq.read_table(log).append_column("vdd_mv", channel), tmp_path / name)
+        return tmp_path / name
+
+    return write
+
+
+def test_gaps_in_a_channel_that_nobody_follows_change_nothing(with_supply, reference):
+    samples = reference.samples
+    assert replay(with_supply("gaps.parquet", [None] * samples)).state == reference.state
+
+
+@pytest.mark.parametrize("engine", ["numba", "cpython"])
+def test_a_model_goes_on_with_a_channels_last_value_in_its_gaps(
+    simulated, with_supply, reference, tmp_path, engine
+):
+    slot = Slot(Term("vdd_mv", 4900.0, 5100.0, 5000.0), (1e-3, 2e-3, -1e-3))
+    write_model(build_model([slot], simulated[0].scales), tmp_path)
+    held = [4950 + i // 500 for i in range(reference.samples)]
+    gaps = [value if i % 500 == 0 else None for i, value in enumerate(held)]
+    logs = with_supply("held.parquet", held), with_supply("gaps.parquet", gaps)
+    whole, with_gaps = (replay(each, model=tmp_path / "model.bin", runtime=engine) for each in logs)
+    assert with_gaps.table.equals(whole.table) and with_gaps.state != reference.state
+
+
 def test_a_state_of_another_shape_is_refused_by_name(log, tmp_path):
     state = tmp_path / "state.bin"
     state.write_bytes(b"\0" * 100)
@@ -113,9 +150,21 @@ def test_a_state_of_another_shape_is_refused_by_name(log, tmp_path):
         replay(log, from_state=state)
 
 
-def test_an_unknown_setting_is_refused(log):
-    with pytest.raises(ZerorateError, match="no such setting: colour"):
+def test_to_resume_from_nothing_is_refused(log, tmp_path, capsys):
+    with pytest.raises(SystemExit):
+        main(["replay", str(log), "--resume", "--out", str(tmp_path / "bias.parquet")])
+    assert "give --from-state, too" in capsys.readouterr().err
+
+
+def test_an_unknown_setting_is_refused_and_those_there_are_are_named(log):
+    with pytest.raises(ZerorateError, match="no such setting: colour; .*bins, .*step_degc, "):
         replay(log, options={"colour": 1})
+
+
+def test_a_name_of_another_format_is_refused(log, tmp_path):
+    with pytest.raises(InFile, match="bias.csv: a replay is written as Parquet"):
+        replay(log, tmp_path / "bias.csv")
+    assert not any(tmp_path.iterdir())
 
 
 def test_a_broken_recording_leaves_no_output(tmp_path, capsys):
@@ -125,6 +174,23 @@ def test_a_broken_recording_leaves_no_output(tmp_path, capsys):
     assert main(["replay", str(bad), "--out", str(out)]) == 2
     assert list(tmp_path.iterdir()) == [bad]
     assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_what_is_compiled_is_what_was_hashed_though_a_kernel_changes_meanwhile(
+    repository, tmp_path, monkeypatch
+):
+    package = shutil.copytree(repository / "firmware" / "zerorate", tmp_path / "zerorate")
+
+    def changed_meanwhile(folder, build):
+        (package / "fixed.py").write_text("# changed")
+        return fill(folder, build)
+
+    monkeypatch.setenv("ZERORATE_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setattr(numba.config, "CACHE_DIR", "")
+    monkeypatch.setattr(jit, "firmware_package", lambda: package)
+    monkeypatch.setattr(jit, "fill", changed_meanwhile)
+    kernels = jit.compiled_kernels.__wrapped__("fixed")
+    assert (kernels.loop.parent / "fixed.py").read_text() != "# changed"
 
 
 def test_choices_of_sources_in_one_process_are_compiled_apart(simulated):

@@ -110,6 +110,27 @@ def test_an_error_of_the_bus_is_one_line(monkeypatch, capsys):
     assert capsys.readouterr().err == "zerorate: /dev/i2c-1: Input/output error\n"
 
 
+@pytest.mark.parametrize(("name", "library"), [("run.ulg", "pyulog"), ("run.bin", "pymavlink")])
+def test_a_missing_library_is_said_with_a_command_that_a_shell_takes(
+    tmp_path, monkeypatch, name, library
+):
+    monkeypatch.setitem(sys.modules, library, None)
+    (tmp_path / name).write_bytes(b"ULog\x01")
+    ran = zerorate("import", tmp_path / name, "--out", tmp_path / "run.parquet")
+    assert ran.stderr.endswith(f"needs {library}, which is not installed; {_installing('tools')}\n")
+
+
+def test_a_library_of_another_extra_is_said_with_that_extra(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "dask", None)
+    (tmp_path / "run.csv").write_text("")
+    ran = zerorate("fleet", tmp_path / "run.csv", "--out", tmp_path / "out")
+    assert ran.stderr.endswith(f"needs dask, which is not installed; {_installing('fleet')}\n")
+
+
+def _installing(extra):
+    return f"pip install 'zerorate[{extra}]'"
+
+
 class _Parser:
     """Parses nothing and runs what it was given."""
 

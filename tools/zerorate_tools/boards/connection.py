@@ -23,7 +23,7 @@ def connected(port: str, *, restart: bool = True) -> Iterator:
         from mpremote.transport import TransportError
         from mpremote.transport_serial import SerialTransport
     except ImportError as error:
-        raise MissingLibrary("mpremote is not installed: pip install 'zerorate[tools]'") from error
+        raise MissingLibrary("mpremote") from error
     try:
         transport = SerialTransport(port, timeout=2)
     except TransportError as error:

@@ -71,7 +71,7 @@ def _opened(bus: str) -> Iterator[Any]:
     try:
         i2c = LinuxI2C(int(bus) if bus.isdigit() else bus)
     except ImportError as error:
-        raise MissingLibrary("smbus2 is not installed: pip install 'zerorate[linux]'") from error
+        raise MissingLibrary("smbus2") from error
     try:
         yield i2c
     except ValueError as error:

@@ -40,7 +40,6 @@ def run(arguments: argparse.Namespace) -> int:
     get_ready(arguments.runtime)
     if arguments.real:
         return run_real(arguments)
-    arguments.out.mkdir(parents=True, exist_ok=True)
     if arguments.log is not None:
         return run_log(arguments)
     return run_job(arguments)
@@ -116,9 +115,10 @@ def run_real(arguments: argparse.Namespace) -> int:
 
 
 def draw_into(folder: Path, draw: Callable[..., None], *shown) -> Path:
-    """Draw demo.png into a folder."""
+    """Draw demo.png into a folder, made where it is not there."""
     from ..recordings.atomic import written_beside
 
+    folder.mkdir(parents=True, exist_ok=True)
     path = folder / "demo.png"
     with written_beside(path) as temporary:
         draw(*shown, temporary)

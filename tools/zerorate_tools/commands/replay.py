@@ -4,6 +4,11 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ..recordings.reading import OpenRecording
+    from ..replay.passes import Window
 
 
 def add_parser(subparsers) -> None:
@@ -51,7 +56,7 @@ def add_parser(subparsers) -> None:
         metavar="NAME=VALUE",
         help="a setting of the firmware, for example step_degc=2",
     )
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run, refuse=parser.error)
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -60,11 +65,14 @@ def run(arguments: argparse.Namespace) -> None:
     from ..recordings import open_recording
     from ..replay import replay
 
+    if arguments.resume and arguments.from_state is None:
+        arguments.refuse("--resume goes on from a state: give --from-state, too")
     options: dict[str, object] = dict(arguments.set)
     options.update(document=arguments.document, every=arguments.every, motion=arguments.motion)
     options.update(accelerometer=arguments.accelerometer)
-    total = open_recording(arguments.log).n_samples
-    with progress(f"replaying {arguments.log.name}", total) as advance:
+    recording = open_recording(arguments.log, keep_gaps=True)
+    taught = _to_plot(recording, arguments) if arguments.plot else []
+    with progress(f"replaying {arguments.log.name}", recording.n_samples) as advance:
         done = replay(
             arguments.log,
             arguments.out,
@@ -84,10 +92,16 @@ def run(arguments: argparse.Namespace) -> None:
     if arguments.plot:
         from ..replay.passes import plot_windows
 
-        start = {"start_dps": options["motion_start_dps"]} if "motion_start_dps" in options else {}
-        form = {"document": arguments.document, **start}
-        for picture in plot_windows(open_recording(arguments.log), arguments.plot, **form):
+        for picture in plot_windows(taught, arguments.plot):
             print(picture)
+
+
+def _to_plot(recording: OpenRecording, arguments: argparse.Namespace) -> list[Window]:
+    from ..replay.passes import windows_to_plot
+
+    options = dict(arguments.set)
+    start = {"start_dps": options["motion_start_dps"]} if "motion_start_dps" in options else {}
+    return windows_to_plot(recording, arguments.plot, document=arguments.document, **start)
 
 
 def _shares(counts: dict[str, int], total: int) -> str:

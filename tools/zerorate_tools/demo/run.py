@@ -50,7 +50,7 @@ def demo(
     writes it. Raises ZerorateError (BadRecording, MissingRuntime).
     """
     interpreter = find(runtime)
-    recording = log if isinstance(log, Recording) else read_recording(log)
+    recording = log if isinstance(log, Recording) else read_recording(log, keep_gaps=True)
     played = play(recording, interpreter, model=model, learned=learned)
     here = replay(recording, model=model, from_state=learned)
     return Demo(

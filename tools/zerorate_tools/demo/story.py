@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ..report.kinds import meaning
+from ..signs import fixed
 from .broad_trial import CREDIT
 from .device import Device
 from .real import MOTION_FROM_S, WAYS, WHOLE_FROM_S, Real
@@ -147,7 +148,7 @@ def real_trial(shown: Real, runtime: str) -> str:
     """What the firmware made of a real recording, beside others."""
     trial, truth = shown.trial, shown.truth
     minutes, sigma_mdps = len(trial.rate_dps) / trial.hz / 60, 1e3 * truth.sigma_dps.max()
-    optical = " ".join(f"{v:+.3f}" for v in truth.bias_dps)
+    optical = " ".join(fixed(v, 3, "+") for v in truth.bias_dps)
     lines = [
         f"{trial.name}: a real gyroscope, {minutes:.1f} minutes at {trial.hz:.0f} Hz,",
         "in a hand, at rest at both ends, its attitude seen by cameras",

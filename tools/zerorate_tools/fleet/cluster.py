@@ -29,8 +29,7 @@ def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterato
         import dask
         import distributed
     except ImportError as error:
-        do = "pip install 'zerorate[tools,fleet]'"
-        raise MissingLibrary(f"many recordings at once need Dask: {do}") from error
+        raise MissingLibrary("dask") from error
     if scheduler is not None:
         with _client_of(distributed, scheduler) as client:
             yield client

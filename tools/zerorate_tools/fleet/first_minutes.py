@@ -76,7 +76,7 @@ def try_batch(
 
 def beginning(path: str, minutes: float) -> Recording:
     """The first minutes of a recording, no more of it read. Raises BadRecording."""
-    opened, parts = open_recording(path), []
+    opened, parts = open_recording(path, keep_gaps=True), []
     for batch in opened.batches(rows=8192):
         parts.append(batch)
         end_us = int(parts[0]["t_us"][0] + 60e6 * minutes)

@@ -72,27 +72,27 @@ def fleet(
 
     Writes fleet.parquet (a row for each device and effect), fleet.json, fleet.html and, from
     five devices on, prior/model.bin for a new device, tried on devices left out over its first
-    `minutes` (None: not tried), into the folder `out`. Recordings that fail are named in the
-    report. Results are kept as they come: a second run over the same folder does only what is left.
-    options: keywords of zerorate.Corrector; keep: each device's own files too; advance: called with
-    devices done.
+    `minutes`, or as many as were recorded (None: not tried), into the folder `out`. Recordings that
+    fail are named in the report. Results are kept as they come: a second run over the same folder
+    does only what is left. options: keywords of zerorate.Corrector; keep: each device's own files
+    too; advance: called with devices done.
     Raises ZerorateError.
     """
     if job not in JOBS:
         raise ZerorateError(f"{job}: no such job; choose of {', '.join(JOBS)}")
     folder = Path(out)
-    parts = Parts(folder)
     own = str(folder.resolve() / "devices") if keep else None
     work = Job(job, options or {}, str(Path(model).resolve()) if model else None, own)
     devices = [_absolute(device) for device in devices]
     wanted = {device.name: work.fingerprint(device) for device in devices}
-    done = parts.whole()
-    left = [device for device in devices if wanted[device.name] not in done]
-    fleet = Fleet(resumed=len(devices) - len(left))
-    advance(fleet.resumed)
     begun = time.perf_counter()
     with cluster(scheduler, workers) as client:
-        fleet.start_s = time.perf_counter() - begun
+        start_s = time.perf_counter() - begun
+        parts = Parts(folder)  # made now, so that a cluster that cannot be had leaves nothing
+        done = parts.whole()
+        left = [device for device in devices if wanted[device.name] not in done]
+        fleet = Fleet(resumed=len(devices) - len(left), start_s=start_s)
+        advance(fleet.resumed)
         batches = in_batches(left, size_of(client), devices_per_task)
         fleet.tasks = len(batches)
         for batch, result in run_all(client, partial(run_batch, work), batches):
@@ -154,6 +154,8 @@ def _conclude(
         run: Runner = partial(run_all, client)
         report["prior"] = {**prior_json(part), "benefit": None}
         if minutes is not None:
+            longest = max(r["sessions"][0]["duration_s"] for r in mine) / 60
+            minutes = min(minutes, round(longest, 1))
             tried = benefit(names, curves, first, scales, minutes, run)
             report["prior"]["benefit"] = tried
     with written_beside(folder / "fleet.parquet") as temporary:

@@ -46,6 +46,8 @@ def _lines(fleet: Fleet) -> Iterator[str]:
             f"{step['effect']}: {step['verdict']}; in {step['devices']} of {step['of_devices']} "
             f"devices ({low:.0%} to {high:.0%})"
         )
+    if report["job"] == "close" and not report["steps"]:
+        yield "close found no effect in any device"
     if not report["effects"]:
         yield "nothing said of the part: that takes five devices with readings at rest"
     if report["prior"]:

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..errors import BadRecording
 from ..recordings import Recording, Scales, recording_from_columns
+from ..recordings.checks import GAP
 from .foreign import Foreign
 
 _GYRO_RANGES = (131.0, 65.5, 32.8, 16.4)
@@ -160,15 +161,16 @@ def _temp_counts(temp: np.ndarray, foreign: Foreign, scales: Scales) -> np.ndarr
 
 def _extra(foreign: Foreign, path: Path) -> dict[str, np.ndarray]:
     for name, values in foreign.extra.items():
-        bad = np.logical_not(np.abs(values) < 2**31)
+        bad = np.abs(values) >= 2**31
         if bad.any():
             at = int(np.argmax(bad))
-            do = f"fill the gaps or leave {name} out"
-            if np.isfinite(values[at]):
-                do = f"scale it down: --map {name}=COLUMN:x0.001"
+            do = f"scale it down: --map {name}=COLUMN:x0.001"
             problem = f"{name} is {values[at]:g}, no integer of 32 bits"
             raise BadRecording(path, problem, row=int(foreign.index[at]) + 1, do=do)
-    return {name: np.rint(values) for name, values in foreign.extra.items()}
+    return {
+        name: np.where(np.isnan(values), GAP, np.rint(values))
+        for name, values in foreign.extra.items()
+    }
 
 
 def _clipped(name: str, values: np.ndarray, report: Report) -> np.ndarray:

@@ -19,7 +19,7 @@ def read_dataflash(path: Path, instance: int = 0) -> Foreign:
     try:
         from pymavlink import DFReader
     except ImportError as error:
-        raise MissingLibrary("DataFlash needs pymavlink: pip install zerorate[tools]") from error
+        raise MissingLibrary("pymavlink") from error
     text = path.suffix.lower() == ".log"
     reader = DFReader.DFReader_text if text else DFReader.DFReader_binary
     try:

@@ -51,6 +51,7 @@ def read_foreign(
     mapping: columns of a table and their units; units: by kind (time, gyro, accel, temp) where the
     mapping has none; layout: one of `layouts.NAMES` instead of recognising it, or "table" to
     recognise none; instance: which of several sensors in a flight log.
+    An extra channel is `recordings.checks.GAP` where the source has no value.
     Raises BadRecording, MissingLibrary.
     """
     path = Path(source)
@@ -72,7 +73,7 @@ def _own_form(path: Path) -> Recording | None:
         open_recording(path)
     except BadRecording:
         return None
-    return read_recording(path)
+    return read_recording(path, keep_gaps=True)
 
 
 def _read(path: Path, mapping, units, layout: str | None, instance: int):

@@ -56,7 +56,10 @@ def _check_unit(mapped: Mapped) -> None:
                 f"unit {mapped.unit!r} of {mapped.target} is none of {', '.join(known)}"
             )
     elif not _factor(mapped.unit):
-        raise ValueError(f"an extra channel takes a factor: {mapped.target}={mapped.column}:x100")
+        raise ValueError(
+            f"{mapped.target} is none of {', '.join(COLUMNS)}, and an extra channel takes a "
+            f"factor: {mapped.target}={mapped.column}:x100"
+        )
 
 
 def _factor(unit: str) -> float | None:

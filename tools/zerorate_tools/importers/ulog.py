@@ -19,7 +19,7 @@ def read_ulog(path: Path, instance: int = 0) -> Foreign:
     try:
         from pyulog import ULog
     except ImportError as error:
-        raise MissingLibrary("ULog needs pyulog: pip install zerorate[tools]") from error
+        raise MissingLibrary("pyulog") from error
     try:
         log = ULog(str(path), message_name_filter_list=_TOPICS)
     except Exception as error:  # pyulog raises whatever its parser stumbles over

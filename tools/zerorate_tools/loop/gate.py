@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from math import ceil, floor
 
 import numpy as np
 from scipy.stats import spearmanr
@@ -131,14 +132,26 @@ def enough(session: Session) -> None:
     still_s = int(session.available.sum()) * session.block_s
     if have_s < needed_s:
         raise CannotClose(
-            f"{session.name}: {have_s / 60:.1f} minutes are too short; "
-            f"{needed_s / 60:.0f} minutes at rest are needed, better an hour"
+            f"{session.name}: {_have(have_s)} minutes are too short; {_needed(session, needed_s)}, "
+            "better an hour"
         )
     if still_s < needed_s:
         raise CannotClose(
-            f"{session.name}: only {still_s / 60:.1f} minutes are still; "
-            f"{needed_s / 60:.0f} minutes at rest are needed: leave the device untouched for longer"
+            f"{session.name}: only {_have(still_s)} minutes are still; "
+            f"{_needed(session, needed_s)}: leave the device untouched for longer"
         )
+
+
+def _have(seconds: float) -> str:
+    """Minutes rounded down, and what is needed up, so that the two are told apart."""
+    return f"{floor(seconds / 6) / 10:.1f}"
+
+
+def _needed(session: Session, seconds: float) -> str:
+    return (
+        f"{ceil(seconds / 6) / 10:g} minutes at rest are needed ({LEAST_BLOCKS} blocks of "
+        f"{session.block_s:g} s, no less than {LEAST_S / 60:g} minutes)"
+    )
 
 
 def usable_channels(sessions: list[Session], report: GateReport) -> None:

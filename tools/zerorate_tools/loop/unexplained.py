@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..signs import fixed
 from .catalogue import is_supply, varies
 from .measured import BEFORE
 
@@ -42,7 +43,7 @@ def what_is_known(analysis, after_dps: np.ndarray) -> str:
         parts.append("slow, smoother than a random walk")
     if excess.common:
         ratio = excess.direction / np.abs(excess.direction).max()
-        parts.append("common to the axes in the ratio " + ":".join(f"{r:.2f}" for r in ratio))
+        parts.append("common to the axes in the ratio " + ":".join(fixed(r, 2) for r in ratio))
     parts.append(_nearest_channel(analysis))
     return "unexplained: " + "; ".join(parts)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from ..signs import fixed
+
 
 def in_words(result: dict) -> str:
     """How good it is now, what was found and how sure, what is left, what to record next."""
@@ -39,7 +41,7 @@ def _effect(step):
 
 
 def _event(event):
-    sizes = ", ".join(f"{v:+.2f}" for v in event["size_mdps"])
+    sizes = ", ".join(fixed(v, 2, "+") for v in event["size_mdps"])
     at = event["t_us"] / 1e6
     return f"step in {event['recording']} at {at:.0f} s: {sizes} mdps (listed, never corrected)"
 

@@ -13,7 +13,7 @@ from .recording import ACCEL, GYRO, TEMP, TIME, Columns
 from .scales import Scales, missing_scale
 
 GAP = -(2**31)
-"""Stands for a missing value of an extra channel when gaps are kept."""
+"""Stands for a missing value of an extra channel when gaps are kept, and when they are written."""
 
 _LIMIT = 2**31 - 1
 
@@ -45,6 +45,11 @@ def check_scales(scales: Scales, names: list[str], path: Path, scales_path: Path
         raise BadRecording(
             scales_path, f"the scales lack {key}, and {path.name} has {column}", do=do
         )
+
+
+def arrow_column(name: str, values: np.ndarray, kind: pa.DataType) -> pa.Array:
+    """A column to be written: where an extra channel is GAP it has no value."""
+    return pa.array(values, kind, mask=np.asarray(values) == GAP if _is_extra(name) else None)
 
 
 class BatchChecker:
@@ -80,7 +85,7 @@ class BatchChecker:
         return self._narrow(name, wide)
 
     def _without_gaps(self, name: str, values: pa.Array) -> pa.Array:
-        extra = name not in (TIME, *GYRO, *ACCEL, TEMP)
+        extra = _is_extra(name)
         if extra and self._keep_gaps:
             return pc.fill_null(values.cast(pa.int64()), GAP)
         row = self._row(int(np.argmax(values.is_null().to_numpy(zero_copy_only=False))))
@@ -97,7 +102,7 @@ class BatchChecker:
         return wide.astype(np.int32, copy=False)
 
     def _refuse_type(self, name: str, values: pa.Array) -> None:
-        if pa.types.is_floating(values.type):
+        if pa.types.is_floating(values.type) and not _is_extra(name):
             bad = ~np.isfinite(values.to_numpy(zero_copy_only=False))
             if bad.any():
                 at = int(np.argmax(bad))
@@ -121,3 +126,7 @@ class BatchChecker:
 
     def _row(self, at: int) -> int:
         return self._rows + at + 1
+
+
+def _is_extra(name: str) -> bool:
+    return name not in (TIME, *GYRO, *ACCEL, TEMP)

@@ -14,7 +14,7 @@ import pyarrow as pa
 import pyarrow.csv
 
 from ..errors import BadRecording
-from .checks import check_names
+from .checks import arrow_column, check_names
 from .recording import TIME
 from .scales import Scales, scales_from_text
 
@@ -135,7 +135,8 @@ class CsvWriter:
     def append(self, columns: dict[str, Any]) -> None:
         """Write one batch of equally long columns."""
         arrays = [
-            pa.array(columns[name], self._schema.field(name).type) for name in self._schema.names
+            arrow_column(name, columns[name], self._schema.field(name).type)
+            for name in self._schema.names
         ]
         self._writer.write_batch(pa.RecordBatch.from_arrays(arrays, schema=self._schema))
 

@@ -25,7 +25,8 @@ _ROWS = 1 << 16
 def write_recording(recording: Recording, path: str | PathLike[str]) -> None:
     """Write .parquet, or .csv / .csv.gz with .json beside it.
 
-    Raises BadRecording for another suffix or for columns without scales.
+    An extra channel has no value where it is `checks.GAP`. Raises BadRecording for another suffix
+    or for columns without scales.
     """
     with recording_writer(path, recording.column_names, recording.scales) as writer:
         for first in range(0, len(recording), _ROWS):

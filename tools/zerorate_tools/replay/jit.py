@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import hashlib
 import importlib.util
-import shutil
 import sys
 import types
 from collections.abc import Callable, Mapping, Sequence
@@ -58,20 +57,20 @@ def compiled_kernels(*roots: str) -> types.SimpleNamespace:
     source's place and time, and another installation has the same kernels elsewhere.
     """
     files = _in_order_of_imports(roots, kernel_files(firmware_package()))
-    texts = [path.read_bytes() for path in (*files, _LOOP)]
-    digest = hashlib.sha256(b"".join([*texts, repr(_WORDS).encode()])).hexdigest()[:16]
+    texts = {path.name: path.read_bytes() for path in (*files, _LOOP)}
+    digest = hashlib.sha256(b"".join([*texts.values(), repr(_WORDS).encode()])).hexdigest()[:16]
     kept = cache_folder() / "numba" / digest
     numba.config.CACHE_DIR = str(kept)  # type: ignore[attr-defined]
-    copies = fill(kept / "sources", lambda draft: _copy([*files, _LOOP], draft))
+    copies = fill(kept / "sources", lambda draft: _write(texts, draft))
     sys.modules[_PACKAGE] = types.ModuleType(_PACKAGE)
     sys.modules[_PACKAGE].__path__ = []
     modules = {path.stem: _compiled(copies / path.name) for path in files}
     return types.SimpleNamespace(**modules, loop=copies / _LOOP.name)
 
 
-def _copy(files: Sequence[Path], folder: Path) -> None:
-    for path in files:
-        shutil.copy(path, folder)
+def _write(texts: Mapping[str, bytes], folder: Path) -> None:
+    for name, text in texts.items():
+        (folder / name).write_bytes(text)
 
 
 def _compiled(path: Path) -> types.ModuleType:

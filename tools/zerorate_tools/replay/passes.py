@@ -10,10 +10,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ZerorateError
+from ..errors import InFile, ZerorateError
 from ..recordings import Recording
 from ..recordings.atomic import written_beside
 from ..recordings.reading import OpenRecording
+from ..signs import fixed
 from .samples import frames_in_batches, sensor_of
 
 _JOB, _PASS, _REASON, _Y, _SLOPES = 13, 14, 17, 51, 76
@@ -88,17 +89,31 @@ def _passes(state, settings, work) -> NDArray[np.float64]:
     return np.degrees(np.array([seen[number] for number in sorted(seen)]) / (1 << 12))
 
 
-def plot_windows(recording: OpenRecording | Recording, path: Path, **options: object) -> list[Path]:
-    """Draw the windows that taught a bias and return the pictures' paths.
+def windows_to_plot(
+    recording: OpenRecording | Recording, path: Path, **options: object
+) -> list[Window]:
+    """The windows that taught a bias; nothing is written yet, but could be: all else is refused.
 
-    path: a .png for the latest of them, else a folder for up to twelve, evenly spaced.
-    Raises ZerorateError where no window taught one.
+    path: as of `plot_windows`; options: as of `windows`. Raises ZerorateError where no window
+    taught one, or where the picture's folder is not there; ModuleNotFoundError without Matplotlib.
     """
+    import matplotlib.figure  # noqa: F401
+
+    if path.suffix == ".png" and not path.parent.is_dir():
+        raise InFile(path, "its folder is not there", do="name a folder that exists and is yours")
     found = list(windows(recording, **options))
     taught = [window for window in found if window.reason == "learned"]
     if not taught:
         seen = sorted({window.reason for window in found}) or ["no full window"]
         raise ZerorateError(f"{recording.name}: no window in motion to plot: {', '.join(seen)}")
+    return taught
+
+
+def plot_windows(taught: list[Window], path: Path) -> list[Path]:
+    """Draw windows and return the pictures' paths.
+
+    path: a .png for the latest of them, else a folder for up to twelve, evenly spaced.
+    """
     if path.suffix == ".png":
         plot(taught[-1], path)
         return [path]
@@ -123,7 +138,7 @@ def plot(window: Window, path: str | PathLike[str]) -> None:
             line = np.polynomial.Polynomial.fit(t, values, 1)
             (drawn,) = panel.plot(t, values, label=name)
             panel.plot(t, line(t), "--", color=drawn.get_color(), linewidth=0.8)
-        slopes = ", ".join(f"{slope:+.3f}" for slope in window.slopes_dps[number])
+        slopes = ", ".join(fixed(slope, 3, "+") for slope in window.slopes_dps[number])
         when = "before" if number == 0 else f"after pass {number}"
         panel.set_title(f"{when}; pass {number + 1} finds a slope of {slopes} dps", fontsize=9)
         panel.set_ylabel("deg")

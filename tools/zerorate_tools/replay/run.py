@@ -6,6 +6,7 @@ from array import array
 from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass, field
+from inspect import signature
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyarrow as pa
 from zerorate import Corrector
+from zerorate.corrector import LIMITS
 
 from ..errors import BadModel, InFile, ZerorateError
 from ..recordings import Recording, open_recording
@@ -79,7 +81,9 @@ def replay(
     options: keywords of zerorate.Corrector; advance: called with the
     number of samples done. Raises ZerorateError (BadRecording, MissingRuntime, ...).
     """
-    recording = log if isinstance(log, Recording) else open_recording(log)
+    if out is not None and Path(out).suffix != ".parquet":
+        raise InFile(out, "a replay is written as Parquet", do="end the name in .parquet")
+    recording = log if isinstance(log, Recording) else open_recording(log, keep_gaps=True)
     corrector = corrector_for(recording, options or {})
     channels = load_model(corrector, Path(model), recording) if model is not None else ()
     if from_state is not None:
@@ -102,6 +106,10 @@ def replay(
 
 def corrector_for(recording: OpenRecording | Recording, options: dict[str, object]) -> Corrector:
     """The firmware's object for a recording's sensor. Raises ZerorateError for bad options."""
+    known = {*signature(Corrector).parameters, *LIMITS} - {"sensor", "limits"}
+    unknown = next((name for name in options if name not in known), None)
+    if unknown is not None:
+        raise ZerorateError(f"no such setting: {unknown}; there are {', '.join(sorted(known))}")
     try:
         return Corrector(sensor_of(recording.scales), **options)
     except (TypeError, ValueError) as error:

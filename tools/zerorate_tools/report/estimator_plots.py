@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from ..signs import fixed
 from .estimators import Estimator, Moment
 from .plot import Line, Panel, Plot, Series
 from .residual_plots import AXES
@@ -51,7 +52,7 @@ def _power_ons(seen):
 
 
 def _said(e: Estimator) -> str:
-    return f"{int(e.readings.sum())} readings, bias {e.bias_dps:.3f} dps"
+    return f"{int(e.readings.sum())} readings, bias {fixed(e.bias_dps, 3)} dps"
 
 
 def inside(seen: list[Moment]) -> Plot | None:

@@ -75,8 +75,7 @@ def _yaml(data: bytes) -> Any:
     try:
         import yaml
     except ImportError as error:
-        do = "pip install pyyaml, or write the description as TOML"
-        raise MissingLibrary(f"YAML needs PyYAML: {do}") from error
+        raise MissingLibrary("yaml") from error
     try:
         return yaml.safe_load(data)
     except yaml.YAMLError as error:

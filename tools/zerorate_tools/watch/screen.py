@@ -9,6 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
+from ..signs import fixed
 from .live import Live
 
 _BARS = "▁▂▃▄▅▆▇█"
@@ -48,7 +49,7 @@ class Lines:
 
 def _bias(bias_dps: float, quality_dps: float, source: str) -> str:
     # a bias that nobody knows is not known to +-0
-    return "none" if source == "none" else f"{bias_dps:+.3f}±{quality_dps:.3f} {source}"
+    return "none" if source == "none" else f"{fixed(bias_dps, 3, '+')}±{quality_dps:.3f} {source}"
 
 
 class Area:
@@ -100,7 +101,7 @@ def _table(live: Live):
     table.add_column("bias of late")
     past = np.array(live.history).reshape(-1, 3)
     for i, source in enumerate(live.source):
-        signed = [f"{v[i]:+.3f}" for v in (live.rate_dps, live.left_dps, live.bias_dps)]
+        signed = [fixed(v[i], 3, "+") for v in (live.rate_dps, live.left_dps, live.bias_dps)]
         sigma = "" if source == "none" else f"{live.quality_dps[i]:.3f}"
         table.add_row(f"g{'xyz'[i]}", *signed, sigma, source, sparkline(past[:, i]))
     return table
