@@ -21,6 +21,7 @@ from .gate import (
     enough,
     readable,
     same_settings,
+    shaken,
     usable_channels,
     without_long_gaps,
 )
@@ -156,5 +157,6 @@ def sessions_of(ticks: list[Ticks]) -> tuple[list[Session], GateReport]:
         raise CannotClose("; ".join(n.removeprefix("left out: ") for n in gate.notes))
     for name in {n for t in ticks for n in t.extra if n in OWN_SOURCES}:
         gate.dropped[name] = "named like a source of the model's own: rename the column"
+    shaken(kept, gate)
     usable_channels(kept, gate)
     return kept, gate

@@ -7,6 +7,7 @@ from math import ceil, floor
 
 import numpy as np
 from scipy.stats import spearmanr
+from zerorate.corrector import LIMITS
 
 from ..errors import ZerorateError
 from ..model.binding import NAMES, binding_of
@@ -30,6 +31,8 @@ _COPY = 0.99999
 _OWN_NOISE = 0.9
 #: Of a data rate: so far two recordings of one device may be apart, each by its own clock.
 _MOST_RATE_APART = 0.05
+#: Of the rests, beyond which it is said that the firmware takes them for motion.
+_MOST_SHAKEN = 0.3
 _SETTINGS = (
     "sensor",
     "odr_hz",
@@ -152,6 +155,23 @@ def _needed(session: Session, seconds: float) -> str:
         f"{ceil(seconds / 6) / 10:g} minutes at rest are needed ({LEAST_BLOCKS} blocks of "
         f"{session.block_s:g} s, no less than {LEAST_S / 60:g} minutes)"
     )
+
+
+def shaken(sessions: list[Session], report: GateReport) -> None:
+    """Say in the report where the firmware learns little because its accelerometer sees shaking."""
+    seen = [s for s in sessions if "vib" in s.sources]
+    if not seen:
+        return
+    limit = LIMITS["still_g"]
+    over = [(s.block_mean(s.sources["vib"]) > limit**2)[s.available] for s in seen]
+    share = float(np.concatenate(over).mean())
+    if share > _MOST_SHAKEN:
+        report.notes.append(
+            f"in {100 * share:.0f} % of the rests the acceleration varies by more than {limit} g: "
+            "the firmware takes that for motion and learns nothing there, so before and after are "
+            "those of a curve learned from the others; record with less vibration, or give "
+            "the firmware a larger still_g"
+        )
 
 
 def usable_channels(sessions: list[Session], report: GateReport) -> None:

@@ -102,7 +102,8 @@ def can_be_bridged(available: np.ndarray) -> bool:
     """Whether the blocks missing are few and apart."""
     edges = np.flatnonzero(np.diff(np.r_[0, ~available, 0].astype(int)))
     longest = (edges[1::2] - edges[::2]).max(initial=0)
-    return bool(longest <= _BRIDGE and (~available).mean() <= _BRIDGED_SHARE)
+    missing = int((~available).sum())
+    return bool(longest <= _BRIDGE and missing <= _BRIDGED_SHARE * len(available))
 
 
 def whitener(available: np.ndarray) -> Whitener:
