@@ -1,10 +1,13 @@
 """Recordings from which little can be learned end in a sentence that helps; nothing is invented."""
 
 import json
+import warnings
 from dataclasses import replace
 
 import numpy as np
+import pyarrow as pa
 import pytest
+from pyarrow import parquet
 from zerorate_tools.errors import ZerorateError
 from zerorate_tools.loop.close import load
 from zerorate_tools.loop.gate import CannotClose
@@ -65,6 +68,23 @@ def test_a_channel_with_the_gyroscopes_own_noise_is_no_cause(closed):
         one["rate2"] = 7 * one["gy"] + 40
     analysis = closed(every)
     assert "own noise" in analysis.gate.dropped["rate2"] and invented(analysis) == []
+
+
+def test_where_the_firmware_sees_shaking_and_learns_nothing_it_is_said(closed):
+    every = [columns(i) for i in range(4)]
+    for i, one in enumerate(every):
+        one["az"] = one["az"] + np.random.default_rng(i).normal(0, 1000, N).astype(np.int32)
+    (note,) = closed(every).gate.notes
+    assert "100 % of the rests" in note and "0.03 g" in note
+    assert closed([columns(i) for i in range(4)]).gate.notes == []
+
+
+def test_a_recording_of_a_few_samples_is_left_out_without_a_warning(closed):
+    few = {name: values[:10] for name, values in columns(4).items()}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        analysis = closed([*(columns(i) for i in range(3)), few])
+    assert "s3: 0.0 minutes" in analysis.gate.notes[0]
 
 
 def test_a_channel_that_one_recording_lacks_is_set_aside_and_named(closed):
@@ -137,8 +157,27 @@ def test_recordings_all_in_motion_are_told_to_rest(closed):
 def test_a_clock_that_wraps_is_a_sentence_too(closed):
     one = columns(1)
     one["t_us"] = (one["t_us"] + 2**32 - 10**9) % 2**32
-    with pytest.raises(ZerorateError, match="row .*time goes backwards"):
+    with pytest.raises(ZerorateError, match=r"row .*time goes backwards.*32 bits.*add 4294967296"):
         closed([one])
+
+
+def test_a_clock_that_was_set_back_is_to_be_sorted_or_cut(closed):
+    one = columns(1)
+    one["t_us"][3000:] -= 10**8
+    with pytest.raises(ZerorateError, match="row .*time goes backwards.* sort or cut"):
+        closed([one])
+
+
+def test_whole_numbers_with_gaps_that_a_table_made_floats_are_integers_with_gaps(tmp_path):
+    paths = []
+    for i in range(3):
+        vdd_mv = np.where(np.arange(N) % 5, np.nan, 3300.0 + wander(i))
+        table = pa.table({**columns(i), "vdd_mv": vdd_mv})
+        paths.append(tmp_path / f"s{i}.parquet")
+        metadata = {"zerorate": json.dumps(MPU.to_json())}
+        parquet.write_table(table.replace_schema_metadata(metadata), paths[-1])
+    held = load(paths).sessions[0].sources["vdd_mv"]
+    assert np.isfinite(held).all() and np.ptp(held) > 0
 
 
 @pytest.mark.parametrize("lacking", [("temp",), ("ax", "ay", "az"), ("temp", "ax", "ay", "az")])

@@ -269,7 +269,7 @@ def test_wrong_types_in_a_parquet_are_refused(tmp_path, values, complaint):
 
 def test_an_extra_channel_of_fractions_is_told_to_be_integers_gaps_or_not(tmp_path):
     columns = {"t_us": [0, 1], "gx": [1, 1], "gy": [1, 1], "gz": [1, 1]}
-    table = pa.table({**columns, "vdd_mv": [4.0, float("nan")]})
+    table = pa.table({**columns, "vdd_mv": [4.5, float("nan")]})
     scales = json.dumps(SCALES.to_json()).encode()
     pq.write_table(table.replace_schema_metadata({b"zerorate": scales}), tmp_path / "x.parquet")
     with pytest.raises(BadRecording, match="column vdd_mv holds double, not integers"):

@@ -16,6 +16,9 @@ GAP = -(2**31)
 """Stands for a missing value of an extra channel when gaps are kept, and when they are written."""
 
 _LIMIT = 2**31 - 1
+_SORT = "sort or cut the recording there (one recording is one power-on)"
+#: Between two samples, beyond which time that goes backwards is no counter that ran over.
+_LONGEST_PAUSE_US = 10_000_000
 
 
 def check_names(names: list[str], path: Path) -> None:
@@ -75,6 +78,8 @@ class BatchChecker:
             raise BadRecording(self._path, "no data row", do="record again, or name another file")
 
     def _integers(self, name: str, values: pa.Array) -> np.ndarray:
+        if pa.types.is_floating(values.type) and _is_extra(name):
+            values = _whole(values)
         if not pa.types.is_integer(values.type):
             self._refuse_type(name, values)
         if values.null_count:
@@ -120,7 +125,7 @@ class BatchChecker:
             at = int(np.argmax(backwards))
             earlier = t_us[at - 1] if at else before
             problem = f"time goes backwards, from {earlier} to {t_us[at]} us"
-            do = "sort or cut the recording there (one recording is one power-on)"
+            do = _wrapped(int(earlier), int(t_us[at])) or _SORT
             raise BadRecording(self._path, problem, row=self._row(at), do=do)
         self._last_us = t_us[-1]
 
@@ -130,3 +135,21 @@ class BatchChecker:
 
 def _is_extra(name: str) -> bool:
     return name not in (TIME, *GYRO, *ACCEL, TEMP)
+
+
+def _whole(values: pa.Array) -> pa.Array:
+    """Floats that are all whole or NaN, as tables with gaps come to be, as integers with gaps; any
+    others as they are."""
+    gaps = pc.if_else(pc.is_nan(values), None, values)
+    try:
+        return gaps.cast(pa.int64())
+    except pa.ArrowInvalid:
+        return values
+
+
+def _wrapped(earlier: int, later: int) -> str:
+    """What to do where a counter of microseconds ran over; empty where none seems to have."""
+    for bits in (30, 31, 32):
+        if earlier < 1 << bits and 0 < later + (1 << bits) - earlier < _LONGEST_PAUSE_US:
+            return f"a clock of {bits} bits ran over: add {1 << bits} to it from there on"
+    return ""
