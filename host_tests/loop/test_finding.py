@@ -2,6 +2,8 @@
 bench loop`.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from zerorate_tools.loop.analysis import analyse
@@ -73,6 +75,19 @@ def test_a_delay_is_found_wherever_it_lies_though_the_channel_switches():
     [found] = selection.found
     assert found.candidate.sources == ["load"]
     assert found.candidate.terms[0].delay_s == pytest.approx(193.0, abs=5.0)
+
+
+def test_a_product_is_one_effect_wherever_its_factors_are_zero():
+    device = simulate(16)
+    for s in device.sessions:
+        product = Term("vdd_mv", centre=3240.0, second="temp", second_centre=21.0)
+        product = replace(product, second_lo=0.0, second_hi=60.0)
+        s.rate_dps += np.outer(block_basis(product, s), [6e-6, -4e-6, 3e-6])
+    selection, judgement = look(device)
+    assert [label(f.candidate) for f in selection.found] == ["supply-temperature"]
+    # The line over temperature takes what another zero of the voltage would add.
+    assert selection.terms[0].second_centre == pytest.approx(21.0, abs=1.5)
+    assert judgement.after_rms < 0.7 * judgement.before_rms
 
 
 def test_two_effects_at_once_are_both_named():

@@ -19,6 +19,9 @@ from .turns import GIVEN
 
 Options = dict[str, Any]
 
+#: Where the factors of a product are zero; each place takes another share of either factor.
+_CENTRES: Options = {"centre": ("mean", "lo", "hi"), "second_centre": ("mean", "lo", "hi")}
+
 #: Physical effects; `knot` grids are shares of the source's range.
 CATALOGUE: tuple[tuple[str, str, Options, Options], ...] = (
     ("temperature-quadratic", "temp", {"power": 2}, {}),
@@ -43,7 +46,7 @@ CATALOGUE: tuple[tuple[str, str, Options, Options], ...] = (
     ("time-drift", "time", {}, {}),
     ("vibration", "vib", {}, {}),
     ("supply-voltage", "supply", {}, {}),
-    ("supply-temperature", "supply", {"second": "temp"}, {}),
+    ("supply-temperature", "supply", {"second": "temp"}, _CENTRES),
 )
 
 #: Effects of several columns at once, each with a coefficient per axis.
@@ -76,7 +79,7 @@ GENERIC: tuple[tuple[str, Options, Options], ...] = (
     ),
     ("channel-kink", {}, {"knot": (0.2, 0.35, 0.5, 0.65, 0.8)}),
     ("channel-peak", {"memory": "peak"}, {}),
-    ("channel-product", {}, {"second": "every"}),
+    ("channel-product", {}, {"second": "every", **_CENTRES}),
 )
 
 SUPPLY_NAMES = ("vdd", "vbat", "volt", "vcc", "supply")
@@ -89,6 +92,7 @@ REFINED = {
     "width": (0.3, 30.0),
     "knot": None,
     "centre": None,
+    "second_centre": None,
 }
 
 
@@ -148,8 +152,7 @@ def _is_even(choice: dict) -> bool:
 def _fields(choice: dict, span: dict, source: str) -> dict:
     lo, hi, mean = span.get(source, (0.0, 1.0, 0.0))
     fields = dict(choice)
-    centre = fields.get("centre", "mean")
-    fields["centre"] = {"mean": mean, "lo": lo, "hi": hi}.get(centre, centre)
+    fields["centre"] = _place(fields.get("centre", "mean"), (lo, hi, mean))
     if source != "one":
         margin = _MARGIN * (hi - lo) if is_bounded(fields) else 0.0
         fields.update(lo=lo - margin, hi=hi + margin)
@@ -164,8 +167,15 @@ def _fields(choice: dict, span: dict, source: str) -> dict:
         fields["knot"] = lo + fields["knot"] * (hi - lo) - fields["centre"]
     if fields.get("second"):
         second = span[fields["second"]]
-        fields.update(second_lo=second[0], second_hi=second[1], second_centre=second[2])
+        centre = _place(fields.get("second_centre", "mean"), second)
+        fields.update(second_lo=second[0], second_hi=second[1], second_centre=centre)
     return fields
+
+
+def _place(named, span: tuple[float, float, float]):
+    """A value, or the one of lowest, highest and mean that is named."""
+    lo, hi, mean = span
+    return {"mean": mean, "lo": lo, "hi": hi}.get(named, named)
 
 
 def _expand(kind, source, fixed, grids, family, span):

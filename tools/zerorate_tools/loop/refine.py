@@ -51,7 +51,7 @@ def _intervals(term, name, at):
     if limits:
         yield max(at / 2.2, limits[0]), min(at * 2.2, limits[1]), np.log, np.exp
     else:
-        span = term.hi - term.lo
+        span = term.second_hi - term.second_lo if name == "second_centre" else term.hi - term.lo
         unit = span or 1.0
         yield at - 0.2 * span, at + 0.2 * span, (lambda v: v / unit), (lambda v: v * unit)
     if name == "delay_s":
