@@ -75,12 +75,20 @@ class Session:
         """(n,) bool: blocks whose rate is known beside a reference though they were not at rest."""
         if self.ticks_dps is None:
             return np.zeros(self.blocks, bool)
-        at_rest = np.isfinite(self.ticks_dps).all(axis=1).astype(float)
-        return self.available & (self.block_mean(at_rest) < 0.5)
+        at_rest = np.isfinite(self.ticks_dps).all(axis=1).reshape(self.blocks, -1)
+        return self.available & (at_rest.mean(axis=1) < 0.5)
 
     def block_mean(self, ticks: np.ndarray) -> np.ndarray:
-        """Mean over each block of a (n * ticks_per_block,) series."""
-        return ticks.reshape(self.blocks, self.ticks_per_block).mean(axis=1)
+        """Mean over each block of a (n * ticks_per_block,) series: over the ticks that count in its
+        rate, so that cause and effect are of one time, and over all where none does.
+        """
+        rows = ticks.reshape(self.blocks, self.ticks_per_block)
+        if self.tick_weight is None:
+            return rows.mean(axis=1)
+        weight = self.tick_weight.reshape(rows.shape)
+        total = weight.sum(axis=1)
+        counted = (rows * weight).sum(axis=1) / np.where(total > 0, total, 1.0)
+        return np.where(total > 0, counted, rows.mean(axis=1))
 
     def time_s(self) -> np.ndarray:
         """(n * ticks_per_block,) seconds since power-on at the middle of each tick."""
