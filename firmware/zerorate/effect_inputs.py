@@ -91,7 +91,7 @@ def accumulate(e: ptr32, x: ptr32):
         if v >= _EXTRA:
             v = extra(e, a)
         elif v >= _INSTANT:
-            e[a + _VALUE] = x[v - _INSTANT + 4] << 8
+            e[a + _VALUE] = x[(v - _INSTANT + 4) % 7] << 8
             v = _NONE
         elif v < _VIBRATION:
             v = x[v]

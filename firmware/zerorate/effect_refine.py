@@ -52,6 +52,7 @@ _SHIFT = const(23)
 _COEFFICIENT = const(24)
 _OWN = const(30)
 _INSTANT = const(33)
+_OF_RATE = const(1)
 _VALUE = const(39)
 
 _WARM_UP = const(64)
@@ -92,7 +93,7 @@ def observe(s: ptr32, e: ptr32, n: int):
     while i < e[_STATES]:
         n = _SLOT + (i - 2) * _WORDS
         put(e, _PHI + 2 * i, e[n + _VALUE], -24)
-        if e[n + _INSTANT]:
+        if e[n + _INSTANT] == _OF_RATE:
             put(e, _PHI + 2 * i, 0, 0)
         i += 1
     e[_PHASE] = 1

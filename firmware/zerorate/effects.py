@@ -1,8 +1,9 @@
 """What the closed loop has found, subtracted: slots of coefficient times basis (design.md).
 
 Slots are computed once a tick (1 s) on the means of the tick, one slot a sample, so that no sample
-waits for all of them; what depends on the rate itself is computed for every sample. One array `e`
-holds the model and its running state: see model.py for its words.
+waits for all of them; what depends on the rate or the acceleration itself, which a hand moves
+faster than a tick, is computed for every sample. One array `e` holds the model and its running
+state: see model.py for its words.
 """
 
 try:
@@ -113,12 +114,15 @@ def run_slot(e: ptr32):
     e[_PHASE] = i
 
 
-def add_instant(e: ptr32):
-    """Add to what is held what the slots of this very sample say."""
+def add_instant(e: ptr32, good: int):
+    """Add to what is held what the slots of this very sample say.
+
+    In a frame that is no reading acceleration is taken as it was; what the rate was says nothing.
+    """
     a = _SLOT
     i = e[_SLOTS]
     while i > 0:
-        if e[a + _INSTANT]:
+        if e[a + _INSTANT] + good > 1:
             e[a + _VALUE] = basis(e, a)
             contribute(e, a, _NOW_Q14)
         a += _WORDS
@@ -143,8 +147,8 @@ def sense(s: ptr32, e: ptr32, x: ptr32, dt_us: int, good: int):
     e[_NOW_Q14] = e[_HELD_Q14]
     e[_NOW_Q14 + 1] = e[_HELD_Q14 + 1]
     e[_NOW_Q14 + 2] = e[_HELD_Q14 + 2]
-    if e[_INSTANT_SLOTS] and good:
-        add_instant(e)
+    if e[_INSTANT_SLOTS]:
+        add_instant(e, good)
     dt_us = 0
     while dt_us < 3:
         s[_EFFECT_Q8 + dt_us] = (e[_NOW_Q14 + dt_us] + 32) >> 6

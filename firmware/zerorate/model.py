@@ -13,8 +13,8 @@ A slot: 0 input's value's word, 1 lowest, 2 highest, 3 centre, each Q8, 4 shift 
 shift, 10 half the backlash, 11 knot; 12..16 as 0..4 for the second source (12: 0 is none);
 17 decay's mantissa and 18 shift; 19 table's word, 20 its first point, 21 mantissa and 22 shift to
 its nine; 23 shift and 24..26 mantissas of the coefficients; 27 ring's word, 28 delay and 29 ticks a
-kept one; 30..32 the model's own coefficients, 33 follows the sample itself, 34 started, 35 memory's
-Q24 and 36 remainder, 37 decay's and 38, 39 value Q24.
+kept one; 30..32 the model's own coefficients, 33 follows the sample's own rate (1) or acceleration
+(2), 34 started, 35 memory's Q24 and 36 remainder, 37 decay's and 38, 39 value Q24.
 """
 
 from array import array

@@ -68,6 +68,8 @@ _ANY = const(255)
 _NONE = const(-0x3FFFFFFF)
 _LIMIT = const(0x4000000)
 _INSTANT = const(10)
+_OF_RATE = const(1)
+_OF_ACCELERATION = const(2)
 _EXTRA = const(16)
 
 
@@ -159,9 +161,9 @@ def link(e, a, tables):
         return False
     if not -1 <= e[a + 27] < _MOST_RINGS or not 0 <= e[a + 28] <= 63 * e[a + 29]:
         return False
-    instant = _INSTANT <= e[_INPUT + 6 * e[a]] < _EXTRA
-    if e[a + 12] >= 0 and _INSTANT <= e[_INPUT + 6 * e[a + 12]] < _EXTRA:
-        instant = True
+    instant = of_the_sample(e, e[a])
+    if e[a + 12] >= 0 and instant != _OF_RATE:
+        instant = of_the_sample(e, e[a + 12]) or instant
     if instant and (e[a + 7] or e[a + 17] or e[a + 27] >= 0):
         return False
     if not bounded(e, a):
@@ -172,9 +174,18 @@ def link(e, a, tables):
     e[a + 27] = _RING + 66 * e[a + 27] if e[a + 27] >= 0 else 0
     for i in range(3):
         e[a + 30 + i] = e[a + 24 + i]
-    e[a + 33] = 1 if instant else 0
-    e[9] += e[a + 33]
+    e[a + 33] = instant
+    if instant:
+        e[9] += 1
     return True
+
+
+def of_the_sample(e, i):
+    """Whether input i is a rate (1) or an acceleration (2) of the sample itself, or neither (0)."""
+    kind = e[_INPUT + 6 * i]
+    if kind < _INSTANT or kind >= _EXTRA:
+        return 0
+    return _OF_RATE if kind < _INSTANT + 3 else _OF_ACCELERATION
 
 
 def bounded(e, a):

@@ -59,6 +59,21 @@ def tick_means(raw):
     return means.__getitem__
 
 
+def last_samples(raw, ticks):
+    """sources(name) at each tick's last sample but the first's: acceleration and rate of that
+    sample, else the mean of the tick before."""
+    scales = {f"acc_{a}": (f"a{a}", 16384.0) for a in "xyz"}
+    scales |= {f"rate_{a}": (f"g{a}", 131.0) for a in "xyz"}
+
+    def source(name):
+        if name not in scales:
+            return ticks(name)[:-1]
+        column, lsb = scales[name]
+        return raw[column][A_TICK - 1 :: A_TICK][1:] / lsb
+
+    return source
+
+
 def loaded(slots, scales=SCALES, sensor=SENSOR, tick_s=1.0):
     """An EffectModel with these slots, by way of the bytes of model.bin."""
     model = EffectModel()

@@ -14,7 +14,7 @@ from zerorate_tools.loop.basis import Term, evaluate
 from zerorate_tools.model import Slot
 
 from .checked import Words, checked
-from .simulated_sources import A_TICK, columns, loaded, on_firmware, tick_means
+from .simulated_sources import A_TICK, columns, last_samples, loaded, on_firmware, tick_means
 
 TENTH_OF_THE_FLOOR_DPS = 0.0003
 LARGEST_DPS = 0.5
@@ -62,15 +62,19 @@ def term_over(source, basis, lo, hi):
 def worst(term, warm_up, table=None, reference=None):
     """(largest difference between firmware and reference, largest effect), dps."""
     raw, sources = warm_up
-    wanted = evaluate(term, sources, 1.0) if reference is None else reference
+    if reference is not None:
+        wanted = reference[:-1]
+    elif Slot(term, (0.0, 0.0, 0.0)).is_of_the_sample:
+        wanted = evaluate(term, last_samples(raw, sources), 1.0)
+    else:  # a tick's value is held through the tick behind it
+        wanted = evaluate(term, sources, 1.0)[:-1]
     size = np.abs(wanted).max()
     if size == 0:
         return 0.0, 0.0
     coefficients = LARGEST_DPS / size * np.array([1.0, -0.3, 0.01])
     got = on_firmware(loaded([Slot(term, tuple(coefficients), table=table)]), raw)
-    # a tick's value is held through the tick behind it
     last_of_each = got[A_TICK - 1 :: A_TICK][1:]
-    return np.abs(last_of_each - wanted[:-1, None] * coefficients).max(), size * coefficients[0]
+    return np.abs(last_of_each - wanted[:, None] * coefficients).max(), size * coefficients[0]
 
 
 @pytest.mark.parametrize("name", BASES)
@@ -201,6 +205,28 @@ def test_a_scale_error_is_of_the_very_sample(warm_up):
     wanted = 0.02 * rate[A_TICK:] + 0.001 * rate[A_TICK:] * held
     assert np.abs(got[A_TICK:, 0] - wanted).max() < 1e-4
     assert np.abs(got[:, 1] - 0.005 * rate).max() < 5e-5
+
+
+def test_acceleration_counts_in_the_very_sample(warm_up):
+    raw = {name: values[:400] for name, values in warm_up[0].items()}
+    slots = [
+        Slot(Term("acc_x", -2.0, 2.0), (0.1, 0.02, 0.0)),
+        Slot(Term("acc_z", -2.0, 2.0, power=2), (0.0, 0.0, 0.05)),
+    ]
+    got = on_firmware(loaded(slots), raw)
+    x, z = raw["ax"] / 16384, raw["az"] / 16384
+    wanted = np.column_stack([0.1 * x, 0.02 * x, 0.05 * z**2])
+    assert np.abs(got - wanted).max() < 5e-5
+
+
+def test_a_frame_that_is_no_reading_leaves_acceleration_as_it_was():
+    slots = [Slot(Term("acc_z", -2.0, 2.0), (0.1, 0, 0)), Slot(Term("rate_x", -9, 9), (0, 0.1, 0))]
+    state, model = array("i", [0] * 64), loaded(slots)
+    turning = array("i", [0, 0, 16384, 0, 131, 0, 0])
+    for frame, good in ((turning, 1), (array("i", [-1] * 7), 0)):
+        effects.sense(state, model.e, frame, 250000, good)
+    assert state[61] / 256 / 131 == pytest.approx(0.1, abs=1e-4)
+    assert state[62] == 0
 
 
 def test_slots_of_all_kinds_add_up(warm_up):

@@ -35,7 +35,7 @@ def accumulate(e: ptr32, x: ptr32):
                     extra_v = -(32768 >> extra_a)
                 v = extra_v << extra_a
         elif v >= 10:
-            e_a[5] = x[v - 6] << 8
+            e_a[5] = x[(v - 6) % 7] << 8
             v = -1073741823
         elif v < 7:
             v = x[v]

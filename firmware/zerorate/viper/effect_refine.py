@@ -93,7 +93,7 @@ def attend(s: ptr32, c: ptr32, e_):
             while effect_refine_observe_i < e[583]:
                 effect_refine_observe_n = (effect_refine_observe_i - 2) * 40 + 112
                 put(e[effect_refine_observe_n + 39], -24, 2 * effect_refine_observe_i + 602, e_)
-                if e[effect_refine_observe_n + 33]:
+                if not e[effect_refine_observe_n + 33] - 1:
                     put(0, 0, 2 * effect_refine_observe_i + 602, e_)
                 effect_refine_observe_i = effect_refine_observe_i + 1
             e[582] = 1

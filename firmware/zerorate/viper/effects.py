@@ -2,8 +2,9 @@
 """What the closed loop has found, subtracted: slots of coefficient times basis (design.md).
 
 Slots are computed once a tick (1 s) on the means of the tick, one slot a sample, so that no sample
-waits for all of them; what depends on the rate itself is computed for every sample. One array `e`
-holds the model and its running state: see model.py for its words."""
+waits for all of them; what depends on the rate or the acceleration itself, which a hand moves
+faster than a tick, is computed for every sample. One array `e` holds the model and its running
+state: see model.py for its words."""
 
 import micropython
 
@@ -87,11 +88,11 @@ def sense(s: ptr32, e_, x_, dt_us: int, good: int):
     e[16] = e[13]
     e[17] = e[14]
     e[18] = e[15]
-    if e[9] and good:
+    if e[9]:
         add_instant_a = 112
         add_instant_i = e[0]
         while add_instant_i > 0:
-            if e[add_instant_a + 33]:
+            if e[add_instant_a + 33] + good > 1:
                 e[add_instant_a + 39] = int(basis(e_, add_instant_a, e_))
                 contribute(16, add_instant_a, e_)
             add_instant_a = add_instant_a + 40

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import struct
 import zlib
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from dataclasses import replace
 from os import PathLike
 
 from ..errors import BadModel
 from ..recordings import Scales
 from .model import (
+    FAST,
     FRAME,
     MOST_CHANNELS,
     MOST_INPUTS,
@@ -18,7 +19,6 @@ from .model import (
     MOST_SLOTS,
     MOST_TABLES,
     ONE,
-    RATES,
     TABLE_POINTS,
     TIME,
     VIBRATION,
@@ -36,7 +36,7 @@ from .slot_words import slot_of, words_of
 VERSION = 1
 _HEAD = struct.Struct("<3sBHBBBBxx4BI5d")
 _INPUT, _SLOT, _TABLE = struct.Struct("<3i"), struct.Struct("<30i"), struct.Struct("<9i")
-_KINDS = (*FRAME, VIBRATION, TIME, ONE, *RATES)
+_KINDS = (*FRAME, VIBRATION, TIME, ONE, *FAST)
 _FIRST_CHANNEL = 16
 _ANY = 255
 _Q24 = 1 << 24
@@ -64,7 +64,7 @@ def encoded(model: Model) -> bytes:
     rings = 0
     unit_of = _units(model)
     for slot in model.slots:
-        index = {name: places[name, now] for name, now in slot.sources()}
+        index = {name: places[_there(name, now, places)] for name, now in slot.sources()}
         if slot.table:
             tables.append(slot.table)
         own = (len(tables) - 1 if slot.table else -1, rings if slot.has_delay(model.tick_s) else -1)
@@ -161,17 +161,23 @@ def _check_room(model: Model) -> None:
     for table in tables:
         if len(table) != TABLE_POINTS or any(not abs(v) <= 1 for v in table):
             raise CannotDeploy(f"a table has {TABLE_POINTS} values within -1..1")
-    if set(sources_of(model.slots)) - {(i.name, i.of_the_sample) for i in model.inputs}:
+    there = {(i.name, i.of_the_sample) for i in model.inputs}
+    if {_there(*source, there) for source in sources_of(model.slots)} - there:
         raise CannotDeploy("a slot follows a source that is no input of the model")
     if not 10_000 <= model.tick_us < 1 << 29:
         raise CannotDeploy(f"a tick of {model.tick_s:g} s; 0.01..536 s are possible")
+
+
+def _there(name: str, of_the_sample: bool, among: Container) -> tuple[str, bool]:
+    """The input for a source: a model of before accelerations were of the sample has the tick's."""
+    return name, of_the_sample and (name, True) in among
 
 
 def _kind(source: Input, channels: Sequence[str]) -> int:
     if is_channel(source.name):
         return _FIRST_CHANNEL + list(channels).index(source.name)
     if source.of_the_sample:
-        return _KINDS.index(ONE) + 1 + RATES.index(source.name)
+        return _KINDS.index(ONE) + 1 + FAST.index(source.name)
     return _KINDS.index(source.name)
 
 

@@ -12,7 +12,10 @@ from ..recordings import Scales
 MOST_SLOTS, MOST_INPUTS, MOST_TABLES, MOST_RINGS, MOST_CHANNELS = 8, 12, 2, 2, 8
 TABLE_POINTS = 9
 RATES = ("rate_x", "rate_y", "rate_z")
-FRAME = ("acc_x", "acc_y", "acc_z", "temp", *RATES)
+ACCELERATIONS = ("acc_x", "acc_y", "acc_z")
+FRAME = (*ACCELERATIONS, "temp", *RATES)
+#: Sources that a hand moves faster than a tick, in the order of the firmware's kinds of them.
+FAST = (*RATES, *ACCELERATIONS)
 VIBRATION, TIME, ONE = "vib", "time", "one"
 
 
@@ -35,10 +38,11 @@ class Slot:
 
     @property
     def is_of_the_sample(self) -> bool:
-        """Whether it is computed for every sample: it follows the rate and remembers nothing."""
+        """Whether it is computed for every sample: it follows the rate or acceleration and
+        remembers nothing."""
         t = self.term
         remembers = t.lag_mode != "none" or t.memory != "none" or t.decay_s + t.delay_s > 0
-        return not remembers and (t.source in RATES or t.second in RATES)
+        return not remembers and (t.source in FAST or t.second in FAST)
 
     def has_delay(self, tick_s: float) -> bool:
         """Whether it needs a ring of the firmware to remember its source in."""
@@ -47,14 +51,14 @@ class Slot:
     def sources(self) -> list[tuple[str, bool]]:
         """(name, whether of the very sample) of what it follows."""
         names = [self.term.source, *([self.term.second] if self.term.second else [])]
-        return [(n, self.is_of_the_sample and n in RATES) for n in names]
+        return [(n, self.is_of_the_sample and n in FAST) for n in names]
 
 
 @dataclass(frozen=True)
 class Input:
     """A source as the board sees it: (reading - offset) / 2^shift in 16 bits, mean of a tick.
 
-    of_the_sample: the rate of the very sample instead of the tick's mean.
+    of_the_sample: what the very sample reads instead of the tick's mean.
     """
 
     name: str
