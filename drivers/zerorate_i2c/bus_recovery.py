@@ -6,10 +6,14 @@ NXP UM10204 section 3.1.16: nine clocks bring it to the end of its byte; a STOP 
 
 from . import clock as system_clock
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
 _CLOCKS = 9
 
 
-def free_bus(scl, sda, clock=None):
+def free_bus(scl: "Any", sda: "Any", clock: "Any" = None) -> bool:
     """Clock SCL until SDA is let go, nine times at most, and give a STOP; True when SDA is free.
 
     scl and sda are open-drain pins, Pin(n, Pin.OPEN_DRAIN, value=1), with value(); call this

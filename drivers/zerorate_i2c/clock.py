@@ -6,19 +6,19 @@ try:
     from time import sleep_ms, ticks_add, ticks_diff, ticks_us
 except ImportError:
 
-    def ticks_us():
+    def ticks_us() -> int:
         """Microseconds that only go forward."""
         return time.monotonic_ns() // 1000
 
-    def ticks_diff(end, start):
+    def ticks_diff(end: int, start: int) -> int:
         """Microseconds from start to end."""
         return end - start
 
-    def ticks_add(ticks, delta):
+    def ticks_add(ticks: int, delta: int) -> int:
         """The time delta microseconds after ticks."""
         return ticks + delta
 
-    def sleep_ms(milliseconds):
+    def sleep_ms(milliseconds: float) -> None:
         """Wait."""
         time.sleep(milliseconds / 1000)
 

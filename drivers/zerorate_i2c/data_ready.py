@@ -1,5 +1,11 @@
 """The chip's interrupt pin: when each sample became ready, taken without allocation."""
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from .mpu6050 import MPU6050
+
 try:
     from micropython import const
 except ImportError:
@@ -21,7 +27,7 @@ class DataReady:
     missed counts the samples in between that nobody took.
     """
 
-    def __init__(self, imu, pin):
+    def __init__(self, imu: "MPU6050", pin: "Any") -> None:
         self.imu = imu
         self.missed = 0
         self.dt_us = 0
@@ -34,7 +40,7 @@ class DataReady:
         imu.keep_setting(_INT_ENABLE, _DATA_RDY_EN)
         pin.irq(handler=self._on_edge, trigger=pin.IRQ_RISING)
 
-    def take(self):
+    def take(self) -> bool:
         """True when a sample became ready since the last take; read it now."""
         edges = self._edges
         if edges == self._taken:
@@ -46,7 +52,7 @@ class DataReady:
         self._taken_us = edge_us
         return True
 
-    def wait(self, timeout_ms):
+    def wait(self, timeout_ms: int) -> bool:
         """take() as soon as there is one, looking every millisecond; False after timeout_ms."""
         for _ in range(timeout_ms):
             if self.take():

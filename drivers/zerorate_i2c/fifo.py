@@ -4,6 +4,10 @@ from array import array
 
 from .mpu6050 import RESTARTED, SUSPECT, decode
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from .mpu6050 import MPU6050
+
 try:
     from micropython import const
 except ImportError:
@@ -38,7 +42,7 @@ class Fifo:
     the bus cannot transfer.
     """
 
-    def __init__(self, imu, batch=8):
+    def __init__(self, imu: "MPU6050", batch: int = 8) -> None:
         limit = getattr(imu.i2c, "max_burst", 0)
         if limit:
             batch = min(batch, limit // _FRAME)
@@ -64,7 +68,7 @@ class Fifo:
         imu.keep_setting(_USER_CTRL, _FIFO_ON)
         self._begin(imu.clock.ticks_us())
 
-    def read(self, sample):
+    def read(self, sample: "array[int]") -> int:
         """Fill sample, array('i') of 7, with the oldest frame, and set dt_us.
 
         Returns FRESH, VERIFIED, RESTARTED, SUSPECT (see MPU6050.read) or EMPTY; sample is filled
@@ -77,7 +81,7 @@ class Fifo:
                 return status
         return self._deliver(sample, status)
 
-    def stop(self):
+    def stop(self) -> None:
         """Leave the chip without its FIFO."""
         self.imu.keep_setting(_USER_CTRL, 0)
         self.imu.keep_setting(_FIFO_EN, 0)

@@ -1,5 +1,9 @@
 """An I2C bus of a Linux board, through smbus2, with the two methods the driver needs."""
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
 _I2C_FUNC_I2C = 0x00000001
 _BLOCK_MAX = 32
 
@@ -12,7 +16,7 @@ class LinuxI2C:
     transfer. max_burst is 0 where there is no limit. OSError of the kernel passes through.
     """
 
-    def __init__(self, bus):
+    def __init__(self, bus: "Any") -> None:
         from smbus2 import SMBus, i2c_msg
 
         self._message = i2c_msg
@@ -21,7 +25,7 @@ class LinuxI2C:
         self._raw = bool(int(self._bus.funcs) & _I2C_FUNC_I2C)
         self.max_burst = 0 if self._raw else _BLOCK_MAX
 
-    def readfrom_mem_into(self, addr, memaddr, buf):
+    def readfrom_mem_into(self, addr: int, memaddr: int, buf: "bytearray | memoryview") -> None:
         """Fill buf from the chip at addr, from register memaddr on."""
         if self._raw:
             read = self._message.read(addr, len(buf))
@@ -32,14 +36,14 @@ class LinuxI2C:
         else:
             buf[:] = bytes(self._bus.read_i2c_block_data(addr, memaddr, len(buf)))
 
-    def writeto_mem(self, addr, memaddr, buf):
+    def writeto_mem(self, addr: int, memaddr: int, buf: "bytes | bytearray") -> None:
         """Write buf to the chip at addr, from register memaddr on."""
         if self._raw:
             self._bus.i2c_rdwr(self._message.write(addr, bytes([memaddr]) + bytes(buf)))
         else:
             self._bus.write_i2c_block_data(addr, memaddr, list(buf))
 
-    def close(self):
+    def close(self) -> None:
         """Close the bus when this object opened it."""
         if self._owned:
             self._bus.close()

@@ -14,6 +14,11 @@ from .settings import (
     register_settings,
 )
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from array import array
+    from typing import Any
+
 try:
     from micropython import const
 except ImportError:
@@ -36,7 +41,7 @@ RESTARTED = const(2)  # no sample: the configuration was lost and has been writt
 SUSPECT = const(3)  # no measurement can look like this frame: do not learn from it
 
 
-def decode(frames, start, sample):
+def decode(frames: "bytes | bytearray", start: int, sample: "array[int]") -> None:
     """Seven big-endian 16-bit words of frames from start on to signed integers in sample."""
     for i in range(_WORDS):
         word = frames[start] << 8 | frames[start + 1]
@@ -63,17 +68,17 @@ class MPU6050(Registers):
 
     def __init__(
         self,
-        i2c,
-        address=0x68,
-        full_scale_dps=250,
-        full_scale_g=2,
-        odr_hz=100,
-        dlpf_hz=None,
-        part=None,
-        check_every=100,
-        retries=2,
-        clock=None,
-    ):
+        i2c: "Any",
+        address: int = 0x68,
+        full_scale_dps: int = 250,
+        full_scale_g: int = 2,
+        odr_hz: float = 100,
+        dlpf_hz: "float | None" = None,
+        part: "str | None" = None,
+        check_every: int = 100,
+        retries: int = 2,
+        clock: "Any" = None,
+    ) -> None:
         super().__init__(i2c, address, retries)
         self.clock = clock or system_clock
         self.restarts = 0
@@ -109,7 +114,7 @@ class MPU6050(Registers):
         self.configure()
         self._changed_us = self.clock.ticks_us()
 
-    def read(self, sample):
+    def read(self, sample: "array[int]") -> int:
         """Fill sample, array('i') of ax ay az temp gx gy gz in raw LSB, from one burst.
 
         Returns FRESH, VERIFIED, RESTARTED or SUSPECT. What was learned from samples since the
@@ -128,13 +133,13 @@ class MPU6050(Registers):
             self._read_again(sample)
         return status
 
-    def read_sample(self, sample):
+    def read_sample(self, sample: "array[int]") -> None:
         """Fill sample from one burst, unexamined."""
         self._burst, self._previous = self._previous, self._burst
         self.read_into(_ACCEL_XOUT_H, self._burst)
         decode(self._burst, 0, sample)
 
-    def verify(self, samples):
+    def verify(self, samples: int) -> int:
         """Read the configuration back if it is time to, samples more being taken on trust.
 
         Returns FRESH when it was not time, VERIFIED, or RESTARTED after configuring again.
@@ -148,13 +153,13 @@ class MPU6050(Registers):
         self._until_check -= samples
         return VERIFIED
 
-    def doubt(self, frozen):
+    def doubt(self, frozen: bool) -> None:
         """Count a frame that is no measurement: verify before the next; frozen needs a restart."""
         self.suspects += 1
         self._until_check = 0
         self._frozen = frozen
 
-    def check(self):
+    def check(self) -> bool:
         """True when every register set still reads back as it was written.
 
         Raises OSError when the id read is no longer the one of the constructor.
@@ -169,7 +174,7 @@ class MPU6050(Registers):
         self._until_check = self._check_every
         return True
 
-    def configure(self):
+    def configure(self) -> None:
         """Reset the chip, write its configuration and wait until it measures."""
         self._frozen = False
         self.write_register(_PWR_MGMT_1, _DEVICE_RESET)
@@ -183,12 +188,12 @@ class MPU6050(Registers):
         self.clock.sleep_ms(self.start_up_ms)
         self._changed_us = self.clock.ticks_us()
 
-    def restart(self):
+    def restart(self) -> None:
         """Reset the chip and write its configuration again; OSError when it does not keep it."""
         self.restarts += 1
         self.configure()
 
-    def keep_setting(self, register, value):
+    def keep_setting(self, register: int, value: int) -> None:
         """Write a register now and after every restart, and read it back with the others."""
         settings = self._settings
         for i in range(0, len(settings), 2):
@@ -199,7 +204,7 @@ class MPU6050(Registers):
             settings.extend(bytes([register, value]))
         self.write_register(register, value)
 
-    def temperature_degc(self, raw):
+    def temperature_degc(self, raw: int) -> float:
         """Degrees Celsius of a raw temperature reading, by this part's formula."""
         return raw / self.temp_lsb_per_degc + self.temp_offset_degc
 

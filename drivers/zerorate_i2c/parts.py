@@ -5,6 +5,10 @@ the data sheets and of Linux's inv_mpu6050; the FIFO size of MPU-6880 and MPU-68
 source, so the smallest of the family is assumed: the driver then only overflows earlier.
 """
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
 try:
     from micropython import const
 except ImportError:
@@ -40,7 +44,7 @@ PARTS = (
 )
 
 
-def part_by_id(who_am_i):
+def part_by_id(who_am_i: int) -> "Any":
     """First row whose WHO_AM_I is who_am_i, or None: 0x72, 0x00 and 0xFF belong to no part."""
     for row in PARTS:
         if row[0] == who_am_i:
@@ -48,7 +52,7 @@ def part_by_id(who_am_i):
     return None
 
 
-def part_by_name(name):
+def part_by_name(name: str) -> "Any":
     """Row of the part called name ("MPU-6500", "mpu6500"); ValueError lists the names known."""
     wanted = name.upper().replace("-", "")
     for row in PARTS:

@@ -1,5 +1,9 @@
 """Registers of one device on an I2C bus, read with bounded retries and without allocation."""
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
 
 class Registers:
     """The registers at address on i2c, any object with readfrom_mem_into and writeto_mem.
@@ -7,7 +11,7 @@ class Registers:
     A read is tried 1 + retries times before OSError passes; bus_errors counts every failure.
     """
 
-    def __init__(self, i2c, address, retries):
+    def __init__(self, i2c: "Any", address: int, retries: int) -> None:
         self.i2c = i2c
         self.address = address
         self.bus_errors = 0
@@ -16,17 +20,17 @@ class Registers:
         self._register = 0
         self._target = self._byte
 
-    def read_register(self, register):
+    def read_register(self, register: int) -> int:
         """One register's value."""
         self.read_into(register, self._byte)
         return self._byte[0]
 
-    def write_register(self, register, value):
+    def write_register(self, register: int, value: int) -> None:
         """Write one register; not tried again, as the first try may have been heard."""
         self._byte[0] = value
         self.i2c.writeto_mem(self.address, register, self._byte)
 
-    def read_into(self, register, buffer):
+    def read_into(self, register: int, buffer: "Any") -> None:
         """Fill buffer from register on; OSError after 1 + retries failures."""
         self._register = register
         self._target = buffer

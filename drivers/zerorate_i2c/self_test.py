@@ -9,6 +9,10 @@ from array import array
 from .parts import ICM20690_KIND, MPU6050_KIND
 from .settings import GYRO_LSB_PER_DPS
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from .mpu6050 import MPU6050
+
 try:
     from micropython import const
 except ImportError:
@@ -28,7 +32,7 @@ _DLPF_98HZ = const(2)
 _SETTLE_MS = const(50)
 
 
-def self_test(imu, samples=50):
+def self_test(imu: "MPU6050", samples: int = 50) -> "tuple[bool, list[float | None]]":
     """Test imu, an MPU6050, at rest; its configuration is written again afterwards.
 
     Returns (passed, [response / factory trim] * 6 for ax ay az gx gy gz); a ratio is None where

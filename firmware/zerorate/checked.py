@@ -8,6 +8,10 @@ from array import array
 
 from .kernels import VIPER
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from .corrector import Corrector
+
 if VIPER:
     from .viper import copying
 else:
@@ -39,7 +43,7 @@ class CheckedCorrector:
     taken_back counts the times that learning was taken back, refused the samples not passed on.
     """
 
-    def __init__(self, corrector):
+    def __init__(self, corrector: "Corrector") -> None:
         self.corrector = corrector
         self.taken_back = 0
         self.refused = 0
@@ -50,7 +54,7 @@ class CheckedCorrector:
         self._kept = [array("i", state) for state in self._live]
         self._passed_us = 0
 
-    def update(self, sample, dt_us, status=FRESH):
+    def update(self, sample: "array[int]", dt_us: int, status: int = FRESH) -> bool:
         """Learn from `sample` and correct it in place; allocates nothing.
 
         dt_us: since the call before; status: FRESH, VERIFIED (the configuration was right up to
@@ -73,12 +77,12 @@ class CheckedCorrector:
             return False
         return True
 
-    def keep(self):
+    def keep(self) -> None:
         """What is learned up to now is right."""
         for i in range(len(self._live)):
             copying.copy(self._live[i], self._kept[i], 0, len(self._kept[i]))
 
-    def take_back(self):
+    def take_back(self) -> None:
         """Forget what was learned since keep(); also for a bus that failed for good."""
         for i in range(len(self._live)):
             copying.copy(self._kept[i], self._live[i], self._first[i], len(self._kept[i]))

@@ -5,6 +5,13 @@ from array import array
 from .kernels import VIPER, estimators, step
 from .settings import Sensor, settings
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from .model import EffectModel
+    from .store import Store
+
 # words of the state that applications and tools may read
 OUT_Q8 = 55
 EFFECT_Q8 = 61
@@ -71,17 +78,17 @@ class Corrector:
 
     def __init__(
         self,
-        sensor=None,
-        bins=8,
-        short=3,
-        long=5,
-        document=False,
-        every=False,
-        ignore_outside=False,
-        motion=False,
-        accelerometer=False,
-        **limits,
-    ):
+        sensor: "Sensor | None" = None,
+        bins: int = 8,
+        short: int = 3,
+        long: int = 5,
+        document: bool = False,
+        every: bool = False,
+        ignore_outside: bool = False,
+        motion: bool = False,
+        accelerometer: bool = False,
+        **limits: float,
+    ) -> None:
         self.sensor = sensor or Sensor()
         chosen = dict(LIMITS)
         for name in limits:
@@ -92,14 +99,14 @@ class Corrector:
             self.sensor, bins, short, long, document, document or every, ignore_outside, chosen
         )
         c = self.settings
-        self.effects = None
+        self.effects: "Any" = None
         self.motion = None
         self.motion_settings = None
         self.level = None
         self.level_settings = None
-        self._sense = None
-        self._observe_motion = None
-        self._observe_level = None
+        self._sense: "Any" = None
+        self._observe_motion: "Any" = None
+        self._observe_level: "Any" = None
         self.alone = not motion and not accelerometer
         if motion:
             self._learn_in_motion(chosen["motion_start_dps"])
@@ -148,7 +155,7 @@ class Corrector:
 
             copy(self.level, realtime_state(self.level_settings))
 
-    def reset(self):
+    def reset(self) -> None:
         """Forget everything that was learned."""
         s = self.state
         c = self.settings
@@ -160,7 +167,7 @@ class Corrector:
             s[a + 26] = self._walk_q16
         self.power_on()
 
-    def power_on(self):
+    def power_on(self) -> None:
         """Begin a new power-on with what `state` holds: its curves stand, half of its offsets."""
         s = self.state
         c = self.settings
@@ -178,7 +185,7 @@ class Corrector:
             s[a + 28] = 0
             s[a + 31] = -32768
 
-    def update(self, sample, dt_us):
+    def update(self, sample: "array[int]", dt_us: int) -> int:
         """Learn from `sample` and correct its rates in place; allocates nothing.
 
         sample: array('i') ax ay az temp gx gy gz, raw LSB; dt_us: since the sample before.
@@ -214,7 +221,7 @@ class Corrector:
         if effects is not None and effects.attend:
             effects.attend(self.state, self.settings, effects.e)
 
-    def use_model(self, effects):
+    def use_model(self, effects: "EffectModel") -> None:
         """Correct by an effect model (model.EffectModel, loaded) before anything is learned."""
         from .effect_kernels import effects as kernels
 
@@ -222,7 +229,7 @@ class Corrector:
         self.effects = effects
         self.alone = False
 
-    def load(self, store):
+    def load(self, store: "Store") -> int:
         """Begin a power-on with what `store` holds; returns its reason, 0 if it was loaded.
 
         store: a store.Store of `4 * len(corrector.state)` bytes. Anything but 0 leaves a clean
@@ -233,23 +240,23 @@ class Corrector:
             self.power_on()
         return reason
 
-    def save(self, store):
+    def save(self, store: "Store") -> bool:
         """Write what was learned to `store`; False when that failed."""
         return store.save(self.state)
 
-    def bias_lsb(self, axis):
+    def bias_lsb(self, axis: int) -> float:
         """Return what is subtracted from that axis now, LSB."""
         return (self.state[OUT_Q8 + axis] + self.state[EFFECT_Q8 + axis]) / 256
 
-    def quality_lsb(self, axis):
+    def quality_lsb(self, axis: int) -> float:
         """Return the one-sigma uncertainty of that axis' bias, LSB."""
         return self.state[QUALITY_Q8 + axis] / 256
 
-    def source(self, axis):
+    def source(self, axis: int) -> int:
         """Return where that axis' bias comes from: a constant of bias.py."""
         return self.state[SOURCE + axis]
 
-    def explain(self):
+    def explain(self) -> str:
         """Return a sentence or two on what is being learned, or why nothing is."""
         from .explain import explain  # words that take no heap until somebody asks
 

@@ -7,6 +7,12 @@ a cut in the writing of one never costs the other.
 from .crc32 import checksum
 from .store import LOADED, Store, pack
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from .corrector import Corrector
+
 try:
     from micropython import const
 except ImportError:
@@ -28,7 +34,14 @@ class LearnedStore:
     gap). end is the first byte behind both. Raises ValueError for a pitch that is too small.
     """
 
-    def __init__(self, storage, binding, corrector, base=0, pitch=0):
+    def __init__(
+        self,
+        storage: "Any",
+        binding: bytes,
+        corrector: "Corrector",
+        base: int = 0,
+        pitch: int = 0,
+    ) -> None:
         self.corrector = corrector
         size = 4 * len(corrector.state)
         bound = bytes(binding) + _fingerprint(corrector.settings)
@@ -37,28 +50,28 @@ class LearnedStore:
         self.model = Store(storage, binding, MODEL_BYTES, base=base, pitch=pitch)
         self.end = base + 2 * (pitch or self.model.slot_bytes)
 
-    def load(self):
+    def load(self) -> int:
         """Put what was learned into the corrector and begin a power-on; LOADED or why not.
 
         store.REASONS says each result in words; the corrector is as it was when it is not LOADED.
         """
         return self.corrector.load(self.state)
 
-    def save(self, payload=None):
+    def save(self, payload: "Any" = None) -> bool:
         """Write what the corrector has learned; False when the storage failed.
 
         payload is for SaveSchedule, which hands over the corrector's state.
         """
         return self.corrector.save(self.state)
 
-    def load_model(self):
+    def load_model(self) -> bytes:
         """The bytes of the effect model, for EffectModel.load, or b"" (see model.load's reason)."""
         padded = bytearray(MODEL_BYTES)
         if self.model.load(padded) != LOADED:
             return b""
         return bytes(padded[: padded[_AT_MODEL_SIZE] | padded[_AT_MODEL_SIZE + 1] << 8])
 
-    def save_model(self, data):
+    def save_model(self, data: bytes) -> bool:
         """Write an effect model, the bytes of model.bin; False when the storage failed.
 
         Raises ValueError for one that is too large.

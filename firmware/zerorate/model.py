@@ -21,6 +21,12 @@ from array import array
 
 from .model_file import IMPOSSIBLE, LOADED, NO_MODEL, UNREADABLE, compare, fill, judge, texts
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from .settings import Sensor
+
 try:
     from micropython import const
 except ImportError:
@@ -48,13 +54,13 @@ class EffectModel:
     attend: the kernel that refines coefficients, None while it is off.
     """
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.e = array("i", [0] * WORDS)
         self.channels = ()
         self.reason = NO_MODEL
-        self.attend = None
+        self.attend: "Any" = None
 
-    def load_file(self, path, sensor, binding=None):
+    def load_file(self, path: str, sensor: "Sensor", binding: "bytes | None" = None) -> int:
         """As load, from a file."""
         try:
             with open(path, "rb") as file:
@@ -65,7 +71,7 @@ class EffectModel:
             return UNREADABLE
         return self.load(data, sensor, binding)
 
-    def load(self, data, sensor, binding=None):
+    def load(self, data: bytes, sensor: "Sensor", binding: "bytes | None" = None) -> int:
         """Take the model in `data` if it fits this device; LOADED, or why there is none now.
 
         sensor: the Corrector's Sensor; binding: MPU6050.binding, None where no driver is (the
@@ -87,7 +93,7 @@ class EffectModel:
         self.reason = reason
         return reason
 
-    def forget(self):
+    def forget(self) -> None:
         """Have no model."""
         for i in range(WORDS):
             self.e[i] = 0
@@ -95,7 +101,7 @@ class EffectModel:
         self.reason = NO_MODEL
         self.attend = None
 
-    def power_on(self):
+    def power_on(self) -> None:
         """Begin a power-on: time, means, lags and memories anew; coefficients stay."""
         e = self.e
         for i in (3, 4, 5, 8, 10, 11, 12, 13, 14, 15, 23, 24, 25):
@@ -115,7 +121,7 @@ class EffectModel:
             e[a + 34] = 0
             e[a + 39] = 0
 
-    def refine(self, bound=0.5):
+    def refine(self, bound: float = 0.5) -> None:
         """Let the coefficients of the loaded model go on learning from rests, from now on.
 
         What they have learned is forgotten when the model is loaded anew. bound: how far each may
@@ -134,7 +140,7 @@ class EffectModel:
         effect_refine.begin(e, e[0])
         self.attend = effect_refine.attend if e[26] else None
 
-    def channel(self, name, value):
+    def channel(self, name: str, value: int) -> bool:
         """Say what an extra channel, by name or index, reads now (an int); False: no such one.
 
         It is held until the next call. Allocates nothing.

@@ -2,6 +2,10 @@
 
 from array import array
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
 _DAY_S = 86400
 
 
@@ -14,7 +18,7 @@ class SaveSchedule:
     22 years. Raises ValueError for a budget below one.
     """
 
-    def __init__(self, store, length, tolerance, writes_a_day=24):
+    def __init__(self, store: "Any", length: int, tolerance: int, writes_a_day: int = 24) -> None:
         if writes_a_day < 1:
             raise ValueError("writes_a_day is at least 1")
         self.store = store
@@ -25,11 +29,11 @@ class SaveSchedule:
         self._saved_s = 0
         self._written = False
 
-    def loaded(self, vital):
+    def loaded(self, vital: "array[int]") -> None:
         """Tell what vital values the loaded state has: they need no saving."""
         self._remember(vital)
 
-    def offer(self, payload, vital, now_s):
+    def offer(self, payload: "Any", vital: "array[int]", now_s: int) -> bool:
         """Save payload if it is due at now_s, seconds since power-on; True when it was written."""
         if not self.is_significant(vital):
             return False
@@ -43,7 +47,7 @@ class SaveSchedule:
         self._remember(vital)
         return True
 
-    def is_significant(self, vital):
+    def is_significant(self, vital: "array[int]") -> bool:
         """True when a vital value is tolerance or more away from the one last saved."""
         for i in range(len(self._saved)):
             moved = vital[i] - self._saved[i]

@@ -25,12 +25,12 @@ class Sensor:
 
     def __init__(
         self,
-        odr_hz=100.0,
-        gyro_lsb_per_dps=131.0,
-        accel_lsb_per_g=16384.0,
-        temp_lsb_per_degc=340.0,
-        temp_offset_degc=36.53,
-    ):
+        odr_hz: float = 100.0,
+        gyro_lsb_per_dps: float = 131.0,
+        accel_lsb_per_g: float = 16384.0,
+        temp_lsb_per_degc: float = 340.0,
+        temp_offset_degc: float = 36.53,
+    ) -> None:
         if not 0.01 <= odr_hz <= 8000:
             raise ValueError("odr_hz must be 0.01..8000, not %s" % odr_hz)
         if not 1 <= gyro_lsb_per_dps <= 8000:

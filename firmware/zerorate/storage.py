@@ -7,14 +7,18 @@ EEPROM needs these two methods and no more; erasing flash is the storage's own b
 
 import os
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
 
 class FileStorage:
     """A file, made when first written; a missing file or what is beyond its end reads as 0xFF."""
 
-    def __init__(self, path):
+    def __init__(self, path: str) -> None:
         self.path = path
 
-    def readblock(self, offset, buf):
+    def readblock(self, offset: int, buf: "bytearray | memoryview") -> None:
         """Fill buf from the file."""
         for i in range(len(buf)):
             buf[i] = 0xFF
@@ -26,7 +30,7 @@ class FileStorage:
             if not self._is_missing():
                 raise
 
-    def writeblock(self, offset, buf):
+    def writeblock(self, offset: int, buf: "bytes | bytearray | memoryview") -> None:
         """Write buf into the file and to the medium."""
         with self._open(offset) as file:
             file.seek(offset)
@@ -63,17 +67,17 @@ class BlockDeviceStorage:
 
     _ERASE = 6  # MP_BLOCKDEV_IOCTL_BLOCK_ERASE
 
-    def __init__(self, device, first_block, block_bytes):
+    def __init__(self, device: "Any", first_block: int, block_bytes: int) -> None:
         self.device = device
         self.first_block = first_block
         self.block_bytes = block_bytes
 
-    def readblock(self, offset, buf):
+    def readblock(self, offset: int, buf: "bytearray | memoryview") -> None:
         """Fill buf from the device."""
         block = self.first_block + offset // self.block_bytes
         self.device.readblocks(block, buf, offset % self.block_bytes)
 
-    def writeblock(self, offset, buf):
+    def writeblock(self, offset: int, buf: "bytes | bytearray | memoryview") -> None:
         """Erase the blocks that buf begins or goes on in, and write it."""
         first = self.first_block + offset // self.block_bytes
         last = self.first_block + (offset + len(buf) - 1) // self.block_bytes

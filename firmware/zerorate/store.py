@@ -7,6 +7,11 @@ newest whole record, so until the last byte stands the one before it is whole.
 
 from .crc32 import checksum
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from typing import Any
+
 try:
     from micropython import const
 except ImportError:
@@ -53,7 +58,16 @@ class Store:
     Raises ValueError for a binding, version, size or pitch that does not fit.
     """
 
-    def __init__(self, storage, binding, size, version=1, older=(), base=0, pitch=0):
+    def __init__(
+        self,
+        storage: "Any",
+        binding: bytes,
+        size: int,
+        version: int = 1,
+        older: "Sequence[int]" = (),
+        base: int = 0,
+        pitch: int = 0,
+    ) -> None:
         if len(binding) > 8 or not 0 < size < 65536 or not 0 <= version < 256:
             raise ValueError("binding is of 8 bytes at most, size of 1..65535, version of 0..255")
         self.slot_bytes = _HEADER + size + _CRC
@@ -74,7 +88,7 @@ class Store:
         self._crc = bytearray(_CRC)
         self._newest = -1
 
-    def load(self, payload):
+    def load(self, payload: "Any") -> int:
         """Fill payload from the newest whole slot that fits; LOADED, or why it is left as it was.
 
         Never raises for what the storage holds or does. REASONS says each result in words.
@@ -92,7 +106,7 @@ class Store:
         unpack(self._record, _HEADER, payload, self.size)
         return LOADED
 
-    def save(self, payload):
+    def save(self, payload: "Any") -> bool:
         """Write payload to the older slot and read it back; False when that failed."""
         self._require(payload)
         try:

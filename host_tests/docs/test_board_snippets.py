@@ -21,7 +21,7 @@ def snippets(repository, document, language):
 
 def test_every_document_has_its_snippets(repository):
     count = {name: len(snippets(repository, name, "python")) for name in DOCUMENTS}
-    some = {"pico.md": 2, "raspberry-pi.md": 1, "unit-tests.md": 3}
+    some = {"pico.md": 2, "raspberry-pi.md": 1, "unit-tests.md": 5}
     assert count == {**dict.fromkeys(DOCUMENTS, 0), **some}
 
 
@@ -83,11 +83,28 @@ def test_the_raspberry_pi_snippet_corrects(repository, monkeypatch, capsys):
     assert rates_dps == pytest.approx([0, 0, 0], abs=0.02)
 
 
-def test_the_snippets_for_pytest_pass(repository, tmp_path):
-    for number, text in enumerate(snippets(repository, "unit-tests.md", "python")):
-        (tmp_path / f"test_snippet_{number}.py").write_text(text)
+@pytest.fixture
+def unit_tests(repository, tmp_path):
+    """The files that the page on unit tests shows, in a folder of their own."""
+    for text in snippets(repository, "unit-tests.md", "python"):
+        (tmp_path / text.split("\n")[0].removeprefix("# ")).write_text(text)
     (tmp_path / "pytest.ini").write_text("[pytest]\n")
-    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(tmp_path)]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
+    return tmp_path
+
+
+def in_folder(folder, *words):
+    """What a command of this environment does in `folder`, which knows nothing of this project."""
+    command = [sys.executable, "-m", *words]
+    return subprocess.run(command, capture_output=True, text=True, cwd=folder)
+
+
+def test_the_snippets_for_pytest_pass(unit_tests):
+    plugin = ["-p", "zerorate_fakes.pytest_plugin"]
+    done = in_folder(unit_tests, "pytest", "-q", *plugin, "-p", "no:cacheprovider")
     assert done.returncode == 0, done.stdout
-    assert "4 passed" in done.stdout
+    assert "7 passed" in done.stdout
+
+
+def test_a_typed_test_passes_the_strict_type_check(unit_tests):
+    done = in_folder(unit_tests, "mypy", "--strict", "test_recording.py")
+    assert done.returncode == 0, done.stdout

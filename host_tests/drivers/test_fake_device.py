@@ -1,7 +1,8 @@
 """The fake chip behaves as the register map says, and refuses what it does not say."""
 
 import pytest
-from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050, UnknownRegister
+from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050, Physical, UnknownRegister
+from zerorate_fakes.pins import InterruptPin
 from zerorate_fakes.registers import PARTS
 
 
@@ -141,3 +142,119 @@ def test_a_recording_may_be_an_iterable_frames_or_an_array(source):
     chip.write(0x6B, 1)
     assert chip.step() and not chip.step()
     assert burst(FakeI2C(chip), 0x43, 6).hex() == "00050006fff9"
+
+
+@pytest.mark.parametrize(
+    "source, sentence",
+    [
+        (list(range(20)), "a source of 20 integers is no whole number of samples of 7"),
+        (bytes(15), "a source of 15 bytes is no whole number of samples of 14"),
+        ([[1, 2, 3]], "sample 0 of the source is .1, 2, 3., not seven integers"),
+        ([[0.5] * 7], "for dps and g use Physical"),
+    ],
+)
+def test_a_source_of_another_shape_is_refused_in_a_sentence(source, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        FakeMPU6050(source).step()
+
+
+class TestPhysical:
+    """What the chip feels becomes words as the registers say."""
+
+    @staticmethod
+    def words(chip):
+        chip.step()
+        return [word - ((word & 0x8000) << 1) for word in _words(burst(FakeI2C(chip), 0x3B, 14))]
+
+    @pytest.fixture
+    def chip(self):
+        felt = {"gyro_dps": (100, -300, 0), "accel_g": (0, -3, 1), "temp_degc": 20}
+        chip = FakeMPU6050(Physical(noise=0, **felt))
+        chip.write(0x6B, 1)
+        return chip
+
+    def test_at_reset_the_ranges_are_the_smallest_and_words_end_there(self, chip):
+        assert self.words(chip) == [0, -32768, 16384, -5620, 13100, -32768, 0]
+
+    def test_wider_ranges_make_smaller_words(self, chip):
+        chip.write(0x1B, 0x08)
+        chip.write(0x1C, 0x10)
+        assert self.words(chip) == [0, -12288, 4096, -5620, 6550, -19650, 0]
+
+    def test_every_part_has_its_own_temperature(self):
+        chip = FakeMPU6050(Physical(temp_degc=20, noise=0), part="MPU-9250")
+        assert self.words(chip)[3] == round((20 - 21) * 333.87)
+
+    def test_a_value_may_be_a_function_of_the_seconds(self):
+        chip = FakeMPU6050(Physical(gyro_dps=lambda seconds: (seconds, 0, 0), noise=0))
+        for register, value in ((0x6B, 1), (0x1A, 1), (0x19, 99)):  # 10 Hz
+            chip.write(register, value)
+        assert [self.words(chip)[4] for _ in range(3)] == [0, 13, 26]
+
+    @pytest.mark.parametrize("dlpf, sigma_dps", [(2, 0.05), (6, 0.011)])
+    def test_noise_is_the_data_sheets_through_the_filter_that_is_set(self, dlpf, sigma_dps):
+        chip = FakeMPU6050(Physical())
+        chip.write(0x6B, 1)
+        chip.write(0x1A, dlpf)
+        rates = [self.words(chip)[6] / 131 for _ in range(2000)]
+        assert sum(rates) / 2000 == pytest.approx(0, abs=0.005)
+        assert (sum(rate * rate for rate in rates) / 2000) ** 0.5 == pytest.approx(
+            sigma_dps, rel=0.1
+        )
+
+
+def _words(data):
+    return [data[i] << 8 | data[i + 1] for i in range(0, len(data), 2)]
+
+
+class TestInterrupt:
+    @pytest.fixture
+    def edges(self):
+        """edges(INT_PIN_CFG, trigger) -> (chip awake with its interrupt on, list of edges)."""
+
+        def edges(config, trigger=InterruptPin.IRQ_RISING):
+            chip = FakeMPU6050()
+            for register, value in ((0x6B, 1), (0x37, config), (0x38, 1)):
+                chip.write(register, value)
+            seen = []
+            InterruptPin(chip).irq(lambda pin: seen.append(pin.value()), trigger)
+            return chip, seen
+
+        return edges
+
+    def test_a_pulse_comes_with_every_sample(self, edges):
+        chip, seen = edges(0)
+        chip.step()
+        chip.step()
+        assert seen == [1, 1]
+
+    def test_latched_it_stays_until_the_status_is_read(self, edges):
+        chip, seen = edges(0x20)
+        chip.step()
+        chip.step()
+        assert seen == [1] and chip.int_level == 1
+        chip.read(0x3A)
+        assert chip.int_level == 0
+        chip.step()
+        assert seen == [1, 1]
+
+    def test_any_read_clears_it_where_that_is_set(self, edges):
+        chip, _ = edges(0x30)
+        chip.step()
+        chip.read(0x75)
+        assert chip.int_level == 0
+
+    def test_active_low_it_falls(self, edges):
+        chip, seen = edges(0xA0, InterruptPin.IRQ_FALLING)
+        assert chip.int_level == 1
+        chip.step()
+        assert seen == [0]
+
+
+def test_the_memory_of_the_dmp_keeps_what_is_written():
+    bus = FakeI2C(FakeMPU6050())
+    bank_and_start = b"\x02\x10"
+    bus.writeto_mem(0x68, 0x6D, bank_and_start)
+    bus.writeto_mem(0x68, 0x6F, bytes(range(16)))
+    bus.writeto_mem(0x68, 0x6D, bank_and_start)
+    assert bus.readfrom_mem(0x68, 0x6F, 16) == bytes(range(16))

@@ -1,8 +1,10 @@
 """Published drivers that know nothing of the fake come up on it and read what it holds."""
 
+import importlib.util
 import sys
 import types
 from math import degrees, radians
+from pathlib import Path
 
 import pytest
 from zerorate_fakes import FakeI2C, FakeMPU6050
@@ -41,7 +43,7 @@ class TestAdafruitCircuitPython:
 
     def test_its_axes_are_of_different_samples_as_it_reads_each_alone(self, chip, sensor):
         chip.step()
-        sensor.i2c_device.i2c._bus.between_bytes = lambda i: chip.step() if i == 1 else None
+        sensor.i2c_device.i2c.bus.between_bytes = lambda i: chip.step() if i == 1 else None
         rates_lsb = [degrees(rate) * 65.5 for rate in sensor.gyro]
         assert rates_lsb == pytest.approx([FIRST[4], SECOND[5], THIRD[6]])
 
@@ -73,3 +75,44 @@ class TestMpu6050Raspberrypi:
         self.bus.between_bytes = lambda i: chip.step()
         torn = sensor.read_i2c_word(0x43)
         assert torn == 0  # high byte of 255, low byte of 256: neither was ever measured
+
+
+class TestMicropythonMpu6886:
+    """Written for machine.I2C, and run on a MicroPython."""
+
+    @pytest.fixture
+    def run(self, find_runtime):
+        """run(text) -> what the driver's user prints, with its chip at rest and 100 dps about z."""
+        found = importlib.util.find_spec("mpu6886")
+        assert found, "micropython-mpu6886 is one of the dev extra's packages"
+        fakes = Path(__file__).parents[1] / "fakes"
+        begin = (
+            "import sys\nfrom zerorate_fakes import FakeI2C, FakeMPU6050, Physical\n"
+            "sys.modules['machine'] = type('machine', (), {'I2C': FakeI2C, 'Pin': None})\n"
+            "import mpu6886\n"
+            "chip = FakeMPU6050(Physical(gyro_dps=(0, 0, 100), noise=0), part='MPU-6886')\n"
+        )
+
+        def run(text):
+            files = {"mpu6886.py": Path(found.origin)}
+            runtime = find_runtime("x86")
+            return runtime.run(begin + text, files_in=files, modules=[fakes], check=True).stdout
+
+        return run
+
+    def test_it_reads_what_the_chip_feels(self, run):
+        text = (
+            "imu = mpu6886.MPU6886(FakeI2C(chip), gyro_sf=1, accel_sf=1)\nchip.step()\n"
+            "print(*imu.gyro, *imu.acceleration, imu.temperature)"
+        )
+        values = [float(word) for word in run(text).split()]
+        assert values == pytest.approx([0, 0, 100, 0, 0, 1, 25], abs=0.01)
+
+    def test_its_range_of_500_dps_reads_5_percent_high(self, run):
+        # it divides by 62.5, the data sheet says 65.5
+        text = (
+            "imu = mpu6886.MPU6886(\n"
+            "    FakeI2C(chip), gyro_fs=mpu6886.GYRO_FS_SEL_500DPS, gyro_sf=1)\n"
+            "chip.step()\nprint(imu.gyro[2])"
+        )
+        assert float(run(text)) == pytest.approx(104.8, abs=0.1)

@@ -6,5 +6,6 @@ Runs on CPython and MicroPython. Strict: what the data sheet does not document f
 from .bus import FakeI2C
 from .clock import FakeClock
 from .device import FakeMPU6050, UnknownRegister
+from .source import Physical
 
-__all__ = ["FakeClock", "FakeI2C", "FakeMPU6050", "UnknownRegister"]
+__all__ = ["FakeClock", "FakeI2C", "FakeMPU6050", "Physical", "UnknownRegister"]

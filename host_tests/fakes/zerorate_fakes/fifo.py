@@ -4,20 +4,20 @@
 class Fifo:
     """size bytes; keep_oldest is FIFO_MODE of the 6500 and later: full, it takes no more."""
 
-    def __init__(self, size):
+    def __init__(self, size: int) -> None:
         self.size = size
         self.keep_oldest = False
         self.overflowed = False
         self._ring = bytearray(size)
         self.clear()
 
-    def clear(self):
+    def clear(self) -> None:
         """Empty, as FIFO_RESET does."""
         self._first = 0
         self.count = 0
         self._last_read = 0xFF
 
-    def put(self, byte):
+    def put(self, byte: int) -> None:
         """Append a byte; when full the oldest goes, or with keep_oldest the new one."""
         if self.count == self.size:
             self.overflowed = True
@@ -28,7 +28,7 @@ class Fifo:
         self._ring[(self._first + self.count) % self.size] = byte
         self.count += 1
 
-    def get(self):
+    def get(self) -> int:
         """Take the oldest byte; empty, the last one again."""
         if self.count:
             self._last_read = self._ring[self._first]

@@ -12,20 +12,20 @@ class FakeMemory:
     becomes torn_byte (None: stays as it was).
     """
 
-    def __init__(self, size, erased=0xFF):
+    def __init__(self, size: int, erased: int = 0xFF) -> None:
         self.bytes = bytearray([erased] * size)
         self.written = 0
-        self.cut_after = None
-        self.torn_byte = None
+        self.cut_after: "int | None" = None
+        self.torn_byte: "int | None" = None
         self.broken = False
 
-    def readblock(self, offset, buf):
+    def readblock(self, offset: int, buf: "bytearray | memoryview") -> None:
         """Fill buf."""
         if self.broken:
             raise OSError(5)
         buf[:] = self.bytes[offset : offset + len(buf)]
 
-    def writeblock(self, offset, buf):
+    def writeblock(self, offset: int, buf: "bytes | bytearray | memoryview") -> None:
         """Write buf, byte by byte."""
         if self.broken:
             raise OSError(5)
@@ -39,6 +39,6 @@ class FakeMemory:
             self.bytes[offset + i] = buf[i]
             self.written += 1
 
-    def flip(self, bit):
+    def flip(self, bit: int) -> None:
         """Turn one bit, counted over all bytes."""
         self.bytes[bit >> 3] ^= 1 << (bit & 7)

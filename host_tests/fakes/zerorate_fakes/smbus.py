@@ -1,65 +1,164 @@
 """FakeI2C seen as smbus or smbus2, for drivers written for Linux."""
 
+TYPE_CHECKING = False
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from typing import Any
+
+    from .bus import FakeI2C
+
 _I2C_M_RD = 1
-_ENODEV = 19
 I2C_FUNC_I2C = 0x00000001
 I2C_FUNC_SMBUS_BLOCKS = 0x0C000000
 _BLOCK_MAX = 32
+# what the kernel says where MicroPython says EIO and ENODEV
+_ERRORS = {
+    5: (121, "Remote I/O error"),
+    19: (6, "No such device or address"),
+    110: (110, "Connection timed out"),
+}
 
 
 class SMBus:
-    """The methods of smbus2.SMBus over a FakeI2C.
+    """The methods of smbus2.SMBus over a FakeI2C, with Linux's errors (121, 6, 110).
 
     raw_i2c False is an adapter without I2C_RDWR, as i2c-stub is: only block reads of 32 bytes.
     """
 
-    def __init__(self, bus, raw_i2c=True):
-        self._bus = bus
+    def __init__(self, bus: "FakeI2C", raw_i2c: bool = True) -> None:
+        self.bus = bus
         self.funcs = I2C_FUNC_SMBUS_BLOCKS | (I2C_FUNC_I2C if raw_i2c else 0)
+        self.pec = 0
 
-    def close(self):
+    def __enter__(self) -> "SMBus":
+        return self
+
+    def __exit__(self, *error: "Any") -> None:
+        self.close()
+
+    def open(self, bus: "int | str") -> None:
+        """The bus is open."""
+
+    def close(self) -> None:
         """Nothing to close."""
 
-    def read_byte_data(self, addr, register, force=None):
-        """One register."""
-        return self._read(addr, register, 1)[0]
+    def enable_pec(self, enable: bool = True) -> None:
+        """Kept in pec and otherwise ignored: the chips know no packet error code."""
+        self.pec = int(enable)
 
-    def read_word_data(self, addr, register, force=None):
+    def write_quick(self, i2c_addr: int, force: "bool | None" = None) -> None:
+        """Address the chip and nothing more."""
+        self._write(i2c_addr, [])
+
+    def read_byte(self, i2c_addr: int, force: "bool | None" = None) -> int:
+        """One byte from the register that was written or read last."""
+        data = bytearray(1)
+        try:
+            self.bus.readfrom_into(i2c_addr, data)
+        except OSError as error:
+            raise _linux_error(error) from None
+        return data[0]
+
+    def write_byte(self, i2c_addr: int, value: int, force: "bool | None" = None) -> None:
+        """Set the register that read_byte reads."""
+        self._write(i2c_addr, [value])
+
+    def read_byte_data(self, i2c_addr: int, register: int, force: "bool | None" = None) -> int:
+        """One register."""
+        return self._read(i2c_addr, register, 1)[0]
+
+    def write_byte_data(
+        self, i2c_addr: int, register: int, value: int, force: "bool | None" = None
+    ) -> None:
+        """One register."""
+        self._write(i2c_addr, [register, value])
+
+    def read_word_data(self, i2c_addr: int, register: int, force: "bool | None" = None) -> int:
         """Two registers, low byte first."""
-        low, high = self._read(addr, register, 2)
+        low, high = self._read(i2c_addr, register, 2)
         return low | high << 8
 
-    def read_i2c_block_data(self, addr, register, length, force=None):
+    def write_word_data(
+        self, i2c_addr: int, register: int, value: int, force: "bool | None" = None
+    ) -> None:
+        """Two registers, low byte first."""
+        self._write(i2c_addr, [register, value & 0xFF, value >> 8 & 0xFF])
+
+    def process_call(
+        self, i2c_addr: int, register: int, value: int, force: "bool | None" = None
+    ) -> int:
+        """write_word_data, then read_word_data."""
+        self.write_word_data(i2c_addr, register, value)
+        return self.read_word_data(i2c_addr, register)
+
+    def read_block_data(
+        self, i2c_addr: int, register: int, force: "bool | None" = None
+    ) -> "list[int]":
+        """As many bytes as the first byte says, which these chips mean otherwise."""
+        length = self._read(i2c_addr, register, 1)[0]
+        if not 1 <= length <= _BLOCK_MAX:
+            raise OSError(71, "Protocol error")
+        return list(self._read(i2c_addr, register, 1 + length)[1:])
+
+    def write_block_data(
+        self, i2c_addr: int, register: int, data: "Sequence[int]", force: "bool | None" = None
+    ) -> None:
+        """The number of bytes, which these chips take for a value, then the bytes."""
+        self._write(i2c_addr, [register, len(data), *data])
+
+    def block_process_call(
+        self, i2c_addr: int, register: int, data: "Sequence[int]", force: "bool | None" = None
+    ) -> "list[int]":
+        """write_block_data, then read_block_data."""
+        self.write_block_data(i2c_addr, register, data)
+        return self.read_block_data(i2c_addr, register)
+
+    def read_i2c_block_data(
+        self, i2c_addr: int, register: int, length: int, force: "bool | None" = None
+    ) -> "list[int]":
         """List of length bytes, 32 at most."""
         if length > _BLOCK_MAX:
-            raise ValueError("a block read is of 32 bytes at most")
-        return list(self._read(addr, register, length))
+            raise ValueError(f"Desired block length over {_BLOCK_MAX} bytes")
+        return list(self._read(i2c_addr, register, length))
 
-    def write_byte_data(self, addr, register, value, force=None):
-        """One register."""
-        self._bus.writeto_mem(addr, register, bytes([value]))
+    def write_i2c_block_data(
+        self, i2c_addr: int, register: int, data: "Sequence[int]", force: "bool | None" = None
+    ) -> None:
+        """Registers from register on, 32 at most."""
+        if len(data) > _BLOCK_MAX:
+            raise ValueError(f"Data length cannot exceed {_BLOCK_MAX} bytes")
+        self._write(i2c_addr, [register, *data])
 
-    def write_i2c_block_data(self, addr, register, data, force=None):
-        """Registers from register on."""
-        self._bus.writeto_mem(addr, register, bytes(data))
-
-    def i2c_rdwr(self, *messages):
-        """smbus2.i2c_msg objects: a write that sets the pointer, then perhaps a read."""
+    def i2c_rdwr(self, *i2c_msgs: "Any") -> None:
+        """smbus2.i2c_msg objects, reads and writes in their order."""
         if not self.funcs & I2C_FUNC_I2C:
             raise OSError(95, "Operation not supported")
-        pointer = 0
-        for message in messages:
-            if message.flags & _I2C_M_RD:
-                data = self._read(message.addr, pointer, message.len)
-                for i in range(message.len):
-                    message.buf[i] = data[i : i + 1]
-            else:
-                data = bytes(list(message))
-                pointer = data[0]
-                if len(data) > 1:
-                    self._bus.writeto_mem(message.addr, pointer, data[1:])
+        for message in i2c_msgs:
+            if not message.flags & _I2C_M_RD:
+                self._write(message.addr, bytes(list(message)))
+                continue
+            data = bytearray(message.len)
+            try:
+                self.bus.readfrom_into(message.addr, data)
+            except OSError as error:
+                raise _linux_error(error) from None
+            for i in range(message.len):
+                message.buf[i] = bytes(data[i : i + 1])
 
-    def _read(self, addr, register, length):
-        data = bytearray(length)
-        self._bus.readfrom_mem_into(addr, register, data)
-        return data
+    def _read(self, addr: int, register: int, length: int) -> bytes:
+        try:
+            return self.bus.readfrom_mem(addr, register, length)
+        except OSError as error:
+            raise _linux_error(error) from None
+
+    def _write(self, addr: int, data: "Sequence[int]") -> None:
+        try:
+            self.bus.writeto(addr, bytes(data))
+        except OSError as error:
+            raise _linux_error(error) from None
+
+
+def _linux_error(error: OSError) -> OSError:
+    number = error.args[0]
+    return OSError(*_ERRORS.get(number, (number, "I2C error")))
