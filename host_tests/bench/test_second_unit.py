@@ -4,7 +4,7 @@ import subprocess
 import sys
 
 from zerorate_tools.bench.second_unit import WAYS, SecondUnit, device, errors_mdps, table
-from zerorate_tools.loop.firmware import rows
+from zerorate_tools.loop.verify.firmware import rows
 from zerorate_tools.replay.engines import InterpreterEngine, NumbaEngine
 from zerorate_tools.replay.samples import Frames
 

@@ -2,7 +2,7 @@
 
 import re
 
-from zerorate_tools.loop.catalogue import CATALOGUE, GENERIC, GROUPS
+from zerorate_tools.loop.search.catalogue import CATALOGUE, GENERIC, GROUPS
 from zerorate_tools.report.kinds import KINDS
 
 _PLACE = re.compile(r"<!-- effects -->\n.*?<!-- end -->", re.DOTALL)

@@ -13,8 +13,8 @@ from zerorate_tools.boards.flashing import package_files
 from zerorate_tools.boards.frames import MESSAGE, SAMPLE, FrameReader, encode
 from zerorate_tools.cli import main
 from zerorate_tools.errors import ZerorateError
-from zerorate_tools.loop.basis import Term
 from zerorate_tools.model import Slot, build_model, write_model
+from zerorate_tools.model.term import Term
 from zerorate_tools.recordings import Scales, read_recording
 
 from host_tests.drivers.unix_board import UnixBoard

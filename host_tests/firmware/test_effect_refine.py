@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from zerorate import effect_refine, effects
-from zerorate_tools.loop.basis import Term, evaluate
 from zerorate_tools.model import Slot, build_model, encoded
+from zerorate_tools.model.term import Term, evaluate
 
 from .checked import Words
 from .simulated_sources import SCALES, columns, loaded, tick_means

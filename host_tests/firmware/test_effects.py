@@ -10,8 +10,8 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from zerorate import Sensor, effects
 from zerorate.corrector import EFFECT_Q8
-from zerorate_tools.loop.basis import Term, evaluate
 from zerorate_tools.model import Slot
+from zerorate_tools.model.term import Term, evaluate
 
 from .checked import Words, checked
 from .simulated_sources import A_TICK, columns, last_samples, loaded, on_firmware, tick_means

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from zerorate import Sensor, effects
 from zerorate.model import EffectModel
-from zerorate_tools.loop.basis import Term
 from zerorate_tools.model import Binding, Slot, build_model, encoded
+from zerorate_tools.model.term import Term
 
 from .simulated_sources import SCALES
 

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from zerorate_tools.fleet.curve import PER_DEGC, Curve, curve_of
 from zerorate_tools.fleet.part import curve_effects, part_of, step_effects
 from zerorate_tools.fleet.population import population
-from zerorate_tools.loop.sessions import Session
+from zerorate_tools.loop.read.sessions import Session
 
 MEAN = np.array([0.5, 0.2, 0.0])
 DEVIATION = np.array([1.0, 0.05, 0.02])

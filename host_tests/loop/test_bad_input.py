@@ -10,7 +10,7 @@ import pytest
 from pyarrow import parquet
 from zerorate_tools.errors import ZerorateError
 from zerorate_tools.loop.close import load
-from zerorate_tools.loop.gate import CannotClose
+from zerorate_tools.loop.read.gate import CannotClose
 from zerorate_tools.recordings import Recording, Scales, write_recording
 
 N, HZ = 6000, 5.0

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from zerorate_tools.loop.basis import Term, evaluate, first_order_lag, play
+from zerorate_tools.model.term import Term, evaluate, first_order_lag, play
 
 RAMP = np.concatenate([np.full(5, 20.0), np.linspace(20, 40, 50), np.linspace(40, 25, 50)])
 

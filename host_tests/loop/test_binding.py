@@ -15,12 +15,12 @@ from zerorate.model_file import (
     OTHER_SCALE,
     REASONS,
 )
-from zerorate_tools.loop.basis import Term
 from zerorate_tools.loop.close import close
-from zerorate_tools.loop.gate import CannotClose
+from zerorate_tools.loop.read.gate import CannotClose
 from zerorate_tools.loop.simulated import simulate
 from zerorate_tools.model import Binding, Slot, build_model, encoded, read_model
 from zerorate_tools.model.binding import binding_of
+from zerorate_tools.model.term import Term
 from zerorate_tools.recordings import Scales, write_recording
 
 from .power_ons import SCALES, recording

@@ -6,13 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
-from zerorate_tools.loop.analysis import sessions_of
+from zerorate_tools.loop.analyse import sessions_of
 from zerorate_tools.loop.close import close, load
-from zerorate_tools.loop.gate import CannotClose, GateReport, usable_channels
-from zerorate_tools.loop.sessions import Session
+from zerorate_tools.loop.read.gate import CannotClose, GateReport, usable_channels
+from zerorate_tools.loop.read.sessions import Session
+from zerorate_tools.loop.read.still import still_ticks
+from zerorate_tools.loop.read.ticks import read_ticks
 from zerorate_tools.loop.simulated import simulate
-from zerorate_tools.loop.still import still_ticks
-from zerorate_tools.loop.ticks import read_ticks
 from zerorate_tools.recordings import Recording, Scales, write_recording
 
 from . import power_ons

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from zerorate_tools.loop.decide import effective, predicts
-from zerorate_tools.loop.select import Search
+from zerorate_tools.loop.search.decide import effective, predicts
+from zerorate_tools.loop.search.select import Search
 from zerorate_tools.loop.simulated import simulate
 
 

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from zerorate_tools.loop.earth import EARTH_DPS, can_be_earth, earth_of
+from zerorate_tools.loop.read.earth import EARTH_DPS, can_be_earth, earth_of
 from zerorate_tools.recordings import Scales
 
 UP = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]])

@@ -6,14 +6,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from zerorate_tools.loop.analysis import analyse
-from zerorate_tools.loop.basis import Term, block_basis
-from zerorate_tools.loop.confounding import label
-from zerorate_tools.loop.judge import judge
-from zerorate_tools.loop.report import report
-from zerorate_tools.loop.select import select
+from zerorate_tools.loop.analyse import analyse
+from zerorate_tools.loop.fit.single import split
+from zerorate_tools.loop.read.sessions import block_basis
+from zerorate_tools.loop.report.report import report
+from zerorate_tools.loop.search.confounding import label
+from zerorate_tools.loop.search.select import select
 from zerorate_tools.loop.simulated import HOSTILE, simulate
-from zerorate_tools.loop.single import split
+from zerorate_tools.loop.verify.judge import judge
+from zerorate_tools.model.term import Term
 
 
 def look(device):

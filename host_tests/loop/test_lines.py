@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-from zerorate_tools.loop.basis import Term
-from zerorate_tools.loop.lines import find, spectrum
-from zerorate_tools.loop.periodic import periodic
-from zerorate_tools.loop.quick import SEGMENT, Segments
-from zerorate_tools.loop.sessions import Session
+from zerorate_tools.loop.read.lines import find, spectrum
+from zerorate_tools.loop.read.sessions import Session
+from zerorate_tools.loop.read.welch import SEGMENT, Segments
+from zerorate_tools.loop.search.periodic import periodic
 from zerorate_tools.loop.simulated import flicker
+from zerorate_tools.model.term import Term
 
 N, STEP_S = 3600, 1.0
 

@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from zerorate_tools.loop import events
-from zerorate_tools.loop.analysis import analyse
-from zerorate_tools.loop.blocks import session_of
-from zerorate_tools.loop.in_motion import in_motion, slots_of, without_scales
-from zerorate_tools.loop.regression import Regression
-from zerorate_tools.loop.ticks import read_ticks
-from zerorate_tools.loop.unexplained import not_excluded
+from zerorate_tools.loop.analyse import analyse
+from zerorate_tools.loop.fit.regression import Regression
+from zerorate_tools.loop.motion.in_motion import in_motion, slots_of, without_scales
+from zerorate_tools.loop.read.blocks import session_of
+from zerorate_tools.loop.read.ticks import read_ticks
+from zerorate_tools.loop.report.unexplained import not_excluded
+from zerorate_tools.loop.search import steps as events
 from zerorate_tools.recordings import write_recording
 from zerorate_tools.simulate import simulate_sessions
 

@@ -3,11 +3,16 @@
 import numpy as np
 import pytest
 from zerorate_tools.allan import Noise, overlapping
-from zerorate_tools.loop import noise
-from zerorate_tools.loop.floor import noise_of
-from zerorate_tools.loop.gram import BridgedWhitener, GappyWhitener, Whitener, whitener
-from zerorate_tools.loop.regression import Regression
-from zerorate_tools.loop.sessions import Session
+from zerorate_tools.loop.fit import noise
+from zerorate_tools.loop.fit.cross_products import (
+    BridgedWhitener,
+    GappyWhitener,
+    Whitener,
+    whitener,
+)
+from zerorate_tools.loop.fit.floor import noise_of
+from zerorate_tools.loop.fit.regression import Regression
+from zerorate_tools.loop.read.sessions import Session
 from zerorate_tools.loop.simulated import flicker
 
 

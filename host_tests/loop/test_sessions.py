@@ -1,7 +1,7 @@
 """Blocks of a session: cause and effect are of one time."""
 
 import numpy as np
-from zerorate_tools.loop.sessions import Session
+from zerorate_tools.loop.read.sessions import Session
 
 
 def session(weight):

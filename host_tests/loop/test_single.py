@@ -2,16 +2,16 @@
 
 import numpy as np
 import pytest
-from zerorate_tools.loop.analysis import analyse
-from zerorate_tools.loop.bends import find_bends
-from zerorate_tools.loop.by_kernels import PiecesByKernels
+from zerorate_tools.loop.analyse import analyse
 from zerorate_tools.loop.close import load
-from zerorate_tools.loop.measure import measure
-from zerorate_tools.loop.model import model_of
-from zerorate_tools.loop.power_on import PowerOn
-from zerorate_tools.loop.select import Search
+from zerorate_tools.loop.fit.single import PiecesByLine, nats, speaks_for, split
+from zerorate_tools.loop.search.bends import find_bends
+from zerorate_tools.loop.search.select import Search
 from zerorate_tools.loop.simulated import simulate
-from zerorate_tools.loop.single import PiecesByLine, nats, speaks_for, split
+from zerorate_tools.loop.verify.by_kernels import PiecesByKernels
+from zerorate_tools.loop.verify.measure import measure
+from zerorate_tools.loop.verify.power_on import PowerOn
+from zerorate_tools.loop.verify.slots import model_of
 from zerorate_tools.recordings import (
     Recording,
     Scales,

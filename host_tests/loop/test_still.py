@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from zerorate_tools.loop.still import still_ticks
-from zerorate_tools.loop.ticks import read_ticks
+from zerorate_tools.loop.read.still import still_ticks
+from zerorate_tools.loop.read.ticks import read_ticks
 from zerorate_tools.recordings import Recording, Scales, write_recording
 
 ODR = 20

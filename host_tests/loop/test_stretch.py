@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from zerorate_tools.loop.gate import CannotClose
-from zerorate_tools.loop.stretch import deviation_of, still_stretch
+from zerorate_tools.loop.read.gate import CannotClose
+from zerorate_tools.loop.read.stretch import deviation_of, still_stretch
 from zerorate_tools.recordings import Recording, Scales, write_recording
 
 HZ, N = 50.0, 30000

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from zerorate_tools.loop.ticks import read_ticks
+from zerorate_tools.loop.read.ticks import read_ticks
 from zerorate_tools.recordings import Recording, Scales, write_recording
 
 

@@ -9,8 +9,8 @@ import pyarrow.parquet as pq
 import pytest
 from zerorate_tools.cli import main
 from zerorate_tools.errors import InFile, ZerorateError
-from zerorate_tools.loop.basis import Term
 from zerorate_tools.model import Slot, build_model, write_model
+from zerorate_tools.model.term import Term
 from zerorate_tools.recordings import write_recording
 from zerorate_tools.replay import jit, replay
 from zerorate_tools.runtimes.cache import fill

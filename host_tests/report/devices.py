@@ -4,10 +4,10 @@ import json
 
 import numpy as np
 from zerorate_tools.loop.close import load
-from zerorate_tools.loop.measure import measure
-from zerorate_tools.loop.model import model_of
-from zerorate_tools.loop.report import as_json, report
+from zerorate_tools.loop.report.report import as_json, report
 from zerorate_tools.loop.simulated import simulate
+from zerorate_tools.loop.verify.measure import measure
+from zerorate_tools.loop.verify.slots import model_of
 from zerorate_tools.model import write_model
 from zerorate_tools.recordings import Recording, Scales, open_recording, write_recording
 from zerorate_tools.simulate import load_description, simulate_to_files

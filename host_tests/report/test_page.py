@@ -5,7 +5,7 @@ import re
 from html.parser import HTMLParser
 
 import pytest
-from zerorate_tools.loop.turns import GIVEN
+from zerorate_tools.loop.read.turns import GIVEN
 from zerorate_tools.report.figures import figure
 from zerorate_tools.report.words import corrects_at_rest, headline
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from zerorate_tools.loop.bends import KINDS as BENDS
-from zerorate_tools.loop.catalogue import CATALOGUE, GENERIC, GROUPS
+from zerorate_tools.loop.search.bends import KINDS as BENDS
+from zerorate_tools.loop.search.catalogue import CATALOGUE, GENERIC, GROUPS
 from zerorate_tools.report import kinds
 from zerorate_tools.report.allan_plot import longest
 from zerorate_tools.report.figures import chance, figure

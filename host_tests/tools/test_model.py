@@ -10,7 +10,6 @@ from zerorate import Sensor, model_file
 from zerorate.model import EffectModel
 from zerorate_tools.cli import main
 from zerorate_tools.errors import BadModel
-from zerorate_tools.loop.basis import Term
 from zerorate_tools.model import (
     Binding,
     CannotDeploy,
@@ -23,6 +22,7 @@ from zerorate_tools.model import (
     to_json,
     write_model,
 )
+from zerorate_tools.model.term import Term
 from zerorate_tools.model.words import differences
 from zerorate_tools.recordings import Scales
 

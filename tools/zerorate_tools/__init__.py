@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from .importers import import_recording as import_recording
     from .importers import read_foreign as read_foreign
     from .loop.close import close as close_loop
-    from .loop.stretch import deviation_of as allan_deviation
+    from .loop.read.stretch import deviation_of as allan_deviation
     from .model import Model as Model
     from .model import read_model as read_model
     from .model import write_model as write_model
@@ -49,7 +49,7 @@ _HOME = {
     "Replay": ("replay", "Replay"),
     "plot_replay": ("replay.plot", "plot"),
     "close_loop": ("loop.close", "close"),
-    "allan_deviation": ("loop.stretch", "deviation_of"),
+    "allan_deviation": ("loop.read.stretch", "deviation_of"),
     "read_model": ("model", "read_model"),
     "write_model": ("model", "write_model"),
     "Model": ("model", "Model"),

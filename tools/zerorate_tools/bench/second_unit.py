@@ -14,9 +14,9 @@ import numpy as np
 from zerorate import Corrector
 from zerorate.model import EffectModel
 
-from ..loop.basis import Term, evaluate
 from ..model import Slot, build_model, encoded
 from ..model.check import sensor_for
+from ..model.term import Term, evaluate
 from ..recordings import Scales
 from ..replay.engines import NumbaEngine
 from ..replay.samples import Frames

@@ -20,7 +20,7 @@ def add_parser(subparsers) -> None:
 def run(arguments: argparse.Namespace) -> None:
     """Print the deviation by cluster time, and its lowest point."""
     from ..allan import overlapping
-    from ..loop.stretch import still_stretch
+    from ..loop.read.stretch import still_stretch
 
     rate_dps, each_s = still_stretch(arguments.log)
     tau_s, deviation_dps = overlapping(rate_dps, each_s)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..loop.sessions import Session
+from ..loop.read.sessions import Session
 
 #: Coefficients belong to 1, u and u^2, where u is the temperature less this, in tens of degC.
 CENTRE_DEGC = 25.0

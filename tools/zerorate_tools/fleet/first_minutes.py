@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..loop.sessions import Session
+from ..loop.read.sessions import Session
 from ..recordings import Recording, open_recording
 from ..replay import replay
 from .job import one_line, still_session

@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from ..loop.blocks import session_of
-from ..loop.sessions import Session
-from ..loop.ticks import read_ticks
+from ..loop.read.blocks import session_of
+from ..loop.read.sessions import Session
+from ..loop.read.ticks import read_ticks
 from ..recordings import open_recording
 from .curve import curve_of
 from .devices import Device

@@ -10,7 +10,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from ..loop.sessions import Session
+from ..loop.read.sessions import Session
 from ..recordings.reading import recording_name
 from ..replay import replay
 

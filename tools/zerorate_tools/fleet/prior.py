@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from ..loop.basis import Term
 from ..model import Model, Slot, build_model, write_model
+from ..model.term import Term
 from ..recordings import Scales
 from ..recordings.atomic import written_beside
 from .part import Part, scale_of

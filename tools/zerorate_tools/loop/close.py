@@ -11,13 +11,14 @@ from ..errors import ZerorateError
 from ..model import write_model
 from ..recordings import open_recording
 from ..recordings.atomic import written_beside
-from .analysis import Analysis, analyse, sessions_of
-from .deployable import deployable
-from .gate import CannotClose
-from .measure import measure
-from .model import model_of
-from .report import as_json, report
-from .ticks import read_ticks, tick_seconds
+from .analyse import analyse, sessions_of
+from .read.gate import CannotClose
+from .read.ticks import read_ticks, tick_seconds
+from .report.report import as_json, report
+from .verify.analysis import Analysis
+from .verify.deployable import deployable
+from .verify.measure import measure
+from .verify.slots import model_of
 
 
 def load(

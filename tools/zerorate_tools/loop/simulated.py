@@ -13,8 +13,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.fft import irfft, rfft
 
-from .basis import Term, block_basis, first_order_lag
-from .sessions import Session
+from ..model.term import Term, first_order_lag
+from .read.sessions import Session, block_basis
 
 BLOCK_S = 20.0
 TICKS = 4

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from ..errors import ZerorateError
-from ..loop.basis import Term
 from ..recordings import Scales
+from .term import Term
 
 MOST_SLOTS, MOST_INPUTS, MOST_TABLES, MOST_RINGS, MOST_CHANNELS = 8, 12, 2, 2, 8
 TABLE_POINTS = 9

@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
-from ..loop.basis import Term
 from .model import ONE, CannotDeploy, Slot
 from .scaling import Unit
+from .term import Term
 
 _Q = 24
 NONE = -0x3FFFFFFF

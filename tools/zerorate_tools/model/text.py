@@ -10,9 +10,9 @@ from os import PathLike
 from typing import Any
 
 from ..errors import BadModel
-from ..loop.basis import Term
 from ..recordings import Scales
 from .model import Binding, Input, Model, Slot
+from .term import Term
 
 FORMAT = "zerorate-model"
 _VERSION = 1

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..loop.basis import Term
 from .binary import encoded
 from .model import Model, Slot, is_channel
+from .term import Term
 
 UNITS = {"temp": "degC", "vib": "g^2", "time": "s", "one": ""}
 

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..loop.analysis import Analysis
-from ..loop.basis import Term, block_basis
-from ..loop.sessions import Session
+from ..loop.read.sessions import Session, block_basis
+from ..loop.verify.analysis import Analysis
+from ..model.term import Term
 from .held_out import trained_residuals, trend
 from .kinds import quantity
 from .plot import Line, Panel, Plot, Series, thinned

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..allan import Noise
-from ..loop.analysis import Analysis
-from ..loop.floor import noise_of
-from ..loop.judge import scored
-from ..loop.regression import predicted
-from ..loop.sessions import Session
+from ..loop.fit.floor import noise_of
+from ..loop.fit.regression import predicted
+from ..loop.read.sessions import Session
+from ..loop.verify.analysis import Analysis
+from ..loop.verify.judge import scored
 
 _MDPS = 1e3
 #: Blocks on either side from which a temperature's trend is taken.

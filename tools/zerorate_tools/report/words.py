@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..loop.turns import GIVEN
+from ..loop.read.turns import GIVEN
 from .figures import figure
 from .kinds import title
 

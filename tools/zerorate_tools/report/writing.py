@@ -9,7 +9,7 @@ from typing import Any
 
 from .. import __version__
 from ..errors import ZerorateError
-from ..loop.analysis import Analysis
+from ..loop.verify.analysis import Analysis
 from ..model import read_model
 from ..recordings.atomic import written_beside
 from .allan_plot import deviations

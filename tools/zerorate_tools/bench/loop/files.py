@@ -116,7 +116,7 @@ def description(row: str) -> dict:
 def look_at_files(device: Device) -> Outcome:
     """Simulate a device into files, close them, and take the report's word for what was found."""
     from ...loop.close import load
-    from ...loop.report import report
+    from ...loop.report.report import report
 
     with tempfile.TemporaryDirectory() as folder:
         analysis = load([*_written(device, Path(folder))])

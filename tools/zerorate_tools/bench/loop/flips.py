@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...loop.earth import EARTH_DPS
+from ...loop.read.earth import EARTH_DPS
 
 
 def flip(session, floor_dps: float) -> str:

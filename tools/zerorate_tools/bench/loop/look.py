@@ -66,10 +66,10 @@ def look(device: Device) -> Outcome:
 
 def judged(device: Device, sessions: list, noise_dps: np.ndarray) -> Outcome:
     """What the loop says of sessions. noise_dps: (n, 3) of the last one, nothing else in it."""
-    from ...loop.confounding import label
-    from ...loop.judge import scored
-    from ...loop.select import select
-    from ...loop.uphold import upheld
+    from ...loop.search.confounding import label
+    from ...loop.search.select import select
+    from ...loop.verify.judge import scored
+    from ...loop.verify.prune_by_holdout import upheld
 
     selection, verdict = upheld(select(sessions[:-1]), sessions[-1:])
     alone, _ = scored(replace(sessions[-1], rate_dps=noise_dps), np.zeros(noise_dps.shape))

@@ -48,8 +48,8 @@ def _temperature(panel, session, minutes):
 
 def _left(analysis, session):
     """Name -> (n, 3) dps left, with the offset of the part that was fitted."""
-    from ...loop.line import deployed
-    from ...loop.regression import predicted
+    from ...loop.fit.line import deployed
+    from ...loop.fit.regression import predicted
 
     models = {"line": deployed(analysis.selection, effects=False)}
     if (rival := cubic(analysis)) is not None:

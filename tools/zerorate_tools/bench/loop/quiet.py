@@ -36,7 +36,7 @@ def cut_into_sessions(name: str, seed: int) -> tuple[list, list]:
     """Four sessions of a quiet recording with simulated channels that mean nothing, and their
     noise. The cuts, their order, the axes' signs and the direction of time are drawn from the seed.
     """
-    from ...loop.sessions import Session
+    from ...loop.read.sessions import Session
     from ...loop.simulated import BLOCK_S, TICKS, channels
 
     rng = np.random.default_rng(seed)

@@ -53,9 +53,9 @@ def _recording(path: Path, hz: float | None, scratch: Path, plots: Path | None) 
     from ...importers.conversion import Options
     from ...importers.importing import import_recording
     from ...loop.close import load
-    from ...loop.confounding import label
-    from ...loop.measure import measure
-    from ...loop.model import model_of
+    from ...loop.search.confounding import label
+    from ...loop.verify.measure import measure
+    from ...loop.verify.slots import model_of
     from ...recordings import open_recording
 
     out = scratch / f"{path.parent.name}-{path.name.split('.')[0]}.parquet"
@@ -88,7 +88,7 @@ def _recording(path: Path, hz: float | None, scratch: Path, plots: Path | None) 
 def cubic(analysis) -> tuple[list, NDArray[np.float64]] | None:
     """Terms and coefficients of a cubic over temperature fitted on the same training part, held at
     its range; None without temperature."""
-    from ...loop.line import ordinary
+    from ...loop.fit.line import ordinary
 
     if not analysis.selection.straight:
         return None
@@ -101,8 +101,8 @@ def cubic(analysis) -> tuple[list, NDArray[np.float64]] | None:
 
 def cubic_left(analysis) -> list[NDArray[np.float64]] | None:
     """(n, 3) dps that the cubic leaves of each locked part, NaN where unscored."""
-    from ...loop.judge import scored
-    from ...loop.regression import predicted
+    from ...loop.fit.regression import predicted
+    from ...loop.verify.judge import scored
 
     fit = cubic(analysis)
     if fit is None:

@@ -1,0 +1,120 @@
+"""How far beyond the range it was fitted over a term follows its source."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from zerorate_tools.loop.fit.regression import Regression
+from zerorate_tools.loop.fit.single import pieces
+from zerorate_tools.loop.read.sessions import block_basis
+from zerorate_tools.loop.search.catalogue import candidates
+from zerorate_tools.loop.search.extrapolation import MOST, followed
+from zerorate_tools.loop.search.select import select, straight_line
+from zerorate_tools.loop.simulated import simulate
+from zerorate_tools.model import build_model
+from zerorate_tools.model.model import Slot
+
+from .power_ons import SCALES
+
+
+def regression(seed):
+    return Regression(simulate(seed).sessions[:-1])
+
+
+def fitted(r, kind):
+    return [c for c in candidates(r.sessions) if c.kind == kind][0].terms
+
+
+def shares(before, after):
+    """Of the range, below and above."""
+    span = before.hi - before.lo
+    return (before.lo - after.lo) / span, (after.hi - before.hi) / span
+
+
+def test_a_supply_is_followed_beyond_what_was_seen():
+    r = regression(1)
+    (term,) = fitted(r, "supply-voltage")
+    (moved,) = followed(r, straight_line(r.sessions), [term])
+    assert min(shares(term, moved)) > 0.1
+
+
+def test_a_cubic_is_followed_less_far_than_a_straight_line():
+    r = regression(1)
+    cubic, supply = (fitted(r, k)[0] for k in ("temperature-cubic", "supply-voltage"))
+    moved = followed(r, straight_line(r.sessions), [cubic, supply])
+    assert sum(shares(cubic, moved[0])) < sum(shares(supply, moved[1]))
+
+
+@pytest.mark.parametrize("kind", ["time-drift", "power-on-transient", "thermal-lag"])
+def test_time_and_what_has_its_own_margin_stay_as_they_were(kind):
+    r = regression(1)
+    terms = list(fitted(r, kind))
+    assert followed(r, straight_line(r.sessions), terms) == terms
+
+
+def test_one_face_never_shown_is_not_taken_for_granted():
+    r = regression(1)
+    for s in r.sessions:
+        s.sources["acc_x"] = np.abs(s.sources["acc_x"])
+    terms = list(fitted(r, "linear-acceleration"))
+    moved = followed(r, straight_line(r.sessions), terms)
+    assert moved[0].lo > -0.3
+
+
+def test_a_product_is_followed_in_both_of_its_sources():
+    r = regression(1)
+    (term,) = fitted(r, "supply-temperature")
+    (moved,) = followed(r, straight_line(r.sessions), [term])
+    assert moved.lo < term.lo and moved.second_hi > term.second_hi
+
+
+@settings(max_examples=10, deadline=None)
+@given(st.integers(0, 10_000), st.sampled_from(["temperature-cubic", "vibration"]))
+def test_what_was_fitted_is_not_changed_and_the_margin_is_bounded(seed, kind):
+    r = regression(seed)
+    terms = list(fitted(r, kind))
+    moved = followed(r, straight_line(r.sessions), terms)
+    for term, after in zip(terms, moved):
+        assert all(0 <= s <= MOST + 1e-9 for s in shares(term, after))
+        assert replace(after, lo=term.lo, hi=term.hi) == term
+        for s in r.sessions:
+            assert (block_basis(term, s) == block_basis(after, s)).all()
+
+
+def test_a_found_effect_is_held_further_out_only_after_several_power_ons():
+    sessions = simulate(3, [("supply-voltage", 5.0)]).sessions[:-1]
+    volts = np.concatenate([s.sources["vdd_mv"] for s in sessions])
+    many = select(sessions).found[0].candidate.terms[0]
+    alone = select(sessions[:1], pieces(sessions[0])).found[0].candidate.terms[0]
+    assert many.lo < volts.min() and many.hi > volts.max()
+    assert (alone.lo, alone.hi) == (
+        sessions[0].sources["vdd_mv"].min(),
+        sessions[0].sources["vdd_mv"].max(),
+    )
+
+
+def test_the_integers_are_held_where_the_numbers_are():
+    found = select(simulate(3, [("temperature-quadratic", 5.0)]).sessions[:-1]).found[0]
+    term = found.candidate.terms[0]
+    slot = build_model([Slot(term, (0.001, 0.0, 0.0), "x")], SCALES, tick_s=5.0).slots[0]
+    assert (slot.term.lo, slot.term.hi) == pytest.approx((term.lo, term.hi), abs=0.01)
+
+
+def test_a_square_of_acceleration_is_held_alike_on_both_sides():
+    sessions = simulate(1).sessions[:-1]
+    for s in sessions:
+        s.sources["acc_x"] = np.abs(s.sources["acc_x"])
+    squares = next(c for c in candidates(sessions) if c.kind == "squared-acceleration")
+    assert squares.terms[0].lo == -squares.terms[0].hi
+
+
+def test_noise_sets_how_far_it_goes():
+    reaches = []
+    for minutes in (60, 15):
+        sessions = simulate(1, hours=minutes / 60).sessions[:-1]
+        r = Regression(sessions)
+        (term,) = fitted(r, "temperature-cubic")
+        reaches.append(sum(shares(term, followed(r, straight_line(sessions), [term])[0])))
+    assert reaches[0] > reaches[1]

@@ -1,0 +1,83 @@
+"""What the session held out speaks against is taken out again."""
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+import pytest
+from zerorate_tools.loop.analyse import analyse
+from zerorate_tools.loop.report.in_words import in_words
+from zerorate_tools.loop.report.report import report
+from zerorate_tools.loop.search.select import select
+from zerorate_tools.loop.simulated import simulate
+from zerorate_tools.loop.verify import prune_by_holdout
+from zerorate_tools.loop.verify.judge import judge
+from zerorate_tools.loop.verify.prune_by_holdout import upheld
+
+
+def kinds(selection):
+    return [f.candidate.kind for f in selection.found]
+
+
+def doubting(judge, selection, locked):
+    """The judgement with a likelihood that speaks against everything."""
+    judgement = judge(selection, locked)
+    return replace(judgement, gains=np.full_like(judgement.gains, -2.0))
+
+
+@pytest.fixture(scope="module")
+def turning_about():
+    """Three power-ons that drift alike and a fourth that drifts back."""
+    sessions = simulate(5).sessions
+    for s, slope in zip(sessions, (0.01, 0.01, 0.01, -0.01)):
+        s.rate_dps += np.outer(np.linspace(0.0, 1.0, s.blocks), [slope, -slope, slope])
+    return sessions
+
+
+def test_a_drift_that_the_last_power_on_does_not_show_is_withdrawn(turning_about):
+    selection = select(turning_about[:-1])
+    assert kinds(selection) == ["time-drift"]
+    left, judgement = upheld(selection, turning_about[-1:])
+    assert kinds(left) == [] and [name for name, _ in left.withdrawn] == ["time-drift"]
+    assert judgement.after_rms == judgement.before_rms
+
+
+def test_what_was_withdrawn_is_said_with_both_errors(turning_about):
+    result = report(analyse(turning_about))
+    [(name, why)] = result["gate"]["withdrawn"]
+    assert name == "time-drift" and "does not come again" in why
+    assert "withdrawn: time-drift: " in in_words(result)
+    assert result["steps"] == [] and result["before_mdps"] == result["after_mdps"]
+
+
+def test_what_noise_steeper_than_a_walk_feigns_is_withdrawn():
+    sessions = simulate(6300013, noise_kind="steep").sessions
+    selection = select(sessions[:-1])
+    assert kinds(selection) == ["time-drift"]
+    assert kinds(upheld(selection, sessions[-1:])[0]) == []
+
+
+def test_what_makes_the_error_smaller_stays_whatever_its_likelihood(monkeypatch):
+    sessions = simulate(11, [("supply-voltage", 5.0)]).sessions
+    monkeypatch.setattr(prune_by_holdout, "judge", partial(doubting, judge))
+    left, judgement = upheld(select(sessions[:-1]), sessions[-1:])
+    assert judgement.gains[0] < -1 and judgement.after_rms < judgement.before_rms
+    assert kinds(left) == ["supply-voltage"] and not left.withdrawn
+
+
+def test_what_the_session_held_out_is_the_worse_for_goes():
+    sessions = simulate(11, [("supply-voltage", 5.0)]).sessions
+    last = sessions[-1]
+    last.sources["vdd_mv"] = 6600.0 - last.sources["vdd_mv"]
+    left, _ = upheld(select(sessions[:-1]), [last])
+    [(name, why)] = left.withdrawn
+    assert name == "supply-voltage" and "speaks against it by" in why
+
+
+def test_a_cause_that_rests_in_the_session_held_out_stays():
+    sessions = simulate(11, [("vibration", 5.0)]).sessions
+    last = sessions[-1]
+    last.rate_dps = simulate(11).noise_dps[-1].copy()
+    last.sources["vib"] = np.full_like(last.sources["vib"], sessions[0].sources["vib"].mean())
+    selection, _ = upheld(select(sessions[:-1]), [last])
+    assert kinds(selection) == ["vibration"] and not selection.withdrawn

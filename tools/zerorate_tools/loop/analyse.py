@@ -1,0 +1,105 @@
+"""The whole loop over the sessions of one device, from blocks to a judgement."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from os import PathLike
+
+from threadpoolctl import threadpool_limits
+
+from ..recordings import open_recording
+from .fit.floor import floor_dps
+from .fit.line import deployed
+from .fit.single import pieces, split
+from .motion.in_motion import in_motion, slots_of, without_scales
+from .read.blocks import sessions_from
+from .read.gate import (
+    CannotClose,
+    GateReport,
+    enough,
+    readable,
+    same_settings,
+    shaken,
+    usable_channels,
+    without_long_gaps,
+)
+from .read.sessions import OWN_SOURCES, Session
+from .read.ticks import Ticks
+from .search.catalogue import extra_channels
+from .search.naming import name_earth
+from .search.periodic import periodic
+from .search.select import select
+from .verify.analysis import Analysis
+from .verify.by_kernels import PiecesByKernels
+from .verify.power_on import PowerOn, ideal_dps
+from .verify.prune_by_holdout import upheld
+
+
+# The matrices are small: more threads wait for each other three times as long as one works.
+@threadpool_limits.wrap(limits=1, user_api="blas")
+def analyse(
+    sessions: list[Session],
+    holdout: int | None = None,
+    gate: GateReport | None = None,
+    logs: Mapping[str, str | PathLike[str]] | None = None,
+) -> Analysis:
+    """Run the loop. holdout: index of the session to lock away, the last by default; logs: each
+    session's recording, for the firmware's own kernels to be run over where it stands alone.
+    """
+    gate = gate or GateReport()
+    at = len(sessions) - 1 if holdout is None else holdout
+    motion = in_motion(
+        [s for i, s in enumerate(sessions) if i != at] or sessions,
+        [sessions[at]] if len(sessions) > 1 else [],
+        len(sessions) == 1,
+    )
+    sessions = [without_scales(s, motion) for s in sessions]
+    taken = len(slots_of(motion))
+    if len(sessions) == 1:
+        train_part, locked_part, folds = split(sessions[0])
+        train, locked = [train_part], [locked_part]
+    else:
+        train, locked = [s for i, s in enumerate(sessions) if i != at], [sessions[at]]
+        folds = pieces(train[0]) if len(train) == 1 else []
+    by_kernels = _on_pieces(train[0], folds, motion, logs) if folds and logs else None
+    selection = select(train, folds, taken, by_kernels)
+    selection, judgement = upheld(selection, locked)
+    whole = [*selection.straight, *selection.terms]
+    floor = floor_dps(judgement.whole, whole)
+    terms, coefficients = deployed(selection)
+    name_earth(selection.found, terms, coefficients, train)
+    lines = periodic(train, locked, terms, coefficients)
+    return Analysis(sessions, train, locked, selection, judgement, floor, gate, motion, lines)
+
+
+def _on_pieces(train, folds, motion, logs):
+    log = logs[train.name]
+    scales, ideal = open_recording(log).scales, ideal_dps(train, motion)
+    channels, lsb = extra_channels(train), scales.gyro_lsb_per_dps
+    power_on = PowerOn(train, log, lsb, ideal, train.available, channels)
+    return PiecesByKernels(power_on, train, folds, scales)
+
+
+def sessions_of(ticks: list[Ticks]) -> tuple[list[Session], GateReport]:
+    """Gate recordings and make them sessions of equal blocks. Raises CannotClose."""
+    gate = GateReport({t.name: t.faults for t in ticks})
+    readable(ticks)
+    same_settings(ticks)
+    without_long_gaps(ticks)
+    sessions = sessions_from(ticks)
+    kept = []
+    for s in sessions:
+        try:
+            enough(s)
+            kept.append(s)
+        except CannotClose as problem:
+            if len(sessions) == 1:
+                raise
+            gate.notes.append(f"left out: {problem}")
+    if not kept:
+        raise CannotClose("; ".join(n.removeprefix("left out: ") for n in gate.notes))
+    for name in {n for t in ticks for n in t.extra if n in OWN_SOURCES}:
+        gate.dropped[name] = "named like a source of the model's own: rename the column"
+    shaken(kept, gate)
+    usable_channels(kept, gate)
+    return kept, gate

@@ -1,0 +1,109 @@
+"""Generalised least squares over three axes with the noise's colour refitted for every candidate.
+
+The variance is profiled out, the colour is the best of the grid, each axis has its own of both.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .cross_products import Gram
+from .noise import LOG_PRIOR, NO_STEEP
+
+_RIDGE = 1e-10
+
+
+def _weights(scale: np.ndarray) -> np.ndarray:
+    return 1.0 / scale**2
+
+
+def _inverse(zz: np.ndarray) -> np.ndarray:
+    """(G, J, J) inverses of scaled cross products, safe against a column of nothing."""
+    j = zz.shape[-1]
+    d = np.sqrt(np.einsum("gjj->gj", zz))
+    d = np.where(d > 0, d, 1.0)
+    unit = zz / (d[:, :, None] * d[:, None, :]) + _RIDGE * np.eye(j)
+    return np.linalg.inv(unit) / (d[:, :, None] * d[:, None, :])
+
+
+@dataclass
+class Base:
+    """The fit without candidates. rss: (A, G); loglik: (A, G); coefficients: (A, G, J)."""
+
+    rss: np.ndarray
+    loglik: np.ndarray
+    coefficients: np.ndarray
+    inverse: list
+
+    @property
+    def best(self) -> np.ndarray:
+        """(A,) index of the best colour."""
+        return self.loglik.argmax(axis=1)
+
+    @property
+    def total(self) -> float:
+        """Log likelihood at the best colours."""
+        return float(self.loglik.max(axis=1).sum())
+
+
+def _loglik(rss, logdet, count, scale_term, steep=True):
+    prior = (LOG_PRIOR if steep else NO_STEEP).reshape(-1, *[1] * (rss.ndim - 1))
+    return prior - 0.5 * count * np.log(np.maximum(rss, 1e-300) / count) - 0.5 * logdet - scale_term
+
+
+def fit_base(g: Gram, scale: np.ndarray, steep: bool = True) -> Base:
+    """Fit of the nuisances. scale: (S, A) noise of each session; steep: allow such noise."""
+    axes, count = g.yy.shape[2], g.count.sum()
+    logdet = g.logdet.sum(axis=0)
+    rss, ll, coef, inv = [], [], [], []
+    for a in range(axes):
+        w = _weights(scale[:, a])
+        zz = np.tensordot(w, g.zz, 1)
+        zy = np.tensordot(w, g.zy[..., a], 1)
+        inverse = _inverse(zz)
+        b = np.einsum("gij,gj->gi", inverse, zy)
+        r = w @ g.yy[..., a] - np.einsum("gi,gi->g", b, zy)
+        rss.append(r)
+        coef.append(b)
+        inv.append(inverse)
+        ll.append(_loglik(r, logdet, count, (g.count * np.log(scale[:, a])).sum(), steep))
+    return Base(np.array(rss), np.array(ll), np.array(coef), inv)
+
+
+def ratios(g: Gram, base: Base, scale: np.ndarray, steep: bool = True) -> np.ndarray:
+    """(K, A) twice the gain in log likelihood of each candidate, per axis, noise refitted."""
+    out = np.empty((g.xx.shape[2], g.yy.shape[2]))
+    count, logdet = g.count.sum(), g.logdet.sum(axis=0)
+    for a in range(g.yy.shape[2]):
+        w = _weights(scale[:, a])
+        xz = np.tensordot(w, g.xz, 1)
+        xx0 = np.tensordot(w, g.xx, 1)
+        xx = xx0 - np.einsum("gki,gij,gkj->gk", xz, base.inverse[a], xz, optimize=True)
+        xy = np.tensordot(w, g.xy[..., a], 1) - np.einsum("gki,gi->gk", xz, base.coefficients[a])
+        gain = np.where(xx > 1e-6 * xx0, xy**2 / np.maximum(xx, 1e-300), 0.0)
+        rss = np.maximum(base.rss[a][:, None] - gain, 1e-9 * base.rss[a][:, None])
+        ll = _loglik(rss, logdet[:, None], count, (g.count * np.log(scale[:, a])).sum(), steep)
+        out[:, a] = 2 * (ll.max(axis=0) - base.loglik[a].max())
+    return np.maximum(out, 0.0)
+
+
+def session_scale(g: Gram, rounds: int = 3) -> np.ndarray:
+    """(S, A) each session's own noise level beside the others', geometric mean one; shrunk towards
+    it.
+    """
+    s, axes = len(g.count), g.yy.shape[2]
+    scale = np.ones((s, axes))
+    for _ in range(rounds if s > 1 else 0):
+        base = fit_base(g, scale)
+        for a in range(axes):
+            i = base.best[a]
+            b = base.coefficients[a, i]
+            own = (
+                g.yy[:, i, a] - 2 * g.zy[:, i, :, a] @ b + np.einsum("i,sij,j->s", b, g.zz[:, i], b)
+            )
+            log = 0.5 * np.log(np.maximum(own, 1e-300) / g.count)
+            log -= log.mean()
+            scale[:, a] = np.exp(np.where(np.abs(log) > 2.5 / np.sqrt(2 * g.count), log, 0.0))
+    return scale

@@ -1,0 +1,139 @@
+"""The sessions of one device made ready for fits: residual and columns prepared, axes perhaps
+turned.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...model.term import Term
+from ..read.outliers import held
+from ..read.sessions import Session, block_basis
+from .cross_products import Gram, gram, whitener
+from .likelihood import Base, fit_base, ratios, session_scale
+
+
+@dataclass
+class Fit:
+    """Terms fitted together. coefficients: (terms, 3) dps per unit, in the sensor's axes; colour:
+    (A,) grid index.
+    """
+
+    coefficients: np.ndarray
+    base: Base
+    total: float
+
+
+class Regression:
+    """Residuals of some sessions and the cached columns of every term asked for.
+
+    Axes are scaled by their noise and perhaps turned (`axes`, (3, 3): turned = rate @ axes.T), so
+    that a cause common to them does not count three times.
+    """
+
+    def __init__(self, sessions: list[Session], whiteners: list | None = None):
+        self.sessions = sessions
+        self.whiteners = whiteners or [whitener(s.available) for s in sessions]
+        self.rate = [s.rate_dps for s in sessions]
+        self.outliers = 0
+        self.steep = True  # whether the noise may be steeper than a random walk
+        self.axes = np.eye(3)
+        self._cache: dict[Term, list[np.ndarray]] = {}
+        self._extra: list[list[np.ndarray]] = []
+        self._prepare()
+        self.scale = np.ones((len(sessions), 3))
+
+    def _prepare(self):
+        self.y = [w.prepare(r @ self.axes.T) for w, r in zip(self.whiteners, self.rate)]
+
+    def turn(self, axes: np.ndarray) -> None:
+        """Look along other axes."""
+        self.axes = axes
+        self._prepare()
+
+    def columns(self, term: Term) -> list[np.ndarray]:
+        """Prepared (N,) column of each session."""
+        if term not in self._cache:
+            self._cache[term] = [
+                w.prepare(block_basis(term, s)[:, None])[:, 0]
+                for w, s in zip(self.whiteners, self.sessions)
+            ]
+        return self._cache[term]
+
+    def forget(self, term: Term) -> None:
+        """Drop a term tried once, so that a search does not grow the cache."""
+        self._cache.pop(term, None)
+
+    def set_events(self, columns: list[list[np.ndarray]]) -> None:
+        """Replace the further nuisances."""
+        self._extra = []
+        for c in columns:
+            self.add_column(c)
+
+    def add_column(self, blocks: list[np.ndarray]) -> None:
+        """A further nuisance given as (n,) block values a session (an event, for one)."""
+        self._extra.append([w.prepare(b[:, None])[:, 0] for w, b in zip(self.whiteners, blocks)])
+
+    def stack(self, terms) -> list[np.ndarray]:
+        """(N, J) columns of the terms and the events, a session each."""
+        columns = [self.columns(t) for t in terms] + self._extra
+        return [
+            np.column_stack([c[i] for c in columns]) if columns else np.zeros((len(self.y[i]), 0))
+            for i in range(len(self.sessions))
+        ]
+
+    def gram(self, terms, candidates=None) -> Gram:
+        """Products of residual, terms and single-column candidates."""
+        x = None
+        if candidates:
+            x = [
+                np.column_stack([self.columns(t)[i] for t in candidates])
+                for i in range(len(self.sessions))
+            ]
+        return gram(self.whiteners, self.y, self.stack(terms), x)
+
+    def fit(self, terms) -> Fit:
+        """Joint fit with the noise's colour refitted."""
+        base = fit_base(self.gram(terms), self.scale, self.steep)
+        best = np.array([base.coefficients[a, i] for a, i in enumerate(base.best)])
+        return Fit(np.linalg.solve(self.axes, best[:, : len(terms)]).T, base, base.total)
+
+    def settle(self, terms) -> None:
+        """Hold outlying blocks at their neighbours and weigh the sessions, both given the terms."""
+        coefficients = self.fit(terms).coefficients
+        self.outliers = 0
+        for i, s in enumerate(self.sessions):
+            model = predicted(terms, coefficients, s)
+            clean, count = held(s.rate_dps - model)
+            self.rate[i] = clean + model
+            self.outliers += count
+        self._prepare()
+        self.scale = session_scale(self.gram(terms))
+
+    def gains(self, terms, candidates, chunk: int = 400) -> np.ndarray:
+        """(K, A) likelihood ratio of each candidate's columns beside the terms. candidates: tuples
+        of terms.
+        """
+        out = np.zeros((len(candidates), len(self.axes)))
+        single = [i for i, c in enumerate(candidates) if len(c) == 1]
+        for at in range(0, len(single), chunk):
+            part = single[at : at + chunk]
+            g = self.gram(terms, [candidates[i][0] for i in part])
+            out[part] = ratios(g, fit_base(g, self.scale, self.steep), self.scale, self.steep)
+        base = None
+        for i, c in enumerate(candidates):
+            if len(c) > 1:
+                base = base or fit_base(self.gram(terms), self.scale, self.steep)
+                more = fit_base(self.gram([*terms, *c]), self.scale, self.steep)
+                out[i] = 2 * (more.loglik.max(axis=1) - base.loglik.max(axis=1))
+        return np.maximum(out, 0.0)
+
+
+def predicted(terms, coefficients: np.ndarray, session: Session) -> np.ndarray:
+    """(n, 3) dps that terms with (terms, 3) coefficients add to the bias of each block."""
+    out = np.zeros((session.blocks, 3))
+    for term, c in zip(terms, coefficients):
+        out += np.outer(block_basis(term, session), c)
+    return out

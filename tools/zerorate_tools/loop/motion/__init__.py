@@ -1,0 +1,1 @@
+"""What only motion shows: scale factor, cross-axis sensitivity, late readings."""

@@ -1,0 +1,82 @@
+"""What motion shows: scale factor and cross-axis, and readings that come late."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...model import Slot
+from ...model.term import Term
+from ..read.reference import Run
+from ..read.sessions import Session
+from ..read.turns import GIVEN
+from .rate_scale import Turning, turning_of
+from .timing import Timing, timing_of
+
+_RATES = ("rate_x", "rate_y", "rate_z")
+
+
+@dataclass(frozen=True)
+class InMotion:
+    """Each None where the recordings do not show it, whether or not it was found."""
+
+    turning: Turning | None = None
+    timing: Timing | None = None
+
+    @property
+    def found(self) -> bool:
+        """Whether anything was."""
+        return self.scales is not None or (self.timing is not None and self.timing.found)
+
+    @property
+    def scales(self) -> Turning | None:
+        """The scale factor or cross-axis that was found."""
+        return self.turning if self.turning is not None and self.turning.found else None
+
+
+def in_motion(train: list[Session], locked: list[Session], single: bool) -> InMotion:
+    """What the training sessions' motion shows. single: one recording, of whose turns every third
+    is held out."""
+    if any(s.turns is None for s in [*train, *locked]):
+        return InMotion()
+    turns = [s.turns for s in train if s.turns]
+    if len({t.beside for t in turns}) > 1:
+        return InMotion()
+    runs, held = [t.runs for t in turns], [r for s in locked if s.turns for r in s.turns.runs]
+    if single:
+        runs, held = _every_third(runs[0])
+    turning = turning_of(runs, held, turns[0].beside, turns[0].unit)
+    delays = [(s.delay, s.tick_s) for s in train if s.delay is not None]
+    return InMotion(turning, timing_of(delays) if len(delays) == len(train) else None)
+
+
+def _every_third(runs: list[Run]) -> tuple[list[list[Run]], list[Run]]:
+    """(training runs in two parts, runs held out)."""
+    train = [r for i, r in enumerate(runs) if i % 3 != 2]
+    half = len(train) // 2
+    return [train[:half], train[half:]], runs[2::3]
+
+
+def without_scales(session: Session, motion: InMotion) -> Session:
+    """The session with what turning adds taken out of its blocks, where the rate is known."""
+    return replace(session, rate_dps=session.rate_dps - rates_of_turning(session, motion))
+
+
+def rates_of_turning(session: Session, motion: InMotion) -> np.ndarray:
+    """(n, 3) dps that turning adds to each block's error, where the rate is known; else 0."""
+    scales = motion.scales
+    if scales is None or scales.reference != GIVEN or "rate_x" not in session.sources:
+        return np.zeros((session.blocks, 3))
+    rate = np.column_stack([session.block_mean(session.sources[n]) for n in _RATES])
+    return rate @ scales.matrix.T
+
+
+def slots_of(motion: InMotion) -> list[Slot]:
+    """Three slots, one a rate, each with what that rate adds to every axis."""
+    t = motion.scales
+    if t is None:
+        return []
+    terms = [Term(n, -float(f), float(f)) for n, f in zip(_RATES, t.fastest_dps)]
+    columns = [(float(x), float(y), float(z)) for x, y, z in t.matrix.T]
+    return [Slot(term, column, t.kind) for term, column in zip(terms, columns)]

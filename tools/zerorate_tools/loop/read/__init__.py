@@ -1,0 +1,1 @@
+"""Recordings into sessions: ticks, the gate, rests, blocks, Earth's rotation, turns."""

@@ -1,0 +1,76 @@
+"""Earth's rotation: no error of the sensor, so it is taken out where it can be known.
+
+A gyroscope at rest reads 4.18 mdps along the axis of the Earth: with latitude and attitude all of
+it is known, with latitude and the direction of gravity its vertical part, without a latitude none.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...simulate.attitude import into_body
+from ...simulate.world import earth_rate_dps
+
+EARTH_DPS = float(np.linalg.norm(earth_rate_dps(0.0)))
+ATTITUDE, LATITUDE = "attitude", "latitude_deg"
+ROTATION = "earth-rotation"
+_POSES = 100
+_UNSURE = 1.25  # what a fit may add to the most that Earth does
+
+
+@dataclass(frozen=True)
+class Earth:
+    """Earth's rate in a recording. rate_dps: (m, 3) of each tick, what is known of it, in the
+    body; unknown_dps: most that is not known of it; said: a sentence for the report."""
+
+    rate_dps: np.ndarray
+    unknown_dps: float
+    said: str
+
+
+def earth_of(ticks) -> Earth:
+    """What is known of Earth's rate at the ticks of a recording."""
+    none = np.zeros((len(ticks.count), 3))
+    latitude = ticks.scales.more.get(LATITUDE)
+    if not isinstance(latitude, (int, float)):
+        return Earth(none, EARTH_DPS, _left(EARTH_DPS, "no latitude_deg is given"))
+    world = earth_rate_dps(float(latitude))
+    attitude = _attitude(ticks)
+    if attitude is not None:
+        return Earth(into_body(attitude, world), 0.0, "Earth's rotation is removed, by attitude")
+    level = float(np.hypot(world[0], world[1]))
+    if ticks.accel is None:
+        return Earth(none, EARTH_DPS, _left(EARTH_DPS, "neither attitude nor gravity is recorded"))
+    up = ticks.accel / np.maximum(np.linalg.norm(ticks.accel, axis=1, keepdims=True), 1e-6)
+    said = "the vertical part of Earth's rotation is removed, by gravity; "
+    return Earth(up * world[2], level, said + _left(level, "the heading is not known"))
+
+
+def _left(dps: float, why: str) -> str:
+    return f"up to {1e3 * dps:.1f} mdps of Earth's rotation are in the rates: {why}"
+
+
+def _attitude(ticks) -> np.ndarray | None:
+    """(m, 4) or (4,) attitude, or None. A constant one travels in the scales as w x y z."""
+    if ticks.attitude is not None:
+        return ticks.attitude
+    given = ticks.scales.more.get(ATTITUDE)
+    if not isinstance(given, (list, tuple)) or len(given) != 4:
+        return None
+    q = np.asarray(given, float)
+    return np.broadcast_to(q / np.linalg.norm(q), (len(ticks.count), 4))
+
+
+def can_be_earth(effect_dps: np.ndarray, unknown_dps: float) -> bool:
+    """Whether an effect of acceleration is no larger than the unknown part of Earth's rate can be.
+
+    effect_dps: (n, 3) what it adds in the poses that were seen. The difference between any two of
+    them is compared with twice that part, which a part turned over can see.
+    """
+    if len(effect_dps) < 2:
+        return False
+    some = effect_dps[:: max(1, len(effect_dps) // _POSES)]
+    apart = np.linalg.norm(some[:, None] - some[None], axis=2).max()
+    return bool(apart <= 2.0 * _UNSURE * unknown_dps)

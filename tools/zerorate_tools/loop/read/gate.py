@@ -1,0 +1,235 @@
+"""Data quality before any regression: what is refused, what is set aside, what is said."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import ceil, floor
+
+import numpy as np
+from scipy.stats import spearmanr
+from zerorate.corrector import LIMITS
+
+from ...errors import ZerorateError
+from ...model.binding import NAMES, binding_of
+from .sessions import OWN_SOURCES, Session
+
+LEAST_BLOCKS = 15
+#: Half of it is the turn-on minute, which nothing is judged by.
+LEAST_S = 120.0
+_MOST_FAULTY = 0.5
+_MOST_GAP = 0.5
+#: What a sensor that gives such samples needs.
+_REMEDY = {
+    "clipped": "the rates are at the rails: choose a wider range",
+    "repeated": "the rates never change: poll no faster than the data rate, and check the bus",
+    "all-zero": "every word is 0: wake the sensor and check the bus",
+    "temperature-jump": "the temperature leaps: check the bus and the temperature's scale",
+}
+_COPY = 0.99999
+#: Rank correlation of what a channel and a rate change by from tick to tick, where white noise is
+#: most of a rate's change: no cause has the sensor's own noise.
+_OWN_NOISE = 0.9
+#: Of a data rate: so far two recordings of one device may be apart, each by its own clock.
+_MOST_RATE_APART = 0.05
+#: Of the rests, beyond which it is said that the firmware takes them for motion.
+_MOST_SHAKEN = 0.3
+_SETTINGS = (
+    "sensor",
+    "odr_hz",
+    "gyro_lsb_per_dps",
+    "accel_lsb_per_g",
+    "temp_lsb_per_degc",
+    "temp_offset_degc",
+)
+
+
+class CannotClose(ZerorateError):
+    """Recordings from which nothing can be learned; the text says what is needed."""
+
+
+@dataclass
+class GateReport:
+    """What was set aside: faults by recording, dropped channels by reason, sentences for the
+    report.
+    """
+
+    faults: dict[str, dict[str, int]] = field(default_factory=dict)
+    dropped: dict[str, str] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+
+
+def same_settings(ticks: list) -> None:
+    """Raise CannotClose for a session of another sensor or scale, or a recording given twice."""
+    first = ticks[0]
+    for t in ticks[1:]:
+        for name in _SETTINGS:
+            one, other = getattr(first.scales, name), getattr(t.scales, name)
+            if not _alike(name, one, other):
+                raise CannotClose(
+                    f"{t.name}: {name} is {other}, but {one} in {first.name}; "
+                    f"sessions must be of one device with one setting{_how_alike(name, one, other)}"
+                )
+        _same_chip(first, t)
+    seen: dict[str, str] = {}
+    for t in ticks:
+        if t.digest in seen:
+            raise CannotClose(
+                f"{t.name} holds the same samples as {seen[t.digest]}; name each recording once"
+            )
+        seen[t.digest] = t.name
+
+
+def _alike(name, one, other) -> bool:
+    """Whether two recordings may have these settings: equal, a data rate within five percent."""
+    if name == "odr_hz":
+        return abs(one - other) <= _MOST_RATE_APART * max(one, other)
+    return one == other
+
+
+def _how_alike(name, one, other) -> str:
+    """How to import what differs by the scale that an import chose alone."""
+    if "_lsb_" not in name or one is None or other is None:
+        return ""
+    return f": if only the imports differ, import both with --{name.replace('_', '-')} N"
+
+
+def readable(ticks: list) -> None:
+    """Raise CannotClose for a recording most of which are faults; the text says of which kind."""
+    for t in ticks:
+        for kind, count in t.faults.items():
+            if count > _MOST_FAULTY * t.samples:
+                raise CannotClose(
+                    f"{t.name}: {100 * count / t.samples:.0f} % of its samples are {kind}; "
+                    f"{_REMEDY[kind]}"
+                )
+
+
+def without_long_gaps(ticks: list) -> None:
+    """Raise CannotClose for a recording most of whose time nothing was recorded."""
+    for t in ticks:
+        filled = np.flatnonzero(t.count > 0)
+        longest = int(np.diff(filled).max(initial=0))
+        if longest > _MOST_GAP * len(t.count):
+            raise CannotClose(
+                f"{t.name}: nothing for {longest * t.tick_s / 3600:.1f} h of its "
+                f"{len(t.count) * t.tick_s / 3600:.1f} h; cut it there: what follows is a "
+                "recording of its own"
+            )
+
+
+def _same_chip(first, other) -> None:
+    one, its = binding_of(first.scales), binding_of(other.scales)
+    for name in NAMES:
+        a, b = getattr(one, name), getattr(its, name)
+        if a is not None and b is not None and a != b:
+            raise CannotClose(
+                f"{other.name}: its {name} is {b}, but {a} in {first.name}; "
+                "sessions must be of one device with one setting"
+            )
+
+
+def enough(session: Session) -> None:
+    """Raise CannotClose where too little of a recording is still."""
+    needed_s = max(LEAST_BLOCKS * session.block_s, LEAST_S)
+    have_s = session.blocks * session.block_s
+    still_s = int(session.available.sum()) * session.block_s
+    if have_s < needed_s:
+        raise CannotClose(
+            f"{session.name}: {_have(have_s)} minutes are too short; {_needed(session, needed_s)}, "
+            "better an hour"
+        )
+    if still_s < needed_s:
+        raise CannotClose(
+            f"{session.name}: only {_have(still_s)} minutes are still; "
+            f"{_needed(session, needed_s)}: leave the device untouched for longer"
+        )
+
+
+def _have(seconds: float) -> str:
+    """Minutes rounded down, and what is needed up, so that the two are told apart."""
+    return f"{floor(seconds / 6) / 10:.1f}"
+
+
+def _needed(session: Session, seconds: float) -> str:
+    return (
+        f"{ceil(seconds / 6) / 10:g} minutes at rest are needed ({LEAST_BLOCKS} blocks of "
+        f"{session.block_s:g} s, no less than {LEAST_S / 60:g} minutes)"
+    )
+
+
+def shaken(sessions: list[Session], report: GateReport) -> None:
+    """Say in the report where the firmware learns little because its accelerometer sees shaking."""
+    seen = [s for s in sessions if "vib" in s.sources]
+    if not seen:
+        return
+    limit = LIMITS["still_g"]
+    over = [(s.block_mean(s.sources["vib"]) > limit**2)[s.available] for s in seen]
+    share = float(np.concatenate(over).mean())
+    if share > _MOST_SHAKEN:
+        report.notes.append(
+            f"in {100 * share:.0f} % of the rests the acceleration varies by more than {limit} g: "
+            "the firmware takes that for motion and learns nothing there, so before and after are "
+            "those of a curve learned from the others; record with less vibration, or give "
+            "the firmware a larger still_g"
+        )
+
+
+def usable_channels(sessions: list[Session], report: GateReport) -> None:
+    """Take out of the sessions every source that is constant, copied or not in all of them; say so
+    in the report.
+    """
+    names = list(dict.fromkeys(n for s in sessions for n in s.sources))
+    for name in names:
+        reason = _unusable(name, sessions)
+        if reason:
+            report.dropped[name] = reason
+            for s in sessions:
+                s.sources.pop(name, None)
+    kept = [n for n in names if n not in report.dropped]
+    for i, name in enumerate(kept):
+        twin = next(
+            (o for o in kept[:i] if o not in report.dropped and _copies(o, name, sessions)), None
+        )
+        if twin:
+            report.dropped[name] = f"a copy of {twin}: the two cannot be told apart"
+            for s in sessions:
+                s.sources.pop(name)
+
+
+def _unusable(name, sessions):
+    missing = [s.name for s in sessions if name not in s.sources]
+    if missing:
+        return f"not in {', '.join(missing)}"
+    if not all(np.isfinite(s.sources[name]).all() for s in sessions):
+        return "no values"
+    if name not in ("acc_x", "acc_y", "acc_z") and all(
+        np.ptp(s.sources[name]) == 0 for s in sessions
+    ):
+        return "constant"
+    if name not in OWN_SOURCES and all(_has_the_noise(s, name) for s in sessions):
+        return "it has the gyroscope's own noise: a copy of what is to be explained, no cause of it"
+    return None
+
+
+def _has_the_noise(session: Session, name: str) -> bool:
+    """Whether a channel changes from tick to tick as the rate about an axis does."""
+    if session.ticks_dps is None:
+        return False
+    own = np.diff(session.sources[name][: len(session.ticks_dps)])
+    rates = np.diff(session.ticks_dps, axis=0)
+    there = np.isfinite(rates).all(axis=1) & (own != 0)
+    if there.sum() < max(LEAST_BLOCKS, 0.5 * len(own)):
+        return False
+    if np.ptp(own[there]) == 0:
+        return False
+    alike = [abs(spearmanr(own[there], r).statistic) for r in rates[there].T if np.ptp(r) > 0]
+    return max(alike, default=0.0) > _OWN_NOISE
+
+
+def _copies(a, b, sessions):
+    if a.startswith(("acc_", "rate_")) and b.startswith(("acc_", "rate_")):
+        return False
+    x = np.concatenate([s.sources[a] - s.sources[a].mean() for s in sessions])
+    y = np.concatenate([s.sources[b] - s.sources[b].mean() for s in sessions])
+    scale = np.sqrt((x @ x) * (y @ y))
+    return bool(scale > 0 and abs(x @ y) / scale > _COPY)

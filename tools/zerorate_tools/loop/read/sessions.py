@@ -1,0 +1,114 @@
+"""One power-on session of one device as the loop sees it: block means of the still rate, tick means
+of everything else.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ...model.term import Term, evaluate
+from .earth import Earth
+from .lines import Spectrum
+from .turns import Turns
+
+#: Sources of effect slots that are not extra channels, whose names extra channels cannot have.
+OWN_SOURCES = (
+    "one",
+    "time",
+    "temp",
+    "vib",
+    "acc_x",
+    "acc_y",
+    "acc_z",
+    "rate_x",
+    "rate_y",
+    "rate_z",
+)
+
+
+@dataclass
+class Session:
+    """A power-on session.
+
+    rate_dps: (n, 3) mean rate of each block's still part, NaN where there is none. weight: (n,)
+    share of the block that was still, 0..1. sources: name -> (n * ticks_per_block,) tick means, no
+    NaN (gaps held), units as in effect slots. earth: Earth's rate, which rate_dps is without as
+    far as it is known. delay: (m, 2) of `timing.products`, where there is a reference.
+    turns: what tells the scale of the rates.
+    ticks_dps: (n * ticks_per_block, 3) rate of each tick at rest, NaN elsewhere; quick: spectrum of
+    the samples at rest; tick_weight: (n * ticks_per_block,) samples that count in rate_dps.
+    """
+
+    name: str
+    block_s: float
+    ticks_per_block: int
+    rate_dps: np.ndarray
+    weight: np.ndarray
+    sources: dict[str, np.ndarray] = field(default_factory=dict)
+    start_us: int = 0
+    noise_dps: np.ndarray | None = None
+    earth: Earth | None = None
+    delay: np.ndarray | None = None
+    turns: Turns | None = None
+    ticks_dps: np.ndarray | None = None
+    quick: Spectrum | None = None
+    tick_weight: np.ndarray | None = None
+
+    @property
+    def blocks(self) -> int:
+        """Number of blocks, still or not."""
+        return len(self.rate_dps)
+
+    @property
+    def tick_s(self) -> float:
+        """Seconds per tick: the period at which effect slots are updated."""
+        return self.block_s / self.ticks_per_block
+
+    @property
+    def available(self) -> np.ndarray:
+        """(n,) bool: blocks with a usable rate."""
+        return np.isfinite(self.rate_dps).all(axis=1) & (self.weight > 0)
+
+    @property
+    def moved(self) -> np.ndarray:
+        """(n,) bool: blocks whose rate is known beside a reference though they were not at rest."""
+        if self.ticks_dps is None:
+            return np.zeros(self.blocks, bool)
+        at_rest = np.isfinite(self.ticks_dps).all(axis=1).reshape(self.blocks, -1)
+        return self.available & (at_rest.mean(axis=1) < 0.5)
+
+    def block_mean(self, ticks: np.ndarray) -> np.ndarray:
+        """Mean over each block of a (n * ticks_per_block,) series: over the ticks that count in its
+        rate, so that cause and effect are of one time, and over all where none does.
+        """
+        rows = ticks.reshape(self.blocks, self.ticks_per_block)
+        if self.tick_weight is None:
+            return rows.mean(axis=1)
+        weight = self.tick_weight.reshape(rows.shape)
+        total = weight.sum(axis=1)
+        counted = (rows * weight).sum(axis=1) / np.where(total > 0, total, 1.0)
+        return np.where(total > 0, counted, rows.mean(axis=1))
+
+    def time_s(self) -> np.ndarray:
+        """(n * ticks_per_block,) seconds since power-on at the middle of each tick."""
+        return (np.arange(self.blocks * self.ticks_per_block) + 0.5) * self.tick_s
+
+    def source(self, name: str) -> np.ndarray:
+        """Ticks of a source by name; `time` and `one` are always there. Raises KeyError."""
+        if name == "time":
+            return self.time_s()
+        if name == "one":
+            return np.ones(self.blocks * self.ticks_per_block)
+        return self.sources[name]
+
+
+def common_sources(sessions: list[Session]) -> list[str]:
+    """Names of the sources that every session has, in the first session's order."""
+    return [n for n in sessions[0].sources if all(n in s.sources for s in sessions)]
+
+
+def block_basis(term: Term, session: Session) -> np.ndarray:
+    """(n,) mean over each block of the basis."""
+    return session.block_mean(evaluate(term, session.source, session.tick_s))

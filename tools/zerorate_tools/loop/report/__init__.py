@@ -1,0 +1,1 @@
+"""report.json and the lines for a terminal."""

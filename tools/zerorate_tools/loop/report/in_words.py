@@ -1,0 +1,54 @@
+"""A report in a few lines for a terminal."""
+
+from __future__ import annotations
+
+from ...signs import fixed
+
+
+def in_words(result: dict) -> str:
+    """How good it is now, what was found and how sure, what is left, what to record next."""
+    lines = [
+        f"held out: {', '.join(result['split']['test'])} ({result['split']['unit']})",
+        f"error before  {_axes(result['before_mdps'])}",
+        f"error after   {_axes(result['after_mdps'])}",
+        f"floor         {_axes(result['floor_mdps'])}",
+    ]
+    lines += [_effect(step) for step in result["steps"]] or ["found: nothing"]
+    lines += [f"withdrawn: {what}: {why}" for what, why in result["gate"]["withdrawn"]]
+    lines += [_event(event) for event in result["events"]]
+    lines += [_line(line) for line in result["interference"]]
+    unexplained = result["unexplained"]
+    lines.append(f"left: {unexplained['what_is_known']}")
+    lines += [f"next: {what}" for what in unexplained["measure_next"]]
+    lines += [f"note: {note}" for note in result["gate"]["notes"]]
+    lines += [
+        f"channel {n} not used: {why}" for n, why in result["gate"]["channels_dropped"].items()
+    ]
+    if "how_much_weaker" in result["split"]:
+        lines.append(result["split"]["how_much_weaker"])
+    return "\n".join(lines)
+
+
+def _axes(mdps):
+    return "  ".join(f"{a} {v:8.3f}" for a, v in zip("xyz", mdps)) + "  mdps"
+
+
+def _effect(step):
+    rivals = step["confounded_with"]
+    tie = f"; cannot be told from {', '.join(rivals)}" if rivals else ""
+    said = step["said"].removeprefix(step["effect"]).strip()
+    return f"found: {step['effect']} {said}".rstrip() + f" ({step['confidence']}){tie}"
+
+
+def _event(event):
+    sizes = ", ".join(fixed(v, 2, "+") for v in event["size_mdps"])
+    at = event["t_us"] / 1e6
+    return f"step in {event['recording']} at {at:.0f} s: {sizes} mdps (listed, never corrected)"
+
+
+def _line(line):
+    sizes = ", ".join(f"{v:.2f}" for v in line["size_mdps"])
+    return (
+        f"a line at {line['hz']:.5g} Hz of {sizes} mdps (listed: it averages out of the bias; one "
+        "that moves when the data rate moves by 2 % is an alias)"
+    )

@@ -1,0 +1,84 @@
+"""Effects that are not fitted on blocks, as steps of the report: of motion, and periodic ones."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..motion.rate_scale import Turning
+from ..motion.timing import Timing
+from ..read.lines import Line
+from ..search.periodic import QUICK_HZ
+from ..verify.analysis import Analysis
+
+
+def steps_beside(analysis: Analysis, after_mdps: list[float]) -> list[dict]:
+    """Steps in report.json's form. after_mdps: of the blocks held out, which these leave alone."""
+    motion = analysis.motion
+    same = {"before_mdps": after_mdps, "after_mdps": after_mdps, "confounded_with": []}
+    out = []
+    if motion.scales is not None:
+        out.append({**_turning(motion.scales), **same})
+    if motion.timing is not None and motion.timing.found:
+        out.append({**_timing(motion.timing), **same})
+    slow = (line for line in analysis.lines if line.hz < QUICK_HZ)
+    return [*out, *({**_line(line, analysis.few), **same} for line in slow)]
+
+
+def interference(lines: list[Line]) -> list[dict]:
+    """Quick lines in report.json's form: they average out of the bias, so they are no steps."""
+    return [
+        {
+            "kind": "line",
+            "hz": line.hz,
+            "size_mdps": [round(float(1e3 * a), 3) for a in line.amplitude_dps],
+            "p_value": line.p_value,
+            "in_what_was_held_out": line.in_locked,
+        }
+        for line in lines
+        if line.hz >= QUICK_HZ
+    ]
+
+
+def _turning(t: Turning) -> dict:
+    names = ("rate_x", "rate_y", "rate_z")
+    return {
+        "effect": t.kind,
+        "sources": list(names),
+        "parameters": [{"source": n, "limit_dps": float(f)} for n, f in zip(names, t.fastest_dps)],
+        "coefficients": {n: [float(v) for v in c] for n, c in zip(names, t.matrix.T)},
+        "deviation": {n: [float(v) for v in c] for n, c in zip(names, t.deviation.T)},
+        "confidence": "confirmed" if t.confirmed else "tentative",
+        "p_value": t.p_value,
+        "in_motion": {"before": t.before, "after": t.after, "unit": f"{t.unit} rms a turn"},
+        "said": f"{t.kind} over {t.runs} turns, measured beside {t.reference}; it does not show "
+        "at rest, where before and after are measured",
+    }
+
+
+def _timing(t: Timing) -> dict:
+    late = "late" if t.delay_s > 0 else "early"
+    return {
+        "effect": "sample-timing",
+        "sources": ["time"],
+        "parameters": [{"delay_s": t.delay_s, "deviation_s": t.deviation_s}],
+        "coefficients": {},
+        "confidence": "tentative",
+        "p_value": t.p_value,
+        "said": f"readings are {1e3 * abs(t.delay_s):.2f} ms {late} beside the reference (or it "
+        "beside them); no bias, so not corrected: shift the stamps",
+    }
+
+
+def _line(line: Line, few: bool) -> dict:
+    size = ", ".join(f"{1e3 * a:.2f}" for a in np.atleast_1d(line.amplitude_dps))
+    return {
+        "effect": "periodic-interference",
+        "sources": [],
+        "parameters": [{"hz": line.hz, "period_s": 1.0 / line.hz}],
+        "coefficients": {},
+        "amplitude_mdps": [float(1e3 * a) for a in line.amplitude_dps],
+        "confidence": "confirmed" if line.in_locked and not few else "tentative",
+        "p_value": line.p_value,
+        "said": f"a line at {line.hz:.5g} Hz of {size} mdps; its phase is free at each power-on, "
+        "so not corrected; record at a data rate 2 % higher: a line that moves is an alias",
+    }

@@ -1,0 +1,231 @@
+"""report.json, as design.md has it, with what a person needs beside it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..fit.intervals import block_bootstrap, rms
+from ..fit.single import WEAKER
+from ..search.confounding import label
+from ..search.periodic import QUICK_HZ
+from ..verify.analysis import Analysis
+from ..verify.judge import residuals, rms_dps
+from ..verify.measured import AFTER, BEFORE, ONLINE, ONLINE_BEFORE
+from ..verify.slots import slots
+from .motion_effects import interference, steps_beside
+from .unexplained import measure_next, not_excluded, what_is_known
+
+#: Of an analysis that no recording was replayed for.
+FLOAT = "float reference of the effect slots and the line, means of blocks"
+CAUSE_UNKNOWN = "time since power-on; cause not identified"
+NO_TEMPERATURE = "; no temperature was recorded, and the warm-up of every power-on looks like this"
+
+
+def report(analysis: Analysis) -> dict:
+    """Plain values, ready for JSON. Every figure in mdps is of the locked part."""
+    j = analysis.judgement
+    return {
+        "split": _split(analysis),
+        "measured_by": analysis.measured.by if analysis.measured else FLOAT,
+        "floor_mdps": _mdps(analysis.floor_dps),
+        "before_mdps": _mdps(j.before_dps),
+        "after_mdps": _mdps(j.after_dps),
+        "ci95_mdps": {
+            "before": _interval(j.residual_before),
+            "after": _interval(j.residual_after),
+        },
+        "in_all": _in_all(analysis),
+        **_by_kernels(analysis),
+        "truth": _truth(analysis),
+        "steps": [
+            *_steps(analysis),
+            *steps_beside(analysis, _mdps(j.after_dps)),
+        ],
+        "events": _events(analysis),
+        "interference": interference(analysis.lines),
+        "unexplained": {
+            "rms_mdps": _mdps(j.after_dps),
+            "what_is_known": what_is_known(analysis, j.after_dps),
+            "measure_next": measure_next(analysis),
+            "cannot_be_shown_by_these_recordings": not_excluded(analysis),
+        },
+        "smallest_detectable_mdps": {
+            k: round(1e3 * v, 3) for k, v in analysis.selection.smallest_dps.items()
+        },
+        "gate": _gate(analysis),
+        "verdict": verdict(analysis),
+    }
+
+
+def verdict(analysis: Analysis) -> str:
+    """nothing-found, effects-found or unexplained-residual."""
+    if analysis.selection.found or analysis.motion.found or _in_the_bias(analysis.lines):
+        return "effects-found"
+    return "unexplained-residual" if analysis.judgement.excess.left else "nothing-found"
+
+
+def _in_the_bias(lines):
+    return any(line.hz < QUICK_HZ for line in lines)
+
+
+def _mdps(values) -> list[float]:
+    return [round(float(1e3 * v), 4) for v in values]
+
+
+def _interval(parts):
+    low, high = block_bootstrap(parts, rms)
+    return [[a, b] for a, b in zip(_mdps(low), _mdps(high))]
+
+
+def _in_all(analysis):
+    """Root mean squares over the three axes together."""
+    j = analysis.judgement
+    return {
+        "before_mdps": round(1e3 * j.before_rms, 4),
+        "after_mdps": round(1e3 * j.after_rms, 4),
+        "floor_mdps": round(1e3 * float(rms(analysis.floor_dps)), 4),
+        "ci95_mdps": {
+            name: _mdps(block_bootstrap(parts, lambda rows: rms(rows.ravel())))
+            for name, parts in (("before", j.residual_before), ("after", j.residual_after))
+        },
+    }
+
+
+def _by_kernels(analysis):
+    """What only the firmware's kernels can tell: learning online, turn-on offset, rounding."""
+    m, floor = analysis.measured, analysis.floor_dps
+    if m is None:
+        offsets = analysis.judgement.offsets_dps
+        return {"turn_on_offset_dps": {"after": [[float(x) for x in o] for o in offsets]}}
+    before, after = m.residuals(ONLINE_BEFORE), m.residuals(ONLINE)
+    return {
+        "online": {
+            "before_mdps": _mdps(rms_dps(before)),
+            "after_mdps": _mdps(rms_dps(after)),
+            "ci95_mdps": {"before": _interval(before), "after": _interval(after)},
+        },
+        "turn_on_offset_dps": {
+            way: [[float(x) for x in o] for o in m.offsets(way)] for way in (BEFORE, AFTER)
+        },
+        "integer_rounding_mdps": _mdps(m.rounding_dps),
+        "integer_rounding_of_floor": round(float((m.rounding_dps / floor).max()), 4),
+    }
+
+
+def _truth(analysis):
+    """What the rates are compared with, at rest and in motion."""
+    earth, turns = analysis.sessions[0].earth, analysis.sessions[0].turns
+    some = turns is not None and any(s.turns.runs for s in analysis.sessions if s.turns)
+    return {
+        "at_rest": "zero rate; " + (earth.said if earth else "Earth's rotation is in the rates"),
+        "in_motion": turns.beside if some else "no reference: what moves is set aside",
+    }
+
+
+def _split(analysis):
+    out = {
+        "unit": "time within one recording" if analysis.single else "power-on session",
+        "train": [s.name for s in analysis.train],
+        "test": [s.name for s in analysis.locked],
+        "block_s": analysis.sessions[0].block_s,
+        "blocks": {s.name: int(s.available.sum()) for s in analysis.sessions},
+    }
+    if analysis.single:
+        out["how_much_weaker"] = WEAKER
+    return out
+
+
+def _steps(analysis):
+    """Effects in the order found, each with the locked part's error before and after it."""
+    selection, out = analysis.selection, []
+    fitted = slots(selection, analysis.coefficients)
+    so_far = [_after(analysis, k) for k in range(len(selection.found) + 1)]
+    at = 0
+    for i, f in enumerate(selection.found):
+        own = fitted[at : at + len(f.candidate.terms)]
+        at += len(own)
+        before, after = so_far[i], so_far[i + 1]
+        out.append(
+            {
+                "effect": label(f.candidate),
+                "sources": f.candidate.sources,
+                "parameters": _parameters(own),
+                "coefficients": {_name(s, own): list(s.coefficient_dps) for s in own},
+                "confidence": analysis.confidence(i),
+                "before_mdps": _mdps(rms_dps(before)),
+                "after_mdps": _mdps(rms_dps(after)),
+                "ci95_mdps": _interval(after),
+                "p_value": f.decision.p_value,
+                "confounded_with": f.confounded_with,
+                "likelihood_ratio": round(f.decision.ratio, 2),
+                "noise_inflation": round(f.decision.inflation, 2),
+                "nats_on_sessions_left_out": [round(float(g), 2) for g in f.decision.session_gains],
+                "nats_on_locked": round(float(analysis.judgement.gains[i]), 2),
+                "said": _said(f) + (NO_TEMPERATURE if analysis.may_be_heat(i) else ""),
+            }
+        )
+    return out
+
+
+def _name(slot, own):
+    """A slot's source, with its power where an effect has several slots of one source."""
+    term = slot.term
+    alone = sum(other.term.source == term.source for other in own) == 1
+    return term.source if alone else f"{term.source}^{term.power}"
+
+
+def _parameters(own):
+    rows = [s.term.to_dict() for s in own]
+    return [{k: v for k, v in row.items() if v not in (None, "none")} for row in rows]
+
+
+def _said(found):
+    kind, sources = found.candidate.kind, ", ".join(found.candidate.sources)
+    if kind in ("time-drift", "power-on-transient"):
+        return CAUSE_UNKNOWN
+    if kind.startswith("channel"):
+        return f"not in the catalogue; depends on {sources}; mechanism unknown"
+    return f"{kind} of {sources}"
+
+
+def _after(analysis, effects: int) -> list[np.ndarray]:
+    """Residuals of the locked part under the first so many effects alone."""
+    if analysis.measured is not None:
+        return analysis.measured.with_first(effects)
+    return [r for r, _ in residuals(analysis.selection.first(effects), analysis.locked)]
+
+
+def _events(analysis):
+    whole = analysis.judgement.whole
+    out = []
+    for step in analysis.judgement.steps:
+        s = whole.sessions[step.session]
+        out.append(
+            {
+                "kind": "step",
+                "t_us": int(s.start_us + step.block * s.block_s * 1e6),
+                "recording": s.name,
+                "size_mdps": _mdps(step.size_dps),
+                "p_value": step.p_value,
+            }
+        )
+    return out
+
+
+def _gate(analysis):
+    return {
+        "faults": analysis.gate.faults,
+        "channels_dropped": analysis.gate.dropped,
+        "notes": analysis.gate.notes,
+        "blocks_set_aside": analysis.selection.outliers,
+        "withdrawn": [list(r) for r in analysis.selection.withdrawn],
+        "considered_and_refused": [
+            [what, why.replace("sessions", "pieces") if analysis.single else why]
+            for what, why in dict.fromkeys(analysis.selection.refused)
+        ],
+    }
+
+
+def as_json(value):
+    """NumPy scalars as plain numbers, for `json.dumps(default=...)`."""
+    return np.asarray(value).tolist()

@@ -1,0 +1,131 @@
+"""What is known of what remains, and what to record next."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...signs import fixed
+from ..search.catalogue import is_supply, varies
+from ..verify.measured import BEFORE
+
+_ORIENTATION = "hold the device in six orientations, each twice, at constant temperature"
+_COOLING = "a cool-down at the same rate as the warm-up (tells lag, rate and hysteresis apart)"
+_SUPPLY = "record the supply voltage, and step it by 100 mV up and down at constant temperature"
+_POWER = "three power-ons at constant temperature, one of them a warm restart"
+_MORE = "more power-ons: {}; 6 or more to fit on"
+_FEW = "with fewer than 3 to fit on nothing is confirmed"
+_CHANCE = "with {} to fit on, a chance agreement of all signs is common"
+_UNRECORDED = "a logger of humidity and board temperature beside the device, one screw loosened"
+_LONGER = "an hour or more at rest in each recording"
+_ONE_DEVICE = (
+    "make sure that all recordings are of one device: {} begins {:.2g} dps away from what the "
+    "others taught"
+)
+_WHOLE_RANGE = (
+    "the whole range of temperature in every power-on: {} goes from {:.0f} to {:.0f} degC, what "
+    "was fitted from {:.0f} to {:.0f}"
+)
+#: Beyond it, a turn-on offset is rather another device's: parts repeat theirs far better.
+_ANOTHERS_DPS = 0.5
+#: Share of what is held out at temperatures that nothing fitted has seen, and by how much.
+_UNSEEN_SHARE, _UNSEEN_DEGC = 0.25, 1.0
+
+
+def what_is_known(analysis, after_dps: np.ndarray) -> str:
+    """A sentence or two on the residual of the locked part, given its RMS (3,) in dps."""
+    excess, floor = analysis.judgement.excess, analysis.floor_dps
+    times = after_dps / np.maximum(floor, 1e-12)
+    size = f"{times.max():.1f} times the floor on the worst axis"
+    if not excess.left:
+        return f"{size}; nothing beyond white noise, flicker and random walk is seen in it"
+    parts = [size]
+    if excess.smooth:
+        parts.append("slow, smoother than a random walk")
+    if excess.common:
+        ratio = excess.direction / np.abs(excess.direction).max()
+        parts.append("common to the axes in the ratio " + ":".join(fixed(r, 2) for r in ratio))
+    parts.append(_nearest_channel(analysis))
+    return "unexplained: " + "; ".join(parts)
+
+
+def _nearest_channel(analysis):
+    s = analysis.selection
+    if not s.pool:
+        return "no channel recorded that it could move with"
+    terms = [*s.straight, *s.bend, *s.terms]
+    ratios = s.regression.gains(terms, [c.terms for c in s.pool]).sum(axis=1)
+    best = s.pool[int(ratios.argmax())]
+    sources = " and ".join(best.sources) or "time since power-on"
+    return f"of what was recorded it moves most like {sources}, which does not explain it"
+
+
+def measure_next(analysis) -> list[str]:
+    """What to record so that more could be told, the most useful first."""
+    sessions, found = analysis.sessions, analysis.selection.found
+    kinds = {f.candidate.kind for f in found}
+    out = [*_another_device(analysis), *_other_temperatures(analysis)]
+    if len(sessions) < 5:
+        fitted = len(sessions) - 1
+        out.append(_MORE.format(_FEW if fitted < 3 else _CHANCE.format(fitted)))
+    if "temp" in sessions[0].sources and not any(_cools(s) for s in sessions):
+        out.append(_COOLING)
+    if kinds & {"power-on-transient", "time-drift"}:
+        out.append(_POWER)
+    if not _turned(sessions):
+        out.append(_ORIENTATION)
+    if not any(is_supply(n) for n in sessions[0].sources):
+        out.append(_SUPPLY)
+    if analysis.judgement.excess.left:
+        out.append(_UNRECORDED)
+    if max(s.blocks * s.block_s for s in sessions) < 3000:
+        out.append(_LONGER)
+    return out
+
+
+def _another_device(analysis):
+    """The question whether what is held out is of the same device, where it begins far off."""
+    if analysis.single:
+        return []
+    m = analysis.measured
+    offsets = m.offsets(BEFORE) if m else analysis.judgement.offsets_dps
+    far = [(float(np.abs(o).max()), s.name) for o, s in zip(offsets, analysis.locked)]
+    return [_ONE_DEVICE.format(name, dps) for dps, name in far if dps > _ANOTHERS_DPS]
+
+
+def _other_temperatures(analysis):
+    """The range to record, where much of what is held out lies outside of what was fitted."""
+    if analysis.single or "temp" not in analysis.sessions[0].sources:
+        return []
+    seen = np.concatenate([_temperatures(s) for s in analysis.train])
+    out = []
+    for s in analysis.locked:
+        t = _temperatures(s)
+        outside = (t < seen.min() - _UNSEEN_DEGC) | (t > seen.max() + _UNSEEN_DEGC)
+        if outside.mean() > _UNSEEN_SHARE:
+            out.append(_WHOLE_RANGE.format(s.name, t.min(), t.max(), seen.min(), seen.max()))
+    return out
+
+
+def _temperatures(session):
+    return session.block_mean(session.sources["temp"])[session.available]
+
+
+def _cools(session):
+    t = session.block_mean(session.sources["temp"])
+    return (t.max() - t)[int(t.argmax()) :].max() > 0.5 * np.ptp(t)
+
+
+def _turned(sessions):
+    names = ("acc_x", "acc_y", "acc_z")
+    return all(n in sessions[0].sources for n in names) and any(varies(n, sessions) for n in names)
+
+
+def not_excluded(analysis) -> list[str]:
+    """Kinds of effect that these recordings cannot show because nothing in them varies it."""
+    from ..search.catalogue import CATALOGUE, GROUPS
+
+    shown = {c.kind for c in analysis.selection.pool}
+    if analysis.motion.turning is not None:
+        shown.add("rate-scale")
+    kinds = [row[0] for row in CATALOGUE] + [row[0] for row in GROUPS]
+    return [kind for kind in kinds if kind not in shown]

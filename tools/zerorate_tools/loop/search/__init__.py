@@ -1,0 +1,1 @@
+"""Which effects are there: catalogue, selection, multiple testing, drift, naming."""

@@ -1,0 +1,252 @@
+"""What a bias can follow: a table of effects, and forms for any recorded channel.
+
+To add an effect, add a row. A row is (kind, source, fields of the slot, grids of further fields);
+the slot is `basis.Term`. Grids are coarse: what is found is refined afterwards.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from ...model.term import Term
+from ..motion.rate_scale import LEAST_RUNS
+from ..read.sessions import Session, block_basis, common_sources
+from ..read.turns import GIVEN
+
+Options = dict[str, Any]
+
+#: Where the factors of a product are zero; each place takes another share of either factor.
+_CENTRES: Options = {"centre": ("mean", "lo", "hi"), "second_centre": ("mean", "lo", "hi")}
+
+#: Physical effects; `knot` grids are shares of the source's range.
+CATALOGUE: tuple[tuple[str, str, Options, Options], ...] = (
+    ("temperature-quadratic", "temp", {"power": 2}, {}),
+    # About another centre than its own it takes a quadratic beside it, and kinks fit better.
+    ("temperature-cubic", "temp", {"power": 3}, {"centre": ("mean", "lo", "hi")}),
+    ("temperature-kink", "temp", {}, {"knot": (0.15, 0.25, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85)}),
+    ("thermal-rate", "temp", {"lag_mode": "rate"}, {"lag_s": (10.0, 20.0, 40.0)}),
+    (
+        "thermal-lag",
+        "temp",
+        {"lag_mode": "difference"},
+        {"lag_s": (80.0, 160.0, 320.0, 640.0, 1300.0)},
+    ),
+    ("thermal-hysteresis", "temp", {"memory": "backlash"}, {"width": (0.7, 1.4, 2.8, 5.6, 11.0)}),
+    ("temperature-peak", "temp", {"memory": "peak"}, {}),
+    (
+        "power-on-transient",
+        "one",
+        {},
+        {"decay_s": (60.0, 120.0, 240.0, 480.0, 960.0, 1900.0, 3800.0)},
+    ),
+    ("time-drift", "time", {}, {}),
+    ("vibration", "vib", {}, {}),
+    ("supply-voltage", "supply", {}, {}),
+    ("supply-temperature", "supply", {"second": "temp"}, _CENTRES),
+)
+
+#: Effects of several columns at once, each with a coefficient per axis.
+GROUPS: tuple[tuple[str, tuple[str, ...], Options], ...] = (
+    ("linear-acceleration", ("acc_x", "acc_y", "acc_z"), {}),
+    ("squared-acceleration", ("acc_x", "acc_y", "acc_z"), {"power": 2, "centre": 0.0}),
+    ("rate-scale", ("rate_x", "rate_y", "rate_z"), {}),
+)
+
+#: A channel that switches shows its delay to the block: between the grid's points nothing is seen.
+DELAY_STEP_S = 20.0
+_DELAYS_S = tuple(DELAY_STEP_S * i for i in range(1, 17))
+
+#: Forms for any channel, catalogue or not.
+GENERIC: tuple[tuple[str, Options, Options], ...] = (
+    ("channel", {}, {}),
+    ("channel-square", {"power": 2}, {"centre": ("mean", "lo", "hi")}),
+    ("channel-lag", {"lag_mode": "lag"}, {"lag_s": (60.0, 180.0, 540.0, 1600.0)}),
+    ("channel-delay", {}, {"delay_s": _DELAYS_S}),
+    (
+        "channel-delay-square",
+        {"power": 2},
+        {"delay_s": _DELAYS_S, "centre": ("mean", "lo")},
+    ),
+    ("channel-rate", {"lag_mode": "rate"}, {"lag_s": (40.0, 160.0)}),
+    (
+        "channel-lag-square",
+        {"lag_mode": "lag", "power": 2, "power_first": True},
+        {"lag_s": (60.0, 180.0, 540.0), "centre": ("mean", "lo", "hi")},
+    ),
+    ("channel-kink", {}, {"knot": (0.2, 0.35, 0.5, 0.65, 0.8)}),
+    ("channel-peak", {"memory": "peak"}, {}),
+    ("channel-product", {}, {"second": "every", **_CENTRES}),
+)
+
+SUPPLY_NAMES = ("vdd", "vbat", "volt", "vcc", "supply")
+_OWN = ("temp", "acc_x", "acc_y", "acc_z", "rate_x", "rate_y", "rate_z", "vib")
+#: Parameters refined after the grid, with the limits they may take.
+REFINED = {
+    "lag_s": (8.0, 7200.0),
+    "delay_s": (1.0, 1200.0),
+    "decay_s": (40.0, 14400.0),
+    "width": (0.3, 30.0),
+    "knot": None,
+    "centre": None,
+    "second_centre": None,
+}
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An effect that may be there: a kind and the slots that would correct it."""
+
+    kind: str
+    terms: tuple[Term, ...]
+    family: str  # catalogue or generic
+    refine: tuple[str, ...] = field(default=())
+
+    @property
+    def sources(self) -> list[str]:
+        """Names of the channels it follows."""
+        names = [t.source for t in self.terms] + [t.second for t in self.terms if t.second]
+        return list(dict.fromkeys(n for n in names if n != "one"))
+
+
+def ranges(sessions: list[Session]) -> dict[str, tuple[float, float, float]]:
+    """Source name -> lowest, highest and mean value that the sessions show."""
+    out = {}
+    for name in [*common_sources(sessions), "time"]:
+        values = np.concatenate([s.source(name) for s in sessions])
+        out[name] = (float(values.min()), float(values.max()), float(values.mean()))
+    return out
+
+
+def extra_channels(session: Session) -> tuple[str, ...]:
+    """Names of the channels that no sensor of its own has, in the session's order."""
+    return tuple(n for n in session.sources if n not in _OWN)
+
+
+def is_supply(name: str) -> bool:
+    """Whether a channel's name says it is the supply voltage."""
+    return any(part in name.lower() for part in SUPPLY_NAMES)
+
+
+#: Share of its range by which the source of a difference may leave it.
+_MARGIN = 0.5
+
+
+def is_bounded(fields: dict) -> bool:
+    """Whether a basis stays in its fitted range though its source leaves its own.
+
+    Backlash, the difference from a lag and a rate do: holding their source at the edge would break
+    their memory and extrapolate nothing less.
+    """
+    return fields.get("lag_mode") in ("difference", "rate") or fields.get("memory") == "backlash"
+
+
+def _is_even(choice: dict) -> bool:
+    """Whether a basis is the same on either side of zero, so that one side shows the other."""
+    return choice.get("power") == 2 and choice.get("centre") == 0.0
+
+
+def _fields(choice: dict, span: dict, source: str) -> dict:
+    lo, hi, mean = span.get(source, (0.0, 1.0, 0.0))
+    fields = dict(choice)
+    fields["centre"] = _place(fields.get("centre", "mean"), (lo, hi, mean))
+    if source != "one":
+        margin = _MARGIN * (hi - lo) if is_bounded(fields) else 0.0
+        fields.update(lo=lo - margin, hi=hi + margin)
+    else:
+        fields["centre"] = 0.0
+    if source == "time":
+        fields["centre"] = 0.0
+    if _is_even(choice):
+        reach = max(-fields["lo"], fields["hi"])
+        fields.update(lo=-reach, hi=reach)
+    if "knot" in fields:
+        fields["knot"] = lo + fields["knot"] * (hi - lo) - fields["centre"]
+    if fields.get("second"):
+        second = span[fields["second"]]
+        centre = _place(fields.get("second_centre", "mean"), second)
+        fields.update(second_lo=second[0], second_hi=second[1], second_centre=centre)
+    return fields
+
+
+def _place(named, span: tuple[float, float, float]):
+    """A value, or the one of lowest, highest and mean that is named."""
+    lo, hi, mean = span
+    return {"mean": mean, "lo": lo, "hi": hi}.get(named, named)
+
+
+def _expand(kind, source, fixed, grids, family, span):
+    names = list(grids)
+    out = []
+    for values in product(*(grids[n] for n in names)):
+        choice = {**fixed, **dict(zip(names, values))}
+        refine = tuple(n for n in names if n in REFINED)
+        out.append(
+            Candidate(kind, (Term(source, **_fields(choice, span, source)),), family, refine)
+        )
+    return out
+
+
+def _generic(channel, others, span):
+    out = []
+    for kind, fixed, grids in GENERIC:
+        grids = {n: (tuple(others) if v == "every" else v) for n, v in grids.items()}
+        out += _expand(kind, channel, fixed, grids, "generic", span)
+    return out
+
+
+def candidates(sessions: list[Session]) -> list[Candidate]:
+    """Every candidate that these sessions' channels allow; what does not vary is left out."""
+    span = ranges(sessions)
+    varied = [n for n in span if varies(n, sessions)]
+    supply = [n for n in varied if n not in _OWN and is_supply(n)]
+    out = []
+    for kind, source, fixed, grids in CATALOGUE:
+        for name in supply if source == "supply" else [source]:
+            there = name in varied or name in ("one", "time")
+            if there and (fixed.get("second") is None or fixed["second"] in varied):
+                out += _expand(kind, name, fixed, grids, "catalogue", span)
+    for kind, names, fixed in GROUPS:
+        if kind == "rate-scale" and _told_by_turns(sessions):
+            continue
+        if any(n in varied for n in names) and all(n in span for n in names):
+            terms = tuple(Term(n, **_fields(fixed, span, n)) for n in names)
+            out.append(Candidate(kind, terms, "catalogue"))
+    extra = [n for n in varied if n not in _OWN and n != "time"]
+    for i, name in enumerate(extra):
+        out += _generic(name, [*(["temp"] if "temp" in varied else []), *extra[i + 1 :]], span)
+    return [c for c in out if _is_finite(c, sessions)]
+
+
+def _told_by_turns(sessions: list[Session]) -> bool:
+    """Whether `in_motion` has found the scale of the rates by samples, which tell it better."""
+    runs = [s.turns.runs for s in sessions if s.turns and s.turns.beside == GIVEN]
+    return sum(len(r) for r in runs) >= LEAST_RUNS
+
+
+def _is_finite(candidate, sessions):
+    columns = np.concatenate([block_basis(t, sessions[0]) for t in candidate.terms])
+    return bool(np.isfinite(columns).all() and np.ptp(columns) > 0)
+
+
+#: Below this peak-to-peak of block means a source says nothing.
+_SMALLEST = {
+    "temp": 0.3,
+    "acc_x": 0.1,
+    "acc_y": 0.1,
+    "acc_z": 0.1,
+    "rate_x": 2.0,
+    "rate_y": 2.0,
+    "rate_z": 2.0,
+}
+
+
+def varies(name: str, sessions: list[Session]) -> bool:
+    """Whether a source moves enough within sessions to show anything."""
+    if name == "time":
+        return True
+    means = [s.block_mean(s.source(name)) for s in sessions]
+    return max(np.ptp(m) for m in means) > _SMALLEST.get(name, 1e-12)

@@ -1,0 +1,92 @@
+"""When a candidate counts as found: several locks, each of which must open."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import chi2
+
+from ..fit.left_out import gains
+from ..fit.surrogates import null_ratios
+
+#: Family-wise levels: the chance that anything of the family passes the first lock on a device
+#: with nothing in it.
+#: Forms of any channel are many, most of them slow and without physics behind them: they pay more.
+LEVEL = {"catalogue": 2.5e-3, "generic": 5e-5, "step": 1e-5}
+#: Shares of a family's level that a kind gets where it is not one. What follows time alone is shown
+#: worst by any recording, for the noise's walk looks alike: it gets more of what others, found at
+#: half its size, can spare (weighted Bonferroni: Genovese, Roeder and Wasserman 2006, Biometrika
+#: 93, 509).
+WEIGHT = {"time-drift": 6.0, "power-on-transient": 6.0}
+#: Nats that left-out sessions must gain in all.
+LEAST_GAIN = 3.0
+#: Nats that one of at least three may lose: odds of twenty to one against.
+MOST_LOST = 3.0
+
+
+@dataclass
+class Decision:
+    """What the locks said of a candidate. tried: candidates that p_value has paid for."""
+
+    accepted: bool
+    p_value: float
+    ratio: float
+    inflation: float
+    session_gains: np.ndarray
+    reason: str = ""
+    tried: float = 1.0
+
+
+def family_p(ratio: float, dof: int, tried: float) -> float:
+    """Chance of a likelihood ratio this large anywhere in a family of `tried` candidates."""
+    return float(min(1.0, chi2.sf(ratio, dof) * tried))
+
+
+def smallest_ratio(family: str, dof: int, tried: float) -> float:
+    """The likelihood ratio that a family's level asks for."""
+    return float(chi2.isf(LEVEL[family] / tried, dof))
+
+
+def decide(regression, folds, nuisances, candidate, ratio: float, tried: float, pool) -> Decision:
+    """All locks on a candidate whose ratio beside the nuisances is known.
+
+    folds: regression whose sessions are left out in turn; pool: terms to make surrogates from.
+    """
+    dof = 3 * len(candidate.terms)
+    level = LEVEL[candidate.family]
+    p = family_p(ratio, dof, tried)
+    if p > level:
+        return Decision(False, p, ratio, 1.0, np.array([]), "not significant")
+    null = null_ratios(regression, nuisances, candidate.terms, pool)
+    p, d = min(1.0, null.survival(ratio, len(candidate.terms)) * tried), null.inflation
+    if p > level:
+        return Decision(
+            False, p, ratio, d, np.array([]), "no better than irrelevant channels on this noise"
+        )
+    gain = gains(folds, nuisances, candidate.terms)
+    enough = predicts(gain)
+    reason = "" if enough else "does not predict the sessions left out"
+    return Decision(enough, p, ratio, d, gain, reason)
+
+
+def predicts(gain: np.ndarray) -> bool:
+    """Whether nats gained on each session left out speak for a candidate: all sessions do, or, with
+    three times as many nats in all, all but one in three or four and none clearly against it."""
+    if not 4 * (gain > 0).sum() >= 3 * len(gain):
+        all_but_one = len(gain) == 3 and (gain > 0).sum() == 2
+        return bool(all_but_one and gain.sum() > 3 * LEAST_GAIN and gain.min() > -MOST_LOST)
+    return bool(gain.sum() > LEAST_GAIN)
+
+
+def effective(columns: np.ndarray) -> float:
+    """How many independent tests (n, K) columns that are much alike amount to, 1..K.
+
+    By the eigenvalues of their correlations (Galwey 2009, Genetic Epidemiology 33, 559).
+    """
+    scale = np.linalg.norm(columns, axis=0)
+    unit = columns[:, scale > 0] / scale[scale > 0]
+    if unit.shape[1] < 2:
+        return 1.0
+    values = np.clip(np.linalg.eigvalsh(unit.T @ unit), 0.0, None)
+    return float(np.sqrt(values).sum() ** 2 / values.sum())

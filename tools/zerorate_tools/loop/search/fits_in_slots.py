@@ -1,0 +1,17 @@
+"""Whether the firmware has room for what was found."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ...model.model import MOST_CHANNELS, MOST_RINGS, MOST_SLOTS
+from ...model.term import Term
+from ..read.sessions import OWN_SOURCES
+
+
+def is_room(terms: Sequence[Term], taken: int = 0) -> bool:
+    """For terms, a slot each, beside slots taken by what was found in motion."""
+    channels = {n for t in terms for n in (t.source, t.second) if n and n not in OWN_SOURCES}
+    delays = sum(t.delay_s > 0 for t in terms)
+    slots = len(terms) + taken
+    return slots <= MOST_SLOTS and delays <= MOST_RINGS and len(channels) <= MOST_CHANNELS

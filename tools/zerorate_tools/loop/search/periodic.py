@@ -1,0 +1,79 @@
+"""Lines of all sessions together: slow ones from ticks, quick ones from samples."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...model.term import evaluate
+from ..read.lines import MOST, Line, Spectrum, find, spectrum
+
+_SLOWEST_CYCLES = 10
+_MOST_BRIDGED = 0.1
+_LEAST_TICKS = 400
+_HANN_BINS = 2.0
+_SUBTRACTED = 0.25  # share of a line's power that what was subtracted may have there
+#: From here on a line is in the samples and averages out of the bias; slower ones are in the bias.
+QUICK_HZ = 0.5
+_FOLDED_HZ = 0.02  # how well a quick line's frequency is known
+
+
+def periodic(train, locked, terms, coefficients: np.ndarray) -> list[Line]:
+    """Lines at rest beside what the terms, (terms, 3) dps per unit, explain."""
+    quick = _quick(train, locked)
+    slow = _slow(train, locked, terms, coefficients)
+    step_s = train[0].tick_s
+    return [*quick, *(s for s in slow if not any(_folds(q, s, step_s) for q in quick))][:MOST]
+
+
+def _folds(quick: Line, slow: Line, step_s: float) -> bool:
+    """Whether a slow line is a quick one as means over ticks show it."""
+    alias = abs(quick.hz - round(quick.hz * step_s) / step_s)
+    return abs(alias - slow.hz) < _FOLDED_HZ
+
+
+def _slow(train, locked, terms, coefficients):
+    rates = [_left(s, terms, coefficients) for s in [*train, *locked]]
+    if any(r is None for r in rates):
+        return []
+    longest = max(len(r) for r in rates)
+    length = 1 << int(np.ceil(np.log2(longest)))
+    step_s = train[0].tick_s
+    spectra = [spectrum(r, step_s, length) for r in rates]
+    shortest = min(len(r) for r in rates)
+    wide = _HANN_BINS * length / shortest
+    slowest = _SLOWEST_CYCLES / (shortest * step_s)
+    found = find(spectra[: len(train)], spectra[len(train) :], wide, slowest)
+    models = [spectrum(_model(s, terms, coefficients), step_s, length) for s in train]
+    return [line for line in found if not _of_models(line, models)]
+
+
+def _of_models(line: Line, models: list[Spectrum]) -> bool:
+    """Whether what was subtracted has as much there: steps of a ramping temperature, for one."""
+    at = round(line.hz / models[0].step_hz)
+    subtracted = np.mean([2 * m.power[at] for m in models], axis=0)
+    return bool(subtracted.sum() > _SUBTRACTED * (line.amplitude_dps**2).sum())
+
+
+def _model(session, terms, coefficients):
+    """(m, 3) dps that the terms explain of each tick."""
+    out = np.zeros((session.blocks * session.ticks_per_block, 3))
+    for term, c in zip(terms, coefficients):
+        out += np.outer(evaluate(term, session.source, session.tick_s), c)
+    return out
+
+
+def _left(session, terms, coefficients):
+    """(m, 3) rate of ticks at rest less what the terms explain, None where there is too little."""
+    rate = session.ticks_dps
+    if rate is None or len(rate) < _LEAST_TICKS:
+        return None
+    if (~np.isfinite(rate).all(axis=1)).mean() > _MOST_BRIDGED:
+        return None
+    return rate - _model(session, terms, coefficients)
+
+
+def _quick(train, locked):
+    spectra = [s.quick for s in [*train, *locked]]
+    if any(s is None for s in spectra) or len({s.step_hz for s in spectra}) > 1:
+        return []
+    return find(spectra[: len(train)], spectra[len(train) :], _HANN_BINS, QUICK_HZ)

@@ -1,0 +1,298 @@
+"""Find an effect, add it, look again: until nothing passes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cached_property
+
+import numpy as np
+
+from ...model.term import Term
+from ..fit.common_cause import coherence, turned_axes
+from ..fit.regression import Regression
+from ..fit.single import PiecesByLine
+from ..read.sessions import Session
+from . import confounding, drift_test
+from . import steps as events
+from .bends import JudgedOnPieces, find_bends, on_pieces
+from .catalogue import Candidate, ranges
+from .catalogue import candidates as all_candidates
+from .collinear import all_but_same
+from .decide import Decision, decide
+from .detectable import smallest_dps
+from .extrapolation import follow_further
+from .fits_in_slots import is_room
+from .multiple_testing import Prices
+from .naming import name_found
+from .ols_holdout_ratio import growth
+from .refine import refined
+from .selection import Found, Selection
+
+MOST_EFFECTS = 6
+_KINDS_TRIED = 4
+#: Blocks at rest in each piece of one recording, below which its bends are not looked for.
+_LEAST_OF_A_PIECE = 6
+_START_S = 60.0
+_TURN_BELOW = 1e-3
+#: Of the plain error of sessions left out, which for an effect that is there only drift makes grow.
+_MOST_GROWTH = 1.05
+
+
+def straight_line(sessions: list[Session]) -> tuple[Term, ...]:
+    """What the firmware's estimators take anyway: the line over temperature, never clamped."""
+    span = ranges(sessions).get("temp")
+    return (Term("temp", centre=span[2]),) if span and span[0] < span[1] else ()
+
+
+class Search:
+    """The state of one search over some sessions."""
+
+    def __init__(
+        self,
+        sessions: list[Session],
+        folds: list[Session] | None = None,
+        taken: int = 0,
+        on_pieces: JudgedOnPieces | None = None,
+    ):
+        self.taken = taken
+        self.regression = Regression(sessions)
+        self.on_pieces = on_pieces
+        self.folds = Regression(folds) if folds else None
+        self.straight = straight_line(sessions)
+        self.bend = tuple(replace(t, power=2) for t in self.straight)
+        self.pool = all_candidates(sessions)
+        self.singles = [c.terms[0] for c in self.pool if len(c.terms) == 1]
+        self.found: list[Found] = []
+        self.steps: list[events.Step] = []
+        self.refused: list[tuple[str, str]] = []
+        self.dropped: set[str] = set()
+        self.bends = 0
+
+    @cached_property
+    def prices(self) -> Prices:
+        """What each candidate must reach, beside the bend that one recording may have shown."""
+        power_ons = not self.folds and len(self.regression.sessions) > 1
+        return Prices(self.regression, self.pool, self.straight, self.bend, power_ons)
+
+    def terms(self, leave: int | None = None) -> list[Term]:
+        return [t for i, f in enumerate(self.found) if i != leave for t in f.candidate.terms]
+
+    def run(self) -> Selection:
+        if self.folds:
+            self._bend_first()
+        while len(self.found) < MOST_EFFECTS and self._add_one():
+            self._drop_idle()
+        self._list_steps()
+        name_found(self.regression, self.straight, self.found, self.pool, self.bends)
+        if not self.folds:
+            follow_further(self.regression, self.straight, self.found)
+        r = self.regression
+        smallest = self._smallest()
+        return Selection(
+            self.found,
+            self.steps,
+            self.refused,
+            r.outliers,
+            r,
+            self.straight,
+            self.bend,
+            self.pool,
+            smallest,
+            self.bends,
+        )
+
+    def _smallest(self):
+        r = self.regression
+        axes = r.axes
+        r.turn(np.eye(3))
+        bent = [c for c in self.pool if c.kind != "temperature-quadratic"]
+        quadratic = [c for c in self.pool if c.kind == "temperature-quadratic"]
+        out = smallest_dps(r, [*self.straight, *self.terms()], quadratic, self.prices.needed)
+        out.update(
+            smallest_dps(r, [*self.straight, *self.bend, *self.terms()], bent, self.prices.needed)
+        )
+        r.turn(axes)
+        return out
+
+    def _bend_first(self):
+        assert self.folds is not None
+        if min(s.available.sum() for s in self.folds.sessions) < _LEAST_OF_A_PIECE:
+            self.refused.append(("temperature-curve", "too few rests to tell by pieces left out"))
+            return
+        judged = self.on_pieces or PiecesByLine(self.folds.sessions)
+        bends = find_bends(self.regression, judged, self.straight, self.pool)
+        self.found = [Found(c, d) for c, d in bends.found]
+        self.refused += bends.refused
+        self.bends = len(self.found)
+        if any(t.power == 2 for t in self.terms()):
+            self.bend = ()
+
+    def _look_afresh(self):
+        r = self.regression
+        r.turn(np.eye(3))
+        nuisances = [*self.straight, *self.bend, *self.terms()]
+        r.settle(nuisances)
+        if coherence(r, nuisances)[0] < _TURN_BELOW:
+            r.turn(turned_axes(r, nuisances))
+            r.settle(nuisances)
+        if self.folds:
+            self.folds.turn(r.axes)
+            self.folds.settle(nuisances)
+
+    def _nuisances(self, candidate: Candidate) -> list[Term]:
+        bend = () if candidate.kind == "temperature-quadratic" else self.bend
+        return [*self.straight, *bend, *self.terms()]
+
+    def _ratios(self):
+        """Ratios beside the straight line (for choosing) and beside the bend too (for testing)."""
+        r, groups = self.regression, [c.terms for c in self.pool]
+        choose = r.gains([*self.straight, *self.terms()], groups).sum(axis=1)
+        test = r.gains([*self.straight, *self.bend, *self.terms()], groups).sum(axis=1)
+        test = np.where([c.kind == "temperature-quadratic" for c in self.pool], choose, test)
+        return choose, test
+
+    def _add_one(self) -> bool:
+        self._look_afresh()
+        while True:
+            accepted, blocked = self._best_candidate()
+            if accepted:
+                self.found.append(accepted)
+                return True
+            if not blocked:
+                return False
+
+    def _best_candidate(self) -> tuple[Found | None, bool]:
+        choose, test = self._ratios()
+        dof = np.array([3 * len(c.terms) for c in self.pool])
+        need = np.array([self.prices.least_ratio(c) for c in self.pool])
+        passing = np.flatnonzero(test > need)
+        passing = passing[np.argsort(-(choose - 2.0 * dof)[passing])]
+        if self._step_is_larger(test[passing].max() if len(passing) else 0.0):
+            return None, True
+        kinds: list[str] = []
+        for i in passing:
+            c = self.pool[i]
+            if (
+                c.kind in kinds
+                or len(kinds) >= _KINDS_TRIED
+                or confounding.label(c) in self.dropped
+                or not is_room([*self.terms(), *c.terms], self.taken)
+            ):
+                continue
+            kinds.append(c.kind)
+            found = self._beside_outliers(c)
+            if found:
+                return found, False
+        return None, False
+
+    def _beside_outliers(self, c: Candidate) -> Found | None:
+        """As `_consider`, but a block that the candidate explains is no outlier."""
+        if not self.regression.outliers:
+            return self._consider(c)
+        nuisances = self._nuisances(c)
+        self._settle([*nuisances, *c.terms])
+        found = self._consider(c)
+        if not found:
+            self._settle([*self.straight, *self.bend, *self.terms()])
+        return found
+
+    def _settle(self, terms):
+        for r in (self.regression, self.folds):
+            if r:
+                r.settle(terms)
+
+    def _step_is_larger(self, ratio: float) -> bool:
+        if len(self.steps) >= events.MOST_PER_SESSION * len(self.regression.sessions):
+            return False
+        step = events.strongest(self.regression, [*self.straight, *self.bend, *self.terms()])
+        if step is None or not events.is_event(step) or step.ratio < ratio:
+            return False
+        self._take_step(step)
+        return True
+
+    def _take_step(self, step):
+        self.steps.append(step)
+        self.regression.set_events([events.column(self.regression, s) for s in self.steps])
+
+    def _consider(self, c: Candidate) -> Found | None:
+        nuisances = self._nuisances(c)
+        best = refined(self.regression, [*self.straight, *self.terms()], c)
+        if self._is_a_start(best):
+            self.refused.append((confounding.label(best), "the start of a lag's own memory"))
+            return None
+        if all_but_same(best.terms, self.terms(), self.regression.sessions):
+            self.refused.append((confounding.label(best), "found already, all but the same"))
+            return None
+        ratio = float(self.regression.gains(nuisances, [best.terms]).sum())
+        decision = self._decision(nuisances, best, ratio)
+        if decision.accepted and self._grows_with(best):
+            decision = replace(decision, accepted=False, reason="makes what is left out worse")
+        if decision.accepted and self.on_pieces:
+            decision = on_pieces(decision, self.on_pieces, self.straight, self.terms(), best.terms)
+        if decision.accepted:
+            return Found(best, decision)
+        self.refused.append((confounding.label(best), decision.reason))
+        return None
+
+    def _decision(self, nuisances, c: Candidate, ratio: float) -> Decision:
+        r, tried = self.regression, self.prices.tried(c)
+        if self.prices.is_by_time(c):
+            return drift_test.considered(r, nuisances, c, ratio, tried)
+        return decide(r, self.folds or r, nuisances, c, ratio, tried, self.singles)
+
+    def _grows_with(self, candidate: Candidate) -> bool:
+        """Whether the plain error of what is left out grows with a candidate as deployed."""
+        folds = self.folds or self.regression
+        return growth(folds, self.straight, self.terms(), candidate.terms) > _MOST_GROWTH
+
+    def _is_a_start(self, candidate: Candidate) -> bool:
+        """Whether a transient is no longer than a found lag of temperature takes to forget what it
+        assumed before the power-on."""
+        lags = [t.lag_s for t in self.terms() if t.lag_mode != "none"]
+        if candidate.kind != "power-on-transient" or not lags:
+            return False
+        return candidate.terms[0].decay_s < _START_S + 2.0 * max(lags)
+
+    def _drop_idle(self):
+        """An effect that the later ones explain is taken out again; the others' parameters are
+        refined together.
+        """
+        for i in reversed(range(self.bends, len(self.found))):
+            c = self.found[i].candidate
+            rest = [*self.straight, *self.terms(leave=i)]
+            if self._is_idle(c, rest):
+                self.refused.append((confounding.label(c), "explained by effects found later"))
+                self.dropped.add(confounding.label(c))
+                del self.found[i]
+            else:
+                better = refined(self.regression, rest, c)
+                if not all_but_same(better.terms, rest, self.regression.sessions):
+                    self.found[i].candidate = better
+
+    def _is_idle(self, c: Candidate, rest: list[Term]) -> bool:
+        if self.prices.is_by_time(c):
+            chance = drift_test.chance(self.regression, rest, c.terms)
+            return chance * self.prices.tried(c) > drift_test.LEVEL
+        return float(self.regression.gains(rest, [c.terms]).sum()) < self.prices.least_ratio(c)
+
+    def _list_steps(self):
+        """Steps again from none, beside the effects found."""
+        self.steps = []
+        self.regression.set_events([])
+        self._look_afresh()
+        self.steps = events.find_all(self.regression, [*self.straight, *self.bend, *self.terms()])
+
+
+def select(
+    sessions: list[Session],
+    folds: list[Session] | None = None,
+    taken: int = 0,
+    on_pieces: JudgedOnPieces | None = None,
+) -> Selection:
+    """Everything that the training sessions show, as far as the firmware has room for it.
+
+    folds: pieces of a single session, left out in turn where there are no further sessions; taken:
+    slots that what was found in motion needs; on_pieces: what judges effects there, `PiecesByLine`
+    for bends alone by default.
+    """
+    return Search(sessions, folds, taken, on_pieces).run()

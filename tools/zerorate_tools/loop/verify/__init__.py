@@ -1,0 +1,1 @@
+"""What was found as the firmware's own kernels have it, on data that no fit has seen."""

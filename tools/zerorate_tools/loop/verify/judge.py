@@ -1,0 +1,132 @@
+"""The locked session, looked at once: before and after, and how sure each effect is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..fit.left_out import session_misfit
+from ..fit.line import deployed
+from ..fit.regression import Regression, predicted
+from ..read.sessions import Session
+from ..search import steps as events
+from ..search.selection import Selection
+from .residual_test import Excess, excess
+
+#: Nats that a locked session must gain for an effect to count as seen there.
+CONFIRMING_NATS = 2.0
+_FIRST_STILL_S = 60.0
+
+
+@dataclass
+class Judgement:
+    """What the locked sessions say. *_dps: (3,) RMS; residual_*: (n, 3) of each locked session, NaN
+    where unscored.
+    """
+
+    before_dps: np.ndarray
+    after_dps: np.ndarray
+    gains: np.ndarray
+    excess: Excess
+    residual_before: list[np.ndarray]
+    residual_after: list[np.ndarray]
+    offsets_dps: list[np.ndarray]
+    steps: list[events.Step]
+    whole: Regression
+
+    def confidence(self, i: int) -> str:
+        """confirmed or tentative, of the i-th effect."""
+        better = self.gains[i] > CONFIRMING_NATS and self.after_rms <= self.before_rms
+        return "confirmed" if better and not self.excess.left else "tentative"
+
+    @property
+    def before_rms(self) -> float:
+        """RMS over the axes, dps."""
+        return float(np.sqrt((self.before_dps**2).mean()))
+
+    @property
+    def after_rms(self) -> float:
+        """RMS over the axes, dps."""
+        return float(np.sqrt((self.after_dps**2).mean()))
+
+
+def judge(selection: Selection, locked: list[Session]) -> Judgement:
+    """Judge what was selected on training sessions by sessions that no fit has seen."""
+    train = selection.regression
+    before, after = (residuals(selection, locked, effects) for effects in (False, True))
+    both = [*selection.straight, *selection.terms]
+    whole = Regression([*train.sessions, *locked])
+    whole.settle(both)
+    steps = events.find_all(whole, both)
+    return Judgement(
+        rms_dps([r for r, _ in before]),
+        rms_dps([r for r, _ in after]),
+        _gains(whole, selection, len(train.sessions)),
+        excess(whole, both),
+        [r for r, _ in before],
+        [r for r, _ in after],
+        [o for _, o in after],
+        steps,
+        whole,
+    )
+
+
+def residuals(selection: Selection, locked: list[Session], effects: bool = True) -> list:
+    """(residual, offset) of each locked session, with the effects found or with the line alone."""
+    fitted = {s.name: s for s in selection.regression.sessions}
+    terms, coefficients = deployed(selection, effects)
+    return [scored(s, predicted(terms, coefficients, s), fitted.get(s.name)) for s in locked]
+
+
+def scored(session: Session, model: np.ndarray, fitted: Session | None = None):
+    """Residual (n, 3) with the turn-on offset taken, and that offset (3,).
+
+    The offset is that of the session's first still minute, which is not scored; or, where another
+    part of the same power-on was fitted, the mean of that part.
+    """
+    residual = np.where(session.available[:, None], session.rate_dps - model, np.nan)
+    if fitted is not None:
+        offset = (fitted.rate_dps - model)[fitted.available].mean(axis=0)
+        return residual - offset, offset
+    first = np.flatnonzero(session.available)[: max(1, round(_FIRST_STILL_S / session.block_s))]
+    offset = residual[first].mean(axis=0)
+    residual = residual - offset
+    residual[: first[-1] + 1] = np.nan
+    return residual, offset
+
+
+def rms_dps(residuals: list[np.ndarray]) -> np.ndarray:
+    """(3,) RMS over all blocks scored."""
+    return np.sqrt(np.nanmean(np.vstack(residuals) ** 2, axis=0))
+
+
+def _gains(whole: Regression, selection: Selection, trained: int) -> np.ndarray:
+    """(effects,) nats that the locked sessions lose when an effect is left out and the rest
+    refitted.
+    """
+    every = [*selection.straight, *selection.terms]
+    full = whole.fit(every).base
+    count = sum(w.coefficients for w in whole.whiteners)
+    variance = np.array([full.rss[a, c] / count for a, c in enumerate(full.best)])
+    locked = range(trained, len(whole.sessions))
+
+    def misfit(terms):
+        g = whole.gram(terms)
+        train_only = [_with_training(g, trained, s) for s in locked]
+        scales = [np.vstack([whole.scale[:trained], whole.scale[s : s + 1]]) for s in locked]
+        return sum(
+            session_misfit(t, trained, full.best, variance, c) for t, c in zip(train_only, scales)
+        )
+
+    with_all = misfit(every)
+    out = []
+    for i in range(len(selection.found)):
+        rest = [t for j, f in enumerate(selection.found) if j != i for t in f.candidate.terms]
+        out.append(0.5 * (misfit([*selection.straight, *rest]) - with_all))
+    return np.array(out)
+
+
+def _with_training(g, trained, s):
+    keep = np.r_[np.arange(trained), s]
+    return type(g)(*(getattr(g, f)[keep] for f in g.__dataclass_fields__))

@@ -1,0 +1,123 @@
+"""From an analysis to what the firmware's kernels make of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+
+from ...model import Model
+from ...recordings import Scales, open_recording
+from ...recordings.atomic import written_beside
+from ...recordings.reading import recording_name
+from ..fit.single import held_out
+from .analysis import Analysis
+from .corrected import CorrectedWriter
+from .judge import Judgement, rms_dps
+from .measured import AFTER, BEFORE, ONLINE, Course, Measured, Measurement
+from .power_on import PowerOn, ideal_dps
+from .rounding import rounding_dps
+from .slots import model_of
+
+
+def measure(
+    analysis: Analysis,
+    logs: Sequence[str | PathLike[str]],
+    model: Model,
+    out: str | PathLike[str],
+    online: bool = False,
+    advance: Callable[[float], None] = lambda n: None,
+) -> Analysis:
+    """The analysis judged by the firmware's own kernels; corrected.parquet is written to `out`.
+
+    logs: the recordings; online: write what the learning firmware subtracts, too; advance: called
+    for each session. Raises Refused, BadRecording.
+    """
+    scales = open_recording(logs[0]).scales
+    power_ons = power_ons_of(analysis, logs, model, scales)
+    learned = ~held_out(analysis.sessions[0].blocks)[1] if analysis.single else None
+    locked = [s.name for s in analysis.locked]
+    train = [s.name for s in analysis.train]
+    measurement = Measurement(
+        power_ons, train, locked, learned, models_of(analysis, model, scales), scales
+    )
+    measurement.learn()
+    courses: dict[str, Course] = {}
+    with written_beside(out) as temporary:
+        writer = CorrectedWriter(temporary)
+        for p in power_ons:
+            courses[p.session.name] = measurement.course(
+                p.session.name, online, _sink(writer, p, locked, analysis.single, online)
+            )
+            advance(1)
+        writer.close()
+    return judged(analysis, Measured(courses, locked, _rounding(analysis, power_ons, scales)))
+
+
+def _sink(writer, p: PowerOn, locked, single, online):
+    test = (
+        held_out(p.session.blocks)[0]
+        if single
+        else np.full(p.session.blocks, p.session.name in locked)
+    )
+
+    def write(name, frames, biases):
+        if not online:
+            biases = {way: b for way, b in biases.items() if way != ONLINE}
+        writer.write(Path(p.path).name, frames, test[p.blocks(frames)], biases)
+
+    return write
+
+
+def power_ons_of(analysis: Analysis, logs, model: Model, scales: Scales) -> list[PowerOn]:
+    """The sessions that were used, in the order of their recordings."""
+    paths = {recording_name(Path(log)): log for log in logs}
+    held = {s.name: s for s in analysis.locked}
+    return [
+        PowerOn(
+            s,
+            paths[s.name],
+            scales.gyro_lsb_per_dps,
+            ideal_dps(s, analysis.motion),
+            held.get(s.name, s).available,
+            model.channels,
+        )
+        for s in analysis.sessions
+    ]
+
+
+def models_of(analysis: Analysis, model: Model, scales: Scales) -> list[Model | None]:
+    """None, the models of the first effects alone, and at last the whole one."""
+    found = analysis.selection.found
+    some = [model_of(analysis, scales, effects=k) for k in range(1, len(found))]
+    whole = [model] if model.slots else []
+    if analysis.motion.scales is not None and found:
+        some.append(model_of(analysis, scales, effects=len(found)))
+    return [None, *some, *whole]
+
+
+def _rounding(analysis, power_ons, scales):
+    if not analysis.selection.found:
+        return np.zeros(3)
+    terms = analysis.selection.terms
+    coefficients = analysis.coefficients[len(analysis.selection.straight) :]
+    locked = next(p for p in power_ons if p.session.name == analysis.locked[0].name)
+    at_rest = model_of(analysis, scales, effects=len(analysis.selection.found))
+    return rounding_dps(locked, at_rest, terms, coefficients, scales)
+
+
+def judged(analysis: Analysis, measured: Measured) -> Analysis:
+    """The analysis with the kernels' residuals in the place of the float reference's."""
+    before, after = measured.residuals(BEFORE), measured.residuals(AFTER)
+    j: Judgement = analysis.judgement
+    j = replace(
+        j,
+        before_dps=rms_dps(before),
+        after_dps=rms_dps(after),
+        residual_before=before,
+        residual_after=after,
+    )
+    return replace(analysis, judgement=j, measured=measured)

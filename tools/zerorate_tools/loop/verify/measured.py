@@ -1,0 +1,160 @@
+"""Before and after as the firmware's own kernels have it, with the model in its integer form.
+
+The firmware learns the training sessions in their order, without a model and with it. Frozen, it
+is run over every session, whose turn-on offset it takes from the first still minute; and it is run
+over the held-out part once more learning as it goes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ...model import Model
+from ...recordings import Scales
+from ...replay.samples import Frames
+from .firmware import Firmware, at_once
+from .power_on import BlockMeans, PowerOn, turn_on
+
+BY = "the firmware's own kernels, with the model in its integer form; means of blocks"
+BEFORE, AFTER, ONLINE_BEFORE, ONLINE = "before", "after", "online_before", "online"
+
+#: Called with the session's name, the samples, and what each way subtracts (n, 3), LSB in Q8.
+Sink = Callable[[str, Frames, dict[str, np.ndarray]], None]
+
+
+@dataclass
+class Course:
+    """One session, block by block. bias, residual: (n, 3) dps by way: before, after, online and
+    online_before, and after_K with the first K effects, in the sessions where it was run; residual
+    is NaN where it is not scored. offset_dps: (3,) taken at turn-on, before and after.
+    """
+
+    time_s: np.ndarray
+    bias: dict[str, np.ndarray]
+    residual: dict[str, np.ndarray]
+    offset_dps: dict[str, np.ndarray] = field(default_factory=dict)
+    unscored: int = 0
+
+
+@dataclass
+class Measured:
+    """What the kernels gave. sessions: by name; locked: names of those held out; rounding_dps: (3,)
+    RMS by which the model's integers differ from its numbers, on the held-out part.
+    """
+
+    sessions: dict[str, Course]
+    locked: list[str]
+    rounding_dps: np.ndarray
+    by: str = BY
+
+    def residuals(self, way: str) -> list[np.ndarray]:
+        """(n, 3) of each session held out."""
+        return [self.sessions[name].residual[way] for name in self.locked]
+
+    def with_first(self, effects: int) -> list[np.ndarray]:
+        """As `residuals`, with the first so many effects alone."""
+        way, whole = after_first(effects), self.sessions[self.locked[0]].residual
+        return self.residuals(way if way in whole else AFTER)
+
+    def offsets(self, way: str) -> list[np.ndarray]:
+        """(3,) turn-on offset of each session held out, dps; zero where a part of its own power-on
+        was learned."""
+        held = [self.sessions[name].offset_dps for name in self.locked]
+        return [offsets.get(way, offsets.get(BEFORE, np.zeros(3))) for offsets in held]
+
+
+def after_first(effects: int) -> str:
+    """The way with the first so many effects; that with all of them may be AFTER instead."""
+    return f"{AFTER}_{effects}" if effects else BEFORE
+
+
+class Measurement:
+    """Runs the firmware over the sessions of one device.
+
+    train, locked: names of sessions; learned: of one recording alone, (n,) bool, the blocks that
+    may be learned from; models: none, then those of the first effects, at last the whole one.
+    """
+
+    def __init__(
+        self,
+        power_ons: Sequence[PowerOn],
+        train: Sequence[str],
+        locked: Sequence[str],
+        learned: np.ndarray | None,
+        models: Sequence[Model | None],
+        scales: Scales,
+    ) -> None:
+        self.power_ons = {p.session.name: p for p in power_ons}
+        self.train, self.locked, self.learned = list(train), list(locked), learned
+        channels = power_ons[0].channels
+        self.devices = [Firmware(scales, m, channels) for m in models]
+        self.begun: dict[str, list[Firmware]] = {}
+        first = next(power_ons[0].frames())
+        for device in self.devices[:2]:
+            device.compile(first)
+
+    def learn(self) -> None:
+        """Let every device live through the training sessions; remember how each began."""
+        for name in self.train:
+            p = self.power_ons[name]
+            for d in self.devices:
+                d.power_on()
+            self.begun[name] = [d.copy() for d in (self.devices[0], self.devices[-1])]
+            for frames in p.frames():
+                may = True if self.learned is None else self.learned[p.blocks(frames)]
+                at_once([d.run for d in self.devices], frames, may)
+
+    def course(self, name: str, online: bool, sink: Sink) -> Course:
+        """Run the frozen devices over a session, and the learning ones where wanted."""
+        p = self.power_ons[name]
+        held_out = name in self.locked
+        ways, unscored, offsets = self._frozen(p, held_out)
+        if online or held_out:
+            ways.update(self._online(name))
+        means = {way: BlockMeans(p) for way in (*ways, AFTER)}
+        for frames in p.frames():
+            biases = dict(zip(ways, at_once(list(ways.values()), frames)))
+            biases.setdefault(AFTER, biases[BEFORE])
+            for way, bias_q8 in biases.items():
+                means[way].add(frames, bias_q8)
+            sink(name, frames, biases)
+        bias = {way: m.blocks_dps() for way, m in means.items()}
+        return self._scored(p, bias, offsets, unscored)
+
+    def _frozen(self, p, held_out):
+        """Ways to run frames through a frozen copy of each device, its turn-on offset in place."""
+        last = len(self.devices) - 1
+        runs, unscored, offsets = {}, 0, {}
+        for k, device in enumerate(self.devices):
+            way = AFTER if k == last and k else after_first(k)
+            if way not in (BEFORE, AFTER) and not held_out:
+                continue
+            ready = device.copy()
+            ready.power_on()
+            ready.set_offset((0, 0, 0))
+            if self.learned is None:
+                taken = turn_on(device, p)
+                ready.set_offset(taken.offset_q8)
+                unscored = max(unscored, taken.blocks)
+                offsets[way] = taken.offset_q8 / (256.0 * p.lsb)
+            runs[way] = lambda frames, ready=ready: ready.run(frames, learn=False)
+        return runs, unscored, offsets
+
+    def _online(self, name):
+        if name in self.begun:
+            devices = self.begun[name]
+        else:
+            devices = [d.copy() for d in (self.devices[0], self.devices[-1])]
+            for d in devices:
+                d.power_on()
+        return dict(zip((ONLINE_BEFORE, ONLINE), (d.run for d in devices)))
+
+    def _scored(self, p, bias, offsets, unscored):
+        rate = np.where(p.scored[:, None], p.rate_dps, np.nan)
+        rate[:unscored] = np.nan
+        time_s = (np.arange(p.session.blocks) + 0.5) * p.session.block_s
+        residual = {way: rate - b for way, b in bias.items()}
+        return Course(time_s, bias, residual, offsets, unscored)

@@ -1,0 +1,57 @@
+"""An effect that the locked sessions speak against is taken out again.
+
+An effect that is there hardly ever makes a power-on that no fit has seen less likely; what noise
+alone made of the others does more often than not. Both the likelihood, which looks where the noise
+is small, and the plain error, which is what counts in the end, must speak against it. What follows
+time alone must come again: time passes in every power-on, where another cause may be at rest.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ..read.sessions import Session
+from ..search.confounding import label
+from ..search.drift_test import comes_again, follows_time
+from ..search.selection import Selection
+from .judge import Judgement, judge
+
+#: Nats that the locked sessions may lose: a cause that rests there says nothing, not no.
+MOST_LOST = 0.5
+AGAIN = "it does not come again alike in what was held out"
+
+
+def upheld(selection: Selection, locked: list[Session]) -> tuple[Selection, Judgement]:
+    """What of the effects found the locked sessions do not speak against, and the judgement of it.
+
+    What is taken out is said in `Selection.withdrawn`, with the error that it would have left.
+    """
+    judgement = judge(selection, locked)
+    for i in [int(i) for i in judgement.gains.argsort()]:
+        less = selection.without(i)
+        reason = _spoken_against(selection, judgement, i)
+        if reason is None:
+            continue
+        without = judge(less, locked)
+        if reason is AGAIN or without.after_rms <= judgement.after_rms:
+            said = (label(selection.found[i].candidate), _said(reason, judgement, without))
+            return upheld(replace(less, withdrawn=[*less.withdrawn, said]), locked)
+    return selection, judgement
+
+
+def _spoken_against(selection: Selection, judgement: Judgement, i: int) -> str | None:
+    """Why the i-th effect may have to go, None where nothing speaks against it."""
+    found = selection.found[i]
+    several = len(selection.regression.sessions) > 1
+    if several and follows_time(found.candidate):
+        rest = [*selection.straight, *selection.without(i).terms]
+        again = comes_again(judgement.whole, rest, found.candidate, found.decision.tried)
+        return None if again else AGAIN
+    if judgement.gains[i] < -MOST_LOST:
+        return f"what was held out speaks against it by {-judgement.gains[i]:.1f} nats"
+    return None
+
+
+def _said(reason: str, judgement: Judgement, without: Judgement) -> str:
+    with_it, now = 1e3 * judgement.after_rms, 1e3 * without.after_rms
+    return f"{reason}: error with it {with_it:.3g} mdps, without {now:.3g}"

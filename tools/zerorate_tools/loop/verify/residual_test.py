@@ -1,0 +1,53 @@
+"""Whether more is left than the noise of a part: something common to the axes, or smoother than any
+noise.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..fit.common_cause import coherence
+from ..fit.noise import IS_STEEP
+
+_COHERENT_BELOW = 1e-3
+_STEEP_NATS = 4.0
+
+
+@dataclass
+class Excess:
+    """p of independence of the axes, nats by which smooth drift beats noise on the worst axis,
+    direction (3,).
+    """
+
+    coherence_p: float
+    steep_nats: float
+    direction: np.ndarray
+
+    @property
+    def left(self) -> bool:
+        """Whether something beyond the noise is left."""
+        return self.common or self.smooth
+
+    @property
+    def common(self) -> bool:
+        """Whether it moves the axes together."""
+        return self.coherence_p < _COHERENT_BELOW
+
+    @property
+    def smooth(self) -> bool:
+        """Whether it is smoother than white, flicker and random walk."""
+        return self.steep_nats > _STEEP_NATS
+
+
+def excess(regression, terms) -> Excess:
+    """Look at what the terms leave, in the sensor's own axes."""
+    axes = regression.axes
+    regression.turn(np.eye(3))
+    p, covariance = coherence(regression, terms)
+    loglik = regression.fit(terms).base.loglik
+    regression.turn(axes)
+    steep = (loglik[:, IS_STEEP].max(axis=1) - loglik[:, ~IS_STEEP].max(axis=1)).max()
+    direction = np.linalg.eigh(covariance)[1][:, -1]
+    return Excess(p, float(steep), direction)

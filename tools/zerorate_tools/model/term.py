@@ -1,0 +1,108 @@
+"""The float reference of an effect slot: what the firmware's integer kernels compute once per tick.
+
+Order: clamp, centre, delay, [power first], lag or memory, knot, power, second source, decay.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+from scipy.signal import lfilter
+
+
+@dataclass(frozen=True)
+class Term:
+    """One slot without its coefficients. Units are those of the source; seconds for `*_s`."""
+
+    source: str
+    lo: float = -math.inf
+    hi: float = math.inf
+    centre: float = 0.0
+    power: int = 1
+    power_first: bool = False
+    delay_s: float = 0.0
+    lag_s: float = 0.0
+    lag_mode: str = "none"  # none, lag, difference, rate
+    memory: str = "none"  # none, backlash, peak
+    width: float = 0.0
+    knot: float | None = None
+    second: str | None = None
+    second_lo: float = -math.inf
+    second_hi: float = math.inf
+    second_centre: float = 0.0
+    decay_s: float = 0.0
+
+    def to_dict(self) -> dict:
+        """Plain values; infinite limits become None so that the result is valid JSON."""
+        values = asdict(self)
+        return {k: None if isinstance(v, float) and math.isinf(v) else v for k, v in values.items()}
+
+    @classmethod
+    def from_dict(cls, values: dict) -> Term:
+        """Inverse of `to_dict`."""
+        infinite = {"lo": -math.inf, "second_lo": -math.inf, "hi": math.inf, "second_hi": math.inf}
+        filled: dict[str, Any] = {
+            k: infinite[k] if v is None and k in infinite else v for k, v in values.items()
+        }
+        return cls(**filled)
+
+
+def first_order_lag(u: np.ndarray, lag_s: float, tick_s: float) -> np.ndarray:
+    """z += alpha (u - z), z starting at the first u; alpha = 1 - exp(-tick/lag)."""
+    alpha = -math.expm1(-tick_s / lag_s)
+    z, _ = lfilter([alpha], [1.0, alpha - 1.0], u, zi=[(1.0 - alpha) * u[0]])
+    return z
+
+
+def delayed(u: np.ndarray, ticks: int) -> np.ndarray:
+    """u so many ticks ago; before the power-on, its first value."""
+    ticks = min(max(ticks, 0), len(u))
+    return np.concatenate([np.full(ticks, u[0]), u[: len(u) - ticks]])
+
+
+def play(u: np.ndarray, width: float) -> np.ndarray:
+    """Backlash (play) operator: p = min(max(p, u - width/2), u + width/2), p starting at the first
+    u.
+    """
+    p = np.empty_like(u)
+    at = u[0]
+    lower, upper = (u - width / 2).tolist(), (u + width / 2).tolist()
+    for i in range(len(u)):
+        at = min(max(at, lower[i]), upper[i])
+        p[i] = at
+    return p
+
+
+def _remembered(term: Term, u: np.ndarray, tick_s: float) -> np.ndarray:
+    if term.lag_mode != "none":
+        z = first_order_lag(u, term.lag_s, tick_s)
+        if term.lag_mode == "lag":
+            return z
+        return u - z if term.lag_mode == "difference" else (u - z) / term.lag_s
+    if term.memory == "backlash":
+        return play(u, term.width) - u
+    if term.memory == "peak":
+        return np.maximum.accumulate(u) - u
+    return u
+
+
+def evaluate(term: Term, sources, tick_s: float) -> np.ndarray:
+    """(m,) basis at each tick. `sources` is called with a name and returns the (m,) tick means."""
+    u = np.clip(sources(term.source), term.lo, term.hi) - term.centre
+    if term.delay_s:
+        u = delayed(u, round(term.delay_s / tick_s))
+    if term.power_first:
+        u = u**term.power
+    v = _remembered(term, u, tick_s)
+    if term.knot is not None:
+        v = np.maximum(v - term.knot, 0.0)
+    if not term.power_first:
+        v = v**term.power
+    if term.second is not None:
+        v = v * (np.clip(sources(term.second), term.second_lo, term.second_hi) - term.second_centre)
+    if term.decay_s:
+        v = v * np.exp(-(sources("time") - tick_s / 2) / term.decay_s)
+    return v
