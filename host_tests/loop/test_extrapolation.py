@@ -89,10 +89,8 @@ def test_a_found_effect_is_held_further_out_only_after_several_power_ons():
     many = select(sessions).found[0].candidate.terms[0]
     alone = select(sessions[:1], pieces(sessions[0])).found[0].candidate.terms[0]
     assert many.lo < volts.min() and many.hi > volts.max()
-    assert (alone.lo, alone.hi) == (
-        sessions[0].sources["vdd_mv"].min(),
-        sessions[0].sources["vdd_mv"].max(),
-    )
+    own = sessions[0].sources["vdd_mv"]
+    assert own.min() <= alone.lo < alone.hi <= own.max()
 
 
 def test_the_integers_are_held_where_the_numbers_are():

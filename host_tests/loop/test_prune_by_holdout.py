@@ -6,6 +6,7 @@ from functools import partial
 import numpy as np
 import pytest
 from zerorate_tools.loop.analyse import analyse
+from zerorate_tools.loop.fit.line import deployed
 from zerorate_tools.loop.report.in_words import in_words
 from zerorate_tools.loop.report.report import report
 from zerorate_tools.loop.search.select import select
@@ -81,3 +82,21 @@ def test_a_cause_that_rests_in_the_session_held_out_stays():
     last.sources["vib"] = np.full_like(last.sources["vib"], sessions[0].sources["vib"].mean())
     selection, _ = upheld(select(sessions[:-1]), [last])
     assert kinds(selection) == ["vibration"] and not selection.withdrawn
+
+
+def test_an_axis_whose_error_would_grow_is_left_alone():
+    sessions = simulate(11, [("supply-voltage", 5.0)]).sessions
+    last, without = sessions[-1], simulate(11).sessions[-1]
+    last.rate_dps[:, 0] = (2 * without.rate_dps - last.rate_dps)[:, 0]
+    left, judgement = upheld(select(sessions[:-1]), [last])
+    assert kinds(left) == ["supply-voltage"] and left.found[0].axes == (False, True, True)
+    assert (judgement.after_dps <= judgement.before_dps).all()
+    assert (deployed(left)[1][-1] != 0).tolist() == [False, True, True]
+
+
+def test_no_effect_reaches_further_than_blocks_that_judged_it():
+    sessions = simulate(11, [("vibration", 5.0)]).sessions
+    for s in sessions:
+        s.sources["vib"][100 * s.ticks_per_block] = 40.0
+    (found,) = select(sessions).found
+    assert found.candidate.kind == "vibration" and found.candidate.terms[0].hi < 0.1

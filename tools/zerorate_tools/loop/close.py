@@ -9,16 +9,13 @@ from pathlib import Path
 
 from ..errors import ZerorateError
 from ..model import write_model
-from ..recordings import open_recording
 from ..recordings.atomic import written_beside
 from .analyse import analyse, sessions_of
 from .read.gate import CannotClose
 from .read.ticks import read_ticks, tick_seconds
 from .report.report import as_json, report
 from .verify.analysis import Analysis
-from .verify.deployable import deployable
-from .verify.measure import measure
-from .verify.slots import model_of
+from .verify.measure import measure_upheld
 
 
 def load(
@@ -75,10 +72,7 @@ def close(
     analysis = load(logs, holdout, advance)
     folder = Path(out)
     folder.mkdir(parents=True, exist_ok=True)
-    scales = open_recording(logs[0]).scales
-    analysis = deployable(analysis, scales)
-    model = model_of(analysis, scales)
-    analysis = measure(analysis, logs, model, folder / "corrected.parquet", online, advance)
+    analysis, model = measure_upheld(analysis, logs, folder / "corrected.parquet", online, advance)
     write_model(model, folder)
     result = json.loads(json.dumps(report(analysis), default=as_json))
     with written_beside(folder / "report.json") as temporary:

@@ -32,6 +32,7 @@ def deployed(selection, effects: bool = True) -> tuple[list, np.ndarray]:
     """Terms and (terms, 3) coefficients as deployed: the line first, then the effects if wanted."""
     straight, terms = list(selection.straight), list(selection.terms) if effects else []
     fitted = selection.regression.fit([*straight, *terms]).coefficients[len(straight) :]
+    fitted = fitted * selection.applied if effects else fitted
     if not straight:
         return terms, fitted
     # Bends of a single recording are learned like the line: there the noise's walk is the bend.
@@ -41,4 +42,5 @@ def deployed(selection, effects: bool = True) -> tuple[list, np.ndarray]:
     rest = terms[bends:]
     sessions = selection.regression.sessions
     line = ordinary([*straight, *terms[:bends]], sessions, rest, fitted[bends:])
+    line[len(straight) :] *= selection.applied[:bends] if effects else 1.0
     return [*straight, *terms], np.vstack([line, fitted[bends:]])

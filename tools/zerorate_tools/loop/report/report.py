@@ -161,7 +161,7 @@ def _steps(analysis):
                 "noise_inflation": round(f.decision.inflation, 2),
                 "nats_on_sessions_left_out": [round(float(g), 2) for g in f.decision.session_gains],
                 "nats_on_locked": round(float(analysis.judgement.gains[i]), 2),
-                "said": _said(f) + (NO_TEMPERATURE if analysis.may_be_heat(i) else ""),
+                "said": _said(f) + (NO_TEMPERATURE if analysis.may_be_heat(i) else "") + _spared(f),
             }
         )
     return out
@@ -186,6 +186,11 @@ def _said(found):
     if kind.startswith("channel"):
         return f"not in the catalogue; depends on {sources}; mechanism unknown"
     return f"{kind} of {sources}"
+
+
+def _spared(found):
+    axes = [axis for axis, used in zip("xyz", found.axes) if not used]
+    return f"; not corrected on {', '.join(axes)}, where the error would grow" if axes else ""
 
 
 def _after(analysis, effects: int) -> list[np.ndarray]:

@@ -84,6 +84,8 @@ GENERIC: tuple[tuple[str, Options, Options], ...] = (
 
 SUPPLY_NAMES = ("vdd", "vbat", "volt", "vcc", "supply")
 _OWN = ("temp", "acc_x", "acc_y", "acc_z", "rate_x", "rate_y", "rate_z", "vib")
+#: Sources that a device in the hand takes far beyond what they are at rest.
+OF_MOTION = frozenset(_OWN) - {"temp"}
 #: Parameters refined after the grid, with the limits they may take.
 REFINED = {
     "lag_s": (8.0, 7200.0),
@@ -113,12 +115,27 @@ class Candidate:
 
 
 def ranges(sessions: list[Session]) -> dict[str, tuple[float, float, float]]:
-    """Source name -> lowest, highest and mean value that the sessions show."""
+    """Source name -> lowest, highest and mean value in the blocks whose rate is known.
+
+    The extremes are block means that several blocks share, so that no shock alone carries an
+    effect, nor is an effect followed where nothing could judge it. Temperature, which is slow, and
+    time have all of theirs.
+    """
     out = {}
     for name in [*common_sources(sessions), "time"]:
-        values = np.concatenate([s.source(name) for s in sessions])
-        out[name] = (float(values.min()), float(values.max()), float(values.mean()))
+        slow = name in ("temp", "time")
+        values = np.concatenate([_known(s, name, slow) for s in sessions])
+        few = 0 if slow else min(int(_FEW + _FEW_SHARE * len(values)), (len(values) - 1) // 2)
+        ends = np.partition(values, (few, len(values) - 1 - few))
+        out[name] = (float(ends[few]), float(ends[-1 - few]), float(values.mean()))
     return out
+
+
+def _known(session, name, by_ticks):
+    """Values of a source in the blocks whose rate is known: of every tick, or the blocks' means."""
+    if by_ticks:
+        return session.source(name)[np.repeat(session.available, session.ticks_per_block)]
+    return session.block_mean(session.source(name))[session.available]
 
 
 def extra_channels(session: Session) -> tuple[str, ...]:
@@ -130,6 +147,9 @@ def is_supply(name: str) -> bool:
     """Whether a channel's name says it is the supply voltage."""
     return any(part in name.lower() for part in SUPPLY_NAMES)
 
+
+#: Blocks beyond either limit of a source's range, and the further share of all blocks.
+_FEW, _FEW_SHARE = 1, 0.01
 
 #: Share of its range by which the source of a difference may leave it.
 _MARGIN = 0.5

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from ...model.term import Term
-from .catalogue import is_bounded
+from .catalogue import OF_MOTION, is_bounded
 
 #: At most this share of the range seen, on either side, and in how many steps it is looked for.
 MOST, _STEPS = 0.25, 10
@@ -52,8 +52,11 @@ def followed(regression, straight, terms: list[Term]) -> list[Term]:
 
 
 def _may_follow(term: Term) -> bool:
-    """Time since power-on is known no further than it was seen; a bounded basis has its margin."""
-    return term.source not in ("one", "time") and not is_bounded(vars(term))
+    """Time since power-on, and what motion carries far out, are known no further than they were
+    seen; a bounded basis has its margin.
+    """
+    fast = {term.source, term.second} & OF_MOTION
+    return term.source not in ("one", "time") and not fast and not is_bounded(vars(term))
 
 
 def _limits(term: Term, name: str) -> tuple[float, float]:

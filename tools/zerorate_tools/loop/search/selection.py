@@ -2,22 +2,34 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
+
+import numpy as np
 
 from ...model.term import Term
 from ..fit.regression import Regression
 from .catalogue import Candidate
+from .confounding import label
 from .decide import Decision
 from .steps import Step
 
 
 @dataclass
 class Found:
-    """An accepted effect, with its rivals and what the locks said of it."""
+    """An accepted effect, with its rivals and what the locks said of it. axes: those of the
+    gyroscope that it corrects, where not all do better with it.
+    """
 
     candidate: Candidate
     decision: Decision
     confounded_with: list[str] = field(default_factory=list)
+    axes: tuple[bool, ...] = (True, True, True)
+
+    def spared(self, axes: Iterable[bool]) -> Found:
+        """The same without what it corrects on some axes, (3,) bool."""
+        kept = tuple(a and not s for a, s in zip(self.axes, axes))
+        return replace(self, axes=kept)
 
 
 @dataclass
@@ -44,6 +56,21 @@ class Selection:
         """The same without one of the effects."""
         found = [f for i, f in enumerate(self.found) if i != effect]
         return replace(self, found=found, bends=self.bends - (effect < self.bends))
+
+    def spared(self, effect: int, axes: Iterable[bool], reason: str) -> Selection:
+        """The same with an effect taken from some axes, and withdrawn where none is left."""
+        less = self.found[effect].spared(axes)
+        if not any(less.axes):
+            said = (label(less.candidate), reason)
+            return replace(self.without(effect), withdrawn=[*self.withdrawn, said])
+        found = [less if i == effect else f for i, f in enumerate(self.found)]
+        return replace(self, found=found)
+
+    @property
+    def applied(self) -> np.ndarray:
+        """(terms, 3) one where a slot corrects an axis, else zero."""
+        rows = [f.axes for f in self.found for _ in f.candidate.terms]
+        return np.array(rows, float).reshape(-1, 3)
 
     @property
     def terms(self) -> list[Term]:

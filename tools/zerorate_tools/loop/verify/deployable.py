@@ -7,6 +7,7 @@ from dataclasses import replace
 from ...model import CannotDeploy
 from ...recordings import Scales
 from ..fit.floor import floor_dps
+from ..search.selection import Selection
 from .analysis import Analysis
 from .judge import judge
 from .slots import model_of
@@ -26,12 +27,13 @@ def deployable(analysis: Analysis, scales: Scales) -> Analysis:
             if not number:
                 raise
             analysis.gate.notes.append(f"found but left out: {problem}")
-            return deployable(_without(analysis, (effects or number) - 1), scales)
+            less = analysis.selection.without((effects or number) - 1)
+            return deployable(with_selection(analysis, less), scales)
     return analysis
 
 
-def _without(analysis, i):
-    selection = analysis.selection.without(i)
+def with_selection(analysis: Analysis, selection: Selection) -> Analysis:
+    """The analysis with fewer of its effects, judged anew."""
     judgement = judge(selection, analysis.locked)
     floor = floor_dps(judgement.whole, [*selection.straight, *selection.terms])
     return replace(analysis, selection=selection, judgement=judgement, floor_dps=floor)

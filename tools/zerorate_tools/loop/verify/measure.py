@@ -16,9 +16,11 @@ from ...recordings.reading import recording_name
 from ..fit.single import held_out
 from .analysis import Analysis
 from .corrected import CorrectedWriter
+from .deployable import deployable, with_selection
 from .judge import Judgement, rms_dps
 from .measured import AFTER, BEFORE, ONLINE, Course, Measured, Measurement
 from .power_on import PowerOn, ideal_dps
+from .prune_by_holdout import unharmed
 from .rounding import rounding_dps
 from .slots import model_of
 
@@ -55,6 +57,29 @@ def measure(
             advance(1)
         writer.close()
     return judged(analysis, Measured(courses, locked, _rounding(analysis, power_ons, scales)))
+
+
+def measure_upheld(
+    analysis: Analysis,
+    logs: Sequence[str | PathLike[str]],
+    out: str | PathLike[str],
+    online: bool = False,
+    advance: Callable[[float], None] = lambda n: None,
+) -> tuple[Analysis, Model]:
+    """As `measure`, again and again without what the kernels find harmful, and the model left."""
+    scales = open_recording(logs[0]).scales
+    while True:
+        analysis = deployable(analysis, scales)
+        model = model_of(analysis, scales)
+        measured = measure(analysis, logs, model, out, online, advance)
+        assert measured.measured is not None, "it was just measured"
+        found = len(analysis.selection.found)
+        less = unharmed(
+            analysis.selection, [measured.measured.with_first(k) for k in range(found + 1)]
+        )
+        if less is analysis.selection:
+            return measured, model
+        analysis = with_selection(analysis, less)
 
 
 def _sink(writer, p: PowerOn, locked, single, online):

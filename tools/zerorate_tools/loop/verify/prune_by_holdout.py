@@ -3,18 +3,22 @@
 An effect that is there hardly ever makes a power-on that no fit has seen less likely; what noise
 alone made of the others does more often than not. Both the likelihood, which looks where the noise
 is small, and the plain error, which is what counts in the end, must speak against it. What follows
-time alone must come again: time passes in every power-on, where another cause may be at rest.
+time alone must come again: time passes in every power-on, where another cause may be at rest. And
+on no axis may the error grow: there the effect is left out, whatever the likelihood says.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
+
+import numpy as np
 
 from ..read.sessions import Session
 from ..search.confounding import label
 from ..search.drift_test import comes_again, follows_time
 from ..search.selection import Selection
-from .judge import Judgement, judge
+from .judge import Judgement, judge, residuals, rms_dps
 
 #: Nats that the locked sessions may lose: a cause that rests there says nothing, not no.
 MOST_LOST = 0.5
@@ -36,7 +40,33 @@ def upheld(selection: Selection, locked: list[Session]) -> tuple[Selection, Judg
         if reason is AGAIN or without.after_rms <= judgement.after_rms:
             said = (label(selection.found[i].candidate), _said(reason, judgement, without))
             return upheld(replace(less, withdrawn=[*less.withdrawn, said]), locked)
-    return selection, judgement
+    after = [
+        [r for r, _ in residuals(selection.first(k), locked)]
+        for k in range(len(selection.found) + 1)
+    ]
+    less = unharmed(selection, after)
+    return (selection, judgement) if less is selection else upheld(less, locked)
+
+
+def unharmed(selection: Selection, after: Sequence[list[np.ndarray]]) -> Selection:
+    """The selection without what makes the error larger: of every axis the effect that does so
+    most, or the selection itself where none does.
+
+    after: residuals (n, 3) of what was held out with the first 0, 1, ... effects.
+    """
+    errors = np.array([rms_dps(r) for r in after])
+    grows = np.diff(errors, axis=0)
+    worst = grows.max(axis=0, initial=0.0)
+    for i in reversed(range(len(grows))):
+        axes = (grows[i] > 0) & (grows[i] == worst)
+        if axes.any():
+            selection = selection.spared(i, axes, _grown(errors, i))
+    return selection
+
+
+def _grown(errors: np.ndarray, i: int) -> str:
+    with_it, now = (1e3 * float(np.sqrt((e**2).mean())) for e in (errors[i + 1], errors[i]))
+    return f"the error of what was held out grows: with it {with_it:.3g} mdps, without {now:.3g}"
 
 
 def _spoken_against(selection: Selection, judgement: Judgement, i: int) -> str | None:
