@@ -66,16 +66,18 @@ def choose(s: ptr32, c: ptr32, a: int, temp: int) -> int:
 def curve_q8(s: ptr32, c: ptr32, a: int, temp: int) -> int:  # inline
     """Return the learned bias at `temp`: LSB, Q8; 0 while there is none.
 
-    By the document a stable estimator of this temperature speaks alone. Else it speaks through
-    the local line, which also knows how the bias changes within a degree.
+    By the document a stable estimator of this temperature speaks alone. By default it speaks with
+    its neighbours, through the local line, which also knows how the bias changes within a degree.
     """
     kind = choose(s, c, a, temp)
+    if kind == HERE and c[_LITERAL] == 0 and s[a + _FIT_POINTS]:
+        kind = FIT
     s[a + _KIND] = kind
     if kind == NONE:
         return 0
-    if kind == ANY_TEMPERATURE or s[a + _FIT_POINTS] == 0:
-        return s[a + _ESTIMATORS + 2]
-    if kind == HERE and c[_LITERAL]:
+    if kind == HERE:
         kind = find(s, c, a, temp)
         return s[kind + 2]
+    if kind == ANY_TEMPERATURE:
+        return s[a + _ESTIMATORS + 2]
     return line_q8(s, a, temp << 4)

@@ -55,6 +55,15 @@ LIMITS = {
     "motion_most_dps": 0.15,
     "motion_full_dps": 0.01,
     "motion_start_dps": 20.0,
+    "split_s": 0.01,
+}
+# By the document readings include motion, so that seconds of them tell little.
+DOCUMENT = {
+    "range_dps": 20.0,
+    "promote_s": 10.0,
+    "fit_s": 10.0,
+    "stable_s": 10.0,
+    "split_s": 1.0,
 }
 
 
@@ -68,12 +77,13 @@ class Corrector:
     """Learns the bias of three axes while the device lives, and subtracts it.
 
     sensor: a Sensor, or None for an MPU-6050 at +-250 dps and 100 Hz. bins: 4..19 an histogram;
-    short, long: estimators an axis. document: the literal rules of document 000 (every reading
-    learned, mean of the most significant bin, split in halves, one straight line). every: learn
-    every reading, moving or still, by this project's own rules. ignore_outside: readings outside
-    a histogram are ignored instead of extending it. motion: learn in motion as well (document
-    002); accelerometer: against gravity as well (003). Any key of LIMITS may be given by name, in
-    its unit. Raises ValueError.
+    short, long: estimators an axis. document: the literal rules of the documents: of 000 every
+    reading learned, mean of the most significant bin, split in halves, one straight line, with
+    the limits of DOCUMENT; with every=False the same rules on this project's rests. every: learn
+    every reading, moving or still (default: as the document). ignore_outside: readings outside a
+    histogram are ignored instead of extending it (default: as DOCUMENT). motion: learn in motion
+    as well (document 002); accelerometer: against gravity as well (003); with document both in
+    their literal forms. Any key of LIMITS may be given by name, in its unit. Raises ValueError.
     """
 
     def __init__(
@@ -83,20 +93,26 @@ class Corrector:
         short: int = 3,
         long: int = 5,
         document: bool = False,
-        every: bool = False,
-        ignore_outside: bool = False,
+        every: "bool | None" = None,
+        ignore_outside: "bool | None" = None,
         motion: bool = False,
         accelerometer: bool = False,
         **limits: float,
     ) -> None:
         self.sensor = sensor or Sensor()
         chosen = dict(LIMITS)
+        if every is None:
+            every = document
+        if document and every:
+            chosen.update(DOCUMENT)
+        if ignore_outside is None:
+            ignore_outside = document and every
         for name in limits:
             if name not in chosen:
                 raise ValueError("no such setting: %s" % name)
             chosen[name] = limits[name]
         self.settings = settings(
-            self.sensor, bins, short, long, document, document or every, ignore_outside, chosen
+            self.sensor, bins, short, long, document, every, ignore_outside, chosen
         )
         c = self.settings
         self.effects: "Any" = None
@@ -109,15 +125,15 @@ class Corrector:
         self._observe_level: "Any" = None
         self.alone = not motion and not accelerometer
         if motion:
-            self._learn_in_motion(chosen["motion_start_dps"])
+            self._learn_in_motion(document, chosen["motion_start_dps"])
         if accelerometer:
-            self._learn_by_level()
+            self._learn_by_level(document)
         walk_lsb = chosen["walk_dps"] * self.sensor.gyro_lsb_per_dps
         self._walk_q16 = max(1, int(walk_lsb * walk_lsb * 65536))
         self.state = array("i", [0] * (c[0] + 3 * c[13]))
         self.reset()
 
-    def _learn_in_motion(self, start_dps):
+    def _learn_in_motion(self, document, start_dps):
         # loaded here, so that who does not learn in motion has no memory taken by it
         from .motion_kernels import in_motion
         from .motion_settings import motion_settings, motion_state
@@ -128,19 +144,20 @@ class Corrector:
             sensor.odr_hz,
             sensor.gyro_lsb_per_dps,
             sensor.accel_lsb_per_g,
+            document=document,
             start_dps=start_dps,
             temp_lsb_per_degc=sensor.temp_lsb_per_degc,
         )
         self.motion = motion_state(self.motion_settings)
 
-    def _learn_by_level(self):
+    def _learn_by_level(self, document):
         from .motion_kernels import realtime
         from .realtime_settings import realtime_settings, realtime_state
 
         sensor = self.sensor
         self._observe_level = realtime.update
         self.level_settings = realtime_settings(
-            sensor.odr_hz, sensor.gyro_lsb_per_dps, sensor.accel_lsb_per_g
+            sensor.odr_hz, sensor.gyro_lsb_per_dps, sensor.accel_lsb_per_g, document=document
         )
         self.level = realtime_state(self.level_settings)
 

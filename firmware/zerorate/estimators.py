@@ -7,7 +7,7 @@
 #     e      temperature it is for, raw LSB, or _FREE
 #     e+1    mean temperature of its readings, raw LSB, Q4
 #     e+2    its bias, LSB, Q8
-#     e+3    readings it stands for
+#     e+3    readings it was given, which its bins, being of 14 bits, halve long before
 #     e+4..  its histogram
 #
 # The axis block at word `a` begins with what `corrector.py` names; the estimators follow it.
@@ -26,6 +26,7 @@ ptr32 = None
 from .histogram import add, clear, halve, population, read_out_q8
 
 _FREE = const(-1048576)
+_MOST = const(0x1FFFFFF)  # of 18 estimators together below 2^30
 
 _TOTAL = const(0)
 _WEIGHT = const(1)
@@ -240,9 +241,10 @@ def feed(s: ptr32, c: ptr32, a: int, e: int):
         s[e + 1] = s[_LEARN_TEMP] << 4
     if add(s, c, e + 4, a) == 0:
         return
-    k = population(s, e + 4, c[_BINS])
-    s[e + 3] = k
+    if s[e + 3] < _MOST:
+        s[e + 3] += s[a + _WEIGHT]
     s[e + 2] = read_out_q8(s, e + 4, c[_BINS])
+    k = population(s, e + 4, c[_BINS])
     if k < s[a + _WEIGHT]:
         k = s[a + _WEIGHT]
     k = ((s[_LEARN_TEMP] << 4) - s[e + 1]) * s[a + _WEIGHT] // k
@@ -254,7 +256,7 @@ def age(s: ptr32, c: ptr32, a: int):
     e = a + c[_FIRST_LONG]
     while e < a + c[_END]:
         halve(s, e + 4, c[_BINS])
-        s[e + 3] = population(s, e + 4, c[_BINS])
+        s[e + 3] = s[e + 3] >> 1
         e += c[_WORDS]
 
 

@@ -89,6 +89,8 @@ def place(s: ptr32, c: ptr32, h: int, reading: int) -> int:
 
 def merge(s: ptr32, h: int, bins: int, p: int):
     """Join the bins p and p+1 and close the gap; the last bin's place is free then."""
+    while (s[h + p] & _MOST) + (s[h + p + 1] & _MOST) > _MOST:
+        halve(s, h, bins)
     s[h + p] += s[h + p + 1] & _MOST
     s[h + bins + 1 + p] += s[h + bins + 2 + p]
     p += 1
@@ -174,9 +176,9 @@ def crowded(s: ptr32, c: ptr32, h: int, j: int, p: int) -> int:
     p += h
     count = s[j] & _MOST
     pair = (s[p] & _MOST) + (s[p + 1] & _MOST)
+    if count < c[_ENOUGH]:
+        return 0
     if c[_LITERAL] == 0:
-        if count < c[_ENOUGH]:
-            return 0
         count = (count << 12) // ((s[j + 1] >> 14) - (s[j] >> 14))
         pair = (pair << 12) // ((s[p + 2] >> 14) - (s[p] >> 14))
     if count > c[_RATIO] * pair:

@@ -93,7 +93,7 @@ def bins_of(c, sensor, bins, every, document, limits):
     c[19] = 1 if document else narrow
     c[20] = 2 if document else 4
     c[21] = 1 if document else 0
-    c[23] = 64
+    c[23] = max(1, int(limits["split_s"] * sensor.odr_hz)) if document else 64
 
 
 def estimators_of(c, sensor, short, long, document, limits):

@@ -3,8 +3,10 @@
 from array import array
 
 import pytest
-from zerorate import Corrector, Sensor
+from zerorate import Corrector, Sensor, bias
 from zerorate.corrector import MOTION_BIAS, OUT_Q8, SOURCE
+from zerorate.motion_settings import motion_settings
+from zerorate.realtime_settings import realtime_settings
 from zerorate.store import EMPTY, LOADED, OTHER_BINDING, Store
 
 RATES = (800, -300, 40)
@@ -47,6 +49,32 @@ def learned():
 def store_for(corrector, binding=b"\x68\0\0\0", memory=None):
     size = 4 * len(corrector.state)
     return Store(memory or Memory(2 * size + 100), binding, size)
+
+
+def test_by_default_an_estimator_never_speaks_without_its_neighbours(learned):
+    assert [learned.source(i) for i in range(3)] == [bias.FIT] * 3
+
+
+def test_by_the_document_a_stable_estimator_of_this_temperature_speaks():
+    corrector = Corrector(document=True)
+    rest(corrector, 1200)
+    assert [corrector.source(i) for i in range(3)] == [bias.HERE] * 3
+    assert "from this temperature" in corrector.explain()
+
+
+def test_the_document_on_rests_learns_no_motion():
+    corrector = Corrector(document=True, every=False)
+    frame = array("i", [0] * 7)
+    for n in range(3000):
+        frame[:] = array("i", (3, n % 13, 16384, 1000, 2000 + n % 900, n % 700, 0))
+        corrector.update(frame, PERIOD_US)
+    assert [corrector.source(i) for i in range(3)] == [bias.NONE] * 3
+
+
+def test_the_documents_forms_of_all_three_are_within_reach():
+    corrector = Corrector(document=True, motion=True, accelerometer=True)
+    assert corrector.motion_settings == motion_settings(document=True)
+    assert corrector.level_settings == realtime_settings(document=True)
 
 
 def test_a_resting_device_reads_zero(learned):

@@ -14,7 +14,7 @@ class Axis:
     """The first axis of a corrector, taught directly."""
 
     def __init__(self, **limits):
-        limits = {"promote_s": PROMOTE / 100, **limits}
+        limits = {"promote_s": PROMOTE / 100, "range_dps": 40.0, **limits}
         corrector = Corrector(Sensor(), document=True, **limits)
         self.s, self.c = corrector.state, corrector.settings
         self.a = self.c[0]
@@ -157,3 +157,10 @@ def test_a_temperature_passed_in_five_seconds_is_remembered():
     for degree in range(6):
         axis.learn(degree * STEP, 5, 500)
     assert {0, STEP, 2 * STEP} <= {temp for temp, _ in axis.long}
+
+
+def test_more_readings_than_a_bin_can_count_are_still_more(axis):
+    for _ in range(3):
+        axis.learn(0, weight=10000)
+    axis.learn(STEP * 5, weight=10000)
+    assert sorted(count for _, count in axis.short) == [0, 10000, 30000]

@@ -11,7 +11,7 @@ from zerorate import Corrector, Sensor, histogram
 MODES = {
     "default": {},
     "every": {"every": True},
-    "document": {"document": True},
+    "document": {"document": True, "ignore_outside": False, "split_s": 0.01},
     "ignoring": {"document": True, "ignore_outside": True, "range_dps": 10.0},
     "19 bins": {"every": True, "bins": 19},
     "4 bins": {"document": True, "bins": 4},
@@ -26,8 +26,8 @@ chunks = st.lists(st.tuples(st.one_of(near, far), st.sampled_from([1, 2, 64, 256
 class Histogram:
     """One histogram behind the shared words that the kernels use."""
 
-    def __init__(self, mode, sensor=None):
-        self.c = Corrector(sensor, **MODES[mode]).settings
+    def __init__(self, mode, sensor=None, **more):
+        self.c = Corrector(sensor, **{**MODES[mode], **more}).settings
         self.bins = self.c[16]
         self.h = 10
         self.s = array("i", [0] * (self.h + 2 * self.bins + 1))
@@ -99,9 +99,9 @@ def test_split_and_merge_preserve_count_and_sum(share, readings, pair, bin):
         bin = (pair + 2) % 8
     if made.widths[bin] < 2:
         return
+    while made.counts[pair] + made.counts[pair + 1] > 0x3FFF:
+        histogram.halve(made.s, made.h, made.bins)
     count, total = sum(made.counts), sum(made.sums)
-    if made.counts[pair] + made.counts[pair + 1] > 0x3FFF:
-        return
     histogram.merge(made.s, made.h, made.bins, pair)
     bin -= 1 if pair < bin else 0
     histogram.open_gap(made.s, made.h, made.bins, bin)
@@ -122,6 +122,20 @@ def test_halving_loses_no_more_than_rounding(mode, readings):
         if after:
             assert left / after == pytest.approx(total / before, abs=1 / after)
     sound(made)
+
+
+@pytest.mark.parametrize("bins", [4, 5, 6])
+def test_a_merge_of_two_full_bins_keeps_its_edge_and_its_mean(bins):
+    made = Histogram("document", bins=bins)
+    width = made.widths[0]
+    low = made.s[made.h] >> 14
+    for i in range(2):
+        made.s[made.h + i] += 0x3FFF
+        made.s[made.h + bins + 1 + i] = 0x3FFF * (low + i * width + 3)
+    histogram.merge(made.s, made.h, bins, 0)
+    assert made.s[made.h] >> 14 == low
+    mean = made.sums[0] / made.counts[0]
+    assert mean == pytest.approx(low + width / 2 + 3, abs=1)
 
 
 def test_what_would_overflow_a_count_is_halved_first():

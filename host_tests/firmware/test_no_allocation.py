@@ -77,7 +77,6 @@ ALWAYS = {
     "refit": ("settle", ""),
     "no bias yet": ("source", bias.NONE),
     "fallback": ("source", bias.ANY_TEMPERATURE),
-    "the temperature's own": ("source", bias.HERE),
     "good": ("verdict", guard.GOOD),
     "repeat": ("verdict", guard.REPEAT),
     "rail": ("verdict", guard.RAIL),
@@ -109,7 +108,12 @@ IN_MODE = {
         "suspect": ("suspect", 1),
     },
     "every": {**LINE, "recentre": ("recentre", 1), "share by mean": ("share_by_mean", "")},
-    "document": {**LINE, "replacement": ("copy", True), "share evenly": ("share_evenly", "")},
+    "document": {
+        **LINE,
+        "the temperature's own": ("source", bias.HERE),
+        "replacement": ("copy", True),
+        "share evenly": ("share_evenly", ""),
+    },
     "ignoring": {"ignored": ("place", "outside")},
 }
 

@@ -71,7 +71,7 @@ def test_the_documents_rule_leaves_its_nine_mdps(capsys):
 @pytest.mark.parametrize("bias_dps", [-40, -20, -3, 0, 3, 20, 40])
 @pytest.mark.parametrize("rule", ["default", "document", "every"])
 def test_a_bias_of_up_to_40_dps_is_learned(bias_dps, rule):
-    options = {} if rule == "default" else {rule: True}
+    options = {} if rule == "default" else {rule: True, "ignore_outside": False}
     corrector, _ = play(rest(30, 3, (bias_dps, -bias_dps, bias_dps)), **options)
     limit = 4 * NOISE_LSB if rule == "document" else LEARNED_LSB
     for axis, sign in enumerate((1, -1, 1)):

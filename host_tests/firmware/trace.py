@@ -20,7 +20,7 @@ LIMITS = {
 MODES = {
     "default": {},
     "every": {"every": True},
-    "document": {"document": True},
+    "document": {"document": True, "ignore_outside": False, "range_dps": 40.0, "stable_s": 2.5},
     "ignoring": {"every": True, "ignore_outside": True, "range_dps": 20.0},
 }
 

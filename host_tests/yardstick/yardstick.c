@@ -251,16 +251,19 @@ static int32_t fit_line_q8(int32_t *s, int32_t a, int32_t temp_q4) {
 static int32_t bias_curve_q8(int32_t *s, int32_t *c, int32_t a, int32_t temp) {
     int32_t kind = 0;
     kind = bias_choose(s, c, a, temp);
+    if ((kind == 3) && (c[21] == 0) && s[(a + 22)]) {
+        kind = 2;
+    }
     s[(a + 30)] = kind;
     if (kind == 0) {
         return 0;
     }
-    if ((kind == 1) || (s[(a + 22)] == 0)) {
-        return s[((a + 32) + 2)];
-    }
-    if ((kind == 3) && c[21]) {
+    if (kind == 3) {
         kind = estimators_find(s, c, a, temp);
         return s[(kind + 2)];
+    }
+    if (kind == 1) {
+        return s[((a + 32) + 2)];
     }
     return fit_line_q8(s, a, shift_left(temp, 4));
 }
@@ -315,16 +318,6 @@ static void step_publish(int32_t *s, int32_t *c, int32_t a, int32_t axis) {
     s[(70 + axis)] = bias;
 }
 
-static int32_t histogram_population(int32_t *s, int32_t h, int32_t bins) {
-    int32_t count = 0;
-    count = 0;
-    while (bins > 0) {
-        bins = (bins - 1);
-        count = (count + (s[(h + bins)] & 16383));
-    }
-    return count;
-}
-
 static int32_t histogram_most_significant(int32_t *s, int32_t h, int32_t bins) {
     int32_t best = 0;
     int32_t i = 0;
@@ -352,6 +345,16 @@ static int32_t histogram_read_out_q8(int32_t *s, int32_t h, int32_t bins) {
     }
     total = s[(((h + bins) + 1) + k)];
     return (shift_left(floor_div(total, count), 8) + floor_div(shift_left(floor_mod(total, count), 8), count));
+}
+
+static int32_t histogram_population(int32_t *s, int32_t h, int32_t bins) {
+    int32_t count = 0;
+    count = 0;
+    while (bins > 0) {
+        bins = (bins - 1);
+        count = (count + (s[(h + bins)] & 16383));
+    }
+    return count;
 }
 
 static void histogram_clear(int32_t *s, int32_t *c, int32_t h, int32_t middle) {
@@ -417,7 +420,30 @@ static int32_t histogram_emptiest(int32_t *s, int32_t *c, int32_t h, int32_t j) 
     return found;
 }
 
+static void histogram_halve(int32_t *s, int32_t h, int32_t bins) {
+    int32_t count = 0;
+    int32_t i = 0;
+    int32_t rest = 0;
+    int32_t total = 0;
+    i = 0;
+    while (i < bins) {
+        count = (s[(h + i)] & 16383);
+        if (count) {
+            total = s[(((h + bins) + 1) + i)];
+            rest = floor_mod(total, count);
+            total = ((floor_div(total, count) * (count >> 1)) + floor_div((rest * (count >> 1)), count));
+            s[(((h + bins) + 1) + i)] = total;
+            count = (s[(h + i)] - ((count + 1) >> 1));
+            s[(h + i)] = count;
+        }
+        i = (i + 1);
+    }
+}
+
 static void histogram_merge(int32_t *s, int32_t h, int32_t bins, int32_t p) {
+    while (((s[(h + p)] & 16383) + (s[((h + p) + 1)] & 16383)) > 16383) {
+        histogram_halve(s, h, bins);
+    }
     s[(h + p)] = (s[(h + p)] + (s[((h + p) + 1)] & 16383));
     s[(((h + bins) + 1) + p)] = (s[(((h + bins) + 1) + p)] + s[(((h + bins) + 2) + p)]);
     p = (p + 1);
@@ -492,10 +518,10 @@ static int32_t histogram_crowded(int32_t *s, int32_t *c, int32_t h, int32_t j, i
     p = (p + h);
     count = (s[j] & 16383);
     pair = ((s[p] & 16383) + (s[(p + 1)] & 16383));
+    if (count < c[23]) {
+        return 0;
+    }
     if (c[21] == 0) {
-        if (count < c[23]) {
-            return 0;
-        }
         count = floor_div(shift_left(count, 12), ((s[(j + 1)] >> 14) - (s[j] >> 14)));
         pair = floor_div(shift_left(pair, 12), ((s[(p + 2)] >> 14) - (s[p] >> 14)));
     }
@@ -533,26 +559,6 @@ static void histogram_share_by_mean(int32_t *s, int32_t h, int32_t bins, int32_t
         s[(((h + bins) + 2) + j)] = total;
     } else {
         s[(((h + bins) + 2) + j)] = 0;
-    }
-}
-
-static void histogram_halve(int32_t *s, int32_t h, int32_t bins) {
-    int32_t count = 0;
-    int32_t i = 0;
-    int32_t rest = 0;
-    int32_t total = 0;
-    i = 0;
-    while (i < bins) {
-        count = (s[(h + i)] & 16383);
-        if (count) {
-            total = s[(((h + bins) + 1) + i)];
-            rest = floor_mod(total, count);
-            total = ((floor_div(total, count) * (count >> 1)) + floor_div((rest * (count >> 1)), count));
-            s[(((h + bins) + 1) + i)] = total;
-            count = (s[(h + i)] - ((count + 1) >> 1));
-            s[(h + i)] = count;
-        }
-        i = (i + 1);
     }
 }
 
@@ -613,9 +619,11 @@ static void estimators_feed(int32_t *s, int32_t *c, int32_t a, int32_t e) {
     if (histogram_add(s, c, (e + 4), a) == 0) {
         return;
     }
-    k = histogram_population(s, (e + 4), c[16]);
-    s[(e + 3)] = k;
+    if (s[(e + 3)] < 33554431) {
+        s[(e + 3)] = (s[(e + 3)] + s[(a + 1)]);
+    }
     s[(e + 2)] = histogram_read_out_q8(s, (e + 4), c[16]);
+    k = histogram_population(s, (e + 4), c[16]);
     if (k < s[(a + 1)]) {
         k = s[(a + 1)];
     }
@@ -810,7 +818,7 @@ static void estimators_age(int32_t *s, int32_t *c, int32_t a) {
     e = (a + c[47]);
     while (e < (a + c[15])) {
         histogram_halve(s, (e + 4), c[16]);
-        s[(e + 3)] = histogram_population(s, (e + 4), c[16]);
+        s[(e + 3)] = (s[(e + 3)] >> 1);
         e = (e + c[26]);
     }
 }

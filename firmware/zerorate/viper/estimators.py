@@ -250,14 +250,8 @@ def feed(histogram_add_histogram_place_k: int, histogram_add_halve_i: int, s: pt
         histogram_add_result = 1
     if not histogram_add_result:
         return
-    population_h = e + 4
-    population_bins = c[16]
-    population_count = 0
-    while population_bins > 0:
-        population_bins = population_bins - 1
-        population_count = (s[population_h + population_bins] & 16383) + population_count
-    k = population_count
-    s_e[3] = k
+    if s_e[3] < 33554431:
+        s_e[3] = s_e[3] + s_a[1]
     read_out_q8_h = e + 4
     read_out_q8_bins = c[16]
     read_out_q8_most_significant_best = read_out_q8_h
@@ -275,6 +269,13 @@ def feed(histogram_add_histogram_place_k: int, histogram_add_halve_i: int, s: pt
         read_out_q8_total = s[read_out_q8_h + read_out_q8_bins + 1 + read_out_q8_k]
         read_out_q8_result = (read_out_q8_total // read_out_q8_count << 8) + (read_out_q8_total % read_out_q8_count << 8) // read_out_q8_count
     s_e[2] = read_out_q8_result
+    population_h = e + 4
+    population_bins = c[16]
+    population_count = 0
+    while population_bins > 0:
+        population_bins = population_bins - 1
+        population_count = (s[population_h + population_bins] & 16383) + population_count
+    k = population_count
     if k < s_a[1]:
         k = s_a[1]
     k = ((s[52] << 4) - s_e[1]) * s_a[1] // k
@@ -282,7 +283,7 @@ def feed(histogram_add_histogram_place_k: int, histogram_add_halve_i: int, s: pt
 
 
 @micropython.viper
-def learn_here(find_e: int, s: ptr32, age_halve_i: int, c: ptr32, a: int, s_, c_):
+def learn_here(find_e: int, age_halve_i: int, age_halve_count: int, s: ptr32, c: ptr32, a: int, s_, c_):
     s_a = ptr32(int(s) + (a << 2))
     temp = s[52]
     while True:
@@ -339,12 +340,5 @@ def learn_here(find_e: int, s: ptr32, age_halve_i: int, c: ptr32, a: int, s_, c_
                     age_halve_count = s[age_halve_h + age_halve_i] - (age_halve_count + 1 >> 1)
                     s[age_halve_h + age_halve_i] = age_halve_count
                 age_halve_i = age_halve_i + 1
-            age_population_h = age_e + 4
-            age_population_bins = c[16]
-            age_population_count = 0
-            while age_population_bins > 0:
-                age_population_bins = age_population_bins - 1
-                age_population_count = (s[age_population_h + age_population_bins] & 16383) + age_population_count
-            age_population_result = age_population_count
-            s[age_e + 3] = age_population_result
+            s[age_e + 3] = s[age_e + 3] >> 1
             age_e = age_e + c[26]

@@ -33,7 +33,19 @@ def halve(h: int, s: ptr32, bins: int):
 
 
 @micropython.viper
-def merge(p: int, h: int, s: ptr32, bins: int):
+def merge(halve_i: int, halve_count: int, h: int, s: ptr32, bins: int, p: int):
+    while (s[h + p] & 16383) + (s[h + p + 1] & 16383) > 16383:
+        halve_i = 0
+        while halve_i < bins:
+            halve_count = s[h + halve_i] & 16383
+            if halve_count:
+                halve_total = s[h + bins + 1 + halve_i]
+                halve_rest = halve_total % halve_count
+                halve_total = halve_total // halve_count * (halve_count >> 1) + (halve_count >> 1) * halve_rest // halve_count
+                s[h + bins + 1 + halve_i] = halve_total
+                halve_count = s[h + halve_i] - (halve_count + 1 >> 1)
+                s[h + halve_i] = halve_count
+            halve_i = halve_i + 1
     s[h + p] += s[h + p + 1] & 16383
     s[h + bins + 1 + p] += s[h + bins + 2 + p]
     p = p + 1
@@ -90,9 +102,9 @@ def crowded(j: int, p: int, s: ptr32, h: int, c: ptr32) -> int:
     s_p = ptr32(int(s) + (p << 2))
     count = s[j] & 16383
     pair = (s_p[0] & 16383) + (s_p[1] & 16383)
+    if count < c[23]:
+        return 0
     if not c[21]:
-        if count < c[23]:
-            return 0
         count = (count << 12) // ((s[j + 1] >> 14) - (s[j] >> 14))
         pair = (pair << 12) // ((s_p[2] >> 14) - (s_p[0] >> 14))
     if count > c[20] * pair:
@@ -170,7 +182,7 @@ def adapt(h: int, s: ptr32, c: ptr32, k: int, s_, c_) -> int:
     pair = emptiest_found
     if not int(crowded(k, pair, s_, h, c_)):
         return 0
-    merge(pair, h, s_, c[16])
+    merge(0, 0, h, s_, c[16], pair)
     if pair < k:
         k = k - 1
     open_gap(h, s_, k, c[16])

@@ -5,6 +5,47 @@ import micropython
 
 
 @micropython.viper
+def let_learn(c: ptr32, s: ptr32, a: int):
+    s_a = ptr32(int(s) + (a << 2))
+    if not a - c[0] and s[54] < c[39]:
+        s[54] = s[54] + 1
+    level_q8_k = c[0] - 3 + (a - c[0]) // c[13]
+    s_level_q8_k = ptr32(int(s) + (level_q8_k << 2))
+    if s[54] < c[39]:
+        level_q8_off = s_a[24] >> 4
+        if level_q8_off > 16383:
+            level_q8_off = 16383
+        if level_q8_off < -16383:
+            level_q8_off = -16383
+        level_q8_usual = level_q8_off * level_q8_off
+        if level_q8_usual < c[45]:
+            level_q8_usual = c[45]
+        level_q8_beyond_q8_d = (s[47] << 4) - s_a[20]
+        if level_q8_beyond_q8_d >> 30:
+            level_q8_beyond_q8_d = s_a[19] - (s[47] << 4)
+        if level_q8_beyond_q8_d >> 30 or not s_a[22]:
+            level_q8_beyond_q8_result = 0
+        else:
+            if level_q8_beyond_q8_d > 262143:
+                level_q8_beyond_q8_d = 262143
+            level_q8_beyond_q8_d = level_q8_beyond_q8_d * c[50] >> 16
+            if level_q8_beyond_q8_d > 16383:
+                level_q8_beyond_q8_d = 16383
+            level_q8_beyond_q8_result = level_q8_beyond_q8_d * level_q8_beyond_q8_d
+        s_level_q8_k[0] = level_q8_beyond_q8_result
+        level_q8_gain_q14_variance = s_level_q8_k[0]
+        level_q8_gain_q14_noise = level_q8_usual
+        while level_q8_gain_q14_variance + level_q8_gain_q14_noise > 32767:
+            level_q8_gain_q14_variance = level_q8_gain_q14_variance >> 1
+            level_q8_gain_q14_noise = level_q8_gain_q14_noise >> 1
+        level_q8_usual = (level_q8_gain_q14_variance << 14) // (level_q8_gain_q14_variance + level_q8_gain_q14_noise + 1)
+        s_level_q8_k[0] = s_a[24] - (level_q8_off * level_q8_usual >> 10)
+    off = s_level_q8_k[0]
+    n = s_a[1]
+    s_a[0] = s_a[0] - ((off >> 8) * n + ((off & 255) * n + 128 >> 8))
+
+
+@micropython.viper
 def absorb(error_q4_curve_q8_choose_find_e: int, c: ptr32, error_q4_curve_q8_choose_find_d: int, a: int, s: ptr32, s_, c_) -> int:
     s_a = ptr32(int(s) + (a << 2))
     s[80] = s[49] // (3 * s_a[1]) + c[37]
@@ -52,12 +93,12 @@ def absorb(error_q4_curve_q8_choose_find_e: int, c: ptr32, error_q4_curve_q8_cho
             break
         error_q4_curve_q8_kind = 0
         break
+    if not error_q4_curve_q8_kind - 3 and (not c[21]) and s_a[22]:
+        error_q4_curve_q8_kind = 2
     s_a[30] = error_q4_curve_q8_kind
     if not error_q4_curve_q8_kind:
         error_q4_before = 0
-    elif not error_q4_curve_q8_kind - 1 or not s_a[22]:
-        error_q4_before = s_a[34]
-    elif not error_q4_curve_q8_kind - 3 and c[21]:
+    elif not error_q4_curve_q8_kind - 3:
         while True:
             error_q4_curve_q8_find_half = c[27] >> 1
             error_q4_curve_q8_find_e = s_a[2]
@@ -80,6 +121,8 @@ def absorb(error_q4_curve_q8_choose_find_e: int, c: ptr32, error_q4_curve_q8_cho
             error_q4_curve_q8_kind = 0
             break
         error_q4_before = s[error_q4_curve_q8_kind + 2]
+    elif not error_q4_curve_q8_kind - 1:
+        error_q4_before = s_a[34]
     else:
         error_q4_curve_q8_line_q8_temp_q4 = error_q4_before << 4
         error_q4_curve_q8_line_q8_u = error_q4_curve_q8_line_q8_temp_q4 - s_a[14]
@@ -104,42 +147,7 @@ def absorb(error_q4_curve_q8_choose_find_e: int, c: ptr32, error_q4_curve_q8_cho
     error = error_q4_mean - error_q4_before - s_a[24] >> 4
     if not int(believe(s_, error, c_, a)):
         return 0
-    if not a - c[0] and s[54] < c[39]:
-        s[54] = s[54] + 1
-    let_learn_level_q8_k = c[0] - 3 + (a - c[0]) // c[13]
-    s_let_learn_level_q8_k = ptr32(int(s) + (let_learn_level_q8_k << 2))
-    if s[54] < c[39]:
-        let_learn_level_q8_off = s_a[24] >> 4
-        if let_learn_level_q8_off > 16383:
-            let_learn_level_q8_off = 16383
-        if let_learn_level_q8_off < -16383:
-            let_learn_level_q8_off = -16383
-        let_learn_level_q8_usual = let_learn_level_q8_off * let_learn_level_q8_off
-        if let_learn_level_q8_usual < c[45]:
-            let_learn_level_q8_usual = c[45]
-        let_learn_level_q8_beyond_q8_d = (s[47] << 4) - s_a[20]
-        if let_learn_level_q8_beyond_q8_d >> 30:
-            let_learn_level_q8_beyond_q8_d = s_a[19] - (s[47] << 4)
-        if let_learn_level_q8_beyond_q8_d >> 30 or not s_a[22]:
-            let_learn_level_q8_beyond_q8_result = 0
-        else:
-            if let_learn_level_q8_beyond_q8_d > 262143:
-                let_learn_level_q8_beyond_q8_d = 262143
-            let_learn_level_q8_beyond_q8_d = let_learn_level_q8_beyond_q8_d * c[50] >> 16
-            if let_learn_level_q8_beyond_q8_d > 16383:
-                let_learn_level_q8_beyond_q8_d = 16383
-            let_learn_level_q8_beyond_q8_result = let_learn_level_q8_beyond_q8_d * let_learn_level_q8_beyond_q8_d
-        s_let_learn_level_q8_k[0] = let_learn_level_q8_beyond_q8_result
-        let_learn_level_q8_gain_q14_variance = s_let_learn_level_q8_k[0]
-        let_learn_level_q8_gain_q14_noise = let_learn_level_q8_usual
-        while let_learn_level_q8_gain_q14_variance + let_learn_level_q8_gain_q14_noise > 32767:
-            let_learn_level_q8_gain_q14_variance = let_learn_level_q8_gain_q14_variance >> 1
-            let_learn_level_q8_gain_q14_noise = let_learn_level_q8_gain_q14_noise >> 1
-        let_learn_level_q8_usual = (let_learn_level_q8_gain_q14_variance << 14) // (let_learn_level_q8_gain_q14_variance + let_learn_level_q8_gain_q14_noise + 1)
-        s_let_learn_level_q8_k[0] = s_a[24] - (let_learn_level_q8_off * let_learn_level_q8_usual >> 10)
-    let_learn_off = s_let_learn_level_q8_k[0]
-    let_learn_n = s_a[1]
-    s_a[0] = s_a[0] - ((let_learn_off >> 8) * let_learn_n + ((let_learn_off & 255) * let_learn_n + 128 >> 8))
+    let_learn(c_, s_, a)
     return 1
 
 
@@ -305,12 +313,12 @@ def hand_over(curve_q8_choose_find_e: int, c: ptr32, curve_q8_choose_find_d: int
                 break
             curve_q8_kind = 0
             break
+        if not curve_q8_kind - 3 and (not c[21]) and s_a[22]:
+            curve_q8_kind = 2
         s_a[30] = curve_q8_kind
         if not curve_q8_kind:
             after = 0
-        elif not curve_q8_kind - 1 or not s_a[22]:
-            after = s_a[34]
-        elif not curve_q8_kind - 3 and c[21]:
+        elif not curve_q8_kind - 3:
             while True:
                 curve_q8_find_half = c[27] >> 1
                 curve_q8_find_e = s_a[2]
@@ -333,6 +341,8 @@ def hand_over(curve_q8_choose_find_e: int, c: ptr32, curve_q8_choose_find_d: int
                 curve_q8_kind = 0
                 break
             after = s[curve_q8_kind + 2]
+        elif not curve_q8_kind - 1:
+            after = s_a[34]
         else:
             curve_q8_line_q8_temp_q4 = after << 4
             curve_q8_line_q8_u = curve_q8_line_q8_temp_q4 - s_a[14]

@@ -58,12 +58,12 @@ def publish(curve_q8_choose_find_e: int, c: ptr32, curve_q8_choose_find_d: int, 
             break
         curve_q8_kind = 0
         break
+    if not curve_q8_kind - 3 and (not c[21]) and s_a[22]:
+        curve_q8_kind = 2
     s_a[30] = curve_q8_kind
     if not curve_q8_kind:
         curve_q8_result = 0
-    elif not curve_q8_kind - 1 or not s_a[22]:
-        curve_q8_result = s_a[34]
-    elif not curve_q8_kind - 3 and c[21]:
+    elif not curve_q8_kind - 3:
         while True:
             curve_q8_find_half = c[27] >> 1
             curve_q8_find_e = s_a[2]
@@ -86,6 +86,8 @@ def publish(curve_q8_choose_find_e: int, c: ptr32, curve_q8_choose_find_d: int, 
             curve_q8_kind = 0
             break
         curve_q8_result = s[curve_q8_kind + 2]
+    elif not curve_q8_kind - 1:
+        curve_q8_result = s_a[34]
     else:
         curve_q8_line_q8_temp_q4 = bias << 4
         curve_q8_line_q8_u = curve_q8_line_q8_temp_q4 - s_a[14]
@@ -176,7 +178,7 @@ def advance(c: ptr32, s: ptr32, s_, c_):
                     s_a[4] = learn_anywhere_temp
                 feed(0, 0, s_, c_, a + 32, a, s_, c_)
         elif not piece - 1:
-            learn_here(0, s_, 0, c_, a, s_, c_)
+            learn_here(0, 0, 0, s_, c_, a, s_, c_)
             busy = 1
         if s_a[1] and piece < 2:
             piece = piece + 1
@@ -375,7 +377,7 @@ def learn_at_once(s: ptr32, c: ptr32, x: ptr32, s_, c_):
     if learn_anywhere_temp > s_a[4]:
         s_a[4] = learn_anywhere_temp
     feed(0, 0, s_, c_, a + 32, a, s_, c_)
-    learn_here(0, s_, 0, c_, a, s_, c_)
+    learn_here(0, 0, 0, s_, c_, a, s_, c_)
     s_a[1] = 0
     a = 1 * c[13] + c[0]
     s_a = ptr32(int(s) + (a << 2))
@@ -387,7 +389,7 @@ def learn_at_once(s: ptr32, c: ptr32, x: ptr32, s_, c_):
     if learn_anywhere_temp > s_a[4]:
         s_a[4] = learn_anywhere_temp
     feed(0, 0, s_, c_, a + 32, a, s_, c_)
-    learn_here(0, s_, 0, c_, a, s_, c_)
+    learn_here(0, 0, 0, s_, c_, a, s_, c_)
     s_a[1] = 0
     a = 2 * c[13] + c[0]
     s_a = ptr32(int(s) + (a << 2))
@@ -399,7 +401,7 @@ def learn_at_once(s: ptr32, c: ptr32, x: ptr32, s_, c_):
     if learn_anywhere_temp > s_a[4]:
         s_a[4] = learn_anywhere_temp
     feed(0, 0, s_, c_, a + 32, a, s_, c_)
-    learn_here(0, s_, 0, c_, a, s_, c_)
+    learn_here(0, 0, 0, s_, c_, a, s_, c_)
     s_a[1] = 0
 
 

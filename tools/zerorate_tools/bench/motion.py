@@ -37,9 +37,7 @@ def peers() -> dict[str, Peer]:
         "in motion, the document's own form": Source("in_motion", document=True),
         "in motion": Source("in_motion"),
         "in motion, bias within 0.5 dps as vqf assumes": Source("in_motion", start_dps=0.5),
-        "accelerometer, the document's own form": Source(
-            "realtime", document=True, coarse_dps=0.05, threshold=0
-        ),
+        "accelerometer, the document's own form": Source("realtime", document=True),
         "accelerometer": Source("realtime"),
         "decision, bias within 0.5 dps": Decision(
             motion=True, accelerometer=True, motion_start_dps=0.5

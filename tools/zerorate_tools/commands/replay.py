@@ -33,7 +33,12 @@ def add_parser(subparsers) -> None:
         "--resume", action="store_true", help="with --from-state: the same power-on goes on"
     )
     parser.add_argument(
-        "--document", action="store_true", help="the literal rules of the patent document"
+        "--document",
+        action="store_true",
+        help="the literal rules of the patent documents, with --motion and --accelerometer too",
+    )
+    parser.add_argument(
+        "--rests", action="store_true", help="with --document: learn only the firmware's rests"
     )
     parser.add_argument("--every", action="store_true", help="learn every reading, moving or still")
     parser.add_argument("--model", type=Path, metavar="FILE", help="an effect model to load")
@@ -67,9 +72,13 @@ def run(arguments: argparse.Namespace) -> None:
 
     if arguments.resume and arguments.from_state is None:
         arguments.refuse("--resume goes on from a state: give --from-state, too")
+    if arguments.rests and (arguments.every or not arguments.document):
+        arguments.refuse("--rests goes with --document and not with --every")
     options: dict[str, object] = dict(arguments.set)
-    options.update(document=arguments.document, every=arguments.every, motion=arguments.motion)
+    options.update(document=arguments.document, motion=arguments.motion)
     options.update(accelerometer=arguments.accelerometer)
+    if arguments.every or arguments.rests:
+        options["every"] = arguments.every
     recording = open_recording(arguments.log, keep_gaps=True)
     taught = _to_plot(recording, arguments) if arguments.plot else []
     with progress(f"replaying {arguments.log.name}", recording.n_samples) as advance:

@@ -22,7 +22,8 @@ OFFLINE: dict[str, Peer] = {
     "ArduPilot-style cubic": ardupilot_cubic,
 }
 OURS: dict[str, Peer] = {
-    "zerorate, the document's rules": firmware(document=True),
+    "the document's rules": firmware(document=True),
+    "the document's rules, on rests": firmware(document=True, every=False),
     "zerorate": firmware(),
 }
 PEERS = {**ONLINE, **OFFLINE, **OURS}
