@@ -131,7 +131,7 @@ def start(e: ptr32, a: int, u: int):
 
 
 def remembered(e: ptr32, a: int, u: int) -> int:
-    """Return u with the slot's lag or memory: see loop.basis of the tools, the float reference."""
+    """Return u with the slot's lag or memory: see model.term of the tools, the float reference."""
     kind = e[a + _MEMORY]
     a += _STATE
     if kind <= _RATE:
@@ -196,9 +196,11 @@ def basis(e: ptr32, a: int) -> int:
 
 def contribute(e: ptr32, a: int, to: int):
     """Add the slot's value times its coefficients to three sums in Q14 LSB."""
-    v = e[a + _VALUE]
-    shift = e[a + _COEFFICIENT_SHIFT]
-    a += _COEFFICIENT
+    add_times(e, e[a + _VALUE], a + _COEFFICIENT, e[a + _COEFFICIENT_SHIFT], to)
+
+
+def add_times(e: ptr32, v: int, a: int, shift: int, to: int):
+    """Add v times the three coefficients at word a to three sums in Q14 LSB."""
     i = 3
     while i > 0:
         d = scaled(v, e[a], shift)

@@ -19,6 +19,7 @@ ptr32 = None
 
 from .effect_basis import basis, contribute
 from .effect_inputs import accumulate, close_tick, tell_time
+from .effect_plays import play
 
 _SLOTS = const(0)
 _TICK_US = const(2)
@@ -32,12 +33,16 @@ _INSTANT_SLOTS = const(9)
 _SUM_Q14 = const(10)
 _HELD_Q14 = const(13)
 _NOW_Q14 = const(16)
+_PLAYS = const(19)
 
 _SLOT = const(112)
 _WORDS = const(40)
 _INSTANT = const(33)
 _STARTED = const(34)
 _VALUE = const(39)
+_PLAY = const(902)
+_PLAY_WORDS = const(15)
+_PLAY_STARTED = const(13)
 
 _EFFECT_Q8 = const(61)
 _MOST_PENDING = const(4096)
@@ -86,10 +91,14 @@ def begin_again(e: ptr32):
     while i > 0:
         i -= 1
         e[_SLOT + i * _WORDS + _STARTED] = 0
+    i = e[_PLAYS]
+    while i > 0:
+        i -= 1
+        e[_PLAY + i * _PLAY_WORDS + _PLAY_STARTED] = 0
 
 
 def run_slot(e: ptr32):
-    """Compute the next slot of the tick; behind the last one hold the sum until the next tick."""
+    """Compute the tick's next slot or play operator; behind the last one hold the sum."""
     i = e[_PHASE]
     if i == 0:
         tell_time(e)
@@ -98,12 +107,15 @@ def run_slot(e: ptr32):
         e[_SUM_Q14] = 0
         e[_SUM_Q14 + 1] = 0
         e[_SUM_Q14 + 2] = 0
-    a = _SLOT + i * _WORDS
-    if e[a + _INSTANT] == 0:
-        e[a + _VALUE] = basis(e, a)
-        contribute(e, a, _SUM_Q14)
+    if i < e[_SLOTS]:
+        a = _SLOT + i * _WORDS
+        if e[a + _INSTANT] == 0:
+            e[a + _VALUE] = basis(e, a)
+            contribute(e, a, _SUM_Q14)
+    else:
+        play(e, _PLAY + (i - e[_SLOTS]) * _PLAY_WORDS)
     i += 1
-    if i == e[_SLOTS]:
+    if i == e[_SLOTS] + e[_PLAYS]:
         i = 0
         e[_PENDING] -= 1
         if e[_RUNNING] == 2:
@@ -133,7 +145,7 @@ def sense(s: ptr32, e: ptr32, x: ptr32, dt_us: int, good: int):
     """Take the frame x, dt_us after the one before, and leave the effects' sum, LSB Q8, in s.
 
     good: 0 for a frame that is no reading, of which only the time counts. Call it before the
-    frame is gathered and corrected; do not call it where e[0], the number of slots, is 0.
+    frame is gathered and corrected; do not call it where there is neither slot nor play operator.
     """
     pass_time(e, dt_us)
     if good:

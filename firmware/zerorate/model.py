@@ -3,11 +3,12 @@
 Words of `e`, array('i') of WORDS: 0 slots, 1 inputs, 2 tick_us, 3 elapsed_us, 4 ticks to compute, 5
 slot to compute, 6 slots a sample, 7 half ticks since power-on, 8 runs (2 in the first tick, then
 3), 9 slots of the sample itself, 10..12 sum and 13..15 held sum and 16..18 sum with the sample's
-own, LSB Q14, 20..25 vibration, 26 refinement is on and 27 its bound; at 32 inputs of 6: kind,
-shift, offset, sum, count, value Q8; at 104 channels, as the application gave them; at 112 slots of
-40; at 432 tables of 9; at 450 rings of 66: newest, ticks since it, 64 kept; from 582 refinement:
-piece to do, states, three rates Q8, first temperature, segments seen, and from 590 reals: scratch,
-at 602 regressors, 622 gains, 642 states of the axes, 702 covariance.
+own, LSB Q14, 19 play operators, 20..25 vibration, 26 refinement is on and 27 its bound; at 32
+inputs of 6: kind, shift, offset, sum, count, value Q8; at 104 channels, as the application gave
+them; at 112 slots of 40; at 432 tables of 9; at 450 rings of 66: newest, ticks since it, 64 kept;
+from 582 refinement: piece to do, states, three rates Q8, first temperature, segments seen, and from
+590 reals: scratch, at 602 regressors, 622 gains, 642 states of the axes, 702 covariance; at 902
+play operators of 15.
 A slot: 0 input's value's word, 1 lowest, 2 highest, 3 centre, each Q8, 4 shift to Q24; 5 power,
 6 power first, 7 memory (lag, difference, rate, backlash, peak: 1..5), 8 lag's mantissa, 9 its
 shift, 10 half the backlash, 11 knot; 12..16 as 0..4 for the second source (12: 0 is none);
@@ -15,6 +16,8 @@ shift, 10 half the backlash, 11 knot; 12..16 as 0..4 for the second source (12: 
 its nine; 23 shift and 24..26 mantissas of the coefficients; 27 ring's word, 28 delay and 29 ticks a
 kept one; 30..32 the model's own coefficients, 33 follows the sample's own rate (1) or acceleration
 (2), 34 started, 35 memory's Q24 and 36 remainder, 37 decay's and 38, 39 value Q24.
+A play operator: 0..4 as a slot's; 5 radius Q24; 6 shift of the coefficients, 7..9 mantissas of what
+it is and 10..12 of its square; 13 started, 14 where it stands, Q24.
 """
 
 from array import array
@@ -35,7 +38,7 @@ except ImportError:
         return value
 
 
-WORDS = 902
+WORDS = 992
 
 _CHANNELS = const(8)
 _INPUT = const(32)
@@ -45,6 +48,9 @@ _TABLE = const(432)
 _SLOT_WORDS = const(40)
 _NONE = const(-0x3FFFFFFF)
 _ONE = const(9)
+_PLAYS = const(19)
+_PLAY = const(902)
+_PLAY_WORDS = const(15)
 
 
 class EffectModel:
@@ -120,6 +126,8 @@ class EffectModel:
         for a in range(_SLOT, _TABLE, _SLOT_WORDS):
             e[a + 34] = 0
             e[a + 39] = 0
+        for a in range(_PLAY, _PLAY + _PLAY_WORDS * e[_PLAYS], _PLAY_WORDS):
+            e[a + 13] = 0
 
     def refine(self, bound: float = 0.5) -> None:
         """Let the coefficients of the loaded model go on learning from rests, from now on.

@@ -1,14 +1,16 @@
 """The device's reader of model.bin: whole, of a known version, made for this chip, or refused.
 
 Little-endian:
-    0 "ZRM"  3 version (1)  4 size of all u16  6 slots  7 inputs  8 tables  9 channels  10 0 0
+    0 "ZRM"  3 version (2 with play operators, else 1)  4 size of all u16  6 slots  7 inputs
+    8 tables  9 channels  10 play operators  11 0
     12 binding: chip id, gyro range, accel range, filter, each 255 where it was not known
     16 tick in us u32
     20 five doubles: gyro LSB/dps, accel LSB/g, temp LSB/degC, temp offset degC, odr Hz
     60 inputs: kind, shift, offset, i32 each
     then slots: 30 i32 each, words 0..29 of model.py, but indices of inputs and tables
     then tables: 9 i32 each, Q24
-    then texts, each a length byte and UTF-8: sensor, channels, what each slot corrects
+    then play operators: 13 i32 each, words 0..12 of model.py, but the index of the input
+    then texts, each a length byte and UTF-8: sensor, channels, what each slot and operator corrects
     then CRC-32 of all before it
 """
 
@@ -26,6 +28,7 @@ except ImportError:
 
 SLOTS = 8
 CHANNELS = 8
+PLAYS = 6
 
 LOADED = const(0)
 UNREADABLE = const(1)
@@ -55,6 +58,7 @@ REASONS = (
 )
 
 _VERSION = const(1)
+_VERSION_WITH_PLAYS = const(2)
 _BODY = const(60)
 _INPUT = const(32)
 _SLOT = const(112)
@@ -65,6 +69,9 @@ _MOST_INPUTS = const(12)
 _MOST_TABLES = const(2)
 _MOST_RINGS = const(2)
 _ANY = const(255)
+_PLAYS = const(19)
+_PLAY = const(902)
+_PLAY_WORDS = const(15)
 _NONE = const(-0x3FFFFFFF)
 _LIMIT = const(0x4000000)
 _INSTANT = const(10)
@@ -77,7 +84,7 @@ def judge(data):
     """Say whether data is a whole model of this version."""
     if len(data) < 4 or bytes(data[:3]) != b"ZRM":
         return NO_MODEL
-    if data[3] != _VERSION:
+    if not _VERSION <= data[3] <= _VERSION_WITH_PLAYS:
         return OTHER_VERSION
     if len(data) < _BODY + 4 or len(data) < data[4] | data[5] << 8:
         return TRUNCATED
@@ -87,6 +94,10 @@ def judge(data):
         return DAMAGED
     if data[6] > SLOTS or data[7] > _MOST_INPUTS or data[8] > _MOST_TABLES or data[9] > CHANNELS:
         return TOO_LARGE
+    if data[10] > PLAYS:
+        return TOO_LARGE
+    if (data[10] > 0) != (data[3] == _VERSION_WITH_PLAYS):
+        return IMPOSSIBLE
     return LOADED
 
 
@@ -117,11 +128,10 @@ def fill(e, data, sensor):
     """Put the model's integers into e; IMPOSSIBLE where the kernels could not live with them."""
     e[1] = data[7]
     tick_us = unpack_from("<I", data, 16)[0]
-    need = _BODY + 12 * data[7] + 120 * data[6] + 36 * data[8] + 4
-    if need > len(data) or not 10000 <= tick_us < 1 << 29:
+    if texts_at(data) + 4 > len(data) or not 10000 <= tick_us < 1 << 29:
         return IMPOSSIBLE
     e[2] = tick_us
-    e[6] = int(2e6 * data[6] / (sensor.odr_hz * tick_us)) + 1
+    e[6] = int(2e6 * (data[6] + data[10]) / (sensor.odr_hz * tick_us)) + 1
     at = _BODY
     for i in range(data[7]):
         for j in range(3):
@@ -143,6 +153,25 @@ def fill(e, data, sensor):
         if not put(e, _TABLE + i, data, at):
             return IMPOSSIBLE
         at += 4
+    return fill_plays(e, data, at)
+
+
+def fill_plays(e, data, at):
+    """Put the play operators at `at` into e; IMPOSSIBLE as `fill`."""
+    e[_PLAYS] = data[10]
+    for a in range(_PLAY, _PLAY + _PLAY_WORDS * data[10], _PLAY_WORDS):
+        for j in range(13):
+            if not put(e, a + j, data, at):
+                return IMPOSSIBLE
+            at += 4
+        if not 0 <= e[a] < e[1] or of_the_sample(e, e[a]) or not source_is_bounded(e, a):
+            return IMPOSSIBLE
+        if not 0 <= e[a + 5] <= 1 << 25 or not 15 <= e[a + 6] <= 30:
+            return IMPOSSIBLE
+        for i in (7, 10):
+            if not coefficients_are_bounded(e, a + i, e[a + 6]):
+                return IMPOSSIBLE
+        e[a] = _INPUT + 6 * e[a] + 5
     return LOADED
 
 
@@ -190,12 +219,8 @@ def of_the_sample(e, i):
 
 def bounded(e, a):
     """Say whether every number of the slot keeps the kernels within 31 bits."""
-    for f in (a, a + 12):
-        most = max(abs(e[f + 1] - e[f + 3]), abs(e[f + 2] - e[f + 3]))
-        if not -8 <= e[f + 4] <= 24 or e[f + 1] > e[f + 2]:
-            return False
-        if (most << e[f + 4] if e[f + 4] >= 0 else most >> -e[f + 4]) > 1 << 24:
-            return False
+    if not source_is_bounded(e, a) or not source_is_bounded(e, a + 12):
+        return False
     if not 1 <= e[a + 29] <= 256:
         return False
     for f in (8, 17):
@@ -205,15 +230,35 @@ def bounded(e, a):
         return False
     if e[a + 19] >= 0 and not 15 <= e[a + 22] <= 30:
         return False
-    for i in range(3):
-        if abs(e[a + 24 + i]) >> max(0, e[a + 23] - 24) > 1 << 28 or abs(e[a + 24 + i]) > _LIMIT:
-            return False
+    if not coefficients_are_bounded(e, a + 24, e[a + 23]):
+        return False
     return abs(e[a + 10]) <= 1 << 25 and (e[a + 11] == _NONE or abs(e[a + 11]) <= 1 << 25)
 
 
+def source_is_bounded(e, f):
+    """Whether a source, centred by the words at f, stays within Q24."""
+    most = max(abs(e[f + 1] - e[f + 3]), abs(e[f + 2] - e[f + 3]))
+    if not -8 <= e[f + 4] <= 24 or e[f + 1] > e[f + 2]:
+        return False
+    return (most << e[f + 4] if e[f + 4] >= 0 else most >> -e[f + 4]) <= 1 << 24
+
+
+def coefficients_are_bounded(e, f, shift):
+    """Whether the three coefficients at f keep what is added within 31 bits."""
+    for i in range(f, f + 3):
+        if abs(e[i]) >> max(0, shift - 24) > 1 << 28 or abs(e[i]) > _LIMIT:
+            return False
+    return True
+
+
+def texts_at(data):
+    """Where the texts of a model begin."""
+    return _BODY + 12 * data[7] + 120 * data[6] + 36 * data[8] + 52 * data[10]
+
+
 def texts(data):
-    """The texts of a whole model: sensor, channels, what each slot corrects; none if not UTF-8."""
-    at = _BODY + 12 * data[7] + 120 * data[6] + 36 * data[8]
+    """The texts of a whole model: sensor, channels, what is corrected; none if not UTF-8."""
+    at = texts_at(data)
     found = []
     try:
         while at < len(data) - 4:

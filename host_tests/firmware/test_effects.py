@@ -159,6 +159,36 @@ def _scale(term):
     return scale * ((term.second_hi - term.second_lo) / 2 if term.second else 1.0)
 
 
+PLAYS = [
+    Slot(Term("temp", 5.0, 45.0, 25.0, power, memory="play", width=width), coefficients)
+    for width, power, coefficients in (
+        (0.5, 1, (0.01, -0.02, 0.0)),
+        (0.5, 2, (0.0005, 0.0001, 0.001)),
+        (6.0, 1, (0.02, 0.01, -0.02)),
+        (20.0, 2, (0.0, 0.001, -0.0005)),
+    )
+]
+
+
+def test_play_operators_and_their_squares_are_those_of_the_reference(warm_up):
+    raw, sources = warm_up
+    square = Slot(Term("temp", 5.0, 45.0, 25.0, power=2), (0.001, 0.0, -0.001))
+    model = loaded([*PLAYS, square])
+    got = on_firmware(model, raw)[A_TICK - 1 :: A_TICK][1:]
+    wanted = sum(
+        np.outer(evaluate(s.term, sources, 1.0), s.coefficient_dps) for s in [*PLAYS, square]
+    )
+    assert np.abs(got - wanted[:-1]).max() < TENTH_OF_THE_FLOOR_DPS
+    model.power_on()
+    assert (on_firmware(model, raw)[A_TICK - 1 :: A_TICK][1:] == got).all()
+
+
+def test_play_operators_alone_make_a_model(warm_up):
+    raw = {name: values[:400] for name, values in warm_up[0].items()}
+    model = loaded(PLAYS[:1])
+    assert (model.e[0], np.abs(on_firmware(model, raw)[-1]).max() > 0.01) == (0, True)
+
+
 def test_a_small_table_is_straight_lines_between_nine_points(warm_up):
     term = Term("temp", 10.0, 50.0, 30.0)
     table = (0.0, 0.3, -0.2, 1.0, 0.9, 0.1, -1.0, 0.0, 0.5)
@@ -342,6 +372,8 @@ def test_no_intermediate_leaves_31_bits(chosen, ends):
     slots.append(Slot(Term("rate_x", -250.0, 250.0), (0.49, 0.1, -0.49))) if len(
         slots
     ) < 8 else None
+    wide = Term("temp", *CENTRES["temp"], 25.0, memory="play", width=3.0)
+    slots += [Slot(wide, (1.5, -1.5, 0.1)), Slot(replace(wide, power=2), (0.07, -0.07, 0.07))]
     model = loaded(slots)
     e, state = Words(model.e), Words([0] * 64)
     for n in range(160):

@@ -26,11 +26,15 @@ SLOTS = [
     Slot(Term("vdd_mv", 4900.0, 5100.0, 5000.0, delay_s=90.0, power=2), (1e-4, 2e-5, 0.0)),
     Slot(Term("time", 0.0, 900.0), (1e-4, 2e-5, 0.0)),
 ]
+PLAYS = [
+    Slot(Term(*TEMP, memory="play", width=3.0), (0.01, -0.02, 0.005)),
+    Slot(Term(*TEMP, power=2, memory="play", width=8.0), (0.001, -0.002, 0.0005)),
+]
 
 
 @pytest.fixture(scope="module")
 def model_bin():
-    return encoded(build_model(SLOTS, SCALES, binding=Binding(0x68, 0, 0, 3)))
+    return encoded(build_model([*SLOTS, *PLAYS], SCALES, binding=Binding(0x68, 0, 0, 3)))
 
 
 @pytest.fixture(scope="module")
@@ -48,6 +52,7 @@ def on_host(model_bin):
         out.append(state[61:64])
         did |= {i for i in range(len(SLOTS)) if model.e[112 + 40 * i + 39]}
     assert did == set(range(len(SLOTS)))
+    assert model.e[902 + 14] != model.e[917 + 14] != 0
     return np.array(out), np.array(model.e)
 
 

@@ -38,6 +38,8 @@ SLOTS = [
     Slot(Term("vdd_mv", 4900, 5100, 5000, second="temp", second_lo=20, second_hi=45), (1e-5,) * 3),
 ]
 
+PLAY = Term("temp", 20, 45, 32.5, memory="play", width=3)
+
 
 @pytest.fixture
 def model():
@@ -77,6 +79,10 @@ def any_slot(draw):
     if draw(st.booleans()):
         fields.update(second="temp", second_lo=0.0, second_hi=60.0, second_centre=30.1)
     fields.update(power=draw(st.integers(1, 3)), power_first=draw(st.booleans()))
+    if source == "temp" and draw(st.booleans()):
+        kept = {name: fields[name] for name in ("lo", "hi", "centre")}
+        width, power = draw(finite(0, largest)), draw(st.integers(1, 2))
+        fields = {**kept, "memory": "play", "width": width, "power": power}
     coefficients = draw(st.tuples(*[finite(-1e-3, 1e-3)] * 3))
     return Slot(Term(source, **fields), coefficients, draw(st.sampled_from(["", "kink", "\u00e9"])))
 
@@ -145,6 +151,19 @@ def test_a_binding_that_was_not_known_fits_any_device():
     assert load(data, binding=bytes([0x99, 1, 2, 6])) == model_file.LOADED
 
 
+def test_play_operators_stand_behind_the_slots_and_make_another_version():
+    plays = [Slot(PLAY, (0.001, 0, 0.002), "a"), Slot(replace(PLAY, power=2), (0, 0, 1e-5), "a")]
+    model = build_model([*plays, *SLOTS], SCALES, binding=BINDING)
+    assert model.slots == (*SLOTS, *plays)
+    data = encoded(model)
+    assert (data[3], encoded(build_model(SLOTS, SCALES, binding=BINDING))[3]) == (2, 1)
+    assert load(data) == model_file.LOADED
+    for bit in range(80, 88):
+        turned = bytearray(data)
+        turned[bit // 8] ^= 1 << bit % 8
+        assert load(turned) == model_file.DAMAGED
+
+
 def test_every_cut_and_every_turned_bit_is_refused(model):
     data = encoded(model)
     cuts = {load(data[:n]) for n in range(len(data))}
@@ -201,6 +220,10 @@ def test_a_refused_model_leaves_none(model):
         ([replace(SLOTS[0], coefficient_dps=(1e3, 0, 0))], "could move the rate by"),
         ([Slot(Term("temp", lag_mode="lag", lag_s=1e9), (1e-3,) * 3)], "too long"),
         ([Slot(Term("x", lag_mode="lag", lag_s=9, memory="peak"), (1e-6,) * 3)], "both a lag"),
+        ([Slot(Term("x", power=0.5), (1e-6,) * 3)], "power 0.5"),
+        ([Slot(PLAY, (1e-3,) * 3)] * 2, "twice"),
+        ([Slot(replace(PLAY, power=3), (1e-3,) * 3)], "itself and its square"),
+        ([Slot(replace(PLAY, width=w), (1e-3,) * 3) for w in range(7)], "room for 6 play"),
     ],
 )
 def test_what_does_not_fit_the_slots_says_so(slots, why):

@@ -204,10 +204,7 @@ def basis(e: ptr32, a: int, e_) -> int:
 
 
 @micropython.viper
-def contribute(to: int, a: int, e: ptr32):
-    v = e[a + 39]
-    shift = e[a + 23]
-    a = a + 24
+def add_times(to: int, v: int, a: int, e: ptr32, shift: int):
     i = 3
     while i > 0:
         scaled_b = e[a]

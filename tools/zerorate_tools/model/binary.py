@@ -15,6 +15,7 @@ from .model import (
     FRAME,
     MOST_CHANNELS,
     MOST_INPUTS,
+    MOST_PLAYS,
     MOST_RINGS,
     MOST_SLOTS,
     MOST_TABLES,
@@ -30,12 +31,14 @@ from .model import (
     is_channel,
     sources_of,
 )
+from .plays import label_of, slots_of_play, split, words_of_play
 from .scaling import Unit, inputs_for
 from .slot_words import slot_of, words_of
 
-VERSION = 1
-_HEAD = struct.Struct("<3sBHBBBBxx4BI5d")
+VERSION, VERSION_WITH_PLAYS = 1, 2
+_HEAD = struct.Struct("<3sBHBBBBBx4BI5d")
 _INPUT, _SLOT, _TABLE = struct.Struct("<3i"), struct.Struct("<30i"), struct.Struct("<9i")
+_PLAY = struct.Struct("<13i")
 _KINDS = (*FRAME, VIBRATION, TIME, ONE, *FAST)
 _FIRST_CHANNEL = 16
 _ANY = 255
@@ -56,14 +59,15 @@ def build_model(
 
 def encoded(model: Model) -> bytes:
     """The bytes of model.bin. Raises CannotDeploy."""
-    _check_room(model)
+    plain, plays = split(model.slots)
+    _check_room(model, plain, len(plays))
     places = {(i.name, i.of_the_sample): at for at, i in enumerate(model.inputs)}
     channels = model.channels
     body = [_INPUT.pack(_kind(i, channels), i.shift, i.offset) for i in model.inputs]
     tables: list[tuple[float, ...]] = []
     rings = 0
     unit_of = _units(model)
-    for slot in model.slots:
+    for slot in plain:
         index = {name: places[_there(name, now, places)] for name, now in slot.sources()}
         if slot.table:
             tables.append(slot.table)
@@ -71,11 +75,15 @@ def encoded(model: Model) -> bytes:
         rings += own[1] >= 0
         body.append(_SLOT.pack(*words_of(slot, unit_of, index.__getitem__, model.tick_s, *own)))
     body += [_TABLE.pack(*(round(v * _Q24) for v in table)) for table in tables]
-    body += [_text(t) for t in (model.scales.sensor, *channels, *(s.effect for s in model.slots))]
+    for pair in plays:
+        body.append(_PLAY.pack(*words_of_play(pair, unit_of, lambda name: places[name, False])))
+    said = [*(s.effect for s in plain), *(label_of(p) for p in plays)]
+    body += [_text(t) for t in (model.scales.sensor, *channels, *said)]
     body_bytes = b"".join(body)
     size = _HEAD.size + len(body_bytes) + 4
     head = _HEAD.pack(
-        *(b"ZRM", VERSION, size, len(model.slots), len(model.inputs), len(tables), len(channels)),
+        *(b"ZRM", VERSION_WITH_PLAYS if plays else VERSION, size, len(plain), len(model.inputs)),
+        *(len(tables), len(channels), len(plays)),
         *(_ANY if code is None else code for code in _codes(model.binding)),
         model.tick_us,
         *_doubles(model.scales),
@@ -96,8 +104,8 @@ def decoded(data: bytes, path: str | PathLike[str] = "model.bin") -> Model:
 def _checked_head(data: bytes, path: str | PathLike[str]) -> tuple:
     if data[:3] != b"ZRM":
         raise BadModel(path, "is no effect model", do="name a model.bin or model.json")
-    if len(data) > 3 and data[3] != VERSION:
-        problem = f"is of version {data[3]}; this tool reads {VERSION}"
+    if len(data) > 3 and data[3] not in (VERSION, VERSION_WITH_PLAYS):
+        problem = f"is of version {data[3]}; this tool reads up to {VERSION_WITH_PLAYS}"
         raise BadModel(path, problem, do="write it again with this zerorate")
     if len(data) < _HEAD.size + 4 or len(data) < _HEAD.unpack_from(data)[2]:
         raise BadModel(path, f"is cut short at byte {len(data)}", do="copy it again")
@@ -109,24 +117,28 @@ def _checked_head(data: bytes, path: str | PathLike[str]) -> tuple:
 
 
 def _decoded_body(data: bytes, head: tuple) -> Model:
-    n_slots, n_inputs, n_tables, n_channels = head[3:7]
+    n_slots, n_inputs, n_tables, n_channels, n_plays = head[3:8]
     at = _HEAD.size
     raw_inputs = [_INPUT.unpack_from(data, at + _INPUT.size * i) for i in range(n_inputs)]
     at += _INPUT.size * n_inputs
     rows = [_SLOT.unpack_from(data, at + _SLOT.size * i) for i in range(n_slots)]
     at += _SLOT.size * n_slots
     tables = [_TABLE.unpack_from(data, at + _TABLE.size * i) for i in range(n_tables)]
-    texts = _texts(data, at + _TABLE.size * n_tables)
+    at += _TABLE.size * n_tables
+    plays = [_PLAY.unpack_from(data, at + _PLAY.size * i) for i in range(n_plays)]
+    texts = _texts(data, at + _PLAY.size * n_plays)
     sensor, channels, effects = texts[0], texts[1 : 1 + n_channels], texts[1 + n_channels :]
     inputs = tuple(_input(raw, channels) for raw in raw_inputs)
-    scales = _scales(sensor, head[12:17])
-    model = Model((), scales, Binding(*(None if c == _ANY else c for c in head[7:11])), head[11])
+    scales = _scales(sensor, head[13:18])
+    model = Model((), scales, Binding(*(None if c == _ANY else c for c in head[8:12])), head[12])
     model = replace(model, inputs=inputs)
     slots = []
-    for row, effect in zip(rows, effects, strict=True):
+    for row, effect in zip(rows, effects[:n_slots], strict=True):
         table = [v / _Q24 for v in tables[row[19]]] if row[19] >= 0 else None
         slot = slot_of(row, lambda i: inputs[i].name, _units(model), model.tick_s, table)
         slots.append(replace(slot, effect=effect, table=_short_table(table)))
+    for row, effect in zip(plays, effects[n_slots:], strict=True):
+        slots += slots_of_play(row, inputs[row[0]].name, _units(model), effect)
     whole = replace(model, slots=tuple(slots))
     if encoded(whole) != data:
         raise CannotDeploy("its numbers do not belong together")
@@ -147,10 +159,11 @@ def _units(model: Model):
     return lambda name: Unit(inputs.get(name, Input(name)), model.scales, model.tick_s)
 
 
-def _check_room(model: Model) -> None:
+def _check_room(model: Model, plain: Sequence[Slot], plays: int) -> None:
     tables = [s.table for s in model.slots if s.table]
     for what, number, most in (
-        ("effect slots", len(model.slots), MOST_SLOTS),
+        ("effect slots", len(plain), MOST_SLOTS),
+        ("play operators", plays, MOST_PLAYS),
         ("sources", len(model.inputs), MOST_INPUTS),
         ("tables", len(tables), MOST_TABLES),
         ("delays", sum(s.has_delay(model.tick_s) for s in model.slots), MOST_RINGS),

@@ -10,6 +10,7 @@ from ..recordings import Scales
 from .term import Term
 
 MOST_SLOTS, MOST_INPUTS, MOST_TABLES, MOST_RINGS, MOST_CHANNELS = 8, 12, 2, 2, 8
+MOST_PLAYS = 6
 TABLE_POINTS = 9
 RATES = ("rate_x", "rate_y", "rate_z")
 ACCELERATIONS = ("acc_x", "acc_y", "acc_z")
@@ -43,6 +44,11 @@ class Slot:
         t = self.term
         remembers = t.lag_mode != "none" or t.memory != "none" or t.decay_s + t.delay_s > 0
         return not remembers and (t.source in FAST or t.second in FAST)
+
+    @property
+    def is_play(self) -> bool:
+        """Whether it is a play operator, or the square of one, which the firmware holds apart."""
+        return self.term.memory == "play"
 
     def has_delay(self, tick_s: float) -> bool:
         """Whether it needs a ring of the firmware to remember its source in."""

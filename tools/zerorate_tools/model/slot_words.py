@@ -14,6 +14,7 @@ from .term import Term
 _Q = 24
 NONE = -0x3FFFFFFF
 MEMORIES = ("none", "lag", "difference", "rate", "backlash", "peak")
+POWERS = (1, 2, 3)
 _MOST_Q14 = 1 << 28
 _MANTISSA_BITS = 20
 _MOST_LAG_SHIFT = 13
@@ -36,16 +37,21 @@ def words_of(
     Raises CannotDeploy.
     """
     term = slot.term
-    source = _source_words(term.source, term.lo, term.hi, term.centre, unit_of, index_of)
+    if term.power not in POWERS:
+        raise CannotDeploy(
+            f"an effect of {term.source} has power {term.power:g}; a slot has 1, 2 or 3, and a "
+            "table of nine values for any other curve"
+        )
+    source = source_words(term.source, term.lo, term.hi, term.centre, unit_of, index_of)
     knot_q8 = None if term.knot is None else term.knot * unit_of(term.source).q8_per_unit
     shift = source[4] = _shift(term, source, knot_q8)
     per_one = _one(term, unit_of, shift)
     second = [-1, 0, 0, 0, 0]
     if term.second:
-        second = _source_words(
+        second = source_words(
             term.second, term.second_lo, term.second_hi, term.second_centre, unit_of, index_of
         )
-        second[4] = _largest_shift(_most(second))
+        second[4] = largest_shift(most_of(second))
     return [
         *source,
         term.power,
@@ -62,25 +68,27 @@ def words_of(
     ]
 
 
-def _source_words(name, lo, hi, centre, unit_of, index_of):
+def source_words(name, lo, hi, centre, unit_of, index_of) -> list[int]:
+    """Input, lowest, highest, centre, and room for the shift."""
     if name == ONE:
         return [index_of(name), 0, 256, 0, 0]
     unit = unit_of(name)
     return [index_of(name), unit.q8(lo), unit.q8(hi), unit.q8(centre), 0]
 
 
-def _most(words: Sequence[int]) -> int:
+def most_of(words: Sequence[int]) -> int:
+    """The farthest that a source goes from its centre, Q8."""
     return max(abs(words[1] - words[3]), abs(words[2] - words[3]), 1)
 
 
-def _largest_shift(most: int) -> int:
+def largest_shift(most: int) -> int:
     """The largest shift that keeps `most` within 2^24."""
     return _Q - (most - 1).bit_length()
 
 
 def _shift(term: Term, source: Sequence[int], knot_q8: float | None) -> int:
     """The shift from Q8 to Q24 with which no stage of the slot leaves +-1."""
-    most = _most(source)
+    most = most_of(source)
     if not term.power_first:
         low, high = source[1] - source[3], source[2] - source[3]
         if _memory(term) in MEMORIES[2:]:
@@ -90,7 +98,7 @@ def _shift(term: Term, source: Sequence[int], knot_q8: float | None) -> int:
                 raise CannotDeploy(f"the knot of an effect of {term.source} is far off its range")
             low, high = 0, max(1, math.ceil(high - knot_q8))
         most = max(most, abs(low), abs(high))
-    return _largest_shift(most)
+    return largest_shift(most)
 
 
 def _memory(term: Term) -> str:
@@ -132,11 +140,12 @@ def _q24(value: float) -> int:
 
 def _one(term: Term, unit_of: UnitOf, shift: int) -> float:
     """What 1 is behind the memory: units of the source, to its power where that is first."""
-    one = 1.0 if term.source == ONE else _value_of_one(unit_of(term.source), shift)
+    one = 1.0 if term.source == ONE else value_of_one(unit_of(term.source), shift)
     return one**term.power if term.power_first else one
 
 
-def _value_of_one(unit: Unit, shift: int) -> float:
+def value_of_one(unit: Unit, shift: int) -> float:
+    """What 1 is in the source's unit."""
     return 2.0 ** (_Q - shift) / unit.q8_per_unit
 
 
@@ -161,7 +170,7 @@ def lsb_q14_per_coefficient(slot: Slot, unit_of: UnitOf, shift: int, second_shif
     if term.lag_mode == "rate":
         one /= term.lag_s
     if term.second and term.second != ONE:
-        one *= _value_of_one(unit_of(term.second), second_shift)
+        one *= value_of_one(unit_of(term.second), second_shift)
     return one * (1 << 14)
 
 
@@ -169,10 +178,15 @@ def _coefficient_words(slot, unit_of, shift, second_shift):
     factor = lsb_q14_per_coefficient(slot, unit_of, shift, second_shift)
     gyro = unit_of("rate_x").q8_per_unit / 256
     q14 = [c * gyro * factor for c in slot.coefficient_dps]
+    return mantissas(q14, _reach(slot.term), slot, gyro)
+
+
+def mantissas(q14: Sequence[float], reach: int, slot: Slot, lsb_per_dps: float) -> tuple[int, ...]:
+    """(shift, mantissas) of LSB in Q14 at a basis of 1, which may become `reach`."""
     most = max(map(abs, q14))
-    if not math.isfinite(most) or most * _reach(slot.term) >= _MOST_Q14:
+    if not math.isfinite(most) or most * reach >= _MOST_Q14:
         where = slot.effect or f"an effect of {slot.term.source}"
-        raise CannotDeploy(f"{where} could move the rate by {most / 2**14 / gyro:.0f} dps")
+        raise CannotDeploy(f"{where} could move the rate by {most / 2**14 / lsb_per_dps:.0f} dps")
     at = 30
     while at > 15 and round(most * 2.0 ** (at - _Q)) >= 1 << _MANTISSA_BITS:
         at -= 1
@@ -264,21 +278,22 @@ def _numbers(term: Term) -> list[str]:
 def _shortest(slot: Slot, name: str, is_same: Callable[[Slot], bool]) -> Slot:
     """The slot with the number of that name in as few digits as mean the same."""
     value = getattr(slot.term, name)
-    for number in _shorter(value):
-        shorter: dict[str, Any] = {name: number}
-        trial = replace(slot, term=replace(slot.term, **shorter))
+    for number in shorter(value):
+        field: dict[str, Any] = {name: number}
+        trial = replace(slot, term=replace(slot.term, **field))
         if is_same(trial):
             return trial
     return slot
 
 
-def _shorter(value: float) -> Iterator[float]:
+def shorter(value: float) -> Iterator[float]:
+    """The number in ever more digits."""
     yield 0.0
     yield from (float(f"{value:.{digits}g}") for digits in range(1, 18))
 
 
 def _shortest_of(exact, axis: int, slot: Slot, is_same: Callable[[Slot], bool]) -> Slot:
-    for number in _shorter(exact[axis]):
+    for number in shorter(exact[axis]):
         values = list(exact)
         values[axis] = number
         trial = replace(slot, coefficient_dps=tuple(values))

@@ -26,7 +26,7 @@ class Term:
     delay_s: float = 0.0
     lag_s: float = 0.0
     lag_mode: str = "none"  # none, lag, difference, rate
-    memory: str = "none"  # none, backlash, peak
+    memory: str = "none"  # none, backlash, play, peak
     width: float = 0.0
     knot: float | None = None
     second: str | None = None
@@ -82,8 +82,9 @@ def _remembered(term: Term, u: np.ndarray, tick_s: float) -> np.ndarray:
         if term.lag_mode == "lag":
             return z
         return u - z if term.lag_mode == "difference" else (u - z) / term.lag_s
-    if term.memory == "backlash":
-        return play(u, term.width) - u
+    if term.memory in ("backlash", "play"):
+        stands = play(u, term.width)
+        return stands if term.memory == "play" else stands - u
     if term.memory == "peak":
         return np.maximum.accumulate(u) - u
     return u

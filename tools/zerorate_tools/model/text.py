@@ -118,7 +118,7 @@ def _check_choices(term: Mapping[str, Any]) -> None:
         ("power", (1, 2, 3)),
         ("power_first", (False, True)),
         ("lag_mode", ("none", "lag", "difference", "rate")),
-        ("memory", ("none", "backlash", "peak")),
+        ("memory", ("none", "backlash", "peak", "play")),
     ):
         if name in term and term[name] not in choices:
             raise ValueError(f"{name} is {term[name]!r}, none of {choices}")

@@ -82,6 +82,7 @@ def _memory(t: Term, unit: str) -> Iterator[str]:
         "difference": f"less itself lagged by {t.lag_s:g} s",
         "rate": f"its rate a second over {t.lag_s:g} s",
         "backlash": f"backlash of {t.width:g} {unit}".rstrip(),
+        "play": f"where a play operator of width {t.width:g} {unit}".rstrip() + " stands",
         "peak": "the highest so far less itself",
     }
     for way in (t.lag_mode, t.memory):
