@@ -1,4 +1,3 @@
-"""Freezes the firmware into a MicroPython build: include() this from the board's manifest."""
+"""Freezes the firmware alone; ../manifest.py freezes it with the driver."""
 
-metadata(version="0.1.0", description="Keeps a gyroscope's zero-rate output at zero")  # noqa: F821
 package("zerorate")  # noqa: F821

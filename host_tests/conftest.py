@@ -8,12 +8,19 @@ import hypothesis
 import pytest
 from zerorate_tools.errors import MissingRuntime
 from zerorate_tools.runtimes import NAMES, available, find, how_to_get
+from zerorate_tools.runtimes.pico import VARIABLE, find_pico
+from zerorate_tools.runtimes.pico import boards_folder as named_folder
 
 _REPOSITORY = Path(__file__).resolve().parents[1]
 _CHROMIUM = "chromium"
 _CHROMIUMS = (_CHROMIUM, "chromium-browser", "google-chrome")
 _NO_BROWSER = "install the system's package chromium"
+_BOARDS = "boards"
 _REQUIRED = frozenset(filter(None, os.environ.get("ZERORATE_REQUIRE", "").split(",")))
+
+# What else is not of this project may lie beside the checkout, as the real recordings do.
+if (_REPOSITORY.parent / "shared" / "boards").is_dir():
+    os.environ.setdefault(VARIABLE, str(_REPOSITORY.parent / "shared" / "boards"))
 
 # No limits by the clock: machines differ, and are busy.
 hypothesis.settings.register_profile("zerorate", deadline=None)
@@ -21,7 +28,7 @@ hypothesis.settings.load_profile("zerorate")
 
 
 def pytest_configure():
-    known = (*NAMES, _CHROMIUM)
+    known = (*NAMES, _CHROMIUM, _BOARDS)
     unknown = _REQUIRED - set(known)
     if unknown:
         raise pytest.UsageError(f"ZERORATE_REQUIRE names {sorted(unknown)}; known: {known}")
@@ -33,6 +40,10 @@ def pytest_terminal_summary(terminalreporter):
         terminalreporter.write_line("interpreters: all of " + ", ".join(NAMES))
     for name in left_out:
         terminalreporter.write_line(f"interpreter left out: {name}; {how_to_get(name)}")
+    try:
+        find_pico()
+    except MissingRuntime as missing:
+        terminalreporter.write_line(f"emulated Pico left out: {missing}")
     if _browser() is None:
         terminalreporter.write_line(f"browser left out: {_CHROMIUM}; {_NO_BROWSER}")
 
@@ -68,9 +79,7 @@ def interpreter(name):
     try:
         return find(name)
     except MissingRuntime as missing:
-        if name in _REQUIRED:
-            pytest.fail(f"{name} is named in ZERORATE_REQUIRE: {missing}", pytrace=False)
-        pytest.skip(str(missing))
+        return _left_out(name, missing)
 
 
 @pytest.fixture(scope="session", params=NAMES)
@@ -95,6 +104,30 @@ def viper_runtime(request):
 def find_runtime():
     """The function that finds an interpreter by name, skipping or failing as the others do."""
     return interpreter
+
+
+@pytest.fixture(scope="session")
+def boards_folder():
+    """The folder of boards' firmware and tools that ZERORATE_BOARDS names."""
+    try:
+        return named_folder()
+    except MissingRuntime as missing:
+        return _left_out(_BOARDS, missing)
+
+
+@pytest.fixture(scope="session")
+def pico_parts():
+    """What an emulated Pico is made of."""
+    try:
+        return find_pico()
+    except MissingRuntime as missing:
+        return _left_out(_BOARDS, missing)
+
+
+def _left_out(name, missing):
+    if name in _REQUIRED:
+        pytest.fail(f"{name} is named in ZERORATE_REQUIRE: {missing}", pytrace=False)
+    pytest.skip(str(missing))
 
 
 @pytest.fixture(scope="session")

@@ -1,15 +1,15 @@
 """Boards on a serial port: flashed and recorded from, the unix port standing in for one."""
 
+import re
 import sys
 import threading
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 import pytest
 from zerorate_fakes import FakeI2C, FakeMPU6050
 from zerorate_fakes.smbus import SMBus
 from zerorate_tools.boards import flash, record
 from zerorate_tools.boards.connection import BoardError
-from zerorate_tools.boards.flashing import package_files
 from zerorate_tools.boards.frames import MESSAGE, SAMPLE, FrameReader, encode
 from zerorate_tools.cli import main
 from zerorate_tools.errors import ZerorateError
@@ -45,41 +45,113 @@ def blank_board(find_runtime, tmp_path):
 
 
 class TestFlash:
-    def test_a_dry_run_lists_every_file_with_its_size_and_touches_no_port(self):
-        said = []
-        total = flash("/dev/no-such-port", dry_run=True, say=said.append)
-        listed = {line.split()[1]: int(line.split()[0]) for line in said[:-1]}
-        assert listed["lib/zerorate_i2c/mpu6050.py"] > 1000
-        assert sum(listed.values()) == total
-        assert "lib/zerorate_i2c/linux.py" not in listed
+    @pytest.fixture
+    def flashed(self, blank_board):
+        """Flash the blank board; what was said, and what came of it."""
 
-    def test_the_board_holds_the_same_files_afterwards_and_they_import(self, blank_board):
+        def run(**options):
+            said = []
+            return said, flash(blank_board.port, say=said.append, **options)
+
+        return run
+
+    def test_a_dry_run_without_a_board_lists_what_any_board_would_get(self):
+        said = []
+        flashed = flash("/dev/no-such-port", dry_run=True, say=said.append)
+        assert "/dev/no-such-port: cannot be opened" in said[0]
+        assert PurePosixPath("lib/zerorate_i2c/mpu6050.mpy") in flashed.files
+        assert f"{flashed.total:8d}  bytes" in said[-2]
+        assert "heap needed" in said[-1]
+
+    def test_a_dry_run_writes_nothing_and_says_what_the_board_has(self, flashed, blank_board):
+        said, _ = flashed(dry_run=True)
+        assert "MicroPython 1." in said[0]
+        assert any(re.search(r"heap needed: [\d,]+ bytes; it has [\d,]+ free", s) for s in said)
+        assert list(blank_board.folder.iterdir()) == []
+
+    def test_the_board_imports_what_was_compiled_for_it(self, flashed, blank_board):
         main = HERE / "live_chip.py"
-        flash(blank_board.port, main=main, say=lambda line: None)
-        for package in ("zerorate", "zerorate_i2c"):
-            for name, path in package_files(package).items():
-                assert (blank_board.folder / "lib" / name).read_bytes() == path.read_bytes()
+        _, done = flashed(main=main)
+        there = {str(p.relative_to(blank_board.folder)) for p in files_below(blank_board.folder)}
+        assert there == {str(name) for name in done.files}
         assert (blank_board.folder / "main.py").read_bytes() == main.read_bytes()
-        assert board_says(blank_board, "import zerorate_i2c.mpu6050; print(1 + 1)") == "2"
+        assert board_says(blank_board, "import zerorate, zerorate_i2c.mpu6050; print(2)") == "2"
 
-    def test_flashing_again_writes_only_what_changed(self, blank_board, monkeypatch):
-        monkeypatch.setattr("zerorate_tools.boards.flashing.PACKAGES", ("zerorate_i2c",))
-        flash(blank_board.port, say=lambda line: None)
-        changed = blank_board.folder / "lib" / "zerorate_i2c" / "parts.py"
-        changed.write_text("old")
-        said = []
-        flash(blank_board.port, say=said.append)
-        written = [line for line in said if line.endswith("  written")]
-        assert len(written) == 1 and "parts.py" in written[0]
+    def test_a_part_that_is_asked_for_comes_and_the_others_do_not(self, flashed, blank_board):
+        flashed(parts=["bursts"])
+        assert board_says(blank_board, "import zerorate.bursts, zerorate_i2c.fifo; print(2)") == "2"
+        assert not list(blank_board.folder.rglob("in_motion*"))
+
+    def test_flashing_again_sends_nothing(self, flashed):
+        flashed()
+        said, again = flashed()
+        assert again.sent_bytes == 0
+        assert all("the same already" in line for line in said[1:-1])
+
+    def test_only_what_changed_is_sent_and_what_was_there_goes(self, flashed, blank_board):
+        flashed()
+        library = blank_board.folder / "lib"
+        (library / "zerorate_i2c" / "parts.mpy").write_text("old")
+        (library / "zerorate_i2c" / "parts.py").write_text("shadows it")
+        (library / "others.py").write_text("not of this project")
+        _, again = flashed()
+        assert [name.name for name in again.sent] == ["parts.mpy"]
+        assert not (library / "zerorate_i2c" / "parts.py").exists()
+        assert (library / "others.py").exists()
+
+    def test_a_package_that_arrives_damaged_replaces_nothing(
+        self, flashed, blank_board, monkeypatch
+    ):
+        flashed()
+        before = contents(blank_board.folder / "lib")
+        monkeypatch.setattr("zerorate_tools.boards.flashing.b64encode", lambda data: b"AAAA")
+        with pytest.raises(BoardError, match="did not arrive whole and nothing was replaced"):
+            flashed(parts=["motion"])
+        assert contents(blank_board.folder / "lib") == before
+        monkeypatch.undo()
+        flashed(parts=["motion"])
+        assert list(blank_board.folder.rglob("in_motion.mpy"))
+
+    def test_a_flash_that_was_cut_short_goes_on_where_it_was(self, flashed, monkeypatch):
+        from zerorate_tools.boards.flashing import Installer
+
+        sent, send = [], Installer._send
+
+        def send_ten(self, path, data):
+            if len(sent) == 10:
+                raise BoardError("unplugged")
+            sent.append(len(data))
+            send(self, path, data)
+
+        monkeypatch.setattr(Installer, "_send", send_ten)
+        with pytest.raises(BoardError, match="unplugged"):
+            flashed()
+        monkeypatch.undo()
+        said, again = flashed()
+        assert 7 <= sum("sent before" in line for line in said) <= 10
+        assert again.sent_bytes < again.total
+
+    def test_a_package_that_was_not_put_in_place_any_more_is(self, flashed, blank_board):
+        flashed()
+        (blank_board.folder / "lib" / "zerorate").rename(blank_board.folder / "zerorate")
+        _, again = flashed()
+        assert again.sent_bytes == 0
+        assert [p.name for p in blank_board.folder.iterdir()] == ["lib"]
+
+    def test_a_board_of_another_mpy_version_gets_the_source(self, flashed, monkeypatch):
+        monkeypatch.setattr("zerorate_tools.boards.compiling.mpy_version", lambda: (7, 0))
+        _, done = flashed()
+        assert {name.suffix for name in done.files} == {".py"}
 
     def test_the_readable_twin_of_a_model_goes_to_the_board_as_model_bin(
-        self, blank_board, tmp_path, monkeypatch
+        self, flashed, blank_board, tmp_path_factory
     ):
-        monkeypatch.setattr("zerorate_tools.boards.flashing.PACKAGES", ("zerorate",))
         slot = Slot(Term("temp", 20, 45, 32.5, power=2), (0.001, -0.002, 0.0003))
         scales = Scales("MPU-6050", 100.0, 131.0, 16384.0, 340.0, 36.53)
-        readable, binary = write_model(build_model([slot], scales), tmp_path)
-        flash(blank_board.port, model=readable, say=lambda line: None)
+        readable, binary = write_model(
+            build_model([slot], scales), tmp_path_factory.mktemp("models")
+        )
+        flashed(model=readable)
         assert (blank_board.folder / "model.bin").read_bytes() == binary.read_bytes()
 
     @pytest.mark.parametrize("option", ["main", "model"])
@@ -90,6 +162,14 @@ class TestFlash:
     def test_no_board_is_one_line(self):
         with pytest.raises(BoardError, match="/dev/no-such-port: cannot be opened"):
             flash("/dev/no-such-port")
+
+
+def files_below(folder):
+    return [path for path in folder.rglob("*") if path.is_file()]
+
+
+def contents(folder):
+    return {path.relative_to(folder): path.read_bytes() for path in files_below(folder)}
 
 
 class TestRecord:
@@ -141,6 +221,13 @@ class TestWatch:
         lines = capsys.readouterr().out.splitlines()
         assert len(lines) >= 2 and all("bias dps" in line for line in lines)
         assert board_says(board, "print('here')") == "here"
+
+    def test_a_port_of_any_name_is_taken(self, board, tmp_path, capsys):
+        setup, link = tmp_path / "setup.py", tmp_path / "tty-a"
+        setup.write_text(SETUP)
+        link.symlink_to(board.port)
+        assert main(["watch", str(link), "--for", "2", "--setup", str(setup)]) == 0
+        assert "bias dps" in capsys.readouterr().out
 
     def test_no_board_is_one_line(self, capsys):
         assert main(["watch", "/dev/ttyACM99"]) == 2

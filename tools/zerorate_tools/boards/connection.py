@@ -8,6 +8,10 @@ from contextlib import contextmanager
 from ..errors import MissingLibrary, ZerorateError
 
 
+# A board's own programs and a busy machine between them may take long to answer.
+_PATIENCE_S = 30
+
+
 class BoardError(ZerorateError):
     """A board that does not answer, or does not do what it was told."""
 
@@ -29,9 +33,19 @@ def connected(port: str, *, restart: bool = True) -> Iterator:
     except TransportError as error:
         raise BoardError(f"{port}: cannot be opened; is the board plugged in?") from error
     try:
-        transport.enter_raw_repl(soft_reset=restart)
+        transport.enter_raw_repl(soft_reset=restart, timeout_overall=_PATIENCE_S)
         yield transport
     except TransportError as error:
         raise BoardError(f"{port}: {error}; is MicroPython on this board?") from error
     finally:
         transport.close()
+
+
+def told(transport, program: str) -> str:
+    """What a program that is run to its end on the board prints. Raises its error."""
+    from mpremote.transport import TransportExecError
+
+    said, error = transport.exec_raw(program, timeout=_PATIENCE_S)
+    if error:
+        raise TransportExecError(said, error.decode())
+    return said.decode()

@@ -1,29 +1,40 @@
-"""The firmware and the driver put on a board: the packages' own files, nothing else."""
+"""The firmware and the driver put on a board: compiled for it, whole or not at all."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from hashlib import sha256
-from importlib.util import find_spec
+import ast
+from base64 import b64encode
+from binascii import crc32
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from importlib.resources import files
 from pathlib import Path, PurePosixPath
 
 from ..errors import InFile
-from .connection import connected
+from .asking import BoardFacts, ask
+from .compiling import board_files
+from .connection import BoardError, connected, told
+from .parts import PACKAGES, chosen_parts, part_files
 
-PACKAGES = ("zerorate", "zerorate_i2c")
-# Parts of the packages that a board has no use for.
-_HOST_ONLY = {"zerorate_i2c/linux.py"}
-_LIBRARY = PurePosixPath("lib")
+_LIBRARY = "lib"
+_STAGE = "zerorate.new"
+_CHUNK = 1536  # bytes of a file, and characters, in a command: little for a board of 16 KB
+_COMMAND = 2300
 
 
-def package_files(package: str) -> dict[PurePosixPath, Path]:
-    """Path below lib on the board -> file, for every file of a package that a board needs."""
-    spec = find_spec(package)
-    if spec is None or not spec.submodule_search_locations:
-        raise ModuleNotFoundError(f"{package} is not installed beside zerorate_tools")
-    root = Path(next(iter(spec.submodule_search_locations)))
-    found = {PurePosixPath(package, *p.relative_to(root).parts): p for p in root.rglob("*.py")}
-    return {name: found[name] for name in sorted(found) if str(name) not in _HOST_ONLY}
+@dataclass
+class Flashed:
+    """What came of it: files -> bytes that the board has now, and how many of them were sent."""
+
+    facts: BoardFacts
+    files: dict[PurePosixPath, int]
+    sent_bytes: int = 0
+    sent: list[PurePosixPath] = field(default_factory=list)
+
+    @property
+    def total(self) -> int:
+        """Bytes of all files."""
+        return sum(self.files.values())
 
 
 def flash(
@@ -32,39 +43,34 @@ def flash(
     main: Path | None = None,
     say: Callable[[str], None] = print,
     model: Path | None = None,
-) -> int:
-    """Copy the packages to lib on the board at port; total bytes.
+    parts: Iterable[str] = (),
+) -> Flashed:
+    """Put the packages into lib on the board at port, compiled for what it is.
 
-    main: a file, copied to main.py; model: a model.bin or model.json, to model.bin, where
-    `EffectModel.load_file` finds it. Every file is told to say with its size; dry_run only tells.
-    Files that are the same there already stay. Raises BoardError, BadModel, InFile.
+    parts: what is sent besides the rest path, keys of PARTS; main: a file that becomes main.py;
+    model: a model.bin or model.json, to model.bin, where `EffectModel.load_file` finds it. What
+    the board has already is not sent again, be it from an attempt that was cut short; a package
+    takes its place as a whole, after its files' CRC-32 was found right. dry_run only tells.
+    Raises BoardError, BadModel, InFile, UnknownPart.
     """
-    files = _contents(main, model)
-    total = sum(map(len, files.values()))
+    chosen = chosen_parts(parts)
+    extra = _own_files(main, model)
     if dry_run:
-        for name, data in files.items():
-            say(f"{len(data):8d}  {name}")
-    else:
-        with connected(port) as board:
-            for name, data in files.items():
-                say(f"{len(data):8d}  {name}  {_put(board, name, data)}")
-    say(f"{total:8d}  bytes in {len(files)} files" + (" (dry run)" if dry_run else ""))
-    return total
+        return _told(port, chosen, extra, say)
+    with connected(port) as board:
+        installer = Installer(board, port, say)
+        return installer.install(chosen, extra)
 
 
-def _contents(main: Path | None, model: Path | None) -> dict[PurePosixPath, bytes]:
-    files = {
-        _LIBRARY / name: path.read_bytes()
-        for package in PACKAGES
-        for name, path in package_files(package).items()
-    }
-    if main is not None:
-        files[PurePosixPath("main.py")] = _read(Path(main))
+def _own_files(main: Path | None, model: Path | None) -> dict[PurePosixPath, bytes]:
+    found = {}
     if model is not None:
         from ..model import encoded, read_model  # recording needs none of what these import
 
-        files[PurePosixPath("model.bin")] = encoded(read_model(model))
-    return files
+        found[PurePosixPath("model.bin")] = encoded(read_model(model))
+    if main is not None:
+        found[PurePosixPath("main.py")] = _read(Path(main))
+    return found
 
 
 def _read(path: Path) -> bytes:
@@ -74,19 +80,159 @@ def _read(path: Path) -> bytes:
         raise InFile(path, f"cannot be read: {error.strerror}", do="name a program") from error
 
 
-def _put(board, name: PurePosixPath, data: bytes) -> str:
-    for folder in reversed(name.parents[:-1]):
-        if not board.fs_exists(str(folder)):
-            board.fs_mkdir(str(folder))
-    if _is_there(board, name, data):
-        return "the same already"
-    board.fs_writefile(str(name), data)
-    return "written"
-
-
-def _is_there(board, name: PurePosixPath, data: bytes) -> bool:
-    """By its hash, which the board works out where it can."""
+def _told(port: str, parts, extra, say) -> Flashed:
     try:
-        return board.fs_hashfile(str(name), "sha256") == sha256(data).digest()
-    except FileNotFoundError:
-        return False
+        with connected(port) as board:
+            facts = ask(board)
+    except BoardError as error:
+        say(f"{error}; what any board would get:")
+        facts = BoardFacts()
+    contents = _contents(parts, facts, extra)
+    say(f"{facts}")
+    for name, data in contents.items():
+        say(f"{len(data):8d}  {name}")
+    flashed = Flashed(facts, {name: len(data) for name, data in contents.items()})
+    say(f"{flashed.total:8d}  bytes in {len(contents)} files, of {', '.join(parts)} (dry run)")
+    for line in room(facts, parts, flashed.total):
+        say(line)
+    return flashed
+
+
+def _contents(parts, facts: BoardFacts, extra) -> dict[PurePosixPath, bytes]:
+    packages = board_files(part_files(parts), facts)
+    return {**{_LIBRARY / name: data for name, data in packages.items()}, **extra}
+
+
+def room(facts: BoardFacts, parts: Iterable[str], total: int) -> list[str]:
+    """What is needed of flash and heap beside what the board has, in lines."""
+    from .needs import heap_needed
+
+    needed = heap_needed(parts, facts.architecture)
+    has = f"; it has {facts.heap_free:,} free" if facts.heap_free else ""
+    lines = [f"heap needed: {needed:,} bytes{has}"]
+    if facts.disk_free:
+        lines.append(f"flash needed: {total:,} bytes; it has {facts.disk_free:,} free")
+    if facts.heap_free and facts.heap_free < needed:
+        lines.append(
+            "that is more heap than this board has: freeze the packages, or leave out a part"
+        )
+    return lines
+
+
+class Installer:
+    """Puts files on a board in its raw REPL."""
+
+    def __init__(self, board, port: str, say: Callable[[str], None]) -> None:
+        self._board, self._port, self._say = board, port, say
+        self._waiting: list[str] = []
+
+    def install(self, parts: tuple[str, ...], extra: dict[PurePosixPath, bytes]) -> Flashed:
+        """All of it; see flash."""
+        facts = ask(self._board)
+        self._say(f"{facts}")
+        contents = _contents(parts, facts, {})
+        flashed = Flashed(facts, {name: len(d) for name, d in {**contents, **extra}.items()})
+        text = files(__package__).joinpath("on_board/install.py").read_text(encoding="utf-8")
+        self._do(text)
+        self._finish_earlier()
+        for package in PACKAGES:
+            below = PurePosixPath(_LIBRARY, package)
+            wanted = {name: data for name, data in contents.items() if name.is_relative_to(below)}
+            self._install_package(package, wanted, flashed)
+        self._do(f"remove({_STAGE!r})")
+        for name, data in extra.items():
+            self._install_file(name, data, flashed)
+        sent, total = flashed.sent_bytes, flashed.total
+        self._say(f"{total:8d}  bytes in {len(flashed.files)} files, {sent} of them sent")
+        return flashed
+
+    def _finish_earlier(self) -> None:
+        """Put in place what an attempt before this one left whole beside main.py."""
+        for package in PACKAGES:
+            self._do(f"if is_folder({package!r}): put_in_place(None, {package!r}, {_LIBRARY!r})")
+
+    def _install_package(self, package: str, wanted: dict, flashed: Flashed) -> None:
+        place, stage = f"{_LIBRARY}/{package}", f"{_STAGE}/{package}"
+        there = self._there(place)
+        if there == {str(name): _mark(data) for name, data in wanted.items()}:
+            for name, data in wanted.items():
+                self._say(f"{len(data):8d}  {name}  the same already")
+            return
+        staged = self._there(stage)
+        for name, data in wanted.items():
+            self._stage(name, data, there, staged, flashed)
+        names = [str(_staged(name)) for name in wanted]
+        self._do(f"keep_only({stage!r}, {names!r})")
+        self._check({str(_staged(name)): data for name, data in wanted.items()}, stage)
+        self._do(f"put_in_place({stage!r}, {package!r}, {_LIBRARY!r})")
+
+    def _stage(self, name: PurePosixPath, data: bytes, there, staged, flashed: Flashed) -> None:
+        target = str(_staged(name))
+        if staged.get(target) == _mark(data):
+            how = "sent before"
+        elif there.get(str(name)) == _mark(data):
+            self._later(f"make_folders({target!r})\ncopy({str(name)!r}, {target!r})")
+            how = "the same already"
+        else:
+            self._send(target, data)
+            flashed.sent.append(name)
+            flashed.sent_bytes += len(data)
+            how = "written"
+        self._say(f"{len(data):8d}  {name}  {how}")
+
+    def _install_file(self, name: PurePosixPath, data: bytes, flashed: Flashed) -> None:
+        if self._there(str(name)) == {str(name): _mark(data)}:
+            self._say(f"{len(data):8d}  {name}  the same already")
+            return
+        new = f"{name}.new"
+        self._send(new, data)
+        self._check({new: data}, new)
+        self._do(f"replace({new!r}, {str(name)!r})")
+        flashed.sent.append(name)
+        flashed.sent_bytes += len(data)
+        self._say(f"{len(data):8d}  {name}  written")
+
+    def _send(self, path: str, data: bytes) -> None:
+        self._later(f"make_folders({path!r})")
+        for at in range(0, max(1, len(data)), _CHUNK):
+            text = b64encode(data[at : at + _CHUNK]).decode()
+            self._later(f"put({path!r}, {text!r}, {'ab' if at else 'wb'!r})")
+
+    def _later(self, command: str) -> None:
+        """Run it with others, for asking takes longer than what is done."""
+        if sum(map(len, self._waiting)) + len(command) > _COMMAND:
+            self._do()
+        self._waiting.append(command)
+
+    def _do(self, command: str = "") -> str:
+        """Run what waits, then this; what it printed."""
+        waiting, self._waiting = [*self._waiting, command], []
+        return told(self._board, "\n".join(waiting))
+
+    def _there(self, path: str) -> dict[str, tuple[int, int]]:
+        """File -> size and CRC-32, of a file or of all below a folder."""
+        said = self._do(f"tell({path!r})")
+        found = [ast.literal_eval(line) for line in said.splitlines() if line.strip()]
+        return {
+            name: (size, self._read_back(name) if crc is None else crc) for name, size, crc in found
+        }
+
+    def _read_back(self, path: str) -> int:
+        return crc32(bytes(self._board.fs_readfile(path)))
+
+    def _check(self, wanted: dict[str, bytes], path: str) -> None:
+        there = self._there(path)
+        for name, data in wanted.items():
+            if there.get(name) != _mark(data):
+                raise BoardError(
+                    f"{self._port}: {name} did not arrive whole and nothing was replaced; "
+                    "flash again, what did arrive is kept"
+                )
+
+
+def _staged(name: PurePosixPath) -> PurePosixPath:
+    return PurePosixPath(_STAGE, *name.parts[1:])
+
+
+def _mark(data: bytes) -> tuple[int, int]:
+    return len(data), crc32(data)

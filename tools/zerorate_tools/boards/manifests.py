@@ -1,33 +1,46 @@
-"""Writes firmware/package.json and drivers/package.json, from which `mip` installs, from the tree.
+"""Writes what `mip` installs from: a package.json a folder for the rest path, PART.json for more.
 
-python -m zerorate_tools.boards.manifests, in a checkout; a test fails while either is stale.
+python -m zerorate_tools.boards.manifests, in a checkout; a test fails while one is stale.
 """
 
 from __future__ import annotations
 
 import json
 import sys
-from pathlib import Path
+from collections.abc import Iterator
+from pathlib import Path, PurePosixPath
 
 from .. import __version__
-from .flashing import package_files
+from .parts import PACKAGES, PARTS, REST, part_files
 
-FOLDERS = {"zerorate": "firmware", "zerorate_i2c": "drivers"}
+FOLDERS = dict(zip(PACKAGES, ("firmware", "drivers"), strict=True))
 
 
-def package_json(package: str) -> str:
-    """The text of a package's package.json: each file from beside it to the same path in lib."""
-    urls = [[str(name), str(name)] for name in package_files(package)]
-    lines = ",\n".join("    " + json.dumps(url) for url in urls)
+def manifests() -> Iterator[tuple[PurePosixPath, str]]:
+    """(path below a checkout, text) of every file that mip installs from."""
+    rest = part_files([REST])
+    for part in PARTS:
+        files = rest if part == REST else part_files([REST, part])
+        for package, folder in FOLDERS.items():
+            names = [str(name) for name in files if name.parts[0] == package]
+            if part != REST:
+                names = [name for name in names if PurePosixPath(name) not in rest]
+            if names:
+                name = "package.json" if part == REST else f"{part}.json"
+                yield PurePosixPath(folder, name), _text(names)
+
+
+def _text(names: list[str]) -> str:
+    """Each file from beside it to the same path in lib."""
+    lines = ",\n".join("    " + json.dumps([name, name]) for name in names)
     return f'{{\n  "version": "{__version__}",\n  "deps": [],\n  "urls": [\n{lines}\n  ]\n}}\n'
 
 
 def main(root: Path) -> None:
-    """Write both below root, a checkout."""
-    for package, folder in FOLDERS.items():
-        path = root / folder / "package.json"
-        path.write_text(package_json(package), encoding="utf-8")
-        print(path)
+    """Write them below root, a checkout."""
+    for name, text in manifests():
+        (root / name).write_text(text, encoding="utf-8")
+        print(root / name)
 
 
 if __name__ == "__main__":

@@ -11,10 +11,19 @@ def add_parser(subparsers) -> None:
     parser = subparsers.add_parser(
         "flash",
         help="put the firmware and the driver on a MicroPython board",
-        description="Copy zerorate and zerorate_i2c to the board's lib folder through mpremote.",
+        description="Ask the board what it is, compile zerorate and zerorate_i2c for it, and put "
+        "them into its lib folder: whole, or not at all. What is there already is not sent again.",
     )
-    parser.add_argument("port", metavar="PORT", help="serial port, such as /dev/ttyACM0 or COM3")
-    parser.add_argument("--dry-run", action="store_true", help="list every file and its size only")
+    parser.add_argument("port", metavar="PORT", help="serial port: /dev/ttyACM0, COM3, any path")
+    parser.add_argument("--dry-run", action="store_true", help="list files and needs only")
+    parser.add_argument(
+        "--with",
+        dest="parts",
+        type=lambda text: text.split(","),
+        default=[],
+        metavar="PARTS",
+        help="more than learning at rest: motion,gravity,effects,refine,bursts,self-test or all",
+    )
     parser.add_argument("--main", type=Path, metavar="FILE", help="copy FILE to main.py too")
     parser.add_argument("--model", type=Path, metavar="FILE", help="copy FILE to model.bin too")
     parser.set_defaults(run=run)
@@ -25,4 +34,4 @@ def run(arguments: argparse.Namespace) -> None:
     from ..boards import flash
 
     a = arguments
-    flash(a.port, dry_run=a.dry_run, main=a.main, model=a.model)
+    flash(a.port, dry_run=a.dry_run, main=a.main, model=a.model, parts=a.parts)

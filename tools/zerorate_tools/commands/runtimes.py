@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 
-_GETTABLE = ("wasm", "x86", "armhf", "x64", "valgrind")
+_GETTABLE = ("wasm", "x86", "armhf", "x64", "valgrind", "rp2040")
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -24,11 +24,13 @@ def get(arguments: argparse.Namespace) -> int:
     from zerorate_tools.errors import MissingRuntime
     from zerorate_tools.runtimes import fetch
     from zerorate_tools.runtimes.callgrind import fetch_callgrind
+    from zerorate_tools.runtimes.pico import fetch_rp2040
 
+    others = {"valgrind": fetch_callgrind, "rp2040": fetch_rp2040}
     missing = 0
     for name in arguments.names:
         try:
-            fetch_callgrind() if name == "valgrind" else fetch(name)
+            others[name]() if name in others else fetch(name)
             print(f"{name}: ready")
         except MissingRuntime as error:
             missing += 1

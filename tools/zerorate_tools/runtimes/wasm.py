@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import json
-import shutil
-import subprocess
 from pathlib import Path
 
 from zerorate_tools.errors import MissingRuntime
-from zerorate_tools.runtimes.cache import fill, runtime_folder
-from zerorate_tools.runtimes.node import node_command, npm_command, npm_environment
+from zerorate_tools.runtimes.cache import runtime_folder
+from zerorate_tools.runtimes.node import node_command
+from zerorate_tools.runtimes.packages import install, locked_version
 from zerorate_tools.runtimes.runtime import Job, Runtime
 
 _HERE = Path(__file__).parent / "webassembly"
@@ -51,32 +50,8 @@ def find_wasm() -> Wasm:
 
 def fetch_wasm() -> None:
     """Install the package that package-lock.json pins. Raises MissingRuntime."""
-    node_command()
-    fill(_folder(), _npm_install)
+    install(_HERE, _folder(), _PACKAGE)
 
 
 def _folder() -> Path:
-    wanted = json.loads((_HERE / "package.json").read_text(encoding="utf-8"))
-    return runtime_folder(f"wasm-{wanted['dependencies'][_PACKAGE]}")
-
-
-def _npm_install(folder: Path) -> None:
-    for name in ("package.json", "package-lock.json"):
-        shutil.copyfile(_HERE / name, folder / name)
-    install = ["ci", "--ignore-scripts", "--no-audit", "--no-fund", "--no-update-notifier"]
-    done = subprocess.run(
-        [*npm_command(), *install],
-        cwd=folder,
-        env=npm_environment(),
-        capture_output=True,
-        text=True,
-    )
-    if done.returncode:
-        why = _complaint(done.stderr)
-        raise MissingRuntime(f"npm could not install {_PACKAGE}, is there a network? {why}")
-
-
-def _complaint(stderr: str) -> str:
-    lines = [line for line in stderr.strip().splitlines() if "complete log" not in line]
-    reasons = [line for line in lines if "reason:" in line] or lines[-1:] or ["no message"]
-    return reasons[0].removeprefix("npm error").strip()
+    return runtime_folder(f"wasm-{locked_version(_HERE, _PACKAGE)}")

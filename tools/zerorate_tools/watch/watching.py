@@ -43,7 +43,7 @@ def watch(source: str, wishes: Wishes | None = None) -> Live | None:
     Raises ZerorateError for a source that cannot be followed.
     """
     wishes = wishes or Wishes()
-    if _DEVICE.fullmatch(source):
+    if is_device(source):
         from .board import watch_board
 
         return watch_board(source, wishes)
@@ -56,6 +56,11 @@ def watch(source: str, wishes: Wishes | None = None) -> Live | None:
             pass
         following.look()
         return following.live if following.live.samples else None
+
+
+def is_device(source: str) -> bool:
+    """Whether the source is a port or a bus: by its name, or a device under any other name."""
+    return bool(_DEVICE.fullmatch(source)) or Path(source).is_char_device()
 
 
 class Following:

@@ -1,0 +1,63 @@
+"""An emulated Pico with the firmware flashed, and its console."""
+
+import time
+
+import pytest
+import serial
+from zerorate_tools.boards import flash
+from zerorate_tools.runtimes.pico import EmulatedPico
+
+# The board's own seconds are a fraction of these where the machine is free.
+PATIENCE_S = 240
+
+
+class Console:
+    """Lines that the board prints, and keys to it."""
+
+    def __init__(self, port):
+        self._serial = serial.Serial(port, timeout=0.2)
+        self._rest = b""
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *exc):
+        self._serial.close()
+
+    def send(self, keys):
+        self._serial.write(keys)
+
+    def lines(self):
+        """Whole lines, for as long as the board prints any in time."""
+        until = time.monotonic() + PATIENCE_S
+        while time.monotonic() < until:
+            *whole, self._rest = (self._rest + self._serial.read(4096)).split(b"\n")
+            for line in whole:
+                yield line.decode(errors="replace").strip()
+        raise AssertionError(f"the board said no more than {self._rest!r}")
+
+    def line_with(self, word):
+        """The next line in which the word is."""
+        return next(line for line in self.lines() if word in line)
+
+    def rates(self):
+        """The next three rates that the example prints."""
+        for line in self.lines():
+            words = line.split()
+            if len(words) == 3 and all(word.lstrip("-").isdigit() for word in words):
+                return [int(word) for word in words]
+
+
+@pytest.fixture(scope="session")
+def pico(pico_parts, tmp_path_factory):
+    """A Pico that was flashed with the rest path; port: a symbolic link to its serial device."""
+    link = tmp_path_factory.mktemp("run") / "tty-a"
+    with EmulatedPico(pico_parts, link=link) as board:
+        board.flashed = flash(board.port, say=lambda line: None)
+        yield board
+
+
+@pytest.fixture
+def console(pico):
+    with Console(pico.port) as console:
+        yield console

@@ -1,0 +1,131 @@
+"""Which files of the packages a board needs, found by following their imports from a few roots."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterable, Iterator
+from functools import cache
+from importlib.util import find_spec
+from pathlib import Path, PurePosixPath
+
+from ..errors import ZerorateError
+
+PACKAGES = ("zerorate", "zerorate_i2c")
+REST = "rest"
+#: Part -> the modules that a program imports for it; all else follows. `rest` is in every choice.
+PARTS = {
+    REST: (
+        "zerorate",
+        "zerorate.checked",
+        "zerorate.explain",
+        "zerorate.learned_store",
+        "zerorate.save_schedule",
+        "zerorate.storage",
+        "zerorate_i2c.bus_recovery",
+        "zerorate_i2c.data_ready",
+        "zerorate_i2c.mpu6050",
+    ),
+    "motion": ("zerorate.motion_kernels", "zerorate.motion_settings", "zerorate.explain_sources"),
+    "gravity": (
+        "zerorate.motion_kernels",
+        "zerorate.realtime_settings",
+        "zerorate.explain_sources",
+    ),
+    "effects": ("zerorate.model", "zerorate.effect_kernels"),
+    "refine": ("zerorate.model", "zerorate.effect_kernels", "zerorate.refine_kernels"),
+    "bursts": ("zerorate.bursts", "zerorate_i2c.fifo"),
+    "self-test": ("zerorate_i2c.self_test",),
+}
+# Generated machine code of the size of all the rest: bytecode is sent in its place.
+_LEFT_OUT = "zerorate.viper"
+_EXTRA_ROOTS = frozenset(root for part in PARTS if part != REST for root in PARTS[part])
+
+
+class UnknownPart(ZerorateError):
+    """A part that the firmware does not have."""
+
+
+def chosen_parts(named: Iterable[str]) -> tuple[str, ...]:
+    """The parts in their own order, `rest` first; `all` is every one. Raises UnknownPart."""
+    wanted = set(named)
+    unknown = sorted(wanted - set(PARTS) - {"all"})
+    if unknown:
+        raise UnknownPart(f"no such part: {unknown[0]}; these are: {', '.join(PARTS)}, all")
+    return tuple(part for part in PARTS if part == REST or part in wanted or "all" in wanted)
+
+
+def part_files(parts: Iterable[str]) -> dict[PurePosixPath, Path]:
+    """Path below lib on the board -> file, for all that these parts import, in order of name."""
+    roots = [root for part in parts for root in PARTS[part]]
+    stops = _EXTRA_ROOTS.difference(roots)
+    found: dict[str, Path] = {}
+    waiting = list(roots)
+    while waiting:
+        module = waiting.pop()
+        if module in found or module in stops or module.startswith(_LEFT_OUT):
+            continue
+        path = module_file(module)
+        found[module] = path
+        waiting += [name for name in _imports(path, module)]
+    return dict(sorted((_on_board(path), path) for path in found.values()))
+
+
+def module_file(module: str) -> Path:
+    """The file of a module of the packages. Raises ModuleNotFoundError."""
+    path = _find(module)
+    if path is None:
+        raise ModuleNotFoundError(f"{module} is not installed beside zerorate_tools")
+    return path
+
+
+def _find(module: str) -> Path | None:
+    package, *rest = module.split(".")
+    path = _root(package).joinpath(*rest)
+    for file in (path / "__init__.py", path.with_name(path.name + ".py")):
+        if file.is_file():
+            return file
+    return None
+
+
+@cache
+def _root(package: str) -> Path:
+    spec = find_spec(package)
+    if spec is None or not spec.submodule_search_locations:
+        raise ModuleNotFoundError(f"{package} is not installed beside zerorate_tools")
+    return Path(next(iter(spec.submodule_search_locations)))
+
+
+def _on_board(path: Path) -> PurePosixPath:
+    for package in PACKAGES:
+        root = _root(package)
+        if path.is_relative_to(root):
+            return PurePosixPath(package, *path.relative_to(root).parts)
+    raise ModuleNotFoundError(f"{path} is in no package of the firmware")
+
+
+def _imports(path: Path, module: str) -> Iterator[str]:
+    """Modules of the packages that a file imports anywhere in it, and the packages they are in."""
+    package = module if path.name == "__init__.py" else module.rpartition(".")[0]
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from _with_packages(alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = _base(node, package)
+            yield from _with_packages([base, *(f"{base}.{alias.name}" for alias in node.names)])
+
+
+def _base(node: ast.ImportFrom, package: str) -> str:
+    if not node.level:
+        return node.module or ""
+    above = package.split(".")[: len(package.split(".")) - node.level + 1]
+    return ".".join([*above, *([node.module] if node.module else [])])
+
+
+def _with_packages(names: Iterable[str]) -> Iterator[str]:
+    for name in names:
+        words = name.split(".")
+        if words[0] in PACKAGES:
+            for count in range(1, len(words) + 1):
+                module = ".".join(words[:count])
+                if _find(module) is not None:
+                    yield module

@@ -1,0 +1,167 @@
+"""An emulated Raspberry Pi Pico with stock MicroPython, and an MPU-6050 on its I2C bus.
+
+The processor is npm's rp2040js, which `zerorate runtimes get rp2040` fetches; MicroPython's own
+image and the chip's boot ROM come from the folder named by the environment variable
+ZERORATE_BOARDS. Without them find_pico raises MissingRuntime.
+"""
+
+from __future__ import annotations
+
+import base64
+import errno
+import json
+import os
+import pty
+import select
+import socket
+import subprocess
+import threading
+import time
+import tty
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..errors import MissingRuntime
+from .cache import runtime_folder
+from .node import node_command
+from .packages import install, locked_version
+
+_HERE = Path(__file__).parent / "rp2040"
+_PACKAGE = "rp2040js"
+VARIABLE = "ZERORATE_BOARDS"
+#: The clock that the emulated core runs at.
+CORE_HZ = 125_000_000
+
+
+@dataclass(frozen=True)
+class PicoParts:
+    """What an emulated Pico is made of: files."""
+
+    package: Path
+    bootrom: Path
+    firmware: Path
+
+
+def boards_folder() -> Path:
+    """The folder of boards' firmware. Raises MissingRuntime."""
+    named = os.environ.get(VARIABLE)
+    if not named:
+        raise MissingRuntime(f"{VARIABLE} names no folder with boards' firmware")
+    folder = Path(named)
+    if not folder.is_dir():
+        raise MissingRuntime(f"{VARIABLE} names {named}, which is no folder")
+    return folder
+
+
+def find_pico(firmware: str = "RPI_PICO-*.bin") -> PicoParts:
+    """The parts of an emulated Pico; firmware: a pattern of names. Raises MissingRuntime."""
+    boards = boards_folder()
+    images = sorted((boards / "firmware").glob(firmware))
+    bootrom = boards / "emulator" / "bootrom.mjs"
+    for what, there in ((f"firmware/{firmware}", images), (str(bootrom), bootrom.is_file())):
+        if not there:
+            raise MissingRuntime(f"{boards} holds no {what}")
+    package = _folder() / "node_modules" / _PACKAGE
+    if not package.is_dir():
+        raise MissingRuntime(
+            "the RP2040 emulator is not fetched yet; `zerorate runtimes get rp2040` fetches it"
+        )
+    return PicoParts(package, bootrom, images[-1])
+
+
+def fetch_rp2040() -> None:
+    """Install the emulator that package-lock.json pins. Raises MissingRuntime."""
+    install(_HERE, _folder(), _PACKAGE)
+
+
+def _folder() -> Path:
+    return runtime_folder(f"rp2040-{locked_version(_HERE, _PACKAGE)}")
+
+
+class EmulatedPico:
+    """A running Pico; `port` is its serial device, which anything that takes one can open.
+
+    bias_lsb: of the gyroscope of the chip on its bus, which rests. link: a path that becomes a
+    symbolic link to the port.
+    """
+
+    def __init__(self, parts: PicoParts, bias_lsb=(40, -25, 10), link: Path | None = None) -> None:
+        self._master, slave = pty.openpty()
+        tty.setraw(slave)
+        self.port = os.ttyname(slave)
+        os.close(slave)
+        if link is not None:
+            link.symlink_to(self.port)
+            self.port = str(link)
+        ours, theirs = socket.socketpair()
+        self._control = ours.makefile("rw", encoding="utf-8")
+        ours.close()
+        self._process = self._started(parts, list(bias_lsb), theirs)
+        for work in (self._to_board, self._from_board):
+            threading.Thread(target=work, daemon=True).start()
+
+    def _started(self, parts: PicoParts, bias: list[int], control: socket.socket):
+        options = {
+            "rp2040js": str(parts.package / "dist" / "esm" / "index.js"),
+            "bootrom": str(parts.bootrom),
+            "firmware": str(parts.firmware),
+            "bias": bias,
+            "control": control.fileno(),
+        }
+        command = [*node_command(), "--max-semi-space-size=32", str(_HERE / "pico.mjs")]
+        process = subprocess.Popen(
+            [*command, json.dumps(options)],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            bufsize=0,
+            pass_fds=[control.fileno()],
+        )
+        control.close()
+        return process
+
+    def __enter__(self) -> EmulatedPico:
+        return self
+
+    def __exit__(self, *exc) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Take it away: its port then fails."""
+        self._process.kill()
+        self._process.wait()
+        self._control.close()
+
+    def ask(self, command: str, **arguments):
+        """What the emulator answers to a command of pico.mjs."""
+        self._control.write(json.dumps({"do": command, **arguments}) + "\n")
+        self._control.flush()
+        return json.loads(self._control.readline())
+
+    def cut_power_after(self, operations: int) -> None:
+        """Cut the power in the middle of a flash operation, after so many whole ones."""
+        self.ask("cut", after=operations)
+
+    def give(self, data: bytes) -> None:
+        """Let programs on the board take data through the window."""
+        self.ask("deck", bytes=base64.b64encode(data).decode())
+
+    def taken(self) -> bytes:
+        """What programs on the board have put through the window since the last call."""
+        return base64.b64decode(self.ask("pile"))
+
+    def _to_board(self) -> None:
+        while self._process.poll() is None:
+            try:
+                data = os.read(self._master, 4096)
+                self._process.stdin.write(data)
+            except OSError as error:
+                if error.errno != errno.EIO:  # which says that nobody has the port open
+                    return
+                time.sleep(0.02)
+
+    def _from_board(self) -> None:
+        poll = select.poll()
+        poll.register(self._master, select.POLLHUP)
+        while data := self._process.stdout.read(4096):
+            if not poll.poll(0):  # else nobody listens, and a board drops what it says
+                os.write(self._master, data)
