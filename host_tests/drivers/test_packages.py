@@ -5,7 +5,6 @@ import os
 import re
 import subprocess
 import sys
-from pathlib import PurePosixPath
 
 import pytest
 from zerorate_tools import __version__

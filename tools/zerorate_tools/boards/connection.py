@@ -7,7 +7,6 @@ from contextlib import contextmanager
 
 from ..errors import MissingLibrary, ZerorateError
 
-
 # A board's own programs and a busy machine between them may take long to answer.
 _PATIENCE_S = 30
 

@@ -66,7 +66,7 @@ def part_files(parts: Iterable[str]) -> dict[PurePosixPath, Path]:
             continue
         path = module_file(module)
         found[module] = path
-        waiting += [name for name in _imports(path, module)]
+        waiting += _imports(path, module)
     return dict(sorted((_on_board(path), path) for path in found.values()))
 
 

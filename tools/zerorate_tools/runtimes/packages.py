@@ -21,7 +21,7 @@ def locked_version(source: Path, package: str) -> str:
 
 
 def install(source: Path, folder: Path, package: str) -> None:
-    """Install what source's lock file pins into folder unless it is there. Raises MissingRuntime."""
+    """Install into folder what source has locked, unless it is there. Raises MissingRuntime."""
     node_command()
     fill(folder, lambda draft: _npm_install(source, draft, package))
 
