@@ -6,7 +6,7 @@ from binascii import a2b_base64
 try:
     from binascii import crc32
 except ImportError:
-    crc32 = None
+    crc32 = None  # type: ignore[assignment]
 
 
 def is_folder(path):
