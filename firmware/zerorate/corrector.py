@@ -9,9 +9,6 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from .model import EffectModel
-    from .store import Store
-
 # words of the state that applications and tools may read
 OUT_Q8 = 55
 EFFECT_Q8 = 61
@@ -238,7 +235,7 @@ class Corrector:
         if effects is not None and effects.attend:
             effects.attend(self.state, self.settings, effects.e)
 
-    def use_model(self, effects: "EffectModel") -> None:
+    def use_model(self, effects: "Any") -> None:
         """Correct by an effect model (model.EffectModel, loaded) before anything is learned."""
         from .effect_kernels import effects as kernels
 
@@ -246,7 +243,7 @@ class Corrector:
         self.effects = effects
         self.alone = False
 
-    def load(self, store: "Store") -> int:
+    def load(self, store: "Any") -> int:
         """Begin a power-on with what `store` holds; returns its reason, 0 if it was loaded.
 
         store: a store.Store of `4 * len(corrector.state)` bytes. Anything but 0 leaves a clean
@@ -257,7 +254,7 @@ class Corrector:
             self.power_on()
         return reason
 
-    def save(self, store: "Store") -> bool:
+    def save(self, store: "Any") -> bool:
         """Write what was learned to `store`; False when that failed."""
         return store.save(self.state)
 

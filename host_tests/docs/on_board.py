@@ -1,45 +1,42 @@
 """Runs a board's program on MicroPython's unix port as if the board had a chip, fast.
 
-Arguments: the program's file, seconds of samples. Chip, INT pin and clock are fakes; the program
-ends when the samples do. Prints what the program prints.
+Arguments: the program's file, seconds until the board is switched off, pins of SCL, SDA and INT
+(-1: INT is not wired). Chip, pins and clock are fakes. Prints what the program prints.
 """
 
 import sys
 
 import zerorate_i2c.clock
-from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050
+from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050, Physical
 from zerorate_fakes.pins import BusWires, InterruptPin
 
-
-def resting(count):
-    """Samples of a device at rest with a bias of 40, -25 and 10 LSB, then the end."""
-    state = 1
-    for _ in range(count):
-        noise = []
-        for _ in range(7):
-            total = 0
-            for _ in range(4):
-                state = (state * 75 + 74) % 65537
-                total += state % 9
-            noise.append(total - 16)
-        yield (
-            5 * noise[0],
-            5 * noise[1],
-            16384 + 5 * noise[2],
-            -3000 + noise[3] // 4,
-            40 + noise[4],
-            -25 + noise[5],
-            10 + noise[6],
-        )
-    raise SystemExit
+BIAS_DPS = (0.31, -0.19, 0.08)
+program = sys.argv[1]
+end_s, scl, sda, interrupt = [int(word) for word in sys.argv[2:6]]
 
 
-chip = FakeMPU6050(resting(int(sys.argv[2]) * 100))
+def at_rest(seconds):
+    """The rates of a device at rest, until it is switched off."""
+    if seconds > end_s:
+        raise SystemExit
+    return BIAS_DPS
+
+
+chip = FakeMPU6050(Physical(gyro_dps=at_rest))
 bus = FakeI2C(chip)
 wires = BusWires(bus)
 clock = FakeClock(chip)
 for name in ("ticks_us", "ticks_diff", "ticks_add", "sleep_ms"):
     setattr(zerorate_i2c.clock, name, getattr(clock, name))
+
+
+class Unwired:
+    """A pin to which nothing is wired."""
+
+    IRQ_RISING = 1
+
+    def irq(self, handler, trigger):
+        """Nothing comes."""
 
 
 class Machine:
@@ -49,13 +46,24 @@ class Machine:
         IN, OPEN_DRAIN = 0, 1
 
         def __new__(cls, number, mode=None, value=None):
-            return {4: wires.sda, 5: wires.scl}.get(number) or InterruptPin(chip)
+            pins = {scl: wires.scl, sda: wires.sda, interrupt: InterruptPin(chip)}
+            return pins.get(number) or Unwired()
 
     @staticmethod
     def I2C(number, scl=None, sda=None, freq=100000):
+        assert scl is wires.scl and sda is wires.sda, "other pins than those of the board"
         return bus
 
 
 sys.modules["machine"] = Machine
-with open(sys.argv[1]) as file:
+if interrupt < 0:
+
+    def give_up(milliseconds):
+        """Half a minute without a pulse is long enough."""
+        clock.advance_us(1000 * milliseconds)
+        if clock.now_us > 1000000 * end_s:
+            raise SystemExit
+
+    zerorate_i2c.clock.sleep_ms = give_up
+with open(program) as file:
     exec(file.read(), {"__name__": "__main__"})

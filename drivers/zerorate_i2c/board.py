@@ -1,0 +1,21 @@
+"""An MPU-6050 on the pins of a MicroPython board: the one place that says how it is wired."""
+
+import sys
+
+from machine import I2C, Pin
+
+from .bus_recovery import free_bus
+from .mpu6050 import MPU6050
+
+
+def setup(scl, sda, bus=None, freq=400000, **options):
+    """An MPU6050 on the pins scl and sda, by number or name; options are MPU6050's.
+
+    bus: number of the I2C peripheral (default: the one that has these pins on a Pico, else 0).
+    SDA is freed first where a chip holds it low. Raises OSError and ValueError as MPU6050 does.
+    """
+    wires = [Pin(pin, Pin.OPEN_DRAIN, value=1) for pin in (scl, sda)]
+    free_bus(wires[0], wires[1])
+    if bus is None:
+        bus = sda // 2 % 2 if sys.platform == "rp2" else 0
+    return MPU6050(I2C(bus, scl=wires[0], sda=wires[1], freq=freq), **options)

@@ -1,0 +1,20 @@
+"""Five wires: each sample is read as INT announces it and corrected within a millisecond."""
+
+from array import array
+
+from machine import Pin
+from zerorate import Corrector, Sensor
+from zerorate.checked import CheckedCorrector
+from zerorate_i2c.board import setup
+from zerorate_i2c.data_ready import DataReady
+
+imu = setup(scl=5, sda=4)
+ready = DataReady(imu, Pin(6, Pin.IN))
+corrector = CheckedCorrector(Corrector(Sensor(*imu.scales)))
+sample = array("i", [0] * 7)
+while True:
+    if not ready.wait(1000):
+        print("no pulse on INT for a second: is it wired to GP6? With four wires take main.py")
+        imu.doubt(True)  # or the chip lost its power for a moment: it is set up again
+    if corrector.update(sample, ready.dt_us, imu.read(sample)):
+        print(sample[4], sample[5], sample[6])  # rates in LSB, their bias taken off

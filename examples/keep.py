@@ -1,0 +1,43 @@
+"""Four wires: what is learned is kept in a file that survives a power cut."""
+
+from array import array
+
+from zerorate import Corrector, Sensor
+from zerorate.bias import ANY_TEMPERATURE
+from zerorate.checked import CheckedCorrector
+from zerorate.learned_store import LearnedStore
+from zerorate.save_schedule import SaveSchedule
+from zerorate.storage import FileStorage
+from zerorate.store import REASONS
+from zerorate_i2c.board import setup
+from zerorate_i2c.fifo import EMPTY, Fifo
+
+imu = setup(scl=5, sda=4)
+learned = Corrector(Sensor(*imu.scales))
+store = LearnedStore(FileStorage("learned.bin"), imu.binding, learned)
+print(REASONS[store.load()])
+corrector = CheckedCorrector(learned)
+schedule = SaveSchedule(store, 3, tolerance=13)  # 0.1 dps at 131 LSB/dps
+sample = array("i", [0] * 7)
+bias_lsb = array("i", [0] * 3)
+fifo = Fifo(imu)
+elapsed_ms = 0
+while True:
+    try:
+        status = fifo.read(sample)
+    except OSError as error:  # the bus has failed for good: forget what came since the last check
+        print("bus:", error)
+        corrector.take_back()
+        imu.clock.sleep_ms(1000)
+        continue
+    if status == EMPTY:
+        imu.clock.sleep_ms(10)
+        continue
+    if corrector.update(sample, fifo.dt_us, status):
+        pass  # sample[4], sample[5] and sample[6] are the rates without their bias: use them here
+    elapsed_ms += fifo.dt_us // 1000
+    for axis in range(3):
+        if learned.source(axis) > ANY_TEMPERATURE:  # learned, and not of this rest alone
+            bias_lsb[axis] = round(learned.bias_lsb(axis))
+    if schedule.offer(learned.state, bias_lsb, elapsed_ms // 1000):
+        print("kept")

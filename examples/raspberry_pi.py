@@ -1,0 +1,50 @@
+"""A Linux board: once a second the rates before and after; what is learned is kept in a file."""
+
+import time
+from array import array
+
+from zerorate import Corrector, Sensor
+from zerorate.bias import ANY_TEMPERATURE
+from zerorate.checked import CheckedCorrector
+from zerorate.learned_store import LearnedStore
+from zerorate.save_schedule import SaveSchedule
+from zerorate.storage import FileStorage
+from zerorate.store import REASONS
+from zerorate_i2c.fifo import EMPTY, Fifo
+from zerorate_i2c.linux import LinuxI2C
+from zerorate_i2c.mpu6050 import MPU6050
+
+imu = MPU6050(LinuxI2C(1), odr_hz=100)
+learned = Corrector(Sensor(*imu.scales))
+store = LearnedStore(FileStorage("learned.bin"), imu.binding, learned)
+print(REASONS[store.load()])
+corrector = CheckedCorrector(learned)
+schedule = SaveSchedule(store, 3, tolerance=13)  # 0.1 dps at 131 LSB/dps
+bias_lsb = array("i", [0] * 3)
+fifo = Fifo(imu)
+sample = array("i", [0] * 7)
+seconds = 0
+sums = [0] * 6
+count = 0
+while True:
+    status = fifo.read(sample)
+    if status == EMPTY:
+        time.sleep(0.02)
+        continue
+    raw = sample[4:7]
+    if corrector.update(sample, fifo.dt_us, status):
+        count += 1
+        for axis in range(3):
+            sums[axis] += raw[axis]
+            sums[3 + axis] += sample[4 + axis]
+    if count == imu.odr_hz:
+        means_dps = [value / count / imu.gyro_lsb_per_dps for value in sums]
+        rates = "before {:+.3f} {:+.3f} {:+.3f}  after {:+.3f} {:+.3f} {:+.3f} dps"
+        print(rates.format(*means_dps))
+        sums = [0] * 6
+        count = 0
+        seconds += 1
+        for axis in range(3):
+            if learned.source(axis) > ANY_TEMPERATURE:  # learned, and not of this rest alone
+                bias_lsb[axis] = round(learned.bias_lsb(axis))
+        schedule.offer(learned.state, bias_lsb, seconds)

@@ -1,0 +1,148 @@
+"""Every program of the documents on boards is an example, and every example does what it says."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050, Physical
+from zerorate_fakes.smbus import SMBus
+
+HERE = Path(__file__).parent
+#: Examples that each document shows, in their order.
+SHOWN = {
+    "faults.md": [],
+    "wiring.md": [],
+    "pico.md": ["main.py", "keep.py", "interrupt.py", "pins.py"],
+    "raspberry-pi.md": ["raspberry_pi.py"],
+}
+BIAS_DPS = [0.31, -0.19, 0.08]
+LINE = r"before (\S+) (\S+) (\S+)  after (\S+) (\S+) (\S+) dps"
+
+
+def snippets(repository, document, language="python"):
+    text = (repository / "docs" / document).read_text()
+    return re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)
+
+
+@pytest.mark.parametrize("document", SHOWN)
+def test_every_program_of_a_document_is_an_example(repository, document):
+    shown = [(repository / "examples" / name).read_text() for name in SHOWN[document]]
+    assert snippets(repository, document) == shown
+
+
+def test_every_example_on_boards_is_shown_somewhere(repository):
+    shown = {name for names in SHOWN.values() for name in names}
+    assert {path.name for path in (repository / "examples").glob("*.py")} == shown
+
+
+def rows(printed):
+    """(n, 6) numbers of the lines that an example prints once a second."""
+    return [[float(word) for word in found] for found in re.findall(LINE, printed)]
+
+
+def takes_the_bias_off(printed):
+    before, after = rows(printed)[0], rows(printed)[-1]
+    assert before[:3] == pytest.approx(BIAS_DPS, abs=0.02)
+    assert after[:3] == pytest.approx(BIAS_DPS, abs=0.02)
+    assert after[3:] == pytest.approx([0, 0, 0], abs=0.02)
+
+
+@pytest.fixture
+def run(repository, find_runtime):
+    """run(example, files, scl, sda, interrupt, seconds) -> the result on a board at rest."""
+
+    def run(example, files=(), scl=5, sda=4, interrupt=6, seconds=30):
+        text = (repository / "examples" / example).read_bytes()
+        return find_runtime("x86").run(
+            HERE / "on_board.py",
+            ["main.py", seconds, scl, sda, interrupt],
+            modules=[repository / folder for folder in ("firmware", "drivers", "host_tests/fakes")],
+            files_in={"main.py": text, **dict(files)},
+            files_out=["learned.bin"],
+            check=True,
+        )
+
+    return run
+
+
+class TestOnABoard:
+    def test_four_wires_show_the_rates_before_and_after(self, run):
+        result = run("main.py", interrupt=-1)
+        assert len(rows(result.stdout)) == 29, result.stderr
+        takes_the_bias_off(result.stdout)
+
+    def test_what_was_learned_is_kept_over_a_power_cut(self, run):
+        first = run("keep.py", interrupt=-1)
+        assert first.stdout.splitlines()[:2] == ["nothing was ever stored", "kept"], first.stderr
+        second = run("keep.py", {"learned.bin": first.files["learned.bin"]}, interrupt=-1)
+        assert second.stdout.splitlines()[0] == "loaded", second.stderr
+
+    def test_with_int_every_sample_is_corrected(self, run):
+        printed = run("interrupt.py").stdout.splitlines()
+        rates = [[int(word) for word in line.split()] for line in printed]
+        assert len(rates) > 2900
+        last = [sum(row[axis] for row in rates[-500:]) / 500 for axis in range(3)]
+        assert last == pytest.approx([0, 0, 0], abs=1)
+
+    def test_without_int_it_says_what_is_missing(self, run):
+        result = run("interrupt.py", interrupt=-1)
+        assert "no pulse on INT" in result.stdout and "take main.py" in result.stdout
+
+    def test_other_pins_are_said_once(self, run):
+        assert run("pins.py", scl=22, sda=21).stdout == ""
+
+
+def test_on_linux_it_goes_on_with_what_was_learned(repository, monkeypatch, capsys, tmp_path):
+    smbus2 = pytest.importorskip("smbus2")
+
+    def power_on(seconds):
+        def at_rest(now):
+            if now > seconds:
+                raise KeyboardInterrupt
+            return BIAS_DPS
+
+        chip = FakeMPU6050(Physical(gyro_dps=at_rest))
+        clock = FakeClock(chip)
+        monkeypatch.setattr(smbus2, "SMBus", lambda number: SMBus(FakeI2C(chip)))
+        monkeypatch.setattr("time.sleep", lambda seconds: clock.advance_us(int(seconds * 1e6)))
+        for name in ("ticks_us", "ticks_diff", "ticks_add", "sleep_ms"):
+            monkeypatch.setattr(f"zerorate_i2c.clock.{name}", getattr(clock, name))
+        with pytest.raises(KeyboardInterrupt):
+            exec((repository / "examples" / "raspberry_pi.py").read_text(), {})
+        return capsys.readouterr().out
+
+    monkeypatch.chdir(tmp_path)
+    first, second = power_on(40), power_on(5)
+    assert first.startswith("nothing was ever stored")
+    takes_the_bias_off(first)
+    assert second.startswith("loaded")
+    assert rows(second)[0][3:] == pytest.approx([0, 0, 0], abs=0.02)
+
+
+@pytest.fixture
+def unit_tests(repository, tmp_path):
+    """The files that the page on unit tests shows, in a folder of their own."""
+    for text in snippets(repository, "unit-tests.md", "python"):
+        (tmp_path / text.split("\n")[0].removeprefix("# ")).write_text(text)
+    (tmp_path / "pytest.ini").write_text("[pytest]\n")
+    return tmp_path
+
+
+def in_folder(folder, *words):
+    """What a command of this environment does in `folder`, which knows nothing of this project."""
+    command = [sys.executable, "-m", *words]
+    return subprocess.run(command, capture_output=True, text=True, cwd=folder)
+
+
+def test_the_snippets_for_pytest_pass(unit_tests):
+    plugin = ["-p", "zerorate_fakes.pytest_plugin"]
+    done = in_folder(unit_tests, "pytest", "-q", *plugin, "-p", "no:cacheprovider")
+    assert done.returncode == 0, done.stdout
+    assert "7 passed" in done.stdout
+
+
+def test_a_typed_test_passes_the_strict_type_check(unit_tests):
+    done = in_folder(unit_tests, "mypy", "--strict", "test_recording.py")
+    assert done.returncode == 0, done.stdout
