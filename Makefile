@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PYTEST_ARGS ?= -n auto
 
-.PHONY: demo test lint typecheck typecheck-tools pytest viper docs lock wasm runtimes node wheel clean
+.PHONY: demo test lint typecheck typecheck-tools pytest layout viper docs lock wasm runtimes node wheel clean
 
 demo: $(VENV)/.tools wasm  ## the whole job on built-in input, no hardware
 	$(BIN)/zerorate demo
@@ -19,7 +19,7 @@ lint: $(VENV)/.dev
 # Kernel files are checked as their viper twins, where ptr8 and ptr32 mean something.
 TWINS := $(wildcard firmware/zerorate/viper/*.py)
 KERNELS := $(shell grep -lE '^ptr(8|32) = None' firmware/zerorate/*.py)
-BOARD := $(sort $(TWINS) $(filter-out $(KERNELS),$(wildcard firmware/zerorate/*.py)) \
+BOARD := $(sort $(TWINS) $(filter-out $(KERNELS) %/layout.py,$(wildcard firmware/zerorate/*.py)) \
 	$(filter-out %/linux.py,$(wildcard drivers/zerorate_i2c/*.py)))
 
 typecheck: $(VENV)/.dev $(VENV)/.board-stubs
@@ -31,7 +31,10 @@ typecheck-tools: $(VENV)/.dev  ## the host tools
 pytest: $(VENV)/.dev runtimes
 	$(BIN)/python -m pytest $(PYTEST_ARGS)
 
-viper: $(VENV)/.dev  ## write firmware/zerorate/viper from the kernel files
+layout: $(VENV)/.dev  ## write the constants of firmware/zerorate/layout.py where they are used
+	$(BIN)/python -m host_tests.layout
+
+viper: layout  ## write firmware/zerorate/viper from the kernel files
 	$(BIN)/python -m zerorate_tools.viper_twins firmware/zerorate
 	$(BIN)/python -m zerorate_tools.boards.manifests
 	$(BIN)/python -m zerorate_tools.bench.c_program host_tests/yardstick/yardstick.c

@@ -17,6 +17,7 @@ ptr32 = None
 
 from .atan2 import atan2_q13
 
+# layout: The state of the source in motion
 _HALF = const(19)
 _REAL = const(22)
 _Q = const(25)
@@ -28,6 +29,7 @@ _START_X = const(30)
 _START_Y = const(31)
 _START_Z = const(32)
 _R = const(33)
+# layout: end
 
 _ONE_Q14 = const(0x4000)
 

@@ -17,27 +17,32 @@ ptr32 = None
 from .estimators import find
 from .fit import line_q8
 
+# layout: An axis
+_LINE_LOW_Q4 = const(19)
+_LINE_HIGH_Q4 = const(20)
+_LINE_SAMPLES = const(21)
+_LINE_POINTS = const(22)
+_BEYOND = const(29)
+_KIND = const(30)
+_ESTIMATORS = const(32)
+# layout: An estimator
+_EST_BIAS_Q8 = const(2)
+_EST_READINGS = const(3)
+# layout: The corrector's settings
+_LITERAL = const(21)
+_ENOUGH_TO_FIT = const(31)
+_STABLE = const(34)
+_SHARE_Q8 = const(35)
+_BEYOND_Q4 = const(36)
+_EVERY = const(46)
+# layout: Where a bias comes from
 NONE = const(0)
 ANY_TEMPERATURE = const(1)
 FIT = const(2)
 HERE = const(3)
 IN_MOTION = const(4)
 ACCELEROMETER = const(5)
-
-_FIT_LOW_Q4 = const(19)
-_FIT_HIGH_Q4 = const(20)
-_FIT_SAMPLES = const(21)
-_FIT_POINTS = const(22)
-_BEYOND = const(29)
-_KIND = const(30)
-_ESTIMATORS = const(32)
-
-_LITERAL = const(21)
-_ENOUGH = const(31)
-_STABLE = const(34)
-_SHARE_Q8 = const(35)
-_BEYOND_Q4 = const(36)
-_EVERY = const(46)
+# layout: end
 
 
 def choose(s: ptr32, c: ptr32, a: int, temp: int) -> int:
@@ -45,20 +50,20 @@ def choose(s: ptr32, c: ptr32, a: int, temp: int) -> int:
     s[a + _BEYOND] = 0
     e = find(s, c, a, temp)
     if e > 0:
-        e = s[e + 3]
-        if e >= c[_STABLE] and e >= (s[a + _FIT_SAMPLES] >> 8) * c[_SHARE_Q8]:
+        e = s[e + _EST_READINGS]
+        if e >= c[_STABLE] and e >= (s[a + _LINE_SAMPLES] >> 8) * c[_SHARE_Q8]:
             return HERE
-    if s[a + _FIT_POINTS]:
+    if s[a + _LINE_POINTS]:
         e = (temp << 4) + c[_BEYOND_Q4]
-        if e < s[a + _FIT_LOW_Q4]:
+        if e < s[a + _LINE_LOW_Q4]:
             s[a + _BEYOND] = 1
         e = (temp << 4) - c[_BEYOND_Q4]
-        if e > s[a + _FIT_HIGH_Q4]:
+        if e > s[a + _LINE_HIGH_Q4]:
             s[a + _BEYOND] = 1
         return FIT
-    e = s[a + _ESTIMATORS + 3]
+    e = s[a + _ESTIMATORS + _EST_READINGS]
     # by the document it must be stable; a vetted rest is worth something from the first on
-    if e >= c[_ENOUGH] or (e > 0 and c[_EVERY] == 0):
+    if e >= c[_ENOUGH_TO_FIT] or (e > 0 and c[_EVERY] == 0):
         return ANY_TEMPERATURE
     return NONE
 
@@ -70,14 +75,14 @@ def curve_q8(s: ptr32, c: ptr32, a: int, temp: int) -> int:  # inline
     its neighbours, through the local line, which also knows how the bias changes within a degree.
     """
     kind = choose(s, c, a, temp)
-    if kind == HERE and c[_LITERAL] == 0 and s[a + _FIT_POINTS]:
+    if kind == HERE and c[_LITERAL] == 0 and s[a + _LINE_POINTS]:
         kind = FIT
     s[a + _KIND] = kind
     if kind == NONE:
         return 0
     if kind == HERE:
         kind = find(s, c, a, temp)
-        return s[kind + 2]
+        return s[kind + _EST_BIAS_Q8]
     if kind == ANY_TEMPERATURE:
-        return s[a + _ESTIMATORS + 2]
+        return s[a + _ESTIMATORS + _EST_BIAS_Q8]
     return line_q8(s, a, temp << 4)

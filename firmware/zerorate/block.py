@@ -27,30 +27,34 @@ ptr32 = None
 from .step import step
 from .stillness import gather
 
-_COUNT = const(8)
+# layout: The corrector's state
+_FRAME = const(0)
+_COUNTS = const(8)
 _ELAPSED_US = const(16)
-_N = const(17)
+_WINDOW_N = const(17)
 _DIRTY = const(18)
 _REFERENCE = const(19)
-_SUM = const(26)
+_WINDOW_SUM = const(26)
 _SQUARE_ACCEL = const(33)
 _SQUARE_GYRO = const(35)
-_PHASE = const(53)
+_WORK = const(53)
 _OUT_Q8 = const(55)
 _CARRY_Q8 = const(58)
 _EFFECT_Q8 = const(61)
-_EFFECT_SUM = const(64)
+_EFFECT_SUM_Q8 = const(64)
 _TARGET_Q8 = const(67)
 _SQUARE_STEP = const(76)
-_LAST = const(77)
-
-_AT = const(7)  # the word of f at which the next frame begins
-_END = const(8)  # and that behind the last one
-
+_LAST_RATE = const(77)
+# layout: The corrector's settings
 _LEAP_US = const(1)
 _JUMP_LSB = const(2)
 _WINDOW = const(3)
 _EVERY = const(46)
+# layout: end
+
+_AT = const(7)  # the word of f at which the next frame begins
+_END = const(8)  # and that behind the last one
+
 
 _MOST_US = const(0x1FFFFFFF)
 _MOST_LEAP_US = const(0x1FFFFF)  # a window of them and _MOST_US fit 31 bits
@@ -64,25 +68,25 @@ def stretch(s: ptr32, c: ptr32, r: ptr32) -> int:
     None while anything but a plain reading is to be done: work waits, the correction is on its way
     to its target, every reading is learned or published for its temperature.
     """
-    if s[_PHASE] or c[_EVERY] or c[_WINDOW] == 4 or c[_LEAP_US] > _MOST_LEAP_US:
+    if s[_WORK] or c[_EVERY] or c[_WINDOW] == 4 or c[_LEAP_US] > _MOST_LEAP_US:
         return 0
-    if s[_COUNT] == 0 or s[_COUNT] > _NEARLY_MOST_COUNT:
+    if s[_COUNTS] == 0 or s[_COUNTS] > _NEARLY_MOST_COUNT:
         return 0
     if s[_OUT_Q8] != s[_TARGET_Q8] or s[_OUT_Q8 + 1] != s[_TARGET_Q8 + 1]:
         return 0
     if s[_OUT_Q8 + 2] != s[_TARGET_Q8 + 2]:
         return 0
-    i = c[_WINDOW] - 1 - s[_N]
+    i = c[_WINDOW] - 1 - s[_WINDOW_N]
     n = (r[_END] - r[_AT]) >> 3
     return i if i < n else n
 
 
 def plain(s: ptr32, f: ptr32, c: ptr32, p: int) -> int:
     """Return 1 if the frame at word p of f is a good reading at one look."""
-    d = f[p + 4] - s[3]
+    d = f[p + 4] - s[_FRAME + 3]
     if f[p] <= 0 or f[p] > c[_LEAP_US] or d >= c[_JUMP_LSB] or d <= -c[_JUMP_LSB]:
         return 0
-    if f[p + 5] == s[4] and f[p + 6] == s[5] and f[p + 7] == s[6]:
+    if f[p + 5] == s[_FRAME + 4] and f[p + 6] == s[_FRAME + 5] and f[p + 7] == s[_FRAME + 6]:
         return 0  # a repeat, perhaps
     if f[p + 5] == f[p + 6] and f[p + 6] == f[p + 7]:
         return 0  # all zeros or all ones, perhaps
@@ -106,9 +110,9 @@ def edge(s: ptr32, f: ptr32, c: ptr32, r: ptr32, k: int) -> int:  # inline
         i = 0
         while i < 7:
             r[i] = f[p + 1 + i]
-            s[i] = r[i]
+            s[_FRAME + i] = r[i]
             i += 1
-        s[_COUNT] += 1
+        s[_COUNTS] += 1
         i = s[_ELAPSED_US] + f[p]
         s[_ELAPSED_US] = i if i < _MOST_US else _MOST_US
     if k:
@@ -127,12 +131,12 @@ def edge(s: ptr32, f: ptr32, c: ptr32, r: ptr32, k: int) -> int:  # inline
 
 def account(s: ptr32, f: ptr32, p: int, taken: int, elapsed_us: int):
     """Count the frames before word p of f that were taken; the last one is the frame before."""
-    s[0] = f[p - 7]
-    s[1] = f[p - 6]
-    s[2] = f[p - 5]
-    s[3] = f[p - 4]
-    s[_COUNT] += taken
-    s[_N] += taken
+    s[_FRAME] = f[p - 7]
+    s[_FRAME + 1] = f[p - 6]
+    s[_FRAME + 2] = f[p - 5]
+    s[_FRAME + 3] = f[p - 4]
+    s[_COUNTS] += taken
+    s[_WINDOW_N] += taken
     elapsed_us += s[_ELAPSED_US]
     s[_ELAPSED_US] = elapsed_us if elapsed_us < _MOST_US else _MOST_US
 
@@ -140,7 +144,7 @@ def account(s: ptr32, f: ptr32, p: int, taken: int, elapsed_us: int):
 def take(s: ptr32, f: ptr32, c: ptr32, r: ptr32):
     """Take frames at one look each, up to the window's last or to one that is not plain."""
     left = stretch(s, c, r)
-    d = 1 if left and s[_N] == 0 else 0
+    d = 1 if left and s[_WINDOW_N] == 0 else 0
     n = edge(s, f, c, r, d)
     if d:
         left = left - 1 if n else 0
@@ -156,10 +160,10 @@ def take(s: ptr32, f: ptr32, c: ptr32, r: ptr32):
     # what is as near to the temperature before costs one comparison less
     near = 256 if c[_JUMP_LSB] > 256 else 0
     near_bits = 9 if near else 0
-    last_t = s[3]
-    last_x = s[4]
-    last_y = s[5]
-    last_z = s[6]
+    last_t = s[_FRAME + 3]
+    last_x = s[_FRAME + 4]
+    last_y = s[_FRAME + 5]
+    last_z = s[_FRAME + 6]
     ref_a = s[_REFERENCE]
     ref_b = s[_REFERENCE + 1]
     ref_c = s[_REFERENCE + 2]
@@ -167,13 +171,13 @@ def take(s: ptr32, f: ptr32, c: ptr32, r: ptr32):
     ref_x = s[_REFERENCE + 4]
     ref_y = s[_REFERENCE + 5]
     ref_z = s[_REFERENCE + 6]
-    sum_a = s[_SUM]
-    sum_b = s[_SUM + 1]
-    sum_c = s[_SUM + 2]
-    sum_t = s[_SUM + 3]
-    sum_x = s[_SUM + 4]
-    sum_y = s[_SUM + 5]
-    sum_z = s[_SUM + 6]
+    sum_a = s[_WINDOW_SUM]
+    sum_b = s[_WINDOW_SUM + 1]
+    sum_c = s[_WINDOW_SUM + 2]
+    sum_t = s[_WINDOW_SUM + 3]
+    sum_x = s[_WINDOW_SUM + 4]
+    sum_y = s[_WINDOW_SUM + 5]
+    sum_z = s[_WINDOW_SUM + 6]
     square_accel = s[_SQUARE_ACCEL]
     square_gyro = s[_SQUARE_GYRO]
     square_step = s[_SQUARE_STEP]
@@ -252,29 +256,29 @@ def take(s: ptr32, f: ptr32, c: ptr32, r: ptr32):
     elapsed_us += ((p - since) >> 3) * usual_us
     if n:
         account(s, f, p, n, elapsed_us)
-        s[4] = last_x
-        s[5] = last_y
-        s[6] = last_z
-        s[_SUM + 3] = sum_t
+        s[_FRAME + 4] = last_x
+        s[_FRAME + 5] = last_y
+        s[_FRAME + 6] = last_z
+        s[_WINDOW_SUM + 3] = sum_t
         s[_CARRY_Q8] = due_x + bias_x - 128
         s[_CARRY_Q8 + 1] = due_y + bias_y - 128
         s[_CARRY_Q8 + 2] = due_z + bias_z - 128
     if n and moving == 0:
-        s[_SUM] = sum_a
-        s[_SUM + 1] = sum_b
-        s[_SUM + 2] = sum_c
-        s[_SUM + 4] = sum_x
-        s[_SUM + 5] = sum_y
-        s[_SUM + 6] = sum_z
+        s[_WINDOW_SUM] = sum_a
+        s[_WINDOW_SUM + 1] = sum_b
+        s[_WINDOW_SUM + 2] = sum_c
+        s[_WINDOW_SUM + 4] = sum_x
+        s[_WINDOW_SUM + 5] = sum_y
+        s[_WINDOW_SUM + 6] = sum_z
         s[_SQUARE_ACCEL] = square_accel
         s[_SQUARE_GYRO] = square_gyro
         s[_SQUARE_STEP] = square_step
-        s[_LAST] = last_x - ref_x
-        s[_LAST + 1] = last_y - ref_y
-        s[_LAST + 2] = last_z - ref_z
+        s[_LAST_RATE] = last_x - ref_x
+        s[_LAST_RATE + 1] = last_y - ref_y
+        s[_LAST_RATE + 2] = last_z - ref_z
         i = 0
         while i < 3:
-            s[_EFFECT_SUM + i] += s[_EFFECT_Q8 + i] * n
+            s[_EFFECT_SUM_Q8 + i] += s[_EFFECT_Q8 + i] * n
             i += 1
     edge(s, f, c, r, left)
 
@@ -304,7 +308,7 @@ def block(s: ptr32, f: ptr32, c: ptr32, r: ptr32, n: int):
     r[_END] = n << 3
     while r[_AT] < r[_END]:
         n = r[_AT]
-        if s[_PHASE] == 0 and s[_N] < c[_WINDOW] - 1:
+        if s[_WORK] == 0 and s[_WINDOW_N] < c[_WINDOW] - 1:
             take(s, f, c, r)
         if r[_AT] == n:
             one(s, f, c, r)

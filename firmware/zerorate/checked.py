@@ -31,8 +31,9 @@ VERIFIED = const(1)
 RESTARTED = const(2)
 SUSPECT = const(3)
 
-# Words of the state that stay: the guard's last frame and its counts.
-_COUNTED = const(16)
+# layout: The corrector's state
+_ELAPSED_US = const(16)
+# layout: end
 
 
 class CheckedCorrector:
@@ -48,7 +49,7 @@ class CheckedCorrector:
         self.taken_back = 0
         self.refused = 0
         self._live = [corrector.state]
-        self._first = [_COUNTED, 0]
+        self._first = [_ELAPSED_US, 0]  # the guard's last frame and its counts stay
         if corrector.motion is not None:
             self._live.append(corrector.motion)
         self._kept = [array("i", state) for state in self._live]

@@ -5,20 +5,43 @@ from array import array
 from .kernels import VIPER, estimators, step
 from .settings import Sensor, settings
 
+try:
+    from micropython import const
+except ImportError:
+
+    def const(value):
+        return value
+
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-# words of the state that applications and tools may read
-OUT_Q8 = 55
-EFFECT_Q8 = 61
-QUALITY_Q8 = 70
-SOURCE = 73
-IN_MOTION = 4
-ACCELEROMETER = 5
-# words of the other sources' states
-MOTION_BIAS = 70
-LEVEL_BIAS = 28
+# layout: The corrector's state
+_OUT_Q8 = const(55)
+_EFFECT_Q8 = const(61)
+_QUALITY_Q8 = const(70)
+_SOURCE = const(73)
+# layout: An axis
+_WAITING_N = const(1)
+_OFFSET_Q8 = const(24)
+_OFFSET_VARIANCE_Q8 = const(25)
+_WALK_Q16 = const(26)
+_SUSPECT = const(27)
+_OFFSET_AGE_MS = const(28)
+_LINE_TEMP = const(31)
+# layout: The corrector's settings
+_AXES = const(0)
+_AXIS_WORDS = const(13)
+_TURN_ON_VARIANCE_Q8 = const(45)
+# layout: The state of the source in motion
+_MOTION_BIAS_Q8 = const(70)
+# layout: The state of the source against gravity
+_GRAVITY_BIAS_Q8 = const(28)
+# layout: Where a bias comes from
+_IN_MOTION = const(4)
+_ACCELEROMETER = const(5)
+# layout: end
 
 LIMITS = {
     "window_s": 0.5,
@@ -127,7 +150,7 @@ class Corrector:
             self._learn_by_level(document)
         walk_lsb = chosen["walk_dps"] * self.sensor.gyro_lsb_per_dps
         self._walk_q16 = max(1, int(walk_lsb * walk_lsb * 65536))
-        self.state = array("i", [0] * (c[0] + 3 * c[13]))
+        self.state = array("i", [0] * (c[_AXES] + 3 * c[_AXIS_WORDS]))
         self.reset()
 
     def _learn_in_motion(self, document, start_dps):
@@ -174,11 +197,11 @@ class Corrector:
         s = self.state
         c = self.settings
         for axis in range(3):
-            a = c[0] + axis * c[13]
-            for i in range(a, a + c[13]):
+            a = c[_AXES] + axis * c[_AXIS_WORDS]
+            for i in range(a, a + c[_AXIS_WORDS]):
                 s[i] = 0
             estimators.reset(s, c, a)
-            s[a + 26] = self._walk_q16
+            s[a + _WALK_Q16] = self._walk_q16
         self.power_on()
 
     def power_on(self) -> None:
@@ -188,16 +211,16 @@ class Corrector:
         if self.effects is not None:
             self.effects.power_on()
         self._forget_motion()
-        for i in range(c[0]):
+        for i in range(c[_AXES]):
             s[i] = 0
         for axis in range(3):
-            a = c[0] + axis * c[13]
-            s[a + 1] = 0
-            s[a + 24] >>= 1
-            s[a + 25] = c[45]
-            s[a + 27] = 0
-            s[a + 28] = 0
-            s[a + 31] = -32768
+            a = c[_AXES] + axis * c[_AXIS_WORDS]
+            s[a + _WAITING_N] = 0
+            s[a + _OFFSET_Q8] >>= 1
+            s[a + _OFFSET_VARIANCE_Q8] = c[_TURN_ON_VARIANCE_Q8]
+            s[a + _SUSPECT] = 0
+            s[a + _OFFSET_AGE_MS] = 0
+            s[a + _LINE_TEMP] = -32768
 
     def update(self, sample: "array[int]", dt_us: int) -> int:
         """Learn from `sample` and correct its rates in place; allocates nothing.
@@ -227,10 +250,12 @@ class Corrector:
     def _ask_others(self, sample, dt_us):
         if self.motion is not None:
             if self._observe_motion(self.motion, self.motion_settings, sample, dt_us):
-                step.consider(self.state, self.settings, self.motion, MOTION_BIAS, IN_MOTION)
+                step.consider(self.state, self.settings, self.motion, _MOTION_BIAS_Q8, _IN_MOTION)
         if self.level is not None:
             if self._observe_level(self.level, self.level_settings, sample, dt_us):
-                step.consider(self.state, self.settings, self.level, LEVEL_BIAS, ACCELEROMETER)
+                step.consider(
+                    self.state, self.settings, self.level, _GRAVITY_BIAS_Q8, _ACCELEROMETER
+                )
         effects = self.effects
         if effects is not None and effects.attend:
             effects.attend(self.state, self.settings, effects.e)
@@ -260,15 +285,15 @@ class Corrector:
 
     def bias_lsb(self, axis: int) -> float:
         """Return what is subtracted from that axis now, LSB."""
-        return (self.state[OUT_Q8 + axis] + self.state[EFFECT_Q8 + axis]) / 256
+        return (self.state[_OUT_Q8 + axis] + self.state[_EFFECT_Q8 + axis]) / 256
 
     def quality_lsb(self, axis: int) -> float:
         """Return the one-sigma uncertainty of that axis' bias, LSB."""
-        return self.state[QUALITY_Q8 + axis] / 256
+        return self.state[_QUALITY_Q8 + axis] / 256
 
     def source(self, axis: int) -> int:
         """Return where that axis' bias comes from: a constant of bias.py."""
-        return self.state[SOURCE + axis]
+        return self.state[_SOURCE + axis]
 
     def explain(self) -> str:
         """Return a sentence or two on what is being learned, or why nothing is."""

@@ -3,7 +3,7 @@
 Order: clamp, centre, delay, [power first], lag or memory, knot, table or power, second source,
 decay.
 The tool scales each slot so that no stage leaves +-1 (2^24), and 1 stands for the largest value
-that the fitted range allows. Words of a slot: see model.py.
+that the fitted range allows. Words of a slot: docs/layout.md.
 """
 
 try:
@@ -19,46 +19,60 @@ ptr32 = None
 
 from .fixed import scaled
 
-_NONE = const(-0x3FFFFFFF)
-_ONE = const(0x1000000)
+# layout: An effect slot
+_SLOT_SOURCE = const(0)
+_SLOT_LOWEST_Q8 = const(1)
+_SLOT_HIGHEST_Q8 = const(2)
+_SLOT_CENTRE_Q8 = const(3)
+_SLOT_SHIFT = const(4)
+_SLOT_POWER = const(5)
+_SLOT_POWER_FIRST = const(6)
+_SLOT_MEMORY = const(7)
+_SLOT_LAG = const(8)
+_SLOT_HALF_WIDTH = const(10)
+_SLOT_KNOT = const(11)
+_SLOT_SECOND = const(12)
+_SLOT_DECAY = const(17)
+_SLOT_TABLE = const(19)
+_SLOT_TABLE_FIRST = const(20)
+_SLOT_TABLE_SCALE = const(21)
+_SLOT_COEFFICIENT_SHIFT = const(23)
+_SLOT_COEFFICIENT = const(24)
+_SLOT_RING = const(27)
+_SLOT_DELAY = const(28)
+_SLOT_RING_STEP = const(29)
+_SLOT_STARTED = const(34)
+_SLOT_STATE = const(35)
+_SLOT_DECAYED = const(37)
+_SLOT_VALUE = const(39)
+# layout: A delay's ring
+_RING_NEWEST = const(0)
+_RING_AGE = const(1)
+_RING_KEPT = const(2)
+# layout: An effect slot's memory
+_MEMORY_LAG = const(1)
+_MEMORY_RATE = const(3)
+_MEMORY_BACKLASH = const(4)
+# layout: Values that stand for none
+_NO_VALUE = const(-0x3FFFFFFF)
+# layout: end
+_ONE_Q24 = const(0x1000000)
 
-_POWER = const(5)
-_POWER_FIRST = const(6)
-_MEMORY = const(7)
-_LAG = const(8)
-_HALF_WIDTH = const(10)
-_KNOT = const(11)
-_SECOND = const(12)
-_DECAY = const(17)
-_TABLE = const(19)
-_COEFFICIENT_SHIFT = const(23)
-_COEFFICIENT = const(24)
-_RING = const(27)
-_DELAY = const(28)
-_STEP = const(29)
-_STARTED = const(34)
-_STATE = const(35)
-_DECAYED = const(37)
-_VALUE = const(39)
 
-_KEPT = const(64)
-
-_LAGGED = const(1)
-_RATE = const(3)
-_BACKLASH = const(4)
+_RING_LENGTH = const(64)
 
 
 def centred(e: ptr32, f: int) -> int:
     """Return the source at field f, held within its fitted range, less its centre, in Q24."""
-    u = e[e[f]]
-    if u == _NONE:
-        return _NONE
-    if u < e[f + 1]:
-        u = e[f + 1]
-    elif u > e[f + 2]:
-        u = e[f + 2]
-    u -= e[f + 3]
-    f = e[f + 4]
+    u = e[e[f + _SLOT_SOURCE]]
+    if u == _NO_VALUE:
+        return _NO_VALUE
+    if u < e[f + _SLOT_LOWEST_Q8]:
+        u = e[f + _SLOT_LOWEST_Q8]
+    elif u > e[f + _SLOT_HIGHEST_Q8]:
+        u = e[f + _SLOT_HIGHEST_Q8]
+    u -= e[f + _SLOT_CENTRE_Q8]
+    f = e[f + _SLOT_SHIFT]
     if f < 0:
         return u >> (0 - f)
     return u << f
@@ -69,27 +83,27 @@ def delayed(e: ptr32, a: int, u: int) -> int:
 
     The ring keeps one of so many ticks; between two a straight line is taken.
     """
-    ring = e[a + _RING]
-    if e[a + _STARTED] == 0:
-        e[ring] = 0
-        e[ring + 1] = 0
-        while e[ring] < _KEPT:
-            e[ring + 2 + e[ring]] = u
-            e[ring] += 1
-        e[ring] = 0
-    elif e[ring + 1] == 0:
-        e[ring] = (e[ring] + 1) & 63
-        e[ring + 2 + e[ring]] = u
-    u = e[a + _DELAY] - e[ring + 1]
-    e[ring + 1] = (e[ring + 1] + 1) % e[a + _STEP]
-    a = e[a + _STEP]
+    ring = e[a + _SLOT_RING]
+    if e[a + _SLOT_STARTED] == 0:
+        e[ring + _RING_NEWEST] = 0
+        e[ring + _RING_AGE] = 0
+        while e[ring + _RING_NEWEST] < _RING_LENGTH:
+            e[ring + _RING_KEPT + e[ring + _RING_NEWEST]] = u
+            e[ring + _RING_NEWEST] += 1
+        e[ring + _RING_NEWEST] = 0
+    elif e[ring + _RING_AGE] == 0:
+        e[ring + _RING_NEWEST] = (e[ring + _RING_NEWEST] + 1) & 63
+        e[ring + _RING_KEPT + e[ring + _RING_NEWEST]] = u
+    u = e[a + _SLOT_DELAY] - e[ring + _RING_AGE]
+    e[ring + _RING_AGE] = (e[ring + _RING_AGE] + 1) % e[a + _SLOT_RING_STEP]
+    a = e[a + _SLOT_RING_STEP]
     return between(e, ring, u // a, u % a, a)
 
 
 def between(e: ptr32, ring: int, back: int, part: int, step: int) -> int:
     """Return what the ring kept so many steps back, and a part of a step farther back."""
-    u = e[ring + 2 + ((e[ring] - back) & 63)]
-    d = e[ring + 2 + ((e[ring] - back - 1) & 63)] - u
+    u = e[ring + _RING_KEPT + ((e[ring + _RING_NEWEST] - back) & 63)]
+    d = e[ring + _RING_KEPT + ((e[ring + _RING_NEWEST] - back - 1) & 63)] - u
     if d < 0:
         return u - ((((0 - d) >> 4) * part // step) << 4)
     return u + (((d >> 4) * part // step) << 4)
@@ -123,23 +137,23 @@ def approach(e: ptr32, z: int, f: int, u: int):
 
 def start(e: ptr32, a: int, u: int):
     """Begin the slot's memory at its first tick of the power-on."""
-    e[a + _STARTED] = 1
-    e[a + _STATE] = u
-    e[a + _STATE + 1] = 0
-    e[a + _DECAYED] = _ONE
-    e[a + _DECAYED + 1] = 0
+    e[a + _SLOT_STARTED] = 1
+    e[a + _SLOT_STATE] = u
+    e[a + _SLOT_STATE + 1] = 0
+    e[a + _SLOT_DECAYED] = _ONE_Q24
+    e[a + _SLOT_DECAYED + 1] = 0
 
 
 def remembered(e: ptr32, a: int, u: int) -> int:
     """Return u with the slot's lag or memory: see model.term of the tools, the float reference."""
-    kind = e[a + _MEMORY]
-    a += _STATE
-    if kind <= _RATE:
-        approach(e, a, a - _STATE + _LAG, u)
-        return e[a] if kind == _LAGGED else u - e[a]
+    kind = e[a + _SLOT_MEMORY]
+    a += _SLOT_STATE
+    if kind <= _MEMORY_RATE:
+        approach(e, a, a - _SLOT_STATE + _SLOT_LAG, u)
+        return e[a] if kind == _MEMORY_LAG else u - e[a]
     p = e[a]
-    if kind == _BACKLASH:
-        kind = e[a - _STATE + _HALF_WIDTH]
+    if kind == _MEMORY_BACKLASH:
+        kind = e[a - _SLOT_STATE + _SLOT_HALF_WIDTH]
         if p < u - kind:
             p = u - kind
         elif p > u + kind:
@@ -152,11 +166,11 @@ def remembered(e: ptr32, a: int, u: int) -> int:
 
 def looked_up(e: ptr32, a: int, v: int) -> int:
     """Return what the slot's table of nine equally spaced points says at v, held at its ends."""
-    table = e[a + _TABLE]
-    v = scaled(v - e[a + _TABLE + 1], e[a + _TABLE + 2], e[a + _TABLE + 3])
+    table = e[a + _SLOT_TABLE]
+    v = scaled(v - e[a + _SLOT_TABLE_FIRST], e[a + _SLOT_TABLE_SCALE], e[a + _SLOT_TABLE_SCALE + 1])
     if v <= 0:
         return e[table]
-    if v >= 8 * _ONE:
+    if v >= 8 * _ONE_Q24:
         return e[table + 8]
     table += v >> 24
     return e[table] + scaled(e[table + 1] - e[table], v & 0xFFFFFF, 24)
@@ -165,38 +179,39 @@ def looked_up(e: ptr32, a: int, v: int) -> int:
 def basis(e: ptr32, a: int) -> int:
     """Run the slot at word a for a tick; return its value in Q24, 0 while a source is unknown."""
     v = centred(e, a)
-    w = _ONE
-    if e[a + _SECOND]:
-        w = centred(e, a + _SECOND)
-    if v == _NONE or w == _NONE:
+    w = _ONE_Q24
+    if e[a + _SLOT_SECOND]:
+        w = centred(e, a + _SLOT_SECOND)
+    if v == _NO_VALUE or w == _NO_VALUE:
         return 0
-    if e[a + _RING]:
+    if e[a + _SLOT_RING]:
         v = delayed(e, a, v)
-    if e[a + _POWER_FIRST]:
-        v = power(v, e[a + _POWER])
-    if e[a + _STARTED] == 0:
+    if e[a + _SLOT_POWER_FIRST]:
+        v = power(v, e[a + _SLOT_POWER])
+    if e[a + _SLOT_STARTED] == 0:
         start(e, a, v)
-    if e[a + _MEMORY]:
+    if e[a + _SLOT_MEMORY]:
         v = remembered(e, a, v)
-    if e[a + _KNOT] != _NONE:
-        v -= e[a + _KNOT]
+    if e[a + _SLOT_KNOT] != _NO_VALUE:
+        v -= e[a + _SLOT_KNOT]
         if v < 0:
             v = 0
-    if e[a + _TABLE]:
+    if e[a + _SLOT_TABLE]:
         v = looked_up(e, a, v)
-    elif e[a + _POWER_FIRST] == 0:
-        v = power(v, e[a + _POWER])
-    if e[a + _SECOND]:
+    elif e[a + _SLOT_POWER_FIRST] == 0:
+        v = power(v, e[a + _SLOT_POWER])
+    if e[a + _SLOT_SECOND]:
         v = scaled(v, w, 24)
-    if e[a + _DECAY]:
-        v = scaled(v, e[a + _DECAYED], 24)
-        approach(e, a + _DECAYED, a + _DECAY, 0)
+    if e[a + _SLOT_DECAY]:
+        v = scaled(v, e[a + _SLOT_DECAYED], 24)
+        approach(e, a + _SLOT_DECAYED, a + _SLOT_DECAY, 0)
     return v
 
 
 def contribute(e: ptr32, a: int, to: int):
     """Add the slot's value times its coefficients to three sums in Q14 LSB."""
-    add_times(e, e[a + _VALUE], a + _COEFFICIENT, e[a + _COEFFICIENT_SHIFT], to)
+    shift = e[a + _SLOT_COEFFICIENT_SHIFT]
+    add_times(e, e[a + _SLOT_VALUE], a + _SLOT_COEFFICIENT, shift, to)
 
 
 def add_times(e: ptr32, v: int, a: int, shift: int, to: int):

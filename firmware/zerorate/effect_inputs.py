@@ -1,6 +1,6 @@
 """The sources of the effect slots: means over a tick of what the samples and the application say.
 
-A source's value is in Q8 of its integer. Words of an input: see model.py.
+A source's value is in Q8 of its integer. Words of an input: docs/layout.md.
 """
 
 try:
@@ -14,28 +14,33 @@ except ImportError:
 ptr32 = None
 
 
-_NONE = const(-0x3FFFFFFF)
-
+# layout: The effect model and its running state
+_INPUT_COUNT = const(1)
+_HALF_TICKS = const(7)
 _SLOW_Q8 = const(20)
 _SQUARES = const(23)
-_SHAKEN = const(25)
-_HALF_TICKS = const(7)
-
-_SHIFT = const(1)
-_OFFSET = const(2)
-_SUM = const(3)
-_N = const(4)
-_VALUE = const(5)
-_WORDS = const(6)
+_SLOW_BEGUN = const(25)
 _INPUTS = const(32)
-_COUNT = const(1)
+_CHANNELS = const(104)
+# layout: An input of the effect model
+_INPUT_KIND = const(0)
+_INPUT_SHIFT = const(1)
+_INPUT_OFFSET = const(2)
+_INPUT_SUM = const(3)
+_INPUT_N = const(4)
+_INPUT_VALUE_Q8 = const(5)
+_INPUT_WORDS = const(6)
+# layout: Sources of effects: an acceleration, the temperature, a mean rate, ..., a channel
+_KIND_VIBRATION = const(7)
+_KIND_TIME = const(8)
+_KIND_INSTANT = const(10)
+_KIND_CHANNEL = const(16)
+# layout: Values that stand for none
+_NO_VALUE = const(-0x3FFFFFFF)
+# layout: end
 
-_VIBRATION = const(7)
-_TIME = const(8)
-_INSTANT = const(10)
-_EXTRA = const(16)
-_EXTRAS = const(104)
-_MOST = const(16383)
+
+_MOST_SAMPLES = const(16383)
 
 
 def shake(e: ptr32, x: ptr32):
@@ -47,7 +52,7 @@ def shake(e: ptr32, x: ptr32):
     i = 0
     while i < 3:
         d = x[i] << 8
-        slow = e[_SLOW_Q8 + i] if e[_SHAKEN] else d
+        slow = e[_SLOW_Q8 + i] if e[_SLOW_BEGUN] else d
         slow += (d - slow + 16) >> 5
         e[_SLOW_Q8 + i] = slow
         d = (d - slow + 128) >> 8
@@ -55,22 +60,22 @@ def shake(e: ptr32, x: ptr32):
             d = 18900
         total += d * d
         i += 1
-    e[_SHAKEN] = 1
+    e[_SLOW_BEGUN] = 1
     e[_SQUARES] += total & 0x7FFF
     e[_SQUARES + 1] += total >> 15
 
 
 def extra(e: ptr32, a: int) -> int:
-    """Return what the application last said of the input's channel, in 16 bits, or _NONE."""
-    v = e[_EXTRAS + e[a] - _EXTRA]
-    if v == _NONE:
-        return _NONE
+    """Return what the application last said of the input's channel, in 16 bits, or _NO_VALUE."""
+    v = e[_CHANNELS + e[a + _INPUT_KIND] - _KIND_CHANNEL]
+    if v == _NO_VALUE:
+        return _NO_VALUE
     if v > 0x1FFFFFFF:
         v = 0x1FFFFFFF
     elif v < -0x1FFFFFFF:
         v = -0x1FFFFFFF
-    v -= e[a + _OFFSET]
-    a = e[a + _SHIFT]
+    v -= e[a + _INPUT_OFFSET]
+    a = e[a + _INPUT_SHIFT]
     if a > 0:
         v = v >> a
         a = 0
@@ -85,25 +90,25 @@ def extra(e: ptr32, a: int) -> int:
 def accumulate(e: ptr32, x: ptr32):
     """Add the frame x, and the application's channels, to the tick."""
     a = _INPUTS
-    end = a + _WORDS * e[_COUNT]
+    end = a + _INPUT_WORDS * e[_INPUT_COUNT]
     while a < end:
-        v = e[a]
-        if v >= _EXTRA:
+        v = e[a + _INPUT_KIND]
+        if v >= _KIND_CHANNEL:
             v = extra(e, a)
-        elif v >= _INSTANT:
-            e[a + _VALUE] = x[(v - _INSTANT + 4) % 7] << 8
-            v = _NONE
-        elif v < _VIBRATION:
+        elif v >= _KIND_INSTANT:
+            e[a + _INPUT_VALUE_Q8] = x[(v - _KIND_INSTANT + 4) % 7] << 8
+            v = _NO_VALUE
+        elif v < _KIND_VIBRATION:
             v = x[v]
-        elif v == _VIBRATION:
+        elif v == _KIND_VIBRATION:
             shake(e, x)
             v = 0
         else:
-            v = _NONE
-        if v != _NONE and e[a + _N] < _MOST:
-            e[a + _SUM] += v
-            e[a + _N] += 1
-        a += _WORDS
+            v = _NO_VALUE
+        if v != _NO_VALUE and e[a + _INPUT_N] < _MOST_SAMPLES:
+            e[a + _INPUT_SUM] += v
+            e[a + _INPUT_N] += 1
+        a += _INPUT_WORDS
 
 
 def mean_q8(total: int, n: int) -> int:
@@ -131,29 +136,29 @@ def mean_square_q8(e: ptr32, n: int, shift: int) -> int:
 def close_tick(e: ptr32):
     """Turn the sums of the tick into the values of the sources; those without samples stay."""
     a = _INPUTS
-    end = a + _WORDS * e[_COUNT]
+    end = a + _INPUT_WORDS * e[_INPUT_COUNT]
     while a < end:
-        if e[a + _N]:
-            if e[a] == _VIBRATION:
-                e[a + _VALUE] = mean_square_q8(e, e[a + _N], e[a + _SHIFT])
+        if e[a + _INPUT_N]:
+            if e[a + _INPUT_KIND] == _KIND_VIBRATION:
+                e[a + _INPUT_VALUE_Q8] = mean_square_q8(e, e[a + _INPUT_N], e[a + _INPUT_SHIFT])
             else:
-                e[a + _VALUE] = mean_q8(e[a + _SUM], e[a + _N])
-        e[a + _SUM] = 0
-        e[a + _N] = 0
-        a += _WORDS
+                e[a + _INPUT_VALUE_Q8] = mean_q8(e[a + _INPUT_SUM], e[a + _INPUT_N])
+        e[a + _INPUT_SUM] = 0
+        e[a + _INPUT_N] = 0
+        a += _INPUT_WORDS
 
 
 def tell_time(e: ptr32):
     """Give the source that is the time since power-on the middle of the tick, in half ticks."""
     a = _INPUTS
-    end = a + _WORDS * e[_COUNT]
+    end = a + _INPUT_WORDS * e[_INPUT_COUNT]
     while a < end:
-        if e[a] == _TIME:
-            shift = e[a + _SHIFT]
+        if e[a + _INPUT_KIND] == _KIND_TIME:
+            shift = e[a + _INPUT_SHIFT]
             if e[_HALF_TICKS] >> shift > 32767:
-                e[a + _VALUE] = 0x7FFFFF
+                e[a + _INPUT_VALUE_Q8] = 0x7FFFFF
             elif shift > 8:
-                e[a + _VALUE] = e[_HALF_TICKS] >> (shift - 8)
+                e[a + _INPUT_VALUE_Q8] = e[_HALF_TICKS] >> (shift - 8)
             else:
-                e[a + _VALUE] = e[_HALF_TICKS] << (8 - shift)
-        a += _WORDS
+                e[a + _INPUT_VALUE_Q8] = e[_HALF_TICKS] << (8 - shift)
+        a += _INPUT_WORDS

@@ -4,7 +4,7 @@ A Kalman filter (R. E. Kalman, 1960) whose state is, for each axis, an offset th
 line over temperature, and how far each slot's coefficient is from the model's; the three axes have
 one covariance. It is told each still segment's rate less what the model's own effects say, so
 neither the turn-on offset nor the line is taken for an effect. No coefficient leaves the model's
-own by more than the bound. Numbers are those of real.py; words of `e`: see model.py.
+own by more than the bound. Numbers are those of real.py; words of `e`: docs/layout.md.
 """
 
 try:
@@ -20,46 +20,52 @@ ptr32 = None
 
 from .real import add, divide, multiply, put, subtract, whole
 
-_ON = const(26)
-_BOUND_EIGHTHS = const(27)
-
-_N = const(17)
-_TOTALS = const(42)
+# layout: The corrector's state
+_WINDOW_N = const(17)
+_SEGMENT_TOTAL = const(42)
 _STILLNESS = const(46)
 _TEMP = const(47)
-_SEGMENT = const(48)
-_SHIFT_OF_WINDOW = const(4)
-_SEGMENTS = const(5)
-
-_PHASE = const(582)
+_SEGMENT_WINDOWS = const(48)
+# layout: The corrector's settings
+_WINDOW_SHIFT = const(4)
+_SEGMENT = const(5)
+# layout: The effect model and its running state
+_REFINE_ON = const(26)
+_BOUND_EIGHTHS = const(27)
+_SLOTS = const(112)
+_REFINE_WORK = const(582)
 _STATES = const(583)
 _RATE_Q8 = const(584)
 _FIRST_TEMP = const(587)
 _SEEN = const(588)
-_A = const(590)
-_B = const(592)
-_S = const(594)
-_ERROR = const(596)
-_PHI = const(602)
-_GAIN = const(622)
+_REFINE_A = const(590)
+_REFINE_B = const(592)
+_INNOVATION = const(594)
+_MISS = const(596)
+_REGRESSORS = const(602)
+_REFINE_GAIN = const(622)
 _THETA = const(642)
-_P = const(702)
-_ROW = const(20)
-
-_SLOT = const(112)
-_WORDS = const(40)
-_SHIFT = const(23)
-_COEFFICIENT = const(24)
-_OWN = const(30)
-_INSTANT = const(33)
+_REFINE_P = const(702)
+# layout: An effect slot
+_SLOT_COEFFICIENT_SHIFT = const(23)
+_SLOT_COEFFICIENT = const(24)
+_SLOT_OWN = const(30)
+_SLOT_INSTANT = const(33)
+_SLOT_VALUE = const(39)
+_SLOT_WORDS = const(40)
+# layout: What of the sample itself a slot follows
 _OF_RATE = const(1)
-_VALUE = const(39)
+# layout: end
+
+
+_REFINE_ROW = const(20)
+
 
 _WARM_UP = const(64)
 _MOST_RATE = const(0x1FFFFF)
 # exponents of 2: variance of a segment's mean and of the offset's walk a segment, LSB^2
-_NOISE = const(-2)
-_WALK = const(-10)
+_NOISE_EXPONENT = const(-2)
+_WALK_EXPONENT = const(-10)
 
 
 def mean_q8(total: int, n: int) -> int:
@@ -78,32 +84,32 @@ def observe(s: ptr32, e: ptr32, n: int):
 
     Nothing happens where refinement is off or the segment before is still at work in `refine`.
     """
-    if e[_ON] == 0 or e[_PHASE]:
+    if e[_REFINE_ON] == 0 or e[_REFINE_WORK]:
         return
     if e[_SEEN] == 0:
         e[_FIRST_TEMP] = s[_TEMP]
-    put(e, _PHI, 1, 0)
+    put(e, _REGRESSORS, 1, 0)
     i = s[_TEMP] - e[_FIRST_TEMP]
-    put(e, _PHI + 2, i, -8)
+    put(e, _REGRESSORS + 2, i, -8)
     i = 0
     while i < 3:
-        e[_RATE_Q8 + i] = mean_q8(s[_TOTALS + i], n)
+        e[_RATE_Q8 + i] = mean_q8(s[_SEGMENT_TOTAL + i], n)
         i += 1
     i = 2
     while i < e[_STATES]:
-        n = _SLOT + (i - 2) * _WORDS
-        put(e, _PHI + 2 * i, e[n + _VALUE], -24)
-        if e[n + _INSTANT] == _OF_RATE:
-            put(e, _PHI + 2 * i, 0, 0)
+        n = _SLOTS + (i - 2) * _SLOT_WORDS
+        put(e, _REGRESSORS + 2 * i, e[n + _SLOT_VALUE], -24)
+        if e[n + _SLOT_INSTANT] == _OF_RATE:
+            put(e, _REGRESSORS + 2 * i, 0, 0)
         i += 1
-    e[_PHASE] = 1
+    e[_REFINE_WORK] = 1
 
 
 def attend(s: ptr32, c: ptr32, e: ptr32):
     """After a good frame: take the still segment that it has completed, or go on with the last."""
-    if s[_N] == 0 and s[_STILLNESS] == 1 and s[_SEGMENT] == 0:
-        observe(s, e, c[_SEGMENTS] << c[_SHIFT_OF_WINDOW])
-    elif e[_PHASE]:
+    if s[_WINDOW_N] == 0 and s[_STILLNESS] == 1 and s[_SEGMENT_WINDOWS] == 0:
+        observe(s, e, c[_SEGMENT] << c[_WINDOW_SHIFT])
+    elif e[_REFINE_WORK]:
         refine(e)
 
 
@@ -112,8 +118,8 @@ def product(e: ptr32, to: int, a: int, b: int):
     put(e, to, 0, 0)
     i = e[_STATES]
     while i > 0:
-        multiply(e, _A, a, b)
-        add(e, to, to, _A)
+        multiply(e, _REFINE_A, a, b)
+        add(e, to, to, _REFINE_A)
         a += 2
         b += 2
         i -= 1
@@ -121,49 +127,49 @@ def product(e: ptr32, to: int, a: int, b: int):
 
 def miss(e: ptr32, axis: int):
     """Note by how much the axis' rate, with the learned effects, misses what the filter says."""
-    i = _THETA + axis * _ROW
-    product(e, _B, i, _PHI)
-    put(e, _A, e[_RATE_Q8 + axis], -8)
-    i = _ERROR + 2 * axis
-    subtract(e, i, _A, _B)
+    i = _THETA + axis * _REFINE_ROW
+    product(e, _REFINE_B, i, _REGRESSORS)
+    put(e, _REFINE_A, e[_RATE_Q8 + axis], -8)
+    i = _MISS + 2 * axis
+    subtract(e, i, _REFINE_A, _REFINE_B)
     restore(e, axis, i)
 
 
 def put_learned(e: ptr32, a: int, axis: int):
-    """Store at _A how far the slot's coefficient is from the model's own, LSB at a value of 1."""
-    m = e[a + _COEFFICIENT + axis]
-    m -= e[a + _OWN + axis]
-    a = 10 - e[a + _SHIFT]
-    put(e, _A, m, a)
+    """Store at _REFINE_A how far the slot's coefficient is from the model's own, in LSB."""
+    m = e[a + _SLOT_COEFFICIENT + axis]
+    m -= e[a + _SLOT_OWN + axis]
+    a = 10 - e[a + _SLOT_COEFFICIENT_SHIFT]
+    put(e, _REFINE_A, m, a)
 
 
 def restore(e: ptr32, axis: int, to: int):
     """Add at `to` what the learned part of the axis' coefficients has taken from the rate."""
-    a = _SLOT
-    i = _PHI + 4
-    while i < _PHI + 2 * e[_STATES]:
+    a = _SLOTS
+    i = _REGRESSORS + 4
+    while i < _REGRESSORS + 2 * e[_STATES]:
         put_learned(e, a, axis)
-        multiply(e, _A, _A, i)
-        add(e, to, to, _A)
-        a += _WORDS
+        multiply(e, _REFINE_A, _REFINE_A, i)
+        add(e, to, to, _REFINE_A)
+        a += _SLOT_WORDS
         i += 2
 
 
 def believe(e: ptr32, i: int):
     """Let state i of each axis, and its row of the covariance, learn from the misses."""
-    divide(e, _B, _GAIN + 2 * i, _S)
+    divide(e, _REFINE_B, _REFINE_GAIN + 2 * i, _INNOVATION)
     axis = 0
     while axis < 3:
-        multiply(e, _A, _B, _ERROR + 2 * axis)
-        at = _THETA + axis * _ROW + 2 * i
-        add(e, at, at, _A)
+        multiply(e, _REFINE_A, _REFINE_B, _MISS + 2 * axis)
+        at = _THETA + axis * _REFINE_ROW + 2 * i
+        add(e, at, at, _REFINE_A)
         axis += 1
-    at = _P + i * _ROW
+    at = _REFINE_P + i * _REFINE_ROW
     i = 0
     while i < e[_STATES]:
-        multiply(e, _A, _B, _GAIN + 2 * i)
-        put(e, _A, -e[_A], e[_A + 1])
-        add(e, at, at, _A)
+        multiply(e, _REFINE_A, _REFINE_B, _REFINE_GAIN + 2 * i)
+        put(e, _REFINE_A, -e[_REFINE_A], e[_REFINE_A + 1])
+        add(e, at, at, _REFINE_A)
         at += 2
         i += 1
 
@@ -173,7 +179,7 @@ def bound(e: ptr32, a: int) -> int:
     most = 0
     i = 0
     while i < 3:
-        m = e[a + _OWN + i]
+        m = e[a + _SLOT_OWN + i]
         if m < 0:
             m = -m
         if m > most:
@@ -186,7 +192,7 @@ def move(e: ptr32, a: int, state: int):
     """Set the slot's coefficients to the model's own plus what was learned, within the bound."""
     most = bound(e, a)
     state = _THETA + 2 * state
-    shift = e[a + _SHIFT] - 10
+    shift = e[a + _SLOT_COEFFICIENT_SHIFT] - 10
     i = 3
     while i > 0:
         d = whole(e, state, shift)
@@ -194,28 +200,28 @@ def move(e: ptr32, a: int, state: int):
             d = most
         elif d < 0 - most:
             d = 0 - most
-        e[a + _COEFFICIENT] = e[a + _OWN] + d
+        e[a + _SLOT_COEFFICIENT] = e[a + _SLOT_OWN] + d
         a += 1
-        state += _ROW
+        state += _REFINE_ROW
         i -= 1
 
 
 def refine(e: ptr32):
     """Do the next piece of learning from the latest segment; nothing when all is done."""
     n = e[_STATES]
-    i = e[_PHASE] - 1
+    i = e[_REFINE_WORK] - 1
     if i < 0:
         return
-    e[_PHASE] += 1
+    e[_REFINE_WORK] += 1
     if i < n:
         if i == 0:
-            put(e, _A, 1, _WALK)
-            add(e, _P, _P, _A)
-        product(e, _GAIN + 2 * i, _P + i * _ROW, _PHI)
+            put(e, _REFINE_A, 1, _WALK_EXPONENT)
+            add(e, _REFINE_P, _REFINE_P, _REFINE_A)
+        product(e, _REFINE_GAIN + 2 * i, _REFINE_P + i * _REFINE_ROW, _REGRESSORS)
     elif i == n:
-        product(e, _S, _GAIN, _PHI)
-        put(e, _A, 1, _NOISE)
-        add(e, _S, _S, _A)
+        product(e, _INNOVATION, _REFINE_GAIN, _REGRESSORS)
+        put(e, _REFINE_A, 1, _NOISE_EXPONENT)
+        add(e, _INNOVATION, _INNOVATION, _REFINE_A)
     elif i < n + 4:
         miss(e, i - n - 1)
     elif i < 2 * n + 4:
@@ -223,35 +229,35 @@ def refine(e: ptr32):
     else:
         i = 2
         while i < n and e[_SEEN] >= _WARM_UP:
-            move(e, _SLOT + (i - 2) * _WORDS, i)
+            move(e, _SLOTS + (i - 2) * _SLOT_WORDS, i)
             i += 1
-        e[_PHASE] = 0
+        e[_REFINE_WORK] = 0
         if e[_SEEN] < 0xFFFF:
             e[_SEEN] += 1
 
 
 def renew(e: ptr32):
     """Begin a power-on: the offset is as unknown as at first, all else is kept."""
-    e[_PHASE] = 0
+    e[_REFINE_WORK] = 0
     e[_SEEN] = 0
     i = 0
     while i < e[_STATES]:
-        put(e, _P + 2 * i, 0, 0)
-        put(e, _P + i * _ROW, 0, 0)
+        put(e, _REFINE_P + 2 * i, 0, 0)
+        put(e, _REFINE_P + i * _REFINE_ROW, 0, 0)
         i += 1
-    put(e, _P, 1, 24)
+    put(e, _REFINE_P, 1, 24)
     i = 0
     while i < 3:
-        put(e, _THETA + i * _ROW, 0, 0)
+        put(e, _THETA + i * _REFINE_ROW, 0, 0)
         i += 1
 
 
 def doubt(e: ptr32, a: int, p: int):
     """Store at p the variance of the slot's coefficients: the bound is one sigma."""
     m = bound(e, a)
-    a = 10 - e[a + _SHIFT]
-    put(e, _A, m, a)
-    multiply(e, p, _A, _A)
+    a = 10 - e[a + _SLOT_COEFFICIENT_SHIFT]
+    put(e, _REFINE_A, m, a)
+    multiply(e, p, _REFINE_A, _REFINE_A)
 
 
 def begin(e: ptr32, slots: int):
@@ -263,11 +269,11 @@ def begin(e: ptr32, slots: int):
         i += 1
     i = 0
     while i < 100:
-        put(e, _P + 2 * i, 0, 0)
+        put(e, _REFINE_P + 2 * i, 0, 0)
         i += 1
-    put(e, _P + _ROW + 2, 1, 6)
+    put(e, _REFINE_P + _REFINE_ROW + 2, 1, 6)
     i = 0
     while i < slots:
-        doubt(e, _SLOT + i * _WORDS, _P + (i + 2) * (_ROW + 2))
+        doubt(e, _SLOTS + i * _SLOT_WORDS, _REFINE_P + (i + 2) * (_REFINE_ROW + 2))
         i += 1
     renew(e)

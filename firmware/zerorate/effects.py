@@ -3,7 +3,7 @@
 Slots are computed once a tick (1 s) on the means of the tick, one slot a sample, so that no sample
 waits for all of them; what depends on the rate or the acceleration itself, which a hand moves
 faster than a tick, is computed for every sample. One array `e` holds the model and its running
-state: see model.py for its words.
+state: docs/layout.md has its words.
 """
 
 try:
@@ -21,30 +21,35 @@ from .effect_basis import basis, contribute
 from .effect_inputs import accumulate, close_tick, tell_time
 from .effect_plays import play
 
-_SLOTS = const(0)
+# layout: The corrector's state
+_EFFECT_Q8 = const(61)
+# layout: The effect model and its running state
+_SLOT_COUNT = const(0)
 _TICK_US = const(2)
-_ELAPSED_US = const(3)
-_PENDING = const(4)
-_PHASE = const(5)
-_PIECES = const(6)
+_TICK_ELAPSED_US = const(3)
+_TICKS_DUE = const(4)
+_NEXT_SLOT = const(5)
+_SLOTS_A_SAMPLE = const(6)
 _HALF_TICKS = const(7)
 _RUNNING = const(8)
 _INSTANT_SLOTS = const(9)
 _SUM_Q14 = const(10)
 _HELD_Q14 = const(13)
 _NOW_Q14 = const(16)
-_PLAYS = const(19)
-
-_SLOT = const(112)
-_WORDS = const(40)
-_INSTANT = const(33)
-_STARTED = const(34)
-_VALUE = const(39)
-_PLAY = const(902)
-_PLAY_WORDS = const(15)
+_PLAY_COUNT = const(19)
+_SLOTS = const(112)
+_PLAYS = const(902)
+# layout: An effect slot
+_SLOT_INSTANT = const(33)
+_SLOT_STARTED = const(34)
+_SLOT_VALUE = const(39)
+_SLOT_WORDS = const(40)
+# layout: A play operator
 _PLAY_STARTED = const(13)
+_PLAY_WORDS = const(15)
+# layout: end
 
-_EFFECT_Q8 = const(61)
+
 _MOST_PENDING = const(4096)
 _MOST_TICKS = const(0x1FFFF000)
 
@@ -59,16 +64,16 @@ def pass_time(e: ptr32, dt_us: int):
         return
     if dt_us <= 0:
         return
-    dt_us += e[_ELAPSED_US]
+    dt_us += e[_TICK_ELAPSED_US]
     if dt_us < e[_TICK_US]:
-        e[_ELAPSED_US] = dt_us
+        e[_TICK_ELAPSED_US] = dt_us
         return
-    e[_ELAPSED_US] = dt_us % e[_TICK_US]
-    dt_us = e[_PENDING] + dt_us // e[_TICK_US]
+    e[_TICK_ELAPSED_US] = dt_us % e[_TICK_US]
+    dt_us = e[_TICKS_DUE] + dt_us // e[_TICK_US]
     if dt_us > _MOST_PENDING:
         e[_HALF_TICKS] += (dt_us - _MOST_PENDING) << 1
         dt_us = _MOST_PENDING
-    e[_PENDING] = dt_us
+    e[_TICKS_DUE] = dt_us
     close_tick(e)
 
 
@@ -78,7 +83,7 @@ def begin_early(e: ptr32, x: ptr32):
     Else a rest within that tick would be learned with all that the model explains.
     """
     e[_RUNNING] = 2
-    e[_PENDING] += 1
+    e[_TICKS_DUE] += 1
     close_tick(e)
     accumulate(e, x)
 
@@ -87,19 +92,19 @@ def begin_again(e: ptr32):
     """Forget the early tick: time and memories begin with the first whole one."""
     e[_RUNNING] = 3
     e[_HALF_TICKS] = 1
-    i = e[_SLOTS]
+    i = e[_SLOT_COUNT]
     while i > 0:
         i -= 1
-        e[_SLOT + i * _WORDS + _STARTED] = 0
-    i = e[_PLAYS]
+        e[_SLOTS + i * _SLOT_WORDS + _SLOT_STARTED] = 0
+    i = e[_PLAY_COUNT]
     while i > 0:
         i -= 1
-        e[_PLAY + i * _PLAY_WORDS + _PLAY_STARTED] = 0
+        e[_PLAYS + i * _PLAY_WORDS + _PLAY_STARTED] = 0
 
 
 def run_slot(e: ptr32):
     """Compute the tick's next slot or play operator; behind the last one hold the sum."""
-    i = e[_PHASE]
+    i = e[_NEXT_SLOT]
     if i == 0:
         tell_time(e)
         if e[_HALF_TICKS] < _MOST_TICKS:
@@ -107,23 +112,23 @@ def run_slot(e: ptr32):
         e[_SUM_Q14] = 0
         e[_SUM_Q14 + 1] = 0
         e[_SUM_Q14 + 2] = 0
-    if i < e[_SLOTS]:
-        a = _SLOT + i * _WORDS
-        if e[a + _INSTANT] == 0:
-            e[a + _VALUE] = basis(e, a)
+    if i < e[_SLOT_COUNT]:
+        a = _SLOTS + i * _SLOT_WORDS
+        if e[a + _SLOT_INSTANT] == 0:
+            e[a + _SLOT_VALUE] = basis(e, a)
             contribute(e, a, _SUM_Q14)
     else:
-        play(e, _PLAY + (i - e[_SLOTS]) * _PLAY_WORDS)
+        play(e, _PLAYS + (i - e[_SLOT_COUNT]) * _PLAY_WORDS)
     i += 1
-    if i == e[_SLOTS] + e[_PLAYS]:
+    if i == e[_SLOT_COUNT] + e[_PLAY_COUNT]:
         i = 0
-        e[_PENDING] -= 1
+        e[_TICKS_DUE] -= 1
         if e[_RUNNING] == 2:
             begin_again(e)
         e[_HELD_Q14] = e[_SUM_Q14]
         e[_HELD_Q14 + 1] = e[_SUM_Q14 + 1]
         e[_HELD_Q14 + 2] = e[_SUM_Q14 + 2]
-    e[_PHASE] = i
+    e[_NEXT_SLOT] = i
 
 
 def add_instant(e: ptr32, good: int):
@@ -131,13 +136,13 @@ def add_instant(e: ptr32, good: int):
 
     In a frame that is no reading acceleration is taken as it was; what the rate was says nothing.
     """
-    a = _SLOT
-    i = e[_SLOTS]
+    a = _SLOTS
+    i = e[_SLOT_COUNT]
     while i > 0:
-        if e[a + _INSTANT] + good > 1:
-            e[a + _VALUE] = basis(e, a)
+        if e[a + _SLOT_INSTANT] + good > 1:
+            e[a + _SLOT_VALUE] = basis(e, a)
             contribute(e, a, _NOW_Q14)
-        a += _WORDS
+        a += _SLOT_WORDS
         i -= 1
 
 
@@ -152,8 +157,8 @@ def sense(s: ptr32, e: ptr32, x: ptr32, dt_us: int, good: int):
         accumulate(e, x)
         if e[_RUNNING] == 1:
             begin_early(e, x)
-    dt_us = e[_PIECES]
-    while dt_us > 0 and e[_PENDING] > 0:
+    dt_us = e[_SLOTS_A_SAMPLE]
+    while dt_us > 0 and e[_TICKS_DUE] > 0:
         run_slot(e)
         dt_us -= 1
     e[_NOW_Q14] = e[_HELD_Q14]

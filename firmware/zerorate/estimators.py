@@ -2,15 +2,7 @@
 
 # Document 000, paragraphs on "bias estimators": estimator 0 takes every reading; 1..short are a
 # least-recently-used cache of the latest temperatures; the others keep a wide range of them.
-# An estimator at word `e` of the state:
-#
-#     e      temperature it is for, raw LSB, or _FREE
-#     e+1    mean temperature of its readings, raw LSB, Q4
-#     e+2    its bias, LSB, Q8
-#     e+3    readings it was given, which its bins, being of 14 bits, halve long before
-#     e+4..  its histogram
-#
-# The axis block at word `a` begins with what `corrector.py` names; the estimators follow it.
+# `a` is the first word of an axis, `e` that of an estimator (docs/layout.md).
 
 try:
     from micropython import const
@@ -25,33 +17,42 @@ ptr32 = None
 
 from .histogram import add, clear, halve, population, read_out_q8
 
-_FREE = const(-1048576)
-_MOST = const(0x1FFFFFF)  # of 18 estimators together below 2^30
-
-_TOTAL = const(0)
-_WEIGHT = const(1)
+# layout: The corrector's state
+_LEARN_TEMP = const(52)
+_CANDIDATE_THIRD = const(7)
+_NEAREST = const(80)
+# layout: An axis
+_WAITING_SUM = const(0)
+_WAITING_N = const(1)
 _CURRENT = const(2)
 _COLDEST = const(3)
 _HOTTEST = const(4)
-_LEARNED = const(5)
+_LEARNED_N = const(5)
 _ORDER = const(6)
 _ESTIMATORS = const(32)
-
-_SCRATCH = const(7)
-_LEAST = const(80)
-_LEARN_TEMP = const(52)
-
+# layout: An estimator
+_EST_TEMP = const(0)
+_EST_MEAN_TEMP_Q4 = const(1)
+_EST_BIAS_Q8 = const(2)
+_EST_READINGS = const(3)
+_EST_HISTOGRAM = const(4)
+# layout: The corrector's settings
 _FIRST_SHORT = const(14)
+_ESTIMATORS_END = const(15)
 _BINS = const(16)
 _LITERAL = const(21)
 _SHORT = const(24)
-_WORDS = const(26)
+_ESTIMATOR_WORDS = const(26)
 _STEP_LSB = const(27)
 _MARGIN_LSB = const(28)
 _PROMOTE = const(29)
 _HALVE_AFTER = const(30)
 _FIRST_LONG = const(47)
-_END = const(15)
+# layout: Values that stand for none
+_FREE = const(-0x100000)
+# layout: end
+
+_MOST_GIVEN = const(0x1FFFFFF)  # of 18 estimators together below 2^30
 
 
 def reset(s: ptr32, c: ptr32, a: int):
@@ -59,18 +60,18 @@ def reset(s: ptr32, c: ptr32, a: int):
     s[a + _CURRENT] = 0
     s[a + _COLDEST] = 32767
     s[a + _HOTTEST] = -32768
-    s[a + _LEARNED] = 0
+    s[a + _LEARNED_N] = 0
     i = 0
     e = a + _ESTIMATORS
-    while e < a + c[_END]:
-        s[e] = _FREE
-        s[e + 1] = 0
-        s[e + 2] = 0
-        s[e + 3] = 0
-        clear(s, c, e + 4, 0)
+    while e < a + c[_ESTIMATORS_END]:
+        s[e + _EST_TEMP] = _FREE
+        s[e + _EST_MEAN_TEMP_Q4] = 0
+        s[e + _EST_BIAS_Q8] = 0
+        s[e + _EST_READINGS] = 0
+        clear(s, c, e + _EST_HISTOGRAM, 0)
         if i > 0 and i <= c[_SHORT]:
             s[a + _ORDER + i - 1] = e
-        e += c[_WORDS]
+        e += c[_ESTIMATOR_WORDS]
         i += 1
 
 
@@ -83,15 +84,15 @@ def find(s: ptr32, c: ptr32, a: int, temp: int) -> int:
     half = c[_STEP_LSB] >> 1
     e = s[a + _CURRENT]
     if e > 0:
-        d = temp - s[e]
+        d = temp - s[e + _EST_TEMP]
         if d <= half + c[_MARGIN_LSB] and d >= 0 - half - c[_MARGIN_LSB]:
             return e
     e = a + c[_FIRST_SHORT]
-    while e < a + c[_END]:
-        d = temp - s[e]
+    while e < a + c[_ESTIMATORS_END]:
+        d = temp - s[e + _EST_TEMP]
         if d < half and d >= 0 - half:
             return e
-        e += c[_WORDS]
+        e += c[_ESTIMATOR_WORDS]
     return 0
 
 
@@ -123,18 +124,18 @@ def richest(s: ptr32, c: ptr32, a: int, part: int) -> int:
     """Return the long-term estimator with most samples in that third of the range, or 0."""
     best = 0
     e = a + c[_FIRST_LONG]
-    while e < a + c[_END]:
-        if s[e] != _FREE and third(s, a, s[e]) == part:
-            if best == 0 or s[e + 3] > s[best + 3]:
+    while e < a + c[_ESTIMATORS_END]:
+        if s[e + _EST_TEMP] != _FREE and third(s, a, s[e + _EST_TEMP]) == part:
+            if best == 0 or s[e + _EST_READINGS] > s[best + _EST_READINGS]:
                 best = e
-        e += c[_WORDS]
+        e += c[_ESTIMATOR_WORDS]
     return best
 
 
 def protected(s: ptr32, c: ptr32, a: int, e: int) -> int:
     """Return 1 if the long-term estimator is the richest of a third the candidate is not in."""
-    part = third(s, a, s[e])
-    if part == s[_SCRATCH]:
+    part = third(s, a, s[e + _EST_TEMP])
+    if part == s[_CANDIDATE_THIRD]:
         return 0
     if richest(s, c, a, part) == e:
         return 1
@@ -146,12 +147,12 @@ def outermost(s: ptr32, c: ptr32, a: int, e: int) -> int:
     colder = 1
     hotter = 1
     d = a + c[_FIRST_LONG]
-    while d < a + c[_END]:
-        if s[d] != _FREE and s[d] < s[e]:
+    while d < a + c[_ESTIMATORS_END]:
+        if s[d + _EST_TEMP] != _FREE and s[d + _EST_TEMP] < s[e + _EST_TEMP]:
             colder = 0
-        if s[d] > s[e]:
+        if s[d + _EST_TEMP] > s[e + _EST_TEMP]:
             hotter = 0
-        d += c[_WORDS]
+        d += c[_ESTIMATOR_WORDS]
     return colder | hotter
 
 
@@ -159,13 +160,13 @@ def distance(s: ptr32, c: ptr32, a: int, e: int) -> int:
     """Return how far the nearest other long-term estimator's temperature is from that of `e`."""
     nearest = 0xFFFFF
     d = a + c[_FIRST_LONG]
-    while d < a + c[_END]:
-        gap = s[d] - s[e]
+    while d < a + c[_ESTIMATORS_END]:
+        gap = s[d + _EST_TEMP] - s[e + _EST_TEMP]
         if gap < 0:
             gap = -gap
         if d != e and gap < nearest:
             nearest = gap
-        d += c[_WORDS]
+        d += c[_ESTIMATOR_WORDS]
     return nearest
 
 
@@ -176,14 +177,14 @@ def most_crowded(s: ptr32, c: ptr32, a: int, e: int) -> int:
     nobody remembers has to be guessed: the default keeps them apart, and the outermost ones.
     """
     found = e
-    s[_LEAST] = distance(s, c, a, e)
+    s[_NEAREST] = distance(s, c, a, e)
     d = a + c[_FIRST_LONG]
-    while d < a + c[_END]:
-        if distance(s, c, a, d) < s[_LEAST] and outermost(s, c, a, d) == 0:
+    while d < a + c[_ESTIMATORS_END]:
+        if distance(s, c, a, d) < s[_NEAREST] and outermost(s, c, a, d) == 0:
             if protected(s, c, a, d) == 0:
-                s[_LEAST] = distance(s, c, a, d)
+                s[_NEAREST] = distance(s, c, a, d)
                 found = d
-        d += c[_WORDS]
+        d += c[_ESTIMATOR_WORDS]
     return found
 
 
@@ -191,21 +192,21 @@ def poorest(s: ptr32, c: ptr32, a: int, e: int) -> int:
     """Return the unprotected long-term estimator with fewest samples, fewer than `e`, or `e`."""
     found = e
     d = a + c[_FIRST_LONG]
-    while d < a + c[_END]:
-        if s[d + 3] < s[found + 3] and protected(s, c, a, d) == 0:
+    while d < a + c[_ESTIMATORS_END]:
+        if s[d + _EST_READINGS] < s[found + _EST_READINGS] and protected(s, c, a, d) == 0:
             found = d
-        d += c[_WORDS]
+        d += c[_ESTIMATOR_WORDS]
     return found
 
 
 def victim(s: ptr32, c: ptr32, a: int, e: int) -> int:
     """Return the long-term estimator that the short-term one `e` may replace, or `e` itself."""
-    s[_SCRATCH] = third(s, a, s[e])
+    s[_CANDIDATE_THIRD] = third(s, a, s[e + _EST_TEMP])
     d = a + c[_FIRST_LONG]
-    while d < a + c[_END]:
-        if s[d] == _FREE:
+    while d < a + c[_ESTIMATORS_END]:
+        if s[d + _EST_TEMP] == _FREE:
             return d
-        d += c[_WORDS]
+        d += c[_ESTIMATOR_WORDS]
     if c[_LITERAL]:
         return poorest(s, c, a, e)
     return most_crowded(s, c, a, e)
@@ -214,7 +215,7 @@ def victim(s: ptr32, c: ptr32, a: int, e: int) -> int:
 def copy(s: ptr32, c: ptr32, to: int, e: int):
     """Copy one estimator over another."""
     i = 0
-    while i < c[_WORDS]:
+    while i < c[_ESTIMATOR_WORDS]:
         s[to + i] = s[e + i]
         i += 1
 
@@ -222,42 +223,42 @@ def copy(s: ptr32, c: ptr32, to: int, e: int):
 def make_room(s: ptr32, c: ptr32, a: int, temp: int) -> int:
     """Return a short-term estimator made free for `temp`; the one it was may become long-term."""
     e = s[a + _ORDER - 1 + c[_SHORT]]
-    if s[e] != _FREE and s[e + 3] >= c[_PROMOTE]:
+    if s[e + _EST_TEMP] != _FREE and s[e + _EST_READINGS] >= c[_PROMOTE]:
         k = victim(s, c, a, e)
         if k != e:
             copy(s, c, k, e)
     # centres lie on a grid, so that the same temperature comes back to the same estimator
-    s[e] = (temp + (c[_STEP_LSB] >> 1)) // c[_STEP_LSB] * c[_STEP_LSB]
-    s[e + 1] = temp << 4
-    s[e + 3] = 0
+    s[e + _EST_TEMP] = (temp + (c[_STEP_LSB] >> 1)) // c[_STEP_LSB] * c[_STEP_LSB]
+    s[e + _EST_MEAN_TEMP_Q4] = temp << 4
+    s[e + _EST_READINGS] = 0
     return e
 
 
 def feed(s: ptr32, c: ptr32, a: int, e: int):
     """Add the axis' waiting readings to the estimator and renew what is kept of it."""
-    if s[e + 3] == 0:
-        k = s[a + _TOTAL] // s[a + _WEIGHT]
-        clear(s, c, e + 4, k)
-        s[e + 1] = s[_LEARN_TEMP] << 4
-    if add(s, c, e + 4, a) == 0:
+    if s[e + _EST_READINGS] == 0:
+        k = s[a + _WAITING_SUM] // s[a + _WAITING_N]
+        clear(s, c, e + _EST_HISTOGRAM, k)
+        s[e + _EST_MEAN_TEMP_Q4] = s[_LEARN_TEMP] << 4
+    if add(s, c, e + _EST_HISTOGRAM, a) == 0:
         return
-    if s[e + 3] < _MOST:
-        s[e + 3] += s[a + _WEIGHT]
-    s[e + 2] = read_out_q8(s, e + 4, c[_BINS])
-    k = population(s, e + 4, c[_BINS])
-    if k < s[a + _WEIGHT]:
-        k = s[a + _WEIGHT]
-    k = ((s[_LEARN_TEMP] << 4) - s[e + 1]) * s[a + _WEIGHT] // k
-    s[e + 1] += k
+    if s[e + _EST_READINGS] < _MOST_GIVEN:
+        s[e + _EST_READINGS] += s[a + _WAITING_N]
+    s[e + _EST_BIAS_Q8] = read_out_q8(s, e + _EST_HISTOGRAM, c[_BINS])
+    k = population(s, e + _EST_HISTOGRAM, c[_BINS])
+    if k < s[a + _WAITING_N]:
+        k = s[a + _WAITING_N]
+    k = ((s[_LEARN_TEMP] << 4) - s[e + _EST_MEAN_TEMP_Q4]) * s[a + _WAITING_N] // k
+    s[e + _EST_MEAN_TEMP_Q4] += k
 
 
 def age(s: ptr32, c: ptr32, a: int):
     """Halve the counts of the long-term estimators, so that an old outlier does not stay."""
     e = a + c[_FIRST_LONG]
-    while e < a + c[_END]:
-        halve(s, e + 4, c[_BINS])
-        s[e + 3] = s[e + 3] >> 1
-        e += c[_WORDS]
+    while e < a + c[_ESTIMATORS_END]:
+        halve(s, e + _EST_HISTOGRAM, c[_BINS])
+        s[e + _EST_READINGS] = s[e + _EST_READINGS] >> 1
+        e += c[_ESTIMATOR_WORDS]
 
 
 def learn_anywhere(s: ptr32, c: ptr32, a: int):
@@ -279,7 +280,7 @@ def learn_here(s: ptr32, c: ptr32, a: int):
     touch(s, c, a, e)
     s[a + _CURRENT] = e
     feed(s, c, a, e)
-    s[a + _LEARNED] += s[a + _WEIGHT]
-    if s[a + _LEARNED] >= c[_HALVE_AFTER]:
-        s[a + _LEARNED] = 0
+    s[a + _LEARNED_N] += s[a + _WAITING_N]
+    if s[a + _LEARNED_N] >= c[_HALVE_AFTER]:
+        s[a + _LEARNED_N] = 0
         age(s, c, a)

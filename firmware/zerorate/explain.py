@@ -1,5 +1,32 @@
 """Says in words what is being learned, or why nothing is."""
 
+try:
+    from micropython import const
+except ImportError:
+
+    def const(value):
+        return value
+
+
+# layout: The corrector's state
+_COUNTS = const(8)
+_STILLNESS = const(46)
+_SEGMENT_WINDOWS = const(48)
+_OUT_Q8 = const(55)
+_QUALITY_Q8 = const(70)
+_SOURCE = const(73)
+# layout: An axis
+_SUSPECT = const(27)
+_BEYOND = const(29)
+# layout: The corrector's settings
+_AXES = const(0)
+_SEGMENT = const(5)
+_AXIS_WORDS = const(13)
+_INSIST = const(39)
+# layout: What a window was
+_STILL = const(1)
+# layout: end
+
 FAULTS = (
     "good frames",
     "repeated frames",
@@ -33,12 +60,12 @@ def explain(corrector):
     s = corrector.state
     c = corrector.settings
     sensor = corrector.sensor
-    lines = [STILLNESS[s[46]]]
-    if s[46] == 1:
-        lines.append("%d of %d windows of a still segment." % (s[48], c[5]))
+    lines = [STILLNESS[s[_STILLNESS]]]
+    if s[_STILLNESS] == _STILL:
+        lines.append("%d of %d windows of a still segment." % (s[_SEGMENT_WINDOWS], c[_SEGMENT]))
     for axis in range(3):
         lines.append(axis_text(s, c, sensor, axis))
-    faults = ["%d %s" % (s[8 + i], FAULTS[i]) for i in range(1, 8) if s[8 + i]]
+    faults = ["%d %s" % (s[_COUNTS + i], FAULTS[i]) for i in range(1, 8) if s[_COUNTS + i]]
     if faults:
         lines.append("Not learned from: " + ", ".join(faults) + ".")
     if not sensor.accel_lsb_per_g:
@@ -59,18 +86,18 @@ def without_sign(dps):
 
 def axis_text(s, c, sensor, axis):
     """Return one line on one axis."""
-    a = c[0] + axis * c[13]
+    a = c[_AXES] + axis * c[_AXIS_WORDS]
     lsb = sensor.gyro_lsb_per_dps
     text = "g%s: bias %.3f dps from %s, +-%.3f dps" % (
         "xyz"[axis],
-        without_sign(s[55 + axis] / 256 / lsb),
-        SOURCES[s[73 + axis]],
-        s[70 + axis] / 256 / lsb,
+        without_sign(s[_OUT_Q8 + axis] / 256 / lsb),
+        SOURCES[s[_SOURCE + axis]],
+        s[_QUALITY_Q8 + axis] / 256 / lsb,
     )
-    if s[73 + axis] == 0:
+    if s[_SOURCE + axis] == 0:
         text = "g%s: no bias yet, nothing still was seen" % "xyz"[axis]
-    if s[a + 27] > 0:
-        text += "; a rest far from it is held back (%d of %d)" % (s[a + 27], c[39])
-    if s[a + 29]:
+    if s[a + _SUSPECT] > 0:
+        text += "; a rest far from it is held back (%d of %d)" % (s[a + _SUSPECT], c[_INSIST])
+    if s[a + _BEYOND]:
         text += "; beyond the temperatures learned so far"
     return text + "."

@@ -2,6 +2,31 @@
 
 from .explain import without_sign
 
+try:
+    from micropython import const
+except ImportError:
+
+    def const(value):
+        return value
+
+
+# layout: The state of the source in motion
+_MOTION_REASON = const(17)
+_ACCEPTED = const(67)
+_REFUSED = const(68)
+_MOTION_BIAS_Q8 = const(70)
+_MOTION_QUALITY_Q8 = const(73)
+# layout: The state of the source against gravity
+_GRAVITY_BIAS_Q8 = const(28)
+_GRAVITY_QUALITY_Q8 = const(31)
+_OBSERVED = const(37)
+_GRAVITY_REASON = const(49)
+# layout: The settings of the source against gravity
+_SUB_UNIT_US = const(0)
+# layout: Values that stand for none
+_UNKNOWN_Q8 = const(0x1FFFFFFF)
+# layout: end
+
 MOTION = (
     "no window has been seen yet",
     "the first windows grow",
@@ -18,7 +43,6 @@ LEVEL = (
     "nothing is counted: the force is not 1 g",
     "nothing is counted: samples were missing",
 )
-_UNKNOWN_Q8 = 0x1FFFFFFF
 
 
 def explain_sources(corrector):
@@ -35,13 +59,18 @@ def explain_sources(corrector):
 
 def explain_motion(m, sensor):
     """Return a line on the source in motion, whose state is `m`."""
-    text = "In motion: %s (%d windows learned, %d refused)" % (MOTION[m[17]], m[67], m[68])
-    return text + found(m, 70, sensor)
+    text = "In motion: %s (%d windows learned, %d refused)" % (
+        MOTION[m[_MOTION_REASON]],
+        m[_ACCEPTED],
+        m[_REFUSED],
+    )
+    return text + found(m, _MOTION_BIAS_Q8, _MOTION_QUALITY_Q8, sensor)
 
 
 def explain_level(r, sensor):
     """Return a line on the source against the accelerometer, whose state is `r`."""
-    return "Against gravity: %s%s" % (LEVEL[r[49]], found(r, 28, sensor))
+    text = "Against gravity: %s" % LEVEL[r[_GRAVITY_REASON]]
+    return text + found(r, _GRAVITY_BIAS_Q8, _GRAVITY_QUALITY_Q8, sensor)
 
 
 def observable(r, c):
@@ -50,19 +79,19 @@ def observable(r, c):
     return "Observable against gravity: %s." % ", ".join(seen)
 
 
-def found(s, a, sensor):
-    """Return the bias of each axis at word `a`, with its one sigma three words on."""
+def found(s, bias_q8, sigma_q8, sensor):
+    """Return the bias of each axis with its one sigma, from those words of `s` on."""
     text = []
     for axis in range(3):
-        if s[a + 3 + axis] < _UNKNOWN_Q8:
+        if s[sigma_q8 + axis] < _UNKNOWN_Q8:
             lsb = 256 * sensor.gyro_lsb_per_dps
-            pair = (without_sign(s[a + axis] / lsb), s[a + 3 + axis] / lsb)
+            pair = (without_sign(s[bias_q8 + axis] / lsb), s[sigma_q8 + axis] / lsb)
             text.append("g%s %.3f +-%.3f" % (("xyz"[axis],) + pair))
     return "; %s dps." % ", ".join(text) if text else "."
 
 
 def observed(r, c, axis):
     """Return for how long the axis was observable."""
-    if r[37 + axis] == 0:
+    if r[_OBSERVED + axis] == 0:
         return "g%s not at all, gravity lies along it" % "xyz"[axis]
-    return "g%s for %d s" % ("xyz"[axis], r[37 + axis] * c[0] // 1000000)
+    return "g%s for %d s" % ("xyz"[axis], r[_OBSERVED + axis] * c[_SUB_UNIT_US] // 1000000)

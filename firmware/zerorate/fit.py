@@ -2,8 +2,8 @@
 
 # Document 000, "a least squares fit may be performed". `local` > 0 turns it into a line through
 # the neighbourhood of one temperature: an estimator `d` away counts 1 / (1 + (d/local)^2) of its
-# samples, and samples beyond `_COUNTED` add nothing, for then drift, not noise, is what is left.
-# At a slow rate all are scaled up, so that a few samples still tell near from far.
+# samples, and samples beyond `_MOST_COUNTED` add nothing, for then drift, not noise, is what is
+# left. At a slow rate all are scaled up, so that a few samples still tell near from far.
 #
 # Temperatures are raw LSB in Q4, biases LSB in Q8. Distances over temperature are
 # shifted left until the range fills 26 bits; the two sums of products float, for a point may weigh
@@ -22,112 +22,119 @@ ptr32 = None
 
 from .fixed import floating_ratio_q26, fraction_q27, room, scaled
 
-_FREE = const(-1048576)
-
-_FIT_T0_Q4 = const(14)
-_FIT_MEAN_T = const(15)
-_FIT_MEAN_B_Q11 = const(16)
-_FIT_SLOPE_Q26 = const(17)
-_FIT_SHIFT = const(18)
-_FIT_LOW_Q4 = const(19)
-_FIT_HIGH_Q4 = const(20)
-_FIT_SAMPLES = const(21)
-_FIT_POINTS = const(22)
-_ESTIMATORS = const(32)
-
+# layout: The corrector's state
 _TEMP = const(47)
-_SUM_T = const(80)
-_SUM_B = const(81)
-_SUM_TT = const(82)  # and by how much it is shifted left
-_SUM_TB = const(84)  # and by how much it is shifted left
-_FIRST_T_Q4 = const(86)
-_FIRST_B_Q8 = const(87)
-_LOW_Q4 = const(88)
-_HIGH_Q4 = const(89)
-_SAMPLES = const(90)
-_POINTS = const(91)
-_WEIGHTS = const(92)  # one word an estimator, the axes follow
-_SUM_W = const(92)  # in the place of the first, which has no temperature
-
+_FIT_SUM_T = const(80)
+_FIT_SUM_B_Q11 = const(81)
+_FIT_SUM_TT = const(82)
+_FIT_SUM_TB = const(84)
+_FIT_FIRST_T_Q4 = const(86)
+_FIT_FIRST_B_Q8 = const(87)
+_FIT_LOW_Q4 = const(88)
+_FIT_HIGH_Q4 = const(89)
+_FIT_SAMPLES = const(90)
+_FIT_POINTS = const(91)
+_FIT_WEIGHTS = const(92)
+_FIT_SUM_W = const(92)
+# layout: An axis
+_LINE_T0_Q4 = const(14)
+_LINE_MEAN_T = const(15)
+_LINE_MEAN_B_Q11 = const(16)
+_LINE_SLOPE_Q26 = const(17)
+_LINE_SHIFT = const(18)
+_LINE_LOW_Q4 = const(19)
+_LINE_HIGH_Q4 = const(20)
+_LINE_SAMPLES = const(21)
+_LINE_POINTS = const(22)
+_ESTIMATORS = const(32)
+# layout: An estimator
+_EST_TEMP = const(0)
+_EST_MEAN_TEMP_Q4 = const(1)
+_EST_BIAS_Q8 = const(2)
+_EST_READINGS = const(3)
+# layout: The corrector's settings
 _FIRST_SHORT = const(14)
-_END = const(15)
-_ALL = const(25)
-_WORDS = const(26)
-_ENOUGH = const(31)
-_COUNTED = const(32)
+_ESTIMATORS_END = const(15)
+_ESTIMATOR_COUNT = const(25)
+_ESTIMATOR_WORDS = const(26)
+_ENOUGH_TO_FIT = const(31)
+_MOST_COUNTED = const(32)
 _LOCAL = const(33)
 _LOCAL_SHIFT = const(42)
 _NEAR = const(51)
+# layout: Values that stand for none
+_FREE = const(-0x100000)
+# layout: end
 
 
 def weigh(s: ptr32, c: ptr32, a: int):
     """Weigh the estimators that have enough samples, for a line that serves this temperature."""
-    w = _SUM_T
-    while w <= _SUM_W:
+    w = _FIT_SUM_T
+    while w <= _FIT_SUM_W:
         s[w] = 0
         w += 1
-    i = _WEIGHTS + 1
+    i = _FIT_WEIGHTS + 1
     e = a + c[_FIRST_SHORT]
-    while e < a + c[_END]:
+    while e < a + c[_ESTIMATORS_END]:
         w = 0
-        if s[e] != _FREE and s[e + 3] >= c[_ENOUGH]:
-            w = s[e + 3]
-            s[_SAMPLES] += w
-            if w > c[_COUNTED]:
-                w = c[_COUNTED]
+        if s[e + _EST_TEMP] != _FREE and s[e + _EST_READINGS] >= c[_ENOUGH_TO_FIT]:
+            w = s[e + _EST_READINGS]
+            s[_FIT_SAMPLES] += w
+            if w > c[_MOST_COUNTED]:
+                w = c[_MOST_COUNTED]
             if c[_LOCAL]:
-                d = (s[e + 1] - (s[_TEMP] << 4)) >> c[_LOCAL_SHIFT]
+                d = (s[e + _EST_MEAN_TEMP_Q4] - (s[_TEMP] << 4)) >> c[_LOCAL_SHIFT]
                 if d > 0x3FFF or d < -0x3FFF:
                     d = 0x3FFF
                 w = (w * c[_NEAR]) // (c[_LOCAL] + d * d) + 1
-            if s[_POINTS] == 0:
-                s[_FIRST_T_Q4] = s[e + 1]
-                s[_FIRST_B_Q8] = s[e + 2]
-                s[_LOW_Q4] = s[e + 1]
-                s[_HIGH_Q4] = s[e + 1]
-            if s[e + 1] < s[_LOW_Q4]:
-                s[_LOW_Q4] = s[e + 1]
-            if s[e + 1] > s[_HIGH_Q4]:
-                s[_HIGH_Q4] = s[e + 1]
-            s[_POINTS] += 1
+            if s[_FIT_POINTS] == 0:
+                s[_FIT_FIRST_T_Q4] = s[e + _EST_MEAN_TEMP_Q4]
+                s[_FIT_FIRST_B_Q8] = s[e + _EST_BIAS_Q8]
+                s[_FIT_LOW_Q4] = s[e + _EST_MEAN_TEMP_Q4]
+                s[_FIT_HIGH_Q4] = s[e + _EST_MEAN_TEMP_Q4]
+            if s[e + _EST_MEAN_TEMP_Q4] < s[_FIT_LOW_Q4]:
+                s[_FIT_LOW_Q4] = s[e + _EST_MEAN_TEMP_Q4]
+            if s[e + _EST_MEAN_TEMP_Q4] > s[_FIT_HIGH_Q4]:
+                s[_FIT_HIGH_Q4] = s[e + _EST_MEAN_TEMP_Q4]
+            s[_FIT_POINTS] += 1
         s[i] = w
-        s[_SUM_W] += w
+        s[_FIT_SUM_W] += w
         i += 1
-        e += c[_WORDS]
+        e += c[_ESTIMATOR_WORDS]
 
 
 def stretch(s: ptr32) -> int:
     """Return the shift that makes the range of temperatures fill 26 bits."""
-    w = s[_HIGH_Q4] - s[_LOW_Q4]
+    w = s[_FIT_HIGH_Q4] - s[_FIT_LOW_Q4]
     w = room(w)
     return w - 1
 
 
 def within(s: ptr32, t: int) -> int:
     """Return `t` held in the range that was weighed: readings learned since may have moved it."""
-    if t < s[_LOW_Q4]:
-        return s[_LOW_Q4]
-    if t > s[_HIGH_Q4]:
-        return s[_HIGH_Q4]
+    if t < s[_FIT_LOW_Q4]:
+        return s[_FIT_LOW_Q4]
+    if t > s[_FIT_HIGH_Q4]:
+        return s[_FIT_HIGH_Q4]
     return t
 
 
 def centre(s: ptr32, c: ptr32, a: int, i: int):
     """Add estimator i to the weighted means."""
-    w = s[_WEIGHTS + i]
+    w = s[_FIT_WEIGHTS + i]
     if w == 0:
         return
-    d = s[_SUM_W]
+    d = s[_FIT_SUM_W]
     w = fraction_q27(w, d)
-    a += i * c[_WORDS] + _ESTIMATORS
-    d = s[a + 1]
-    d = within(s, d) - s[_FIRST_T_Q4]
+    a += i * c[_ESTIMATOR_WORDS] + _ESTIMATORS
+    d = s[a + _EST_MEAN_TEMP_Q4]
+    d = within(s, d) - s[_FIT_FIRST_T_Q4]
     d = d << stretch(s)
     d = scaled(w, d, 27)
-    s[_SUM_T] += d
-    d = s[a + 2] - s[_FIRST_B_Q8]
+    s[_FIT_SUM_T] += d
+    d = s[a + _EST_BIAS_Q8] - s[_FIT_FIRST_B_Q8]
     d = scaled(w, d << 3, 27)
-    s[_SUM_B] += d
+    s[_FIT_SUM_B_Q11] += d
 
 
 def add_product(s: ptr32, k: int, p: int, r: int):  # inline
@@ -158,44 +165,44 @@ def add_product(s: ptr32, k: int, p: int, r: int):  # inline
 
 def lean(s: ptr32, c: ptr32, a: int, i: int):  # call
     """Add estimator i to the weighted variance and covariance."""
-    w = s[_WEIGHTS + i]
-    a += i * c[_WORDS] + _ESTIMATORS
-    i = s[a + 1]
-    i = within(s, i) - s[_FIRST_T_Q4]
-    i = (i << stretch(s)) - s[_SUM_T]
-    a = ((s[a + 2] - s[_FIRST_B_Q8]) << 3) - s[_SUM_B]
+    w = s[_FIT_WEIGHTS + i]
+    a += i * c[_ESTIMATOR_WORDS] + _ESTIMATORS
+    i = s[a + _EST_MEAN_TEMP_Q4]
+    i = within(s, i) - s[_FIT_FIRST_T_Q4]
+    i = (i << stretch(s)) - s[_FIT_SUM_T]
+    a = ((s[a + _EST_BIAS_Q8] - s[_FIT_FIRST_B_Q8]) << 3) - s[_FIT_SUM_B_Q11]
     k = room(w)
     w = scaled(w << k, i << room(i), 27)
-    k = ((k + room(i)) << 7) + _SUM_TT
+    k = ((k + room(i)) << 7) + _FIT_SUM_TT
     add_product(s, k, w, i)
-    add_product(s, k + _SUM_TB - _SUM_TT, w, a)
+    add_product(s, k + _FIT_SUM_TB - _FIT_SUM_TT, w, a)
 
 
 def settle(s: ptr32, c: ptr32, a: int):
     """Write the finished line into the axis block; no points leave it empty."""
-    s[a + _FIT_POINTS] = s[_POINTS]
-    s[a + _FIT_SAMPLES] = s[_SAMPLES]
-    s[a + _FIT_T0_Q4] = s[_FIRST_T_Q4]
-    s[a + _FIT_MEAN_T] = s[_SUM_T]
-    s[a + _FIT_MEAN_B_Q11] = (s[_FIRST_B_Q8] << 3) + s[_SUM_B]
-    slope = s[_SUM_TT + 1] - s[_SUM_TB + 1]
-    slope = floating_ratio_q26(s[_SUM_TB], s[_SUM_TT], slope)
-    s[a + _FIT_SLOPE_Q26] = slope
-    s[a + _FIT_SHIFT] = stretch(s)
-    s[a + _FIT_LOW_Q4] = s[_LOW_Q4]
-    s[a + _FIT_HIGH_Q4] = s[_HIGH_Q4]
+    s[a + _LINE_POINTS] = s[_FIT_POINTS]
+    s[a + _LINE_SAMPLES] = s[_FIT_SAMPLES]
+    s[a + _LINE_T0_Q4] = s[_FIT_FIRST_T_Q4]
+    s[a + _LINE_MEAN_T] = s[_FIT_SUM_T]
+    s[a + _LINE_MEAN_B_Q11] = (s[_FIT_FIRST_B_Q8] << 3) + s[_FIT_SUM_B_Q11]
+    slope = s[_FIT_SUM_TT + 1] - s[_FIT_SUM_TB + 1]
+    slope = floating_ratio_q26(s[_FIT_SUM_TB], s[_FIT_SUM_TT], slope)
+    s[a + _LINE_SLOPE_Q26] = slope
+    s[a + _LINE_SHIFT] = stretch(s)
+    s[a + _LINE_LOW_Q4] = s[_FIT_LOW_Q4]
+    s[a + _LINE_HIGH_Q4] = s[_FIT_HIGH_Q4]
 
 
 def draw_line(s: ptr32, c: ptr32, a: int):
     """Fit the axis' line through its estimators."""
     weigh(s, c, a)
     i = 1
-    while i < c[_ALL]:
+    while i < c[_ESTIMATOR_COUNT]:
         centre(s, c, a, i)
         i += 1
     i = 1
-    while i < c[_ALL]:
-        if s[_WEIGHTS + i]:
+    while i < c[_ESTIMATOR_COUNT]:
+        if s[_FIT_WEIGHTS + i]:
             lean(s, c, a, i)
         i += 1
     settle(s, c, a)
@@ -203,12 +210,12 @@ def draw_line(s: ptr32, c: ptr32, a: int):
 
 def line_q8(s: ptr32, a: int, temp_q4: int) -> int:
     """Return the line's bias at `temp_q4`: LSB, Q8; far outside it is held where 27 bits end."""
-    u = temp_q4 - s[a + _FIT_T0_Q4]
-    most = 0x7FFFFFF >> s[a + _FIT_SHIFT]
+    u = temp_q4 - s[a + _LINE_T0_Q4]
+    most = 0x7FFFFFF >> s[a + _LINE_SHIFT]
     if u > most:
         u = most
     if u < 0 - most:
         u = 0 - most
-    u = (u << s[a + _FIT_SHIFT]) - s[a + _FIT_MEAN_T]
-    u = scaled(s[a + _FIT_SLOPE_Q26], u, 26)
-    return (s[a + _FIT_MEAN_B_Q11] + u + 4) >> 3
+    u = (u << s[a + _LINE_SHIFT]) - s[a + _LINE_MEAN_T]
+    u = scaled(s[a + _LINE_SLOPE_Q26], u, 26)
+    return (s[a + _LINE_MEAN_B_Q11] + u + 4) >> 3

@@ -11,6 +11,17 @@ except ImportError:
 ptr32 = None
 
 
+# layout: The corrector's state
+_FRAME = const(0)
+_COUNTS = const(8)
+_ELAPSED_US = const(16)
+_WINDOW_N = const(17)
+_DIRTY = const(18)
+_REST = const(34)
+# layout: The corrector's settings
+_LEAP_US = const(1)
+_JUMP_LSB = const(2)
+# layout: What the guard says of a frame
 GOOD = const(0)
 REPEAT = const(1)
 RAIL = const(2)
@@ -19,34 +30,28 @@ ALL_ONES = const(4)
 TEMPERATURE_JUMP = const(5)
 TIME_STOOD_STILL = const(6)
 TIME_LEAPT = const(7)
+# layout: end
 
-_COUNTS = const(8)
-_ELAPSED_US = const(16)
-_N = const(17)
-_DIRTY = const(18)
 _MOST_US = const(0x1FFFFFFF)  # two of them fit 31 bits: repeats may come for hours
-_REST = const(34)
-_LEAP_US = const(1)
-_JUMP_LSB = const(2)
 
 
 def check(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
     """Return the kind of the frame `x` and count it; only GOOD frames may be learned from.
 
-    The first seven words of the state are the frame before. A repeat is passed over; every other
+    A repeat is passed over; every other
     fault also ends the rest that is being watched, because what stands beside a broken frame may
     be broken too.
     """
     differ = 0
     fresh = 0
-    jump = x[3] - s[3]
+    jump = x[3] - s[_FRAME + 3]
     i = 0
     while i < 7:
         if x[i] != x[0]:
             differ = 1
-        if x[i] != s[i]:
+        if x[i] != s[_FRAME + i]:
             fresh = 1
-        s[i] = x[i]
+        s[_FRAME + i] = x[i]
         i += 1
     i = GOOD
     if differ == 0 and (x[0] == 0 or x[0] == -1):
@@ -72,7 +77,7 @@ def check(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
     s[i] = jump & 0x1FFFFFFF
     i -= _COUNTS
     if i > REPEAT:
-        s[_N] = 0
+        s[_WINDOW_N] = 0
         s[_DIRTY] = 0
         s[_REST] = 0
     elif dt_us > 0 and dt_us <= c[_LEAP_US]:

@@ -19,18 +19,23 @@ except ImportError:
 ptr32 = None
 
 
-_MOST = const(0x3FFF)
-_SCRATCH = const(7)
-
+_MOST_READINGS = const(0x3FFF)
+# layout: The corrector's state
+_EMPTIEST = const(7)
+# layout: An axis
+_WAITING_SUM = const(0)
+_WAITING_N = const(1)
+# layout: The corrector's settings
 _BINS = const(16)
 _LOW_LSB = const(17)
 _WIDTH_LSB = const(18)
 _NARROWEST_LSB = const(19)
-_RATIO = const(20)
+_SPLIT_RATIO = const(20)
 _LITERAL = const(21)
 _IGNORE_OUTSIDE = const(22)
-_ENOUGH = const(23)
+_ENOUGH_TO_SPLIT = const(23)
 _EVERY = const(46)
+# layout: end
 
 
 def clear(s: ptr32, c: ptr32, h: int, middle: int):
@@ -51,7 +56,7 @@ def population(s: ptr32, h: int, bins: int) -> int:
     count = 0
     while bins > 0:
         bins -= 1
-        count += s[h + bins] & _MOST
+        count += s[h + bins] & _MOST_READINGS
     return count
 
 
@@ -59,7 +64,7 @@ def halve(s: ptr32, h: int, bins: int):
     """Halve every population; each bin keeps its mean, whatever the halving rounds away."""
     i = 0
     while i < bins:
-        count = s[h + i] & _MOST
+        count = s[h + i] & _MOST_READINGS
         if count:
             total = s[h + bins + 1 + i]
             rest = total % count
@@ -76,7 +81,7 @@ def place(s: ptr32, c: ptr32, h: int, reading: int) -> int:
     if reading < (s[h] >> 14):
         if c[_IGNORE_OUTSIDE]:
             return -1
-        s[h] = (reading << 14) + (s[h] & _MOST)
+        s[h] = (reading << 14) + (s[h] & _MOST_READINGS)
     elif reading >= (s[h + k] >> 14):
         if c[_IGNORE_OUTSIDE]:
             return -1
@@ -89,9 +94,9 @@ def place(s: ptr32, c: ptr32, h: int, reading: int) -> int:
 
 def merge(s: ptr32, h: int, bins: int, p: int):
     """Join the bins p and p+1 and close the gap; the last bin's place is free then."""
-    while (s[h + p] & _MOST) + (s[h + p + 1] & _MOST) > _MOST:
+    while (s[h + p] & _MOST_READINGS) + (s[h + p + 1] & _MOST_READINGS) > _MOST_READINGS:
         halve(s, h, bins)
-    s[h + p] += s[h + p + 1] & _MOST
+    s[h + p] += s[h + p + 1] & _MOST_READINGS
     s[h + bins + 1 + p] += s[h + bins + 2 + p]
     p += 1
     while p < bins:
@@ -115,7 +120,7 @@ def open_gap(s: ptr32, h: int, bins: int, j: int):
 
 def share_evenly(s: ptr32, h: int, bins: int, j: int):
     """Give the upper half of a split bin j half of its population and of its sum (the document)."""
-    count = s[h + j] & _MOST
+    count = s[h + j] & _MOST_READINGS
     total = s[h + bins + 1 + j]
     upper = count >> 1
     s[h + j] -= upper
@@ -128,7 +133,7 @@ def share_evenly(s: ptr32, h: int, bins: int, j: int):
 
 def share_by_mean(s: ptr32, h: int, bins: int, j: int):
     """Give all that a split bin j held to the half that holds its mean, which it so keeps."""
-    count = s[h + j] & _MOST
+    count = s[h + j] & _MOST_READINGS
     total = s[h + bins + 1 + j]
     if total >= (s[h + j + 1] >> 14) * count:
         s[h + j] -= count
@@ -144,17 +149,17 @@ def emptiest(s: ptr32, c: ptr32, h: int, j: int) -> int:
 
     By the document the pair with the fewest readings, else the one with the lowest significance.
     """
-    s[_SCRATCH] = 0x3FFFFFFF
+    s[_EMPTIEST] = 0x3FFFFFFF
     found = 0
     i = h
     while i < h + c[_BINS] - 1:
         if i != h + j and i + 1 != h + j:
-            count = s[i] & _MOST
-            count += s[i + 1] & _MOST
+            count = s[i] & _MOST_READINGS
+            count += s[i + 1] & _MOST_READINGS
             if c[_LITERAL] == 0:
                 count = (count << 12) // ((s[i + 2] >> 14) - (s[i] >> 14))
-            if count < s[_SCRATCH]:
-                s[_SCRATCH] = count
+            if count < s[_EMPTIEST]:
+                s[_EMPTIEST] = count
                 found = i - h
         i += 1
     return found
@@ -165,7 +170,7 @@ def fullest(s: ptr32, h: int, bins: int) -> int:
     j = 0
     while bins > 0:
         bins -= 1
-        if (s[h + bins] & _MOST) >= (s[h + j] & _MOST):
+        if (s[h + bins] & _MOST_READINGS) >= (s[h + j] & _MOST_READINGS):
             j = bins
     return j
 
@@ -174,14 +179,14 @@ def crowded(s: ptr32, c: ptr32, h: int, j: int, p: int) -> int:
     """Return 1 if bin j is full enough beside the emptiest pair p to be split, else 0."""
     j += h
     p += h
-    count = s[j] & _MOST
-    pair = (s[p] & _MOST) + (s[p + 1] & _MOST)
-    if count < c[_ENOUGH]:
+    count = s[j] & _MOST_READINGS
+    pair = (s[p] & _MOST_READINGS) + (s[p + 1] & _MOST_READINGS)
+    if count < c[_ENOUGH_TO_SPLIT]:
         return 0
     if c[_LITERAL] == 0:
         count = (count << 12) // ((s[j + 1] >> 14) - (s[j] >> 14))
         pair = (pair << 12) // ((s[p + 2] >> 14) - (s[p] >> 14))
-    if count > c[_RATIO] * pair:
+    if count > c[_SPLIT_RATIO] * pair:
         return 1
     return 0
 
@@ -197,8 +202,8 @@ def recentre(s: ptr32, c: ptr32, h: int, k: int) -> int:
     by = s[h + k + 1 + c[_BINS]]
     h += k
     width = (s[h + 1] >> 14) - (s[h] >> 14)
-    k = s[h] & _MOST
-    if k < c[_ENOUGH] or width >= 4 * c[_NARROWEST_LSB]:
+    k = s[h] & _MOST_READINGS
+    if k < c[_ENOUGH_TO_SPLIT] or width >= 4 * c[_NARROWEST_LSB]:
         return 0
     by = by // k - (s[h] >> 14) - (width >> 1)
     if width < 32:
@@ -240,18 +245,18 @@ def adapt(s: ptr32, c: ptr32, h: int, k: int) -> int:
 
 
 def add(s: ptr32, c: ptr32, h: int, a: int) -> int:
-    """Add the readings that wait at word `a`: their sum, then how many they are.
+    """Add the readings that wait at the axis `a`.
 
     Returns 1, or 0 if they were ignored.
     """
-    k = s[a] // s[a + 1]
+    k = s[a + _WAITING_SUM] // s[a + _WAITING_N]
     k = place(s, c, h, k)
     if k < 0:
         return 0
-    while (s[h + k] & _MOST) + s[a + 1] > _MOST:
+    while (s[h + k] & _MOST_READINGS) + s[a + _WAITING_N] > _MOST_READINGS:
         halve(s, h, c[_BINS])
-    s[h + k] += s[a + 1]
-    s[h + k + 1 + c[_BINS]] += s[a]
+    s[h + k] += s[a + _WAITING_N]
+    s[h + k + 1 + c[_BINS]] += s[a + _WAITING_SUM]
     adapt(s, c, h, k)
     return 1
 
@@ -262,8 +267,8 @@ def most_significant(s: ptr32, h: int, bins: int) -> int:
     i = h + 1
     while i < h + bins:
         # cross-multiplied: 2^14 readings x 2^16 LSB stay below 2^30
-        mine = (s[i] & _MOST) * ((s[best + 1] >> 14) - (s[best] >> 14))
-        if mine > (s[best] & _MOST) * ((s[i + 1] >> 14) - (s[i] >> 14)):
+        mine = (s[i] & _MOST_READINGS) * ((s[best + 1] >> 14) - (s[best] >> 14))
+        if mine > (s[best] & _MOST_READINGS) * ((s[i + 1] >> 14) - (s[i] >> 14)):
             best = i
         i += 1
     return best - h
@@ -272,7 +277,7 @@ def most_significant(s: ptr32, h: int, bins: int) -> int:
 def read_out_q8(s: ptr32, h: int, bins: int) -> int:
     """Return the mean of the most significant bin in LSB, Q8; 0 where the histogram is empty."""
     k = most_significant(s, h, bins)
-    count = s[h + k] & _MOST
+    count = s[h + k] & _MOST_READINGS
     if count == 0:
         return 0
     total = s[h + bins + 1 + k]

@@ -45,30 +45,22 @@ from .real import add, copy, whole
 from .regression import centre, first_sums, regressors, second_sums, taper
 from .thermal import carry, follow_temperature
 
-NOTHING_YET = const(0)
-GROWING = const(1)
-LEARNED = const(2)
-STILL = const(3)
-TURNED = const(4)
-TOO_FAST = const(5)
-LOST = const(6)
-GAP = const(7)
-
+# layout: The state of the source in motion
 _LENGTH = const(11)
 _STAGE = const(12)
 _JOB = const(13)
 _PASS = const(14)
-_K = const(15)
-_FIRST = const(16)
-_REASON = const(17)
-_TOTAL = const(18)
+_PROGRESS = const(15)
+_FIRST_NODE = const(16)
+_MOTION_REASON = const(17)
+_TAPER_SUM = const(18)
 _HALF = const(19)
+_Q = const(25)
 _R = const(33)
 _SUM_R = const(42)
 _Y = const(51)
-_CARRY = const(54)
+_BIAS_CARRY_Q24 = const(54)
 _BIAS_Q24 = const(57)
-_Q = const(25)
 _UP = const(63)
 _TRAFFIC = const(65)
 _ACCEPTED = const(67)
@@ -76,21 +68,26 @@ _SUMS = const(85)
 _PRIOR = const(160)
 _PRIOR_MEAN = const(172)
 _BIAS = const(178)
-_D = const(184)
+_SLOPE = const(184)
 _CENTRE = const(213)
-_RING = const(240)
-
+_NODES_RING = const(240)
+# layout: The sums of one component
+_COMPONENT_WORDS = const(21)
+# layout: The settings of the source in motion
 _VISITS = const(5)
-_LONGEST_GAP_US = const(6)
+_MOTION_GAP_US = const(6)
 _NODES = const(8)
 _PASSES = const(9)
 _LONGEST = const(16)
+_MOTION_DOCUMENT = const(20)
 _SETTLED = const(22)
-_DOCUMENT = const(20)
-
+# layout: What the source in motion is doing
 _IDLE = const(0)
 _TRAVERSE = const(1)
 _SOLVE = const(2)
+# layout: What a window in motion taught
+_MOTION_GAP = const(7)
+# layout: end
 
 
 def update(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
@@ -98,10 +95,10 @@ def update(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
 
     Returns 1 in the sample in which a new bias was learned, else 0.
     """
-    if dt_us <= 0 or dt_us > c[_LONGEST_GAP_US]:
+    if dt_us <= 0 or dt_us > c[_MOTION_GAP_US]:
         restart(s)
         s[_JOB] = _IDLE
-        s[_REASON] = GAP
+        s[_MOTION_REASON] = _MOTION_GAP
         return 0
     if int(gather(s, c, x, dt_us)):
         follow_temperature(s, x[3])
@@ -127,35 +124,35 @@ def work(s: ptr32, c: ptr32) -> int:
 def begin_traversal(s: ptr32):
     """Begin at the window's first node with the bias of this pass removed."""
     i = 0
-    while i < 63:
+    while i < 3 * _COMPONENT_WORDS:
         s[_SUMS + i] = 0
         i += 1
     i = 0
     while i < 3:
         s[_BIAS_Q24 + i] = int(whole(s, _BIAS + 2 * i, 0))
-        s[_CARRY + i] = 0
+        s[_BIAS_CARRY_Q24 + i] = 0
         i += 1
     i = 0
     while i < 9:
         s[_SUM_R + i] = s[_CENTRE + i]
         i += 1
     s[_UP] = 0
-    s[_TOTAL] = 0
+    s[_TAPER_SUM] = 0
     s[_TRAFFIC] = 0
-    s[_K] = 0
+    s[_PROGRESS] = 0
     s[_JOB] = _TRAVERSE
     begin_attitude(s)
 
 
 def visit(s: ptr32, c: ptr32):
     """Integrate over one node and add it to the sums."""
-    a = s[_FIRST] + s[_K]
+    a = s[_FIRST_NODE] + s[_PROGRESS]
     if a >= c[_NODES]:
         a -= c[_NODES]
-    a = _RING + 3 * a
-    taper(s, s[_K], s[_STAGE], c[_DOCUMENT])
+    a = _NODES_RING + 3 * a
+    taper(s, s[_PROGRESS], s[_STAGE], c[_MOTION_DOCUMENT])
     rotation(s)
-    if c[_DOCUMENT]:
+    if c[_MOTION_DOCUMENT]:
         observe_vector(s)
     else:
         observe(s, a)
@@ -164,9 +161,9 @@ def visit(s: ptr32, c: ptr32):
     sines(s)
     turn(s)
     normalise(s)
-    s[_K] += 1
-    if s[_K] >= s[_LENGTH]:
-        s[_K] = 0
+    s[_PROGRESS] += 1
+    if s[_PROGRESS] >= s[_LENGTH]:
+        s[_PROGRESS] = 0
         s[_JOB] = _SOLVE
 
 
@@ -194,8 +191,8 @@ def sum_up(s: ptr32):
     i = 0
     while i < 3:
         regressors(s, _SUM_R + 3 * i, s[_STAGE])
-        first_sums(s, _SUMS + 21 * i, s[_Y + i])
-        second_sums(s, _SUMS + 21 * i)
+        first_sums(s, _SUMS + _COMPONENT_WORDS * i, s[_Y + i])
+        second_sums(s, _SUMS + _COMPONENT_WORDS * i)
         i += 1
     i = 0
     while i < 9:
@@ -210,9 +207,9 @@ def remove_bias(s: ptr32, a: int):
     """
     i = 0
     while i < 3:
-        s[_CARRY + i] += s[_BIAS_Q24 + i]
-        part = (s[_CARRY + i] + 0x400) >> 11
-        s[_CARRY + i] -= part << 11
+        s[_BIAS_CARRY_Q24 + i] += s[_BIAS_Q24 + i]
+        part = (s[_BIAS_CARRY_Q24 + i] + 0x400) >> 11
+        s[_BIAS_CARRY_Q24 + i] -= part << 11
         part = (s[a + i] >> 15) - part
         s[_HALF + i] = part
         s[_TRAFFIC] += part if part > 0 else 0 - part
@@ -221,15 +218,15 @@ def remove_bias(s: ptr32, a: int):
 
 def solve(s: ptr32, c: ptr32) -> int:
     """Do one piece of the algebra that follows a traversal; return 1 if a bias was learned."""
-    k = s[_K]
-    s[_K] = k + 1
-    if c[_DOCUMENT]:
+    k = s[_PROGRESS]
+    s[_PROGRESS] = k + 1
+    if c[_MOTION_DOCUMENT]:
         return int(solve_document(s, c, k))
     if s[_PASS] == 0:
         level_and_prior(s, c, k)
         return 0
     if k < 3:
-        centre(s, _SUMS + 21 * k, 3 * k, s[_STAGE])
+        centre(s, _SUMS + _COMPONENT_WORDS * k, 3 * k, s[_STAGE])
     elif k == 3:
         lean_back(s)
     elif k < 16:
@@ -267,7 +264,7 @@ def normal_equations(s: ptr32, n: int):
 def solve_document(s: ptr32, c: ptr32, k: int) -> int:
     """Do one piece of the document's own form; return 1 if a bias was learned."""
     if k < 3:
-        centre(s, _SUMS + 21 * k, 3 * k, s[_STAGE])
+        centre(s, _SUMS + _COMPONENT_WORDS * k, 3 * k, s[_STAGE])
     elif k < 6:
         own_slope(s, k - 3)
     elif k < 9:
@@ -311,7 +308,7 @@ def last_pass(s: ptr32, c: ptr32) -> int:
         return 1
     i = 0
     while i < 3:
-        slope = int(whole(s, _D + 2 * i, 0))
+        slope = int(whole(s, _SLOPE + 2 * i, 0))
         if slope > c[_SETTLED] or slope < -c[_SETTLED]:
             return 0
         i += 1
@@ -322,7 +319,7 @@ def remove_slope(s: ptr32, c: ptr32):
     """Add this pass' slope to the bias, note it, and integrate again unless it was the last."""
     i = 0
     while i < 6:
-        add(s, _BIAS + i, _BIAS + i, _D + i)
+        add(s, _BIAS + i, _BIAS + i, _SLOPE + i)
         i += 2
     note_slope(s, c)
     if s[_PASS] < c[_PASSES]:

@@ -15,32 +15,35 @@ except ImportError:
 ptr32 = None
 
 
-_ELAPSED_US = const(0)
-_COUNT = const(1)
-_PHI = const(2)
-_FORCE = const(5)
+# layout: The state of the source in motion
+_NODE_ELAPSED_US = const(0)
+_NODE_N = const(1)
+_NODE_ANGLE_Q24 = const(2)
+_NODE_FORCE_Q12 = const(5)
 _HEAD = const(8)
 _FILLED = const(9)
-_NEW = const(10)
-_TURNED = const(19)
-_PULLED = const(210)
+_NEW_NODES = const(10)
 _BIAS_Q24 = const(57)
 _FAST = const(64)
-_AGE = const(66)
-_CONING = const(202)
-_CARRIED = const(205)
-_RING = const(240)
-
+_AGE_NODES = const(66)
+_FRAME_FORCE_Q12 = const(210)
+_NODES_RING = const(240)
+_FRAME_ANGLE_Q24 = const(19)
+_CONING_Q24 = const(202)
+_SCULLING_Q12 = const(205)
+# layout: The settings of the source in motion
 _NODE_US = const(0)
-_GAIN = const(1)
-_GAIN_SHIFT = const(2)
-_SHIFT = const(3)
+_MOTION_GAIN = const(1)
+_MOTION_GAIN_SHIFT = const(2)
+_MOTION_SHIFT = const(3)
 _FORCE_GAIN = const(4)
 _NODES = const(8)
+# layout: end
+
 
 _TWO_RAD_Q24 = const(0x1FFFFFF)
-_MOST = const(0x3FFF)
-_MOST_FORCE = const(0x7FFF)
+_MOST_ANGLE_Q13 = const(0x3FFF)
+_MOST_FORCE_Q12 = const(0x7FFF)
 
 
 def within(value: int, most: int) -> int:
@@ -54,39 +57,47 @@ def within(value: int, most: int) -> int:
 
 def coning(s: ptr32, j: int, k: int) -> int:
     """Return half the cross product's component of turned angle and increment, Q24 rad."""
-    first = ((s[_PHI + j] + 0x200) >> 10) * ((s[_TURNED + k] + 0x100) >> 9)
-    return (first - ((s[_PHI + k] + 0x200) >> 10) * ((s[_TURNED + j] + 0x100) >> 9) + 32) >> 6
+    first = ((s[_NODE_ANGLE_Q24 + j] + 0x200) >> 10) * ((s[_FRAME_ANGLE_Q24 + k] + 0x100) >> 9)
+    return (
+        first
+        - ((s[_NODE_ANGLE_Q24 + k] + 0x200) >> 10) * ((s[_FRAME_ANGLE_Q24 + j] + 0x100) >> 9)
+        + 32
+    ) >> 6
 
 
 def carried(s: ptr32, j: int, k: int) -> int:
     """Return what turning back to the node's start adds to the force on an axis, Q12 g."""
-    first = ((s[_PHI + j] + 0x400) >> 11) * s[_PULLED + k]
-    return (first - ((s[_PHI + k] + 0x400) >> 11) * s[_PULLED + j] + 0x1000) >> 13
+    first = ((s[_NODE_ANGLE_Q24 + j] + 0x400) >> 11) * s[_FRAME_FORCE_Q12 + k]
+    return (
+        first - ((s[_NODE_ANGLE_Q24 + k] + 0x400) >> 11) * s[_FRAME_FORCE_Q12 + j] + 0x1000
+    ) >> 13
 
 
 def convert(s: ptr32, c: ptr32, x: ptr32, factor: int):
     """Write the frame's turns, Q24 rad, and forces, Q12 g, to scratch words."""
     i = 0
-    half = 1 << (c[_SHIFT] - 1)
+    half = 1 << (c[_MOTION_SHIFT] - 1)
     while i < 3:
-        s[_TURNED + i] = (x[4 + i] * factor + half) >> c[_SHIFT]
-        s[_PULLED + i] = int(within((x[i] * c[_FORCE_GAIN] + 0x1000) >> 13, _MOST_FORCE))
+        s[_FRAME_ANGLE_Q24 + i] = (x[4 + i] * factor + half) >> c[_MOTION_SHIFT]
+        s[_FRAME_FORCE_Q12 + i] = int(
+            within((x[i] * c[_FORCE_GAIN] + 0x1000) >> 13, _MOST_FORCE_Q12)
+        )
         i += 1
 
 
 def gather(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
     """Add the frame `x` to the node; return 1 when the node is full, else 0."""
-    convert(s, c, x, (dt_us * c[_GAIN]) >> c[_GAIN_SHIFT])
-    s[_CONING] = int(coning(s, 1, 2))
-    s[_CONING + 1] = int(coning(s, 2, 0))
-    s[_CONING + 2] = int(coning(s, 0, 1))
-    s[_CARRIED] = int(carried(s, 1, 2))
-    s[_CARRIED + 1] = int(carried(s, 2, 0))
-    s[_CARRIED + 2] = int(carried(s, 0, 1))
+    convert(s, c, x, (dt_us * c[_MOTION_GAIN]) >> c[_MOTION_GAIN_SHIFT])
+    s[_CONING_Q24] = int(coning(s, 1, 2))
+    s[_CONING_Q24 + 1] = int(coning(s, 2, 0))
+    s[_CONING_Q24 + 2] = int(coning(s, 0, 1))
+    s[_SCULLING_Q12] = int(carried(s, 1, 2))
+    s[_SCULLING_Q12 + 1] = int(carried(s, 2, 0))
+    s[_SCULLING_Q12 + 2] = int(carried(s, 0, 1))
     advance(s, c)
-    s[_COUNT] += 1
-    s[_ELAPSED_US] += dt_us
-    if s[_ELAPSED_US] < c[_NODE_US]:
+    s[_NODE_N] += 1
+    s[_NODE_ELAPSED_US] += dt_us
+    if s[_NODE_ELAPSED_US] < c[_NODE_US]:
         return 0
     return 1
 
@@ -95,10 +106,10 @@ def advance(s: ptr32, c: ptr32):
     """Add what the frame turned and pulled to the node."""
     i = 0
     while i < 3:
-        s[_FORCE + i] += s[_PULLED + i] + s[_CARRIED + i]
-        angle = s[_PHI + i] + s[_TURNED + i] + s[_CONING + i]
-        s[_PHI + i] = int(within(angle, _TWO_RAD_Q24))
-        if s[_PHI + i] != angle:
+        s[_NODE_FORCE_Q12 + i] += s[_FRAME_FORCE_Q12 + i] + s[_SCULLING_Q12 + i]
+        angle = s[_NODE_ANGLE_Q24 + i] + s[_FRAME_ANGLE_Q24 + i] + s[_CONING_Q24 + i]
+        s[_NODE_ANGLE_Q24 + i] = int(within(angle, _TWO_RAD_Q24))
+        if s[_NODE_ANGLE_Q24 + i] != angle:
             s[_FAST] = c[_NODES]
         i += 1
 
@@ -108,19 +119,19 @@ def close(s: ptr32, c: ptr32):
 
     The node's last sample reaches over its end: the bias' share of that belongs to the next node.
     """
-    s[_ELAPSED_US] -= c[_NODE_US]
-    a = _RING + 3 * s[_HEAD]
+    s[_NODE_ELAPSED_US] -= c[_NODE_US]
+    a = _NODES_RING + 3 * s[_HEAD]
     i = 0
     while i < 3:
-        over = (s[_ELAPSED_US] << 10) // c[_NODE_US]
+        over = (s[_NODE_ELAPSED_US] << 10) // c[_NODE_US]
         over = ((s[_BIAS_Q24 + i] >> 8) * over) >> 2
-        angle = int(within((s[_PHI + i] - over + 0x400) >> 11, _MOST))
-        s[_PHI + i] -= angle << 11
-        over = int(within(s[_FORCE + i] // s[_COUNT], _MOST))
+        angle = int(within((s[_NODE_ANGLE_Q24 + i] - over + 0x400) >> 11, _MOST_ANGLE_Q13))
+        s[_NODE_ANGLE_Q24 + i] -= angle << 11
+        over = int(within(s[_NODE_FORCE_Q12 + i] // s[_NODE_N], _MOST_ANGLE_Q13))
         s[a + i] = (angle << 15) + (over & 0x7FFF)
-        s[_FORCE + i] = 0
+        s[_NODE_FORCE_Q12 + i] = 0
         i += 1
-    s[_COUNT] = 0
+    s[_NODE_N] = 0
     next_node(s, c)
 
 
@@ -131,8 +142,8 @@ def next_node(s: ptr32, c: ptr32):
         s[_HEAD] = 0
     if s[_FILLED] < c[_NODES]:
         s[_FILLED] += 1
-    s[_NEW] += 1
-    s[_AGE] += 1
+    s[_NEW_NODES] += 1
+    s[_AGE_NODES] += 1
     if s[_FAST] > 0:
         s[_FAST] -= 1
 
@@ -140,6 +151,6 @@ def next_node(s: ptr32, c: ptr32):
 def restart(s: ptr32):
     """Forget the node and the window, after a gap in time or a bad reading."""
     i = 0
-    while i < _NEW + 1:
+    while i < _NEW_NODES + 1:
         s[i] = 0
         i += 1

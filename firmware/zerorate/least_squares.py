@@ -17,23 +17,32 @@ ptr32 = None
 
 from .real import add, copy, divide, multiply, put, subtract
 
+# layout: The state of the source in motion
 _STAGE = const(12)
 _SUMS = const(85)
-_G = const(33)
-_P = const(148)
+_KNOWN_P = const(148)
 _PRIOR = const(160)
 _PRIOR_MEAN = const(172)
 _BIAS = const(178)
-_D = const(184)
-_HOLD = const(190)
+_SLOPE = const(184)
+_HELD_NOISE = const(190)
 _OMEGA = const(196)
 _T = const(202)
 _T1 = const(204)
 _T2 = const(206)
 _T3 = const(208)
-_ENERGY = const(222)
+_NOISE_ENERGY = const(222)
+_G = const(33)
+# layout: The sums of one component
+_SUM_MM = const(0)
+_SUM_MY = const(6)
+_SHAPES_M = const(13)
+_SHAPES_Y = const(19)
+_COMPONENT_WORDS = const(21)
+# layout: The settings of the source in motion
+_SLOPE_SPREAD = const(21)
+# layout: end
 
-_SPREAD = const(21)
 
 # .005 and .01 rad, and .7 rad a window: beyond that a step is not linear
 _FLOOR_TILT_Q24 = const(419)
@@ -58,7 +67,7 @@ def element(s: ptr32, d: int, h: int, e: int):
         put(s, _T1, s[h], e)
         multiply(s, _T1, _T1, _OMEGA + i)
         add(s, _T, _T, _T1)
-        h += 21
+        h += _COMPONENT_WORDS
         i += 2
     copy(s, d, _T, 2)
 
@@ -73,7 +82,7 @@ def matrix_element(s: ptr32, n: int):
     j = int(place(i, j))
     copy(s, _T, _PRIOR + 2 * n, 2)
     i = 2 * s[_STAGE] - 42
-    element(s, j, _SUMS + n, i)
+    element(s, j, _SUMS + _SUM_MM + n, i)
 
 
 def right_side(s: ptr32, i: int):
@@ -81,7 +90,7 @@ def right_side(s: ptr32, i: int):
     d = int(place(i, 3))
     j = s[_STAGE] - 16
     put(s, _T, 0, 0)
-    element(s, d, _SUMS + 6 + i, j)
+    element(s, d, _SUMS + _SUM_MY + i, j)
     j = 0
     while j < 3:
         subtract(s, _T1, _PRIOR_MEAN + 2 * j, _BIAS + 2 * j)
@@ -166,7 +175,7 @@ def spread_prior(s: ptr32):
     while i < 6:
         if i == 3 or i == 5:
             d += 2
-        copy(s, d, _P + 2 * i, 2)
+        copy(s, d, _KNOWN_P + 2 * i, 2)
         d += 2
         i += 1
 
@@ -186,14 +195,14 @@ def less(s: ptr32, a: int, b: int) -> int:
 
 
 def step(s: ptr32):
-    """Take the solution as this pass' slope at _D, no longer than the step that stays linear."""
+    """Take the solution as this pass' slope, no longer than the step that stays linear."""
     i = -s[_STAGE]
     put(s, _T, _LIMIT_Q24, i)
     copy(s, _T1, _T, 2)
     i = 0
     while i < 3:
         d = int(place(i, 3))
-        copy(s, _D + 2 * i, d, 2)
+        copy(s, _SLOPE + 2 * i, d, 2)
         copy(s, _T2, d, 2)
         magnitude(s, _T2)
         if int(less(s, _T1, _T2)):
@@ -202,18 +211,18 @@ def step(s: ptr32):
     divide(s, _T, _T, _T1)
     i = 0
     while i < 6:
-        multiply(s, _D + i, _D + i, _T)
+        multiply(s, _SLOPE + i, _SLOPE + i, _T)
         i += 2
 
 
 def shape(s: ptr32, d: int, m: int, y: int):
-    """Store at d the square of what the slope at _D leaves of a shape, with sums at m and y."""
+    """Store at d the square of what _SLOPE leaves of a shape, with sums at m and y."""
     put(s, _T, s[y], 0)
     i = 0
     while i < 6:
         y = s[_STAGE] - 26
         put(s, _T1, s[m], y)
-        y = _D + i
+        y = _SLOPE + i
         multiply(s, _T1, _T1, y)
         subtract(s, _T2, _T, _T1)
         copy(s, _T, _T2, 2)
@@ -227,12 +236,12 @@ def noise(s: ptr32, i: int):
 
     Mean squares of the shapes under the taper: .7111 and .0277 a node.
     """
-    a = _SUMS + 21 * i
+    a = _SUMS + _COMPONENT_WORDS * i
     d = _OMEGA + 2 * i
-    shape(s, _T3, a + 13, a + 19)
+    shape(s, _T3, a + _SHAPES_M, a + _SHAPES_Y)
     put(s, _T, 11520, -14)
     multiply(s, d, _T3, _T)
-    shape(s, _T3, a + 16, a + 20)
+    shape(s, _T3, a + _SHAPES_M + 3, a + _SHAPES_Y + 1)
     put(s, _T, 18482, -10)
     multiply(s, _T3, _T3, _T)
     add(s, _T3, _T3, d)
@@ -248,23 +257,23 @@ def noise(s: ptr32, i: int):
 def weights(s: ptr32, c: ptr32):
     """Turn noise energies into weights: both tilts alike, none below what earlier windows had.
 
-    The energies in use are left at _ENERGY.
+    The energies in use are left at _NOISE_ENERGY.
     """
     add(s, _T, _OMEGA, _OMEGA + 2)
     put(s, _OMEGA, s[_T], s[_T + 1] - 1)
     copy(s, _OMEGA + 2, _OMEGA, 2)
     i = 0
     while i < 6:
-        if int(less(s, _OMEGA + i, _HOLD + i)):
-            copy(s, _OMEGA + i, _HOLD + i, 2)
-        copy(s, _ENERGY + i, _OMEGA + i, 2)
+        if int(less(s, _OMEGA + i, _HELD_NOISE + i)):
+            copy(s, _OMEGA + i, _HELD_NOISE + i, 2)
+        copy(s, _NOISE_ENERGY + i, _OMEGA + i, 2)
         weigh(s, c, _OMEGA + i)
         i += 2
 
 
 def weigh(s: ptr32, c: ptr32, a: int):
     """Replace a noise energy by the weight it gives."""
-    put(s, _T, c[_SPREAD], 0)
+    put(s, _T, c[_SLOPE_SPREAD], 0)
     multiply(s, _T1, _T, a)
     put(s, _T, 1, 0)
     divide(s, a, _T, _T1)
@@ -274,14 +283,14 @@ def held_weights(s: ptr32, c: ptr32):
     """Set the weights from the noise energies held from earlier windows."""
     i = 0
     while i < 6:
-        copy(s, _OMEGA + i, _HOLD + i, 2)
+        copy(s, _OMEGA + i, _HELD_NOISE + i, 2)
         weigh(s, c, _OMEGA + i)
         i += 2
 
 
 def own_square(s: ptr32, i: int):
     """Store the sum of squares of component i's own M at _T1; the sums are in order 00 .. 22."""
-    a = _SUMS + 24 * i
+    a = _SUMS + (_COMPONENT_WORDS + 3) * i
     if i == 2:
         a -= 1
     i = 2 * s[_STAGE] - 42
@@ -289,17 +298,17 @@ def own_square(s: ptr32, i: int):
 
 
 def own_slope(s: ptr32, i: int):
-    """Store component i's own slope at _D, as the document takes it: no other axis, no prior."""
+    """Store component i's own slope at _SLOPE, as US 10,451,438 takes it: no other axis."""
     own_square(s, i)
     a = s[_STAGE] - 16
-    put(s, _T, s[_SUMS + 22 * i + 6], a)
-    divide(s, _D + 2 * i, _T, _T1)
+    put(s, _T, s[_SUMS + (_COMPONENT_WORDS + 1) * i + _SUM_MY], a)
+    divide(s, _SLOPE + 2 * i, _T, _T1)
 
 
 def own_variance(s: ptr32, c: ptr32, i: int):
     """Put the variance of component i's own slope on the matrix' diagonal, negative."""
     own_square(s, i)
-    put(s, _T, -c[_SPREAD], 0)
+    put(s, _T, -c[_SLOPE_SPREAD], 0)
     multiply(s, _T, _T, _OMEGA + 2 * i)
     i = int(place(i, i))
     divide(s, i, _T, _T1)

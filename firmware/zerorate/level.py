@@ -15,20 +15,25 @@ from .attitude import heading_q12, rotation
 from .fixed import root
 from .increments import within
 
+# layout: The state of the source in motion
+_TAPER_SUM = const(18)
+_LAST_HEADING_Q12 = const(23)
+_HEADING_TURNS = const(24)
 _Q = const(25)
 _START = const(29)
 _R = const(33)
 _Y = const(51)
-_WEIGHT = const(60)
+_TAPER = const(60)
 _UP = const(63)
-_TOTAL = const(18)
-_LAST = const(23)
-_TURNS = const(24)
 _SUMS = const(85)
+_CENTRE = const(213)
 _TILT = const(97)
 _OTHER_TILT = const(118)
-_M = const(202)
-_CENTRE = const(213)
+_LOOK = const(202)
+# layout: The sums of one component
+_SUM_M = const(9)
+_COMPONENT_WORDS = const(21)
+# layout: end
 
 _WRAP_Q12 = const(25736)
 _MOST_Q12 = const(0x7FFF)
@@ -40,15 +45,15 @@ def begin_attitude(s: ptr32):
     while i < 4:
         s[_Q + i] = s[_START + i] << 14
         i += 1
-    s[_LAST] = 0
-    s[_TURNS] = 0
+    s[_LAST_HEADING_Q12] = 0
+    s[_HEADING_TURNS] = 0
 
 
 def look_along(s: ptr32, scale: int):
-    """Set _START to the quaternion at _M divided by its length, which is `scale`, as Q14."""
+    """Set _START to the quaternion at _LOOK divided by its length, which is `scale`, as Q14."""
     i = 0
     while i < 4:
-        s[_START + i] = (s[_M + i] << 14) // scale
+        s[_START + i] = (s[_LOOK + i] << 14) // scale
         i += 1
 
 
@@ -66,18 +71,18 @@ def find_up(s: ptr32):
     if over:
         y = -y
         z = -z
-    s[_M] = scale + z
-    s[_M + 1] = y
-    s[_M + 2] = 0 - x
-    s[_M + 3] = 0
-    scale = int(root(s[_M] * s[_M] + x * x + y * y))
+    s[_LOOK] = scale + z
+    s[_LOOK + 1] = y
+    s[_LOOK + 2] = 0 - x
+    s[_LOOK + 3] = 0
+    scale = int(root(s[_LOOK] * s[_LOOK] + x * x + y * y))
     if over:
-        s[_M + 3] = x
-        s[_M + 2] = 0
-        s[_M + 1] = s[_M]
-        s[_M] = 0 - y
+        s[_LOOK + 3] = x
+        s[_LOOK + 2] = 0
+        s[_LOOK + 1] = s[_LOOK]
+        s[_LOOK] = 0 - y
     if scale == 0:
-        s[_M] = 1
+        s[_LOOK] = 1
         scale = 1
     look_along(s, scale)
 
@@ -86,15 +91,15 @@ def lean_back(s: ptr32):
     """Turn _START by the mean tilts that the traversal left, Q12 rad."""
     x = int(within(-s[_TILT], 4096)) << 1
     y = int(within(-s[_OTHER_TILT], 4096)) << 1
-    s[_M] = s[_START] - ((x * s[_START + 1] + y * s[_START + 2]) >> 14)
-    s[_M + 1] = s[_START + 1] + ((x * s[_START] + y * s[_START + 3]) >> 14)
-    s[_M + 2] = s[_START + 2] + ((y * s[_START] - x * s[_START + 3]) >> 14)
-    s[_M + 3] = s[_START + 3] + ((x * s[_START + 2] - y * s[_START + 1]) >> 14)
+    s[_LOOK] = s[_START] - ((x * s[_START + 1] + y * s[_START + 2]) >> 14)
+    s[_LOOK + 1] = s[_START + 1] + ((x * s[_START] + y * s[_START + 3]) >> 14)
+    s[_LOOK + 2] = s[_START + 2] + ((y * s[_START] - x * s[_START + 3]) >> 14)
+    s[_LOOK + 3] = s[_START + 3] + ((x * s[_START + 2] - y * s[_START + 1]) >> 14)
     i = 0
     x = 0
     while i < 4:
-        s[_M + i] = s[_M + i] >> 1
-        x += s[_M + i] * s[_M + i]
+        s[_LOOK + i] = s[_LOOK + i] >> 1
+        x += s[_LOOK + i] * s[_LOOK + i]
         i += 1
     look_along(s, int(root(x)))
 
@@ -117,7 +122,7 @@ def turned_mean(s: ptr32, i: int, k: int) -> int:
     j = 0
     total = 0
     while j < 3:
-        mean = (s[_SUMS + 21 * j + 9 + k] << 8) // (s[_TOTAL] >> 2)
+        mean = (s[_SUMS + _COMPONENT_WORDS * j + _SUM_M + k] << 8) // (s[_TAPER_SUM] >> 2)
         total += (s[_R + 3 * i + j] * mean) >> 2
         j += 1
     return total >> 12
@@ -141,13 +146,13 @@ def observe(s: ptr32, a: int):
     force = int(force_q12(s, a, 0))
     s[_Y + 1] = int(within(force, _MOST_Q12))
     force = int(force_q12(s, a, 6))
-    s[_UP] += (s[_WEIGHT] * force + 512) >> 10
+    s[_UP] += (s[_TAPER] * force + 512) >> 10
     force = int(heading_q12(s))
-    a = force - s[_LAST]
-    s[_LAST] = force
+    a = force - s[_LAST_HEADING_Q12]
+    s[_LAST_HEADING_Q12] = force
     if a > _WRAP_Q12:
-        s[_TURNS] -= 1
+        s[_HEADING_TURNS] -= 1
     elif a < -_WRAP_Q12:
-        s[_TURNS] += 1
-    force += int(within(s[_TURNS], 3)) * 51472
+        s[_HEADING_TURNS] += 1
+    force += int(within(s[_HEADING_TURNS], 3)) * 51472
     s[_Y + 2] = int(within(force, _MOST_Q12))

@@ -7,9 +7,9 @@ Little-endian:
     16 tick in us u32
     20 five doubles: gyro LSB/dps, accel LSB/g, temp LSB/degC, temp offset degC, odr Hz
     60 inputs: kind, shift, offset, i32 each
-    then slots: 30 i32 each, words 0..29 of model.py, but indices of inputs and tables
+    then slots: 30 i32 each, those before SLOT_OWN (docs/layout.md), indices instead of words
     then tables: 9 i32 each, Q24
-    then play operators: 13 i32 each, words 0..12 of model.py, but the index of the input
+    then play operators: 13 i32 each, those before PLAY_STARTED, an index as the input
     then texts, each a length byte and UTF-8: sensor, channels, what each slot and operator corrects
     then CRC-32 of all before it
 """
@@ -25,10 +25,6 @@ except ImportError:
     def const(value):
         return value
 
-
-SLOTS = 8
-CHANNELS = 8
-PLAYS = 6
 
 LOADED = const(0)
 UNREADABLE = const(1)
@@ -57,34 +53,85 @@ REASONS = (
     "the model holds what cannot be",
 )
 
-_VERSION = const(1)
+_MODEL_VERSION = const(1)
 _VERSION_WITH_PLAYS = const(2)
 _BODY = const(60)
-_INPUT = const(32)
-_SLOT = const(112)
-_TABLE = const(432)
-_RING = const(450)
+# layout: The effect model and its running state
+_INPUT_COUNT = const(1)
+_TICK_US = const(2)
+_SLOTS_A_SAMPLE = const(6)
+_INSTANT_SLOTS = const(9)
+_PLAY_COUNT = const(19)
+_INPUTS = const(32)
+_SLOTS = const(112)
+_TABLES = const(432)
+_RINGS = const(450)
+_PLAYS = const(902)
+# layout: An input of the effect model
+_INPUT_KIND = const(0)
+_INPUT_SHIFT = const(1)
+_INPUT_SUM = const(3)
+_INPUT_VALUE_Q8 = const(5)
+_INPUT_WORDS = const(6)
+# layout: An effect slot
+_SLOT_SOURCE = const(0)
+_SLOT_LOWEST_Q8 = const(1)
+_SLOT_HIGHEST_Q8 = const(2)
+_SLOT_CENTRE_Q8 = const(3)
+_SLOT_SHIFT = const(4)
+_SLOT_POWER = const(5)
+_SLOT_MEMORY = const(7)
+_SLOT_LAG = const(8)
+_SLOT_HALF_WIDTH = const(10)
+_SLOT_KNOT = const(11)
+_SLOT_SECOND = const(12)
+_SLOT_DECAY = const(17)
+_SLOT_TABLE = const(19)
+_SLOT_TABLE_SCALE = const(21)
+_SLOT_COEFFICIENT_SHIFT = const(23)
+_SLOT_COEFFICIENT = const(24)
+_SLOT_RING = const(27)
+_SLOT_DELAY = const(28)
+_SLOT_RING_STEP = const(29)
+_SLOT_OWN = const(30)
+_SLOT_INSTANT = const(33)
 _SLOT_WORDS = const(40)
-_MOST_INPUTS = const(12)
-_MOST_TABLES = const(2)
-_MOST_RINGS = const(2)
-_ANY = const(255)
-_PLAYS = const(19)
-_PLAY = const(902)
+# layout: A play operator
+_PLAY_SOURCE = const(0)
+_PLAY_RADIUS = const(5)
+_PLAY_SHIFT = const(6)
+_PLAY_COEFFICIENT = const(7)
+_PLAY_OF_SQUARE = const(10)
+_PLAY_STARTED = const(13)
 _PLAY_WORDS = const(15)
-_NONE = const(-0x3FFFFFFF)
-_LIMIT = const(0x4000000)
-_INSTANT = const(10)
+# layout: A delay's ring
+_RING_WORDS = const(66)
+# layout: Sources of effects: an acceleration, the temperature, a mean rate, ..., a channel
+_KIND_INSTANT = const(10)
+_KIND_CHANNEL = const(16)
+# layout: What of the sample itself a slot follows
 _OF_RATE = const(1)
 _OF_ACCELERATION = const(2)
-_EXTRA = const(16)
+# layout: Values that stand for none
+_NO_VALUE = const(-0x3FFFFFFF)
+# layout: How many of each an effect model has at most
+_MOST_SLOTS = const(8)
+_MOST_INPUTS = const(12)
+_MOST_CHANNELS = const(8)
+_MOST_PLAYS = const(6)
+_MOST_TABLES = const(2)
+_MOST_RINGS = const(2)
+_TABLE_POINTS = const(9)
+# layout: end
+_ANY = const(255)
+_MOST_COEFFICIENT = const(0x4000000)
 
 
 def judge(data):
     """Say whether data is a whole model of this version."""
     if len(data) < 4 or bytes(data[:3]) != b"ZRM":
         return NO_MODEL
-    if not _VERSION <= data[3] <= _VERSION_WITH_PLAYS:
+    if not _MODEL_VERSION <= data[3] <= _VERSION_WITH_PLAYS:
         return OTHER_VERSION
     if len(data) < _BODY + 4 or len(data) < data[4] | data[5] << 8:
         return TRUNCATED
@@ -92,9 +139,14 @@ def judge(data):
     checksum(data, len(data) - 4, crc)
     if bytes(data[-4:]) != bytes(crc) or len(data) != data[4] | data[5] << 8:
         return DAMAGED
-    if data[6] > SLOTS or data[7] > _MOST_INPUTS or data[8] > _MOST_TABLES or data[9] > CHANNELS:
+    if (
+        data[6] > _MOST_SLOTS
+        or data[7] > _MOST_INPUTS
+        or data[8] > _MOST_TABLES
+        or data[9] > _MOST_CHANNELS
+    ):
         return TOO_LARGE
-    if data[10] > PLAYS:
+    if data[10] > _MOST_PLAYS:
         return TOO_LARGE
     if (data[10] > 0) != (data[3] == _VERSION_WITH_PLAYS):
         return IMPOSSIBLE
@@ -126,31 +178,35 @@ def alike(one, other):
 
 def fill(e, data, sensor):
     """Put the model's integers into e; IMPOSSIBLE where the kernels could not live with them."""
-    e[1] = data[7]
+    e[_INPUT_COUNT] = data[7]
     tick_us = unpack_from("<I", data, 16)[0]
     if texts_at(data) + 4 > len(data) or not 10000 <= tick_us < 1 << 29:
         return IMPOSSIBLE
-    e[2] = tick_us
-    e[6] = int(2e6 * (data[6] + data[10]) / (sensor.odr_hz * tick_us)) + 1
+    e[_TICK_US] = tick_us
+    e[_SLOTS_A_SAMPLE] = int(2e6 * (data[6] + data[10]) / (sensor.odr_hz * tick_us)) + 1
     at = _BODY
     for i in range(data[7]):
-        for j in range(3):
-            if not put(e, _INPUT + 6 * i + j, data, at):
+        a = _INPUTS + _INPUT_WORDS * i
+        for j in range(_INPUT_SUM):
+            if not put(e, a + j, data, at):
                 return IMPOSSIBLE
             at += 4
-        kind, shift = e[_INPUT + 6 * i], e[_INPUT + 6 * i + 1]
-        if not 0 <= kind < _EXTRA + CHANNELS or not (-8 if kind >= _EXTRA else 0) <= shift <= 15:
+        kind, shift = e[a + _INPUT_KIND], e[a + _INPUT_SHIFT]
+        if (
+            not 0 <= kind < _KIND_CHANNEL + _MOST_CHANNELS
+            or not (-8 if kind >= _KIND_CHANNEL else 0) <= shift <= 15
+        ):
             return IMPOSSIBLE
     for i in range(data[6]):
-        a = _SLOT + _SLOT_WORDS * i
-        for j in range(30):
+        a = _SLOTS + _SLOT_WORDS * i
+        for j in range(_SLOT_OWN):
             if not put(e, a + j, data, at):
                 return IMPOSSIBLE
             at += 4
         if not link(e, a, data[8]):
             return IMPOSSIBLE
-    for i in range(9 * data[8]):
-        if not put(e, _TABLE + i, data, at):
+    for i in range(_TABLE_POINTS * data[8]):
+        if not put(e, _TABLES + i, data, at):
             return IMPOSSIBLE
         at += 4
     return fill_plays(e, data, at)
@@ -158,27 +214,30 @@ def fill(e, data, sensor):
 
 def fill_plays(e, data, at):
     """Put the play operators at `at` into e; IMPOSSIBLE as `fill`."""
-    e[_PLAYS] = data[10]
-    for a in range(_PLAY, _PLAY + _PLAY_WORDS * data[10], _PLAY_WORDS):
-        for j in range(13):
+    e[_PLAY_COUNT] = data[10]
+    for a in range(_PLAYS, _PLAYS + _PLAY_WORDS * data[10], _PLAY_WORDS):
+        for j in range(_PLAY_STARTED):
             if not put(e, a + j, data, at):
                 return IMPOSSIBLE
             at += 4
-        if not 0 <= e[a] < e[1] or of_the_sample(e, e[a]) or not source_is_bounded(e, a):
+        source, shift = a + _PLAY_SOURCE, e[a + _PLAY_SHIFT]
+        if not 0 <= e[source] < e[_INPUT_COUNT] or of_the_sample(kind_of(e, source)):
             return IMPOSSIBLE
-        if not 0 <= e[a + 5] <= 1 << 25 or not 15 <= e[a + 6] <= 30:
+        if not source_is_bounded(e, source):
             return IMPOSSIBLE
-        for i in (7, 10):
-            if not coefficients_are_bounded(e, a + i, e[a + 6]):
+        if not 0 <= e[a + _PLAY_RADIUS] <= 1 << 25 or not 15 <= shift <= 30:
+            return IMPOSSIBLE
+        for i in (_PLAY_COEFFICIENT, _PLAY_OF_SQUARE):
+            if not coefficients_are_bounded(e, a + i, shift):
                 return IMPOSSIBLE
-        e[a] = _INPUT + 6 * e[a] + 5
+        e[source] = word_of(e[source], _INPUTS + _INPUT_VALUE_Q8, _INPUT_WORDS)
     return LOADED
 
 
 def put(e, to, data, at):
     """Put the integer at `at` into e[to]; False where it leaves what kernels can bear."""
     value = unpack_from("<i", data, at)[0]
-    if value != _NONE and not -(1 << 29) < value < 1 << 29:
+    if value != _NO_VALUE and not -(1 << 29) < value < 1 << 29:
         return False
     e[to] = value
     return True
@@ -186,67 +245,90 @@ def put(e, to, data, at):
 
 def link(e, a, tables):
     """Turn the slot's indices into words of e and check its numbers; False where they are wrong."""
-    if not 0 <= e[a] < e[1] or not -1 <= e[a + 12] < e[1] or not -1 <= e[a + 19] < tables:
+    if (
+        not 0 <= e[a + _SLOT_SOURCE] < e[_INPUT_COUNT]
+        or not -1 <= e[a + _SLOT_SECOND] < e[_INPUT_COUNT]
+        or not -1 <= e[a + _SLOT_TABLE] < tables
+    ):
         return False
-    if not -1 <= e[a + 27] < _MOST_RINGS or not 0 <= e[a + 28] <= 63 * e[a + 29]:
+    if (
+        not -1 <= e[a + _SLOT_RING] < _MOST_RINGS
+        or not 0 <= e[a + _SLOT_DELAY] <= 63 * e[a + _SLOT_RING_STEP]
+    ):
         return False
-    instant = of_the_sample(e, e[a])
-    if e[a + 12] >= 0 and instant != _OF_RATE:
-        instant = of_the_sample(e, e[a + 12]) or instant
-    if instant and (e[a + 7] or e[a + 17] or e[a + 27] >= 0):
+    instant = of_the_sample(kind_of(e, a + _SLOT_SOURCE))
+    if e[a + _SLOT_SECOND] >= 0 and instant != _OF_RATE:
+        instant = of_the_sample(kind_of(e, a + _SLOT_SECOND)) or instant
+    if instant and (e[a + _SLOT_MEMORY] or e[a + _SLOT_DECAY] or e[a + _SLOT_RING] >= 0):
         return False
     if not bounded(e, a):
         return False
-    e[a] = _INPUT + 6 * e[a] + 5
-    e[a + 12] = _INPUT + 6 * e[a + 12] + 5 if e[a + 12] >= 0 else 0
-    e[a + 19] = _TABLE + 9 * e[a + 19] if e[a + 19] >= 0 else 0
-    e[a + 27] = _RING + 66 * e[a + 27] if e[a + 27] >= 0 else 0
+    e[a + _SLOT_SOURCE] = word_of(e[a + _SLOT_SOURCE], _INPUTS + _INPUT_VALUE_Q8, _INPUT_WORDS)
+    e[a + _SLOT_SECOND] = word_of(e[a + _SLOT_SECOND], _INPUTS + _INPUT_VALUE_Q8, _INPUT_WORDS)
+    e[a + _SLOT_TABLE] = word_of(e[a + _SLOT_TABLE], _TABLES, _TABLE_POINTS)
+    e[a + _SLOT_RING] = word_of(e[a + _SLOT_RING], _RINGS, _RING_WORDS)
     for i in range(3):
-        e[a + 30 + i] = e[a + 24 + i]
-    e[a + 33] = instant
+        e[a + _SLOT_OWN + i] = e[a + _SLOT_COEFFICIENT + i]
+    e[a + _SLOT_INSTANT] = instant
     if instant:
-        e[9] += 1
+        e[_INSTANT_SLOTS] += 1
     return True
 
 
-def of_the_sample(e, i):
-    """Whether input i is a rate (1) or an acceleration (2) of the sample itself, or neither (0)."""
-    kind = e[_INPUT + 6 * i]
-    if kind < _INSTANT or kind >= _EXTRA:
+def of_the_sample(kind):
+    """Whether a source is a rate or an acceleration of the sample itself; 0: neither."""
+    if kind < _KIND_INSTANT or kind >= _KIND_CHANNEL:
         return 0
-    return _OF_RATE if kind < _INSTANT + 3 else _OF_ACCELERATION
+    return _OF_RATE if kind < _KIND_INSTANT + 3 else _OF_ACCELERATION
+
+
+def kind_of(e, at):
+    """Return the kind of the input whose index is at the word `at`."""
+    return e[_INPUTS + _INPUT_WORDS * e[at] + _INPUT_KIND]
+
+
+def word_of(index, first, words):
+    """Return the word of that block of so many words, 0 for an index of -1."""
+    return first + words * index if index >= 0 else 0
 
 
 def bounded(e, a):
     """Say whether every number of the slot keeps the kernels within 31 bits."""
-    if not source_is_bounded(e, a) or not source_is_bounded(e, a + 12):
+    if not source_is_bounded(e, a + _SLOT_SOURCE) or not source_is_bounded(e, a + _SLOT_SECOND):
         return False
-    if not 1 <= e[a + 29] <= 256:
+    if not 1 <= e[a + _SLOT_RING_STEP] <= 256:
         return False
-    for f in (8, 17):
+    for f in (_SLOT_LAG, _SLOT_DECAY):
         if not 0 <= e[a + f] <= 1 << 15 or not 0 <= e[a + f + 1] <= 13:
             return False
-    if not 1 <= e[a + 5] <= 3 or not 0 <= e[a + 7] <= 5 or not 15 <= e[a + 23] <= 30:
+    if (
+        not 1 <= e[a + _SLOT_POWER] <= 3
+        or not 0 <= e[a + _SLOT_MEMORY] <= 5
+        or not 15 <= e[a + _SLOT_COEFFICIENT_SHIFT] <= 30
+    ):
         return False
-    if e[a + 19] >= 0 and not 15 <= e[a + 22] <= 30:
+    if e[a + _SLOT_TABLE] >= 0 and not 15 <= e[a + _SLOT_TABLE_SCALE + 1] <= 30:
         return False
-    if not coefficients_are_bounded(e, a + 24, e[a + 23]):
+    if not coefficients_are_bounded(e, a + _SLOT_COEFFICIENT, e[a + _SLOT_COEFFICIENT_SHIFT]):
         return False
-    return abs(e[a + 10]) <= 1 << 25 and (e[a + 11] == _NONE or abs(e[a + 11]) <= 1 << 25)
+    return abs(e[a + _SLOT_HALF_WIDTH]) <= 1 << 25 and (
+        e[a + _SLOT_KNOT] == _NO_VALUE or abs(e[a + _SLOT_KNOT]) <= 1 << 25
+    )
 
 
 def source_is_bounded(e, f):
-    """Whether a source, centred by the words at f, stays within Q24."""
-    most = max(abs(e[f + 1] - e[f + 3]), abs(e[f + 2] - e[f + 3]))
-    if not -8 <= e[f + 4] <= 24 or e[f + 1] > e[f + 2]:
+    """Whether a source, centred by the words of a slot or play operator at f, stays within Q24."""
+    low, high, shift = e[f + _SLOT_LOWEST_Q8], e[f + _SLOT_HIGHEST_Q8], e[f + _SLOT_SHIFT]
+    most = max(abs(low - e[f + _SLOT_CENTRE_Q8]), abs(high - e[f + _SLOT_CENTRE_Q8]))
+    if not -8 <= shift <= 24 or low > high:
         return False
-    return (most << e[f + 4] if e[f + 4] >= 0 else most >> -e[f + 4]) <= 1 << 24
+    return (most << shift if shift >= 0 else most >> -shift) <= 1 << 24
 
 
 def coefficients_are_bounded(e, f, shift):
     """Whether the three coefficients at f keep what is added within 31 bits."""
     for i in range(f, f + 3):
-        if abs(e[i]) >> max(0, shift - 24) > 1 << 28 or abs(e[i]) > _LIMIT:
+        if abs(e[i]) >> max(0, shift - 24) > 1 << 28 or abs(e[i]) > _MOST_COEFFICIENT:
             return False
     return True
 

@@ -3,7 +3,41 @@
 from array import array
 from math import ceil, log, pi
 
-STATE_WORDS = 240
+try:
+    from micropython import const
+except ImportError:
+
+    def const(value):
+        return value
+
+
+# layout: The state of the source in motion
+_NODES_RING = const(240)
+# layout: The settings of the source in motion
+_NODE_US = const(0)
+_MOTION_GAIN = const(1)
+_MOTION_GAIN_SHIFT = const(2)
+_MOTION_SHIFT = const(3)
+_FORCE_GAIN = const(4)
+_VISITS = const(5)
+_MOTION_GAP_US = const(6)
+_LEAST_TRAFFIC = const(7)
+_NODES = const(8)
+_PASSES = const(9)
+_LSB_A_UNIT = const(10)
+_BIAS_WALK = const(12)
+_START_VARIANCE = const(14)
+_LONGEST = const(16)
+_SHORTEST_STAGE = const(17)
+_LEAST_UP = const(18)
+_PATIENCE = const(19)
+_MOTION_DOCUMENT = const(20)
+_SLOPE_SPREAD = const(21)
+_SETTLED = const(22)
+_TEMP_SLOPE_START = const(23)
+_BEND = const(25)
+_MOTION_SETTINGS_WORDS = const(26)
+# layout: end
 _SPARE_NODES = 17
 _ALGEBRA = 90
 
@@ -39,7 +73,7 @@ def motion_settings(
     patience=6,
     settled_dps=0.005,
 ):
-    """Return the settings as array('i'), 26 words.
+    """Return the settings as array('i').
 
     odr_hz: samples a second; node_s: time of a node; longest_stage: the window is 2^that nodes;
     start_dps: one sigma of the bias before anything is known; walk_dps: its random walk a root
@@ -65,30 +99,32 @@ def motion_settings(
     while rad_per_lsb_us * (1 << shift) * (1 << gain_shift) < 1024 and gain_shift < 28:
         gain_shift += 1
     unit = node_s * (1 << 24) * pi / 180
-    c = [0] * 26
-    c[0] = int(node_s * 1e6)
-    c[1] = int(rad_per_lsb_us * (1 << shift) * (1 << gain_shift) + 0.5)
-    c[2] = gain_shift
-    c[3] = shift
-    c[4] = int((1 << 25) / accel_lsb_per_g + 0.5)
-    c[5] = ceil(steps / (_SPARE_NODES * node_s * odr_hz))
-    c[6] = int(2 * sample_us)
-    c[7] = int(least_dps * node_s * pi / 180 * (1 << 13))
-    c[8] = longest + _SPARE_NODES
-    c[9] = passes
-    c[10], c[11] = _real(gyro_lsb_per_dps * 256 / unit)
-    c[12], c[13] = _real((walk_dps * unit) ** 2 * node_s)
-    c[14], c[15] = _real((start_dps * unit) ** 2)
-    c[16] = longest
-    c[17] = longest_stage - 3
-    c[18] = int(least_up_g * 4096)
-    c[19] = patience
-    c[20] = 1 if document else 0
-    c[21] = spread
-    c[22] = int(settled_dps * unit)
+    c = [0] * _MOTION_SETTINGS_WORDS
+    c[_NODE_US] = int(node_s * 1e6)
+    c[_MOTION_GAIN] = int(rad_per_lsb_us * (1 << shift) * (1 << gain_shift) + 0.5)
+    c[_MOTION_GAIN_SHIFT] = gain_shift
+    c[_MOTION_SHIFT] = shift
+    c[_FORCE_GAIN] = int((1 << 25) / accel_lsb_per_g + 0.5)
+    c[_VISITS] = ceil(steps / (_SPARE_NODES * node_s * odr_hz))
+    c[_MOTION_GAP_US] = int(2 * sample_us)
+    c[_LEAST_TRAFFIC] = int(least_dps * node_s * pi / 180 * (1 << 13))
+    c[_NODES] = longest + _SPARE_NODES
+    c[_PASSES] = passes
+    c[_LSB_A_UNIT], c[_LSB_A_UNIT + 1] = _real(gyro_lsb_per_dps * 256 / unit)
+    c[_BIAS_WALK], c[_BIAS_WALK + 1] = _real((walk_dps * unit) ** 2 * node_s)
+    c[_START_VARIANCE], c[_START_VARIANCE + 1] = _real((start_dps * unit) ** 2)
+    c[_LONGEST] = longest
+    c[_SHORTEST_STAGE] = longest_stage - 3
+    c[_LEAST_UP] = int(least_up_g * 4096)
+    c[_PATIENCE] = patience
+    c[_MOTION_DOCUMENT] = 1 if document else 0
+    c[_SLOPE_SPREAD] = spread
+    c[_SETTLED] = int(settled_dps * unit)
     if temp_lsb_per_degc:
-        c[23], c[24] = _real((slope_dps_per_degc * unit / temp_lsb_per_degc) ** 2)
-        c[25] = int(log(bend_degc * temp_lsb_per_degc) / log(2) + 0.5)
+        c[_TEMP_SLOPE_START], c[_TEMP_SLOPE_START + 1] = _real(
+            (slope_dps_per_degc * unit / temp_lsb_per_degc) ** 2
+        )
+        c[_BEND] = int(log(bend_degc * temp_lsb_per_degc) / log(2) + 0.5)
     return array("i", c)
 
 
@@ -96,6 +132,6 @@ def motion_state(settings):
     """Return the state as array('i'), nothing known yet."""
     from .motion_verdict import clear
 
-    state = array("i", [0] * (STATE_WORDS + 3 * settings[8]))
+    state = array("i", [0] * (_NODES_RING + 3 * settings[_NODES]))
     clear(state, settings)
     return state

@@ -20,22 +20,16 @@ from .least_squares import covariance, less, place
 from .real import copy, multiply, put, root_of, subtract, whole
 from .thermal import forget_slopes, learn_slopes, present
 
-GROWING = const(1)
-LEARNED = const(2)
-STILL = const(3)
-TURNED = const(4)
-TOO_FAST = const(5)
-LOST = const(6)
-
+# layout: The state of the source in motion
 _HEAD = const(8)
 _FILLED = const(9)
-_NEW = const(10)
+_NEW_NODES = const(10)
 _LENGTH = const(11)
 _STAGE = const(12)
 _PASS = const(14)
-_FIRST = const(16)
-_REASON = const(17)
-_TOTAL = const(18)
+_FIRST_NODE = const(16)
+_MOTION_REASON = const(17)
+_TAPER_SUM = const(18)
 _START = const(29)
 _UP = const(63)
 _FAST = const(64)
@@ -43,29 +37,37 @@ _TRAFFIC = const(65)
 _ACCEPTED = const(67)
 _REFUSED = const(68)
 _AGAINST = const(69)
-_OUT_Q8 = const(70)
-_QUALITY_Q8 = const(73)
-_SLOPES_Q8 = const(76)
-_G = const(33)
-_P = const(148)
+_MOTION_BIAS_Q8 = const(70)
+_MOTION_QUALITY_Q8 = const(73)
+_NOTED_SLOPES_Q8 = const(76)
+_KNOWN_P = const(148)
 _PRIOR_MEAN = const(172)
 _BIAS = const(178)
-_D = const(184)
-_HOLD = const(190)
+_SLOPE = const(184)
+_HELD_NOISE = const(190)
 _T = const(202)
 _T1 = const(204)
 _CENTRE = const(213)
-_ENERGY = const(222)
-
+_NOISE_ENERGY = const(222)
+# layout: The settings of the source in motion
 _LEAST_TRAFFIC = const(7)
 _NODES = const(8)
-_LSB = const(10)
+_LSB_A_UNIT = const(10)
 _START_VARIANCE = const(14)
 _LONGEST = const(16)
 _SHORTEST_STAGE = const(17)
 _LEAST_UP = const(18)
 _PATIENCE = const(19)
-_DOCUMENT = const(20)
+_MOTION_DOCUMENT = const(20)
+# layout: What a window in motion taught
+_GROWING = const(1)
+_LEARNED = const(2)
+_HARDLY_MOVES = const(3)
+_TURNED = const(4)
+_TOO_FAST = const(5)
+_LOST = const(6)
+# layout: end
+
 
 _SETTLED_AFTER = const(3)
 
@@ -75,13 +77,13 @@ def clear(s: ptr32, c: ptr32):
     i = 0
     while i < 3:
         put(s, _BIAS + 2 * i, 0, 0)
-        s[_QUALITY_Q8 + i] = 0x1FFFFFFF
+        s[_MOTION_QUALITY_Q8 + i] = 0x1FFFFFFF
         i += 1
     forget_slopes(s, c)
     s[_ACCEPTED] = 0
     s[_AGAINST] = 0
     s[_STAGE] = c[_SHORTEST_STAGE]
-    if c[_DOCUMENT]:
+    if c[_MOTION_DOCUMENT]:
         s[_STAGE] = c[_SHORTEST_STAGE] + 3
     s[_LENGTH] = 1 << s[_STAGE]
 
@@ -90,36 +92,36 @@ def know_nothing(s: ptr32, c: ptr32, tilt: int, heading: int):
     """Set the prior to the widest one about no bias, and the noise energies, Q24 rad^2."""
     i = 0
     while i < 6:
-        put(s, _P + 2 * i, 0, 0)
+        put(s, _KNOWN_P + 2 * i, 0, 0)
         i += 1
-    put(s, _P, c[_START_VARIANCE], c[_START_VARIANCE + 1])
-    copy(s, _P + 6, _P, 2)
-    copy(s, _P + 10, _P, 2)
+    put(s, _KNOWN_P, c[_START_VARIANCE], c[_START_VARIANCE + 1])
+    copy(s, _KNOWN_P + 6, _KNOWN_P, 2)
+    copy(s, _KNOWN_P + 10, _KNOWN_P, 2)
     i = 0
     while i < 3:
         put(s, _PRIOR_MEAN + 2 * i, 0, 0)
         if i == 2:
             tilt = heading
-        put(s, _HOLD + 2 * i, tilt, 0)
+        put(s, _HELD_NOISE + 2 * i, tilt, 0)
         i += 1
 
 
 def start_window(s: ptr32, c: ptr32) -> int:
     """Begin a window if enough is new; return 1 if it begins."""
     n = s[_LENGTH]
-    if s[_FILLED] < n or s[_NEW] < (n >> 1):
+    if s[_FILLED] < n or s[_NEW_NODES] < (n >> 1):
         return 0
     if s[_FAST]:
-        s[_NEW] = 0
-        s[_REASON] = TOO_FAST
+        s[_NEW_NODES] = 0
+        s[_MOTION_REASON] = _TOO_FAST
         return 0
-    s[_NEW] = 0
+    s[_NEW_NODES] = 0
     s[_PASS] = 0
-    if c[_DOCUMENT]:
+    if c[_MOTION_DOCUMENT]:
         s[_PASS] = 1
-    s[_FIRST] = s[_HEAD] - n
-    if s[_FIRST] < 0:
-        s[_FIRST] += c[_NODES]
+    s[_FIRST_NODE] = s[_HEAD] - n
+    if s[_FIRST_NODE] < 0:
+        s[_FIRST_NODE] += c[_NODES]
     if n < c[_LONGEST]:
         know_nothing(s, c, 6711, 41943)
     elif s[_ACCEPTED] == 0:
@@ -143,27 +145,27 @@ def note_slope(s: ptr32, c: ptr32):
     a = s[_PASS] - 1
     if a > 2:
         a = 2
-    a = _SLOPES_Q8 + 3 * a
+    a = _NOTED_SLOPES_Q8 + 3 * a
     while i < 3:
-        put(s, _T, c[_LSB], c[_LSB + 1])
-        multiply(s, _T, _T, _D + 2 * i)
+        put(s, _T, c[_LSB_A_UNIT], c[_LSB_A_UNIT + 1])
+        multiply(s, _T, _T, _SLOPE + 2 * i)
         s[a + i] = int(whole(s, _T, 0))
         i += 1
 
 
 def verdict(s: ptr32, c: ptr32) -> int:
-    """Return why the window teaches nothing, or LEARNED."""
+    """Return why the window teaches nothing, or _LEARNED."""
     if s[_FAST]:
-        return TOO_FAST
+        return _TOO_FAST
     if s[_TRAFFIC] < (c[_LEAST_TRAFFIC] << s[_STAGE]):
-        return STILL
-    if c[_DOCUMENT] or s[_LENGTH] < c[_LONGEST]:
-        return LEARNED
-    if (s[_UP] << 8) // (s[_TOTAL] >> 2) < c[_LEAST_UP]:
-        return LOST
+        return _HARDLY_MOVES
+    if c[_MOTION_DOCUMENT] or s[_LENGTH] < c[_LONGEST]:
+        return _LEARNED
+    if (s[_UP] << 8) // (s[_TAPER_SUM] >> 2) < c[_LEAST_UP]:
+        return _LOST
     if s[_ACCEPTED] >= _SETTLED_AFTER and (int(contradicts(s)) or int(louder(s))):
-        return TURNED
-    return LEARNED
+        return _TURNED
+    return _LEARNED
 
 
 def louder(s: ptr32) -> int:
@@ -172,14 +174,14 @@ def louder(s: ptr32) -> int:
     A bias that jumped leaves this: what is known holds the slope back, and what that leaves is
     taken for noise. A turn of heading does too, and so is not looked at.
     """
-    put(s, _T, s[_HOLD], s[_HOLD + 1] + 8)
-    return int(less(s, _T, _ENERGY))
+    put(s, _T, s[_HELD_NOISE], s[_HELD_NOISE + 1] + 8)
+    return int(less(s, _T, _NOISE_ENERGY))
 
 
 def contradicts(s: ptr32) -> int:
     """Return 1 if an axis moved by more than four sigma of what was known, else 0."""
     i = 0
-    d = _P
+    d = _KNOWN_P
     while i < 3:
         put(s, _T, s[d], s[d + 1] + 4)
         subtract(s, _T1, _BIAS + 2 * i, _PRIOR_MEAN + 2 * i)
@@ -194,17 +196,17 @@ def contradicts(s: ptr32) -> int:
 def finish(s: ptr32, c: ptr32) -> int:
     """Keep or refuse the window's bias; return 1 if it was learned."""
     reason = int(verdict(s, c))
-    s[_REASON] = reason
-    if reason != LEARNED:
+    s[_MOTION_REASON] = reason
+    if reason != _LEARNED:
         refuse(s, c, reason)
         return 0
     if s[_LENGTH] < c[_LONGEST]:
         s[_LENGTH] = s[_LENGTH] << 1
         s[_STAGE] += 1
-        s[_REASON] = GROWING
+        s[_MOTION_REASON] = _GROWING
         return 0
     learn_slopes(s)
-    covariance(s, _P)
+    covariance(s, _KNOWN_P)
     keep_noise(s)
     s[_ACCEPTED] += 1
     s[_AGAINST] = 0
@@ -217,18 +219,18 @@ def refuse(s: ptr32, c: ptr32, reason: int):
     i = 0
     copy(s, _BIAS, _PRIOR_MEAN, 6)
     s[_REFUSED] += 1
-    if reason != TURNED and reason != LOST:
+    if reason != _TURNED and reason != _LOST:
         return
     s[_AGAINST] += 1
     if s[_AGAINST] < c[_PATIENCE]:
         return
     s[_AGAINST] = 0
-    if reason == LOST:
+    if reason == _LOST:
         clear(s, c)
         return
-    copy(s, _HOLD, _ENERGY, 6)
+    copy(s, _HELD_NOISE, _NOISE_ENERGY, 6)
     while i < 12:
-        put(s, _P + i, s[_P + i], s[_P + i + 1] + 8)
+        put(s, _KNOWN_P + i, s[_KNOWN_P + i], s[_KNOWN_P + i + 1] + 8)
         i += 2
 
 
@@ -237,7 +239,7 @@ def keep_noise(s: ptr32):
     i = 0
     while i < 6:
         put(s, _T, 11469, -14)
-        multiply(s, _HOLD + i, _ENERGY + i, _T)
+        multiply(s, _HELD_NOISE + i, _NOISE_ENERGY + i, _T)
         i += 2
 
 
@@ -245,13 +247,13 @@ def publish(s: ptr32, c: ptr32):
     """Write bias and one-sigma uncertainty of each axis, LSB in Q8."""
     i = 0
     while i < 3:
-        put(s, _T, c[_LSB], c[_LSB + 1])
+        put(s, _T, c[_LSB_A_UNIT], c[_LSB_A_UNIT + 1])
         present(s, i)
         multiply(s, _T1, _T1, _T)
-        s[_OUT_Q8 + i] = int(whole(s, _T1, 0))
+        s[_MOTION_BIAS_Q8 + i] = int(whole(s, _T1, 0))
         copy(s, _T1, int(place(i, i)), 2)
         put(s, _T1, -s[_T1], s[_T1 + 1])
         root_of(s, _T1, _T1)
         multiply(s, _T1, _T1, _T)
-        s[_QUALITY_Q8 + i] = int(whole(s, _T1, 0))
+        s[_MOTION_QUALITY_Q8 + i] = int(whole(s, _T1, 0))
         i += 1

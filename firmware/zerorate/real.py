@@ -17,25 +17,25 @@ ptr32 = None
 
 from .fixed import root
 
-_LOW = const(0x3FFF)
-_LEAST = const(0x8000000)
-_MOST = const(0x10000000)
-_NOTHING = const(-4096)
+_LOW_14 = const(0x3FFF)
+_LEAST_MANTISSA = const(0x8000000)
+_MOST_MANTISSA = const(0x10000000)
+_ZERO_EXPONENT = const(-4096)
 
 
 def put(s: ptr32, d: int, m: int, e: int):
     """Store m * 2^e at word d."""
     if m == 0:
         s[d] = 0
-        s[d + 1] = _NOTHING
+        s[d + 1] = _ZERO_EXPONENT
         return
     while m < 0x80000 and m >= -0x80000:
         m = m << 8
         e -= 8
-    while m < _LEAST and m >= -_LEAST:
+    while m < _LEAST_MANTISSA and m >= -_LEAST_MANTISSA:
         m = m << 1
         e -= 1
-    while m >= _MOST or m < -_MOST:
+    while m >= _MOST_MANTISSA or m < -_MOST_MANTISSA:
         m = m >> 1
         e += 1
     s[d] = m
@@ -51,9 +51,9 @@ def copy(s: ptr32, d: int, a: int, words: int):
 
 def high_product(m: int, n: int) -> int:
     """Return (m * n) >> 28 for |m|, |n| <= 2^28, to within a unit."""
-    low = ((m & _LOW) * (n & _LOW)) >> 14
-    low += (m & _LOW) * (n >> 14)
-    low += (m >> 14) * (n & _LOW)
+    low = ((m & _LOW_14) * (n & _LOW_14)) >> 14
+    low += (m & _LOW_14) * (n >> 14)
+    low += (m >> 14) * (n & _LOW_14)
     return (m >> 14) * (n >> 14) + (low >> 14)
 
 

@@ -30,49 +30,52 @@ ptr32 = None
 from .atan2 import atan2_q13
 from .fixed import scaled
 
-NOTHING_YET = const(0)
-COUNTING = const(1)
-NOT_ONE_G = const(2)
-GAP = const(3)
-
-_ELAPSED_US = const(0)
-_N = const(1)
-_ANGLE = const(2)
-_ANGLES = const(5)
-_FORCES = const(8)
-_LAST_ANGLE = const(11)
-_LAST_PAIR = const(14)
-_LAST_COUPLED = const(17)
+# layout: The state of the source against gravity
+_UNIT_ELAPSED_US = const(0)
+_UNIT_N = const(1)
+_ANGLE_Q22 = const(2)
+_ANGLE_SUM_Q13 = const(5)
+_FORCE_SUM = const(8)
+_LAST_ANGLE_Q13 = const(11)
+_LAST_PAIR_Q13 = const(14)
+_LAST_COUPLED_Q13 = const(17)
 _LAST_GOOD = const(20)
-_UNIT = const(21)
+_UNIT_COUNT = const(21)
 _COUNTER = const(22)
 _COUNTED = const(25)
-_OFFSET_Q8 = const(28)
-_QUALITY_Q8 = const(31)
+_GRAVITY_BIAS_Q8 = const(28)
+_GRAVITY_QUALITY_Q8 = const(31)
 _STEP_Q8 = const(34)
 _OBSERVED = const(37)
 _SIGN = const(40)
-_TURNS = const(43)
+_SIGN_TURNS = const(43)
 _RIPPLE_Q8 = const(46)
-_REASON = const(49)
+_GRAVITY_REASON = const(49)
 _SKIPPED = const(50)
-_MEAN_ALONG = const(51)
+_MEAN_ALONG_Q20 = const(51)
 _SPREAD_Q21 = const(54)
-
+# layout: The settings of the source against gravity
 _SUB_UNIT_US = const(0)
-_GAIN = const(1)
-_GAIN_SHIFT = const(2)
-_SHIFT = const(3)
+_GRAVITY_GAIN = const(1)
+_GRAVITY_GAIN_SHIFT = const(2)
+_GRAVITY_SHIFT = const(3)
 _UNITS = const(4)
 _THRESHOLD = const(5)
 _DEAD_Q13 = const(6)
 _COARSE_Q8 = const(7)
 _FINE_Q8 = const(8)
 _ONE_G_LSB = const(9)
-_LONGEST_GAP_US = const(10)
+_GRAVITY_GAP_US = const(10)
 _PUSH_Q2 = const(11)
-
+# layout: What a sub-unit against gravity was
+_COUNTING = const(1)
+_NOT_ONE_G = const(2)
+_GRAVITY_GAP = const(3)
+# layout: Values that stand for none
 _UNKNOWN_Q8 = const(0x1FFFFFFF)
+# layout: end
+
+
 _PI_Q13 = const(25736)
 _ONE_G_Q24 = const(0x1000000)
 _BAND_Q24 = const(0x300000)
@@ -90,27 +93,27 @@ def clear(s: ptr32, c: ptr32):
     i = 0
     while i < 3:
         s[_STEP_Q8 + i] = c[_COARSE_Q8]
-        s[_QUALITY_Q8 + i] = _UNKNOWN_Q8
+        s[_GRAVITY_QUALITY_Q8 + i] = _UNKNOWN_Q8
         i += 1
 
 
 def update(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
     """Take the raw frame `x`, dt_us after the one before; return 1 where an interval ended."""
-    if dt_us <= 0 or dt_us > c[_LONGEST_GAP_US]:
-        s[_ELAPSED_US] = 0
-        s[_N] = 0
+    if dt_us <= 0 or dt_us > c[_GRAVITY_GAP_US]:
+        s[_UNIT_ELAPSED_US] = 0
+        s[_UNIT_N] = 0
         s[_LAST_GOOD] = 0
-        s[_REASON] = GAP
+        s[_GRAVITY_REASON] = _GRAVITY_GAP
         begin_unit(s)
         return 0
-    gather(s, x, (dt_us * c[_GAIN]) >> c[_GAIN_SHIFT], c[_SHIFT])
-    s[_ELAPSED_US] += dt_us
-    s[_N] += 1
-    if s[_ELAPSED_US] < c[_SUB_UNIT_US]:
+    gather(s, x, (dt_us * c[_GRAVITY_GAIN]) >> c[_GRAVITY_GAIN_SHIFT], c[_GRAVITY_SHIFT])
+    s[_UNIT_ELAPSED_US] += dt_us
+    s[_UNIT_N] += 1
+    if s[_UNIT_ELAPSED_US] < c[_SUB_UNIT_US]:
         return 0
-    s[_ELAPSED_US] -= c[_SUB_UNIT_US]
+    s[_UNIT_ELAPSED_US] -= c[_SUB_UNIT_US]
     end_unit(s, c)
-    s[_UNIT] += 1
+    s[_UNIT_COUNT] += 1
     return int(end_interval(s, c))
 
 
@@ -118,24 +121,24 @@ def gather(s: ptr32, x: ptr32, factor: int, shift: int):
     """Add the frame to the sub-unit: the running angle, Q22 rad, its sum, Q13, and the forces."""
     i = 0
     while i < 3:
-        turned = (x[4 + i] << 8) - s[_OFFSET_Q8 + i]
+        turned = (x[4 + i] << 8) - s[_GRAVITY_BIAS_Q8 + i]
         turned = int(scaled(turned, factor, shift))
-        turned += s[_ANGLE + i]
-        s[_ANGLE + i] = turned
+        turned += s[_ANGLE_Q22 + i]
+        s[_ANGLE_Q22 + i] = turned
         turned = turned >> 9
-        s[_ANGLES + i] += turned
-        s[_FORCES + i] += x[i]
+        s[_ANGLE_SUM_Q13 + i] += turned
+        s[_FORCE_SUM + i] += x[i]
         i += 1
 
 
 def begin_unit(s: ptr32):
     """Begin the sums of a sub-unit."""
     i = 0
-    s[_N] = 0
+    s[_UNIT_N] = 0
     while i < 3:
-        s[_ANGLE + i] = 0
-        s[_ANGLES + i] = 0
-        s[_FORCES + i] = 0
+        s[_ANGLE_Q22 + i] = 0
+        s[_ANGLE_SUM_Q13 + i] = 0
+        s[_FORCE_SUM + i] = 0
         i += 1
 
 
@@ -145,19 +148,19 @@ def end_unit(s: ptr32, c: ptr32):
     square = 0
     while i < 3:
         # a mean rate of 8 g cannot be gravity, and would not fit
-        force = ((s[_FORCES + i] // s[_N]) << 12) // c[_ONE_G_LSB]
+        force = ((s[_FORCE_SUM + i] // s[_UNIT_N]) << 12) // c[_ONE_G_LSB]
         if force > 8191 or force < -8191:
             force = 8191
-        s[_FORCES + i] = force
+        s[_FORCE_SUM + i] = force
         square += force * force
         i += 1
     i = _ONE_G_Q24 - square
     if i > _BAND_Q24 or i < -_BAND_Q24:
         s[_LAST_GOOD] = 0
         s[_SKIPPED] += 1
-        s[_REASON] = NOT_ONE_G
+        s[_GRAVITY_REASON] = _NOT_ONE_G
     else:
-        s[_REASON] = COUNTING
+        s[_GRAVITY_REASON] = _COUNTING
         i = 0
         while i < 3:
             compare(s, c, i, square)
@@ -167,9 +170,9 @@ def end_unit(s: ptr32, c: ptr32):
 
 def compare(s: ptr32, c: ptr32, i: int, square: int):
     """Compare the axis' angle with its pair's since the sub-unit before, and count."""
-    square -= s[_FORCES + i] * s[_FORCES + i]
+    square -= s[_FORCE_SUM + i] * s[_FORCE_SUM + i]
     bit = 1 << i
-    if square < _HALF_Q24 or int(too_far(s[_ANGLE + i] >> 9)):
+    if square < _HALF_Q24 or int(too_far(s[_ANGLE_Q22 + i] >> 9)):
         s[_LAST_GOOD] = s[_LAST_GOOD] & (7 - bit)
         return
     square = int(since_last(s, i, square >> 12))
@@ -187,15 +190,15 @@ def too_far(turned: int) -> int:
 
 def since_last(s: ptr32, i: int, square: int) -> int:
     """Return the gyroscope's mean turn since the last sub-unit less the pair's, Q13 rad."""
-    mean = s[_ANGLES + i] // s[_N]
-    deviation = mean - s[_LAST_ANGLE + i] + s[_LAST_PAIR + i]
-    s[_LAST_ANGLE + i] = mean - (s[_ANGLE + i] >> 9)
+    mean = s[_ANGLE_SUM_Q13 + i] // s[_UNIT_N]
+    deviation = mean - s[_LAST_ANGLE_Q13 + i] + s[_LAST_PAIR_Q13 + i]
+    s[_LAST_ANGLE_Q13 + i] = mean - (s[_ANGLE_Q22 + i] >> 9)
     mean = int(pair_angle_q13(s, i))
-    s[_LAST_PAIR + i] = mean
+    s[_LAST_PAIR_Q13 + i] = mean
     deviation -= mean
     mean = int(coupled_q13(s, i, square >> 2))
-    deviation -= (mean + s[_LAST_COUPLED + i]) >> 1
-    s[_LAST_COUPLED + i] = mean
+    deviation -= (mean + s[_LAST_COUPLED_Q13 + i]) >> 1
+    s[_LAST_COUPLED_Q13 + i] = mean
     while deviation > _PI_Q13:
         deviation -= 2 * _PI_Q13
     while deviation < -_PI_Q13:
@@ -207,13 +210,13 @@ def pair_angle_q13(s: ptr32, i: int) -> int:
     """Return the angle of the mean force in the plane of the axis' pair."""
     j = i + 1 if i < 2 else 0
     i = i - 1 if i > 0 else 2
-    return int(atan2_q13(s[_FORCES + j], s[_FORCES + i]))
+    return int(atan2_q13(s[_FORCE_SUM + j], s[_FORCE_SUM + i]))
 
 
 def along_q12(s: ptr32, j: int, k: int) -> int:
     """Return how far the axes j and k turned about gravity in the sub-unit, Q12 rad."""
-    first = int(held(s[_ANGLE + j] >> 9)) * s[_FORCES + j]
-    return (first + int(held(s[_ANGLE + k] >> 9)) * s[_FORCES + k]) >> 13
+    first = int(held(s[_ANGLE_Q22 + j] >> 9)) * s[_FORCE_SUM + j]
+    return (first + int(held(s[_ANGLE_Q22 + k] >> 9)) * s[_FORCE_SUM + k]) >> 13
 
 
 def coupled_q13(s: ptr32, i: int, square: int) -> int:
@@ -224,11 +227,11 @@ def coupled_q13(s: ptr32, i: int, square: int) -> int:
     j = i + 1 if i < 2 else 0
     k = i - 1 if i > 0 else 2
     k = int(along_q12(s, j, k))
-    j = s[_MEAN_ALONG + i]
+    j = s[_MEAN_ALONG_Q20 + i]
     j += ((k << 8) - j) >> 5
-    s[_MEAN_ALONG + i] = j
+    s[_MEAN_ALONG_Q20 + i] = j
     k -= j >> 8
-    return (k * (s[_FORCES + i] >> 1)) // square
+    return (k * (s[_FORCE_SUM + i] >> 1)) // square
 
 
 def held(angle: int) -> int:
@@ -268,12 +271,12 @@ def end_interval(s: ptr32, c: ptr32) -> int:
     i = 0
     ended = 0
     while i < 3:
-        if s[_COUNTED + i] >= c[_UNITS] or (c[_PUSH_Q2] == 0 and s[_UNIT] >= c[_UNITS]):
+        if s[_COUNTED + i] >= c[_UNITS] or (c[_PUSH_Q2] == 0 and s[_UNIT_COUNT] >= c[_UNITS]):
             end_axis(s, c, i)
             ended = 1
         i += 1
-    if s[_UNIT] >= c[_UNITS]:
-        s[_UNIT] = 0
+    if s[_UNIT_COUNT] >= c[_UNITS]:
+        s[_UNIT_COUNT] = 0
     return ended
 
 
@@ -297,7 +300,7 @@ def size_step(s: ptr32, c: ptr32, i: int):
     if most <= c[_THRESHOLD]:
         return
     if s[_SIGN + i] + sign == 0:
-        s[_TURNS + i] += 1
+        s[_SIGN_TURNS + i] += 1
         if s[_STEP_Q8 + i] > c[_FINE_Q8]:
             s[_STEP_Q8 + i] = s[_STEP_Q8 + i] >> 1
     elif most >= s[_COUNTED + i] and s[_STEP_Q8 + i] < c[_COARSE_Q8] * 8:
@@ -310,10 +313,10 @@ def step(s: ptr32, c: ptr32, i: int):
     moved = 0
     if s[_COUNTER + i] > c[_THRESHOLD]:
         moved = s[_STEP_Q8 + i]
-        s[_OFFSET_Q8 + i] += moved
+        s[_GRAVITY_BIAS_Q8 + i] += moved
     elif s[_COUNTER + i] < -c[_THRESHOLD]:
         moved = s[_STEP_Q8 + i]
-        s[_OFFSET_Q8 + i] -= moved
+        s[_GRAVITY_BIAS_Q8 + i] -= moved
     # ripple: the mean step of the latest eight intervals or so
     s[_RIPPLE_Q8 + i] += (moved - s[_RIPPLE_Q8 + i]) >> 3
 
@@ -321,7 +324,9 @@ def step(s: ptr32, c: ptr32, i: int):
 def judge(s: ptr32, c: ptr32, i: int):
     """Write one sigma: known once the signs have turned twice, by the ripple's size then, and by
     how far the deviations go, for a motion may push always the same way."""
-    if s[_TURNS + i] < 3 and c[_PUSH_Q2]:
+    if s[_SIGN_TURNS + i] < 3 and c[_PUSH_Q2]:
         return
     pushed = (s[_SPREAD_Q21] * c[_PUSH_Q2]) >> 10
-    s[_QUALITY_Q8 + i] = (s[_RIPPLE_Q8 + i] << 1) + s[_STEP_Q8 + i] + (c[_FINE_Q8] << 2) + pushed
+    s[_GRAVITY_QUALITY_Q8 + i] = (
+        (s[_RIPPLE_Q8 + i] << 1) + s[_STEP_Q8 + i] + (c[_FINE_Q8] << 2) + pushed
+    )

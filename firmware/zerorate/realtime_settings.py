@@ -3,7 +3,31 @@
 from array import array
 from math import pi
 
-STATE_WORDS = 55
+try:
+    from micropython import const
+except ImportError:
+
+    def const(value):
+        return value
+
+
+# layout: The state of the source against gravity
+_GRAVITY_WORDS = const(55)
+# layout: The settings of the source against gravity
+_SUB_UNIT_US = const(0)
+_GRAVITY_GAIN = const(1)
+_GRAVITY_GAIN_SHIFT = const(2)
+_GRAVITY_SHIFT = const(3)
+_UNITS = const(4)
+_THRESHOLD = const(5)
+_DEAD_Q13 = const(6)
+_COARSE_Q8 = const(7)
+_FINE_Q8 = const(8)
+_ONE_G_LSB = const(9)
+_GRAVITY_GAP_US = const(10)
+_PUSH_Q2 = const(11)
+_GRAVITY_SETTINGS_WORDS = const(12)
+# layout: end
 # Of how far the deviations go, what a motion that pushes always the same way hides from their
 # signs: at most a tenth on simulated strides (docs/motion.md), of which one sigma is some half.
 PUSH = 16
@@ -21,7 +45,7 @@ def realtime_settings(
     fine_dps=0.0125,
     document=False,
 ):
-    """Return the settings as array('i'), 12 words.
+    """Return the settings as array('i').
 
     units: sub-units an interval; threshold: what a counter must pass; coarse_dps, fine_dps: first
     and smallest step. document: one step of coarse_dps and no dead band. Raises ValueError.
@@ -42,19 +66,19 @@ def realtime_settings(
     while per_lsb_us * (1 << shift) * (1 << gain_shift) < 1024 and gain_shift < 28:
         gain_shift += 1
     q8 = gyro_lsb_per_dps * 256
-    c = [0] * 12
-    c[0] = int(sub_unit_s * 1e6)
-    c[1] = int(per_lsb_us * (1 << shift) * (1 << gain_shift) + 0.5)
-    c[2] = gain_shift
-    c[3] = shift
-    c[4] = units
-    c[5] = threshold
-    c[6] = 0 if document else int(dead_dps * sub_unit_s * pi / 180 * 8192)
-    c[7] = max(1, int(coarse_dps * q8))
-    c[8] = max(1, int(fine_dps * q8))
-    c[9] = int(accel_lsb_per_g)
-    c[10] = int(2 * sample_us)
-    c[11] = 0 if document else max(1, int(4 * q8 * 180 / pi / 8192 / sub_unit_s / PUSH))
+    c = [0] * _GRAVITY_SETTINGS_WORDS
+    c[_SUB_UNIT_US] = int(sub_unit_s * 1e6)
+    c[_GRAVITY_GAIN] = int(per_lsb_us * (1 << shift) * (1 << gain_shift) + 0.5)
+    c[_GRAVITY_GAIN_SHIFT] = gain_shift
+    c[_GRAVITY_SHIFT] = shift
+    c[_UNITS] = units
+    c[_THRESHOLD] = threshold
+    c[_DEAD_Q13] = 0 if document else int(dead_dps * sub_unit_s * pi / 180 * 8192)
+    c[_COARSE_Q8] = max(1, int(coarse_dps * q8))
+    c[_FINE_Q8] = max(1, int(fine_dps * q8))
+    c[_ONE_G_LSB] = int(accel_lsb_per_g)
+    c[_GRAVITY_GAP_US] = int(2 * sample_us)
+    c[_PUSH_Q2] = 0 if document else max(1, int(4 * q8 * 180 / pi / 8192 / sub_unit_s / PUSH))
     return array("i", c)
 
 
@@ -62,6 +86,6 @@ def realtime_state(settings):
     """Return the state as array('i'), nothing known yet."""
     from .realtime import clear
 
-    state = array("i", [0] * STATE_WORDS)
+    state = array("i", [0] * _GRAVITY_WORDS)
     clear(state, settings)
     return state

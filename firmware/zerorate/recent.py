@@ -20,54 +20,57 @@ ptr32 = None
 
 from .bias import curve_q8
 
-_TOTAL = const(0)
-_WEIGHT = const(1)
-_READING = const(12)
-_FROM = const(13)
-_BEFORE_Q8 = const(23)
-_FIT_LOW_Q4 = const(19)
-_FIT_HIGH_Q4 = const(20)
-_FIT_POINTS = const(22)
-_OFFSET_Q8 = const(24)
-_VARIANCE_Q8 = const(25)
-_WALK_Q16 = const(26)
-_SUSPECT = const(27)
-_AGE_MS = const(28)
-_KIND = const(30)
-
+# layout: The corrector's state
 _TEMP = const(47)
-_RESTS = const(54)
 _NOISE_Q8 = const(49)
 _LEARN_TEMP = const(52)
-# the fit's scratch words, free while a segment is absorbed
+_RESTS = const(54)
 _MEAN_NOISE_Q8 = const(80)
 _GROWN_Q8 = const(81)
-
+# layout: The last words before the axes
+_TURN_ON_OFFSET_Q8 = const(-3)
+# layout: An axis
+_WAITING_SUM = const(0)
+_WAITING_N = const(1)
+_OFFER = const(12)
+_OFFSET_FROM = const(13)
+_LINE_LOW_Q4 = const(19)
+_LINE_HIGH_Q4 = const(20)
+_LINE_POINTS = const(22)
+_CURVE_BEFORE_Q8 = const(23)
+_OFFSET_Q8 = const(24)
+_OFFSET_VARIANCE_Q8 = const(25)
+_WALK_Q16 = const(26)
+_SUSPECT = const(27)
+_OFFSET_AGE_MS = const(28)
+_KIND = const(30)
+# layout: The corrector's settings
 _AXES = const(0)
 _AXIS_WORDS = const(13)
-_TURN_ON_Q8 = const(45)
 _FLOOR_Q8 = const(37)
 _GATE_Q4 = const(38)
 _INSIST = const(39)
 _WALK_LEAST_Q16 = const(40)
 _WALK_MOST_Q16 = const(41)
+_TURN_ON_VARIANCE_Q8 = const(45)
 _SLOPE_Q16 = const(50)
+# layout: end
 
 
 def grown_q8(s: ptr32, a: int) -> int:
     """Return the offset's variance now: what it was, and what it has walked since."""
-    seconds = s[a + _AGE_MS] >> 10
+    seconds = s[a + _OFFSET_AGE_MS] >> 10
     if seconds > 2047:
         seconds = 2047
-    return s[a + _VARIANCE_Q8] + (((s[a + _WALK_Q16] >> 4) * seconds) >> 4)
+    return s[a + _OFFSET_VARIANCE_Q8] + (((s[a + _WALK_Q16] >> 4) * seconds) >> 4)
 
 
 def beyond_q8(s: ptr32, c: ptr32, a: int) -> int:
     """Return the variance that this temperature adds where it lies outside the fitted range."""
-    d = (s[_TEMP] << 4) - s[a + _FIT_HIGH_Q4]
+    d = (s[_TEMP] << 4) - s[a + _LINE_HIGH_Q4]
     if d < 0:
-        d = s[a + _FIT_LOW_Q4] - (s[_TEMP] << 4)
-    if d < 0 or s[a + _FIT_POINTS] == 0:
+        d = s[a + _LINE_LOW_Q4] - (s[_TEMP] << 4)
+    if d < 0 or s[a + _LINE_POINTS] == 0:
         return 0
     if d > 0x3FFFF:
         d = 0x3FFFF
@@ -81,10 +84,10 @@ def error_q4(s: ptr32, c: ptr32, a: int) -> int:
     """Return how far the waiting segment lies from what was expected: LSB, Q4."""
     before = s[_LEARN_TEMP]
     before = curve_q8(s, c, a, before)
-    s[a + _BEFORE_Q8] = before
-    mean = s[a + _TOTAL] % s[a + _WEIGHT]
-    mean = (mean << 8) // s[a + _WEIGHT]
-    mean += (s[a + _TOTAL] // s[a + _WEIGHT]) << 8
+    s[a + _CURVE_BEFORE_Q8] = before
+    mean = s[a + _WAITING_SUM] % s[a + _WAITING_N]
+    mean = (mean << 8) // s[a + _WAITING_N]
+    mean += (s[a + _WAITING_SUM] // s[a + _WAITING_N]) << 8
     return (mean - before - s[a + _OFFSET_Q8]) >> 4
 
 
@@ -111,7 +114,7 @@ def plausible(s: ptr32, c: ptr32, a: int, error: int) -> int:
 
 def rewalk(s: ptr32, c: ptr32, a: int, excess: int):
     """Learn the speed of the walk from the squared error that noise does not explain."""
-    age = (s[a + _AGE_MS] >> 6) + 1
+    age = (s[a + _OFFSET_AGE_MS] >> 6) + 1
     if excess > 0x1FFFFF:
         excess = 0x1FFFFF
     if excess < -0x1FFFFF:
@@ -152,13 +155,13 @@ def follow(s: ptr32, c: ptr32, a: int, error: int):
         error = 16383
     if error < -16383:
         error = -16383
-    excess = error * error - s[a + _VARIANCE_Q8]
+    excess = error * error - s[a + _OFFSET_VARIANCE_Q8]
     excess -= s[_MEAN_NOISE_Q8]
     rewalk(s, c, a, excess)
     excess = gain_q14(s[_GROWN_Q8], s[_MEAN_NOISE_Q8])
     s[a + _OFFSET_Q8] += (excess * error) >> 10
     error = (excess * (s[_MEAN_NOISE_Q8] & 0x3FFF)) >> 14
-    s[a + _VARIANCE_Q8] = excess * (s[_MEAN_NOISE_Q8] >> 14) + error
+    s[a + _OFFSET_VARIANCE_Q8] = excess * (s[_MEAN_NOISE_Q8] >> 14) + error
 
 
 def level_q8(s: ptr32, c: ptr32, a: int) -> int:
@@ -167,7 +170,7 @@ def level_q8(s: ptr32, c: ptr32, a: int) -> int:
     It is what the first minute of rests lies off the curve, less the share that the curve itself
     may be off where it is asked beyond what it has learned.
     """
-    k = c[_AXES] - 3 + (a - c[_AXES]) // c[_AXIS_WORDS]
+    k = c[_AXES] + _TURN_ON_OFFSET_Q8 + (a - c[_AXES]) // c[_AXIS_WORDS]
     if s[_RESTS] < c[_INSIST]:
         off = s[a + _OFFSET_Q8] >> 4
         if off > 0x3FFF:
@@ -175,8 +178,8 @@ def level_q8(s: ptr32, c: ptr32, a: int) -> int:
         if off < -0x3FFF:
             off = -0x3FFF
         usual = off * off
-        if usual < c[_TURN_ON_Q8]:
-            usual = c[_TURN_ON_Q8]
+        if usual < c[_TURN_ON_VARIANCE_Q8]:
+            usual = c[_TURN_ON_VARIANCE_Q8]
         s[k] = beyond_q8(s, c, a)
         usual = gain_q14(s[k], usual)
         s[k] = s[a + _OFFSET_Q8] - (off * usual >> 10)
@@ -188,8 +191,8 @@ def let_learn(s: ptr32, c: ptr32, a: int):
     if a == c[_AXES] and s[_RESTS] < c[_INSIST]:
         s[_RESTS] += 1
     off = level_q8(s, c, a)
-    n = s[a + _WEIGHT]
-    s[a + _TOTAL] -= (off >> 8) * n + ((off & 0xFF) * n + 128 >> 8)
+    n = s[a + _WAITING_N]
+    s[a + _WAITING_SUM] -= (off >> 8) * n + ((off & 0xFF) * n + 128 >> 8)
 
 
 def adopt(s: ptr32, c: ptr32, a: int, error: int) -> int:
@@ -198,17 +201,17 @@ def adopt(s: ptr32, c: ptr32, a: int, error: int) -> int:
     That source is a filter itself: to weigh its results into another one counted them twice, and
     what it says supersedes what it said before.
     """
-    noise = (s[a + _READING] >> 3) + c[_FLOOR_Q8]
+    noise = (s[a + _OFFER] >> 3) + c[_FLOOR_Q8]
     if s[a + _KIND] == 0:
         s[a + _SUSPECT] = -1
         s[_RESTS] = c[_INSIST]
-    elif noise >= grown_q8(s, a) and s[a + _FROM] != s[a + _READING] & 7:
+    elif noise >= grown_q8(s, a) and s[a + _OFFSET_FROM] != s[a + _OFFER] & 7:
         return 1
     else:
         s[a + _OFFSET_Q8] += error << 4
-    s[a + _FROM] = s[a + _READING] & 7
-    s[a + _VARIANCE_Q8] = noise
-    s[a + _AGE_MS] = 0
+    s[a + _OFFSET_FROM] = s[a + _OFFER] & 7
+    s[a + _OFFSET_VARIANCE_Q8] = noise
+    s[a + _OFFSET_AGE_MS] = 0
     return 1
 
 
@@ -217,7 +220,7 @@ def absorb(s: ptr32, c: ptr32, a: int) -> int:
 
     The very first one is all curve and no offset.
     """
-    s[_MEAN_NOISE_Q8] = s[_NOISE_Q8] // (3 * s[a + _WEIGHT]) + c[_FLOOR_Q8]
+    s[_MEAN_NOISE_Q8] = s[_NOISE_Q8] // (3 * s[a + _WAITING_N]) + c[_FLOOR_Q8]
     error = error_q4(s, c, a)
     if believe(s, c, a, error) == 0:
         return 0
@@ -230,15 +233,15 @@ def believe(s: ptr32, c: ptr32, a: int, error: int) -> int:
 
     Returns 1 if the estimators may learn it.
     """
-    if s[a + _READING]:
+    if s[a + _OFFER]:
         return adopt(s, c, a, error)
-    s[a + _FROM] = 0
+    s[a + _OFFSET_FROM] = 0
     if s[a + _KIND] == 0:
         s[a + _SUSPECT] = -1
         s[_RESTS] = c[_INSIST]
         s[a + _OFFSET_Q8] = 0
-        s[a + _VARIANCE_Q8] = s[_MEAN_NOISE_Q8]
-        s[a + _AGE_MS] = 0
+        s[a + _OFFSET_VARIANCE_Q8] = s[_MEAN_NOISE_Q8]
+        s[a + _OFFSET_AGE_MS] = 0
         return 1
     s[_GROWN_Q8] = grown_q8(s, a)
     verdict = plausible(s, c, a, error)
@@ -247,8 +250,8 @@ def believe(s: ptr32, c: ptr32, a: int, error: int) -> int:
     if verdict == 1:
         follow(s, c, a, error)
     else:
-        s[a + _VARIANCE_Q8] = s[_MEAN_NOISE_Q8]
-    s[a + _AGE_MS] = 0
+        s[a + _OFFSET_VARIANCE_Q8] = s[_MEAN_NOISE_Q8]
+    s[a + _OFFSET_AGE_MS] = 0
     return 1
 
 
@@ -259,4 +262,4 @@ def hand_over(s: ptr32, c: ptr32, a: int):  # call
     else:
         after = s[_LEARN_TEMP]
         after = curve_q8(s, c, a, after)
-        s[a + _OFFSET_Q8] += s[a + _BEFORE_Q8] - after
+        s[a + _OFFSET_Q8] += s[a + _CURVE_BEFORE_Q8] - after

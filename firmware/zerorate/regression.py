@@ -24,20 +24,21 @@ ptr32 = None
 
 from .fixed import scaled
 
-_TOTAL = const(18)
-_SUM_R = const(42)
-_WEIGHT = const(60)
-_SECOND = const(61)
-_THIRD = const(62)
+# layout: The state of the source in motion
+_TAPER_SUM = const(18)
+_TAPER = const(60)
+_SHAPE_2 = const(61)
+_SHAPE_3 = const(62)
+_CENTRE = const(213)
 _M = const(202)
 _WM = const(205)
-_CENTRE = const(213)
-
-_S = const(6)
-_A = const(9)
-_MEAN = const(12)
+# layout: The sums of one component
+_SUM_MY = const(6)
+_SUM_M = const(9)
+_SUM_Y = const(12)
 _SHAPES_M = const(13)
 _SHAPES_Y = const(19)
+# layout: end
 
 
 def taper(s: ptr32, k: int, stage: int, even: int):
@@ -48,12 +49,12 @@ def taper(s: ptr32, k: int, stage: int, even: int):
     t = (2 * k + 1 - (1 << stage)) << (10 - stage)
     k = (t * t) >> 10
     stage = ((1024 - k) * (1024 - k)) >> 10
-    s[_SECOND] = ((7 * k - 1024) * stage) >> 10
-    s[_THIRD] = ((((3 * k - 1024) * t) >> 10) * stage) >> 10
+    s[_SHAPE_2] = ((7 * k - 1024) * stage) >> 10
+    s[_SHAPE_3] = ((((3 * k - 1024) * t) >> 10) * stage) >> 10
     if even:
         stage = 1024
-    s[_WEIGHT] = stage
-    s[_TOTAL] += stage
+    s[_TAPER] = stage
+    s[_TAPER_SUM] += stage
 
 
 def regressors(s: ptr32, row: int, shift: int):
@@ -62,7 +63,7 @@ def regressors(s: ptr32, row: int, shift: int):
     while i < 3:
         m = (s[row + i] + (1 << (shift - 1))) >> shift
         s[_M + i] = m
-        s[_WM + i] = (s[_WEIGHT] * m + 512) >> 10
+        s[_WM + i] = (s[_TAPER] * m + 512) >> 10
         i += 1
 
 
@@ -70,14 +71,14 @@ def first_sums(s: ptr32, a: int, y: int):
     """Add a node to the sums at a that are linear in M and y, y in Q12 within 15 bits."""
     i = 0
     while i < 3:
-        s[a + _S + i] += (s[_WM + i] * y + 512) >> 10
-        s[a + _A + i] += s[_WM + i]
-        s[a + _SHAPES_M + i] += (s[_SECOND] * s[_M + i] + 512) >> 10
-        s[a + _SHAPES_M + 3 + i] += (s[_THIRD] * s[_M + i] + 512) >> 10
+        s[a + _SUM_MY + i] += (s[_WM + i] * y + 512) >> 10
+        s[a + _SUM_M + i] += s[_WM + i]
+        s[a + _SHAPES_M + i] += (s[_SHAPE_2] * s[_M + i] + 512) >> 10
+        s[a + _SHAPES_M + 3 + i] += (s[_SHAPE_3] * s[_M + i] + 512) >> 10
         i += 1
-    s[a + _MEAN] += (s[_WEIGHT] * y + 512) >> 10
-    s[a + _SHAPES_Y] += (s[_SECOND] * y + 512) >> 10
-    s[a + _SHAPES_Y + 1] += (s[_THIRD] * y + 512) >> 10
+    s[a + _SUM_Y] += (s[_TAPER] * y + 512) >> 10
+    s[a + _SHAPES_Y] += (s[_SHAPE_2] * y + 512) >> 10
+    s[a + _SHAPES_Y + 1] += (s[_SHAPE_3] * y + 512) >> 10
 
 
 def second_sums(s: ptr32, a: int):
@@ -94,7 +95,7 @@ def second_sums(s: ptr32, a: int):
 
 def mean(s: ptr32, total: int) -> int:
     """Return the weighted mean whose weighted sum is `total`, of 21 bits."""
-    return (total << 8) // (s[_TOTAL] >> 2)
+    return (total << 8) // (s[_TAPER_SUM] >> 2)
 
 
 def refer(s: ptr32, d: int, a: int, mean: int):
@@ -108,18 +109,18 @@ def centre(s: ptr32, a: int, row: int, shift: int):
 
     The mean of y replaces its sum. The row of the matrix at _CENTRE is where M begins.
     """
-    s[a + _MEAN] = int(mean(s, s[a + _MEAN]))
+    s[a + _SUM_Y] = int(mean(s, s[a + _SUM_Y]))
     i = 0
     row += _CENTRE
     while i < 3:
-        s[_M + i] = int(mean(s, s[a + _A + i]))
+        s[_M + i] = int(mean(s, s[a + _SUM_M + i]))
         s[row + i] = s[row + i] - (s[_M + i] << shift)
         i += 1
     i = 0
     row = a
-    s[_WM] = s[a + _MEAN]
+    s[_WM] = s[a + _SUM_Y]
     while i < 3:
-        shift = a + _A + i
+        shift = a + _SUM_M + i
         refer(s, shift - 3, shift, s[_WM])
         row = int(centre_row(s, shift, row, i))
         i += 1

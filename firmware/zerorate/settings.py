@@ -2,6 +2,77 @@
 
 from array import array
 
+try:
+    from micropython import const
+except ImportError:
+
+    def const(value):
+        return value
+
+
+# layout: The corrector's state
+_FIT_WEIGHTS = const(92)
+# layout: The last words before the axes
+_TURN_ON_OFFSET_Q8 = const(-3)
+# layout: An axis
+_ESTIMATORS = const(32)
+# layout: An estimator
+_EST_HISTOGRAM = const(4)
+# layout: The corrector's settings
+_AXES = const(0)
+_LEAP_US = const(1)
+_JUMP_LSB = const(2)
+_WINDOW = const(3)
+_WINDOW_SHIFT = const(4)
+_SEGMENT = const(5)
+_STILL_GYRO_Q8 = const(7)
+_STILL_ACCEL_Q8 = const(8)
+_TIP_LIMIT_Q8 = const(9)
+_CHANGE_LIMIT_Q8 = const(10)
+_SLEW_Q8 = const(11)
+_WORK_A_SAMPLE = const(12)
+_AXIS_WORDS = const(13)
+_FIRST_SHORT = const(14)
+_ESTIMATORS_END = const(15)
+_BINS = const(16)
+_LOW_LSB = const(17)
+_WIDTH_LSB = const(18)
+_NARROWEST_LSB = const(19)
+_SPLIT_RATIO = const(20)
+_LITERAL = const(21)
+_IGNORE_OUTSIDE = const(22)
+_ENOUGH_TO_SPLIT = const(23)
+_SHORT = const(24)
+_ESTIMATOR_COUNT = const(25)
+_ESTIMATOR_WORDS = const(26)
+_STEP_LSB = const(27)
+_MARGIN_LSB = const(28)
+_PROMOTE = const(29)
+_HALVE_AFTER = const(30)
+_ENOUGH_TO_FIT = const(31)
+_MOST_COUNTED = const(32)
+_LOCAL = const(33)
+_STABLE = const(34)
+_SHARE_Q8 = const(35)
+_BEYOND_Q4 = const(36)
+_FLOOR_Q8 = const(37)
+_GATE_Q4 = const(38)
+_INSIST = const(39)
+_WALK_LEAST_Q16 = const(40)
+_WALK_MOST_Q16 = const(41)
+_LOCAL_SHIFT = const(42)
+_STALE_LSB = const(43)
+_PROVISIONAL_Q8 = const(44)
+_TURN_ON_VARIANCE_Q8 = const(45)
+_EVERY = const(46)
+_FIRST_LONG = const(47)
+_MOST_SIGMA_Q6 = const(48)
+_FULL_WEIGHT_Q12 = const(49)
+_SLOPE_Q16 = const(50)
+_NEAR = const(51)
+_SETTINGS_WORDS = const(52)
+# layout: end
+
 
 def power_of_two(samples):
     """Return the shift of the power of two nearest to `samples`, 2..8."""
@@ -47,17 +118,17 @@ class Sensor:
 
 
 def settings(sensor, bins, short, long, document, every, ignore_outside, limits):
-    """Return the kernels' settings, array('i') of 52 words; `limits` is as in `Corrector`."""
-    c = array("i", [0] * 52)
+    """Return the kernels' settings, array('i'); `limits` is as in `Corrector`."""
+    c = array("i", [0] * _SETTINGS_WORDS)
     windows(c, sensor, limits)
     bins_of(c, sensor, bins, every, document, limits)
-    c[22] = 1 if ignore_outside else 0
-    c[46] = 1 if every else 0
+    c[_IGNORE_OUTSIDE] = 1 if ignore_outside else 0
+    c[_EVERY] = 1 if every else 0
     estimators_of(c, sensor, short, long, document, limits)
     recent_of(c, sensor, limits)
-    c[0] = 95 + c[25]
-    c[13] = 32 + c[25] * c[26]
-    c[12] = 9 // c[3] + 1
+    c[_AXES] = _FIT_WEIGHTS + c[_ESTIMATOR_COUNT] - _TURN_ON_OFFSET_Q8
+    c[_AXIS_WORDS] = c[_ESTIMATORS_END]
+    c[_WORK_A_SAMPLE] = 9 // c[_WINDOW] + 1
     return c
 
 
@@ -65,19 +136,19 @@ def windows(c, sensor, limits):
     """Guard, window and stillness."""
     lsb = sensor.gyro_lsb_per_dps
     accel = sensor.accel_lsb_per_g
-    c[4] = power_of_two(limits["window_s"] * sensor.odr_hz)
-    c[3] = 1 << c[4]
-    window_s = c[3] / sensor.odr_hz
-    c[5] = max(1, min(4, int(limits["segment_s"] / window_s + 0.5)))
-    c[1] = int(min(0x1FFFFFFF, max(0.1e6, 10e6 / sensor.odr_hz)))
+    c[_WINDOW_SHIFT] = power_of_two(limits["window_s"] * sensor.odr_hz)
+    c[_WINDOW] = 1 << c[_WINDOW_SHIFT]
+    window_s = c[_WINDOW] / sensor.odr_hz
+    c[_SEGMENT] = max(1, min(4, int(limits["segment_s"] / window_s + 0.5)))
+    c[_LEAP_US] = int(min(0x1FFFFFFF, max(0.1e6, 10e6 / sensor.odr_hz)))
     jump_degc = max(400 / 340, 0.5 / sensor.odr_hz)
-    c[2] = int(jump_degc * sensor.temp_lsb_per_degc) or 0xFFFF
-    c[7] = squared(limits["still_dps"] * lsb * 16)
-    c[8] = squared(limits["still_g"] * accel * 16)
-    seconds = max(1, c[5] - 1) * window_s
-    c[9] = squared(limits["turn_dps"] * seconds * 0.0174533 * accel * 16)
-    c[10] = squared(limits["change_dps"] * lsb * 16)
-    c[11] = max(1, min(1 << 24, int(limits["slew_dps_per_s"] * lsb * 256 / sensor.odr_hz)))
+    c[_JUMP_LSB] = int(jump_degc * sensor.temp_lsb_per_degc) or 0xFFFF
+    c[_STILL_GYRO_Q8] = squared(limits["still_dps"] * lsb * 16)
+    c[_STILL_ACCEL_Q8] = squared(limits["still_g"] * accel * 16)
+    seconds = max(1, c[_SEGMENT] - 1) * window_s
+    c[_TIP_LIMIT_Q8] = squared(limits["turn_dps"] * seconds * 0.0174533 * accel * 16)
+    c[_CHANGE_LIMIT_Q8] = squared(limits["change_dps"] * lsb * 16)
+    c[_SLEW_Q8] = max(1, min(1 << 24, int(limits["slew_dps_per_s"] * lsb * 256 / sensor.odr_hz)))
 
 
 def bins_of(c, sensor, bins, every, document, limits):
@@ -86,14 +157,14 @@ def bins_of(c, sensor, bins, every, document, limits):
         raise ValueError("bins must be 4..19, not %d" % bins)
     half = min(32000, int(limits["range_dps"] * sensor.gyro_lsb_per_dps))
     narrow = max(4, int(limits["narrowest_dps"] * sensor.gyro_lsb_per_dps))
-    c[16] = bins
-    c[18] = max(1, 2 * half // bins) if every else narrow
+    c[_BINS] = bins
+    c[_WIDTH_LSB] = max(1, 2 * half // bins) if every else narrow
     # the first reading stands in the middle of a bin, not on an edge
-    c[17] = -(c[18] * bins) // 2 if every else -(bins // 2) * narrow - narrow // 2
-    c[19] = 1 if document else narrow
-    c[20] = 2 if document else 4
-    c[21] = 1 if document else 0
-    c[23] = max(1, int(limits["split_s"] * sensor.odr_hz)) if document else 64
+    c[_LOW_LSB] = -(c[_WIDTH_LSB] * bins) // 2 if every else -(bins // 2) * narrow - narrow // 2
+    c[_NARROWEST_LSB] = 1 if document else narrow
+    c[_SPLIT_RATIO] = 2 if document else 4
+    c[_LITERAL] = 1 if document else 0
+    c[_ENOUGH_TO_SPLIT] = max(1, int(limits["split_s"] * sensor.odr_hz)) if document else 64
 
 
 def estimators_of(c, sensor, short, long, document, limits):
@@ -102,44 +173,46 @@ def estimators_of(c, sensor, short, long, document, limits):
         raise ValueError("short must be 1..6 and short + long at most 18")
     degree = sensor.temp_lsb_per_degc or 1000.0
     rate = sensor.odr_hz
-    c[24] = short
-    c[25] = 1 + short + long
-    c[26] = 4 + 2 * c[16] + 1
-    c[14] = 32 + c[26]
-    c[47] = 32 + (1 + short) * c[26]
-    c[15] = 32 + c[25] * c[26]
-    c[27] = max(2, int(limits["step_degc"] * degree))
-    c[28] = max(1, int(limits["margin_degc"] * degree))
-    c[29] = max(2, int(limits["promote_s"] * rate))
-    c[30] = max(16, min(1 << 28, int(limits["halve_after_s"] * rate)))
-    c[31] = max(2, int(limits["fit_s"] * rate))
-    c[32] = (
-        0xFFFFF // (c[25] - 1) if document else max(16, min(8192, int(limits["counted_s"] * rate)))
+    c[_SHORT] = short
+    c[_ESTIMATOR_COUNT] = 1 + short + long
+    c[_ESTIMATOR_WORDS] = _EST_HISTOGRAM + 2 * c[_BINS] + 1
+    c[_FIRST_SHORT] = _ESTIMATORS + c[_ESTIMATOR_WORDS]
+    c[_FIRST_LONG] = _ESTIMATORS + (1 + short) * c[_ESTIMATOR_WORDS]
+    c[_ESTIMATORS_END] = _ESTIMATORS + c[_ESTIMATOR_COUNT] * c[_ESTIMATOR_WORDS]
+    c[_STEP_LSB] = max(2, int(limits["step_degc"] * degree))
+    c[_MARGIN_LSB] = max(1, int(limits["margin_degc"] * degree))
+    c[_PROMOTE] = max(2, int(limits["promote_s"] * rate))
+    c[_HALVE_AFTER] = max(16, min(1 << 28, int(limits["halve_after_s"] * rate)))
+    c[_ENOUGH_TO_FIT] = max(2, int(limits["fit_s"] * rate))
+    c[_MOST_COUNTED] = (
+        0xFFFFF // (c[_ESTIMATOR_COUNT] - 1)
+        if document
+        else max(16, min(8192, int(limits["counted_s"] * rate)))
     )
-    c[42] = 0
-    while (int(degree * 16) >> (c[42] + 1)) >= 8:
-        c[42] += 1
-    unit = degree * 16 / (1 << c[42])
-    c[33] = 0 if document else squared(limits["local_degc"] * unit, 1 << 14)
-    c[51] = c[33] * max(1, 2048 // c[32])
-    c[34] = max(2, int(limits["stable_s"] * rate))
-    c[35] = int(limits["share"] * 256)
-    c[36] = int(limits["beyond_degc"] * degree * 16)
-    c[43] = max(1, int(limits["refit_degc"] * degree))
+    c[_LOCAL_SHIFT] = 0
+    while (int(degree * 16) >> (c[_LOCAL_SHIFT] + 1)) >= 8:
+        c[_LOCAL_SHIFT] += 1
+    unit = degree * 16 / (1 << c[_LOCAL_SHIFT])
+    c[_LOCAL] = 0 if document else squared(limits["local_degc"] * unit, 1 << 14)
+    c[_NEAR] = c[_LOCAL] * max(1, 2048 // c[_MOST_COUNTED])
+    c[_STABLE] = max(2, int(limits["stable_s"] * rate))
+    c[_SHARE_Q8] = int(limits["share"] * 256)
+    c[_BEYOND_Q4] = int(limits["beyond_degc"] * degree * 16)
+    c[_STALE_LSB] = max(1, int(limits["refit_degc"] * degree))
 
 
 def recent_of(c, sensor, limits):
     """The offset that follows what the curve does not explain."""
     lsb = sensor.gyro_lsb_per_dps
-    segment_s = c[5] * c[3] / sensor.odr_hz
-    c[37] = squared(limits["floor_dps"] * lsb * 16)
-    c[38] = max(1, min(0x7FFF, int(limits["gate_dps"] * lsb * 16)))
-    c[39] = max(3, int(limits["insist_s"] / segment_s + 0.5))
-    c[40] = squared(limits["walk_least_dps"] * lsb * 256)
-    c[41] = squared(limits["walk_most_dps"] * lsb * 256, 1 << 23)
-    c[44] = max(1, int(limits["turn_dps"] * lsb * 256))
-    c[45] = squared(limits["turn_on_dps"] * lsb * 16)
+    segment_s = c[_SEGMENT] * c[_WINDOW] / sensor.odr_hz
+    c[_FLOOR_Q8] = squared(limits["floor_dps"] * lsb * 16)
+    c[_GATE_Q4] = max(1, min(0x7FFF, int(limits["gate_dps"] * lsb * 16)))
+    c[_INSIST] = max(3, int(limits["insist_s"] / segment_s + 0.5))
+    c[_WALK_LEAST_Q16] = squared(limits["walk_least_dps"] * lsb * 256)
+    c[_WALK_MOST_Q16] = squared(limits["walk_most_dps"] * lsb * 256, 1 << 23)
+    c[_PROVISIONAL_Q8] = max(1, int(limits["turn_dps"] * lsb * 256))
+    c[_TURN_ON_VARIANCE_Q8] = squared(limits["turn_on_dps"] * lsb * 16)
     slope = limits["slope_dps_per_degc"] * lsb / (sensor.temp_lsb_per_degc or 1000.0)
-    c[50] = max(1, min(4095, int(slope * 65536)))
-    c[48] = max(1, min(8191, int(limits["motion_most_dps"] * lsb * 64)))
-    c[49] = int(min(1 << 29, 256 * squared(limits["motion_full_dps"] * lsb * 64)))
+    c[_SLOPE_Q16] = max(1, min(4095, int(slope * 65536)))
+    c[_MOST_SIGMA_Q6] = max(1, min(8191, int(limits["motion_most_dps"] * lsb * 64)))
+    c[_FULL_WEIGHT_Q12] = int(min(1 << 29, 256 * squared(limits["motion_full_dps"] * lsb * 64)))

@@ -22,45 +22,48 @@ from .guard import check
 from .recent import absorb, beyond_q8, grown_q8, hand_over
 from .stillness import gather, judge
 
-_SCRATCH = const(7)
-_GOOD = const(8)
+# layout: The corrector's state
+_COUNTS = const(8)
 _ELAPSED_US = const(16)
-_TOTALS = const(42)
+_SEGMENT_TOTAL = const(42)
+_SEGMENT_TEMP = const(45)
 _STILLNESS = const(46)
-_SEGMENT = const(48)
-_TEMP_TOTAL = const(45)
 _TEMP = const(47)
+_SEGMENT_WINDOWS = const(48)
 _LEARN_TEMP = const(52)
-_PHASE = const(53)
+_WORK = const(53)
 _OUT_Q8 = const(55)
 _CARRY_Q8 = const(58)
 _EFFECT_Q8 = const(61)
 _TARGET_Q8 = const(67)
 _QUALITY_Q8 = const(70)
 _SOURCE = const(73)
-
-_TOTAL = const(0)
-_WEIGHT = const(1)
-_READING = const(12)
-_FROM = const(13)
+_OFFERED_SOURCE = const(7)
+# layout: An axis
+_WAITING_SUM = const(0)
+_WAITING_N = const(1)
+_OFFER = const(12)
+_OFFSET_FROM = const(13)
 _OFFSET_Q8 = const(24)
-_AGE_MS = const(28)
+_OFFSET_AGE_MS = const(28)
 _KIND = const(30)
-_FIT_TEMP = const(31)
-
+_LINE_TEMP = const(31)
+# layout: The corrector's settings
 _AXES = const(0)
 _WINDOW = const(3)
-_SHIFT = const(4)
-_SEGMENTS = const(5)
+_WINDOW_SHIFT = const(4)
+_SEGMENT = const(5)
 _SLEW_Q8 = const(11)
-_PIECES = const(12)
+_WORK_A_SAMPLE = const(12)
 _AXIS_WORDS = const(13)
-_FORETOLD_Q8 = const(44)
 _FLOOR_Q8 = const(37)
 _STALE_LSB = const(43)
+_PROVISIONAL_Q8 = const(44)
+_EVERY = const(46)
 _MOST_SIGMA_Q6 = const(48)
 _FULL_WEIGHT_Q12 = const(49)
-_EVERY = const(46)
+# layout: end
+
 
 _PIECES_AN_AXIS = const(3)
 
@@ -74,7 +77,7 @@ def publish(s: ptr32, c: ptr32, a: int, axis: int):  # call
     s[_TARGET_Q8 + axis] = bias
     if s[_SOURCE + axis] == 0:
         s[_OUT_Q8 + axis] = bias
-    s[_SOURCE + axis] = s[a + _FROM] if s[a + _FROM] else s[a + _KIND]
+    s[_SOURCE + axis] = s[a + _OFFSET_FROM] if s[a + _OFFSET_FROM] else s[a + _KIND]
     # flicker noise is common to all rests: no mean of theirs is better known than that
     bias = grown_q8(s, a) + (c[_FLOOR_Q8] << 1)
     bias += beyond_q8(s, c, a)
@@ -87,9 +90,9 @@ def publish(s: ptr32, c: ptr32, a: int, axis: int):  # call
 
 def stale(s: ptr32, c: ptr32, a: int) -> int:
     """Return 1 if the line must be fitted again: something learned, or the temperature moved."""
-    d = s[_TEMP] - s[a + _FIT_TEMP]
-    if s[a + _WEIGHT] or c[_EVERY] or d > c[_STALE_LSB] or d < -c[_STALE_LSB]:
-        s[a + _FIT_TEMP] = s[_TEMP]
+    d = s[_TEMP] - s[a + _LINE_TEMP]
+    if s[a + _WAITING_N] or c[_EVERY] or d > c[_STALE_LSB] or d < -c[_STALE_LSB]:
+        s[a + _LINE_TEMP] = s[_TEMP]
         return 1
     return 0
 
@@ -100,33 +103,33 @@ def advance(s: ptr32, c: ptr32):
     An axis absorbs a segment and learns it for any temperature; learns it for its temperature;
     draws its line again and publishes.
     """
-    axis = (s[_PHASE] - 1) // _PIECES_AN_AXIS
-    piece = (s[_PHASE] - 1) % _PIECES_AN_AXIS
+    axis = (s[_WORK] - 1) // _PIECES_AN_AXIS
+    piece = (s[_WORK] - 1) % _PIECES_AN_AXIS
     busy = 0
     while busy == 0 and axis < 3:
         a = c[_AXES] + axis * c[_AXIS_WORDS]
         if piece == 0:
-            busy = s[a + _WEIGHT]
+            busy = s[a + _WAITING_N]
             if busy and absorb(s, c, a) == 0:
-                s[a + _WEIGHT] = 0  # held back
-            if s[a + _WEIGHT]:
+                s[a + _WAITING_N] = 0  # held back
+            if s[a + _WAITING_N]:
                 learn_anywhere(s, c, a)
         elif piece == 1:
             learn_here(s, c, a)
             busy = 1
-        if s[a + _WEIGHT] and piece < 2:
+        if s[a + _WAITING_N] and piece < 2:
             piece += 1
         else:
             if stale(s, c, a):
                 draw_line(s, c, a)
                 busy = 1
-            if s[a + _WEIGHT] and c[_EVERY] == 0:
+            if s[a + _WAITING_N] and c[_EVERY] == 0:
                 hand_over(s, c, a)
-            s[a + _WEIGHT] = 0
+            s[a + _WAITING_N] = 0
             publish(s, c, a, axis)
             axis += 1
             piece = 0
-    s[_PHASE] = axis * _PIECES_AN_AXIS + piece + 1 if axis < 3 else 0
+    s[_WORK] = axis * _PIECES_AN_AXIS + piece + 1 if axis < 3 else 0
 
 
 def foresay(s: ptr32, axis: int, bias: int, quality: int):
@@ -144,11 +147,11 @@ def foretell(s: ptr32, c: ptr32, axis: int):
     """
     if s[_SOURCE + axis] > 1:
         return
-    if s[_STILLNESS] == 1 and s[_SEGMENT] > 1:
-        n = s[_SEGMENT] << c[_SHIFT]
-        level = (s[_TOTALS + axis] // n) << 8
-        level += ((s[_TOTALS + axis] % n) << 8) // n
-        foresay(s, axis, level, c[_FORETOLD_Q8])
+    if s[_STILLNESS] == 1 and s[_SEGMENT_WINDOWS] > 1:
+        n = s[_SEGMENT_WINDOWS] << c[_WINDOW_SHIFT]
+        level = (s[_SEGMENT_TOTAL + axis] // n) << 8
+        level += ((s[_SEGMENT_TOTAL + axis] % n) << 8) // n
+        foresay(s, axis, level, c[_PROVISIONAL_Q8])
     elif s[_SOURCE + axis] == 1:
         foresay(s, axis, 0, 0)
         s[_SOURCE + axis] = 0
@@ -156,26 +159,26 @@ def foretell(s: ptr32, c: ptr32, axis: int):
 
 def close(s: ptr32, c: ptr32):
     """Close a full window: what it says, and the work that follows from it."""
-    while s[_PHASE]:
+    while s[_WORK]:
         advance(s, c)
     still = judge(s, c)
     if still:
-        s[_LEARN_TEMP] = s[_TEMP_TOTAL] // c[_SEGMENTS]
+        s[_LEARN_TEMP] = s[_SEGMENT_TEMP] // c[_SEGMENT]
     i = 0
     while i < 3:
         a = c[_AXES] + i * c[_AXIS_WORDS]
-        s[a + _AGE_MS] += s[_ELAPSED_US] // 1000
-        if s[a + _AGE_MS] > 0x3FFFFFF:
-            s[a + _AGE_MS] = 0x3FFFFFF
+        s[a + _OFFSET_AGE_MS] += s[_ELAPSED_US] // 1000
+        if s[a + _OFFSET_AGE_MS] > 0x3FFFFFF:
+            s[a + _OFFSET_AGE_MS] = 0x3FFFFFF
         if still == 0 and s[a + _KIND] == 0 and c[_EVERY] == 0:
             foretell(s, c, i)
         if still and c[_EVERY] == 0:
-            s[a + _TOTAL] = s[_TOTALS + i]
-            s[a + _WEIGHT] = c[_SEGMENTS] << c[_SHIFT]
-            s[a + _READING] = 0
+            s[a + _WAITING_SUM] = s[_SEGMENT_TOTAL + i]
+            s[a + _WAITING_N] = c[_SEGMENT] << c[_WINDOW_SHIFT]
+            s[a + _OFFER] = 0
         i += 1
     s[_ELAPSED_US] = 0
-    s[_PHASE] = 1
+    s[_WORK] = 1
 
 
 def learn_at_once(s: ptr32, c: ptr32, x: ptr32):  # call
@@ -184,11 +187,11 @@ def learn_at_once(s: ptr32, c: ptr32, x: ptr32):  # call
     i = 0
     while i < 3:
         a = c[_AXES] + i * c[_AXIS_WORDS]
-        s[a + _TOTAL] = x[4 + i]
-        s[a + _WEIGHT] = 1
+        s[a + _WAITING_SUM] = x[4 + i]
+        s[a + _WAITING_N] = 1
         learn_anywhere(s, c, a)
         learn_here(s, c, a)
-        s[a + _WEIGHT] = 0
+        s[a + _WAITING_N] = 0
         i += 1
 
 
@@ -203,15 +206,15 @@ def admit(s: ptr32, c: ptr32, x: ptr32, kind: int) -> int:
         if gather(s, c, x):
             close(s, c)
         # for the temperature of the first frame; of every frame where a window lasts long
-        if s[_GOOD] == 1 or c[_WINDOW] == 4:
+        if s[_COUNTS] == 1 or c[_WINDOW] == 4:
             s[_TEMP] = x[3]
-            s[_PHASE] = 1
-            while s[_PHASE]:
+            s[_WORK] = 1
+            while s[_WORK]:
                 advance(s, c)
         if c[_EVERY]:
             learn_at_once(s, c, x)
-    i = c[_PIECES]
-    while i > 0 and s[_PHASE]:
+    i = c[_WORK_A_SAMPLE]
+    while i > 0 and s[_WORK]:
         advance(s, c)
         i -= 1
     return kind
@@ -260,7 +263,7 @@ def speak(s: ptr32, c: ptr32, m: ptr32, w: int, axis: int):
             if s[_SOURCE + axis] == 0:
                 s[_OUT_Q8 + axis] = m[w]
             s[_QUALITY_Q8 + axis] = m[w + 3]
-            s[_SOURCE + axis] = s[_SCRATCH]
+            s[_SOURCE + axis] = s[_OFFERED_SOURCE]
 
 
 def offer(s: ptr32, c: ptr32, m: ptr32, w: int, axis: int):
@@ -271,28 +274,28 @@ def offer(s: ptr32, c: ptr32, m: ptr32, w: int, axis: int):
     a = c[_AXES] + axis * c[_AXIS_WORDS]
     w += axis
     sigma = m[w + 3] >> 2
-    if s[a + _WEIGHT] or sigma > c[_MOST_SIGMA_Q6]:
+    if s[a + _WAITING_N] or sigma > c[_MOST_SIGMA_Q6]:
         return
     w = m[w] - s[_EFFECT_Q8 + axis]
     axis = c[_FULL_WEIGHT_Q12] // (sigma * sigma + 1)
     if axis > 256:
         axis = 256
     if axis > 0:
-        s[a + _WEIGHT] = axis
-        s[a + _TOTAL] = (w >> 4) * axis >> 4
-        s[a + _READING] = (((sigma * sigma) >> 4) << 3) + s[_SCRATCH]
+        s[a + _WAITING_N] = axis
+        s[a + _WAITING_SUM] = (w >> 4) * axis >> 4
+        s[a + _OFFER] = (((sigma * sigma) >> 4) << 3) + s[_OFFERED_SOURCE]
 
 
 def consider(s: ptr32, c: ptr32, m: ptr32, w: int, source: int):
     """Take the bias that another source has found for three axes into the one decision."""
-    while s[_PHASE]:
+    while s[_WORK]:
         advance(s, c)
     s[_LEARN_TEMP] = s[_TEMP]
-    s[_SCRATCH] = source
+    s[_OFFERED_SOURCE] = source
     speak(s, c, m, w, 0)
     speak(s, c, m, w, 1)
     speak(s, c, m, w, 2)
     offer(s, c, m, w, 0)
     offer(s, c, m, w, 1)
     offer(s, c, m, w, 2)
-    s[_PHASE] = 1
+    s[_WORK] = 1

@@ -15,64 +15,63 @@ except ImportError:
 ptr32 = None
 
 
-UNKNOWN = const(0)
-STILL = const(1)
-MOVING = const(2)
-TURNING = const(3)
-SHAKEN = const(4)
-SHIFTED = const(5)
-
-_ELAPSED_US = const(16)
-_N = const(17)
+# layout: The corrector's state
+_WINDOW_N = const(17)
 _DIRTY = const(18)
 _REFERENCE = const(19)
-_SUM = const(26)
+_WINDOW_SUM = const(26)
 _SQUARE_ACCEL = const(33)
 _REST = const(34)
 _SQUARE_GYRO = const(35)
-_ANCHOR = const(36)
-_FIRST = const(39)
-_TOTAL = const(42)
-_TEMP_TOTAL = const(45)
+_ANCHOR_Q4 = const(36)
+_FIRST_RATE_Q4 = const(39)
+_SEGMENT_TOTAL = const(42)
+_SEGMENT_TEMP = const(45)
 _STILLNESS = const(46)
 _TEMP = const(47)
-_SEGMENT = const(48)
+_SEGMENT_WINDOWS = const(48)
 _NOISE_Q8 = const(49)
-_AGE_MS = const(50)
 _TIP_Q8 = const(51)
 _EFFECT_Q8 = const(61)
-_EFFECT_SUM = const(64)
+_EFFECT_SUM_Q8 = const(64)
 _SQUARE_STEP = const(76)
-_LAST = const(77)
-
+_LAST_RATE = const(77)
+# layout: The corrector's settings
 _WINDOW = const(3)
-_SHIFT = const(4)
-_SEGMENTS = const(5)
-_SPREAD_GYRO_Q8 = const(7)
-_SPREAD_ACCEL_Q8 = const(8)
+_WINDOW_SHIFT = const(4)
+_SEGMENT = const(5)
+_STILL_GYRO_Q8 = const(7)
+_STILL_ACCEL_Q8 = const(8)
 _TIP_LIMIT_Q8 = const(9)
-_CHANGE_Q8 = const(10)
+_CHANGE_LIMIT_Q8 = const(10)
+# layout: What a window was
+_STILL = const(1)
+_MOVING = const(2)
+_TURNING = const(3)
+_SHAKEN = const(4)
+_SHIFTED = const(5)
+# layout: end
 
 
 def gather(s: ptr32, c: ptr32, x: ptr32) -> int:  # inline
     """Add the frame `x` to the window; return 1 when the window is full, else 0."""
     i = 0
-    if s[_N] == 0:
+    if s[_WINDOW_N] == 0:
         while i < 7:
             s[_REFERENCE + i] = x[i]
-            s[_SUM + i] = 0
+            s[_WINDOW_SUM + i] = 0
             i += 1
         s[_SQUARE_ACCEL] = 0
         s[_SQUARE_GYRO] = 0
         s[_SQUARE_STEP] = 0
-        s[_LAST] = 0
-        s[_LAST + 1] = 0
-        s[_LAST + 2] = 0
-        s[_EFFECT_SUM] = 0
-        s[_EFFECT_SUM + 1] = 0
-        s[_EFFECT_SUM + 2] = 0
+        s[_LAST_RATE] = 0
+        s[_LAST_RATE + 1] = 0
+        s[_LAST_RATE + 2] = 0
+        s[_EFFECT_SUM_Q8] = 0
+        s[_EFFECT_SUM_Q8 + 1] = 0
+        s[_EFFECT_SUM_Q8 + 2] = 0
         s[_DIRTY] = 0
-    s[_N] += 1
+    s[_WINDOW_N] += 1
     if s[_DIRTY] == 0:
         i = 0
         while i < 7:
@@ -80,22 +79,22 @@ def gather(s: ptr32, c: ptr32, x: ptr32) -> int:  # inline
             if (d + 512) >> 10:  # beyond ten bits: the squares of a window fit 31
                 s[_DIRTY] = i + 1
                 d = 0
-            s[_SUM + i] += d
+            s[_WINDOW_SUM + i] += d
             if i < 3:
                 s[_SQUARE_ACCEL] += d * d
             elif i > 3:
                 s[_SQUARE_GYRO] += d * d
-                e = d - s[_LAST - 4 + i]
+                e = d - s[_LAST_RATE - 4 + i]
                 s[_SQUARE_STEP] += e * e
-                s[_LAST - 4 + i] = d
+                s[_LAST_RATE - 4 + i] = d
                 e = s[_EFFECT_Q8 - 4 + i]
-                s[_EFFECT_SUM - 4 + i] += e
+                s[_EFFECT_SUM_Q8 - 4 + i] += e
             i += 1
     else:
         # the thermometer is read in motion as well, and one reading of it is noise
         d = x[3] - s[_REFERENCE + 3]
-        s[_SUM + 3] += d
-    if s[_N] < c[_WINDOW]:
+        s[_WINDOW_SUM + 3] += d
+    if s[_WINDOW_N] < c[_WINDOW]:
         return 0
     return 1
 
@@ -104,12 +103,12 @@ def spread_q8(s: ptr32, c: ptr32, first: int, square: int) -> int:
     """Return the window's variance in LSB^2, Q8, summed over three channels from `first`."""
     i = 0
     while i < 3:
-        mean_q4 = (s[first + i] << 4) >> c[_SHIFT]
+        mean_q4 = (s[first + i] << 4) >> c[_WINDOW_SHIFT]
         square -= (mean_q4 * s[first + i]) >> 4
         i += 1
     if square < 0:
         square = 0
-    return square << (8 - c[_SHIFT])
+    return square << (8 - c[_WINDOW_SHIFT])
 
 
 def tip_q8(s: ptr32, c: ptr32) -> int:
@@ -117,7 +116,11 @@ def tip_q8(s: ptr32, c: ptr32) -> int:
     i = 0
     square = 0
     while i < 3:
-        d = (s[_REFERENCE + i] << 4) + ((s[_SUM + i] << 4) >> c[_SHIFT]) - s[_ANCHOR + i]
+        d = (
+            (s[_REFERENCE + i] << 4)
+            + ((s[_WINDOW_SUM + i] << 4) >> c[_WINDOW_SHIFT])
+            - s[_ANCHOR_Q4 + i]
+        )
         if d > 8191:
             d = 8191
         if d < -8191:
@@ -132,7 +135,11 @@ def change_q4(s: ptr32, c: ptr32) -> int:
     i = 0
     most = 0
     while i < 3:
-        d = (s[_REFERENCE + 4 + i] << 4) + ((s[_SUM + 4 + i] << 4) >> c[_SHIFT]) - s[_FIRST + i]
+        d = (
+            (s[_REFERENCE + 4 + i] << 4)
+            + ((s[_WINDOW_SUM + 4 + i] << 4) >> c[_WINDOW_SHIFT])
+            - s[_FIRST_RATE_Q4 + i]
+        )
         if d < 0:
             d = -d
         if d > most:
@@ -146,12 +153,16 @@ def begin(s: ptr32, c: ptr32, anchored: int):
     i = 0
     while i < 3:
         if anchored == 0:
-            s[_ANCHOR + i] = (s[_REFERENCE + i] << 4) + ((s[_SUM + i] << 4) >> c[_SHIFT])
-        s[_FIRST + i] = (s[_REFERENCE + 4 + i] << 4) + ((s[_SUM + 4 + i] << 4) >> c[_SHIFT])
-        s[_TOTAL + i] = 0
+            s[_ANCHOR_Q4 + i] = (s[_REFERENCE + i] << 4) + (
+                (s[_WINDOW_SUM + i] << 4) >> c[_WINDOW_SHIFT]
+            )
+        s[_FIRST_RATE_Q4 + i] = (s[_REFERENCE + 4 + i] << 4) + (
+            (s[_WINDOW_SUM + 4 + i] << 4) >> c[_WINDOW_SHIFT]
+        )
+        s[_SEGMENT_TOTAL + i] = 0
         i += 1
-    s[_TEMP_TOTAL] = 0
-    s[_SEGMENT] = 0
+    s[_SEGMENT_TEMP] = 0
+    s[_SEGMENT_WINDOWS] = 0
     s[_REST] = 1
 
 
@@ -161,7 +172,7 @@ def white(s: ptr32, c: ptr32, spread: int) -> int:
     von Neumann's ratio: the mean squared step is twice the variance for white noise, less for
     whatever is slower and more for what alternates.
     """
-    step = s[_SQUARE_STEP] << (8 - c[_SHIFT])
+    step = s[_SQUARE_STEP] << (8 - c[_WINDOW_SHIFT])
     spread = spread >> 4
     step = step >> 4
     if step > spread + (spread >> 1) - (spread >> 3) and step < 3 * spread - (spread >> 2):
@@ -170,32 +181,32 @@ def white(s: ptr32, c: ptr32, spread: int) -> int:
 
 
 def look(s: ptr32, c: ptr32) -> int:
-    """Return what the full window says: STILL, MOVING, SHAKEN, TURNING or SHIFTED."""
+    """Return what the full window says: _STILL, _MOVING, _SHAKEN, _TURNING or _SHIFTED."""
     if s[_DIRTY] > 3:
-        return MOVING
+        return _MOVING
     if s[_DIRTY]:
-        return SHAKEN
-    noise_q8 = spread_q8(s, c, _SUM + 4, s[_SQUARE_GYRO])
-    if noise_q8 > c[_SPREAD_GYRO_Q8] and white(s, c, noise_q8) == 0:
-        return MOVING
-    shake_q8 = spread_q8(s, c, _SUM, s[_SQUARE_ACCEL])
-    if shake_q8 > c[_SPREAD_ACCEL_Q8]:
-        return SHAKEN
+        return _SHAKEN
+    noise_q8 = spread_q8(s, c, _WINDOW_SUM + 4, s[_SQUARE_GYRO])
+    if noise_q8 > c[_STILL_GYRO_Q8] and white(s, c, noise_q8) == 0:
+        return _MOVING
+    shake_q8 = spread_q8(s, c, _WINDOW_SUM, s[_SQUARE_ACCEL])
+    if shake_q8 > c[_STILL_ACCEL_Q8]:
+        return _SHAKEN
     s[_NOISE_Q8] += (noise_q8 - s[_NOISE_Q8]) >> 3
     if s[_REST] == 0:
-        return STILL
+        return _STILL
     s[_TIP_Q8] = tip_q8(s, c)
     # gravity's two window means differ by noise alone: 6 is three sigma of three axes together
-    if s[_TIP_Q8] > c[_TIP_LIMIT_Q8] + 6 * (shake_q8 >> c[_SHIFT]):
-        return TURNING
-    if s[_SEGMENT]:
+    if s[_TIP_Q8] > c[_TIP_LIMIT_Q8] + 6 * (shake_q8 >> c[_WINDOW_SHIFT]):
+        return _TURNING
+    if s[_SEGMENT_WINDOWS]:
         shake_q8 = change_q4(s, c)
         if shake_q8 > 0x7FFF:
-            return SHIFTED
+            return _SHIFTED
         # noise alone lets the means of one axis differ: 14 = 2 / 3 x (4.5 sigma)^2
-        if shake_q8 * shake_q8 > c[_CHANGE_Q8] + 14 * (noise_q8 >> c[_SHIFT]):
-            return SHIFTED
-    return STILL
+        if shake_q8 * shake_q8 > c[_CHANGE_LIMIT_Q8] + 14 * (noise_q8 >> c[_WINDOW_SHIFT]):
+            return _SHIFTED
+    return _STILL
 
 
 def judge(s: ptr32, c: ptr32) -> int:
@@ -206,25 +217,25 @@ def judge(s: ptr32, c: ptr32) -> int:
     """
     state = look(s, c)
     s[_STILLNESS] = state
-    s[_TEMP] = s[_REFERENCE + 3] + (s[_SUM + 3] >> c[_SHIFT])
-    s[_N] = 0
-    if state == MOVING or state == SHAKEN:
+    s[_TEMP] = s[_REFERENCE + 3] + (s[_WINDOW_SUM + 3] >> c[_WINDOW_SHIFT])
+    s[_WINDOW_N] = 0
+    if state == _MOVING or state == _SHAKEN:
         s[_REST] = 0
         return 0
-    if state != STILL or s[_REST] == 0:
+    if state != _STILL or s[_REST] == 0:
         begin(s, c, 0)
-    elif s[_SEGMENT] == 0:
+    elif s[_SEGMENT_WINDOWS] == 0:
         begin(s, c, 1)
     i = 0
     while i < 3:
-        total = s[_REFERENCE + 4 + i] << c[_SHIFT]
-        total -= (s[_EFFECT_SUM + i] + 128) >> 8
-        total += s[_SUM + 4 + i]
-        s[_TOTAL + i] += total
+        total = s[_REFERENCE + 4 + i] << c[_WINDOW_SHIFT]
+        total -= (s[_EFFECT_SUM_Q8 + i] + 128) >> 8
+        total += s[_WINDOW_SUM + 4 + i]
+        s[_SEGMENT_TOTAL + i] += total
         i += 1
-    s[_TEMP_TOTAL] += s[_TEMP]
-    s[_SEGMENT] += 1
-    if s[_SEGMENT] < c[_SEGMENTS]:
+    s[_SEGMENT_TEMP] += s[_TEMP]
+    s[_SEGMENT_WINDOWS] += 1
+    if s[_SEGMENT_WINDOWS] < c[_SEGMENT]:
         return 0
-    s[_SEGMENT] = 0
+    s[_SEGMENT_WINDOWS] = 0
     return 1

@@ -4,7 +4,7 @@ A Kalman filter of two states an axis, bias and slope over temperature: the wind
 are its measurement. A bias carried along its slope does not lag behind a ramp, and what the ramp
 teaches of the slope costs no more than its covariance with the bias.
 
-Three packed numbers an axis from _SLOPE on: the slope, its covariance with the bias, its variance;
+Three packed numbers an axis at _TEMP_SLOPES: the slope, its covariance with the bias, its variance,
 in Q24 rad a node and raw LSB of the thermometer.
 """
 
@@ -22,38 +22,39 @@ ptr32 = None
 from .least_squares import place
 from .real import add, divide, multiply, pack, put, subtract, unpack
 
+# layout: The state of the source in motion
 _FILLED = const(9)
-_AGE = const(66)
-_P = const(148)
+_AGE_NODES = const(66)
+_KNOWN_P = const(148)
 _PRIOR_MEAN = const(172)
 _BIAS = const(178)
 _T = const(202)
 _T1 = const(204)
 _T2 = const(206)
 _T3 = const(208)
-_SLOPE = const(228)
+_TEMP_SLOPES = const(228)
 _TEMP_Q8 = const(237)
-_THEN_Q8 = const(238)
-_NOW_Q8 = const(239)
-# free where these are in use: the passes' slopes, and the prior not yet inverted
-_K = const(184)
-_C = const(186)
-_V = const(188)
+_THEN_TEMP_Q8 = const(238)
+_NOW_TEMP_Q8 = const(239)
 _BENT = const(160)
-
-_WALK = const(12)
-_SLOPE_VARIANCE = const(23)
+_TEMP_SLOPE = const(184)
+_TEMP_SLOPE_COVARIANCE = const(186)
+_TEMP_SLOPE_VARIANCE = const(188)
+# layout: The settings of the source in motion
+_BIAS_WALK = const(12)
+_TEMP_SLOPE_START = const(23)
 _BEND = const(25)
+# layout: end
 
 
 def forget_slopes(s: ptr32, c: ptr32):
     """Know no slope: 0, with the variance that the settings give it."""
     i = 0
-    put(s, _V, c[_SLOPE_VARIANCE], c[_SLOPE_VARIANCE + 1])
+    put(s, _TEMP_SLOPE_VARIANCE, c[_TEMP_SLOPE_START], c[_TEMP_SLOPE_START + 1])
     while i < 9:
-        s[_SLOPE + i] = 0
-        s[_SLOPE + i + 1] = 0
-        pack(s, _SLOPE + i + 2, _V)
+        s[_TEMP_SLOPES + i] = 0
+        s[_TEMP_SLOPES + i + 1] = 0
+        pack(s, _TEMP_SLOPES + i + 2, _TEMP_SLOPE_VARIANCE)
         i += 3
 
 
@@ -62,61 +63,61 @@ def follow_temperature(s: ptr32, temp: int):
     temp = temp << 8
     if s[_FILLED] == 0:
         s[_TEMP_Q8] = temp
-        s[_NOW_Q8] = temp
+        s[_NOW_TEMP_Q8] = temp
     s[_TEMP_Q8] += (temp - s[_TEMP_Q8] + 32) >> 6
-    s[_NOW_Q8] += (temp - s[_NOW_Q8] + 2) >> 2
+    s[_NOW_TEMP_Q8] += (temp - s[_NOW_TEMP_Q8] + 2) >> 2
 
 
 def present(s: ptr32, i: int):
     """Store at _T1 the bias of axis i at the present temperature, for _BIAS is of the window's."""
-    put(s, _T1, s[_NOW_Q8] - s[_THEN_Q8], -8)
-    unpack(s, _T2, _SLOPE + 3 * i)
+    put(s, _T1, s[_NOW_TEMP_Q8] - s[_THEN_TEMP_Q8], -8)
+    unpack(s, _T2, _TEMP_SLOPES + 3 * i)
     multiply(s, _T1, _T1, _T2)
     add(s, _T1, _T1, _BIAS + 2 * i)
 
 
 def unpack_slope(s: ptr32, a: int):
     """Bring the axis' three numbers at word a to where they are worked with."""
-    unpack(s, _K, a)
-    unpack(s, _C, a + 1)
-    unpack(s, _V, a + 2)
+    unpack(s, _TEMP_SLOPE, a)
+    unpack(s, _TEMP_SLOPE_COVARIANCE, a + 1)
+    unpack(s, _TEMP_SLOPE_VARIANCE, a + 2)
 
 
 def pack_slope(s: ptr32, a: int):
     """Put them back."""
-    pack(s, a, _K)
-    pack(s, a + 1, _C)
-    pack(s, a + 2, _V)
+    pack(s, a, _TEMP_SLOPE)
+    pack(s, a + 1, _TEMP_SLOPE_COVARIANCE)
+    pack(s, a + 2, _TEMP_SLOPE_VARIANCE)
 
 
 def carry(s: ptr32, c: ptr32, known: int):
     """Carry what is known to this window's temperature and time, unless nothing is."""
     i = 0
-    put(s, _T, s[_TEMP_Q8] - s[_THEN_Q8], -8)
-    put(s, _T2, c[_WALK], c[_WALK + 1])
-    put(s, _T1, s[_AGE], 0)
+    put(s, _T, s[_TEMP_Q8] - s[_THEN_TEMP_Q8], -8)
+    put(s, _T2, c[_BIAS_WALK], c[_BIAS_WALK + 1])
+    put(s, _T1, s[_AGE_NODES], 0)
     multiply(s, _T3, _T2, _T1)
     while i < 3 and known:
         carry_axis(s, c, i)
         i += 1
-    s[_THEN_Q8] = s[_TEMP_Q8]
-    s[_AGE] = 0
+    s[_THEN_TEMP_Q8] = s[_TEMP_Q8]
+    s[_AGE_NODES] = 0
 
 
 def variance_at(i: int) -> int:
     """Return the word of the bias' variance of axis i."""
-    return _P + i * (7 - i)
+    return _KNOWN_P + i * (7 - i)
 
 
 def carry_axis(s: ptr32, c: ptr32, i: int):
     """Carry an axis by the change of temperature at _T and the walked variance at _T3."""
-    d = _SLOPE + 3 * i
+    d = _TEMP_SLOPES + 3 * i
     unpack_slope(s, d)
-    multiply(s, _T1, _K, _T)
+    multiply(s, _T1, _TEMP_SLOPE, _T)
     add(s, _PRIOR_MEAN + 2 * i, _PRIOR_MEAN + 2 * i, _T1)
-    multiply(s, _T1, _V, _T)
-    add(s, _T2, _C, _T1)
-    add(s, _T1, _C, _T2)
+    multiply(s, _T1, _TEMP_SLOPE_VARIANCE, _T)
+    add(s, _T2, _TEMP_SLOPE_COVARIANCE, _T1)
+    add(s, _T1, _TEMP_SLOPE_COVARIANCE, _T2)
     multiply(s, _T1, _T1, _T)
     # the covariances of the axes stay, so a variance must not shrink under them
     put(s, _T1, s[_T1] if s[_T1] > 0 else 0, s[_T1 + 1])
@@ -124,7 +125,7 @@ def carry_axis(s: ptr32, c: ptr32, i: int):
     i = int(variance_at(i))
     add(s, i, i, _T1)
     bend(s, c)
-    put(s, _C, s[_T2], s[_T2 + 1])
+    put(s, _TEMP_SLOPE_COVARIANCE, s[_T2], s[_T2 + 1])
     pack_slope(s, d)
 
 
@@ -132,9 +133,9 @@ def bend(s: ptr32, c: ptr32):
     """Let the slope's variance grow, for a curve bends."""
     i = s[_T] if s[_T] >= 0 else -s[_T]
     put(s, _T1, i, s[_T + 1] - c[_BEND])
-    put(s, _BENT, c[_SLOPE_VARIANCE], c[_SLOPE_VARIANCE + 1])
+    put(s, _BENT, c[_TEMP_SLOPE_START], c[_TEMP_SLOPE_START + 1])
     multiply(s, _T1, _T1, _BENT)
-    add(s, _V, _V, _T1)
+    add(s, _TEMP_SLOPE_VARIANCE, _TEMP_SLOPE_VARIANCE, _T1)
 
 
 def learn_slopes(s: ptr32):
@@ -147,19 +148,19 @@ def learn_slopes(s: ptr32):
 
 def learn_slope(s: ptr32, i: int):
     """Move the slope by its regression on the bias, and condition its variance."""
-    d = _SLOPE + 3 * i
+    d = _TEMP_SLOPES + 3 * i
     unpack_slope(s, d)
     a = int(variance_at(i))
-    divide(s, _T, _C, a)
+    divide(s, _T, _TEMP_SLOPE_COVARIANCE, a)
     subtract(s, _T1, _BIAS + 2 * i, _PRIOR_MEAN + 2 * i)
     multiply(s, _T1, _T1, _T)
-    add(s, _K, _K, _T1)
+    add(s, _TEMP_SLOPE, _TEMP_SLOPE, _T1)
     i = int(place(i, i))
     add(s, _T1, a, i)
     multiply(s, _T1, _T1, _T)
     multiply(s, _T1, _T1, _T)
-    subtract(s, _T2, _V, _T1)
-    put(s, _V, s[_T2] if s[_T2] > 0 else 0, s[_T2 + 1])
+    subtract(s, _T2, _TEMP_SLOPE_VARIANCE, _T1)
+    put(s, _TEMP_SLOPE_VARIANCE, s[_T2] if s[_T2] > 0 else 0, s[_T2 + 1])
     put(s, _T1, -s[i], s[i + 1])
-    multiply(s, _C, _T, _T1)
+    multiply(s, _TEMP_SLOPE_COVARIANCE, _T, _T1)
     pack_slope(s, d)

@@ -2,6 +2,7 @@
 
 import pytest
 from zerorate import Corrector, fit
+from zerorate.layout import ESTIMATOR, SETTINGS
 
 
 @pytest.fixture
@@ -9,19 +10,21 @@ def corrector():
     """One estimator with 400 samples at 25 degC and a bias of 350 LSB, weighed for the line."""
     made = Corrector(document=True)
     s, c = made.state, made.settings
-    first = c[0] + c[14]
-    s[first], s[first + 1], s[first + 2], s[first + 3] = -3740, -3740 << 4, 350 << 8, 400
-    fit.weigh(s, c, c[0])
+    first = c[SETTINGS.AXES] + c[SETTINGS.FIRST_SHORT]
+    s[first : first + 4] = type(s)("i", [-3740, -3740 << 4, 350 << 8, 400])
+    fit.weigh(s, c, c[SETTINGS.AXES])
     return made
 
 
 @pytest.mark.parametrize("before", [0, 1, -40])
 @pytest.mark.parametrize("after", [-5000, -16, 16, 5000])
 def test_a_line_through_a_point_that_moves_meanwhile_stays_at_its_bias(corrector, before, after):
-    s, c, a = corrector.state, corrector.settings, corrector.settings[0]
-    s[a + c[14] + 1] += before
+    s, c = corrector.state, corrector.settings
+    a = c[SETTINGS.AXES]
+    mean_temp_q4 = a + c[SETTINGS.FIRST_SHORT] + ESTIMATOR.EST_MEAN_TEMP_Q4
+    s[mean_temp_q4] += before
     fit.centre(s, c, a, 1)
-    s[a + c[14] + 1] += after
+    s[mean_temp_q4] += after
     fit.lean(s, c, a, 1)
     fit.settle(s, c, a)
     for temp_q4 in (-3740 << 4, -3700 << 4):

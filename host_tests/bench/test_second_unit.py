@@ -3,6 +3,7 @@
 import subprocess
 import sys
 
+from zerorate.layout import SLOT, slot_at
 from zerorate_tools.bench.second_unit import WAYS, SecondUnit, device, errors_mdps, table
 from zerorate_tools.loop.verify.firmware import rows
 from zerorate_tools.replay.engines import InterpreterEngine, NumbaEngine
@@ -27,8 +28,8 @@ def test_its_coefficients_move_towards_its_own():
     next(iter(NumbaEngine().run(corrector, [frames])))
     e = corrector.effects.e
     for slot, axis in ((0, 0), (0, 1), (1, 0)):
-        at = 112 + 40 * slot + axis
-        moved = e[at + 24] / e[at + 30]
+        at = slot_at(slot) + axis
+        moved = e[at + SLOT.SLOT_COEFFICIENT] / e[at + SLOT.SLOT_OWN]
         own = unit.share[slot, axis]
         assert abs(moved - own) < 0.7 * abs(1.0 - own), (slot, axis, moved, own)
 

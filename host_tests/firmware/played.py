@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 from zerorate import Corrector, Sensor
+from zerorate.layout import AXIS, SETTINGS, axis_at
 from zerorate_tools.recordings import Recording, Scales
 from zerorate_tools.replay.engines import engine
 from zerorate_tools.replay.samples import FRAME, frames_in_batches
@@ -46,5 +47,6 @@ def play(frames, corrector=None, dt_us=None, **options):
 def estimators(corrector):
     """Every estimator's words of every axis, bytes: equal if nothing was learned between."""
     c = corrector.settings
-    axes = (c[0] + axis * c[13] for axis in range(3))
-    return b"".join(corrector.state[a + 32 : a + c[15]].tobytes() for a in axes)
+    axes = (axis_at(c, axis) for axis in range(3))
+    first, end = AXIS.ESTIMATORS, c[SETTINGS.ESTIMATORS_END]
+    return b"".join(corrector.state[a + first : a + end].tobytes() for a in axes)

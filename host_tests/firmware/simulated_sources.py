@@ -6,6 +6,7 @@ from array import array
 import numpy as np
 from scipy.signal import lfilter
 from zerorate import Sensor, effects
+from zerorate.layout import STATE
 from zerorate.model import EffectModel
 from zerorate.model_file import LOADED, REASONS
 from zerorate_tools.model import build_model, encoded
@@ -93,5 +94,5 @@ def on_firmware(model, raw, dt_us=500000, good=lambda n: 1):
         for i, values in enumerate(channels):
             model.channel(i, values[n])
         effects.sense(state, model.e, frame, dt_us, good(n))
-        out[n] = state[61:64]
+        out[n] = state[STATE.EFFECT_Q8 : STATE.EFFECT_Q8 + 3]
     return out / 256 / SCALES.gyro_lsb_per_dps

@@ -4,6 +4,7 @@ import random
 
 import pytest
 from zerorate import Sensor
+from zerorate.layout import GUARD, SETTINGS, STATE
 
 from . import trace
 from .checked import I31, MOST, CheckedCorrector, OutOf31Bits, Words, checked
@@ -97,14 +98,14 @@ def test_no_result_leaves_31_bits(sensor, mode):
             drive(corrector, signal, 90)
         except OutOf31Bits as error:
             raise AssertionError(f"{name}: {error}") from error
-    assert int(corrector.state[GOOD]) > 500
+    assert int(corrector.state[STATE.COUNTS]) > 500
 
 
 @pytest.mark.parametrize("signal", ["just below the rail", "anything"])
 def test_no_result_leaves_31_bits_in_the_longest_windows(signal):
     corrector = CheckedCorrector(SENSORS["8 kHz"])
     drive(corrector, SIGNALS[signal], 1400)
-    assert corrector.settings[3] == 256
+    assert corrector.settings[SETTINGS.WINDOW] == 256
 
 
 @pytest.mark.parametrize("mode", sorted(trace.MODES))
@@ -113,7 +114,7 @@ def test_no_result_leaves_31_bits_in_the_trace_that_covers_every_event(mode):
     rows, dt_us = frames(min(6000, trace.UPDATES[mode]))
     for row, since in zip(rows.tolist(), dt_us.tolist()):
         corrector.update(row, since)
-    assert int(corrector.state[GOOD]) > 1900
+    assert int(corrector.state[STATE.COUNTS]) > 1900
 
 
 def test_an_hour_of_repeated_frames_leaves_31_bits_alone():
@@ -121,7 +122,7 @@ def test_an_hour_of_repeated_frames_leaves_31_bits_alone():
     for _ in range(400):
         corrector.update([1, 2, 16384, 3, 4, 5, 6], 9000000 // 100)
         corrector.update([1, 2, 16384, 3, 4, 5, 6], 9000000)
-    assert int(corrector.state[GOOD + 1]) > 390
+    assert int(corrector.state[STATE.COUNTS + GUARD.REPEAT]) > 390
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ import pytest
 from zerorate import checked
 from zerorate.checked import CheckedCorrector
 from zerorate.corrector import Corrector, Sensor
+from zerorate.layout import STATE
 
 
 class Feed:
@@ -50,7 +51,7 @@ def test_what_came_after_the_last_read_back_is_forgotten_to_the_last_bit(feed):
     feed.rest(6000, 900)
     assert feed.checked.corrector.state != kept
     feed.checked.take_back()
-    assert feed.checked.corrector.state[16:] == kept[16:]
+    assert feed.checked.corrector.state[STATE.ELAPSED_US :] == kept[STATE.ELAPSED_US :]
     assert feed.checked.taken_back == 1
 
 
@@ -67,7 +68,7 @@ def test_a_verified_sample_keeps_what_came_before_it_and_not_itself(feed):
     feed.rest(1, 100, checked.VERIFIED)
     assert feed.checked.corrector.state != before
     feed.checked.take_back()
-    assert feed.checked.corrector.state[16:] == before[16:]
+    assert feed.checked.corrector.state[STATE.ELAPSED_US :] == before[STATE.ELAPSED_US :]
 
 
 def test_a_restart_takes_back_and_begins_a_new_power_on(feed):

@@ -4,7 +4,7 @@ from array import array
 
 import pytest
 from zerorate import Corrector, Sensor, bias
-from zerorate.corrector import MOTION_BIAS, OUT_Q8, SOURCE
+from zerorate.layout import MOTION, STATE
 from zerorate.motion_settings import motion_settings
 from zerorate.realtime_settings import realtime_settings
 from zerorate.store import EMPTY, LOADED, OTHER_BINDING, Store
@@ -140,9 +140,9 @@ def test_it_says_what_it_lacks():
 
 def test_a_bias_shown_as_zero_has_no_sign():
     corrector = Corrector(motion=True)
-    corrector.state[SOURCE] = 4
-    corrector.state[OUT_Q8] = corrector.motion[MOTION_BIAS] = -10
-    corrector.motion[MOTION_BIAS + 3] = 100
+    corrector.state[STATE.SOURCE] = 4
+    corrector.state[STATE.OUT_Q8] = corrector.motion[MOTION.MOTION_BIAS_Q8] = -10
+    corrector.motion[MOTION.MOTION_QUALITY_Q8] = 100
     text = corrector.explain()
     assert "gx: bias 0.000 dps" in text and "; gx 0.000 +-" in text
 

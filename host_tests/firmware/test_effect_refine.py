@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from zerorate import effect_refine, effects
+from zerorate.layout import EFFECTS, SLOT, STATE, slot_at
 from zerorate_tools.model import Slot, build_model, encoded
 from zerorate_tools.model.term import Term, evaluate
 
@@ -17,6 +18,8 @@ SUPPLY = Term("vdd_mv", 4900.0, 5100.0, 5000.0)
 MODEL = ((0.02, -0.01, 0.004), (0.0008, 0.0004, -0.0002))
 SEGMENT = 4  # samples: two ticks
 LSB = 131
+EFFECT = STATE.EFFECT_Q8
+OWN, NOW = SLOT.SLOT_OWN, SLOT.SLOT_COEFFICIENT
 
 
 class Unit:
@@ -50,14 +53,14 @@ class Unit:
             )
             self.model.channel("vdd_mv", int(self.raw["vdd_mv"][k]))
             effects.sense(state, self.model.e, frame, 500000, 1)
-            total += self.effect[k // 2] - np.array(state[61:64]) / 256 / LSB
+            total += self.effect[k // 2] - np.array(state[EFFECT : EFFECT + 3]) / 256 / LSB
         noise = self.rng.normal(0, self.noise_dps, 3)
         rate = total / SEGMENT + self.bias[n // 2] + noise
         for axis in range(3):
-            state[42 + axis] = round(float(rate[axis]) * LSB * 64)
-        state[47] = int(self.raw["temp"][n])
+            state[STATE.SEGMENT_TOTAL + axis] = round(float(rate[axis]) * LSB * 64)
+        state[STATE.TEMP] = int(self.raw["temp"][n])
         effect_refine.observe(state, self.model.e, 64)
-        while self.model.e[582]:
+        while self.model.e[EFFECTS.REFINE_WORK]:
             effect_refine.refine(self.model.e)
         return total / SEGMENT
 
@@ -95,32 +98,32 @@ def test_a_unit_like_the_model_is_not_made_worse_by_as_much_as_a_floor_of_3_mdps
 def test_no_coefficient_leaves_its_bound(model):
     Unit(model, share=4.0).live(2)
     for slot in range(2):
-        a = 112 + 40 * slot
-        own, now = np.array(model.e[a + 30 : a + 33]), np.array(model.e[a + 24 : a + 27])
+        a = slot_at(slot)
+        own, now = (np.array(model.e[a + at :][:3]) for at in (OWN, NOW))
         assert np.abs(now - own).max() <= np.abs(own).max() / 2
         assert np.abs(now - own).max() > np.abs(own).max() / 3
 
 
 def test_refinement_is_off_until_it_is_asked_for():
     model = loaded([Slot(LAG, MODEL[0]), Slot(SUPPLY, MODEL[1])])
-    before = list(model.e[112:192])[24:33]
+    before = list(model.e[slot_at(0) + NOW :][:9])
     Unit(model, share=2.0).live()
-    assert list(model.e[112:192])[24:33] == before
+    assert list(model.e[slot_at(0) + NOW :][:9]) == before
 
 
 def test_no_intermediate_leaves_31_bits(model):
     e = Words(model.e)
     for n in range(400):
         for slot in range(2):
-            e[112 + 40 * slot + 39] = [1 << 25, -(1 << 25), 0][n // 5 % 3]
+            e[slot_at(slot) + SLOT.SLOT_VALUE] = [1 << 25, -(1 << 25), 0][n // 5 % 3]
         state = Words([0] * 64)
         for axis in range(3):
-            state[42 + axis] = [(1 << 29), -(1 << 29), 77][(n // 7 + axis) % 3]
-        state[47] = [32767, -32768][n // 3 % 2]
+            state[STATE.SEGMENT_TOTAL + axis] = [(1 << 29), -(1 << 29), 77][(n // 7 + axis) % 3]
+        state[STATE.TEMP] = [32767, -32768][n // 3 % 2]
         effect_refine.observe(state, e, 1 if n % 2 else 512)
-        while e[582]:
+        while e[EFFECTS.REFINE_WORK]:
             effect_refine.refine(e)
-    assert e[588] == 400
+    assert e[EFFECTS.SEEN] == 400
 
 
 def test_a_bound_out_of_range_is_refused(model):
@@ -154,14 +157,16 @@ def on_host():
     e, state = model.e, array("i", [0] * 64)
     for n in range(120):
         for slot in range(2):
-            e[112 + 40 * slot + 39] = (n * (slot + 3) * 7919 >> 2) % 40001 * 400 - 8000000
+            e[slot_at(slot) + SLOT.SLOT_VALUE] = (
+                n * (slot + 3) * 7919 >> 2
+            ) % 40001 * 400 - 8000000
         for axis in range(3):
-            state[42 + axis] = n * (axis + 5) * 104729 % 60013 - 20000
-        state[47] = n * 31 - 2000
+            state[STATE.SEGMENT_TOTAL + axis] = n * (axis + 5) * 104729 % 60013 - 20000
+        state[STATE.TEMP] = n * 31 - 2000
         effect_refine.observe(state, e, 64)
-        while e[582]:
+        while e[EFFECTS.REFINE_WORK]:
             effect_refine.refine(e)
-    assert list(e[136:139]) != list(e[142:145])
+    assert list(e[slot_at(0) + NOW :][:3]) != list(e[slot_at(0) + OWN :][:3])
     return np.array(e)
 
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from zerorate import Sensor, effects
-from zerorate.corrector import EFFECT_Q8
+from zerorate.layout import EFFECTS, STATE
 from zerorate_tools.model import Slot
 from zerorate_tools.model.term import Term, evaluate
 
@@ -186,7 +186,10 @@ def test_play_operators_and_their_squares_are_those_of_the_reference(warm_up):
 def test_play_operators_alone_make_a_model(warm_up):
     raw = {name: values[:400] for name, values in warm_up[0].items()}
     model = loaded(PLAYS[:1])
-    assert (model.e[0], np.abs(on_firmware(model, raw)[-1]).max() > 0.01) == (0, True)
+    assert (model.e[EFFECTS.SLOT_COUNT], np.abs(on_firmware(model, raw)[-1]).max() > 0.01) == (
+        0,
+        True,
+    )
 
 
 def test_a_small_table_is_straight_lines_between_nine_points(warm_up):
@@ -255,8 +258,8 @@ def test_a_frame_that_is_no_reading_leaves_acceleration_as_it_was():
     turning = array("i", [0, 0, 16384, 0, 131, 0, 0])
     for frame, good in ((turning, 1), (array("i", [-1] * 7), 0)):
         effects.sense(state, model.e, frame, 250000, good)
-    assert state[61] / 256 / 131 == pytest.approx(0.1, abs=1e-4)
-    assert state[62] == 0
+    assert state[STATE.EFFECT_Q8] / 256 / 131 == pytest.approx(0.1, abs=1e-4)
+    assert state[STATE.EFFECT_Q8 + 1] == 0
 
 
 def test_slots_of_all_kinds_add_up(warm_up):
@@ -269,7 +272,7 @@ def test_slots_of_all_kinds_add_up(warm_up):
     got = on_firmware(loaded(slots), raw)[A_TICK - 1 :: A_TICK, 0]
     wanted = sum(s.coefficient_dps[0] * evaluate(s.term, sources, 1.0) for s in slots)
     # twice seven slots fit in the two samples of a tick, so that a gap can be made up for
-    assert loaded(slots).e[6] == 8
+    assert loaded(slots).e[EFFECTS.SLOTS_A_SAMPLE] == 8
     assert np.abs(got[2:] - wanted[1:-1]).max() < TENTH_OF_THE_FLOOR_DPS
 
 
@@ -295,7 +298,7 @@ def test_the_first_sample_speaks_until_the_first_tick_ends():
     state = array("i", [0] * 64)
     for _ in range(3):
         effects.sense(state, model.e, ten_above, 10000, 1)
-    assert state[EFFECT_Q8] / 256 / 131 == pytest.approx(1.0, abs=0.001)
+    assert state[STATE.EFFECT_Q8] / 256 / 131 == pytest.approx(1.0, abs=0.001)
 
 
 def still_frame(temp=0):
@@ -308,7 +311,7 @@ def test_a_gap_lets_as_many_ticks_pass_as_it_lasted():
     for dt_us in [250000] * 41 + [50_000_000] + [250000] * 100:
         effects.sense(state, model.e, still_frame(), dt_us, 1)
     # 85 s have passed; the latest whole tick is the one that began at 84 s
-    assert state[61] / 256 / 131 == pytest.approx(math.exp(-84 / 100), abs=0.001)
+    assert state[STATE.EFFECT_Q8] / 256 / 131 == pytest.approx(math.exp(-84 / 100), abs=0.001)
 
 
 def test_a_channel_that_was_never_given_has_no_effect():
@@ -316,10 +319,10 @@ def test_a_channel_that_was_never_given_has_no_effect():
     state, model = array("i", [0] * 64), loaded([slot])
     for n in range(60):
         if n == 30:
-            assert state[61] == 0
+            assert state[STATE.EFFECT_Q8] == 0
             assert model.channel("load", 90)
         effects.sense(state, model.e, still_frame(), 250000, 1)
-    assert state[61] / 256 / 131 == pytest.approx(0.4, abs=1e-4)
+    assert state[STATE.EFFECT_Q8] / 256 / 131 == pytest.approx(0.4, abs=1e-4)
 
 
 def test_frames_that_are_no_readings_let_time_pass_and_nothing_else():
@@ -327,15 +330,15 @@ def test_frames_that_are_no_readings_let_time_pass_and_nothing_else():
     state, model = array("i", [0] * 64), loaded(slots)
     for n in range(80):
         effects.sense(state, model.e, still_frame(-1 if n >= 40 else 3400), 250000, int(n < 40))
-    assert state[61] / 256 / 131 == pytest.approx(0.01 * 46.53, abs=1e-4)
-    assert state[62] / 256 / 131 == pytest.approx(0.01 * 18.5, abs=1e-4)
+    assert state[STATE.EFFECT_Q8] / 256 / 131 == pytest.approx(0.01 * 46.53, abs=1e-4)
+    assert state[STATE.EFFECT_Q8 + 1] / 256 / 131 == pytest.approx(0.01 * 18.5, abs=1e-4)
 
 
 def test_time_that_stands_still_or_runs_back_is_passed_over():
     state, model = array("i", [0] * 64), loaded([Slot(Term("time", 0, 100), (0, 0.01, 0))])
     for n in range(200):
         effects.sense(state, model.e, still_frame(), -(1 << 29) if n % 2 else 250000, 1)
-    assert state[62] / 256 / 131 == pytest.approx(0.01 * 23.5, abs=1e-4)
+    assert state[STATE.EFFECT_Q8 + 1] / 256 / 131 == pytest.approx(0.01 * 23.5, abs=1e-4)
 
 
 def test_a_power_on_begins_every_memory_anew(warm_up):
@@ -379,7 +382,7 @@ def test_no_intermediate_leaves_31_bits(chosen, ends):
     for n in range(160):
         frame = Words([ends[(n // 8 + i) % 3] for i in range(7)])
         for i in range(len(model.channels)):
-            e[104 + i] = checked((1 << 29) * (1 - n // 9 % 3))
+            e[EFFECTS.CHANNELS + i] = checked((1 << 29) * (1 - n // 9 % 3))
         dt_us = checked([250000, 250000, 1 << 29, 5_000_000][n // 3 % 4])
         effects.sense(state, e, frame, dt_us, 1)
     assert max(map(abs, e)) > 0

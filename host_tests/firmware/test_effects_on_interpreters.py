@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from zerorate import Sensor, effects
+from zerorate.layout import EFFECTS, PLAY, SLOT, STATE, slot_at
 from zerorate.model import EffectModel
 from zerorate_tools.model import Binding, Slot, build_model, encoded
 from zerorate_tools.model.term import Term
@@ -49,10 +50,11 @@ def on_host(model_bin):
         frame[3] = 6000 - abs(k * 6 - 12000)
         model.channel("vdd_mv", 5000 + k % 97)
         effects.sense(state, model.e, frame, 3000000 if k % 211 == 0 else 250000, int(k % 13 > 0))
-        out.append(state[61:64])
-        did |= {i for i in range(len(SLOTS)) if model.e[112 + 40 * i + 39]}
+        out.append(state[STATE.EFFECT_Q8 : STATE.EFFECT_Q8 + 3])
+        did |= {i for i in range(len(SLOTS)) if model.e[slot_at(i) + SLOT.SLOT_VALUE]}
     assert did == set(range(len(SLOTS)))
-    assert model.e[902 + 14] != model.e[917 + 14] != 0
+    first, second = (EFFECTS.PLAYS + PLAY.size * i + PLAY.PLAY_STATE for i in range(2))
+    assert model.e[first] != model.e[second] != 0
     return np.array(out), np.array(model.e)
 
 

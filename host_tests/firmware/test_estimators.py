@@ -4,6 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from zerorate import Corrector, Sensor, estimators
+from zerorate.layout import AXIS, ESTIMATOR, SETTINGS, STATE
 
 FREE = -1048576
 STEP = 340
@@ -17,30 +18,33 @@ class Axis:
         limits = {"promote_s": PROMOTE / 100, "range_dps": 40.0, **limits}
         corrector = Corrector(Sensor(), document=True, **limits)
         self.s, self.c = corrector.state, corrector.settings
-        self.a = self.c[0]
+        self.a = self.c[SETTINGS.AXES]
 
     def learn(self, temp, reading=0, weight=1):
-        self.s[self.a], self.s[self.a + 1], self.s[52] = reading * weight, weight, temp
+        self.s[self.a + AXIS.WAITING_SUM] = reading * weight
+        self.s[self.a + AXIS.WAITING_N] = weight
+        self.s[STATE.LEARN_TEMP] = temp
         estimators.learn_anywhere(self.s, self.c, self.a)
         estimators.learn_here(self.s, self.c, self.a)
 
     def each(self, first, end):
         """[(temperature, readings)] of the estimators between two offsets, FREE ones too."""
-        words = range(self.a + first, self.a + end, self.c[26])
-        return [(self.s[e], self.s[e + 3]) for e in words]
+        words = range(self.a + first, self.a + end, self.c[SETTINGS.ESTIMATOR_WORDS])
+        return [(self.s[e], self.s[e + ESTIMATOR.EST_READINGS]) for e in words]
 
     @property
     def short(self):
-        return self.each(self.c[14], self.c[47])
+        return self.each(self.c[SETTINGS.FIRST_SHORT], self.c[SETTINGS.FIRST_LONG])
 
     @property
     def long(self):
-        return self.each(self.c[47], self.c[15])
+        return self.each(self.c[SETTINGS.FIRST_LONG], self.c[SETTINGS.ESTIMATORS_END])
 
     @property
     def recent_first(self):
         """Temperatures of the short-term estimators, latest used first."""
-        order = self.s[self.a + 6 : self.a + 6 + self.c[24]]
+        first = self.a + AXIS.ORDER
+        order = self.s[first : first + self.c[SETTINGS.SHORT]]
         return [self.s[e] for e in order if self.s[e] != FREE]
 
 
@@ -93,7 +97,7 @@ def test_the_richest_of_another_third_is_never_replaced(visits):
     for degree, weight in visits:
         before = axis.long
         s, a = axis.s, axis.a
-        oldest = s[s[a + 6 + axis.c[24] - 1]]
+        oldest = s[s[a + AXIS.ORDER + axis.c[SETTINGS.SHORT] - 1]]
         axis.learn(degree * STEP, 0, weight)
         gone = [k for k, (was, now) in enumerate(zip(before, axis.long)) if was[0] != now[0]]
         for k in gone:
@@ -153,7 +157,7 @@ def test_noise_at_a_boundary_of_two_degrees_does_not_thrash_the_cache(noise):
 
 def test_a_temperature_passed_in_five_seconds_is_remembered():
     corrector = Corrector()
-    axis = Axis(promote_s=corrector.settings[29] / 100)
+    axis = Axis(promote_s=corrector.settings[SETTINGS.PROMOTE] / 100)
     for degree in range(6):
         axis.learn(degree * STEP, 5, 500)
     assert {0, STEP, 2 * STEP} <= {temp for temp, _ in axis.long}

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from zerorate import Corrector, Sensor, bias, fit
+from zerorate.layout import AXIS, MARKS, SETTINGS, STATE, axis_at
 
 from .tolerances import LINE_LSB
 
@@ -29,16 +30,16 @@ class Axis:
     def __init__(self):
         corrector = Corrector(document=True, fit_s=0.02)
         self.s, self.c = corrector.state, corrector.settings
-        self.a = self.c[0]
+        self.a = self.c[SETTINGS.AXES]
 
     def fit(self, points):
         """Fit the line through (temperature Q4, bias Q8, readings) in the pieces of an update."""
         s, c = self.s, self.c
-        for k in range(c[25] - 1):
-            e = self.a + c[14] + k * c[26]
-            s[e], s[e + 1], s[e + 2], s[e + 3] = _FREE, 0, 0, 0
+        for k in range(c[SETTINGS.ESTIMATOR_COUNT] - 1):
+            e = self.a + c[SETTINGS.FIRST_SHORT] + k * c[SETTINGS.ESTIMATOR_WORDS]
+            s[e : e + 4] = type(s)("i", [MARKS.FREE, 0, 0, 0])
             if k < len(points):
-                s[e], s[e + 1 : e + 4] = points[k][0] >> 4, type(s)("i", points[k])
+                s[e : e + 4] = type(s)("i", [points[k][0] >> 4, *points[k]])
         fit.draw_line(s, c, self.a)
         return self
 
@@ -47,7 +48,7 @@ class Axis:
 
     def choose(self, temp):
         """(source, whether beyond the fitted range) at a raw temperature."""
-        return bias.choose(self.s, self.c, self.a, temp), self.s[self.a + 29]
+        return bias.choose(self.s, self.c, self.a, temp), self.s[self.a + AXIS.BEYOND]
 
 
 @pytest.fixture(scope="module")
@@ -116,13 +117,12 @@ def test_a_few_samples_of_a_slow_rate_still_tell_near_from_far():
     slow, fast = (Corrector(Sensor(hz)) for hz in (1 / 15, 100.0))
     for corrector, readings in ((slow, 4), (fast, 2000)):
         s, c = corrector.state, corrector.settings
-        a = c[0]
+        a = c[SETTINGS.AXES]
         for k, (degree, bias_lsb) in enumerate([(0, 0), (2, 20), (40, 0), (60, 0)]):
-            e = a + c[14] + k * c[26]
-            s[e], s[e + 1], s[e + 2], s[e + 3] = (
-                degree * 340, degree * 340 << 4, bias_lsb << 8, readings
-            )  # fmt: skip
-        s[47] = 2 * 340
+            e = a + c[SETTINGS.FIRST_SHORT] + k * c[SETTINGS.ESTIMATOR_WORDS]
+            held = (degree * 340, degree * 340 << 4, bias_lsb << 8, readings)
+            s[e : e + 4] = type(s)("i", held)
+        s[STATE.TEMP] = 2 * 340
         fit.draw_line(s, c, a)
-    lines = [fit.line_q8(x.state, x.settings[0], 2 * 340 << 4) / 256 for x in (slow, fast)]
+    lines = [fit.line_q8(x.state, axis_at(x.settings, 0), 2 * 340 << 4) / 256 for x in (slow, fast)]
     assert lines[0] == pytest.approx(lines[1], rel=0.05)

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 from zerorate import guard
+from zerorate.layout import STATE
 
 from .played import estimators, play, rest
 
-COUNTS = 8
+COUNTS = STATE.COUNTS
 
 
 def zeros(frames, dt_us):
@@ -92,10 +93,10 @@ def test_explain_says_which_faults_kept_it_from_learning(fault, kind, words):
 @faults
 def test_one_broken_frame_in_a_rest_ends_it_but_a_repeat_does_not(fault, kind, words):
     corrector, _ = play(rest(2))
-    assert corrector.state[34] == 1  # a rest is being watched
+    assert corrector.state[STATE.REST] == 1  # a rest is being watched
     frames, dt_us = broken(fault, 0.02)
     play(frames, corrector, dt_us)
-    assert corrector.state[34] == (1 if kind == guard.REPEAT else 0)
+    assert corrector.state[STATE.REST] == (1 if kind == guard.REPEAT else 0)
 
 
 def test_good_frames_are_counted_and_learned_from():

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from zerorate import Corrector, Sensor, histogram
+from zerorate.layout import SETTINGS
 
 MODES = {
     "default": {},
@@ -28,7 +29,7 @@ class Histogram:
 
     def __init__(self, mode, sensor=None, **more):
         self.c = Corrector(sensor, **{**MODES[mode], **more}).settings
-        self.bins = self.c[16]
+        self.bins = self.c[SETTINGS.BINS]
         self.h = 10
         self.s = array("i", [0] * (self.h + 2 * self.bins + 1))
         histogram.clear(self.s, self.c, self.h, 0)
@@ -153,7 +154,7 @@ def test_no_bin_gets_narrower_by_splitting_than_it_may(mode):
         made.add(100 + n * 7919 % 3)
     best = histogram.most_significant(made.s, made.h, made.bins)
     assert made.edges[best] <= 101 < made.edges[best + 1]
-    assert made.widths[best] >= made.c[19]
+    assert made.widths[best] >= made.c[SETTINGS.NARROWEST_LSB]
     assert min(made.widths) >= 1
 
 

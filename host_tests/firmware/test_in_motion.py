@@ -8,13 +8,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 from zerorate import atan2, attitude, in_motion, real
+from zerorate.layout import MOTION, MOTION_REASON
 from zerorate.motion_settings import motion_settings, motion_state
 from zerorate.realtime_settings import realtime_settings, realtime_state
 
 from . import motions
 
-BIAS, SIGMA, REASON, LEARNED, REFUSED, SLOPES = 70, 73, 17, 67, 68, 76
-HALF, Q = 19, 25
+BIAS, SIGMA = MOTION.MOTION_BIAS_Q8, MOTION.MOTION_QUALITY_Q8
+REASON, LEARNED, REFUSED = MOTION.MOTION_REASON, MOTION.ACCEPTED, MOTION.REFUSED
+SLOPES, HALF, Q = MOTION.NOTED_SLOPES_Q8, MOTION.HALF, MOTION.Q
 
 
 class Learner:
@@ -102,7 +104,7 @@ def test_the_truth_lies_within_two_sigma_at_least_ninety_times_of_a_hundred():
 def test_what_does_not_move_to_and_fro_teaches_nothing(motion):
     learner = Learner().feed(motion)
     assert learner.windows == []
-    assert in_motion.STILL in learner.reasons
+    assert MOTION_REASON.HARDLY_MOVES in learner.reasons
 
 
 @pytest.mark.parametrize(("dps", "seconds"), [(3.0, 25), (12.0, 60)])
@@ -121,7 +123,7 @@ def test_a_bias_that_contradicts_what_is_known_is_refused_and_believed_when_it_l
     learner = Learner().feed(before)
     assert np.abs(learner.errors_mdps(before.bias_dps)[-1]).max() < 60
     learner.feed(after)
-    assert in_motion.TURNED in learner.reasons
+    assert MOTION_REASON.TURNED in learner.reasons
     assert learner.state[REFUSED] > 0
     assert np.abs(learner.errors_mdps(after.bias_dps)[-1]).max() < 300
 
@@ -129,16 +131,16 @@ def test_a_bias_that_contradicts_what_is_known_is_refused_and_believed_when_it_l
 def test_a_turn_beyond_what_a_node_holds_is_refused():
     learner = Learner(gyro_lsb_per_dps=16.4).feed(motions.turning(40, 200.0, [1.0, 0.0, 0.0]))
     assert learner.windows == []
-    assert in_motion.TOO_FAST in learner.reasons
+    assert MOTION_REASON.TOO_FAST in learner.reasons
 
 
 def test_a_gap_in_time_begins_a_new_window():
     motion = motions.swinging(2, 10)
     learner = Learner().feed(motion)
-    assert learner.state[9] > 0
+    assert learner.state[MOTION.FILLED] > 0
     in_motion.update(learner.state, learner.settings, motion.samples[0].tolist(), 500000)
-    assert learner.state[9] == 0
-    assert learner.state[REASON] == in_motion.GAP
+    assert learner.state[MOTION.FILLED] == 0
+    assert learner.state[REASON] == MOTION_REASON.MOTION_GAP
 
 
 def test_each_pass_of_the_documents_own_form_leaves_a_smaller_slope():
@@ -276,7 +278,7 @@ def test_every_intermediate_fits_31_bits(make, document):
     learner = Learner(document=document, longest_stage=5)
     learner.state, learner.settings = Words(learner.state), Words(learner.settings)
     learner.feed(make(4, 30), keep=Words)
-    assert learner.state[14] >= 0
+    assert learner.state[MOTION.PASS] >= 0
 
 
 @pytest.fixture(scope="module")

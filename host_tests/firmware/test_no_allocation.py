@@ -7,7 +7,8 @@ the same state; so what happens in it here happens there.
 from collections import Counter
 
 import pytest
-from zerorate import bias, estimators, fit, guard, histogram, recent, stillness
+from zerorate import bias, estimators, fit, guard, histogram, recent
+from zerorate.layout import AXIS, MARKS, SETTINGS, STATE, STILLNESS, axis_at
 from zerorate_tools.errors import ZerorateError
 
 from . import trace
@@ -29,13 +30,13 @@ class Events:
         self.count(estimators, "halve")
         self.count(estimators, "age")
         self.count(estimators, "make_room", before=self.of_the_oldest)
-        self.count(estimators, "copy", before=lambda s, c, to, e: s[to] != _FREE)
+        self.count(estimators, "copy", before=lambda s, c, to, e: s[to] != MARKS.FREE)
         self.count(fit, "settle")
         self.count(recent, "plausible", lambda args, result: result)
 
     @staticmethod
     def of_the_oldest(s, c, a, temp):
-        return s[s[a + 6 - 1 + c[24]]] != _FREE
+        return s[s[a + AXIS.ORDER - 1 + c[SETTINGS.SHORT]]] != MARKS.FREE
 
     def count(self, module, name, after=None, before=None):
         plain = getattr(module, name)
@@ -52,12 +53,12 @@ class Events:
         """Count what the state shows after an update."""
         s, c = corrector.state, corrector.settings
         self.seen["verdict", verdict] += 1
-        self.seen["stillness", s[46]] += 1
+        self.seen["stillness", s[STATE.STILLNESS]] += 1
         for axis in range(3):
-            a = c[0] + axis * c[13]
-            self.seen["source", s[73 + axis]] += 1
-            self.seen["beyond", s[a + 29]] += 1
-            self.seen["suspect", min(1, max(0, s[a + 27]))] += 1
+            a = axis_at(c, axis)
+            self.seen["source", s[STATE.SOURCE + axis]] += 1
+            self.seen["beyond", s[a + AXIS.BEYOND]] += 1
+            self.seen["suspect", min(1, max(0, s[a + AXIS.SUSPECT]))] += 1
 
 
 @pytest.fixture(scope="module", params=sorted(trace.MODES))
@@ -85,12 +86,12 @@ ALWAYS = {
     "temperature jump": ("verdict", guard.TEMPERATURE_JUMP),
     "time stood still": ("verdict", guard.TIME_STOOD_STILL),
     "time leapt": ("verdict", guard.TIME_LEAPT),
-    "unknown": ("stillness", stillness.UNKNOWN),
-    "still": ("stillness", stillness.STILL),
-    "moving": ("stillness", stillness.MOVING),
-    "turning": ("stillness", stillness.TURNING),
-    "shaken": ("stillness", stillness.SHAKEN),
-    "shifted": ("stillness", stillness.SHIFTED),
+    "unknown": ("stillness", STILLNESS.UNKNOWN),
+    "still": ("stillness", STILLNESS.STILL),
+    "moving": ("stillness", STILLNESS.MOVING),
+    "turning": ("stillness", STILLNESS.TURNING),
+    "shaken": ("stillness", STILLNESS.SHAKEN),
+    "shifted": ("stillness", STILLNESS.SHIFTED),
 }
 LINE = {
     "promotion": ("copy", False),

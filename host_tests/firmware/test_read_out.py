@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from zerorate.layout import AXIS, ESTIMATOR, axis_at
 
 from .played import LSB, NOISE_LSB, estimators, play, rest
 from .tolerances import DOCUMENT_MDPS, LEARNED_LSB, READ_OUT_MDPS
@@ -29,6 +30,7 @@ def interleaved(how, draw):
 def errors_mdps(kind, how, **options):
     """(seeds x axes) error of the read-out of the any-temperature estimator, mdps."""
     errors = []
+    bias_of_all = AXIS.ESTIMATORS + ESTIMATOR.EST_BIAS_Q8
     for seed in SEEDS:
         draw = np.random.default_rng(seed)
         truth = draw.uniform(-20, 20, 3) * LSB
@@ -38,7 +40,7 @@ def errors_mdps(kind, how, **options):
             frames[moves, 4 + axis] += moving(kind, moves.sum(), draw)
         corrector, _ = play(frames, **options)
         s, c = corrector.state, corrector.settings
-        found = [s[c[0] + axis * c[13] + 34] / 256 for axis in range(3)]
+        found = [s[axis_at(c, axis) + bias_of_all] / 256 for axis in range(3)]
         errors += list((np.array(found) - truth) * 1000 / LSB)
     return np.array(errors)
 

@@ -4,12 +4,15 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 from zerorate import realtime
+from zerorate.layout import GRAVITY, GRAVITY_REASON, GRAVITY_SETTINGS
 from zerorate.realtime_settings import realtime_settings, realtime_state
 
 from . import motions
 from .checked import Words, checked
 
-OFFSET, SIGMA, STEP, OBSERVED, REASON, SKIPPED = 28, 31, 34, 37, 49, 50
+OFFSET, SIGMA = GRAVITY.GRAVITY_BIAS_Q8, GRAVITY.GRAVITY_QUALITY_Q8
+STEP, OBSERVED, SKIPPED = GRAVITY.STEP_Q8, GRAVITY.OBSERVED, GRAVITY.SKIPPED
+REASON = GRAVITY.GRAVITY_REASON
 LEANING = Rotation.from_rotvec([0.5, -0.6, 0.2])
 
 
@@ -68,7 +71,7 @@ def test_sub_units_without_one_g_are_not_counted():
     counter = Counter().feed(motion)
     assert counter.state[SKIPPED] >= 39
     assert list(counter.state[OBSERVED : OBSERVED + 3]) == [0, 0, 0]
-    assert counter.state[REASON] == realtime.NOT_ONE_G
+    assert counter.state[REASON] == GRAVITY_REASON.NOT_ONE_G
 
 
 def test_the_documents_own_form_moves_by_one_step_an_interval():
@@ -87,8 +90,8 @@ def test_steps_grow_while_all_signs_agree_and_shrink_when_they_turn():
     for part in np.array_split(motion.samples, 100):
         motion.samples = part
         steps.append(counter.feed(motion).state[STEP])
-    assert max(steps) == 8 * counter.settings[7]
-    assert steps[-1] < counter.settings[7]
+    assert max(steps) == 8 * counter.settings[GRAVITY_SETTINGS.COARSE_Q8]
+    assert steps[-1] < counter.settings[GRAVITY_SETTINGS.COARSE_Q8]
 
 
 def test_the_truth_lies_within_two_sigma_at_least_ninety_times_of_a_hundred():

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 from zerorate import Corrector, Sensor
+from zerorate.layout import GRAVITY, MOTION, STATE
 
 from . import motions
 from .played import by_numba
@@ -13,8 +14,8 @@ from .played import by_numba
 HZ = 25.0
 DT_US = 40000
 BIAS_DPS = np.array([1.0, -2.0, 3.0])
-OUT_Q8, SOURCE, LSB = 55, 73, 131.0
-MOTION_LEARNED, LEVEL_COUNTED = 67, 37
+OUT_Q8, SOURCE, LSB = STATE.OUT_Q8, STATE.SOURCE, 131.0
+MOTION_LEARNED, LEVEL_COUNTED = MOTION.ACCEPTED, GRAVITY.OBSERVED
 
 
 @pytest.fixture(scope="module")

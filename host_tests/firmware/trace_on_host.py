@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from zerorate import Corrector, Sensor
-from zerorate.corrector import OUT_Q8
+from zerorate.layout import STATE
 
 from . import trace
 from .played import by_numba
@@ -38,7 +38,7 @@ def on_cpython(mode, watch=lambda corrector, verdict: None):
     for n in range(trace.UPDATES[mode]):
         dt_us = trace.fill(frame, n, generator)
         watch(corrector, corrector.update(frame, dt_us))
-        biases.extend(corrector.state[OUT_Q8 : OUT_Q8 + 3])
+        biases.extend(corrector.state[STATE.OUT_Q8 : STATE.OUT_Q8 + 3])
     return corrector.state.tobytes(), biases.tobytes()
 
 

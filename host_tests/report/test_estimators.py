@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from zerorate import Corrector, Sensor
+from zerorate.layout import AXIS, ESTIMATOR, SETTINGS, axis_at
 from zerorate_tools.errors import ZerorateError
 from zerorate_tools.recordings import open_recording, read_recording
 from zerorate_tools.replay import replay
@@ -35,8 +36,9 @@ def test_the_last_moment_is_the_state_that_a_replay_ends_in(log, seen):
         )
     ).settings
     for axis in range(3):
-        first = settings[0] + axis * settings[13] + 32
-        biases = state[first + 2 :: settings[26]][: settings[25]] / 256 / scales.gyro_lsb_per_dps
+        first = axis_at(settings, axis) + AXIS.ESTIMATORS + ESTIMATOR.EST_BIAS_Q8
+        biases = state[first :: settings[SETTINGS.ESTIMATOR_WORDS]] / 256 / scales.gyro_lsb_per_dps
+        biases = biases[: settings[SETTINGS.ESTIMATOR_COUNT]]
         shown = [e.bias_dps for e in seen[-1].axes[axis]]
         assert shown[0] == pytest.approx(biases[0])
         assert set(np.round(shown, 9)) <= set(np.round(biases, 9))

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from zerorate import Sensor, model_file
+from zerorate.layout import EFFECTS
 from zerorate.model import EffectModel
 from zerorate_tools.cli import main
 from zerorate_tools.errors import BadModel
@@ -124,7 +125,7 @@ def test_the_firmware_takes_what_was_made_for_it(model):
     held = EffectModel()
     assert held.load(encoded(model), Sensor(), DEVICE) == model_file.LOADED
     assert held.channels == ("load", "vdd_mv")
-    assert held.e[0] == len(SLOTS)
+    assert held.e[EFFECTS.SLOT_COUNT] == len(SLOTS)
     assert not held.channel("humidity", 3)
 
 
@@ -200,14 +201,14 @@ def test_bytes_of_any_kind_with_a_right_checksum_never_raise(noise, at):
 def test_a_file_that_is_not_there_is_a_reason_and_no_error(tmp_path):
     held = EffectModel()
     assert held.load_file(str(tmp_path / "none.bin"), Sensor()) == model_file.UNREADABLE
-    assert held.e[0] == 0
+    assert held.e[EFFECTS.SLOT_COUNT] == 0
 
 
 def test_a_refused_model_leaves_none(model):
     held = EffectModel()
     held.load(encoded(model), Sensor())
     held.load(encoded(model), Sensor(), bytes([1, 0, 0, 3]))
-    assert held.e[0] == 0
+    assert held.e[EFFECTS.SLOT_COUNT] == 0
 
 
 @pytest.mark.parametrize(

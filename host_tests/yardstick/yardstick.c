@@ -20,16 +20,16 @@ static int32_t guard_check(int32_t *s, int32_t *c, int32_t *x, int32_t dt_us) {
     int32_t jump = 0;
     differ = 0;
     fresh = 0;
-    jump = (x[3] - s[3]);
+    jump = (x[3] - s[(0 + 3)]);
     i = 0;
     while (i < 7) {
         if (x[i] != x[0]) {
             differ = 1;
         }
-        if (x[i] != s[i]) {
+        if (x[i] != s[(0 + i)]) {
             fresh = 1;
         }
-        s[i] = x[i];
+        s[(0 + i)] = x[i];
         i = (i + 1);
     }
     i = 0;
@@ -178,14 +178,14 @@ static int32_t estimators_find(int32_t *s, int32_t *c, int32_t a, int32_t temp) 
     half = (c[27] >> 1);
     e = s[(a + 2)];
     if (e > 0) {
-        d = (temp - s[e]);
+        d = (temp - s[(e + 0)]);
         if ((d <= (half + c[28])) && (d >= ((0 - half) - c[28]))) {
             return e;
         }
     }
     e = (a + c[14]);
     while (e < (a + c[15])) {
-        d = (temp - s[e]);
+        d = (temp - s[(e + 0)]);
         if ((d < half) && (d >= (0 - half))) {
             return e;
         }
@@ -595,7 +595,7 @@ static int32_t histogram_adapt(int32_t *s, int32_t *c, int32_t h, int32_t k) {
 
 static int32_t histogram_add(int32_t *s, int32_t *c, int32_t h, int32_t a) {
     int32_t k = 0;
-    k = floor_div(s[a], s[(a + 1)]);
+    k = floor_div(s[(a + 0)], s[(a + 1)]);
     k = histogram_place(s, c, h, k);
     if (k < 0) {
         return 0;
@@ -604,7 +604,7 @@ static int32_t histogram_add(int32_t *s, int32_t *c, int32_t h, int32_t a) {
         histogram_halve(s, h, c[16]);
     }
     s[(h + k)] = (s[(h + k)] + s[(a + 1)]);
-    s[(((h + k) + 1) + c[16])] = (s[(((h + k) + 1) + c[16])] + s[a]);
+    s[(((h + k) + 1) + c[16])] = (s[(((h + k) + 1) + c[16])] + s[(a + 0)]);
     histogram_adapt(s, c, h, k);
     return 1;
 }
@@ -681,7 +681,7 @@ static int32_t estimators_distance(int32_t *s, int32_t *c, int32_t a, int32_t e)
     nearest = 1048575;
     d = (a + c[47]);
     while (d < (a + c[15])) {
-        gap = (s[d] - s[e]);
+        gap = (s[(d + 0)] - s[(e + 0)]);
         if (gap < 0) {
             gap = (-gap);
         }
@@ -701,10 +701,10 @@ static int32_t estimators_outermost(int32_t *s, int32_t *c, int32_t a, int32_t e
     hotter = 1;
     d = (a + c[47]);
     while (d < (a + c[15])) {
-        if ((s[d] != (-1048576)) && (s[d] < s[e])) {
+        if ((s[(d + 0)] != (-1048576)) && (s[(d + 0)] < s[(e + 0)])) {
             colder = 0;
         }
-        if (s[d] > s[e]) {
+        if (s[(d + 0)] > s[(e + 0)]) {
             hotter = 0;
         }
         d = (d + c[26]);
@@ -718,7 +718,7 @@ static int32_t estimators_richest(int32_t *s, int32_t *c, int32_t a, int32_t par
     best = 0;
     e = (a + c[47]);
     while (e < (a + c[15])) {
-        if ((s[e] != (-1048576)) && (estimators_third(s, a, s[e]) == part)) {
+        if ((s[(e + 0)] != (-1048576)) && (estimators_third(s, a, s[(e + 0)]) == part)) {
             if ((best == 0) || (s[(e + 3)] > s[(best + 3)])) {
                 best = e;
             }
@@ -730,7 +730,7 @@ static int32_t estimators_richest(int32_t *s, int32_t *c, int32_t a, int32_t par
 
 static int32_t estimators_protected(int32_t *s, int32_t *c, int32_t a, int32_t e) {
     int32_t part = 0;
-    part = estimators_third(s, a, s[e]);
+    part = estimators_third(s, a, s[(e + 0)]);
     if (part == s[7]) {
         return 0;
     }
@@ -774,10 +774,10 @@ static int32_t estimators_poorest(int32_t *s, int32_t *c, int32_t a, int32_t e) 
 
 static int32_t estimators_victim(int32_t *s, int32_t *c, int32_t a, int32_t e) {
     int32_t d = 0;
-    s[7] = estimators_third(s, a, s[e]);
+    s[7] = estimators_third(s, a, s[(e + 0)]);
     d = (a + c[47]);
     while (d < (a + c[15])) {
-        if (s[d] == (-1048576)) {
+        if (s[(d + 0)] == (-1048576)) {
             return d;
         }
         d = (d + c[26]);
@@ -801,13 +801,13 @@ static int32_t estimators_make_room(int32_t *s, int32_t *c, int32_t a, int32_t t
     int32_t e = 0;
     int32_t k = 0;
     e = s[(((a + 6) - 1) + c[24])];
-    if ((s[e] != (-1048576)) && (s[(e + 3)] >= c[29])) {
+    if ((s[(e + 0)] != (-1048576)) && (s[(e + 3)] >= c[29])) {
         k = estimators_victim(s, c, a, e);
         if (k != e) {
             estimators_copy(s, c, k, e);
         }
     }
-    s[e] = (floor_div((temp + (c[27] >> 1)), c[27]) * c[27]);
+    s[(e + 0)] = (floor_div((temp + (c[27] >> 1)), c[27]) * c[27]);
     s[(e + 1)] = shift_left(temp, 4);
     s[(e + 3)] = 0;
     return e;
@@ -855,7 +855,7 @@ static void fit_weigh(int32_t *s, int32_t *c, int32_t a) {
     e = (a + c[14]);
     while (e < (a + c[15])) {
         w = 0;
-        if ((s[e] != (-1048576)) && (s[(e + 3)] >= c[31])) {
+        if ((s[(e + 0)] != (-1048576)) && (s[(e + 3)] >= c[31])) {
             w = s[(e + 3)];
             s[90] = (s[90] + w);
             if (w > c[32]) {
@@ -1142,7 +1142,7 @@ static int32_t recent_level_q8(int32_t *s, int32_t *c, int32_t a) {
     int32_t k = 0;
     int32_t off = 0;
     int32_t usual = 0;
-    k = ((c[0] - 3) + floor_div((a - c[0]), c[13]));
+    k = ((c[0] + (-3)) + floor_div((a - c[0]), c[13]));
     if (s[54] < c[39]) {
         off = (s[(a + 24)] >> 4);
         if (off > 16383) {
@@ -1657,11 +1657,11 @@ static int32_t block_stretch(int32_t *s, int32_t *c, int32_t *r) {
 
 static int32_t block_plain(int32_t *s, int32_t *f, int32_t *c, int32_t p) {
     int32_t d = 0;
-    d = (f[(p + 4)] - s[3]);
+    d = (f[(p + 4)] - s[(0 + 3)]);
     if ((f[p] <= 0) || (f[p] > c[1]) || (d >= c[2]) || (d <= (-c[2]))) {
         return 0;
     }
-    if ((f[(p + 5)] == s[4]) && (f[(p + 6)] == s[5]) && (f[(p + 7)] == s[6])) {
+    if ((f[(p + 5)] == s[(0 + 4)]) && (f[(p + 6)] == s[(0 + 5)]) && (f[(p + 7)] == s[(0 + 6)])) {
         return 0;
     }
     if ((f[(p + 5)] == f[(p + 6)]) && (f[(p + 6)] == f[(p + 7)])) {
@@ -1688,7 +1688,7 @@ static int32_t block_edge(int32_t *s, int32_t *f, int32_t *c, int32_t *r, int32_
         i = 0;
         while (i < 7) {
             r[i] = f[((p + 1) + i)];
-            s[i] = r[i];
+            s[(0 + i)] = r[i];
             i = (i + 1);
         }
         s[8] = (s[8] + 1);
@@ -1714,9 +1714,9 @@ static int32_t block_edge(int32_t *s, int32_t *f, int32_t *c, int32_t *r, int32_
 
 static void block_account(int32_t *s, int32_t *f, int32_t p, int32_t taken, int32_t elapsed_us) {
     s[0] = f[(p - 7)];
-    s[1] = f[(p - 6)];
-    s[2] = f[(p - 5)];
-    s[3] = f[(p - 4)];
+    s[(0 + 1)] = f[(p - 6)];
+    s[(0 + 2)] = f[(p - 5)];
+    s[(0 + 3)] = f[(p - 4)];
     s[8] = (s[8] + taken);
     s[17] = (s[17] + taken);
     elapsed_us = (elapsed_us + s[16]);
@@ -1793,10 +1793,10 @@ static void block_take(int32_t *s, int32_t *f, int32_t *c, int32_t *r) {
     least_jump = (1 - c[2]);
     near = ((c[2] > 256) ? 256 : 0);
     near_bits = (near ? 9 : 0);
-    last_t = s[3];
-    last_x = s[4];
-    last_y = s[5];
-    last_z = s[6];
+    last_t = s[(0 + 3)];
+    last_x = s[(0 + 4)];
+    last_y = s[(0 + 5)];
+    last_z = s[(0 + 6)];
     ref_a = s[19];
     ref_b = s[(19 + 1)];
     ref_c = s[(19 + 2)];
@@ -1900,9 +1900,9 @@ static void block_take(int32_t *s, int32_t *f, int32_t *c, int32_t *r) {
     elapsed_us = (elapsed_us + (((p - since) >> 3) * usual_us));
     if (n) {
         block_account(s, f, p, n, elapsed_us);
-        s[4] = last_x;
-        s[5] = last_y;
-        s[6] = last_z;
+        s[(0 + 4)] = last_x;
+        s[(0 + 5)] = last_y;
+        s[(0 + 6)] = last_z;
         s[(26 + 3)] = sum_t;
         s[58] = ((due_x + bias_x) - 128);
         s[(58 + 1)] = ((due_y + bias_y) - 128);

@@ -4,7 +4,7 @@
 Order: clamp, centre, delay, [power first], lag or memory, knot, table or power, second source,
 decay.
 The tool scales each slot so that no stage leaves +-1 (2^24), and 1 stands for the largest value
-that the fitted range allows. Words of a slot: see model.py."""
+that the fitted range allows. Words of a slot: docs/layout.md."""
 
 import micropython
 

@@ -1,7 +1,7 @@
 # Generated from zerorate/effect_inputs.py by `make viper`: edit that file, not this one.
 """The sources of the effect slots: means over a tick of what the samples and the application say.
 
-A source's value is in Q8 of its integer. Words of an input: see model.py."""
+A source's value is in Q8 of its integer. Words of an input: docs/layout.md."""
 
 import micropython
 

@@ -5,7 +5,7 @@ A Kalman filter (R. E. Kalman, 1960) whose state is, for each axis, an offset th
 line over temperature, and how far each slot's coefficient is from the model's; the three axes have
 one covariance. It is told each still segment's rate less what the model's own effects say, so
 neither the turn-on offset nor the line is taken for an effect. No coefficient leaves the model's
-own by more than the bound. Numbers are those of real.py; words of `e`: see model.py."""
+own by more than the bound. Numbers are those of real.py; words of `e`: docs/layout.md."""
 
 import micropython
 

@@ -4,7 +4,7 @@
 Slots are computed once a tick (1 s) on the means of the tick, one slot a sample, so that no sample
 waits for all of them; what depends on the rate or the acceleration itself, which a hand moves
 faster than a tick, is computed for every sample. One array `e` holds the model and its running
-state: see model.py for its words."""
+state: docs/layout.md has its words."""
 
 import micropython
 
@@ -42,7 +42,8 @@ def run_slot(e: ptr32, e_):
         e_a = ptr32(int(e) + (a << 2))
         if not e_a[33]:
             e_a[39] = int(basis(e_, a, e_))
-            add_times(10, e_a[39], a + 24, e_, e_a[23])
+            contribute_shift = e_a[23]
+            add_times(10, e_a[39], a + 24, e_, contribute_shift)
     else:
         play_a = (i - e[0]) * 15 + 902
         e_play_a = ptr32(int(e) + (play_a << 2))
@@ -145,7 +146,8 @@ def sense(s: ptr32, e_, x_, dt_us: int, good: int):
         while add_instant_i > 0:
             if e_add_instant_a[33] + good > 1:
                 e_add_instant_a[39] = int(basis(e_, add_instant_a, e_))
-                add_times(16, e_add_instant_a[39], add_instant_a + 24, e_, e_add_instant_a[23])
+                add_instant_contribute_shift = e_add_instant_a[23]
+                add_times(16, e_add_instant_a[39], add_instant_a + 24, e_, add_instant_contribute_shift)
             add_instant_a = add_instant_a + 40
             e_add_instant_a = ptr32(int(e_add_instant_a) + 160)
             add_instant_i = add_instant_i - 1

@@ -180,6 +180,23 @@ def too_far(turned: int) -> int:
 
 
 @micropython.viper
+def count(s: ptr32, c: ptr32, i: int, deviation: int):
+    s_i = ptr32(int(s) + (i << 2))
+    s_i[25] = s_i[25] + 1
+    s_i[37] = s_i[37] + 1
+    spread_deviation = deviation
+    if spread_deviation >> 30:
+        spread_deviation = -spread_deviation
+    if spread_deviation > 8192:
+        spread_deviation = 8192
+    s[54] = ((spread_deviation << 8) - s[54] >> 6) + s[54]
+    if deviation > c[6]:
+        s_i[22] = s_i[22] + 1
+    elif deviation < -c[6]:
+        s_i[22] = s_i[22] - 1
+
+
+@micropython.viper
 def end_interval(s: ptr32, c: ptr32) -> int:
     ended = 0
     if s[25] >= c[4] or (not c[11] and s[21] >= c[4]):

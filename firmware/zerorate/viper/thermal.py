@@ -5,7 +5,7 @@ A Kalman filter of two states an axis, bias and slope over temperature: the wind
 are its measurement. A bias carried along its slope does not lag behind a ramp, and what the ramp
 teaches of the slope costs no more than its covariance with the bias.
 
-Three packed numbers an axis from _SLOPE on: the slope, its covariance with the bias, its variance;
+Three packed numbers an axis at _TEMP_SLOPES: the slope, its covariance with the bias, its variance,
 in Q24 rad a node and raw LSB of the thermometer."""
 
 import micropython

@@ -3,7 +3,7 @@
 import sys
 from array import array
 
-from micropython import heap_lock, heap_unlock
+from micropython import const, heap_lock, heap_unlock
 from zerorate.model import EffectModel
 from zerorate.settings import Sensor
 
@@ -11,6 +11,10 @@ if sys.argv[1] == "viper":
     from zerorate.viper.effects import sense
 else:
     from zerorate.effects import sense
+
+# layout: The corrector's state
+_EFFECT_Q8 = const(61)
+# layout: end
 
 model = EffectModel()
 assert model.load_file("model.bin", Sensor(4.0), b"\x68\x00\x00\x03") == 0
@@ -29,7 +33,7 @@ def drive(first):
         model.channel("vdd_mv", 5000 + k % 97)
         sense(state, e, frame, 3000000 if k % 211 == 0 else 250000, 1 if k % 13 else 0)
         for i in range(3):
-            out[3 * n + i] = state[61 + i]
+            out[3 * n + i] = state[_EFFECT_Q8 + i]
 
 
 with open("out.bin", "wb") as file:

@@ -3,7 +3,7 @@
 import sys
 from array import array
 
-from micropython import heap_lock, heap_unlock
+from micropython import const, heap_lock, heap_unlock
 from zerorate.model import EffectModel
 from zerorate.settings import Sensor
 
@@ -12,27 +12,48 @@ if sys.argv[1] == "viper":
 else:
     from zerorate.effect_refine import attend
 
+# layout: The corrector's state
+_WINDOW_N = const(17)
+_SEGMENT_TOTAL = const(42)
+_STILLNESS = const(46)
+_TEMP = const(47)
+# layout: The corrector's settings
+_WINDOW_SHIFT = const(4)
+_SEGMENT = const(5)
+_SETTINGS_WORDS = const(52)
+# layout: The effect model and its running state
+_SLOT_COUNT = const(0)
+_SLOTS = const(112)
+_REFINE_WORK = const(582)
+# layout: An effect slot
+_SLOT_VALUE = const(39)
+_SLOT_WORDS = const(40)
+# layout: What a window was
+_STILL = const(1)
+# layout: end
+
 model = EffectModel()
 assert model.load_file("model.bin", Sensor(2.0)) == 0
 model.refine()
 state = array("i", [0] * 64)
-state[46] = 1  # still
-settings = array("i", [0] * 52)
-settings[4], settings[5] = 6, 1  # a segment of one window of 64 samples
+state[_STILLNESS] = _STILL
+settings = array("i", [0] * _SETTINGS_WORDS)
+settings[_WINDOW_SHIFT], settings[_SEGMENT] = 6, 1  # a segment of one window of 64 samples
 
 
 def drive():
     e = model.e
     for n in range(120):
-        for slot in range(e[0]):
-            e[112 + 40 * slot + 39] = (n * (slot + 3) * 7919 >> 2) % 40001 * 400 - 8000000
+        for slot in range(e[_SLOT_COUNT]):
+            value = _SLOTS + _SLOT_WORDS * slot + _SLOT_VALUE
+            e[value] = (n * (slot + 3) * 7919 >> 2) % 40001 * 400 - 8000000
         for axis in range(3):
-            state[42 + axis] = n * (axis + 5) * 104729 % 60013 - 20000
-        state[47] = n * 31 - 2000
-        state[17] = 0  # the window has just ended
+            state[_SEGMENT_TOTAL + axis] = n * (axis + 5) * 104729 % 60013 - 20000
+        state[_TEMP] = n * 31 - 2000
+        state[_WINDOW_N] = 0  # the window has just ended
         attend(state, settings, e)
-        state[17] = 1
-        while e[582]:
+        state[_WINDOW_N] = 1
+        while e[_REFINE_WORK]:
             attend(state, settings, e)
 
 

@@ -10,12 +10,14 @@ from array import array
 if sys.argv[1] == "plain":
     sys.modules["zerorate.viper"] = sys  # has nothing of it, so that bytecode is chosen
 
-import zerorate.corrector as corrector_file
 import zerorate.kernels as kernels
-from micropython import heap_lock, heap_unlock
+from micropython import const, heap_lock, heap_unlock
 from zerorate import Corrector, Sensor
 
 _STRETCH = 500
+# layout: The corrector's state
+_OUT_Q8 = const(55)
+# layout: end
 
 which, mode, updates = sys.argv[1], sys.argv[2], int(sys.argv[3])
 if kernels.VIPER != (which == "viper"):
@@ -35,7 +37,7 @@ def stretch(first):
         dt_us = trace.fill(frame, first + n, generator)
         corrector.update(frame, dt_us)
         for axis in range(3):
-            biases[3 * n + axis] = s[corrector_file.OUT_Q8 + axis]
+            biases[3 * n + axis] = s[_OUT_Q8 + axis]
 
 
 with open("bias.bin", "wb") as file:

@@ -3,14 +3,18 @@
 import sys
 from array import array
 
+from micropython import const
 from zerorate import Corrector, Sensor
-from zerorate.corrector import EFFECT_Q8, OUT_Q8
 from zerorate.model import EffectModel
 from zerorate.model_file import LOADED, REASONS
 from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050
 from zerorate_i2c.mpu6050 import MPU6050, RESTARTED, SUSPECT
 
 _ROWS = 256
+# layout: The corrector's state
+_OUT_Q8 = const(55)
+_EFFECT_Q8 = const(61)
+# layout: end
 
 
 class Recording:
@@ -74,7 +78,7 @@ def play(recording, target, part, dps, g, odr_hz):
         if status != RESTARTED and status != SUSPECT:
             corrector.update(sample, recording.dt_us)
         for i in range(3):
-            row[i] = state[OUT_Q8 + i] + state[EFFECT_Q8 + i]
+            row[i] = state[_OUT_Q8 + i] + state[_EFFECT_Q8 + i]
             row[3 + i] = sample[4 + i]
         target.write(row)
     print(corrector.explain())

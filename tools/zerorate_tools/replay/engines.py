@@ -16,15 +16,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from zerorate import Corrector
-from zerorate.corrector import EFFECT_Q8, OUT_Q8, QUALITY_Q8, SOURCE
+from zerorate.layout import EFFECTS, STATE
 
 from ..errors import ZerorateError
 from ..recordings.checks import GAP
 from .samples import Frames
 
 _NOTHING = array("i", [0])
-#: Word of the effects' array: whether coefficients go on learning.
-REFINING = 26
 _OTHERS = ("motion.bin", "motion_settings.bin", "level.bin", "level_settings.bin", "effects.bin")
 _OUTPUT = np.dtype([("verdict", "<i4"), ("bias", "<i4", 3), ("source", "<i4", 3), ("q", "<i4", 3)])
 
@@ -91,7 +89,7 @@ class NumbaEngine(Engine):
             yield from CPythonEngine().run(corrector, batches)
             return
         on = [x is not None for x in (corrector.motion, corrector.level, corrector.effects)]
-        refining = corrector.effects is not None and corrector.effects.e[REFINING] != 0
+        refining = corrector.effects is not None and corrector.effects.e[EFFECTS.REFINE_ON] != 0
         run = compiled_run(*on, refining)
         state = np.frombuffer(corrector.state, np.int32)
         settings = np.array(corrector.settings, np.int32)
@@ -128,8 +126,9 @@ class CPythonEngine(Engine):
     def _one(corrector: Corrector, frame: array, dt_us: int) -> tuple:
         verdict = corrector.update(frame, dt_us)
         s = corrector.state
-        bias = [s[OUT_Q8 + axis] + s[EFFECT_Q8 + axis] for axis in range(3)]
-        return verdict, bias, s[SOURCE : SOURCE + 3], s[QUALITY_Q8 : QUALITY_Q8 + 3]
+        bias = [s[STATE.OUT_Q8 + axis] + s[STATE.EFFECT_Q8 + axis] for axis in range(3)]
+        source, quality = STATE.SOURCE, STATE.QUALITY_Q8
+        return verdict, bias, s[source : source + 3], s[quality : quality + 3]
 
 
 class InterpreterEngine(Engine):

@@ -13,16 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numba
-from zerorate.corrector import (
-    ACCELEROMETER,
-    EFFECT_Q8,
-    IN_MOTION,
-    LEVEL_BIAS,
-    MOTION_BIAS,
-    OUT_Q8,
-    QUALITY_Q8,
-    SOURCE,
-)
+from zerorate.layout import EFFECTS, GRAVITY, MOTION, SOURCE, STATE
 
 from zerorate_tools.recordings.checks import GAP
 from zerorate_tools.runtimes.cache import cache_folder, fill
@@ -32,11 +23,12 @@ _PACKAGE = "zerorate_compiled"
 _LOOP = Path(__file__).with_name("sample_loop.py")
 _STEPS = ("examine", "admit", "finish", "consider")
 _WORDS = {
-    **{"GAP": GAP, "OUT_Q8": OUT_Q8, "EFFECT_Q8": EFFECT_Q8, "QUALITY_Q8": QUALITY_Q8},
-    **{"SOURCE": SOURCE, "MOTION_BIAS": MOTION_BIAS, "LEVEL_BIAS": LEVEL_BIAS},
-    **{"IN_MOTION": IN_MOTION, "ACCELEROMETER": ACCELEROMETER},
-    # first word of the extra channels in the effects' array
-    "EXTRA": 104,
+    "GAP": GAP,
+    **{name: getattr(STATE, name) for name in ("OUT_Q8", "EFFECT_Q8", "QUALITY_Q8", "SOURCE")},
+    "MOTION_BIAS_Q8": MOTION.MOTION_BIAS_Q8,
+    "GRAVITY_BIAS_Q8": GRAVITY.GRAVITY_BIAS_Q8,
+    **{"IN_MOTION": SOURCE.IN_MOTION, "ACCELEROMETER": SOURCE.ACCELEROMETER},
+    "CHANNELS": EFFECTS.CHANNELS,
 }
 
 

@@ -3,14 +3,21 @@
 import sys
 from array import array
 
-from zerorate.corrector import EFFECT_Q8, OUT_Q8, QUALITY_Q8, SOURCE, Corrector
+from micropython import const
+from zerorate.corrector import Corrector
 from zerorate.model import EffectModel
 
 _ROWS = 256
 _GAP = -0x80000000
-# words of the effects' array: first extra channel, whether coefficients go on learning
-_EXTRA = 104
-_REFINING = 26
+# layout: The corrector's state
+_OUT_Q8 = const(55)
+_EFFECT_Q8 = const(61)
+_QUALITY_Q8 = const(70)
+_SOURCE = const(73)
+# layout: The effect model and its running state
+_REFINE_ON = const(26)
+_CHANNELS = const(104)
+# layout: end
 
 
 def whole(name):
@@ -40,7 +47,7 @@ channels = 0
 if effects:
     model = EffectModel()
     model.e = effects
-    if effects[_REFINING]:
+    if effects[_REFINE_ON]:
         from zerorate.refine_kernels import effect_refine
 
         model.attend = effect_refine.attend
@@ -63,12 +70,12 @@ with open("frames.bin", "rb") as source, open("out.bin", "wb") as target:
                 frame[k] = rows[start + 1 + k]
             for k in range(channels):
                 if rows[start + 8 + k] != _GAP:
-                    effects[_EXTRA + k] = rows[start + 8 + k]
+                    effects[_CHANNELS + k] = rows[start + 8 + k]
             out[0] = corrector.update(frame, rows[start])
             for axis in range(3):
-                out[1 + axis] = state[OUT_Q8 + axis] + state[EFFECT_Q8 + axis]
-                out[4 + axis] = state[SOURCE + axis]
-                out[7 + axis] = state[QUALITY_Q8 + axis]
+                out[1 + axis] = state[_OUT_Q8 + axis] + state[_EFFECT_Q8 + axis]
+                out[4 + axis] = state[_SOURCE + axis]
+                out[7 + axis] = state[_QUALITY_Q8 + axis]
             for k in range(7):
                 out[10 + k] = frame[k]
             target.write(out)

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from zerorate.layout import JOB, MOTION
+from zerorate.layout import MOTION_SETTINGS as SET
 
 from ..errors import InFile, ZerorateError
 from ..recordings import Recording
@@ -17,9 +19,6 @@ from ..recordings.reading import OpenRecording
 from ..signs import fixed
 from .samples import frames_in_batches, sensor_of
 
-_JOB, _PASS, _REASON, _Y, _SLOPES = 13, 14, 17, 51, 76
-_NODE_US, _VISITS, _PASSES = 0, 5, 9
-_IDLE, _TRAVERSE = 0, 1
 REASONS = ("nothing yet", "growing", "learned", "still", "turned", "too fast", "lost", "gap")
 _MOST_PICTURES = 12
 
@@ -57,23 +56,23 @@ def windows(recording: OpenRecording | Recording, **options: object) -> Iterator
         raise ZerorateError(f"{recording.name}: {error}") from error
     state = motion_state(settings)
     # no node is visited by update itself: each is seen one by one below
-    settings[_VISITS] = 0
-    elapsed_us = 0
+    settings[SET.VISITS] = 0
+    noted, elapsed_us = MOTION.NOTED_SLOPES_Q8, 0
     for batch in frames_in_batches(recording):
         for row, dt_us in zip(batch.frames.tolist(), batch.dt_us.tolist()):
             elapsed_us += dt_us
             update(state, settings, row, dt_us)
-            if state[_JOB] != _IDLE:
-                settings[_VISITS] = 1
+            if state[MOTION.JOB] != JOB.IDLE:
+                settings[SET.VISITS] = 1
                 passes = _passes(state, settings, work)
-                settings[_VISITS] = 0
-                slopes = np.array(state[_SLOPES : _SLOPES + 9]).reshape(3, 3)
+                settings[SET.VISITS] = 0
+                slopes = np.array(state[noted : noted + 9]).reshape(3, 3)
                 # the last pass has the last row, however many there were
-                slopes = slopes[[*range(len(passes) - 1), min(settings[_PASSES], 3) - 1]]
+                slopes = slopes[[*range(len(passes) - 1), min(settings[SET.PASSES], 3) - 1]]
                 yield Window(
                     elapsed_us / 1e6,
-                    settings[_NODE_US] / 1e6,
-                    REASONS[state[_REASON]],
+                    settings[SET.NODE_US] / 1e6,
+                    REASONS[state[MOTION.MOTION_REASON]],
                     passes,
                     slopes / (256 * sensor.gyro_lsb_per_dps),
                 )
@@ -81,11 +80,11 @@ def windows(recording: OpenRecording | Recording, **options: object) -> Iterator
 
 def _passes(state, settings, work) -> NDArray[np.float64]:
     seen: dict[int, list] = {}
-    while state[_JOB] != _IDLE:
-        number, traversing = state[_PASS], state[_JOB] == _TRAVERSE
+    while state[MOTION.JOB] != JOB.IDLE:
+        number, traversing = state[MOTION.PASS], state[MOTION.JOB] == JOB.TRAVERSE
         work(state, settings)
         if traversing and number > 0:
-            seen.setdefault(number, []).append(list(state[_Y : _Y + 3]))
+            seen.setdefault(number, []).append(list(state[MOTION.Y : MOTION.Y + 3]))
     return np.degrees(np.array([seen[number] for number in sorted(seen)]) / (1 << 12))
 
 

@@ -1,6 +1,6 @@
 """What `Corrector.update` does, a row at a time, as jit.compiled_run compiles it.
 
-The kernels' names, EXTRA, GAP and the words of the state are put into this module before it runs;
+The kernels' names, GAP and the words of the state are put into this module before it runs;
 MOTION, LEVEL, EFFECTS and REFINING say what is on. Numba leaves out what stands behind one that is
 False, and with it the counting of references to arrays that nobody reads.
 """
@@ -18,9 +18,9 @@ def update(s, c, others, x, dt_us):
     admit(s, c, x, kind)
     if kind == 0:
         if MOTION and in_motion(m, k, x, dt_us):
-            consider(s, c, m, MOTION_BIAS, IN_MOTION)
+            consider(s, c, m, MOTION_BIAS_Q8, IN_MOTION)
         if LEVEL and by_level(r, q, x, dt_us):
-            consider(s, c, r, LEVEL_BIAS, ACCELEROMETER)
+            consider(s, c, r, GRAVITY_BIAS_Q8, ACCELEROMETER)
         if REFINING:
             attend(s, c, e)
     return finish(s, c, x, kind)
@@ -31,7 +31,7 @@ def run(s, c, others, samples, dt_us, extra, bias_q8, source, quality_q8, verdic
     for i in range(len(samples)):
         for k in range(extra.shape[1]):
             if extra[i, k] != GAP:
-                others[4][EXTRA + k] = extra[i, k]
+                others[4][CHANNELS + k] = extra[i, k]
         verdict[i] = update(s, c, others, samples[i], dt_us[i])
         for axis in range(3):
             bias_q8[i, axis] = s[OUT_Q8 + axis] + s[EFFECT_Q8 + axis]

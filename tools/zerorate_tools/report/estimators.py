@@ -10,8 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from zerorate import Corrector
-from zerorate import estimators as layout
-from zerorate.corrector import OUT_Q8
+from zerorate.layout import AXIS, ESTIMATOR, MARKS, SETTINGS, STATE, axis_at
 
 from ..recordings import Scales, open_recording
 from ..replay.engines import engine
@@ -87,7 +86,7 @@ def _moment(corrector: Corrector, scales: Scales, minute, name, raw_temp) -> Mom
         minute=minute,
         recording=name,
         temp_degc=float(scales.temp_degc(raw_temp)) if warm else None,
-        bias_dps=state[OUT_Q8 : OUT_Q8 + 3] / 256 / lsb,
+        bias_dps=state[STATE.OUT_Q8 : STATE.OUT_Q8 + 3] / 256 / lsb,
         axes=tuple(
             tuple(_estimators(state, corrector.settings, axis, scales)) for axis in range(3)
         ),
@@ -96,26 +95,27 @@ def _moment(corrector: Corrector, scales: Scales, minute, name, raw_temp) -> Mom
 
 def _estimators(state: NDArray, settings, axis: int, scales: Scales) -> list[Estimator]:
     """Those of an axis that hold anything."""
-    block = settings[0] + axis * settings[13]
-    words, short = settings[layout._WORDS], settings[layout._SHORT]
-    starts = range(block + layout._ESTIMATORS, block + settings[layout._END], words)
+    block = axis_at(settings, axis)
+    words, short = settings[SETTINGS.ESTIMATOR_WORDS], settings[SETTINGS.SHORT]
+    starts = range(block + AXIS.ESTIMATORS, block + settings[SETTINGS.ESTIMATORS_END], words)
     out = []
     for number, at in enumerate(starts):
         own = state[at : at + words]
         kind = "any" if number == 0 else "short" if number <= short else "long"
-        if own[3] > 0 and (kind == "any" or own[0] != layout._FREE):
-            in_use = at == state[block + layout._CURRENT]
-            out.append(_estimator(kind, own, settings[layout._BINS], in_use, scales))
+        free = number > 0 and own[ESTIMATOR.EST_TEMP] == MARKS.FREE
+        if own[ESTIMATOR.EST_READINGS] > 0 and not free:
+            in_use = at == state[block + AXIS.CURRENT]
+            out.append(_estimator(kind, own, settings[SETTINGS.BINS], in_use, scales))
     return out
 
 
 def _estimator(kind: str, own: NDArray, bins: int, in_use: bool, scales: Scales) -> Estimator:
-    histogram, lsb = own[4:], scales.gyro_lsb_per_dps
+    histogram, lsb = own[ESTIMATOR.EST_HISTOGRAM :], scales.gyro_lsb_per_dps
     warm = kind != "any" and scales.temp_lsb_per_degc
     return Estimator(
         kind=kind,
-        temp_degc=float(scales.temp_degc(own[1] / 16)) if warm else None,
-        bias_dps=float(own[2]) / 256 / lsb,
+        temp_degc=float(scales.temp_degc(own[ESTIMATOR.EST_MEAN_TEMP_Q4] / 16)) if warm else None,
+        bias_dps=float(own[ESTIMATOR.EST_BIAS_Q8]) / 256 / lsb,
         edges_dps=(histogram[: bins + 1] >> 14) / lsb,
         readings=histogram[:bins] & _POPULATION,
         in_use=bool(in_use),

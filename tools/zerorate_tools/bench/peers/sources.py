@@ -7,12 +7,13 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
+from zerorate.layout import GRAVITY, MOTION
 
 from ...replay.jit import compiled_kernels
 from .given import Given
 
-_MOTION_WORDS = (70, 73)
-_REALTIME_WORDS = (28, 31)
+_MOTION_WORDS = MOTION.MOTION_BIAS_Q8, MOTION.MOTION_QUALITY_Q8
+_GRAVITY_WORDS = GRAVITY.GRAVITY_BIAS_Q8, GRAVITY.GRAVITY_QUALITY_Q8
 
 
 class Source:
@@ -63,7 +64,7 @@ class Source:
             from zerorate.realtime_settings import realtime_settings, realtime_state
 
             settings = realtime_settings(*sensor, **self.options)
-            state, at = realtime_state(settings), _REALTIME_WORDS
+            state, at = realtime_state(settings), _GRAVITY_WORDS
         return np.array(state, np.int32), np.array(settings, np.int32), at
 
     def _judge(

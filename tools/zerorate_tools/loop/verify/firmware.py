@@ -8,6 +8,7 @@ from copy import deepcopy
 
 import numpy as np
 from zerorate import Corrector
+from zerorate.layout import AXIS, SETTINGS, STATE, axis_at
 from zerorate.model import EffectModel
 from zerorate.model_file import LOADED, REASONS
 
@@ -17,12 +18,6 @@ from ...model.check import sensor_for
 from ...recordings import Scales
 from ...replay.engines import NumbaEngine
 from ...replay.samples import Frames
-
-#: Settings' words: first axis' block, words of a block, what the accelerations of a rest spread at
-#: most (LSB^2 in Q8), variance of an offset not known yet.
-_AXES, _AXIS_WORDS, _REST_SPREAD, _TURN_ON_Q8 = 0, 13, 8, 45
-#: Words of the state and of an axis' block: bias to reach; offset, its variance, who insists.
-_TARGET_Q8, _OFFSET_Q8, _VARIANCE_Q8, _SUSPECT = 67, 24, 25, 27
 
 
 class Refused(ZerorateError):
@@ -43,7 +38,7 @@ class Firmware:
         self._learning = self._corrector.settings
         # a spread above nothing is in every window: no rest, so nothing is learned
         self._frozen = deepcopy(self._learning)
-        self._frozen[_REST_SPREAD] = -1
+        self._frozen[SETTINGS.STILL_ACCEL_Q8] = -1
         self._engine = NumbaEngine()
         self._extra: list[int] = []
         if model is not None:
@@ -95,24 +90,27 @@ class Firmware:
     @property
     def target_q8(self) -> np.ndarray:
         """(3,) bias without effects that the latest window asks for, LSB in Q8."""
-        return np.array(self._corrector.state[_TARGET_Q8 : _TARGET_Q8 + 3], np.int64)
+        return np.array(self._corrector.state[STATE.TARGET_Q8 : STATE.TARGET_Q8 + 3], np.int64)
 
     @property
     def offset_is_known(self) -> np.ndarray:
         """(3,) bool: whether rests have told the axis' offset since power-on, beyond doubt."""
-        s, unknown = self._corrector.state, self._learning[_TURN_ON_Q8]
+        s, unknown = self._corrector.state, self._learning[SETTINGS.TURN_ON_VARIANCE_Q8]
         return np.array(
-            [s[a + _VARIANCE_Q8] != unknown and s[a + _SUSPECT] <= 0 for a in self._axes()]
+            [
+                s[a + AXIS.OFFSET_VARIANCE_Q8] != unknown and s[a + AXIS.SUSPECT] <= 0
+                for a in self._axes()
+            ]
         )
 
     def set_offset(self, offset_q8: Iterable[int]) -> None:
         """Put each axis' offset from the learned curve, (3,) LSB in Q8, in place."""
         for a, offset in zip(self._axes(), offset_q8):
-            self._corrector.state[a + _OFFSET_Q8] = int(offset)
+            self._corrector.state[a + AXIS.OFFSET_Q8] = int(offset)
 
     def _axes(self):
         c = self._learning
-        return [c[_AXES] + i * c[_AXIS_WORDS] for i in range(3)]
+        return [axis_at(c, i) for i in range(3)]
 
 
 def rows(frames: Frames, first: int, end: int) -> Frames:

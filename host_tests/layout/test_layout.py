@@ -1,0 +1,111 @@
+"""The layout of the firmware's arrays: one name for one word, and every file's constants fresh."""
+
+import re
+from collections import defaultdict
+
+import pytest
+from zerorate import Corrector, explain, explain_sources, layout
+from zerorate.model import EffectModel
+
+from .lines import files, names_in, refreshed
+from .page import page
+
+_BY_HAND = re.compile(r"^_?[A-Z][A-Z0-9_]* = const\((.*)\)", re.MULTILINE)
+# a real at `a` has its exponent at `a + 1`
+_NUMBERED = re.compile(r"\b[scem]\[(\d+|[af] \+ ([2-9]|\d\d+)\b)[^]]*\]")
+
+
+def firmware(repository):
+    """The files that people write."""
+    found = (repository / "firmware" / "zerorate").rglob("*.py")
+    return sorted(path for path in found if path.parent.name != "viper")
+
+
+def test_every_file_has_the_constants_of_the_layout(repository):
+    stale = [path.name for path in files(repository) if refreshed(path) != path.read_text("utf-8")]
+    assert stale == [], "run `make layout`"
+
+
+def test_the_page_is_that_of_the_layout(repository):
+    assert (repository / "docs" / "layout.md").read_text("utf-8") == page(), "run `make layout`"
+
+
+def test_no_name_stands_for_two_things():
+    names = [word.name for array in layout.ARRAYS for word in array.words]
+    names += [array.size_name for array in layout.ARRAYS if array.size_name]
+    names += [name for codes in layout.CODES for name in codes.numbers]
+    assert sorted(names) == sorted(set(names))
+
+
+def test_no_private_constant_has_two_values_in_the_firmware(repository):
+    values = defaultdict(set)
+    for path in firmware(repository):
+        for line in _BY_HAND.finditer(path.read_text("utf-8")):
+            name = line[0].split(" ")[0]
+            if name.startswith("_"):
+                values[name].add(int(line[1].split("#")[0], 0))
+    assert len(values) > 300
+    assert {name: found for name, found in values.items() if len(found) > 1} == {}
+
+
+def test_no_file_of_the_firmware_indexes_a_word_by_number(repository):
+    found = {
+        path.name: [m[0] for m in _NUMBERED.finditer(path.read_text("utf-8"))]
+        for path in firmware(repository)
+    }
+    assert {name: numbered for name, numbered in found.items() if numbered} == {}
+    assert _NUMBERED.search("s[a + 24] = c[3]") and _NUMBERED.search("s[3]")
+
+
+def test_words_lie_one_behind_another():
+    for array in layout.ARRAYS:
+        own = [word for word in array.words if not word.while_text]
+        for word, following in zip(own, own[1:]):
+            assert word.index + word.count == following.index
+        if array.size:
+            assert all(word.index + word.count <= array.size for word in array.words)
+
+
+@pytest.mark.parametrize("block", [layout.INPUT, layout.SLOT, layout.PLAY, layout.RING])
+def test_blocks_of_the_effect_model_fill_their_places(block):
+    whole = {
+        layout.INPUT: ("INPUTS", layout.LIMITS.MOST_INPUTS),
+        layout.SLOT: ("SLOTS", layout.LIMITS.MOST_SLOTS),
+        layout.PLAY: ("PLAYS", layout.LIMITS.MOST_PLAYS),
+        layout.RING: ("RINGS", layout.LIMITS.MOST_RINGS),
+    }
+    name, most = whole[block]
+    place = next(word for word in layout.EFFECTS.words if word.name == name)
+    assert place.count == most * block.size
+
+
+def test_the_arrays_are_as_long_as_the_layout_says():
+    corrector = Corrector(motion=True, accelerometer=True)
+    last = layout.axis_at(corrector.settings, 3)
+    assert len(corrector.state) == last
+    assert len(corrector.settings) == layout.SETTINGS.size
+    assert len(corrector.motion_settings) == layout.MOTION_SETTINGS.size
+    assert len(corrector.level) == layout.GRAVITY.size
+    assert len(EffectModel().e) == layout.EFFECTS.size
+
+
+@pytest.mark.parametrize(
+    ("words", "codes"),
+    [
+        (explain.FAULTS, layout.GUARD),
+        (explain.STILLNESS, layout.STILLNESS),
+        (explain.SOURCES, layout.SOURCE),
+        (explain_sources.MOTION, layout.MOTION_REASON),
+        (explain_sources.LEVEL, layout.GRAVITY_REASON),
+    ],
+)
+def test_there_are_words_for_every_code(words, codes):
+    assert sorted(codes.numbers.values()) == list(range(len(words)))
+
+
+def test_every_word_is_used_or_said_to_be_unused(repository):
+    used = set().union(*(names_in(path.read_text("utf-8")) for path in firmware(repository)))
+    words = {word.name: word.meaning for array in layout.ARRAYS for word in array.words}
+    unused = {name for name in words if f"_{name}" not in used and words[name] != "unused"}
+    whole = {"SCRATCH", "TILT_FIT", "TILT_FIT_REST", "START_X", "START_Y", "START_Z"}
+    assert unused - whole == set()
