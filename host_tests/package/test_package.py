@@ -91,12 +91,11 @@ def test_the_wheel_carries_every_file_of_a_package_and_no_other(repository, buil
     assert carried == sources(repository, package)
 
 
-def test_it_carries_twins_scenarios_layouts_and_templates(built):
+def test_it_carries_twins_scenarios_and_templates(built):
     names = zipfile.ZipFile(built[1]).namelist()
     for part in (
         "zerorate/viper/",
         "zerorate_tools/simulate/scenarios/",
-        "zerorate_tools/importers/layouts/",
         "zerorate_tools/runtimes/webassembly/",
         "zerorate_tools/boards/on_board/",
         "zerorate_tools/py.typed",

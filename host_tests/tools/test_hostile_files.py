@@ -17,7 +17,7 @@ from zerorate_tools.recordings import (
 )
 from zerorate_tools.simulate import simulate
 
-from . import foreign_files
+from ..importers import foreign_files
 
 PATIENT = settings(
     max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
@@ -72,7 +72,7 @@ def test_any_json_as_scales(tmp_path, scales):
     reads_or_refuses(read_recording, tmp_path / "x.csv")
 
 
-FOREIGN = ["x.csv", "x.tsv", "x.csv.gz", "x.mat", "x.ulg", "x.bin", "x.log", "x.parquet", "x"]
+FOREIGN = ["x.csv", "x.tsv", "x.csv.gz", "x.parquet", "x"]
 
 
 @PATIENT
@@ -86,10 +86,6 @@ def test_any_bytes_as_a_foreign_recording(tmp_path, content, name):
 
 def whole_files(tmp_path):
     """One small sound file of each kind that is read byte by byte."""
-    stamps, rates = np.arange(20) * 4000, np.ones(20)
-    topic = {"timestamp": ("uint64_t", stamps)} | dict.fromkeys("xyz", ("float", rates))
-    foreign_files.ulog(tmp_path / "x.ulg", {"sensor_gyro": topic})
-    foreign_files.dataflash(tmp_path / "x.bin", [(i, 0, *[0.5] * 7) for i in range(20)])
     lines = "\n".join([foreign_files.vectornav_line((0.01, 0.02, 0.03))] * 9)
     (tmp_path / "vn.csv.gz").write_bytes(gzip.compress(lines.encode()))
     columns = dict.fromkeys(NAMES, np.arange(100))
@@ -98,7 +94,7 @@ def whole_files(tmp_path):
     return sorted(p for p in tmp_path.iterdir() if p.suffix != ".json")
 
 
-@pytest.mark.parametrize("number", range(4))
+@pytest.mark.parametrize("number", (0, 1))
 def test_any_cut_and_any_flipped_bit(tmp_path, number):
     source = whole_files(tmp_path)[number]
     whole, rng = source.read_bytes(), np.random.default_rng(number)

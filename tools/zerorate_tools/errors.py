@@ -60,6 +60,7 @@ class MissingLibrary(ZerorateError):
     _EXTRAS = {
         **{"smbus2": "linux", "dask": "fleet", "distributed": "fleet"},
         **{"imufusion": "bench", "vqf": "bench"},
+        **{"rosbags": "logs", "mcap": "logs", "orangebox": "logs"},
     }
 
     def __init__(self, library: str) -> None:

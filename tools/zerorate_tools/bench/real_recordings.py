@@ -14,18 +14,16 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ZerorateError
-from ..importers import Options, read_foreign
+from ..importers import read_foreign
 from ..recordings import Recording
 from .accuracy import rms_mdps
 from .peers import OURS, Given, Peer, given
 from .peers.first_seconds import first_seconds
+from .public_data import told_of
 
 BLOCK_S = 20.0
 _START_READINGS = 8
 _HANDLED = 3.0
-# recordings without time stamps: file name or folder -> Hz, from the notes that come with them
-_HZ = {"RX.csv": 1 / 15, "TH.csv": 1 / 15, "adis16405-static": 100.0, "vn200-flip": 50.0}
 # tables without time
 _NOT_RECORDINGS = ("hipnuc-bins",)
 _ENDINGS = (".csv", ".csv.gz", ".parquet", ".mat")
@@ -89,12 +87,7 @@ def real(
     found = {}
     for path in recordings(folder):
         name = f"{path.parent.name}/{path.name.split('.')[0]}"
-        hz = _HZ.get(path.name, _HZ.get(path.parent.name))
-        try:
-            recording, _ = read_foreign(path, options=Options(hz=hz))
-        except ZerorateError:
-            # some bring their own time and refuse another rate
-            recording, _ = read_foreign(path)
+        recording, _ = read_foreign(path, **told_of(path))
         found[name] = {column: rest_errors(recording, peer) for column, peer in COLUMNS.items()}
         advance(1)
     return found

@@ -8,9 +8,10 @@ from pathlib import Path
 _EPILOG = """\
 A mapping names a column of the recording, where it comes from, and its unit:
   --map gx=gyro_x:rad/s --map temp=T:degc --map t_us=time:ms --map vdd_mv=volts:x1000
+  --map t_us=sec:s+nanosec:ns adds two; --map temp=none leaves a column out.
 units: time s ms us ns; rates dps mdps rad/s lsb; acceleration g mg m/s2 lsb; temperature degc k
-degf lsb; an extra channel takes a factor. A unit at the end of a column's name (gx_dps) is seen.
-An (n, 3) variable of a .mat has columns name[0], name[1], name[2].
+degf lsb; an extra channel takes a factor. Usual names and a unit at their end (gx_dps) are seen.
+Columns that no line names are called 1, 2, 3; an (n, 3) variable of a .mat name[0] to name[2].
 """
 
 
@@ -19,8 +20,9 @@ def add_parser(subparsers) -> None:
     parser = subparsers.add_parser(
         "import",
         help="turn a foreign recording into this form",
-        description="Turn CSV, TSV, Parquet, .mat, PX4 ULog or ArduPilot DataFlash into a\n"
-        "recording, and say what was dropped and why.",
+        description="Turn a table (CSV, TSV, Parquet, .mat), a flight log (PX4 ULog, ArduPilot\n"
+        "DataFlash, Betaflight blackbox) or a bag (ROS 1, ROS 2, MCAP) into a recording,\n"
+        "and say what was dropped and why. Takes at most 600 MB, however large the file is.",
         epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -37,7 +39,7 @@ def add_parser(subparsers) -> None:
         help="where a column comes from, and its unit (see below); may be repeated",
     )
     parser.add_argument(
-        "--hz", type=_hz, metavar="N", help="samples a second, or 1/15, without time stamps"
+        "--hz", type=_hz, metavar="N", help="samples a second, or 1/15, instead of time stamps"
     )
     parser.add_argument("--sensor", metavar="NAME", help="the part, for the record")
     chosen = "scale to write; chosen where it is not given"
@@ -49,7 +51,6 @@ def add_parser(subparsers) -> None:
     )
     for kind in ("time", "gyro", "accel", "temp"):
         parser.add_argument(f"--{kind}-unit", metavar="UNIT", help="where a mapping names none")
-    parser.add_argument("--layout", metavar="NAME", help="a known layout, or `table` for none")
     parser.add_argument(
         "--instance", type=int, default=0, metavar="N", help="of several sensors in a log (0)"
     )
@@ -61,17 +62,19 @@ def run(arguments: argparse.Namespace) -> None:
     from ..importers import Options, import_recording
     from ..progress import progress
 
-    known = {key: getattr(arguments, key) for key in Options.__dataclass_fields__}
+    known = {k: v for k, v in vars(arguments).items() if k in Options.__dataclass_fields__}
     units = {k: getattr(arguments, f"{k}_unit") for k in ("time", "gyro", "accel", "temp")}
-    with progress(f"importing {arguments.source.name}"):
+    source = arguments.source
+    size = source.stat().st_size if source.is_file() else None
+    with progress(f"importing {source.name}", size) as advance:
         report = import_recording(
-            arguments.source,
+            source,
             arguments.out,
             options=Options(**known),
             mapping=arguments.map,
             units={kind: unit.lower() for kind, unit in units.items() if unit},
-            layout=arguments.layout,
             instance=arguments.instance,
+            advance=advance,
         )
     print(arguments.out)
     for line in report.lines():

@@ -1,9 +1,8 @@
-"""Foreign recordings into the project's own form."""
+"""Foreign recordings into the project's own form: kinds, tables, columns, samples."""
 
-from .conversion import Options, Report
+from .columns.mapping import Mapped, parsed_mapping
 from .importing import import_recording, read_foreign
-from .layouts.hipnuc_bins import read_bins
-from .mapping import Mapped, parsed_mapping
+from .report import Options, Report
 
 __all__ = [
     "Mapped",
@@ -11,6 +10,5 @@ __all__ = [
     "Report",
     "import_recording",
     "parsed_mapping",
-    "read_bins",
     "read_foreign",
 ]

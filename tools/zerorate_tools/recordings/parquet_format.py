@@ -42,10 +42,12 @@ def read_scales(file: pq.ParquetFile, path: Path) -> Scales:
     return scales_from_text(text, path)
 
 
-def batches(file: pq.ParquetFile, path: Path, rows: int) -> Iterator[pa.RecordBatch]:
+def batches(
+    file: pq.ParquetFile, path: Path, rows: int, names: list[str] | None = None
+) -> Iterator[pa.RecordBatch]:
     """Arrow batches of at most `rows`, row groups read as they are needed. Raises BadRecording."""
     try:
-        yield from file.iter_batches(batch_size=rows, use_threads=False)
+        yield from file.iter_batches(batch_size=rows, columns=names, use_threads=False)
     except (pa.ArrowInvalid, OSError) as error:
         problem = "the Parquet data is damaged"
         raise BadRecording(path, problem, do="copy the file again") from error

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,6 +17,8 @@ from .scales import Scales
 
 if TYPE_CHECKING:
     import pyarrow.parquet as pq
+
+_MOST_BYTES = 400_000_000
 
 
 class OpenRecording:
@@ -85,10 +87,23 @@ def read_recording(path: str | PathLike[str], *, keep_gaps: bool = False) -> Rec
     Raises BadRecording, naming file, row (1-based) and what to do.
     """
     opened = open_recording(path, keep_gaps=keep_gaps)
-    parts = list(opened.batches(rows=1 << 20))
-    names = in_order(opened.column_names)
-    columns = {name: np.concatenate([part[name] for part in parts]) for name in names}
+    columns = whole(opened.batches(), in_order(opened.column_names), opened.path)
     return Recording(columns, opened.scales, opened.name, opened.path)
+
+
+def whole(batches: Iterable[Columns], names: list[str], path: Path) -> Columns:
+    """All batches as one, which must not take more than 400 MB. Raises BadRecording."""
+    parts: dict[str, list[np.ndarray]] = {name: [] for name in names}
+    size = 0
+    for batch in batches:
+        size += sum(values.nbytes for values in batch.values())
+        if size > _MOST_BYTES:
+            problem = f"too long to be held in memory: more than {_MOST_BYTES // 10**6} MB"
+            raise BadRecording(path, problem, do="read it in batches, with open_recording")
+        for name in names:
+            parts[name].append(batch[name])
+    # one column after the other, so that nothing but one is there twice
+    return {name: np.concatenate(parts.pop(name)) for name in names}
 
 
 def recording_name(path: Path) -> str:

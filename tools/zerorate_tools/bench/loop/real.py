@@ -9,20 +9,21 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from ..public_data import told_of
 from .chips import hipnuc, rms_mdps
 from .flips import flip
 
-#: Files, and the rows a second of those that carry no time stamps.
-RECORDINGS: tuple[tuple[str, float | None], ...] = (
-    ("lsm6ds3-hubs/RB.csv", None),
-    ("lsm6ds3-hubs/RX.csv", 1 / 15),
-    ("lsm6ds3-hubs/TH.csv", 1 / 15),
-    ("gy521-cooldown/cooldown.csv.gz", None),
-    ("vn200-flip/static_z-_z+_IMU0.csv.gz", 50.0),
-    ("vn200-flip/static_z-_z+_IMU1.csv.gz", 50.0),
-    ("mpu6050-unmoved/set-2_unmoved-with-x-pointing-forward-10min.csv.gz", None),
-    ("adis16405-static/adis_16405_imu1.parquet", 100.0),
-    ("adis16405-static/adis_16405_imu2.parquet", 100.0),
+#: Files of the data folder.
+RECORDINGS = (
+    "lsm6ds3-hubs/RB.csv",
+    "lsm6ds3-hubs/RX.csv",
+    "lsm6ds3-hubs/TH.csv",
+    "gy521-cooldown/cooldown.csv.gz",
+    "vn200-flip/static_z-_z+_IMU0.csv.gz",
+    "vn200-flip/static_z-_z+_IMU1.csv.gz",
+    "mpu6050-unmoved/set-2_unmoved-with-x-pointing-forward-10min.csv.gz",
+    "adis16405-static/adis_16405_imu1.parquet",
+    "adis16405-static/adis_16405_imu2.parquet",
 )
 
 
@@ -37,9 +38,9 @@ def real_rows(data: Path, plots: Path | None = None) -> dict[str, dict]:
     if plots:
         plots.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as scratch:
-        for name, hz in RECORDINGS:
+        for name in RECORDINGS:
             if (data / name).exists():
-                rows[Path(name).name] = _recording(data / name, hz, Path(scratch), plots)
+                rows[Path(name).name] = _recording(data / name, Path(scratch), plots)
     for path in sorted((data / "hipnuc-bins").glob("*.log")):
         rows[path.name] = hipnuc(path)
         if plots:
@@ -49,9 +50,8 @@ def real_rows(data: Path, plots: Path | None = None) -> dict[str, dict]:
     return rows
 
 
-def _recording(path: Path, hz: float | None, scratch: Path, plots: Path | None) -> dict:
-    from ...importers.conversion import Options
-    from ...importers.importing import import_recording
+def _recording(path: Path, scratch: Path, plots: Path | None) -> dict:
+    from ...importers import import_recording
     from ...loop.close import load
     from ...loop.search.confounding import label
     from ...loop.verify.measure import measure
@@ -59,7 +59,7 @@ def _recording(path: Path, hz: float | None, scratch: Path, plots: Path | None) 
     from ...recordings import open_recording
 
     out = scratch / f"{path.parent.name}-{path.name.split('.')[0]}.parquet"
-    import_recording(path, out, options=Options(hz=hz) if hz else None)
+    import_recording(path, out, **told_of(path))
     analysis = load([out])
     judgement, found = analysis.judgement, analysis.selection.found
     rival = cubic_left(analysis)

@@ -2,7 +2,7 @@
 
 Columns `ref_gx ref_gy ref_gz` are rates in LSB of the gyroscope; columns `qw qx qy qz`, any common
 prefix before them, are the attitude, body to world (z up), each sample's own, in any common unit
-and all four 0 where it was not seen.
+and all four 0, or without a value, where it was not seen.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...recordings.checks import GAP
 from ...simulate.attitude import multiply
 
 RATES = ("ref_gx", "ref_gy", "ref_gz")
@@ -73,6 +74,7 @@ class Reference:
         """(n, 4) unit attitude of one sign from sample to sample, NaN where it was not seen."""
         assert self.attitude is not None
         q = np.column_stack([batch[n].astype(float) for n in self.attitude])
+        q[(q == GAP).any(axis=1)] = 0.0
         length = np.linalg.norm(q, axis=1)
         seen = np.flatnonzero(length > 0)
         q[seen] /= length[seen, None]

@@ -1,0 +1,181 @@
+"""Small files in foreign formats, written byte by byte from the formats' own descriptions."""
+
+import json
+import struct
+
+import numpy as np
+from rosbags.rosbag1 import Writer as Writer1
+from rosbags.rosbag2 import StoragePlugin
+from rosbags.rosbag2 import Writer as Writer2
+from rosbags.typesys import Stores, get_typestore
+
+
+def ulog(path, topics):
+    """A PX4 ULog (PX4 user guide, ULog file format): {topic: {field: (type, values)}}."""
+    types = {"uint64_t": "<u8", "float": "<f4", "float[3]": "<f4"}
+    out = [b"ULog\x01\x12\x35\x01" + struct.pack("<Q", 0)]
+
+    def message(kind, body):
+        out.append(struct.pack("<HB", len(body), ord(kind)) + body)
+
+    message("B", bytes(40))
+    for name, fields in topics.items():
+        listed = "".join(f"{kind} {field};" for field, (kind, _) in fields.items())
+        message("F", f"{name}:{listed}".encode())
+    for number, name in enumerate(topics):
+        message("A", struct.pack("<BH", 0, number) + name.encode())
+    for number, fields in enumerate(topics.values()):
+        columns = [np.asarray(values).astype(types[kind]) for kind, values in fields.values()]
+        for row in zip(*columns):
+            message("D", struct.pack("<H", number) + b"".join(cell.tobytes() for cell in row))
+    path.write_bytes(b"".join(out))
+
+
+def dataflash_of_2015(path, messages):
+    """An ArduPilot log as it was in 2015: {IMU, IMU2, IMU3: rows of TimeMS, gyro, accel, T}."""
+    _dataflash(path, "TimeMS,GyrX,GyrY,GyrZ,AccX,AccY,AccZ,Temp", "Ifffffff", "<I7f", messages)
+
+
+def dataflash(path, rows):
+    """An ArduPilot DataFlash log: FMT messages, then IMU rows (TimeUS, I, gyro, accel, T)."""
+    labels = "TimeUS,I,GyrX,GyrY,GyrZ,AccX,AccY,AccZ,T"
+    _dataflash(path, labels, "QBfffffff", "<QB7f", {"IMU": rows})
+
+
+def _dataflash(path, labels, letters, body, messages):
+    head = b"\xa3\x95"
+
+    def described(kind, length, name, letters, labels):
+        return head + struct.pack(
+            "<BBB4s16s64s", 128, kind, length, name.encode(), letters.encode(), labels.encode()
+        )
+
+    out = [described(128, 89, "FMT", "BBnNZ", "Type,Length,Name,Format,Columns")]
+    for number, (name, rows) in enumerate(messages.items(), start=131):
+        out.append(described(number, 3 + struct.calcsize(body), name, letters, labels))
+        out += [head + bytes([number]) + struct.pack(body, *row) for row in rows]
+    path.write_bytes(b"".join(out))
+
+
+def vectornav_line(rates, accel=(0.0, 0.0, -9.8), temp=26.8):
+    """One $VNIMU line with its checksum."""
+    mag = "-00.2382,+00.7281,+00.2867"
+    acc = ",".join(f"{v:+07.3f}" for v in accel)
+    gyro = ",".join(f"{v:+010.6f}" for v in rates)
+    text = f"VNIMU,{mag},{acc},{gyro},{temp:+05.1f},+096.559"
+    checksum = 0
+    for byte in text.encode():
+        checksum ^= byte
+    return f"${text}*{checksum:02X}"
+
+
+def bag(folder, kind, imu=True):
+    """Three seconds of sensor_msgs/Imu at 200 Hz, and of Temperature at 1 Hz; where it is.
+
+    kind: ros1, ros2 (a folder), db3 (its file alone), mcap, mcap-json.
+    """
+    messages = _messages(get_typestore(Stores.ROS1_NOETIC if kind == "ros1" else Stores.LATEST))
+    messages = [one for one in messages if imu or one[0] != "/imu/data"]
+    folder.mkdir(exist_ok=True)
+    if kind == "mcap-json":
+        return _mcap_of_json(folder / "run.mcap", messages)
+    if kind == "ros1":
+        path = folder / "run.bag"
+        path.unlink(missing_ok=True)
+        with Writer1(path) as writer:
+            _write(writer, messages, Stores.ROS1_NOETIC)
+        return path
+    path = folder / kind
+    plugin = StoragePlugin.MCAP if kind == "mcap" else StoragePlugin.SQLITE3
+    with Writer2(path, version=9, storage_plugin=plugin) as writer:
+        _write(writer, messages, Stores.LATEST)
+    return path if kind == "ros2" else next(path.glob("*.db3" if kind == "db3" else "*.mcap"))
+
+
+def _messages(store):
+    types = store.types
+
+    def header(ns):
+        time = types["builtin_interfaces/msg/Time"]
+        stamp = time(sec=1_700_000_000 + ns // 10**9, nanosec=ns % 10**9)
+        more = {"seq": 0} if "seq" in types["std_msgs/msg/Header"].__dataclass_fields__ else {}
+        return types["std_msgs/msg/Header"](stamp=stamp, frame_id="imu", **more)
+
+    vector = types["geometry_msgs/msg/Vector3"]
+    nothing = np.zeros(9)
+    out = []
+    for i in range(600):
+        ns = i * 5_000_000
+        if i % 200 == 0:
+            warm = types["sensor_msgs/msg/Temperature"]
+            out.append(("/imu/temperature", ns, warm(header(ns), 25.0 + i / 200, 0.0)))
+        message = types["sensor_msgs/msg/Imu"](
+            header=header(ns),
+            orientation=types["geometry_msgs/msg/Quaternion"](0.0, 0.0, 0.0, 1.0),
+            orientation_covariance=nothing,
+            angular_velocity=vector(0.01 + 1e-5 * i, 0.0, 0.0),
+            angular_velocity_covariance=nothing,
+            linear_acceleration=vector(0.0, 0.0, 9.80665),
+            linear_acceleration_covariance=nothing,
+        )
+        out.append(("/imu/data", ns, message))
+    return out
+
+
+def _write(writer, messages, stores):
+    store, connections = get_typestore(stores), {}
+    encode = store.serialize_ros1 if stores is Stores.ROS1_NOETIC else store.serialize_cdr
+    for topic, ns, message in messages:
+        if topic not in connections:
+            connections[topic] = writer.add_connection(topic, message.__msgtype__, typestore=store)
+        writer.write(connections[topic], ns, encode(message, message.__msgtype__))
+
+
+def _mcap_of_json(path, messages):
+    from mcap.writer import Writer
+
+    with open(path, "wb") as file:
+        writer = Writer(file)
+        writer.start()
+        channels = {}
+        for topic, ns, message in messages:
+            if topic not in channels:
+                schema = writer.register_schema(message.__msgtype__, "jsonschema", b"{}")
+                channels[topic] = writer.register_channel(topic, "json", schema)
+            data = json.dumps(message, default=_as_json).encode()
+            writer.add_message(channels[topic], ns, data, ns)
+        writer.finish()
+    return path
+
+
+def _as_json(part):
+    return part.tolist() if isinstance(part, np.ndarray) else vars(part)
+
+
+def blackbox(path, rows):
+    """A Betaflight log of intra frames: time, three gyro counts of 1 dps, three of 1/2048 g."""
+    names = ["loopIteration", "time", *(f"gyroADC[{i}]" for i in range(3))]
+    names += [f"accSmooth[{i}]" for i in range(3)]
+    fields = {
+        "name": names,
+        "signed": [0, 0, *[1] * 6],
+        "predictor": [0] * 8,
+        "encoding": [1, 1, *[0] * 6],
+    }
+    lines = ["Product:Blackbox flight data recorder by Nicholas Sherlock", "Data version:2"]
+    lines += ["I interval:1", "P interval:1/1", "Firmware revision:Betaflight 4.3.0"]
+    lines += [f"Field I {key}:{','.join(map(str, row))}" for key, row in fields.items()]
+    lines += ["gyro_scale:0x3f800000", "acc_1G:2048", "minthrottle:1070", "vbatref:160"]
+    out = [f"H {line}\n".encode() for line in lines]
+    for number, (at_us, *counts) in enumerate(rows):
+        zigzag = [count * 2 if count >= 0 else -count * 2 - 1 for count in counts]
+        out.append(b"I" + b"".join(map(_varint, (number, at_us, *zigzag))))
+    path.write_bytes(b"".join(out) + b"E\xffEnd of log\x00")
+
+
+def _varint(value):
+    out = bytearray()
+    while value > 127:
+        out.append(value & 127 | 128)
+        value >>= 7
+    return bytes([*out, value])

@@ -1,0 +1,199 @@
+"""Foreign recordings come out as integers in LSB, and every loss is told."""
+
+import gzip
+
+import numpy as np
+import pandas as pd
+import pytest
+from zerorate_tools.errors import BadRecording
+from zerorate_tools.importers import (
+    Options,
+    import_recording,
+    parsed_mapping,
+    read_foreign,
+)
+from zerorate_tools.recordings import (
+    Scales,
+    read_recording,
+    recording_from_columns,
+    write_recording,
+)
+from zerorate_tools.recordings.checks import GAP
+
+G = 9.80665
+
+
+def table(path, **columns):
+    """A CSV of these columns."""
+    pd.DataFrame(columns).to_csv(path, index=False)
+    return path
+
+
+def told(report, words):
+    return any(words in line for line in report.lines())
+
+
+# Tables by a mapping
+
+
+def test_a_mapping_with_units_gives_integers(tmp_path):
+    n = np.arange(4.0)
+    source = table(
+        tmp_path / "in.csv", ms=n * 10, wx=n * 0.1, wy=n * 0, wz=-n, fx=n * 0, fy=n * 0,
+        fz=n * 0 + G, die=n + 300.0, volts=n * 0 + 3.3,
+    )  # fmt: skip
+    words = (
+        "t_us=ms:ms gx=wx:rad/s gy=wy:rad/s gz=wz:dps ax=fx:m/s2 ay=fy:m/s2 az=fz:m/s2 "
+        "temp=die:k vdd_mv=volts:x1000"
+    )
+    recording, _ = read_foreign(
+        source,
+        mapping=[parsed_mapping(word) for word in words.split()],
+        options=Options(sensor="MPU-6050", gyro_lsb_per_dps=131, accel_lsb_per_g=16384,
+                        temp_lsb_per_degc=340, temp_offset_degc=36.53),
+    )  # fmt: skip
+    c = recording.columns
+    assert c["t_us"].tolist() == [0, 10_000, 20_000, 30_000]
+    assert c["gx"].tolist() == np.rint(np.degrees(n * 0.1) * 131).tolist()
+    assert c["gz"].tolist() == [0, -131, -262, -393]
+    assert c["az"].tolist() == [16384] * 4
+    assert c["temp"].tolist() == np.rint((n + 26.85 - 36.53) * 340).tolist()
+    assert c["vdd_mv"].tolist() == [3300] * 4
+    assert recording.scales.sensor == "MPU-6050"
+    assert recording.scales.odr_hz == pytest.approx(100)
+
+
+def test_usual_names_and_units_in_names_need_no_mapping(tmp_path):
+    source = table(tmp_path / "in.csv", **{"time [s]": [0, 1], "gyro_x [rad/s]": [0.1, 0.2],
+                   "gyro_y [rad/s]": [0.1, 0.2], "gyro_z [rad/s]": [0.1, 0.2]})  # fmt: skip
+    recording, report = read_foreign(source)
+    assert recording.columns["gx"].tolist() == np.rint(np.degrees([0.1, 0.2]) * 131).tolist()
+    assert told(report, "131 LSB per dps chosen")
+    assert told(report, "no temperature") and told(report, "no acceleration")
+
+
+def test_tabs_and_semicolons_are_seen(tmp_path):
+    for separator in "\t;":
+        text = separator.join(["t_s", "gx_dps", "gy_dps", "gz_dps"]) + "\n"
+        text += separator.join(["0", "1", "2", "3"]) + "\n" + separator.join("1123") + "\n"
+        (tmp_path / "in.tsv").write_text(text)
+        recording, _ = read_foreign(tmp_path / "in.tsv")
+        assert recording.columns["gz"].tolist() == [393, 393]
+
+
+def test_raw_counts_stay_as_they_are_and_need_their_scale(tmp_path):
+    source = table(tmp_path / "in.csv", gx=[7, -9], gy=[1, 1], gz=[0, 3])
+    with pytest.raises(
+        BadRecording, match="units of columns 'gx', 'gy', 'gz' are not.*--map gx=gx:dps"
+    ):
+        read_foreign(source)
+    with pytest.raises(BadRecording, match="unit of column 'gx' cannot be 'knots'"):
+        read_foreign(source, units={"gyro": "knots"})
+    with pytest.raises(BadRecording, match="scale of raw counts.*give --gyro-lsb-per-dps"):
+        read_foreign(source, units={"gyro": "lsb"}, options=Options(hz=100))
+    scaled = Options(hz=100, gyro_lsb_per_dps=16.4)
+    recording, _ = read_foreign(source, units={"gyro": "lsb"}, options=scaled)
+    assert recording.columns["gx"].tolist() == [7, -9]
+    assert recording.columns["t_us"].tolist() == [0, 10_000]
+
+
+def test_the_finest_range_that_holds_every_reading_is_chosen(tmp_path):
+    for largest, lsb in ((100.0, 131.0), (300.0, 65.5), (1500.0, 16.4)):
+        source = table(tmp_path / "in.csv", t_s=[0, 1], gx_dps=[0, largest], gy_dps=[1, 1],
+                       gz_dps=[1, 1])  # fmt: skip
+        assert read_foreign(source)[0].scales.gyro_lsb_per_dps == lsb
+
+
+def test_rows_that_are_no_samples_are_dropped_and_counted(tmp_path):
+    source = table(
+        tmp_path / "in.csv",
+        t_s=[0, 1, 2, 3, 2.5, 4, np.nan],
+        gx_dps=[1, 0, 1, 1, 1, np.nan, 1],
+        gy_dps=[1, 0, 1, 300, 1, 1, 1],
+        gz_dps=[1, 0, 1, 1, 1, 1, 1],
+        temp_c=[20, 0, 20, 20, 20, 20, 20],
+    )
+    recording, report = read_foreign(source, options=Options(gyro_lsb_per_dps=131))
+    assert recording.columns["t_us"].tolist() == [0, 2_000_000, 2_500_000, 3_000_000]
+    assert report.rows_read == 7 and report.rows_written == 4
+    assert told(report, "dropped 1 rows: all readings are zero")
+    assert told(report, "time goes back at 1 rows: sorted by time")
+    assert told(report, "dropped 1 rows: a reading is no number")
+    assert told(report, "dropped 1 rows: the time stamp is no number")
+    assert told(report, "gy: 1 readings at the end of the 16-bit range (clipped)")
+
+
+def test_three_zero_rates_alone_may_be_a_sample(tmp_path):
+    source = table(tmp_path / "in.csv", t_s=[0, 1], gx_dps=[1, 0], gy_dps=[0, 0], gz_dps=[0, 0])
+    assert len(read_foreign(source)[0]) == 2
+
+
+@pytest.mark.parametrize(
+    ("text", "complaint"),
+    [
+        ("", "empty file"),
+        ("t_s,gx_dps,gy_dps,gz_dps\n", "no data row"),
+        ("a,b\n1,2\n", "no column for gx, gy, gz; map it: --map gx=COLUMN"),
+        ("gx_dps,gy_dps,gz_dps\n1,2,3\n", "no time stamps; give --hz"),
+        ("t_s,gx_dps,gy_dps,gz_dps\n1,2,3,4\n", "time stands still"),
+        ("t_s,gx_dps,gy_dps,gz_dps,temp_c\n1,0,0,0,0\n", "no sample is left; 1 rows: all readings"),
+    ],
+)
+def test_a_table_that_cannot_be_imported_says_why(tmp_path, text, complaint):
+    (tmp_path / "in.csv").write_text(text)
+    with pytest.raises(BadRecording, match=complaint):
+        import_recording(tmp_path / "in.csv", tmp_path / "out.parquet")
+    assert not (tmp_path / "out.parquet").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "complaint"),
+    [
+        ("gx", "no mapping: write gx=COLUMN:UNIT"),
+        ("gx=w:furlongs", "unit 'furlongs' of gx is none of dps"),
+        ("load=w:dps", "an extra channel takes a factor: load=w:x100"),
+        ("t=time:s", "t is none of t_us, gx, .*, temp, and"),
+    ],
+)
+def test_a_mapping_that_is_none_says_how(words, complaint):
+    with pytest.raises(ValueError, match=complaint):
+        parsed_mapping(words)
+
+
+def test_a_column_that_is_not_there_and_a_channel_too_large_are_named(tmp_path):
+    source = table(tmp_path / "in.csv", t_s=[0, 1], gx_dps=[1, 1], gy_dps=[1, 1], gz_dps=[1, 1],
+                   load=[1, 3e9])  # fmt: skip
+    with pytest.raises(BadRecording, match="no column 'weight'; choose of t_s, gx_dps"):
+        read_foreign(source, mapping=[parsed_mapping("load=weight")])
+    with pytest.raises(
+        BadRecording, match=r"row 2: load is 3e\+09, no integer of 32 bits; scale it down"
+    ):
+        read_foreign(source, mapping=[parsed_mapping("load=load")])
+
+
+@pytest.mark.parametrize("name", ["out.parquet", "out.csv.gz"])
+def test_gaps_of_a_channel_stay_gaps_however_often_it_is_imported(tmp_path, name):
+    source = table(tmp_path / "in.csv", t_s=[0, 1], gx_dps=[1, 1], gy_dps=[1, 1], gz_dps=[1, 1],
+                   load=[1, np.nan])  # fmt: skip
+    import_recording(source, tmp_path / "first.csv", mapping=[parsed_mapping("load=load")])
+    import_recording(tmp_path / "first.csv", tmp_path / name)
+    assert read_recording(tmp_path / name, keep_gaps=True).columns["load"].tolist() == [1, GAP]
+    with pytest.raises(BadRecording, match="row 2: load has no value"):
+        read_recording(tmp_path / name)
+
+
+def test_a_truncated_gzip_is_refused(tmp_path):
+    whole = gzip.compress(b"t_s,gx_dps,gy_dps,gz_dps\n" + b"1,2,3,4\n" * 9999)
+    (tmp_path / "in.csv.gz").write_bytes(whole[:-20])
+    with pytest.raises(BadRecording, match="cut off or damaged"):
+        read_foreign(tmp_path / "in.csv.gz")
+
+
+def test_a_recording_in_this_form_only_changes_its_format(tmp_path):
+    columns = {name: np.arange(5) for name in ("t_us", "gx", "gy", "gz", "load")}
+    write_recording(recording_from_columns(columns, Scales("X", 10, 77)), tmp_path / "in.csv")
+    report = import_recording(tmp_path / "in.csv", tmp_path / "out.parquet")
+    recording = read_recording(tmp_path / "out.parquet")
+    assert recording.columns["load"].tolist() == [0, 1, 2, 3, 4]
+    assert recording.scales.gyro_lsb_per_dps == 77
+    assert told(report, "in this form already")

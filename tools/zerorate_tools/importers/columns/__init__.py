@@ -1,0 +1,1 @@
+"""Which column of a table is which of a recording, and in what unit."""

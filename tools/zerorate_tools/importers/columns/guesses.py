@@ -1,0 +1,124 @@
+"""Units that the readings themselves tell, and the words that name one where they do not."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ...recordings.recording import ACCEL, GYRO, TEMP, TIME
+from .mapping import Mapped
+from .names import spelled
+from .units import STANDARD_GRAVITY, TIME_S, factors_of, kind_of, unit_in_name
+
+_GRAVITY = {"m/s2": STANDARD_GRAVITY, "g": 1.0, "mg": 1000.0}
+_GRAVITY_WITHIN = 0.15
+#: Seconds since 1970 of the years 2001 and 2100.
+_CALENDAR_S = (1e9, 4.1e9)
+_DEGC, _KELVIN = (-60.0, 130.0), (230.0, 400.0)
+#: Rates at which anyone records, Hz.
+_LIKELY_HZ = (0.02, 40_000.0)
+
+
+def guessed_unit(
+    target: str,
+    wanted: Mapping[str, Mapped],
+    names: list[str],
+    first: Mapping[str, np.ndarray],
+) -> tuple[str | None, str]:
+    """(unit, why) of a column whose unit nobody named; (None, "") where nothing tells it.
+
+    first: the first rows of the columns wanted.
+    """
+    column = wanted[target].column
+    by_habit = _by_habit(target, column, names)
+    if by_habit is not None:
+        return by_habit
+    values = first[column][np.isfinite(first[column])]
+    if not len(values):
+        return None, ""
+    if target == TIME:
+        return _by_calendar(values)
+    if target == TEMP:
+        return _by_range(values)
+    if target in ACCEL:
+        return _by_gravity(wanted, first)
+    return None, ""
+
+
+def ready_words(target: str, wanted: Mapping[str, Mapped], first: Mapping[str, np.ndarray]) -> str:
+    """What to type for a unit that nothing tells."""
+    if target == TIME:
+        return _time_words(first[wanted[target].column], wanted[target].column)
+    axes = {**dict.fromkeys(GYRO, GYRO), **dict.fromkeys(ACCEL, ACCEL)}.get(target, (target,))
+    unit = _likely(target, wanted, first)
+    words = " ".join(f"--map {t}={wanted[t].column}:{unit}" for t in axes if t in wanted)
+    others = ", ".join(u for u in (*factors_of(target), "lsb") if u != unit and u != "c")
+    left_out = ", or leave it out: --map temp=none" if target == TEMP else ""
+    return f"write {words} (or with {others}){left_out}"
+
+
+def _by_habit(target: str, column: str, names: list[str]) -> tuple[str, str] | None:
+    """Units that go with names: those of ROS, of ArduPilot, of Android's sensors."""
+    text, kind = spelled(column), kind_of(target)
+    habit = {"gyro": "rad/s", "accel": "m/s2", "time": "ns"}.get(kind)
+    if habit is None:
+        return None
+    if kind != "time" and any(w in text for w in ("angularvelocity", "linearacceleration")):
+        return habit, "as in ROS"
+    if "seconds_elapsed" in names:
+        return habit, "as Sensor Logger writes"
+    if "TimeUS" in names and kind != "time":
+        return habit, "as in ArduPilot"
+    return None
+
+
+def _by_calendar(values: np.ndarray) -> tuple[str | None, str]:
+    middle = float(np.median(values))
+    for unit, seconds in TIME_S.items():
+        if _CALENDAR_S[0] < middle * seconds < _CALENDAR_S[1]:
+            year = np.datetime64(int(middle * seconds), "s").astype("datetime64[Y]")
+            return unit, f"since 1970 that is the year {year}"
+    return None, ""
+
+
+def _by_range(values: np.ndarray) -> tuple[str | None, str]:
+    least, most = np.quantile(values, [0.02, 0.98])
+    for unit, (low, high) in (("degc", _DEGC), ("k", _KELVIN)):
+        if low <= least and most <= high:
+            return unit, f"it is around {np.median(values):.4g}"
+    return None, ""
+
+
+def _by_gravity(
+    wanted: Mapping[str, Mapped], first: Mapping[str, np.ndarray]
+) -> tuple[str | None, str]:
+    force = np.linalg.norm([first[wanted[axis].column] for axis in ACCEL], axis=0)
+    force = force[np.isfinite(force)]
+    usual = float(np.median(force)) if len(force) else 0.0
+    for unit, gravity in _GRAVITY.items():
+        if abs(usual / gravity - 1.0) < _GRAVITY_WITHIN:
+            return unit, f"its usual length is {usual:.4g}"
+    return None, ""
+
+
+def _likely(target: str, wanted: Mapping[str, Mapped], first: Mapping[str, np.ndarray]) -> str:
+    if target == TEMP:
+        return "degc"
+    if not all(axis in wanted for axis in ACCEL):
+        return "dps" if target in GYRO else "m/s2"
+    unit = wanted["ax"].unit or unit_in_name("ax", wanted["ax"].column)
+    unit = unit or _by_gravity(wanted, first)[0]
+    if target in ACCEL:
+        return unit or "lsb"
+    # those who keep to one system of units keep to it for both
+    return {"m/s2": "rad/s", None: "lsb", "lsb": "lsb"}.get(unit, "dps")
+
+
+def _time_words(values: np.ndarray, column: str) -> str:
+    steps = np.diff(values[np.isfinite(values)])
+    step = float(np.median(np.abs(steps))) if len(steps) else 0.0
+    rates = {unit: 1.0 / (step * seconds) for unit, seconds in TIME_S.items()} if step else {}
+    likely = {u: hz for u, hz in rates.items() if _LIKELY_HZ[0] <= hz <= _LIKELY_HZ[1]}
+    would = " or ".join(f"{unit} ({hz:.4g} Hz)" for unit, hz in likely.items())
+    return f"give --time-unit {would or 'with one of ' + ', '.join(TIME_S)}"

@@ -1,0 +1,97 @@
+"""What columns are usually called: `gyro_x`, `imu.gyro.x`, `AngVelX`, `GyroX [deg/s]`, `wx`."""
+
+from __future__ import annotations
+
+import os
+import re
+
+_AXIS = "([xyz])"
+_GYRO = re.compile(
+    r"(?:.*(?:gyroscope|gyro|gyr|angularvelocity|angularrate|angvel|rotationrate|omega)"
+    r"(?:uncalibrated|calibrated|unfilt|adc|raw|rad|data|rate|dps|value){0,2}|(?:.*imu)?[wg])"
+    + f"{_AXIS}$|^{_AXIS}(?:gyroscope|gyro|gyr)$"
+)
+_ACCEL = re.compile(
+    r"(?:.*(?:accelerometer|acceleration|accel|acc|specificforce)"
+    r"(?:uncalibrated|calibrated|smooth|adc|raw|data|ms2|value){0,2}|(?:.*imu)?a)"
+    + f"{_AXIS}$|^{_AXIS}(?:accelerometer|accel|acc)$"
+)
+_TEMP = re.compile(r".*(?:temperature|temp|tmp)c?$")
+_NOT_THE_DIE = re.compile(r"ambient|air|baro|bmp|bme|aht|sht|cpu|motor|batt|esc|water|room")
+_TIME = re.compile(
+    r"(?:t|ts|time|timestamp|timestampsample|now|stamp|timeus|timems|secondselapsed|datetime|"
+    r"date|utc|millis|micros|.*timestamp|.*headerstamp|sampletime|elapsed|elapsedtime)$"
+)
+_SEC = re.compile(r"(.*?)(?:secs?|seconds?)$")
+_NANOSEC = re.compile(r"(.*?)(?:nanosecs?|nsecs?|nanoseconds?)$")
+_BARE = re.compile(f"{_AXIS}(?:axis)?$")
+_UNITS = re.compile(
+    r"[_\s.](dps|mdps|deg/s|rad/s|rads|lsb|raw|counts|g|mg|m/s2|ms2|mss|mps2|degc|celsius|c|k|degf|"
+    r"s|sec|ms|us|ns)$"
+)
+
+
+def spelled(name: str) -> str:
+    """A name without its unit, case and marks; [0] [1] [2] at its end are x y z."""
+    text = re.sub(r"\[([012])\]", lambda m: "xyz"[int(m[1])], name.strip().lower())
+    text = re.sub(r"[\[({<][^\])}>]*[\])}>]\s*$", "", text).strip()
+    return re.sub(r"[^a-z0-9]", "", _UNITS.sub("", text))
+
+
+def gyro_groups(names: list[str]) -> list[dict[str, str]]:
+    """Columns that go together as rates: {gx, gy, gz: name} of each sensor that is in the table."""
+    return _groups(names, _GYRO, "g")
+
+
+def accel_beside(names: list[str], gyro: dict[str, str], instance: int) -> dict[str, str]:
+    """The acceleration whose names are most like those of the rates; empty where there is none."""
+    groups = _groups(names, _ACCEL, "a")
+    if not groups:
+        return {}
+
+    def alike(number: int) -> tuple[int, bool, int]:
+        common = os.path.commonprefix([groups[number]["ax"], gyro.get("gx", "")])
+        return len(common), number == instance, -number
+
+    return groups[max(range(len(groups)), key=alike)]
+
+
+def bare_axes(names: list[str]) -> dict[str, str]:
+    """Columns that are called by their axis alone (x, xaxis), as if they were rates."""
+    return next(iter(_groups(names, _BARE, "g")), {})
+
+
+def temperature(names: list[str]) -> str | None:
+    """The column that looks like the sensor's own temperature."""
+    found = [name for name in names if _TEMP.match(spelled(name))]
+    return next((name for name in found if not _NOT_THE_DIE.search(spelled(name))), None)
+
+
+def time_column(names: list[str]) -> str | None:
+    """The column that looks like time stamps."""
+    return next((name for name in names if _TIME.match(spelled(name))), None)
+
+
+def split_time(names: list[str]) -> tuple[str, str] | None:
+    """The columns of whole seconds and of the nanoseconds beside them, as ROS prints a stamp."""
+    by_stem: dict[str, dict[str, str]] = {}
+    for name in names:
+        text = re.sub(r"[^a-z]", "", name.lower())
+        nano, sec = _NANOSEC.match(text), _SEC.match(text)
+        if nano:
+            by_stem.setdefault(nano[1], {})["ns"] = name
+        elif sec:
+            by_stem.setdefault(sec[1], {})["s"] = name
+    return next(((two["s"], two["ns"]) for two in by_stem.values() if len(two) == 2), None)
+
+
+def _groups(names: list[str], pattern: re.Pattern, letter: str) -> list[dict[str, str]]:
+    groups: dict[str, dict[str, str]] = {}
+    for name in names:
+        text = spelled(name)
+        match = pattern.match(text)
+        if match:
+            axis = next(part for part in match.groups() if part)
+            at = text.rindex(axis) if text.endswith(axis) else text.index(axis)
+            groups.setdefault(text[:at] + text[at + 1 :], {}).setdefault(f"{letter}{axis}", name)
+    return [group for group in groups.values() if len(group) == 3]

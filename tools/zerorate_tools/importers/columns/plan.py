@@ -1,0 +1,175 @@
+"""Which columns of a table an import takes, in which units, decided once before the rows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from ...errors import BadRecording
+from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP, TIME
+from ..tables.table import Chunk, Table
+from . import names as usual
+from .guesses import guessed_unit, ready_words
+from .mapping import Mapped, factor_in, parsed_mapping
+from .units import RAW, factors_of, kind_of, unit_in_name, units_of
+
+_LISTED = 24
+
+
+@dataclass
+class Plan:
+    """Columns by the names of a recording. raw: kinds (gyro, accel, temp) that are counts."""
+
+    wanted: dict[str, Mapped]
+    factors: dict[str, tuple[float, float]]
+    plus: dict[str, float] = field(default_factory=dict)
+    raw: frozenset[str] = frozenset()
+    notes: list[str] = field(default_factory=list)
+
+    @property
+    def columns(self) -> list[str]:
+        """The columns of the table that are needed, each once."""
+        return list(dict.fromkeys(c for one in self.wanted.values() for c in one.columns))
+
+    def physical(self, chunk: Chunk) -> dict[str, np.ndarray]:
+        """Columns in dps, g, degC, seconds, or raw counts; extra channels by their factor."""
+        out = {}
+        for target, mapped in self.wanted.items():
+            factor, offset = self.factors[target]
+            out[target] = chunk.columns[mapped.column] * factor + offset
+            if mapped.plus:
+                out[target] += chunk.columns[mapped.plus[0]] * self.plus[target]
+        return out
+
+
+def planned(
+    table: Table,
+    mapping: Sequence[Mapped],
+    path: Path,
+    *,
+    units: Mapping[str, str] | None = None,
+    instance: int = 0,
+    without_time: bool = False,
+) -> Plan:
+    """The plan of a table: what is mapped, then what the format says, then what names tell.
+
+    units: by kind (time, gyro, accel, temp), where neither mapping nor name says one. without_time:
+    time stamps are not wanted. Raises BadRecording for a column that is not there, or a unit that
+    nobody named.
+    """
+    notes: list[str] = []
+    given = {mapped.target: mapped for mapped in mapping}
+    wanted = _found(table, given, instance, path, notes)
+    wanted = {t: m for t, m in {**wanted, **given}.items() if not m.is_left_out}
+    if without_time and TIME in wanted:
+        notes.append(f"time column {wanted.pop(TIME).column!r} left aside, as --hz is given")
+    if not all(axis in wanted for axis in ACCEL):
+        wanted = {target: mapped for target, mapped in wanted.items() if target not in ACCEL}
+    _check_there(table, wanted, path)
+    plan = Plan(wanted, {}, notes=notes)
+    plan.plus = {t: factors_of(t)[m.plus[1]][0] for t, m in wanted.items() if m.plus}
+    raw, unknown = set(), {}
+    first = table.first_rows(plan.columns)
+    for target, mapped in wanted.items():
+        if target not in COLUMNS:
+            plan.factors[target] = (factor_in(mapped.unit or "1") or 1.0, 0.0)
+            continue
+        unit = _unit(target, plan, table, units or {}, first, path)
+        if unit is None:
+            unknown[mapped.column] = ready_words(target, wanted, first)
+        if unit == RAW:
+            raw.add(kind_of(target))
+        plan.factors[target] = factors_of(target).get(unit or "", (1.0, 0.0))
+    if unknown:
+        what = "unit of column" if len(unknown) == 1 else "units of columns"
+        columns = ", ".join(repr(column) for column in unknown)
+        problem = f"the {what} {columns} {'is' if len(unknown) == 1 else 'are'} not known"
+        raise BadRecording(path, problem, do="; ".join(dict.fromkeys(unknown.values())))
+    plan.raw = frozenset(raw)
+    return plan
+
+
+def _found(
+    table: Table, given: Mapping[str, Mapped], instance: int, path: Path, notes: list[str]
+) -> dict[str, Mapped]:
+    """By the format's own mapping, else by usual names; what is given is not looked for."""
+    if table.mapping:
+        return {mapped.target: mapped for mapped in map(parsed_mapping, table.mapping)}
+    names: dict[str, str] = {}
+    if not all(axis in given for axis in GYRO):
+        groups = usual.gyro_groups(table.names)
+        if len(groups) > 1:
+            also = ", ".join(group["gx"] for group in groups)
+            notes.append(f"of several gyroscopes ({also}) number {instance}: choose by --instance")
+        if groups and instance >= len(groups):
+            problem = f"there are {len(groups)} gyroscopes"
+            raise BadRecording(path, problem, do=f"give --instance 0 to {len(groups) - 1}")
+        names = groups[instance] if groups else _axes_of_a_gyro_file(table, path)
+    gyro = names or {t: m.column for t, m in given.items() if t in GYRO}
+    names = {**names, **usual.accel_beside(table.names, gyro, instance)}
+    temp = usual.temperature(table.names)
+    found = {t: Mapped(t, c) for t, c in {**names, **({TEMP: temp} if temp else {})}.items()}
+    split, time = usual.split_time(table.names), usual.time_column(table.names)
+    if split:
+        found[TIME] = Mapped(TIME, split[0], "s", (split[1], "ns"))
+    elif time:
+        found[TIME] = Mapped(TIME, time)
+    return found
+
+
+def _axes_of_a_gyro_file(table: Table, path: Path) -> dict[str, str]:
+    """Phones write a file a sensor, Gyroscope.csv with columns x y z."""
+    return usual.bare_axes(table.names) if "gyro" in path.name.lower() else {}
+
+
+def _check_there(table: Table, wanted: Mapping[str, Mapped], path: Path) -> None:
+    for mapped in wanted.values():
+        for column in mapped.columns:
+            if column not in table.names:
+                raise BadRecording(path, f"there is no column {column!r}", do=_choose(table))
+    missing = [target for target in GYRO if target not in wanted]
+    if missing:
+        bare = usual.bare_axes(table.names)
+        words = " ".join(f"--map {t}={c}:dps" for t, c in bare.items() if t in missing)
+        do = f"if these are rates: {words}" if words else f"map it: --map {missing[0]}=COLUMN:dps"
+        raise BadRecording(path, f"no column for {', '.join(missing)}", do=f"{do}, {_of(table)}")
+
+
+def _choose(table: Table) -> str:
+    return f"choose of {_list(table.names)}"
+
+
+def _of(table: Table) -> str:
+    return f"COLUMN one of {_list(table.names)}"
+
+
+def _list(names: list[str]) -> str:
+    more = len(names) - _LISTED
+    return ", ".join(names[:_LISTED]) + (f" and {more} more" if more > 0 else "")
+
+
+def _unit(
+    target: str,
+    plan: Plan,
+    table: Table,
+    units: Mapping[str, str],
+    first: dict[str, np.ndarray],
+    path: Path,
+) -> str | None:
+    mapped = plan.wanted[target]
+    if mapped.column in table.calendar:
+        return "s"
+    kind = kind_of(target)
+    unit = mapped.unit or unit_in_name(target, mapped.column) or units.get(kind)
+    if unit is None:
+        unit, why = guessed_unit(target, plan.wanted, table.names, first)
+        note = f"{kind} taken in {unit}: {why}"
+        if unit is not None and note not in plan.notes:
+            plan.notes.append(note)
+    elif unit not in units_of(target):
+        problem = f"the unit of column {mapped.column!r} cannot be {unit!r}"
+        raise BadRecording(path, problem, do=f"name one of {', '.join(units_of(target))}")
+    return unit

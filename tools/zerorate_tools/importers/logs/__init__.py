@@ -1,0 +1,1 @@
+"""Binary logs as tables, each read in a process of its own."""

@@ -1,0 +1,55 @@
+"""MATLAB .mat files as tables: an (n, k) variable `name` becomes columns name[0] ... name[k-1]."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from ...errors import BadRecording
+from ..tables.table import Chunk, Table
+
+KIND = ".mat file"
+_ROWS = 1 << 16
+
+
+def read(path: Path, instance: int = 0) -> Table:
+    """The variables that share the most rows. Raises BadRecording."""
+    import scipy.io
+
+    try:
+        found = scipy.io.loadmat(path)
+    except NotImplementedError as error:
+        do = "save it in MATLAB with -v7"
+        raise BadRecording(path, "a .mat of version 7.3 (HDF5)", do=do) from error
+    return _table(found, path)
+
+
+def _table(found: dict[str, object], path: Path) -> Table:
+    numeric = {
+        name: np.atleast_2d(value.T).T
+        for name, value in found.items()
+        if isinstance(value, np.ndarray) and value.dtype.kind in "fiub" and value.ndim <= 2
+    }
+    numeric = {n: v.T if v.shape[0] == 1 and v.shape[1] > 1 else v for n, v in numeric.items()}
+    rows = max(Counter(len(v) for v in numeric.values()), default=0)
+    if not rows:
+        raise BadRecording(path, "no numeric variable", do="name another file")
+    columns: dict[str, np.ndarray] = {}
+    for name, value in numeric.items():
+        if len(value) == rows:
+            for k in range(value.shape[1]):
+                columns[name if value.shape[1] == 1 else f"{name}[{k}]"] = value[:, k]
+    if not columns:
+        raise BadRecording(path, "no numeric variable", do="name another file")
+
+    def chunks(names: list[str]) -> Iterator[Chunk]:
+        for start in range(0, rows, _ROWS):
+            end = min(start + _ROWS, rows)
+            yield Chunk(
+                np.arange(start, end), {n: columns[n][start:end].astype(float) for n in names}
+            )
+
+    return Table(list(columns), chunks)

@@ -1,0 +1,88 @@
+"""ROS messages of inertial sensors and thermometers as rows, named as PlotJuggler names them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+from ...errors import BadRecording
+from ..tables.table import Chunk, Table
+from .streams import chunks_of
+
+#: Type -> paths of the numbers in a message.
+_FIELDS = {
+    "Imu": [f"{v}/{a}" for v in ("angular_velocity", "linear_acceleration") for a in "xyz"],
+    "Temperature": ["temperature"],
+    "Float32": ["data"],
+    "Float64": ["data"],
+}
+_UNITS = {"temperature": " [degc]"}
+_TIME = "t_us"
+
+#: topic, when it was logged in nanoseconds, the message
+Logged = tuple[str, int, Any]
+
+
+def is_wanted(kind: str) -> bool:
+    """Whether messages of this type (`sensor_msgs/msg/Imu`, `sensor_msgs/Imu`) are read."""
+    return kind.rpartition("/")[2] in _FIELDS
+
+
+def table_of_messages(
+    path: Path,
+    topics: dict[str, str],
+    messages: Callable[[], Iterable[Logged]],
+) -> Table:
+    """A row a message, with the columns of its topic. topics: topic -> type.
+
+    Raises BadRecording where no topic holds rates.
+    """
+    wanted = {topic: kind.rpartition("/")[2] for topic, kind in topics.items() if is_wanted(kind)}
+    if "Imu" not in wanted.values():
+        has = ", ".join(f"{topic} ({kind})" for topic, kind in list(topics.items())[:12])
+        problem = "no topic of type sensor_msgs/Imu"
+        raise BadRecording(path, problem, do=f"name a bag that has one; this has {has or 'none'}")
+    names = [_TIME]
+    columns = {}
+    for topic, kind in wanted.items():
+        columns[topic] = {
+            field: f"{topic}/{field}{_UNITS.get(field, '')}" for field in _FIELDS[kind]
+        }
+        names += columns[topic].values()
+
+    def rows() -> Iterator[dict[str, float]]:
+        for topic, logged_ns, message in messages():
+            row = {_TIME: _time_us(message, logged_ns)}
+            for field, name in columns[topic].items():
+                row[name] = _number(message, field)
+            yield row
+
+    def chunks(asked: list[str]) -> Iterator[Chunk]:
+        yield from chunks_of(rows(), asked)
+
+    return Table(names, chunks, sensor="IMU of ROS")
+
+
+def _time_us(message: Any, logged_ns: int) -> float:
+    """The stamp of the header; where that is absent or zero, when the message was logged."""
+    stamp = _part(_part(message, "header"), "stamp")
+    sec = _part(stamp, "sec")
+    nano = _part(stamp, "nanosec")
+    if nano is None:
+        nano = _part(stamp, "nsec")
+    if sec is None or nano is None or not (sec or nano):
+        return logged_ns * 1e-3
+    return float(sec) * 1e6 + float(nano) * 1e-3
+
+
+def _number(message: Any, field: str) -> float:
+    value = message
+    for part in field.split("/"):
+        value = _part(value, part)
+    return float(value) if isinstance(value, (int, float)) else float("nan")
+
+
+def _part(message: Any, name: str) -> Any:
+    """A field of a message, which is an object or, out of JSON, a dict."""
+    return message.get(name) if isinstance(message, dict) else getattr(message, name, None)

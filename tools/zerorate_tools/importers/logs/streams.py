@@ -1,0 +1,47 @@
+"""Rows of several sensors, each at its own times, gathered into chunks of one table."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from ..tables.table import Chunk
+
+_ROWS = 1 << 15
+
+
+def chunks_of(rows: Iterable[dict[str, float]], names: list[str]) -> Iterator[Chunk]:
+    """Chunks of rows that each have some of the columns; the others are NaN."""
+    start, gathered = 0, []
+    for row in rows:
+        gathered.append(row)
+        if len(gathered) == _ROWS:
+            yield _chunk(gathered, names, start)
+            start, gathered = start + _ROWS, []
+    if gathered:
+        yield _chunk(gathered, names, start)
+
+
+def _chunk(rows: list[dict[str, float]], names: list[str], start: int) -> Chunk:
+    nan = float("nan")
+    columns = {name: np.array([row.get(name, nan) for row in rows], float) for name in names}
+    return Chunk(np.arange(start, start + len(rows)), columns)
+
+
+def one_after_the_other(
+    streams: Iterable[dict[str, np.ndarray]], names: list[str]
+) -> Iterator[Chunk]:
+    """Chunks of whole streams of columns: the rows of the first, then those of the next."""
+    start = 0
+    for stream in streams:
+        size = len(next(iter(stream.values())))
+        for first in range(0, size, _ROWS):
+            end = min(first + _ROWS, size)
+            nan = np.full(end - first, np.nan)
+            columns = {
+                name: stream[name][first:end].astype(float) if name in stream else nan
+                for name in names
+            }
+            yield Chunk(np.arange(start + first, start + end), columns)
+        start += size

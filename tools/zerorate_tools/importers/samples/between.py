@@ -1,0 +1,108 @@
+"""Readings of slower sensors, put at the times of the samples."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ...recordings.recording import ACCEL, COLUMNS, TEMP
+from .clock import duration
+from .gather import Gathered
+from .spool import PLACE, TIME, Spool
+
+_ACCEL_WITHIN_US = 1e6
+
+
+class Bridged:
+    """The samples of a spool, with what lacks a reading of its own on a line between those around.
+
+    stretches: by column, the longest time in microseconds that such a line spans.
+    """
+
+    def __init__(self, found: Gathered) -> None:
+        self._found, self._spool = found, found.spool
+        self.stretches: dict[str, float] = {}
+        self.dropped = 0
+        self._columns = [name for name in self._spool.names if self._is_bridged(name)]
+        self._after = {name: _next_readings(self._spool, name) for name in self._columns}
+
+    def __iter__(self) -> Iterator[dict[str, np.ndarray]]:
+        """Columns of each piece's samples, none NaN but those of extra channels."""
+        before: dict[str, tuple[float, float]] = {}
+        for number, columns in enumerate(self._spool):
+            whole = np.isfinite(columns["gx"])
+            for name in self._columns:
+                ends = self._spool.pieces[number].ends.get(name)
+                columns[name] = self._line(
+                    name, columns, whole, before.get(name), self._after[name][number]
+                )
+                if ends:
+                    before[name] = ends[1]
+            yield self._near_enough({name: values[whole] for name, values in columns.items()})
+
+    def notes(self) -> list[str]:
+        """What was put on lines, and how long those were."""
+        said = {"ax": "acceleration", TEMP: "temperature"}
+        return [
+            f"{said.get(name, name)} interpolated between its readings, over at most "
+            f"{duration(stretch * 1e-6)}"
+            for name, stretch in self.stretches.items()
+            if name not in ACCEL[1:]
+        ]
+
+    def _is_bridged(self, name: str) -> bool:
+        if name in (TIME, PLACE, "gx", "gy", "gz"):
+            return False
+        own, samples = self._found.own.get(name, 0), self._found.samples
+        # a further channel may have gaps; where it never comes with a sample it has its own rows
+        return own < samples and (name in COLUMNS or own == 0)
+
+    def _line(self, name, columns, whole, before, after):
+        t_us, values = columns[TIME], columns[name]
+        there = np.isfinite(values)
+        at, readings = t_us[there], values[there]
+        if before is not None:
+            at, readings = np.append(before[0], at), np.append(before[1], readings)
+        if after is not None:
+            at, readings = np.append(at, after[0]), np.append(readings, after[1])
+        if not len(at):
+            return values
+        lacking = whole & ~there
+        if lacking.any():
+            spans = np.diff(at)[np.clip(np.searchsorted(at, t_us[lacking]) - 1, 0, len(at) - 2)] \
+                if len(at) > 1 else np.zeros(1)  # fmt: skip
+            self.stretches[name] = max(self.stretches.get(name, 0.0), float(spans.max()))
+        filled = values.copy()
+        filled[lacking] = np.interp(t_us[lacking], at, readings)
+        if name in ACCEL:
+            filled[lacking & (_distance(t_us, at) > self._accel_within_us())] = np.nan
+        return filled
+
+    def _accel_within_us(self) -> float:
+        return max(_ACCEL_WITHIN_US, 3.0 * self._found.interval_us)
+
+    def _near_enough(self, columns):
+        """Less the samples that have no acceleration near them."""
+        if "ax" not in columns:
+            return columns
+        good = np.isfinite([columns[name] for name in ACCEL]).all(axis=0)
+        self.dropped += int((~good).sum())
+        return {name: values[good] for name, values in columns.items()}
+
+
+def _distance(t_us: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """(n,) microseconds to the nearest of the sorted `at`."""
+    after = np.clip(np.searchsorted(at, t_us), 0, len(at) - 1)
+    before = np.clip(after - 1, 0, len(at) - 1)
+    return np.minimum(np.abs(at[after] - t_us), np.abs(t_us - at[before]))
+
+
+def _next_readings(spool: Spool, name: str) -> list[tuple[float, float] | None]:
+    """For each piece, the first reading of a column in those after it."""
+    out: list[tuple[float, float] | None] = []
+    following = None
+    for piece in reversed(spool.pieces):
+        out.append(following)
+        following = piece.ends[name][0] if name in piece.ends else following
+    return out[::-1]

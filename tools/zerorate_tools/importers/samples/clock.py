@@ -1,0 +1,133 @@
+"""Time stamps as microseconds: counters that ran over, the rate, the gaps."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from ...errors import BadRecording
+
+_LONGEST_PAUSE_US = 10_000_000
+_MOST_US = 2.0**62
+_STRIDE = 64
+_KEPT = 1 << 18
+#: Beyond as many usual intervals, and a second, is a gap.
+_GAP_INTERVALS = 3.0
+
+
+class Unwrapped:
+    """Adds what a counter of 30, 31 or 32 bits lost where it ran over.
+
+    step_us: what one count is worth, in microseconds; 0 for a column that is no counter.
+    """
+
+    def __init__(self, step_us: float) -> None:
+        self._step_us = step_us
+        self._last: float | None = None
+        self._added = 0.0
+        self.notes: list[str] = []
+
+    def __call__(self, t_us: np.ndarray, place: np.ndarray) -> np.ndarray:
+        """(n,) the same stamps, going on where the counter ran over."""
+        if not self._step_us or not len(t_us):
+            return t_us
+        before = np.concatenate([[t_us[0] if self._last is None else self._last], t_us[:-1]])
+        self._last = t_us[-1]
+        t_us = t_us + self._added
+        for at in np.flatnonzero(np.diff(t_us - self._added, prepend=before[0]) < 0)[:1000]:
+            bits = self._bits(before[at], t_us[at] - self._added)
+            if bits:
+                span = 2.0**bits * self._step_us
+                t_us[at:] += span
+                self._added += span
+                row = int(place[at]) + 1
+                self.notes.append(f"a clock of {bits} bits ran over at row {row}: counted on")
+        return t_us
+
+    def _bits(self, earlier: float, later: float) -> int | None:
+        for bits in (30, 31, 32):
+            span = 2.0**bits * self._step_us
+            if earlier < span and 0 < later + span - earlier < _LONGEST_PAUSE_US:
+                return bits
+        return None
+
+
+class Pace:
+    """The usual interval between samples, whatever gaps and bursts there are: the median of the
+    means over 64 intervals, or fewer in a short recording."""
+
+    def __init__(self) -> None:
+        self._means: list[np.ndarray] = []
+        self._first: np.ndarray = np.empty(0)
+
+    def add(self, t_us: np.ndarray) -> None:
+        """Take the stamps of samples in order."""
+        if len(self._first) < _KEPT:
+            self._first = np.concatenate([self._first, t_us[: _KEPT - len(self._first)]])
+        self._means.append(np.diff(t_us[::_STRIDE]) / _STRIDE)
+        if len(self._means) > 4096:
+            self._means = [np.concatenate(self._means)[:: 1 + len(self._means) // 8192]]
+
+    def interval_us(self, path: Path) -> float:
+        """Raises BadRecording where time stands still."""
+        stride = min(_STRIDE, max(1, len(self._first) // 16))
+        means = np.concatenate(self._means) if self._means else np.empty(0)
+        if stride < _STRIDE:
+            means = np.diff(self._first[::stride]) / stride
+        usual = float(np.median(means)) if len(means) else 0.0
+        if usual <= 0:
+            usual = float(np.mean(means)) if len(means) else 0.0
+        if usual <= 0:
+            raise BadRecording(path, "time stands still", do="give --hz, samples a second")
+        return usual
+
+
+class Gaps:
+    """Counts pauses that are far longer than the usual interval."""
+
+    def __init__(self, interval_us: float) -> None:
+        self._least_us = max(_GAP_INTERVALS * interval_us, 1e6)
+        self._last: float | None = None
+        self.count = 0
+        self.longest_us = self.total_us = 0.0
+
+    def add(self, t_us: np.ndarray) -> None:
+        """Take the stamps of samples in order."""
+        if not len(t_us):
+            return
+        pauses = np.diff(t_us, prepend=t_us[0] if self._last is None else self._last)
+        pauses = pauses[pauses > self._least_us]
+        self._last = t_us[-1]
+        if len(pauses):
+            self.count += len(pauses)
+            self.total_us += float(pauses.sum())
+            self.longest_us = max(self.longest_us, float(pauses.max()))
+
+    def note(self) -> list[str]:
+        """In words, where there are any."""
+        if not self.count:
+            return []
+        if self.count == 1:
+            return [f"a gap of {duration(self.longest_us * 1e-6)} in the time stamps"]
+        return [f"{self.count} gaps in the time stamps, at most {duration(self.longest_us * 1e-6)}"]
+
+
+def refuse_impossible(t_us: np.ndarray, place: np.ndarray, path: Path) -> None:
+    """Raise BadRecording for stamps that no integer of microseconds holds."""
+    outside = np.abs(t_us) >= _MOST_US
+    if outside.any():
+        at = int(np.argmax(outside))
+        problem = f"the time stamp is {t_us[at]:.4g} us, more than 62 bits hold"
+        do = "name the unit that it is in: --time-unit ns"
+        raise BadRecording(path, problem, row=int(place[at]) + 1, do=do)
+
+
+def duration(seconds: float) -> str:
+    """As a person would say it: 250 ms, 4.2 s, 15 min, 2.5 h."""
+    if seconds < 1:
+        return f"{seconds * 1e3:.3g} ms"
+    for span, unit in ((86_400, "days"), (3600, "h"), (60, "min")):
+        if seconds >= 2 * span:
+            return f"{seconds / span:.3g} {unit}"
+    return f"{seconds:.3g} s"

@@ -1,0 +1,154 @@
+"""From physical units to integers, piece by piece, every loss counted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from ...errors import BadRecording
+from ...recordings import Scales
+from ...recordings.checks import GAP
+from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP
+from ..columns.plan import Plan
+from ..columns.units import kind_of
+from ..report import Options, Report
+from ..tables.table import Table
+from .between import Bridged
+from .clock import Gaps
+from .doubts import of_time
+from .gather import Gathered
+from .spool import PLACE, TIME
+
+_GYRO_RANGES = (131.0, 65.5, 32.8, 16.4)
+_ACCEL_RANGES = (16384.0, 8192.0, 4096.0, 2048.0)
+_FINE = (1000.0, 500.0, 200.0)
+_TEMP_LSB, _TEMP_OFFSET = 100.0, 0.0
+_RAIL = 32767
+#: Rows that come more slowly are means over the time between them: no such sensor is that slow.
+MEANS_FROM_US = 1.5e6
+_LOOKED_AT = 64
+
+
+def fitting_scales(
+    found: Gathered, plan: Plan, table: Table, options: Options, path: Path, notes: list[str]
+) -> Scales:
+    """What is given, what the format states, else what holds every reading. Raises BadRecording."""
+
+    def pick(key: str) -> float | None:
+        given = getattr(options, key)
+        return given if given is not None else table.lsb.get(key)
+
+    means = found.interval_us >= MEANS_FROM_US and "gyro" not in plan.raw
+    gyro = pick("gyro_lsb_per_dps")
+    if gyro is None:
+        ranges = (*(_FINE if means else ()), *_GYRO_RANGES)
+        gyro = _fitting("gyro", "dps", ranges, found, plan, path, notes)
+    accel = temp = offset = None
+    if "ax" in plan.wanted:
+        accel = pick("accel_lsb_per_g")
+        if accel is None:
+            accel = _fitting("accel", "g", _ACCEL_RANGES, found, plan, path, notes)
+    if TEMP in plan.wanted:
+        temp, offset = pick("temp_lsb_per_degc"), pick("temp_offset_degc")
+        if "temp" in plan.raw and (temp is None or offset is None):
+            do = "give --temp-lsb-per-degc and --temp-offset-degc"
+            raise BadRecording(path, "the scale of raw temperature is not known", do=do)
+        temp = _TEMP_LSB if temp is None else temp
+        offset = _TEMP_OFFSET if offset is None else offset
+    more = dict(options.more)
+    if means:
+        seconds = float(f"{found.interval_us * 1e-6:.4g}")
+        more["row_is_mean_of_s"] = seconds
+        notes.append(f"a row every {seconds:g} s: each taken as the mean over that time")
+    return Scales(
+        sensor=options.sensor or table.sensor or "unknown",
+        odr_hz=options.hz or float(f"{1e6 / found.interval_us:.6g}"),
+        gyro_lsb_per_dps=gyro,
+        accel_lsb_per_g=accel,
+        temp_lsb_per_degc=temp,
+        temp_offset_degc=offset,
+        more=more,
+    )
+
+
+def _fitting(kind, unit, ranges, found: Gathered, plan: Plan, path: Path, notes) -> float:
+    if kind in plan.raw:
+        option = "--gyro-lsb-per-dps" if kind == "gyro" else "--accel-lsb-per-g"
+        problem = f"the scale of raw counts ({unit}) is not known"
+        raise BadRecording(path, problem, do=f"give {option}")
+    largest = found.largest[kind]
+    lsb = next((lsb for lsb in ranges if largest * lsb < _RAIL), ranges[-1])
+    notes.append(f"{lsb:g} LSB per {unit} chosen, as {largest:.4g} {unit} is the most seen")
+    return lsb
+
+
+def integer_batches(
+    found: Gathered, plan: Plan, scales: Scales, path: Path, report: Report
+) -> Iterator[dict[str, np.ndarray]]:
+    """Batches as a recording has them, in its order of columns; completes the report."""
+    bridged, gaps = Bridged(found), Gaps(found.interval_us)
+    names = [name for name in (*COLUMNS, *plan.wanted) if name in found.spool.names]
+    temps: list[np.ndarray] = []
+    first = last = None
+    for columns in bridged:
+        t_us = np.rint(columns[TIME]).astype(np.int64)
+        if not len(t_us):
+            continue
+        first, last = t_us[0] if first is None else first, t_us[-1]
+        gaps.add(columns[TIME])
+        if TEMP in columns and "temp" not in plan.raw:
+            temps.append(columns[TEMP][:: 1 + len(t_us) // _LOOKED_AT])
+        yield {
+            name: t_us if name == TIME else _integers(name, columns, plan, scales, path, report)
+            for name in dict.fromkeys(names)
+        }
+        report.rows_written += len(t_us)
+    if first is None:
+        problem, do = "no sample is left", "map the acceleration of this sensor, or none: ax=none"
+        raise BadRecording(path, problem, do=do)
+    if bridged.dropped:
+        report.dropped["no acceleration within a second"] += bridged.dropped
+    report.duration_s = float(last - first) * 1e-6
+    report.odr_hz = scales.odr_hz
+    report.notes += [*gaps.note(), *bridged.notes()]
+    if temps:
+        report.doubts += of_time(np.concatenate(temps), float(last - first), found.counted)
+
+
+def _integers(name, columns, plan: Plan, scales: Scales, path: Path, report: Report) -> np.ndarray:
+    values = columns[name]
+    if name not in COLUMNS:
+        return _channel(name, values, columns[PLACE], path)
+    raw = kind_of(name) in plan.raw
+    if name == TEMP and not raw:
+        values = (values - scales.temp_offset_degc) * scales.temp_lsb_per_degc
+    elif not raw:
+        lsb = scales.gyro_lsb_per_dps if name in GYRO else scales.accel_lsb_per_g
+        values = values * (lsb or 1.0)
+    counts = np.rint(values)
+    at_end = int((np.abs(counts) >= _RAIL).sum())
+    if at_end:
+        report.clipped[name] += at_end
+    return np.clip(counts, -_RAIL - 1, _RAIL).astype(np.int32)
+
+
+def _channel(name: str, values: np.ndarray, place: np.ndarray, path: Path) -> np.ndarray:
+    bad = np.abs(values) >= 2**31
+    if bad.any():
+        at = int(np.argmax(bad))
+        do = f"scale it down: --map {name}=COLUMN:x0.001"
+        problem = f"{name} is {values[at]:g}, no integer of 32 bits"
+        raise BadRecording(path, problem, row=int(place[at]) + 1, do=do)
+    return np.where(np.isnan(values), GAP, np.rint(values)).astype(np.int32)
+
+
+def absent(plan: Plan) -> list[str]:
+    """What cannot be learned without the columns that are not there."""
+    out = []
+    if ACCEL[0] not in plan.wanted:
+        out.append("no acceleration: nothing can be learned against gravity")
+    if TEMP not in plan.wanted:
+        out.append("no temperature: the bias cannot be followed over temperature")
+    return out

@@ -1,0 +1,117 @@
+"""What cannot be true of a recording, said in words with what was probably meant."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...errors import BadRecording
+from ...recordings.recording import ACCEL, GYRO, TEMP
+from ..columns.plan import Plan
+from .clock import duration
+
+if TYPE_CHECKING:
+    from .gather import Gathered
+
+#: The widest range of these sensors, and a little.
+FASTEST_DPS = 2050.0
+_FAST_SHARE = 0.001
+_GRAVITY = {"m/s2": 9.80665, "mg": 1000.0}
+_GRAVITY_WITHIN = 0.2
+#: Nothing with mass warms or cools faster than that.
+_FASTEST_DEGC_S, _LEAST_DEGC = 1.0, 3.0
+_TRUE_DEGC = (-60.0, 130.0)
+#: White noise that no such sensor is below, dps per square root of Hz.
+_QUIETEST = 2e-4
+_STEADY_DPS = 25.0
+
+
+def refuse_too_fast(
+    too_fast: int, samples: int, fastest_dps: float, plan: Plan, path: Path
+) -> None:
+    """Raise BadRecording where more than a spike is faster than any range of these sensors."""
+    if too_fast <= _FAST_SHARE * (samples + too_fast):
+        return
+    meant = "dps" if plan.factors["gx"][0] > 1 else "mdps"
+    words = " ".join(f"--map {t}={plan.wanted[t].column}:{meant}" for t in GYRO)
+    problem = (
+        f"{fastest_dps:.4g} dps is more than these sensors measure, in {too_fast} rows: "
+        f"did you mean {meant}?"
+    )
+    raise BadRecording(path, problem, do=f"{words}, or give --gyro-lsb-per-dps if it is true")
+
+
+def doubts(found: Gathered, plan: Plan) -> list[str]:
+    """Sentences, of which each names what to do."""
+    seen = found.looked_at
+    out = [*_of_gravity(seen, plan), *_of_rates(found, plan), *_of_temperature(seen, plan)]
+    return [f"doubtful: {words}" for words in out]
+
+
+def of_time(temp_degc: np.ndarray, span_us: float, counted: bool) -> list[str]:
+    """Whether so much warming or cooling fits into the time that passed.
+
+    temp_degc: readings over the whole recording. counted: the time comes from --hz.
+    """
+    if len(temp_degc) < 8:
+        return []
+    least, most = np.quantile(temp_degc, [0.02, 0.98])
+    changed, span_s = float(most - least), span_us * 1e-6
+    if changed < _LEAST_DEGC or changed < _FASTEST_DEGC_S * span_s:
+        return []
+    do = "give the true --hz" if counted else "give --hz, rows a second, instead of the time column"
+    return [
+        f"doubtful: {changed:.3g} degC within {duration(span_s)} cannot be: the time stamps are "
+        f"wrong; {do}"
+    ]
+
+
+def _of_gravity(seen: dict[str, np.ndarray], plan: Plan) -> list[str]:
+    if "ax" not in seen or "accel" in plan.raw:
+        return []
+    force = np.linalg.norm([seen[name] for name in ACCEL], axis=0)
+    force = force[np.isfinite(force)]
+    usual = float(np.median(force)) if len(force) else 1.0
+    for unit, size in _GRAVITY.items():
+        for ratio, meant in ((size, unit), (1 / size, "g")):
+            if usual > 0 and abs(math.log(usual / ratio)) < _GRAVITY_WITHIN:
+                return [
+                    f"the usual acceleration is {usual:.3g} g: did you mean {meant}? "
+                    f"(--accel-unit {meant})"
+                ]
+    return []
+
+
+def _of_rates(found: Gathered, plan: Plan) -> list[str]:
+    if "gyro" in plan.raw or found.samples < 200:
+        return []
+    rates = np.array([found.looked_at[name] for name in GYRO])
+    middle = float(np.abs(np.median(rates, axis=1)).max())
+    steps = np.diff(rates[:, :1000], axis=1)
+    noise = float(np.median(np.abs(steps))) * 1.4826 / math.sqrt(2)
+    if middle > _STEADY_DPS and noise < 0.1 * middle:
+        if plan.factors["gx"][0] > 1:
+            return [f"a steady rate of {middle:.3g} dps: did you mean dps? (--gyro-unit dps)"]
+        return [f"a steady rate of {middle:.3g} dps is no bias of a sound sensor at rest"]
+    floor = _QUIETEST * math.sqrt(0.5e6 / found.interval_us)
+    if 0 < noise < floor and plan.factors["gx"][0] == 1.0 and found.interval_us < 2e5:
+        return [
+            f"noise of {noise * 1e3:.2g} mdps is less than such a sensor has: did you mean rad/s? "
+            "(--gyro-unit rad/s)"
+        ]
+    return []
+
+
+def _of_temperature(seen: dict[str, np.ndarray], plan: Plan) -> list[str]:
+    if TEMP not in seen or "temp" in plan.raw:
+        return []
+    temp = seen[TEMP][np.isfinite(seen[TEMP])]
+    if not len(temp) or _TRUE_DEGC[0] <= np.median(temp) <= _TRUE_DEGC[1]:
+        return []
+    return [
+        f"the usual temperature is {np.median(temp):.4g} degC: name its unit (--temp-unit k), "
+        "or leave it out: --map temp=none"
+    ]

@@ -1,0 +1,176 @@
+"""All rows of a table, told apart into samples and readings of slower sensors, into a spool."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from ...errors import BadRecording
+from ...recordings.recording import ACCEL, GYRO, TEMP
+from ..columns.plan import Plan
+from ..columns.units import TIME_S
+from ..tables.table import Table
+from .clock import Pace, Unwrapped, refuse_impossible
+from .doubts import refuse_too_fast
+from .order import Runs, in_order
+from .spool import PLACE, TIME, Spool
+
+_KEPT = 200
+
+
+@dataclass
+class Gathered:
+    """The rows, by time, and what they have in common. largest: by kind (gyro, accel). own: by
+    column, samples that have a reading of their own. looked_at: some hundred samples."""
+
+    spool: Spool
+    rows: int
+    samples: int
+    interval_us: float
+    largest: dict[str, float]
+    own: dict[str, int]
+    dropped: Counter[str]
+    notes: list[str]
+    counted: bool = False
+    looked_at: dict[str, np.ndarray] = field(default_factory=dict)
+
+
+def gathered(
+    table: Table, plan: Plan, path: Path, *, hz: float | None, fast_dps: float, folder: Path | None
+) -> Gathered:
+    """Read a table once. hz: counts the rows instead of time stamps. fast_dps: beyond it, a rate
+    is none that a sensor of this kind measures. Raises BadRecording."""
+    if TIME not in plan.wanted and not hz:
+        raise BadRecording(path, "the source has no time stamps", do="give --hz, samples a second")
+    return _Gathering(table, plan, path, hz, fast_dps, folder).result()
+
+
+class _Gathering:
+    def __init__(self, table, plan, path, hz, fast_dps, folder):
+        self.table, self.plan, self.path, self.hz = table, plan, path, hz
+        self.fast_dps, self.folder = fast_dps, folder
+        self.readings = [name for name in plan.wanted if name != TIME]
+        self.spool = Spool([TIME, PLACE, *self.readings], folder)
+        self.dropped: Counter[str] = Counter()
+        self.rows = self.samples = self.too_fast = 0
+        self.fastest = 0.0
+        self.largest = {"gyro": 0.0, "accel": 0.0}
+        self.own: Counter[str] = Counter()
+        self.runs = Runs()
+        self.clock = Unwrapped(self._step_us())
+        self.kept: list[dict[str, np.ndarray]] = []
+
+    def result(self) -> Gathered:
+        try:
+            for chunk in self.table.chunks(self.plan.columns):
+                self._take(self.plan.physical(chunk), chunk.place)
+            self.spool.finish()
+            self._check()
+            self.spool = in_order(self.spool, self.path, self.folder)
+        except BaseException:
+            self.spool.close()
+            raise
+        notes = [*self.table.notes, *self.plan.notes, *self.clock.notes]
+        back = self.runs.steps_back
+        if back:
+            notes.append(f"time goes back at {back} rows: sorted by time")
+        looked_at = {
+            n: np.concatenate([k[n] for k in self.kept]) for n in (TIME, *self.readings)
+        }  # fmt: skip
+        return Gathered(
+            self.spool, self.rows + sum(self.table.dropped.values()), self.samples,
+            self._interval_us(), self.largest, dict(self.own),
+            self.table.dropped + self.dropped, notes, TIME not in self.plan.wanted, looked_at,
+        )  # fmt: skip
+
+    def _step_us(self) -> float:
+        """Microseconds of one count of the time column, where it may be a counter."""
+        mapped = self.plan.wanted.get(TIME)
+        if mapped is None or mapped.plus or self.table.mapping:
+            return 0.0
+        unit_s = self.plan.factors[TIME][0]
+        return 0.0 if unit_s == TIME_S["s"] else unit_s * 1e6
+
+    def _take(self, columns: dict[str, np.ndarray], place: np.ndarray) -> None:
+        self.rows += len(place)
+        if TIME in columns:
+            columns[TIME] = columns[TIME] * 1e6
+        else:
+            columns[TIME] = place * (1e6 / self.hz)
+        columns[PLACE] = place.astype(float)
+        columns = self._less(columns, np.isfinite(columns[TIME]), "the time stamp is no number")
+        refuse_impossible(columns[TIME], columns[PLACE], self.path)
+        columns[TIME] = self.clock(columns[TIME], columns[PLACE])
+        columns = self._less(columns, *self._is_something(columns))
+        columns = self._less(columns, *self._not_all_zero(columns))
+        columns = self._less(columns, *self._not_too_fast(columns))
+        whole = np.isfinite([columns[name] for name in GYRO]).all(axis=0)
+        self.samples += int(whole.sum())
+        self.runs.add(columns[TIME][whole], columns[PLACE][whole])
+        self._measure(columns, whole)
+        self.spool.append(columns)
+
+    def _less(self, columns, good, reason):
+        if good.all():
+            return columns
+        self.dropped[reason] += int((~good).sum())
+        return {name: values[good] for name, values in columns.items()}
+
+    def _is_something(self, columns):
+        """Rows with three rates, or with none but a reading of another sensor."""
+        rates = np.isfinite([columns[name] for name in GYRO])
+        others = [columns[name] for name in self.readings if name not in GYRO]
+        beside = np.isfinite(others).any(axis=0) if others else np.zeros(rates.shape[1], bool)
+        return rates.all(axis=0) | (~rates.any(axis=0) & beside), "a reading is no number"
+
+    def _not_all_zero(self, columns):
+        """Three rates alone may well be zero on a coarse scale; with gravity, or 0 degC, they are
+        none."""
+        beside = [n for n in (ACCEL if "ax" in columns else (TEMP,)) if n in columns]
+        if not beside:
+            return np.ones(len(columns[TIME]), bool), ""
+        frame = np.array([columns[name] for name in (*GYRO, *beside)])
+        return ~(frame == 0).all(axis=0), "all readings are zero"
+
+    def _not_too_fast(self, columns):
+        """Rates that no sensor of this kind measures: damaged, or in another unit than said."""
+        rates = np.abs([columns[name] for name in GYRO])
+        fast = (rates > self.fast_dps).any(axis=0)
+        self.too_fast += int(fast.sum())
+        self.fastest = max(self.fastest, float(rates[:, fast].max(initial=0.0)))
+        return ~fast, f"faster than any such sensor measures ({self.fast_dps:g} dps)"
+
+    def _measure(self, columns, whole):
+        for kind, axes in (("gyro", GYRO), ("accel", ACCEL)):
+            if axes[0] in columns:
+                sizes = np.abs([columns[name][whole] for name in axes])
+                sizes = sizes[np.isfinite(sizes)]
+                self.largest[kind] = max(self.largest[kind], float(sizes.max(initial=0.0)))
+        for name in self.readings:
+            self.own[name] += int(np.isfinite(columns[name][whole]).sum())
+        at = np.flatnonzero(whole)
+        at = at[: _KEPT if len(self.kept) else 50 * _KEPT]
+        self.kept.append({name: columns[name][at] for name in (TIME, *self.readings)})
+        if len(self.kept) > 2 * _KEPT:
+            self.kept = [self.kept[0], *self.kept[1::2]]
+
+    def _check(self):
+        refuse_too_fast(self.too_fast, self.samples, self.fastest, self.plan, self.path)
+        if not self.samples:
+            dropped = self.table.dropped + self.dropped
+            do = "; ".join(f"{count} rows: {why}" for why, count in dropped.items())
+            if not do and not self.rows:
+                raise BadRecording(self.path, "no data row", do="name another file")
+            raise BadRecording(self.path, "no sample is left", do=do or "no row has three rates")
+        self.runs.refuse_a_restart(self.path)
+
+    def _interval_us(self) -> float:
+        if self.hz:
+            return 1e6 / self.hz
+        pace = Pace()
+        for columns in self.spool:
+            pace.add(columns[TIME][np.isfinite(columns["gx"])])
+        return pace.interval_us(self.path)

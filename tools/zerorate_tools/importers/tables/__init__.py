@@ -1,0 +1,1 @@
+"""Files as tables: named columns of numbers, in chunks."""

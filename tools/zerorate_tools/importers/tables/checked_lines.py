@@ -1,0 +1,105 @@
+"""Lines as $NAME,...*HH, each with the XOR of what stands between $ and *."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterator
+from functools import reduce
+from operator import xor
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+
+from ...errors import BadRecording
+from .bytes_of import damaged, head, open_text
+from .table import Chunk, Table
+
+_BLOCK_BYTES = 1 << 20
+_LONGEST_LINE = 4096
+
+
+def has_checked_lines(path: Path) -> bool:
+    """Whether the first line is such a one."""
+    line = head(path, _LONGEST_LINE)[0].split(b"\n")[0].strip()
+    return line.startswith(b"$") and line[-3:-2] == b"*"
+
+
+def checked_lines(path: Path, advance: Callable[[float], None] = lambda n: None) -> Table:
+    """Columns are called 1, 2, 3, ... after the name; lines of other names are left out.
+
+    Lines that fail their checksum are dropped and counted, and keep their place. Raises
+    BadRecording.
+    """
+    first = head(path, _LONGEST_LINE)[0].split(b"\n")[0].strip()
+    kind, *cells = first[1:-3].split(b",")
+    names = [str(number) for number in range(1, len(cells) + 1)]
+
+    def chunks(wanted: list[str]) -> Iterator[Chunk]:
+        at = [int(name) for name in wanted]
+        place = 0
+        for lines in _blocks(path, advance):
+            ours = [line for line in lines if not _is_other(line, kind)]
+            rows = [_row(line, kind, len(names), table.dropped) for line in ours]
+            good = [number for number, row in enumerate(rows) if row is not None]
+            cells = np.array([[row[i] for i in at] for row in rows if row is not None], float)
+            by_name = dict(zip(wanted, cells.reshape(-1, len(at)).T))
+            yield Chunk(place + np.array(good, np.int64), by_name)
+            place += len(ours)
+
+    table = Table(names, chunks, notes=[f"lines of ${kind.decode('ascii', 'replace')}"])
+    return table
+
+
+def _blocks(path: Path, advance: Callable[[float], None]) -> Iterator[list[bytes]]:
+    stream, told = open_text(path)
+    rest, read = b"", 0
+    try:
+        while block := stream.read(_BLOCK_BYTES):
+            *lines, rest = (rest + block).split(b"\n")
+            if len(rest) > _LONGEST_LINE:
+                problem = f"a line is longer than {_LONGEST_LINE} bytes"
+                raise BadRecording(path, problem, do="copy the file again")
+            yield lines
+            advance(told() - read)
+            read = told()
+    except (OSError, EOFError, pa.ArrowException) as error:
+        raise damaged(path) from error
+    if rest.strip():
+        yield [rest]
+
+
+def _is_other(line: bytes, kind: bytes) -> bool:
+    """Whether it is a whole line of another name."""
+    text = line.strip()
+    named = text[1:].split(b",")[0]
+    return text[:1] == b"$" and named != kind and named.isalnum() and _checks(text)
+
+
+def _checks(text: bytes) -> bool:
+    try:
+        return reduce(xor, text[1:-3], 0) == int(text[-2:], 16)
+    except ValueError:
+        return False
+
+
+def _row(line: bytes, kind: bytes, cells: int, dropped: Counter[str]) -> list[float] | None:
+    """A cell each with the name first, as NaN; None where the line is damaged."""
+    text = line.strip(b"\r\n ")
+    if text[:1] != b"$" or text[-3:-2] != b"*":
+        dropped["no whole line"] += 1
+    elif not _checks(text):
+        dropped["the checksum fails"] += 1
+    else:
+        parts = text[1:-3].split(b",")
+        if parts[0] == kind and len(parts) == cells + 1:
+            return [_number(part) for part in parts]
+        dropped["damaged (fields missing), though the checksum passes"] += 1
+    return None
+
+
+def _number(cell: bytes) -> float:
+    try:
+        return float(cell)
+    except ValueError:
+        return float("nan")

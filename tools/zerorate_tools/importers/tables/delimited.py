@@ -1,0 +1,154 @@
+"""CSV, TSV and their kin, packed or not, read block by block."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+import pyarrow.csv
+
+from ...errors import BadRecording
+from .bytes_of import damaged, open_text
+from .sniffing import COMMENTS, Form, sniffed
+from .table import Chunk, Table
+
+_BLOCK_BYTES = 1 << 22
+_NO_VALUE = ["", "nan", "NaN", "NAN", "NA", "null", "None", "-", "--"]
+
+
+def delimited(path: Path, advance: Callable[[float], None] = lambda n: None) -> Table:
+    """The table of a text file. Raises BadRecording.
+
+    advance: called with the bytes of the file that were read since it was called last.
+    """
+    form = sniffed(path)
+
+    def chunks(names: list[str]) -> Iterator[Chunk]:
+        yield from _chunks(path, form, names, table.dropped, advance)
+
+    table = Table(form.names, chunks, calendar=form.dates, notes=[form.note] if form.note else [])
+    return table
+
+
+def _chunks(
+    path: Path,
+    form: Form,
+    names: list[str],
+    dropped: Counter[str],
+    advance: Callable[[float], None],
+) -> Iterator[Chunk]:
+    stream, told = open_text(path, form.encoding)
+    odd = _OddLines(form.skip)
+    read = start = 0
+    try:
+        for batch in _reader(stream, form, names, odd):
+            place = odd.places(start, batch.num_rows)
+            start = int(place[-1]) + 1 if len(place) else start
+            yield Chunk(place, {n: _numbers(batch.column(n), n, form) for n in names})
+            advance(told() - read)
+            read = told()
+    except pa.ArrowInvalid as error:
+        raise _in_words(path, error) from error
+    except (OSError, EOFError, pa.ArrowException) as error:
+        raise damaged(path) from error
+    finally:
+        dropped.update(odd.counted())
+
+
+def _reader(stream, form: Form, names: list[str], odd: _OddLines) -> pyarrow.csv.CSVStreamingReader:
+    return pyarrow.csv.open_csv(
+        stream,
+        read_options=pyarrow.csv.ReadOptions(
+            block_size=_BLOCK_BYTES,
+            column_names=form.names,
+            skip_rows=form.skip,
+            use_threads=False,
+        ),
+        parse_options=pyarrow.csv.ParseOptions(
+            delimiter=form.delimiter, invalid_row_handler=odd.take
+        ),
+        convert_options=pyarrow.csv.ConvertOptions(
+            column_types={name: pa.string() for name in form.names},
+            include_columns=names,
+            null_values=_NO_VALUE,
+            strings_can_be_null=True,
+            check_utf8=False,
+        ),
+    )
+
+
+class _OddLines:
+    """Lines that are no row: comments, and those with too many or too few cells."""
+
+    def __init__(self, before: int) -> None:
+        self._before = before
+        self._rows: list[int] = []
+        self._count = 0
+
+    def take(self, row: pyarrow.csv.InvalidRow) -> str:
+        """Arrow's handler of such a line."""
+        if not str(row.text).lstrip().startswith(COMMENTS):
+            self._count += 1
+            if row.number is not None:
+                self._rows.append(row.number - self._before - 1)
+        return "skip"
+
+    def places(self, start: int, size: int) -> np.ndarray:
+        """(size,) numbers of the rows of a batch, of which the first may be `start`."""
+        every = np.arange(start, start + size + len(self._rows))
+        kept = np.setdiff1d(every, self._rows, assume_unique=True)[:size]
+        if size:
+            self._rows = [row for row in self._rows if row > kept[-1]]
+        return kept
+
+    def counted(self) -> Counter[str]:
+        """How many rows there were that cannot be read."""
+        return Counter({"not as many cells as the header": self._count} if self._count else {})
+
+
+def _numbers(cells: pa.Array, name: str, form: Form) -> np.ndarray:
+    """(n,) float64, NaN where a cell is no number."""
+    if name in form.dates:
+        return _seconds(cells)
+    if form.decimal_comma:
+        cells = pc.replace_substring(cells, ",", ".")
+    try:
+        return pc.cast(cells, pa.float64()).to_numpy(zero_copy_only=False)
+    except pa.ArrowInvalid:
+        return _some_numbers(cells)
+
+
+def _some_numbers(cells: pa.Array) -> np.ndarray:
+    import pandas
+
+    text = pandas.Series(_decoded(cells), dtype=object).str.strip()
+    return pandas.to_numeric(text, errors="coerce").to_numpy(dtype=float)
+
+
+def _seconds(cells: pa.Array) -> np.ndarray:
+    """(n,) seconds since 1970 of ISO-8601 texts; without a zone they count as UTC."""
+    import pandas
+
+    text = pandas.Series(_decoded(cells), dtype=object).str.strip().str.replace(",", ".")
+    stamps = pandas.to_datetime(text, format="ISO8601", utc=True, errors="coerce")
+    since = (stamps - pandas.Timestamp(0, tz="UTC")).to_numpy()
+    return since.astype("timedelta64[ns]").astype(float) * 1e-9 + np.where(
+        np.isnat(since), np.nan, 0.0
+    )
+
+
+def _decoded(cells: pa.Array) -> list[str | None]:
+    raw = cells.cast(pa.binary()).to_pylist()
+    return [None if cell is None else cell.decode("utf-8", "replace") for cell in raw]
+
+
+def _in_words(path: Path, error: Exception) -> BadRecording:
+    if "straddling" in str(error):
+        problem = f"a row is longer than {_BLOCK_BYTES >> 20} MiB"
+        return BadRecording(path, problem, do="name a table with a sample on each line")
+    problem = f"no table: {str(error)[:120]}"
+    return BadRecording(path, problem, do="name a CSV with a row for each sample")

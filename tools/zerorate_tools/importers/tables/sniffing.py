@@ -1,0 +1,137 @@
+"""Where a text's table begins, what parts its cells, and how its numbers are written."""
+
+from __future__ import annotations
+
+import csv
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from ...errors import BadRecording
+from .bytes_of import head
+
+_HEAD_BYTES = 1 << 18
+_LINES = 200
+_DELIMITERS = (",", ";", "\t", "|", " ")
+COMMENTS = ("#", "//", "%", "*")
+_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")
+_DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+([eE][-+]?\d+)?$")
+_DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d")
+_NOT_A_NUMBER = ("", "nan", "null", "none", "na")
+
+
+@dataclass(frozen=True)
+class Form:
+    """How a text holds its table. names: of the columns, as numbers from 1 where nothing names
+    them; skip: lines before the first row."""
+
+    names: list[str]
+    skip: int
+    delimiter: str
+    encoding: str
+    decimal_comma: bool = False
+    dates: frozenset[str] = frozenset()
+    note: str = ""
+
+
+def sniffed(path: Path) -> Form:
+    """The form of a text, told from its first lines. Raises BadRecording."""
+    content, encoding = head(path, _HEAD_BYTES)
+    whole = len(content) < _HEAD_BYTES
+    text = content.decode(encoding, errors="replace").lstrip("\ufeff")
+    if "\x00" in text[:1000] and not text[:20].isprintable():
+        do = "name a table, or a log of a kind that `zerorate import --help` lists"
+        raise BadRecording(path, "neither text nor a log of a known kind", do=do)
+    lines = text.splitlines()
+    if not whole:
+        lines = lines[:-1]
+    if not any(line.strip() for line in lines):
+        if whole:
+            raise BadRecording(path, "empty file", do="name another file")
+        problem = f"no line ends within the first {_HEAD_BYTES >> 10} KiB"
+        raise BadRecording(path, problem, do="name a table with a sample on each line")
+    return _table_in(lines[:_LINES], encoding, path)
+
+
+def _table_in(lines: list[str], encoding: str, path: Path) -> Form:
+    found = [_with(delimiter, lines) for delimiter in _DELIMITERS]
+    best = max((one for one in found if one), key=lambda one: one[0], default=None)
+    if best is None:
+        header = next(line for line in lines if line.strip())
+        if not any(delimiter in header for delimiter in _DELIMITERS):
+            raise BadRecording(path, "no table", do="name a CSV with a row for each sample")
+        raise BadRecording(path, "no data row", do="name another file")
+    _, at, skip, delimiter = best
+    first = _cells(lines[skip], delimiter)
+    names, note = _names(lines, at, first, delimiter)
+    dates = frozenset(name for name, cell in zip(names, first) if _DATE.match(cell.strip()))
+    return Form(
+        names,
+        skip,
+        delimiter,
+        encoding,
+        decimal_comma=delimiter != "," and any(_DECIMAL_COMMA.match(c.strip()) for c in first),
+        dates=dates,
+        note=note,
+    )
+
+
+def _with(delimiter: str, lines: list[str]) -> tuple[int, int | None, int, str] | None:
+    """(numbers in the first row, the header's line or None, the first row's line, delimiter) for
+    the first two lines of as many cells, of which the second has numbers; or None."""
+    above: tuple[int, list[str]] | None = None
+    for number, line in enumerate(lines):
+        if not line.strip() or line.lstrip().startswith(COMMENTS):
+            continue
+        cells = _cells(line, delimiter)
+        numbers = _numbers(cells, delimiter)
+        if numbers == len([c for c in cells if c.strip()]) and numbers > 1 and above is None:
+            return numbers, None, number, delimiter
+        if numbers and above is not None and _as_many(above[1], cells):
+            return numbers, above[0], number, delimiter
+        if not numbers or above is None or not _as_many(above[1], cells):
+            above = number, cells
+    return None
+
+
+def _as_many(names: list[str], cells: list[str]) -> bool:
+    trailing = len(cells) == len(names) + 1 and not cells[-1].strip()
+    return len(cells) == len(names) or trailing
+
+
+def _cells(line: str, delimiter: str) -> list[str]:
+    # the parser of rows takes no cell that is longer than csv's limit either
+    row = next(csv.reader([line[:100_000]], delimiter=delimiter, skipinitialspace=True), [])
+    return row
+
+
+def _numbers(cells: list[str], delimiter: str) -> int:
+    def is_one(cell: str) -> bool:
+        comma = delimiter != "," and _DECIMAL_COMMA.match(cell)
+        return bool(_NUMBER.match(cell) or comma or _DATE.match(cell))
+
+    return sum(is_one(cell.strip()) for cell in cells)
+
+
+def _names(lines: list[str], at: int | None, first: list[str], delimiter: str):
+    if at is not None:
+        names = [name.strip() for name in _cells(lines[at], delimiter)]
+        return _single(names + [""] * (len(first) - len(names))), ""
+    for line in reversed(lines):
+        text = line.strip()
+        if text.startswith(COMMENTS):
+            names = [name.strip() for name in _cells(text.lstrip("#/%* "), delimiter)]
+            if len(names) == len(first) and not _numbers(names, delimiter):
+                return _single(names), ""
+    numbered = [str(number) for number in range(1, len(first) + 1)]
+    return numbered, "no line names the columns: they are called 1, 2, 3, ..."
+
+
+def _single(names: list[str]) -> list[str]:
+    """Names of which none comes twice: `x` and `x` become `x` and `x.1`."""
+    seen: dict[str, int] = {}
+    out = []
+    for name in names:
+        count = seen[name] = seen.get(name, -1) + 1
+        out.append(f"{name}.{count}" if count else name)
+    return out

@@ -1,0 +1,47 @@
+"""A file as named columns of numbers that come in chunks."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+
+@dataclass
+class Chunk:
+    """Rows in the file's order. place: (n,) each row's 0-based number among the data rows;
+    columns: (n,) floats by name, NaN where a cell is no number."""
+
+    place: np.ndarray
+    columns: dict[str, np.ndarray]
+
+
+@dataclass
+class Table:
+    """What a reader knows of a file before it reads the rows.
+
+    chunks: the rows of the columns asked for, from the first one at each call; it adds to `dropped`
+    what it leaves out. mapping: words as of --map that the format itself implies. calendar: columns
+    of dates and times, which come as seconds since 1970. lsb: scales that the format states, by the
+    names that Options has for them. read_bytes: of the file, so far, where the reader knows.
+    """
+
+    names: list[str]
+    chunks: Callable[[list[str]], Iterator[Chunk]]
+    mapping: list[str] = field(default_factory=list)
+    calendar: frozenset[str] = frozenset()
+    sensor: str = ""
+    lsb: dict[str, float] = field(default_factory=dict)
+    dropped: Counter[str] = field(default_factory=Counter)
+    notes: list[str] = field(default_factory=list)
+    read_bytes: float = 0.0
+
+    def first_rows(self, names: list[str]) -> dict[str, np.ndarray]:
+        """The columns asked for, of the first chunk; empty ones where there is no row."""
+        dropped = self.dropped.copy()
+        chunk = next(self.chunks(names), None)
+        self.dropped.clear()
+        self.dropped.update(dropped)
+        return chunk.columns if chunk else {name: np.empty(0) for name in names}
