@@ -13,7 +13,7 @@ from . import __version__
 from .errors import MissingLibrary, ZerorateError
 
 COMMANDS = (
-    *("demo", "import", "record", "simulate", "replay", "close", "allan", "model"),
+    *("demo", "import", "record", "simulate", "replay", "close", "compare", "allan", "model"),
     *("flash", "fleet", "watch", "bench", "runtimes"),
 )
 _INTERRUPTED = 130

@@ -76,6 +76,8 @@ def run_log(arguments: argparse.Namespace) -> int:
 def run_job(arguments: argparse.Namespace) -> int:
     """Tell the whole story; exit code 1 if the interpreters disagree."""
     from .. import demo
+    from ..compare import compare
+    from ..compare.show import write_page
     from ..demo import story
     from ..demo.picture import draw_job
     from ..progress import progress
@@ -94,6 +96,10 @@ def run_job(arguments: argparse.Namespace) -> int:
     with progress("playing the last power-on without and with the model"):
         before, after = demo.back_on_the_chip(device, model, runtime)
     print(story.chapter_three(before, after, model))
+    with progress("comparing with the average at boot"):
+        found = compare(device.logs)
+        write_page(found, folder / "compare.html")
+    print(story.compared(found))
     drawn = draw_into(folder, draw_job, first, before, after)
     print(story.ending([*reports(folder), (drawn, "power-on 1, and the last without and with it")]))
     return 0 if all(shown.same_state for shown in (first, before, after)) else 1
@@ -129,6 +135,7 @@ def reports(folder: Path) -> list[tuple[Path, str]]:
     """What closing the loop wrote for people."""
     said = {
         "report.html": "what was found and how sure, before and after: open it in a browser",
+        "compare.html": "the average at boot, other filters and zerorate at each later rest",
         "model.json": "the effects found, to be read; `zerorate model show` says them in words",
     }
     return [(folder / name, what) for name, what in said.items() if (folder / name).exists()]

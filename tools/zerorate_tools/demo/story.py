@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..compare import Compared
 from ..report.kinds import meaning
 from ..signs import fixed
 from .broad_trial import CREDIT
@@ -25,6 +26,7 @@ What next
   Linux board, I2C bus     {zerorate} record /dev/i2c-1 --out run.parquet --seconds 600
   your own test suite      {python} -m pydoc zerorate_fakes
   recordings you have      {zerorate} import FILE --out run.parquet
+                           {zerorate} compare RUN...                (your average at boot, judged)
                            {zerorate} close RUN... --out closed     (each RUN is one power-on)"""
 
 
@@ -124,6 +126,11 @@ def _axes(shown: Demo) -> str:
     assert shown.truth_dps is not None
     error = (shown.bias_dps - shown.truth_dps)[late]
     return "".join(f"{1e3 * v:10.1f}" for v in np.sqrt(np.mean(error**2, axis=0)))
+
+
+def compared(found: Compared) -> str:
+    """What the recordings alone say of the average at boot, as a user would ask."""
+    return "\n" + textwrap.fill(f"Told by the recordings alone: {found.headline()}", 79)
 
 
 def ending(files: list[tuple[Path, str]]) -> str:

@@ -16,11 +16,12 @@ _SLOPE_LAG_S = 120.0
 _MAD = 1.4826
 
 
-def still_ticks(ticks) -> np.ndarray:
+def still_ticks(ticks, edges: bool = True) -> np.ndarray:
     """(m,) bool. Quiet: the rate's spread within a tick is near that of the quietest ticks. Still:
     its mean, less a line over temperature, is also near the running middle of quiet ticks, so a
     steady turn does not count; a turn below 1 dps is told by the accelerometer alone, if its axis
-    is not vertical. Where a motion sets in or dies down slowly, all of it is motion.
+    is not vertical. Where a motion sets in or dies down slowly, all of it is motion; edges False
+    asks no such thing, for who compares rests among which the bias wandered.
     """
     there = ticks.count > 0
     if not there.any():
@@ -32,7 +33,7 @@ def still_ticks(ticks) -> np.ndarray:
     still = quiet & (off < _OFF_DPS).all(axis=1)
     if ticks.accel is not None:
         still &= _gravity_holds(ticks, there)
-    return still & ~_edges(off, still, there)
+    return still & ~_edges(off, still, there) if edges else still
 
 
 def _less_temperature(ticks, quiet):

@@ -1,0 +1,136 @@
+"""`compare`: its own judgement, from the log alone, is the truth's wherever it is sure."""
+
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+import pytest
+from zerorate_tools.bench.broad import trials, true_bias
+from zerorate_tools.bench.peers import firmware, fusion, given, vqf_default
+from zerorate_tools.cli import main
+from zerorate_tools.compare import compare, judge
+from zerorate_tools.compare.judge import FIRST_REST, FRESH, NOTHING, TAUGHT, TooFewRests
+from zerorate_tools.compare.rests import rests_of
+from zerorate_tools.compare.show import write_page
+from zerorate_tools.recordings import Recording, Scales, write_recording
+
+HZ, LSB = 50.0, 131.0
+
+
+def a_log(path, biases_dps, seed=1, rest_s=20, turn_s=10):
+    """Rests of 20 s, each with its bias about all axes, and turns about z between them."""
+    random = np.random.default_rng(seed)
+    rate = []
+    for bias in biases_dps:
+        rest = np.full((round(rest_s * HZ), 3), bias)
+        turn = np.full((round(turn_s * HZ), 3), bias)
+        turn[:, 2] += 60 * np.sin(np.arange(len(turn)) / 40)
+        rate += [rest, turn]
+    rate = np.concatenate(rate)
+    lsb = np.round((rate + random.normal(0, 0.05, rate.shape)) * LSB).astype(int)
+    accel = np.round(random.normal(0, 40, rate.shape) + [0, 0, 16384]).astype(int)
+    columns = {"t_us": (np.arange(len(rate)) * 1e6 / HZ).astype(np.int64)}
+    columns |= {"g" + axis: lsb[:, i] for i, axis in enumerate("xyz")}
+    columns |= {"a" + axis: accel[:, i] for i, axis in enumerate("xyz")}
+    scales = Scales("MPU-6050", HZ, LSB, 16384.0)
+    write_recording(Recording(columns, scales), path)
+    return path
+
+
+@pytest.fixture
+def drifting(tmp_path):
+    """A log whose bias wanders by 0.1 dps from rest to rest."""
+    return a_log(tmp_path / "drifting.parquet", [0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1])
+
+
+def test_what_is_known_before_a_rest_is_held_against_it(drifting):
+    compared = compare([drifting])
+    assert len(compared.rests) == 6
+    steps = np.array([0.1, 0.2, 0.3, 0.4, 0.5, 0.6])
+    assert compared.error_dps[FIRST_REST][:, 0] == pytest.approx(steps, abs=0.01)
+    assert compared.error_dps[NOTHING][:, 2] == pytest.approx(0.5 + steps, abs=0.01)
+    assert np.abs(compared.error_dps[FRESH]) == pytest.approx(0.1, abs=0.05)
+
+
+def test_the_vertical_is_where_gravity_points(drifting):
+    compared = compare([drifting])
+    rms = np.sqrt(np.mean(np.square([0.1, 0.2, 0.3, 0.4, 0.5, 0.6])))
+    assert compared.heading_deg_per_min(FIRST_REST) == pytest.approx(60 * rms, rel=0.03)
+
+
+def test_the_headline_says_who_is_better_and_by_how_much(drifting):
+    compared = compare([drifting])
+    assert compared.verdict(FRESH, FIRST_REST).word == "better"
+    assert "times less wrong" in compared.headline()
+
+
+def test_a_bias_that_stays_shows_no_difference(tmp_path):
+    compared = compare([a_log(tmp_path / "steady.parquet", [0.5] * 6)])
+    assert compared.verdict(FRESH, FIRST_REST).word == "no difference that this log can show"
+
+
+def test_what_the_logs_before_taught_counts_from_the_second_log_on(tmp_path):
+    logs = [a_log(tmp_path / f"{n}.parquet", [0.5, 0.6, 0.7], seed=n) for n in range(2)]
+    compared = compare(logs)
+    assert [number for number, _ in compared.rests] == [0, 0, 1, 1]
+    first, second = np.split(compared.error_dps[TAUGHT] - compared.error_dps[FRESH], 2)
+    assert not first.any() and second.any()
+
+
+def test_what_is_not_installed_is_said(drifting, monkeypatch):
+    monkeypatch.setattr(judge, "find_spec", lambda name: None)
+    compared = compare([drifting])
+    assert compared.left_out["vqf"] == "not installed: pip install vqf"
+    assert "vqf" not in compared.error_dps
+
+
+def test_a_log_with_one_rest_is_refused_with_what_to_do(tmp_path, capsys):
+    log = a_log(tmp_path / "once.parquet", [0.5])
+    with pytest.raises(TooFewRests, match="leave it at rest again"):
+        compare([log])
+    assert main(["compare", str(log)]) == 2
+
+
+def test_the_page_needs_no_other_file(drifting, tmp_path, capsys):
+    page = tmp_path / "page.html"
+    assert main(["compare", str(drifting), "--out", str(page)]) == 0
+    text = page.read_text()
+    assert "times less wrong" in text and "<svg" in text and "src=" not in text
+    assert "mean of the first rest" in capsys.readouterr().out
+    assert write_page.__doc__
+
+
+def test_on_broad_it_is_sure_of_nothing_that_the_optics_deny(real_data, tmp_path):
+    """The truth is over all the time from the first later rest on, most of it in motion."""
+    pytest.importorskip("vqf")
+    pytest.importorskip("imufusion")
+    sure = 0
+    for trial in trials(real_data / "broad"):
+        recording = trial.recording()
+        scales = replace(recording.scales, temp_lsb_per_degc=None, temp_offset_degc=None)
+        path = tmp_path / f"{trial.name}.parquet"
+        write_recording(replace(recording, scales=scales), path)
+        compared = compare([path])
+        true_mdps = errors_between(trial, path)
+        for one, other in combinations(compared.error_dps, 2):
+            word = compared.verdict(one, other).word
+            if word in ("better", "worse"):
+                sure += 1
+                assert (true_mdps[one] < true_mdps[other]) == (word == "better"), (one, other)
+    assert sure > 16  # four trials, each with more than the four against no correction
+
+
+def errors_between(trial, path):
+    """Way -> RMS error by the optics from the first question to the last, mdps."""
+    one, truth = given(trial.recording()), true_bias(trial).bias_dps
+    rests = rests_of(path, one)
+    first = rests[0].bias_dps
+    biases = {
+        NOTHING: np.zeros_like(one.rate_dps),
+        FIRST_REST: np.broadcast_to(first, one.rate_dps.shape),
+        "vqf": vqf_default([one])[0],
+        "imufusion": fusion([one])[0],
+        FRESH: firmware()([one])[0],
+    }
+    part = slice(rests[1].first - round(3 * trial.hz), rests[-1].first)
+    return {way: 1e3 * np.sqrt(np.mean((b[part] - truth) ** 2)) for way, b in biases.items()}

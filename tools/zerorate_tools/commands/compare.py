@@ -1,0 +1,34 @@
+"""`zerorate compare`: would it have been better than your average at boot?"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+
+def add_parser(subparsers) -> None:
+    """Register the sub-command."""
+    parser = subparsers.add_parser(
+        "compare",
+        help="how wrong your average at boot would have been, and zerorate",
+        description="At each later rest of the recordings: how wrong the mean of the first rest, "
+        "vqf, imufusion and zerorate would have been, in deg/s and degrees of heading lost a "
+        "minute. It needs nothing but the logs: power-ons of one device, in their order.",
+    )
+    parser.add_argument("logs", nargs="+", type=Path, metavar="LOG", help="a recording")
+    parser.add_argument("--out", type=Path, metavar="FILE", help="write one HTML page with a plot")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Print the headline and the table; write the page where one is asked for."""
+    from ..compare import compare
+    from ..compare.show import table, write_page
+    from ..progress import progress
+
+    with progress("comparing", len(arguments.logs) + 3) as advance:
+        compared = compare(arguments.logs, advance)
+    print(table(compared))
+    if arguments.out is not None:
+        write_page(compared, arguments.out)
+        print(f"\n{arguments.out}")

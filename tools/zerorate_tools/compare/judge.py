@@ -1,0 +1,170 @@
+"""How wrong each way to the bias would have been when the device next lay still."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..bench.peers import Given, firmware, given
+from ..bench.peers.fusion import fusion
+from ..bench.peers.vqf_filter import vqf_default
+from ..errors import InFile
+from ..recordings import read_recording
+from .rests import Rest, rests_of
+
+NOTHING, FIRST_REST, FRESH, TAUGHT = (
+    "no correction",
+    "mean of the first rest",
+    "zerorate, fresh",
+    "zerorate, taught by the logs before",
+)
+_OPTIONAL = {"vqf": vqf_default, "imufusion": fusion}
+#: What a way knows is taken this long before a rest, so that it has seen nothing of it.
+_LEAD_S = 3.0
+_SIGMAS = 2.0
+_ENOUGH = 5
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Of one way against another: "better", "worse" or "no difference that this log can show".
+
+    times: degrees of heading that the other loses for each that the way does.
+    """
+
+    way: str
+    against: str
+    word: str
+    times: float
+
+
+@dataclass(frozen=True)
+class Compared:
+    """names: of the logs; rests: the later rests of all logs, with the log's place in names;
+    error_dps: way -> (rests, 3), what it would have left on the rate; left_out: way -> why.
+    """
+
+    names: list[str]
+    rests: list[tuple[int, Rest]]
+    error_dps: dict[str, NDArray[np.float64]]
+    left_out: dict[str, str]
+
+    def rms_dps(self, way: str) -> float:
+        """RMS over axes and later rests."""
+        return float(np.sqrt(np.mean(np.square(self.error_dps[way]))))
+
+    def heading_deg_per_min(self, way: str) -> float:
+        """RMS over later rests of the error about the vertical, in degrees a minute.
+
+        Without an accelerometer nobody knows the vertical: the worst axis is taken.
+        """
+        return 60 * float(np.sqrt(np.mean(np.square(self.about_vertical_dps(way)))))
+
+    def about_vertical_dps(self, way: str) -> NDArray[np.float64]:
+        """(rests,) the error about the vertical at each later rest."""
+        error = self.error_dps[way]
+        if self.rests[0][1].down is None:
+            worst = int(np.square(error).mean(axis=0).argmax())
+            return error[:, worst]
+        return np.array([row @ rest.down for row, (_, rest) in zip(error, self.rests)])
+
+    def verdict(self, way: str, against: str) -> Verdict:
+        """Who is better, where the rests tell it beyond twice their own uncertainty."""
+        mine, theirs = self.error_dps[way], self.error_dps[against]
+        gain = np.square(theirs).sum(axis=1) - np.square(mine).sum(axis=1)
+        sigma = np.array([rest.sigma_dps for _, rest in self.rests])
+        # a rest's mean is uncertain itself, and both errors share it
+        variance = 4 * np.square(sigma * (theirs - mine)).sum(axis=1)
+        doubt = np.sqrt(variance.sum()) / len(gain)
+        if len(gain) >= _ENOUGH:
+            doubt = max(doubt, gain.std(ddof=1) / np.sqrt(len(gain)))
+        sure = abs(gain.mean()) > _SIGMAS * doubt
+        word = "no difference that this log can show"
+        if sure:
+            word = "better" if gain.mean() > 0 else "worse"
+        least = 1e-9  # a rest may find a way right to the last bit
+        mine_lost, theirs_lost = self.heading_deg_per_min(way), self.heading_deg_per_min(against)
+        times = max(theirs_lost, least) / max(mine_lost, least)
+        return Verdict(way, against, word, times)
+
+    @property
+    def ours(self) -> str:
+        """The way of zerorate that the headline is about."""
+        return TAUGHT if TAUGHT in self.error_dps else FRESH
+
+    def headline(self) -> str:
+        """The one sentence: how wrong the mean at boot, how wrong zerorate."""
+        verdict = self.verdict(self.ours, FIRST_REST)
+        words = {
+            "better": f"{verdict.times:.1f} times less wrong",
+            "worse": f"{1 / verdict.times:.1f} times more wrong",
+        }
+        rests = f"{len(self.rests)} later rest" + ("s" if len(self.rests) > 1 else "")
+        return (
+            f"At {rests} the mean of the first rest would have lost "
+            f"{self.heading_deg_per_min(FIRST_REST):.2f} deg of heading a minute; "
+            f"{self.ours}, {self.heading_deg_per_min(self.ours):.2f}: "
+            f"{words.get(verdict.word, verdict.word)}."
+        )
+
+
+class TooFewRests(InFile):
+    """A recording that never lay still twice."""
+
+
+def compare(
+    logs: Sequence[str | Path], advance: Callable[[float], None] = lambda n: None
+) -> Compared:
+    """Compare on `logs`, power-ons of one device in their order, each read whole.
+
+    advance: called with 1 after each log and each way. Raises ZerorateError (BadRecording; no log
+    with two rests).
+    """
+    paths = [Path(log) for log in logs]
+    sessions, rests = [], []
+    for path in paths:
+        sessions.append(given(read_recording(path, keep_gaps=True)))
+        rests.append(rests_of(path, sessions[-1]))
+        advance(1)
+    later = [(number, rest) for number, found in enumerate(rests) for rest in found[1:]]
+    if not later:
+        do = "leave the device at rest for some seconds, move it, and leave it at rest again"
+        raise TooFewRests(paths[0], "never still twice, so there is nothing to compare", do=do)
+    errors = {
+        NOTHING: np.array([rest.bias_dps for _, rest in later]),
+        FIRST_REST: np.array([rest.bias_dps - rests[n][0].bias_dps for n, rest in later]),
+    }
+    left_out = {}
+    for name, peer in _OPTIONAL.items():
+        if find_spec(name) is None:
+            left_out[name] = f"not installed: pip install {name}"
+            continue
+        errors[name] = _errors([peer([one])[0] for one in sessions], sessions, later)
+        advance(1)
+    errors[FRESH] = _errors([firmware()([one])[0] for one in sessions], sessions, later)
+    if len(sessions) > 1:
+        errors[TAUGHT] = _errors(firmware()(sessions), sessions, later)
+    advance(1)
+    for way in [way for way, error in errors.items() if np.isnan(error).any()]:
+        del errors[way]
+        left_out[way] = "needs an accelerometer"
+    return Compared([path.name for path in paths], later, errors, left_out)
+
+
+def _errors(
+    biases: Sequence[NDArray[np.float64]],
+    sessions: Sequence[Given],
+    later: Sequence[tuple[int, Rest]],
+) -> NDArray[np.float64]:
+    """(rests, 3): the rest's bias less what the way knew shortly before it."""
+    rows = []
+    for number, rest in later:
+        t_us = sessions[number].recording.columns["t_us"]
+        known = max(0, int(np.searchsorted(t_us, t_us[rest.first] - _LEAD_S * 1e6)) - 1)
+        rows.append(rest.bias_dps - biases[number][known])
+    return np.array(rows)

@@ -1,0 +1,103 @@
+"""What `compare` found: a table for a terminal, and one page with a plot."""
+
+from __future__ import annotations
+
+import html
+import io
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+
+from ..recordings.atomic import written_beside
+from .judge import FIRST_REST, NOTHING, Compared
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+
+_COLOURS = ("#8d8d93", "#d55e00", "#cc79a7", "#d98200", "#56b4e9", "#0072b2")
+_MARKS = "xsv^oD"
+_HEAD = (
+    "way",
+    "would have been wrong by, deg/s",
+    "heading lost, deg/min",
+    "against the first rest",
+)
+_NOTE = (
+    "A rest shows the bias: the mean rate. Each way is asked 3 s before a rest begins what it "
+    "takes the bias for; the rest says how wrong that was (root mean square over later rests). "
+    "Rests of over a minute count as several. The Earth's rate, 0.25 deg/min at most, is in it for "
+    "all ways alike."
+)
+_STYLE = "body{font:16px/1.5 sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem}"
+_STYLE += "td,th{padding:.2rem 1rem .2rem 0;text-align:right}td:first-child,th:first-child"
+_STYLE += "{text-align:left}svg{width:100%;height:auto}.ours{font-weight:bold}"
+
+
+def rows(compared: Compared) -> list[tuple[str, str, str, str]]:
+    """A row a way: its name, deg/s, degrees a minute, and its verdict against the first rest."""
+    found = []
+    for way in compared.error_dps:
+        verdict = "" if way in (NOTHING, FIRST_REST) else compared.verdict(way, FIRST_REST).word
+        wrong, heading = compared.rms_dps(way), compared.heading_deg_per_min(way)
+        found.append((way, f"{wrong:.4f}", f"{heading:.2f}", verdict))
+    return found + [(way, why, "", "") for way, why in compared.left_out.items()]
+
+
+def table(compared: Compared) -> str:
+    """The headline and the table, in plain text."""
+    lines = [("way", "deg/s", "heading, deg/min", "against the first rest"), *rows(compared)]
+    widths = [max(len(line[i]) for line in lines if line[2]) for i in range(3)]
+    text = [
+        f"{way:{widths[0]}}  {wrong:>{widths[1]}}  {lost:>{widths[2]}}  {word}".rstrip()
+        for way, wrong, lost, word in lines
+    ]
+    return "\n".join([compared.headline(), "", *text])
+
+
+def write_page(compared: Compared, path: Path) -> None:
+    """One HTML file with headline, plot and table, which needs no other."""
+    escaped = [[html.escape(cell) for cell in row] for row in rows(compared)]
+    body = "".join(
+        f"<tr{' class=ours' if row[0] == compared.ours else ''}>"
+        + "".join(f"<td>{cell}</td>" for cell in row)
+        + "</tr>"
+        for row in escaped
+    )
+    head = "".join(f"<th>{cell}</th>" for cell in _HEAD)
+    names = html.escape(", ".join(compared.names))
+    page = (
+        f"<!doctype html><html lang=en><meta charset=utf-8><title>zerorate compare</title>"
+        f"<meta name=viewport content='width=device-width'><style>{_STYLE}</style>"
+        f"<h1>{html.escape(compared.headline())}</h1><p>{names}</p>{_plot(compared)}"
+        f"<table><tr>{head}</tr>{body}</table><p>{_NOTE}</p></html>\n"
+    )
+    with written_beside(path) as temporary:
+        temporary.write_text(page, encoding="utf-8")
+
+
+def _plot(compared: Compared) -> str:
+    """SVG: the heading that each way would have lost a minute, at each later rest."""
+    figure, axes = plt.subplots(figsize=(9, 4.5))
+    logs = np.array([number for number, _ in compared.rests])
+    minutes = np.array([rest.start_s for _, rest in compared.rests]) / 60
+    gap = 0.05 * minutes.max() + 0.1
+    begins = [0.0]
+    for number in range(1, len(compared.names)):
+        before = minutes[logs == number - 1]
+        begins.append(begins[-1] + gap + (before.max() if len(before) else 0.0))
+        axes.axvline(begins[-1] - gap / 2, color="#cccccc", linewidth=1)
+    at = minutes + np.array(begins)[logs]
+    for way, colour, mark in zip(compared.error_dps, _COLOURS, _MARKS):
+        lost = 60 * np.abs(compared.about_vertical_dps(way))
+        axes.plot(at, np.maximum(lost, 1e-3), mark, color=colour, markersize=4, label=way)
+    axes.set_yscale("log")
+    axes.set_xlabel("minutes since power-on" + (", one log after the other" if logs.any() else ""))
+    axes.set_ylabel("heading lost, deg/min")
+    axes.grid(True, which="major", alpha=0.3)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.15), ncols=3, frameon=False)
+    figure.tight_layout()
+    text = io.StringIO()
+    figure.savefig(text, format="svg")
+    plt.close(figure)
+    return text.getvalue().partition("<svg")[2].join(["<svg", ""])
