@@ -21,9 +21,9 @@ PARTS = {
         "zerorate.learned_store",
         "zerorate.save_schedule",
         "zerorate.storage",
-        "zerorate_i2c.bus_recovery",
+        "zerorate_i2c.board",
         "zerorate_i2c.data_ready",
-        "zerorate_i2c.mpu6050",
+        "zerorate_i2c.fifo",
     ),
     "motion": ("zerorate.motion_kernels", "zerorate.motion_settings", "zerorate.explain_sources"),
     "gravity": (
@@ -33,7 +33,7 @@ PARTS = {
     ),
     "effects": ("zerorate.model", "zerorate.effect_kernels"),
     "refine": ("zerorate.model", "zerorate.effect_kernels", "zerorate.refine_kernels"),
-    "bursts": ("zerorate.bursts", "zerorate_i2c.fifo"),
+    "bursts": ("zerorate.bursts",),
     "self-test": ("zerorate_i2c.self_test",),
 }
 # Generated machine code of the size of all the rest: bytecode is sent in its place.
