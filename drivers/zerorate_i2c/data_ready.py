@@ -23,8 +23,9 @@ _DATA_RDY_EN = const(0x01)
 class DataReady:
     """Data-ready pulses of imu, an MPU6050, on pin, a machine.Pin wired to the chip's INT.
 
-    After take() or wait(): dt_us is the time from the sample taken before to the newest one, and
-    missed counts the samples in between that nobody took.
+    After take() or wait(): dt_us is the time from the sample taken before to the newest one, 0
+    where none came, and missed counts the samples in between that nobody took, those of a time
+    without interrupts too (while flash is written).
     """
 
     def __init__(self, imu: "MPU6050", pin: "Any") -> None:
@@ -46,19 +47,28 @@ class DataReady:
         if edges == self._taken:
             return False
         edge_us = self._edge_us
-        self.missed += ((edges - self._taken) & 0xFFFF) - 1
         self.dt_us = self._clock.ticks_diff(edge_us, self._taken_us)
+        period_us = self.imu.period_us
+        passed = (self.dt_us + period_us // 2) // period_us
+        self.missed += max((edges - self._taken) & 0xFFFF, passed) - 1
         self._taken = edges
         self._taken_us = edge_us
         return True
 
     def wait(self, timeout_ms: int) -> bool:
-        """take() as soon as there is one, looking every millisecond; False after timeout_ms."""
+        """take() as soon as there is one, looking every millisecond; False after timeout_ms.
+
+        A chip that lost its power sends no pulses, so the next read then asks for its settings.
+        """
         for _ in range(timeout_ms):
             if self.take():
                 return True
             self._clock.sleep_ms(1)
-        return self.take()
+        if self.take():
+            return True
+        self.dt_us = 0
+        self.imu.doubt(False)
+        return False
 
     def _on_edge(self, pin):
         self._edge_us = self._clock.ticks_us()

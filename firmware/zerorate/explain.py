@@ -76,7 +76,20 @@ def explain(corrector):
         from .explain_sources import explain_sources
 
         lines.extend(explain_sources(corrector))
+    if corrector.schedule is not None:
+        lines.append(saving_text(corrector.schedule, sensor))
     return "\n".join(lines)
+
+
+def saving_text(schedule, sensor):
+    """Return a line on what saving costs."""
+    if schedule.saves == 0:
+        return "Nothing was saved yet; %d times it had to wait." % schedule.postponed
+    samples = round(schedule.longest_us * sensor.odr_hz / 1e6)
+    return (
+        "Saved %d times, for %d ms at the longest: %d samples pass meanwhile, which only a FIFO keeps."
+        % (schedule.saves, schedule.longest_us // 1000, samples)
+    )
 
 
 def without_sign(dps):

@@ -5,7 +5,7 @@ a cut in the writing of one never costs the other.
 """
 
 from .crc32 import checksum
-from .store import LOADED, Store, pack
+from .store import LOADED, Store, pack, slot_bytes
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -47,8 +47,8 @@ class LearnedStore:
         bound = bytes(binding) + _fingerprint(corrector.settings)
         self.state = Store(storage, bound, size, _STATE_VERSION, base=base, pitch=pitch)
         base += 2 * (pitch or self.state.slot_bytes)
-        self.model = Store(storage, binding, MODEL_BYTES, base=base, pitch=pitch)
-        self.end = base + 2 * (pitch or self.model.slot_bytes)
+        self._model_place = (storage, binding, base, pitch)
+        self.end = base + 2 * (pitch or slot_bytes(MODEL_BYTES))
 
     def load(self) -> int:
         """Put what was learned into the corrector and begin a power-on; LOADED or why not.
@@ -67,7 +67,7 @@ class LearnedStore:
     def load_model(self) -> bytes:
         """The bytes of the effect model, for EffectModel.load, or b"" (see model.load's reason)."""
         padded = bytearray(MODEL_BYTES)
-        if self.model.load(padded) != LOADED:
+        if self.model_store().load(padded) != LOADED:
             return b""
         return bytes(padded[: padded[_AT_MODEL_SIZE] | padded[_AT_MODEL_SIZE + 1] << 8])
 
@@ -78,7 +78,7 @@ class LearnedStore:
         """
         if len(data) > MODEL_BYTES:
             raise ValueError(f"a model of {len(data)} bytes does not fit {MODEL_BYTES}")
-        return self.model.save(bytes(data) + bytes(MODEL_BYTES - len(data)))
+        return self.model_store().save(bytes(data) + bytes(MODEL_BYTES - len(data)))
 
 
 def _fingerprint(settings):

@@ -25,9 +25,15 @@ class SaveSchedule:
         self.tolerance = tolerance
         self.interval_s = _DAY_S // writes_a_day
         self.postponed = 0
+        self.saves = 0
+        self.longest_us = 0
+        self._corrector = corrector
+        self._due_s = -1
         self._saved = array("i", [0] * length)
         self._saved_s = 0
         self._written = False
+        if corrector is not None:
+            corrector.schedule = self
 
     def loaded(self, vital: "array[int]") -> None:
         """Tell what vital values the loaded state has: they need no saving."""
@@ -37,15 +43,31 @@ class SaveSchedule:
         """Save payload if it is due at now_s, seconds since power-on; True when it was written."""
         if not self.is_significant(vital):
             return False
-        if self._written and now_s - self._saved_s < self.interval_s:
+        if self._written and now_s - self._saved_s < self.interval_s or self._waits(now_s):
             self.postponed += 1
             return False
         self._written = True
         self._saved_s = now_s
-        if not self.store.save(payload):
+        self._due_s = -1
+        if not self._save(payload):
             return False
         self._remember(vital)
         return True
+
+    def _waits(self, now_s):
+        """True while a rest is better waited for."""
+        if self._corrector is None or self._corrector.rests:
+            return False
+        if self._due_s < 0:
+            self._due_s = now_s
+        return now_s - self._due_s < self.interval_s
+
+    def _save(self, payload):
+        begun_us = ticks_us()
+        written = self.store.save(payload)
+        self.saves += 1
+        self.longest_us = max(self.longest_us, ticks_diff(ticks_us(), begun_us))
+        return written
 
     def is_significant(self, vital: "array[int]") -> bool:
         """True when a vital value is tolerance or more away from the one last saved."""

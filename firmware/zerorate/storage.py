@@ -20,15 +20,16 @@ class FileStorage:
 
     def readblock(self, offset: int, buf: "bytearray | memoryview") -> None:
         """Fill buf from the file."""
-        for i in range(len(buf)):
-            buf[i] = 0xFF
+        count = 0
         try:
             with open(self.path, "rb") as file:
                 file.seek(offset)
-                file.readinto(buf)
+                count = file.readinto(buf) or 0
         except OSError:
             if not self._is_missing():
                 raise
+        for i in range(count, len(buf)):
+            buf[i] = 0xFF
 
     def writeblock(self, offset: int, buf: "bytes | bytearray | memoryview") -> None:
         """Write buf into the file and to the medium."""

@@ -20,6 +20,16 @@ except ImportError:
         return value
 
 
+try:
+    from sys import byteorder
+
+    from uctypes import addressof, bytearray_at
+
+    if byteorder != "little":
+        raise ImportError
+except ImportError:
+    bytearray_at = None  # type: ignore[assignment]
+
 _FORMAT = const(1)
 _AT_FORMAT = const(3)
 _AT_VERSION = const(4)
@@ -70,7 +80,7 @@ class Store:
     ) -> None:
         if len(binding) > 8 or not 0 < size < 65536 or not 0 <= version < 256:
             raise ValueError("binding is of 8 bytes at most, size of 1..65535, version of 0..255")
-        self.slot_bytes = _HEADER + size + _CRC
+        self.slot_bytes = slot_bytes(size)
         if 0 < pitch < self.slot_bytes:
             raise ValueError("a slot takes {} bytes, pitch is {}".format(self.slot_bytes, pitch))
         self.storage = storage
@@ -210,10 +220,18 @@ class Store:
         record[_HEADER + self.size :] = self._crc
 
 
+def slot_bytes(size):
+    """Bytes of a slot for payloads of size bytes."""
+    return _HEADER + size + _CRC
+
+
 def pack(payload, record, at, size):
     """Payload into record from at on, words little-endian whatever the machine."""
     if len(payload) == size:
         record[at : at + size] = payload
+        return
+    if bytearray_at:  # word by word takes the time of five samples
+        record[at : at + size] = bytearray_at(addressof(payload), size)
         return
     for word in payload:
         record[at] = word & 0xFF
@@ -227,6 +245,9 @@ def unpack(record, at, payload, size):
     """The reverse of pack."""
     if len(payload) == size:
         payload[:] = record[at : at + size]
+        return
+    if bytearray_at:
+        bytearray_at(addressof(payload), size)[:] = memoryview(record)[at : at + size]
         return
     for i in range(len(payload)):
         top = record[at + 3]
