@@ -15,6 +15,11 @@ sample = array("i", [0] * 7)
 while True:
     if not ready.wait(1000):
         print("no pulse on INT for a second: is it wired to GP6? With four wires take main.py")
-        imu.doubt(True)  # or the chip lost its power for a moment: it is set up again
-    if corrector.update(sample, ready.dt_us, imu.read(sample)):
+    try:  # a chip that lost its power for a moment is set up again by this read
+        status = imu.read(sample)
+    except OSError as error:  # pulled out: what came since the last check is forgotten
+        print("bus:", error)
+        corrector.take_back()
+        continue
+    if corrector.update(sample, ready.dt_us, status):
         print(sample[4], sample[5], sample[6])  # rates in LSB, their bias taken off

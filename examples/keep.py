@@ -3,8 +3,8 @@
 from array import array
 
 from zerorate import Corrector, Sensor
-from zerorate.bias import ANY_TEMPERATURE
 from zerorate.checked import CheckedCorrector
+from zerorate.corrector import ANY_TEMPERATURE
 from zerorate.learned_store import LearnedStore
 from zerorate.save_schedule import SaveSchedule
 from zerorate.storage import FileStorage
@@ -17,7 +17,7 @@ learned = Corrector(Sensor(*imu.scales))
 store = LearnedStore(FileStorage("learned.bin"), imu.binding, learned)
 print(REASONS[store.load()])
 corrector = CheckedCorrector(learned)
-schedule = SaveSchedule(store, 3, tolerance=13)  # 0.1 dps at 131 LSB/dps
+schedule = SaveSchedule(store, 3, tolerance=13, corrector=learned)  # 0.1 dps at 131 LSB/dps
 sample = array("i", [0] * 7)
 bias_lsb = array("i", [0] * 3)
 fifo = Fifo(imu)

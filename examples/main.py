@@ -14,7 +14,13 @@ sample = array("i", [0] * 7)  # ax ay az temp gx gy gz, raw LSB
 sums = [0] * 6
 count = 0
 while True:
-    status = fifo.read(sample)
+    try:
+        status = fifo.read(sample)
+    except OSError as error:  # pulled out: what came since the last check is forgotten
+        print("bus:", error)
+        corrector.take_back()
+        imu.clock.sleep_ms(1000)
+        continue
     if status == EMPTY:
         imu.clock.sleep_ms(10)
         continue

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from typing import Any
 
 # layout: The corrector's state
+_STILLNESS = const(46)
 _OUT_Q8 = const(55)
 _EFFECT_Q8 = const(61)
 _QUALITY_Q8 = const(70)
@@ -38,10 +39,14 @@ _TURN_ON_VARIANCE_Q8 = const(45)
 _MOTION_BIAS_Q8 = const(70)
 # layout: The state of the source against gravity
 _GRAVITY_BIAS_Q8 = const(28)
+# layout: What a window was
+_STILL = const(1)
 # layout: Where a bias comes from
 _IN_MOTION = const(4)
 _ACCELEROMETER = const(5)
 # layout: end
+# what `source` returns for a bias of this rest alone
+ANY_TEMPERATURE = 1
 
 LIMITS = {
     "window_s": 0.5,
@@ -136,6 +141,7 @@ class Corrector:
         )
         c = self.settings
         self.effects: "Any" = None
+        self.schedule: "Any" = None
         self.motion = None
         self.motion_settings = None
         self.level = None
@@ -294,6 +300,11 @@ class Corrector:
     def source(self, axis: int) -> int:
         """Return where that axis' bias comes from: a constant of bias.py."""
         return self.state[_SOURCE + axis]
+
+    @property
+    def rests(self) -> bool:
+        """Whether the newest window of samples was still."""
+        return self.state[_STILLNESS] == _STILL
 
     def explain(self) -> str:
         """Return a sentence or two on what is being learned, or why nothing is."""

@@ -86,10 +86,8 @@ def saving_text(schedule, sensor):
     if schedule.saves == 0:
         return "Nothing was saved yet; %d times it had to wait." % schedule.postponed
     samples = round(schedule.longest_us * sensor.odr_hz / 1e6)
-    return (
-        "Saved %d times, for %d ms at the longest: %d samples pass meanwhile, which only a FIFO keeps."
-        % (schedule.saves, schedule.longest_us // 1000, samples)
-    )
+    text = "Saved %d times, for %d ms at the longest: %d samples pass, which a FIFO keeps."
+    return text % (schedule.saves, schedule.longest_us // 1000, samples)
 
 
 def without_sign(dps):

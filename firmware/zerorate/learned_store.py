@@ -50,6 +50,11 @@ class LearnedStore:
         self._model_place = (storage, binding, base, pitch)
         self.end = base + 2 * (pitch or slot_bytes(MODEL_BYTES))
 
+    def model_store(self) -> Store:
+        """The Store of the effect model, made when it is asked for: it takes 2 KB of heap."""
+        storage, binding, base, pitch = self._model_place
+        return Store(storage, binding, MODEL_BYTES, base=base, pitch=pitch)
+
     def load(self) -> int:
         """Put what was learned into the corrector and begin a power-on; LOADED or why not.
 

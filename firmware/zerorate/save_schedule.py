@@ -2,6 +2,20 @@
 
 from array import array
 
+try:
+    from time import ticks_diff, ticks_us
+except ImportError:
+    from time import monotonic_ns
+
+    def ticks_us():
+        """Microseconds that only go forward."""
+        return monotonic_ns() // 1000
+
+    def ticks_diff(end, start):
+        """Microseconds from start to end."""
+        return end - start
+
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
@@ -16,9 +30,20 @@ class SaveSchedule:
     example each axis's bias in Q8 LSB. The budget is kept from one power-on to the next as one
     write more for each power-on. Flash of 100 000 cycles and two slots at 24 writes a day last
     22 years. Raises ValueError for a budget below one.
+
+    While flash is erased and written nothing else runs. With `corrector`, a Corrector, a save waits
+    for a rest, where a gap costs nothing, but no longer than one write's share of a day; and its
+    `explain` tells what saving costs. saves: how many there were; longest_us: of one of them.
     """
 
-    def __init__(self, store: "Any", length: int, tolerance: int, writes_a_day: int = 24) -> None:
+    def __init__(
+        self,
+        store: "Any",
+        length: int,
+        tolerance: int,
+        writes_a_day: int = 24,
+        corrector: "Any" = None,
+    ) -> None:
         if writes_a_day < 1:
             raise ValueError("writes_a_day is at least 1")
         self.store = store

@@ -17,15 +17,10 @@ class Console:
     def __init__(self, port):
         self._serial = serial.Serial(port, timeout=0.2)
         self._rest = b""
+        self.said = []
 
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *exc):
+    def close(self):
         self._serial.close()
-
-    def send(self, keys):
-        self._serial.write(keys)
 
     def lines(self):
         """Whole lines, for as long as the board prints any in time."""
@@ -33,19 +28,13 @@ class Console:
         while time.monotonic() < until:
             *whole, self._rest = (self._rest + self._serial.read(4096)).split(b"\n")
             for line in whole:
-                yield line.decode(errors="replace").strip()
-        raise AssertionError(f"the board said no more than {self._rest!r}")
+                self.said.append(line.decode(errors="replace").strip())
+                yield self.said[-1]
+        raise AssertionError(f"after {self.said} the board said no more than {self._rest!r}")
 
     def line_with(self, word):
         """The next line in which the word is."""
         return next(line for line in self.lines() if word in line)
-
-    def rates(self):
-        """The next three rates that the example prints."""
-        for line in self.lines():
-            words = line.split()
-            if len(words) == 3 and all(word.lstrip("-").isdigit() for word in words):
-                return [int(word) for word in words]
 
 
 @pytest.fixture(scope="session")
@@ -55,9 +44,3 @@ def pico(pico_parts, tmp_path_factory):
     with EmulatedPico(pico_parts, link=link) as board:
         board.flashed = flash(board.port, say=lambda line: None)
         yield board
-
-
-@pytest.fixture
-def console(pico):
-    with Console(pico.port) as console:
-        yield console

@@ -70,13 +70,13 @@ def test_mip_installs_the_driver_from_package_json_and_it_imports(
 ):
     pytest.importorskip("mpremote")
     board = UnixBoard(find_runtime("x86"), tmp_path)
-    sources = [str(repository / "drivers" / name) for name in ("package.json", "bursts.json")]
+    sources = [str(repository / "drivers" / name) for name in ("package.json", "self-test.json")]
     command = [sys.executable, "-m", "mpremote", "connect", board.port]
     try:
         subprocess.run([*command, "mip", "install", "--target", "lib", *sources], check=True)
     finally:
         board.close()
-    installed = [n for n in part_files([REST, "bursts"]) if n.parts[0] == "zerorate_i2c"]
+    installed = [n for n in part_files([REST, "self-test"]) if n.parts[0] == "zerorate_i2c"]
     assert len(installed) > 5
     for name in installed:
         assert (tmp_path / "lib" / name).read_bytes() == (

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from zerorate import Corrector, Sensor, layout
 from zerorate import store as stores
 from zerorate.crc32 import checksum, plain_crc32
 from zerorate.save_schedule import SaveSchedule
@@ -280,6 +281,35 @@ def test_the_plain_checksum_is_the_interpreters(data):
     plain_crc32(data, len(data), plain)
     checksum(data, len(data), own)
     assert plain == own == crc32(data).to_bytes(4, "little")
+
+
+class TestSavingAtRest:
+    @pytest.fixture
+    def corrector(self):
+        return Corrector(Sensor(odr_hz=100.0))
+
+    @pytest.fixture
+    def schedule(self, memory, corrector):
+        return SaveSchedule(make_store(memory), 3, tolerance=10, corrector=corrector)
+
+    def test_a_save_waits_for_a_rest(self, schedule, corrector):
+        assert not schedule.offer(OLD, [0, -10, 0], 0)
+        corrector.state[layout.STATE.STILLNESS] = layout.STILLNESS.STILL
+        assert schedule.offer(OLD, [0, -10, 0], 1)
+        assert schedule.postponed == 1
+
+    def test_but_no_longer_than_a_write_s_share_of_a_day(self, schedule):
+        assert not schedule.offer(OLD, [0, -10, 0], 10)
+        assert not schedule.offer(OLD, [0, -10, 0], 3609)
+        assert schedule.offer(OLD, [0, -10, 0], 3610)
+
+    def test_what_saving_costs_is_told(self, schedule, corrector):
+        assert "Nothing was saved yet" in corrector.explain()
+        corrector.state[layout.STATE.STILLNESS] = layout.STILLNESS.STILL
+        schedule.offer(OLD, [0, -10, 0], 0)
+        schedule.longest_us = 97_400
+        told = "Saved 1 times, for 97 ms at the longest: 10 samples pass, which a FIFO keeps"
+        assert told in corrector.explain()
 
 
 class TestSchedule:

@@ -1,0 +1,88 @@
+"""The programs of docs/pico.md, word for word, on an emulated Pico with stock MicroPython."""
+
+import re
+
+import pytest
+from zerorate_tools.boards.connection import connected
+from zerorate_tools.cli import main
+from zerorate_tools.recordings import read_recording
+
+from .conftest import Console
+
+RATES = re.compile(r"before (\S+) (\S+) (\S+)  after (\S+) (\S+) (\S+) dps")
+BIAS_DPS = [40 / 131, -25 / 131, 10 / 131]
+
+
+@pytest.fixture(scope="module")
+def programs(repository):
+    """The programs as the page has them, in its order."""
+    return re.findall(r"```python\n(.*?)```", (repository / "docs/pico.md").read_text(), re.DOTALL)
+
+
+@pytest.fixture
+def start(pico):
+    """start(program) -> the board's console, with the program as its main.py after a power-on."""
+    opened = []
+
+    def start(program):
+        with connected(pico.port) as board:
+            board.fs_writefile("main.py", program.encode(), chunk_size=1024)
+        opened.append(Console(pico.port))
+        pico.ask("power")
+        return opened[-1]
+
+    yield start
+    for console in opened:
+        console.close()
+
+
+def rates(console):
+    """Lists of three rates before and three after, once a second of the board."""
+    for line in console.lines():
+        if found := RATES.search(line):
+            numbers = [float(word) for word in found.groups()]
+            yield numbers[:3], numbers[3:]
+
+
+def learned(console):
+    """Wait until the rates come without their bias."""
+    for before, after in rates(console):
+        assert before == pytest.approx(BIAS_DPS, abs=0.02)
+        if after == pytest.approx([0, 0, 0], abs=0.01):
+            return
+    raise AssertionError("nothing was learned")
+
+
+def test_the_first_program_learns_and_goes_on_after_every_fault_of_the_sensor(
+    pico, programs, start
+):
+    console = start(programs[0])
+    learned(console)
+    pico.ask("brownout")
+    learned(console)
+    pico.ask("dead", dead=True)
+    console.line_with("bus:")
+    pico.ask("brownout")
+    pico.ask("dead", dead=False)
+    learned(console)
+
+
+def test_the_second_program_keeps_what_it_learned_through_a_power_cut(pico, programs, start):
+    console = start(programs[1])
+    assert console.line_with("stored")
+    assert console.line_with("kept")
+    pico.ask("power")
+    assert console.line_with("loaded")
+
+
+def test_a_recording_is_made_and_the_firmware_watched(pico, tmp_path, capsys):
+    out = tmp_path / "run.parquet"
+    setup = tmp_path / "pins.py"
+    setup.write_text("from zerorate_i2c.board import setup\nimu = setup(scl=5, sda=4)\n")
+    options = ["--seconds", "3", "--setup", str(setup)]
+    assert main(["record", pico.port, "--out", str(out), *options]) == 0
+    recording = read_recording(out)
+    assert len(recording.columns["gx"]) > 10
+    assert recording.columns["gx"].mean() == pytest.approx(40, abs=3)
+    assert main(["watch", pico.port, "--for", "3", "--setup", str(setup)]) == 0
+    assert "bias dps" in capsys.readouterr().out
