@@ -5,7 +5,7 @@ from array import array
 try:
     from time import ticks_diff, ticks_us
 except ImportError:
-    from time import monotonic_ns
+    from time import monotonic_ns  # type: ignore[attr-defined]
 
     def ticks_us():
         """Microseconds that only go forward."""

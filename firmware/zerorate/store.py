@@ -230,7 +230,7 @@ def pack(payload, record, at, size):
     if len(payload) == size:
         record[at : at + size] = payload
         return
-    if bytearray_at:  # word by word takes the time of five samples
+    if bytearray_at is not None:  # word by word takes the time of five samples
         record[at : at + size] = bytearray_at(addressof(payload), size)
         return
     for word in payload:
@@ -246,7 +246,7 @@ def unpack(record, at, payload, size):
     if len(payload) == size:
         payload[:] = record[at : at + size]
         return
-    if bytearray_at:
+    if bytearray_at is not None:
         bytearray_at(addressof(payload), size)[:] = memoryview(record)[at : at + size]
         return
     for i in range(len(payload)):
