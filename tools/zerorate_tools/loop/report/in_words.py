@@ -8,18 +8,18 @@ from ...signs import fixed
 def in_words(result: dict) -> str:
     """How good it is now, what was found and how sure, what is left, what to record next."""
     lines = [
-        f"held out: {', '.join(result['split']['test'])} ({result['split']['unit']})",
+        f"judged on {', '.join(result['split']['test'])}, which nothing was fitted to",
         f"error before  {_axes(result['before_mdps'])}",
         f"error after   {_axes(result['after_mdps'])}",
-        f"floor         {_axes(result['floor_mdps'])}",
+        f"noise floor   {_axes(result['floor_mdps'])}",
     ]
     lines += [_effect(step) for step in result["steps"]] or ["found: nothing"]
-    lines += [f"withdrawn: {what}: {why}" for what, why in result["gate"]["withdrawn"]]
+    lines += [f"taken out again: {what}: {why}" for what, why in result["gate"]["withdrawn"]]
     lines += [_event(event) for event in result["events"]]
     lines += [_line(line) for line in result["interference"]]
     unexplained = result["unexplained"]
-    lines.append(f"left: {unexplained['what_is_known']}")
-    lines += [f"next: {what}" for what in unexplained["measure_next"]]
+    lines.append(f"remaining: {unexplained['what_is_known']}")
+    lines += [f"record next: {what}" for what in unexplained["measure_next"]]
     lines += [f"note: {note}" for note in result["gate"]["notes"]]
     lines += [
         f"channel {n} not used: {why}" for n, why in result["gate"]["channels_dropped"].items()

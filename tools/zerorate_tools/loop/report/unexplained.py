@@ -34,24 +34,24 @@ _UNSEEN_SHARE, _UNSEEN_DEGC = 0.25, 1.0
 def what_is_known(analysis, after_dps: np.ndarray) -> str:
     """A sentence or two on the residual of the locked part, given its RMS (3,) in dps."""
     excess, floor = analysis.judgement.excess, analysis.floor_dps
-    times = after_dps / np.maximum(floor, 1e-12)
-    size = f"{times.max():.1f} times the floor on the worst axis"
+    times = (after_dps / np.maximum(floor, 1e-12)).max()
+    size = f"{fixed(1e3 * after_dps.max(), 1)} mdps at worst"
     if not excess.left:
-        return f"{size}; nothing beyond white noise, flicker and random walk is seen in it"
-    parts = [size]
+        return f"{size}. It looks like sensor noise."
+    parts = [f"{size}, {times:.1f} times the noise floor, and it is more than noise"]
     if excess.smooth:
-        parts.append("slow, smoother than a random walk")
+        parts.append("it drifts slowly")
     if excess.common:
         ratio = excess.direction / np.abs(excess.direction).max()
-        parts.append("common to the axes in the ratio " + ":".join(fixed(r, 2) for r in ratio))
+        parts.append("x, y and z move together as " + " : ".join(fixed(r, 2) for r in ratio))
     parts.append(_nearest_channel(analysis))
-    return "unexplained: " + "; ".join(parts)
+    return "; ".join(parts) + "."
 
 
 def _nearest_channel(analysis):
     s = analysis.selection
     if not s.pool:
-        return "no channel recorded that it could move with"
+        return "nothing was recorded that could explain it"
     terms = [*s.straight, *s.bend, *s.terms]
     ratios = s.regression.gains(terms, [c.terms for c in s.pool]).sum(axis=1)
     best = s.pool[int(ratios.argmax())]
