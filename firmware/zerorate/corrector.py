@@ -36,7 +36,7 @@ _AXES = const(0)
 _AXIS_WORDS = const(13)
 _TURN_ON_VARIANCE_Q8 = const(45)
 # layout: The state of the source in motion
-_MOTION_BIAS_Q8 = const(70)
+_MOTION_BIAS_Q8 = const(71)
 # layout: The state of the source against gravity
 _GRAVITY_BIAS_Q8 = const(28)
 # layout: What a window was

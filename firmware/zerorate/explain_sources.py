@@ -12,10 +12,10 @@ except ImportError:
 
 # layout: The state of the source in motion
 _MOTION_REASON = const(17)
-_ACCEPTED = const(67)
-_REFUSED = const(68)
-_MOTION_BIAS_Q8 = const(70)
-_MOTION_QUALITY_Q8 = const(73)
+_ACCEPTED = const(68)
+_REFUSED = const(69)
+_MOTION_BIAS_Q8 = const(71)
+_MOTION_QUALITY_Q8 = const(74)
 # layout: The state of the source against gravity
 _GRAVITY_BIAS_Q8 = const(28)
 _GRAVITY_QUALITY_Q8 = const(31)

@@ -10,7 +10,7 @@ line, take the slope as bias, remove it, integrate again. Two forms:
 
 A window grows from 2 s while nothing is known, for a large bias turns a long one too far to be
 linear. Work is spread: a few nodes or one piece of algebra a sample. The state is one array('i')
-of 240 words and 3 a node; motion_settings.py makes the settings.
+of 241 words and 3 a node; motion_settings.py makes the settings.
 """
 
 try:
@@ -63,14 +63,15 @@ _BIAS_CARRY_Q24 = const(54)
 _BIAS_Q24 = const(57)
 _UP = const(63)
 _TRAFFIC = const(65)
-_ACCEPTED = const(67)
-_SUMS = const(85)
-_PRIOR = const(160)
-_PRIOR_MEAN = const(172)
-_BIAS = const(178)
-_SLOPE = const(184)
-_CENTRE = const(213)
-_NODES_RING = const(240)
+_TILTED = const(66)
+_ACCEPTED = const(68)
+_SUMS = const(86)
+_PRIOR = const(161)
+_PRIOR_MEAN = const(173)
+_BIAS = const(179)
+_SLOPE = const(185)
+_CENTRE = const(214)
+_NODES_RING = const(241)
 # layout: The sums of one component
 _COMPONENT_WORDS = const(21)
 # layout: The settings of the source in motion
@@ -139,6 +140,7 @@ def begin_traversal(s: ptr32):
     s[_UP] = 0
     s[_TAPER_SUM] = 0
     s[_TRAFFIC] = 0
+    s[_TILTED] = 0
     s[_PROGRESS] = 0
     s[_JOB] = _TRAVERSE
     begin_attitude(s)
@@ -158,6 +160,9 @@ def visit(s: ptr32, c: ptr32):
         observe(s, a)
     sum_up(s)
     remove_bias(s, a)
+    a = int(tilting(s, 0))
+    a += int(tilting(s, 3))
+    s[_TILTED] += a
     sines(s)
     turn(s)
     normalise(s)
@@ -214,6 +219,14 @@ def remove_bias(s: ptr32, a: int):
         s[_HALF + i] = part
         s[_TRAFFIC] += part if part > 0 else 0 - part
         i += 1
+
+
+def tilting(s: ptr32, row: int) -> int:
+    """Return how far the node turned about a level axis, half angle, Q14 rad: gravity shows it."""
+    row += _R
+    part = s[row] * s[_HALF] + s[row + 1] * s[_HALF + 1]
+    part = (part + s[row + 2] * s[_HALF + 2] + 0x2000) >> 14
+    return part if part > 0 else 0 - part
 
 
 def solve(s: ptr32, c: ptr32) -> int:

@@ -331,6 +331,7 @@ MOTION = Array(
         ("UP", 1, "g Q12", "tapered sum of the force along the vertical"),
         ("FAST", 1, "nodes", "until none in the ring turned faster than a node holds"),
         ("TRAFFIC", 1, "rad Q14", "sum of the half turns, each axis' absolute"),
+        ("TILTED", 1, "rad Q14", "the same of the turns about two level axes"),
         ("AGE_NODES", 1, "nodes", "since what is known was carried to the present"),
         ("ACCEPTED", 1, "windows", "learned"),
         ("REFUSED", 1, "windows", "refused"),
@@ -453,6 +454,7 @@ MOTION_SETTINGS = Array(
         ("SETTLED", 1, "rad Q24", "a node: a slope below this needs no further pass"),
         ("TEMP_SLOPE_START", 2, "real", "variance of the slope over temperature, not yet known"),
         ("BEND", 1, "bits", "temperature over which it grows as much again"),
+        ("LEAST_TILT", 1, "rad Q14", "a node: a slow window that tilts less teaches nothing"),
     ),
 )
 

@@ -12,7 +12,7 @@ except ImportError:
 
 
 # layout: The state of the source in motion
-_NODES_RING = const(240)
+_NODES_RING = const(241)
 # layout: The settings of the source in motion
 _NODE_US = const(0)
 _MOTION_GAIN = const(1)
@@ -36,9 +36,10 @@ _SLOPE_SPREAD = const(21)
 _SETTLED = const(22)
 _TEMP_SLOPE_START = const(23)
 _BEND = const(25)
-_MOTION_SETTINGS_WORDS = const(26)
+_LEAST_TILT = const(26)
+_MOTION_SETTINGS_WORDS = const(27)
 # layout: end
-_SPARE_NODES = 17
+_SPARE_NODES = 16
 _ALGEBRA = 90
 
 
@@ -69,6 +70,7 @@ def motion_settings(
     bend_degc=64.0,
     spread=10,
     least_dps=5.0,
+    least_tilt_dps=0.3,
     least_up_g=0.85,
     patience=6,
     settled_dps=0.005,
@@ -79,7 +81,8 @@ def motion_settings(
     start_dps: one sigma of the bias before anything is known; walk_dps: its random walk a root
     second; slope_dps_per_degc: one sigma of its slope over temperature, which grows as much again
     over bend_degc; spread: the variance of a window's slope over that of the noise beside it;
-    least_dps: mean rate below which a window is not motion. Raises ValueError.
+    least_dps: mean rate, of all axes together, below which a window is not motion, unless it
+    mostly tilts and by least_tilt_dps or more. Raises ValueError.
     """
     if not accel_lsb_per_g:
         raise ValueError("learning in motion needs an accelerometer")
@@ -120,6 +123,8 @@ def motion_settings(
     c[_MOTION_DOCUMENT] = 1 if document else 0
     c[_SLOPE_SPREAD] = spread
     c[_SETTLED] = int(settled_dps * unit)
+    least_tilt_dps = least_dps if document else least_tilt_dps
+    c[_LEAST_TILT] = int(least_tilt_dps * node_s * pi / 180 * (1 << 13))
     if temp_lsb_per_degc:
         c[_TEMP_SLOPE_START], c[_TEMP_SLOPE_START + 1] = _real(
             (slope_dps_per_degc * unit / temp_lsb_per_degc) ** 2

@@ -1,6 +1,7 @@
 """The source in motion: what it learns, what it refuses, and its integers."""
 
 from array import array
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from zerorate import atan2, attitude, in_motion, real
 from zerorate.layout import MOTION, MOTION_REASON
 from zerorate.motion_settings import motion_settings, motion_state
 from zerorate.realtime_settings import realtime_settings, realtime_state
+from zerorate_tools.simulate import simulate
 
 from . import motions
 
@@ -95,16 +97,34 @@ def test_the_truth_lies_within_two_sigma_at_least_ninety_times_of_a_hundred():
 @pytest.mark.parametrize(
     "motion",
     [
-        motions.turning(100, 0.5, [1.0, 0.0, 0.0]),
+        motions.turning(100, 0.5, [0.0, 0.0, 1.0]),
         motions.turning(100, 0.0, [1.0, 0.0, 0.0]),
         motions.turning(100, 2.0, [0.0, 0.0, 1.0]),
     ],
-    ids=["a turntable about a level axis", "a rest", "a slow turn of a car"],
+    ids=["a turntable", "a rest", "a slow turn of a car"],
 )
 def test_what_does_not_move_to_and_fro_teaches_nothing(motion):
     learner = Learner().feed(motion)
     assert learner.windows == []
     assert MOTION_REASON.HARDLY_MOVES in learner.reasons
+
+
+def test_a_slow_turn_about_a_level_axis_is_told_from_a_bias_by_gravity():
+    motion = motions.turning(100, 0.5, [1.0, 0.0, 0.0])
+    learner = Learner().feed(motion)
+    assert len(learner.windows) >= 3
+    assert np.abs(learner.errors_mdps(motion.bias_dps)[-1]).max() < 30
+
+
+@pytest.mark.parametrize(("scenario", "most_mdps"), [("slow-tilt", 40), ("trembling", 200)])
+def test_slow_motion_that_tilts_teaches_all_three_axes(scenario, most_mdps):
+    recording, truth = simulate(scenario, session=1, seed=4)
+    n = round(100 * recording.scales.odr_hz)
+    columns = [recording.columns[name][:n] for name in ("ax", "ay", "az", "temp", "gx", "gy", "gz")]
+    bias_dps = truth.bias_lsb[n - 1] / recording.scales.gyro_lsb_per_dps
+    learner = Learner(hz=recording.scales.odr_hz)
+    learner.feed(SimpleNamespace(samples=np.stack(columns, axis=1), hz=recording.scales.odr_hz))
+    assert np.abs(learner.errors_mdps(bias_dps)[-1]).max() < most_mdps
 
 
 @pytest.mark.parametrize(("dps", "seconds"), [(3.0, 25), (12.0, 60)])

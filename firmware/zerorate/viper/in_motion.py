@@ -11,7 +11,7 @@ line, take the slope as bias, remove it, integrate again. Two forms:
 
 A window grows from 2 s while nothing is known, for a large bias turns a long one too far to be
 linear. Work is spread: a few nodes or one piece of algebra a sample. The state is one array('i')
-of 240 words and 3 a node; motion_settings.py makes the settings."""
+of 241 words and 3 a node; motion_settings.py makes the settings."""
 
 import micropython
 
@@ -64,30 +64,30 @@ def update(s_, c_, x: ptr32, dt_us: int) -> int:
             increments_gather_convert_increments_within_result = 0 - 32767
         else:
             increments_gather_convert_increments_within_result = increments_gather_convert_increments_within_value
-        s[210 + increments_gather_convert_i] = increments_gather_convert_increments_within_result
+        s[211 + increments_gather_convert_i] = increments_gather_convert_increments_within_result
         increments_gather_convert_i = increments_gather_convert_i + 1
     increments_gather_coning_first = (s[2 + 1] + 512 >> 10) * (s[19 + 2] + 256 >> 9)
     increments_gather_coning_result = increments_gather_coning_first - (s[2 + 2] + 512 >> 10) * (s[19 + 1] + 256 >> 9) + 32 >> 6
-    s[202] = increments_gather_coning_result
+    s[203] = increments_gather_coning_result
     increments_gather_coning_first = (s[2 + 2] + 512 >> 10) * (s[19 + 0] + 256 >> 9)
     increments_gather_coning_result = increments_gather_coning_first - (s[2 + 0] + 512 >> 10) * (s[19 + 2] + 256 >> 9) + 32 >> 6
-    s[202 + 1] = increments_gather_coning_result
+    s[203 + 1] = increments_gather_coning_result
     increments_gather_coning_first = (s[2 + 0] + 512 >> 10) * (s[19 + 1] + 256 >> 9)
     increments_gather_coning_result = increments_gather_coning_first - (s[2 + 1] + 512 >> 10) * (s[19 + 0] + 256 >> 9) + 32 >> 6
-    s[202 + 2] = increments_gather_coning_result
-    increments_gather_carried_first = (s[2 + 1] + 1024 >> 11) * s[210 + 2]
-    increments_gather_carried_result = increments_gather_carried_first - (s[2 + 2] + 1024 >> 11) * s[210 + 1] + 4096 >> 13
-    s[205] = increments_gather_carried_result
-    increments_gather_carried_first = (s[2 + 2] + 1024 >> 11) * s[210 + 0]
-    increments_gather_carried_result = increments_gather_carried_first - (s[2 + 0] + 1024 >> 11) * s[210 + 2] + 4096 >> 13
-    s[205 + 1] = increments_gather_carried_result
-    increments_gather_carried_first = (s[2 + 0] + 1024 >> 11) * s[210 + 1]
-    increments_gather_carried_result = increments_gather_carried_first - (s[2 + 1] + 1024 >> 11) * s[210 + 0] + 4096 >> 13
-    s[205 + 2] = increments_gather_carried_result
+    s[203 + 2] = increments_gather_coning_result
+    increments_gather_carried_first = (s[2 + 1] + 1024 >> 11) * s[211 + 2]
+    increments_gather_carried_result = increments_gather_carried_first - (s[2 + 2] + 1024 >> 11) * s[211 + 1] + 4096 >> 13
+    s[206] = increments_gather_carried_result
+    increments_gather_carried_first = (s[2 + 2] + 1024 >> 11) * s[211 + 0]
+    increments_gather_carried_result = increments_gather_carried_first - (s[2 + 0] + 1024 >> 11) * s[211 + 2] + 4096 >> 13
+    s[206 + 1] = increments_gather_carried_result
+    increments_gather_carried_first = (s[2 + 0] + 1024 >> 11) * s[211 + 1]
+    increments_gather_carried_result = increments_gather_carried_first - (s[2 + 1] + 1024 >> 11) * s[211 + 0] + 4096 >> 13
+    s[206 + 2] = increments_gather_carried_result
     increments_gather_increments_advance_i = 0
     while increments_gather_increments_advance_i < 3:
-        s[5 + increments_gather_increments_advance_i] += s[210 + increments_gather_increments_advance_i] + s[205 + increments_gather_increments_advance_i]
-        increments_gather_increments_advance_angle = s[2 + increments_gather_increments_advance_i] + s[19 + increments_gather_increments_advance_i] + s[202 + increments_gather_increments_advance_i]
+        s[5 + increments_gather_increments_advance_i] += s[211 + increments_gather_increments_advance_i] + s[206 + increments_gather_increments_advance_i]
+        increments_gather_increments_advance_angle = s[2 + increments_gather_increments_advance_i] + s[19 + increments_gather_increments_advance_i] + s[203 + increments_gather_increments_advance_i]
         if increments_gather_increments_advance_angle > 33554431:
             increments_gather_increments_advance_increments_within_result = 33554431
         elif increments_gather_increments_advance_angle < 0 - 33554431:
@@ -129,12 +129,12 @@ def work(s: ptr32, c: ptr32, s_, c_) -> int:
 def begin_traversal(s: ptr32):
     i = 0
     while i < 63:
-        s[i + 85] = 0
+        s[i + 86] = 0
         i = i + 1
     i = 0
     whole_shift = 0
-    whole_m = s[178]
-    whole_shift = whole_shift + s[179]
+    whole_m = s[179]
+    whole_shift = whole_shift + s[180]
     if whole_shift > 1 and whole_m:
         whole_m = 536870911 if whole_m > 0 else -536870911
     elif not whole_shift >> 30:
@@ -147,8 +147,8 @@ def begin_traversal(s: ptr32):
     s[57] = whole_result
     s[54] = 0
     whole_shift = 0
-    whole_m = s[180]
-    whole_shift = whole_shift + s[181]
+    whole_m = s[181]
+    whole_shift = whole_shift + s[182]
     if whole_shift > 1 and whole_m:
         whole_m = 536870911 if whole_m > 0 else -536870911
     elif not whole_shift >> 30:
@@ -161,8 +161,8 @@ def begin_traversal(s: ptr32):
     s[58] = whole_result
     s[55] = 0
     whole_shift = 0
-    whole_m = s[182]
-    whole_shift = whole_shift + s[183]
+    whole_m = s[183]
+    whole_shift = whole_shift + s[184]
     if whole_shift > 1 and whole_m:
         whole_m = 536870911 if whole_m > 0 else -536870911
     elif not whole_shift >> 30:
@@ -177,11 +177,12 @@ def begin_traversal(s: ptr32):
     i = 3
     i = 0
     while i < 9:
-        s[i + 42] = s[i + 213]
+        s[i + 42] = s[i + 214]
         i = i + 1
     s[63] = 0
     s[18] = 0
     s[65] = 0
+    s[66] = 0
     s[15] = 0
     s[13] = 1
     s[25] = s[29] << 14
@@ -197,7 +198,7 @@ def visit(s: ptr32, sum_up_i: int, c: ptr32, s_):
     a = s[16] + s[15]
     if a >= c[8]:
         a = a - c[8]
-    a = 3 * a + 240
+    a = 3 * a + 241
     taper_k = s[15]
     taper_stage = s[12]
     taper_even = c[20]
@@ -299,19 +300,15 @@ def visit(s: ptr32, sum_up_i: int, c: ptr32, s_):
     sum_up_i = 0
     sum_up_regressors_shift = s[12]
     sum_up_regressors_m = (1 << sum_up_regressors_shift - 1) + s[42] >> sum_up_regressors_shift
-    s[202] = sum_up_regressors_m
-    s[205] = s[60] * sum_up_regressors_m + 512 >> 10
-    sum_up_regressors_m = (1 << sum_up_regressors_shift - 1) + s[43] >> sum_up_regressors_shift
     s[203] = sum_up_regressors_m
     s[206] = s[60] * sum_up_regressors_m + 512 >> 10
-    sum_up_regressors_m = (1 << sum_up_regressors_shift - 1) + s[44] >> sum_up_regressors_shift
+    sum_up_regressors_m = (1 << sum_up_regressors_shift - 1) + s[43] >> sum_up_regressors_shift
     s[204] = sum_up_regressors_m
     s[207] = s[60] * sum_up_regressors_m + 512 >> 10
+    sum_up_regressors_m = (1 << sum_up_regressors_shift - 1) + s[44] >> sum_up_regressors_shift
+    s[205] = sum_up_regressors_m
+    s[208] = s[60] * sum_up_regressors_m + 512 >> 10
     sum_up_first_sums_y = s[51]
-    s[91] = (s[205] * sum_up_first_sums_y + 512 >> 10) + s[91]
-    s[94] = s[94] + s[205]
-    s[98] = (s[61] * s[202] + 512 >> 10) + s[98]
-    s[101] = (s[62] * s[202] + 512 >> 10) + s[101]
     s[92] = (s[206] * sum_up_first_sums_y + 512 >> 10) + s[92]
     s[95] = s[95] + s[206]
     s[99] = (s[61] * s[203] + 512 >> 10) + s[99]
@@ -320,37 +317,37 @@ def visit(s: ptr32, sum_up_i: int, c: ptr32, s_):
     s[96] = s[96] + s[207]
     s[100] = (s[61] * s[204] + 512 >> 10) + s[100]
     s[103] = (s[62] * s[204] + 512 >> 10) + s[103]
-    s[97] = (s[60] * sum_up_first_sums_y + 512 >> 10) + s[97]
-    s[104] = (s[61] * sum_up_first_sums_y + 512 >> 10) + s[104]
-    s[105] = (s[62] * sum_up_first_sums_y + 512 >> 10) + s[105]
-    sum_up_second_sums_a = 85
-    s[85] = (s[205] * s[202] + 512 >> 10) + s[85]
-    sum_up_second_sums_a = sum_up_second_sums_a + 1
-    s[sum_up_second_sums_a] = (s[205] * s[203] + 512 >> 10) + s[sum_up_second_sums_a]
-    sum_up_second_sums_a = sum_up_second_sums_a + 1
-    s[sum_up_second_sums_a] = (s[205] * s[204] + 512 >> 10) + s[sum_up_second_sums_a]
-    sum_up_second_sums_a = sum_up_second_sums_a + 1
-    s[sum_up_second_sums_a] = (s[206] * s[203] + 512 >> 10) + s[sum_up_second_sums_a]
+    s[94] = (s[208] * sum_up_first_sums_y + 512 >> 10) + s[94]
+    s[97] = s[97] + s[208]
+    s[101] = (s[61] * s[205] + 512 >> 10) + s[101]
+    s[104] = (s[62] * s[205] + 512 >> 10) + s[104]
+    s[98] = (s[60] * sum_up_first_sums_y + 512 >> 10) + s[98]
+    s[105] = (s[61] * sum_up_first_sums_y + 512 >> 10) + s[105]
+    s[106] = (s[62] * sum_up_first_sums_y + 512 >> 10) + s[106]
+    sum_up_second_sums_a = 86
+    s[86] = (s[206] * s[203] + 512 >> 10) + s[86]
     sum_up_second_sums_a = sum_up_second_sums_a + 1
     s[sum_up_second_sums_a] = (s[206] * s[204] + 512 >> 10) + s[sum_up_second_sums_a]
     sum_up_second_sums_a = sum_up_second_sums_a + 1
+    s[sum_up_second_sums_a] = (s[206] * s[205] + 512 >> 10) + s[sum_up_second_sums_a]
+    sum_up_second_sums_a = sum_up_second_sums_a + 1
     s[sum_up_second_sums_a] = (s[207] * s[204] + 512 >> 10) + s[sum_up_second_sums_a]
+    sum_up_second_sums_a = sum_up_second_sums_a + 1
+    s[sum_up_second_sums_a] = (s[207] * s[205] + 512 >> 10) + s[sum_up_second_sums_a]
+    sum_up_second_sums_a = sum_up_second_sums_a + 1
+    s[sum_up_second_sums_a] = (s[208] * s[205] + 512 >> 10) + s[sum_up_second_sums_a]
     sum_up_second_sums_a = sum_up_second_sums_a + 1
     sum_up_regressors_shift = s[12]
     sum_up_regressors_m = (1 << sum_up_regressors_shift - 1) + s[45] >> sum_up_regressors_shift
-    s[202] = sum_up_regressors_m
-    s[205] = s[60] * sum_up_regressors_m + 512 >> 10
-    sum_up_regressors_m = (1 << sum_up_regressors_shift - 1) + s[46] >> sum_up_regressors_shift
     s[203] = sum_up_regressors_m
     s[206] = s[60] * sum_up_regressors_m + 512 >> 10
-    sum_up_regressors_m = (1 << sum_up_regressors_shift - 1) + s[47] >> sum_up_regressors_shift
+    sum_up_regressors_m = (1 << sum_up_regressors_shift - 1) + s[46] >> sum_up_regressors_shift
     s[204] = sum_up_regressors_m
     s[207] = s[60] * sum_up_regressors_m + 512 >> 10
+    sum_up_regressors_m = (1 << sum_up_regressors_shift - 1) + s[47] >> sum_up_regressors_shift
+    s[205] = sum_up_regressors_m
+    s[208] = s[60] * sum_up_regressors_m + 512 >> 10
     sum_up_first_sums_y = s[52]
-    s[112] = (s[205] * sum_up_first_sums_y + 512 >> 10) + s[112]
-    s[115] = s[115] + s[205]
-    s[119] = (s[61] * s[202] + 512 >> 10) + s[119]
-    s[122] = (s[62] * s[202] + 512 >> 10) + s[122]
     s[113] = (s[206] * sum_up_first_sums_y + 512 >> 10) + s[113]
     s[116] = s[116] + s[206]
     s[120] = (s[61] * s[203] + 512 >> 10) + s[120]
@@ -359,37 +356,37 @@ def visit(s: ptr32, sum_up_i: int, c: ptr32, s_):
     s[117] = s[117] + s[207]
     s[121] = (s[61] * s[204] + 512 >> 10) + s[121]
     s[124] = (s[62] * s[204] + 512 >> 10) + s[124]
-    s[118] = (s[60] * sum_up_first_sums_y + 512 >> 10) + s[118]
-    s[125] = (s[61] * sum_up_first_sums_y + 512 >> 10) + s[125]
-    s[126] = (s[62] * sum_up_first_sums_y + 512 >> 10) + s[126]
-    sum_up_second_sums_a = 106
-    s[106] = (s[205] * s[202] + 512 >> 10) + s[106]
-    sum_up_second_sums_a = sum_up_second_sums_a + 1
-    s[sum_up_second_sums_a] = (s[205] * s[203] + 512 >> 10) + s[sum_up_second_sums_a]
-    sum_up_second_sums_a = sum_up_second_sums_a + 1
-    s[sum_up_second_sums_a] = (s[205] * s[204] + 512 >> 10) + s[sum_up_second_sums_a]
-    sum_up_second_sums_a = sum_up_second_sums_a + 1
-    s[sum_up_second_sums_a] = (s[206] * s[203] + 512 >> 10) + s[sum_up_second_sums_a]
+    s[115] = (s[208] * sum_up_first_sums_y + 512 >> 10) + s[115]
+    s[118] = s[118] + s[208]
+    s[122] = (s[61] * s[205] + 512 >> 10) + s[122]
+    s[125] = (s[62] * s[205] + 512 >> 10) + s[125]
+    s[119] = (s[60] * sum_up_first_sums_y + 512 >> 10) + s[119]
+    s[126] = (s[61] * sum_up_first_sums_y + 512 >> 10) + s[126]
+    s[127] = (s[62] * sum_up_first_sums_y + 512 >> 10) + s[127]
+    sum_up_second_sums_a = 107
+    s[107] = (s[206] * s[203] + 512 >> 10) + s[107]
     sum_up_second_sums_a = sum_up_second_sums_a + 1
     s[sum_up_second_sums_a] = (s[206] * s[204] + 512 >> 10) + s[sum_up_second_sums_a]
     sum_up_second_sums_a = sum_up_second_sums_a + 1
+    s[sum_up_second_sums_a] = (s[206] * s[205] + 512 >> 10) + s[sum_up_second_sums_a]
+    sum_up_second_sums_a = sum_up_second_sums_a + 1
     s[sum_up_second_sums_a] = (s[207] * s[204] + 512 >> 10) + s[sum_up_second_sums_a]
+    sum_up_second_sums_a = sum_up_second_sums_a + 1
+    s[sum_up_second_sums_a] = (s[207] * s[205] + 512 >> 10) + s[sum_up_second_sums_a]
+    sum_up_second_sums_a = sum_up_second_sums_a + 1
+    s[sum_up_second_sums_a] = (s[208] * s[205] + 512 >> 10) + s[sum_up_second_sums_a]
     sum_up_second_sums_a = sum_up_second_sums_a + 1
     sum_up_regressors_shift = s[12]
     sum_up_regressors_m = (1 << sum_up_regressors_shift - 1) + s[48] >> sum_up_regressors_shift
-    s[202] = sum_up_regressors_m
-    s[205] = s[60] * sum_up_regressors_m + 512 >> 10
-    sum_up_regressors_m = (1 << sum_up_regressors_shift - 1) + s[49] >> sum_up_regressors_shift
     s[203] = sum_up_regressors_m
     s[206] = s[60] * sum_up_regressors_m + 512 >> 10
-    sum_up_regressors_m = (1 << sum_up_regressors_shift - 1) + s[50] >> sum_up_regressors_shift
+    sum_up_regressors_m = (1 << sum_up_regressors_shift - 1) + s[49] >> sum_up_regressors_shift
     s[204] = sum_up_regressors_m
     s[207] = s[60] * sum_up_regressors_m + 512 >> 10
+    sum_up_regressors_m = (1 << sum_up_regressors_shift - 1) + s[50] >> sum_up_regressors_shift
+    s[205] = sum_up_regressors_m
+    s[208] = s[60] * sum_up_regressors_m + 512 >> 10
     sum_up_first_sums_y = s[53]
-    s[133] = (s[205] * sum_up_first_sums_y + 512 >> 10) + s[133]
-    s[136] = s[136] + s[205]
-    s[140] = (s[61] * s[202] + 512 >> 10) + s[140]
-    s[143] = (s[62] * s[202] + 512 >> 10) + s[143]
     s[134] = (s[206] * sum_up_first_sums_y + 512 >> 10) + s[134]
     s[137] = s[137] + s[206]
     s[141] = (s[61] * s[203] + 512 >> 10) + s[141]
@@ -398,21 +395,25 @@ def visit(s: ptr32, sum_up_i: int, c: ptr32, s_):
     s[138] = s[138] + s[207]
     s[142] = (s[61] * s[204] + 512 >> 10) + s[142]
     s[145] = (s[62] * s[204] + 512 >> 10) + s[145]
-    s[139] = (s[60] * sum_up_first_sums_y + 512 >> 10) + s[139]
-    s[146] = (s[61] * sum_up_first_sums_y + 512 >> 10) + s[146]
-    s[147] = (s[62] * sum_up_first_sums_y + 512 >> 10) + s[147]
-    sum_up_second_sums_a = 127
-    s[127] = (s[205] * s[202] + 512 >> 10) + s[127]
-    sum_up_second_sums_a = sum_up_second_sums_a + 1
-    s[sum_up_second_sums_a] = (s[205] * s[203] + 512 >> 10) + s[sum_up_second_sums_a]
-    sum_up_second_sums_a = sum_up_second_sums_a + 1
-    s[sum_up_second_sums_a] = (s[205] * s[204] + 512 >> 10) + s[sum_up_second_sums_a]
-    sum_up_second_sums_a = sum_up_second_sums_a + 1
-    s[sum_up_second_sums_a] = (s[206] * s[203] + 512 >> 10) + s[sum_up_second_sums_a]
+    s[136] = (s[208] * sum_up_first_sums_y + 512 >> 10) + s[136]
+    s[139] = s[139] + s[208]
+    s[143] = (s[61] * s[205] + 512 >> 10) + s[143]
+    s[146] = (s[62] * s[205] + 512 >> 10) + s[146]
+    s[140] = (s[60] * sum_up_first_sums_y + 512 >> 10) + s[140]
+    s[147] = (s[61] * sum_up_first_sums_y + 512 >> 10) + s[147]
+    s[148] = (s[62] * sum_up_first_sums_y + 512 >> 10) + s[148]
+    sum_up_second_sums_a = 128
+    s[128] = (s[206] * s[203] + 512 >> 10) + s[128]
     sum_up_second_sums_a = sum_up_second_sums_a + 1
     s[sum_up_second_sums_a] = (s[206] * s[204] + 512 >> 10) + s[sum_up_second_sums_a]
     sum_up_second_sums_a = sum_up_second_sums_a + 1
+    s[sum_up_second_sums_a] = (s[206] * s[205] + 512 >> 10) + s[sum_up_second_sums_a]
+    sum_up_second_sums_a = sum_up_second_sums_a + 1
     s[sum_up_second_sums_a] = (s[207] * s[204] + 512 >> 10) + s[sum_up_second_sums_a]
+    sum_up_second_sums_a = sum_up_second_sums_a + 1
+    s[sum_up_second_sums_a] = (s[207] * s[205] + 512 >> 10) + s[sum_up_second_sums_a]
+    sum_up_second_sums_a = sum_up_second_sums_a + 1
+    s[sum_up_second_sums_a] = (s[208] * s[205] + 512 >> 10) + s[sum_up_second_sums_a]
     sum_up_second_sums_a = sum_up_second_sums_a + 1
     sum_up_i = 3
     sum_up_i = 0
@@ -437,6 +438,18 @@ def visit(s: ptr32, sum_up_i: int, c: ptr32, s_):
     remove_bias_part = (s[a + 2] >> 15) - remove_bias_part
     s[21] = remove_bias_part
     s[65] = (remove_bias_part if remove_bias_part > 0 else 0 - remove_bias_part) + s[65]
+    tilting_row = 0
+    tilting_row = tilting_row + 33
+    tilting_part = s[tilting_row] * s[19] + s[tilting_row + 1] * s[20]
+    tilting_part = s[tilting_row + 2] * s[21] + tilting_part + 8192 >> 14
+    a = tilting_part if tilting_part > 0 else 0 - tilting_part
+    tilting_row = 3
+    tilting_row = tilting_row + 33
+    tilting_part = s[tilting_row] * s[19] + s[tilting_row + 1] * s[20]
+    tilting_part = s[tilting_row + 2] * s[21] + tilting_part + 8192 >> 14
+    tilting_result = tilting_part if tilting_part > 0 else 0 - tilting_part
+    a = a + tilting_result
+    s[66] = s[66] + a
     sines_square = s[19] * s[19] + s[20] * s[20] + s[21] * s[21] >> 14
     sines_fourth = (sines_square >> 1) * (sines_square >> 1) >> 12
     sines_factor = 16384 - (sines_square * 2731 >> 14) + (sines_fourth * 137 >> 14)
@@ -479,16 +492,16 @@ def solve(s: ptr32, c: ptr32, s_, c_) -> int:
     s[15] = k + 1
     if c[20]:
         if k < 3:
-            centre(s_, s[12], 3 * k, 21 * k + 85)
+            centre(s_, s[12], 3 * k, 21 * k + 86)
         elif k < 6:
             solve_document_own_slope_i = k - 3
             own_square(s_, solve_document_own_slope_i)
             solve_document_own_slope_a = s[12] - 16
-            solve_document_own_slope_put_m = s[22 * solve_document_own_slope_i + 91]
+            solve_document_own_slope_put_m = s[22 * solve_document_own_slope_i + 92]
             solve_document_own_slope_put_e = solve_document_own_slope_a
             if not solve_document_own_slope_put_m:
-                s[202] = 0
-                s[203] = -4096
+                s[203] = 0
+                s[204] = -4096
             else:
                 while solve_document_own_slope_put_m < 524288 and solve_document_own_slope_put_m >= -524288:
                     solve_document_own_slope_put_m = solve_document_own_slope_put_m << 8
@@ -499,9 +512,9 @@ def solve(s: ptr32, c: ptr32, s_, c_) -> int:
                 while solve_document_own_slope_put_m >= 268435456 or solve_document_own_slope_put_m < -268435456:
                     solve_document_own_slope_put_m = solve_document_own_slope_put_m >> 1
                     solve_document_own_slope_put_e = solve_document_own_slope_put_e + 1
-                s[202] = solve_document_own_slope_put_m
-                s[203] = solve_document_own_slope_put_e
-            divide(s_, 202, 204, 2 * solve_document_own_slope_i + 184)
+                s[203] = solve_document_own_slope_put_m
+                s[204] = solve_document_own_slope_put_e
+            divide(s_, 203, 205, 2 * solve_document_own_slope_i + 185)
         elif k < 9:
             noise(0, 0, s_, k - 6, s_)
         elif not k - 9:
@@ -514,8 +527,8 @@ def solve(s: ptr32, c: ptr32, s_, c_) -> int:
             solve_document_own_variance_put_m = -c[21]
             solve_document_own_variance_put_e = 0
             if not solve_document_own_variance_put_m:
-                s[202] = 0
-                s[203] = -4096
+                s[203] = 0
+                s[204] = -4096
             else:
                 while solve_document_own_variance_put_m < 524288 and solve_document_own_variance_put_m >= -524288:
                     solve_document_own_variance_put_m = solve_document_own_variance_put_m << 8
@@ -526,14 +539,14 @@ def solve(s: ptr32, c: ptr32, s_, c_) -> int:
                 while solve_document_own_variance_put_m >= 268435456 or solve_document_own_variance_put_m < -268435456:
                     solve_document_own_variance_put_m = solve_document_own_variance_put_m >> 1
                     solve_document_own_variance_put_e = solve_document_own_variance_put_e + 1
-                s[202] = solve_document_own_variance_put_m
-                s[203] = solve_document_own_variance_put_e
-            multiply(202, s_, 2 * solve_document_own_variance_i + 196, 202)
+                s[203] = solve_document_own_variance_put_m
+                s[204] = solve_document_own_variance_put_e
+            multiply(203, s_, 2 * solve_document_own_variance_i + 197, 203)
             if solve_document_own_variance_i > solve_document_own_variance_i:
                 solve_document_own_variance_i = (4 * solve_document_own_variance_i - ((solve_document_own_variance_i + 1) * solve_document_own_variance_i >> 1) + solve_document_own_variance_i) * 2 + 33
             else:
                 solve_document_own_variance_i = (4 * solve_document_own_variance_i - ((solve_document_own_variance_i + 1) * solve_document_own_variance_i >> 1) + solve_document_own_variance_i) * 2 + 33
-            divide(s_, 202, 204, solve_document_own_variance_i)
+            divide(s_, 203, 205, solve_document_own_variance_i)
         else:
             s[13] = 0
             return int(finish(s_, c_))
@@ -542,9 +555,9 @@ def solve(s: ptr32, c: ptr32, s_, c_) -> int:
         level_and_prior(0, s_, 0, k, c_, s_, c_)
         return 0
     if k < 3:
-        centre(s_, s[12], 3 * k, 21 * k + 85)
+        centre(s_, s[12], 3 * k, 21 * k + 86)
     elif not k - 3:
-        lean_back_increments_within_value = -s[97]
+        lean_back_increments_within_value = -s[98]
         if lean_back_increments_within_value > 4096:
             lean_back_increments_within_result = 4096
         elif lean_back_increments_within_value < -4096:
@@ -552,7 +565,7 @@ def solve(s: ptr32, c: ptr32, s_, c_) -> int:
         else:
             lean_back_increments_within_result = lean_back_increments_within_value
         lean_back_x = lean_back_increments_within_result << 1
-        lean_back_increments_within_value = -s[118]
+        lean_back_increments_within_value = -s[119]
         if lean_back_increments_within_value > 4096:
             lean_back_increments_within_result = 4096
         elif lean_back_increments_within_value < -4096:
@@ -560,24 +573,24 @@ def solve(s: ptr32, c: ptr32, s_, c_) -> int:
         else:
             lean_back_increments_within_result = lean_back_increments_within_value
         lean_back_y = lean_back_increments_within_result << 1
-        s[202] = s[29] - (lean_back_x * s[30] + lean_back_y * s[31] >> 14)
-        s[203] = (lean_back_x * s[29] + lean_back_y * s[32] >> 14) + s[30]
-        s[204] = (lean_back_y * s[29] - lean_back_x * s[32] >> 14) + s[31]
-        s[205] = (lean_back_x * s[31] - lean_back_y * s[30] >> 14) + s[32]
+        s[203] = s[29] - (lean_back_x * s[30] + lean_back_y * s[31] >> 14)
+        s[204] = (lean_back_x * s[29] + lean_back_y * s[32] >> 14) + s[30]
+        s[205] = (lean_back_y * s[29] - lean_back_x * s[32] >> 14) + s[31]
+        s[206] = (lean_back_x * s[31] - lean_back_y * s[30] >> 14) + s[32]
         lean_back_x = 0
-        s[202] = s[202] >> 1
-        lean_back_x = s[202] * s[202] + lean_back_x
         s[203] = s[203] >> 1
         lean_back_x = s[203] * s[203] + lean_back_x
         s[204] = s[204] >> 1
         lean_back_x = s[204] * s[204] + lean_back_x
         s[205] = s[205] >> 1
         lean_back_x = s[205] * s[205] + lean_back_x
+        s[206] = s[206] >> 1
+        lean_back_x = s[206] * s[206] + lean_back_x
         lean_back_look_along_scale = int(root(lean_back_x))
-        s[29] = (s[202] << 14) // lean_back_look_along_scale
-        s[30] = (s[203] << 14) // lean_back_look_along_scale
-        s[31] = (s[204] << 14) // lean_back_look_along_scale
-        s[32] = (s[205] << 14) // lean_back_look_along_scale
+        s[29] = (s[203] << 14) // lean_back_look_along_scale
+        s[30] = (s[204] << 14) // lean_back_look_along_scale
+        s[31] = (s[205] << 14) // lean_back_look_along_scale
+        s[32] = (s[206] << 14) // lean_back_look_along_scale
     elif k < 16:
         normal_equations(s_, k - 4, s_)
     elif not k - 16:
@@ -612,13 +625,13 @@ def normal_equations(s: ptr32, n: int, s_):
             matrix_element_j = (4 * matrix_element_j - ((matrix_element_j + 1) * matrix_element_j >> 1) + matrix_element_i) * 2 + 33
         else:
             matrix_element_j = (4 * matrix_element_i - ((matrix_element_i + 1) * matrix_element_i >> 1) + matrix_element_j) * 2 + 33
-        matrix_element_real_copy_a = 2 * n + 160
+        matrix_element_real_copy_a = 2 * n + 161
         matrix_element_real_copy_words = 2
         while matrix_element_real_copy_words > 0:
             matrix_element_real_copy_words = matrix_element_real_copy_words - 1
-            s[matrix_element_real_copy_words + 202] = s[matrix_element_real_copy_a + matrix_element_real_copy_words]
+            s[matrix_element_real_copy_words + 203] = s[matrix_element_real_copy_a + matrix_element_real_copy_words]
         matrix_element_i = 2 * s[12] - 42
-        element(0, 0, s_, n + 85, matrix_element_j, matrix_element_i, s_)
+        element(0, 0, s_, n + 86, matrix_element_j, matrix_element_i, s_)
     elif n < 9:
         right_side_i = n - 6
         if right_side_i > 3:
@@ -626,31 +639,31 @@ def normal_equations(s: ptr32, n: int, s_):
         else:
             right_side_d = (4 * right_side_i - ((right_side_i + 1) * right_side_i >> 1) + 3) * 2 + 33
         right_side_j = s[12] - 16
-        s[202] = 0
-        s[203] = -4096
-        element(0, 0, s_, right_side_i + 91, right_side_d, right_side_j, s_)
+        s[203] = 0
+        s[204] = -4096
+        element(0, 0, s_, right_side_i + 92, right_side_d, right_side_j, s_)
         right_side_j = 0
-        subtract(s_, 178, 204, 172, s_)
+        subtract(s_, 179, 205, 173, s_)
         right_side_multiply_by_prior_a = int(prior_place(right_side_i, 0))
-        multiply(204, s_, right_side_multiply_by_prior_a, 204)
-        if s[right_side_d + 1] < s[205]:
-            add_smaller(s_, 204, right_side_d, right_side_d)
+        multiply(205, s_, right_side_multiply_by_prior_a, 205)
+        if s[right_side_d + 1] < s[206]:
+            add_smaller(s_, 205, right_side_d, right_side_d)
         else:
-            add_smaller(s_, right_side_d, 204, right_side_d)
-        subtract(s_, 180, 204, 174, s_)
+            add_smaller(s_, right_side_d, 205, right_side_d)
+        subtract(s_, 181, 205, 175, s_)
         right_side_multiply_by_prior_a = int(prior_place(right_side_i, 1))
-        multiply(204, s_, right_side_multiply_by_prior_a, 204)
-        if s[right_side_d + 1] < s[205]:
-            add_smaller(s_, 204, right_side_d, right_side_d)
+        multiply(205, s_, right_side_multiply_by_prior_a, 205)
+        if s[right_side_d + 1] < s[206]:
+            add_smaller(s_, 205, right_side_d, right_side_d)
         else:
-            add_smaller(s_, right_side_d, 204, right_side_d)
-        subtract(s_, 182, 204, 176, s_)
+            add_smaller(s_, right_side_d, 205, right_side_d)
+        subtract(s_, 183, 205, 177, s_)
         right_side_multiply_by_prior_a = int(prior_place(right_side_i, 2))
-        multiply(204, s_, right_side_multiply_by_prior_a, 204)
-        if s[right_side_d + 1] < s[205]:
-            add_smaller(s_, 204, right_side_d, right_side_d)
+        multiply(205, s_, right_side_multiply_by_prior_a, 205)
+        if s[right_side_d + 1] < s[206]:
+            add_smaller(s_, 205, right_side_d, right_side_d)
         else:
-            add_smaller(s_, right_side_d, 204, right_side_d)
+            add_smaller(s_, right_side_d, 205, right_side_d)
         right_side_j = 3
         s[51] = 0
         s[52] = -4096
@@ -661,8 +674,8 @@ def normal_equations(s: ptr32, n: int, s_):
 @micropython.viper
 def level_and_prior(turn_centre_turned_mean_j: int, s: ptr32, turn_centre_turned_mean_total: int, k: int, c: ptr32, s_, c_):
     if not k:
-        find_up_x = s[118]
-        find_up_y = -s[97]
+        find_up_x = s[119]
+        find_up_y = -s[98]
         find_up_z = s[63]
         while find_up_x > 8191 or find_up_x < -8191 or find_up_y > 8191 or (find_up_y < -8191) or (find_up_z > 8191) or (find_up_z < -8191):
             find_up_x = find_up_x >> 1
@@ -683,11 +696,11 @@ def level_and_prior(turn_centre_turned_mean_j: int, s: ptr32, turn_centre_turned
         if find_up_over:
             find_up_y = -find_up_y
             find_up_z = -find_up_z
-        s[202] = find_up_scale + find_up_z
-        s[202 + 1] = find_up_y
-        s[202 + 2] = 0 - find_up_x
-        s[202 + 3] = 0
-        find_up_root_square = s[202] * s[202] + find_up_x * find_up_x + find_up_y * find_up_y
+        s[203] = find_up_scale + find_up_z
+        s[203 + 1] = find_up_y
+        s[203 + 2] = 0 - find_up_x
+        s[203 + 3] = 0
+        find_up_root_square = s[203] * s[203] + find_up_x * find_up_x + find_up_y * find_up_y
         find_up_root_bit = 1 << 14
         if find_up_root_square < 16777216:
             find_up_root_bit = 1 << 11
@@ -699,16 +712,16 @@ def level_and_prior(turn_centre_turned_mean_j: int, s: ptr32, turn_centre_turned
             find_up_root_bit = find_up_root_bit >> 1
         find_up_scale = find_up_root_found
         if find_up_over:
-            s[202 + 3] = find_up_x
-            s[202 + 2] = 0
-            s[202 + 1] = s[202]
-            s[202] = 0 - find_up_y
+            s[203 + 3] = find_up_x
+            s[203 + 2] = 0
+            s[203 + 1] = s[203]
+            s[203] = 0 - find_up_y
         if not find_up_scale:
-            s[202] = 1
+            s[203] = 1
             find_up_scale = 1
         find_up_look_along_i = 0
         while find_up_look_along_i < 4:
-            s[29 + find_up_look_along_i] = (s[202 + find_up_look_along_i] << 14) // find_up_scale
+            s[29 + find_up_look_along_i] = (s[203 + find_up_look_along_i] << 14) // find_up_scale
             find_up_look_along_i = find_up_look_along_i + 1
         turn_centre_shift = s[12]
         turn_centre_begin_attitude_i = 0
@@ -725,36 +738,36 @@ def level_and_prior(turn_centre_turned_mean_j: int, s: ptr32, turn_centre_turned
                 turn_centre_turned_mean_j = 0
                 turn_centre_turned_mean_total = 0
                 while turn_centre_turned_mean_j < 3:
-                    turn_centre_turned_mean_mean = (s[21 * turn_centre_turned_mean_j + 85 + 9 + turn_centre_k] << 8) // (s[18] >> 2)
+                    turn_centre_turned_mean_mean = (s[21 * turn_centre_turned_mean_j + 86 + 9 + turn_centre_k] << 8) // (s[18] >> 2)
                     turn_centre_turned_mean_total = (s[3 * turn_centre_i + 33 + turn_centre_turned_mean_j] * turn_centre_turned_mean_mean >> 2) + turn_centre_turned_mean_total
                     turn_centre_turned_mean_j = turn_centre_turned_mean_j + 1
                 turn_centre_turned_mean_result = turn_centre_turned_mean_total >> 12
-                s[3 * turn_centre_i + 213 + turn_centre_k] = -(turn_centre_turned_mean_result << turn_centre_shift)
+                s[3 * turn_centre_i + 214 + turn_centre_k] = -(turn_centre_turned_mean_result << turn_centre_shift)
                 turn_centre_k = turn_centre_k + 1
             turn_centre_i = turn_centre_i + 1
     elif not k - 1:
-        k = 1 if s[11] == c[16] and s[67] > 0 else 0
+        k = 1 if s[11] == c[16] and s[68] > 0 else 0
         carry(0, k, s_, c_, s_, c_)
         if k:
             real_copy_words = 6
             while real_copy_words > 0:
                 real_copy_words = real_copy_words - 1
-                s[178 + real_copy_words] = s[172 + real_copy_words]
+                s[179 + real_copy_words] = s[173 + real_copy_words]
     elif not k - 2:
         spread_prior(0, s_)
     elif k < 6:
         sweep(0, 0, s_, k - 3, s_)
     else:
-        covariance(0, 0, 160, s_)
+        covariance(0, 0, 161, s_)
         held_weights_i = 0
         while held_weights_i < 6:
-            held_weights_real_copy_d = 196 + held_weights_i
-            held_weights_real_copy_a = 190 + held_weights_i
+            held_weights_real_copy_d = 197 + held_weights_i
+            held_weights_real_copy_a = 191 + held_weights_i
             held_weights_real_copy_words = 2
             while held_weights_real_copy_words > 0:
                 held_weights_real_copy_words = held_weights_real_copy_words - 1
                 s[held_weights_real_copy_d + held_weights_real_copy_words] = s[held_weights_real_copy_a + held_weights_real_copy_words]
-            weigh(0, s_, c_, 196 + held_weights_i, s_)
+            weigh(0, s_, c_, 197 + held_weights_i, s_)
             held_weights_i = held_weights_i + 2
         s[14] = 1
         begin_traversal(s_)
@@ -765,8 +778,8 @@ def last_pass(s: ptr32, c: ptr32) -> int:
     if s[14] >= c[9]:
         return 1
     whole_shift = 0
-    whole_m = s[184]
-    whole_shift = whole_shift + s[185]
+    whole_m = s[185]
+    whole_shift = whole_shift + s[186]
     if whole_shift > 1 and whole_m:
         whole_m = 536870911 if whole_m > 0 else -536870911
     elif not whole_shift >> 30:
@@ -779,8 +792,8 @@ def last_pass(s: ptr32, c: ptr32) -> int:
     if slope > c[22] or slope < -c[22]:
         return 0
     whole_shift = 0
-    whole_m = s[186]
-    whole_shift = whole_shift + s[187]
+    whole_m = s[187]
+    whole_shift = whole_shift + s[188]
     if whole_shift > 1 and whole_m:
         whole_m = 536870911 if whole_m > 0 else -536870911
     elif not whole_shift >> 30:
@@ -793,8 +806,8 @@ def last_pass(s: ptr32, c: ptr32) -> int:
     if slope > c[22] or slope < -c[22]:
         return 0
     whole_shift = 0
-    whole_m = s[188]
-    whole_shift = whole_shift + s[189]
+    whole_m = s[189]
+    whole_shift = whole_shift + s[190]
     if whole_shift > 1 and whole_m:
         whole_m = 536870911 if whole_m > 0 else -536870911
     elif not whole_shift >> 30:
@@ -813,9 +826,9 @@ def last_pass(s: ptr32, c: ptr32) -> int:
 def remove_slope(note_slope_put_m: int, s: ptr32, c: ptr32, s_):
     i = 0
     while i < 6:
-        real_add_d = i + 178
-        real_add_a = i + 178
-        real_add_b = i + 184
+        real_add_d = i + 179
+        real_add_a = i + 179
+        real_add_b = i + 185
         if s[real_add_a + 1] < s[real_add_b + 1]:
             add_smaller(s_, real_add_b, real_add_a, real_add_d)
         else:
@@ -824,12 +837,12 @@ def remove_slope(note_slope_put_m: int, s: ptr32, c: ptr32, s_):
     note_slope_a = s[14] - 1
     if note_slope_a > 2:
         note_slope_a = 2
-    note_slope_a = 3 * note_slope_a + 76
+    note_slope_a = 3 * note_slope_a + 77
     note_slope_put_m = c[10]
     note_slope_put_e = c[11]
     if not note_slope_put_m:
-        s[202] = 0
-        s[203] = -4096
+        s[203] = 0
+        s[204] = -4096
     else:
         while note_slope_put_m < 524288 and note_slope_put_m >= -524288:
             note_slope_put_m = note_slope_put_m << 8
@@ -840,12 +853,12 @@ def remove_slope(note_slope_put_m: int, s: ptr32, c: ptr32, s_):
         while note_slope_put_m >= 268435456 or note_slope_put_m < -268435456:
             note_slope_put_m = note_slope_put_m >> 1
             note_slope_put_e = note_slope_put_e + 1
-        s[202] = note_slope_put_m
-        s[203] = note_slope_put_e
-    multiply(202, s_, 184, 202)
+        s[203] = note_slope_put_m
+        s[204] = note_slope_put_e
+    multiply(203, s_, 185, 203)
     note_slope_whole_shift = 0
-    note_slope_whole_m = s[202]
-    note_slope_whole_shift = note_slope_whole_shift + s[203]
+    note_slope_whole_m = s[203]
+    note_slope_whole_shift = note_slope_whole_shift + s[204]
     if note_slope_whole_shift > 1 and note_slope_whole_m:
         note_slope_whole_m = 536870911 if note_slope_whole_m > 0 else -536870911
     elif not note_slope_whole_shift >> 30:
@@ -859,8 +872,8 @@ def remove_slope(note_slope_put_m: int, s: ptr32, c: ptr32, s_):
     note_slope_put_m = c[10]
     note_slope_put_e = c[11]
     if not note_slope_put_m:
-        s[202] = 0
-        s[203] = -4096
+        s[203] = 0
+        s[204] = -4096
     else:
         while note_slope_put_m < 524288 and note_slope_put_m >= -524288:
             note_slope_put_m = note_slope_put_m << 8
@@ -871,12 +884,12 @@ def remove_slope(note_slope_put_m: int, s: ptr32, c: ptr32, s_):
         while note_slope_put_m >= 268435456 or note_slope_put_m < -268435456:
             note_slope_put_m = note_slope_put_m >> 1
             note_slope_put_e = note_slope_put_e + 1
-        s[202] = note_slope_put_m
-        s[203] = note_slope_put_e
-    multiply(202, s_, 186, 202)
+        s[203] = note_slope_put_m
+        s[204] = note_slope_put_e
+    multiply(203, s_, 187, 203)
     note_slope_whole_shift = 0
-    note_slope_whole_m = s[202]
-    note_slope_whole_shift = note_slope_whole_shift + s[203]
+    note_slope_whole_m = s[203]
+    note_slope_whole_shift = note_slope_whole_shift + s[204]
     if note_slope_whole_shift > 1 and note_slope_whole_m:
         note_slope_whole_m = 536870911 if note_slope_whole_m > 0 else -536870911
     elif not note_slope_whole_shift >> 30:
@@ -890,8 +903,8 @@ def remove_slope(note_slope_put_m: int, s: ptr32, c: ptr32, s_):
     note_slope_put_m = c[10]
     note_slope_put_e = c[11]
     if not note_slope_put_m:
-        s[202] = 0
-        s[203] = -4096
+        s[203] = 0
+        s[204] = -4096
     else:
         while note_slope_put_m < 524288 and note_slope_put_m >= -524288:
             note_slope_put_m = note_slope_put_m << 8
@@ -902,12 +915,12 @@ def remove_slope(note_slope_put_m: int, s: ptr32, c: ptr32, s_):
         while note_slope_put_m >= 268435456 or note_slope_put_m < -268435456:
             note_slope_put_m = note_slope_put_m >> 1
             note_slope_put_e = note_slope_put_e + 1
-        s[202] = note_slope_put_m
-        s[203] = note_slope_put_e
-    multiply(202, s_, 188, 202)
+        s[203] = note_slope_put_m
+        s[204] = note_slope_put_e
+    multiply(203, s_, 189, 203)
     note_slope_whole_shift = 0
-    note_slope_whole_m = s[202]
-    note_slope_whole_shift = note_slope_whole_shift + s[203]
+    note_slope_whole_m = s[203]
+    note_slope_whole_shift = note_slope_whole_shift + s[204]
     if note_slope_whole_shift > 1 and note_slope_whole_m:
         note_slope_whole_m = 536870911 if note_slope_whole_m > 0 else -536870911
     elif not note_slope_whole_shift >> 30:

@@ -10,7 +10,7 @@ import micropython
 @micropython.viper
 def close(s: ptr32, c: ptr32):
     s[0] = s[0] - c[0]
-    a = 3 * s[8] + 240
+    a = 3 * s[8] + 241
     s_a = ptr32(int(s) + (a << 2))
     over = (s[0] << 10) // c[0]
     over = (s[57] >> 8) * over >> 2
@@ -76,6 +76,6 @@ def close(s: ptr32, c: ptr32):
     if s[9] < c[8]:
         s[9] = s[9] + 1
     s[10] = s[10] + 1
-    s[66] = s[66] + 1
+    s[67] = s[67] + 1
     if s[64] > 0:
         s[64] = s[64] - 1

@@ -23,7 +23,10 @@ from .peers.sources import Source
 from .settling import settling
 from .source_cost import source_cost
 
-SCENARIOS = ("never-rests", "rests-30", "turntable", "car")
+SCENARIOS = (
+    *("never-rests", "rests-30", "short-rests", "trembling", "slow-tilt"),
+    *("turntable", "turntable-vertical", "car"),
+)
 SEEDS = (1, 2, 3)
 SETTLED_S = 120.0
 TRIAL_SETTLED_S = 60.0
@@ -42,6 +45,7 @@ def peers() -> dict[str, Peer]:
         "decision, bias within 0.5 dps": Decision(
             motion=True, accelerometer=True, motion_start_dps=0.5
         ),
+        "default": Decision(),
         "decision": Decision(motion=True, accelerometer=True),
     }
 
@@ -50,7 +54,9 @@ def simulated(ways: Mapping[str, Peer], seeds: Sequence[int] = SEEDS) -> dict:
     """Scenario -> way -> each seed's RMS error after two minutes, mdps, windows, honesty."""
     found: dict = {}
     for name in SCENARIOS:
-        found[name] = {way: {"rms_mdps": [], "learned": 0, "within": []} for way in ways}
+        found[name] = {
+            way: {"rms_mdps": [], "learned": 0, "wrong": 0, "within": []} for way in ways
+        }
         for seed in seeds:
             recording, truth = simulate(name, session=1, seed=seed)
             one = given(recording)
@@ -63,6 +69,7 @@ def simulated(ways: Mapping[str, Peer], seeds: Sequence[int] = SEEDS) -> dict:
 def _add(row: dict, measured: dict, after: int) -> None:
     row["rms_mdps"].append(_rms_mdps(measured["error_dps"][after:]))
     row["learned"] += measured.get("learned", 0)
+    row["wrong"] += measured.get("wrong", 0)
     if measured.get("within_two_sigma") is not None:
         row["within"].append(measured["within_two_sigma"])
 
@@ -95,6 +102,7 @@ def _measured(peer: Peer, one: Given, bias: NDArray[np.float64]) -> dict:
     return {
         "error_dps": error,
         "learned": getattr(peer, "learned", 0),
+        "wrong": getattr(peer, "wrong", 0),
         "within_two_sigma": inside,
     }
 

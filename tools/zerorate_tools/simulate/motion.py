@@ -71,6 +71,22 @@ def hand(start: Start, *, dps: float = 60.0, push_g: float = 0.1) -> Bout:
     return Bout(rate, push * push_g * _envelope(start)[:, None])
 
 
+def tremble(start: Start, *, dps: float = 1.0, aim_deg: float = 5.0) -> Bout:
+    """A hand that holds still as well as it can: 3-8 Hz, dps is the rms of each axis; its slow
+    re-aiming, some aim_deg wide and half a minute long, comes back."""
+    shiver = _sum_of_sines(start, (3.0, 8.0), 12)
+    shiver *= dps / np.maximum(np.gradient(shiver, start.dt_s, axis=0).std(axis=0), 1e-12)
+    aim = _sum_of_sines(start, (0.02, 0.06), 4)
+    return Bout(_rates(start, shiver + aim * aim_deg / np.maximum(aim.std(axis=0), 1e-12)))
+
+
+def tilt(start: Start, *, dps: float = 3.0, hz: float = 0.2) -> Bout:
+    """A boat at anchor, a crane: slow about all axes, near hz; each up to about dps."""
+    angle = _sum_of_sines(start, (0.75 * hz, 1.25 * hz), 3)
+    rate = np.gradient(angle, start.dt_s, axis=0)
+    return Bout(_rates(start, angle * dps / np.maximum(np.abs(rate).max(axis=0), 1e-12)))
+
+
 def vibration(start: Start, *, g: float = 0.3, dps: float = 0.0) -> Bout:
     """Shaken far above the output data rate: g and dps are rms of each axis, sample by sample."""
     n, envelope = len(start.t_s), _envelope(start)[:, None]
@@ -113,7 +129,8 @@ def pose(start: Start, *, face: str = "+z") -> Bout:
 
 
 MOTIONS: dict[str, Callable[..., Bout]] = {
-    f.__name__: f for f in (rest, swing, wave, stride, hand, vibration, turn, car, pose)
+    f.__name__: f
+    for f in (rest, swing, wave, stride, hand, tremble, tilt, vibration, turn, car, pose)
 }
 
 
@@ -148,6 +165,13 @@ def _envelope(start: Start) -> np.ndarray:
     k = np.arange(n) + 0.5
     nearest = np.minimum(np.minimum(k, n - k) / edge, 1.0)
     return np.sin(np.pi / 2 * nearest) ** 2
+
+
+def _sum_of_sines(start: Start, hz: tuple[float, float], count: int) -> np.ndarray:
+    f = start.rng.uniform(*hz, (count, 3))
+    phase = start.rng.uniform(0, 2 * np.pi, (count, 3))
+    w = 2 * np.pi * start.t_s
+    return sum(np.sin(np.outer(w, f[k]) + phase[k]) / f[k] for k in range(count))
 
 
 def _rates(start: Start, angle_deg: np.ndarray) -> np.ndarray:

@@ -20,7 +20,8 @@ class Source:
     """A source as a peer; calling it returns each session's bias (n, 3), dps, 0 while unknown.
 
     name: in_motion or realtime; options: keywords of its settings. After a call, `within` holds
-    for every learned value and axis whether the truth given in `truth_dps` lay within two sigma.
+    for every learned value and axis whether the truth given in `truth_dps` lay within two sigma;
+    `learned` counts the windows or intervals, `wrong` those with an axis beyond four sigma.
     """
 
     def __init__(self, name: str, **options: object) -> None:
@@ -28,11 +29,11 @@ class Source:
         self.options = options
         self.truth_dps: Sequence[NDArray[np.float64]] | None = None
         self.within: list[bool] = []
-        self.learned = 0
+        self.learned = self.wrong = 0
 
     def __call__(self, sessions: Sequence[Given]) -> list[NDArray[np.float64]]:
         """Run every session from nothing."""
-        self.within, self.learned = [], 0
+        self.within, self.learned, self.wrong = [], 0, 0
         return [self._biases(number, one) for number, one in enumerate(sessions)]
 
     def _biases(self, number: int, one: Given) -> NDArray[np.float64]:
@@ -74,7 +75,9 @@ class Source:
         if self.truth_dps is None:
             return
         known = sigma < 1000
-        inside = np.abs(bias - self.truth_dps[number][i]) < 2 * sigma
+        off = np.abs(bias - self.truth_dps[number][i])
+        inside = off < 2 * sigma
+        self.wrong += bool(np.any(off[known] > 4 * sigma[known]))
         self.within += inside[known].tolist()
 
 
