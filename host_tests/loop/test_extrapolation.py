@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from zerorate_tools.loop.fit.regression import Regression
-from zerorate_tools.loop.fit.single import pieces
+from zerorate_tools.loop.fit.single import PiecesByLine
 from zerorate_tools.loop.read.sessions import block_basis
 from zerorate_tools.loop.search.catalogue import candidates
 from zerorate_tools.loop.search.extrapolation import MOST, followed
@@ -87,7 +87,7 @@ def test_a_found_effect_is_held_further_out_only_after_several_power_ons():
     sessions = simulate(3, [("supply-voltage", 5.0)]).sessions[:-1]
     volts = np.concatenate([s.sources["vdd_mv"] for s in sessions])
     many = select(sessions).found[0].candidate.terms[0]
-    alone = select(sessions[:1], pieces(sessions[0])).found[0].candidate.terms[0]
+    alone = select(sessions[:1], on_pieces=PiecesByLine(sessions[0])).found[0].candidate.terms[0]
     assert many.lo < volts.min() and many.hi > volts.max()
     own = sessions[0].sources["vdd_mv"]
     assert own.min() <= alone.lo < alone.hi <= own.max()

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from zerorate_tools.loop.analyse import analyse
-from zerorate_tools.loop.fit.single import split
+from zerorate_tools.loop.fit.single import PiecesByLine
 from zerorate_tools.loop.read.sessions import block_basis
 from zerorate_tools.loop.report.report import report
 from zerorate_tools.loop.search.confounding import label
@@ -112,23 +112,11 @@ def test_a_step_is_listed_with_its_time_and_size_and_not_corrected():
     assert judgement.before_rms == judgement.after_rms
 
 
-def test_one_recording_alone_is_split_in_time_with_gaps():
-    train, locked, folds = split(simulate(1, sessions=1).sessions[0])
-    assert not (train.available & locked.available).any()
-    assert sum(f.available.sum() for f in folds) < train.available.sum()
-    border = [
-        abs(i - j) for i in train.available.nonzero()[0] for j in locked.available.nonzero()[0]
-    ]
-    assert min(border) > 3
-
-
 def test_one_recording_alone_still_shows_a_large_effect():
-    train, locked, folds = split(
-        simulate(41, [("thermal-hysteresis", 5.0)], sessions=1).sessions[0]
-    )
-    selection = select([train], folds)
+    (session,) = simulate(41, [("thermal-hysteresis", 5.0)], sessions=1).sessions
+    selection = select([session], on_pieces=PiecesByLine(session))
     assert "thermal-hysteresis" in names(selection)
-    assert judge(selection, [locked]).gains[0] > 5
+    assert judge(selection, [session]).gains[0] > 5
 
 
 def test_a_path_that_repeats_without_a_temperature_is_told_by_time_and_never_confirmed():

@@ -1,10 +1,11 @@
 """One recording alone: an effect must gain on what the firmware learns without it."""
 
 import numpy as np
+import pyarrow.parquet as pq
 import pytest
 from zerorate_tools.loop.analyse import analyse
-from zerorate_tools.loop.close import load
-from zerorate_tools.loop.fit.single import PiecesByLine, nats, speaks_for, split
+from zerorate_tools.loop.close import close, load
+from zerorate_tools.loop.fit.single import PiecesByLine, nats, speaks_for
 from zerorate_tools.loop.search.bends import find_bends
 from zerorate_tools.loop.search.select import Search
 from zerorate_tools.loop.simulated import simulate
@@ -83,8 +84,7 @@ def test_a_curve_that_explains_all_but_white_noise_ends_the_search(tmp_path):
 @pytest.fixture(scope="module")
 def bent():
     session = simulate(3, [("temperature-quadratic", 20.0)], sessions=1, bare=True).sessions[0]
-    train, _, folds = split(session)
-    return Search([train], folds)
+    return Search([session], on_pieces=PiecesByLine(session))
 
 
 def test_a_bend_that_pieces_speak_against_is_refused_with_the_reason(bent):
@@ -98,8 +98,7 @@ def test_a_bend_that_pieces_speak_against_is_refused_with_the_reason(bent):
 
 
 def test_of_bends_that_predict_the_pieces_the_likeliest_is_taken(bent):
-    judged = PiecesByLine(bent.folds.sessions)
-    bends = find_bends(bent.regression, judged, bent.straight, bent.pool)
+    bends = find_bends(bent.regression, bent.on_pieces, bent.straight, bent.pool)
     assert [c.kind for c, _ in bends.found] == ["temperature-quadratic"]
     assert bends.found[0][1].session_gains.sum() > 1
 
@@ -117,22 +116,49 @@ def test_nothing_gained_is_nothing_that_speaks_for_an_effect():
     assert not speaks_for(nats(np.ones((5, 3)), np.full((5, 3), np.inf), [20] * 5))
 
 
-def test_a_piece_left_out_is_not_learned(tmp_path):
+def test_every_block_is_left_out_once_and_gaps_part_it_from_what_is_fitted():
+    (session,) = simulate(1, sessions=1, hours=2.0).sessions
+    judged = PiecesByLine(session)
+    assert np.bincount(judged.fold).tolist() == [36] * 10
+    for k, part in enumerate(judged.parts):
+        left = np.flatnonzero(judged.fold == k)
+        apart = np.abs(left[:, None] - np.flatnonzero(part.available)).min(axis=1)
+        assert apart.min() == 3 and np.isfinite(part.rate_dps[judged.fold != k]).mean() > 0.6
+
+
+def test_pieces_lie_over_the_whole_course_of_temperature():
+    (session,) = simulate(1, sessions=1, hours=2.0).sessions
+    temp = session.block_mean(session.sources["temp"])
+    fold = PiecesByLine(session).fold
+    spans = [np.ptp(temp[fold == k]) for k in range(10)]
+    assert np.median(spans) > 0.3 * np.ptp(temp)
+
+
+def test_what_a_piece_holds_changes_its_own_error_alone(tmp_path):
     path = warm_up(tmp_path, 1, lambda u: 0.0 * u)
     session = load([path]).sessions[0]
-    train, _, folds = split(session)
+    fold = PiecesByLine(session).fold
     other = read_recording(path)
-    inside_piece = np.repeat(folds[2].available, session.block_s)[: len(other)]
-    other.columns["gx"] += np.where(inside_piece, 100, 0).astype(np.int32)
+    inside = np.repeat(fold == 2, int(session.block_s))[: len(other)]
+    other.columns["gx"] += np.where(inside, 100, 0).astype(np.int32)
     write_recording(other, tmp_path / "other.parquet")
     learned = []
     for log in (path, tmp_path / "other.parquet"):
         power_on = PowerOn(session, log, 1310.0, session.rate_dps, session.available, ())
-        devices = PiecesByKernels(power_on, train, folds, SCALES)._learned([None] * 5)
+        devices = PiecesByKernels(power_on, SCALES).learned([None] * 10)
         frames = next(iter(frames_in_batches(read_recording(path))))
         learned.append([d.run(frames, learn=False)[:, 0] for d in devices])
     same = [bool((a == b).all()) for a, b in zip(*learned)]
-    assert same == [False, False, True, False, False]
+    assert same == [k == 2 for k in range(10)]
+
+
+def test_every_row_is_test_and_by_a_model_that_has_not_seen_it(tmp_path):
+    path = warm_up(tmp_path, 0, lambda u: 0.15 * (u**3 - 0.6 * u), odr_hz=1 / 15)
+    result = close([path], tmp_path / "out")
+    rows = pq.read_table(tmp_path / "out" / "corrected.parquet").to_pandas()
+    assert set(rows["split"]) == {"test"} and len(rows) == 240
+    left = read_recording(path).columns["gx"] - rows["bias_after_gx"]
+    assert 1e3 * np.sqrt((left**2).mean()) / 1310 == pytest.approx(result["after_mdps"][0], rel=0.2)
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -143,5 +169,5 @@ def test_rests_that_are_few_and_far_between_teach_no_bend(seed):
     session.rate_dps[~rests] = np.nan
     session.weight[~rests] = 0.0
     found = analyse([session]).selection
-    assert not found.bends
+    assert not found.found
     assert any("too few rests" in reason for _, reason in found.refused)

@@ -10,7 +10,7 @@ from threadpoolctl import threadpool_limits
 from ..recordings import open_recording
 from .fit.floor import floor_dps
 from .fit.line import deployed
-from .fit.single import pieces, split
+from .fit.single import PiecesByLine
 from .motion.in_motion import in_motion, slots_of, without_scales
 from .read.blocks import sessions_from
 from .read.gate import (
@@ -55,15 +55,10 @@ def analyse(
     )
     sessions = [without_scales(s, motion) for s in sessions]
     taken = len(slots_of(motion))
-    if len(sessions) == 1:
-        train_part, locked_part, folds = split(sessions[0])
-        train, locked = [train_part], [locked_part]
-    else:
-        train, locked = [s for i, s in enumerate(sessions) if i != at], [sessions[at]]
-        folds = pieces(train[0]) if len(train) == 1 else []
-    by_kernels = _on_pieces(train[0], folds, motion, logs) if folds and logs else None
-    selection = select(train, folds, taken, by_kernels)
-    selection, judgement = upheld(selection, locked)
+    locked = [sessions[at]]
+    train = [s for i, s in enumerate(sessions) if i != at] or locked
+    by_pieces = _on_pieces(train[0], motion, logs) if len(train) == 1 else None
+    selection, judgement = upheld(select(train, taken, by_pieces), locked)
     whole = [*selection.straight, *selection.terms]
     floor = floor_dps(judgement.whole, whole)
     terms, coefficients = deployed(selection)
@@ -72,12 +67,13 @@ def analyse(
     return Analysis(sessions, train, locked, selection, judgement, floor, gate, motion, lines)
 
 
-def _on_pieces(train, folds, motion, logs):
-    log = logs[train.name]
-    scales, ideal = open_recording(log).scales, ideal_dps(train, motion)
-    channels, lsb = extra_channels(train), scales.gyro_lsb_per_dps
-    power_on = PowerOn(train, log, lsb, ideal, train.available, channels)
-    return PiecesByKernels(power_on, train, folds, scales)
+def _on_pieces(session, motion, logs):
+    if not logs:
+        return PiecesByLine(session)
+    log = logs[session.name]
+    scales, ideal = open_recording(log).scales, ideal_dps(session, motion)
+    channels, lsb = extra_channels(session), scales.gyro_lsb_per_dps
+    return PiecesByKernels(PowerOn(session, log, lsb, ideal, session.available, channels), scales)
 
 
 def sessions_of(ticks: list[Ticks]) -> tuple[list[Session], GateReport]:

@@ -7,30 +7,28 @@ from pathlib import Path
 import numpy as np
 
 from . import chips
-from .real import cubic
+from .real import cubic_left
 
 _COLOURS = {"line": "tab:gray", "after": "tab:blue", "cubic": "tab:orange"}
 
 
 def draw_recording(analysis, title: str, path: Path) -> None:
     """Temperature, and an axis a panel: the rate less a straight line, less what was found, and
-    less a cubic; what was held out is shaded, the floor is a band."""
+    less a cubic, each by what has not seen it; the floor is a band."""
     import matplotlib.pyplot as plt
 
-    session = analysis.sessions[0]
+    session = analysis.locked[0]
     minutes = (np.arange(session.blocks) + 0.5) * session.block_s / 60
     figure, panels = plt.subplots(4, 1, figsize=(9, 10), sharex=True, layout="constrained")
     figure.suptitle(title)
     _temperature(panels[0], session, minutes)
-    left = _left(analysis, session)
+    left = _left(analysis)
     for axis, panel in enumerate(panels[1:]):
         floor = 1e3 * analysis.floor_dps[axis]
         panel.axhspan(-floor, floor, color="tab:green", alpha=0.2, label="floor")
         for name, rows in left.items():
             panel.plot(minutes, 1e3 * rows[:, axis], ".-", ms=3, lw=0.8, color=_COLOURS[name],
                        label=name)  # fmt: skip
-        for locked in analysis.locked:
-            _shade(panel, minutes, locked.available)
         panel.set_ylabel(f"{'xyz'[axis]}, mdps")
     panels[1].legend(ncols=4, fontsize="small")
     panels[-1].set_xlabel("minutes")
@@ -46,28 +44,11 @@ def _temperature(panel, session, minutes):
         panel.text(0.5, 0.5, "no temperature recorded", transform=panel.transAxes, ha="center")
 
 
-def _left(analysis, session):
-    """Name -> (n, 3) dps left, with the offset of the part that was fitted."""
-    from ...loop.fit.line import deployed
-    from ...loop.fit.regression import predicted
-
-    models = {"line": deployed(analysis.selection, effects=False)}
-    if (rival := cubic(analysis)) is not None:
-        models["cubic"] = rival
-    if analysis.selection.found:
-        models["after"] = deployed(analysis.selection)
-    train = analysis.train[0].available
-    out = {}
-    for name, (terms, coefficients) in models.items():
-        rows = session.rate_dps - predicted(terms, coefficients, session)
-        out[name] = rows - np.nanmean(rows[train], axis=0)
-    return out
-
-
-def _shade(panel, minutes, mask):
-    edges = np.flatnonzero(np.diff(np.r_[0, mask.astype(int), 0]))
-    for first, last in zip(edges[::2], edges[1::2]):
-        panel.axvspan(minutes[first], minutes[min(last, len(minutes) - 1)], color="0.5", alpha=0.15)
+def _left(analysis):
+    """Name -> (n, 3) dps left of what was held out."""
+    judged, rival = analysis.judgement, cubic_left(analysis)
+    left = {"line": judged.residual_before[0], "after": judged.residual_after[0]}
+    return left if rival is None else {**left, "cubic": rival[0]}
 
 
 def draw_chip(path: Path, to: Path) -> None:

@@ -85,30 +85,29 @@ def _recording(path: Path, scratch: Path, plots: Path | None) -> dict:
     return row
 
 
-def cubic(analysis) -> tuple[list, NDArray[np.float64]] | None:
-    """Terms and coefficients of a cubic over temperature fitted on the same training part, held at
-    its range; None without temperature."""
-    from ...loop.fit.line import ordinary
-
-    if not analysis.selection.straight:
-        return None
-    train = analysis.selection.regression.sessions
-    seen = np.concatenate([s.block_mean(s.sources["temp"])[s.available] for s in train])
-    line = replace(analysis.selection.straight[0], lo=float(seen.min()), hi=float(seen.max()))
-    terms = [replace(line, power=k) for k in (1, 2, 3)]
-    return terms, ordinary(terms, train)
+def cubic(analysis) -> list | None:
+    """The terms of a cubic over temperature; None without temperature."""
+    line = analysis.selection.straight
+    return [replace(line[0], power=k) for k in (1, 2, 3)] if line else None
 
 
 def cubic_left(analysis) -> list[NDArray[np.float64]] | None:
-    """(n, 3) dps that the cubic leaves of each locked part, NaN where unscored."""
+    """(n, 3) dps that a cubic leaves of each locked part by the same pieces, or fitted on the same
+    power-ons, held at the edges of what it was fitted to; NaN where unscored.
+    """
+    from ...loop.fit.line import ordinary
     from ...loop.fit.regression import predicted
+    from ...loop.fit.single import PiecesByLine, held
     from ...loop.verify.judge import scored
 
-    fit = cubic(analysis)
-    if fit is None:
+    terms = cubic(analysis)
+    if terms is None:
         return None
-    fitted = {s.name: s for s in analysis.selection.regression.sessions}
-    return [scored(s, predicted(*fit, s), fitted.get(s.name))[0] for s in analysis.locked]
+    if analysis.single:
+        return [PiecesByLine(analysis.sessions[0]).residual([], terms)]
+    terms = [held(t, analysis.train) for t in terms]
+    fitted = ordinary(terms, analysis.train)
+    return [scored(s, predicted(terms, fitted, s))[0] for s in analysis.locked]
 
 
 def _rms(parts: list[NDArray[np.float64]]) -> float:

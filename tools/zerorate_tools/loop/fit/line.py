@@ -29,18 +29,17 @@ def ordinary(terms, sessions, effects=(), coefficients=None) -> np.ndarray:
 
 
 def deployed(selection, effects: bool = True) -> tuple[list, np.ndarray]:
-    """Terms and (terms, 3) coefficients as deployed: the line first, then the effects if wanted."""
+    """Terms and (terms, 3) coefficients as deployed: the line first, then the effects if wanted.
+
+    Those of a single recording are learned like the line: there the noise's walk is the bend.
+    """
     straight, terms = list(selection.straight), list(selection.terms) if effects else []
-    fitted = selection.regression.fit([*straight, *terms]).coefficients[len(straight) :]
-    fitted = fitted * selection.applied if effects else fitted
+    sessions, every = selection.regression.sessions, [*straight, *terms]
+    if not every:
+        return [], np.zeros((0, 3))
+    alone = selection.alone
+    whole = ordinary(every, sessions) if alone else selection.regression.fit(every).coefficients
+    fitted = whole[len(straight) :] * (selection.applied if effects else 1.0)
     if not straight:
         return terms, fitted
-    # Bends of a single recording are learned like the line: there the noise's walk is the bend.
-    bends = (
-        sum(len(f.candidate.terms) for f in selection.found[: selection.bends]) if effects else 0
-    )
-    rest = terms[bends:]
-    sessions = selection.regression.sessions
-    line = ordinary([*straight, *terms[:bends]], sessions, rest, fitted[bends:])
-    line[len(straight) :] *= selection.applied[:bends] if effects else 1.0
-    return [*straight, *terms], np.vstack([line, fitted[bends:]])
+    return every, np.vstack([ordinary(straight, sessions, terms, fitted), fitted])

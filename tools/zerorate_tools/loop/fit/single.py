@@ -1,8 +1,8 @@
-"""One recording alone: blocks of time stand in for sessions, with gaps between what is fitted and
-what is not.
+"""One recording alone: short pieces of it, interleaved over its whole course, are left out in turn.
 
-Weaker than sessions: one turn-on offset, one course of temperature, and a slow cause outlasts any
-gap.
+What remembers needs the whole course of its input, so that is always there: only the rates of a
+piece are left out, with a gap on either side. Weaker than whole power-ons: there is one turn-on
+offset and one course of temperature, and a slow cause outlasts any gap.
 """
 
 from __future__ import annotations
@@ -11,73 +11,45 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.ndimage import binary_dilation
 
 from ...model.term import Term
-from ..read.sessions import Session, block_basis
+from ..read.sessions import Session
+from .line import ordinary
+from .regression import predicted
 
-#: Shares of the recording's time that are locked away; inside, so that no range is extrapolated.
-_LOCKED = ((0.28, 0.42), (0.66, 0.80))
-_FOLDS = 5
-_GAP_SHARE = 0.03
-_LEAST_LEFT = 3
+#: Pieces, and the turns in which they are left out: each turn has pieces far apart.
+PIECES, FOLDS = 20, 10
+#: Blocks of a piece, at least, and the share of a piece that the gap on either side has.
+LEAST_OF_A_PIECE, _GAP_SHARE = 3, 1 / 8
 _WORTH = 0.1
 #: Nats that pieces left out must gain in all. Of 310 simulated bends that the likelihood shows, at
 #: two to five floors, 33 made the held-out error worse by more than 2 %; 285 and 26 of them pass.
 #: To ask for more costs more of the bends that help: at 1 nat it is 256 and 22.
 LEAST_NATS = 0.0
 WEAKER = (
-    "One recording only: stretches of it were held out instead of a whole power-on. An effect that "
-    "repeats at every power-on cannot be told from one that happened once, and a slow cause spans "
-    "the gaps; nothing is confirmed before a second power-on shows it too."
+    f"One recording only: {PIECES} pieces of it, interleaved over its course, were held out in "
+    f"{FOLDS} turns instead of a whole power-on, each judged by a model fitted to the others. An "
+    "effect that repeats at every power-on cannot be told from one that happened once, and a slow "
+    "cause spans the gaps; nothing is confirmed before a second power-on shows it too."
 )
 
 
-def _only(session: Session, keep: np.ndarray, name: str) -> Session:
-    rate = np.where(keep[:, None], session.rate_dps, np.nan)
-    return replace(session, name=name, rate_dps=rate, weight=np.where(keep, session.weight, 0.0))
-
-
-def held_out(n: int) -> tuple[np.ndarray, np.ndarray]:
-    """(n,) bool of n blocks: those locked away, and those with the gaps beside them."""
-    at = (np.arange(n) + 0.5) / n
-    locked, near = np.zeros(n, bool), np.zeros(n, bool)
-    for first, last in _LOCKED:
-        locked |= (at >= first) & (at < last)
-        near |= (at >= first - _GAP_SHARE) & (at < last + _GAP_SHARE)
-    return locked, near
-
-
-def split(session: Session) -> tuple[Session, Session, list[Session]]:
-    """Training part, locked part, and pieces of the training part to leave out in turn."""
-    locked, near = held_out(session.blocks)
-    train = _only(session, ~near, session.name)
-    return train, _only(session, locked, session.name), pieces(train)
+def fold_of(session: Session) -> np.ndarray:
+    """(n,) the turn in which each block is left out; one without a rate goes with its neighbour."""
+    there = np.flatnonzero(session.available)
+    pieces = np.array_split(there, min(PIECES, max(1, len(there) // LEAST_OF_A_PIECE)))
+    ends = np.array([p[-1] for p in pieces[:-1]])
+    return np.searchsorted(ends, np.arange(session.blocks)) % min(FOLDS, len(pieces))
 
 
 def gap_blocks(session: Session) -> int:
-    """Blocks between a piece and what is fitted beside it, at either side of their border."""
-    return max(1, int(_GAP_SHARE * session.blocks / 2))
-
-
-def pieces(session: Session) -> list[Session]:
-    """Five pieces of what a session has, with gaps, to leave out in turn."""
-    n = session.blocks
-    parts = np.array_split(np.flatnonzero(session.available), _FOLDS)
-    gap = gap_blocks(session)
-    return [
-        _only(session, np.isin(np.arange(n), _inside(p, gap)), f"{session.name} part {i + 1}")
-        for i, p in enumerate(parts)
-    ]
-
-
-def _inside(blocks: np.ndarray, gap: int) -> np.ndarray:
-    """The blocks without a gap at either end; where rests are rare, some are left all the same."""
-    gap = min(gap, max(0, (len(blocks) - _LEAST_LEFT) // 2))
-    return blocks[gap : len(blocks) - gap]
+    """Blocks at either side of a piece that are neither fitted nor judged in its turn."""
+    return max(1, int(_GAP_SHARE * session.available.sum() / PIECES))
 
 
 class PiecesByLine:
-    """Judges bends of one recording by how well its pieces are predicted from the others.
+    """Judges effects of one recording by how well its pieces are predicted from the others.
 
     Ordinary least squares with one offset for all pieces, as they are of one power-on, beside a
     straight line; for recordings that the firmware's own kernels cannot be run over.
@@ -85,40 +57,72 @@ class PiecesByLine:
 
     reason = "does not predict the pieces left out"
 
-    def __init__(self, folds: Sequence[Session]) -> None:
-        self._folds = list(folds)
+    def __init__(self, session: Session) -> None:
+        self.fold = fold_of(session)
+        self.session = session
+        near = np.ones(2 * gap_blocks(session) + 1, bool)
+        left = [self.fold == k for k in range(self.fold.max() + 1)]
+        self.parts = [_only(session, ~binary_dilation(one, near)) for one in left]
 
     def __call__(
         self, straight: Sequence[Term], found: Sequence[Term], candidate: Sequence[Term]
     ) -> np.ndarray:
-        """(folds,) nats by which each piece is better predicted with the candidate."""
+        """(folds,) nats by which each turn's pieces are better predicted with the candidate."""
         before, after = (
-            [self._left(i, [*straight, *found], more) for i in range(len(self._folds))]
-            for more in ((), candidate)
+            self._squares(self.residual(straight, terms)) for terms in (found, [*found, *candidate])
         )
-        blocks = [int(f.available.sum()) for f in self._folds]
-        return nats(np.array(before), np.array(after), blocks)
+        counted = np.bincount(self.fold[self.session.available], minlength=len(self.parts))
+        return nats(before, after, counted)
 
-    def _left(self, i, terms, more):
-        """(3,) squares left in piece i by a fit to the others."""
-        piece, others = self._folds[i], [f for j, f in enumerate(self._folds) if j != i]
-        terms = [*terms, *(held(t, others) for t in more)]
-        x, y = _stacked(terms, others)
-        centre, scale = x.mean(axis=0), np.maximum(x.std(axis=0), 1e-300)
-        design = np.column_stack([np.ones(len(x)), (x - centre) / scale])
-        coefficients = np.linalg.lstsq(design, y, rcond=1e-10)[0]
-        x, y = _stacked(terms, [piece])
-        left = y - np.column_stack([np.ones(len(x)), (x - centre) / scale]) @ coefficients
-        return (left**2).sum(axis=0)
+    def residual(
+        self, straight: Sequence[Term], terms: Sequence[Term], applied: np.ndarray | None = None
+    ) -> np.ndarray:
+        """(n, 3) dps, each block by a fit that has not seen it; NaN where there is no rate.
+
+        applied: (terms, 3) by which coefficients are multiplied.
+        """
+        out = np.full((self.session.blocks, 3), np.nan)
+        for k, part in enumerate(self.parts):
+            kept, coefficients = fitted_to(part, straight, terms, applied)
+            left = self.session.rate_dps - predicted(kept, coefficients, self.session)
+            own = self.fold == k
+            out[own] = (left - left[part.available].mean(axis=0))[own]
+        return np.where(self.session.available[:, None], out, np.nan)
+
+    def _squares(self, left):
+        """(folds, 3) sums of squares; infinite where there is nothing to sum."""
+        squares = np.where(self.session.available[:, None], left**2, 0.0)
+        sums = [squares[self.fold == k].sum(axis=0) for k in range(len(self.parts))]
+        return np.nan_to_num(sums, nan=np.inf)
 
 
-def _stacked(terms, parts):
-    """Columns of the terms, and rates, of all blocks of some sessions."""
-    x = [np.column_stack([block_basis(t, s) for t in terms])[s.available] for s in parts]
-    return np.vstack(x), np.vstack([s.rate_dps[s.available] for s in parts])
+def fitted_to(part: Session, straight, terms, applied=None) -> tuple[list[Term], np.ndarray]:
+    """(terms, (terms, 3) dps per unit) fitted to a part of a recording, the line first.
+
+    What does not remember is held at the edges of what the part shows of its source; the line is
+    fitted anew beside what is applied.
+    """
+    straight = list(straight)
+    kept = [held(t, [part]) if is_instant(t) else t for t in terms]
+    every = [*straight, *kept]
+    if not every:
+        return [], np.zeros((0, 3))
+    coefficients = ordinary(every, [part])
+    if applied is not None:
+        coefficients[len(straight) :] *= applied
+        if straight and not np.all(applied):
+            rest = coefficients[len(straight) :]
+            coefficients[: len(straight)] = ordinary(straight, [part], kept, rest)
+    return every, coefficients
 
 
-def nats(before: np.ndarray, after: np.ndarray, blocks: Sequence[int]) -> np.ndarray:
+def is_instant(term: Term) -> bool:
+    """Whether a term knows nothing of what was before."""
+    remembers = term.lag_mode != "none" or term.memory != "none" or term.delay_s or term.decay_s
+    return not remembers and "time" not in (term.source, term.second)
+
+
+def nats(before: np.ndarray, after: np.ndarray, blocks: Sequence[int] | np.ndarray) -> np.ndarray:
     """(folds,) nats gained, from (folds, 3) squares left before and after in so many blocks each.
 
     Every piece has a noise of its own, so that one far from what the others show, where both are
@@ -138,4 +142,10 @@ def speaks_for(gain: np.ndarray) -> bool:
 def held(term: Term, sessions: Sequence[Session]) -> Term:
     """The term held at the edges of what some sessions show of its source."""
     seen = np.concatenate([s.block_mean(s.source(term.source))[s.available] for s in sessions])
-    return replace(term, lo=float(seen.min()), hi=float(seen.max()))
+    lo, hi = max(term.lo, float(seen.min())), min(term.hi, float(seen.max()))
+    return replace(term, lo=min(lo, hi), hi=hi)
+
+
+def _only(session: Session, keep: np.ndarray) -> Session:
+    rate = np.where(keep[:, None], session.rate_dps, np.nan)
+    return replace(session, rate_dps=rate, weight=np.where(keep, session.weight, 0.0))

@@ -48,10 +48,10 @@ def smallest_ratio(family: str, dof: int, tried: float) -> float:
     return float(chi2.isf(LEVEL[family] / tried, dof))
 
 
-def decide(regression, folds, nuisances, candidate, ratio: float, tried: float, pool) -> Decision:
+def decide(regression, nuisances, candidate, ratio: float, tried: float, pool) -> Decision:
     """All locks on a candidate whose ratio beside the nuisances is known.
 
-    folds: regression whose sessions are left out in turn; pool: terms to make surrogates from.
+    pool: terms to make surrogates from. One session alone has no other to predict it.
     """
     dof = 3 * len(candidate.terms)
     level = LEVEL[candidate.family]
@@ -64,7 +64,9 @@ def decide(regression, folds, nuisances, candidate, ratio: float, tried: float, 
         return Decision(
             False, p, ratio, d, np.array([]), "no better than irrelevant channels on this noise"
         )
-    gain = gains(folds, nuisances, candidate.terms)
+    if len(regression.sessions) == 1:
+        return Decision(True, p, ratio, d, np.array([]))
+    gain = gains(regression, nuisances, candidate.terms)
     enough = predicts(gain)
     reason = "" if enough else "does not predict the sessions left out"
     return Decision(enough, p, ratio, d, gain, reason)

@@ -10,7 +10,7 @@ import numpy as np
 from ...model.term import Term
 from ..fit.common_cause import coherence, turned_axes
 from ..fit.regression import Regression
-from ..fit.single import PiecesByLine
+from ..fit.single import LEAST_OF_A_PIECE, PIECES
 from ..read.sessions import Session
 from . import confounding, drift_test
 from . import steps as events
@@ -30,8 +30,8 @@ from .selection import Found, Selection
 
 MOST_EFFECTS = 6
 _KINDS_TRIED = 4
-#: Blocks at rest in each piece of one recording, below which its bends are not looked for.
-_LEAST_OF_A_PIECE = 6
+#: Blocks at rest of one recording below which its bends are not looked for.
+_LEAST_BLOCKS = PIECES * LEAST_OF_A_PIECE
 _START_S = 60.0
 _TURN_BELOW = 1e-3
 #: Of the plain error of sessions left out, which for an effect that is there only drift makes grow.
@@ -50,14 +50,12 @@ class Search:
     def __init__(
         self,
         sessions: list[Session],
-        folds: list[Session] | None = None,
         taken: int = 0,
         on_pieces: JudgedOnPieces | None = None,
     ):
         self.taken = taken
         self.regression = Regression(sessions)
         self.on_pieces = on_pieces
-        self.folds = Regression(folds) if folds else None
         self.straight = straight_line(sessions)
         self.bend = tuple(replace(t, power=2) for t in self.straight)
         self.pool = all_candidates(sessions)
@@ -71,20 +69,20 @@ class Search:
     @cached_property
     def prices(self) -> Prices:
         """What each candidate must reach, beside the bend that one recording may have shown."""
-        power_ons = not self.folds and len(self.regression.sessions) > 1
+        power_ons = len(self.regression.sessions) > 1
         return Prices(self.regression, self.pool, self.straight, self.bend, power_ons)
 
     def terms(self, leave: int | None = None) -> list[Term]:
         return [t for i, f in enumerate(self.found) if i != leave for t in f.candidate.terms]
 
     def run(self) -> Selection:
-        if self.folds:
+        if self.on_pieces:
             self._bend_first()
         while len(self.found) < MOST_EFFECTS and self._add_one():
             self._drop_idle()
         self._list_steps()
         name_found(self.regression, self.straight, self.found, self.pool, self.bends)
-        if not self.folds:
+        if not self.on_pieces:
             follow_further(self.regression, self.straight, self.found)
         r = self.regression
         smallest = self._smallest()
@@ -98,7 +96,7 @@ class Search:
             self.bend,
             self.pool,
             smallest,
-            self.bends,
+            bool(self.on_pieces),
         )
 
     def _smallest(self):
@@ -115,12 +113,11 @@ class Search:
         return out
 
     def _bend_first(self):
-        assert self.folds is not None
-        if min(s.available.sum() for s in self.folds.sessions) < _LEAST_OF_A_PIECE:
+        assert self.on_pieces is not None
+        if self.regression.sessions[0].available.sum() < _LEAST_BLOCKS:
             self.refused.append(("temperature-curve", "too few rests to tell by pieces left out"))
             return
-        judged = self.on_pieces or PiecesByLine(self.folds.sessions)
-        bends = find_bends(self.regression, judged, self.straight, self.pool)
+        bends = find_bends(self.regression, self.on_pieces, self.straight, self.pool)
         self.found = [Found(c, d) for c, d in bends.found]
         self.refused += bends.refused
         self.bends = len(self.found)
@@ -135,9 +132,6 @@ class Search:
         if coherence(r, nuisances)[0] < _TURN_BELOW:
             r.turn(turned_axes(r, nuisances))
             r.settle(nuisances)
-        if self.folds:
-            self.folds.turn(r.axes)
-            self.folds.settle(nuisances)
 
     def _nuisances(self, candidate: Candidate) -> list[Term]:
         bend = () if candidate.kind == "temperature-quadratic" else self.bend
@@ -197,9 +191,7 @@ class Search:
         return found
 
     def _settle(self, terms):
-        for r in (self.regression, self.folds):
-            if r:
-                r.settle(terms)
+        self.regression.settle(terms)
 
     def _step_is_larger(self, ratio: float) -> bool:
         if len(self.steps) >= events.MOST_PER_SESSION * len(self.regression.sessions):
@@ -238,12 +230,11 @@ class Search:
         r, tried = self.regression, self.prices.tried(c)
         if self.prices.is_by_time(c):
             return drift_test.considered(r, nuisances, c, ratio, tried)
-        return decide(r, self.folds or r, nuisances, c, ratio, tried, self.singles)
+        return decide(r, nuisances, c, ratio, tried, self.singles)
 
     def _grows_with(self, candidate: Candidate) -> bool:
         """Whether the plain error of what is left out grows with a candidate as deployed."""
-        folds = self.folds or self.regression
-        return growth(folds, self.straight, self.terms(), candidate.terms) > _MOST_GROWTH
+        return growth(self.regression, self.straight, self.terms(), candidate.terms) > _MOST_GROWTH
 
     def _is_a_start(self, candidate: Candidate) -> bool:
         """Whether a transient is no longer than a found lag of temperature takes to forget what it
@@ -285,14 +276,12 @@ class Search:
 
 def select(
     sessions: list[Session],
-    folds: list[Session] | None = None,
     taken: int = 0,
     on_pieces: JudgedOnPieces | None = None,
 ) -> Selection:
     """Everything that the training sessions show, as far as the firmware has room for it.
 
-    folds: pieces of a single session, left out in turn where there are no further sessions; taken:
-    slots that what was found in motion needs; on_pieces: what judges effects there, `PiecesByLine`
-    for bends alone by default.
+    taken: slots that what was found in motion needs; on_pieces: what judges effects of a session
+    that stands alone by pieces of it left out.
     """
-    return Search(sessions, folds, taken, on_pieces).run()
+    return Search(sessions, taken, on_pieces).run()

@@ -45,17 +45,17 @@ class Selection:
     bend: tuple[Term, ...]
     pool: list[Candidate]
     smallest_dps: dict[str, float]
-    bends: int = 0  # of the effects found, how many at the start are bends of a single recording
+    alone: bool = False  # whether one recording was fitted, whose pieces judged
     withdrawn: list[tuple[str, str]] = field(default_factory=list)  # see `uphold`
 
     def first(self, effects: int) -> Selection:
         """The same with the first so many effects alone."""
-        return replace(self, found=self.found[:effects], bends=min(effects, self.bends))
+        return replace(self, found=self.found[:effects])
 
     def without(self, effect: int) -> Selection:
         """The same without one of the effects."""
         found = [f for i, f in enumerate(self.found) if i != effect]
-        return replace(self, found=found, bends=self.bends - (effect < self.bends))
+        return replace(self, found=found)
 
     def spared(self, effect: int, axes: Iterable[bool], reason: str) -> Selection:
         """The same with an effect taken from some axes, and withdrawn where none is left."""

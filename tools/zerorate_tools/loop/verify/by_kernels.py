@@ -7,109 +7,107 @@ on a straight line, but what it gains on a firmware that has learned the other p
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from scipy.ndimage import binary_dilation
 
 from ...model import CannotDeploy, Model, Slot, build_model
 from ...model.term import Term
 from ...recordings import Scales
-from ..fit.line import ordinary
-from ..fit.single import gap_blocks, held, nats
-from ..read.sessions import Session
+from ...replay.samples import Frames
+from ..fit.single import PiecesByLine, fitted_to, is_instant
 from .firmware import Firmware, at_once, rows
 from .power_on import BlockMeans, PowerOn
 
 _LEAD_BLOCKS = 3
 
 
-class PiecesByKernels:
-    """Judges effects on the pieces of a session; called like `single.PiecesByLine`.
+class PiecesByKernels(PiecesByLine):
+    """Judges effects on the pieces of a recording as the board would do with them.
 
-    power_on: the recording; train: the part of it that may be fitted; folds: its pieces.
+    power_on: the recording.
     """
 
     reason = "on pieces left out it gains nothing on the firmware's own curve"
 
-    def __init__(
-        self, power_on: PowerOn, train: Session, folds: Sequence[Session], scales: Scales
-    ) -> None:
-        self._power_on, self._scales = power_on, scales
-        self._pieces = [f.available for f in folds]
-        near = 2 * gap_blocks(train) + 1
-        self._others = [
-            _only(train, ~binary_dilation(p, np.ones(near, bool))) for p in self._pieces
-        ]
-        self._known: dict[tuple[Term, ...], np.ndarray] = {}
+    def __init__(self, power_on: PowerOn, scales: Scales) -> None:
+        super().__init__(power_on.session)
+        self.power_on, self._scales = power_on, scales
+        self._known: dict[tuple, np.ndarray] = {}
 
-    def __call__(
-        self, straight: Sequence[Term], found: Sequence[Term], candidate: Sequence[Term]
+    def residual(
+        self, straight: Sequence[Term], terms: Sequence[Term], applied: np.ndarray | None = None
     ) -> np.ndarray:
-        """(folds,) nats by which each piece is better predicted with the candidate."""
-        before, after = (
-            self._squares(straight, terms) for terms in (tuple(found), (*found, *candidate))
-        )
-        return nats(before, after, [int(p.sum()) for p in self._pieces])
-
-    def _squares(self, straight, terms):
-        """(folds, 3) squares left in each piece."""
-        if terms not in self._known:
+        """(n, 3) dps, each block by a firmware that has not learned it; all NaN where the firmware
+        cannot hold the terms."""
+        key = (tuple(terms), None if applied is None else applied.tobytes())
+        if key not in self._known:
             try:
-                models = [self._model(straight, terms, o) for o in self._others]
+                models = self.models(straight, terms, applied)
             except CannotDeploy:
-                return np.full((len(self._pieces), 3), np.inf)
-            whole = not all(_is_instant(t) for t in terms)
-            self._known[terms] = self._left(self._learned(models), whole)
-        return self._known[terms]
+                return np.full((self.session.blocks, 3), np.nan)
+            whole = not all(is_instant(t) for t in terms)
+            self._known[key] = self._left(self.learned(models), whole)
+        return self._known[key]
 
-    def _model(self, straight, terms, part) -> Model | None:
-        """The terms fitted to a part of the recording."""
-        if not terms:
-            return None
-        kept = [held(t, [part]) if _is_instant(t) else t for t in terms]
-        fitted = ordinary([*straight, *kept], [part])[len(straight) :]
-        slots = [Slot(t, (float(x), float(y), float(z)), "") for t, (x, y, z) in zip(kept, fitted)]
-        return build_model(slots, self._scales, tick_s=part.tick_s)
+    def models(self, straight, terms, applied=None, more=()) -> list[Model | None]:
+        """One a turn, with the terms fitted to what is not left out in it, and with more slots.
 
-    def _learned(self, models) -> list[Firmware]:
-        """A device a piece that has learned the others, frozen for it."""
-        p = self._power_on
-        devices = [Firmware(self._scales, m, p.channels) for m in models]
-        devices[0].compile(next(p.frames()))
+        Raises CannotDeploy.
+        """
+        return [self._model(straight, terms, applied, [*more], part) for part in self.parts]
+
+    def _model(self, straight, terms, applied, more, part):
+        kept, fitted = fitted_to(part, straight, terms, applied)
+        pairs = list(zip(kept, fitted))[len(straight) :]
+        slots = [Slot(t, (float(x), float(y), float(z)), "") for t, (x, y, z) in pairs]
+        every = [*slots, *more]
+        return build_model(every, self._scales, tick_s=part.tick_s) if every else None
+
+    def new(self, models: Sequence[Model | None]) -> list[Firmware]:
+        """A device a turn, which has learned nothing, powered on."""
+        devices = [Firmware(self._scales, m, self.power_on.channels) for m in models]
+        devices[0].compile(next(self.power_on.frames()))
         for d in devices:
             d.power_on()
+        return devices
+
+    def learned(self, models: Sequence[Model | None]) -> list[Firmware]:
+        """A device a turn that has learned what is not left out in it, ready to be run frozen."""
+        p, devices = self.power_on, self.new(models)
         for frames in p.frames():
-            may = [o.available[p.blocks(frames)] for o in self._others]
+            may = [part.available[p.blocks(frames)] for part in self.parts]
             at_once([partial(d.run, frames, m) for d, m in zip(devices, may)])
         for d in devices:
             d.power_on()
             d.set_offset((0, 0, 0))
         return devices
 
+    def bias_q8(self, devices: Sequence[Firmware], frames: Frames, learn=False) -> np.ndarray:
+        """(n, 3) of every sample by the device that its block was left out of, LSB in Q8.
+
+        One device may stand for all.
+        """
+        turn = self.fold[self.power_on.blocks(frames)]
+        each = at_once([partial(d.run, frames, learn) for d in devices])
+        return np.array(each)[turn % len(each), np.arange(len(frames))]
+
     def _left(self, devices, whole: bool) -> np.ndarray:
-        """(folds, 3) squares. whole: the terms remember what was before the piece."""
-        p, lead = self._power_on, self._power_on.session.blocks if whole else _LEAD_BLOCKS
-        means = [BlockMeans(p) for _ in devices]
+        """(n, 3) residuals. whole: the terms remember what was before the piece."""
+        p, means = self.power_on, BlockMeans(self.power_on)
         for frames in p.frames():
+            if whole:
+                means.add(frames, self.bias_q8(devices, frames))
+                continue
             at = p.blocks(frames)
-            for device, mean, piece in zip(devices, means, self._pieces):
-                where = np.flatnonzero(piece)
-                first, last = (where[0], where[-1]) if len(where) else (0, -1)
-                a, b = np.searchsorted(at, (first - lead, last + 1))
-                if a < b:
-                    some = rows(frames, a, b)
-                    mean.add(some, device.run(some, learn=False))
-        left = [p.rate_dps - m.blocks_dps() for m in means]
-        return np.array([(r[s] ** 2).sum(axis=0) for r, s in zip(left, self._pieces)])
+            for first, last in self._stretches(at[0], at[-1] + 1):
+                lead, a, b = np.searchsorted(at, (first - _LEAD_BLOCKS, first, last))
+                bias = devices[self.fold[first]].run(rows(frames, lead, b), learn=False)
+                means.add(rows(frames, a, b), bias[a - lead :])
+        return np.where(p.scored[:, None], p.rate_dps - means.blocks_dps(), np.nan)
 
-
-def _is_instant(term: Term) -> bool:
-    """Whether a term knows nothing of what was before."""
-    remembers = term.lag_mode != "none" or term.memory != "none" or term.delay_s or term.decay_s
-    return not remembers and "time" not in (term.source, term.second)
-
-
-def _only(session: Session, keep: np.ndarray) -> Session:
-    return replace(session, rate_dps=np.where(keep[:, None], session.rate_dps, np.nan))
+    def _stretches(self, first, last):
+        """(first, one past last) of the blocks from one change of turn to the next."""
+        edges = np.flatnonzero(np.diff(self.fold)) + 1
+        inside = edges[(edges > first) & (edges < last)]
+        return zip(np.r_[first, inside], np.r_[inside, last])

@@ -9,6 +9,7 @@ import numpy as np
 from ..fit.left_out import session_misfit
 from ..fit.line import deployed
 from ..fit.regression import Regression, predicted
+from ..fit.single import PiecesByLine
 from ..read.sessions import Session
 from ..search import steps as events
 from ..search.selection import Selection
@@ -52,17 +53,21 @@ class Judgement:
 
 
 def judge(selection: Selection, locked: list[Session]) -> Judgement:
-    """Judge what was selected on training sessions by sessions that no fit has seen."""
-    train = selection.regression
+    """Judge what was selected on training sessions by sessions that no fit has seen; or, where the
+    one session was fitted, by pieces of it left out in turn.
+    """
+    train, pieces = selection.regression, _pieces(selection, locked)
     before, after = (residuals(selection, locked, effects) for effects in (False, True))
     both = [*selection.straight, *selection.terms]
-    whole = Regression([*train.sessions, *locked])
-    whole.settle(both)
-    steps = events.find_all(whole, both)
+    whole = train if pieces else Regression([*train.sessions, *locked])
+    if not pieces:
+        whole.settle(both)
+    steps = selection.steps if pieces else events.find_all(whole, both)
+    gains = _of_each(selection, pieces) if pieces else _gains(whole, selection, len(train.sessions))
     return Judgement(
         rms_dps([r for r, _ in before]),
         rms_dps([r for r, _ in after]),
-        _gains(whole, selection, len(train.sessions)),
+        gains,
         excess(whole, both),
         [r for r, _ in before],
         [r for r, _ in after],
@@ -72,11 +77,28 @@ def judge(selection: Selection, locked: list[Session]) -> Judgement:
     )
 
 
+def _pieces(selection, locked) -> PiecesByLine | None:
+    fitted = selection.regression.sessions
+    alone = len(fitted) == len(locked) == 1 and fitted[0].name == locked[0].name
+    return PiecesByLine(fitted[0]) if alone else None
+
+
+def _of_each(selection, pieces) -> np.ndarray:
+    """(effects,) nats that the pieces left out lose without an effect."""
+    every = range(len(selection.found))
+    rest = [selection.without(i).terms for i in every]
+    own = [selection.found[i].candidate.terms for i in every]
+    return np.array([pieces(selection.straight, r, o).sum() for r, o in zip(rest, own)])
+
+
 def residuals(selection: Selection, locked: list[Session], effects: bool = True) -> list:
     """(residual, offset) of each locked session, with the effects found or with the line alone."""
-    fitted = {s.name: s for s in selection.regression.sessions}
+    pieces = _pieces(selection, locked)
+    if pieces:
+        terms, applied = (selection.terms, selection.applied) if effects else ([], None)
+        return [(pieces.residual(selection.straight, terms, applied), np.zeros(3))]
     terms, coefficients = deployed(selection, effects)
-    return [scored(s, predicted(terms, coefficients, s), fitted.get(s.name)) for s in locked]
+    return [scored(s, predicted(terms, coefficients, s)) for s in locked]
 
 
 def scored(session: Session, model: np.ndarray, fitted: Session | None = None):

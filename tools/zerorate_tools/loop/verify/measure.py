@@ -13,12 +13,22 @@ from ...model import Model
 from ...recordings import Scales, open_recording
 from ...recordings.atomic import written_beside
 from ...recordings.reading import recording_name
-from ..fit.single import held_out
+from ..motion.in_motion import slots_of
 from .analysis import Analysis
+from .by_kernels import PiecesByKernels
 from .corrected import CorrectedWriter
 from .deployable import deployable, with_selection
 from .judge import Judgement, rms_dps
-from .measured import AFTER, BEFORE, ONLINE, Course, Measured, Measurement
+from .measured import (
+    AFTER,
+    BEFORE,
+    ONLINE,
+    Course,
+    Measured,
+    Measurement,
+    MeasurementByPieces,
+    Sink,
+)
 from .power_on import PowerOn, ideal_dps
 from .prune_by_holdout import unharmed
 from .rounding import rounding_dps
@@ -40,23 +50,30 @@ def measure(
     """
     scales = open_recording(logs[0]).scales
     power_ons = power_ons_of(analysis, logs, model, scales)
-    learned = ~held_out(analysis.sessions[0].blocks)[1] if analysis.single else None
     locked = [s.name for s in analysis.locked]
-    train = [s.name for s in analysis.train]
-    measurement = Measurement(
-        power_ons, train, locked, learned, models_of(analysis, model, scales), scales
-    )
-    measurement.learn()
+    course = _course_of(analysis, power_ons, model, scales)
     courses: dict[str, Course] = {}
     with written_beside(out) as temporary:
         writer = CorrectedWriter(temporary)
         for p in power_ons:
-            courses[p.session.name] = measurement.course(
-                p.session.name, online, _sink(writer, p, locked, analysis.single, online)
-            )
+            sink = _sink(writer, p, p.session.name in locked, online)
+            courses[p.session.name] = course(p.session.name, online, sink)
             advance(1)
         writer.close()
     return judged(analysis, Measured(courses, locked, _rounding(analysis, power_ons, scales)))
+
+
+def _course_of(analysis, power_ons, model, scales) -> Callable[[str, bool, Sink], Course]:
+    """What runs the firmware over a session by name."""
+    if analysis.single:
+        pieces = PiecesByKernels(power_ons[0], scales)
+        alone = MeasurementByPieces(pieces, analysis.selection, slots_of(analysis.motion))
+        return lambda name, online, sink: alone.course(online, sink)
+    train, locked = ([s.name for s in some] for some in (analysis.train, analysis.locked))
+    models = models_of(analysis, model, scales)
+    measurement = Measurement(power_ons, train, locked, models, scales)
+    measurement.learn()
+    return measurement.course
 
 
 def measure_upheld(
@@ -82,17 +99,11 @@ def measure_upheld(
         analysis = with_selection(analysis, less)
 
 
-def _sink(writer, p: PowerOn, locked, single, online):
-    test = (
-        held_out(p.session.blocks)[0]
-        if single
-        else np.full(p.session.blocks, p.session.name in locked)
-    )
-
+def _sink(writer, p: PowerOn, test: bool, online: bool) -> Sink:
     def write(name, frames, biases):
         if not online:
             biases = {way: b for way, b in biases.items() if way != ONLINE}
-        writer.write(Path(p.path).name, frames, test[p.blocks(frames)], biases)
+        writer.write(Path(p.path).name, frames, np.full(len(frames), test), biases)
 
     return write
 

@@ -2,7 +2,8 @@
 
 The firmware learns the training sessions in their order, without a model and with it. Frozen, it
 is run over every session, whose turn-on offset it takes from the first still minute; and it is run
-over the held-out part once more learning as it goes.
+over the held-out part once more learning as it goes. Of one recording alone every piece is run by
+a firmware that has learned the others.
 """
 
 from __future__ import annotations
@@ -12,9 +13,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...model import Model
+from ...model import Model, Slot
 from ...recordings import Scales
 from ...replay.samples import Frames
+from ..search.selection import Selection
+from .by_kernels import PiecesByKernels
 from .firmware import Firmware, at_once
 from .power_on import BlockMeans, PowerOn, turn_on
 
@@ -74,8 +77,8 @@ def after_first(effects: int) -> str:
 class Measurement:
     """Runs the firmware over the sessions of one device.
 
-    train, locked: names of sessions; learned: of one recording alone, (n,) bool, the blocks that
-    may be learned from; models: none, then those of the first effects, at last the whole one.
+    train, locked: names of sessions; models: none, then those of the first effects, at last the
+    whole one.
     """
 
     def __init__(
@@ -83,12 +86,11 @@ class Measurement:
         power_ons: Sequence[PowerOn],
         train: Sequence[str],
         locked: Sequence[str],
-        learned: np.ndarray | None,
         models: Sequence[Model | None],
         scales: Scales,
     ) -> None:
         self.power_ons = {p.session.name: p for p in power_ons}
-        self.train, self.locked, self.learned = list(train), list(locked), learned
+        self.train, self.locked = list(train), list(locked)
         channels = power_ons[0].channels
         self.devices = [Firmware(scales, m, channels) for m in models]
         self.begun: dict[str, list[Firmware]] = {}
@@ -104,8 +106,7 @@ class Measurement:
                 d.power_on()
             self.begun[name] = [d.copy() for d in (self.devices[0], self.devices[-1])]
             for frames in p.frames():
-                may = True if self.learned is None else self.learned[p.blocks(frames)]
-                at_once([d.run for d in self.devices], frames, may)
+                at_once([d.run for d in self.devices], frames)
 
     def course(self, name: str, online: bool, sink: Sink) -> Course:
         """Run the frozen devices over a session, and the learning ones where wanted."""
@@ -122,7 +123,7 @@ class Measurement:
                 means[way].add(frames, bias_q8)
             sink(name, frames, biases)
         bias = {way: m.blocks_dps() for way, m in means.items()}
-        return self._scored(p, bias, offsets, unscored)
+        return scored(p, bias, offsets, unscored)
 
     def _frozen(self, p, held_out):
         """Ways to run frames through a frozen copy of each device, its turn-on offset in place."""
@@ -134,12 +135,10 @@ class Measurement:
                 continue
             ready = device.copy()
             ready.power_on()
-            ready.set_offset((0, 0, 0))
-            if self.learned is None:
-                taken = turn_on(device, p)
-                ready.set_offset(taken.offset_q8)
-                unscored = max(unscored, taken.blocks)
-                offsets[way] = taken.offset_q8 / (256.0 * p.lsb)
+            taken = turn_on(device, p)
+            ready.set_offset(taken.offset_q8)
+            unscored = max(unscored, taken.blocks)
+            offsets[way] = taken.offset_q8 / (256.0 * p.lsb)
             runs[way] = lambda frames, ready=ready: ready.run(frames, learn=False)
         return runs, unscored, offsets
 
@@ -152,9 +151,49 @@ class Measurement:
                 d.power_on()
         return dict(zip((ONLINE_BEFORE, ONLINE), (d.run for d in devices)))
 
-    def _scored(self, p, bias, offsets, unscored):
-        rate = np.where(p.scored[:, None], p.rate_dps, np.nan)
-        rate[:unscored] = np.nan
-        time_s = (np.arange(p.session.blocks) + 0.5) * p.session.block_s
-        residual = {way: rate - b for way, b in bias.items()}
-        return Course(time_s, bias, residual, offsets, unscored)
+
+class MeasurementByPieces:
+    """Runs the firmware over one recording, every sample by a device that its piece was left out
+    of, with the effects of a selection fitted without it.
+
+    more: slots of what motion showed, beside those of all effects.
+    """
+
+    def __init__(self, pieces: PiecesByKernels, selection: Selection, more: Sequence[Slot]) -> None:
+        self.pieces = pieces
+        effects = range(len(selection.found) + 1)
+        self.models = {after_first(k): self._models(selection.first(k)) for k in effects}
+        if selection.found or more:
+            self.models[AFTER] = self._models(selection, more)
+
+    def _models(self, selection, more=()):
+        applied = selection.applied if selection.found else None
+        return self.pieces.models(selection.straight, selection.terms, applied, more)
+
+    def course(self, online: bool, sink: Sink) -> Course:
+        """Run the devices over the recording: frozen ones, and those that learn as they go."""
+        of, p = self.pieces, self.pieces.power_on
+        frozen = {way: of.learned(models) for way, models in self.models.items()}
+        last = list(self.models.values())[-1]
+        learning = {ONLINE_BEFORE: of.new(self.models[BEFORE][:1]), ONLINE: of.new(last)}
+        means = {way: BlockMeans(p) for way in (*frozen, *learning, AFTER)}
+        for frames in p.frames():
+            biases = {way: of.bias_q8(devices, frames) for way, devices in frozen.items()}
+            for way, devices in learning.items():
+                biases[way] = of.bias_q8(devices, frames, learn=True)
+            biases.setdefault(AFTER, biases[BEFORE])
+            for way, bias_q8 in biases.items():
+                means[way].add(frames, bias_q8)
+            sink(p.session.name, frames, biases)
+        return scored(p, {way: m.blocks_dps() for way, m in means.items()})
+
+
+def scored(
+    p: PowerOn, bias: dict[str, np.ndarray], offsets: dict | None = None, unscored: int = 0
+) -> Course:
+    """A course from (n, 3) dps by way; the first unscored blocks told the turn-on offset."""
+    rate = np.where(p.scored[:, None], p.rate_dps, np.nan)
+    rate[:unscored] = np.nan
+    time_s = (np.arange(p.session.blocks) + 0.5) * p.session.block_s
+    residual = {way: rate - b for way, b in bias.items()}
+    return Course(time_s, bias, residual, offsets or {}, unscored)

@@ -55,7 +55,8 @@ def unharmed(selection: Selection, after: Sequence[list[np.ndarray]]) -> Selecti
     after: residuals (n, 3) of what was held out with the first 0, 1, ... effects.
     """
     errors = np.array([rms_dps(r) for r in after])
-    grows = np.diff(errors, axis=0)
+    used = np.array([f.axes for f in selection.found], bool).reshape(-1, 3)
+    grows = np.where(used, np.diff(errors, axis=0), 0.0)
     worst = grows.max(axis=0, initial=0.0)
     for i in reversed(range(len(grows))):
         axes = (grows[i] > 0) & (grows[i] == worst)
