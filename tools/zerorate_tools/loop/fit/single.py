@@ -36,11 +36,26 @@ WEAKER = (
 
 
 def fold_of(session: Session) -> np.ndarray:
-    """(n,) the turn in which each block is left out; one without a rate goes with its neighbour."""
+    """(n,) the turn in which each block is left out; one without a rate goes with its neighbour.
+
+    Pieces are even in time and in the way of temperature taken together, so that where it runs
+    fast a piece is short, and what is left out of it little.
+    """
     there = np.flatnonzero(session.available)
-    pieces = np.array_split(there, min(PIECES, max(1, len(there) // LEAST_OF_A_PIECE)))
-    ends = np.array([p[-1] for p in pieces[:-1]])
-    return np.searchsorted(ends, np.arange(session.blocks)) % min(FOLDS, len(pieces))
+    pieces = min(PIECES, max(1, len(there) // LEAST_OF_A_PIECE))
+    way = np.minimum(_way(session, there), len(there) / (pieces * LEAST_OF_A_PIECE))
+    piece = np.floor((np.cumsum(way) - way / 2) / way.sum() * pieces).astype(int)
+    ends = there[np.flatnonzero(np.diff(piece))]
+    each = piece[np.r_[np.flatnonzero(np.diff(piece)), len(piece) - 1]]
+    return each[np.searchsorted(ends, np.arange(session.blocks))] % min(FOLDS, pieces)
+
+
+def _way(session, there):
+    """(blocks,) of mean 1: by how much time and temperature go on with each block."""
+    if "temp" not in session.sources:
+        return np.ones(len(there))
+    moved = np.abs(np.gradient(session.block_mean(session.sources["temp"])[there]))
+    return 0.5 + 0.5 * moved / max(moved.mean(), 1e-12)
 
 
 def gap_blocks(session: Session) -> int:
