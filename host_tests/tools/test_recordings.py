@@ -22,6 +22,7 @@ from zerorate_tools.recordings.atomic import written_beside
 from zerorate_tools.recordings.checks import GAP
 
 SCALES = Scales("MPU-6050", 25.0, 131.0, 16384.0, 340.0, 36.53, {"latitude_deg": 48.1})
+_SCALES = '{"sensor": "X", "odr_hz": %s, "gyro_lsb_per_dps": 1}'
 FORMATS = ["run.parquet", "run.csv", "run.csv.gz"]
 
 
@@ -291,15 +292,61 @@ def test_what_is_no_recording_at_all_is_refused(tmp_path, name, complaint):
         open_recording(tmp_path / name)
 
 
-def test_text_in_another_encoding_is_refused(tmp_path):
-    (tmp_path / "x.csv").write_bytes(b"\xff\xfe\x00t\n")
-    (tmp_path / "x.json").write_text("{}")
-    with pytest.raises(BadRecording, match="not text"):
-        open_recording(tmp_path / "x.csv")
+def test_text_in_utf_16_is_read(tmp_path):
+    (tmp_path / "x.csv").write_bytes("t_us,gx,gy,gz\n1,2,3,4\n".encode("utf-16"))
+    (tmp_path / "x.json").write_text('{"sensor": "X", "odr_hz": 1, "gyro_lsb_per_dps": 1}')
+    assert read_recording(tmp_path / "x.csv").columns["gz"].tolist() == [4]
+
+
+@pytest.mark.parametrize(
+    ("scales", "complaint"),
+    [
+        (_SCALES % ("9" * 400), r"odr_hz is 9+\.\.\.; write a number from"),
+        (_SCALES % ("9" * 5000), "a number of thousands of digits"),
+        ("[" * 100_000, "nested too deep"),
+        (_SCALES % "1e-308", "odr_hz is 1e-308; write a number from"),
+        ('{"sensor": "X", "odr_hz": 1, "gyro_lsb_per_dps": 1e300}', "gyro_lsb_per_dps is 1e"),
+        ('{"sensor": "' + "X" * 2_000_000 + '"}', "scales of more than 1 MiB"),
+    ],
+)
+def test_scales_that_no_sensor_has_are_refused_in_one_line(tmp_path, scales, complaint):
+    (tmp_path / "x.csv").write_text("t_us,gx,gy,gz\n1,2,3,4\n")
+    (tmp_path / "x.json").write_text(scales)
+    with pytest.raises(BadRecording, match=complaint) as error:
+        read_recording(tmp_path / "x.csv")
+    assert len(str(error.value)) < 400
+
+
+def test_a_cell_of_a_quarter_million_letters_is_named_by_its_row(tmp_path):
+    (tmp_path / "x.csv").write_text("t_us,gx,gy,gz\n1,2,3,4\n2," + "a" * 250_000 + ",3,4\n")
+    (tmp_path / "x.json").write_text('{"sensor": "X", "odr_hz": 1, "gyro_lsb_per_dps": 1}')
+    with pytest.raises(BadRecording, match="row 2: gx is 'a{40}', no integer"):
+        read_recording(tmp_path / "x.csv")
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "value", "complaint"),
+    [
+        ("uint64", "t_us", 2**63, "row 2: t_us is 9223372036854775808, more than 64 bits"),
+        ("uint32", "gx", 2**31, "row 2: gx is 2147483648, more than 32 bits"),
+        ("uint32", "load", 2**32 - 1, "row 2: load is 4294967295, more than 32 bits"),
+        ("int64", "load", -(2**31) - 1, "row 2: load is -2147483649, more than 32 bits"),
+    ],
+)
+def test_numbers_that_do_not_fit_are_refused_instead_of_wrapped(
+    tmp_path, kind, name, value, complaint
+):
+    columns = {n: pa.array([1, 2], pa.int64()) for n in ("t_us", "gx", "gy", "gz", "load")}
+    columns[name] = pa.array([1, value], getattr(pa, kind)())
+    scales = b'{"sensor": "X", "odr_hz": 1, "gyro_lsb_per_dps": 1}'
+    table = pa.table(columns).replace_schema_metadata({b"zerorate": scales})
+    pq.write_table(table, tmp_path / "x.parquet")
+    with pytest.raises(BadRecording, match=complaint):
+        read_recording(tmp_path / "x.parquet")
 
 
 def test_a_gzip_that_is_none_is_refused(tmp_path):
-    (tmp_path / "x.csv.gz").write_text(HEADER)
+    (tmp_path / "x.csv.gz").write_bytes(b"\x1f\x8b" + HEADER.encode())
     with pytest.raises(BadRecording, match="cut off or damaged"):
         open_recording(tmp_path / "x.csv.gz")
     with gzip.open(tmp_path / "x.csv.gz", "wb"):

@@ -86,6 +86,7 @@ class BatchChecker:
             values = self._without_gaps(name, values)
         wide = values.to_numpy(zero_copy_only=False)
         if name == TIME:
+            self._check_range(name, wide, 2**63 - 1, "64")
             return wide.astype(np.int64, copy=False)
         return self._narrow(name, wide)
 
@@ -98,13 +99,20 @@ class BatchChecker:
         raise BadRecording(self._path, f"{name} has no value", row=row, do=do)
 
     def _narrow(self, name: str, wide: np.ndarray) -> np.ndarray:
-        if wide.dtype.itemsize >= 4 and wide.dtype != np.int32:
-            outside = (wide > _LIMIT) | (wide < -_LIMIT - 1)
-            if outside.any():
-                at = int(np.argmax(outside))
-                problem = f"{name} is {wide[at]}, more than 32 bits"
-                raise BadRecording(self._path, problem, row=self._row(at), do="scale the column")
+        self._check_range(name, wide, _LIMIT, "32")
         return wide.astype(np.int32, copy=False)
+
+    def _check_range(self, name: str, wide: np.ndarray, most: int, bits: str) -> None:
+        held = np.iinfo(wide.dtype)
+        if held.max <= most and held.min >= -most - 1:
+            return
+        outside = wide > most
+        if held.min < -most - 1:
+            outside |= wide < -most - 1
+        if outside.any():
+            at = int(np.argmax(outside))
+            problem = f"{name} is {wide[at]}, more than {bits} bits"
+            raise BadRecording(self._path, problem, row=self._row(at), do="scale the column")
 
     def _refuse_type(self, name: str, values: pa.Array) -> None:
         if pa.types.is_floating(values.type) and not _is_extra(name):

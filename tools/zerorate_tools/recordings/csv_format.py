@@ -3,23 +3,25 @@
 from __future__ import annotations
 
 import csv
-import gzip
 import io
-import zlib
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pyarrow as pa
+import pyarrow.compute as pc
 import pyarrow.csv
 
 from ..errors import BadRecording
 from .checks import arrow_column, check_names
 from .recording import TIME
-from .scales import Scales, scales_from_text
+from .scales import MOST_BYTES, Scales, scales_from_text
+from .text import damaged, head, open_text
 
 SUFFIXES = (".csv", ".csv.gz")
-_NO_VALUE = ("", "nan", "na", "null", "none")
+_HEADER_BYTES = 1 << 16
 _BLOCK_BYTES = 1 << 20
 
 
@@ -32,7 +34,8 @@ def read_scales(path: Path) -> Scales:
     """The scales beside a CSV. Raises BadRecording."""
     beside = scales_path(path)
     try:
-        return scales_from_text(beside.read_bytes(), beside)
+        with open(beside, "rb") as file:
+            return scales_from_text(file.read(MOST_BYTES + 1), beside)
     except FileNotFoundError as error:
         do = (
             'write {"sensor": ..., "odr_hz": ..., "gyro_lsb_per_dps": ...} there, '
@@ -42,79 +45,104 @@ def read_scales(path: Path) -> Scales:
         raise BadRecording(path, problem, do=do) from error
 
 
-def read_names(path: Path) -> list[str]:
-    """Column names of the header. Raises BadRecording."""
-    try:
-        with _text(path) as file:
-            header = next(csv.reader(file), None)
-    except (EOFError, zlib.error, gzip.BadGzipFile) as error:
-        raise _damaged(path) from error
-    except UnicodeDecodeError as error:
-        raise BadRecording(path, "not text", do="name a CSV file") from error
-    if header is None:
+@dataclass(frozen=True)
+class Header:
+    """Column names of a CSV, the lines before its first row, and the encoding of its text."""
+
+    names: list[str]
+    skip: int
+    encoding: str
+
+
+def read_header(path: Path) -> Header:
+    """The first line that is not blank. Raises BadRecording."""
+    content, encoding = head(path, _HEADER_BYTES)
+    text = content.decode(encoding, errors="replace").lstrip("\ufeff")
+    lines = text.splitlines()
+    at = next((number for number, line in enumerate(lines) if line.strip()), None)
+    if at is None:
         raise BadRecording(path, "empty file", do="record again, or name another file")
-    return [name.strip() for name in header]
+    if len(lines) == 1 and len(content) == _HEADER_BYTES:
+        problem = f"no line ends within the first {_HEADER_BYTES >> 10} KiB"
+        raise BadRecording(path, problem, do="name a CSV file")
+    try:
+        names = next(csv.reader([lines[at]]))
+    except csv.Error as error:
+        raise BadRecording(path, f"no header: {error}", do="name a CSV file") from error
+    return Header([name.strip() for name in names], at + 1, encoding)
 
 
-def batches(path: Path, names: list[str]) -> Iterator[pa.RecordBatch]:
+def batches(path: Path, header: Header) -> Iterator[pa.RecordBatch]:
     """Arrow batches of int64 columns, read as they are needed. Raises BadRecording."""
     try:
-        yield from _open(path, names)
-    except (pa.ArrowInvalid, pa.ArrowNotImplementedError, OSError, EOFError) as error:
-        raise _diagnosis(path, names, error) from error
+        yield from _open(path, header, pa.int64())
+    except (pa.ArrowException, OSError, EOFError) as error:
+        raise _diagnosis(path, header, error) from error
 
 
-def _open(path: Path, names: list[str]) -> pyarrow.csv.CSVStreamingReader:
+def _open(path: Path, header: Header, kind: pa.DataType, take_odd: Any = None) -> Any:
     return pyarrow.csv.open_csv(
-        str(path),
+        open_text(path, header.encoding)[0],
         read_options=pyarrow.csv.ReadOptions(
-            block_size=_BLOCK_BYTES, column_names=names, skip_rows=1, use_threads=False
+            block_size=_BLOCK_BYTES,
+            column_names=header.names,
+            skip_rows=header.skip,
+            use_threads=False,
         ),
+        parse_options=pyarrow.csv.ParseOptions(invalid_row_handler=take_odd),
         convert_options=pyarrow.csv.ConvertOptions(
-            column_types={name: pa.int64() for name in names},
+            column_types=dict.fromkeys(header.names, kind),
             null_values=["", "nan", "NaN", "NA", "null", "None"],
+            strings_can_be_null=True,
+            check_utf8=False,
         ),
     )
 
 
-def _text(path: Path) -> Any:
-    if path.name.endswith(".gz"):
-        return gzip.open(path, "rt", encoding="utf-8-sig", newline="")
-    return open(path, encoding="utf-8-sig", newline="")
-
-
-def _damaged(path: Path) -> BadRecording:
-    return BadRecording(path, "the gzip data is cut off or damaged", do="copy the file again")
-
-
-def _diagnosis(path: Path, names: list[str], error: Exception) -> BadRecording:
+def _diagnosis(path: Path, header: Header, error: Exception) -> BadRecording:
     """Find the row that Arrow stumbled over, as its own message does not always name it."""
+    odd: list[Any] = []
+
+    def take(row: Any) -> str:
+        odd.append(row)
+        return "skip"
+
+    rows = 0
     try:
-        with _text(path) as file:
-            return _first_bad_row(path, names, csv.reader(file)) or BadRecording(path, str(error))
-    except (EOFError, zlib.error, gzip.BadGzipFile):
-        return _damaged(path)
-    except UnicodeDecodeError:
-        return BadRecording(path, "not text", do="name a CSV file")
-
-
-def _first_bad_row(path: Path, names: list[str], rows: Any) -> BadRecording | None:
-    next(rows, None)
-    for number, cells in enumerate((cells for cells in rows if cells), start=1):
-        if len(cells) != len(names):
-            problem = f"{len(cells)} cells where the header names {len(names)}"
-            return BadRecording(path, problem, row=number, do="complete or drop the row")
-        for name, cell in zip(names, cells):
-            if not _is_integer(cell):
+        for batch in _open(path, header, pa.string(), take):
+            found = _first_bad_cell(batch)
+            if odd and (found is None or odd[0].number - header.skip <= rows + found[0] + 1):
+                break
+            if found is not None:
+                at, name, cell = found
                 do = "give raw LSB as integers, or convert with `zerorate import`"
                 problem = f"{name} is {cell[:40]!r}, no integer"
-                return BadRecording(path, problem, row=number, do=do)
-    return None
+                return BadRecording(path, problem, row=rows + at + 1, do=do)
+            rows += batch.num_rows
+    except pa.ArrowInvalid as again:
+        if "straddling" in str(again):
+            problem = f"a row is longer than {_BLOCK_BYTES >> 20} MiB"
+            return BadRecording(path, problem, do="name a CSV file with a sample on each line")
+    except (pa.ArrowException, OSError, EOFError):
+        return damaged(path)
+    if odd:
+        problem = f"{odd[0].actual_columns} cells where the header names {len(header.names)}"
+        row = odd[0].number - header.skip
+        return BadRecording(path, problem, row=row, do="complete or drop the row")
+    return BadRecording(path, str(error)[:200], do="name a CSV file")
 
 
-def _is_integer(cell: str) -> bool:
-    text = cell.strip()
-    return text.lower() in _NO_VALUE or text.lstrip("+-").isdecimal()
+def _first_bad_cell(batch: pa.RecordBatch) -> tuple[int, str, str] | None:
+    """(row within the batch, column, cell) of the first cell that is no integer of 64 bits."""
+    found = None
+    for name in batch.schema.names:
+        cells = batch.column(name).cast(pa.binary())
+        good = pc.match_substring_regex(cells, rb"^[ \t]*[+-]?[0-9]{1,18}[ \t]*$")
+        bad = pc.invert(pc.fill_null(good, True)).to_numpy(zero_copy_only=False)
+        at = int(np.argmax(bad)) if bad.any() else None
+        if at is not None and (found is None or at < found[0]):
+            found = at, name, cells[at].as_py().decode("utf-8", "replace")
+    return found
 
 
 class CsvWriter:

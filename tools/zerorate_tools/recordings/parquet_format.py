@@ -11,6 +11,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from ..errors import BadRecording
+from .bounded import STEP_MB, at_most, each_at_most
 from .checks import arrow_column, check_names
 from .recording import TIME
 from .scales import Scales, scales_from_text
@@ -26,7 +27,10 @@ def open_file(path: Path) -> pq.ParquetFile:
     if path.stat().st_size == 0:
         raise BadRecording(path, "empty file", do="record again, or name another file")
     try:
-        return pq.ParquetFile(path, pre_buffer=False, buffer_size=_BUFFER_BYTES)
+        with at_most():
+            return pq.ParquetFile(path, pre_buffer=False, buffer_size=_BUFFER_BYTES)
+    except MemoryError as error:
+        raise _too_large(path) from error
     except (pa.ArrowInvalid, OSError) as error:
         problem = "no Parquet file, or cut off"
         raise BadRecording(path, problem, do="copy the file again") from error
@@ -46,11 +50,19 @@ def batches(
     file: pq.ParquetFile, path: Path, rows: int, names: list[str] | None = None
 ) -> Iterator[pa.RecordBatch]:
     """Arrow batches of at most `rows`, row groups read as they are needed. Raises BadRecording."""
+    found = file.iter_batches(batch_size=rows, columns=names, use_threads=False)
     try:
-        yield from file.iter_batches(batch_size=rows, columns=names, use_threads=False)
+        yield from each_at_most(found)
+    except MemoryError as error:
+        raise _too_large(path) from error
     except (pa.ArrowInvalid, OSError) as error:
         problem = "the Parquet data is damaged"
         raise BadRecording(path, problem, do="copy the file again") from error
+
+
+def _too_large(path: Path) -> BadRecording:
+    problem = f"a page of it takes more than {STEP_MB} MB"
+    return BadRecording(path, problem, do="write it with smaller pages, or copy it again")
 
 
 class ParquetWriter:

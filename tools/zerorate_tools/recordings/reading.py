@@ -53,9 +53,9 @@ class OpenRecording:
             what = "is a folder" if self.path.is_dir() else "no such file"
             raise BadRecording(self.path, what, do="name a recording (.csv, .csv.gz or .parquet)")
         if self.path.name.endswith(csv_format.SUFFIXES):
-            self._names = csv_format.read_names(self.path)
+            self._header = csv_format.read_header(self.path)
             self.scales = csv_format.read_scales(self.path)
-            self.column_names = list(self._names)
+            self.column_names = list(self._header.names)
             return csv_format.scales_path(self.path)
         if self.path.name.endswith(parquet_format.SUFFIXES):
             file = self._parquet = parquet_format.open_file(self.path)
@@ -69,7 +69,7 @@ class OpenRecording:
     def _arrow_batches(self, rows: int) -> Iterator:
         if self._parquet is not None:
             return parquet_format.batches(self._parquet, self.path, rows)
-        return csv_format.batches(self.path, self._names)
+        return csv_format.batches(self.path, self._header)
 
 
 def open_recording(path: str | PathLike[str], *, keep_gaps: bool = False) -> OpenRecording:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from os import PathLike
@@ -14,6 +13,15 @@ from ..errors import BadRecording
 _ALWAYS = ("odr_hz", "gyro_lsb_per_dps")
 _ACCEL = ("accel_lsb_per_g",)
 _TEMP = ("temp_lsb_per_degc", "temp_offset_degc")
+#: What any sensor may have, wide enough for a reading a day and narrow enough for its arithmetic.
+_RANGES = {
+    "odr_hz": (1e-5, 1e6),
+    "gyro_lsb_per_dps": (1e-3, 1e7),
+    "accel_lsb_per_g": (1e-3, 1e8),
+    "temp_lsb_per_degc": (1e-3, 1e7),
+    "temp_offset_degc": (-1e6, 1e6),
+}
+MOST_BYTES = 1 << 20
 
 
 @dataclass(frozen=True)
@@ -46,6 +54,10 @@ class Scales:
 
 def scales_from_text(text: str | bytes, path: str | PathLike[str]) -> Scales:
     """Scales out of JSON text. Raises BadRecording that names `path`, line and what to do."""
+    if len(text) > MOST_BYTES:
+        raise BadRecording(
+            path, f"scales of more than {MOST_BYTES >> 20} MiB", do="write them as a short JSON"
+        )
     try:
         values = json.loads(text)
     except json.JSONDecodeError as error:
@@ -55,6 +67,9 @@ def scales_from_text(text: str | bytes, path: str | PathLike[str]) -> Scales:
         raise BadRecording(path, problem, do="correct the text there") from error
     except UnicodeDecodeError as error:
         raise BadRecording(path, "the scales are not text", do="write them as JSON") from error
+    except (RecursionError, ValueError) as error:
+        problem = "the scales are nested too deep, or hold a number of thousands of digits"
+        raise BadRecording(path, problem, do="correct the text there") from error
     if not isinstance(values, dict):
         raise BadRecording(path, "the scales are no JSON object", do='write {"sensor": ...}')
     return _from_dict(values, path)
@@ -73,11 +88,22 @@ def _from_dict(values: dict[str, Any], path: str | PathLike[str]) -> Scales:
 
 def _number(value: Any, key: str, path: str | PathLike[str]) -> float:
     is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    if not is_number or not math.isfinite(value):
-        raise BadRecording(path, f"{key} is {value!r}, no number", do="write a number")
-    if key != "temp_offset_degc" and value <= 0:
-        raise BadRecording(path, f"{key} is {value!r}", do="write a number above 0")
+    low, high = _RANGES[key]
+    # compared as it is: an integer of 400 digits is no float
+    if not is_number or value != value:
+        raise BadRecording(path, f"{key} is {_short(value)}, no number", do="write a number")
+    if not low <= value <= high:
+        do = f"write a number from {low:g} to {high:g}"
+        raise BadRecording(path, f"{key} is {_short(value)}", do=do)
     return float(value)
+
+
+def _short(value: Any) -> str:
+    try:
+        text = repr(value)
+    except ValueError:
+        return "a number of thousands of digits"
+    return text if len(text) <= 40 else f"{text[:40]}..."
 
 
 def missing_scale(scales: Scales, column_names: list[str]) -> str | None:

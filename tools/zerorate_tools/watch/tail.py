@@ -48,7 +48,7 @@ class CsvTail:
     def __init__(self, path: Path) -> None:
         self.path = growing_file(path)
         self.name = path.name
-        self.column_names = csv_format.read_names(self.path)
+        self.column_names = csv_format.read_header(self.path).names
         self.scales = csv_format.read_scales(self.path)
         check_names(self.column_names, self.path)
         check_scales(self.scales, self.column_names, self.path, csv_format.scales_path(self.path))

@@ -12,7 +12,7 @@ import numpy as np
 import pyarrow as pa
 
 from ...errors import BadRecording
-from .bytes_of import damaged, head, open_text
+from ...recordings.text import damaged, head, open_text
 from .table import Chunk, Table
 
 _BLOCK_BYTES = 1 << 20

@@ -12,7 +12,7 @@ import pyarrow.compute as pc
 import pyarrow.csv
 
 from ...errors import BadRecording
-from .bytes_of import damaged, open_text
+from ...recordings.text import damaged, open_text
 from .sniffing import COMMENTS, Form, sniffed
 from .table import Chunk, Table
 

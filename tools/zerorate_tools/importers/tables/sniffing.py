@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ...errors import BadRecording
-from .bytes_of import head
+from ...recordings.text import head
 
 _HEAD_BYTES = 1 << 18
 _LINES = 200

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pyarrow as pa
 
-from ...errors import BadRecording
+from ..errors import BadRecording
 
 _PACKED = {
     b"\x1f\x8b": "gzip",
