@@ -1,6 +1,6 @@
 """The bias at this temperature: which estimator, line or aggregate speaks for it."""
 
-# Document 000, paragraphs on the determination of the bias: the estimator of this temperature where
+# US 9,354,080, paragraphs on the determination of the bias: the estimator of this temperature where
 # it is stable and more stable than the fit, else the fit, else the temperature-independent one.
 
 try:

@@ -3,7 +3,7 @@
 from array import array
 
 from .kernels import VIPER, estimators, step
-from .settings import Sensor, settings
+from .settings import DEFAULTS, OF_THE_DOCUMENT, Sensor, settings
 
 try:
     from micropython import const
@@ -48,49 +48,6 @@ _ACCELEROMETER = const(5)
 # what `source` returns for a bias of this rest alone
 ANY_TEMPERATURE = 1
 
-LIMITS = {
-    "window_s": 0.5,
-    "segment_s": 2.5,
-    "still_dps": 0.3,
-    "still_g": 0.03,
-    "turn_dps": 0.03,
-    "change_dps": 0.08,
-    "slew_dps_per_s": 0.5,
-    "range_dps": 40.0,
-    "narrowest_dps": 0.5,
-    "step_degc": 1.0,
-    "margin_degc": 0.15,
-    "promote_s": 4.0,
-    "halve_after_s": 3600.0,
-    "fit_s": 2.0,
-    "counted_s": 20.0,
-    "local_degc": 3.0,
-    "stable_s": 2.5,
-    "share": 0.125,
-    "beyond_degc": 0.5,
-    "refit_degc": 0.25,
-    "floor_dps": 0.003,
-    "gate_dps": 0.3,
-    "insist_s": 60.0,
-    "walk_dps": 0.002,
-    "walk_least_dps": 0.0003,
-    "walk_most_dps": 0.05,
-    "turn_on_dps": 0.1,
-    "slope_dps_per_degc": 0.02,
-    "motion_most_dps": 0.15,
-    "motion_full_dps": 0.01,
-    "motion_start_dps": 20.0,
-    "split_s": 0.01,
-}
-# By the document readings include motion, so that seconds of them tell little.
-DOCUMENT = {
-    "range_dps": 20.0,
-    "promote_s": 10.0,
-    "fit_s": 10.0,
-    "stable_s": 10.0,
-    "split_s": 1.0,
-}
-
 
 def copy(to, words):
     """Copy an array over another: not every board's arrays take an assignment to a slice."""
@@ -102,13 +59,14 @@ class Corrector:
     """Learns the bias of three axes while the device lives, and subtracts it.
 
     sensor: a Sensor, or None for an MPU-6050 at +-250 dps and 100 Hz. bins: 4..19 an histogram;
-    short, long: estimators an axis. document: the literal rules of the documents: of 000 every
-    reading learned, mean of the most significant bin, split in halves, one straight line, with
-    the limits of DOCUMENT; with every=False the same rules on this project's rests. every: learn
-    every reading, moving or still (default: as the document). ignore_outside: readings outside a
-    histogram are ignored instead of extending it (default: as DOCUMENT). motion: learn in motion
-    as well (document 002); accelerometer: against gravity as well (003); with document both in
-    their literal forms. Any key of LIMITS may be given by name, in its unit. Raises ValueError.
+    short, long: estimators an axis. document: the literal rules of the three patents
+    (docs/learning.md): of US 9,354,080 every reading learned, mean of the most significant bin,
+    split in halves, one straight line, with settings of its own; with every=False the same rules
+    on this project's rests. every: learn every reading, moving or still (default: as document).
+    ignore_outside: readings outside a histogram are ignored instead of extending it (default: as
+    document). motion: learn in motion as well; accelerometer: against gravity as well; with
+    document both in their literal forms. Any key of DEFAULTS (settings.py, docs/settings.md) may
+    be given by name, in its unit. Raises ValueError.
     """
 
     def __init__(
@@ -125,11 +83,11 @@ class Corrector:
         **limits: float,
     ) -> None:
         self.sensor = sensor or Sensor()
-        chosen = dict(LIMITS)
+        chosen = dict(DEFAULTS)
         if every is None:
             every = document
         if document and every:
-            chosen.update(DOCUMENT)
+            chosen.update(OF_THE_DOCUMENT)
         if ignore_outside is None:
             ignore_outside = document and every
         for name in limits:

@@ -72,10 +72,10 @@ def centred(e: ptr32, f: int) -> int:
     elif u > e[f + _SLOT_HIGHEST_Q8]:
         u = e[f + _SLOT_HIGHEST_Q8]
     u -= e[f + _SLOT_CENTRE_Q8]
-    f = e[f + _SLOT_SHIFT]
-    if f < 0:
-        return u >> (0 - f)
-    return u << f
+    shift = e[f + _SLOT_SHIFT]
+    if shift < 0:
+        return u >> (0 - shift)
+    return u << shift
 
 
 def delayed(e: ptr32, a: int, u: int) -> int:
@@ -94,16 +94,17 @@ def delayed(e: ptr32, a: int, u: int) -> int:
     elif e[ring + _RING_AGE] == 0:
         e[ring + _RING_NEWEST] = (e[ring + _RING_NEWEST] + 1) & 63
         e[ring + _RING_KEPT + e[ring + _RING_NEWEST]] = u
+    # eleven words: u is now how many ticks ago
     u = e[a + _SLOT_DELAY] - e[ring + _RING_AGE]
-    e[ring + _RING_AGE] = (e[ring + _RING_AGE] + 1) % e[a + _SLOT_RING_STEP]
-    a = e[a + _SLOT_RING_STEP]
-    return between(e, ring, u // a, u % a, a)
+    a = e[a + _SLOT_RING_STEP]  # and a how many of them a step has
+    e[ring + _RING_AGE] = (e[ring + _RING_AGE] + 1) % a
+    return between(e, ring, e[ring + _RING_NEWEST] - u // a, u % a, a)
 
 
-def between(e: ptr32, ring: int, back: int, part: int, step: int) -> int:
-    """Return what the ring kept so many steps back, and a part of a step farther back."""
-    u = e[ring + _RING_KEPT + ((e[ring + _RING_NEWEST] - back) & 63)]
-    d = e[ring + _RING_KEPT + ((e[ring + _RING_NEWEST] - back - 1) & 63)] - u
+def between(e: ptr32, ring: int, place: int, part: int, step: int) -> int:
+    """Return what the ring kept at a place, and a part of a step farther back."""
+    u = e[ring + _RING_KEPT + (place & 63)]
+    d = e[ring + _RING_KEPT + ((place - 1) & 63)] - u
     if d < 0:
         return u - ((((0 - d) >> 4) * part // step) << 4)
     return u + (((d >> 4) * part // step) << 4)
@@ -124,6 +125,7 @@ def approach(e: ptr32, z: int, f: int, u: int):
     The word behind z keeps what is below a unit, so that no lag is too long to arrive.
     """
     d = u - e[z]
+    # eleven words: u is now the shift, f the way in whole units, t what is left of it
     u = e[f + 1] + 3
     t = (d >> 12) * e[f]
     d = (d & 0xFFF) * e[f] + e[z + 1]
@@ -153,11 +155,11 @@ def remembered(e: ptr32, a: int, u: int) -> int:
         return e[a] if kind == _MEMORY_LAG else u - e[a]
     p = e[a]
     if kind == _MEMORY_BACKLASH:
-        kind = e[a - _SLOT_STATE + _SLOT_HALF_WIDTH]
-        if p < u - kind:
-            p = u - kind
-        elif p > u + kind:
-            p = u + kind
+        half = e[a - _SLOT_STATE + _SLOT_HALF_WIDTH]
+        if p < u - half:
+            p = u - half
+        elif p > u + half:
+            p = u + half
     elif p < u:
         p = u
     e[a] = p

@@ -75,16 +75,15 @@ def extra(e: ptr32, a: int) -> int:
     elif v < -0x1FFFFFFF:
         v = -0x1FFFFFFF
     v -= e[a + _INPUT_OFFSET]
-    a = e[a + _INPUT_SHIFT]
-    if a > 0:
-        v = v >> a
-        a = 0
-    a = 0 - a
-    if v > 32767 >> a:
-        v = 32767 >> a
-    elif v < -(32768 >> a):
-        v = -(32768 >> a)
-    return v << a
+    left = 0 - e[a + _INPUT_SHIFT]
+    if left < 0:
+        v = v >> (0 - left)
+        left = 0
+    if v > 32767 >> left:
+        v = 32767 >> left
+    elif v < -(32768 >> left):
+        v = -(32768 >> left)
+    return v << left
 
 
 def accumulate(e: ptr32, x: ptr32):

@@ -97,9 +97,9 @@ def observe(s: ptr32, e: ptr32, n: int):
         i += 1
     i = 2
     while i < e[_STATES]:
-        n = _SLOTS + (i - 2) * _SLOT_WORDS
-        put(e, _REGRESSORS + 2 * i, e[n + _SLOT_VALUE], -24)
-        if e[n + _SLOT_INSTANT] == _OF_RATE:
+        a = _SLOTS + (i - 2) * _SLOT_WORDS
+        put(e, _REGRESSORS + 2 * i, e[a + _SLOT_VALUE], -24)
+        if e[a + _SLOT_INSTANT] == _OF_RATE:
             put(e, _REGRESSORS + 2 * i, 0, 0)
         i += 1
     e[_REFINE_WORK] = 1
@@ -139,8 +139,8 @@ def put_learned(e: ptr32, a: int, axis: int):
     """Store at _REFINE_A how far the slot's coefficient is from the model's own, in LSB."""
     m = e[a + _SLOT_COEFFICIENT + axis]
     m -= e[a + _SLOT_OWN + axis]
-    a = 10 - e[a + _SLOT_COEFFICIENT_SHIFT]
-    put(e, _REFINE_A, m, a)
+    exponent = 10 - e[a + _SLOT_COEFFICIENT_SHIFT]
+    put(e, _REFINE_A, m, exponent)
 
 
 def restore(e: ptr32, axis: int, to: int):
@@ -165,7 +165,7 @@ def believe(e: ptr32, i: int):
         add(e, at, at, _REFINE_A)
         axis += 1
     at = _REFINE_P + i * _REFINE_ROW
-    i = 0
+    i = 0  # eleven words: the column of the covariance
     while i < e[_STATES]:
         multiply(e, _REFINE_A, _REFINE_B, _REFINE_GAIN + 2 * i)
         put(e, _REFINE_A, -e[_REFINE_A], e[_REFINE_A + 1])
@@ -255,8 +255,8 @@ def renew(e: ptr32):
 def doubt(e: ptr32, a: int, p: int):
     """Store at p the variance of the slot's coefficients: the bound is one sigma."""
     m = bound(e, a)
-    a = 10 - e[a + _SLOT_COEFFICIENT_SHIFT]
-    put(e, _REFINE_A, m, a)
+    exponent = 10 - e[a + _SLOT_COEFFICIENT_SHIFT]
+    put(e, _REFINE_A, m, exponent)
     multiply(e, p, _REFINE_A, _REFINE_A)
 
 

@@ -64,16 +64,16 @@ def pass_time(e: ptr32, dt_us: int):
         return
     if dt_us <= 0:
         return
-    dt_us += e[_TICK_ELAPSED_US]
-    if dt_us < e[_TICK_US]:
-        e[_TICK_ELAPSED_US] = dt_us
+    elapsed_us = e[_TICK_ELAPSED_US] + dt_us
+    if elapsed_us < e[_TICK_US]:
+        e[_TICK_ELAPSED_US] = elapsed_us
         return
-    e[_TICK_ELAPSED_US] = dt_us % e[_TICK_US]
-    dt_us = e[_TICKS_DUE] + dt_us // e[_TICK_US]
-    if dt_us > _MOST_PENDING:
-        e[_HALF_TICKS] += (dt_us - _MOST_PENDING) << 1
-        dt_us = _MOST_PENDING
-    e[_TICKS_DUE] = dt_us
+    e[_TICK_ELAPSED_US] = elapsed_us % e[_TICK_US]
+    due = e[_TICKS_DUE] + elapsed_us // e[_TICK_US]
+    if due > _MOST_PENDING:
+        e[_HALF_TICKS] += (due - _MOST_PENDING) << 1
+        due = _MOST_PENDING
+    e[_TICKS_DUE] = due
     close_tick(e)
 
 
@@ -157,16 +157,16 @@ def sense(s: ptr32, e: ptr32, x: ptr32, dt_us: int, good: int):
         accumulate(e, x)
         if e[_RUNNING] == 1:
             begin_early(e, x)
-    dt_us = e[_SLOTS_A_SAMPLE]
-    while dt_us > 0 and e[_TICKS_DUE] > 0:
+    left = e[_SLOTS_A_SAMPLE]
+    while left > 0 and e[_TICKS_DUE] > 0:
         run_slot(e)
-        dt_us -= 1
+        left -= 1
     e[_NOW_Q14] = e[_HELD_Q14]
     e[_NOW_Q14 + 1] = e[_HELD_Q14 + 1]
     e[_NOW_Q14 + 2] = e[_HELD_Q14 + 2]
     if e[_INSTANT_SLOTS]:
         add_instant(e, good)
-    dt_us = 0
-    while dt_us < 3:
-        s[_EFFECT_Q8 + dt_us] = (e[_NOW_Q14 + dt_us] + 32) >> 6
-        dt_us += 1
+    i = 0
+    while i < 3:
+        s[_EFFECT_Q8 + i] = (e[_NOW_Q14 + i] + 32) >> 6
+        i += 1

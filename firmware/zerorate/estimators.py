@@ -1,6 +1,6 @@
 """The estimators of one axis: any temperature, short term and long term."""
 
-# Document 000, paragraphs on "bias estimators": estimator 0 takes every reading; 1..short are a
+# US 9,354,080, paragraphs on "bias estimators": estimator 0 takes every reading; 1..short are a
 # least-recently-used cache of the latest temperatures; the others keep a wide range of them.
 # `a` is the first word of an axis, `e` that of an estimator (docs/layout.md).
 
@@ -109,10 +109,10 @@ def touch(s: ptr32, c: ptr32, a: int, e: int):
         s[k] = held
 
 
-def third(s: ptr32, a: int, temp: int) -> int:
-    """Return in which third of the observed temperature range `temp` lies: 0, 1 or 2."""
+def third(s: ptr32, a: int, e: int) -> int:
+    """Return in which third of the observed temperature range the estimator is: 0, 1 or 2."""
     span = s[a + _HOTTEST] - s[a + _COLDEST] + 1
-    part = (temp - s[a + _COLDEST]) * 3 // span
+    part = (s[e + _EST_TEMP] - s[a + _COLDEST]) * 3 // span
     if part < 0:
         return 0
     if part > 2:
@@ -125,7 +125,7 @@ def richest(s: ptr32, c: ptr32, a: int, part: int) -> int:
     best = 0
     e = a + c[_FIRST_LONG]
     while e < a + c[_ESTIMATORS_END]:
-        if s[e + _EST_TEMP] != _FREE and third(s, a, s[e + _EST_TEMP]) == part:
+        if s[e + _EST_TEMP] != _FREE and third(s, a, e) == part:
             if best == 0 or s[e + _EST_READINGS] > s[best + _EST_READINGS]:
                 best = e
         e += c[_ESTIMATOR_WORDS]
@@ -134,7 +134,7 @@ def richest(s: ptr32, c: ptr32, a: int, part: int) -> int:
 
 def protected(s: ptr32, c: ptr32, a: int, e: int) -> int:
     """Return 1 if the long-term estimator is the richest of a third the candidate is not in."""
-    part = third(s, a, s[e + _EST_TEMP])
+    part = third(s, a, e)
     if part == s[_CANDIDATE_THIRD]:
         return 0
     if richest(s, c, a, part) == e:
@@ -201,7 +201,7 @@ def poorest(s: ptr32, c: ptr32, a: int, e: int) -> int:
 
 def victim(s: ptr32, c: ptr32, a: int, e: int) -> int:
     """Return the long-term estimator that the short-term one `e` may replace, or `e` itself."""
-    s[_CANDIDATE_THIRD] = third(s, a, s[e + _EST_TEMP])
+    s[_CANDIDATE_THIRD] = third(s, a, e)
     d = a + c[_FIRST_LONG]
     while d < a + c[_ESTIMATORS_END]:
         if s[d + _EST_TEMP] == _FREE:

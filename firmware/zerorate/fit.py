@@ -1,6 +1,6 @@
 """The sample-weighted least-squares line through an axis' estimators, in integers."""
 
-# Document 000, "a least squares fit may be performed". `local` > 0 turns it into a line through
+# US 9,354,080, "a least squares fit may be performed". `local` > 0 turns it into a line through
 # the neighbourhood of one temperature: an estimator `d` away counts 1 / (1 + (d/local)^2) of its
 # samples, and samples beyond `_MOST_COUNTED` add nothing, for then drift, not noise, is what is
 # left. At a slow rate all are scaled up, so that a few samples still tell near from far.

@@ -35,6 +35,38 @@ TIME_LEAPT = const(7)
 _MOST_US = const(0x1FFFFFFF)  # two of them fit 31 bits: repeats may come for hours
 
 
+def at_rail(x: ptr32) -> int:
+    """Return 1 if a rate of the frame stands at its rail."""
+    i = 4
+    while i < 7:
+        if x[i] > 32766 or x[i] < -32767:
+            return 1
+        i += 1
+    return 0
+
+
+def all_alike(x: ptr32) -> int:
+    """Return 1 if all words of the frame are the same."""
+    i = 1
+    while i < 7:
+        if x[i] != x[0]:
+            return 0
+        i += 1
+    return 1
+
+
+def exchange(s: ptr32, x: ptr32) -> int:
+    """Put the frame in the place of the one before; return 1 if it is the same."""
+    i = 0
+    same = 1
+    while i < 7:
+        if x[i] != s[_FRAME + i]:
+            same = 0
+        s[_FRAME + i] = x[i]
+        i += 1
+    return same
+
+
 def check(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
     """Return the kind of the frame `x` and count it; only GOOD frames may be learned from.
 
@@ -42,45 +74,29 @@ def check(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
     fault also ends the rest that is being watched, because what stands beside a broken frame may
     be broken too.
     """
-    differ = 0
-    fresh = 0
-    jump = x[3] - s[_FRAME + 3]
-    i = 0
-    while i < 7:
-        if x[i] != x[0]:
-            differ = 1
-        if x[i] != s[_FRAME + i]:
-            fresh = 1
-        s[_FRAME + i] = x[i]
-        i += 1
-    i = GOOD
-    if differ == 0 and (x[0] == 0 or x[0] == -1):
-        i = ALL_ZERO - x[0]
+    step = x[3] - s[_FRAME + 3]
+    repeats = exchange(s, x)
+    kind = GOOD
+    if (x[0] == 0 or x[0] == -1) and all_alike(x):
+        kind = ALL_ZERO - x[0]
     elif s[_COUNTS] == 0:
-        i = GOOD  # nothing came before it
+        kind = GOOD  # nothing came before it
     elif dt_us <= 0:
-        i = TIME_STOOD_STILL
+        kind = TIME_STOOD_STILL
     elif dt_us > c[_LEAP_US]:
-        i = TIME_LEAPT
-    elif fresh == 0:
-        i = REPEAT
-    elif jump >= c[_JUMP_LSB] or jump <= -c[_JUMP_LSB]:
-        i = TEMPERATURE_JUMP
-    if i == GOOD:
-        jump = 4
-        while jump < 7:
-            if x[jump] > 32766 or x[jump] < -32767:
-                i = RAIL
-            jump += 1
-    i += _COUNTS
-    jump = s[i] + 1
-    s[i] = jump & 0x1FFFFFFF
-    i -= _COUNTS
-    if i > REPEAT:
+        kind = TIME_LEAPT
+    elif repeats:
+        kind = REPEAT
+    elif step >= c[_JUMP_LSB] or step <= -c[_JUMP_LSB]:
+        kind = TEMPERATURE_JUMP
+    if kind == GOOD and at_rail(x):
+        kind = RAIL
+    s[_COUNTS + kind] = (s[_COUNTS + kind] + 1) & 0x1FFFFFFF
+    if kind > REPEAT:
         s[_WINDOW_N] = 0
         s[_DIRTY] = 0
         s[_REST] = 0
     elif dt_us > 0 and dt_us <= c[_LEAP_US]:
-        dt_us += s[_ELAPSED_US]
+        dt_us += s[_ELAPSED_US]  # eleven words: since the last window
         s[_ELAPSED_US] = dt_us if dt_us < _MOST_US else _MOST_US
-    return i
+    return kind

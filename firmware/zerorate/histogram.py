@@ -1,6 +1,6 @@
 """The adaptive histogram: few bins that crowd where the readings do."""
 
-# Document 000: "represents a plurality of gyroscope readings ... in a histogram", bin significance,
+# US 9,354,080: "represents a plurality of gyroscope readings ... in a histogram", bin significance,
 # "adapting bin widths". A histogram at word `h` of the state is
 #
 #     h .. h+bins           lower edge << 14 | population, the last one the upper edge of all
@@ -199,13 +199,12 @@ def recentre(s: ptr32, c: ptr32, h: int, k: int) -> int:
     """
     if k == 0 or k == c[_BINS] - 1:
         return 0
-    by = s[h + k + 1 + c[_BINS]]
-    h += k
+    h += k  # eleven words: the bin itself
     width = (s[h + 1] >> 14) - (s[h] >> 14)
-    k = s[h] & _MOST_READINGS
+    k = s[h] & _MOST_READINGS  # and its readings
     if k < c[_ENOUGH_TO_SPLIT] or width >= 4 * c[_NARROWEST_LSB]:
         return 0
-    by = by // k - (s[h] >> 14) - (width >> 1)
+    by = s[h + 1 + c[_BINS]] // k - (s[h] >> 14) - (width >> 1)
     if width < 32:
         width = 32  # a step of one LSB either way is rounding
     if by < (width >> 4) and by > -(width >> 4):

@@ -1,6 +1,6 @@
 """The bias from motion that returns: the slope of integrated orientation over a stored window.
 
-Document 002: store the rates, find the stretch that moves, integrate it to orientation, fit a
+US 10,451,438: store the rates, find the stretch that moves, integrate it to orientation, fit a
 line, take the slope as bias, remove it, integrate again. Two forms:
 
 - the document's own: each axis' slope of the orientation vector is that axis' bias;

@@ -81,16 +81,14 @@ def matrix_element(s: ptr32, n: int):
         j -= 3 - i
     j = int(place(i, j))
     copy(s, _T, _PRIOR + 2 * n, 2)
-    i = 2 * s[_STAGE] - 42
-    element(s, j, _SUMS + _SUM_MM + n, i)
+    element(s, j, _SUMS + _SUM_MM + n, 2 * s[_STAGE] - 42)
 
 
 def right_side(s: ptr32, i: int):
     """Build the right-hand side's element i: the slopes, and the prior's pull to its mean."""
     d = int(place(i, 3))
-    j = s[_STAGE] - 16
     put(s, _T, 0, 0)
-    element(s, d, _SUMS + _SUM_MY + i, j)
+    element(s, d, _SUMS + _SUM_MY + i, s[_STAGE] - 16)
     j = 0
     while j < 3:
         subtract(s, _T1, _PRIOR_MEAN + 2 * j, _BIAS + 2 * j)
@@ -220,10 +218,8 @@ def shape(s: ptr32, d: int, m: int, y: int):
     put(s, _T, s[y], 0)
     i = 0
     while i < 6:
-        y = s[_STAGE] - 26
-        put(s, _T1, s[m], y)
-        y = _SLOPE + i
-        multiply(s, _T1, _T1, y)
+        put(s, _T1, s[m], s[_STAGE] - 26)
+        multiply(s, _T1, _T1, _SLOPE + i)
         subtract(s, _T2, _T, _T1)
         copy(s, _T, _T2, 2)
         m += 1
@@ -245,12 +241,8 @@ def noise(s: ptr32, i: int):
     put(s, _T, 18482, -10)
     multiply(s, _T3, _T3, _T)
     add(s, _T3, _T3, d)
-    a = s[_T3 + 1] - s[_STAGE]
-    put(s, _T3, s[_T3], a)
-    a = _FLOOR_TILT_Q24
-    if i == 2:
-        a = _FLOOR_HEADING_Q24
-    put(s, _T, a, 0)
+    put(s, _T3, s[_T3], s[_T3 + 1] - s[_STAGE])
+    put(s, _T, _FLOOR_HEADING_Q24 if i == 2 else _FLOOR_TILT_Q24, 0)
     add(s, d, _T3, _T)
 
 
@@ -293,15 +285,13 @@ def own_square(s: ptr32, i: int):
     a = _SUMS + (_COMPONENT_WORDS + 3) * i
     if i == 2:
         a -= 1
-    i = 2 * s[_STAGE] - 42
-    put(s, _T1, s[a], i)
+    put(s, _T1, s[a], 2 * s[_STAGE] - 42)
 
 
 def own_slope(s: ptr32, i: int):
     """Store component i's own slope at _SLOPE, as US 10,451,438 takes it: no other axis."""
     own_square(s, i)
-    a = s[_STAGE] - 16
-    put(s, _T, s[_SUMS + (_COMPONENT_WORDS + 1) * i + _SUM_MY], a)
+    put(s, _T, s[_SUMS + (_COMPONENT_WORDS + 1) * i + _SUM_MY], s[_STAGE] - 16)
     divide(s, _SLOPE + 2 * i, _T, _T1)
 
 
@@ -310,5 +300,5 @@ def own_variance(s: ptr32, c: ptr32, i: int):
     own_square(s, i)
     put(s, _T, -c[_SLOPE_SPREAD], 0)
     multiply(s, _T, _T, _OMEGA + 2 * i)
-    i = int(place(i, i))
-    divide(s, i, _T, _T1)
+    d = int(place(i, i))
+    divide(s, d, _T, _T1)

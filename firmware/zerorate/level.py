@@ -147,12 +147,12 @@ def observe(s: ptr32, a: int):
     s[_Y + 1] = int(within(force, _MOST_Q12))
     force = int(force_q12(s, a, 6))
     s[_UP] += (s[_TAPER] * force + 512) >> 10
-    force = int(heading_q12(s))
-    a = force - s[_LAST_HEADING_Q12]
-    s[_LAST_HEADING_Q12] = force
-    if a > _WRAP_Q12:
+    heading = int(heading_q12(s))
+    turned = heading - s[_LAST_HEADING_Q12]
+    s[_LAST_HEADING_Q12] = heading
+    if turned > _WRAP_Q12:
         s[_HEADING_TURNS] -= 1
-    elif a < -_WRAP_Q12:
+    elif turned < -_WRAP_Q12:
         s[_HEADING_TURNS] += 1
-    force += int(within(s[_HEADING_TURNS], 3)) * 51472
-    s[_Y + 2] = int(within(force, _MOST_Q12))
+    heading += int(within(s[_HEADING_TURNS], 3)) * 51472
+    s[_Y + 2] = int(within(heading, _MOST_Q12))

@@ -60,8 +60,8 @@ def high_product(m: int, n: int) -> int:
 def multiply(s: ptr32, d: int, a: int, b: int):
     """Store the product of the numbers at a and b at d."""
     m = int(high_product(s[a], s[b]))
-    a = s[a + 1] + s[b + 1] + 28
-    put(s, d, m, a)
+    exponent = s[a + 1] + s[b + 1] + 28
+    put(s, d, m, exponent)
 
 
 def add(s: ptr32, d: int, a: int, b: int):

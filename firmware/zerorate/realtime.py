@@ -1,8 +1,9 @@
 """The bias against the accelerometer: counters of signs, stepped by a fixed value.
 
-Document 003: a time interval of sub-units; in each, the angular rate that a pair of accelerometer
-axes implies, its deviation from the gyroscope's, a counter; at the end of the interval the offset
-moves by a first value if the counter says so. The axis x has the pair (y, z), and so round.
+US 2015/0033821: a time interval of sub-units; in each, the angular rate that a pair of
+accelerometer axes implies, its deviation from the gyroscope's, a counter; at the end of the
+interval the offset moves by a first value if the counter says so. The axis x has the pair (y, z),
+and so round.
 
 With gravity g and rate w in the body frame g' = -w x g, so the pair's angle turns by
     atan2(gy, gz)' = wx - gx (wy gy + wz gz) / (gy^2 + gz^2):
@@ -170,15 +171,14 @@ def end_unit(s: ptr32, c: ptr32):
 
 def compare(s: ptr32, c: ptr32, i: int, square: int):
     """Compare the axis' angle with its pair's since the sub-unit before, and count."""
-    square -= s[_FORCE_SUM + i] * s[_FORCE_SUM + i]
-    bit = 1 << i
-    if square < _HALF_Q24 or int(too_far(s[_ANGLE_Q22 + i] >> 9)):
-        s[_LAST_GOOD] = s[_LAST_GOOD] & (7 - bit)
+    across = square - s[_FORCE_SUM + i] * s[_FORCE_SUM + i]
+    if across < _HALF_Q24 or int(too_far(s[_ANGLE_Q22 + i] >> 9)):
+        s[_LAST_GOOD] = s[_LAST_GOOD] & (7 - (1 << i))
         return
-    square = int(since_last(s, i, square >> 12))
-    if s[_LAST_GOOD] & bit:
-        count(s, c, i, square)
-    s[_LAST_GOOD] = s[_LAST_GOOD] | bit
+    across = int(since_last(s, i, across >> 12))  # eleven words: the deviation
+    if s[_LAST_GOOD] & (1 << i):
+        count(s, c, i, across)
+    s[_LAST_GOOD] = s[_LAST_GOOD] | (1 << i)
 
 
 def too_far(turned: int) -> int:
@@ -209,12 +209,14 @@ def since_last(s: ptr32, i: int, square: int) -> int:
 def pair_angle_q13(s: ptr32, i: int) -> int:
     """Return the angle of the mean force in the plane of the axis' pair."""
     j = i + 1 if i < 2 else 0
-    i = i - 1 if i > 0 else 2
-    return int(atan2_q13(s[_FORCE_SUM + j], s[_FORCE_SUM + i]))
+    k = i - 1 if i > 0 else 2
+    return int(atan2_q13(s[_FORCE_SUM + j], s[_FORCE_SUM + k]))
 
 
-def along_q12(s: ptr32, j: int, k: int) -> int:
-    """Return how far the axes j and k turned about gravity in the sub-unit, Q12 rad."""
+def along_q12(s: ptr32, i: int) -> int:
+    """Return how far the two axes beside i turned about gravity in the sub-unit, Q12 rad."""
+    j = i + 1 if i < 2 else 0
+    k = i - 1 if i > 0 else 2
     first = int(held(s[_ANGLE_Q22 + j] >> 9)) * s[_FORCE_SUM + j]
     return (first + int(held(s[_ANGLE_Q22 + k] >> 9)) * s[_FORCE_SUM + k]) >> 13
 
@@ -224,14 +226,12 @@ def coupled_q13(s: ptr32, i: int, square: int) -> int:
 
     Their mean over the last 16 s or so is left out: it is their bias, not a turn.
     """
-    j = i + 1 if i < 2 else 0
-    k = i - 1 if i > 0 else 2
-    k = int(along_q12(s, j, k))
-    j = s[_MEAN_ALONG_Q20 + i]
-    j += ((k << 8) - j) >> 5
-    s[_MEAN_ALONG_Q20 + i] = j
-    k -= j >> 8
-    return (k * (s[_FORCE_SUM + i] >> 1)) // square
+    along = int(along_q12(s, i))
+    mean = s[_MEAN_ALONG_Q20 + i]
+    mean += ((along << 8) - mean) >> 5
+    s[_MEAN_ALONG_Q20 + i] = mean
+    along -= mean >> 8
+    return (along * (s[_FORCE_SUM + i] >> 1)) // square
 
 
 def held(angle: int) -> int:

@@ -74,10 +74,10 @@ def beyond_q8(s: ptr32, c: ptr32, a: int) -> int:
         return 0
     if d > 0x3FFFF:
         d = 0x3FFFF
-    d = (d * c[_SLOPE_Q16]) >> 16
-    if d > 0x3FFF:
-        d = 0x3FFF
-    return d * d
+    sigma = (d * c[_SLOPE_Q16]) >> 16
+    if sigma > 0x3FFF:
+        sigma = 0x3FFF
+    return sigma * sigma
 
 
 def error_q4(s: ptr32, c: ptr32, a: int) -> int:
@@ -131,11 +131,11 @@ def rewalk(s: ptr32, c: ptr32, a: int, excess: int):
     if age > 1023:
         age = 1023
     speed = (speed - s[a + _WALK_Q16]) >> 4
-    age = age * age
-    age = age // ((age + 0x100000) >> 10)
-    if age < 40:
-        age = 40
-    speed = (speed * age >> 10) << 4
+    share = age * age
+    share = share // ((share + 0x100000) >> 10)
+    if share < 40:
+        share = 40
+    speed = (speed * share >> 10) << 4
     s[a + _WALK_Q16] += speed
     if s[a + _WALK_Q16] < c[_WALK_LEAST_Q16]:
         s[a + _WALK_Q16] = c[_WALK_LEAST_Q16]
@@ -158,10 +158,10 @@ def follow(s: ptr32, c: ptr32, a: int, error: int):
     excess = error * error - s[a + _OFFSET_VARIANCE_Q8]
     excess -= s[_MEAN_NOISE_Q8]
     rewalk(s, c, a, excess)
-    excess = gain_q14(s[_GROWN_Q8], s[_MEAN_NOISE_Q8])
-    s[a + _OFFSET_Q8] += (excess * error) >> 10
-    error = (excess * (s[_MEAN_NOISE_Q8] & 0x3FFF)) >> 14
-    s[a + _OFFSET_VARIANCE_Q8] = excess * (s[_MEAN_NOISE_Q8] >> 14) + error
+    gain = gain_q14(s[_GROWN_Q8], s[_MEAN_NOISE_Q8])
+    s[a + _OFFSET_Q8] += (gain * error) >> 10
+    excess = (gain * (s[_MEAN_NOISE_Q8] & 0x3FFF)) >> 14  # eleven words: the product's low part
+    s[a + _OFFSET_VARIANCE_Q8] = gain * (s[_MEAN_NOISE_Q8] >> 14) + excess
 
 
 def level_q8(s: ptr32, c: ptr32, a: int) -> int:

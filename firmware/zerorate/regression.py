@@ -1,6 +1,6 @@
 """Sums of a weighted straight-line fit of orientation against the turns of a bias.
 
-Document 002: "performing a linear fit of the orientation ... as the function of time". A bias b
+US 10,451,438: "performing a linear fit of the orientation ... as the function of time". A bias b
 moves the orientation by M(t) b, M the integral of the rotation matrix; where the device keeps its
 attitude on average that is a straight line in time. Two tilts come from the accelerometer's
 gravity in the level frame, the heading from the turn about it. The window is tapered by
@@ -47,14 +47,14 @@ def taper(s: ptr32, k: int, stage: int, even: int):
     even: the weight itself is 1, as in the document; the shapes stay tapered.
     """
     t = (2 * k + 1 - (1 << stage)) << (10 - stage)
-    k = (t * t) >> 10
-    stage = ((1024 - k) * (1024 - k)) >> 10
-    s[_SHAPE_2] = ((7 * k - 1024) * stage) >> 10
-    s[_SHAPE_3] = ((((3 * k - 1024) * t) >> 10) * stage) >> 10
+    square = (t * t) >> 10
+    weight = ((1024 - square) * (1024 - square)) >> 10
+    s[_SHAPE_2] = ((7 * square - 1024) * weight) >> 10
+    s[_SHAPE_3] = ((((3 * square - 1024) * t) >> 10) * weight) >> 10
     if even:
-        stage = 1024
-    s[_TAPER] = stage
-    s[_TAPER_SUM] += stage
+        weight = 1024
+    s[_TAPER] = weight
+    s[_TAPER_SUM] += weight
 
 
 def regressors(s: ptr32, row: int, shift: int):
@@ -100,8 +100,8 @@ def mean(s: ptr32, total: int) -> int:
 
 def refer(s: ptr32, d: int, a: int, mean: int):
     """Take (the word at a times mean) >> 10 from the word at d."""
-    a = int(scaled(s[a] << 5, mean, 15))
-    s[d] -= a
+    taken = int(scaled(s[a] << 5, mean, 15))
+    s[d] -= taken
 
 
 def centre(s: ptr32, a: int, row: int, shift: int):

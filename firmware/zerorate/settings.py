@@ -73,6 +73,50 @@ _NEAR = const(51)
 _SETTINGS_WORDS = const(52)
 # layout: end
 
+# What a user may set, in its unit. A time of readings is that many at the output data rate.
+DEFAULTS = {
+    "window_s": 0.5,  # a window
+    "segment_s": 2.5,  # a segment: what is learned at once
+    "still_dps": 0.3,  # most spread of the rates in a window that is still
+    "still_g": 0.03,  # most spread of the accelerations in it
+    "turn_dps": 0.03,  # gravity must not show a faster turn within a segment
+    "change_dps": 0.08,  # most that the mean rate changes within a segment
+    "slew_dps_per_s": 0.5,  # fastest change of the bias that is subtracted
+    "range_dps": 40.0,  # reach of an empty histogram, where every reading is learned
+    "narrowest_dps": 0.5,  # no bin gets narrower
+    "step_degc": 1.0,  # an estimator's range of temperature
+    "margin_degc": 0.15,  # how far beyond it the one in use stays in use
+    "promote_s": 4.0,  # readings that make an estimator worth keeping
+    "halve_after_s": 3600.0,  # readings after which the counts are halved
+    "fit_s": 2.0,  # readings that make an estimator a point of the line
+    "counted_s": 20.0,  # more readings weigh no more in the line
+    "local_degc": 3.0,  # half the width of the line's neighbourhood
+    "stable_s": 2.5,  # readings with which an estimator speaks for its temperature
+    "share": 0.125,  # and at least so many of all the line's readings
+    "beyond_degc": 0.5,  # how far outside the line's points a bias is said to lie beyond
+    "refit_degc": 0.25,  # the line is fitted again where the temperature moved so far
+    "floor_dps": 0.003,  # no mean of a rest is better known than that
+    "gate_dps": 0.3,  # a rest this near to what was expected is plausible
+    "insist_s": 60.0,  # an implausible rest that lasts so long is believed
+    "walk_dps": 0.002,  # speed of the offset's walk at first, a root second
+    "walk_least_dps": 0.0003,  # slowest that is learned
+    "walk_most_dps": 0.05,  # and fastest
+    "turn_on_dps": 0.1,  # one sigma of the turn-on offset
+    "slope_dps_per_degc": 0.02,  # how fast the bias may leave the line beyond its points
+    "motion_most_dps": 0.15,  # another source's bias less well known teaches nothing
+    "motion_full_dps": 0.01,  # one sigma with which it counts as one still reading
+    "motion_start_dps": 20.0,  # one sigma of the bias in motion before anything is known
+    "split_s": 0.01,  # readings in a bin that may be split, by the document
+}
+# By the document readings include motion, so that seconds of them tell little.
+OF_THE_DOCUMENT = {
+    "range_dps": 20.0,
+    "promote_s": 10.0,
+    "fit_s": 10.0,
+    "stable_s": 10.0,
+    "split_s": 1.0,
+}
+
 
 def power_of_two(samples):
     """Return the shift of the power of two nearest to `samples`, 2..8."""

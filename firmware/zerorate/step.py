@@ -2,6 +2,10 @@
 
 # Learning is spread over the samples of the next window, a piece a sample, so that no sample waits
 # for all of it. What an axis without anything to learn does is small: three share a sample.
+#
+# Of all kernels: a bytecode frame of more than eleven words (parameters, locals, what an expression
+# holds) takes heap at every call. Where none is left a name stands for a second thing, with a
+# remark that begins "eleven words" and says for what (host_tests/runtimes/test_frames.py).
 
 try:
     from micropython import const
@@ -68,24 +72,26 @@ _FULL_WEIGHT_Q12 = const(49)
 _PIECES_AN_AXIS = const(3)
 
 
+def sigma_q8(s: ptr32, c: ptr32, a: int) -> int:
+    """Return one sigma of the axis' bias at the temperature of the latest window, LSB Q8."""
+    # flicker noise is common to all rests: no mean of theirs is better known than that
+    variance = grown_q8(s, a) + (c[_FLOOR_Q8] << 1)
+    variance += beyond_q8(s, c, a)
+    if variance < 0x3FFFFF:
+        return root(variance << 8)
+    return root(variance) << 4
+
+
 def publish(s: ptr32, c: ptr32, a: int, axis: int):  # call
     """Write the axis' bias, source and quality for the temperature of the latest window."""
-    bias = s[_TEMP]
-    bias = curve_q8(s, c, a, bias) + s[a + _OFFSET_Q8]
+    bias = curve_q8(s, c, a, s[_TEMP]) + s[a + _OFFSET_Q8]
     if s[a + _KIND] == 0:
         return
     s[_TARGET_Q8 + axis] = bias
     if s[_SOURCE + axis] == 0:
         s[_OUT_Q8 + axis] = bias
     s[_SOURCE + axis] = s[a + _OFFSET_FROM] if s[a + _OFFSET_FROM] else s[a + _KIND]
-    # flicker noise is common to all rests: no mean of theirs is better known than that
-    bias = grown_q8(s, a) + (c[_FLOOR_Q8] << 1)
-    bias += beyond_q8(s, c, a)
-    if bias < 0x3FFFFF:
-        bias = root(bias << 8)
-    else:
-        bias = root(bias) << 4
-    s[_QUALITY_Q8 + axis] = bias
+    s[_QUALITY_Q8 + axis] = sigma_q8(s, c, a)
 
 
 def stale(s: ptr32, c: ptr32, a: int) -> int:
@@ -266,23 +272,25 @@ def speak(s: ptr32, c: ptr32, m: ptr32, w: int, axis: int):
             s[_SOURCE + axis] = s[_OFFERED_SOURCE]
 
 
+def readings_worth(c: ptr32, sigma: int) -> int:
+    """Return for how many still readings a bias of that one sigma counts, at most 256."""
+    n = c[_FULL_WEIGHT_Q12] // (sigma * sigma + 1)
+    return n if n < 256 else 256
+
+
 def offer(s: ptr32, c: ptr32, m: ptr32, w: int, axis: int):
     """Let an axis absorb and learn the bias that another source found: LSB Q8 at m[w+axis].
 
     Its one sigma stands three words on. It weighs as many still readings as its quality is worth.
     """
     a = c[_AXES] + axis * c[_AXIS_WORDS]
-    w += axis
-    sigma = m[w + 3] >> 2
+    sigma = m[w + 3 + axis] >> 2
     if s[a + _WAITING_N] or sigma > c[_MOST_SIGMA_Q6]:
         return
-    w = m[w] - s[_EFFECT_Q8 + axis]
-    axis = c[_FULL_WEIGHT_Q12] // (sigma * sigma + 1)
-    if axis > 256:
-        axis = 256
-    if axis > 0:
-        s[a + _WAITING_N] = axis
-        s[a + _WAITING_SUM] = (w >> 4) * axis >> 4
+    s[a + _WAITING_N] = readings_worth(c, sigma)
+    if s[a + _WAITING_N]:
+        w = (m[w + axis] - s[_EFFECT_Q8 + axis]) >> 4  # eleven words: the bias, LSB Q4
+        s[a + _WAITING_SUM] = w * s[a + _WAITING_N] >> 4
         s[a + _OFFER] = (((sigma * sigma) >> 4) << 3) + s[_OFFERED_SOURCE]
 
 

@@ -52,6 +52,12 @@ _SHAKEN = const(4)
 _SHIFTED = const(5)
 # layout: end
 
+_FAR_LSB = const(512)  # a reading farther than that from the window's first is motion:
+_FAR_BITS = const(10)  # of ten bits the squares of a window fit 31
+# by how much of a window's variance noise alone lets two of them differ
+_GRAVITY_NOISE = const(6)  # the mean accelerations: three sigma of three axes together
+_RATE_NOISE = const(14)  # the mean rate of an axis: 2 / 3 x (4.5 sigma)^2
+
 
 def gather(s: ptr32, c: ptr32, x: ptr32) -> int:  # inline
     """Add the frame `x` to the window; return 1 when the window is full, else 0."""
@@ -76,7 +82,7 @@ def gather(s: ptr32, c: ptr32, x: ptr32) -> int:  # inline
         i = 0
         while i < 7:
             d = x[i] - s[_REFERENCE + i]
-            if (d + 512) >> 10:  # beyond ten bits: the squares of a window fit 31
+            if (d + _FAR_LSB) >> _FAR_BITS:
                 s[_DIRTY] = i + 1
                 d = 0
             s[_WINDOW_SUM + i] += d
@@ -170,7 +176,7 @@ def white(s: ptr32, c: ptr32, spread: int) -> int:
     """Return 1 if neighbouring samples of the gyroscope share nothing: noise, not motion.
 
     von Neumann's ratio: the mean squared step is twice the variance for white noise, less for
-    whatever is slower and more for what alternates.
+    whatever is slower and more for what alternates: 1.375 to 2.75 times is taken for noise.
     """
     step = s[_SQUARE_STEP] << (8 - c[_WINDOW_SHIFT])
     spread = spread >> 4
@@ -196,15 +202,13 @@ def look(s: ptr32, c: ptr32) -> int:
     if s[_REST] == 0:
         return _STILL
     s[_TIP_Q8] = tip_q8(s, c)
-    # gravity's two window means differ by noise alone: 6 is three sigma of three axes together
-    if s[_TIP_Q8] > c[_TIP_LIMIT_Q8] + 6 * (shake_q8 >> c[_WINDOW_SHIFT]):
+    if s[_TIP_Q8] > c[_TIP_LIMIT_Q8] + _GRAVITY_NOISE * (shake_q8 >> c[_WINDOW_SHIFT]):
         return _TURNING
     if s[_SEGMENT_WINDOWS]:
-        shake_q8 = change_q4(s, c)
-        if shake_q8 > 0x7FFF:
+        change = change_q4(s, c)
+        if change > 0x7FFF:
             return _SHIFTED
-        # noise alone lets the means of one axis differ: 14 = 2 / 3 x (4.5 sigma)^2
-        if shake_q8 * shake_q8 > c[_CHANGE_LIMIT_Q8] + 14 * (noise_q8 >> c[_WINDOW_SHIFT]):
+        if change * change > c[_CHANGE_LIMIT_Q8] + _RATE_NOISE * (noise_q8 >> c[_WINDOW_SHIFT]):
             return _SHIFTED
     return _STILL
 

@@ -122,8 +122,8 @@ def carry_axis(s: ptr32, c: ptr32, i: int):
     # the covariances of the axes stay, so a variance must not shrink under them
     put(s, _T1, s[_T1] if s[_T1] > 0 else 0, s[_T1 + 1])
     add(s, _T1, _T1, _T3)
-    i = int(variance_at(i))
-    add(s, i, i, _T1)
+    v = int(variance_at(i))
+    add(s, v, v, _T1)
     bend(s, c)
     put(s, _TEMP_SLOPE_COVARIANCE, s[_T2], s[_T2 + 1])
     pack_slope(s, d)
@@ -155,7 +155,7 @@ def learn_slope(s: ptr32, i: int):
     subtract(s, _T1, _BIAS + 2 * i, _PRIOR_MEAN + 2 * i)
     multiply(s, _T1, _T1, _T)
     add(s, _TEMP_SLOPE, _TEMP_SLOPE, _T1)
-    i = int(place(i, i))
+    i = int(place(i, i))  # eleven words: where its covariance stands in the swept matrix
     add(s, _T1, a, i)
     multiply(s, _T1, _T1, _T)
     multiply(s, _T1, _T1, _T)

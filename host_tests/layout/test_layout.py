@@ -9,8 +9,9 @@ from zerorate.model import EffectModel
 
 from .lines import files, names_in, refreshed
 from .page import page
+from .settings_page import settings_page
 
-_BY_HAND = re.compile(r"^_?[A-Z][A-Z0-9_]* = const\((.*)\)", re.MULTILINE)
+_BY_HAND = re.compile(r"^_?[A-Z][A-Z0-9_]* = const\(([-\w]+)\)", re.MULTILINE)
 # a real at `a` has its exponent at `a + 1`
 _NUMBERED = re.compile(r"\b[scem]\[(\d+|[af] \+ ([2-9]|\d\d+)\b)[^]]*\]")
 
@@ -30,6 +31,11 @@ def test_the_page_is_that_of_the_layout(repository):
     assert (repository / "docs" / "layout.md").read_text("utf-8") == page(), "run `make layout`"
 
 
+def test_the_page_of_the_settings_is_that_of_the_code(repository):
+    made = settings_page(repository)
+    assert (repository / "docs" / "settings.md").read_text("utf-8") == made, "run `make layout`"
+
+
 def test_no_name_stands_for_two_things():
     names = [word.name for array in layout.ARRAYS for word in array.words]
     names += [array.size_name for array in layout.ARRAYS if array.size_name]
@@ -43,7 +49,7 @@ def test_no_private_constant_has_two_values_in_the_firmware(repository):
         for line in _BY_HAND.finditer(path.read_text("utf-8")):
             name = line[0].split(" ")[0]
             if name.startswith("_"):
-                values[name].add(int(line[1].split("#")[0], 0))
+                values[name].add(int(line[1], 0))
     assert len(values) > 300
     assert {name: found for name, found in values.items() if len(found) > 1} == {}
 

@@ -13,63 +13,80 @@ static inline int32_t shift_left(int32_t a, int32_t by) {
     return (int32_t)((uint32_t)a << by);
 }
 
-static int32_t guard_check(int32_t *s, int32_t *c, int32_t *x, int32_t dt_us) {
-    int32_t differ = 0;
-    int32_t fresh = 0;
+static int32_t guard_exchange(int32_t *s, int32_t *x) {
     int32_t i = 0;
-    int32_t jump = 0;
-    differ = 0;
-    fresh = 0;
-    jump = (x[3] - s[(0 + 3)]);
+    int32_t same = 0;
     i = 0;
+    same = 1;
     while (i < 7) {
-        if (x[i] != x[0]) {
-            differ = 1;
-        }
         if (x[i] != s[(0 + i)]) {
-            fresh = 1;
+            same = 0;
         }
         s[(0 + i)] = x[i];
         i = (i + 1);
     }
-    i = 0;
-    if ((differ == 0) && ((x[0] == 0) || (x[0] == (-1)))) {
-        i = (3 - x[0]);
+    return same;
+}
+
+static int32_t guard_all_alike(int32_t *x) {
+    int32_t i = 0;
+    i = 1;
+    while (i < 7) {
+        if (x[i] != x[0]) {
+            return 0;
+        }
+        i = (i + 1);
+    }
+    return 1;
+}
+
+static int32_t guard_at_rail(int32_t *x) {
+    int32_t i = 0;
+    i = 4;
+    while (i < 7) {
+        if ((x[i] > 32766) || (x[i] < (-32767))) {
+            return 1;
+        }
+        i = (i + 1);
+    }
+    return 0;
+}
+
+static int32_t guard_check(int32_t *s, int32_t *c, int32_t *x, int32_t dt_us) {
+    int32_t kind = 0;
+    int32_t repeats = 0;
+    int32_t step = 0;
+    step = (x[3] - s[(0 + 3)]);
+    repeats = guard_exchange(s, x);
+    kind = 0;
+    if (((x[0] == 0) || (x[0] == (-1))) && guard_all_alike(x)) {
+        kind = (3 - x[0]);
     } else {
         if (s[8] == 0) {
-            i = 0;
+            kind = 0;
         } else {
             if (dt_us <= 0) {
-                i = 6;
+                kind = 6;
             } else {
                 if (dt_us > c[1]) {
-                    i = 7;
+                    kind = 7;
                 } else {
-                    if (fresh == 0) {
-                        i = 1;
+                    if (repeats) {
+                        kind = 1;
                     } else {
-                        if ((jump >= c[2]) || (jump <= (-c[2]))) {
-                            i = 5;
+                        if ((step >= c[2]) || (step <= (-c[2]))) {
+                            kind = 5;
                         }
                     }
                 }
             }
         }
     }
-    if (i == 0) {
-        jump = 4;
-        while (jump < 7) {
-            if ((x[jump] > 32766) || (x[jump] < (-32767))) {
-                i = 2;
-            }
-            jump = (jump + 1);
-        }
+    if ((kind == 0) && guard_at_rail(x)) {
+        kind = 2;
     }
-    i = (i + 8);
-    jump = (s[i] + 1);
-    s[i] = (jump & 536870911);
-    i = (i - 8);
-    if (i > 1) {
+    s[(8 + kind)] = ((s[(8 + kind)] + 1) & 536870911);
+    if (kind > 1) {
         s[17] = 0;
         s[18] = 0;
         s[34] = 0;
@@ -79,7 +96,7 @@ static int32_t guard_check(int32_t *s, int32_t *c, int32_t *x, int32_t dt_us) {
             s[16] = ((dt_us < 536870911) ? dt_us : 536870911);
         }
     }
-    return i;
+    return kind;
 }
 
 static int32_t step_examine(int32_t *s, int32_t *c, int32_t *x, int32_t dt_us) {
@@ -154,6 +171,7 @@ static int32_t step_stale(int32_t *s, int32_t *c, int32_t a) {
 
 static int32_t recent_beyond_q8(int32_t *s, int32_t *c, int32_t a) {
     int32_t d = 0;
+    int32_t sigma = 0;
     d = (shift_left(s[47], 4) - s[(a + 20)]);
     if (d < 0) {
         d = (s[(a + 19)] - shift_left(s[47], 4));
@@ -164,11 +182,49 @@ static int32_t recent_beyond_q8(int32_t *s, int32_t *c, int32_t a) {
     if (d > 262143) {
         d = 262143;
     }
-    d = ((d * c[50]) >> 16);
-    if (d > 16383) {
-        d = 16383;
+    sigma = ((d * c[50]) >> 16);
+    if (sigma > 16383) {
+        sigma = 16383;
     }
-    return (d * d);
+    return (sigma * sigma);
+}
+
+static int32_t recent_grown_q8(int32_t *s, int32_t a) {
+    int32_t seconds = 0;
+    seconds = (s[(a + 28)] >> 10);
+    if (seconds > 2047) {
+        seconds = 2047;
+    }
+    return (s[(a + 25)] + (((s[(a + 26)] >> 4) * seconds) >> 4));
+}
+
+static int32_t fixed_root(int32_t square) {
+    int32_t bit = 0;
+    int32_t found = 0;
+    int32_t more = 0;
+    bit = shift_left(1, 14);
+    if (square < 16777216) {
+        bit = shift_left(1, 11);
+    }
+    found = 0;
+    while (bit) {
+        more = (found + bit);
+        if ((more * more) <= square) {
+            found = more;
+        }
+        bit = (bit >> 1);
+    }
+    return found;
+}
+
+static int32_t step_sigma_q8(int32_t *s, int32_t *c, int32_t a) {
+    int32_t variance = 0;
+    variance = (recent_grown_q8(s, a) + shift_left(c[37], 1));
+    variance = (variance + recent_beyond_q8(s, c, a));
+    if (variance < 4194303) {
+        return fixed_root(shift_left(variance, 8));
+    }
+    return shift_left(fixed_root(variance), 4);
 }
 
 static int32_t estimators_find(int32_t *s, int32_t *c, int32_t a, int32_t temp) {
@@ -268,38 +324,9 @@ static int32_t bias_curve_q8(int32_t *s, int32_t *c, int32_t a, int32_t temp) {
     return fit_line_q8(s, a, shift_left(temp, 4));
 }
 
-static int32_t recent_grown_q8(int32_t *s, int32_t a) {
-    int32_t seconds = 0;
-    seconds = (s[(a + 28)] >> 10);
-    if (seconds > 2047) {
-        seconds = 2047;
-    }
-    return (s[(a + 25)] + (((s[(a + 26)] >> 4) * seconds) >> 4));
-}
-
-static int32_t fixed_root(int32_t square) {
-    int32_t bit = 0;
-    int32_t found = 0;
-    int32_t more = 0;
-    bit = shift_left(1, 14);
-    if (square < 16777216) {
-        bit = shift_left(1, 11);
-    }
-    found = 0;
-    while (bit) {
-        more = (found + bit);
-        if ((more * more) <= square) {
-            found = more;
-        }
-        bit = (bit >> 1);
-    }
-    return found;
-}
-
 static void step_publish(int32_t *s, int32_t *c, int32_t a, int32_t axis) {
     int32_t bias = 0;
-    bias = s[47];
-    bias = (bias_curve_q8(s, c, a, bias) + s[(a + 24)]);
+    bias = (bias_curve_q8(s, c, a, s[47]) + s[(a + 24)]);
     if (s[(a + 30)] == 0) {
         return;
     }
@@ -308,14 +335,7 @@ static void step_publish(int32_t *s, int32_t *c, int32_t a, int32_t axis) {
         s[(55 + axis)] = bias;
     }
     s[(73 + axis)] = (s[(a + 13)] ? s[(a + 13)] : s[(a + 30)]);
-    bias = (recent_grown_q8(s, a) + shift_left(c[37], 1));
-    bias = (bias + recent_beyond_q8(s, c, a));
-    if (bias < 4194303) {
-        bias = fixed_root(shift_left(bias, 8));
-    } else {
-        bias = shift_left(fixed_root(bias), 4);
-    }
-    s[(70 + axis)] = bias;
+    s[(70 + axis)] = step_sigma_q8(s, c, a);
 }
 
 static int32_t histogram_most_significant(int32_t *s, int32_t h, int32_t bins) {
@@ -489,14 +509,13 @@ static int32_t histogram_recentre(int32_t *s, int32_t *c, int32_t h, int32_t k) 
     if ((k == 0) || (k == (c[16] - 1))) {
         return 0;
     }
-    by = s[(((h + k) + 1) + c[16])];
     h = (h + k);
     width = ((s[(h + 1)] >> 14) - (s[h] >> 14));
     k = (s[h] & 16383);
     if ((k < c[23]) || (width >= (4 * c[19]))) {
         return 0;
     }
-    by = ((floor_div(by, k) - (s[h] >> 14)) - (width >> 1));
+    by = ((floor_div(s[((h + 1) + c[16])], k) - (s[h] >> 14)) - (width >> 1));
     if (width < 32) {
         width = 32;
     }
@@ -660,11 +679,11 @@ static void estimators_touch(int32_t *s, int32_t *c, int32_t a, int32_t e) {
     }
 }
 
-static int32_t estimators_third(int32_t *s, int32_t a, int32_t temp) {
+static int32_t estimators_third(int32_t *s, int32_t a, int32_t e) {
     int32_t part = 0;
     int32_t span = 0;
     span = ((s[(a + 4)] - s[(a + 3)]) + 1);
-    part = floor_div(((temp - s[(a + 3)]) * 3), span);
+    part = floor_div(((s[(e + 0)] - s[(a + 3)]) * 3), span);
     if (part < 0) {
         return 0;
     }
@@ -718,7 +737,7 @@ static int32_t estimators_richest(int32_t *s, int32_t *c, int32_t a, int32_t par
     best = 0;
     e = (a + c[47]);
     while (e < (a + c[15])) {
-        if ((s[(e + 0)] != (-1048576)) && (estimators_third(s, a, s[(e + 0)]) == part)) {
+        if ((s[(e + 0)] != (-1048576)) && (estimators_third(s, a, e) == part)) {
             if ((best == 0) || (s[(e + 3)] > s[(best + 3)])) {
                 best = e;
             }
@@ -730,7 +749,7 @@ static int32_t estimators_richest(int32_t *s, int32_t *c, int32_t a, int32_t par
 
 static int32_t estimators_protected(int32_t *s, int32_t *c, int32_t a, int32_t e) {
     int32_t part = 0;
-    part = estimators_third(s, a, s[(e + 0)]);
+    part = estimators_third(s, a, e);
     if (part == s[7]) {
         return 0;
     }
@@ -774,7 +793,7 @@ static int32_t estimators_poorest(int32_t *s, int32_t *c, int32_t a, int32_t e) 
 
 static int32_t estimators_victim(int32_t *s, int32_t *c, int32_t a, int32_t e) {
     int32_t d = 0;
-    s[7] = estimators_third(s, a, s[(e + 0)]);
+    s[7] = estimators_third(s, a, e);
     d = (a + c[47]);
     while (d < (a + c[15])) {
         if (s[(d + 0)] == (-1048576)) {
@@ -1216,6 +1235,7 @@ static int32_t recent_adopt(int32_t *s, int32_t *c, int32_t a, int32_t error) {
 
 static void recent_rewalk(int32_t *s, int32_t *c, int32_t a, int32_t excess) {
     int32_t age = 0;
+    int32_t share = 0;
     int32_t speed = 0;
     age = ((s[(a + 28)] >> 6) + 1);
     if (excess > 2097151) {
@@ -1239,12 +1259,12 @@ static void recent_rewalk(int32_t *s, int32_t *c, int32_t a, int32_t excess) {
         age = 1023;
     }
     speed = ((speed - s[(a + 26)]) >> 4);
-    age = (age * age);
-    age = floor_div(age, ((age + 1048576) >> 10));
-    if (age < 40) {
-        age = 40;
+    share = (age * age);
+    share = floor_div(share, ((share + 1048576) >> 10));
+    if (share < 40) {
+        share = 40;
     }
-    speed = shift_left(((speed * age) >> 10), 4);
+    speed = shift_left(((speed * share) >> 10), 4);
     s[(a + 26)] = (s[(a + 26)] + speed);
     if (s[(a + 26)] < c[40]) {
         s[(a + 26)] = c[40];
@@ -1253,6 +1273,7 @@ static void recent_rewalk(int32_t *s, int32_t *c, int32_t a, int32_t excess) {
 
 static void recent_follow(int32_t *s, int32_t *c, int32_t a, int32_t error) {
     int32_t excess = 0;
+    int32_t gain = 0;
     if (error > 16383) {
         error = 16383;
     }
@@ -1262,10 +1283,10 @@ static void recent_follow(int32_t *s, int32_t *c, int32_t a, int32_t error) {
     excess = ((error * error) - s[(a + 25)]);
     excess = (excess - s[80]);
     recent_rewalk(s, c, a, excess);
-    excess = recent_gain_q14(s[81], s[80]);
-    s[(a + 24)] = (s[(a + 24)] + ((excess * error) >> 10));
-    error = ((excess * (s[80] & 16383)) >> 14);
-    s[(a + 25)] = ((excess * (s[80] >> 14)) + error);
+    gain = recent_gain_q14(s[81], s[80]);
+    s[(a + 24)] = (s[(a + 24)] + ((gain * error) >> 10));
+    excess = ((gain * (s[80] & 16383)) >> 14);
+    s[(a + 25)] = ((gain * (s[80] >> 14)) + excess);
 }
 
 static int32_t recent_believe(int32_t *s, int32_t *c, int32_t a, int32_t error) {
@@ -1416,6 +1437,7 @@ static int32_t stillness_white(int32_t *s, int32_t *c, int32_t spread) {
 }
 
 static int32_t stillness_look(int32_t *s, int32_t *c) {
+    int32_t change = 0;
     int32_t noise_q8 = 0;
     int32_t shake_q8 = 0;
     if (s[18] > 3) {
@@ -1441,11 +1463,11 @@ static int32_t stillness_look(int32_t *s, int32_t *c) {
         return 3;
     }
     if (s[48]) {
-        shake_q8 = stillness_change_q4(s, c);
-        if (shake_q8 > 32767) {
+        change = stillness_change_q4(s, c);
+        if (change > 32767) {
             return 5;
         }
-        if ((shake_q8 * shake_q8) > (c[10] + (14 * (noise_q8 >> c[4])))) {
+        if ((change * change) > (c[10] + (14 * (noise_q8 >> c[4])))) {
             return 5;
         }
     }

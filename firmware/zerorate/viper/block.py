@@ -3,6 +3,7 @@
 
 import micropython
 
+from .guard import all_alike
 from .step import advance
 from .step import close
 from .step import learn_at_once
@@ -448,7 +449,7 @@ def take(f_p: ptr32, s: ptr32, r: ptr32, c: ptr32, f: ptr32):
 
 
 @micropython.viper
-def one(s: ptr32, r: ptr32, c: ptr32, f: ptr32, s_, c_, r_):
+def one(step_step_examine_check_at_rail_i: int, r: ptr32, s: ptr32, c: ptr32, f: ptr32, s_, c_, r_):
     p = r[7]
     f_p = ptr32(int(f) + (p << 2))
     i = 0
@@ -462,80 +463,68 @@ def one(s: ptr32, r: ptr32, c: ptr32, f: ptr32, s_, c_, r_):
     i = 7
     i = f_p[0]
     step_step_examine_check_dt_us = i
-    step_step_examine_check_differ = 0
-    step_step_examine_check_fresh = 0
-    step_step_examine_check_jump = r[3] - s[3]
-    step_step_examine_check_i = 0
-    if r[0] - r[0]:
-        step_step_examine_check_differ = 1
+    step_step_examine_check_step = r[3] - s[3]
+    step_step_examine_check_exchange_same = 1
     if r[0] - s[0]:
-        step_step_examine_check_fresh = 1
+        step_step_examine_check_exchange_same = 0
     s[0] = r[0]
-    if r[1] - r[0]:
-        step_step_examine_check_differ = 1
     if r[1] - s[1]:
-        step_step_examine_check_fresh = 1
+        step_step_examine_check_exchange_same = 0
     s[1] = r[1]
-    if r[2] - r[0]:
-        step_step_examine_check_differ = 1
     if r[2] - s[2]:
-        step_step_examine_check_fresh = 1
+        step_step_examine_check_exchange_same = 0
     s[2] = r[2]
-    if r[3] - r[0]:
-        step_step_examine_check_differ = 1
     if r[3] - s[3]:
-        step_step_examine_check_fresh = 1
+        step_step_examine_check_exchange_same = 0
     s[3] = r[3]
-    if r[4] - r[0]:
-        step_step_examine_check_differ = 1
     if r[4] - s[4]:
-        step_step_examine_check_fresh = 1
+        step_step_examine_check_exchange_same = 0
     s[4] = r[4]
-    if r[5] - r[0]:
-        step_step_examine_check_differ = 1
     if r[5] - s[5]:
-        step_step_examine_check_fresh = 1
+        step_step_examine_check_exchange_same = 0
     s[5] = r[5]
-    if r[6] - r[0]:
-        step_step_examine_check_differ = 1
     if r[6] - s[6]:
-        step_step_examine_check_fresh = 1
+        step_step_examine_check_exchange_same = 0
     s[6] = r[6]
-    step_step_examine_check_i = 7
-    step_step_examine_check_i = 0
-    if not step_step_examine_check_differ and (not r[0] or not r[0] - -1):
-        step_step_examine_check_i = 3 - r[0]
+    step_step_examine_check_repeats = step_step_examine_check_exchange_same
+    step_step_examine_check_kind = 0
+    if (not r[0] or not r[0] - -1) and int(all_alike(r_)):
+        step_step_examine_check_kind = 3 - r[0]
     elif not s[8]:
-        step_step_examine_check_i = 0
+        step_step_examine_check_kind = 0
     elif step_step_examine_check_dt_us <= 0:
-        step_step_examine_check_i = 6
+        step_step_examine_check_kind = 6
     elif step_step_examine_check_dt_us > c[1]:
-        step_step_examine_check_i = 7
-    elif not step_step_examine_check_fresh:
-        step_step_examine_check_i = 1
-    elif step_step_examine_check_jump >= c[2] or step_step_examine_check_jump <= -c[2]:
-        step_step_examine_check_i = 5
-    if not step_step_examine_check_i:
-        step_step_examine_check_jump = 4
-        if r[4] > 32766 or r[4] < -32767:
-            step_step_examine_check_i = 2
-        if r[5] > 32766 or r[5] < -32767:
-            step_step_examine_check_i = 2
-        if r[6] > 32766 or r[6] < -32767:
-            step_step_examine_check_i = 2
-        step_step_examine_check_jump = 7
-    step_step_examine_check_i = step_step_examine_check_i + 8
-    step_step_examine_check_jump = s[step_step_examine_check_i] + 1
-    s[step_step_examine_check_i] = step_step_examine_check_jump & 536870911
-    step_step_examine_check_i = step_step_examine_check_i - 8
-    if step_step_examine_check_i > 1:
+        step_step_examine_check_kind = 7
+    elif step_step_examine_check_repeats:
+        step_step_examine_check_kind = 1
+    elif step_step_examine_check_step >= c[2] or step_step_examine_check_step <= -c[2]:
+        step_step_examine_check_kind = 5
+    if not step_step_examine_check_kind:
+        while True:
+            step_step_examine_check_at_rail_i = 4
+            step_step_examine_check_at_rail_left = 0
+            while step_step_examine_check_at_rail_i < 7:
+                if r[step_step_examine_check_at_rail_i] > 32766 or r[step_step_examine_check_at_rail_i] < -32767:
+                    step_step_examine_check_at_rail_result = 1
+                    step_step_examine_check_at_rail_left = 1
+                    break
+                step_step_examine_check_at_rail_i = step_step_examine_check_at_rail_i + 1
+            if step_step_examine_check_at_rail_left:
+                break
+            step_step_examine_check_at_rail_result = 0
+            break
+        if step_step_examine_check_at_rail_result:
+            step_step_examine_check_kind = 2
+    s[step_step_examine_check_kind + 8] = s[step_step_examine_check_kind + 8] + 1 & 536870911
+    if step_step_examine_check_kind > 1:
         s[17] = 0
         s[18] = 0
         s[34] = 0
     elif step_step_examine_check_dt_us > 0 and step_step_examine_check_dt_us <= c[1]:
         step_step_examine_check_dt_us = step_step_examine_check_dt_us + s[16]
         s[16] = step_step_examine_check_dt_us if step_step_examine_check_dt_us < 536870911 else 536870911
-    step_step_kind = step_step_examine_check_i
+    step_step_kind = step_step_examine_check_kind
     if not step_step_kind:
         if not s[17]:
             s[19] = r[0]
@@ -696,4 +685,4 @@ def block(s_, f_, c_, r_, n: int):
         if not s[53] and s[17] < c[3] - 1:
             take(0, s_, r_, c_, f_)
         if not r[7] - n:
-            one(s_, r_, c_, f_, s_, c_, r_)
+            one(0, r_, s_, c_, f_, s_, c_, r_)

@@ -72,11 +72,11 @@ def remembered(a: int, u: int, e: ptr32) -> int:
         return e_a[0] if kind == 1 else u - e_a[0]
     p = e_a[0]
     if not kind - 4:
-        kind = e[a - 25]
-        if p < u - kind:
-            p = u - kind
-        elif p > u + kind:
-            p = u + kind
+        half = e[a - 25]
+        if p < u - half:
+            p = u - half
+        elif p > u + half:
+            p = u + half
     elif p < u:
         p = u
     e_a[0] = p
@@ -115,23 +115,20 @@ def looked_up(v: int, e: ptr32, a: int) -> int:
 @micropython.viper
 def basis(e: ptr32, a: int, e_) -> int:
     e_a = ptr32(int(e) + (a << 2))
-    centred_f = a
-    e_centred_f = ptr32(int(e) + (centred_f << 2))
-    centred_u = e[e_centred_f[0]]
+    centred_u = e[e_a[0]]
     if not centred_u - -1073741823:
         v = -1073741823
     else:
-        if centred_u < e_centred_f[1]:
-            centred_u = e_centred_f[1]
-        elif centred_u > e_centred_f[2]:
-            centred_u = e_centred_f[2]
-        centred_u = centred_u - e_centred_f[3]
-        centred_f = e_centred_f[4]
-        e_centred_f = ptr32(int(e) + (centred_f << 2))
-        if centred_f >> 30:
-            v = centred_u >> 0 - centred_f
+        if centred_u < e_a[1]:
+            centred_u = e_a[1]
+        elif centred_u > e_a[2]:
+            centred_u = e_a[2]
+        centred_u = centred_u - e_a[3]
+        centred_shift = e_a[4]
+        if centred_shift >> 30:
+            v = centred_u >> 0 - centred_shift
         else:
-            v = centred_u << centred_f
+            v = centred_u << centred_shift
     w = 16777216
     if e_a[12]:
         centred_f = a + 12
@@ -145,12 +142,11 @@ def basis(e: ptr32, a: int, e_) -> int:
             elif centred_u > e_centred_f[2]:
                 centred_u = e_centred_f[2]
             centred_u = centred_u - e_centred_f[3]
-            centred_f = e_centred_f[4]
-            e_centred_f = ptr32(int(e) + (centred_f << 2))
-            if centred_f >> 30:
-                w = centred_u >> 0 - centred_f
+            centred_shift = e_centred_f[4]
+            if centred_shift >> 30:
+                w = centred_u >> 0 - centred_shift
             else:
-                w = centred_u << centred_f
+                w = centred_u << centred_shift
     if not v - -1073741823 or not w - -1073741823:
         return 0
     if e_a[27]:
@@ -170,13 +166,13 @@ def basis(e: ptr32, a: int, e_) -> int:
             e_delayed_ring[0] = e_delayed_ring[0] + 1 & 63
             e[delayed_ring + 2 + e_delayed_ring[0]] = delayed_u
         delayed_u = e_delayed_a[28] - e_delayed_ring[1]
-        e_delayed_ring[1] = (e_delayed_ring[1] + 1) % e_delayed_a[29]
         delayed_a = e_delayed_a[29]
         e_delayed_a = ptr32(int(e) + (delayed_a << 2))
-        delayed_between_back = delayed_u // delayed_a
+        e_delayed_ring[1] = (e_delayed_ring[1] + 1) % delayed_a
+        delayed_between_place = e_delayed_ring[0] - delayed_u // delayed_a
         delayed_between_part = delayed_u % delayed_a
-        delayed_between_u = e[delayed_ring + 2 + (e_delayed_ring[0] - delayed_between_back & 63)]
-        delayed_between_d = e[delayed_ring + 2 + (e_delayed_ring[0] - delayed_between_back - 1 & 63)] - delayed_between_u
+        delayed_between_u = e[delayed_ring + 2 + (delayed_between_place & 63)]
+        delayed_between_d = e[delayed_ring + 2 + (delayed_between_place - 1 & 63)] - delayed_between_u
         if delayed_between_d >> 30:
             v = delayed_between_u - ((0 - delayed_between_d >> 4) * delayed_between_part // delayed_a << 4)
         else:

@@ -14,8 +14,7 @@ def accumulate(e: ptr32, x: ptr32):
     while a < end:
         v = e_a[0]
         if v >= 16:
-            extra_a = a
-            extra_v = e[e[extra_a] + 88]
+            extra_v = e[e_a[0] + 88]
             if not extra_v - -1073741823:
                 v = -1073741823
             else:
@@ -23,17 +22,16 @@ def accumulate(e: ptr32, x: ptr32):
                     extra_v = 536870911
                 elif extra_v < -536870911:
                     extra_v = -536870911
-                extra_v = extra_v - e[extra_a + 2]
-                extra_a = e[extra_a + 1]
-                if extra_a > 0:
-                    extra_v = extra_v >> extra_a
-                    extra_a = 0
-                extra_a = 0 - extra_a
-                if extra_v > 32767 >> extra_a:
-                    extra_v = 32767 >> extra_a
-                elif extra_v < -(32768 >> extra_a):
-                    extra_v = -(32768 >> extra_a)
-                v = extra_v << extra_a
+                extra_v = extra_v - e_a[2]
+                extra_left = 0 - e_a[1]
+                if extra_left >> 30:
+                    extra_v = extra_v >> 0 - extra_left
+                    extra_left = 0
+                if extra_v > 32767 >> extra_left:
+                    extra_v = 32767 >> extra_left
+                elif extra_v < -(32768 >> extra_left):
+                    extra_v = -(32768 >> extra_left)
+                v = extra_v << extra_left
         elif v >= 10:
             e_a[5] = x[(v - 6) % 7] << 8
             v = -1073741823

@@ -91,9 +91,10 @@ def attend(s: ptr32, c: ptr32, e_):
             effect_refine_observe_i = 3
             effect_refine_observe_i = 2
             while effect_refine_observe_i < e[583]:
-                effect_refine_observe_n = (effect_refine_observe_i - 2) * 40 + 112
-                put(e[effect_refine_observe_n + 39], -24, 2 * effect_refine_observe_i + 602, e_)
-                if not e[effect_refine_observe_n + 33] - 1:
+                effect_refine_observe_a = (effect_refine_observe_i - 2) * 40 + 112
+                e_effect_refine_observe_a = ptr32(int(e) + (effect_refine_observe_a << 2))
+                put(e_effect_refine_observe_a[39], -24, 2 * effect_refine_observe_i + 602, e_)
+                if not e_effect_refine_observe_a[33] - 1:
                     put(0, 0, 2 * effect_refine_observe_i + 602, e_)
                 effect_refine_observe_i = effect_refine_observe_i + 1
             e[582] = 1
@@ -108,7 +109,7 @@ def product(a: int, b: int, e: ptr32, to: int, e_):
     e_to[1] = -4096
     i = e[583]
     while i > 0:
-        multiply(a, e_, b, 590)
+        multiply(e_, a, b, 590)
         if e_to[1] < e[591]:
             add_smaller(e_, 590, to, to)
         else:
@@ -144,12 +145,11 @@ def miss(restore_put_learned_put_m: int, restore_put_learned_put_e: int, e: ptr3
     restore_a = 112
     restore_i = 606
     while restore_i < 2 * e[583] + 602:
-        restore_put_learned_a = restore_a
-        restore_put_learned_m = e[restore_put_learned_a + 24 + axis]
-        restore_put_learned_m = restore_put_learned_m - e[restore_put_learned_a + 30 + axis]
-        restore_put_learned_a = 10 - e[restore_put_learned_a + 23]
+        restore_put_learned_m = e[restore_a + 24 + axis]
+        restore_put_learned_m = restore_put_learned_m - e[restore_a + 30 + axis]
+        restore_put_learned_exponent = 10 - e[restore_a + 23]
         restore_put_learned_put_m = restore_put_learned_m
-        restore_put_learned_put_e = restore_put_learned_a
+        restore_put_learned_put_e = restore_put_learned_exponent
         if not restore_put_learned_put_m:
             e[590] = 0
             e[591] = -4096
@@ -165,7 +165,7 @@ def miss(restore_put_learned_put_m: int, restore_put_learned_put_e: int, e: ptr3
                 restore_put_learned_put_e = restore_put_learned_put_e + 1
             e[590] = restore_put_learned_put_m
             e[591] = restore_put_learned_put_e
-        multiply(590, e_, restore_i, 590)
+        multiply(e_, 590, restore_i, 590)
         if e[i + 1] < e[591]:
             add_smaller(e_, 590, i, i)
         else:
@@ -177,19 +177,19 @@ def miss(restore_put_learned_put_m: int, restore_put_learned_put_e: int, e: ptr3
 @micropython.viper
 def believe(put_m: int, put_e: int, e: ptr32, i: int, e_):
     divide(e_, 2 * i + 622, 594, 592)
-    multiply(592, e_, 596, 590)
+    multiply(e_, 592, 596, 590)
     at = 2 * i + 642
     if e[at + 1] < e[591]:
         add_smaller(e_, 590, at, at)
     else:
         add_smaller(e_, at, 590, at)
-    multiply(592, e_, 598, 590)
+    multiply(e_, 592, 598, 590)
     at = 2 * i + 662
     if e[at + 1] < e[591]:
         add_smaller(e_, 590, at, at)
     else:
         add_smaller(e_, at, 590, at)
-    multiply(592, e_, 600, 590)
+    multiply(e_, 592, 600, 590)
     at = 2 * i + 682
     if e[at + 1] < e[591]:
         add_smaller(e_, 590, at, at)
@@ -198,7 +198,7 @@ def believe(put_m: int, put_e: int, e: ptr32, i: int, e_):
     at = i * 20 + 702
     i = 0
     while i < e[583]:
-        multiply(592, e_, 2 * i + 622, 590)
+        multiply(e_, 592, 2 * i + 622, 590)
         put_m = -e[590]
         put_e = e[591]
         if not put_m:
@@ -436,10 +436,9 @@ def begin(e_, slots: int):
         if doubt_bound_m > doubt_bound_most:
             doubt_bound_most = doubt_bound_m
         doubt_m = (doubt_bound_most >> 3) * e[27]
-        doubt_a = 10 - e_doubt_a[23]
-        e_doubt_a = ptr32(int(e) + (doubt_a << 2))
+        doubt_exponent = 10 - e_doubt_a[23]
         doubt_put_m = doubt_m
-        doubt_put_e = doubt_a
+        doubt_put_e = doubt_exponent
         if not doubt_put_m:
             e[590] = 0
             e[591] = -4096
@@ -455,7 +454,7 @@ def begin(e_, slots: int):
                 doubt_put_e = doubt_put_e + 1
             e[590] = doubt_put_m
             e[591] = doubt_put_e
-        multiply(590, e_, 590, doubt_p)
+        multiply(e_, 590, 590, doubt_p)
         i = i + 1
     e[582] = 0
     e[588] = 0

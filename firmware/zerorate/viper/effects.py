@@ -47,23 +47,20 @@ def run_slot(e: ptr32, e_):
     else:
         play_a = (i - e[0]) * 15 + 902
         e_play_a = ptr32(int(e) + (play_a << 2))
-        play_centred_f = play_a
-        e_play_centred_f = ptr32(int(e) + (play_centred_f << 2))
-        play_centred_u = e[e_play_centred_f[0]]
+        play_centred_u = e[e_play_a[0]]
         if not play_centred_u - -1073741823:
             play_v = -1073741823
         else:
-            if play_centred_u < e_play_centred_f[1]:
-                play_centred_u = e_play_centred_f[1]
-            elif play_centred_u > e_play_centred_f[2]:
-                play_centred_u = e_play_centred_f[2]
-            play_centred_u = play_centred_u - e_play_centred_f[3]
-            play_centred_f = e_play_centred_f[4]
-            e_play_centred_f = ptr32(int(e) + (play_centred_f << 2))
-            if play_centred_f >> 30:
-                play_v = play_centred_u >> 0 - play_centred_f
+            if play_centred_u < e_play_a[1]:
+                play_centred_u = e_play_a[1]
+            elif play_centred_u > e_play_a[2]:
+                play_centred_u = e_play_a[2]
+            play_centred_u = play_centred_u - e_play_a[3]
+            play_centred_shift = e_play_a[4]
+            if play_centred_shift >> 30:
+                play_v = play_centred_u >> 0 - play_centred_shift
             else:
-                play_v = play_centred_u << play_centred_f
+                play_v = play_centred_u << play_centred_shift
         if not play_v - -1073741823:
             pass
         else:
@@ -108,22 +105,21 @@ def run_slot(e: ptr32, e_):
 @micropython.viper
 def sense(s: ptr32, e_, x_, dt_us: int, good: int):
     e = ptr32(e_)
-    pass_time_dt_us = dt_us
     if not e[8]:
         e[8] = 1
-    elif pass_time_dt_us <= 0:
+    elif dt_us <= 0:
         pass
     else:
-        pass_time_dt_us = pass_time_dt_us + e[3]
-        if pass_time_dt_us < e[2]:
-            e[3] = pass_time_dt_us
+        pass_time_elapsed_us = e[3] + dt_us
+        if pass_time_elapsed_us < e[2]:
+            e[3] = pass_time_elapsed_us
         else:
-            e[3] = pass_time_dt_us % e[2]
-            pass_time_dt_us = pass_time_dt_us // e[2] + e[4]
-            if pass_time_dt_us > 4096:
-                e[7] = (pass_time_dt_us - 4096 << 1) + e[7]
-                pass_time_dt_us = 4096
-            e[4] = pass_time_dt_us
+            e[3] = pass_time_elapsed_us % e[2]
+            pass_time_due = pass_time_elapsed_us // e[2] + e[4]
+            if pass_time_due > 4096:
+                e[7] = (pass_time_due - 4096 << 1) + e[7]
+                pass_time_due = 4096
+            e[4] = pass_time_due
             close_tick(e_)
     if good:
         accumulate(e_, x_)
@@ -132,10 +128,10 @@ def sense(s: ptr32, e_, x_, dt_us: int, good: int):
             e[4] = e[4] + 1
             close_tick(e_)
             accumulate(e_, x_)
-    dt_us = e[6]
-    while dt_us > 0 and e[4] > 0:
+    left = e[6]
+    while left > 0 and e[4] > 0:
         run_slot(e_, e_)
-        dt_us = dt_us - 1
+        left = left - 1
     e[16] = e[13]
     e[17] = e[14]
     e[18] = e[15]
@@ -151,8 +147,6 @@ def sense(s: ptr32, e_, x_, dt_us: int, good: int):
             add_instant_a = add_instant_a + 40
             e_add_instant_a = ptr32(int(e_add_instant_a) + 160)
             add_instant_i = add_instant_i - 1
-    dt_us = 0
     s[61] = e[16] + 32 >> 6
     s[62] = e[17] + 32 >> 6
     s[63] = e[18] + 32 >> 6
-    dt_us = 3

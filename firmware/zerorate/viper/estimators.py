@@ -41,9 +41,8 @@ def reset(s: ptr32, c: ptr32, a: int):
 @micropython.viper
 def protected(c: ptr32, s: ptr32, a: int, e: int) -> int:
     s_a = ptr32(int(s) + (a << 2))
-    third_temp = s[e]
     third_span = s_a[4] - s_a[3] + 1
-    third_part = (third_temp - s_a[3]) * 3 // third_span
+    third_part = (s[e] - s_a[3]) * 3 // third_span
     if third_part >> 30:
         part = 0
     elif third_part > 2:
@@ -56,9 +55,8 @@ def protected(c: ptr32, s: ptr32, a: int, e: int) -> int:
     richest_e = a + c[47]
     while richest_e < a + c[15]:
         if s[richest_e] - -1048576:
-            richest_third_temp = s[richest_e]
             richest_third_span = s_a[4] - s_a[3] + 1
-            richest_third_part = (richest_third_temp - s_a[3]) * 3 // richest_third_span
+            richest_third_part = (s[richest_e] - s_a[3]) * 3 // richest_third_span
             if richest_third_part >> 30:
                 richest_third_result = 0
             elif richest_third_part > 2:
@@ -147,9 +145,8 @@ def make_room(victim_d: int, c: ptr32, victim_poorest_d: int, a: int, s: ptr32, 
     s_e = ptr32(int(s) + (e << 2))
     if s_e[0] - -1048576 and s_e[3] >= c[29]:
         while True:
-            victim_third_temp = s_e[0]
             victim_third_span = s_a[4] - s_a[3] + 1
-            victim_third_part = (victim_third_temp - s_a[3]) * 3 // victim_third_span
+            victim_third_part = (s_e[0] - s_a[3]) * 3 // victim_third_span
             if victim_third_part >> 30:
                 victim_third_result = 0
             elif victim_third_part > 2:

@@ -129,7 +129,6 @@ def adapt(h: int, s: ptr32, c: ptr32, k: int, s_, c_) -> int:
         if not recentre_k or not recentre_k - (c[16] - 1):
             recentre_result = 0
         else:
-            recentre_by = s[recentre_h + recentre_k + 1 + c[16]]
             recentre_h = recentre_h + recentre_k
             s_recentre_h = ptr32(int(s) + (recentre_h << 2))
             recentre_width = (s_recentre_h[1] >> 14) - (s_recentre_h[0] >> 14)
@@ -137,7 +136,7 @@ def adapt(h: int, s: ptr32, c: ptr32, k: int, s_, c_) -> int:
             if recentre_k < c[23] or recentre_width >= 4 * c[19]:
                 recentre_result = 0
             else:
-                recentre_by = recentre_by // recentre_k - (s_recentre_h[0] >> 14) - (recentre_width >> 1)
+                recentre_by = s[recentre_h + 1 + c[16]] // recentre_k - (s_recentre_h[0] >> 14) - (recentre_width >> 1)
                 if recentre_width < 32:
                     recentre_width = 32
                 if recentre_by < recentre_width >> 4 and recentre_by > -(recentre_width >> 4):

@@ -1,7 +1,7 @@
 # Generated from zerorate/in_motion.py by `make viper`: edit that file, not this one.
 """The bias from motion that returns: the slope of integrated orientation over a stored window.
 
-Document 002: store the rates, find the stretch that moves, integrate it to orientation, fit a
+US 10,451,438: store the rates, find the stretch that moves, integrate it to orientation, fit a
 line, take the slope as bias, remove it, integrate again. Two forms:
 
 - the document's own: each axis' slope of the orientation vector is that axis' bias;
@@ -196,21 +196,24 @@ def begin_traversal(s: ptr32):
 @micropython.viper
 def visit(s: ptr32, sum_up_i: int, c: ptr32, s_):
     a = s[16] + s[15]
+    s_a = ptr32(int(s) + (a << 2))
     if a >= c[8]:
         a = a - c[8]
+        s_a = ptr32(int(s) + (a << 2))
     a = 3 * a + 241
+    s_a = ptr32(int(s) + (a << 2))
     taper_k = s[15]
     taper_stage = s[12]
     taper_even = c[20]
     taper_t = 2 * taper_k + 1 - (1 << taper_stage) << 10 - taper_stage
-    taper_k = taper_t * taper_t >> 10
-    taper_stage = (1024 - taper_k) * (1024 - taper_k) >> 10
-    s[61] = (7 * taper_k - 1024) * taper_stage >> 10
-    s[62] = ((3 * taper_k - 1024) * taper_t >> 10) * taper_stage >> 10
+    taper_square = taper_t * taper_t >> 10
+    taper_weight = (1024 - taper_square) * (1024 - taper_square) >> 10
+    s[61] = (7 * taper_square - 1024) * taper_weight >> 10
+    s[62] = ((3 * taper_square - 1024) * taper_t >> 10) * taper_weight >> 10
     if taper_even:
-        taper_stage = 1024
-    s[60] = taper_stage
-    s[18] = s[18] + taper_stage
+        taper_weight = 1024
+    s[60] = taper_weight
+    s[18] = s[18] + taper_weight
     rotation(s_)
     if c[20]:
         observe_vector_i = 0
@@ -232,12 +235,10 @@ def visit(s: ptr32, sum_up_i: int, c: ptr32, s_):
             s[53] = -s[53]
         observe_vector_i = 3
     else:
-        level_observe_a = a
-        s_level_observe_a = ptr32(int(s) + (level_observe_a << 2))
         level_observe_force_q12_total = 0
-        level_observe_force_q12_total = ((s_level_observe_a[0] & 32767 ^ 16384) - 16384) * s[36] + level_observe_force_q12_total
-        level_observe_force_q12_total = ((s_level_observe_a[1] & 32767 ^ 16384) - 16384) * s[37] + level_observe_force_q12_total
-        level_observe_force_q12_total = ((s_level_observe_a[2] & 32767 ^ 16384) - 16384) * s[38] + level_observe_force_q12_total
+        level_observe_force_q12_total = ((s_a[0] & 32767 ^ 16384) - 16384) * s[36] + level_observe_force_q12_total
+        level_observe_force_q12_total = ((s_a[1] & 32767 ^ 16384) - 16384) * s[37] + level_observe_force_q12_total
+        level_observe_force_q12_total = ((s_a[2] & 32767 ^ 16384) - 16384) * s[38] + level_observe_force_q12_total
         level_observe_force = level_observe_force_q12_total + 8192 >> 14
         if level_observe_force > 32767:
             level_observe_increments_within_result = 32767
@@ -247,9 +248,9 @@ def visit(s: ptr32, sum_up_i: int, c: ptr32, s_):
             level_observe_increments_within_result = level_observe_force
         s[51] = -level_observe_increments_within_result
         level_observe_force_q12_total = 0
-        level_observe_force_q12_total = ((s_level_observe_a[0] & 32767 ^ 16384) - 16384) * s[33] + level_observe_force_q12_total
-        level_observe_force_q12_total = ((s_level_observe_a[1] & 32767 ^ 16384) - 16384) * s[34] + level_observe_force_q12_total
-        level_observe_force_q12_total = ((s_level_observe_a[2] & 32767 ^ 16384) - 16384) * s[35] + level_observe_force_q12_total
+        level_observe_force_q12_total = ((s_a[0] & 32767 ^ 16384) - 16384) * s[33] + level_observe_force_q12_total
+        level_observe_force_q12_total = ((s_a[1] & 32767 ^ 16384) - 16384) * s[34] + level_observe_force_q12_total
+        level_observe_force_q12_total = ((s_a[2] & 32767 ^ 16384) - 16384) * s[35] + level_observe_force_q12_total
         level_observe_force = level_observe_force_q12_total + 8192 >> 14
         if level_observe_force > 32767:
             level_observe_increments_within_result = 32767
@@ -259,9 +260,9 @@ def visit(s: ptr32, sum_up_i: int, c: ptr32, s_):
             level_observe_increments_within_result = level_observe_force
         s[52] = level_observe_increments_within_result
         level_observe_force_q12_total = 0
-        level_observe_force_q12_total = ((s_level_observe_a[0] & 32767 ^ 16384) - 16384) * s[39] + level_observe_force_q12_total
-        level_observe_force_q12_total = ((s_level_observe_a[1] & 32767 ^ 16384) - 16384) * s[40] + level_observe_force_q12_total
-        level_observe_force_q12_total = ((s_level_observe_a[2] & 32767 ^ 16384) - 16384) * s[41] + level_observe_force_q12_total
+        level_observe_force_q12_total = ((s_a[0] & 32767 ^ 16384) - 16384) * s[39] + level_observe_force_q12_total
+        level_observe_force_q12_total = ((s_a[1] & 32767 ^ 16384) - 16384) * s[40] + level_observe_force_q12_total
+        level_observe_force_q12_total = ((s_a[2] & 32767 ^ 16384) - 16384) * s[41] + level_observe_force_q12_total
         level_observe_force = level_observe_force_q12_total + 8192 >> 14
         s[63] = (s[60] * level_observe_force + 512 >> 10) + s[63]
         level_observe_heading_q12_w = s[25] + 8192 >> 14
@@ -270,13 +271,12 @@ def visit(s: ptr32, sum_up_i: int, c: ptr32, s_):
         level_observe_heading_q12_z = s[28] + 8192 >> 14
         level_observe_heading_q12_real = level_observe_heading_q12_w * s[29] + level_observe_heading_q12_x * s[30] + level_observe_heading_q12_y * s[31] + level_observe_heading_q12_z * s[32]
         level_observe_heading_q12_z = level_observe_heading_q12_z * s[29] - level_observe_heading_q12_w * s[32] - level_observe_heading_q12_x * s[31] + level_observe_heading_q12_y * s[30]
-        level_observe_force = int(atan2_q13(level_observe_heading_q12_real, level_observe_heading_q12_z))
-        level_observe_a = level_observe_force - s[23]
-        s_level_observe_a = ptr32(int(s) + (level_observe_a << 2))
-        s[23] = level_observe_force
-        if level_observe_a > 25736:
+        level_observe_heading = int(atan2_q13(level_observe_heading_q12_real, level_observe_heading_q12_z))
+        level_observe_turned = level_observe_heading - s[23]
+        s[23] = level_observe_heading
+        if level_observe_turned > 25736:
             s[24] = s[24] - 1
-        elif level_observe_a < -25736:
+        elif level_observe_turned < -25736:
             s[24] = s[24] + 1
         level_observe_increments_within_value = s[24]
         if level_observe_increments_within_value > 3:
@@ -285,13 +285,13 @@ def visit(s: ptr32, sum_up_i: int, c: ptr32, s_):
             level_observe_increments_within_result = -3
         else:
             level_observe_increments_within_result = level_observe_increments_within_value
-        level_observe_force = level_observe_increments_within_result * 51472 + level_observe_force
-        if level_observe_force > 32767:
+        level_observe_heading = level_observe_increments_within_result * 51472 + level_observe_heading
+        if level_observe_heading > 32767:
             level_observe_increments_within_result = 32767
-        elif level_observe_force < -32767:
+        elif level_observe_heading < -32767:
             level_observe_increments_within_result = -32767
         else:
-            level_observe_increments_within_result = level_observe_force
+            level_observe_increments_within_result = level_observe_heading
         s[53] = level_observe_increments_within_result
     sum_up_i = 0
     while sum_up_i < 9:
@@ -423,19 +423,19 @@ def visit(s: ptr32, sum_up_i: int, c: ptr32, s_):
     s[54] = s[54] + s[57]
     remove_bias_part = s[54] + 1024 >> 11
     s[54] = s[54] - (remove_bias_part << 11)
-    remove_bias_part = (s[a] >> 15) - remove_bias_part
+    remove_bias_part = (s_a[0] >> 15) - remove_bias_part
     s[19] = remove_bias_part
     s[65] = (remove_bias_part if remove_bias_part > 0 else 0 - remove_bias_part) + s[65]
     s[55] = s[55] + s[58]
     remove_bias_part = s[55] + 1024 >> 11
     s[55] = s[55] - (remove_bias_part << 11)
-    remove_bias_part = (s[a + 1] >> 15) - remove_bias_part
+    remove_bias_part = (s_a[1] >> 15) - remove_bias_part
     s[20] = remove_bias_part
     s[65] = (remove_bias_part if remove_bias_part > 0 else 0 - remove_bias_part) + s[65]
     s[56] = s[56] + s[59]
     remove_bias_part = s[56] + 1024 >> 11
     s[56] = s[56] - (remove_bias_part << 11)
-    remove_bias_part = (s[a + 2] >> 15) - remove_bias_part
+    remove_bias_part = (s_a[2] >> 15) - remove_bias_part
     s[21] = remove_bias_part
     s[65] = (remove_bias_part if remove_bias_part > 0 else 0 - remove_bias_part) + s[65]
     tilting_row = 0
@@ -443,12 +443,14 @@ def visit(s: ptr32, sum_up_i: int, c: ptr32, s_):
     tilting_part = s[tilting_row] * s[19] + s[tilting_row + 1] * s[20]
     tilting_part = s[tilting_row + 2] * s[21] + tilting_part + 8192 >> 14
     a = tilting_part if tilting_part > 0 else 0 - tilting_part
+    s_a = ptr32(int(s) + (a << 2))
     tilting_row = 3
     tilting_row = tilting_row + 33
     tilting_part = s[tilting_row] * s[19] + s[tilting_row + 1] * s[20]
     tilting_part = s[tilting_row + 2] * s[21] + tilting_part + 8192 >> 14
     tilting_result = tilting_part if tilting_part > 0 else 0 - tilting_part
     a = a + tilting_result
+    s_a = ptr32(int(s) + (a << 2))
     s[66] = s[66] + a
     sines_square = s[19] * s[19] + s[20] * s[20] + s[21] * s[21] >> 14
     sines_fourth = (sines_square >> 1) * (sines_square >> 1) >> 12
@@ -492,13 +494,12 @@ def solve(s: ptr32, c: ptr32, s_, c_) -> int:
     s[15] = k + 1
     if c[20]:
         if k < 3:
-            centre(s_, s[12], 3 * k, 21 * k + 86)
+            centre(s_, 3 * k, s[12], 21 * k + 86)
         elif k < 6:
             solve_document_own_slope_i = k - 3
             own_square(s_, solve_document_own_slope_i)
-            solve_document_own_slope_a = s[12] - 16
             solve_document_own_slope_put_m = s[22 * solve_document_own_slope_i + 92]
-            solve_document_own_slope_put_e = solve_document_own_slope_a
+            solve_document_own_slope_put_e = s[12] - 16
             if not solve_document_own_slope_put_m:
                 s[203] = 0
                 s[204] = -4096
@@ -541,12 +542,12 @@ def solve(s: ptr32, c: ptr32, s_, c_) -> int:
                     solve_document_own_variance_put_e = solve_document_own_variance_put_e + 1
                 s[203] = solve_document_own_variance_put_m
                 s[204] = solve_document_own_variance_put_e
-            multiply(203, s_, 2 * solve_document_own_variance_i + 197, 203)
+            multiply(s_, 203, 2 * solve_document_own_variance_i + 197, 203)
             if solve_document_own_variance_i > solve_document_own_variance_i:
-                solve_document_own_variance_i = (4 * solve_document_own_variance_i - ((solve_document_own_variance_i + 1) * solve_document_own_variance_i >> 1) + solve_document_own_variance_i) * 2 + 33
+                solve_document_own_variance_d = (4 * solve_document_own_variance_i - ((solve_document_own_variance_i + 1) * solve_document_own_variance_i >> 1) + solve_document_own_variance_i) * 2 + 33
             else:
-                solve_document_own_variance_i = (4 * solve_document_own_variance_i - ((solve_document_own_variance_i + 1) * solve_document_own_variance_i >> 1) + solve_document_own_variance_i) * 2 + 33
-            divide(s_, 203, 205, solve_document_own_variance_i)
+                solve_document_own_variance_d = (4 * solve_document_own_variance_i - ((solve_document_own_variance_i + 1) * solve_document_own_variance_i >> 1) + solve_document_own_variance_i) * 2 + 33
+            divide(s_, 203, 205, solve_document_own_variance_d)
         else:
             s[13] = 0
             return int(finish(s_, c_))
@@ -555,7 +556,7 @@ def solve(s: ptr32, c: ptr32, s_, c_) -> int:
         level_and_prior(0, s_, 0, k, c_, s_, c_)
         return 0
     if k < 3:
-        centre(s_, s[12], 3 * k, 21 * k + 86)
+        centre(s_, 3 * k, s[12], 21 * k + 86)
     elif not k - 3:
         lean_back_increments_within_value = -s[98]
         if lean_back_increments_within_value > 4096:
@@ -630,41 +631,37 @@ def normal_equations(s: ptr32, n: int, s_):
         while matrix_element_real_copy_words > 0:
             matrix_element_real_copy_words = matrix_element_real_copy_words - 1
             s[matrix_element_real_copy_words + 203] = s[matrix_element_real_copy_a + matrix_element_real_copy_words]
-        matrix_element_i = 2 * s[12] - 42
-        element(0, 0, s_, n + 86, matrix_element_j, matrix_element_i, s_)
+        element(0, 0, s_, n + 86, matrix_element_j, 2 * s[12] - 42, s_)
     elif n < 9:
         right_side_i = n - 6
         if right_side_i > 3:
             right_side_d = (right_side_i + 6) * 2 + 33
         else:
             right_side_d = (4 * right_side_i - ((right_side_i + 1) * right_side_i >> 1) + 3) * 2 + 33
-        right_side_j = s[12] - 16
         s[203] = 0
         s[204] = -4096
-        element(0, 0, s_, right_side_i + 92, right_side_d, right_side_j, s_)
-        right_side_j = 0
+        element(0, 0, s_, right_side_i + 92, right_side_d, s[12] - 16, s_)
         subtract(s_, 179, 205, 173, s_)
         right_side_multiply_by_prior_a = int(prior_place(right_side_i, 0))
-        multiply(205, s_, right_side_multiply_by_prior_a, 205)
+        multiply(s_, 205, right_side_multiply_by_prior_a, 205)
         if s[right_side_d + 1] < s[206]:
             add_smaller(s_, 205, right_side_d, right_side_d)
         else:
             add_smaller(s_, right_side_d, 205, right_side_d)
         subtract(s_, 181, 205, 175, s_)
         right_side_multiply_by_prior_a = int(prior_place(right_side_i, 1))
-        multiply(205, s_, right_side_multiply_by_prior_a, 205)
+        multiply(s_, 205, right_side_multiply_by_prior_a, 205)
         if s[right_side_d + 1] < s[206]:
             add_smaller(s_, 205, right_side_d, right_side_d)
         else:
             add_smaller(s_, right_side_d, 205, right_side_d)
         subtract(s_, 183, 205, 177, s_)
         right_side_multiply_by_prior_a = int(prior_place(right_side_i, 2))
-        multiply(205, s_, right_side_multiply_by_prior_a, 205)
+        multiply(s_, 205, right_side_multiply_by_prior_a, 205)
         if s[right_side_d + 1] < s[206]:
             add_smaller(s_, 205, right_side_d, right_side_d)
         else:
             add_smaller(s_, right_side_d, 205, right_side_d)
-        right_side_j = 3
         s[51] = 0
         s[52] = -4096
     else:
@@ -855,7 +852,7 @@ def remove_slope(note_slope_put_m: int, s: ptr32, c: ptr32, s_):
             note_slope_put_e = note_slope_put_e + 1
         s[203] = note_slope_put_m
         s[204] = note_slope_put_e
-    multiply(203, s_, 185, 203)
+    multiply(s_, 203, 185, 203)
     note_slope_whole_shift = 0
     note_slope_whole_m = s[203]
     note_slope_whole_shift = note_slope_whole_shift + s[204]
@@ -886,7 +883,7 @@ def remove_slope(note_slope_put_m: int, s: ptr32, c: ptr32, s_):
             note_slope_put_e = note_slope_put_e + 1
         s[203] = note_slope_put_m
         s[204] = note_slope_put_e
-    multiply(203, s_, 187, 203)
+    multiply(s_, 203, 187, 203)
     note_slope_whole_shift = 0
     note_slope_whole_m = s[203]
     note_slope_whole_shift = note_slope_whole_shift + s[204]
@@ -917,7 +914,7 @@ def remove_slope(note_slope_put_m: int, s: ptr32, c: ptr32, s_):
             note_slope_put_e = note_slope_put_e + 1
         s[203] = note_slope_put_m
         s[204] = note_slope_put_e
-    multiply(203, s_, 189, 203)
+    multiply(s_, 203, 189, 203)
     note_slope_whole_shift = 0
     note_slope_whole_m = s[203]
     note_slope_whole_shift = note_slope_whole_shift + s[204]

@@ -40,7 +40,7 @@ def element(put_m: int, put_e: int, s: ptr32, h: int, d: int, e: int, s_):
                 put_e = put_e + 1
             s[205] = put_m
             s[206] = put_e
-        multiply(205, s_, i + 197, 205)
+        multiply(s_, 205, i + 197, 205)
         if s[204] < s[206]:
             add_smaller(s_, 205, 203, 203)
         else:
@@ -85,13 +85,13 @@ def sweep(put_m: int, sweep_row_real_copy_words: int, s: ptr32, k: int, s_):
             sweep_row_d = (4 * k - ((k + 1) * k >> 1)) * 2 + 33
         else:
             sweep_row_d = 2 * k + 33
-        multiply(sweep_row_d, s_, 203, 205)
+        multiply(s_, sweep_row_d, 203, 205)
         if 0 - k:
             if k > 0:
                 sweep_row_d = 2 * k + 33
             else:
                 sweep_row_d = (4 * k - ((k + 1) * k >> 1)) * 2 + 33
-            multiply(205, s_, sweep_row_d, 207)
+            multiply(s_, 205, sweep_row_d, 207)
             sweep_row_d = 33
             subtract(s_, 207, 209, 33, s_)
             sweep_row_real_copy_words = 2
@@ -103,7 +103,7 @@ def sweep(put_m: int, sweep_row_real_copy_words: int, s: ptr32, k: int, s_):
                 sweep_row_d = (k + 3) * 2 + 33
             else:
                 sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 1) * 2 + 33
-            multiply(205, s_, sweep_row_d, 207)
+            multiply(s_, 205, sweep_row_d, 207)
             sweep_row_d = 35
             subtract(s_, 207, 209, 35, s_)
             sweep_row_real_copy_words = 2
@@ -115,7 +115,7 @@ def sweep(put_m: int, sweep_row_real_copy_words: int, s: ptr32, k: int, s_):
                 sweep_row_d = (k + 5) * 2 + 33
             else:
                 sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 2) * 2 + 33
-            multiply(205, s_, sweep_row_d, 207)
+            multiply(s_, 205, sweep_row_d, 207)
             sweep_row_d = 37
             subtract(s_, 207, 209, 37, s_)
             sweep_row_real_copy_words = 2
@@ -127,7 +127,7 @@ def sweep(put_m: int, sweep_row_real_copy_words: int, s: ptr32, k: int, s_):
                 sweep_row_d = (k + 6) * 2 + 33
             else:
                 sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 3) * 2 + 33
-            multiply(205, s_, sweep_row_d, 207)
+            multiply(s_, 205, sweep_row_d, 207)
             sweep_row_d = 39
             subtract(s_, 207, 209, 39, s_)
             sweep_row_real_copy_words = 2
@@ -139,13 +139,13 @@ def sweep(put_m: int, sweep_row_real_copy_words: int, s: ptr32, k: int, s_):
             sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 1) * 2 + 33
         else:
             sweep_row_d = (k + 3) * 2 + 33
-        multiply(sweep_row_d, s_, 203, 205)
+        multiply(s_, sweep_row_d, 203, 205)
         if 1 - k:
             if k > 1:
                 sweep_row_d = (k + 3) * 2 + 33
             else:
                 sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 1) * 2 + 33
-            multiply(205, s_, sweep_row_d, 207)
+            multiply(s_, 205, sweep_row_d, 207)
             sweep_row_d = 41
             subtract(s_, 207, 209, 41, s_)
             sweep_row_real_copy_words = 2
@@ -157,7 +157,7 @@ def sweep(put_m: int, sweep_row_real_copy_words: int, s: ptr32, k: int, s_):
                 sweep_row_d = (k + 5) * 2 + 33
             else:
                 sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 2) * 2 + 33
-            multiply(205, s_, sweep_row_d, 207)
+            multiply(s_, 205, sweep_row_d, 207)
             sweep_row_d = 43
             subtract(s_, 207, 209, 43, s_)
             sweep_row_real_copy_words = 2
@@ -169,7 +169,7 @@ def sweep(put_m: int, sweep_row_real_copy_words: int, s: ptr32, k: int, s_):
                 sweep_row_d = (k + 6) * 2 + 33
             else:
                 sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 3) * 2 + 33
-            multiply(205, s_, sweep_row_d, 207)
+            multiply(s_, 205, sweep_row_d, 207)
             sweep_row_d = 45
             subtract(s_, 207, 209, 45, s_)
             sweep_row_real_copy_words = 2
@@ -181,13 +181,13 @@ def sweep(put_m: int, sweep_row_real_copy_words: int, s: ptr32, k: int, s_):
             sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 2) * 2 + 33
         else:
             sweep_row_d = (k + 5) * 2 + 33
-        multiply(sweep_row_d, s_, 203, 205)
+        multiply(s_, sweep_row_d, 203, 205)
         if 2 - k:
             if k > 2:
                 sweep_row_d = (k + 5) * 2 + 33
             else:
                 sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 2) * 2 + 33
-            multiply(205, s_, sweep_row_d, 207)
+            multiply(s_, 205, sweep_row_d, 207)
             sweep_row_d = 47
             subtract(s_, 207, 209, 47, s_)
             sweep_row_real_copy_words = 2
@@ -199,7 +199,7 @@ def sweep(put_m: int, sweep_row_real_copy_words: int, s: ptr32, k: int, s_):
                 sweep_row_d = (k + 6) * 2 + 33
             else:
                 sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 3) * 2 + 33
-            multiply(205, s_, sweep_row_d, 207)
+            multiply(s_, 205, sweep_row_d, 207)
             sweep_row_d = 49
             subtract(s_, 207, 209, 49, s_)
             sweep_row_real_copy_words = 2
@@ -211,13 +211,13 @@ def sweep(put_m: int, sweep_row_real_copy_words: int, s: ptr32, k: int, s_):
             sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 3) * 2 + 33
         else:
             sweep_row_d = (k + 6) * 2 + 33
-        multiply(sweep_row_d, s_, 203, 205)
+        multiply(s_, sweep_row_d, 203, 205)
         if 3 - k:
             if k > 3:
                 sweep_row_d = (k + 6) * 2 + 33
             else:
                 sweep_row_d = (4 * k - ((k + 1) * k >> 1) + 3) * 2 + 33
-            multiply(205, s_, sweep_row_d, 207)
+            multiply(s_, 205, sweep_row_d, 207)
             sweep_row_d = 51
             subtract(s_, 207, 209, 51, s_)
             sweep_row_real_copy_words = 2
@@ -229,25 +229,25 @@ def sweep(put_m: int, sweep_row_real_copy_words: int, s: ptr32, k: int, s_):
             d = (4 * k - ((k + 1) * k >> 1)) * 2 + 33
         else:
             d = 2 * k + 33
-        multiply(d, s_, 203, d)
+        multiply(s_, d, 203, d)
     if 1 - k:
         if 1 > k:
             d = (4 * k - ((k + 1) * k >> 1) + 1) * 2 + 33
         else:
             d = (k + 3) * 2 + 33
-        multiply(d, s_, 203, d)
+        multiply(s_, d, 203, d)
     if 2 - k:
         if 2 > k:
             d = (4 * k - ((k + 1) * k >> 1) + 2) * 2 + 33
         else:
             d = (k + 5) * 2 + 33
-        multiply(d, s_, 203, d)
+        multiply(s_, d, 203, d)
     if 3 - k:
         if 3 > k:
             d = (4 * k - ((k + 1) * k >> 1) + 3) * 2 + 33
         else:
             d = (k + 6) * 2 + 33
-        multiply(d, s_, 203, d)
+        multiply(s_, d, 203, d)
     if k > k:
         d = (4 * k - ((k + 1) * k >> 1) + k) * 2 + 33
     else:
@@ -579,12 +579,12 @@ def step(s_):
     divide(s_, 203, 205, 203)
     i = 0
     while i < 6:
-        multiply(i + 185, s_, 203, i + 185)
+        multiply(s_, i + 185, 203, i + 185)
         i = i + 2
 
 
 @micropython.viper
-def shape(put_m: int, real_copy_words: int, put_e: int, s: ptr32, y: int, m: int, d: int, s_):
+def shape(put_m: int, real_copy_words: int, put_e: int, s: ptr32, m: int, y: int, d: int, s_):
     put_m = s[y]
     put_e = 0
     if not put_m:
@@ -604,9 +604,8 @@ def shape(put_m: int, real_copy_words: int, put_e: int, s: ptr32, y: int, m: int
         s[204] = put_e
     i = 0
     while i < 6:
-        y = s[12] - 26
         put_m = s[m]
-        put_e = y
+        put_e = s[12] - 26
         if not put_m:
             s[205] = 0
             s[206] = -4096
@@ -622,8 +621,7 @@ def shape(put_m: int, real_copy_words: int, put_e: int, s: ptr32, y: int, m: int
                 put_e = put_e + 1
             s[205] = put_m
             s[206] = put_e
-        y = i + 185
-        multiply(205, s_, y, 205)
+        multiply(s_, 205, i + 185, 205)
         subtract(s_, 205, 207, 203, s_)
         real_copy_words = 2
         while real_copy_words > 0:
@@ -631,14 +629,14 @@ def shape(put_m: int, real_copy_words: int, put_e: int, s: ptr32, y: int, m: int
             s[real_copy_words + 203] = s[real_copy_words + 207]
         m = m + 1
         i = i + 2
-    multiply(203, s_, 203, d)
+    multiply(s_, 203, 203, d)
 
 
 @micropython.viper
 def noise(put_m: int, put_e: int, s: ptr32, i: int, s_):
     a = 21 * i + 86
     d = 2 * i + 197
-    shape(0, 0, 0, s_, a + 19, a + 13, 209, s_)
+    shape(0, 0, 0, s_, a + 13, a + 19, 209, s_)
     put_m = 11520
     put_e = -14
     while put_m < 524288 and put_m >= -524288:
@@ -652,8 +650,8 @@ def noise(put_m: int, put_e: int, s: ptr32, i: int, s_):
         put_e = put_e + 1
     s[203] = put_m
     s[204] = put_e
-    multiply(209, s_, 203, d)
-    shape(0, 0, 0, s_, a + 20, a + 16, 209, s_)
+    multiply(s_, 209, 203, d)
+    shape(0, 0, 0, s_, a + 16, a + 20, 209, s_)
     put_m = 18482
     put_e = -10
     while put_m < 524288 and put_m >= -524288:
@@ -667,14 +665,13 @@ def noise(put_m: int, put_e: int, s: ptr32, i: int, s_):
         put_e = put_e + 1
     s[203] = put_m
     s[204] = put_e
-    multiply(209, s_, 203, 209)
+    multiply(s_, 209, 203, 209)
     if s[210] < s[d + 1]:
         add_smaller(s_, d, 209, 209)
     else:
         add_smaller(s_, 209, d, 209)
-    a = s[210] - s[12]
     put_m = s[209]
-    put_e = a
+    put_e = s[210] - s[12]
     if not put_m:
         s[209] = 0
         s[210] = -4096
@@ -690,10 +687,7 @@ def noise(put_m: int, put_e: int, s: ptr32, i: int, s_):
             put_e = put_e + 1
         s[209] = put_m
         s[210] = put_e
-    a = 419
-    if not i - 2:
-        a = 1678
-    put_m = a
+    put_m = 1678 if i == 2 else 419
     put_e = 0
     if not put_m:
         s[203] = 0
@@ -789,7 +783,7 @@ def weigh(put_m: int, s: ptr32, c: ptr32, a: int, s_):
             put_e = put_e + 1
         s[203] = put_m
         s[204] = put_e
-    multiply(203, s_, a, 205)
+    multiply(s_, 203, a, 205)
     put_m = 1
     put_e = 0
     while put_m < 524288 and put_m >= -524288:
@@ -811,9 +805,8 @@ def own_square(s: ptr32, i: int):
     a = 24 * i + 86
     if not i - 2:
         a = a - 1
-    i = 2 * s[12] - 42
     put_m = s[a]
-    put_e = i
+    put_e = 2 * s[12] - 42
     if not put_m:
         s[205] = 0
         s[206] = -4096

@@ -265,7 +265,7 @@ def contradicts(put_m: int, s: ptr32, s_) -> int:
         s[203] = put_m
         s[204] = put_e
     subtract(s_, 173, 205, 179, s_)
-    multiply(205, s_, 205, 205)
+    multiply(s_, 205, 205, 205)
     subtract(s_, 205, 209, 203, s_)
     if s[209] >> 30:
         less_result = 1
@@ -292,7 +292,7 @@ def contradicts(put_m: int, s: ptr32, s_) -> int:
         s[203] = put_m
         s[204] = put_e
     subtract(s_, 175, 205, 181, s_)
-    multiply(205, s_, 205, 205)
+    multiply(s_, 205, 205, 205)
     subtract(s_, 205, 209, 203, s_)
     if s[209] >> 30:
         less_result = 1
@@ -319,7 +319,7 @@ def contradicts(put_m: int, s: ptr32, s_) -> int:
         s[203] = put_m
         s[204] = put_e
     subtract(s_, 177, 205, 183, s_)
-    multiply(205, s_, 205, 205)
+    multiply(s_, 205, 205, 205)
     subtract(s_, 205, 209, 203, s_)
     if s[209] >> 30:
         less_result = 1
@@ -470,7 +470,7 @@ def finish(s_, c_) -> int:
             keep_noise_put_e = keep_noise_put_e + 1
         s[203] = keep_noise_put_m
         s[204] = keep_noise_put_e
-        multiply(keep_noise_i + 223, s_, 203, keep_noise_i + 191)
+        multiply(s_, keep_noise_i + 223, 203, keep_noise_i + 191)
         keep_noise_i = keep_noise_i + 2
     s[68] = s[68] + 1
     s[70] = 0
@@ -498,7 +498,7 @@ def publish(put_m: int, real_copy_words: int, s: ptr32, c: ptr32, s_):
         s[203] = put_m
         s[204] = put_e
     present(s_, 0, s_)
-    multiply(205, s_, 203, 205)
+    multiply(s_, 205, 203, 205)
     whole_shift = 0
     whole_m = s[205]
     whole_shift = whole_shift + s[206]
@@ -519,7 +519,7 @@ def publish(put_m: int, real_copy_words: int, s: ptr32, c: ptr32, s_):
         s[real_copy_words + 205] = s[real_copy_a + real_copy_words]
     put(-s[205], s[206], 205, s_)
     root_of(s_, 205, 205)
-    multiply(205, s_, 203, 205)
+    multiply(s_, 205, 203, 205)
     s[74] = int(whole(0, 205, s_))
     put_m = c[10]
     put_e = c[11]
@@ -539,7 +539,7 @@ def publish(put_m: int, real_copy_words: int, s: ptr32, c: ptr32, s_):
         s[203] = put_m
         s[204] = put_e
     present(s_, 1, s_)
-    multiply(205, s_, 203, 205)
+    multiply(s_, 205, 203, 205)
     whole_shift = 0
     whole_m = s[205]
     whole_shift = whole_shift + s[206]
@@ -560,7 +560,7 @@ def publish(put_m: int, real_copy_words: int, s: ptr32, c: ptr32, s_):
         s[real_copy_words + 205] = s[real_copy_a + real_copy_words]
     put(-s[205], s[206], 205, s_)
     root_of(s_, 205, 205)
-    multiply(205, s_, 203, 205)
+    multiply(s_, 205, 203, 205)
     s[75] = int(whole(0, 205, s_))
     put_m = c[10]
     put_e = c[11]
@@ -580,7 +580,7 @@ def publish(put_m: int, real_copy_words: int, s: ptr32, c: ptr32, s_):
         s[203] = put_m
         s[204] = put_e
     present(s_, 2, s_)
-    multiply(205, s_, 203, 205)
+    multiply(s_, 205, 203, 205)
     whole_shift = 0
     whole_m = s[205]
     whole_shift = whole_shift + s[206]
@@ -601,5 +601,5 @@ def publish(put_m: int, real_copy_words: int, s: ptr32, c: ptr32, s_):
         s[real_copy_words + 205] = s[real_copy_a + real_copy_words]
     put(-s[205], s[206], 205, s_)
     root_of(s_, 205, 205)
-    multiply(205, s_, 203, 205)
+    multiply(s_, 205, 203, 205)
     s[76] = int(whole(0, 205, s_))

@@ -35,18 +35,19 @@ def copy(s: ptr32, d: int, a: int, words: int):
 
 
 @micropython.viper
-def multiply(a: int, s: ptr32, b: int, d: int):
+def multiply(s: ptr32, a: int, b: int, d: int):
     s_d = ptr32(int(s) + (d << 2))
+    s_a = ptr32(int(s) + (a << 2))
     s_b = ptr32(int(s) + (b << 2))
-    high_product_m = s[a]
+    high_product_m = s_a[0]
     high_product_n = s_b[0]
     high_product_low = (high_product_m & 16383) * (high_product_n & 16383) >> 14
     high_product_low = (high_product_m & 16383) * (high_product_n >> 14) + high_product_low
     high_product_low = (high_product_m >> 14) * (high_product_n & 16383) + high_product_low
     m = (high_product_m >> 14) * (high_product_n >> 14) + (high_product_low >> 14)
-    a = s[a + 1] + s_b[1] + 28
+    exponent = s_a[1] + s_b[1] + 28
     put_m = m
-    put_e = a
+    put_e = exponent
     if not put_m:
         s_d[0] = 0
         s_d[1] = -4096

@@ -1,9 +1,10 @@
 # Generated from zerorate/realtime.py by `make viper`: edit that file, not this one.
 """The bias against the accelerometer: counters of signs, stepped by a fixed value.
 
-Document 003: a time interval of sub-units; in each, the angular rate that a pair of accelerometer
-axes implies, its deviation from the gyroscope's, a counter; at the end of the interval the offset
-moves by a first value if the counter says so. The axis x has the pair (y, z), and so round.
+US 2015/0033821: a time interval of sub-units; in each, the angular rate that a pair of
+accelerometer axes implies, its deviation from the gyroscope's, a counter; at the end of the
+interval the offset moves by a first value if the counter says so. The axis x has the pair (y, z),
+and so round.
 
 With gravity g and rate w in the body frame g' = -w x g, so the pair's angle turns by
     atan2(gy, gz)' = wx - gx (wy gy + wz gz) / (gy^2 + gz^2):
@@ -110,66 +111,66 @@ def update(s_, c_, x: ptr32, dt_us: int) -> int:
 @micropython.viper
 def compare(s: ptr32, c: ptr32, i: int, square: int):
     s_i = ptr32(int(s) + (i << 2))
-    square = square - s_i[8] * s_i[8]
-    bit = 1 << i
-    if square < 8388608 or int(too_far(s_i[2] >> 9)):
-        s[20] = 7 - bit & s[20]
+    across = square - s_i[8] * s_i[8]
+    if across < 8388608 or int(too_far(s_i[2] >> 9)):
+        s[20] = 7 - (1 << i) & s[20]
         return
-    since_last_square = square >> 12
+    since_last_square = across >> 12
     since_last_mean = s_i[5] // s[1]
     since_last_deviation = since_last_mean - s_i[11] + s_i[14]
     s_i[11] = since_last_mean - (s_i[2] >> 9)
-    since_last_pair_angle_q13_i = i
-    since_last_pair_angle_q13_j = since_last_pair_angle_q13_i + 1 if since_last_pair_angle_q13_i < 2 else 0
-    since_last_pair_angle_q13_i = since_last_pair_angle_q13_i - 1 if since_last_pair_angle_q13_i > 0 else 2
-    since_last_mean = int(atan2_q13(s[since_last_pair_angle_q13_i + 8], s[since_last_pair_angle_q13_j + 8]))
+    since_last_pair_angle_q13_j = i + 1 if i < 2 else 0
+    since_last_pair_angle_q13_k = i - 1 if i > 0 else 2
+    since_last_mean = int(atan2_q13(s[since_last_pair_angle_q13_k + 8], s[since_last_pair_angle_q13_j + 8]))
     s_i[14] = since_last_mean
     since_last_deviation = since_last_deviation - since_last_mean
     since_last_coupled_q13_square = since_last_square >> 2
-    since_last_coupled_q13_j = i + 1 if i < 2 else 0
-    since_last_coupled_q13_k = i - 1 if i > 0 else 2
-    since_last_coupled_q13_along_q12_held_angle = s[since_last_coupled_q13_j + 2] >> 9
+    since_last_coupled_q13_along_q12_j = i + 1 if i < 2 else 0
+    s_since_last_coupled_q13_along_q12_j = ptr32(int(s) + (since_last_coupled_q13_along_q12_j << 2))
+    since_last_coupled_q13_along_q12_k = i - 1 if i > 0 else 2
+    s_since_last_coupled_q13_along_q12_k = ptr32(int(s) + (since_last_coupled_q13_along_q12_k << 2))
+    since_last_coupled_q13_along_q12_held_angle = s_since_last_coupled_q13_along_q12_j[2] >> 9
     if since_last_coupled_q13_along_q12_held_angle > 32767:
         since_last_coupled_q13_along_q12_held_result = 32767
     elif since_last_coupled_q13_along_q12_held_angle < -32767:
         since_last_coupled_q13_along_q12_held_result = -32767
     else:
         since_last_coupled_q13_along_q12_held_result = since_last_coupled_q13_along_q12_held_angle
-    since_last_coupled_q13_along_q12_first = since_last_coupled_q13_along_q12_held_result * s[since_last_coupled_q13_j + 8]
-    since_last_coupled_q13_along_q12_held_angle = s[since_last_coupled_q13_k + 2] >> 9
+    since_last_coupled_q13_along_q12_first = since_last_coupled_q13_along_q12_held_result * s_since_last_coupled_q13_along_q12_j[8]
+    since_last_coupled_q13_along_q12_held_angle = s_since_last_coupled_q13_along_q12_k[2] >> 9
     if since_last_coupled_q13_along_q12_held_angle > 32767:
         since_last_coupled_q13_along_q12_held_result = 32767
     elif since_last_coupled_q13_along_q12_held_angle < -32767:
         since_last_coupled_q13_along_q12_held_result = -32767
     else:
         since_last_coupled_q13_along_q12_held_result = since_last_coupled_q13_along_q12_held_angle
-    since_last_coupled_q13_k = since_last_coupled_q13_along_q12_held_result * s[since_last_coupled_q13_k + 8] + since_last_coupled_q13_along_q12_first >> 13
-    since_last_coupled_q13_j = s_i[51]
-    since_last_coupled_q13_j = ((since_last_coupled_q13_k << 8) - since_last_coupled_q13_j >> 5) + since_last_coupled_q13_j
-    s_i[51] = since_last_coupled_q13_j
-    since_last_coupled_q13_k = since_last_coupled_q13_k - (since_last_coupled_q13_j >> 8)
-    since_last_mean = (s_i[8] >> 1) * since_last_coupled_q13_k // since_last_coupled_q13_square
+    since_last_coupled_q13_along = since_last_coupled_q13_along_q12_held_result * s_since_last_coupled_q13_along_q12_k[8] + since_last_coupled_q13_along_q12_first >> 13
+    since_last_coupled_q13_mean = s_i[51]
+    since_last_coupled_q13_mean = ((since_last_coupled_q13_along << 8) - since_last_coupled_q13_mean >> 5) + since_last_coupled_q13_mean
+    s_i[51] = since_last_coupled_q13_mean
+    since_last_coupled_q13_along = since_last_coupled_q13_along - (since_last_coupled_q13_mean >> 8)
+    since_last_mean = (s_i[8] >> 1) * since_last_coupled_q13_along // since_last_coupled_q13_square
     since_last_deviation = since_last_deviation - (since_last_mean + s_i[17] >> 1)
     s_i[17] = since_last_mean
     while since_last_deviation > 25736:
         since_last_deviation = since_last_deviation - 51472
     while since_last_deviation < -25736:
         since_last_deviation = since_last_deviation + 51472
-    square = since_last_deviation
-    if s[20] & bit:
+    across = since_last_deviation
+    if 1 << i & s[20]:
         s_i[25] = s_i[25] + 1
         s_i[37] = s_i[37] + 1
-        count_spread_deviation = square
+        count_spread_deviation = across
         if count_spread_deviation >> 30:
             count_spread_deviation = -count_spread_deviation
         if count_spread_deviation > 8192:
             count_spread_deviation = 8192
         s[54] = ((count_spread_deviation << 8) - s[54] >> 6) + s[54]
-        if square > c[6]:
+        if across > c[6]:
             s_i[22] = s_i[22] + 1
-        elif square < -c[6]:
+        elif across < -c[6]:
             s_i[22] = s_i[22] - 1
-    s[20] = s[20] | bit
+    s[20] = 1 << i | s[20]
 
 
 @micropython.viper

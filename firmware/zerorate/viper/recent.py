@@ -28,10 +28,10 @@ def let_learn(c: ptr32, s: ptr32, a: int):
         else:
             if level_q8_beyond_q8_d > 262143:
                 level_q8_beyond_q8_d = 262143
-            level_q8_beyond_q8_d = level_q8_beyond_q8_d * c[50] >> 16
-            if level_q8_beyond_q8_d > 16383:
-                level_q8_beyond_q8_d = 16383
-            level_q8_beyond_q8_result = level_q8_beyond_q8_d * level_q8_beyond_q8_d
+            level_q8_beyond_q8_sigma = level_q8_beyond_q8_d * c[50] >> 16
+            if level_q8_beyond_q8_sigma > 16383:
+                level_q8_beyond_q8_sigma = 16383
+            level_q8_beyond_q8_result = level_q8_beyond_q8_sigma * level_q8_beyond_q8_sigma
         s_level_q8_k[0] = level_q8_beyond_q8_result
         level_q8_gain_q14_variance = s_level_q8_k[0]
         level_q8_gain_q14_noise = level_q8_usual
@@ -198,10 +198,10 @@ def believe(s: ptr32, error: int, c: ptr32, a: int) -> int:
     else:
         if plausible_beyond_q8_d > 262143:
             plausible_beyond_q8_d = 262143
-        plausible_beyond_q8_d = plausible_beyond_q8_d * c[50] >> 16
-        if plausible_beyond_q8_d > 16383:
-            plausible_beyond_q8_d = 16383
-        plausible_beyond_q8_result = plausible_beyond_q8_d * plausible_beyond_q8_d
+        plausible_beyond_q8_sigma = plausible_beyond_q8_d * c[50] >> 16
+        if plausible_beyond_q8_sigma > 16383:
+            plausible_beyond_q8_sigma = 16383
+        plausible_beyond_q8_result = plausible_beyond_q8_sigma * plausible_beyond_q8_sigma
     if plausible_far * plausible_far // 36 <= s[81] + s[80] + plausible_beyond_q8_result:
         s_a[27] = 0
         verdict = 1
@@ -240,11 +240,11 @@ def believe(s: ptr32, error: int, c: ptr32, a: int) -> int:
         if follow_rewalk_age > 1023:
             follow_rewalk_age = 1023
         follow_rewalk_speed = follow_rewalk_speed - s_a[26] >> 4
-        follow_rewalk_age = follow_rewalk_age * follow_rewalk_age
-        follow_rewalk_age = follow_rewalk_age // (follow_rewalk_age + 1048576 >> 10)
-        if follow_rewalk_age < 40:
-            follow_rewalk_age = 40
-        follow_rewalk_speed = follow_rewalk_speed * follow_rewalk_age >> 10 << 4
+        follow_rewalk_share = follow_rewalk_age * follow_rewalk_age
+        follow_rewalk_share = follow_rewalk_share // (follow_rewalk_share + 1048576 >> 10)
+        if follow_rewalk_share < 40:
+            follow_rewalk_share = 40
+        follow_rewalk_speed = follow_rewalk_speed * follow_rewalk_share >> 10 << 4
         s_a[26] = s_a[26] + follow_rewalk_speed
         if s_a[26] < c[40]:
             s_a[26] = c[40]
@@ -253,10 +253,10 @@ def believe(s: ptr32, error: int, c: ptr32, a: int) -> int:
         while follow_gain_q14_variance + follow_gain_q14_noise > 32767:
             follow_gain_q14_variance = follow_gain_q14_variance >> 1
             follow_gain_q14_noise = follow_gain_q14_noise >> 1
-        follow_excess = (follow_gain_q14_variance << 14) // (follow_gain_q14_variance + follow_gain_q14_noise + 1)
-        s_a[24] = (follow_excess * follow_error >> 10) + s_a[24]
-        follow_error = (s[80] & 16383) * follow_excess >> 14
-        s_a[25] = (s[80] >> 14) * follow_excess + follow_error
+        follow_gain = (follow_gain_q14_variance << 14) // (follow_gain_q14_variance + follow_gain_q14_noise + 1)
+        s_a[24] = (follow_gain * follow_error >> 10) + s_a[24]
+        follow_excess = (s[80] & 16383) * follow_gain >> 14
+        s_a[25] = (s[80] >> 14) * follow_gain + follow_excess
     else:
         s_a[25] = s[80]
     s_a[28] = 0

@@ -6,6 +6,7 @@ import micropython
 from .estimators import feed
 from .estimators import learn_here
 from .fit import draw_line
+from .guard import all_alike
 from .recent import absorb
 from .recent import hand_over
 
@@ -14,21 +15,21 @@ from .recent import hand_over
 def publish(curve_q8_choose_find_e: int, c: ptr32, curve_q8_choose_find_d: int, a: int, s: ptr32, axis: int):
     s_a = ptr32(int(s) + (a << 2))
     s_axis = ptr32(int(s) + (axis << 2))
-    bias = s[47]
+    curve_q8_temp = s[47]
     while True:
         s_a[29] = 0
         while True:
             curve_q8_choose_find_half = c[27] >> 1
             curve_q8_choose_find_e = s_a[2]
             if curve_q8_choose_find_e > 0:
-                curve_q8_choose_find_d = bias - s[curve_q8_choose_find_e]
+                curve_q8_choose_find_d = curve_q8_temp - s[curve_q8_choose_find_e]
                 if curve_q8_choose_find_d <= curve_q8_choose_find_half + c[28] and curve_q8_choose_find_d >= 0 - curve_q8_choose_find_half - c[28]:
                     curve_q8_choose_e = curve_q8_choose_find_e
                     break
             curve_q8_choose_find_e = a + c[14]
             curve_q8_choose_find_left = 0
             while curve_q8_choose_find_e < a + c[15]:
-                curve_q8_choose_find_d = bias - s[curve_q8_choose_find_e]
+                curve_q8_choose_find_d = curve_q8_temp - s[curve_q8_choose_find_e]
                 if curve_q8_choose_find_d < curve_q8_choose_find_half and curve_q8_choose_find_d >= 0 - curve_q8_choose_find_half:
                     curve_q8_choose_e = curve_q8_choose_find_e
                     curve_q8_choose_find_left = 1
@@ -44,10 +45,10 @@ def publish(curve_q8_choose_find_e: int, c: ptr32, curve_q8_choose_find_d: int, 
                 curve_q8_kind = 3
                 break
         if s_a[22]:
-            curve_q8_choose_e = (bias << 4) + c[36]
+            curve_q8_choose_e = (curve_q8_temp << 4) + c[36]
             if curve_q8_choose_e < s_a[19]:
                 s_a[29] = 1
-            curve_q8_choose_e = (bias << 4) - c[36]
+            curve_q8_choose_e = (curve_q8_temp << 4) - c[36]
             if curve_q8_choose_e > s_a[20]:
                 s_a[29] = 1
             curve_q8_kind = 2
@@ -68,14 +69,14 @@ def publish(curve_q8_choose_find_e: int, c: ptr32, curve_q8_choose_find_d: int, 
             curve_q8_find_half = c[27] >> 1
             curve_q8_find_e = s_a[2]
             if curve_q8_find_e > 0:
-                curve_q8_find_d = bias - s[curve_q8_find_e]
+                curve_q8_find_d = curve_q8_temp - s[curve_q8_find_e]
                 if curve_q8_find_d <= curve_q8_find_half + c[28] and curve_q8_find_d >= 0 - curve_q8_find_half - c[28]:
                     curve_q8_kind = curve_q8_find_e
                     break
             curve_q8_find_e = a + c[14]
             curve_q8_find_left = 0
             while curve_q8_find_e < a + c[15]:
-                curve_q8_find_d = bias - s[curve_q8_find_e]
+                curve_q8_find_d = curve_q8_temp - s[curve_q8_find_e]
                 if curve_q8_find_d < curve_q8_find_half and curve_q8_find_d >= 0 - curve_q8_find_half:
                     curve_q8_kind = curve_q8_find_e
                     curve_q8_find_left = 1
@@ -89,7 +90,7 @@ def publish(curve_q8_choose_find_e: int, c: ptr32, curve_q8_choose_find_d: int, 
     elif not curve_q8_kind - 1:
         curve_q8_result = s_a[34]
     else:
-        curve_q8_line_q8_temp_q4 = bias << 4
+        curve_q8_line_q8_temp_q4 = curve_q8_temp << 4
         curve_q8_line_q8_u = curve_q8_line_q8_temp_q4 - s_a[14]
         curve_q8_line_q8_most = 134217727 >> s_a[18]
         if curve_q8_line_q8_u > curve_q8_line_q8_most:
@@ -112,49 +113,49 @@ def publish(curve_q8_choose_find_e: int, c: ptr32, curve_q8_choose_find_d: int, 
     if not s_axis[73]:
         s_axis[55] = bias
     s_axis[73] = s_a[13] if s_a[13] else s_a[30]
-    grown_q8_seconds = s_a[28] >> 10
-    if grown_q8_seconds > 2047:
-        grown_q8_seconds = 2047
-    grown_q8_result = ((s_a[26] >> 4) * grown_q8_seconds >> 4) + s_a[25]
-    bias = (c[37] << 1) + grown_q8_result
-    beyond_q8_d = (s[47] << 4) - s_a[20]
-    if beyond_q8_d >> 30:
-        beyond_q8_d = s_a[19] - (s[47] << 4)
-    if beyond_q8_d >> 30 or not s_a[22]:
-        beyond_q8_result = 0
+    sigma_q8_grown_q8_seconds = s_a[28] >> 10
+    if sigma_q8_grown_q8_seconds > 2047:
+        sigma_q8_grown_q8_seconds = 2047
+    sigma_q8_grown_q8_result = ((s_a[26] >> 4) * sigma_q8_grown_q8_seconds >> 4) + s_a[25]
+    sigma_q8_variance = (c[37] << 1) + sigma_q8_grown_q8_result
+    sigma_q8_beyond_q8_d = (s[47] << 4) - s_a[20]
+    if sigma_q8_beyond_q8_d >> 30:
+        sigma_q8_beyond_q8_d = s_a[19] - (s[47] << 4)
+    if sigma_q8_beyond_q8_d >> 30 or not s_a[22]:
+        sigma_q8_beyond_q8_result = 0
     else:
-        if beyond_q8_d > 262143:
-            beyond_q8_d = 262143
-        beyond_q8_d = beyond_q8_d * c[50] >> 16
-        if beyond_q8_d > 16383:
-            beyond_q8_d = 16383
-        beyond_q8_result = beyond_q8_d * beyond_q8_d
-    bias = bias + beyond_q8_result
-    if bias < 4194303:
-        root_square = bias << 8
-        root_bit = 16384
-        if root_square < 16777216:
-            root_bit = 2048
-        root_found = 0
-        while root_bit:
-            root_more = root_found + root_bit
-            if root_more * root_more <= root_square:
-                root_found = root_more
-            root_bit = root_bit >> 1
-        bias = root_found
+        if sigma_q8_beyond_q8_d > 262143:
+            sigma_q8_beyond_q8_d = 262143
+        sigma_q8_beyond_q8_sigma = sigma_q8_beyond_q8_d * c[50] >> 16
+        if sigma_q8_beyond_q8_sigma > 16383:
+            sigma_q8_beyond_q8_sigma = 16383
+        sigma_q8_beyond_q8_result = sigma_q8_beyond_q8_sigma * sigma_q8_beyond_q8_sigma
+    sigma_q8_variance = sigma_q8_variance + sigma_q8_beyond_q8_result
+    if sigma_q8_variance < 4194303:
+        sigma_q8_root_square = sigma_q8_variance << 8
+        sigma_q8_root_bit = 16384
+        if sigma_q8_root_square < 16777216:
+            sigma_q8_root_bit = 2048
+        sigma_q8_root_found = 0
+        while sigma_q8_root_bit:
+            sigma_q8_root_more = sigma_q8_root_found + sigma_q8_root_bit
+            if sigma_q8_root_more * sigma_q8_root_more <= sigma_q8_root_square:
+                sigma_q8_root_found = sigma_q8_root_more
+            sigma_q8_root_bit = sigma_q8_root_bit >> 1
+        sigma_q8_result = sigma_q8_root_found
     else:
-        root_bit = 16384
-        if bias < 16777216:
-            root_bit = 2048
-        root_found = 0
-        while root_bit:
-            root_more = root_found + root_bit
-            if root_more * root_more <= bias:
-                root_found = root_more
-            root_bit = root_bit >> 1
-        root_result = root_found
-        bias = root_result << 4
-    s_axis[70] = bias
+        sigma_q8_root_bit = 16384
+        if sigma_q8_variance < 16777216:
+            sigma_q8_root_bit = 2048
+        sigma_q8_root_found = 0
+        while sigma_q8_root_bit:
+            sigma_q8_root_more = sigma_q8_root_found + sigma_q8_root_bit
+            if sigma_q8_root_more * sigma_q8_root_more <= sigma_q8_variance:
+                sigma_q8_root_found = sigma_q8_root_more
+            sigma_q8_root_bit = sigma_q8_root_bit >> 1
+        sigma_q8_root_result = sigma_q8_root_found
+        sigma_q8_result = sigma_q8_root_result << 4
+    s_axis[70] = sigma_q8_result
 
 
 @micropython.viper
@@ -275,11 +276,11 @@ def close(stillness_judge_look_spread_q8_i: int, s: ptr32, stillness_judge_look_
                 if stillness_judge_look_change_q4_d > stillness_judge_look_change_q4_most:
                     stillness_judge_look_change_q4_most = stillness_judge_look_change_q4_d
                 stillness_judge_look_change_q4_i = stillness_judge_look_change_q4_i + 1
-            stillness_judge_look_shake_q8 = stillness_judge_look_change_q4_most
-            if stillness_judge_look_shake_q8 > 32767:
+            stillness_judge_look_change = stillness_judge_look_change_q4_most
+            if stillness_judge_look_change > 32767:
                 stillness_judge_state = 5
                 break
-            if stillness_judge_look_shake_q8 * stillness_judge_look_shake_q8 > (stillness_judge_look_noise_q8 >> c[4]) * 14 + c[10]:
+            if stillness_judge_look_change * stillness_judge_look_change > (stillness_judge_look_noise_q8 >> c[4]) * 14 + c[10]:
                 stillness_judge_state = 5
                 break
         stillness_judge_state = 1
@@ -406,82 +407,71 @@ def learn_at_once(s: ptr32, c: ptr32, x: ptr32, s_, c_):
 
 
 @micropython.viper
-def examine(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
+def examine(s: ptr32, c: ptr32, x_, dt_us: int) -> int:
+    x = ptr32(x_)
     check_dt_us = dt_us
-    check_differ = 0
-    check_fresh = 0
-    check_jump = x[3] - s[3]
-    check_i = 0
-    if x[0] - x[0]:
-        check_differ = 1
+    check_step = x[3] - s[3]
+    check_exchange_same = 1
     if x[0] - s[0]:
-        check_fresh = 1
+        check_exchange_same = 0
     s[0] = x[0]
-    if x[1] - x[0]:
-        check_differ = 1
     if x[1] - s[1]:
-        check_fresh = 1
+        check_exchange_same = 0
     s[1] = x[1]
-    if x[2] - x[0]:
-        check_differ = 1
     if x[2] - s[2]:
-        check_fresh = 1
+        check_exchange_same = 0
     s[2] = x[2]
-    if x[3] - x[0]:
-        check_differ = 1
     if x[3] - s[3]:
-        check_fresh = 1
+        check_exchange_same = 0
     s[3] = x[3]
-    if x[4] - x[0]:
-        check_differ = 1
     if x[4] - s[4]:
-        check_fresh = 1
+        check_exchange_same = 0
     s[4] = x[4]
-    if x[5] - x[0]:
-        check_differ = 1
     if x[5] - s[5]:
-        check_fresh = 1
+        check_exchange_same = 0
     s[5] = x[5]
-    if x[6] - x[0]:
-        check_differ = 1
     if x[6] - s[6]:
-        check_fresh = 1
+        check_exchange_same = 0
     s[6] = x[6]
-    check_i = 7
-    check_i = 0
-    if not check_differ and (not x[0] or not x[0] - -1):
-        check_i = 3 - x[0]
+    check_repeats = check_exchange_same
+    check_kind = 0
+    if (not x[0] or not x[0] - -1) and int(all_alike(x_)):
+        check_kind = 3 - x[0]
     elif not s[8]:
-        check_i = 0
+        check_kind = 0
     elif check_dt_us <= 0:
-        check_i = 6
+        check_kind = 6
     elif check_dt_us > c[1]:
-        check_i = 7
-    elif not check_fresh:
-        check_i = 1
-    elif check_jump >= c[2] or check_jump <= -c[2]:
-        check_i = 5
-    if not check_i:
-        check_jump = 4
-        if x[4] > 32766 or x[4] < -32767:
-            check_i = 2
-        if x[5] > 32766 or x[5] < -32767:
-            check_i = 2
-        if x[6] > 32766 or x[6] < -32767:
-            check_i = 2
-        check_jump = 7
-    check_i = check_i + 8
-    check_jump = s[check_i] + 1
-    s[check_i] = check_jump & 536870911
-    check_i = check_i - 8
-    if check_i > 1:
+        check_kind = 7
+    elif check_repeats:
+        check_kind = 1
+    elif check_step >= c[2] or check_step <= -c[2]:
+        check_kind = 5
+    if not check_kind:
+        while True:
+            check_at_rail_i = 4
+            check_at_rail_left = 0
+            while check_at_rail_i < 7:
+                if x[check_at_rail_i] > 32766 or x[check_at_rail_i] < -32767:
+                    check_at_rail_result = 1
+                    check_at_rail_left = 1
+                    break
+                check_at_rail_i = check_at_rail_i + 1
+            if check_at_rail_left:
+                break
+            check_at_rail_result = 0
+            break
+        if check_at_rail_result:
+            check_kind = 2
+    s[check_kind + 8] = s[check_kind + 8] + 1 & 536870911
+    if check_kind > 1:
         s[17] = 0
         s[18] = 0
         s[34] = 0
     elif check_dt_us > 0 and check_dt_us <= c[1]:
         check_dt_us = check_dt_us + s[16]
         s[16] = check_dt_us if check_dt_us < 536870911 else 536870911
-    return check_i
+    return check_kind
 
 
 @micropython.viper
@@ -636,80 +626,68 @@ def step(s_, c_, x_, dt_us: int) -> int:
     c = ptr32(c_)
     x = ptr32(x_)
     examine_check_dt_us = dt_us
-    examine_check_differ = 0
-    examine_check_fresh = 0
-    examine_check_jump = x[3] - s[3]
-    examine_check_i = 0
-    if x[0] - x[0]:
-        examine_check_differ = 1
+    examine_check_step = x[3] - s[3]
+    examine_check_exchange_same = 1
     if x[0] - s[0]:
-        examine_check_fresh = 1
+        examine_check_exchange_same = 0
     s[0] = x[0]
-    if x[1] - x[0]:
-        examine_check_differ = 1
     if x[1] - s[1]:
-        examine_check_fresh = 1
+        examine_check_exchange_same = 0
     s[1] = x[1]
-    if x[2] - x[0]:
-        examine_check_differ = 1
     if x[2] - s[2]:
-        examine_check_fresh = 1
+        examine_check_exchange_same = 0
     s[2] = x[2]
-    if x[3] - x[0]:
-        examine_check_differ = 1
     if x[3] - s[3]:
-        examine_check_fresh = 1
+        examine_check_exchange_same = 0
     s[3] = x[3]
-    if x[4] - x[0]:
-        examine_check_differ = 1
     if x[4] - s[4]:
-        examine_check_fresh = 1
+        examine_check_exchange_same = 0
     s[4] = x[4]
-    if x[5] - x[0]:
-        examine_check_differ = 1
     if x[5] - s[5]:
-        examine_check_fresh = 1
+        examine_check_exchange_same = 0
     s[5] = x[5]
-    if x[6] - x[0]:
-        examine_check_differ = 1
     if x[6] - s[6]:
-        examine_check_fresh = 1
+        examine_check_exchange_same = 0
     s[6] = x[6]
-    examine_check_i = 7
-    examine_check_i = 0
-    if not examine_check_differ and (not x[0] or not x[0] - -1):
-        examine_check_i = 3 - x[0]
+    examine_check_repeats = examine_check_exchange_same
+    examine_check_kind = 0
+    if (not x[0] or not x[0] - -1) and int(all_alike(x_)):
+        examine_check_kind = 3 - x[0]
     elif not s[8]:
-        examine_check_i = 0
+        examine_check_kind = 0
     elif examine_check_dt_us <= 0:
-        examine_check_i = 6
+        examine_check_kind = 6
     elif examine_check_dt_us > c[1]:
-        examine_check_i = 7
-    elif not examine_check_fresh:
-        examine_check_i = 1
-    elif examine_check_jump >= c[2] or examine_check_jump <= -c[2]:
-        examine_check_i = 5
-    if not examine_check_i:
-        examine_check_jump = 4
-        if x[4] > 32766 or x[4] < -32767:
-            examine_check_i = 2
-        if x[5] > 32766 or x[5] < -32767:
-            examine_check_i = 2
-        if x[6] > 32766 or x[6] < -32767:
-            examine_check_i = 2
-        examine_check_jump = 7
-    examine_check_i = examine_check_i + 8
-    examine_check_jump = s[examine_check_i] + 1
-    s[examine_check_i] = examine_check_jump & 536870911
-    examine_check_i = examine_check_i - 8
-    if examine_check_i > 1:
+        examine_check_kind = 7
+    elif examine_check_repeats:
+        examine_check_kind = 1
+    elif examine_check_step >= c[2] or examine_check_step <= -c[2]:
+        examine_check_kind = 5
+    if not examine_check_kind:
+        while True:
+            examine_check_at_rail_i = 4
+            examine_check_at_rail_left = 0
+            while examine_check_at_rail_i < 7:
+                if x[examine_check_at_rail_i] > 32766 or x[examine_check_at_rail_i] < -32767:
+                    examine_check_at_rail_result = 1
+                    examine_check_at_rail_left = 1
+                    break
+                examine_check_at_rail_i = examine_check_at_rail_i + 1
+            if examine_check_at_rail_left:
+                break
+            examine_check_at_rail_result = 0
+            break
+        if examine_check_at_rail_result:
+            examine_check_kind = 2
+    s[examine_check_kind + 8] = s[examine_check_kind + 8] + 1 & 536870911
+    if examine_check_kind > 1:
         s[17] = 0
         s[18] = 0
         s[34] = 0
     elif examine_check_dt_us > 0 and examine_check_dt_us <= c[1]:
         examine_check_dt_us = examine_check_dt_us + s[16]
         s[16] = examine_check_dt_us if examine_check_dt_us < 536870911 else 536870911
-    kind = examine_check_i
+    kind = examine_check_kind
     if not kind:
         if not s[17]:
             s[19] = x[0]
@@ -847,20 +825,18 @@ def step(s_, c_, x_, dt_us: int) -> int:
 
 
 @micropython.viper
-def offer(axis: int, w: int, c: ptr32, s: ptr32, m: ptr32):
+def offer(c: ptr32, axis: int, w: int, s: ptr32, m: ptr32):
     a = axis * c[13] + c[0]
     s_a = ptr32(int(s) + (a << 2))
-    w = w + axis
-    sigma = m[w + 3] >> 2
+    sigma = m[w + 3 + axis] >> 2
     if s_a[1] or sigma > c[48]:
         return
-    w = m[w] - s[axis + 61]
-    axis = c[49] // (sigma * sigma + 1)
-    if axis > 256:
-        axis = 256
-    if axis > 0:
-        s_a[1] = axis
-        s_a[0] = (w >> 4) * axis >> 4
+    readings_worth_n = c[49] // (sigma * sigma + 1)
+    readings_worth_result = readings_worth_n if readings_worth_n < 256 else 256
+    s_a[1] = readings_worth_result
+    if s_a[1]:
+        w = m[w + axis] - s[axis + 61] >> 4
+        s_a[0] = w * s_a[1] >> 4
         s_a[12] = (sigma * sigma >> 4 << 3) + s[7]
 
 
@@ -906,7 +882,7 @@ def consider(s_, c_, m_, w: int, source: int):
                 s[57] = m_speak_w[0]
             s[72] = m_speak_w[3]
             s[75] = s[7]
-    offer(0, w, c_, s_, m_)
-    offer(1, w, c_, s_, m_)
-    offer(2, w, c_, s_, m_)
+    offer(c_, 0, w, s_, m_)
+    offer(c_, 1, w, s_, m_)
+    offer(c_, 2, w, s_, m_)
     s[53] = 1

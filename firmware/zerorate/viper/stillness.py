@@ -95,11 +95,11 @@ def judge(s: ptr32, c: ptr32) -> int:
                 if look_change_q4_d > look_change_q4_most:
                     look_change_q4_most = look_change_q4_d
                 look_change_q4_i = look_change_q4_i + 1
-            look_shake_q8 = look_change_q4_most
-            if look_shake_q8 > 32767:
+            look_change = look_change_q4_most
+            if look_change > 32767:
                 state = 5
                 break
-            if look_shake_q8 * look_shake_q8 > (look_noise_q8 >> c[4]) * 14 + c[10]:
+            if look_change * look_change > (look_noise_q8 >> c[4]) * 14 + c[10]:
                 state = 5
                 break
         state = 1

@@ -64,7 +64,7 @@ def present(s: ptr32, i: int, s_):
             unpack_put_e = unpack_put_e + 1
         s[207] = unpack_put_m
         s[208] = unpack_put_e
-    multiply(205, s_, 207, 205)
+    multiply(s_, 205, 207, 205)
     real_add_b = 2 * i + 179
     if s[206] < s[real_add_b + 1]:
         add_smaller(s_, real_add_b, 205, 205)
@@ -210,7 +210,7 @@ def carry(put_m: int, known: int, s: ptr32, c: ptr32, s_, c_):
             put_e = put_e + 1
         s[205] = put_m
         s[206] = put_e
-    multiply(207, s_, 205, 209)
+    multiply(s_, 207, 205, 209)
     while i < 3 and known:
         carry_axis(0, 0, s_, i, c_, s_)
         i = i + 1
@@ -222,14 +222,14 @@ def carry(put_m: int, known: int, s: ptr32, c: ptr32, s_, c_):
 def carry_axis(bend_put_m: int, put_m: int, s: ptr32, i: int, c: ptr32, s_):
     d = 3 * i + 229
     unpack_slope(0, s_, d)
-    multiply(185, s_, 203, 205)
+    multiply(s_, 185, 203, 205)
     real_add_d = 2 * i + 173
     real_add_a = 2 * i + 173
     if s[real_add_a + 1] < s[206]:
         add_smaller(s_, 205, real_add_a, real_add_d)
     else:
         add_smaller(s_, real_add_a, 205, real_add_d)
-    multiply(189, s_, 203, 205)
+    multiply(s_, 189, 203, 205)
     if s[188] < s[206]:
         add_smaller(s_, 205, 187, 207)
     else:
@@ -238,7 +238,7 @@ def carry_axis(bend_put_m: int, put_m: int, s: ptr32, i: int, c: ptr32, s_):
         add_smaller(s_, 207, 187, 205)
     else:
         add_smaller(s_, 187, 207, 205)
-    multiply(205, s_, 203, 205)
+    multiply(s_, 205, 203, 205)
     put_m = s[205] if s[205] > 0 else 0
     put_e = s[206]
     if not put_m:
@@ -260,11 +260,11 @@ def carry_axis(bend_put_m: int, put_m: int, s: ptr32, i: int, c: ptr32, s_):
         add_smaller(s_, 209, 205, 205)
     else:
         add_smaller(s_, 205, 209, 205)
-    i = (7 - i) * i + 149
-    if s[i + 1] < s[206]:
-        add_smaller(s_, 205, i, i)
+    v = (7 - i) * i + 149
+    if s[v + 1] < s[206]:
+        add_smaller(s_, 205, v, v)
     else:
-        add_smaller(s_, i, 205, i)
+        add_smaller(s_, v, 205, v)
     bend_i = s[203] if s[203] >= 0 else -s[203]
     bend_put_m = bend_i
     bend_put_e = s[204] - c[25]
@@ -300,7 +300,7 @@ def carry_axis(bend_put_m: int, put_m: int, s: ptr32, i: int, c: ptr32, s_):
             bend_put_e = bend_put_e + 1
         s[161] = bend_put_m
         s[162] = bend_put_e
-    multiply(205, s_, 161, 205)
+    multiply(s_, 205, 161, 205)
     if s[190] < s[206]:
         add_smaller(s_, 205, 189, 189)
     else:
@@ -335,7 +335,7 @@ def learn_slopes(learn_slope_put_m: int, learn_slope_put_e: int, learn_slope_i: 
         learn_slope_a = (7 - learn_slope_i) * learn_slope_i + 149
         divide(s_, 187, learn_slope_a, 203)
         subtract(s_, 2 * learn_slope_i + 173, 205, 2 * learn_slope_i + 179, s_)
-        multiply(205, s_, 203, 205)
+        multiply(s_, 205, 203, 205)
         if s[186] < s[206]:
             add_smaller(s_, 205, 185, 185)
         else:
@@ -348,8 +348,8 @@ def learn_slopes(learn_slope_put_m: int, learn_slope_put_e: int, learn_slope_i: 
             add_smaller(s_, learn_slope_i, learn_slope_a, 205)
         else:
             add_smaller(s_, learn_slope_a, learn_slope_i, 205)
-        multiply(205, s_, 203, 205)
-        multiply(205, s_, 203, 205)
+        multiply(s_, 205, 203, 205)
+        multiply(s_, 205, 203, 205)
         subtract(s_, 205, 207, 189, s_)
         learn_slope_put_m = s[207] if s[207] > 0 else 0
         learn_slope_put_e = s[208]
@@ -385,6 +385,6 @@ def learn_slopes(learn_slope_put_m: int, learn_slope_put_e: int, learn_slope_i: 
                 learn_slope_put_e = learn_slope_put_e + 1
             s[205] = learn_slope_put_m
             s[206] = learn_slope_put_e
-        multiply(203, s_, 205, 187)
+        multiply(s_, 203, 205, 187)
         pack_slope(s_, learn_slope_d)
         i = i + 1

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyarrow as pa
 from zerorate import Corrector
-from zerorate.corrector import LIMITS
+from zerorate.settings import DEFAULTS
 
 from ..errors import BadModel, InFile, ZerorateError
 from ..recordings import Recording, open_recording
@@ -106,7 +106,7 @@ def replay(
 
 def corrector_for(recording: OpenRecording | Recording, options: dict[str, object]) -> Corrector:
     """The firmware's object for a recording's sensor. Raises ZerorateError for bad options."""
-    known = {*signature(Corrector).parameters, *LIMITS} - {"sensor", "limits"}
+    known = {*signature(Corrector).parameters, *DEFAULTS} - {"sensor", "limits"}
     unknown = next((name for name in options if name not in known), None)
     if unknown is not None:
         raise ZerorateError(f"no such setting: {unknown}; there are {', '.join(sorted(known))}")

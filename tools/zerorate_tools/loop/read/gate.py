@@ -7,7 +7,7 @@ from math import ceil, floor
 
 import numpy as np
 from scipy.stats import spearmanr
-from zerorate.corrector import LIMITS
+from zerorate.settings import DEFAULTS
 
 from ...errors import ZerorateError
 from ...model.binding import NAMES, binding_of
@@ -162,7 +162,7 @@ def shaken(sessions: list[Session], report: GateReport) -> None:
     seen = [s for s in sessions if "vib" in s.sources]
     if not seen:
         return
-    limit = LIMITS["still_g"]
+    limit = DEFAULTS["still_g"]
     over = [(s.block_mean(s.sources["vib"]) > limit**2)[s.available] for s in seen]
     share = float(np.concatenate(over).mean())
     if share > _MOST_SHAKEN:
