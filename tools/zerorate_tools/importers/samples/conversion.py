@@ -99,7 +99,8 @@ def integer_batches(
         first, last = t_us[0] if first is None else first, t_us[-1]
         gaps.add(columns[TIME])
         if TEMP in columns and "temp" not in plan.raw:
-            temps.append(columns[TEMP][:: 1 + len(t_us) // _LOOKED_AT])
+            # a view would keep the whole column
+            temps.append(columns[TEMP][:: 1 + len(t_us) // _LOOKED_AT].copy())
         yield {
             name: t_us if name == TIME else _integers(name, columns, plan, scales, path, report)
             for name in dict.fromkeys(names)

@@ -3,10 +3,20 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.ndimage import binary_dilation, binary_propagation, median_filter
+from scipy.ndimage import (
+    binary_dilation,
+    binary_propagation,
+    median_filter,
+    uniform_filter1d,
+)
+from scipy.stats import chi2
 
 _SPREAD = 2.0  # times the quiet spread
 _OFF_DPS = 1.0  # from the running middle of quiet ticks
+#: Normal deviations beyond which a mean is no noise, and the chance of a spread that is none.
+_OFF_SIGMAS, _SPREAD_CHANCE = 5.0, 1e-5
+#: Of a normal deviate's size: its 0.2 quantile.
+_QUIET_SIZE = 0.2533
 #: Of the still ticks' own noise: beyond it, a tick beside a motion still belongs to that motion.
 _EDGE_SIGMAS = 4.0
 _QUIET_SHARE = 0.2
@@ -20,8 +30,9 @@ def still_ticks(ticks, edges: bool = True) -> np.ndarray:
     """(m,) bool. Quiet: the rate's spread within a tick is near that of the quietest ticks. Still:
     its mean, less a line over temperature, is also near the running middle of quiet ticks, so a
     steady turn does not count; a turn below 1 dps is told by the accelerometer alone, if its axis
-    is not vertical. Where a motion sets in or dies down slowly, all of it is motion; edges False
-    asks no such thing, for who compares rests among which the bias wandered.
+    is not vertical. Where a tick's own noise is of that size, as with few samples a tick, the means
+    of several are asked. Where a motion sets in or dies down slowly, all of it is motion; edges
+    False asks no such thing, for who compares rests among which the bias wandered.
     """
     there = ticks.count > 0
     if not there.any():
@@ -30,10 +41,25 @@ def still_ticks(ticks, edges: bool = True) -> np.ndarray:
     rate = _less_temperature(ticks, quiet)
     middle = _running_middle(rate, quiet, max(3, int(_WINDOW_S / ticks.tick_s) | 1))
     off = np.abs(rate - middle)
-    still = quiet & (off < _OFF_DPS).all(axis=1)
+    still = quiet & _is_near(rate - middle, there)
     if ticks.accel is not None:
         still &= _gravity_holds(ticks, there)
     return still & ~_edges(off, still, there) if edges else still
+
+
+def _is_near(off, there):
+    """(m,) bool: no mean, and no mean of so many that their noise is small, is far off."""
+    near = np.ones(len(off), bool)
+    for values in off.T:
+        steps = np.abs(np.diff(values[there]))
+        noise = np.quantile(steps, _QUIET_SHARE) / (np.sqrt(2) * _QUIET_SIZE) if len(steps) else 0.0
+        least = _OFF_SIGMAS * noise
+        near &= np.abs(values) < max(_OFF_DPS, least)
+        if least > _OFF_DPS:
+            width = int(np.ceil((least / _OFF_DPS) ** 2)) | 1
+            far = np.abs(uniform_filter1d(np.where(there, values, 0.0), width)) >= _OFF_DPS
+            near &= ~binary_dilation(far, iterations=width // 2)
+    return near
 
 
 def _less_temperature(ticks, quiet):
@@ -70,13 +96,20 @@ def _edges(off, still, there):
 
 
 def _is_quiet(ticks, there):
+    """(m,) bool: the spread is at most twice that of the quietest fifth, or what so few samples as
+    a tick has may show of the same noise."""
     if np.median(ticks.count[there]) < 4:
         return there
+    freedom = np.maximum(ticks.count - 1, 1)
+    usual = float(np.median(freedom[there]))
+    # as the quietest fifth of spreads of so few samples lies, and as far as they may
+    low = np.sqrt(chi2.ppf(_QUIET_SHARE, usual) / usual)
+    most = np.maximum(_SPREAD, np.sqrt(chi2.isf(_SPREAD_CHANCE, freedom) / freedom) / low)
     moving = np.zeros(len(there), bool)
     for a in range(3):
-        spread = np.sqrt(ticks.rate_var[:, a])
+        spread = np.sqrt(ticks.rate_var[:, a] * (freedom + 1) / freedom)
         quiet = np.quantile(spread[there], _QUIET_SHARE)
-        moving |= ~(spread <= _SPREAD * quiet + 1.0 / ticks.scales.gyro_lsb_per_dps)
+        moving |= ~(spread <= most * quiet + 1.0 / ticks.scales.gyro_lsb_per_dps)
     return ~binary_dilation(moving, iterations=1)
 
 
