@@ -30,7 +30,9 @@ class Runs:
         """Take the time stamps of the next rows."""
         if not len(t_us):
             return
-        before = self._last if self._begin else t_us[0]
+        if self._begin is None:
+            self._begin, self._last = (t_us[0], int(place[0])), t_us[0]
+        before = self._last
         back = np.flatnonzero(np.diff(t_us, prepend=before) < 0)
         self.steps_back += len(back)
         start = 0
@@ -38,8 +40,6 @@ class Runs:
             self._rows += int(at - start)
             self._close(t_us[at - 1] if at else before)
             start, self._begin = int(at), (t_us[at], int(place[at]))
-        if self._begin is None:
-            self._begin = t_us[0], int(place[0])
         self._rows += len(t_us) - start
         self._last = t_us[-1]
 
