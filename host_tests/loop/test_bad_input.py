@@ -8,8 +8,8 @@ import numpy as np
 import pyarrow as pa
 import pytest
 from pyarrow import parquet
+from zerorate_tools.closing import load
 from zerorate_tools.errors import ZerorateError
-from zerorate_tools.loop.close import load
 from zerorate_tools.loop.read.gate import CannotClose
 from zerorate_tools.recordings import Recording, Scales, write_recording
 

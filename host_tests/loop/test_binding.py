@@ -15,7 +15,7 @@ from zerorate.model_file import (
     OTHER_SCALE,
     REASONS,
 )
-from zerorate_tools.loop.close import close
+from zerorate_tools.closing import close
 from zerorate_tools.loop.read.gate import CannotClose
 from zerorate_tools.loop.simulated import simulate
 from zerorate_tools.model import Binding, Slot, build_model, encoded, read_model

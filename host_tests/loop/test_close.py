@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
+from zerorate_tools.closing import close, load
 from zerorate_tools.loop.analyse import sessions_of
-from zerorate_tools.loop.close import close, load
 from zerorate_tools.loop.read.gate import CannotClose, GateReport, usable_channels
 from zerorate_tools.loop.read.sessions import Session
 from zerorate_tools.loop.read.still import still_ticks

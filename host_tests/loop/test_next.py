@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from zerorate_tools.loop.close import load
+from zerorate_tools.closing import load
 from zerorate_tools.loop.report.report import report
 from zerorate_tools.loop.report.unexplained import measure_next
 from zerorate_tools.recordings import Recording, Scales, write_recording

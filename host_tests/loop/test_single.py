@@ -3,8 +3,8 @@
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
+from zerorate_tools.closing import close, load
 from zerorate_tools.loop.analyse import analyse
-from zerorate_tools.loop.close import close, load
 from zerorate_tools.loop.fit.single import PiecesByLine, nats, speaks_for
 from zerorate_tools.loop.search.bends import find_bends
 from zerorate_tools.loop.search.select import Search

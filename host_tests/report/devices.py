@@ -3,7 +3,7 @@
 import json
 
 import numpy as np
-from zerorate_tools.loop.close import load
+from zerorate_tools.closing import load
 from zerorate_tools.loop.report.report import as_json, report
 from zerorate_tools.loop.simulated import simulate
 from zerorate_tools.loop.verify.measure import measure

@@ -16,9 +16,9 @@ from zerorate_tools.replay import replay
 from zerorate_tools.simulate import simulate
 from zerorate_tools.watch import watch
 from zerorate_tools.watch.board import Watcher
+from zerorate_tools.watch.options import WatchOptions
 from zerorate_tools.watch.screen import Lines, sparkline
 from zerorate_tools.watch.tail import CsvTail
-from zerorate_tools.watch.watching import Wishes
 
 DESCRIPTION = {
     "name": "run",
@@ -79,7 +79,7 @@ def test_every_row_is_read_once_wherever_the_writer_was_interrupted(writer, reco
 
 
 def test_the_firmware_is_where_a_replay_of_the_file_leaves_it(log, capsys):
-    live = watch(str(log), Wishes(once=True))
+    live = watch(str(log), WatchOptions(once=True))
     assert live.corrector.state.tobytes() == replay(log).state
     assert live.bias_dps == pytest.approx([1.5, -2.0, 0.5], abs=0.02)
     assert "x +1." in capsys.readouterr().out
@@ -87,7 +87,7 @@ def test_the_firmware_is_where_a_replay_of_the_file_leaves_it(log, capsys):
 
 def test_once_prints_one_line_however_long_the_reading_takes(log, capsys, monkeypatch):
     monkeypatch.setattr("zerorate_tools.watch.tail._MOST_BYTES", 4096)
-    watch(str(log), Wishes(once=True, every_s=0.0))
+    watch(str(log), WatchOptions(once=True, every_s=0.0))
     assert len(capsys.readouterr().out.splitlines()) == 1
 
 
@@ -113,7 +113,7 @@ def test_a_writer_in_another_process_is_followed(writer, log, tmp_path):
 
         from zerorate_tools.watch.watching import Following
 
-        following = Following(CsvTail(writer.path), Wishes(every_s=0.01), Shown())
+        following = Following(CsvTail(writer.path), WatchOptions(every_s=0.01), Shown())
         following._goes_on = lambda: not stop.is_set()
         following.run()
     assert len(set(lines)) > 3
@@ -133,14 +133,14 @@ def test_ctrl_c_ends_it_well(log):
 def test_a_file_that_stops_growing_is_said(log, monkeypatch, capsys):
     monkeypatch.setattr("zerorate_tools.watch.watching._STALLED_S", 0.1)
     monkeypatch.setattr("zerorate_tools.watch.watching._STALLED_SAMPLES", 1)
-    watch(str(log), Wishes(seconds=0.8, every_s=0.1))
+    watch(str(log), WatchOptions(seconds=0.8, every_s=0.1))
     assert "has not grown" in capsys.readouterr().out.splitlines()[-1]
 
 
 def test_rows_that_are_none_are_left_out_and_counted(writer, capsys):
     whole = writer.text.rindex(b"\n", 0, 1000) + 1
     writer.path.write_bytes(writer.text[:whole] + b"oops,1,2\n" + writer.text[whole:])
-    live = watch(str(writer.path), Wishes(once=True))
+    live = watch(str(writer.path), WatchOptions(once=True))
     assert live.samples == len(writer.text.splitlines()) - 1
     assert "1 rows left out: not 8 integers" in capsys.readouterr().out
 
@@ -205,7 +205,7 @@ def test_a_chip_on_a_bus_is_watched():
     taken = []
 
     def take(scales):
-        taken.append(Watcher("/dev/i2c-1", scales, Wishes(every_s=1e9), Lines()))
+        taken.append(Watcher("/dev/i2c-1", scales, WatchOptions(every_s=1e9), Lines()))
         return taken[0]
 
     stream_bus(FakeI2C(chip, clock=clock), take, seconds=20, time_source=clock)
@@ -224,10 +224,10 @@ def test_a_sparkline_goes_from_low_to_high():
 def test_scales_missing_beside_the_file_are_said(writer):
     writer.path.with_suffix(".json").unlink()
     with pytest.raises(BadRecording, match="run.json"):
-        watch(str(writer.path), Wishes(once=True))
+        watch(str(writer.path), WatchOptions(once=True))
 
 
 def test_a_bias_that_is_not_known_has_no_sigma(log, capsys):
     log.write_text("".join(log.read_text().splitlines(keepends=True)[:6]))
-    watch(str(log), Wishes(once=True))
+    watch(str(log), WatchOptions(once=True))
     assert "x none  y none  z none" in capsys.readouterr().out

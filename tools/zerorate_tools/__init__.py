@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING
 __version__ = "0.1.0"
 
 if TYPE_CHECKING:
+    from .closing import close as close_loop
     from .errors import ZerorateError as ZerorateError
     from .importers import import_recording as import_recording
     from .importers import read_foreign as read_foreign
-    from .loop.close import close as close_loop
     from .loop.read.stretch import deviation_of as allan_deviation
     from .model import Model as Model
     from .model import read_model as read_model
@@ -48,7 +48,7 @@ _HOME = {
     "replay_recording": ("replay", "replay"),
     "Replay": ("replay", "Replay"),
     "plot_replay": ("replay.plot", "plot"),
-    "close_loop": ("loop.close", "close"),
+    "close_loop": ("closing", "close"),
     "allan_deviation": ("loop.read.stretch", "deviation_of"),
     "read_model": ("model", "read_model"),
     "write_model": ("model", "write_model"),

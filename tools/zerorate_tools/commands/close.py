@@ -30,7 +30,7 @@ def add_parser(subparsers) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Close the loop and print what was found."""
-    from ..loop.close import close
+    from ..closing import close
     from ..loop.report.in_words import in_words
     from ..progress import progress
     from ..report.words import headline

@@ -33,18 +33,19 @@ def add_parser(subparsers) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Watch; 1 where no sample ever came."""
-    from ..watch.watching import Wishes, watch
+    from ..watch.options import WatchOptions
+    from ..watch.watching import watch
 
-    wishes = Wishes(
+    options = WatchOptions(
         seconds=arguments.seconds,
         once=arguments.once,
         every_s=arguments.every,
         plain=arguments.plain,
-        options={"motion": arguments.motion, "accelerometer": arguments.accelerometer},
+        settings={"motion": arguments.motion, "accelerometer": arguments.accelerometer},
         model=arguments.model,
         setup=arguments.setup.read_text(encoding="utf-8") if arguments.setup else "",
     )
-    return 0 if watch(arguments.source, wishes) else 1
+    return 0 if watch(arguments.source, options) else 1
 
 
 def _positive(text: str) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import tempfile
 from pathlib import Path
 
-from ..loop.close import close
+from ..closing import close
 from ..replay import replay
 from .device import Device
 from .run import Demo, demo

@@ -121,7 +121,7 @@ def _sensor(good: Sequence[str], failures: list[dict[str, str]]) -> dict[str, An
 
 
 def _steps(job, device, good, failures) -> list[dict[str, Any]]:
-    from ..loop.close import close
+    from ..closing import close
 
     with tempfile.TemporaryDirectory(prefix="zerorate-fleet-") as scratch:
         try:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from importlib.metadata import version
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from .. import __version__
 from ..recordings.atomic import written_beside
 from ..report import words as report_words
 from ..report.colours import ROLES
@@ -34,7 +34,7 @@ def write_page(report: dict[str, Any], part: Part | None, path: Path) -> None:
             r=report,
             headline=headline(report),
             plots={plot.key: plot for plot in plots},
-            made=f"zerorate {__version__}",
+            made=f"zerorate {version('zerorate')}",
             roles=ROLES,
             data=script_json([plain(plot) for plot in plots]),
             plotly_js=get_plotlyjs(),

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from .run import Fleet
+if TYPE_CHECKING:
+    from .run import Fleet
 
 _FAILURES = 10
 _SCENARIOS = {

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from importlib.metadata import version
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from .. import __version__
 from ..errors import ZerorateError
 from ..loop.verify.analysis import Analysis
 from ..model import read_model
@@ -37,13 +37,13 @@ def write_report(
 ) -> Path:
     """Write report.html, and with `png` plots/*.png, beside the model in `folder`; its path.
 
-    analysis: of `loop.close.load`; result: what report.json holds, whose numbers are shown;
+    analysis: of `closing.load`; result: what report.json holds, whose numbers are shown;
     logs: the recordings, replayed to show the estimators. Raises OSError.
     """
     folder = Path(folder)
     plots, notes = plots_of(analysis, result, logs, folder)
     board = deployment(folder, read_model(folder / "model.bin").channels)
-    text = page(result, plots, board, notes, f"zerorate {__version__}")
+    text = page(result, plots, board, notes, f"zerorate {version('zerorate')}")
     path = folder / "report.html"
     with written_beside(path) as temporary:
         temporary.write_text(text, encoding="utf-8")

@@ -11,8 +11,8 @@ from ..boards.recorder import COLUMNS, Recorded
 from ..boards.recording import stream
 from ..recordings import Scales
 from .live import Live
+from .options import WatchOptions
 from .screen import Screen, screen
-from .watching import Wishes, every_s
 
 _PATIENCE_S = 0.25
 
@@ -23,10 +23,10 @@ class Watcher:
     In doubt or not, all are given to it: its guard is there to judge them.
     """
 
-    def __init__(self, source: str, scales: Scales, wishes: Wishes, shown: Screen) -> None:
-        self.live = Live(source, scales, COLUMNS, wishes.options, wishes.model)
+    def __init__(self, source: str, scales: Scales, options: WatchOptions, shown: Screen) -> None:
+        self.live = Live(source, scales, COLUMNS, options.settings, options.model)
         self.result = Recorded()
-        self._shown, self._every_s = shown, every_s(wishes, shown)
+        self._shown, self._every_s = shown, options.seconds_between_looks(shown)
         self._waiting: list[tuple[int, ...]] = []
         self._fed = self._looked = time.monotonic()
 
@@ -58,17 +58,17 @@ class Watcher:
         """It was not, perhaps: the firmware's guard has seen it too."""
 
 
-def watch_board(source: str, wishes: Wishes) -> Live | None:
+def watch_board(source: str, options: WatchOptions) -> Live | None:
     """Watch a board's port or a Linux bus: see `watch`."""
     made: list[Watcher] = []
-    options = {"setup": wishes.setup} if wishes.setup else {}
-    with screen(wishes.plain) as shown:
+    more = {"setup": options.setup} if options.setup else {}
+    with screen(options.plain) as shown:
 
         def take(scales: Scales) -> Watcher:
-            made.append(Watcher(source, scales, wishes, shown))
+            made.append(Watcher(source, scales, options, shown))
             return made[0]
 
-        seconds = 1.0 if wishes.once and wishes.seconds is None else wishes.seconds
-        stream(source, take, seconds=seconds, done=lambda _: made[0].flush(), **options)
+        seconds = 1.0 if options.once and options.seconds is None else options.seconds
+        stream(source, take, seconds=seconds, done=lambda _: made[0].flush(), **more)
         made[0].look()
         return made[0].live if made[0].live.samples else None

@@ -5,12 +5,11 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from .live import Live
-from .screen import Lines, Screen, screen
+from .options import WatchOptions
+from .screen import Screen, screen
 from .tail import CsvTail
 
 _DEVICE = re.compile(r"/dev/.+|COM\d+|\d+")
@@ -19,37 +18,20 @@ _STALLED_S = 3.0
 _STALLED_SAMPLES = 20
 
 
-@dataclass(frozen=True)
-class Wishes:
-    """How to watch.
-
-    seconds: end after so long; once: end with what is there; every_s: between two looks (default
-    0.5 on a terminal, 2 in a pipe); options, model: see Live; setup: see record_port.
-    """
-
-    seconds: float | None = None
-    once: bool = False
-    every_s: float | None = None
-    plain: bool = False
-    options: dict[str, Any] | None = None
-    model: Path | None = None
-    setup: str = ""
-
-
-def watch(source: str, wishes: Wishes | None = None) -> Live | None:
+def watch(source: str, options: WatchOptions | None = None) -> Live | None:
     """Run the firmware on what comes from a growing CSV, a board's port or /dev/i2c-N, and show it.
 
     Ends at Ctrl-C as well. Returns the firmware as it was at the end, None where nothing came.
     Raises ZerorateError for a source that cannot be followed.
     """
-    wishes = wishes or Wishes()
+    options = options or WatchOptions()
     if is_device(source):
         from .board import watch_board
 
-        return watch_board(source, wishes)
+        return watch_board(source, options)
     tail = CsvTail(Path(source))
-    with screen(wishes.plain) as shown:
-        following = Following(tail, wishes, shown)
+    with screen(options.plain) as shown:
+        following = Following(tail, options, shown)
         try:
             following.run()
         except KeyboardInterrupt:
@@ -66,14 +48,14 @@ def is_device(source: str) -> bool:
 class Following:
     """A growing file, the firmware on it, and the screen."""
 
-    def __init__(self, tail: CsvTail, wishes: Wishes, shown: Screen) -> None:
-        self.tail, self.wishes, self._shown = tail, wishes, shown
+    def __init__(self, tail: CsvTail, options: WatchOptions, shown: Screen) -> None:
+        self.tail, self.options, self._shown = tail, options, shown
         self.live = self._fresh()
         self._begun = self._grown = self._looked = time.monotonic()
         self._clock: Callable[[], float] = time.monotonic
 
     def run(self) -> None:
-        """Read and show until the wish is fulfilled."""
+        """Read and show until it is told to end."""
         while self._goes_on():
             restarts = self.tail.restarts
             columns = self.tail.read()
@@ -82,7 +64,7 @@ class Following:
             if columns is not None:
                 self.live.feed(columns)
                 self._grown = self._clock()
-            elif self.wishes.once:
+            elif self.options.once:
                 return
             else:
                 time.sleep(_POLL_S)
@@ -91,7 +73,7 @@ class Following:
 
     def _is_time_to_look(self) -> bool:
         waited_s = self._clock() - self._looked
-        return not self.wishes.once and waited_s >= every_s(self.wishes, self._shown)
+        return not self.options.once and waited_s >= self.options.seconds_between_looks(self._shown)
 
     def look(self) -> None:
         """Show what there is."""
@@ -99,17 +81,17 @@ class Following:
         self._shown.show(self.live, self._notes())
 
     def _fresh(self) -> Live:
-        w = self.wishes
-        return Live(self.tail.name, self.tail.scales, self.tail.column_names, w.options, w.model)
+        o = self.options
+        return Live(self.tail.name, self.tail.scales, self.tail.column_names, o.settings, o.model)
 
     def _goes_on(self) -> bool:
-        return self.wishes.seconds is None or self._clock() - self._begun < self.wishes.seconds
+        return self.options.seconds is None or self._clock() - self._begun < self.options.seconds
 
     def _notes(self) -> list[str]:
         notes = []
         silent_s = self._clock() - self._grown
         patience_s = max(_STALLED_S, _STALLED_SAMPLES / self.tail.scales.odr_hz)
-        if not self.wishes.once and silent_s > patience_s:
+        if not self.options.once and silent_s > patience_s:
             notes.append(f"the file has not grown for {silent_s:.0f} s: has its writer stopped?")
         if self.tail.bad_rows:
             notes.append(f"{self.tail.bad_rows} rows left out: not {self._cells()} integers")
@@ -119,10 +101,3 @@ class Following:
 
     def _cells(self) -> int:
         return len(self.tail.column_names)
-
-
-def every_s(wishes: Wishes, shown: Screen) -> float:
-    """Seconds between two looks."""
-    if wishes.every_s is not None:
-        return wishes.every_s
-    return 2.0 if isinstance(shown, Lines) else 0.5

@@ -115,7 +115,7 @@ def description(row: str) -> dict:
 
 def look_at_files(device: Device) -> Outcome:
     """Simulate a device into files, close them, and take the report's word for what was found."""
-    from ...loop.close import load
+    from ...closing import load
     from ...loop.report.report import report
 
     with tempfile.TemporaryDirectory() as folder:

@@ -7,14 +7,14 @@ from pathlib import Path
 import numpy as np
 
 from . import chips
-from .real import cubic_left
 
 _COLOURS = {"line": "tab:gray", "after": "tab:blue", "cubic": "tab:orange"}
 
 
-def draw_recording(analysis, title: str, path: Path) -> None:
+def draw_recording(analysis, rival, title: str, path: Path) -> None:
     """Temperature, and an axis a panel: the rate less a straight line, less what was found, and
-    less a cubic, each by what has not seen it; the floor is a band."""
+    less a cubic (rival: what it leaves, None without temperature), each by what has not seen it;
+    the floor is a band."""
     import matplotlib.pyplot as plt
 
     session = analysis.locked[0]
@@ -22,7 +22,7 @@ def draw_recording(analysis, title: str, path: Path) -> None:
     figure, panels = plt.subplots(4, 1, figsize=(9, 10), sharex=True, layout="constrained")
     figure.suptitle(title)
     _temperature(panels[0], session, minutes)
-    left = _left(analysis)
+    left = _left(analysis, rival)
     for axis, panel in enumerate(panels[1:]):
         floor = 1e3 * analysis.floor_dps[axis]
         panel.axhspan(-floor, floor, color="tab:green", alpha=0.2, label="floor")
@@ -44,9 +44,9 @@ def _temperature(panel, session, minutes):
         panel.text(0.5, 0.5, "no temperature recorded", transform=panel.transAxes, ha="center")
 
 
-def _left(analysis):
+def _left(analysis, rival):
     """Name -> (n, 3) dps left of what was held out."""
-    judged, rival = analysis.judgement, cubic_left(analysis)
+    judged = analysis.judgement
     left = {"line": judged.residual_before[0], "after": judged.residual_after[0]}
     return left if rival is None else {**left, "cubic": rival[0]}
 

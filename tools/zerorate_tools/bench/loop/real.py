@@ -51,8 +51,8 @@ def real_rows(data: Path, plots: Path | None = None) -> dict[str, dict]:
 
 
 def _recording(path: Path, scratch: Path, plots: Path | None) -> dict:
+    from ...closing import load
     from ...importers import import_recording
-    from ...loop.close import load
     from ...loop.search.confounding import label
     from ...loop.verify.measure import measure
     from ...loop.verify.slots import model_of
@@ -81,7 +81,7 @@ def _recording(path: Path, scratch: Path, plots: Path | None) -> dict:
     if plots:
         from .plots import draw_recording
 
-        draw_recording(analysis, path.name, plots / f"{out.stem}.png")
+        draw_recording(analysis, cubic_left(analysis), path.name, plots / f"{out.stem}.png")
     return row
 
 

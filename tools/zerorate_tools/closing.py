@@ -7,15 +7,15 @@ from collections.abc import Callable
 from os import PathLike
 from pathlib import Path
 
-from ..errors import ZerorateError
-from ..model import write_model
-from ..recordings.atomic import written_beside
-from .analyse import analyse, sessions_of
-from .read.gate import CannotClose
-from .read.ticks import read_ticks, tick_seconds
-from .report.report import as_json, report
-from .verify.analysis import Analysis
-from .verify.measure import measure_upheld
+from .errors import ZerorateError
+from .loop.analyse import analyse, sessions_of
+from .loop.read.gate import CannotClose
+from .loop.read.ticks import read_ticks, tick_seconds
+from .loop.report.report import as_json, report
+from .loop.verify.analysis import Analysis
+from .loop.verify.measure import measure_upheld
+from .model import write_model
+from .recordings.atomic import written_beside
 
 
 def load(
@@ -67,7 +67,7 @@ def close(
     each recording. Returns what report.json holds. Raises ZerorateError (BadRecording,
     CannotClose, CannotDeploy, Refused).
     """
-    from ..report import write_report  # its libraries are large
+    from .report import write_report  # its libraries are large
 
     analysis = load(logs, holdout, advance)
     folder = Path(out)
