@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PYTEST_ARGS ?= -n auto
 
-.PHONY: demo test lint typecheck typecheck-tools pytest layout viper docs lock wasm runtimes node wheel clean
+.PHONY: demo test lint typecheck typecheck-tools pytest layout native docs lock wasm runtimes node wheel clean
 
 demo: $(VENV)/.tools wasm  ## the whole job on built-in input, no hardware
 	$(BIN)/zerorate demo
@@ -16,10 +16,11 @@ lint: $(VENV)/.dev
 	$(BIN)/ruff format --check .
 	$(BIN)/codespell
 
-# Kernel files are checked as their viper twins, where ptr8 and ptr32 mean something.
-TWINS := $(wildcard firmware/zerorate/viper/*.py)
-KERNELS := $(shell grep -lE '^ptr(8|32) = None' firmware/zerorate/*.py)
-BOARD := $(sort $(TWINS) $(filter-out $(KERNELS) %/layout.py,$(wildcard firmware/zerorate/*.py)) \
+# Kernels have rules of their own (kernels/rules.py), and machine code has no types.
+FIRMWARE := $(shell find firmware/zerorate -name '*.py')
+KERNELS := $(shell grep -lrE --include='*.py' '^ptr(8|32) = None' firmware/zerorate)
+MACHINE_CODE := $(wildcard firmware/zerorate/native/thumb_*.py firmware/zerorate/native/rv32_*.py)
+BOARD := $(sort $(filter-out $(KERNELS) $(MACHINE_CODE) %/layout.py,$(FIRMWARE)) \
 	$(filter-out %/linux.py,$(wildcard drivers/zerorate_i2c/*.py)))
 
 typecheck: $(VENV)/.dev $(VENV)/.board-stubs
@@ -34,10 +35,9 @@ pytest: $(VENV)/.dev runtimes
 layout: $(VENV)/.dev  ## write the constants of firmware/zerorate/layout.py where they are used
 	$(BIN)/python -m host_tests.layout
 
-viper: layout  ## write firmware/zerorate/viper from the kernel files
-	$(BIN)/python -m zerorate_tools.viper_twins firmware/zerorate
+native: layout  ## write the machine code in firmware/zerorate/native from the kernels
+	$(BIN)/python -m zerorate_tools.kernels.native_files firmware/zerorate
 	$(BIN)/python -m zerorate_tools.boards.manifests
-	$(BIN)/python -m zerorate_tools.bench.c_program host_tests/yardstick/yardstick.c
 
 docs: $(VENV)/.dev wasm  ## write what in docs/ and README.md is made by a command
 	$(BIN)/python -m host_tests.docs

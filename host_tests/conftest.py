@@ -94,12 +94,6 @@ def micropython(request):
     return interpreter(request.param)
 
 
-@pytest.fixture(scope="session", params=["x86", "armhf"])
-def viper_runtime(request):
-    """Each MicroPython on which viper can be used."""
-    return interpreter(request.param)
-
-
 @pytest.fixture(scope="session")
 def find_runtime():
     """The function that finds an interpreter by name, skipping or failing as the others do."""

@@ -68,7 +68,7 @@ def choose(s: ptr32, c: ptr32, a: int, temp: int) -> int:
     return NONE
 
 
-def curve_q8(s: ptr32, c: ptr32, a: int, temp: int) -> int:  # inline
+def curve_q8(s: ptr32, c: ptr32, a: int, temp: int) -> int:
     """Return the learned bias at `temp`: LSB, Q8; 0 while there is none.
 
     By the document a stable estimator of this temperature speaks alone. By default it speaks with

@@ -2,16 +2,15 @@
 
 # Between the first and the last frame of a window nearly every frame is a good reading, and nothing
 # but sums, counts and the correction changes. Such a stretch is taken here in one loop over locals,
-# which cost viper a third of what words of the state do; a frame that begins a window or ends a
+# which cost machine code half of what words of the state do; a frame that begins a window or ends a
 # rest is gathered before and behind it. Whatever is not plain at one look (a fault, a repeat, work
 # that waits, a window's last frame) is left to `step`; both give the same, to the last bit.
 #
-# Its frame on the stack is too large for bytecode, which would take heap for it: it is imported
-# only where viper is.
+# Its frame on the stack is too large for bytecode, which would take heap for it: it is made into
+# machine code only.
 #
 # A frame of `f` is eight words: us since the frame before, ax ay az temp gx gy gz in raw LSB.
-# `r` is room for seven of them, and behind it two words that say what is left to do: a number as
-# an argument costs viper some hundred instructions.
+# `r` is room for seven of them, and behind it two words that say what is left to do.
 
 try:
     from micropython import const
@@ -97,11 +96,11 @@ def plain(s: ptr32, f: ptr32, c: ptr32, p: int) -> int:
     return 1
 
 
-def edge(s: ptr32, f: ptr32, c: ptr32, r: ptr32, k: int) -> int:  # inline
+def edge(s: ptr32, f: ptr32, c: ptr32, r: ptr32, k: int) -> int:
     """Take the next frame, which may begin a window or end its rest, if k and it is plain.
 
     Returns 0 if it was not taken. What begins a window is so far from the rails that what is near
-    to it is no rail either. Many short steps: a jump must not go far (see twins/jumps.py).
+    to it is no rail either.
     """
     p = r[_AT]
     if k:
@@ -283,7 +282,7 @@ def take(s: ptr32, f: ptr32, c: ptr32, r: ptr32):
     edge(s, f, c, r, left)
 
 
-def one(s: ptr32, f: ptr32, c: ptr32, r: ptr32):  # call
+def one(s: ptr32, f: ptr32, c: ptr32, r: ptr32):
     """Give the next frame to `step`."""
     p = r[_AT]
     i = 0

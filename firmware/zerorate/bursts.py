@@ -2,11 +2,11 @@
 
 from array import array
 
-from .kernels import VIPER
+from .native import bursts
 
 
 class Bursts:
-    """Gives `corrector` (a Corrector) many samples a call: with viper at a fraction of the cost."""
+    """Gives `corrector` (a Corrector) many samples a call, which machine code does faster."""
 
     def __init__(self, corrector):
         self.corrector = corrector
@@ -18,7 +18,11 @@ class Bursts:
         frames: array('i') of eight words a sample: dt_us, then ax ay az temp gx gy gz. Rates are
         corrected in place, and each first word becomes what `Corrector.update` returns.
         """
-        self._one_by_one(frames, count)
+        corrector = self.corrector
+        if bursts.run and corrector.alone:
+            bursts.block(corrector.state, frames, corrector.settings, self._frame, count)
+        else:
+            self._one_by_one(frames, count)
 
     def _one_by_one(self, frames, count):
         for i in range(count):
@@ -31,9 +35,3 @@ class Bursts:
         frames[at] = self.corrector.update(frame, frames[at])
         for k in range(7):
             frames[at + 1 + k] = frame[k]
-
-
-if VIPER:
-    from .viper.direct import update_burst
-
-    Bursts.update = update_burst  # type: ignore[method-assign]

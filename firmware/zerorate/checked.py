@@ -6,16 +6,12 @@ configuration is read back. What was learned since the last good read-back is ta
 
 from array import array
 
-from .kernels import VIPER
+from .native.rest import copy
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from .corrector import Corrector
 
-if VIPER:
-    from .viper import copying
-else:
-    from . import copying
 
 try:
     from micropython import const
@@ -81,10 +77,10 @@ class CheckedCorrector:
     def keep(self) -> None:
         """What is learned up to now is right."""
         for i in range(len(self._live)):
-            copying.copy(self._live[i], self._kept[i], 0, len(self._kept[i]))
+            copy(self._live[i], self._kept[i], 0, len(self._kept[i]))
 
     def take_back(self) -> None:
         """Forget what was learned since keep(); also for a bus that failed for good."""
         for i in range(len(self._live)):
-            copying.copy(self._kept[i], self._live[i], self._first[i], len(self._kept[i]))
+            copy(self._kept[i], self._live[i], self._first[i], len(self._kept[i]))
         self.taken_back += 1

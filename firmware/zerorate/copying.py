@@ -1,14 +1,10 @@
 """Copies flat state, as the checkpoint of what was learned."""
 
-
-def ptr32(words):
-    return words
+ptr32 = None
 
 
-def copy(source, target, first: int, end: int):
-    """Put the words from `first` up to `end` of `source` into `target`."""
-    s = ptr32(source)
-    t = ptr32(target)
+def copy(s: ptr32, t: ptr32, first: int, end: int):
+    """Put the words from `first` up to `end` of `s` into `t`."""
     i = first
     while i < end:
         t[i] = s[i]

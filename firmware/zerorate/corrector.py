@@ -2,7 +2,7 @@
 
 from array import array
 
-from .kernels import VIPER, estimators, step
+from .native import rest
 from .settings import DEFAULTS, OF_THE_DOCUMENT, Sensor, settings
 
 try:
@@ -107,7 +107,10 @@ class Corrector:
         self._sense: "Any" = None
         self._observe_motion: "Any" = None
         self._observe_level: "Any" = None
-        self.alone = not motion and not accelerometer
+        self._examine: "Any" = None
+        self.alone = True
+        if motion or accelerometer:
+            self._join_others()
         if motion:
             self._learn_in_motion(document, chosen["motion_start_dps"])
         if accelerometer:
@@ -117,13 +120,19 @@ class Corrector:
         self.state = array("i", [0] * (c[_AXES] + 3 * c[_AXIS_WORDS]))
         self.reset()
 
+    def _join_others(self):
+        from .native.guard import examine
+
+        self._examine = examine
+        self.alone = False
+
     def _learn_in_motion(self, document, start_dps):
         # loaded here, so that who does not learn in motion has no memory taken by it
-        from .motion_kernels import in_motion
         from .motion_settings import motion_settings, motion_state
+        from .native.motion import update
 
         sensor = self.sensor
-        self._observe_motion = in_motion.update
+        self._observe_motion = update
         self.motion_settings = motion_settings(
             sensor.odr_hz,
             sensor.gyro_lsb_per_dps,
@@ -135,11 +144,11 @@ class Corrector:
         self.motion = motion_state(self.motion_settings)
 
     def _learn_by_level(self, document):
-        from .motion_kernels import realtime
+        from .native.gravity import update
         from .realtime_settings import realtime_settings, realtime_state
 
         sensor = self.sensor
-        self._observe_level = realtime.update
+        self._observe_level = update
         self.level_settings = realtime_settings(
             sensor.odr_hz, sensor.gyro_lsb_per_dps, sensor.accel_lsb_per_g, document=document
         )
@@ -164,7 +173,7 @@ class Corrector:
             a = c[_AXES] + axis * c[_AXIS_WORDS]
             for i in range(a, a + c[_AXIS_WORDS]):
                 s[i] = 0
-            estimators.reset(s, c, a)
+            rest.reset(s, c, a)
             s[a + _WALK_Q16] = self._walk_q16
         self.power_on()
 
@@ -193,17 +202,17 @@ class Corrector:
         Returns 0, or the guard's name for a frame that is not a good reading (see guard.py).
         """
         if self.alone:
-            return step.step(self.state, self.settings, sample, dt_us)
+            return rest.step(self.state, self.settings, sample, dt_us)
         return self._update_with_others(sample, dt_us)
 
     # small frames: one of more than eleven words would take heap at every call
     def _update_with_others(self, sample, dt_us):
-        kind = step.examine(self.state, self.settings, sample, dt_us)
+        kind = self._examine(self.state, self.settings, sample, dt_us)
         self._sense_effects(sample, dt_us, kind)
-        step.admit(self.state, self.settings, sample, kind)
+        rest.admit(self.state, self.settings, sample, kind)
         if kind == 0:
             self._ask_others(sample, dt_us)
-        return step.finish(self.state, self.settings, sample, kind)
+        return rest.finish(self.state, self.settings, sample, kind)
 
     def _sense_effects(self, sample, dt_us, kind):
         effects = self.effects
@@ -214,10 +223,10 @@ class Corrector:
     def _ask_others(self, sample, dt_us):
         if self.motion is not None:
             if self._observe_motion(self.motion, self.motion_settings, sample, dt_us):
-                step.consider(self.state, self.settings, self.motion, _MOTION_BIAS_Q8, _IN_MOTION)
+                rest.consider(self.state, self.settings, self.motion, _MOTION_BIAS_Q8, _IN_MOTION)
         if self.level is not None:
             if self._observe_level(self.level, self.level_settings, sample, dt_us):
-                step.consider(
+                rest.consider(
                     self.state, self.settings, self.level, _GRAVITY_BIAS_Q8, _ACCELEROMETER
                 )
         effects = self.effects
@@ -226,11 +235,11 @@ class Corrector:
 
     def use_model(self, effects: "Any") -> None:
         """Correct by an effect model (model.EffectModel, loaded) before anything is learned."""
-        from .effect_kernels import effects as kernels
+        from .native.effects import sense
 
-        self._sense = kernels.sense
+        self._sense = sense
         self.effects = effects
-        self.alone = False
+        self._join_others()
 
     def load(self, store: "Any") -> int:
         """Begin a power-on with what `store` holds; returns its reason, 0 if it was loaded.
@@ -269,9 +278,3 @@ class Corrector:
         from .explain import explain  # words that take no heap until somebody asks
 
         return explain(self)
-
-
-if VIPER:
-    from .viper.direct import update
-
-    Corrector.update = update  # type: ignore[method-assign]

@@ -137,7 +137,7 @@ def centre(s: ptr32, c: ptr32, a: int, i: int):
     s[_FIT_SUM_B_Q11] += d
 
 
-def add_product(s: ptr32, k: int, p: int, r: int):  # inline
+def add_product(s: ptr32, k: int, p: int, r: int):
     """Add p * r, each below 2^27, to the floating sum at the word in k's low 7 bits.
 
     The sum is mantissa and shift; by how much p is shifted already stands above those bits.
@@ -163,7 +163,7 @@ def add_product(s: ptr32, k: int, p: int, r: int):  # inline
     s[k] += p
 
 
-def lean(s: ptr32, c: ptr32, a: int, i: int):  # call
+def lean(s: ptr32, c: ptr32, a: int, i: int):
     """Add estimator i to the weighted variance and covariance."""
     w = s[_FIT_WEIGHTS + i]
     a += i * c[_ESTIMATOR_WORDS] + _ESTIMATORS

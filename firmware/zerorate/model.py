@@ -136,9 +136,9 @@ class EffectModel:
             e[a + _INPUT_N] = 0
             e[a + _INPUT_VALUE_Q8] = 256 if e[a + _INPUT_KIND] == _KIND_ONE else _NO_VALUE
         if e[_REFINE_ON]:
-            from .refine_kernels import effect_refine
+            from .native.refine import renew
 
-            effect_refine.renew(e)
+            renew(e)
         for i in range(_MOST_CHANNELS):
             e[_CHANNELS + i] = _NO_VALUE
         for a in range(_SLOTS, _TABLES, _SLOT_WORDS):
@@ -162,10 +162,10 @@ class EffectModel:
         for a in range(_SLOTS, _SLOTS + _SLOT_WORDS * e[_SLOT_COUNT], _SLOT_WORDS):
             for axis in range(3):
                 e[a + _SLOT_COEFFICIENT + axis] = e[a + _SLOT_OWN + axis]
-        from .refine_kernels import effect_refine  # a few kB that nobody else needs
+        from .native.refine import attend, begin  # a few kB that nobody else needs
 
-        effect_refine.begin(e, e[_SLOT_COUNT])
-        self.attend = effect_refine.attend if e[_REFINE_ON] else None
+        begin(e, e[_SLOT_COUNT])
+        self.attend = attend if e[_REFINE_ON] else None
 
     def channel(self, name: str, value: int) -> bool:
         """Say what an extra channel, by name or index, reads now (an int); False: no such one.

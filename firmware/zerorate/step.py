@@ -82,7 +82,7 @@ def sigma_q8(s: ptr32, c: ptr32, a: int) -> int:
     return root(variance) << 4
 
 
-def publish(s: ptr32, c: ptr32, a: int, axis: int):  # call
+def publish(s: ptr32, c: ptr32, a: int, axis: int):
     """Write the axis' bias, source and quality for the temperature of the latest window."""
     bias = curve_q8(s, c, a, s[_TEMP]) + s[a + _OFFSET_Q8]
     if s[a + _KIND] == 0:
@@ -187,7 +187,7 @@ def close(s: ptr32, c: ptr32):
     s[_WORK] = 1
 
 
-def learn_at_once(s: ptr32, c: ptr32, x: ptr32):  # call
+def learn_at_once(s: ptr32, c: ptr32, x: ptr32):
     """Learn this very reading, moving or still, as the document does: it has no stillness test."""
     s[_LEARN_TEMP] = x[3]
     i = 0

@@ -59,7 +59,7 @@ _GRAVITY_NOISE = const(6)  # the mean accelerations: three sigma of three axes t
 _RATE_NOISE = const(14)  # the mean rate of an axis: 2 / 3 x (4.5 sigma)^2
 
 
-def gather(s: ptr32, c: ptr32, x: ptr32) -> int:  # inline
+def gather(s: ptr32, c: ptr32, x: ptr32) -> int:
     """Add the frame `x` to the window; return 1 when the window is full, else 0."""
     i = 0
     if s[_WINDOW_N] == 0:

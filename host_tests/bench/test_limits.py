@@ -3,10 +3,24 @@
 import pytest
 from zerorate_tools.bench.limits import ACCURACY, COST, limits_table, verdicts
 
-GOOD = {
-    "instructions_per_sample": {"bytecode": 60_000, "viper": 1_200, "c": 330},
-    "instructions_per_update": {"bytecode": 60_000, "viper": 1_200, "c": 330},
-    "worst_sample": {"ratio": 8.0},
+ONE = {"instructions": 480.0, "instructions_c": 470.0, "cycles": 480.0, "cycles_worst": 12e3}
+BAD = {"instructions": 880.0, "instructions_c": 470.0, "cycles": 680.0, "cycles_worst": 18e3}
+
+
+def native(**worse):
+    """Good figures, or for thumb_alone, rv32_bursts, ... a bad one."""
+    return {
+        "native": {
+            processor: {
+                how: ONE | {name: BAD[name] for name in worse.get(f"{processor}_{how}", ())}
+                for how in ("alone", "bursts")
+            }
+            for processor in ("thumb", "rv32")
+        }
+    }
+
+
+GOOD = native() | {
     "heap_bytes_per_update": 0.0,
     "replay_samples_per_s": 2_500_000.0,
     "replay_by_hours": {"1": {"peak_bytes": 300e6}, "100": {"peak_bytes": 330e6}},
@@ -24,28 +38,18 @@ def test_good_figures_meet_every_limit_of_cost():
 @pytest.mark.parametrize(
     ("figure", "worse"),
     [
+        (COST[0].figure, native(thumb_alone=["instructions"])),
+        (COST[1].figure, native(thumb_bursts=["instructions"])),
+        (COST[2].figure, native(rv32_alone=["instructions"])),
+        (COST[3].figure, native(rv32_bursts=["instructions"])),
+        (COST[4].figure, native(thumb_alone=["cycles"])),
+        (COST[5].figure, native(thumb_alone=["cycles_worst"])),
+        (COST[6].figure, native(thumb_bursts=["cycles"])),
+        (COST[7].figure, {"heap_bytes_per_update": 0.1}),
+        (COST[8].figure, {"replay_samples_per_s": 1_999_999.0}),
         (
-            COST[0].figure,
-            {"instructions_per_sample": {"bytecode": 60_000, "viper": 1_400, "c": 330}},
-        ),
-        (
-            COST[1].figure,
-            {"instructions_per_sample": {"bytecode": 12_000, "viper": 1_200, "c": 330}},
-        ),
-        (COST[2].figure, {"worst_sample": {"ratio": 10.5}}),
-        (COST[3].figure, {"heap_bytes_per_update": 0.1}),
-        (COST[4].figure, {"replay_samples_per_s": 1_999_999.0}),
-        (
-            COST[5].figure,
+            COST[9].figure,
             {"replay_by_hours": {"10": {"peak_bytes": 500e6}, "9": {"peak_bytes": 400e6}}},
-        ),
-        (
-            COST[6].figure,
-            {"instructions_per_update": {"bytecode": 60_000, "viper": 1_400, "c": 330}},
-        ),
-        (
-            COST[7].figure,
-            {"instructions_per_update": {"bytecode": 12_000, "viper": 1_200, "c": 330}},
         ),
     ],
 )
@@ -54,14 +58,14 @@ def test_each_limit_of_cost_can_be_missed_and_alone_is(figure, worse):
 
 
 def test_what_was_not_measured_is_neither_met_nor_missed():
-    found = GOOD | {"instructions_per_sample": None}
+    found = GOOD | {"native": None}
     assert met(found)[COST[0].figure] is None
     assert "not measured" in limits_table(verdicts(found, COST))
 
 
 def test_a_missed_limit_stands_out_in_the_table():
-    found = GOOD | {"worst_sample": {"ratio": 12.0}}
-    assert "| 12.0 x | at most 10 x | **no** |" in limits_table(verdicts(found, COST))
+    found = GOOD | native(thumb_bursts=["cycles"])
+    assert "| 680 cycles | at most 500 cycles | **no** |" in limits_table(verdicts(found, COST))
 
 
 def test_every_scenario_and_part_of_session_2_has_its_limit():

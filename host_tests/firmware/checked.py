@@ -1,7 +1,7 @@
 """An integer that minds 31 bits, and the firmware driven with it.
 
 A small integer of a 32-bit MicroPython has 31 bits; what leaves them is an object on the heap, and
-in viper a wrapped number. Plain kernels compute with whatever they are given, so an I31 in every
+in C a wrapped number. Plain kernels compute with whatever they are given, so an I31 in every
 word of their arrays checks every intermediate result.
 """
 

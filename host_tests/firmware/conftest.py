@@ -19,16 +19,16 @@ def trace_on_host():
 
 @pytest.fixture(scope="session")
 def trace_on(repository):
-    """trace_on(runtime, kernels, mode) -> the same by a MicroPython whose heap is locked.
+    """trace_on(runtime, mode) -> the same by a MicroPython whose heap is locked.
 
-    kernels: "plain" (bytecode) or "viper". Raises ZerorateError where anything was allocated.
+    Raises ZerorateError where anything was allocated.
     """
 
     @cache
-    def run(runtime, kernels, mode):
+    def run(runtime, mode):
         result = runtime.run(
             _HERE / "on_micropython" / "trace_without_heap.py",
-            [kernels, mode, trace.UPDATES[mode]],
+            [mode, trace.UPDATES[mode]],
             modules=[repository / "firmware", _HERE],
             files_out=["state.bin", "bias.bin"],
             check=True,

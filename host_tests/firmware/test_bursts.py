@@ -54,7 +54,7 @@ def test_most_frames_of_a_rest_are_taken_at_one_look(monkeypatch):
     assert 0 < len(left) < 640 / 2
 
 
-def test_a_corrector_without_viper_gives_the_same(one_by_one):
+def test_a_corrector_without_machine_code_gives_the_same(one_by_one):
     mode, state, words = one_by_one
     corrector, rows = corrector_for(mode), whole_trace(mode)
     burst = array("i", b"".join(row.tobytes() for row in rows))
@@ -72,10 +72,10 @@ def test_a_burst_reaches_the_other_sources_too():
     assert list(burst.motion) == list(single.motion) != list(Corrector(motion=True).motion)
 
 
-def on_board(runtime, kernels, mode, repository):
+def on_board(runtime, mode, repository):
     return runtime.run(
         ON_BOARD,
-        [kernels, mode, trace.UPDATES[mode]],
+        [mode, trace.UPDATES[mode]],
         modules=[repository / "firmware", ON_BOARD.parents[1]],
         files_out=["state.bin", "frames.bin"],
         check=True,
@@ -84,11 +84,5 @@ def on_board(runtime, kernels, mode, repository):
 
 def test_bytecode_gives_the_same_and_allocates_nothing(one_by_one, micropython, repository):
     mode, state, words = one_by_one
-    files = on_board(micropython, "plain", mode, repository)
-    assert (files["state.bin"], files["frames.bin"]) == (state, words)
-
-
-def test_viper_gives_the_same_and_allocates_nothing(one_by_one, viper_runtime, repository):
-    mode, state, words = one_by_one
-    files = on_board(viper_runtime, "viper", mode, repository)
+    files = on_board(micropython, mode, repository)
     assert (files["state.bin"], files["frames.bin"]) == (state, words)

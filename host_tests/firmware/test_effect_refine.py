@@ -136,10 +136,9 @@ TWO = [Slot(LAG, MODEL[0]), Slot(SUPPLY, MODEL[1])]
 
 @pytest.fixture(scope="module")
 def on_interpreter(repository):
-    def run(runtime, kernels):
+    def run(runtime):
         result = runtime.run(
             Path(__file__).parent / "on_micropython" / "refine_without_heap.py",
-            [kernels],
             modules=[repository / "firmware"],
             files_in={"model.bin": encoded(build_model(TWO, SCALES))},
             files_out=["out.bin"],
@@ -171,8 +170,4 @@ def on_host():
 
 
 def test_bytecode_refines_as_cpython_does(micropython, on_interpreter, on_host):
-    np.testing.assert_array_equal(on_interpreter(micropython, "plain"), on_host)
-
-
-def test_viper_refines_as_cpython_does(viper_runtime, on_interpreter, on_host):
-    np.testing.assert_array_equal(on_interpreter(viper_runtime, "viper"), on_host)
+    np.testing.assert_array_equal(on_interpreter(micropython), on_host)

@@ -61,10 +61,9 @@ def on_host(model_bin):
 @pytest.fixture(scope="module")
 def on_interpreter(repository, model_bin):
     @cache
-    def run(runtime, kernels):
+    def run(runtime):
         result = runtime.run(
             _HERE / "on_micropython" / "effects_without_heap.py",
-            [kernels],
             modules=[repository / "firmware"],
             files_in={"model.bin": model_bin},
             files_out=["out.bin"],
@@ -81,10 +80,5 @@ def test_the_trace_is_of_many_values(on_host):
 
 
 def test_bytecode_gives_what_cpython_gives(micropython, on_interpreter, on_host):
-    for one, other in zip(on_interpreter(micropython, "plain"), on_host):
-        np.testing.assert_array_equal(one, other)
-
-
-def test_viper_gives_what_cpython_gives(viper_runtime, on_interpreter, on_host):
-    for one, other in zip(on_interpreter(viper_runtime, "viper"), on_host):
+    for one, other in zip(on_interpreter(micropython), on_host):
         np.testing.assert_array_equal(one, other)

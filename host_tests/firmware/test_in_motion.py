@@ -303,12 +303,12 @@ def test_every_intermediate_fits_31_bits(make, document):
 
 @pytest.fixture(scope="module")
 def feed_on(repository):
-    """feed_on(runtime, kernels) -> the motion's state by a MicroPython whose heap is locked."""
+    """feed_on(runtime, motion) -> the motion's state by a MicroPython whose heap is locked."""
 
-    def run(runtime, kernels, motion):
+    def run(runtime, motion):
         result = runtime.run(
             repository / "host_tests" / "firmware" / "on_micropython" / "motion_without_heap.py",
-            [kernels, "in_motion", str(len(motion.samples))],
+            ["in_motion", str(len(motion.samples))],
             modules=[repository / "firmware"],
             files_in={"samples.bin": motion.samples.astype(np.int32).tobytes()},
             files_out=["state.bin"],
@@ -334,10 +334,4 @@ def expected(short_motion):
 def test_bytecode_learns_what_cpython_learns_and_allocates_nothing(
     micropython, feed_on, short_motion, expected
 ):
-    assert feed_on(micropython, "plain", short_motion) == expected
-
-
-def test_viper_learns_what_cpython_learns_and_allocates_nothing(
-    viper_runtime, feed_on, short_motion, expected
-):
-    assert feed_on(viper_runtime, "viper", short_motion) == expected
+    assert feed_on(micropython, short_motion) == expected

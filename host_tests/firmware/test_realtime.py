@@ -145,12 +145,12 @@ def short_motion():
 
 @pytest.fixture(scope="module")
 def count_on(repository):
-    """count_on(runtime, kernels, motion) -> the state by a MicroPython whose heap is locked."""
+    """count_on(runtime, motion) -> the state by a MicroPython whose heap is locked."""
 
-    def run(runtime, kernels, motion):
+    def run(runtime, motion):
         result = runtime.run(
             repository / "host_tests" / "firmware" / "on_micropython" / "motion_without_heap.py",
-            [kernels, "realtime", str(len(motion.samples))],
+            ["realtime", str(len(motion.samples))],
             modules=[repository / "firmware"],
             files_in={"samples.bin": motion.samples.astype(np.int32).tobytes()},
             files_out=["state.bin"],
@@ -166,11 +166,4 @@ def test_bytecode_counts_what_cpython_counts_and_allocates_nothing(
 ):
     expected = Counter(hz=25.0).feed(short_motion)
     assert expected.trace
-    assert count_on(micropython, "plain", short_motion) == expected.state.tobytes()
-
-
-def test_viper_counts_what_cpython_counts_and_allocates_nothing(
-    viper_runtime, count_on, short_motion
-):
-    expected = Counter(hz=25.0).feed(short_motion)
-    assert count_on(viper_runtime, "viper", short_motion) == expected.state.tobytes()
+    assert count_on(micropython, short_motion) == expected.state.tobytes()

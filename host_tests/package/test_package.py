@@ -91,10 +91,10 @@ def test_the_wheel_carries_every_file_of_a_package_and_no_other(repository, buil
     assert carried == sources(repository, package)
 
 
-def test_it_carries_twins_scenarios_and_templates(built):
+def test_it_carries_machine_code_scenarios_and_templates(built):
     names = zipfile.ZipFile(built[1]).namelist()
     for part in (
-        "zerorate/viper/",
+        "zerorate/native/",
         "zerorate_tools/simulate/scenarios/",
         "zerorate_tools/runtimes/webassembly/",
         "zerorate_tools/boards/on_board/",

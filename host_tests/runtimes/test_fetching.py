@@ -122,7 +122,7 @@ def test_the_list_tells_how_to_get_each_that_is_missing(capsys):
     assert main(["runtimes", "list"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[0] for line in lines] == [*NAMES, "x64"]
-    assert lines[0].split(maxsplit=1) == ["cpython", "ready, no viper"]
+    assert lines[0].split(maxsplit=1) == ["cpython", "ready"]
     for name, line in zip(("wasm", "x86", "armhf", "x64"), lines[1:]):
         assert f"`zerorate runtimes get {name}` fetches it" in line
 

@@ -2,8 +2,8 @@
 
 import pytest
 from zerorate_tools.errors import ZerorateError
+from zerorate_tools.kernels.reading import hot_functions, kernel_files
 from zerorate_tools.runtimes.frames import WORDS_ON_STACK, frame_words
-from zerorate_tools.viper_twins import hot_functions, kernel_files
 
 # What the user's object runs at every sample, outside the kernels.
 HOT_METHODS = {
@@ -11,7 +11,7 @@ HOT_METHODS = {
     "bursts.py": ("update", "_one_by_one", "_update_at"),
     "model.py": ("channel",),
 }
-# Run as viper only, whose frames are not on the heap: bursts.py leaves it out elsewhere.
+# Run as machine code only: bursts.py takes its samples one by one elsewhere.
 NEVER_BYTECODE = {"block.py"}
 
 

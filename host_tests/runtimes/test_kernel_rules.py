@@ -1,8 +1,8 @@
 """The kernels hold only what does the same on every interpreter; the checker finds the rest."""
 
 import pytest
-from zerorate_tools.kernel_rules import breaches
-from zerorate_tools.viper_twins import hot_functions, kernel_files
+from zerorate_tools.kernels.reading import hot_functions, kernel_files
+from zerorate_tools.kernels.rules import breaches
 
 SOUND = '''
 def total(s: ptr32, w: ptr8, n: int) -> int:

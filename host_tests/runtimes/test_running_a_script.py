@@ -30,18 +30,6 @@ except MemoryError:
 micropython.heap_unlock()
 """
 
-VIPER = """
-import sys
-@micropython.viper
-def total(values: ptr32, count: int) -> int:
-    value = 0
-    for i in range(count):
-        value += values[i]
-    return value
-from array import array
-print(total(array("i", [7, -12, 3]), 3))
-"""
-
 
 def test_arguments_arrive_as_written(runtime):
     result = runtime.run("import sys\nprint('|'.join(sys.argv[1:]))\n", ["two words", 3, "ä"])
@@ -132,37 +120,21 @@ micropython.heap_unlock()
     assert micropython.run(script).stdout.splitlines() == ["1073709056", "on the heap"]
 
 
-def test_the_heap_is_as_large_as_asked(viper_runtime):
+@pytest.mark.parametrize("name", ["x86", "armhf"])
+def test_the_heap_is_as_large_as_asked(find_runtime, name):
     script = "import gc\ngc.collect()\nprint(gc.mem_free() + gc.mem_alloc())\n"
-    assert int(viper_runtime.run(script, heap=100_000).stdout) in range(90_000, 100_001)
+    assert int(find_runtime(name).run(script, heap=100_000).stdout) in range(90_000, 100_001)
 
 
-def test_viper_code_reads_signed_words(viper_runtime):
-    assert viper_runtime.viper
-    assert viper_runtime.run(VIPER, check=True).stdout.strip() == "-2"
-
-
-@pytest.mark.parametrize("name", ["cpython", "wasm"])
-def test_viper_is_refused_where_it_is_said_to_be(find_runtime, name):
-    runtime = find_runtime(name)
-    assert not runtime.viper
-    assert runtime.run(VIPER).returncode == 1
-
-
-def test_an_executable_is_found_by_its_path(viper_runtime, tmp_path):
-    launch = " ".join([*viper_runtime.launcher, str(viper_runtime.executable)])
+@pytest.mark.parametrize("name", ["x86", "armhf"])
+def test_an_executable_is_found_by_its_path(find_runtime, name, tmp_path):
+    known = find_runtime(name)
+    launch = " ".join([*known.launcher, str(known.executable)])
     wrapper = tmp_path / "micropython"
     wrapper.write_text(f'#!/bin/sh\nexec {launch} "$@"\n')
     wrapper.chmod(0o755)
     runtime = find(wrapper)
-    assert runtime.viper
     assert runtime.run("\nprint('here')\n").stdout.strip() == "here"
-
-
-def test_viper_is_never_said_to_be_there_on_64_bits(find_runtime):
-    x64 = find_runtime("x64")
-    assert not x64.viper
-    assert not find(x64.executable).viper
 
 
 def test_an_unknown_name_lists_the_known_ones():

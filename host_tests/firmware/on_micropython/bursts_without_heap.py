@@ -1,25 +1,19 @@
 """Runs the trace in bursts with the heap locked; writes the final state and every frame.
 
-Arguments: plain or viper, a mode of trace.MODES, how many updates.
+Arguments: a mode of trace.MODES, how many updates.
 """
 
 import sys
 import trace
 from array import array
 
-if sys.argv[1] == "plain":
-    sys.modules["zerorate.viper"] = sys  # has nothing of it, so that bytecode is chosen
-
-import zerorate.kernels as kernels
 from micropython import heap_lock, heap_unlock
 from zerorate import Corrector, Sensor
 from zerorate.bursts import Bursts
 
 _MOST = 73
 
-which, mode, updates = sys.argv[1], sys.argv[2], int(sys.argv[3])
-if kernels.VIPER != (which == "viper"):
-    raise SystemExit("no " + which + " here")
+mode, updates = sys.argv[1], int(sys.argv[2])
 
 options = dict(trace.LIMITS)
 options.update(trace.MODES[mode])

@@ -1,16 +1,11 @@
-"""Runs effect slots with the heap locked; writes what they leave. Argument: plain or viper."""
+"""Runs effect slots with the heap locked; writes what they leave."""
 
-import sys
 from array import array
 
 from micropython import const, heap_lock, heap_unlock
+from zerorate.effects import sense
 from zerorate.model import EffectModel
 from zerorate.settings import Sensor
-
-if sys.argv[1] == "viper":
-    from zerorate.viper.effects import sense
-else:
-    from zerorate.effects import sense
 
 # layout: The corrector's state
 _EFFECT_Q8 = const(61)

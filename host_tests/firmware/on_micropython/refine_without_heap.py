@@ -1,16 +1,11 @@
-"""Refinement with the heap locked; writes the whole array. Argument: plain or viper."""
+"""Refinement with the heap locked; writes the whole array."""
 
-import sys
 from array import array
 
 from micropython import const, heap_lock, heap_unlock
+from zerorate.effect_refine import attend
 from zerorate.model import EffectModel
 from zerorate.settings import Sensor
-
-if sys.argv[1] == "viper":
-    from zerorate.viper.effect_refine import attend
-else:
-    from zerorate.effect_refine import attend
 
 # layout: The corrector's state
 _WINDOW_N = const(17)

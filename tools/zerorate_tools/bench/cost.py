@@ -6,16 +6,14 @@ from collections.abc import Callable
 from typing import Any
 
 from ..errors import MissingRuntime
-from .instructions import instructions_per_sample, seconds_per_sample
 from .limits import COST, verdicts
 from .memory import heap_bytes_per_update, import_heap_bytes, mpy_sizes, state_bytes
+from .native_cost import code_bytes, native_cost
 from .replay_speed import HOURS, replay_speed
 from .tables import machine
-from .viper_profile import machine_code_per_sample
 from .workload import Workload, workload
-from .worst_sample import worst_against_median
 
-STEPS = 9
+STEPS = 6
 
 
 def cost(advance: Callable[[float], None] = lambda n: None, hours=HOURS) -> dict[str, Any]:
@@ -42,11 +40,8 @@ def cost(advance: Callable[[float], None] = lambda n: None, hours=HOURS) -> dict
 def _measures(work: Workload, hours) -> dict[str, Callable[[], Any]]:
     return {
         "heap_bytes_per_update_by_interpreter": lambda: heap_bytes_per_update(work),
-        "instructions_per_sample": lambda: instructions_per_sample(work),
-        "instructions_per_update": lambda: instructions_per_sample(work, 1),
-        "viper_machine_code_per_sample": lambda: machine_code_per_sample(work),
-        "armhf_seconds_per_sample": lambda: seconds_per_sample(work),
-        "worst_sample": lambda: worst_against_median(work),
+        "native": lambda: native_cost(work),
+        "code_bytes": code_bytes,
         "import_heap_bytes": import_heap_bytes,
         "mpy_bytes": mpy_sizes,
         "replay_by_hours": lambda: replay_speed(hours),

@@ -14,19 +14,20 @@ the same on every machine; times and what follows from them are this machine's, 
 processor, so that they may be measured while others use it.
 """
 _HOW = """\
-Instructions are counted by callgrind on the x86 interpreter and time is measured under qemu-arm,
-each as the difference of two lengths, over one minute of a simulated warm-up with rests and motion:
-guard, stillness, histograms, estimators and correction of three axes. The C version is made from
-the same kernels, compiled with -O2 for the same machine, and ends in the same state to the last
-bit; so do bytecode and viper, else nothing is compared. Effects are off, as after `Corrector()`.
-In bursts is `Bursts.update` with 64 samples of a FIFO a call, alone is `Corrector.update`,
-of whose instructions some 2,900 are the calls into the method and from there into viper. The worst
-sample is one of `Corrector.update`, refit and eviction included.
+One minute of a simulated warm-up with rests and motion, effects off, as after `Corrector()`: guard,
+stillness, histograms, estimators and correction of three axes. Both columns are machine code of the
+same kernels, executed by an emulated Cortex-M0 and RV32 (Unicorn): what the firmware carries, and
+all of it compiled for speed (C -O2). Both must end in the same state to the last bit. Cycles are
+those of a Cortex-M0+ without wait states. Alone is a call a sample, in bursts is 64 samples a call.
+Calling it from MicroPython comes on top: see docs/pico.md.
 """
 _REPLAY = """\
 Seconds are the processor's, all threads together, the fewest of three runs; memory is the most that
 the process ever held. Parquet in and Parquet out, each sample's bias, source and quality written.
 """
+_NAMES = {"thumb": "Cortex-M0+", "rv32": "RV32"}
+_CYCLES = ("cycles", "cycles_worst")
+_HEAD = ["a sample", "instructions", "C -O2", "against C", "worst", "cycles, median", "worst"]
 
 
 def in_markdown(found: Mapping[str, Any]) -> str:
@@ -39,8 +40,9 @@ def sections(found: Mapping[str, Any]) -> Iterator[str]:
     """The tables of a sample, of memory and of the replay, one below the other."""
     yield "## A sample\n"
     yield _HOW
-    yield table(["three axes", "bytecode", "viper", "C -O2"], list(_per_sample(found)))
-    yield from _why(found)
+    yield table(_HEAD, list(_per_sample(found)))
+    yield "Bytes of machine code, each part loaded by who uses it:\n"
+    yield table(["part", *(found["code_bytes"] or {})], list(_code(found)))
     yield "## Memory\n"
     yield table(["what", "bytes"], list(_memory(found)))
     yield "## Replay on one core\n"
@@ -51,40 +53,18 @@ def sections(found: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _per_sample(found: Mapping[str, Any]) -> Iterator[list[str]]:
-    for name, how in (
-        ("instructions_per_sample", "in bursts"),
-        ("instructions_per_update", "alone"),
-    ):
-        if counts := found.get(name):
-            yield [f"instructions, x86, {how}", *(f"{counts[kind]:,.0f}" for kind in counts)]
-            yield ["against C", *(f"{count / counts['c']:.1f} x" for count in counts.values())]
-    if inside := found["viper_machine_code_per_sample"]:
-        yield ["in bursts, in viper's machine code itself", "", f"{inside:,.0f}", ""]
-    if spent := found["armhf_seconds_per_sample"]:
-        ratios = [f"{seconds / spent['c']:.1f} x" for seconds in spent.values()]
-        yield ["time under qemu-arm, against C", *ratios]
-    if worst := found["worst_sample"]:
-        yield ["worst sample against the median, x86", "", f"{worst['ratio']:.1f} x", ""]
+    for processor, figures in (found["native"] or {}).items():
+        for how, one in figures.items():
+            mean, c = one["instructions"], one["instructions_c"]
+            cycles = [f"{one[name]:,.0f}" if name in one else "" for name in _CYCLES]
+            row = [f"{mean:,.0f}", f"{c:,.0f}", f"{mean / c:.2f} x", f"{one['worst']:,.0f}"]
+            yield [f"{_NAMES[processor]}, {how}", *row, *cycles]
 
 
-def _why(found: Mapping[str, Any]) -> Iterator[str]:
-    """What the profile says where viper misses its bound against C."""
-    counts, inside = found["instructions_per_sample"], found["viper_machine_code_per_sample"]
-    if not counts or not inside or counts["viper"] <= COST[0].bound * counts["c"]:
-        return
-    share = inside / counts["viper"]
-    yield (
-        f"Why viper misses its bound: {share:.0%} of its instructions are machine code of the\n"
-        f"kernels, {inside / counts['c']:.1f} times C's, as MicroPython compiles each expression\n"
-        f"by itself and keeps three variables in registers; the other {1 - share:.0%} are the\n"
-        "interpreter's: some 300 to call a kernel, 130 for each number or array that it takes.\n"
-        "One function cannot hold all kernels: MicroPython 1.25 refuses a jump of more than 2 KB\n"
-        "for ARMv6-M and encodes it wrongly for Xtensa. Tried and kept: called kernels written\n"
-        "out in their callers as far as jumps reach, short loops unrolled, constants folded,\n"
-        "words addressed by pointers, what is used most in registers, a burst of a FIFO in one\n"
-        "call with its windows' edges, and methods that are viper themselves. What makes the\n"
-        "kernels cheaper makes C cheaper, too.\n"
-    )
+def _code(found: Mapping[str, Any]) -> Iterator[list[str]]:
+    sizes = found["code_bytes"] or {}
+    for part in next(iter(sizes.values()), {}):
+        yield [part, *(f"{of[part]:,}" for of in sizes.values())]
 
 
 def _memory(found: Mapping[str, Any]) -> Iterator[list[str]]:

@@ -58,12 +58,14 @@ class Verdict:
         return {**found, "unit": self.limit.unit, "met": self.met}
 
 
-def _instructions(
-    over: str, under: str, of: str = "instructions_per_sample"
-) -> Callable[[Mapping[str, Any]], float]:
+def _native(processor: str, how: str, figure: str) -> Callable[[Mapping[str, Any]], float]:
+    return lambda found: found["native"][processor][how][figure]
+
+
+def _against_c(processor: str, how: str) -> Callable[[Mapping[str, Any]], float]:
     def ratio(found: Mapping[str, Any]) -> float:
-        counts = found[of]
-        return counts[over] / counts[under]
+        one = found["native"][processor][how]
+        return one["instructions"] / one["instructions_c"]
 
     return ratio
 
@@ -77,19 +79,20 @@ def _error(name: str, part: str) -> Callable[[Mapping[str, Any]], float]:
     return lambda found: found["session_2_rms_mdps"][name][OURS][part]
 
 
-_ALONE = "instructions_per_update"
-_by_bytecode_alone = _instructions("bytecode", "viper", _ALONE)
 COST = (
-    Limit("viper against C -O2, instructions in bursts", 4, "x", _instructions("viper", "c")),
-    Limit(
-        "viper against bytecode, fewer in bursts", 15, "x", _instructions("bytecode", "viper"), True
+    *(
+        Limit(f"instructions against C -O2, {name}, {how}", 1.05, "x", _against_c(processor, how))
+        for processor, name in (("thumb", "Cortex-M0+"), ("rv32", "RV32"))
+        for how in ("alone", "bursts")
     ),
-    Limit("worst sample against the median", 10, "x", lambda f: f["worst_sample"]["ratio"]),
+    Limit("cycles in the kernel alone, median", 600, "cycles", _native("thumb", "alone", "cycles")),
+    Limit(
+        "cycles in the kernel alone, worst", 13000, "", _native("thumb", "alone", "cycles_worst")
+    ),
+    Limit("cycles a sample in bursts", 500, "cycles", _native("thumb", "bursts", "cycles")),
     Limit("heap an update", 0, "bytes", lambda f: f["heap_bytes_per_update"]),
     Limit("replay on one core", 2e6, "samples/s", lambda f: f["replay_samples_per_s"], True),
     Limit("replay's memory, longest against shortest", 1.2, "x", _growth),
-    Limit("viper against C -O2, alone", 4, "x", _instructions("viper", "c", _ALONE)),
-    Limit("viper against bytecode, fewer alone", 15, "x", _by_bytecode_alone, True),
 )
 ACCURACY = tuple(
     Limit(f"session 2, {_PARTS[part]}, {name[-1].upper()}", bound, "mdps", _error(name, part))

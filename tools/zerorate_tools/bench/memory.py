@@ -11,13 +11,13 @@ from subprocess import run
 from zerorate import Corrector
 
 from ..errors import ZerorateError
-from ..replay.jit import firmware_package
+from ..kernels.reading import firmware_package
 from ..runtimes import find
 from ..runtimes.wasm import find_wasm
 from .workload import Workload
 
 _IMPORT = Path(__file__).with_name("heap_of_import.mjs")
-ARCHITECTURES = ("armv6m", "armv7m", "armv7emsp", "xtensawin", "rv32imc")
+_ARCHITECTURES = {"thumb": "armv6m", "rv32": "rv32imc"}
 _UPDATES = """
 import gc
 from array import array
@@ -72,12 +72,14 @@ def state_bytes() -> dict[str, int]:
 
 
 def mpy_sizes() -> dict[str, int]:
-    """Bytes of all .mpy files: of the plain kernels' files, and of the twins by architecture."""
+    """Bytes of all .mpy files: of bytecode, and of the machine code by architecture."""
     package = firmware_package()
-    found = {"bytecode": sum(_compiled_size(path, []) for path in sorted(package.glob("*.py")))}
-    twins = sorted((package / "viper").glob("*.py"))
-    for name in ARCHITECTURES:
-        found[f"viper {name}"] = sum(_compiled_size(path, [f"-march={name}"]) for path in twins)
+    native = {name: sorted((package / "native").glob(f"{name}_*.py")) for name in _ARCHITECTURES}
+    plain = {*package.rglob("*.py")} - {path for paths in native.values() for path in paths}
+    found = {"bytecode": sum(_compiled_size(path, []) for path in sorted(plain))}
+    for name, march in _ARCHITECTURES.items():
+        sizes = [_compiled_size(path, [f"-march={march}"]) for path in native[name]]
+        found[f"machine code, {march}"] = sum(sizes)
     return found
 
 

@@ -17,11 +17,11 @@ from ..errors import MissingRuntime
 from ..recordings.atomic import written_beside
 from ..simulate import simulate
 from .broad import Trial, TrueBias, trials, true_bias
+from .native_cost import source_cost
 from .peers import Given, Peer, given, vqf_clip_raised, vqf_default
 from .peers.decision import Decision
 from .peers.sources import Source
 from .settling import settling
-from .source_cost import source_cost
 
 SCENARIOS = (
     *("never-rests", "rests-30", "short-rests", "trembling", "slow-tilt"),
@@ -111,7 +111,7 @@ def _described(truth: TrueBias) -> dict:
     return {name: np.round(value, 5).tolist() for name, value in vars(truth).items()}
 
 
-def _cost() -> dict[str, float] | str:
+def _cost() -> dict[str, dict[str, float]] | str:
     try:
         return source_cost()
     except MissingRuntime as error:

@@ -35,7 +35,7 @@ def table(found: Mapping) -> str:
     )
     lines += ["", *_honesty_lines(scenarios)]
     lines += ["", *_settling_lines(found["settling"])]
-    lines += ["", "A sample of each source as viper, instructions on x86: " + _cost(found["cost"])]
+    lines += ["", "A sample of each source on a Cortex-M0+, in cycles: " + _cost(found["cost"])]
     if "broad" in found:
         lines += ["", *_broad_lines(found["broad"])]
     return "\n".join(lines)
@@ -75,7 +75,11 @@ def _honesty_lines(scenarios: Mapping) -> list[str]:
 def _cost(found: Mapping | str) -> str:
     if isinstance(found, str):
         return f"not counted: {found}"
-    return ", ".join(f"{source} {count:.0f}" for source, count in found.items()) + "."
+    costs = [
+        f"{source} {one['cycles']:,.0f}, at worst {one['cycles_worst']:,.0f}"
+        for source, one in found.items()
+    ]
+    return "; ".join(costs) + "."
 
 
 def _settling_lines(forms: Mapping) -> list[str]:

@@ -25,19 +25,17 @@ PARTS = {
         "zerorate_i2c.data_ready",
         "zerorate_i2c.fifo",
     ),
-    "motion": ("zerorate.motion_kernels", "zerorate.motion_settings", "zerorate.explain_sources"),
+    "motion": ("zerorate.native.motion", "zerorate.motion_settings", "zerorate.explain_sources"),
     "gravity": (
-        "zerorate.motion_kernels",
+        "zerorate.native.gravity",
         "zerorate.realtime_settings",
         "zerorate.explain_sources",
     ),
-    "effects": ("zerorate.model", "zerorate.effect_kernels"),
-    "refine": ("zerorate.model", "zerorate.effect_kernels", "zerorate.refine_kernels"),
+    "effects": ("zerorate.model", "zerorate.native.effects"),
+    "refine": ("zerorate.model", "zerorate.native.effects", "zerorate.native.refine"),
     "bursts": ("zerorate.bursts",),
     "self-test": ("zerorate_i2c.self_test",),
 }
-# Generated machine code of the size of all the rest: bytecode is sent in its place.
-_LEFT_OUT = "zerorate.viper"
 _EXTRA_ROOTS = frozenset(root for part in PARTS if part != REST for root in PARTS[part])
 
 
@@ -62,7 +60,7 @@ def part_files(parts: Iterable[str]) -> dict[PurePosixPath, Path]:
     waiting = list(roots)
     while waiting:
         module = waiting.pop()
-        if module in found or module in stops or module.startswith(_LEFT_OUT):
+        if module in found or module in stops:
             continue
         path = module_file(module)
         found[module] = path

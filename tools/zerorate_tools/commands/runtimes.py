@@ -44,7 +44,8 @@ def list_all(arguments: argparse.Namespace) -> None:
 
     for name in (*NAMES, "x64"):
         try:
-            print(f"{name:8} ready, {'viper' if find(name).viper else 'no viper'}")
+            find(name)
+            print(f"{name:8} ready")
         except MissingRuntime as error:
             print(f"{name:8} missing: {error}")
 

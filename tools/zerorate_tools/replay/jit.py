@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import hashlib
-import importlib.util
 import sys
 import types
 from collections.abc import Callable, Mapping, Sequence
@@ -15,9 +14,9 @@ from typing import Any
 import numba
 from zerorate.layout import EFFECTS, GRAVITY, MOTION, SOURCE, STATE
 
+from zerorate_tools.kernels.reading import firmware_package, hot_functions, kernel_files
 from zerorate_tools.recordings.checks import GAP
 from zerorate_tools.runtimes.cache import cache_folder, fill
-from zerorate_tools.viper_twins import hot_functions, kernel_files
 
 _PACKAGE = "zerorate_compiled"
 _LOOP = Path(__file__).with_name("sample_loop.py")
@@ -30,13 +29,6 @@ _WORDS = {
     **{"IN_MOTION": SOURCE.IN_MOTION, "ACCELEROMETER": SOURCE.ACCELEROMETER},
     "CHANNELS": EFFECTS.CHANNELS,
 }
-
-
-def firmware_package() -> Path:
-    """The folder of the installed `zerorate` firmware package."""
-    spec = importlib.util.find_spec("zerorate")
-    assert spec is not None and spec.origin is not None
-    return Path(spec.origin).parent
 
 
 @lru_cache(maxsize=8)

@@ -48,9 +48,9 @@ if effects:
     model = EffectModel()
     model.e = effects
     if effects[_REFINE_ON]:
-        from zerorate.refine_kernels import effect_refine
+        from zerorate.native.refine import attend
 
-        model.attend = effect_refine.attend
+        model.attend = attend
     corrector.use_model(model)
     channels = int(sys.argv[1])
 row_words = 8 + channels

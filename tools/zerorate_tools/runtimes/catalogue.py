@@ -13,7 +13,7 @@ from zerorate_tools.runtimes.unix_port import fetch_unix_port, find_unix_port
 from zerorate_tools.runtimes.wasm import fetch_wasm, find_wasm
 
 #: The four on which the firmware must give the same state to the last bit. `find` also knows
-#: x64, what a user's `apt install micropython` gives: viper is never used there.
+#: x64, what a user's `apt install micropython` gives.
 NAMES = ("cpython", "wasm", "x86", "armhf")
 
 _FIND: dict[str, Callable[[], Runtime]] = {

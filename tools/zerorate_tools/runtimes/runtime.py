@@ -39,11 +39,10 @@ class Job:
 class Runtime(ABC):
     """An interpreter; sub-classes say by which command a job is run on it.
 
-    name: as given to `find`; viper: whether `@micropython.viper` compiles **and** is right there.
+    name: as given to `find`.
     """
 
     name: str
-    viper: bool
 
     @abstractmethod
     def command(self, job: Job) -> list[str]:

@@ -36,8 +36,7 @@ def find_unix_port(name: str) -> UnixPort:
         raise MissingRuntime(f"the {name} interpreter is not fetched yet")
     emulated = name == "armhf"
     launcher = (qemu_arm(), "-L", str(folder)) if emulated else _loader(folder / _LOADERS[name])
-    # viper is never used on x64: its ptr32 loads are zero-extended in 64-bit words.
-    return UnixPort(name, folder / "usr/bin/micropython", launcher, viper=name != "x64")
+    return UnixPort(name, folder / "usr/bin/micropython", launcher)
 
 
 def fetch_unix_port(name: str) -> None:

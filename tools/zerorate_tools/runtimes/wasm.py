@@ -1,4 +1,4 @@
-"""MicroPython's WebAssembly port under Node.js: no viper, 31-bit small integers."""
+"""MicroPython's WebAssembly port under Node.js: 31-bit small integers."""
 
 from __future__ import annotations
 
@@ -20,7 +20,6 @@ class Wasm(Runtime):
     """The WebAssembly port; `heap` is where it starts, it grows by itself."""
 
     name = "wasm"
-    viper = False
 
     def __init__(self, package: Path, node: list[str]) -> None:
         self.package = package

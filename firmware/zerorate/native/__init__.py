@@ -1,0 +1,1 @@
+"""The kernels as the firmware calls them: machine code where it is right, else bytecode."""

@@ -1,0 +1,13 @@
+"""The effect slots of a model."""
+
+from .choosing import machine_code
+
+run = machine_code("effects")
+
+if run:
+
+    def sense(s, e, x, dt_us, good):
+        run(s, e, x if good else 0, dt_us)
+
+else:
+    from ..effects import sense  # noqa: F401

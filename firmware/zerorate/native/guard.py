@@ -1,0 +1,8 @@
+"""The guard alone, for who asks it before other sources take the sample."""
+
+from .choosing import machine_code
+
+examine = machine_code("guard")
+
+if not examine:
+    from ..guard import check as examine  # type: ignore[assignment]  # noqa: F401

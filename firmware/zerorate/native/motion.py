@@ -1,0 +1,16 @@
+"""The source that learns in motion."""
+
+from .choosing import machine_code
+
+_CLEAR = -0x40000000
+
+update = machine_code("motion")
+
+if update:
+
+    def clear(s, c):
+        update(s, c, 0, _CLEAR)
+
+else:
+    from ..in_motion import update  # type: ignore[assignment]  # noqa: F401
+    from ..motion_verdict import clear  # noqa: F401

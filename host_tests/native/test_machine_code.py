@@ -1,0 +1,255 @@
+"""Each part's machine code, executed, leaves what CPython leaves, to the last bit."""
+
+from array import array
+from functools import cache
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from zerorate import effect_refine, guard, in_motion, motion_verdict, realtime
+from zerorate.effects import sense
+from zerorate.estimators import reset
+from zerorate.layout import EFFECTS, GRAVITY, MOTION, SETTINGS, SLOT, SOURCE, STATE, STILLNESS
+from zerorate.motion_settings import motion_settings, motion_state
+from zerorate.realtime_settings import realtime_settings, realtime_state
+from zerorate.step import admit, consider, finish, step
+from zerorate_tools.bench.emulated import Emulated, code_in
+from zerorate_tools.kernels.known import answer_by, known_model
+from zerorate_tools.kernels.native_files import plain_kernels
+from zerorate_tools.kernels.parts import PARTS
+
+from ..firmware import motions, trace
+from ..firmware.trace_on_host import checksums, corrector_for, frames
+from .mpy import compiled
+
+ADMIT, FINISH, CONSIDER, RESET, COPY, CLEAR = (-0x40000000 + (n << 16) for n in (0, 1, 2, 3, 4, 0))
+MARCH = {"thumb": "armv6m", "rv32": "rv32imc"}
+
+processors = pytest.mark.parametrize("processor", ["thumb", "rv32"])
+quick = settings(
+    max_examples=10, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+words = st.integers(-(1 << 15), (1 << 15) - 1)
+
+
+@pytest.fixture(scope="session")
+def machine_code(repository):
+    """machine_code(part, processor) -> its code, ready to be called."""
+    folder = repository / "firmware" / "zerorate" / "native"
+
+    @cache
+    def made(part, processor, counted=False):
+        code = code_in(folder / f"{processor}_{part}.py")
+        return Emulated(processor, code, counted=counted)
+
+    return made
+
+
+@processors
+@pytest.mark.parametrize("mode", sorted(trace.MODES))
+def test_a_whole_trace_ends_in_the_golden_state(machine_code, processor, mode, golden):
+    run, corrector = machine_code("rest", processor, mode == "every"), corrector_for(mode)
+    rows, dt_us = frames(trace.UPDATES[mode])
+    biases, counts = array("i"), []
+    for row, dt in zip(rows, dt_us.tolist()):
+        run(corrector.state, corrector.settings, array("i", row.tobytes()), dt)
+        biases.extend(corrector.state[STATE.OUT_Q8 : STATE.OUT_Q8 + 3])
+        counts.append(run.instructions)
+    print(f"{processor} {mode}: {np.median(counts):.0f}, at worst {max(counts)} instructions")
+    assert checksums(corrector.state.tobytes(), biases.tobytes()) == golden[mode]
+
+
+@processors
+@pytest.mark.parametrize("mode", sorted(trace.MODES))
+@pytest.mark.parametrize("at_once", [7, 64])
+def test_bursts_end_in_the_golden_state(machine_code, processor, mode, at_once, golden):
+    run, corrector = machine_code("bursts", processor), corrector_for(mode)
+    rows, dt_us = frames(trace.UPDATES[mode])
+    rows = np.c_[dt_us, rows].astype(np.int32)
+    for first in range(0, len(rows), at_once):
+        burst = array("i", rows[first : first + at_once].tobytes())
+        room = array("i", [0] * 8 + [len(burst)])
+        run(corrector.state, corrector.settings, burst, room)
+    assert checksums(corrector.state.tobytes(), b"")["state"] == golden[mode]["state"]
+
+
+@processors
+@pytest.mark.parametrize("part", PARTS)
+def test_the_known_answer_is_what_the_kernels_and_the_code_give(machine_code, processor, part):
+    assert answer_by(machine_code(part, processor), part) == answer_by(plain_kernels()[part], part)
+
+
+@processors
+@pytest.mark.parametrize("part", PARTS)
+def test_mpy_cross_makes_a_function_of_it_that_runs_at_any_even_address(
+    repository, processor, part
+):
+    path = repository / "firmware" / "zerorate" / "native" / f"{processor}_{part}.py"
+    (code,) = compiled(path.read_text(), MARCH[processor])
+    answers = {
+        answer_by(Emulated(processor, code, at, counted=False), part) for at in (0x10000, 0x10ABE)
+    }
+    assert answers == {answer_by(plain_kernels()[part], part)}
+
+
+def test_code_that_is_wrong_by_one_bit_once_does_not_give_the_known_answer(machine_code):
+    run, calls = machine_code("guard", "thumb"), []
+
+    def wrong(s, c, x, dt_us):
+        calls.append(run(s, c, x, dt_us))
+        s[3] ^= len(calls) == 90
+
+    assert answer_by(wrong, "guard") != answer_by(plain_kernels()["guard"], "guard")
+    assert len(calls) == 90
+
+
+def twice(plain, native, arrays, number=0):
+    """Assert that both leave the same in copies of the arrays and return the same."""
+    left = [[array("i", words) for words in arrays] for _ in range(2)]
+    results = [run(*mine, number) for run, mine in zip((plain, native), left)]
+    assert results[0] is None or results[0] == results[1]
+    assert left[0] == left[1]
+
+
+@processors
+@quick
+@given(
+    rows=st.lists(st.lists(words, min_size=7, max_size=7), min_size=1, max_size=60),
+    dt_us=st.lists(st.integers(-5, 200_000), min_size=60, max_size=60),
+)
+def test_any_frames_leave_the_same_state(machine_code, processor, rows, dt_us):
+    run, corrector = machine_code("rest", processor), corrector_for("default")
+    examine = machine_code("guard", processor)
+    state, c = array("i", corrector.state), corrector.settings
+    for row, dt in zip(rows, dt_us):
+        x, y, mine = array("i", row), array("i", row), array("i", state)
+        assert step(state, c, x, dt) == run(mine, c, y, dt)
+        assert (state, x) == (mine, y)
+        twice(guard.check, examine, (state, c, array("i", row)), dt)
+
+
+@processors
+def test_each_stage_is_reached_by_its_number(machine_code, processor):
+    run, corrector = machine_code("rest", processor), corrector_for("default")
+    s, c = corrector.state, corrector.settings
+    rows, dt_us = frames(1500)
+    for row, dt in zip(rows.tolist(), dt_us.tolist()):
+        step(s, c, array("i", row), dt)
+    x, m = array("i", rows[-1].tobytes()), array("i", range(-600, 600, 10))
+    for kind in range(8):
+        twice(admit, lambda s, c, x, n: run(s, c, x, ADMIT + n), (s, c, x), kind)
+        twice(finish, lambda s, c, x, n: run(s, c, x, FINISH + n), (s, c, x), kind)
+    for w, source in (
+        (MOTION.MOTION_BIAS_Q8, SOURCE.IN_MOTION),
+        (GRAVITY.GRAVITY_BIAS_Q8, SOURCE.ACCELEROMETER),
+    ):
+        twice(
+            lambda s, c, m, n: consider(s, c, m, n & 255, n >> 8),
+            lambda s, c, m, n: run(s, c, m, CONSIDER + n),
+            (s, c, m),
+            (source << 8) + w,
+        )
+    a = c[SETTINGS.AXES] + c[SETTINGS.AXIS_WORDS]
+    twice(reset, lambda s, c, n: run(s, c, 0, RESET + n), (s, c), a)
+    to = array("i", [0] * len(s))
+    run(s, to, len(s), COPY + 16)
+    assert to == array("i", [0] * 16) + s[16:]
+
+
+@processors
+def test_motion_is_learned_from_to_the_last_bit(machine_code, processor):
+    run, c = machine_code("motion", processor), motion_settings(odr_hz=25.0, longest_stage=5)
+    plain, native = motion_state(c), array("i", [7] * len(motion_state(c)))
+    twice(lambda s, _: motion_verdict.clear(s, c), lambda s, _: run(s, c, 0, CLEAR), (native,))
+    native, learned = array("i", plain), 0
+    for row in motions.swinging(7, 44, hz=25.0).samples.tolist():
+        x = array("i", row)
+        learned += in_motion.update(plain, c, x, 40000)
+        run(native, c, x, 40000)
+        assert native == plain
+    assert learned
+
+
+@processors
+@quick
+@given(
+    rows=st.lists(st.lists(words, min_size=7, max_size=7), min_size=30, max_size=60),
+    document=st.booleans(),
+)
+def test_any_motion_leaves_the_same_state(machine_code, processor, rows, document):
+    run = machine_code("motion", processor)
+    c = motion_settings(
+        node_s=0.02, longest_stage=4, least_dps=0.001, least_up_g=0.0, document=document
+    )
+    plain = motion_state(c)
+    native = array("i", plain)
+    for row in rows:
+        x = array("i", row)
+        assert in_motion.update(plain, c, x, 10000) == run(native, c, x, 10000)
+    assert native == plain
+
+
+@processors
+@quick
+@given(
+    rows=st.lists(st.lists(words, min_size=7, max_size=7), min_size=30, max_size=60),
+    dt_us=st.sampled_from([10000, 9000, 0, 20001]),
+    document=st.booleans(),
+)
+def test_any_frames_against_gravity_leave_the_same_state(
+    machine_code, processor, rows, dt_us, document
+):
+    run = machine_code("gravity", processor)
+    c = realtime_settings(sub_unit_s=0.04, units=4, threshold=1, document=document)
+    plain = realtime_state(c)
+    twice(lambda s, _: realtime.clear(s, c), lambda s, _: run(s, c, 0, CLEAR), (plain,))
+    native = array("i", plain)
+    for row in rows:
+        x = array("i", row)
+        assert realtime.update(plain, c, x, dt_us) == run(native, c, x, dt_us)
+        assert native == plain
+
+
+@processors
+@quick
+@given(
+    rows=st.lists(st.lists(words, min_size=7, max_size=7), min_size=20, max_size=60),
+    good=st.lists(st.booleans(), min_size=60, max_size=60),
+)
+def test_any_frames_have_the_same_effects(machine_code, processor, rows, good):
+    run, plain = machine_code("effects", processor), known_model().e
+    native, s = array("i", plain), array("i", [0] * 100)
+    mine = array("i", s)
+    for row, is_good in zip(rows, good):
+        x = array("i", row)
+        sense(s, plain, x, 250000, int(is_good))
+        run(mine, native, x if is_good else 0, 250000)
+        assert (mine, native) == (s, plain)
+
+
+@processors
+@quick
+@given(
+    totals=st.lists(st.integers(-(1 << 20), 1 << 20), min_size=3, max_size=3),
+    temp=words,
+    values=st.lists(st.integers(-(1 << 24), 1 << 24), min_size=3, max_size=3),
+)
+def test_any_rest_refines_the_same(machine_code, processor, totals, temp, values):
+    run, plain = machine_code("refine", processor), known_model().e
+    plain[EFFECTS.BOUND_EIGHTHS], plain[EFFECTS.REFINE_ON] = 4, 1
+    twice(effect_refine.begin, lambda e, _: run(0, 0, e, 4), (plain,), 3)
+    effect_refine.begin(plain, 3)
+    twice(lambda e, _: effect_refine.renew(e), lambda e, _: run(0, 0, e, -1), (plain,))
+    for slot, value in enumerate(values):
+        plain[EFFECTS.SLOTS + SLOT.size * slot + SLOT.SLOT_VALUE] = value
+    s, c = array("i", [0] * 100), array("i", [0] * SETTINGS.size)
+    s[STATE.SEGMENT_TOTAL : STATE.SEGMENT_TOTAL + 3] = array("i", totals)
+    s[STATE.STILLNESS], s[STATE.TEMP] = STILLNESS.STILL, temp
+    c[SETTINGS.WINDOW_SHIFT], c[SETTINGS.SEGMENT] = 6, 1
+    native = array("i", plain)
+    for _ in range(40):
+        effect_refine.attend(s, c, plain)
+        run(s, c, native, 0)
+        s[STATE.WINDOW_N] = 1
+    assert native == plain

@@ -1,0 +1,1 @@
+"""The firmware's kernels, read from their Python and written as C, machine code and libraries."""

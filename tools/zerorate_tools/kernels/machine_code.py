@@ -1,0 +1,158 @@
+"""Compiles a part for a processor and checks that the code runs at any even address.
+
+The compiler is clang of ziglang, pinned in requirements/, so that the same kernels give the same
+bytes everywhere. Code is execute-only: numbers are made by instructions, never read from beside
+the code, for MicroPython aligns frozen ARMv6-M code to two bytes and literals want four.
+"""
+
+from __future__ import annotations
+
+import struct
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..errors import MissingRuntime, ZerorateError
+from .c_functions import ARITHMETIC, kernels_in_c
+from .parts import PARTS
+from .reading import Kernels
+
+_COMMON = (
+    *("-ffreestanding", "-fno-jump-tables", "-fwrapv", "-fno-sanitize=undefined", "-fno-builtin"),
+    *("-ffunction-sections", "-nostdlib", "-Wl,--gc-sections"),
+    # a loop that subtracts stays one, for there is no division to make of it
+    *("-mllvm", "-replexitval=never"),
+)
+# ARMv6-M cannot divide: most quotients of the kernels are short, and this is short with them
+_WITHOUT_DIVISION = """\
+static __attribute__((noinline)) uint32_t quotient(uint32_t a, uint32_t b) {
+    uint32_t found = 0, bit = 1;
+    while (b <= a >> 4) b <<= 4, bit <<= 4;
+    while (b <= a >> 1) b <<= 1, bit <<= 1;
+    do {
+        if (a >= b) a -= b, found += bit;
+        b >>= 1, bit >>= 1;
+    } while (bit);
+    return found;
+}
+static __attribute__((noinline)) int32_t floor_div(int32_t a, int32_t b) {
+    if (a >= 0 && b > 0) return (int32_t)quotient((uint32_t)a, (uint32_t)b);
+    if (b == 0) return 0;
+    uint32_t n = a < 0 ? 0u - (uint32_t)a : (uint32_t)a, d = b < 0 ? 0u - (uint32_t)b : (uint32_t)b;
+    int32_t q = (int32_t)quotient(n, d);
+    if ((a < 0) == (b < 0)) return q;
+    return -q - ((uint32_t)q * d != n);
+}
+static inline int32_t floor_mod(int32_t a, int32_t b) { return a - floor_div(a, b) * b; }
+static inline int32_t shift_left(int32_t a, int32_t by) { return (int32_t)((uint32_t)a << by); }
+"""
+_ENTRY = """
+__attribute__((section(".text.entry")))
+int32_t entry(int32_t *a, int32_t *b, int32_t *c, int32_t what) {{
+{body}}}
+"""
+_SECTIONS = """\
+ENTRY(entry)
+SECTIONS {{
+    . = {base};
+    .text : {{ KEEP(*(.text.entry)) *(.text .text.*) }}
+    .other : {{ *(.rodata .rodata.* .data .data.* .bss .bss.* COMMON) }}
+    /DISCARD/ : {{ *(.ARM.* .comment .note.* .eh_frame* .riscv.attributes .llvm*) }}
+}}
+"""
+
+
+@dataclass(frozen=True)
+class Processor:
+    """target and flags: of the compiler; arithmetic: floor_div, floor_mod, shift_left in C."""
+
+    target: str
+    flags: tuple[str, ...]
+    arithmetic: str
+    decorator: str
+    registers: str
+
+
+THUMB = Processor(
+    "thumb-freestanding-eabi",
+    ("-mcpu=cortex_m0plus", "-mexecute-only"),
+    _WITHOUT_DIVISION,
+    "asm_thumb",
+    "r0, r1, r2, r3",
+)
+RV32 = Processor(
+    "riscv32-freestanding-none",
+    ("-mcpu=generic_rv32+m+c", "-mrelax"),
+    ARITHMETIC,
+    "asm_rv32",
+    "a0, a1, a2, a3",
+)
+PROCESSORS = {"thumb": THUMB, "rv32": RV32}
+
+
+def machine_code(kernels: Kernels, part: str, processor: str, fast: bool = False) -> bytes:
+    """The part's code, entry first. Raises MissingRuntime without ziglang, and ZerorateError.
+
+    fast: all of it by -O2, which is the yardstick, not what boards get.
+    """
+    how, what = PROCESSORS[processor], PARTS[part]
+    text = kernels_in_c(kernels, *what.kernels, arithmetic=how.arithmetic)
+    text += _ENTRY.format(body=what.body)
+    with tempfile.TemporaryDirectory(prefix="zerorate-native-") as folder:
+        codes = [_linked(Path(folder), text, how, base, fast) for base in (0, 0x4000)]
+    if codes[0] != codes[1]:
+        raise ZerorateError(f"the code of {part} for {processor} holds an absolute address")
+    if found := [*problems(codes[0], processor)]:
+        raise ZerorateError(f"the code of {part} for {processor}: {found[0]}")
+    return codes[0]
+
+
+def _linked(folder: Path, text: str, how: Processor, base: int, fast: bool) -> bytes:
+    (folder / "part.c").write_text(text, encoding="utf-8")
+    (folder / "part.ld").write_text(_SECTIONS.format(base=base), encoding="utf-8")
+    flags = [
+        "-O2" if fast else "-Os",
+        *_COMMON,
+        *how.flags,
+        "-target",
+        how.target,
+        "-Wl,-T,part.ld",
+    ]
+    command = [sys.executable, "-m", "ziglang", "cc", *flags, "part.c", "-o", "part.elf"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+    if "No module named ziglang" in done.stderr:
+        raise MissingRuntime("machine code is made by ziglang: pip install 'zerorate[bench]'")
+    if done.returncode:
+        raise ZerorateError(f"the kernels do not compile for {how.target}: {done.stderr[:400]}")
+    return _only_text((folder / "part.elf").read_bytes())
+
+
+def _only_text(elf: bytes) -> bytes:
+    """The code of a linked file that has nothing but code. Raises ZerorateError."""
+    at, size, count, names = struct.unpack_from("<I10xHHH", elf, 32)
+    heads = [struct.unpack_from("<10I", elf, at + size * i) for i in range(count)]
+    texts = elf[heads[names][4] :]
+    found = {}
+    for name, kind, flags, _, offset, length, *_ in heads:
+        label = texts[name : texts.index(b"\0", name)].decode()
+        if flags & 2 and length:
+            found[label] = elf[offset : offset + length] if kind == 1 else b""
+    if set(found) != {".text"}:
+        raise ZerorateError(f"machine code with {', '.join(sorted(set(found) - {'.text'}))}")
+    return found[".text"]
+
+
+def problems(code: bytes, processor: str) -> Iterator[str]:
+    """What reads or addresses bytes beside the code, by the instruction's own coding."""
+    at = 0
+    while at + 1 < len(code):
+        (word,) = struct.unpack_from("<H", code, at)
+        wide = word >> 11 in (29, 30, 31) if processor == "thumb" else word & 3 == 3
+        if processor == "thumb" and (word >> 11 == 9 or word >> 11 == 20):
+            yield f"the instruction at {at} reads beside the code"
+        if processor == "rv32" and word & 0x7F == 0x17:
+            yield f"the instruction at {at} addresses from where it stands"
+        at += 4 if wide else 2

@@ -1,0 +1,80 @@
+"""What the firmware's machine code is made of: the parts, and how each is entered.
+
+A part is one piece of code with one entry of four arguments, as MicroPython's inline assembler has
+it: firmware/zerorate/native says what is passed. `what` is a time, or below -2^29, where no clock
+ends, the number of a stage in its upper half word and a value in its lower one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Part:
+    """kernels: file and function of what `body`, the entry's C, calls."""
+
+    kernels: Sequence[tuple[str, str]]
+    body: str
+
+
+PARTS = {
+    "rest": Part(
+        [
+            *(("step", name) for name in ("step", "admit", "finish", "consider")),
+            ("estimators", "reset"),
+        ],
+        """\
+    if (what >= -0x20000000) return step_step(a, b, c, what);
+    int32_t value = what & 0xffff;
+    int32_t stage = (what >> 16) & 0xff;
+    if (stage == 0) return step_admit(a, b, c, value);
+    if (stage == 1) return step_finish(a, b, c, value);
+    if (stage == 2) step_consider(a, b, c, value & 0xff, value >> 8);
+    if (stage == 3) estimators_reset(a, b, value);
+    if (stage == 4) for (int32_t i = value; i < (int32_t)(intptr_t)c; i++) b[i] = a[i];
+    return 0;
+""",
+    ),
+    "guard": Part([("guard", "check")], "    return guard_check(a, b, c, what);\n"),
+    "motion": Part(
+        [("in_motion", "update"), ("motion_verdict", "clear")],
+        """\
+    if (what >= -0x20000000) return in_motion_update(a, b, c, what);
+    motion_verdict_clear(a, b);
+    return 0;
+""",
+    ),
+    "gravity": Part(
+        [("realtime", "update"), ("realtime", "clear")],
+        """\
+    if (what >= -0x20000000) return realtime_update(a, b, c, what);
+    realtime_clear(a, b);
+    return 0;
+""",
+    ),
+    "effects": Part(
+        [("effects", "sense")],
+        """\
+    effects_sense(a, b, c, what, c != 0);
+    return 0;
+""",
+    ),
+    "refine": Part(
+        [("effect_refine", name) for name in ("attend", "begin", "renew")],
+        """\
+    if (what == 0) effect_refine_attend(a, b, c);
+    else if (what < 0) effect_refine_renew(c);
+    else effect_refine_begin(c, what - 1);
+    return 0;
+""",
+    ),
+    "bursts": Part(
+        [("block", "block")],
+        """\
+    block_block(a, c, b, (int32_t *)(intptr_t)what, ((int32_t *)(intptr_t)what)[8] >> 3);
+    return 0;
+""",
+    ),
+}

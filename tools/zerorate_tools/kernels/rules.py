@@ -1,0 +1,118 @@
+"""What a kernel may hold to do the same on CPython, as bytecode and as C.
+
+Source: each rule was tried on MicroPython 1.25 and 1.27. A path without return gives garbage in C,
+a shift by 32 differs between processors, and bytecode takes heap for what leaves 31 bits.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Collection, Iterator
+from pathlib import Path
+
+from .flow import always_returns, read_before_set
+from .reading import KernelFile
+
+_ALLOWED: tuple[type[ast.AST], ...] = (
+    *(ast.Assign, ast.AugAssign, ast.Return, ast.If, ast.While, ast.For, ast.Expr),
+    *(ast.Break, ast.Continue, ast.Pass, ast.expr_context),
+    *(ast.Name, ast.Constant, ast.Compare, ast.BoolOp, ast.UnaryOp, ast.BinOp),
+    *(ast.IfExp, ast.Subscript, ast.Call, ast.Tuple),
+    *(ast.Add, ast.Sub, ast.Mult, ast.FloorDiv, ast.Mod, ast.BitAnd, ast.BitOr),
+    *(ast.BitXor, ast.LShift, ast.RShift, ast.UAdd, ast.USub, ast.Invert, ast.Not),
+    *(ast.Eq, ast.NotEq, ast.Lt, ast.LtE, ast.Gt, ast.GtE, ast.And, ast.Or),
+)
+_KINDS = ("int", "ptr8", "ptr32")
+_BUILT_IN = ("int", "range", "abs", "min", "max", "ptr8", "ptr32")
+_LIMIT = 1 << 30
+_LONGEST_SHIFT = 30
+
+
+def breaches(path: Path, kernels: Collection[str]) -> list[str]:
+    """Every breach in the annotated functions of a file, as `file:row: what`.
+
+    kernels: names of all kernel functions, which a kernel may call.
+    """
+    return [
+        f"{path.name}:{row}: {what}"
+        for function in KernelFile(path).kernels.values()
+        for row, what in sorted({*_signature(function), *_body(function, kernels)})
+    ]
+
+
+def _signature(function: ast.FunctionDef) -> Iterator[tuple[int, str]]:
+    of = function.args
+    if of.defaults or of.kwonlyargs or of.vararg or of.kwarg or of.posonlyargs:
+        yield function.lineno, "parameters are positional, without defaults"
+    for parameter in of.args:
+        if parameter.annotation and _name(parameter.annotation) not in _KINDS:
+            yield parameter.lineno, f"{parameter.arg} is none of {', '.join(_KINDS)}"
+    if function.returns and _name(function.returns) != "int":
+        yield function.lineno, "a result is an int"
+    if function.returns and not always_returns(function.body):
+        yield function.lineno, f"{function.name} ends without return on some path"
+
+
+def _body(function: ast.FunctionDef, kernels: Collection[str]) -> Iterator[tuple[int, str]]:
+    has_docstring = ast.get_docstring(function) is not None
+    statements = function.body[1:] if has_docstring else function.body
+    yield from read_before_set(function, statements)
+    for node in (n for statement in statements for n in ast.walk(statement)):
+        row = getattr(node, "lineno", function.lineno)
+        if not isinstance(node, _ALLOWED):
+            yield row, f"{type(node).__name__} is not for kernels"
+        elif isinstance(node, ast.Call):
+            yield from ((row, what) for what in _call(node, kernels))
+        elif isinstance(node, ast.Return) and node.value is not None and not function.returns:
+            yield row, f"{function.name} returns a value without `-> int`"
+        else:
+            yield from ((row, what) for what in _node(node))
+
+
+def _call(node: ast.Call, kernels: Collection[str]) -> Iterator[str]:
+    name = _name(node.func)
+    if name not in _BUILT_IN and name not in kernels:
+        yield f"{name or 'an expression'} is called, which is no kernel"
+    if node.keywords or any(isinstance(a, ast.Starred) for a in node.args):
+        yield f"{name} is called with other than positional arguments"
+
+
+def _node(node: ast.AST) -> Iterator[str]:
+    if isinstance(node, ast.Constant) and not _is_small(node.value):
+        yield f"{node.value!r} is no integer below 2^30"
+    elif isinstance(node, (ast.BinOp, ast.AugAssign)):
+        right = node.right if isinstance(node, ast.BinOp) else node.value
+        yield from _operation(node.op, right)
+    elif isinstance(node, ast.Subscript) and isinstance(node.slice, ast.UnaryOp):
+        yield "a negative index reads before the array in C"
+    elif isinstance(node, ast.For) and not _is_over_a_range(node):
+        yield "for runs over range() only"
+    elif isinstance(node, ast.Assign) and not _is_plain(node):
+        yield "a tuple is only for a two-way swap"
+
+
+def _operation(operator: ast.operator, right: ast.expr) -> Iterator[str]:
+    if not isinstance(right, ast.Constant) or not isinstance(right.value, int):
+        return
+    if isinstance(operator, (ast.LShift, ast.RShift)) and right.value > _LONGEST_SHIFT:
+        yield f"a shift by {right.value}; at most {_LONGEST_SHIFT}"
+    if isinstance(operator, (ast.FloorDiv, ast.Mod)) and right.value == 0:
+        yield "division by zero ends the program in C"
+
+
+def _is_small(value: object) -> bool:
+    return isinstance(value, int) and value < _LIMIT
+
+
+def _is_over_a_range(node: ast.For) -> bool:
+    return isinstance(node.iter, ast.Call) and _name(node.iter.func) == "range"
+
+
+def _is_plain(node: ast.Assign) -> bool:
+    sides = (*node.targets, node.value)
+    tuples = [side for side in sides if isinstance(side, ast.Tuple)]
+    return not tuples or (len(sides) == 2 and [len(t.elts) for t in tuples] == [2, 2])
+
+
+def _name(node: ast.expr | None) -> str:
+    return node.id if isinstance(node, ast.Name) else ""

@@ -1,1 +1,0 @@
-"""From kernels to their viper twins: what is written out, folded and kept in a local there."""
