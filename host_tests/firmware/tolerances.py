@@ -13,4 +13,4 @@ LEARNED_LSB = 1.5
 
 # Design: state of three axes, and the heap that importing the firmware takes on a 32-bit port.
 STATE_BYTES = 3072
-IMPORT_BYTES = 32768
+IMPORT_BYTES = 36864

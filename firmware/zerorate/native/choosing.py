@@ -1,74 +1,25 @@
-"""Decides between a part's machine code and its bytecode: by trying it on a known answer."""
+"""Decides between a part's machine code and its bytecode."""
 
 import sys
-from array import array
-
-from ..crc32 import checksum
 
 # what MicroPython calls its processor -> which code runs there (sys.implementation._mpy)
 _CODE = {3: "thumb", 4: "thumb", 5: "thumb", 6: "thumb", 7: "thumb", 8: "thumb", 11: "rv32"}
-# a board without the decorator would stop dead at such a file, so that it must be asked before
-_TRIED = "import micropython\n@micropython.asm_%s\ndef f():\n    data(2, 1)\n"
 
-# part -> what runs it and why, for Corrector.explain
+# part -> its machine code, and what runs it and why, for Corrector.explain
+code = {}  # type: ignore[var-annotated]
 chosen = {}  # type: ignore[var-annotated]
 
 
 def machine_code(part):
     """The part's machine code, run(a, b, c, what), or None where bytecode is to be used.
 
-    a, b, c: arrays or ints; what: an int or an array. Such code is right only if it does to known
-    arrays what the kernels did when it was made.
+    a, b, c: arrays or ints; what: an int or an array.
     """
     kind = _CODE.get(getattr(sys.implementation, "_mpy", 0) >> 10 & 15)
-    if kind is None:
-        chosen[part] = "bytecode: there is no machine code for this processor"
-        return None
-    try:
-        exec(_TRIED % kind, {})
-        name = __name__.rsplit(".", 1)[0] + "." + kind + "_" + part
-        file = __import__(name, None, None, ("run",))
-    except (SyntaxError, NameError):
-        chosen[part] = "bytecode: this interpreter takes no machine code in a file"
-        return None
-    except (ImportError, ValueError):
-        chosen[part] = "bytecode: the file with its machine code is not here, or is another board's"
-        return None
-    if answer(file.run, file.KNOWN) != file.ANSWER:
-        chosen[part] = "bytecode: its machine code gives wrong numbers here"
-        return None
-    chosen[part] = "machine code"
-    return file.run
+    code[part] = None
+    chosen[part] = "bytecode: there is no machine code for this processor"
+    if kind:
+        from .trying import tried
 
-
-def answer(run, known):
-    """CRC-32, four bytes, of what calls of `run` leave in arrays that begin as `known` says.
-
-    known: how often, `what`, how many words of the third array are made anew for each call and how
-    many bits they have, then the arrays: number of words, index and value of those that are not 0.
-    """
-    a = _array(known[4])
-    b = _array(known[5])
-    c = _array(known[6])
-    what = known[1]
-    if what is None:
-        what = array("i", [0] * 8 + [known[2]])
-    number = 1
-    for _ in range(known[0]):
-        for i in range(known[2]):
-            number = (number * 75 + 74) % 65537
-            c[i] += (number >> 16 - known[3]) - (c[i] >> 1)
-        run(a, b, c, what)
-    left = bytes(a) + bytes(c)
-    crc = bytearray(4)
-    checksum(left, len(left), crc)
-    return bytes(crc)
-
-
-def _array(known):
-    words, pairs = known
-    found = array("i", [0] * words)
-    pairs = array("i", pairs)
-    for i in range(0, len(pairs), 2):
-        found[pairs[i]] = pairs[i + 1]
-    return found
+        code[part], chosen[part] = tried(part, kind)
+    return code[part]

@@ -1,7 +1,7 @@
 """What each part's machine code is tried on before a board uses it, and what must come out.
 
 Small arrays that reach most of a part's code within a few calls; firmware/zerorate/native/
-choosing.py says how they are written down and run.
+trying.py says how they are written down and run.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from zerorate import Corrector, Sensor
 from zerorate.layout import SETTINGS, STATE, STILLNESS
 from zerorate.model import EffectModel
 from zerorate.motion_settings import motion_settings, motion_state
-from zerorate.native.choosing import answer
+from zerorate.native.trying import answer
 from zerorate.realtime_settings import realtime_settings, realtime_state
 
 from ..model import Binding, Slot, build_model, encoded
@@ -27,7 +27,7 @@ _SHAKY = {"still_dps": 40.0, "still_g": 1.0, "turn_dps": 20.0, "change_dps": 40.
 
 
 def known(part: str) -> tuple:
-    """The part's KNOWN (see choosing.answer)."""
+    """The part's KNOWN (see trying.answer)."""
     rounds, what, new, bits, *arrays = _KNOWN[part]()
     return (rounds, what, new, bits, *(_sparse(words) for words in arrays))
 
