@@ -26,6 +26,7 @@ def add_parser(subparsers) -> None:
     add_accuracy(benches)
     add_cost(benches)
     add_faults(benches)
+    add_filters(benches)
     add_fleet(benches)
     add_loop(benches)
     add_motion(benches)
@@ -131,6 +132,24 @@ def run_faults(arguments: argparse.Namespace) -> int:
     from ..bench.faults import passed, run
 
     return 0 if passed(run(arguments.json)) else 1
+
+
+def add_filters(benches) -> None:
+    """Register `bench filters`."""
+    parser = benches.add_parser("filters", help="heading of attitude filters fed by zerorate")
+    parser.add_argument("--data", type=Path, metavar="DIR", help="folder of BROAD trials (.mat)")
+    add_outputs(parser)
+    parser.set_defaults(run=run_filters)
+
+
+def run_filters(arguments: argparse.Namespace) -> None:
+    """Measure and write."""
+    from ..bench.filters import in_markdown, run
+    from ..progress import progress
+
+    with progress("trials") as advance:
+        found = run(arguments.data, advance)
+    write_report(arguments, in_markdown(found), found)
 
 
 def add_fleet(benches) -> None:
