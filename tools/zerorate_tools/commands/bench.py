@@ -32,6 +32,7 @@ def add_parser(subparsers) -> None:
     add_motion(benches)
     add_peers(benches)
     add_refine(benches)
+    add_service(benches)
 
 
 def add_extent(parser) -> None:
@@ -200,6 +201,23 @@ def add_motion(benches) -> None:
     parser.add_argument("--data", type=Path, metavar="DIR", help="folder of BROAD trials (.mat)")
     add_outputs(parser)
     parser.set_defaults(run=run_motion)
+
+
+def add_service(benches) -> None:
+    """Register `bench service`."""
+    parser = benches.add_parser("service", help="`zerorate run` through faults, kills, full disks")
+    parser.add_argument("--hours", type=float, default=24, metavar="N", help="simulated (24)")
+    parser.add_argument("--faults", type=int, default=1000, metavar="N", help="how many (1000)")
+    add_outputs(parser)
+    parser.set_defaults(run=run_service)
+
+
+def run_service(arguments: argparse.Namespace) -> None:
+    """Live through them and write."""
+    from ..bench.service import in_words, run
+
+    found = run(arguments.hours, arguments.faults)
+    write_report(arguments, in_words(found), found)
 
 
 def add_refine(benches) -> None:
