@@ -37,7 +37,8 @@ def mahony(rate: Array, accel: Array, hz: float, corrected: bool) -> Array:
     """PyPI `ahrs`; its own integral learns a bias, and is off where the bias is taken off."""
     from ahrs.filters import Mahony
 
-    return Mahony(gyr=rate, acc=accel, frequency=hz, **({"k_I": 0.0} if corrected else {})).Q
+    # 0 is refused
+    return Mahony(gyr=rate, acc=accel, frequency=hz, **({"k_I": 1e-9} if corrected else {})).Q
 
 
 def vqf(rate: Array, accel: Array, hz: float, corrected: bool) -> Array:

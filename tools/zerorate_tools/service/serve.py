@@ -12,7 +12,6 @@ from typing import Any
 
 from zerorate import Corrector, Sensor
 from zerorate.checked import CheckedCorrector
-from zerorate.corrector import ANY_TEMPERATURE
 from zerorate.learned_store import LearnedStore
 from zerorate.save_schedule import SaveSchedule
 from zerorate.store import REASONS
@@ -122,12 +121,12 @@ class Service:
         """A chip that was not known: begin with what is stored of it."""
         imu = self._imu
         self._binding = imu.binding
-        learned = Corrector(Sensor(*imu.scales))
-        self._store = LearnedStore(self.system.storage, imu.binding, learned)
+        learner = Corrector(Sensor(*imu.scales))
+        self._store = LearnedStore(self.system.storage, imu.binding, learner)
         self.system.say(f"{imu.part}, {imu.odr_hz:g} Hz: {REASONS[self._store.load()]}")
-        self._corrector = CheckedCorrector(learned)
+        self._corrector = CheckedCorrector(learner)
         tolerance = max(1, round(_TOLERANCE_DPS * imu.gyro_lsb_per_dps))
-        self._schedule = SaveSchedule(self._store, 3, tolerance, _WRITES_A_DAY, learned)
+        self._schedule = SaveSchedule(self._store, 3, tolerance, _WRITES_A_DAY, learner)
 
     def _lose(self, error: OSError) -> None:
         """The bus has failed for good: what came since the last check is in doubt."""
@@ -144,24 +143,24 @@ class Service:
 
     def _keep(self) -> None:
         """Write what was learned, at rest, when it moved, once a minute at most."""
-        learned = self._corrector.corrector
-        for axis in range(3):
-            if learned.source(axis) > ANY_TEMPERATURE:
-                self._bias_lsb[axis] = round(learned.bias_lsb(axis))
+        learner = self._corrector.corrector
+        if learner.learned:  # and not of this rest alone
+            for axis in range(3):
+                self._bias_lsb[axis] = round(learner.bias_lsb(axis))
         if not self._schedule.is_significant(self._bias_lsb):
             return
         saves = self._schedule.saves
-        kept = self._schedule.offer(learned.state, self._bias_lsb, self.t_us // 1_000_000)
+        kept = self._schedule.offer(learner.state, self._bias_lsb, self.t_us // 1_000_000)
         if not kept and self._schedule.saves > saves:
             self.system.say("what was learned cannot be written; trying again in a minute")
 
     def _publish(self) -> None:
-        imu, sample, learned = self._imu, self._sample, self._corrector.corrector
+        imu, sample, learner = self._imu, self._sample, self._corrector.corrector
         lsb = imu.gyro_lsb_per_dps
         line = {
             "t_us": self.t_us,
             "rate_dps": [round(sample[4 + axis] / lsb, 5) for axis in range(3)],
-            "bias_dps": [round(learned.bias_lsb(axis) / lsb, 5) for axis in range(3)],
+            "bias_dps": [round(learner.bias_lsb(axis) / lsb, 5) for axis in range(3)],
             "accel_g": [round(sample[axis] / imu.accel_lsb_per_g, 5) for axis in range(3)],
             "temp_degc": round(imu.temperature_degc(sample[3]), 2),
         }
