@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PYTEST_ARGS ?= -n auto
 
-.PHONY: demo test lint typecheck typecheck-tools pytest layout native docs lock wasm runtimes node wheel clean
+.PHONY: demo test lint typecheck typecheck-tools pytest fuzz layout native docs lock wasm runtimes node wheel clean
 
 demo: $(VENV)/.tools wasm  ## the whole job on built-in input, no hardware
 	$(BIN)/zerorate demo
@@ -31,6 +31,10 @@ typecheck-tools: $(VENV)/.dev  ## the host tools
 
 pytest: $(VENV)/.dev runtimes
 	$(BIN)/python -m pytest $(PYTEST_ARGS)
+
+FUZZ ?= 3000
+fuzz: $(VENV)/.dev  ## every reader of files against FUZZ damaged ones each; what fails is kept
+	ZERORATE_FUZZ=$(FUZZ) $(BIN)/python -m pytest host_tests/hostile -k any $(PYTEST_ARGS)
 
 layout: $(VENV)/.dev  ## write the constants of firmware/zerorate/layout.py where they are used
 	$(BIN)/python -m host_tests.layout

@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from zerorate_tools.errors import ZerorateError
 from zerorate_tools.importers import Options, import_recording
@@ -18,10 +18,8 @@ from zerorate_tools.recordings import (
 from zerorate_tools.simulate import simulate
 
 from ..importers import foreign_files
+from .patience import PATIENT
 
-PATIENT = settings(
-    max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
 NAMES = ("t_us", "gx", "gy", "gz")
 CELLS = st.one_of(
     st.integers(-(10**12), 10**12).map(str),
@@ -70,6 +68,18 @@ def test_any_json_as_scales(tmp_path, scales):
     (tmp_path / "x.csv").write_text(",".join(NAMES) + "\n1,2,3,4\n")
     (tmp_path / "x.json").write_text(json.dumps(scales))
     reads_or_refuses(read_recording, tmp_path / "x.csv")
+
+
+LETTERS = st.text('0123456789.,;|\t\n #$*-+:eETZgxyzt_us"', max_size=400)
+
+
+@PATIENT
+@given(LETTERS, st.sampled_from(["utf-8", "utf-16", "latin-1"]), st.sampled_from([None, 10.0]))
+def test_any_text_as_a_foreign_table(tmp_path, text, encoding, hz):
+    head = "t_us,gx_dps,gy_dps,gz_dps\n1,2,3,4\n" if len(text) % 2 else ""
+    (tmp_path / "x.csv").write_bytes((head + text).encode(encoding))
+    out = tmp_path / "out.parquet"
+    reads_or_refuses(import_recording, tmp_path / "x.csv", out, options=Options(hz=hz))
 
 
 FOREIGN = ["x.csv", "x.tsv", "x.csv.gz", "x.parquet", "x"]

@@ -134,6 +134,7 @@ def main() -> None:
     silent = os.open(os.devnull, os.O_WRONLY)
     os.dup2(silent, 1)
     os.dup2(silent, 2)
+    _limit(_size(path))
     words = written(reader, path, instance, out)
     # a parent that is gone reads nothing
     if os.getppid() == parent or os.name == "nt":
@@ -142,9 +143,9 @@ def main() -> None:
 
 
 def written(reader: str, path: Path, instance: int, out: int) -> dict:
+    """Write the rows to a file descriptor, and return the words of what came of it."""
     try:
         module = import_module(f"{__package__}.{reader}")
-        _limit(_size(path))
         table = module.read(path, instance)
         _write(table, out)
     except MemoryError:
