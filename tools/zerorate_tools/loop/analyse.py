@@ -29,6 +29,7 @@ from .search.catalogue import extra_channels
 from .search.naming import name_earth
 from .search.periodic import periodic
 from .search.select import select
+from .search.steps_first import without_steps
 from .verify.analysis import Analysis
 from .verify.by_kernels import PiecesByKernels
 from .verify.power_on import PowerOn, ideal_dps
@@ -53,7 +54,7 @@ def analyse(
         [sessions[at]] if len(sessions) > 1 else [],
         len(sessions) == 1,
     )
-    sessions = [without_scales(s, motion) for s in sessions]
+    sessions = without_steps([without_scales(s, motion) for s in sessions])
     taken = len(slots_of(motion))
     locked = [sessions[at]]
     train = [s for i, s in enumerate(sessions) if i != at] or locked

@@ -21,9 +21,9 @@ def ordinary(terms, sessions, effects=(), coefficients=None) -> np.ndarray:
     for s in sessions:
         there = s.available
         rate = s.rate_dps - (predicted(effects, coefficients, s) if len(effects) else 0.0)
-        columns = np.column_stack([block_basis(t, s) for t in terms])[there]
-        x.append(columns - columns.mean(axis=0))
-        y.append(rate[there] - rate[there].mean(axis=0))
+        columns = np.column_stack([block_basis(t, s) for t in terms])
+        x.append(s.less_offsets(columns, there)[there])
+        y.append(s.less_offsets(rate, there)[there])
     scale = np.maximum(np.vstack(x).std(axis=0), 1e-300)
     return np.linalg.lstsq(np.vstack(x) / scale, np.vstack(y), rcond=1e-12)[0] / scale[:, None]
 

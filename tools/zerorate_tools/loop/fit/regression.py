@@ -42,8 +42,21 @@ class Regression:
         self.axes = np.eye(3)
         self._cache: dict[Term, list[np.ndarray]] = {}
         self._extra: list[list[np.ndarray]] = []
+        self._heavisides: dict[int, np.ndarray] = {}
         self._prepare()
         self.scale = np.ones((len(sessions), 3))
+        self._known = self._of_steps()
+        self._extra = list(self._known)
+
+    def _of_steps(self):
+        """Prepared columns of the steps that the sessions are already without."""
+        out = []
+        for i, s in enumerate(self.sessions):
+            for step in s.steps:
+                own = [np.zeros(o.blocks) for o in self.sessions]
+                own[i][step.block :] = 1.0
+                out.append([w.prepare(b[:, None])[:, 0] for w, b in zip(self.whiteners, own)])
+        return out
 
     def _prepare(self):
         self.y = [w.prepare(r @ self.axes.T) for w, r in zip(self.whiteners, self.rate)]
@@ -66,9 +79,23 @@ class Regression:
         """Drop a term tried once, so that a search does not grow the cache."""
         self._cache.pop(term, None)
 
-    def set_events(self, columns: list[list[np.ndarray]]) -> None:
-        """Replace the further nuisances."""
-        self._extra = []
+    def events(self) -> list[list[np.ndarray]]:
+        """The further nuisances, prepared."""
+        return list(self._extra)
+
+    def heavisides(self, session: int, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(places, (N, places)) of prepared columns of one session that step up before the blocks
+        at each place."""
+        if session not in self._heavisides:
+            blocks = np.arange(self.sessions[session].blocks)
+            columns = (blocks[:, None] >= at[None]).astype(float)
+            self._heavisides[session] = self.whiteners[session].prepare(columns)
+        return at, self._heavisides[session]
+
+    def set_events(self, columns: list[list[np.ndarray]], kept: list | None = None) -> None:
+        """Replace the further nuisances. kept: prepared ones that stay."""
+        self._extra = self._known if kept is None else list(kept)
+        self._extra = list(self._extra)
         for c in columns:
             self.add_column(c)
 

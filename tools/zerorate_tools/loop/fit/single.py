@@ -101,7 +101,7 @@ class PiecesByLine:
             kept, coefficients = fitted_to(part, straight, terms, applied)
             left = self.session.rate_dps - predicted(kept, coefficients, self.session)
             own = self.fold == k
-            out[own] = (left - left[part.available].mean(axis=0))[own]
+            out[own] = part.less_offsets(left, part.available)[own]
         return np.where(self.session.available[:, None], out, np.nan)
 
     def _squares(self, left):

@@ -39,6 +39,8 @@ class Session:
     turns: what tells the scale of the rates.
     ticks_dps: (n * ticks_per_block, 3) rate of each tick at rest, NaN elsewhere; quick: spectrum of
     the samples at rest; tick_weight: (n * ticks_per_block,) samples that count in rate_dps.
+    steps: of its bias, already out of rate_dps and ticks_dps; level_dps: (n * ticks_per_block, 3)
+    what they were.
     """
 
     name: str
@@ -55,6 +57,8 @@ class Session:
     ticks_dps: np.ndarray | None = None
     quick: Spectrum | None = None
     tick_weight: np.ndarray | None = None
+    steps: tuple = ()
+    level_dps: np.ndarray | None = None
 
     @property
     def blocks(self) -> int:
@@ -70,6 +74,21 @@ class Session:
     def available(self) -> np.ndarray:
         """(n,) bool: blocks with a usable rate."""
         return np.isfinite(self.rate_dps).all(axis=1) & (self.weight > 0)
+
+    @property
+    def stretch(self) -> np.ndarray:
+        """(n,) number of steps before each block: what has one has an offset of its own."""
+        return np.searchsorted([s.block for s in self.steps], np.arange(self.blocks), side="right")
+
+    def less_offsets(self, values: np.ndarray, there: np.ndarray) -> np.ndarray:
+        """(n, K) block values less their mean over the blocks there, stretch by stretch; a stretch
+        with none has the offset of all."""
+        out = values - values[there].mean(axis=0)
+        for k in range(len(self.steps) + 1 if self.steps else 0):
+            own = self.stretch == k
+            if (own & there).any():
+                out[own] = values[own] - values[own & there].mean(axis=0)
+        return out
 
     @property
     def moved(self) -> np.ndarray:

@@ -43,7 +43,9 @@ def _effect(step):
 def _event(event):
     sizes = ", ".join(fixed(v, 2, "+") for v in event["size_mdps"])
     at = event["t_us"] / 1e6
-    return f"step in {event['recording']} at {at:.0f} s: {sizes} mdps (listed, never corrected)"
+    said = f"; {event['said']}" if "said" in event else ""
+    where = f"step in {event['recording']} at {at:.0f} s"
+    return f"{where}: {sizes} mdps (listed, never corrected){said}"
 
 
 def _line(line):

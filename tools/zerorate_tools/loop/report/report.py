@@ -18,6 +18,8 @@ from .unexplained import measure_next, not_excluded, what_is_known
 #: Of an analysis that no recording was replayed for.
 FLOAT = "float reference of the effect slots and the line, means of blocks"
 CAUSE_UNKNOWN = "time since power-on; cause not identified"
+#: Standard deviations on either side in an interval of 95 %.
+_CI95 = 1.96
 NO_TEMPERATURE = "; no temperature was recorded, and the warm-up of every power-on looks like this"
 
 
@@ -202,19 +204,23 @@ def _after(analysis, effects: int) -> list[np.ndarray]:
 
 def _events(analysis):
     whole = analysis.judgement.whole
-    out = []
-    for step in analysis.judgement.steps:
-        s = whole.sessions[step.session]
-        out.append(
-            {
-                "kind": "step",
-                "t_us": int(s.start_us + step.block * s.block_s * 1e6),
-                "recording": s.name,
-                "size_mdps": _mdps(step.size_dps),
-                "p_value": step.p_value,
-            }
-        )
-    return out
+    known = [(s, step) for s in analysis.sessions for step in s.steps]
+    more = [(whole.sessions[step.session], step) for step in analysis.judgement.steps]
+    every = sorted([*known, *more], key=lambda pair: (pair[0].name, pair[1].at_s))
+    return [_event(s, step) for s, step in every]
+
+
+def _event(session, step):
+    half = _CI95 * step.deviation_dps
+    return {
+        "kind": "step",
+        "t_us": int(session.start_us + step.at_s * 1e6),
+        "recording": session.name,
+        "size_mdps": _mdps(step.size_dps),
+        "ci95_mdps": list(zip(_mdps(step.size_dps - half), _mdps(step.size_dps + half))),
+        "p_value": step.p_value,
+        **({"said": step.said} if step.said else {}),
+    }
 
 
 def _gate(analysis):

@@ -197,7 +197,7 @@ class Search:
         if len(self.steps) >= events.MOST_PER_SESSION * len(self.regression.sessions):
             return False
         step = events.strongest(self.regression, [*self.straight, *self.bend, *self.terms()])
-        if step is None or not events.is_event(step) or step.ratio < ratio:
+        if step is None or step.ratio < ratio:
             return False
         self._take_step(step)
         return True

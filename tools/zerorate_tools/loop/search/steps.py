@@ -1,86 +1,58 @@
-"""Steps in the bias: listed with time and size, taken as nuisances, never corrected."""
+"""Steps in the bias: listed with time and size, taken as nuisances, never corrected.
+
+A step is the same moment on all axes and more than the noise's own colour makes. All places of a
+session are looked at together at the colour that fits best, one step after the other; each must
+stand beside all others.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.stats import chi2, gamma
 
-from ..fit.cross_products import gram
-from ..fit.likelihood import fit_base, ratios
+from ..fit.cross_products import GappyWhitener
+from ..fit.regression import predicted
 from .decide import LEVEL
 
 MOST_PER_SESSION = 4
-_COARSE = 200  # places tried in a session before the best one's surroundings
 _AWAY = 15  # blocks from a step at which a step beside it no longer shows it
 _EDGE = 5  # blocks at either end where a step cannot be told from the offset
+#: Share of a step's size that the blocks next to it must differ by, and as how many means.
+_ABRUPT, _BESIDE = 0.5, 2
+#: Blocks around a step whose own trend is taken from that.
+_AROUND = 10
 
 
 @dataclass
 class Step:
-    """A step: session index, first block after it, sizes in dps per axis, and how sure."""
+    """A step: session index, first block after it, sizes in dps per axis with their standard
+    deviations, and how sure. at_s: seconds since the session's start; said: what else was seen.
+    """
 
     session: int
     block: int
     size_dps: np.ndarray
     ratio: float
     p_value: float
+    deviation_dps: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    at_s: float = 0.0
+    said: str = ""
 
 
 def strongest(regression, terms) -> Step | None:
-    """The step of the largest likelihood ratio in any session, or None where sessions are too
-    short.
-    """
-    best, tried, every = None, 0, []
-    for s, session in enumerate(regression.sessions):
-        last = session.blocks - _EDGE
-        tried += max(0, last + 1 - _EDGE)
-        stride = max(1, session.blocks // _COARSE)
-        ground = _ground(session)
-        at = np.arange(_EDGE, last + 1, stride)
-        at = at[ground[at]]
-        if not len(at):
-            continue
-        coarse = _scores(regression, terms, s, at)
-        every.append((s, at, coarse))
-        middle = at[coarse.argmax()]
-        near = np.arange(max(_EDGE, middle - stride), min(last, middle + stride) + 1)
-        near = near[ground[near]]
-        score = _scores(regression, terms, s, near)
-        i = int(score.argmax())
-        if best is None or score[i] > best.ratio:
-            best = Step(s, int(near[i]), np.zeros(3), float(score[i]), 1.0)
-    if best:
-        best.p_value = min(1.0, _survival(best, every, regression.y[0].shape[1]) * tried)
-    return best
+    """The strongest step beside the terms and the events that the regression has already."""
+    steps = _all(regression, terms)
+    return max(steps, key=lambda s: s.ratio, default=None)
 
 
-def _ground(session) -> np.ndarray:
-    """(n,) bool: where a step may be: in motion a scale factor's error leaps, not the bias."""
-    moved = session.moved
-    return ~(moved | np.r_[False, moved[:-1]])
-
-
-def _survival(best: Step, every: list, axes: int) -> float:
-    """Chance of a ratio at one place, by the ratios at the places away from each session's largest,
-    which may be a step, too.
-
-    On real noise they have a higher mean and a longer tail than chi-squared: a gamma distribution
-    of their mean and variance takes its place where that is longer.
-    """
-    away = [r[np.abs(at - at[r.argmax()]) > _AWAY] for _, at, r in every]
-    ratios = np.concatenate(away)
-    if len(ratios) < _EDGE:
-        return float(chi2.sf(best.ratio, axes))
-    mean = max(float(ratios.mean()), axes)
-    variance = max(float(ratios.var()), 2 * mean**2 / axes)
-    return float(gamma.sf(best.ratio, mean**2 / variance, scale=variance / mean))
-
-
-def is_event(step: Step | None) -> bool:
-    """Whether a step is beyond the level at which one may be listed."""
-    return step is not None and step.p_value < LEVEL["step"]
+def find_all(regression, terms) -> list[Step]:
+    """Every step beside the terms, strongest first; they stay in the regression as nuisances."""
+    regression.set_events([])
+    steps = sorted(_all(regression, terms), key=lambda s: -s.ratio)
+    regression.set_events([column(regression, s) for s in steps])
+    return _sized(regression, terms, steps)
 
 
 def column(regression, step: Step) -> list[np.ndarray]:
@@ -90,48 +62,148 @@ def column(regression, step: Step) -> list[np.ndarray]:
     return out
 
 
-def find_all(regression, terms) -> list[Step]:
-    """Every step beside the terms, strongest first; they stay in the regression as nuisances."""
+def _all(regression, terms) -> list[Step]:
+    """Steps that stand beside each other; the regression is left as it was."""
+    kept = regression.events()
+    most = MOST_PER_SESSION * len(regression.sessions)
     steps: list[Step] = []
-    regression.set_events([])
-    while len(steps) < MOST_PER_SESSION * len(regression.sessions):
-        step = strongest(regression, terms)
-        if step is None or not is_event(step):
+    while len(steps) < most:
+        step, _ = _best(regression, terms)
+        if step is None or chi2.sf(step.ratio, 3) * _tried(regression) > LEVEL["step"]:
             break
         steps.append(step)
-        regression.set_events([column(regression, s) for s in steps])
-    fit = regression.fit(terms)
-    values = np.array([fit.base.coefficients[a, g] for a, g in enumerate(fit.base.best)])
-    sizes = np.linalg.solve(regression.axes, values[:, len(terms) :]).T
-    for step, size in zip(steps, sizes):
-        step.size_dps = size
+        regression.set_events([column(regression, s) for s in steps], kept)
+    while steps and not _stand(regression, terms, steps, kept):
+        steps.remove(min(steps, key=lambda s: s.ratio))
+        regression.set_events([column(regression, s) for s in steps], kept)
+    steps = _sized(regression, terms, steps, kept)
+    abrupt = [s for s in steps if _is_abrupt(regression, terms, s)]
+    regression.set_events([], kept)
+    return abrupt
+
+
+def _stand(regression, terms, steps, kept) -> bool:
+    """Whether each is beyond what the places away from all of them show; ratios are renewed."""
+    away = _away(regression, steps, _best(regression, terms)[1])
+    for step in steps:
+        others = [column(regression, s) for s in steps if s is not step]
+        regression.set_events(others, kept)
+        s, at, ratios = next(e for e in _best(regression, terms)[1] if e[0] == step.session)
+        step.ratio = float(ratios[np.abs(at - step.block).argmin()])
+        step.p_value = min(1.0, _survival(step.ratio, away) * _tried(regression))
+    regression.set_events([column(regression, s) for s in steps], kept)
+    return all(s.p_value < LEVEL["step"] for s in steps)
+
+
+def _tried(regression) -> int:
+    return sum(max(0, s.blocks + 1 - 2 * _EDGE) for s in regression.sessions)
+
+
+def _best(regression, terms) -> tuple[Step | None, list]:
+    """The largest ratio of all places, and (session, places, ratios) of every session."""
+    fit, z = regression.fit(terms), regression.stack(terms)
+    count = sum(w.coefficients for w in regression.whiteners)
+    best, every = None, []
+    for s, session in enumerate(regression.sessions):
+        at, heavisides = regression.heavisides(s, _ground(session))
+        if not len(at):
+            continue
+        ratios = _ratios(regression, fit.base, s, heavisides, z[s], count)
+        every.append((s, at, ratios))
+        i = int(ratios.argmax())
+        if best is None or ratios[i] > best.ratio:
+            best = Step(s, int(at[i]), np.zeros(3), float(ratios[i]), 1.0)
+    return best, every
+
+
+def _ratios(regression, base, s, heavisides, z, count) -> np.ndarray:
+    """(places,) likelihood ratios of a step at each, over all axes, at the colours fitted."""
+    w, total = regression.whiteners[s], 0.0
+    for a, colour in enumerate(base.best):
+        h, zs, y = (_white(w, colour, v) for v in (heavisides, z, regression.y[s][:, [a]]))
+        scale = regression.scale[s, a] ** -2.0
+        xz, xx0 = scale * (h.T @ zs), scale * (h**2).sum(axis=0)
+        xx = xx0 - np.einsum("ki,ij,kj->k", xz, base.inverse[a][colour], xz, optimize=True)
+        xy = scale * (h.T @ y)[:, 0] - xz @ base.coefficients[a, colour]
+        gain = np.where(xx > 1e-6 * xx0, xy**2 / np.maximum(xx, 1e-300), 0.0)
+        left = base.rss[a, colour]
+        total = total - count * np.log1p(-np.minimum(gain / left, 1 - 1e-9))
+    return np.asarray(total)
+
+
+def _white(w, colour, columns):
+    if isinstance(w, GappyWhitener):
+        return w.whitening[colour] @ columns
+    return np.sqrt(w.weight[colour])[:, None] * columns
+
+
+def _ground(session) -> np.ndarray:
+    """Blocks before which a step may be: in motion a scale factor's error leaps, not the bias."""
+    moved = session.moved
+    free = ~(moved | np.r_[False, moved[:-1]])
+    at = np.arange(_EDGE, session.blocks - _EDGE + 1)
+    return at[free[at]] if len(at) else at
+
+
+def _away(regression, steps, every) -> np.ndarray:
+    """Ratios at the places away from every step."""
+    out = []
+    for s, at, ratios in every:
+        near = [np.abs(at - step.block) <= _AWAY for step in steps if step.session == s]
+        out.append(ratios[~np.any(near, axis=0)] if near else ratios)
+    return np.concatenate(out) if out else np.zeros(0)
+
+
+def _survival(ratio: float, away: np.ndarray, axes: int = 3) -> float:
+    """Chance of a ratio at one place, by those away from all steps.
+
+    On real noise they have a higher mean and a longer tail than chi-squared: a gamma distribution
+    of their mean and variance takes its place where that is longer.
+    """
+    if len(away) < _EDGE:
+        return float(chi2.sf(ratio, axes))
+    mean = max(float(away.mean()), axes)
+    variance = max(float(away.var()), 2 * mean**2 / axes)
+    return float(gamma.sf(ratio, mean**2 / variance, scale=variance / mean))
+
+
+def _sized(regression, terms, steps, kept=()) -> list[Step]:
+    """The steps with their sizes, fitted together, and standard deviations."""
+    before = regression.events()
+    regression.set_events([column(regression, s) for s in steps], list(kept))
+    base, own = regression.fit(terms).base, slice(-len(steps), None)
+    count = sum(w.coefficients for w in regression.whiteners)
+    best = list(enumerate(base.best))
+    values = np.array([base.coefficients[a, g] for a, g in best])[:, own]
+    spread = [np.diag(base.inverse[a][g])[own] * base.rss[a, g] / count for a, g in best]
+    back = np.linalg.inv(regression.axes)
+    sizes, variances = (back @ values).T, ((back**2) @ np.array(spread)).T
+    for step, size, variance in zip(steps, sizes, variances):
+        step.size_dps, step.deviation_dps = size, np.sqrt(np.maximum(variance, 0.0))
+        session = regression.sessions[step.session]
+        step.at_s = step.block * session.block_s
+    regression.set_events([], before)
     return steps
 
 
-def _scores(regression, terms, s, at, chunk=256):
-    w, n = regression.whiteners[s], regression.sessions[s].blocks
-    z = regression.stack(terms)
-    out = []
-    for i in range(0, len(at), chunk):
-        heaviside = (np.arange(n)[:, None] >= at[None, i : i + chunk]).astype(float)
-        x = [np.zeros((len(v), heaviside.shape[1])) for v in z]
-        x[s] = w.prepare(heaviside)
-        g = _sparse_gram(regression, z, x, s)
-        out.append(
-            ratios(
-                g,
-                fit_base(g, regression.scale, regression.steep),
-                regression.scale,
-                regression.steep,
-            ).sum(axis=1)
-        )
-    return np.concatenate(out)
+def _is_abrupt(regression, terms, step: Step) -> bool:
+    """Whether the blocks next to it differ by most of its size, less the trend around it: a bend
+    or a slow loop does not."""
+    session = regression.sessions[step.session]
+    there = np.flatnonzero(session.available)
+    weight = step.size_dps / np.maximum(step.deviation_dps, 1e-12) ** 2
+    rate = session.rate_dps - predicted(terms, regression.fit(terms).coefficients, session)
+    along = rate[there] @ weight / (step.size_dps @ weight)
+    at = int(np.searchsorted(there, step.block))
+    change = np.array([_change(along, i) for i in range(at - _AROUND, at + _AROUND + 1)])
+    near = np.abs(np.arange(-_AROUND, _AROUND + 1)) <= 2 * _BESIDE
+    trend = np.nanmedian(change[~near]) if np.isfinite(change[~near]).any() else 0.0
+    largest = np.nanmax(np.r_[change[_AROUND - 1 : _AROUND + 2], -np.inf])
+    return bool(largest - trend > _ABRUPT)
 
 
-def _sparse_gram(regression, z, x, s):
-    # Only one session has anything in x: its products alone are worth computing.
-    own = gram([regression.whiteners[s]], [regression.y[s]], [z[s]], [x[s]])
-    rest = gram(regression.whiteners, regression.y, z)
-    rest.xy, rest.xz, rest.xx = (np.zeros((len(z), *v.shape[1:])) for v in (own.xy, own.xz, own.xx))
-    rest.xy[s], rest.xz[s], rest.xx[s] = own.xy[0], own.xz[0], own.xx[0]
-    return rest
+def _change(along, i) -> float:
+    """Mean of the blocks after place i less that of those before, one between left out."""
+    before, after = along[max(0, i - 1 - _BESIDE) : max(0, i - 1)], along[i : i + _BESIDE]
+    after = after if i < len(along) else along[:0]
+    return float(after.mean() - before.mean()) if len(before) and len(after) else np.nan

@@ -41,9 +41,18 @@ class PowerOn:
         return self.session.tick_weight
 
     def frames(self) -> Iterator[Frames]:
-        """All samples, in batches."""
+        """All samples, in batches, without the steps of the bias."""
         opened = open_recording(self.path, keep_gaps=True)
-        return frames_in_batches(opened, _ROWS, self.channels)
+        batches, level = frames_in_batches(opened, _ROWS, self.channels), self.session.level_dps
+        return batches if level is None else (self._less(f, level * self.lsb) for f in batches)
+
+    def _less(self, frames: Frames, level: np.ndarray) -> Frames:
+        """The samples less the steps, (ticks, 3) LSB, in whole counts whose mean is the step's."""
+        counts = level[np.clip(self.ticks(frames), 0, len(level) - 1)]
+        at = np.arange(len(frames))[:, None]
+        whole = np.floor((at + 1) * (counts % 1.0)) - np.floor(at * (counts % 1.0))
+        frames.frames[:, 4:] -= (np.floor(counts) + whole).astype(np.int32)
+        return frames
 
     def ticks(self, frames: Frames) -> np.ndarray:
         """(n,) index of each sample's tick."""

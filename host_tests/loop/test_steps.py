@@ -1,0 +1,68 @@
+"""Steps of the bias: found before effects, in every stretch an offset, and never invented."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from zerorate_tools.loop.fit.line import ordinary
+from zerorate_tools.loop.search.steps_first import bend_of, without_steps
+from zerorate_tools.loop.simulated import simulate
+
+
+def stepped(seed, floors, *places, effects=()):
+    """A session with steps of so many floors on every axis, and their blocks."""
+    device = simulate(seed, effects, sessions=1, bare=not effects)
+    (session,) = device.sessions
+    for at, sign in zip(places, (1, -1, 1)):
+        session.rate_dps[at:] += sign * floors * device.floor_dps * (1, -1, 1)
+    return session, device.floor_dps
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_three_large_steps_hide_none_of_them(seed):
+    session, floor = stepped(seed, 40.0, 50, 90, 130)
+    (clean,) = without_steps([session])
+    assert [s.block for s in clean.steps] == [50, 90, 130]
+    for step, sign in zip(clean.steps, (1, -1, 1)):
+        off = step.size_dps - sign * 40 * floor * (1, -1, 1)
+        assert (np.abs(off) < 5 * step.deviation_dps).all()
+
+
+def test_nothing_and_what_bends_has_no_step():
+    listed = 0
+    for seed in range(10):
+        for effect in ((), [("thermal-hysteresis", 5.0)], [("temperature-kink", 5.0)]):
+            session, _ = stepped(seed, 0.0, effects=effect)
+            listed += len(without_steps([session])[0].steps)
+    assert listed == 0
+
+
+def test_jumps_of_a_recorded_supply_are_left_to_its_effect():
+    sessions = simulate(11, [("supply-voltage", 10.0)], sessions=3).sessions
+    assert not any(s.steps for s in without_steps(sessions))
+
+
+def test_what_is_fitted_has_an_offset_in_every_stretch():
+    session, _ = stepped(3, 200.0, 60)
+    terms, without = bend_of(session), stepped(3, 0.0)[0]
+    clean = replace(without_steps([session])[0], rate_dps=session.rate_dps)
+    fitted = ordinary(terms, [clean])
+    assert fitted == pytest.approx(ordinary(terms, [without]), abs=2e-4)
+    assert fitted != pytest.approx(ordinary(terms, [session]), abs=2e-4)
+
+
+@pytest.mark.parametrize("seen_g", [0.0, 0.4])
+def test_a_step_is_timed_to_the_second_and_the_accelerometer_is_asked(seen_g):
+    session, floor = stepped(5, 60.0)
+    rng, per = np.random.default_rng(5), session.ticks_per_block
+    ticks = np.repeat(session.rate_dps, per, axis=0) + rng.normal(0, 1e-3, (180 * per, 3))
+    moment = 90 * per + 2
+    ticks[moment:] += 60 * floor
+    session.ticks_dps, session.tick_weight = ticks, np.ones(len(ticks))
+    session.rate_dps = ticks.reshape(180, per, 3).mean(axis=1)
+    for i, axis in enumerate("xyz"):
+        session.sources[f"acc_{axis}"] = (i == 2) + rng.normal(0, 1e-3, len(ticks))
+    session.sources["acc_x"][moment:] += seen_g
+    (step,) = without_steps([session])[0].steps
+    assert step.at_s == pytest.approx(moment * session.tick_s, abs=session.tick_s)
+    assert ("the accelerometer saw 0.4 g" in step.said) == bool(seen_g)

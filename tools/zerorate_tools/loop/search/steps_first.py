@@ -1,0 +1,153 @@
+"""Steps before effects: each session's own are found, timed, sized and taken out of it.
+
+Each stretch between two steps has an offset of its own in every fit from then on. Steps must stand
+beside what the sensor's own channels do where those jump often. Where another recorded channel
+does, a jump of the bias may be its doing, and late: the search then lets both compete.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ...model.term import Term
+from ..fit.regression import Regression
+from ..read.sessions import OWN_SOURCES, Session, common_sources
+from .steps import Step, find_all
+
+#: The sensor's own channels, and one made of its temperature.
+_RATE = "rate of temp"
+_OWN = {*OWN_SOURCES, _RATE}
+#: Blocks before and after a jump of a channel, how many times its usual changes one is, and how
+#: many it takes for the channel to be judged by them.
+_BESIDE, _OF_USUAL, _JUMPS = 3, 6.0, 4
+#: Ticks around a moment in which the accelerometer is looked at; what it must see, in g and in
+#: times its usual change.
+_MOMENT, _SEEN_G, _SEEN = 10, 0.02, 6.0
+
+
+def without_steps(sessions: Sequence[Session]) -> list[Session]:
+    """The sessions without their steps, which they name."""
+    jumping = [n for n in _channels(sessions) if _jumps_often(sessions, n)]
+    if set(jumping) - _OWN:
+        return list(sessions)
+    return [_less(s, _steps(s, [*bend_of(s), *_beside(s, jumping)])) for s in sessions]
+
+
+def _steps(session, terms) -> list[Step]:
+    """Those of one session in their order; one in the middle of a block, which two blocks in turn
+    show, is one."""
+    out: list[Step] = []
+    for step in sorted(find_all(Regression([session]), terms), key=lambda s: s.block):
+        if out and step.block - out[-1].block == 1 and step.size_dps @ out[-1].size_dps > 0:
+            deviation = np.hypot(step.deviation_dps, out[-1].deviation_dps)
+            size = out[-1].size_dps + step.size_dps
+            step = replace(out.pop(), size_dps=size, deviation_dps=deviation)
+        out.append(step)
+    return out
+
+
+def bend_of(session: Session) -> list[Term]:
+    """Line and bend over temperature, beside which steps are looked for."""
+    temp = session.sources.get("temp")
+    if temp is None or np.ptp(temp) == 0:
+        return []
+    return [Term("temp", centre=float(temp.mean()), power=k) for k in (1, 2)]
+
+
+def _beside(session, jumping) -> list[Term]:
+    """Terms of the sensor's own channels that jump often, in proportion and squared."""
+    terms = [Term(n, power=k) for n in jumping if n != _RATE for k in (1, 2)]
+    rate = [Term("temp", lag_s=20.0, lag_mode="rate")] if _RATE in jumping else []
+    return [*(t for t in terms if np.ptp(session.block_mean(session.source(t.source))) > 0), *rate]
+
+
+def _channels(sessions) -> list[str]:
+    shared = [n for n in common_sources(sessions) if n != "temp"]
+    return [*shared, _RATE] if all("temp" in s.sources for s in sessions) else shared
+
+
+def _jumps_often(sessions, name) -> bool:
+    """Whether a channel has jumps that stand out, and enough of them to be judged by."""
+    jumps = [_jumps(s, name) for s in sessions]
+    usual = float(np.median(np.concatenate(jumps)))
+    return sum(_times(j > _OF_USUAL * usual) for j in jumps) >= _JUMPS
+
+
+def _blocks(session, name):
+    if name == _RATE:
+        return np.gradient(session.block_mean(session.sources["temp"]))
+    return session.block_mean(session.sources[name])
+
+
+def _jumps(session, name) -> np.ndarray:
+    """(n,) by how much the blocks after each differ from those before it."""
+    values = _blocks(session, name)
+    total = np.r_[0.0, np.cumsum(values)]
+    at = np.arange(len(values))
+    before, after = np.maximum(at - _BESIDE, 0), np.minimum(at + _BESIDE, len(values))
+    mean_after = (total[after] - total[at]) / np.maximum(after - at, 1)
+    mean_before = (total[at] - total[before]) / np.maximum(at - before, 1)
+    return np.where(at > 0, np.abs(mean_after - mean_before), 0.0)
+
+
+def _times(there) -> int:
+    """How many runs of True there are."""
+    return int((np.diff(there.astype(int), prepend=0) == 1).sum())
+
+
+def _less(session: Session, steps: list[Step]) -> Session:
+    """The session with the steps taken out of its rates."""
+    if not steps:
+        return session
+    steps = [_timed(session, s) for s in steps]
+    ticks = np.zeros((session.blocks * session.ticks_per_block, 3))
+    time_s = session.time_s()
+    for step in steps:
+        ticks[time_s > step.at_s] += step.size_dps
+    rate = session.rate_dps - np.column_stack([session.block_mean(ticks[:, a]) for a in range(3)])
+    at_rest = None if session.ticks_dps is None else session.ticks_dps - ticks
+    return replace(session, rate_dps=rate, ticks_dps=at_rest, steps=tuple(steps), level_dps=ticks)
+
+
+def _timed(session: Session, step: Step) -> Step:
+    """The step at the second where its ticks part best, with what the accelerometer saw there."""
+    if session.ticks_dps is None:
+        return step
+    per = session.ticks_per_block
+    first, last = (step.block - 2) * per, (step.block + 2) * per
+    weight = step.size_dps / np.maximum(step.deviation_dps, 1e-12) ** 2
+    along = session.ticks_dps @ (weight / (step.size_dps @ weight))
+    places = np.arange(max(first + 1, 1), min(last, len(along)))
+    near = along[max(first, 0) : last + 1]
+    level = np.nanmean(along[max(0, first - 2 * per) : max(first, 0)]) if first > 0 else np.nan
+    level = level if np.isfinite(level) else np.nanmin(near)
+    # the step is one in these units: before it the ticks are nearer to the level, after it to one
+    nearer = np.nan_to_num(along - level - 0.5)
+    total = np.cumsum(nearer[: last + 1])
+    at = int(places[total[places - 1].argmin()])
+    there = np.flatnonzero(np.isfinite(along))
+    place = int(np.searchsorted(there, at))
+    next_there = there[min(place, len(there) - 1)]
+    middle = (there[max(place - 1, 0)] + 1 + next_there) / 2
+    moment, said = _by_accelerometer(session, at, int(next_there))
+    at_s = (moment if moment is not None else middle) * session.tick_s
+    return replace(step, at_s=float(at_s), said=said)
+
+
+def _by_accelerometer(session, first, last) -> tuple[int | None, str]:
+    """(tick, words) of the largest jump or click of the accelerometer between two ticks."""
+    if "acc_x" not in session.sources:
+        return None, ""
+    acc = np.column_stack([session.sources[f"acc_{a}"] for a in "xyz"])
+    change = np.r_[0.0, np.linalg.norm(np.diff(acc, axis=0), axis=1)]
+    shaken = np.sqrt(np.maximum(session.sources.get("vib", np.zeros(len(acc))), 0.0))
+    seen = np.maximum(change, shaken - np.median(shaken))
+    a, b = max(0, first - _MOMENT), min(len(seen), last + _MOMENT)
+    at = a + int(seen[a:b].argmax())
+    if seen[at] < max(_SEEN_G, _SEEN * np.median(seen)):
+        return None, ""
+    said = f"the accelerometer saw {seen[at]:.2g} g at that moment: mechanical stress or a knock"
+    return at, said
