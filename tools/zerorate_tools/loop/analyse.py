@@ -59,7 +59,7 @@ def analyse(
     locked = [sessions[at]]
     train = [s for i, s in enumerate(sessions) if i != at] or locked
     by_pieces = _on_pieces(train[0], motion, logs) if len(train) == 1 else None
-    selection, judgement = upheld(select(train, taken, by_pieces), locked)
+    selection, judgement = upheld(select(train, taken, by_pieces, len(sessions) > 1), locked)
     whole = [*selection.straight, *selection.terms]
     floor = floor_dps(judgement.whole, whole)
     terms, coefficients = deployed(selection)

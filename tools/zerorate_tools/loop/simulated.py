@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.fft import irfft, rfft
 
-from ..model.term import Term, first_order_lag
+from ..model.term import Term, first_order_lag, play
 from .read.sessions import Session, block_basis
 
 BLOCK_S = 20.0
@@ -119,6 +119,10 @@ def noise(rng: np.random.Generator, n: int, kind: str, level: np.ndarray) -> np.
         out[:, a] = x
     return out
 
+
+PRANDTL_ISHLINSKII = "prandtl-ishlinskii"
+#: Deviation of the temperature before a power-on from its first one.
+KEPT_OFF_DEGC = 3.0
 
 HOSTILE = ("walk4", "steep", "telegraph", "outliers", "unequal")
 
@@ -234,6 +238,26 @@ def _add_matrix(rng, sessions, name, size_dps):
         s.rate_dps += (v @ matrix.T) * size_dps / scale
 
 
+def _many_plays(rng):
+    """A sum of play operators and their squares; where each stands at a power-on nobody knows: the
+    device was kept some degrees off before."""
+    radii = np.sort(rng.uniform(0.5, 8.0, int(rng.integers(3, 7))))
+    weights = rng.dirichlet(np.ones(len(radii)))
+    lopsided = rng.uniform(-0.04, 0.04, len(radii))
+    kept_off_degc = rng.normal(0.0, KEPT_OFF_DEGC, 64)
+
+    def shape(session: Session) -> np.ndarray:
+        degc = session.sources["temp"]
+        before = degc[0] + kept_off_degc[int(session.name.split("-")[-1])]
+        total = np.zeros(len(degc))
+        for radius, weight, square in zip(radii, weights, lopsided):
+            stands = play(np.r_[before, degc], 2 * radius)[1:]
+            total += weight * (stands - degc + square * (stands - 25.0) ** 2)
+        return session.block_mean(total)
+
+    return shape
+
+
 def _term(**fields):
     return lambda s: block_basis(Term(**fields), s)
 
@@ -254,6 +278,7 @@ def shapes_of(rng: np.random.Generator, sessions: list[Session]) -> dict:
         "thermal-rate": _term(source="temp", lag_s=u(20, 40), lag_mode="rate"),
         "thermal-lag": _term(source="temp", lag_s=u(60, 250), lag_mode="difference"),
         "thermal-hysteresis": _term(source="temp", memory="backlash", width=u(2, 6)),
+        PRANDTL_ISHLINSKII: _many_plays(rng),
         "power-on-transient": _term(source="one", decay_s=u(150, 900)),
         "time-drift": _term(source="time"),
         "vibration": _term(source="vib"),

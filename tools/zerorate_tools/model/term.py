@@ -67,13 +67,14 @@ def play(u: np.ndarray, width: float) -> np.ndarray:
     """Backlash (play) operator: p = min(max(p, u - width/2), u + width/2), p starting at the first
     u.
     """
-    p = np.empty_like(u)
-    at = u[0]
-    lower, upper = (u - width / 2).tolist(), (u + width / 2).tolist()
-    for i in range(len(u)):
-        at = min(max(at, lower[i]), upper[i])
-        p[i] = at
-    return p
+    p, at = [], float(u[0])
+    for lower, upper in zip((u - width / 2).tolist(), (u + width / 2).tolist()):
+        if at < lower:
+            at = lower
+        elif at > upper:
+            at = upper
+        p.append(at)
+    return np.array(p)
 
 
 def _remembered(term: Term, u: np.ndarray, tick_s: float) -> np.ndarray:

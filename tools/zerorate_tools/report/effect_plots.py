@@ -105,10 +105,11 @@ def _points(group, axis, session, left):
 def _curve(group, axis, sessions):
     """Over the sorted abscissa; a loop, which hysteresis is, in the order of time."""
     term = group[0][0]
-    some = sessions if term.memory != "backlash" else sessions[-1:]
+    is_loop = any(t.memory in ("backlash", "play") for t, _ in group)
+    some = sessions[-1:] if is_loop else sessions
     x = np.concatenate([abscissa(term, s)[0] for s in some])
     y = np.concatenate([_correction(group, axis, s) for s in some])
-    if term.memory == "backlash":
+    if is_loop:
         return thinned(x, y)
     order = np.argsort(x, kind="stable")
     return thinned(x[order], y[order])
@@ -122,7 +123,7 @@ def abscissa(term: Term, session: Session) -> tuple[NDArray, str]:
     if term.second is not None:
         other = quantity(term.second)[0]
         return block_basis(term, session), f"{name} times {other}, from their means"
-    if term.memory == "backlash":
+    if term.memory in ("backlash", "play"):
         return session.block_mean(session.source(term.source)), _label(name, unit)
     if term.power_first and term.power > 1:
         return block_basis(replace(term, knot=None), session), f"lagged square of {name}"

@@ -18,6 +18,31 @@ def hysteresis(world: World, *, width_degc: float = 4.0) -> np.ndarray:
     return (backlash(world.temp_degc, width_degc) - world.temp_degc) / (width_degc / 2)
 
 
+def prandtl_ishlinskii(
+    world: World,
+    *,
+    widths_degc: list | None = None,
+    weights: list | None = None,
+    lopsided: float = 0.0,
+    kept_off_degc: float | list = 0.0,
+) -> np.ndarray:
+    """A weighted sum of backlashes, degC, as real parts have: widths 2, 6 and 15 alike by default.
+
+    lopsided: of each operator's square about 25 degC beside itself; kept_off_degc: how far from its
+    first temperature the device was before power-on, of every session or one each in turn: where
+    the operators then stand no firmware can know.
+    """
+    widths = [2.0, 6.0, 15.0] if widths_degc is None else widths_degc
+    shares = np.ones(len(widths)) / len(widths) if weights is None else np.asarray(weights, float)
+    off = np.atleast_1d(kept_off_degc)
+    history = np.r_[world.temp_degc[0] + off[(world.number - 1) % len(off)], world.temp_degc]
+    total = np.zeros(len(world.temp_degc))
+    for width, share in zip(widths, shares, strict=True):
+        stands = backlash(history, width)[1:]
+        total += share * (stands - world.temp_degc + lopsided * (stands - 25.0) ** 2)
+    return total
+
+
 def thermal_rate(world: World, *, lag_s: float = 0.0) -> np.ndarray:
     """Rate of temperature change, degC a minute, smoothed by an optional first-order lag."""
     return lagged(np.gradient(world.temp_degc, world.dt_s) * 60, lag_s, world.dt_s)
@@ -128,6 +153,7 @@ def channel(
 
 EFFECTS: dict[str, Callable[..., np.ndarray]] = {
     "hysteresis": hysteresis,
+    "prandtl-ishlinskii": prandtl_ishlinskii,
     "thermal-rate": thermal_rate,
     "sensor-lag": sensor_lag,
     "power-on": power_on,

@@ -36,10 +36,13 @@ PAIRS = (
     ("thermal-lag", "vibration"),
     ("power-on-transient", "linear-acceleration"),
 )
+#: Hysteresis of many widths, by how many power-ons; the last one is locked away.
+MANY_WIDTHS, POWER_ONS = "many widths", (2, 3, 4, 5, 6)
 #: Sizes in floors, all of which must come down to the noise.
 SIZES = (2.0, 3.0, 5.0)
 HIDDEN_FLOORS = 5.0
 _SEEDS = {"null": 10_000, "effect": 200_000, "hidden": 400_000, "real": 600_000, "pair": 800_000}
+_SEEDS["many widths"] = 300_000
 NULL, REAL, OUT, HIDDEN, TWO = "nothing", "real noise", "outside", "not recorded", "two at once"
 
 
@@ -75,7 +78,13 @@ def devices(nulls: int, seeds: int, real: list[str]) -> list[Device]:
     from ...loop.simulated import HOSTILE
 
     plain = [Device(NULL, _SEEDS["null"] + i) for i in range(nulls)]
-    some = [*plain, *_effects(seeds), *_pairs(seeds), *_hidden(max(seeds, nulls // 2))]
+    some = [
+        *plain,
+        *_effects(seeds),
+        *_pairs(seeds),
+        *_many_widths(seeds),
+        *_hidden(max(seeds, nulls // 2)),
+    ]
     for k, kind in enumerate(HOSTILE):
         first = _SEEDS["null"] + 10_000 * (k + 1)
         share = range(-(-nulls // 3))
@@ -93,6 +102,15 @@ def _effects(seeds: int) -> Iterator[Device]:
                 yield Device(f"{size:g}x", seed, ((effect, size),))
         for effect in OUTSIDE:
             yield Device(OUT, seed, ((effect, 2.0),))
+
+
+def _many_widths(seeds: int) -> Iterator[Device]:
+    from ...loop.simulated import PRANDTL_ISHLINSKII
+
+    for n in POWER_ONS:
+        for i in range(seeds):
+            seed = _SEEDS["many widths"] + 1000 * n + i
+            yield Device(f"{MANY_WIDTHS}, {n}", seed, ((PRANDTL_ISHLINSKII, 2.0),), sessions=n)
 
 
 def _hidden(number: int) -> Iterator[Device]:

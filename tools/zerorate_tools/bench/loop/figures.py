@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from .devices import CATALOGUE, HIDDEN, KINK, NULL, OUT, OUTSIDE, REAL, STEP, TWO
+from .devices import CATALOGUE, HIDDEN, KINK, MANY_WIDTHS, NULL, OUT, OUTSIDE, REAL, STEP, TWO
 from .files import ROWS
 from .look import Outcome
 from .wilson import interval
@@ -69,6 +69,7 @@ def figures(outcomes: list[Outcome]) -> list[Figure]:
         *_unrecorded(rows),
         *_removed(rows),
         *_pairs(rows.get(TWO, [])),
+        *_many_widths(rows),
         *_from_files(rows),
         *_made_worse(outcomes),
     ]
@@ -167,6 +168,24 @@ def _times(name, value, limit, devices):
 def _pairs(group):
     for effects, some in _by_effect(group).items():
         yield share(f"2x {effects}: both named", some, _named, 90.0)
+
+
+def _many_widths(rows):
+    """Hysteresis of Prandtl-Ishlinskii form: of all numbers of power-ons, and of each."""
+    each = {row: group for row, group in rows.items() if row.startswith(MANY_WIDTHS)}
+    every = [o for group in each.values() for o in group]
+    if not every:
+        return
+    named = partial(Outcome.named, effect="thermal-hysteresis")
+    name = "2x hysteresis of many widths"
+    yield share(f"{name}: found", every, named, 95.0)
+    yield _times(f"{name}: error after, mean", np.mean([o.after for o in every]), 1.2, len(every))
+    for row, group in each.items():
+        where = f"{name}, {row.split()[-1]} power-ons"
+        yield share(f"{where}: found", group, named, None)
+        yield _times(
+            f"{where}: error after, mean", np.mean([o.after for o in group]), None, len(group)
+        )
 
 
 def _made_worse(outcomes):

@@ -66,14 +66,16 @@ def look(device: Device) -> Outcome:
 
 def judged(device: Device, sessions: list, noise_dps: np.ndarray) -> Outcome:
     """What the loop says of sessions. noise_dps: (n, 3) of the last one, nothing else in it."""
+    from ...loop.fit.single import PiecesByLine
     from ...loop.search.confounding import label
     from ...loop.search.select import select
     from ...loop.verify.judge import scored
     from ...loop.verify.prune_by_holdout import upheld
 
-    selection, verdict = upheld(select(sessions[:-1]), sessions[-1:])
-    alone, _ = scored(replace(sessions[-1], rate_dps=noise_dps), np.zeros(noise_dps.shape))
-    unit = float(np.sqrt(np.nanmean(alone**2)))
+    alone = PiecesByLine(sessions[0]) if len(sessions) == 2 else None
+    selection, verdict = upheld(select(sessions[:-1], 0, alone, judged_again=True), sessions[-1:])
+    noise, _ = scored(replace(sessions[-1], rate_dps=noise_dps), np.zeros(noise_dps.shape))
+    unit = float(np.sqrt(np.nanmean(noise**2)))
     found = selection.found
     return Outcome(
         device,

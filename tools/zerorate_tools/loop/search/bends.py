@@ -37,10 +37,14 @@ class JudgedOnPieces(Protocol):
 
 @dataclass
 class Bends:
-    """The bend found, if any, with what was said of it, and kinds refused with the reason."""
+    """The bend found, if any, with what was said of it, and kinds refused with the reason.
+
+    curve: one of two powers, whether or not pieces left out speak for it alone.
+    """
 
     found: list[tuple[Candidate, Decision]] = field(default_factory=list)
     refused: list[tuple[str, str]] = field(default_factory=list)
+    curve: tuple[Term, ...] = ()
 
 
 def find_bends(regression, judged: JudgedOnPieces, straight, pool) -> Bends:
@@ -49,6 +53,7 @@ def find_bends(regression, judged: JudgedOnPieces, straight, pool) -> Bends:
     pool: candidates, of which those of other kinds are passed over.
     """
     every, bends = with_curve([c for c in pool if c.kind in KINDS]), Bends()
+    bends.curve = next((c.terms for c in every if c.kind == "temperature-curve"), ())
     regression.steep = False
     significant = sorted(_significant(regression, straight, every), key=_worth, reverse=True)
     regression.steep = True

@@ -9,10 +9,11 @@ import numpy as np
 
 from ...model.term import Term
 from ..fit.common_cause import coherence, turned_axes
+from ..fit.left_out import gains
 from ..fit.regression import Regression
 from ..fit.single import LEAST_OF_A_PIECE, PIECES
 from ..read.sessions import Session
-from . import confounding, drift_test
+from . import confounding, drift_test, hysteresis
 from . import steps as events
 from .bends import JudgedOnPieces, find_bends, on_pieces
 from .catalogue import Candidate, ranges
@@ -52,8 +53,9 @@ class Search:
         sessions: list[Session],
         taken: int = 0,
         on_pieces: JudgedOnPieces | None = None,
+        judged_again: bool = False,
     ):
-        self.taken = taken
+        self.taken, self.judged_again = taken, judged_again
         self.regression = Regression(sessions)
         self.on_pieces = on_pieces
         self.straight = straight_line(sessions)
@@ -80,6 +82,8 @@ class Search:
             self._bend_first()
         while len(self.found) < MOST_EFFECTS and self._add_one():
             self._drop_idle()
+        if not self.on_pieces:
+            self._widen_hysteresis()
         self._list_steps()
         name_found(self.regression, self.straight, self.found, self.pool, self.bends)
         if not self.on_pieces:
@@ -120,9 +124,40 @@ class Search:
         bends = find_bends(self.regression, self.on_pieces, self.straight, self.pool)
         self.found = [Found(c, d) for c, d in bends.found]
         self.refused += bends.refused
+        self._hysteresis_of_one_recording(bends.curve)
         self.bends = len(self.found)
         if any(t.power == 2 for t in self.terms()):
             self.bend = ()
+
+    def _hysteresis_of_one_recording(self, curve: tuple[Term, ...]):
+        """A sum of play operators with the bend found, or with a whole curve, as one effect."""
+        assert self.on_pieces is not None
+        beside = [tuple(self.terms()), *([curve] if curve else [])]
+        found, refused = hysteresis.of_one_recording(
+            *(self.regression, self.straight, beside, self.pool, self.on_pieces, self.taken),
+            least_factor=1.0 if self.judged_again else hysteresis.LEAST_FACTOR,
+        )
+        self.found = [found] if found else self.found
+        self.refused += [(hysteresis.KIND, refused)] if refused else []
+
+    def _widen_hysteresis(self):
+        """A sum of play operators in place of the hysteresis found, where it predicts better."""
+        own = [f for f in self.found if f.candidate.kind == hysteresis.KIND]
+        if not own:
+            return
+        before, self.found = self.found, [f for f in self.found if f not in own]
+        candidate, _ = hysteresis.best_hysteresis(
+            self.regression.sessions,
+            self.straight,
+            self.terms(),
+            lambda straight, beside, terms: gains(self.regression, [*straight, *beside], terms),
+            [t for f in own for t in f.candidate.terms],
+        )
+        found = None
+        if candidate and is_room([*self.terms(), *candidate.terms], self.taken):
+            self._look_afresh()
+            found = self._consider(candidate)
+        self.found = [*self.found, found] if found else before
 
     def _look_afresh(self):
         r = self.regression
@@ -238,7 +273,9 @@ class Search:
 
     def _is_a_start(self, candidate: Candidate) -> bool:
         """Whether a transient is no longer than a found lag of temperature takes to forget what it
-        assumed before the power-on."""
+        assumed before the power-on; or what play operators assumed, which is kept for long."""
+        if candidate.kind == "power-on-transient" and any(t.memory == "play" for t in self.terms()):
+            return True
         lags = [t.lag_s for t in self.terms() if t.lag_mode != "none"]
         if candidate.kind != "power-on-transient" or not lags:
             return False
@@ -278,10 +315,12 @@ def select(
     sessions: list[Session],
     taken: int = 0,
     on_pieces: JudgedOnPieces | None = None,
+    judged_again: bool = False,
 ) -> Selection:
     """Everything that the training sessions show, as far as the firmware has room for it.
 
     taken: slots that what was found in motion needs; on_pieces: what judges effects of a session
-    that stands alone by pieces of it left out.
+    that stands alone by pieces of it left out; judged_again: whether another session, locked away,
+    has the last word.
     """
-    return Search(sessions, taken, on_pieces).run()
+    return Search(sessions, taken, on_pieces, judged_again).run()

@@ -1,0 +1,84 @@
+"""Hysteresis of many widths is found where a course can show it, and nowhere else."""
+
+import numpy as np
+import pytest
+from zerorate_tools.loop.fit.single import PiecesByLine
+from zerorate_tools.loop.read.sessions import Session
+from zerorate_tools.loop.search.hysteresis import KIND, best_hysteresis, may_show, passed_twice
+from zerorate_tools.loop.search.select import select, straight_line
+from zerorate_tools.loop.simulated import PRANDTL_ISHLINSKII, simulate
+from zerorate_tools.model import Slot, build_model
+from zerorate_tools.model.term import play
+from zerorate_tools.recordings import Scales
+
+SCALES = Scales("MPU-6050", 1.0, 131.0, 16384.0, 340.0, 36.53)
+DOWN_UP_DOWN = ((0, 50.0), (80, -15.0), (180, 75.0), (240, 35.0))
+WARMED_ONCE = ((0, 20.0), (240, 60.0))
+BLOCKS, TICKS, BLOCK_S = 240, 34, 34.0
+
+
+def recording(course, seed=1, hysteresis=1.0, walk=0.0):
+    """One recording in a chamber; hysteresis in tenths of a dps, walk in dps a block."""
+    rng = np.random.default_rng(seed)
+    at = (np.arange(BLOCKS * TICKS) + 0.5) / TICKS
+    degc = np.interp(at, *zip(*course)) + rng.normal(0, 0.02, len(at))
+    total = sum(
+        w * (play(degc, 2 * r) - degc) / r + w * 0.1 * (play(degc, 2 * r) / 40) ** 2
+        for r, w in ((4.0, 1.0), (12.0, 0.7), (30.0, 1.5))
+    )
+    effect = total.reshape(BLOCKS, TICKS).mean(axis=1)
+    mean = degc.reshape(BLOCKS, TICKS).mean(axis=1)
+    rate = np.outer(mean, (0.004, -0.003, 0.002)) + np.outer((mean / 40) ** 2, (0.1, 0.05, -0.1))
+    rate += 0.1 * hysteresis * np.outer(effect, (1.0, -0.3, 0.4))
+    rate += rng.normal(0, 0.003, rate.shape) + np.cumsum(rng.normal(0, walk, rate.shape), axis=0)
+    return Session("chamber", BLOCK_S, TICKS, rate, np.ones(BLOCKS), {"temp": degc})
+
+
+def left(session, terms):
+    """(3,) RMS dps of pieces left out in turn."""
+    residual = PiecesByLine(session).residual(straight_line([session]), terms)
+    return np.sqrt(np.nanmean(residual**2, axis=0))
+
+
+def test_a_chamber_s_loop_is_named_and_taken_away_on_pieces_left_out():
+    session = recording(DOWN_UP_DOWN)
+    found = select([session], on_pieces=PiecesByLine(session)).found
+    assert found[0].candidate.kind == KIND
+    after = left(session, found[0].candidate.terms)
+    assert (after < 0.1 * left(session, ())).all()
+    slots = [Slot(t, (0.001, 0.0, 0.0), KIND) for t in found[0].candidate.terms]
+    assert len(build_model(slots, SCALES).slots) == len(slots)
+
+
+def test_a_part_warmed_once_shows_no_hysteresis():
+    session = recording(WARMED_ONCE)
+    assert passed_twice([session]) == 0.0
+    assert not may_show([session])
+    kinds = [f.candidate.kind for f in select([session], on_pieces=PiecesByLine(session)).found]
+    assert KIND not in kinds
+
+
+@pytest.mark.parametrize("walk", [0.0, 0.001])
+def test_noise_alone_gets_no_play_operators(walk):
+    session = recording(DOWN_UP_DOWN, hysteresis=0.0, walk=walk)
+    found = select([session], on_pieces=PiecesByLine(session)).found
+    assert KIND not in [f.candidate.kind for f in found]
+
+
+def test_a_lag_is_not_taken_for_hysteresis():
+    device = simulate(300_002, [("thermal-lag", 5.0)], sessions=2, bare=True)
+    found = select(device.sessions[:1], on_pieces=PiecesByLine(device.sessions[0])).found
+    assert KIND not in [f.candidate.kind for f in found]
+
+
+def test_power_ons_show_more_than_one_width():
+    device = simulate(300_003, [(PRANDTL_ISHLINSKII, 5.0)], sessions=4, bare=True)
+    terms = [t for f in select(device.sessions[:3]).found for t in f.candidate.terms]
+    assert len({t.width for t in terms if t.memory in ("backlash", "play")}) > 1
+
+
+def test_what_predicts_no_better_is_not_proposed():
+    session = recording(DOWN_UP_DOWN, hysteresis=0.0)
+    straight = straight_line([session])
+    candidate, gain = best_hysteresis([session], straight, (), lambda *terms: np.zeros(10))
+    assert (candidate, gain) == (None, 0.0)

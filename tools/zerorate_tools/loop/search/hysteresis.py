@@ -1,0 +1,273 @@
+"""Thermal hysteresis as real parts have it: Prandtl-Ishlinskii, a weighted sum of play operators.
+
+One backlash has one width; a real loop has rounded ends and inner loops of its own. Which widths,
+how many, and whether lopsided (with squares) is chosen by what predicts best what is left out: the
+widths by least squares over a geometric grid and then between its points, the form by the pieces
+or the power-ons left out in turn. That is what keeps it small: a form with more operators has to
+predict better, and its place on the board is limited.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from itertools import combinations
+from math import comb
+
+import numpy as np
+
+from ...model.model import MOST_PLAYS
+from ...model.term import Term, play
+from ..fit.regression import Regression
+from ..fit.single import PiecesByLine, speaks_for
+from ..read.sessions import Session, block_basis
+from .bends import JudgedOnPieces
+from .catalogue import Candidate
+from .decide import LEVEL, Decision, family_p
+from .fits_in_slots import is_room
+from .selection import Found
+
+KIND = "thermal-hysteresis"
+#: Radii of the grid, as shares of the range of temperature: its ends and how many.
+_FINEST, _WIDEST, _GRID = 0.015, 0.65, 12
+_MOST_OPERATORS = min(4, MOST_PLAYS)
+#: Share of the range that must have been passed both warming and cooling: a part only warmed once
+#: shows no difference between the two.
+_LEAST_PASSED_TWICE = 0.25
+_BINS = 20
+_LEAST_SPAN_DEGC = 3.0
+#: Blocks for each number fitted, below which more operators are not tried.
+_BLOCKS_A_NUMBER = 6
+#: Of a coefficient's squares, on those of the columns: beside it, no two operators fight.
+_RIDGE = 1e-7
+_STEPS = (1.12, 1.06)
+#: As how many widths the grid's count: neighbours are much alike.
+_APART = 6
+#: Nats by which it must predict better than lag or rate of temperature, which are simpler.
+_RIVALS_NATS = 3.0
+#: By which the error on pieces left out must fall where one recording stands alone. Noise that
+#: walks by a third of its white part a block lets it fall by 1.2 to 1.4, by 1.9 where it walks by
+#: more than its white part; a real part's loop in a chamber by 4.6.
+LEAST_FACTOR = 2.5
+#: Temperatures of a block when widths are looked for.
+_A_BLOCK = 8
+
+#: (straight, beside, candidate) -> nats gained on each part left out.
+Judged = Callable[[Sequence[Term], Sequence[Term], Sequence[Term]], np.ndarray]
+
+
+def passed_twice(sessions: Sequence[Session]) -> float:
+    """Share of the temperatures seen that some session passed both warming and cooling."""
+    degc = [s.block_mean(s.source("temp"))[s.available] for s in sessions]
+    edges = np.linspace(min(d.min() for d in degc), max(d.max() for d in degc), _BINS + 1)
+    both = np.zeros(_BINS, bool)
+    for d in degc:
+        step = np.diff(d)
+        at = np.clip(np.searchsorted(edges, (d[1:] + d[:-1]) / 2) - 1, 0, _BINS - 1)
+        ways = [np.bincount(at, np.maximum(sign * step, 0), _BINS) for sign in (1, -1)]
+        both |= np.minimum(*ways) > 0.3 * (edges[1] - edges[0])
+    return float(both.mean())
+
+
+def may_show(sessions: Sequence[Session]) -> bool:
+    """Whether the courses of temperature can show a difference between warming and cooling."""
+    if any("temp" not in s.sources for s in sessions):
+        return False
+    degc = np.concatenate([s.block_mean(s.source("temp"))[s.available] for s in sessions])
+    return np.ptp(degc) >= _LEAST_SPAN_DEGC and passed_twice(sessions) >= _LEAST_PASSED_TWICE
+
+
+def best_hysteresis(
+    sessions: Sequence[Session],
+    straight: Sequence[Term],
+    beside: Sequence[Term],
+    judged: Judged,
+    more_than: Sequence[Term] = (),
+) -> tuple[Candidate | None, float]:
+    """The sum of play operators that predicts best what is left out, and the nats that it gains;
+    None where none does better.
+
+    beside: the other terms; more_than: terms of a simpler form that it would take the place of.
+    """
+    if not may_show(sessions):
+        return None, 0.0
+    best = float(judged(straight, beside, more_than).sum()) if more_than else 0.0
+    chosen: Sequence[Term] = ()
+    for terms in _forms(sessions, [*straight, *beside]):
+        gain = float(judged(straight, beside, terms).sum()) - _price(terms)
+        if gain > best:
+            best, chosen = gain, terms
+    return (Candidate(KIND, tuple(chosen), "catalogue") if chosen else None), best
+
+
+def of_one_recording(
+    regression: Regression,
+    straight: Sequence[Term],
+    beside: Sequence[tuple[Term, ...]],
+    pool: Sequence[Candidate],
+    judged: JudgedOnPieces,
+    taken: int,
+    least_factor: float,
+) -> tuple[Found | None, str]:
+    """The hysteresis of a recording that stands alone, with its bend as one effect, or why not.
+
+    beside: the bend found, then another that may be better with a hysteresis beside it; pool: of
+    which lag and rate are asked first, for one course of temperature shows all three much alike;
+    taken: slots that others need; least_factor: by which the error on pieces left out must become
+    less than with the bend, geometric mean over the axes. Pieces left out decide, as with bends,
+    but the noise may be as steep as it likes: a course with few turns is much like a walk.
+    """
+    by_line = PiecesByLine(regression.sessions[0])
+    best: tuple[float, tuple[Term, ...], Candidate] | None = None
+    for bend in beside:
+        candidate, gain = best_hysteresis(regression.sessions, straight, bend, by_line)
+        gain += float(by_line(straight, (), bend).sum()) if bend else 0.0
+        room = candidate and is_room([*bend, *candidate.terms], taken)
+        if candidate and room and (best is None or gain > best[0]):
+            best = gain, bend, candidate
+    if best is None:
+        return None, ""
+    gain, bend, candidate = best
+    rival, rivals_gain = _rival(straight, bend, pool, by_line)
+    if rivals_gain > gain - _RIVALS_NATS:
+        return None, "lag or rate of temperature predict the pieces left out as well"
+    ratio = float(regression.gains([*straight, *bend, *rival], [candidate.terms]).sum())
+    p = family_p(ratio, 3 * len(candidate.terms), _tried(candidate))
+    if p > LEVEL["catalogue"]:
+        return None, "not significant"
+    whole = (*bend, *candidate.terms)
+    before, after = (_rms(by_line.residual(straight, terms)) for terms in (beside[0], whole))
+    if np.exp(np.log(before / after).mean()) < least_factor:
+        return None, "too little of the error to tell it from the noise's walk"
+    nats = judged(straight, (), whole)
+    nats = nats - judged(straight, (), beside[0]) if beside[0] else nats
+    if not speaks_for(nats):
+        return None, judged.reason
+    return Found(Candidate(KIND, whole, "catalogue"), Decision(True, p, ratio, 1.0, nats)), ""
+
+
+def _rms(residual: np.ndarray) -> np.ndarray:
+    """(3,) over the blocks."""
+    return np.sqrt(np.nanmean(residual**2, axis=0))
+
+
+def _rival(straight, bend, pool, by_line) -> tuple[tuple[Term, ...], float]:
+    """Terms of the lag or rate of temperature that predicts best with the bend, and the nats."""
+    best: tuple[tuple[Term, ...], float] = (), -np.inf
+    for candidate in pool:
+        if candidate.kind in ("thermal-lag", "thermal-rate"):
+            gain = float(by_line(straight, (), (*bend, *candidate.terms)).sum())
+            best = (candidate.terms, gain) if gain > best[1] else best
+    return best
+
+
+def _tried(candidate: Candidate) -> float:
+    """Forms compared, times the choices among widths that differ."""
+    widths = len({t.width for t in candidate.terms})
+    return 2.0 * _MOST_OPERATORS * comb(_APART, widths)
+
+
+def _price(terms: Sequence[Term]) -> float:
+    """Nats that a form must gain: one for each width, which was looked for."""
+    return float(len({t.width for t in terms}))
+
+
+def _forms(sessions, beside) -> Iterator[tuple[Term, ...]]:
+    """Of every number of operators, with squares and without, the widths that fit best."""
+    fits = _Fits(sessions, beside)
+    for powers in ((1,), (1, 2)):
+        for number in range(1, _MOST_OPERATORS + 1):
+            if fits.rows >= _BLOCKS_A_NUMBER * (fits.fixed + number * (1 + len(powers))):
+                yield fits.terms(fits.refined(fits.of_grid(number, powers), powers), powers)
+
+
+def _some_of(session: Session) -> np.ndarray:
+    """(n, few) indices of ticks, evenly within each block."""
+    ticks = session.ticks_per_block
+    within = ((np.arange(_A_BLOCK) + 0.5) * ticks / _A_BLOCK).astype(int)
+    return np.arange(session.blocks)[:, None] * ticks + within
+
+
+class _Fits:
+    """Least squares over the blocks of some sessions, an offset each, beside other terms."""
+
+    def __init__(self, sessions: Sequence[Session], beside: Sequence[Term]) -> None:
+        self._sessions = sessions
+        degc = [s.source("temp") for s in sessions]
+        self._lo = float(min(d.min() for d in degc))
+        self._hi = float(max(d.max() for d in degc))
+        self._centre = float(np.mean([d.mean() for d in degc]))
+        self._columns: dict[tuple[float, int], np.ndarray] = {}
+        rate = [s.rate_dps[s.available] for s in sessions]
+        self.rows, self.fixed = sum(map(len, rate)), len(beside) + len(sessions)
+        columns = [np.column_stack([block_basis(t, s) for t in beside]) for s in sessions]
+        basis = self._stacked(columns)
+        self._q = np.linalg.qr(basis / np.maximum(basis.std(axis=0), 1e-300))[0]
+        self._y = self._beside(np.vstack([r - r.mean(axis=0) for r in rate]))
+        # a few temperatures a block tell widths apart as well as every tick
+        self._degc = [s.source("temp")[_some_of(s)] for s in sessions]
+        self._grid = np.geomspace(_FINEST, _WIDEST, _GRID) * (self._hi - self._lo)
+
+    def _stacked(self, columns):
+        """Rows of the blocks with a rate, less each session's mean."""
+        there = [c[s.available] for c, s in zip(columns, self._sessions)]
+        return np.vstack([c - c.mean(axis=0) for c in there])
+
+    def _beside(self, columns):
+        """What the other terms leave of columns."""
+        return columns - self._q @ (self._q.T @ columns)
+
+    def term(self, radius: float, power: int) -> Term:
+        """A play operator of temperature, or its square."""
+        width = 2.0 * float(radius)
+        return Term("temp", self._lo, self._hi, self._centre, power, memory="play", width=width)
+
+    def terms(self, radii: Sequence[float], powers: Sequence[int]) -> tuple[Term, ...]:
+        """Those of some radii, each with its powers."""
+        return tuple(self.term(r, p) for r in sorted(radii) for p in powers)
+
+    def _column(self, radius: float, power: int) -> np.ndarray:
+        if (radius, power) not in self._columns:
+            unit = (self._hi - self._lo) / 2
+            stands = [(play(d.ravel(), 2 * radius) - self._centre) / unit for d in self._degc]
+            for n in (1, 2):
+                means = [(p.reshape(-1, _A_BLOCK) ** n).mean(axis=1, keepdims=True) for p in stands]
+                self._columns[radius, n] = self._beside(self._stacked(means))[:, 0]
+        return self._columns[radius, power]
+
+    def _design(self, radii, powers):
+        return np.column_stack([self._column(r, p) for p in powers for r in radii])
+
+    def of_grid(self, number: int, powers: Sequence[int]) -> list[float]:
+        """The radii of the grid that leave least, of every choice of so many."""
+        x = self._design(self._grid, powers)
+        gram, xy = x.T @ x, x.T @ self._y
+        choices = np.array(list(combinations(range(_GRID), number)))
+        at = np.hstack([choices + _GRID * i for i in range(len(powers))])
+        left = self._left(gram[at[:, :, None], at[:, None, :]], xy[at])
+        return [float(r) for r in self._grid[choices[left.argmin()]]]
+
+    def _left(self, gram, xy):
+        """(...,) sum over the axes of the logarithm of the squares left."""
+        ridge = _RIDGE * self.rows * np.eye(gram.shape[-1])
+        fitted = np.linalg.solve(gram + ridge, xy)
+        whole = (self._y**2).sum(axis=0)
+        left = whole - (fitted * (2 * xy - gram @ fitted)).sum(axis=-2)
+        return np.log(np.maximum(left, 1e-9 * whole)).sum(axis=-1)
+
+    def _loss(self, radii, powers) -> float:
+        x = self._design(radii, powers)
+        return float(self._left(x.T @ x, x.T @ self._y))
+
+    def refined(self, radii: list[float], powers: Sequence[int]) -> list[float]:
+        """The radii between the points of the grid, one after the other."""
+        least = self._loss(radii, powers)
+        for step in _STEPS:
+            for i in range(len(radii)):
+                for factor in (step, 1 / step):
+                    trial = [*radii[:i], radii[i] * factor, *radii[i + 1 :]]
+                    loss = self._loss(trial, powers)
+                    while loss < least - 1e-3:
+                        radii, least = trial, loss
+                        trial = [*radii[:i], radii[i] * factor, *radii[i + 1 :]]
+                        loss = self._loss(trial, powers)
+        return radii
