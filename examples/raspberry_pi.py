@@ -4,6 +4,7 @@ import time
 from array import array
 
 from zerorate import Corrector, Sensor
+from zerorate.bias import ANY_TEMPERATURE
 from zerorate.checked import CheckedCorrector
 from zerorate.learned_store import LearnedStore
 from zerorate.save_schedule import SaveSchedule
@@ -14,10 +15,10 @@ from zerorate_i2c.linux import LinuxI2C
 from zerorate_i2c.mpu6050 import MPU6050
 
 imu = MPU6050(LinuxI2C(1), odr_hz=100)
-learner = Corrector(Sensor(*imu.scales))
-store = LearnedStore(FileStorage("learned.bin"), imu.binding, learner)
+learned = Corrector(Sensor(*imu.scales))
+store = LearnedStore(FileStorage("learned.bin"), imu.binding, learned)
 print(REASONS[store.load()])
-corrector = CheckedCorrector(learner)
+corrector = CheckedCorrector(learned)
 schedule = SaveSchedule(store, 3, tolerance=13)  # 0.1 dps at 131 LSB/dps
 bias_lsb = array("i", [0] * 3)
 fifo = Fifo(imu)
@@ -43,7 +44,7 @@ while True:
         sums = [0] * 6
         count = 0
         seconds += 1
-        if learner.learned:  # and not of this rest alone
-            for axis in range(3):
-                bias_lsb[axis] = round(learner.bias_lsb(axis))
-        schedule.offer(learner.state, bias_lsb, seconds)
+        for axis in range(3):
+            if learned.source(axis) > ANY_TEMPERATURE:  # learned, and not of this rest alone
+                bias_lsb[axis] = round(learned.bias_lsb(axis))
+        schedule.offer(learned.state, bias_lsb, seconds)

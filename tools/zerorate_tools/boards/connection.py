@@ -40,11 +40,14 @@ def connected(port: str, *, restart: bool = True) -> Iterator:
         transport.close()
 
 
-def told(transport, program: str) -> str:
-    """What a program that is run to its end on the board prints. Raises its error."""
+def told(transport, program: str, patience_s: float = _PATIENCE_S) -> str:
+    """What a program that is run to its end on the board prints. Raises its error.
+
+    patience_s: for how long the board may print nothing.
+    """
     from mpremote.transport import TransportExecError
 
-    said, error = transport.exec_raw(program, timeout=_PATIENCE_S)
+    said, error = transport.exec_raw(program, timeout=patience_s)
     if error:
         raise TransportExecError(said, error.decode())
     return said.decode()

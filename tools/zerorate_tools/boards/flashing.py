@@ -12,14 +12,23 @@ from pathlib import Path, PurePosixPath
 
 from ..errors import InFile
 from .asking import BoardFacts, ask
-from .compiling import board_files
+from .compiling import board_files, machine_code
 from .connection import BoardError, connected, told
-from .parts import PACKAGES, chosen_parts, part_files
+from .parts import PACKAGES, chosen_parts
 
 _LIBRARY = "lib"
 _STAGE = "zerorate.new"
 _CHUNK = 1536  # bytes of a file, and characters, in a command: little for a board of 16 KB
 _COMMAND = 2300
+_TRIAL = """
+import gc
+gc.collect()
+try:
+    from zerorate.native import choosing, rest
+    if choosing.chosen["rest"] != "machine code": print(choosing.chosen["rest"])
+except Exception as error:
+    print(repr(error))
+"""
 
 
 @dataclass
@@ -87,7 +96,7 @@ def _told(port: str, parts, extra, say) -> Flashed:
     except BoardError as error:
         say(f"{error}; what any board would get:")
         facts = BoardFacts()
-    contents = _contents(parts, facts, extra)
+    contents = {**_packages(parts, facts, machine_code(facts)), **extra}
     say(f"{facts}")
     for name, data in contents.items():
         say(f"{len(data):8d}  {name}")
@@ -98,16 +107,15 @@ def _told(port: str, parts, extra, say) -> Flashed:
     return flashed
 
 
-def _contents(parts, facts: BoardFacts, extra) -> dict[PurePosixPath, bytes]:
-    packages = board_files(part_files(parts), facts)
-    return {**{_LIBRARY / name: data for name, data in packages.items()}, **extra}
+def _packages(parts, facts: BoardFacts, code: str) -> dict[PurePosixPath, bytes]:
+    return {_LIBRARY / name: data for name, data in board_files(parts, facts, code).items()}
 
 
 def room(facts: BoardFacts, parts: Iterable[str], total: int) -> list[str]:
     """What is needed of flash and heap beside what the board has, in lines."""
     from .needs import heap_needed
 
-    needed = heap_needed(parts, facts.architecture)
+    needed = heap_needed(parts, machine_code(facts))
     has = f"; it has {facts.heap_free:,} free" if facts.heap_free else ""
     lines = [f"heap needed: {needed:,} bytes{has}"]
     if facts.disk_free:
@@ -130,21 +138,35 @@ class Installer:
         """All of it; see flash."""
         facts = ask(self._board)
         self._say(f"{facts}")
-        contents = _contents(parts, facts, {})
-        flashed = Flashed(facts, {name: len(d) for name, d in {**contents, **extra}.items()})
         text = files(__package__).joinpath("on_board/install.py").read_text(encoding="utf-8")
         self._do(text)
         self._finish_earlier()
-        for package in PACKAGES:
-            below = PurePosixPath(_LIBRARY, package)
-            wanted = {name: data for name, data in contents.items() if name.is_relative_to(below)}
-            self._install_package(package, wanted, flashed)
-        self._do(f"remove({_STAGE!r})")
+        code = machine_code(facts)
+        flashed = self._install_packages(_packages(parts, facts, code), facts)
+        if code and (why := self._refusal()):
+            self._say(f"         the machine code does not run here ({why}): bytecode in its place")
+            sent = flashed.sent_bytes
+            flashed = self._install_packages(_packages(parts, facts, ""), facts)
+            flashed.sent_bytes += sent
+        flashed.files.update({name: len(data) for name, data in extra.items()})
         for name, data in extra.items():
             self._install_file(name, data, flashed)
         sent, total = flashed.sent_bytes, flashed.total
         self._say(f"{total:8d}  bytes in {len(flashed.files)} files, {sent} of them sent")
         return flashed
+
+    def _install_packages(self, contents: dict, facts: BoardFacts) -> Flashed:
+        flashed = Flashed(facts, {name: len(data) for name, data in contents.items()})
+        for package in PACKAGES:
+            below = PurePosixPath(_LIBRARY, package)
+            wanted = {name: data for name, data in contents.items() if name.is_relative_to(below)}
+            self._install_package(package, wanted, flashed)
+        self._do(f"remove({_STAGE!r})")
+        return flashed
+
+    def _refusal(self) -> str:
+        """Why the board does not run the machine code of the rest path; nothing where it does."""
+        return self._do(_TRIAL).strip()
 
     def _finish_earlier(self) -> None:
         """Put in place what an attempt before this one left whole beside main.py."""

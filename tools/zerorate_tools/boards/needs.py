@@ -14,13 +14,7 @@ def needs() -> dict[str, dict[str, int]]:
     return json.loads(files(__package__).joinpath(_TABLE).read_text(encoding="utf-8"))
 
 
-def heap_needed(parts: Iterable[str], architecture: str) -> int:
-    """Bytes of heap that a program with these parts needs on a board of that architecture."""
-    kind = "native" if has_native(architecture) else "bytecode"
-    table = needs()[kind]
+def heap_needed(parts: Iterable[str], code: str) -> int:
+    """Bytes of heap that these parts take with that kind of machine code, "" for bytecode."""
+    table = needs()["native" if code else "bytecode"]
     return sum(table.get(part, 0) for part in parts)
-
-
-def has_native(architecture: str) -> bool:
-    """Whether the packages bring machine code for it."""
-    return False

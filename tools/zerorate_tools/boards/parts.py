@@ -12,6 +12,7 @@ from ..errors import ZerorateError
 
 PACKAGES = ("zerorate", "zerorate_i2c")
 REST = "rest"
+_GUARD = "zerorate.native.guard"  # alone, before other sources take the sample
 #: Part -> the modules that a program imports for it; all else follows. `rest` is in every choice.
 PARTS = {
     REST: (
@@ -25,17 +26,26 @@ PARTS = {
         "zerorate_i2c.data_ready",
         "zerorate_i2c.fifo",
     ),
-    "motion": ("zerorate.native.motion", "zerorate.motion_settings", "zerorate.explain_sources"),
+    "motion": (
+        _GUARD,
+        "zerorate.native.motion",
+        "zerorate.motion_settings",
+        "zerorate.explain_sources",
+    ),
     "gravity": (
+        _GUARD,
         "zerorate.native.gravity",
         "zerorate.realtime_settings",
         "zerorate.explain_sources",
     ),
-    "effects": ("zerorate.model", "zerorate.native.effects"),
-    "refine": ("zerorate.model", "zerorate.native.effects", "zerorate.native.refine"),
+    "effects": (_GUARD, "zerorate.model", "zerorate.native.effects"),
+    "refine": (_GUARD, "zerorate.model", "zerorate.native.effects", "zerorate.native.refine"),
     "bursts": ("zerorate.bursts",),
     "self-test": ("zerorate_i2c.self_test",),
 }
+_NATIVE = "zerorate.native"
+#: Kinds of machine code, as zerorate/native names its files -> how mpy-cross calls the processor.
+CODES = {"thumb": "armv6m", "rv32": "rv32imc"}
 _EXTRA_ROOTS = frozenset(root for part in PARTS if part != REST for root in PARTS[part])
 
 
@@ -52,8 +62,11 @@ def chosen_parts(named: Iterable[str]) -> tuple[str, ...]:
     return tuple(part for part in PARTS if part == REST or part in wanted or "all" in wanted)
 
 
-def part_files(parts: Iterable[str]) -> dict[PurePosixPath, Path]:
-    """Path below lib on the board -> file, for all that these parts import, in order of name."""
+def part_files(parts: Iterable[str], code: str = "") -> dict[PurePosixPath, Path]:
+    """Path below lib on the board -> file, for all that these parts import, in order of name.
+
+    code: the kind of machine code that stands in for the kernels' bytecode, see CODES.
+    """
     roots = [root for part in parts for root in PARTS[part]]
     stops = _EXTRA_ROOTS.difference(roots)
     found: dict[str, Path] = {}
@@ -64,7 +77,7 @@ def part_files(parts: Iterable[str]) -> dict[PurePosixPath, Path]:
             continue
         path = module_file(module)
         found[module] = path
-        waiting += _imports(path, module)
+        waiting += _imports(path, module, code)
     return dict(sorted((_on_board(path), path) for path in found.values()))
 
 
@@ -101,10 +114,17 @@ def _on_board(path: Path) -> PurePosixPath:
     raise ModuleNotFoundError(f"{path} is in no package of the firmware")
 
 
-def _imports(path: Path, module: str) -> Iterator[str]:
+def _imports(path: Path, module: str, code: str) -> Iterator[str]:
     """Modules of the packages that a file imports anywhere in it, and the packages they are in."""
     package = module if path.name == "__init__.py" else module.rpartition(".")[0]
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    machine_code = f"{_NATIVE}.{code}_{module.rpartition('.')[2]}"
+    if code and package == _NATIVE and _find(machine_code) is not None:
+        yield machine_code
+        for choice in tree.body:  # what is imported only where there is none
+            if isinstance(choice, ast.If):
+                choice.orelse = []
+    for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             yield from _with_packages(alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):

@@ -24,15 +24,14 @@ def add_parser(subparsers) -> None:
     parser.set_defaults(run=run_main)
     benches = parser.add_subparsers(dest="bench", metavar="BENCH")
     add_accuracy(benches)
+    add_boards(benches)
     add_cost(benches)
     add_faults(benches)
-    add_filters(benches)
     add_fleet(benches)
     add_loop(benches)
     add_motion(benches)
     add_peers(benches)
     add_refine(benches)
-    add_service(benches)
 
 
 def add_extent(parser) -> None:
@@ -75,6 +74,24 @@ def run_accuracy(arguments: argparse.Namespace) -> None:
     _, seeds = extent(arguments)
     with progress("measuring accuracy", steps(seeds)) as advance:
         found = accuracy(advance, seeds)
+    write_report(arguments, in_markdown(found), found)
+
+
+def add_boards(benches) -> None:
+    """Register `bench boards`."""
+    parser = benches.add_parser("boards", help="memory, time and numbers on an emulated Pico")
+    add_outputs(parser)
+    parser.set_defaults(run=run_boards)
+
+
+def run_boards(arguments: argparse.Namespace) -> None:
+    """Measure and write."""
+    from ..bench.boards import in_markdown, measure
+    from ..bench.boards.figures import STEPS
+    from ..progress import progress
+
+    with progress("measuring on a Pico", STEPS) as advance:
+        found = measure(advance)
     write_report(arguments, in_markdown(found), found)
 
 
@@ -135,24 +152,6 @@ def run_faults(arguments: argparse.Namespace) -> int:
     return 0 if passed(run(arguments.json)) else 1
 
 
-def add_filters(benches) -> None:
-    """Register `bench filters`."""
-    parser = benches.add_parser("filters", help="heading of attitude filters fed by zerorate")
-    parser.add_argument("--data", type=Path, metavar="DIR", help="folder of BROAD trials (.mat)")
-    add_outputs(parser)
-    parser.set_defaults(run=run_filters)
-
-
-def run_filters(arguments: argparse.Namespace) -> None:
-    """Measure and write."""
-    from ..bench.filters import in_markdown, run
-    from ..progress import progress
-
-    with progress("trials") as advance:
-        found = run(arguments.data, advance)
-    write_report(arguments, in_markdown(found), found)
-
-
 def add_fleet(benches) -> None:
     """Register `bench fleet`."""
     parser = benches.add_parser("fleet", help="many devices at once, and what a prior is worth")
@@ -201,23 +200,6 @@ def add_motion(benches) -> None:
     parser.add_argument("--data", type=Path, metavar="DIR", help="folder of BROAD trials (.mat)")
     add_outputs(parser)
     parser.set_defaults(run=run_motion)
-
-
-def add_service(benches) -> None:
-    """Register `bench service`."""
-    parser = benches.add_parser("service", help="`zerorate run` through faults, kills, full disks")
-    parser.add_argument("--hours", type=float, default=24, metavar="N", help="simulated (24)")
-    parser.add_argument("--faults", type=int, default=1000, metavar="N", help="how many (1000)")
-    add_outputs(parser)
-    parser.set_defaults(run=run_service)
-
-
-def run_service(arguments: argparse.Namespace) -> None:
-    """Live through them and write."""
-    from ..bench.service import in_words, run
-
-    found = run(arguments.hours, arguments.faults)
-    write_report(arguments, in_words(found), found)
 
 
 def add_refine(benches) -> None:

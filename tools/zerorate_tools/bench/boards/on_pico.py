@@ -1,0 +1,102 @@
+"""Sent to an emulated Pico with a call of `run` behind it: frames through a corrector.
+
+Frames come and rates go through the window of pico.mjs, which counts the cycles of each call.
+"""
+
+import gc
+from array import array
+
+from machine import mem32
+from uctypes import addressof
+from zerorate import Corrector, Sensor
+
+_MARK = 0x40070004
+_LENGTH = 0x40070008
+_FILL = 0x4007000C
+_TAKE = 0x40070010
+
+
+def fill(words):
+    """Words from the host."""
+    mem32[_LENGTH] = 4 * len(words)
+    mem32[_FILL] = addressof(words)
+
+
+def give(words):
+    """Words to the host."""
+    mem32[_LENGTH] = 4 * len(words)
+    mem32[_TAKE] = addressof(words)
+
+
+def one_by_one(take, count):
+    """Each sample in a call: its rates to the host."""
+    dt_us = array("i", [0])
+    sample = array("i", [0] * 7)
+    for _ in range(count):
+        fill(dt_us)
+        fill(sample)
+        dt = dt_us[0]
+        mem32[_MARK] = 1
+        take(sample, dt)
+        mem32[_MARK] = 0
+        give(sample)
+
+
+def by_kernel(corrector, count):
+    """As one_by_one, but without the object: what the kernels themselves cost."""
+    from zerorate.native.rest import step
+
+    state, settings = corrector.state, corrector.settings
+    dt_us = array("i", [0])
+    sample = array("i", [0] * 7)
+    for _ in range(count):
+        fill(dt_us)
+        fill(sample)
+        dt = dt_us[0]
+        mem32[_MARK] = 1
+        step(state, settings, sample, dt)
+        mem32[_MARK] = 0
+        give(sample)
+
+
+def by_bursts(take, count, at_once):
+    """at_once samples in a call: their frames to the host."""
+    frames = array("i", [0] * (8 * at_once))
+    for _ in range(count // at_once):
+        fill(frames)
+        mem32[_MARK] = 1
+        take(frames, at_once)
+        mem32[_MARK] = 0
+        give(frames)
+
+
+def run(options, sensor, count, at_once, model):
+    """at_once: samples a call, 0 for the kernels without the object."""
+    for _ in range(3):  # what the marks themselves cost
+        mem32[_MARK] = 1
+        mem32[_MARK] = 0
+    corrector = Corrector(Sensor(*sensor), **options)
+    others = (corrector.motion_settings, corrector.motion, corrector.level_settings)
+    # a board's floats are of single precision, so that the last bit of a setting may be another
+    for words in (corrector.settings, corrector.state) + others + (corrector.level,):
+        if words is not None:
+            fill(words)
+    if model:
+        from zerorate.model import EffectModel
+
+        effects = EffectModel()
+        effects.load(model, corrector.sensor)
+        effects.refine()
+        corrector.use_model(effects)
+    gc.collect()
+    if at_once > 1:
+        from zerorate.bursts import Bursts
+
+        by_bursts(Bursts(corrector).update, count, at_once)
+    elif at_once:
+        one_by_one(corrector.update, count)
+    else:
+        by_kernel(corrector, count)
+    for words in (corrector.state, corrector.motion, corrector.level):
+        if words is not None:
+            give(words)
