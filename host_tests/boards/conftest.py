@@ -4,7 +4,7 @@ import time
 
 import pytest
 import serial
-from zerorate_tools.boards import flash
+from zerorate_tools.boards.flashing import flash
 from zerorate_tools.runtimes.pico import EmulatedPico
 
 # The board's own seconds are a fraction of these where the machine is free.

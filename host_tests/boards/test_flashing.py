@@ -1,7 +1,7 @@
 """The firmware put on an emulated Pico: stock MicroPython on an emulated RP2040."""
 
-from zerorate_tools.boards import flash
 from zerorate_tools.boards.connection import connected
+from zerorate_tools.boards.flashing import flash
 
 
 def test_the_board_is_asked_what_it_is(pico):

@@ -8,9 +8,10 @@ from pathlib import Path, PurePosixPath
 import pytest
 from zerorate_fakes import FakeI2C, FakeMPU6050
 from zerorate_fakes.smbus import SMBus
-from zerorate_tools.boards import flash, record
 from zerorate_tools.boards.connection import BoardError
+from zerorate_tools.boards.flashing import flash
 from zerorate_tools.boards.frames import MESSAGE, SAMPLE, FrameReader, encode
+from zerorate_tools.boards.recording import record
 from zerorate_tools.cli import main
 from zerorate_tools.errors import ZerorateError
 from zerorate_tools.model import Slot, build_model, write_model

