@@ -2,6 +2,12 @@
 
 import numpy as np
 import pytest
+from zerorate_tools.bench.loop.rests import (
+    NOISES_DPS,
+    RATES_HZ,
+    share_used,
+    shares_with_turn,
+)
 from zerorate_tools.loop.read.still import still_ticks
 from zerorate_tools.loop.read.ticks import read_ticks
 from zerorate_tools.recordings import Recording, Scales, write_recording
@@ -53,46 +59,16 @@ def test_a_turn_that_sets_in_slowly_is_motion_to_its_ends(still):
 # Rest is rest at any rate
 
 
-RATES_HZ = [1 / 15, 1.0, 2.0, 4.0, 5.0, 10.0]
-NOISES_DPS = [0.05, 0.35, 1.0]
-
-
-@pytest.fixture
-def slow(tmp_path):
-    """(m,) bool of two hours at a rate, with white noise and a turn that the rate is given by."""
-
-    def of(odr_hz, noise_dps, has_accel, turn_dps=0.0):
-        rng = np.random.default_rng(7)
-        at_s = np.arange(0, 9000, 1 / odr_hz)
-        turning = (at_s >= 4000) & (at_s < 4300)
-        columns = {"t_us": np.rint(at_s * 1e6).astype(np.int64)}
-        for name in ("gx", "gy", "gz"):
-            rate = 1.3 + turn_dps * turning + rng.normal(0, noise_dps, len(at_s))
-            columns[name] = np.round(rate * 131).astype(np.int32)
-        if has_accel:
-            for name, g in (("ax", 0.0), ("ay", 0.0), ("az", 1.0)):
-                force = g + rng.normal(0, 0.004, len(at_s))
-                columns[name] = np.round(force * 16384).astype(np.int32)
-        scales = Scales("MPU-6050", odr_hz, 131.0, 16384.0 if has_accel else None)
-        path = tmp_path / "slow.parquet"
-        write_recording(Recording(columns, scales, "slow"), path)
-        ticks = read_ticks(path)
-        return still_ticks(ticks), np.arange(len(ticks.count)) * ticks.tick_s
-
-    return of
-
-
-@pytest.mark.parametrize("has_accel", [False, True])
+@pytest.mark.parametrize("accel", [False, True])
 @pytest.mark.parametrize("noise_dps", NOISES_DPS)
 @pytest.mark.parametrize("odr_hz", RATES_HZ)
-def test_a_rest_at_any_rate_and_noise_is_used(slow, odr_hz, noise_dps, has_accel):
-    resting, _ = slow(odr_hz, noise_dps, has_accel)
-    assert resting.mean() > 0.95
+def test_a_rest_at_any_rate_and_noise_is_used(tmp_path, odr_hz, noise_dps, accel):
+    assert share_used(tmp_path, odr_hz, noise_dps, accel) > 95
 
 
 @pytest.mark.parametrize("noise_dps", NOISES_DPS)
 @pytest.mark.parametrize("odr_hz", RATES_HZ)
-def test_a_turn_at_any_rate_and_noise_is_not(slow, odr_hz, noise_dps):
-    resting, at_s = slow(odr_hz, noise_dps, has_accel=False, turn_dps=3.0)
-    assert not resting[(at_s >= 4020) & (at_s < 4280)].any()
-    assert resting[(at_s < 3500) | (at_s > 5100)].mean() > 0.95
+def test_a_turn_at_any_rate_and_noise_is_not(tmp_path, odr_hz, noise_dps):
+    turn, beside = shares_with_turn(tmp_path, odr_hz, noise_dps)
+    assert turn == 0
+    assert beside > 95

@@ -20,6 +20,7 @@ from .figures import Figure, figures
 from .files import ROWS, file_devices, look_at_files
 from .look import Outcome, look
 from .quiet import FOLDER, write_blocks
+from .rests import rest_figures
 from .size import figures_of, measured
 
 
@@ -46,7 +47,7 @@ def run(
         os.environ[FOLDER] = scratch
         every = [*devices(nulls, seeds, quiet), *file_devices(-(-seeds // 2))]
         outcomes = list(looked_at(every, processes, Path(resume) if resume else None, advance))
-    rows = figures(outcomes)
+    rows = figures(outcomes) + rest_figures()
     if size:
         rows += figures_of(measured())
     result: dict = {"devices": len(outcomes), "machine": machine()}
