@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ...boards import flash
+from ...boards.flashing import flash
 from ...runtimes.pico import CORE_HZ, EmulatedPico, find_pico
 from ..limits import Limit, verdicts
 from ..workload import CYCLE, Workload, workload
