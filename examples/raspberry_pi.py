@@ -4,9 +4,9 @@ import time
 from array import array
 
 from zerorate import Corrector, Sensor
-from zerorate.bias import ANY_TEMPERATURE
 from zerorate.checked import CheckedCorrector
 from zerorate.learned_store import LearnedStore
+from zerorate.rest.bias import ANY_TEMPERATURE
 from zerorate.save_schedule import SaveSchedule
 from zerorate.storage import FileStorage
 from zerorate.store import REASONS

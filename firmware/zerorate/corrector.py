@@ -128,7 +128,7 @@ class Corrector:
 
     def _learn_in_motion(self, document, start_dps):
         # loaded here, so that who does not learn in motion has no memory taken by it
-        from .motion_settings import motion_settings, motion_state
+        from .motion.motion_settings import motion_settings, motion_state
         from .native.motion import update
 
         sensor = self.sensor
@@ -144,8 +144,8 @@ class Corrector:
         self.motion = motion_state(self.motion_settings)
 
     def _learn_by_level(self, document):
+        from .gravity.realtime_settings import realtime_settings, realtime_state
         from .native.gravity import update
-        from .realtime_settings import realtime_settings, realtime_state
 
         sensor = self.sensor
         self._observe_level = update
@@ -157,11 +157,11 @@ class Corrector:
     def _forget_motion(self):
         # their windows hold what the chip sent before, right or not
         if self.motion is not None:
-            from .motion_settings import motion_state
+            from .motion.motion_settings import motion_state
 
             copy(self.motion, motion_state(self.motion_settings))
         if self.level is not None:
-            from .realtime_settings import realtime_state
+            from .gravity.realtime_settings import realtime_state
 
             copy(self.level, realtime_state(self.level_settings))
 

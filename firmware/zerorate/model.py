@@ -5,7 +5,16 @@ docs/layout.md has the words of `e`.
 
 from array import array
 
-from .model_file import IMPOSSIBLE, LOADED, NO_MODEL, UNREADABLE, compare, fill, judge, texts
+from .effects.model_file import (
+    IMPOSSIBLE,
+    LOADED,
+    NO_MODEL,
+    UNREADABLE,
+    compare,
+    fill,
+    judge,
+    texts,
+)
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

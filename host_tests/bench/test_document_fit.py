@@ -1,8 +1,9 @@
 """The line's sums when readings that are learned meanwhile move a point, as the document's do."""
 
 import pytest
-from zerorate import Corrector, fit
+from zerorate import Corrector
 from zerorate.layout import ESTIMATOR, SETTINGS
+from zerorate.rest import fit
 
 
 @pytest.fixture

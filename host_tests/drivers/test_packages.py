@@ -25,7 +25,7 @@ def names(parts):
 class TestParts:
     def test_the_rest_path_is_less_than_half_of_all(self):
         assert len(names([])) < len(names(["all"])) * 0.6
-        assert not names([]) & {"zerorate/in_motion.py", "zerorate/effects.py"}
+        assert not names([]) & {"zerorate/motion/in_motion.py", "zerorate/effects/effects.py"}
 
     @pytest.mark.parametrize("part", [part for part in PARTS if part != REST])
     def test_every_part_brings_files_of_its_own(self, part):

@@ -5,8 +5,8 @@ in C a wrapped number. Plain kernels compute with whatever they are given, so an
 word of their arrays checks every intermediate result.
 """
 
-from zerorate import step
 from zerorate.corrector import Corrector
+from zerorate.rest import step
 
 LEAST, MOST = -(1 << 30), (1 << 30) - 1
 

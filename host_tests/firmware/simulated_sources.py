@@ -5,10 +5,11 @@ from array import array
 
 import numpy as np
 from scipy.signal import lfilter
-from zerorate import Sensor, effects
+from zerorate import Sensor
+from zerorate.effects import effects
+from zerorate.effects.model_file import LOADED, REASONS
 from zerorate.layout import STATE
 from zerorate.model import EffectModel
-from zerorate.model_file import LOADED, REASONS
 from zerorate_tools.model import build_model, encoded
 from zerorate_tools.recordings import Scales
 

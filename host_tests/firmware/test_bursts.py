@@ -4,8 +4,9 @@ from array import array
 from pathlib import Path
 
 import pytest
-from zerorate import Corrector, block
+from zerorate import Corrector
 from zerorate.bursts import Bursts
+from zerorate.rest import block
 
 from . import trace
 from .trace_on_host import corrector_for, frames

@@ -3,10 +3,11 @@
 from array import array
 
 import pytest
-from zerorate import Corrector, Sensor, bias
+from zerorate import Corrector, Sensor
+from zerorate.gravity.realtime_settings import realtime_settings
 from zerorate.layout import MOTION, STATE
-from zerorate.motion_settings import motion_settings
-from zerorate.realtime_settings import realtime_settings
+from zerorate.motion.motion_settings import motion_settings
+from zerorate.rest import bias
 from zerorate.store import EMPTY, LOADED, OTHER_BINDING, Store
 
 RATES = (800, -300, 40)

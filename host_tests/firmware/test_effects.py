@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
-from zerorate import Sensor, effects
+from zerorate import Sensor
+from zerorate.effects import effects
 from zerorate.layout import EFFECTS, STATE
 from zerorate_tools.model import Slot
 from zerorate_tools.model.term import Term, evaluate

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from zerorate import Sensor, effects
+from zerorate import Sensor
+from zerorate.effects import effects
 from zerorate.layout import EFFECTS, PLAY, SLOT, STATE, slot_at
 from zerorate.model import EffectModel
 from zerorate_tools.model import Binding, Slot, build_model, encoded

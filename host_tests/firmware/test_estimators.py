@@ -3,8 +3,9 @@
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from zerorate import Corrector, Sensor, estimators
+from zerorate import Corrector, Sensor
 from zerorate.layout import AXIS, ESTIMATOR, SETTINGS, STATE
+from zerorate.rest import estimators
 
 FREE = -1048576
 STEP = 340

@@ -5,8 +5,9 @@ from fractions import Fraction
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from zerorate import Corrector, Sensor, bias, fit
+from zerorate import Corrector, Sensor
 from zerorate.layout import AXIS, MARKS, SETTINGS, STATE, axis_at
+from zerorate.rest import bias, fit
 
 from .tolerances import LINE_LSB
 

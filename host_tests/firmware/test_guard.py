@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from zerorate import guard
 from zerorate.layout import STATE
+from zerorate.rest import guard
 
 from .played import estimators, play, rest
 

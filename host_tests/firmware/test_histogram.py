@@ -6,8 +6,9 @@ from array import array
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from zerorate import Corrector, Sensor, histogram
+from zerorate import Corrector, Sensor
 from zerorate.layout import SETTINGS
+from zerorate.rest import histogram
 
 MODES = {
     "default": {},

@@ -8,10 +8,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
-from zerorate import atan2, attitude, in_motion, real
+from zerorate.arithmetic import atan2, real
+from zerorate.gravity.realtime_settings import realtime_settings, realtime_state
 from zerorate.layout import MOTION, MOTION_REASON
-from zerorate.motion_settings import motion_settings, motion_state
-from zerorate.realtime_settings import realtime_settings, realtime_state
+from zerorate.motion import attitude, in_motion
+from zerorate.motion.motion_settings import motion_settings, motion_state
 from zerorate_tools.simulate import simulate
 
 from . import motions

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from zerorate import realtime
+from zerorate.gravity import realtime
+from zerorate.gravity.realtime_settings import realtime_settings, realtime_state
 from zerorate.layout import GRAVITY, GRAVITY_REASON, GRAVITY_SETTINGS
-from zerorate.realtime_settings import realtime_settings, realtime_state
 
 from . import motions
 from .checked import Words, checked

@@ -58,7 +58,7 @@ def used_in(firmware):
     """Return name -> the files that write it into an array, those that use it otherwise."""
     found = {}
     for path in sorted(firmware.rglob("*.py")):
-        if path.parent.name == "viper" or path.name == "layout.py":
+        if path.parent.name == "native" or path.name == "layout.py":
             continue
         tree = ast.parse(path.read_text(encoding="utf-8"))
         written = [n for n in ast.walk(tree) if is_written(n)]

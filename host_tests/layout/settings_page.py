@@ -20,7 +20,7 @@ used. `zerorate_tools.replay` takes any of them by name.
 """
 _FIXED = """## What is not set but fixed
 
-In `firmware/zerorate/stillness.py`, with the rules that decide that a window is still:
+In `firmware/zerorate/rest/stillness.py`, with the rules that decide that a window is still:
 """
 
 
@@ -35,7 +35,7 @@ def settings_page(repository):
         literal = OF_THE_DOCUMENT.get(name, "")
         rows.append(f"| `{name}` | {value} | {literal} | {meanings[name]} | {made} |")
     fixed = ["| constant | value | what |", "|---|---|---|"]
-    stillness = (firmware / "stillness.py").read_text(encoding="utf-8")
+    stillness = (firmware / "rest" / "stillness.py").read_text(encoding="utf-8")
     for name, value, meaning in _CONSTANT.findall(stillness):
         fixed.append(f"| `{name}` | {value} | {meaning.rstrip(':')} |")
     return "\n".join([_HEAD, *rows, "", _FIXED, *fixed, ""])

@@ -6,8 +6,7 @@ from dataclasses import replace
 
 import pytest
 from zerorate import Sensor
-from zerorate.model import EffectModel
-from zerorate.model_file import (
+from zerorate.effects.model_file import (
     LOADED,
     OTHER_CHIP,
     OTHER_FILTER,
@@ -15,6 +14,7 @@ from zerorate.model_file import (
     OTHER_SCALE,
     REASONS,
 )
+from zerorate.model import EffectModel
 from zerorate_tools.closing import close
 from zerorate_tools.loop.read.gate import CannotClose
 from zerorate_tools.loop.simulated import simulate
@@ -32,7 +32,7 @@ SLOT = Slot(Term("temp", 20, 45, 30), (0.01, 0.01, 0.01), "temperature")
 ON_A_BOARD = """
 from zerorate import Sensor
 from zerorate.model import EffectModel
-from zerorate.model_file import REASONS
+from zerorate.effects.model_file import REASONS
 
 for binding in ((104, 0, 0, 3), (112, 0, 0, 3), (104, 1, 0, 3), (104, 0, 0, 4)):
     print(REASONS[EffectModel().load_file("model.bin", Sensor(), bytes(binding))])

@@ -7,13 +7,16 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from zerorate import effect_refine, guard, in_motion, motion_verdict, realtime
-from zerorate.effects import sense
-from zerorate.estimators import reset
+from zerorate.effects import effect_refine
+from zerorate.effects.effects import sense
+from zerorate.gravity import realtime
+from zerorate.gravity.realtime_settings import realtime_settings, realtime_state
 from zerorate.layout import EFFECTS, GRAVITY, MOTION, SETTINGS, SLOT, SOURCE, STATE, STILLNESS
-from zerorate.motion_settings import motion_settings, motion_state
-from zerorate.realtime_settings import realtime_settings, realtime_state
-from zerorate.step import admit, consider, finish, step
+from zerorate.motion import in_motion, motion_verdict
+from zerorate.motion.motion_settings import motion_settings, motion_state
+from zerorate.rest import guard
+from zerorate.rest.estimators import reset
+from zerorate.rest.step import admit, consider, finish, step
 from zerorate_tools.bench.emulated import Emulated, code_in
 from zerorate_tools.kernels.known import answer_by, known_model
 from zerorate_tools.kernels.native_files import plain_kernels

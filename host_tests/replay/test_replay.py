@@ -182,7 +182,7 @@ def test_what_is_compiled_is_what_was_hashed_though_a_kernel_changes_meanwhile(
     package = shutil.copytree(repository / "firmware" / "zerorate", tmp_path / "zerorate")
 
     def changed_meanwhile(folder, build):
-        (package / "fixed.py").write_text("# changed")
+        (package / "arithmetic" / "fixed.py").write_text("# changed")
         return fill(folder, build)
 
     monkeypatch.setenv("ZERORATE_CACHE", str(tmp_path / "cache"))

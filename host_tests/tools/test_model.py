@@ -6,7 +6,8 @@ from dataclasses import replace
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from zerorate import Sensor, model_file
+from zerorate import Sensor
+from zerorate.effects import model_file
 from zerorate.layout import EFFECTS
 from zerorate.model import EffectModel
 from zerorate_tools.cli import main

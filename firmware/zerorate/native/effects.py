@@ -10,4 +10,4 @@ if run:
         run(s, e, x if good else 0, dt_us)
 
 else:
-    from ..effects import sense  # noqa: F401
+    from ..effects.effects import sense  # noqa: F401

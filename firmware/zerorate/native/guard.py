@@ -5,4 +5,4 @@ from .choosing import machine_code
 examine = machine_code("guard")
 
 if not examine:
-    from ..guard import check as examine  # type: ignore[assignment]  # noqa: F401
+    from ..rest.guard import check as examine  # type: ignore[assignment]  # noqa: F401

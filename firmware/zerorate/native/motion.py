@@ -12,5 +12,5 @@ if update:
         update(s, c, 0, _CLEAR)
 
 else:
-    from ..in_motion import update  # type: ignore[assignment]  # noqa: F401
-    from ..motion_verdict import clear  # noqa: F401
+    from ..motion.in_motion import update  # type: ignore[assignment]  # noqa: F401
+    from ..motion.motion_verdict import clear  # noqa: F401

@@ -16,4 +16,4 @@ if run:
         run(0, 0, e, -1)
 
 else:
-    from ..effect_refine import attend, begin, renew  # noqa: F401
+    from ..effects.effect_refine import attend, begin, renew  # noqa: F401

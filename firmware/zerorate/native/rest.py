@@ -7,6 +7,6 @@ step = machine_code("rest")
 if step:
     from .stages import admit, consider, copy, finish, reset
 else:
-    from ..copying import copy  # type: ignore[assignment]  # noqa: F401
-    from ..estimators import reset  # type: ignore[assignment]  # noqa: F401
-    from ..step import admit, consider, finish, step  # type: ignore[assignment]  # noqa: F401
+    from ..rest.copying import copy  # type: ignore[assignment]  # noqa: F401
+    from ..rest.estimators import reset  # type: ignore[assignment]  # noqa: F401
+    from ..rest.step import admit, consider, finish, step  # type: ignore[assignment]  # noqa: F401

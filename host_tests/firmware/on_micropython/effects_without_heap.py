@@ -3,7 +3,7 @@
 from array import array
 
 from micropython import const, heap_lock, heap_unlock
-from zerorate.effects import sense
+from zerorate.effects.effects import sense
 from zerorate.model import EffectModel
 from zerorate.settings import Sensor
 

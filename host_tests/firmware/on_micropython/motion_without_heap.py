@@ -10,14 +10,14 @@ from micropython import heap_lock, heap_unlock
 
 source, count = sys.argv[1], int(sys.argv[2])
 if source == "in_motion":
-    from zerorate.in_motion import update
-    from zerorate.motion_settings import motion_settings, motion_state
+    from zerorate.motion.in_motion import update
+    from zerorate.motion.motion_settings import motion_settings, motion_state
 
     settings = motion_settings(odr_hz=25.0, longest_stage=5)
     state = motion_state(settings)
 else:
-    from zerorate.realtime import update
-    from zerorate.realtime_settings import realtime_settings, realtime_state
+    from zerorate.gravity.realtime import update
+    from zerorate.gravity.realtime_settings import realtime_settings, realtime_state
 
     settings = realtime_settings(odr_hz=25.0)
     state = realtime_state(settings)

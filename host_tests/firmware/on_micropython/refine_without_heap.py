@@ -3,7 +3,7 @@
 from array import array
 
 from micropython import const, heap_lock, heap_unlock
-from zerorate.effect_refine import attend
+from zerorate.effects.effect_refine import attend
 from zerorate.model import EffectModel
 from zerorate.settings import Sensor
 

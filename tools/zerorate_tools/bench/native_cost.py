@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from zerorate.motion_settings import motion_settings, motion_state
-from zerorate.realtime_settings import realtime_settings, realtime_state
+from zerorate.gravity.realtime_settings import realtime_settings, realtime_state
+from zerorate.motion.motion_settings import motion_settings, motion_state
 
 from ..errors import ZerorateError
 from ..kernels.machine_code import PROCESSORS, machine_code

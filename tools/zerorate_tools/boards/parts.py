@@ -29,13 +29,13 @@ PARTS = {
     "motion": (
         _GUARD,
         "zerorate.native.motion",
-        "zerorate.motion_settings",
+        "zerorate.motion.motion_settings",
         "zerorate.explain_sources",
     ),
     "gravity": (
         _GUARD,
         "zerorate.native.gravity",
-        "zerorate.realtime_settings",
+        "zerorate.gravity.realtime_settings",
         "zerorate.explain_sources",
     ),
     "effects": (_GUARD, "zerorate.model", "zerorate.native.effects"),

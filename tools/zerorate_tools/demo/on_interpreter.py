@@ -5,8 +5,8 @@ from array import array
 
 from micropython import const
 from zerorate import Corrector, Sensor
+from zerorate.effects.model_file import LOADED, REASONS
 from zerorate.model import EffectModel
-from zerorate.model_file import LOADED, REASONS
 from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050
 from zerorate_i2c.mpu6050 import MPU6050, RESTARTED, SUSPECT
 

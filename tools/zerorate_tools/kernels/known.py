@@ -11,11 +11,11 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from zerorate import Corrector, Sensor
+from zerorate.gravity.realtime_settings import realtime_settings, realtime_state
 from zerorate.layout import SETTINGS, STATE, STILLNESS
 from zerorate.model import EffectModel
-from zerorate.motion_settings import motion_settings, motion_state
+from zerorate.motion.motion_settings import motion_settings, motion_state
 from zerorate.native.trying import answer
-from zerorate.realtime_settings import realtime_settings, realtime_state
 
 from ..model import Binding, Slot, build_model, encoded
 from ..model.term import Term

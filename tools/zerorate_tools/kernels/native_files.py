@@ -79,7 +79,10 @@ ENTERED: dict[str, Callable[[int], bytes]] = {"thumb": _thumb_entered, "rv32": _
 
 def plain_kernels() -> dict[str, Callable[..., Any]]:
     """Part -> its kernels as CPython runs them, entered as the machine code is."""
-    from zerorate import block, effect_refine, effects, guard, in_motion, realtime, step
+    from zerorate.effects import effect_refine, effects
+    from zerorate.gravity import realtime
+    from zerorate.motion import in_motion
+    from zerorate.rest import block, guard, step
 
     return {
         "rest": step.step,

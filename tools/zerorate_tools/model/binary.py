@@ -1,4 +1,4 @@
-"""model.bin: bytes of a model and back, to the last bit (firmware/zerorate/model_file.py)."""
+"""model.bin: bytes of a model and back, to the last bit (firmware: effects/model_file.py)."""
 
 from __future__ import annotations
 

@@ -6,8 +6,8 @@ from os import PathLike
 from pathlib import Path
 
 from zerorate import Sensor
+from zerorate.effects.model_file import LOADED, REASONS
 from zerorate.model import EffectModel
-from zerorate.model_file import LOADED, REASONS
 
 from ..errors import BadModel
 from ..recordings import Scales

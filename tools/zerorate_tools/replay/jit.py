@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import hashlib
+import re
 import sys
 import types
 from collections.abc import Callable, Mapping, Sequence
@@ -19,6 +20,7 @@ from zerorate_tools.recordings.checks import GAP
 from zerorate_tools.runtimes.cache import cache_folder, fill
 
 _PACKAGE = "zerorate_compiled"
+_FROM_FOLDER = re.compile(rb"^from \.+(?:\w+\.)*(\w+) import", re.MULTILINE)
 _LOOP = Path(__file__).with_name("sample_loop.py")
 _STEPS = ("examine", "admit", "finish", "consider")
 _WORDS = {
@@ -41,7 +43,7 @@ def compiled_kernels(*roots: str) -> types.SimpleNamespace:
     source's place and time, and another installation has the same kernels elsewhere.
     """
     files = _in_order_of_imports(roots, kernel_files(firmware_package()))
-    texts = {path.name: path.read_bytes() for path in (*files, _LOOP)}
+    texts = {path.name: _in_one_folder(path) for path in (*files, _LOOP)}
     digest = hashlib.sha256(b"".join([*texts.values(), repr(_WORDS).encode()])).hexdigest()[:16]
     kept = cache_folder() / "numba" / digest
     numba.config.CACHE_DIR = str(kept)  # type: ignore[attr-defined]
@@ -50,6 +52,11 @@ def compiled_kernels(*roots: str) -> types.SimpleNamespace:
     sys.modules[_PACKAGE].__path__ = []
     modules = {path.stem: _compiled(copies / path.name) for path in files}
     return types.SimpleNamespace(**modules, loop=copies / _LOOP.name)
+
+
+def _in_one_folder(path: Path) -> bytes:
+    """A file as it stands in the copy, where all kernels lie in one folder."""
+    return _FROM_FOLDER.sub(rb"from .\1 import", path.read_bytes())
 
 
 def _write(texts: Mapping[str, bytes], folder: Path) -> None:
@@ -92,8 +99,8 @@ def _in_order_of_imports(roots: Sequence[str], files: list[Path]) -> list[Path]:
 
 def _imports(path: Path) -> set[str]:
     tree = ast.parse(path.read_text(encoding="utf-8"))
-    froms = [n for n in ast.walk(tree) if isinstance(n, ast.ImportFrom) and n.level == 1]
-    return {n.module for n in froms if n.module}
+    froms = [n for n in ast.walk(tree) if isinstance(n, ast.ImportFrom) and n.level]
+    return {n.module.rpartition(".")[2] for n in froms if n.module}
 
 
 @lru_cache(maxsize=8)

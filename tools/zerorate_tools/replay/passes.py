@@ -45,8 +45,8 @@ def windows(recording: OpenRecording | Recording, **options: object) -> Iterator
     The kernels are those of the firmware, on plain CPython, the work of a window being done at
     once: ten minutes at 100 Hz take some seconds.
     """
-    from zerorate.in_motion import update, work
-    from zerorate.motion_settings import motion_settings, motion_state
+    from zerorate.motion.in_motion import update, work
+    from zerorate.motion.motion_settings import motion_settings, motion_state
 
     sensor = sensor_of(recording.scales)
     scales = (sensor.odr_hz, sensor.gyro_lsb_per_dps, sensor.accel_lsb_per_g)

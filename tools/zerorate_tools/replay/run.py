@@ -149,8 +149,8 @@ def load_model(corrector: Corrector, path: Path, recording) -> tuple[str, ...]:
 
     Raises BadModel where it is refused, or follows a channel that the recording lacks.
     """
+    from zerorate.effects.model_file import LOADED, REASONS
     from zerorate.model import EffectModel
-    from zerorate.model_file import LOADED, REASONS
 
     from ..model import encoded, read_model
 

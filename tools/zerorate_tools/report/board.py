@@ -9,7 +9,7 @@ from pathlib import Path
 
 _LOAD = """\
 from zerorate.model import EffectModel
-from zerorate.model_file import LOADED, REASONS
+from zerorate.effects.model_file import LOADED, REASONS
 
 effects = EffectModel()
 reason = effects.load_file("model.bin", corrector.sensor, imu.binding)

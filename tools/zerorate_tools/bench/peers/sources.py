@@ -56,13 +56,13 @@ class Source:
         scales = one.recording.scales
         sensor = (scales.odr_hz, scales.gyro_lsb_per_dps, scales.accel_lsb_per_g)
         if self.name == "in_motion":
-            from zerorate.motion_settings import motion_settings, motion_state
+            from zerorate.motion.motion_settings import motion_settings, motion_state
 
             degree = {"temp_lsb_per_degc": scales.temp_lsb_per_degc}
             settings = motion_settings(*sensor, **degree, **self.options)
             state, at = motion_state(settings), _MOTION_WORDS
         else:
-            from zerorate.realtime_settings import realtime_settings, realtime_state
+            from zerorate.gravity.realtime_settings import realtime_settings, realtime_state
 
             settings = realtime_settings(*sensor, **self.options)
             state, at = realtime_state(settings), _GRAVITY_WORDS

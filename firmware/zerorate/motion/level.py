@@ -11,8 +11,8 @@ except ImportError:
 ptr32 = None
 
 
+from ..arithmetic.fixed import root
 from .attitude import heading_q12, rotation
-from .fixed import root
 from .increments import within
 
 # layout: The state of the source in motion

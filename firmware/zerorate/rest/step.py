@@ -18,10 +18,10 @@ except ImportError:
 ptr32 = None
 
 
+from ..arithmetic.fixed import root
 from .bias import curve_q8
 from .estimators import learn_anywhere, learn_here
 from .fit import draw_line
-from .fixed import root
 from .guard import check
 from .recent import absorb, beyond_q8, grown_q8, hand_over
 from .stillness import gather, judge

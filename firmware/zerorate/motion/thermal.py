@@ -19,8 +19,8 @@ except ImportError:
 ptr32 = None
 
 
+from ..arithmetic.real import add, divide, multiply, pack, put, subtract, unpack
 from .least_squares import place
-from .real import add, divide, multiply, pack, put, subtract, unpack
 
 # layout: The state of the source in motion
 _FILLED = const(9)

@@ -28,8 +28,8 @@ except ImportError:
 ptr32 = None
 
 
-from .atan2 import atan2_q13
-from .fixed import scaled
+from ..arithmetic.atan2 import atan2_q13
+from ..arithmetic.fixed import scaled
 
 # layout: The state of the source against gravity
 _UNIT_ELAPSED_US = const(0)

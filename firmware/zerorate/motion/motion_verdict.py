@@ -16,8 +16,8 @@ except ImportError:
 ptr32 = None
 
 
+from ..arithmetic.real import copy, multiply, put, root_of, subtract, whole
 from .least_squares import covariance, less, place
-from .real import copy, multiply, put, root_of, subtract, whole
 from .thermal import forget_slopes, learn_slopes, present
 
 # layout: The state of the source in motion

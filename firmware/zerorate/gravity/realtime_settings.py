@@ -84,7 +84,7 @@ def realtime_settings(
 
 def realtime_state(settings):
     """Return the state as array('i'), nothing known yet."""
-    from .native.gravity import clear
+    from ..native.gravity import clear
 
     state = array("i", [0] * _GRAVITY_WORDS)
     clear(state, settings)

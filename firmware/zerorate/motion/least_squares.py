@@ -15,7 +15,7 @@ except ImportError:
 ptr32 = None
 
 
-from .real import add, copy, divide, multiply, put, subtract
+from ..arithmetic.real import add, copy, divide, multiply, put, subtract
 
 # layout: The state of the source in motion
 _STAGE = const(12)

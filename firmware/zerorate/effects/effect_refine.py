@@ -18,7 +18,7 @@ except ImportError:
 ptr32 = None
 
 
-from .real import add, divide, multiply, put, subtract, whole
+from ..arithmetic.real import add, divide, multiply, put, subtract, whole
 
 # layout: The corrector's state
 _WINDOW_N = const(17)

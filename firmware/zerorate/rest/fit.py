@@ -20,7 +20,7 @@ except ImportError:
 ptr32 = None
 
 
-from .fixed import floating_ratio_q26, fraction_q27, room, scaled
+from ..arithmetic.fixed import floating_ratio_q26, fraction_q27, room, scaled
 
 # layout: The corrector's state
 _TEMP = const(47)

@@ -18,8 +18,8 @@ except ImportError:
 ptr32 = None
 
 
+from ..arithmetic.fixed import scaled
 from .effect_basis import add_times, centred
-from .fixed import scaled
 
 # layout: The effect model and its running state
 _SUM_Q14 = const(10)

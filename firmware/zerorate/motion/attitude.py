@@ -15,7 +15,7 @@ except ImportError:
 ptr32 = None
 
 
-from .atan2 import atan2_q13
+from ..arithmetic.atan2 import atan2_q13
 
 # layout: The state of the source in motion
 _HALF = const(19)

@@ -135,7 +135,7 @@ def motion_settings(
 
 def motion_state(settings):
     """Return the state as array('i'), nothing known yet."""
-    from .native.motion import clear
+    from ..native.motion import clear
 
     state = array("i", [0] * (_NODES_RING + 3 * settings[_NODES]))
     clear(state, settings)

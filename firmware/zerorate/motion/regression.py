@@ -22,7 +22,7 @@ except ImportError:
 ptr32 = None
 
 
-from .fixed import scaled
+from ..arithmetic.fixed import scaled
 
 # layout: The state of the source in motion
 _TAPER_SUM = const(18)

@@ -24,6 +24,7 @@ except ImportError:
 ptr32 = None
 
 
+from ..arithmetic.real import add, copy, whole
 from .attitude import normalise, rotation, sines, turn
 from .increments import close, gather, restart
 from .least_squares import (
@@ -41,7 +42,6 @@ from .least_squares import (
 )
 from .level import begin_attitude, find_up, lean_back, observe, turn_centre
 from .motion_verdict import finish, note_slope, start_window
-from .real import add, copy, whole
 from .regression import centre, first_sums, regressors, second_sums, taper
 from .thermal import carry, follow_temperature
 

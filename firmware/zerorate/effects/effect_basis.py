@@ -17,7 +17,7 @@ except ImportError:
 ptr32 = None
 
 
-from .fixed import scaled
+from ..arithmetic.fixed import scaled
 
 # layout: An effect slot
 _SLOT_SOURCE = const(0)

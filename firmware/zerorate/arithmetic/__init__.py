@@ -1,0 +1,1 @@
+"""Fixed-point numbers that never leave 31 bits."""

@@ -1,0 +1,1 @@
+"""Learning in motion: the slope of integrated orientation."""

@@ -1,0 +1,1 @@
+"""Learning at rest: the way of a sample, and what it learns from."""
