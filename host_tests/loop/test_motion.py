@@ -8,10 +8,12 @@ from zerorate_tools.loop.analyse import analyse
 from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.motion.in_motion import in_motion, slots_of, without_scales
 from zerorate_tools.loop.read.blocks import session_of
+from zerorate_tools.loop.read.reference import Reference
 from zerorate_tools.loop.read.ticks import read_ticks
 from zerorate_tools.loop.report.unexplained import not_excluded
 from zerorate_tools.loop.search import steps as events
 from zerorate_tools.recordings import write_recording
+from zerorate_tools.recordings.checks import GAP
 from zerorate_tools.simulate import simulate_sessions
 
 MATRIX = [[0.0, 0.02, -0.01], [0.01, 0.0, 0.02], [-0.02, 0.01, 0.0]]
@@ -100,3 +102,10 @@ def test_no_step_of_the_bias_is_listed_in_the_midst_of_motion(tmp_path):
     made[1].rate_dps[moved[2] :] += 5.0
     listed = events.find_all(Regression(made), [])
     assert all(s.block not in (*moved, *(moved + 1)) for s in listed if s.session == 1)
+
+
+def test_an_attitude_without_a_value_was_not_seen():
+    reference = Reference(["t_us", "qw", "qx", "qy", "qz"], 131.0)
+    q = np.array([[1, 0, 0, 0], [GAP] * 4, [0, 0, 0, 0], [0, 1, 0, 0]])
+    seen = reference.quaternions(dict(zip(("qw", "qx", "qy", "qz"), q.T)))
+    assert np.isnan(seen).all(axis=1).tolist() == [False, True, True, False]

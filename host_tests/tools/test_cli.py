@@ -114,7 +114,9 @@ def test_an_error_of_the_bus_is_one_line(monkeypatch, capsys):
 def test_a_missing_library_is_said_with_a_command_that_a_shell_takes(
     tmp_path, monkeypatch, name, library
 ):
-    monkeypatch.setitem(sys.modules, library, None)
+    missing = f'raise ModuleNotFoundError("not here", name="{library}")'
+    (tmp_path / f"{library}.py").write_text(missing)
+    monkeypatch.syspath_prepend(tmp_path)
     (tmp_path / name).write_bytes(b"ULog\x01")
     ran = zerorate("import", tmp_path / name, "--out", tmp_path / "run.parquet")
     assert ran.stderr.endswith(f"needs {library}, which is not installed; {_installing('tools')}\n")
@@ -159,7 +161,7 @@ def test_import_prints_what_it_did(tmp_path, monkeypatch):
     (tmp_path / "in.csv").write_text("t_s,gx_dps,gy_dps,gz_dps,temp_C\n" + rows)
     ran = zerorate("import", "in.csv", "--out", "out.csv.gz")
     assert ran.returncode == 0, ran.stderr
-    assert "out.csv.gz" in ran.stdout and "5 of 6 rows written" in ran.stdout
+    assert "out.csv.gz" in ran.stdout and "5 samples: 4 s at 1 Hz, of 6 rows" in ran.stdout
     assert "dropped 1 rows: all readings are zero" in ran.stdout
     assert read_recording(tmp_path / "out.csv.gz").columns["gz"].tolist() == [393] * 5
 
