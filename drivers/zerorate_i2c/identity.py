@@ -34,13 +34,6 @@ def identify(registers, name):
     return who_am_i, row
 
 
-def require_same(registers, who_am_i):
-    """OSError when the id has become another since it was read."""
-    now = registers.read_register(_WHO_AM_I)
-    if now != who_am_i:
-        raise wrong_device(registers, now, f"was 0x{who_am_i:02x}")
-
-
 def wrong_device(registers, who_am_i, rest):
     """The OSError that names address, id and part, and says rest."""
     row = part_by_id(who_am_i)

@@ -1,18 +1,7 @@
 """One chip of the MPU-6050 family: set-up, whole samples, and its faults found and answered."""
 
 from . import clock as system_clock
-from .identity import identify, require_same, wrong_device
-from .registers import Registers
-from .settings import (
-    ACCEL_LSB_PER_G,
-    ACCEL_RANGES_G,
-    GYRO_LSB_PER_DPS,
-    GYRO_RANGES_DPS,
-    choose_divider,
-    choose_filter,
-    index_of,
-    register_settings,
-)
+from .registers import Registers, unload
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -28,6 +17,7 @@ except ImportError:
 
 
 _ACCEL_XOUT_H = const(0x3B)
+_WHO_AM_I = const(0x75)
 _PWR_MGMT_1 = const(0x6B)
 _DEVICE_RESET = const(0x80)
 _RESET_MS = const(100)
@@ -92,6 +82,19 @@ class MPU6050(Registers):
         self._burst = bytearray(2 * _WORDS)
         self._previous = bytearray(2 * _WORDS)
         self._frozen = False
+        # loaded here and let go: who has an object of it needs no more than its registers
+        from .identity import identify
+        from .settings import (
+            ACCEL_LSB_PER_G,
+            ACCEL_RANGES_G,
+            GYRO_LSB_PER_DPS,
+            GYRO_RANGES_DPS,
+            choose_divider,
+            choose_filter,
+            index_of,
+            register_settings,
+        )
+
         gyro_code = index_of(full_scale_dps, GYRO_RANGES_DPS, "full_scale_dps")
         accel_code = index_of(full_scale_g, ACCEL_RANGES_G, "full_scale_g")
         self.who_am_i, row = identify(self, part)
@@ -111,6 +114,8 @@ class MPU6050(Registers):
         self.scales = (self.odr_hz, self.gyro_lsb_per_dps, self.accel_lsb_per_g) + row[2:4]
         self.binding = bytes([self.who_am_i, gyro_code, accel_code, dlpf_code])
         self._settings = register_settings(self.kind, gyro_code, accel_code, dlpf_code, divider)
+        for name in ("identity", "parts", "settings"):
+            unload(name)
         self.configure()
         self._changed_us = self.clock.ticks_us()
 
@@ -165,7 +170,9 @@ class MPU6050(Registers):
         Raises OSError when the id read is no longer the one of the constructor.
         """
         self._until_check = 0
-        require_same(self, self.who_am_i)
+        now = self.read_register(_WHO_AM_I)
+        if now != self.who_am_i:
+            raise _wrong_device(self, now, f"was 0x{self.who_am_i:02x}")
         for i in range(0, len(self._settings), 2):
             if not self._is_kept(i):
                 return False
@@ -184,7 +191,7 @@ class MPU6050(Registers):
             self.write_register(settings[i], settings[i + 1])
         if not self.check():
             self._until_check = 0
-            raise wrong_device(self, self.who_am_i, "does not keep what is written")
+            raise _wrong_device(self, self.who_am_i, "does not keep what is written")
         self.clock.sleep_ms(self.start_up_ms)
         self._changed_us = self.clock.ticks_us()
 
@@ -242,3 +249,9 @@ class MPU6050(Registers):
             if burst[i] != burst[i & 1]:
                 return False
         return True
+
+
+def _wrong_device(registers, who_am_i, rest):
+    from .identity import wrong_device
+
+    return wrong_device(registers, who_am_i, rest)

@@ -1,5 +1,7 @@
 """Registers of one device on an I2C bus, read with bounded retries and without allocation."""
 
+import sys
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
@@ -54,3 +56,10 @@ class Registers:
                 pass
         self.bus_errors += 1
         return False
+
+
+def unload(name):
+    """Let a module of the driver go that only a constructor needs; on a board, where it counts."""
+    if sys.implementation.name == "micropython":
+        sys.modules.pop("zerorate_i2c." + name, None)
+        sys.modules["zerorate_i2c"].__dict__.pop(name, None)

@@ -1,6 +1,6 @@
 """zerorate: keeps the zero-rate output of a MEMS gyroscope at zero."""
 
 from .corrector import Corrector
-from .settings import Sensor
+from .sensor import Sensor
 
 __all__ = ("Corrector", "Sensor")

@@ -3,7 +3,8 @@
 from array import array
 
 from .native import rest
-from .settings import DEFAULTS, OF_THE_DOCUMENT, Sensor, settings
+from .sensor import Sensor
+from .unloading import unload
 
 try:
     from micropython import const
@@ -82,6 +83,8 @@ class Corrector:
         accelerometer: bool = False,
         **limits: float,
     ) -> None:
+        from .settings import DEFAULTS, OF_THE_DOCUMENT, settings
+
         self.sensor = sensor or Sensor()
         chosen = dict(DEFAULTS)
         if every is None:
@@ -97,6 +100,7 @@ class Corrector:
         self.settings = settings(
             self.sensor, bins, short, long, document, every, ignore_outside, chosen
         )
+        unload("zerorate", "settings")
         c = self.settings
         self.effects: "Any" = None
         self.schedule: "Any" = None

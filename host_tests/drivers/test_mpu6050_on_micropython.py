@@ -13,7 +13,6 @@ HOT = {
     "mpu6050.py": {"decode", "read", "read_sample", "verify", "doubt", "check", "_is_kept"}
     | {"_is_suspect", "_is_one_word_repeated", "_has_leapt", "_read_again"},
     "registers.py": {"read_register", "read_into", "_transfer"},
-    "identity.py": {"require_same"},
     "fifo.py": {
         "read",
         "_load",

@@ -101,6 +101,7 @@ class TestFreezing:
 
         def run(manifests, processor="armv6m"):
             out = tmp_path / "frozen.c"
+            out.unlink(missing_ok=True)  # else the tool leaves it as it is
             command = [sys.executable, str(micropython / "tools" / "makemanifest.py")]
             command += ["-o", str(out), "-b", str(tmp_path), f"-f=-march={processor}"]
             command += [part for k, v in folders.items() for part in ("-v", f"{k}={v}")]
@@ -117,6 +118,15 @@ class TestFreezing:
         frozen = freeze([repository / "manifest.py"])
         assert frozen >= names(["all"])
         assert "zerorate_i2c/linux.py" not in frozen
+
+    def test_a_processor_gets_its_own_machine_code_and_another_none(self, freeze, repository):
+        def code(processor):
+            frozen = freeze([repository / "manifest.py"], processor)
+            return {name.split("/")[-1].split("_")[0] for name in frozen if "native/" in name}
+
+        assert {"thumb", "rv32"} & code("armv7emsp") == {"thumb"}
+        assert {"thumb", "rv32"} & code("rv32imc") == {"rv32"}
+        assert {"thumb", "rv32"} & code("xtensawin") == set()
 
     def test_those_of_the_packages_go_together_as_well(self, freeze, repository):
         both = [repository / folder / "manifest.py" for folder in FOLDERS.values()]

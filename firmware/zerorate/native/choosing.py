@@ -2,6 +2,8 @@
 
 import sys
 
+from ..unloading import unload
+
 # what MicroPython calls its processor -> which code runs there (sys.implementation._mpy)
 _CODE = {3: "thumb", 4: "thumb", 5: "thumb", 6: "thumb", 7: "thumb", 8: "thumb", 11: "rv32"}
 
@@ -22,4 +24,5 @@ def machine_code(part):
         from .trying import tried
 
         code[part], chosen[part] = tried(part, kind)
+        unload("zerorate.native", "trying")
     return code[part]
