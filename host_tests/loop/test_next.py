@@ -5,8 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from zerorate_tools.closing import load
+from zerorate_tools.loop.analyse import analyse
 from zerorate_tools.loop.report.report import report
-from zerorate_tools.loop.report.unexplained import measure_next
+from zerorate_tools.loop.report.unexplained import _unrecorded, measure_next
+from zerorate_tools.loop.simulated import simulate
 from zerorate_tools.recordings import Recording, Scales, write_recording
 
 N, HZ = 3000, 5.0
@@ -64,3 +66,25 @@ def test_what_an_import_declares_a_reference_is_no_channel(closed):
 def test_one_recording_alone_speaks_of_its_pieces(closed):
     result = report(closed(at_rest(0)))
     assert not any("sessions" in why for _, why in result["gate"]["considered_and_refused"])
+
+
+@pytest.mark.parametrize(
+    ("course", "asked"),
+    [
+        ([52, -18, 74, 36], None),
+        ([20, 60], "a cool-down at the same rate as the warm-up"),
+        ([60, 20], "a warm-up at the same rate as the cool-down"),
+    ],
+)
+def test_a_course_that_is_there_is_not_asked_for(course, asked):
+    (session,) = simulate(1, sessions=1).sessions
+    places = np.linspace(0, 1, len(course))
+    at = np.linspace(0, 1, len(session.sources["temp"]))
+    session.sources["temp"] = np.interp(at, places, course)
+    told = [t for t in measure_next(analyse([session])) if "at the same rate" in t]
+    assert [t.split(" (")[0] for t in told] == ([asked] if asked else [])
+
+
+def test_a_humidity_that_is_there_is_not_asked_for():
+    assert "humidity" in _unrecorded(["temp"]) and "board temperature" in _unrecorded(["temp"])
+    assert _unrecorded(["temp", "humidity_mpct", "aht_temp_mdegc"]) == "one screw loosened"

@@ -31,6 +31,7 @@ def add_parser(subparsers) -> None:
     add_loop(benches)
     add_motion(benches)
     add_peers(benches)
+    add_real(benches)
     add_refine(benches)
 
 
@@ -192,6 +193,28 @@ def run_loop(arguments: argparse.Namespace) -> None:
     options = {name: getattr(arguments, name) for name in ("data", "resume", "plots")}
     found = run(arguments.nulls, arguments.seeds, arguments.processes, **options)
     write_report(arguments, markdown(found), found)
+
+
+def add_real(benches) -> None:
+    """Register `bench real`."""
+    parser = benches.add_parser("real", help="closing the loop on real recordings, each alone")
+    parser.add_argument("--data", type=Path, metavar="DIR", help="folder of real recordings")
+    parser.add_argument("--plots", type=Path, metavar="DIR", help="PNGs of them")
+    add_outputs(parser)
+    parser.set_defaults(run=run_real)
+
+
+def run_real(arguments: argparse.Namespace) -> None:
+    """Measure and write."""
+    from ..bench.loop.real import in_words, real_rows
+    from ..bench.real_recordings import data_folder
+    from ..errors import ZerorateError
+
+    folder = arguments.data or data_folder()
+    if folder is None or not Path(folder).is_dir():
+        raise ZerorateError("bench real: no recordings; name their folder with --data DIR")
+    rows = real_rows(Path(folder), arguments.plots)
+    write_report(arguments, in_words(rows), rows)
 
 
 def add_motion(benches) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..public_data import told_of
+from ..tables import machine_line, table
 from .chips import hipnuc, rms_mdps
 from .flips import flip
 
@@ -24,23 +25,33 @@ RECORDINGS = (
     "mpu6050-unmoved/set-2_unmoved-with-x-pointing-forward-10min.csv.gz",
     "adis16405-static/adis_16405_imu1.parquet",
     "adis16405-static/adis_16405_imu2.parquet",
+    "chamber-loop/imu_raw_data.tsv.gz",
 )
 
 
-def real_rows(data: Path, plots: Path | None = None) -> dict[str, dict]:
-    """Name -> figures in mdps (RMS over the axes, held out) and what was found.
+#: Recordings of one device, which are closed together, too.
+GROUPS = {
+    "mpu6050-unmoved, set 2 together": "mpu6050-unmoved/set-2_*.csv.gz",
+}
 
-    before, after: by the firmware's own kernels; after_float, cubic: by double precision.
+
+def real_rows(data: Path, plots: Path | None = None) -> dict[str, dict]:
+    """Name -> figures in mdps (RMS over the axes, held out) and what was found, of every recording
+    alone, of those of one device together, and of tables of means.
+
+    before, after: by the firmware's own kernels; cubic: by double precision, on the same pieces.
 
     plots: a folder for a PNG of each, or None.
     """
     rows = {}
     if plots:
         plots.mkdir(parents=True, exist_ok=True)
+    every = {Path(name).name: [data / name] for name in RECORDINGS if (data / name).exists()}
+    every |= {name: sorted(data.glob(pattern)) for name, pattern in GROUPS.items()}
     with tempfile.TemporaryDirectory() as scratch:
-        for name in RECORDINGS:
-            if (data / name).exists():
-                rows[Path(name).name] = _recording(data / name, Path(scratch), plots)
+        for name, paths in every.items():
+            if paths:
+                rows[name] = _closed(name, paths, Path(scratch), plots)
     for path in sorted((data / "hipnuc-bins").glob("*.log")):
         rows[path.name] = hipnuc(path)
         if plots:
@@ -50,39 +61,78 @@ def real_rows(data: Path, plots: Path | None = None) -> dict[str, dict]:
     return rows
 
 
-def _recording(path: Path, scratch: Path, plots: Path | None) -> dict:
+def _closed(name: str, paths: list[Path], scratch: Path, plots: Path | None) -> dict:
     from ...closing import load
     from ...importers import import_recording
-    from ...loop.search.confounding import label
-    from ...loop.verify.measure import measure
-    from ...loop.verify.slots import model_of
-    from ...recordings import open_recording
+    from ...loop.report.report import report
+    from ...loop.verify.measure import measure_upheld
 
-    out = scratch / f"{path.parent.name}-{path.name.split('.')[0]}.parquet"
-    import_recording(path, out, **told_of(path))
-    analysis = load([out])
-    judgement, found = analysis.judgement, analysis.selection.found
-    rival = cubic_left(analysis)
-    model = model_of(analysis, open_recording(out).scales)
-    by_kernels = measure(analysis, [out], model, scratch / "corrected.parquet").judgement
-    row = {
-        "floor_mdps": rms_mdps(analysis.floor_dps),
-        "before_mdps": rms_mdps(by_kernels.before_dps),
-        "after_mdps": rms_mdps(by_kernels.after_dps),
-        "after_float_mdps": rms_mdps(judgement.after_dps),
-        "cubic_mdps": "no temperature" if rival is None else _rms(rival),
-        "found": ", ".join(f"{label(f.candidate)} (tentative)" for f in found) or "nothing",
-        "confounded_with": "; ".join(", ".join(f.confounded_with) for f in found),
-        "drift_unexplained": "yes" if judgement.excess.left else "no",
-        "steps_listed": len(judgement.steps),
-    }
-    if "vn200" in path.parent.name:
+    logs = [scratch / f"{path.parent.name}-{path.name.split('.')[0]}.parquet" for path in paths]
+    for path, log in zip(paths, logs):
+        import_recording(path, log, **told_of(path))
+    analysis, _ = measure_upheld(load([*logs]), logs, scratch / "corrected.parquet")
+    row = _row(analysis, report(analysis))
+    if "vn200" in paths[0].parent.name:
         row["flip"] = flip(analysis.sessions[0], float(analysis.floor_dps[2]))
     if plots:
         from .plots import draw_recording
 
-        draw_recording(analysis, cubic_left(analysis), path.name, plots / f"{out.stem}.png")
+        draw_recording(analysis, cubic_left(analysis), name, plots / f"{logs[0].stem}.png")
     return row
+
+
+def _row(analysis, told: dict) -> dict:
+    judgement, rival = analysis.judgement, cubic_left(analysis)
+    left = _rms(judgement.residual_after)
+    cubic = None if rival is None else _rms(rival)
+    effects = [f"{step['effect']} ({step['confidence']})" for step in told["steps"]]
+    beside = [", ".join(step["confounded_with"]) for step in told["steps"]]
+    return {
+        "before_mdps": _rms(judgement.residual_before),
+        "after_mdps": left,
+        "after_xyz_mdps": "/".join(f"{v:.0f}" for v in told["after_mdps"]),
+        "cubic_mdps": "no temperature" if cubic is None else cubic,
+        "of_cubic": "" if cubic is None else round(left / cubic, 3),
+        "noise_of_a_block_mdps": _noise(analysis),
+        "floor_mdps": rms_mdps(analysis.floor_dps),
+        "found": ", ".join(effects) or "nothing",
+        "confounded_with": "; ".join(b for b in beside if b),
+        "withdrawn": ", ".join(what for what, _ in told["gate"]["withdrawn"]),
+        "steps_listed": len(told["events"]),
+        "drift_unexplained": "yes" if judgement.excess.left else "no",
+    }
+
+
+def _noise(analysis) -> float:
+    """White noise of a block, mdps, by the rates' differences from one block to the next."""
+    changes = [np.diff(s.rate_dps[s.available], n=2, axis=0) for s in analysis.locked]
+    return round(float(1e3 * np.sqrt((np.vstack(changes) ** 2).mean() / 6)), 2)
+
+
+#: Of the error before, and of a cubic's, that the error after may be; of a cubic's, the median.
+_MOST_OF_BEFORE, _MOST_OF_CUBIC, _MEDIAN = 1.0, 1.05, 0.7
+
+
+def in_words(rows: dict[str, dict]) -> str:
+    """The page of `zerorate bench real`: what is missed first, then every recording."""
+    closed = {name: row for name, row in rows.items() if "of_cubic" in row}
+    worse = [n for n, r in closed.items() if r["after_mdps"] > _MOST_OF_BEFORE * r["before_mdps"]]
+    ratios = {n: r["of_cubic"] for n, r in closed.items() if r["of_cubic"] != ""}
+    beaten = [n for n, ratio in ratios.items() if ratio > _MOST_OF_CUBIC]
+    median = float(np.median(list(ratios.values()))) if ratios else float("nan")
+    lines = [
+        "# Closing the loop on real recordings",
+        "",
+        "`zerorate bench real` wrote this page. " + machine_line(),
+        f"Worse than before: {', '.join(worse) or 'none'}.",
+        f"Worse than a cubic by more than 5 %, held out alike: {', '.join(beaten) or 'none'}.",
+        f"Error after, over the cubic's: {median:.2f} in the median (asked for: {_MEDIAN}).",
+        "",
+    ]
+    keys = list(dict.fromkeys(k for row in rows.values() for k in row))
+    header = ("recording", *(k.replace("_", " ") for k in keys))
+    cells = [(name, *(row.get(k, "") for k in keys)) for name, row in rows.items()]
+    return "\n".join([*lines, table(header, cells)])
 
 
 def cubic(analysis) -> list | None:

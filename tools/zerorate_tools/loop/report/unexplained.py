@@ -10,12 +10,17 @@ from ..verify.measured import BEFORE
 
 _ORIENTATION = "hold the device in six orientations, each twice, at constant temperature"
 _COOLING = "a cool-down at the same rate as the warm-up (tells lag, rate and hysteresis apart)"
+_WARMING = "a warm-up at the same rate as the cool-down (tells lag, rate and hysteresis apart)"
 _SUPPLY = "record the supply voltage, and step it by 100 mV up and down at constant temperature"
 _POWER = "three power-ons at constant temperature, one of them a warm restart"
 _MORE = "more power-ons: {}; 6 or more to fit on"
 _FEW = "with fewer than 3 to fit on nothing is confirmed"
 _CHANCE = "with {} to fit on, a chance agreement of all signs is common"
-_UNRECORDED = "a logger of humidity and board temperature beside the device, one screw loosened"
+_LOGGERS, _LOOSEN = "a logger of {} beside the device", "one screw loosened"
+#: What may be at work unseen, and what a channel of it is called.
+_LOGGED = {"humidity": "hum", "board temperature": "_temp"}
+#: Share of the widest range that is a course up or down.
+_OF_RANGE = 0.3
 _LONGER = "an hour or more at rest in each recording"
 _ONE_DEVICE = (
     "make sure that all recordings are of one device: {} begins {:.2g} dps away from what the "
@@ -67,8 +72,7 @@ def measure_next(analysis) -> list[str]:
     if len(sessions) < 5:
         fitted = len(sessions) - 1
         out.append(_MORE.format(_FEW if fitted < 3 else _CHANCE.format(fitted)))
-    if "temp" in sessions[0].sources and not any(_cools(s) for s in sessions):
-        out.append(_COOLING)
+    out += _other_way(sessions)
     if kinds & {"power-on-transient", "time-drift"}:
         out.append(_POWER)
     if not _turned(sessions):
@@ -76,10 +80,18 @@ def measure_next(analysis) -> list[str]:
     if not any(is_supply(n) for n in sessions[0].sources):
         out.append(_SUPPLY)
     if analysis.judgement.excess.left:
-        out.append(_UNRECORDED)
+        out.append(_unrecorded(sessions[0].sources))
     if max(s.blocks * s.block_s for s in sessions) < 3000:
         out.append(_LONGER)
     return out
+
+
+def _unrecorded(sources) -> str:
+    """What to log beside the device, less what is there."""
+    there = " ".join(sources).lower()
+    missing = [what for what, mark in _LOGGED.items() if mark not in there]
+    logger = [_LOGGERS.format(" and ".join(missing))] if missing else []
+    return ", ".join([*logger, _LOOSEN])
 
 
 def _another_device(analysis):
@@ -110,9 +122,15 @@ def _temperatures(session):
     return session.block_mean(session.sources["temp"])[session.available]
 
 
-def _cools(session):
-    t = session.block_mean(session.sources["temp"])
-    return (t.max() - t)[int(t.argmax()) :].max() > 0.5 * np.ptp(t)
+def _other_way(sessions) -> list[str]:
+    """The course of temperature that none of the sessions has: down, or up."""
+    if "temp" not in sessions[0].sources:
+        return []
+    courses = [s.block_mean(s.sources["temp"]) for s in sessions]
+    least = _OF_RANGE * max(np.ptp(t) for t in courses)
+    cools = max((np.maximum.accumulate(t) - t).max() for t in courses) > least
+    warms = max((t - np.minimum.accumulate(t)).max() for t in courses) > least
+    return ([] if cools else [_COOLING]) + ([] if warms else [_WARMING])
 
 
 def _turned(sessions):
