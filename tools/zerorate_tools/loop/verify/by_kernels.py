@@ -33,7 +33,6 @@ class PiecesByKernels(PiecesByLine):
     def __init__(self, power_on: PowerOn, scales: Scales) -> None:
         super().__init__(power_on.session)
         self.power_on, self._scales = power_on, scales
-        self._compiled: set[bool] = set()  # without a model, and with one: other kernels
         self._known: dict[tuple, np.ndarray] = {}
 
     def residual(
@@ -68,10 +67,7 @@ class PiecesByKernels(PiecesByLine):
     def new(self, models: Sequence[Model | None]) -> list[Firmware]:
         """A device a turn, which has learned nothing, powered on."""
         devices = [Firmware(self._scales, m, self.power_on.channels) for m in models]
-        for device, with_model in zip(devices, [m is not None for m in models]):
-            if with_model not in self._compiled:
-                device.compile(next(self.power_on.frames()))
-                self._compiled.add(with_model)
+        devices[0].compile(next(self.power_on.frames()))
         for d in devices:
             d.power_on()
         return devices
