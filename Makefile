@@ -88,7 +88,8 @@ lock: $(VENV)/.dev  ## resolve the lock files again
 	$(BIN)/$(COMPILE) pyproject.toml --all-extras -c requirements/tools.txt -o requirements/dev.txt
 	$(BIN)/$(COMPILE) requirements/node.in -o requirements/node.txt
 
-wheel: $(VENV)/.tools  ## dist/*.whl and dist/*.tar.gz
+wheel: $(VENV)/.dev  ## dist/*.whl and dist/*.tar.gz
+	$(BIN)/python -m zerorate_tools.kernels.library
 	$(BIN)/python -m hatchling build -d dist
 
 clean:

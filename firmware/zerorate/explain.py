@@ -1,5 +1,7 @@
 """Says in words what is being learned, or why nothing is."""
 
+from .native.choosing import chosen
+
 try:
     from micropython import const
 except ImportError:
@@ -78,7 +80,16 @@ def explain(corrector):
         lines.extend(explain_sources(corrector))
     if corrector.schedule is not None:
         lines.append(saving_text(corrector.schedule, sensor))
+    lines.extend(runs())
     return "\n".join(lines)
+
+
+def runs():
+    """Return a line for each way in which kernels run here, and why."""
+    ways = {}  # type: ignore[var-annotated]
+    for part in sorted(chosen):
+        ways[chosen[part]] = ways.get(chosen[part], "") + ", " + part
+    return ["%s run as %s." % (ways[way][2:], way) for way in sorted(ways)]
 
 
 def saving_text(schedule, sensor):

@@ -6,7 +6,7 @@ import sys
 from zerorate.layout import SLOT, slot_at
 from zerorate_tools.bench.second_unit import WAYS, SecondUnit, device, errors_mdps, table
 from zerorate_tools.loop.verify.firmware import rows
-from zerorate_tools.replay.engines import InterpreterEngine, NumbaEngine
+from zerorate_tools.replay.engines import InterpreterEngine, NativeEngine
 from zerorate_tools.replay.samples import Frames
 
 NONE, AS_IT_IS, REFINED = WAYS
@@ -25,7 +25,7 @@ def test_the_second_unit_is_left_less_than_half_when_it_refines_the_firsts_model
 def test_its_coefficients_move_towards_its_own():
     unit, corrector = SecondUnit(seed=2), device(REFINED)
     frames, _ = unit.power_on()
-    next(iter(NumbaEngine().run(corrector, [frames])))
+    next(iter(NativeEngine().run(corrector, [frames])))
     e = corrector.effects.e
     for slot, axis in ((0, 0), (0, 1), (1, 0)):
         at = slot_at(slot) + axis
@@ -44,7 +44,7 @@ def test_a_board_refines_as_this_computer_does(micropython):
     frames, _ = unit.power_on()
     part = rows(frames, 0, 6000)
     here, there = device(REFINED), device(REFINED)
-    expected = next(iter(NumbaEngine().run(here, [copied(part)])))
+    expected = next(iter(NativeEngine().run(here, [copied(part)])))
     found = next(iter(InterpreterEngine(micropython).run(there, [copied(part)])))
     assert (found.bias_q8 == expected.bias_q8).all()
     assert there.effects.e == here.effects.e

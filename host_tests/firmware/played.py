@@ -1,4 +1,4 @@
-"""Whole signals through the firmware that Numba compiled, for tests that need many readings."""
+"""Whole signals through the firmware compiled, for tests that need many readings."""
 
 from dataclasses import replace
 
@@ -25,13 +25,13 @@ def rest(seconds, seed=1, bias_dps=(0.0, 0.0, 0.0), temp=0, odr_hz=ODR_HZ):
     return frames
 
 
-def by_numba(corrector, words, dt_us):
+def by_machine_code(corrector, words, dt_us):
     """The outcome of (n, 7) int32 frames, dt_us after one another, by the compiled kernels."""
     columns = dict(zip(FRAME, words.T), t_us=np.cumsum(dt_us, dtype=np.int64))
     recording = Recording(columns, Scales("MPU-6050", corrector.sensor.odr_hz, LSB))
     (batch,) = frames_in_batches(recording, rows=len(words))
     batch = replace(batch, dt_us=np.asarray(dt_us, np.int32))  # a recording's first is nominal
-    (outcome,) = engine("numba").run(corrector, [batch])
+    (outcome,) = engine("native").run(corrector, [batch])
     return outcome
 
 
@@ -41,7 +41,7 @@ def play(frames, corrector=None, dt_us=None, **options):
     words = np.clip(np.rint(frames), -32768, 32767).astype(np.int32)
     if dt_us is None:
         dt_us = np.full(len(words), round(1e6 / corrector.sensor.odr_hz))
-    return corrector, by_numba(corrector, words, dt_us)
+    return corrector, by_machine_code(corrector, words, dt_us)
 
 
 def estimators(corrector):

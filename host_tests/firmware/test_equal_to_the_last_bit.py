@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from . import trace
-from .trace_on_host import GOLDEN, checksums, on_numba
+from .trace_on_host import GOLDEN, checksums, on_machine_code
 
 modes = pytest.mark.parametrize("mode", sorted(trace.MODES))
 
@@ -27,9 +27,9 @@ def test_bytecode_gives_what_cpython_gives_and_allocates_nothing(
     same(trace_on(micropython, mode), trace_on_host(mode))
 
 
-def test_the_kernels_that_numba_compiled_give_what_cpython_gives(trace_on_host):
+def test_the_kernels_that_are_compiled_give_what_cpython_gives(trace_on_host):
     for mode in trace.MODES:  # in one test, for compiling them takes a while
-        same(on_numba(mode), trace_on_host(mode))
+        same(on_machine_code(mode), trace_on_host(mode))
 
 
 @modes

@@ -9,7 +9,7 @@ from zerorate import Corrector, Sensor
 from zerorate.layout import GRAVITY, MOTION, STATE
 
 from . import motions
-from .played import by_numba
+from .played import by_machine_code
 
 HZ = 25.0
 DT_US = 40000
@@ -65,9 +65,9 @@ def test_every_interpreter_decides_the_same_and_allocates_nothing(
     assert result.files["state.bin"] == expected
 
 
-def test_the_kernels_that_numba_compiled_decide_the_same(samples, expected):
+def test_the_kernels_that_are_compiled_decide_the_same(samples, expected):
     corrector = both()
-    by_numba(corrector, samples.astype(np.int32), np.full(len(samples), DT_US))
+    by_machine_code(corrector, samples.astype(np.int32), np.full(len(samples), DT_US))
     assert words(corrector) == expected
 
 

@@ -1,4 +1,4 @@
-"""The trace through the firmware in this process, by CPython or compiled by Numba."""
+"""The trace through the firmware in this process, by CPython or compiled."""
 
 import json
 import zlib
@@ -10,7 +10,7 @@ from zerorate import Corrector, Sensor
 from zerorate.layout import STATE
 
 from . import trace
-from .played import by_numba
+from .played import by_machine_code
 
 GOLDEN = Path(__file__).resolve().parents[1] / "golden" / "trace.json"
 
@@ -42,10 +42,10 @@ def on_cpython(mode, watch=lambda corrector, verdict: None):
     return corrector.state.tobytes(), biases.tobytes()
 
 
-def on_numba(mode):
-    """The same by the kernels that Numba compiled."""
+def on_machine_code(mode):
+    """The same by the kernels compiled."""
     corrector = corrector_for(mode)
-    outcome = by_numba(corrector, *frames(trace.UPDATES[mode]))
+    outcome = by_machine_code(corrector, *frames(trace.UPDATES[mode]))
     return corrector.state.tobytes(), outcome.bias_q8.tobytes()
 
 

@@ -1,19 +1,16 @@
 """Replaying recordings: every engine gives the same bits, and bad input leaves nothing behind."""
 
-import shutil
-
-import numba
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 from zerorate_tools.cli import main
-from zerorate_tools.errors import InFile, ZerorateError
+from zerorate_tools.errors import InFile, MissingRuntime, ZerorateError
+from zerorate_tools.kernels.library import library as compiled_library
 from zerorate_tools.model import Slot, build_model, write_model
 from zerorate_tools.model.term import Term
 from zerorate_tools.recordings import write_recording
-from zerorate_tools.replay import jit, replay
-from zerorate_tools.runtimes.cache import fill
+from zerorate_tools.replay import engines, replay
 from zerorate_tools.simulate import simulate
 
 DESCRIPTION = {
@@ -45,10 +42,10 @@ def log(simulated, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def reference(log):
-    return replay(log, runtime="numba")
+    return replay(log, runtime="native")
 
 
-def test_every_interpreter_gives_the_bits_that_numba_gives(runtime, log, reference):
+def test_every_interpreter_gives_the_bits_that_machine_code_gives(runtime, log, reference):
     done = replay(log, runtime=runtime.name)
     assert done.state == reference.state
     assert done.table.equals(reference.table)
@@ -130,7 +127,7 @@ def test_gaps_in_a_channel_that_nobody_follows_change_nothing(with_supply, refer
     assert replay(with_supply("gaps.parquet", [None] * samples)).state == reference.state
 
 
-@pytest.mark.parametrize("engine", ["numba", "cpython"])
+@pytest.mark.parametrize("engine", ["native", "cpython"])
 def test_a_model_goes_on_with_a_channels_last_value_in_its_gaps(
     simulated, with_supply, reference, tmp_path, engine
 ):
@@ -176,21 +173,24 @@ def test_a_broken_recording_leaves_no_output(tmp_path, capsys):
     assert capsys.readouterr().err.count("\n") == 1
 
 
-def test_what_is_compiled_is_what_was_hashed_though_a_kernel_changes_meanwhile(
-    repository, tmp_path, monkeypatch
-):
-    package = shutil.copytree(repository / "firmware" / "zerorate", tmp_path / "zerorate")
+def test_without_a_compiler_the_replay_runs_on_cpython_and_says_so(log, monkeypatch, capsys):
+    def none():
+        raise MissingRuntime("no C compiler here")
 
-    def changed_meanwhile(folder, build):
-        (package / "arithmetic" / "fixed.py").write_text("# changed")
-        return fill(folder, build)
+    monkeypatch.setattr(engines, "library", none)
+    assert replay(log, runtime="native").state == replay(log, runtime="cpython").state
+    assert capsys.readouterr().err.count("no C compiler here; the replay runs on plain CPy") == 1
 
-    monkeypatch.setenv("ZERORATE_CACHE", str(tmp_path / "cache"))
-    monkeypatch.setattr(numba.config, "CACHE_DIR", "")
-    monkeypatch.setattr(jit, "firmware_package", lambda: package)
-    monkeypatch.setattr(jit, "fill", changed_meanwhile)
-    kernels = jit.compiled_kernels.__wrapped__("fixed")
-    assert (kernels.loop.parent / "fixed.py").read_text() != "# changed"
+
+def test_a_library_is_compiled_anew_where_no_cache_can_be_written(tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("ZERORATE_CACHE", str(tmp_path / "file"))
+    assert compiled_library.__wrapped__().zerorate_run
+
+
+def test_numba_is_refused_with_the_name_that_took_its_place(log):
+    with pytest.raises(MissingRuntime, match="`native` runs the same kernels"):
+        replay(log, runtime="numba")
 
 
 def test_choices_of_sources_in_one_process_are_compiled_apart(simulated):
@@ -198,6 +198,6 @@ def test_choices_of_sources_in_one_process_are_compiled_apart(simulated):
     both = {"motion": True, "accelerometer": True}
     for options in ({}, {"motion": True}, {"accelerometer": True}, both, {}):
         plain = replay(recording, runtime="cpython", options=options)
-        done = replay(recording, runtime="numba", options=options)
+        done = replay(recording, runtime="native", options=options)
         assert done.state == plain.state
         assert done.table.equals(plain.table)

@@ -38,12 +38,12 @@ from zerorate_tools.replay.engines import engine
 from zerorate_tools.replay.run import corrector_for
 from zerorate_tools.replay.samples import frames_in_batches
 first, long = map(open_recording, sys.argv[1:])
-corrector, numba = corrector_for(first, {}), engine("numba")
-list(numba.run(corrector, frames_in_batches(first)))
+corrector, native = corrector_for(first, {}), engine("native")
+list(native.run(corrector, frames_in_batches(first)))
 batches, samples, spent = frames_in_batches(long), 0, 0.0
 for batch in batches:
     start = time.process_time()
-    list(numba.run(corrector, [batch]))
+    list(native.run(corrector, [batch]))
     spent += time.process_time() - start
     samples += len(batch)
 print(samples, spent, 0)

@@ -18,7 +18,7 @@ from ..model import Slot, build_model, encoded
 from ..model.check import sensor_for
 from ..model.term import Term, evaluate
 from ..recordings import Scales
-from ..replay.engines import NumbaEngine
+from ..replay.engines import NativeEngine
 from ..replay.samples import Frames
 
 SCALES = Scales("MPU-6050", 25.0, 131.0, 16384.0, 340.0, 36.53)
@@ -96,7 +96,7 @@ def errors_mdps(seed: int, ways: Sequence[str] = WAYS) -> dict[str, float]:
         for way, corrector in devices.items():
             corrector.power_on()
             own = Frames(frames.t_us, frames.frames.copy(), frames.dt_us, frames.extra)
-            taken = next(iter(NumbaEngine().run(corrector, [own]))).bias_q8 / 256.0
+            taken = next(iter(NativeEngine().run(corrector, [own]))).bias_q8 / 256.0
             left = (taken - bias_lsb)[60 * _HZ :] / SCALES.gyro_lsb_per_dps
             out[way] = float(1e3 * np.sqrt(np.mean(left**2)))
     return out

@@ -25,7 +25,7 @@ def machine() -> dict[str, str]:
     """Processor and versions."""
     found = {"processor": _processor(), "cores": str(os.cpu_count()), "system": platform.platform()}
     found["python"] = platform.python_version()
-    for name in ("zerorate", "numpy", "numba", "imufusion", "vqf", "ziglang"):
+    for name in ("zerorate", "numpy", "imufusion", "vqf", "ziglang"):
         try:
             found[name] = version(name)
         except PackageNotFoundError:

@@ -38,7 +38,7 @@ def workload(samples: int = 2 * CYCLE) -> Workload:
     recording, _ = simulate(SCENARIO, session=1, seed=1)
     corrector = corrector_for(recording, {})
     batches = list(frames_in_batches(recording, rows=_BEFORE))
-    for _ in engine("numba").run(corrector, batches[:1]):
+    for _ in engine("native").run(corrector, batches[:1]):
         pass
     return Workload(_rows(batches[1])[:samples], _words(corrector.settings), _state(corrector))
 

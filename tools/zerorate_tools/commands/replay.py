@@ -23,9 +23,9 @@ def add_parser(subparsers) -> None:
     parser.add_argument("--out", type=Path, required=True, metavar="FILE", help="a .parquet")
     parser.add_argument(
         "--runtime",
-        default="numba",
+        default="native",
         metavar="NAME",
-        help="numba (default), cpython, wasm, x86, armhf, or the path of a MicroPython",
+        help="native (default), cpython, wasm, x86, armhf, or the path of a MicroPython",
     )
     parser.add_argument("--state", type=Path, metavar="FILE", help="write the final state's bytes")
     parser.add_argument("--from-state", type=Path, metavar="FILE", help="start from it")

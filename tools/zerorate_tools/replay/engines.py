@@ -1,4 +1,4 @@
-"""Who runs the firmware over a recording: Numba, CPython, or a MicroPython."""
+"""Who runs the firmware over a recording: machine code, CPython, or a MicroPython."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from zerorate import Corrector
-from zerorate.layout import EFFECTS, STATE
+from zerorate.layout import STATE
 
-from ..errors import ZerorateError
+from ..errors import MissingRuntime, ZerorateError
+from ..kernels.library import library, run_rows
 from ..recordings.checks import GAP
 from .samples import Frames
 
-_NOTHING = array("i", [0])
 _OTHERS = ("motion.bin", "motion_settings.bin", "level.bin", "level_settings.bin", "effects.bin")
 _OUTPUT = np.dtype([("verdict", "<i4"), ("bias", "<i4", 3), ("source", "<i4", 3), ("q", "<i4", 3)])
 
@@ -65,12 +65,14 @@ class Engine(ABC):
 
 
 def engine(name: str) -> Engine:
-    """The engine of that name: numba, cpython, wasm, x86, armhf, or a MicroPython executable.
+    """The engine of that name: native, cpython, wasm, x86, armhf, or a MicroPython executable.
 
     Raises MissingRuntime.
     """
+    if name == "native":
+        return NativeEngine()
     if name == "numba":
-        return NumbaEngine()
+        raise MissingRuntime("Numba is used no more: `native` runs the same kernels, compiled by C")
     if name == "cpython":
         return CPythonEngine()
     from ..runtimes import find
@@ -78,32 +80,26 @@ def engine(name: str) -> Engine:
     return InterpreterEngine(find(name))
 
 
-class NumbaEngine(Engine):
-    """The kernels compiled to machine code, in this process; CPython where Numba is absent."""
+class NativeEngine(Engine):
+    """The kernels compiled from their C, in this process; CPython where there is no compiler."""
 
     def run(self, corrector: Corrector, batches: Iterable[Frames]) -> Iterator[Outcome]:
         try:
-            from .jit import compiled_run
-        except ImportError:
-            print("zerorate: no Numba here, the replay runs on plain CPython", file=sys.stderr)
+            library()
+        except MissingRuntime as missing:
+            print(f"zerorate: {missing}; the replay runs on plain CPython", file=sys.stderr)
             yield from CPythonEngine().run(corrector, batches)
             return
-        on = [x is not None for x in (corrector.motion, corrector.level, corrector.effects)]
-        refining = corrector.effects is not None and corrector.effects.e[EFFECTS.REFINE_ON] != 0
-        run = compiled_run(*on, refining)
-        state = np.frombuffer(corrector.state, np.int32)
         settings = np.array(corrector.settings, np.int32)
-        others = tuple(np.frombuffer(words or _NOTHING, np.int32) for words in others_of(corrector))
+        others = [None if words is None else _view(words) for words in others_of(corrector)]
+        arrays = (_view(corrector.state), settings, *others)
         for batch in batches:
-            n = len(batch)
-            # each axis lies together, as it will in a file
-            bias, quality = (np.empty((n, 3), np.int32, order="F") for _ in range(2))
-            source, verdict = np.empty((n, 3), np.int8, order="F"), np.empty(n, np.int8)
-            run(
-                *(state, settings, others, batch.frames, batch.dt_us, batch.extra),
-                *(bias, source, quality, verdict),
-            )
-            yield Outcome(batch.t_us, batch.frames, bias, source, quality, verdict)
+            found = run_rows(arrays, batch.frames, batch.dt_us, batch.extra, len(batch))
+            yield Outcome(batch.t_us, batch.frames, *found)
+
+
+def _view(words: array) -> NDArray[np.int32]:
+    return np.frombuffer(words, np.int32)
 
 
 class CPythonEngine(Engine):

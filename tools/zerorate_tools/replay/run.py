@@ -64,7 +64,7 @@ def replay(
     log: str | PathLike[str] | Recording,
     out: str | PathLike[str] | None = None,
     *,
-    runtime: str = "numba",
+    runtime: str = "native",
     state: str | PathLike[str] | None = None,
     from_state: str | PathLike[str] | None = None,
     resume: bool = False,
@@ -75,7 +75,7 @@ def replay(
     """Run the firmware over `log` and return what it did.
 
     log: a recording or its path; out: the Parquet to write, None for a table in memory;
-    runtime: numba, cpython, wasm, x86, armhf or the path of a MicroPython; state: file for the
+    runtime: native, cpython, wasm, x86, armhf or the path of a MicroPython; state: file for the
     final state's bytes; from_state: file to start from, as a new power-on, or, with resume, as if
     the two recordings were one; model: effect model (model.bin or model.json);
     options: keywords of zerorate.Corrector; advance: called with the

@@ -54,7 +54,7 @@ def moments(
     logs: Sequence[str | PathLike[str]],
     model: str | PathLike[str] | None = None,
     every_s: float = 60.0,
-    runtime: str = "numba",
+    runtime: str = "native",
 ) -> list[Moment]:
     """Replay recordings one after another, each a power-on, looking at the state every `every_s`.
 

@@ -55,7 +55,7 @@ class Live:
         if not len(batch):
             return
         raw = batch.frames.copy()
-        runner: Engine = engine("numba") if len(batch) > _MANY else CPythonEngine()
+        runner: Engine = engine("native") if len(batch) > _MANY else CPythonEngine()
         for outcome in runner.run(self.corrector, [batch]):
             self._note(raw, outcome.frames, outcome.t_us)
             self._keep(outcome)

@@ -34,7 +34,7 @@ class Decision:
 
     def _biases(self, number: int, one: Given) -> NDArray[np.float64]:
         corrector = corrector_for(one.recording, dict(self.options))
-        outcomes = list(engine("numba").run(corrector, frames_in_batches(one.recording)))
+        outcomes = list(engine("native").run(corrector, frames_in_batches(one.recording)))
         lsb = 256 * one.recording.scales.gyro_lsb_per_dps
         bias = np.concatenate([outcome.bias_q8 for outcome in outcomes]) / lsb
         if self.truth_dps is not None:

@@ -27,7 +27,7 @@ def firmware(**options: object) -> Peer:
         for number, one in enumerate(sessions):
             if number:
                 corrector.power_on()
-            outcomes = engine("numba").run(corrector, frames_in_batches(one.recording))
+            outcomes = engine("native").run(corrector, frames_in_batches(one.recording))
             bias_q8 = np.concatenate([outcome.bias_q8 for outcome in outcomes])
             found.append(bias_q8 / (256 * one.recording.scales.gyro_lsb_per_dps))
         return found

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from functools import lru_cache
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 from zerorate.layout import GRAVITY, MOTION
 
-from ...replay.jit import compiled_kernels
+from ...kernels.library import run_source
 from .given import Given
 
 _MOTION_WORDS = MOTION.MOTION_BIAS_Q8, MOTION.MOTION_QUALITY_Q8
@@ -45,9 +44,18 @@ class Source:
             if name in columns:
                 rows[:, place] = columns[name]
         dt_us = np.diff(columns["t_us"], prepend=2 * columns["t_us"][0] - columns["t_us"][1])
-        learned = np.zeros(len(rows), bool)
+        learned = np.zeros(len(rows), np.int8)
         words = np.zeros((len(rows), 2, 3), np.int32)
-        _loop(self.name)(state, settings, rows, dt_us, (bias_at, sigma_at), learned, words)
+        run_source(
+            self.name == "realtime",
+            state,
+            settings,
+            rows,
+            dt_us,
+            (bias_at, sigma_at),
+            learned,
+            words,
+        )
         for i in np.flatnonzero(learned):
             self._judge(number, int(i), words[i, 0] / lsb, words[i, 1] / lsb)
         return words[:, 0] / lsb
@@ -79,24 +87,3 @@ class Source:
         inside = off < 2 * sigma
         self.wrong += bool(np.any(off[known] > 4 * sigma[known]))
         self.within += inside[known].tolist()
-
-
-@lru_cache(maxsize=2)
-def _loop(name: str) -> Callable:
-    """The compiled loop of a source's update over a recording; what it writes is held."""
-    import numba
-
-    update = getattr(compiled_kernels(name), name).update
-
-    @numba.njit
-    def run(state, settings, rows, dt_us, at, learned, words):
-        for i in range(len(rows)):
-            if i > 0:
-                words[i] = words[i - 1]
-            if update(state, settings, rows[i], dt_us[i]):
-                learned[i] = True
-                for axis in range(3):
-                    words[i, 0, axis] = state[at[0] + axis]
-                    words[i, 1, axis] = state[at[1] + axis]
-
-    return run

@@ -67,7 +67,6 @@ class PiecesByKernels(PiecesByLine):
     def new(self, models: Sequence[Model | None]) -> list[Firmware]:
         """A device a turn, which has learned nothing, powered on."""
         devices = [Firmware(self._scales, m, self.power_on.channels) for m in models]
-        devices[0].compile(next(self.power_on.frames()))
         for d in devices:
             d.power_on()
         return devices

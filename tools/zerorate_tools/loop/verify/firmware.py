@@ -16,7 +16,7 @@ from ...errors import ZerorateError
 from ...model import Model, encoded
 from ...model.check import sensor_for
 from ...recordings import Scales
-from ...replay.engines import NumbaEngine
+from ...replay.engines import NativeEngine
 from ...replay.samples import Frames
 
 
@@ -39,7 +39,7 @@ class Firmware:
         # a spread above nothing is in every window: no rest, so nothing is learned
         self._frozen = deepcopy(self._learning)
         self._frozen[SETTINGS.STILL_ACCEL_Q8] = -1
-        self._engine = NumbaEngine()
+        self._engine = NativeEngine()
         self._extra: list[int] = []
         if model is not None:
             self._load(model, channels)
@@ -51,13 +51,6 @@ class Firmware:
             raise Refused(f"the firmware refuses the model: {REASONS[reason]}")
         self._corrector.use_model(effects)
         self._extra = [channels.index(name) for name in effects.channels]
-
-    def compile(self, frames: Frames) -> None:
-        """Compile what `run` needs, for one row, which is of another layout, and for many: to be
-        done before there are threads. frames: two samples at least; nothing is learned.
-        """
-        for count in (1, 2):
-            self.copy().run(rows(frames, 0, count))
 
     def copy(self) -> Firmware:
         """Another device in the very same state."""

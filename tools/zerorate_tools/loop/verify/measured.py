@@ -94,9 +94,6 @@ class Measurement:
         channels = power_ons[0].channels
         self.devices = [Firmware(scales, m, channels) for m in models]
         self.begun: dict[str, list[Firmware]] = {}
-        first = next(power_ons[0].frames())
-        for device in self.devices[:2]:
-            device.compile(first)
 
     def learn(self) -> None:
         """Let every device live through the training sessions; remember how each began."""

@@ -1,0 +1,154 @@
+"""The kernels as a library of this machine, compiled from their C once and kept in the cache."""
+
+from __future__ import annotations
+
+import ctypes
+import hashlib
+import importlib.util
+import platform
+import shutil
+import subprocess
+import sys
+import tempfile
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from zerorate.layout import EFFECTS, GRAVITY, MOTION, SOURCE, STATE
+
+from ..errors import MissingRuntime, ZerorateError
+from ..recordings.checks import GAP
+from ..runtimes.cache import cache_folder, fill
+from .c_functions import kernels_in_c
+from .reading import Kernels
+
+ENTRIES = (
+    *(("guard", "check"), ("step", "admit"), ("step", "consider"), ("step", "finish")),
+    *(("in_motion", "update"), ("realtime", "update")),
+    *(("effects", "sense"), ("effect_refine", "attend")),
+)
+_WORDS = {
+    **{name: getattr(STATE, name) for name in ("OUT_Q8", "EFFECT_Q8", "QUALITY_Q8", "SOURCE")},
+    **{"MOTION_BIAS_Q8": MOTION.MOTION_BIAS_Q8, "GRAVITY_BIAS_Q8": GRAVITY.GRAVITY_BIAS_Q8},
+    **{"IN_MOTION": SOURCE.IN_MOTION, "ACCELEROMETER": SOURCE.ACCELEROMETER},
+    **{"CHANNELS": EFFECTS.CHANNELS, "REFINE_ON": EFFECTS.REFINE_ON, "GAP": GAP},
+}
+# -O1 compiles in a third of the time of -O2, and replays as fast
+_FLAGS = ("-O1", "-fwrapv", "-fno-sanitize=undefined", "-shared", "-fPIC", "-fvisibility=hidden")
+_FOLDER = Path(__file__).parent
+_PREBUILT = _FOLDER / "prebuilt"
+_ENDINGS = {"win32": ".dll", "darwin": ".dylib"}
+# what a wheel carries: platform and machine as Python names them -> the compiler's target
+_TARGETS = {
+    ("linux", "x86_64"): "x86_64-linux-gnu.2.17",
+    ("linux", "aarch64"): "aarch64-linux-gnu.2.17",
+    ("darwin", "x86_64"): "x86_64-macos-none",
+    ("darwin", "arm64"): "aarch64-macos-none",
+    ("win32", "amd64"): "x86_64-windows-gnu",
+    ("win32", "arm64"): "aarch64-windows-gnu",
+}
+
+
+def text_of(*files: str) -> str:
+    """C of all kernels, then of files of this folder, with the layout's words that they name."""
+    words = "\n".join(f"#define {name} ({value})" for name, value in _WORDS.items())
+    own = [(_FOLDER / name).read_text(encoding="utf-8") for name in files]
+    return "\n".join([kernels_in_c(Kernels(), *ENTRIES), words, "", *own])
+
+
+@lru_cache(maxsize=1)
+def library() -> ctypes.CDLL:
+    """zerorate_run and zerorate_source (rows.c). Raises MissingRuntime without a C compiler.
+
+    A wheel carries it. Else it is compiled and kept in the cache, under a hash of its text; where
+    no cache can be written it is compiled for this process alone.
+    """
+    text, name = text_of("sample.c", "rows.c"), f"kernels{_ENDINGS.get(sys.platform, '.so')}"
+    key = _key(text, sys.platform, platform.machine().lower())
+    if (_PREBUILT / key).is_file():
+        return ctypes.CDLL(str(_PREBUILT / key))
+    command = _compiler()
+    try:
+        kept = cache_folder() / "kernels" / key
+        folder = fill(kept, lambda draft: _compile(command, text, draft / name))
+    except OSError:
+        folder = Path(tempfile.mkdtemp(prefix="zerorate-kernels-"))
+        _compile(command, text, folder / name)
+    return ctypes.CDLL(str(folder / name))
+
+
+def prebuild(folder: Path = _PREBUILT) -> list[Path]:
+    """Write the library for every system that a wheel is for. Raises MissingRuntime."""
+    folder.mkdir(exist_ok=True)
+    for old in folder.iterdir():
+        old.unlink()
+    text = text_of("sample.c", "rows.c")
+    for system, target in _TARGETS.items():
+        with tempfile.TemporaryDirectory(prefix="zerorate-kernels-") as scratch:
+            made = Path(scratch) / f"kernels{_ENDINGS.get(system[0], '.so')}"
+            _compile([*_zig(), "-target", target, "-s"], text, made)
+            shutil.copy(made, folder / _key(text, *system))
+    return sorted(folder.iterdir())
+
+
+def _key(text: str, system: str, machine: str) -> str:
+    return f"{hashlib.sha256(text.encode()).hexdigest()[:16]}-{system}-{machine}"
+
+
+def address(words) -> ctypes.c_void_p:
+    """Where a NumPy array begins, for a call of the library; None is a null pointer."""
+    return ctypes.c_void_p(None if words is None else words.ctypes.data)
+
+
+def run_rows(arrays: tuple, frames, dt_us, extra, n: int) -> tuple[NDArray, ...]:
+    """(bias_q8, source, quality_q8, each (n, 3), and verdict) of zerorate_run.
+
+    arrays: state, settings and those of the sources and the model, or None; frames are corrected.
+    """
+    bias, quality = (np.empty((n, 3), np.int32, order="F") for _ in range(2))
+    source, verdict = np.empty((n, 3), np.int8, order="F"), np.empty(n, np.int8)
+    given = [np.ascontiguousarray(part, np.int32) for part in (frames, dt_us, extra)]
+    count, channels = ctypes.c_int64(n), ctypes.c_int64(extra.shape[1])
+    library().zerorate_run(
+        *map(address, arrays),
+        *(address(given[0]), address(given[1]), count, address(given[2]), channels),
+        *map(address, (bias, source, quality, verdict)),
+    )
+    if given[0] is not frames:
+        frames[:] = given[0]
+    return bias, source, quality, verdict
+
+
+def run_source(gravity: bool, state, settings, rows, dt_us, at, learned, words) -> None:
+    """zerorate_source; at: (bias, sigma), words of the state; learned and words are written."""
+    dt_us = np.ascontiguousarray(dt_us, np.int32)
+    library().zerorate_source(
+        *(ctypes.c_int32(gravity), address(state), address(settings), address(rows)),
+        *(address(dt_us), ctypes.c_int64(len(rows)), ctypes.c_int32(at[0]), ctypes.c_int32(at[1])),
+        *(address(learned), address(words)),
+    )
+
+
+def _compile(compiler: list[str], text: str, target: Path) -> None:
+    source = target.with_suffix(".c")
+    source.write_text(text, encoding="utf-8")
+    command = [*compiler, *_FLAGS, str(source), "-o", str(target)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode:
+        raise ZerorateError(f"the kernels do not compile here: {done.stderr.strip()[:300]}")
+
+
+def _compiler() -> list[str]:
+    found = shutil.which("cc")
+    return [found] if found else _zig()
+
+
+def _zig() -> list[str]:
+    if importlib.util.find_spec("ziglang") is None:
+        raise MissingRuntime("no C compiler here; `pip install ziglang` is one")
+    return [sys.executable, "-m", "ziglang", "cc"]
+
+
+if __name__ == "__main__":
+    print(*prebuild(), sep="\n")
