@@ -130,7 +130,7 @@ def model() -> bytes:
 
 def second_program() -> str:
     """The text of docs/pico.md's second program."""
-    from ...replay.jit import firmware_package
+    from ...kernels.reading import firmware_package
 
     checkout = firmware_package().parents[1]
     return (checkout / _PROGRAM).read_text(encoding="utf-8")
