@@ -8,7 +8,7 @@ import pytest
 from zerorate_tools.bench.boards.figures import plays
 from zerorate_tools.bench.boards.playing import Play, on_host, on_pico
 from zerorate_tools.bench.workload import workload
-from zerorate_tools.boards import flash
+from zerorate_tools.boards.flashing import flash
 
 from host_tests.firmware import trace
 from host_tests.firmware.trace_on_host import GOLDEN, checksums, corrector_for, frames

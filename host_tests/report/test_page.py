@@ -7,7 +7,7 @@ from html.parser import HTMLParser
 import pytest
 from zerorate_tools.loop.read.turns import GIVEN
 from zerorate_tools.report.figures import figure
-from zerorate_tools.report.words import corrects_at_rest, headline
+from zerorate_tools.report.words import WHY_BOTH, corrects_at_rest, frozen, headline
 
 from host_tests.report.devices import HOSTILE
 
@@ -60,7 +60,11 @@ def test_before_after_and_floor_of_every_axis_are_shown_with_their_intervals(clo
 
 def test_the_first_line_is_the_answer(closed, read):
     assert read.h1 == headline(closed.result) + "."
-    assert figure(closed.result["in_all"]["after_mdps"]) in read.h1
+    board, _, compared = read.h1.partition(". ")
+    assert figure(closed.result["online"]["in_all"]["after_mdps"]) in board
+    shown = "before_mdps" if "Nothing was found" in compared else "after_mdps"
+    assert figure(closed.result["in_all"][shown]) in compared
+    assert WHY_BOTH in closed.page.read_text()
 
 
 def test_it_is_one_file_of_less_than_six_megabytes(closed):
@@ -74,18 +78,19 @@ class TestAnswers:
     def test_an_effect(self, outcome):
         said = headline(outcome("an effect").result)
         assert re.fullmatch(
-            r"On the session held out, the error fell from [\d.]+ to [\d.]+ mdps "
+            r"On the board, which goes on learning, [\d.]+ mdps are left, [\d.]+ without the "
+            r"effects. Frozen, on the session held out, the error fell from [\d.]+ to [\d.]+ mdps "
             r"\(floor [\d.]+\)",
             said,
         )
 
     def test_nothing(self, outcome):
-        assert headline(outcome("nothing").result).startswith("Nothing was found at rest")
+        assert frozen(outcome("nothing").result).startswith("Nothing was found at rest")
 
     def test_nothing_beside_a_reference_is_not_said_of_rests_alone(self, outcome):
         result = outcome("nothing").result
         beside = {**result, "truth": {**result["truth"], "in_motion": GIVEN}}
-        assert headline(beside).startswith("Nothing was found in the bias, beside the reference, ")
+        assert frozen(beside).startswith("Nothing was found in the bias, beside the reference, ")
 
     def test_where_something_is_left_the_firmware_does_not_correct_all(self, outcome):
         said = outcome("unexplained").page.read_text()
@@ -97,7 +102,7 @@ class TestAnswers:
 
     def test_one_recording(self, outcome):
         closed = outcome("one recording")
-        assert headline(closed.result).startswith("On the stretches held out, ")
+        assert frozen(closed.result).startswith("Frozen, on the stretches held out, ")
         assert "nothing is confirmed before a second power-on" in closed.page.read_text()
 
     def test_no_temperature(self, outcome):

@@ -38,6 +38,7 @@ def page(
         .render(
             r=result,
             headline=words.headline(result),
+            why_both=words.WHY_BOTH,
             plots={p.key: p for p in plots},
             corrected=any(words.corrects_at_rest(step) for step in result["steps"]),
             deployed=any(step["coefficients"] for step in result["steps"]),

@@ -12,7 +12,31 @@ Report = dict[str, Any]
 
 
 def headline(result: Report) -> str:
-    """The answer in one line, plain text."""
+    """The answer, plain text: what the learning firmware leaves, then the frozen comparison."""
+    return ". ".join(filter(None, (on_the_board(result), frozen(result))))
+
+
+def on_the_board(result: Report) -> str:
+    """What is left where the firmware goes on learning; nothing where it was not run."""
+    if "online" not in result:
+        return ""
+    whole = result["online"]["in_all"]
+    said = f"On the board, which goes on learning, {figure(whole['after_mdps'])} mdps are left"
+    if any(corrects_at_rest(step) for step in result["steps"]):
+        said += f", {figure(whole['before_mdps'])} without the effects"
+    return said
+
+
+#: Why a report has both.
+WHY_BOTH = (
+    "The board learns the bias anew at every rest, so little is left there with or without a "
+    "model. Frozen is as if the device never rested again after its first minute: it shows what "
+    "the model knows by itself, which counts for as long as the device moves."
+)
+
+
+def frozen(result: Report) -> str:
+    """What the comparison of frozen models says."""
     whole = result["in_all"]
     before, after, floor = (figure(whole[k]) for k in ("before_mdps", "after_mdps", "floor_mdps"))
     where = _where(result)
@@ -44,7 +68,8 @@ def _what(result: Report) -> str:
 
 def _where(result: Report) -> str:
     alone = "how_much_weaker" in result["split"]
-    return "On the stretches held out" if alone else "On the session held out"
+    where = "the stretches" if alone else "the session"
+    return f"Frozen, on {where} held out" if "online" in result else f"On {where} held out"
 
 
 def how_sure(step: Report) -> str:

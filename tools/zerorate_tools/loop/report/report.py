@@ -105,6 +105,10 @@ def _by_kernels(analysis):
             "before_mdps": _mdps(rms_dps(before)),
             "after_mdps": _mdps(rms_dps(after)),
             "ci95_mdps": {"before": _interval(before), "after": _interval(after)},
+            "in_all": {
+                name: round(1e3 * float(rms(rms_dps(parts))), 4)
+                for name, parts in (("before_mdps", before), ("after_mdps", after))
+            },
         },
         "turn_on_offset_dps": {
             way: [[float(x) for x in o] for o in m.offsets(way)] for way in (BEFORE, AFTER)
