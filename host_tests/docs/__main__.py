@@ -7,7 +7,6 @@ from pathlib import Path
 
 from .api_page import api_page
 from .copied_tables import with_copied_tables
-from .data_way import data_way
 from .effect_table import with_effect_table
 from .option_tables import with_option_tables
 from .outputs import refreshed
@@ -18,7 +17,6 @@ def main(repository, only=()):
     """Write the pages anew; only: names of those whose commands are run, `none`, all by default."""
     docs = repository / "docs"
     (docs / "api.md").write_text(api_page(repository), encoding="utf-8")
-    (docs / "data-way.svg").write_text(data_way(), encoding="utf-8")
     for page in pages(repository):
         if blocks(page, "console") and (not only or page.name in only):
             print(page.relative_to(repository), flush=True)

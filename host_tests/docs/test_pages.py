@@ -8,7 +8,6 @@ from zerorate_tools.cli import parser
 
 from host_tests.docs.api_page import api_page
 from host_tests.docs.copied_tables import with_copied_tables
-from host_tests.docs.data_way import data_way
 from host_tests.docs.effect_table import with_effect_table
 from host_tests.docs.option_tables import commands_under, with_option_tables
 from host_tests.docs.outputs import commands, refreshed, same_but_for_rounding
@@ -63,10 +62,6 @@ def test_programs_run_and_console_blocks_show_what_their_commands_print(
 
 def test_the_api_is_what_the_docstrings_say(repository):
     assert read(repository / "docs" / "api.md") == api_page(repository), "`make docs` writes it"
-
-
-def test_the_drawing_is_what_its_program_draws(repository):
-    assert read(repository / "docs" / "data-way.svg") == data_way(), "`make docs` draws it"
 
 
 @pytest.mark.parametrize(

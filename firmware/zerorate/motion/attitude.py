@@ -1,6 +1,6 @@
 """Orientation in integers: a unit quaternion in Q28, advanced by one increment at a time.
 
-The quaternion turns body vectors into the level frame of the window. Q28 words advanced by Q16
+The quaternion turns body vectors into the tilt frame of the window. Q28 words advanced by Q16
 steps stay within 0.03 deg of a float64 quaternion over 128 increments of up to 1 rad.
 """
 

@@ -4,7 +4,7 @@ US 10,451,438: store the rates, find the stretch that moves, integrate it to ori
 line, take the slope as bias, remove it, integrate again. Two forms:
 
 - the document's own: each axis' slope of the orientation vector is that axis' bias;
-- the default: tilt comes from gravity in the level frame, only the heading from the assumption
+- the default: tilt comes from gravity in the tilt frame, only the heading from the assumption
   that it returns; slopes are mapped to the body by the integrated rotation matrix, tapered, and
   joined with what earlier windows know by weights that the window's own residual sets.
 
@@ -40,10 +40,10 @@ from .least_squares import (
     sweep,
     weights,
 )
-from .level import begin_attitude, find_up, lean_back, observe, turn_centre
 from .motion_verdict import finish, note_slope, start_window
 from .regression import centre, first_sums, regressors, second_sums, taper
 from .thermal import carry, follow_temperature
+from .tilt_frame import begin_attitude, find_up, lean_back, observe, turn_centre
 
 # layout: The state of the source in motion
 _LENGTH = const(11)
@@ -295,7 +295,7 @@ def solve_document(s: ptr32, c: ptr32, k: int) -> int:
 
 
 def level_and_prior(s: ptr32, c: ptr32, k: int):
-    """After the first traversal: find the level frame, then invert the covariance."""
+    """After the first traversal: find the tilt frame, then invert the covariance."""
     if k == 0:
         find_up(s)
         turn_centre(s, s[_STAGE])

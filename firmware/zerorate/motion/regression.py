@@ -3,7 +3,7 @@
 US 10,451,438: "performing a linear fit of the orientation ... as the function of time". A bias b
 moves the orientation by M(t) b, M the integral of the rotation matrix; where the device keeps its
 attitude on average that is a straight line in time. Two tilts come from the accelerometer's
-gravity in the level frame, the heading from the turn about it. The window is tapered by
+gravity in the tilt frame, the heading from the turn about it. The window is tapered by
 (1 - t^2)^2, so that unfinished cycles at its ends count little; what remains at the neighbouring
 shapes 7 t^2 - 1 and 3 t^3 - t (orthogonal under that taper) measures the noise the slope has.
 

@@ -138,7 +138,7 @@ def advance(s: ptr32, c: ptr32):
     s[_WORK] = axis * _PIECES_AN_AXIS + piece + 1 if axis < 3 else 0
 
 
-def foresay(s: ptr32, axis: int, bias: int, quality: int):
+def publish_provisional(s: ptr32, axis: int, bias: int, quality: int):
     """Publish a bias, LSB Q8, before anything was learned; 0 takes it back."""
     s[_TARGET_Q8 + axis] = bias
     s[_OUT_Q8 + axis] = bias
@@ -146,7 +146,7 @@ def foresay(s: ptr32, axis: int, bias: int, quality: int):
     s[_SOURCE + axis] = 1
 
 
-def foretell(s: ptr32, c: ptr32, axis: int):
+def publish_first_rest(s: ptr32, c: ptr32, axis: int):
     """Publish the mean of the first rest once it is two windows long, before it is learned from.
 
     It is taken back at once when the rest turns out to be none. Another source's bias stands.
@@ -157,13 +157,13 @@ def foretell(s: ptr32, c: ptr32, axis: int):
         n = s[_SEGMENT_WINDOWS] << c[_WINDOW_SHIFT]
         level = (s[_SEGMENT_TOTAL + axis] // n) << 8
         level += ((s[_SEGMENT_TOTAL + axis] % n) << 8) // n
-        foresay(s, axis, level, c[_PROVISIONAL_Q8])
+        publish_provisional(s, axis, level, c[_PROVISIONAL_Q8])
     elif s[_SOURCE + axis] == 1:
-        foresay(s, axis, 0, 0)
+        publish_provisional(s, axis, 0, 0)
         s[_SOURCE + axis] = 0
 
 
-def close(s: ptr32, c: ptr32):
+def end_window(s: ptr32, c: ptr32):
     """Close a full window: what it says, and the work that follows from it."""
     while s[_WORK]:
         advance(s, c)
@@ -177,7 +177,7 @@ def close(s: ptr32, c: ptr32):
         if s[a + _OFFSET_AGE_MS] > 0x3FFFFFF:
             s[a + _OFFSET_AGE_MS] = 0x3FFFFFF
         if still == 0 and s[a + _KIND] == 0 and c[_EVERY] == 0:
-            foretell(s, c, i)
+            publish_first_rest(s, c, i)
         if still and c[_EVERY] == 0:
             s[a + _WAITING_SUM] = s[_SEGMENT_TOTAL + i]
             s[a + _WAITING_N] = c[_SEGMENT] << c[_WINDOW_SHIFT]
@@ -210,7 +210,7 @@ def admit(s: ptr32, c: ptr32, x: ptr32, kind: int) -> int:
     """Learn from an examined frame, and do a piece of the work that waits; return its kind."""
     if kind == 0:
         if gather(s, c, x):
-            close(s, c)
+            end_window(s, c)
         # for the temperature of the first frame; of every frame where a window lasts long
         if s[_COUNTS] == 1 or c[_WINDOW] == 4:
             s[_TEMP] = x[3]

@@ -186,7 +186,7 @@ def white(s: ptr32, c: ptr32, spread: int) -> int:
     return 0
 
 
-def look(s: ptr32, c: ptr32) -> int:
+def classify_window(s: ptr32, c: ptr32) -> int:
     """Return what the full window says: _STILL, _MOVING, _SHAKEN, _TURNING or _SHIFTED."""
     if s[_DIRTY] > 3:
         return _MOVING
@@ -219,7 +219,7 @@ def judge(s: ptr32, c: ptr32) -> int:
     A segment's sums are then in the shared block, and the next window begins a new one of the
     same rest, whose gravity still is the anchor: the longer a rest, the slower the turns it shows.
     """
-    state = look(s, c)
+    state = classify_window(s, c)
     s[_STILLNESS] = state
     s[_TEMP] = s[_REFERENCE + 3] + (s[_WINDOW_SUM + 3] >> c[_WINDOW_SHIFT])
     s[_WINDOW_N] = 0

@@ -1,4 +1,4 @@
-"""The level frame of a window: where its mean specific force points up."""
+"""The tilt frame of a window: where its mean specific force points up."""
 
 try:
     from micropython import const
@@ -129,7 +129,7 @@ def turned_mean(s: ptr32, i: int, k: int) -> int:
 
 
 def force_q12(s: ptr32, a: int, row: int) -> int:
-    """Return a component of the node's specific force in the level frame, Q12 g."""
+    """Return a component of the node's specific force in the tilt frame, Q12 g."""
     i = 0
     total = 0
     while i < 3:
