@@ -8,7 +8,7 @@ from ...signs import fixed
 def in_words(result: dict) -> str:
     """How good it is now, what was found and how sure, what is left, what to record next."""
     lines = [
-        f"judged on {', '.join(result['split']['test'])}, which nothing was fitted to",
+        _judged_on(result["split"]),
         f"error before  {_axes(result['before_mdps'])}",
         f"error after   {_axes(result['after_mdps'])}",
         f"noise floor   {_axes(result['floor_mdps'])}",
@@ -27,6 +27,13 @@ def in_words(result: dict) -> str:
     if "how_much_weaker" in result["split"]:
         lines.append(result["split"]["how_much_weaker"])
     return "\n".join(lines)
+
+
+def _judged_on(split):
+    names = ", ".join(split["test"])
+    if "how_much_weaker" in split:
+        return f"judged on pieces of {names}, each by a model fitted to the others"
+    return f"judged on {names}, which nothing was fitted to"
 
 
 def _axes(mdps):
