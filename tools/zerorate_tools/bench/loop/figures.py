@@ -135,6 +135,10 @@ def _from_files(rows):
         group = rows.get(row, [])
         if group and effect:
             yield share(f"{row}: named", group, partial(Outcome.named, effect=effect), 98.0)
+            moved = [o.in_motion_mdps for o in group if o.in_motion_mdps is not None]
+            if moved:
+                name = f"{row}: error in motion"
+                yield Figure(name, rms(np.array(moved)), 10.0, True, len(moved), unit="mdps")
         elif group:
             yield share(f"{row}: found", group, lambda o: bool(o.found), None)
             yield share(f"{row}: confirmed", group, lambda o: o.confirmed, 0.5, at_most=True)

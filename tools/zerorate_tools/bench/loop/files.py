@@ -7,8 +7,10 @@ rest are run as well, so that the quick devices of the other rows are known to s
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -40,9 +42,22 @@ _POSED = [
     for bout in ({"kind": "rest", "s": [120, 240]}, {"kind": "pose", "face": face, "s": 3})
 ]
 _HANDLED = [{"kind": "rest", "s": [60, 90]}, {"kind": "hand", "s": [30, 60]}]
+_IN_THE_HAND = [
+    bout
+    for face in _FACES
+    for bout in (
+        {"kind": "rest", "s": [40, 70]},
+        {"kind": "hand", "s": [20, 30]},
+        {"kind": "pose", "face": face, "s": 3},
+    )
+]
+_OF_ACCELERATION = [[1.0, 0.3, 0.0], [0.0, 1.0, -0.3], [0.3, 0.0, 1.0]]
+#: Seconds of a power-on before its error in motion counts: the turn-on offset is learned first.
+_LEARNED_S = 600
 _FLOOR_DPS = 0.002
 _CROSS = [[0.0, 0.01, -0.005], [0.005, 0.0, 0.01], [-0.01, 0.005, 0.0]]
 _HISTORY = {"kind": "hysteresis", "rms_dps": 2 * _FLOOR_DPS, "beyond_temperature": True}
+HELD_IN_A_HAND = "files, acceleration 80 mdps, a third of it in the hand"
 #: Row -> what of a description differs, the effect that must be named ("" for none), and whether
 #: the attitude is recorded beside it.
 ROWS: dict[str, tuple[dict, str, bool]] = {
@@ -78,6 +93,14 @@ ROWS: dict[str, tuple[dict, str, bool]] = {
         {"motion": _HANDLED, "effect": [{"kind": "scale", "dps": [0.001, -0.001, 0.001]}]},
         "scale-factor",
         True,
+    ),
+    HELD_IN_A_HAND: (
+        {
+            "motion": _IN_THE_HAND,
+            "effect": [{"kind": "linear-g", "dps": 0.08, "matrix": _OF_ACCELERATION}],
+        },
+        "linear-acceleration",
+        False,
     ),
     "files, readings 2 ms late": (
         {"motion": _HANDLED, "effect": [{"kind": "timing", "delay_ms": 2.0}]},
@@ -119,8 +142,13 @@ def look_at_files(device: Device) -> Outcome:
     from ...loop.report.report import report
 
     with tempfile.TemporaryDirectory() as folder:
-        analysis = load([*_written(device, Path(folder))])
+        made = list(_written(device, Path(folder)))
+        paths = [path for path, _ in made]
+        analysis = load([*paths])
         said = report(analysis)
+        in_motion = None
+        if device.row == HELD_IN_A_HAND:
+            in_motion = _in_motion_mdps(analysis, *made[-1])
     steps, judgement, quick = said["steps"], analysis.judgement, said["interference"]
     floor = float(np.sqrt(np.mean(analysis.floor_dps**2)))
     return Outcome(
@@ -133,20 +161,38 @@ def look_at_files(device: Device) -> Outcome:
         bool(judgement.excess.left),
         judgement.before_rms / floor,
         judgement.after_rms / floor,
+        in_motion_mdps=in_motion,
     )
 
 
-def _written(device: Device, folder: Path) -> list[Path]:
+def _in_motion_mdps(analysis, path: Path, truth) -> float:
+    """RMS over the moving samples and the axes of the firmware's error, learning as it goes."""
+    from ...loop.verify.firmware import Firmware
+    from ...loop.verify.slots import model_of
+    from ...recordings import open_recording
+    from ...replay.samples import frames_in_batches
+
+    recording = open_recording(path)
+    scales = recording.scales
+    device = Firmware(scales, model_of(analysis, scales))
+    device.power_on()
+    bias = np.vstack([device.run(frames) for frames in frames_in_batches(recording)]) / 256
+    error = (bias - truth.bias_lsb) / scales.gyro_lsb_per_dps
+    counts = ~truth.still & (truth.t_us - truth.t_us[0] > 1e6 * _LEARNED_S)
+    return float(1e3 * np.sqrt((error[counts] ** 2).mean()))
+
+
+def _written(device: Device, folder: Path) -> Iterator[tuple[Path, Any]]:
+    """(file, truth) of every session."""
     from ...recordings import write_recording
     from ...simulate import simulate_sessions
 
-    paths = []
     made = simulate_sessions(description(device.row), seed=device.seed)
     for i, (recording, truth) in enumerate(made):
         columns = dict(recording.columns)
         if ROWS[device.row][2]:
             for name, q in zip(("qw", "qx", "qy", "qz"), truth.attitude.T):
                 columns[name] = np.rint(q * 2**29).astype(np.int32)
-        paths.append(folder / f"session-{i + 1}.parquet")
-        write_recording(replace(recording, columns=columns), paths[-1])
-    return paths
+        path = folder / f"session-{i + 1}.parquet"
+        write_recording(replace(recording, columns=columns), path)
+        yield path, truth

@@ -12,7 +12,8 @@ from .quiet import cut_into_sessions
 
 @dataclass
 class Outcome:
-    """What the loop said of a device. before, after: held-out RMS over that of the noise alone."""
+    """What the loop said of a device. before, after: held-out RMS over that of the noise alone;
+    in_motion_mdps: error while it moves, of devices whose row asks for it."""
 
     device: Device
     found: list[str] = field(default_factory=list)
@@ -24,6 +25,7 @@ class Outcome:
     before: float = 1.0
     after: float = 1.0
     cpu_s: float = 0.0
+    in_motion_mdps: float | None = None
 
     def named(self, effect: str) -> bool:
         """Whether an effect is among the named, or among what is confounded with one of them."""
