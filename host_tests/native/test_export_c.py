@@ -1,0 +1,49 @@
+"""The exported C is the firmware: it compiles alone, and gives the golden numbers."""
+
+import ctypes
+import shutil
+import subprocess
+from array import array
+
+import pytest
+from zerorate import Sensor
+from zerorate_tools.cli import main
+from zerorate_tools.kernels.export import export_c
+
+from ..firmware import trace
+from ..firmware.trace_on_host import checksums, corrector_for, frames
+
+pytestmark = pytest.mark.skipif(not shutil.which("cc"), reason="no C compiler (cc) here")
+WARNINGS = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-Wno-unused-parameter"]
+
+
+def test_the_test_program_says_that_the_state_is_equal(tmp_path, capsys):
+    assert main(["export", "c", str(tmp_path / "c")]) == 0
+    names = [line.rpartition("/")[2] for line in capsys.readouterr().out.splitlines()]
+    assert names == ["zerorate.h", "zerorate.c", "zerorate_test.c"]
+    sources = [tmp_path / "c" / "zerorate.c", tmp_path / "c" / "zerorate_test.c"]
+    program = tmp_path / "program"
+    subprocess.run(["cc", *WARNINGS, "-O1", *sources, "-o", program], check=True)
+    assert subprocess.run([program], check=True, capture_output=True).stdout.startswith(b"equal")
+
+
+def test_it_ends_the_golden_trace_in_the_golden_state(tmp_path, golden):
+    export_c(tmp_path, Sensor(*trace.SENSOR))
+    library = tmp_path / "zerorate.so"
+    subprocess.run(
+        ["cc", "-O1", "-shared", "-fPIC", tmp_path / "zerorate.c", "-o", library], check=True
+    )
+    made, corrector = ctypes.CDLL(str(library)), corrector_for("default")
+    z = (ctypes.c_int32 * (len(corrector.state) + len(corrector.settings)))()
+    made.zerorate_begin(z)
+    z[len(corrector.state) :] = list(corrector.settings)  # the trace has limits of its own
+    rows, dt_us = frames(trace.UPDATES["default"])
+    for row, dt in zip(rows, dt_us.tolist()):
+        made.zerorate_update(z, (ctypes.c_int32 * 7)(*row.tolist()), dt)
+    state = array("i", z[: len(corrector.state)])
+    assert checksums(state.tobytes(), b"")["state"] == golden["default"]["state"]
+
+
+def test_a_scale_that_cannot_be_is_one_line(tmp_path, capsys):
+    assert main(["export", "c", str(tmp_path), "--odr-hz", "0"]) == 2
+    assert capsys.readouterr().err == "zerorate: odr_hz must be 0.01..8000, not 0.0\n"
