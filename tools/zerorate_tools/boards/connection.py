@@ -9,6 +9,7 @@ from ..errors import MissingLibrary, ZerorateError
 
 # A board's own programs and a busy machine between them may take long to answer.
 _PATIENCE_S = 30
+_LONG_S = 120
 
 
 class BoardError(ZerorateError):
@@ -40,7 +41,7 @@ def connected(port: str, *, restart: bool = True) -> Iterator:
         transport.close()
 
 
-def told(transport, program: str, patience_s: float = _PATIENCE_S) -> str:
+def told(transport, program: str, patience_s: float = _LONG_S) -> str:
     """What a program that is run to its end on the board prints. Raises its error.
 
     patience_s: for how long the board may print nothing.
