@@ -44,17 +44,21 @@ The heap that each part keeps was measured on an emulated Pico with stock MicroP
 rows are reckoned from it. A program's own needs, some 16 KB with a store and a FIFO, come on top.
 Machine code is loaded on every Cortex-M and on RISC-V; elsewhere the same kernels run as bytecode.
 """
-_FOOT = """On the emulated Pico a sample of the rest path takes some 2,100 cycles in the kernels, 4,300 with
-the call of `Corrector.update`, and 470 in bursts of 64 (`Bursts.update`), over the first 192 samples
-of the bench; as bytecode 114,000, and the worst sample ten times as long. What fits no heap can be
-frozen into a build (`manifest.py`): then it takes flash instead, 36 KB.
+_FOOT = """
+On the emulated Pico a sample of the rest path takes some 2,100 cycles in the kernels, 4,300 with
+the call of `Corrector.update`, and 470 in bursts of 64 (`Bursts.update`), over the first 192
+samples of the bench; as bytecode 114,000, and the worst sample ten times as long. What fits no
+heap can be frozen into a build (`manifest.py`): then it takes flash instead, 36 KB.
 """
 
 
 def page() -> str:
     """The text of docs/boards.md."""
     head = ["board", "heap free", "runs", "rest", "with motion and gravity", "verdict"]
-    return "\n".join([_HEAD, table(head, [_row(board) for board in BOARDS]), _FOOT]).rstrip() + "\n"
+    return (
+        "\n".join([_HEAD, table(head, [_row(board) for board in BOARDS]), _FOOT.lstrip()]).rstrip()
+        + "\n"
+    )
 
 
 def _row(board: Board) -> list[str]:
