@@ -45,10 +45,10 @@ rows are reckoned from it. A program's own needs, some 16 KB with a store and a 
 Machine code is loaded on every Cortex-M and on RISC-V; elsewhere the same kernels run as bytecode.
 """
 _FOOT = """
-On the emulated Pico a sample of the rest path takes some 2,100 cycles in the kernels, 4,300 with
-the call of `Corrector.update`, and 470 in bursts of 64 (`Bursts.update`), over the first 192
-samples of the bench; as bytecode 114,000, and the worst sample ten times as long. What fits no
-heap can be frozen into a build (`manifest.py`): then it takes flash instead, 36 KB.
+On the emulated Pico a sample of the rest path takes 1,675 cycles in the kernels, the worst one
+16,687 (ten times the median), over one minute of the bench; in bursts of 64 (`Bursts.update`) some
+470, and the call of `Corrector.update` costs some 2,200 more. As bytecode it is 114,000. What fits
+no heap can be frozen into a build (`manifest.py`): then it takes flash instead, 36 KB.
 """
 
 
