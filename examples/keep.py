@@ -4,7 +4,6 @@ from array import array
 
 from zerorate import Corrector, Sensor
 from zerorate.checked import CheckedCorrector
-from zerorate.corrector import ANY_TEMPERATURE
 from zerorate.learned_store import LearnedStore
 from zerorate.save_schedule import SaveSchedule
 from zerorate.storage import FileStorage
@@ -13,11 +12,11 @@ from zerorate_i2c.board import setup
 from zerorate_i2c.fifo import EMPTY, Fifo
 
 imu = setup(scl=5, sda=4)
-learned = Corrector(Sensor(*imu.scales))
-store = LearnedStore(FileStorage("learned.bin"), imu.binding, learned)
+learner = Corrector(Sensor(*imu.scales))
+store = LearnedStore(FileStorage("learned.bin"), imu.binding, learner)
 print(REASONS[store.load()])
-corrector = CheckedCorrector(learned)
-schedule = SaveSchedule(store, 3, tolerance=13, corrector=learned)  # 0.1 dps at 131 LSB/dps
+corrector = CheckedCorrector(learner)
+schedule = SaveSchedule(store, 3, tolerance=13, corrector=learner)  # 0.1 dps at 131 LSB/dps
 sample = array("i", [0] * 7)
 bias_lsb = array("i", [0] * 3)
 fifo = Fifo(imu)
@@ -36,8 +35,8 @@ while True:
     if corrector.update(sample, fifo.dt_us, status):
         pass  # sample[4], sample[5] and sample[6] are the rates without their bias: use them here
     elapsed_ms += fifo.dt_us // 1000
-    for axis in range(3):
-        if learned.source(axis) > ANY_TEMPERATURE:  # learned, and not of this rest alone
-            bias_lsb[axis] = round(learned.bias_lsb(axis))
-    if schedule.offer(learned.state, bias_lsb, elapsed_ms // 1000):
+    if learner.learned:  # and not of this rest alone
+        for axis in range(3):
+            bias_lsb[axis] = round(learner.bias_lsb(axis))
+    if schedule.offer(learner.state, bias_lsb, elapsed_ms // 1000):
         print("kept")

@@ -6,7 +6,6 @@ from array import array
 from zerorate import Corrector, Sensor
 from zerorate.checked import CheckedCorrector
 from zerorate.learned_store import LearnedStore
-from zerorate.rest.bias import ANY_TEMPERATURE
 from zerorate.save_schedule import SaveSchedule
 from zerorate.storage import FileStorage
 from zerorate.store import REASONS
@@ -15,10 +14,10 @@ from zerorate_i2c.linux import LinuxI2C
 from zerorate_i2c.mpu6050 import MPU6050
 
 imu = MPU6050(LinuxI2C(1), odr_hz=100)
-learned = Corrector(Sensor(*imu.scales))
-store = LearnedStore(FileStorage("learned.bin"), imu.binding, learned)
+learner = Corrector(Sensor(*imu.scales))
+store = LearnedStore(FileStorage("learned.bin"), imu.binding, learner)
 print(REASONS[store.load()])
-corrector = CheckedCorrector(learned)
+corrector = CheckedCorrector(learner)
 schedule = SaveSchedule(store, 3, tolerance=13)  # 0.1 dps at 131 LSB/dps
 bias_lsb = array("i", [0] * 3)
 fifo = Fifo(imu)
@@ -44,7 +43,7 @@ while True:
         sums = [0] * 6
         count = 0
         seconds += 1
-        for axis in range(3):
-            if learned.source(axis) > ANY_TEMPERATURE:  # learned, and not of this rest alone
-                bias_lsb[axis] = round(learned.bias_lsb(axis))
-        schedule.offer(learned.state, bias_lsb, seconds)
+        if learner.learned:  # and not of this rest alone
+            for axis in range(3):
+                bias_lsb[axis] = round(learner.bias_lsb(axis))
+        schedule.offer(learner.state, bias_lsb, seconds)

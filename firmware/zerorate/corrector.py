@@ -43,11 +43,10 @@ _GRAVITY_BIAS_Q8 = const(28)
 # layout: What a window was
 _STILL = const(1)
 # layout: Where a bias comes from
+_ANY_TEMPERATURE = const(1)
 _IN_MOTION = const(4)
 _ACCELEROMETER = const(5)
 # layout: end
-# what `source` returns for a bias of this rest alone
-ANY_TEMPERATURE = 1
 
 
 def copy(to, words):
@@ -271,6 +270,14 @@ class Corrector:
     def source(self, axis: int) -> int:
         """Return where that axis' bias comes from: a constant of bias.py."""
         return self.state[_SOURCE + axis]
+
+    @property
+    def learned(self) -> bool:
+        """Whether the bias of every axis was learned, and is not of this rest alone."""
+        for axis in range(3):
+            if self.state[_SOURCE + axis] <= _ANY_TEMPERATURE:
+                return False
+        return True
 
     @property
     def rests(self) -> bool:

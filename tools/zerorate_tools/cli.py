@@ -14,7 +14,7 @@ from .errors import MissingLibrary, ZerorateError
 
 COMMANDS = (
     *("demo", "import", "record", "simulate", "replay", "close", "compare", "allan", "model"),
-    *("flash", "fleet", "watch", "bench", "runtimes", "export"),
+    *("flash", "fleet", "run", "watch", "bench", "runtimes", "export"),
 )
 _INTERRUPTED = 130
 _BROKEN_PIPE = 141

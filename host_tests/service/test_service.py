@@ -1,0 +1,205 @@
+"""`zerorate run` lives through what a Linux board does to it, and publishes to who asks."""
+
+import configparser
+import json
+import os
+import runpy
+import signal
+import socket
+import subprocess
+import sys
+import time
+from types import SimpleNamespace
+
+import pytest
+from zerorate.storage import FileStorage
+from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050, Physical
+from zerorate_i2c.mpu6050 import MPU6050
+from zerorate_tools.bench.service import run
+from zerorate_tools.errors import ZerorateError
+from zerorate_tools.service import Datagrams, Service, System, UnixSocket
+
+BIAS_DPS = (0.31, -0.19, 0.08)
+
+
+class Kept:
+    """A sink that keeps its lines."""
+
+    def __init__(self):
+        self.lines = []
+
+    def put(self, line):
+        self.lines.append(json.loads(line))
+
+    def close(self):
+        self.lines.append("closed")
+
+
+class Board:
+    """A chip at rest, its bus, a file, and a service on them."""
+
+    def __init__(self, folder):
+        self.chip = FakeMPU6050(Physical(gyro_dps=BIAS_DPS))
+        self.clock = FakeClock(self.chip)
+        self.bus = FakeI2C(self.chip, self.clock)
+        self.said, self.told = [], []
+        storage = FileStorage(str(folder / "learned.bin"))
+        self.system = System(self.open, storage, self.clock, self.said.append, self.told.append)
+        self.restart()
+
+    def open(self):
+        return MPU6050(self.bus, clock=self.clock)
+
+    def restart(self):
+        self.kept = Kept()
+        self.service = Service(self.system, [self.kept])
+
+    def live(self, seconds):
+        end_us = self.clock.now_us + seconds * 1e6
+        while self.clock.now_us < end_us:
+            self.service.step()
+
+
+@pytest.fixture
+def board(tmp_path):
+    return Board(tmp_path)
+
+
+def test_a_day_in_small_teaches_nothing_wrong_and_loses_nothing(monkeypatch):
+    monkeypatch.setattr("time.time", lambda: 1 / 0)  # a clock set back cannot matter: nobody looks
+    found = run(hours=0.4, faults=30, seed=3)
+    assert found["worst_mdps"] < 50 and found["rms_mdps"] < 10
+    assert found["first_line_after_kill_mdps"] < 50 and found["kills"] >= 2
+    assert found["samples"] > 0.95 * found["samples_due"]
+
+
+def test_what_it_learned_is_there_after_it_was_killed(board):
+    board.live(30)
+    board.restart()
+    board.live(1)
+    assert "nothing was ever stored" in board.said[0] and "loaded" in board.said[1]
+    assert board.kept.lines[0]["bias_dps"] == pytest.approx(BIAS_DPS, abs=0.02)
+
+
+def test_while_the_bus_is_gone_it_says_so_once_and_shows_that_it_lives(board):
+    board.live(5)
+    board.bus.fault("hang", times=None)
+    board.told.clear()
+    board.live(60)
+    assert len(board.told) >= 10 and set(board.told) == {"WATCHDOG=1"}
+    assert [line for line in board.said if "bus" in line] == board.said[1:2]
+    board.bus.mend()
+    lines = len(board.kept.lines)
+    board.live(5)
+    assert len(board.kept.lines) > lines + 300
+
+
+def test_a_full_disk_is_said_and_tried_again(board, monkeypatch):
+    write = board.system.storage.writeblock
+
+    def full(offset, buf):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(board.system.storage, "writeblock", full)
+    board.live(20)
+    assert any("cannot be written" in line for line in board.said)
+    assert board.kept.lines[-1]["bias_dps"] == pytest.approx(BIAS_DPS, abs=0.02)
+    monkeypatch.setattr(board.system.storage, "writeblock", write)
+    board.live(70)
+    board.restart()
+    board.live(1)
+    assert "loaded" in board.said[-1]
+
+
+def test_a_slow_reader_gets_whole_lines_and_holds_nobody_up(tmp_path):
+    sink = UnixSocket(tmp_path / "imu.sock")
+    reader = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    reader.connect(str(tmp_path / "imu.sock"))
+    for number in range(20000):
+        sink.put(json.dumps({"number": number, "more": "x" * 100}).encode() + b"\n")
+    sink.close()
+    text = b"".join(iter(lambda: reader.recv(1 << 16), b""))
+    numbers = [json.loads(line)["number"] for line in text.split(b"\n")[:-1]]
+    assert numbers == sorted(numbers) and 100 < len(numbers) < 20000
+
+
+def test_datagrams_stay_on_this_machine_unless_told():
+    with pytest.raises(ZerorateError, match="--remote"):
+        Datagrams("192.0.2.1:9750")
+    Datagrams("192.0.2.1:9750", remote=True).close()
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as reader:
+        reader.bind(("127.0.0.1", 0))
+        reader.settimeout(5)
+        sink = Datagrams(f"127.0.0.1:{reader.getsockname()[1]}")
+        sink.put(b"{}\n")
+        assert reader.recv(100) == b"{}\n"
+        sink.close()
+
+
+LIVE = """
+import sys, time
+from zerorate_fakes import FakeI2C, FakeMPU6050, Physical
+from zerorate_fakes.smbus import SMBus
+from zerorate_i2c import clock, linux
+from zerorate_tools.cli import main
+chip = FakeMPU6050(Physical(gyro_dps=(0.31, -0.19, 0.08)))
+last = clock.ticks_us()
+class Bus(FakeI2C):
+    def _begin(self, wire_bytes):
+        global last
+        now = clock.ticks_us()
+        chip.advance_us(20 * (now - last))  # twenty times as fast as time
+        last = now
+        return super()._begin(wire_bytes)
+import smbus2
+smbus2.SMBus = lambda bus: SMBus(Bus(chip))
+sys.exit(main(["run", "/dev/i2c-1", "--hz", "20", "--state", sys.argv[1]]))
+"""
+
+
+def test_the_real_process_comes_back_after_kill_9(tmp_path):
+    pytest.importorskip("smbus2")
+    command = [sys.executable, "-c", LIVE, str(tmp_path / "learned.bin")]
+    pipe = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    said = []
+    for ending in (signal.SIGKILL, signal.SIGKILL, signal.SIGTERM):
+        process = subprocess.Popen(command, **pipe)
+        lines, end = [], time.monotonic() + 60
+        while len(lines) < 400 and time.monotonic() < end:
+            lines.append(json.loads(process.stdout.readline()))
+        os.kill(process.pid, ending)
+        said.append(process.communicate()[1])
+    assert lines[0]["bias_dps"] == pytest.approx(BIAS_DPS, abs=0.05)
+    assert "nothing was ever stored" in said[0] and "loaded" in said[1]
+    assert "loaded" in said[2] and "kept what was learned" in said[2]
+
+
+def test_the_unit_has_a_watchdog_and_no_rights(repository):
+    unit = configparser.ConfigParser(strict=False, interpolation=None)
+    unit.optionxform = str
+    text = (repository / "examples" / "zerorate.service").read_text()
+    assert text in (repository / "docs" / "linux-service.md").read_text()
+    unit.read_string(text)
+    service = unit["Service"]
+    assert service["Type"] == "notify" and int(service["WatchdogSec"]) >= 15
+    assert service["DynamicUser"] == "yes" and service["DevicePolicy"] == "closed"
+    assert service["Restart"] == "always"
+
+
+def message(rate, second):
+    axes = ("x", "y", "z")
+    return SimpleNamespace(
+        header=SimpleNamespace(stamp=SimpleNamespace(sec=int(second), nanosec=0)),
+        angular_velocity=SimpleNamespace(**dict(zip(axes, rate))),
+        linear_acceleration=SimpleNamespace(x=0.0, y=0.0, z=9.81),
+        angular_velocity_covariance=[0.0] * 9,
+    )
+
+
+def test_the_core_of_the_ros_node_needs_no_ros(repository):
+    core = runpy.run_path(str(repository / "examples" / "ros2_node.py"))["ImuCore"](odr_hz=50.0)
+    for number in range(1000):
+        # the stamps stand still and go back: the sensor's own pace holds
+        corrected = core.correct(message((0.01 + 0.0001 * (number % 5), 0, -0.02), -number // 100))
+    assert corrected.angular_velocity.z == pytest.approx(0, abs=0.0005)
+    assert corrected.angular_velocity_covariance[0] > 0

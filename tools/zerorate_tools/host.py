@@ -1,0 +1,94 @@
+"""The firmware for any IMU on a host: floats in the driver's own units, nothing else to install.
+
+The kernels stay integers: readings are rounded to an LSB that the full scale gives, and the bias,
+which they know to 1/256 of one, is taken off the reading as it came.
+"""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Sequence
+from math import isfinite, pi
+
+from zerorate import Corrector, Sensor
+
+_WORD = 32767
+#: Of an LSB a degC; the words then hold -96 to 96 degC about 25.
+_TEMP_LSB_PER_DEGC, _TEMP_OFFSET_DEGC = 340.0, 25.0
+RATE_UNITS = {"dps": 1.0, "rad/s": 180 / pi}
+ACCEL_UNITS = {"g": 1.0, "m/s2": 1 / 9.80665}
+Three = Sequence[float]
+
+
+class FloatCorrector:
+    """Takes the bias off rates in dps or rad/s, learned from rests as on a board.
+
+    odr_hz: how often samples come; full_scale_dps, full_scale_g: the sensor's ranges, which choose
+    the LSB (see `said`); rate: "dps" or "rad/s"; accel: "g" or "m/s2"; options: keywords of
+    zerorate.Corrector. corrector is that one, to be saved and asked. Raises ValueError.
+    """
+
+    def __init__(
+        self,
+        odr_hz: float,
+        full_scale_dps: float = 2000.0,
+        full_scale_g: float = 16.0,
+        rate: str = "dps",
+        accel: str = "g",
+        **options: float,
+    ) -> None:
+        if rate not in RATE_UNITS or accel not in ACCEL_UNITS:
+            units = f"rate is one of {list(RATE_UNITS)}, accel one of {list(ACCEL_UNITS)}"
+            raise ValueError(f"{units}, not {rate} and {accel}")
+        gyro_lsb_per_dps = _WORD / full_scale_dps
+        accel_lsb_per_g = _WORD / full_scale_g
+        scales = (odr_hz, gyro_lsb_per_dps, accel_lsb_per_g, _TEMP_LSB_PER_DEGC)
+        self.corrector = Corrector(Sensor(*scales, _TEMP_OFFSET_DEGC), **options)
+        self.refused = 0
+        self._rate_lsb = gyro_lsb_per_dps * RATE_UNITS[rate]
+        self._accel_lsb = accel_lsb_per_g * ACCEL_UNITS[accel]
+        self._unit = rate
+        self._dt_us = round(1e6 / odr_hz)
+        self._sample = array("i", [0] * 7)
+
+    @property
+    def said(self) -> str:
+        """The scale that was chosen, in words."""
+        sensor = self.corrector.sensor
+        return (
+            f"1 LSB is {1 / self._rate_lsb:.3g} {self._unit} "
+            f"({1 / sensor.gyro_lsb_per_dps:.3g} dps) and {1e3 / sensor.accel_lsb_per_g:.3g} mg"
+        )
+
+    def update(
+        self, rate: Three, accel: Three, temp_degc: float = 25.0, dt_s: float | None = None
+    ) -> tuple[float, float, float]:
+        """Learn from a sample and return its rates without their bias, in their own unit.
+
+        dt_s: since the sample before (default: as odr_hz says). A reading that is not finite comes
+        back as it is and teaches nothing; `refused` counts these and what the guard refuses.
+        """
+        if not all(map(isfinite, (*rate, *accel, temp_degc))):
+            self.refused += 1
+            return rate[0], rate[1], rate[2]
+        sample = self._sample
+        for axis in range(3):
+            sample[axis] = _word(accel[axis] * self._accel_lsb)
+            sample[4 + axis] = _word(rate[axis] * self._rate_lsb)
+        sample[3] = _word((temp_degc - _TEMP_OFFSET_DEGC) * _TEMP_LSB_PER_DEGC)
+        dt_us = self._dt_us if dt_s is None else round(dt_s * 1e6)
+        if self.corrector.update(sample, dt_us):
+            self.refused += 1
+        x, y, z = (rate[axis] - self._bias(axis) for axis in range(3))
+        return x, y, z
+
+    def bias(self) -> tuple[float, float, float]:
+        """What is subtracted now, in the unit of the rates."""
+        return self._bias(0), self._bias(1), self._bias(2)
+
+    def _bias(self, axis: int) -> float:
+        return self.corrector.bias_lsb(axis) / self._rate_lsb
+
+
+def _word(value: float) -> int:
+    return max(-_WORD - 1, min(_WORD, round(value)))
