@@ -136,6 +136,9 @@ class MPU6050(Registers):
             return SUSPECT
         if self._has_leapt():
             self._read_again(sample)
+            if self._is_one_word_repeated(self._burst):
+                self.doubt(False)
+                return SUSPECT
         return status
 
     def read_sample(self, sample: "array[int]") -> None:

@@ -54,6 +54,15 @@ def test_a_dead_bus_is_suspect_at_once_and_an_error_next(bench, kind):
         bench.read()
 
 
+@pytest.mark.parametrize("kind", ["all_ff", "all_00"])
+def test_a_bus_that_dies_between_a_leap_and_its_second_reading_is_suspect(make_bench, kind):
+    bench = make_bench(source=[[300 * row + word for word in range(7)] for row in range(50)])
+    read_some(bench)
+    bench.bus.fault(kind, times=None, skip=1)
+    assert bench.read() == SUSPECT
+    assert bench.imu.suspects == 1
+
+
 def test_a_dead_bus_that_comes_back_goes_on_verified(bench):
     bench.bus.fault("all_ff", times=1)
     assert [bench.read(), bench.read()] == [SUSPECT, VERIFIED]
