@@ -76,6 +76,20 @@ def test_a_second_run_does_nothing_again(done, data):
     assert again.report["effects"] == done[0].report["effects"]
 
 
+def test_without_a_cache_it_runs_and_says_so_once(data, tmp_path):
+    home = tmp_path / "not a folder"
+    home.write_text("")
+    environment = {name: text for name, text in os.environ.items() if name != "XDG_CACHE_HOME"}
+    environment.update(HOME=str(home), ZERORATE_CACHE="")
+    folders = sorted(str(path.parent) for path in data.rglob("*.parquet"))[:2]
+    command = [sys.executable, "-m", "zerorate_tools.cli", "fleet", *folders, "--workers", "1"]
+    command += ["--out", str(tmp_path / "out"), "--minutes", "1"]
+    ran = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    assert ran.stderr.count("no cache can be kept (Not a directory)") == 1
+    report = json.loads((tmp_path / "out" / "fleet.json").read_text())
+    assert (report["devices"], report["failures"]) == (2, [])
+
+
 def test_other_settings_are_another_run(data, tmp_path):
     devices = devices_of([data])[:1]
     first = fleet(devices, tmp_path, workers=1)

@@ -1,11 +1,15 @@
 """Replaying recordings: every engine gives the same bits, and bad input leaves nothing behind."""
 
+import errno
+import tempfile
+
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 from zerorate_tools.cli import main
 from zerorate_tools.errors import InFile, MissingRuntime, ZerorateError
+from zerorate_tools.kernels import library as library_module
 from zerorate_tools.kernels.library import library as compiled_library
 from zerorate_tools.model import Slot, build_model, write_model
 from zerorate_tools.model.term import Term
@@ -173,19 +177,61 @@ def test_a_broken_recording_leaves_no_output(tmp_path, capsys):
     assert capsys.readouterr().err.count("\n") == 1
 
 
-def test_without_a_compiler_the_replay_runs_on_cpython_and_says_so(log, monkeypatch, capsys):
+@pytest.fixture
+def untried(monkeypatch):
+    """As in a process that has not asked for the compiled kernels yet."""
+    engines.compiled.cache_clear()
+    compiled_library.cache_clear()
+    yield monkeypatch
+    engines.compiled.cache_clear()
+    compiled_library.cache_clear()
+
+
+def test_without_a_compiler_the_replay_runs_on_cpython_and_says_so_once(log, untried, capsys):
     def none():
         raise MissingRuntime("no C compiler here")
 
-    monkeypatch.setattr(engines, "library", none)
-    assert replay(log, runtime="native").state == replay(log, runtime="cpython").state
+    untried.setattr(engines, "library", none)
+    plain = replay(log, runtime="cpython").state
+    assert [replay(log, runtime="native").state for _ in range(2)] == [plain, plain]
     assert capsys.readouterr().err.count("no C compiler here; the replay runs on plain CPy") == 1
 
 
-def test_a_library_is_compiled_anew_where_no_cache_can_be_written(tmp_path, monkeypatch):
+def test_a_library_is_compiled_anew_where_no_cache_can_be_written(tmp_path, untried, capsys):
     (tmp_path / "file").write_text("")
-    monkeypatch.setenv("ZERORATE_CACHE", str(tmp_path / "file"))
-    assert compiled_library.__wrapped__().zerorate_run
+    scratch = tmp_path / "scratch"
+    scratch.mkdir()
+    untried.setattr(tempfile, "tempdir", str(scratch))
+    untried.setenv("ZERORATE_CACHE", str(tmp_path / "file"))
+    assert compiled_library().zerorate_run
+    assert capsys.readouterr().err.count("no cache can be kept (Not a directory)") == 1
+    assert not list(scratch.iterdir())
+
+
+def test_without_a_place_to_compile_the_replay_runs_on_cpython(log, tmp_path, untried, capsys):
+    def full(*arguments):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    untried.setenv("ZERORATE_CACHE", str(tmp_path))
+    untried.setattr(library_module, "_compile", full)
+    assert replay(log, runtime="native").state == replay(log, runtime="cpython").state
+    assert capsys.readouterr().err.count("No space left on device; the replay runs on plain") == 1
+
+
+def test_a_library_that_the_full_cache_has_no_room_to_link_is_compiled_elsewhere(
+    tmp_path, untried, capsys
+):
+    compile_ = library_module._compile
+
+    def no_room_in_the_cache(command, text, target):
+        if tmp_path in target.parents:
+            raise ZerorateError("the kernels do not compile here: ld: No space left on device")
+        compile_(command, text, target)
+
+    untried.setenv("ZERORATE_CACHE", str(tmp_path))
+    untried.setattr(library_module, "_compile", no_room_in_the_cache)
+    assert compiled_library().zerorate_run
+    assert "compiled for this run" in capsys.readouterr().err
 
 
 def test_numba_is_refused_with_the_name_that_took_its_place(log):

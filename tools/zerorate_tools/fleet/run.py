@@ -17,6 +17,7 @@ import pyarrow.parquet as pq
 from ..errors import ZerorateError
 from ..recordings.atomic import written_beside
 from ..recordings.scales import scales_from_text
+from ..replay.engines import compiled
 from .batches import in_batches
 from .benefit import Runner, benefit
 from .cluster import cluster, run_all, size_of
@@ -93,6 +94,8 @@ def fleet(
         left = [device for device in devices if wanted[device.name] not in done]
         fleet = Fleet(resumed=len(devices) - len(left), start_s=start_s)
         advance(fleet.resumed)
+        if left:
+            compiled()  # here first, so that what there is to say of it is said once
         batches = in_batches(left, size_of(client), devices_per_task)
         fleet.tasks = len(batches)
         for batch, result in run_all(client, partial(run_batch, work), batches):

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import ctypes
+import errno
 import hashlib
 import importlib.util
+import os
 import platform
 import shutil
 import subprocess
 import sys
 import tempfile
 from functools import lru_cache
+from multiprocessing import parent_process
 from pathlib import Path
 
 import numpy as np
@@ -62,7 +65,7 @@ def library() -> ctypes.CDLL:
     """zerorate_run and zerorate_source (rows.c). Raises MissingRuntime without a C compiler.
 
     A wheel carries it. Else it is compiled and kept in the cache, under a hash of its text; where
-    no cache can be written it is compiled for this process alone.
+    no cache can be written it is compiled for this process alone, and the user is told.
     """
     text, name = text_of("sample.c", "rows.c"), f"kernels{_ENDINGS.get(sys.platform, '.so')}"
     key = _key(text, sys.platform, platform.machine().lower())
@@ -72,10 +75,31 @@ def library() -> ctypes.CDLL:
     try:
         kept = cache_folder() / "kernels" / key
         folder = fill(kept, lambda draft: _compile(command, text, draft / name))
-    except OSError:
-        folder = Path(tempfile.mkdtemp(prefix="zerorate-kernels-"))
-        _compile(command, text, folder / name)
-    return ctypes.CDLL(str(folder / name))
+        return ctypes.CDLL(str(folder / name))
+    except (OSError, RuntimeError, ZerorateError) as error:  # RuntimeError: there is no HOME
+        found = _for_this_process(command, text, name)
+        say_once(f"no cache can be kept ({_why(error)}); the kernels are compiled for this run")
+        return found
+
+
+def _for_this_process(command: list[str], text: str, name: str) -> ctypes.CDLL:
+    # a library that is loaded may lose its file; Windows keeps it, and the folder with it
+    try:
+        with tempfile.TemporaryDirectory(prefix="zerorate-", ignore_cleanup_errors=True) as folder:
+            _compile(command, text, Path(folder) / name)
+            return ctypes.CDLL(str(Path(folder) / name))
+    except OSError as error:
+        raise MissingRuntime(f"no place to compile the kernels: {_why(error)}") from error
+
+
+def _why(error: Exception) -> str:
+    return (isinstance(error, OSError) and error.strerror) or str(error)
+
+
+def say_once(text: str) -> None:
+    """A line on standard error, unless a process above this one says it."""
+    if parent_process() is None:
+        print(f"zerorate: {text}", file=sys.stderr)
 
 
 def prebuild(folder: Path = _PREBUILT) -> list[Path]:
@@ -135,6 +159,8 @@ def _compile(compiler: list[str], text: str, target: Path) -> None:
     source.write_text(text, encoding="utf-8")
     command = [*compiler, *_FLAGS, str(source), "-o", str(target)]
     done = subprocess.run(command, capture_output=True, text=True)
+    if os.strerror(errno.ENOSPC) in done.stderr:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(target))
     if done.returncode:
         raise ZerorateError(f"the kernels do not compile here: {done.stderr.strip()[:300]}")
 

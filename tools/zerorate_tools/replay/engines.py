@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import shutil
-import sys
 import tempfile
 from abc import ABC, abstractmethod
 from array import array
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -19,7 +18,7 @@ from zerorate import Corrector
 from zerorate.layout import STATE
 
 from ..errors import MissingRuntime, ZerorateError
-from ..kernels.library import library, run_rows
+from ..kernels.library import library, run_rows, say_once
 from ..recordings.checks import GAP
 from .samples import Frames
 
@@ -84,10 +83,7 @@ class NativeEngine(Engine):
     """The kernels compiled from their C, in this process; CPython where there is no compiler."""
 
     def run(self, corrector: Corrector, batches: Iterable[Frames]) -> Iterator[Outcome]:
-        try:
-            library()
-        except MissingRuntime as missing:
-            print(f"zerorate: {missing}; the replay runs on plain CPython", file=sys.stderr)
+        if not compiled():
             yield from CPythonEngine().run(corrector, batches)
             return
         settings = np.array(corrector.settings, np.int32)
@@ -96,6 +92,17 @@ class NativeEngine(Engine):
         for batch in batches:
             found = run_rows(arrays, batch.frames, batch.dt_us, batch.extra, len(batch))
             yield Outcome(batch.t_us, batch.frames, *found)
+
+
+@lru_cache(maxsize=1)
+def compiled() -> bool:
+    """Whether the kernels run compiled in this process; where they do not it is said, once."""
+    try:
+        library()
+    except MissingRuntime as missing:
+        say_once(f"{missing}; the replay runs on plain CPython")
+        return False
+    return True
 
 
 def _view(words: array) -> NDArray[np.int32]:
