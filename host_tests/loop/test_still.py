@@ -56,6 +56,14 @@ def test_a_turn_that_sets_in_slowly_is_motion_to_its_ends(still):
     assert resting[:395].all() and resting[465:].all()
 
 
+def test_a_device_mostly_in_motion_keeps_its_rests(still):
+    at_s = np.arange(ODR * 1200) / ODR
+    moving = at_s % 100 >= 19
+    hand = np.repeat(np.random.default_rng(5).normal(0, 30, 2400), ODR // 2) * moving
+    resting = still(hand, np.full(len(at_s), 25.0))
+    assert resting.sum() > 0.8 * 228 and not resting[25:98].any()
+
+
 # Rest is rest at any rate
 
 

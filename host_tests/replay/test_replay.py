@@ -55,6 +55,13 @@ def test_every_interpreter_gives_the_bits_that_machine_code_gives(runtime, log, 
     assert done.table.equals(reference.table)
 
 
+@pytest.mark.parametrize("engine", ["native", "cpython"])
+def test_a_model_without_effects_changes_nothing(engine, log, reference, simulated, tmp_path):
+    write_model(build_model([], simulated[0].scales), tmp_path)
+    done = replay(log, runtime=engine, model=tmp_path / "model.bin")
+    assert done.table.equals(reference.table)
+
+
 def test_the_bias_found_is_the_one_simulated(simulated, reference):
     recording, truth = simulated
     later = recording.columns["t_us"] > 100e6

@@ -183,7 +183,9 @@ def fill(e, data, sensor):
     if texts_at(data) + 4 > len(data) or not 10000 <= tick_us < 1 << 29:
         return IMPOSSIBLE
     e[_TICK_US] = tick_us
-    e[_SLOTS_A_SAMPLE] = int(2e6 * (data[6] + data[10]) / (sensor.odr_hz * tick_us)) + 1
+    # none of an empty model: the kernel would compute what is not there
+    slots = data[6] + data[10]
+    e[_SLOTS_A_SAMPLE] = int(2e6 * slots / (sensor.odr_hz * tick_us)) + 1 if slots else 0
     at = _BODY
     for i in range(data[7]):
         a = _INPUTS + _INPUT_WORDS * i

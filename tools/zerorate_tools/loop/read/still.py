@@ -41,17 +41,17 @@ def still_ticks(ticks, edges: bool = True) -> np.ndarray:
     rate = _less_temperature(ticks, quiet)
     middle = _running_middle(rate, quiet, max(3, int(_WINDOW_S / ticks.tick_s) | 1))
     off = np.abs(rate - middle)
-    still = quiet & _is_near(rate - middle, there)
+    still = quiet & _is_near(rate - middle, there, quiet)
     if ticks.accel is not None:
         still &= _gravity_holds(ticks, there)
     return still & ~_edges(off, still, there) if edges else still
 
 
-def _is_near(off, there):
+def _is_near(off, there, quiet):
     """(m,) bool: no mean, and no mean of so many that their noise is small, is far off."""
     near = np.ones(len(off), bool)
     for values in off.T:
-        steps = np.abs(np.diff(values[there]))
+        steps = np.abs(np.diff(values))[quiet[1:] & quiet[:-1]]  # a motion's are no noise
         noise = np.quantile(steps, _QUIET_SHARE) / (np.sqrt(2) * _QUIET_SIZE) if len(steps) else 0.0
         least = _OFF_SIGMAS * noise
         near &= np.abs(values) < max(_OFF_DPS, least)

@@ -23,6 +23,8 @@ _EDGE = 5  # blocks at either end where a step cannot be told from the offset
 _ABRUPT, _BESIDE = 0.5, 2
 #: Blocks around a step whose own trend is taken from that.
 _AROUND = 10
+#: Blocks without rest across which no change is abrupt, if the temperature moved by more in them.
+_UNSEEN, _UNSEEN_DEGC = 3, 1.0
 
 
 @dataclass
@@ -191,6 +193,8 @@ def _is_abrupt(regression, terms, step: Step) -> bool:
     or a slow loop does not."""
     session = regression.sessions[step.session]
     there = np.flatnonzero(session.available)
+    if _is_unseen(session, there, step.block):
+        return False
     weight = step.size_dps / np.maximum(step.deviation_dps, 1e-12) ** 2
     rate = session.rate_dps - predicted(terms, regression.fit(terms).coefficients, session)
     along = rate[there] @ weight / (step.size_dps @ weight)
@@ -200,6 +204,19 @@ def _is_abrupt(regression, terms, step: Step) -> bool:
     trend = np.nanmedian(change[~near]) if np.isfinite(change[~near]).any() else 0.0
     largest = np.nanmax(np.r_[change[_AROUND - 1 : _AROUND + 2], -np.inf])
     return bool(largest - trend > _ABRUPT)
+
+
+def _is_unseen(session, there, block: int) -> bool:
+    """Whether the device did not rest around the place for so long, and at such temperatures, that
+    the bias may have drifted there: along a slow loop, for one."""
+    at = int(np.searchsorted(there, block))
+    if not 0 < at < len(there):
+        return False
+    first, last = int(there[at - 1]), int(there[at])
+    if last - first <= _UNSEEN:
+        return False
+    temp = session.sources.get("temp")
+    return temp is None or np.ptp(session.block_mean(temp)[first : last + 1]) > _UNSEEN_DEGC
 
 
 def _change(along, i) -> float:

@@ -122,8 +122,8 @@ def _timed(session: Session, step: Step) -> Step:
     along = session.ticks_dps @ (weight / (step.size_dps @ weight))
     places = np.arange(max(first + 1, 1), min(last, len(along)))
     near = along[max(first, 0) : last + 1]
-    level = np.nanmean(along[max(0, first - 2 * per) : max(first, 0)]) if first > 0 else np.nan
-    level = level if np.isfinite(level) else np.nanmin(near)
+    before = along[max(0, first - 2 * per) : max(first, 0)]
+    level = np.nanmean(before) if np.isfinite(before).any() else np.nanmin(near)
     # the step is one in these units: before it the ticks are nearer to the level, after it to one
     nearer = np.nan_to_num(along - level - 0.5)
     total = np.cumsum(nearer[: last + 1])
