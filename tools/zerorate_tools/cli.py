@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import argparse
 import os
+import signal
 import sys
 from collections.abc import Sequence
 from importlib import import_module
 from importlib.util import find_spec
+from types import FrameType
 
 from . import __version__
 from .errors import MissingLibrary, ZerorateError
@@ -26,6 +28,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     0 is well done, 2 bad input (one line on standard error), 130 interrupted.
     """
     given = sys.argv[1:] if argv is None else argv
+    if argv is None:  # a program of its own: a half-written file goes before it ends
+        signal.signal(signal.SIGTERM, _end)
     try:
         arguments = parser().parse_args(given or ["--help"])
         return arguments.run(arguments) or 0
@@ -40,6 +44,15 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _complain(_in_words(error), ZerorateError.exit_code)
     except KeyboardInterrupt:
         return _complain("interrupted; nothing half-written was left", _INTERRUPTED)
+
+
+def _end(number: int, frame: FrameType | None) -> None:
+    # no exception: one that is raised while a library's C calls back is lost in there
+    from .recordings.atomic import drop_all
+
+    drop_all()
+    signal.signal(number, signal.SIG_DFL)
+    os.kill(os.getpid(), number)
 
 
 def parser() -> argparse.ArgumentParser:

@@ -15,7 +15,7 @@ from .loop.report.report import as_json, report
 from .loop.verify.analysis import Analysis
 from .loop.verify.measure import measure_upheld
 from .model import write_model
-from .recordings.atomic import written_beside
+from .recordings.atomic import written_beside, written_together
 
 
 def load(
@@ -64,18 +64,18 @@ def close(
 
     out: the folder, made where it is not there; online: what the learning firmware subtracts goes
     into corrected.parquet, too; png: the report's plots as pictures, too; advance: called twice for
-    each recording. Returns what report.json holds. Raises ZerorateError (BadRecording,
-    CannotClose, CannotDeploy, Refused).
+    each recording. The files are all replaced, or none is. Returns what report.json holds. Raises
+    ZerorateError (BadRecording, CannotClose, CannotDeploy, Refused).
     """
     from .report import write_report  # its libraries are large
 
     analysis = load(logs, holdout, advance)
-    folder = Path(out)
-    folder.mkdir(parents=True, exist_ok=True)
-    analysis, model = measure_upheld(analysis, logs, folder / "corrected.parquet", online, advance)
-    write_model(model, folder)
-    result = json.loads(json.dumps(report(analysis), default=as_json))
-    with written_beside(folder / "report.json") as temporary:
-        temporary.write_text(json.dumps(result, indent=1, allow_nan=False), encoding="utf-8")
-    write_report(analysis, result, logs, folder, png)
+    with written_together(out) as folder:
+        corrected = folder / "corrected.parquet"
+        analysis, model = measure_upheld(analysis, logs, corrected, online, advance)
+        write_model(model, folder)
+        result = json.loads(json.dumps(report(analysis), default=as_json))
+        with written_beside(folder / "report.json") as temporary:
+            temporary.write_text(json.dumps(result, indent=1, allow_nan=False), encoding="utf-8")
+        write_report(analysis, result, logs, folder, png)
     return result

@@ -11,7 +11,7 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from ..recordings.atomic import written_beside
+from ..recordings.atomic import clear_left_over, written_beside
 
 
 class Parts:
@@ -20,8 +20,7 @@ class Parts:
     def __init__(self, out: Path) -> None:
         self.folder = out / "parts"
         self.folder.mkdir(parents=True, exist_ok=True)
-        for left_over in self.folder.glob(".*.partial.*"):
-            left_over.unlink()
+        clear_left_over(self.folder)
 
     def add(self, results: Iterable[dict[str, Any]]) -> None:
         """Write the results of a batch: whole, or not at all."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from os import PathLike
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ import numpy as np
 from ..model import Model, Slot, build_model, write_model
 from ..model.term import Term
 from ..recordings import Scales
-from ..recordings.atomic import written_beside
+from ..recordings.atomic import written_together
 from .part import Part, scale_of
 
 _POINTS = 9
@@ -60,11 +59,10 @@ def prior_json(part: Part) -> dict[str, Any]:
 
 
 def write_prior(part: Part, scales: Scales, folder: str | PathLike[str]) -> Model:
-    """Write prior.json, model.json and model.bin into a folder, made if need be."""
-    folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
+    """Write prior.json, model.json and model.bin into a folder: all of them, or none."""
     model = prior_model(part, scales)
-    with written_beside(folder / "prior.json") as temporary:
-        temporary.write_text(json.dumps(prior_json(part), indent=1), encoding="utf-8")
-    write_model(model, folder)
+    with written_together(folder) as draft:
+        text = json.dumps(prior_json(part), indent=1)
+        (draft / "prior.json").write_text(text, encoding="utf-8")
+        write_model(model, draft)
     return model

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import pyarrow.parquet as pq
 
 from ..errors import ZerorateError
-from ..recordings.atomic import written_beside
+from ..recordings.atomic import written_together
 from ..recordings.scales import scales_from_text
 from ..replay.engines import compiled
 from .batches import in_batches
@@ -152,7 +152,6 @@ def _conclude(
     report = _report(found, mine, work, part)
     if part is not None:
         scales = scales_from_text(json.dumps(mine[0]["sensor"]), mine[0]["sessions"][0]["file"])
-        write_prior(part, scales, folder / "prior")
         first = {r["device"]: r["sessions"][0]["file"] for r in mine}
         run: Runner = partial(run_all, client)
         report["prior"] = {**prior_json(part), "benefit": None}
@@ -161,11 +160,12 @@ def _conclude(
             minutes = min(minutes, round(longest, 1))
             tried = benefit(names, curves, first, scales, minutes, run)
             report["prior"]["benefit"] = tried
-    with written_beside(folder / "fleet.parquet") as temporary:
-        pq.write_table(table_of(found, part), temporary, compression="zstd")
-    with written_beside(folder / "fleet.json") as temporary:
-        temporary.write_text(json.dumps(report, indent=1), encoding="utf-8")
-    write_page(report, part, folder / "fleet.html")
+    with written_together(folder) as draft:
+        pq.write_table(table_of(found, part), draft / "fleet.parquet", compression="zstd")
+        (draft / "fleet.json").write_text(json.dumps(report, indent=1), encoding="utf-8")
+        write_page(report, part, draft / "fleet.html")
+        if part is not None:
+            write_prior(part, scales, draft / "prior")
     return report
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from zerorate import Corrector, Sensor
 
-from ..recordings.atomic import written_beside
+from ..recordings.atomic import written_together
 from .c_functions import kernels_in_c
 from .reading import Kernels
 
@@ -111,12 +111,10 @@ def export_c(folder: str | PathLike[str], sensor: Sensor | None = None) -> list[
         ),
         "zerorate_test.c": _TEST.format(samples=_SAMPLES, dt_us=dt_us, crc=_crc(corrector, dt_us)),
     }
-    target = Path(folder)
-    target.mkdir(parents=True, exist_ok=True)
-    for name, text in texts.items():
-        with written_beside(target / name) as draft:
-            draft.write_text(text, encoding="utf-8")
-    return [target / name for name in texts]
+    with written_together(folder) as draft:
+        for name, text in texts.items():
+            (draft / name).write_text(text, encoding="utf-8")
+    return [Path(folder) / name for name in texts]
 
 
 def _crc(corrector: Corrector, dt_us: int) -> int:

@@ -6,7 +6,7 @@ from os import PathLike
 from pathlib import Path
 
 from ..errors import BadModel
-from ..recordings.atomic import written_beside
+from ..recordings.atomic import written_together
 from .binary import decoded, encoded
 from .model import CannotDeploy, Model
 from .text import from_json, to_json
@@ -35,9 +35,7 @@ def read_model(path: str | PathLike[str]) -> Model:
 def write_model(model: Model, folder: str | PathLike[str]) -> tuple[Path, Path]:
     """Write model.json and model.bin into the folder; return their paths. Raises ZerorateError."""
     data = encoded(model)
-    paths = Path(folder) / "model.json", Path(folder) / "model.bin"
-    with written_beside(paths[0]) as temporary:
-        temporary.write_text(to_json(decoded(data)), encoding="utf-8")
-    with written_beside(paths[1]) as temporary:
-        temporary.write_bytes(data)
-    return paths
+    with written_together(folder) as draft:
+        (draft / "model.json").write_text(to_json(decoded(data)), encoding="utf-8")
+        (draft / "model.bin").write_bytes(data)
+    return Path(folder) / "model.json", Path(folder) / "model.bin"

@@ -11,7 +11,7 @@ from typing import Any
 from ..errors import ZerorateError
 from ..loop.verify.analysis import Analysis
 from ..model import read_model
-from ..recordings.atomic import written_beside
+from ..recordings.atomic import final, written_beside
 from .allan_plot import deviations
 from .board import deployment
 from .effect_plots import effect_plots
@@ -42,7 +42,7 @@ def write_report(
     """
     folder = Path(folder)
     plots, notes = plots_of(analysis, result, logs, folder)
-    board = deployment(folder, read_model(folder / "model.bin").channels)
+    board = deployment(final(folder), read_model(folder / "model.bin").channels)
     text = page(result, plots, board, notes, f"zerorate {version('zerorate')}")
     path = folder / "report.html"
     with written_beside(path) as temporary:

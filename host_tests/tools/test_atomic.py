@@ -1,0 +1,130 @@
+"""Outputs appear whole or not at all: full disks, ends by a signal, and what killed runs left."""
+
+import errno
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+from zerorate_tools import closing
+from zerorate_tools.errors import InFile
+from zerorate_tools.recordings import write_recording
+from zerorate_tools.recordings.atomic import written_beside, written_together
+
+from .test_recordings import a_recording
+
+
+def full(*arguments, **options):
+    raise OSError(errno.ENOSPC, "No space left on device")
+
+
+def contents(folder):
+    return {str(p.relative_to(folder)): p.read_text() for p in folder.rglob("*") if p.is_file()}
+
+
+@pytest.fixture
+def old(tmp_path):
+    """A folder with what an earlier run wrote."""
+    (tmp_path / "out").mkdir()
+    for name in ("model.json", "report.html"):
+        (tmp_path / "out" / name).write_text("old")
+    return tmp_path / "out"
+
+
+@pytest.fixture
+def dead_pid():
+    ended = subprocess.Popen([sys.executable, "-c", ""])
+    ended.wait()
+    return ended.pid
+
+
+def write_some(draft):
+    (draft / "plots").mkdir()
+    for name in ("model.json", "plots/a.png", "report.html"):
+        (draft / name).write_text("new")
+
+
+def test_a_folder_is_replaced_when_all_its_files_are_there(old):
+    with written_together(old) as draft:
+        write_some(draft)
+        assert set(contents(old).values()) == {"old", "new"}
+    assert contents(old) == dict.fromkeys(("model.json", "plots/a.png", "report.html"), "new")
+    assert sorted(p.name for p in old.iterdir()) == ["model.json", "plots", "report.html"]
+
+
+def test_a_disk_that_fills_leaves_the_folder_as_it_was_and_names_it(old):
+    before = contents(old)
+    with pytest.raises(InFile, match="out: cannot be written: No space left"):
+        with written_together(old) as draft:
+            write_some(draft)
+            full()
+    assert contents(old) == before and len(list(old.iterdir())) == 2
+
+
+def test_a_file_that_cannot_take_its_place_brings_back_those_before_it(old):
+    (old / "report.html").unlink()
+    (old / "report.html").mkdir()
+    with pytest.raises(InFile, match="Is a directory; all is as it was"):
+        with written_together(old) as draft:
+            write_some(draft)
+    assert contents(old) == {"model.json": "old"}
+
+
+def test_a_folder_that_was_not_there_is_not_there_after_a_failure(tmp_path):
+    with pytest.raises(ValueError), written_together(tmp_path / "new") as draft:
+        write_some(draft)
+        raise ValueError
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_full_disk_names_the_file_that_has_no_room(tmp_path):
+    with pytest.raises(InFile, match="o.parquet: cannot be written: No space left.*make room"):
+        with written_beside(tmp_path / "o.parquet"):
+            full()
+    with pytest.raises(InFile, match="out/o.parquet: cannot be written"):
+        with written_together(tmp_path / "out") as draft, written_beside(draft / "o.parquet"):
+            full()
+
+
+def test_what_killed_runs_left_goes_and_what_others_write_now_stays(tmp_path, dead_pid):
+    (tmp_path / f".{dead_pid}.partial.o.parquet").write_text("half")
+    with written_together(tmp_path) as draft:
+        mine = draft.name
+        (draft / "x").write_text("x")
+    (tmp_path / mine.replace(str(os.getpid()), str(dead_pid))).mkdir()
+    living = tmp_path / f".{os.getpid()}.partial.p.parquet"
+    elsewhere = tmp_path / f".00000000-{dead_pid}.partial.p.parquet"
+    for path in (living, elsewhere):
+        path.write_text("being written")
+    with written_beside(tmp_path / "o.parquet") as temporary:
+        temporary.write_text("whole")
+    assert set(tmp_path.iterdir()) == {tmp_path / "x", tmp_path / "o.parquet", living, elsewhere}
+
+
+def test_close_leaves_the_folder_as_it_was_where_its_report_has_no_room(old, monkeypatch):
+    before = contents(old)
+    monkeypatch.setattr(closing, "load", lambda *arguments: None)
+    monkeypatch.setattr(closing, "measure_upheld", lambda *arguments: (None, None))
+    monkeypatch.setattr(closing, "write_model", lambda _, folder: write_some(folder))
+    monkeypatch.setattr(closing, "report", full)
+    with pytest.raises(InFile, match="No space left"):
+        closing.close(["x"], old)
+    assert contents(old) == before
+
+
+@pytest.mark.skipif(os.name == "nt", reason="a process is ended there without a word")
+def test_the_end_by_a_signal_leaves_nothing_half_written(tmp_path):
+    write_recording(a_recording(60000), tmp_path / "x.parquet")
+    out = tmp_path / "out"
+    out.mkdir()
+    command = [sys.executable, "-m", "zerorate_tools.cli", "replay", str(tmp_path / "x.parquet")]
+    run = subprocess.Popen([*command, "--runtime", "cpython", "--out", str(out / "o.parquet")])
+    until = time.monotonic() + 60
+    while not list(out.iterdir()) and time.monotonic() < until:
+        time.sleep(0.02)
+    assert list(out.iterdir()) and run.poll() is None
+    run.send_signal(signal.SIGTERM)
+    assert run.wait(60) == -signal.SIGTERM
+    assert not list(out.iterdir())
