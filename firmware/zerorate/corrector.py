@@ -82,7 +82,7 @@ class Corrector:
         accelerometer: bool = False,
         **limits: float,
     ) -> None:
-        from .settings import DEFAULTS, OF_THE_DOCUMENT, settings
+        from .settings import DEFAULTS, OF_THE_DOCUMENT, checked, settings
 
         self.sensor = sensor or Sensor()
         chosen = dict(DEFAULTS)
@@ -95,7 +95,7 @@ class Corrector:
         for name in limits:
             if name not in chosen:
                 raise ValueError("no such setting: %s" % name)
-            chosen[name] = limits[name]
+            chosen[name] = checked(name, limits[name])
         self.settings = settings(
             self.sensor, bins, short, long, document, every, ignore_outside, chosen
         )

@@ -118,6 +118,16 @@ OF_THE_DOCUMENT = {
     "stable_s": 10.0,
     "split_s": 1.0,
 }
+# What a setting may be at most, by the end of its name; the least is 0.
+MOST = {"dps": 4000.0, "g": 16.0, "degc": 200.0, "s": 86400.0, "share": 1.0}
+
+
+def checked(name, value):
+    """Return `value` of a setting. Raises ValueError outside of its range."""
+    most = MOST[name.split("_")[-1]]
+    if not 0 <= value <= most:
+        raise ValueError("%s must be 0..%s, not %s" % (name, most, value))
+    return value
 
 
 def power_of_two(samples):

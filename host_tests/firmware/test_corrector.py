@@ -8,6 +8,7 @@ from zerorate.gravity.realtime_settings import realtime_settings
 from zerorate.layout import MOTION, STATE
 from zerorate.motion.motion_settings import motion_settings
 from zerorate.rest import bias
+from zerorate.settings import DEFAULTS
 from zerorate.store import EMPTY, LOADED, OTHER_BINDING, Store
 
 RATES = (800, -300, 40)
@@ -179,3 +180,10 @@ def test_at_a_slow_rate_the_bias_follows_the_thermometer_at_every_sample():
     corrector.power_on()
     # a window is four samples: the bias of its mean temperature would be up to 45 LSB late
     assert max(abs(lsb) for lsb in warming(corrector, 8, 30)) <= 2
+
+
+@pytest.mark.parametrize("value", [-1.0, 1e300, 500000.0, float("nan"), float("inf")])
+@pytest.mark.parametrize("name", sorted(DEFAULTS))
+def test_a_setting_outside_of_its_range_is_refused_by_name(name, value):
+    with pytest.raises(ValueError, match=f"{name} must be 0"):
+        Corrector(**{name: value})
