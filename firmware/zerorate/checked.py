@@ -26,6 +26,7 @@ FRESH = const(0)
 VERIFIED = const(1)
 RESTARTED = const(2)
 SUSPECT = const(3)
+_LONG_US = const(0x20000000)  # a leap of time at any rate; a longer one would leave 31 bits
 
 # layout: The corrector's state
 _ELAPSED_US = const(16)
@@ -59,6 +60,8 @@ class CheckedCorrector:
         Returns True when the sample is a reading, corrected.
         """
         self._passed_us += dt_us
+        if self._passed_us > _LONG_US:
+            self._passed_us = _LONG_US
         if status == VERIFIED:
             self.keep()
         elif status == RESTARTED:

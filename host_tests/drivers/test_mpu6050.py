@@ -161,3 +161,11 @@ def test_a_chip_with_ad0_high_answers_at_0x69():
 
 def test_the_scales_are_in_the_order_in_which_the_firmware_takes_them(make_bench):
     assert make_bench(full_scale_dps=500).imu.scales == (100.0, 65.5, 16384.0, 340.0, 36.53)
+
+
+@pytest.mark.parametrize("id_read", [0x00, 0xFF])
+def test_a_part_that_is_named_does_not_make_a_dead_bus_a_part(make_bench, id_read):
+    bench = make_bench()
+    bench.bus.fault("all_ff" if id_read else "all_00", times=None)
+    with pytest.raises(OSError, match="a dead bus"):
+        MPU6050(bench.bus, part="MPU-6500", clock=bench.clock)

@@ -99,3 +99,10 @@ def test_checkpoints_take_nothing_from_the_heap(micropython, repository):
     script = Path(__file__).parent / "on_micropython" / "checked_without_heap.py"
     said = micropython.run(script, modules=[repository / "firmware"], check=True)
     assert said.stdout.strip() == "True 1"
+
+
+def test_an_hour_of_doubt_leaves_its_time_within_31_bits():
+    doubting = CheckedCorrector(Corrector())
+    for _ in range(3600):
+        doubting.update(array("i", [0] * 7), 1000000, checked.SUSPECT)
+        assert doubting._passed_us < 1 << 30
