@@ -8,11 +8,11 @@ from zerorate.rest import fit
 
 @pytest.fixture
 def corrector():
-    """One estimator with 400 samples at 25 degC and a bias of 350 LSB, weighed for the line."""
+    """One estimator with 2000 samples at 25 degC and a bias of 350 LSB, weighed for the line."""
     made = Corrector(document=True)
     s, c = made.state, made.settings
     first = c[SETTINGS.AXES] + c[SETTINGS.FIRST_SHORT]
-    s[first : first + 4] = type(s)("i", [-3740, -3740 << 4, 350 << 8, 400])
+    s[first : first + 4] = type(s)("i", [-3740, -3740 << 4, 350 << 8, 2000])
     fit.weigh(s, c, c[SETTINGS.AXES])
     return made
 

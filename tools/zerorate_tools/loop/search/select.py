@@ -37,6 +37,8 @@ _START_S = 60.0
 _TURN_BELOW = 1e-3
 #: Of the plain error of sessions left out, which for an effect that is there only drift makes grow.
 _MOST_GROWTH = 1.05
+#: Of it, what a sum of play operators must leave of that of the one that it takes the place of.
+_WELL_BELOW = 0.8
 
 
 def straight_line(sessions: list[Session]) -> tuple[Term, ...]:
@@ -154,10 +156,21 @@ class Search:
             [t for f in own for t in f.candidate.terms],
         )
         found = None
+        if candidate and not self._is_better(candidate, own):
+            candidate = None
         if candidate and is_room([*self.terms(), *candidate.terms], self.taken):
             self._look_afresh()
             found = self._consider(candidate)
         self.found = [*self.found, found] if found else before
+
+    def _is_better(self, candidate: Candidate, own: list[Found]) -> bool:
+        """Whether the plain error of what is left out is well below that with a simpler form."""
+        simpler = [t for f in own for t in f.candidate.terms]
+        with_own, with_sum = (
+            growth(self.regression, self.straight, self.terms(), terms)
+            for terms in (simpler, candidate.terms)
+        )
+        return with_sum < _WELL_BELOW * with_own
 
     def _look_afresh(self):
         r = self.regression
