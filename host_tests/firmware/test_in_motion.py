@@ -327,7 +327,7 @@ def short_motion():
 
 @pytest.fixture(scope="module")
 def expected(short_motion):
-    learner = Learner(hz=25.0, longest_stage=5).feed(short_motion)
+    learner = Learner(hz=25.0, longest_stage=8).feed(short_motion)
     assert learner.windows
     return learner.state.tobytes()
 

@@ -7,6 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 from zerorate import Corrector, Sensor
 from zerorate.layout import GRAVITY, MOTION, STATE
+from zerorate.layout import SOURCE as SOURCES
 
 from . import motions
 from .played import by_machine_code
@@ -47,7 +48,9 @@ def expected(samples):
     corrector = played(both(), samples)
     assert corrector.motion[MOTION_LEARNED] > 0
     assert max(corrector.level[LEVEL_COUNTED : LEVEL_COUNTED + 3]) > 50
-    assert list(corrector.state[SOURCE : SOURCE + 3]) == [3, 3, 3], "the rest has the last word"
+    assert list(corrector.state[SOURCE : SOURCE + 3]) == [SOURCES.FIT] * 3, (
+        "the rest has the last word"
+    )
     return words(corrector)
 
 

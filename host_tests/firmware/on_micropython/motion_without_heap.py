@@ -13,7 +13,7 @@ if source == "in_motion":
     from zerorate.motion.in_motion import update
     from zerorate.motion.motion_settings import motion_settings, motion_state
 
-    settings = motion_settings(odr_hz=25.0, longest_stage=5)
+    settings = motion_settings(odr_hz=25.0, longest_stage=8)
     state = motion_state(settings)
 else:
     from zerorate.gravity.realtime import update
