@@ -14,7 +14,7 @@ from host_tests.docs.outputs import commands, refreshed, same_but_for_rounding
 from host_tests.docs.pages import blocks, pages
 
 #: Pages whose programs run in tests of their own, on fakes of a board or a bus.
-ELSEWHERE = {"pico.md", "raspberry-pi.md", "unit-tests.md", "notebook.md"}
+ELSEWHERE = {"any-imu.md", "pico.md", "raspberry-pi.md", "unit-tests.md", "notebook.md"}
 _LINK = re.compile(r"\]\(([^)\s]+)\)")
 
 
@@ -42,7 +42,10 @@ def test_shell_blocks_hold_nothing_but_commands_of_this_project(repository):
     for page in pages(repository):
         for block in blocks(page, "sh"):
             for line in block.text.splitlines():
-                assert line.startswith(("zerorate ", "mpremote ", "python -m ")), (page.name, line)
+                assert line.startswith(("zerorate ", "mpremote ", "python -m ", "cc ")), (
+                    page.name,
+                    line,
+                )
 
 
 def test_programs_run_and_console_blocks_show_what_their_commands_print(

@@ -31,7 +31,7 @@ def test_the_program_for_a_board_reads_and_corrects(programs, repository, find_r
     folders = ("firmware", "drivers", "host_tests/fakes")
     done = find_runtime("x86").run(
         HERE / "on_board.py",
-        ["main.py", 10],
+        ["main.py", 10, 5, 4, -1],
         modules=[repository / folder for folder in folders],
         files_in={"main.py": (programs["board"] + "print(imu.part, sample[2] > 16000)\n").encode()},
         check=True,

@@ -117,7 +117,7 @@ def test_it_says_which_axis_gravity_hides():
 
 def test_nothing_is_said_of_sources_that_are_off():
     text = Corrector().explain()
-    assert "In motion" not in text and "gravity" not in text
+    assert "In motion" not in text and "Against gravity" not in text
 
 
 def test_a_rough_guess_is_not_put_out(samples):

@@ -47,7 +47,7 @@ def test_what_was_withdrawn_is_said_with_both_errors(turning_about):
     result = report(analyse(turning_about))
     [(name, why)] = result["gate"]["withdrawn"]
     assert name == "time-drift" and "does not come again" in why
-    assert "withdrawn: time-drift: " in in_words(result)
+    assert "taken out again: time-drift: " in in_words(result)
     assert result["steps"] == [] and result["before_mdps"] == result["after_mdps"]
 
 

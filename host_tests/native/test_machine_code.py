@@ -162,7 +162,7 @@ def test_each_stage_is_reached_by_its_number(machine_code, processor):
 
 @processors
 def test_motion_is_learned_from_to_the_last_bit(machine_code, processor):
-    run, c = machine_code("motion", processor), motion_settings(odr_hz=25.0, longest_stage=5)
+    run, c = machine_code("motion", processor), motion_settings(odr_hz=25.0, longest_stage=8)
     plain, native = motion_state(c), array("i", [7] * len(motion_state(c)))
     twice(lambda s, _: motion_verdict.clear(s, c), lambda s, _: run(s, c, 0, CLEAR), (native,))
     native, learned = array("i", plain), 0

@@ -13,7 +13,7 @@ from zerorate_tools.simulate import simulate
 BIAS_DPS = (5.0, -6.0, 3.0)
 
 
-def recorded(motion):
+def recorded(motion, minutes=0.75):
     return simulate(
         {
             "name": "half a minute",
@@ -21,7 +21,11 @@ def recorded(motion):
             "sensor": {"odr_hz": 50.0, "gyro_noise_dps": 0.05},
             "bias": {"b0": list(BIAS_DPS)},
             "session": [
-                {"temperature": [{"to": 25.0, "minutes": 0.75}], "start_degc": 25, "motion": motion}
+                {
+                    "temperature": [{"to": 25.0, "minutes": minutes}],
+                    "start_degc": 25,
+                    "motion": motion,
+                }
             ],
         }
     )[0]
@@ -34,7 +38,7 @@ def swinging():
 
 @pytest.fixture(scope="module")
 def resting():
-    return recorded([{"kind": "rest", "s": 15}])
+    return recorded([{"kind": "rest", "s": 15}], minutes=0.4)
 
 
 def drift(orientation_deg):

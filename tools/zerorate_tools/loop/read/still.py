@@ -15,6 +15,8 @@ _SPREAD = 2.0  # times the quiet spread
 _OFF_DPS = 1.0  # from the running middle of quiet ticks
 #: Normal deviations beyond which a mean is no noise, and the chance of a spread that is none.
 _OFF_SIGMAS, _SPREAD_CHANCE = 5.0, 1e-5
+#: No gyroscope at rest has more noise than this in a sample.
+_MOST_NOISE_DPS = 5.0
 #: Of a normal deviate's size: its 0.2 quantile.
 _QUIET_SIZE = 0.2533
 #: Of the still ticks' own noise: beyond it, a tick beside a motion still belongs to that motion.
@@ -110,6 +112,7 @@ def _is_quiet(ticks, there):
         spread = np.sqrt(ticks.rate_var[:, a] * (freedom + 1) / freedom)
         quiet = np.quantile(spread[there], _QUIET_SHARE)
         moving |= ~(spread <= most * quiet + 1.0 / ticks.scales.gyro_lsb_per_dps)
+        moving |= spread > _MOST_NOISE_DPS
     return ~binary_dilation(moving, iterations=1)
 
 
