@@ -12,11 +12,11 @@ def found():
         return {"rms_mdps": list(errors), "learned": 0, "wrong": 0, "within": list(within)}
 
     simulated = {
-        name: {"in motion": row(25.0), "decision": row(9.0, 10.0, within=[0.9, 1.0])}
+        name: {"in motion": row(25.0), "decision": row(5.0, 6.0, within=[0.9, 1.0])}
         for name in LIMITS_MDPS
     }
     settling = {"default": {"seconds": 40.0, "ripple_mdps": 9.0, "mean_mdps": 1.0}}
-    cost = {"in_motion": 9000.0, "realtime": 1900.0}
+    cost = {name: {"cycles": 900.0, "cycles_worst": 9000.0} for name in ("in_motion", "realtime")}
     return {"simulated": simulated, "settling": settling, "cost": cost}
 
 
