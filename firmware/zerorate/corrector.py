@@ -45,7 +45,7 @@ _STILL = const(1)
 # layout: Where a bias comes from
 _ANY_TEMPERATURE = const(1)
 _IN_MOTION = const(4)
-_ACCELEROMETER = const(5)
+_GRAVITY = const(5)
 # layout: end
 
 
@@ -64,7 +64,7 @@ class Corrector:
     split in halves, one straight line, with settings of its own; with every=False the same rules
     on this project's rests. every: learn every reading, moving or still (default: as document).
     ignore_outside: readings outside a histogram are ignored instead of extending it (default: as
-    document). motion: learn in motion as well; accelerometer: against gravity as well; with
+    document). motion: learn in motion as well; gravity: against gravity as well; with
     document both in their literal forms. Any key of DEFAULTS (settings.py, docs/settings.md) may
     be given by name, in its unit. Raises ValueError.
     """
@@ -79,7 +79,7 @@ class Corrector:
         every: "bool | None" = None,
         ignore_outside: "bool | None" = None,
         motion: bool = False,
-        accelerometer: bool = False,
+        gravity: bool = False,
         **limits: float,
     ) -> None:
         from .settings import DEFAULTS, OF_THE_DOCUMENT, checked, settings
@@ -105,19 +105,19 @@ class Corrector:
         self.schedule: "Any" = None
         self.motion = None
         self.motion_settings = None
-        self.level = None
-        self.level_settings = None
+        self.gravity = None
+        self.gravity_settings = None
         self._sense: "Any" = None
         self._observe_motion: "Any" = None
-        self._observe_level: "Any" = None
+        self._observe_gravity: "Any" = None
         self._examine: "Any" = None
         self.alone = True
-        if motion or accelerometer:
+        if motion or gravity:
             self._join_others()
         if motion:
             self._learn_in_motion(document, chosen["motion_start_dps"])
-        if accelerometer:
-            self._learn_by_level(document)
+        if gravity:
+            self._learn_by_gravity(document)
         walk_lsb = chosen["walk_dps"] * self.sensor.gyro_lsb_per_dps
         self._walk_q16 = max(1, int(walk_lsb * walk_lsb * 65536))
         self.state = array("i", [0] * (c[_AXES] + 3 * c[_AXIS_WORDS]))
@@ -146,16 +146,16 @@ class Corrector:
         )
         self.motion = motion_state(self.motion_settings)
 
-    def _learn_by_level(self, document):
-        from .gravity.realtime_settings import realtime_settings, realtime_state
+    def _learn_by_gravity(self, document):
+        from .gravity.gravity_settings import gravity_settings, gravity_state
         from .native.gravity import update
 
         sensor = self.sensor
-        self._observe_level = update
-        self.level_settings = realtime_settings(
+        self._observe_gravity = update
+        self.gravity_settings = gravity_settings(
             sensor.odr_hz, sensor.gyro_lsb_per_dps, sensor.accel_lsb_per_g, document=document
         )
-        self.level = realtime_state(self.level_settings)
+        self.gravity = gravity_state(self.gravity_settings)
 
     def _forget_motion(self):
         # their windows hold what the chip sent before, right or not
@@ -163,10 +163,10 @@ class Corrector:
             from .motion.motion_settings import motion_state
 
             copy(self.motion, motion_state(self.motion_settings))
-        if self.level is not None:
-            from .gravity.realtime_settings import realtime_state
+        if self.gravity is not None:
+            from .gravity.gravity_settings import gravity_state
 
-            copy(self.level, realtime_state(self.level_settings))
+            copy(self.gravity, gravity_state(self.gravity_settings))
 
     def reset(self) -> None:
         """Forget everything that was learned."""
@@ -227,11 +227,9 @@ class Corrector:
         if self.motion is not None:
             if self._observe_motion(self.motion, self.motion_settings, sample, dt_us):
                 rest.consider(self.state, self.settings, self.motion, _MOTION_BIAS_Q8, _IN_MOTION)
-        if self.level is not None:
-            if self._observe_level(self.level, self.level_settings, sample, dt_us):
-                rest.consider(
-                    self.state, self.settings, self.level, _GRAVITY_BIAS_Q8, _ACCELEROMETER
-                )
+        if self.gravity is not None:
+            if self._observe_gravity(self.gravity, self.gravity_settings, sample, dt_us):
+                rest.consider(self.state, self.settings, self.gravity, _GRAVITY_BIAS_Q8, _GRAVITY)
         effects = self.effects
         if effects is not None and effects.attend:
             effects.attend(self.state, self.settings, effects.e)

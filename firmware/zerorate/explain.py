@@ -53,7 +53,7 @@ SOURCES = (
     "the fit over temperature",
     "this temperature",
     "motion",
-    "the accelerometer",
+    "gravity",
 )
 
 
@@ -74,7 +74,7 @@ def explain(corrector):
         lines.append("Without an accelerometer a slow turn cannot be told from a bias.")
     if not sensor.temp_lsb_per_degc:
         lines.append("Without a thermometer all temperatures count as one.")
-    if corrector.motion is not None or corrector.level is not None:
+    if corrector.motion is not None or corrector.gravity is not None:
         from .explain_sources import explain_sources
 
         lines.extend(explain_sources(corrector))

@@ -50,10 +50,10 @@ def explain_sources(corrector):
     lines = []
     if corrector.motion is not None:
         lines.append(explain_motion(corrector.motion, corrector.sensor))
-    if corrector.level is not None:
-        r = corrector.level
-        lines.append(explain_level(r, corrector.sensor))
-        lines.append(observable(r, corrector.level_settings))
+    if corrector.gravity is not None:
+        r = corrector.gravity
+        lines.append(explain_gravity(r, corrector.sensor))
+        lines.append(observable(r, corrector.gravity_settings))
     return lines
 
 
@@ -67,8 +67,8 @@ def explain_motion(m, sensor):
     return text + found(m, _MOTION_BIAS_Q8, _MOTION_QUALITY_Q8, sensor)
 
 
-def explain_level(r, sensor):
-    """Return a line on the source against the accelerometer, whose state is `r`."""
+def explain_gravity(r, sensor):
+    """Return a line on the source against gravity, whose state is `r`."""
     text = "Against gravity: %s" % LEVEL[r[_GRAVITY_REASON]]
     return text + found(r, _GRAVITY_BIAS_Q8, _GRAVITY_QUALITY_Q8, sensor)
 

@@ -461,7 +461,7 @@ MOTION_SETTINGS = Array(
 GRAVITY = Array(
     "The state of the source against gravity",
     "s",
-    "`Corrector.level`",
+    "`Corrector.gravity`",
     "GRAVITY_WORDS",
     (
         ("UNIT_ELAPSED_US", 1, "us", "of the sub-unit so far"),
@@ -493,7 +493,7 @@ GRAVITY = Array(
 GRAVITY_SETTINGS = Array(
     "The settings of the source against gravity",
     "c",
-    "`Corrector.level_settings`",
+    "`Corrector.gravity_settings`",
     "GRAVITY_SETTINGS_WORDS",
     (
         ("SUB_UNIT_US", 1, "us", "a sub-unit"),
@@ -687,7 +687,7 @@ SOURCE = Codes(
     FIT=2,
     HERE=3,
     IN_MOTION=4,
-    ACCELEROMETER=5,
+    GRAVITY=5,
 )
 JOB = Codes("What the source in motion is doing", "", IDLE=0, TRAVERSE=1, SOLVE=2)
 MOTION_REASON = Codes(

@@ -4,7 +4,7 @@ from array import array
 
 import pytest
 from zerorate import Corrector, Sensor
-from zerorate.gravity.realtime_settings import realtime_settings
+from zerorate.gravity.gravity_settings import gravity_settings
 from zerorate.layout import MOTION, STATE
 from zerorate.motion.motion_settings import motion_settings
 from zerorate.rest import bias
@@ -74,9 +74,9 @@ def test_the_document_on_rests_learns_no_motion():
 
 
 def test_the_documents_forms_of_all_three_are_within_reach():
-    corrector = Corrector(document=True, motion=True, accelerometer=True)
+    corrector = Corrector(document=True, motion=True, gravity=True)
     assert corrector.motion_settings == motion_settings(document=True)
-    assert corrector.level_settings == realtime_settings(document=True)
+    assert corrector.gravity_settings == gravity_settings(document=True)
 
 
 def test_a_resting_device_reads_zero(learned):
@@ -120,9 +120,9 @@ def test_a_store_that_is_empty_or_of_another_chip_leaves_a_clean_start(learned):
         ({"short": 0}, "short must be 1..6"),
         ({"colour": 1}, "no such setting: colour"),
         ({"sensor": Sensor(5.0), "motion": True}, "in motion needs 8 Hz or more, not 5"),
-        ({"sensor": Sensor(2.5), "accelerometer": True}, "gravity needs 4 Hz or more, not 2.5"),
+        ({"sensor": Sensor(2.5), "gravity": True}, "gravity needs 4 Hz or more, not 2.5"),
         ({"sensor": BLIND, "motion": True}, "in motion needs an accelerometer"),
-        ({"sensor": BLIND, "accelerometer": True}, "gravity needs an accelerometer"),
+        ({"sensor": BLIND, "gravity": True}, "gravity needs an accelerometer"),
     ],
 )
 def test_a_setting_that_cannot_be_is_refused_in_words(keywords, sentence):
@@ -150,12 +150,12 @@ def test_a_bias_shown_as_zero_has_no_sign():
 
 
 def test_a_new_power_on_forgets_what_the_other_sources_were_watching():
-    corrector = Corrector(motion=True, accelerometer=True)
-    fresh = list(corrector.motion), list(corrector.level)
+    corrector = Corrector(motion=True, gravity=True)
+    fresh = list(corrector.motion), list(corrector.gravity)
     rest(corrector, 500)
-    assert (list(corrector.motion), list(corrector.level)) != fresh
+    assert (list(corrector.motion), list(corrector.gravity)) != fresh
     corrector.power_on()
-    assert (list(corrector.motion), list(corrector.level)) == fresh
+    assert (list(corrector.motion), list(corrector.gravity)) == fresh
 
 
 def warming(corrector, first, end):

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 from zerorate.arithmetic import atan2, real
-from zerorate.gravity.realtime_settings import realtime_settings, realtime_state
+from zerorate.gravity.gravity_settings import gravity_settings, gravity_state
 from zerorate.layout import MOTION, MOTION_REASON
 from zerorate.motion import attitude, in_motion
 from zerorate.motion.motion_settings import motion_settings, motion_state
@@ -180,8 +180,8 @@ def test_the_documents_own_form_finds_the_bias_of_a_swing_about_one_axis():
 
 
 def test_both_sources_take_three_kilobytes():
-    k, c = motion_settings(), realtime_settings()
-    words = len(k) + len(motion_state(k)) + len(c) + len(realtime_state(c))
+    k, c = motion_settings(), gravity_settings()
+    words = len(k) + len(motion_state(k)) + len(c) + len(gravity_state(c))
     print("both sources:", 4 * words, "bytes")
     assert 4 * words <= 3072
 

@@ -16,7 +16,7 @@ HZ = 25.0
 DT_US = 40000
 BIAS_DPS = np.array([1.0, -2.0, 3.0])
 OUT_Q8, SOURCE, LSB = STATE.OUT_Q8, STATE.SOURCE, 131.0
-MOTION_LEARNED, LEVEL_COUNTED = MOTION.ACCEPTED, GRAVITY.OBSERVED
+MOTION_LEARNED, GRAVITY_COUNTED = MOTION.ACCEPTED, GRAVITY.OBSERVED
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +29,7 @@ def samples():
 
 
 def both(**options):
-    return Corrector(Sensor(HZ), motion=True, accelerometer=True, **options)
+    return Corrector(Sensor(HZ), motion=True, gravity=True, **options)
 
 
 def played(corrector, samples, look=lambda corrector: None):
@@ -40,14 +40,14 @@ def played(corrector, samples, look=lambda corrector: None):
 
 
 def words(corrector):
-    return b"".join(x.tobytes() for x in (corrector.state, corrector.motion, corrector.level))
+    return b"".join(x.tobytes() for x in (corrector.state, corrector.motion, corrector.gravity))
 
 
 @pytest.fixture(scope="module")
 def expected(samples):
     corrector = played(both(), samples)
     assert corrector.motion[MOTION_LEARNED] > 0
-    assert max(corrector.level[LEVEL_COUNTED : LEVEL_COUNTED + 3]) > 50
+    assert max(corrector.gravity[GRAVITY_COUNTED : GRAVITY_COUNTED + 3]) > 50
     assert list(corrector.state[SOURCE : SOURCE + 3]) == [SOURCES.FIT] * 3, (
         "the rest has the last word"
     )

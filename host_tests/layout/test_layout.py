@@ -86,12 +86,12 @@ def test_blocks_of_the_effect_model_fill_their_places(block):
 
 
 def test_the_arrays_are_as_long_as_the_layout_says():
-    corrector = Corrector(motion=True, accelerometer=True)
+    corrector = Corrector(motion=True, gravity=True)
     last = layout.axis_at(corrector.settings, 3)
     assert len(corrector.state) == last
     assert len(corrector.settings) == layout.SETTINGS.size
     assert len(corrector.motion_settings) == layout.MOTION_SETTINGS.size
-    assert len(corrector.level) == layout.GRAVITY.size
+    assert len(corrector.gravity) == layout.GRAVITY.size
     assert len(EffectModel().e) == layout.EFFECTS.size
 
 

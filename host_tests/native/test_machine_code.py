@@ -9,8 +9,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from zerorate.effects import effect_refine
 from zerorate.effects.effects import sense
-from zerorate.gravity import realtime
-from zerorate.gravity.realtime_settings import realtime_settings, realtime_state
+from zerorate.gravity import gravity
+from zerorate.gravity.gravity_settings import gravity_settings, gravity_state
 from zerorate.layout import EFFECTS, GRAVITY, MOTION, SETTINGS, SLOT, SOURCE, STATE, STILLNESS
 from zerorate.motion import in_motion, motion_verdict
 from zerorate.motion.motion_settings import motion_settings, motion_state
@@ -145,7 +145,7 @@ def test_each_stage_is_reached_by_its_number(machine_code, processor):
         twice(finish, lambda s, c, x, n: run(s, c, x, FINISH + n), (s, c, x), kind)
     for w, source in (
         (MOTION.MOTION_BIAS_Q8, SOURCE.IN_MOTION),
-        (GRAVITY.GRAVITY_BIAS_Q8, SOURCE.ACCELEROMETER),
+        (GRAVITY.GRAVITY_BIAS_Q8, SOURCE.GRAVITY),
     ):
         twice(
             lambda s, c, m, n: consider(s, c, m, n & 255, n >> 8),
@@ -204,13 +204,13 @@ def test_any_frames_against_gravity_leave_the_same_state(
     machine_code, processor, rows, dt_us, document
 ):
     run = machine_code("gravity", processor)
-    c = realtime_settings(sub_unit_s=0.04, units=4, threshold=1, document=document)
-    plain = realtime_state(c)
-    twice(lambda s, _: realtime.clear(s, c), lambda s, _: run(s, c, 0, CLEAR), (plain,))
+    c = gravity_settings(sub_unit_s=0.04, units=4, threshold=1, document=document)
+    plain = gravity_state(c)
+    twice(lambda s, _: gravity.clear(s, c), lambda s, _: run(s, c, 0, CLEAR), (plain,))
     native = array("i", plain)
     for row in rows:
         x = array("i", row)
-        assert realtime.update(plain, c, x, dt_us) == run(native, c, x, dt_us)
+        assert gravity.update(plain, c, x, dt_us) == run(native, c, x, dt_us)
         assert native == plain
 
 

@@ -248,8 +248,8 @@ def test_numba_is_refused_with_the_name_that_took_its_place(log):
 
 def test_choices_of_sources_in_one_process_are_compiled_apart(simulated):
     recording = simulated[0].between(0, 2500)
-    both = {"motion": True, "accelerometer": True}
-    for options in ({}, {"motion": True}, {"accelerometer": True}, both, {}):
+    both = {"motion": True, "gravity": True}
+    for options in ({}, {"motion": True}, {"gravity": True}, both, {}):
         plain = replay(recording, runtime="cpython", options=options)
         done = replay(recording, runtime="native", options=options)
         assert done.state == plain.state

@@ -56,7 +56,7 @@ def test_a_source_is_measured_from_nothing_with_its_honesty(trial):
 
 def test_an_accelerometer_that_strides_push_says_how_unsure_it_is():
     recording, truth = simulate("never-rests", session=1, seed=4)
-    source = Source("realtime")
+    source = Source("gravity")
     source.truth_dps = [truth.bias_lsb / recording.scales.gyro_lsb_per_dps]
     source([given(recording)])
     assert len(source.within) > 500

@@ -16,7 +16,7 @@ def found():
         for name in LIMITS_MDPS
     }
     settling = {"default": {"seconds": 40.0, "ripple_mdps": 9.0, "mean_mdps": 1.0}}
-    cost = {name: {"cycles": 900.0, "cycles_worst": 9000.0} for name in ("in_motion", "realtime")}
+    cost = {name: {"cycles": 900.0, "cycles_worst": 9000.0} for name in ("in_motion", "gravity")}
     return {"simulated": simulated, "settling": settling, "cost": cost}
 
 

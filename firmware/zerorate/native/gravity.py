@@ -12,4 +12,4 @@ if update:
         update(s, c, 0, _CLEAR)
 
 else:
-    from ..gravity.realtime import clear, update  # type: ignore[assignment]  # noqa: F401
+    from ..gravity.gravity import clear, update  # type: ignore[assignment]  # noqa: F401

@@ -41,7 +41,7 @@ ANY_TEMPERATURE = const(1)
 FIT = const(2)
 HERE = const(3)
 IN_MOTION = const(4)
-ACCELEROMETER = const(5)
+GRAVITY = const(5)
 # layout: end
 
 

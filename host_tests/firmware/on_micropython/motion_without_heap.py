@@ -1,6 +1,6 @@
 """Feeds samples to a source that learns without rest, the heap locked; writes its state.
 
-Arguments: in_motion or realtime, how many samples are in samples.bin.
+Arguments: in_motion or gravity, how many samples are in samples.bin.
 """
 
 import sys
@@ -16,11 +16,11 @@ if source == "in_motion":
     settings = motion_settings(odr_hz=25.0, longest_stage=8)
     state = motion_state(settings)
 else:
-    from zerorate.gravity.realtime import update
-    from zerorate.gravity.realtime_settings import realtime_settings, realtime_state
+    from zerorate.gravity.gravity import update
+    from zerorate.gravity.gravity_settings import gravity_settings, gravity_state
 
-    settings = realtime_settings(odr_hz=25.0)
-    state = realtime_state(settings)
+    settings = gravity_settings(odr_hz=25.0)
+    state = gravity_state(settings)
 
 sample = array("i", [0] * 7)
 with open("samples.bin", "rb") as file:

@@ -9,7 +9,7 @@ from array import array
 from micropython import heap_lock, heap_unlock
 from zerorate import Corrector, Sensor
 
-corrector = Corrector(Sensor(25.0), motion=True, accelerometer=True)
+corrector = Corrector(Sensor(25.0), motion=True, gravity=True)
 sample = array("i", [0] * 7)
 with open("samples.bin", "rb") as file:
     for _ in range(int(sys.argv[1])):
@@ -20,4 +20,4 @@ with open("samples.bin", "rb") as file:
 with open("state.bin", "wb") as file:
     file.write(corrector.state)
     file.write(corrector.motion)
-    file.write(corrector.level)
+    file.write(corrector.gravity)

@@ -40,13 +40,11 @@ def peers() -> dict[str, Peer]:
         "in motion, the document's own form": Source("in_motion", document=True),
         "in motion": Source("in_motion"),
         "in motion, bias within 0.5 dps as vqf assumes": Source("in_motion", start_dps=0.5),
-        "accelerometer, the document's own form": Source("realtime", document=True),
-        "accelerometer": Source("realtime"),
-        "decision, bias within 0.5 dps": Decision(
-            motion=True, accelerometer=True, motion_start_dps=0.5
-        ),
+        "gravity, the document's own form": Source("gravity", document=True),
+        "gravity": Source("gravity"),
+        "decision, bias within 0.5 dps": Decision(motion=True, gravity=True, motion_start_dps=0.5),
         "default": Decision(),
-        "decision": Decision(motion=True, accelerometer=True),
+        "decision": Decision(motion=True, gravity=True),
     }
 
 

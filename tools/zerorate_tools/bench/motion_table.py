@@ -84,7 +84,7 @@ def _cost(found: Mapping | str) -> str:
 
 def _settling_lines(forms: Mapping) -> list[str]:
     lines = [
-        "Against the accelerometer, a device at rest with biases of 2.0 and -1.5 dps; within "
+        "Against gravity, a device at rest with biases of 2.0 and -1.5 dps; within "
         "50 mdps after, ripple (standard deviation) and mean error of the last 200 s:",
         "",
     ]

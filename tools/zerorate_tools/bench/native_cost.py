@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from zerorate.gravity.realtime_settings import realtime_settings, realtime_state
+from zerorate.gravity.gravity_settings import gravity_settings, gravity_state
 from zerorate.motion.motion_settings import motion_settings, motion_state
 
 from ..errors import ZerorateError
@@ -56,8 +56,11 @@ def source_cost() -> dict[str, dict[str, float]]:
     """motion, gravity -> instructions and cycles a sample, mean and worst, on a Cortex-M0+."""
     recording, _ = simulate("never-rests", session=1, seed=1)
     frames = np.stack([recording.columns[name][:_TO] for name in FRAME], axis=1)
-    motion, level = motion_settings(), realtime_settings()
-    states = {"motion": (motion_state(motion), motion), "gravity": (realtime_state(level), level)}
+    motion, gravity = motion_settings(), gravity_settings()
+    states = {
+        "motion": (motion_state(motion), motion),
+        "gravity": (gravity_state(gravity), gravity),
+    }
     return {part: _source(part, *states[part], frames.astype(np.int32)) for part in _UPDATES}
 
 

@@ -1,4 +1,4 @@
-"""How fast the source against the accelerometer settles, and how far it ripples then."""
+"""How fast the source against gravity settles, and how far it ripples then."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def settling() -> dict:
     bias = truth.bias_lsb / recording.scales.gyro_lsb_per_dps
     found = {}
     for form, options in FORMS.items():
-        error = 1000 * (Source("realtime", **options)([one])[0] - bias)[:, _OBSERVABLE]
+        error = 1000 * (Source("gravity", **options)([one])[0] - bias)[:, _OBSERVABLE]
         near = np.abs(error) < NEAR_MDPS
         first = np.where(near.any(axis=0), near.argmax(axis=0) / one.odr_hz, np.inf)
         last = error[-round(_RIPPLE_S * one.odr_hz) :]

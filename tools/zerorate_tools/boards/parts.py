@@ -35,7 +35,7 @@ PARTS = {
     "gravity": (
         _GUARD,
         "zerorate.native.gravity",
-        "zerorate.gravity.realtime_settings",
+        "zerorate.gravity.gravity_settings",
         "zerorate.explain_sources",
     ),
     "effects": (_GUARD, "zerorate.model", "zerorate.native.effects"),

@@ -35,16 +35,14 @@ def add_parser(subparsers) -> None:
     parser.add_argument(
         "--document",
         action="store_true",
-        help="the literal rules of the patent documents, with --motion and --accelerometer too",
+        help="the literal rules of the patent documents, with --motion and --gravity too",
     )
     parser.add_argument(
         "--rests", action="store_true", help="with --document: learn only the firmware's rests"
     )
     parser.add_argument("--every", action="store_true", help="learn every reading, moving or still")
     parser.add_argument("--model", type=Path, metavar="FILE", help="an effect model to load")
-    parser.add_argument(
-        "--accelerometer", action="store_true", help="learn against gravity as well"
-    )
+    parser.add_argument("--gravity", action="store_true", help="learn against gravity as well")
     parser.add_argument("--motion", action="store_true", help="learn in motion as well")
     parser.add_argument(
         "--plot",
@@ -76,7 +74,7 @@ def run(arguments: argparse.Namespace) -> None:
         arguments.refuse("--rests goes with --document and not with --every")
     options: dict[str, object] = dict(arguments.set)
     options.update(document=arguments.document, motion=arguments.motion)
-    options.update(accelerometer=arguments.accelerometer)
+    options.update(gravity=arguments.gravity)
     if arguments.every or arguments.rests:
         options["every"] = arguments.every
     recording = open_recording(arguments.log, keep_gaps=True)

@@ -22,9 +22,7 @@ def add_parser(subparsers) -> None:
     parser.add_argument("--plain", action="store_true", help="lines, on a terminal too")
     parser.add_argument("--model", type=Path, metavar="FILE", help="an effect model to load")
     parser.add_argument("--motion", action="store_true", help="learn in motion as well")
-    parser.add_argument(
-        "--accelerometer", action="store_true", help="learn against gravity as well"
-    )
+    parser.add_argument("--gravity", action="store_true", help="learn against gravity as well")
     parser.add_argument(
         "--setup", type=Path, metavar="FILE", help="on a board: source that makes `imu`"
     )
@@ -41,7 +39,7 @@ def run(arguments: argparse.Namespace) -> int:
         once=arguments.once,
         every_s=arguments.every,
         plain=arguments.plain,
-        settings={"motion": arguments.motion, "accelerometer": arguments.accelerometer},
+        settings={"motion": arguments.motion, "gravity": arguments.gravity},
         model=arguments.model,
         setup=arguments.setup.read_text(encoding="utf-8") if arguments.setup else "",
     )

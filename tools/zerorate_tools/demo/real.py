@@ -21,7 +21,7 @@ WAYS = (
     "zerorate, in motion and by gravity too",
 )
 WHOLE_FROM_S, MOTION_FROM_S = 10.0, 60.0
-_EVERY_SOURCE = {"motion": True, "accelerometer": True}
+_EVERY_SOURCE = {"motion": True, "gravity": True}
 
 
 @dataclass(frozen=True)

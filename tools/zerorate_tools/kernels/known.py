@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from zerorate import Corrector, Sensor
-from zerorate.gravity.realtime_settings import realtime_settings, realtime_state
+from zerorate.gravity.gravity_settings import gravity_settings, gravity_state
 from zerorate.layout import SETTINGS, STATE, STILLNESS
 from zerorate.model import EffectModel
 from zerorate.motion.motion_settings import motion_settings, motion_state
@@ -63,8 +63,8 @@ def _motion() -> tuple:
 
 
 def _gravity() -> tuple:
-    settings = realtime_settings(sub_unit_s=0.04, units=4, threshold=1)
-    return 120, 10000, 7, 12, realtime_state(settings), settings, _FRAME
+    settings = gravity_settings(sub_unit_s=0.04, units=4, threshold=1)
+    return 120, 10000, 7, 12, gravity_state(settings), settings, _FRAME
 
 
 def known_model() -> EffectModel:

@@ -28,13 +28,13 @@ from .reading import Kernels
 
 ENTRIES = (
     *(("guard", "check"), ("step", "admit"), ("step", "consider"), ("step", "finish")),
-    *(("in_motion", "update"), ("realtime", "update")),
+    *(("in_motion", "update"), ("gravity", "update")),
     *(("effects", "sense"), ("effect_refine", "attend")),
 )
 _WORDS = {
     **{name: getattr(STATE, name) for name in ("OUT_Q8", "EFFECT_Q8", "QUALITY_Q8", "SOURCE")},
     **{"MOTION_BIAS_Q8": MOTION.MOTION_BIAS_Q8, "GRAVITY_BIAS_Q8": GRAVITY.GRAVITY_BIAS_Q8},
-    **{"IN_MOTION": SOURCE.IN_MOTION, "ACCELEROMETER": SOURCE.ACCELEROMETER},
+    **{"IN_MOTION": SOURCE.IN_MOTION, "GRAVITY": SOURCE.GRAVITY},
     **{"CHANNELS": EFFECTS.CHANNELS, "REFINE_ON": EFFECTS.REFINE_ON, "GAP": GAP},
 }
 # -O1 compiles in a third of the time of -O2, and replays as fast

@@ -80,7 +80,7 @@ ENTERED: dict[str, Callable[[int], bytes]] = {"thumb": _thumb_entered, "rv32": _
 def plain_kernels() -> dict[str, Callable[..., Any]]:
     """Part -> its kernels as CPython runs them, entered as the machine code is."""
     from zerorate.effects import effect_refine, effects
-    from zerorate.gravity import realtime
+    from zerorate.gravity import gravity
     from zerorate.motion import in_motion
     from zerorate.rest import block, guard, step
 
@@ -88,7 +88,7 @@ def plain_kernels() -> dict[str, Callable[..., Any]]:
         "rest": step.step,
         "guard": guard.check,
         "motion": in_motion.update,
-        "gravity": realtime.update,
+        "gravity": gravity.update,
         "effects": lambda s, e, x, dt_us: effects.sense(s, e, x, dt_us, 1),
         "refine": lambda s, c, e, _: effect_refine.attend(s, c, e),
         "bursts": lambda s, c, f, r: block.block(s, f, c, r, r[8] >> 3),

@@ -47,10 +47,10 @@ PARTS = {
 """,
     ),
     "gravity": Part(
-        [("realtime", "update"), ("realtime", "clear")],
+        [("gravity", "update"), ("gravity", "clear")],
         """\
-    if (what >= -0x20000000) return realtime_update(a, b, c, what);
-    realtime_clear(a, b);
+    if (what >= -0x20000000) return gravity_update(a, b, c, what);
+    gravity_clear(a, b);
     return 0;
 """,
     ),

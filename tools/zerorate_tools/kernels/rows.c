@@ -29,7 +29,7 @@ SHOWN void zerorate_source(int32_t gravity, int32_t *s, int32_t *c, int32_t *fra
     int32_t held[6] = {0};
     for (int64_t i = 0; i < n; i++) {
         int32_t *x = frames + 7 * i;
-        learned[i] = (int8_t)(gravity ? realtime_update(s, c, x, dt_us[i])
+        learned[i] = (int8_t)(gravity ? gravity_update(s, c, x, dt_us[i])
                                       : in_motion_update(s, c, x, dt_us[i]));
         for (int axis = 0; learned[i] && axis < 3; axis++) {
             held[axis] = s[bias + axis];

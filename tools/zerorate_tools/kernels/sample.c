@@ -7,8 +7,8 @@ int32_t zerorate_update(int32_t *s, int32_t *c, int32_t *m, int32_t *k, int32_t 
     if (kind == 0) {
         if (m && in_motion_update(m, k, x, dt_us))
             step_consider(s, c, m, MOTION_BIAS_Q8, IN_MOTION);
-        if (r && realtime_update(r, q, x, dt_us))
-            step_consider(s, c, r, GRAVITY_BIAS_Q8, ACCELEROMETER);
+        if (r && gravity_update(r, q, x, dt_us))
+            step_consider(s, c, r, GRAVITY_BIAS_Q8, GRAVITY);
         if (e && e[REFINE_ON]) effect_refine_attend(s, c, e);
     }
     return step_finish(s, c, x, kind);

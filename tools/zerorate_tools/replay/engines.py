@@ -22,7 +22,13 @@ from ..kernels.library import library, run_rows, say_once
 from ..recordings.checks import GAP
 from .samples import Frames
 
-_OTHERS = ("motion.bin", "motion_settings.bin", "level.bin", "level_settings.bin", "effects.bin")
+_OTHERS = (
+    "motion.bin",
+    "motion_settings.bin",
+    "gravity.bin",
+    "gravity_settings.bin",
+    "effects.bin",
+)
 _OUTPUT = np.dtype([("verdict", "<i4"), ("bias", "<i4", 3), ("source", "<i4", 3), ("q", "<i4", 3)])
 
 
@@ -51,7 +57,7 @@ def others_of(corrector: Corrector) -> tuple[array | None, ...]:
     effects = corrector.effects.e if corrector.effects is not None else None
     return (
         *(corrector.motion, corrector.motion_settings),
-        *(corrector.level, corrector.level_settings, effects),
+        *(corrector.gravity, corrector.gravity_settings, effects),
     )
 
 

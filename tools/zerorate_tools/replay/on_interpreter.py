@@ -32,17 +32,17 @@ def store(name, words):
 
 # the settings come from the host: single-precision floats would round some of them elsewhere
 motion = whole("motion.bin")
-level = whole("level.bin")
+gravity = whole("gravity.bin")
 effects = whole("effects.bin")
-corrector = Corrector(motion=len(motion) > 0, accelerometer=len(level) > 0)
+corrector = Corrector(motion=len(motion) > 0, gravity=len(gravity) > 0)
 corrector.settings = whole("settings.bin")
 corrector.state = state = whole("state.bin")
 if motion:
     corrector.motion_settings = whole("motion_settings.bin")
     corrector.motion = motion
-if level:
-    corrector.level_settings = whole("level_settings.bin")
-    corrector.level = level
+if gravity:
+    corrector.gravity_settings = whole("gravity_settings.bin")
+    corrector.gravity = gravity
 channels = 0
 if effects:
     model = EffectModel()
@@ -81,7 +81,7 @@ with open("frames.bin", "rb") as source, open("out.bin", "wb") as target:
             target.write(out)
 store("state.bin", state)
 store("motion.bin", motion)
-store("level.bin", level)
+store("gravity.bin", gravity)
 store("effects.bin", effects)
 store("motion_settings.bin", whole("motion_settings.bin"))
-store("level_settings.bin", whole("level_settings.bin"))
+store("gravity_settings.bin", whole("gravity_settings.bin"))

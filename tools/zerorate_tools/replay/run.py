@@ -140,8 +140,8 @@ def state_bytes(corrector: Corrector) -> bytes:
 
 
 def _parts(corrector: Corrector) -> list[array]:
-    motion, _, level, _, effects = others_of(corrector)
-    return [part for part in (corrector.state, motion, level, effects) if part is not None]
+    motion, _, gravity, _, effects = others_of(corrector)
+    return [part for part in (corrector.state, motion, gravity, effects) if part is not None]
 
 
 def load_model(corrector: Corrector, path: Path, recording) -> tuple[str, ...]:

@@ -10,7 +10,7 @@ import pyarrow.parquet as pq
 
 from .engines import Outcome
 
-SOURCES = ("none", "any-temperature", "fit", "this-temperature", "in-motion", "accelerometer")
+SOURCES = ("none", "any-temperature", "fit", "this-temperature", "in-motion", "gravity")
 VERDICTS = (
     "good",
     "repeat",

@@ -100,7 +100,7 @@ def plays(work: Workload) -> dict[str, Play]:
         "every": Play(few, {"every": True}),
         "document": Play(few, {"document": True}),
         "motion": Play(_turning(few), {"motion": True}),
-        "motion and gravity": Play(_turning(few), {"motion": True, "accelerometer": True}),
+        "motion and gravity": Play(_turning(few), {"motion": True, "gravity": True}),
         "effects, refined": Play(few, model=model()),
     }
 

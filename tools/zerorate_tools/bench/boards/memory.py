@@ -44,10 +44,10 @@ kept += [model, Bursts(kept[0]), CheckedCorrector(kept[0]), store, SaveSchedule(
 #: What is measured -> options of the Corrector, and what else there is.
 CONFIGURATIONS = {
     "rest": ("", ""),
-    "all": ("motion=True, accelerometer=True", ""),
-    "everything": ("motion=True, accelerometer=True", _EVERYTHING),
+    "all": ("motion=True, gravity=True", ""),
+    "everything": ("motion=True, gravity=True", _EVERYTHING),
     "motion": ("motion=True", ""),
-    "gravity": ("accelerometer=True", ""),
+    "gravity": ("gravity=True", ""),
     "effects": ("", "from zerorate.model import EffectModel\nkept[0].use_model(EffectModel())"),
 }
 _BOOT = """

@@ -67,7 +67,7 @@ class Played:
 def on_pico(pico: EmulatedPico, play: Play) -> Played:
     """Run it on a Pico that has the packages. Raises BoardError and mpremote's errors."""
     begun = play.corrector()
-    others = (begun.motion_settings, begun.motion, begun.level_settings, begun.level)
+    others = (begun.motion_settings, begun.motion, begun.gravity_settings, begun.gravity)
     arrays = [words for words in (begun.settings, begun.state, *others) if words is not None]
     begin = b"".join(words.tobytes() for words in arrays)
     pico.give(begin + play.rows.astype("<i4").tobytes())
@@ -108,7 +108,7 @@ def on_host(play: Play) -> Played:
             sample = row[1:]
             corrector.update(sample, row[0])
             left.extend(sample)
-    for words in (corrector.state, corrector.motion, corrector.level):
+    for words in (corrector.state, corrector.motion, corrector.gravity):
         if words is not None:
             left.extend(words)
     return Played(left.tobytes())

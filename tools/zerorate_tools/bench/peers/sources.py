@@ -18,7 +18,7 @@ _GRAVITY_WORDS = GRAVITY.GRAVITY_BIAS_Q8, GRAVITY.GRAVITY_QUALITY_Q8
 class Source:
     """A source as a peer; calling it returns each session's bias (n, 3), dps, 0 while unknown.
 
-    name: in_motion or realtime; options: keywords of its settings. After a call, `within` holds
+    name: in_motion or gravity; options: keywords of its settings. After a call, `within` holds
     for every learned value and axis whether the truth given in `truth_dps` lay within two sigma;
     `learned` counts the windows or intervals, `wrong` those with an axis beyond four sigma.
     """
@@ -47,7 +47,7 @@ class Source:
         learned = np.zeros(len(rows), np.int8)
         words = np.zeros((len(rows), 2, 3), np.int32)
         run_source(
-            self.name == "realtime",
+            self.name == "gravity",
             state,
             settings,
             rows,
@@ -70,10 +70,10 @@ class Source:
             settings = motion_settings(*sensor, **degree, **self.options)
             state, at = motion_state(settings), _MOTION_WORDS
         else:
-            from zerorate.gravity.realtime_settings import realtime_settings, realtime_state
+            from zerorate.gravity.gravity_settings import gravity_settings, gravity_state
 
-            settings = realtime_settings(*sensor, **self.options)
-            state, at = realtime_state(settings), _GRAVITY_WORDS
+            settings = gravity_settings(*sensor, **self.options)
+            state, at = gravity_state(settings), _GRAVITY_WORDS
         return np.array(state, np.int32), np.array(settings, np.int32), at
 
     def _judge(

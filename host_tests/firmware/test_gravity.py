@@ -1,10 +1,10 @@
-"""The source against the accelerometer: what it finds, what it cannot see, and its integers."""
+"""The source against gravity: what it finds, what it cannot see, and its integers."""
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from zerorate.gravity import realtime
-from zerorate.gravity.realtime_settings import realtime_settings, realtime_state
+from zerorate.gravity import gravity
+from zerorate.gravity.gravity_settings import gravity_settings, gravity_state
 from zerorate.layout import GRAVITY, GRAVITY_REASON, GRAVITY_SETTINGS
 
 from . import motions
@@ -20,8 +20,8 @@ class Counter:
     """The source fed with recordings; trace: (seconds, offsets dps, sigma dps) an interval."""
 
     def __init__(self, hz=50.0, **options):
-        self.settings = realtime_settings(odr_hz=hz, **options)
-        self.state = realtime_state(self.settings)
+        self.settings = gravity_settings(odr_hz=hz, **options)
+        self.state = gravity_state(self.settings)
         self.trace = []
         self.seconds = 0.0
 
@@ -30,7 +30,7 @@ class Counter:
         scale = 256 * motions.GYRO_LSB_PER_DPS
         for sample in motion.samples.tolist():
             self.seconds += 1 / motion.hz
-            if realtime.update(self.state, self.settings, sample, dt_us):
+            if gravity.update(self.state, self.settings, sample, dt_us):
                 offset, sigma = (np.array(self.state[a : a + 3]) / scale for a in (OFFSET, SIGMA))
                 self.trace.append((self.seconds, offset, sigma))
         return self
@@ -108,7 +108,7 @@ def test_the_truth_lies_within_two_sigma_at_least_ninety_times_of_a_hundred():
 
 def test_a_threshold_that_no_interval_can_pass_is_refused():
     with pytest.raises(ValueError, match="threshold must be below the sub-units"):
-        realtime_settings(threshold=8)
+        gravity_settings(threshold=8)
 
 
 def at_the_rails():
@@ -134,7 +134,7 @@ def test_every_intermediate_fits_31_bits(make, lsb, document):
     state, settings = Words(counter.state), Words(counter.settings)
     motion = make()
     for sample in motion.samples.tolist():
-        realtime.update(state, settings, Words(sample), checked(round(1e6 / motion.hz)))
+        gravity.update(state, settings, Words(sample), checked(round(1e6 / motion.hz)))
     assert max(state[OBSERVED : OBSERVED + 3]) > 20
 
 
@@ -150,7 +150,7 @@ def count_on(repository):
     def run(runtime, motion):
         result = runtime.run(
             repository / "host_tests" / "firmware" / "on_micropython" / "motion_without_heap.py",
-            ["realtime", str(len(motion.samples))],
+            ["gravity", str(len(motion.samples))],
             modules=[repository / "firmware"],
             files_in={"samples.bin": motion.samples.astype(np.int32).tobytes()},
             files_out=["state.bin"],

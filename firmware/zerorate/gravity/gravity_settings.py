@@ -1,4 +1,4 @@
-"""The settings and the state of the source against the accelerometer, made once."""
+"""The settings and the state of the source against gravity, made once."""
 
 from array import array
 from math import pi
@@ -33,7 +33,7 @@ _GRAVITY_SETTINGS_WORDS = const(12)
 PUSH = 16
 
 
-def realtime_settings(
+def gravity_settings(
     odr_hz=100.0,
     gyro_lsb_per_dps=131.0,
     accel_lsb_per_g=16384.0,
@@ -82,7 +82,7 @@ def realtime_settings(
     return array("i", c)
 
 
-def realtime_state(settings):
+def gravity_state(settings):
     """Return the state as array('i'), nothing known yet."""
     from ..native.gravity import clear
 

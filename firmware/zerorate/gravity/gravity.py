@@ -1,4 +1,4 @@
-"""The bias against the accelerometer: counters of signs, stepped by a fixed value.
+"""The bias against gravity: counters of signs, stepped by a fixed value.
 
 US 2015/0033821: a time interval of sub-units; in each, the angular rate that a pair of
 accelerometer axes implies, its deviation from the gyroscope's, a counter; at the end of the
