@@ -13,8 +13,11 @@ from host_tests.docs.option_tables import commands_under, with_option_tables
 from host_tests.docs.outputs import commands, refreshed, same_but_for_rounding
 from host_tests.docs.pages import blocks, pages
 
-#: Pages whose programs run in tests of their own, on fakes of a board or a bus.
-ELSEWHERE = {"any-imu.md", "pico.md", "raspberry-pi.md", "unit-tests.md", "notebook.md"}
+#: Pages whose programs run in tests of their own, on fakes of a board, a bus or ROS.
+ELSEWHERE = {
+    *("any-imu.md", "linux-service.md", "pico.md", "raspberry-pi.md", "unit-tests.md"),
+    "notebook.md",
+}
 _LINK = re.compile(r"\]\(([^)\s]+)\)")
 
 

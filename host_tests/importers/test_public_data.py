@@ -28,6 +28,8 @@ def test_the_real_mpu6050_comes_back_to_integers(real_data):
         recording, _ = read_foreign(source, **told_of(source))
         printed = frame[["gx_dps", "gy_dps", "gz_dps"]].to_numpy()
         assert np.abs(recording.gyro_lsb() - printed * 131).max() < 0.001
+        untold, _ = read_foreign(source)
+        assert untold.columns["temp"].tolist() == recording.columns["temp"].tolist()
         assert 90 < recording.scales.odr_hz < 110
 
 

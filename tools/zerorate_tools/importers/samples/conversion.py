@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
+from zerorate_i2c.parts import PARTS
 
 from ...errors import BadRecording
 from ...recordings import Scales
@@ -25,6 +26,8 @@ _GYRO_RANGES = (131.0, 65.5, 32.8, 16.4)
 _ACCEL_RANGES = (16384.0, 8192.0, 4096.0, 2048.0)
 _FINE = (1000.0, 500.0, 200.0)
 _TEMP_LSB, _TEMP_OFFSET = 100.0, 0.0
+#: Different readings that tell a part's scale, and what their printed digits may take from it.
+_DISTINCT, _OFF_GRID = 4, 0.05
 _RAIL = 32767
 #: Rows that come more slowly are means over the time between them: no such sensor is that slow.
 MEANS_FROM_US = 1.5e6
@@ -55,6 +58,8 @@ def fitting_scales(
         if "temp" in plan.raw and (temp is None or offset is None):
             do = "give --temp-lsb-per-degc and --temp-offset-degc"
             raise BadRecording(path, "the scale of raw temperature is not known", do=do)
+        if temp is None and offset is None:
+            temp, offset = _temperature_scale(found, notes)
         temp = _TEMP_LSB if temp is None else temp
         offset = _TEMP_OFFSET if offset is None else offset
     more = dict(options.more)
@@ -82,6 +87,18 @@ def _fitting(kind, unit, ranges, found: Gathered, plan: Plan, path: Path, notes)
     lsb = next((lsb for lsb in ranges if largest * lsb < _RAIL), ranges[-1])
     notes.append(f"{lsb:g} LSB per {unit} chosen, as {largest:.4g} {unit} is the most seen")
     return lsb
+
+
+def _temperature_scale(found: Gathered, notes) -> tuple[float, float]:
+    """The scale of the part whose integers the readings are, so that these come back exactly."""
+    seen = np.unique(found.looked_at[TEMP])
+    seen = seen[np.isfinite(seen)]
+    for _, part, lsb, offset, *_ in PARTS if len(seen) >= _DISTINCT else ():
+        counts = (seen - offset) * lsb
+        if (np.abs(counts - np.rint(counts)) < _OFF_GRID).all():
+            notes.append(f"temperature in steps of 1/{lsb:g} degC, as a {part} counts")
+            return lsb, offset
+    return _TEMP_LSB, _TEMP_OFFSET
 
 
 def integer_batches(
