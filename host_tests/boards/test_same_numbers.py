@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from zerorate_tools.bench.boards.figures import plays
+from zerorate_tools.bench.boards.measuring import plays
 from zerorate_tools.bench.boards.playing import Play, on_host, on_pico
 from zerorate_tools.bench.workload import workload
 from zerorate_tools.boards.flashing import flash

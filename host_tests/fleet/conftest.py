@@ -1,7 +1,7 @@
 """A small fleet of simulated devices that all tests of this area run."""
 
 import pytest
-from zerorate_tools.bench.fleet.simulated import write_devices
+from zerorate_tools.bench.fleet.simulated_devices import write_devices
 from zerorate_tools.fleet import devices_of, fleet
 
 DEVICES = 12

@@ -18,7 +18,7 @@ from zerorate_tools.errors import MissingLibrary, ZerorateError
 from zerorate_tools.fleet import devices_of, fleet
 from zerorate_tools.fleet.cluster import cluster, run_all
 from zerorate_tools.fleet.first_minutes import beginning, moving_from
-from zerorate_tools.fleet.words import in_words
+from zerorate_tools.fleet.fleet_in_words import in_words
 from zerorate_tools.model import read_model
 from zerorate_tools.recordings import read_recording, write_recording
 from zerorate_tools.replay import replay

@@ -1,8 +1,8 @@
 """A device with hysteresis, closed once for all who look at what came out."""
 
 import pytest
+from zerorate_tools.bench.loop.simulated import simulate
 from zerorate_tools.closing import close
-from zerorate_tools.loop.simulated import simulate
 from zerorate_tools.recordings import write_recording
 
 from .power_ons import recording

@@ -3,16 +3,16 @@
 import json
 
 import pytest
-from zerorate_tools.bench.loop.chips import hipnuc
+from zerorate_tools.bench.loop.bin_tables import hipnuc
 from zerorate_tools.bench.loop.devices import CATALOGUE, Device, devices
 from zerorate_tools.bench.loop.figures import figures
-from zerorate_tools.bench.loop.look import Outcome, look
-from zerorate_tools.bench.loop.run import looked_at, markdown
+from zerorate_tools.bench.loop.run_trial import Outcome, run_trial
+from zerorate_tools.bench.loop.trials import looked_at, markdown
 from zerorate_tools.bench.loop.wilson import interval
 
 
 def test_a_device_is_looked_at_and_judged():
-    outcome = look(Device("5x", 1, (("thermal-lag", 5.0),)))
+    outcome = run_trial(Device("5x", 1, (("thermal-lag", 5.0),)))
     assert outcome.named("thermal-lag") and outcome.tied_to(("temp",))
     assert outcome.after < 1.2 < outcome.before
 

@@ -15,9 +15,9 @@ from zerorate.effects.model_file import (
     REASONS,
 )
 from zerorate.model import EffectModel
+from zerorate_tools.bench.loop.simulated import simulate
 from zerorate_tools.closing import close
 from zerorate_tools.loop.read.gate import CannotClose
-from zerorate_tools.loop.simulated import simulate
 from zerorate_tools.model import Binding, Slot, build_model, encoded, read_model
 from zerorate_tools.model.binding import binding_of
 from zerorate_tools.model.term import Term

@@ -6,13 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
+from zerorate_tools.bench.loop.simulated import simulate
 from zerorate_tools.closing import close, load
 from zerorate_tools.loop.analyse import sessions_of
 from zerorate_tools.loop.read.gate import CannotClose, GateReport, usable_channels
 from zerorate_tools.loop.read.sessions import Session
 from zerorate_tools.loop.read.still import still_ticks
 from zerorate_tools.loop.read.ticks import read_ticks
-from zerorate_tools.loop.simulated import simulate
 from zerorate_tools.recordings import Recording, Scales, write_recording
 
 from . import power_ons
@@ -62,7 +62,7 @@ def test_corrected_rows_are_the_samples_and_agree_with_the_report(hysteresis, tm
 
 def test_another_recording_can_be_held_out(hysteresis):
     analysis = load(hysteresis, holdout=hysteresis[0])
-    assert [s.name for s in analysis.locked] == ["session-1"]
+    assert [s.name for s in analysis.holdout] == ["session-1"]
 
 
 def test_the_same_recording_twice_is_refused(hysteresis):

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from zerorate_tools.bench.loop.simulated import simulate
 from zerorate_tools.loop.search.decide import effective, predicts
 from zerorate_tools.loop.search.select import Search
-from zerorate_tools.loop.simulated import simulate
 
 
 @pytest.mark.parametrize(
@@ -36,5 +36,5 @@ def test_the_shares_of_a_family_add_up_to_its_level():
     search = Search(simulate(1).sessions[:-1])
     for family in ("catalogue", "generic"):
         kinds = {c.kind: c for c in search.pool if c.family == family}
-        shares = [search.prices.grid(kind) / search.prices.tried(c) for kind, c in kinds.items()]
+        shares = [search.testing.grid(kind) / search.testing.tried(c) for kind, c in kinds.items()]
         assert sum(shares) == pytest.approx(1.0)

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from zerorate_tools.bench.loop.simulated import simulate
 from zerorate_tools.loop.fit.noise import spectra
 from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.search import drift_test
 from zerorate_tools.loop.search.catalogue import Candidate
 from zerorate_tools.loop.search.select import Search
-from zerorate_tools.loop.simulated import simulate
 from zerorate_tools.model.term import Term
 
 DRIFT = (Term("time"),)
@@ -40,8 +40,8 @@ def test_noises_alike_cost_nothing_and_one_that_is_steeper_than_the_others_does(
     same, other = np.full((3, len(LOW)), -1e6), np.full((3, len(LOW)), -1e6)
     same[:, slow] = 0.0
     other[[0, 1, 2], [slow, white, white]] = 0.0
-    assert drift_test.alike(same, LOW) == pytest.approx(0.0, abs=0.1)
-    assert drift_test.alike(other, LOW) < -5.0
+    assert drift_test.common_colour(same, LOW) == pytest.approx(0.0, abs=0.1)
+    assert drift_test.common_colour(other, LOW) < -5.0
 
 
 def test_a_drift_that_comes_again_has_a_mean_and_one_that_turns_about_has_a_spread():

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from zerorate_tools.bench.loop.simulated import simulate
 from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.fit.single import PiecesByLine
 from zerorate_tools.loop.read.sessions import block_basis
 from zerorate_tools.loop.search.catalogue import candidates
 from zerorate_tools.loop.search.extrapolation import MOST, followed
 from zerorate_tools.loop.search.select import select, straight_line
-from zerorate_tools.loop.simulated import simulate
 from zerorate_tools.model import build_model
 from zerorate_tools.model.model import Slot
 

@@ -6,18 +6,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from zerorate_tools.bench.loop.simulated import HOSTILE, simulate
 from zerorate_tools.loop.analyse import analyse
 from zerorate_tools.loop.fit.single import PiecesByLine
 from zerorate_tools.loop.read.sessions import block_basis
 from zerorate_tools.loop.report.report import report
 from zerorate_tools.loop.search.confounding import label
 from zerorate_tools.loop.search.select import select
-from zerorate_tools.loop.simulated import HOSTILE, simulate
 from zerorate_tools.loop.verify.judge import judge
 from zerorate_tools.model.term import Term
 
 
-def look(device):
+def run_trial(device):
     selection = select(device.sessions[:-1])
     return selection, judge(selection, device.sessions[-1:])
 
@@ -45,7 +45,7 @@ def test_nothing_is_found_where_there_is_noise_alone(kind):
     ],
 )
 def test_an_undeclared_effect_of_three_floors_is_found_named_and_removed(effect):
-    selection, judgement = look(simulate(11, [(effect, 3.0)]))
+    selection, judgement = run_trial(simulate(11, [(effect, 3.0)]))
     assert effect in names(selection)
     assert judgement.gains[0] > 10
     assert judgement.after_rms < judgement.before_rms
@@ -56,13 +56,13 @@ def test_a_cubic_has_the_centre_that_the_part_has():
     for s in device.sessions:
         from_centre = s.block_mean((s.sources["temp"] - 28.0) ** 3)
         s.rate_dps += 4e-5 * from_centre[:, None] * [1.0, -0.7, 0.4]
-    selection, _ = look(device)
+    selection, _ = run_trial(device)
     assert names(selection) == ["temperature-cubic"]
     assert selection.terms[0].centre == pytest.approx(28.0, abs=0.5)
 
 
 def test_a_square_of_a_delayed_channel_is_tied_to_that_channel():
-    selection, _ = look(simulate(12, [("load-squared-delayed", 3.0)]))
+    selection, _ = run_trial(simulate(12, [("load-squared-delayed", 3.0)]))
     assert selection.found and selection.found[0].candidate.sources == ["load"]
 
 
@@ -72,7 +72,7 @@ def test_a_delay_is_found_wherever_it_lies_though_the_channel_switches():
         s.sources["load"] = rng.integers(0, 2, s.blocks).repeat(s.ticks_per_block).astype(float)
         late = block_basis(Term("load", delay_s=193.0), s)
         s.rate_dps += np.outer(late, 3.0 * device.floor_dps)
-    selection, _ = look(device)
+    selection, _ = run_trial(device)
     [found] = selection.found
     assert found.candidate.sources == ["load"]
     assert found.candidate.terms[0].delay_s == pytest.approx(193.0, abs=5.0)
@@ -84,7 +84,7 @@ def test_a_product_is_one_effect_wherever_its_factors_are_zero():
         product = Term("vdd_mv", centre=3240.0, second="temp", second_centre=21.0)
         product = replace(product, second_lo=0.0, second_hi=60.0)
         s.rate_dps += np.outer(block_basis(product, s), [6e-6, -4e-6, 3e-6])
-    selection, judgement = look(device)
+    selection, judgement = run_trial(device)
     assert [label(f.candidate) for f in selection.found] == ["supply-temperature"]
     # The line over temperature takes what another zero of the voltage would add.
     assert selection.terms[0].second_centre == pytest.approx(21.0, abs=1.5)
@@ -92,20 +92,20 @@ def test_a_product_is_one_effect_wherever_its_factors_are_zero():
 
 
 def test_two_effects_at_once_are_both_named():
-    selection, _ = look(simulate(13, [("thermal-hysteresis", 3.0), ("supply-voltage", 3.0)]))
+    selection, _ = run_trial(simulate(13, [("thermal-hysteresis", 3.0), ("supply-voltage", 3.0)]))
     assert {"thermal-hysteresis", "supply-voltage"} <= set(names(selection))
 
 
 def test_a_cause_nobody_recorded_is_never_confirmed_and_said_to_be_left():
     for seed in (21, 22, 23):
-        selection, judgement = look(simulate(seed, hidden=5.0))
+        selection, judgement = run_trial(simulate(seed, hidden=5.0))
         assert not any(judgement.confidence(i) == "confirmed" for i in range(len(selection.found)))
-        assert judgement.excess.left
+        assert judgement.residual_test.left
 
 
 def test_a_step_is_listed_with_its_time_and_size_and_not_corrected():
     device = simulate(31, [("step", 4.0)])
-    selection, judgement = look(device)
+    selection, judgement = run_trial(device)
     assert selection.found == [] and len(selection.steps) == 1
     step = selection.steps[0]
     assert abs(step.size_dps) == pytest.approx(16 * device.floor_dps, rel=0.3)
@@ -145,7 +145,7 @@ def erring(seed):
 
 def test_a_thermometer_that_errs_makes_no_effect_of_the_warm_up_that_makes_it_worse():
     for seed in (1, 5):
-        selection, judgement = look(erring(seed))
+        selection, judgement = run_trial(erring(seed))
         assert judgement.after_rms < 1.1 * judgement.before_rms, names(selection)
 
 

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from zerorate_tools.bench.loop.simulated import PRANDTL_ISHLINSKII, simulate
 from zerorate_tools.loop.fit.single import PiecesByLine
 from zerorate_tools.loop.read.sessions import Session
 from zerorate_tools.loop.search.hysteresis import KIND, best_hysteresis, may_show, passed_twice
 from zerorate_tools.loop.search.select import select, straight_line
-from zerorate_tools.loop.simulated import PRANDTL_ISHLINSKII, simulate
 from zerorate_tools.model import Slot, build_model
 from zerorate_tools.model.term import play
 from zerorate_tools.recordings import Scales

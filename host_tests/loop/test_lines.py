@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from zerorate_tools.bench.loop.simulated import flicker
 from zerorate_tools.loop.read.lines import find, spectrum
 from zerorate_tools.loop.read.sessions import Session
 from zerorate_tools.loop.read.welch import SEGMENT, Segments
 from zerorate_tools.loop.search.periodic import periodic
-from zerorate_tools.loop.simulated import flicker
 from zerorate_tools.model.term import Term
 
 N, STEP_S = 3600, 1.0
@@ -46,7 +46,7 @@ def test_a_line_is_found_with_its_period_and_amplitude(period_s):
         for _ in range(4)
     ]
     (line,) = lines(rates)
-    assert 1 / line.hz == pytest.approx(period_s, rel=0.06) and line.in_locked
+    assert 1 / line.hz == pytest.approx(period_s, rel=0.06) and line.in_holdout
     assert line.amplitude_dps[0] == pytest.approx(size[0], rel=0.3)
 
 

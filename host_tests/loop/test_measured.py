@@ -3,7 +3,7 @@
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
-from zerorate_tools.loop.simulated import simulate
+from zerorate_tools.bench.loop.simulated import simulate
 from zerorate_tools.loop.verify.firmware import Firmware, Refused
 from zerorate_tools.model import read_model
 from zerorate_tools.recordings import Scales

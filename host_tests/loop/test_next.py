@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from zerorate_tools.bench.loop.simulated import simulate
 from zerorate_tools.closing import load
 from zerorate_tools.loop.analyse import analyse
 from zerorate_tools.loop.report.report import report
 from zerorate_tools.loop.report.unexplained import _unrecorded, measure_next
-from zerorate_tools.loop.simulated import simulate
 from zerorate_tools.recordings import Recording, Scales, write_recording
 
 N, HZ = 3000, 5.0

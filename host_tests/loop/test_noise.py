@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from zerorate_tools.allan import Noise, overlapping
+from zerorate_tools.bench.loop.simulated import flicker
 from zerorate_tools.loop.fit import noise
 from zerorate_tools.loop.fit.cross_products import (
     BridgedWhitener,
@@ -13,7 +14,6 @@ from zerorate_tools.loop.fit.cross_products import (
 from zerorate_tools.loop.fit.floor import noise_of
 from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.read.sessions import Session
-from zerorate_tools.loop.simulated import flicker
 
 
 def test_a_random_walk_is_diagonal_in_the_transform():

@@ -5,24 +5,23 @@ from functools import partial
 
 import numpy as np
 import pytest
+from zerorate_tools.bench.loop.simulated import simulate
 from zerorate_tools.loop.analyse import analyse
 from zerorate_tools.loop.fit.line import deployed
 from zerorate_tools.loop.report.in_words import in_words
 from zerorate_tools.loop.report.report import report
 from zerorate_tools.loop.search.select import select
-from zerorate_tools.loop.simulated import simulate
-from zerorate_tools.loop.verify import prune_by_holdout
 from zerorate_tools.loop.verify.judge import judge
-from zerorate_tools.loop.verify.prune_by_holdout import upheld
+from zerorate_tools.loop.verify.prune_by_holdout import prune_by_holdout
 
 
 def kinds(selection):
     return [f.candidate.kind for f in selection.found]
 
 
-def doubting(judge, selection, locked):
+def doubting(judge, selection, holdout):
     """The judgement with a likelihood that speaks against everything."""
-    judgement = judge(selection, locked)
+    judgement = judge(selection, holdout)
     return replace(judgement, gains=np.full_like(judgement.gains, -2.0))
 
 
@@ -38,7 +37,7 @@ def turning_about():
 def test_a_drift_that_the_last_power_on_does_not_show_is_withdrawn(turning_about):
     selection = select(turning_about[:-1])
     assert kinds(selection) == ["time-drift"]
-    left, judgement = upheld(selection, turning_about[-1:])
+    left, judgement = prune_by_holdout(selection, turning_about[-1:])
     assert kinds(left) == [] and [name for name, _ in left.withdrawn] == ["time-drift"]
     assert judgement.after_rms == judgement.before_rms
 
@@ -55,13 +54,15 @@ def test_what_noise_steeper_than_a_walk_feigns_is_withdrawn():
     sessions = simulate(6300013, noise_kind="steep").sessions
     selection = select(sessions[:-1])
     assert kinds(selection) == ["time-drift"]
-    assert kinds(upheld(selection, sessions[-1:])[0]) == []
+    assert kinds(prune_by_holdout(selection, sessions[-1:])[0]) == []
 
 
 def test_what_makes_the_error_smaller_stays_whatever_its_likelihood(monkeypatch):
     sessions = simulate(11, [("supply-voltage", 5.0)]).sessions
-    monkeypatch.setattr(prune_by_holdout, "judge", partial(doubting, judge))
-    left, judgement = upheld(select(sessions[:-1]), sessions[-1:])
+    monkeypatch.setattr(
+        "zerorate_tools.loop.verify.prune_by_holdout.judge", partial(doubting, judge)
+    )
+    left, judgement = prune_by_holdout(select(sessions[:-1]), sessions[-1:])
     assert judgement.gains[0] < -1 and judgement.after_rms < judgement.before_rms
     assert kinds(left) == ["supply-voltage"] and not left.withdrawn
 
@@ -70,7 +71,7 @@ def test_what_the_session_held_out_is_the_worse_for_goes():
     sessions = simulate(11, [("supply-voltage", 5.0)]).sessions
     last = sessions[-1]
     last.sources["vdd_mv"] = 6600.0 - last.sources["vdd_mv"]
-    left, _ = upheld(select(sessions[:-1]), [last])
+    left, _ = prune_by_holdout(select(sessions[:-1]), [last])
     [(name, why)] = left.withdrawn
     assert name == "supply-voltage" and "speaks against it by" in why
 
@@ -80,7 +81,7 @@ def test_a_cause_that_rests_in_the_session_held_out_stays():
     last = sessions[-1]
     last.rate_dps = simulate(11).noise_dps[-1].copy()
     last.sources["vib"] = np.full_like(last.sources["vib"], sessions[0].sources["vib"].mean())
-    selection, _ = upheld(select(sessions[:-1]), [last])
+    selection, _ = prune_by_holdout(select(sessions[:-1]), [last])
     assert kinds(selection) == ["vibration"] and not selection.withdrawn
 
 
@@ -88,7 +89,7 @@ def test_an_axis_whose_error_would_grow_is_left_alone():
     sessions = simulate(11, [("supply-voltage", 5.0)]).sessions
     last, without = sessions[-1], simulate(11).sessions[-1]
     last.rate_dps[:, 0] = (2 * without.rate_dps - last.rate_dps)[:, 0]
-    left, judgement = upheld(select(sessions[:-1]), [last])
+    left, judgement = prune_by_holdout(select(sessions[:-1]), [last])
     assert kinds(left) == ["supply-voltage"] and left.found[0].axes == (False, True, True)
     assert (judgement.after_dps <= judgement.before_dps).all()
     assert (deployed(left)[1][-1] != 0).tolist() == [False, True, True]

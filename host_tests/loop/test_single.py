@@ -3,14 +3,14 @@
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
+from zerorate_tools.bench.loop.simulated import simulate
 from zerorate_tools.closing import close, load
 from zerorate_tools.loop.analyse import analyse
 from zerorate_tools.loop.fit.single import PiecesByLine, nats, speaks_for
 from zerorate_tools.loop.search.bends import find_bends
 from zerorate_tools.loop.search.select import Search
-from zerorate_tools.loop.simulated import simulate
 from zerorate_tools.loop.verify.by_kernels import PiecesByKernels
-from zerorate_tools.loop.verify.measure import measure_upheld
+from zerorate_tools.loop.verify.measure import measure_and_prune
 from zerorate_tools.loop.verify.power_on import PowerOn
 from zerorate_tools.recordings import (
     Recording,
@@ -45,7 +45,7 @@ def warm_up(folder, seed, bend_dps, odr_hz=1.0, hours=1.0):
 def closed(path, folder):
     """(kinds found, kernels' RMS before and after) of one recording alone."""
     analysis = load([path])
-    analysis, _ = measure_upheld(analysis, [path], folder / "corrected.parquet")
+    analysis, _ = measure_and_prune(analysis, [path], folder / "corrected.parquet")
     judgement = analysis.judgement
     kinds = [f.candidate.kind for f in analysis.selection.found]
     return kinds, judgement.before_rms, judgement.after_rms

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from zerorate_tools.bench.loop.simulated import simulate
 from zerorate_tools.loop.fit.line import ordinary
 from zerorate_tools.loop.search.steps_first import bend_of, without_steps
-from zerorate_tools.loop.simulated import simulate
 
 
 def stepped(seed, floors, *places, effects=()):

@@ -3,9 +3,9 @@
 import json
 
 import numpy as np
+from zerorate_tools.bench.loop.simulated import simulate
 from zerorate_tools.closing import load
 from zerorate_tools.loop.report.report import as_json, report
-from zerorate_tools.loop.simulated import simulate
 from zerorate_tools.loop.verify.measure import measure
 from zerorate_tools.loop.verify.slots import model_of
 from zerorate_tools.model import write_model

@@ -156,7 +156,7 @@ class TestHostileNames:
     def test_they_are_shown_letter_by_letter(self, outcome, show):
         closed = outcome("hostile names")
         tab = show(closed).tab
-        name = closed.analysis.locked[0].name
+        name = closed.analysis.holdout[0].name
         assert tab.locator("#good bdi.name").first.text_content() == name
         axis = tab.locator("#plot-residual-time .xtitle, #plot-residual-time .x4title")
         assert name in axis.last.text_content()

@@ -6,8 +6,8 @@ from html.parser import HTMLParser
 
 import pytest
 from zerorate_tools.loop.read.turns import GIVEN
-from zerorate_tools.report.figures import figure
-from zerorate_tools.report.words import WHY_BOTH, corrects_at_rest, frozen, headline
+from zerorate_tools.report.numbers import figure
+from zerorate_tools.report.sentences import WHY_BOTH, corrects_at_rest, frozen, headline
 
 from host_tests.report.devices import HOSTILE
 

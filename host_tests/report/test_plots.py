@@ -10,12 +10,12 @@ from zerorate_tools.loop.search.bends import KINDS as BENDS
 from zerorate_tools.loop.search.catalogue import CATALOGUE, GENERIC, GROUPS
 from zerorate_tools.report import kinds
 from zerorate_tools.report.allan_plot import longest
-from zerorate_tools.report.figures import chance, figure
 from zerorate_tools.report.held_out import held_out, trend
+from zerorate_tools.report.numbers import chance, figure
 from zerorate_tools.report.plot import thinned
 from zerorate_tools.report.png import picture, write_pngs
+from zerorate_tools.report.report_folder import plots_of
 from zerorate_tools.report.residual_plots import against_time
-from zerorate_tools.report.writing import plots_of
 
 from host_tests.report.devices import Closed, device
 
@@ -65,7 +65,7 @@ def test_the_error_drawn_has_the_root_mean_square_that_is_said(outcome, plots):
 
 
 def test_heating_and_cooling_are_told_apart(outcome):
-    session = outcome("an effect").analysis.locked[0]
+    session = outcome("an effect").analysis.holdout[0]
     told = trend(session)
     step = np.diff(session.block_mean(session.sources["temp"]))
     fast = np.abs(step) > 0.2

@@ -24,8 +24,8 @@ from zerorate_tools.model import (
     to_json,
     write_model,
 )
+from zerorate_tools.model.model_in_words import differences
 from zerorate_tools.model.term import Term
-from zerorate_tools.model.words import differences
 from zerorate_tools.recordings import Scales
 
 SCALES = Scales("MPU-6050", 100.0, 131.0, 16384.0, 340.0, 36.53)

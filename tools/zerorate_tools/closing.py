@@ -13,7 +13,7 @@ from .loop.read.gate import CannotClose
 from .loop.read.ticks import read_ticks, tick_seconds
 from .loop.report.report import as_json, report
 from .loop.verify.analysis import Analysis
-from .loop.verify.measure import measure_upheld
+from .loop.verify.measure import measure_and_prune
 from .model import write_model
 from .recordings.atomic import written_beside, written_together
 
@@ -25,7 +25,7 @@ def load(
 ) -> Analysis:
     """Read recordings of one device and run the loop. Raises ZerorateError.
 
-    holdout: the recording to lock away, the last by default; advance: called for each recording.
+    holdout: the recording to hold out, the last by default; advance: called for each recording.
     """
     ticks, tick_s = [], max(map(tick_seconds, logs))
     for log in logs:
@@ -72,7 +72,7 @@ def close(
     analysis = load(logs, holdout, advance)
     with written_together(out) as folder:
         corrected = folder / "corrected.parquet"
-        analysis, model = measure_upheld(analysis, logs, corrected, online, advance)
+        analysis, model = measure_and_prune(analysis, logs, corrected, online, advance)
         write_model(model, folder)
         result = json.loads(json.dumps(report(analysis), default=as_json))
         with written_beside(folder / "report.json") as temporary:

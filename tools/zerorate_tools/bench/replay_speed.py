@@ -35,7 +35,7 @@ _KERNELS = """
 import sys, time
 from zerorate_tools.recordings import open_recording
 from zerorate_tools.replay.engines import engine
-from zerorate_tools.replay.run import corrector_for
+from zerorate_tools.replay.replaying import corrector_for
 from zerorate_tools.replay.samples import frames_in_batches
 first, long = map(open_recording, sys.argv[1:])
 corrector, native = corrector_for(first, {}), engine("native")

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from zerorate import Corrector
 
 from ..replay.engines import engine
-from ..replay.run import corrector_for
+from ..replay.replaying import corrector_for
 from ..replay.samples import Frames, frames_in_batches
 from ..simulate import simulate
 

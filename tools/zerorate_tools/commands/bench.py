@@ -45,7 +45,7 @@ def add_extent(parser) -> None:
 
 def run_main(arguments: argparse.Namespace) -> None:
     """Measure cost and accuracy and write one report."""
-    from ..bench.figures import in_markdown, measure, steps
+    from ..bench.cost_and_accuracy import in_markdown, measure, steps
     from ..progress import progress
 
     hours, seeds = extent(arguments)
@@ -90,7 +90,7 @@ def add_boards(benches) -> None:
 def run_boards(arguments: argparse.Namespace) -> None:
     """Measure and write."""
     from ..bench.boards import in_markdown, measure
-    from ..bench.boards.figures import STEPS
+    from ..bench.boards.measuring import STEPS
     from ..progress import progress
 
     with progress("measuring on a Pico", STEPS) as advance:

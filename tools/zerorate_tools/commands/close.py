@@ -33,7 +33,7 @@ def run(arguments: argparse.Namespace) -> None:
     from ..closing import close
     from ..loop.report.in_words import in_words
     from ..progress import progress
-    from ..report.words import WHY_BOTH, headline
+    from ..report.sentences import WHY_BOTH, headline
 
     with progress("reading, replaying", 2 * len(arguments.logs)) as advance:
         result = close(

@@ -47,7 +47,7 @@ def add_parser(subparsers) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the fleet and print what came of it; 1 where no device could be used."""
     from ..fleet import devices_of, fleet
-    from ..fleet.words import in_words
+    from ..fleet.fleet_in_words import in_words
     from ..progress import progress
 
     out = arguments.out

@@ -49,7 +49,7 @@ def _add_check(actions) -> None:
 def run_show(arguments: argparse.Namespace) -> None:
     """Print a model."""
     from ..model import read_model, to_json
-    from ..model.words import in_words
+    from ..model.model_in_words import in_words
 
     model = read_model(arguments.file)
     print(to_json(model), end="") if arguments.json else print(in_words(model))
@@ -59,7 +59,7 @@ def run_check(arguments: argparse.Namespace) -> None:
     """Print that the model would be loaded, or raise why not."""
     from ..model import Binding
     from ..model.check import check_model
-    from ..model.words import slots_in_words
+    from ..model.model_in_words import slots_in_words
     from ..recordings import open_recording
 
     device = Binding(
@@ -73,7 +73,7 @@ def run_check(arguments: argparse.Namespace) -> None:
 def run_diff(arguments: argparse.Namespace) -> int:
     """Print what differs, a line each."""
     from ..model import read_model
-    from ..model.words import differences
+    from ..model.model_in_words import differences
 
     found = differences(read_model(arguments.one), read_model(arguments.other))
     print("\n".join(found) if found else "the same to the last bit")

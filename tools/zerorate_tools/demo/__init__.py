@@ -2,7 +2,7 @@
 
 from .device import Device, make_device
 from .job import back_on_the_chip, closed, first_power_on
-from .run import Demo, demo
+from .play_and_score import Demo, demo
 
 __all__ = [
     "Demo",

@@ -8,7 +8,7 @@ from pathlib import Path
 from ..closing import close
 from ..replay import replay
 from .device import Device
-from .run import Demo, demo
+from .play_and_score import Demo, demo
 
 
 def first_power_on(device: Device, runtime: str = "wasm") -> Demo:

@@ -7,7 +7,7 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 
-from .run import Demo
+from .play_and_score import Demo
 from .score import SETTLE_S, rates, seconds
 
 matplotlib.use("Agg")

@@ -15,8 +15,8 @@ from ..report.kinds import meaning
 from ..signs import fixed
 from .broad_trial import CREDIT
 from .device import Device
+from .play_and_score import Demo
 from .real import MOTION_FROM_S, WAYS, WHOLE_FROM_S, Real
-from .run import Demo
 from .score import seconds
 
 _IN = " " * 10
@@ -73,8 +73,8 @@ def scored(shown: Demo) -> list[str]:
 
 
 def chapter_two(device: Device, result: dict) -> str:
-    """What closing the loop found, and how much better that makes the locked power-on."""
-    first, last, locked = (
+    """What closing the loop found, and how much better that makes the held-out power-on."""
+    first, last, holdout = (
         device.logs[0].stem,
         device.logs[-2].stem,
         ", ".join(result["split"]["test"]),
@@ -82,10 +82,10 @@ def chapter_two(device: Device, result: dict) -> str:
     lines = [
         "",
         "2. The loop is closed: what does the firmware's model lack?",
-        f"   Fitted on {first} to {last}; {locked} was locked away and looked at once.",
+        f"   Fitted on {first} to {last}; {holdout} was held out and looked at once.",
         *_found(result["steps"]),
         *(f"   the truth, of which nobody told it: {words}" for words in device.hidden),
-        f"   Error in {locked}, offset taken from its first still minute, then frozen:",
+        f"   Error in {holdout}, offset taken from its first still minute, then frozen:",
         "                    gx        gy        gz",
     ]
     for name in ("before", "after", "floor"):

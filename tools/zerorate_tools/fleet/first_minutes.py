@@ -14,8 +14,8 @@ from ..loop.read.sessions import Session
 from ..recordings import Recording, open_recording
 from ..replay import replay
 from .job import one_line, still_session
-from .life import block_means, error_mdps
 from .prefilled import prefill
+from .replay_power_on import block_means, error_mdps
 
 #: How long a device rests before it moves, and from when on its error counts, both in seconds.
 SCENARIOS = {

@@ -20,7 +20,7 @@ from ..loop.read.ticks import read_ticks
 from ..recordings import open_recording
 from .curve import curve_of
 from .devices import Device
-from .life import live_through
+from .replay_power_on import replay_power_on
 
 JOBS = ("replay", "close")
 BLOCK_S = 5.0
@@ -86,7 +86,7 @@ def run_device(job: Job, device: Device) -> dict[str, Any]:
             try:
                 session = still_session(path)
                 state = Path(scratch) / "state.bin"
-                summaries.append(live_through(job, path, session, state, job.folder(device)))
+                summaries.append(replay_power_on(job, path, session, state, job.folder(device)))
                 sessions.append(session)
                 good.append(path)
             except Exception as error:  # of a stranger's file; the fleet goes on

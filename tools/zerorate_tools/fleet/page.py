@@ -9,15 +9,15 @@ from pathlib import Path
 from typing import Any
 
 from ..recordings.atomic import written_beside
-from ..report import words as report_words
+from ..report import sentences as report_words
 from ..report.colours import ROLES
-from ..report.figures import chance, figure
+from ..report.numbers import chance, figure
 from ..report.page import height, legend
 from ..report.plotly_form import plain
 from ..report.safe_json import script_json
+from .fleet_in_words import WAYS, scenario_in_words
 from .part import Part
 from .plots import plots_of
-from .words import WAYS, scenario_in_words
 
 _REPORT = "zerorate_tools.report"
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from ..report.plot import Panel, Plot, Series
 from .curve import TERMS, UNITS
+from .fleet_in_words import WAYS, scenario_in_words
 from .part import Part, scale_of
-from .words import WAYS, scenario_in_words
 
 _POINTS = 40
 _MOST_LINES = 15

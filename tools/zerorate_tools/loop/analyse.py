@@ -33,7 +33,7 @@ from .search.steps_first import without_steps
 from .verify.analysis import Analysis
 from .verify.by_kernels import PiecesByKernels
 from .verify.power_on import PowerOn, ideal_dps
-from .verify.prune_by_holdout import upheld
+from .verify.prune_by_holdout import prune_by_holdout
 
 
 # The matrices are small: more threads wait for each other three times as long as one works.
@@ -44,7 +44,7 @@ def analyse(
     gate: GateReport | None = None,
     logs: Mapping[str, str | PathLike[str]] | None = None,
 ) -> Analysis:
-    """Run the loop. holdout: index of the session to lock away, the last by default; logs: each
+    """Run the loop. holdout: index of the session to hold out, the last by default; logs: each
     session's recording, for the firmware's own kernels to be run over where it stands alone.
     """
     gate = gate or GateReport()
@@ -56,16 +56,17 @@ def analyse(
     )
     sessions = without_steps([without_scales(s, motion) for s in sessions])
     taken = len(slots_of(motion))
-    locked = [sessions[at]]
-    train = [s for i, s in enumerate(sessions) if i != at] or locked
+    held = [sessions[at]]
+    train = [s for i, s in enumerate(sessions) if i != at] or held
     by_pieces = _on_pieces(train[0], motion, logs) if len(train) == 1 else None
-    selection, judgement = upheld(select(train, taken, by_pieces, len(sessions) > 1), locked)
+    selection = select(train, taken, by_pieces, len(sessions) > 1)
+    selection, judgement = prune_by_holdout(selection, held)
     whole = [*selection.straight, *selection.terms]
     floor = floor_dps(judgement.whole, whole)
     terms, coefficients = deployed(selection)
     name_earth(selection.found, terms, coefficients, train)
-    lines = periodic(train, locked, terms, coefficients)
-    return Analysis(sessions, train, locked, selection, judgement, floor, gate, motion, lines)
+    lines = periodic(train, held, terms, coefficients)
+    return Analysis(sessions, train, held, selection, judgement, floor, gate, motion, lines)
 
 
 def _on_pieces(session, motion, logs):

@@ -14,7 +14,7 @@ from ..recordings import Scales
 from .binary import encoded
 from .files import read_model
 from .model import Binding, Model
-from .words import differences
+from .model_in_words import differences
 
 _ANY = 255
 

@@ -1,5 +1,5 @@
 """The firmware over a recording, learning as it goes."""
 
-from .run import Replay, replay
+from .replaying import Replay, replay
 
 __all__ = ["Replay", "replay"]

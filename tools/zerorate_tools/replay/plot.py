@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..recordings import Recording
-from .run import Replay
+from .replaying import Replay
 
 if TYPE_CHECKING:
     from plotly.graph_objects import Figure

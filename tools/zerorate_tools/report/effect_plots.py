@@ -33,11 +33,11 @@ def effect_plots(analysis: Analysis, names: list[str]) -> list[Plot]:
 
 
 def _sessions(analysis: Analysis) -> list[tuple[Session, NDArray]]:
-    """(session, residual (n, 3) mdps under the whole model), training first, the locked last.
+    """(session, residual (n, 3) mdps under the whole model), training first, the holdout last.
 
     Each is less its own mean: what an offset is, is no news of an effect.
     """
-    after = zip(analysis.locked, analysis.judgement.residual_after)
+    after = zip(analysis.holdout, analysis.judgement.residual_after)
     every = [*trained_residuals(analysis), *((s, 1e3 * r) for s, r in after)]
     return [(s, r - np.nanmean(r, axis=0)) for s, r in every]
 

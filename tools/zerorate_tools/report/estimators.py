@@ -14,7 +14,7 @@ from zerorate.layout import AXIS, ESTIMATOR, MARKS, SETTINGS, STATE, axis_at
 
 from ..recordings import Scales, open_recording
 from ..replay.engines import engine
-from ..replay.run import corrector_for, load_model
+from ..replay.replaying import corrector_for, load_model
 from ..replay.samples import FRAME, frames_in_batches
 
 _POPULATION = 0x3FFF

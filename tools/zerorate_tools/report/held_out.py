@@ -22,8 +22,8 @@ _HELD_DEGC_PER_MIN = 0.06
 
 @dataclass(frozen=True)
 class HeldOut:
-    """A locked recording by blocks: minutes (n,), temp_degc (n,) or None, trend (n,) +1 heating, -1
-    cooling, 0 held; before_mdps, after_mdps (n, 3), NaN where nothing was scored.
+    """A held-out recording by blocks: minutes (n,), temp_degc (n,) or None, trend (n,) +1 heating,
+    -1 cooling, 0 held; before_mdps, after_mdps (n, 3), NaN where nothing was scored.
     """
 
     name: str
@@ -37,7 +37,7 @@ class HeldOut:
 
 
 def held_out(analysis: Analysis) -> list[HeldOut]:
-    """The recordings that were locked away, with their error before and after."""
+    """The recordings that were held out, with their error before and after."""
     judged = analysis.judgement
     return [
         HeldOut(
@@ -51,7 +51,7 @@ def held_out(analysis: Analysis) -> list[HeldOut]:
             start_us=session.start_us,
         )
         for session, before, after in zip(
-            analysis.locked, judged.residual_before, judged.residual_after
+            analysis.holdout, judged.residual_before, judged.residual_after
         )
     ]
 

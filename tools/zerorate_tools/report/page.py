@@ -7,10 +7,10 @@ from functools import lru_cache
 from importlib.resources import files
 from typing import Any
 
-from . import kinds, words
+from . import kinds, sentences
 from .board import Deployment
 from .colours import ROLES
-from .figures import chance, figure
+from .numbers import chance, figure
 from .plot import Plot
 from .plotly_form import plain
 from .safe_json import script_json
@@ -37,10 +37,10 @@ def page(
         .get_template("page.html.j2")
         .render(
             r=result,
-            headline=words.headline(result),
-            why_both=words.WHY_BOTH,
+            headline=sentences.headline(result),
+            why_both=sentences.WHY_BOTH,
             plots={p.key: p for p in plots},
-            corrected=any(words.corrects_at_rest(step) for step in result["steps"]),
+            corrected=any(sentences.corrects_at_rest(step) for step in result["steps"]),
             deployed=any(step["coefficients"] for step in result["steps"]),
             board=board,
             notes=notes,
@@ -68,10 +68,10 @@ def _environment():
         lstrip_blocks=True,
     )
     environment.filters.update(
-        figure=figure, chance=chance, sentence=words.sentence, capital=words.capital
+        figure=figure, chance=chance, sentence=sentences.sentence, capital=sentences.capital
     )
     environment.globals.update(
-        kinds=kinds, words=words, height=height, legend=legend, zip=zip, axes="xyz"
+        kinds=kinds, words=sentences, height=height, legend=legend, zip=zip, axes="xyz"
     )
     return environment
 

@@ -11,10 +11,10 @@ import numpy as np
 
 from ..recordings import Recording, Scales
 from ..recordings.recording import TIME, Columns
+from ..replay.bias_table import SOURCES
 from ..replay.engines import CPythonEngine, Engine, Outcome, engine
-from ..replay.run import corrector_for, load_model
+from ..replay.replaying import corrector_for, load_model
 from ..replay.samples import FRAME, Frames
-from ..replay.writing import SOURCES
 
 #: From so many samples at once on, compiled kernels are worth their loading.
 _MANY = 20_000

@@ -7,7 +7,7 @@ from typing import Any
 
 from ..limits import limits_table, verdicts
 from ..tables import number, table
-from .figures import LIMITS
+from .measuring import LIMITS
 
 
 def in_markdown(found: Mapping[str, Any]) -> str:

@@ -12,7 +12,7 @@ from typing import Any
 from ...fleet import Fleet, devices_of, fleet
 from ...fleet.cluster import cluster, run_all
 from .million import on_paper
-from .simulated import MINUTES, ODR_HZ, write_devices
+from .simulated_devices import MINUTES, ODR_HZ, write_devices
 
 SIZES = (100, 500, 2000)
 WORKERS = (1, 2)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ...fleet.words import WAYS, scenario_in_words
+from ...fleet.fleet_in_words import WAYS, scenario_in_words
 from ..tables import machine_line, table
 
 

@@ -1,5 +1,5 @@
 """`zerorate bench loop`: what closing the loop finds, names, removes and invents."""
 
-from .run import markdown, run
+from .trials import markdown, run
 
 __all__ = ["markdown", "run"]

@@ -36,7 +36,7 @@ PAIRS = (
     ("thermal-lag", "vibration"),
     ("power-on-transient", "linear-acceleration"),
 )
-#: Hysteresis of many widths, by how many power-ons; the last one is locked away.
+#: Hysteresis of many widths, by how many power-ons; the last one is held out.
 MANY_WIDTHS, POWER_ONS = "many widths", (2, 3, 4, 5, 6)
 #: Sizes in floors, all of which must come down to the noise.
 SIZES = (2.0, 3.0, 5.0)
@@ -75,7 +75,7 @@ def devices(nulls: int, seeds: int, real: list[str]) -> list[Device]:
 
     real: names of quiet recordings, none for no row of real noise.
     """
-    from ...loop.simulated import HOSTILE
+    from .simulated import HOSTILE
 
     plain = [Device(NULL, _SEEDS["null"] + i) for i in range(nulls)]
     some = [
@@ -105,7 +105,7 @@ def _effects(seeds: int) -> Iterator[Device]:
 
 
 def _many_widths(seeds: int) -> Iterator[Device]:
-    from ...loop.simulated import PRANDTL_ISHLINSKII
+    from .simulated import PRANDTL_ISHLINSKII
 
     for n in POWER_ONS:
         for i in range(seeds):

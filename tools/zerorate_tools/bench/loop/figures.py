@@ -10,7 +10,7 @@ import numpy as np
 
 from .devices import CATALOGUE, HIDDEN, KINK, MANY_WIDTHS, NULL, OUT, OUTSIDE, REAL, STEP, TWO
 from .files import ROWS
-from .look import Outcome
+from .run_trial import Outcome
 from .wilson import interval
 
 

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from .devices import Device
-from .look import Outcome
+from .run_trial import Outcome
 
 _FACES = ("+x", "-y", "-z", "-x", "+y", "+z")
 _PATH = [
@@ -158,7 +158,7 @@ def look_at_files(device: Device) -> Outcome:
         [step["confounded_with"] for step in steps] + [[]] * len(quick),
         [step["confidence"] for step in steps] + ["tentative"] * len(quick),
         len(said["events"]),
-        bool(judgement.excess.left),
+        bool(judgement.residual_test.left),
         judgement.before_rms / floor,
         judgement.after_rms / floor,
         in_motion_mdps=in_motion,

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from . import chips
+from . import bin_tables
 
 _COLOURS = {"line": "tab:gray", "after": "tab:blue", "cubic": "tab:orange"}
 
@@ -17,7 +17,7 @@ def draw_recording(analysis, rival, title: str, path: Path) -> None:
     the floor is a band."""
     import matplotlib.pyplot as plt
 
-    session = analysis.locked[0]
+    session = analysis.holdout[0]
     minutes = (np.arange(session.blocks) + 0.5) * session.block_s / 60
     figure, panels = plt.subplots(4, 1, figsize=(9, 10), sharex=True, layout="constrained")
     figure.suptitle(title)
@@ -55,15 +55,15 @@ def draw_chip(path: Path, to: Path) -> None:
     """A chip's table: bins, and what line, cubic and the chosen order leave of those held out."""
     import matplotlib.pyplot as plt
 
-    table = chips.read(path)
+    table = bin_tables.read(path)
     even = np.arange(len(table.temp_degc)) % 2 == 0
     train = table.of(even)
-    order = chips.chosen(train)
+    order = bin_tables.chosen(train)
     figure, panels = plt.subplots(3, 1, figsize=(8, 8), sharex=True, layout="constrained")
     figure.suptitle(path.name)
     for axis, panel in enumerate(panels):
         for k, name in ((1, "line"), (3, "cubic"), (order, f"order {order}")):
-            rows = table.rate_dps - chips.fitted(train, table.temp_degc, k)
+            rows = table.rate_dps - bin_tables.fitted(train, table.temp_degc, k)
             colour = _COLOURS.get(name, _COLOURS["after"])
             panel.plot(table.temp_degc, 1e3 * rows[:, axis], color=colour, lw=0.8, label=name)
             panel.plot(table.temp_degc[~even], 1e3 * rows[~even, axis], "o", ms=4, color=colour)

@@ -37,7 +37,7 @@ def cut_into_sessions(name: str, seed: int) -> tuple[list, list]:
     noise. The cuts, their order, the axes' signs and the direction of time are drawn from the seed.
     """
     from ...loop.read.sessions import Session
-    from ...loop.simulated import BLOCK_S, TICKS, channels
+    from .simulated import BLOCK_S, TICKS, channels
 
     rng = np.random.default_rng(seed)
     blocks = np.load(Path(os.environ[FOLDER]) / name)

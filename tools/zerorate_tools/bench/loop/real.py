@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..public_data import told_of
 from ..tables import machine_line, table
-from .chips import hipnuc, rms_mdps
+from .bin_tables import hipnuc, rms_mdps
 from .flips import flip
 
 #: Files of the data folder.
@@ -65,12 +65,12 @@ def _closed(name: str, paths: list[Path], scratch: Path, plots: Path | None) -> 
     from ...closing import load
     from ...importers import import_recording
     from ...loop.report.report import report
-    from ...loop.verify.measure import measure_upheld
+    from ...loop.verify.measure import measure_and_prune
 
     logs = [scratch / f"{path.parent.name}-{path.name.split('.')[0]}.parquet" for path in paths]
     for path, log in zip(paths, logs):
         import_recording(path, log, **told_of(path))
-    analysis, _ = measure_upheld(load([*logs]), logs, scratch / "corrected.parquet")
+    analysis, _ = measure_and_prune(load([*logs]), logs, scratch / "corrected.parquet")
     row = _row(analysis, report(analysis))
     if "vn200" in paths[0].parent.name:
         row["flip"] = flip(analysis.sessions[0], float(analysis.floor_dps[2]))
@@ -99,13 +99,13 @@ def _row(analysis, told: dict) -> dict:
         "confounded_with": "; ".join(b for b in beside if b),
         "withdrawn": ", ".join(what for what, _ in told["gate"]["withdrawn"]),
         "steps_listed": len(told["events"]),
-        "drift_unexplained": "yes" if judgement.excess.left else "no",
+        "drift_unexplained": "yes" if judgement.residual_test.left else "no",
     }
 
 
 def _noise(analysis) -> float:
     """White noise of a block, mdps, by the rates' differences from one block to the next."""
-    changes = [np.diff(s.rate_dps[s.available], n=2, axis=0) for s in analysis.locked]
+    changes = [np.diff(s.rate_dps[s.available], n=2, axis=0) for s in analysis.holdout]
     return round(float(1e3 * np.sqrt((np.vstack(changes) ** 2).mean() / 6)), 2)
 
 
@@ -142,8 +142,8 @@ def cubic(analysis) -> list | None:
 
 
 def cubic_left(analysis) -> list[NDArray[np.float64]] | None:
-    """(n, 3) dps that a cubic leaves of each locked part by the same pieces, or fitted on the same
-    power-ons, held at the edges of what it was fitted to; NaN where unscored.
+    """(n, 3) dps that a cubic leaves of each held-out part by the same pieces, or fitted on the
+    same power-ons, held at the edges of what it was fitted to; NaN where unscored.
     """
     from ...loop.fit.line import ordinary
     from ...loop.fit.regression import predicted
@@ -157,7 +157,7 @@ def cubic_left(analysis) -> list[NDArray[np.float64]] | None:
         return [PiecesByLine(analysis.sessions[0]).residual([], terms)]
     terms = [held(t, analysis.train) for t in terms]
     fitted = ordinary(terms, analysis.train)
-    return [scored(s, predicted(terms, fitted, s))[0] for s in analysis.locked]
+    return [scored(s, predicted(terms, fitted, s))[0] for s in analysis.holdout]
 
 
 def _rms(parts: list[NDArray[np.float64]]) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...replay.engines import engine
-from ...replay.run import corrector_for
+from ...replay.replaying import corrector_for
 from ...replay.samples import frames_in_batches
 from .given import Given
 

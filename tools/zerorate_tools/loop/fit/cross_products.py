@@ -104,7 +104,7 @@ def whitener(available: np.ndarray) -> Whitener:
 
 
 @dataclass
-class Gram:
+class CrossProducts:
     """Cross products by (session, shape, ...). y: axes A; z: nuisances J; x: candidates K."""
 
     yy: np.ndarray  # S G A
@@ -116,10 +116,10 @@ class Gram:
     logdet: np.ndarray  # S G
     count: np.ndarray  # S
 
-    def without(self, session: int) -> Gram:
+    def without(self, session: int) -> CrossProducts:
         """All sessions but one."""
         keep = np.arange(len(self.count)) != session
-        return Gram(*(getattr(self, f)[keep] for f in self.__dataclass_fields__))
+        return CrossProducts(*(getattr(self, f)[keep] for f in self.__dataclass_fields__))
 
 
 def _pairs(w: Whitener, left, right):
@@ -130,7 +130,9 @@ def _pairs(w: Whitener, left, right):
     return (w.weight @ flat).reshape(len(w.weight), left.shape[1], right.shape[1])
 
 
-def gram(whiteners: list[Whitener], y: list, z: list, x: list | None = None) -> Gram:
+def cross_products(
+    whiteners: list[Whitener], y: list, z: list, x: list | None = None
+) -> CrossProducts:
     """Products of prepared columns, a session an entry: y (N, A), z (N, J), x (N, K)."""
     x = x if x is not None else [np.zeros((len(v), 0)) for v in y]
     parts = []
@@ -150,7 +152,7 @@ def gram(whiteners: list[Whitener], y: list, z: list, x: list | None = None) -> 
             )
         )
     yy, zy, zz, xy, xz, xx = (np.stack(p) for p in zip(*parts))
-    return Gram(
+    return CrossProducts(
         *(yy, zy, zz, xy, xz, xx),
         logdet=np.stack([w.logdet for w in whiteners]),
         count=np.array([w.coefficients for w in whiteners]),

@@ -20,7 +20,7 @@ def spread_of(coefficients: np.ndarray, own: slice) -> np.ndarray:
 
 
 def session_misfit(g, s: int, colour, variance, scale: np.ndarray, spread=None) -> float:
-    """Weighted squares of session s left by coefficients fitted on the other sessions of a Gram.
+    """Weighted squares of session s left by coefficients fitted on the other sessions.
 
     colour: (A,) grid index and variance: (A,) dps^2 at which every fit is weighted; scale: (S, A);
     spread: (J,) of coefficients about zero, known before the fit, infinite where it is not.
@@ -55,7 +55,7 @@ def gains(regression, terms, candidate) -> np.ndarray:
     spread = spread_of(fitted, slice(len(terms), len(terms) + len(candidate)))
     misfit = []
     for chosen, known in ((terms, None), ([*terms, *candidate], spread)):
-        g = regression.gram(chosen)
+        g = regression.cross_products(chosen)
         each = range(len(g.count))
         misfit.append(
             [session_misfit(g, s, colour, variance, regression.scale, known) for s in each]

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .cross_products import Gram
+from .cross_products import CrossProducts
 from .noise import LOG_PRIOR, NO_STEEP
 
 _RIDGE = 1e-10
@@ -53,7 +53,7 @@ def _loglik(rss, logdet, count, scale_term, steep=True):
     return prior - 0.5 * count * np.log(np.maximum(rss, 1e-300) / count) - 0.5 * logdet - scale_term
 
 
-def fit_base(g: Gram, scale: np.ndarray, steep: bool = True) -> Base:
+def fit_base(g: CrossProducts, scale: np.ndarray, steep: bool = True) -> Base:
     """Fit of the nuisances. scale: (S, A) noise of each session; steep: allow such noise."""
     axes, count = g.yy.shape[2], g.count.sum()
     logdet = g.logdet.sum(axis=0)
@@ -72,7 +72,7 @@ def fit_base(g: Gram, scale: np.ndarray, steep: bool = True) -> Base:
     return Base(np.array(rss), np.array(ll), np.array(coef), inv)
 
 
-def ratios(g: Gram, base: Base, scale: np.ndarray, steep: bool = True) -> np.ndarray:
+def ratios(g: CrossProducts, base: Base, scale: np.ndarray, steep: bool = True) -> np.ndarray:
     """(K, A) twice the gain in log likelihood of each candidate, per axis, noise refitted."""
     out = np.empty((g.xx.shape[2], g.yy.shape[2]))
     count, logdet = g.count.sum(), g.logdet.sum(axis=0)
@@ -89,7 +89,7 @@ def ratios(g: Gram, base: Base, scale: np.ndarray, steep: bool = True) -> np.nda
     return np.maximum(out, 0.0)
 
 
-def session_scale(g: Gram, rounds: int = 3) -> np.ndarray:
+def session_scale(g: CrossProducts, rounds: int = 3) -> np.ndarray:
     """(S, A) each session's own noise level beside the others', geometric mean one; shrunk towards
     it.
     """

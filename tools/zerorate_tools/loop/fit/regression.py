@@ -11,7 +11,7 @@ import numpy as np
 from ...model.term import Term
 from ..read.outliers import held
 from ..read.sessions import Session, block_basis
-from .cross_products import Gram, gram, whitener
+from .cross_products import CrossProducts, cross_products, whitener
 from .likelihood import Base, fit_base, ratios, session_scale
 
 
@@ -111,7 +111,7 @@ class Regression:
             for i in range(len(self.sessions))
         ]
 
-    def gram(self, terms, candidates=None) -> Gram:
+    def cross_products(self, terms, candidates=None) -> CrossProducts:
         """Products of residual, terms and single-column candidates."""
         x = None
         if candidates:
@@ -119,11 +119,11 @@ class Regression:
                 np.column_stack([self.columns(t)[i] for t in candidates])
                 for i in range(len(self.sessions))
             ]
-        return gram(self.whiteners, self.y, self.stack(terms), x)
+        return cross_products(self.whiteners, self.y, self.stack(terms), x)
 
     def fit(self, terms) -> Fit:
         """Joint fit with the noise's colour refitted."""
-        base = fit_base(self.gram(terms), self.scale, self.steep)
+        base = fit_base(self.cross_products(terms), self.scale, self.steep)
         best = np.array([base.coefficients[a, i] for a, i in enumerate(base.best)])
         return Fit(np.linalg.solve(self.axes, best[:, : len(terms)]).T, base, base.total)
 
@@ -137,7 +137,7 @@ class Regression:
             self.rate[i] = clean + model
             self.outliers += count
         self._prepare()
-        self.scale = session_scale(self.gram(terms))
+        self.scale = session_scale(self.cross_products(terms))
 
     def gains(self, terms, candidates, chunk: int = 400) -> np.ndarray:
         """(K, A) likelihood ratio of each candidate's columns beside the terms. candidates: tuples
@@ -147,13 +147,13 @@ class Regression:
         single = [i for i, c in enumerate(candidates) if len(c) == 1]
         for at in range(0, len(single), chunk):
             part = single[at : at + chunk]
-            g = self.gram(terms, [candidates[i][0] for i in part])
+            g = self.cross_products(terms, [candidates[i][0] for i in part])
             out[part] = ratios(g, fit_base(g, self.scale, self.steep), self.scale, self.steep)
         base = None
         for i, c in enumerate(candidates):
             if len(c) > 1:
-                base = base or fit_base(self.gram(terms), self.scale, self.steep)
-                more = fit_base(self.gram([*terms, *c]), self.scale, self.steep)
+                base = base or fit_base(self.cross_products(terms), self.scale, self.steep)
+                more = fit_base(self.cross_products([*terms, *c]), self.scale, self.steep)
                 out[i] = 2 * (more.loglik.max(axis=1) - base.loglik.max(axis=1))
         return np.maximum(out, 0.0)
 

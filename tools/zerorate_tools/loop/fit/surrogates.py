@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import gamma
 
-from .cross_products import gram
+from .cross_products import cross_products
 from .likelihood import fit_base, ratios
 
 #: So many that mean and variance, and with them the decision, hardly hang on the draw: 2 and 6 %.
@@ -61,6 +61,6 @@ def _ratios(regression, left, z, pool, rng) -> np.ndarray:
     pick = [pool[i] for i in rng.integers(0, len(pool), _AT_ONCE)]
     x = [np.column_stack([regression.columns(t)[i] for t in pick]) for i in range(len(z))]
     x = [c * rng.normal(size=c.shape) for c in x]
-    g = gram(regression.whiteners, left, z, x)
+    g = cross_products(regression.whiteners, left, z, x)
     base = fit_base(g, regression.scale, regression.steep)
     return ratios(g, base, regression.scale, regression.steep).sum(axis=1)

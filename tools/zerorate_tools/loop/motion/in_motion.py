@@ -11,7 +11,7 @@ from ...model.term import Term
 from ..read.reference import Run
 from ..read.sessions import Session
 from ..read.turns import GIVEN
-from .rate_scale import Turning, turning_of
+from .rate_scale import RateScale, fit_rate_scale
 from .timing import Timing, timing_of
 
 _RATES = ("rate_x", "rate_y", "rate_z")
@@ -21,7 +21,7 @@ _RATES = ("rate_x", "rate_y", "rate_z")
 class InMotion:
     """Each None where the recordings do not show it, whether or not it was found."""
 
-    turning: Turning | None = None
+    turning: RateScale | None = None
     timing: Timing | None = None
 
     @property
@@ -30,23 +30,23 @@ class InMotion:
         return self.scales is not None or (self.timing is not None and self.timing.found)
 
     @property
-    def scales(self) -> Turning | None:
+    def scales(self) -> RateScale | None:
         """The scale factor or cross-axis that was found."""
         return self.turning if self.turning is not None and self.turning.found else None
 
 
-def in_motion(train: list[Session], locked: list[Session], single: bool) -> InMotion:
+def in_motion(train: list[Session], holdout: list[Session], single: bool) -> InMotion:
     """What the training sessions' motion shows. single: one recording, of whose turns every third
     is held out."""
-    if any(s.turns is None for s in [*train, *locked]):
+    if any(s.turns is None for s in [*train, *holdout]):
         return InMotion()
     turns = [s.turns for s in train if s.turns]
     if len({t.beside for t in turns}) > 1:
         return InMotion()
-    runs, held = [t.runs for t in turns], [r for s in locked if s.turns for r in s.turns.runs]
+    runs, held = [t.runs for t in turns], [r for s in holdout if s.turns for r in s.turns.runs]
     if single:
         runs, held = _every_third(runs[0])
-    turning = turning_of(runs, held, turns[0].beside, turns[0].unit)
+    turning = fit_rate_scale(runs, held, turns[0].beside, turns[0].unit)
     delays = [(s.delay, s.tick_s) for s in train if s.delay is not None]
     return InMotion(turning, timing_of(delays) if len(delays) == len(train) else None)
 

@@ -27,7 +27,7 @@ _TRIFLE = 0.1
 
 
 @dataclass(frozen=True)
-class Turning:
+class RateScale:
     """What the turns of the training sessions say, and what those held out say of it.
 
     matrix: (3, 3) dps per dps, what the gyroscope adds; p_value: of no such matrix; kind:
@@ -59,8 +59,8 @@ class Turning:
         return self.found and bool(np.isfinite(self.after)) and self.after < self.before
 
 
-def turning_of(sessions: list[list[Run]], locked: list[Run], reference: str, unit: str):
-    """Turning of the training sessions' runs, or None where there are too few."""
+def fit_rate_scale(sessions: list[list[Run]], holdout: list[Run], reference: str, unit: str):
+    """RateScale of the training sessions' runs, or None where there are too few."""
     sessions = [_without_outliers(runs) for runs in sessions]
     every = [run for runs in sessions for run in runs]
     if len(every) < LEAST_RUNS:
@@ -70,15 +70,15 @@ def turning_of(sessions: list[list[Run]], locked: list[Run], reference: str, uni
     p = _chance(every)
     gains = [_gain(sessions, i) for i, runs in enumerate(sessions) if runs]
     nuisances = solved(every, free=())
-    return Turning(
+    return RateScale(
         x[:9].reshape(3, 3),
         np.sqrt(np.maximum(np.diag(covariance)[:9], 0.0)).reshape(3, 3),
         p,
         _kind(every, x),
         reference,
         np.array(gains),
-        _rms(_without_outliers(locked), nuisances),
-        _rms(_without_outliers(locked), x),
+        _rms(_without_outliers(holdout), nuisances),
+        _rms(_without_outliers(holdout), x),
         unit,
         len(every),
         np.max([run.fastest for run in every], axis=0),

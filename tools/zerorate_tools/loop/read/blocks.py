@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .dequantise import unstepped
+from .dequantise import dequantise
 from .earth import earth_of
 from .sessions import OWN_SOURCES, Session
 from .still import still_ticks
@@ -78,11 +78,11 @@ def session_of(ticks: Ticks, block_s: float) -> Session:
         ticks.name, per * ticks.tick_s, per, mean, np.where(share < _LEAST_STILL, 0.0, share),
         sources_of(ticks, m), ticks.start_us, earth=earth, delay=ticks.delay,
         turns=turns_of(ticks), ticks_dps=np.where(still[:, None], rate_at_rest, np.nan),
-        quick=_quick(ticks), tick_weight=weight,
+        welch=_welch(ticks), tick_weight=weight,
     )  # fmt: skip
 
 
-def _quick(ticks: Ticks):
+def _welch(ticks: Ticks):
     if ticks.segments is None:
         return None
     return ticks.segments.at_rest(still_ticks(ticks), ticks.scales.odr_hz)
@@ -91,7 +91,7 @@ def _quick(ticks: Ticks):
 def _temperature(ticks: Ticks) -> np.ndarray:
     lsb_per_degc = ticks.scales.temp_lsb_per_degc
     zero_degc = ticks.scales.temp_degc(0)
-    return zero_degc + unstepped((ticks.temp - zero_degc) * lsb_per_degc) / lsb_per_degc
+    return zero_degc + dequantise((ticks.temp - zero_degc) * lsb_per_degc) / lsb_per_degc
 
 
 def sources_of(ticks: Ticks, m: int) -> dict[str, np.ndarray]:

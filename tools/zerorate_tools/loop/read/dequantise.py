@@ -21,7 +21,7 @@ _SMOOTHER = 0.95
 _ROUGH_TICKS = 20
 
 
-def unstepped(raw_lsb: np.ndarray) -> np.ndarray:
+def dequantise(raw_lsb: np.ndarray) -> np.ndarray:
     """(m,) means of an integer channel -> its likely course, or the means themselves where it does
     not stand on steps, or where no course is smoother.
     """

@@ -30,12 +30,12 @@ _EDGE_HZ = 0.96  # of half the rate: above, a padded spectrum's bins are not ind
 
 @dataclass(frozen=True)
 class Line:
-    """hz; amplitude_dps (3,) an axis; p_value over all frequencies; in_locked: seen there too."""
+    """hz; amplitude_dps (3,) an axis; p_value over all frequencies; in_holdout: seen there too."""
 
     hz: float
     amplitude_dps: np.ndarray
     p_value: float
-    in_locked: bool = False
+    in_holdout: bool = False
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ def _continuum(power: np.ndarray) -> np.ndarray:
     return fit
 
 
-def find(train: list[Spectrum], locked: list[Spectrum], wide: float, slowest_hz: float):
+def find(train: list[Spectrum], holdout: list[Spectrum], wide: float, slowest_hz: float):
     """Lines in all training sessions, the strongest first. wide: bins that one line covers."""
     ratios = [beside_neighbours(s, wide) for s in train]
     total = sum(s.averages for s in train) * 3
@@ -112,7 +112,7 @@ def find(train: list[Spectrum], locked: list[Spectrum], wide: float, slowest_hz:
     out: list[Line] = []
     while len(out) < MOST and p.min() < LEVEL:
         at = int(np.where(p < LEVEL, joint, 0.0).argmax())
-        out.append(_line(at, hz[at], float(p[at]), train, locked, wide))
+        out.append(_line(at, hz[at], float(p[at]), train, holdout, wide))
         p[_hump(p, at, round(3 * wide))] = 1.0
     return out
 
@@ -127,7 +127,7 @@ def _hump(p, at, reach):
     return slice(max(0, low - reach), high + reach + 1)
 
 
-def _line(at, hz, p, train, locked, wide):
+def _line(at, hz, p, train, holdout, wide):
     power = np.mean([s.power[at] for s in train], axis=0)
-    seen = [beside_neighbours(s, wide)[at].max() > _EACH_RATIO for s in locked]
+    seen = [beside_neighbours(s, wide)[at].max() > _EACH_RATIO for s in holdout]
     return Line(float(hz), np.sqrt(2 * power), p, bool(seen) and all(seen))

@@ -37,7 +37,7 @@ class Session:
     NaN (gaps held), units as in effect slots. earth: Earth's rate, which rate_dps is without as
     far as it is known. delay: (m, 2) of `timing.products`, where there is a reference.
     turns: what tells the scale of the rates.
-    ticks_dps: (n * ticks_per_block, 3) rate of each tick at rest, NaN elsewhere; quick: spectrum of
+    ticks_dps: (n * ticks_per_block, 3) rate of each tick at rest, NaN elsewhere; welch: spectrum of
     the samples at rest; tick_weight: (n * ticks_per_block,) samples that count in rate_dps.
     steps: of its bias, already out of rate_dps and ticks_dps; level_dps: (n * ticks_per_block, 3)
     what they were.
@@ -55,7 +55,7 @@ class Session:
     delay: np.ndarray | None = None
     turns: Turns | None = None
     ticks_dps: np.ndarray | None = None
-    quick: Spectrum | None = None
+    welch: Spectrum | None = None
     tick_weight: np.ndarray | None = None
     steps: tuple = ()
     level_dps: np.ndarray | None = None

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..motion.rate_scale import Turning
+from ..motion.rate_scale import RateScale
 from ..motion.timing import Timing
 from ..read.lines import Line
 from ..search.periodic import QUICK_HZ
 from ..verify.analysis import Analysis
 
 
-def steps_beside(analysis: Analysis, after_mdps: list[float]) -> list[dict]:
+def motion_effects(analysis: Analysis, after_mdps: list[float]) -> list[dict]:
     """Steps in report.json's form. after_mdps: of the blocks held out, which these leave alone."""
     motion = analysis.motion
     same = {"before_mdps": after_mdps, "after_mdps": after_mdps, "confounded_with": []}
@@ -32,14 +32,14 @@ def interference(lines: list[Line]) -> list[dict]:
             "hz": line.hz,
             "size_mdps": [round(float(1e3 * a), 3) for a in line.amplitude_dps],
             "p_value": line.p_value,
-            "in_what_was_held_out": line.in_locked,
+            "in_what_was_held_out": line.in_holdout,
         }
         for line in lines
         if line.hz >= QUICK_HZ
     ]
 
 
-def _turning(t: Turning) -> dict:
+def _turning(t: RateScale) -> dict:
     names = ("rate_x", "rate_y", "rate_z")
     return {
         "effect": t.kind,
@@ -77,7 +77,7 @@ def _line(line: Line, few: bool) -> dict:
         "parameters": [{"hz": line.hz, "period_s": 1.0 / line.hz}],
         "coefficients": {},
         "amplitude_mdps": [float(1e3 * a) for a in line.amplitude_dps],
-        "confidence": "confirmed" if line.in_locked and not few else "tentative",
+        "confidence": "confirmed" if line.in_holdout and not few else "tentative",
         "p_value": line.p_value,
         "said": f"a line at {line.hz:.5g} Hz of {size} mdps; its phase is free at each power-on, "
         "so not corrected; record at a data rate 2 % higher: a line that moves is an alias",

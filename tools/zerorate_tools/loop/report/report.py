@@ -12,7 +12,7 @@ from ..verify.analysis import Analysis
 from ..verify.judge import residuals, rms_dps
 from ..verify.measured import AFTER, BEFORE, ONLINE, ONLINE_BEFORE
 from ..verify.slots import slots
-from .motion_effects import interference, steps_beside
+from .motion_effects import interference, motion_effects
 from .unexplained import measure_next, not_excluded, what_is_known
 
 #: Of an analysis that no recording was replayed for.
@@ -24,7 +24,7 @@ NO_TEMPERATURE = "; no temperature was recorded, and the warm-up of every power-
 
 
 def report(analysis: Analysis) -> dict:
-    """Plain values, ready for JSON. Every figure in mdps is of the locked part."""
+    """Plain values, ready for JSON. Every figure in mdps is of the held-out part."""
     j = analysis.judgement
     return {
         "split": _split(analysis),
@@ -41,7 +41,7 @@ def report(analysis: Analysis) -> dict:
         "truth": _truth(analysis),
         "steps": [
             *_steps(analysis),
-            *steps_beside(analysis, _mdps(j.after_dps)),
+            *motion_effects(analysis, _mdps(j.after_dps)),
         ],
         "events": _events(analysis),
         "interference": interference(analysis.lines),
@@ -63,7 +63,7 @@ def verdict(analysis: Analysis) -> str:
     """nothing-found, effects-found or unexplained-residual."""
     if analysis.selection.found or analysis.motion.found or _in_the_bias(analysis.lines):
         return "effects-found"
-    return "unexplained-residual" if analysis.judgement.excess.left else "nothing-found"
+    return "unexplained-residual" if analysis.judgement.residual_test.left else "nothing-found"
 
 
 def _in_the_bias(lines):
@@ -132,7 +132,7 @@ def _split(analysis):
     out = {
         "unit": "time within one recording" if analysis.single else "power-on session",
         "train": [s.name for s in analysis.train],
-        "test": [s.name for s in analysis.locked],
+        "test": [s.name for s in analysis.holdout],
         "block_s": analysis.sessions[0].block_s,
         "blocks": {s.name: int(s.available.sum()) for s in analysis.sessions},
     }
@@ -142,7 +142,7 @@ def _split(analysis):
 
 
 def _steps(analysis):
-    """Effects in the order found, each with the locked part's error before and after it."""
+    """Effects in the order found, each with the held-out part's error before and after it."""
     selection, out = analysis.selection, []
     fitted = slots(selection, analysis.coefficients)
     so_far = [_after(analysis, k) for k in range(len(selection.found) + 1)]
@@ -166,7 +166,7 @@ def _steps(analysis):
                 "likelihood_ratio": round(f.decision.ratio, 2),
                 "noise_inflation": round(f.decision.inflation, 2),
                 "nats_on_sessions_left_out": [round(float(g), 2) for g in f.decision.session_gains],
-                "nats_on_locked": round(float(analysis.judgement.gains[i]), 2),
+                "nats_on_holdout": round(float(analysis.judgement.gains[i]), 2),
                 "said": _said(f) + (NO_TEMPERATURE if analysis.may_be_heat(i) else "") + _spared(f),
             }
         )
@@ -200,10 +200,10 @@ def _spared(found):
 
 
 def _after(analysis, effects: int) -> list[np.ndarray]:
-    """Residuals of the locked part under the first so many effects alone."""
+    """Residuals of the held-out part under the first so many effects alone."""
     if analysis.measured is not None:
         return analysis.measured.with_first(effects)
-    return [r for r, _ in residuals(analysis.selection.first(effects), analysis.locked)]
+    return [r for r, _ in residuals(analysis.selection.first(effects), analysis.holdout)]
 
 
 def _events(analysis):

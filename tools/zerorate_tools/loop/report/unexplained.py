@@ -37,17 +37,17 @@ _UNSEEN_SHARE, _UNSEEN_DEGC = 0.25, 1.0
 
 
 def what_is_known(analysis, after_dps: np.ndarray) -> str:
-    """A sentence or two on the residual of the locked part, given its RMS (3,) in dps."""
-    excess, floor = analysis.judgement.excess, analysis.floor_dps
+    """A sentence or two on the residual of the held-out part, given its RMS (3,) in dps."""
+    residual, floor = analysis.judgement.residual_test, analysis.floor_dps
     times = (after_dps / np.maximum(floor, 1e-12)).max()
     size = f"{fixed(1e3 * after_dps.max(), 1)} mdps at worst"
-    if not excess.left:
+    if not residual.left:
         return f"{size}. It looks like sensor noise."
     parts = [f"{size}, {times:.1f} times the noise floor, and it is more than noise"]
-    if excess.smooth:
+    if residual.smooth:
         parts.append("it drifts slowly")
-    if excess.common:
-        ratio = excess.direction / np.abs(excess.direction).max()
+    if residual.common:
+        ratio = residual.direction / np.abs(residual.direction).max()
         parts.append("x, y and z move together as " + " : ".join(fixed(r, 2) for r in ratio))
     parts.append(_nearest_channel(analysis))
     return "; ".join(parts) + "."
@@ -79,7 +79,7 @@ def measure_next(analysis) -> list[str]:
         out.append(_ORIENTATION)
     if not any(is_supply(n) for n in sessions[0].sources):
         out.append(_SUPPLY)
-    if analysis.judgement.excess.left:
+    if analysis.judgement.residual_test.left:
         out.append(_unrecorded(sessions[0].sources))
     if max(s.blocks * s.block_s for s in sessions) < 3000:
         out.append(_LONGER)
@@ -100,7 +100,7 @@ def _another_device(analysis):
         return []
     m = analysis.measured
     offsets = m.offsets(BEFORE) if m else analysis.judgement.offsets_dps
-    far = [(float(np.abs(o).max()), s.name) for o, s in zip(offsets, analysis.locked)]
+    far = [(float(np.abs(o).max()), s.name) for o, s in zip(offsets, analysis.holdout)]
     return [_ONE_DEVICE.format(name, dps) for dps, name in far if dps > _ANOTHERS_DPS]
 
 
@@ -110,7 +110,7 @@ def _other_temperatures(analysis):
         return []
     seen = np.concatenate([_temperatures(s) for s in analysis.train])
     out = []
-    for s in analysis.locked:
+    for s in analysis.holdout:
         t = _temperatures(s)
         outside = (t < seen.min() - _UNSEEN_DEGC) | (t > seen.max() + _UNSEEN_DEGC)
         if outside.mean() > _UNSEEN_SHARE:

@@ -14,7 +14,7 @@ from ..read.sessions import Session, block_basis
 _OWN_SHARE = 0.003
 
 
-def all_but_same(terms: Sequence[Term], others: Sequence[Term], sessions: list[Session]) -> bool:
+def collinear(terms: Sequence[Term], others: Sequence[Term], sessions: list[Session]) -> bool:
     """Whether others of its source with a memory leave next to nothing of an effect of one term
     with one.
 

@@ -21,7 +21,7 @@ def smallest_dps(regression, nuisances, pool, needed) -> dict[str, float]:
     single = [c for c in pool if len(c.terms) == 1]
     if not single:
         return {}
-    g = regression.gram(nuisances, [c.terms[0] for c in single])
+    g = regression.cross_products(nuisances, [c.terms[0] for c in single])
     base = regression.fit(nuisances).base
     information = _information(g, base, regression.scale)
     out: dict[str, float] = {}

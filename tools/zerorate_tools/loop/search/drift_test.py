@@ -55,7 +55,7 @@ def comes_again(whole, terms, candidate: Candidate, tried: float) -> bool:
 def chance(regression, terms, candidate) -> float:
     """That noise alone answers both questions as well, for one candidate."""
     axes = regression.y[0].shape[1]
-    of_size = chi2.sf(ratio_alike(regression, terms, candidate), axes)
+    of_size = chi2.sf(ratio_with_common_colour(regression, terms, candidate), axes)
     mean, spread = repeats(regression, terms, candidate)
     free = axes * (len(regression.sessions) - 1)
     between = (spread + _WORTH) / (free + _WORTH)
@@ -67,12 +67,12 @@ def together(*chances: float) -> float:
     return float(chi2.sf(-2.0 * np.log(np.maximum(chances, 1e-300)).sum(), 2 * len(chances)))
 
 
-def ratio_alike(regression, terms, candidate) -> float:
+def ratio_with_common_colour(regression, terms, candidate) -> float:
     """Likelihood ratio of a candidate with noises that are alike on the three axes."""
     longest = max(regression.whiteners, key=lambda w: w.coefficients)
     low = lowness(longest.spectrum)
-    with_it = alike(regression.fit([*terms, *candidate]).base.loglik, low)
-    return max(0.0, 2.0 * (with_it - alike(regression.fit(terms).base.loglik, low)))
+    with_it = common_colour(regression.fit([*terms, *candidate]).base.loglik, low)
+    return max(0.0, 2.0 * (with_it - common_colour(regression.fit(terms).base.loglik, low)))
 
 
 def lowness(spectrum: np.ndarray) -> np.ndarray:
@@ -81,7 +81,7 @@ def lowness(spectrum: np.ndarray) -> np.ndarray:
     return log[:, :_LOWEST].mean(axis=1) - log.mean(axis=1)
 
 
-def alike(loglik: np.ndarray, low: np.ndarray) -> float:
+def common_colour(loglik: np.ndarray, low: np.ndarray) -> float:
     """Log likelihood of all axes at the best colours, one lowness common to them but for their
     spread. loglik: (A, G); low: (G,).
     """
@@ -96,7 +96,7 @@ def repeats(regression, terms, candidate) -> tuple[float, float]:
     own variance by the fitted noise, summed over the axes: chi-squared of A and A (S - 1) degrees
     of freedom where there is nothing but that noise.
     """
-    g = regression.gram(terms, candidate)
+    g = regression.cross_products(terms, candidate)
     base = regression.fit([*terms, *candidate]).base
     mean = spread = 0.0
     for a, colour in enumerate(base.best):

@@ -10,7 +10,7 @@ from ...model.term import Term
 from ..read.sessions import OWN_SOURCES
 
 
-def is_room(terms: Sequence[Term], taken: int = 0) -> bool:
+def fits_in_slots(terms: Sequence[Term], taken: int = 0) -> bool:
     """For terms, a slot each, beside slots taken by what was found in motion.
 
     A play operator and its square have a place of their own.

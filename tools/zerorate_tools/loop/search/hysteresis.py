@@ -23,7 +23,7 @@ from ..read.sessions import Session, block_basis
 from .bends import JudgedOnPieces
 from .catalogue import Candidate
 from .decide import LEVEL, Decision, family_p
-from .fits_in_slots import is_room
+from .fits_in_slots import fits_in_slots
 from .selection import Found
 
 KIND = "thermal-hysteresis"
@@ -121,7 +121,7 @@ def of_one_recording(
     for bend in beside:
         candidate, gain = best_hysteresis(regression.sessions, straight, bend, by_line)
         gain += float(by_line(straight, (), bend).sum()) if bend else 0.0
-        room = candidate and is_room([*bend, *candidate.terms], taken)
+        room = candidate and fits_in_slots([*bend, *candidate.terms], taken)
         if candidate and room and (best is None or gain > best[0]):
             best = gain, bend, candidate
     if best is None:
@@ -240,18 +240,18 @@ class _Fits:
     def of_grid(self, number: int, powers: Sequence[int]) -> list[float]:
         """The radii of the grid that leave least, of every choice of so many."""
         x = self._design(self._grid, powers)
-        gram, xy = x.T @ x, x.T @ self._y
+        products, xy = x.T @ x, x.T @ self._y
         choices = np.array(list(combinations(range(_GRID), number)))
         at = np.hstack([choices + _GRID * i for i in range(len(powers))])
-        left = self._left(gram[at[:, :, None], at[:, None, :]], xy[at])
+        left = self._left(products[at[:, :, None], at[:, None, :]], xy[at])
         return [float(r) for r in self._grid[choices[left.argmin()]]]
 
-    def _left(self, gram, xy):
+    def _left(self, products, xy):
         """(...,) sum over the axes of the logarithm of the squares left."""
-        ridge = _RIDGE * self.rows * np.eye(gram.shape[-1])
-        fitted = np.linalg.solve(gram + ridge, xy)
+        ridge = _RIDGE * self.rows * np.eye(products.shape[-1])
+        fitted = np.linalg.solve(products + ridge, xy)
         whole = (self._y**2).sum(axis=0)
-        left = whole - (fitted * (2 * xy - gram @ fitted)).sum(axis=-2)
+        left = whole - (fitted * (2 * xy - products @ fitted)).sum(axis=-2)
         return np.log(np.maximum(left, 1e-9 * whole)).sum(axis=-1)
 
     def _loss(self, radii, powers) -> float:

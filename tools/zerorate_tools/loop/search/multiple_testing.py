@@ -12,7 +12,7 @@ from .catalogue import Candidate
 from .decide import WEIGHT, effective, smallest_ratio
 
 
-class Prices:
+class MultipleTesting:
     """Of the candidates of one search.
 
     straight, bend: the nuisances beside which they are tried; power_ons: whether the sessions are
@@ -44,11 +44,11 @@ class Prices:
 
     def grid(self, kind: str) -> float:
         """As how many a kind's candidates count, beside the line and the bend."""
-        alike = [c.terms for c in self.pool if c.kind == kind]
-        if len(alike) == 1 or len(alike[0]) > 1:
-            return float(len(alike))
+        like_it = [c.terms for c in self.pool if c.kind == kind]
+        if len(like_it) == 1 or len(like_it[0]) > 1:
+            return float(len(like_it))
         beside = [*self.straight, *(self.bend if kind != "temperature-quadratic" else ())]
-        x = self._stacked([t[0] for t in alike])
+        x = self._stacked([t[0] for t in like_it])
         z = self._stacked(beside)
         return effective(x - z @ np.linalg.lstsq(z, x, rcond=1e-10)[0])
 

@@ -11,7 +11,7 @@ from ..fit.regression import Regression, predicted
 from ..read.earth import ROTATION, can_be_earth
 from . import confounding
 from .catalogue import Candidate
-from .collinear import all_but_same
+from .collinear import collinear
 from .selection import Found
 
 _OF_POSE = ("linear-acceleration", "squared-acceleration")
@@ -45,7 +45,7 @@ def _near(regression, rest, chosen, pool):
     ratios = regression.gains(rest, [c.terms for c in pool]).sum(axis=1)
     near = confounding.rivals(regression, rest, chosen, pool, ratios)
     sessions = regression.sessions
-    return [c for c in near if c is chosen or not all_but_same(c.terms, rest, sessions)]
+    return [c for c in near if c is chosen or not collinear(c.terms, rest, sessions)]
 
 
 def _named(regression, rest, candidate):

@@ -17,7 +17,7 @@ from ..fit.line import ordinary
 from ..fit.regression import predicted
 
 
-def growth(
+def ols_holdout_ratio(
     regression, straight: Sequence[Term], terms: Sequence[Term], candidate: Sequence[Term]
 ) -> float:
     """RMS error of the sessions, each left out in turn, with a candidate beside the terms over that
@@ -34,7 +34,7 @@ def _square(regression, straight, effects, last=0):
     """Sum over sessions, blocks and axes. last: how many of the effects are the candidate's."""
     every = [*straight, *effects]
     fit = regression.fit(every)
-    g = regression.gram(every)
+    g = regression.cross_products(every)
     best = np.array([fit.base.coefficients[a, c] for a, c in enumerate(fit.base.best)])
     spread = spread_of(best, slice(len(every) - last, len(every)))
     total = 0.0

@@ -17,10 +17,10 @@ QUICK_HZ = 0.5
 _FOLDED_HZ = 0.02  # how well a quick line's frequency is known
 
 
-def periodic(train, locked, terms, coefficients: np.ndarray) -> list[Line]:
+def periodic(train, holdout, terms, coefficients: np.ndarray) -> list[Line]:
     """Lines at rest beside what the terms, (terms, 3) dps per unit, explain."""
-    quick = _quick(train, locked)
-    slow = _slow(train, locked, terms, coefficients)
+    quick = _welch(train, holdout)
+    slow = _slow(train, holdout, terms, coefficients)
     step_s = train[0].tick_s
     return [*quick, *(s for s in slow if not any(_folds(q, s, step_s) for q in quick))][:MOST]
 
@@ -31,8 +31,8 @@ def _folds(quick: Line, slow: Line, step_s: float) -> bool:
     return abs(alias - slow.hz) < _FOLDED_HZ
 
 
-def _slow(train, locked, terms, coefficients):
-    rates = [_left(s, terms, coefficients) for s in [*train, *locked]]
+def _slow(train, holdout, terms, coefficients):
+    rates = [_left(s, terms, coefficients) for s in [*train, *holdout]]
     if any(r is None for r in rates):
         return []
     longest = max(len(r) for r in rates)
@@ -72,8 +72,8 @@ def _left(session, terms, coefficients):
     return rate - _model(session, terms, coefficients)
 
 
-def _quick(train, locked):
-    spectra = [s.quick for s in [*train, *locked]]
+def _welch(train, holdout):
+    spectra = [s.welch for s in [*train, *holdout]]
     if any(s is None for s in spectra) or len({s.step_hz for s in spectra}) > 1:
         return []
     return find(spectra[: len(train)], spectra[len(train) :], _HANN_BINS, QUICK_HZ)

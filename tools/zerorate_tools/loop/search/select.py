@@ -18,14 +18,14 @@ from . import steps as events
 from .bends import JudgedOnPieces, find_bends, on_pieces
 from .catalogue import Candidate, ranges
 from .catalogue import candidates as all_candidates
-from .collinear import all_but_same
+from .collinear import collinear
 from .decide import Decision, decide
 from .detectable import smallest_dps
 from .extrapolation import follow_further
-from .fits_in_slots import is_room
-from .multiple_testing import Prices
+from .fits_in_slots import fits_in_slots
+from .multiple_testing import MultipleTesting
 from .naming import name_found
-from .ols_holdout_ratio import growth
+from .ols_holdout_ratio import ols_holdout_ratio
 from .refine import refined
 from .selection import Found, Selection
 
@@ -71,10 +71,10 @@ class Search:
         self.bends = 0
 
     @cached_property
-    def prices(self) -> Prices:
+    def testing(self) -> MultipleTesting:
         """What each candidate must reach, beside the bend that one recording may have shown."""
         power_ons = len(self.regression.sessions) > 1
-        return Prices(self.regression, self.pool, self.straight, self.bend, power_ons)
+        return MultipleTesting(self.regression, self.pool, self.straight, self.bend, power_ons)
 
     def terms(self, leave: int | None = None) -> list[Term]:
         return [t for i, f in enumerate(self.found) if i != leave for t in f.candidate.terms]
@@ -111,9 +111,9 @@ class Search:
         r.turn(np.eye(3))
         bent = [c for c in self.pool if c.kind != "temperature-quadratic"]
         quadratic = [c for c in self.pool if c.kind == "temperature-quadratic"]
-        out = smallest_dps(r, [*self.straight, *self.terms()], quadratic, self.prices.needed)
+        out = smallest_dps(r, [*self.straight, *self.terms()], quadratic, self.testing.needed)
         out.update(
-            smallest_dps(r, [*self.straight, *self.bend, *self.terms()], bent, self.prices.needed)
+            smallest_dps(r, [*self.straight, *self.bend, *self.terms()], bent, self.testing.needed)
         )
         r.turn(axes)
         return out
@@ -158,7 +158,7 @@ class Search:
         found = None
         if candidate and not self._is_better(candidate, own):
             candidate = None
-        if candidate and is_room([*self.terms(), *candidate.terms], self.taken):
+        if candidate and fits_in_slots([*self.terms(), *candidate.terms], self.taken):
             self._look_afresh()
             found = self._consider(candidate)
         self.found = [*self.found, found] if found else before
@@ -167,7 +167,7 @@ class Search:
         """Whether the plain error of what is left out is well below that with a simpler form."""
         simpler = [t for f in own for t in f.candidate.terms]
         with_own, with_sum = (
-            growth(self.regression, self.straight, self.terms(), terms)
+            ols_holdout_ratio(self.regression, self.straight, self.terms(), terms)
             for terms in (simpler, candidate.terms)
         )
         return with_sum < _WELL_BELOW * with_own
@@ -206,7 +206,7 @@ class Search:
     def _best_candidate(self) -> tuple[Found | None, bool]:
         choose, test = self._ratios()
         dof = np.array([3 * len(c.terms) for c in self.pool])
-        need = np.array([self.prices.least_ratio(c) for c in self.pool])
+        need = np.array([self.testing.least_ratio(c) for c in self.pool])
         passing = np.flatnonzero(test > need)
         passing = passing[np.argsort(-(choose - 2.0 * dof)[passing])]
         if self._step_is_larger(test[passing].max() if len(passing) else 0.0):
@@ -218,7 +218,7 @@ class Search:
                 c.kind in kinds
                 or len(kinds) >= _KINDS_TRIED
                 or confounding.label(c) in self.dropped
-                or not is_room([*self.terms(), *c.terms], self.taken)
+                or not fits_in_slots([*self.terms(), *c.terms], self.taken)
             ):
                 continue
             kinds.append(c.kind)
@@ -260,7 +260,7 @@ class Search:
         if self._is_a_start(best):
             self.refused.append((confounding.label(best), "the start of a lag's own memory"))
             return None
-        if all_but_same(best.terms, self.terms(), self.regression.sessions):
+        if collinear(best.terms, self.terms(), self.regression.sessions):
             self.refused.append((confounding.label(best), "found already, all but the same"))
             return None
         ratio = float(self.regression.gains(nuisances, [best.terms]).sum())
@@ -275,14 +275,17 @@ class Search:
         return None
 
     def _decision(self, nuisances, c: Candidate, ratio: float) -> Decision:
-        r, tried = self.regression, self.prices.tried(c)
-        if self.prices.is_by_time(c):
+        r, tried = self.regression, self.testing.tried(c)
+        if self.testing.is_by_time(c):
             return drift_test.considered(r, nuisances, c, ratio, tried)
         return decide(r, nuisances, c, ratio, tried, self.singles)
 
     def _grows_with(self, candidate: Candidate) -> bool:
         """Whether the plain error of what is left out grows with a candidate as deployed."""
-        return growth(self.regression, self.straight, self.terms(), candidate.terms) > _MOST_GROWTH
+        return (
+            ols_holdout_ratio(self.regression, self.straight, self.terms(), candidate.terms)
+            > _MOST_GROWTH
+        )
 
     def _is_a_start(self, candidate: Candidate) -> bool:
         """Whether a transient is no longer than a found lag of temperature takes to forget what it
@@ -307,14 +310,14 @@ class Search:
                 del self.found[i]
             else:
                 better = refined(self.regression, rest, c)
-                if not all_but_same(better.terms, rest, self.regression.sessions):
+                if not collinear(better.terms, rest, self.regression.sessions):
                     self.found[i].candidate = better
 
     def _is_idle(self, c: Candidate, rest: list[Term]) -> bool:
-        if self.prices.is_by_time(c):
+        if self.testing.is_by_time(c):
             chance = drift_test.chance(self.regression, rest, c.terms)
-            return chance * self.prices.tried(c) > drift_test.LEVEL
-        return float(self.regression.gains(rest, [c.terms]).sum()) < self.prices.least_ratio(c)
+            return chance * self.testing.tried(c) > drift_test.LEVEL
+        return float(self.regression.gains(rest, [c.terms]).sum()) < self.testing.least_ratio(c)
 
     def _list_steps(self):
         """Steps again from none, beside the effects found."""
@@ -333,7 +336,7 @@ def select(
     """Everything that the training sessions show, as far as the firmware has room for it.
 
     taken: slots that what was found in motion needs; on_pieces: what judges effects of a session
-    that stands alone by pieces of it left out; judged_again: whether another session, locked away,
+    that stands alone by pieces of it left out; judged_again: whether another session, held out,
     has the last word.
     """
     return Search(sessions, taken, on_pieces, judged_again).run()

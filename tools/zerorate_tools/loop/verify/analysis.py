@@ -23,7 +23,7 @@ LEAST_CONFIRMING = 3
 
 @dataclass
 class Analysis:
-    """What was fitted on what, what was found, and what the locked part says of it.
+    """What was fitted on what, what was found, and what the held-out part says of it.
 
     motion, lines: what is not fitted on blocks at rest, `in_motion` and `periodic`; measured: what
     the firmware's kernels made of it, None before `measure`, after which the judgement is by them.
@@ -31,7 +31,7 @@ class Analysis:
 
     sessions: list[Session]
     train: list[Session]
-    locked: list[Session]
+    holdout: list[Session]
     selection: Selection
     judgement: Judgement
     floor_dps: np.ndarray

@@ -34,6 +34,6 @@ def deployable(analysis: Analysis, scales: Scales) -> Analysis:
 
 def with_selection(analysis: Analysis, selection: Selection) -> Analysis:
     """The analysis with fewer of its effects, judged anew."""
-    judgement = judge(selection, analysis.locked)
+    judgement = judge(selection, analysis.holdout)
     floor = floor_dps(judgement.whole, [*selection.straight, *selection.terms])
     return replace(analysis, selection=selection, judgement=judgement, floor_dps=floor)

@@ -1,4 +1,4 @@
-"""The locked session, looked at once: before and after, and how sure each effect is."""
+"""The held-out session, looked at once: before and after, and how sure each effect is."""
 
 from __future__ import annotations
 
@@ -13,23 +13,23 @@ from ..fit.single import PiecesByLine
 from ..read.sessions import Session
 from ..search import steps as events
 from ..search.selection import Selection
-from .residual_test import Excess, excess
+from .residual_test import ResidualTest, residual_test
 
-#: Nats that a locked session must gain for an effect to count as seen there.
+#: Nats that a held-out session must gain for an effect to count as seen there.
 CONFIRMING_NATS = 2.0
 _FIRST_STILL_S = 60.0
 
 
 @dataclass
 class Judgement:
-    """What the locked sessions say. *_dps: (3,) RMS; residual_*: (n, 3) of each locked session, NaN
+    """What the held-out sessions say. *_dps: (3,) RMS; residual_*: (n, 3) of each of them, NaN
     where unscored.
     """
 
     before_dps: np.ndarray
     after_dps: np.ndarray
     gains: np.ndarray
-    excess: Excess
+    residual_test: ResidualTest
     residual_before: list[np.ndarray]
     residual_after: list[np.ndarray]
     offsets_dps: list[np.ndarray]
@@ -39,7 +39,7 @@ class Judgement:
     def confidence(self, i: int) -> str:
         """confirmed or tentative, of the i-th effect."""
         better = self.gains[i] > CONFIRMING_NATS and self.after_rms <= self.before_rms
-        return "confirmed" if better and not self.excess.left else "tentative"
+        return "confirmed" if better and not self.residual_test.left else "tentative"
 
     @property
     def before_rms(self) -> float:
@@ -52,14 +52,14 @@ class Judgement:
         return float(np.sqrt((self.after_dps**2).mean()))
 
 
-def judge(selection: Selection, locked: list[Session]) -> Judgement:
+def judge(selection: Selection, holdout: list[Session]) -> Judgement:
     """Judge what was selected on training sessions by sessions that no fit has seen; or, where the
     one session was fitted, by pieces of it left out in turn.
     """
-    train, pieces = selection.regression, _pieces(selection, locked)
-    before, after = (residuals(selection, locked, effects) for effects in (False, True))
+    train, pieces = selection.regression, _pieces(selection, holdout)
+    before, after = (residuals(selection, holdout, effects) for effects in (False, True))
     both = [*selection.straight, *selection.terms]
-    whole = train if pieces else Regression([*train.sessions, *locked])
+    whole = train if pieces else Regression([*train.sessions, *holdout])
     if not pieces:
         whole.settle(both)
     steps = selection.steps if pieces else events.find_all(whole, both)
@@ -68,7 +68,7 @@ def judge(selection: Selection, locked: list[Session]) -> Judgement:
         rms_dps([r for r, _ in before]),
         rms_dps([r for r, _ in after]),
         gains,
-        excess(whole, both),
+        residual_test(whole, both),
         [r for r, _ in before],
         [r for r, _ in after],
         [o for _, o in after],
@@ -77,9 +77,9 @@ def judge(selection: Selection, locked: list[Session]) -> Judgement:
     )
 
 
-def _pieces(selection, locked) -> PiecesByLine | None:
+def _pieces(selection, holdout) -> PiecesByLine | None:
     fitted = selection.regression.sessions
-    alone = len(fitted) == len(locked) == 1 and fitted[0].name == locked[0].name
+    alone = len(fitted) == len(holdout) == 1 and fitted[0].name == holdout[0].name
     return PiecesByLine(fitted[0]) if alone else None
 
 
@@ -91,14 +91,14 @@ def _of_each(selection, pieces) -> np.ndarray:
     return np.array([pieces(selection.straight, r, o).sum() for r, o in zip(rest, own)])
 
 
-def residuals(selection: Selection, locked: list[Session], effects: bool = True) -> list:
-    """(residual, offset) of each locked session, with the effects found or with the line alone."""
-    pieces = _pieces(selection, locked)
+def residuals(selection: Selection, holdout: list[Session], effects: bool = True) -> list:
+    """(residual, offset) of each session held out, with the effects found or the line alone."""
+    pieces = _pieces(selection, holdout)
     if pieces:
         terms, applied = (selection.terms, selection.applied) if effects else ([], None)
         return [(pieces.residual(selection.straight, terms, applied), np.zeros(3))]
     terms, coefficients = deployed(selection, effects)
-    return [scored(s, predicted(terms, coefficients, s)) for s in locked]
+    return [scored(s, predicted(terms, coefficients, s)) for s in holdout]
 
 
 def scored(session: Session, model: np.ndarray, fitted: Session | None = None):
@@ -124,19 +124,19 @@ def rms_dps(residuals: list[np.ndarray]) -> np.ndarray:
 
 
 def _gains(whole: Regression, selection: Selection, trained: int) -> np.ndarray:
-    """(effects,) nats that the locked sessions lose when an effect is left out and the rest
+    """(effects,) nats that the held-out sessions lose when an effect is left out and the rest
     refitted.
     """
     every = [*selection.straight, *selection.terms]
     full = whole.fit(every).base
     count = sum(w.coefficients for w in whole.whiteners)
     variance = np.array([full.rss[a, c] / count for a, c in enumerate(full.best)])
-    locked = range(trained, len(whole.sessions))
+    holdout = range(trained, len(whole.sessions))
 
     def misfit(terms):
-        g = whole.gram(terms)
-        train_only = [_with_training(g, trained, s) for s in locked]
-        scales = [np.vstack([whole.scale[:trained], whole.scale[s : s + 1]]) for s in locked]
+        g = whole.cross_products(terms)
+        train_only = [_with_training(g, trained, s) for s in holdout]
+        scales = [np.vstack([whole.scale[:trained], whole.scale[s : s + 1]]) for s in holdout]
         return sum(
             session_misfit(t, trained, full.best, variance, c) for t, c in zip(train_only, scales)
         )

@@ -50,17 +50,17 @@ def measure(
     """
     scales = open_recording(logs[0]).scales
     power_ons = power_ons_of(analysis, logs, model, scales)
-    locked = [s.name for s in analysis.locked]
+    holdout = [s.name for s in analysis.holdout]
     course = _course_of(analysis, power_ons, model, scales)
     courses: dict[str, Course] = {}
     with written_beside(out) as temporary:
         writer = CorrectedWriter(temporary)
         for p in power_ons:
-            sink = _sink(writer, p, p.session.name in locked, online)
+            sink = _sink(writer, p, p.session.name in holdout, online)
             courses[p.session.name] = course(p.session.name, online, sink)
             advance(1)
         writer.close()
-    return judged(analysis, Measured(courses, locked, _rounding(analysis, power_ons, scales)))
+    return judged(analysis, Measured(courses, holdout, _rounding(analysis, power_ons, scales)))
 
 
 def _course_of(analysis, power_ons, model, scales) -> Callable[[str, bool, Sink], Course]:
@@ -69,14 +69,14 @@ def _course_of(analysis, power_ons, model, scales) -> Callable[[str, bool, Sink]
         pieces = PiecesByKernels(power_ons[0], scales)
         alone = MeasurementByPieces(pieces, analysis.selection, slots_of(analysis.motion))
         return lambda name, online, sink: alone.course(online, sink)
-    train, locked = ([s.name for s in some] for some in (analysis.train, analysis.locked))
+    train, holdout = ([s.name for s in some] for some in (analysis.train, analysis.holdout))
     models = models_of(analysis, model, scales)
-    measurement = Measurement(power_ons, train, locked, models, scales)
+    measurement = Measurement(power_ons, train, holdout, models, scales)
     measurement.learn()
     return measurement.course
 
 
-def measure_upheld(
+def measure_and_prune(
     analysis: Analysis,
     logs: Sequence[str | PathLike[str]],
     out: str | PathLike[str],
@@ -111,7 +111,7 @@ def _sink(writer, p: PowerOn, test: bool, online: bool) -> Sink:
 def power_ons_of(analysis: Analysis, logs, model: Model, scales: Scales) -> list[PowerOn]:
     """The sessions that were used, in the order of their recordings."""
     paths = {recording_name(Path(log)): log for log in logs}
-    held = {s.name: s for s in analysis.locked}
+    held = {s.name: s for s in analysis.holdout}
     return [
         PowerOn(
             s,
@@ -140,9 +140,9 @@ def _rounding(analysis, power_ons, scales):
         return np.zeros(3)
     terms = analysis.selection.terms
     coefficients = analysis.coefficients[len(analysis.selection.straight) :]
-    locked = next(p for p in power_ons if p.session.name == analysis.locked[0].name)
+    holdout = next(p for p in power_ons if p.session.name == analysis.holdout[0].name)
     at_rest = model_of(analysis, scales, effects=len(analysis.selection.found))
-    return rounding_dps(locked, at_rest, terms, coefficients, scales)
+    return rounding_dps(holdout, at_rest, terms, coefficients, scales)
 
 
 def judged(analysis: Analysis, measured: Measured) -> Analysis:

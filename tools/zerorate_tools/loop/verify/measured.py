@@ -44,28 +44,28 @@ class Course:
 
 @dataclass
 class Measured:
-    """What the kernels gave. sessions: by name; locked: names of those held out; rounding_dps: (3,)
-    RMS by which the model's integers differ from its numbers, on the held-out part.
+    """What the kernels gave. sessions: by name; holdout: names of those held out; rounding_dps:
+    (3,) RMS by which the model's integers differ from its numbers, on the held-out part.
     """
 
     sessions: dict[str, Course]
-    locked: list[str]
+    holdout: list[str]
     rounding_dps: np.ndarray
     by: str = BY
 
     def residuals(self, way: str) -> list[np.ndarray]:
         """(n, 3) of each session held out."""
-        return [self.sessions[name].residual[way] for name in self.locked]
+        return [self.sessions[name].residual[way] for name in self.holdout]
 
     def with_first(self, effects: int) -> list[np.ndarray]:
         """As `residuals`, with the first so many effects alone."""
-        way, whole = after_first(effects), self.sessions[self.locked[0]].residual
+        way, whole = after_first(effects), self.sessions[self.holdout[0]].residual
         return self.residuals(way if way in whole else AFTER)
 
     def offsets(self, way: str) -> list[np.ndarray]:
         """(3,) turn-on offset of each session held out, dps; zero where a part of its own power-on
         was learned."""
-        held = [self.sessions[name].offset_dps for name in self.locked]
+        held = [self.sessions[name].offset_dps for name in self.holdout]
         return [offsets.get(way, offsets.get(BEFORE, np.zeros(3))) for offsets in held]
 
 
@@ -77,7 +77,7 @@ def after_first(effects: int) -> str:
 class Measurement:
     """Runs the firmware over the sessions of one device.
 
-    train, locked: names of sessions; models: none, then those of the first effects, at last the
+    train, holdout: names of sessions; models: none, then those of the first effects, at last the
     whole one.
     """
 
@@ -85,12 +85,12 @@ class Measurement:
         self,
         power_ons: Sequence[PowerOn],
         train: Sequence[str],
-        locked: Sequence[str],
+        holdout: Sequence[str],
         models: Sequence[Model | None],
         scales: Scales,
     ) -> None:
         self.power_ons = {p.session.name: p for p in power_ons}
-        self.train, self.locked = list(train), list(locked)
+        self.train, self.holdout = list(train), list(holdout)
         channels = power_ons[0].channels
         self.devices = [Firmware(scales, m, channels) for m in models]
         self.begun: dict[str, list[Firmware]] = {}
@@ -108,7 +108,7 @@ class Measurement:
     def course(self, name: str, online: bool, sink: Sink) -> Course:
         """Run the frozen devices over a session, and the learning ones where wanted."""
         p = self.power_ons[name]
-        held_out = name in self.locked
+        held_out = name in self.holdout
         ways, unscored, offsets = self._frozen(p, held_out)
         if online or held_out:
             ways.update(self._online(name))

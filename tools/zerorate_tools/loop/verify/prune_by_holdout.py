@@ -1,4 +1,4 @@
-"""An effect that the locked sessions speak against is taken out again.
+"""An effect that the held-out sessions speak against is taken out again.
 
 An effect that is there hardly ever makes a power-on that no fit has seen less likely; what noise
 alone made of the others does more often than not. Both the likelihood, which looks where the noise
@@ -20,32 +20,32 @@ from ..search.drift_test import comes_again, follows_time
 from ..search.selection import Selection
 from .judge import Judgement, judge, residuals, rms_dps
 
-#: Nats that the locked sessions may lose: a cause that rests there says nothing, not no.
+#: Nats that the held-out sessions may lose: a cause that rests there says nothing, not no.
 MOST_LOST = 0.5
 AGAIN = "it does not come again alike in what was held out"
 
 
-def upheld(selection: Selection, locked: list[Session]) -> tuple[Selection, Judgement]:
-    """What of the effects found the locked sessions do not speak against, and the judgement of it.
+def prune_by_holdout(selection: Selection, holdout: list[Session]) -> tuple[Selection, Judgement]:
+    """What of the effects found the holdout does not speak against, and the judgement of it.
 
     What is taken out is said in `Selection.withdrawn`, with the error that it would have left.
     """
-    judgement = judge(selection, locked)
+    judgement = judge(selection, holdout)
     for i in [int(i) for i in judgement.gains.argsort()]:
         less = selection.without(i)
         reason = _spoken_against(selection, judgement, i)
         if reason is None:
             continue
-        without = judge(less, locked)
+        without = judge(less, holdout)
         if reason is AGAIN or without.after_rms <= judgement.after_rms:
             said = (label(selection.found[i].candidate), _said(reason, judgement, without))
-            return upheld(replace(less, withdrawn=[*less.withdrawn, said]), locked)
+            return prune_by_holdout(replace(less, withdrawn=[*less.withdrawn, said]), holdout)
     after = [
-        [r for r, _ in residuals(selection.first(k), locked)]
+        [r for r, _ in residuals(selection.first(k), holdout)]
         for k in range(len(selection.found) + 1)
     ]
     less = unharmed(selection, after)
-    return (selection, judgement) if less is selection else upheld(less, locked)
+    return (selection, judgement) if less is selection else prune_by_holdout(less, holdout)
 
 
 def unharmed(selection: Selection, after: Sequence[list[np.ndarray]]) -> Selection:

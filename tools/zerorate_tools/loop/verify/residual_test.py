@@ -16,7 +16,7 @@ _STEEP_NATS = 4.0
 
 
 @dataclass
-class Excess:
+class ResidualTest:
     """p of independence of the axes, nats by which smooth drift beats noise on the worst axis,
     direction (3,).
     """
@@ -41,7 +41,7 @@ class Excess:
         return self.steep_nats > _STEEP_NATS
 
 
-def excess(regression, terms) -> Excess:
+def residual_test(regression, terms) -> ResidualTest:
     """Look at what the terms leave, in the sensor's own axes."""
     axes = regression.axes
     regression.turn(np.eye(3))
@@ -50,4 +50,4 @@ def excess(regression, terms) -> Excess:
     regression.turn(axes)
     steep = (loglik[:, IS_STEEP].max(axis=1) - loglik[:, ~IS_STEEP].max(axis=1)).max()
     direction = np.linalg.eigh(covariance)[1][:, -1]
-    return Excess(p, float(steep), direction)
+    return ResidualTest(p, float(steep), direction)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .run import Fleet
+    from .whole_fleet import Fleet
 
 _FAILURES = 10
 _SCENARIOS = {

@@ -20,9 +20,9 @@ from ..errors import BadModel, InFile, ZerorateError
 from ..recordings import Recording, open_recording
 from ..recordings.atomic import written_beside
 from ..recordings.reading import OpenRecording
+from .bias_table import SOURCES, VERDICTS, ReplayWriter, table
 from .engines import Outcome, engine, others_of
 from .samples import frames_in_batches, sensor_of
-from .writing import SOURCES, VERDICTS, ReplayWriter, table
 
 if TYPE_CHECKING:
     import pandas

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from ..loop.read.turns import GIVEN
-from .figures import figure
 from .kinds import title
+from .numbers import figure
 
 Report = dict[str, Any]
 
@@ -75,14 +75,14 @@ def _where(result: Report) -> str:
 def how_sure(step: Report) -> str:
     """What confirmed or tentative means here."""
     if step["confidence"] == "confirmed" and not corrects_at_rest(step):
-        return "Confirmed: what was locked away and took no part in finding it shows it too."
+        return "Confirmed: what was held out and took no part in finding it shows it too."
     if step["confidence"] == "confirmed":
         return (
-            "Confirmed: it also lowers the error on the recording that was locked away and took no "
+            "Confirmed: it also lowers the error on the recording that was held out and took no "
             "part in finding it, and nothing beyond the part's own noise is left there."
         )
     return (
-        "Tentative: it was found in the recordings that were fitted on, but what was locked away "
+        "Tentative: it was found in the recordings that were fitted on, but what was held out "
         "does not settle it. Record more before you rely on it."
     )
 

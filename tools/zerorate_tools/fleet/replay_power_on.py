@@ -21,7 +21,7 @@ _FIRST_S = 60.0
 _GYRO = ("bias_gx", "bias_gy", "bias_gz")
 
 
-def live_through(
+def replay_power_on(
     job: Job, path: str, session: Session, state: Path, folder: Path | None
 ) -> dict[str, Any]:
     """Replay a recording from what `state` holds, if it is there, and leave the state in it.

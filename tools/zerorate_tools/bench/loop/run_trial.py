@@ -47,11 +47,11 @@ class Outcome:
         return self.after > 1.02 * self.before
 
 
-def look(device: Device) -> Outcome:
+def run_trial(device: Device) -> Outcome:
     """Simulate a device, run the loop on it and judge by its last session."""
     import time
 
-    from ...loop.simulated import simulate
+    from .simulated import simulate
 
     began = time.process_time()
     if device.real:
@@ -72,10 +72,12 @@ def judged(device: Device, sessions: list, noise_dps: np.ndarray) -> Outcome:
     from ...loop.search.confounding import label
     from ...loop.search.select import select
     from ...loop.verify.judge import scored
-    from ...loop.verify.prune_by_holdout import upheld
+    from ...loop.verify.prune_by_holdout import prune_by_holdout
 
     alone = PiecesByLine(sessions[0]) if len(sessions) == 2 else None
-    selection, verdict = upheld(select(sessions[:-1], 0, alone, judged_again=True), sessions[-1:])
+    selection, verdict = prune_by_holdout(
+        select(sessions[:-1], 0, alone, judged_again=True), sessions[-1:]
+    )
     noise, _ = scored(replace(sessions[-1], rate_dps=noise_dps), np.zeros(noise_dps.shape))
     unit = float(np.sqrt(np.nanmean(noise**2)))
     found = selection.found
@@ -86,7 +88,7 @@ def judged(device: Device, sessions: list, noise_dps: np.ndarray) -> Outcome:
         [f.confounded_with for f in found],
         [verdict.confidence(i) for i in range(len(found))],
         len(selection.steps),
-        bool(verdict.excess.left),
+        bool(verdict.residual_test.left),
         float(verdict.before_rms / unit),
         float(verdict.after_rms / unit),
     )

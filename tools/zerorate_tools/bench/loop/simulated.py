@@ -13,8 +13,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.fft import irfft, rfft
 
-from ..model.term import Term, first_order_lag, play
-from .read.sessions import Session, block_basis
+from ...loop.read.sessions import Session, block_basis
+from ...model.term import Term, first_order_lag, play
 
 BLOCK_S = 20.0
 TICKS = 4

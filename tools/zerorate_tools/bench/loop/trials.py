@@ -18,9 +18,9 @@ from ..tables import machine, machine_line, table
 from .devices import Device, devices
 from .figures import Figure, figures
 from .files import ROWS, file_devices, look_at_files
-from .look import Outcome, look
 from .quiet import FOLDER, write_blocks
 from .rests import rest_figures
+from .run_trial import Outcome, run_trial
 from .size import figures_of, measured
 
 
@@ -84,7 +84,7 @@ def looked_at(
 
 
 def _look(device: Device) -> Outcome:
-    return look_at_files(device) if device.row in ROWS else look(device)
+    return look_at_files(device) if device.row in ROWS else run_trial(device)
 
 
 def _read(path: Path) -> dict[str, Outcome]:

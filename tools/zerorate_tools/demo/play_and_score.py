@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..recordings import Recording, read_recording
-from ..replay.run import replay
+from ..replay.replaying import replay
 from ..runtimes import find
 from .play import play
 from .score import Score, score
