@@ -101,6 +101,6 @@ def test_an_interpreter_that_is_not_there_is_fetched(monkeypatch, tmp_path):
 
 def test_nothing_found_is_said_as_such(tmp_path):
     device = demo.Device("plain", [tmp_path / "a.parquet", tmp_path / "b.parquet"], [], [])
-    result = {"split": {"test": ["b"]}, "steps": []}
+    result = {"split": {"test": ["b"]}, "effects": []}
     result |= {f"{name}_mdps": [1.0, 2.0, 3.0] for name in ("before", "after", "floor")}
     assert "found: nothing" in story.chapter_two(device, result)

@@ -39,7 +39,7 @@ def inside(folder):
 
 def test_what_was_hidden_is_found(ran):
     printed, names, _ = ran
-    assert names["found"]["steps"][0]["effect"] == "thermal-hysteresis"
+    assert names["found"]["effects"][0]["effect"] == "thermal-hysteresis"
     assert sum(names["found"]["after_mdps"]) < sum(names["found"]["before_mdps"])
     assert names["better"].samples == len(zt.read_recording(ran[2] / "run-4.parquet"))
 

@@ -39,7 +39,7 @@ def hysteresis(tmp_path_factory):
 def test_a_device_with_hysteresis_is_closed(hysteresis, tmp_path):
     result = close(hysteresis, tmp_path / "out")
     assert result == json.loads((tmp_path / "out" / "report.json").read_text())
-    assert result["steps"][0]["effect"] == "thermal-hysteresis"
+    assert result["effects"][0]["effect"] == "thermal-hysteresis"
     assert result["verdict"] == "effects-found"
     assert sum(result["after_mdps"]) < 0.75 * sum(result["before_mdps"])
     for low, high in result["ci95_mdps"]["after"]:

@@ -84,7 +84,7 @@ def test_learning_online_is_better_than_frozen(closed):
 
 def test_every_effect_is_judged_by_the_model_with_it_alone(closed):
     result, _ = closed
-    steps = result["steps"]
+    steps = result["effects"]
     assert steps[0]["before_mdps"] == result["before_mdps"]
     assert steps[-1]["after_mdps"] == result["after_mdps"]
     for one, following in zip(steps, steps[1:]):

@@ -47,7 +47,7 @@ def test_what_was_withdrawn_is_said_with_both_errors(turning_about):
     [(name, why)] = result["gate"]["withdrawn"]
     assert name == "time-drift" and "does not come again" in why
     assert "taken out again: time-drift: " in in_words(result)
-    assert result["steps"] == [] and result["before_mdps"] == result["after_mdps"]
+    assert result["effects"] == [] and result["before_mdps"] == result["after_mdps"]
 
 
 def test_what_noise_steeper_than_a_walk_feigns_is_withdrawn():

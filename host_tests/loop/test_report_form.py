@@ -10,7 +10,7 @@ THREE = (float, float, float)
 INTERVALS = [(float, float)]
 BOTH = {"before": INTERVALS, "after": INTERVALS}
 #: A type, [of each of any number], (of each of so many) or {key: of its value}.
-STEP = {
+EFFECT = {
     **{"effect": str, "sources": [str], "parameters": [dict], "coefficients": dict},
     **{"confidence": str, "before_mdps": THREE, "after_mdps": THREE, "ci95_mdps": INTERVALS},
     **{"p_value": float, "confounded_with": [str], "said": str},
@@ -22,7 +22,7 @@ FORM = {
     "online": {"before_mdps": THREE, "after_mdps": THREE, "ci95_mdps": BOTH},
     "turn_on_offset_dps": {"before": [THREE], "after": [THREE]},
     **{"integer_rounding_mdps": THREE, "integer_rounding_of_floor": float, "measured_by": str},
-    "steps": [STEP],
+    "effects": [EFFECT],
     "events": [{"kind": str, "t_us": int, "recording": str, "size_mdps": THREE}],
     "unexplained": {"rms_mdps": THREE, "what_is_known": str, "measure_next": [str]},
     **{"smallest_detectable_mdps": dict, "verdict": str, "truth": dict, "gate": dict},
@@ -61,13 +61,17 @@ def test_every_entry_is_there_and_of_its_kind(written):
 
 def test_words_are_those_of_the_design(written):
     assert written["verdict"] in ("nothing-found", "effects-found", "unexplained-residual")
-    assert {s["confidence"] for s in written["steps"]} <= {"confirmed", "tentative"}
+    assert {s["confidence"] for s in written["effects"]} <= {"confirmed", "tentative"}
 
 
-def test_coefficients_are_three_for_every_source_of_a_step(written):
-    for step in written["steps"]:
-        assert set(step["coefficients"]) <= set(step["sources"])
-        assert breaches(list(step["coefficients"].values()), [THREE]) == []
+def test_effects_keep_their_old_name_for_a_version(written):
+    assert written["steps"] == written["effects"]
+
+
+def test_coefficients_are_three_for_every_source_of_an_effect(written):
+    for effect in written["effects"]:
+        assert set(effect["coefficients"]) <= set(effect["sources"])
+        assert breaches(list(effect["coefficients"].values()), [THREE]) == []
 
 
 def test_what_is_returned_is_what_is_written(closed, written):
@@ -81,6 +85,6 @@ def test_nothing_is_left_half_written(closed):
 
 
 def test_a_wrong_form_is_noticed(written):
-    broken = {**written, "floor_mdps": [1.0, None, 2.0], "steps": [{}]}
+    broken = {**written, "floor_mdps": [1.0, None, 2.0], "effects": [{}]}
     assert "report.floor_mdps[1] is None, no number" in breaches(broken, FORM)
-    assert "report.steps[0] lacks effect" in breaches(broken, FORM)
+    assert "report.effects[0] lacks effect" in breaches(broken, FORM)

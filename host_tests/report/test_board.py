@@ -32,7 +32,7 @@ def test_the_lines_load_the_model_on_a_micropython(
 ):
     closed = outcome(name)
     script = tmp_path / "main.py"
-    channels = [s for step in closed.result["steps"] for s in step["sources"] if s != "temp"]
+    channels = [s for step in closed.result["effects"] for s in step["sources"] if s != "temp"]
     script.write_text(program(closed, deployment(closed.folder, channels)))
     model = (closed.folder / "model.bin").read_bytes()
     done = find_runtime("wasm").run(

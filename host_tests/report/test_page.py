@@ -112,7 +112,7 @@ class TestAnswers:
 
     def test_an_effect_that_did_not_help_comes_with_a_warning(self, outcome):
         closed = outcome("no temperature")
-        whole, some = closed.result["in_all"], any(map(corrects_at_rest, closed.result["steps"]))
+        whole, some = closed.result["in_all"], any(map(corrects_at_rest, closed.result["effects"]))
         warned = '<p class="warning">' in closed.page.read_text()
         assert warned == (some and whole["after_mdps"] >= whole["before_mdps"])
 
@@ -123,7 +123,7 @@ class TestHostileNames:
         return outcome("hostile names").page.read_text(encoding="utf-8")
 
     def test_the_channel_was_found_and_is_named(self, outcome):
-        steps = outcome("hostile names").result["steps"]
+        steps = outcome("hostile names").result["effects"]
         assert [HOSTILE] in [step["sources"] for step in steps]
 
     def test_names_make_no_element(self, text):

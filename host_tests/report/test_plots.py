@@ -86,7 +86,7 @@ def test_slots_of_one_source_are_told_apart_and_drawn_as_one_curve(tmp_path):
     closed = Closed(tmp_path, device(tmp_path, 1, effects, names=["alone"]))
     made, _ = plots_of(closed.analysis, closed.result, closed.logs, closed.folder)
     curve = next(plot for plot in made if plot.key == "effect-1")
-    step = closed.result["steps"][0]
+    step = closed.result["effects"][0]
     assert step["effect"] == "temperature-curve"
     assert list(step["coefficients"]) == ["temp^2", "temp^3"]
     assert (curve.views, curve.panels[0].x_label) == ((), "temperature, °C")

@@ -83,7 +83,7 @@ def chapter_two(device: Device, result: dict) -> str:
         "",
         "2. The loop is closed: what does the firmware's model lack?",
         f"   Fitted on {first} to {last}; {holdout} was held out and looked at once.",
-        *_found(result["steps"]),
+        *_found(result["effects"]),
         *(f"   the truth, of which nobody told it: {words}" for words in device.hidden),
         f"   Error in {holdout}, offset taken from its first still minute, then frozen:",
         "                    gx        gy        gz",
@@ -94,12 +94,12 @@ def chapter_two(device: Device, result: dict) -> str:
     return "\n".join(lines)
 
 
-def _found(steps: list[dict]) -> list[str]:
+def _found(effects: list[dict]) -> list[str]:
     lines = []
-    for step in steps:
-        lines.append(f"   found: {step['effect']} ({step['confidence']})")
+    for effect in effects:
+        lines.append(f"   found: {effect['effect']} ({effect['confidence']})")
         lines += textwrap.wrap(
-            meaning(step["effect"]), 84, initial_indent=_IN, subsequent_indent=_IN
+            meaning(effect["effect"]), 84, initial_indent=_IN, subsequent_indent=_IN
         )
     return lines or ["   found: nothing"]
 

@@ -125,7 +125,7 @@ def _steps(job, device, good, failures) -> list[dict[str, Any]]:
 
     with tempfile.TemporaryDirectory(prefix="zerorate-fleet-") as scratch:
         try:
-            return close(list(good), job.folder(device) or scratch)["steps"]
+            return close(list(good), job.folder(device) or scratch)["effects"]
         except Exception as error:
             failures.append({"file": device.name, "reason": f"close: {one_line(error)}"})
             return []

@@ -62,7 +62,7 @@ def plots_of(
 ) -> tuple[list[Plot], list[str]]:
     """Every plot that these recordings allow, and sentences on those that they do not."""
     parts, notes = held_out(analysis), []
-    names = [title(s["effect"], s["sources"]) for s in result["steps"]]
+    names = [title(s["effect"], s["sources"]) for s in result["effects"]]
     plots: list[Plot | None] = [
         at_a_glance(result),
         against_time(parts, result["events"]),
@@ -70,7 +70,7 @@ def plots_of(
         deviations(parts, fitted_noise(analysis), result["floor_mdps"]),
         *effect_plots(analysis, names),
     ]
-    slots = any(step["coefficients"] for step in result["steps"])
+    slots = any(effect["coefficients"] for effect in result["effects"])
     model = Path(folder) / "model.bin" if slots else None
     total_s = sum(s.blocks * s.block_s for s in analysis.sessions)
     try:

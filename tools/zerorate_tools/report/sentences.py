@@ -22,7 +22,7 @@ def on_the_board(result: Report) -> str:
         return ""
     whole = result["online"]["in_all"]
     said = f"On the board, which goes on learning, {figure(whole['after_mdps'])} mdps are left"
-    if any(corrects_at_rest(step) for step in result["steps"]):
+    if any(corrects_at_rest(effect) for effect in result["effects"]):
         said += f", {figure(whole['before_mdps'])} without the effects"
     return said
 
@@ -42,7 +42,7 @@ def frozen(result: Report) -> str:
     where = _where(result)
     if result["verdict"] == "unexplained-residual":
         return f"{where}, {after} mdps are left that nothing recorded explains (floor {floor})"
-    if not any(corrects_at_rest(step) for step in result["steps"]):
+    if not any(corrects_at_rest(effect) for effect in result["effects"]):
         return (
             f"Nothing was found {_what(result)} that the firmware does not already correct: "
             f"{where[0].lower()}{where[1:]}, the error is {before} mdps (floor {floor})"
@@ -55,9 +55,9 @@ def frozen(result: Report) -> str:
     )
 
 
-def corrects_at_rest(step: Report) -> bool:
-    """Whether the step changes what is left at rest: what shows in motion, or is said only, not."""
-    return bool(step["coefficients"]) and "in_motion" not in step
+def corrects_at_rest(effect: Report) -> bool:
+    """Whether it changes what is left at rest: not what shows in motion, or is said only."""
+    return bool(effect["coefficients"]) and "in_motion" not in effect
 
 
 def _what(result: Report) -> str:
@@ -72,11 +72,11 @@ def _where(result: Report) -> str:
     return f"Frozen, on {where} held out" if "online" in result else f"On {where} held out"
 
 
-def how_sure(step: Report) -> str:
+def how_sure(effect: Report) -> str:
     """What confirmed or tentative means here."""
-    if step["confidence"] == "confirmed" and not corrects_at_rest(step):
+    if effect["confidence"] == "confirmed" and not corrects_at_rest(effect):
         return "Confirmed: what was held out and took no part in finding it shows it too."
-    if step["confidence"] == "confirmed":
+    if effect["confidence"] == "confirmed":
         return (
             "Confirmed: it also lowers the error on the recording that was held out and took no "
             "part in finding it, and nothing beyond the part's own noise is left there."
@@ -89,7 +89,7 @@ def how_sure(step: Report) -> str:
 
 def found_in_short(result: Report) -> str:
     """One sentence on what was found."""
-    names = [f"{title(s['effect'], s['sources'])} ({s['confidence']})" for s in result["steps"]]
+    names = [f"{title(s['effect'], s['sources'])} ({s['confidence']})" for s in result["effects"]]
     if not names:
         return "No effect was found beyond the line over temperature that the firmware learns."
     return f"{len(names)} effect{'s' if len(names) > 1 else ''} found: {'; '.join(names)}."

@@ -149,14 +149,14 @@ def look_at_files(device: Device) -> Outcome:
         in_motion = None
         if device.row == HELD_IN_A_HAND:
             in_motion = _in_motion_mdps(analysis, *made[-1])
-    steps, judgement, quick = said["steps"], analysis.judgement, said["interference"]
+    effects, judgement, quick = said["effects"], analysis.judgement, said["interference"]
     floor = float(np.sqrt(np.mean(analysis.floor_dps**2)))
     return Outcome(
         device,
-        [step["effect"] for step in steps] + ["periodic-interference"] * len(quick),
-        [step["sources"] for step in steps] + [[]] * len(quick),
-        [step["confounded_with"] for step in steps] + [[]] * len(quick),
-        [step["confidence"] for step in steps] + ["tentative"] * len(quick),
+        [effect["effect"] for effect in effects] + ["periodic-interference"] * len(quick),
+        [effect["sources"] for effect in effects] + [[]] * len(quick),
+        [effect["confounded_with"] for effect in effects] + [[]] * len(quick),
+        [effect["confidence"] for effect in effects] + ["tentative"] * len(quick),
         len(said["events"]),
         bool(judgement.residual_test.left),
         judgement.before_rms / floor,

@@ -85,8 +85,8 @@ def _row(analysis, told: dict) -> dict:
     judgement, rival = analysis.judgement, cubic_left(analysis)
     left = _rms(judgement.residual_after)
     cubic = None if rival is None else _rms(rival)
-    effects = [f"{step['effect']} ({step['confidence']})" for step in told["steps"]]
-    beside = [", ".join(step["confounded_with"]) for step in told["steps"]]
+    effects = [f"{effect['effect']} ({effect['confidence']})" for effect in told["effects"]]
+    beside = [", ".join(effect["confounded_with"]) for effect in told["effects"]]
     return {
         "before_mdps": _rms(judgement.residual_before),
         "after_mdps": left,

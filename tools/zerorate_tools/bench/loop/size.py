@@ -62,7 +62,7 @@ def _run(command: list[str], out: Path) -> dict:
         "cpu_s": after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime,
         # the largest child so far: writing the recordings may be it, which is then said too high
         "most_gb": after.ru_maxrss / 1e6,
-        "found": [step["effect"] for step in report["steps"]],
+        "found": [effect["effect"] for effect in report["effects"]],
     }
 
 

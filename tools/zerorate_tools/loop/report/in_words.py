@@ -13,7 +13,7 @@ def in_words(result: dict) -> str:
         f"error after   {_axes(result['after_mdps'])}",
         f"noise floor   {_axes(result['floor_mdps'])}",
     ]
-    lines += [_effect(step) for step in result["steps"]] or ["found: nothing"]
+    lines += [_effect(effect) for effect in result["effects"]] or ["found: nothing"]
     lines += [f"taken out again: {what}: {why}" for what, why in result["gate"]["withdrawn"]]
     lines += [_event(event) for event in result["events"]]
     lines += [_line(line) for line in result["interference"]]
@@ -40,11 +40,11 @@ def _axes(mdps):
     return "  ".join(f"{a} {v:8.3f}" for a, v in zip("xyz", mdps)) + "  mdps"
 
 
-def _effect(step):
-    rivals = step["confounded_with"]
+def _effect(effect):
+    rivals = effect["confounded_with"]
     tie = f"; cannot be told from {', '.join(rivals)}" if rivals else ""
-    said = step["said"].removeprefix(step["effect"]).strip()
-    return f"found: {step['effect']} {said}".rstrip() + f" ({step['confidence']}){tie}"
+    said = effect["said"].removeprefix(effect["effect"]).strip()
+    return f"found: {effect['effect']} {said}".rstrip() + f" ({effect['confidence']}){tie}"
 
 
 def _event(event):

@@ -1,4 +1,4 @@
-"""Effects that are not fitted on blocks, as steps of the report: of motion, and periodic ones."""
+"""Effects not fitted on blocks, in the form of the report: of motion, and periodic ones."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..verify.analysis import Analysis
 
 
 def motion_effects(analysis: Analysis, after_mdps: list[float]) -> list[dict]:
-    """Steps in report.json's form. after_mdps: of the blocks held out, which these leave alone."""
+    """Effects in report.json's form. after_mdps: of the blocks held out: these leave it."""
     motion = analysis.motion
     same = {"before_mdps": after_mdps, "after_mdps": after_mdps, "confounded_with": []}
     out = []
@@ -25,7 +25,7 @@ def motion_effects(analysis: Analysis, after_mdps: list[float]) -> list[dict]:
 
 
 def interference(lines: list[Line]) -> list[dict]:
-    """Quick lines in report.json's form: they average out of the bias, so they are no steps."""
+    """Quick lines in report.json's form: they average out of the bias, so they are no effects."""
     return [
         {
             "kind": "line",

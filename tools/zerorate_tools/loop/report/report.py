@@ -26,6 +26,7 @@ NO_TEMPERATURE = "; no temperature was recorded, and the warm-up of every power-
 def report(analysis: Analysis) -> dict:
     """Plain values, ready for JSON. Every figure in mdps is of the held-out part."""
     j = analysis.judgement
+    effects = [*_effects(analysis), *motion_effects(analysis, _mdps(j.after_dps))]
     return {
         "split": _split(analysis),
         "measured_by": analysis.measured.by if analysis.measured else FLOAT,
@@ -39,10 +40,8 @@ def report(analysis: Analysis) -> dict:
         "in_all": _in_all(analysis),
         **_by_kernels(analysis),
         "truth": _truth(analysis),
-        "steps": [
-            *_steps(analysis),
-            *motion_effects(analysis, _mdps(j.after_dps)),
-        ],
+        "effects": effects,
+        "steps": effects,  # their name before; goes with the next version
         "events": _events(analysis),
         "interference": interference(analysis.lines),
         "unexplained": {
@@ -141,7 +140,7 @@ def _split(analysis):
     return out
 
 
-def _steps(analysis):
+def _effects(analysis):
     """Effects in the order found, each with the held-out part's error before and after it."""
     selection, out = analysis.selection, []
     fitted = slots(selection, analysis.coefficients)
