@@ -2,28 +2,18 @@
 
 from __future__ import annotations
 
-import json
-from os import PathLike
-from pathlib import Path
-
-from ..recordings.atomic import written_beside
 from .bus_faults import FAULTS, run_fault
 from .store_faults import run_store
 
 
-def run(json_path: str | PathLike[str] | None = None) -> dict:
-    """Inject everything, print both tables and return them; with json_path write them too.
+def run() -> dict:
+    """Inject everything and return both tables.
 
     faults: name -> injected, detected, learned_from (false samples that what was learned holds),
     false_samples (those that the driver handed out as good). store: cuts, flips, wrong_loads,
     exceptions.
     """
-    found = {"faults": {name: run_fault(name) for name in FAULTS}, "store": run_store()}
-    print(table(found))
-    if json_path is not None:
-        with written_beside(Path(json_path)) as temporary:
-            temporary.write_text(json.dumps(found, indent=2) + "\n")
-    return found
+    return {"faults": {name: run_fault(name) for name in FAULTS}, "store": run_store()}
 
 
 def passed(found: dict) -> bool:

@@ -5,7 +5,6 @@ zerorate bench motion --data FOLDER/broad --json motion.json
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from os import PathLike
 from pathlib import Path
@@ -14,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import MissingRuntime
-from ..recordings.atomic import written_beside
 from ..simulate import simulate
 from .broad import Trial, TrueBias, trials, true_bias
 from .native_cost import source_cost
@@ -120,10 +118,8 @@ def _rms_mdps(error_dps: NDArray[np.float64]) -> float:
     return round(float(np.sqrt(np.mean(np.square(error_dps)))) * 1000, 1)
 
 
-def run(
-    data: str | PathLike[str] | None = None, json_path: str | PathLike[str] | None = None
-) -> dict:
-    """Measure and return all figures; with json_path write them too.
+def run(data: str | PathLike[str] | None = None) -> dict:
+    """Measure and return all figures.
 
     data: the folder of BROAD's .mat files; without it only the simulated table is made.
     """
@@ -131,7 +127,4 @@ def run(
     found: dict = {"simulated": simulated(ways), "settling": settling(), "cost": _cost()}
     if data is not None:
         found["broad"] = on_broad(ways, Path(data))
-    if json_path is not None:
-        with written_beside(Path(json_path)) as temporary:
-            temporary.write_text(json.dumps(found, indent=2) + "\n")
     return found

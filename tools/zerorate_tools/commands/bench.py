@@ -1,10 +1,13 @@
-"""`zerorate bench`: what is claimed, measured; each bench is a sub-command of its own."""
+"""`zerorate bench`: what is claimed, measured; each bench is a sub-command, a row of BENCHES."""
 
 from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 _MORE = """\
 Without a BENCH it measures what a sample costs, the replay, and the bias error beside everyone
@@ -14,119 +17,44 @@ name. `--quick` is a look at the same tables in a few minutes, not to be quoted.
 _QUICK_HOURS = (1.0, 4.0)
 _QUICK_SEEDS = (1,)
 
+#: What is printed, and the figures for --json.
+Found = tuple[str, Any]
+
+
+@dataclass(frozen=True)
+class Bench:
+    """help: in a line; measure: of the arguments; options: flag -> what argparse takes for it;
+    passed: whether the figures are well, by which the exit code is chosen."""
+
+    help: str
+    measure: Callable[[argparse.Namespace], Found]
+    options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    passed: Callable[[Any], bool] = lambda found: True
+
 
 def add_parser(subparsers) -> None:
     """Register the sub-command and its benches."""
     parser = subparsers.add_parser(
         "bench", help="measure what this project claims", description=_MORE
     )
-    add_extent(parser)
-    parser.set_defaults(run=run_main)
+    _add(parser, Bench("", _cost_and_accuracy, _QUICK))
     benches = parser.add_subparsers(dest="bench", metavar="BENCH")
-    add_accuracy(benches)
-    add_boards(benches)
-    add_cost(benches)
-    add_faults(benches)
-    add_filters(benches)
-    add_fleet(benches)
-    add_loop(benches)
-    add_motion(benches)
-    add_peers(benches)
-    add_real(benches)
-    add_refine(benches)
-    add_service(benches)
+    for name, bench in BENCHES.items():
+        _add(benches.add_parser(name, help=bench.help, description=bench.help), bench)
 
 
-def add_extent(parser) -> None:
-    """How much is measured, and where the report goes."""
-    parser.add_argument("--quick", action="store_true", help="short recordings and one seed")
-    add_outputs(parser)
-
-
-def run_main(arguments: argparse.Namespace) -> None:
-    """Measure cost and accuracy and write one report."""
-    from ..bench.cost_and_accuracy import in_markdown, measure, steps
-    from ..progress import progress
-
-    hours, seeds = extent(arguments)
-    with progress("measuring", steps(seeds)) as advance:
-        found = measure(hours, seeds, advance)
-    write_report(arguments, in_markdown(found), found)
-
-
-def extent(arguments: argparse.Namespace) -> tuple[tuple[float, ...], tuple[int, ...]]:
-    """Hours of the replays, and seeds."""
-    from ..bench.accuracy import SEEDS
-    from ..bench.replay_speed import HOURS
-
-    return (_QUICK_HOURS, _QUICK_SEEDS) if arguments.quick else (HOURS, SEEDS)
-
-
-def add_accuracy(benches) -> None:
-    """Register `bench accuracy`."""
-    parser = benches.add_parser("accuracy", help="the bias error beside everyone else's")
-    add_extent(parser)
-    parser.set_defaults(run=run_accuracy)
-
-
-def run_accuracy(arguments: argparse.Namespace) -> None:
-    """Measure and write."""
-    from ..bench.accuracy_report import accuracy, in_markdown, steps
-    from ..progress import progress
-
-    _, seeds = extent(arguments)
-    with progress("measuring accuracy", steps(seeds)) as advance:
-        found = accuracy(advance, seeds)
-    write_report(arguments, in_markdown(found), found)
-
-
-def add_boards(benches) -> None:
-    """Register `bench boards`."""
-    parser = benches.add_parser("boards", help="memory, time and numbers on an emulated Pico")
-    add_outputs(parser)
-    parser.set_defaults(run=run_boards)
-
-
-def run_boards(arguments: argparse.Namespace) -> None:
-    """Measure and write."""
-    from ..bench.boards import in_markdown, measure
-    from ..bench.boards.measuring import STEPS
-    from ..progress import progress
-
-    with progress("measuring on a Pico", STEPS) as advance:
-        found = measure(advance)
-    write_report(arguments, in_markdown(found), found)
-
-
-def add_cost(benches) -> None:
-    """Register `bench cost`."""
-    parser = benches.add_parser("cost", help="instructions, heap, sizes and replay speed")
-    add_extent(parser)
-    parser.set_defaults(run=run_cost)
-
-
-def run_cost(arguments: argparse.Namespace) -> None:
-    """Measure and write."""
-    from ..bench.cost import STEPS, cost
-    from ..bench.cost_report import in_markdown
-    from ..progress import progress
-
-    hours, _ = extent(arguments)
-    with progress("measuring cost", STEPS) as advance:
-        found = cost(advance, hours)
-    write_report(arguments, in_markdown(found), found)
-
-
-def add_outputs(parser) -> None:
-    """The two places where a report can go."""
+def _add(parser, bench: Bench) -> None:
+    for flag, how in bench.options.items():
+        parser.add_argument(flag, **how)
     parser.add_argument("--out", type=Path, metavar="FILE", help="write Markdown, not print it")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures there too")
+    parser.set_defaults(run=lambda arguments: _run(bench, arguments))
 
 
-def write_report(arguments: argparse.Namespace, text: str, found: object) -> None:
-    """Print the Markdown or write it, and write the figures where they are wanted."""
+def _run(bench: Bench, arguments: argparse.Namespace) -> int:
     from ..recordings.atomic import written_beside
 
+    text, found = bench.measure(arguments)
     if arguments.out is None:
         print(text)
     else:
@@ -135,97 +63,119 @@ def write_report(arguments: argparse.Namespace, text: str, found: object) -> Non
     if arguments.json is not None:
         with written_beside(arguments.json) as temporary:
             temporary.write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
+    return 0 if bench.passed(found) else 1
 
 
-def add_faults(benches) -> None:
-    """Register `bench faults`."""
-    parser = benches.add_parser(
-        "faults",
-        help="every fault of a bus and every cut of a write",
-        description="Inject every fault; exit code 1 when one goes unnoticed or is learned from.",
-    )
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write the tables there too")
-    parser.set_defaults(run=run_faults)
+def _hours(arguments: argparse.Namespace) -> tuple[float, ...]:
+    from ..bench.replay_speed import HOURS
+
+    return _QUICK_HOURS if arguments.quick else HOURS
 
 
-def run_faults(arguments: argparse.Namespace) -> int:
-    """Inject, print both tables and say by the exit code whether all is well."""
-    from ..bench.faults import passed, run
+def _seeds(arguments: argparse.Namespace) -> tuple[int, ...]:
+    from ..bench.accuracy import SEEDS
 
-    return 0 if passed(run(arguments.json)) else 1
-
-
-def add_filters(benches) -> None:
-    """Register `bench filters`."""
-    parser = benches.add_parser("filters", help="heading of attitude filters fed by zerorate")
-    parser.add_argument("--data", type=Path, metavar="DIR", help="folder of BROAD trials (.mat)")
-    add_outputs(parser)
-    parser.set_defaults(run=run_filters)
+    return _QUICK_SEEDS if arguments.quick else SEEDS
 
 
-def run_filters(arguments: argparse.Namespace) -> None:
-    """Measure and write."""
+def _cost_and_accuracy(arguments: argparse.Namespace) -> Found:
+    from ..bench.cost_and_accuracy import in_markdown, measure, steps
+    from ..progress import progress
+
+    seeds = _seeds(arguments)
+    with progress("measuring", steps(seeds)) as advance:
+        found = measure(_hours(arguments), seeds, advance)
+    return in_markdown(found), found
+
+
+def _accuracy(arguments: argparse.Namespace) -> Found:
+    from ..bench.accuracy_report import accuracy, in_markdown, steps
+    from ..progress import progress
+
+    seeds = _seeds(arguments)
+    with progress("measuring accuracy", steps(seeds)) as advance:
+        found = accuracy(advance, seeds)
+    return in_markdown(found), found
+
+
+def _boards(arguments: argparse.Namespace) -> Found:
+    from ..bench.boards import in_markdown, measure
+    from ..bench.boards.measuring import STEPS
+    from ..progress import progress
+
+    with progress("measuring on a Pico", STEPS) as advance:
+        found = measure(advance)
+    return in_markdown(found), found
+
+
+def _cost(arguments: argparse.Namespace) -> Found:
+    from ..bench.cost import STEPS, cost
+    from ..bench.cost_report import in_markdown
+    from ..progress import progress
+
+    with progress("measuring cost", STEPS) as advance:
+        found = cost(advance, _hours(arguments))
+    return in_markdown(found), found
+
+
+def _faults(arguments: argparse.Namespace) -> Found:
+    from ..bench.faults import run, table
+
+    found = run()
+    return table(found), found
+
+
+def _no_fault_passed(found: Any) -> bool:
+    from ..bench.faults import passed
+
+    return passed(found)
+
+
+def _filters(arguments: argparse.Namespace) -> Found:
     from ..bench.filters import in_markdown, run
     from ..progress import progress
 
     with progress("trials") as advance:
         found = run(arguments.data, advance)
-    write_report(arguments, in_markdown(found), found)
+    return in_markdown(found), found
 
 
-def add_fleet(benches) -> None:
-    """Register `bench fleet`."""
-    parser = benches.add_parser("fleet", help="many devices at once, and what a prior is worth")
-    sizes = {"type": int, "nargs": "+", "metavar": "N", "default": (100, 500, 2000)}
-    parser.add_argument("--devices", **sizes, help="sizes of the fleet (100 500 2000)")
-    add_outputs(parser)
-    parser.set_defaults(run=run_fleet)
-
-
-def run_fleet(arguments: argparse.Namespace) -> None:
-    """Measure and write."""
+def _fleet(arguments: argparse.Namespace) -> Found:
     from ..bench.fleet import WORKERS, markdown, run, steps
     from ..progress import progress
 
     sizes = sorted(arguments.devices)
     with progress("devices", steps(sizes, WORKERS)) as advance:
         found = run(sizes, advance=advance)
-    write_report(arguments, markdown(found), found)
+    return markdown(found), found
 
 
-def add_loop(benches) -> None:
-    """Register `bench loop`."""
-    parser = benches.add_parser("loop", help="what closing the loop finds, and what it invents")
-    parser.add_argument("--nulls", type=int, default=200, metavar="N", help="recordings of nothing")
-    parser.add_argument("--seeds", type=int, default=20, metavar="N", help="devices an effect")
-    parser.add_argument("--processes", type=int, default=2, metavar="N")
-    parser.add_argument("--data", type=Path, metavar="DIR", help="folder of real recordings")
-    parser.add_argument("--resume", type=Path, metavar="FILE", help="outcomes: go on from them")
-    parser.add_argument("--plots", type=Path, metavar="DIR", help="PNGs of the real recordings")
-    add_outputs(parser)
-    parser.set_defaults(run=run_loop)
-
-
-def run_loop(arguments: argparse.Namespace) -> None:
-    """Measure and write."""
+def _loop(arguments: argparse.Namespace) -> Found:
     from ..bench.loop import markdown, run
 
     options = {name: getattr(arguments, name) for name in ("data", "resume", "plots")}
     found = run(arguments.nulls, arguments.seeds, arguments.processes, **options)
-    write_report(arguments, markdown(found), found)
+    return markdown(found), found
 
 
-def add_real(benches) -> None:
-    """Register `bench real`."""
-    parser = benches.add_parser("real", help="closing the loop on real recordings, each alone")
-    parser.add_argument("--data", type=Path, metavar="DIR", help="folder of real recordings")
-    parser.add_argument("--plots", type=Path, metavar="DIR", help="PNGs of them")
-    add_outputs(parser)
-    parser.set_defaults(run=run_real)
+def _motion(arguments: argparse.Namespace) -> Found:
+    from ..bench.motion import run
+    from ..bench.motion_table import table
+
+    found = run(arguments.data)
+    return table(found), found
 
 
-def run_real(arguments: argparse.Namespace) -> None:
-    """Measure and write."""
+def _peers(arguments: argparse.Namespace) -> Found:
+    from ..bench.peer_differences import CASES, in_markdown, peer_differences
+    from ..progress import progress
+
+    with progress("simulating", len(CASES)) as advance:
+        found = peer_differences(_seeds(arguments), advance)
+    return in_markdown(found), {"cases": found}
+
+
+def _real(arguments: argparse.Namespace) -> Found:
     from ..bench.loop.real import in_words, real_rows
     from ..bench.real_recordings import data_folder
     from ..errors import ZerorateError
@@ -234,72 +184,79 @@ def run_real(arguments: argparse.Namespace) -> None:
     if folder is None or not Path(folder).is_dir():
         raise ZerorateError("bench real: no recordings; name their folder with --data DIR")
     rows = real_rows(Path(folder), arguments.plots)
-    write_report(arguments, in_words(rows), rows)
+    return in_words(rows), rows
 
 
-def add_motion(benches) -> None:
-    """Register `bench motion`."""
-    parser = benches.add_parser("motion", help="the bias learned in motion beside vqf's")
-    parser.add_argument("--data", type=Path, metavar="DIR", help="folder of BROAD trials (.mat)")
-    add_outputs(parser)
-    parser.set_defaults(run=run_motion)
-
-
-def add_service(benches) -> None:
-    """Register `bench service`."""
-    parser = benches.add_parser("service", help="`zerorate run` through faults, kills, full disks")
-    parser.add_argument("--hours", type=float, default=24, metavar="N", help="simulated (24)")
-    parser.add_argument("--faults", type=int, default=1000, metavar="N", help="how many (1000)")
-    add_outputs(parser)
-    parser.set_defaults(run=run_service)
-
-
-def run_service(arguments: argparse.Namespace) -> None:
-    """Live through them and write."""
-    from ..bench.service import in_words, run
-
-    found = run(arguments.hours, arguments.faults)
-    write_report(arguments, in_words(found), found)
-
-
-def add_refine(benches) -> None:
-    """Register `bench refine`."""
-    parser = benches.add_parser("refine", help="one unit's effect model on another unit, refined")
-    parser.add_argument("--seeds", type=int, default=20, metavar="N", help="units (default: 20)")
-    add_outputs(parser)
-    parser.set_defaults(run=run_refine)
-
-
-def run_refine(arguments: argparse.Namespace) -> None:
-    """Measure and write."""
+def _refine(arguments: argparse.Namespace) -> Found:
     from ..bench.second_unit import run, table
 
     found = run(arguments.seeds)
-    write_report(arguments, table(found), found)
+    return table(found), found
 
 
-def run_motion(arguments: argparse.Namespace) -> None:
-    """Measure and write."""
-    from ..bench.motion import run
-    from ..bench.motion_table import table
+def _service(arguments: argparse.Namespace) -> Found:
+    from ..bench.service import in_words, run
 
-    found = run(arguments.data)
-    write_report(arguments, table(found), found)
+    found = run(arguments.hours, arguments.faults)
+    return in_words(found), found
 
 
-def add_peers(benches) -> None:
-    """Register `bench peers`."""
-    parser = benches.add_parser("peers", help="what the figures of other filters hang on")
-    add_extent(parser)
-    parser.set_defaults(run=run_peers)
+_QUICK = {"--quick": {"action": "store_true", "help": "short recordings and one seed"}}
+_BROAD = {"--data": {"type": Path, "metavar": "DIR", "help": "folder of BROAD trials (.mat)"}}
+_RECORDINGS = {"--data": {"type": Path, "metavar": "DIR", "help": "folder of real recordings"}}
+_PLOTS = {"--plots": {"type": Path, "metavar": "DIR", "help": "PNGs of the real recordings"}}
 
 
-def run_peers(arguments: argparse.Namespace) -> None:
-    """Measure and write."""
-    from ..bench.peer_differences import CASES, in_markdown, peer_differences
-    from ..progress import progress
+def _number(default: float, what: str) -> dict[str, Any]:
+    told = f"{what} ({default:g})"
+    return {"type": type(default), "default": default, "metavar": "N", "help": told}
 
-    _, seeds = extent(arguments)
-    with progress("simulating", len(CASES)) as advance:
-        found = peer_differences(seeds, advance)
-    write_report(arguments, in_markdown(found), {"cases": found})
+
+BENCHES = {
+    "accuracy": Bench("the bias error beside everyone else's", _accuracy, _QUICK),
+    "boards": Bench("memory, time and numbers on an emulated Pico", _boards),
+    "cost": Bench("instructions, heap, sizes and replay speed", _cost, _QUICK),
+    "faults": Bench(
+        "every fault of a bus and every cut of a write; exit code 1 when one goes unnoticed",
+        _faults,
+        passed=_no_fault_passed,
+    ),
+    "filters": Bench("heading of attitude filters fed by zerorate", _filters, _BROAD),
+    "fleet": Bench(
+        "many devices at once, and what a prior is worth",
+        _fleet,
+        {
+            "--devices": {
+                **{"type": int, "nargs": "+", "metavar": "N", "default": (100, 500, 2000)},
+                "help": "sizes of the fleet (100 500 2000)",
+            }
+        },
+    ),
+    "loop": Bench(
+        "what closing the loop finds, and what it invents",
+        _loop,
+        {
+            "--nulls": _number(200, "recordings of nothing"),
+            "--seeds": _number(20, "devices an effect"),
+            "--processes": _number(2, "at once"),
+            **_RECORDINGS,
+            "--resume": {"type": Path, "metavar": "FILE", "help": "outcomes: go on from them"},
+            **_PLOTS,
+        },
+    ),
+    "motion": Bench("the bias learned in motion beside vqf's", _motion, _BROAD),
+    "peers": Bench("what the figures of other filters hang on", _peers, _QUICK),
+    "real": Bench(
+        "closing the loop on real recordings, each alone", _real, {**_RECORDINGS, **_PLOTS}
+    ),
+    "refine": Bench(
+        "one unit's effect model on another unit, refined",
+        _refine,
+        {"--seeds": _number(20, "units")},
+    ),
+    "service": Bench(
+        "`zerorate run` through faults, kills, full disks",
+        _service,
+        {"--hours": _number(24.0, "simulated"), "--faults": _number(1000, "how many")},
+    ),
+}
