@@ -2,9 +2,8 @@
 
 from array import array
 
-from .native import rest
+from .native import rest, unload
 from .sensor import Sensor
-from .unloading import unload
 
 try:
     from micropython import const
@@ -121,6 +120,8 @@ class Corrector:
         walk_lsb = chosen["walk_dps"] * self.sensor.gyro_lsb_per_dps
         self._walk_q16 = max(1, int(walk_lsb * walk_lsb * 65536))
         self.state = array("i", [0] * (c[_AXES] + 3 * c[_AXIS_WORDS]))
+        if rest.is_machine_code and self.alone and type(self) is Corrector:
+            self.update = rest.bound(self.state, c)  # type: ignore[method-assign]
         self.reset()
 
     def _join_others(self):
@@ -128,6 +129,8 @@ class Corrector:
 
         self._examine = examine
         self.alone = False
+        if "update" in self.__dict__:
+            del self.update
 
     def _learn_in_motion(self, document, start_dps):
         # loaded here, so that who does not learn in motion has no memory taken by it

@@ -1,6 +1,6 @@
 """Says in words what is being learned, or why nothing is."""
 
-from .native.choosing import chosen
+from .native import chosen
 
 try:
     from micropython import const

@@ -65,19 +65,20 @@ def room(value: int) -> int:
     shift = 0
     if value == 0:
         return 27
-    if value < 0x800:
+    # shifted right, for machine code takes longest to make large numbers
+    if value >> 11 == 0:
         value = value << 16
         shift = 16
-    if value < 0x80000:
+    if value >> 19 == 0:
         value = value << 8
         shift += 8
-    if value < 0x800000:
+    if value >> 23 == 0:
         value = value << 4
         shift += 4
-    if value < 0x2000000:
+    if value >> 25 == 0:
         value = value << 2
         shift += 2
-    if value < 0x4000000:
+    if value >> 26 == 0:
         shift += 1
     return shift
 

@@ -1,6 +1,6 @@
 """Many samples in one call."""
 
-from .choosing import machine_code
+from . import machine_code
 
 # the word of the room in which the burst's end stands
 _END = 8

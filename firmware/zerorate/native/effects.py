@@ -1,6 +1,6 @@
 """The effect slots of a model."""
 
-from .choosing import machine_code
+from . import machine_code
 
 run = machine_code("effects")
 

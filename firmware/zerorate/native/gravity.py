@@ -1,6 +1,6 @@
 """The source that learns against gravity."""
 
-from .choosing import machine_code
+from . import machine_code
 
 _CLEAR = -0x40000000
 

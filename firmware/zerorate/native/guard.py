@@ -1,6 +1,6 @@
 """The guard alone, for who asks it before other sources take the sample."""
 
-from .choosing import machine_code
+from . import machine_code
 
 examine = machine_code("guard")
 

@@ -1,6 +1,6 @@
 """Coefficients of a model that go on learning."""
 
-from .choosing import machine_code
+from . import machine_code
 
 run = machine_code("refine")
 

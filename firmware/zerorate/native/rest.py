@@ -1,11 +1,54 @@
 """The way of a sample at rest: examined, learned from, corrected."""
 
-from .choosing import machine_code
+from . import machine_code
+
+try:
+    from micropython import const
+except ImportError:
+
+    def const(value):
+        return value
+
+
+# what stands in the fourth argument's upper half word (tools/zerorate_tools/kernels/parts.py)
+_ADMIT = const(-0x40000000)
+_FINISH = const(-0x3FFF0000)
+_CONSIDER = const(-0x3FFE0000)
+_RESET = const(-0x3FFD0000)
+_COPY = const(-0x3FFC0000)
+_ADDRESS = const(-0x3FFB0000)
 
 step = machine_code("rest")
+is_machine_code = bool(step)
 
 if step:
-    from .stages import admit, consider, copy, finish, reset
+
+    def admit(s, c, x, kind):
+        return step(s, c, x, _ADMIT + kind)
+
+    def finish(s, c, x, kind):
+        return step(s, c, x, _FINISH + kind)
+
+    def consider(s, c, m, w, source):
+        step(s, c, m, _CONSIDER + (source << 8) + w)
+
+    def reset(s, c, a):
+        step(s, c, 0, _RESET + a)
+
+    def copy(source, target, first, end):
+        step(source, target, end, _COPY + first)
+
+    def bound(s, c):
+        """step(x, dt_us) of these two arrays: to look up where they lie takes as long as it."""
+        run = step
+        s_at = run(s, 0, 0, _ADDRESS)
+        c_at = run(c, 0, 0, _ADDRESS)
+
+        def update(x, dt_us, kept=(s, c)):
+            return run(s_at, c_at, x, dt_us)
+
+        return update
+
 else:
     from ..rest.copying import copy  # type: ignore[assignment]  # noqa: F401
     from ..rest.estimators import reset  # type: ignore[assignment]  # noqa: F401

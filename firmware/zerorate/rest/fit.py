@@ -101,13 +101,8 @@ def weigh(s: ptr32, c: ptr32, a: int):
         s[_FIT_SUM_W] += w
         i += 1
         e += c[_ESTIMATOR_WORDS]
-
-
-def stretch(s: ptr32) -> int:
-    """Return the shift that makes the range of temperatures fill 26 bits."""
-    w = s[_FIT_HIGH_Q4] - s[_FIT_LOW_Q4]
-    w = room(w)
-    return w - 1
+    # the shift that makes the range of temperatures fill 26 bits
+    s[a + _LINE_SHIFT] = room(s[_FIT_HIGH_Q4] - s[_FIT_LOW_Q4]) - 1
 
 
 def within(s: ptr32, t: int) -> int:
@@ -126,11 +121,11 @@ def centre(s: ptr32, c: ptr32, a: int, i: int):
         return
     d = s[_FIT_SUM_W]
     w = fraction_q27(w, d)
+    d = s[a + _LINE_SHIFT]
     a += i * c[_ESTIMATOR_WORDS] + _ESTIMATORS
-    d = s[a + _EST_MEAN_TEMP_Q4]
-    d = within(s, d) - s[_FIT_FIRST_T_Q4]
-    d = d << stretch(s)
-    d = scaled(w, d, 27)
+    i = s[a + _EST_MEAN_TEMP_Q4]  # eleven words: the temperature
+    i = within(s, i) - s[_FIT_FIRST_T_Q4]
+    d = scaled(w, i << d, 27)
     s[_FIT_SUM_T] += d
     d = s[a + _EST_BIAS_Q8] - s[_FIT_FIRST_B_Q8]
     d = scaled(w, d << 3, 27)
@@ -166,10 +161,11 @@ def add_product(s: ptr32, k: int, p: int, r: int):
 def lean(s: ptr32, c: ptr32, a: int, i: int):
     """Add estimator i to the weighted variance and covariance."""
     w = s[_FIT_WEIGHTS + i]
+    k = s[a + _LINE_SHIFT]
     a += i * c[_ESTIMATOR_WORDS] + _ESTIMATORS
     i = s[a + _EST_MEAN_TEMP_Q4]
     i = within(s, i) - s[_FIT_FIRST_T_Q4]
-    i = (i << stretch(s)) - s[_FIT_SUM_T]
+    i = (i << k) - s[_FIT_SUM_T]
     a = ((s[a + _EST_BIAS_Q8] - s[_FIT_FIRST_B_Q8]) << 3) - s[_FIT_SUM_B_Q11]
     k = room(w)
     w = scaled(w << k, i << room(i), 27)
@@ -188,7 +184,6 @@ def settle(s: ptr32, c: ptr32, a: int):
     slope = s[_FIT_SUM_TT + 1] - s[_FIT_SUM_TB + 1]
     slope = floating_ratio_q26(s[_FIT_SUM_TB], s[_FIT_SUM_TT], slope)
     s[a + _LINE_SLOPE_Q26] = slope
-    s[a + _LINE_SHIFT] = stretch(s)
     s[a + _LINE_LOW_Q4] = s[_FIT_LOW_Q4]
     s[a + _LINE_HIGH_Q4] = s[_FIT_HIGH_Q4]
 

@@ -24,8 +24,8 @@ _TRIAL = """
 import gc
 gc.collect()
 try:
-    from zerorate.native import choosing, rest
-    if choosing.chosen["rest"] != "machine code": print(choosing.chosen["rest"])
+    from zerorate.native import chosen, rest
+    if chosen["rest"] != "machine code": print(chosen["rest"])
 except Exception as error:
     print(repr(error))
 """

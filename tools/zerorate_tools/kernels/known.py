@@ -49,22 +49,22 @@ def _corrector() -> Corrector:
 
 def _rest() -> tuple:
     corrector = _corrector()
-    return 90, 10000, 7, 5, corrector.state, corrector.settings, _FRAME
+    return 30, 10000, 7, 5, corrector.state, corrector.settings, _FRAME
 
 
 def _bursts() -> tuple:
     _, _, _, bits, state, settings, _ = _rest()
-    return 9, None, 8 * 9, bits, state, settings, [0] * (8 * 9)
+    return 4, None, 8 * 9, bits, state, settings, [0] * (8 * 9)
 
 
 def _motion() -> tuple:
     settings = motion_settings(node_s=0.02, longest_stage=4, least_dps=0.001, least_up_g=0.0)
-    return 300, 10000, 7, 10, motion_state(settings), settings, _FRAME
+    return 60, 10000, 7, 10, motion_state(settings), settings, _FRAME
 
 
 def _gravity() -> tuple:
     settings = gravity_settings(sub_unit_s=0.04, units=4, threshold=1)
-    return 120, 10000, 7, 12, gravity_state(settings), settings, _FRAME
+    return 30, 10000, 7, 12, gravity_state(settings), settings, _FRAME
 
 
 def known_model() -> EffectModel:
@@ -85,7 +85,7 @@ def known_model() -> EffectModel:
 
 
 def _effects() -> tuple:
-    return 60, 250000, 7, 12, [0] * 100, known_model().e, _FRAME
+    return 20, 250000, 7, 12, [0] * 100, known_model().e, _FRAME
 
 
 def _refine() -> tuple:
@@ -95,7 +95,7 @@ def _refine() -> tuple:
     state[STATE.SEGMENT_TOTAL : STATE.SEGMENT_TOTAL + 3] = array("i", [9000, -300, 70])
     state[STATE.STILLNESS], state[STATE.TEMP] = STILLNESS.STILL, 900
     settings[SETTINGS.WINDOW_SHIFT], settings[SETTINGS.SEGMENT] = 6, 1
-    return 60, 0, 0, 0, state, settings, model.e
+    return 20, 0, 0, 0, state, settings, model.e
 
 
 _KNOWN: dict[str, Callable[[], tuple]] = {

@@ -27,7 +27,7 @@ _COMMON = (
     *("-mllvm", "-replexitval=never"),
 )
 # ARMv6-M cannot divide: most quotients of the kernels are short, and this is short with them
-_WITHOUT_DIVISION = """\
+_SHORT_QUOTIENT = """\
 static __attribute__((noinline)) uint32_t quotient(uint32_t a, uint32_t b) {
     uint32_t found = 0, bit = 1;
     while (b <= a >> 4) b <<= 4, bit <<= 4;
@@ -38,6 +38,21 @@ static __attribute__((noinline)) uint32_t quotient(uint32_t a, uint32_t b) {
     } while (bit);
     return found;
 }
+"""
+# a bit in five or six cycles, from the highest that may be set: the carry goes into what is found
+_FAST_QUOTIENT = """\
+#define BELOW(n) "lsrs r3, r0, #" #n "\\n cmp r3, r1\\n bcs 1f\\n b " #n "f\\n1:\\n"
+#define BIT(n) "lsrs r3, r0, #" #n "\\n cmp r3, r1\\n bcc 1f\\n" \
+    "lsls r3, r1, #" #n "\\n subs r0, r3\\n1: adcs r2, r2\\n"
+#define FOUR(a, b, c, d) BIT(a) BIT(b) BIT(c) BIT(d)
+__attribute__((naked, noinline, const)) static uint32_t quotient(uint32_t a, uint32_t b) {
+    __asm__("movs r2, #0\\n" BELOW(8) BELOW(12) BELOW(16) FOUR(31, 30, 29, 28)
+        FOUR(27, 26, 25, 24) FOUR(23, 22, 21, 20) FOUR(19, 18, 17, 16) "16:" FOUR(15, 14, 13, 12)
+        "12:" FOUR(11, 10, 9, 8) "8:" FOUR(7, 6, 5, 4) BIT(3) BIT(2) BIT(1)
+        "cmp r0, r1\\n adcs r2, r2\\n movs r0, r2\\n bx lr\\n");
+}
+"""
+_WITHOUT_DIVISION = """\
 static __attribute__((noinline)) int32_t floor_div(int32_t a, int32_t b) {
     if (a >= 0 && b > 0) return (int32_t)quotient((uint32_t)a, (uint32_t)b);
     if (b == 0) return 0;
@@ -99,7 +114,10 @@ def machine_code(kernels: Kernels, part: str, processor: str, fast: bool = False
     fast: all of it by -O2, which is the yardstick, not what boards get.
     """
     how, what = PROCESSORS[processor], PARTS[part]
-    text = kernels_in_c(kernels, *what.kernels, arithmetic=how.arithmetic)
+    arithmetic = how.arithmetic
+    if arithmetic == _WITHOUT_DIVISION:
+        arithmetic = (_FAST_QUOTIENT if what.divides else _SHORT_QUOTIENT) + arithmetic
+    text = kernels_in_c(kernels, *what.kernels, arithmetic=arithmetic)
     text += _ENTRY.format(body=what.body)
     with tempfile.TemporaryDirectory(prefix="zerorate-native-") as folder:
         codes = [_linked(Path(folder), text, how, base, fast) for base in (0, 0x4000)]

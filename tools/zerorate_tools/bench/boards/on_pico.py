@@ -43,10 +43,10 @@ def one_by_one(take, count):
 
 
 def by_kernel(corrector, count):
-    """As one_by_one, but without the object: what the kernels themselves cost."""
+    """As one_by_one, but without the object: what the kernels cost, called as it calls them."""
     from zerorate.native.rest import step
 
-    state, settings = corrector.state, corrector.settings
+    state, settings = addressof(corrector.state), addressof(corrector.settings)
     dt_us = array("i", [0])
     sample = array("i", [0] * 7)
     for _ in range(count):

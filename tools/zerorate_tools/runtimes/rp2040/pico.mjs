@@ -24,7 +24,7 @@ console.info = console.warn = console.log = () => {}; // standard output is the 
 const CYCLE_NS = 8; // 125 MHz
 const ROM_END = 0x4000, FLASH = 0x10000000, WINDOW = 0x40070;
 const ERASE_NS = 45e6, PROGRAM_NS = 0.4e6; // of 4096 bytes, of 256
-const SLICE_MS = 20, IDLE_CYCLES = 5000;
+const SLICE_MS = 20, NO_ALARM = 8; // steps without one: it waits for the host
 
 const flash = new Uint8Array(16 << 20).fill(0xff); // outlives a power cut
 flash.set(fs.readFileSync(options.firmware));
@@ -134,18 +134,21 @@ class Pico {
     return actions;
   }
 
-  /** Go on for a slice of the host's time, or until nothing is to do. */
+  /** Go on for a slice of the host's time, or until nothing is to do: true where it waits for input. */
   run() {
     const { core, clock } = this.mcu;
     const until = Date.now() + SLICE_MS;
+    let silent = 0;
     this.deliver();
     while (!this.off && Date.now() < until) {
       for (let i = 0; i < 20000 && !this.off; i++) {
         if (core.waiting) {
-          const ns = Math.max(clock.nanosToNextAlarm, 1000);
+          const next = clock.nanosToNextAlarm, ns = Math.max(next, 1000);
+          silent = next ? 0 : silent + 1;
           clock.tick(ns);
           core.cycles += ns / CYCLE_NS;
-          if (ns > 1e6 || clock.nanosToNextAlarm > 1e6) return;
+          if (silent > NO_ALARM) return true;
+          if (ns > 1e6 || clock.nanosToNextAlarm > 1e6) return false;
           continue;
         }
         const act = core.PC < ROM_END && this.rom.get(core.PC & ~1);
@@ -158,6 +161,7 @@ class Pico {
         clock.tick(cycles * CYCLE_NS);
       }
     }
+    return false;
   }
 }
 
@@ -182,10 +186,8 @@ function turn() {
     input = [];
     pico = new Pico();
   }
-  const before = pico.busyCycles;
-  pico.run();
   // at the prompt it waits for the host, whose time is not skipped
-  if (pico.busyCycles - before < IDLE_CYCLES && !input.length) setTimeout(turn, 1);
+  if (pico.run() && !input.length) setTimeout(turn, 1);
   else setImmediate(turn);
 }
 
