@@ -183,7 +183,7 @@ def csv_of(tmp_path):
         (f"{HEADER}\n5,1,2,3\n9,1,2,3\n7,1,2,3\n", "row 3: time goes backwards, from 9 to 7 us"),
         (f"{HEADER}\n0,1,2,3\n1,99999999999,2,3\n", "row 2: gx is 99999999999, more than 32 bits"),
         (f"{HEADER}\n0,1,2,3\n1,99999999999999999999,2,3\n", "bad.csv"),
-        (f"{HEADER},temp\n0,1,2,3,4\n", "lack temp_lsb_per_degc.*drop column temp"),
+        (f"{HEADER},temp\n0,1,2,3,4\n", "lack temp_lsb_per_degc, temp_offset_degc; add"),
         (f"{HEADER},ax,ay,az\n0,1,2,3,4,5,6\n", "lack accel_lsb_per_g"),
     ],
 )
@@ -199,8 +199,9 @@ def test_a_bad_csv_is_refused_in_one_line(csv_of, text, complaint):
     [
         ("{", "bad.json: the scales are not JSON .line 1"),
         ("[]", "no JSON object"),
-        ({"odr_hz": 1, "gyro_lsb_per_dps": 1}, "lack the sensor's name"),
+        ({"odr_hz": 1, "gyro_lsb_per_dps": 1}, "lack sensor; add .sensor.: .MPU-6050. "),
         ({"sensor": "X", "gyro_lsb_per_dps": 1}, "lack odr_hz"),
+        ({}, "lack sensor, odr_hz, gyro_lsb_per_dps; add"),
         ({"sensor": "X", "odr_hz": 0, "gyro_lsb_per_dps": 1}, "odr_hz is 0"),
         ({"sensor": "X", "odr_hz": "fast", "gyro_lsb_per_dps": 1}, "odr_hz is 'fast', no number"),
         ('{"sensor": "X", "odr_hz": NaN, "gyro_lsb_per_dps": 1}', "odr_hz is nan"),
@@ -213,10 +214,17 @@ def test_bad_scales_are_refused_in_one_line(csv_of, scales, complaint):
 
 
 def test_a_csv_without_scales_says_what_to_write(csv_of):
-    path = csv_of(f"{HEADER}\n0,1,2,3\n")
+    path = csv_of("t_us,gx,gy,gz,ax,ay,az,temp\n0,1,2,3,4,5,6,7\n")
     path.with_name("bad.json").unlink()
-    with pytest.raises(BadRecording, match="bad.json with the scales is missing"):
+    with pytest.raises(BadRecording, match="there is no bad.json beside it; write there") as raised:
         read_recording(path)
+    path.with_name("bad.json").write_text("{" + str(raised.value).partition("{")[2])
+    assert read_recording(path).scales.temp_offset_degc == 36.53
+
+
+def test_a_foreign_csv_is_answered_with_the_command_that_imports_it(csv_of):
+    with pytest.raises(BadRecording, match="zerorate import bad.csv --out imported.csv"):
+        read_recording(csv_of("time,x,y,z\n0,1,2,3\n"))
 
 
 def test_time_going_backwards_between_batches_is_seen(tmp_path):

@@ -150,6 +150,15 @@ def _fleet(arguments: argparse.Namespace) -> Found:
     return markdown(found), found
 
 
+def _import(arguments: argparse.Namespace) -> Found:
+    from ..bench.import_size import in_words, run
+    from ..progress import progress
+
+    with progress("importing", 2) as advance:
+        found = run(arguments.gb, arguments.folder, advance)
+    return in_words(found), found
+
+
 def _loop(arguments: argparse.Namespace) -> Found:
     from ..bench.loop import markdown, run
 
@@ -230,6 +239,14 @@ BENCHES = {
                 **{"type": int, "nargs": "+", "metavar": "N", "default": (100, 500, 2000)},
                 "help": "sizes of the fleet (100 500 2000)",
             }
+        },
+    ),
+    "import": Bench(
+        "seconds and memory of importing a huge CSV, made and not kept",
+        _import,
+        {
+            "--gb": _number(1.0, "its size"),
+            "--folder": {"type": Path, "metavar": "DIR", "help": "with room for 2.5 times that"},
         },
     ),
     "loop": Bench(

@@ -10,7 +10,6 @@ import pyarrow.compute as pc
 
 from ..errors import BadRecording
 from .recording import ACCEL, GYRO, TEMP, TIME, Columns
-from .scales import Scales, missing_scale
 
 GAP = -(2**31)
 """Stands for a missing value of an extra channel when gaps are kept, and when they are written."""
@@ -31,23 +30,13 @@ def check_names(names: list[str], path: Path) -> None:
         raise BadRecording(path, f"column {twice} comes twice", do="rename or drop one")
     missing = [name for name in (TIME, *GYRO) if name not in names]
     if missing:
-        do = "turn a foreign recording into this form with `zerorate import`"
+        suffix = ".parquet" if path.suffix == ".parquet" else ".csv"
+        do = f"turn it into a recording: zerorate import {path.name} --out imported{suffix}"
         raise BadRecording(path, f"column {', '.join(missing)} is missing", do=do)
     accel = [name for name in ACCEL if name in names]
     if accel and len(accel) < 3:
         have = ", ".join(accel)
         raise BadRecording(path, f"of ax ay az only {have} is there", do="give all three or none")
-
-
-def check_scales(scales: Scales, names: list[str], path: Path, scales_path: Path) -> None:
-    """Raise BadRecording if these columns need a scale that is not given."""
-    key = missing_scale(scales, names)
-    if key is not None:
-        column = TEMP if key.startswith("temp") else "ax ay az"
-        do = f"add it, or drop column {column}"
-        raise BadRecording(
-            scales_path, f"the scales lack {key}, and {path.name} has {column}", do=do
-        )
 
 
 def arrow_column(name: str, values: np.ndarray, kind: pa.DataType) -> pa.Array:

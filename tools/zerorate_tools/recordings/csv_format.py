@@ -17,7 +17,7 @@ import pyarrow.csv
 from ..errors import BadRecording
 from .checks import arrow_column, check_names
 from .recording import TIME
-from .scales import MOST_BYTES, Scales, scales_from_text
+from .scales import MOST_BYTES, Scales, example_for, scales_from_text
 from .text import damaged, head, open_text
 
 SUFFIXES = (".csv", ".csv.gz")
@@ -30,18 +30,15 @@ def scales_path(path: Path) -> Path:
     return path.with_name(path.name.removesuffix(".gz").removesuffix(".csv") + ".json")
 
 
-def read_scales(path: Path) -> Scales:
-    """The scales beside a CSV. Raises BadRecording."""
+def read_scales(path: Path, column_names: list[str]) -> Scales:
+    """The scales beside a CSV, whole for its columns. Raises BadRecording."""
     beside = scales_path(path)
     try:
         with open(beside, "rb") as file:
-            return scales_from_text(file.read(MOST_BYTES + 1), beside)
+            return scales_from_text(file.read(MOST_BYTES + 1), beside, column_names)
     except FileNotFoundError as error:
-        do = (
-            'write {"sensor": ..., "odr_hz": ..., "gyro_lsb_per_dps": ...} there, '
-            "or turn a foreign CSV into a recording with `zerorate import`"
-        )
-        problem = f"{beside.name} with the scales is missing beside it"
+        do = f"write there, with your sensor's for an MPU-6050's: {example_for(column_names)}"
+        problem = f"what one LSB means is not told: there is no {beside.name} beside it"
         raise BadRecording(path, problem, do=do) from error
 
 

@@ -43,7 +43,7 @@ def read_scales(file: pq.ParquetFile, path: Path) -> Scales:
         problem = "no scales (schema metadata `zerorate`)"
         do = "write it with zerorate_tools.write_recording, or convert with `zerorate import`"
         raise BadRecording(path, problem, do=do)
-    return scales_from_text(text, path)
+    return scales_from_text(text, path, file.schema_arrow.names)
 
 
 def batches(

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import BadRecording
 from . import csv_format, parquet_format
-from .checks import BatchChecker, check_names, check_scales
+from .checks import BatchChecker, check_names
 from .recording import Columns, Recording, in_order
 from .scales import Scales
 
@@ -33,9 +33,7 @@ class OpenRecording:
         self.n_samples: int | None = None
         self._keep_gaps = keep_gaps
         self._parquet: pq.ParquetFile | None = None
-        scales_path = self._read_header()
-        check_names(self.column_names, self.path)
-        check_scales(self.scales, self.column_names, self.path, scales_path)
+        self._read_header()
 
     scales: Scales
     column_names: list[str]
@@ -48,23 +46,26 @@ class OpenRecording:
                 yield checker.columns(batch.slice(start, rows))
         checker.finish()
 
-    def _read_header(self) -> Path:
+    def _read_header(self) -> None:
         if not self.path.is_file():
             what = "is a folder" if self.path.is_dir() else "no such file"
             raise BadRecording(self.path, what, do="name a recording (.csv, .csv.gz or .parquet)")
         if self.path.name.endswith(csv_format.SUFFIXES):
             self._header = csv_format.read_header(self.path)
-            self.scales = csv_format.read_scales(self.path)
             self.column_names = list(self._header.names)
-            return csv_format.scales_path(self.path)
-        if self.path.name.endswith(parquet_format.SUFFIXES):
+            check_names(self.column_names, self.path)
+            self.scales = csv_format.read_scales(self.path, self.column_names)
+        elif self.path.name.endswith(parquet_format.SUFFIXES):
             file = self._parquet = parquet_format.open_file(self.path)
-            self.scales = parquet_format.read_scales(file, self.path)
             self.column_names = list(file.schema_arrow.names)
+            check_names(self.column_names, self.path)
+            self.scales = parquet_format.read_scales(file, self.path)
             self.n_samples = file.metadata.num_rows
-            return self.path
-        do = "turn it into .parquet with `zerorate import`"
-        raise BadRecording(self.path, "neither .csv, .csv.gz nor .parquet", do=do)
+        else:
+            do = (
+                f"turn it into a recording: zerorate import {self.path.name} --out imported.parquet"
+            )
+            raise BadRecording(self.path, "neither .csv, .csv.gz nor .parquet", do=do)
 
     def _arrow_batches(self, rows: int) -> Iterator:
         if self._parquet is not None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from os import PathLike
 from typing import Any
@@ -13,6 +13,15 @@ from ..errors import BadRecording
 _ALWAYS = ("odr_hz", "gyro_lsb_per_dps")
 _ACCEL = ("accel_lsb_per_g",)
 _TEMP = ("temp_lsb_per_degc", "temp_offset_degc")
+#: An MPU-6050 at +-250 dps and +-2 g, to show the form by.
+_EXAMPLE = {
+    "sensor": "MPU-6050",
+    "odr_hz": 100,
+    "gyro_lsb_per_dps": 131,
+    "accel_lsb_per_g": 16384,
+    "temp_lsb_per_degc": 340,
+    "temp_offset_degc": 36.53,
+}
 #: What any sensor may have, wide enough for a reading a day and narrow enough for its arithmetic.
 _RANGES = {
     "odr_hz": (1e-5, 1e6),
@@ -52,8 +61,13 @@ class Scales:
         return raw / self.temp_lsb_per_degc + self.temp_offset_degc
 
 
-def scales_from_text(text: str | bytes, path: str | PathLike[str]) -> Scales:
-    """Scales out of JSON text. Raises BadRecording that names `path`, line and what to do."""
+def scales_from_text(
+    text: str | bytes, path: str | PathLike[str], column_names: Collection[str] = ()
+) -> Scales:
+    """Scales out of JSON text, whole for these columns.
+
+    Raises BadRecording that names `path`, line and what to do.
+    """
     if len(text) > MOST_BYTES:
         raise BadRecording(
             path, f"scales of more than {MOST_BYTES >> 20} MiB", do="write them as a short JSON"
@@ -72,15 +86,7 @@ def scales_from_text(text: str | bytes, path: str | PathLike[str]) -> Scales:
         raise BadRecording(path, problem, do="correct the text there") from error
     if not isinstance(values, dict):
         raise BadRecording(path, "the scales are no JSON object", do='write {"sensor": ...}')
-    return _from_dict(values, path)
-
-
-def _from_dict(values: dict[str, Any], path: str | PathLike[str]) -> Scales:
-    if not isinstance(values.get("sensor"), str):
-        raise BadRecording(path, "the scales lack the sensor's name", do='add "sensor": "MPU-6050"')
-    for key in _ALWAYS:
-        if key not in values:
-            raise BadRecording(path, f"the scales lack {key}", do="add it as a number above 0")
+    check_whole(values, column_names, path)
     numbers = {k: _number(values[k], k, path) for k in (*_ALWAYS, *_ACCEL, *_TEMP) if k in values}
     more = {k: v for k, v in values.items() if k not in numbers and k != "sensor"}
     return Scales(sensor=values["sensor"], more=more, **numbers)
@@ -106,7 +112,24 @@ def _short(value: Any) -> str:
     return text if len(text) <= 40 else f"{text[:40]}..."
 
 
-def missing_scale(scales: Scales, column_names: list[str]) -> str | None:
-    """The first scale that these columns need and the scales lack, or None."""
-    needed = [*(_ACCEL if "ax" in column_names else ()), *(_TEMP if "temp" in column_names else ())]
-    return next((key for key in needed if getattr(scales, key) is None), None)
+def check_whole(
+    values: Mapping[str, Any], column_names: Collection[str], path: str | PathLike[str]
+) -> None:
+    """Raise BadRecording that names every key which these columns need and the scales lack."""
+    lacking = [key for key in _needed(column_names) if key not in values]
+    if not isinstance(values.get("sensor", ""), str):
+        lacking.insert(0, "sensor")
+    if lacking:
+        example = json.dumps({key: _EXAMPLE[key] for key in lacking})[1:-1]
+        do = f"add {example} (an MPU-6050's; put your sensor's)"
+        raise BadRecording(path, f"the scales lack {', '.join(lacking)}", do=do)
+
+
+def example_for(column_names: Collection[str]) -> str:
+    """JSON text of scales that columns of these names need, with an MPU-6050's values."""
+    return json.dumps({key: _EXAMPLE[key] for key in _needed(column_names)})
+
+
+def _needed(column_names: Collection[str]) -> list[str]:
+    accel = _ACCEL if "ax" in column_names else ()
+    return ["sensor", *_ALWAYS, *accel, *(_TEMP if "temp" in column_names else ())]

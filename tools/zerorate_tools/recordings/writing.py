@@ -13,11 +13,10 @@ import numpy as np
 from ..errors import BadRecording
 from . import csv_format, parquet_format
 from .atomic import written_beside
-from .checks import check_scales
 from .csv_format import CsvWriter
 from .parquet_format import ParquetWriter
 from .recording import Recording
-from .scales import Scales
+from .scales import Scales, check_whole
 
 _ROWS = 1 << 16
 
@@ -54,7 +53,7 @@ def recording_writer(
     """
     path = Path(path)
     check_output(path)
-    check_scales(scales, column_names, path, path)
+    check_whole(scales.to_json(), column_names, path)
     with ExitStack() as files:
         if path.name.endswith(csv_format.SUFFIXES):
             temporary = files.enter_context(written_beside(path))

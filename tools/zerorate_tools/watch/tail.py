@@ -11,7 +11,7 @@ import pyarrow.csv
 
 from ..errors import BadRecording
 from ..recordings import csv_format
-from ..recordings.checks import check_names, check_scales
+from ..recordings.checks import check_names
 from ..recordings.recording import TIME, Columns
 
 _MOST_BYTES = 1 << 20
@@ -49,9 +49,8 @@ class CsvTail:
         self.path = growing_file(path)
         self.name = path.name
         self.column_names = csv_format.read_header(self.path).names
-        self.scales = csv_format.read_scales(self.path)
         check_names(self.column_names, self.path)
-        check_scales(self.scales, self.column_names, self.path, csv_format.scales_path(self.path))
+        self.scales = csv_format.read_scales(self.path, self.column_names)
         self.bad_rows = self.restarts = 0
         self._begin()
 
