@@ -73,7 +73,7 @@ def test_a_straight_line_is_left_to_the_firmware(seed, tmp_path):
 
 
 def test_a_curve_that_explains_all_but_white_noise_ends_the_search(tmp_path):
-    path = warm_up(tmp_path, 0, lambda u: 0.02 * u**2, odr_hz=10.0, hours=3.0)
+    path = warm_up(tmp_path, 0, lambda u: 0.02 * u**2, odr_hz=4.0, hours=2.0)
     kinds, before, after = closed(path, tmp_path)
     assert len(kinds) <= 1
     assert after <= before

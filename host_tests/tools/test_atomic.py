@@ -106,7 +106,7 @@ def test_what_killed_runs_left_goes_and_what_others_write_now_stays(tmp_path, de
 def test_close_leaves_the_folder_as_it_was_where_its_report_has_no_room(old, monkeypatch):
     before = contents(old)
     monkeypatch.setattr(closing, "load", lambda *arguments: None)
-    monkeypatch.setattr(closing, "measure_upheld", lambda *arguments: (None, None))
+    monkeypatch.setattr(closing, "measure_and_prune", lambda *arguments: (None, None))
     monkeypatch.setattr(closing, "write_model", lambda _, folder: write_some(folder))
     monkeypatch.setattr(closing, "report", full)
     with pytest.raises(InFile, match="No space left"):

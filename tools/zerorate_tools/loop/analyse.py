@@ -8,6 +8,7 @@ from os import PathLike
 from threadpoolctl import threadpool_limits
 
 from ..recordings import open_recording
+from .fit.cross_products import whitener
 from .fit.floor import floor_dps
 from .fit.line import deployed
 from .fit.single import PiecesByLine
@@ -54,7 +55,9 @@ def analyse(
         [sessions[at]] if len(sessions) > 1 else [],
         len(sessions) == 1,
     )
-    sessions = without_steps([without_scales(s, motion) for s in sessions])
+    sessions = [without_scales(s, motion) for s in sessions]
+    whiteners = [whitener(s.available) for s in sessions]  # while they live nobody makes them anew
+    sessions = without_steps(sessions)
     taken = len(slots_of(motion))
     held = [sessions[at]]
     train = [s for i, s in enumerate(sessions) if i != at] or held
@@ -63,6 +66,7 @@ def analyse(
     selection, judgement = prune_by_holdout(selection, held)
     whole = [*selection.straight, *selection.terms]
     floor = floor_dps(judgement.whole, whole)
+    del whiteners
     terms, coefficients = deployed(selection)
     name_earth(selection.found, terms, coefficients, train)
     lines = periodic(train, held, terms, coefficients)

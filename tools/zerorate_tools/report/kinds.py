@@ -18,6 +18,11 @@ KINDS: dict[str, tuple[str, str]] = {
         "Curve over temperature",
         "The bias follows a curve over temperature that is more than a bend.",
     ),
+    "temperature-polynomial": (
+        "Polynomial over temperature",
+        "The bias follows a line, parabola or cubic over temperature more closely than the "
+        "firmware's own curve does.",
+    ),
     "temperature-kink": (
         "Kink over temperature",
         "Above one temperature the bias follows another slope.",

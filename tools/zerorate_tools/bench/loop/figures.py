@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass
 from functools import partial
+from typing import TypeVar
 
 import numpy as np
 
@@ -12,6 +13,8 @@ from .devices import CATALOGUE, HIDDEN, KINK, MANY_WIDTHS, NULL, OUT, OUTSIDE, R
 from .files import ROWS
 from .run_trial import Outcome
 from .wilson import interval
+
+Looked = TypeVar("Looked")
 
 
 @dataclass(frozen=True)
@@ -45,8 +48,8 @@ class Figure:
 
 def share(
     name: str,
-    group: Iterable[Outcome],
-    says: Callable[[Outcome], bool],
+    group: Iterable[Looked],
+    says: Callable[[Looked], bool],
     limit: float | None,
     at_most: bool = False,
 ) -> Figure:

@@ -137,27 +137,31 @@ def in_words(rows: dict[str, dict]) -> str:
 
 def cubic(analysis) -> list | None:
     """The terms of a cubic over temperature; None without temperature."""
-    line = analysis.selection.straight
+    line = analysis.selection.line
     return [replace(line[0], power=k) for k in (1, 2, 3)] if line else None
 
 
 def cubic_left(analysis) -> list[NDArray[np.float64]] | None:
     """(n, 3) dps that a cubic leaves of each held-out part by the same pieces, or fitted on the
-    same power-ons, held at the edges of what it was fitted to; NaN where unscored.
+    same power-ons: held at the edges of what it was fitted to or not, whichever leaves less; NaN
+    where unscored.
     """
     from ...loop.fit.line import ordinary
     from ...loop.fit.regression import predicted
     from ...loop.fit.single import PiecesByLine, held
-    from ...loop.verify.judge import scored
+    from ...loop.verify.judge import rms_dps, scored
 
-    terms = cubic(analysis)
-    if terms is None:
+    free = cubic(analysis)
+    if free is None:
         return None
-    if analysis.single:
-        return [PiecesByLine(analysis.sessions[0]).residual([], terms)]
-    terms = [held(t, analysis.train) for t in terms]
-    fitted = ordinary(terms, analysis.train)
-    return [scored(s, predicted(terms, fitted, s))[0] for s in analysis.holdout]
+    at_edges, left = [held(t, analysis.train) for t in free], []
+    for terms in (free, at_edges):
+        if analysis.single:
+            left.append([PiecesByLine(analysis.sessions[0]).residual([], terms)])
+        else:
+            fitted = ordinary(terms, analysis.train)
+            left.append([scored(s, predicted(terms, fitted, s))[0] for s in analysis.holdout])
+    return min(left, key=lambda parts: float((rms_dps(parts) ** 2).sum()))
 
 
 def _rms(parts: list[NDArray[np.float64]]) -> float:

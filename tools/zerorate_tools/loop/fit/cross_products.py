@@ -8,6 +8,7 @@ surrogates) is a sum of these over sessions.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from weakref import WeakValueDictionary
 
 import numpy as np
 from scipy.linalg import solve_triangular
@@ -95,9 +96,19 @@ def _contrasts(n: int) -> np.ndarray:
     return noise.transform(np.eye(n)).T
 
 
-#: Gaps of no more blocks than this, and no larger share than this, are bridged.
+_KNOWN: WeakValueDictionary[bytes, Whitener] = WeakValueDictionary()
+
+
 def whitener(available: np.ndarray) -> Whitener:
-    """The cheapest one that the gaps allow."""
+    """The cheapest one that the gaps allow; the same again while anyone holds it."""
+    key = available.tobytes()
+    known = _KNOWN.get(key)
+    if known is None:
+        known = _KNOWN[key] = _new(available)
+    return known
+
+
+def _new(available):
     if available.all():
         return Whitener(available)
     return BridgedWhitener(available) if can_be_bridged(available) else GappyWhitener(available)

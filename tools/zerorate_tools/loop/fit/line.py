@@ -7,15 +7,33 @@ before and after are both judged with an ordinary least-squares line on the rate
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from ...model.term import Term
 from ..read.sessions import block_basis
 from .regression import predicted
+
+#: Of the squared coefficients of play operators, in units of their columns, per block.
+_RIDGE = 5e-5
+
+
+def is_slope(term: Term) -> bool:
+    """Whether a term with limits is the straight line over temperature itself."""
+    plain = term.power == 1 and term.memory == "none" and term.lag_mode == "none"
+    alone = term.second is None and term.knot is None and not term.delay_s and not term.decay_s
+    return term.source == "temp" and np.isfinite(term.lo) and plain and alone
+
+
+def less_slope(straight: Sequence[Term], terms: Sequence[Term]) -> tuple[Term, ...]:
+    """The line that is fitted beside terms: none where one of them is the slope."""
+    return () if any(is_slope(t) for t in terms) else tuple(straight)
 
 
 def ordinary(terms, sessions, effects=(), coefficients=None) -> np.ndarray:
     """(terms, 3) dps per unit by least squares over blocks, an offset a session, effects subtracted
-    first.
+    first; play operators, which are much alike, are shrunk a little.
     """
     x, y = [], []
     for s in sessions:
@@ -25,6 +43,11 @@ def ordinary(terms, sessions, effects=(), coefficients=None) -> np.ndarray:
         x.append(s.less_offsets(columns, there)[there])
         y.append(s.less_offsets(rate, there)[there])
     scale = np.maximum(np.vstack(x).std(axis=0), 1e-300)
+    plays = [_RIDGE if t.memory == "play" else 0.0 for t in terms]
+    if any(plays):
+        rows = sum(map(len, x))
+        x.append(np.diag(np.sqrt(rows * np.array(plays)) * scale))
+        y.append(np.zeros((len(plays), 3)))
     return np.linalg.lstsq(np.vstack(x) / scale, np.vstack(y), rcond=1e-12)[0] / scale[:, None]
 
 

@@ -15,7 +15,7 @@ from scipy.ndimage import binary_dilation
 
 from ...model.term import Term
 from ..read.sessions import Session
-from .line import ordinary
+from .line import less_slope, ordinary
 from .regression import predicted
 
 #: Pieces, and the turns in which they are left out: each turn has pieces far apart.
@@ -114,18 +114,22 @@ class PiecesByLine:
 def fitted_to(part: Session, straight, terms, applied=None) -> tuple[list[Term], np.ndarray]:
     """(terms, (terms, 3) dps per unit) fitted to a part of a recording, the line first.
 
-    What does not remember is held at the edges of what the part shows of its source; the line is
+    What does not remember is held at the edges of what the part shows of its source; but beside
+    play operators, which go on there and bend against it, as they all do on the board. The line is
     fitted anew beside what is applied.
     """
     straight = list(straight)
-    kept = [held(t, [part]) if is_instant(t) else t for t in terms]
+    loop = any(t.memory == "play" for t in terms)
+    kept = [held(t, [part]) if is_instant(t) and not loop else t for t in terms]
     every = [*straight, *kept]
     if not every:
         return [], np.zeros((0, 3))
-    coefficients = ordinary(every, [part])
+    own = [*less_slope(straight, terms), *kept]
+    unused = np.zeros((len(every) - len(own), 3))
+    coefficients = np.vstack([unused, ordinary(own, [part])])
     if applied is not None:
         coefficients[len(straight) :] *= applied
-        if straight and not np.all(applied):
+        if straight and not len(unused) and not np.all(applied):
             rest = coefficients[len(straight) :]
             coefficients[: len(straight)] = ordinary(straight, [part], kept, rest)
     return every, coefficients
@@ -149,15 +153,23 @@ def nats(before: np.ndarray, after: np.ndarray, blocks: Sequence[int] | np.ndarr
     return (0.5 * _WORTH * count * ratio).sum(axis=1)
 
 
+def nats_of(factor: float, blocks: int) -> float:
+    """Nats that a factor by which the error of so many blocks falls, on every axis, is worth."""
+    return 3 * _WORTH * blocks * float(np.log(factor))
+
+
 def speaks_for(gain: np.ndarray) -> bool:
     """Whether nats gained on pieces left out speak for an effect."""
     return bool(gain.sum() > LEAST_NATS)
 
 
 def held(term: Term, sessions: Sequence[Session]) -> Term:
-    """The term held at the edges of what some sessions show of its source."""
+    """The term held at the edges of what some sessions show of its source; one that reaches beyond
+    all that the source does, as far beyond them."""
     seen = np.concatenate([s.block_mean(s.source(term.source))[s.available] for s in sessions])
-    lo, hi = max(term.lo, float(seen.min())), min(term.hi, float(seen.max()))
+    every = np.concatenate([s.source(term.source) for s in sessions])
+    below, above = max(0.0, every.min() - term.lo), max(0.0, term.hi - every.max())
+    lo, hi = max(term.lo, float(seen.min() - below)), min(term.hi, float(seen.max() + above))
     return replace(term, lo=min(lo, hi), hi=hi)
 
 

@@ -27,6 +27,8 @@ OWN_SOURCES = (
     "rate_z",
 )
 
+_MOST_KNOWN = 1000
+
 
 @dataclass
 class Session:
@@ -40,7 +42,7 @@ class Session:
     ticks_dps: (n * ticks_per_block, 3) rate of each tick at rest, NaN elsewhere; welch: spectrum of
     the samples at rest; tick_weight: (n * ticks_per_block,) samples that count in rate_dps.
     steps: of its bias, already out of rate_dps and ticks_dps; level_dps: (n * ticks_per_block, 3)
-    what they were.
+    what they were. known: block means of terms, of these sources or of those that were replaced.
     """
 
     name: str
@@ -59,6 +61,7 @@ class Session:
     tick_weight: np.ndarray | None = None
     steps: tuple = ()
     level_dps: np.ndarray | None = None
+    known: dict = field(default_factory=dict, repr=False, compare=False)
 
     @property
     def blocks(self) -> int:
@@ -129,5 +132,17 @@ def common_sources(sessions: list[Session]) -> list[str]:
 
 
 def block_basis(term: Term, session: Session) -> np.ndarray:
-    """(n,) mean over each block of the basis."""
+    """(n,) mean over each block of the basis, kept where the term remembers: that takes longest."""
+    if term.memory == "none":
+        return _basis(term, session)
+    sources, basis = session.known.get(term, (None, None))
+    if sources is not session.sources or basis is None:
+        basis = _basis(term, session)
+        if len(session.known) > _MOST_KNOWN:
+            session.known.clear()
+        session.known[term] = session.sources, basis
+    return basis
+
+
+def _basis(term, session):
     return session.block_mean(evaluate(term, session.source, session.tick_s))

@@ -32,6 +32,9 @@ _WHOLE_RANGE = (
 )
 #: Beyond it, a turn-on offset is rather another device's: parts repeat theirs far better.
 _ANOTHERS_DPS = 0.5
+#: Times the floor up to which a residual without a form of its own is the sensor's noise.
+_OF_FLOOR = 3.0
+_WANDERS = "It wanders as slow noise does, and follows nothing that was recorded."
 #: Share of what is held out at temperatures that nothing fitted has seen, and by how much.
 _UNSEEN_SHARE, _UNSEEN_DEGC = 0.25, 1.0
 
@@ -41,8 +44,10 @@ def what_is_known(analysis, after_dps: np.ndarray) -> str:
     residual, floor = analysis.judgement.residual_test, analysis.floor_dps
     times = (after_dps / np.maximum(floor, 1e-12)).max()
     size = f"{fixed(1e3 * after_dps.max(), 1)} mdps at worst"
-    if not residual.left:
+    if not residual.left and times <= _OF_FLOOR:
         return f"{size}. It looks like sensor noise."
+    if not residual.left:
+        return f"{size}, {times:.1f} times the noise floor. {_WANDERS}"
     parts = [f"{size}, {times:.1f} times the noise floor, and it is more than noise"]
     if residual.smooth:
         parts.append("it drifts slowly")

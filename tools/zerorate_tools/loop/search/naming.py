@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...model.term import Term
+from ..fit.line import is_slope
 from ..fit.regression import Regression, predicted
 from ..read.earth import ROTATION, can_be_earth
 from . import confounding
@@ -29,6 +30,8 @@ def name_found(
     bends: how many at the start stay what they are, with none but the catalogue's beside them.
     """
     for i, f in enumerate(found):
+        if any(is_slope(t) for t in f.candidate.terms):
+            continue  # beside it there is no line
         others = [t for j, g in enumerate(found) if j != i for t in g.candidate.terms]
         rest = [*straight, *others]
         near = _near(regression, rest, f.candidate, pool)

@@ -10,10 +10,11 @@ import numpy as np
 from ...model.term import Term
 from ..fit.common_cause import coherence, turned_axes
 from ..fit.left_out import gains
+from ..fit.line import less_slope
 from ..fit.regression import Regression
-from ..fit.single import LEAST_OF_A_PIECE, PIECES
+from ..fit.single import LEAST_OF_A_PIECE, PIECES, PiecesByLine
 from ..read.sessions import Session
-from . import confounding, drift_test, hysteresis
+from . import by_pieces, confounding, drift_test, hysteresis
 from . import steps as events
 from .bends import JudgedOnPieces, find_bends, on_pieces
 from .catalogue import Candidate, ranges
@@ -60,11 +61,11 @@ class Search:
         self.taken, self.judged_again = taken, judged_again
         self.regression = Regression(sessions)
         self.on_pieces = on_pieces
-        self.straight = straight_line(sessions)
-        self.bend = tuple(replace(t, power=2) for t in self.straight)
+        self.line = straight_line(sessions)
+        self.bend = tuple(replace(t, power=2) for t in self.line)
+        self.found: list[Found] = []
         self.pool = all_candidates(sessions)
         self.singles = [c.terms[0] for c in self.pool if len(c.terms) == 1]
-        self.found: list[Found] = []
         self.steps: list[events.Step] = []
         self.refused: list[tuple[str, str]] = []
         self.dropped: set[str] = set()
@@ -75,6 +76,11 @@ class Search:
         """What each candidate must reach, beside the bend that one recording may have shown."""
         power_ons = len(self.regression.sessions) > 1
         return MultipleTesting(self.regression, self.pool, self.straight, self.bend, power_ons)
+
+    @property
+    def straight(self) -> tuple[Term, ...]:
+        """The line, unless a slope found has its place."""
+        return less_slope(self.line, self.terms())
 
     def terms(self, leave: int | None = None) -> list[Term]:
         return [t for i, f in enumerate(self.found) if i != leave for t in f.candidate.terms]
@@ -98,7 +104,7 @@ class Search:
             self.refused,
             r.outliers,
             r,
-            self.straight,
+            self.line,
             self.bend,
             self.pool,
             smallest,
@@ -127,9 +133,22 @@ class Search:
         self.found = [Found(c, d) for c, d in bends.found]
         self.refused += bends.refused
         self._hysteresis_of_one_recording(bends.curve)
+        self._by_pieces_alone()
         self.bends = len(self.found)
         if any(t.power == 2 for t in self.terms()):
             self.bend = ()
+
+    def _by_pieces_alone(self):
+        """What the likelihood may not tell from a walk of the noise, but pieces left out do."""
+        assert self.on_pieces is not None
+        if any(t.memory == "play" for t in self.terms()):
+            return
+        r, by_line = self.regression, PiecesByLine(self.regression.sessions[0])
+        judged = self.on_pieces, by_line, self.taken
+        better = by_pieces.polynomial(r, self.line, self.found, *judged)
+        self.found = [better] if better else self.found
+        further = by_pieces.memory(r, self.line, self.found, self.pool, *judged)
+        self.found += [further] if further else []
 
     def _hysteresis_of_one_recording(self, curve: tuple[Term, ...]):
         """A sum of play operators with the bend found, or with a whole curve, as one effect."""
@@ -255,7 +274,7 @@ class Search:
         self.regression.set_events([events.column(self.regression, s) for s in self.steps])
 
     def _consider(self, c: Candidate) -> Found | None:
-        nuisances = self._nuisances(c)
+        r, nuisances = self.regression, self._nuisances(c)
         best = refined(self.regression, [*self.straight, *self.terms()], c)
         if self._is_a_start(best):
             self.refused.append((confounding.label(best), "the start of a lag's own memory"))
@@ -268,6 +287,9 @@ class Search:
         if decision.accepted and self._grows_with(best):
             decision = replace(decision, accepted=False, reason="makes what is left out worse")
         if decision.accepted and self.on_pieces:
+            if by_pieces.cancels(r.sessions, [*self.straight, *self.terms()], best.terms):
+                self.refused.append((confounding.label(best), "it would only cancel another"))
+                return None
             decision = on_pieces(decision, self.on_pieces, self.straight, self.terms(), best.terms)
         if decision.accepted:
             return Found(best, decision)

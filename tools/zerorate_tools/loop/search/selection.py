@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ...model.term import Term
+from ..fit.line import less_slope
 from ..fit.regression import Regression
 from .catalogue import Candidate
 from .confounding import label
@@ -34,14 +35,14 @@ class Found:
 
 @dataclass
 class Selection:
-    """What the training sessions show."""
+    """What the training sessions show. line: over temperature, which the firmware learns."""
 
     found: list[Found]
     steps: list[Step]
     refused: list[tuple[str, str]]
     outliers: int
     regression: Regression
-    straight: tuple[Term, ...]
+    line: tuple[Term, ...]
     bend: tuple[Term, ...]
     pool: list[Candidate]
     smallest_dps: dict[str, float]
@@ -65,6 +66,11 @@ class Selection:
             return replace(self.without(effect), withdrawn=[*self.withdrawn, said])
         found = [less if i == effect else f for i, f in enumerate(self.found)]
         return replace(self, found=found)
+
+    @property
+    def straight(self) -> tuple[Term, ...]:
+        """The line that is fitted beside the effects: none where one of them is the slope."""
+        return less_slope(self.line, self.terms)
 
     @property
     def applied(self) -> np.ndarray:

@@ -8,6 +8,7 @@ from os import PathLike
 from pathlib import Path
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from ...model import Model
 from ...recordings import Scales, open_recording
@@ -76,6 +77,7 @@ def _course_of(analysis, power_ons, model, scales) -> Callable[[str, bool, Sink]
     return measurement.course
 
 
+@threadpool_limits.wrap(limits=1, user_api="blas")
 def measure_and_prune(
     analysis: Analysis,
     logs: Sequence[str | PathLike[str]],

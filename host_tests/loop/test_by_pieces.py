@@ -1,0 +1,75 @@
+"""What pieces left out of one recording tell by themselves."""
+
+import numpy as np
+import pytest
+from zerorate_tools.bench.loop.simulated import simulate
+from zerorate_tools.loop.fit.line import is_slope, less_slope, ordinary
+from zerorate_tools.loop.fit.single import PiecesByLine, held
+from zerorate_tools.loop.search.by_pieces import POLYNOMIAL, cancels, memory, polynomial
+from zerorate_tools.loop.search.select import Search
+from zerorate_tools.model.term import Term
+
+
+@pytest.fixture(scope="module")
+def lagging():
+    (session,) = simulate(5, [("thermal-lag", 20.0)], sessions=1, bare=True).sessions
+    return Search([session])
+
+
+class Kernels:
+    """Pieces as a firmware predicts them whose own curve is worth `nats` less than a slope."""
+
+    reason = "-"
+
+    def __init__(self, nats):
+        self.nats = nats
+
+    def __call__(self, straight, found, candidate):
+        return np.array([self.nats if any(is_slope(t) for t in candidate) else 0.0])
+
+
+def by(search, judged):
+    r = search.regression
+    return r, search.line, [], judged, PiecesByLine(r.sessions[0]), 0
+
+
+def test_a_polynomial_takes_the_place_of_a_curve_that_predicts_worse(lagging):
+    found = polynomial(*by(lagging, Kernels(5.0)))
+    assert found.candidate.kind == POLYNOMIAL
+    assert less_slope(lagging.line, found.candidate.terms) == ()
+
+
+def test_a_curve_that_predicts_as_well_keeps_its_place(lagging):
+    assert polynomial(*by(lagging, Kernels(1.0))) is None
+
+
+def test_a_lag_is_found_by_pieces_alone(lagging):
+    r, line, found, _, by_line, taken = by(lagging, None)
+    best = memory(r, line, found, lagging.pool, by_line, by_line, taken)
+    assert best.candidate.kind == "thermal-lag"
+    assert not cancels(r.sessions, line, best.candidate.terms)
+
+
+def test_a_decay_that_only_stands_against_a_warm_up_cancels():
+    (session,) = simulate(5, sessions=1, bare=True).sessions
+    session.sources["temp"] = 40.0 - 18.0 * np.exp(-session.time_s() / 900.0)
+    line = [Term("temp", centre=30.0)]
+    assert cancels([session], line, [Term("one", decay_s=960.0)])
+
+
+def test_a_slope_of_its_own_reaches_beyond_a_piece_by_its_margin():
+    (session,) = simulate(1, sessions=1, bare=True).sessions
+    temp = session.sources["temp"]
+    lo, hi = temp.min(), temp.max()
+    part = PiecesByLine(session).parts[0]
+    seen = session.block_mean(temp)[part.available]
+    at_edge, beyond = (held(Term("temp", lo - m, hi + m), [part]) for m in (0.0, 3.0))
+    assert (at_edge.lo, at_edge.hi) == (seen.min(), seen.max())
+    assert beyond.lo == pytest.approx(seen.min() - 3.0)
+
+
+def test_operators_that_are_all_but_the_same_share_their_effect():
+    (session,) = simulate(2, sessions=1, bare=True).sessions
+    alike = [Term("temp", centre=25.0, memory="play", width=w) for w in (4.0, 4.0001)]
+    together, alone = ordinary(alike, [session]), ordinary(alike[:1], [session])
+    assert np.abs(together).max() < 2 * np.abs(alone).max()

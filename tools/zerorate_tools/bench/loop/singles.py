@@ -1,0 +1,263 @@
+"""One simulated recording alone, or two: what is deployed, and whether it makes anything worse.
+
+The truth is known, so the error is that of the bias itself, white noise left out, each stretch
+between two steps about its own mean at rest: what was left out, at rest; the same device in the
+hand; and a further power-on that nobody has seen.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
+
+from .figures import Figure, share
+
+KINDS = ("nothing", "step", "shock", "hysteresis", "lag", "kink")
+_FLOOR_DPS, _STEP_FLOORS = 0.002, 3.0
+_WORSE = 1.02
+#: Seconds on either side of a step in which one listed is that step.
+_NEAR_S = 90.0
+#: Seconds of a further power-on in which its turn-on offset is learned.
+_LEARNED_S = 180
+_REST = {"kind": "rest", "s": [90, 150]}
+_HAND = {"kind": "hand", "s": [8, 16]}
+_SHOCK = {"kind": "vibration", "g": 4.0, "s": 2}
+#: Temperature by name: to degC, a minute.
+_PATHS = {
+    "slow": [{"to": 45.0, "minutes": 32}, {"minutes": 4}, {"to": 24.0, "minutes": 34}],
+    "fast": [
+        {"to": 50.0, "minutes": 5},
+        {"minutes": 20},
+        {"to": 20.0, "minutes": 7},
+        {"minutes": 18},
+        {"to": 40.0, "minutes": 5},
+        {"minutes": 10},
+    ],
+    "warm-up": [{"to": 41.0, "tau_s": 900, "minutes": 60}],
+}
+
+
+@dataclass
+class Single:
+    """What became of one device. errors: (before, after) in mdps by where it was judged; kept:
+    effects deployed; steps: true ones, listed: of those; invented: steps that are none."""
+
+    kind: str
+    seed: int
+    recordings: int
+    errors: dict[str, tuple[float, float]]
+    kept: list[str]
+    steps: int
+    listed: int
+    invented: int
+
+    def worse(self, where: str) -> bool:
+        """Whether what was deployed makes the error larger by more than 2 % there."""
+        before, after = self.errors.get(where, (1.0, 1.0))
+        return bool(self.kept) and after > _WORSE * before
+
+    @property
+    def found(self) -> bool:
+        """Whether anything is deployed."""
+        return bool(self.kept)
+
+
+def describe(seed: int) -> tuple[dict, str, int]:
+    """(description, kind, recordings that are closed); one more power-on follows them."""
+    rng = np.random.default_rng(7_000_000 + seed)
+    kind, recordings = KINDS[seed % len(KINDS)], 1 if rng.random() < 0.6 else 2
+    path = _PATHS[str(rng.choice(list(_PATHS)))]
+    motion: list[dict] = [_REST, _HAND] if rng.random() < 0.5 else []
+    if kind == "shock" or (kind == "step" and rng.random() < 0.5):
+        motion = [{"kind": "rest", "s": [500, 900]}, _SHOCK, *motion]
+    size = float(np.exp(rng.uniform(np.log(2.0), np.log(20.0)))) * _FLOOR_DPS
+    described = {
+        "sensor": {
+            "odr_hz": 4.0,
+            "gyro_noise_at_hz": 100.0,
+            "temp_step_lsb": float(rng.choice([1.0, 32.0, 170.0])),
+        },
+        "bias": {
+            "b0": list(rng.normal(0, 0.8, 3)),
+            "b1": list(rng.normal(0, 0.015, 3)),
+            "b2": list(rng.normal(0, 2e-4, 3) * (rng.random() < 0.5)),
+            "turn_on_dps": 0.02,
+        },
+        "noise": {"bias_instability_dps": _FLOOR_DPS, "random_walk_dps": 5e-5},
+        "sessions": recordings + 1,
+        "every_session": {
+            "start_degc": 22.0,
+            "vary_degc": 2.0,
+            "vary_time": 0.15,
+            "temperature": path,
+            "motion": motion,
+        },
+        "effect": _effects(rng, kind, size, recordings),
+    }
+    return described, kind, recordings
+
+
+def _effects(rng, kind: str, size_dps: float, recordings: int) -> list[dict]:
+    if kind == "step":
+        dps = [float(_STEP_FLOORS * _FLOOR_DPS * s) for s in rng.choice([-1, 1], 3)]
+        own = int(rng.integers(1, recordings + 1))
+        return [{"kind": "step", "at_s": rng.uniform(700, 2600), "dps": dps, "session": own}]
+    form: dict[str, dict] = {
+        "hysteresis": {
+            "kind": "prandtl-ishlinskii",
+            "widths_degc": [float(w) for w in rng.uniform(2.0, 20.0, 3)],
+            "kept_off_degc": [float(d) for d in rng.normal(0, 3.0, recordings + 1)],
+        },
+        "lag": {"kind": "sensor-lag", "tau_s": rng.uniform(40, 300)},
+        "kink": {"kind": "kink", "knee_degc": rng.uniform(28, 36)},
+    }
+    if kind not in form:
+        return []
+    return [{**form[kind], "rms_dps": size_dps, "beyond_temperature": True}]
+
+
+def look_at_single(seed: int) -> Single:
+    """Simulate a device, close its recordings, and judge by the truth."""
+    from ...closing import load
+    from ...loop.report.report import report
+    from ...loop.verify.measure import measure_and_prune
+    from ...recordings import write_recording
+    from ...simulate import simulate_sessions
+
+    described, kind, recordings = describe(seed)
+    *made, further = list(simulate_sessions(described, seed=seed))
+    with tempfile.TemporaryDirectory() as folder:
+        logs = [Path(folder) / f"power-on-{i + 1}.parquet" for i in range(recordings)]
+        for log, (recording, _) in zip(logs, made):
+            write_recording(recording, log)
+        corrected = Path(folder) / "corrected.parquet"
+        analysis, model = measure_and_prune(load([*logs]), logs, corrected)
+        said = report(analysis)
+        errors = _held_out(corrected, logs, made, described)
+        errors["a further power-on"] = _further(model, logs, further)
+    true = [e for e in described["effect"] if e["kind"] == "step"]
+    near = [_is_near(event, true, logs, made) for event in said["events"]]
+    kept = [step["effect"] for step in said["steps"]]
+    listed = min(len(true), sum(near))
+    return Single(kind, seed, recordings, errors, kept, len(true), listed, len(near) - sum(near))
+
+
+def _is_near(event: dict, true: list[dict], logs: list[Path], made: list) -> bool:
+    at = [log.stem for log in logs].index(event["recording"].split(".")[0])
+    seconds = (event["t_us"] - made[at][1].t_us[0]) / 1e6
+    return any(e["session"] == at + 1 and abs(e["at_s"] - seconds) < _NEAR_S for e in true)
+
+
+def _held_out(path: Path, logs: list[Path], made: list, described: dict) -> dict:
+    """(before, after) mdps at rest and in motion, over the samples that were left out."""
+    import pyarrow.parquet as pq
+
+    table = pq.read_table(path)
+    names, split = (np.array(table[c].to_pylist()) for c in ("recording", "split"))
+    parts: dict[str, list] = {"at rest": [], "in motion": []}
+    for i, (log, (_, truth)) in enumerate(zip(logs, made)):
+        own = names == log.name
+        rows = np.searchsorted(truth.t_us, np.array(table["t_us"])[own])
+        held = split[own] == "test"
+        edges = [e["at_s"] for e in described["effect"] if e.get("session") == i + 1]
+        stretch = np.searchsorted(edges, (truth.t_us[rows] - truth.t_us[0]) / 1e6)
+        both = []
+        for way in ("before", "after"):
+            said = np.column_stack([np.array(table[f"bias_{way}_g{a}"])[own] for a in "xyz"])
+            both.append((said - truth.bias_lsb[rows]) / 131.0)
+        for where, there in (("at rest", truth.still[rows]), ("in motion", ~truth.still[rows])):
+            if (held & there).any():
+                parts[where].append(_about(both, stretch, truth.still[rows] & held, held & there))
+    return {
+        where: tuple(float(1e3 * np.sqrt((np.vstack(p) ** 2).mean())) for p in zip(*some))
+        for where, some in parts.items()
+        if some
+    }
+
+
+def _about(both, stretch, rest, scored) -> list[NDArray[np.float64]]:
+    """Errors before and after, each stretch about its own mean at rest."""
+    out = []
+    for error in both:
+        level = np.zeros_like(error)
+        for s in np.unique(stretch):
+            if (rest & (stretch == s)).any():
+                level[stretch == s] = error[rest & (stretch == s)].mean(axis=0)
+        out.append((error - level)[scored])
+    return out
+
+
+def _further(model, logs: list[Path], further) -> tuple[float, float]:
+    """(before, after) mdps over a power-on that nobody saw, by a firmware that has lived through
+    the recordings and learns no more than the first minutes of this one."""
+    from ...loop.verify.firmware import Firmware
+    from ...recordings import open_recording
+    from ...replay.samples import frames_in_batches
+
+    recording, truth = further
+    errors: list[float] = []
+    for own in (None, model if model.slots else None):
+        device = Firmware(recording.scales, own)
+        for log in logs:
+            device.power_on()
+            for frames in frames_in_batches(open_recording(log)):
+                device.run(frames)
+        device.power_on()
+        parts = [device.run(f, _first(f, recording)) for f in frames_in_batches(recording)]
+        bias = np.vstack(parts) / 256.0
+        error = (bias - truth.bias_lsb) / recording.scales.gyro_lsb_per_dps
+        error = error[truth.t_us - truth.t_us[0] > 1e6 * _LEARNED_S]
+        errors.append(float(1e3 * np.sqrt((error**2).mean())))
+    return errors[0], errors[1]
+
+
+def _first(frames, recording) -> NDArray[np.bool_]:
+    """(n,) whether a sample is of the first minutes."""
+    return frames.t_us - recording.columns["t_us"][0] < 1e6 * _LEARNED_S
+
+
+def look_at_singles(
+    number: int, processes: int = 2, advance: Callable[[float], None] = lambda n: None
+) -> list[Single]:
+    """So many devices, of every kind alike."""
+    with ProcessPoolExecutor(processes, initializer=threadpool_limits, initargs=(1,)) as pool:
+        out = []
+        for single in pool.map(look_at_single, range(number)):
+            advance(1)
+            out.append(single)
+    return out
+
+
+def single_figures(singles: list[Single]) -> list[Figure]:
+    """Shares made worse, and of steps listed and invented."""
+    rows = [
+        share(f"deployed and worse by more than 2 %, {where}", singles, _is_worse(where), 1.0, True)
+        for where in ("at rest", "in motion", "a further power-on")
+    ]
+    stepped = [s for s in singles if s.steps]
+    rows.append(share("steps of 3 floors listed", stepped, lambda s: bool(s.listed), 95.0))
+    rows.append(share("a step invented", singles, lambda s: s.invented > 0, 1.0, True))
+    for kind in KINDS:
+        own = [s for s in singles if s.kind == kind]
+        rows.append(share(f"{kind}: deployed anything", own, lambda s: s.found, None))
+        for where in ("at rest", "a further power-on"):
+            ratio = [np.divide(*s.errors[where][::-1]) for s in own]
+            name = f"{kind}: error after over before, {where}, mean"
+            rows.append(Figure(name, float(np.mean(ratio)), None, True, len(own), unit="x"))
+    return rows
+
+
+def _is_worse(where: str) -> Callable[[Single], bool]:
+    return lambda s: s.worse(where)
+
+
+def as_rows(singles: list[Single]) -> list[dict]:
+    """Plain values of every device."""
+    return [asdict(s) for s in singles]

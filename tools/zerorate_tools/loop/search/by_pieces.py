@@ -1,0 +1,134 @@
+"""What pieces left out tell of one recording where the likelihood cannot: its noise walks, too.
+
+The firmware's own curve over temperature is made of bins: over a few tenths of a degree it follows
+the noise, where a polynomial of its own slots does not. And a part that is heated from one side
+lags behind its thermometer however the noise walks. Both are taken where they predict the pieces
+left out clearly better, by the firmware's own kernels.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from ...model.term import Term
+from ..fit.line import ordinary
+from ..fit.regression import Regression, predicted
+from ..fit.single import PiecesByLine, nats_of
+from ..read.sessions import Session
+from .bends import JudgedOnPieces
+from .catalogue import Candidate, ranges
+from .decide import Decision, family_p
+from .fits_in_slots import fits_in_slots
+from .selection import Found
+
+POLYNOMIAL = "temperature-polynomial"
+#: What may lag behind temperature, or only seem to: the start of a power-on.
+_MEMORIES = ("thermal-lag", "thermal-rate", "power-on-transient")
+#: Nats that pieces left out must gain, and what may be left of their error: of a form without
+#: memory, and of one that has to be told from a walk of the noise, which a slow course feigns well.
+_CLEARLY, _CLEARLY_OF_MEMORY = (2.0, 0.97), (5.0, 0.9)
+#: Share of the range of temperature beyond which the slope is held.
+_BEYOND = 0.5
+#: Of the error without it that an effect may be. Lags of real parts are 0.6 times; what tells a
+#: start's decay from a warm-up by cancelling both is 6 times and more.
+_MOST_TIMES = 2.0
+
+
+def polynomial(
+    regression: Regression,
+    straight: Sequence[Term],
+    found: Sequence[Found],
+    judged: JudgedOnPieces,
+    by_line: PiecesByLine,
+    taken: int,
+) -> Found | None:
+    """A line, parabola or cubic over temperature with slots of its own, in the place of the bend
+    found; None where it does not predict clearly better.
+
+    judged: by the firmware's kernels; by_line: by least squares; taken: slots that others need.
+    """
+    every = _polynomials(regression, straight)
+    best = max(every, key=lambda terms: float(by_line(straight, (), terms).sum()), default=())
+    if not best or not fits_in_slots(best, taken):
+        return None
+    bend = [t for f in found for t in f.candidate.terms]
+    gain = judged(straight, (), best) - (judged(straight, (), bend) if bend else 0.0)
+    if not _is_clear(gain, regression, *_CLEARLY):
+        return None
+    decision = _decision(regression, straight, best[1:], len(every), gain)
+    return Found(Candidate(POLYNOMIAL, best, "catalogue"), decision)
+
+
+def memory(
+    regression: Regression,
+    straight: Sequence[Term],
+    found: Sequence[Found],
+    pool: Sequence[Candidate],
+    judged: JudgedOnPieces,
+    by_line: PiecesByLine,
+    taken: int,
+) -> Found | None:
+    """The lag, rate or start that predicts best beside what was found, where clearly better.
+
+    Arguments as for `polynomial`; pool: the candidates, of which others are passed over.
+    """
+    beside = [t for f in found for t in f.candidate.terms]
+    every = [*straight, *beside]
+    own = [
+        c
+        for c in pool
+        if c.kind in _MEMORIES
+        and fits_in_slots([*beside, *c.terms], taken)
+        and not cancels(regression.sessions, every, c.terms)
+    ]
+    gains = [float(by_line(straight, beside, c.terms).sum()) for c in own]
+    if not gains or max(gains) <= 0:
+        return None
+    best = own[gains.index(max(gains))]
+    gain = judged(straight, beside, best.terms)
+    if not _is_clear(gain, regression, *_CLEARLY_OF_MEMORY):
+        return None
+    return Found(best, _decision(regression, every, best.terms, len(own), gain))
+
+
+def cancels(sessions: Sequence[Session], beside: Sequence[Term], terms: Sequence[Term]) -> bool:
+    """Whether terms are far larger than the error that they explain: then they only stand against
+    others, as a start's decay against a warm-up, and not at another power-on."""
+    without = _squares(sessions, beside, ordinary(beside, sessions) if beside else None, True)
+    fitted = ordinary([*beside, *terms], sessions)[len(beside) :]
+    return _squares(sessions, terms, fitted, False) > _MOST_TIMES**2 * without
+
+
+def _squares(sessions, terms, coefficients, left: bool) -> float:
+    """Of what terms add to the bias, or leave of it, offsets aside, in all."""
+    total = 0.0
+    for s in sessions:
+        added = predicted(terms, coefficients, s) if len(terms) else 0.0
+        values = s.rate_dps - added if left else added
+        total += float((s.less_offsets(values, s.available)[s.available] ** 2).sum())
+    return total
+
+
+def _is_clear(gain, regression, least_nats: float, most_left: float) -> bool:
+    blocks = int(regression.sessions[0].available.sum())
+    return float(gain.sum()) > max(least_nats, nats_of(1.0 / most_left, blocks))
+
+
+def _decision(regression, nuisances, terms, tried: int, gain) -> Decision:
+    """Accepted by the pieces; the likelihood is only told."""
+    if not terms:
+        return Decision(True, 1.0, 0.0, 1.0, gain)
+    ratio = float(regression.gains(nuisances, [tuple(terms)]).sum())
+    return Decision(True, family_p(ratio, 3 * len(terms), tried), ratio, 1.0, gain)
+
+
+def _polynomials(regression, straight) -> list[tuple[Term, ...]]:
+    """Of one to three powers; the slope reaches beyond what was seen, as the firmware's does."""
+    if not straight:
+        return []
+    lo, hi, _ = ranges(regression.sessions)["temp"]
+    margin = _BEYOND * (hi - lo)
+    slope = replace(straight[0], lo=lo - margin, hi=hi + margin)
+    powers = [slope, *(replace(straight[0], lo=lo, hi=hi, power=k) for k in (2, 3))]
+    return [tuple(powers[:n]) for n in (1, 2, 3)]
