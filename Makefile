@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PYTEST_ARGS ?= -n auto
 
-.PHONY: demo test lint typecheck typecheck-tools pytest fuzz layout native docs lock wasm runtimes node wheel clean
+.PHONY: demo test lint typecheck typecheck-tools pytest fuzz sweep layout native docs lock wasm runtimes node wheel clean
 
 demo: $(VENV)/.tools wasm  ## the whole job on built-in input, no hardware
 	$(BIN)/zerorate demo
@@ -35,6 +35,10 @@ pytest: $(VENV)/.dev runtimes
 FUZZ ?= 3000
 fuzz: $(VENV)/.dev  ## every reader of files against FUZZ damaged ones each; what fails is kept
 	ZERORATE_FUZZ=$(FUZZ) $(BIN)/python -m pytest host_tests/hostile -k any $(PYTEST_ARGS)
+
+SWEEP ?= 10000
+sweep: $(VENV)/.dev  ## SWEEP random sensors and settings: does anything leave 31 bits?
+	$(BIN)/python -m host_tests.firmware.sweep --configurations $(SWEEP)
 
 layout: $(VENV)/.dev  ## write the constants of firmware/zerorate/layout.py where they are used
 	$(BIN)/python -m host_tests.layout

@@ -34,6 +34,7 @@ _LINE_TEMP = const(31)
 # layout: The corrector's settings
 _AXES = const(0)
 _AXIS_WORDS = const(13)
+_WALK_MOST_Q16 = const(41)
 _TURN_ON_VARIANCE_Q8 = const(45)
 # layout: The state of the source in motion
 _MOTION_BIAS_Q8 = const(71)
@@ -118,7 +119,7 @@ class Corrector:
         if gravity:
             self._learn_by_gravity(document)
         walk_lsb = chosen["walk_dps"] * self.sensor.gyro_lsb_per_dps
-        self._walk_q16 = max(1, int(walk_lsb * walk_lsb * 65536))
+        self._walk_q16 = max(1, int(min(c[_WALK_MOST_Q16], walk_lsb * walk_lsb * 65536)))
         self.state = array("i", [0] * (c[_AXES] + 3 * c[_AXIS_WORDS]))
         if rest.is_machine_code and self.alone and type(self) is Corrector:
             self.update = rest.bound(self.state, c)  # type: ignore[method-assign]

@@ -118,15 +118,17 @@ OF_THE_DOCUMENT = {
     "stable_s": 10.0,
     "split_s": 1.0,
 }
-# What a setting may be at most, by the end of its name; the least is 0.
+# What a setting may be at most, by the end of its name, and at least where that is not 0.
+LEAST = {"motion_start_dps": 0.001}
 MOST = {"dps": 4000.0, "g": 16.0, "degc": 200.0, "s": 86400.0, "share": 1.0}
 
 
 def checked(name, value):
     """Return `value` of a setting. Raises ValueError outside of its range."""
     most = MOST[name.split("_")[-1]]
-    if not 0 <= value <= most:
-        raise ValueError("%s must be 0..%s, not %s" % (name, most, value))
+    least = LEAST.get(name, 0)
+    if not least <= value <= most:
+        raise ValueError("%s must be %s..%s, not %s" % (name, least, most, value))
     return value
 
 
@@ -182,7 +184,9 @@ def bins_of(c, sensor, bins, every, document, limits):
     if not 4 <= bins < 20:
         raise ValueError("bins must be 4..19, not %d" % bins)
     half = min(32000, int(limits["range_dps"] * sensor.gyro_lsb_per_dps))
-    narrow = max(4, int(limits["narrowest_dps"] * sensor.gyro_lsb_per_dps))
+    # an edge beside a reading at the rail stays below 2^16, and 2^14 of them below 2^30
+    most = 0xFFFE // (bins + 1)
+    narrow = max(4, min(most, int(limits["narrowest_dps"] * sensor.gyro_lsb_per_dps)))
     c[_BINS] = bins
     c[_WIDTH_LSB] = max(1, 2 * half // bins) if every else narrow
     # the first reading stands in the middle of a bin, not on an edge
@@ -231,13 +235,13 @@ def recent_of(c, sensor, limits):
     """The offset that follows what the curve does not explain."""
     lsb = sensor.gyro_lsb_per_dps
     segment_s = c[_SEGMENT] * c[_WINDOW] / sensor.odr_hz
-    c[_FLOOR_Q8] = squared(limits["floor_dps"] * lsb * 16)
+    c[_FLOOR_Q8] = squared(limits["floor_dps"] * lsb * 16, 1 << 27)
     c[_GATE_Q4] = max(1, min(0x7FFF, int(limits["gate_dps"] * lsb * 16)))
     c[_INSIST] = max(3, int(limits["insist_s"] / segment_s + 0.5))
-    c[_WALK_LEAST_Q16] = squared(limits["walk_least_dps"] * lsb * 256)
     c[_WALK_MOST_Q16] = squared(limits["walk_most_dps"] * lsb * 256, 1 << 23)
-    c[_PROVISIONAL_Q8] = max(1, int(limits["turn_dps"] * lsb * 256))
-    c[_TURN_ON_VARIANCE_Q8] = squared(limits["turn_on_dps"] * lsb * 16)
+    c[_WALK_LEAST_Q16] = squared(limits["walk_least_dps"] * lsb * 256, c[_WALK_MOST_Q16])
+    c[_PROVISIONAL_Q8] = max(1, min(1 << 28, int(limits["turn_dps"] * lsb * 256)))
+    c[_TURN_ON_VARIANCE_Q8] = squared(limits["turn_on_dps"] * lsb * 16, 1 << 27)
     slope = limits["slope_dps_per_degc"] * lsb / (sensor.temp_lsb_per_degc or 1000.0)
     c[_SLOPE_Q16] = max(1, min(4095, int(slope * 65536)))
     c[_MOST_SIGMA_Q6] = max(1, min(8191, int(limits["motion_most_dps"] * lsb * 64)))

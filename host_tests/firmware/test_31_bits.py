@@ -2,16 +2,19 @@
 
 import random
 
+import numpy as np
 import pytest
-from zerorate import Sensor
+from zerorate import Corrector, Sensor
 from zerorate.layout import GUARD, SETTINGS, STATE
+from zerorate_tools.replay.engines import others_of
 
 from . import trace
 from .checked import I31, MOST, CheckedCorrector, OutOf31Bits, Words, checked
-from .trace_on_host import frames
+from .checked_c import CheckedLibrary
+from .sweep import attack
+from .trace_on_host import corrector_for, frames
 
 RAIL = 32767
-GOOD = 8  # word of the state: good frames, then those of each fault
 
 SENSORS = {
     "MPU-6050": Sensor(),
@@ -20,6 +23,7 @@ SENSORS = {
     "1 kHz": Sensor(1000.0, 131.0, 16384.0, 333.87, 21.0),
     "8 kHz": Sensor(8000.0, 8000.0, 32768.0, 2000.0, 0.0),
     "least of all": Sensor(0.01, 1.0, 1.0, 1.0, 0.0),
+    "finest of the slow": Sensor(1, 8000, 16384, 340, 36.53),
     "gyroscope alone": Sensor(100.0, 131.0, 0.0, 0.0, 0.0),
 }
 MODES = {
@@ -75,46 +79,66 @@ def temperatures(n, pick):
     )
 
 
-def drive(corrector, signal, updates, seed=1):
-    """Give it `updates` hostile frames at hostile times."""
+def hostile(signal, updates, leap_us, seed=1):
+    """(frames, dt_us): hostile frames at hostile times."""
     pick = random.Random(seed)
-    period_us = max(2, min(900000000, int(corrector.settings[1]) // 10))
+    period_us = max(2, min(900000000, leap_us // 10))
+    rows, dt_us = [], []
     for n in range(updates):
         accel = [pick.randint(-9, 9), 0, RAIL if n % 501 == 500 else 16384]
-        frame = [*accel, temperatures(n, pick), *signal(n, pick)]
-        dt_us = period_us
-        if n % 331 == 330:
-            dt_us = pick.choice([0, -1, 1 << 29, -(1 << 29), MOST >> 1])
-        corrector.update(frame, dt_us)
+        rows.append([*accel, temperatures(n, pick), *signal(n, pick)])
+        hostile_us = [0, -1, 1 << 29, -(1 << 29), MOST >> 1]
+        dt_us.append(pick.choice(hostile_us) if n % 331 == 330 else period_us)
+    return rows, dt_us
 
 
-@pytest.mark.parametrize("mode", sorted(MODES))
-@pytest.mark.parametrize("sensor", sorted(SENSORS))
-def test_no_result_leaves_31_bits(sensor, mode):
+@pytest.fixture(scope="module")
+def library():
+    return CheckedLibrary()
+
+
+def words(corrector):
+    """The arrays of a corrector as the library takes them, the state first."""
+    arrays = (corrector.state, corrector.settings, *others_of(corrector))
+    return [None if part is None else np.array(part, np.int32) for part in arrays]
+
+
+def test_no_result_leaves_31_bits(library):
     # windows as short as they come, so that few updates learn, evict and fit
-    corrector = CheckedCorrector(SENSORS[sensor], window_s=0.0001, **MODES[mode])
-    for name, signal in SIGNALS.items():
-        try:
-            drive(corrector, signal, 90)
-        except OutOf31Bits as error:
-            raise AssertionError(f"{name}: {error}") from error
-    assert int(corrector.state[STATE.COUNTS]) > 500
+    for sensor in SENSORS:
+        signals = {}
+        for mode in MODES:
+            arrays = words(Corrector(SENSORS[sensor], window_s=0.0001, **MODES[mode]))
+            for name, signal in SIGNALS.items():
+                if name not in signals:
+                    signals[name] = hostile(signal, 150, int(arrays[1][SETTINGS.LEAP_US]))
+                assert library.run(arrays, *signals[name]) == "", (sensor, mode, name)
+            assert arrays[0][STATE.COUNTS] > 800
 
 
 @pytest.mark.parametrize("signal", ["just below the rail", "anything"])
-def test_no_result_leaves_31_bits_in_the_longest_windows(signal):
-    corrector = CheckedCorrector(SENSORS["8 kHz"])
-    drive(corrector, SIGNALS[signal], 1400)
-    assert corrector.settings[SETTINGS.WINDOW] == 256
+def test_no_result_leaves_31_bits_in_the_longest_windows(library, signal):
+    arrays = words(Corrector(SENSORS["8 kHz"]))
+    leap_us = int(arrays[1][SETTINGS.LEAP_US])
+    assert library.run(arrays, *hostile(SIGNALS[signal], 1400, leap_us)) == ""
+    assert arrays[1][SETTINGS.WINDOW] == 256
 
 
 @pytest.mark.parametrize("mode", sorted(trace.MODES))
-def test_no_result_leaves_31_bits_in_the_trace_that_covers_every_event(mode):
-    corrector = CheckedCorrector(Sensor(*trace.SENSOR), **trace.LIMITS, **trace.MODES[mode])
-    rows, dt_us = frames(min(6000, trace.UPDATES[mode]))
-    for row, since in zip(rows.tolist(), dt_us.tolist()):
-        corrector.update(row, since)
-    assert int(corrector.state[STATE.COUNTS]) > 1900
+def test_no_result_leaves_31_bits_in_the_trace_that_covers_every_event(library, mode):
+    arrays = words(corrector_for(mode))
+    assert library.run(arrays, *frames(trace.UPDATES[mode])) == ""
+    assert arrays[0][STATE.COUNTS] > 1500
+
+
+def test_random_sensors_and_settings_of_the_documented_ranges_leave_31_bits_alone(library):
+    found = [attack(library, number, rows=1500) for number in range(60)]
+    assert [left for left in found if left] == []
+
+
+def test_what_another_source_found_and_every_reading_are_learned_one_by_one(library):
+    # a frame that is none between them ended in a division by zero
+    assert attack(library, 806) == ""
 
 
 def test_an_hour_of_repeated_frames_leaves_31_bits_alone():
@@ -144,3 +168,28 @@ def test_the_checking_integer_finds(beyond):
 
 def test_the_checking_integer_stays_one_through_plain_ones():
     assert all(isinstance(v, I31) for v in (1 + checked(2), checked(2) >> 1, -checked(2)))
+
+
+OPERATIONS = ["a + b", "a - b", "a * b", "a << b", "a >> b", "a // b", "a % b", "-a", "~a", "a ^ b"]
+VALUES = [0, 1, -1, 2, 30, 31, 0x7FFF, 0x8000, MOST >> 1, MOST, -MOST, -MOST - 1]
+KERNELS = [f"def op_{i}(a: int, b: int) -> int:\n    return {o}" for i, o in enumerate(OPERATIONS)]
+ASKED = [f"ask_{i}(int32_t a, int32_t b) {{ ASK({i}); }}" for i in range(len(OPERATIONS))]
+ASK = "#define ASK(i) return setjmp(escape) ? 0 : tried_op_##i(a, b)"
+SHOWN = '__attribute__((visibility("default"))) int32_t '
+
+
+def test_c_that_minds_31_bits_says_what_the_checking_integer_says(tmp_path):
+    (tmp_path / "tried.py").write_text("\n\n".join(KERNELS), encoding="utf-8")
+    entries = [("tried", f"op_{i}") for i in range(len(OPERATIONS))]
+    behind = "\n".join([ASK, *(SHOWN + asked for asked in ASKED)])
+    tried = CheckedLibrary(tmp_path, entries, behind)
+    for i, operation in enumerate(OPERATIONS):
+        for a in VALUES:
+            for b in VALUES:
+                tried.allow(10)
+                result = getattr(tried.functions, f"ask_{i}")(a, b)
+                try:
+                    said = int(eval(operation, {"a": checked(a), "b": checked(b)}))
+                except OutOf31Bits:
+                    said = None
+                assert (None if tried.left() else result) == said, (operation, a, b)

@@ -3,7 +3,7 @@
 import ast
 import re
 
-from zerorate.settings import DEFAULTS, MOST, OF_THE_DOCUMENT
+from zerorate.settings import DEFAULTS, LEAST, MOST, OF_THE_DOCUMENT
 
 _ENTRY = re.compile(r'^    "(\w+)": [-\w.]+,  # (.+)$', re.MULTILINE)
 _CONSTANT = re.compile(r"^_(\w+) = const\((\w+)\)  # (.+)$", re.MULTILINE)
@@ -13,7 +13,8 @@ _HEAD = """# What a user may set
 Made from `firmware/zerorate/settings.py` by `make layout`; edit that file. Give any of them by
 name: `Corrector(sensor, still_dps=0.5)`. The unit is behind the last `_`; a time of readings, as
 `promote_s`, is as many as the output data rate gives in it. The words that a setting makes are in
-[layout.md](layout.md). None may be less than 0; outside of its range `Corrector` raises ValueError.
+[layout.md](layout.md). Outside of its range `Corrector` raises ValueError; within them, and within
+those of `Sensor`, nothing leaves 31 bits (`make sweep`).
 
 `zerorate close` honours none of them: it computes with the defaults below, whatever the device
 used. `zerorate_tools.replay` takes any of them by name.
@@ -30,14 +31,15 @@ def settings_page(repository):
     source = (firmware / "settings.py").read_text(encoding="utf-8")
     meanings, words = dict(_ENTRY.findall(source)), words_made(source)
     rows = [
-        "| setting | default | by the document | at most | what | makes |",
-        "|---|---|---|---|---|---|",
+        "| setting | default | by the document | at least | at most | what | makes |",
+        "|---|---|---|---|---|---|---|",
     ]
     for name, value in DEFAULTS.items():
         made = ", ".join(f"`{word}`" for word in words.get(name, ()))
         literal = OF_THE_DOCUMENT.get(name, "")
-        most = MOST[name.split("_")[-1]]
-        rows.append(f"| `{name}` | {value} | {literal} | {most:g} | {meanings[name]} | {made} |")
+        least, most = LEAST.get(name, 0), MOST[name.split("_")[-1]]
+        limits = f"{least:g} | {most:g}"
+        rows.append(f"| `{name}` | {value} | {literal} | {limits} | {meanings[name]} | {made} |")
     fixed = ["| constant | value | what |", "|---|---|---|"]
     stillness = (firmware / "rest" / "stillness.py").read_text(encoding="utf-8")
     for name, value, meaning in _CONSTANT.findall(stillness):

@@ -17,6 +17,8 @@ def arc_q13(z: int) -> int:
 
     Odd minimax polynomial of degree 9 (Abramowitz and Stegun 4.4.49, error below 1e-5).
     """
+    if z > 0x7FFF:
+        z = 0x7FFF
     square = (z * z) >> 15
     sum_q15 = 683
     sum_q15 = ((sum_q15 * square) >> 15) - 2790

@@ -82,6 +82,7 @@ _ONE_G_Q24 = const(0x1000000)
 _BAND_Q24 = const(0x300000)
 _HALF_Q24 = const(0x800000)
 _MOST_Q13 = const(0x7FFF)
+_MOST_Q22 = const(0x3FFFFFF)  # four times as far, in a sub-unit
 _RADIAN_Q13 = const(8192)
 
 
@@ -125,6 +126,10 @@ def gather(s: ptr32, x: ptr32, factor: int, shift: int):
         turned = (x[4 + i] << 8) - s[_GRAVITY_BIAS_Q8 + i]
         turned = int(scaled(turned, factor, shift))
         turned += s[_ANGLE_Q22 + i]
+        if turned > _MOST_Q22:
+            turned = _MOST_Q22
+        if turned < -_MOST_Q22:
+            turned = -_MOST_Q22
         s[_ANGLE_Q22 + i] = turned
         turned = turned >> 9
         s[_ANGLE_SUM_Q13 + i] += turned

@@ -46,7 +46,7 @@ def sines(s: ptr32):
     while i < 3:
         s[_HALF + i] = (s[_HALF + i] * factor + 0x800) >> 12
         i += 1
-    factor = (((fourth >> 1) * (square >> 1)) >> 12) * 23
+    factor = (((fourth >> 2) * (square >> 2)) >> 10) * 23
     s[_REAL] = ((fourth * 2731) >> 14) - (square << 1) - (factor >> 12)
 
 

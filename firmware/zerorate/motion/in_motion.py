@@ -26,7 +26,7 @@ ptr32 = None
 
 from ..arithmetic.real import add, copy, whole
 from .attitude import normalise, rotation, sines, turn
-from .increments import close, gather, restart
+from .increments import close, gather, restart, within
 from .least_squares import (
     covariance,
     held_weights,
@@ -89,6 +89,8 @@ _SOLVE = const(2)
 # layout: What a window in motion taught
 _MOTION_GAP = const(7)
 # layout: end
+_MOST_BIAS_Q24 = const(0x7FFFFF)  # half a radian in a node, some 200 deg/s
+_MOST_HALF_Q14 = const(0x3FFF)
 
 
 def update(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
@@ -130,7 +132,7 @@ def begin_traversal(s: ptr32):
         i += 1
     i = 0
     while i < 3:
-        s[_BIAS_Q24 + i] = int(whole(s, _BIAS + 2 * i, 0))
+        s[_BIAS_Q24 + i] = int(within(whole(s, _BIAS + 2 * i, 0), _MOST_BIAS_Q24))
         s[_BIAS_CARRY_Q24 + i] = 0
         i += 1
     i = 0
@@ -215,7 +217,7 @@ def remove_bias(s: ptr32, a: int):
         s[_BIAS_CARRY_Q24 + i] += s[_BIAS_Q24 + i]
         part = (s[_BIAS_CARRY_Q24 + i] + 0x400) >> 11
         s[_BIAS_CARRY_Q24 + i] -= part << 11
-        part = (s[a + i] >> 15) - part
+        part = int(within((s[a + i] >> 15) - part, _MOST_HALF_Q14))
         s[_HALF + i] = part
         s[_TRAFFIC] += part if part > 0 else 0 - part
         i += 1

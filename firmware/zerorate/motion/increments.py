@@ -42,6 +42,7 @@ _NODES = const(8)
 
 
 _TWO_RAD_Q24 = const(0x1FFFFFF)
+_HALF_RAD_Q24 = const(0x7F0000)  # in a sample: two products with 2 rad fit
 _MOST_ANGLE_Q13 = const(0x3FFF)
 _MOST_FORCE_Q12 = const(0x7FFF)
 
@@ -76,12 +77,17 @@ def carried(s: ptr32, j: int, k: int) -> int:
 def convert(s: ptr32, c: ptr32, x: ptr32, factor: int):
     """Write the frame's turns, Q24 rad, and forces, Q12 g, to scratch words."""
     i = 0
-    half = 1 << (c[_MOTION_SHIFT] - 1)
     while i < 3:
-        s[_FRAME_ANGLE_Q24 + i] = (x[4 + i] * factor + half) >> c[_MOTION_SHIFT]
-        s[_FRAME_FORCE_Q12 + i] = int(
-            within((x[i] * c[_FORCE_GAIN] + 0x1000) >> 13, _MOST_FORCE_Q12)
-        )
+        angle = (x[4 + i] * factor + (1 << (c[_MOTION_SHIFT] - 1))) >> c[_MOTION_SHIFT]
+        s[_FRAME_ANGLE_Q24 + i] = int(within(angle, _HALF_RAD_Q24))
+        if s[_FRAME_ANGLE_Q24 + i] != angle:
+            s[_FAST] = c[_NODES]
+        i += 1
+    i = 0
+    factor = 0xFFFFFFF // c[_FORCE_GAIN]  # eleven words: just beyond the most of a force
+    while i < 3:
+        angle = int(within(x[i], factor)) * c[_FORCE_GAIN]
+        s[_FRAME_FORCE_Q12 + i] = int(within((angle + 0x1000) >> 13, _MOST_FORCE_Q12))
         i += 1
 
 
@@ -126,9 +132,10 @@ def close(s: ptr32, c: ptr32):
         over = (s[_NODE_ELAPSED_US] << 10) // c[_NODE_US]
         over = ((s[_BIAS_Q24 + i] >> 8) * over) >> 2
         angle = int(within((s[_NODE_ANGLE_Q24 + i] - over + 0x400) >> 11, _MOST_ANGLE_Q13))
-        s[_NODE_ANGLE_Q24 + i] -= angle << 11
         over = int(within(s[_NODE_FORCE_Q12 + i] // s[_NODE_N], _MOST_ANGLE_Q13))
         s[a + i] = (angle << 15) + (over & 0x7FFF)
+        angle = s[_NODE_ANGLE_Q24 + i] - (angle << 11)
+        s[_NODE_ANGLE_Q24 + i] = int(within(angle, _TWO_RAD_Q24))
         s[_NODE_FORCE_Q12 + i] = 0
         i += 1
     s[_NODE_N] = 0

@@ -89,6 +89,8 @@ def motion_settings(
     if not odr_hz * node_s >= 1:
         least_hz = 1 / node_s
         raise ValueError("learning in motion needs %g Hz or more, not %g" % (least_hz, odr_hz))
+    if not start_dps > 0:
+        raise ValueError("start_dps must be above 0, not %s" % start_dps)
     if not 4 <= longest_stage <= 8 or not 1 <= passes <= 8:
         raise ValueError("a window needs 16..256 nodes, and 1..8 passes")
     longest = 1 << longest_stage
@@ -98,6 +100,9 @@ def motion_settings(
     shift = 0
     while rad_per_lsb_us * sample_us * (1 << shift) < 4096 and shift < 20:
         shift += 1
+    if not shift:
+        least_hz = rad_per_lsb_us * 1e6 / 4096
+        raise ValueError("learning in motion needs %g Hz or more here, not %g" % (least_hz, odr_hz))
     gain_shift = 0
     while rad_per_lsb_us * (1 << shift) * (1 << gain_shift) < 1024 and gain_shift < 28:
         gain_shift += 1

@@ -91,6 +91,16 @@ def error_q4(s: ptr32, c: ptr32, a: int) -> int:
     return (mean - before - s[a + _OFFSET_Q8]) >> 4
 
 
+def move_offset(s: ptr32, a: int, by: int):
+    """Move the axis' offset, LSB Q8; it stays within twice what a word of the sensor says."""
+    by += s[a + _OFFSET_Q8]
+    if by > 0xFFFFFF:
+        by = 0xFFFFFF
+    if by < -0xFFFFFF:
+        by = -0xFFFFFF
+    s[a + _OFFSET_Q8] = by
+
+
 def plausible(s: ptr32, c: ptr32, a: int, error: int) -> int:
     """Return 1 if the error is within the gate or six sigma, or has insisted long enough.
 
@@ -108,7 +118,7 @@ def plausible(s: ptr32, c: ptr32, a: int, error: int) -> int:
     if s[a + _SUSPECT] < c[_INSIST]:
         return 0
     s[a + _SUSPECT] = 0
-    s[a + _OFFSET_Q8] += error << 4
+    move_offset(s, a, error << 4)
     return 2
 
 
@@ -122,8 +132,8 @@ def rewalk(s: ptr32, c: ptr32, a: int, excess: int):
     speed = (excess << 8) // age
     if speed > 0x1FFFFFF:
         speed = 0x1FFFFFF
-    if speed < -0x1FFFFFF:
-        speed = -0x1FFFFFF
+    if speed < -0x17FFFFF:  # forty times it, the share of a short age, fits
+        speed = -0x17FFFFF
     speed = speed << 4
     if speed > c[_WALK_MOST_Q16]:
         speed = c[_WALK_MOST_Q16]
@@ -159,7 +169,7 @@ def follow(s: ptr32, c: ptr32, a: int, error: int):
     excess -= s[_MEAN_NOISE_Q8]
     rewalk(s, c, a, excess)
     gain = gain_q14(s[_GROWN_Q8], s[_MEAN_NOISE_Q8])
-    s[a + _OFFSET_Q8] += (gain * error) >> 10
+    move_offset(s, a, (gain * error) >> 10)
     excess = (gain * (s[_MEAN_NOISE_Q8] & 0x3FFF)) >> 14  # eleven words: the product's low part
     s[a + _OFFSET_VARIANCE_Q8] = gain * (s[_MEAN_NOISE_Q8] >> 14) + excess
 
@@ -192,7 +202,13 @@ def let_learn(s: ptr32, c: ptr32, a: int):
         s[_RESTS] += 1
     off = level_q8(s, c, a)
     n = s[a + _WAITING_N]
-    s[a + _WAITING_SUM] -= (off >> 8) * n + ((off & 0xFF) * n + 128 >> 8)
+    off = s[a + _WAITING_SUM] - ((off >> 8) * n + ((off & 0xFF) * n + 128 >> 8))
+    n = n * 0x7FFF  # eleven words: the sum of as many readings at the rail
+    if off > n:
+        off = n
+    if off < -n:
+        off = -n
+    s[a + _WAITING_SUM] = off
 
 
 def adopt(s: ptr32, c: ptr32, a: int, error: int) -> int:
@@ -208,7 +224,7 @@ def adopt(s: ptr32, c: ptr32, a: int, error: int) -> int:
     elif noise >= grown_q8(s, a) and s[a + _OFFSET_FROM] != s[a + _OFFER] & 7:
         return 1
     else:
-        s[a + _OFFSET_Q8] += error << 4
+        move_offset(s, a, error << 4)
     s[a + _OFFSET_FROM] = s[a + _OFFER] & 7
     s[a + _OFFSET_VARIANCE_Q8] = noise
     s[a + _OFFSET_AGE_MS] = 0
@@ -262,4 +278,4 @@ def hand_over(s: ptr32, c: ptr32, a: int):
     else:
         after = s[_LEARN_TEMP]
         after = curve_q8(s, c, a, after)
-        s[a + _OFFSET_Q8] += s[a + _CURVE_BEFORE_Q8] - after
+        move_offset(s, a, s[a + _CURVE_BEFORE_Q8] - after)

@@ -193,11 +193,12 @@ def learn_at_once(s: ptr32, c: ptr32, x: ptr32):
     i = 0
     while i < 3:
         a = c[_AXES] + i * c[_AXIS_WORDS]
-        s[a + _WAITING_SUM] = x[4 + i]
-        s[a + _WAITING_N] = 1
-        learn_anywhere(s, c, a)
-        learn_here(s, c, a)
-        s[a + _WAITING_N] = 0
+        if s[a + _WAITING_N] == 0:  # else what another source found is being learned
+            s[a + _WAITING_SUM] = x[4 + i]
+            s[a + _WAITING_N] = 1
+            learn_anywhere(s, c, a)
+            learn_here(s, c, a)
+            s[a + _WAITING_N] = 0
         i += 1
 
 

@@ -23,14 +23,19 @@ static inline int32_t shift_left(int32_t a, int32_t by) {
 """
 
 
-def kernels_in_c(kernels: Kernels, *entries: tuple[str, str], arithmetic: str = ARITHMETIC) -> str:
+def kernels_in_c(
+    kernels: Kernels,
+    *entries: tuple[str, str],
+    arithmetic: str = ARITHMETIC,
+    expressions: type[Expressions] = Expressions,
+) -> str:
     """C text of `entries` (file, function) and all they call, as `static ... FILE_FUNCTION(...)`.
 
-    arithmetic: defines floor_div, floor_mod and shift_left. Raises NotKernel for text outside the
-    subset.
+    arithmetic: defines floor_div, floor_mod and shift_left. expressions: what writes expressions.
+    Raises NotKernel for text outside the subset.
     """
     order = kernels.behind(*entries)
-    written = [_Function(kernels.files[file], name).text() for file, name in order]
+    written = [_Function(kernels.files[file], name, expressions).text() for file, name in order]
     return "\n".join(["#include <stdint.h>\n", arithmetic, *written])
 
 
@@ -43,9 +48,11 @@ def prototype(kernels: Kernels, file: str, name: str) -> str:
 class _Function:
     """Writes one kernel."""
 
-    def __init__(self, file: KernelFile, name: str) -> None:
+    def __init__(
+        self, file: KernelFile, name: str, expressions: type[Expressions] = Expressions
+    ) -> None:
         self._file, self._name, self._node = file, name, file.kernels[name]
-        self._write = Expressions(file.path, file.constants, self._name_in_c)
+        self._write = expressions(file.path, file.constants, self._name_in_c)
 
     def _name_in_c(self, name: str) -> str:
         if name not in self._file.homes:

@@ -55,9 +55,14 @@ _TARGETS = {
 
 def text_of(*files: str) -> str:
     """C of all kernels, then of files of this folder, with the layout's words that they name."""
+    return f"{kernels_in_c(Kernels(), *ENTRIES)}\n{own_text(*files)}"
+
+
+def own_text(*files: str) -> str:
+    """C of files of this folder, with the layout's words that they name."""
     words = "\n".join(f"#define {name} ({value})" for name, value in _WORDS.items())
     own = [(_FOLDER / name).read_text(encoding="utf-8") for name in files]
-    return "\n".join([kernels_in_c(Kernels(), *ENTRIES), words, "", *own])
+    return "\n".join([words, "", *own])
 
 
 @lru_cache(maxsize=1)
@@ -154,10 +159,15 @@ def run_source(gravity: bool, state, settings, rows, dt_us, at, learned, words) 
     )
 
 
-def _compile(compiler: list[str], text: str, target: Path) -> None:
+def compile_library(text: str, target: Path, *flags: str) -> None:
+    """Compile C to a library at `target`. Raises MissingRuntime without a C compiler."""
+    _compile(_compiler(), text, target, flags)
+
+
+def _compile(compiler: list[str], text: str, target: Path, more: tuple[str, ...] = ()) -> None:
     source = target.with_suffix(".c")
     source.write_text(text, encoding="utf-8")
-    command = [*compiler, *_FLAGS, str(source), "-o", str(target)]
+    command = [*compiler, *_FLAGS, *more, str(source), "-o", str(target)]
     done = subprocess.run(command, capture_output=True, text=True)
     if os.strerror(errno.ENOSPC) in done.stderr:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(target))
