@@ -122,7 +122,13 @@ def test_a_writer_in_another_process_is_followed(writer, log, tmp_path):
 
 def test_ctrl_c_ends_it_well(log):
     command = [sys.executable, "-m", "zerorate_tools.cli", "watch", str(log), "--every", "0.1"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+    # A shell's background job hands on a Ctrl-C that is ignored.
+    ignored = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    finally:
+        signal.signal(signal.SIGINT, ignored)
+    with process:
         first = process.stdout.readline()
         process.send_signal(signal.SIGINT)
         rest = process.stdout.read()
