@@ -35,8 +35,14 @@ def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterato
             yield client
         return
     with (
-        # the first death of a worker tells as much as the fourth: see run_all
-        dask.config.set({"distributed.scheduler.allowed-failures": 0}),
+        dask.config.set(
+            {
+                # the first death of a worker tells as much as the fourth: see run_all
+                "distributed.scheduler.allowed-failures": 0,
+                # a worker that a busy machine starts anew in over 15 s is given up otherwise
+                "distributed.deploy.lost-worker-timeout": "1 hour",
+            }
+        ),
         distributed.LocalCluster(
             n_workers=workers or os.cpu_count() or 1,
             threads_per_worker=1,
