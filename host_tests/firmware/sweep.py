@@ -44,7 +44,7 @@ def options(draw, device):
     for name in ("document", "every", "ignore_outside"):
         found[name] = draw.random() < 0.3
     found["motion"] = device.accel_lsb_per_g and draw.random() < 0.4
-    found["accelerometer"] = device.accel_lsb_per_g and draw.random() < 0.4
+    found["gravity"] = device.accel_lsb_per_g and draw.random() < 0.4
     if draw.random() < 0.7:  # so that few rows learn, evict and fit
         found["window_s"] = 0.0001
     for name in draw.sample(sorted(DEFAULTS), draw.choice([0, 1, 3, 8, len(DEFAULTS)])):
@@ -63,7 +63,7 @@ def corrector_of(number):
     except OverflowError as error:
         return f"{error}, with {said}", None
     except ValueError:  # too slow a rate for the other sources
-        return said, Corrector(device, **chosen | {"motion": False, "accelerometer": False})
+        return said, Corrector(device, **chosen | {"motion": False, "gravity": False})
 
 
 def signal(noise, rows):
