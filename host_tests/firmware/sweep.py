@@ -12,6 +12,7 @@ from array import array
 import numpy as np
 from zerorate import Corrector, Sensor
 from zerorate.settings import DEFAULTS, LEAST, MOST
+from zerorate_tools.replay.engines import others_of
 
 from .checked_c import CheckedLibrary
 
@@ -104,8 +105,7 @@ def attack(library, number, rows=ROWS):
     if corrector is None:
         return chosen
     noise = np.random.default_rng(number)
-    arrays = [corrector.state, corrector.settings, corrector.motion, corrector.motion_settings]
-    arrays += [corrector.level, corrector.level_settings, None]
+    arrays = [corrector.state, corrector.settings, *others_of(corrector)]
     for words in arrays:
         if words is not None and max(map(abs, words)) >= 1 << 30:
             return f"a word beyond 31 bits at the start, with {chosen}"
