@@ -46,6 +46,7 @@ class MPU6050(Registers):
     rate; dlpf_hz the gyro's low-pass bandwidth (None: the widest below half of odr_hz). The
     values taken are attributes: odr_hz, dlpf_hz, gyro_lsb_per_dps, accel_lsb_per_g,
     temp_lsb_per_degc, temp_offset_degc (these five together: scales), fifo_bytes, part, who_am_i.
+    kept_power: whether the chip had this very configuration already, from a program before.
 
     The configuration is read back every check_every samples; a transfer is tried 1 + retries
     times. Raises ValueError for a value no part can take, OSError where no part, an unknown part
@@ -116,6 +117,7 @@ class MPU6050(Registers):
         self._settings = register_settings(self.kind, gyro_code, accel_code, dlpf_code, divider)
         for name in ("identity", "parts", "settings"):
             unload(name)
+        self.kept_power = self._is_configured()
         self.configure()
         self._changed_us = self.clock.ticks_us()
 
@@ -176,9 +178,8 @@ class MPU6050(Registers):
         now = self.read_register(_WHO_AM_I)
         if now != self.who_am_i:
             raise _wrong_device(self, now, f"was 0x{self.who_am_i:02x}")
-        for i in range(0, len(self._settings), 2):
-            if not self._is_kept(i):
-                return False
+        if not self._is_configured():
+            return False
         self.read_backs += 1
         self._errors_seen = self.bus_errors
         self._until_check = self._check_every
@@ -218,8 +219,12 @@ class MPU6050(Registers):
         """Degrees Celsius of a raw temperature reading, by this part's formula."""
         return raw / self.temp_lsb_per_degc + self.temp_offset_degc
 
-    def _is_kept(self, i):
-        return self.read_register(self._settings[i]) == self._settings[i + 1]
+    def _is_configured(self):
+        settings = self._settings
+        for i in range(0, len(settings), 2):
+            if self.read_register(settings[i]) != settings[i + 1]:
+                return False
+        return True
 
     def _has_leapt(self):
         """A word torn between two samples is off by its high byte: about 256 LSB."""

@@ -184,8 +184,11 @@ class Corrector:
             s[a + _WALK_Q16] = self._walk_q16
         self.power_on()
 
-    def power_on(self) -> None:
-        """Begin a new power-on with what `state` holds: its curves stand, half of its offsets."""
+    def power_on(self, same: bool = False) -> None:
+        """Begin a new power-on with what `state` holds: its curves stand, half of its offsets.
+
+        same: only the program began anew, and the chip kept its power: the offsets stand, too.
+        """
         s = self.state
         c = self.settings
         if self.effects is not None:
@@ -196,11 +199,12 @@ class Corrector:
         for axis in range(3):
             a = c[_AXES] + axis * c[_AXIS_WORDS]
             s[a + _WAITING_N] = 0
-            s[a + _OFFSET_Q8] >>= 1
-            s[a + _OFFSET_VARIANCE_Q8] = c[_TURN_ON_VARIANCE_Q8]
             s[a + _SUSPECT] = 0
-            s[a + _OFFSET_AGE_MS] = 0
             s[a + _LINE_TEMP] = -32768
+            if not same:
+                s[a + _OFFSET_Q8] >>= 1
+                s[a + _OFFSET_VARIANCE_Q8] = c[_TURN_ON_VARIANCE_Q8]
+                s[a + _OFFSET_AGE_MS] = 0
 
     def update(self, sample: "array[int]", dt_us: int) -> int:
         """Learn from `sample` and correct its rates in place; allocates nothing.
@@ -246,15 +250,15 @@ class Corrector:
         self.effects = effects
         self._join_others()
 
-    def load(self, store: "Any") -> int:
+    def load(self, store: "Any", same: bool = False) -> int:
         """Begin a power-on with what `store` holds; returns its reason, 0 if it was loaded.
 
-        store: a store.Store of `4 * len(corrector.state)` bytes. Anything but 0 leaves a clean
-        start; store.REASONS says why.
+        store: a store.Store of `4 * len(corrector.state)` bytes; same: as of power_on. Anything
+        but 0 leaves a clean start; store.REASONS says why.
         """
         reason = store.load(self.state)
         if reason == 0:
-            self.power_on()
+            self.power_on(same)
         return reason
 
     def save(self, store: "Any") -> bool:

@@ -55,12 +55,13 @@ class LearnedStore:
         storage, binding, base, pitch = self._model_place
         return Store(storage, binding, MODEL_BYTES, base=base, pitch=pitch)
 
-    def load(self) -> int:
+    def load(self, same: bool = False) -> int:
         """Put what was learned into the corrector and begin a power-on; LOADED or why not.
 
+        same: the chip kept its power (MPU6050.kept_power), only the program began anew.
         store.REASONS says each result in words; the corrector is as it was when it is not LOADED.
         """
-        return self.corrector.load(self.state)
+        return self.corrector.load(self.state, same)
 
     def save(self, payload: "Any" = None) -> bool:
         """Write what the corrector has learned; False when the storage failed.

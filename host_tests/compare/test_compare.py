@@ -1,16 +1,14 @@
 """`compare`: its own judgement, from the log alone, is the truth's wherever it is sure."""
 
 from dataclasses import replace
-from itertools import combinations
 
 import numpy as np
 import pytest
-from zerorate_tools.bench.broad import trials, true_bias
-from zerorate_tools.bench.peers import firmware, fusion, given, vqf_default
+from zerorate_tools.bench.broad import trials
+from zerorate_tools.bench.compared import SAME, beside_truth
 from zerorate_tools.cli import main
 from zerorate_tools.compare import compare, judge
 from zerorate_tools.compare.judge import FIRST_REST, FRESH, NOTHING, TAUGHT, TooFewRests
-from zerorate_tools.compare.rests import rests_of
 from zerorate_tools.compare.show import write_page
 from zerorate_tools.recordings import Recording, Scales, write_recording
 
@@ -100,7 +98,9 @@ def test_the_page_needs_no_other_file(drifting, tmp_path, capsys):
     assert write_page.__doc__
 
 
-def test_on_broad_it_is_sure_of_nothing_that_the_optics_deny(real_data, tmp_path):
+def test_on_broad_it_says_of_zerorate_what_the_optics_say_and_denies_them_nowhere(
+    real_data, tmp_path
+):
     """The truth is over all the time from the first later rest on, most of it in motion."""
     pytest.importorskip("vqf")
     pytest.importorskip("imufusion")
@@ -110,27 +110,10 @@ def test_on_broad_it_is_sure_of_nothing_that_the_optics_deny(real_data, tmp_path
         scales = replace(recording.scales, temp_lsb_per_degc=None, temp_offset_degc=None)
         path = tmp_path / f"{trial.name}.parquet"
         write_recording(replace(recording, scales=scales), path)
-        compared = compare([path])
-        true_mdps = errors_between(trial, path)
-        for one, other in combinations(compared.error_dps, 2):
-            word = compared.verdict(one, other).word
-            if word in ("better", "worse"):
+        for pair in beside_truth(compare([path]), trial, path):
+            if pair["by_log"] != SAME:
                 sure += 1
-                assert (true_mdps[one] < true_mdps[other]) == (word == "better"), (one, other)
+                assert pair["by_log"] == pair["by_truth"], (trial.name, pair)
+            if (pair["one"], pair["other"]) == (FIRST_REST, FRESH):
+                assert pair["by_log"] == pair["by_truth"], (trial.name, pair)
     assert sure > 16  # four trials, each with more than the four against no correction
-
-
-def errors_between(trial, path):
-    """Way -> RMS error by the optics from the first question to the last, mdps."""
-    one, truth = given(trial.recording()), true_bias(trial).bias_dps
-    rests = rests_of(path, one)
-    first = rests[0].bias_dps
-    biases = {
-        NOTHING: np.zeros_like(one.rate_dps),
-        FIRST_REST: np.broadcast_to(first, one.rate_dps.shape),
-        "vqf": vqf_default([one])[0],
-        "imufusion": fusion([one])[0],
-        FRESH: firmware()([one])[0],
-    }
-    part = slice(rests[1].first - round(3 * trial.hz), rests[-1].first)
-    return {way: 1e3 * np.sqrt(np.mean((b[part] - truth) ** 2)) for way, b in biases.items()}

@@ -148,6 +148,15 @@ def test_a_kept_setting_survives_a_restart(bench):
     assert bench.chip.registers[0x38] == 0x01
 
 
+def test_it_knows_a_chip_that_kept_its_power_from_a_program_before(make_bench):
+    bench = make_bench(odr_hz=50)
+    assert not bench.imu.kept_power
+    assert MPU6050(bench.bus, odr_hz=50, clock=bench.clock).kept_power
+    assert not MPU6050(bench.bus, odr_hz=100, clock=bench.clock).kept_power
+    bench.chip.power_up()
+    assert not MPU6050(bench.bus, odr_hz=100, clock=bench.clock).kept_power
+
+
 def test_the_binding_names_chip_range_and_filter(make_bench):
     assert make_bench().imu.binding != make_bench(full_scale_dps=500).imu.binding
     assert make_bench().imu.binding != make_bench(part="MPU-6500").imu.binding

@@ -19,6 +19,7 @@ from zerorate_tools.bench.service import run
 from zerorate_tools.errors import ZerorateError
 from zerorate_tools.service import Datagrams, Service, System, UnixSocket
 
+_AXES, _AXIS_WORDS, _OFFSET_Q8 = 0, 13, 24
 BIAS_DPS = (0.31, -0.19, 0.08)
 
 
@@ -68,9 +69,10 @@ def board(tmp_path):
 def test_a_day_in_small_teaches_nothing_wrong_and_loses_nothing(monkeypatch):
     monkeypatch.setattr("time.time", lambda: 1 / 0)  # a clock set back cannot matter: nobody looks
     found = run(hours=0.4, faults=30, seed=3)
-    assert found["worst_mdps"] < 50 and found["rms_mdps"] < 10
-    assert found["first_line_after_kill_mdps"] < 50 and found["kills"] >= 2
-    assert found["samples"] > 0.95 * found["samples_due"]
+    assert found["worst_mdps"] < 15 and found["rms_mdps"] < 5
+    assert found["first_line_after_kill_mdps"] < 30 and found["kills"] >= 2
+    assert found["downs"] > 10 and found["unexplained_downs"] == 0
+    assert found["samples"] > 0.99 * found["samples_due"]
 
 
 def test_what_it_learned_is_there_after_it_was_killed(board):
@@ -79,6 +81,32 @@ def test_what_it_learned_is_there_after_it_was_killed(board):
     board.live(1)
     assert "nothing was ever stored" in board.said[0] and "loaded" in board.said[1]
     assert board.kept.lines[0]["bias_dps"] == pytest.approx(BIAS_DPS, abs=0.02)
+
+
+def test_killed_at_a_chip_that_kept_its_power_it_takes_back_all_of_the_offset(board):
+    board.live(20)
+    state, at = offsets_of(board)
+    for axis, offset_q8 in zip(at, (8000, -4000, 2000)):
+        state[axis] = offset_q8
+    assert board.service._store.save()
+    kept = restarted_offsets_q8(board)
+    board.chip.power_up()
+    lost_power = restarted_offsets_q8(board)
+    assert (kept, lost_power) == ([8000, -4000, 2000], [4000, -2000, 1000])
+
+
+def offsets_of(board):
+    """The corrector's state, and where in it is what each axis adds to its curve."""
+    learner = board.service._corrector.corrector
+    c = learner.settings
+    return learner.state, [c[_AXES] + axis * c[_AXIS_WORDS] + _OFFSET_Q8 for axis in range(3)]
+
+
+def restarted_offsets_q8(board):
+    board.restart()
+    board.service.step()
+    state, at = offsets_of(board)
+    return [state[axis] for axis in at]
 
 
 def test_while_the_bus_is_gone_it_says_so_once_and_shows_that_it_lives(board):

@@ -24,6 +24,10 @@ from ..service import Service, System
 ODR_HZ = 5
 _CYCLE_S, _REST_S = 600.0, 360.0
 _SETTLE_S = 60.0
+_PERIOD_US = 1_000_000 // ODR_HZ
+_DOWN_US, _HURRY_US = 1_000_000, 20_000_000
+#: A frozen chip, or a bus that hangs for some transfers, strikes no longer.
+_STRIKES_FOR_US = 60_000_000
 BUS_FAULTS = ("nack", "gone", "hang", "all_ff", "all_00")
 FAULTS = (*BUS_FAULTS, "dip", "frozen", "full disk", "kill", "kill in a write")
 
@@ -97,29 +101,48 @@ class World:
 
 
 class Judge:
-    """A sink that holds each published line against the truth."""
+    """A sink that holds each published line against the truth.
+
+    worst_dps, of lines published at rest from a minute on, 20 s after the last down at the
+    earliest; hurried_dps, of those sooner after one. downs: stretches of over a second without a
+    line, down_us together; unexplained: those in which nothing had struck.
+    """
 
     def __init__(self, world: World) -> None:
         self.world = world
-        self.worst_dps = 0.0
-        self.sum_square = 0.0
-        self.judged = 0
-        self.lines = 0
+        self.worst_dps = self.hurried_dps = self.sum_square = 0.0
+        self.judged = self.lines = self.downs = self.unexplained = 0
+        self.down_us = self._last_us = self._up_us = 0
+        self.struck_us = -_STRIKES_FOR_US
         self.awaiting = False
         self.after_kill_dps: list[float] = []
 
     def put(self, line: bytes) -> None:
         """One published line."""
         self.lines += 1
+        self._note_down()
         bias = json.loads(line)["bias_dps"]
         wrong = max(abs(b - true) for b, true in zip(bias, self.world.bias_dps()))
         if self.awaiting:
             self.awaiting = False
             self.after_kill_dps.append(wrong)
-        if self.world.resting_s() > _SETTLE_S:
+        if self.world.seconds < _SETTLE_S:
+            return  # nothing can be known yet
+        if self.world.clock.now_us - self._up_us < _HURRY_US:
+            self.hurried_dps = max(self.hurried_dps, wrong)
+        elif self.world.resting_s() > _SETTLE_S:
             self.worst_dps = max(self.worst_dps, wrong)
             self.sum_square += wrong * wrong
             self.judged += 1
+
+    def _note_down(self) -> None:
+        now_us = self.world.clock.now_us
+        if now_us - self._last_us > _DOWN_US:
+            self.downs += 1
+            self.down_us += now_us - self._last_us - _PERIOD_US
+            self.unexplained += self.struck_us + _STRIKES_FOR_US < self._last_us
+            self._up_us = now_us
+        self._last_us = now_us
 
     def close(self) -> None:
         """Nothing to close."""
@@ -137,7 +160,6 @@ def run(hours: float = 24, faults: int = 1000, seed: int = 1) -> dict:
     end_us = round(hours * 3.6e9)
     due = sorted((luck.randrange(end_us), luck.choice(FAULTS)) for _ in range(faults))
     done: Counter[str] = Counter()
-    down_us = 0
     with tempfile.TemporaryDirectory() as folder:
         disk = Disk(Path(folder) / "learned.bin", clock)
         system = System(lambda: MPU6050(bus, odr_hz=ODR_HZ, clock=clock), disk, clock, _silent)
@@ -146,32 +168,35 @@ def run(hours: float = 24, faults: int = 1000, seed: int = 1) -> dict:
         while clock.now_us < end_us:
             if chip.frozen and clock.now_us >= thawed_us:
                 chip.frozen = False
-            before_us, lines = clock.now_us, judge.lines
             try:
                 while due and due[0][0] <= clock.now_us:
                     kind = due.pop(0)[1]
                     done[kind] += 1
+                    judge.struck_us = clock.now_us
                     if kind == "frozen":
                         chip.frozen, thawed_us = True, clock.now_us + luck.randrange(20_000_000)
                     _strike(kind, luck, chip, bus, disk)
                 service.step()
             except Killed:
+                judge.struck_us = clock.now_us
                 clock.advance_us(1_000_000)  # as systemd starts it again
                 service = Service(system, [judge])
                 judge.awaiting = True
-            if judge.lines == lines and clock.now_us - before_us > 500_000:
-                down_us += clock.now_us - before_us
     after = judge.after_kill_dps
     return {
         "hours": hours,
         "faults": dict(done),
         "samples": judge.lines,
-        "samples_due": round(ODR_HZ * (end_us - down_us) / 1e6),
-        "down_s": down_us / 1e6,
+        "samples_due": round(ODR_HZ * (end_us - judge.down_us) / 1e6),
+        "downs": judge.downs,
+        "down_s": judge.down_us / 1e6,
+        "unexplained_downs": judge.unexplained,
         "refused_writes": disk.refused,
         "rms_mdps": 1e3 * math.sqrt(judge.sum_square / max(1, judge.judged)),
         "worst_mdps": 1e3 * judge.worst_dps,
+        "worst_soon_after_down_mdps": 1e3 * judge.hurried_dps,
         "kills": len(after),
+        "first_line_after_kill_median_mdps": 1e3 * sorted(after)[len(after) // 2] if after else 0.0,
         "first_line_after_kill_mdps": 1e3 * max(after, default=0.0),
     }
 
@@ -198,11 +223,15 @@ def in_words(found: dict) -> str:
     faults = ", ".join(f"{count} {kind}" for kind, count in sorted(found["faults"].items()))
     return (
         f"{found['hours']:g} simulated hours, {sum(found['faults'].values())} faults: {faults}\n"
-        f"samples published {found['samples']:,} of {found['samples_due']:,} due while it was up; "
-        f"down for {found['down_s']:,.0f} s\n"
-        f"bias at rest, from {_SETTLE_S:.0f} s on: {found['rms_mdps']:.1f} mdps rms, worst axis "
-        f"and moment {found['worst_mdps']:.1f} mdps\n"
-        f"first line after each of {found['kills']} kills: at most "
-        f"{found['first_line_after_kill_mdps']:.1f} mdps wrong; "
+        f"down {found['downs']} times, {found['down_s']:,.0f} s together, "
+        f"{found['unexplained_downs']} times without a fault; besides, {found['samples']:,} of "
+        f"{found['samples_due']:,} samples were published\n"
+        f"bias at rest, from {_SETTLE_S:.0f} s on and 20 s after it was down: "
+        f"{found['rms_mdps']:.1f} mdps rms, worst axis and moment {found['worst_mdps']:.1f} mdps\n"
+        f"worst line of the first 20 s after it was down: "
+        f"{found['worst_soon_after_down_mdps']:.1f} mdps\n"
+        f"first line after each of {found['kills']} kills: in the middle "
+        f"{found['first_line_after_kill_median_mdps']:.1f} mdps wrong, at most "
+        f"{found['first_line_after_kill_mdps']:.1f}; "
         f"{found['refused_writes']} writes refused by a full disk\n"
     )

@@ -108,6 +108,21 @@ def _boards(arguments: argparse.Namespace) -> Found:
     return in_markdown(found), found
 
 
+def _compare(arguments: argparse.Namespace) -> Found:
+    from ..bench.compared import in_markdown, run
+    from ..progress import progress
+
+    with progress("recordings") as advance:
+        found = run(_recordings(arguments), advance)
+    return in_markdown(found), found
+
+
+def _compare_passed(found: Any) -> bool:
+    from ..bench.compared import passed
+
+    return passed(found)
+
+
 def _cost(arguments: argparse.Namespace) -> Found:
     from ..bench.cost import STEPS, cost
     from ..bench.cost_report import in_markdown
@@ -186,14 +201,19 @@ def _peers(arguments: argparse.Namespace) -> Found:
 
 def _real(arguments: argparse.Namespace) -> Found:
     from ..bench.loop.real import in_words, real_rows
+
+    rows = real_rows(_recordings(arguments), arguments.plots)
+    return in_words(rows), rows
+
+
+def _recordings(arguments: argparse.Namespace) -> Path:
     from ..bench.real_recordings import data_folder
     from ..errors import ZerorateError
 
     folder = arguments.data or data_folder()
     if folder is None or not Path(folder).is_dir():
-        raise ZerorateError("bench real: no recordings; name their folder with --data DIR")
-    rows = real_rows(Path(folder), arguments.plots)
-    return in_words(rows), rows
+        raise ZerorateError("no real recordings; name their folder with --data DIR")
+    return Path(folder)
 
 
 def _refine(arguments: argparse.Namespace) -> Found:
@@ -224,6 +244,12 @@ def _number(default: float, what: str) -> dict[str, Any]:
 BENCHES = {
     "accuracy": Bench("the bias error beside everyone else's", _accuracy, _QUICK),
     "boards": Bench("memory, time and numbers on an emulated Pico", _boards),
+    "compare": Bench(
+        "what `compare` says of real recordings; exit code 1 where the truth denies it",
+        _compare,
+        _RECORDINGS,
+        passed=_compare_passed,
+    ),
     "cost": Bench("instructions, heap, sizes and replay speed", _cost, _QUICK),
     "faults": Bench(
         "every fault of a bus and every cut of a write; exit code 1 when one goes unnoticed",

@@ -123,7 +123,9 @@ class Service:
         self._binding = imu.binding
         learner = Corrector(Sensor(*imu.scales))
         self._store = LearnedStore(self.system.storage, imu.binding, learner)
-        self.system.say(f"{imu.part}, {imu.odr_hz:g} Hz: {REASONS[self._store.load()]}")
+        self.system.say(
+            f"{imu.part}, {imu.odr_hz:g} Hz: {REASONS[self._store.load(imu.kept_power)]}"
+        )
         self._corrector = CheckedCorrector(learner)
         tolerance = max(1, round(_TOLERANCE_DPS * imu.gyro_lsb_per_dps))
         self._schedule = SaveSchedule(self._store, 3, tolerance, _WRITES_A_DAY, learner)

@@ -8,7 +8,7 @@ from typing import Any
 
 from ...errors import BadRecording
 from ..tables.table import Chunk, Table
-from .streams import chunks_of
+from .streams import chunks_of, si_mapping
 
 KIND = "DataFlash log"
 _TYPES = ("IMU", "IMU2", "IMU3")
@@ -16,12 +16,6 @@ _FIELDS = {
     **{"gx": "GyrX", "gy": "GyrY", "gz": "GyrZ"},
     **{"ax": "AccX", "ay": "AccY", "az": "AccZ", "temp": "T"},
 }
-_MAPPING = [
-    "t_us=t_us:us",
-    *(f"g{axis}=g{axis}:rad/s" for axis in "xyz"),
-    *(f"a{axis}=a{axis}:m/s2" for axis in "xyz"),
-    "temp=temp:degc",
-]
 _NO_OFFSETS = "DataFlash holds rates after the autopilot's own offsets (INS_GYROFFS)"
 
 
@@ -39,7 +33,6 @@ def read(path: Path, instance: int = 0) -> Table:
     if first is None:
         do = "log IMU (LOG_BITMASK), or try --instance"
         raise BadRecording(path, f"no IMU message of instance {instance}", do=do)
-    mapping = [words for words in _MAPPING if words.partition("=")[0] in first]
     size = path.stat().st_size
 
     def chunks(wanted: list[str]) -> Iterator[Chunk]:
@@ -48,7 +41,7 @@ def read(path: Path, instance: int = 0) -> Table:
             table.read_bytes = size * min(log.percent, 100.0) / 100.0
             yield chunk
 
-    table = Table(list(first), chunks, mapping, sensor="ArduPilot", notes=[_NO_OFFSETS])
+    table = Table(list(first), chunks, si_mapping(first), sensor="ArduPilot", notes=[_NO_OFFSETS])
     return table
 
 

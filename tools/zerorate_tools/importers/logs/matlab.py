@@ -10,9 +10,9 @@ import numpy as np
 
 from ...errors import BadRecording
 from ..tables.table import Chunk, Table
+from .streams import one_after_the_other
 
 KIND = ".mat file"
-_ROWS = 1 << 16
 
 
 def read(path: Path, instance: int = 0) -> Table:
@@ -46,10 +46,6 @@ def _table(found: dict[str, object], path: Path) -> Table:
         raise BadRecording(path, "no numeric variable", do="name another file")
 
     def chunks(names: list[str]) -> Iterator[Chunk]:
-        for start in range(0, rows, _ROWS):
-            end = min(start + _ROWS, rows)
-            yield Chunk(
-                np.arange(start, end), {n: columns[n][start:end].astype(float) for n in names}
-            )
+        yield from one_after_the_other([columns], names)
 
     return Table(list(columns), chunks)

@@ -9,6 +9,18 @@ import numpy as np
 from ..tables.table import Chunk
 
 _ROWS = 1 << 15
+_SI = [
+    "t_us=t_us:us",
+    *(f"g{axis}=g{axis}:rad/s" for axis in "xyz"),
+    *(f"a{axis}=a{axis}:m/s2" for axis in "xyz"),
+    "temp=temp:degc",
+]
+
+
+def si_mapping(names: Iterable[str]) -> list[str]:
+    """Words as of --map for those columns of a recording that an autopilot has, in SI units."""
+    names = set(names)
+    return [words for words in _SI if words.partition("=")[0] in names]
 
 
 def chunks_of(rows: Iterable[dict[str, float]], names: list[str]) -> Iterator[Chunk]:

@@ -10,16 +10,11 @@ import numpy as np
 
 from ...errors import BadRecording
 from ..tables.table import Chunk, Table
-from .streams import one_after_the_other
+from .streams import one_after_the_other, si_mapping
 
 KIND = "ULog"
 _TOPICS = ["sensor_gyro", "sensor_accel", "sensor_combined"]
 _GYRO, _ACCEL = ("gx", "gy", "gz"), ("ax", "ay", "az")
-_MAPPING = [
-    "t_us=t_us:us",
-    *(f"{axis}={axis}:rad/s" for axis in _GYRO),
-    *(f"{axis}={axis}:m/s2" for axis in _ACCEL),
-]
 
 
 def read(path: Path, instance: int = 0) -> Table:
@@ -37,13 +32,12 @@ def read(path: Path, instance: int = 0) -> Table:
             raise BadRecording(path, problem, do="log them (SDLOG_PROFILE), or try --instance")
         streams = _combined(combined)
     names = list(dict.fromkeys(name for stream in streams for name in stream))
-    mapping = [words for words in _MAPPING if words.partition("=")[0] in names]
-    mapping += ["temp=temp:degc"] if "temp" in names else []
 
     def chunks(wanted: list[str]) -> Iterator[Chunk]:
         yield from one_after_the_other(streams, wanted)
 
-    return Table(names, chunks, mapping, sensor=str(log.msg_info_dict.get("ver_hw", "PX4")))
+    sensor = str(log.msg_info_dict.get("ver_hw", "PX4"))
+    return Table(names, chunks, si_mapping(names), sensor=sensor)
 
 
 def _topic(log: Any, name: str, instance: int) -> dict[str, np.ndarray] | None:
