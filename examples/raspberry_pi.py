@@ -16,7 +16,7 @@ from zerorate_i2c.mpu6050 import MPU6050
 imu = MPU6050(LinuxI2C(1), odr_hz=100)
 learner = Corrector(Sensor(*imu.scales))
 store = LearnedStore(FileStorage("learned.bin"), imu.binding, learner)
-print(REASONS[store.load()])
+print(REASONS[store.load(imu.kept_power)])
 corrector = CheckedCorrector(learner)
 schedule = SaveSchedule(store, 3, tolerance=13)  # 0.1 dps at 131 LSB/dps
 bias_lsb = array("i", [0] * 3)
