@@ -1,9 +1,8 @@
-"""The table of effects that the loop knows, from the catalogue and the words of the report."""
+"""The table of effects that the loop knows, from the rows of model/effects.py."""
 
 import re
 
-from zerorate_tools.loop.search.catalogue import CATALOGUE, GENERIC, GROUPS
-from zerorate_tools.report.kinds import KINDS
+from zerorate_tools.model.effects import ANY_CHANNEL, EFFECTS
 
 _PLACE = re.compile(r"<!-- effects -->\n.*?<!-- end -->", re.DOTALL)
 
@@ -14,12 +13,10 @@ def with_effect_table(text):
 
 
 def effect_table():
-    """Every kind of the catalogue and every form of a channel: name, in words, what it says."""
-    kinds = [row[0] for row in (*CATALOGUE, *GROUPS, *GENERIC)]
-    rows = [f"| `{kind}` | {_title(kind)} | {KINDS[kind][1]} |" for kind in kinds]
+    """Every row: its kind, in words, what it says."""
+    rows = [f"| `{row.kind}` | {_title(row)} | {row.meaning} |" for row in EFFECTS]
     return "\n".join(["| effect | | |", "|---|---|---|", *rows, ""])
 
 
-def _title(kind):
-    words = KINDS[kind][0]
-    return f"any channel: {words}" if kind.startswith("channel") else words
+def _title(row):
+    return f"any channel: {row.title}" if row.source == ANY_CHANNEL else row.title

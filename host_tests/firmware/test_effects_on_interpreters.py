@@ -18,13 +18,14 @@ from .simulated_sources import SCALES
 _HERE = Path(__file__).parent
 UPDATES = 4000
 TEMP = ("temp", 20.0, 45.0, 32.0)
+TABLE = (0, 0.1, 0.3, 0.2, 0, -1, 1, 0.5, 0)
 SLOTS = [
     Slot(Term(*TEMP, lag_mode="rate", lag_s=20.0), (0.3, -0.2, 0.1)),
     Slot(Term(*TEMP, lag_mode="lag", lag_s=300.0, power=3, decay_s=900.0), (1e-4, 2e-4, 0.0)),
     Slot(Term(*TEMP, memory="backlash", width=2.0, knot=0.3), (0.3, -0.2, 0.1)),
     Slot(Term(*TEMP, memory="peak", power=2), (0.01, -0.02, 0.005)),
     Slot(Term("rate_x", -200.0, 200.0, second="temp", second_lo=0, second_hi=60), (1e-3, 0, 1e-4)),
-    Slot(Term("vib", 0.0, 0.2), (1.0, -2.0, 3.0), table=(0, 0.1, 0.3, 0.2, 0, -1, 1, 0.5, 0)),
+    Slot(Term("vib", 0.0, 0.2, table=TABLE), (1.0, -2.0, 3.0)),
     Slot(Term("vdd_mv", 4900.0, 5100.0, 5000.0, delay_s=90.0, power=2), (1e-4, 2e-5, 0.0)),
     Slot(Term("time", 0.0, 900.0), (1e-4, 2e-5, 0.0)),
 ]

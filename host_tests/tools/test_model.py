@@ -31,11 +31,12 @@ from zerorate_tools.recordings import Scales
 SCALES = Scales("MPU-6050", 100.0, 131.0, 16384.0, 340.0, 36.53)
 BINDING = Binding(0x68, 0, 0, 3)
 DEVICE = bytes([0x68, 0, 0, 3])
+TABLE = (0, 0.25, 0.5, 0.7, 1, 0.5, 0, -0.5, -1)
 SLOTS = [
     Slot(Term("temp", 20, 45, 32.5, power=2), (0.001, -0.002, 0.0003), "temperature-quadratic"),
     Slot(Term("temp", 20, 45, 32.5, lag_mode="rate", lag_s=20), (0.3, -0.2, 0.1), "thermal-rate"),
     Slot(Term("one", decay_s=240), (0.05, 0.1, -0.1), "power-on-transient"),
-    Slot(Term("temp", 20, 45, 30), (0.1, 0, 0), table=(0, 0.25, 0.5, 0.7, 1, 0.5, 0, -0.5, -1)),
+    Slot(Term("temp", 20, 45, 30, table=TABLE), (0.1, 0, 0)),
     Slot(Term("load", 0, 250, 100, delay_s=150, power=2), (1e-6, 2e-6, -1e-5), "load"),
     Slot(Term("vdd_mv", 4900, 5100, 5000, second="temp", second_lo=20, second_hi=45), (1e-5,) * 3),
 ]
@@ -218,7 +219,7 @@ def test_a_refused_model_leaves_none(model):
         ([SLOTS[0]] * 9, "room for 8 effect slots"),
         ([SLOTS[4]] * 3, "room for 2 delays"),
         ([SLOTS[3]] * 3, "room for 2 tables"),
-        ([replace(SLOTS[3], table=(2.0,) * 9)], "within -1..1"),
+        ([replace(SLOTS[3], term=replace(SLOTS[3].term, table=(2.0,) * 9))], "within -1..1"),
         ([replace(SLOTS[0], coefficient_dps=(1e3, 0, 0))], "could move the rate by"),
         ([Slot(Term("temp", lag_mode="lag", lag_s=1e9), (1e-3,) * 3)], "too long"),
         ([Slot(Term("x", lag_mode="lag", lag_s=9, memory="peak"), (1e-6,) * 3)], "both a lag"),

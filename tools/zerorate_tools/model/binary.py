@@ -69,9 +69,12 @@ def encoded(model: Model) -> bytes:
     unit_of = _units(model)
     for slot in plain:
         index = {name: places[_there(name, now, places)] for name, now in slot.sources()}
-        if slot.table:
-            tables.append(slot.table)
-        own = (len(tables) - 1 if slot.table else -1, rings if slot.has_delay(model.tick_s) else -1)
+        if slot.term.table:
+            tables.append(slot.term.table)
+        own = (
+            len(tables) - 1 if slot.term.table else -1,
+            rings if slot.has_delay(model.tick_s) else -1,
+        )
         rings += own[1] >= 0
         body.append(_SLOT.pack(*words_of(slot, unit_of, index.__getitem__, model.tick_s, *own)))
     body += [_TABLE.pack(*(round(v * _Q24) for v in table)) for table in tables]
@@ -136,7 +139,8 @@ def _decoded_body(data: bytes, head: tuple) -> Model:
     for row, effect in zip(rows, effects[:n_slots], strict=True):
         table = [v / _Q24 for v in tables[row[19]]] if row[19] >= 0 else None
         slot = slot_of(row, lambda i: inputs[i].name, _units(model), model.tick_s, table)
-        slots.append(replace(slot, effect=effect, table=_short_table(table)))
+        term = replace(slot.term, table=_short_table(table))
+        slots.append(replace(slot, effect=effect, term=term))
     for row, effect in zip(plays, effects[n_slots:], strict=True):
         slots += slots_of_play(row, inputs[row[0]].name, _units(model), effect)
     whole = replace(model, slots=tuple(slots))
@@ -160,7 +164,7 @@ def _units(model: Model):
 
 
 def _check_room(model: Model, plain: Sequence[Slot], plays: int) -> None:
-    tables = [s.table for s in model.slots if s.table]
+    tables = [s.term.table for s in model.slots if s.term.table]
     for what, number, most in (
         ("effect slots", len(plain), MOST_SLOTS),
         ("play operators", plays, MOST_PLAYS),

@@ -28,14 +28,12 @@ class CannotDeploy(ZerorateError):
 class Slot:
     """One effect: coefficient_dps (x, y, z), dps per unit of the term's basis.
 
-    effect: what it corrects, for people; table: nine values within +-1 at equal distances over
-    the term's range, which take the place of its power, or None.
+    effect: what it corrects, for people.
     """
 
     term: Term
     coefficient_dps: tuple[float, float, float]
     effect: str = ""
-    table: tuple[float, ...] | None = None
 
     @property
     def is_of_the_sample(self) -> bool:

@@ -66,7 +66,7 @@ def _steps(slot: Slot) -> Iterator[str]:
     yield from _memory(t, unit)
     if t.knot is not None:
         yield f"what is above {t.knot:g} {unit}".rstrip()
-    if slot.table:
+    if slot.term.table:
         yield "through a table"
     elif not t.power_first and t.power > 1:
         yield f"to the power of {t.power}"
@@ -97,8 +97,8 @@ def _numbers(slot: Slot) -> Iterator[str]:
         yield f"held outside {t.lo:g}..{t.hi:g} {unit_of(t.source)}".rstrip()
     if t.second:
         yield f"held outside {t.second_lo:g}..{t.second_hi:g} {unit_of(t.second)}".rstrip()
-    if slot.table:
-        yield "table: " + " ".join(f"{v:g}" for v in slot.table)
+    if slot.term.table:
+        yield "table: " + " ".join(f"{v:g}" for v in slot.term.table)
 
 
 def differences(one: Model, other: Model) -> list[str]:

@@ -33,7 +33,7 @@ def split(slots: Sequence[Slot]) -> tuple[list[Slot], list[Pair]]:
     for slot in slots:
         if not slot.is_play:
             continue
-        if slot.term.power not in (1, 2) or slot.table or not _is_plain(slot.term):
+        if slot.term.power not in (1, 2) or slot.term.table or not _is_plain(slot.term):
             raise CannotDeploy(
                 f"a play operator of {slot.term.source} has itself and its square, nothing else"
             )

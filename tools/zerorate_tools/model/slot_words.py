@@ -165,7 +165,7 @@ def lsb_q14_per_coefficient(slot: Slot, unit_of: UnitOf, shift: int, second_shif
     one = _one(term, unit_of, shift)
     if not term.power_first:
         one **= term.power
-    if slot.table:
+    if term.table:
         one = 1.0
     if term.lag_mode == "rate":
         one /= term.lag_s
@@ -221,7 +221,8 @@ def slot_of(
         return all(mine[i] == words[i] for i in among)
 
     term = _term(words, name_of, unit_of, tick_s)
-    slot = Slot(term, (0.0, 0.0, 0.0), table=tuple(table) if table else None)
+    term = replace(term, table=tuple(table) if table else None)
+    slot = Slot(term, (0.0, 0.0, 0.0))
     for name in _numbers(term):
         slot = _shortest(slot, name, lambda s: same(s, _OF_THE_BASIS))
     factor = lsb_q14_per_coefficient(slot, unit_of, words[4], words[16])

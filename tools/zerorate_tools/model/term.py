@@ -1,6 +1,7 @@
 """The float reference of an effect slot: what the firmware's integer kernels compute once per tick.
 
-Order: clamp, centre, delay, [power first], lag or memory, knot, power, second source, decay.
+Order: clamp, centre, delay, [power first], lag or memory, knot, table or power, second source,
+decay.
 """
 
 from __future__ import annotations
@@ -15,7 +16,11 @@ from scipy.signal import lfilter
 
 @dataclass(frozen=True)
 class Term:
-    """One slot without its coefficients. Units are those of the source; seconds for `*_s`."""
+    """One slot without its coefficients. Units are those of the source; seconds for `*_s`.
+
+    table: nine values within +-1 at equal distances over the term's range, which take the place of
+    its power, or None.
+    """
 
     source: str
     lo: float = -math.inf
@@ -34,10 +39,14 @@ class Term:
     second_hi: float = math.inf
     second_centre: float = 0.0
     decay_s: float = 0.0
+    table: tuple[float, ...] | None = None
 
     def to_dict(self) -> dict:
-        """Plain values; infinite limits become None so that the result is valid JSON."""
+        """Plain values; infinite limits become None so that the result is valid JSON, and no table
+        is left out."""
         values = asdict(self)
+        if self.table is None:
+            del values["table"]
         return {k: None if isinstance(v, float) and math.isinf(v) else v for k, v in values.items()}
 
     @classmethod
@@ -47,6 +56,8 @@ class Term:
         filled: dict[str, Any] = {
             k: infinite[k] if v is None and k in infinite else v for k, v in values.items()
         }
+        if filled.get("table"):
+            filled["table"] = tuple(filled["table"])
         return cls(**filled)
 
 
@@ -101,7 +112,10 @@ def evaluate(term: Term, sources, tick_s: float) -> np.ndarray:
     v = _remembered(term, u, tick_s)
     if term.knot is not None:
         v = np.maximum(v - term.knot, 0.0)
-    if not term.power_first:
+    if term.table:
+        ends = term.lo - term.centre, term.hi - term.centre
+        v = np.interp(v, np.linspace(*ends, len(term.table)), term.table)
+    elif not term.power_first:
         v = v**term.power
     if term.second is not None:
         v = v * (np.clip(sources(term.second), term.second_lo, term.second_hi) - term.second_centre)

@@ -36,8 +36,6 @@ def to_json(model: Model) -> str:
 def _slot_values(slot: Slot) -> dict[str, Any]:
     values = {"effect": slot.effect, **slot.term.to_dict()}
     values["coefficient_dps"] = list(slot.coefficient_dps)
-    if slot.table:
-        values["table"] = list(slot.table)
     return values
 
 
@@ -96,17 +94,17 @@ def _slot(values: Mapping[str, Any]) -> Slot:
         optional = name in _LIMITS or name == "knot"
         if name in (*_NUMBERS, *_LIMITS, "knot") and not (optional and term[name] is None):
             term[name] = _number(term[name], name)
+    if term.get("table"):
+        term["table"] = tuple(_number(v, "table") for v in term["table"])
     _check_choices(term)
     coefficients = [_number(v, "coefficient_dps") for v in values["coefficient_dps"]]
     if len(coefficients) != 3:
         raise ValueError("coefficient_dps has three numbers")
-    table = values.get("table")
     effect = _string(values.get("effect", ""), "effect")
     return Slot(
         Term.from_dict(term),
         (coefficients[0], coefficients[1], coefficients[2]),
         effect,
-        tuple(_number(v, "table") for v in table) if table else None,
     )
 
 

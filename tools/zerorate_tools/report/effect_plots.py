@@ -127,7 +127,7 @@ def abscissa(term: Term, session: Session) -> tuple[NDArray, str]:
         return session.block_mean(session.source(term.source)), _label(name, unit)
     if term.power_first and term.power > 1:
         return block_basis(replace(term, knot=None), session), f"lagged square of {name}"
-    bare = replace(term, knot=None, power=1)
+    bare = replace(term, knot=None, power=1, table=None)
     value = block_basis(bare, session)
     if term.lag_mode == "rate":
         return 60.0 * value, f"rate of {_label(name, f'{unit} per minute')}"

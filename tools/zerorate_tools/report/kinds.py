@@ -4,16 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-#: Kind -> what a person calls it, and what it says of the device.
-KINDS: dict[str, tuple[str, str]] = {
-    "temperature-quadratic": (
-        "Bend over temperature",
-        "The bias follows a curve over temperature, where a straight line was assumed.",
-    ),
-    "temperature-cubic": (
-        "S-shaped bend over temperature",
-        "The bias bends one way when cold and the other way when hot.",
-    ),
+from ..model import effects
+
+#: What is found without a row: kind -> what a person calls it, and what it says of the device.
+_FOUND_OTHERWISE = {
     "temperature-curve": (
         "Curve over temperature",
         "The bias follows a curve over temperature that is more than a bend.",
@@ -23,63 +17,12 @@ KINDS: dict[str, tuple[str, str]] = {
         "The bias follows a line, parabola or cubic over temperature more closely than the "
         "firmware's own curve does.",
     ),
-    "temperature-kink": (
-        "Kink over temperature",
-        "Above one temperature the bias follows another slope.",
-    ),
-    "thermal-rate": (
-        "Rate of temperature",
-        "The bias shifts while the temperature changes, the faster the more, and comes back when "
-        "it is held.",
-    ),
-    "thermal-lag": (
-        "Lag of the thermometer",
-        "The part that makes the bias warms later, or earlier, than the thermometer shows.",
-    ),
-    "thermal-hysteresis": (
-        "Thermal hysteresis",
-        "At one temperature the bias differs between heating and cooling, however slow either is.",
-    ),
-    "temperature-peak": (
-        "Memory of the highest temperature",
-        "The bias depends on the hottest that the part has been since power-on.",
-    ),
-    "power-on-transient": (
-        "Power-on transient",
-        "The bias settles after power-on, whatever the temperature does. It follows time since "
-        "power-on; the cause is not identified.",
-    ),
-    "time-drift": (
-        "Drift with time",
-        "The bias drifts with time since power-on; the cause is not identified.",
-    ),
-    "vibration": (
-        "Vibration",
-        "The bias shifts with the mean square of vibration (rectification).",
-    ),
-    "supply-voltage": ("Supply voltage", "The bias follows the supply voltage."),
-    "supply-temperature": (
-        "Supply voltage times temperature",
-        "The bias follows the supply voltage, by an amount that depends on temperature.",
-    ),
-    "linear-acceleration": (
-        "Acceleration",
-        "The bias follows acceleration, gravity's included: it depends on how the device lies.",
-    ),
-    "squared-acceleration": (
-        "Acceleration squared",
-        "The bias follows the square of acceleration, gravity's included.",
-    ),
-    "scale-factor": (
-        "Scale factor",
-        "The rates are too large or too small by a constant share.",
-    ),
+    "scale-factor": ("Scale factor", "The rates are too large or too small by a constant share."),
     "cross-axis": ("Cross-axis sensitivity", "A turn about one axis shows on the others."),
     "scale-factor+cross-axis": (
         "Scale factor and cross-axis sensitivity",
         "The rates are off by a constant share, and a turn about one axis shows on the others.",
     ),
-    "rate-scale": ("Scale factor or cross-axis sensitivity", "The error follows the rate of turn."),
     "sample-timing": (
         "Timing of the samples",
         "The readings and those of the reference are not of the same moment. This is no bias.",
@@ -88,23 +31,14 @@ KINDS: dict[str, tuple[str, str]] = {
         "Periodic interference",
         "Something with a fixed period gets into the rate: a heater's switching, mains, a motor.",
     ),
-    "channel": ("in proportion", "The bias moves in proportion to it."),
-    "channel-square": ("its square", "The bias moves with its square."),
-    "channel-lag": ("lagged", "The bias follows it late, as through a first-order lag."),
-    "channel-delay": ("delayed", "The bias follows it some time later."),
-    "channel-delay-square": ("its square, delayed", "The bias follows its square some time later."),
-    "channel-rate": ("its rate of change", "The bias shifts while it changes."),
-    "channel-lag-square": (
-        "its square, lagged",
-        "The bias follows its square late, as through a first-order lag.",
-    ),
-    "channel-kink": ("above a threshold", "Only above a threshold does the bias follow it."),
-    "channel-peak": (
-        "memory of its highest value",
-        "The bias depends on its highest value since power-on.",
-    ),
-    "channel-product": ("a product", "The bias follows the product of the two."),
 }
+
+
+def words_of(kind: str) -> tuple[str, str]:
+    """(title, meaning) of a kind; itself and nothing where nobody knows it."""
+    rows = {row.kind: (row.title, row.meaning) for row in effects.EFFECTS}
+    return rows.get(kind) or _FOUND_OTHERWISE.get(kind, (kind, ""))
+
 
 _SOURCES = {
     "temp": ("temperature", "°C"),
@@ -131,7 +65,7 @@ def kind_of(effect: str) -> str:
 def title(effect: str, sources: list[str] | None = None) -> str:
     """What a person calls the effect."""
     kind = kind_of(effect)
-    words = KINDS.get(kind, (kind, ""))[0]
+    words = words_of(kind)[0]
     if not kind.startswith("channel"):
         return words
     named = sources or [part for part in effect.partition("(")[2].rstrip(")").split(", ") if part]
@@ -141,7 +75,7 @@ def title(effect: str, sources: list[str] | None = None) -> str:
 
 def meaning(effect: str) -> str:
     """One sentence on what the effect says of the device."""
-    said = KINDS.get(kind_of(effect), ("", ""))[1]
+    said = words_of(kind_of(effect))[1]
     if kind_of(effect).startswith("channel"):
         said += " It is in no catalogue: the mechanism is unknown."
     return said
@@ -149,6 +83,8 @@ def meaning(effect: str) -> str:
 
 def per_unit(parameters: dict[str, Any]) -> str:
     """The unit of a coefficient, given a slot's parameters."""
+    if parameters.get("table"):
+        return "mdps from the middle of its curve to the end"
     unit = _power(quantity(parameters["source"]), parameters.get("power", 1))
     if parameters.get("lag_mode") == "rate":
         unit = f"({unit} per s)"

@@ -10,6 +10,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.signal import lfilter
 
+from ..model.effects import curve_of
 from .world import World
 
 
@@ -136,12 +137,17 @@ def channel(
     rate: bool = False,
     knee: float | None = None,
     power: float = 1.0,
+    row: str | None = None,
     times: str | None = None,
     times_centre: float = 0.0,
 ) -> np.ndarray:
     """Any source: ((source - centre)/span), delayed, lagged, its rate a minute, above a knee, to a
-    power, times a second source. Sources: temp ax ay az gx gy gz time_s and every channel."""
-    u = (of(world, source) - centre) / span
+    power, times a second source. row: a kind of model/effects.py whose curve the source goes
+    through first. Sources: temp ax ay az gx gy gz time_s and every channel."""
+    u = of(world, source)
+    if row is not None:
+        u = curve_of(row)(u)
+    u = (u - centre) / span
     u = lagged(delayed(u, delay_s, world.dt_s), lag_s, world.dt_s)
     if rate:
         u = np.gradient(u, world.dt_s) * 60

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...model import effects
 from ...signs import fixed
 from ..search.catalogue import is_supply, varies
 from ..verify.measured import BEFORE
@@ -145,10 +146,8 @@ def _turned(sessions):
 
 def not_excluded(analysis) -> list[str]:
     """Kinds of effect that these recordings cannot show because nothing in them varies it."""
-    from ..search.catalogue import CATALOGUE, GROUPS
-
     shown = {c.kind for c in analysis.selection.pool}
     if analysis.motion.turning is not None:
         shown.add("rate-scale")
-    kinds = [row[0] for row in CATALOGUE] + [row[0] for row in GROUPS]
+    kinds = [row.kind for row in effects.EFFECTS if row.source != effects.ANY_CHANNEL]
     return [kind for kind in kinds if kind not in shown]

@@ -1,86 +1,18 @@
-"""What a bias can follow: a table of effects, and forms for any recorded channel.
-
-To add an effect, add a row. A row is (kind, source, fields of the slot, grids of further fields);
-the slot is `basis.Term`. Grids are coarse: what is found is refined afterwards.
-"""
+"""What the bias of these sessions can follow: the rows of model/effects.py, each in its places."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from itertools import product
-from typing import Any
 
 import numpy as np
 
+from ...model import effects
+from ...model.effects import ANY_CHANNEL, SUPPLY, Effect, table_of
 from ...model.term import Term
 from ..motion.rate_scale import LEAST_RUNS
 from ..read.sessions import Session, block_basis, common_sources
 from ..read.turns import GIVEN
-
-Options = dict[str, Any]
-
-#: Where the factors of a product are zero; each place takes another share of either factor.
-_CENTRES: Options = {"centre": ("mean", "lo", "hi"), "second_centre": ("mean", "lo", "hi")}
-
-#: Physical effects; `knot` grids are shares of the source's range.
-CATALOGUE: tuple[tuple[str, str, Options, Options], ...] = (
-    ("temperature-quadratic", "temp", {"power": 2}, {}),
-    # About another centre than its own it takes a quadratic beside it, and kinks fit better.
-    ("temperature-cubic", "temp", {"power": 3}, {"centre": ("mean", "lo", "hi")}),
-    ("temperature-kink", "temp", {}, {"knot": (0.15, 0.25, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85)}),
-    ("thermal-rate", "temp", {"lag_mode": "rate"}, {"lag_s": (10.0, 20.0, 40.0)}),
-    (
-        "thermal-lag",
-        "temp",
-        {"lag_mode": "difference"},
-        {"lag_s": (80.0, 160.0, 320.0, 640.0, 1300.0)},
-    ),
-    ("thermal-hysteresis", "temp", {"memory": "backlash"}, {"width": (0.7, 1.4, 2.8, 5.6, 11.0)}),
-    ("temperature-peak", "temp", {"memory": "peak"}, {}),
-    (
-        "power-on-transient",
-        "one",
-        {},
-        {"decay_s": (60.0, 120.0, 240.0, 480.0, 960.0, 1900.0, 3800.0)},
-    ),
-    ("time-drift", "time", {}, {}),
-    ("vibration", "vib", {}, {}),
-    ("supply-voltage", "supply", {}, {}),
-    ("supply-temperature", "supply", {"second": "temp"}, _CENTRES),
-)
-
-#: Effects of several columns at once, each with a coefficient per axis.
-GROUPS: tuple[tuple[str, tuple[str, ...], Options], ...] = (
-    ("linear-acceleration", ("acc_x", "acc_y", "acc_z"), {}),
-    ("squared-acceleration", ("acc_x", "acc_y", "acc_z"), {"power": 2, "centre": 0.0}),
-    ("rate-scale", ("rate_x", "rate_y", "rate_z"), {}),
-)
-
-#: A channel that switches shows its delay to the block: between the grid's points nothing is seen.
-DELAY_STEP_S = 20.0
-_DELAYS_S = tuple(DELAY_STEP_S * i for i in range(1, 17))
-
-#: Forms for any channel, catalogue or not.
-GENERIC: tuple[tuple[str, Options, Options], ...] = (
-    ("channel", {}, {}),
-    ("channel-square", {"power": 2}, {"centre": ("mean", "lo", "hi")}),
-    ("channel-lag", {"lag_mode": "lag"}, {"lag_s": (60.0, 180.0, 540.0, 1600.0)}),
-    ("channel-delay", {}, {"delay_s": _DELAYS_S}),
-    (
-        "channel-delay-square",
-        {"power": 2},
-        {"delay_s": _DELAYS_S, "centre": ("mean", "lo")},
-    ),
-    ("channel-rate", {"lag_mode": "rate"}, {"lag_s": (40.0, 160.0)}),
-    (
-        "channel-lag-square",
-        {"lag_mode": "lag", "power": 2, "power_first": True},
-        {"lag_s": (60.0, 180.0, 540.0), "centre": ("mean", "lo", "hi")},
-    ),
-    ("channel-kink", {}, {"knot": (0.2, 0.35, 0.5, 0.65, 0.8)}),
-    ("channel-peak", {"memory": "peak"}, {}),
-    ("channel-product", {}, {"second": "every", **_CENTRES}),
-)
 
 SUPPLY_NAMES = ("vdd", "vbat", "volt", "vcc", "supply")
 _OWN = ("temp", "acc_x", "acc_y", "acc_z", "rate_x", "rate_y", "rate_z", "vib")
@@ -183,6 +115,8 @@ def _fields(choice: dict, span: dict, source: str) -> dict:
     if _is_even(choice):
         reach = max(-fields["lo"], fields["hi"])
         fields.update(lo=-reach, hi=reach)
+    if "curve" in fields:
+        fields["table"] = table_of(fields.pop("curve"), lo, hi)
     if "knot" in fields:
         fields["knot"] = lo + fields["knot"] * (hi - lo) - fields["centre"]
     if fields.get("second"):
@@ -198,23 +132,15 @@ def _place(named, span: tuple[float, float, float]):
     return {"mean": mean, "lo": lo, "hi": hi}.get(named, named)
 
 
-def _expand(kind, source, fixed, grids, family, span):
-    names = list(grids)
+def _expand(row: Effect, source: str, family: str, span, others=()) -> list[Candidate]:
+    """The row's candidates of a source; others: sources that a product can have beside it."""
+    grids = {n: (tuple(others) if v == "every" else v) for n, v in row.grids.items()}
+    fixed = {**row.fields, **({"curve": row.curve} if row.curve else {})}
+    refine = tuple(n for n in grids if n in REFINED)
     out = []
-    for values in product(*(grids[n] for n in names)):
-        choice = {**fixed, **dict(zip(names, values))}
-        refine = tuple(n for n in names if n in REFINED)
-        out.append(
-            Candidate(kind, (Term(source, **_fields(choice, span, source)),), family, refine)
-        )
-    return out
-
-
-def _generic(channel, others, span):
-    out = []
-    for kind, fixed, grids in GENERIC:
-        grids = {n: (tuple(others) if v == "every" else v) for n, v in grids.items()}
-        out += _expand(kind, channel, fixed, grids, "generic", span)
+    for values in product(*grids.values()):
+        fields = _fields({**fixed, **dict(zip(grids, values))}, span, source)
+        out.append(Candidate(row.kind, (Term(source, **fields),), family, refine))
     return out
 
 
@@ -224,21 +150,31 @@ def candidates(sessions: list[Session]) -> list[Candidate]:
     varied = [n for n in span if varies(n, sessions)]
     supply = [n for n in varied if n not in _OWN and is_supply(n)]
     out = []
-    for kind, source, fixed, grids in CATALOGUE:
-        for name in supply if source == "supply" else [source]:
-            there = name in varied or name in ("one", "time")
-            if there and (fixed.get("second") is None or fixed["second"] in varied):
-                out += _expand(kind, name, fixed, grids, "catalogue", span)
-    for kind, names, fixed in GROUPS:
-        if kind == "rate-scale" and _told_by_turns(sessions):
-            continue
-        if any(n in varied for n in names) and all(n in span for n in names):
-            terms = tuple(Term(n, **_fields(fixed, span, n)) for n in names)
-            out.append(Candidate(kind, terms, "catalogue"))
+    for row in effects.EFFECTS:
+        if isinstance(row.source, tuple):
+            out += _group(row, span, varied, sessions)
+        elif row.source != ANY_CHANNEL:
+            for name in supply if row.source == SUPPLY else [row.source]:
+                there = name in varied or name in ("one", "time")
+                if there and row.fields.get("second", name) in (*varied, name):
+                    out += _expand(row, name, "catalogue", span)
     extra = [n for n in varied if n not in _OWN and n != "time"]
+    forms = [row for row in effects.EFFECTS if row.source == ANY_CHANNEL]
     for i, name in enumerate(extra):
-        out += _generic(name, [*(["temp"] if "temp" in varied else []), *extra[i + 1 :]], span)
+        others = [*(["temp"] if "temp" in varied else []), *extra[i + 1 :]]
+        for row in forms:
+            out += _expand(row, name, "generic", span, others)
     return [c for c in out if _is_finite(c, sessions)]
+
+
+def _group(row: Effect, span, varied, sessions) -> list[Candidate]:
+    """The row's candidate of several sources at once, where any of them varies."""
+    if row.kind == "rate-scale" and _told_by_turns(sessions):
+        return []
+    if not any(n in varied for n in row.source) or not all(n in span for n in row.source):
+        return []
+    terms = tuple(Term(n, **_fields(dict(row.fields), span, n)) for n in row.source)
+    return [Candidate(row.kind, terms, "catalogue")]
 
 
 def _told_by_turns(sessions: list[Session]) -> bool:

@@ -53,10 +53,11 @@ def followed(regression, straight, terms: list[Term]) -> list[Term]:
 
 def _may_follow(term: Term) -> bool:
     """Time since power-on, and what motion carries far out, are known no further than they were
-    seen; a bounded basis has its margin.
+    seen; a bounded basis has its margin; a table ends where it ends.
     """
     fast = {term.source, term.second} & OF_MOTION
-    return term.source not in ("one", "time") and not fast and not is_bounded(vars(term))
+    known = term.source not in ("one", "time") and not term.table
+    return known and not fast and not is_bounded(vars(term))
 
 
 def _limits(term: Term, name: str) -> tuple[float, float]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from ...model.model import MOST_CHANNELS, MOST_PLAYS, MOST_RINGS, MOST_SLOTS
+from ...model.model import MOST_CHANNELS, MOST_PLAYS, MOST_RINGS, MOST_SLOTS, MOST_TABLES
 from ...model.term import Term
 from ..read.sessions import OWN_SOURCES
 
@@ -23,5 +23,6 @@ def fits_in_slots(terms: Sequence[Term], taken: int = 0) -> bool:
         slots <= MOST_SLOTS
         and len(plays) <= MOST_PLAYS
         and delays <= MOST_RINGS
+        and sum(t.table is not None for t in terms) <= MOST_TABLES
         and len(channels) <= MOST_CHANNELS
     )

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from .catalogue import DELAY_STEP_S, REFINED, Candidate
+from ...model.effects import DELAY_STEP_S
+from .catalogue import REFINED, Candidate
 
 _ROUNDS = 2
 
