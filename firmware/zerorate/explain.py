@@ -22,6 +22,7 @@ _SUSPECT = const(27)
 _BEYOND = const(29)
 # layout: The corrector's settings
 _AXES = const(0)
+_WINDOW = const(3)
 _SEGMENT = const(5)
 _AXIS_WORDS = const(13)
 _INSIST = const(39)
@@ -64,7 +65,9 @@ def explain(corrector):
     sensor = corrector.sensor
     lines = [STILLNESS[s[_STILLNESS]]]
     if s[_STILLNESS] == _STILL:
-        lines.append("%d of %d windows of a still segment." % (s[_SEGMENT_WINDOWS], c[_SEGMENT]))
+        seconds = c[_WINDOW] / sensor.odr_hz
+        still, needed = s[_SEGMENT_WINDOWS] * seconds, c[_SEGMENT] * seconds
+        lines.append("Still for %.1f of the %.1f seconds needed." % (still, needed))
     for axis in range(3):
         lines.append(axis_text(s, c, sensor, axis))
     faults = ["%d %s" % (s[_COUNTS + i], FAULTS[i]) for i in range(1, 8) if s[_COUNTS + i]]

@@ -85,7 +85,9 @@ def _fitting(kind, unit, ranges, found: Gathered, plan: Plan, path: Path, notes)
         raise BadRecording(path, problem, do=f"give {option}")
     largest = found.largest[kind]
     lsb = next((lsb for lsb in ranges if largest * lsb < _RAIL), ranges[-1])
-    notes.append(f"{lsb:g} LSB per {unit} chosen, as {largest:.4g} {unit} is the most seen")
+    ends = round(32768 / lsb, -1 if kind == "gyro" else 0)
+    fastest = "fastest rate" if kind == "gyro" else "strongest acceleration"
+    notes.append(f"Stored at the +-{ends:g} {unit} scale ({fastest}: {largest:.4g} {unit})")
     return lsb
 
 
