@@ -58,11 +58,3 @@ class Noise:
         """Lowest Allan deviation at cluster times from a block to a third of `longest_s`."""
         tau = np.geomspace(self.block_s, max(longest_s / 3, 2 * self.block_s), 200)
         return float(self.deviation(tau).min())
-
-    def angle_random_walk_dps_rt_s(self) -> float:
-        """White noise as dps times the square root of a second."""
-        return self.white_dps * float(np.sqrt(self.block_s))
-
-    def rate_random_walk_dps_per_rt_s(self) -> float:
-        """Random walk of the rate, dps for each square root of a second."""
-        return self.walk_dps / float(np.sqrt(self.block_s))

@@ -39,12 +39,6 @@ def kernels_in_c(
     return "\n".join(["#include <stdint.h>\n", arithmetic, *written])
 
 
-def prototype(kernels: Kernels, file: str, name: str) -> str:
-    """The head of a kernel in C, without `static`."""
-    kernels.kernel(file, name)
-    return _Function(kernels.files[file], name).head()
-
-
 class _Function:
     """Writes one kernel."""
 
