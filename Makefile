@@ -15,7 +15,6 @@ lint: $(VENV)/.dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/codespell
-	$(BIN)/vulture
 
 # Kernels have rules of their own (kernels/rules.py), and machine code has no types.
 FIRMWARE := $(shell find firmware/zerorate -name '*.py')
