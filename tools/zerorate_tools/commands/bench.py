@@ -230,6 +230,15 @@ def _service(arguments: argparse.Namespace) -> Found:
     return in_words(found), found
 
 
+def _singles(arguments: argparse.Namespace) -> Found:
+    from ..bench.loop.singles import in_words, run_singles
+    from ..progress import progress
+
+    with progress("closing", arguments.devices) as advance:
+        found = run_singles(arguments.devices, arguments.processes, advance)
+    return in_words(found), found
+
+
 _QUICK = {"--quick": {"action": "store_true", "help": "short recordings and one seed"}}
 _BROAD = {"--data": {"type": Path, "metavar": "DIR", "help": "folder of BROAD trials (.mat)"}}
 _RECORDINGS = {"--data": {"type": Path, "metavar": "DIR", "help": "folder of real recordings"}}
@@ -301,5 +310,10 @@ BENCHES = {
         "`zerorate run` through faults, kills, full disks",
         _service,
         {"--hours": _number(24.0, "simulated"), "--faults": _number(1000, "how many")},
+    ),
+    "singles": Bench(
+        "one or two simulated recordings: whether what is deployed makes anything worse",
+        _singles,
+        {"--devices": _number(400, "devices"), "--processes": _number(2, "at once")},
     ),
 }

@@ -17,7 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from ..tables import machine_line
 from .figures import Figure, share
+from .trials import figure_table
 
 KINDS = ("nothing", "step", "shock", "hysteresis", "lag", "kink")
 _FLOOR_DPS, _STEP_FLOORS = 0.002, 3.0
@@ -258,6 +260,17 @@ def _is_worse(where: str) -> Callable[[Single], bool]:
     return lambda s: s.worse(where)
 
 
-def as_rows(singles: list[Single]) -> list[dict]:
-    """Plain values of every device."""
-    return [asdict(s) for s in singles]
+def run_singles(
+    number: int, processes: int = 2, advance: Callable[[float], None] = lambda n: None
+) -> dict:
+    """So many devices: their figures, and what became of each, as plain values."""
+    singles = look_at_singles(number, processes, advance)
+    figures = [f.to_dict() for f in single_figures(singles)]
+    return {"devices": number, "figures": figures, "each": [asdict(s) for s in singles]}
+
+
+def in_words(result: dict) -> str:
+    """The figures as Markdown."""
+    lines = [f"# One recording or two, of {result['devices']} simulated devices", ""]
+    lines += ["`zerorate bench singles` wrote this page. " + machine_line(), ""]
+    return "\n".join([*lines, figure_table(result["figures"])])

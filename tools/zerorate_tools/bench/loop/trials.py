@@ -112,11 +112,17 @@ def markdown(result: dict) -> str:
     head_line = f"# What closing the loop finds, on {result['devices']} devices"
     parts = [head_line, "", "`zerorate bench loop` wrote this page. " + machine_line()]
     parts += [f"{head}: {'; '.join(missed)}." if missed else "Every figure is reached.", ""]
-    header = ("figure", "measured", "limit", "reached", "95 % interval", "devices")
-    parts.append(table(header, [_cells(f) for f in rows]))
+    parts.append(figure_table(result["figures"]))
     if "real_recordings" in result:
         parts += ["## Real recordings", "", _real(result["real_recordings"])]
     return "\n".join(parts)
+
+
+def figure_table(figures: list[dict]) -> str:
+    """A row a figure, as `Figure.to_dict` has it."""
+    rows = [Figure(**{k: v for k, v in f.items() if k != "met"}) for f in figures]
+    header = ("figure", "measured", "limit", "reached", "95 % interval", "devices")
+    return table(header, [_cells(f) for f in rows])
 
 
 def _cells(f: Figure) -> tuple:

@@ -7,7 +7,7 @@ before and after are both judged with an ordinary least-squares line on the rate
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -51,6 +51,28 @@ def ordinary(terms, sessions, effects=(), coefficients=None) -> np.ndarray:
     return np.linalg.lstsq(np.vstack(x) / scale, np.vstack(y), rcond=1e-12)[0] / scale[:, None]
 
 
+def by_axis(
+    fit: Callable[[list[Term]], np.ndarray], terms: Sequence[Term], applied: np.ndarray
+) -> np.ndarray:
+    """(terms, 3) dps per unit: on every axis those that are applied to it, fitted without others.
+
+    fit: of some terms, their (terms, 3) coefficients; applied: (terms, 3) of zero and one.
+    """
+    out, uses = np.zeros((len(terms), 3)), np.asarray(applied, bool)
+    for pattern in np.unique(uses, axis=1).T:
+        own, axes = np.flatnonzero(pattern), (uses == pattern[:, None]).all(axis=0)
+        if len(own):
+            out[np.ix_(own, axes)] = fit([terms[int(i)] for i in own])[:, axes]
+    return out
+
+
+def with_line(straight: Sequence[Term], terms: Sequence[Term], applied: np.ndarray) -> np.ndarray:
+    """(line and terms, 3) of zero and one: the line is applied where no slope is."""
+    slopes = [row for t, row in zip(terms, applied) if is_slope(t)]
+    line = np.ones(3) - np.max(slopes, axis=0, initial=0.0)
+    return np.vstack([*([line] * len(straight)), applied])
+
+
 def deployed(selection, effects: bool = True) -> tuple[list, np.ndarray]:
     """Terms and (terms, 3) coefficients as deployed: the line first, then the effects if wanted.
 
@@ -60,9 +82,14 @@ def deployed(selection, effects: bool = True) -> tuple[list, np.ndarray]:
     sessions, every = selection.regression.sessions, [*straight, *terms]
     if not every:
         return [], np.zeros((0, 3))
-    alone = selection.alone
-    whole = ordinary(every, sessions) if alone else selection.regression.fit(every).coefficients
-    fitted = whole[len(straight) :] * (selection.applied if effects else 1.0)
+    applied = with_line(straight, terms, selection.applied if effects else np.ones((0, 3)))
+    fitted = by_axis(_fit_of(selection), every, applied)[len(straight) :]
     if not straight:
         return terms, fitted
     return every, np.vstack([ordinary(straight, sessions, terms, fitted), fitted])
+
+
+def _fit_of(selection):
+    if selection.alone:
+        return lambda terms: ordinary(terms, selection.regression.sessions)
+    return lambda terms: selection.regression.fit(terms).coefficients

@@ -15,7 +15,7 @@ from scipy.ndimage import binary_dilation
 
 from ...model.term import Term
 from ..read.sessions import Session
-from .line import less_slope, ordinary
+from .line import by_axis, ordinary, with_line
 from .regression import predicted
 
 #: Pieces, and the turns in which they are left out: each turn has pieces far apart.
@@ -124,15 +124,8 @@ def fitted_to(part: Session, straight, terms, applied=None) -> tuple[list[Term],
     every = [*straight, *kept]
     if not every:
         return [], np.zeros((0, 3))
-    own = [*less_slope(straight, terms), *kept]
-    unused = np.zeros((len(every) - len(own), 3))
-    coefficients = np.vstack([unused, ordinary(own, [part])])
-    if applied is not None:
-        coefficients[len(straight) :] *= applied
-        if straight and not len(unused) and not np.all(applied):
-            rest = coefficients[len(straight) :]
-            coefficients[: len(straight)] = ordinary(straight, [part], kept, rest)
-    return every, coefficients
+    each = np.ones((len(kept), 3)) if applied is None else applied
+    return every, by_axis(lambda t: ordinary(t, [part]), every, with_line(straight, terms, each))
 
 
 def is_instant(term: Term) -> bool:

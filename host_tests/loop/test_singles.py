@@ -1,0 +1,47 @@
+"""One simulated recording or two, judged by the truth."""
+
+import numpy as np
+import pytest
+from zerorate_tools.bench.loop.singles import KINDS, Single, _about, describe, single_figures
+
+
+def single(kind="nothing", after=1.0, kept=("thermal-lag",), **more):
+    errors = dict.fromkeys(("at rest", "in motion", "a further power-on"), (1.0, after))
+    return Single(
+        kind, 1, 1, errors, list(kept), **{"steps": 0, "listed": 0, "invented": 0, **more}
+    )
+
+
+def figure(name, singles):
+    return next(f for f in single_figures(singles) if f.name.startswith(name))
+
+
+@pytest.mark.parametrize("after, worse", [(1.01, 0.0), (1.03, 100.0)])
+def test_what_is_deployed_is_worse_by_more_than_two_percent_or_not(after, worse):
+    every = [single(kind, after) for kind in KINDS]
+    assert figure("deployed and worse by more than 2 %, at rest", every).value == worse
+
+
+def test_nothing_deployed_is_nothing_worse():
+    every = [single(kind, 2.0, kept=()) for kind in KINDS]
+    assert figure("deployed and worse", every).value == 0.0
+
+
+def test_steps_are_listed_or_invented():
+    every = [single(kind, steps=1, listed=kind != "lag", invented=0) for kind in KINDS]
+    assert figure("steps of 3 floors listed", every).value == pytest.approx(500 / 6)
+    assert not figure("steps of 3 floors listed", every).met
+
+
+def test_an_error_is_about_the_mean_at_rest_of_its_own_stretch():
+    error = np.repeat([[1.0], [5.0]], 4, axis=0) * np.ones(3)
+    rest = np.array([1, 1, 0, 0, 1, 1, 0, 0], bool)
+    error[2:4] += 0.5
+    (left,) = _about([error], np.repeat([0, 1], 4), rest, ~rest)
+    assert left[:, 0].tolist() == [0.5, 0.5, 0.0, 0.0]
+
+
+def test_every_kind_is_described_with_its_effect():
+    kinds = {describe(seed)[1]: describe(seed)[0] for seed in range(6)}
+    assert list(kinds) == list(KINDS)
+    assert [bool(d["effect"]) for d in kinds.values()] == [False, True, False, True, True, True]
