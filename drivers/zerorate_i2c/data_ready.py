@@ -47,6 +47,9 @@ class DataReady:
         if edges == self._taken:
             return False
         edge_us = self._edge_us
+        while edges != self._edges:  # one more came between the two
+            edges = self._edges
+            edge_us = self._edge_us
         self.dt_us = self._clock.ticks_diff(edge_us, self._taken_us)
         period_us = self.imu.period_us
         passed = (self.dt_us + period_us // 2) // period_us

@@ -30,6 +30,8 @@ _LONG_US = const(0x20000000)  # a leap of time at any rate; a longer one would l
 
 # layout: The corrector's state
 _ELAPSED_US = const(16)
+_OUT_Q8 = const(55)
+_SOURCE = const(73)
 # layout: end
 
 
@@ -67,6 +69,8 @@ class CheckedCorrector:
         elif status == RESTARTED:
             self.take_back()
             self.corrector.power_on()
+            # the chip began anew, not this device: what is known stands
+            copy(self._kept[0], self._live[0], _OUT_Q8, _SOURCE + 3)
         if status >= RESTARTED:
             self.refused += 1
             return False

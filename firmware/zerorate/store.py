@@ -120,8 +120,7 @@ class Store:
         """Write payload to the older slot and read it back; False when that failed."""
         self._require(payload)
         try:
-            if self.sequence < 0:
-                self._find()
+            self._find()  # anew: where the newest was damaged since, the older is all there is
             slot = 1 if self._newest == 0 else 0
             sequence = self.sequence + 1
             self._compose(payload, sequence)

@@ -44,6 +44,31 @@ def test_samples_nobody_took_are_counted_and_their_time_kept(bench, ready):
     assert ready.dt_us == 50000
 
 
+def test_a_pulse_between_the_two_readings_of_the_handler_s_words_is_not_taken_twice(bench):
+    class Interrupted(DataReady):
+        """Its time is read while the next pulse comes."""
+
+        late_us = 0
+
+        @property
+        def _edge_us(self):
+            if self.late_us:
+                by_us, self.late_us = self.late_us, 0
+                bench.clock.advance_us(by_us)
+            return self.kept_us
+
+        @_edge_us.setter
+        def _edge_us(self, now_us):
+            self.kept_us = now_us
+
+    ready = Interrupted(bench.imu, InterruptPin(bench.chip))
+    bench.clock.advance_us(10000)
+    ready.late_us = 10000
+    assert ready.take()
+    assert ready.dt_us == 20000
+    assert not ready.take()
+
+
 def test_waiting_ends_with_the_next_sample(bench, ready):
     assert ready.wait(20)
     assert bench.chip.samples_made > 0

@@ -185,6 +185,18 @@ def test_sda_held_low_is_freed_by_clocks_and_a_stop(bench, bits):
     assert bench.read() == VERIFIED
 
 
+def test_recovery_leaves_sda_to_the_chip_until_the_stop(bench, monkeypatch):
+    bench.bus.hold_sda(5)
+    wires, driven = BusWires(bench.bus), []
+    drive = wires.drive
+    monkeypatch.setattr(wires, "drive", lambda *said: (driven.append(said), drive(*said)))
+    assert free_bus(wires.scl, wires.sda, bench.clock)
+    assert [level for name, level in driven if name == "sda"] == [1, 0, 1]
+    assert (
+        driven.index(("sda", 0)) > max(i for i, said in enumerate(driven) if said[0] == "scl") - 2
+    )
+
+
 def test_sda_shorted_to_ground_is_said_and_not_waited_for(bench):
     bench.bus.hold_sda(1000)
     wires = BusWires(bench.bus)

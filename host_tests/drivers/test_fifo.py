@@ -231,3 +231,9 @@ def test_a_bus_of_short_transfers_gets_short_batches(make_bench):
     bench = make_bench()
     bench.bus.max_burst = 32
     assert len(Fifo(bench.imu)._views) == 2
+
+
+def test_stop_leaves_the_fifo_off_through_restarts(fifo_bench):
+    fifo_bench.fifo.stop()
+    fifo_bench.imu.restart()
+    assert fifo_bench.chip.registers[0x6A] == fifo_bench.chip.registers[0x23] == 0

@@ -79,6 +79,15 @@ def test_a_restart_takes_back_and_begins_a_new_power_on(feed):
     assert feed.bias_lsb() == pytest.approx(100, abs=1)
 
 
+def test_what_is_known_stands_through_a_restart(feed):
+    feed.rest(1, 100, checked.VERIFIED)
+    before = feed.bias_lsb(), feed.checked.corrector.quality_lsb(0)
+    feed.checked.update(feed.sample, 10000, checked.RESTARTED)
+    assert (feed.bias_lsb(), feed.checked.corrector.quality_lsb(0)) == before
+    feed.rest(1, 100)
+    assert feed.bias_lsb() == pytest.approx(100, abs=1)
+
+
 @pytest.mark.parametrize("status", [checked.RESTARTED, checked.SUSPECT])
 def test_a_sample_that_is_none_is_not_touched_and_counted(feed, status):
     before = list(feed.sample)

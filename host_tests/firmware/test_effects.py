@@ -211,6 +211,27 @@ def test_a_long_delay_is_straight_lines_between_what_was_kept():
     assert np.ptp(got[50 : 600 * A_TICK]) == 0.0
 
 
+def test_two_delays_keep_what_was_apart():
+    raw = {n: np.zeros(3000, int) for n in ("ax", "ay", "az", "gx", "gy", "gz")}
+    raw["temp"] = np.arange(3000)
+    slots = [
+        Slot(Term("temp", delay_s=40.0), (0.01, 0.0, 0.0)),
+        Slot(Term("temp", delay_s=110.0), (0.0, 0.01, 0.0)),
+    ]
+    together = on_firmware(loaded(slots), raw)
+    for axis, slot in enumerate(slots):
+        assert (together[:, axis] == on_firmware(loaded([slot]), raw)[:, axis]).all()
+
+
+def test_only_the_effects_own_words_of_the_state_change(warm_up):
+    model = loaded([Slot(Term("temp", 10.0, 50.0), (0.01, 0.02, 0.03))])
+    state = array("i", [1234] * 100)
+    for _ in range(3):
+        effects.sense(state, model.e, array("i", [1, 2, 16384, 900, 3, 4, 5]), 10000, 1)
+    changed = [i for i, word in enumerate(state) if word != 1234]
+    assert changed == [STATE.EFFECT_Q8 + axis for axis in range(3)]
+
+
 def test_outside_the_fitted_range_a_slot_is_held_at_the_edge():
     term = Term("temp", 20.0, 40.0, 30.0, power=2)
     raw = {n: np.zeros(40, int) for n in ("ax", "ay", "az", "gx", "gy", "gz")}

@@ -130,6 +130,24 @@ def test_every_bit_turned_in_either_slot_loads_the_newest_whole(memory_of_two):
         memory_of_two.flip(bit)
 
 
+@pytest.mark.parametrize("cut_after", [0, 3, 30, 60])
+def test_a_bit_turned_under_a_living_store_and_then_a_cut_cost_one_of_the_slots(
+    memory_of_two, cut_after
+):
+    store, image = make_store(memory_of_two), bytes(memory_of_two.bytes)
+    store.load(array("i", BLANK))
+    for bit in range(16 * store.slot_bytes):
+        memory_of_two.flip(bit)
+        memory_of_two.cut_after = cut_after
+        with pytest.raises(PowerCut):
+            store.save(BLANK)
+        reason, payload = loaded(memory_of_two)
+        assert reason == stores.LOADED
+        # what was written of the header may have mended the newest
+        assert payload == NEW or (payload == OLD and bit >= 8 * store.slot_bytes), bit
+        memory_of_two.cut_after, memory_of_two.bytes[:] = None, image
+
+
 def test_a_bit_turned_in_both_slots_is_a_clean_start(memory_of_two):
     slot_bits = 8 * make_store(memory_of_two).slot_bytes
     for bit in range(slot_bits):

@@ -1,6 +1,8 @@
 """model.json and model.bin are exact twins; what does not belong to a device is refused by name."""
 
 import json
+import struct
+import zlib
 from dataclasses import replace
 
 import pytest
@@ -183,12 +185,15 @@ def test_every_cut_and_every_turned_bit_is_refused(model):
     assert seen == refused | {model_file.DAMAGED}
 
 
+@pytest.mark.parametrize("more", [b"\0", b"\0" * 40])
+def test_a_model_longer_than_it_says_is_damaged_whatever_its_checksum(model, more):
+    longer = encoded(model)[:-4] + more
+    assert load(longer + zlib.crc32(longer).to_bytes(4, "little")) == model_file.DAMAGED
+
+
 @given(noise=st.binary(max_size=300), at=st.integers(0, 1200))
 @settings(max_examples=60, deadline=None)
 def test_bytes_of_any_kind_with_a_right_checksum_never_raise(noise, at):
-    import struct
-    import zlib
-
     data = bytearray(encoded(build_model(SLOTS, SCALES)))[:-4]
     data[at : at + len(noise)] = noise
     data[4:6] = struct.pack("<H", len(data) + 4)
