@@ -220,11 +220,14 @@ class MPU6050(Registers):
         return raw / self.temp_lsb_per_degc + self.temp_offset_degc
 
     def _is_configured(self):
-        settings = self._settings
-        for i in range(0, len(settings), 2):
-            if self.read_register(settings[i]) != settings[i + 1]:
+        for i in range(0, len(self._settings), 2):
+            if not self._is_kept(i):
                 return False
         return True
+
+    # small frames: one of more than eleven words would take heap at every call
+    def _is_kept(self, i):
+        return self.read_register(self._settings[i]) == self._settings[i + 1]
 
     def _has_leapt(self):
         """A word torn between two samples is off by its high byte: about 256 LSB."""

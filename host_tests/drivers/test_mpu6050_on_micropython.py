@@ -10,7 +10,16 @@ ROOT = Path(__file__).resolve().parents[2]
 SCRIPTS = Path(__file__).parent / "on_micropython"
 MODULES = [ROOT / "drivers", ROOT / "host_tests" / "fakes"]
 HOT = {
-    "mpu6050.py": {"decode", "read", "read_sample", "verify", "doubt", "check", "_is_kept"}
+    "mpu6050.py": {
+        "decode",
+        "read",
+        "read_sample",
+        "verify",
+        "doubt",
+        "check",
+        "_is_configured",
+        "_is_kept",
+    }
     | {"_is_suspect", "_is_one_word_repeated", "_has_leapt", "_read_again"},
     "registers.py": {"read_register", "read_into", "_transfer"},
     "fifo.py": {

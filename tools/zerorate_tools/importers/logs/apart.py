@@ -149,7 +149,8 @@ def written(reader: str, path: Path, instance: int, out: int) -> dict:
         table = module.read(path, instance)
         _write(table, out)
     except MemoryError:
-        return {"problem": f"needs more than {MEMORY_MB} MB to be read", "do": "cut it into parts"}
+        problem = f"needs more than {MEMORY_MB} MB to be read"
+        return {"problem": problem, "do": "cut it into parts, or copy it again: it may be damaged"}
     except BadRecording as error:
         return {"problem": error.problem, "do": error.do}
     except ModuleNotFoundError as error:

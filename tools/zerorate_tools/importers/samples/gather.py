@@ -104,6 +104,7 @@ class _Gathering:
         columns = self._less(columns, np.isfinite(columns[TIME]), "the time stamp is no number")
         refuse_impossible(columns[TIME], columns[PLACE], self.path)
         columns[TIME] = self.clock(columns[TIME], columns[PLACE])
+        columns = self._less(columns, self._has_any(columns), "no reading of these columns")
         columns = self._less(columns, *self._is_something(columns))
         columns = self._less(columns, *self._not_all_zero(columns))
         columns = self._less(columns, *self._not_too_fast(columns))
@@ -118,6 +119,10 @@ class _Gathering:
             return columns
         self.dropped[reason] += int((~good).sum())
         return {name: values[good] for name, values in columns.items()}
+
+    def _has_any(self, columns):
+        """Not the rows of another sensor alone, whose columns are left out."""
+        return np.isfinite([columns[name] for name in self.readings]).any(axis=0)
 
     def _is_something(self, columns):
         """Rows with three rates, or with none but a reading of another sensor."""
