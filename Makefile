@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PYTEST_ARGS ?= -n auto
 
-.PHONY: demo test lint typecheck typecheck-tools pytest fuzz sweep layout native docs lock wasm runtimes node wheel clean
+.PHONY: demo test lint typecheck typecheck-tools pytest fuzz sweep day layout native docs lock wasm runtimes node wheel clean
 
 demo: $(VENV)/.tools wasm  ## the whole job on built-in input, no hardware
 	$(BIN)/zerorate demo
@@ -39,6 +39,9 @@ fuzz: $(VENV)/.dev  ## every reader of files against FUZZ damaged ones each; wha
 SWEEP ?= 10000
 sweep: $(VENV)/.dev  ## SWEEP random sensors and settings: does anything leave 31 bits?
 	$(BIN)/python -m host_tests.firmware.sweep --configurations $(SWEEP)
+
+day: $(VENV)/.dev  ## examples/main.py for a simulated day: 200 resets, 200 times pulled out
+	$(BIN)/python -m host_tests.boards.day
 
 layout: $(VENV)/.dev  ## write the constants of firmware/zerorate/layout.py where they are used
 	$(BIN)/python -m host_tests.layout

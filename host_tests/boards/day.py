@@ -1,0 +1,197 @@
+"""A day of examples/main.py on an emulated board: its chip is reset, pulled out and put back.
+
+`make day` runs it. Time is the emulation's; the chip is made of registers, on a bus without it
+nothing acknowledges. The device rests and moves in turn while its bias follows the temperature.
+"""
+
+import argparse
+import math
+import random
+import sys
+import types
+from pathlib import Path
+
+from zerorate import checked
+from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050, Physical
+from zerorate_i2c.mpu6050 import MPU6050
+
+PROGRAM = Path(__file__).resolve().parents[2] / "examples" / "main.py"
+LEARNING_S = 60.0
+CORRECTED_DPS = 0.05
+_AWAY_S = (0.2, 5.0)
+_CYCLE_S, _REST_S = 50.0, 30.0
+
+
+class EndOfDay(BaseException):
+    """Time is up; no handler of the program's catches it."""
+
+
+class Device:
+    """What the chip feels at any time."""
+
+    def __init__(self, clock):
+        self.clock = clock
+        names = ("gyro_dps", "accel_g", "temp_degc")
+        self.felt = Physical(**{name: getattr(self, name) for name in names})
+
+    @property
+    def seconds(self):
+        return self.clock.now_us / 1e6
+
+    def temp_degc(self, _=0.0):
+        return 25 + 8 * math.sin(2 * math.pi * self.seconds / 86400)
+
+    def bias_dps(self):
+        warm = self.temp_degc() - 25
+        return 1.1 + 0.02 * warm, -0.7 - 0.01 * warm, 0.3 + 0.005 * warm
+
+    def _shake(self):
+        return self.seconds if self.seconds % _CYCLE_S >= _REST_S else 0.0
+
+    def gyro_dps(self, _):
+        t, bias = self._shake(), self.bias_dps()
+        return [b + a * math.sin(w * t) for b, a, w in zip(bias, (40, 30, 50), (1.3, 2.1, 0.7))]
+
+    def accel_g(self, _):
+        t = self._shake()
+        return 0.3 * math.sin(3.1 * t), 0.2 * math.sin(2.3 * t), 1 + 0.2 * math.sin(4.7 * t)
+
+
+class Day(FakeClock):
+    """The clock of a board, at whose due times the chip is reset, pulled out or put back.
+
+    slowest_s: longest from a reset or from being put back to the first corrected sample whose bias
+    is right; worst_dps: most that a bias of a corrected sample was wrong, once it was learned.
+    """
+
+    def __init__(self, hours, resets, unplugs, odr_hz, seed):
+        super().__init__()
+        luck, self.end_us = random.Random(seed), round(hours * 3.6e9)
+        self.device = Device(self)
+        self.chip = FakeMPU6050(self.device.felt)
+        self.devices.append(self.chip)
+        self.bus, self.odr_hz = FakeI2C(self.chip), odr_hz
+        kinds = [self.reset] * resets + [self.pull_out] * unplugs
+        luck.shuffle(kinds)
+        first_us = round(LEARNING_S * 1e6)
+        step_us = (self.end_us - first_us) / max(1, len(kinds))
+        self.due = [
+            (round(first_us + step_us * (i + 0.5 * luck.random())), kind)
+            for i, kind in enumerate(kinds)
+        ]
+        self.away_us = [round(1e6 * luck.uniform(*_AWAY_S)) for _ in range(unplugs)]
+        self.done, self.back_us, self.took_s = {"resets": 0, "unplugs": 0}, None, []
+        self.worst_dps, self.corrected, self.lines = 0.0, 0, 0
+
+    def advance_us(self, us):
+        """Let time pass, up to each event in turn."""
+        end_us = self.now_us + us
+        while self.due and self.due[0][0] <= end_us:
+            at_us, event = self.due.pop(0)
+            super().advance_us(max(0, at_us - self.now_us))
+            event()
+        super().advance_us(max(0, end_us - self.now_us))
+        if self.now_us >= self.end_us:
+            raise EndOfDay
+
+    def reset(self):
+        """A brown-out: the chip forgets its registers."""
+        self.chip.power_up()
+        self.done["resets"] += 1
+        self.back_us = self.now_us
+
+    def pull_out(self):
+        """Nothing acknowledges until it is put back, with its registers forgotten."""
+        self.bus.fault("nack", times=None)
+        self.done["unplugs"] += 1
+        self.back_us = None
+        self.due.insert(0, (self.now_us + self.away_us.pop(), self.put_back))
+
+    def put_back(self):
+        self.bus.mend()
+        self.chip.power_up()
+        self.back_us = self.now_us
+
+    def judge(self, corrector, rate_corrected):
+        """Hold what the corrector says now against the truth."""
+        if not rate_corrected or self.device.seconds < LEARNING_S:
+            return
+        self.corrected += 1
+        lsb = corrector.sensor.gyro_lsb_per_dps
+        true = self.device.bias_dps()
+        wrong = max(abs(corrector.bias_lsb(i) / lsb - true[i]) for i in range(3))
+        self.worst_dps = max(self.worst_dps, wrong)
+        if self.back_us is not None and wrong < CORRECTED_DPS:
+            self.took_s.append((self.now_us - self.back_us) / 1e6)
+            self.back_us = None
+
+    def run(self):
+        """Run the program until the day ends; the figures."""
+        day = self
+
+        class Judged(checked.CheckedCorrector):
+            def update(self, sample, dt_us, status=checked.FRESH):
+                taken = super().update(sample, dt_us, status)
+                day.judge(self.corrector, taken)
+                return taken
+
+        def count_line(*said):
+            day.lines += 1
+
+        board = types.ModuleType("zerorate_i2c.board")
+        board.setup = lambda scl, sda: MPU6050(self.bus, clock=self, odr_hz=self.odr_hz)
+        kept = {"zerorate_i2c.board": sys.modules.get("zerorate_i2c.board")}
+        sys.modules["zerorate_i2c.board"] = board
+        original, checked.CheckedCorrector = checked.CheckedCorrector, Judged
+        try:
+            text = PROGRAM.read_text(encoding="utf-8")
+            exec(compile(text, PROGRAM, "exec"), {"print": count_line, "__name__": "__main__"})
+        except EndOfDay:
+            pass
+        finally:
+            checked.CheckedCorrector = original
+            for name, module in kept.items():
+                sys.modules.pop(name)
+                if module:
+                    sys.modules[name] = module
+        return self.figures()
+
+    def figures(self):
+        return {
+            **self.done,
+            "corrected again": len(self.took_s),
+            "slowest_s": max(self.took_s, default=0.0),
+            "corrected_samples": self.corrected,
+            "worst_mdps": 1e3 * self.worst_dps,
+            "lines": self.lines,
+        }
+
+
+def passed(found):
+    """Whether rates were corrected again within 3 s each time and nothing wrong was learned."""
+    events = found["resets"] + found["unplugs"]
+    return (
+        found["corrected again"] == events > 0
+        and found["slowest_s"] < 3
+        and found["worst_mdps"] < 1e3 * CORRECTED_DPS
+    )
+
+
+def main(arguments=None):
+    """Print the figures; 1 if they are not as they must be."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--hours", type=float, default=24.0)
+    parser.add_argument("--resets", type=int, default=200)
+    parser.add_argument("--unplugs", type=int, default=200)
+    parser.add_argument("--odr-hz", type=float, default=10.0)
+    chosen = parser.parse_args(arguments)
+    found = Day(chosen.hours, chosen.resets, chosen.unplugs, chosen.odr_hz, seed=1).run()
+    for name, value in found.items():
+        print(
+            f"{name:<20}{value:>12,.4g}" if isinstance(value, float) else f"{name:<20}{value:>12,}"
+        )
+    return 0 if passed(found) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
