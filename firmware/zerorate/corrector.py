@@ -1,6 +1,9 @@
 """The user's object: one sample in, the same sample out without its zero-rate output."""
 
-from array import array
+try:
+    from uarray import array  # so MicroPython does not look for it on its file system first
+except ImportError:
+    from array import array
 
 from .native import rest, unload
 from .sensor import Sensor
@@ -49,10 +52,11 @@ _GRAVITY = const(5)
 # layout: end
 
 
-def copy(to, words):
-    """Copy an array over another: not every board's arrays take an assignment to a slice."""
-    for i in range(len(words)):
-        to[i] = words[i]
+def forget(state, clear, settings):
+    """Make a source's state as new, in place: a copy of it would want as much heap again."""
+    for i in range(len(state)):
+        state[i] = 0
+    clear(state, settings)
 
 
 class Corrector:
@@ -101,6 +105,8 @@ class Corrector:
         )
         unload("zerorate", "settings")
         c = self.settings
+        # before other sources are loaded, while there is heap in one piece
+        self.state = array("i", [0] * (c[_AXES] + 3 * c[_AXIS_WORDS]))
         self.effects: "Any" = None
         self.schedule: "Any" = None
         self.motion = None
@@ -120,7 +126,6 @@ class Corrector:
             self._learn_by_gravity(document)
         walk_lsb = chosen["walk_dps"] * self.sensor.gyro_lsb_per_dps
         self._walk_q16 = max(1, int(min(c[_WALK_MOST_Q16], walk_lsb * walk_lsb * 65536)))
-        self.state = array("i", [0] * (c[_AXES] + 3 * c[_AXIS_WORDS]))
         if rest.is_machine_code and self.alone and type(self) is Corrector:
             self.update = rest.bound(self.state, c)  # type: ignore[method-assign]
         self.reset()
@@ -149,6 +154,7 @@ class Corrector:
             temp_lsb_per_degc=sensor.temp_lsb_per_degc,
         )
         self.motion = motion_state(self.motion_settings)
+        unload("zerorate.motion", "motion_settings")
 
     def _learn_by_gravity(self, document):
         from .gravity.gravity_settings import gravity_settings, gravity_state
@@ -160,17 +166,18 @@ class Corrector:
             sensor.odr_hz, sensor.gyro_lsb_per_dps, sensor.accel_lsb_per_g, document=document
         )
         self.gravity = gravity_state(self.gravity_settings)
+        unload("zerorate.gravity", "gravity_settings")
 
     def _forget_motion(self):
         # their windows hold what the chip sent before, right or not
         if self.motion is not None:
-            from .motion.motion_settings import motion_state
+            from .native import motion
 
-            copy(self.motion, motion_state(self.motion_settings))
+            forget(self.motion, motion.clear, self.motion_settings)
         if self.gravity is not None:
-            from .gravity.gravity_settings import gravity_state
+            from .native import gravity
 
-            copy(self.gravity, gravity_state(self.gravity_settings))
+            forget(self.gravity, gravity.clear, self.gravity_settings)
 
     def reset(self) -> None:
         """Forget everything that was learned."""

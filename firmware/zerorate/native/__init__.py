@@ -1,5 +1,6 @@
 """The kernels as the firmware calls them: machine code where it is right, else bytecode."""
 
+import gc
 import sys
 
 # what MicroPython calls its processor -> which code runs there (sys.implementation._mpy)
@@ -18,6 +19,8 @@ def machine_code(part):
     if not kind:
         chosen[part] = "bytecode: there is no machine code for this processor"
         return None
+    if chosen:  # the first finds an empty heap; each wants up to 10 KB of it in one piece
+        gc.collect()
     from .trying import tried
 
     code, chosen[part] = tried(part, kind)

@@ -1,9 +1,12 @@
 """Tries a part's machine code on a known answer before it is used."""
 
-from array import array
-
+# by their names with u MicroPython does not look for them on its file system first: 4 ms each
 try:
-    from binascii import crc32
+    from uarray import array
+except ImportError:
+    from array import array
+try:
+    from ubinascii import crc32
 except ImportError:
     crc32 = None  # type: ignore[assignment]
 

@@ -49,7 +49,7 @@ def _corrector() -> Corrector:
 
 def _rest() -> tuple:
     corrector = _corrector()
-    return 30, 10000, 7, 5, corrector.state, corrector.settings, _FRAME
+    return 20, 10000, 7, 5, corrector.state, corrector.settings, _FRAME
 
 
 def _bursts() -> tuple:
