@@ -183,7 +183,7 @@ def headline(found: dict) -> str:
             for trial in found.values()
             for names in trial.values()
             for row in names.values()
-            if one in row
+            if one in row and other in row
         )
 
     gains = [

@@ -31,8 +31,9 @@ def check_names(names: list[str], path: Path) -> None:
     missing = [name for name in (TIME, *GYRO) if name not in names]
     if missing:
         suffix = ".parquet" if path.suffix == ".parquet" else ".csv"
-        do = f"turn it into a recording: zerorate import {path.name} --out imported{suffix}"
-        raise BadRecording(path, f"column {', '.join(missing)} is missing", do=do)
+        do = f"turn it into a recording: zerorate import {path} --out imported{suffix}"
+        words = "column {} is missing" if len(missing) == 1 else "columns {} are missing"
+        raise BadRecording(path, words.format(", ".join(missing)), do=do)
     accel = [name for name in ACCEL if name in names]
     if accel and len(accel) < 3:
         have = ", ".join(accel)

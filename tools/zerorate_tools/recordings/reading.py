@@ -62,9 +62,7 @@ class OpenRecording:
             self.scales = parquet_format.read_scales(file, self.path)
             self.n_samples = file.metadata.num_rows
         else:
-            do = (
-                f"turn it into a recording: zerorate import {self.path.name} --out imported.parquet"
-            )
+            do = f"turn it into a recording: zerorate import {self.path} --out imported.parquet"
             raise BadRecording(self.path, "neither .csv, .csv.gz nor .parquet", do=do)
 
     def _arrow_batches(self, rows: int) -> Iterator:
