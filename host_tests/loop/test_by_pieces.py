@@ -64,7 +64,8 @@ def test_a_slope_of_its_own_reaches_beyond_a_piece_by_its_margin():
     part = PiecesByLine(session).parts[0]
     seen = session.block_mean(temp)[part.available]
     at_edge, beyond = (held(Term("temp", lo - m, hi + m), [part]) for m in (0.0, 3.0))
-    assert (at_edge.lo, at_edge.hi) == (seen.min(), seen.max())
+    for term in (at_edge, held(Term("temp"), [part])):
+        assert (term.lo, term.hi) == (seen.min(), seen.max())
     assert beyond.lo == pytest.approx(seen.min() - 3.0)
 
 

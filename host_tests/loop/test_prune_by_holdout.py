@@ -10,9 +10,13 @@ from zerorate_tools.loop.analyse import analyse
 from zerorate_tools.loop.fit.line import deployed
 from zerorate_tools.loop.report.in_words import in_words
 from zerorate_tools.loop.report.report import report
+from zerorate_tools.loop.search.catalogue import Candidate
+from zerorate_tools.loop.search.decide import Decision
 from zerorate_tools.loop.search.select import select
+from zerorate_tools.loop.search.selection import Found
 from zerorate_tools.loop.verify.judge import judge
-from zerorate_tools.loop.verify.prune_by_holdout import prune_by_holdout
+from zerorate_tools.loop.verify.prune_by_holdout import prune_by_holdout, unharmed
+from zerorate_tools.model.term import Term
 
 
 def kinds(selection):
@@ -101,3 +105,19 @@ def test_no_effect_reaches_further_than_blocks_that_judged_it():
         s.sources["vib"][100 * s.ticks_per_block] = 40.0
     (found,) = select(sessions).found
     assert found.candidate.kind == "vibration" and found.candidate.terms[0].hi < 0.1
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_each_pass_takes_something_away_until_nothing_is_worse(seed):
+    rng = np.random.default_rng(seed)
+    kind = Candidate("vibration", (Term("vib"),), "catalogue")
+    found = [Found(kind, Decision(True, 0.0, 0.0, 1.0, np.zeros(1))) for _ in range(3)]
+    left = replace(select(simulate(2, sessions=1, bare=True).sessions), found=found)
+    for _ in range(9):
+        after = [[rng.normal(size=(4, 3))] for _ in range(len(left.found) + 1)]
+        less = unharmed(left, after)
+        if less is left:
+            break
+        assert less.applied.sum() < left.applied.sum()
+        left = less
+    assert unharmed(replace(left, found=[]), after[:1]).found == []

@@ -161,7 +161,8 @@ def held(term: Term, sessions: Sequence[Session]) -> Term:
     all that the source does, as far beyond them."""
     seen = np.concatenate([s.block_mean(s.source(term.source))[s.available] for s in sessions])
     every = np.concatenate([s.source(term.source) for s in sessions])
-    below, above = max(0.0, every.min() - term.lo), max(0.0, term.hi - every.max())
+    margins = np.maximum([every.min() - term.lo, term.hi - every.max()], 0.0)
+    below, above = np.where(np.isfinite(margins), margins, 0.0)
     lo, hi = max(term.lo, float(seen.min() - below)), min(term.hi, float(seen.max() + above))
     return replace(term, lo=min(lo, hi), hi=hi)
 

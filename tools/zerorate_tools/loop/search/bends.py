@@ -18,6 +18,7 @@ from ...model.term import Term
 from ..fit.single import speaks_for
 from .catalogue import Candidate
 from .decide import LEVEL, Decision, family_p
+from .refine import refined
 
 KINDS = ("temperature-quadratic", "temperature-cubic", "temperature-curve", "temperature-kink")
 #: Of likelihood ratio, by which a kink, which has a place to choose, must beat a curve.
@@ -58,6 +59,8 @@ def find_bends(regression, judged: JudgedOnPieces, straight, pool) -> Bends:
     significant = sorted(_significant(regression, straight, every), key=_worth, reverse=True)
     regression.steep = True
     for candidate, decision in significant:
+        if candidate.kind == "temperature-kink":
+            candidate = refined(regression, straight, candidate)
         said = on_pieces(decision, judged, straight, (), candidate.terms)
         if said.accepted:
             bends.found.append((candidate, said))

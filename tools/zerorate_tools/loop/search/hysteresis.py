@@ -42,8 +42,8 @@ _RIDGE = 1e-7
 _STEPS = (1.12, 1.06)
 #: As how many widths the grid's count: neighbours are much alike.
 _APART = 6
-#: Nats by which it must predict better than lag or rate of temperature, which are simpler.
-_RIVALS_NATS = 3.0
+#: Nats by which it must predict better than what is simpler.
+_SIMPLER, _RIVALS_NATS = ("thermal-lag", "thermal-rate", "temperature-kink"), 3.0
 #: By which the error on pieces left out must fall where one recording stands alone. Noise that
 #: walks by a third of its white part a block lets it fall by 1.2 to 1.4, by 1.9 where it walks by
 #: more than its white part; a real part's loop in a chamber by 4.6.
@@ -111,7 +111,7 @@ def of_one_recording(
     """The hysteresis of a recording that stands alone, with its bend as one effect, or why not.
 
     beside: the bend found, then another that may be better with a hysteresis beside it; pool: of
-    which lag and rate are asked first, for one course of temperature shows all three much alike;
+    which lag, rate and kink are asked first, for one course of temperature shows all much alike;
     taken: slots that others need; least_factor: by which the error on pieces left out must become
     less than with the bend, geometric mean over the axes. Pieces left out decide, as with bends,
     but the noise may be as steep as it likes: a course with few turns is much like a walk.
@@ -129,7 +129,7 @@ def of_one_recording(
     gain, bend, candidate = best
     rival, rivals_gain = _rival(straight, bend, pool, by_line)
     if rivals_gain > gain - _RIVALS_NATS:
-        return None, "lag or rate of temperature predict the pieces left out as well"
+        return None, "a lag, a rate or a kink predicts the pieces left out as well"
     ratio = float(regression.gains([*straight, *bend, *rival], [candidate.terms]).sum())
     p = family_p(ratio, 3 * len(candidate.terms), _tried(candidate))
     if p > LEVEL["catalogue"]:
@@ -151,10 +151,10 @@ def _rms(residual: np.ndarray) -> np.ndarray:
 
 
 def _rival(straight, bend, pool, by_line) -> tuple[tuple[Term, ...], float]:
-    """Terms of the lag or rate of temperature that predicts best with the bend, and the nats."""
+    """Terms of the simpler effect that predicts best with the bend, and the nats."""
     best: tuple[tuple[Term, ...], float] = (), -np.inf
     for candidate in pool:
-        if candidate.kind in ("thermal-lag", "thermal-rate"):
+        if candidate.kind in _SIMPLER:
             gain = float(by_line(straight, (), (*bend, *candidate.terms)).sum())
             best = (candidate.terms, gain) if gain > best[1] else best
     return best
