@@ -17,8 +17,8 @@ _LOW_15 = const(0x7FFF)
 def scaled(a: int, b: int, shift: int) -> int:
     """Return (a * b) >> shift for |a|, |b| < 2^28 and shift 15..30, to within one unit."""
     high = b >> 15
-    b = b & _LOW_15
-    middle = (a >> 15) * b + (a & _LOW_15) * high + (((a & _LOW_15) * b) >> 15)
+    low = b & _LOW_15
+    middle = (a >> 15) * low + (a & _LOW_15) * high + (((a & _LOW_15) * low) >> 15)
     high = (a >> 15) * high
     return (high << (30 - shift)) + (middle >> (shift - 15))
 

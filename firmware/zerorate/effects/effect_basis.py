@@ -149,33 +149,34 @@ def start(e: ptr32, a: int, u: int):
 def remembered(e: ptr32, a: int, u: int) -> int:
     """Return u with the slot's lag or memory: see model.term of the tools, the float reference."""
     kind = e[a + _SLOT_MEMORY]
-    a += _SLOT_STATE
     if kind <= _MEMORY_RATE:
-        approach(e, a, a - _SLOT_STATE + _SLOT_LAG, u)
-        return e[a] if kind == _MEMORY_LAG else u - e[a]
-    p = e[a]
+        approach(e, a + _SLOT_STATE, a + _SLOT_LAG, u)
+        p = e[a + _SLOT_STATE]
+        return p if kind == _MEMORY_LAG else u - p
+    p = e[a + _SLOT_STATE]
     if kind == _MEMORY_BACKLASH:
-        half = e[a - _SLOT_STATE + _SLOT_HALF_WIDTH]
+        half = e[a + _SLOT_HALF_WIDTH]
         if p < u - half:
             p = u - half
         elif p > u + half:
             p = u + half
     elif p < u:
         p = u
-    e[a] = p
+    e[a + _SLOT_STATE] = p
     return p - u
 
 
 def looked_up(e: ptr32, a: int, v: int) -> int:
     """Return what the slot's table of nine equally spaced points says at v, held at its ends."""
+    at = e[a + _SLOT_TABLE_SCALE]
+    at = scaled(v - e[a + _SLOT_TABLE_FIRST], at, e[a + _SLOT_TABLE_SCALE + 1])
     table = e[a + _SLOT_TABLE]
-    v = scaled(v - e[a + _SLOT_TABLE_FIRST], e[a + _SLOT_TABLE_SCALE], e[a + _SLOT_TABLE_SCALE + 1])
-    if v <= 0:
+    if at <= 0:
         return e[table]
-    if v >= 8 * _ONE_Q24:
+    if at >= 8 * _ONE_Q24:
         return e[table + 8]
-    table += v >> 24
-    return e[table] + scaled(e[table + 1] - e[table], v & 0xFFFFFF, 24)
+    table += at >> 24
+    return e[table] + scaled(e[table + 1] - e[table], at & 0xFFFFFF, 24)
 
 
 def basis(e: ptr32, a: int) -> int:

@@ -191,7 +191,7 @@ def bound(e: ptr32, a: int) -> int:
 def move(e: ptr32, a: int, state: int):
     """Set the slot's coefficients to the model's own plus what was learned, within the bound."""
     most = bound(e, a)
-    state = _THETA + 2 * state
+    state = _THETA + 2 * state  # eleven words: the word of what was learned
     shift = e[a + _SLOT_COEFFICIENT_SHIFT] - 10
     i = 3
     while i > 0:

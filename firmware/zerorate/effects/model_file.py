@@ -27,12 +27,12 @@ except ImportError:
 
 
 LOADED = const(0)
-UNREADABLE = const(1)
-NO_MODEL = const(2)
+NO_MODEL = const(1)
+DAMAGED = const(2)  # what a store says as well has the same number there
 TRUNCATED = const(3)
-DAMAGED = const(4)
-OTHER_VERSION = const(5)
-OTHER_CHIP = const(6)
+OTHER_VERSION = const(4)
+OTHER_CHIP = const(5)
+UNREADABLE = const(6)
 OTHER_RANGE = const(7)
 OTHER_FILTER = const(8)
 OTHER_SCALE = const(9)
@@ -40,12 +40,12 @@ TOO_LARGE = const(10)
 IMPOSSIBLE = const(11)
 REASONS = (
     "loaded",
-    "the file cannot be read",
     "this is no effect model",
-    "the model is cut short",
     "the model is damaged: its checksum differs",
+    "the model is cut short",
     "the model is of another version",
     "the model was made for another chip",
+    "the file cannot be read",
     "the model was made for another range",
     "the model was made for another filter",
     "the model was made for other scales",

@@ -302,9 +302,9 @@ def level_and_prior(s: ptr32, c: ptr32, k: int):
         find_up(s)
         turn_centre(s, s[_STAGE])
     elif k == 1:
-        k = 1 if s[_LENGTH] == c[_LONGEST] and s[_ACCEPTED] > 0 else 0
-        carry(s, c, k)
-        if k:
+        known = 1 if s[_LENGTH] == c[_LONGEST] and s[_ACCEPTED] > 0 else 0
+        carry(s, c, known)
+        if known:
             copy(s, _BIAS, _PRIOR_MEAN, 6)
     elif k == 2:
         spread_prior(s)

@@ -103,7 +103,7 @@ def know_nothing(s: ptr32, c: ptr32, tilt: int, heading: int):
     while i < 3:
         put(s, _PRIOR_MEAN + 2 * i, 0, 0)
         if i == 2:
-            tilt = heading
+            tilt = heading  # eleven words: the energy of this row, from here on
         put(s, _HELD_NOISE + 2 * i, tilt, 0)
         i += 1
 

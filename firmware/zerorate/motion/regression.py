@@ -117,7 +117,7 @@ def centre(s: ptr32, a: int, row: int, shift: int):
         s[row + i] = s[row + i] - (s[_M + i] << shift)
         i += 1
     i = 0
-    row = a
+    row = a  # eleven words: from here on the square sums' word, and shift that of a sum of M
     s[_WM] = s[a + _SUM_Y]
     while i < 3:
         shift = a + _SUM_M + i

@@ -306,8 +306,8 @@ def block(s: ptr32, f: ptr32, c: ptr32, r: ptr32, n: int):
     r[_AT] = 0
     r[_END] = n << 3
     while r[_AT] < r[_END]:
-        n = r[_AT]
+        before = r[_AT]
         if s[_WORK] == 0 and s[_WINDOW_N] < c[_WINDOW] - 1:
             take(s, f, c, r)
-        if r[_AT] == n:
+        if r[_AT] == before:
             one(s, f, c, r)

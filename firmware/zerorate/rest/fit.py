@@ -166,6 +166,7 @@ def lean(s: ptr32, c: ptr32, a: int, i: int):
     i = s[a + _EST_MEAN_TEMP_Q4]
     i = within(s, i) - s[_FIT_FIRST_T_Q4]
     i = (i << k) - s[_FIT_SUM_T]
+    # eleven words: i is now the temperature, a the bias, k the shifts
     a = ((s[a + _EST_BIAS_Q8] - s[_FIT_FIRST_B_Q8]) << 3) - s[_FIT_SUM_B_Q11]
     k = room(w)
     w = scaled(w << k, i << room(i), 27)

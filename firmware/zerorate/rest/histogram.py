@@ -177,7 +177,7 @@ def fullest(s: ptr32, h: int, bins: int) -> int:
 
 def crowded(s: ptr32, c: ptr32, h: int, j: int, p: int) -> int:
     """Return 1 if bin j is full enough beside the emptiest pair p to be split, else 0."""
-    j += h
+    j += h  # eleven words: the bins themselves
     p += h
     count = s[j] & _MOST_READINGS
     pair = (s[p] & _MOST_READINGS) + (s[p + 1] & _MOST_READINGS)

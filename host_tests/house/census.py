@@ -1,0 +1,104 @@
+"""How large the house is and how much of it is said twice, of a checkout or of any commit in it.
+
+python -m host_tests.house.census [COMMIT]
+"""
+
+import ast
+import re
+import subprocess
+import sys
+import tempfile
+from collections import Counter
+from pathlib import Path
+
+from .test_imports import by_package, circles, graph_of
+
+_CONST = re.compile(r"^(_?[A-Z][A-Z0-9_]*) = const\((-?\w+)\)", re.MULTILINE)
+_MADE = re.compile(r"^# layout: (?!end$).*?^# layout: end$", re.DOTALL | re.MULTILINE)
+
+
+def census(root):
+    """What is counted, in words -> how many."""
+    python = [
+        p
+        for folder in ("firmware", "drivers", "tools", "host_tests")
+        for p in (root / folder).rglob("*.py")
+    ]
+    made = [p for p in python if re.match(r"(thumb|rv32|fixtures)_", p.name)]
+    written = [p for p in python if p not in made]
+    firmware = [p for p in written if p.is_relative_to(root / "firmware" / "zerorate")]
+    graph = graph_of(root / "tools")
+    return {
+        "Python files": len(written),
+        "lines in them": sum(map(lines, written)),
+        "of these of tools": sum(lines(p) for p in written if p.is_relative_to(root / "tools")),
+        "of these of tests": sum(
+            lines(p) for p in written if p.is_relative_to(root / "host_tests")
+        ),
+        "generated files": len(made),
+        "files that say where a word of an array is": len(layouts(firmware)),
+        "names of constants with several values in the firmware": len(several(firmware)),
+        "circles of imports between modules": len(circles(graph)),
+        "circles of imports between packages": len(circles(by_package(graph))),
+        "words to learn": words(root / "docs" / "glossary.md"),
+        **rooms(root / "tools" / "zerorate_tools" / "loop"),
+    }
+
+
+def lines(path):
+    """Lines of a file."""
+    return len(path.read_text(encoding="utf-8").splitlines())
+
+
+def layouts(firmware):
+    """The files that themselves give a number to a name by which an array is read or written."""
+    own = {p: dict(_CONST.findall(_MADE.sub("", p.read_text(encoding="utf-8")))) for p in firmware}
+    found = {p for p in firmware if own[p].keys() & subscripts(p)}
+    return found | {p for p in firmware if p.name == "layout.py"}
+
+
+def subscripts(path):
+    """The names in the subscripts of a file."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    inside = (n.slice for n in ast.walk(tree) if isinstance(n, ast.Subscript))
+    return {name.id for part in inside for name in ast.walk(part) if isinstance(name, ast.Name)}
+
+
+def several(firmware):
+    """The names that stand for different numbers in different files."""
+    pairs = {pair for p in firmware for pair in _CONST.findall(p.read_text(encoding="utf-8"))}
+    return {name for name, times in Counter(name for name, _ in pairs).items() if times > 1}
+
+
+def rooms(loop):
+    """Files of the loop by room."""
+    there = Counter(p.parent.name for p in loop.rglob("*.py") if p.name != "__init__.py")
+    return {
+        f"files in loop/{'' if name == 'loop' else name}": there[name] for name in sorted(there)
+    }
+
+
+def words(glossary):
+    """Rows of the glossary."""
+    if not glossary.exists():
+        return 0
+    return sum(line.startswith("|") for line in glossary.read_text().splitlines()) - 2
+
+
+def main(arguments):
+    root = Path(__file__).resolve().parents[2]
+    if not arguments:
+        found = census(root)
+    else:
+        with tempfile.TemporaryDirectory() as folder:
+            archive = subprocess.run(
+                ["git", "-C", root, "archive", *arguments], capture_output=True, check=True
+            )
+            subprocess.run(["tar", "-x", "-C", folder], input=archive.stdout, check=True)
+            found = census(Path(folder))
+    for what, number in found.items():
+        print(f"| {what} | {number:,} |")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
