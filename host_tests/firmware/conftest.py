@@ -36,3 +36,24 @@ def trace_on(repository):
         return result.files["state.bin"], result.files["bias.bin"]
 
     return run
+
+
+@pytest.fixture(scope="session")
+def source_on(repository):
+    """source_on(runtime, name, motion) -> the source's state by a MicroPython whose heap is locked.
+
+    name: in_motion or gravity.
+    """
+
+    def run(runtime, name, motion):
+        result = runtime.run(
+            _HERE / "on_micropython" / "motion_without_heap.py",
+            [name, str(len(motion.samples))],
+            modules=[repository / "firmware"],
+            files_in={"samples.bin": motion.samples.astype("int32").tobytes()},
+            files_out=["state.bin"],
+            check=True,
+        )
+        return result.files["state.bin"]
+
+    return run

@@ -143,27 +143,9 @@ def short_motion():
     return motions.turning(80, 3.0, [1.0, 0.0, 0.0], hz=25.0, start=LEANING)
 
 
-@pytest.fixture(scope="module")
-def count_on(repository):
-    """count_on(runtime, motion) -> the state by a MicroPython whose heap is locked."""
-
-    def run(runtime, motion):
-        result = runtime.run(
-            repository / "host_tests" / "firmware" / "on_micropython" / "motion_without_heap.py",
-            ["gravity", str(len(motion.samples))],
-            modules=[repository / "firmware"],
-            files_in={"samples.bin": motion.samples.astype(np.int32).tobytes()},
-            files_out=["state.bin"],
-            check=True,
-        )
-        return result.files["state.bin"]
-
-    return run
-
-
 def test_bytecode_counts_what_cpython_counts_and_allocates_nothing(
-    micropython, count_on, short_motion
+    micropython, source_on, short_motion
 ):
     expected = Counter(hz=25.0).feed(short_motion)
     assert expected.trace
-    assert count_on(micropython, short_motion) == expected.state.tobytes()
+    assert source_on(micropython, "gravity", short_motion) == expected.state.tobytes()

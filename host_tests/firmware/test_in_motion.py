@@ -303,24 +303,6 @@ def test_every_intermediate_fits_31_bits(make, document):
 
 
 @pytest.fixture(scope="module")
-def feed_on(repository):
-    """feed_on(runtime, motion) -> the motion's state by a MicroPython whose heap is locked."""
-
-    def run(runtime, motion):
-        result = runtime.run(
-            repository / "host_tests" / "firmware" / "on_micropython" / "motion_without_heap.py",
-            ["in_motion", str(len(motion.samples))],
-            modules=[repository / "firmware"],
-            files_in={"samples.bin": motion.samples.astype(np.int32).tobytes()},
-            files_out=["state.bin"],
-            check=True,
-        )
-        return result.files["state.bin"]
-
-    return run
-
-
-@pytest.fixture(scope="module")
 def short_motion():
     return motions.swinging(7, 44, hz=25.0)
 
@@ -333,6 +315,6 @@ def expected(short_motion):
 
 
 def test_bytecode_learns_what_cpython_learns_and_allocates_nothing(
-    micropython, feed_on, short_motion, expected
+    micropython, source_on, short_motion, expected
 ):
-    assert feed_on(micropython, short_motion) == expected
+    assert source_on(micropython, "in_motion", short_motion) == expected

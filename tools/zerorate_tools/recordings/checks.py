@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -40,9 +42,11 @@ def check_names(names: list[str], path: Path) -> None:
         raise BadRecording(path, f"of ax ay az only {have} is there", do="give all three or none")
 
 
-def arrow_column(name: str, values: np.ndarray, kind: pa.DataType) -> pa.Array:
-    """A column to be written: where an extra channel is GAP it has no value."""
-    return pa.array(values, kind, mask=np.asarray(values) == GAP if _is_extra(name) else None)
+def arrow_batch(columns: Mapping[str, Any], schema: pa.Schema) -> pa.RecordBatch:
+    """Equally long columns to be written: where an extra channel is GAP it has no value."""
+    gaps = {name: np.asarray(columns[name]) == GAP for name in schema.names if _is_extra(name)}
+    arrays = [pa.array(columns[f.name], f.type, mask=gaps.get(f.name)) for f in schema]
+    return pa.RecordBatch.from_arrays(arrays, schema=schema)
 
 
 class BatchChecker:

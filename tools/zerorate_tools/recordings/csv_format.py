@@ -15,7 +15,7 @@ import pyarrow.compute as pc
 import pyarrow.csv
 
 from ..errors import BadRecording
-from .checks import arrow_column, check_names
+from .checks import arrow_batch, check_names
 from .recording import TIME
 from .scales import MOST_BYTES, Scales, example_for, scales_from_text
 from .text import damaged, head, open_text
@@ -159,11 +159,7 @@ class CsvWriter:
 
     def append(self, columns: dict[str, Any]) -> None:
         """Write one batch of equally long columns."""
-        arrays = [
-            arrow_column(name, columns[name], self._schema.field(name).type)
-            for name in self._schema.names
-        ]
-        self._writer.write_batch(pa.RecordBatch.from_arrays(arrays, schema=self._schema))
+        self._writer.write_batch(arrow_batch(columns, self._schema))
 
     def close(self) -> None:
         """Flush and close the file."""

@@ -12,7 +12,7 @@ import pyarrow.parquet as pq
 
 from ..errors import BadRecording
 from .bounded import STEP_MB, at_most, each_at_most
-from .checks import arrow_column, check_names
+from .checks import arrow_batch, check_names
 from .recording import TIME
 from .scales import Scales, scales_from_text
 
@@ -84,11 +84,7 @@ class ParquetWriter:
 
     def append(self, columns: dict[str, Any]) -> None:
         """Write one batch of equally long columns."""
-        arrays = [
-            arrow_column(name, columns[name], self._schema.field(name).type)
-            for name in self._schema.names
-        ]
-        self._writer.write_batch(pa.RecordBatch.from_arrays(arrays, schema=self._schema))
+        self._writer.write_batch(arrow_batch(columns, self._schema))
 
     def close(self) -> None:
         """Write the footer and close the file."""
