@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..peers import OURS, PEERS, Given, Peer, given
 from ..simulate import simulate_sessions
-from .peers import OURS, PEERS, Given, Peer, given
 
 SCENARIOS = ("warm-up-a", "warm-up-b", "warm-up-c")
 SEEDS = (1, 2, 3, 4, 5)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
+from ..peers import HOW, PEERS
 from .accuracy import DAY, FIRST_S, SCENARIOS, SEEDS, day, second_power_on
 from .limits import ACCURACY, SESSION_2, limits_table, verdicts
-from .peers import HOW, PEERS
 from .real_recordings import COLUMNS, data_folder, real, recordings
 from .tables import machine, machine_line, number, table
 

@@ -14,10 +14,10 @@ from ..compare import Compared, compare
 from ..compare.judge import FIRST_REST, FRESH, NOTHING, TooFewRests
 from ..compare.rests import rests_of
 from ..importers import import_recording
+from ..peers import firmware, given
+from ..peers.fusion import fusion
+from ..peers.vqf_filter import vqf_default
 from .broad import Trial, trials, true_bias
-from .peers import firmware, given
-from .peers.fusion import fusion
-from .peers.vqf_filter import vqf_default
 from .public_data import told_of
 from .real_recordings import recordings
 from .tables import table

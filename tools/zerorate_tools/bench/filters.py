@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ZerorateError
+from ..peers import firmware, first_seconds, given
 from .broad import Trial, trials, true_bias
-from .peers import firmware, first_seconds, given
 from .real_recordings import data_folder
 from .tables import table
 

@@ -13,12 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import MissingRuntime
+from ..peers import Given, Peer, given, vqf_clip_raised, vqf_default
+from ..peers.decision import Decision
+from ..peers.sources import Source
 from ..simulate import simulate
 from .broad import Trial, TrueBias, trials, true_bias
 from .native_cost import source_cost
-from .peers import Given, Peer, given, vqf_clip_raised, vqf_default
-from .peers.decision import Decision
-from .peers.sources import Source
 from .settling import settling
 
 SCENARIOS = (

@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
+from ..peers import Given, Peer, ardupilot_cubic, fusion, given, px4_cubic
 from ..simulate import simulate
 from ..simulate.description import bundled, parsed
 from .accuracy import SEEDS, rms_mdps
-from .peers import Given, Peer, ardupilot_cubic, fusion, given, px4_cubic
 from .tables import machine_line, number, table
 
 _HOW = """\

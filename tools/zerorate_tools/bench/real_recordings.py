@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..importers import read_foreign
+from ..peers import OURS, Given, Peer, given
+from ..peers.first_seconds import first_seconds
 from ..recordings import Recording
 from .accuracy import rms_mdps
-from .peers import OURS, Given, Peer, given
-from .peers.first_seconds import first_seconds
 from .public_data import told_of
 
 BLOCK_S = 20.0

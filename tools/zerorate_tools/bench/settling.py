@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..peers import given
+from ..peers.sources import Source
 from ..simulate import simulate
-from .peers import given
-from .peers.sources import Source
 
 NEAR_MDPS = 50.0
 _RIPPLE_S = 200.0

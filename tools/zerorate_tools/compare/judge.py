@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..bench.peers import Given, firmware, given
-from ..bench.peers.fusion import fusion
-from ..bench.peers.vqf_filter import vqf_default
 from ..errors import InFile
+from ..peers import Given, firmware, given
+from ..peers.fusion import fusion
+from ..peers.vqf_filter import vqf_default
 from ..recordings import read_recording
 from .rests import Rest, rests_of
 

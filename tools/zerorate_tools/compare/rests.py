@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..bench.peers import Given
 from ..loop.read.still import still_ticks
 from ..loop.read.ticks import TICK_S, read_ticks, tick_seconds
+from ..peers import Given
 
 _LEAST_TICKS = 3
 #: A long rest counts as several: a device that never moves is compared, too.

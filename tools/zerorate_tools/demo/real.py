@@ -65,7 +65,7 @@ def real(
 
 
 def _peer(way: str) -> Callable[[Recording], NDArray[np.float64]]:
-    from ..bench.peers import first_seconds, given, vqf_default
+    from ..peers import first_seconds, given, vqf_default
 
     if way == "uncorrected":
         return lambda recording: np.zeros((len(recording), 3))

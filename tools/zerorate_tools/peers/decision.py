@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ...replay.engines import engine
-from ...replay.replaying import corrector_for
-from ...replay.samples import frames_in_batches
+from ..replay.engines import engine
+from ..replay.replaying import corrector_for
+from ..replay.samples import frames_in_batches
 from .given import Given
 
 _STRETCH_S = 10.0

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from zerorate.layout import GRAVITY, MOTION
 
-from ...kernels.library import run_source
+from ..kernels.library import run_source
 from .given import Given
 
 _MOTION_WORDS = MOTION.MOTION_BIAS_Q8, MOTION.MOTION_QUALITY_Q8

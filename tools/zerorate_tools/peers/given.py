@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...recordings import Recording
+from ..recordings import Recording
 
 
 @dataclass(frozen=True)
