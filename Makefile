@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PYTEST_ARGS ?= -n auto
 
-.PHONY: demo test lint typecheck typecheck-tools pytest fuzz sweep day layout native docs lock wasm runtimes node wheel clean
+.PHONY: demo test lint typecheck typecheck-tools pytest fuzz sweep day mutants attacks layout native docs lock wasm runtimes node wheel clean
 
 demo: $(VENV)/.tools wasm  ## the whole job on built-in input, no hardware
 	$(BIN)/zerorate demo
@@ -42,6 +42,13 @@ sweep: $(VENV)/.dev  ## SWEEP random sensors and settings: does anything leave 3
 
 day: $(VENV)/.dev  ## examples/main.py for a simulated day: 200 resets, 200 times pulled out
 	$(BIN)/python -m host_tests.boards.day
+
+attacks: $(VENV)/.dev  ## every attack of docs/faults.md, with how many succeeded
+	$(BIN)/python -m host_tests.attacks
+
+MUTANTS ?= 25
+mutants: $(VENV)/.dev  ## which share of MUTANTS mutants of each area the tests kill
+	$(BIN)/python -m host_tests.mutants --each $(MUTANTS)
 
 layout: $(VENV)/.dev  ## write the constants of firmware/zerorate/layout.py where they are used
 	$(BIN)/python -m host_tests.layout

@@ -104,3 +104,9 @@ def test_good_frames_are_counted_and_learned_from():
     assert (outcome.verdict == guard.GOOD).all()
     assert corrector.state[COUNTS] == 2000
     assert corrector.source(2) > 0
+
+
+@pytest.mark.parametrize("frame", [[1] * 7, [-2] * 7, [0, 5, 5, 5, 5, 5, 5], [0, 0, 0, 0, 0, 0, 1]])
+def test_only_all_zeros_and_all_ones_say_that_the_bus_is_dead(frame):
+    corrector, _ = play(np.array([frame]))
+    assert corrector.state[COUNTS + guard.GOOD] == 1

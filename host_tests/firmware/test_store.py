@@ -54,8 +54,10 @@ def test_plain_bytes_are_stored_as_they_are(memory):
     store = Store(memory, BINDING, 5)
     assert store.save(b"\x00\xff\x80\x01\x7f")
     payload = bytearray(5)
-    assert store.load(payload) == stores.LOADED
-    assert payload == b"\x00\xff\x80\x01\x7f"
+    for reader in (store, Store(memory, BINDING, 5)):
+        assert reader.load(payload) == stores.LOADED
+        assert payload == b"\x00\xff\x80\x01\x7f"
+    assert set(memory.bytes[store.slot_bytes :]) == {0xFF}
 
 
 @pytest.mark.parametrize("erased", [0x00, 0xFF])

@@ -1,0 +1,63 @@
+"""Every attack, and how many succeeded: `make attacks` prints the table of docs/faults.md.
+
+Each row is a command of its own, which also says what fell. ZERORATE_FUZZ is how many damaged
+files each reader is given.
+"""
+
+import os
+import re
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+REPOSITORY = Path(__file__).resolve().parents[1]
+_PYTEST = ["-m", "pytest", "-q", "-p", "no:cacheprovider"]
+
+# what is attacked -> (with what, arguments of Python)
+ATTACKS = {
+    "bus and store": ("faults, cuts, turned bits", ["-m", "zerorate_tools.cli", "bench", "faults"]),
+    "store, while it lives": (
+        "a turned bit, then a cut",
+        [*_PYTEST, "host_tests/firmware/test_store.py"],
+    ),
+    "models": ("cuts, turned bits, noise", [*_PYTEST, "host_tests/tools/test_model.py"]),
+    "readers": ("damaged files", [*_PYTEST, "host_tests/hostile", "-k", "any or mat_of_one"]),
+    "memory": ("files that unpack to gigabytes", [*_PYTEST, "host_tests/hostile/test_bombs.py"]),
+    "writers": ("SIGTERM, full disks", [*_PYTEST, "host_tests/tools/test_atomic.py"]),
+    "reports": (
+        "hostile names",
+        [*_PYTEST, "host_tests/report/test_page.py", "host_tests/fleet/test_page.py", "-k", "name"],
+    ),
+    "31 bits": ("random sensors and settings", ["-m", "host_tests.firmware.sweep"]),
+    "a board's day": ("resets, unpluggings", ["-m", "host_tests.boards.day"]),
+}
+
+
+def attack(arguments):
+    """(how many succeeded, what was said last) of one command."""
+    done = subprocess.run(
+        [sys.executable, *arguments], cwd=REPOSITORY, capture_output=True, text=True
+    )
+    lines = [line for line in done.stdout.splitlines() if line.strip()]
+    failed = re.search(r"(\d+) failed", done.stdout)
+    fell = int(failed[1]) if failed else int(done.returncode != 0)
+    return fell, lines[-1].strip() if lines else done.stderr.strip()[-80:]
+
+
+def main():
+    """Print the table; 1 if an attack succeeded."""
+    os.environ.setdefault("ZERORATE_FUZZ", "200")
+    fallen = 0
+    print("| attacked | with | succeeded | last line | s |\n|---|---|---:|---|---:|")
+    for name in sys.argv[1:] or ATTACKS:
+        began = time.monotonic()
+        fell, said = attack(ATTACKS[name][1])
+        fallen += fell
+        took_s = time.monotonic() - began
+        print(f"| {name} | {ATTACKS[name][0]} | {fell} | {said} | {took_s:.0f} |", flush=True)
+    return 1 if fallen else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
