@@ -135,6 +135,10 @@ def in_words(rows: dict[str, dict]) -> str:
     return "\n".join([*lines, table(header, cells)])
 
 
+#: No temperature of a part is so far.
+_FAR_DEGC = 1e4
+
+
 def cubic(analysis) -> list | None:
     """The terms of a cubic over temperature; None without temperature."""
     line = analysis.selection.line
@@ -151,10 +155,11 @@ def cubic_left(analysis) -> list[NDArray[np.float64]] | None:
     from ...loop.fit.single import PiecesByLine, held
     from ...loop.verify.judge import rms_dps, scored
 
-    free = cubic(analysis)
-    if free is None:
+    powers = cubic(analysis)
+    if powers is None:
         return None
-    at_edges, left = [held(t, analysis.train) for t in free], []
+    free = [replace(t, lo=-_FAR_DEGC, hi=_FAR_DEGC) for t in powers]
+    at_edges, left = [held(t, analysis.train) for t in powers], []
     for terms in (free, at_edges):
         if analysis.single:
             left.append([PiecesByLine(analysis.sessions[0]).residual([], terms)])
