@@ -5,10 +5,10 @@ from array import array
 
 from zerorate import Corrector, Sensor
 from zerorate.checked import CheckedCorrector
-from zerorate.learned_store import LearnedStore
-from zerorate.save_schedule import SaveSchedule
-from zerorate.storage import FileStorage
-from zerorate.store import REASONS
+from zerorate.storage.learned_store import LearnedStore
+from zerorate.storage.places import FileStorage
+from zerorate.storage.save_schedule import SaveSchedule
+from zerorate.storage.store import REASONS
 from zerorate_i2c.fifo import EMPTY, Fifo
 from zerorate_i2c.linux import LinuxI2C
 from zerorate_i2c.mpu6050 import MPU6050

@@ -9,7 +9,7 @@ from zerorate.layout import MOTION, STATE
 from zerorate.motion.motion_settings import motion_settings
 from zerorate.rest import bias
 from zerorate.settings import DEFAULTS
-from zerorate.store import EMPTY, LOADED, OTHER_BINDING, Store
+from zerorate.storage.store import EMPTY, LOADED, OTHER_BINDING, Store
 
 RATES = (800, -300, 40)
 PERIOD_US = 10000

@@ -4,8 +4,9 @@ import random
 from array import array
 
 import pytest
-from zerorate import Corrector, Sensor, store
-from zerorate.learned_store import MODEL_BYTES, LearnedStore
+from zerorate import Corrector, Sensor
+from zerorate.storage import store
+from zerorate.storage.learned_store import MODEL_BYTES, LearnedStore
 from zerorate_fakes.memory import FakeMemory, PowerCut
 
 BINDING = bytes([0x68, 0, 0, 3])

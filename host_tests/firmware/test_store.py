@@ -8,11 +8,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from zerorate import Corrector, Sensor, layout
-from zerorate import store as stores
-from zerorate.crc32 import checksum, plain_crc32
-from zerorate.save_schedule import SaveSchedule
-from zerorate.storage import BlockDeviceStorage, FileStorage
-from zerorate.store import Store
+from zerorate.storage import store as stores
+from zerorate.storage.crc32 import checksum, plain_crc32
+from zerorate.storage.places import BlockDeviceStorage, FileStorage
+from zerorate.storage.save_schedule import SaveSchedule
+from zerorate.storage.store import Store
 from zerorate_fakes.memory import FakeMemory, PowerCut
 
 BINDING = bytes([0x68, 0, 0, 3])

@@ -12,7 +12,7 @@ import time
 from types import SimpleNamespace
 
 import pytest
-from zerorate.storage import FileStorage
+from zerorate.storage.places import FileStorage
 from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050, Physical
 from zerorate_i2c.mpu6050 import MPU6050
 from zerorate_tools.bench.service import run

@@ -16,7 +16,7 @@ Little-endian:
 
 from struct import unpack_from
 
-from ..crc32 import checksum
+from ..storage.crc32 import checksum
 
 try:
     from micropython import const

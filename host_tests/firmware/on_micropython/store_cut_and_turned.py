@@ -2,9 +2,9 @@
 
 from array import array
 
-from zerorate.crc32 import checksum, plain_crc32
-from zerorate.storage import FileStorage
-from zerorate.store import Store
+from zerorate.storage.crc32 import checksum, plain_crc32
+from zerorate.storage.places import FileStorage
+from zerorate.storage.store import Store
 from zerorate_fakes.memory import FakeMemory, PowerCut
 
 BINDING = b"\x68\x00\x00\x03"

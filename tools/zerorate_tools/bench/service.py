@@ -15,7 +15,7 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
-from zerorate.storage import FileStorage
+from zerorate.storage.places import FileStorage
 from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050, Physical
 from zerorate_i2c.mpu6050 import MPU6050
 

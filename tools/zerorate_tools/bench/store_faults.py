@@ -5,7 +5,7 @@ from __future__ import annotations
 from array import array
 
 from zerorate.corrector import Corrector
-from zerorate.store import LOADED, Store
+from zerorate.storage.store import LOADED, Store
 from zerorate_fakes.memory import FakeMemory, PowerCut
 
 _BINDING = bytes([0x68, 0, 0, 3])

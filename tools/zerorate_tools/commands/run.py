@@ -31,7 +31,7 @@ def run(arguments: argparse.Namespace) -> None:
     """Serve until interrupted."""
     import signal
 
-    from zerorate.storage import FileStorage
+    from zerorate.storage.places import FileStorage
     from zerorate_i2c import clock
     from zerorate_i2c.linux import LinuxI2C
     from zerorate_i2c.mpu6050 import MPU6050

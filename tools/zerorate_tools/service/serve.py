@@ -12,9 +12,9 @@ from typing import Any
 
 from zerorate import Corrector, Sensor
 from zerorate.checked import CheckedCorrector
-from zerorate.learned_store import LearnedStore
-from zerorate.save_schedule import SaveSchedule
-from zerorate.store import REASONS
+from zerorate.storage.learned_store import LearnedStore
+from zerorate.storage.save_schedule import SaveSchedule
+from zerorate.storage.store import REASONS
 from zerorate_i2c.fifo import EMPTY, Fifo
 
 from .publish import Sink
@@ -39,9 +39,9 @@ def notify(text: str) -> None:
 class System:
     """What the service stands on; a test has its own.
 
-    open_imu: a new MPU6050, raises OSError; storage: as zerorate.storage says; clock: functions of
-    zerorate_i2c.clock, which only goes forward, so that a clock set back is not seen; say: a line
-    of log; notify: to systemd.
+    open_imu: a new MPU6050, raises OSError; storage: as zerorate.storage.places; clock: functions
+    of zerorate_i2c.clock, which only goes forward, so that a clock set back is not seen; say: a
+    line of log; notify: to systemd.
     """
 
     open_imu: Callable[[], Any]

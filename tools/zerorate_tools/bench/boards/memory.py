@@ -26,10 +26,10 @@ print(repr((gc.mem_alloc() - before, took_us)))
 _EVERYTHING = """
 from zerorate.bursts import Bursts
 from zerorate.checked import CheckedCorrector
-from zerorate.learned_store import LearnedStore
+from zerorate.storage.learned_store import LearnedStore
 from zerorate.model import EffectModel
-from zerorate.save_schedule import SaveSchedule
-from zerorate.storage import FileStorage
+from zerorate.storage.save_schedule import SaveSchedule
+from zerorate.storage.places import FileStorage
 from zerorate_i2c.board import setup
 from zerorate_i2c.data_ready import DataReady
 from zerorate_i2c.fifo import Fifo

@@ -11,7 +11,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from .corrector import Corrector
+    from ..corrector import Corrector
 
 try:
     from micropython import const

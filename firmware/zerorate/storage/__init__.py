@@ -1,0 +1,1 @@
+"""What was learned, kept over a power-off: two slots, when they are written, and where."""
