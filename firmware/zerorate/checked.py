@@ -30,8 +30,8 @@ _LONG_US = const(0x20000000)  # a leap of time at any rate; a longer one would l
 
 # layout: The corrector's state
 _ELAPSED_US = const(16)
-_OUT_Q8 = const(55)
-_SOURCE = const(73)
+_OUT_Q8 = const(57)
+_SOURCE = const(75)
 # layout: end
 
 

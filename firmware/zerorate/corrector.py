@@ -22,18 +22,18 @@ if TYPE_CHECKING:
 
 # layout: The corrector's state
 _STILLNESS = const(46)
-_OUT_Q8 = const(55)
-_EFFECT_Q8 = const(61)
-_QUALITY_Q8 = const(70)
-_SOURCE = const(73)
+_OUT_Q8 = const(57)
+_EFFECT_Q8 = const(63)
+_QUALITY_Q8 = const(72)
+_SOURCE = const(75)
 # layout: An axis
 _WAITING_N = const(1)
-_OFFSET_Q8 = const(24)
-_OFFSET_VARIANCE_Q8 = const(25)
-_WALK_Q16 = const(26)
-_SUSPECT = const(27)
-_OFFSET_AGE_MS = const(28)
-_LINE_TEMP = const(31)
+_OFFSET_Q8 = const(27)
+_OFFSET_VARIANCE_Q8 = const(28)
+_WALK_Q16 = const(29)
+_SUSPECT = const(30)
+_OFFSET_AGE_MS = const(31)
+_LINE_TEMP = const(34)
 # layout: The corrector's settings
 _AXES = const(0)
 _AXIS_WORDS = const(13)
@@ -62,7 +62,7 @@ def forget(state, clear, settings):
 class Corrector:
     """Learns the bias of three axes while the device lives, and subtracts it.
 
-    sensor: a Sensor, or None for an MPU-6050 at +-250 dps and 100 Hz. bins: 4..19 an histogram;
+    sensor: a Sensor, or None for an MPU-6050 at +-250 dps and 100 Hz. bins: 1, 4..19 an estimator;
     short, long: estimators an axis. document: the literal rules of the three patents
     (docs/learning.md): of US 9,354,080 every reading learned, mean of the most significant bin,
     split in halves, one straight line, with settings of its own; with every=False the same rules
@@ -76,7 +76,7 @@ class Corrector:
     def __init__(
         self,
         sensor: "Sensor | None" = None,
-        bins: int = 8,
+        bins: "int | None" = None,
         short: int = 3,
         long: int = 5,
         document: bool = False,
@@ -92,6 +92,8 @@ class Corrector:
         chosen = dict(DEFAULTS)
         if every is None:
             every = document
+        if bins is None:
+            bins = 8 if every or document else 1
         if document and every:
             chosen.update(OF_THE_DOCUMENT)
         if ignore_outside is None:

@@ -14,12 +14,12 @@ except ImportError:
 _COUNTS = const(8)
 _STILLNESS = const(46)
 _SEGMENT_WINDOWS = const(48)
-_OUT_Q8 = const(55)
-_QUALITY_Q8 = const(70)
-_SOURCE = const(73)
+_OUT_Q8 = const(57)
+_QUALITY_Q8 = const(72)
+_SOURCE = const(75)
 # layout: An axis
-_SUSPECT = const(27)
-_BEYOND = const(29)
+_SUSPECT = const(30)
+_BEYOND = const(32)
 # layout: The corrector's settings
 _AXES = const(0)
 _WINDOW = const(3)

@@ -13,11 +13,11 @@ except ImportError:
 
 
 # layout: The corrector's state
-_FIT_WEIGHTS = const(92)
+_FIT_WEIGHTS = const(94)
 # layout: The last words before the axes
 _TURN_ON_OFFSET_Q8 = const(-3)
 # layout: An axis
-_ESTIMATORS = const(32)
+_ESTIMATORS = const(35)
 # layout: An estimator
 _EST_HISTOGRAM = const(4)
 # layout: The corrector's settings
@@ -77,7 +77,7 @@ _SETTINGS_WORDS = const(52)
 
 # What a user may set, in its unit. A time of readings is that many at the output data rate.
 DEFAULTS = {
-    "window_s": 0.5,  # a window
+    "window_s": 0.25,  # a window
     "segment_s": 2.5,  # a segment: what is learned at once
     "still_dps": 0.3,  # most spread of the rates in a window that is still
     "still_g": 0.03,  # most spread of the accelerations in it
@@ -92,18 +92,18 @@ DEFAULTS = {
     "halve_after_s": 3600.0,  # readings after which the counts are halved
     "fit_s": 2.0,  # readings that make an estimator a point of the line
     "counted_s": 20.0,  # more readings weigh no more in the line
-    "local_degc": 3.0,  # half the width of the line's neighbourhood
+    "local_degc": 6.0,  # half the width of the line's neighbourhood
     "stable_s": 2.5,  # readings with which an estimator speaks for its temperature
     "share": 0.125,  # and at least so many of all the line's readings
     "beyond_degc": 0.5,  # how far outside the line's points a bias is said to lie beyond
     "refit_degc": 0.25,  # the line is fitted again where the temperature moved so far
-    "floor_dps": 0.003,  # no mean of a rest is better known than that
+    "floor_dps": 0.002,  # no mean of a rest is better known than that
     "gate_dps": 0.3,  # a rest this near to what was expected is plausible
     "insist_s": 60.0,  # an implausible rest that lasts so long is believed
     "walk_dps": 0.002,  # speed of the offset's walk at first, a root second
     "walk_least_dps": 0.0003,  # slowest that is learned
     "walk_most_dps": 0.05,  # and fastest
-    "turn_on_dps": 0.1,  # one sigma of the turn-on offset
+    "turn_on_dps": 0.02,  # one sigma of the turn-on offset
     "slope_dps_per_degc": 0.02,  # how fast the bias may leave the line beyond its points
     "motion_most_dps": 0.15,  # another source's bias less well known teaches nothing
     "motion_full_dps": 0.01,  # one sigma with which it counts as one still reading
@@ -167,7 +167,7 @@ def windows(c, sensor, limits):
     c[_WINDOW_SHIFT] = power_of_two(limits["window_s"] * sensor.odr_hz)
     c[_WINDOW] = 1 << c[_WINDOW_SHIFT]
     window_s = c[_WINDOW] / sensor.odr_hz
-    c[_SEGMENT] = max(1, min(4, int(limits["segment_s"] / window_s + 0.5)))
+    c[_SEGMENT] = max(1, min(8, int(limits["segment_s"] / window_s + 0.5)))
     c[_LEAP_US] = int(min(0x1FFFFFFF, max(0.1e6, 10e6 / sensor.odr_hz)))
     jump_degc = max(400 / 340, 0.5 / sensor.odr_hz)
     c[_JUMP_LSB] = int(jump_degc * sensor.temp_lsb_per_degc) or 0xFFFF
@@ -181,8 +181,8 @@ def windows(c, sensor, limits):
 
 def bins_of(c, sensor, bins, every, document, limits):
     """The histograms."""
-    if not 4 <= bins < 20:
-        raise ValueError("bins must be 4..19, not %d" % bins)
+    if bins != 1 and not 4 <= bins < 20:
+        raise ValueError("bins must be 1 or 4..19, not %d" % bins)
     half = min(32000, int(limits["range_dps"] * sensor.gyro_lsb_per_dps))
     # an edge beside a reading at the rail stays below 2^16, and 2^14 of them below 2^30
     most = 0xFFFE // (bins + 1)

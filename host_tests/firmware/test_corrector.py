@@ -116,7 +116,7 @@ def test_a_store_that_is_empty_or_of_another_chip_leaves_a_clean_start(learned):
 @pytest.mark.parametrize(
     ("keywords", "sentence"),
     [
-        ({"bins": 20}, "bins must be 4..19"),
+        ({"bins": 20}, "bins must be 1 or 4..19"),
         ({"short": 0}, "short must be 1..6"),
         ({"colour": 1}, "no such setting: colour"),
         ({"sensor": Sensor(5.0), "motion": True}, "in motion needs 8 Hz or more, not 5"),

@@ -39,6 +39,29 @@ def test_a_slow_turn_from_power_on_is_learned_by_no_estimator(rate_dps, axis):
     assert estimators(corrector) == before
 
 
+def handled(seconds, seed):
+    """A hand's motion of some 60 dps about all axes."""
+    frames = rest(seconds, seed, BIAS_DPS)
+    t = np.arange(len(frames)) / 100
+    for axis, hz in enumerate((0.7, 1.1, 0.9)):
+        frames[:, 4 + axis] += 60 * LSB * np.sin(2 * np.pi * hz * t + seed + axis)
+    return frames
+
+
+def test_rests_of_a_second_between_motions_are_learned():
+    parts = []
+    for seed in range(12):
+        parts += [handled(4, seed), rest(1.1, 50 + seed, BIAS_DPS)]
+    corrector, _ = play(np.concatenate([*parts, handled(1, 99)]))
+    for axis in range(3):
+        assert corrector.bias_lsb(axis) == pytest.approx(BIAS_DPS[axis] * LSB, abs=LEARNED_LSB)
+
+
+def test_motion_alone_without_a_rest_is_not_learned():
+    corrector, _ = play(handled(60, 1))
+    assert not corrector.learned
+
+
 def test_a_turn_about_the_vertical_is_learned_once_it_insists():
     corrector, _ = play(turning(0, 30, axis=2))
     assert corrector.bias_lsb(2) == pytest.approx(0.2 * LSB, abs=LEARNED_LSB)

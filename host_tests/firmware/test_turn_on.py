@@ -67,6 +67,36 @@ def test_a_whole_power_on_is_corrected_by_its_own_offset(learned):
     assert learned.bias_lsb(0) / SENSOR.gyro_lsb_per_dps == pytest.approx(TURN_ON_DPS, abs=0.01)
 
 
+def test_a_bent_curve_is_foretold_below_all_that_was_seen():
+    bend_dps = 0.001
+
+    def curve(degc):
+        return 0.5 + SLOPE_DPS * (degc - 30.0) + bend_dps * (degc - 30.0) ** 2
+
+    warming = np.linspace(20, 45, 4000)
+    frames = rest(400, bias_dps=(0, 0, 0), odr_hz=10.0)
+    frames[:, 3] = [temperature_lsb(t) for t in warming]
+    frames[:, 4:] += curve(warming)[:, None] * LSB
+    corrector, _ = play(frames, Corrector(SENSOR))
+    straight = curve(20.0) + (curve(22.0) - curve(20.0)) / 2 * -3
+    assert first_bias_dps(corrector, 17.0) == pytest.approx(curve(17.0), abs=0.012)
+    assert abs(straight - curve(17.0)) > 0.012
+
+
+def test_the_noise_of_a_thermometer_hardly_reaches_the_bias():
+    slope_dps, noise_degc = 0.06, 0.3
+    warming = np.linspace(20, 32, 24000)
+    frames = rest(240, odr_hz=100.0)
+    read = warming + np.random.default_rng(3).normal(0, noise_degc, len(warming))
+    frames[:, 3] = (read - SENSOR.temp_offset_degc) * SENSOR.temp_lsb_per_degc
+    frames[:, 4:] += slope_dps * (warming - 25.0)[:, None] * LSB
+    _, outcome = play(frames, Corrector(Sensor()))
+    error = outcome.bias_q8 / 256 / LSB - slope_dps * (warming - 25.0)[:, None]
+    # two windows of 32 readings of that thermometer differ by 4.5 mdps
+    assert np.std(np.diff(error[12000::32], axis=0)) < 0.0025
+    assert np.abs(error[12000:]).mean() < 0.004
+
+
 @pytest.mark.parametrize("odr_hz", [25.0, 100.0, 200.0])
 def test_the_very_first_bias_stands_while_it_is_being_learned(odr_hz):
     frames = rest(6, bias_dps=(1.5, -2.2, 0.7), odr_hz=odr_hz)

@@ -15,16 +15,16 @@ ptr32 = None
 
 
 from .estimators import find
-from .fit import line_q8
+from .fit import bent_q8, line_q8
 
 # layout: An axis
 _LINE_LOW_Q4 = const(19)
 _LINE_HIGH_Q4 = const(20)
 _LINE_SAMPLES = const(21)
 _LINE_POINTS = const(22)
-_BEYOND = const(29)
-_KIND = const(30)
-_ESTIMATORS = const(32)
+_BEYOND = const(32)
+_KIND = const(33)
+_ESTIMATORS = const(35)
 # layout: An estimator
 _EST_BIAS_Q8 = const(2)
 _EST_READINGS = const(3)
@@ -85,4 +85,7 @@ def curve_q8(s: ptr32, c: ptr32, a: int, temp: int) -> int:
         return s[kind + _EST_BIAS_Q8]
     if kind == ANY_TEMPERATURE:
         return s[a + _ESTIMATORS + _EST_BIAS_Q8]
+    if c[_LITERAL] == 0:
+        kind = bent_q8(s, a, temp << 4)
+        return line_q8(s, a, temp << 4) + kind
     return line_q8(s, a, temp << 4)

@@ -18,9 +18,9 @@ ptr32 = None
 from .histogram import add, clear, halve, population, read_out_q8
 
 # layout: The corrector's state
-_LEARN_TEMP = const(52)
+_LEARN_TEMP = const(54)
 _CANDIDATE_THIRD = const(7)
-_NEAREST = const(80)
+_NEAREST = const(82)
 # layout: An axis
 _WAITING_SUM = const(0)
 _WAITING_N = const(1)
@@ -29,7 +29,7 @@ _COLDEST = const(3)
 _HOTTEST = const(4)
 _LEARNED_N = const(5)
 _ORDER = const(6)
-_ESTIMATORS = const(32)
+_ESTIMATORS = const(35)
 # layout: An estimator
 _EST_TEMP = const(0)
 _EST_MEAN_TEMP_Q4 = const(1)

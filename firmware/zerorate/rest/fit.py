@@ -24,18 +24,23 @@ from ..arithmetic.fixed import floating_ratio_q26, fraction_q27, room, scaled
 
 # layout: The corrector's state
 _TEMP = const(47)
-_FIT_SUM_T = const(80)
-_FIT_SUM_B_Q11 = const(81)
-_FIT_SUM_TT = const(82)
-_FIT_SUM_TB = const(84)
-_FIT_FIRST_T_Q4 = const(86)
-_FIT_FIRST_B_Q8 = const(87)
-_FIT_LOW_Q4 = const(88)
-_FIT_HIGH_Q4 = const(89)
-_FIT_SAMPLES = const(90)
-_FIT_POINTS = const(91)
-_FIT_WEIGHTS = const(92)
-_FIT_SUM_W = const(92)
+_FIT_SUM_T = const(82)
+_FIT_SUM_B_Q11 = const(83)
+_FIT_SUM_TT = const(84)
+_FIT_SUM_TB = const(86)
+_FIT_FIRST_T_Q4 = const(88)
+_FIT_FIRST_B_Q8 = const(89)
+_FIT_LOW_Q4 = const(90)
+_FIT_HIGH_Q4 = const(91)
+_FIT_SAMPLES = const(92)
+_FIT_POINTS = const(93)
+_FIT_WEIGHTS = const(94)
+_BEND_SQUARE_Q14 = const(82)
+_BEND_CUBE_Q14 = const(83)
+_BEND_NORM_Q18 = const(84)
+_BEND_DOT_Q12 = const(85)
+_BEND_LEFT_Q6 = const(86)
+_FIT_SUM_W = const(94)
 # layout: An axis
 _LINE_T0_Q4 = const(14)
 _LINE_MEAN_T = const(15)
@@ -46,7 +51,10 @@ _LINE_LOW_Q4 = const(19)
 _LINE_HIGH_Q4 = const(20)
 _LINE_SAMPLES = const(21)
 _LINE_POINTS = const(22)
-_ESTIMATORS = const(32)
+_BOW_Q6 = const(23)
+_BOW_MEAN_Q14 = const(24)
+_BOW_LEAN_Q14 = const(25)
+_ESTIMATORS = const(35)
 # layout: An estimator
 _EST_TEMP = const(0)
 _EST_MEAN_TEMP_Q4 = const(1)
@@ -55,6 +63,7 @@ _EST_READINGS = const(3)
 # layout: The corrector's settings
 _FIRST_SHORT = const(14)
 _ESTIMATORS_END = const(15)
+_LITERAL = const(21)
 _ESTIMATOR_COUNT = const(25)
 _ESTIMATOR_WORDS = const(26)
 _ENOUGH_TO_FIT = const(31)
@@ -65,6 +74,8 @@ _NEAR = const(51)
 # layout: Values that stand for none
 _FREE = const(-0x100000)
 # layout: end
+
+_POINTS_OF_A_BEND = const(5)
 
 
 def weigh(s: ptr32, c: ptr32, a: int):
@@ -189,8 +200,126 @@ def settle(s: ptr32, c: ptr32, a: int):
     s[a + _LINE_HIGH_Q4] = s[_FIT_HIGH_Q4]
 
 
+def along_q14(s: ptr32, a: int, t: int) -> int:
+    """Return how far the temperature, Q4, is from the line's mean one, in ranges of its points."""
+    t -= s[a + _LINE_T0_Q4]
+    t = (t << s[a + _LINE_SHIFT]) - s[a + _LINE_MEAN_T]
+    return t >> 12
+
+
+def bow_q14(s: ptr32, a: int, t: int) -> int:
+    """Return the parabola that no line through the weighted points holds any of."""
+    t = t * t - s[a + _BOW_LEAN_Q14] * t >> 14
+    t -= s[a + _BOW_MEAN_Q14]
+    if t > 0x7FFF:
+        return 0x7FFF
+    if t < -0x7FFF:
+        return -0x7FFF
+    return t
+
+
+def share_q13(s: ptr32, i: int) -> int:
+    """Return the weight of estimator i among all."""
+    w = s[_FIT_WEIGHTS + i]
+    if w:
+        i = s[_FIT_SUM_W]
+        w = fraction_q27(w, i) >> 14
+    return w
+
+
+def add_moments(s: ptr32, c: ptr32, a: int, i: int):
+    """Add estimator i to the weighted mean square and cube of `along_q14`."""
+    w = share_q13(s, i)
+    if w == 0:
+        return
+    i = s[a + i * c[_ESTIMATOR_WORDS] + _ESTIMATORS + _EST_MEAN_TEMP_Q4]
+    i = along_q14(s, a, i)
+    s[_BEND_SQUARE_Q14] += ((i * i >> 12) * w + 0x4000) >> 15
+    s[_BEND_CUBE_Q14] += ((i * i >> 13) * i >> 13) * w + 0x2000 >> 15
+
+
+def add_bow(s: ptr32, c: ptr32, a: int, i: int):
+    """Add estimator i to the squares of bow and of what the line leaves, and to their product."""
+    w = share_q13(s, i)
+    if w == 0:
+        return
+    i = a + i * c[_ESTIMATOR_WORDS] + _ESTIMATORS
+    left = within(s, s[i + _EST_MEAN_TEMP_Q4])
+    left = (s[i + _EST_BIAS_Q8] - line_q8(s, a, left) + 2) >> 2
+    left = clipped(left, 0x1FFF)  # LSB, Q6
+    i = s[i + _EST_MEAN_TEMP_Q4]
+    i = along_q14(s, a, i)
+    i = bow_q14(s, a, i)
+    i = clipped(i, 0x3FFF)
+    s[_BEND_NORM_Q18] += ((i * i >> 11) * w + 0x800) >> 12
+    s[_BEND_DOT_Q12] += ((i * left >> 10) * w + 0x400) >> 11
+    s[_BEND_LEFT_Q6] += ((left * left >> 10) * w + 0x100) >> 9
+
+
+def clipped(x: int, most: int) -> int:
+    """Return x held within +-most."""
+    if x > most:
+        return most
+    if x < 0 - most:
+        return 0 - most
+    return x
+
+
+def significant(s: ptr32, bow: int) -> int:
+    """Return the bow, LSB Q6, less where it explains little more than it leaves unexplained.
+
+    Of eight points that lie on a line a bow takes a sixth of what noise there is.
+    """
+    explained = (bow * (clipped(s[_BEND_DOT_Q12], 0x1FFFF) >> 2)) >> 10
+    noise = s[_BEND_LEFT_Q6] - explained
+    if noise <= 0:
+        return bow
+    if noise >= explained:
+        return 0
+    return bow * (((explained - noise) << 9) // explained) >> 9
+
+
+def bend(s: ptr32, c: ptr32, a: int):
+    """Bend the line where five estimators or more tell how, less where they tell little."""
+    s[a + _BOW_Q6] = 0
+    if c[_LITERAL] or s[a + _LINE_POINTS] < _POINTS_OF_A_BEND:
+        return
+    s[_BEND_SQUARE_Q14] = 0
+    s[_BEND_CUBE_Q14] = 0
+    s[_BEND_NORM_Q18] = 1
+    s[_BEND_DOT_Q12] = 0
+    s[_BEND_LEFT_Q6] = 0
+    i = 1
+    while i < c[_ESTIMATOR_COUNT]:
+        add_moments(s, c, a, i)
+        i += 1
+    s[a + _BOW_MEAN_Q14] = s[_BEND_SQUARE_Q14]
+    s[a + _BOW_LEAN_Q14] = (s[_BEND_CUBE_Q14] << 14) // (s[_BEND_SQUARE_Q14] + 1)
+    i = 1
+    while i < c[_ESTIMATOR_COUNT]:
+        add_bow(s, c, a, i)
+        i += 1
+    i = (clipped(s[_BEND_DOT_Q12], 0x1FFFF) << 12) // s[_BEND_NORM_Q18]
+    i = clipped(i, 0x7FFF)
+    s[a + _BOW_Q6] = significant(s, i)
+
+
+def bent_q8(s: ptr32, a: int, t: int) -> int:
+    """Return what the bend adds to the line at `t`, Q4; farther out than a quarter it is held."""
+    if s[a + _BOW_Q6] == 0:
+        return 0
+    margin = (s[a + _LINE_HIGH_Q4] - s[a + _LINE_LOW_Q4]) >> 2
+    if t > s[a + _LINE_HIGH_Q4] + margin:
+        t = s[a + _LINE_HIGH_Q4] + margin
+    if t < s[a + _LINE_LOW_Q4] - margin:
+        t = s[a + _LINE_LOW_Q4] - margin
+    t = along_q14(s, a, t)
+    t = bow_q14(s, a, t)
+    return t * s[a + _BOW_Q6] >> 12
+
+
 def draw_line(s: ptr32, c: ptr32, a: int):
-    """Fit the axis' line through its estimators."""
+    """Fit the axis' line through its estimators, and its bend."""
     weigh(s, c, a)
     i = 1
     while i < c[_ESTIMATOR_COUNT]:
@@ -202,6 +331,7 @@ def draw_line(s: ptr32, c: ptr32, a: int):
             lean(s, c, a, i)
         i += 1
     settle(s, c, a)
+    bend(s, c, a)
 
 
 def line_q8(s: ptr32, a: int, temp_q4: int) -> int:

@@ -221,6 +221,8 @@ def adapt(s: ptr32, c: ptr32, h: int, k: int) -> int:
 
     Returns 1 if the edges changed.
     """
+    if c[_BINS] == 1:
+        return 0
     if c[_LITERAL]:
         k = fullest(s, h, c[_BINS])
     elif recentre(s, c, h, k):

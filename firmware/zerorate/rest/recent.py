@@ -23,10 +23,10 @@ from .bias import curve_q8
 # layout: The corrector's state
 _TEMP = const(47)
 _NOISE_Q8 = const(49)
-_LEARN_TEMP = const(52)
-_RESTS = const(54)
-_MEAN_NOISE_Q8 = const(80)
-_GROWN_Q8 = const(81)
+_LEARN_TEMP = const(54)
+_RESTS = const(56)
+_MEAN_NOISE_Q8 = const(82)
+_GROWN_Q8 = const(83)
 # layout: The last words before the axes
 _TURN_ON_OFFSET_Q8 = const(-3)
 # layout: An axis
@@ -37,21 +37,24 @@ _OFFSET_FROM = const(13)
 _LINE_LOW_Q4 = const(19)
 _LINE_HIGH_Q4 = const(20)
 _LINE_POINTS = const(22)
-_CURVE_BEFORE_Q8 = const(23)
-_OFFSET_Q8 = const(24)
-_OFFSET_VARIANCE_Q8 = const(25)
-_WALK_Q16 = const(26)
-_SUSPECT = const(27)
-_OFFSET_AGE_MS = const(28)
-_KIND = const(30)
+_CURVE_BEFORE_Q8 = const(26)
+_OFFSET_Q8 = const(27)
+_OFFSET_VARIANCE_Q8 = const(28)
+_WALK_Q16 = const(29)
+_SUSPECT = const(30)
+_OFFSET_AGE_MS = const(31)
+_KIND = const(33)
 # layout: The corrector's settings
 _AXES = const(0)
+_WINDOW_SHIFT = const(4)
+_SEGMENT = const(5)
 _AXIS_WORDS = const(13)
 _FLOOR_Q8 = const(37)
 _GATE_Q4 = const(38)
 _INSIST = const(39)
 _WALK_LEAST_Q16 = const(40)
 _WALK_MOST_Q16 = const(41)
+_PROVISIONAL_Q8 = const(44)
 _TURN_ON_VARIANCE_Q8 = const(45)
 _SLOPE_Q16 = const(50)
 # layout: end
@@ -63,6 +66,21 @@ def grown_q8(s: ptr32, a: int) -> int:
     if seconds > 2047:
         seconds = 2047
     return s[a + _OFFSET_VARIANCE_Q8] + (((s[a + _WALK_Q16] >> 4) * seconds) >> 4)
+
+
+def mean_noise_q8(s: ptr32, c: ptr32, n: int) -> int:
+    """Return the variance of the mean of n still readings: their noise, and what no rest shows.
+
+    A rest shorter than a segment hides a slow turn from gravity, half as long twice as much of it.
+    """
+    shorter = (c[_SEGMENT] << c[_WINDOW_SHIFT]) // n
+    variance = c[_FLOOR_Q8]
+    if shorter > 1:
+        shorter = shorter * (c[_PROVISIONAL_Q8] >> 4) // 10
+        if shorter > 0x3FFF:
+            shorter = 0x3FFF
+        variance += shorter * shorter
+    return s[_NOISE_Q8] // (3 * n) + variance
 
 
 def beyond_q8(s: ptr32, c: ptr32, a: int) -> int:
@@ -105,13 +123,19 @@ def plausible(s: ptr32, c: ptr32, a: int, error: int) -> int:
     """Return 1 if the error is within the gate or six sigma, or has insisted long enough.
 
     A temperature at which nothing was learned yet widens the six sigma by the slope that is left.
+    A rest that motion ended early has two sigma: gravity had no time to show a slow turn.
     """
+    share = 36
     far = error if error >= 0 else 0 - error
     if far > 0x7FFF:
         far = 0x7FFF
-    if far <= c[_GATE_Q4]:
+    if s[a + _WAITING_N] < c[_SEGMENT] << c[_WINDOW_SHIFT]:
+        share = 4
+    elif far <= c[_GATE_Q4]:
         far = 0
-    if far * far // 36 <= s[_GROWN_Q8] + s[_MEAN_NOISE_Q8] + beyond_q8(s, c, a):
+    far = far * far // share
+    share = beyond_q8(s, c, a)
+    if far <= s[_GROWN_Q8] + s[_MEAN_NOISE_Q8] + share:
         s[a + _SUSPECT] = 0
         return 1
     s[a + _SUSPECT] += 1
@@ -143,8 +167,8 @@ def rewalk(s: ptr32, c: ptr32, a: int, excess: int):
     speed = (speed - s[a + _WALK_Q16]) >> 4
     share = age * age
     share = share // ((share + 0x100000) >> 10)
-    if share < 40:
-        share = 40
+    if share < 12:
+        share = 12
     speed = (speed * share >> 10) << 4
     s[a + _WALK_Q16] += speed
     if s[a + _WALK_Q16] < c[_WALK_LEAST_Q16]:
@@ -236,7 +260,8 @@ def absorb(s: ptr32, c: ptr32, a: int) -> int:
 
     The very first one is all curve and no offset.
     """
-    s[_MEAN_NOISE_Q8] = s[_NOISE_Q8] // (3 * s[a + _WAITING_N]) + c[_FLOOR_Q8]
+    error = s[a + _WAITING_N]
+    s[_MEAN_NOISE_Q8] = mean_noise_q8(s, c, error)
     error = error_q4(s, c, a)
     if believe(s, c, a, error) == 0:
         return 0

@@ -23,7 +23,7 @@ from .bias import curve_q8
 from .estimators import learn_anywhere, learn_here
 from .fit import draw_line
 from .guard import check
-from .recent import absorb, beyond_q8, grown_q8, hand_over
+from .recent import absorb, beyond_q8, gain_q14, grown_q8, hand_over, mean_noise_q8
 from .stillness import gather, judge
 
 # layout: The corrector's state
@@ -34,38 +34,42 @@ _SEGMENT_TEMP = const(45)
 _STILLNESS = const(46)
 _TEMP = const(47)
 _SEGMENT_WINDOWS = const(48)
-_LEARN_TEMP = const(52)
-_WORK = const(53)
-_OUT_Q8 = const(55)
-_CARRY_Q8 = const(58)
-_EFFECT_Q8 = const(61)
-_TARGET_Q8 = const(67)
-_QUALITY_Q8 = const(70)
-_SOURCE = const(73)
+_LEARN_TEMP = const(54)
+_WORK = const(55)
+_OUT_Q8 = const(57)
+_CARRY_Q8 = const(60)
+_EFFECT_Q8 = const(63)
+_TARGET_Q8 = const(69)
+_QUALITY_Q8 = const(72)
+_SOURCE = const(75)
 _OFFERED_SOURCE = const(7)
+_MEAN_NOISE_Q8 = const(82)
+_GROWN_Q8 = const(83)
 # layout: An axis
 _WAITING_SUM = const(0)
 _WAITING_N = const(1)
 _OFFER = const(12)
 _OFFSET_FROM = const(13)
-_OFFSET_Q8 = const(24)
-_OFFSET_AGE_MS = const(28)
-_KIND = const(30)
-_LINE_TEMP = const(31)
+_OFFSET_Q8 = const(27)
+_OFFSET_AGE_MS = const(31)
+_KIND = const(33)
+_LINE_TEMP = const(34)
 # layout: The corrector's settings
 _AXES = const(0)
 _WINDOW = const(3)
 _WINDOW_SHIFT = const(4)
-_SEGMENT = const(5)
 _SLEW_Q8 = const(11)
 _WORK_A_SAMPLE = const(12)
 _AXIS_WORDS = const(13)
 _FLOOR_Q8 = const(37)
+_GATE_Q4 = const(38)
 _STALE_LSB = const(43)
 _PROVISIONAL_Q8 = const(44)
 _EVERY = const(46)
 _MOST_SIGMA_Q6 = const(48)
 _FULL_WEIGHT_Q12 = const(49)
+# layout: What a window was
+_STILL = const(1)
 # layout: end
 
 
@@ -82,16 +86,46 @@ def sigma_q8(s: ptr32, c: ptr32, a: int) -> int:
     return root(variance) << 4
 
 
+def leant_q8(s: ptr32, c: ptr32, a: int, bias: int) -> int:
+    """Return the bias, LSB Q8, moved by the rest so far, before that is learned or was none.
+
+    A power-on begins with a bias known to some hundredth of a dps; a second of rest knows more.
+    A rest that lies two sigma off is rather a slow turn that gravity does not show yet.
+    """
+    error = (a - c[_AXES]) // c[_AXIS_WORDS]
+    error = (segment_mean_q8(s, c, error) - bias) >> 4
+    if error > c[_GATE_Q4] or error < -c[_GATE_Q4]:
+        return bias
+    n = s[_SEGMENT_WINDOWS] << c[_WINDOW_SHIFT]
+    s[_MEAN_NOISE_Q8] = mean_noise_q8(s, c, n)
+    s[_GROWN_Q8] = beyond_q8(s, c, a)
+    n = grown_q8(s, a)
+    n += s[_GROWN_Q8]
+    if error * error >> 2 > n + s[_MEAN_NOISE_Q8]:
+        return bias
+    n = gain_q14(n, s[_MEAN_NOISE_Q8])
+    return bias + (n * error >> 10)
+
+
 def publish(s: ptr32, c: ptr32, a: int, axis: int):
     """Write the axis' bias, source and quality for the temperature of the latest window."""
     bias = curve_q8(s, c, a, s[_TEMP]) + s[a + _OFFSET_Q8]
     if s[a + _KIND] == 0:
         return
+    if s[_STILLNESS] == _STILL and s[_SEGMENT_WINDOWS] and c[_EVERY] == 0:
+        bias = leant_q8(s, c, a, bias)
     s[_TARGET_Q8 + axis] = bias
     if s[_SOURCE + axis] == 0:
         s[_OUT_Q8 + axis] = bias
     s[_SOURCE + axis] = s[a + _OFFSET_FROM] if s[a + _OFFSET_FROM] else s[a + _KIND]
     s[_QUALITY_Q8 + axis] = sigma_q8(s, c, a)
+
+
+def segment_mean_q8(s: ptr32, c: ptr32, axis: int) -> int:
+    """Return the mean rate of the segment so far, LSB Q8."""
+    n = s[_SEGMENT_WINDOWS] << c[_WINDOW_SHIFT]
+    axis += _SEGMENT_TOTAL
+    return ((s[axis] // n) << 8) + ((s[axis] % n) << 8) // n
 
 
 def stale(s: ptr32, c: ptr32, a: int) -> int:
@@ -154,9 +188,7 @@ def publish_first_rest(s: ptr32, c: ptr32, axis: int):
     if s[_SOURCE + axis] > 1:
         return
     if s[_STILLNESS] == 1 and s[_SEGMENT_WINDOWS] > 1:
-        n = s[_SEGMENT_WINDOWS] << c[_WINDOW_SHIFT]
-        level = (s[_SEGMENT_TOTAL + axis] // n) << 8
-        level += ((s[_SEGMENT_TOTAL + axis] % n) << 8) // n
+        level = segment_mean_q8(s, c, axis)
         publish_provisional(s, axis, level, c[_PROVISIONAL_Q8])
     elif s[_SOURCE + axis] == 1:
         publish_provisional(s, axis, 0, 0)
@@ -169,7 +201,7 @@ def end_window(s: ptr32, c: ptr32):
         advance(s, c)
     still = judge(s, c)
     if still:
-        s[_LEARN_TEMP] = s[_SEGMENT_TEMP] // c[_SEGMENT]
+        s[_LEARN_TEMP] = s[_SEGMENT_TEMP] // still
     i = 0
     while i < 3:
         a = c[_AXES] + i * c[_AXIS_WORDS]
@@ -180,7 +212,7 @@ def end_window(s: ptr32, c: ptr32):
             publish_first_rest(s, c, i)
         if still and c[_EVERY] == 0:
             s[a + _WAITING_SUM] = s[_SEGMENT_TOTAL + i]
-            s[a + _WAITING_N] = c[_SEGMENT] << c[_WINDOW_SHIFT]
+            s[a + _WAITING_N] = still << c[_WINDOW_SHIFT]
             s[a + _OFFER] = 0
         i += 1
     s[_ELAPSED_US] = 0

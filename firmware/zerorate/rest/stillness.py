@@ -31,11 +31,14 @@ _STILLNESS = const(46)
 _TEMP = const(47)
 _SEGMENT_WINDOWS = const(48)
 _NOISE_Q8 = const(49)
-_TIP_Q8 = const(51)
-_EFFECT_Q8 = const(61)
-_EFFECT_SUM_Q8 = const(64)
-_SQUARE_STEP = const(76)
-_LAST_RATE = const(77)
+_TEMP_LEVEL_Q8 = const(50)
+_TEMP_RISE_Q12 = const(51)
+_TEMP_WINDOWS = const(52)
+_TIP_Q8 = const(53)
+_EFFECT_Q8 = const(63)
+_EFFECT_SUM_Q8 = const(66)
+_SQUARE_STEP = const(78)
+_LAST_RATE = const(79)
 # layout: The corrector's settings
 _WINDOW = const(3)
 _WINDOW_SHIFT = const(4)
@@ -56,6 +59,8 @@ _FAR_LSB = const(512)  # a reading farther than that from the window's first is 
 _FAR_BITS = const(10)  # of ten bits the squares of a window fit 31
 # by how much of a window's variance noise alone lets two of them differ
 _GRAVITY_NOISE = const(6)  # the mean accelerations: three sigma of three axes together
+_FAR_Q8 = const(0x7FFFF)  # a temperature so far from the line begins a new one
+_SMOOTHED = const(30)  # windows that a temperature is smoothed over
 _RATE_NOISE = const(14)  # the mean rate of an axis: 2 / 3 x (4.5 sigma)^2
 
 
@@ -213,22 +218,53 @@ def classify_window(s: ptr32, c: ptr32) -> int:
     return _STILL
 
 
+def follow_temperature(s: ptr32, c: ptr32):
+    """Smooth the temperature by a line through the windows so far, thirty at most.
+
+    A thermometer's noise of a tenth of a degree, times the slope of the bias, is several mdps. A
+    line has no lag behind a steady rise; level and rise take least-squares shares of the error.
+    """
+    level = (s[_REFERENCE + 3] << 4) + ((s[_WINDOW_SUM + 3] << 4) >> c[_WINDOW_SHIFT])
+    level = level << 4
+    error = level - s[_TEMP_LEVEL_Q8] - ((s[_TEMP_RISE_Q12] + 8) >> 4)
+    far = error if error >= 0 else 0 - error
+    if s[_TEMP_WINDOWS] == 0 or c[_WINDOW] == 4 or far > _FAR_Q8:
+        s[_TEMP_WINDOWS] = 1
+        s[_TEMP_RISE_Q12] = 0
+    else:
+        n = s[_TEMP_WINDOWS]
+        if n < _SMOOTHED:
+            n += 1
+            s[_TEMP_WINDOWS] = n
+        far = n * (n + 1)
+        n = error * (4 * n - 2)
+        level -= error - (n + (far >> 1)) // far
+        n = (error * 96 + (far >> 1)) // far
+        s[_TEMP_RISE_Q12] += n
+    s[_TEMP_LEVEL_Q8] = level
+    s[_TEMP] = (level + 128) >> 8
+
+
 def judge(s: ptr32, c: ptr32) -> int:
-    """Close the full window; return 1 when it completes a still segment, else 0.
+    """Close the full window; return how many windows the still segment has that it ends, else 0.
 
     A segment's sums are then in the shared block, and the next window begins a new one of the
     same rest, whose gravity still is the anchor: the longer a rest, the slower the turns it shows.
+    What is left of a rest that motion ends is a segment, too, if it has two windows: one that a
+    turn or a shift ends was none.
     """
     state = classify_window(s, c)
     s[_STILLNESS] = state
-    s[_TEMP] = s[_REFERENCE + 3] + (s[_WINDOW_SUM + 3] >> c[_WINDOW_SHIFT])
+    follow_temperature(s, c)
     s[_WINDOW_N] = 0
+    i = s[_SEGMENT_WINDOWS]
     if state == _MOVING or state == _SHAKEN:
         s[_REST] = 0
-        return 0
+        s[_SEGMENT_WINDOWS] = 0
+        return i if i > 1 else 0
     if state != _STILL or s[_REST] == 0:
         begin(s, c, 0)
-    elif s[_SEGMENT_WINDOWS] == 0:
+    elif i == 0:
         begin(s, c, 1)
     i = 0
     while i < 3:
@@ -238,8 +274,9 @@ def judge(s: ptr32, c: ptr32) -> int:
         s[_SEGMENT_TOTAL + i] += total
         i += 1
     s[_SEGMENT_TEMP] += s[_TEMP]
-    s[_SEGMENT_WINDOWS] += 1
-    if s[_SEGMENT_WINDOWS] < c[_SEGMENT]:
+    i = s[_SEGMENT_WINDOWS] + 1
+    s[_SEGMENT_WINDOWS] = i
+    if i < c[_SEGMENT]:
         return 0
     s[_SEGMENT_WINDOWS] = 0
-    return 1
+    return i
