@@ -10,7 +10,7 @@ _TABLE = "needs.json"
 
 
 def needs() -> dict[str, dict[str, int]]:
-    """`native` and `bytecode` -> part -> bytes of heap, `rest` with driver and Corrector."""
+    """`native`, `bytecode` -> part -> bytes of heap, `rest` with driver and Corrector; `cycles`."""
     return json.loads(files(__package__).joinpath(_TABLE).read_text(encoding="utf-8"))
 
 

@@ -1,18 +1,28 @@
 """Boards, what memory they have, and what the firmware needs of it: docs/boards.md.
 
-python -m zerorate_tools.bench.boards.table > docs/boards.md
+python -m zerorate_tools.bench.boards.table [FIGURES] > docs/boards.md, where FIGURES is what
+`zerorate bench --json FIGURES boards` wrote: its needs go to boards/needs.json first.
 """
 
 from __future__ import annotations
 
+import json
+import sys
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
 
+from ...boards import needs as kept_needs
+from ...boards.asking import BoardFacts
+from ...boards.compiling import board_files, mpy_version
 from ...boards.needs import needs
+from ...boards.parts import REST
 from ..tables import table
 
 #: Heap that a program needs beside the firmware: its text, a store, a FIFO and its buffers.
 _PROGRAM = 16_000
-_MHZ_OF_PICO = 125
 
 
 @dataclass(frozen=True)
@@ -39,35 +49,65 @@ BOARDS = (
 )
 _HEAD = """# Which board, and what fits
 
-The heap that each part keeps was measured on an emulated Pico with stock MicroPython 1.28
-(`zerorate bench boards`); other boards' free heap is what their makers and users tell, and their
-rows are reckoned from it. A program's own needs, some 16 KB with a store and a FIFO, come on top.
-Machine code is loaded on every Cortex-M and on RISC-V; elsewhere the same kernels run as bytecode.
+Measured: the row of the RP2040, on an emulated Pico with stock MicroPython 1.28 (`zerorate bench
+boards`), and every board's flash, the size of what `zerorate flash` sends for learning at rest.
+Reckoned, and marked "some": free heap, which is what makers and users tell; heap needed, which is
+the Pico's; a sample's time, which is the Pico's cycles by the board's clock. Another core needs
+fewer cycles, and RV32 is taken for as fast as a Cortex-M0+. No board was at hand.
+
+A program's own needs, some 16 KB with a store and a FIFO, come on top of the heap. Machine code
+goes to every Cortex-M and to RISC-V by `zerorate flash`; elsewhere, and where `mip` installed the
+sources, the same kernels run as bytecode.
 """
 _FOOT = """
-On the emulated Pico a sample of the rest path takes 1,675 cycles in the kernels, the worst one
-16,687 (ten times the median), over one minute of the bench; in bursts of 64 (`Bursts.update`) some
-470, and the call of `Corrector.update` costs some 2,200 more. As bytecode it is 114,000. What fits
-no heap can be frozen into a build (`manifest.py`): then it takes flash instead, 36 KB.
+On the emulated Pico, on the recording of the bench: the kernels of learning at rest with their call
+take {median:,.0f} cycles a sample, the worst {worst:,.0f}; `Corrector.update` takes
+{object_median:,.0f}, the worst {object_worst:,.0f}; in bursts of 64 (`Bursts.update`) it is
+{burst:,.0f} a sample. As bytecode a sample takes some {bytecode:,.0f}. What fits no heap can be
+frozen into a build (`manifest.py`): then it takes flash instead.
 """
 
 
 def page() -> str:
     """The text of docs/boards.md."""
-    head = ["board", "heap free", "runs", "rest", "with motion and gravity", "verdict"]
-    return (
-        "\n".join([_HEAD, table(head, [_row(board) for board in BOARDS]), _FOOT.lstrip()]).rstrip()
-        + "\n"
-    )
+    head = ["board", "runs", "heap free", "rest", "motion, gravity", "flash", "a sample", "verdict"]
+    rows = table(head, [_row(board) for board in BOARDS])
+    return "\n".join([_HEAD, rows, _FOOT.format(**needs()["cycles"]).lstrip()]).rstrip() + "\n"
+
+
+def needs_of(found: Mapping[str, Any]) -> dict[str, dict[str, int]]:
+    """What `measure` found, as needs.json has it; what it does not measure stays as it is."""
+    heap, before = found["heap_bytes"], needs()
+    parts = {part: heap[part] - heap[REST] for part in ("motion", "gravity", "effects")}
+    parts["gravity"] = max(parts["gravity"], heap["all"] - heap["motion"])  # the two together
+    return {
+        "native": {REST: heap[REST], **parts},
+        "bytecode": before["bytecode"],
+        "cycles": {**before["cycles"], **{k: round(v) for k, v in found["cycles"].items()}},
+    }
 
 
 def _row(board: Board) -> list[str]:
     kept = needs()["native" if board.code else "bytecode"]
-    rest = kept["rest"]
+    rest = kept[REST]
     both = rest + kept["motion"] + kept.get("gravity", 0)
-    free = f"{board.heap_free:,}" if board.measured else f"some {board.heap_free:,}"
-    runs = f"machine code, {board.mhz} MHz" if board.code else f"bytecode, {board.mhz} MHz"
-    return [board.name, free, runs, f"{rest:,}", f"{both:,}", verdict(board.heap_free, rest, both)]
+    some = "" if board.measured else "some "
+    cycles = needs()["cycles"]["object_median" if board.code else "bytecode"]
+    return [
+        board.name,
+        f"machine code, {board.mhz} MHz" if board.code else f"bytecode, {board.mhz} MHz",
+        f"{some}{board.heap_free:,}",
+        f"{some}{rest:,}",
+        f"{some}{both:,}",
+        f"{_flash_bytes(board.code):,}",
+        f"{some}{cycles / board.mhz:,.0f} us",
+        verdict(board.heap_free, rest, both),
+    ]
+
+
+@cache
+def _flash_bytes(code: str) -> int:
+    return sum(map(len, board_files([REST], BoardFacts(mpy=mpy_version()), code).values()))
 
 
 def verdict(heap_free: int, rest: int, both: int) -> str:
@@ -81,5 +121,14 @@ def verdict(heap_free: int, rest: int, both: int) -> str:
     return "frozen alone"
 
 
-if __name__ == "__main__":
+def main(figures: Path | None) -> None:
+    """Print the page, after needs.json was written anew from `figures`."""
+    if figures is not None:
+        found = needs_of(json.loads(figures.read_text(encoding="utf-8")))
+        text = json.dumps(found, indent=2) + "\n"
+        Path(kept_needs.__file__).with_name("needs.json").write_text(text, encoding="utf-8")
     print(page(), end="")
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]) if sys.argv[1:] else None)
