@@ -128,3 +128,12 @@ def test_the_end_by_a_signal_leaves_nothing_half_written(tmp_path):
     run.send_signal(signal.SIGTERM)
     assert run.wait(60) == -signal.SIGTERM
     assert not list(out.iterdir())
+
+
+def test_a_csv_that_cannot_take_its_place_leaves_its_scales_as_they_were(tmp_path):
+    (tmp_path / "run.csv").mkdir()
+    (tmp_path / "run.json").write_text("old")
+    with pytest.raises(InFile, match="cannot be written"):
+        write_recording(a_recording(), tmp_path / "run.csv")
+    assert contents(tmp_path) == {"run.json": "old"}
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["run.csv", "run.json"]

@@ -40,11 +40,8 @@ def written_beside(path: str | os.PathLike[str]) -> Iterator[Path]:
     except OSError as error:
         do = "name a folder that exists and is yours"
         raise _cannot_be_written(path, error, do) from error
-    if len(os.fsencode(path.name)) > _LONGEST_NAME:
-        _drop(temporary)
-        problem = f"the name is longer than {_LONGEST_NAME} bytes"
-        raise InFile(path, problem, do="give it a shorter one")
     try:
+        check_name(path)
         yield temporary
         os.replace(temporary, path)
     except OSError as error:
@@ -53,6 +50,13 @@ def written_beside(path: str | os.PathLike[str]) -> Iterator[Path]:
         raise _cannot_be_written(path, error, "make room, or name another folder") from error
     finally:
         _drop(temporary)
+
+
+def check_name(path: Path) -> None:
+    """Raise InFile if the name is too long for a file."""
+    if len(os.fsencode(path.name)) > _LONGEST_NAME:
+        problem = f"the name is longer than {_LONGEST_NAME} bytes"
+        raise InFile(path, problem, do="give it a shorter one")
 
 
 @contextmanager

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..errors import BadRecording
 from . import csv_format, parquet_format
-from .atomic import written_beside
+from .atomic import check_name, written_beside, written_together
 from .csv_format import CsvWriter
 from .parquet_format import ParquetWriter
 from .recording import Recording
@@ -56,8 +56,9 @@ def recording_writer(
     check_whole(scales.to_json(), column_names, path)
     with ExitStack() as files:
         if path.name.endswith(csv_format.SUFFIXES):
-            temporary = files.enter_context(written_beside(path))
-            beside = files.enter_context(written_beside(csv_format.scales_path(path)))
+            check_name(path)
+            temporary = files.enter_context(written_together(path.parent)) / path.name
+            beside = csv_format.scales_path(temporary)
             beside.write_text(json.dumps(scales.to_json(), indent=2) + "\n")
             writer: CsvWriter | ParquetWriter = CsvWriter(temporary, column_names)
         else:
