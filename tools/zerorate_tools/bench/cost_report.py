@@ -19,7 +19,7 @@ stillness, histograms, estimators and correction of three axes. Both columns are
 same kernels, executed by an emulated Cortex-M0 and RV32 (Unicorn): what the firmware carries, and
 all of it compiled for speed (C -O2). Both must end in the same state to the last bit. Cycles are
 those of a Cortex-M0+ without wait states. Alone is a call a sample, in bursts is 64 samples a call.
-Calling it from MicroPython comes on top: see docs/pico.md.
+Calling it from MicroPython comes on top: see [boards.md](boards.md).
 """
 _REPLAY = """\
 Seconds are the processor's, all threads together, the fewest of three runs; memory is the most that

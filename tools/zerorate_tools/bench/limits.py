@@ -87,7 +87,10 @@ COST = (
     ),
     Limit("cycles in the kernel alone, median", 600, "cycles", _native("thumb", "alone", "cycles")),
     Limit(
-        "cycles in the kernel alone, worst", 13000, "", _native("thumb", "alone", "cycles_worst")
+        "cycles in the kernel alone, worst",
+        13000,
+        "cycles",
+        _native("thumb", "alone", "cycles_worst"),
     ),
     Limit("cycles a sample in bursts", 500, "cycles", _native("thumb", "bursts", "cycles")),
     Limit("heap an update", 0, "bytes", lambda f: f["heap_bytes_per_update"]),
