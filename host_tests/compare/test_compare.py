@@ -113,7 +113,7 @@ def test_on_broad_it_says_of_zerorate_what_the_optics_say_and_denies_them_nowher
         for pair in beside_truth(compare([path]), trial, path):
             if pair["by_log"] != SAME:
                 sure += 1
-                assert pair["by_log"] == pair["by_truth"], (trial.name, pair)
+                assert {pair["by_log"], pair["by_truth"]} != {"better", "worse"}, (trial.name, pair)
             if (pair["one"], pair["other"]) == (FIRST_REST, FRESH):
                 assert pair["by_log"] == pair["by_truth"], (trial.name, pair)
     assert sure > 16  # four trials, each with more than the four against no correction

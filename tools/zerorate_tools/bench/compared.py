@@ -41,7 +41,7 @@ def run(folder: Path, advance: Callable[[float], None] = lambda n: None) -> dict
             try:
                 compared = compare([log])
             except TooFewRests as error:
-                found["recordings"][name] = {"rests": 0, "why": error.problem}
+                found["recordings"][name] = {"rests": 0, "why": error.problem.split(",")[0]}
             else:
                 found["recordings"][name] = _row(compared)
                 if source.stem in by_name:

@@ -27,6 +27,8 @@ _OPTIONAL = {"vqf": vqf_default, "imufusion": fusion}
 #: What a way knows is taken this long before a rest, so that it has seen nothing of it.
 _LEAD_S = 3.0
 _SIGMAS = 2.0
+#: Of an axis at a rest: the Earth turns by 15 degrees an hour, nobody knows about which axis.
+_EARTH_DPS = 15.04 / 3600 / 3**0.5
 _ENOUGH = 5
 
 
@@ -77,13 +79,14 @@ class Compared:
         """Who is better, where the rests tell it beyond twice their own uncertainty."""
         mine, theirs = self.error_dps[way], self.error_dps[against]
         gain = np.square(theirs).sum(axis=1) - np.square(mine).sum(axis=1)
-        sigma = np.array([rest.sigma_dps for _, rest in self.rests])
+        sigma = np.hypot([rest.sigma_dps for _, rest in self.rests], _EARTH_DPS)
         # a rest's mean is uncertain itself, and both errors share it
         variance = 4 * np.square(sigma * (theirs - mine)).sum(axis=1)
         doubt = np.sqrt(variance.sum()) / len(gain)
         if len(gain) >= _ENOUGH:
             doubt = max(doubt, gain.std(ddof=1) / np.sqrt(len(gain)))
-        sure = abs(gain.mean()) > _SIGMAS * doubt
+        apart = abs(self.rms_dps(way) - self.rms_dps(against))
+        sure = abs(gain.mean()) > _SIGMAS * doubt and apart > _EARTH_DPS
         word = "no difference that this log can show"
         if sure:
             word = "better" if gain.mean() > 0 else "worse"

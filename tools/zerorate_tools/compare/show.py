@@ -26,8 +26,8 @@ _HEAD = (
 _NOTE = (
     "A rest shows the bias: the mean rate. Each way is asked 3 s before a rest begins what it "
     "takes the bias for; the rest says how wrong that was (root mean square over later rests). "
-    "Rests of over a minute count as several. The Earth's rate, 0.25 deg/min at most, is in it for "
-    "all ways alike."
+    "Rests of over a minute count as several. The Earth's rate, 0.25 deg/min at most, is in every "
+    "rest: what differs by less is no difference."
 )
 _STYLE = "body{font:16px/1.5 sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem}"
 _STYLE += "td,th{padding:.2rem 1rem .2rem 0;text-align:right}td:first-child,th:first-child"
