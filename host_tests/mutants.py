@@ -47,7 +47,7 @@ AREAS = {
             "mpu6050.py", "faults.py", "fifo.py", "data_ready.py")],
     ),
     "storage": (
-        ["firmware/zerorate/" + name for name in ("store.py", "storage.py", "learned_store.py")],
+        [f"firmware/zerorate/storage/{n}.py" for n in ("store", "places", "learned_store")],
         ["host_tests/firmware/test_store.py", "host_tests/firmware/test_learned_store.py"],
     ),
     "guard": (
