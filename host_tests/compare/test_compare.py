@@ -98,9 +98,7 @@ def test_the_page_needs_no_other_file(drifting, tmp_path, capsys):
     assert write_page.__doc__
 
 
-def test_on_broad_it_says_of_zerorate_what_the_optics_say_and_denies_them_nowhere(
-    real_data, tmp_path
-):
+def test_on_broad_it_is_sure_of_nothing_that_the_optics_deny(real_data, tmp_path):
     """The truth is over all the time from the first later rest on, most of it in motion."""
     pytest.importorskip("vqf")
     pytest.importorskip("imufusion")
@@ -115,5 +113,5 @@ def test_on_broad_it_says_of_zerorate_what_the_optics_say_and_denies_them_nowher
                 sure += 1
                 assert {pair["by_log"], pair["by_truth"]} != {"better", "worse"}, (trial.name, pair)
             if (pair["one"], pair["other"]) == (FIRST_REST, FRESH):
-                assert pair["by_log"] == pair["by_truth"], (trial.name, pair)
+                assert pair["by_log"] in (SAME, pair["by_truth"]), (trial.name, pair)
     assert sure > 16  # four trials, each with more than the four against no correction
