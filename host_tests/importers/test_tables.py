@@ -68,7 +68,7 @@ def test_usual_names_and_units_in_names_need_no_mapping(tmp_path):
                    "gyro_y [rad/s]": [0.1, 0.2], "gyro_z [rad/s]": [0.1, 0.2]})  # fmt: skip
     recording, report = read_foreign(source)
     assert recording.columns["gx"].tolist() == np.rint(np.degrees([0.1, 0.2]) * 131).tolist()
-    assert told(report, "131 LSB per dps chosen")
+    assert told(report, "Stored at the +-250 dps scale (fastest rate: 11.46 dps)")
     assert told(report, "no temperature") and told(report, "no acceleration")
 
 
