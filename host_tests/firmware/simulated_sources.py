@@ -86,7 +86,7 @@ def loaded(slots, scales=SCALES, sensor=SENSOR, tick_s=1.0):
 
 def on_firmware(model, raw, dt_us=500000, good=lambda n: 1):
     """(n, 3) effects of every sample, dps."""
-    state, frame = array("i", [0] * 64), array("i", [0] * 7)
+    state, frame = array("i", [0] * STATE.FIT_WEIGHTS), array("i", [0] * 7)
     rows = np.column_stack([raw[n] for n in FRAME]).tolist()
     channels = [raw[n].tolist() for n in model.channels]
     out = np.empty((len(rows), 3))

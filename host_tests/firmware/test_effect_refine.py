@@ -116,7 +116,7 @@ def test_no_intermediate_leaves_31_bits(model):
     for n in range(400):
         for slot in range(2):
             e[slot_at(slot) + SLOT.SLOT_VALUE] = [1 << 25, -(1 << 25), 0][n // 5 % 3]
-        state = Words([0] * 64)
+        state = Words([0] * STATE.FIT_WEIGHTS)
         for axis in range(3):
             state[STATE.SEGMENT_TOTAL + axis] = [(1 << 29), -(1 << 29), 77][(n // 7 + axis) % 3]
         state[STATE.TEMP] = [32767, -32768][n // 3 % 2]
@@ -153,7 +153,7 @@ def on_interpreter(repository):
 def on_host():
     model = loaded(TWO)
     model.refine()
-    e, state = model.e, array("i", [0] * 64)
+    e, state = model.e, array("i", [0] * STATE.FIT_WEIGHTS)
     for n in range(120):
         for slot in range(2):
             e[slot_at(slot) + SLOT.SLOT_VALUE] = (

@@ -271,7 +271,7 @@ def test_acceleration_counts_in_the_very_sample(warm_up):
 
 def test_a_frame_that_is_no_reading_leaves_acceleration_as_it_was():
     slots = [Slot(Term("acc_z", -2.0, 2.0), (0.1, 0, 0)), Slot(Term("rate_x", -9, 9), (0, 0.1, 0))]
-    state, model = array("i", [0] * 64), loaded(slots)
+    state, model = array("i", [0] * STATE.FIT_WEIGHTS), loaded(slots)
     turning = array("i", [0, 0, 16384, 0, 131, 0, 0])
     for frame, good in ((turning, 1), (array("i", [-1] * 7), 0)):
         effects.sense(state, model.e, frame, 250000, good)
@@ -299,7 +299,11 @@ def test_no_sample_computes_more_than_its_share(warm_up, monkeypatch):
     counted = []
     plain = effects.basis
     monkeypatch.setattr(effects, "basis", lambda e, a: counted.append(a) or plain(e, a))
-    frame, state, most = array("i", [0, 0, 16384, 0, 0, 0, 0]), array("i", [0] * 64), 0
+    frame, state, most = (
+        array("i", [0, 0, 16384, 0, 0, 0, 0]),
+        array("i", [0] * STATE.FIT_WEIGHTS),
+        0,
+    )
     for _ in range(500):
         before = len(counted)
         effects.sense(state, model.e, frame, 10000, 1)
@@ -312,7 +316,7 @@ def test_the_first_sample_speaks_until_the_first_tick_ends():
     slot = Slot(Term("temp", 0.0, 60.0, 20.0), (0.1, 0, 0))
     model = loaded([slot], sensor=Sensor(100.0))
     ten_above = still_frame(round((30.0 - 36.53) * 340))
-    state = array("i", [0] * 64)
+    state = array("i", [0] * STATE.FIT_WEIGHTS)
     for _ in range(3):
         effects.sense(state, model.e, ten_above, 10000, 1)
     assert state[STATE.EFFECT_Q8] / 256 / 131 == pytest.approx(1.0, abs=0.001)
@@ -324,7 +328,7 @@ def still_frame(temp=0):
 
 def test_a_gap_lets_as_many_ticks_pass_as_it_lasted():
     slot = Slot(Term("one", decay_s=100.0), (1.0, 0.0, 0.0))
-    state, model = array("i", [0] * 64), loaded([slot])
+    state, model = array("i", [0] * STATE.FIT_WEIGHTS), loaded([slot])
     for dt_us in [250000] * 41 + [50_000_000] + [250000] * 100:
         effects.sense(state, model.e, still_frame(), dt_us, 1)
     # 85 s have passed; the latest whole tick is the one that began at 84 s
@@ -333,7 +337,7 @@ def test_a_gap_lets_as_many_ticks_pass_as_it_lasted():
 
 def test_a_channel_that_was_never_given_has_no_effect():
     slot = Slot(Term("load", 0.0, 100.0, 50.0), (0.01, 0.0, 0.0))
-    state, model = array("i", [0] * 64), loaded([slot])
+    state, model = array("i", [0] * STATE.FIT_WEIGHTS), loaded([slot])
     for n in range(60):
         if n == 30:
             assert state[STATE.EFFECT_Q8] == 0
@@ -344,7 +348,7 @@ def test_a_channel_that_was_never_given_has_no_effect():
 
 def test_frames_that_are_no_readings_let_time_pass_and_nothing_else():
     slots = [Slot(Term("temp", 0.0, 60.0), (0.01, 0, 0)), Slot(Term("time", 0, 100), (0, 0.01, 0))]
-    state, model = array("i", [0] * 64), loaded(slots)
+    state, model = array("i", [0] * STATE.FIT_WEIGHTS), loaded(slots)
     for n in range(80):
         effects.sense(state, model.e, still_frame(-1 if n >= 40 else 3400), 250000, int(n < 40))
     assert state[STATE.EFFECT_Q8] / 256 / 131 == pytest.approx(0.01 * 46.53, abs=1e-4)
@@ -352,7 +356,10 @@ def test_frames_that_are_no_readings_let_time_pass_and_nothing_else():
 
 
 def test_time_that_stands_still_or_runs_back_is_passed_over():
-    state, model = array("i", [0] * 64), loaded([Slot(Term("time", 0, 100), (0, 0.01, 0))])
+    state, model = (
+        array("i", [0] * STATE.FIT_WEIGHTS),
+        loaded([Slot(Term("time", 0, 100), (0, 0.01, 0))]),
+    )
     for n in range(200):
         effects.sense(state, model.e, still_frame(), -(1 << 29) if n % 2 else 250000, 1)
     assert state[STATE.EFFECT_Q8 + 1] / 256 / 131 == pytest.approx(0.01 * 23.5, abs=1e-4)
@@ -395,7 +402,7 @@ def test_no_intermediate_leaves_31_bits(chosen, ends):
     wide = Term("temp", *CENTRES["temp"], 25.0, memory="play", width=3.0)
     slots += [Slot(wide, (1.5, -1.5, 0.1)), Slot(replace(wide, power=2), (0.07, -0.07, 0.07))]
     model = loaded(slots)
-    e, state = Words(model.e), Words([0] * 64)
+    e, state = Words(model.e), Words([0] * STATE.FIT_WEIGHTS)
     for n in range(160):
         frame = Words([ends[(n // 8 + i) % 3] for i in range(7)])
         for i in range(len(model.channels)):

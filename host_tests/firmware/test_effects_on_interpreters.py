@@ -45,7 +45,7 @@ def on_host(model_bin):
     """(UPDATES, 3) effects and the final array, by CPython."""
     model = EffectModel()
     assert model.load(model_bin, Sensor(4.0)) == 0
-    state, frame, out = array("i", [0] * 64), array("i", [0] * 7), []
+    state, frame, out = array("i", [0] * STATE.FIT_WEIGHTS), array("i", [0] * 7), []
     did = set()
     for k in range(UPDATES):
         frame[:] = array("i", [(k * (i + 3) * 7919 >> 3) % 9001 - 4500 for i in range(7)])

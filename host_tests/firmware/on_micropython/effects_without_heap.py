@@ -13,7 +13,7 @@ _EFFECT_Q8 = const(63)
 
 model = EffectModel()
 assert model.load_file("model.bin", Sensor(4.0), b"\x68\x00\x00\x03") == 0
-state = array("i", [0] * 64)
+state = array("i", [0] * (_EFFECT_Q8 + 3))
 frame = array("i", [0] * 7)
 out = array("i", [0] * 3000)
 
