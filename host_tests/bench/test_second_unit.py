@@ -1,8 +1,5 @@
 """A model of one unit, refined on another one of the same part."""
 
-import subprocess
-import sys
-
 from zerorate.layout import SLOT, slot_at
 from zerorate_tools.bench.second_unit import WAYS, SecondUnit, device, errors_mdps, table
 from zerorate_tools.loop.verify.firmware import rows
@@ -48,13 +45,3 @@ def test_a_board_refines_as_this_computer_does(micropython):
     found = next(iter(InterpreterEngine(micropython).run(there, [copied(part)])))
     assert (found.bias_q8 == expected.bias_q8).all()
     assert there.effects.e == here.effects.e
-
-
-def test_loops_kept_on_disk_are_told_apart_by_who_loads_them():
-    script = "from zerorate_tools.bench.second_unit import *; print(sorted(errors_mdps(5).items()))"
-    first, again = (
-        subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
-        for _ in range(2)
-    )
-    assert first.stdout == again.stdout == f"{sorted(errors_mdps(5).items())}\n"
-    assert len(set(errors_mdps(5).values())) == len(WAYS)

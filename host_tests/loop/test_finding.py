@@ -28,8 +28,7 @@ def names(selection):
 
 @pytest.mark.parametrize("kind", ["plain", *HOSTILE])
 def test_nothing_is_found_where_there_is_noise_alone(kind):
-    for seed in (1, 2):
-        assert names(select(simulate(seed, noise_kind=kind).sessions[:-1])) == []
+    assert names(select(simulate(1, noise_kind=kind).sessions[:-1])) == []
 
 
 @pytest.mark.parametrize(
