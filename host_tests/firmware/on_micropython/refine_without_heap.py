@@ -12,6 +12,7 @@ _WINDOW_N = const(17)
 _SEGMENT_TOTAL = const(42)
 _STILLNESS = const(46)
 _TEMP = const(47)
+_FIT_WEIGHTS = const(94)
 # layout: The corrector's settings
 _WINDOW_SHIFT = const(4)
 _SEGMENT = const(5)
@@ -30,7 +31,7 @@ _STILL = const(1)
 model = EffectModel()
 assert model.load_file("model.bin", Sensor(2.0)) == 0
 model.refine()
-state = array("i", [0] * 64)
+state = array("i", [0] * _FIT_WEIGHTS)
 state[_STILLNESS] = _STILL
 settings = array("i", [0] * _SETTINGS_WORDS)
 settings[_WINDOW_SHIFT], settings[_SEGMENT] = 6, 1  # a segment of one window of 64 samples
