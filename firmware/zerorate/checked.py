@@ -30,8 +30,16 @@ _LONG_US = const(0x20000000)  # a leap of time at any rate; a longer one would l
 
 # layout: The corrector's state
 _ELAPSED_US = const(16)
-_OUT_Q8 = const(57)
+_RESTS = const(56)
 _SOURCE = const(75)
+# layout: The last words before the axes
+_TURN_ON_OFFSET_Q8 = const(-3)
+# layout: An axis
+_OFFSET_VARIANCE_Q8 = const(28)
+# layout: The corrector's settings
+_AXES = const(0)
+_AXIS_WORDS = const(13)
+_TURN_ON_VARIANCE_Q8 = const(45)
 # layout: end
 
 
@@ -68,9 +76,7 @@ class CheckedCorrector:
             self.keep()
         elif status == RESTARTED:
             self.take_back()
-            self.corrector.power_on()
-            # the chip began anew, not this device: what is known stands
-            copy(self._kept[0], self._live[0], _OUT_Q8, _SOURCE + 3)
+            self._begin_anew()
         if status >= RESTARTED:
             self.refused += 1
             return False
@@ -80,6 +86,23 @@ class CheckedCorrector:
             self.refused += 1
             return False
         return True
+
+    def _begin_anew(self):
+        """The chip began anew, not this device: what is known stands, a little less certain.
+
+        Rests go on counting: were each restart a power-on, restarts that come faster than a
+        minute of rest would keep the curve from learning anything, and halve the offset away.
+        """
+        corrector = self.corrector
+        s = corrector.state
+        c = corrector.settings
+        corrector.power_on(same=True)
+        copy(self._kept[0], s, _RESTS, _SOURCE + 3)
+        copy(self._kept[0], s, c[_AXES] + _TURN_ON_OFFSET_Q8, c[_AXES])
+        for axis in range(3):
+            k = c[_AXES] + axis * c[_AXIS_WORDS] + _OFFSET_VARIANCE_Q8
+            if s[k] < c[_TURN_ON_VARIANCE_Q8]:
+                s[k] = c[_TURN_ON_VARIANCE_Q8]
 
     def keep(self) -> None:
         """What is learned up to now is right."""

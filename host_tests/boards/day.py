@@ -27,10 +27,10 @@ class EndOfDay(BaseException):
 
 
 class Device:
-    """What the chip feels at any time."""
+    """What the chip feels at any time; its bias drifts, by temperature or not."""
 
-    def __init__(self, clock):
-        self.clock = clock
+    def __init__(self, clock, drift_dps_per_h):
+        self.clock, self.drift_dps_per_h = clock, drift_dps_per_h
         names = ("gyro_dps", "accel_g", "temp_degc")
         self.felt = Physical(**{name: getattr(self, name) for name in names})
 
@@ -43,7 +43,8 @@ class Device:
 
     def bias_dps(self):
         warm = self.temp_degc() - 25
-        return 1.1 + 0.02 * warm, -0.7 - 0.01 * warm, 0.3 + 0.005 * warm
+        away = self.drift_dps_per_h * self.seconds / 3600
+        return 1.1 + 0.02 * warm + away, -0.7 - 0.01 * warm, 0.3 + 0.005 * warm
 
     def _shake(self):
         return self.seconds if self.seconds % _CYCLE_S >= _REST_S else 0.0
@@ -64,10 +65,10 @@ class Day(FakeClock):
     is right; worst_dps: most that a bias of a corrected sample was wrong, once it was learned.
     """
 
-    def __init__(self, hours, resets, unplugs, odr_hz, seed):
+    def __init__(self, hours, resets, unplugs, odr_hz, seed, drift_dps_per_h=0.0):
         super().__init__()
         luck, self.end_us = random.Random(seed), round(hours * 3.6e9)
-        self.device = Device(self)
+        self.device = Device(self, drift_dps_per_h)
         self.chip = FakeMPU6050(self.device.felt)
         self.devices.append(self.chip)
         self.bus, self.odr_hz = FakeI2C(self.chip), odr_hz
