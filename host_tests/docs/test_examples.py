@@ -175,7 +175,7 @@ def test_beside_another_driver_the_bias_goes(example, unit, repository, monkeypa
         exec((repository / "examples" / example).read_text(), {})
     lines = [line for line in capsys.readouterr().out.splitlines() if line[0] in "[("]
     rates = [ast.literal_eval(line) for line in lines]
-    for part, left in ((rates[:100], BIAS_DPS), (rates[-500:], [0, 0, 0])):
+    for part, left in ((rates[:50], BIAS_DPS), (rates[-500:], [0, 0, 0])):
         means = [sum(row[axis] for row in part) / len(part) / unit for axis in range(3)]
         assert means == pytest.approx(left, abs=0.02)
 
