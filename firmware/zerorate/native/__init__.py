@@ -17,7 +17,8 @@ def machine_code(part):
     """
     kind = _CODE.get(getattr(sys.implementation, "_mpy", 0) >> 10 & 15)
     if not kind:
-        chosen[part] = "bytecode: there is no machine code for this processor"
+        if sys.implementation.name == "micropython":  # on a host there is nothing to choose
+            chosen[part] = "bytecode: there is no machine code for this processor"
         return None
     if chosen:  # the first finds an empty heap; each wants up to 10 KB of it in one piece
         gc.collect()

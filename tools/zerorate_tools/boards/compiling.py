@@ -15,6 +15,16 @@ from .parts import CODES, part_files
 
 # Without line numbers, which are a tenth of what a module takes of the heap.
 _OPTIONS = ("-O3",)
+# What CPython and checkers of types need: mpy-cross knows const by name and looks at no annotation.
+_FOR_HOSTS = re.compile(
+    r"""^(?:
+    try:\n[ ]+from[ ]micropython[ ]import[ ]const\nexcept[ ]ImportError:\n\n?
+    [ ]+def[ ]const\(value\):\n[ ]+return[ ]value\n
+    |ptr32[ ]=[ ]None\n
+    |TYPE_CHECKING[ ]=[ ]False\nif[ ]TYPE_CHECKING:\n(?:[ ]+.*\n|\n)+
+    )""",
+    re.MULTILINE | re.VERBOSE,
+)
 
 
 def machine_code(facts: BoardFacts) -> str:
@@ -44,15 +54,21 @@ def board_files(
 
 
 def compiled(path: Path, name: str, *options: str) -> bytes:
-    """The .mpy of a file; name: what tracebacks call it."""
+    """The .mpy of a file, less what only hosts need of it; name: what tracebacks call it."""
     with tempfile.TemporaryDirectory(prefix="zerorate-mpy-") as folder:
-        out = Path(folder) / "out.mpy"
-        command = [_mpy_cross(), *_OPTIONS, *options, "-s", name, "-o", str(out), str(path)]
+        out, source = Path(folder) / "out.mpy", Path(folder) / path.name
+        source.write_text(for_boards(path.read_text(encoding="utf-8")), encoding="utf-8")
+        command = [_mpy_cross(), *_OPTIONS, *options, "-s", name, "-o", str(out), str(source)]
         done = subprocess.run(command, capture_output=True, text=True)
         if done.returncode:
             said = (done.stdout + done.stderr).strip()
             raise ZerorateError(f"mpy-cross: {path}: {said.splitlines()[-1] if said else '?'}")
         return out.read_bytes()
+
+
+def for_boards(text: str) -> str:
+    """The text of a module without its stand-ins for const, ptr32 and what checkers import."""
+    return _FOR_HOSTS.sub("", text)
 
 
 @cache

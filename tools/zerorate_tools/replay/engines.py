@@ -62,7 +62,12 @@ def others_of(corrector: Corrector) -> tuple[array | None, ...]:
 
 
 class Engine(ABC):
-    """Runs batches of frames from `corrector`'s state on, which it leaves as the firmware did."""
+    """Runs batches of frames from `corrector`'s state on, which it leaves as the firmware did.
+
+    way: how the kernels run, in words.
+    """
+
+    way: str
 
     @abstractmethod
     def run(self, corrector: Corrector, batches: Iterable[Frames]) -> Iterator[Outcome]:
@@ -87,6 +92,11 @@ def engine(name: str) -> Engine:
 
 class NativeEngine(Engine):
     """The kernels compiled from their C, in this process; CPython where there is no compiler."""
+
+    @property
+    def way(self) -> str:  # type: ignore[override]
+        """Compiled, or as CPythonEngine."""
+        return "as compiled C" if compiled() else CPythonEngine.way
 
     def run(self, corrector: Corrector, batches: Iterable[Frames]) -> Iterator[Outcome]:
         if not compiled():
@@ -118,6 +128,8 @@ def _view(words: array) -> NDArray[np.int32]:
 class CPythonEngine(Engine):
     """The firmware as it stands, in this process."""
 
+    way = "as plain Python"
+
     def run(self, corrector: Corrector, batches: Iterable[Frames]) -> Iterator[Outcome]:
         for batch in batches:
             rows = np.empty(len(batch), _OUTPUT)
@@ -145,6 +157,7 @@ class InterpreterEngine(Engine):
 
     def __init__(self, runtime) -> None:
         self._runtime = runtime
+        self.way = f"in MicroPython: {runtime.name}"
 
     def run(self, corrector: Corrector, batches: Iterable[Frames]) -> Iterator[Outcome]:
         with tempfile.TemporaryDirectory(prefix="zerorate-replay-") as scratch:

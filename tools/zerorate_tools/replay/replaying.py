@@ -89,7 +89,8 @@ def replay(
     if from_state is not None:
         load_state(corrector, Path(from_state), resume)
     batches = frames_in_batches(recording, channels=channels)
-    outcomes = engine(runtime).run(corrector, batches)
+    runner = engine(runtime)
+    outcomes = runner.run(corrector, batches)
     done = Replay()
     with ExitStack() as files:
         sink = _sink(done, out, files)
@@ -100,7 +101,7 @@ def replay(
         done.state = state_bytes(corrector)
         if state is not None:
             files.enter_context(written_beside(state)).write_bytes(done.state)
-    done.explanation = corrector.explain()
+    done.explanation = f"{corrector.explain()}\nThe kernels ran {runner.way}."
     return done
 
 
