@@ -179,9 +179,10 @@ def lean(s: ptr32, c: ptr32, a: int, i: int):
     i = (i << k) - s[_FIT_SUM_T]
     # eleven words: i is now the temperature, a the bias, k the shifts
     a = ((s[a + _EST_BIAS_Q8] - s[_FIT_FIRST_B_Q8]) << 3) - s[_FIT_SUM_B_Q11]
+    r = room(i)
     k = room(w)
-    w = scaled(w << k, i << room(i), 27)
-    k = ((k + room(i)) << 7) + _FIT_SUM_TT
+    w = scaled(w << k, i << r, 27)
+    k = ((k + r) << 7) + _FIT_SUM_TT
     add_product(s, k, w, i)
     add_product(s, k + _FIT_SUM_TB - _FIT_SUM_TT, w, a)
 
@@ -219,11 +220,10 @@ def bow_q14(s: ptr32, a: int, t: int) -> int:
 
 
 def share_q13(s: ptr32, i: int) -> int:
-    """Return the weight of estimator i among all."""
+    """Return the weight of estimator i, of less than 2^14 where lines are bent, among all."""
     w = s[_FIT_WEIGHTS + i]
     if w:
-        i = s[_FIT_SUM_W]
-        w = fraction_q27(w, i) >> 14
+        w = (w << 13) // s[_FIT_SUM_W]
     return w
 
 
