@@ -573,3 +573,13 @@ def test_an_impossible_description_is_refused_in_one_line(description, complaint
 def test_a_session_that_is_not_described_is_refused():
     with pytest.raises(BadDescription, match="no session 3; choose of 1 to 2"):
         simulate("warm-up-a", session=3)
+
+
+def test_several_files_take_their_places_together_or_not_at_all(tmp_path):
+    def stopped(sessions):
+        raise KeyboardInterrupt
+
+    sessions, truth = device(1, sessions=2), tmp_path / "truth.parquet"
+    with pytest.raises(KeyboardInterrupt):
+        simulate_to_files(sessions, tmp_path / "run.csv", truth=truth, done=stopped)
+    assert not list(tmp_path.iterdir())

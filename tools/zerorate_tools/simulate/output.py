@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from contextlib import ExitStack
 from os import PathLike
 from pathlib import Path
 
@@ -12,7 +13,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from ..recordings import check_output, write_recording
-from ..recordings.atomic import written_beside
+from ..recordings.atomic import written_beside, written_together
 from .description import load_description
 from .device import Truth, simulate, simulate_sessions
 from .schema import Description, Table
@@ -32,7 +33,8 @@ def simulate_to_files(
     """Write the recording of each session, or of one; return the files' names.
 
     Several sessions become out-1.parquet, out-2.parquet, ...; the truth is only written where
-    `truth` names a Parquet file for it, numbered likewise. done(1) is called after each session.
+    `truth` names a Parquet file for it, numbered likewise. All files of a folder take their places
+    together at the end, or none does. done(1) is called after each session.
     Raises BadDescription, InFile.
     """
     described = load_description(description)
@@ -43,12 +45,19 @@ def simulate_to_files(
     else:
         made = iter([simulate(described, session=session, seed=seed)])
     files = []
-    for number, (recording, behind) in enumerate(made, start=1):
-        files.append(_numbered(Path(out), number) if many else Path(out))
-        write_recording(recording, files[-1])
-        if truth is not None:
-            write_truth(behind, _numbered(Path(truth), number) if many else Path(truth))
-        done(1)
+    with ExitStack() as drafts:
+        places = [Path(path) for path in (out, truth) if path is not None]
+        draft_of = {
+            folder: drafts.enter_context(written_together(folder))
+            for folder in dict.fromkeys(path.parent for path in places)
+        }
+        for number, (recording, behind) in enumerate(made, start=1):
+            names = [_numbered(path, number) if many else path for path in places]
+            files.append(names[0])
+            write_recording(recording, draft_of[names[0].parent] / names[0].name)
+            if truth is not None:
+                write_truth(behind, draft_of[names[1].parent] / names[1].name)
+            done(1)
     return files
 
 
