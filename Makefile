@@ -2,7 +2,8 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-PYTEST_ARGS ?= -n auto
+# Halves of the list, not turns: what a module shares is made once then.
+PYTEST_ARGS ?= -n auto --dist worksteal
 
 .PHONY: demo test lint typecheck typecheck-tools pytest fuzz sweep day mutants attacks layout native docs lock wasm runtimes node wheel clean
 
