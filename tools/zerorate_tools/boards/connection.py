@@ -41,14 +41,14 @@ def connected(port: str, *, restart: bool = True) -> Iterator:
         transport.close()
 
 
-def told(transport, program: str, patience_s: float = _LONG_S) -> str:
+def told(transport, program: str, patience_s: float | None = None) -> str:
     """What a program that is run to its end on the board prints. Raises its error.
 
     patience_s: for how long the board may print nothing.
     """
     from mpremote.transport import TransportExecError
 
-    said, error = transport.exec_raw(program, timeout=patience_s)
+    said, error = transport.exec_raw(program, timeout=patience_s or _LONG_S)
     if error:
         raise TransportExecError(said, error.decode())
     return said.decode()
