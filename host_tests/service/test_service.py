@@ -15,11 +15,11 @@ import pytest
 from zerorate.storage.places import FileStorage
 from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050, Physical
 from zerorate_i2c.mpu6050 import MPU6050
+from zerorate.layout import AXIS, axis_at
 from zerorate_tools.bench.service import run
 from zerorate_tools.errors import ZerorateError
 from zerorate_tools.service import Datagrams, Service, System, UnixSocket
 
-_AXES, _AXIS_WORDS, _OFFSET_Q8 = 0, 13, 24
 BIAS_DPS = (0.31, -0.19, 0.08)
 
 
@@ -98,8 +98,7 @@ def test_killed_at_a_chip_that_kept_its_power_it_takes_back_all_of_the_offset(bo
 def offsets_of(board):
     """The corrector's state, and where in it is what each axis adds to its curve."""
     learner = board.service._corrector.corrector
-    c = learner.settings
-    return learner.state, [c[_AXES] + axis * c[_AXIS_WORDS] + _OFFSET_Q8 for axis in range(3)]
+    return learner.state, [axis_at(learner.settings, axis) + AXIS.OFFSET_Q8 for axis in range(3)]
 
 
 def restarted_offsets_q8(board):

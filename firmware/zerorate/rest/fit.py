@@ -179,10 +179,11 @@ def lean(s: ptr32, c: ptr32, a: int, i: int):
     i = (i << k) - s[_FIT_SUM_T]
     # eleven words: i is now the temperature, a the bias, k the shifts
     a = ((s[a + _EST_BIAS_Q8] - s[_FIT_FIRST_B_Q8]) << 3) - s[_FIT_SUM_B_Q11]
-    r = room(i)
     k = room(w)
-    w = scaled(w << k, i << r, 27)
-    k = ((k + r) << 7) + _FIT_SUM_TT
+    w <<= k
+    k += room(i)
+    w = scaled(w, i << room(i), 27)
+    k = (k << 7) + _FIT_SUM_TT
     add_product(s, k, w, i)
     add_product(s, k + _FIT_SUM_TB - _FIT_SUM_TT, w, a)
 
