@@ -31,7 +31,7 @@ def growing_file(path: Path) -> Path:
         raise BadRecording(path, problem, do="record to .csv, or use `zerorate replay` afterwards")
     if path.is_file():
         return path
-    hidden = sorted(path.parent.glob(f".*.partial.{path.name}"), key=lambda p: p.stat().st_mtime)
+    hidden = sorted(path.parent.glob(f".*.partial/{path.name}"), key=lambda p: p.stat().st_mtime)
     if not hidden:
         do = "name a .csv that is being written, a board's port or /dev/i2c-N"
         raise BadRecording(path, "no such file", do=do)
