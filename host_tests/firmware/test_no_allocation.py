@@ -71,8 +71,6 @@ def events(request):
 
 ALWAYS = {
     "eviction": ("make_room", True),
-    "merge": ("merge", ""),
-    "split": ("open_gap", ""),
     "halving": ("halve", ""),
     "periodic halving": ("age", ""),
     "refit": ("settle", ""),
@@ -98,24 +96,25 @@ LINE = {
     "line": ("source", bias.FIT),
     "beyond": ("beyond", 1),
 }
+# One bin, which is the default, is never split.
+BINS = {"merge": ("merge", ""), "split": ("open_gap", "")}
 IN_MODE = {
     "default": {
         **LINE,
         "replacement": ("copy", True),
-        "recentre": ("recentre", 1),
-        "share by mean": ("share_by_mean", ""),
         "held back": ("plausible", 0),
         "insisted": ("plausible", 2),
         "suspect": ("suspect", 1),
     },
-    "every": {**LINE, "recentre": ("recentre", 1), "share by mean": ("share_by_mean", "")},
+    "every": {**LINE, **BINS, "recentre": ("recentre", 1), "share by mean": ("share_by_mean", "")},
     "document": {
         **LINE,
+        **BINS,
         "the temperature's own": ("source", bias.HERE),
         "replacement": ("copy", True),
         "share evenly": ("share_evenly", ""),
     },
-    "ignoring": {"ignored": ("place", "outside")},
+    "ignoring": {**BINS, "ignored": ("place", "outside")},
 }
 
 

@@ -50,7 +50,8 @@ def test_a_histogram_holds_its_bias_and_its_edges_rise(seen):
             for e in held:
                 assert np.all(np.diff(e.edges_dps) > 0)
                 assert e.edges_dps[0] <= e.bias_dps <= e.edges_dps[-1]
-                assert len(e.readings) == len(e.edges_dps) - 1 == Corrector().settings[SETTINGS.BINS]
+                bins = Corrector().settings[SETTINGS.BINS]
+                assert len(e.readings) == len(e.edges_dps) - 1 == bins
 
 
 def test_three_short_and_five_long_are_held_at_most_and_one_learns(seen):
