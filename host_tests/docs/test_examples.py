@@ -10,8 +10,7 @@ import types
 from pathlib import Path
 
 import pytest
-from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050, Physical
-from zerorate_fakes.smbus import SMBus
+from zerorate_fakes import FakeClock
 
 HERE = Path(__file__).parent
 #: Examples that each document shows, in their order.
@@ -100,26 +99,40 @@ class TestOnABoard:
         assert run("pins.py", scl=22, sda=21).stdout == ""
 
 
-def test_on_linux_it_goes_on_with_what_was_learned(repository, monkeypatch, capsys, tmp_path):
-    smbus2 = pytest.importorskip("smbus2")
+ON_LINUX = """
+import time, smbus2, zerorate_i2c.clock
+from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050, Physical
+from zerorate_fakes.smbus import SMBus
 
-    def power_on(seconds):
-        def at_rest(now):
-            if now > seconds:
-                raise KeyboardInterrupt
-            return BIAS_DPS
+def at_rest(now):
+    if now > {seconds}:
+        raise KeyboardInterrupt
+    return {bias}
 
-        chip = FakeMPU6050(Physical(gyro_dps=at_rest))
-        clock = FakeClock(chip)
-        monkeypatch.setattr(smbus2, "SMBus", lambda number: SMBus(FakeI2C(chip)))
-        monkeypatch.setattr("time.sleep", lambda seconds: clock.advance_us(int(seconds * 1e6)))
-        for name in ("ticks_us", "ticks_diff", "ticks_add", "sleep_ms"):
-            monkeypatch.setattr(f"zerorate_i2c.clock.{name}", getattr(clock, name))
-        with pytest.raises(KeyboardInterrupt):
-            exec((repository / "examples" / "raspberry_pi.py").read_text(), {})
-        return capsys.readouterr().out
+chip = FakeMPU6050(Physical(gyro_dps=at_rest))
+clock = FakeClock(chip)
+smbus2.SMBus = lambda number: SMBus(FakeI2C(chip))
+time.sleep = lambda seconds: clock.advance_us(int(seconds * 1e6))
+for name in ("ticks_us", "ticks_diff", "ticks_add", "sleep_ms"):
+    setattr(zerorate_i2c.clock, name, getattr(clock, name))
+try:
+    exec(open({example!r}).read(), {{}})
+except KeyboardInterrupt:
+    print("ended")
+"""
 
-    monkeypatch.chdir(tmp_path)
+
+def test_on_linux_it_goes_on_with_what_was_learned(repository, tmp_path):
+    pytest.importorskip("smbus2")
+    example = str(repository / "examples" / "raspberry_pi.py")
+
+    def power_on(seconds):  # in a process of its own: it takes the clock of all that runs there
+        program = ON_LINUX.format(seconds=seconds, bias=BIAS_DPS, example=example)
+        command = [sys.executable, "-c", program]
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+        assert done.stdout.endswith("ended\n"), done.stderr
+        return done.stdout
+
     first, second = power_on(40), power_on(5)
     assert first.startswith("nothing was ever stored")
     takes_the_bias_off(first)
