@@ -16,7 +16,6 @@ import select
 import socket
 import subprocess
 import threading
-import time
 import tty
 from dataclasses import dataclass
 from pathlib import Path
@@ -97,6 +96,7 @@ class EmulatedPico:
         self._control = ours.makefile("rw", encoding="utf-8")
         ours.close()
         self._process = self._started(parts, list(bias_lsb), theirs)
+        self._closed = threading.Event()
         for work in (self._to_board, self._from_board):
             threading.Thread(target=work, daemon=True).start()
 
@@ -127,6 +127,7 @@ class EmulatedPico:
 
     def close(self) -> None:
         """Take it away: its port then fails."""
+        self._closed.set()
         self._process.kill()
         self._process.wait()
         self._control.close()
@@ -150,14 +151,14 @@ class EmulatedPico:
         return base64.b64decode(self.ask("pile"))
 
     def _to_board(self) -> None:
-        while self._process.poll() is None:
+        while not self._closed.is_set():
             try:
                 data = os.read(self._master, 4096)
                 self._process.stdin.write(data)
             except OSError as error:
                 if error.errno != errno.EIO:  # which says that nobody has the port open
                     return
-                time.sleep(0.02)
+                self._closed.wait(0.02)  # time.sleep may be a test's own clock
 
     def _from_board(self) -> None:
         poll = select.poll()
