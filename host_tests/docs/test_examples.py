@@ -185,7 +185,7 @@ def test_beside_another_driver_the_bias_goes(example, unit, repository, monkeypa
     monkeypatch.setattr("time.monotonic", lambda: clock.now_us / 1e6)
     monkeypatch.setattr("time.monotonic_ns", lambda: clock.now_us * 1000)
     with pytest.raises(KeyboardInterrupt):
-        exec((repository / "examples" / example).read_text(), {})
+        exec(compile((repository / "examples" / example).read_text(), example, "exec"), {})
     lines = [line for line in capsys.readouterr().out.splitlines() if line[0] in "[("]
     rates = [ast.literal_eval(line) for line in lines]
     for part, left in ((rates[:50], BIAS_DPS), (rates[-500:], [0, 0, 0])):

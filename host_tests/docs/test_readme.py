@@ -58,7 +58,7 @@ def test_the_program_for_linux_takes_the_bias_off(programs, monkeypatch):
         monkeypatch.setattr(f"zerorate_i2c.clock.{name}", getattr(clock, name))
     names = {}
     with pytest.raises(KeyboardInterrupt):
-        exec(programs["linux"], names)
+        exec(compile(programs["linux"], "README.md", "exec"), names)
     assert names["corrector"].bias_lsb(0) == pytest.approx(41, abs=0.5)
     assert list(names["sample"])[4:] == pytest.approx([0, 0, 0], abs=2)
 
