@@ -8,16 +8,6 @@ from scipy.stats import chi2
 _LOWEST = (3, 6, 12, 24)
 
 
-def _whitened(regression, fit, terms):
-    """(sessions) list of (N, 3) residuals in units of their own noise at the fitted colour."""
-    out = []
-    z = regression.stack(terms)
-    for i in range(len(z)):
-        b = np.array([fit.base.coefficients[a, g] for a, g in enumerate(fit.base.best)]).T
-        out.append(regression.y[i] - z[i] @ b)
-    return out
-
-
 def coherence(regression, terms) -> tuple[float, np.ndarray]:
     """(p, direction): p of the lowest frequencies' correlation between axes, and their common
     direction in dps.
@@ -27,7 +17,7 @@ def coherence(regression, terms) -> tuple[float, np.ndarray]:
     contrasts' smoothest part.
     """
     fit = regression.fit(terms)
-    residual = _whitened(regression, fit, terms)
+    residual = regression.left(terms, fit)
     p, at = 1.0, _LOWEST[0]
     for lowest in _LOWEST:
         rows = np.vstack([_scaled(regression, fit, i, r)[:lowest] for i, r in enumerate(residual)])
@@ -49,12 +39,10 @@ def turned_axes(regression, terms) -> np.ndarray:
     """(3, 3) axes scaled to equal white noise, the first along what is common to the lowest
     frequencies.
     """
-    fit = regression.fit(terms)
-    count = sum(w.coefficients for w in regression.whiteners)
-    left = np.array([fit.base.rss[a, g] for a, g in enumerate(fit.base.best)])
-    if not (left > 0).all():  # columns all but alike explain everything
+    variance = regression.fit(terms).base.variance
+    if not (variance > 0).all():  # columns all but alike explain everything
         return np.eye(3)
-    white = np.sqrt(left / count)
+    white = np.sqrt(variance)
     _, covariance = coherence(regression, terms)
     values, vectors = np.linalg.eigh(covariance / np.outer(white, white))
     return vectors[:, ::-1].T / white

@@ -127,9 +127,8 @@ class CrossProducts:
     logdet: np.ndarray  # S G
     count: np.ndarray  # S
 
-    def without(self, session: int) -> CrossProducts:
-        """All sessions but one."""
-        keep = np.arange(len(self.count)) != session
+    def of(self, keep: np.ndarray) -> CrossProducts:
+        """Some sessions, by their index."""
         return CrossProducts(*(getattr(self, f)[keep] for f in self.__dataclass_fields__))
 
 

@@ -15,16 +15,13 @@ def noise_of(regression, terms) -> list[Noise]:
     Steep colours are left out: they stand for causes not found, and the floor is what cannot be
     removed.
     """
-    axes = regression.axes
-    regression.turn(np.eye(3))
-    base = regression.fit(terms).base
-    regression.turn(axes)
-    count = sum(w.coefficients for w in regression.whiteners)
+    with regression.in_sensor_axes():
+        base = regression.fit(terms).base
     block_s = regression.sessions[0].block_s
     out = []
     for a in range(3):
         g = int(np.where(IS_STEEP, -np.inf, base.loglik[a]).argmax())
-        white = np.sqrt(base.rss[a, g] / count)
+        white = np.sqrt(base.rss[a, g] / base.count)
         shape = GRID[g]
         out.append(Noise(block_s, white, white * np.sqrt(shape.flicker), white * shape.walk))
     return out

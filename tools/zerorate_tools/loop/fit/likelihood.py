@@ -30,17 +30,35 @@ def _inverse(zz: np.ndarray) -> np.ndarray:
 
 @dataclass
 class Base:
-    """The fit without candidates. rss: (A, G); loglik: (A, G); coefficients: (A, G, J)."""
+    """The fit without candidates. rss: (A, G); loglik: (A, G); coefficients: (A, G, J); inverse:
+    (G, J, J) an axis; count: of all values fitted on an axis.
+    """
 
     rss: np.ndarray
     loglik: np.ndarray
     coefficients: np.ndarray
     inverse: list
+    count: int
 
     @property
     def best(self) -> np.ndarray:
         """(A,) index of the best colour."""
         return self.loglik.argmax(axis=1)
+
+    @property
+    def fitted(self) -> np.ndarray:
+        """(A, J) coefficients at the best colour."""
+        return np.array([c[g] for c, g in zip(self.coefficients, self.best)])
+
+    @property
+    def variance(self) -> np.ndarray:
+        """(A,) of the white part of the noise at the best colour."""
+        return np.array([r[g] for r, g in zip(self.rss, self.best)]) / self.count
+
+    @property
+    def unscaled(self) -> np.ndarray:
+        """(A, J, J) covariance of the coefficients at the best colour, over that variance."""
+        return np.array([i[g] for i, g in zip(self.inverse, self.best)])
 
     @property
     def total(self) -> float:
@@ -69,7 +87,7 @@ def fit_base(g: CrossProducts, scale: np.ndarray, steep: bool = True) -> Base:
         coef.append(b)
         inv.append(inverse)
         ll.append(_loglik(r, logdet, count, (g.count * np.log(scale[:, a])).sum(), steep))
-    return Base(np.array(rss), np.array(ll), np.array(coef), inv)
+    return Base(np.array(rss), np.array(ll), np.array(coef), inv, count)
 
 
 def ratios(g: CrossProducts, base: Base, scale: np.ndarray, steep: bool = True) -> np.ndarray:
@@ -97,9 +115,7 @@ def session_scale(g: CrossProducts, rounds: int = 3) -> np.ndarray:
     scale = np.ones((s, axes))
     for _ in range(rounds if s > 1 else 0):
         base = fit_base(g, scale)
-        for a in range(axes):
-            i = base.best[a]
-            b = base.coefficients[a, i]
+        for a, (i, b) in enumerate(zip(base.best, base.fitted)):
             own = (
                 g.yy[:, i, a] - 2 * g.zy[:, i, :, a] @ b + np.einsum("i,sij,j->s", b, g.zz[:, i], b)
             )

@@ -4,6 +4,8 @@ turned.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -66,6 +68,14 @@ class Regression:
         self.axes = axes
         self._prepare()
 
+    @contextmanager
+    def in_sensor_axes(self) -> Iterator[None]:
+        """Look along the sensor's own axes inside a `with`, and back."""
+        axes = self.axes
+        self.turn(np.eye(3))
+        yield
+        self.turn(axes)
+
     def columns(self, term: Term) -> list[np.ndarray]:
         """Prepared (N,) column of each session."""
         if term not in self._cache:
@@ -124,8 +134,12 @@ class Regression:
     def fit(self, terms) -> Fit:
         """Joint fit with the noise's colour refitted."""
         base = fit_base(self.cross_products(terms), self.scale, self.steep)
-        best = np.array([base.coefficients[a, i] for a, i in enumerate(base.best)])
-        return Fit(np.linalg.solve(self.axes, best[:, : len(terms)]).T, base, base.total)
+        own = base.fitted[:, : len(terms)]
+        return Fit(np.linalg.solve(self.axes, own).T, base, base.total)
+
+    def left(self, terms, fit: Fit) -> list[np.ndarray]:
+        """(N, A) prepared residual of each session beside what was fitted."""
+        return [y - z @ fit.base.fitted.T for y, z in zip(self.y, self.stack(terms))]
 
     def settle(self, terms) -> None:
         """Hold outlying blocks at their neighbours and weigh the sessions, both given the terms."""

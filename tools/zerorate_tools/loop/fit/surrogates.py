@@ -31,6 +31,12 @@ class NullRatios:
     variance: float
     dof: int
 
+    @classmethod
+    def of(cls, ratios: np.ndarray, dof: int) -> NullRatios:
+        """By some ratios of which none is of a true effect."""
+        mean = max(float(ratios.mean()), dof)
+        return cls(mean, max(float(ratios.var()), 2 * mean**2 / dof), dof)
+
     @property
     def inflation(self) -> float:
         """>= 1: the mean beside chi-squared's."""
@@ -45,15 +51,11 @@ class NullRatios:
 def null_ratios(regression, terms, candidate, pool, seed: int = 0) -> NullRatios:
     """Ratios that surrogates reach on what a candidate leaves. pool: terms to make them from."""
     rng = np.random.default_rng(seed)
-    z = regression.stack([*terms, *candidate])
-    fit = regression.fit([*terms, *candidate])
-    b = np.array([fit.base.coefficients[a, g] for a, g in enumerate(fit.base.best)]).T
-    left = [y - c @ b for y, c in zip(regression.y, z)]
+    every = [*terms, *candidate]
+    z, left = regression.stack(every), regression.left(every, regression.fit(every))
     draws = range(COUNT // _AT_ONCE)
     score = np.concatenate([_ratios(regression, left, z, pool, rng) for _ in draws])
-    dof = regression.y[0].shape[1]
-    mean = max(float(score.mean()), dof)
-    return NullRatios(mean, max(float(score.var()), 2 * mean**2 / dof), dof)
+    return NullRatios.of(score, regression.y[0].shape[1])
 
 
 def _ratios(regression, left, z, pool, rng) -> np.ndarray:

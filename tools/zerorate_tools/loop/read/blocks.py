@@ -6,7 +6,7 @@ import numpy as np
 
 from .dequantise import dequantise
 from .earth import earth_of
-from .sessions import OWN_SOURCES, Session
+from .sessions import OWN_SOURCES, Session, block_means
 from .still import still_ticks
 from .ticks import Ticks, gap_filled
 from .turns import turns_of
@@ -68,10 +68,7 @@ def session_of(ticks: Ticks, block_s: float) -> Session:
         used = (ticks.count[:m] > 0) & np.isfinite(ticks.reference[:m]).all(axis=1)
         rate = rate - np.where(used[:, None], ticks.reference[:m], 0.0)
     weight = np.where(used, ticks.count[:m], 0.0)
-    total = weight.reshape(blocks, per).sum(axis=1)
-    values = np.where(used[:, None], rate, 0.0) * weight[:, None]
-    with np.errstate(invalid="ignore", divide="ignore"):
-        mean = values.reshape(blocks, per, 3).sum(axis=1) / total[:, None]
+    mean = block_means(rate, weight, blocks)
     share = used.reshape(blocks, per).mean(axis=1)
     mean[share < _LEAST_STILL] = np.nan
     return Session(

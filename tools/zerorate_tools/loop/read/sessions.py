@@ -28,6 +28,7 @@ OWN_SOURCES = (
 )
 
 _MOST_KNOWN = 1000
+_FIRST_STILL_S = 60.0
 
 
 @dataclass
@@ -79,6 +80,11 @@ class Session:
         return np.isfinite(self.rate_dps).all(axis=1) & (self.weight > 0)
 
     @property
+    def first_still(self) -> np.ndarray:
+        """Indices of the blocks of the first still minute, by which the turn-on offset is told."""
+        return np.flatnonzero(self.available)[: max(1, round(_FIRST_STILL_S / self.block_s))]
+
+    @property
     def stretch(self) -> np.ndarray:
         """(n,) number of steps before each block: what has one has an offset of its own."""
         return np.searchsorted([s.block for s in self.steps], np.arange(self.blocks), side="right")
@@ -124,6 +130,14 @@ class Session:
         if name == "one":
             return np.ones(self.blocks * self.ticks_per_block)
         return self.sources[name]
+
+
+def block_means(ticks: np.ndarray, weight: np.ndarray, blocks: int) -> np.ndarray:
+    """(blocks, K) means of (ticks, K) by their (ticks,) weight, NaN where none has any."""
+    total = weight.reshape(blocks, -1).sum(axis=1)[:, None]
+    values = np.where(weight[:, None] > 0, ticks, 0.0) * weight[:, None]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return values.reshape(blocks, -1, ticks.shape[1]).sum(axis=1) / total
 
 
 def common_sources(sessions: list[Session]) -> list[str]:

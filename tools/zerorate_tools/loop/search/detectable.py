@@ -38,12 +38,12 @@ def _information(g, base, scale):
     """(K,) sum over axes of what a unit coefficient adds to the likelihood ratio, at the fitted
     noise.
     """
-    total, count = np.zeros(g.xx.shape[2]), g.count.sum()
+    total = np.zeros(g.xx.shape[2])
     for a, i in enumerate(base.best):
         w = scale[:, a] ** -2.0
         xz, xx = np.tensordot(w, g.xz[:, i], 1), w @ g.xx[:, i]
         left = xx - np.einsum("ki,ij,kj->k", xz, base.inverse[a][i], xz)
-        total += np.where(left > 1e-6 * xx, left, 0.0) / (base.rss[a, i] / count)
+        total += np.where(left > 1e-6 * xx, left, 0.0) / base.variance[a]
     return total
 
 

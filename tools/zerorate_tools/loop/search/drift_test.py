@@ -101,7 +101,7 @@ def repeats(regression, terms, candidate) -> tuple[float, float]:
     mean = spread = 0.0
     for a, colour in enumerate(base.best):
         along, size = _by_session(g, colour, a, regression.scale[:, a] ** -2.0)
-        variance = base.rss[a, colour] / g.count.sum()
+        variance = base.variance[a]
         common = along.sum() / max(size.sum(), 1e-300)
         each = along - common * size
         mean += common**2 * size.sum() / variance

@@ -139,8 +139,5 @@ def _beside(term: Term, name: str, sessions) -> float:
 
 def _relative_covariance(regression, terms) -> np.ndarray:
     """(3, J, J) covariance of the coefficients over the variance of a block's white noise."""
-    axes = regression.axes
-    regression.turn(np.eye(3))
-    base = regression.fit(terms).base
-    regression.turn(axes)
-    return np.array([base.inverse[a][g] for a, g in enumerate(base.best)])
+    with regression.in_sensor_axes():
+        return regression.fit(terms).base.unscaled

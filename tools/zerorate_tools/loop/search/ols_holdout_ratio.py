@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...model.term import Term
-from ..fit.left_out import spread_of
+from ..fit.left_out import fitted_without, spread_of
 from ..fit.line import ordinary
 from ..fit.regression import predicted
 
@@ -35,12 +35,11 @@ def _square(regression, straight, effects, last=0):
     every = [*straight, *effects]
     fit = regression.fit(every)
     g = regression.cross_products(every)
-    best = np.array([fit.base.coefficients[a, c] for a, c in enumerate(fit.base.best)])
-    spread = spread_of(best, slice(len(every) - last, len(every)))
+    spread = spread_of(fit.base.fitted, slice(len(every) - last, len(every)))
     total = 0.0
     for s, session in enumerate(regression.sessions):
         others = [o for i, o in enumerate(regression.sessions) if i != s]
-        fitted = _fitted_without(regression, g, fit, s, spread)[len(straight) : len(every)]
+        fitted = _fitted_without(regression, g, fit.base, s, spread)[len(straight) : len(every)]
         model = predicted(effects, fitted, session)
         if straight:
             line = ordinary(straight, others, effects, fitted)
@@ -50,15 +49,10 @@ def _square(regression, straight, effects, last=0):
     return total
 
 
-def _fitted_without(regression, g, fit, session, spread):
+def _fitted_without(regression, g, base, session, spread):
     """(columns, 3) dps per unit by generalised least squares on the other sessions."""
-    others = np.arange(len(g.count)) != session
-    turned = []
-    for a, colour in enumerate(fit.base.best):
-        w = regression.scale[others, a] ** -2.0
-        zz = np.tensordot(w, g.zz[others, colour], 1)
-        variance = fit.base.rss[a, colour] / g.count.sum()
-        zz = zz + np.diag(variance / spread**2)
-        zy = w @ g.zy[others, colour, :, a]
-        turned.append(np.linalg.lstsq(zz, zy, rcond=1e-12)[0])
+    turned = [
+        fitted_without(g, session, a, colour, variance, regression.scale, spread)
+        for a, (colour, variance) in enumerate(zip(base.best, base.variance))
+    ]
     return np.linalg.solve(regression.axes, np.array(turned)).T

@@ -85,6 +85,9 @@ class Search:
     def terms(self, leave: int | None = None) -> list[Term]:
         return [t for i, f in enumerate(self.found) if i != leave for t in f.candidate.terms]
 
+    def _beside_bend(self) -> list[Term]:
+        return [*self.straight, *self.bend, *self.terms()]
+
     def run(self) -> Selection:
         if self.on_pieces:
             self._bend_first()
@@ -112,17 +115,12 @@ class Search:
         )
 
     def _smallest(self):
-        r = self.regression
-        axes = r.axes
-        r.turn(np.eye(3))
+        r, needed, beside = self.regression, self.testing.needed, [*self.straight, *self.terms()]
         bent = [c for c in self.pool if c.kind != "temperature-quadratic"]
         quadratic = [c for c in self.pool if c.kind == "temperature-quadratic"]
-        out = smallest_dps(r, [*self.straight, *self.terms()], quadratic, self.testing.needed)
-        out.update(
-            smallest_dps(r, [*self.straight, *self.bend, *self.terms()], bent, self.testing.needed)
-        )
-        r.turn(axes)
-        return out
+        with r.in_sensor_axes():
+            smallest = smallest_dps(r, beside, quadratic, needed)
+            return {**smallest, **smallest_dps(r, self._beside_bend(), bent, needed)}
 
     def _bend_first(self):
         assert self.on_pieces is not None
@@ -194,7 +192,7 @@ class Search:
     def _look_afresh(self):
         r = self.regression
         r.turn(np.eye(3))
-        nuisances = [*self.straight, *self.bend, *self.terms()]
+        nuisances = self._beside_bend()
         r.settle(nuisances)
         if coherence(r, nuisances)[0] < _TURN_BELOW:
             r.turn(turned_axes(r, nuisances))
@@ -208,7 +206,7 @@ class Search:
         """Ratios beside the straight line (for choosing) and beside the bend too (for testing)."""
         r, groups = self.regression, [c.terms for c in self.pool]
         choose = r.gains([*self.straight, *self.terms()], groups).sum(axis=1)
-        test = r.gains([*self.straight, *self.bend, *self.terms()], groups).sum(axis=1)
+        test = r.gains(self._beside_bend(), groups).sum(axis=1)
         test = np.where([c.kind == "temperature-quadratic" for c in self.pool], choose, test)
         return choose, test
 
@@ -254,7 +252,7 @@ class Search:
         self._settle([*nuisances, *c.terms])
         found = self._consider(c)
         if not found:
-            self._settle([*self.straight, *self.bend, *self.terms()])
+            self._settle(self._beside_bend())
         return found
 
     def _settle(self, terms):
@@ -263,7 +261,7 @@ class Search:
     def _step_is_larger(self, ratio: float) -> bool:
         if len(self.steps) >= events.MOST_PER_SESSION * len(self.regression.sessions):
             return False
-        step = events.strongest(self.regression, [*self.straight, *self.bend, *self.terms()])
+        step = events.strongest(self.regression, self._beside_bend())
         if step is None or step.ratio < ratio:
             return False
         self._take_step(step)
@@ -346,7 +344,7 @@ class Search:
         self.steps = []
         self.regression.set_events([])
         self._look_afresh()
-        self.steps = events.find_all(self.regression, [*self.straight, *self.bend, *self.terms()])
+        self.steps = events.find_all(self.regression, self._beside_bend())
 
 
 def select(

@@ -47,7 +47,7 @@ class Selection:
     pool: list[Candidate]
     smallest_dps: dict[str, float]
     alone: bool = False  # whether one recording was fitted, whose pieces judged
-    withdrawn: list[tuple[str, str]] = field(default_factory=list)  # see `uphold`
+    withdrawn: list[tuple[str, str]] = field(default_factory=list)  # see `prune_by_holdout`
 
     def first(self, effects: int) -> Selection:
         """The same with the first so many effects alone."""

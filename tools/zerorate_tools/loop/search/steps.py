@@ -10,10 +10,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.stats import chi2, gamma
+from scipy.stats import chi2
 
 from ..fit.cross_products import GappyWhitener
 from ..fit.regression import predicted
+from ..fit.surrogates import NullRatios
 from .decide import LEVEL
 
 MOST_PER_SESSION = 4
@@ -104,13 +105,12 @@ def _tried(regression) -> int:
 def _best(regression, terms) -> tuple[Step | None, list]:
     """The largest ratio of all places, and (session, places, ratios) of every session."""
     fit, z = regression.fit(terms), regression.stack(terms)
-    count = sum(w.coefficients for w in regression.whiteners)
     best, every = None, []
     for s, session in enumerate(regression.sessions):
         at, heavisides = regression.heavisides(s, _ground(session))
         if not len(at):
             continue
-        ratios = _ratios(regression, fit.base, s, heavisides, z[s], count)
+        ratios = _ratios(regression, fit.base, s, heavisides, z[s])
         every.append((s, at, ratios))
         i = int(ratios.argmax())
         if best is None or ratios[i] > best.ratio:
@@ -118,7 +118,7 @@ def _best(regression, terms) -> tuple[Step | None, list]:
     return best, every
 
 
-def _ratios(regression, base, s, heavisides, z, count) -> np.ndarray:
+def _ratios(regression, base, s, heavisides, z) -> np.ndarray:
     """(places,) likelihood ratios of a step at each, over all axes, at the colours fitted."""
     w, total = regression.whiteners[s], 0.0
     for a, colour in enumerate(base.best):
@@ -129,7 +129,7 @@ def _ratios(regression, base, s, heavisides, z, count) -> np.ndarray:
         xy = scale * (h.T @ y)[:, 0] - xz @ base.coefficients[a, colour]
         gain = np.where(xx > 1e-6 * xx0, xy**2 / np.maximum(xx, 1e-300), 0.0)
         left = base.rss[a, colour]
-        total = total - count * np.log1p(-np.minimum(gain / left, 1 - 1e-9))
+        total = total - base.count * np.log1p(-np.minimum(gain / left, 1 - 1e-9))
     return np.asarray(total)
 
 
@@ -162,11 +162,7 @@ def _survival(ratio: float, away: np.ndarray, axes: int = 3) -> float:
     On real noise they have a higher mean and a longer tail than chi-squared: a gamma distribution
     of their mean and variance takes its place where that is longer.
     """
-    if len(away) < _EDGE:
-        return float(chi2.sf(ratio, axes))
-    mean = max(float(away.mean()), axes)
-    variance = max(float(away.var()), 2 * mean**2 / axes)
-    return float(gamma.sf(ratio, mean**2 / variance, scale=variance / mean))
+    return NullRatios.of(away, axes).survival(ratio) if len(away) >= _EDGE else chi2.sf(ratio, axes)
 
 
 def _sized(regression, terms, steps, kept=()) -> list[Step]:
@@ -174,10 +170,8 @@ def _sized(regression, terms, steps, kept=()) -> list[Step]:
     before = regression.events()
     regression.set_events([column(regression, s) for s in steps], list(kept))
     base, own = regression.fit(terms).base, slice(-len(steps), None)
-    count = sum(w.coefficients for w in regression.whiteners)
-    best = list(enumerate(base.best))
-    values = np.array([base.coefficients[a, g] for a, g in best])[:, own]
-    spread = [np.diag(base.inverse[a][g])[own] * base.rss[a, g] / count for a, g in best]
+    values = base.fitted[:, own]
+    spread = [np.diag(i)[own] * v for i, v in zip(base.unscaled, base.variance)]
     back = np.linalg.inv(regression.axes)
     sizes, variances = (back @ values).T, ((back**2) @ np.array(spread)).T
     for step, size, variance in zip(steps, sizes, variances):

@@ -17,7 +17,6 @@ from .residual_test import ResidualTest, residual_test
 
 #: Nats that a held-out session must gain for an effect to count as seen there.
 CONFIRMING_NATS = 2.0
-_FIRST_STILL_S = 60.0
 
 
 @dataclass
@@ -111,7 +110,7 @@ def scored(session: Session, model: np.ndarray, fitted: Session | None = None):
     if fitted is not None:
         offset = (fitted.rate_dps - model)[fitted.available].mean(axis=0)
         return residual - offset, offset
-    first = np.flatnonzero(session.available)[: max(1, round(_FIRST_STILL_S / session.block_s))]
+    first = session.first_still
     offset = residual[first].mean(axis=0)
     residual = residual - offset
     residual[: first[-1] + 1] = np.nan
@@ -129,17 +128,14 @@ def _gains(whole: Regression, selection: Selection, trained: int) -> np.ndarray:
     """
     every = [*selection.straight, *selection.terms]
     full = whole.fit(every).base
-    count = sum(w.coefficients for w in whole.whiteners)
-    variance = np.array([full.rss[a, c] / count for a, c in enumerate(full.best)])
     holdout = range(trained, len(whole.sessions))
 
     def misfit(terms):
         g = whole.cross_products(terms)
-        train_only = [_with_training(g, trained, s) for s in holdout]
+        train_only = [g.of(np.r_[np.arange(trained), s]) for s in holdout]
         scales = [np.vstack([whole.scale[:trained], whole.scale[s : s + 1]]) for s in holdout]
-        return sum(
-            session_misfit(t, trained, full.best, variance, c) for t, c in zip(train_only, scales)
-        )
+        known = full.best, full.variance
+        return sum(session_misfit(t, trained, *known, c) for t, c in zip(train_only, scales))
 
     with_all = misfit(every)
     out = []
@@ -147,8 +143,3 @@ def _gains(whole: Regression, selection: Selection, trained: int) -> np.ndarray:
         rest = [t for j, f in enumerate(selection.found) if j != i for t in f.candidate.terms]
         out.append(0.5 * (misfit([*selection.straight, *rest]) - with_all))
     return np.array(out)
-
-
-def _with_training(g, trained, s):
-    keep = np.r_[np.arange(trained), s]
-    return type(g)(*(getattr(g, f)[keep] for f in g.__dataclass_fields__))

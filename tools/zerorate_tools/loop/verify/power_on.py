@@ -11,10 +11,9 @@ import numpy as np
 from ...recordings import open_recording
 from ...replay.samples import Frames, frames_in_batches
 from ..motion.in_motion import InMotion, rates_of_turning
-from ..read.sessions import Session
+from ..read.sessions import Session, block_means
 from .firmware import Firmware, rows
 
-FIRST_STILL_S = 60.0
 #: Blocks after the first still minute in which the firmware may go on making up its mind.
 _MORE_BLOCKS = 15
 _ROWS = 1 << 17
@@ -64,18 +63,10 @@ class PowerOn:
         per = self.session.ticks_per_block
         return np.minimum(self.ticks(frames) // per, self.session.blocks - 1)
 
-    def first_still(self) -> np.ndarray:
-        """Indices of the blocks of the first still minute."""
-        least = max(1, round(FIRST_STILL_S / self.session.block_s))
-        return np.flatnonzero(self.session.available)[:least]
-
     def block_means(self, ticks: np.ndarray) -> np.ndarray:
         """(n, 3) means of (ticks, 3), NaN where there are none, over the ticks that count."""
-        blocks = self.session.blocks
         weight = np.where(np.isfinite(ticks[:, 0]), self.tick_weight, 0.0)
-        total = weight.reshape(blocks, -1).sum(axis=1)[:, None]
-        parts = (np.nan_to_num(ticks) * weight[:, None]).reshape(blocks, -1, 3).sum(axis=1)
-        return np.where(total > 0, parts / np.maximum(total, 1.0), np.nan)
+        return block_means(ticks, weight, self.session.blocks)
 
     def by_blocks(self) -> Iterator[tuple[int, Frames]]:
         """Pieces of samples, each within one block, with that block's index."""
@@ -95,8 +86,8 @@ def ideal_dps(session: Session, motion: InMotion) -> np.ndarray:
     rate = session.rate_dps + rates_of_turning(session, motion)
     if session.earth is not None:
         ticks = session.earth.rate_dps[: session.blocks * session.ticks_per_block]
-        first = np.flatnonzero(session.available)[: max(1, round(FIRST_STILL_S / session.block_s))]
-        rate = rate + ticks.reshape(session.blocks, -1, 3).mean(axis=1)[first].mean(axis=0)
+        by_block = ticks.reshape(session.blocks, -1, 3).mean(axis=1)
+        rate = rate + by_block[session.first_still].mean(axis=0)
     return rate
 
 
@@ -145,7 +136,7 @@ def turn_on(firmware: Firmware, power_on: PowerOn) -> TurnOn:
     learning.power_on()
     frozen.power_on()
     frozen.set_offset((0, 0, 0))
-    first, means = power_on.first_still(), BlockMeans(power_on)
+    first, means = power_on.session.first_still, BlockMeans(power_on)
     until = int(first[-1]) + 1
     for block, frames in power_on.by_blocks():
         if not learning.offset_is_known.all():

@@ -43,11 +43,9 @@ class ResidualTest:
 
 def residual_test(regression, terms) -> ResidualTest:
     """Look at what the terms leave, in the sensor's own axes."""
-    axes = regression.axes
-    regression.turn(np.eye(3))
-    p, covariance = coherence(regression, terms)
-    loglik = regression.fit(terms).base.loglik
-    regression.turn(axes)
+    with regression.in_sensor_axes():
+        p, covariance = coherence(regression, terms)
+        loglik = regression.fit(terms).base.loglik
     steep = (loglik[:, IS_STEEP].max(axis=1) - loglik[:, ~IS_STEEP].max(axis=1)).max()
     direction = np.linalg.eigh(covariance)[1][:, -1]
     return ResidualTest(p, float(steep), direction)
