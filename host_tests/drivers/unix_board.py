@@ -1,7 +1,5 @@
 """MicroPython's unix port behind a pseudo-terminal: a board for mpremote and pyserial."""
 
-from __future__ import annotations
-
 import os
 import pty
 import signal

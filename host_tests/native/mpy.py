@@ -1,7 +1,5 @@
 """The machine code in a .mpy file, MicroPython's format of version 6."""
 
-from __future__ import annotations
-
 import subprocess
 import tempfile
 from collections.abc import Iterator

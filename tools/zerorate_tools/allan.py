@@ -5,8 +5,6 @@ tau^-1/2, flicker is flat (0.664 of the bias instability), a random walk rises a
 lowest point is the floor.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

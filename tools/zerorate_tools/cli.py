@@ -1,7 +1,5 @@
 """The one entry point, `zerorate`: sub-commands are thin calls of public functions."""
 
-from __future__ import annotations
-
 import argparse
 import os
 import signal

@@ -1,7 +1,5 @@
 """`zerorate close`: recordings in, what was found out."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable
 from os import PathLike

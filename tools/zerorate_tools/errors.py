@@ -1,7 +1,5 @@
 """What goes wrong in words for a person: the command line prints one line of it and exits."""
 
-from __future__ import annotations
-
 from os import PathLike
 
 

@@ -4,8 +4,6 @@ The kernels stay integers: readings are rounded to an LSB that the full scale gi
 which they know to 1/256 of one, is taken off the reading as it came.
 """
 
-from __future__ import annotations
-
 from array import array
 from collections.abc import Sequence
 from math import isfinite, pi

@@ -1,7 +1,5 @@
 """How far long work has come, on a terminal's standard error; silent in a pipe."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """Numbers in which zero has no sign."""
 
-from __future__ import annotations
-
 
 def fixed(value: float, digits: int, sign: str = "") -> str:
     """A number with so many digits behind the point; what rounds to zero has no minus.

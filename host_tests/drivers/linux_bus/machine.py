@@ -5,8 +5,6 @@ i2c-stub module, 256 registers at one address, answering SMBus but no raw I2C. E
 no right on /dev/kvm is needed.
 """
 
-from __future__ import annotations
-
 import lzma
 import shutil
 import subprocess

@@ -1,7 +1,5 @@
 """The driver, the recorder and the corrector on a real Linux kernel's I2C bus, emulated."""
 
-from __future__ import annotations
-
 import json
 import shlex
 import sys

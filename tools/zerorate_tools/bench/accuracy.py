@@ -1,7 +1,5 @@
 """Accuracy beside the peers, all on the same samples in one run."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np

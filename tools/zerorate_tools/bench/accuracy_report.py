@@ -1,7 +1,5 @@
 """`zerorate bench accuracy`: the tables and their figures."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 

@@ -5,8 +5,6 @@ chip measured, or all of it was handed out before. It was learned from when the 
 did not take it back, and said of no window of the second after it that it was no rest.
 """
 
-from __future__ import annotations
-
 import random
 from array import array
 from collections import deque

@@ -1,7 +1,5 @@
 """`compare` on every open recording, and on BROAD beside the truth that the optics tell."""
 
-from __future__ import annotations
-
 import tempfile
 from collections.abc import Callable
 from itertools import combinations

@@ -1,7 +1,5 @@
 """`zerorate bench cost`: what a sample costs, and what a replay does."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

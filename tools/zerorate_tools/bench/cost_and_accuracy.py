@@ -1,7 +1,5 @@
 """`zerorate bench`: cost and accuracy in one report."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The figures of `zerorate bench cost` as tables."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Runs a part's machine code on an emulated Cortex-M0 or RV32, and counts what it executes."""
 
-from __future__ import annotations
-
 import ast
 import struct
 from array import array

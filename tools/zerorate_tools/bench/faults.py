@@ -1,7 +1,5 @@
 """Every fault of a bus and every cut of a write, injected: what was detected, what was learned."""
 
-from __future__ import annotations
-
 from .bus_faults import FAULTS, run_fault
 from .store_faults import run_store
 

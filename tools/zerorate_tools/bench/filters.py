@@ -8,8 +8,6 @@ degrees off the frame of the optics; so each is also run on rates turned by the 
 optics tell (`broad.true_bias`), where little but the bias and the filter itself is left.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """A CSV as large as one likes, made, imported in a process of its own, and thrown away."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

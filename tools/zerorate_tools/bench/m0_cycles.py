@@ -1,7 +1,5 @@
 """Cycles of straight Thumb code on a Cortex-M0+ without wait states (ARM DDI 0484C, table 3-1)."""
 
-from __future__ import annotations
-
 import struct
 
 

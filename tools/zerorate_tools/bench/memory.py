@@ -1,7 +1,5 @@
 """Heap of an update and of the import, bytes of state, sizes of compiled modules."""
 
-from __future__ import annotations
-
 import sys
 import tempfile
 from array import array

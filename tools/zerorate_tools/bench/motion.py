@@ -3,8 +3,6 @@
 zerorate bench motion --data FOLDER/broad --json motion.json
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from os import PathLike
 from pathlib import Path

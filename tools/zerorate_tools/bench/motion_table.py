@@ -1,7 +1,5 @@
 """The tables of `bench motion`, each figure beside what it must be."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

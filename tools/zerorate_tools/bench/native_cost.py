@@ -1,7 +1,5 @@
 """What a sample costs as machine code on emulated processors, beside C -O2 of the same kernels."""
 
-from __future__ import annotations
-
 from array import array
 from collections.abc import Iterator
 from statistics import mean, median

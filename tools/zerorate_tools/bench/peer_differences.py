@@ -3,8 +3,6 @@
 The scenarios are words; whoever simulates them must choose what the words leave open.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any

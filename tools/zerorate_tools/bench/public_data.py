@@ -1,7 +1,5 @@
 """How each measured recording of the data folder is imported: what its authors' notes say of it."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Any

@@ -5,8 +5,6 @@ that noise does not hide it; the Earth's rate, 4 mdps, is in it. Blocks in which
 handled are left out: those marked so, and those with three times the spread of most.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterator
 from pathlib import Path

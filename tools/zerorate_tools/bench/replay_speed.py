@@ -1,7 +1,5 @@
 """Samples a second and peak memory of a replay, against the length of the recording."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

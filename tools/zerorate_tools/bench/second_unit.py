@@ -6,8 +6,6 @@ power-ons of 40 minutes that heat and cool. The figure is the error of the bias 
 the last power-on, at rest and in motion, the firmware learning online all the while.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

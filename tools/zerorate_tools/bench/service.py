@@ -5,8 +5,6 @@ in motion; the bus breaks, the supply dips, the chip freezes, the disk is full, 
 killed, in the middle of a write as well. Time is the emulation's own.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import random

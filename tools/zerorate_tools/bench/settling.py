@@ -1,7 +1,5 @@
 """How fast the source against gravity settles, and how far it ripples then."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..peers import given

@@ -1,7 +1,5 @@
 """The store of the whole learned state: power cut at every byte, every bit of both slots turned."""
 
-from __future__ import annotations
-
 from array import array
 
 from zerorate.corrector import Corrector

@@ -1,7 +1,5 @@
 """Markdown tables, and the machine that the figures are from."""
 
-from __future__ import annotations
-
 import os
 import platform
 from collections.abc import Mapping, Sequence

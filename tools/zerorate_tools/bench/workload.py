@@ -1,7 +1,5 @@
 """What the cost benchmarks run: one motion-and-rest cycle in the middle of a simulated warm-up."""
 
-from __future__ import annotations
-
 from array import array
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """What a board is: its MicroPython, the code that it loads, and the room that it has."""
 
-from __future__ import annotations
-
 import ast
 from dataclasses import dataclass
 

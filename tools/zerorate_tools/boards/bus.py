@@ -1,7 +1,5 @@
 """A recording from a chip on a Linux I2C bus: by its FIFO where it has one, else by polling."""
 
-from __future__ import annotations
-
 from array import array
 from collections.abc import Callable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The packages' files as a board loads them soonest: compiled by mpy-cross where that fits."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import tempfile

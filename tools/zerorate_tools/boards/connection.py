@@ -1,7 +1,5 @@
 """A MicroPython board on a serial port, through mpremote's raw REPL."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 

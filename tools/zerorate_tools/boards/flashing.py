@@ -1,7 +1,5 @@
 """The firmware and the driver put on a board: compiled for it, whole or not at all."""
 
-from __future__ import annotations
-
 import ast
 from base64 import b64encode
 from binascii import crc32

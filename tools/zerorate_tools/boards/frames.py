@@ -7,8 +7,6 @@ registers; status is that of MPU6050.read, bit 7 set when the sample was sent be
 scales: JSON. kind 3, a message: text. on_board/stream.py sends them.
 """
 
-from __future__ import annotations
-
 import struct
 from binascii import crc32
 from collections.abc import Iterator

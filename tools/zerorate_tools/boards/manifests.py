@@ -3,8 +3,6 @@
 python -m zerorate_tools.boards.manifests, in a checkout; a test fails while one is stale.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 from collections.abc import Iterator

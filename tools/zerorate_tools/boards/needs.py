@@ -1,7 +1,5 @@
 """How much heap each part needs, as `zerorate bench boards` measured it on an emulated Pico."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterable
 from importlib.resources import files

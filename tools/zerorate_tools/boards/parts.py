@@ -1,7 +1,5 @@
 """Which files of the packages a board needs, found by following their imports from a few roots."""
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Iterable, Iterator
 from functools import cache

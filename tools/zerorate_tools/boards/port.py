@@ -1,7 +1,5 @@
 """A recording from a board: its frames over the serial port, with every drop counted."""
 
-from __future__ import annotations
-
 import json
 import time
 from collections.abc import Callable

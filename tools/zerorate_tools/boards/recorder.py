@@ -1,7 +1,5 @@
 """Rows of a recording being made: written in batches, believed only when the chip was verified."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol

@@ -1,7 +1,5 @@
 """One command for both: a Linux I2C bus by its device path, a board by its serial port."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager

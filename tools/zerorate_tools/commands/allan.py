@@ -1,7 +1,5 @@
 """`zerorate allan`: the floor below which no model can go."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """`zerorate bench`: what is claimed, measured; each bench is a sub-command, a row of BENCHES."""
 
-from __future__ import annotations
-
 import argparse
 import json
 from collections.abc import Callable, Mapping

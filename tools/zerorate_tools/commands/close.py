@@ -1,7 +1,5 @@
 """`zerorate close`: find what the model lacks, add it, and say what is left."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """`zerorate compare`: would it have been better than your average at boot?"""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

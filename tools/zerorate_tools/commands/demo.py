@@ -1,7 +1,5 @@
 """`zerorate demo`: the whole job without hardware."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Callable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """`zerorate export c DIR`: the firmware's rest path in C."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """`zerorate flash`: the firmware and the driver onto a board."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

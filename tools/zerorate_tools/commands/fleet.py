@@ -1,7 +1,5 @@
 """`zerorate fleet`: many recordings at once."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """`zerorate import`: foreign recordings into the project's own form."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """`zerorate model`: look at effect models."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """`zerorate record`: a recording from a board or from a Linux I2C bus."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """`zerorate run`: the firmware as a service of a Linux board."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from pathlib import Path

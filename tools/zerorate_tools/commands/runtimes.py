@@ -1,7 +1,5 @@
 """`zerorate runtimes get NAME...`, `list` and `node`: the interpreters that run the firmware."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 

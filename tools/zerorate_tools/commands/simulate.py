@@ -1,7 +1,5 @@
 """`zerorate simulate`: recordings from a described device."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """`zerorate watch`: the firmware at work, live."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """How wrong each way to the bias would have been when the device next lay still."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec

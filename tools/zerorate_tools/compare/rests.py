@@ -1,7 +1,5 @@
 """The rests of a recording: where it lay still the gyroscope's mean is its bias."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 

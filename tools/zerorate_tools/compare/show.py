@@ -1,7 +1,5 @@
 """What `compare` found: a table for a terminal, and one page with a plot."""
 
-from __future__ import annotations
-
 import html
 import io
 from pathlib import Path

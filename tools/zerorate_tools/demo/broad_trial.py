@@ -4,8 +4,6 @@ D. Laidig, M. Caruso, A. Cereatti, T. Seel: BROAD, a benchmark for robust inerti
 estimation, Data 6(7):72, 2021; github.com/dlaidig/broad, CC BY 4.0.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from ..bench.broad import Trial, trials

@@ -1,7 +1,5 @@
 """The demo's device: recordings of its power-ons on disk, and the truth behind them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The whole job on the built-in device, a function a step: learn, close the loop, put it back."""
 
-from __future__ import annotations
-
 import tempfile
 from pathlib import Path
 

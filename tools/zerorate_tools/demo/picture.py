@@ -1,7 +1,5 @@
 """The demo's pictures: bias and temperature, what is left of the bias, the angle that is lost."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import matplotlib

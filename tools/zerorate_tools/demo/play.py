@@ -1,7 +1,5 @@
 """A recording, register by register, through chip, bus, driver and firmware on a MicroPython."""
 
-from __future__ import annotations
-
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """`demo`: plays a recording through chip, bus, driver and firmware, and says what it gained."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path

@@ -1,7 +1,5 @@
 """`demo --real`: the firmware on a real recording, against the bias that optics tell."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.util import find_spec

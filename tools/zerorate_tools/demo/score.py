@@ -1,7 +1,5 @@
 """The error of a bias: none, the mean of the first ten seconds, and the firmware's."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

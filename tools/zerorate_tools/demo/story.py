@@ -1,7 +1,5 @@
 """What a demo showed, told a chapter at a time: lines of text for a terminal."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import sys

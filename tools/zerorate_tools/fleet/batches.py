@@ -1,7 +1,5 @@
 """Devices in batches: one task of the cluster each, so that tasks stay few."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from .devices import Device

@@ -1,7 +1,5 @@
 """What a prior is worth: on devices that it was not made from."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import Any

@@ -1,7 +1,5 @@
 """Which recordings belong to which device."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass

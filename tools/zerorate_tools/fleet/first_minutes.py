@@ -1,7 +1,5 @@
 """A device's first minutes with and without a prior: how far the firmware's bias is off."""
 
-from __future__ import annotations
-
 import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """What is done with one device: its recordings in, plain values out, whatever is wrong with one."""
 
-from __future__ import annotations
-
 import resource
 import sys
 import tempfile

@@ -1,7 +1,5 @@
 """fleet.html: the fleet's report as one file that needs nothing else."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 from importlib.metadata import version
 from importlib.resources import files

@@ -1,7 +1,5 @@
 """What a fleet of one part has in common, and what belongs to single devices."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any

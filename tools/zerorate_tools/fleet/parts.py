@@ -1,7 +1,5 @@
 """Results as they come, a file a batch, so that a run cut off goes on where it stopped."""
 
-from __future__ import annotations
-
 import json
 import uuid
 from collections.abc import Iterable, Iterator

@@ -1,7 +1,5 @@
 """The fleet's pictures: the part's curve, its devices, and what the prior is worth."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

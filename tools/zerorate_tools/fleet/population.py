@@ -4,8 +4,6 @@
 # information W_i. Mean and spread by EM (Dempster, Laird, Rubin 1977; for random effects Laird and
 # Ware 1982), a device's own by the posterior, which is the shrunken (empirical Bayes) estimate.
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

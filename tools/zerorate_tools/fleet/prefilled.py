@@ -4,8 +4,6 @@
 # than a power-on's offset ever does, so the firmware holds its first rests back as implausible, and
 # the estimators at other temperatures keep the part's level, not the device's.
 
-from __future__ import annotations
-
 from os import PathLike
 
 import numpy as np

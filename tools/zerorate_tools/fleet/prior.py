@@ -1,7 +1,5 @@
 """What a new device of the part starts from: the expected curve as the firmware reads it."""
 
-from __future__ import annotations
-
 import json
 from os import PathLike
 from typing import Any

@@ -1,7 +1,5 @@
 """The fleet's one table: a row for each device and effect."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Which reader a file needs, told by its first bytes and then by its name."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What a user says of a source beforehand, and what an import says of it afterwards."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """The expressions of the kernel subset in C: 32-bit integers with Python's meaning."""
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Callable, Mapping
 

@@ -1,7 +1,5 @@
 """Kernels as C: the text of which machine code, the library for hosts and the export are made."""
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Iterator
 

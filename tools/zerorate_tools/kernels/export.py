@@ -1,7 +1,5 @@
 """The rest path as one header and one C file, for who has no MicroPython, with a test program."""
 
-from __future__ import annotations
-
 import zlib
 from array import array
 from os import PathLike

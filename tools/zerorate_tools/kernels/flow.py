@@ -3,8 +3,6 @@
 C checks neither and goes on with whatever the register held.
 """
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Iterator, Sequence
 

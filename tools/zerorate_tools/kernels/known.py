@@ -4,8 +4,6 @@ Small arrays that reach most of a part's code within a few calls; firmware/zeror
 trying.py says how they are written down and run.
 """
 
-from __future__ import annotations
-
 from array import array
 from collections.abc import Callable, Sequence
 from typing import Any

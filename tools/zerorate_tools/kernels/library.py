@@ -1,7 +1,5 @@
 """The kernels as a library of this machine, compiled from their C once and kept in the cache."""
 
-from __future__ import annotations
-
 import ctypes
 import errno
 import hashlib

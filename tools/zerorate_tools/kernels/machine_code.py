@@ -5,8 +5,6 @@ bytes everywhere. Code is execute-only: numbers are made by instructions, never 
 the code, for MicroPython aligns frozen ARMv6-M code to two bytes and literals want four.
 """
 
-from __future__ import annotations
-
 import struct
 import subprocess
 import sys

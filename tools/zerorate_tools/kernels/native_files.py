@@ -3,8 +3,6 @@
 `make native` runs this; host_tests/native/test_native_files.py builds it again and compares.
 """
 
-from __future__ import annotations
-
 import struct
 import sys
 from collections.abc import Callable, Sequence

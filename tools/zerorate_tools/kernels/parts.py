@@ -5,8 +5,6 @@ it: firmware/zerorate/native says what is passed. `what` is a time, or below -2^
 ends, the number of a stage in its upper half word and a value in its lower one.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -5,8 +5,6 @@ file is known by its stem, wherever it lies, so that `from ..fit.line import dra
 `from .line import draw_line` are the same.
 """
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ Source: each rule was tried on MicroPython 1.25 and 1.27. A path without return 
 a shift by 32 differs between processors, and bytecode takes heap for what leaves 31 bits.
 """
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Collection, Iterator
 from pathlib import Path

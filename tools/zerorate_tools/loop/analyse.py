@@ -1,7 +1,5 @@
 """The whole loop over the sessions of one device, from blocks to a judgement."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from os import PathLike
 

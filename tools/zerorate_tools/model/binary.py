@@ -1,7 +1,5 @@
 """model.bin: bytes of a model and back, to the last bit (firmware: effects/model_file.py)."""
 
-from __future__ import annotations
-
 import struct
 import zlib
 from collections.abc import Container, Sequence

@@ -1,7 +1,5 @@
 """For which chip and settings a model is made, as far as its recordings say."""
 
-from __future__ import annotations
-
 from zerorate_i2c.parts import part_by_name
 from zerorate_i2c.settings import ACCEL_LSB_PER_G, GYRO_LSB_PER_DPS
 

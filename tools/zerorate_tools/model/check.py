@@ -1,7 +1,5 @@
 """Would a device take this model? Asked of the firmware's own reader."""
 
-from __future__ import annotations
-
 from os import PathLike
 from pathlib import Path
 

@@ -5,8 +5,6 @@ plot, `zerorate simulate` its waveform. To add an effect, add a row (docs/extend
 coarse: what is found is refined afterwards.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any

@@ -1,7 +1,5 @@
 """A model in its two files."""
 
-from __future__ import annotations
-
 from os import PathLike
 from pathlib import Path
 

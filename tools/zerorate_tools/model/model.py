@@ -1,7 +1,5 @@
 """An effect model as a person reads it: slots of a basis with coefficients, and for which chip."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 

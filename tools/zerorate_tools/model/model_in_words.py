@@ -1,7 +1,5 @@
 """A model in words: what `zerorate model show` prints, and how two differ."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from .binary import encoded

@@ -1,7 +1,5 @@
 """Play operators (Prandtl-Ishlinskii) in model.bin: 13 integers for an operator and its square."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace

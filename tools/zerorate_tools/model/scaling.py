@@ -1,7 +1,5 @@
 """Between a source's unit and the integers in which the firmware keeps it (Q8)."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """A slot as the 30 integers of model.bin, and back (firmware/zerorate/model.py names the words)."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace

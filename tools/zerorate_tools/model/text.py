@@ -1,7 +1,5 @@
 """model.json: the readable twin of model.bin."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Mapping

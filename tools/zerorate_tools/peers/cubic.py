@@ -5,8 +5,6 @@ takes 2000 steps of temperature and fits order 3; ArduPilot takes the means of 0
 fits order 3 about 35 degC. Both hold the value at the ends of the fitted range.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The firmware's one decision as a peer, with how sure it was and whether it was right."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """This project's firmware on the same samples, online and unaided."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import numpy as np

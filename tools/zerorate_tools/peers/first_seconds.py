@@ -1,7 +1,5 @@
 """The mean of the first ten seconds after power-on, as most small drivers take it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """PyPI `imufusion`: the offset that its stationary detector learns, as it comes."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

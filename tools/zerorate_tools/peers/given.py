@@ -1,7 +1,5 @@
 """One power-on's samples in physical units, as each peer is given them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

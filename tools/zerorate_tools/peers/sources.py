@@ -1,7 +1,5 @@
 """The firmware's two sources that need no rest, each on its own, without the decision."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """PyPI `vqf`: the Kalman bias at rest and in motion, without a magnetometer."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Outputs appear whole or not at all, a file or a folder of them."""
 
-from __future__ import annotations
-
 import errno
 import os
 import platform

@@ -1,7 +1,5 @@
 """A bound on memory that does not depend on what a file says of itself."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """What a batch of samples must be before anything learns from it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any

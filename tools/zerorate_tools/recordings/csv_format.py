@@ -1,7 +1,5 @@
 """CSV and .csv.gz with run.json beside run.csv.gz."""
 
-from __future__ import annotations
-
 import csv
 import io
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """Parquet with the scales as schema metadata under the key `zerorate`."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Recordings read whole, or in batches without ever holding the whole."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from os import PathLike
 from pathlib import Path

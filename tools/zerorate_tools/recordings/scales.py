@@ -1,7 +1,5 @@
 """What one LSB of each reading means."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field

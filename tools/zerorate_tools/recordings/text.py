@@ -1,7 +1,5 @@
 """A text file's bytes as UTF-8, whatever it is packed or encoded in, never more than a block."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

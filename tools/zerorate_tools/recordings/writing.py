@@ -1,7 +1,5 @@
 """Recordings written whole or batch by batch, appearing only when complete."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager

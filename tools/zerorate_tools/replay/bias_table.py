@@ -1,7 +1,5 @@
 """The replay's Parquet: per sample the bias, its source and its quality (design.md)."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

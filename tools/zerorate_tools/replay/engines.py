@@ -1,7 +1,5 @@
 """Who runs the firmware over a recording: machine code, CPython, or a MicroPython."""
 
-from __future__ import annotations
-
 import shutil
 import tempfile
 from abc import ABC, abstractmethod

@@ -1,7 +1,5 @@
 """The orientation that each pass of the source in motion saw, window by window, and its picture."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from os import PathLike

@@ -1,7 +1,5 @@
 """A recording's columns as the frames that the firmware reads."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 

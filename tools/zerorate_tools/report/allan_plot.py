@@ -1,7 +1,5 @@
 """Allan deviation of the held-out error, before and after, with the floor."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,7 +1,5 @@
 """How the model gets onto a board: commands and lines that can be copied as they stand."""
 
-from __future__ import annotations
-
 import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass

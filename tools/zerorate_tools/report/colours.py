@@ -4,8 +4,6 @@ Each role has a colour on light and one on dark ground; where two roles meet in 
 in lightness or in their mark as well.
 """
 
-from __future__ import annotations
-
 #: Role -> colour on light ground, colour on dark ground.
 ROLES: dict[str, tuple[str, str]] = {
     "before": ("#8d8d93", "#85858d"),

@@ -1,7 +1,5 @@
 """Each found effect as a curve of its own, with the data that it was found in."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Pictures of the estimators at work: what they hold over time, and what is in them."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The firmware's estimators at work: its state, looked at while the recordings are replayed."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from os import PathLike

@@ -1,7 +1,5 @@
 """What the page draws of an analysis: the only place that knows the loop's own objects."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Effects and channels in plain words: what each is called, what it means, and its units."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from ..model import effects

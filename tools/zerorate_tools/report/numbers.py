@@ -1,7 +1,5 @@
 """Numbers as a reader wants them: three digits, an exponent only where it cannot be avoided."""
 
-from __future__ import annotations
-
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _LEAST, _MOST = -4, 6
 

@@ -1,7 +1,5 @@
 """report.html: one file that needs nothing else."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import lru_cache
 from importlib.resources import files

@@ -1,7 +1,5 @@
 """A plot before anything draws it: the page hands it to Plotly, `png.py` to Matplotlib."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """A Plot as the plain values that the page's script draws."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import asdict
 from html import escape

@@ -1,7 +1,5 @@
 """The report of a closed loop, written into a folder: one page, and pictures where wanted."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from importlib.metadata import version
 from os import PathLike

@@ -1,7 +1,5 @@
 """The error of the held-out part: against time, and against temperature by heating and cooling."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """JSON that can stand inside a page's <script> whatever is in it."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What a report says in sentences; every number in them is one of report.json."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from ..loop.read.turns import GIVEN

@@ -1,7 +1,5 @@
 """The answer as a picture: before, after and the floor of each axis and of all, with intervals."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Where fetched interpreters live, and how a folder appears there whole or not at all."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import tempfile

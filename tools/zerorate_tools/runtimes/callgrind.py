@@ -3,8 +3,6 @@
 Debian 13's valgrind is used: 3.19 of Debian 12 stops at an opcode in that C library's loader.
 """
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Interpreters by name: which there are, where each one is, how to get it."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable
 from pathlib import Path

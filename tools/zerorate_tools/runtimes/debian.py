@@ -4,8 +4,6 @@ A second apt configuration is made from the machine's own Debian source with the
 so the mirror, proxies and certificates are those that the machine already uses.
 """
 
-from __future__ import annotations
-
 import platform
 import re
 import shutil

@@ -4,8 +4,6 @@ A bytecode frame of more than 11 words (py/vm.c, VM_MAX_STATE_ON_STACK) takes a 
 call, which neither heap_lock nor gc.mem_alloc() before and after can see.
 """
 
-from __future__ import annotations
-
 import re
 import subprocess
 from pathlib import Path

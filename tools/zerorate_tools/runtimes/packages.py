@@ -1,7 +1,5 @@
 """npm packages pinned by a folder's package-lock.json, installed into the cache."""
 
-from __future__ import annotations
-
 import json
 import shutil
 import subprocess

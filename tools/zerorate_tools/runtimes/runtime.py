@@ -1,7 +1,5 @@
 """One interpreter, and what running a script on it gives."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 import tempfile

@@ -1,7 +1,5 @@
 """MicroPython 1.25 of Debian 13, each architecture in its own folder with its own C library."""
 
-from __future__ import annotations
-
 import shutil
 import tempfile
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """MicroPython's WebAssembly port under Node.js: 31-bit small integers."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -3,8 +3,6 @@
 No reader can hold the service up: what one does not take in time is dropped for it, a whole line.
 """
 
-from __future__ import annotations
-
 import os
 import socket
 from ipaddress import ip_address

@@ -1,7 +1,5 @@
 """Read, learn, keep, publish: one loop that outlives the bus, the disk and its own death."""
 
-from __future__ import annotations
-
 import json
 import os
 import socket

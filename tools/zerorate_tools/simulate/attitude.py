@@ -1,7 +1,5 @@
 """Attitude as unit quaternions (w x y z), body to world, world z up."""
 
-from __future__ import annotations
-
 import numpy as np
 
 _STRIDE = 16

@@ -1,7 +1,5 @@
 """Extra channels: supply, load, humidity, or one that nobody records."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """A simulated device's description: TOML, YAML or a dict, checked before anything runs."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The simulated device: true world in, integer readings and the truth behind them out."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from os import PathLike

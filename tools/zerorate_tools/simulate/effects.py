@@ -3,8 +3,6 @@
 `dps` is per unit of the waveform. What each follows: reference tables in docs, effects.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

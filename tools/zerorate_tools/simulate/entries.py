@@ -1,7 +1,5 @@
 """What an entry of a description must be; each refusal names it and says what to write."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Mapping
 from typing import Any

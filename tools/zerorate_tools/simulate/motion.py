@@ -1,7 +1,5 @@
 """What the device does: rests, returns, turns away, is driven."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

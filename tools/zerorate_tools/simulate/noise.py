@@ -1,7 +1,5 @@
 """Noise by its colour: what no model can take away."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.signal import lfilter
 

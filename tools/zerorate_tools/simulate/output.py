@@ -1,7 +1,5 @@
 """Simulated recordings on disk, the truth in a file of its own."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable
 from contextlib import ExitStack

@@ -1,7 +1,5 @@
 """Paths over time: ramps, holds, exponentials and cycles, one after the other."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Random streams that do not disturb each other."""
 
-from __future__ import annotations
-
 import zlib
 
 import numpy as np

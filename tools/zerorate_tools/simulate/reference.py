@@ -1,7 +1,5 @@
 """Every entry of a description with its default, read off the code that takes it."""
 
-from __future__ import annotations
-
 import dataclasses
 import inspect
 import textwrap

@@ -1,7 +1,5 @@
 """The entries of a simulated device's description, with their units."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any

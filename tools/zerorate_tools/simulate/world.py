@@ -1,7 +1,5 @@
 """What truly happens around the sensor in one session, before any of it is measured."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any

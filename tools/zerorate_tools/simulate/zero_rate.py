@@ -1,7 +1,5 @@
 """The zero-rate output itself: polynomial over temperature, turn-on offset, noise by its colour."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from . import noise

@@ -1,7 +1,5 @@
 """The firmware on what a board or a Linux bus streams."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """The firmware over samples as they come, and what it says of itself."""
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Callable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """How to watch."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """What a person sees: a screen that renews itself, or lines where there is no terminal."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager

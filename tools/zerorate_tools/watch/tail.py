@@ -1,7 +1,5 @@
 """New rows of a CSV that somebody else is writing."""
 
-from __future__ import annotations
-
 import io
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """`watch`: follow a source until it is told to end."""
 
-from __future__ import annotations
-
 import re
 import time
 from collections.abc import Callable

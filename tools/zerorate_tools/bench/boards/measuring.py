@@ -1,7 +1,5 @@
 """All figures of `zerorate bench boards`."""
 
-from __future__ import annotations
-
 import tempfile
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Heap on an emulated Pico: what imports and objects keep, and the least that a program runs in."""
 
-from __future__ import annotations
-
 import ast
 import time
 

@@ -1,7 +1,5 @@
 """Frames through the firmware on an emulated Pico and on this host, and whether they end alike."""
 
-from __future__ import annotations
-
 from array import array
 from dataclasses import dataclass, field
 from importlib.resources import files

@@ -1,7 +1,5 @@
 """The figures of an emulated Pico as Markdown."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -4,8 +4,6 @@ python -m zerorate_tools.bench.boards.table [FIGURES] > docs/boards.md, where FI
 `zerorate bench --json FIGURES boards` wrote: its needs go to boards/needs.json first.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 from collections.abc import Mapping

@@ -1,7 +1,5 @@
 """Fleets of several sizes on one worker and on two, each over a folder of its own."""
 
-from __future__ import annotations
-
 import os
 import tempfile
 from collections.abc import Callable, Sequence

@@ -1,7 +1,5 @@
 """A million devices on paper, from what one machine's run measured."""
 
-from __future__ import annotations
-
 from ...fleet.batches import MOST_BYTES, MOST_DEVICES
 from ...fleet.cluster import MOST_WAITING
 

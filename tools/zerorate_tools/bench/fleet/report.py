@@ -1,7 +1,5 @@
 """The bench's figures as Markdown."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from ...fleet.fleet_in_words import WAYS, scenario_in_words

@@ -1,7 +1,5 @@
 """Simulated devices of one part: a common curve over temperature, and what is each one's own."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Every device of the tables: what is simulated, and the row that it counts for."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The figures that the loop must reach, each with its limit, its interval and whether it does."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass
 from functools import partial

@@ -4,8 +4,6 @@ What follows no block at rest (motion, lines, Earth's rotation) is shown here al
 rest are run as well, so that the quick devices of the other rows are known to stand for real files.
 """
 
-from __future__ import annotations
-
 import tempfile
 from collections.abc import Iterator
 from dataclasses import replace

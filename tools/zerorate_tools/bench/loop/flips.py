@@ -1,7 +1,5 @@
 """A part turned over: an effect of acceleration, or Earth's rotation?"""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ...loop.read.earth import EARTH_DPS

@@ -1,7 +1,5 @@
 """Pictures of the real recordings: what was measured, and what the models leave of it."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

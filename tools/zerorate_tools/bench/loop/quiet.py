@@ -1,7 +1,5 @@
 """Quiet real recordings as the noise of devices: block means, cut into sessions."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

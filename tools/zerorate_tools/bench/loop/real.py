@@ -1,7 +1,5 @@
 """The loop on real recordings: before, after, the floor, and a cubic over temperature beside."""
 
-from __future__ import annotations
-
 import tempfile
 from dataclasses import replace
 from pathlib import Path

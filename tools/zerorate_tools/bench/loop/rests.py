@@ -1,7 +1,5 @@
 """Rest at any rate and noise: how much of it is used, and how much of a turn is taken for it."""
 
-from __future__ import annotations
-
 import tempfile
 from itertools import product
 from pathlib import Path

@@ -1,7 +1,5 @@
 """One device looked at: simulated, closed, and judged by a session that no fit has seen."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 
 import numpy as np

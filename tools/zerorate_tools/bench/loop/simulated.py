@@ -5,8 +5,6 @@ noise's floor by what of it survives a refit of offset, T and T^2 (what those ta
 model).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 

@@ -5,8 +5,6 @@ between two steps about its own mean at rest: what was left out, at rest; the sa
 hand; and a further power-on that nobody has seen.
 """
 
-from __future__ import annotations
-
 import tempfile
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor

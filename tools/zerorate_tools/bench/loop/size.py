@@ -1,7 +1,5 @@
 """How long, and in how much memory, a large device is closed: four sessions of eight hours."""
 
-from __future__ import annotations
-
 import json
 import resource
 import subprocess

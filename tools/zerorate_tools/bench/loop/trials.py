@@ -1,7 +1,5 @@
 """The whole benchmark of the loop, which can be broken off and taken up again."""
 
-from __future__ import annotations
-
 import json
 import os
 import tempfile

@@ -1,7 +1,5 @@
 """How sure a share is."""
 
-from __future__ import annotations
-
 import math
 
 _Z95 = 1.959964

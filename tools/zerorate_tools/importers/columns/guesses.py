@@ -1,7 +1,5 @@
 """Units that the readings themselves tell, and the words that name one where they do not."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

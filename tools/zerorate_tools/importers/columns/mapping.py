@@ -1,7 +1,5 @@
 """`--map gx=gyro_x:rad/s` in words and in Python."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from ...recordings.recording import COLUMNS, TIME

@@ -1,7 +1,5 @@
 """What columns are usually called: `gyro_x`, `imu.gyro.x`, `AngVelX`, `GyroX [deg/s]`, `wx`."""
 
-from __future__ import annotations
-
 import os
 import re
 

@@ -1,7 +1,5 @@
 """Which columns of a table an import takes, in which units, decided once before the rows."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path

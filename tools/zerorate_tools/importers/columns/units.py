@@ -1,7 +1,5 @@
 """Physical units into those of a recording: dps, g, degC and seconds."""
 
-from __future__ import annotations
-
 import math
 import re
 

@@ -3,8 +3,6 @@
 Whatever a damaged file makes its parser do, it ends there: what comes back is rows, or one line.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import signal

@@ -1,7 +1,5 @@
 """Betaflight's blackbox (.bbl): gyro and acceleration as the flight controller logged them."""
 
-from __future__ import annotations
-
 import struct
 from collections.abc import Iterator
 from pathlib import Path

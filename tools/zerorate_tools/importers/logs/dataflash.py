@@ -1,7 +1,5 @@
 """ArduPilot DataFlash (.bin, .log): the IMU messages of one instance."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any

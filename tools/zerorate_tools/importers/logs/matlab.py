@@ -1,7 +1,5 @@
 """MATLAB .mat files as tables: an (n, k) variable `name` becomes columns name[0] ... name[k-1]."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """MCAP: messages of ROS 1, of ROS 2, or as JSON."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Iterator
 from pathlib import Path

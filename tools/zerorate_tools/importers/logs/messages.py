@@ -1,7 +1,5 @@
 """ROS messages of inertial sensors and thermometers as rows, named as PlotJuggler names them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any

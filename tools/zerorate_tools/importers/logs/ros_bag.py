@@ -1,7 +1,5 @@
 """ROS 1 bags (.bag) and ROS 2 bags: folders with metadata.yaml, or their .db3 alone."""
 
-from __future__ import annotations
-
 import sqlite3
 from collections.abc import Iterator
 from pathlib import Path

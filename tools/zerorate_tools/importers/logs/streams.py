@@ -1,7 +1,5 @@
 """Rows of several sensors, each at its own times, gathered into chunks of one table."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 
 import numpy as np

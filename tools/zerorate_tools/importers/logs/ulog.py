@@ -1,7 +1,5 @@
 """PX4 ULog: sensor_gyro with sensor_accel, or sensor_combined."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Readings of slower sensors, put at the times of the samples."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Time stamps as microseconds: counters that ran over, the rate, the gaps."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

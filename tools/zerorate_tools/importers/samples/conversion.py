@@ -1,7 +1,5 @@
 """From physical units to integers, piece by piece, every loss counted."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 

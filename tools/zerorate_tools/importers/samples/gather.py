@@ -1,7 +1,5 @@
 """All rows of a table, told apart into samples and readings of slower sensors, into a spool."""
 
-from __future__ import annotations
-
 from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path

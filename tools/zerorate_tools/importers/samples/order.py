@@ -1,7 +1,5 @@
 """Rows that do not come in order of time."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

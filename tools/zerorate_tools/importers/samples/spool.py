@@ -1,7 +1,5 @@
 """Rows set aside in a temporary file, so that no recording is ever whole in memory."""
 
-from __future__ import annotations
-
 import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """Lines as $NAME,...*HH, each with the XOR of what stands between $ and *."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable, Iterator
 from functools import reduce

@@ -1,7 +1,5 @@
 """Parquet of others, row group by row group."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Where a text's table begins, what parts its cells, and how its numbers are written."""
 
-from __future__ import annotations
-
 import csv
 import re
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """A file as named columns of numbers that come in chunks."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field

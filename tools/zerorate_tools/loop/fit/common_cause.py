@@ -1,7 +1,5 @@
 """Whether what is left of the three axes moves together: the mark of one cause, recorded or not."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.stats import chi2
 

@@ -1,7 +1,5 @@
 """The floor: the noise's own colour, estimated with everything found in the model."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ...allan import Noise

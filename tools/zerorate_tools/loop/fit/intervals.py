@@ -1,7 +1,5 @@
 """Confidence intervals of an RMS over autocorrelated blocks."""
 
-from __future__ import annotations
-
 import numpy as np
 
 

@@ -1,7 +1,5 @@
 """Does a candidate predict sessions that its fit did not see?"""
 
-from __future__ import annotations
-
 import numpy as np
 
 #: Of coefficients about zero, over their size in all sessions: wide, so that only what the other

@@ -3,8 +3,6 @@
 The variance is profiled out, the colour is the best of the grid, each axis has its own of both.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

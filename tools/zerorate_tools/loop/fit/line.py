@@ -5,8 +5,6 @@ The loop's effects are fitted by generalised least squares; what is learned on t
 before and after are both judged with an ordinary least-squares line on the rates less the effects.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import numpy as np

@@ -6,8 +6,6 @@ first difference D), white noise too; flicker is taken as the square root of the
 spectrum, a Whittle approximation.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -5,8 +5,6 @@ piece are left out, with a gap on either side. Weaker than whole power-ons: ther
 offset and one course of temperature, and a slow cause outlasts any gap.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

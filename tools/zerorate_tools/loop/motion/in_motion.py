@@ -1,7 +1,5 @@
 """What motion shows: scale factor and cross-axis, and readings that come late."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

@@ -5,8 +5,6 @@ gives normal equations of the matrix M, error = M rate, perhaps with nuisances o
 Runs are independent of one another, so their spread says how sure M is, whatever their noise is.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -5,8 +5,6 @@ from a scale factor, because rate and its change are uncorrelated; no bias follo
 said and not corrected.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -6,8 +6,6 @@ section III). The rate's bias is that of the rests on either side; the accelerom
 and scales are nuisances, since a low-cost one is off by as much as the gyroscope's scale.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from os import PathLike
 

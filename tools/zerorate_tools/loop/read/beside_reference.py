@@ -1,7 +1,5 @@
 """Runs of half a minute beside a given rate or attitude, from products summed a tick."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from .reference import Run

@@ -1,7 +1,5 @@
 """From ticks to the blocks that the loop fits."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from .dequantise import dequantise

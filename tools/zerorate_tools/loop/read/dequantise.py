@@ -5,8 +5,6 @@ take a rate of change for it, and what is then left of a warm-up looks like an e
 the same at each power-on.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.stats import norm
 

@@ -4,8 +4,6 @@ A gyroscope at rest reads 4.18 mdps along the axis of the Earth: with latitude a
 it is known, with latitude and the direction of gravity its vertical part, without a latitude none.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Data quality before any regression: what is refused, what is set aside, what is said."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from math import ceil, floor
 

@@ -5,8 +5,6 @@ false-alarm probabilities of a periodogram are wrong nine times in ten. It must 
 session. Its phase is free at each power-on, so it is said and not corrected.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Single blocks that stand out of their neighbours: held at the neighbours' median and counted."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.ndimage import median_filter
 

@@ -5,8 +5,6 @@ prefix before them, are the attitude, body to world (z up), each sample's own, i
 and all four 0, or without a value, where it was not seen.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

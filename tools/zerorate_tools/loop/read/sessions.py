@@ -2,8 +2,6 @@
 of everything else.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np

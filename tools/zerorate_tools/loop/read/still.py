@@ -1,7 +1,5 @@
 """Which ticks were still, judged without assuming a small bias."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.ndimage import (
     binary_dilation,

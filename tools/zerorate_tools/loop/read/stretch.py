@@ -1,7 +1,5 @@
 """The longest still stretch of a recording, and its Allan deviation."""
 
-from __future__ import annotations
-
 from os import PathLike
 
 import numpy as np

@@ -2,8 +2,6 @@
 and counted.
 """
 
-from __future__ import annotations
-
 import hashlib
 from dataclasses import dataclass, field, replace
 from os import PathLike

@@ -1,7 +1,5 @@
 """The turns of a recording, beside the best reference that it has."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from . import beside_gravity, beside_reference

@@ -1,7 +1,5 @@
 """The quick part of the rate: a spectrum of samples in short segments, kept while it is read."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from .lines import Spectrum

@@ -1,7 +1,5 @@
 """A report in a few lines for a terminal."""
 
-from __future__ import annotations
-
 from ...signs import fixed
 
 

@@ -1,7 +1,5 @@
 """Effects not fitted on blocks, in the form of the report: of motion, and periodic ones."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..motion.rate_scale import RateScale

@@ -1,7 +1,5 @@
 """report.json, as design.md has it, with what a person needs beside it."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..fit.intervals import block_bootstrap, rms

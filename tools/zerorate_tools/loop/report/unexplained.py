@@ -1,7 +1,5 @@
 """What is known of what remains, and what to record next."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ...model import effects

@@ -6,8 +6,6 @@ decides is how well pieces of the recording are predicted from the others. Such 
 than tentative.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Protocol

@@ -6,8 +6,6 @@ lags behind its thermometer however the noise walks. Both are taken where they p
 left out clearly better, by the firmware's own kernels.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """What the bias of these sessions can follow: the rows of model/effects.py, each in its places."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from itertools import product
 

@@ -1,7 +1,5 @@
 """Whether an effect is all but the same as those found already."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What competes with a found effect within the noise, and which of the tied ones to name."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

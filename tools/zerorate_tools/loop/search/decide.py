@@ -1,7 +1,5 @@
 """When a candidate counts as found: several locks, each of which must open."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The smallest effect of each kind that these sessions could have shown."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.stats import norm
 

@@ -7,8 +7,6 @@ power-on. Both chances are taken together (R. A. Fisher, Statistical Methods for
 4th edition 1932, paragraph 21.1).
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.optimize import brentq
 from scipy.stats import chi2, f

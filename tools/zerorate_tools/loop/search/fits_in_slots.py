@@ -1,7 +1,5 @@
 """Whether the firmware has room for what was found."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

@@ -7,8 +7,6 @@ or the power-ons left out in turn. That is what keeps it small: a form with more
 predict better, and its place on the board is limited.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from itertools import combinations
 from math import comb

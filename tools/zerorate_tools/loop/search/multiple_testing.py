@@ -1,7 +1,5 @@
 """What a candidate must reach: each pays for all that are tried beside it."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.stats import chi2
 

@@ -1,7 +1,5 @@
 """The name of every effect found, and of what ties with it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -5,8 +5,6 @@ columns that all but cancel may then be huge and opposite. What counts in the en
 itself, with the line over temperature as the board learns it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Lines of all sessions together: slow ones from ticks, quick ones from samples."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ...model.term import evaluate

@@ -1,7 +1,5 @@
 """The parameters of a candidate between the points of its grid."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Find an effect, add it, look again: until nothing passes."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cached_property
 

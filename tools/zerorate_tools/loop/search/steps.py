@@ -5,8 +5,6 @@ session are looked at together at the colour that fits best, one step after the 
 stand beside all others.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np

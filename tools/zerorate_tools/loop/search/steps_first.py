@@ -5,8 +5,6 @@ beside what the sensor's own channels do where those jump often. Where another r
 does, a jump of the bias may be its doing, and late: the search then lets both compete.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

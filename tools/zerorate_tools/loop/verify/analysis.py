@@ -1,7 +1,5 @@
 """What was fitted on what, what was found, and how sure it is."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np

@@ -4,8 +4,6 @@ The firmware's learned curve bends already. What an effect is worth is therefore
 on a straight line, but what it gains on a firmware that has learned the other pieces without it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import partial
 

@@ -1,7 +1,5 @@
 """corrected.parquet: what the firmware's kernels subtract from every sample, before and after."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """An analysis without the effects that the firmware's integers cannot hold."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from ...model import CannotDeploy

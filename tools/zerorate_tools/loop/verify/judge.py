@@ -1,7 +1,5 @@
 """The held-out session, looked at once: before and after, and how sure each effect is."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """From an analysis to what the firmware's kernels make of it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from os import PathLike

@@ -6,8 +6,6 @@ over the held-out part once more learning as it goes. Of one recording alone eve
 a firmware that has learned the others.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """A session as the firmware meets it: frames, their ticks and blocks, and its turn-on offset."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from os import PathLike

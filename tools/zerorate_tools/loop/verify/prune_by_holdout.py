@@ -7,8 +7,6 @@ time alone must come again: time passes in every power-on, where another cause m
 on no axis may the error grow: there the effect is left out, whatever the likelihood says.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """How far the model's integers are from its numbers."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ...model import Model

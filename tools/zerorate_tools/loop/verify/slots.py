@@ -1,7 +1,5 @@
 """The found effects as slots of a model that the firmware runs."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ...model import Model, Slot, build_model
