@@ -32,7 +32,7 @@ except ImportError:  # Python 3.10
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 SURVIVORS_AND_WHY = Path(__file__).with_name("mutants.toml")
-NOT_IN_PROCESS = "not micropython and not heap and not runtime and not last_byte"
+NOT_IN_PROCESS = "not micropython and not heap and not runtime and not last_byte and not any_slot"
 # What no board and no test can tell apart: annotations, and constants that `make layout` writes.
 _SAME = re.compile(r"^\s*(def |from |import |#)|^\s+\w+: .*[,=]$|^    \) ->|TYPE_CHECKING|^@")
 _LAYOUT = re.compile(r"^# layout: .*?^# layout: end", re.MULTILINE | re.DOTALL)

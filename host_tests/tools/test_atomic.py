@@ -11,9 +11,15 @@ import pytest
 from zerorate_tools import closing
 from zerorate_tools.errors import InFile
 from zerorate_tools.recordings import write_recording
-from zerorate_tools.recordings.atomic import written_beside, written_together
+from zerorate_tools.recordings.atomic import (
+    all_written_together,
+    written_beside,
+    written_together,
+)
+from zerorate_tools.simulate import simulate_to_files
 
 from .test_recordings import a_recording
+from .test_simulate import device
 
 
 def full(*arguments, **options):
@@ -52,6 +58,28 @@ def test_a_folder_is_replaced_when_all_its_files_are_there(old):
         assert set(contents(old).values()) == {"old", "new"}
     assert contents(old) == dict.fromkeys(("model.json", "plots/a.png", "report.html"), "new")
     assert sorted(p.name for p in old.iterdir()) == ["model.json", "plots", "report.html"]
+
+
+@pytest.mark.parametrize("blocked", ["out/run.csv", "truth/t.parquet"])
+def test_a_simulation_is_written_to_both_of_its_folders_or_to_none(tmp_path, blocked):
+    (tmp_path / blocked).mkdir(parents=True)
+    places = tmp_path / "out" / "run.csv", tmp_path / "truth" / "t.parquet"
+    for place in places:
+        place.parent.mkdir(exist_ok=True)
+    with pytest.raises(InFile, match=f"{blocked}: cannot be written: Is a directory"):
+        simulate_to_files(device(0.1), places[0], truth=places[1])
+    assert not contents(tmp_path)
+    (tmp_path / blocked).rmdir()
+    simulate_to_files(device(0.1), places[0], truth=places[1])
+    found = {"out/run.csv", "out/run.json", "truth/t.parquet"}
+    assert {str(p.relative_to(tmp_path)) for p in tmp_path.rglob("*.*")} == found
+
+
+def test_two_folders_may_be_one(old):
+    with all_written_together([old, old / ".." / "out"]) as drafts:
+        (drafts[0] / "model.json").write_text("new")
+        (drafts[1] / "x").write_text("new")
+    assert contents(old) == {"model.json": "new", "report.html": "old", "x": "new"}
 
 
 def test_a_disk_that_fills_leaves_the_folder_as_it_was_and_names_it(old):

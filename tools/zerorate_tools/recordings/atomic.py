@@ -7,8 +7,8 @@ import re
 import shutil
 import signal
 import zlib
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Iterable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from ..errors import InFile
@@ -63,7 +63,22 @@ def written_together(folder: str | os.PathLike[str]) -> Iterator[Path]:
 
     The folder is made where it is not there. Raises InFile if it cannot be written.
     """
-    folder = Path(folder)
+    with all_written_together([folder]) as drafts:
+        yield drafts[0]
+
+
+@contextmanager
+def all_written_together(folders: Iterable[str | os.PathLike[str]]) -> Iterator[list[Path]]:
+    """Yield a draft of each folder; the files of all go to their places, or none does."""
+    with ExitStack() as stack:
+        drafts = {stack.enter_context(_draft(Path(folder))): Path(folder) for folder in folders}
+        yield list(drafts)
+        with _undisturbed():
+            _take_places(drafts)
+
+
+@contextmanager
+def _draft(folder: Path) -> Iterator[Path]:
     was_there = folder.is_dir()
     draft = folder / _mark()
     try:
@@ -77,8 +92,6 @@ def written_together(folder: str | os.PathLike[str]) -> Iterator[Path]:
         raise _cannot_be_written(folder, error, do) from error
     try:
         yield draft
-        with _undisturbed():
-            _take_places(draft, folder)
     except OSError as error:
         if error.errno not in _FULL:
             raise
@@ -116,25 +129,27 @@ def _drop(path: Path) -> None:
     _under_way.discard(path)
 
 
-def _take_places(draft: Path, folder: Path) -> None:
-    """Rename each file of the draft; where one cannot be, those before it come back."""
-    old = draft / "old"
+def _take_places(drafts: dict[Path, Path]) -> None:
+    """Rename each file of each draft; where one cannot be, those before it come back."""
+    places = {  # by resolved names, as two folders may be one
+        path.resolve(): (folder / path.relative_to(draft), draft / f"old-{number}")
+        for draft, folder in drafts.items()
+        for number, path in enumerate(sorted(p for p in draft.rglob("*") if p.is_file()))
+    }
     done: list[tuple[Path, Path]] = []
-    try:
-        for number, path in enumerate(sorted(p for p in draft.rglob("*") if p.is_file())):
-            place, kept = folder / path.relative_to(draft), old / str(number)
+    for path, (place, kept) in places.items():
+        try:
             place.parent.mkdir(parents=True, exist_ok=True)
             if place.is_dir():
                 raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(place))
             if place.exists():
-                old.mkdir(exist_ok=True)
                 os.replace(place, kept)
             done.append((place, kept))
             os.replace(path, place)
-    except OSError as error:
-        for place, kept in reversed(done):
-            os.replace(kept, place) if kept.exists() else place.unlink(missing_ok=True)
-        raise _cannot_be_written(folder, error, "all is as it was") from error
+        except OSError as error:
+            for taken, before in reversed(done):
+                os.replace(before, taken) if before.exists() else taken.unlink(missing_ok=True)
+            raise _cannot_be_written(place, error, "all is as it was") from error
 
 
 @contextmanager

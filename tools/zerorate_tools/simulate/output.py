@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Callable
-from contextlib import ExitStack
 from os import PathLike
 from pathlib import Path
 
@@ -11,7 +10,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from ..recordings import check_output, write_recording
-from ..recordings.atomic import written_beside, written_together
+from ..recordings.atomic import all_written_together, written_beside
 from .description import load_description
 from .device import Truth, simulate, simulate_sessions
 from .schema import Description, Table
@@ -31,8 +30,8 @@ def simulate_to_files(
     """Write the recording of each session, or of one; return the files' names.
 
     Several sessions become out-1.parquet, out-2.parquet, ...; the truth is only written where
-    `truth` names a Parquet file for it, numbered likewise. All files of a folder take their places
-    together at the end, or none does. done(1) is called after each session.
+    `truth` names a Parquet file for it, numbered likewise. All files take their places together
+    at the end, or none does. done(1) is called after each session.
     Raises BadDescription, InFile.
     """
     described = load_description(description)
@@ -43,12 +42,10 @@ def simulate_to_files(
     else:
         made = iter([simulate(described, session=session, seed=seed)])
     files = []
-    with ExitStack() as drafts:
-        places = [Path(path) for path in (out, truth) if path is not None]
-        draft_of = {
-            folder: drafts.enter_context(written_together(folder))
-            for folder in dict.fromkeys(path.parent for path in places)
-        }
+    places = [Path(path) for path in (out, truth) if path is not None]
+    folders = list(dict.fromkeys(path.parent for path in places))
+    with all_written_together(folders) as drafts:
+        draft_of = dict(zip(folders, drafts))
         for number, (recording, behind) in enumerate(made, start=1):
             names = [_numbered(path, number) if many else path for path in places]
             files.append(names[0])
