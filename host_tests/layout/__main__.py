@@ -1,4 +1,4 @@
-"""`make layout`: the constants of layout.py where they are used, docs/layout.md and settings.md."""
+"""`make layout`: the layout's constants where they are used, docs/layout.md and settings.md."""
 
 from pathlib import Path
 

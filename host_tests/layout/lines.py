@@ -1,4 +1,4 @@
-"""The constants of layout.py as lines in the files that a board runs, each those that it uses."""
+"""The constants of layout as lines in the files that a board runs, each those that it uses."""
 
 import io
 import re

@@ -1,4 +1,4 @@
-"""docs/layout.md: every word of every array, made from firmware/zerorate/layout.py."""
+"""docs/layout.md: every word of every array, made from firmware/zerorate/layout."""
 
 import ast
 from pathlib import Path
@@ -7,7 +7,7 @@ from zerorate import layout
 
 _HEAD = """# The words of the firmware's arrays
 
-Made from `firmware/zerorate/layout.py` by `make layout`; edit that file. A kernel writes a word as
+Made from `firmware/zerorate/layout` by `make layout`; edit it there. A kernel writes a word as
 its letter and its name: `s[_REST]`, `s[a + _OFFSET_Q8]`, `c[_WINDOW]`. A number behind `_Q` is how
 many bits stand for the fraction: 256 in a word of `_Q8` is 1. A real is two words, mantissa and
 exponent of 2; a packed one is one word. Words that take the place of others have a line that says
@@ -18,7 +18,7 @@ that use it otherwise.
 
 def page():
     """Return the page's text."""
-    parts, uses = [_HEAD], used_in(Path(layout.__file__).parent)
+    parts, uses = [_HEAD], used_in(Path(layout.__file__).parents[1])
     for array in layout.ARRAYS:
         parts.append(f"## {array.title}\n\n`{array.letter}`: {array.base}{size_of(array)}.\n")
         parts.append(table([word for word in array.words if not word.while_text], uses))
@@ -58,7 +58,7 @@ def used_in(firmware):
     """Return name -> the files that write it into an array, those that use it otherwise."""
     found = {}
     for path in sorted(firmware.rglob("*.py")):
-        if path.parent.name == "native" or path.name == "layout.py":
+        if path.parent.name in ("native", "layout"):
             continue
         tree = ast.parse(path.read_text(encoding="utf-8"))
         written = [n for n in ast.walk(tree) if is_written(n)]

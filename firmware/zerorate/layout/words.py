@@ -1,0 +1,72 @@
+"""What a word, an array and a list of codes are."""
+
+
+class Word:
+    """One name of an array: its index, how many words it has (text where settings say), and why."""
+
+    def __init__(self, name, index, count, unit, meaning, while_text=""):
+        self.name = name
+        self.index = index
+        self.count = count
+        self.unit = unit
+        self.meaning = meaning
+        self.while_text = while_text
+
+
+class Overlay:
+    """Words in the place of others, from the word `at` on, `while_text`: when they are theirs."""
+
+    def __init__(self, at, while_text, *lines):
+        self.at = at
+        self.while_text = while_text
+        self.lines = lines
+
+
+class Array:
+    """The words of an array or of a block in it. `array.NAME` is that word's index.
+
+    letter: the kernels' name for the array or for the block's first word; base: where it begins.
+    size_name: the constant that says how many words it has. Raises AttributeError for no word.
+    """
+
+    def __init__(self, title, letter, base, size_name, lines, overlays=(), first=0):
+        self.title = title
+        self.letter = letter
+        self.base = base
+        self.size_name = size_name
+        self.words = self._placed(lines, first, "")
+        last = self.words[-1]
+        self.size = 0 if isinstance(last.count, str) else last.index + last.count
+        for overlay in overlays:
+            at = getattr(self, overlay.at)
+            self.words = self.words + self._placed(overlay.lines, at, overlay.while_text)
+
+    def _placed(self, lines, index, while_text):
+        words = []
+        for name, count, unit, meaning in lines:
+            words.append(Word(name, index, count, unit, meaning, while_text))
+            index += 0 if isinstance(count, str) else count
+        return words
+
+    def __getattr__(self, name):
+        for word in self.words:
+            if word.name == name:
+                return word.index
+        raise AttributeError(name)
+
+
+class Codes:
+    """Numbers that stand for something. `codes.NAME` is the number.
+
+    owner: the file in which applications find them by name, "" where they are the kernels' own.
+    """
+
+    def __init__(self, title, owner, **numbers):
+        self.title = title
+        self.owner = owner
+        self.numbers = numbers
+
+    def __getattr__(self, name):
+        if name in self.numbers:
+            return self.numbers[name]
+        raise AttributeError(name)
