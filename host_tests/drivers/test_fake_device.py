@@ -151,6 +151,8 @@ def test_a_recording_may_be_an_iterable_frames_or_an_array(source):
         (bytes(15), "a source of 15 bytes is no whole number of samples of 14"),
         ([[1, 2, 3]], "sample 0 of the source is .1, 2, 3., not seven integers"),
         ([[0.5] * 7], "for dps and g use Physical"),
+        ([[0] * 6 + [32768]], "seven integers of 16 bits"),
+        (5, "the source is 5, not samples"),
     ],
 )
 def test_a_source_of_another_shape_is_refused_in_a_sentence(source, sentence):

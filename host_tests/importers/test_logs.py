@@ -158,3 +158,9 @@ def test_a_blackbox_gives_dps_by_its_own_scale(tmp_path):
     assert recording.accel_g()[0].tolist() == [0, 0, 1]
     assert len(recording) >= 98
     assert told(report, "takes its bias at rest away before it logs")
+
+
+def test_what_is_called_bbl_and_is_none_says_so(tmp_path):
+    (tmp_path / "in.bbl").write_bytes(bytes(range(256)) * 9)
+    with pytest.raises(BadRecording, match="no blackbox log, or damaged; copy the file again"):
+        read_foreign(tmp_path / "in.bbl")

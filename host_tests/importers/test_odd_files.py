@@ -207,13 +207,12 @@ def test_a_header_in_a_comment_and_columns_by_number(tmp_path):
         "xgyro ygyro zgyro",
     ],
 )
-def test_usual_names_are_offered_as_a_mapping_that_works(tmp_path, names):
+def test_usual_names_need_but_a_unit_and_the_words_for_it_work(tmp_path, names):
     frame = table()[["t_s", *(f"g{a}_dps" for a in "xyz")]]
     frame.columns = ["t_s", *names.split()]
-    with pytest.raises(BadRecording, match="not known; write --map gx=") as error:
+    with pytest.raises(BadRecording, match="not known; give --gyro-unit dps [(]or"):
         read(tmp_path, frame)
-    words = str(error.value).partition("; write ")[2].partition(" (or")[0].replace("--map ", "")
-    recording, _ = read(tmp_path, frame, mapping=words)
+    recording, _ = read(tmp_path, frame, units={"gyro": "dps"})
     assert recording.gyro_dps().mean() == pytest.approx(0.8, abs=0.02)
 
 
@@ -262,7 +261,7 @@ def test_degrees_declared_as_radians_are_refused_with_the_right_words(tmp_path):
         frame[f"g{axis}_dps"] += 60.0 * np.sin(np.arange(2000) / 50)
     frame.columns = ["t_s", "p", "q", "r", *frame.columns[4:]]
     words = "gx=p:rad/s gy=q:rad/s gz=r:rad/s"
-    with pytest.raises(BadRecording, match="did you mean dps[?]; --map gx=p:dps") as error:
+    with pytest.raises(BadRecording, match="did you mean dps[?] Give --map gx=p:dps") as error:
         read(tmp_path, frame, mapping=words)
     assert "34" in str(error.value)  # more than 3400 dps
     mended = words.replace("rad/s", "dps")
@@ -272,19 +271,42 @@ def test_degrees_declared_as_radians_are_refused_with_the_right_words(tmp_path):
 @pytest.mark.parametrize(
     ("words", "doubt"),
     [
-        ("gx=gx_dps:rad/s gy=gy_dps:rad/s gz=gz_dps:rad/s", "a steady rate of 45.*mean dps"),
+        ("gx=gx_dps:rad/s gy=gy_dps:rad/s gz=gz_dps:rad/s", "a steady rate of 4[56].*mean dps"),
         ("gx=gx_dps:mdps gy=gy_dps:mdps gz=gz_dps:mdps", None),
         ("ax=ax_g:m/s2 ay=ay_g:m/s2 az=az_g:m/s2", "usual acceleration is 0.102 g.*mean g[?]"),
-        ("temp=temp_c:k", "usual temperature is -24"),
+        ("temp=temp_c:k", "usual temperature is -24.*--map temp=temp_c:k"),
+        ("temp=zero:degc", "temperature is 0 throughout.*--map temp=none"),
     ],
 )
 def test_a_unit_that_cannot_be_is_doubted(tmp_path, words, doubt):
-    _, report = read(tmp_path, table(), mapping=words)
+    _, report = read(tmp_path, table().assign(zero=0), mapping=words)
     if doubt is None:
         assert report.doubts == []
     else:
         [said] = report.doubts
         assert re.search(doubt, said)
+
+
+def test_a_rest_in_degrees_declared_as_radians_is_doubted(tmp_path):
+    frame = table().rename(columns={f"g{a}_dps": f"gyro_{a}" for a in "xyz"})
+    frame[[f"gyro_{a}" for a in "xyz"]] -= 0.7
+    _, report = read(tmp_path, frame, units={"gyro": "rad/s"})
+    [said] = report.doubts
+    assert re.search("noise of 2.9 dps is more .* did you mean dps[?] [(]--gyro-unit dps[)]", said)
+    assert read(tmp_path, frame, units={"gyro": "dps"})[1].doubts == []
+
+
+def test_raw_counts_are_asked_for_units_and_then_scales_in_one_go_each(tmp_path):
+    frame = (16384 * table()[["t_s", *"gx_dps gy_dps gz_dps ax_g ay_g az_g".split()]]).round()
+    frame.columns = ["t_us", "gx", "gy", "gz", "ax", "ay", "az"]
+    frame["temp"] = -3400
+    give = "--gyro-unit lsb .*--accel-unit lsb .*--temp-unit lsb "
+    with pytest.raises(BadRecording, match=give):
+        read(tmp_path, frame)
+    units = dict.fromkeys(("gyro", "accel", "temp"), "lsb")
+    give = "--gyro-lsb-per-dps 131 --accel-lsb-per-g 16384 --temp-lsb-per-degc 340 --temp-offset"
+    with pytest.raises(BadRecording, match=give):
+        read(tmp_path, frame, units=units)
 
 
 def test_radians_declared_as_degrees_are_doubted(tmp_path):

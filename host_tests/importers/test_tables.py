@@ -84,12 +84,12 @@ def test_tabs_and_semicolons_are_seen(tmp_path):
 def test_raw_counts_stay_as_they_are_and_need_their_scale(tmp_path):
     source = table(tmp_path / "in.csv", gx=[7, -9], gy=[1, 1], gz=[0, 3])
     with pytest.raises(
-        BadRecording, match="units of columns 'gx', 'gy', 'gz' are not.*--map gx=gx:dps"
+        BadRecording, match="units of columns 'gx', 'gy', 'gz' are not.*--gyro-unit dps"
     ):
         read_foreign(source)
     with pytest.raises(BadRecording, match="unit of column 'gx' cannot be 'knots'"):
         read_foreign(source, units={"gyro": "knots"})
-    with pytest.raises(BadRecording, match="scale of raw counts.*give --gyro-lsb-per-dps"):
+    with pytest.raises(BadRecording, match="scale of raw counts.*give --gyro-lsb-per-dps 131 "):
         read_foreign(source, units={"gyro": "lsb"}, options=Options(hz=100))
     scaled = Options(hz=100, gyro_lsb_per_dps=16.4)
     recording, _ = read_foreign(source, units={"gyro": "lsb"}, options=scaled)

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     Three = Sequence[float]
     Source = Iterable[Sequence[int]] | Sequence[int] | bytes | bytearray | memoryview
 
-_WORDS = "seven integers: ax ay az temp gx gy gz, raw LSB"
+_WORDS = "seven integers of 16 bits: ax ay az temp gx gy gz, raw LSB"
 # density of the MPU-6050's noise by its data sheet (PS-MPU-6000A-00 rev 3.4, section 6)
 _GYRO_NOISE_DPS = 0.005
 _ACCEL_NOISE_G = 0.0004
@@ -79,7 +79,11 @@ def samples_of(source: "Source | None") -> "Iterator[Sequence[int]]":
     if _is_flat(source):
         _require_whole(len(source), 7, "integers")  # type: ignore[arg-type]
         return _checked(_flat(source))  # type: ignore[arg-type]
-    return _checked(source)  # type: ignore[arg-type]
+    try:
+        rows = iter(source)
+    except TypeError:
+        raise ValueError(f"the source is {source!r}, not samples, each of {_WORDS}") from None
+    return _checked(rows)  # type: ignore[arg-type]
 
 
 def _is_flat(source: "Any") -> bool:
@@ -104,7 +108,8 @@ def _checked(rows: "Iterable[Sequence[int]]") -> "Iterator[Sequence[int]]":
     number = 0
     for row in rows:
         try:
-            right = len(row) == 7 and (number or all([int(word) == word for word in row]))
+            right = len(row) == 7 and -32768 <= min(row) and max(row) <= 32767
+            right = right and (number or all([int(word) == word for word in row]))
         except (TypeError, ValueError):
             right = False
         if not right:

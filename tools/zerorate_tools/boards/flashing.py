@@ -92,7 +92,7 @@ def _told(port: str, parts, extra, say) -> Flashed:
         with connected(port) as board:
             facts = ask(board)
     except BoardError as error:
-        say(f"{error}; what any board would get:")
+        say(f"{error}\nWhat any board would get:")
         facts = BoardFacts()
     contents = {**_packages(parts, facts, machine_code(facts)), **extra}
     say(f"{facts}")

@@ -35,7 +35,8 @@ def read_scales(path: Path, column_names: list[str]) -> Scales:
         with open(beside, "rb") as file:
             return scales_from_text(file.read(MOST_BYTES + 1), beside, column_names)
     except FileNotFoundError as error:
-        do = f"write there, with your sensor's for an MPU-6050's: {example_for(column_names)}"
+        example = example_for(column_names)
+        do = f"write there, with your sensor's numbers for these of an MPU-6050: {example}"
         problem = f"what one LSB means is not told: there is no {beside.name} beside it"
         raise BadRecording(path, problem, do=do) from error
 

@@ -12,7 +12,7 @@ _ALWAYS = ("odr_hz", "gyro_lsb_per_dps")
 _ACCEL = ("accel_lsb_per_g",)
 _TEMP = ("temp_lsb_per_degc", "temp_offset_degc")
 #: An MPU-6050 at +-250 dps and +-2 g, to show the form by.
-_EXAMPLE = {
+EXAMPLE = {
     "sensor": "MPU-6050",
     "odr_hz": 100,
     "gyro_lsb_per_dps": 131,
@@ -118,14 +118,14 @@ def check_whole(
     if not isinstance(values.get("sensor", ""), str):
         lacking.insert(0, "sensor")
     if lacking:
-        example = json.dumps({key: _EXAMPLE[key] for key in lacking})[1:-1]
+        example = json.dumps({key: EXAMPLE[key] for key in lacking})[1:-1]
         do = f"add {example} (an MPU-6050's; put your sensor's)"
         raise BadRecording(path, f"the scales lack {', '.join(lacking)}", do=do)
 
 
 def example_for(column_names: Collection[str]) -> str:
     """JSON text of scales that columns of these names need, with an MPU-6050's values."""
-    return json.dumps({key: _EXAMPLE[key] for key in _needed(column_names)})
+    return json.dumps({key: EXAMPLE[key] for key in _needed(column_names)})
 
 
 def _needed(column_names: Collection[str]) -> list[str]:

@@ -48,12 +48,19 @@ def ready_words(target: str, wanted: Mapping[str, Mapped], first: Mapping[str, n
     """What to type for a unit that nothing tells."""
     if target == TIME:
         return _time_words(first[wanted[target].column], wanted[target].column)
-    axes = {**dict.fromkeys(GYRO, GYRO), **dict.fromkeys(ACCEL, ACCEL)}.get(target, (target,))
     unit = _likely(target, wanted, first)
-    words = " ".join(f"--map {t}={wanted[t].column}:{unit}" for t in axes if t in wanted)
     others = ", ".join(u for u in (*factors_of(target), "lsb") if u != unit and u != "c")
     left_out = ", or leave it out: --map temp=none" if target == TEMP else ""
-    return f"write {words} (or with {others}){left_out}"
+    return f"{unit_words(wanted, target, unit)} (or {others}){left_out}"
+
+
+def unit_words(wanted: Mapping[str, Mapped], target: str, unit: str) -> str:
+    """What to type so that a column and its fellows on other axes are taken in `unit`."""
+    axes = next((axes for axes in (GYRO, ACCEL) if target in axes), (target,))
+    fellows = [wanted[axis] for axis in axes if axis in wanted]
+    if any(one.unit or unit_in_name(one.target, one.column) for one in fellows):
+        return " ".join(f"--map {one.target}={one.column}:{unit}" for one in fellows)
+    return f"--{kind_of(target)}-unit {unit}"
 
 
 def _by_habit(target: str, column: str, names: list[str]) -> tuple[str, str] | None:
@@ -102,7 +109,8 @@ def _by_gravity(
 
 def _likely(target: str, wanted: Mapping[str, Mapped], first: Mapping[str, np.ndarray]) -> str:
     if target == TEMP:
-        return "degc"
+        values = first[wanted[TEMP].column]
+        return "lsb" if (values[np.isfinite(values)] % 1 == 0).all() else "degc"
     if not all(axis in wanted for axis in ACCEL):
         return "dps" if target in GYRO else "m/s2"
     unit = wanted["ax"].unit or unit_in_name("ax", wanted["ax"].column)
@@ -119,4 +127,4 @@ def _time_words(values: np.ndarray, column: str) -> str:
     rates = {unit: 1.0 / (step * seconds) for unit, seconds in TIME_S.items()} if step else {}
     likely = {u: hz for u, hz in rates.items() if _LIKELY_HZ[0] <= hz <= _LIKELY_HZ[1]}
     would = " or ".join(f"{unit} ({hz:.4g} Hz)" for unit, hz in likely.items())
-    return f"give --time-unit {would or 'with one of ' + ', '.join(TIME_S)}"
+    return f"--time-unit {would or 'with one of ' + ', '.join(TIME_S)}"

@@ -85,7 +85,7 @@ def planned(
         what = "unit of column" if len(unknown) == 1 else "units of columns"
         columns = ", ".join(repr(column) for column in unknown)
         problem = f"the {what} {columns} {'is' if len(unknown) == 1 else 'are'} not known"
-        raise BadRecording(path, problem, do="; ".join(dict.fromkeys(unknown.values())))
+        raise BadRecording(path, problem, do="give " + ", ".join(dict.fromkeys(unknown.values())))
     plan.raw = frozenset(raw)
     return plan
 

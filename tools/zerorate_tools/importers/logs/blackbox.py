@@ -21,6 +21,8 @@ def read(path: Path, instance: int = 0) -> Table:
 
     parser = Parser.load(str(path), instance + 1)
     names = list(parser.field_names)
+    if not names:
+        raise BadRecording(path, "no blackbox log, or damaged", do="copy the file again")
     gyro, accel = _named(names, _RATES), _named(names, _FORCES)
     if gyro is None or "time" not in names:
         do = "log GYRO in the blackbox settings, or try --instance"

@@ -10,6 +10,7 @@ from ...errors import BadRecording
 from ...recordings import Scales
 from ...recordings.checks import GAP
 from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP
+from ...recordings.scales import EXAMPLE
 from ..columns.plan import Plan
 from ..columns.units import kind_of
 from ..report import Options, Report
@@ -27,6 +28,11 @@ _TEMP_LSB, _TEMP_OFFSET = 100.0, 0.0
 #: Different readings that tell a part's scale, and what their printed digits may take from it.
 _DISTINCT, _OFF_GRID = 4, 0.05
 _RAIL = 32767
+_SCALES_OF = {
+    "gyro": ("gyro_lsb_per_dps",),
+    "accel": ("accel_lsb_per_g",),
+    "temp": ("temp_lsb_per_degc", "temp_offset_degc"),
+}
 #: Rows that come more slowly are means over the time between them: no such sensor is that slow.
 MEANS_FROM_US = 1.5e6
 _LOOKED_AT = 64
@@ -41,21 +47,23 @@ def fitting_scales(
         given = getattr(options, key)
         return given if given is not None else table.lsb.get(key)
 
+    keys = [k for kind, of in _SCALES_OF.items() if kind in plan.raw for k in of if pick(k) is None]
+    if keys:
+        words = " ".join(f"--{key.replace('_', '-')} {EXAMPLE[key]}" for key in keys)
+        do = f"give {words} (an MPU-6050's at +-250 dps and +-2 g; put your sensor's)"
+        raise BadRecording(path, "the scale of raw counts is not known", do=do)
     means = found.interval_us >= MEANS_FROM_US and "gyro" not in plan.raw
     gyro = pick("gyro_lsb_per_dps")
     if gyro is None:
         ranges = (*(_FINE if means else ()), *_GYRO_RANGES)
-        gyro = _fitting("gyro", "dps", ranges, found, plan, path, notes)
+        gyro = _fitting("gyro", "dps", ranges, found, notes)
     accel = temp = offset = None
     if "ax" in plan.wanted:
         accel = pick("accel_lsb_per_g")
         if accel is None:
-            accel = _fitting("accel", "g", _ACCEL_RANGES, found, plan, path, notes)
+            accel = _fitting("accel", "g", _ACCEL_RANGES, found, notes)
     if TEMP in plan.wanted:
         temp, offset = pick("temp_lsb_per_degc"), pick("temp_offset_degc")
-        if "temp" in plan.raw and (temp is None or offset is None):
-            do = "give --temp-lsb-per-degc and --temp-offset-degc"
-            raise BadRecording(path, "the scale of raw temperature is not known", do=do)
         if temp is None and offset is None:
             temp, offset = _temperature_scale(found, notes)
         temp = _TEMP_LSB if temp is None else temp
@@ -76,11 +84,7 @@ def fitting_scales(
     )
 
 
-def _fitting(kind, unit, ranges, found: Gathered, plan: Plan, path: Path, notes) -> float:
-    if kind in plan.raw:
-        option = "--gyro-lsb-per-dps" if kind == "gyro" else "--accel-lsb-per-g"
-        problem = f"the scale of raw counts ({unit}) is not known"
-        raise BadRecording(path, problem, do=f"give {option}")
+def _fitting(kind, unit, ranges, found: Gathered, notes) -> float:
     largest = found.largest[kind]
     lsb = next((lsb for lsb in ranges if largest * lsb < _RAIL), ranges[-1])
     ends = round(32768 / lsb, -1 if kind == "gyro" else 0)

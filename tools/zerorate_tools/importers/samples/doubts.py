@@ -10,6 +10,7 @@ import numpy as np
 
 from ...errors import BadRecording
 from ...recordings.recording import ACCEL, GYRO, TEMP
+from ..columns.guesses import unit_words
 from ..columns.plan import Plan
 from .clock import duration
 
@@ -24,8 +25,10 @@ _GRAVITY_WITHIN = 0.2
 #: Nothing with mass warms or cools faster than that.
 _FASTEST_DEGC_S, _LEAST_DEGC = 1.0, 3.0
 _TRUE_DEGC = (-60.0, 130.0)
-#: White noise that no such sensor is below, dps per square root of Hz.
-_QUIETEST = 2e-4
+#: White noise that no such sensor is below, and none above, dps per square root of Hz.
+_QUIETEST, _LOUDEST = 2e-4, 0.1
+#: Of one sample to the next, where nothing shakes.
+_UNSHAKEN_G = 0.02
 _STEADY_DPS = 25.0
 
 
@@ -36,12 +39,10 @@ def refuse_too_fast(
     if too_fast <= _FAST_SHARE * (samples + too_fast):
         return
     meant = "dps" if plan.factors["gx"][0] > 1 else "mdps"
-    words = " ".join(f"--map {t}={plan.wanted[t].column}:{meant}" for t in GYRO)
-    problem = (
-        f"{fastest_dps:.4g} dps is more than these sensors measure, in {too_fast} rows: "
-        f"did you mean {meant}?"
-    )
-    raise BadRecording(path, problem, do=f"{words}, or give --gyro-lsb-per-dps if it is true")
+    problem = f"{fastest_dps:.4g} dps is more than these sensors measure, in {too_fast} rows"
+    words = unit_words(plan.wanted, "gx", meant)
+    do = f"did you mean {meant}? Give {words}; if it is true, give --gyro-lsb-per-dps"
+    raise BadRecording(path, problem, do=do)
 
 
 def doubts(found: Gathered, plan: Plan) -> list[str]:
@@ -78,10 +79,8 @@ def _of_gravity(seen: dict[str, np.ndarray], plan: Plan) -> list[str]:
     for unit, size in _GRAVITY.items():
         for ratio, meant in ((size, unit), (1 / size, "g")):
             if usual > 0 and abs(math.log(usual / ratio)) < _GRAVITY_WITHIN:
-                return [
-                    f"the usual acceleration is {usual:.3g} g: did you mean {meant}? "
-                    f"(--accel-unit {meant})"
-                ]
+                words = unit_words(plan.wanted, "ax", meant)
+                return [f"the usual acceleration is {usual:.3g} g: did you mean {meant}? ({words})"]
     return []
 
 
@@ -92,26 +91,37 @@ def _of_rates(found: Gathered, plan: Plan) -> list[str]:
     middle = float(np.abs(np.median(rates, axis=1)).max())
     steps = np.diff(rates[:, :1000], axis=1)
     noise = float(np.median(np.abs(steps))) * 1.4826 / math.sqrt(2)
+    root_hz = math.sqrt(0.5e6 / found.interval_us)
+    factor = plan.factors["gx"][0]
+    meant = ""
     if middle > _STEADY_DPS and noise < 0.1 * middle:
-        if plan.factors["gx"][0] > 1:
-            return [f"a steady rate of {middle:.3g} dps: did you mean dps? (--gyro-unit dps)"]
-        return [f"a steady rate of {middle:.3g} dps is no bias of a sound sensor at rest"]
-    floor = _QUIETEST * math.sqrt(0.5e6 / found.interval_us)
-    if 0 < noise < floor and plan.factors["gx"][0] == 1.0 and found.interval_us < 2e5:
-        return [
-            f"noise of {noise * 1e3:.2g} mdps is less than such a sensor has: did you mean rad/s? "
-            "(--gyro-unit rad/s)"
-        ]
-    return []
+        said = f"a steady rate of {middle:.3g} dps is no bias of a sound sensor at rest"
+        meant = "dps" if factor > 1 else ""
+    elif noise > _LOUDEST * root_hz and factor > 1 and _unshaken(found.looked_at, plan):
+        said, meant = f"noise of {noise:.2g} dps is more than such a sensor has at rest", "dps"
+    elif 0 < noise < _QUIETEST * root_hz and factor == 1.0 and found.interval_us < 2e5:
+        said, meant = f"noise of {noise * 1e3:.2g} mdps is less than such a sensor has", "rad/s"
+    else:
+        return []
+    asked = f": did you mean {meant}? ({unit_words(plan.wanted, 'gx', meant)})" if meant else ""
+    return [said + asked]
+
+
+def _unshaken(seen: dict[str, np.ndarray], plan: Plan) -> bool:
+    if "ax" not in seen or "accel" in plan.raw:
+        return False
+    steps = np.diff([seen[name][:1000] for name in ACCEL], axis=1)
+    return bool(np.median(np.abs(steps)) < _UNSHAKEN_G)
 
 
 def _of_temperature(seen: dict[str, np.ndarray], plan: Plan) -> list[str]:
     if TEMP not in seen or "temp" in plan.raw:
         return []
     temp = seen[TEMP][np.isfinite(seen[TEMP])]
+    leave = "or leave it out: --map temp=none"
+    if len(temp) and not temp.any():
+        return [f"the temperature is 0 throughout, as if nobody measured it: map another, {leave}"]
     if not len(temp) or _TRUE_DEGC[0] <= np.median(temp) <= _TRUE_DEGC[1]:
         return []
-    return [
-        f"the usual temperature is {np.median(temp):.4g} degC: name its unit (--temp-unit k), "
-        "or leave it out: --map temp=none"
-    ]
+    unit = unit_words(plan.wanted, TEMP, "k")
+    return [f"the usual temperature is {np.median(temp):.4g} degC: name its unit ({unit}), {leave}"]
