@@ -5,10 +5,12 @@ from zerorate_tools.kernels.reading import hot_functions, kernel_files
 from zerorate_tools.kernels.rules import breaches
 
 SOUND = '''
-def total(s: ptr32, w: ptr8, n: int) -> int:
+def total(s: ptr32, w: ptr32, n: int) -> int:
     """Return a sum."""
     value = 0
-    for i in range(1, n, 2):
+    i = 1
+    while i < n:
+        i += 2
         if s[i] > 3 and not w[i] or s[i] < -0x3FFFFFFF:
             continue
         value += s[i] // 3 if s[i] > 0 else -(s[i] >> 30)
@@ -17,11 +19,7 @@ def total(s: ptr32, w: ptr8, n: int) -> int:
         if value < 100:
             last = value
             break
-    a = 1
-    b = 2
-    a, b = b, a
-    s[0], s[1] = s[1], s[0]
-    return last + int(abs(a)) + total(s, w, n - 1)
+    return last + total(s, w, n - 1)
 
 
 def give_up(s: ptr32, n: int):
@@ -41,7 +39,7 @@ BROKEN = [
     ("return n / 2", "Div is not for kernels"),
     ("return len(s)", "len is called"),
     ("return s.index(n)", "an expression is called"),
-    ("return int(s[0], base=n)", "other than positional"),
+    ("return total(s, n=n)", "other than positional"),
     ("return n * 1.5", "1.5 is no integer"),
     ("return n & 0x40000000", "1073741824 is no integer below"),
     ("return n == None", "None is no integer"),
@@ -52,15 +50,13 @@ BROKEN = [
     ("return s[-1]", "a negative index"),
     ("return n in s", "In is not for kernels"),
     ("raise ValueError", "Raise is not for kernels"),
-    ("for x in s:\n        n += x\n    return n", "for runs over range"),
-    ("a, b, c = n, n, n\n    return a", "only for a two-way swap"),
-    ("a, b = s\n    return a", "only for a two-way swap"),
+    ("for x in s:\n        n += x\n    return n", "For is not for kernels"),
+    ("a, b = n, n\n    return a", "Tuple is not for kernels"),
     ("s[0] = n", "ends without return on some path"),
     ("if n:\n        return 1", "ends without return on some path"),
     ("while True:\n        if n:\n            break", "ends without return on some path"),
     ("while n:\n        return 1", "ends without return on some path"),
     ("if n:\n        a = 1\n    return a", "a is read before it is set"),
-    ("for i in range(n):\n        a = i\n    return a", "a is read before it is set"),
     ("while n:\n        a = 1\n        n -= 1\n    return a", "a is read before it is set"),
     ("a += 1\n    return a", "a is read before it is set"),
     (
@@ -72,7 +68,7 @@ BROKEN = [
 HEADERS = [
     ("def f(s: ptr32, n: int = 3) -> int:", "without defaults"),
     ("def f(s: ptr32, *n: int) -> int:", "without defaults"),
-    ("def f(s: ptr16, n: int) -> int:", "s is none of int, ptr8, ptr32"),
+    ("def f(s: ptr16, n: int) -> int:", "s is none of int, ptr32"),
     ("def f(s: ptr32, n: int) -> bool:", "a result is an int"),
     ("def f(s: ptr32, n: int):", "without `-> int`"),
 ]

@@ -38,9 +38,9 @@ def atan2_q13(y: int, x: int) -> int:
     if a >= b:
         if a == 0:
             return 0
-        angle = int(arc_q13((b << 15) // a))
+        angle = arc_q13((b << 15) // a)
     else:
-        angle = _HALF_PI_Q13 - int(arc_q13((a << 15) // b))
+        angle = _HALF_PI_Q13 - arc_q13((a << 15) // b)
     if x < 0:
         angle = _PI_Q13 - angle
     if y < 0:

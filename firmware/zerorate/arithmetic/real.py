@@ -59,7 +59,7 @@ def high_product(m: int, n: int) -> int:
 
 def multiply(s: ptr32, d: int, a: int, b: int):
     """Store the product of the numbers at a and b at d."""
-    m = int(high_product(s[a], s[b]))
+    m = high_product(s[a], s[b])
     exponent = s[a + 1] + s[b + 1] + 28
     put(s, d, m, exponent)
 
@@ -107,7 +107,7 @@ def divide(s: ptr32, d: int, a: int, b: int):
     m = s[a] if s[a] >= 0 else -s[a]
     n = s[b] if s[b] >= 0 else -s[b]
     if n:
-        m = int(quotient_q27(m, n))
+        m = quotient_q27(m, n)
     else:
         m = 0
     if (s[a] ^ s[b]) < 0:
@@ -138,7 +138,7 @@ def root_of(s: ptr32, d: int, a: int):
     if e & 1:
         m = m >> 1
         e += 1
-    m = int(root(m))
+    m = root(m)
     put(s, d, m, e >> 1)
 
 

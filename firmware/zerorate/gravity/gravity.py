@@ -116,7 +116,7 @@ def update(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
     s[_UNIT_ELAPSED_US] -= c[_SUB_UNIT_US]
     end_unit(s, c)
     s[_UNIT_COUNT] += 1
-    return int(end_interval(s, c))
+    return end_interval(s, c)
 
 
 def gather(s: ptr32, x: ptr32, factor: int, shift: int):
@@ -124,7 +124,7 @@ def gather(s: ptr32, x: ptr32, factor: int, shift: int):
     i = 0
     while i < 3:
         turned = (x[4 + i] << 8) - s[_GRAVITY_BIAS_Q8 + i]
-        turned = int(scaled(turned, factor, shift))
+        turned = scaled(turned, factor, shift)
         turned += s[_ANGLE_Q22 + i]
         if turned > _MOST_Q22:
             turned = _MOST_Q22
@@ -177,10 +177,10 @@ def end_unit(s: ptr32, c: ptr32):
 def compare(s: ptr32, c: ptr32, i: int, square: int):
     """Compare the axis' angle with its pair's since the sub-unit before, and count."""
     across = square - s[_FORCE_SUM + i] * s[_FORCE_SUM + i]
-    if across < _HALF_Q24 or int(too_far(s[_ANGLE_Q22 + i] >> 9)):
+    if across < _HALF_Q24 or too_far(s[_ANGLE_Q22 + i] >> 9):
         s[_LAST_GOOD] = s[_LAST_GOOD] & (7 - (1 << i))
         return
-    across = int(since_last(s, i, across >> 12))  # eleven words: the deviation
+    across = since_last(s, i, across >> 12)  # eleven words: the deviation
     if s[_LAST_GOOD] & (1 << i):
         count(s, c, i, across)
     s[_LAST_GOOD] = s[_LAST_GOOD] | (1 << i)
@@ -198,10 +198,10 @@ def since_last(s: ptr32, i: int, square: int) -> int:
     mean = s[_ANGLE_SUM_Q13 + i] // s[_UNIT_N]
     deviation = mean - s[_LAST_ANGLE_Q13 + i] + s[_LAST_PAIR_Q13 + i]
     s[_LAST_ANGLE_Q13 + i] = mean - (s[_ANGLE_Q22 + i] >> 9)
-    mean = int(pair_angle_q13(s, i))
+    mean = pair_angle_q13(s, i)
     s[_LAST_PAIR_Q13 + i] = mean
     deviation -= mean
-    mean = int(coupled_q13(s, i, square >> 2))
+    mean = coupled_q13(s, i, square >> 2)
     deviation -= (mean + s[_LAST_COUPLED_Q13 + i]) >> 1
     s[_LAST_COUPLED_Q13 + i] = mean
     while deviation > _PI_Q13:
@@ -215,15 +215,15 @@ def pair_angle_q13(s: ptr32, i: int) -> int:
     """Return the angle of the mean force in the plane of the axis' pair."""
     j = i + 1 if i < 2 else 0
     k = i - 1 if i > 0 else 2
-    return int(atan2_q13(s[_FORCE_SUM + j], s[_FORCE_SUM + k]))
+    return atan2_q13(s[_FORCE_SUM + j], s[_FORCE_SUM + k])
 
 
 def along_q12(s: ptr32, i: int) -> int:
     """Return how far the two axes beside i turned about gravity in the sub-unit, Q12 rad."""
     j = i + 1 if i < 2 else 0
     k = i - 1 if i > 0 else 2
-    first = int(held(s[_ANGLE_Q22 + j] >> 9)) * s[_FORCE_SUM + j]
-    return (first + int(held(s[_ANGLE_Q22 + k] >> 9)) * s[_FORCE_SUM + k]) >> 13
+    first = held(s[_ANGLE_Q22 + j] >> 9) * s[_FORCE_SUM + j]
+    return (first + held(s[_ANGLE_Q22 + k] >> 9) * s[_FORCE_SUM + k]) >> 13
 
 
 def coupled_q13(s: ptr32, i: int, square: int) -> int:
@@ -231,7 +231,7 @@ def coupled_q13(s: ptr32, i: int, square: int) -> int:
 
     Their mean over the last 16 s or so is left out: it is their bias, not a turn.
     """
-    along = int(along_q12(s, i))
+    along = along_q12(s, i)
     mean = s[_MEAN_ALONG_Q20 + i]
     mean += ((along << 8) - mean) >> 5
     s[_MEAN_ALONG_Q20 + i] = mean

@@ -106,4 +106,4 @@ def heading_q12(s: ptr32) -> int:
     z = (s[_QZ] + 0x2000) >> 14
     real = w * s[_START] + x * s[_START_X] + y * s[_START_Y] + z * s[_START_Z]
     z = z * s[_START] - w * s[_START_Z] - x * s[_START_Y] + y * s[_START_X]
-    return int(atan2_q13(z, real))
+    return atan2_q13(z, real)

@@ -103,20 +103,20 @@ def update(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
         s[_JOB] = _IDLE
         s[_MOTION_REASON] = _MOTION_GAP
         return 0
-    if int(gather(s, c, x, dt_us)):
+    if gather(s, c, x, dt_us):
         follow_temperature(s, x[3])
         close(s, c)
     if s[_JOB] == _IDLE:
-        if int(start_window(s, c)):
+        if start_window(s, c):
             begin_traversal(s)
         return 0
-    return int(work(s, c))
+    return work(s, c)
 
 
 def work(s: ptr32, c: ptr32) -> int:
     """Do the next nodes of a traversal, or the next piece of algebra."""
     if s[_JOB] == _SOLVE:
-        return int(solve(s, c))
+        return solve(s, c)
     i = c[_VISITS]
     while i > 0 and s[_JOB] == _TRAVERSE:
         visit(s, c)
@@ -132,7 +132,7 @@ def begin_traversal(s: ptr32):
         i += 1
     i = 0
     while i < 3:
-        s[_BIAS_Q24 + i] = int(within(whole(s, _BIAS + 2 * i, 0), _MOST_BIAS_Q24))
+        s[_BIAS_Q24 + i] = within(whole(s, _BIAS + 2 * i, 0), _MOST_BIAS_Q24)
         s[_BIAS_CARRY_Q24 + i] = 0
         i += 1
     i = 0
@@ -162,8 +162,8 @@ def visit(s: ptr32, c: ptr32):
         observe(s, a)
     sum_up(s)
     remove_bias(s, a)
-    a = int(tilting(s, 0))
-    a += int(tilting(s, 3))
+    a = tilting(s, 0)
+    a += tilting(s, 3)
     s[_TILTED] += a
     sines(s)
     turn(s)
@@ -217,7 +217,7 @@ def remove_bias(s: ptr32, a: int):
         s[_BIAS_CARRY_Q24 + i] += s[_BIAS_Q24 + i]
         part = (s[_BIAS_CARRY_Q24 + i] + 0x400) >> 11
         s[_BIAS_CARRY_Q24 + i] -= part << 11
-        part = int(within((s[a + i] >> 15) - part, _MOST_HALF_Q14))
+        part = within((s[a + i] >> 15) - part, _MOST_HALF_Q14)
         s[_HALF + i] = part
         s[_TRAFFIC] += part if part > 0 else 0 - part
         i += 1
@@ -225,9 +225,9 @@ def remove_bias(s: ptr32, a: int):
 
 def tilting(s: ptr32, row: int) -> int:
     """Return how far the node turned about a level axis, half angle, Q14 rad: gravity shows it."""
-    row += _R
-    part = s[row] * s[_HALF] + s[row + 1] * s[_HALF + 1]
-    part = (part + s[row + 2] * s[_HALF + 2] + 0x2000) >> 14
+    at = _R + row
+    part = s[at] * s[_HALF] + s[at + 1] * s[_HALF + 1]
+    part = (part + s[at + 2] * s[_HALF + 2] + 0x2000) >> 14
     return part if part > 0 else 0 - part
 
 
@@ -236,7 +236,7 @@ def solve(s: ptr32, c: ptr32) -> int:
     k = s[_PROGRESS]
     s[_PROGRESS] = k + 1
     if c[_MOTION_DOCUMENT]:
-        return int(solve_document(s, c, k))
+        return solve_document(s, c, k)
     if s[_PASS] == 0:
         level_and_prior(s, c, k)
         return 0
@@ -252,7 +252,7 @@ def solve(s: ptr32, c: ptr32) -> int:
         noise(s, k - 17)
     elif k == 20:
         weights(s, c)
-        if int(last_pass(s, c)) == 0:
+        if last_pass(s, c) == 0:
             remove_slope(s, c)
     elif k < 33:
         normal_equations(s, k - 21)
@@ -262,7 +262,7 @@ def solve(s: ptr32, c: ptr32) -> int:
         remove_slope(s, c)
     else:
         s[_JOB] = _IDLE
-        return int(finish(s, c))
+        return finish(s, c)
     return 0
 
 
@@ -285,14 +285,14 @@ def solve_document(s: ptr32, c: ptr32, k: int) -> int:
     elif k < 9:
         noise(s, k - 6)
     elif k == 9:
-        if int(last_pass(s, c)):
+        if last_pass(s, c):
             s[_PASS] = c[_PASSES]
         remove_slope(s, c)
     elif k < 13:
         own_variance(s, c, k - 10)
     else:
         s[_JOB] = _IDLE
-        return int(finish(s, c))
+        return finish(s, c)
     return 0
 
 
@@ -323,7 +323,7 @@ def last_pass(s: ptr32, c: ptr32) -> int:
         return 1
     i = 0
     while i < 3:
-        slope = int(whole(s, _SLOPE + 2 * i, 0))
+        slope = whole(s, _SLOPE + 2 * i, 0)
         if slope > c[_SETTLED] or slope < -c[_SETTLED]:
             return 0
         i += 1

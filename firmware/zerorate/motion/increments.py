@@ -78,28 +78,28 @@ def convert(s: ptr32, c: ptr32, x: ptr32, factor: int):
     """Write the frame's turns, Q24 rad, and forces, Q12 g, to scratch words."""
     i = 0
     while i < 3:
-        angle = (x[4 + i] * factor + (1 << (c[_MOTION_SHIFT] - 1))) >> c[_MOTION_SHIFT]
-        s[_FRAME_ANGLE_Q24 + i] = int(within(angle, _HALF_RAD_Q24))
-        if s[_FRAME_ANGLE_Q24 + i] != angle:
+        value = (x[4 + i] * factor + (1 << (c[_MOTION_SHIFT] - 1))) >> c[_MOTION_SHIFT]
+        s[_FRAME_ANGLE_Q24 + i] = within(value, _HALF_RAD_Q24)
+        if s[_FRAME_ANGLE_Q24 + i] != value:
             s[_FAST] = c[_NODES]
         i += 1
     i = 0
-    factor = 0xFFFFFFF // c[_FORCE_GAIN]  # eleven words: just beyond the most of a force
+    beyond = 0xFFFFFFF // c[_FORCE_GAIN]  # the most of a force
     while i < 3:
-        angle = int(within(x[i], factor)) * c[_FORCE_GAIN]
-        s[_FRAME_FORCE_Q12 + i] = int(within((angle + 0x1000) >> 13, _MOST_FORCE_Q12))
+        value = within(x[i], beyond) * c[_FORCE_GAIN]
+        s[_FRAME_FORCE_Q12 + i] = within((value + 0x1000) >> 13, _MOST_FORCE_Q12)
         i += 1
 
 
 def gather(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
     """Add the frame `x` to the node; return 1 when the node is full, else 0."""
     convert(s, c, x, (dt_us * c[_MOTION_GAIN]) >> c[_MOTION_GAIN_SHIFT])
-    s[_CONING_Q24] = int(coning(s, 1, 2))
-    s[_CONING_Q24 + 1] = int(coning(s, 2, 0))
-    s[_CONING_Q24 + 2] = int(coning(s, 0, 1))
-    s[_SCULLING_Q12] = int(carried(s, 1, 2))
-    s[_SCULLING_Q12 + 1] = int(carried(s, 2, 0))
-    s[_SCULLING_Q12 + 2] = int(carried(s, 0, 1))
+    s[_CONING_Q24] = coning(s, 1, 2)
+    s[_CONING_Q24 + 1] = coning(s, 2, 0)
+    s[_CONING_Q24 + 2] = coning(s, 0, 1)
+    s[_SCULLING_Q12] = carried(s, 1, 2)
+    s[_SCULLING_Q12 + 1] = carried(s, 2, 0)
+    s[_SCULLING_Q12 + 2] = carried(s, 0, 1)
     advance(s, c)
     s[_NODE_N] += 1
     s[_NODE_ELAPSED_US] += dt_us
@@ -114,7 +114,7 @@ def advance(s: ptr32, c: ptr32):
     while i < 3:
         s[_NODE_FORCE_Q12 + i] += s[_FRAME_FORCE_Q12 + i] + s[_SCULLING_Q12 + i]
         angle = s[_NODE_ANGLE_Q24 + i] + s[_FRAME_ANGLE_Q24 + i] + s[_CONING_Q24 + i]
-        s[_NODE_ANGLE_Q24 + i] = int(within(angle, _TWO_RAD_Q24))
+        s[_NODE_ANGLE_Q24 + i] = within(angle, _TWO_RAD_Q24)
         if s[_NODE_ANGLE_Q24 + i] != angle:
             s[_FAST] = c[_NODES]
         i += 1
@@ -131,11 +131,11 @@ def close(s: ptr32, c: ptr32):
     while i < 3:
         over = (s[_NODE_ELAPSED_US] << 10) // c[_NODE_US]
         over = ((s[_BIAS_Q24 + i] >> 8) * over) >> 2
-        angle = int(within((s[_NODE_ANGLE_Q24 + i] - over + 0x400) >> 11, _MOST_ANGLE_Q13))
-        over = int(within(s[_NODE_FORCE_Q12 + i] // s[_NODE_N], _MOST_ANGLE_Q13))
+        angle = within((s[_NODE_ANGLE_Q24 + i] - over + 0x400) >> 11, _MOST_ANGLE_Q13)
+        over = within(s[_NODE_FORCE_Q12 + i] // s[_NODE_N], _MOST_ANGLE_Q13)
         s[a + i] = (angle << 15) + (over & 0x7FFF)
         angle = s[_NODE_ANGLE_Q24 + i] - (angle << 11)
-        s[_NODE_ANGLE_Q24 + i] = int(within(angle, _TWO_RAD_Q24))
+        s[_NODE_ANGLE_Q24 + i] = within(angle, _TWO_RAD_Q24)
         s[_NODE_FORCE_Q12 + i] = 0
         i += 1
     s[_NODE_N] = 0

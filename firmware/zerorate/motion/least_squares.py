@@ -79,20 +79,20 @@ def matrix_element(s: ptr32, n: int):
     while j > 2:
         i += 1
         j -= 3 - i
-    j = int(place(i, j))
+    j = place(i, j)
     copy(s, _T, _PRIOR + 2 * n, 2)
     element(s, j, _SUMS + _SUM_MM + n, 2 * s[_STAGE] - 42)
 
 
 def right_side(s: ptr32, i: int):
     """Build the right-hand side's element i: the slopes, and the prior's pull to its mean."""
-    d = int(place(i, 3))
+    d = place(i, 3)
     put(s, _T, 0, 0)
     element(s, d, _SUMS + _SUM_MY + i, s[_STAGE] - 16)
     j = 0
     while j < 3:
         subtract(s, _T1, _PRIOR_MEAN + 2 * j, _BIAS + 2 * j)
-        multiply_by_prior(s, int(prior_place(i, j)))
+        multiply_by_prior(s, prior_place(i, j))
         add(s, d, d, _T1)
         j += 1
     put(s, _G + 18, 0, 0)
@@ -116,7 +116,7 @@ def sweep(s: ptr32, k: int):
     After pivots 0, 1, 2 it holds the negative inverse and, in its fourth column, the solution
     (Beaton's operator; stable for a positive definite matrix).
     """
-    d = int(place(k, k))
+    d = place(k, k)
     put(s, _T, 1, 0)
     divide(s, _T, _T, d)
     i = 0
@@ -127,23 +127,23 @@ def sweep(s: ptr32, k: int):
     i = 0
     while i < 4:
         if i != k:
-            d = int(place(i, k))
+            d = place(i, k)
             multiply(s, d, d, _T)
         i += 1
-    d = int(place(k, k))
+    d = place(k, k)
     put(s, d, -s[_T], s[_T + 1])
 
 
 def sweep_row(s: ptr32, k: int, i: int):
     """Take the pivot's row from row i, from the diagonal on; _T holds one over the pivot."""
-    d = int(place(i, k))
+    d = place(i, k)
     multiply(s, _T1, d, _T)
     j = i
     while j < 4:
         if j != k:
-            d = int(place(k, j))
+            d = place(k, j)
             multiply(s, _T2, _T1, d)
-            d = int(place(i, j))
+            d = place(i, j)
             subtract(s, _T3, d, _T2)
             copy(s, d, _T3, 2)
         j += 1
@@ -199,11 +199,11 @@ def step(s: ptr32):
     copy(s, _T1, _T, 2)
     i = 0
     while i < 3:
-        d = int(place(i, 3))
+        d = place(i, 3)
         copy(s, _SLOPE + 2 * i, d, 2)
         copy(s, _T2, d, 2)
         magnitude(s, _T2)
-        if int(less(s, _T1, _T2)):
+        if less(s, _T1, _T2):
             copy(s, _T1, _T2, 2)
         i += 1
     divide(s, _T, _T, _T1)
@@ -256,7 +256,7 @@ def weights(s: ptr32, c: ptr32):
     copy(s, _OMEGA + 2, _OMEGA, 2)
     i = 0
     while i < 6:
-        if int(less(s, _OMEGA + i, _HELD_NOISE + i)):
+        if less(s, _OMEGA + i, _HELD_NOISE + i):
             copy(s, _OMEGA + i, _HELD_NOISE + i, 2)
         copy(s, _NOISE_ENERGY + i, _OMEGA + i, 2)
         weigh(s, c, _OMEGA + i)
@@ -300,5 +300,5 @@ def own_variance(s: ptr32, c: ptr32, i: int):
     own_square(s, i)
     put(s, _T, -c[_SLOPE_SPREAD], 0)
     multiply(s, _T, _T, _OMEGA + 2 * i)
-    d = int(place(i, i))
+    d = place(i, i)
     divide(s, d, _T, _T1)

@@ -151,7 +151,7 @@ def note_slope(s: ptr32, c: ptr32):
     while i < 3:
         put(s, _T, c[_LSB_A_UNIT], c[_LSB_A_UNIT + 1])
         multiply(s, _T, _T, _SLOPE + 2 * i)
-        s[a + i] = int(whole(s, _T, 0))
+        s[a + i] = whole(s, _T, 0)
         i += 1
 
 
@@ -159,13 +159,13 @@ def verdict(s: ptr32, c: ptr32) -> int:
     """Return why the window teaches nothing, or _LEARNED."""
     if s[_FAST]:
         return _TOO_FAST
-    if int(moves(s, c)) == 0:
+    if moves(s, c) == 0:
         return _HARDLY_MOVES
     if c[_MOTION_DOCUMENT] or s[_LENGTH] < c[_LONGEST]:
         return _LEARNED
     if (s[_UP] << 8) // (s[_TAPER_SUM] >> 2) < c[_LEAST_UP]:
         return _LOST
-    if s[_ACCEPTED] >= _SETTLED_AFTER and (int(contradicts(s)) or int(louder(s))):
+    if s[_ACCEPTED] >= _SETTLED_AFTER and (contradicts(s) or louder(s)):
         return _TURNED
     return _LEARNED
 
@@ -190,7 +190,7 @@ def louder(s: ptr32) -> int:
     taken for noise. A turn of heading does too, and so is not looked at.
     """
     put(s, _T, s[_HELD_NOISE], s[_HELD_NOISE + 1] + 8)
-    return int(less(s, _T, _NOISE_ENERGY))
+    return less(s, _T, _NOISE_ENERGY)
 
 
 def contradicts(s: ptr32) -> int:
@@ -201,7 +201,7 @@ def contradicts(s: ptr32) -> int:
         put(s, _T, s[d], s[d + 1] + 4)
         subtract(s, _T1, _BIAS + 2 * i, _PRIOR_MEAN + 2 * i)
         multiply(s, _T1, _T1, _T1)
-        if int(less(s, _T, _T1)):
+        if less(s, _T, _T1):
             return 1
         d += 6 - 2 * i
         i += 1
@@ -210,7 +210,7 @@ def contradicts(s: ptr32) -> int:
 
 def finish(s: ptr32, c: ptr32) -> int:
     """Keep or refuse the window's bias; return 1 if it was learned."""
-    reason = int(verdict(s, c))
+    reason = verdict(s, c)
     s[_MOTION_REASON] = reason
     if reason != _LEARNED:
         refuse(s, c, reason)
@@ -265,10 +265,10 @@ def publish(s: ptr32, c: ptr32):
         put(s, _T, c[_LSB_A_UNIT], c[_LSB_A_UNIT + 1])
         present(s, i)
         multiply(s, _T1, _T1, _T)
-        s[_MOTION_BIAS_Q8 + i] = int(whole(s, _T1, 0))
-        copy(s, _T1, int(place(i, i)), 2)
+        s[_MOTION_BIAS_Q8 + i] = whole(s, _T1, 0)
+        copy(s, _T1, place(i, i), 2)
         put(s, _T1, -s[_T1], s[_T1 + 1])
         root_of(s, _T1, _T1)
         multiply(s, _T1, _T1, _T)
-        s[_MOTION_QUALITY_Q8 + i] = int(whole(s, _T1, 0))
+        s[_MOTION_QUALITY_Q8 + i] = whole(s, _T1, 0)
         i += 1

@@ -100,7 +100,7 @@ def mean(s: ptr32, total: int) -> int:
 
 def refer(s: ptr32, d: int, a: int, mean: int):
     """Take (the word at a times mean) >> 10 from the word at d."""
-    taken = int(scaled(s[a] << 5, mean, 15))
+    taken = scaled(s[a] << 5, mean, 15)
     s[d] -= taken
 
 
@@ -109,11 +109,11 @@ def centre(s: ptr32, a: int, row: int, shift: int):
 
     The mean of y replaces its sum. The row of the matrix at _CENTRE is where M begins.
     """
-    s[a + _SUM_Y] = int(mean(s, s[a + _SUM_Y]))
+    s[a + _SUM_Y] = mean(s, s[a + _SUM_Y])
     i = 0
     row += _CENTRE
     while i < 3:
-        s[_M + i] = int(mean(s, s[a + _SUM_M + i]))
+        s[_M + i] = mean(s, s[a + _SUM_M + i])
         s[row + i] = s[row + i] - (s[_M + i] << shift)
         i += 1
     i = 0
@@ -122,7 +122,7 @@ def centre(s: ptr32, a: int, row: int, shift: int):
     while i < 3:
         shift = a + _SUM_M + i
         refer(s, shift - 3, shift, s[_WM])
-        row = int(centre_row(s, shift, row, i))
+        row = centre_row(s, shift, row, i)
         i += 1
 
 

@@ -122,7 +122,7 @@ def carry_axis(s: ptr32, c: ptr32, i: int):
     # the covariances of the axes stay, so a variance must not shrink under them
     put(s, _T1, s[_T1] if s[_T1] > 0 else 0, s[_T1 + 1])
     add(s, _T1, _T1, _T3)
-    v = int(variance_at(i))
+    v = variance_at(i)
     add(s, v, v, _T1)
     bend(s, c)
     put(s, _TEMP_SLOPE_COVARIANCE, s[_T2], s[_T2 + 1])
@@ -150,12 +150,12 @@ def learn_slope(s: ptr32, i: int):
     """Move the slope by its regression on the bias, and condition its variance."""
     d = _TEMP_SLOPES + 3 * i
     unpack_slope(s, d)
-    a = int(variance_at(i))
+    a = variance_at(i)
     divide(s, _T, _TEMP_SLOPE_COVARIANCE, a)
     subtract(s, _T1, _BIAS + 2 * i, _PRIOR_MEAN + 2 * i)
     multiply(s, _T1, _T1, _T)
     add(s, _TEMP_SLOPE, _TEMP_SLOPE, _T1)
-    i = int(place(i, i))  # eleven words: where its covariance stands in the swept matrix
+    i = place(i, i)  # eleven words: where its covariance stands in the swept matrix
     add(s, _T1, a, i)
     multiply(s, _T1, _T1, _T)
     multiply(s, _T1, _T1, _T)

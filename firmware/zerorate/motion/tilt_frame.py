@@ -66,7 +66,7 @@ def find_up(s: ptr32):
         x = x >> 1
         y = y >> 1
         z = z >> 1
-    scale = int(root(x * x + y * y + z * z))
+    scale = root(x * x + y * y + z * z)
     over = z < 0
     if over:
         y = -y
@@ -75,7 +75,7 @@ def find_up(s: ptr32):
     s[_LOOK + 1] = y
     s[_LOOK + 2] = 0 - x
     s[_LOOK + 3] = 0
-    scale = int(root(s[_LOOK] * s[_LOOK] + x * x + y * y))
+    scale = root(s[_LOOK] * s[_LOOK] + x * x + y * y)
     if over:
         s[_LOOK + 3] = x
         s[_LOOK + 2] = 0
@@ -89,8 +89,8 @@ def find_up(s: ptr32):
 
 def lean_back(s: ptr32):
     """Turn _START by the mean tilts that the traversal left, Q12 rad."""
-    x = int(within(-s[_TILT], 4096)) << 1
-    y = int(within(-s[_OTHER_TILT], 4096)) << 1
+    x = within(-s[_TILT], 4096) << 1
+    y = within(-s[_OTHER_TILT], 4096) << 1
     s[_LOOK] = s[_START] - ((x * s[_START + 1] + y * s[_START + 2]) >> 14)
     s[_LOOK + 1] = s[_START + 1] + ((x * s[_START] + y * s[_START + 3]) >> 14)
     s[_LOOK + 2] = s[_START + 2] + ((y * s[_START] - x * s[_START + 3]) >> 14)
@@ -101,7 +101,7 @@ def lean_back(s: ptr32):
         s[_LOOK + i] = s[_LOOK + i] >> 1
         x += s[_LOOK + i] * s[_LOOK + i]
         i += 1
-    look_along(s, int(root(x)))
+    look_along(s, root(x))
 
 
 def turn_centre(s: ptr32, shift: int):
@@ -112,7 +112,7 @@ def turn_centre(s: ptr32, shift: int):
     while i < 3:
         k = 0
         while k < 3:
-            s[_CENTRE + 3 * i + k] = -(int(turned_mean(s, i, k)) << shift)
+            s[_CENTRE + 3 * i + k] = -(turned_mean(s, i, k) << shift)
             k += 1
         i += 1
 
@@ -141,18 +141,18 @@ def force_q12(s: ptr32, a: int, row: int) -> int:
 
 def observe(s: ptr32, a: int):
     """Write both tilts and the heading of the node at word a, Q12 rad."""
-    force = int(force_q12(s, a, 3))
-    s[_Y] = -int(within(force, _MOST_Q12))
-    force = int(force_q12(s, a, 0))
-    s[_Y + 1] = int(within(force, _MOST_Q12))
-    force = int(force_q12(s, a, 6))
+    force = force_q12(s, a, 3)
+    s[_Y] = -within(force, _MOST_Q12)
+    force = force_q12(s, a, 0)
+    s[_Y + 1] = within(force, _MOST_Q12)
+    force = force_q12(s, a, 6)
     s[_UP] += (s[_TAPER] * force + 512) >> 10
-    heading = int(heading_q12(s))
+    heading = heading_q12(s)
     turned = heading - s[_LAST_HEADING_Q12]
     s[_LAST_HEADING_Q12] = heading
     if turned > _WRAP_Q12:
         s[_HEADING_TURNS] -= 1
     elif turned < -_WRAP_Q12:
         s[_HEADING_TURNS] += 1
-    heading += int(within(s[_HEADING_TURNS], 3)) * 51472
-    s[_Y + 2] = int(within(heading, _MOST_Q12))
+    heading += within(s[_HEADING_TURNS], 3) * 51472
+    s[_Y + 2] = within(heading, _MOST_Q12)

@@ -124,8 +124,8 @@ def publish(s: ptr32, c: ptr32, a: int, axis: int):
 def segment_mean_q8(s: ptr32, c: ptr32, axis: int) -> int:
     """Return the mean rate of the segment so far, LSB Q8."""
     n = s[_SEGMENT_WINDOWS] << c[_WINDOW_SHIFT]
-    axis += _SEGMENT_TOTAL
-    return ((s[axis] // n) << 8) + ((s[axis] % n) << 8) // n
+    total = s[_SEGMENT_TOTAL + axis]
+    return ((total // n) << 8) + ((total % n) << 8) // n
 
 
 def stale(s: ptr32, c: ptr32, a: int) -> int:

@@ -83,7 +83,5 @@ class Expressions:
     def _call(self, node: ast.Call) -> str:
         if not isinstance(node.func, ast.Name) or node.keywords:
             raise self.refused(node)
-        if node.func.id == "int":
-            return self.text(node.args[0])
         arguments = ", ".join(self.text(argument) for argument in node.args)
         return f"{self._function(node.func.id)}({arguments})"

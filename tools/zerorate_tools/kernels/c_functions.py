@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from .c_expressions import Expressions
 from .reading import KernelFile, Kernels
 
-_KINDS = {"int": "int32_t ", "ptr32": "int32_t *", "ptr8": "uint8_t *"}
+_KINDS = {"int": "int32_t ", "ptr32": "int32_t *"}
 ARITHMETIC = """\
 static inline int32_t floor_div(int32_t a, int32_t b) {
     return a / b - (a % b != 0 && (a < 0) != (b < 0));

@@ -53,7 +53,7 @@ class _Flow:
             self.read(statement.test, known)
             yes = self.through(statement.body, known)
             return _both(yes, self.through(statement.orelse, known))
-        if isinstance(statement, (ast.While, ast.For)):
+        if isinstance(statement, ast.While):
             return self.loop(statement, known)
         self.read(statement, known)
         if isinstance(statement, ast.Break):
@@ -62,12 +62,11 @@ class _Flow:
             return None
         return known | _set_in(statement)
 
-    def loop(self, loop: ast.While | ast.For, known: set[str]) -> set[str] | None:
-        self.read(loop.test if isinstance(loop, ast.While) else loop.iter, known)
+    def loop(self, loop: ast.While, known: set[str]) -> set[str] | None:
+        self.read(loop.test, known)
         self.at_breaks.append(None)
-        inside = known | (_set_in(loop.target) if isinstance(loop, ast.For) else set())
-        self.through(loop.body, inside)
-        run_out = None if isinstance(loop, ast.While) and _is_endless(loop) else known
+        self.through(loop.body, known)
+        run_out = None if _is_endless(loop) else known
         return _both(self.at_breaks.pop(), self.through(loop.orelse, run_out))
 
     def read(self, node: ast.AST, known: set[str]) -> None:

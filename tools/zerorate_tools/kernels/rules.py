@@ -12,16 +12,15 @@ from .flow import always_returns, read_before_set
 from .reading import KernelFile
 
 _ALLOWED: tuple[type[ast.AST], ...] = (
-    *(ast.Assign, ast.AugAssign, ast.Return, ast.If, ast.While, ast.For, ast.Expr),
+    *(ast.Assign, ast.AugAssign, ast.Return, ast.If, ast.While, ast.Expr),
     *(ast.Break, ast.Continue, ast.Pass, ast.expr_context),
     *(ast.Name, ast.Constant, ast.Compare, ast.BoolOp, ast.UnaryOp, ast.BinOp),
-    *(ast.IfExp, ast.Subscript, ast.Call, ast.Tuple),
+    *(ast.IfExp, ast.Subscript, ast.Call),
     *(ast.Add, ast.Sub, ast.Mult, ast.FloorDiv, ast.Mod, ast.BitAnd, ast.BitOr),
     *(ast.BitXor, ast.LShift, ast.RShift, ast.UAdd, ast.USub, ast.Invert, ast.Not),
     *(ast.Eq, ast.NotEq, ast.Lt, ast.LtE, ast.Gt, ast.GtE, ast.And, ast.Or),
 )
-_KINDS = ("int", "ptr8", "ptr32")
-_BUILT_IN = ("int", "range", "abs", "min", "max", "ptr8", "ptr32")
+_KINDS = ("int", "ptr32")
 _LIMIT = 1 << 30
 _LONGEST_SHIFT = 30
 
@@ -69,7 +68,7 @@ def _body(function: ast.FunctionDef, kernels: Collection[str]) -> Iterator[tuple
 
 def _call(node: ast.Call, kernels: Collection[str]) -> Iterator[str]:
     name = _name(node.func)
-    if name not in _BUILT_IN and name not in kernels:
+    if name not in kernels:
         yield f"{name or 'an expression'} is called, which is no kernel"
     if node.keywords or any(isinstance(a, ast.Starred) for a in node.args):
         yield f"{name} is called with other than positional arguments"
@@ -83,10 +82,6 @@ def _node(node: ast.AST) -> Iterator[str]:
         yield from _operation(node.op, right)
     elif isinstance(node, ast.Subscript) and isinstance(node.slice, ast.UnaryOp):
         yield "a negative index reads before the array in C"
-    elif isinstance(node, ast.For) and not _is_over_a_range(node):
-        yield "for runs over range() only"
-    elif isinstance(node, ast.Assign) and not _is_plain(node):
-        yield "a tuple is only for a two-way swap"
 
 
 def _operation(operator: ast.operator, right: ast.expr) -> Iterator[str]:
@@ -100,16 +95,6 @@ def _operation(operator: ast.operator, right: ast.expr) -> Iterator[str]:
 
 def _is_small(value: object) -> bool:
     return isinstance(value, int) and value < _LIMIT
-
-
-def _is_over_a_range(node: ast.For) -> bool:
-    return isinstance(node.iter, ast.Call) and _name(node.iter.func) == "range"
-
-
-def _is_plain(node: ast.Assign) -> bool:
-    sides = (*node.targets, node.value)
-    tuples = [side for side in sides if isinstance(side, ast.Tuple)]
-    return not tuples or (len(sides) == 2 and [len(t.elts) for t in tuples] == [2, 2])
 
 
 def _name(node: ast.expr | None) -> str:
