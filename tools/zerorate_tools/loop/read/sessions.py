@@ -132,10 +132,11 @@ class Session:
 
 def block_means(ticks: np.ndarray, weight: np.ndarray, blocks: int) -> np.ndarray:
     """(blocks, K) means of (ticks, K) by their (ticks,) weight, NaN where none has any."""
-    total = weight.reshape(blocks, -1).sum(axis=1)[:, None]
+    per = len(weight) // max(blocks, 1)
+    total = weight.reshape(blocks, per).sum(axis=1)[:, None]
     values = np.where(weight[:, None] > 0, ticks, 0.0) * weight[:, None]
     with np.errstate(invalid="ignore", divide="ignore"):
-        return values.reshape(blocks, -1, ticks.shape[1]).sum(axis=1) / total
+        return values.reshape(blocks, per, ticks.shape[1]).sum(axis=1) / total
 
 
 def common_sources(sessions: list[Session]) -> list[str]:
