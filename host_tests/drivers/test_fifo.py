@@ -11,7 +11,7 @@ class FifoBench:
     """A linked bench whose recording has a calm temperature, and what was delivered from it."""
 
     def __init__(self, make_bench, **options):
-        rows = [[300, -7, 16000, 100 + n % 50, 5000, -2570, n] for n in range(6000)]
+        rows = [[300, -7, 16000, 9000 + n % 50, 5000, -2570, n] for n in range(6000)]
         self.bench = make_bench(source=rows, linked=True, **options)
         self.chip, self.bus, self.clock = self.bench.chip, self.bench.bus, self.bench.clock
         self.imu = self.bench.imu
@@ -83,9 +83,11 @@ def test_several_frames_go_by_one_transfer(fifo_bench):
 
 def test_a_chip_that_runs_fast_does_not_outrun_the_clock(fifo_bench):
     fifo_bench.imu.period_us = 10300
+    before_first_us = fifo_bench.clock.now_us - PERIOD_US // 2
     for _ in range(200):
         fifo_bench.run(50000)
         fifo_bench.drain()
+        assert before_first_us + fifo_bench.now_us <= fifo_bench.clock.now_us
     assert max(abs(slip) for slip in fifo_bench.slips_us()) <= 2 * PERIOD_US
 
 

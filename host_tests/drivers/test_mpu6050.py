@@ -1,5 +1,7 @@
 """The driver brings a chip up, reads whole samples and says what it is talking to."""
 
+import sys
+
 import pytest
 from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050
 from zerorate_fakes.registers import PARTS as FAKE_PARTS
@@ -161,6 +163,12 @@ def test_the_binding_names_chip_range_and_filter(make_bench):
     assert make_bench().imu.binding != make_bench(full_scale_dps=500).imu.binding
     assert make_bench().imu.binding != make_bench(part="MPU-6500").imu.binding
     assert make_bench().imu.binding != make_bench(dlpf_hz=20).imu.binding
+
+
+def test_on_a_computer_the_modules_of_the_constructor_stay(bench):
+    assert {f"zerorate_i2c.{name}" for name in ("identity", "parts", "settings")} <= set(
+        sys.modules
+    )
 
 
 def test_a_chip_with_ad0_high_answers_at_0x69():

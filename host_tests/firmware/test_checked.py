@@ -8,7 +8,7 @@ import pytest
 from zerorate import checked
 from zerorate.checked import CheckedCorrector
 from zerorate.corrector import Corrector, Sensor
-from zerorate.layout import STATE
+from zerorate.layout import AXIS, SETTINGS, STATE, TURN_ON
 
 
 class Feed:
@@ -86,6 +86,23 @@ def test_what_is_known_stands_through_a_restart(feed):
     assert (feed.bias_lsb(), feed.checked.corrector.quality_lsb(0)) == before
     feed.rest(1, 100)
     assert feed.bias_lsb() == pytest.approx(100, abs=1)
+
+
+def test_after_a_restart_an_offset_is_no_surer_than_one_of_a_turn_on(feed):
+    state, settings = feed.checked.corrector.state, feed.checked.corrector.settings
+    first, usual = settings[SETTINGS.AXES], settings[SETTINGS.TURN_ON_VARIANCE_Q8]
+    offset_of = slice(first + TURN_ON.TURN_ON_OFFSET_Q8, first)
+    variance_of = slice(
+        first + AXIS.OFFSET_VARIANCE_Q8,
+        first + 3 * settings[SETTINGS.AXIS_WORDS],
+        settings[SETTINGS.AXIS_WORDS],
+    )
+    state[offset_of] = array("i", [700, -800, 900])
+    state[variance_of] = array("i", [usual - 1, usual, usual + 1])
+    feed.checked.keep()
+    feed.checked.update(feed.sample, 10000, checked.RESTARTED)
+    assert list(state[offset_of]) == [700, -800, 900]
+    assert list(state[variance_of]) == [usual, usual, usual + 1]
 
 
 @pytest.mark.parametrize("status", [checked.RESTARTED, checked.SUSPECT])

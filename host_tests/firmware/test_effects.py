@@ -318,13 +318,14 @@ def test_no_sample_computes_more_than_its_share(warm_up, monkeypatch):
 
 
 def test_the_first_sample_speaks_until_the_first_tick_ends():
-    slot = Slot(Term("temp", 0.0, 60.0, 20.0), (0.1, 0, 0))
-    model = loaded([slot], sensor=Sensor(100.0))
+    slots = [Slot(Term("temp", 0, 60, 20), (0.1, 0, 0)), Slot(Term("time", 0, 100), (0, 0.1, 0))]
+    model = loaded(slots, sensor=Sensor(100.0))
     ten_above = still_frame(round((30.0 - 36.53) * 340))
     state = array("i", [0] * STATE.FIT_WEIGHTS)
     for _ in range(3):
         effects.sense(state, model.e, ten_above, 10000, 1)
     assert state[STATE.EFFECT_Q8] / 256 / 131 == pytest.approx(1.0, abs=0.001)
+    assert state[STATE.EFFECT_Q8 + 1] / 256 / 131 == pytest.approx(0.1 * 0.5, abs=0.001)
 
 
 def still_frame(temp=0):

@@ -218,11 +218,28 @@ def test_every_reason_has_words():
 
 
 @pytest.mark.parametrize(
-    "options", [{"binding": bytes(9)}, {"version": 256}, {"pitch": 10}], ids=lambda o: next(iter(o))
+    "options",
+    [{"binding": bytes(9)}, {"version": -1}, {"version": 256}, {"pitch": 1}, {"pitch": 71}],
+    ids=str,
 )
 def test_what_does_not_fit_is_a_value_error(memory, options):
     with pytest.raises(ValueError):
         make_store(memory, **options)
+
+
+@pytest.mark.parametrize("size", [0, 65536])
+def test_a_size_that_does_not_fit_is_a_value_error(memory, size):
+    with pytest.raises(ValueError):
+        Store(memory, BINDING, size)
+
+
+@pytest.mark.parametrize(("size", "version", "pitch"), [(1, 0, 0), (65535, 255, 65559)])
+def test_the_ends_of_every_range_fit(size, version, pitch):
+    memory, payload = FakeMemory(140000), bytearray(size)
+    store = Store(memory, bytes(8), size, version, pitch=pitch)
+    assert store.save(b"\xa5" * size) and store.save(b"\x5a" * size)
+    assert store.load(payload) == stores.LOADED and payload == b"\x5a" * size
+    assert (store.loaded_version, store.saves, store.failures) == (version, 2, 0)
 
 
 def test_a_payload_of_another_length_is_a_value_error(memory):
