@@ -1,8 +1,11 @@
 """Frames that are no readings are counted by kind, never learned from, and explain() says so."""
 
+from array import array
+
 import numpy as np
 import pytest
-from zerorate.layout import STATE
+from zerorate import Corrector
+from zerorate.layout import SETTINGS, STATE
 from zerorate.rest import guard
 
 from .played import estimators, play, rest
@@ -110,3 +113,33 @@ def test_good_frames_are_counted_and_learned_from():
 def test_only_all_zeros_and_all_ones_say_that_the_bus_is_dead(frame):
     corrector, _ = play(np.array([frame]))
     assert corrector.state[COUNTS + guard.GOOD] == 1
+
+
+@pytest.mark.parametrize("word", range(7))
+@pytest.mark.parametrize("value", [-32768, -32767, 32766, 32767])
+def test_only_a_rate_that_cannot_be_larger_is_at_the_rail(word, value):
+    frame = np.arange(1, 8)
+    frame[word] = value
+    corrector, _ = play(np.array([frame]))
+    at_rail = word >= 4 and value in (-32768, 32767)
+    assert corrector.state[COUNTS + guard.RAIL] == at_rail
+
+
+def test_time_up_to_a_leap_passes_and_no_more():
+    corrector = Corrector()
+    leap_us = corrector.settings[SETTINGS.LEAP_US]
+    for number, dt_us in enumerate((0, leap_us, leap_us + 1, leap_us)):
+        verdict = corrector.update(array("i", [1, 2, 3, 4, 5, 6, number]), dt_us)
+        assert verdict == (guard.TIME_LEAPT if dt_us > leap_us else guard.GOOD)
+    assert corrector.state[STATE.ELAPSED_US] == 2 * leap_us
+
+
+def test_a_jump_of_the_temperature_begins_at_its_limit():
+    for sign in (1, -1):
+        corrector = Corrector()
+        limit = corrector.settings[SETTINGS.JUMP_LSB]
+        verdicts = [
+            corrector.update(array("i", [1, 2, 3, temp * sign, 5, 6, temp]), 10000)
+            for temp in (7, 6 + limit, 6 + 2 * limit)
+        ]
+        assert verdicts == [guard.GOOD, guard.GOOD, guard.TEMPERATURE_JUMP]

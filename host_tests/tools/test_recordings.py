@@ -2,6 +2,7 @@
 
 import gzip
 import json
+import sys
 
 import numpy as np
 import pyarrow as pa
@@ -19,7 +20,11 @@ from zerorate_tools.recordings import (
     write_recording,
 )
 from zerorate_tools.recordings.atomic import written_beside
+from zerorate_tools.recordings.bounded import at_most, each_at_most
 from zerorate_tools.recordings.checks import GAP
+
+if sys.platform == "linux":
+    import resource
 
 SCALES = Scales("MPU-6050", 25.0, 131.0, 16384.0, 340.0, 36.53, {"latitude_deg": 48.1})
 _SCALES = '{"sensor": "X", "odr_hz": %s, "gyro_lsb_per_dps": 1}'
@@ -109,11 +114,11 @@ def test_a_frame_holds_raw_integers_and_the_scales():
 
 def test_physical_units_follow_the_scales():
     columns = {"gx": [131], "gy": [0], "gz": [-262], "ax": [0], "ay": [0], "az": [16384]}
-    recording = recording_from_columns({"t_us": [0], **columns, "temp": [0]}, SCALES)
+    recording = recording_from_columns({"t_us": [0], **columns, "temp": [-680]}, SCALES)
     assert recording.gyro_dps().tolist() == [[1.0, 0.0, -2.0]]
     assert recording.accel_g().tolist() == [[0.0, 0.0, 1.0]]
-    assert recording.temp_degc().tolist() == [36.53]
-    assert recording.samples().tolist() == [[0, 0, 16384, 0, 131, 0, -262]]
+    assert recording.temp_degc().tolist() == [34.53]
+    assert recording.samples().tolist() == [[0, 0, 16384, -680, 131, 0, -262]]
 
 
 @pytest.mark.parametrize("file_name", FORMATS)
@@ -180,7 +185,10 @@ def csv_of(tmp_path):
         (f"{HEADER}\n0,1,2,3\n1,,2,3\n", "row 2: gx has no value"),
         (f"{HEADER},vdd_mv\n0,1,2,3,4\n1,1,2,3,\n", "row 2: vdd_mv has no value; fill the gaps"),
         (f"{HEADER}\n0,1,2,3\n1,1,2\n", "row 2: 3 cells where the header names 4"),
-        (f"{HEADER}\n5,1,2,3\n9,1,2,3\n7,1,2,3\n", "row 3: time goes backwards, from 9 to 7 us"),
+        (f"{HEADER}\n0,1,2,3\n1,1,x,3\n2,1,2\n", "row 2: gy is 'x', no integer"),
+        (f"\n\n{HEADER}\n0,1,2,3\n1,1,2\n2,1,x,3\n", "row 2: 3 cells where the header names 4"),
+        (f"{HEADER}\n0,1,2,3\n1,1,x,y\n", "row 2: gy is 'x', no integer"),
+        (f"{HEADER}\n5,1,2,3\n9,1,2,3\n7,1,2,3\n", "row 3: time goes .* from 9 to 7 us; sort or"),
         (f"{HEADER}\n0,1,2,3\n1,99999999999,2,3\n", "row 2: gx is 99999999999, more than 32 bits"),
         (f"{HEADER}\n0,1,2,3\n1,99999999999999999999,2,3\n", "bad.csv"),
         (f"{HEADER},temp\n0,1,2,3,4\n", "lack temp_lsb_per_degc, temp_offset_degc; add"),
@@ -192,6 +200,23 @@ def test_a_bad_csv_is_refused_in_one_line(csv_of, text, complaint):
     with pytest.raises(BadRecording, match=complaint) as raised:
         read_recording(path)
     assert "\n" not in str(raised.value) and "bad." in str(raised.value)
+
+
+@pytest.mark.parametrize(("last", "complaint"), [
+    ("2,1,x,3", "row 200001: gy is 'x', no integer"), ("2,1,2", "row 200001: 3 cells where")
+])  # fmt: skip
+def test_a_row_far_behind_the_first_megabyte_is_named(csv_of, last, complaint):
+    with pytest.raises(BadRecording, match=complaint):
+        read_recording(csv_of(f"{HEADER}\n" + "1,1,2,3\n" * 200_000 + f"{last}\n"))
+
+
+@pytest.mark.parametrize("bits", [30, 31, 32])
+def test_a_clock_that_ran_over_is_told_from_time_that_goes_backwards(csv_of, bits):
+    last = (1 << bits) - 4_000_000
+    for later, do in ((5_999_999, f"clock of {bits} bits ran over: add {1 << bits} to it"),
+                      (6_000_000, "sort or cut the recording there")):  # fmt: skip
+        with pytest.raises(BadRecording, match=f"row 2: time goes backwards.*{do}"):
+            read_recording(csv_of(f"{HEADER}\n{last},1,2,3\n{later},1,2,3\n"))
 
 
 @pytest.mark.parametrize(
@@ -325,11 +350,43 @@ def test_scales_that_no_sensor_has_are_refused_in_one_line(tmp_path, scales, com
     assert len(str(error.value)) < 400
 
 
+SCALES_OF_ALL = {"odr_hz": 1, "gyro_lsb_per_dps": 1, "accel_lsb_per_g": 1}
+SCALES_OF_ALL |= {"sensor": "X", "temp_lsb_per_degc": 1, "temp_offset_degc": 1}
+
+
+@pytest.mark.parametrize(("key", "least", "most"), [
+    ("odr_hz", 1e-5, 1e6), ("gyro_lsb_per_dps", 1e-3, 1e7), ("accel_lsb_per_g", 1e-3, 1e8),
+    ("temp_lsb_per_degc", 1e-3, 1e7), ("temp_offset_degc", -1e6, 1e6),
+])  # fmt: skip
+def test_every_scale_has_ends(csv_of, key, least, most):
+    text = f"{HEADER}\n0,1,2,3\n"
+    for end in (least, most):
+        read = read_recording(csv_of(text, {**SCALES_OF_ALL, key: end}))
+        assert getattr(read.scales, key) == end
+    for beyond in (least - abs(least) / 100, most * 1.01, True):
+        with pytest.raises(BadRecording, match=f"{key} is"):
+            read_recording(csv_of(text, {**SCALES_OF_ALL, key: beyond}))
+
+
 def test_a_cell_of_a_quarter_million_letters_is_named_by_its_row(tmp_path):
     (tmp_path / "x.csv").write_text("t_us,gx,gy,gz\n1,2,3,4\n2," + "a" * 250_000 + ",3,4\n")
     (tmp_path / "x.json").write_text('{"sensor": "X", "odr_hz": 1, "gyro_lsb_per_dps": 1}')
     with pytest.raises(BadRecording, match="row 2: gx is 'a{40}', no integer"):
         read_recording(tmp_path / "x.csv")
+
+
+@pytest.mark.parametrize(("kind", "name", "value"), [
+    ("uint64", "t_us", 2**63 - 1), ("int64", "t_us", 1), ("uint32", "gx", 2**31 - 1),
+    ("int64", "load", -(2**31)), ("int64", "load", 2**31 - 1), ("int16", "gx", -(2**15)),
+])  # fmt: skip
+def test_numbers_that_just_fit_are_read(tmp_path, kind, name, value):
+    columns = {n: pa.array([1, 2], pa.int64()) for n in ("t_us", "gx", "gy", "gz", "load")}
+    columns[name] = pa.array([1, value], getattr(pa, kind)())
+    scales = b'{"sensor": "X", "odr_hz": 1, "gyro_lsb_per_dps": 1}'
+    pq.write_table(
+        pa.table(columns).replace_schema_metadata({b"zerorate": scales}), tmp_path / "x.parquet"
+    )
+    assert read_recording(tmp_path / "x.parquet").columns[name].tolist() == [1, value]
 
 
 @pytest.mark.parametrize(
@@ -361,6 +418,23 @@ def test_a_gzip_that_is_none_is_refused(tmp_path):
         pass
     with pytest.raises(BadRecording, match="empty file"):
         open_recording(tmp_path / "x.csv.gz")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="no other system has such a limit")
+def test_memory_within_a_bound_is_given_and_beyond_it_refused():
+    before = resource.getrlimit(resource.RLIMIT_DATA)
+    with at_most(80), at_most(40):
+        bytearray(20 << 20)
+        with pytest.raises(MemoryError):
+            bytearray(60 << 20)
+        with at_most(200), pytest.raises(MemoryError):
+            bytearray(100 << 20)
+    assert resource.getrlimit(resource.RLIMIT_DATA) == before
+    sizes = each_at_most(iter(map(bytearray, (20 << 20, 60 << 20))), 40)
+    assert len(next(sizes)) == 20 << 20
+    bytearray(60 << 20)  # what takes the item is not bound
+    with pytest.raises(MemoryError):
+        next(sizes)
 
 
 def test_a_file_written_beside_replaces_the_older_one_only_when_all_went_well(tmp_path):
