@@ -2,23 +2,31 @@
 
 import pytest
 from zerorate_tools.bench.loop.simulated import simulate
-from zerorate_tools.closing import close
-from zerorate_tools.recordings import write_recording
+from zerorate_tools.closing import close, load
+from zerorate_tools.recordings import Recording
 
-from .power_ons import recording
+from .power_ons import MPU, recording, written
 
 
 @pytest.fixture(scope="session")
 def logs(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("device")
-    paths = []
-    for s in simulate(7, [("thermal-hysteresis", 5.0)]).sessions:
-        paths.append(folder / f"{s.name}.parquet")
-        write_recording(recording(s), paths[-1])
-    return paths
+    sessions = simulate(7, [("thermal-hysteresis", 5.0)]).sessions
+    return written(tmp_path_factory.mktemp("device"), map(recording, sessions))
 
 
 @pytest.fixture(scope="session")
 def closed(logs, tmp_path_factory):
     folder = tmp_path_factory.mktemp("closed")
     return close(logs, folder, online=True), folder
+
+
+@pytest.fixture
+def closing(tmp_path):
+    """closing(columns of each, *scales): the analysis of recordings, of an MPU-6050 by default."""
+
+    def run(every, *scales):
+        of = scales or [MPU] * len(every)
+        made = [Recording(one, s, f"s{i}") for i, (one, s) in enumerate(zip(every, of))]
+        return load(written(tmp_path, made))
+
+    return run

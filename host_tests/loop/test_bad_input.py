@@ -11,37 +11,10 @@ from pyarrow import parquet
 from zerorate_tools.closing import load
 from zerorate_tools.errors import ZerorateError
 from zerorate_tools.loop.read.gate import CannotClose
-from zerorate_tools.recordings import Recording, Scales, write_recording
 
-N, HZ = 6000, 5.0
-MPU = Scales("MPU-6050", HZ, 131.0, 16384.0, 340.0, 36.53)
+from .power_ons import HZ, MPU, at_rest
 
-
-def columns(seed, n=N):
-    """Twenty minutes at rest, the temperature going up and down."""
-    rng = np.random.default_rng(seed)
-    degc = 25 + 8 * np.sin(np.arange(n) / n * 6 + seed)
-    return {
-        "t_us": (np.arange(n) * 1e6 / HZ).astype(np.int64),
-        **{a: np.rint(rng.normal(30, 4, n)).astype(np.int32) for a in ("gx", "gy", "gz")},
-        **{a: np.rint(rng.normal(0, 60, n)).astype(np.int32) for a in ("ax", "ay")},
-        "az": np.rint(rng.normal(16384, 60, n)).astype(np.int32),
-        "temp": np.rint((degc - 36.53) * 340).astype(np.int32),
-    }
-
-
-@pytest.fixture
-def closed(tmp_path):
-    """Loop over recordings given as columns; scales: of each, the MPU-6050's by default."""
-
-    def run(every, *scales):
-        paths = []
-        for i, one in enumerate(every):
-            paths.append(tmp_path / f"s{i}.parquet")
-            write_recording(Recording(one, scales[i] if scales else MPU, f"s{i}"), paths[-1])
-        return load(paths)
-
-    return run
+N = 6000
 
 
 def invented(analysis):
@@ -52,51 +25,51 @@ def wander(seed, n=N):
     return np.cumsum(np.random.default_rng(seed + 50).normal(0, 3, n)).astype(np.int32)
 
 
-def test_a_constant_channel_is_set_aside_and_named(closed):
-    analysis = closed([{**columns(i), "vdd_mv": np.full(N, 3300)} for i in range(4)])
+def test_a_constant_channel_is_set_aside_and_named(closing):
+    analysis = closing([{**at_rest(i), "vdd_mv": np.full(N, 3300)} for i in range(4)])
     assert analysis.gate.dropped == {"vdd_mv": "constant"} and invented(analysis) == []
 
 
-def test_of_two_channels_that_are_copies_the_first_is_kept(closed):
-    analysis = closed([{**columns(i), "a": wander(i), "b": 3 * wander(i) + 2} for i in range(4)])
+def test_of_two_channels_that_are_copies_the_first_is_kept(closing):
+    analysis = closing([{**at_rest(i), "a": wander(i), "b": 3 * wander(i) + 2} for i in range(4)])
     assert "copy of a" in analysis.gate.dropped["b"] and invented(analysis) == []
 
 
-def test_a_channel_with_the_gyroscopes_own_noise_is_no_cause(closed):
-    every = [columns(i) for i in range(4)]
+def test_a_channel_with_the_gyroscopes_own_noise_is_no_cause(closing):
+    every = [at_rest(i) for i in range(4)]
     for one in every:
         one["rate2"] = 7 * one["gy"] + 40
-    analysis = closed(every)
+    analysis = closing(every)
     assert "own noise" in analysis.gate.dropped["rate2"] and invented(analysis) == []
 
 
-def test_where_the_firmware_sees_shaking_and_learns_nothing_it_is_said(closed):
-    every = [columns(i) for i in range(4)]
+def test_where_the_firmware_sees_shaking_and_learns_nothing_it_is_said(closing):
+    every = [at_rest(i) for i in range(4)]
     for i, one in enumerate(every):
         one["az"] = one["az"] + np.random.default_rng(i).normal(0, 1000, N).astype(np.int32)
-    (note,) = closed(every).gate.notes
+    (note,) = closing(every).gate.notes
     assert " % of the rests" in note and "0.03 g" in note
-    assert closed([columns(i) for i in range(4)]).gate.notes == []
+    assert closing([at_rest(i) for i in range(4)]).gate.notes == []
 
 
-def test_a_recording_of_a_few_samples_is_left_out_without_a_warning(closed):
-    few = {name: values[:10] for name, values in columns(4).items()}
+def test_a_recording_of_a_few_samples_is_left_out_without_a_warning(closing):
+    few = {name: values[:10] for name, values in at_rest(4).items()}
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        analysis = closed([*(columns(i) for i in range(3)), few])
+        analysis = closing([*(at_rest(i) for i in range(3)), few])
     assert "s3: 0.0 minutes" in analysis.gate.notes[0]
 
 
-def test_a_channel_that_one_recording_lacks_is_set_aside_and_named(closed):
-    every = [columns(i) for i in range(4)]
+def test_a_channel_that_one_recording_lacks_is_set_aside_and_named(closing):
+    every = [at_rest(i) for i in range(4)]
     every[0]["load"] = wander(0)
-    assert closed(every).gate.dropped == {"load": "not in s1, s2, s3"}
+    assert closing(every).gate.dropped == {"load": "not in s1, s2, s3"}
 
 
 def test_an_extra_channel_with_gaps_is_bridged(tmp_path):
     paths = []
     for i in range(4):
-        one = {**columns(i), "hum": wander(i).astype(object)}
+        one = {**at_rest(i), "hum": wander(i).astype(object)}
         one["hum"][1000:2500] = one["hum"][::7] = ""
         paths.append(tmp_path / f"s{i}.csv")
         rows = zip(*one.values())
@@ -114,65 +87,65 @@ def test_an_extra_channel_with_gaps_is_bridged(tmp_path):
         ("held", "100 % of its samples are repeated; the rates never change"),
     ],
 )
-def test_a_sensor_that_reads_nothing_is_told_what_it_needs(closed, readings, sentence):
-    one = columns(1)
+def test_a_sensor_that_reads_nothing_is_told_what_it_needs(closing, readings, sentence):
+    one = at_rest(1)
     for name in one:
         if name != "t_us":
             one[name] = np.full(N, 7 if readings == "held" else readings, np.int32)
     if readings != "held":
-        one["az"] = columns(1)["az"]
+        one["az"] = at_rest(1)["az"]
     with pytest.raises(CannotClose, match=sentence):
-        closed([one])
+        closing([one])
 
 
-def test_a_minute_is_too_short_and_two_are_asked_for(closed):
+def test_a_minute_is_too_short_and_two_are_asked_for(closing):
     with pytest.raises(CannotClose, match=r"s0: 1\.0 minutes are too short; 2 minutes at rest"):
-        closed([columns(1, 300)])
+        closing([at_rest(1, 300)])
 
 
-def test_of_four_a_short_one_is_left_out_and_named(closed):
-    analysis = closed([*(columns(i) for i in range(3)), columns(4, 100)])
+def test_of_four_a_short_one_is_left_out_and_named(closing):
+    analysis = closing([*(at_rest(i) for i in range(3)), at_rest(4, 100)])
     assert len(analysis.sessions) == 3 and "s3: 0.2 minutes" in analysis.gate.notes[0]
 
 
-def test_beside_an_hour_a_short_one_is_told_why_it_needs_more_than_alone(closed):
-    analysis = closed([*(columns(i, 60 * 60 * 5) for i in range(2)), columns(4, 1400)])
+def test_beside_an_hour_a_short_one_is_told_why_it_needs_more_than_alone(closing):
+    analysis = closing([*(at_rest(i, 60 * 60 * 5) for i in range(2)), at_rest(4, 1400)])
     (note,) = analysis.gate.notes
     assert "s2: 4.6 minutes are too short; 5 minutes at rest are needed (15 blocks of 20 s" in note
 
 
-def test_what_is_there_is_never_said_to_be_what_is_needed(closed):
+def test_what_is_there_is_never_said_to_be_what_is_needed(closing):
     with pytest.raises(CannotClose, match=r"s0: 1\.9 minutes are too short; 2 minutes at rest"):
-        closed([columns(1, 590)])
+        closing([at_rest(1, 590)])
 
 
-def test_recordings_all_in_motion_are_told_to_rest(closed):
-    every = [columns(i) for i in range(2)]
+def test_recordings_all_in_motion_are_told_to_rest(closing):
+    every = [at_rest(i) for i in range(2)]
     for i, one in enumerate(every):
         one["gz"] = np.rint(131 * 60 * np.sin(np.arange(N) / (2 + i))).astype(np.int32)
     with pytest.raises(CannotClose, match="s1: only 0.0 minutes are still; .* untouched"):
-        closed(every)
+        closing(every)
 
 
-def test_a_clock_that_wraps_is_a_sentence_too(closed):
-    one = columns(1)
+def test_a_clock_that_wraps_is_a_sentence_too(closing):
+    one = at_rest(1)
     one["t_us"] = (one["t_us"] + 2**32 - 10**9) % 2**32
     with pytest.raises(ZerorateError, match=r"row .*time goes backwards.*32 bits.*add 4294967296"):
-        closed([one])
+        closing([one])
 
 
-def test_a_clock_that_was_set_back_is_to_be_sorted_or_cut(closed):
-    one = columns(1)
+def test_a_clock_that_was_set_back_is_to_be_sorted_or_cut(closing):
+    one = at_rest(1)
     one["t_us"][3000:] -= 10**8
     with pytest.raises(ZerorateError, match="row .*time goes backwards.* sort or cut"):
-        closed([one])
+        closing([one])
 
 
 def test_whole_numbers_with_gaps_that_a_table_made_floats_are_integers_with_gaps(tmp_path):
     paths = []
     for i in range(3):
         vdd_mv = np.where(np.arange(N) % 5, np.nan, 3300.0 + wander(i))
-        table = pa.table({**columns(i), "vdd_mv": vdd_mv})
+        table = pa.table({**at_rest(i), "vdd_mv": vdd_mv})
         paths.append(tmp_path / f"s{i}.parquet")
         metadata = {"zerorate": json.dumps(MPU.to_json())}
         parquet.write_table(table.replace_schema_metadata(metadata), paths[-1])
@@ -181,68 +154,68 @@ def test_whole_numbers_with_gaps_that_a_table_made_floats_are_integers_with_gaps
 
 
 @pytest.mark.parametrize("lacking", [("temp",), ("ax", "ay", "az"), ("temp", "ax", "ay", "az")])
-def test_without_temperature_or_acceleration_the_rest_is_still_looked_at(closed, lacking):
-    every = [{k: v for k, v in columns(i).items() if k not in lacking} for i in range(4)]
-    analysis = closed(every)
+def test_without_temperature_or_acceleration_the_rest_is_still_looked_at(closing, lacking):
+    every = [{k: v for k, v in at_rest(i).items() if k not in lacking} for i in range(4)]
+    analysis = closing(every)
     assert invented(analysis) == [] and np.isfinite(analysis.judgement.after_dps).all()
 
 
 @pytest.mark.parametrize("name", ["count", "known", "vib count", "gyro0"])
-def test_a_channel_of_any_name_leaves_the_rates_alone(closed, name):
-    every = [columns(i) for i in range(3)]
+def test_a_channel_of_any_name_leaves_the_rates_alone(closing, name):
+    every = [at_rest(i) for i in range(3)]
     for one in every:
         one[name] = np.arange(N) * 1000
-    analysis, plain = closed(every), closed([columns(i) for i in range(3)])
+    analysis, plain = closing(every), closing([at_rest(i) for i in range(3)])
     rate, expected = (a.sessions[0].rate_dps for a in (analysis, plain))
     assert rate == pytest.approx(expected, nan_ok=True)
     assert invented(analysis) == []
 
 
-def test_a_channel_named_like_a_source_of_the_model_is_set_aside_and_named(closed):
-    every = [{**columns(i), "vib": np.arange(N)} for i in range(3)]
-    assert "rename the column" in closed(every).gate.dropped["vib"]
+def test_a_channel_named_like_a_source_of_the_model_is_set_aside_and_named(closing):
+    every = [{**at_rest(i), "vib": np.arange(N)} for i in range(3)]
+    assert "rename the column" in closing(every).gate.dropped["vib"]
 
 
-def test_a_recording_that_is_mostly_a_gap_is_told_to_be_cut(closed):
-    one = columns(1)
+def test_a_recording_that_is_mostly_a_gap_is_told_to_be_cut(closing):
+    one = at_rest(1)
     one["t_us"][N // 2 :] += 10 * 3600 * 1_000_000
     with pytest.raises(CannotClose, match="s0: nothing for 10.0 h of its .* cut it there"):
-        closed([one])
+        closing([one])
 
 
-def test_a_temperature_at_the_rails_is_no_temperature(closed):
-    every = [columns(i) for i in range(3)]
+def test_a_temperature_at_the_rails_is_no_temperature(closing):
+    every = [at_rest(i) for i in range(3)]
     for i, one in enumerate(every):
         one["temp"][np.random.default_rng(i).integers(0, N, N // 50)] = -32768
-    analysis = closed(every)
+    analysis = closing(every)
     assert invented(analysis) == []
     assert all(np.ptp(s.sources["temp"]) < 20 for s in analysis.sessions)
 
 
-def test_an_accelerometer_that_gives_nothing_is_none(closed):
+def test_an_accelerometer_that_gives_nothing_is_none(closing):
     every = [
-        {**columns(i), "ax": np.zeros(N), "ay": np.zeros(N), "az": np.zeros(N)} for i in range(3)
+        {**at_rest(i), "ax": np.zeros(N), "ay": np.zeros(N), "az": np.zeros(N)} for i in range(3)
     ]
-    assert invented(closed(every)) == []
+    assert invented(closing(every)) == []
 
 
-def test_power_ons_whose_clocks_differ_a_little_are_of_one_device(closed):
+def test_power_ons_whose_clocks_differ_a_little_are_of_one_device(closing):
     clocks = [replace(MPU, odr_hz=HZ * k) for k in (1.0, 1.0002, 0.97)]
-    assert len(closed([columns(i) for i in range(3)], *clocks).sessions) == 3
+    assert len(closing([at_rest(i) for i in range(3)], *clocks).sessions) == 3
 
 
-def test_rows_of_fifteen_seconds_lie_alike_in_every_power_on(closed):
-    slow = [{**columns(i, 480), "t_us": 15_000_000 * np.arange(480)} for i in range(3)]
-    sessions = closed(slow, *(replace(MPU, odr_hz=hz) for hz in (1 / 15, 0.0667, 0.066))).sessions
+def test_rows_of_fifteen_seconds_lie_alike_in_every_power_on(closing):
+    slow = [{**at_rest(i, 480), "t_us": 15_000_000 * np.arange(480)} for i in range(3)]
+    sessions = closing(slow, *(replace(MPU, odr_hz=hz) for hz in (1 / 15, 0.0667, 0.066))).sessions
     assert len({(s.block_s, s.ticks_per_block) for s in sessions}) == 1
 
 
-def test_another_data_rate_is_another_setting(closed):
+def test_another_data_rate_is_another_setting(closing):
     with pytest.raises(CannotClose, match="odr_hz is 2.5, but 5.0 in s0"):
-        closed([columns(0), columns(1)], MPU, replace(MPU, odr_hz=HZ / 2))
+        closing([at_rest(0), at_rest(1)], MPU, replace(MPU, odr_hz=HZ / 2))
 
 
-def test_scales_that_an_import_chose_are_told_how_to_agree(closed):
+def test_scales_that_an_import_chose_are_told_how_to_agree(closing):
     wider = replace(MPU, sensor="unknown", gyro_lsb_per_dps=65.5)
     with pytest.raises(CannotClose, match="import both with --gyro-lsb-per-dps N"):
-        closed([columns(0), columns(1)], replace(MPU, sensor="unknown"), wider)
+        closing([at_rest(0), at_rest(1)], replace(MPU, sensor="unknown"), wider)

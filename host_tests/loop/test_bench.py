@@ -5,10 +5,9 @@ import json
 import pytest
 from zerorate_tools.bench.loop.bin_tables import hipnuc
 from zerorate_tools.bench.loop.devices import CATALOGUE, Device, devices
-from zerorate_tools.bench.loop.figures import figures
+from zerorate_tools.bench.loop.figures import figures, share
 from zerorate_tools.bench.loop.run_trial import Outcome, run_trial
 from zerorate_tools.bench.loop.trials import looked_at, markdown
-from zerorate_tools.bench.loop.wilson import interval
 
 
 def test_a_device_is_looked_at_and_judged():
@@ -36,8 +35,8 @@ def test_figures_count_what_was_found_named_and_made_worse():
 
 
 def test_a_share_of_none_of_two_hundred_may_still_be_two_percent():
-    low, high = interval(0, 200)
-    assert low == 0.0 and high == pytest.approx(0.0188, abs=1e-4)
+    none = share("found", [None] * 200, bool, 0.5)
+    assert none.low == 0.0 and none.high == pytest.approx(1.88, abs=0.01)
 
 
 def test_the_whole_benchmark_has_the_numbers_asked_for():

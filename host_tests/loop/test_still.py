@@ -10,7 +10,9 @@ from zerorate_tools.bench.loop.rests import (
 )
 from zerorate_tools.loop.read.still import still_ticks
 from zerorate_tools.loop.read.ticks import read_ticks
-from zerorate_tools.recordings import Recording, Scales, write_recording
+from zerorate_tools.recordings import Recording, Scales
+
+from .power_ons import turning, written
 
 ODR = 20
 SCALES = Scales("MPU-6050", float(ODR), 131.0, None, 340.0, 36.53)
@@ -21,14 +23,9 @@ def still(tmp_path):
     """(m,) bool of a rate in dps and a temperature in degC, each a sample."""
 
     def of(rate_dps, temp_degc):
-        n = len(rate_dps)
-        rng = np.random.default_rng(3)
-        columns = {"t_us": np.arange(n, dtype=np.int64) * (1_000_000 // ODR)}
-        for name in ("gx", "gy", "gz"):
-            columns[name] = np.round((rate_dps + rng.normal(0, 0.05, n)) * 131).astype(np.int32)
+        columns = turning(3, rate_dps, ODR)
         columns["temp"] = np.round((temp_degc - 36.53) * 340).astype(np.int32)
-        path = tmp_path / "run.parquet"
-        write_recording(Recording(columns, SCALES, "run"), path)
+        [path] = written(tmp_path, [Recording(columns, SCALES, "run")])
         return still_ticks(read_ticks(path))
 
     return of

@@ -6,11 +6,11 @@ from functools import partial
 from typing import TypeVar
 
 import numpy as np
+from scipy.stats import binomtest
 
 from .devices import CATALOGUE, HIDDEN, KINK, MANY_WIDTHS, NULL, OUT, OUTSIDE, REAL, STEP, TWO
 from .files import ROWS
 from .run_trial import Outcome
-from .wilson import interval
 
 Looked = TypeVar("Looked")
 
@@ -53,9 +53,10 @@ def share(
 ) -> Figure:
     """Percent of outcomes of which something holds."""
     hits = [bool(says(o)) for o in group]
-    low, high = interval(sum(hits), len(hits))
-    value = 100.0 * sum(hits) / max(len(hits), 1)
-    return Figure(name, value, limit, at_most, len(hits), 100 * low, 100 * high)
+    value, sure = 100.0 * sum(hits) / max(len(hits), 1), (0.0, 1.0)
+    if hits:
+        sure = binomtest(sum(hits), len(hits)).proportion_ci(method="wilson")
+    return Figure(name, value, limit, at_most, len(hits), 100 * sure[0], 100 * sure[1])
 
 
 def figures(outcomes: list[Outcome]) -> list[Figure]:

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from ..public_data import told_of
 from ..tables import machine_line, table
 from .bin_tables import hipnuc, rms_mdps
-from .flips import flip
 
 #: Files of the data folder.
 RECORDINGS = (
@@ -71,7 +70,7 @@ def _closed(name: str, paths: list[Path], scratch: Path, plots: Path | None) -> 
     analysis, _ = measure_and_prune(load([*logs]), logs, scratch / "corrected.parquet")
     row = _row(analysis, report(analysis))
     if "vn200" in paths[0].parent.name:
-        row["flip"] = flip(analysis.sessions[0], float(analysis.floor_dps[2]))
+        row["flip"] = _flip(analysis.sessions[0], float(analysis.floor_dps[2]))
     if plots:
         from .plots import draw_recording
 
@@ -99,6 +98,28 @@ def _row(analysis, told: dict) -> dict:
         "steps_listed": len(told["events"]),
         "drift_unexplained": "yes" if judgement.residual_test.left else "no",
     }
+
+
+def _flip(session, floor_dps: float) -> str:
+    """What turning the part over did to its z rate, beside what Earth's rotation can do.
+
+    floor_dps: of the z axis: what a mean over each side is uncertain by.
+    """
+    from ...loop.read.earth import EARTH_DPS
+
+    up = session.block_mean(session.sources["acc_z"]) > 0
+    there = session.available
+    if not (up & there).any() or not (~up & there).any():
+        return "not turned over"
+    change = 1e3 * (
+        session.rate_dps[up & there, 2].mean() - session.rate_dps[~up & there, 2].mean()
+    )
+    sure = 2e3 * floor_dps * np.sqrt(2.0)
+    earth = 2e3 * EARTH_DPS
+    said = f"{change:+.1f} +- {sure:.1f} mdps over a turn; Earth's rotation can be {earth:.1f}: "
+    if abs(change) - sure <= earth:
+        return said + "these data cannot tell the two apart"
+    return said + f"at least {abs(change) - sure - earth:.1f} mdps are acceleration's"
 
 
 def _noise(analysis) -> float:

@@ -7,12 +7,15 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import median_filter
 
 from ...model.term import Term
-from ..read.outliers import held
 from ..read.sessions import Session, block_basis
 from .cross_products import CrossProducts, cross_products, whitener
 from .likelihood import Base, fit_base, ratios, session_scale
+
+#: Times the usual distance from the median of so many neighbours.
+_OUTLIER, _NEAR = 6.0, 9
 
 
 @dataclass
@@ -145,7 +148,7 @@ class Regression:
         self.outliers = 0
         for i, s in enumerate(self.sessions):
             model = predicted(terms, coefficients, s)
-            clean, count = held(s.rate_dps - model)
+            clean, count = _without_outliers(s.rate_dps - model)
             self.rate[i] = clean + model
             self.outliers += count
         self._prepare()
@@ -176,3 +179,21 @@ def predicted(terms, coefficients: np.ndarray, session: Session) -> np.ndarray:
     for term, c in zip(terms, coefficients):
         out += np.outer(block_basis(term, session), c)
     return out
+
+
+def _without_outliers(residual: np.ndarray) -> tuple[np.ndarray, int]:
+    """(n, A) residual with outlying blocks replaced by the running median of nine, and how many
+    there were.
+    """
+    out, count = residual.copy(), 0
+    for a in range(residual.shape[1]):
+        column = residual[:, a]
+        good = np.isfinite(column)
+        if good.sum() < _NEAR:
+            continue
+        middle = median_filter(column[good], _NEAR, mode="nearest")
+        off = column[good] - middle
+        bad = np.abs(off) > _OUTLIER * max(1.4826 * np.median(np.abs(off)), 1e-12)
+        out[np.flatnonzero(good)[bad], a] = middle[bad]
+        count += int(bad.sum())
+    return out, count
