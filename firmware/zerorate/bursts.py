@@ -2,7 +2,7 @@
 
 from array import array
 
-from .native import bursts
+from .native import bursts, rest
 
 
 class Bursts:
@@ -10,7 +10,12 @@ class Bursts:
 
     def __init__(self, corrector):
         self.corrector = corrector
-        self._frame = array("i", [0] * 9)
+        self._frame = array("i", [0] * 7)
+        self._run = bursts.run
+        if bursts.run:
+            # to look up where they lie takes as long as two samples
+            self._state = rest.address(corrector.state)
+            self._settings = rest.address(corrector.settings)
 
     def update(self, frames, count):
         """Do what `Corrector.update` does with each of `count` samples; allocates nothing.
@@ -18,9 +23,8 @@ class Bursts:
         frames: array('i') of eight words a sample: dt_us, then ax ay az temp gx gy gz. Rates are
         corrected in place, and each first word becomes what `Corrector.update` returns.
         """
-        corrector = self.corrector
-        if bursts.run and corrector.alone:
-            bursts.block(corrector.state, frames, corrector.settings, self._frame, count)
+        if self._run and self.corrector.alone:
+            self._run(self._state, self._settings, frames, count)
         else:
             self._one_by_one(frames, count)
 

@@ -156,7 +156,7 @@ def settings(sensor, bins, short, long, document, every, ignore_outside, limits)
     recent_of(c, sensor, limits)
     c[_AXES] = _FIT_WEIGHTS + c[_ESTIMATOR_COUNT] - _TURN_ON_OFFSET_Q8
     c[_AXIS_WORDS] = c[_ESTIMATORS_END]
-    c[_WORK_A_SAMPLE] = 9 // c[_WINDOW] + 1
+    c[_WORK_A_SAMPLE] = 12 // c[_WINDOW] + 1
     return c
 
 

@@ -34,7 +34,7 @@ def whole_trace(mode):
 @pytest.mark.parametrize("at_once", [1, 73, 500])
 def test_the_kernel_gives_what_single_updates_give(one_by_one, at_once):
     mode, state, words = one_by_one
-    corrector, done, room = corrector_for(mode), array("i"), array("i", [0] * 9)
+    corrector, done, room = corrector_for(mode), array("i"), array("i", [0] * 7)
     rows = whole_trace(mode)
     for first in range(0, len(rows), at_once):
         burst = array("i", b"".join(row.tobytes() for row in rows[first : first + at_once]))

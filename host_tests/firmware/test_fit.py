@@ -42,6 +42,7 @@ class Axis:
             if k < len(points):
                 s[e : e + 4] = type(s)("i", [points[k][0] >> 4, *points[k]])
         fit.draw_line(s, c, self.a)
+        fit.bend(s, c, self.a)
         return self
 
     def line_lsb(self, temp_q4):
@@ -125,5 +126,6 @@ def test_a_few_samples_of_a_slow_rate_still_tell_near_from_far():
             s[e : e + 4] = type(s)("i", held)
         s[STATE.TEMP] = 2 * 340
         fit.draw_line(s, c, a)
+        fit.bend(s, c, a)
     lines = [fit.line_q8(x.state, axis_at(x.settings, 0), 2 * 340 << 4) / 256 for x in (slow, fast)]
     assert lines[0] == pytest.approx(lines[1], rel=0.05)

@@ -72,8 +72,7 @@ def test_bursts_end_in_the_golden_state(machine_code, processor, mode, at_once, 
     rows = np.c_[dt_us, rows].astype(np.int32)
     for first in range(0, len(rows), at_once):
         burst = array("i", rows[first : first + at_once].tobytes())
-        room = array("i", [0] * 8 + [len(burst)])
-        run(corrector.state, corrector.settings, burst, room)
+        run(corrector.state, corrector.settings, burst, len(burst) // 8)
     assert checksums(corrector.state.tobytes(), b"")["state"] == golden[mode]["state"]
 
 

@@ -1,14 +1,6 @@
 """Many samples in one call."""
 
-from . import machine_code
+from . import machine_code, rest
 
-# the word of the room in which the burst's end stands
-_END = 8
-
-run = machine_code("bursts")
-
-if run:
-
-    def block(s, f, c, r, n):
-        r[_END] = n << 3
-        run(s, c, f, r)
+# run(state, settings, frames, how many they are), or None
+run = machine_code("bursts") if rest.is_machine_code else None

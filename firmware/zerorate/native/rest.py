@@ -38,11 +38,14 @@ if step:
     def copy(source, target, first, end):
         step(source, target, end, _COPY + first)
 
+    def address(words):
+        return step(words, 0, 0, _ADDRESS)
+
     def bound(s, c):
         """step(x, dt_us) of these two arrays: to look up where they lie takes as long as it."""
         run = step
-        s_at = run(s, 0, 0, _ADDRESS)
-        c_at = run(c, 0, 0, _ADDRESS)
+        s_at = address(s)
+        c_at = address(c)
 
         def update(x, dt_us, kept=(s, c)):
             return run(s_at, c_at, x, dt_us)

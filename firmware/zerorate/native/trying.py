@@ -42,8 +42,6 @@ def answer(run, known):
     b = _array(known[5])
     c = _array(known[6])
     what = known[1]
-    if what is None:
-        what = array("i", [0] * 8 + [known[2]])
     number = 1
     for _ in range(known[0]):
         for i in range(known[2]):

@@ -1,16 +1,13 @@
 """Many frames in one call, as a chip's FIFO gives them: what `step` does, faster."""
 
-# Between the first and the last frame of a window nearly every frame is a good reading, and nothing
-# but sums, counts and the correction changes. Such a stretch is taken here in one loop over locals,
-# which cost machine code half of what words of the state do; a frame that begins a window or ends a
-# rest is gathered before and behind it. Whatever is not plain at one look (a fault, a repeat, work
-# that waits, a window's last frame) is left to `step`; both give the same, to the last bit.
-#
-# Its frame on the stack is too large for bytecode, which would take heap for it: it is made into
-# machine code only.
+# Up to the last frame of a window nearly every frame is a good reading, and nothing but sums,
+# counts and the correction changes. How many frames that is true of is found first; then sums and
+# axes have each a loop of their own over them, whose few locals machine code keeps in registers.
+# What is not plain at one look (a fault, a repeat, work that waits, a frame that ends a rest or a
+# window) is left to `step`; both give the same, to the last bit. Frames on the stack are too large
+# for bytecode, which would take heap for them: this is made into machine code only.
 #
 # A frame of `f` is eight words: us since the frame before, ax ay az temp gx gy gz in raw LSB.
-# `r` is room for seven of them, and behind it two words that say what is left to do.
 
 try:
     from micropython import const
@@ -24,7 +21,6 @@ ptr32 = None
 
 
 from .step import step
-from .stillness import gather
 
 # layout: The corrector's state
 _FRAME = const(0)
@@ -35,6 +31,7 @@ _DIRTY = const(18)
 _REFERENCE = const(19)
 _WINDOW_SUM = const(26)
 _SQUARE_ACCEL = const(33)
+_REST = const(34)
 _SQUARE_GYRO = const(35)
 _WORK = const(55)
 _OUT_Q8 = const(57)
@@ -51,18 +48,14 @@ _WINDOW = const(3)
 _EVERY = const(46)
 # layout: end
 
-_AT = const(7)  # the word of f at which the next frame begins
-_END = const(8)  # and that behind the last one
-
-
 _MOST_US = const(0x1FFFFFFF)
 _MOST_LEAP_US = const(0x1FFFFF)  # a window of them and _MOST_US fit 31 bits
 _NEARLY_MOST_COUNT = const(0x1FFFFE00)
 _FAR_FROM_RAILS = const(32000)
 
 
-def stretch(s: ptr32, c: ptr32, r: ptr32) -> int:
-    """Return how many of the next frames may be taken at one look: those within the window.
+def stretch(s: ptr32, c: ptr32, n: int) -> int:
+    """Return how many of the next n frames may be taken at one look: those within the window.
 
     None while anything but a plain reading is to be done: work waits, the correction is on its way
     to its target, every reading is learned or published for its temperature.
@@ -76,7 +69,6 @@ def stretch(s: ptr32, c: ptr32, r: ptr32) -> int:
     if s[_OUT_Q8 + 2] != s[_TARGET_Q8 + 2]:
         return 0
     i = c[_WINDOW] - 1 - s[_WINDOW_N]
-    n = (r[_END] - r[_AT]) >> 3
     return i if i < n else n
 
 
@@ -96,218 +88,203 @@ def plain(s: ptr32, f: ptr32, c: ptr32, p: int) -> int:
     return 1
 
 
-def edge(s: ptr32, f: ptr32, c: ptr32, r: ptr32, k: int) -> int:
-    """Take the next frame, which may begin a window or end its rest, if k and it is plain.
+def begin_window(s: ptr32, f: ptr32, p: int):
+    """Let the frame at word p of f be what the window's sums are less."""
+    i = _WINDOW_SUM
+    while i < _REST:
+        s[i] = 0
+        i += 1
+    i = 0
+    while i < 7:
+        s[_REFERENCE + i] = f[p + 1 + i]
+        i += 1
+    s[_SQUARE_GYRO] = 0
+    s[_DIRTY] = 0
+    i = 0
+    while i < 3:
+        s[_EFFECT_SUM_Q8 + i] = 0
+        s[_LAST_RATE + i] = 0
+        i += 1
+    s[_SQUARE_STEP] = 0
 
-    Returns 0 if it was not taken. What begins a window is so far from the rails that what is near
-    to it is no rail either.
+
+def followed(f: ptr32, c: ptr32, p: int, end: int) -> int:
+    """Return the word behind the frames from p on that are plain, the first of them known to be.
+
+    Their rates may stand at a rail: see `off_rails`.
     """
-    p = r[_AT]
-    if k:
-        k = plain(s, f, c, p)
-    if k:
-        i = 0
-        while i < 7:
-            r[i] = f[p + 1 + i]
-            s[_FRAME + i] = r[i]
-            i += 1
-        s[_COUNTS] += 1
-        i = s[_ELAPSED_US] + f[p]
-        s[_ELAPSED_US] = i if i < _MOST_US else _MOST_US
-    if k:
-        gather(s, c, r)
-    if k:
-        i = 0
-        while i < 3:
-            d = (r[4 + i] << 8) - s[_OUT_Q8 + i] - s[_EFFECT_Q8 + i] + s[_CARRY_Q8 + i] + 128
-            f[p + 5 + i] = d >> 8
-            s[_CARRY_Q8 + i] = (d & 255) - 128
-            i += 1
-        f[p] = 0
-        r[_AT] = p + 8
-    return k
-
-
-def account(s: ptr32, f: ptr32, p: int, taken: int, elapsed_us: int):
-    """Count the frames before word p of f that were taken; the last one is the frame before."""
-    s[_FRAME] = f[p - 7]
-    s[_FRAME + 1] = f[p - 6]
-    s[_FRAME + 2] = f[p - 5]
-    s[_FRAME + 3] = f[p - 4]
-    s[_COUNTS] += taken
-    s[_WINDOW_N] += taken
-    elapsed_us += s[_ELAPSED_US]
-    s[_ELAPSED_US] = elapsed_us if elapsed_us < _MOST_US else _MOST_US
-
-
-def take(s: ptr32, f: ptr32, c: ptr32, r: ptr32):
-    """Take frames at one look each, up to the window's last or to one that is not plain."""
-    left = stretch(s, c, r)
-    d = 1 if left and s[_WINDOW_N] == 0 else 0
-    n = edge(s, f, c, r, d)
-    if d:
-        left = left - 1 if n else 0
-    p = r[_AT]
-    n = left
-    moving = s[_DIRTY]
-    leap_us = c[_LEAP_US]
-    usual_us = leap_us
-    since = p
-    elapsed_us = 0
-    most_jump = c[_JUMP_LSB] - 1
-    least_jump = 1 - c[_JUMP_LSB]
-    # what is as near to the temperature before costs one comparison less
-    near = 256 if c[_JUMP_LSB] > 256 else 0
-    near_bits = 9 if near else 0
-    last_t = s[_FRAME + 3]
-    last_x = s[_FRAME + 4]
-    last_y = s[_FRAME + 5]
-    last_z = s[_FRAME + 6]
-    ref_a = s[_REFERENCE]
-    ref_b = s[_REFERENCE + 1]
-    ref_c = s[_REFERENCE + 2]
-    ref_t = s[_REFERENCE + 3]
-    ref_x = s[_REFERENCE + 4]
-    ref_y = s[_REFERENCE + 5]
-    ref_z = s[_REFERENCE + 6]
-    sum_a = s[_WINDOW_SUM]
-    sum_b = s[_WINDOW_SUM + 1]
-    sum_c = s[_WINDOW_SUM + 2]
-    sum_t = s[_WINDOW_SUM + 3]
-    sum_x = s[_WINDOW_SUM + 4]
-    sum_y = s[_WINDOW_SUM + 5]
-    sum_z = s[_WINDOW_SUM + 6]
-    square_accel = s[_SQUARE_ACCEL]
-    square_gyro = s[_SQUARE_GYRO]
-    square_step = s[_SQUARE_STEP]
-    # what is due to a rate, Q8: half an LSB and what was left over, less the bias
-    bias_x = s[_OUT_Q8] + s[_EFFECT_Q8]
-    bias_y = s[_OUT_Q8 + 1] + s[_EFFECT_Q8 + 1]
-    bias_z = s[_OUT_Q8 + 2] + s[_EFFECT_Q8 + 2]
-    due_x = s[_CARRY_Q8] + 128 - bias_x
-    due_y = s[_CARRY_Q8 + 1] + 128 - bias_y
-    due_z = s[_CARRY_Q8 + 2] + 128 - bias_z
-    while left:
-        if f[p] != usual_us:
-            if f[p] <= 0 or f[p] > leap_us:
-                break
-            elapsed_us += ((p - since) >> 3) * usual_us
-            since = p
-            usual_us = f[p]
-        t = f[p + 4]
-        d = t - last_t
-        if (d + near) >> near_bits:
-            if d > most_jump or d < least_jump:
-                break
+    p += 8
+    most = c[_JUMP_LSB]
+    while p < end:
+        if f[p] != f[p - 8]:
+            if f[p] <= 0 or f[p] > c[_LEAP_US]:
+                return p
+        d = f[p + 4] - f[p - 4]
+        if d < 0:
+            d = 0 - d
         x = f[p + 5]
-        y = f[p + 6]
-        z = f[p + 7]
-        if x == last_x and y == last_y and z == last_z:
-            break  # a repeat, perhaps
-        if x == y and y == z:
-            break  # all zeros or all ones, perhaps
-        if moving:
-            if ((x + 16384) | (y + 16384) | (z + 16384)) >> 15:
-                if x > 32766 or y > 32766 or z > 32766:
-                    break
-                if x < -32767 or y < -32767 or z < -32767:
-                    break
-            sum_t += t - ref_t
-        else:
-            a = f[p + 1] - ref_a
-            b = f[p + 2] - ref_b
-            g = f[p + 3] - ref_c
-            d = t - ref_t
-            dx = x - ref_x
-            dy = y - ref_y
-            dz = z - ref_z
-            far = (a + 512) | (b + 512) | (g + 512) | (d + 512)
-            if ((dx + 512) | (dy + 512) | (dz + 512) | far) >> 10:
-                break  # the window is no rest from here on
-            sum_a += a
-            sum_b += b
-            sum_c += g
-            sum_t += d
-            sum_x += dx
-            sum_y += dy
-            sum_z += dz
-            square_accel += a * a + b * b + g * g
-            square_gyro += dx * dx + dy * dy + dz * dz
-            a = x - last_x
-            b = y - last_y
-            g = z - last_z
-            square_step += a * a + b * b + g * g
-        last_t = t
-        last_x = x
-        last_y = y
-        last_z = z
-        f[p + 5] = (due_x >> 8) + x
-        due_x = (due_x & 255) - bias_x
-        f[p + 6] = (due_y >> 8) + y
-        due_y = (due_y & 255) - bias_y
-        f[p + 7] = (due_z >> 8) + z
-        due_z = (due_z & 255) - bias_z
+        if d >= most or x == f[p - 3]:
+            if d >= most or (f[p + 6] == f[p - 2] and f[p + 7] == f[p - 1]):
+                return p  # a jump, or a repeat, perhaps
+        if x == f[p + 6] and x == f[p + 7]:
+            return p  # all zeros or all ones, perhaps
+        p += 8
+    return end
+
+
+def off_rails(f: ptr32, p: int, end: int) -> int:
+    """Return the word behind the frames from p on of which no rate stands at a rail."""
+    while p < end:
+        # sixteen bits of a rate are one too many where it is next to a rail
+        far = (f[p + 5] + 32767) | (f[p + 6] + 32767) | (f[p + 7] + 32767)
+        far |= (f[p + 5] + 32769) | (f[p + 6] + 32769) | (f[p + 7] + 32769)
+        if far >> 16:
+            return p
+        p += 8
+    return end
+
+
+def near(s: ptr32, f: ptr32, p: int, end: int) -> int:
+    """Return the word behind the frames from p on that stay near the window's first frame."""
+    while p < end:
+        far = (f[p + 1] - s[_REFERENCE] + 512) | (f[p + 2] - s[_REFERENCE + 1] + 512)
+        far |= (f[p + 3] - s[_REFERENCE + 2] + 512) | (f[p + 4] - s[_REFERENCE + 3] + 512)
+        far |= (f[p + 5] - s[_REFERENCE + 4] + 512) | (f[p + 6] - s[_REFERENCE + 5] + 512)
+        if (far | (f[p + 7] - s[_REFERENCE + 6] + 512)) >> 10:
+            return p  # the window is no rest from here on
+        p += 8
+    return end
+
+
+def add_accelerations(s: ptr32, f: ptr32, p: int, end: int):
+    """Add the frames from word p on to the sums of the window's accelerations."""
+    i = 0
+    square = s[_SQUARE_ACCEL]
+    while i < 3:
+        reference = s[_REFERENCE + i]
+        total = s[_WINDOW_SUM + i]
+        i += 1
+        k = p + i
+        while k < end:
+            d = f[k] - reference
+            total += d
+            square += d * d
+            k += 8
+        s[_WINDOW_SUM - 1 + i] = total
+    s[_SQUARE_ACCEL] = square
+
+
+def add_rates(s: ptr32, f: ptr32, p: int, end: int):
+    """Add the frames from word p on to the sums of the window's rates."""
+    i = 0
+    while i < 3:
+        reference = s[_REFERENCE + 4 + i]
+        total = 0
+        square = 0
+        steps = 0
+        last = s[_LAST_RATE + i]
+        k = p + 5 + i
+        while k < end:
+            d = f[k] - reference
+            total += d
+            square += d * d
+            last = d - last
+            steps += last * last
+            last = d
+            k += 8
+        s[_WINDOW_SUM + 4 + i] += total
+        s[_SQUARE_GYRO] += square
+        s[_SQUARE_STEP] += steps
+        s[_LAST_RATE + i] = last
+        s[_EFFECT_SUM_Q8 + i] += s[_EFFECT_Q8 + i] * ((end - p) >> 3)
+        i += 1
+
+
+def account(s: ptr32, f: ptr32, p: int, end: int):
+    """Count the frames from word p on; the last one is the frame before."""
+    elapsed_us = s[_ELAPSED_US]
+    total = s[_WINDOW_SUM + 3]
+    reference = s[_REFERENCE + 3]
+    s[_COUNTS] += (end - p) >> 3
+    s[_WINDOW_N] += (end - p) >> 3
+    while p < end:
+        elapsed_us += f[p]
+        total += f[p + 4] - reference
         f[p] = 0
         p += 8
-        left -= 1
-    r[_AT] = p
-    n -= left
-    elapsed_us += ((p - since) >> 3) * usual_us
-    if n:
-        account(s, f, p, n, elapsed_us)
-        s[_FRAME + 4] = last_x
-        s[_FRAME + 5] = last_y
-        s[_FRAME + 6] = last_z
-        s[_WINDOW_SUM + 3] = sum_t
-        s[_CARRY_Q8] = due_x + bias_x - 128
-        s[_CARRY_Q8 + 1] = due_y + bias_y - 128
-        s[_CARRY_Q8 + 2] = due_z + bias_z - 128
-    if n and moving == 0:
-        s[_WINDOW_SUM] = sum_a
-        s[_WINDOW_SUM + 1] = sum_b
-        s[_WINDOW_SUM + 2] = sum_c
-        s[_WINDOW_SUM + 4] = sum_x
-        s[_WINDOW_SUM + 5] = sum_y
-        s[_WINDOW_SUM + 6] = sum_z
-        s[_SQUARE_ACCEL] = square_accel
-        s[_SQUARE_GYRO] = square_gyro
-        s[_SQUARE_STEP] = square_step
-        s[_LAST_RATE] = last_x - ref_x
-        s[_LAST_RATE + 1] = last_y - ref_y
-        s[_LAST_RATE + 2] = last_z - ref_z
-        i = 0
-        while i < 3:
-            s[_EFFECT_SUM_Q8 + i] += s[_EFFECT_Q8 + i] * n
-            i += 1
-    edge(s, f, c, r, left)
+    s[_ELAPSED_US] = elapsed_us if elapsed_us < _MOST_US else _MOST_US
+    s[_WINDOW_SUM + 3] = total
+    p = 0
+    while p < 7:
+        s[_FRAME + p] = f[end - 7 + p]
+        p += 1
 
 
-def one(s: ptr32, f: ptr32, c: ptr32, r: ptr32):
-    """Give the next frame to `step`."""
-    p = r[_AT]
+def correct(s: ptr32, f: ptr32, p: int, end: int):
+    """Subtract the bias from the frames from word p on."""
+    i = 0
+    while i < 3:
+        bias = s[_OUT_Q8 + i] + s[_EFFECT_Q8 + i]
+        # what is due to a rate, Q8: half an LSB and what was left over, less the bias
+        due = s[_CARRY_Q8 + i] + 128 - bias
+        k = p + 5 + i
+        while k < end:
+            f[k] += due >> 8
+            due = (due & 255) - bias
+            k += 8
+        s[_CARRY_Q8 + i] = due + bias - 128
+        i += 1
+
+
+def take(s: ptr32, f: ptr32, c: ptr32, p: int, end: int) -> int:
+    """Take frames from word p on at one look each, up to the window's last or one not plain.
+
+    Returns the word behind them.
+    """
+    n = stretch(s, c, (end - p) >> 3)
+    if n <= 0 or plain(s, f, c, p) == 0:
+        return p
+    if s[_WINDOW_N] == 0:
+        begin_window(s, f, p)
+    end = p + (n << 3)
+    n = s[_DIRTY]
+    end = off_rails(f, p, end) if n else near(s, f, p, end)
+    if end > p:
+        end = followed(f, c, p, end)
+        if n == 0:
+            add_accelerations(s, f, p, end)
+            add_rates(s, f, p, end)
+        account(s, f, p, end)
+        correct(s, f, p, end)
+    return end
+
+
+def one(s: ptr32, f: ptr32, c: ptr32, x: ptr32, p: int):
+    """Give the frame at word p to `step`."""
     i = 0
     while i < 7:
-        r[i] = f[p + 1 + i]
+        x[i] = f[p + 1 + i]
         i += 1
     i = f[p]
-    f[p] = step(s, c, r, i)
+    f[p] = step(s, c, x, i)
     i = 0
     while i < 7:
-        f[p + 1 + i] = r[i]
+        f[p + 1 + i] = x[i]
         i += 1
-    r[_AT] = p + 8
 
 
-def block(s: ptr32, f: ptr32, c: ptr32, r: ptr32, n: int):
+def block(s: ptr32, f: ptr32, c: ptr32, x: ptr32, n: int):
     """Take n frames of f and correct each in place; its first word becomes the guard's verdict.
 
-    r: nine words of room.
+    x: room for a frame.
     """
-    r[_AT] = 0
-    r[_END] = n << 3
-    while r[_AT] < r[_END]:
-        before = r[_AT]
+    p = 0
+    n = n << 3
+    while p < n:
+        behind = p
         if s[_WORK] == 0 and s[_WINDOW_N] < c[_WINDOW] - 1:
-            take(s, f, c, r)
-        if r[_AT] == before:
-            one(s, f, c, r)
+            behind = take(s, f, c, p, n)
+        if behind == p:
+            one(s, f, c, x, p)
+            behind += 8
+        p = behind

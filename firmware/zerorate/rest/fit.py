@@ -200,6 +200,7 @@ def settle(s: ptr32, c: ptr32, a: int):
     s[a + _LINE_SLOPE_Q26] = slope
     s[a + _LINE_LOW_Q4] = s[_FIT_LOW_Q4]
     s[a + _LINE_HIGH_Q4] = s[_FIT_HIGH_Q4]
+    s[a + _BOW_Q6] = 0
 
 
 def along_q14(s: ptr32, a: int, t: int) -> int:
@@ -234,7 +235,7 @@ def add_moments(s: ptr32, c: ptr32, a: int, i: int):
     if w == 0:
         return
     i = s[a + i * c[_ESTIMATOR_WORDS] + _ESTIMATORS + _EST_MEAN_TEMP_Q4]
-    i = along_q14(s, a, i)
+    i = along_q14(s, a, within(s, i))
     s[_BEND_SQUARE_Q14] += ((i * i >> 12) * w + 0x4000) >> 15
     s[_BEND_CUBE_Q14] += ((i * i >> 13) * i >> 13) * w + 0x2000 >> 15
 
@@ -245,10 +246,10 @@ def add_bow(s: ptr32, c: ptr32, a: int, i: int):
     if w == 0:
         return
     i = a + i * c[_ESTIMATOR_WORDS] + _ESTIMATORS
-    left = within(s, s[i + _EST_MEAN_TEMP_Q4])
-    left = (s[i + _EST_BIAS_Q8] - line_q8(s, a, left) + 2) >> 2
+    left = s[i + _EST_BIAS_Q8]
+    i = within(s, s[i + _EST_MEAN_TEMP_Q4])
+    left = (left - line_q8(s, a, i) + 2) >> 2
     left = clipped(left, 0x1FFF)  # LSB, Q6
-    i = s[i + _EST_MEAN_TEMP_Q4]
     i = along_q14(s, a, i)
     i = bow_q14(s, a, i)
     i = clipped(i, 0x3FFF)
@@ -281,8 +282,10 @@ def significant(s: ptr32, bow: int) -> int:
 
 
 def bend(s: ptr32, c: ptr32, a: int):
-    """Bend the line where five estimators or more tell how, less where they tell little."""
-    s[a + _BOW_Q6] = 0
+    """Bend the line just drawn where five estimators or more tell how, less where they tell little.
+
+    Its weights stand, whatever was learned since they were taken.
+    """
     if c[_LITERAL] or s[a + _LINE_POINTS] < _POINTS_OF_A_BEND:
         return
     s[_BEND_SQUARE_Q14] = 0
@@ -320,7 +323,7 @@ def bent_q8(s: ptr32, a: int, t: int) -> int:
 
 
 def draw_line(s: ptr32, c: ptr32, a: int):
-    """Fit the axis' line through its estimators, and its bend."""
+    """Fit the axis' line through its estimators, straight until `bend` is called."""
     weigh(s, c, a)
     i = 1
     while i < c[_ESTIMATOR_COUNT]:
@@ -332,7 +335,6 @@ def draw_line(s: ptr32, c: ptr32, a: int):
             lean(s, c, a, i)
         i += 1
     settle(s, c, a)
-    bend(s, c, a)
 
 
 def line_q8(s: ptr32, a: int, temp_q4: int) -> int:

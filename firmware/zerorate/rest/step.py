@@ -21,7 +21,7 @@ ptr32 = None
 from ..arithmetic.fixed import root
 from .bias import curve_q8
 from .estimators import learn_anywhere, learn_here
-from .fit import draw_line
+from .fit import bend, draw_line
 from .guard import check
 from .recent import absorb, beyond_q8, gain_q14, grown_q8, hand_over, mean_noise_q8
 from .stillness import gather, judge
@@ -73,7 +73,10 @@ _STILL = const(1)
 # layout: end
 
 
-_PIECES_AN_AXIS = const(3)
+_TO_ABSORB = const(0)
+_TO_LEARN_HERE = const(1)
+_TO_DRAW = const(2)
+_TO_BEND = const(3)
 
 
 def sigma_q8(s: ptr32, c: ptr32, a: int) -> int:
@@ -141,35 +144,39 @@ def advance(s: ptr32, c: ptr32):
     """Do the next piece of work; axes that have next to nothing to do are done on the way.
 
     An axis absorbs a segment and learns it for any temperature; learns it for its temperature;
-    draws its line again and publishes.
+    draws its line again; bends it and publishes.
     """
-    axis = (s[_WORK] - 1) // _PIECES_AN_AXIS
-    piece = (s[_WORK] - 1) % _PIECES_AN_AXIS
+    axis = (s[_WORK] - 1) >> 2
+    piece = (s[_WORK] - 1) & 3
     busy = 0
     while busy == 0 and axis < 3:
         a = c[_AXES] + axis * c[_AXIS_WORDS]
-        if piece == 0:
-            busy = s[a + _WAITING_N]
-            if busy and absorb(s, c, a) == 0:
-                s[a + _WAITING_N] = 0  # held back
-            if s[a + _WAITING_N]:
-                learn_anywhere(s, c, a)
-        elif piece == 1:
+        busy = 1
+        if piece == _TO_LEARN_HERE:
             learn_here(s, c, a)
-            busy = 1
-        if s[a + _WAITING_N] and piece < 2:
-            piece += 1
+            piece = _TO_DRAW
+        elif piece == _TO_ABSORB and s[a + _WAITING_N]:
+            piece = _TO_LEARN_HERE
+            if absorb(s, c, a):
+                learn_anywhere(s, c, a)
+            else:
+                s[a + _WAITING_N] = 0  # held back
+                piece = _TO_DRAW
+        elif piece < _TO_BEND and stale(s, c, a):
+            draw_line(s, c, a)
+            piece = _TO_BEND
         else:
-            if stale(s, c, a):
-                draw_line(s, c, a)
-                busy = 1
+            if piece < _TO_BEND:
+                busy = 0
+            else:
+                bend(s, c, a)
             if s[a + _WAITING_N] and c[_EVERY] == 0:
                 hand_over(s, c, a)
             s[a + _WAITING_N] = 0
             publish(s, c, a, axis)
             axis += 1
-            piece = 0
-    s[_WORK] = axis * _PIECES_AN_AXIS + piece + 1 if axis < 3 else 0
+            piece = _TO_ABSORB
+    s[_WORK] = (axis << 2) + piece + 1 if axis < 3 else 0
 
 
 def publish_provisional(s: ptr32, axis: int, bias: int, quality: int):
@@ -202,10 +209,11 @@ def end_window(s: ptr32, c: ptr32):
     still = judge(s, c)
     if still:
         s[_LEARN_TEMP] = s[_SEGMENT_TEMP] // still
+    elapsed_ms = s[_ELAPSED_US] // 1000
     i = 0
     while i < 3:
         a = c[_AXES] + i * c[_AXIS_WORDS]
-        s[a + _OFFSET_AGE_MS] += s[_ELAPSED_US] // 1000
+        s[a + _OFFSET_AGE_MS] += elapsed_ms
         if s[a + _OFFSET_AGE_MS] > 0x3FFFFFF:
             s[a + _OFFSET_AGE_MS] = 0x3FFFFFF
         if still == 0 and s[a + _KIND] == 0 and c[_EVERY] == 0:

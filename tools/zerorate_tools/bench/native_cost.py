@@ -104,5 +104,5 @@ def _calls(code: Emulated, work: Workload, at_once: int, s: array, c: array) -> 
         if at_once == 1:
             code(s, c, array("i", rows[0, 1:].tobytes()), int(rows[0, 0]))
         else:
-            code(s, c, array("i", rows.tobytes()), array("i", [0] * 8 + [len(rows) << 3]))
+            code(s, c, array("i", rows.tobytes()), len(rows))
         yield len(rows)

@@ -52,7 +52,7 @@ def _rest() -> tuple:
 
 def _bursts() -> tuple:
     _, _, _, bits, state, settings, _ = _rest()
-    return 4, None, 8 * 9, bits, state, settings, [0] * (8 * 9)
+    return 4, 9, 8 * 9, bits, state, settings, [0] * (8 * 9)
 
 
 def _motion() -> tuple:

@@ -89,7 +89,7 @@ def plain_kernels() -> dict[str, Callable[..., Any]]:
         "gravity": gravity.update,
         "effects": lambda s, e, x, dt_us: effects.sense(s, e, x, dt_us, 1),
         "refine": lambda s, c, e, _: effect_refine.attend(s, c, e),
-        "bursts": lambda s, c, f, r: block.block(s, f, c, r, r[8] >> 3),
+        "bursts": lambda s, c, f, n: block.block(s, f, c, [0] * 7, n),
     }
 
 

@@ -78,7 +78,8 @@ PARTS = {
     "bursts": Part(
         [("block", "block")],
         """\
-    block_block(a, c, b, (int32_t *)(intptr_t)what, ((int32_t *)(intptr_t)what)[8] >> 3);
+    int32_t room[7];
+    block_block(a, c, b, room, what);
     return 0;
 """,
         divides=True,
