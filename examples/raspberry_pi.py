@@ -26,7 +26,13 @@ seconds = 0
 sums = [0] * 6
 count = 0
 while True:
-    status = fifo.read(sample)
+    try:
+        status = fifo.read(sample)
+    except OSError as error:  # pulled out: what came since the last check is forgotten
+        print("bus:", error)
+        corrector.take_back()
+        time.sleep(1)
+        continue
     if status == EMPTY:
         time.sleep(0.02)
         continue

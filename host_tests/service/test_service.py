@@ -1,6 +1,7 @@
 """`zerorate run` lives through what a Linux board does to it, and publishes to who asks."""
 
 import configparser
+import errno
 import json
 import os
 import runpy
@@ -9,6 +10,7 @@ import socket
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
@@ -119,6 +121,18 @@ def test_while_the_bus_is_gone_it_says_so_once_and_shows_that_it_lives(board):
     lines = len(board.kept.lines)
     board.live(5)
     assert len(board.kept.lines) > lines + 300
+
+
+@pytest.mark.parametrize("number, do", [(errno.ENOENT, "ls /dev/i2c-"), (errno.EACCES, "-aG i2c")])
+def test_a_bus_that_cannot_be_opened_says_what_to_do_about_it(board, number, do):
+    def closed():
+        raise OSError(number, os.strerror(number), "/dev/i2c-7")
+
+    service = Service(replace(board.system, open_imu=closed), [])
+    board.said.clear()
+    service.step()
+    (line,) = board.said
+    assert line.startswith(f"bus: /dev/i2c-7: {os.strerror(number)}; ") and do in line
 
 
 def test_a_full_disk_is_said_and_tried_again(board, monkeypatch):

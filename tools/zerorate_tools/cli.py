@@ -10,7 +10,7 @@ from importlib.util import find_spec
 from types import FrameType
 
 from . import __version__
-from .errors import MissingLibrary, ZerorateError
+from .errors import MissingLibrary, ZerorateError, os_error_in_words
 
 COMMANDS = (
     *("demo", "import", "record", "simulate", "replay", "close", "compare", "allan", "model"),
@@ -39,7 +39,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return _BROKEN_PIPE
     except OSError as error:
-        return _complain(_in_words(error), ZerorateError.exit_code)
+        return _complain(os_error_in_words(error), ZerorateError.exit_code)
     except KeyboardInterrupt:
         return _complain("interrupted; nothing half-written was left", _INTERRUPTED)
 
@@ -85,11 +85,6 @@ def _what_to_install(error: ModuleNotFoundError) -> str:
     if not library or library.startswith("zerorate"):
         raise error
     return str(MissingLibrary(library))
-
-
-def _in_words(error: OSError) -> str:
-    text = error.strerror or str(error) or type(error).__name__
-    return f"{error.filename}: {text}" if error.filename else text
 
 
 if __name__ == "__main__":

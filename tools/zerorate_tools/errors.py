@@ -1,5 +1,6 @@
 """What goes wrong in words for a person: the command line prints one line of it and exits."""
 
+import errno
 from os import PathLike
 
 
@@ -70,3 +71,19 @@ class MissingLibrary(ZerorateError):
 
 class CannotFetch(ZerorateError):
     """A file of a public data set that could not be had; the text says where else to get it."""
+
+
+#: What to do about an I2C bus of Linux that cannot be opened.
+_BUS = {
+    errno.ENOENT: "; is I2C switched on (raspi-config)? `ls /dev/i2c-*` says which there are",
+    errno.EACCES: "; let yourself in: sudo usermod -aG i2c $USER, and log in again",
+}
+
+
+def os_error_in_words(error: OSError) -> str:
+    """The system's own words behind the name of the file, with what to do where it is a bus."""
+    text = error.strerror or str(error) or type(error).__name__
+    if not error.filename:
+        return text
+    is_bus = str(error.filename).startswith("/dev/i2c-")
+    return f"{error.filename}: {text}" + (_BUS.get(error.errno or 0, "") if is_bus else "")

@@ -222,8 +222,9 @@ def in_words(found: dict) -> str:
     return (
         f"{found['hours']:g} simulated hours, {sum(found['faults'].values())} faults: {faults}\n"
         f"down {found['downs']} times, {found['down_s']:,.0f} s together, "
-        f"{found['unexplained_downs']} times without a fault; besides, {found['samples']:,} of "
-        f"{found['samples_due']:,} samples were published\n"
+        f"{found['unexplained_downs']} times without a fault; besides, "
+        f"{max(0, found['samples_due'] - found['samples']):,} of {found['samples_due']:,} samples "
+        "are missing\n"
         f"bias at rest, from {_SETTLE_S:.0f} s on and 20 s after it was down: "
         f"{found['rms_mdps']:.1f} mdps rms, worst axis and moment {found['worst_mdps']:.1f} mdps\n"
         f"worst line of the first 20 s after it was down: "

@@ -15,6 +15,7 @@ from zerorate.storage.save_schedule import SaveSchedule
 from zerorate.storage.store import REASONS
 from zerorate_i2c.fifo import EMPTY, Fifo
 
+from ..errors import os_error_in_words
 from .publish import Sink
 
 _LEAST_PAUSE_MS = 10
@@ -131,7 +132,7 @@ class Service:
     def _lose(self, error: OSError) -> None:
         """The bus has failed for good: what came since the last check is in doubt."""
         if self._imu is not None or self.bus_failures == 0:
-            self.system.say(f"bus: {error}; trying again every second")
+            self.system.say(f"bus: {os_error_in_words(error)}; trying again every second")
         self.bus_failures += 1
         if self._corrector is not None:
             self._corrector.take_back()
