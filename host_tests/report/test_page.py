@@ -7,7 +7,7 @@ from html.parser import HTMLParser
 import pytest
 from zerorate_tools.loop.read.turns import GIVEN
 from zerorate_tools.report.numbers import figure
-from zerorate_tools.report.sentences import WHY_BOTH, corrects_at_rest, frozen, headline
+from zerorate_tools.report.sentences import corrects_at_rest, frozen, headline, why_both
 
 from host_tests.report.devices import HOSTILE
 
@@ -64,7 +64,7 @@ def test_the_first_line_is_the_answer(closed, read):
     assert figure(closed.result["online"]["in_all"]["after_mdps"]) in board
     shown = "before_mdps" if "Nothing was found" in compared else "after_mdps"
     assert figure(closed.result["in_all"][shown]) in compared
-    assert WHY_BOTH in closed.page.read_text()
+    assert why_both(closed.result) in closed.page.read_text()
 
 
 def test_it_is_one_file_of_less_than_six_megabytes(closed):
@@ -104,6 +104,13 @@ class TestAnswers:
         closed = outcome("one recording")
         assert frozen(closed.result).startswith("Frozen, on the stretches held out, ")
         assert "nothing is confirmed before a second power-on" in closed.page.read_text()
+        assert "begins the recording knowing nothing" in closed.page.read_text()
+
+    def test_little_is_left_only_where_the_learning_firmware_leaves_less(self, outcome):
+        result = outcome("an effect").result
+        for left, said in ((0.0, True), (1e9, False)):
+            online = {**result["online"], "in_all": {"after_mdps": left}}
+            assert ("so little is left" in why_both({**result, "online": online})) == said
 
     def test_no_temperature(self, outcome):
         text = outcome("no temperature").page.read_text()

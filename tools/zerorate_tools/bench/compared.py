@@ -125,9 +125,9 @@ def _of_truth(broad: dict[str, list[dict[str, Any]]]) -> list[str]:
     sure = [pair for pair in pairs if pair["by_log"] != SAME]
     beyond = sum(pair["by_log"] == pair["by_truth"] for pair in sure)
     told = (
-        f"On BROAD the log alone is sure who is better in {len(sure)} of {len(pairs)} pairs of ways: "
-        f"{sum(not denied(pair) for pair in sure)} as the truth says ({beyond} by more than the "
-        f"truth's own uncertainty), {sum(denied(pair) for pair in sure)} against it. The truth "
+        f"On BROAD the log alone is sure who is better in {len(sure)} of {len(pairs)} pairs of "
+        f"ways: {sum(not denied(pair) for pair in sure)} as the truth says ({beyond} by more than "
+        f"the truth's own uncertainty), {sum(denied(pair) for pair in sure)} against it. The truth "
         f"tells {sum(p['by_truth'] != SAME for p in pairs)} apart. Zerorate against the first rest:"
     )
     rows = []

@@ -31,7 +31,7 @@ def run(arguments: argparse.Namespace) -> None:
     from ..closing import close
     from ..loop.report.in_words import in_words
     from ..progress import progress
-    from ..report.sentences import WHY_BOTH, headline
+    from ..report.sentences import headline, why_both
 
     with progress("reading, replaying", 2 * len(arguments.logs)) as advance:
         result = close(
@@ -43,7 +43,7 @@ def run(arguments: argparse.Namespace) -> None:
             png=arguments.png,
         )
     print(headline(result) + ".")
-    if "online" in result:
-        print(WHY_BOTH)
+    if why := why_both(result):
+        print(why)
     print(in_words(result))
     print(f"report: {arguments.out / 'report.html'}")

@@ -36,7 +36,7 @@ def page(
         .render(
             r=result,
             headline=sentences.headline(result),
-            why_both=sentences.WHY_BOTH,
+            why_both=sentences.why_both(result),
             plots={p.key: p for p in plots},
             corrected=any(sentences.corrects_at_rest(effect) for effect in result["effects"]),
             deployed=any(effect["coefficients"] for effect in result["effects"]),

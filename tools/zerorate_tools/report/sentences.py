@@ -25,12 +25,23 @@ def on_the_board(result: Report) -> str:
     return said
 
 
-#: Why a report has both.
-WHY_BOTH = (
-    "The board learns the bias anew at every rest, so little is left there with or without a "
-    "model. Frozen is as if the device never rested again after its first minute: it shows what "
-    "the model knows by itself, which counts for as long as the device moves."
-)
+def why_both(result: Report) -> str:
+    """Why a report has both figures; nothing where the firmware was not run."""
+    if "online" not in result:
+        return ""
+    if "how_much_weaker" in result["split"]:
+        return (
+            "The board begins the recording knowing nothing and learns as it goes, so its first "
+            "minutes are in its figure. Frozen knows what the pieces around each one taught: it is "
+            "what a board has that went through such a course before."
+        )
+    left, frozen_left = (r["in_all"]["after_mdps"] for r in (result["online"], result))
+    little = ", so little is left there with or without a model" if left < frozen_left else ""
+    return (
+        f"The board learns the bias anew at every rest{little}. Frozen is as if the device never "
+        "rested again after its first minute: it shows what the model knows by itself, which "
+        "counts for as long as the device moves."
+    )
 
 
 def frozen(result: Report) -> str:
