@@ -133,8 +133,6 @@ def repository():
 @pytest.fixture(scope="session")
 def real_data():
     """The folder of real recordings: $ZERORATE_DATA, else shared/data beside the checkout."""
-    named = os.environ.get("ZERORATE_DATA")
-    folder = Path(named) if named else _REPOSITORY.parent / "shared" / "data"
-    if not folder.is_dir():
-        pytest.skip(f"no real recordings in {folder}; ZERORATE_DATA names their folder")
-    return folder
+    from zerorate_tools.bench.public_data import data_folder
+
+    return data_folder() or pytest.skip("no real recordings; ZERORATE_DATA names their folder")

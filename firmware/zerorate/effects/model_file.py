@@ -139,15 +139,10 @@ def judge(data):
     checksum(data, len(data) - 4, crc)
     if bytes(data[-4:]) != bytes(crc) or len(data) != data[4] | data[5] << 8:
         return DAMAGED
-    if (
-        data[6] > _MOST_SLOTS
-        or data[7] > _MOST_INPUTS
-        or data[8] > _MOST_TABLES
-        or data[9] > _MOST_CHANNELS
-    ):
-        return TOO_LARGE
-    if data[10] > _MOST_PLAYS:
-        return TOO_LARGE
+    most = (_MOST_SLOTS, _MOST_INPUTS, _MOST_TABLES, _MOST_CHANNELS, _MOST_PLAYS)
+    for i in range(5):
+        if data[6 + i] > most[i]:
+            return TOO_LARGE
     if (data[10] > 0) != (data[3] == _VERSION_WITH_PLAYS):
         return IMPOSSIBLE
     return LOADED
@@ -189,10 +184,9 @@ def fill(e, data, sensor):
     at = _BODY
     for i in range(data[7]):
         a = _INPUTS + _INPUT_WORDS * i
-        for j in range(_INPUT_SUM):
-            if not put(e, a + j, data, at):
-                return IMPOSSIBLE
-            at += 4
+        if not put(e, a, _INPUT_SUM, data, at):
+            return IMPOSSIBLE
+        at += 4 * _INPUT_SUM
         kind, shift = e[a + _INPUT_KIND], e[a + _INPUT_SHIFT]
         if (
             not 0 <= kind < _KIND_CHANNEL + _MOST_CHANNELS
@@ -201,27 +195,22 @@ def fill(e, data, sensor):
             return IMPOSSIBLE
     for i in range(data[6]):
         a = _SLOTS + _SLOT_WORDS * i
-        for j in range(_SLOT_OWN):
-            if not put(e, a + j, data, at):
-                return IMPOSSIBLE
-            at += 4
-        if not link(e, a, data[8]):
+        if not put(e, a, _SLOT_OWN, data, at) or not link(e, a, data[8]):
             return IMPOSSIBLE
-    for i in range(_TABLE_POINTS * data[8]):
-        if not put(e, _TABLES + i, data, at):
-            return IMPOSSIBLE
-        at += 4
-    return fill_plays(e, data, at)
+        at += 4 * _SLOT_OWN
+    points = _TABLE_POINTS * data[8]
+    if not put(e, _TABLES, points, data, at):
+        return IMPOSSIBLE
+    return fill_plays(e, data, at + 4 * points)
 
 
 def fill_plays(e, data, at):
     """Put the play operators at `at` into e; IMPOSSIBLE as `fill`."""
     e[_PLAY_COUNT] = data[10]
     for a in range(_PLAYS, _PLAYS + _PLAY_WORDS * data[10], _PLAY_WORDS):
-        for j in range(_PLAY_STARTED):
-            if not put(e, a + j, data, at):
-                return IMPOSSIBLE
-            at += 4
+        if not put(e, a, _PLAY_STARTED, data, at):
+            return IMPOSSIBLE
+        at += 4 * _PLAY_STARTED
         source, shift = a + _PLAY_SOURCE, e[a + _PLAY_SHIFT]
         if not 0 <= e[source] < e[_INPUT_COUNT] or of_the_sample(kind_of(e, source)):
             return IMPOSSIBLE
@@ -236,12 +225,13 @@ def fill_plays(e, data, at):
     return LOADED
 
 
-def put(e, to, data, at):
-    """Put the integer at `at` into e[to]; False where it leaves what kernels can bear."""
-    value = unpack_from("<i", data, at)[0]
-    if value != _NO_VALUE and not -(1 << 29) < value < 1 << 29:
-        return False
-    e[to] = value
+def put(e, to, words, data, at):
+    """Put the integers at `at` into e from `to` on; False where one is too large for kernels."""
+    for i in range(words):
+        value = unpack_from("<i", data, at + 4 * i)[0]
+        if value != _NO_VALUE and not -(1 << 29) < value < 1 << 29:
+            return False
+        e[to + i] = value
     return True
 
 

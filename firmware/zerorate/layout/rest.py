@@ -137,7 +137,7 @@ AXIS = Array(
         ("BOW_LEAN_Q14", 1, "", "mean cube of them for their mean square"),
         ("CURVE_BEFORE_Q8", 1, "LSB", "what the curve said before it learned the segment"),
         ("OFFSET_Q8", 1, "LSB", "offset of this power-on from the curve"),
-        ("OFFSET_VARIANCE_Q8", 1, "LSB^2", "its variance when it was last learned"),
+        ("OFFSET_VARIANCE_Q8", 1, "LSB^2", "variance of the power-on's offset, as last learned"),
         ("WALK_Q16", 1, "LSB^2/s", "how fast that variance grows, learned"),
         ("SUSPECT", 1, "segments", "implausible ones in a row; -1: the first of all"),
         ("OFFSET_AGE_MS", 1, "ms", "since the offset was last learned"),

@@ -6,7 +6,8 @@ from typing import Any
 from ..peers import HOW, PEERS
 from .accuracy import DAY, FIRST_S, SCENARIOS, SEEDS, day, second_power_on
 from .limits import ACCURACY, SESSION_2, limits_table, verdicts
-from .real_recordings import COLUMNS, data_folder, real, recordings
+from .public_data import data_folder, recordings
+from .real_recordings import COLUMNS, real
 from .tables import machine, machine_line, number, table
 
 _MADE = """\

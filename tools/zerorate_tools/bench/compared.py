@@ -16,8 +16,7 @@ from ..peers import firmware, given
 from ..peers.fusion import fusion
 from ..peers.vqf_filter import vqf_default
 from .broad import Trial, trials, true_bias
-from .public_data import told_of
-from .real_recordings import recordings
+from .public_data import recordings, told_of
 from .tables import table
 
 _WAYS = (NOTHING, FIRST_REST, "vqf", "imufusion", FRESH)

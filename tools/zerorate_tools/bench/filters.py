@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ..errors import ZerorateError
 from ..peers import firmware, first_seconds, given
 from .broad import Trial, trials, true_bias
-from .real_recordings import data_folder
+from .public_data import data_folder
 from .tables import table
 
 Array = NDArray[np.float64]

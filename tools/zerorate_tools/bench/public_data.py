@@ -1,6 +1,7 @@
-"""How each measured recording of the data folder is imported: what its authors' notes say of it."""
+"""The folder of real recordings: what is in it, and how each is imported, by its authors' notes."""
 
 import math
+import os
 from pathlib import Path
 from typing import Any
 
@@ -25,10 +26,7 @@ _DATA: dict[str, tuple[dict[str, str], str, dict[str, Any]]] = {
     ),
     "broad": (
         {"gyro": "rad/s", "accel": "m/s2"},
-        "moving=movement "
-        + " ".join(
-            f"opt_q{n}=opt_quat[{i}]:x{1 / _QUATERNION_LSB:.0f}" for i, n in enumerate("wxyz")
-        ),
+        f"moving=movement {_ATTITUDE}",
         {"sensor": "aktos-t", "hz": 2000 / 7, "accel_lsb_per_g": 2048.0}
         | {"gyro_lsb_per_dps": math.radians(1) / _BROAD_RAD_S_PER_LSB}
         | {
@@ -61,6 +59,40 @@ _DATA: dict[str, tuple[dict[str, str], str, dict[str, Any]]] = {
     ),
 }
 _OF_ONE_FILE = {"RB.csv": "heater_pct=dc"}
+
+
+#: Tables of means without time.
+BIN_TABLES = "hipnuc-bins"
+_ENDINGS = (".csv", ".csv.gz", ".parquet", ".mat")
+#: Recordings whose loop is closed, each alone; and those of one device, which are closed together.
+CLOSED_ALONE = (
+    "lsm6ds3-hubs/RB.csv",
+    "lsm6ds3-hubs/RX.csv",
+    "lsm6ds3-hubs/TH.csv",
+    "gy521-cooldown/cooldown.csv.gz",
+    "vn200-flip/static_z-_z+_IMU0.csv.gz",
+    "vn200-flip/static_z-_z+_IMU1.csv.gz",
+    "mpu6050-unmoved/set-2_unmoved-with-x-pointing-forward-10min.csv.gz",
+    "adis16405-static/adis_16405_imu1.parquet",
+    "adis16405-static/adis_16405_imu2.parquet",
+    "chamber-loop/imu_raw_data.tsv.gz",
+)
+CLOSED_TOGETHER = {"mpu6050-unmoved, set 2 together": "mpu6050-unmoved/set-2_*.csv.gz"}
+#: Those at rest for so long that they can be cut into four, with their rate in Hz.
+LONG_RESTS = {"adis16405-static/*.parquet": 100.0}
+
+
+def data_folder() -> Path | None:
+    """$ZERORATE_DATA, else shared/data beside the checkout, else None."""
+    named = os.environ.get("ZERORATE_DATA")
+    folder = Path(named) if named else Path(__file__).resolve().parents[4] / "shared" / "data"
+    return folder if folder.is_dir() else None
+
+
+def recordings(folder: Path) -> list[Path]:
+    """Every recording in the folders of `folder`, sorted."""
+    files = (path for path in sorted(folder.glob("*/*")) if path.name.endswith(_ENDINGS))
+    return [path for path in files if path.parent.name != BIN_TABLES]
 
 
 def told_of(path: Path) -> dict[str, Any]:

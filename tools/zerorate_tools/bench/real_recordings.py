@@ -5,7 +5,6 @@ that noise does not hide it; the Earth's rate, 4 mdps, is in it. Blocks in which
 handled are left out: those marked so, and those with three times the spread of most.
 """
 
-import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -17,14 +16,11 @@ from ..peers import OURS, Given, Peer, given
 from ..peers.first_seconds import first_seconds
 from ..recordings import Recording
 from .accuracy import rms_mdps
-from .public_data import told_of
+from .public_data import recordings, told_of
 
 BLOCK_S = 20.0
 _START_READINGS = 8
 _HANDLED = 3.0
-# tables without time
-_NOT_RECORDINGS = ("hipnuc-bins",)
-_ENDINGS = (".csv", ".csv.gz", ".parquet", ".mat")
 
 
 def nothing(sessions) -> list[NDArray[np.float64]]:
@@ -37,19 +33,6 @@ COLUMNS: dict[str, Peer] = {
     "mean of the first 10 s": first_seconds,
     **OURS,
 }
-
-
-def data_folder() -> Path | None:
-    """$ZERORATE_DATA, else shared/data beside the checkout, else None."""
-    named = os.environ.get("ZERORATE_DATA")
-    folder = Path(named) if named else Path(__file__).resolve().parents[4] / "shared" / "data"
-    return folder if folder.is_dir() else None
-
-
-def recordings(folder: Path) -> list[Path]:
-    """Every recording in the folders of `folder`, sorted."""
-    files = (path for path in sorted(folder.glob("*/*")) if path.name.endswith(_ENDINGS))
-    return [path for path in files if path.parent.name not in _NOT_RECORDINGS]
 
 
 def rest_errors(recording: Recording, peer: Peer) -> dict[str, float]:

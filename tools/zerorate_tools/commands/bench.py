@@ -205,7 +205,7 @@ def _real(arguments: argparse.Namespace) -> Found:
 
 
 def _recordings(arguments: argparse.Namespace) -> Path:
-    from ..bench.real_recordings import data_folder
+    from ..bench.public_data import data_folder
     from ..errors import ZerorateError
 
     folder = arguments.data or data_folder()

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
+from ..public_data import LONG_RESTS
+
 #: The folder of block means is handed to worker processes by the environment.
 FOLDER = "ZERORATE_QUIET_BLOCKS"
-#: Folders of the real data whose recordings are long enough to be cut into four, with their rate.
-_LONG = {"adis16405-static": ("*.parquet", 100.0)}
 _GYRO = ("gx_lsb", "gy_lsb", "gz_lsb")
 _DPS_PER_LSB = 0.05
 
@@ -18,8 +18,8 @@ def write_blocks(data: Path, folder: Path) -> list[str]:
     import pyarrow.parquet as pq
 
     names = []
-    for kind, (pattern, hz) in _LONG.items():
-        for path in sorted((data / kind).glob(pattern)):
+    for pattern, hz in LONG_RESTS.items():
+        for path in sorted(data.glob(pattern)):
             table = pq.read_table(path, columns=list(_GYRO))
             rate = np.column_stack([c.to_numpy() for c in table.columns]) * _DPS_PER_LSB
             for seconds in (10, 20):

@@ -7,29 +7,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..public_data import told_of
+from ..public_data import BIN_TABLES, CLOSED_ALONE, CLOSED_TOGETHER, told_of
 from ..tables import machine_line, table
 from .bin_tables import hipnuc, rms_mdps
-
-#: Files of the data folder.
-RECORDINGS = (
-    "lsm6ds3-hubs/RB.csv",
-    "lsm6ds3-hubs/RX.csv",
-    "lsm6ds3-hubs/TH.csv",
-    "gy521-cooldown/cooldown.csv.gz",
-    "vn200-flip/static_z-_z+_IMU0.csv.gz",
-    "vn200-flip/static_z-_z+_IMU1.csv.gz",
-    "mpu6050-unmoved/set-2_unmoved-with-x-pointing-forward-10min.csv.gz",
-    "adis16405-static/adis_16405_imu1.parquet",
-    "adis16405-static/adis_16405_imu2.parquet",
-    "chamber-loop/imu_raw_data.tsv.gz",
-)
-
-
-#: Recordings of one device, which are closed together, too.
-GROUPS = {
-    "mpu6050-unmoved, set 2 together": "mpu6050-unmoved/set-2_*.csv.gz",
-}
 
 
 def real_rows(data: Path, plots: Path | None = None) -> dict[str, dict]:
@@ -43,13 +23,13 @@ def real_rows(data: Path, plots: Path | None = None) -> dict[str, dict]:
     rows = {}
     if plots:
         plots.mkdir(parents=True, exist_ok=True)
-    every = {Path(name).name: [data / name] for name in RECORDINGS if (data / name).exists()}
-    every |= {name: sorted(data.glob(pattern)) for name, pattern in GROUPS.items()}
+    every = {Path(name).name: [data / name] for name in CLOSED_ALONE if (data / name).exists()}
+    every |= {name: sorted(data.glob(pattern)) for name, pattern in CLOSED_TOGETHER.items()}
     with tempfile.TemporaryDirectory() as scratch:
         for name, paths in every.items():
             if paths:
                 rows[name] = _closed(name, paths, Path(scratch), plots)
-    for path in sorted((data / "hipnuc-bins").glob("*.log")):
+    for path in sorted((data / BIN_TABLES).glob("*.log")):
         rows[path.name] = hipnuc(path)
         if plots:
             from .plots import draw_chip

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from threadpoolctl import threadpool_limits
 
-from ..real_recordings import data_folder
+from ..public_data import data_folder
 from ..tables import machine, machine_line, table
 from .devices import Device, devices
 from .figures import Figure, figures
