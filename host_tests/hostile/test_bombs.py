@@ -2,6 +2,7 @@
 
 import gzip
 import json
+import os
 import struct
 import subprocess
 import sys
@@ -42,6 +43,8 @@ def taken(what, source, tmp_path):
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     *said, peak_kb = done.stdout.splitlines()
     assert len(said) == 1
+    bomb = os.environ["PYTEST_CURRENT_TEST"].partition("::test_")[2].partition("[")[0]
+    print(f"\n{bomb.partition(' ')[0]}, {what}: at most {int(peak_kb) / 1024:.0f} MB", end="")
     return said[0], int(peak_kb) / 1024
 
 

@@ -275,6 +275,15 @@ def test_a_wrong_entry_is_named(model, changes, where):
         from_json(broken_json(model, **changes))
 
 
+@pytest.mark.parametrize("text", ['["\\ud800"]', "9" * 5000, "[" * 100_000, "{", b"\xff"], ids=len)
+def test_what_is_no_json_is_said_in_one_line(text):
+    with pytest.raises(
+        BadModel, match="model.json: is no JSON .*correct the text there"
+    ) as refused:
+        from_json(text)
+    assert "\n" not in str(refused.value) and str(refused.value).isascii()
+
+
 def test_show_says_what_a_model_corrects(files, capsys):
     assert main(["model", "show", str(files[1])]) == 0
     shown = capsys.readouterr().out

@@ -7,6 +7,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from ..recordings import Scales, recording_writer
+from ..recordings.scales import scales_from_text
 from .connection import BoardError, connected
 from .frames import MESSAGE, SAMPLE, SAMPLE_BYTES, SCALES, FrameReader, sample_of
 from .recorder import COLUMNS, Recorded, Recorder, SampleTaker, scales_of
@@ -89,12 +90,20 @@ class BoardStream:
         self._tail = b""
         self._queue: list[tuple[int, bytes]] = []
 
-    def scales(self):
+    def scales(self) -> Scales:
         """The first scales that come. Raises BoardError with what the board said instead."""
         while True:
             for kind, payload in self._frames():
                 if kind == SCALES:
-                    return scales_of({**json.loads(payload), "source": self._port})
+                    return self._checked_scales(payload)
+
+    def _checked_scales(self, payload: bytes) -> Scales:
+        try:
+            scales = scales_of({**json.loads(payload), "source": self._port})
+            return scales_from_text(json.dumps(scales.to_json()), self._port, COLUMNS)
+        except (ValueError, TypeError, KeyError, ArithmeticError) as error:
+            what = "what the board says of its scales cannot be read"
+            raise BoardError(f"{self._port}: {what}; is its `imu` an MPU6050?") from error
 
     def record(self, recorder: SampleTaker, seconds: float | None, done) -> BoardError | None:
         """Hand samples to recorder until time is up; the error that ended it, if one did."""

@@ -41,8 +41,10 @@ def from_json(text: str | bytes, path: str | PathLike[str] = "model.json") -> Mo
     """The model that the text describes. Raises BadModel, which names `path` and the entry."""
     try:
         values = json.loads(text)
-    except (json.JSONDecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise BadModel(path, f"is no JSON ({error})", do="correct the text there") from error
+        json.dumps(values, ensure_ascii=False).encode()  # half a character in an escape is no text
+    except (ValueError, RecursionError) as error:
+        problem = f"is no JSON ({ascii(str(error))[1:-1]})"
+        raise BadModel(path, problem, do="correct the text there") from error
     if not isinstance(values, dict) or values.get("format") != FORMAT:
         raise BadModel(path, "is no effect model", do="name a model.bin or model.json")
     if values.get("version") != _VERSION:

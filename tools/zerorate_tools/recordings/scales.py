@@ -72,12 +72,13 @@ def scales_from_text(
         )
     try:
         values = json.loads(text)
+        json.dumps(values, ensure_ascii=False).encode()
     except json.JSONDecodeError as error:
         problem = (
             f"the scales are not JSON (line {error.lineno}, column {error.colno}: {error.msg})"
         )
         raise BadRecording(path, problem, do="correct the text there") from error
-    except UnicodeDecodeError as error:
+    except UnicodeError as error:  # of its bytes, or of half a character in \\u escapes
         raise BadRecording(path, "the scales are not text", do="write them as JSON") from error
     except (RecursionError, ValueError) as error:
         problem = "the scales are nested too deep, or hold a number of thousands of digits"
