@@ -2,11 +2,12 @@
 
 import struct
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from ...errors import BadRecording
-from ..tables.table import Chunk, Table
+from ..tables.table import Table
 from .streams import chunks_of
 
 KIND = "blackbox log"
@@ -39,13 +40,11 @@ def read(path: Path, instance: int = 0) -> Table:
         for frame in Parser.load(str(path), instance + 1).frames():
             yield {name: frame.data[place] * factors[name[0]] for name, place in at.items()}
 
-    def chunks(wanted: list[str]) -> Iterator[Chunk]:
-        yield from chunks_of(rows(), wanted)
-
     units = {"g": "dps", "a": "g", "t": "us"}
     mapping = [f"{name}={name}:{units[name[0]]}" for name in at]
     board = str(parser.headers.get("Firmware revision", "Betaflight"))
-    return Table(list(at), chunks, mapping, sensor=board, notes=[f"{gyro}: {_NO_OFFSET}"])
+    notes = [f"{gyro}: {_NO_OFFSET}"]
+    return Table(list(at), partial(chunks_of, rows), mapping, sensor=board, notes=notes)
 
 
 def _named(names: list[str], wanted: tuple[str, ...]) -> str | None:

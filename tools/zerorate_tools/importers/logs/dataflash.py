@@ -35,7 +35,7 @@ def read(path: Path, instance: int = 0) -> Table:
 
     def chunks(wanted: list[str]) -> Iterator[Chunk]:
         log.rewind()
-        for chunk in chunks_of(_rows(log, instance), wanted):
+        for chunk in chunks_of(lambda: _rows(log, instance), wanted):
             table.read_bytes = size * min(log.percent, 100.0) / 100.0
             yield chunk
 

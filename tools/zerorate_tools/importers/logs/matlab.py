@@ -1,13 +1,13 @@
 """MATLAB .mat files as tables: an (n, k) variable `name` becomes columns name[0] ... name[k-1]."""
 
 from collections import Counter
-from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from ...errors import BadRecording
-from ..tables.table import Chunk, Table
+from ..tables.table import Table
 from .streams import one_after_the_other
 
 KIND = ".mat file"
@@ -33,17 +33,11 @@ def _table(found: dict[str, object], path: Path) -> Table:
     }
     numeric = {n: v.T if v.shape[0] == 1 and v.shape[1] > 1 else v for n, v in numeric.items()}
     rows = max(Counter(len(v) for v in numeric.values()), default=0)
-    if not rows:
-        raise BadRecording(path, "no numeric variable", do="name another file")
     columns: dict[str, np.ndarray] = {}
     for name, value in numeric.items():
-        if len(value) == rows:
+        if rows and len(value) == rows:
             for k in range(value.shape[1]):
                 columns[name if value.shape[1] == 1 else f"{name}[{k}]"] = value[:, k]
     if not columns:
         raise BadRecording(path, "no numeric variable", do="name another file")
-
-    def chunks(names: list[str]) -> Iterator[Chunk]:
-        yield from one_after_the_other([columns], names)
-
-    return Table(list(columns), chunks)
+    return Table(list(columns), partial(one_after_the_other, [columns]))

@@ -1,11 +1,12 @@
 """ROS messages of inertial sensors and thermometers as rows, named as PlotJuggler names them."""
 
 from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from ...errors import BadRecording
-from ..tables.table import Chunk, Table
+from ..tables.table import Table
 from .streams import chunks_of
 
 #: Type -> paths of the numbers in a message.
@@ -56,10 +57,7 @@ def table_of_messages(
                 row[name] = _number(message, field)
             yield row
 
-    def chunks(asked: list[str]) -> Iterator[Chunk]:
-        yield from chunks_of(rows(), asked)
-
-    return Table(names, chunks, sensor="IMU of ROS")
+    return Table(names, partial(chunks_of, rows), sensor="IMU of ROS")
 
 
 def _time_us(message: Any, logged_ns: int) -> float:

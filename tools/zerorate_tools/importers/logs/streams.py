@@ -1,6 +1,7 @@
 """Rows of several sensors, each at its own times, gathered into chunks of one table."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from itertools import islice
 
 import numpy as np
 
@@ -21,22 +22,13 @@ def si_mapping(names: Iterable[str]) -> list[str]:
     return [words for words in _SI if words.partition("=")[0] in names]
 
 
-def chunks_of(rows: Iterable[dict[str, float]], names: list[str]) -> Iterator[Chunk]:
-    """Chunks of rows that each have some of the columns; the others are NaN."""
-    start, gathered = 0, []
-    for row in rows:
-        gathered.append(row)
-        if len(gathered) == _ROWS:
-            yield _chunk(gathered, names, start)
-            start, gathered = start + _ROWS, []
-    if gathered:
-        yield _chunk(gathered, names, start)
-
-
-def _chunk(rows: list[dict[str, float]], names: list[str], start: int) -> Chunk:
-    nan = float("nan")
-    columns = {name: np.array([row.get(name, nan) for row in rows], float) for name in names}
-    return Chunk(np.arange(start, start + len(rows)), columns)
+def chunks_of(begun: Callable[[], Iterable[dict[str, float]]], names: list[str]) -> Iterator[Chunk]:
+    """Chunks of rows, from the first on, that each have some of the columns; the others are NaN."""
+    start, rows = 0, iter(begun())
+    while some := list(islice(rows, _ROWS)):
+        columns = {name: np.array([row.get(name, np.nan) for row in some], float) for name in names}
+        yield Chunk(np.arange(start, start + len(some)), columns)
+        start += len(some)
 
 
 def one_after_the_other(

@@ -1,13 +1,13 @@
 """PX4 ULog: sensor_gyro with sensor_accel, or sensor_combined."""
 
-from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ...errors import BadRecording
-from ..tables.table import Chunk, Table
+from ..tables.table import Table
 from .streams import one_after_the_other, si_mapping
 
 KIND = "ULog"
@@ -30,10 +30,7 @@ def read(path: Path, instance: int = 0) -> Table:
             raise BadRecording(path, problem, do="log them (SDLOG_PROFILE), or try --instance")
         streams = _combined(combined)
     names = list(dict.fromkeys(name for stream in streams for name in stream))
-
-    def chunks(wanted: list[str]) -> Iterator[Chunk]:
-        yield from one_after_the_other(streams, wanted)
-
+    chunks = partial(one_after_the_other, streams)
     sensor = str(log.msg_info_dict.get("ver_hw", "PX4"))
     return Table(names, chunks, si_mapping(names), sensor=sensor)
 
