@@ -253,6 +253,8 @@ def test_a_csv_of_plotjuggler_is_known_by_its_columns(tmp_path):
     assert told(report, "of several gyroscopes (/imu/angular_velocity/x, /second/")
     with pytest.raises(BadRecording, match="there are 2 gyroscopes; give --instance 0 to 1"):
         read(tmp_path, pd.DataFrame(columns), instance=2)
+    with pytest.raises(BadRecording, match="there is one gyroscope; leave --instance away"):
+        read(tmp_path, frame, instance=1)
 
 
 def test_degrees_declared_as_radians_are_refused_with_the_right_words(tmp_path):

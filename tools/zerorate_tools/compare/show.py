@@ -90,6 +90,7 @@ def _plot(compared: Compared) -> str:
         lost = 60 * np.abs(compared.about_vertical_dps(way))
         axes.plot(at, np.maximum(lost, 1e-3), mark, color=colour, markersize=4, label=way)
     axes.set_yscale("log")
+    axes.yaxis.set_major_formatter("{x:g}")
     axes.set_xlabel("minutes since power-on" + (", one log after the other" if logs.any() else ""))
     axes.set_ylabel("heading lost, deg/min")
     axes.grid(True, which="major", alpha=0.3)

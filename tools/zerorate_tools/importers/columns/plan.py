@@ -103,8 +103,10 @@ def _found(
             also = ", ".join(group["gx"] for group in groups)
             notes.append(f"of several gyroscopes ({also}) number {instance}: choose by --instance")
         if groups and instance >= len(groups):
-            problem = f"there are {len(groups)} gyroscopes"
-            raise BadRecording(path, problem, do=f"give --instance 0 to {len(groups) - 1}")
+            last = len(groups) - 1
+            problem = f"there are {last + 1} gyroscopes" if last else "there is one gyroscope"
+            do = f"give --instance 0 to {last}" if last else "leave --instance away"
+            raise BadRecording(path, problem, do=do)
         names = groups[instance] if groups else _axes_of_a_gyro_file(table, path)
     gyro = names or {t: m.column for t, m in given.items() if t in GYRO}
     names = {**names, **usual.accel_beside(table.names, gyro, instance)}
