@@ -60,7 +60,7 @@ def shown(folder, effect, attitude):
 @pytest.mark.parametrize("attitude", [True, False], ids=["attitude", "gravity"])
 def test_nothing_is_found_in_the_motion_of_a_sensor_without_fault(tmp_path, attitude):
     _, motion = shown(tmp_path, [], attitude)
-    assert motion.turning is not None and not motion.found and slots_of(motion) == []
+    assert motion.rate_scale is not None and not motion.found and slots_of(motion) == []
 
 
 @pytest.mark.parametrize("attitude", [True, False], ids=["attitude", "gravity"])

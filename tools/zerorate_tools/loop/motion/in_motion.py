@@ -19,7 +19,7 @@ _RATES = ("rate_x", "rate_y", "rate_z")
 class InMotion:
     """Each None where the recordings do not show it, whether or not it was found."""
 
-    turning: RateScale | None = None
+    rate_scale: RateScale | None = None
     timing: Timing | None = None
 
     @property
@@ -30,7 +30,7 @@ class InMotion:
     @property
     def scales(self) -> RateScale | None:
         """The scale factor or cross-axis that was found."""
-        return self.turning if self.turning is not None and self.turning.found else None
+        return self.rate_scale if self.rate_scale is not None and self.rate_scale.found else None
 
 
 def in_motion(train: list[Session], holdout: list[Session], single: bool) -> InMotion:

@@ -145,7 +145,7 @@ def _turned(sessions):
 def not_excluded(analysis) -> list[str]:
     """Kinds of effect that these recordings cannot show because nothing in them varies it."""
     shown = {c.kind for c in analysis.selection.pool}
-    if analysis.motion.turning is not None:
+    if analysis.motion.rate_scale is not None:
         shown.add("rate-scale")
     kinds = [row.kind for row in effects.EFFECTS if row.source != effects.ANY_CHANNEL]
     return [kind for kind in kinds if kind not in shown]
