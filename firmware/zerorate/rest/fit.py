@@ -205,20 +205,18 @@ def settle(s: ptr32, c: ptr32, a: int):
 
 def along_q14(s: ptr32, a: int, t: int) -> int:
     """Return how far the temperature, Q4, is from the line's mean one, in ranges of its points."""
-    t -= s[a + _LINE_T0_Q4]
-    t = (t << s[a + _LINE_SHIFT]) - s[a + _LINE_MEAN_T]
-    return t >> 12
+    off = t - s[a + _LINE_T0_Q4]
+    return ((off << s[a + _LINE_SHIFT]) - s[a + _LINE_MEAN_T]) >> 12
 
 
 def bow_q14(s: ptr32, a: int, t: int) -> int:
     """Return the parabola that no line through the weighted points holds any of."""
-    t = t * t - s[a + _BOW_LEAN_Q14] * t >> 14
-    t -= s[a + _BOW_MEAN_Q14]
-    if t > 0x7FFF:
+    bow = (t * t - s[a + _BOW_LEAN_Q14] * t >> 14) - s[a + _BOW_MEAN_Q14]
+    if bow > 0x7FFF:
         return 0x7FFF
-    if t < -0x7FFF:
+    if bow < -0x7FFF:
         return -0x7FFF
-    return t
+    return bow
 
 
 def share_q13(s: ptr32, i: int) -> int:
@@ -234,6 +232,7 @@ def add_moments(s: ptr32, c: ptr32, a: int, i: int):
     w = share_q13(s, i)
     if w == 0:
         return
+    # eleven words: i is now its temperature, then how far along the line that is
     i = s[a + i * c[_ESTIMATOR_WORDS] + _ESTIMATORS + _EST_MEAN_TEMP_Q4]
     i = along_q14(s, a, within(s, i))
     s[_BEND_SQUARE_Q14] += ((i * i >> 12) * w + 0x4000) >> 15
@@ -245,6 +244,7 @@ def add_bow(s: ptr32, c: ptr32, a: int, i: int):
     w = share_q13(s, i)
     if w == 0:
         return
+    # eleven words: i is now its first word, then its temperature, then its bow
     i = a + i * c[_ESTIMATOR_WORDS] + _ESTIMATORS
     left = s[i + _EST_BIAS_Q8]
     i = within(s, s[i + _EST_MEAN_TEMP_Q4])
@@ -317,9 +317,7 @@ def bent_q8(s: ptr32, a: int, t: int) -> int:
         t = s[a + _LINE_HIGH_Q4] + margin
     if t < s[a + _LINE_LOW_Q4] - margin:
         t = s[a + _LINE_LOW_Q4] - margin
-    t = along_q14(s, a, t)
-    t = bow_q14(s, a, t)
-    return t * s[a + _BOW_Q6] >> 12
+    return bow_q14(s, a, along_q14(s, a, t)) * s[a + _BOW_Q6] >> 12
 
 
 def draw_line(s: ptr32, c: ptr32, a: int):
