@@ -22,4 +22,5 @@ while True:
         corrector.take_back()
         continue
     if corrector.update(sample, ready.dt_us, status):
-        print(sample[4], sample[5], sample[6])  # rates in LSB, their bias taken off
+        rates_dps = [lsb / imu.gyro_lsb_per_dps for lsb in sample[4:7]]  # their bias taken off
+        print("{:+.3f} {:+.3f} {:+.3f} dps".format(*rates_dps))

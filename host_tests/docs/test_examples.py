@@ -86,10 +86,10 @@ class TestOnABoard:
 
     def test_with_int_every_sample_is_corrected(self, run):
         printed = run("interrupt.py").stdout.splitlines()
-        rates = [[int(word) for word in line.split()] for line in printed]
+        rates = [[float(word) for word in line.removesuffix(" dps").split()] for line in printed]
         assert len(rates) > 2900
         last = [sum(row[axis] for row in rates[-500:]) / 500 for axis in range(3)]
-        assert last == pytest.approx([0, 0, 0], abs=1)
+        assert last == pytest.approx([0, 0, 0], abs=0.008)
 
     def test_without_int_it_says_what_is_missing(self, run):
         result = run("interrupt.py", interrupt=-1)
