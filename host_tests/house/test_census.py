@@ -17,8 +17,8 @@ def test_a_constant_has_one_value_in_all_files():
 
 
 def test_no_file_but_the_layout_says_where_a_word_of_the_state_is():
-    """The stores have headers of their own in files, `block` nine words beside the state."""
-    own = {"layout", "store.py", "learned_store.py", "block.py"}
+    """The stores have headers of their own in files."""
+    own = {"layout", "store.py", "learned_store.py"}
     assert {path.name for path in layouts(written())} == own
 
 

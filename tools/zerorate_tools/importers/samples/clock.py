@@ -88,7 +88,7 @@ class Gaps:
         self._least_us = max(_GAP_INTERVALS * interval_us, 1e6)
         self._last: float | None = None
         self.count = 0
-        self.longest_us = self.total_us = 0.0
+        self.longest_us = 0.0
 
     def add(self, t_us: np.ndarray) -> None:
         """Take the stamps of samples in order."""
@@ -99,7 +99,6 @@ class Gaps:
         self._last = t_us[-1]
         if len(pauses):
             self.count += len(pauses)
-            self.total_us += float(pauses.sum())
             self.longest_us = max(self.longest_us, float(pauses.max()))
 
     def note(self) -> list[str]:
