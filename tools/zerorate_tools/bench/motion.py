@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..errors import MissingRuntime
 from ..peers import Given, Peer, given, vqf_clip_raised, vqf_default
-from ..peers.decision import Decision
+from ..peers.firmware import Decision
 from ..peers.sources import Source
 from ..simulate import simulate
 from .broad import Trial, TrueBias, trials, true_bias

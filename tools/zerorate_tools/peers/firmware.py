@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+from zerorate import Corrector
 
 from ..replay.engines import engine
 from ..replay.replaying import corrector_for
@@ -11,6 +12,7 @@ from ..replay.samples import frames_in_batches
 from .given import Given
 
 Peer = Callable[[Sequence[Given]], list[NDArray[np.float64]]]
+_STRETCH_S = 10.0
 
 
 def firmware(**options: object) -> Peer:
@@ -25,9 +27,43 @@ def firmware(**options: object) -> Peer:
         for number, one in enumerate(sessions):
             if number:
                 corrector.power_on()
-            outcomes = engine("native").run(corrector, frames_in_batches(one.recording))
-            bias_q8 = np.concatenate([outcome.bias_q8 for outcome in outcomes])
-            found.append(bias_q8 / (256 * one.recording.scales.gyro_lsb_per_dps))
+            found.append(_run(corrector, one, "bias_q8")[0])
         return found
 
     return biases
+
+
+class Decision:
+    """As `firmware`, one power-on a session; options: keywords of zerorate.Corrector.
+
+    After a call `within` holds, for each axis at the end of every stretch of ten seconds in which
+    it had a bias, whether the truth given in `truth_dps` lay within two sigma.
+    """
+
+    def __init__(self, **options: object) -> None:
+        self.options = options
+        self.truth_dps: Sequence[NDArray[np.float64]] | None = None
+        self.within: list[bool] = []
+
+    def __call__(self, sessions: Sequence[Given]) -> list[NDArray[np.float64]]:
+        """Run every session from nothing."""
+        self.within = []
+        return [self._biases(number, one) for number, one in enumerate(sessions)]
+
+    def _biases(self, number: int, one: Given) -> NDArray[np.float64]:
+        corrector = corrector_for(one.recording, dict(self.options))
+        bias, sigma, source = _run(corrector, one, "bias_q8", "quality_q8", "source")
+        if self.truth_dps is not None:
+            known = source > 0
+            inside = np.abs(bias - self.truth_dps[number]) < 2 * sigma
+            ends = slice(round(_STRETCH_S * one.odr_hz) - 1, None, round(_STRETCH_S * one.odr_hz))
+            self.within += inside[ends][known[ends]].tolist()
+        return bias
+
+
+def _run(corrector: Corrector, one: Given, *names: str) -> list[NDArray]:
+    """What of its outcomes is named, each (n, 3), those in LSB Q8 in dps."""
+    outcomes = list(engine("native").run(corrector, frames_in_batches(one.recording)))
+    lsb = 256 * one.recording.scales.gyro_lsb_per_dps
+    every = [np.concatenate([getattr(outcome, name) for outcome in outcomes]) for name in names]
+    return [of / lsb if name.endswith("_q8") else of for name, of in zip(names, every)]
