@@ -110,6 +110,7 @@ def test_the_sdist_has_what_a_checkout_needs_to_be_tested(built):
     with tarfile.open(built[0]) as archive:
         names = {name.partition("/")[2] for name in archive.getnames()}
     wanted = {"Makefile", "README.md", "LICENSE", "requirements/dev.txt", "host_tests/conftest.py"}
+    wanted |= {".ci/run", ".ci/release.yml"}  # which tests read
     assert wanted <= names
 
 
