@@ -30,16 +30,16 @@ _LONG_US = const(0x20000000)  # a leap of time at any rate; a longer one would l
 
 # layout: The corrector's state
 _ELAPSED_US = const(16)
-_RESTS = const(56)
-_SOURCE = const(75)
+_RESTS = const(60)
+_SOURCE = const(79)
 # layout: The last words before the axes
 _TURN_ON_OFFSET_Q8 = const(-3)
 # layout: An axis
 _OFFSET_VARIANCE_Q8 = const(28)
 # layout: The corrector's settings
 _AXES = const(0)
-_AXIS_WORDS = const(13)
-_TURN_ON_VARIANCE_Q8 = const(45)
+_AXIS_WORDS = const(15)
+_TURN_ON_VARIANCE_Q8 = const(47)
 # layout: end
 
 

@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     from typing import Any
 
 # layout: The corrector's state
-_STILLNESS = const(46)
-_OUT_Q8 = const(57)
-_EFFECT_Q8 = const(63)
-_QUALITY_Q8 = const(72)
-_SOURCE = const(75)
+_STILLNESS = const(50)
+_OUT_Q8 = const(61)
+_EFFECT_Q8 = const(67)
+_QUALITY_Q8 = const(76)
+_SOURCE = const(79)
 # layout: An axis
 _WAITING_N = const(1)
 _OFFSET_Q8 = const(27)
@@ -36,9 +36,9 @@ _OFFSET_AGE_MS = const(31)
 _LINE_TEMP = const(34)
 # layout: The corrector's settings
 _AXES = const(0)
-_AXIS_WORDS = const(13)
-_WALK_MOST_Q16 = const(41)
-_TURN_ON_VARIANCE_Q8 = const(45)
+_AXIS_WORDS = const(15)
+_WALK_MOST_Q16 = const(43)
+_TURN_ON_VARIANCE_Q8 = const(47)
 # layout: The state of the source in motion
 _MOTION_BIAS_Q8 = const(71)
 # layout: The state of the source against gravity

@@ -12,11 +12,11 @@ except ImportError:
 
 # layout: The corrector's state
 _COUNTS = const(8)
-_STILLNESS = const(46)
-_SEGMENT_WINDOWS = const(48)
-_OUT_Q8 = const(57)
-_QUALITY_Q8 = const(72)
-_SOURCE = const(75)
+_STILLNESS = const(50)
+_SEGMENT_WINDOWS = const(52)
+_OUT_Q8 = const(61)
+_QUALITY_Q8 = const(76)
+_SOURCE = const(79)
 # layout: An axis
 _SUSPECT = const(30)
 _BEYOND = const(32)
@@ -24,8 +24,8 @@ _BEYOND = const(32)
 _AXES = const(0)
 _WINDOW = const(3)
 _SEGMENT = const(5)
-_AXIS_WORDS = const(13)
-_INSIST = const(39)
+_AXIS_WORDS = const(15)
+_INSIST = const(41)
 # layout: What a window was
 _STILL = const(1)
 # layout: end

@@ -51,7 +51,8 @@ def learned():
 @pytest.mark.parametrize("degc", [25.0, 35.0, 39.0])
 def test_turn_on_offsets_do_not_bend_the_curve(learned, degc):
     rise = first_bias_dps(learned, degc) - first_bias_dps(learned, 30.0)
-    assert rise == pytest.approx(SLOPE_DPS * (degc - 30.0), abs=0.004)
+    # over seeds it spreads by 0.003; were the offsets in the curve it would be off by 0.15
+    assert rise == pytest.approx(SLOPE_DPS * (degc - 30.0), abs=0.009)
 
 
 def test_a_power_on_begins_nearer_to_the_last_one_than_to_the_first():

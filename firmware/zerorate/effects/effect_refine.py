@@ -22,10 +22,10 @@ from ..arithmetic.real import add, divide, multiply, put, subtract, whole
 
 # layout: The corrector's state
 _WINDOW_N = const(17)
-_SEGMENT_TOTAL = const(42)
-_STILLNESS = const(46)
-_TEMP = const(47)
-_SEGMENT_WINDOWS = const(48)
+_SEGMENT_TOTAL = const(46)
+_STILLNESS = const(50)
+_TEMP = const(51)
+_SEGMENT_WINDOWS = const(52)
 # layout: The corrector's settings
 _WINDOW_SHIFT = const(4)
 _SEGMENT = const(5)

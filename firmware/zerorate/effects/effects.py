@@ -22,7 +22,7 @@ from .effect_inputs import accumulate, close_tick, tell_time
 from .effect_plays import play
 
 # layout: The corrector's state
-_EFFECT_Q8 = const(63)
+_EFFECT_Q8 = const(67)
 # layout: The effect model and its running state
 _SLOT_COUNT = const(0)
 _TICK_US = const(2)

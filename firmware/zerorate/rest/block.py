@@ -33,19 +33,19 @@ _WINDOW_SUM = const(26)
 _SQUARE_ACCEL = const(33)
 _REST = const(34)
 _SQUARE_GYRO = const(35)
-_WORK = const(55)
-_OUT_Q8 = const(57)
-_CARRY_Q8 = const(60)
-_EFFECT_Q8 = const(63)
-_EFFECT_SUM_Q8 = const(66)
-_TARGET_Q8 = const(69)
-_SQUARE_STEP = const(78)
-_LAST_RATE = const(79)
+_WORK = const(59)
+_OUT_Q8 = const(61)
+_CARRY_Q8 = const(64)
+_EFFECT_Q8 = const(67)
+_EFFECT_SUM_Q8 = const(70)
+_TARGET_Q8 = const(73)
+_SQUARE_STEP = const(82)
+_LAST_RATE = const(83)
 # layout: The corrector's settings
 _LEAP_US = const(1)
 _JUMP_LSB = const(2)
 _WINDOW = const(3)
-_EVERY = const(46)
+_EVERY = const(48)
 # layout: end
 
 _MOST_US = const(0x1FFFFFFF)
@@ -62,7 +62,7 @@ def stretch(s: ptr32, c: ptr32, n: int) -> int:
     """
     if s[_WORK] or c[_EVERY] or c[_WINDOW] == 4 or c[_LEAP_US] > _MOST_LEAP_US:
         return 0
-    if s[_COUNTS] == 0 or s[_COUNTS] > _NEARLY_MOST_COUNT:
+    if s[_COUNTS] >> 2 < c[_WINDOW] or s[_COUNTS] > _NEARLY_MOST_COUNT:
         return 0
     if s[_OUT_Q8] != s[_TARGET_Q8] or s[_OUT_Q8 + 1] != s[_TARGET_Q8 + 1]:
         return 0

@@ -18,9 +18,9 @@ ptr32 = None
 from .histogram import add, clear, halve, population, read_out_q8
 
 # layout: The corrector's state
-_LEARN_TEMP = const(54)
+_LEARN_TEMP = const(58)
 _CANDIDATE_THIRD = const(7)
-_NEAREST = const(82)
+_NEAREST = const(86)
 # layout: An axis
 _WAITING_SUM = const(0)
 _WAITING_N = const(1)
@@ -37,17 +37,17 @@ _EST_BIAS_Q8 = const(2)
 _EST_READINGS = const(3)
 _EST_HISTOGRAM = const(4)
 # layout: The corrector's settings
-_FIRST_SHORT = const(14)
-_ESTIMATORS_END = const(15)
-_BINS = const(16)
-_LITERAL = const(21)
-_SHORT = const(24)
-_ESTIMATOR_WORDS = const(26)
-_STEP_LSB = const(27)
-_MARGIN_LSB = const(28)
-_PROMOTE = const(29)
-_HALVE_AFTER = const(30)
-_FIRST_LONG = const(47)
+_FIRST_SHORT = const(16)
+_ESTIMATORS_END = const(17)
+_BINS = const(18)
+_LITERAL = const(23)
+_SHORT = const(26)
+_ESTIMATOR_WORDS = const(28)
+_STEP_LSB = const(29)
+_MARGIN_LSB = const(30)
+_PROMOTE = const(31)
+_HALVE_AFTER = const(32)
+_FIRST_LONG = const(49)
 # layout: Values that stand for none
 _FREE = const(-0x100000)
 # layout: end

@@ -21,12 +21,12 @@ ptr32 = None
 from .bias import curve_q8
 
 # layout: The corrector's state
-_TEMP = const(47)
-_NOISE_Q8 = const(49)
-_LEARN_TEMP = const(54)
-_RESTS = const(56)
-_MEAN_NOISE_Q8 = const(82)
-_GROWN_Q8 = const(83)
+_TEMP = const(51)
+_NOISE_Q8 = const(53)
+_LEARN_TEMP = const(58)
+_RESTS = const(60)
+_MEAN_NOISE_Q8 = const(86)
+_GROWN_Q8 = const(87)
 # layout: The last words before the axes
 _TURN_ON_OFFSET_Q8 = const(-3)
 # layout: An axis
@@ -48,15 +48,15 @@ _KIND = const(33)
 _AXES = const(0)
 _WINDOW_SHIFT = const(4)
 _SEGMENT = const(5)
-_AXIS_WORDS = const(13)
-_FLOOR_Q8 = const(37)
-_GATE_Q4 = const(38)
-_INSIST = const(39)
-_WALK_LEAST_Q16 = const(40)
-_WALK_MOST_Q16 = const(41)
-_PROVISIONAL_Q8 = const(44)
-_TURN_ON_VARIANCE_Q8 = const(45)
-_SLOPE_Q16 = const(50)
+_AXIS_WORDS = const(15)
+_FLOOR_Q8 = const(39)
+_GATE_Q4 = const(40)
+_INSIST = const(41)
+_WALK_LEAST_Q16 = const(42)
+_WALK_MOST_Q16 = const(43)
+_PROVISIONAL_Q8 = const(46)
+_TURN_ON_VARIANCE_Q8 = const(47)
+_SLOPE_Q16 = const(52)
 # layout: end
 
 

@@ -24,27 +24,31 @@ from .estimators import learn_anywhere, learn_here
 from .fit import bend, draw_line
 from .guard import check
 from .recent import absorb, beyond_q8, gain_q14, grown_q8, hand_over, mean_noise_q8
-from .stillness import gather, judge
+from .stillness import gather, judge, seems_still
 
 # layout: The corrector's state
 _COUNTS = const(8)
 _ELAPSED_US = const(16)
-_SEGMENT_TOTAL = const(42)
-_SEGMENT_TEMP = const(45)
-_STILLNESS = const(46)
-_TEMP = const(47)
-_SEGMENT_WINDOWS = const(48)
-_LEARN_TEMP = const(54)
-_WORK = const(55)
-_OUT_Q8 = const(57)
-_CARRY_Q8 = const(60)
-_EFFECT_Q8 = const(63)
-_TARGET_Q8 = const(69)
-_QUALITY_Q8 = const(72)
-_SOURCE = const(75)
+_WINDOW_N = const(17)
+_REFERENCE = const(19)
+_WINDOW_SUM = const(26)
+_SEGMENT_TOTAL = const(46)
+_SEGMENT_TEMP = const(49)
+_STILLNESS = const(50)
+_TEMP = const(51)
+_SEGMENT_WINDOWS = const(52)
+_LEARN_TEMP = const(58)
+_WORK = const(59)
+_OUT_Q8 = const(61)
+_CARRY_Q8 = const(64)
+_EFFECT_Q8 = const(67)
+_EFFECT_SUM_Q8 = const(70)
+_TARGET_Q8 = const(73)
+_QUALITY_Q8 = const(76)
+_SOURCE = const(79)
 _OFFERED_SOURCE = const(7)
-_MEAN_NOISE_Q8 = const(82)
-_GROWN_Q8 = const(83)
+_MEAN_NOISE_Q8 = const(86)
+_GROWN_Q8 = const(87)
 # layout: An axis
 _WAITING_SUM = const(0)
 _WAITING_N = const(1)
@@ -58,16 +62,16 @@ _LINE_TEMP = const(34)
 _AXES = const(0)
 _WINDOW = const(3)
 _WINDOW_SHIFT = const(4)
-_SLEW_Q8 = const(11)
-_WORK_A_SAMPLE = const(12)
-_AXIS_WORDS = const(13)
-_FLOOR_Q8 = const(37)
-_GATE_Q4 = const(38)
-_STALE_LSB = const(43)
-_PROVISIONAL_Q8 = const(44)
-_EVERY = const(46)
-_MOST_SIGMA_Q6 = const(48)
-_FULL_WEIGHT_Q12 = const(49)
+_SLEW_Q8 = const(13)
+_WORK_A_SAMPLE = const(14)
+_AXIS_WORDS = const(15)
+_FLOOR_Q8 = const(39)
+_GATE_Q4 = const(40)
+_STALE_LSB = const(45)
+_PROVISIONAL_Q8 = const(46)
+_EVERY = const(48)
+_MOST_SIGMA_Q6 = const(50)
+_FULL_WEIGHT_Q12 = const(51)
 # layout: What a window was
 _STILL = const(1)
 # layout: end
@@ -190,16 +194,33 @@ def publish_provisional(s: ptr32, axis: int, bias: int, quality: int):
 def publish_first_rest(s: ptr32, c: ptr32, axis: int):
     """Publish the mean of the first rest once it is two windows long, before it is learned from.
 
-    It is taken back at once when the rest turns out to be none. Another source's bias stands.
+    One of the first windows of a power-on is enough: few are switched on in motion. It is taken back at once when the rest turns out to be none. Another source's bias stands.
     """
     if s[_SOURCE + axis] > 1:
         return
-    if s[_STILLNESS] == 1 and s[_SEGMENT_WINDOWS] > 1:
+    if s[_STILLNESS] == _STILL and (s[_SEGMENT_WINDOWS] > 1 or s[_COUNTS] >> 2 < c[_WINDOW]):
         level = segment_mean_q8(s, c, axis)
         publish_provisional(s, axis, level, c[_PROVISIONAL_Q8])
     elif s[_SOURCE + axis] == 1:
         publish_provisional(s, axis, 0, 0)
         s[_SOURCE + axis] = 0
+
+
+def publish_first_glance(s: ptr32, c: ptr32):
+    """Publish the mean of the very first frames, a quarter of a window, if they seem still.
+
+    The window's end confirms it or takes it back.
+    """
+    shift = c[_WINDOW_SHIFT] - 2
+    if c[_EVERY] or seems_still(s, c, shift) == 0:
+        return
+    i = 0
+    while i < 3:
+        if s[_SOURCE + i] == 0:
+            bias = (s[_REFERENCE + 4 + i] << 8) - (s[_EFFECT_SUM_Q8 + i] >> shift)
+            bias += (s[_WINDOW_SUM + 4 + i] << 8) >> shift
+            publish_provisional(s, i, bias, c[_PROVISIONAL_Q8] << 1)
+        i += 1
 
 
 def end_window(s: ptr32, c: ptr32):
@@ -258,6 +279,8 @@ def admit(s: ptr32, c: ptr32, x: ptr32, kind: int) -> int:
             s[_WORK] = 1
             while s[_WORK]:
                 advance(s, c)
+        if s[_WINDOW_N] == c[_WINDOW] >> 2 and s[_COUNTS] >> 2 < c[_WINDOW]:
+            publish_first_glance(s, c)
         if c[_EVERY]:
             learn_at_once(s, c, x)
     i = c[_WORK_A_SAMPLE]

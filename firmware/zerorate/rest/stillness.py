@@ -24,21 +24,23 @@ _SQUARE_ACCEL = const(33)
 _REST = const(34)
 _SQUARE_GYRO = const(35)
 _ANCHOR_Q4 = const(36)
-_FIRST_RATE_Q4 = const(39)
-_SEGMENT_TOTAL = const(42)
-_SEGMENT_TEMP = const(45)
-_STILLNESS = const(46)
-_TEMP = const(47)
-_SEGMENT_WINDOWS = const(48)
-_NOISE_Q8 = const(49)
-_TEMP_LEVEL_Q8 = const(50)
-_TEMP_RISE_Q12 = const(51)
-_TEMP_WINDOWS = const(52)
-_TIP_Q8 = const(53)
-_EFFECT_Q8 = const(63)
-_EFFECT_SUM_Q8 = const(66)
-_SQUARE_STEP = const(78)
-_LAST_RATE = const(79)
+_LEAN_Q4 = const(39)
+_LEAN_NOISE_Q8 = const(42)
+_FIRST_RATE_Q4 = const(43)
+_SEGMENT_TOTAL = const(46)
+_SEGMENT_TEMP = const(49)
+_STILLNESS = const(50)
+_TEMP = const(51)
+_SEGMENT_WINDOWS = const(52)
+_NOISE_Q8 = const(53)
+_TEMP_LEVEL_Q8 = const(54)
+_TEMP_RISE_Q12 = const(55)
+_TEMP_WINDOWS = const(56)
+_TIP_Q8 = const(57)
+_EFFECT_Q8 = const(67)
+_EFFECT_SUM_Q8 = const(70)
+_SQUARE_STEP = const(82)
+_LAST_RATE = const(83)
 # layout: The corrector's settings
 _WINDOW = const(3)
 _WINDOW_SHIFT = const(4)
@@ -46,7 +48,9 @@ _SEGMENT = const(5)
 _STILL_GYRO_Q8 = const(7)
 _STILL_ACCEL_Q8 = const(8)
 _TIP_LIMIT_Q8 = const(9)
-_CHANGE_LIMIT_Q8 = const(10)
+_LEAN_LIMIT_Q4 = const(10)
+_LEAN_NOISE_FACTOR_Q4 = const(11)
+_CHANGE_LIMIT_Q8 = const(12)
 # layout: What a window was
 _STILL = const(1)
 _MOVING = const(2)
@@ -58,7 +62,7 @@ _SHIFTED = const(5)
 _FAR_LSB = const(512)  # a reading farther than that from the window's first is motion:
 _FAR_BITS = const(10)  # of ten bits the squares of a window fit 31
 # by how much of a window's variance noise alone lets two of them differ
-_GRAVITY_NOISE = const(6)  # the mean accelerations: three sigma of three axes together
+_GRAVITY_NOISE = const(18)  # the mean accelerations: 27 by chi squared of 3, for noise is coloured
 _FAR_Q8 = const(0x7FFFF)  # a temperature so far from the line begins a new one
 _SMOOTHED = const(30)  # windows that a temperature is smoothed over
 _RATE_NOISE = const(14)  # the mean rate of an axis: 2 / 3 x (4.5 sigma)^2
@@ -110,22 +114,35 @@ def gather(s: ptr32, c: ptr32, x: ptr32) -> int:
     return 1
 
 
-def spread_q8(s: ptr32, c: ptr32, first: int, square: int) -> int:
-    """Return the window's variance in LSB^2, Q8, summed over three channels from `first`."""
+def spread_q8(s: ptr32, first: int, square: int, shift: int) -> int:
+    """Return the variance of 2^shift frames, LSB^2 Q8, summed over three channels from `first`."""
     i = 0
     while i < 3:
-        mean_q4 = (s[first + i] << 4) >> c[_WINDOW_SHIFT]
+        mean_q4 = (s[first + i] << 4) >> shift
         square -= (mean_q4 * s[first + i]) >> 4
         i += 1
     if square < 0:
         square = 0
-    return square << (8 - c[_WINDOW_SHIFT])
+    return square << (8 - shift)
+
+
+def seems_still(s: ptr32, c: ptr32, shift: int) -> int:
+    """Return 1 if the window's frames so far, 2^shift of them, spread as little as at rest."""
+    if s[_DIRTY] or spread_q8(s, _WINDOW_SUM + 4, s[_SQUARE_GYRO], shift) > c[_STILL_GYRO_Q8]:
+        return 0
+    if spread_q8(s, _WINDOW_SUM, s[_SQUARE_ACCEL], shift) > c[_STILL_ACCEL_Q8]:
+        return 0
+    return 1
 
 
 def tip_q8(s: ptr32, c: ptr32) -> int:
-    """Return how far gravity has moved since the rest began: squared LSB, Q8."""
+    """Return how far gravity has moved since the rest began, LSB^2 Q8; sum up how it leans.
+
+    Weighted -7, -5 .. 7 the means of eight windows give the slope of a line through them.
+    """
     i = 0
     square = 0
+    weight = 2 * s[_SEGMENT_WINDOWS] + 1 - c[_SEGMENT]
     while i < 3:
         d = (
             (s[_REFERENCE + i] << 4)
@@ -137,8 +154,34 @@ def tip_q8(s: ptr32, c: ptr32) -> int:
         if d < -8191:
             d = -8191
         square += d * d
+        s[_LEAN_Q4 + i] += weight * d
         i += 1
     return square
+
+
+def upright(s: ptr32):
+    """Begin to watch how gravity leans."""
+    i = 0
+    while i < 4:
+        s[_LEAN_Q4 + i] = 0  # LEAN_NOISE_Q8 stands behind them
+        i += 1
+
+
+def leans(s: ptr32, c: ptr32) -> int:
+    """Return 1 if gravity moved steadily over the segment: the device turns, if slowly."""
+    i = 0
+    square = 0
+    while i < 3:
+        d = s[_LEAN_Q4 + i] >> 2
+        if d > 17000:
+            d = 17000
+        if d < -17000:
+            d = -17000
+        square += d * d
+        i += 1
+    d = s[_LEAN_NOISE_Q8]
+    d = (d if d < 0x3FFFFF else 0x3FFFFF) * c[_LEAN_NOISE_FACTOR_Q4] >> 4
+    return 1 if square > c[_LEAN_LIMIT_Q4] + d else 0
 
 
 def change_q4(s: ptr32, c: ptr32) -> int:
@@ -172,6 +215,8 @@ def begin(s: ptr32, c: ptr32, anchored: int):
         )
         s[_SEGMENT_TOTAL + i] = 0
         i += 1
+    if anchored == 0:
+        upright(s)
     s[_SEGMENT_TEMP] = 0
     s[_SEGMENT_WINDOWS] = 0
     s[_REST] = 1
@@ -197,17 +242,19 @@ def classify_window(s: ptr32, c: ptr32) -> int:
         return _MOVING
     if s[_DIRTY]:
         return _SHAKEN
-    noise_q8 = spread_q8(s, c, _WINDOW_SUM + 4, s[_SQUARE_GYRO])
+    noise_q8 = spread_q8(s, _WINDOW_SUM + 4, s[_SQUARE_GYRO], c[_WINDOW_SHIFT])
     if noise_q8 > c[_STILL_GYRO_Q8] and white(s, c, noise_q8) == 0:
         return _MOVING
-    shake_q8 = spread_q8(s, c, _WINDOW_SUM, s[_SQUARE_ACCEL])
+    shake_q8 = spread_q8(s, _WINDOW_SUM, s[_SQUARE_ACCEL], c[_WINDOW_SHIFT])
     if shake_q8 > c[_STILL_ACCEL_Q8]:
         return _SHAKEN
     s[_NOISE_Q8] += (noise_q8 - s[_NOISE_Q8]) >> 3
     if s[_REST] == 0:
         return _STILL
     s[_TIP_Q8] = tip_q8(s, c)
-    if s[_TIP_Q8] > c[_TIP_LIMIT_Q8] + _GRAVITY_NOISE * (shake_q8 >> c[_WINDOW_SHIFT]):
+    shake_q8 = shake_q8 >> c[_WINDOW_SHIFT]
+    s[_LEAN_NOISE_Q8] += shake_q8
+    if s[_TIP_Q8] > c[_TIP_LIMIT_Q8] + _GRAVITY_NOISE * shake_q8:
         return _TURNING
     if s[_SEGMENT_WINDOWS]:
         change = change_q4(s, c)
@@ -279,4 +326,9 @@ def judge(s: ptr32, c: ptr32) -> int:
     if i < c[_SEGMENT]:
         return 0
     s[_SEGMENT_WINDOWS] = 0
+    if leans(s, c):
+        s[_STILLNESS] = _TURNING
+        s[_REST] = 0
+        i = 0
+    upright(s)
     return i

@@ -8,7 +8,7 @@ from zerorate.model import EffectModel
 from zerorate.settings import Sensor
 
 # layout: The corrector's state
-_EFFECT_Q8 = const(63)
+_EFFECT_Q8 = const(67)
 # layout: end
 
 model = EffectModel()

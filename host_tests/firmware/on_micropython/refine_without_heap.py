@@ -9,14 +9,14 @@ from zerorate.settings import Sensor
 
 # layout: The corrector's state
 _WINDOW_N = const(17)
-_SEGMENT_TOTAL = const(42)
-_STILLNESS = const(46)
-_TEMP = const(47)
-_FIT_WEIGHTS = const(94)
+_SEGMENT_TOTAL = const(46)
+_STILLNESS = const(50)
+_TEMP = const(51)
+_FIT_WEIGHTS = const(98)
 # layout: The corrector's settings
 _WINDOW_SHIFT = const(4)
 _SEGMENT = const(5)
-_SETTINGS_WORDS = const(52)
+_SETTINGS_WORDS = const(54)
 # layout: The effect model and its running state
 _SLOT_COUNT = const(0)
 _SLOTS = const(112)

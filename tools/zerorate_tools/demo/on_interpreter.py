@@ -12,8 +12,8 @@ from zerorate_i2c.mpu6050 import MPU6050, RESTARTED, SUSPECT
 
 _ROWS = 256
 # layout: The corrector's state
-_OUT_Q8 = const(57)
-_EFFECT_Q8 = const(63)
+_OUT_Q8 = const(61)
+_EFFECT_Q8 = const(67)
 # layout: end
 
 
