@@ -48,11 +48,11 @@ def test_most_frames_of_a_rest_are_taken_at_one_look(monkeypatch):
     left = []
     plain = block.step
     monkeypatch.setattr(block, "step", lambda *args: left.append(1) or plain(*args))
-    rows = whole_trace("default")[:640]
+    rows = whole_trace("default")[:1280]
     corrector = corrector_for("default")
     burst = array("i", b"".join(row.tobytes() for row in rows))
     block.block(corrector.state, burst, corrector.settings, array("i", [0] * 9), len(rows))
-    assert 0 < len(left) < 640 / 2
+    assert 0 < len(left) < 1280 / 2
 
 
 def test_a_corrector_without_machine_code_gives_the_same(one_by_one):
