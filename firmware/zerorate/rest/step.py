@@ -194,8 +194,8 @@ def publish_provisional(s: ptr32, axis: int, bias: int, quality: int):
 def publish_first_rest(s: ptr32, c: ptr32, axis: int):
     """Publish the mean of the first rest once it is two windows long, before it is learned from.
 
-    One of the first windows of a power-on is enough: few are switched on in motion. It is taken back
-    at once when the rest turns out to be none. Another source's bias stands.
+    One of the first windows of a power-on is enough: few are switched on in motion. It is taken
+    back at once when the rest turns out to be none. Another source's bias stands.
     """
     if s[_SOURCE + axis] > 1:
         return
