@@ -110,7 +110,8 @@ def _by_gravity(
 def _likely(target: str, wanted: Mapping[str, Mapped], first: Mapping[str, np.ndarray]) -> str:
     if target == TEMP:
         values = first[wanted[TEMP].column]
-        return "lsb" if (values[np.isfinite(values)] % 1 == 0).all() else "degc"
+        values = values[np.isfinite(values)]
+        return "lsb" if len(values) and (values % 1 == 0).all() else "degc"
     if not all(axis in wanted for axis in ACCEL):
         return "dps" if target in GYRO else "m/s2"
     unit = wanted["ax"].unit or unit_in_name("ax", wanted["ax"].column)

@@ -149,7 +149,7 @@ class _Gathering:
     def _measure(self, columns, whole):
         for kind, axes in (("gyro", GYRO), ("accel", ACCEL)):
             if axes[0] in columns:
-                sizes = np.abs([columns[name][whole] for name in axes])
+                sizes = np.abs([columns[name] for name in axes])
                 sizes = sizes[np.isfinite(sizes)]
                 self.largest[kind] = max(self.largest[kind], float(sizes.max(initial=0.0)))
         for name in self.readings:
