@@ -24,8 +24,9 @@ class FifoBench:
     def run(self, us):
         self.clock.advance_us(us)
 
-    def drain(self):
-        """Read until empty; the statuses."""
+    def drain(self, after_us=0):
+        """Read until empty, some time later; the statuses."""
+        self.clock.advance_us(after_us)
         statuses = []
         for _ in range(2000):
             status = self.fifo.read(self.bench.sample)
@@ -59,8 +60,7 @@ def test_nothing_waiting_is_empty(fifo_bench):
 
 def test_frames_come_in_order_and_none_is_lost(fifo_bench):
     for pause_us in (35000, 10000, 200000, 5000, 400000):
-        fifo_bench.run(pause_us)
-        fifo_bench.drain()
+        fifo_bench.drain(pause_us)
     assert fifo_bench.numbers == list(range(fifo_bench.numbers[0], fifo_bench.numbers[-1] + 1))
     assert fifo_bench.missing() == 0
     assert fifo_bench.fifo.lost == 0
@@ -68,8 +68,7 @@ def test_frames_come_in_order_and_none_is_lost(fifo_bench):
 
 def test_time_steps_are_the_period_when_nothing_is_lost(fifo_bench):
     for _ in range(20):
-        fifo_bench.run(35000)
-        fifo_bench.drain()
+        fifo_bench.drain(35000)
     assert max(abs(slip) for slip in fifo_bench.slips_us()) <= PERIOD_US
 
 
@@ -85,19 +84,15 @@ def test_a_chip_that_runs_fast_does_not_outrun_the_clock(fifo_bench):
     fifo_bench.imu.period_us = 10300
     before_first_us = fifo_bench.clock.now_us - PERIOD_US // 2
     for _ in range(200):
-        fifo_bench.run(50000)
-        fifo_bench.drain()
+        fifo_bench.drain(50000)
         assert before_first_us + fifo_bench.now_us <= fifo_bench.clock.now_us
     assert max(abs(slip) for slip in fifo_bench.slips_us()) <= 2 * PERIOD_US
 
 
 def test_an_overflow_is_told_counted_and_kept_right_in_time(fifo_bench):
-    fifo_bench.run(100000)
-    fifo_bench.drain()
-    fifo_bench.run(1500000)
-    fifo_bench.drain()
-    fifo_bench.run(100000)
-    fifo_bench.drain()
+    fifo_bench.drain(100000)
+    fifo_bench.drain(1500000)
+    fifo_bench.drain(100000)
     assert fifo_bench.fifo.overflows == 1
     assert abs(fifo_bench.fifo.lost - fifo_bench.missing()) <= 1
     assert fifo_bench.missing() >= 150
@@ -106,14 +101,12 @@ def test_an_overflow_is_told_counted_and_kept_right_in_time(fifo_bench):
 
 @pytest.mark.parametrize("lost_bytes", [1, 2, 7, 13])
 def test_lost_alignment_is_found_before_a_frame_of_it_is_delivered(fifo_bench, lost_bytes):
-    fifo_bench.run(100000)
-    fifo_bench.drain()
+    fifo_bench.drain(100000)
     fifo_bench.run(100000)
     for _ in range(lost_bytes):
         fifo_bench.chip.fifo.get()
     fifo_bench.drain()
-    fifo_bench.run(100000)
-    fifo_bench.drain()
+    fifo_bench.drain(100000)
     assert fifo_bench.fifo.misalignments == 1
     assert fifo_bench.numbers == sorted(fifo_bench.numbers)
     assert all(number < 6000 for number in fifo_bench.numbers)
@@ -122,8 +115,7 @@ def test_lost_alignment_is_found_before_a_frame_of_it_is_delivered(fifo_bench, l
 
 
 def test_lost_alignment_that_the_count_hides_is_found_by_temperature(fifo_bench):
-    fifo_bench.run(100000)
-    fifo_bench.drain()
+    fifo_bench.drain(100000)
     fifo_bench.run(100000)
     for _ in range(4):
         fifo_bench.chip.fifo.get()
@@ -135,8 +127,7 @@ def test_lost_alignment_that_the_count_hides_is_found_by_temperature(fifo_bench)
 
 
 def test_a_frame_half_written_when_counted_is_no_loss(fifo_bench):
-    fifo_bench.run(100000)
-    fifo_bench.drain()
+    fifo_bench.drain(100000)
     fifo_bench.run(50000)
     chip = fifo_bench.chip
     late = []
@@ -159,26 +150,22 @@ def test_a_frame_half_written_when_counted_is_no_loss(fifo_bench):
 
 
 def test_a_bus_lost_in_mid_burst_costs_samples_but_not_alignment(fifo_bench):
-    fifo_bench.run(100000)
-    fifo_bench.drain()
+    fifo_bench.drain(100000)
     fifo_bench.run(100000)
     fifo_bench.bus.fault("gone", skip=2, at_byte=20)
     fifo_bench.drain()
-    fifo_bench.run(100000)
-    fifo_bench.drain()
+    fifo_bench.drain(100000)
     assert fifo_bench.imu.bus_errors == 1
     assert abs(fifo_bench.fifo.lost - fifo_bench.missing()) <= 1
     assert max(abs(slip) for slip in fifo_bench.slips_us()) <= PERIOD_US
 
 
 def test_a_brown_out_restarts_the_chip_with_its_fifo(fifo_bench):
-    fifo_bench.run(100000)
-    fifo_bench.drain()
+    fifo_bench.drain(100000)
     fifo_bench.chip.power_up()
     statuses = []
     for _ in range(10):
-        fifo_bench.run(100000)
-        statuses += fifo_bench.drain()
+        statuses += fifo_bench.drain(100000)
     assert RESTARTED in statuses
     assert fifo_bench.imu.restarts == 1
     assert fifo_bench.chip.registers[0x23] == 0xF8
@@ -186,24 +173,20 @@ def test_a_brown_out_restarts_the_chip_with_its_fifo(fifo_bench):
 
 
 def test_frozen_frames_are_suspect_and_restart_the_chip(fifo_bench):
-    fifo_bench.run(100000)
-    fifo_bench.drain()
+    fifo_bench.drain(100000)
     fifo_bench.chip.frozen = True
-    fifo_bench.run(300000)
-    statuses = fifo_bench.drain()
+    statuses = fifo_bench.drain(300000)
     assert SUSPECT in statuses and RESTARTED in statuses
 
 
 @pytest.mark.parametrize("kind", ["all_ff", "all_00"])
 def test_a_dead_bus_ends_in_an_error_and_never_in_a_sample(fifo_bench, kind):
-    fifo_bench.run(100000)
-    fifo_bench.drain()
+    fifo_bench.drain(100000)
     delivered = len(fifo_bench.numbers)
     fifo_bench.bus.fault(kind, times=None)
     with pytest.raises(OSError):
         for _ in range(30):
-            fifo_bench.run(50000)
-            fifo_bench.drain()
+            fifo_bench.drain(50000)
     assert len(fifo_bench.numbers) == delivered
 
 
@@ -211,8 +194,7 @@ def test_the_configuration_is_read_back_while_frames_flow(make_bench):
     bench = FifoBench(make_bench, check_every=40)
     statuses = []
     for _ in range(20):
-        bench.run(100000)
-        statuses += bench.drain()
+        statuses += bench.drain(100000)
     assert statuses.count(VERIFIED) >= 4
 
 
@@ -221,11 +203,9 @@ def test_the_configuration_is_read_back_while_frames_flow(make_bench):
 )
 def test_each_part_overflows_at_its_own_size(make_bench, part, size):
     bench = FifoBench(make_bench, part=part)
-    bench.run(10000 * (size // 14 - 2))
-    bench.drain()
+    bench.drain(10000 * (size // 14 - 2))
     assert bench.fifo.overflows == 0
-    bench.run(10000 * (size // 14 + 2))
-    bench.drain()
+    bench.drain(10000 * (size // 14 + 2))
     assert bench.fifo.overflows == 1
 
 

@@ -57,3 +57,29 @@ def turning(seconds, dps, axis, hz=50.0, bias_dps=(1.0, -2.0, 3.0), start=None, 
     turn = Rotation.from_rotvec(np.radians(dps) * t[:, None] * np.asarray(axis))
     start = Rotation.identity() if start is None else start
     return Motion(turn * start, bias_dps, hz, seed, shake_g=0.0)
+
+
+class Fed:
+    """A source fed with recordings; learned: (seconds, bias dps, sigma dps) of each time it did."""
+
+    def __init__(self, update, settings, state, bias, sigma):
+        self.update, self.settings, self.state, self.at = update, settings, state, (bias, sigma)
+        self.learned = []
+        self.seconds = 0.0
+
+    def feed(self, motion, keep=list):
+        dt_us = round(1e6 / motion.hz)
+        scale = 256 * GYRO_LSB_PER_DPS
+        for sample in motion.samples.tolist():
+            self.seconds += 1 / motion.hz
+            if self.update(self.state, self.settings, keep(sample), dt_us):
+                bias, sigma = (np.array(self.state[a : a + 3]) / scale for a in self.at)
+                self.learned.append((self.seconds, bias, sigma))
+            self.after_each()
+        return self
+
+    def after_each(self):
+        pass
+
+    def errors_mdps(self, bias_dps, after_s=0.0):
+        return np.array([1000 * (b - bias_dps) for t, b, _ in self.learned if t >= after_s])

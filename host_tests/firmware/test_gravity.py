@@ -16,27 +16,12 @@ REASON = GRAVITY.GRAVITY_REASON
 LEANING = Rotation.from_rotvec([0.5, -0.6, 0.2])
 
 
-class Counter:
-    """The source fed with recordings; trace: (seconds, offsets dps, sigma dps) an interval."""
+class Counter(motions.Fed):
+    """The source fed with recordings; learned: at the end of each interval."""
 
     def __init__(self, hz=50.0, **options):
-        self.settings = gravity_settings(odr_hz=hz, **options)
-        self.state = gravity_state(self.settings)
-        self.trace = []
-        self.seconds = 0.0
-
-    def feed(self, motion):
-        dt_us = round(1e6 / motion.hz)
-        scale = 256 * motions.GYRO_LSB_PER_DPS
-        for sample in motion.samples.tolist():
-            self.seconds += 1 / motion.hz
-            if gravity.update(self.state, self.settings, sample, dt_us):
-                offset, sigma = (np.array(self.state[a : a + 3]) / scale for a in (OFFSET, SIGMA))
-                self.trace.append((self.seconds, offset, sigma))
-        return self
-
-    def errors_mdps(self, bias_dps, after_s=0.0):
-        return np.array([1000 * (b - bias_dps) for t, b, _ in self.trace if t >= after_s])
+        settings = gravity_settings(odr_hz=hz, **options)
+        super().__init__(gravity.update, settings, gravity_state(settings), OFFSET, SIGMA)
 
 
 def test_a_leaning_device_at_rest_is_known_to_50_mdps():
@@ -77,7 +62,7 @@ def test_sub_units_without_one_g_are_not_counted():
 def test_the_documents_own_form_moves_by_one_step_an_interval():
     motion = motions.turning(60, 0.0, [1, 0, 0], start=LEANING)
     counter = Counter(document=True, coarse_dps=0.05, threshold=0).feed(motion)
-    offsets = np.array([offset for _, offset, _ in counter.trace])
+    offsets = np.array([offset for _, offset, _ in counter.learned])
     steps = np.abs(np.diff(offsets, axis=0))
     assert len(offsets) == 15
     assert set(np.round(steps.ravel() * 131 * 256)) <= {0, int(0.05 * 131 * 256)}
@@ -99,7 +84,7 @@ def test_the_truth_lies_within_two_sigma_at_least_ninety_times_of_a_hundred():
     for seed in range(6):
         motion = motions.turning(200, 0.0, [1, 0, 0], start=motions.pose(seed), seed=seed)
         counter = Counter().feed(motion)
-        for _, offset, sigma in counter.trace:
+        for _, offset, sigma in counter.learned:
             known = sigma < 1000
             inside += list((np.abs(offset - motion.bias_dps) < 2 * sigma)[known])
     assert len(inside) > 100
@@ -147,5 +132,5 @@ def test_bytecode_counts_what_cpython_counts_and_allocates_nothing(
     micropython, source_on, short_motion
 ):
     expected = Counter(hz=25.0).feed(short_motion)
-    assert expected.trace
+    assert expected.learned
     assert source_on(micropython, "gravity", short_motion) == expected.state.tobytes()

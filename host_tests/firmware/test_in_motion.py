@@ -22,29 +22,16 @@ REASON, REFUSED = MOTION.MOTION_REASON, MOTION.REFUSED
 SLOPES, HALF, Q = MOTION.NOTED_SLOPES_Q8, MOTION.HALF, MOTION.Q
 
 
-class Learner:
-    """The source fed with recordings; windows: (seconds, bias dps, sigma dps) of each learned."""
+class Learner(motions.Fed):
+    """The source fed with recordings; learned: of each window."""
 
     def __init__(self, hz=50.0, **options):
-        self.settings = motion_settings(odr_hz=hz, **options)
-        self.state = motion_state(self.settings)
-        self.windows = []
+        settings = motion_settings(odr_hz=hz, **options)
+        super().__init__(in_motion.update, settings, motion_state(settings), BIAS, SIGMA)
         self.reasons = set()
-        self.seconds = 0.0
 
-    def feed(self, motion, keep=list):
-        dt_us = round(1e6 / motion.hz)
-        scale = 256 * motions.GYRO_LSB_PER_DPS
-        for sample in motion.samples.tolist():
-            self.seconds += 1 / motion.hz
-            if in_motion.update(self.state, self.settings, keep(sample), dt_us):
-                bias, sigma = (np.array(self.state[a : a + 3]) / scale for a in (BIAS, SIGMA))
-                self.windows.append((self.seconds, bias, sigma))
-            self.reasons.add(self.state[REASON])
-        return self
-
-    def errors_mdps(self, bias_dps, after_s=0.0):
-        return np.array([1000 * (b - bias_dps) for t, b, _ in self.windows if t >= after_s])
+    def after_each(self):
+        self.reasons.add(self.state[REASON])
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -70,7 +57,7 @@ def test_a_bias_that_follows_the_temperature_is_followed_without_a_lag():
 
     def error_mdps(**options):
         learner = Learner(**options).feed(motion)
-        late = [(t, b) for t, b, _ in learner.windows if t > 150]
+        late = [(t, b) for t, b, _ in learner.learned if t > 150]
         truth = [motion.bias_dps[round(t * motion.hz) - 1] for t, _ in late]
         return 1000 * np.abs(np.mean([b for _, b in late] - np.array(truth), axis=0))
 
@@ -90,7 +77,7 @@ def test_the_truth_lies_within_two_sigma_at_least_ninety_times_of_a_hundred():
     for seed in range(10, 16):
         motion = motions.swinging(seed, 120)
         learner = Learner().feed(motion)
-        inside += [np.abs(b - motion.bias_dps) < 2 * s for _, b, s in learner.windows]
+        inside += [np.abs(b - motion.bias_dps) < 2 * s for _, b, s in learner.learned]
     assert len(inside) > 50
     assert np.mean(inside) >= 0.9
 
@@ -106,14 +93,14 @@ def test_the_truth_lies_within_two_sigma_at_least_ninety_times_of_a_hundred():
 )
 def test_what_does_not_move_to_and_fro_teaches_nothing(motion):
     learner = Learner().feed(motion)
-    assert learner.windows == []
+    assert learner.learned == []
     assert MOTION_REASON.HARDLY_MOVES in learner.reasons
 
 
 def test_a_slow_turn_about_a_level_axis_is_told_from_a_bias_by_gravity():
     motion = motions.turning(100, 0.5, [1.0, 0.0, 0.0])
     learner = Learner().feed(motion)
-    assert len(learner.windows) >= 3
+    assert len(learner.learned) >= 3
     assert np.abs(learner.errors_mdps(motion.bias_dps)[-1]).max() < 30
 
 
@@ -151,7 +138,7 @@ def test_a_bias_that_contradicts_what_is_known_is_refused_and_believed_when_it_l
 
 def test_a_turn_beyond_what_a_node_holds_is_refused():
     learner = Learner(gyro_lsb_per_dps=16.4).feed(motions.turning(40, 200.0, [1.0, 0.0, 0.0]))
-    assert learner.windows == []
+    assert learner.learned == []
     assert MOTION_REASON.TOO_FAST in learner.reasons
 
 
@@ -167,7 +154,7 @@ def test_a_gap_in_time_begins_a_new_window():
 def test_each_pass_of_the_documents_own_form_leaves_a_smaller_slope():
     learner = Learner(document=True).feed(motions.swinging(3, 20))
     slopes = np.abs(np.array(learner.state[SLOPES : SLOPES + 9])).reshape(3, 3).max(axis=1)
-    assert len(learner.windows) == 1
+    assert len(learner.learned) == 1
     assert slopes[0] > slopes[1] > slopes[2] > 0
 
 
@@ -310,7 +297,7 @@ def short_motion():
 @pytest.fixture(scope="module")
 def expected(short_motion):
     learner = Learner(hz=25.0, longest_stage=8).feed(short_motion)
-    assert learner.windows
+    assert learner.learned
     return learner.state.tobytes()
 
 

@@ -63,6 +63,29 @@ def _too_large(path: Path) -> BadRecording:
     return BadRecording(path, problem, do="write it with smaller pages, or copy it again")
 
 
+class TableWriter:
+    """Writes tables of one form to a Parquet file as they come; none where none came.
+
+    how: words of pyarrow.parquet.ParquetWriter.
+    """
+
+    def __init__(self, path: Path, **how: Any) -> None:
+        self._path, self._how = path, how
+        self._writer: pq.ParquetWriter | None = None
+
+    def append(self, table: pa.Table) -> None:
+        """Write a table."""
+        if self._writer is None:
+            schema = table.schema
+            self._writer = pq.ParquetWriter(self._path, schema, compression="zstd", **self._how)
+        self._writer.write_table(table)
+
+    def close(self) -> None:
+        """Finish the file."""
+        if self._writer is not None:
+            self._writer.close()
+
+
 class ParquetWriter:
     """Appends batches to a Parquet file, one row group each."""
 

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.parquet as pq
 
+from ..recordings.parquet_format import TableWriter
 from .engines import Outcome
 
 SOURCES = ("none", "any-temperature", "fit", "this-temperature", "in-motion", "gravity")
@@ -44,29 +44,18 @@ def _named(codes: np.ndarray, names: tuple[str, ...]) -> pa.Array:
     return pa.DictionaryArray.from_arrays(codes.astype(np.int8), list(names))
 
 
-class ReplayWriter:
+class ReplayWriter(TableWriter):
     """Writes batches to one Parquet file as they come."""
 
     def __init__(self, path: Path) -> None:
-        self._path = path
-        self._writer: pq.ParquetWriter | None = None
+        # time never returns, and what was learned stays for long: no dictionary of those
+        super().__init__(
+            path,
+            use_dictionary=["source", "verdict"],
+            column_encoding={"t_us": "DELTA_BINARY_PACKED"},
+            write_statistics=["t_us"],
+        )
 
     def write(self, outcome: Outcome) -> None:
         """Append a batch."""
-        batch = table(outcome)
-        if self._writer is None:
-            self._writer = pq.ParquetWriter(
-                self._path,
-                batch.schema,
-                compression="zstd",
-                # time never returns, and what was learned stays for long: no dictionary of those
-                use_dictionary=["source", "verdict"],
-                column_encoding={"t_us": "DELTA_BINARY_PACKED"},
-                write_statistics=["t_us"],
-            )
-        self._writer.write_table(batch)
-
-    def close(self) -> None:
-        """Finish the file."""
-        if self._writer is not None:
-            self._writer.close()
+        self.append(table(outcome))

@@ -1,23 +1,17 @@
 """corrected.parquet: what the firmware's kernels subtract from every sample, before and after."""
 
-from pathlib import Path
-
 import numpy as np
 import pyarrow as pa
-import pyarrow.parquet as pq
 
+from ...recordings.parquet_format import TableWriter
 from ...replay.samples import Frames
 
 _AXES = ("gx", "gy", "gz")
 WAYS = ("before", "after", "online")
 
 
-class CorrectedWriter:
+class CorrectedWriter(TableWriter):
     """Writes one file for all recordings, piece by piece as the kernels give it."""
-
-    def __init__(self, path: Path) -> None:
-        self._path = path
-        self._writer: pq.ParquetWriter | None = None
 
     def write(self, recording: str, frames: Frames, test: np.ndarray, biases: dict) -> None:
         """Append samples of a recording (its file's name).
@@ -34,15 +28,7 @@ class CorrectedWriter:
             if way in biases:
                 lsb = biases[way] / np.float32(256.0)
                 columns.update({f"bias_{way}_{g}": lsb[:, a] for a, g in enumerate(_AXES)})
-        table = pa.table(columns)
-        if self._writer is None:
-            self._writer = pq.ParquetWriter(self._path, table.schema, compression="zstd")
-        self._writer.write_table(table)
-
-    def close(self) -> None:
-        """Finish the file."""
-        if self._writer is not None:
-            self._writer.close()
+        self.append(pa.table(columns))
 
 
 def _repeated(text: str, n: int) -> pa.DictionaryArray:

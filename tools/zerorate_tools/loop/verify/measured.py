@@ -6,7 +6,7 @@ over the held-out part once more learning as it goes. Of one recording alone eve
 a firmware that has learned the others.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -110,15 +110,11 @@ class Measurement:
         ways, unscored, offsets = self._frozen(p, held_out)
         if online or held_out:
             ways.update(self._online(name))
-        means = {way: BlockMeans(p) for way in (*ways, AFTER)}
-        for frames in p.frames():
-            biases = dict(zip(ways, at_once(list(ways.values()), frames)))
-            biases.setdefault(AFTER, biases[BEFORE])
-            for way, bias_q8 in biases.items():
-                means[way].add(frames, bias_q8)
-            sink(name, frames, biases)
-        bias = {way: m.blocks_dps() for way, m in means.items()}
-        return scored(p, bias, offsets, unscored)
+
+        def biases(frames):
+            return dict(zip(ways, at_once(list(ways.values()), frames)))
+
+        return scored(p, _means(p, ways, biases, sink), offsets, unscored)
 
     def _frozen(self, p, held_out):
         """Ways to run frames through a frozen copy of each device, its turn-on offset in place."""
@@ -171,16 +167,25 @@ class MeasurementByPieces:
         frozen = {way: of.learned(models) for way, models in self.models.items()}
         last = list(self.models.values())[-1]
         learning = {ONLINE_BEFORE: of.new(self.models[BEFORE][:1]), ONLINE: of.new(last)}
-        means = {way: BlockMeans(p) for way in (*frozen, *learning, AFTER)}
-        for frames in p.frames():
-            biases = {way: of.bias_q8(devices, frames) for way, devices in frozen.items()}
-            for way, devices in learning.items():
-                biases[way] = of.bias_q8(devices, frames, learn=True)
-            biases.setdefault(AFTER, biases[BEFORE])
-            for way, bias_q8 in biases.items():
-                means[way].add(frames, bias_q8)
-            sink(p.session.name, frames, biases)
-        return scored(p, {way: m.blocks_dps() for way, m in means.items()})
+
+        def biases(frames):
+            ways = {way: of.bias_q8(devices, frames) for way, devices in frozen.items()}
+            more = learning.items()
+            return ways | {way: of.bias_q8(d, frames, learn=True) for way, d in more}
+
+        return scored(p, _means(p, (*frozen, *learning), biases, sink))
+
+
+def _means(p: PowerOn, ways: Iterable[str], biases: Callable[[Frames], dict], sink: Sink) -> dict:
+    """(n, 3) dps of each way by block. biases: what each subtracts from some samples, LSB in Q8."""
+    means = {way: BlockMeans(p) for way in (*ways, AFTER)}
+    for frames in p.frames():
+        found = biases(frames)
+        found.setdefault(AFTER, found[BEFORE])
+        for way, bias_q8 in found.items():
+            means[way].add(frames, bias_q8)
+        sink(p.session.name, frames, found)
+    return {way: m.blocks_dps() for way, m in means.items()}
 
 
 def scored(
