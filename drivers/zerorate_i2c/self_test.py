@@ -7,7 +7,11 @@ AN-MPU-6500/AN-000143: gyro above half of trim, accelerometer 0.5 to 1.5 of it. 
 from array import array
 
 from .parts import ICM20690_KIND, MPU6050_KIND
+from .registers import unload
 from .settings import GYRO_LSB_PER_DPS
+
+unload("parts")
+unload("settings")
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -119,6 +119,7 @@ class Corrector:
         self._observe_motion: "Any" = None
         self._observe_gravity: "Any" = None
         self._examine: "Any" = None
+        self._examined_by: "Any" = None
         self.alone = True
         if motion or gravity:
             self._join_others()
@@ -133,9 +134,7 @@ class Corrector:
         self.reset()
 
     def _join_others(self):
-        from .native.guard import examine
-
-        self._examine = examine
+        self._examine, self._examined_by = rest.examined(self.settings)
         self.alone = False
         if "update" in self.__dict__:
             del self.update
@@ -227,7 +226,7 @@ class Corrector:
 
     # small frames: one of more than eleven words would take heap at every call
     def _update_with_others(self, sample, dt_us):
-        kind = self._examine(self.state, self.settings, sample, dt_us)
+        kind = self._examine(self.state, self._examined_by, sample, dt_us)
         self._sense_effects(sample, dt_us, kind)
         rest.admit(self.state, self.settings, sample, kind)
         if kind == 0:
@@ -301,6 +300,9 @@ class Corrector:
 
     def explain(self) -> str:
         """Return a sentence or two on what is being learned, or why nothing is."""
-        from .explain import explain  # words that take no heap until somebody asks
+        from .explain import explain  # words that take no heap but while somebody asks
 
-        return explain(self)
+        text = explain(self)
+        unload("zerorate", "explain")
+        unload("zerorate", "explain_sources")
+        return text

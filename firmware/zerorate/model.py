@@ -5,16 +5,7 @@ docs/layout.md has the words of `e`.
 
 from array import array
 
-from .effects.model_file import (
-    IMPOSSIBLE,
-    LOADED,
-    NO_MODEL,
-    UNREADABLE,
-    compare,
-    fill,
-    judge,
-    texts,
-)
+from .native import unload
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -30,6 +21,11 @@ except ImportError:
         return value
 
 
+# effects.model_file has the same numbers, and all; its 4 KB are there while a model is loaded
+LOADED = const(0)
+NO_MODEL = const(1)
+UNREADABLE = const(6)
+_IMPOSSIBLE = const(11)
 # layout: The effect model and its running state
 _SLOT_COUNT = const(0)
 _INPUT_COUNT = const(1)
@@ -105,6 +101,8 @@ class EffectModel:
         sensor: the Corrector's Sensor; binding: MPU6050.binding, None where no driver is (the
         scales alone are compared). REASONS says each result in words. Raises nothing for data.
         """
+        from .effects.model_file import compare, fill, judge, texts
+
         self.forget()
         reason = judge(data)
         if reason == LOADED:
@@ -114,10 +112,11 @@ class EffectModel:
         if reason == LOADED:
             self.channels = texts(data)[1 : 1 + data[9]]
             if len(self.channels) < data[9]:
-                reason = IMPOSSIBLE
+                reason = _IMPOSSIBLE
         if reason == LOADED:
             self.e[_SLOT_COUNT] = data[6]
             self.power_on()
+        unload("zerorate.effects", "model_file")
         self.reason = reason
         return reason
 

@@ -5,7 +5,8 @@ import zlib
 from dataclasses import replace
 
 import pytest
-from zerorate import Sensor
+from zerorate import Sensor, model
+from zerorate.effects import model_file
 from zerorate.effects.model_file import (
     LOADED,
     OTHER_CHIP,
@@ -113,3 +114,9 @@ def test_a_flipped_binding_is_caught_by_the_checksum():
     assert REASONS[EffectModel().load(bytes(data), Sensor())].startswith("the model is damaged")
     data[-4:] = struct.pack("<I", zlib.crc32(data[:-4]))
     assert EffectModel().load(bytes(data), Sensor(), bytes((0x68, 0, 0, 3))) == OTHER_CHIP
+
+
+def test_a_model_and_its_reader_have_the_same_codes():
+    codes = {name: getattr(model, name) for name in ("LOADED", "NO_MODEL", "UNREADABLE")}
+    assert codes == {name: getattr(model_file, name) for name in codes}
+    assert model._IMPOSSIBLE == model_file.IMPOSSIBLE

@@ -31,11 +31,11 @@ def test_what_only_looks_like_it_is_not():
 
 
 def test_a_kernel_outside_the_subset_is_refused_with_its_row(tmp_path):
-    (tmp_path / "guard.py").write_text(
-        "ptr32 = None\n\n\ndef check(s: ptr32, c: ptr32, x: ptr32, t: int):\n    return 1.5\n"
+    (tmp_path / "effects.py").write_text(
+        "ptr32 = None\n\n\ndef sense(s: ptr32, e: ptr32, x: ptr32, t: int):\n    return 1.5\n"
     )
-    with pytest.raises(ZerorateError, match="guard.py: row 5: Constant is not in the"):
-        machine_code(Kernels(tmp_path), "guard", "thumb")
+    with pytest.raises(ZerorateError, match="effects.py: row 5: Constant is not in the"):
+        machine_code(Kernels(tmp_path), "effects", "thumb")
 
 
 def test_two_kernel_files_of_one_name_are_refused(tmp_path):

@@ -75,9 +75,12 @@ class Emulated:
     def _given(self, i: int, argument: array | int) -> int:
         if isinstance(argument, int):
             return argument
-        at = _DATA + _SIZE * i
-        self._cpu.mem_write(at, argument.tobytes())
-        return at
+        self._cpu.mem_write(self.address(i), argument.tobytes())
+        return self.address(i)
+
+    def address(self, i: int) -> int:
+        """Where argument i lies where it is an array, of this call and of the latest one."""
+        return _DATA + _SIZE * i
 
     def _block(self, cpu, at: int, size: int, _) -> None:
         key = at, size

@@ -12,7 +12,7 @@ from zerorate.motion.motion_settings import motion_settings, motion_state
 
 from ..errors import ZerorateError
 from ..kernels.machine_code import PROCESSORS, machine_code
-from ..kernels.parts import PARTS
+from ..kernels.parts import BURST, PARTS
 from ..kernels.reading import Kernels, firmware_package
 from ..replay.samples import FRAME
 from ..simulate import simulate
@@ -20,7 +20,7 @@ from .emulated import Emulated, code_in, emulated
 from .workload import CYCLE, Workload
 
 # frames of 14 bytes in the 1024 bytes of an MPU-6050's FIFO, of which it loses none at this
-BURST = 64
+AT_ONCE = 64
 _UPDATES = ("motion", "gravity")
 # by the last of these samples windows in motion are at their longest
 _FROM, _TO = 4000, 7200
@@ -35,7 +35,7 @@ def native_cost(work: Workload) -> dict[str, dict[str, Any]]:
     return {
         processor: {
             "alone": _against_c(work, processor, "rest", 1),
-            "bursts": _against_c(work, processor, "bursts", BURST),
+            "bursts": _against_c(work, processor, "rest", AT_ONCE),
         }
         for processor in PROCESSORS
     }
@@ -104,5 +104,5 @@ def _calls(code: Emulated, work: Workload, at_once: int, s: array, c: array) -> 
         if at_once == 1:
             code(s, c, array("i", rows[0, 1:].tobytes()), int(rows[0, 0]))
         else:
-            code(s, c, array("i", rows.tobytes()), len(rows))
+            code(s, c, array("i", rows.tobytes()), BURST + len(rows))
         yield len(rows)

@@ -10,7 +10,6 @@ from ..errors import ZerorateError
 
 PACKAGES = ("zerorate", "zerorate_i2c")
 REST = "rest"
-_GUARD = "zerorate.native.guard"  # alone, before other sources take the sample
 #: Part -> the modules that a program imports for it; all else follows. `rest` is in every choice.
 PARTS = {
     REST: (
@@ -25,19 +24,17 @@ PARTS = {
         "zerorate_i2c.fifo",
     ),
     "motion": (
-        _GUARD,
         "zerorate.native.motion",
         "zerorate.motion.motion_settings",
         "zerorate.explain_sources",
     ),
     "gravity": (
-        _GUARD,
         "zerorate.native.gravity",
         "zerorate.gravity.gravity_settings",
         "zerorate.explain_sources",
     ),
-    "effects": (_GUARD, "zerorate.model", "zerorate.native.effects"),
-    "refine": (_GUARD, "zerorate.model", "zerorate.native.effects", "zerorate.native.refine"),
+    "effects": ("zerorate.model", "zerorate.native.effects"),
+    "refine": ("zerorate.model", "zerorate.native.effects", "zerorate.native.refine"),
     "bursts": ("zerorate.bursts",),
     "self-test": ("zerorate_i2c.self_test",),
 }

@@ -18,6 +18,7 @@ from zerorate.native.trying import answer
 from ..model import Binding, Slot, build_model, encoded
 from ..model.term import Term
 from ..recordings import Scales
+from .parts import BURST
 
 _FRAME = [0] * 7
 _SCALES = Scales("MPU-6050", 4.0, 131.0, 16384.0, 340.0, 36.53)
@@ -47,12 +48,7 @@ def _corrector() -> Corrector:
 
 def _rest() -> tuple:
     corrector = _corrector()
-    return 20, 10000, 7, 5, corrector.state, corrector.settings, _FRAME
-
-
-def _bursts() -> tuple:
-    _, _, _, bits, state, settings, _ = _rest()
-    return 4, 9, 8 * 9, bits, state, settings, [0] * (8 * 9)
+    return 4, BURST + 9, 8 * 9, 5, corrector.state, corrector.settings, [0] * (8 * 9)
 
 
 def _motion() -> tuple:
@@ -98,10 +94,8 @@ def _refine() -> tuple:
 
 _KNOWN: dict[str, Callable[[], tuple]] = {
     "rest": _rest,
-    "guard": _rest,
     "motion": _motion,
     "gravity": _gravity,
     "effects": _effects,
     "refine": _refine,
-    "bursts": _bursts,
 }

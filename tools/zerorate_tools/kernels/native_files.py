@@ -11,7 +11,7 @@ from typing import Any
 
 from .known import answer_by, known
 from .machine_code import PROCESSORS, machine_code
-from .parts import PARTS
+from .parts import BURST, PARTS
 from .reading import Kernels, firmware_package
 
 _A_LINE = 12
@@ -80,16 +80,14 @@ def plain_kernels() -> dict[str, Callable[..., Any]]:
     from zerorate.effects import effect_refine, effects
     from zerorate.gravity import gravity
     from zerorate.motion import in_motion
-    from zerorate.rest import block, guard, step
+    from zerorate.rest import block
 
     return {
-        "rest": step.step,
-        "guard": guard.check,
+        "rest": lambda s, c, f, what: block.block(s, f, c, [0] * 7, what - BURST),
         "motion": in_motion.update,
         "gravity": gravity.update,
         "effects": lambda s, e, x, dt_us: effects.sense(s, e, x, dt_us, 1),
         "refine": lambda s, c, e, _: effect_refine.attend(s, c, e),
-        "bursts": lambda s, c, f, n: block.block(s, f, c, [0] * 7, n),
     }
 
 

@@ -2,11 +2,15 @@
 
 A part is one piece of code with one entry of four arguments, as MicroPython's inline assembler has
 it: firmware/zerorate/native says what is passed. `what` is a time, or below -2^29, where no clock
-ends, the number of a stage in its upper half word and a value in its lower one.
+ends, the number of a stage in its upper half word and a value in its lower one. At odd settings the
+guard alone sees the sample.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+
+#: `what` of a burst, to which the number of its samples is added.
+BURST = -0x40000000 + (6 << 16)
 
 
 @dataclass(frozen=True)
@@ -26,10 +30,13 @@ PARTS = {
     "rest": Part(
         [
             *(("step", name) for name in ("step", "admit", "finish", "consider")),
-            ("estimators", "reset"),
+            *(("estimators", "reset"), ("guard", "check"), ("block", "block")),
         ],
         """\
-    if (what >= -0x20000000) return step_step(a, b, c, what);
+    if (what >= -0x20000000) {
+        intptr_t at = (intptr_t)b;
+        return at & 1 ? guard_check(a, (int32_t *)(at - 1), c, what) : step_step(a, b, c, what);
+    }
     int32_t value = what & 0xffff;
     int32_t stage = (what >> 16) & 0xff;
     if (stage == 0) return step_admit(a, b, c, value);
@@ -38,11 +45,14 @@ PARTS = {
     if (stage == 3) estimators_reset(a, b, value);
     if (stage == 4) for (int32_t i = value; i < (int32_t)(intptr_t)c; i++) b[i] = a[i];
     if (stage == 5) return (int32_t)(intptr_t)a;
+    if (stage == 6) {
+        int32_t room[7];
+        block_block(a, c, b, room, value);
+    }
     return 0;
 """,
         divides=True,
     ),
-    "guard": Part([("guard", "check")], "    return guard_check(a, b, c, what);\n"),
     "motion": Part(
         [("in_motion", "update"), ("motion_verdict", "clear")],
         """\
@@ -74,14 +84,5 @@ PARTS = {
     else effect_refine_begin(c, what - 1);
     return 0;
 """,
-    ),
-    "bursts": Part(
-        [("block", "block")],
-        """\
-    int32_t room[7];
-    block_block(a, c, b, room, what);
-    return 0;
-""",
-        divides=True,
     ),
 }
