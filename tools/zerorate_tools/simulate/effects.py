@@ -9,12 +9,13 @@ import numpy as np
 from scipy.signal import lfilter
 
 from ..model.effects import curve_of
+from ..model.term import delayed, play
 from .world import World
 
 
 def hysteresis(world: World, *, width_degc: float = 4.0) -> np.ndarray:
     """Backlash of temperature, play operator over width/2: -1 as it rises, +1 as it falls."""
-    return (backlash(world.temp_degc, width_degc) - world.temp_degc) / (width_degc / 2)
+    return (play(world.temp_degc, width_degc) - world.temp_degc) / (width_degc / 2)
 
 
 def prandtl_ishlinskii(
@@ -37,7 +38,7 @@ def prandtl_ishlinskii(
     history = np.r_[world.temp_degc[0] + off[(world.number - 1) % len(off)], world.temp_degc]
     total = np.zeros(len(world.temp_degc))
     for width, share in zip(widths, shares, strict=True):
-        stands = backlash(history, width)[1:]
+        stands = play(history, width)[1:]
         total += share * (stands - world.temp_degc + lopsided * (stands - 25.0) ** 2)
     return total
 
@@ -146,7 +147,7 @@ def channel(
     if row is not None:
         u = curve_of(row)(u)
     u = (u - centre) / span
-    u = lagged(delayed(u, delay_s, world.dt_s), lag_s, world.dt_s)
+    u = lagged(delayed(u, round(delay_s / world.dt_s)), lag_s, world.dt_s)
     if rate:
         u = np.gradient(u, world.dt_s) * 60
     if knee is not None:
@@ -198,22 +199,3 @@ def lagged(u: np.ndarray, tau_s: float, dt_s: float) -> np.ndarray:
         return u
     keep = np.exp(-dt_s / tau_s)
     return lfilter([1 - keep], [1.0, -keep], u, axis=0, zi=keep * u[:1])[0]
-
-
-def delayed(u: np.ndarray, delay_s: float, dt_s: float) -> np.ndarray:
-    """Pure delay; before the start the first value held."""
-    shift = min(int(round(delay_s / dt_s)), len(u))
-    return np.concatenate([np.repeat(u[:1], shift), u[: len(u) - shift]])
-
-
-def backlash(u: np.ndarray, width: float) -> np.ndarray:
-    """Play operator: follows u only where u pushes it, width/2 behind (run by run of one slope)."""
-    out, half, now = np.empty_like(u), width / 2, u[0]
-    slope = np.sign(np.diff(u, prepend=u[0]))
-    turns = np.flatnonzero(np.diff(slope) != 0) + 1
-    for run in np.split(np.arange(len(u)), turns):
-        piece = u[run]
-        rising = slope[run[0]] > 0
-        out[run] = np.maximum(now, piece - half) if rising else np.minimum(now, piece + half)
-        now = out[run[-1]]
-    return out
