@@ -15,6 +15,7 @@ from ..peers import Given, Peer, given, vqf_clip_raised, vqf_default
 from ..peers.firmware import Decision
 from ..peers.sources import Source
 from ..simulate import simulate
+from .accuracy import rms_mdps
 from .broad import Trial, TrueBias, trials, true_bias
 from .native_cost import source_cost
 from .settling import settling
@@ -61,7 +62,7 @@ def simulated(ways: Mapping[str, Peer], seeds: Sequence[int] = SEEDS) -> dict:
 
 
 def _add(row: dict, measured: dict, after: int) -> None:
-    row["rms_mdps"].append(_rms_mdps(measured["error_dps"][after:]))
+    row["rms_mdps"].append(round(rms_mdps(measured["error_dps"][after:]), 1))
     row["learned"] += measured.get("learned", 0)
     row["wrong"] += measured.get("wrong", 0)
     if measured.get("within_two_sigma") is not None:
@@ -84,7 +85,7 @@ def _on_trial(peer: Peer, trial: Trial, truth: TrueBias) -> dict:
     one = given(trial.recording())
     row = _measured(peer, one, np.tile(truth.bias_dps, (len(one.rate_dps), 1)))
     error = row.pop("error_dps")[round(TRIAL_SETTLED_S * trial.hz) :]
-    return {"rms_mdps": [_rms_mdps(error[:, axis]) for axis in range(3)], **row}
+    return {"rms_mdps": [round(rms_mdps(error[:, axis]), 1) for axis in range(3)], **row}
 
 
 def _measured(peer: Peer, one: Given, bias: NDArray[np.float64]) -> dict:
@@ -110,10 +111,6 @@ def _cost() -> dict[str, dict[str, float]] | str:
         return source_cost()
     except MissingRuntime as error:
         return str(error)
-
-
-def _rms_mdps(error_dps: NDArray[np.float64]) -> float:
-    return round(float(np.sqrt(np.mean(np.square(error_dps)))) * 1000, 1)
 
 
 def run(data: str | PathLike[str] | None = None) -> dict:

@@ -7,6 +7,7 @@ from importlib.util import find_spec
 import numpy as np
 from numpy.typing import NDArray
 
+from ..bench.accuracy import rms_mdps
 from ..bench.broad import Trial, TrueBias, true_bias
 from ..recordings import Recording
 from ..replay import replay
@@ -58,7 +59,7 @@ def real(
             advance(1)
         said = said or done.explanation
         first = round(start_s * trial.hz)
-        rows.append({way: _rms_mdps(bias[first:] - truth.bias_dps) for way, bias in biases.items()})
+        rows.append({way: rms_mdps(bias[first:] - truth.bias_dps) for way, bias in biases.items()})
     return Real(trial, truth, rows[0], rows[1], said)
 
 
@@ -74,7 +75,3 @@ def _peer(way: str) -> Callable[[Recording], NDArray[np.float64]]:
 def _biases(table, recording: Recording) -> NDArray[np.float64]:
     lsb = recording.scales.gyro_lsb_per_dps
     return np.stack([table[f"bias_g{axis}"].to_numpy() for axis in "xyz"], axis=1) / lsb
-
-
-def _rms_mdps(error_dps: NDArray[np.float64]) -> float:
-    return float(1e3 * np.sqrt(np.mean(np.square(error_dps))))
