@@ -85,6 +85,23 @@ def test_dates_of_iso_8601_are_times(tmp_path, stamp):
     assert (np.diff(recording.columns["t_us"]) == 10_000).all()
 
 
+@pytest.mark.parametrize("stamp", ["01.05.2026 12:00:{:06.3f}", "12:00:{:06.3f}"])
+def test_a_time_that_cannot_be_read_says_how_to_write_it(tmp_path, stamp):
+    frame = table(500).rename(columns={"t_s": "time"})
+    frame["time"] = [stamp.format(t) for t in frame["time"]]
+    with pytest.raises(BadRecording, match="no time can be read from column 'time'; .*--hz N"):
+        read(tmp_path, frame)
+
+
+def test_stamps_that_are_coarser_than_the_samples_tell_the_rate(tmp_path):
+    frame = table()
+    frame["t_s"] = frame["t_s"].round(1)
+    frame.loc[1000:, "t_s"] += 300
+    recording, report = read(tmp_path, frame)
+    assert recording.scales.odr_hz == pytest.approx(100, rel=0.01)
+    assert told(report, "time stamps are coarser than the samples: for even ones give --hz ")
+
+
 def test_seconds_and_nanoseconds_are_added(tmp_path):
     frame = table()
     at_ns = 1_777_636_800_990_000_000 + np.arange(2000) * 10_000_000
@@ -187,6 +204,22 @@ def test_lines_before_the_header_are_skipped(tmp_path, before):
     assert len(recording) == 200
 
 
+@pytest.mark.parametrize("units", ["s,deg/s,deg/s,deg/s", "[ms],[rad/s],[rad/s],[rad/s]"])
+def test_a_line_of_units_beneath_the_names_is_one(tmp_path, units):
+    frame = table()[["t_s", "gx_dps", "gy_dps", "gz_dps"]]
+    if "ms" in units:
+        frame = np.radians(frame).assign(t_s=1000 * frame["t_s"])
+    text = f"t,gx,gy,gz\n{units}\n" + frame.to_csv(index=False, header=False)
+    recording, _ = read(tmp_path, text)
+    assert len(recording) == 2000 and recording.scales.odr_hz == pytest.approx(100)
+    assert recording.gyro_dps().mean() == pytest.approx(0.8, abs=0.02)
+
+
+def test_json_says_what_to_do_with_it(tmp_path):
+    with pytest.raises(BadRecording, match="JSON, which is not read; write it as a CSV"):
+        read(tmp_path, '{"t": 0.01, "gx": 0.1}\n{"t": 0.02, "gx": 0.1}\n')
+
+
 def test_comments_between_rows_are_no_rows(tmp_path):
     lines = table(200).to_csv(index=False).splitlines()
     lines.insert(50, "# somebody knocked")
@@ -250,6 +283,15 @@ def test_a_phones_sensor_logger_is_known_by_its_columns(tmp_path):
     assert recording.scales.odr_hz == pytest.approx(100, rel=1e-3)
     assert recording.gyro_dps().mean() == pytest.approx(0.8, abs=0.02)
     assert told(report, "gyro taken in rad/s: as Sensor Logger writes")
+
+
+def test_a_phones_sensorlog_is_known_by_its_columns(tmp_path):
+    frame = table()
+    logged = {"loggingTime(txt)": [f"2026-05-01 12:00:{t:06.3f} +0200" for t in frame["t_s"]]}
+    logged |= {f"gyroRotation{a.upper()}(rad/s)": np.radians(frame[f"g{a}_dps"]) for a in "xyz"}
+    recording, _ = read(tmp_path, pd.DataFrame(logged))
+    assert recording.scales.odr_hz == pytest.approx(100, rel=1e-3)
+    assert recording.gyro_dps().mean() == pytest.approx(0.8, abs=0.02)
 
 
 def test_a_csv_of_plotjuggler_is_known_by_its_columns(tmp_path):

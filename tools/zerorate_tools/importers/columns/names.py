@@ -5,7 +5,7 @@ import re
 
 _AXIS = "([xyz])"
 _GYRO = re.compile(
-    r"(?:.*(?:gyroscope|gyro|gyr|angularvelocity|angularrate|angvel|rotationrate|omega)"
+    r"(?:.*(?:gyroscope|gyrorotation|gyro|gyr|angularvelocity|angularrate|angvel|rotationrate|omega)"
     r"(?:uncalibrated|calibrated|unfilt|adc|raw|rad|data|rate|dps|value){0,2}|(?:.*imu)?[wg])"
     + f"{_AXIS}$|^{_AXIS}(?:gyroscope|gyro|gyr)$"
 )
@@ -18,7 +18,7 @@ _TEMP = re.compile(r".*(?:temperature|temp|tmp)c?$")
 _NOT_THE_DIE = re.compile(r"ambient|air|baro|bmp|bme|aht|sht|cpu|motor|batt|esc|water|room")
 _TIME = re.compile(
     r"(?:t|ts|time|timestamp|timestampsample|now|stamp|timeus|timems|secondselapsed|datetime|"
-    r"date|utc|millis|micros|.*timestamp|.*headerstamp|sampletime|elapsed|elapsedtime)$"
+    r"date|utc|millis|micros|loggingtime|.*timestamp|.*headerstamp|sampletime|elapsed|elapsedtime)$"
 )
 _SEC = re.compile(r"(.*?)(?:secs?|seconds?)$")
 _NANOSEC = re.compile(r"(.*?)(?:nanosecs?|nsecs?|nanoseconds?)$")

@@ -76,6 +76,9 @@ def planned(
             plan.factors[target] = (factor_in(mapped.unit or "1") or 1.0, 0.0)
             continue
         unit = _unit(target, plan, table, units or {}, first, path)
+        if unit is None and target == TIME and np.isnan(first[mapped.column]).all():
+            do = "write seconds, or dates as 2026-05-01T12:00:00.250; or count the rows: --hz N"
+            raise BadRecording(path, f"no time can be read from column {mapped.column!r}", do=do)
         if unit is None:
             unknown[mapped.column] = ready_words(target, wanted, first)
         if unit == RAW:

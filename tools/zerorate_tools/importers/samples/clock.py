@@ -12,6 +12,8 @@ _STRIDE = 64
 _KEPT = 1 << 18
 #: Beyond as many usual intervals, and a second, is a gap.
 _GAP_INTERVALS = 3.0
+#: Of all steps: beyond that the stamps are coarser than the samples.
+_REPEATED = 0.2
 
 
 class Unwrapped:
@@ -56,6 +58,7 @@ class Pace:
     means over 64 intervals, or fewer in a short recording."""
 
     def __init__(self) -> None:
+        self.notes: list[str] = []
         self._means: list[np.ndarray] = []
         self._first: np.ndarray = np.empty(0)
 
@@ -74,6 +77,12 @@ class Pace:
         if stride < _STRIDE:
             means = np.diff(self._first[::stride]) / stride
         usual = float(np.median(means)) if len(means) else 0.0
+        steps = np.diff(self._first)
+        went = steps[steps > 0]
+        if len(went) and (steps == 0).mean() > _REPEATED:
+            usual = float(went[went <= _GAP_INTERVALS * np.median(went)].sum()) / len(steps)
+            do = f"for even ones give --hz {1e6 / usual:.4g}"
+            self.notes = [f"the time stamps are coarser than the samples: {do}"]
         if usual <= 0:
             usual = float(np.mean(means)) if len(means) else 0.0
         if usual <= 0:

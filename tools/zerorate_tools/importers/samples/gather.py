@@ -78,10 +78,12 @@ class _Gathering:
         looked_at = {
             n: np.concatenate([k[n] for k in self.kept]) for n in (TIME, *self.readings)
         }  # fmt: skip
+        interval_us, repeated = self._interval_us()
         return Gathered(
             self.spool, self.rows + sum(self.table.dropped.values()), self.samples,
-            self._interval_us(), self.largest, dict(self.own),
-            self.table.dropped + self.dropped, notes, TIME not in self.plan.wanted, looked_at,
+            interval_us, self.largest, dict(self.own),
+            self.table.dropped + self.dropped, notes + repeated, TIME not in self.plan.wanted,
+            looked_at,
         )  # fmt: skip
 
     def _step_us(self) -> float:
@@ -170,10 +172,10 @@ class _Gathering:
             raise BadRecording(self.path, "no sample is left", do=do or "no row has three rates")
         self.runs.refuse_a_restart(self.path)
 
-    def _interval_us(self) -> float:
+    def _interval_us(self) -> tuple[float, list[str]]:
         if self.hz:
-            return 1e6 / self.hz
+            return 1e6 / self.hz, []
         pace = Pace()
         for columns in self.spool:
             pace.add(columns[TIME][np.isfinite(columns["gx"])])
-        return pace.interval_us(self.path)
+        return pace.interval_us(self.path), pace.notes

@@ -134,6 +134,7 @@ def _seconds(cells: pa.Array) -> np.ndarray:
     import pandas
 
     text = pandas.Series(_decoded(cells), dtype=object).str.strip().str.replace(",", ".")
+    text = text.str.replace(r"\s+([+-]\d\d:?\d\d)$", r"\1", regex=True)
     stamps = pandas.to_datetime(text, format="ISO8601", utc=True, errors="coerce")
     since = (stamps - pandas.Timestamp(0, tz="UTC")).to_numpy()
     return since.astype("timedelta64[ns]").astype(float) * 1e-9 + np.where(

@@ -15,6 +15,10 @@ COMMENTS = ("#", "//", "%", "*")
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")
 _DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+([eE][-+]?\d+)?$")
 _DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d")
+#: A line of such beneath the names says their units.
+_UNIT = re.compile(
+    r"[\[(]?(-|[mun]?s|sec|(m?deg|rad|°)/s|m?dps|m?g|m/s(\^?2|²)|°?c|degc|k|lsb)[\])]?$", re.I
+)
 _NOT_A_NUMBER = ("", "nan", "null", "none", "na")
 
 
@@ -40,6 +44,9 @@ def sniffed(path: Path) -> Form:
     if "\x00" in text[:1000] and not text[:20].isprintable():
         do = "name a table, or a log of a kind that `zerorate import --help` lists"
         raise BadRecording(path, "neither text nor a log of a known kind", do=do)
+    if text.lstrip()[:1] in ("{", "["):
+        do = "write it as a CSV, as pandas does: read_json(..., lines=True).to_csv(...)"
+        raise BadRecording(path, "JSON, which is not read", do=do)
     lines = text.splitlines()
     if not whole:
         lines = lines[:-1]
@@ -114,6 +121,10 @@ def _numbers(cells: list[str], delimiter: str) -> int:
 def _names(lines: list[str], at: int | None, first: list[str], delimiter: str):
     if at is not None:
         names = [name.strip() for name in _cells(lines[at], delimiter)]
+        above = next((line for line in reversed(lines[:at]) if line.strip()), "")
+        named = [name.strip() for name in _cells(above, delimiter)]
+        if len(named) == len(names) and all(_UNIT.match(name) for name in names):
+            names = [f"{name} [{unit.strip('[()]')}]" for name, unit in zip(named, names)]
         return _single(names + [""] * (len(first) - len(names))), ""
     for line in reversed(lines):
         text = line.strip()
