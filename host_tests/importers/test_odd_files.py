@@ -99,7 +99,7 @@ def test_stamps_that_are_coarser_than_the_samples_tell_the_rate(tmp_path):
     frame.loc[1000:, "t_s"] += 300
     recording, report = read(tmp_path, frame)
     assert recording.scales.odr_hz == pytest.approx(100, rel=0.01)
-    assert told(report, "time stamps are coarser than the samples: for even ones give --hz ")
+    assert told(report, "time stamps repeat, and rows at a time that stands still teach nothing")
 
 
 def test_seconds_and_nanoseconds_are_added(tmp_path):

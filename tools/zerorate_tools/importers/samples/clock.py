@@ -81,8 +81,10 @@ class Pace:
         went = steps[steps > 0]
         if len(went) and (steps == 0).mean() > _REPEATED:
             usual = float(went[went <= _GAP_INTERVALS * np.median(went)].sum()) / len(steps)
-            do = f"for even ones give --hz {1e6 / usual:.4g}"
-            self.notes = [f"the time stamps are coarser than the samples: {do}"]
+            self.notes = [
+                "doubtful: time stamps repeat, and rows at a time that stands still teach nothing: "
+                f"give --hz {1e6 / usual:.4g}"
+            ]
         if usual <= 0:
             usual = float(np.mean(means)) if len(means) else 0.0
         if usual <= 0:

@@ -82,7 +82,7 @@ class _Gathering:
         return Gathered(
             self.spool, self.rows + sum(self.table.dropped.values()), self.samples,
             interval_us, self.largest, dict(self.own),
-            self.table.dropped + self.dropped, notes + repeated, TIME not in self.plan.wanted,
+            self.table.dropped + self.dropped, repeated + notes, TIME not in self.plan.wanted,
             looked_at,
         )  # fmt: skip
 
