@@ -14,7 +14,6 @@ from ..errors import ZerorateError
 from ..kernels.machine_code import PROCESSORS, machine_code
 from ..kernels.parts import BURST, PARTS
 from ..kernels.reading import Kernels, firmware_package
-from ..replay.samples import FRAME
 from ..simulate import simulate
 from .emulated import Emulated, code_in, emulated
 from .workload import CYCLE, Workload
@@ -53,7 +52,7 @@ def code_bytes() -> dict[str, dict[str, int]]:
 def source_cost() -> dict[str, dict[str, float]]:
     """motion, gravity -> instructions and cycles a sample, mean and worst, on a Cortex-M0+."""
     recording, _ = simulate("never-rests", session=1, seed=1)
-    frames = np.stack([recording.columns[name][:_TO] for name in FRAME], axis=1)
+    frames = recording.between(0, _TO).samples()
     motion, gravity = motion_settings(), gravity_settings()
     states = {
         "motion": (motion_state(motion), motion),

@@ -6,7 +6,7 @@ import matplotlib
 import numpy as np
 
 from .play_and_score import Demo
-from .score import SETTLE_S, rates, seconds
+from .score import SETTLE_S, seconds
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
@@ -77,7 +77,7 @@ def _legend_above(axes) -> None:
 
 
 def _error_mdps(shown: Demo):
-    target = rates(shown.recording) if shown.truth_dps is None else shown.truth_dps
+    target = shown.recording.gyro_dps() if shown.truth_dps is None else shown.truth_dps
     return (target - shown.bias_dps) * 1e3
 
 
@@ -105,7 +105,7 @@ def _smoothed(values, shown: Demo):
 
 def _angles(axes, shown: Demo) -> None:
     minutes, t_s = _minutes(shown), seconds(shown.recording)
-    rate = rates(shown.recording)
+    rate = shown.recording.gyro_dps()
     target = rate if shown.truth_dps is None else shown.truth_dps
     later = t_s >= SETTLE_S
     steps = np.diff(t_s[later], append=t_s[-1])[:, None]

@@ -40,7 +40,7 @@ def score(
     if t_s[-1] < SETTLE_S:
         problem = f"{t_s[-1]:.1f} s are too short: errors count from {SETTLE_S:.0f} s on"
         raise BadRecording(recording.name, problem, do="record a minute at rest, or longer")
-    rate_dps = rates(recording)
+    rate_dps = recording.gyro_dps()
     first = rate_dps[t_s < SETTLE_S].mean(axis=0)
     later = t_s >= SETTLE_S
     target = rate_dps if truth_dps is None else truth_dps
@@ -60,12 +60,6 @@ def seconds(recording: Recording) -> NDArray[np.float64]:
     """Seconds since the first sample, (n,)."""
     t_us = recording.columns["t_us"]
     return (t_us - t_us[0]) * 1e-6
-
-
-def rates(recording: Recording) -> NDArray[np.float64]:
-    """The rates as read, dps, (n, 3)."""
-    columns = [recording.columns[name] for name in ("gx", "gy", "gz")]
-    return np.stack(columns, axis=1) / recording.scales.gyro_lsb_per_dps
 
 
 def block_means(t_s: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[np.float64]:

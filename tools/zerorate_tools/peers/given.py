@@ -29,16 +29,8 @@ class Given:
 
 def given(recording: Recording, still: NDArray[np.bool_] | None = None) -> Given:
     """A recording in physical units; still: all of it unless said otherwise."""
-    scales, columns = recording.scales, recording.columns
-    rate = _stacked(columns, "g") / scales.gyro_lsb_per_dps
-    accel = temp = None
-    if scales.accel_lsb_per_g and "ax" in columns:
-        accel = _stacked(columns, "a") / scales.accel_lsb_per_g
-    if scales.temp_lsb_per_degc and "temp" in columns:
-        temp = columns["temp"] / scales.temp_lsb_per_degc + (scales.temp_offset_degc or 0.0)
+    scales, rate = recording.scales, recording.gyro_dps()
+    accel = recording.accel_g() if scales.accel_lsb_per_g and recording.has_accel else None
+    temp = recording.temp_degc() if scales.temp_lsb_per_degc and recording.has_temp else None
     everywhere = np.ones(len(rate), bool)
     return Given(recording, rate, accel, temp, everywhere if still is None else still)
-
-
-def _stacked(columns: dict[str, NDArray], letter: str) -> NDArray[np.float64]:
-    return np.stack([columns[letter + axis] for axis in "xyz"], axis=1).astype(float)

@@ -36,24 +36,13 @@ class Source:
     def _biases(self, number: int, one: Given) -> NDArray[np.float64]:
         state, settings, (bias_at, sigma_at) = self._made(one)
         lsb = 256 * one.recording.scales.gyro_lsb_per_dps
-        columns = one.recording.columns
-        rows = np.zeros((len(one.rate_dps), 7), np.int32)
-        for place, name in enumerate(("ax", "ay", "az", "temp", "gx", "gy", "gz")):
-            if name in columns:
-                rows[:, place] = columns[name]
-        dt_us = np.diff(columns["t_us"], prepend=2 * columns["t_us"][0] - columns["t_us"][1])
+        rows = np.ascontiguousarray(one.recording.samples(), np.int32)
+        t_us = one.recording.columns["t_us"]
+        dt_us = np.diff(t_us, prepend=2 * t_us[0] - t_us[1])
         learned = np.zeros(len(rows), np.int8)
         words = np.zeros((len(rows), 2, 3), np.int32)
-        run_source(
-            self.name == "gravity",
-            state,
-            settings,
-            rows,
-            dt_us,
-            (bias_at, sigma_at),
-            learned,
-            words,
-        )
+        at = bias_at, sigma_at
+        run_source(self.name == "gravity", state, settings, rows, dt_us, at, learned, words)
         for i in np.flatnonzero(learned):
             self._judge(number, int(i), words[i, 0] / lsb, words[i, 1] / lsb)
         return words[:, 0] / lsb

@@ -1,6 +1,6 @@
 """A recording's columns as the frames that the firmware reads."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -49,19 +49,24 @@ def frames_in_batches(
     """Yield a recording as Frames of at most `rows` samples each, with these extra channels."""
     before = None
     for columns in _batches(recording, rows):
-        t_us = np.asarray(columns["t_us"], np.int64)
         if before is None:
-            before = int(t_us[0] - round(1e6 / recording.scales.odr_hz))
-        steps = np.diff(t_us, prepend=before)
-        before = int(t_us[-1])
-        frames = np.zeros((len(t_us), 7), np.int32)
-        for i, name in enumerate(FRAME):
-            if name in columns:
-                frames[:, i] = columns[name]
-        extra = np.zeros((len(t_us), len(channels)), np.int32)
-        for i, name in enumerate(channels):
-            extra[:, i] = columns[name]
-        yield Frames(t_us, frames, np.clip(steps, -_MOST_US, _MOST_US).astype(np.int32), extra)
+            before = int(columns["t_us"][0] - round(1e6 / recording.scales.odr_hz))
+        yield frames_of(columns, before, channels)
+        before = int(columns["t_us"][-1])
+
+
+def frames_of(columns: Mapping, before_us: int, channels: Sequence[str] = ()) -> Frames:
+    """Columns as Frames, with these extra channels. before_us: when the sample before them came."""
+    t_us = np.asarray(columns["t_us"], np.int64)
+    steps = np.clip(np.diff(t_us, prepend=before_us), -_MOST_US, _MOST_US)
+    frames = np.zeros((len(t_us), len(FRAME)), np.int32)
+    for i, name in enumerate(FRAME):
+        if name in columns:
+            frames[:, i] = columns[name]
+    extra = np.zeros((len(t_us), len(channels)), np.int32)
+    for i, name in enumerate(channels):
+        extra[:, i] = columns[name]
+    return Frames(t_us, frames, steps.astype(np.int32), extra)
 
 
 def _batches(recording: OpenRecording | Recording, rows: int) -> Iterator[dict]:

@@ -12,7 +12,7 @@ from ..recordings.recording import TIME, Columns
 from ..replay.bias_table import SOURCES
 from ..replay.engines import CPythonEngine, Engine, Outcome, engine
 from ..replay.replaying import corrector_for, load_model
-from ..replay.samples import FRAME, Frames
+from ..replay.samples import Frames, frames_of
 
 #: From so many samples at once on, compiled kernels are worth their loading.
 _MANY = 20_000
@@ -96,15 +96,7 @@ class Live:
         if self._last_us is None and len(t_us):
             self.start_us = int(t_us[0])
             self._last_us = self.start_us - round(1e6 / self.scales.odr_hz)
-        steps = np.diff(t_us, prepend=self._last_us or 0)
-        frames = np.zeros((len(t_us), len(FRAME)), np.int32)
-        for i, name in enumerate(FRAME):
-            if name in columns:
-                frames[:, i] = columns[name]
-        extra = np.zeros((len(t_us), len(self._channels)), np.int32)
-        for i, name in enumerate(self._channels):
-            extra[:, i] = columns[name]
-        return Frames(t_us, frames, np.clip(steps, -(1 << 29), 1 << 29).astype(np.int32), extra)
+        return frames_of(columns, self._last_us or 0, self._channels)
 
     def _keep(self, outcome: Outcome) -> None:
         """The first bias of each second."""
