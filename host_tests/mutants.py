@@ -32,7 +32,11 @@ except ImportError:  # Python 3.10
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 SURVIVORS_AND_WHY = Path(__file__).with_name("mutants.toml")
-NOT_IN_PROCESS = "not micropython and not heap and not runtime and not last_byte and not any_slot"
+# Tests in other processes, and two that take long and see little that others do not.
+NOT_IN_PROCESS = " and ".join(
+    "not " + name
+    for name in ("micropython", "heap", "runtime", "last_byte", "any_slot", "no_intermediate")
+)
 # What no test can tell apart: annotations, constants that `make layout` writes, == and is of what
 # there is only one of.
 _SAME = re.compile(r"^\s*(def |from |import |#)|^\s+\w+: .*[,=]$|^    \) ->|TYPE_CHECKING|^@")

@@ -116,6 +116,22 @@ def test_a_full_disk_names_the_file_that_has_no_room(tmp_path):
             full()
 
 
+@pytest.mark.parametrize("length", [20, 200, 230, 255])
+def test_a_name_of_any_length_that_fits_is_written(tmp_path, length):
+    name = "x" * (length - len("o.csv.gz")) + "o.csv.gz"
+    with written_beside(tmp_path / name) as temporary:
+        assert temporary.name.endswith(name if length <= 200 else "xo.csv.gz")
+        temporary.write_text("new")
+    assert [p.name for p in tmp_path.iterdir()] == [name]
+
+
+def test_a_name_that_does_not_fit_is_refused_and_leaves_nothing(tmp_path):
+    with pytest.raises(InFile, match="longer than 255 bytes; give it a shorter one"):
+        with written_beside(tmp_path / ("µ" * 128)):
+            pass
+    assert not list(tmp_path.iterdir())
+
+
 def test_what_killed_runs_left_goes_and_what_others_write_now_stays(tmp_path, dead_pid):
     (tmp_path / f".{dead_pid}.partial.o.parquet").write_text("half")
     with written_together(tmp_path) as draft:
