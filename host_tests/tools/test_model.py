@@ -156,6 +156,18 @@ def test_a_binding_that_was_not_known_fits_any_device():
     assert load(data, binding=bytes([0x99, 1, 2, 6])) == model_file.LOADED
 
 
+@pytest.mark.parametrize("binding", [b"", DEVICE[:1], DEVICE + b"\x99"], ids=len)
+def test_what_both_know_of_a_binding_is_compared(model, binding):
+    assert load(encoded(model), binding=binding) == model_file.LOADED
+
+
+def test_bytes_that_no_tool_would_write_are_refused(model):
+    data = bytearray(encoded(model))[:-4]
+    data[11] = 1
+    with pytest.raises(BadModel, match="do not belong together"):
+        decoded(bytes(data) + struct.pack("<I", zlib.crc32(data)))
+
+
 def test_play_operators_stand_behind_the_slots_and_make_another_version():
     plays = [Slot(PLAY, (0.001, 0, 0.002), "a"), Slot(replace(PLAY, power=2), (0, 0, 1e-5), "a")]
     model = build_model([*plays, *SLOTS], SCALES, binding=BINDING)
