@@ -5,6 +5,7 @@ import inspect
 import pytest
 from zerorate_fakes import FakeI2C, FakeMPU6050
 from zerorate_fakes.circuitpython import CircuitPythonI2C
+from zerorate_fakes.pytest_plugin import chip_as_marked
 from zerorate_fakes.smbus import SMBus
 
 SAMPLE = [[1, 2, 3, 4, 5, 6, 7]]
@@ -88,3 +89,15 @@ class TestBusio:
             data = bytearray(4)
             i2c.writeto_then_readfrom(0x69, b"\x00\x43", data, out_start=1, in_start=2)
             assert data == b"\x00\x00\x00\x05"
+
+
+@pytest.mark.parametrize(
+    "words, said",
+    [
+        ({"gyro_dps": (1, 2, 3), "colour": 1}, "takes part, .*noise, seed, not colour$"),
+        ({"source": SAMPLE, "noise": 0}, "takes source or noise, not both"),
+    ],
+)
+def test_a_mark_with_wrong_words_says_which_are_right(words, said):
+    with pytest.raises(ValueError, match=said):
+        chip_as_marked(words)

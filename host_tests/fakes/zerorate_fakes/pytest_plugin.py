@@ -7,6 +7,7 @@ imu_chip, imu_bus, smbus and busio_i2c are one chip on one bus, seen from four s
 
 import sys
 import types
+from typing import Any
 
 import pytest
 
@@ -15,6 +16,7 @@ from .circuitpython import CircuitPythonI2C
 from .smbus import SMBus
 
 _CHIP_WORDS = ("part", "who_am_i", "source")
+_FELT = ("gyro_dps", "accel_g", "temp_degc", "noise", "seed")
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -34,11 +36,20 @@ def pytest_configure(config: pytest.Config) -> None:
 def imu_chip(request: pytest.FixtureRequest) -> FakeMPU6050:
     """A chip just powered that lies still; `mark.imu` says otherwise."""
     mark = request.node.get_closest_marker("imu")
-    words = dict(mark.kwargs) if mark else {}
-    chip = {name: words.pop(name) for name in _CHIP_WORDS if name in words}
-    if "source" in chip and words:
-        raise ValueError(f"the mark imu takes source or {', '.join(words)}, not both")
-    return FakeMPU6050(**{"source": Physical(**words), **chip})
+    return chip_as_marked(dict(mark.kwargs) if mark else {})
+
+
+def chip_as_marked(words: dict[str, Any]) -> FakeMPU6050:
+    """The chip of a mark with these words. Raises ValueError."""
+    unknown = [name for name in words if name not in _CHIP_WORDS + _FELT]
+    if unknown:
+        known = ", ".join(_CHIP_WORDS + _FELT)
+        raise ValueError(f"the mark imu takes {known}, not {', '.join(unknown)}")
+    felt = {name: words[name] for name in _FELT if name in words}
+    if "source" in words and felt:
+        raise ValueError(f"the mark imu takes source or {', '.join(felt)}, not both")
+    chip = {name: words[name] for name in _CHIP_WORDS if name in words}
+    return FakeMPU6050(**{"source": Physical(**felt), **chip})
 
 
 @pytest.fixture

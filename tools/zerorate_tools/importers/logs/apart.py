@@ -154,7 +154,8 @@ def written(reader: str, path: Path, instance: int, out: int) -> dict:
     except ModuleNotFoundError as error:
         return {"library": (error.name or "").partition(".")[0]}
     except Exception as error:  # parsers raise whatever they stumble over
-        what = " ".join(f"{type(error).__name__}: {error}".split())[:120]
+        text = str(error)
+        what = " ".join((text if " " in text else f"{type(error).__name__} {text}").split())[:120]
         kind = module.KIND
         return {"problem": f"no {kind}, or damaged ({what})", "do": "copy the file again"}
     return {"dropped": table.dropped, "notes": table.notes}
