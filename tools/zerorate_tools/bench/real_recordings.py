@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..importers import read_foreign
+from ..loop.read.still import runs
 from ..peers import OURS, Given, Peer, given
 from ..peers.first_seconds import first_seconds
 from ..recordings import Recording
@@ -50,9 +51,8 @@ def rest_errors(recording: Recording, peer: Peer) -> dict[str, float]:
 def _rests(one: Given) -> Iterator[tuple[int, int]]:
     """First and end of each block at rest; those with far more noise than most are handled ones."""
     size = max(1, round(BLOCK_S * one.odr_hz))
-    edges = np.flatnonzero(np.diff(one.still.astype(int), prepend=0, append=0))
     blocks = []
-    for start, end in zip(edges[::2], edges[1::2]):
+    for start, end in runs(one.still):
         cuts = np.linspace(start, end, max(1, (end - start) // size) + 1).astype(int)
         blocks += list(zip(cuts[:-1], cuts[1:]))
     spreads = np.array([one.rate_dps[first:end].std(axis=0).max() for first, end in blocks])

@@ -6,14 +6,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..loop.read.still import still_ticks
-from ..loop.read.ticks import TICK_S, read_ticks, tick_seconds
+from ..loop.read.still import runs, still_ticks
+from ..loop.read.stretch import ticks_with_spread
 from ..peers import Given
 
 _LEAST_TICKS = 3
 #: A long rest counts as several: a device that never moves is compared, too.
 _MOST_S = 60.0
-_SAMPLES = 50
 
 
 @dataclass(frozen=True)
@@ -32,13 +31,11 @@ class Rest:
 
 def rests_of(path: Path, one: Given) -> list[Rest]:
     """Every rest of three ticks and more, those of over a minute in pieces. Raises BadRecording."""
-    own_s = tick_seconds(path, 0.0)
-    ticks = read_ticks(path, max(TICK_S, _SAMPLES * own_s) if own_s < 0.25 else TICK_S)
+    ticks = ticks_with_spread(path)
     still = still_ticks(ticks, edges=False) & (ticks.count > 0)
-    edges = np.flatnonzero(np.diff(still.astype(int), prepend=0, append=0))
     t_us = one.recording.columns["t_us"]
     found = []
-    for start, end in zip(edges[::2], edges[1::2]):
+    for start, end in runs(still):
         pieces = max(1, round((end - start) * ticks.tick_s / _MOST_S))
         cuts = np.linspace(start, end, pieces + 1).astype(int)
         for first, last in zip(cuts[:-1], cuts[1:]):

@@ -15,6 +15,7 @@ from ...recordings import open_recording
 from ...recordings.recording import GYRO, TIME
 from ...simulate.attitude import integrate, into_body
 from .reference import Run
+from .still import runs
 
 _REST_S, _LONGEST_S, _LEAST_DEG = 3.0, 60.0, 20.0
 _MOST = 400
@@ -38,8 +39,7 @@ def turns_between_rests(ticks, still: np.ndarray) -> list[Between]:
     if ticks.accel is None:
         return []
     least = max(2, round(_REST_S / ticks.tick_s))
-    edges = np.flatnonzero(np.diff(np.r_[0, still.astype(int), 0]))
-    rests = [(a, b) for a, b in zip(edges[::2], edges[1::2]) if b - a >= least]
+    rests = [(a, b) for a, b in runs(still) if b - a >= least]
     out = []
     for (first, end), (start, last) in zip(rests[:-1], rests[1:]):
         if (start - end + 2) * ticks.tick_s > _LONGEST_S or (ticks.count[end:start] == 0).any():

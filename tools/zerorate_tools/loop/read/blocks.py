@@ -5,7 +5,7 @@ import numpy as np
 from .dequantise import dequantise
 from .earth import earth_of
 from .sessions import OWN_SOURCES, Session, block_means
-from .still import still_ticks
+from .still import runs, still_ticks
 from .ticks import Ticks, gap_filled
 from .turns import turns_of
 
@@ -40,8 +40,7 @@ def sessions_from(ticks: list[Ticks]) -> list[Session]:
 
 def can_be_bridged(available: np.ndarray) -> bool:
     """Whether the blocks missing are few and apart."""
-    edges = np.flatnonzero(np.diff(np.r_[0, ~available, 0].astype(int)))
-    longest = (edges[1::2] - edges[::2]).max(initial=0)
+    longest = np.diff(runs(~available)).max(initial=0)
     missing = int((~available).sum())
     return bool(longest <= _BRIDGE and missing <= _BRIDGED_SHARE * len(available))
 

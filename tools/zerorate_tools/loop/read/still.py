@@ -47,6 +47,11 @@ def still_ticks(ticks, edges: bool = True) -> np.ndarray:
     return still & ~_edges(off, still, there) if edges else still
 
 
+def runs(mask: np.ndarray) -> np.ndarray:
+    """(k, 2) first and one past the last index of each run of True."""
+    return np.flatnonzero(np.diff(np.r_[0, mask.astype(int), 0])).reshape(-1, 2)
+
+
 def _is_near(off, there, quiet):
     """(m,) bool: no mean, and no mean of so many that their noise is small, is far off."""
     near = np.ones(len(off), bool)

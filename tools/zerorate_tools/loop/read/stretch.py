@@ -6,8 +6,8 @@ import numpy as np
 
 from ...allan import overlapping
 from .gate import CannotClose
-from .still import still_ticks
-from .ticks import TICK_S, gap_filled, read_ticks, tick_seconds
+from .still import runs, still_ticks
+from .ticks import TICK_S, Ticks, gap_filled, read_ticks, tick_seconds
 
 _LEAST_TICKS = 30
 _SAMPLES = 50
@@ -33,7 +33,7 @@ def still_stretch(path: str | PathLike[str]) -> tuple[np.ndarray, float]:
     would fall to pieces. Below 4 Hz one sample is a tick, which has no spread.
     """
     own_s = tick_seconds(path, 0.0)
-    ticks = read_ticks(path, max(TICK_S, _SAMPLES * own_s) if own_s < 0.25 else TICK_S)
+    ticks = ticks_with_spread(path)
     first, last = longest_run(still_ticks(ticks) & (ticks.count > 0))
     per = max(1, int(ticks.tick_s / max(_FINE_S, own_s) + 1e-6))
     fine = read_ticks(path, ticks.tick_s / per)
@@ -47,11 +47,13 @@ def still_stretch(path: str | PathLike[str]) -> tuple[np.ndarray, float]:
     return np.column_stack([gap_filled(rate[:, a]) for a in range(3)]), fine.tick_s
 
 
+def ticks_with_spread(path: str | PathLike[str]) -> Ticks:
+    """Ticks of at least fifty samples, by whose spread rest is told. Raises BadRecording."""
+    own_s = tick_seconds(path, 0.0)
+    return read_ticks(path, max(TICK_S, _SAMPLES * own_s) if own_s < 0.25 else TICK_S)
+
+
 def longest_run(mask: np.ndarray) -> tuple[int, int]:
     """First and one past the last index of the longest run of True; (0, 0) without any."""
-    edges = np.flatnonzero(np.diff(np.r_[0, mask.astype(int), 0]))
-    if not len(edges):
-        return 0, 0
-    starts, ends = edges[::2], edges[1::2]
-    at = int((ends - starts).argmax())
-    return int(starts[at]), int(ends[at])
+    first, last = max(runs(mask), key=lambda run: run[1] - run[0], default=(0, 0))
+    return int(first), int(last)
