@@ -66,7 +66,7 @@ wasm: $(VENV)/.tools node
 
 # What cannot be had is left out by the tests, which say so; ZERORATE_REQUIRE makes them fail.
 runtimes: $(VENV)/.dev node
-	-$(BIN)/zerorate runtimes get wasm x86 armhf x64 valgrind rp2040
+	-$(BIN)/zerorate runtimes get wasm x86 armhf x64 rp2040
 
 node: $(VENV)/.tools
 	-@$(BIN)/zerorate runtimes node >/dev/null 2>&1 || \

@@ -3,7 +3,7 @@
 import argparse
 import sys
 
-_GETTABLE = ("wasm", "x86", "armhf", "x64", "valgrind", "rp2040")
+_GETTABLE = ("wasm", "x86", "armhf", "x64", "rp2040")
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -21,14 +21,12 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
 def get(arguments: argparse.Namespace) -> int:
     from zerorate_tools.errors import MissingRuntime
     from zerorate_tools.runtimes import fetch
-    from zerorate_tools.runtimes.callgrind import fetch_callgrind
     from zerorate_tools.runtimes.pico import fetch_rp2040
 
-    others = {"valgrind": fetch_callgrind, "rp2040": fetch_rp2040}
     missing = 0
     for name in arguments.names:
         try:
-            others[name]() if name in others else fetch(name)
+            fetch_rp2040() if name == "rp2040" else fetch(name)
             print(f"{name}: ready")
         except MissingRuntime as error:
             missing += 1

@@ -62,7 +62,6 @@ class Runtime(ABC):
         stdin: bytes = b"",
         timeout: float | None = None,
         check: bool = False,
-        prefix: Sequence[str] = (),
     ) -> Result:
         """Run `script` in a scratch folder of its own.
 
@@ -70,7 +69,7 @@ class Runtime(ABC):
         modules: folders put on sys.path; files_in: relative name -> content or file, there before
         the script starts; files_out: relative names read back afterwards; heap: bytes (None is the
         interpreter's own default, 1 MiB on MicroPython; cpython has no limit, and wasm grows
-        beyond it by itself); timeout: seconds; prefix: put before the command (a profiler).
+        beyond it by itself); timeout: seconds.
 
         Raises ZerorateError on a time-out, and with check=True when the script fails.
         """
@@ -86,15 +85,15 @@ class Runtime(ABC):
                 heap_bytes=heap,
                 stdin=stdin,
             )
-            result = self._start(job, prefix, timeout)
+            result = self._start(job, timeout)
         if check and result.returncode:
             raise ZerorateError(_why_failed(self.name, job.script, result))
         return result
 
-    def _start(self, job: Job, prefix: Sequence[str], timeout: float | None) -> Result:
+    def _start(self, job: Job, timeout: float | None) -> Result:
         try:
             done = subprocess.run(
-                [*prefix, *self.command(job)],
+                self.command(job),
                 cwd=job.folder,
                 env=self.environment(job),
                 input=job.stdin,
