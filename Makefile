@@ -17,7 +17,7 @@ lint: $(VENV)/.dev
 	$(BIN)/ruff format --check .
 	$(BIN)/codespell
 
-# Kernels have rules of their own (kernels/rules.py), and machine code has no types.
+# Kernels have rules of their own (host_tests/runtimes/kernel_rules.py), and machine code has no types.
 FIRMWARE := $(shell find firmware/zerorate -name '*.py')
 KERNELS := $(shell grep -lrE --include='*.py' '^ptr(8|32) = None' firmware/zerorate)
 MACHINE_CODE := $(wildcard firmware/zerorate/native/thumb_*.py firmware/zerorate/native/rv32_*.py)

@@ -2,8 +2,9 @@
 
 import pytest
 from zerorate_tools.errors import ZerorateError
-from zerorate_tools.kernels.reading import hot_functions, kernel_files
-from zerorate_tools.runtimes.frames import WORDS_ON_STACK, frame_words
+from zerorate_tools.kernels.reading import KernelFile, kernel_files
+
+from .frames import WORDS_ON_STACK, frame_words
 
 # What the user's object runs at every sample, outside the kernels.
 HOT_METHODS = {
@@ -73,7 +74,7 @@ def test_every_hot_function_of_every_kernel_keeps_its_frame_on_the_stack(x86, re
     frames = {}
     for file in files:
         words = frame_words(x86, file)
-        frames |= {f"{file.name} {name}": words[name] for name in hot_functions(file)}
+        frames |= {f"{file.name} {name}": words[name] for name in KernelFile(file).kernels}
     assert len(frames) > len(files) > 0
     assert {name: words for name, words in frames.items() if words > WORDS_ON_STACK} == {}
 

@@ -1,8 +1,9 @@
 """The kernels hold only what does the same on every interpreter; the checker finds the rest."""
 
 import pytest
-from zerorate_tools.kernels.reading import hot_functions, kernel_files
-from zerorate_tools.kernels.rules import breaches
+from zerorate_tools.kernels.reading import KernelFile, kernel_files
+
+from .kernel_rules import breaches
 
 SOUND = '''
 def total(s: ptr32, w: ptr32, n: int) -> int:
@@ -107,6 +108,6 @@ def test_a_breach_is_named_with_its_row(breaches_of):
 
 def test_the_firmwares_kernels_have_no_breach(repository):
     files = kernel_files(repository / "firmware" / "zerorate")
-    kernels = {name for file in files for name in hot_functions(file)}
+    kernels = {name for file in files for name in KernelFile(file).kernels}
     assert len(kernels) > 10
     assert [line for file in files for line in breaches(file, kernels)] == []

@@ -112,11 +112,6 @@ def kernel_files(package: Path) -> list[Path]:
     return found
 
 
-def hot_functions(path: Path) -> list[str]:
-    """The names of a file's kernels: those that run in every update."""
-    return list(KernelFile(path).kernels)
-
-
 def _kernel(function: ast.FunctionDef) -> bool:
     return bool(function.returns) or any(a.annotation for a in function.args.args)
 

@@ -8,8 +8,9 @@ import ast
 from collections.abc import Collection, Iterator
 from pathlib import Path
 
-from .flow import always_returns, read_before_set
-from .reading import KernelFile
+from zerorate_tools.kernels.reading import KernelFile
+
+from .kernel_flow import always_returns, read_before_set
 
 _ALLOWED: tuple[type[ast.AST], ...] = (
     *(ast.Assign, ast.AugAssign, ast.Return, ast.If, ast.While, ast.Expr),
