@@ -35,8 +35,9 @@ class Bursts:
         frames: array('i') of eight words a sample: dt_us, then ax ay az temp gx gy gz. Rates are
         corrected in place, and each first word becomes what `Corrector.update` returns.
         """
-        if self._run and self.corrector.alone:
-            self._run(self._state, self._settings, frames, _BURST + count)
+        run = self._run
+        if run and self.corrector.alone:
+            run(self._state, self._settings, frames, _BURST + count)
         else:
             self._one_by_one(frames, count)
 

@@ -23,6 +23,8 @@ _FOR_HOSTS = re.compile(
     )""",
     re.MULTILINE | re.VERBOSE,
 )
+# What native/ does where there is no machine code: nothing of it is sent with machine code.
+_ELSEWHERE = re.compile(r"^else:\n(?:[ ].*\n|\n)+", re.MULTILINE)
 
 
 def machine_code(facts: BoardFacts) -> str:
@@ -45,17 +47,24 @@ def board_files(
         if facts.mpy[0] == mpy_version()[0]:
             is_code = code and name.name.startswith(f"{code}_")
             options = (f"-march={CODES[code]}",) if is_code else ()
-            found[name.with_suffix(".mpy")] = compiled(path, str(name), *options)
+            text = for_boards(path.read_text(encoding="utf-8"))
+            if code and name.parent.name == "native":
+                text = _ELSEWHERE.sub("", text)
+            found[name.with_suffix(".mpy")] = compiled(path, str(name), *options, text=text)
         else:
             found[name] = path.read_bytes()
     return found
 
 
-def compiled(path: Path, name: str, *options: str) -> bytes:
-    """The .mpy of a file, less what only hosts need of it; name: what tracebacks call it."""
+def compiled(path: Path, name: str, *options: str, text: str | None = None) -> bytes:
+    """The .mpy of a file, less what only hosts need of it; name: what tracebacks call it.
+
+    text: what stands in the place of the file's.
+    """
+    text = for_boards(path.read_text(encoding="utf-8")) if text is None else text
     with tempfile.TemporaryDirectory(prefix="zerorate-mpy-") as folder:
         out, source = Path(folder) / "out.mpy", Path(folder) / path.name
-        source.write_text(for_boards(path.read_text(encoding="utf-8")), encoding="utf-8")
+        source.write_text(text, encoding="utf-8")
         command = [_mpy_cross(), *_OPTIONS, *options, "-s", name, "-o", str(out), str(source)]
         done = subprocess.run(command, capture_output=True, text=True)
         if done.returncode:

@@ -42,13 +42,13 @@ def _sparse(words: Sequence[int]) -> tuple[int, bytes]:
 
 
 def _corrector() -> Corrector:
-    limits = {"window_s": 0.04, "segment_s": 0.08, "promote_s": 0.1, "fit_s": 0.04, **_SHAKY}
+    limits = {"window_s": 0.08, "segment_s": 0.16, "promote_s": 0.1, "fit_s": 0.04, **_SHAKY}
     return Corrector(Sensor(), bins=4, short=1, long=2, **limits)
 
 
 def _rest() -> tuple:
     corrector = _corrector()
-    return 4, BURST + 9, 8 * 9, 5, corrector.state, corrector.settings, [0] * (8 * 9)
+    return 2, BURST + 10, 8 * 10, 5, corrector.state, corrector.settings, [0] * (8 * 10)
 
 
 def _motion() -> tuple:
