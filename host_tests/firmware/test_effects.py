@@ -9,7 +9,7 @@ import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from zerorate import Sensor
-from zerorate.effects import effects
+from zerorate.effects import effect_inputs, effects
 from zerorate.layout import EFFECTS, STATE
 from zerorate_tools.model import Slot
 from zerorate_tools.model.term import Term, evaluate
@@ -350,6 +350,29 @@ def test_a_channel_that_was_never_given_has_no_effect():
             assert model.channel("load", 90)
         effects.sense(state, model.e, still_frame(), 250000, 1)
     assert state[STATE.EFFECT_Q8] / 256 / 131 == pytest.approx(0.4, abs=1e-4)
+
+
+@pytest.mark.parametrize("value", [-1_500_000, -1, 3, 700_000, 3_000_000])
+def test_a_channel_of_millions_is_held_to_its_range(value):
+    slot = Slot(Term("load", -1e6, 1e6), (1e-6, 0.0, 0.0))
+    state, model = array("i", [0] * STATE.FIT_WEIGHTS), loaded([slot])
+    assert model.e[EFFECTS.INPUTS + 1] > 0  # its values are shifted right
+    model.channel("load", value)
+    for _ in range(30):
+        effects.sense(state, model.e, still_frame(), 250000, 1)
+    wanted = 1e-6 * max(-1e6, min(1e6, value))
+    assert state[STATE.EFFECT_Q8] / 256 / 131 == pytest.approx(wanted, abs=1e-4)
+
+
+@pytest.mark.parametrize("shift", [0, 4, 7, 8, 9, 15])
+@pytest.mark.parametrize(("total", "n"), [(0, 1), (70_000, 3), (900_000_001, 1000), (1 << 43, 7)])
+def test_the_mean_of_squares_is_right_at_every_shift(total, n, shift):
+    e = array("i", [0] * (EFFECTS.SQUARES + 2))
+    e[EFFECTS.SQUARES], e[EFFECTS.SQUARES + 1] = total & 0x7FFF, min(total >> 15, (1 << 29) - 1)
+    total = e[EFFECTS.SQUARES] + (e[EFFECTS.SQUARES + 1] << 15)
+    wanted = 256 * total / n / 2**shift
+    got = effect_inputs.mean_square_q8(e, n, shift)
+    assert got == pytest.approx(wanted, abs=2) if wanted < 1 << 23 else got == 0x7FFFFF
 
 
 def test_frames_that_are_no_readings_let_time_pass_and_nothing_else():
