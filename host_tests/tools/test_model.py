@@ -107,6 +107,12 @@ def test_json_and_bytes_are_exact_twins_of_any_model(slots, gyro, tick_s):
     assert EffectModel().load(data, sensor) == model_file.LOADED
 
 
+@pytest.mark.parametrize("tick_s", [0.0, 0.009, 537.0])
+def test_a_tick_that_no_board_has_is_refused(tick_s):
+    with pytest.raises(CannotDeploy, match="0.01..536 s are possible"):
+        build_model([], SCALES, tick_s=tick_s)
+
+
 def test_what_is_built_differs_from_what_was_wanted_by_rounding_alone():
     wanted = Slot(Term("temp", 20.123456, 45, 32.5, lag_mode="lag", lag_s=123.456789), (1 / 3,) * 3)
     built = build_model([wanted], SCALES).slots[0]
@@ -273,6 +279,8 @@ def broken_json(model, **changes):
         ({"format": "png"}, "no effect model"),
         ({"version": 2}, "version 2"),
         ({"tick_us": "soon"}, "tick_us"),
+        ({"tick_us": 0}, "tick_us: 0 us"),
+        ({"tick_us": 1 << 29}, "tick_us: 536870912 us"),
         ({"scales__gyro_lsb_per_dps": -1}, "scales"),
         ({"binding__chip_id": 4000}, "binding"),
         ({"inputs__0__shift": 99}, "inputs"),

@@ -162,6 +162,8 @@ def _units(model: Model):
 
 
 def _check_room(model: Model, plain: Sequence[Slot], plays: int) -> None:
+    if not 10_000 <= model.tick_us < 1 << 29:
+        raise CannotDeploy(f"a tick of {model.tick_s:g} s; 0.01..536 s are possible")
     tables = [s.term.table for s in model.slots if s.term.table]
     for what, number, most in (
         ("effect slots", len(plain), MOST_SLOTS),
@@ -179,8 +181,6 @@ def _check_room(model: Model, plain: Sequence[Slot], plays: int) -> None:
     there = {(i.name, i.of_the_sample) for i in model.inputs}
     if {_there(*source, there) for source in sources_of(model.slots)} - there:
         raise CannotDeploy("a slot follows a source that is no input of the model")
-    if not 10_000 <= model.tick_us < 1 << 29:
-        raise CannotDeploy(f"a tick of {model.tick_s:g} s; 0.01..536 s are possible")
 
 
 def _there(name: str, of_the_sample: bool, among: Container) -> tuple[str, bool]:

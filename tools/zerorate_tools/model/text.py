@@ -57,6 +57,8 @@ def from_json(text: str | bytes, path: str | PathLike[str] = "model.json") -> Mo
         binding = Binding(**{k: _code(v) for k, v in values["binding"].items()})
         entry = "tick_us"
         tick_us = _whole(values["tick_us"])
+        if not 10_000 <= tick_us < 1 << 29:
+            raise ValueError(f"{tick_us} us; 10000 to {(1 << 29) - 1} are possible")
         entry = "inputs"
         inputs = tuple(_input(v) for v in values["inputs"])
         slots = []
