@@ -21,7 +21,8 @@ _DECISION = "decision"
 def table(found: Mapping) -> str:
     """All tables as Markdown."""
     scenarios = found["simulated"]
-    lines = ["Simulated, RMS error after two minutes, mdps, each seed (windows learned):", ""]
+    lines = ["# Bias without rest, measured", "", "`zerorate bench motion` wrote this page.", ""]
+    lines += ["Simulated, RMS error after two minutes, mdps, each seed (windows learned):", ""]
     lines += _head(["", *scenarios])
     for way in next(iter(scenarios.values())):
         cells = [_cell(rows[way]) for rows in scenarios.values()]
