@@ -8,7 +8,7 @@ _TABLE = "needs.json"
 
 
 def needs() -> dict[str, dict[str, int]]:
-    """`native`, `bytecode` -> part -> bytes of heap, `rest` with driver and Corrector; `cycles`."""
+    """`native`, `bytecode` -> part -> heap, `rest` with driver and Corrector; `cycles`, `heap`."""
     return json.loads(files(__package__).joinpath(_TABLE).read_text(encoding="utf-8"))
 
 

@@ -62,7 +62,9 @@ On the emulated Pico, on the recording of the bench: the kernels of learning at 
 take {median:,.0f} cycles a sample, the worst {worst:,.0f}; `Corrector.update` takes
 {object_median:,.0f}, the worst {object_worst:,.0f}; in bursts of 64 (`Bursts.update`) it is
 {burst:,.0f} a sample. As bytecode a sample takes some {bytecode:,.0f}. What fits no heap can be
-frozen into a build (`manifest.py`): then it takes flash instead.
+frozen into a build (`manifest.py`): then it takes flash instead. The second program of
+[pico.md](pico.md) wants {least_heap:,} bytes of heap as it stands, since what imports leave over
+lies between what stays; `gc.threshold(1024)` before its imports makes that less.
 """
 
 
@@ -70,7 +72,12 @@ def page() -> str:
     """The text of docs/boards.md."""
     head = ["board", "runs", "heap free", "rest", "motion, gravity", "flash", "a sample", "verdict"]
     rows = table(head, [_row(board) for board in BOARDS])
-    return "\n".join([_HEAD, rows, _FOOT.format(**needs()["cycles"]).lstrip()]).rstrip() + "\n"
+    return "\n".join([_HEAD, rows, _foot()]).rstrip() + "\n"
+
+
+def _foot() -> str:
+    kept = needs()
+    return _FOOT.format(**kept["cycles"], least_heap=kept["heap"]["least"]).lstrip()
 
 
 def needs_of(found: Mapping[str, Any]) -> dict[str, dict[str, int]]:
@@ -81,6 +88,7 @@ def needs_of(found: Mapping[str, Any]) -> dict[str, dict[str, int]]:
     return {
         "native": {REST: heap[REST], **parts},
         "bytecode": before["bytecode"],
+        "heap": {"least": found["least_heap_bytes"]},
         "cycles": {**before["cycles"], **{k: round(v) for k, v in found["cycles"].items()}},
     }
 
