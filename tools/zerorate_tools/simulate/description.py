@@ -123,7 +123,7 @@ def _effects(top: Table, path: str) -> list[Table]:
         if kind == "timing":
             known(effect, ("kind", *TIMING), "effect timing", path)
             for key in TIMING:
-                check_value(effect.get(key, 0.0), "float", f"effect timing.{key}", path)
+                check_value(effect.get(key, 0.0), float, f"effect timing.{key}", path)
         elif str(kind) not in EFFECTS:
             do = f"choose of {', '.join(EFFECTS)}, timing"
             raise BadDescription(path, f"effect {kind!r} is unknown", do=do)

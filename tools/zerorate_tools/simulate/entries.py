@@ -2,7 +2,7 @@
 
 import dataclasses
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, get_origin
 
 import numpy as np
 
@@ -30,20 +30,20 @@ def filled(cls: type, given: Any, where: str, path: str) -> Any:
     fields = {f.name: f for f in dataclasses.fields(cls)}
     known(entries, tuple(fields), where, path)
     for key, value in entries.items():
-        check_value(value, str(fields[key].type), f"{where}.{key}", path)
+        check_value(value, fields[key].type, f"{where}.{key}", path)
     return cls(**entries)
 
 
-def check_value(value: Any, wanted: str, where: str, path: str) -> None:
-    """Raise BadDescription unless the value is of the wanted annotation (Any: one number or 3)."""
-    if wanted == "Any":
+def check_value(value: Any, wanted: Any, where: str, path: str) -> None:
+    """Raise BadDescription unless the value is of the wanted type (Any: one number or 3)."""
+    if wanted is Any:
         axes(value, where, path)
-    elif wanted.startswith("list"):
+    elif get_origin(wanted) is list:
         tables(value, where, path)
-    elif wanted.startswith("float") and not is_number(value):
+    elif wanted in (float, float | None) and not is_number(value):
         raise BadDescription(path, f"{where} is {value!r}", do="write a number")
-    elif wanted in ("str", "bool") and type(value).__name__ != wanted:
-        raise BadDescription(path, f"{where} is {value!r}", do=f"write a {wanted}")
+    elif wanted in (str, bool) and type(value) is not wanted:
+        raise BadDescription(path, f"{where} is {value!r}", do=f"write a {wanted.__name__}")
 
 
 def known(entries: Table, names: tuple[str, ...], where: str, path: str) -> None:
