@@ -425,14 +425,14 @@ def test_memory_within_a_bound_is_given_and_beyond_it_refused():
     before = resource.getrlimit(resource.RLIMIT_DATA)
     with at_most(80), at_most(40):
         bytearray(20 << 20)
-        with pytest.raises(MemoryError):
-            bytearray(60 << 20)
-        with at_most(200), pytest.raises(MemoryError):
-            bytearray(100 << 20)
+        with pytest.raises(MemoryError):  # far beyond: tests before leave memory to be used again
+            bytearray(600 << 20)
+        with at_most(2000), pytest.raises(MemoryError):
+            bytearray(1000 << 20)
     assert resource.getrlimit(resource.RLIMIT_DATA) == before
-    sizes = each_at_most(iter(map(bytearray, (20 << 20, 60 << 20))), 40)
+    sizes = each_at_most(iter(map(bytearray, (20 << 20, 600 << 20))), 40)
     assert len(next(sizes)) == 20 << 20
-    bytearray(60 << 20)  # what takes the item is not bound
+    bytearray(600 << 20)  # what takes the item is not bound
     with pytest.raises(MemoryError):
         next(sizes)
 
