@@ -13,8 +13,8 @@ from .pages import blocks
 _NUMBER = re.compile(r"(?<![\w.])[+-]?\d[\d,]*(?:\.\d+)?(?:e[+-]?\d+)?")
 
 
-def refreshed(page, folder):
-    """The text of a page with its console blocks run anew in `folder`.
+def refreshed(page, folder, but=None):
+    """The text of a page with its console blocks run anew in `folder`, all but command `but`'s.
 
     Its Python blocks are run in their place, too. What would have to be fetched first is left as it
     stands. Raises ValueError where a Python block fails.
@@ -25,7 +25,7 @@ def refreshed(page, folder):
         if block.language == "python":
             _run_program(block.text, folder)
             continue
-        if not _needs_the_network(block):
+        if not _needs_the_network(block) and but not in commands(block):
             parts += [text[at : block.start], _session(block.text, folder)]
             at = block.end
     return "".join([*parts, text[at:]])

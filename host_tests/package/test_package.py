@@ -13,6 +13,10 @@ import pytest
 import yaml
 from zerorate_tools import __version__
 
+from host_tests.docs.outputs import commands, same_but_for_rounding
+from host_tests.docs.pages import blocks
+from host_tests.docs.test_pages import DEMO
+
 PACKAGES = {
     "zerorate": "firmware",
     "zerorate_i2c": "drivers",
@@ -61,7 +65,9 @@ def away(built, tmp_path_factory):
 
     def run(*words):
         words = [python, *words]
-        return subprocess.run(words, capture_output=True, text=True, cwd=folder)
+        path = os.pathsep.join([str(python.parent), os.environ["PATH"]])
+        narrow = {**os.environ, "PATH": path, "COLUMNS": "80", "TERM": "dumb"}
+        return subprocess.run(words, capture_output=True, text=True, cwd=folder, env=narrow)
 
     return run
 
@@ -114,11 +120,18 @@ def test_the_sdist_has_what_a_checkout_needs_to_be_tested(built):
     assert wanted <= names
 
 
-def test_the_demo_runs_away_from_the_checkout(away, find_runtime):
-    find_runtime("x86")
-    done = away("-m", "zerorate_tools.cli", "demo", "--runtime", "x86")
+def test_the_demo_runs_away_from_the_checkout_and_prints_what_its_page_shows(
+    away, find_runtime, repository
+):
+    find_runtime("wasm")
+    done = away("-m", "zerorate_tools.cli", "demo", "--out", "shown")
     assert done.returncode == 0, done.stderr
-    assert "found: thermal-hysteresis" in done.stdout
+    (shown,) = (
+        block.text
+        for block in blocks(repository / "docs" / "commands.md", "console")
+        if DEMO in commands(block)
+    )
+    assert same_but_for_rounding(f"$ {DEMO}\n{done.stdout}", shown), done.stdout
 
 
 def test_what_runs_is_the_wheel_and_not_the_checkout(away, repository):
