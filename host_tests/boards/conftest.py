@@ -38,9 +38,17 @@ class Console:
 
 
 @pytest.fixture(scope="session")
-def pico(pico_parts, tmp_path_factory):
+def flashed_pico(pico_parts, tmp_path_factory):
     """A Pico that was flashed with the rest path; port: a symbolic link to its serial device."""
     link = tmp_path_factory.mktemp("run") / "tty-a"
     with EmulatedPico(pico_parts, link=link) as board:
         board.flashed = flash(board.port, say=lambda line: None)
         yield board
+
+
+@pytest.fixture(scope="module")
+def pico(flashed_pico):
+    """The same, which runs for this module alone: an idle board takes a whole processor."""
+    flashed_pico.resume()
+    yield flashed_pico
+    flashed_pico.pause()

@@ -13,6 +13,7 @@ import json
 import os
 import pty
 import select
+import signal
 import socket
 import subprocess
 import threading
@@ -131,6 +132,14 @@ class EmulatedPico:
         self._process.kill()
         self._process.wait()
         self._control.close()
+
+    def pause(self) -> None:
+        """Let it stand still and take no processor, until resume()."""
+        self._process.send_signal(signal.SIGSTOP)
+
+    def resume(self) -> None:
+        """Let it go on."""
+        self._process.send_signal(signal.SIGCONT)
 
     def ask(self, command: str, **arguments):
         """What the emulator answers to a command of pico.mjs."""
