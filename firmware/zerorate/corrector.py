@@ -52,6 +52,11 @@ _GRAVITY = const(5)
 # layout: end
 
 
+# A piece of heap held through a program's imports, or none as long is left on a small board for the
+# state, its checkpoint and the store's record.
+_held = [bytearray(4992)]
+
+
 def forget(state, clear, settings):
     """Make a source's state as new, in place: a copy of it would want as much heap again."""
     for i in range(len(state)):
@@ -107,8 +112,10 @@ class Corrector:
         )
         unload("zerorate", "settings")
         c = self.settings
-        # before other sources are loaded, while there is heap in one piece
-        self.state = array("i", [0] * (c[_AXES] + 3 * c[_AXIS_WORDS]))
+        # before other sources are loaded, while there is heap in one piece; a list of as many zeros
+        # would want as much again
+        _held.clear()
+        self.state = array("i", range(c[_AXES] + 3 * c[_AXIS_WORDS]))
         self.effects: "Any" = None
         self.schedule: "Any" = None
         self.motion = None

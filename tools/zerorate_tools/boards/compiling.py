@@ -50,7 +50,7 @@ def board_files(
             text = for_boards(path.read_text(encoding="utf-8"))
             if code and name.parent.name == "native":
                 text = _ELSEWHERE.sub("", text)
-            found[name.with_suffix(".mpy")] = compiled(path, str(name), *options, text=text)
+            found[name.with_suffix(".mpy")] = compiled(path, ".".join(name.with_suffix("").parts), *options, text=text)
         else:
             found[name] = path.read_bytes()
     return found
