@@ -50,7 +50,9 @@ def board_files(
             text = for_boards(path.read_text(encoding="utf-8"))
             if code and name.parent.name == "native":
                 text = _ELSEWHERE.sub("", text)
-            found[name.with_suffix(".mpy")] = compiled(path, ".".join(name.with_suffix("").parts), *options, text=text)
+            # the module's name is on the board in any case, the file's would be one more string
+            module = ".".join(name.with_suffix("").parts)
+            found[name.with_suffix(".mpy")] = compiled(path, module, *options, text=text)
         else:
             found[name] = path.read_bytes()
     return found
