@@ -1,42 +1,33 @@
 """What share of mutants do the tests of an area kill? `make mutants`; cosmic-ray makes the mutants.
 
-A sample by a seed, of each area the same number. A mutant is loaded in the place of its module by
-a process of its own, which runs the area's tests; no file changes. A kernel's mutant is what
-CPython runs, and what the C for hosts is made of; machine code for boards plays no part. Mutants
-that mean the same are listed in mutants.toml, each with why; they are drawn but not run.
+A sample by a seed, of each area the same number. A mutant stands in the place of its function, or
+of its module where it is outside of all functions, in a fork of its own, which runs the area's
+tests until one fails: first those that call the function. No file changes. A kernel's mutant is
+what CPython runs, and what the C for hosts is made of; machine code for boards plays no part.
+Mutants that mean the same are listed in mutants.toml, each with why; they are drawn but not run.
 """
 
 import argparse
-import importlib.abc
-import importlib.machinery
-import importlib.util
 import os
 import random
 import re
-import signal
 import sys
 import tempfile
-import time
 from collections import Counter
 from pathlib import Path
 
-import pytest
 from cosmic_ray import plugins
 from cosmic_ray.ast import ast_nodes, get_ast
 from cosmic_ray.mutating import mutate_code
+
+from .mutant_trials import REPOSITORY, ends
 
 try:
     import tomllib
 except ImportError:  # Python 3.10
     import tomli as tomllib
 
-REPOSITORY = Path(__file__).resolve().parents[1]
 SURVIVORS_AND_WHY = Path(__file__).with_name("mutants.toml")
-# Tests in other processes, and two that take long and see little that others do not.
-NOT_IN_PROCESS = " and ".join(
-    "not " + name
-    for name in ("micropython", "heap", "runtime", "last_byte", "any_slot", "no_intermediate")
-)
 # What no test can tell apart: annotations, constants that `make layout` writes, == and is of what
 # there is only one of.
 _SAME = re.compile(r"^\s*(def |from |import |#)|^\s+\w+: .*[,=]$|^    \) ->|TYPE_CHECKING|^@")
@@ -50,7 +41,7 @@ AREAS = {
             "mpu6050.py", "fifo.py", "data_ready.py", "bus_recovery.py", "settings.py",
             "identity.py", "registers.py")],
         ["host_tests/drivers/test_" + name for name in (
-            "mpu6050.py", "faults.py", "fifo.py", "data_ready.py")],
+            "mpu6050.py", "faults.py", "fifo.py", "data_ready.py", "settings.py")],
     ),
     "storage": (
         [f"firmware/zerorate/storage/{n}.py" for n in ("store", "places", "learned_store")],
@@ -82,31 +73,6 @@ AREAS = {
 }  # fmt: skip
 
 
-class InPlaceOf(importlib.abc.MetaPathFinder, importlib.machinery.SourceFileLoader):
-    """Loads a text in the place of a module's file."""
-
-    def __init__(self, path, text):
-        super().__init__("", str(path))
-        self._file, self._text = path, text
-
-    def find_spec(self, name, path=None, target=None):
-        found = importlib.machinery.PathFinder.find_spec(name, path)
-        if found is None or found.origin is None or Path(found.origin) != self._file:
-            return None
-        self.name = name
-        return importlib.util.spec_from_file_location(name, self._file, loader=self)
-
-    def get_code(self, fullname):
-        return compile(self._text, self._file, "exec")
-
-
-def put_in_place(path, text):
-    """Let this process see the text in the place of the file, wherever it is loaded or read."""
-    sys.meta_path.insert(0, InPlaceOf(path, text))
-    plain = Path.read_text
-    Path.read_text = lambda self, *how, **more: text if self == path else plain(self, *how, **more)
-
-
 def mutants(files):
     """[(file, operator, occurrence, row)] of all that can be told apart."""
     found = []
@@ -130,29 +96,6 @@ def mutants(files):
     return found
 
 
-def run(tests, seconds, mutant=None):
-    """How a process ends that runs the tests, with mutant (file, text): passed, killed, slow."""
-    with tempfile.TemporaryDirectory(prefix="zerorate-mutant-") as cache:
-        child = os.fork()
-        if child == 0:
-            os.environ["ZERORATE_CACHE"] = cache  # compiled mutants are nobody else's
-            _run_tests(tests, seconds, mutant)
-        _, status = os.waitpid(child, 0)
-    if os.WIFSIGNALED(status):
-        return "slow" if os.WTERMSIG(status) == signal.SIGALRM else "killed"
-    return "killed" if os.WEXITSTATUS(status) else "passed"
-
-
-def _run_tests(tests, seconds, mutant):
-    signal.alarm(seconds)
-    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
-    os.dup2(1, 2)
-    if mutant is not None:
-        put_in_place(*mutant)
-    quiet = ["-q", "-x", "-p", "no:cacheprovider", "-p", "no:xdist", "-k", NOT_IN_PROCESS]
-    os._exit(int(pytest.main([*quiet, *tests]) != 0))
-
-
 def same(mutant, text):
     """Why the mutant means the same, by mutants.toml, or ""."""
     for entry in tomllib.loads(SURVIVORS_AND_WHY.read_text(encoding="utf-8"))["same"]:
@@ -165,26 +108,35 @@ def same(mutant, text):
 def area_score(name, count, seed):
     """Counter of killed, survived, same; prints each survivor."""
     files, tests = AREAS[name]
-    began = time.monotonic()
-    if run(tests, 600) != "passed":
-        raise SystemExit(f"the tests of {name} fail as they are")
-    patience = int(5 * (time.monotonic() - began)) + 30
-    drawn = mutants(files)
-    drawn = random.Random(seed).sample(drawn, min(count, len(drawn)))
-    found = Counter()
-    for file, operator, occurrence, row in drawn:
-        path = REPOSITORY / file
-        source = path.read_text(encoding="utf-8")
+    every = mutants(files)
+    found, drawn, said = Counter(), {}, {}
+    for number, (file, operator, occurrence, row) in enumerate(
+        random.Random(seed).sample(every, min(count, len(every)))
+    ):
+        source = (REPOSITORY / file).read_text(encoding="utf-8")
         line = source.splitlines()[row - 1].strip()
-        text = mutate_code(source, plugins.get_operator(operator)(), occurrence)
         if same((file, operator), line):
             found["same"] += 1
-        elif run(tests, patience, (path, text)) == "passed":
-            found["survived"] += 1
-            print(f"survived: {file}:{row} {operator} {occurrence}: {line}", flush=True)
-        else:
-            found["killed"] += 1
+            continue
+        text = mutate_code(source, plugins.get_operator(operator)(), occurrence)
+        drawn[number] = (file, row, text)
+        said[number] = f"survived: {file}:{row} {operator} {occurrence}: {line}"
+    told = Path(os.environ["ZERORATE_CACHE"]) / f"{name}.json"
+    for number, end in sorted(ends(tests, drawn, told).items()):
+        found["survived" if end == "passed" else "killed"] += 1
+        if end == "passed":
+            print(said[number], flush=True)
     return found
+
+
+def low_score(name, count, seed):
+    """Whether an area's share is below nine tenths, having printed it."""
+    found = area_score(name, count, seed)
+    tried = found["killed"] + found["survived"]
+    share = found["killed"] / tried if tried else 0.0
+    counts = f"{found['killed']} of {tried} killed, {found['same']} mean the same"
+    print(f"{name:<12}{share:>6.0%}  {counts}", flush=True)
+    return share < 0.9
 
 
 def main(arguments=None):
@@ -195,14 +147,10 @@ def main(arguments=None):
     parser.add_argument("--seed", type=int, default=1)
     chosen = parser.parse_args(arguments)
     os.chdir(REPOSITORY)
-    low = 0
-    for name in chosen.areas or AREAS:
-        found = area_score(name, chosen.each, chosen.seed)
-        tried = found["killed"] + found["survived"]
-        share = found["killed"] / tried if tried else 0.0
-        low += share < 0.9
-        counts = f"{found['killed']} of {tried} killed, {found['same']} mean the same"
-        print(f"{name:<12}{share:>6.0%}  {counts}", flush=True)
+    # one cache for all: what is compiled is kept by its text, and a mutant's is another
+    with tempfile.TemporaryDirectory(prefix="zerorate-mutants-") as cache:
+        os.environ["ZERORATE_CACHE"] = cache
+        low = sum(low_score(name, chosen.each, chosen.seed) for name in chosen.areas or AREAS)
     return 1 if low else 0
 
 

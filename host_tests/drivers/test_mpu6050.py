@@ -82,13 +82,6 @@ def test_the_sample_rate_is_the_nearest_the_divider_gives(make_bench, odr_hz, di
     assert bench.imu.odr_hz == pytest.approx(kept_hz)
 
 
-@pytest.mark.parametrize("part, bandwidth_hz", [("MPU-6050", 42), ("MPU-6500", 41)])
-def test_the_filter_defaults_to_the_widest_below_half_the_rate(make_bench, part, bandwidth_hz):
-    bench = make_bench(part=part, odr_hz=100)
-    assert bench.imu.dlpf_hz == bandwidth_hz
-    assert bench.chip.registers[0x1A] == 3
-
-
 def test_the_accelerometer_of_later_parts_is_filtered_alike(make_bench):
     assert make_bench(part="MPU-9250").chip.registers[0x1D] == 3
 
@@ -112,8 +105,9 @@ def test_a_value_no_part_can_take_is_a_value_error(make_bench, options, said):
 @pytest.mark.parametrize("who_am_i", [0x72, 0x00, 0xFF, 0x47])
 def test_an_unknown_id_is_an_os_error_with_address_and_id(who_am_i):
     bus = FakeI2C({0x69: FakeMPU6050(who_am_i=who_am_i)})
-    with pytest.raises(OSError, match=f"address 0x69 .*0x{who_am_i:02x}"):
+    with pytest.raises(OSError, match=f"address 0x69 .*0x{who_am_i:02x}: ") as caught:
         MPU6050(bus, address=0x69, clock=FakeClock())
+    assert caught.value.errno == 19
 
 
 def test_no_chip_is_an_os_error_with_the_address():
@@ -142,12 +136,69 @@ def test_the_configuration_is_read_back_every_so_many_samples(make_bench):
     bench = make_bench(check_every=10)
     statuses = [bench.read() for _ in range(21)]
     assert [i for i, status in enumerate(statuses) if status == VERIFIED] == [10, 20]
+    assert set(statuses) == {FRESH, VERIFIED}
+    assert bench.imu.read_backs == 3  # and one at the start
 
 
 def test_a_kept_setting_survives_a_restart(bench):
     bench.imu.keep_setting(0x38, 0x01)
+    assert bench.chip.registers[0x38] == 0x01
     bench.imu.restart()
     assert bench.chip.registers[0x38] == 0x01
+
+
+def test_a_setting_is_kept_in_the_place_of_its_register_and_no_other(make_bench):
+    bench = make_bench(odr_hz=1000 / 0x38)  # the divider 0x37 is also a register's number
+    usual = list(bench.imu._settings)
+    for register, value in ((0x37, 0x10), (0x37, 0x30), (0x6B, 0x02), (0x6C, 0x07)):
+        bench.imu.keep_setting(register, value)
+        assert bench.chip.registers[register] == value
+    usual[1], usual[3] = 0x02, 0x07
+    assert list(bench.imu._settings) == [*usual, 0x37, 0x30]
+
+
+@pytest.mark.parametrize(
+    "odr_hz, period_us", [(100, 10000), (1000, 1000), (300, 3000), (5, 5000 * 40)]
+)
+def test_the_period_is_that_of_the_rate_kept(make_bench, odr_hz, period_us):
+    imu = make_bench(odr_hz=odr_hz).imu
+    assert imu.period_us == period_us == round(1000000 / imu.odr_hz)
+
+
+@pytest.mark.parametrize("retries", [0, 1, 2, 5])
+def test_a_transfer_is_tried_once_more_than_retries_and_each_failure_counted(make_bench, retries):
+    bench = make_bench(retries=retries)
+    bench.read()
+    transfers = bench.bus.transfers
+    bench.bus.fault("nack", times=retries)
+    assert bench.read() == FRESH
+    assert (bench.imu.bus_errors, bench.bus.transfers - transfers) == (retries, retries + 1)
+    bench = make_bench(retries=retries)
+    bench.read()
+    transfers = bench.bus.transfers
+    bench.bus.fault("nack", times=None)
+    with pytest.raises(OSError):
+        bench.read()
+    assert (bench.imu.bus_errors, bench.bus.transfers - transfers) == (retries + 1, retries + 1)
+
+
+@pytest.mark.parametrize("word", range(7))
+@pytest.mark.parametrize("base, leap", [(5000, 160), (-5000, 160), (3 * 256 + 100, 160), (1000, 0)])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_word_that_leaps_by_more_than_160_is_read_twice(make_bench, word, base, leap, sign):
+    rows = [[base + place for place in range(7)] for _ in range(3)]
+    rows[1][word] += sign * leap
+    rows[2][word] = rows[1][word] + sign * 161
+    bench = make_bench(source=rows)
+    bench.read()
+    transfers = []
+    for row in rows[1:]:
+        before = bench.bus.transfers
+        assert bench.read() == FRESH
+        assert list(bench.sample) == row
+        transfers.append(bench.bus.transfers - before)
+    assert transfers == [1, 2]
+    assert bench.imu.torn == 0
 
 
 def test_it_knows_a_chip_that_kept_its_power_from_a_program_before(make_bench):
@@ -160,9 +211,9 @@ def test_it_knows_a_chip_that_kept_its_power_from_a_program_before(make_bench):
 
 
 def test_the_binding_names_chip_range_and_filter(make_bench):
-    assert make_bench().imu.binding != make_bench(full_scale_dps=500).imu.binding
-    assert make_bench().imu.binding != make_bench(part="MPU-6500").imu.binding
-    assert make_bench().imu.binding != make_bench(dlpf_hz=20).imu.binding
+    assert make_bench().imu.binding == bytes([0x68, 0, 0, 3])
+    assert make_bench(full_scale_dps=500, full_scale_g=16).imu.binding == bytes([0x68, 1, 3, 3])
+    assert make_bench(part="MPU-6500", dlpf_hz=20).imu.binding == bytes([0x70, 0, 0, 4])
 
 
 def test_on_a_computer_the_modules_of_the_constructor_stay(bench):

@@ -2,7 +2,8 @@
 
 import sys
 
-from ..mutants import AREAS, REPOSITORY, InPlaceOf, mutants
+from ..mutant_trials import REPOSITORY, InPlaceOf, ends
+from ..mutants import AREAS, mutants
 
 GUARD = "firmware/zerorate/rest/guard.py"
 
@@ -23,9 +24,6 @@ def test_every_file_and_every_test_of_an_area_is_there():
 
 def test_a_mutant_stands_in_the_place_of_its_module(tmp_path, monkeypatch):
     (tmp_path / "mutated.py").write_text("VALUE = 1")
-    (tmp_path / "test_it.py").write_text(
-        "import mutated\n\ndef test_it():\n    assert mutated.VALUE == 1\n"
-    )
     monkeypatch.syspath_prepend(tmp_path)
     place = InPlaceOf(tmp_path / "mutated.py", "VALUE = 2")
     monkeypatch.setattr(sys, "meta_path", [place, *sys.meta_path])
@@ -34,3 +32,19 @@ def test_a_mutant_stands_in_the_place_of_its_module(tmp_path, monkeypatch):
     assert mutated.VALUE == 2
     monkeypatch.undo()
     del sys.modules["mutated"]
+
+
+def test_mutants_of_functions_and_of_modules_are_told_from_those_that_live(tmp_path, monkeypatch):
+    source = "LIMIT = 3\n\n\ndef below(n):\n    return n < LIMIT\n"
+    (tmp_path / "limits.py").write_text(source)
+    (tmp_path / "test_it.py").write_text(
+        "from limits import below\n\ndef test_it():\n    assert below(1) and not below(4)\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    changes = [(5, "<", "<="), (5, "<", ">"), (1, "3", "2"), (1, "3", "0")]
+    drawn = {
+        number: (str(tmp_path / "limits.py"), row, source.replace(before, after))
+        for number, (row, before, after) in enumerate(changes)
+    }
+    found = ends([str(tmp_path)], drawn, tmp_path / "told.json")
+    assert [found[number] for number in range(4)] == ["passed", "killed", "passed", "killed"]
