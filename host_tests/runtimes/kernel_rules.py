@@ -5,7 +5,8 @@ a shift by 32 differs between processors, and bytecode takes heap for what leave
 """
 
 import ast
-from collections.abc import Collection, Iterator
+import re
+from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 
 from zerorate_tools.kernels.reading import KernelFile
@@ -31,11 +32,29 @@ def breaches(path: Path, kernels: Collection[str]) -> list[str]:
 
     kernels: names of all kernel functions, which a kernel may call.
     """
+    lines = path.read_text(encoding="utf-8").splitlines()
     return [
         f"{path.name}:{row}: {what}"
         for function in KernelFile(path).kernels.values()
-        for row, what in sorted({*_signature(function), *_body(function, kernels)})
+        for row, what in sorted(
+            {*_signature(function), *_body(function, kernels), *_anew(function, lines)}
+        )
     ]
+
+
+def remarks(function: ast.FunctionDef, lines: Sequence[str]) -> str:
+    """What the function's remarks of "eleven words" say: what a parameter is from there on."""
+    text = "\n".join(lines[function.lineno - 1 : function.end_lineno])
+    return " ".join(re.findall(r"# eleven words: (.+)", text))
+
+
+def _anew(function: ast.FunctionDef, lines: Sequence[str]) -> Iterator[tuple[int, str]]:
+    parameters = {a.arg for a in function.args.args}
+    said = set(re.findall(r"\w+", remarks(function, lines)))
+    for node in ast.walk(function):
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+            if node.id in parameters - said:
+                yield node.lineno, f"the parameter {node.id} is assigned: a local has a name"
 
 
 def _signature(function: ast.FunctionDef) -> Iterator[tuple[int, str]]:

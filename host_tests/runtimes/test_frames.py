@@ -5,6 +5,7 @@ from zerorate_tools.errors import ZerorateError
 from zerorate_tools.kernels.reading import KernelFile, kernel_files
 
 from .frames import WORDS_ON_STACK, frame_words
+from .kernel_rules import remarks
 
 # What the user's object runs at every sample, outside the kernels.
 HOT_METHODS = {
@@ -77,6 +78,17 @@ def test_every_hot_function_of_every_kernel_keeps_its_frame_on_the_stack(x86, re
         frames |= {f"{file.name} {name}": words[name] for name in KernelFile(file).kernels}
     assert len(frames) > len(files) > 0
     assert {name: words for name, words in frames.items() if words > WORDS_ON_STACK} == {}
+
+
+def test_a_parameter_becomes_something_else_only_where_the_frame_is_full(x86, repository):
+    full = 0
+    for file in kernel_files(repository / "firmware" / "zerorate"):
+        lines, words = file.read_text().splitlines(), frame_words(x86, file)
+        for name, function in KernelFile(file).kernels.items():
+            if remarks(function, lines):
+                assert words[name] == WORDS_ON_STACK, f"{file.name} {name}"
+                full += 1
+    assert full
 
 
 @pytest.mark.parametrize("name", HOT_METHODS)

@@ -24,9 +24,8 @@ def total(s: ptr32, w: ptr32, n: int) -> int:
 
 
 def give_up(s: ptr32, n: int):
-    if n == 0:
-        return
-    s[n - 1] ^= 5
+    n -= 1  # eleven words: n is from here on the word before
+    s[n] ^= 5
 
 
 def object_of_a_person(s, deep=None):
@@ -45,7 +44,9 @@ BROKEN = [
     ("return n & 0x40000000", "1073741824 is no integer below"),
     ("return n == None", "None is no integer"),
     ("return n << 31", "a shift by 31"),
-    ("n >>= 32\n    return n", "a shift by 32"),
+    ("n -= 1\n    return n", "the parameter n is assigned"),
+    ("n -= 1  # eleven words: the one before\n    return n", "the parameter n is assigned"),
+    ("a = n\n    a >>= 32\n    return a", "a shift by 32"),
     ("return n // 0", "division by zero"),
     ("n %= 0\n    return n", "division by zero"),
     ("return s[-1]", "a negative index"),

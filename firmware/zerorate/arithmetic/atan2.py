@@ -17,15 +17,14 @@ def arc_q13(z: int) -> int:
 
     Odd minimax polynomial of degree 9 (Abramowitz and Stegun 4.4.49, error below 1e-5).
     """
-    if z > 0x7FFF:
-        z = 0x7FFF
-    square = (z * z) >> 15
+    tangent = z if z < 0x7FFF else 0x7FFF
+    square = (tangent * tangent) >> 15
     sum_q15 = 683
     sum_q15 = ((sum_q15 * square) >> 15) - 2790
     sum_q15 = ((sum_q15 * square) >> 15) + 5903
     sum_q15 = ((sum_q15 * square) >> 15) - 10823
     sum_q15 = ((sum_q15 * square) >> 15) + 32764
-    return ((sum_q15 * z >> 15) + 2) >> 2
+    return ((sum_q15 * tangent >> 15) + 2) >> 2
 
 
 def atan2_q13(y: int, x: int) -> int:

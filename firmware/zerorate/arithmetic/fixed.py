@@ -26,33 +26,32 @@ def scaled(a: int, b: int, shift: int) -> int:
 def fraction_q27(a: int, b: int) -> int:
     """Return a / b in Q27 for 0 <= a <= b < 2^20, b > 0."""
     q = 0
+    rest = a
     i = 0
     while i < 3:
-        a = a << 9
-        q = (q << 9) + a // b
-        a = a % b
+        rest = rest << 9
+        q = (q << 9) + rest // b
+        rest = rest % b
         i += 1
     return q
 
 
 def ratio_q26(a: int, b: int) -> int:
     """Return a / b in Q26, saturated at +-4, for |a| < 2^28 and 0 <= b < 2^28; 0 where b is 0."""
-    sign = 1
-    if a < 0:
-        a = -a
-        sign = -1
+    sign = 1 if a >= 0 else -1
+    rest = sign * a
     if b == 0:
         return 0
-    if a >> 2 >= b:
+    if rest >> 2 >= b:
         return sign * 0xFFFFFFF
-    q = a // b
-    a = a % b
+    q = rest // b
+    rest = rest % b
     i = 0
     while i < 26:
-        a = a << 1
+        rest = rest << 1
         q = q << 1
-        if a >= b:
-            a -= b
+        if rest >= b:
+            rest -= b
             q += 1
         i += 1
     return sign * q
@@ -60,25 +59,24 @@ def ratio_q26(a: int, b: int) -> int:
 
 def room(value: int) -> int:
     """Return by how much |value| < 2^30 can be shifted left until it fills 27 bits; 27 for 0."""
-    if value < 0:
-        value = 0 - value
+    left = value if value >= 0 else 0 - value
     shift = 0
-    if value == 0:
+    if left == 0:
         return 27
     # shifted right, for machine code takes longest to make large numbers
-    if value >> 11 == 0:
-        value = value << 16
+    if left >> 11 == 0:
+        left = left << 16
         shift = 16
-    if value >> 19 == 0:
-        value = value << 8
+    if left >> 19 == 0:
+        left = left << 8
         shift += 8
-    if value >> 23 == 0:
-        value = value << 4
+    if left >> 23 == 0:
+        left = left << 4
         shift += 4
-    if value >> 25 == 0:
-        value = value << 2
+    if left >> 25 == 0:
+        left = left << 2
         shift += 2
-    if value >> 26 == 0:
+    if left >> 26 == 0:
         shift += 1
     return shift
 
@@ -87,25 +85,33 @@ def floating_ratio_q26(a: int, b: int, exponent: int) -> int:
     """Return a / b * 2^exponent in Q26, saturated at +-4, for |a|, b < 2^30; 0 where b is 0."""
     if a == 0 or b <= 0:
         return 0
-    while a > 0x7FFFFFF or a < -0x7FFFFFF:
-        a = a >> 1
-        exponent += 1
-    while b > 0x7FFFFFF:
-        b = b >> 1
-        exponent -= 1
-    shift = room(a)
-    a = a << shift
-    exponent -= shift
-    shift = room(b)
-    b = b << shift
-    exponent += shift
-    a = ratio_q26(a, b)
-    while exponent > 0:
-        if a > 0x7FFFFFF or a < -0x7FFFFFF:
-            return 0xFFFFFFF if a > 0 else -0xFFFFFFF
-        a = a << 1
-        exponent -= 1
-    return a >> (0 - exponent if exponent > -30 else 30)
+    e = exponent
+    m = a
+    while m > 0x7FFFFFF or m < -0x7FFFFFF:
+        m = m >> 1
+        e += 1
+    n = b
+    while n > 0x7FFFFFF:
+        n = n >> 1
+        e -= 1
+    e += room(n) - room(m)
+    n = n << room(n)
+    ratio = ratio_q26(m << room(m), n)
+    while e > 0:
+        if ratio > 0x7FFFFFF or ratio < -0x7FFFFFF:
+            return 0xFFFFFFF if ratio > 0 else -0xFFFFFFF
+        ratio = ratio << 1
+        e -= 1
+    return ratio >> (0 - e if e > -30 else 30)
+
+
+def clipped(x: int, most: int) -> int:
+    """Return x held within +-most."""
+    if x > most:
+        return most
+    if x < 0 - most:
+        return 0 - most
+    return x
 
 
 def root(square: int) -> int:

@@ -29,24 +29,27 @@ def put(s: ptr32, d: int, m: int, e: int):
         s[d] = 0
         s[d + 1] = _ZERO_EXPONENT
         return
-    while m < 0x80000 and m >= -0x80000:
-        m = m << 8
-        e -= 8
-    while m < _LEAST_MANTISSA and m >= -_LEAST_MANTISSA:
-        m = m << 1
-        e -= 1
-    while m >= _MOST_MANTISSA or m < -_MOST_MANTISSA:
-        m = m >> 1
-        e += 1
-    s[d] = m
-    s[d + 1] = e
+    mantissa = m
+    exponent = e
+    while mantissa < 0x80000 and mantissa >= -0x80000:
+        mantissa = mantissa << 8
+        exponent -= 8
+    while mantissa < _LEAST_MANTISSA and mantissa >= -_LEAST_MANTISSA:
+        mantissa = mantissa << 1
+        exponent -= 1
+    while mantissa >= _MOST_MANTISSA or mantissa < -_MOST_MANTISSA:
+        mantissa = mantissa >> 1
+        exponent += 1
+    s[d] = mantissa
+    s[d + 1] = exponent
 
 
 def copy(s: ptr32, d: int, a: int, words: int):
     """Copy words from a to d."""
-    while words > 0:
-        words -= 1
-        s[d + words] = s[a + words]
+    i = words
+    while i > 0:
+        i -= 1
+        s[d + i] = s[a + i]
 
 
 def high_product(m: int, n: int) -> int:
@@ -91,13 +94,14 @@ def subtract(s: ptr32, d: int, a: int, b: int):
 def quotient_q27(m: int, n: int) -> int:
     """Return m / n in Q27, for 0 <= m < 2 n <= 2^29, n > 0."""
     q = 0
+    rest = m
     i = 0
     while i < 28:
         q = q << 1
-        if m >= n:
-            m -= n
+        if rest >= n:
+            rest -= n
             q += 1
-        m = m << 1
+        rest = rest << 1
         i += 1
     return q
 
@@ -119,13 +123,13 @@ def divide(s: ptr32, d: int, a: int, b: int):
 def whole(s: ptr32, a: int, shift: int) -> int:
     """Return the number at a times 2^shift as an integer, held within +-(2^29 - 1)."""
     m = s[a]
-    shift += s[a + 1]
-    if shift > 1 and m != 0:
+    by = shift + s[a + 1]
+    if by > 1 and m != 0:
         m = 0x1FFFFFFF if m > 0 else -0x1FFFFFFF
-    elif shift >= 0:
-        m = m << shift
-    elif shift > -30:
-        m = (m + (1 << (-1 - shift))) >> (0 - shift)
+    elif by >= 0:
+        m = m << by
+    elif by > -30:
+        m = (m + (1 << (-1 - by))) >> (0 - by)
     else:
         m = 0
     return m

@@ -94,11 +94,11 @@ def delayed(e: ptr32, a: int, u: int) -> int:
     elif e[ring + _RING_AGE] == 0:
         e[ring + _RING_NEWEST] = (e[ring + _RING_NEWEST] + 1) & 63
         e[ring + _RING_KEPT + e[ring + _RING_NEWEST]] = u
-    # eleven words: u is now how many ticks ago
-    u = e[a + _SLOT_DELAY] - e[ring + _RING_AGE]
-    a = e[a + _SLOT_RING_STEP]  # and a how many of them a step has
+    ago = e[a + _SLOT_DELAY] - e[ring + _RING_AGE]
+    # eleven words: a is from here on how many ticks a step has
+    a = e[a + _SLOT_RING_STEP]
     e[ring + _RING_AGE] = (e[ring + _RING_AGE] + 1) % a
-    return between(e, ring, e[ring + _RING_NEWEST] - u // a, u % a, a)
+    return between(e, ring, e[ring + _RING_NEWEST] - ago // a, ago % a, a)
 
 
 def between(e: ptr32, ring: int, place: int, part: int, step: int) -> int:
@@ -113,9 +113,10 @@ def between(e: ptr32, ring: int, place: int, part: int, step: int) -> int:
 def power(v: int, n: int) -> int:
     """Return v to the n, 1..3, in Q24."""
     u = v
-    while n > 1:
+    factors = n
+    while factors > 1:
         u = scaled(u, v, 24)
-        n -= 1
+        factors -= 1
     return u
 
 
@@ -125,16 +126,16 @@ def approach(e: ptr32, z: int, f: int, u: int):
     The word behind z keeps what is below a unit, so that no lag is too long to arrive.
     """
     d = u - e[z]
-    # eleven words: u is now the shift, f the way in whole units, t what is left of it
-    u = e[f + 1] + 3
+    shift = e[f + 1] + 3
     t = (d >> 12) * e[f]
     d = (d & 0xFFF) * e[f] + e[z + 1]
-    f = t >> u
-    d += (t - (f << u)) << 12
-    u += 12
-    t = d >> u
-    e[z] += f + t
-    e[z + 1] = d - (t << u)
+    # eleven words: f is from here on the way in whole units, t what is left of it
+    f = t >> shift
+    d += (t - (f << shift)) << 12
+    t = d >> shift + 12
+    f += t
+    e[z] += f
+    e[z + 1] = d - (t << shift + 12)
 
 
 def start(e: ptr32, a: int, u: int):
@@ -228,6 +229,6 @@ def add_times(e: ptr32, v: int, a: int, shift: int, to: int):
         elif d < -0x1FFFFFFF:
             d = -0x1FFFFFFF
         e[to] = d
-        to += 1
+        to += 1  # eleven words: to and a go on to the next axis
         a += 1
         i -= 1

@@ -112,11 +112,9 @@ def accumulate(e: ptr32, x: ptr32):
 
 def mean_q8(total: int, n: int) -> int:
     """Return total / n in Q8 for n < 2^14, rounded."""
-    sign = 1
-    if total < 0:
-        total = -total
-        sign = -1
-    return sign * (((total // n) << 8) + (((total % n) << 8) + (n >> 1)) // n)
+    sign = 1 if total >= 0 else -1
+    size = sign * total
+    return sign * (((size // n) << 8) + (((size % n) << 8) + (n >> 1)) // n)
 
 
 def mean_square_q8(e: ptr32, n: int, shift: int) -> int:

@@ -70,13 +70,11 @@ _WALK_EXPONENT = const(-10)
 
 def mean_q8(total: int, n: int) -> int:
     """Return total / n in Q8, for 0 < n < 2^20, within 2^21."""
-    sign = 1
-    if total < 0:
-        total = -total
-        sign = -1
-    if total // n > 8191:
+    sign = 1 if total >= 0 else -1
+    size = sign * total
+    if size // n > 8191:
         return sign * _MOST_RATE
-    return sign * (((total // n) << 8) + ((total % n) << 8) // n)
+    return sign * (((size // n) << 8) + ((size % n) << 8) // n)
 
 
 def observe(s: ptr32, e: ptr32, n: int):
@@ -116,13 +114,11 @@ def attend(s: ptr32, c: ptr32, e: ptr32):
 def product(e: ptr32, to: int, a: int, b: int):
     """Store at `to` the scalar product of the states at a and b."""
     put(e, to, 0, 0)
-    i = e[_STATES]
-    while i > 0:
-        multiply(e, _REFINE_A, a, b)
+    i = 0
+    while i < 2 * e[_STATES]:
+        multiply(e, _REFINE_A, a + i, b + i)
         add(e, to, to, _REFINE_A)
-        a += 2
-        b += 2
-        i -= 1
+        i += 2
 
 
 def miss(e: ptr32, axis: int):
@@ -165,7 +161,7 @@ def believe(e: ptr32, i: int):
         add(e, at, at, _REFINE_A)
         axis += 1
     at = _REFINE_P + i * _REFINE_ROW
-    i = 0  # eleven words: the column of the covariance
+    i = 0  # eleven words: i is from here on the column of the covariance
     while i < e[_STATES]:
         multiply(e, _REFINE_A, _REFINE_B, _REFINE_GAIN + 2 * i)
         put(e, _REFINE_A, -e[_REFINE_A], e[_REFINE_A + 1])
@@ -191,7 +187,8 @@ def bound(e: ptr32, a: int) -> int:
 def move(e: ptr32, a: int, state: int):
     """Set the slot's coefficients to the model's own plus what was learned, within the bound."""
     most = bound(e, a)
-    state = _THETA + 2 * state  # eleven words: the word of what was learned
+    # eleven words: state is from here on the word of what was learned; a goes on with it
+    state = _THETA + 2 * state
     shift = e[a + _SLOT_COEFFICIENT_SHIFT] - 10
     i = 3
     while i > 0:

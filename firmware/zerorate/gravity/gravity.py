@@ -180,9 +180,9 @@ def compare(s: ptr32, c: ptr32, i: int, square: int):
     if across < _HALF_Q24 or too_far(s[_ANGLE_Q22 + i] >> 9):
         s[_LAST_GOOD] = s[_LAST_GOOD] & (7 - (1 << i))
         return
-    across = since_last(s, i, across >> 12)  # eleven words: the deviation
+    deviation = since_last(s, i, across >> 12)
     if s[_LAST_GOOD] & (1 << i):
-        count(s, c, i, across)
+        count(s, c, i, deviation)
     s[_LAST_GOOD] = s[_LAST_GOOD] | (1 << i)
 
 
@@ -261,11 +261,10 @@ def count(s: ptr32, c: ptr32, i: int, deviation: int):
 
 def spread(s: ptr32, deviation: int):
     """Follow how far the deviations go, over all axes, for half a minute or so."""
-    if deviation < 0:
-        deviation = -deviation
-    if deviation > _RADIAN_Q13:
-        deviation = _RADIAN_Q13
-    s[_SPREAD_Q21] += ((deviation << 8) - s[_SPREAD_Q21]) >> 6
+    far = deviation if deviation >= 0 else -deviation
+    if far > _RADIAN_Q13:
+        far = _RADIAN_Q13
+    s[_SPREAD_Q21] += ((far << 8) - s[_SPREAD_Q21]) >> 6
 
 
 def end_interval(s: ptr32, c: ptr32) -> int:

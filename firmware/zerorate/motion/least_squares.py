@@ -67,7 +67,7 @@ def element(s: ptr32, d: int, h: int, e: int):
         put(s, _T1, s[h], e)
         multiply(s, _T1, _T1, _OMEGA + i)
         add(s, _T, _T, _T1)
-        h += _COMPONENT_WORDS
+        h += _COMPONENT_WORDS  # eleven words: h goes on to the next component
         i += 2
     copy(s, d, _T, 2)
 
@@ -156,8 +156,7 @@ def covariance(s: ptr32, d: int):
     while i < 6:
         if i == 3 or i == 5:
             a += 2
-        put(s, d, -s[a], s[a + 1])
-        d += 2
+        put(s, d + 2 * i, -s[a], s[a + 1])
         a += 2
         i += 1
 
@@ -222,7 +221,7 @@ def shape(s: ptr32, d: int, m: int, y: int):
         multiply(s, _T1, _T1, _SLOPE + i)
         subtract(s, _T2, _T, _T1)
         copy(s, _T, _T2, 2)
-        m += 1
+        m += 1  # eleven words: m goes on to the shape's next sum
         i += 2
     multiply(s, d, _T, _T)
 

@@ -102,9 +102,7 @@ def know_nothing(s: ptr32, c: ptr32, tilt: int, heading: int):
     i = 0
     while i < 3:
         put(s, _PRIOR_MEAN + 2 * i, 0, 0)
-        if i == 2:
-            tilt = heading  # eleven words: the energy of this row, from here on
-        put(s, _HELD_NOISE + 2 * i, tilt, 0)
+        put(s, _HELD_NOISE + 2 * i, heading if i == 2 else tilt, 0)
         i += 1
 
 

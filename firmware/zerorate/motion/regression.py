@@ -83,12 +83,14 @@ def first_sums(s: ptr32, a: int, y: int):
 
 def second_sums(s: ptr32, a: int):
     """Add a node to the six sums at a that are square in M."""
+    at = a
     i = 0
     while i < 3:
         k = i
         while k < 3:
-            s[a] += (s[_WM + i] * s[_M + k] + 512) >> 10
-            a += 1
+            d = (s[_WM + i] * s[_M + k] + 512) >> 10
+            s[at] += d
+            at += 1
             k += 1
         i += 1
 
@@ -111,13 +113,12 @@ def centre(s: ptr32, a: int, row: int, shift: int):
     """
     s[a + _SUM_Y] = mean(s, s[a + _SUM_Y])
     i = 0
-    row += _CENTRE
     while i < 3:
         s[_M + i] = mean(s, s[a + _SUM_M + i])
-        s[row + i] = s[row + i] - (s[_M + i] << shift)
+        s[_CENTRE + row + i] -= s[_M + i] << shift
         i += 1
     i = 0
-    row = a  # eleven words: from here on the square sums' word, and shift that of a sum of M
+    row = a  # eleven words: row is from here on the square sums' word, shift that of a sum of M
     s[_WM] = s[a + _SUM_Y]
     while i < 3:
         shift = a + _SUM_M + i
@@ -130,6 +131,6 @@ def centre_row(s: ptr32, a: int, h: int, k: int) -> int:
     """Refer a row of the square sums, from word h on, to the means; return where the next is."""
     while k < 3:
         refer(s, h, a, s[_M + k])
-        h += 1
+        h += 1  # eleven words: h and k go on through the row
         k += 1
     return h

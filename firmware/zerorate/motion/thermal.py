@@ -60,12 +60,12 @@ def forget_slopes(s: ptr32, c: ptr32):
 
 def follow_temperature(s: ptr32, temp: int):
     """Follow the thermometer: closely, and as far behind as a window's middle is behind its end."""
-    temp = temp << 8
+    temp_q8 = temp << 8
     if s[_FILLED] == 0:
-        s[_TEMP_Q8] = temp
-        s[_NOW_TEMP_Q8] = temp
-    s[_TEMP_Q8] += (temp - s[_TEMP_Q8] + 32) >> 6
-    s[_NOW_TEMP_Q8] += (temp - s[_NOW_TEMP_Q8] + 2) >> 2
+        s[_TEMP_Q8] = temp_q8
+        s[_NOW_TEMP_Q8] = temp_q8
+    s[_TEMP_Q8] += (temp_q8 - s[_TEMP_Q8] + 32) >> 6
+    s[_NOW_TEMP_Q8] += (temp_q8 - s[_NOW_TEMP_Q8] + 2) >> 2
 
 
 def present(s: ptr32, i: int):
@@ -155,7 +155,7 @@ def learn_slope(s: ptr32, i: int):
     subtract(s, _T1, _BIAS + 2 * i, _PRIOR_MEAN + 2 * i)
     multiply(s, _T1, _T1, _T)
     add(s, _TEMP_SLOPE, _TEMP_SLOPE, _T1)
-    i = place(i, i)  # eleven words: where its covariance stands in the swept matrix
+    i = place(i, i)  # eleven words: i is from here on its variance's word in the swept matrix
     add(s, _T1, a, i)
     multiply(s, _T1, _T1, _T)
     multiply(s, _T1, _T1, _T)

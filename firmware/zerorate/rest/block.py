@@ -113,46 +113,48 @@ def followed(f: ptr32, c: ptr32, p: int, end: int) -> int:
 
     Their rates may stand at a rail: see `off_rails`.
     """
-    p += 8
+    k = p + 8
     most = c[_JUMP_LSB]
-    while p < end:
-        if f[p] != f[p - 8]:
-            if f[p] <= 0 or f[p] > c[_LEAP_US]:
-                return p
-        d = f[p + 4] - f[p - 4]
+    while k < end:
+        if f[k] != f[k - 8]:
+            if f[k] <= 0 or f[k] > c[_LEAP_US]:
+                return k
+        d = f[k + 4] - f[k - 4]
         if d < 0:
             d = 0 - d
-        x = f[p + 5]
-        if d >= most or x == f[p - 3]:
-            if d >= most or (f[p + 6] == f[p - 2] and f[p + 7] == f[p - 1]):
-                return p  # a jump, or a repeat, perhaps
-        if x == f[p + 6] and x == f[p + 7]:
-            return p  # all zeros or all ones, perhaps
-        p += 8
+        x = f[k + 5]
+        if d >= most or x == f[k - 3]:
+            if d >= most or (f[k + 6] == f[k - 2] and f[k + 7] == f[k - 1]):
+                return k  # a jump, or a repeat, perhaps
+        if x == f[k + 6] and x == f[k + 7]:
+            return k  # all zeros or all ones, perhaps
+        k += 8
     return end
 
 
 def off_rails(f: ptr32, p: int, end: int) -> int:
     """Return the word behind the frames from p on of which no rate stands at a rail."""
-    while p < end:
+    k = p
+    while k < end:
         # sixteen bits of a rate are one too many where it is next to a rail
-        far = (f[p + 5] + 32767) | (f[p + 6] + 32767) | (f[p + 7] + 32767)
-        far |= (f[p + 5] + 32769) | (f[p + 6] + 32769) | (f[p + 7] + 32769)
+        far = (f[k + 5] + 32767) | (f[k + 6] + 32767) | (f[k + 7] + 32767)
+        far |= (f[k + 5] + 32769) | (f[k + 6] + 32769) | (f[k + 7] + 32769)
         if far >> 16:
-            return p
-        p += 8
+            return k
+        k += 8
     return end
 
 
 def near(s: ptr32, f: ptr32, p: int, end: int) -> int:
     """Return the word behind the frames from p on that stay near the window's first frame."""
-    while p < end:
-        far = (f[p + 1] - s[_REFERENCE] + 512) | (f[p + 2] - s[_REFERENCE + 1] + 512)
-        far |= (f[p + 3] - s[_REFERENCE + 2] + 512) | (f[p + 4] - s[_REFERENCE + 3] + 512)
-        far |= (f[p + 5] - s[_REFERENCE + 4] + 512) | (f[p + 6] - s[_REFERENCE + 5] + 512)
-        if (far | (f[p + 7] - s[_REFERENCE + 6] + 512)) >> 10:
-            return p  # the window is no rest from here on
-        p += 8
+    k = p
+    while k < end:
+        far = (f[k + 1] - s[_REFERENCE] + 512) | (f[k + 2] - s[_REFERENCE + 1] + 512)
+        far |= (f[k + 3] - s[_REFERENCE + 2] + 512) | (f[k + 4] - s[_REFERENCE + 3] + 512)
+        far |= (f[k + 5] - s[_REFERENCE + 4] + 512) | (f[k + 6] - s[_REFERENCE + 5] + 512)
+        if (far | (f[k + 7] - s[_REFERENCE + 6] + 512)) >> 10:
+            return k  # the window is no rest from here on
+        k += 8
     return end
 
 
@@ -207,11 +209,12 @@ def account(s: ptr32, f: ptr32, p: int, end: int):
     reference = s[_REFERENCE + 3]
     s[_COUNTS] += (end - p) >> 3
     s[_WINDOW_N] += (end - p) >> 3
-    while p < end:
-        elapsed_us += f[p]
-        total += f[p + 4] - reference
-        f[p] = 0
-        p += 8
+    k = p
+    while k < end:
+        elapsed_us += f[k]
+        total += f[k + 4] - reference
+        f[k] = 0
+        k += 8
     s[_ELAPSED_US] = elapsed_us if elapsed_us < _MOST_US else _MOST_US
     s[_WINDOW_SUM + 3] = total
     s[_FRAME] = f[end - 7]
@@ -249,17 +252,17 @@ def take(s: ptr32, f: ptr32, c: ptr32, p: int, end: int) -> int:
         return p
     if s[_WINDOW_N] == 0:
         begin_window(s, f, p)
-    end = p + (n << 3)
-    n = s[_DIRTY]
-    end = off_rails(f, p, end) if n else near(s, f, p, end)
-    if end > p:
-        end = followed(f, c, p, end)
-        if n == 0:
-            add_accelerations(s, f, p, end)
-            add_rates(s, f, p, end)
-        account(s, f, p, end)
-        correct(s, f, p, end)
-    return end
+    behind = p + (n << 3)
+    dirty = s[_DIRTY]
+    behind = off_rails(f, p, behind) if dirty else near(s, f, p, behind)
+    if behind > p:
+        behind = followed(f, c, p, behind)
+        if dirty == 0:
+            add_accelerations(s, f, p, behind)
+            add_rates(s, f, p, behind)
+        account(s, f, p, behind)
+        correct(s, f, p, behind)
+    return behind
 
 
 def one(s: ptr32, f: ptr32, c: ptr32, x: ptr32, p: int):
@@ -284,11 +287,11 @@ def block(s: ptr32, f: ptr32, c: ptr32, x: ptr32, n: int):
     x: room for a frame.
     """
     p = 0
-    n = n << 3
-    while p < n:
+    end = n << 3
+    while p < end:
         behind = p
         if s[_WORK] == 0 and s[_WINDOW_N] < c[_WINDOW] - 1:
-            behind = take(s, f, c, p, n)
+            behind = take(s, f, c, p, end)
         if behind == p:
             one(s, f, c, x, p)
             behind += 8

@@ -20,7 +20,7 @@ except ImportError:
 ptr32 = None
 
 
-from ..arithmetic.fixed import floating_ratio_q26, fraction_q27, room, scaled
+from ..arithmetic.fixed import clipped, floating_ratio_q26, fraction_q27, room, scaled
 
 # layout: The corrector's state
 _TEMP = const(51)
@@ -130,15 +130,14 @@ def centre(s: ptr32, c: ptr32, a: int, i: int):
     w = s[_FIT_WEIGHTS + i]
     if w == 0:
         return
-    d = s[_FIT_SUM_W]
-    w = fraction_q27(w, d)
-    d = s[a + _LINE_SHIFT]
-    a += i * c[_ESTIMATOR_WORDS] + _ESTIMATORS
-    i = s[a + _EST_MEAN_TEMP_Q4]  # eleven words: the temperature
-    i = within(s, i) - s[_FIT_FIRST_T_Q4]
-    d = scaled(w, i << d, 27)
+    w = fraction_q27(w, s[_FIT_SUM_W])
+    e = a + i * c[_ESTIMATOR_WORDS] + _ESTIMATORS
+    d = s[e + _EST_MEAN_TEMP_Q4]
+    d = within(s, d) - s[_FIT_FIRST_T_Q4]
+    d = d << s[a + _LINE_SHIFT]
+    d = scaled(w, d, 27)
     s[_FIT_SUM_T] += d
-    d = s[a + _EST_BIAS_Q8] - s[_FIT_FIRST_B_Q8]
+    d = s[e + _EST_BIAS_Q8] - s[_FIT_FIRST_B_Q8]
     d = scaled(w, d << 3, 27)
     s[_FIT_SUM_B_Q11] += d
 
@@ -149,37 +148,37 @@ def add_product(s: ptr32, k: int, p: int, r: int):
     The sum is mantissa and shift; by how much p is shifted already stands above those bits.
     """
     h = k >> 7
-    k = k & 127
+    at = k & 127
     if p == 0 or r == 0:
         return
     i = room(r)
-    p = scaled(p, r << i, 27)
+    p = scaled(p, r << i, 27)  # eleven words: p is from here on the product
     h += i - 2
     i = room(p)
     p = p << i >> 2
     h += i
-    if s[k] == 0:
-        s[k + 1] = h
-    i = h - s[k + 1]
+    if s[at] == 0:
+        s[at + 1] = h
+    i = h - s[at + 1]
     if i >= 0:
         p = p >> (i if i < 30 else 30)
     else:
-        s[k] = s[k] >> (0 - i if i > -30 else 30)
-        s[k + 1] = h
-    s[k] += p
+        s[at] = s[at] >> (0 - i if i > -30 else 30)
+        s[at + 1] = h
+    s[at] += p
 
 
 def lean(s: ptr32, c: ptr32, a: int, i: int):
     """Add estimator i to the weighted variance and covariance."""
     w = s[_FIT_WEIGHTS + i]
     k = s[a + _LINE_SHIFT]
+    # eleven words: a is from here on its first word, then its bias; i its temperature
     a += i * c[_ESTIMATOR_WORDS] + _ESTIMATORS
     i = s[a + _EST_MEAN_TEMP_Q4]
     i = within(s, i) - s[_FIT_FIRST_T_Q4]
     i = (i << k) - s[_FIT_SUM_T]
-    # eleven words: i is now the temperature, a the bias, k the shifts
     a = ((s[a + _EST_BIAS_Q8] - s[_FIT_FIRST_B_Q8]) << 3) - s[_FIT_SUM_B_Q11]
-    k = room(w)
+    k = room(w)  # the shifts
     w <<= k
     k += room(i)
     w = scaled(w, i << room(i), 27)
@@ -212,11 +211,7 @@ def along_q14(s: ptr32, a: int, t: int) -> int:
 def bow_q14(s: ptr32, a: int, t: int) -> int:
     """Return the parabola that no line through the weighted points holds any of."""
     bow = (t * t - s[a + _BOW_LEAN_Q14] * t >> 14) - s[a + _BOW_MEAN_Q14]
-    if bow > 0x7FFF:
-        return 0x7FFF
-    if bow < -0x7FFF:
-        return -0x7FFF
-    return bow
+    return clipped(bow, 0x7FFF)
 
 
 def share_q13(s: ptr32, i: int) -> int:
@@ -232,7 +227,7 @@ def add_moments(s: ptr32, c: ptr32, a: int, i: int):
     w = share_q13(s, i)
     if w == 0:
         return
-    # eleven words: i is now its temperature, then how far along the line that is
+    # eleven words: i is from here on its temperature, then how far along the line that is
     i = s[a + i * c[_ESTIMATOR_WORDS] + _ESTIMATORS + _EST_MEAN_TEMP_Q4]
     i = along_q14(s, a, within(s, i))
     s[_BEND_SQUARE_Q14] += ((i * i >> 12) * w + 0x4000) >> 15
@@ -244,7 +239,7 @@ def add_bow(s: ptr32, c: ptr32, a: int, i: int):
     w = share_q13(s, i)
     if w == 0:
         return
-    # eleven words: i is now its first word, then its temperature, then its bow
+    # eleven words: i is from here on its first word, then its temperature, then its bow
     i = a + i * c[_ESTIMATOR_WORDS] + _ESTIMATORS
     left = s[i + _EST_BIAS_Q8]
     i = within(s, s[i + _EST_MEAN_TEMP_Q4])
@@ -256,15 +251,6 @@ def add_bow(s: ptr32, c: ptr32, a: int, i: int):
     s[_BEND_NORM_Q18] += ((i * i >> 11) * w + 0x800) >> 12
     s[_BEND_DOT_Q12] += ((i * left >> 10) * w + 0x400) >> 11
     s[_BEND_LEFT_Q6] += ((left * left >> 10) * w + 0x100) >> 9
-
-
-def clipped(x: int, most: int) -> int:
-    """Return x held within +-most."""
-    if x > most:
-        return most
-    if x < 0 - most:
-        return 0 - most
-    return x
 
 
 def significant(s: ptr32, bow: int) -> int:
@@ -313,11 +299,13 @@ def bent_q8(s: ptr32, a: int, t: int) -> int:
     if s[a + _BOW_Q6] == 0:
         return 0
     margin = (s[a + _LINE_HIGH_Q4] - s[a + _LINE_LOW_Q4]) >> 2
-    if t > s[a + _LINE_HIGH_Q4] + margin:
-        t = s[a + _LINE_HIGH_Q4] + margin
-    if t < s[a + _LINE_LOW_Q4] - margin:
-        t = s[a + _LINE_LOW_Q4] - margin
-    return bow_q14(s, a, along_q14(s, a, t)) * s[a + _BOW_Q6] >> 12
+    at = t
+    if at > s[a + _LINE_HIGH_Q4] + margin:
+        at = s[a + _LINE_HIGH_Q4] + margin
+    if at < s[a + _LINE_LOW_Q4] - margin:
+        at = s[a + _LINE_LOW_Q4] - margin
+    at = along_q14(s, a, at)
+    return bow_q14(s, a, at) * s[a + _BOW_Q6] >> 12
 
 
 def draw_line(s: ptr32, c: ptr32, a: int):
@@ -338,11 +326,7 @@ def draw_line(s: ptr32, c: ptr32, a: int):
 def line_q8(s: ptr32, a: int, temp_q4: int) -> int:
     """Return the line's bias at `temp_q4`: LSB, Q8; far outside it is held where 27 bits end."""
     u = temp_q4 - s[a + _LINE_T0_Q4]
-    most = 0x7FFFFFF >> s[a + _LINE_SHIFT]
-    if u > most:
-        u = most
-    if u < 0 - most:
-        u = 0 - most
+    u = clipped(u, 0x7FFFFFF >> s[a + _LINE_SHIFT])
     u = (u << s[a + _LINE_SHIFT]) - s[a + _LINE_MEAN_T]
     u = scaled(s[a + _LINE_SLOPE_Q26], u, 26)
     return (s[a + _LINE_MEAN_B_Q11] + u + 4) >> 3

@@ -97,6 +97,7 @@ def check(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
         s[_DIRTY] = 0
         s[_REST] = 0
     elif dt_us > 0 and dt_us <= c[_LEAP_US]:
-        dt_us += s[_ELAPSED_US]  # eleven words: since the last window
-        s[_ELAPSED_US] = dt_us if dt_us < _MOST_US else _MOST_US
+        s[_ELAPSED_US] += dt_us
+        if s[_ELAPSED_US] > _MOST_US:
+            s[_ELAPSED_US] = _MOST_US
     return kind

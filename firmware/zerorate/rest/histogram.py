@@ -41,10 +41,9 @@ _EVERY = const(48)
 def clear(s: ptr32, c: ptr32, h: int, middle: int):
     """Make all bins equal and empty, about `middle`; about 0 where moving readings come as well."""
     i = 0
-    if c[_EVERY]:
-        middle = 0
+    low = c[_LOW_LSB] if c[_EVERY] else middle + c[_LOW_LSB]
     while i <= c[_BINS]:
-        s[h + i] = (middle + c[_LOW_LSB] + i * c[_WIDTH_LSB]) << 14
+        s[h + i] = (low + i * c[_WIDTH_LSB]) << 14
         i += 1
     while i <= c[_BINS] + c[_BINS]:
         s[h + i] = 0
@@ -54,9 +53,10 @@ def clear(s: ptr32, c: ptr32, h: int, middle: int):
 def population(s: ptr32, h: int, bins: int) -> int:
     """Return the number of readings that the histogram stands for."""
     count = 0
-    while bins > 0:
-        bins -= 1
-        count += s[h + bins] & _MOST_READINGS
+    i = h
+    while i < h + bins:
+        count += s[i] & _MOST_READINGS
+        i += 1
     return count
 
 
@@ -98,12 +98,12 @@ def merge(s: ptr32, h: int, bins: int, p: int):
         halve(s, h, bins)
     s[h + p] += s[h + p + 1] & _MOST_READINGS
     s[h + bins + 1 + p] += s[h + bins + 2 + p]
-    p += 1
-    while p < bins:
-        s[h + p] = s[h + p + 1]
-        if p < bins - 1:
-            s[h + bins + 1 + p] = s[h + bins + 2 + p]
-        p += 1
+    k = p + 1
+    while k < bins:
+        s[h + k] = s[h + k + 1]
+        if k < bins - 1:
+            s[h + bins + 1 + k] = s[h + bins + 2 + k]
+        k += 1
 
 
 def open_gap(s: ptr32, h: int, bins: int, j: int):
@@ -168,17 +168,16 @@ def emptiest(s: ptr32, c: ptr32, h: int, j: int) -> int:
 def fullest(s: ptr32, h: int, bins: int) -> int:
     """Return the bin with the largest population."""
     j = 0
-    while bins > 0:
-        bins -= 1
-        if (s[h + bins] & _MOST_READINGS) >= (s[h + j] & _MOST_READINGS):
-            j = bins
+    i = bins
+    while i > 0:
+        i -= 1
+        if (s[h + i] & _MOST_READINGS) >= (s[h + j] & _MOST_READINGS):
+            j = i
     return j
 
 
-def crowded(s: ptr32, c: ptr32, h: int, j: int, p: int) -> int:
-    """Return 1 if bin j is full enough beside the emptiest pair p to be split, else 0."""
-    j += h  # eleven words: the bins themselves
-    p += h
+def crowded(s: ptr32, c: ptr32, j: int, p: int) -> int:
+    """Return 1 if the bin at word j is full enough beside the emptiest pair at p to be split."""
     count = s[j] & _MOST_READINGS
     pair = (s[p] & _MOST_READINGS) + (s[p + 1] & _MOST_READINGS)
     if count < c[_ENOUGH_TO_SPLIT]:
@@ -199,9 +198,9 @@ def recentre(s: ptr32, c: ptr32, h: int, k: int) -> int:
     """
     if k == 0 or k == c[_BINS] - 1:
         return 0
-    h += k  # eleven words: the bin itself
+    h += k  # eleven words: h is from here on the bin itself, k its readings
     width = (s[h + 1] >> 14) - (s[h] >> 14)
-    k = s[h] & _MOST_READINGS  # and its readings
+    k = s[h] & _MOST_READINGS
     if k < c[_ENOUGH_TO_SPLIT] or width >= 4 * c[_NARROWEST_LSB]:
         return 0
     by = s[h + 1 + c[_BINS]] // k - (s[h] >> 14) - (width >> 1)
@@ -224,14 +223,14 @@ def adapt(s: ptr32, c: ptr32, h: int, k: int) -> int:
     if c[_BINS] == 1:
         return 0
     if c[_LITERAL]:
-        k = fullest(s, h, c[_BINS])
+        k = fullest(s, h, c[_BINS])  # eleven words: k is the bin to split, wherever it moves to
     elif recentre(s, c, h, k):
         halve(s, h, c[_BINS])
         return 1
     if (s[h + k + 1] >> 14) - (s[h + k] >> 14) < 2 * c[_NARROWEST_LSB]:
         return 0
     pair = emptiest(s, c, h, k)
-    if crowded(s, c, h, k, pair) == 0:
+    if crowded(s, c, h + k, h + pair) == 0:
         return 0
     merge(s, h, c[_BINS], pair)
     if pair < k:

@@ -18,6 +18,7 @@ except ImportError:
 ptr32 = None
 
 
+from ..arithmetic.fixed import clipped
 from .bias import curve_q8
 
 # layout: The corrector's state
@@ -111,12 +112,7 @@ def error_q4(s: ptr32, c: ptr32, a: int) -> int:
 
 def move_offset(s: ptr32, a: int, by: int):
     """Move the axis' offset, LSB Q8; it stays within twice what a word of the sensor says."""
-    by += s[a + _OFFSET_Q8]
-    if by > 0xFFFFFF:
-        by = 0xFFFFFF
-    if by < -0xFFFFFF:
-        by = -0xFFFFFF
-    s[a + _OFFSET_Q8] = by
+    s[a + _OFFSET_Q8] = clipped(s[a + _OFFSET_Q8] + by, 0xFFFFFF)
 
 
 def plausible(s: ptr32, c: ptr32, a: int, error: int) -> int:
@@ -149,11 +145,7 @@ def plausible(s: ptr32, c: ptr32, a: int, error: int) -> int:
 def rewalk(s: ptr32, c: ptr32, a: int, excess: int):
     """Learn the speed of the walk from the squared error that noise does not explain."""
     age = (s[a + _OFFSET_AGE_MS] >> 6) + 1
-    if excess > 0x1FFFFF:
-        excess = 0x1FFFFF
-    if excess < -0x1FFFFF:
-        excess = -0x1FFFFF
-    speed = (excess << 8) // age
+    speed = (clipped(excess, 0x1FFFFF) << 8) // age
     if speed > 0x1FFFFFF:
         speed = 0x1FFFFFF
     if speed < -0x17FFFFF:  # forty times it, the share of a short age, fits
@@ -177,25 +169,24 @@ def rewalk(s: ptr32, c: ptr32, a: int, excess: int):
 
 def gain_q14(variance: int, noise: int) -> int:
     """Return variance / (variance + noise) in Q14."""
-    while variance + noise > 0x7FFF:
-        variance = variance >> 1
-        noise = noise >> 1
-    return (variance << 14) // (variance + noise + 1)
+    v = variance
+    n = noise
+    while v + n > 0x7FFF:
+        v = v >> 1
+        n = n >> 1
+    return (v << 14) // (v + n + 1)
 
 
 def follow(s: ptr32, c: ptr32, a: int, error: int):
     """Move the offset towards the error by the Kalman gain, and learn the walk from the error."""
-    if error > 16383:
-        error = 16383
-    if error < -16383:
-        error = -16383
     excess = error * error - s[a + _OFFSET_VARIANCE_Q8]
     excess -= s[_MEAN_NOISE_Q8]
     rewalk(s, c, a, excess)
     gain = gain_q14(s[_GROWN_Q8], s[_MEAN_NOISE_Q8])
     move_offset(s, a, (gain * error) >> 10)
-    excess = (gain * (s[_MEAN_NOISE_Q8] & 0x3FFF)) >> 14  # eleven words: the product's low part
-    s[a + _OFFSET_VARIANCE_Q8] = gain * (s[_MEAN_NOISE_Q8] >> 14) + excess
+    s[a + _OFFSET_VARIANCE_Q8] = gain * (s[_MEAN_NOISE_Q8] >> 14) + (
+        gain * (s[_MEAN_NOISE_Q8] & 0x3FFF) >> 14
+    )
 
 
 def level_q8(s: ptr32, c: ptr32, a: int) -> int:
@@ -206,11 +197,7 @@ def level_q8(s: ptr32, c: ptr32, a: int) -> int:
     """
     k = c[_AXES] + _TURN_ON_OFFSET_Q8 + (a - c[_AXES]) // c[_AXIS_WORDS]
     if s[_RESTS] < c[_INSIST]:
-        off = s[a + _OFFSET_Q8] >> 4
-        if off > 0x3FFF:
-            off = 0x3FFF
-        if off < -0x3FFF:
-            off = -0x3FFF
+        off = clipped(s[a + _OFFSET_Q8] >> 4, 0x3FFF)
         usual = off * off
         if usual < c[_TURN_ON_VARIANCE_Q8]:
             usual = c[_TURN_ON_VARIANCE_Q8]
@@ -227,12 +214,7 @@ def let_learn(s: ptr32, c: ptr32, a: int):
     off = level_q8(s, c, a)
     n = s[a + _WAITING_N]
     off = s[a + _WAITING_SUM] - ((off >> 8) * n + ((off & 0xFF) * n + 128 >> 8))
-    n = n * 0x7FFF  # eleven words: the sum of as many readings at the rail
-    if off > n:
-        off = n
-    if off < -n:
-        off = -n
-    s[a + _WAITING_SUM] = off
+    s[a + _WAITING_SUM] = clipped(off, n * 0x7FFF)
 
 
 def adopt(s: ptr32, c: ptr32, a: int, error: int) -> int:
@@ -289,7 +271,8 @@ def believe(s: ptr32, c: ptr32, a: int, error: int) -> int:
     if verdict == 0:
         return 0
     if verdict == 1:
-        follow(s, c, a, error)
+        held = clipped(error, 0x3FFF)
+        follow(s, c, a, held)
     else:
         s[a + _OFFSET_VARIANCE_Q8] = s[_MEAN_NOISE_Q8]
     s[a + _OFFSET_AGE_MS] = 0

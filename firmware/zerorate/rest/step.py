@@ -4,8 +4,8 @@
 # for all of it. What an axis without anything to learn does is small: three share a sample.
 #
 # Of all kernels: a bytecode frame of more than eleven words (parameters, locals, what an expression
-# holds) takes heap at every call. Where none is left a name stands for a second thing, with a
-# remark that begins "eleven words" and says for what (host_tests/runtimes/test_frames.py).
+# holds) takes heap at every call. Only where none is left a parameter stands for a second thing,
+# and a remark that begins "eleven words" says for what (host_tests/runtimes/kernel_rules.py).
 
 try:
     from micropython import const
@@ -328,12 +328,12 @@ def speak(s: ptr32, c: ptr32, m: ptr32, w: int, axis: int):
     Eight times the uncertainty that may teach; beyond that a guess was often worse than none.
     """
     if s[c[_AXES] + axis * c[_AXIS_WORDS] + _KIND] == 0:
-        w += axis
-        if m[w + 3] >> 5 < c[_MOST_SIGMA_Q6]:
-            s[_TARGET_Q8 + axis] = m[w]
+        at = w + axis
+        if m[at + 3] >> 5 < c[_MOST_SIGMA_Q6]:
+            s[_TARGET_Q8 + axis] = m[at]
             if s[_SOURCE + axis] == 0:
-                s[_OUT_Q8 + axis] = m[w]
-            s[_QUALITY_Q8 + axis] = m[w + 3]
+                s[_OUT_Q8 + axis] = m[at]
+            s[_QUALITY_Q8 + axis] = m[at + 3]
             s[_SOURCE + axis] = s[_OFFERED_SOURCE]
 
 
@@ -354,8 +354,8 @@ def offer(s: ptr32, c: ptr32, m: ptr32, w: int, axis: int):
         return
     s[a + _WAITING_N] = readings_worth(c, sigma)
     if s[a + _WAITING_N]:
-        w = (m[w + axis] - s[_EFFECT_Q8 + axis]) >> 4  # eleven words: the bias, LSB Q4
-        s[a + _WAITING_SUM] = w * s[a + _WAITING_N] >> 4
+        # the bias, LSB Q4, as often as it counts
+        s[a + _WAITING_SUM] = (m[w + axis] - s[_EFFECT_Q8 + axis] >> 4) * s[a + _WAITING_N] >> 4
         s[a + _OFFER] = (((sigma * sigma) >> 4) << 3) + s[_OFFERED_SOURCE]
 
 

@@ -116,14 +116,15 @@ def gather(s: ptr32, c: ptr32, x: ptr32) -> int:
 
 def spread_q8(s: ptr32, first: int, square: int, shift: int) -> int:
     """Return the variance of 2^shift frames, LSB^2 Q8, summed over three channels from `first`."""
-    i = 0
-    while i < 3:
-        mean_q4 = (s[first + i] << 4) >> shift
-        square -= (mean_q4 * s[first + i]) >> 4
+    left = square
+    i = first
+    while i < first + 3:
+        mean_q4 = (s[i] << 4) >> shift
+        left -= (mean_q4 * s[i]) >> 4
         i += 1
-    if square < 0:
-        square = 0
-    return square << (8 - shift)
+    if left < 0:
+        left = 0
+    return left << (8 - shift)
 
 
 def seems_still(s: ptr32, c: ptr32, shift: int) -> int:
@@ -229,9 +230,9 @@ def white(s: ptr32, c: ptr32, spread: int) -> int:
     whatever is slower and more for what alternates: 1.375 to 2.75 times is taken for noise.
     """
     step = s[_SQUARE_STEP] << (8 - c[_WINDOW_SHIFT])
-    spread = spread >> 4
     step = step >> 4
-    if step > spread + (spread >> 1) - (spread >> 3) and step < 3 * spread - (spread >> 2):
+    level = spread >> 4
+    if step > level + (level >> 1) - (level >> 3) and step < 3 * level - (level >> 2):
         return 1
     return 0
 
