@@ -84,7 +84,7 @@ _LEAN_NOISE = const(5)
 DEFAULTS = {
     "window_s": 0.25,  # a window
     "segment_s": 2.5,  # a segment: what is learned at once
-    "still_dps": 0.3,  # most spread of the rates in a window that is still
+    "still_dps": 0.3,  # most spread of three rates together in a still window, but for white noise
     "still_g": 0.03,  # most spread of the accelerations in it
     "turn_dps": 0.03,  # gravity must not show a faster turn within a segment
     "change_dps": 0.08,  # most that the mean rate changes within a segment

@@ -10,9 +10,12 @@ _HEAD = """# The words of the firmware's arrays
 Made from `firmware/zerorate/layout` by `make layout`; edit it there. A kernel writes a word as
 its letter and its name: `s[_REST]`, `s[a + _OFFSET_Q8]`, `c[_WINDOW]`. A number behind `_Q` is how
 many bits stand for the fraction: 256 in a word of `_Q8` is 1. A real is two words, mantissa and
-exponent of 2; a packed one is one word. Words that take the place of others have a line that says
-when they are there. The files that write a word into its array by name stand first, `|`, then those
-that use it otherwise.
+exponent of 2; a packed one is one word. Three words of one name are x, y, z.
+
+Some words are shared: below "While ..." stands who else has them, and when. The last column has the
+files below `firmware/zerorate` that write the word, `|`, and the others in which its name stands.
+Who only calls a function of these is not listed, nor are the tools: `loop/verify` of theirs reads
+a replay's state by these names.
 """
 
 
@@ -21,7 +24,8 @@ def page():
     parts, uses = [_HEAD], used_in(Path(layout.__file__).parents[1])
     for array in layout.ARRAYS:
         parts.append(f"## {array.title}\n\n`{array.letter}`: {array.base}{size_of(array)}.\n")
-        parts.append(table([word for word in array.words if not word.while_text], uses))
+        shared = set().union(*(places(word) for word in array.words if word.while_text))
+        parts.append(table([word for word in array.words if not word.while_text], uses, shared))
         for text in dict.fromkeys(w.while_text for w in array.words if w.while_text):
             parts.append(f"While {text}:\n")
             parts.append(table([word for word in array.words if word.while_text == text], uses))
@@ -37,19 +41,26 @@ def size_of(array):
     return f", {array.size} words" if array.size > 1 else ""
 
 
-def table(words, uses):
-    """Return the words as a table."""
+def places(word):
+    """Return the indices of a word's words, those of a known number of them."""
+    return set(range(word.index, word.index + word.count)) if isinstance(word.count, int) else set()
+
+
+def table(words, uses, shared=frozenset()):
+    """Return the words as a table; `shared`: the indices that other words have at times."""
     head = ["| word | name | unit | what | written, used in |", "|---|---|---|---|---|"]
-    return "\n".join([*head, *(row(word, *uses.get(word.name, ((), ()))) for word in words), ""])
+    rows = (row(word, shared, *uses.get(word.name, ((), ()))) for word in words)
+    return "\n".join([*head, *rows, ""])
 
 
-def row(word, writers, users):
+def row(word, shared, writers, users):
     """Return a word as a row: its index, or first and last; who writes it and who else uses it."""
     last = word.index + word.count - 1 if isinstance(word.count, int) else word.count
     index = f"{word.index}" if last == word.index else f"{word.index}..{last}"
     if isinstance(word.count, str):
         index = f"{word.index}.."
     what = word.meaning if isinstance(word.count, int) else f"{word.meaning} ({word.count} words)"
+    what += " (shared)" if places(word) & shared else ""
     where = f"{' '.join(sorted(writers))} \\| {' '.join(sorted(users))}"
     return f"| {index} | `{word.name}` | {word.unit} | {what} | {where} |"
 
@@ -61,15 +72,39 @@ def used_in(firmware):
         if path.parent.name in ("native", "layout"):
             continue
         tree = ast.parse(path.read_text(encoding="utf-8"))
-        written = [n for n in ast.walk(tree) if is_written(n)]
-        stored = [id(name) for node in written for name in ast.walk(node.slice)]
+        stored = {
+            id(name)
+            for function in ast.walk(tree)
+            if isinstance(function, ast.FunctionDef)
+            for name in written_names(function)
+        }
+        file = path.relative_to(firmware).with_suffix("").as_posix()
         for node in ast.walk(tree):
             if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load):
                 writers, users = found.setdefault(node.id[1:], (set(), set()))
-                (writers if id(node) in stored else users).add(path.stem)
+                (writers if id(node) in stored else users).add(file)
     return found
 
 
-def is_written(node):
-    """Whether a node is an element of an array that is given a value."""
-    return isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Store)
+def written_names(function):
+    """Yield the names in the indices of what a function writes, by way of its locals too."""
+    nodes = list(ast.walk(function))
+    through = {}
+    for node in nodes:
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
+            through.setdefault(node.targets[0].id, []).append(node.value)
+    for node in nodes:
+        if isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Store):
+            for name in index_names(node.slice):
+                yield name
+                for value in through.get(name.id, ()):
+                    yield from index_names(value)
+
+
+def index_names(node):
+    """Yield the names of an index, but for those by which it looks up a part of itself."""
+    if isinstance(node, ast.Name):
+        yield node
+    elif not isinstance(node, (ast.Subscript, ast.Call)):
+        for child in ast.iter_child_nodes(node):
+            yield from index_names(child)

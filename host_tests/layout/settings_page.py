@@ -14,14 +14,19 @@ Made from `firmware/zerorate/settings.py` by `make layout`; edit that file. Give
 name: `Corrector(sensor, still_dps=0.5)`. The unit is behind the last `_`; a time of readings, as
 `promote_s`, is as many as the output data rate gives in it. The words that a setting makes are in
 [layout.md](layout.md). Outside of its range `Corrector` raises ValueError; within them, and within
-those of `Sensor`, nothing leaves 31 bits (`make sweep`).
+those of `Sensor`, nothing leaves 31 bits (`make sweep`). A window has a power of two samples, 4 to
+256, as near to `window_s` as it gets, and a segment at most eight windows: of 100 Hz a segment of
+2.5 s has 2.56 s.
+
+To change one for good, edit `DEFAULTS` there and run `make layout`.
 
 `zerorate close` honours none of them: it computes with the defaults below, whatever the device
 used. `zerorate_tools.replay` takes any of them by name.
 """
 _FIXED = """## What is not set but fixed
 
-In `firmware/zerorate/rest/stillness.py`, with the rules that decide that a window is still:
+In `firmware/zerorate/rest/stillness.py`, with the rules that decide that a window is still, and how
+its temperature is followed:
 """
 
 
@@ -42,6 +47,12 @@ def settings_page(repository):
         rows.append(f"| `{name}` | {value} | {literal} | {limits} | {meanings[name]} | {made} |")
     fixed = ["| constant | value | what |", "|---|---|---|"]
     stillness = (firmware / "rest" / "stillness.py").read_text(encoding="utf-8")
+    white = re.search(r"([\d.]+ to [\d.]+) times is taken for noise", stillness)
+    fixed.append(
+        f"| in `white` | {white[1]} | steps of samples, squared, for their variance: noise |"
+    )
+    lean = re.search(r"# (.+)\n_LEAN_NOISE = const\((\d+)\)", source)
+    fixed.append(f"| `LEAN_NOISE` in settings.py | {lean[2]} | {lean[1]} |")
     for name, value, meaning in _CONSTANT.findall(stillness):
         fixed.append(f"| `{name}` | {value} | {meaning.rstrip(':')} |")
     return "\n".join([_HEAD, *rows, "", _FIXED, *fixed, ""])

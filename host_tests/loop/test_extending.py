@@ -16,7 +16,7 @@ from zerorate_tools.recordings import Scales
 from zerorate_tools.report import kinds
 from zerorate_tools.simulate import simulate as simulated_device
 
-ROOT = Effect("channel-root", ANY_CHANNEL, "its square root", "It follows the root.", curve=np.sqrt)
+ROOT = Effect("square-root", ANY_CHANNEL, "its square root", "It follows the root.", curve=np.sqrt)
 SCALES = Scales("MPU-6050", 25.0, 131.0, 16384.0, 340.0, 36.53)
 AXES = np.array([0.05, -0.025, 0.035])
 
@@ -43,25 +43,25 @@ def best(sessions):
 
 
 def test_it_explains_the_bias_better_than_any_other_form_of_the_channel(sessions):
-    assert best(sessions).kind == "channel-root"
+    assert best(sessions).kind == "square-root"
 
 
 def test_it_is_deployed_as_nine_points(sessions):
-    slot = Slot(best(sessions).terms[0], tuple(AXES), "channel-root")
+    slot = Slot(best(sessions).terms[0], tuple(AXES), "square-root")
     model = decoded(encoded(build_model([slot], SCALES, tick_s=1.0)))
     assert np.allclose(model.slots[0].term.table, slot.term.table, atol=1e-6)
     assert max(map(abs, slot.term.table)) == 1
 
 
 def test_it_is_told_in_words(sessions):
-    assert kinds.title("channel-root(load)") == "load, its square root"
-    assert kinds.meaning("channel-root(load)").startswith("It follows the root.")
+    assert kinds.title("square-root(load)") == "load, its square root"
+    assert kinds.meaning("square-root(load)").startswith("It follows the root.")
     assert "curve" in kinds.per_unit(best(sessions).terms[0].to_dict())
 
 
 def test_it_is_no_candidate_where_it_has_no_value(sessions):
     below = [replace(s, sources={**s.sources, "load": s.sources["load"] - 2}) for s in sessions]
-    assert "channel-root" not in {c.kind for c in candidates(below) if c.sources == ["load"]}
+    assert "square-root" not in {c.kind for c in candidates(below) if c.sources == ["load"]}
 
 
 def test_a_power_that_no_slot_has_is_refused_by_name():
@@ -71,7 +71,7 @@ def test_a_power_that_no_slot_has_is_refused_by_name():
 
 
 def test_it_can_be_simulated():
-    wave = {"kind": "channel", "source": "load", "row": "channel-root", "dps": [0.1, 0.0, 0.0]}
+    wave = {"kind": "channel", "source": "load", "row": "square-root", "dps": [0.1, 0.0, 0.0]}
     described = {
         **{"sensor": {"odr_hz": 10}, "bias": {}, "noise": {}, "session": [{"s": 20.0}]},
         **{

@@ -75,9 +75,9 @@ STATE = Array(
         ),
         Overlay(
             "FIT_SUM_T",
-            "a segment is absorbed",
+            "a segment is absorbed, or a bias published",
             ("MEAN_NOISE_Q8", 1, "LSB^2", "variance of the segment's mean"),
-            ("GROWN_Q8", 1, "LSB^2", "variance of the offset now, with what it has walked"),
+            ("GROWN_Q8", 1, "LSB^2", "variance of the offset now; published: of the curve beyond"),
         ),
         Overlay(
             "FIT_SUM_T",
@@ -144,7 +144,7 @@ AXIS = Array(
         ("SUSPECT", 1, "segments", "implausible ones in a row; -1: the first of all"),
         ("OFFSET_AGE_MS", 1, "ms", "since the offset was last learned"),
         ("BEYOND", 1, "", "1 where the temperature lies beyond the line's points"),
-        ("KIND", 1, "code", "what of the curve speaks for this temperature"),
+        ("KIND", 1, "code", "what of the curve speaks for this temperature: NONE to HERE"),
         ("LINE_TEMP", 1, "LSB", "temperature for which the line was last fitted"),
         ("ESTIMATORS", "ESTIMATOR_COUNT * ESTIMATOR_WORDS", "", "any temperature, short, long"),
     ),

@@ -61,6 +61,11 @@ def curve_of(kind: str) -> Callable[[NDArray], NDArray]:
     return curves[kind]
 
 
+def of_any_channel(kind: str) -> bool:
+    """Whether an effect of that kind is named with its channel: the row is for every channel."""
+    return any(row.kind == kind and row.source == ANY_CHANNEL for row in EFFECTS)
+
+
 EFFECTS: tuple[Effect, ...] = (
     Effect(
         "temperature-quadratic",

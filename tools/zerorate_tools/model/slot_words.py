@@ -1,4 +1,4 @@
-"""A slot as the 30 integers of model.bin, and back (firmware/zerorate/model.py names the words)."""
+"""A slot as the 30 integers of model.bin, and back (firmware/zerorate/layout names the words)."""
 
 import math
 from collections.abc import Callable, Iterator, Sequence

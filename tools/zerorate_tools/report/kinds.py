@@ -64,7 +64,7 @@ def title(effect: str, sources: list[str] | None = None) -> str:
     """What a person calls the effect."""
     kind = kind_of(effect)
     words = words_of(kind)[0]
-    if not kind.startswith("channel"):
+    if not effects.of_any_channel(kind):
         return words
     named = sources or [part for part in effect.partition("(")[2].rstrip(")").split(", ") if part]
     channels = " and ".join(quantity(name)[0] for name in named) or "any recorded channel"
@@ -74,7 +74,7 @@ def title(effect: str, sources: list[str] | None = None) -> str:
 def meaning(effect: str) -> str:
     """One sentence on what the effect says of the device."""
     said = words_of(kind_of(effect))[1]
-    if kind_of(effect).startswith("channel"):
+    if effects.of_any_channel(kind_of(effect)):
         said += " It is in no catalogue: the mechanism is unknown."
     return said
 

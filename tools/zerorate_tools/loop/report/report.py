@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ...model.effects import of_any_channel
 from ..fit.intervals import block_bootstrap, rms
 from ..fit.single import WEAKER
 from ..search.confounding import label
@@ -186,7 +187,7 @@ def _said(found):
     kind, sources = found.candidate.kind, ", ".join(found.candidate.sources)
     if kind in ("time-drift", "power-on-transient"):
         return CAUSE_UNKNOWN
-    if kind.startswith("channel"):
+    if of_any_channel(kind):
         return f"not in the catalogue; depends on {sources}; mechanism unknown"
     return f"{kind} of {sources}"
 

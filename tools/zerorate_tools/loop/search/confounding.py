@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...model.effects import of_any_channel
 from .catalogue import Candidate
 from .refine import refined
 
@@ -55,7 +56,7 @@ def complexity(candidate) -> tuple[int, int]:
 
 def label(candidate) -> str:
     """The kind, with the channels for forms of any channel."""
-    if candidate.kind.startswith("channel"):
+    if of_any_channel(candidate.kind):
         return f"{candidate.kind}({', '.join(candidate.sources)})"
     return candidate.kind
 
