@@ -33,10 +33,20 @@ class Feed:
         return self.checked.corrector.bias_lsb(0)
 
 
-@pytest.fixture
-def feed():
+@pytest.fixture(scope="module")
+def rested():
+    """A minute of rest, once for all."""
     feed = Feed()
     feed.rest(6000, 100)
+    return feed
+
+
+@pytest.fixture
+def feed(rested):
+    feed = Feed()
+    feed.checked.corrector.state[:] = rested.checked.corrector.state
+    feed.sample[:] = rested.sample
+    feed.random.setstate(rested.random.getstate())
     return feed
 
 
@@ -105,6 +115,65 @@ def test_after_a_restart_an_offset_is_no_surer_than_one_of_a_turn_on(feed):
     assert list(state[variance_of]) == [usual + 1, usual, usual]
 
 
+def test_a_restart_brings_back_what_is_known_and_no_other_word(feed, monkeypatch):
+    corrector = feed.checked.corrector
+    state, settings = corrector.state, corrector.settings
+    state[:] = array("i", range(1000, 1000 + len(state)))
+    feed.checked.keep()
+    said = []
+
+    def power_on(same):
+        said.append(same)
+        state[:] = array("i", [-5] * len(state))
+
+    monkeypatch.setattr(corrector, "power_on", power_on)
+    assert feed.checked.update(feed.sample, 10000, checked.RESTARTED) is False
+    axes = settings[SETTINGS.AXES]
+    known = {*range(STATE.RESTS, STATE.SOURCE + 3), axes - 3, axes - 2, axes - 1}
+    surer = {
+        axes + axis * settings[SETTINGS.AXIS_WORDS] + AXIS.OFFSET_VARIANCE_Q8 for axis in range(3)
+    }
+    for word, value in enumerate(state):
+        if word in surer:
+            assert value == settings[SETTINGS.TURN_ON_VARIANCE_Q8]
+        else:
+            assert value == (1000 + word if word in known else -5), word
+    assert (said, feed.checked.taken_back, feed.checked.refused) == ([True], 1, 1)
+
+
+def test_all_that_is_learned_is_kept_and_taken_back_in_motion_too():
+    watched = CheckedCorrector(Corrector(Sensor(odr_hz=100.0), motion=True))
+    state, motion = watched.corrector.state, watched.corrector.motion
+    for words in (state, motion):
+        words[:] = array("i", range(len(words)))
+    watched.keep()
+    for words in (state, motion):
+        words[:] = array("i", [-7] * len(words))
+    watched.take_back()
+    first = STATE.ELAPSED_US
+    assert list(state) == [-7] * first + list(range(first, len(state)))
+    assert list(motion) == list(range(len(motion)))
+    assert watched.taken_back == 1
+
+
+@pytest.mark.parametrize(
+    ("status", "verdict", "reading"),
+    [
+        (checked.FRESH, 0, True),
+        (checked.VERIFIED, 0, True),
+        (checked.FRESH, 1, False),
+        (checked.VERIFIED, 7, False),
+        (checked.SUSPECT, 0, False),
+        (checked.RESTARTED, 0, False),
+    ],
+)
+def test_a_reading_is_told_from_what_is_none(feed, monkeypatch, status, verdict, reading):
+    monkeypatch.setattr(feed.checked.corrector, "update", lambda sample, dt_us: verdict)
+    assert feed.checked.update(feed.sample, 10000, status) is reading
+    assert feed.checked.refused == (not reading)
+    assert feed.checked.taken_back == (status == checked.RESTARTED)
+
+
 @pytest.mark.parametrize("status", [checked.RESTARTED, checked.SUSPECT])
 def test_a_sample_that_is_none_is_not_touched_and_counted(feed, status):
     before = list(feed.sample)
@@ -118,7 +187,9 @@ def test_the_time_of_refused_samples_goes_to_the_next(feed):
     feed.checked.corrector.update = lambda sample, dt_us: passed_us.append(dt_us)
     for status in (checked.FRESH, checked.SUSPECT, checked.SUSPECT, checked.FRESH):
         feed.checked.update(feed.sample, 10000, status)
-    assert passed_us == [10000, 30000]
+    feed.checked.update(feed.sample, 0x20000000)
+    feed.checked.update(feed.sample, 0x20000001)
+    assert passed_us == [10000, 30000, 0x20000000, 0x20000000]
 
 
 def test_checkpoints_take_nothing_from_the_heap(micropython, repository):

@@ -2,6 +2,7 @@
 
 import random
 from array import array
+from binascii import crc32
 
 import pytest
 from zerorate import Corrector, Sensor
@@ -13,15 +14,16 @@ BINDING = bytes([0x68, 0, 0, 3])
 MODEL = b"ZRM\x01\x40\x00" + bytes(range(58))  # the header's size field says 64
 
 
-def learned(bias_lsb=120, **options):
-    """A corrector that has rested for a minute."""
-    corrector = Corrector(Sensor(odr_hz=100.0), **options)
+@pytest.fixture(scope="module")
+def learned_words():
+    """The state of a corrector that has rested for a minute."""
+    corrector = Corrector(Sensor(odr_hz=100.0))
     noise = random.Random(4).gauss
     for _ in range(6000):
         accel = [round(noise(mean, 40)) for mean in (0, 0, 16384)]
-        gyro = [round(noise(bias_lsb, 6.5)) for _ in range(3)]
+        gyro = [round(noise(120, 6.5)) for _ in range(3)]
         corrector.update(array("i", [*accel, round(noise(-3000, 8)), *gyro]), 10000)
-    return corrector
+    return corrector.state
 
 
 @pytest.fixture
@@ -34,8 +36,9 @@ def blank(memory, binding=BINDING, **options):
 
 
 @pytest.fixture
-def saved(memory):
-    corrector = learned()
+def saved(memory, learned_words):
+    corrector = Corrector(Sensor(odr_hz=100.0))
+    corrector.state[:] = learned_words
     assert LearnedStore(memory, BINDING, corrector).save()
     return corrector
 
@@ -54,6 +57,48 @@ def test_what_was_learned_is_what_a_new_power_on_begins_with(memory, saved):
     assert stores.corrector.state == saved.state
 
 
+@pytest.mark.parametrize("same", [False, True])
+def test_a_program_that_began_anew_on_a_chip_that_kept_its_power_keeps_its_offsets(
+    memory, saved, same
+):
+    stores = blank(memory)
+    assert stores.load(same) == store.LOADED
+    saved.power_on(same)
+    assert stores.corrector.state == saved.state
+
+
+def test_a_storage_that_fails_is_said(memory, saved):
+    memory.broken = True
+    stores = LearnedStore(memory, BINDING, saved)
+    assert (stores.save(), stores.save_model(MODEL)) == (False, False)
+    assert (stores.load(), stores.load_model()) == (store.UNREADABLE, b"")
+
+
+def test_state_is_bound_to_every_word_of_the_settings(memory, saved):
+    settings = saved.settings
+    assert LearnedStore(memory, BINDING, saved).state.binding == BINDING + crc32(settings).to_bytes(
+        4, "little"
+    )
+    for word in (0, len(settings) - 1):
+        settings[word] ^= 1
+        assert LearnedStore(memory, BINDING, saved).load() == store.OTHER_BINDING
+        settings[word] ^= 1
+    assert LearnedStore(memory, BINDING, saved).load() == store.LOADED
+
+
+@pytest.mark.parametrize(("base", "pitch"), [(0, 0), (100, 0), (0, 4096), (4096, 4096)])
+def test_state_and_model_have_two_slots_each_one_after_the_other(saved, base, pitch):
+    memory = FakeMemory(24576)
+    stores = LearnedStore(memory, BINDING, saved, base, pitch)
+    for _ in range(2):
+        assert stores.save() and stores.save_model(MODEL)
+    of_state, of_model = pitch or 4 * len(saved.state) + 24, pitch or MODEL_BYTES + 24
+    begins = [base, base + of_state, base + 2 * of_state, base + 2 * of_state + of_model]
+    assert [at for at in range(len(memory.bytes)) if memory.bytes[at : at + 3] == b"ZRS"] == begins
+    assert stores.end == begins[-1] + of_model
+    assert [memory.bytes[at + 4] for at in begins] == [1] * 4  # versions
+
+
 def test_state_of_other_settings_is_refused(memory, saved):
     assert blank(memory, still_dps=0.2).load() == store.OTHER_BINDING
 
@@ -67,9 +112,11 @@ def test_state_of_another_chip_is_refused(memory, saved):
     assert blank(memory, bytes([0x70, 0, 0, 3])).load() == store.OTHER_BINDING
 
 
-def test_a_model_comes_back_to_the_byte(memory, saved):
-    assert blank(memory).save_model(MODEL)
-    assert blank(memory).load_model() == MODEL
+@pytest.mark.parametrize("size", [64, 255, 256, 0x150, MODEL_BYTES - 1, MODEL_BYTES])
+def test_a_model_comes_back_to_the_byte(memory, saved, size):
+    model = MODEL[:4] + size.to_bytes(2, "little") + bytes(i % 253 for i in range(size - 6))
+    assert blank(memory).save_model(model)
+    assert blank(memory).load_model() == model
 
 
 def test_no_model_is_no_bytes(memory, saved):
