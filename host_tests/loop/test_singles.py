@@ -1,8 +1,18 @@
 """One simulated recording or two, judged by the truth."""
 
+import json
+from dataclasses import asdict, replace
+
 import numpy as np
 import pytest
-from zerorate_tools.bench.loop.singles import KINDS, Single, _about, describe, single_figures
+from zerorate_tools.bench.loop.singles import (
+    KINDS,
+    Single,
+    _about,
+    describe,
+    look_at_singles,
+    single_figures,
+)
 
 
 def single(kind="nothing", after=1.0, kept=("thermal-lag",), **more):
@@ -28,9 +38,9 @@ def test_nothing_deployed_is_nothing_worse():
 
 
 def test_steps_are_listed_or_invented():
-    every = [single(kind, steps=1, listed=kind != "lag", invented=0) for kind in KINDS]
-    assert figure("steps of 3 floors listed", every).value == pytest.approx(500 / 6)
-    assert not figure("steps of 3 floors listed", every).met
+    every = [single("step", steps=1, listed=i < 5, invented=0) for i in range(6)]
+    assert figure("steps of 3 floors RMS listed", every).value == pytest.approx(500 / 6)
+    assert not figure("steps of 3 floors RMS listed", every).met
 
 
 def test_an_error_is_about_the_mean_at_rest_of_its_own_stretch():
@@ -42,6 +52,13 @@ def test_an_error_is_about_the_mean_at_rest_of_its_own_stretch():
 
 
 def test_every_kind_is_described_with_its_effect():
-    kinds = {describe(seed)[1]: describe(seed)[0] for seed in range(6)}
+    kinds = {describe(seed)[1]: describe(seed)[0] for seed in range(7)}
     assert list(kinds) == list(KINDS)
-    assert [bool(d["effect"]) for d in kinds.values()] == [False, True, False, True, True, True]
+    without = [kind for kind, d in kinds.items() if not d["effect"]]
+    assert without == ["nothing", "shock"]
+
+
+def test_a_run_broken_off_goes_on_from_its_file(tmp_path):
+    kept, known = tmp_path / "outcomes.jsonl", [replace(single(), seed=i) for i in range(2)]
+    kept.write_text("".join(json.dumps(asdict(s)) + "\n" for s in known), encoding="utf-8")
+    assert [s.seed for s in look_at_singles(2, resume=kept)] == [0, 1]

@@ -28,6 +28,12 @@ def test_three_large_steps_hide_none_of_them(seed):
         assert (np.abs(off) < 5 * step.deviation_dps).all()
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_a_step_of_twice_three_floors_stands_out_of_noise_that_walks(seed):
+    session, _ = stepped(seed, 6.0, 90)
+    assert [s.block for s in without_steps([session])[0].steps] == [90]
+
+
 def test_nothing_and_what_bends_has_no_step():
     listed = 0
     for seed in range(10):

@@ -53,6 +53,13 @@ def test_a_turn_that_sets_in_slowly_is_motion_to_its_ends(still):
     assert resting[:395].all() and resting[465:].all()
 
 
+def test_a_bias_that_settles_up_to_a_turn_is_at_rest_before_it(still):
+    at_s = np.arange(ODR * 1800) / ODR
+    turning = 30.0 * ((at_s >= 150) & (at_s < 165))
+    resting = still(0.6 * np.exp(-at_s / 110) + turning, np.full(len(at_s), 25.0))
+    assert resting[:110].all() and resting[210:].all() and not resting[150:165].any()
+
+
 def test_a_device_mostly_in_motion_keeps_its_rests(still):
     at_s = np.arange(ODR * 1200) / ODR
     moving = at_s % 100 >= 19

@@ -233,13 +233,14 @@ def _singles(arguments: argparse.Namespace) -> Found:
     from ..progress import progress
 
     with progress("closing", arguments.devices) as advance:
-        found = run_singles(arguments.devices, arguments.processes, advance)
+        found = run_singles(arguments.devices, arguments.processes, arguments.resume, advance)
     return in_words(found), found
 
 
 _QUICK = {"--quick": {"action": "store_true", "help": "short recordings and one seed"}}
 _BROAD = {"--data": {"type": Path, "metavar": "DIR", "help": "folder of BROAD trials (.mat)"}}
 _RECORDINGS = {"--data": {"type": Path, "metavar": "DIR", "help": "folder of real recordings"}}
+_RESUME = {"--resume": {"type": Path, "metavar": "FILE", "help": "outcomes: go on from them"}}
 _PLOTS = {"--plots": {"type": Path, "metavar": "DIR", "help": "PNGs of the real recordings"}}
 
 
@@ -290,7 +291,7 @@ BENCHES = {
             "--seeds": _number(20, "devices an effect"),
             "--processes": _number(2, "at once"),
             **_RECORDINGS,
-            "--resume": {"type": Path, "metavar": "FILE", "help": "outcomes: go on from them"},
+            **_RESUME,
             **_PLOTS,
         },
     ),
@@ -312,6 +313,10 @@ BENCHES = {
     "singles": Bench(
         "one or two simulated recordings: whether what is deployed makes anything worse",
         _singles,
-        {"--devices": _number(400, "devices"), "--processes": _number(2, "at once")},
+        {
+            "--devices": _number(400, "devices"),
+            "--processes": _number(2, "at once"),
+            **_RESUME,
+        },
     ),
 }

@@ -5,6 +5,7 @@ between two steps about its own mean at rest: what was left out, at rest; the sa
 hand; and a further power-on that nobody has seen.
 """
 
+import json
 import tempfile
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
@@ -19,8 +20,10 @@ from ..tables import machine_line
 from .figures import Figure, share
 from .trials import figure_table
 
-KINDS = ("nothing", "step", "shock", "hysteresis", "lag", "kink")
-_FLOOR_DPS, _STEP_FLOORS = 0.002, 3.0
+#: A step has an RMS about the mean of 3 floors, half its jump, as every effect's size is its RMS;
+#: a small one a jump of 3 floors.
+KINDS = ("nothing", "step", "shock", "hysteresis", "lag", "kink", "small step")
+_FLOOR_DPS, _JUMP_FLOORS = 0.002, {"step": 6.0, "small step": 3.0}
 _WORSE = 1.02
 #: Seconds on either side of a step in which one listed is that step.
 _NEAR_S = 90.0
@@ -75,7 +78,7 @@ def describe(seed: int) -> tuple[dict, str, int]:
     kind, recordings = KINDS[seed % len(KINDS)], 1 if rng.random() < 0.6 else 2
     path = _PATHS[str(rng.choice(list(_PATHS)))]
     motion: list[dict] = [_REST, _HAND] if rng.random() < 0.5 else []
-    if kind == "shock" or (kind == "step" and rng.random() < 0.5):
+    if kind == "shock" or (kind in _JUMP_FLOORS and rng.random() < 0.5):
         motion = [{"kind": "rest", "s": [500, 900]}, _SHOCK, *motion]
     size = float(np.exp(rng.uniform(np.log(2.0), np.log(20.0)))) * _FLOOR_DPS
     described = {
@@ -105,8 +108,8 @@ def describe(seed: int) -> tuple[dict, str, int]:
 
 
 def _effects(rng, kind: str, size_dps: float, recordings: int) -> list[dict]:
-    if kind == "step":
-        dps = [float(_STEP_FLOORS * _FLOOR_DPS * s) for s in rng.choice([-1, 1], 3)]
+    if kind in _JUMP_FLOORS:
+        dps = [float(_JUMP_FLOORS[kind] * _FLOOR_DPS * s) for s in rng.choice([-1, 1], 3)]
         own = int(rng.integers(1, recordings + 1))
         return [{"kind": "step", "at_s": rng.uniform(700, 2600), "dps": dps, "session": own}]
     form: dict[str, dict] = {
@@ -224,12 +227,22 @@ def _first(frames, recording) -> NDArray[np.bool_]:
 
 
 def look_at_singles(
-    number: int, processes: int = 2, advance: Callable[[float], None] = lambda n: None
+    number: int,
+    processes: int = 2,
+    resume: Path | None = None,
+    advance: Callable[[float], None] = lambda n: None,
 ) -> list[Single]:
-    """So many devices, of every kind alike."""
+    """So many devices, of every kind alike. resume: a file of outcomes, one a line, that a run
+    broken off goes on from."""
+    lines = resume.read_text("utf-8").splitlines() if resume and resume.exists() else []
+    known = {s.seed: s for s in (Single(**json.loads(line)) for line in lines)}
+    out = [known[seed] for seed in range(number) if seed in known]
+    advance(len(out))
     with ProcessPoolExecutor(processes, initializer=threadpool_limits, initargs=(1,)) as pool:
-        out = []
-        for single in pool.map(look_at_single, range(number)):
+        for single in pool.map(look_at_single, [s for s in range(number) if s not in known]):
+            if resume:
+                with resume.open("a", encoding="utf-8") as file:
+                    file.write(json.dumps(asdict(single)) + "\n")
             advance(1)
             out.append(single)
     return out
@@ -241,13 +254,14 @@ def single_figures(singles: list[Single]) -> list[Figure]:
         share(f"deployed and worse by more than 2 %, {where}", singles, _is_worse(where), 1.0, True)
         for where in ("at rest", "in motion", "a further power-on")
     ]
-    stepped = [s for s in singles if s.steps]
-    rows.append(share("steps of 3 floors listed", stepped, lambda s: bool(s.listed), 95.0))
+    for kind, what, limit in (("step", "RMS", 95.0), ("small step", "jump", None)):
+        own = [s for s in singles if s.kind == kind]
+        rows.append(share(f"steps of 3 floors {what} listed", own, lambda s: bool(s.listed), limit))
     rows.append(share("a step invented", singles, lambda s: s.invented > 0, 1.0, True))
     for kind in KINDS:
         own = [s for s in singles if s.kind == kind]
         rows.append(share(f"{kind}: deployed anything", own, lambda s: s.found, None))
-        for where in ("at rest", "a further power-on"):
+        for where in ("at rest", "a further power-on") if own else ():
             ratio = [np.divide(*s.errors[where][::-1]) for s in own]
             name = f"{kind}: error after over before, {where}, mean"
             rows.append(Figure(name, float(np.mean(ratio)), None, True, len(own), unit="x"))
@@ -259,10 +273,13 @@ def _is_worse(where: str) -> Callable[[Single], bool]:
 
 
 def run_singles(
-    number: int, processes: int = 2, advance: Callable[[float], None] = lambda n: None
+    number: int,
+    processes: int = 2,
+    resume: Path | None = None,
+    advance: Callable[[float], None] = lambda n: None,
 ) -> dict:
     """So many devices: their figures, and what became of each, as plain values."""
-    singles = look_at_singles(number, processes, advance)
+    singles = look_at_singles(number, processes, resume, advance)
     figures = [f.to_dict() for f in single_figures(singles)]
     return {"devices": number, "figures": figures, "each": [asdict(s) for s in singles]}
 

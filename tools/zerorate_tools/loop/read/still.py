@@ -3,7 +3,6 @@
 import numpy as np
 from scipy.ndimage import (
     binary_dilation,
-    binary_propagation,
     median_filter,
     uniform_filter1d,
 )
@@ -17,8 +16,8 @@ _OFF_SIGMAS, _SPREAD_CHANCE = 5.0, 1e-5
 _MOST_NOISE_DPS = 5.0
 #: Of a normal deviate's size: its 0.2 quantile.
 _QUIET_SIZE = 0.2533
-#: Of the still ticks' own noise: beyond it, a tick beside a motion still belongs to that motion.
-_EDGE_SIGMAS = 4.0
+#: Of the still ticks' own noise, beyond which a tick beside a motion belongs to it, for so long.
+_EDGE_SIGMAS, _EDGE_S = 4.0, 30.0
 _QUIET_SHARE = 0.2
 _WINDOW_S = 900.0
 _SLOPE_LAG_S = 120.0
@@ -44,7 +43,7 @@ def still_ticks(ticks, edges: bool = True) -> np.ndarray:
     still = quiet & _is_near(rate - middle, there, quiet)
     if ticks.accel is not None:
         still &= _gravity_holds(ticks, there)
-    return still & ~_edges(off, still, there) if edges else still
+    return still & ~_edges(off, still, there, ticks.tick_s) if edges else still
 
 
 def runs(mask: np.ndarray) -> np.ndarray:
@@ -91,13 +90,15 @@ def _weighted_median(values, weights):
     return values[order[np.searchsorted(total, 0.5 * total[-1])]]
 
 
-def _edges(off, still, there):
-    """(m,) bool: ticks that lead without a break into motion and are off by more than noise."""
+def _edges(off, still, there, tick_s):
+    """(m,) bool: ticks that lead without a break into motion and are off by more than noise; no
+    motion takes longer to die down than a lag of the bias does."""
     if still.sum() < 3:
         return np.zeros(len(still), bool)
     usual = _EDGE_SIGMAS * _MAD * np.median(off[still], axis=0)
     moving = there & ~still
-    return binary_propagation(moving, mask=moving | (there & (off > usual).any(axis=1)))
+    beside = moving | (there & (off > usual).any(axis=1))
+    return binary_dilation(moving, mask=beside, iterations=max(1, round(_EDGE_S / tick_s)))
 
 
 def _is_quiet(ticks, there):

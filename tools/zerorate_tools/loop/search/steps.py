@@ -10,9 +10,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.stats import chi2
 
+from ...model.term import Term
 from ..fit.cross_products import GappyWhitener
 from ..fit.regression import predicted
 from ..fit.surrogates import NullRatios
+from ..read.sessions import common_sources
+from .catalogue import candidates
 from .decide import LEVEL
 
 MOST_PER_SESSION = 4
@@ -24,6 +27,8 @@ _ABRUPT, _BESIDE = 0.5, 2
 _AROUND = 10
 #: Blocks without rest across which no change is abrupt, if the temperature moved by more in them.
 _UNSEEN, _UNSEEN_DEGC = 3, 1.0
+#: Forms over temperature beside which steps must stand, and the likelihood ratio of one.
+_MOST_FORMS, _A_FORM = 4, 45.0
 
 
 @dataclass
@@ -49,11 +54,36 @@ def strongest(regression, terms) -> Step | None:
 
 
 def find_all(regression, terms) -> list[Step]:
-    """Every step beside the terms, strongest first; they stay in the regression as nuisances."""
-    regression.set_events([])
-    steps = sorted(_all(regression, terms), key=lambda s: -s.ratio)
-    regression.set_events([column(regression, s) for s in steps])
-    return _sized(regression, terms, steps)
+    """Every step beside the terms, strongest first; they stay in the regression as nuisances.
+
+    A kink or a loop that the terms lack is made of steps, too: what follows temperature is taken
+    beside the terms first, wherever it explains more than the steps do, or much beside them.
+    """
+    beside, forms = list(terms), _of_temperature(regression.sessions)
+    while True:
+        regression.set_events([])
+        steps = sorted(_all(regression, beside), key=lambda s: -s.ratio)
+        if not steps or len(beside) - len(terms) >= _MOST_FORMS:
+            break
+        form, gain = _best_form(regression, beside, forms)
+        _set(regression, steps, None)
+        if gain < steps[0].ratio:
+            form, gain = _best_form(regression, beside, forms)
+        if gain < _A_FORM:
+            break
+        beside.append(form)
+    _set(regression, steps, None)
+    return _sized(regression, beside, steps)
+
+
+def _of_temperature(sessions) -> list[Term]:
+    pool = candidates(sessions) if "temp" in common_sources(sessions) else []
+    return [c.terms[0] for c in pool if c.sources == ["temp"] and len(c.terms) == 1]
+
+
+def _best_form(regression, terms, forms) -> tuple[Term | None, float]:
+    gains = regression.gains(terms, [(f,) for f in forms]).sum(axis=1)
+    return (forms[int(gains.argmax())], float(gains.max())) if forms else (None, 0.0)
 
 
 def column(regression, step: Step) -> list[np.ndarray]:
@@ -70,29 +100,43 @@ def _all(regression, terms) -> list[Step]:
     steps: list[Step] = []
     while len(steps) < most:
         step, _ = _best(regression, terms)
-        if step is None or chi2.sf(step.ratio, 3) * _tried(regression) > LEVEL["step"]:
+        if step is None:
+            break
+        step.ratio = _gain(regression, terms, steps, step, kept)
+        if chi2.sf(step.ratio, 3) * _tried(regression) > LEVEL["step"]:
             break
         steps.append(step)
-        regression.set_events([column(regression, s) for s in steps], kept)
+        _set(regression, steps, kept)
     while steps and not _stand(regression, terms, steps, kept):
         steps.remove(min(steps, key=lambda s: s.ratio))
-        regression.set_events([column(regression, s) for s in steps], kept)
+        _set(regression, steps, kept)
     steps = _sized(regression, terms, steps, kept)
     abrupt = [s for s in steps if _is_abrupt(regression, terms, s)]
-    regression.set_events([], kept)
+    _set(regression, [], kept)
     return abrupt
+
+
+def _set(regression, steps, kept):
+    regression.set_events([column(regression, s) for s in steps], kept)
+
+
+def _gain(regression, terms, others, step, kept) -> float:
+    """The likelihood ratio of a step beside others, the noise's colour refitted with it: without
+    it, noise that walks takes most of it for its own."""
+    _set(regression, [*others, step], kept)
+    total = regression.fit(terms).total
+    _set(regression, others, kept)
+    return float(2.0 * (total - regression.fit(terms).total))
 
 
 def _stand(regression, terms, steps, kept) -> bool:
     """Whether each is beyond what the places away from all of them show; ratios are renewed."""
     away = _away(regression, steps, _best(regression, terms)[1])
     for step in steps:
-        others = [column(regression, s) for s in steps if s is not step]
-        regression.set_events(others, kept)
-        s, at, ratios = next(e for e in _best(regression, terms)[1] if e[0] == step.session)
-        step.ratio = float(ratios[np.abs(at - step.block).argmin()])
+        others = [s for s in steps if s is not step]
+        step.ratio = _gain(regression, terms, others, step, kept)
         step.p_value = min(1.0, _survival(step.ratio, away) * _tried(regression))
-    regression.set_events([column(regression, s) for s in steps], kept)
+    _set(regression, steps, kept)
     return all(s.p_value < LEVEL["step"] for s in steps)
 
 
