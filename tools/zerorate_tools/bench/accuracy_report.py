@@ -17,9 +17,9 @@ of a filter for a scenario of the same words, `zerorate bench peers` shows what 
 """
 _SESSION_2 = """\
 Session 1 warms from 20 to 45 degC in 40 minutes; then the power is cut; session 2 warms from 17 to
-44 degC in 20. Everyone is given the same samples. `zerorate` is online and unaided: default
-settings, no effect slot in use and no model of the loop loaded, for A, B and C alike. What it
-learned in session 1 comes back from the store, so its first {first:.0f} s are from the store.
+44 degC in 20. Everyone is given the same samples. `zerorate` has default settings and no effect
+model, for A, B and C alike. What it learned in session 1 comes back from the store, so its first
+{first:.0f} s are from the store.
 """
 _DAY = """\
 All begin from nothing: who waits for a first rest to be one pays for that second all day.

@@ -22,15 +22,15 @@ OFFLINE: dict[str, Peer] = {
     "ArduPilot-style cubic": ardupilot_cubic,
 }
 OURS: dict[str, Peer] = {
-    "the document's rules": firmware(document=True),
-    "the document's rules, on rests": firmware(document=True, every=False),
+    "US 9,354,080's rules": firmware(document=True),
+    "US 9,354,080's rules, on rests": firmware(document=True, every=False),
     "zerorate": firmware(),
 }
 PEERS = {**ONLINE, **OFFLINE, **OURS}
 HOW = {
-    **dict.fromkeys(ONLINE, "online, from nothing"),
-    **dict.fromkeys(OFFLINE, "offline on session 1, true rests given"),
-    **dict.fromkeys(OURS, "online, unaided, no effect slot, session 1 from the store"),
+    **dict.fromkeys(ONLINE, "on the device, knowing nothing"),
+    **dict.fromkeys(OFFLINE, "fitted to the first power-on, told its rests"),
+    **dict.fromkeys(OURS, "on the device, after the first power-on"),
 }
 
 __all__ = ["HOW", "OFFLINE", "ONLINE", "OURS", "PEERS", "Given", "Peer", "firmware", "given"]
