@@ -9,10 +9,7 @@ if TYPE_CHECKING:
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
-
+    const = int  # type: ignore[assignment]
 
 _INT_PIN_CFG = const(0x37)
 _INT_ENABLE = const(0x38)

@@ -11,10 +11,7 @@ if TYPE_CHECKING:
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
-
+    const = int  # type: ignore[assignment]
 
 _FIFO_EN = const(0x23)
 _INT_STATUS = const(0x3A)

@@ -11,10 +11,7 @@ if TYPE_CHECKING:
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
-
+    const = int  # type: ignore[assignment]
 
 _ACCEL_XOUT_H = const(0x3B)
 _WHO_AM_I = const(0x75)

@@ -12,9 +12,7 @@ if TYPE_CHECKING:
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
+    const = int  # type: ignore[assignment]
 
 
 MPU6050_KIND = const(0)  # packed self-test, one DLPF for both sensors

@@ -20,10 +20,7 @@ if TYPE_CHECKING:
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
-
+    const = int  # type: ignore[assignment]
 
 _SELF_TEST_GYRO_6500 = const(0x00)
 _SELF_TEST = const(0x0D)

@@ -8,10 +8,7 @@ from .parts import ICM20689_KIND, ICM20690_KIND, MPU6050_KIND
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
-
+    const = int  # type: ignore[assignment]
 
 _SMPLRT_DIV = const(0x19)
 _CONFIG = const(0x1A)

@@ -16,9 +16,7 @@ if TYPE_CHECKING:
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
+    const = int  # type: ignore[assignment]
 
 
 # What a driver says of each read (zerorate_i2c.mpu6050 has the same numbers).

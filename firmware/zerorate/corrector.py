@@ -11,9 +11,7 @@ from .sensor import Sensor
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
+    const = int  # type: ignore[assignment]
 
 
 TYPE_CHECKING = False

@@ -5,9 +5,7 @@ from .native import chosen
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
+    const = int  # type: ignore[assignment]
 
 
 # layout: The corrector's state

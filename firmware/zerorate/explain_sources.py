@@ -5,9 +5,7 @@ from .explain import without_sign
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
+    const = int  # type: ignore[assignment]
 
 
 # layout: The state of the source in motion

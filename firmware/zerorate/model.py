@@ -16,9 +16,7 @@ if TYPE_CHECKING:
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
+    const = int  # type: ignore[assignment]
 
 
 # effects.model_file has the same numbers, and all; its 4 KB are there while a model is loaded

@@ -3,10 +3,7 @@
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
-
+    const = int  # type: ignore[assignment]
 
 _HALF_PI_Q13 = const(12868)
 _PI_Q13 = const(25736)

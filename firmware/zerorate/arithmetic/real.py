@@ -7,13 +7,9 @@ object on a board. A number at word `a` is s[a] * 2^s[a+1]; |s[a]| is in 2^27..2
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
-
+    const = int
 
 ptr32 = None
-
 
 from .fixed import root
 

@@ -9,13 +9,9 @@ that the fitted range allows. Words of a slot: docs/layout.md.
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
-
+    const = int
 
 ptr32 = None
-
 
 from ..arithmetic.fixed import scaled
 

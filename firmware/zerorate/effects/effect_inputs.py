@@ -6,13 +6,9 @@ A source's value is in Q8 of its integer. Words of an input: docs/layout.md.
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
-
+    const = int
 
 ptr32 = None
-
 
 # layout: The effect model and its running state
 _INPUT_COUNT = const(1)

@@ -10,13 +10,9 @@ At power-on each stands where its source is: what was before is not known. Words
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
-
+    const = int
 
 ptr32 = None
-
 
 from ..arithmetic.fixed import scaled
 from .effect_basis import add_times, centred

@@ -10,13 +10,9 @@ own by more than the bound. Numbers are those of real.py; words of `e`: docs/lay
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
-
+    const = int
 
 ptr32 = None
-
 
 from ..arithmetic.real import add, divide, multiply, put, subtract, whole
 

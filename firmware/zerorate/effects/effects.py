@@ -9,13 +9,9 @@ state: docs/layout.md has its words.
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
-
+    const = int
 
 ptr32 = None
-
 
 from .effect_basis import basis, contribute
 from .effect_inputs import accumulate, close_tick, tell_time

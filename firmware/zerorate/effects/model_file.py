@@ -21,9 +21,7 @@ from ..storage.crc32 import checksum
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
+    const = int  # type: ignore[assignment]
 
 
 LOADED = const(0)

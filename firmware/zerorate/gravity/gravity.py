@@ -20,13 +20,9 @@ all signs agree and halves it when the counter turns.
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
-
+    const = int
 
 ptr32 = None
-
 
 from ..arithmetic.atan2 import atan2_q13
 from ..arithmetic.fixed import scaled

@@ -7,13 +7,9 @@ steps stay within 0.03 deg of a float64 quaternion over 128 increments of up to 
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
-
+    const = int
 
 ptr32 = None
-
 
 from ..arithmetic.atan2 import atan2_q13
 

@@ -16,13 +16,9 @@ of 241 words and 3 a node; motion_settings.py makes the settings.
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
-
+    const = int
 
 ptr32 = None
-
 
 from ..arithmetic.real import add, copy, whole
 from .attitude import normalise, rotation, sines, turn

@@ -7,13 +7,9 @@ The ring keeps, a node and axis in one word, the increment (Q13 rad, 15 bits) ab
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
-
+    const = int
 
 ptr32 = None
-
 
 # layout: The state of the source in motion
 _NODE_ELAPSED_US = const(0)

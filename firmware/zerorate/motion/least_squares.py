@@ -7,13 +7,9 @@ column (00 01 02 0y 11 12 1y 22 2y yy). Bias in Q24 rad a node, orientation in Q
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
-
+    const = int
 
 ptr32 = None
-
 
 from ..arithmetic.real import add, copy, divide, multiply, put, subtract
 

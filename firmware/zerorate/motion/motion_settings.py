@@ -6,9 +6,7 @@ from math import ceil, log, pi
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
+    const = int  # type: ignore[assignment]
 
 
 # layout: The state of the source in motion

@@ -8,13 +8,9 @@ that contradicts what is known: a turn that stays turned. Contradiction that las
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
-
+    const = int
 
 ptr32 = None
-
 
 from ..arithmetic.real import copy, multiply, put, root_of, subtract, whole
 from .least_squares import covariance, less, place

@@ -14,13 +14,9 @@ with the two shapes.
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
-
+    const = int
 
 ptr32 = None
-
 
 from ..arithmetic.fixed import scaled
 

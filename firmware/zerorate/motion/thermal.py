@@ -11,13 +11,9 @@ in Q24 rad a node and raw LSB of the thermometer.
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
-
+    const = int
 
 ptr32 = None
-
 
 from ..arithmetic.real import add, divide, multiply, pack, put, subtract, unpack
 from .least_squares import place

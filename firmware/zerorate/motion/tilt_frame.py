@@ -3,13 +3,9 @@
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
-
+    const = int
 
 ptr32 = None
-
 
 from ..arithmetic.fixed import root
 from .attitude import heading_q12, rotation

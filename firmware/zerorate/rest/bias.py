@@ -6,13 +6,9 @@
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
-
+    const = int
 
 ptr32 = None
-
 
 from .estimators import find
 from .fit import bent_q8, line_q8

@@ -7,13 +7,9 @@
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
-
+    const = int
 
 ptr32 = None
-
 
 from .histogram import add, clear, halve, population, read_out_q8
 

@@ -12,13 +12,9 @@
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
-
+    const = int
 
 ptr32 = None
-
 
 from ..arithmetic.fixed import clipped, floating_ratio_q26, fraction_q27, room, scaled
 

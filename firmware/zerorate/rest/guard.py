@@ -3,13 +3,9 @@
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
-
+    const = int
 
 ptr32 = None
-
 
 # layout: The corrector's state
 _FRAME = const(0)

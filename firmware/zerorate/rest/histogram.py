@@ -11,13 +11,9 @@
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
-
+    const = int
 
 ptr32 = None
-
 
 _MOST_READINGS = const(0x3FFF)
 # layout: The corrector's state

@@ -7,13 +7,9 @@
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
-
+    const = int
 
 ptr32 = None
-
 
 # layout: The corrector's state
 _WINDOW_N = const(17)

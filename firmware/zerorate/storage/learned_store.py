@@ -16,9 +16,7 @@ if TYPE_CHECKING:
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
+    const = int  # type: ignore[assignment]
 
 
 MODEL_BYTES = const(2048)

@@ -15,10 +15,7 @@ if TYPE_CHECKING:
 try:
     from micropython import const
 except ImportError:
-
-    def const(value):
-        return value
-
+    const = int  # type: ignore[assignment]
 
 try:
     from sys import byteorder
