@@ -13,7 +13,8 @@ GENERATED = ("*/native/thumb_*", "*/native/rv32_*")
 #: Called by others: pytest, Python, its import, a template of the report, a program sent as text,
 #: whoever uses the fakes as if they were the real bus.
 CALLED_BY_OTHERS = {
-    *("pytest_configure", "pytest_terminal_summary", "busio_i2c", "polled", "impatient"),
+    *("pytest_configure", "pytest_terminal_summary", "pytest_runtestloop"),
+    *("busio_i2c", "polled", "impatient"),
     *("__getattr__", "__dir__", "handle_starttag", "handle_data"),
     *("_constant", "_subscript", "_binop", "_unaryop", "_boolop", "_ifexp"),
     *("how_sure", "found_in_short", "write_device", "make_folders", "put_in_place"),
