@@ -4,8 +4,14 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 from zerorate_tools.bench.loop.simulated import simulate
+from zerorate_tools.closing import close
+from zerorate_tools.loop.search.catalogue import Candidate
+from zerorate_tools.loop.search.selection import Found, Selection
 from zerorate_tools.loop.verify.firmware import Firmware, Refused
+from zerorate_tools.loop.verify.measure import _unharmed
+from zerorate_tools.loop.verify.measured import Course, Measured
 from zerorate_tools.model import read_model
+from zerorate_tools.model.term import Term
 from zerorate_tools.recordings import Scales
 from zerorate_tools.replay import replay
 from zerorate_tools.replay.engines import CPythonEngine
@@ -99,3 +105,25 @@ def test_scales_that_the_firmware_cannot_run_at_are_refused():
 def test_the_model_carries_the_effect(closed):
     _, folder = closed
     assert [s.effect for s in read_model(folder / "model.bin").slots][:1] == ["thermal-hysteresis"]
+
+
+def test_of_three_recordings_every_row_is_left_out_once(logs, tmp_path):
+    result = close(logs[:3], tmp_path)
+    assert [e["effect"] for e in result["effects"]] == ["thermal-hysteresis"]
+    split = result["split"]
+    assert split["pieces_of"] == split["train"] == ["session-1", "session-2"]
+    rows = pq.read_table(tmp_path / "corrected.parquet").to_pandas()
+    assert set(rows["split"]) == {"test"}
+    before, after = (np.array(split[f"pieces_{way}_mdps"]) for way in ("before", "after"))
+    assert (after <= before).all() and after.max() < 0.5 * before.max()
+
+
+def test_what_pieces_of_few_recordings_speak_against_is_withdrawn():
+    rate = Found(Candidate("thermal-rate", (Term("temp"),), "catalogue"), None)
+    selection = Selection([rate], [], [], 0, None, (), (), [], {})
+    ways = {"before": np.ones((4, 3)), "after": np.full((4, 3), 0.9)}
+    worse = ways | {"after": np.full((4, 3), [0.9, 1.1, 0.9])}
+    courses = {"a": Course(np.arange(4), {}, worse), "b": Course(np.arange(4), {}, ways)}
+    alone, both = (Measured(courses, ["b"], np.zeros(3), inside=some) for some in ([], ["a"]))
+    assert _unharmed(selection, alone) is selection
+    assert _unharmed(selection, both).found[0].axes == (True, False, True)

@@ -65,14 +65,15 @@ class PiecesByLine:
     """Judges effects of one recording by how well its pieces are predicted from the others.
 
     Ordinary least squares with one offset for all pieces, as they are of one power-on, beside a
-    straight line; for recordings that the firmware's own kernels cannot be run over.
+    straight line; for recordings that the firmware's own kernels cannot be run over. beside: other
+    recordings of the device, to which every turn is fitted as well.
     """
 
     reason = "does not predict the pieces left out"
 
-    def __init__(self, session: Session) -> None:
+    def __init__(self, session: Session, beside: Sequence[Session] = ()) -> None:
         self.fold = fold_of(session)
-        self.session = session
+        self.session, self.beside = session, beside
         near = np.ones(2 * gap_blocks(session) + 1, bool)
         left = [self.fold == k for k in range(self.fold.max() + 1)]
         self.parts = [_only(session, ~binary_dilation(one, near)) for one in left]
@@ -96,7 +97,7 @@ class PiecesByLine:
         """
         out = np.full((self.session.blocks, 3), np.nan)
         for k, part in enumerate(self.parts):
-            kept, coefficients = fitted_to(part, straight, terms, applied)
+            kept, coefficients = fitted_to(part, straight, terms, applied, self.beside)
             left = self.session.rate_dps - predicted(kept, coefficients, self.session)
             own = self.fold == k
             out[own] = part.less_offsets(left, part.available)[own]
@@ -109,8 +110,11 @@ class PiecesByLine:
         return np.nan_to_num(sums, nan=np.inf)
 
 
-def fitted_to(part: Session, straight, terms, applied=None) -> tuple[list[Term], np.ndarray]:
-    """(terms, (terms, 3) dps per unit) fitted to a part of a recording, the line first.
+def fitted_to(
+    part: Session, straight, terms, applied=None, beside: Sequence[Session] = ()
+) -> tuple[list[Term], np.ndarray]:
+    """(terms, (terms, 3) dps per unit) fitted to a part of a recording and to others beside it, the
+    line first.
 
     What does not remember is held at the edges of what the part shows of its source; but beside
     play operators, which go on there and bend against it, as they all do on the board. The line is
@@ -118,12 +122,13 @@ def fitted_to(part: Session, straight, terms, applied=None) -> tuple[list[Term],
     """
     straight = list(straight)
     loop = any(t.memory == "play" for t in terms)
-    kept = [held(t, [part]) if is_instant(t) and not loop else t for t in terms]
+    fitted = [part, *beside]
+    kept = [held(t, fitted) if is_instant(t) and not loop else t for t in terms]
     every = [*straight, *kept]
     if not every:
         return [], np.zeros((0, 3))
     each = np.ones((len(kept), 3)) if applied is None else applied
-    return every, by_axis(lambda t: ordinary(t, [part]), every, with_line(straight, terms, each))
+    return every, by_axis(lambda t: ordinary(t, fitted), every, with_line(straight, terms, each))
 
 
 def is_instant(term: Term) -> bool:

@@ -31,7 +31,11 @@ def _judged_on(split):
     names = ", ".join(split["test"])
     if "how_much_weaker" in split:
         return f"judged on pieces of {names}, each by a model fitted to the others"
-    return f"judged on {names}, which nothing was fitted to"
+    said = f"judged on {names}, which nothing was fitted to"
+    if "pieces_of" not in split:
+        return said
+    before, after = (_axes(split[f"pieces_{way}_mdps"]) for way in ("before", "after"))
+    return f"{said}\nand on pieces of {', '.join(split['pieces_of'])}: {before} -> {after}"
 
 
 def _axes(mdps):

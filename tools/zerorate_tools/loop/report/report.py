@@ -136,6 +136,11 @@ def _split(analysis):
     }
     if analysis.single:
         out["how_much_weaker"] = WEAKER
+    if analysis.measured and analysis.measured.inside:
+        out["pieces_of"] = inside = analysis.measured.inside
+        for way, effects in (("before", 0), ("after", len(analysis.selection.found))):
+            left = analysis.measured.with_first(effects, inside)
+            out[f"pieces_{way}_mdps"] = _mdps(rms_dps(left))
     return out
 
 

@@ -14,6 +14,7 @@ from ...model.term import Term
 from ...recordings import Scales
 from ...replay.samples import Frames
 from ..fit.single import PiecesByLine, fitted_to, is_instant
+from ..read.sessions import Session
 from .firmware import Firmware, at_once, rows
 from .power_on import BlockMeans, PowerOn
 
@@ -23,13 +24,14 @@ _LEAD_BLOCKS = 3
 class PiecesByKernels(PiecesByLine):
     """Judges effects on the pieces of a recording as the board would do with them.
 
-    power_on: the recording.
+    power_on: the recording; beside: others, to which the models are fitted as well. The devices
+    learn this one alone, whose turn-on offset is in their curve.
     """
 
     reason = "on pieces left out it gains nothing on the firmware's own curve"
 
-    def __init__(self, power_on: PowerOn, scales: Scales) -> None:
-        super().__init__(power_on.session)
+    def __init__(self, power_on: PowerOn, scales: Scales, beside: Sequence[Session] = ()) -> None:
+        super().__init__(power_on.session, beside)
         self.power_on, self._scales = power_on, scales
         self._known: dict[tuple, np.ndarray] = {}
 
@@ -56,7 +58,7 @@ class PiecesByKernels(PiecesByLine):
         return [self._model(straight, terms, applied, [*more], part) for part in self.parts]
 
     def _model(self, straight, terms, applied, more, part):
-        kept, fitted = fitted_to(part, straight, terms, applied)
+        kept, fitted = fitted_to(part, straight, terms, applied, self.beside)
         pairs = list(zip(kept, fitted))[len(straight) :]
         slots = [Slot(t, (float(x), float(y), float(z)), "") for t, (x, y, z) in pairs]
         every = [*slots, *more]

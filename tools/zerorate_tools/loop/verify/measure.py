@@ -55,24 +55,39 @@ def measure(
     with written_beside(out) as temporary:
         writer = CorrectedWriter(temporary)
         for p in power_ons:
-            sink = _sink(writer, p, p.session.name in holdout, online)
+            left_out = analysis.few or p.session.name in holdout
+            sink = _sink(writer, p, left_out, online)
             courses[p.session.name] = course(p.session.name, online, sink)
             advance(1)
         writer.close()
-    return judged(analysis, Measured(courses, holdout, _rounding(analysis, power_ons, scales)))
+    rounding, inside = _rounding(analysis, power_ons, scales), _inside(analysis)
+    return judged(analysis, Measured(courses, holdout, rounding, inside=inside))
+
+
+def _inside(analysis) -> list[str]:
+    """Names of the sessions fitted of which pieces are left out, too: where so few were fitted that
+    leaving them out whole tells little."""
+    return [s.name for s in analysis.train] if analysis.few and not analysis.single else []
 
 
 def _course_of(analysis, power_ons, model, scales) -> Callable[[str, bool, Sink], Course]:
     """What runs the firmware over a session by name."""
     if analysis.single:
-        pieces = PiecesByKernels(power_ons[0], scales)
-        alone = MeasurementByPieces(pieces, analysis.selection, slots_of(analysis.motion))
-        return lambda name, online, sink: alone.course(online, sink)
+        alone = _by_pieces(analysis, power_ons[0], scales)
+        return lambda name, online, sink: alone.course(sink)
     train, holdout = ([s.name for s in some] for some in (analysis.train, analysis.holdout))
     models = models_of(analysis, model, scales)
-    measurement = Measurement(power_ons, train, holdout, models, scales)
+    some = [p for p in power_ons if p.session.name in _inside(analysis)]
+    inside = {p.session.name: _by_pieces(analysis, p, scales) for p in some}
+    measurement = Measurement(power_ons, train, holdout, models, scales, inside)
     measurement.learn()
     return measurement.course
+
+
+def _by_pieces(analysis, power_on, scales) -> MeasurementByPieces:
+    beside = [s for s in analysis.train if s.name != power_on.session.name]
+    pieces = PiecesByKernels(power_on, scales, beside)
+    return MeasurementByPieces(pieces, analysis.selection, slots_of(analysis.motion))
 
 
 @threadpool_limits.wrap(limits=1, user_api="blas")
@@ -83,20 +98,27 @@ def measure_and_prune(
     online: bool = False,
     advance: Callable[[float], None] = lambda n: None,
 ) -> tuple[Analysis, Model]:
-    """As `measure`, again and again without what the kernels find harmful, and the model left."""
+    """As `measure`, again and again without what the kernels find harmful, to what was held out or
+    to pieces left out of what was fitted, and the model left."""
     scales = open_recording(logs[0]).scales
     while True:
         analysis = deployable(analysis, scales)
         model = model_of(analysis, scales)
         measured = measure(analysis, logs, model, out, online, advance)
         assert measured.measured is not None, "it was just measured"
-        found = len(analysis.selection.found)
-        less = unharmed(
-            analysis.selection, [measured.measured.with_first(k) for k in range(found + 1)]
-        )
+        less = _unharmed(analysis.selection, measured.measured)
         if less is analysis.selection:
             return measured, model
         analysis = with_selection(analysis, less)
+
+
+def _unharmed(selection, measured: Measured):
+    """The selection without what the held-out sessions, or then the pieces, do worse with."""
+    each = range(len(selection.found) + 1)
+    less = unharmed(selection, [measured.with_first(k) for k in each])
+    if less is selection and measured.inside:
+        less = unharmed(selection, [measured.with_first(k, measured.inside) for k in each])
+    return less
 
 
 def _sink(writer, p: PowerOn, test: bool, online: bool) -> Sink:

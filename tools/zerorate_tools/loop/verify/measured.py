@@ -6,8 +6,11 @@ over the held-out part once more learning as it goes. Of one recording alone eve
 a firmware that has learned the others.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
@@ -43,22 +46,25 @@ class Course:
 @dataclass
 class Measured:
     """What the kernels gave. sessions: by name; holdout: names of those held out; rounding_dps:
-    (3,) RMS by which the model's integers differ from its numbers, on the held-out part.
+    (3,) RMS by which the model's integers differ from its numbers, on the held-out part; inside:
+    names of others, pieces of which were left out in turn.
     """
 
     sessions: dict[str, Course]
     holdout: list[str]
     rounding_dps: np.ndarray
     by: str = BY
+    inside: list[str] = field(default_factory=list)
 
     def residuals(self, way: str) -> list[np.ndarray]:
         """(n, 3) of each session held out."""
         return [self.sessions[name].residual[way] for name in self.holdout]
 
-    def with_first(self, effects: int) -> list[np.ndarray]:
-        """As `residuals`, with the first so many effects alone."""
-        way, whole = after_first(effects), self.sessions[self.holdout[0]].residual
-        return self.residuals(way if way in whole else AFTER)
+    def with_first(self, effects: int, names: Sequence[str] = ()) -> list[np.ndarray]:
+        """As `residuals`, with the first so many effects alone; names: of other sessions."""
+        way = after_first(effects)
+        some = [self.sessions[name].residual for name in names or self.holdout]
+        return [residual.get(way, residual[AFTER]) for residual in some]
 
     def offsets(self, way: str) -> list[np.ndarray]:
         """(3,) turn-on offset of each session held out, dps; zero where a part of its own power-on
@@ -76,7 +82,7 @@ class Measurement:
     """Runs the firmware over the sessions of one device.
 
     train, holdout: names of sessions; models: none, then those of the first effects, at last the
-    whole one.
+    whole one; inside: of training sessions judged by pieces left out, what measures them.
     """
 
     def __init__(
@@ -86,7 +92,9 @@ class Measurement:
         holdout: Sequence[str],
         models: Sequence[Model | None],
         scales: Scales,
+        inside: Mapping[str, MeasurementByPieces],
     ) -> None:
+        self.inside = inside
         self.power_ons = {p.session.name: p for p in power_ons}
         self.train, self.holdout = list(train), list(holdout)
         channels = power_ons[0].channels
@@ -105,6 +113,8 @@ class Measurement:
 
     def course(self, name: str, online: bool, sink: Sink) -> Course:
         """Run the frozen devices over a session, and the learning ones where wanted."""
+        if name in self.inside:
+            return self.inside[name].course(sink, self._online(name) if online else {})
         p = self.power_ons[name]
         held_out = name in self.holdout
         ways, unscored, offsets = self._frozen(p, held_out)
@@ -161,19 +171,23 @@ class MeasurementByPieces:
         applied = selection.applied if selection.found else None
         return self.pieces.models(selection.straight, selection.terms, applied, more)
 
-    def course(self, online: bool, sink: Sink) -> Course:
-        """Run the devices over the recording: frozen ones, and those that learn as they go."""
+    def course(self, sink: Sink, learning: dict | None = None) -> Course:
+        """Run the devices over the recording: frozen ones, and those that learn as they go, by
+        default from nothing.
+        """
         of, p = self.pieces, self.pieces.power_on
         frozen = {way: of.learned(models) for way, models in self.models.items()}
-        last = list(self.models.values())[-1]
-        learning = {ONLINE_BEFORE: of.new(self.models[BEFORE][:1]), ONLINE: of.new(last)}
+        ways = {way: partial(of.bias_q8, devices) for way, devices in frozen.items()}
+        if learning is None:
+            last = list(self.models.values())[-1]
+            new = {ONLINE_BEFORE: of.new(self.models[BEFORE][:1]), ONLINE: of.new(last)}
+            learning = {way: partial(of.bias_q8, d, learn=True) for way, d in new.items()}
+        ways |= learning
 
         def biases(frames):
-            ways = {way: of.bias_q8(devices, frames) for way, devices in frozen.items()}
-            more = learning.items()
-            return ways | {way: of.bias_q8(d, frames, learn=True) for way, d in more}
+            return {way: run(frames) for way, run in ways.items()}
 
-        return scored(p, _means(p, (*frozen, *learning), biases, sink))
+        return scored(p, _means(p, ways, biases, sink))
 
 
 def _means(p: PowerOn, ways: Iterable[str], biases: Callable[[Frames], dict], sink: Sink) -> dict:
