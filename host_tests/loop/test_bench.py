@@ -7,7 +7,7 @@ from zerorate_tools.bench.loop.bin_tables import hipnuc
 from zerorate_tools.bench.loop.devices import CATALOGUE, Device, devices
 from zerorate_tools.bench.loop.figures import figures, share
 from zerorate_tools.bench.loop.run_trial import Outcome, run_trial
-from zerorate_tools.bench.loop.trials import looked_at, markdown
+from zerorate_tools.bench.loop.trials import looked_at, markdown, renewed
 
 
 def test_a_device_is_looked_at_and_judged():
@@ -66,6 +66,18 @@ def test_figures_are_readable_with_limit_and_verdict():
     text = markdown(json.loads(json.dumps(result)))
     assert "| found in nothing, all kinds | 50.0 |" in text
     assert "| found in nothing | 50.0 | at most 0.5 | NO | 9.5-90.5 | 2 |" in text
+
+
+def test_a_page_is_renewed_row_by_row():
+    def rows(*names, found=()):
+        made = figures([Outcome(Device(n, 1), list(found)) for n in names], whole=False)
+        return [f.to_dict() for f in made if "all kinds" not in f.name]
+
+    page = markdown({"devices": 2, "figures": rows("nothing")})
+    page = renewed(page, rows("nothing", "real noise", found=["time-drift"]))
+    assert "| found in nothing | 100.0 |" in page and page.count("| found in nothing |") == 1
+    assert "| found in real noise | 100.0 | at most 2 | NO |" in page
+    assert "Missed: found in nothing; found in real noise." in page
 
 
 def test_a_curved_table_is_bent_and_a_straight_one_is_not(tmp_path):

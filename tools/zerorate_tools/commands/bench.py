@@ -173,10 +173,13 @@ def _import(arguments: argparse.Namespace) -> Found:
 
 
 def _loop(arguments: argparse.Namespace) -> Found:
-    from ..bench.loop import markdown, run
+    from ..bench.loop import markdown, renewed, run
 
-    options = {name: getattr(arguments, name) for name in ("data", "resume", "plots")}
+    options = {name: getattr(arguments, name) for name in ("data", "resume", "plots", "rows")}
     found = run(arguments.nulls, arguments.seeds, arguments.processes, **options)
+    if arguments.page:
+        page = arguments.page.read_text(encoding="utf-8")
+        return renewed(page, found["figures"]), found
     return markdown(found), found
 
 
@@ -290,6 +293,8 @@ BENCHES = {
             "--nulls": _number(200, "recordings of nothing"),
             "--seeds": _number(20, "devices an effect"),
             "--processes": _number(2, "at once"),
+            "--rows": {"metavar": "TEXT", "help": "only devices whose row or effect holds it"},
+            "--page": {"type": Path, "metavar": "FILE", "help": "page to renew with the figures"},
             **_RECORDINGS,
             **_RESUME,
             **_PLOTS,

@@ -1,5 +1,5 @@
 """`zerorate bench loop`: what closing the loop finds, names, removes and invents."""
 
-from .trials import markdown, run
+from .trials import markdown, renewed, run
 
-__all__ = ["markdown", "run"]
+__all__ = ["markdown", "renewed", "run"]

@@ -59,8 +59,9 @@ def share(
     return Figure(name, value, limit, at_most, len(hits), 100 * sure[0], 100 * sure[1])
 
 
-def figures(outcomes: list[Outcome]) -> list[Figure]:
-    """Every figure that simulated devices and quiet recordings give."""
+def figures(outcomes: list[Outcome], whole: bool = True) -> list[Figure]:
+    """Every figure that simulated devices and quiet recordings give. whole: whether these are all
+    of them, so that what is said of all can be."""
     rows: dict[str, list[Outcome]] = {}
     for o in outcomes:
         rows.setdefault(o.device.row, []).append(o)
@@ -73,7 +74,7 @@ def figures(outcomes: list[Outcome]) -> list[Figure]:
         *_pairs(rows.get(TWO, [])),
         *_many_widths(rows),
         *_from_files(rows),
-        *_made_worse(outcomes),
+        *(_made_worse(outcomes) if whole else ()),
     ]
 
 

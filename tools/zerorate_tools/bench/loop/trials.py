@@ -30,6 +30,7 @@ def run(
     resume: str | PathLike[str] | None = None,
     plots: str | PathLike[str] | None = None,
     size: bool = True,
+    rows: str | None = None,
     advance: Callable[[float], None] = lambda n: None,
 ) -> dict:
     """Run it and return the figures and tables as plain values; `markdown` makes them readable.
@@ -37,24 +38,26 @@ def run(
     nulls: devices of each kind of nothing; seeds: devices an effect; data: folder of the real
     recordings, else ZERORATE_DATA, else none; resume: a file of outcomes, one a line, that a run
     broken off goes on from; plots: a folder for PNGs of the real recordings; size: time and memory
-    of a device of 4 sessions of 8 hours at 100 Hz.
+    of a device of 4 sessions of 8 hours at 100 Hz; rows: only devices whose key holds this text,
+    and nothing else.
     """
     folder = Path(data) if data else data_folder()
     with tempfile.TemporaryDirectory() as scratch:
         quiet = write_blocks(folder, Path(scratch)) if folder and folder.is_dir() else []
         os.environ[FOLDER] = scratch
         every = [*devices(nulls, seeds, quiet), *file_devices(-(-seeds // 2))]
+        every = [d for d in every if not rows or rows in d.key]
         outcomes = list(looked_at(every, processes, Path(resume) if resume else None, advance))
-    rows = figures(outcomes) + rest_figures()
-    if size:
-        rows += figures_of(measured())
+    found = figures(outcomes, whole=not rows)
+    if not rows:
+        found += rest_figures() + (figures_of(measured()) if size else [])
     result: dict = {"devices": len(outcomes), "machine": machine()}
     result["cpu_s_a_device"] = sum(o.cpu_s for o in outcomes) / max(len(outcomes), 1)
-    if folder and folder.is_dir():
+    if folder and folder.is_dir() and not rows:
         from .real import real_rows
 
         result["real_recordings"] = real_rows(folder, Path(plots) if plots else None)
-    result["figures"] = [f.to_dict() for f in rows]
+    result["figures"] = [f.to_dict() for f in found]
     result["false_alarms"] = _examples(outcomes)
     return result
 
@@ -114,6 +117,27 @@ def markdown(result: dict) -> str:
     if "real_recordings" in result:
         parts += ["## Real recordings", "", _real(result["real_recordings"])]
     return "\n".join(parts)
+
+
+def renewed(page: str, figures: list[dict]) -> str:
+    """A page of `markdown` with these figures in the place of its own of the same name, or after
+    the last where it has none, and its head told anew."""
+    lines = [*page.splitlines(), ""]
+    for line in figure_table(figures).strip().splitlines()[2:]:
+        name = _name(line)
+        at = next((i for i, old in enumerate(lines) if _name(old) == name), None)
+        if at is None:
+            at = lines.index("", lines.index(next(x for x in lines if x.startswith("| ---"))))
+            lines.insert(at, line)
+        lines[at] = line
+    missed = [_name(line) for line in lines if " | NO | " in line]
+    head = next(i for i, line in enumerate(lines) if line and i > 2)
+    lines[head] = f"Missed: {'; '.join(missed)}." if missed else "Every figure is reached."
+    return "\n".join(lines).rstrip("\n") + "\n"
+
+
+def _name(line: str) -> str:
+    return line.split(" | ")[0].removeprefix("| ")
 
 
 def figure_table(figures: list[dict]) -> str:

@@ -25,6 +25,8 @@ from .fits_in_slots import fits_in_slots
 from .selection import Found
 
 KIND = "thermal-hysteresis"
+#: Of one width, or what else a few power-ons take a sum of many widths for.
+LIKE_IT = (KIND, "temperature-peak", "thermal-lag", "thermal-rate", "power-on-transient")
 #: Radii of the grid, as shares of the range of temperature: its ends and how many.
 _FINEST, _WIDEST, _GRID = 0.015, 0.65, 12
 _MOST_OPERATORS = min(4, MOST_PLAYS)
@@ -41,7 +43,7 @@ _STEPS = (1.12, 1.06)
 #: As how many widths the grid's count: neighbours are much alike.
 _APART = 6
 #: Nats by which it must predict better than what is simpler.
-_SIMPLER, _RIVALS_NATS = ("thermal-lag", "thermal-rate", "temperature-kink"), 3.0
+_SIMPLER, TIES_NATS = ("thermal-lag", "thermal-rate", "temperature-kink"), 3.0
 #: By which the error on pieces left out must fall where one recording stands alone. Noise that
 #: walks by a third of its white part a block lets it fall by 1.2 to 1.4, by 1.9 where it walks by
 #: more than its white part; a real part's loop in a chamber by 4.6.
@@ -79,22 +81,20 @@ def best_hysteresis(
     straight: Sequence[Term],
     beside: Sequence[Term],
     judged: Judged,
-    more_than: Sequence[Term] = (),
 ) -> tuple[Candidate | None, float]:
     """The sum of play operators that predicts best what is left out, and the nats that it gains;
     None where none does better.
 
-    beside: the other terms; more_than: terms of a simpler form that it would take the place of.
+    beside: the other terms.
     """
     if not may_show(sessions):
         return None, 0.0
-    best = float(judged(straight, beside, more_than).sum()) if more_than else 0.0
-    chosen: Sequence[Term] = ()
+    best, chosen = 0.0, tuple[Term, ...]()
     for terms in _forms(sessions, [*straight, *beside]):
         gain = float(judged(straight, beside, terms).sum()) - _price(terms)
         if gain > best:
             best, chosen = gain, terms
-    return (Candidate(KIND, tuple(chosen), "catalogue") if chosen else None), best
+    return (Candidate(KIND, chosen, "catalogue") if chosen else None), best
 
 
 def of_one_recording(
@@ -126,7 +126,7 @@ def of_one_recording(
         return None, ""
     gain, bend, candidate = best
     rival, rivals_gain = _rival(straight, bend, pool, by_line)
-    if rivals_gain > gain - _RIVALS_NATS:
+    if rivals_gain > gain - TIES_NATS:
         return None, "a lag, a rate or a kink predicts the pieces left out as well"
     ratio = float(regression.gains([*straight, *bend, *rival], [candidate.terms]).sum())
     p = family_p(ratio, 3 * len(candidate.terms), _tried(candidate))

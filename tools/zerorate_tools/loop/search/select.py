@@ -36,7 +36,7 @@ _START_S = 60.0
 _TURN_BELOW = 1e-3
 #: Of the plain error of sessions left out, which for an effect that is there only drift makes grow.
 _MOST_GROWTH = 1.05
-#: Of it, what a sum of play operators must leave of that of the one that it takes the place of.
+#: Of it, what a sum of play operators must leave of that of what it takes the place of.
 _WELL_BELOW = 0.8
 
 
@@ -65,6 +65,7 @@ class Search:
         self.pool = all_candidates(sessions)
         self.singles = [c.terms[0] for c in self.pool if len(c.terms) == 1]
         self.steps: list[events.Step] = []
+        self.like_hysteresis: list[Found] = []
         self.refused: list[tuple[str, str]] = []
         self.dropped: set[str] = set()
         self.bends = 0
@@ -95,6 +96,8 @@ class Search:
             self._widen_hysteresis()
         self._list_steps()
         name_found(self.regression, self.straight, self.found, self.pool, self.bends)
+        for f in self.like_hysteresis:
+            f.confounded_with = list(dict.fromkeys([*f.confounded_with, hysteresis.KIND]))
         if not self.on_pieces:
             follow_further(self.regression, self.straight, self.found)
         r = self.regression
@@ -158,25 +161,28 @@ class Search:
         self.refused += [(hysteresis.KIND, refused)] if refused else []
 
     def _widen_hysteresis(self):
-        """A sum of play operators in place of the hysteresis found, where it predicts better."""
-        own = [f for f in self.found if f.candidate.kind == hysteresis.KIND]
+        """A sum of play operators in place of what was found to remember temperature, or to follow
+        the start of a power-on, where it predicts better."""
+        own = [f for f in self.found if f.candidate.kind in hysteresis.LIKE_IT]
         if not own:
             return
         before, self.found = self.found, [f for f in self.found if f not in own]
-        candidate, _ = hysteresis.best_hysteresis(
-            self.regression.sessions,
-            self.straight,
-            self.terms(),
-            lambda straight, beside, terms: gains(self.regression, [*straight, *beside], terms),
-            [t for f in own for t in f.candidate.terms],
+        simpler = [t for f in own for t in f.candidate.terms]
+        candidate, gain = hysteresis.best_hysteresis(
+            self.regression.sessions, self.straight, self.terms(), self._nats
         )
+        lost = float(self._nats(self.straight, self.terms(), simpler).sum()) - gain
         found = None
-        if candidate and not self._is_better(candidate, own):
-            candidate = None
-        if candidate and fits_in_slots([*self.terms(), *candidate.terms], self.taken):
-            self._look_afresh()
-            found = self._consider(candidate)
+        if candidate and lost < 0 and self._is_better(candidate, own):
+            if fits_in_slots([*self.terms(), *candidate.terms], self.taken):
+                self._look_afresh()
+                found = self._consider(candidate)
         self.found = [*self.found, found] if found else before
+        if candidate and not found and lost < hysteresis.TIES_NATS:
+            self.like_hysteresis = [f for f in own if f.candidate.kind != hysteresis.KIND]
+
+    def _nats(self, straight, beside, terms):
+        return gains(self.regression, [*straight, *beside], terms)
 
     def _is_better(self, candidate: Candidate, own: list[Found]) -> bool:
         """Whether the plain error of what is left out is well below that with a simpler form."""
