@@ -3,8 +3,11 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from .cost import STEPS, cost
 from .limits import COST, limits_table, verdicts
 from .tables import machine_line, number, table
+
+__all__ = ["STEPS", "cost", "in_markdown", "sections"]
 
 _MADE = """\
 Made by `zerorate bench cost`, which also writes `--json FILE`. Counts of instructions and bytes are

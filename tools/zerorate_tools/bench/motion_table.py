@@ -4,6 +4,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from .motion import run
+
+__all__ = ["LIMITS_MDPS", "run", "table"]
+
 # most RMS error of the decision after two minutes, mdps; None: no window may be learned wrongly
 LIMITS_MDPS: dict[str, float | None] = {
     "never-rests": 30.0,

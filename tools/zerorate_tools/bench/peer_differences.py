@@ -71,18 +71,18 @@ CASES: tuple[tuple[str, str, str, Peer, Change, Change], ...] = (
 
 def peer_differences(
     seeds: Sequence[int] = SEEDS, advance: Callable[[float], None] = lambda n: None
-) -> list[dict[str, Any]]:
-    """One dict a case: peer, scenario, change, rms_mdps of session 2 (least, median, most)."""
+) -> dict[str, list[dict[str, Any]]]:
+    """`cases`: a dict each: peer, scenario, change, rms_mdps of session 2 (least, median, most)."""
     rows = []
     for name, scenario, words, peer, first, second in CASES:
         found = [_error(peer, scenario, (first, second), seed) for seed in seeds]
         spread = {"least": min(found), "median": float(np.median(found)), "most": max(found)}
         rows.append({"peer": name, "scenario": scenario, "change": words, "rms_mdps": spread})
         advance(1)
-    return rows
+    return {"cases": rows}
 
 
-def in_markdown(rows: Sequence[dict]) -> str:
+def in_markdown(found: dict[str, list[dict]]) -> str:
     """The table."""
     cells = [
         [
@@ -90,7 +90,7 @@ def in_markdown(rows: Sequence[dict]) -> str:
             row["change"],
             *map(number, row["rms_mdps"].values()),
         ]
-        for row in rows
+        for row in found["cases"]
     ]
     header = ["session 2, RMS, mdps", "scenario", "least", "median", "most of the seeds"]
     return "\n".join(

@@ -15,13 +15,18 @@ def add_parser(subparsers) -> None:
         "has rate_dps without bias, bias_dps, accel_g, temp_degc, and t_us since the start.",
     )
     parser.add_argument("bus", metavar="BUS", help="I2C bus: /dev/i2c-1")
-    parser.add_argument("--state", type=Path, metavar="FILE", default=Path("learned.bin"))
+    parser.add_argument(
+        "--state", type=Path, metavar="FILE", default=Path("learned.bin"), help="what was learned"
+    )
     parser.add_argument("--socket", type=Path, metavar="FILE", help="Unix socket for readers")
     parser.add_argument("--udp", metavar="HOST:PORT", help="datagrams, to this machine only")
     parser.add_argument("--remote", action="store_true", help="let --udp leave this machine")
-    parser.add_argument("--address", type=lambda text: int(text, 0), default=0x68, metavar="N")
-    parser.add_argument("--hz", dest="odr_hz", type=float, default=100.0, metavar="N")
-    parser.add_argument("--dps", dest="full_scale_dps", type=int, default=250, metavar="N")
+    for flag, dest, kind, default, what in (
+        ("--address", "address", lambda text: int(text, 0), 0x68, "of the chip (0x68)"),
+        ("--hz", "odr_hz", float, 100.0, "output data rate (100)"),
+        ("--dps", "full_scale_dps", int, 250, "250, 500, 1000 or 2000"),
+    ):
+        parser.add_argument(flag, dest=dest, type=kind, default=default, metavar="N", help=what)
     parser.set_defaults(run=run)
 
 
