@@ -3,7 +3,7 @@
 import pytest
 from zerorate_tools.errors import ZerorateError
 from zerorate_tools.fleet import Device, devices_of
-from zerorate_tools.fleet.batches import in_batches
+from zerorate_tools.fleet.cluster import in_batches
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ from html.parser import HTMLParser
 
 import pytest
 from zerorate_tools.loop.read.turns import GIVEN
-from zerorate_tools.report.numbers import figure
+from zerorate_tools.numbers import figure
 from zerorate_tools.report.sentences import corrects_at_rest, frozen, headline, why_both
 
 from host_tests.report.devices import HOSTILE

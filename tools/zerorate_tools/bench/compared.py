@@ -13,8 +13,7 @@ from ..compare.judge import FIRST_REST, FRESH, NOTHING, TooFewRests
 from ..compare.rests import rests_of
 from ..importers import import_recording
 from ..peers import firmware, given
-from ..peers.fusion import fusion
-from ..peers.vqf_filter import vqf_default
+from ..peers.online import fusion, vqf_default
 from .broad import Trial, trials, true_bias
 from .public_data import recordings, told_of
 from .tables import table

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ..importers import read_foreign
 from ..loop.read.still import runs
 from ..peers import OURS, Given, Peer, given
-from ..peers.first_seconds import first_seconds
+from ..peers.online import first_seconds
 from ..recordings import Recording
 from .accuracy import rms_mdps
 from .public_data import recordings, told_of

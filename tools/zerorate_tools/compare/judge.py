@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from ..errors import InFile
 from ..peers import Given, firmware, given
-from ..peers.fusion import fusion
-from ..peers.vqf_filter import vqf_default
+from ..peers.online import fusion, vqf_default
 from ..recordings import read_recording
 from .rests import Rest, rests_of
 

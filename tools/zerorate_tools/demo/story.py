@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from ..compare import Compared
+from ..numbers import fixed
 from ..report.kinds import meaning
-from ..signs import fixed
 from .broad_trial import CREDIT
 from .device import Device
 from .play_and_score import Demo

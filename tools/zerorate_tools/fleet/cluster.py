@@ -1,4 +1,4 @@
-"""Batches through Dask: on this machine's cores, or on a cluster that is there."""
+"""Batches of devices through Dask: on this machine's cores, or on a cluster that is there."""
 
 from __future__ import annotations
 
@@ -9,13 +9,39 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from ..errors import MissingLibrary, ZerorateError
+from .devices import Device
 
 if TYPE_CHECKING:
     from distributed import Client
 
 #: So many tasks wait at the scheduler at most, whatever the size of the fleet.
 MOST_WAITING = 1000
+#: A task is worth its overhead from about a second on, and should be over within minutes.
+MOST_DEVICES = 64
+MOST_BYTES = 64 << 20
+_TASKS_A_WORKER = 8
 _CONNECT_S = 10
+
+
+def in_batches(
+    devices: Sequence[Device], workers: int, devices_per_task: int | None = None
+) -> list[list[Device]]:
+    """Cut devices into batches of at most 64 devices and 64 MiB of recordings.
+
+    Fewer devices where a worker would get less than eight batches; devices_per_task: that many,
+    whatever their size.
+    """
+    most = devices_per_task or min(MOST_DEVICES, -(-len(devices) // (_TASKS_A_WORKER * workers)))
+    batches: list[list[Device]] = []
+    room = 0
+    for device in devices:
+        size = 0 if devices_per_task else device.size_bytes
+        if not batches or len(batches[-1]) >= most or size > room:
+            batches.append([])
+            room = MOST_BYTES
+        batches[-1].append(device)
+        room -= size
+    return batches
 
 
 @contextmanager

@@ -6,10 +6,10 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+from ..numbers import chance, figure
 from ..recordings.atomic import written_beside
 from ..report import sentences as report_words
 from ..report.colours import ROLES
-from ..report.numbers import chance, figure
 from ..report.page import height, legend
 from ..report.plotly_form import plain
 from ..report.safe_json import script_json

@@ -18,9 +18,8 @@ from ..errors import ZerorateError
 from ..recordings.atomic import written_together
 from ..recordings.scales import scales_from_text
 from ..replay.engines import compiled
-from .batches import in_batches
 from .benefit import Runner, benefit
-from .cluster import cluster, run_all, size_of
+from .cluster import cluster, in_batches, run_all, size_of
 from .curve import Curve
 from .devices import Device
 from .job import JOBS, Job, one_line, run_batch

@@ -6,10 +6,8 @@ it would have subtracted from each sample; NaN where it cannot be run (a channel
 
 from .cubic import ardupilot_cubic, px4_cubic
 from .firmware import Peer, firmware
-from .first_seconds import first_seconds
-from .fusion import fusion
 from .given import Given, given
-from .vqf_filter import vqf_clip_raised, vqf_default
+from .online import first_seconds, fusion, vqf_clip_raised, vqf_default
 
 ONLINE: dict[str, Peer] = {
     "mean of the first 10 s": first_seconds,

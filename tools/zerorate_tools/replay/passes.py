@@ -11,10 +11,10 @@ from zerorate.layout import JOB, MOTION
 from zerorate.layout import MOTION_SETTINGS as SET
 
 from ..errors import InFile, ZerorateError
+from ..numbers import fixed
 from ..recordings import Recording
 from ..recordings.atomic import written_beside
 from ..recordings.reading import OpenRecording
-from ..signs import fixed
 from .samples import frames_in_batches, sensor_of
 
 REASONS = ("nothing yet", "growing", "learned", "still", "turned", "too fast", "lost", "gap")

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from ..signs import fixed
+from ..numbers import fixed
 from .estimators import Estimator, Moment
 from .plot import Line, Panel, Plot, Series
 from .residual_plots import AXES

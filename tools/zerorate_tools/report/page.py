@@ -5,10 +5,10 @@ from functools import lru_cache
 from importlib.resources import files
 from typing import Any
 
+from ..numbers import chance, figure
 from . import kinds, sentences
 from .board import Deployment
 from .colours import ROLES
-from .numbers import chance, figure
 from .plot import Plot
 from .plotly_form import plain
 from .safe_json import script_json

@@ -3,8 +3,8 @@
 from typing import Any
 
 from ..loop.read.turns import GIVEN
+from ..numbers import figure
 from .kinds import title
-from .numbers import figure
 
 Report = dict[str, Any]
 

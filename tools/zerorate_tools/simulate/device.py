@@ -12,7 +12,7 @@ from ..recordings import Recording, Scales, recording_from_columns
 from .description import load_description
 from .effects import RATE_EFFECTS, lagged
 from .entries import axes
-from .randomness import stream
+from .noise import stream
 from .scaling import coefficients, waveform
 from .schema import Description, Sensor, Table
 from .world import World, build

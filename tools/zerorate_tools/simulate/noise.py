@@ -1,9 +1,19 @@
-"""Noise by its colour: what no model can take away."""
+"""Noise by its colour: what no model can take away; and the random streams it is drawn from."""
+
+import zlib
 
 import numpy as np
 from scipy.signal import lfilter
 
 _OCTAVES_TO_S = 4e4
+
+
+def stream(seed: int, session: int, purpose: str) -> np.random.Generator:
+    """A generator for one purpose of one session.
+
+    Noise stays the same sample for sample when an effect is added, so two runs differ by it alone.
+    """
+    return np.random.default_rng([seed, session, zlib.crc32(purpose.encode())])
 
 
 def flicker(rng: np.random.Generator, n: int, dt_s: float, floor: np.ndarray) -> np.ndarray:

@@ -11,7 +11,7 @@ import numpy as np
 from ..errors import BadDescription
 from .effects import EFFECTS, RATE_EFFECTS
 from .entries import axes
-from .randomness import stream
+from .noise import stream
 from .schema import Description
 from .world import World
 

@@ -10,8 +10,8 @@ from ..errors import BadDescription
 from .attitude import facing, integrate, into_body, multiply, rotation
 from .channels import CHANNELS, Channel, Clock
 from .motion import MOTIONS, Start, face_up
+from .noise import stream
 from .paths import durations, path, seconds
-from .randomness import stream
 from .schema import Description, Session
 
 _EARTH_DPS = 360 / 86164.0905

@@ -4,7 +4,7 @@ import numpy as np
 
 from . import noise
 from .entries import axes
-from .randomness import stream
+from .noise import stream
 from .schema import Description, Sensor
 from .world import World
 

@@ -7,7 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ..signs import fixed
+from ..numbers import fixed
 from .live import Live
 
 _BARS = "▁▂▃▄▅▆▇█"

@@ -1,7 +1,7 @@
 """All figures of `zerorate bench boards`."""
 
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -10,7 +10,8 @@ import numpy as np
 
 from ...boards.flashing import flash
 from ...runtimes.pico import CORE_HZ, EmulatedPico, find_pico
-from ..limits import Limit, verdicts
+from ..limits import Limit, limits_table, verdicts
+from ..tables import number, table
 from ..workload import CYCLE, Workload, workload
 from .memory import CONFIGURATIONS, heap_and_import, least_heap
 from .playing import Play, on_host, on_pico
@@ -134,3 +135,12 @@ def second_program() -> str:
 
     checkout = firmware_package().parents[1]
     return (checkout / _PROGRAM).read_text(encoding="utf-8")
+
+
+def in_markdown(found: Mapping[str, Any]) -> str:
+    """What it must be, heap by part, and the modes that gave equal numbers."""
+    heap = table(["with", "heap, bytes"], [[k, number(v)] for k, v in found["heap_bytes"].items()])
+    modes = [[mode, "yes" if equal else "**no**"] for mode, equal in found["golden"].items()]
+    same = table(["mode", "to the last bit as on the host"], modes)
+    head = f"# {found['board']}\n\nEmulated, with {found['firmware']}.\n"
+    return "\n".join([head, limits_table(verdicts(found, LIMITS)), heap, same])

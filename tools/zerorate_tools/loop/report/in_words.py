@@ -1,6 +1,6 @@
 """A report in a few lines for a terminal."""
 
-from ...signs import fixed
+from ...numbers import fixed
 
 
 def in_words(result: dict) -> str:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...model import effects
-from ...signs import fixed
+from ...numbers import fixed
 from ..search.catalogue import is_supply, varies
 from ..verify.measured import BEFORE
 

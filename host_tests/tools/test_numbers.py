@@ -1,7 +1,7 @@
 """Numbers for people: zero has no sign."""
 
 import pytest
-from zerorate_tools.signs import fixed
+from zerorate_tools.numbers import fixed
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Numbers as a reader wants them: three digits, an exponent only where it cannot be avoided."""
+"""Numbers as a reader wants them."""
 
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _LEAST, _MOST = -4, 6
@@ -22,3 +22,11 @@ def chance(p: float) -> str:
 
 def _minus(text: str) -> str:
     return text.replace("-", "−")
+
+
+def fixed(value: float, digits: int, sign: str = "") -> str:
+    """A number with so many digits behind the point; what rounds to zero has no minus.
+
+    sign: "+" for one before numbers above zero, and zero, too.
+    """
+    return f"{round(float(value), digits) + 0.0:{sign}.{digits}f}"
