@@ -54,20 +54,21 @@ AREAS = {
     "effects": (
         ["firmware/zerorate/effects/" + name for name in (
             "effects.py", "effect_basis.py", "effect_inputs.py", "effect_plays.py")],
-        ["host_tests/firmware/test_effects.py"],
+        ["host_tests/firmware/test_effects.py", "host_tests/firmware/test_effects_in_time.py"],
     ),
     "models": (
         ["firmware/zerorate/effects/model_file.py", "firmware/zerorate/model.py",
          "tools/zerorate_tools/model/binary.py"],
         ["host_tests/tools/test_model_limits.py",
-         "host_tests/firmware/test_effects.py::test_the_first_sample_speaks_until_the_first_tick_ends",
-         "host_tests/firmware/test_effects.py::test_a_power_on_begins_every_memory_anew",
-         "host_tests/tools/test_model.py"],
+         "host_tests/firmware/test_effects_in_time.py::test_the_first_sample_speaks_until_the_first_tick_ends",
+         "host_tests/firmware/test_effects_in_time.py::test_a_power_on_begins_every_memory_anew",
+         "host_tests/tools/test_model.py", "host_tests/tools/test_model_on_device.py"],
     ),
     "recordings": (
         ["tools/zerorate_tools/recordings/" + name for name in (
             "checks.py", "csv_format.py", "scales.py", "atomic.py", "bounded.py")],
-        ["host_tests/tools/test_recordings.py", "host_tests/tools/test_atomic.py",
+        ["host_tests/tools/test_recordings.py", "host_tests/tools/test_bad_recordings.py",
+         "host_tests/tools/test_atomic.py",
          "host_tests/hostile/test_any_bytes.py"],
     ),
 }  # fmt: skip

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from . import trace
+from .simulated_sources import columns, tick_means
 from .trace_on_host import on_cpython
 
 _HERE = Path(__file__).parent
@@ -57,3 +58,10 @@ def source_on(repository):
         return result.files["state.bin"]
 
     return run
+
+
+@pytest.fixture(scope="session")
+def warm_up():
+    """The simulated columns of hours, and their means by tick."""
+    raw = columns()
+    return raw, tick_means(raw)

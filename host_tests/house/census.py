@@ -24,19 +24,29 @@ def census(root):
         for folder in ("firmware", "drivers", "tools", "host_tests")
         for p in (root / folder).rglob("*.py")
     ]
-    made = [p for p in python if re.match(r"(thumb|rv32|fixtures)_", p.name)]
+    made = [
+        p
+        for p in python
+        if re.match(r"(thumb|rv32)_", p.name)
+        or (p.parent.name == "viper" and "firmware" in p.parts)
+    ]
     written = [p for p in python if p not in made]
     firmware = [p for p in written if p.is_relative_to(root / "firmware" / "zerorate")]
     graph = graph_of(root / "tools")
+    own = {
+        f"of these in {folder}": sum(lines(p) for p in written if p.is_relative_to(root / folder))
+        for folder in ("firmware", "drivers", "tools", "host_tests")
+    }
     return {
         "Python files": len(written),
         "lines in them": sum(map(lines, written)),
-        "lines that `make layout` writes": sum(map(made_lines, python)),
-        "of these of tools": sum(lines(p) for p in written if p.is_relative_to(root / "tools")),
-        "of these of tests": sum(
-            lines(p) for p in written if p.is_relative_to(root / "host_tests")
-        ),
+        **own,
         "generated files": len(made),
+        "lines in them, and those that `make layout` writes": sum(
+            [*(len(p.read_text("utf-8").splitlines()) for p in made), *map(made_lines, python)]
+        ),
+        "lines that make C and machine code of kernels": sum(map(lines, generator(root))),
+        "files of more than 300 lines": sum(lines(p) > 300 for p in written),
         "files that say where a word of an array is": len(layouts(firmware)),
         "names of constants with several values in the firmware": len(several(firmware)),
         "circles of imports between modules": len(circles(graph)),
@@ -44,6 +54,16 @@ def census(root):
         "words to learn": words(root / "docs" / "glossary.md"),
         **rooms(root / "tools" / "zerorate_tools" / "loop"),
     }
+
+
+def generator(root):
+    """The files that read kernels and write C, machine code and the export of them."""
+    tools = root / "tools" / "zerorate_tools"
+    back = ("reading", "c_expressions", "c_functions", "parts", "machine_code", "native_files")
+    now = [tools / "kernels" / f"{name}.py" for name in (*back, "export")]
+    return [
+        p for p in [*now, *(tools / "twins").glob("*.py"), tools / "viper_twins.py"] if p.exists()
+    ]
 
 
 def lines(path):

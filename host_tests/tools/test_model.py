@@ -1,8 +1,6 @@
 """model.json and model.bin are exact twins; what does not belong to a device is refused by name."""
 
 import json
-import struct
-import zlib
 from dataclasses import replace
 
 import pytest
@@ -10,7 +8,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from zerorate import Sensor
 from zerorate.effects import model_file
-from zerorate.layout import EFFECTS
 from zerorate.model import EffectModel
 from zerorate_tools.cli import main
 from zerorate_tools.errors import BadModel
@@ -125,115 +122,6 @@ def test_the_two_files_are_the_same_model(files, model):
     text, data = files
     assert (text.name, data.name) == ("model.json", "model.bin")
     assert read_model(text) == read_model(data) == model
-
-
-def load(data, sensor=None, binding=DEVICE):
-    return EffectModel().load(data, sensor or Sensor(), binding)
-
-
-def test_the_firmware_takes_what_was_made_for_it(model):
-    held = EffectModel()
-    assert held.load(encoded(model), Sensor(), DEVICE) == model_file.LOADED
-    assert held.channels == ("load", "vdd_mv")
-    assert held.e[EFFECTS.SLOT_COUNT] == len(SLOTS)
-    assert not held.channel("humidity", 3)
-
-
-@pytest.mark.parametrize(
-    ("sensor", "binding", "reason"),
-    [
-        (Sensor(), bytes([0x70, 0, 0, 3]), model_file.OTHER_CHIP),
-        (Sensor(), bytes([0x68, 1, 0, 3]), model_file.OTHER_RANGE),
-        (Sensor(), bytes([0x68, 0, 2, 3]), model_file.OTHER_RANGE),
-        (Sensor(), bytes([0x68, 0, 0, 4]), model_file.OTHER_FILTER),
-        (Sensor(gyro_lsb_per_dps=65.5), None, model_file.OTHER_RANGE),
-        (Sensor(accel_lsb_per_g=8192.0), None, model_file.OTHER_RANGE),
-        (Sensor(temp_lsb_per_degc=333.87), None, model_file.OTHER_SCALE),
-        (Sensor(temp_offset_degc=21.0), None, model_file.OTHER_SCALE),
-    ],
-)
-def test_the_firmware_refuses_another_device_by_name(model, sensor, binding, reason):
-    assert load(encoded(model), sensor, binding) == reason
-    assert len(model_file.REASONS) == 12
-
-
-def test_a_binding_that_was_not_known_fits_any_device():
-    data = encoded(build_model(SLOTS, SCALES))
-    assert load(data, binding=bytes([0x99, 1, 2, 6])) == model_file.LOADED
-
-
-@pytest.mark.parametrize("binding", [b"", DEVICE[:1], DEVICE + b"\x99"], ids=len)
-def test_what_both_know_of_a_binding_is_compared(model, binding):
-    assert load(encoded(model), binding=binding) == model_file.LOADED
-
-
-def test_bytes_that_no_tool_would_write_are_refused(model):
-    data = bytearray(encoded(model))[:-4]
-    data[11] = 1
-    with pytest.raises(BadModel, match="do not belong together"):
-        decoded(bytes(data) + struct.pack("<I", zlib.crc32(data)))
-
-
-def test_play_operators_stand_behind_the_slots_and_make_another_version():
-    plays = [Slot(PLAY, (0.001, 0, 0.002), "a"), Slot(replace(PLAY, power=2), (0, 0, 1e-5), "a")]
-    model = build_model([*plays, *SLOTS], SCALES, binding=BINDING)
-    assert model.slots == (*SLOTS, *plays)
-    data = encoded(model)
-    assert (data[3], encoded(build_model(SLOTS, SCALES, binding=BINDING))[3]) == (2, 1)
-    assert load(data) == model_file.LOADED
-    for bit in range(80, 88):
-        turned = bytearray(data)
-        turned[bit // 8] ^= 1 << bit % 8
-        assert load(turned) == model_file.DAMAGED
-
-
-def test_every_cut_and_every_turned_bit_is_refused(model):
-    data = encoded(model)
-    cuts = {load(data[:n]) for n in range(len(data))}
-    assert cuts == {model_file.NO_MODEL, model_file.TRUNCATED}
-    seen = set()
-    for bit in range(8 * len(data)):
-        turned = bytearray(data)
-        turned[bit // 8] ^= 1 << bit % 8
-        seen.add(load(turned))
-        if bit % 7 == 0:
-            with pytest.raises(BadModel):
-                decoded(bytes(turned))
-    refused = {model_file.NO_MODEL, model_file.OTHER_VERSION, model_file.TRUNCATED}
-    assert seen == refused | {model_file.DAMAGED}
-
-
-@pytest.mark.parametrize("more", [b"\0", b"\0" * 40])
-def test_a_model_longer_than_it_says_is_damaged_whatever_its_checksum(model, more):
-    longer = encoded(model)[:-4] + more
-    assert load(longer + zlib.crc32(longer).to_bytes(4, "little")) == model_file.DAMAGED
-
-
-@given(noise=st.binary(max_size=300), at=st.integers(0, 1200))
-@settings(max_examples=60, deadline=None)
-def test_bytes_of_any_kind_with_a_right_checksum_never_raise(noise, at):
-    data = bytearray(encoded(build_model(SLOTS, SCALES)))[:-4]
-    data[at : at + len(noise)] = noise
-    data[4:6] = struct.pack("<H", len(data) + 4)
-    whole = bytes(data) + struct.pack("<I", zlib.crc32(data))
-    assert 0 <= load(whole, binding=None) < len(model_file.REASONS)
-    try:
-        assert encoded(decoded(whole)) == whole
-    except BadModel:
-        pass
-
-
-def test_a_file_that_is_not_there_is_a_reason_and_no_error(tmp_path):
-    held = EffectModel()
-    assert held.load_file(str(tmp_path / "none.bin"), Sensor()) == model_file.UNREADABLE
-    assert held.e[EFFECTS.SLOT_COUNT] == 0
-
-
-def test_a_refused_model_leaves_none(model):
-    held = EffectModel()
-    held.load(encoded(model), Sensor())
-    held.load(encoded(model), Sensor(), bytes([1, 0, 0, 3]))
-    assert held.e[EFFECTS.SLOT_COUNT] == 0
 
 
 @pytest.mark.parametrize(

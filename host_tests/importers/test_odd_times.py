@@ -1,0 +1,153 @@
+"""Times as tables have them: each is read, or the error has the words that mend it."""
+
+import numpy as np
+import pandas as pd
+import pytest
+from zerorate_tools.errors import BadRecording
+from zerorate_tools.importers import Options
+
+from .test_odd_files import RNG, read, table, told
+
+# Time
+
+
+def test_a_gap_of_five_minutes_does_not_change_the_rate(tmp_path):
+    frame = table()
+    frame.loc[1000:, "t_s"] += 300
+    recording, report = read(tmp_path, frame)
+    assert recording.scales.odr_hz == pytest.approx(100, rel=1e-4)
+    assert told(report, "a gap of 5 min in the time stamps")
+
+
+def test_rows_out_of_order_are_sorted_and_said(tmp_path):
+    frame = table()
+    shuffled = frame.iloc[np.argsort(np.arange(2000) + RNG.uniform(0, 4, 2000))]
+    recording, report = read(tmp_path, shuffled)
+    assert recording.columns["t_us"].tolist() == [i * 10_000 for i in range(2000)]
+    assert told(report, "rows: sorted by time")
+
+
+def test_the_second_half_of_a_log_before_the_first_is_sorted(tmp_path):
+    frame = table()
+    recording, _ = read(tmp_path, pd.concat([frame[1000:], frame[:1000]]))
+    assert recording.columns["t_us"].tolist() == [i * 10_000 for i in range(2000)]
+
+
+def test_two_power_ons_in_one_file_are_not_mixed(tmp_path):
+    frame = table()
+    with pytest.raises(BadRecording, match="row 2001: time begins anew; cut it there"):
+        read(tmp_path, pd.concat([frame, frame]))
+
+
+def test_a_counter_that_ran_over_goes_on(tmp_path):
+    frame = table().rename(columns={"t_s": "t_us"})
+    frame["t_us"] = (2**32 - 5_000_000 + np.arange(2000) * 10_000) % 2**32
+    recording, report = read(tmp_path, frame)
+    assert (np.diff(recording.columns["t_us"]) == 10_000).all()
+    assert told(report, "a clock of 32 bits ran over at row 501: counted on")
+
+
+@pytest.mark.parametrize(
+    "stamp",
+    ["2026-05-01T12:00:{:06.3f}Z", "2026-05-01 12:00:{:06.3f}", "2026-05-01T14:00:{:06.3f}+02:00"],
+)
+def test_dates_of_iso_8601_are_times(tmp_path, stamp):
+    frame = table().rename(columns={"t_s": "time"})
+    frame["time"] = [stamp.format(i / 100) for i in range(2000)]
+    recording, _ = read(tmp_path, frame)
+    assert recording.columns["t_us"][0] == 1_777_636_800_000_000
+    assert (np.diff(recording.columns["t_us"]) == 10_000).all()
+
+
+@pytest.mark.parametrize("stamp", ["01.05.2026 12:00:{:06.3f}", "12:00:{:06.3f}"])
+def test_a_time_that_cannot_be_read_says_how_to_write_it(tmp_path, stamp):
+    frame = table(500).rename(columns={"t_s": "time"})
+    frame["time"] = [stamp.format(t) for t in frame["time"]]
+    with pytest.raises(BadRecording, match="no time can be read from column 'time'; .*--hz N"):
+        read(tmp_path, frame)
+
+
+def test_stamps_that_are_coarser_than_the_samples_tell_the_rate(tmp_path):
+    frame = table()
+    frame["t_s"] = frame["t_s"].round(1)
+    frame.loc[1000:, "t_s"] += 300
+    recording, report = read(tmp_path, frame)
+    assert recording.scales.odr_hz == pytest.approx(100, rel=0.01)
+    assert told(report, "time stamps repeat, and rows at a time that stands still teach nothing")
+
+
+def test_seconds_and_nanoseconds_are_added(tmp_path):
+    frame = table()
+    at_ns = 1_777_636_800_990_000_000 + np.arange(2000) * 10_000_000
+    frame.insert(0, "header.stamp.sec", at_ns // 10**9)
+    frame.insert(1, "header.stamp.nanosec", at_ns % 10**9)
+    recording, _ = read(tmp_path, frame.drop(columns="t_s"))
+    assert np.abs(recording.columns["t_us"] - at_ns // 1000).max() <= 1
+    named = frame.drop(columns="t_s").set_axis(["A", "B", *frame.columns[3:]], axis=1)
+    again, _ = read(tmp_path, named, mapping="t_us=A:s+B:ns")
+    assert again.columns["t_us"].tolist() == recording.columns["t_us"].tolist()
+
+
+def test_a_rate_overrides_a_time_column_and_says_so(tmp_path):
+    frame = table(50).rename(columns={"t_s": "when"}).assign(timestamp="yesterday")
+    recording, report = read(tmp_path, frame, options=Options(hz=4))
+    assert recording.columns["t_us"][1] == 250_000
+    assert told(report, "time column 'timestamp' left aside, as --hz is given")
+
+
+def test_a_time_of_unknown_unit_is_offered_with_its_rate(tmp_path):
+    frame = table().rename(columns={"t_s": "time"})
+    with pytest.raises(BadRecording, match=r"give --time-unit s \(100 Hz\)"):
+        read(tmp_path, frame)
+
+
+def test_stamps_beyond_64_bits_are_refused_with_their_row(tmp_path):
+    text = "t_us,gx_dps,gy_dps,gz_dps\n1,1,1,1\n18446744073709551615,1,1,1\n"
+    with pytest.raises(BadRecording, match="row 2: the time stamp is .*name the unit"):
+        read(tmp_path, text)
+
+
+# Sensors at their own times
+
+
+def test_temperature_once_a_second_is_interpolated_and_said(tmp_path):
+    frame = table(2000, 200.0)
+    exact = frame["temp_c"].copy()
+    frame.loc[np.arange(2000) % 200 != 0, "temp_c"] = np.nan
+    recording, report = read(tmp_path, frame)
+    assert len(recording) == 2000
+    assert recording.temp_degc()[:1800] == pytest.approx(exact[:1800], abs=0.006)
+    assert told(report, "temperature interpolated between its readings, over at most 1 s")
+
+
+def test_a_merged_time_line_keeps_every_rate(tmp_path):
+    frame = table(2000, 200.0)
+    rates = frame[["t_s", *(f"g{a}_dps" for a in "xyz")]]
+    force = frame[["t_s", *(f"a{a}_g" for a in "xyz")]].assign(t_s=frame["t_s"] + 0.002)
+    warm = frame.loc[::200, ["t_s", "temp_c"]].assign(t_s=frame["t_s"][::200] + 0.001)
+    merged = pd.concat([rates, force, warm]).sort_values("t_s")
+    recording, report = read(tmp_path, merged)
+    assert len(recording) == 2000
+    assert recording.scales.odr_hz == pytest.approx(200)
+    assert recording.accel_g()[:, 2] == pytest.approx(1, abs=0.02)
+    assert told(report, "acceleration interpolated between its readings, over at most 5 ms")
+
+
+def test_acceleration_on_rows_of_its_own_chooses_its_range(tmp_path):
+    frame = table()
+    forces = [f"a{axis}_g" for axis in "xyz"]
+    apart = frame[["t_s", *forces]].assign(az_g=5.0)
+    apart["t_s"] += 0.003
+    merged = pd.concat([frame.drop(columns=forces), apart]).sort_values("t_s")
+    recording, report = read(tmp_path, merged)
+    assert recording.accel_g()[:, 2] == pytest.approx(np.full(len(recording), 5.0), abs=0.001)
+    assert told(report, "strongest acceleration: 5 g")
+
+
+def test_a_column_can_be_left_out(tmp_path):
+    frame = table().assign(temp_c="broken")
+    recording, report = read(tmp_path, frame)
+    assert not recording.has_temp
+    assert told(report, "column 'temp_c' left out: no number is in it")
+    recording, _ = read(tmp_path, table(), mapping="temp=none ax=none")
+    assert not recording.has_temp and not recording.has_accel

@@ -1,0 +1,285 @@
+"""A bad recording is refused in one line that names the file, the row, and what to do."""
+
+import gzip
+import json
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+from zerorate_tools.errors import BadRecording
+from zerorate_tools.recordings import (
+    Scales,
+    open_recording,
+    read_recording,
+    recording_from_columns,
+    write_recording,
+)
+from zerorate_tools.recordings.checks import GAP
+
+from .test_recordings import SCALES, a_recording
+
+HEADER = "t_us,gx,gy,gz"
+_SCALES = '{"sensor": "X", "odr_hz": %s, "gyro_lsb_per_dps": 1}'
+
+
+@pytest.fixture
+def csv_of(tmp_path):
+    def write(text, scales=None):
+        (tmp_path / "bad.csv").write_text(text)
+        scales = {"sensor": "X", "odr_hz": 1, "gyro_lsb_per_dps": 1} if scales is None else scales
+        (tmp_path / "bad.json").write_text(
+            scales if isinstance(scales, str) else json.dumps(scales)
+        )
+        return tmp_path / "bad.csv"
+
+    return write
+
+
+@pytest.mark.parametrize(
+    ("text", "complaint"),
+    [
+        ("", "empty file"),
+        (f"{HEADER}\n", "no data row"),
+        ("t_us,gx,gy\n0,1,2\n", "column gz is missing.*zerorate import"),
+        (f"{HEADER},gx\n0,1,2,3,4\n", "column gx comes twice"),
+        (f"{HEADER},ax\n0,1,2,3,4\n", "only ax is there"),
+        (f"{HEADER}\n0,1,2,3\n1,1.5,2,3\n", "row 2: gx is '1.5', no integer"),
+        (f"{HEADER}\n0,1,2,3\n1,one,2,3\n", "row 2: gx is 'one', no integer"),
+        (f"{HEADER}\n0,1,2,3\n1,nan,2,3\n", "row 2: gx has no value; drop the row"),
+        (f"{HEADER}\n0,1,2,3\n1,,2,3\n", "row 2: gx has no value"),
+        (f"{HEADER},vdd_mv\n0,1,2,3,4\n1,1,2,3,\n", "row 2: vdd_mv has no value; fill the gaps"),
+        (f"{HEADER}\n0,1,2,3\n1,1,2\n", "row 2: 3 cells where the header names 4"),
+        (f"{HEADER}\n0,1,2,3\n1,1,x,3\n2,1,2\n", "row 2: gy is 'x', no integer"),
+        (f"\n\n{HEADER}\n0,1,2,3\n1,1,2\n2,1,x,3\n", "row 2: 3 cells where the header names 4"),
+        (f"{HEADER}\n0,1,2,3\n1,1,x,y\n", "row 2: gy is 'x', no integer"),
+        (f"{HEADER}\n5,1,2,3\n9,1,2,3\n7,1,2,3\n", "row 3: time goes .* from 9 to 7 us; sort or"),
+        (f"{HEADER}\n0,1,2,3\n1,99999999999,2,3\n", "row 2: gx is 99999999999, more than 32 bits"),
+        (f"{HEADER}\n0,1,2,3\n1,99999999999999999999,2,3\n", "bad.csv"),
+        (f"{HEADER},temp\n0,1,2,3,4\n", "lack temp_lsb_per_degc, temp_offset_degc; add"),
+        (f"{HEADER},ax,ay,az\n0,1,2,3,4,5,6\n", "lack accel_lsb_per_g"),
+    ],
+)
+def test_a_bad_csv_is_refused_in_one_line(csv_of, text, complaint):
+    path = csv_of(text)
+    with pytest.raises(BadRecording, match=complaint) as raised:
+        read_recording(path)
+    assert "\n" not in str(raised.value) and "bad." in str(raised.value)
+
+
+@pytest.mark.parametrize(("last", "complaint"), [
+    ("2,1,x,3", "row 200001: gy is 'x', no integer"), ("2,1,2", "row 200001: 3 cells where")
+])  # fmt: skip
+def test_a_row_far_behind_the_first_megabyte_is_named(csv_of, last, complaint):
+    with pytest.raises(BadRecording, match=complaint):
+        read_recording(csv_of(f"{HEADER}\n" + "1,1,2,3\n" * 200_000 + f"{last}\n"))
+
+
+@pytest.mark.parametrize("bits", [30, 31, 32])
+def test_a_clock_that_ran_over_is_told_from_time_that_goes_backwards(csv_of, bits):
+    last = (1 << bits) - 4_000_000
+    for later, do in ((5_999_999, f"clock of {bits} bits ran over: add {1 << bits} to it"),
+                      (6_000_000, "sort or cut the recording there")):  # fmt: skip
+        with pytest.raises(BadRecording, match=f"row 2: time goes backwards.*{do}"):
+            read_recording(csv_of(f"{HEADER}\n{last},1,2,3\n{later},1,2,3\n"))
+
+
+@pytest.mark.parametrize(
+    ("scales", "complaint"),
+    [
+        ("{", "bad.json: the scales are not JSON .line 1"),
+        ("[]", "no JSON object"),
+        ({"odr_hz": 1, "gyro_lsb_per_dps": 1}, "lack sensor; add .sensor.: .MPU-6050. "),
+        ({"sensor": "X", "gyro_lsb_per_dps": 1}, "lack odr_hz"),
+        ({}, "lack sensor, odr_hz, gyro_lsb_per_dps; add"),
+        ({"sensor": "X", "odr_hz": 0, "gyro_lsb_per_dps": 1}, "odr_hz is 0"),
+        ({"sensor": "X", "odr_hz": "fast", "gyro_lsb_per_dps": 1}, "odr_hz is 'fast', no number"),
+        ('{"sensor": "X", "odr_hz": NaN, "gyro_lsb_per_dps": 1}', "odr_hz is nan"),
+    ],
+)
+def test_bad_scales_are_refused_in_one_line(csv_of, scales, complaint):
+    path = csv_of(f"{HEADER}\n0,1,2,3\n", scales)
+    with pytest.raises(BadRecording, match=complaint):
+        read_recording(path)
+
+
+def test_a_csv_without_scales_says_what_to_write(csv_of):
+    path = csv_of("t_us,gx,gy,gz,ax,ay,az,temp\n0,1,2,3,4,5,6,7\n")
+    path.with_name("bad.json").unlink()
+    with pytest.raises(BadRecording, match="there is no bad.json beside it; write there") as raised:
+        read_recording(path)
+    path.with_name("bad.json").write_text("{" + str(raised.value).partition("{")[2])
+    assert read_recording(path).scales.temp_offset_degc == 36.53
+
+
+def test_a_foreign_csv_is_answered_with_the_command_that_imports_it(csv_of):
+    with pytest.raises(BadRecording, match="t_us, gx, gy, gz are.*zerorate import .*bad.csv --out"):
+        read_recording(csv_of("time,x,y,z\n0,1,2,3\n"))
+
+
+def test_time_going_backwards_between_batches_is_seen(tmp_path):
+    t_us = np.r_[np.arange(100), np.arange(50, 100)]
+    columns = dict.fromkeys(("t_us", "gx", "gy", "gz"), t_us)
+    write_recording(recording_from_columns(columns, Scales("X", 1, 1)), tmp_path / "bad.parquet")
+    with pytest.raises(BadRecording, match="row 101: time goes backwards, from 99 to 50 us"):
+        list(open_recording(tmp_path / "bad.parquet").batches(rows=100))
+
+
+def test_a_truncated_gzip_is_refused(tmp_path):
+    write_recording(a_recording(5000), tmp_path / "run.csv.gz")
+    whole = (tmp_path / "run.csv.gz").read_bytes()
+    for length in (5, len(whole) // 2, len(whole) - 4):
+        (tmp_path / "run.csv.gz").write_bytes(whole[:length])
+        with pytest.raises(BadRecording, match="cut off or damaged"):
+            read_recording(tmp_path / "run.csv.gz")
+
+
+def test_a_truncated_parquet_is_refused(tmp_path):
+    write_recording(a_recording(5000), tmp_path / "run.parquet")
+    whole = (tmp_path / "run.parquet").read_bytes()
+    for length, complaint in ((0, "empty file"), (100, "cut off"), (len(whole) - 9, "cut off")):
+        (tmp_path / "run.parquet").write_bytes(whole[:length])
+        with pytest.raises(BadRecording, match=complaint):
+            read_recording(tmp_path / "run.parquet")
+
+
+def test_a_parquet_without_scales_is_refused(tmp_path):
+    pq.write_table(pa.table({"t_us": [0], "gx": [1], "gy": [1], "gz": [1]}), tmp_path / "x.parquet")
+    with pytest.raises(BadRecording, match="no scales .schema metadata"):
+        read_recording(tmp_path / "x.parquet")
+
+
+@pytest.mark.parametrize(
+    ("values", "complaint"),
+    [
+        ([1.0, float("nan")], "row 2: gx is nan"),
+        ([1.0, 2.5], "column gx holds double, not integers"),
+        (["a", "b"], "column gx holds string, not integers"),
+        ([1, None], "row 2: gx has no value"),
+    ],
+)
+def test_wrong_types_in_a_parquet_are_refused(tmp_path, values, complaint):
+    table = pa.table({"t_us": [0, 1], "gx": values, "gy": [1, 1], "gz": [1, 1]})
+    scales = json.dumps({"sensor": "X", "odr_hz": 1, "gyro_lsb_per_dps": 1}).encode()
+    pq.write_table(table.replace_schema_metadata({b"zerorate": scales}), tmp_path / "x.parquet")
+    with pytest.raises(BadRecording, match=complaint):
+        read_recording(tmp_path / "x.parquet")
+
+
+def test_an_extra_channel_of_fractions_is_told_to_be_integers_gaps_or_not(tmp_path):
+    columns = {"t_us": [0, 1], "gx": [1, 1], "gy": [1, 1], "gz": [1, 1]}
+    table = pa.table({**columns, "vdd_mv": [4.5, float("nan")]})
+    scales = json.dumps(SCALES.to_json()).encode()
+    pq.write_table(table.replace_schema_metadata({b"zerorate": scales}), tmp_path / "x.parquet")
+    with pytest.raises(BadRecording, match="column vdd_mv holds double, not integers"):
+        read_recording(tmp_path / "x.parquet", keep_gaps=True)
+
+
+def test_gaps_of_an_extra_channel_are_kept_when_asked(csv_of):
+    path = csv_of(f"{HEADER},vdd_mv\n0,1,2,3,4\n1,1,2,3,\n")
+    assert read_recording(path, keep_gaps=True).columns["vdd_mv"].tolist() == [4, GAP]
+
+
+@pytest.mark.parametrize(
+    ("name", "complaint"),
+    [("none.csv", "no such file"), ("run.xlsx", "neither .csv"), (".", "is a folder")],
+)
+def test_what_is_no_recording_at_all_is_refused(tmp_path, name, complaint):
+    (tmp_path / "run.xlsx").write_bytes(b"PK")
+    with pytest.raises(BadRecording, match=complaint):
+        open_recording(tmp_path / name)
+
+
+def test_text_in_utf_16_is_read(tmp_path):
+    (tmp_path / "x.csv").write_bytes("t_us,gx,gy,gz\n1,2,3,4\n".encode("utf-16"))
+    (tmp_path / "x.json").write_text('{"sensor": "X", "odr_hz": 1, "gyro_lsb_per_dps": 1}')
+    assert read_recording(tmp_path / "x.csv").columns["gz"].tolist() == [4]
+
+
+@pytest.mark.parametrize(
+    ("scales", "complaint"),
+    [
+        (_SCALES % ("9" * 400), r"odr_hz is 9+\.\.\.; write a number from"),
+        (_SCALES % ("9" * 5000), "a number of thousands of digits"),
+        ("[" * 100_000, "nested too deep"),
+        (_SCALES % "1e-308", "odr_hz is 1e-308; write a number from"),
+        ('{"sensor": "X", "odr_hz": 1, "gyro_lsb_per_dps": 1e300}', "gyro_lsb_per_dps is 1e"),
+        ('{"sensor": "' + "X" * 2_000_000 + '"}', "scales of more than 1 MiB"),
+    ],
+)
+def test_scales_that_no_sensor_has_are_refused_in_one_line(tmp_path, scales, complaint):
+    (tmp_path / "x.csv").write_text("t_us,gx,gy,gz\n1,2,3,4\n")
+    (tmp_path / "x.json").write_text(scales)
+    with pytest.raises(BadRecording, match=complaint) as error:
+        read_recording(tmp_path / "x.csv")
+    assert len(str(error.value)) < 400
+
+
+SCALES_OF_ALL = {"odr_hz": 1, "gyro_lsb_per_dps": 1, "accel_lsb_per_g": 1}
+SCALES_OF_ALL |= {"sensor": "X", "temp_lsb_per_degc": 1, "temp_offset_degc": 1}
+
+
+@pytest.mark.parametrize(("key", "least", "most"), [
+    ("odr_hz", 1e-5, 1e6), ("gyro_lsb_per_dps", 1e-3, 1e7), ("accel_lsb_per_g", 1e-3, 1e8),
+    ("temp_lsb_per_degc", 1e-3, 1e7), ("temp_offset_degc", -1e6, 1e6),
+])  # fmt: skip
+def test_every_scale_has_ends(csv_of, key, least, most):
+    text = f"{HEADER}\n0,1,2,3\n"
+    for end in (least, most):
+        read = read_recording(csv_of(text, {**SCALES_OF_ALL, key: end}))
+        assert getattr(read.scales, key) == end
+    for beyond in (least - abs(least) / 100, most * 1.01, True):
+        with pytest.raises(BadRecording, match=f"{key} is"):
+            read_recording(csv_of(text, {**SCALES_OF_ALL, key: beyond}))
+
+
+def test_a_cell_of_a_quarter_million_letters_is_named_by_its_row(tmp_path):
+    (tmp_path / "x.csv").write_text("t_us,gx,gy,gz\n1,2,3,4\n2," + "a" * 250_000 + ",3,4\n")
+    (tmp_path / "x.json").write_text('{"sensor": "X", "odr_hz": 1, "gyro_lsb_per_dps": 1}')
+    with pytest.raises(BadRecording, match="row 2: gx is 'a{40}', no integer"):
+        read_recording(tmp_path / "x.csv")
+
+
+@pytest.mark.parametrize(("kind", "name", "value"), [
+    ("uint64", "t_us", 2**63 - 1), ("int64", "t_us", 1), ("uint32", "gx", 2**31 - 1),
+    ("int64", "load", -(2**31)), ("int64", "load", 2**31 - 1), ("int16", "gx", -(2**15)),
+])  # fmt: skip
+def test_numbers_that_just_fit_are_read(tmp_path, kind, name, value):
+    columns = {n: pa.array([1, 2], pa.int64()) for n in ("t_us", "gx", "gy", "gz", "load")}
+    columns[name] = pa.array([1, value], getattr(pa, kind)())
+    scales = b'{"sensor": "X", "odr_hz": 1, "gyro_lsb_per_dps": 1}'
+    pq.write_table(
+        pa.table(columns).replace_schema_metadata({b"zerorate": scales}), tmp_path / "x.parquet"
+    )
+    assert read_recording(tmp_path / "x.parquet").columns[name].tolist() == [1, value]
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "value", "complaint"),
+    [
+        ("uint64", "t_us", 2**63, "row 2: t_us is 9223372036854775808, more than 64 bits"),
+        ("uint32", "gx", 2**31, "row 2: gx is 2147483648, more than 32 bits"),
+        ("uint32", "load", 2**32 - 1, "row 2: load is 4294967295, more than 32 bits"),
+        ("int64", "load", -(2**31) - 1, "row 2: load is -2147483649, more than 32 bits"),
+    ],
+)
+def test_numbers_that_do_not_fit_are_refused_instead_of_wrapped(
+    tmp_path, kind, name, value, complaint
+):
+    columns = {n: pa.array([1, 2], pa.int64()) for n in ("t_us", "gx", "gy", "gz", "load")}
+    columns[name] = pa.array([1, value], getattr(pa, kind)())
+    scales = b'{"sensor": "X", "odr_hz": 1, "gyro_lsb_per_dps": 1}'
+    table = pa.table(columns).replace_schema_metadata({b"zerorate": scales})
+    pq.write_table(table, tmp_path / "x.parquet")
+    with pytest.raises(BadRecording, match=complaint):
+        read_recording(tmp_path / "x.parquet")
+
+
+def test_a_gzip_that_is_none_is_refused(tmp_path):
+    (tmp_path / "x.csv.gz").write_bytes(b"\x1f\x8b" + HEADER.encode())
+    with pytest.raises(BadRecording, match="cut off or damaged"):
+        open_recording(tmp_path / "x.csv.gz")
+    with gzip.open(tmp_path / "x.csv.gz", "wb"):
+        pass
+    with pytest.raises(BadRecording, match="empty file"):
+        open_recording(tmp_path / "x.csv.gz")
