@@ -71,7 +71,8 @@ class Corrector:
     split in halves, one straight line, with settings of its own; with every=False the same rules
     on this project's rests. every: learn every reading, moving or still (default: as document).
     ignore_outside: readings outside a histogram are ignored instead of extending it (default: as
-    document). motion: learn in motion as well; gravity: against gravity as well; with
+    document). motion: learn in motion as well; gravity: against gravity as well (default: where
+    the board has that part and the sensor serves it, but not with document or every); with
     document both in their literal forms. Any key of DEFAULTS (settings.py, docs/settings.md) may
     be given by name, in its unit. Raises ValueError.
     """
@@ -85,8 +86,8 @@ class Corrector:
         document: bool = False,
         every: "bool | None" = None,
         ignore_outside: "bool | None" = None,
-        motion: bool = False,
-        gravity: bool = False,
+        motion: "bool | None" = None,
+        gravity: "bool | None" = None,
         **limits: float,
     ) -> None:
         from .settings import DEFAULTS, OF_THE_DOCUMENT, checked, settings
@@ -126,17 +127,26 @@ class Corrector:
         self._examine: "Any" = None
         self._examined_by: "Any" = None
         self.alone = True
-        if motion or gravity:
-            self._join_others()
-        if motion:
-            self._learn_in_motion(document, chosen["motion_start_dps"])
-        if gravity:
-            self._learn_by_gravity(document)
+        self.left_out = ""
+        if every or document:  # who asks for other rules gets those alone
+            motion, gravity = bool(motion), bool(gravity)
+        self._begin(self._learn_in_motion, motion, document, chosen["motion_start_dps"])
+        self._begin(self._learn_by_gravity, gravity, document, 0)
         walk_lsb = chosen["walk_dps"] * self.sensor.gyro_lsb_per_dps
         self._walk_q16 = max(1, int(min(c[_WALK_MOST_Q16], walk_lsb * walk_lsb * 65536)))
         if rest.is_machine_code and self.alone and type(self) is Corrector:
             self.update = rest.bound(self.state, c)  # type: ignore[method-assign]
         self.reset()
+
+    def _begin(self, learn, wanted, document, start_dps):
+        if wanted or wanted is None:
+            try:
+                learn(document, start_dps)
+                self._join_others()
+            except (ImportError, ValueError) as error:
+                if wanted:
+                    raise
+                self.left_out += "Left out: %s.\n" % error
 
     def _join_others(self):
         self._examine, self._examined_by = rest.examined(self.settings)
@@ -147,10 +157,8 @@ class Corrector:
     def _learn_in_motion(self, document, start_dps):
         # loaded here, so that who does not learn in motion has no memory taken by it
         from .motion.motion_settings import motion_settings, motion_state
-        from .native.motion import update
 
         sensor = self.sensor
-        self._observe_motion = update
         self.motion_settings = motion_settings(
             sensor.odr_hz,
             sensor.gyro_lsb_per_dps,
@@ -159,18 +167,22 @@ class Corrector:
             start_dps=start_dps,
             temp_lsb_per_degc=sensor.temp_lsb_per_degc,
         )
+        from .native.motion import update
+
+        self._observe_motion = update
         self.motion = motion_state(self.motion_settings)
         unload("zerorate.motion", "motion_settings")
 
-    def _learn_by_gravity(self, document):
+    def _learn_by_gravity(self, document, _):
         from .gravity.gravity_settings import gravity_settings, gravity_state
-        from .native.gravity import update
 
         sensor = self.sensor
-        self._observe_gravity = update
         self.gravity_settings = gravity_settings(
             sensor.odr_hz, sensor.gyro_lsb_per_dps, sensor.accel_lsb_per_g, document=document
         )
+        from .native.gravity import update
+
+        self._observe_gravity = update
         self.gravity = gravity_state(self.gravity_settings)
         unload("zerorate.gravity", "gravity_settings")
 

@@ -79,6 +79,8 @@ def explain(corrector):
         from .explain_sources import explain_sources
 
         lines.extend(explain_sources(corrector))
+    if corrector.left_out:
+        lines.append(corrector.left_out[:-1])
     if corrector.schedule is not None:
         lines.append(saving_text(corrector.schedule, sensor))
     lines.extend(runs())

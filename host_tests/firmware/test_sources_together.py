@@ -1,5 +1,6 @@
 """Three sources and one decision: equal on every interpreter, no heap, no leap, in words."""
 
+import sys
 from array import array
 
 import numpy as np
@@ -8,9 +9,10 @@ from scipy.spatial.transform import Rotation
 from zerorate import Corrector, Sensor
 from zerorate.layout import GRAVITY, MOTION, STATE
 from zerorate.layout import SOURCE as SOURCES
+from zerorate_tools.simulate import simulate
 
 from . import motions
-from .played import by_machine_code
+from .played import by_machine_code, estimators
 
 HZ = 25.0
 DT_US = 40000
@@ -29,7 +31,7 @@ def samples():
 
 
 def both(**options):
-    return Corrector(Sensor(HZ), motion=True, gravity=True, **options)
+    return Corrector(Sensor(HZ), **options)
 
 
 def played(corrector, samples, look=lambda corrector: None):
@@ -115,9 +117,41 @@ def test_it_says_which_axis_gravity_hides():
     assert "gx for 1" in text
 
 
-def test_nothing_is_said_of_sources_that_are_off():
-    text = Corrector().explain()
-    assert "In motion" not in text and "Against gravity" not in text
+def test_every_source_is_on_by_default_and_left_out_by_name():
+    assert Corrector().motion is not None and Corrector().gravity is not None
+    corrector = Corrector(motion=False, gravity=False)
+    text = corrector.explain()
+    assert corrector.alone and "In motion" not in text and "Against gravity" not in text
+    assert "Left out" not in text
+
+
+def test_a_sensor_too_slow_for_a_source_goes_without_it_and_says_so():
+    corrector = Corrector(Sensor(5.0))
+    assert corrector.motion is None and corrector.gravity is not None
+    assert "Left out: learning in motion needs 8 Hz or more, not 5." in corrector.explain()
+    with pytest.raises(ValueError, match="needs 8 Hz or more"):
+        Corrector(Sensor(5.0), motion=True)
+
+
+def test_a_board_that_was_sent_the_rest_path_alone_goes_without_the_others(monkeypatch):
+    for part in ("motion", "gravity"):
+        for name in [name for name in sys.modules if name.startswith(f"zerorate.{part}")]:
+            monkeypatch.delitem(sys.modules, name)
+        monkeypatch.setitem(sys.modules, f"zerorate.{part}", None)
+    corrector = Corrector()
+    assert corrector.alone
+    assert corrector.explain().count("Left out: ") == 2
+
+
+def test_where_rests_exist_the_other_sources_do_not_touch_what_they_teach():
+    """Rests of a second in ten: what motion found between them once taught the curve, too."""
+    recording, _ = simulate("short-rests", session=1, seed=1)
+    frames = recording.samples()[: 300 * 100].astype(np.int32)
+    every, alone = Corrector(), Corrector(motion=False, gravity=False)
+    for corrector in (every, alone):
+        by_machine_code(corrector, frames.copy(), np.full(len(frames), 10000))
+    assert every.motion[MOTION_LEARNED] > 20
+    assert estimators(every) == estimators(alone)
 
 
 def test_a_rough_guess_is_not_put_out(samples):

@@ -18,7 +18,7 @@ LIMITS = {
     "local_degc": 3.0,
 }
 MODES = {
-    "default": {},
+    "default": {"motion": False, "gravity": False},
     "every": {"every": True},
     "document": {"document": True, "ignore_outside": False, "range_dps": 40.0, "stable_s": 2.5},
     "ignoring": {"every": True, "ignore_outside": True, "range_dps": 20.0},

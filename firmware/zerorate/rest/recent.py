@@ -177,7 +177,10 @@ def follow(s: ptr32, c: ptr32, a: int, error: int):
     """Move the offset towards the error by the Kalman gain, and learn the walk from the error."""
     excess = error * error - s[a + _OFFSET_VARIANCE_Q8]
     excess -= s[_MEAN_NOISE_Q8]
-    rewalk(s, c, a, excess)
+    gain = beyond_q8(s, c, a)  # eleven words: the variance of a guess at this temperature
+    # of one point no slope is known: a jump to another temperature is the curve's, and no walk
+    if s[a + _LINE_POINTS] > 1 or excess >> 4 > gain or excess < c[_TURN_ON_VARIANCE_Q8] << 2:
+        rewalk(s, c, a, excess)
     gain = gain_q14(s[_GROWN_Q8], s[_MEAN_NOISE_Q8])
     move_offset(s, a, (gain * error) >> 10)
     s[a + _OFFSET_VARIANCE_Q8] = gain * (s[_MEAN_NOISE_Q8] >> 14) + (
@@ -217,14 +220,15 @@ def adopt(s: ptr32, c: ptr32, a: int, error: int) -> int:
     """Let what another source found be the level if it is better known than the level is.
 
     That source is a filter itself: to weigh its results into another one counted them twice, and
-    what it says supersedes what it said before.
+    what it says supersedes what it said before. What is not better known does not teach the
+    curve either: where rests exist, it stays theirs.
     """
     noise = (s[a + _OFFER] >> 3) + c[_FLOOR_Q8]
     if s[a + _KIND] == 0:
         s[a + _SUSPECT] = -1
         s[_RESTS] = c[_INSIST]
     elif noise >= grown_q8(s, a) and s[a + _OFFSET_FROM] != s[a + _OFFER] & 7:
-        return 1
+        return 0
     else:
         move_offset(s, a, error << 4)
     s[a + _OFFSET_FROM] = s[a + _OFFER] & 7

@@ -83,7 +83,7 @@ class Bench:
         self.imu = MPU6050(self.bus, full_scale_dps=500, clock=self.clock)
         sensor = Sensor(odr_hz=100.0, gyro_lsb_per_dps=self.imu.gyro_lsb_per_dps)
         self.world.gain = lambda: 1 if self.chip.registers[0x1B] == 0x08 else 2
-        self.corrector = CheckedCorrector(Corrector(sensor))
+        self.corrector = CheckedCorrector(Corrector(sensor, motion=False, gravity=False))
         self.fifo = Fifo(self.imu) if use_fifo else None
         self.watch = Watch()
         self.signs = 0

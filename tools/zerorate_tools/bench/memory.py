@@ -2,7 +2,6 @@
 
 import sys
 import tempfile
-from array import array
 from pathlib import Path
 from subprocess import run
 
@@ -12,7 +11,7 @@ from ..errors import ZerorateError
 from ..kernels.reading import firmware_package
 from ..runtimes import find
 from ..runtimes.wasm import find_wasm
-from .workload import Workload
+from .workload import REST, Workload
 
 _IMPORT = Path(__file__).with_name("heap_of_import.mjs")
 _ARCHITECTURES = {"thumb": "armv6m", "rv32": "rv32imc"}
@@ -21,7 +20,7 @@ import gc
 from array import array
 from zerorate import Corrector
 rows = array("i", open("frames.bin", "rb").read())
-corrector, x = Corrector(), array("i", [0] * 7)
+corrector, x = Corrector(motion=False, gravity=False), array("i", [0] * 7)
 def drive(first, end):
     for i in range(first, end):
         for k in range(7):
@@ -63,10 +62,9 @@ def import_heap_bytes(firmware: Path | None = None) -> int:
 
 
 def state_bytes() -> dict[str, int]:
-    """Bytes of the default corrector's arrays."""
-    made = Corrector()
-    arrays = {"state": made.state, "settings": made.settings, "motion": made.motion}
-    return {name: 4 * len(words) for name, words in arrays.items() if isinstance(words, array)}
+    """Bytes of the arrays of the rest path."""
+    made = Corrector(**REST)
+    return {"state": 4 * len(made.state), "settings": 4 * len(made.settings)}
 
 
 def mpy_sizes() -> dict[str, int]:

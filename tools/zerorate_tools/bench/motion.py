@@ -39,9 +39,9 @@ def peers() -> dict[str, Peer]:
         "in motion, bias within 0.5 dps as vqf assumes": Source("in_motion", start_dps=0.5),
         "gravity, the document's own form": Source("gravity", document=True),
         "gravity": Source("gravity"),
-        "decision, bias within 0.5 dps": Decision(motion=True, gravity=True, motion_start_dps=0.5),
-        "default": Decision(),
-        "decision": Decision(motion=True, gravity=True),
+        "decision, bias within 0.5 dps": Decision(motion_start_dps=0.5),
+        "rests alone": Decision(motion=False, gravity=False),
+        "decision": Decision(),
     }
 
 

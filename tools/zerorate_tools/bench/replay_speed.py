@@ -1,4 +1,4 @@
-"""Samples a second and peak memory of a replay, against the length of the recording."""
+"""Samples a second and peak memory of a replay of rests alone, against the recording's length."""
 
 import os
 import subprocess
@@ -23,9 +23,10 @@ _REPLAY = """
 import resource, sys, time
 from zerorate_tools.replay import replay
 first, long = sys.argv[1:]
-replay(first, first + ".out.parquet")
+options = {"motion": False, "gravity": False}
+replay(first, first + ".out.parquet", options=options)
 start = time.process_time()
-samples = replay(long, long + ".out.parquet").samples
+samples = replay(long, long + ".out.parquet", options=options).samples
 spent = time.process_time() - start
 print(samples, spent, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024)
 """
@@ -36,7 +37,8 @@ from zerorate_tools.replay.engines import engine
 from zerorate_tools.replay.replaying import corrector_for
 from zerorate_tools.replay.samples import frames_in_batches
 first, long = map(open_recording, sys.argv[1:])
-corrector, native = corrector_for(first, {}), engine("native")
+rests = {"motion": False, "gravity": False}
+corrector, native = corrector_for(first, rests), engine("native")
 list(native.run(corrector, frames_in_batches(first)))
 batches, samples, spent = frames_in_batches(long), 0, 0.0
 for batch in batches:

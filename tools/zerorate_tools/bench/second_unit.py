@@ -71,7 +71,7 @@ class SecondUnit:
 
 def device(way: str) -> Corrector:
     """The firmware with no model, with the first unit's, or with that one refined as it goes."""
-    corrector = Corrector(sensor_for(SCALES))
+    corrector = Corrector(sensor_for(SCALES), motion=False, gravity=False)
     if way != WAYS[0]:
         slots = [
             Slot(RATE, FIRST_UNIT[0], "thermal-rate"),

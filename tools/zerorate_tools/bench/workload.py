@@ -13,6 +13,8 @@ from ..replay.samples import Frames, frames_in_batches
 from ..simulate import simulate
 
 SCENARIO = "warm-up-b"
+#: Options of the rest path alone, as a board has it that was sent nothing else.
+REST = {"motion": False, "gravity": False}
 CYCLE = 6000
 _BEFORE = 120_000
 
@@ -34,7 +36,7 @@ class Workload:
 def workload(samples: int = 2 * CYCLE) -> Workload:
     """`samples` frames after twenty minutes of warming, when every estimator is in use."""
     recording, _ = simulate(SCENARIO, session=1, seed=1)
-    corrector = corrector_for(recording, {})
+    corrector = corrector_for(recording, REST)
     batches = list(frames_in_batches(recording, rows=_BEFORE))
     for _ in engine("native").run(corrector, batches[:1]):
         pass

@@ -24,11 +24,13 @@ PARTS = {
         "zerorate_i2c.fifo",
     ),
     "motion": (
+        "zerorate.motion",
         "zerorate.native.motion",
         "zerorate.motion.motion_settings",
         "zerorate.explain_sources",
     ),
     "gravity": (
+        "zerorate.gravity",
         "zerorate.native.gravity",
         "zerorate.gravity.gravity_settings",
         "zerorate.explain_sources",

@@ -42,8 +42,7 @@ def add_parser(subparsers) -> None:
     )
     parser.add_argument("--every", action="store_true", help="learn every reading, moving or still")
     parser.add_argument("--model", type=Path, metavar="FILE", help="an effect model to load")
-    parser.add_argument("--gravity", action="store_true", help="learn against gravity as well")
-    parser.add_argument("--motion", action="store_true", help="learn in motion as well")
+    add_sources(parser, "yes, but not with --document or --every")
     parser.add_argument(
         "--plot",
         type=Path,
@@ -60,6 +59,13 @@ def add_parser(subparsers) -> None:
         help="a setting of the firmware, for example step_degc=2",
     )
     parser.set_defaults(run=run, refuse=parser.error)
+
+
+def add_sources(parser, default: str = "yes") -> None:
+    """Add --motion, --gravity and their opposites; default: what help says of it."""
+    for name, how in (("motion", "in motion"), ("gravity", "against gravity")):
+        told = f"learn {how} as well (default: {default})"
+        parser.add_argument(f"--{name}", action=argparse.BooleanOptionalAction, help=told)
 
 
 def run(arguments: argparse.Namespace) -> None:

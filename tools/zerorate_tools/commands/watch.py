@@ -3,6 +3,8 @@
 import argparse
 from pathlib import Path
 
+from .replay import add_sources
+
 
 def add_parser(subparsers) -> None:
     """Register the sub-command."""
@@ -19,8 +21,7 @@ def add_parser(subparsers) -> None:
     parser.add_argument("--every", type=_positive, metavar="SECONDS", help="between two looks")
     parser.add_argument("--plain", action="store_true", help="lines, on a terminal too")
     parser.add_argument("--model", type=Path, metavar="FILE", help="an effect model to load")
-    parser.add_argument("--motion", action="store_true", help="learn in motion as well")
-    parser.add_argument("--gravity", action="store_true", help="learn against gravity as well")
+    add_sources(parser)
     parser.add_argument(
         "--setup", type=Path, metavar="FILE", help="on a board: source that makes `imu`"
     )

@@ -96,7 +96,7 @@ def export_c(folder: str | PathLike[str], sensor: Sensor | None = None) -> list[
 
     sensor: rate and scales, an MPU-6050 at +-250 dps and 100 Hz by default.
     """
-    corrector = Corrector(sensor)
+    corrector = Corrector(sensor, motion=False, gravity=False)
     state, c = corrector.state, corrector.settings
     pairs = ", ".join(f"{{{at}, {word}}}" for at, word in enumerate(state) if word)
     dt_us = round(1e6 / corrector.sensor.odr_hz)

@@ -100,8 +100,8 @@ def plays(work: Workload) -> dict[str, Play]:
         "bursts": replace(alone, rows=work.rows[: CYCLE // _BURST * _BURST], at_once=_BURST),
         "every": Play(few, {"every": True}),
         "document": Play(few, {"document": True}),
-        "motion": Play(_turning(few), {"motion": True}),
-        "motion and gravity": Play(_turning(few), {"motion": True, "gravity": True}),
+        "motion": Play(_turning(few), {"gravity": False}),
+        "motion and gravity": Play(_turning(few), {}),
         "effects, refined": Play(few, model=model()),
     }
 

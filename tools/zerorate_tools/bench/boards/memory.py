@@ -41,12 +41,15 @@ kept += [model, Bursts(kept[0]), CheckedCorrector(kept[0]), store, SaveSchedule(
 """
 #: What is measured -> options of the Corrector, and what else there is.
 CONFIGURATIONS = {
-    "rest": ("", ""),
-    "all": ("motion=True, gravity=True", ""),
-    "everything": ("motion=True, gravity=True", _EVERYTHING),
-    "motion": ("motion=True", ""),
-    "gravity": ("gravity=True", ""),
-    "effects": ("", "from zerorate.model import EffectModel\nkept[0].use_model(EffectModel())"),
+    "rest": ("motion=False, gravity=False", ""),
+    "all": ("", ""),
+    "everything": ("", _EVERYTHING),
+    "motion": ("gravity=False", ""),
+    "gravity": ("motion=False", ""),
+    "effects": (
+        "motion=False, gravity=False",
+        "from zerorate.model import EffectModel\nkept[0].use_model(EffectModel())",
+    ),
 }
 _BOOT = """
 import gc

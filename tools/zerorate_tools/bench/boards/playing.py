@@ -13,6 +13,7 @@ from zerorate.bursts import Bursts
 
 from ...boards.connection import connected, told
 from ...runtimes.pico import EmulatedPico
+from ..workload import REST
 
 SENSOR = (100.0, 131.0, 16384.0, 340.0, 36.53)
 _MARKS = 3
@@ -28,7 +29,7 @@ class Play:
     """
 
     rows: NDArray[np.int32]
-    options: dict[str, Any] = field(default_factory=dict)
+    options: dict[str, Any] = field(default_factory=REST.copy)
     sensor: tuple[float, ...] = SENSOR
     settings: NDArray[np.int32] | None = None
     state: NDArray[np.int32] | None = None

@@ -32,7 +32,7 @@ class Firmware:
 
     def __init__(self, scales: Scales, model: Model | None, channels: Sequence[str] = ()) -> None:
         try:
-            self._corrector = Corrector(sensor_for(scales))
+            self._corrector = Corrector(sensor_for(scales), motion=False, gravity=False)
         except ValueError as problem:
             raise Refused(f"the firmware cannot run at these scales: {problem}") from problem
         self._learning = self._corrector.settings
