@@ -13,6 +13,7 @@ from zerorate_tools.cli import main
 from zerorate_tools.errors import BadRecording
 from zerorate_tools.recordings import recording_writer, write_recording
 from zerorate_tools.replay import replay
+from zerorate_tools.replay.replaying import state_bytes
 from zerorate_tools.simulate import simulate
 from zerorate_tools.watch import watch
 from zerorate_tools.watch.board import Watcher
@@ -27,6 +28,8 @@ DESCRIPTION = {
     "bias": {"b0": [1.5, -2.0, 0.5]},
     "every_session": {"temperature": [{"to": 30.0, "minutes": 1}]},
 }
+
+_RESTS = {"motion": False, "gravity": False}  # as fast as can be, on a busy machine
 
 
 @pytest.fixture(scope="module")
@@ -80,7 +83,7 @@ def test_every_row_is_read_once_wherever_the_writer_was_interrupted(writer, reco
 
 def test_the_firmware_is_where_a_replay_of_the_file_leaves_it(log, capsys):
     live = watch(str(log), WatchOptions(once=True))
-    assert live.corrector.state.tobytes() == replay(log).state
+    assert state_bytes(live.corrector) == replay(log).state
     assert live.bias_dps == pytest.approx([1.5, -2.0, 0.5], abs=0.02)
     assert "x +1." in capsys.readouterr().out
 
@@ -117,7 +120,7 @@ def test_a_writer_in_another_process_is_followed(writer, log, tmp_path):
         following._goes_on = lambda: not stop.is_set()
         following.run()
     assert len(set(lines)) > 1  # how often it looks is up to how busy the machine is
-    assert following.live.corrector.state.tobytes() == replay(log).state
+    assert state_bytes(following.live.corrector) == replay(log).state
 
 
 def test_ctrl_c_ends_it_well(log):
@@ -139,7 +142,7 @@ def test_ctrl_c_ends_it_well(log):
 def test_a_file_that_stops_growing_is_said(log, monkeypatch, capsys):
     monkeypatch.setattr("zerorate_tools.watch.watching._STALLED_S", 0.1)
     monkeypatch.setattr("zerorate_tools.watch.watching._STALLED_SAMPLES", 1)
-    watch(str(log), WatchOptions(seconds=0.8, every_s=0.1))
+    watch(str(log), WatchOptions(seconds=0.8, every_s=0.1, settings=_RESTS))
     assert "has not grown" in capsys.readouterr().out.splitlines()[-1]
 
 
