@@ -11,7 +11,7 @@ from ..errors import ZerorateError
 from ..kernels.reading import firmware_package
 from ..runtimes import find
 from ..runtimes.wasm import find_wasm
-from .workload import REST, Workload
+from .workload import Workload
 
 _IMPORT = Path(__file__).with_name("heap_of_import.mjs")
 _ARCHITECTURES = {"thumb": "armv6m", "rv32": "rv32imc"}
@@ -63,7 +63,7 @@ def import_heap_bytes(firmware: Path | None = None) -> int:
 
 def state_bytes() -> dict[str, int]:
     """Bytes of the arrays of the rest path."""
-    made = Corrector(**REST)
+    made = Corrector(motion=False, gravity=False)
     return {"state": 4 * len(made.state), "settings": 4 * len(made.settings)}
 
 

@@ -14,7 +14,7 @@ from ..simulate import simulate
 
 SCENARIO = "warm-up-b"
 #: Options of the rest path alone, as a board has it that was sent nothing else.
-REST = {"motion": False, "gravity": False}
+REST: dict[str, object] = {"motion": False, "gravity": False}
 CYCLE = 6000
 _BEFORE = 120_000
 
