@@ -11,6 +11,7 @@ from array import array
 
 import numpy as np
 from zerorate import Corrector, Sensor
+from zerorate.layout import SETTINGS
 from zerorate.settings import DEFAULTS, LEAST, MOST
 from zerorate_tools.replay.engines import others_of
 
@@ -95,7 +96,7 @@ def times(noise, corrector, rows):
     period_us = max(1, min(900_000_000, round(1e6 / corrector.sensor.odr_hz)))
     dt_us = np.full(rows, period_us)
     leaps = noise.integers(0, rows, rows // 300)
-    dt_us[leaps] = noise.choice([*_LEAPS_US, corrector.settings[1]], len(leaps))
+    dt_us[leaps] = noise.choice([*_LEAPS_US, corrector.settings[SETTINGS.LEAP_US]], len(leaps))
     return dt_us
 
 

@@ -63,6 +63,12 @@ def test_no_file_of_the_firmware_indexes_a_word_by_number(repository):
     assert _NUMBERED.search("s[a + 24] = c[3]") and _NUMBERED.search("s[3]")
 
 
+def test_no_tool_takes_a_word_of_a_model_by_number(repository):
+    files = (repository / "tools" / "zerorate_tools" / "model").glob("*.py")
+    text = "".join(path.read_text("utf-8") for path in files)
+    assert "words[SLOT.SLOT_POWER]" in text and re.findall(r"\bwords\[\d[^]]*\]", text) == []
+
+
 def test_words_lie_one_behind_another():
     for array in layout.ARRAYS:
         own = [word for word in array.words if not word.while_text]

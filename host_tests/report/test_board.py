@@ -4,6 +4,7 @@ import shlex
 from pathlib import Path
 
 import pytest
+from zerorate.layout import EFFECTS
 from zerorate_tools.cli import parser
 from zerorate_tools.report.board import deployment
 
@@ -15,7 +16,7 @@ class imu:
 {lines}
 value = load = 700
 {each}
-print("slots", corrector.effects.e[0], list(effects.channels))
+print("slots", corrector.effects.e[{slots}], list(effects.channels))
 """
 
 
@@ -23,7 +24,8 @@ def program(closed, told):
     s = closed.scales
     scales = (s.odr_hz, s.gyro_lsb_per_dps, s.accel_lsb_per_g, s.temp_lsb_per_degc)
     given = ", ".join(map(repr, (*scales, s.temp_offset_degc)))
-    return PROGRAM.format(scales=given, lines=told.program, each=told.each_reading)
+    slots = EFFECTS.SLOT_COUNT
+    return PROGRAM.format(scales=given, lines=told.program, each=told.each_reading, slots=slots)
 
 
 @pytest.mark.parametrize("name", ["an effect", "hostile names"])

@@ -31,7 +31,8 @@ from .model import (
 )
 from .plays import label_of, slots_of_play, split, words_of_play
 from .scaling import Unit, inputs_for
-from .slot_words import slot_of, words_of
+from .slot_reading import slot_of
+from .slot_words import words_of
 
 VERSION, VERSION_WITH_PLAYS = 1, 2
 _HEAD = struct.Struct("<3sBHBBBBBx4BI5d")

@@ -5,13 +5,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
+from zerorate.layout import PLAY, SLOT
+
 from .model import ONE, CannotDeploy, Slot
 from .scaling import Unit
+from .slot_reading import shorter
 from .slot_words import (
     largest_shift,
     mantissas,
     most_of,
-    shorter,
     source_words,
     value_of_one,
 )
@@ -62,7 +64,7 @@ def words_of_play(
     if term.source == ONE:
         raise CannotDeploy("a play operator of a constant does nothing")
     source = source_words(term.source, term.lo, term.hi, term.centre, unit_of, index_of)
-    shift = source[4] = largest_shift(most_of(source))
+    shift = source[SLOT.SLOT_SHIFT] = largest_shift(most_of(source))
     radius = round(term.width / 2 / value_of_one(unit_of(term.source), shift) * _ONE)
     factors = _lsb_q14(term, unit_of, shift)
     rows = [s.coefficient_dps if s else (0.0, 0.0, 0.0) for s in pair]
@@ -83,15 +85,17 @@ def slots_of_play(
     """The inverse of `words_of_play`, numbers as short as they can be: the operator's slot, and
     that of its square where it has one."""
     unit = unit_of(name)
-    lo, hi, centre = (unit.value(w) for w in words[1:4])
-    width = 2 * words[5] / _ONE * value_of_one(unit, words[4])
+    source, *range_q8, shift = words[PLAY.PLAY_SOURCE : PLAY.PLAY_RADIUS]
+    lo, hi, centre = map(unit.value, range_q8)
+    width = 2 * words[PLAY.PLAY_RADIUS] / _ONE * value_of_one(unit, shift)
     term = Term(name, lo, hi, centre, memory="play", width=width)
-    factors = [f * 2.0 ** (words[6] - 24) for f in _lsb_q14(term, unit_of, words[4])]
-    exact = [w / f for w, f in zip(words[7:13], (factors[0],) * 3 + (factors[1],) * 3)]
+    factors = [f * 2.0 ** (words[PLAY.PLAY_SHIFT] - 24) for f in _lsb_q14(term, unit_of, shift)]
+    coefficients = words[PLAY.PLAY_COEFFICIENT : PLAY.PLAY_STARTED]
+    exact = [w / f for w, f in zip(coefficients, (factors[0],) * 3 + (factors[1],) * 3)]
 
     def same(term: Term, six: Sequence[float]) -> bool:
         try:
-            mine = words_of_play(_pair(term, six, effect), unit_of, lambda _: words[0])
+            mine = words_of_play(_pair(term, six, effect), unit_of, lambda _: source)
         except CannotDeploy:  # of fewer digits it may be too large
             return False
         return mine == list(words)

@@ -1,0 +1,124 @@
+"""A slot from the integers of model.bin: the inverse of slot_words, numbers as short as can be."""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from typing import Any
+
+from zerorate.layout import SLOT
+
+from .model import ONE, CannotDeploy, Slot
+from .slot_words import MEMORIES, NONE, Q, UnitOf, lsb_q14_per_coefficient, one_of, words_of
+from .term import Term
+
+#: The words of the file: of these the inputs' indices are the file's own.
+_INDICES = (SLOT.SLOT_SOURCE, SLOT.SLOT_SECOND)
+_COEFFICIENTS = range(SLOT.SLOT_COEFFICIENT_SHIFT, SLOT.SLOT_RING)
+_OF_THE_BASIS = [i for i in range(SLOT.SLOT_OWN) if i not in (*_INDICES, *_COEFFICIENTS)]
+
+
+def slot_of(
+    words: Sequence[int],
+    name_of: Callable[[int], str],
+    unit_of: UnitOf,
+    tick_s: float,
+    table: Sequence[float] | None,
+) -> Slot:
+    """The slot whose integers these are, its numbers as short as they can be.
+
+    name_of: an input's name; the inverse of words_of. Raises CannotDeploy where no slot is.
+    """
+
+    table_and_ring = words[SLOT.SLOT_TABLE], words[SLOT.SLOT_RING]
+
+    def same(slot: Slot, among: Sequence[int]) -> bool:
+        try:
+            mine = words_of(slot, unit_of, lambda _: 0, tick_s, *table_and_ring)
+        except CannotDeploy:  # of fewer digits it may be too large
+            return False
+        return all(mine[i] == words[i] for i in among)
+
+    term = _term(words, name_of, unit_of, tick_s)
+    term = replace(term, table=tuple(table) if table else None)
+    slot = Slot(term, (0.0, 0.0, 0.0))
+    for name in _numbers(term):
+        slot = _shortest(slot, name, lambda s: same(s, _OF_THE_BASIS))
+    second_shift = words[SLOT.SLOT_SECOND + SLOT.SLOT_SHIFT]
+    factor = lsb_q14_per_coefficient(slot, unit_of, words[SLOT.SLOT_SHIFT], second_shift)
+    factor *= unit_of("rate_x").q8_per_unit / 256 * 2.0 ** (words[SLOT.SLOT_COEFFICIENT_SHIFT] - Q)
+    for axis in range(3):
+        exact = [w / factor for w in words[SLOT.SLOT_COEFFICIENT : SLOT.SLOT_RING]]
+        exact[:axis] = slot.coefficient_dps[:axis]
+        slot = _shortest_of(exact, axis, slot, lambda s: same(s, _COEFFICIENTS))
+    if not same(slot, (*_OF_THE_BASIS, *_COEFFICIENTS)):
+        raise CannotDeploy("its numbers do not belong together")
+    return slot
+
+
+def _term(words, name_of, unit_of, tick_s) -> Term:
+    source, *range_q8 = words[SLOT.SLOT_SOURCE : SLOT.SLOT_SHIFT]
+    other, *range_of_other_q8 = words[SLOT.SLOT_SECOND : SLOT.SLOT_SECOND + SLOT.SLOT_SHIFT]
+    name, second = name_of(source), name_of(other) if other >= 0 else None
+    memory = MEMORIES[words[SLOT.SLOT_MEMORY]]
+    fields: dict[str, Any] = {
+        "power": words[SLOT.SLOT_POWER],
+        "power_first": bool(words[SLOT.SLOT_POWER_FIRST]),
+        "delay_s": words[SLOT.SLOT_DELAY] * tick_s,
+    }
+    if name != ONE:
+        low, high, centre = map(unit_of(name).value, range_q8)
+        fields.update(lo=low, hi=high, centre=centre)
+    if memory in MEMORIES[1:4]:
+        fields.update(lag_mode=memory, lag_s=_seconds(words, SLOT.SLOT_LAG, tick_s))
+    else:
+        fields.update(memory=memory)
+    if second and second != ONE:
+        low, high, centre = map(unit_of(second).value, range_of_other_q8)
+        fields.update(second_lo=low, second_hi=high, second_centre=centre)
+    term = Term(name, second=second, decay_s=_seconds(words, SLOT.SLOT_DECAY, tick_s), **fields)
+    one = one_of(term, unit_of, words[SLOT.SLOT_SHIFT]) / (1 << Q)
+    knot = None if words[SLOT.SLOT_KNOT] == NONE else words[SLOT.SLOT_KNOT] * one
+    return replace(term, width=2 * words[SLOT.SLOT_HALF_WIDTH] * one, knot=knot)
+
+
+def _seconds(words: Sequence[int], at: int, tick_s: float) -> float:
+    mantissa, shift = words[at : at + 2]
+    if not mantissa:
+        return 0.0
+    share = mantissa / 2 ** (15 + shift)
+    return tick_s * 1e-3 if share >= 1 else -tick_s / math.log1p(-share)
+
+
+def _numbers(term: Term) -> list[str]:
+    names = ["lo", "hi", "centre", "delay_s", "lag_s", "width", "knot", "decay_s"]
+    if term.second:
+        names += ["second_lo", "second_hi", "second_centre"]
+    finite = [n for n in names if getattr(term, n) is not None]
+    return [n for n in finite if math.isfinite(getattr(term, n))]
+
+
+def _shortest(slot: Slot, name: str, is_same: Callable[[Slot], bool]) -> Slot:
+    """The slot with the number of that name in as few digits as mean the same."""
+    value = getattr(slot.term, name)
+    for number in shorter(value):
+        field: dict[str, Any] = {name: number}
+        trial = replace(slot, term=replace(slot.term, **field))
+        if is_same(trial):
+            return trial
+    return slot
+
+
+def shorter(value: float) -> Iterator[float]:
+    """The number in ever more digits."""
+    yield 0.0
+    yield from (float(f"{value:.{digits}g}") for digits in range(1, 18))
+
+
+def _shortest_of(exact, axis: int, slot: Slot, is_same: Callable[[Slot], bool]) -> Slot:
+    for number in shorter(exact[axis]):
+        values = list(exact)
+        values[axis] = number
+        trial = replace(slot, coefficient_dps=tuple(values))
+        if is_same(trial):
+            return trial
+    return replace(slot, coefficient_dps=tuple(exact))
