@@ -15,6 +15,7 @@ LIMITS_MDPS: dict[str, float | None] = {
     "short-rests": 6.0,
     "trembling": 30.0,
     "slow-tilt": 20.0,
+    "slow-log": 30.0,
     "turntable": None,
     "turntable-vertical": None,
     "car": None,

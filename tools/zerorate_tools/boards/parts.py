@@ -27,6 +27,7 @@ PARTS = {
         "zerorate.motion",
         "zerorate.native.motion",
         "zerorate.motion.motion_settings",
+        "zerorate.motion.orientation",
         "zerorate.explain_sources",
     ),
     "gravity": (
