@@ -54,7 +54,8 @@ AREAS = {
     "effects": (
         ["firmware/zerorate/effects/" + name for name in (
             "effects.py", "effect_basis.py", "effect_inputs.py", "effect_plays.py")],
-        ["host_tests/firmware/test_effects.py", "host_tests/firmware/test_effects_in_time.py"],
+        ["host_tests/firmware/test_effects.py", "host_tests/firmware/test_effects_in_time.py",
+         "host_tests/firmware/test_effects_on_interpreters.py"],
     ),
     "models": (
         ["firmware/zerorate/effects/model_file.py", "firmware/zerorate/model.py",
@@ -68,7 +69,7 @@ AREAS = {
         ["tools/zerorate_tools/recordings/" + name for name in (
             "checks.py", "csv_format.py", "scales.py", "atomic.py", "bounded.py")],
         ["host_tests/tools/test_recordings.py", "host_tests/tools/test_bad_recordings.py",
-         "host_tests/tools/test_atomic.py",
+         "host_tests/tools/test_recording_limits.py", "host_tests/tools/test_atomic.py",
          "host_tests/hostile/test_any_bytes.py"],
     ),
 }  # fmt: skip

@@ -72,14 +72,14 @@ def test_a_range_is_one_of_four():
     "kind, gyro_config, accel_config2",
     [
         (MPU6050_KIND, 0x18, None),
-        (MPU6500_KIND, 0x18, 0x05),
-        (ICM20689_KIND, 0x18, 0xC5),
-        (ICM20690_KIND, 0x0C, 0xC5),
+        (MPU6500_KIND, 0x18, 0x04),
+        (ICM20689_KIND, 0x18, 0xC4),
+        (ICM20690_KIND, 0x0C, 0xC4),
     ],
 )
 def test_registers_are_those_of_the_data_sheets(kind, gyro_config, accel_config2):
-    pairs = list(register_settings(kind, 3, 2, 5, 39))
-    usual = [0x6B, 0x01, 0x6C, 0x00, 0x19, 39, 0x1A, 5, 0x1B, gyro_config, 0x1C, 0x10]
+    pairs = list(register_settings(kind, 3, 2, 4, 39))
+    usual = [0x6B, 0x01, 0x6C, 0x00, 0x19, 39, 0x1A, 4, 0x1B, gyro_config, 0x1C, 0x10]
     assert pairs == usual + ([] if accel_config2 is None else [0x1D, accel_config2])
 
 

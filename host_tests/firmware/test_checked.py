@@ -153,7 +153,7 @@ def test_all_that_is_learned_is_kept_and_taken_back_in_motion_too():
     first = STATE.ELAPSED_US
     assert list(state) == [-7] * first + list(range(first, len(state)))
     assert list(motion) == list(range(len(motion)))
-    assert watched.taken_back == 1
+    assert (watched.taken_back, watched._first) == (1, [first, 0])  # never from a word before 0
 
 
 @pytest.mark.parametrize(

@@ -193,7 +193,14 @@ def test_a_record_is_as_it_is_documented_to_the_byte(size, sequence):
     assert memory.written == size + 24
 
 
-def test_the_first_record_has_sequence_one_and_words_are_little_endian(memory):
+@pytest.mark.parametrize("in_one_piece", [False, True])
+def test_the_first_record_has_sequence_one_and_words_are_little_endian(
+    memory, monkeypatch, in_one_piece
+):
+    if in_one_piece:  # as uctypes gives them on MicroPython
+        monkeypatch.setattr(stores, "addressof", memoryview, raising=False)
+        whole = lambda words, size: words.cast("B")[:size]  # noqa: E731
+        monkeypatch.setattr(stores, "bytearray_at", whole)
     store = make_store(memory, version=7)
     words = array(
         "i", [1, -1, -2, 0x12345678, -0x12345678, 2**29, -(2**30), 255, 256, 65535, 65536, -256]
@@ -220,6 +227,8 @@ OTHER = {
         ((ONES, BAD), stores.DAMAGED, BLANK),
         ((BAD, ONES), stores.DAMAGED, BLANK),
         ((b"\x00\x00\xff" + ONES[3:], ONES), stores.DAMAGED, BLANK),
+        ((b"\x00\xff\xff" + ONES[3:], ONES), stores.DAMAGED, BLANK),
+        ((b"\xff\x00\x00" + ZEROS[3:], ONES), stores.DAMAGED, BLANK),
         ((b"\x00\xff\x00" + ONES[3:], ONES), stores.DAMAGED, BLANK),
         ((b"\xff\xff\x00" + ONES[3:], ONES), stores.DAMAGED, BLANK),
         ((b"\xff\x00\xff" + ONES[3:], ONES), stores.DAMAGED, BLANK),
@@ -257,6 +266,7 @@ def test_of_two_slots_the_newest_that_fits_is_loaded_or_it_is_said_why_not(slots
         ((ONES, record(OLD, 1)), 0),
         ((record(OLD, 1), record(NEW, 2)), 0),
         ((record(NEW, 2), record(OLD, 1)), 1),
+        ((record(NEW, 5), record(NEW, 5)), 1),
         ((record(OLD, 1), OTHER["chip"]), 0),
         ((OTHER["chip"], record(OLD, 1)), 1),
     ],
