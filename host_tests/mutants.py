@@ -29,8 +29,10 @@ except ImportError:  # Python 3.10
 
 SURVIVORS_AND_WHY = Path(__file__).with_name("mutants.toml")
 # What no test can tell apart: annotations, constants that `make layout` writes, == and is of what
-# there is only one of.
-_SAME = re.compile(r"^\s*(def |from |import |#)|^\s+\w+: .*[,=]$|^    \) ->|TYPE_CHECKING|^@")
+# there is only one of, what is done without a module that MicroPython has and the tests have too.
+_SAME = re.compile(
+    r"^\s*(def |from |import |#)|^\s+\w+: .*[,=]$|^    \) ->|TYPE_CHECKING|^@|^except ImportError:"
+)
 _SAME_OF_SMALL_INTEGERS = ("Eq_Is", "NotEq_IsNot")
 _LAYOUT = re.compile(r"^# layout: .*?^# layout: end", re.MULTILINE | re.DOTALL)
 
@@ -54,15 +56,17 @@ AREAS = {
     "effects": (
         ["firmware/zerorate/effects/" + name for name in (
             "effects.py", "effect_basis.py", "effect_inputs.py", "effect_plays.py")],
-        ["host_tests/firmware/test_effects.py", "host_tests/firmware/test_effects_in_time.py",
+        ["host_tests/firmware/test_effect_kernels.py", "host_tests/firmware/test_effects.py",
+         "host_tests/firmware/test_effects_in_time.py",
          "host_tests/firmware/test_effects_on_interpreters.py"],
     ),
     "models": (
         ["firmware/zerorate/effects/model_file.py", "firmware/zerorate/model.py",
          "tools/zerorate_tools/model/binary.py"],
-        ["host_tests/tools/test_model_limits.py",
+        ["host_tests/tools/test_model_limits.py", "host_tests/firmware/test_effect_kernels.py",
          "host_tests/firmware/test_effects_in_time.py::test_the_first_sample_speaks_until_the_first_tick_ends",
          "host_tests/firmware/test_effects_in_time.py::test_a_power_on_begins_every_memory_anew",
+         "host_tests/firmware/test_effects_on_interpreters.py",
          "host_tests/tools/test_model.py", "host_tests/tools/test_model_on_device.py"],
     ),
     "recordings": (
