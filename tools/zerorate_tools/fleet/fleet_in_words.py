@@ -17,7 +17,7 @@ _SCENARIOS = {
 WAYS = {
     "without": "without a prior",
     "prior": "with the prior",
-    "prefilled": "with estimators filled instead",
+    "prefilled": "with the mean curve as if learned instead",
 }
 
 
@@ -73,10 +73,10 @@ def _prior(prior: dict[str, Any]) -> Iterator[str]:
     tried = prior["benefit"]
     yield f"a prior from {prior['devices']} devices: prior/model.bin"
     if not tried:
-        yield "  not tried on devices left out: that takes ten"
+        yield "  not tried on other devices: that takes ten"
         return
     yield (
-        f"  tried on {tried['devices']} devices left out, error in the first "
+        f"  tried on {tried['devices']} devices that it was not made from: error in the first "
         f"{tried['minutes']:g} minutes, mdps, median (95 % of devices below):"
     )
     for name, reason in list(tried["failed"].items())[:_FAILURES]:

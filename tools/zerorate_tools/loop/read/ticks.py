@@ -77,9 +77,7 @@ class _Sums:
 
 
 class _Vibration:
-    """Squared distance of each acceleration from its slow part, the filter's state kept between
-    batches.
-    """
+    """Squared distance of each acceleration from its slow part; keeps the filter's state."""
 
     def __init__(self):
         self.state = None

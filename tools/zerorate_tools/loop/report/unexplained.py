@@ -12,9 +12,9 @@ _COOLING = "a cool-down at the same rate as the warm-up (tells lag, rate and hys
 _WARMING = "a warm-up at the same rate as the cool-down (tells lag, rate and hysteresis apart)"
 _SUPPLY = "record the supply voltage, and step it by 100 mV up and down at constant temperature"
 _POWER = "three power-ons at constant temperature, one of them a warm restart"
-_MORE = "more power-ons: {}; 6 or more to fit on"
-_FEW = "with fewer than 3 to fit on nothing is confirmed"
-_CHANCE = "with {} to fit on, a chance agreement of all signs is common"
+_MORE = "more power-ons: {}; best are 6 or more"
+_FEW = "with fewer than 3 to learn from nothing is confirmed"
+_CHANCE = "with {} to learn from chance often looks like an effect"
 _LOGGERS, _LOOSEN = "a logger of {} beside the device", "one screw loosened"
 #: What may be at work unseen, and what a channel of it is called.
 _LOGGED = {"humidity": "hum", "board temperature": "_temp"}
