@@ -265,19 +265,27 @@ def examine(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
     return check(s, c, x, dt_us)
 
 
+def begin(s: ptr32, c: ptr32, x: ptr32):
+    """Speak for the first frame's temperature, or each one's where windows are long; look for rest.
+
+    They are long at a few hertz: four frames there.
+    """
+    if s[_COUNTS] == 1 or c[_WINDOW] == 4:
+        s[_TEMP] = x[3]
+        s[_WORK] = 1
+        while s[_WORK]:
+            advance(s, c)
+    if s[_WINDOW_N] == c[_WINDOW] >> 2 and s[_COUNTS] >> 2 < c[_WINDOW]:
+        publish_first_glance(s, c)
+
+
 def admit(s: ptr32, c: ptr32, x: ptr32, kind: int) -> int:
     """Learn from an examined frame, and do a piece of the work that waits; return its kind."""
     if kind == 0:
         if gather(s, c, x):
             end_window(s, c)
-        # for the temperature of the first frame; of every frame where a window lasts long
-        if s[_COUNTS] == 1 or c[_WINDOW] == 4:
-            s[_TEMP] = x[3]
-            s[_WORK] = 1
-            while s[_WORK]:
-                advance(s, c)
-        if s[_WINDOW_N] == c[_WINDOW] >> 2 and s[_COUNTS] >> 2 < c[_WINDOW]:
-            publish_first_glance(s, c)
+        if s[_COUNTS] >> 2 < c[_WINDOW] or c[_WINDOW] == 4:
+            begin(s, c, x)
         if c[_EVERY]:
             learn_at_once(s, c, x)
     i = c[_WORK_A_SAMPLE]
