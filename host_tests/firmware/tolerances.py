@@ -11,6 +11,7 @@ DOCUMENT_MDPS = (4.0, 25.0)
 # A reading of 6.5 LSB of noise, mean of 250 of them at 2.5 s: three of their sigmas is 1.2 LSB.
 LEARNED_LSB = 1.5
 
-# Design: state of three axes, and the heap that importing the firmware takes on a 32-bit port.
+# Design: state of three axes, and the heap that importing the firmware takes on a 32-bit port,
+# beside the piece that it holds until a Corrector takes it for its state.
 STATE_BYTES = 3072
 IMPORT_BYTES = 36864
