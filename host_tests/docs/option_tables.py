@@ -58,6 +58,8 @@ def _name(action):
         shown = "{" + ",".join(map(str, action.choices)) + "}"
     if not action.option_strings:
         return f"`{shown}`"
+    if isinstance(action, argparse.BooleanOptionalAction):
+        return " ".join(f"`{option}`" for option in action.option_strings)
     return "`" + f"{action.option_strings[-1]} {shown}".strip() + "`"
 
 

@@ -8,6 +8,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import tokenize
 from collections import Counter
 from pathlib import Path
 
@@ -41,6 +42,7 @@ def census(root):
         "Python files": len(written),
         "lines in them": sum(map(lines, written)),
         **own,
+        "code in firmware, without remarks and blank lines": sum(map(code_lines, firmware)),
         "generated files": len(made),
         "lines in them, and those that `make layout` writes": sum(
             [*(len(p.read_text("utf-8").splitlines()) for p in made), *map(made_lines, python)]
@@ -69,6 +71,21 @@ def generator(root):
 def lines(path):
     """Lines of a file that a person writes."""
     return len(path.read_text(encoding="utf-8").splitlines()) - made_lines(path)
+
+
+def code_lines(path):
+    """Lines of code of a file that a person writes: no remark, no docstring, none that is blank."""
+    lines = set()
+    for token in tokenize.generate_tokens(
+        iter(_MADE.sub("", path.read_text("utf-8")).splitlines(True)).__next__
+    ):
+        text = token.type == tokenize.STRING and token.line.strip().startswith('"""')
+        if (
+            token.type in (tokenize.NAME, tokenize.NUMBER, tokenize.OP, tokenize.STRING)
+            and not text
+        ):
+            lines.update(range(token.start[0], token.end[0] + 1))
+    return len(lines)
 
 
 def made_lines(path):
