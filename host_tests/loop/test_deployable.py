@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from zerorate_tools.bench.loop.simulated import simulate
 from zerorate_tools.loop.analyse import analyse
-from zerorate_tools.loop.verify.deployable import deployable
+from zerorate_tools.loop.verify.slots import deployable
 
 from .power_ons import SCALES
 

@@ -11,7 +11,7 @@ from zerorate_tools.loop.fit.cross_products import (
     Whitener,
     whitener,
 )
-from zerorate_tools.loop.fit.floor import noise_of
+from zerorate_tools.loop.fit.noise import noise_of
 from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.read.sessions import Session
 

@@ -7,8 +7,8 @@ from threadpoolctl import threadpool_limits
 
 from ..recordings import open_recording
 from .fit.cross_products import whitener
-from .fit.floor import floor_dps
 from .fit.line import deployed
+from .fit.noise import floor_dps
 from .fit.single import PiecesByLine
 from .motion.in_motion import in_motion, slots_of, without_scales
 from .read.blocks import sessions_from

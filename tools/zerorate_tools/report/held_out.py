@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..allan import Noise
-from ..loop.fit.floor import noise_of
+from ..loop.fit.noise import noise_of
 from ..loop.fit.regression import predicted
 from ..loop.read.sessions import Session
 from ..loop.verify.analysis import Analysis

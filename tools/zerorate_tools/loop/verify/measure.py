@@ -16,7 +16,6 @@ from ..motion.in_motion import slots_of
 from .analysis import Analysis
 from .by_kernels import PiecesByKernels
 from .corrected import CorrectedWriter
-from .deployable import deployable, with_selection
 from .judge import Judgement, rms_dps
 from .measured import (
     AFTER,
@@ -31,7 +30,7 @@ from .measured import (
 from .power_on import PowerOn, ideal_dps
 from .prune_by_holdout import unharmed
 from .rounding import rounding_dps
-from .slots import model_of
+from .slots import deployable, model_of, with_selection
 
 
 def measure(
