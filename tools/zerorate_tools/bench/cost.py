@@ -6,7 +6,7 @@ from typing import Any
 from ..errors import MissingRuntime
 from .limits import COST, verdicts
 from .memory import heap_bytes_per_update, import_heap_bytes, mpy_sizes, state_bytes
-from .native_cost import code_bytes, native_cost
+from .native_cost import code_bytes, effects_cost, native_cost
 from .replay_speed import HOURS, replay_speed
 from .tables import machine
 from .workload import Workload, workload
@@ -39,6 +39,7 @@ def _measures(work: Workload, hours) -> dict[str, Callable[[], Any]]:
     return {
         "heap_bytes_per_update_by_interpreter": lambda: heap_bytes_per_update(work),
         "native": lambda: native_cost(work),
+        "effects": effects_cost,
         "code_bytes": code_bytes,
         "import_heap_bytes": import_heap_bytes,
         "mpy_bytes": mpy_sizes,

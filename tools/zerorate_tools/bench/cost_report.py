@@ -22,6 +22,12 @@ all of it compiled for speed (C -O2). Both must end in the same state to the las
 those of a Cortex-M0+ without wait states. Alone is a call a sample, in bursts is 64 samples a call.
 Calling it from MicroPython comes on top: see [boards.md](boards.md).
 """
+_EFFECTS = """\
+What the slots of a model add to a sample on the Cortex-M0+, at 100 Hz. What follows temperature,
+time or a channel of the application is computed once a second, a slot a sample; what follows a rate
+or an acceleration, which a hand moves faster, at every sample.
+"""
+_EFFECTS_HEAD = ["slots", "instructions, mean", "cycles, mean", "worst"]
 _REPLAY = """\
 Seconds are the processor's, all threads together, the fewest of three runs; memory is the most that
 the process ever held. Parquet in and Parquet out, each sample's bias, source and quality written.
@@ -44,6 +50,9 @@ def sections(found: Mapping[str, Any]) -> Iterator[str]:
     yield table(_HEAD, list(_per_sample(found)))
     yield "Bytes of machine code, each part loaded by who uses it:\n"
     yield table(["part", *(found["code_bytes"] or {})], list(_code(found)))
+    yield "## Effects\n"
+    yield _EFFECTS
+    yield table(_EFFECTS_HEAD, list(_effects(found)))
     yield "## Memory\n"
     yield table(["what", "bytes"], list(_memory(found)))
     yield "## Replay on one core\n"
@@ -66,6 +75,11 @@ def _code(found: Mapping[str, Any]) -> Iterator[list[str]]:
     sizes = found["code_bytes"] or {}
     for part in next(iter(sizes.values()), {}):
         yield [part, *(f"{of[part]:,}" for of in sizes.values())]
+
+
+def _effects(found: Mapping[str, Any]) -> Iterator[list[str]]:
+    for slots, one in (found.get("effects") or {}).items():
+        yield [slots, *(f"{one[n]:,.0f}" for n in ("instructions", *_CYCLES))]
 
 
 def _memory(found: Mapping[str, Any]) -> Iterator[list[str]]:

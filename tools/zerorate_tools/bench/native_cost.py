@@ -7,13 +7,19 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from zerorate import Corrector
+from zerorate.effects.model_file import LOADED
 from zerorate.gravity.gravity_settings import gravity_settings, gravity_state
+from zerorate.model import EffectModel
 from zerorate.motion.motion_settings import motion_settings, motion_state
 
 from ..errors import ZerorateError
 from ..kernels.machine_code import PROCESSORS, machine_code
 from ..kernels.parts import BURST, PARTS
 from ..kernels.reading import Kernels, firmware_package
+from ..model import Slot, build_model, encoded
+from ..model.check import sensor_for
+from ..model.term import Term
 from ..simulate import simulate
 from .emulated import Emulated, code_in, emulated
 from .workload import CYCLE, Workload
@@ -23,6 +29,7 @@ AT_ONCE = 64
 _UPDATES = ("motion", "gravity")
 # by the last of these samples windows in motion are at their longest
 _FROM, _TO = 4000, 7200
+_EFFECTS_TO = 1000
 
 
 def native_cost(work: Workload) -> dict[str, dict[str, Any]]:
@@ -59,6 +66,32 @@ def source_cost() -> dict[str, dict[str, float]]:
         "gravity": (gravity_state(gravity), gravity),
     }
     return {part: _source(part, *states[part], frames.astype(np.int32)) for part in _UPDATES}
+
+
+def effects_cost() -> dict[str, dict[str, float]]:
+    """Slots of a model -> instructions and cycles a sample of them, mean and worst, on a Cortex-M0+
+    at 100 Hz, of which temperature ticks once a second and acceleration never waits."""
+    recording, _ = simulate("never-rests", session=1, seed=1)
+    frames = recording.between(0, _EFFECTS_TO).samples().astype(np.int32)
+    warm = [Term("temp", lo=0.0, hi=50.0, centre=25.0, power=k) for k in (1, 2, 3)]
+    lying = [Term(f"acc_{a}", lo=-1.0, hi=1.0) for a in "xyz"]
+    models = {"three of temperature": warm, "one of acceleration": lying[:1]}
+    models |= {"three of acceleration": lying, "three of each": [*warm, *lying]}
+    return {name: _of_slots(recording.scales, terms, frames) for name, terms in models.items()}
+
+
+def _of_slots(scales, terms, frames: NDArray) -> dict[str, float]:
+    code = emulated(firmware_package(), "effects", "thumb")
+    corrector, effects = Corrector(sensor_for(scales)), EffectModel()
+    model = build_model([Slot(t, (0.01 / 25**t.power,) * 3, "") for t in terms], scales)
+    if effects.load(encoded(model), corrector.sensor) != LOADED:
+        raise ZerorateError("the firmware refuses the model whose cost is asked for")
+    counts, cycles = [], []
+    for row in frames:
+        code(corrector.state, effects.e, array("i", row.tobytes()), 10000)
+        counts.append(code.instructions)
+        cycles.append(code.cycles)
+    return {"instructions": mean(counts), "cycles": mean(cycles), "cycles_worst": max(cycles)}
 
 
 def _source(part: str, state: array, settings: array, frames: NDArray) -> dict[str, float]:

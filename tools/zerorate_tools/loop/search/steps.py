@@ -21,8 +21,9 @@ from .decide import LEVEL
 MOST_PER_SESSION = 4
 _AWAY = 15  # blocks from a step at which a step beside it no longer shows it
 _EDGE = 5  # blocks at either end where a step cannot be told from the offset
-#: Share of a step's size that the blocks next to it must differ by, and as how many means.
-_ABRUPT, _BESIDE = 0.5, 2
+#: Shares of a step's size that the blocks next to it differ by, as how many means, and the most by
+#: which as many anywhere near do.
+_ABRUPT, _BESIDE, _TREND = (0.5, 1.75), 2, 0.3
 #: Blocks around a step whose own trend is taken from that.
 _AROUND = 10
 #: Blocks without rest across which no change is abrupt, if the temperature moved by more in them.
@@ -111,7 +112,7 @@ def _all(regression, terms) -> list[Step]:
         steps.remove(min(steps, key=lambda s: s.ratio))
         _set(regression, steps, kept)
     steps = _sized(regression, terms, steps, kept)
-    abrupt = [s for s in steps if _is_abrupt(regression, terms, s)]
+    abrupt = [s for s in steps if _is_abrupt(regression, terms, s, _with_next(steps, s))]
     _set(regression, [], kept)
     return abrupt
 
@@ -224,22 +225,29 @@ def _sized(regression, terms, steps, kept=()) -> list[Step]:
     return steps
 
 
-def _is_abrupt(regression, terms, step: Step) -> bool:
-    """Whether the blocks next to it differ by most of its size, less the trend around it: a bend
-    or a slow loop does not."""
+def _with_next(steps, step) -> np.ndarray:
+    """(3,) size of a step with that of the block before or after: one in the midst of a block is
+    two."""
+    near = [s for s in steps if s.session == step.session and abs(s.block - step.block) <= 1]
+    return np.sum([s.size_dps for s in near], axis=0)
+
+
+def _is_abrupt(regression, terms, step: Step, size: np.ndarray) -> bool:
+    """Whether the blocks next to it differ by about its size, less the trend around it, which is
+    none to speak of: a bend or a slow loop is not so."""
     session = regression.sessions[step.session]
     there = np.flatnonzero(session.available)
     if _is_unseen(session, there, step.block):
         return False
-    weight = step.size_dps / np.maximum(step.deviation_dps, 1e-12) ** 2
+    weight = size / np.maximum(step.deviation_dps, 1e-12) ** 2
     rate = session.rate_dps - predicted(terms, regression.fit(terms).coefficients, session)
-    along = rate[there] @ weight / (step.size_dps @ weight)
+    along = rate[there] @ weight / (size @ weight)
     at = int(np.searchsorted(there, step.block))
     change = np.array([_change(along, i) for i in range(at - _AROUND, at + _AROUND + 1)])
     near = np.abs(np.arange(-_AROUND, _AROUND + 1)) <= 2 * _BESIDE
     trend = np.nanmedian(change[~near]) if np.isfinite(change[~near]).any() else 0.0
     largest = np.nanmax(np.r_[change[_AROUND - 1 : _AROUND + 2], -np.inf])
-    return bool(largest - trend > _ABRUPT)
+    return bool(abs(trend) < _TREND and _ABRUPT[0] < largest - trend < _ABRUPT[1])
 
 
 def _is_unseen(session, there, block: int) -> bool:

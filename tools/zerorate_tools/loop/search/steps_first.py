@@ -24,11 +24,13 @@ _BESIDE, _OF_USUAL, _JUMPS = 3, 6.0, 4
 #: Ticks around a moment in which the accelerometer is looked at; what it must see, in g and in
 #: times its usual change.
 _MOMENT, _SEEN_G, _SEEN = 10, 0.02, 6.0
+#: By how much an acceleration at rest differs where the device was turned over.
+_TURNED_G = 0.5
 
 
 def without_steps(sessions: Sequence[Session]) -> list[Session]:
     """The sessions without their steps, which they name."""
-    jumping = [n for n in _channels(sessions) if _jumps_often(sessions, n)]
+    jumping = [n for n in _channels(sessions) if _jumps_often(sessions, n) or _turns(sessions, n)]
     if set(jumping) - _OWN:
         return list(sessions)
     return [_less(s, _steps(s, [*bend_of(s), *_beside(s, jumping)])) for s in sessions]
@@ -72,6 +74,13 @@ def _jumps_often(sessions, name) -> bool:
     jumps = [_jumps(s, name) for s in sessions]
     usual = float(np.median(np.concatenate(jumps)))
     return sum(_times(j > _OF_USUAL * usual) for j in jumps) >= _JUMPS
+
+
+def _turns(sessions, name) -> bool:
+    """Whether a channel is an acceleration that shows a device turned over, which no knock does."""
+    if not name.startswith("acc_"):
+        return False
+    return max(np.ptp(_blocks(s, name)[s.available]) for s in sessions) > _TURNED_G
 
 
 def _blocks(session, name):
