@@ -100,7 +100,7 @@ class Touched:
     def run(self, session, told):
         calls, seconds = {}, {}
         for item in session.items:
-            began, found = time.monotonic(), set()
+            began, found = time.process_time(), set()
 
             def called(frame, _event, _argument, found=found):
                 name = self.names.get(frame.f_code.co_filename)
@@ -110,7 +110,7 @@ class Touched:
             sys.settrace(called)
             _run_items(session, [item])
             sys.settrace(None)
-            calls[item.nodeid], seconds[item.nodeid] = sorted(found), time.monotonic() - began
+            calls[item.nodeid], seconds[item.nodeid] = sorted(found), time.process_time() - began
         told.write_text(json.dumps([calls, seconds]), encoding="utf-8")
         return bool(session.testsfailed)
 

@@ -91,6 +91,14 @@ def test_every_cut_and_every_turned_bit_is_refused(model):
     data = encoded(model)
     cuts = {load(data[:n]) for n in range(len(data))}
     assert cuts == {model_file.NO_MODEL, model_file.TRUNCATED}
+    for n in range(len(data)):
+        said = f"is cut short at byte {n}; copy it again" if n > 2 else "is no effect model"
+        with pytest.raises(BadModel, match=said):
+            decoded(data[:n])
+        if n > 5:  # one that says itself to be so short
+            said = "is cut short" if n < 64 else "is damaged: its checksum differs; copy it again"
+            with pytest.raises(BadModel, match=said):
+                decoded(data[:4] + n.to_bytes(2, "little") + data[6:n])
     seen = set()
     for bit in range(8 * len(data)):
         turned = bytearray(data)
