@@ -6,12 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..peers import OURS, PEERS, Given, Peer, given
+from ..peers.firmware import within_two_sigma
 from ..simulate import simulate_sessions
+from .told import told_everything
 
 SCENARIOS = ("warm-up-a", "warm-up-b", "warm-up-c")
 SEEDS = (1, 2, 3, 4, 5)
 FIRST_S = 15.0
 LATER_S = 60.0
+TOLD = "told the rests, the curve and its walk"
 DAY = ("mean of the first 10 s", "imufusion", "vqf, clip 25 dps", *OURS)
 
 Figures = dict[str, dict[str, float]]
@@ -53,6 +56,16 @@ def second_power_on(
     return {peer: {"all": float(m[0]), "first": float(m[1])} for peer, m in medians.items()}
 
 
+def honesty(name: str, seeds: Sequence[int] = SEEDS) -> dict[str, float]:
+    """Shares of a scenario's last session in which the truth lies within two sigma, all seeds."""
+    every = []
+    for seed in seeds:
+        sessions, truths = sessions_of(name, seed)
+        every.append(within_two_sigma(sessions, truths[-1], FIRST_S))
+    whole, first = np.mean(every, axis=0)
+    return {"all": float(whole), "first": float(first)}
+
+
 def day(
     seed: int = 1,
     peers: Sequence[str] = DAY,
@@ -66,4 +79,6 @@ def day(
         error = PEERS[peer](sessions)[0] - truths[0]
         found[peer] = {"all": rms_mdps(error), "later": rms_mdps(error[later:])}
         advance(1)
+    error = told_everything("day", seed)
+    found[TOLD] = {"all": rms_mdps(error), "later": rms_mdps(error[round(LATER_S) :])}
     return found

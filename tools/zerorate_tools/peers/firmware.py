@@ -61,6 +61,22 @@ class Decision:
         return bias
 
 
+def within_two_sigma(
+    sessions: Sequence[Given], truth_dps: NDArray[np.float64], first_s: float
+) -> tuple[float, float]:
+    """Shares of the last session's axes and samples whose truth lies within two sigma.
+
+    Of all in which there was a bias, and of those of the first `first_s` seconds.
+    """
+    corrector = corrector_for(sessions[0].recording, {})
+    for one in sessions:
+        corrector.power_on()
+        bias, sigma, source = _run(corrector, one, "bias_q8", "quality_q8", "source")
+    inside = np.where(source > 0, np.abs(bias - truth_dps) < 2 * sigma, np.nan)
+    first = inside[: round(first_s * sessions[-1].odr_hz)]
+    return float(np.nanmean(inside)), float(np.nanmean(first))
+
+
 def _run(corrector: Corrector, one: Given, *names: str) -> list[NDArray]:
     """What of its outcomes is named, each (n, 3), those in LSB Q8 in dps."""
     outcomes = list(engine("native").run(corrector, frames_in_batches(one.recording)))
