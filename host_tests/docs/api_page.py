@@ -14,6 +14,7 @@ _FIRMWARE = (
     ("zerorate.settings", "Sensor"),
     ("zerorate.checked", "CheckedCorrector"),
     ("zerorate.model", "EffectModel"),
+    ("zerorate.motion.orientation", "orientation"),
     ("zerorate_i2c.mpu6050", "MPU6050"),
 )
 
