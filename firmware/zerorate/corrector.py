@@ -156,34 +156,15 @@ class Corrector:
 
     def _learn_in_motion(self, document, start_dps):
         # loaded here, so that who does not learn in motion has no memory taken by it
-        from .motion.motion_settings import motion_settings, motion_state
+        from .motion.motion_settings import join
 
-        sensor = self.sensor
-        self.motion_settings = motion_settings(
-            sensor.odr_hz,
-            sensor.gyro_lsb_per_dps,
-            sensor.accel_lsb_per_g,
-            document=document,
-            start_dps=start_dps,
-            temp_lsb_per_degc=sensor.temp_lsb_per_degc,
-        )
-        from .native.motion import update
-
-        self._observe_motion = update
-        self.motion = motion_state(self.motion_settings)
+        join(self, document, start_dps)
         unload("zerorate.motion", "motion_settings")
 
     def _learn_by_gravity(self, document, _):
-        from .gravity.gravity_settings import gravity_settings, gravity_state
+        from .gravity.gravity_settings import join
 
-        sensor = self.sensor
-        self.gravity_settings = gravity_settings(
-            sensor.odr_hz, sensor.gyro_lsb_per_dps, sensor.accel_lsb_per_g, document=document
-        )
-        from .native.gravity import update
-
-        self._observe_gravity = update
-        self.gravity = gravity_state(self.gravity_settings)
+        join(self, document)
         unload("zerorate.gravity", "gravity_settings")
 
     def _forget_motion(self):

@@ -87,3 +87,15 @@ def gravity_state(settings):
     state = array("i", [0] * _GRAVITY_WORDS)
     clear(state, settings)
     return state
+
+
+def join(corrector, document):
+    """Let a Corrector learn against gravity. Raises ValueError where its sensor does not do."""
+    sensor = corrector.sensor
+    corrector.gravity_settings = gravity_settings(
+        sensor.odr_hz, sensor.gyro_lsb_per_dps, sensor.accel_lsb_per_g, document=document
+    )
+    from ..native.gravity import update
+
+    corrector._observe_gravity = update
+    corrector.gravity = gravity_state(corrector.gravity_settings)

@@ -143,3 +143,20 @@ def motion_state(settings):
     state = array("i", [0] * (_NODES_RING + 3 * settings[_NODES]))
     clear(state, settings)
     return state
+
+
+def join(corrector, document, start_dps):
+    """Let a Corrector learn in motion as well. Raises ValueError where its sensor does not do."""
+    sensor = corrector.sensor
+    corrector.motion_settings = motion_settings(
+        sensor.odr_hz,
+        sensor.gyro_lsb_per_dps,
+        sensor.accel_lsb_per_g,
+        document=document,
+        start_dps=start_dps,
+        temp_lsb_per_degc=sensor.temp_lsb_per_degc,
+    )
+    from ..native.motion import update
+
+    corrector._observe_motion = update
+    corrector.motion = motion_state(corrector.motion_settings)
