@@ -53,7 +53,10 @@ def build_model(
     """
     model = Model(tuple(slots), scales, binding or Binding(), round(tick_s * 1e6))
     inputs = inputs_for(model.slots, scales, model.tick_s)
-    return decoded(encoded(replace(model, inputs=inputs)))
+    try:
+        return decoded(encoded(replace(model, inputs=inputs)))
+    except BadModel as error:  # two of its numbers are one when rounded, or are none
+        raise CannotDeploy(f"rounded it is no model: {error.__cause__ or error}") from error
 
 
 def encoded(model: Model) -> bytes:
