@@ -55,13 +55,6 @@ _GRAVITY = const(5)
 _held = [bytearray(4992)]
 
 
-def forget(state, clear, settings):
-    """Make a source's state as new, in place: a copy of it would want as much heap again."""
-    for i in range(len(state)):
-        state[i] = 0
-    clear(state, settings)
-
-
 class Corrector:
     """Learns the bias of three axes while the device lives, and subtracts it.
 
@@ -130,18 +123,23 @@ class Corrector:
         self.left_out = ""
         if every or document:  # who asks for other rules gets those alone
             motion, gravity = bool(motion), bool(gravity)
-        self._begin(self._learn_in_motion, motion, document, chosen["motion_start_dps"])
-        self._begin(self._learn_by_gravity, gravity, document, 0)
+        self._begin("motion", motion, document, chosen["motion_start_dps"])
+        self._begin("gravity", gravity, document, 0)
         walk_lsb = chosen["walk_dps"] * self.sensor.gyro_lsb_per_dps
         self._walk_q16 = max(1, int(min(c[_WALK_MOST_Q16], walk_lsb * walk_lsb * 65536)))
         if rest.is_machine_code and self.alone and type(self) is Corrector:
             self.update = rest.bound(self.state, c)  # type: ignore[method-assign]
         self.reset()
 
-    def _begin(self, learn, wanted, document, start_dps):
+    def _begin(self, part, wanted, document, start_dps):
+        # loaded here, so that who does without it has no memory taken by it
         if wanted or wanted is None:
+            package, name = "zerorate." + part, part + "_settings"
             try:
-                learn(document, start_dps)
+                __import__(package + "." + name, None, None, ("join",)).join(
+                    self, document, start_dps
+                )
+                unload(package, name)
                 self._join_others()
             except (ImportError, ValueError) as error:
                 if wanted:
@@ -153,30 +151,6 @@ class Corrector:
         self.alone = False
         if "update" in self.__dict__:
             del self.update
-
-    def _learn_in_motion(self, document, start_dps):
-        # loaded here, so that who does not learn in motion has no memory taken by it
-        from .motion.motion_settings import join
-
-        join(self, document, start_dps)
-        unload("zerorate.motion", "motion_settings")
-
-    def _learn_by_gravity(self, document, _):
-        from .gravity.gravity_settings import join
-
-        join(self, document)
-        unload("zerorate.gravity", "gravity_settings")
-
-    def _forget_motion(self):
-        # their windows hold what the chip sent before, right or not
-        if self.motion is not None:
-            from .native import motion
-
-            forget(self.motion, motion.clear, self.motion_settings)
-        if self.gravity is not None:
-            from .native import gravity
-
-            forget(self.gravity, gravity.clear, self.gravity_settings)
 
     def reset(self) -> None:
         """Forget everything that was learned."""
@@ -199,7 +173,10 @@ class Corrector:
         c = self.settings
         if self.effects is not None:
             self.effects.power_on()
-        self._forget_motion()
+        if self.motion is not None or self.gravity is not None:
+            from .others import forget
+
+            forget(self)
         for i in range(c[_AXES]):
             s[i] = 0
         for axis in range(3):

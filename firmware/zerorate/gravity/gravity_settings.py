@@ -89,7 +89,7 @@ def gravity_state(settings):
     return state
 
 
-def join(corrector, document):
+def join(corrector, document, _):
     """Let a Corrector learn against gravity. Raises ValueError where its sensor does not do."""
     sensor = corrector.sensor
     corrector.gravity_settings = gravity_settings(

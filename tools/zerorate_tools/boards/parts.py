@@ -25,6 +25,7 @@ PARTS = {
     ),
     "motion": (
         "zerorate.motion",
+        "zerorate.others",
         "zerorate.native.motion",
         "zerorate.motion.motion_settings",
         "zerorate.motion.orientation",
@@ -32,6 +33,7 @@ PARTS = {
     ),
     "gravity": (
         "zerorate.gravity",
+        "zerorate.others",
         "zerorate.native.gravity",
         "zerorate.gravity.gravity_settings",
         "zerorate.explain_sources",
