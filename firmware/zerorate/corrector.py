@@ -120,7 +120,7 @@ class Corrector:
         self._examine: "Any" = None
         self._examined_by: "Any" = None
         self.alone = True
-        self.left_out = ""
+        self.left_out = []  # type: ignore[var-annotated]
         if every or document:  # who asks for other rules gets those alone
             motion, gravity = bool(motion), bool(gravity)
         self._begin("motion", motion, document, chosen["motion_start_dps"])
@@ -136,7 +136,7 @@ class Corrector:
         if wanted or wanted is None:
             package, name = "zerorate." + part, part + "_settings"
             try:
-                __import__(package + "." + name, None, None, ("join",)).join(
+                __import__(package + "." + name, None, None, (part,)).join(
                     self, document, start_dps
                 )
                 unload(package, name)
@@ -144,7 +144,7 @@ class Corrector:
             except (ImportError, ValueError) as error:
                 if wanted:
                     raise
-                self.left_out += "Left out: %s.\n" % error
+                self.left_out.append("Left out: %s." % error)
 
     def _join_others(self):
         self._examine, self._examined_by = rest.examined(self.settings)

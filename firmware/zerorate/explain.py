@@ -79,8 +79,7 @@ def explain(corrector):
         from .explain_sources import explain_sources
 
         lines.extend(explain_sources(corrector))
-    if corrector.left_out:
-        lines.append(corrector.left_out[:-1])
+    lines.extend(corrector.left_out)
     if corrector.schedule is not None:
         lines.append(saving_text(corrector.schedule, sensor))
     lines.extend(runs())
