@@ -118,7 +118,7 @@ class Corrector:
         self._observe_motion: "Any" = None
         self._observe_gravity: "Any" = None
         self._examine: "Any" = None
-        self._examined_by: "Any" = None
+        self._guard: "Any" = None
         self.alone = True
         self.left_out = []  # type: ignore[var-annotated]
         if every or document:  # who asks for other rules gets those alone
@@ -147,7 +147,7 @@ class Corrector:
                 self.left_out.append("Left out: %s." % error)
 
     def _join_others(self):
-        self._examine, self._examined_by = rest.examined(self.settings)
+        self._examine, self._guard = rest.examined(self.settings)
         self.alone = False
         if "update" in self.__dict__:
             del self.update
@@ -201,7 +201,7 @@ class Corrector:
 
     # small frames: one of more than eleven words would take heap at every call
     def _update_with_others(self, sample, dt_us):
-        kind = self._examine(self.state, self._examined_by, sample, dt_us)
+        kind = self._examine(self.state, self._guard, sample, dt_us)
         self._sense_effects(sample, dt_us, kind)
         rest.admit(self.state, self.settings, sample, kind)
         if kind == 0:
