@@ -95,6 +95,8 @@ with open("samples.bin", "rb") as source, open("out.bin", "wb") as target:
         float(sys.argv[4]),
     )
 with open("state.bin", "wb") as file:
-    file.write(corrector.state)
+    for part in (corrector.state, corrector.motion, corrector.gravity):
+        if part is not None:
+            file.write(part)
     if corrector.effects is not None:
         file.write(corrector.effects.e)

@@ -14,6 +14,8 @@ from ..replay import replay
 _STEPS = 8
 _SECONDS_A_STEP = 12.0
 _NOISE_DPS = 0.05
+#: Options of a replay whose recording has a made-up motion, which its accelerometer does not show.
+AT_REST_ALONE: dict[str, object] = {"motion": False, "gravity": False}
 
 
 def prefill(
@@ -29,7 +31,7 @@ def prefill(
     rates = np.stack([np.interp(warm, degc, bias_dps[:, a]) for a in range(3)], axis=1)
     rng = np.random.default_rng(1)
     rates = (rates + rng.normal(0, _NOISE_DPS, rates.shape)) * scales.gyro_lsb_per_dps
-    replay(_recording(warm, rates, scales, rng), state=state)
+    replay(_recording(warm, rates, scales, rng), state=state, options=AT_REST_ALONE)
 
 
 def _recording(warm, rates_lsb, scales: Scales, rng) -> Recording:
