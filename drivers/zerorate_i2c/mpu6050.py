@@ -232,7 +232,7 @@ class MPU6050(Registers):
         previous = self._previous
         for i in range(0, 2 * _WORDS, 2):
             leap = (burst[i] - previous[i]) * 256 + burst[i + 1] - previous[i + 1]
-            if leap > _LEAP_LSB or leap < -_LEAP_LSB:
+            if _LEAP_LSB < leap & 0xFFFF < 0x10000 - _LEAP_LSB:  # from -1 to 0 is one step
                 return True
         return False
 

@@ -183,7 +183,9 @@ def test_a_transfer_is_tried_once_more_than_retries_and_each_failure_counted(mak
 
 
 @pytest.mark.parametrize("word", range(7))
-@pytest.mark.parametrize("base, leap", [(5000, 160), (-5000, 160), (3 * 256 + 100, 160), (1000, 0)])
+@pytest.mark.parametrize(
+    "base, leap", [(5000, 160), (-5000, 160), (3 * 256 + 100, 160), (1000, 0), (-1, 160)]
+)
 @pytest.mark.parametrize("sign", [1, -1])
 def test_a_word_that_leaps_by_more_than_160_is_read_twice(make_bench, word, base, leap, sign):
     rows = [[base + place for place in range(7)] for _ in range(3)]
