@@ -8,6 +8,7 @@ from .played import LSB, estimators, play, rest
 from .tolerances import LEARNED_LSB
 
 BIAS_DPS = (0.4, -0.3, 0.2)
+RESTS_ALONE = {"motion": False, "gravity": False}
 
 
 def turning(rate_dps, seconds=60, axis=0, seed=1):
@@ -33,7 +34,7 @@ def test_a_slow_turn_about_a_level_axis_is_never_learned(rate_dps, axis):
 @pytest.mark.parametrize("axis", [0, 1])
 @pytest.mark.parametrize("rate_dps", [-3, -1, -0.5, -0.1, 0.1, 0.5, 1, 3])
 def test_a_slow_turn_from_power_on_is_learned_by_no_estimator(rate_dps, axis):
-    corrector, _ = play(rest(0.01))
+    corrector, _ = play(rest(0.01), **RESTS_ALONE)
     before = estimators(corrector)
     play(turning(rate_dps, 120, axis), corrector)
     assert estimators(corrector) == before
@@ -58,7 +59,7 @@ def test_rests_of_a_second_between_motions_are_learned():
 
 
 def test_motion_alone_without_a_rest_is_not_learned():
-    corrector, _ = play(handled(60, 1))
+    corrector, _ = play(handled(60, 1), **RESTS_ALONE)
     assert not corrector.learned
 
 

@@ -202,7 +202,7 @@ def test_a_rest_in_degrees_declared_as_radians_is_doubted(tmp_path):
     frame[[f"gyro_{a}" for a in "xyz"]] -= 0.7
     _, report = read(tmp_path, frame, units={"gyro": "rad/s"})
     [said] = report.doubts
-    assert re.search("noise of 2.9 dps is more .* did you mean dps[?] [(]--gyro-unit dps[)]", said)
+    assert re.search("noise of 2.8 dps is more .* did you mean dps[?] [(]--gyro-unit dps[)]", said)
     assert read(tmp_path, frame, units={"gyro": "dps"})[1].doubts == []
 
 
