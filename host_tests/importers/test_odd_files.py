@@ -8,15 +8,15 @@ import pytest
 from zerorate_tools.errors import BadRecording, InFile
 from zerorate_tools.importers import Options, import_recording, parsed_mapping, read_foreign
 
-RNG = np.random.default_rng(3)
 HEAD = "t_s,gx_dps,gy_dps,gz_dps"
 
 
 def table(n=2000, hz=100.0):
     """A rest with usual names and units in them."""
+    rng = np.random.default_rng(3)
     columns = {"t_s": np.arange(n) / hz}
-    columns |= {f"g{a}_dps": 0.8 + 0.05 * RNG.standard_normal(n) for a in "xyz"}
-    columns |= {f"a{a}_g": (a == "z") + 0.004 * RNG.standard_normal(n) for a in "xyz"}
+    columns |= {f"g{a}_dps": 0.8 + 0.05 * rng.standard_normal(n) for a in "xyz"}
+    columns |= {f"a{a}_g": (a == "z") + 0.004 * rng.standard_normal(n) for a in "xyz"}
     return pd.DataFrame(columns | {"temp_c": 25 + 0.001 * np.arange(n)})
 
 
@@ -202,7 +202,7 @@ def test_a_rest_in_degrees_declared_as_radians_is_doubted(tmp_path):
     frame[[f"gyro_{a}" for a in "xyz"]] -= 0.7
     _, report = read(tmp_path, frame, units={"gyro": "rad/s"})
     [said] = report.doubts
-    assert re.search("noise of 2.8 dps is more .* did you mean dps[?] [(]--gyro-unit dps[)]", said)
+    assert re.search("noise of 3 dps is more .* did you mean dps[?] [(]--gyro-unit dps[)]", said)
     assert read(tmp_path, frame, units={"gyro": "dps"})[1].doubts == []
 
 
