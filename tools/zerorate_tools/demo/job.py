@@ -4,7 +4,7 @@ import tempfile
 from pathlib import Path
 
 from ..closing import close
-from ..replay import replay
+from ..replay import AT_REST_ALONE, replay
 from .device import Device
 from .play_and_score import Demo, demo
 
@@ -32,6 +32,6 @@ def _last_power_on(device: Device, model: Path | None, runtime: str) -> Demo:
         state = Path(scratch) / "learned.bin"
         for log in device.logs[:-1]:
             before = state if state.exists() else None
-            replay(log, model=model, from_state=before, state=state)
+            replay(log, model=model, from_state=before, state=state, options=AT_REST_ALONE)
         last, truth = device.logs[-1], device.truth_dps[-1]
         return demo(last, runtime, truth_dps=truth, model=model, learned=state)

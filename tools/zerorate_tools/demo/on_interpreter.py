@@ -48,7 +48,8 @@ def switched_on(imu, odr_hz):
     """A Corrector at power-on, with the learned state and the model that lie beside this script."""
     scales = (imu.gyro_lsb_per_dps, imu.accel_lsb_per_g)
     degrees = (imu.temp_lsb_per_degc, imu.temp_offset_degc)
-    corrector = Corrector(Sensor(odr_hz, *scales, *degrees))
+    # an interpreter without machine code takes minutes for the other sources
+    corrector = Corrector(Sensor(odr_hz, *scales, *degrees), motion=False, gravity=False)
     if content("model.bin"):
         model = EffectModel()
         reason = model.load_file("model.bin", corrector.sensor, imu.binding)
@@ -95,8 +96,6 @@ with open("samples.bin", "rb") as source, open("out.bin", "wb") as target:
         float(sys.argv[4]),
     )
 with open("state.bin", "wb") as file:
-    for part in (corrector.state, corrector.motion, corrector.gravity):
-        if part is not None:
-            file.write(part)
+    file.write(corrector.state)
     if corrector.effects is not None:
         file.write(corrector.effects.e)

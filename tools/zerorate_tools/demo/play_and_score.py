@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..recordings import Recording, read_recording
-from ..replay.replaying import replay
+from ..replay import AT_REST_ALONE, replay
 from ..runtimes import find
 from .play import play
 from .score import Score, score
@@ -50,7 +50,7 @@ def demo(
     interpreter = find(runtime)
     recording = log if isinstance(log, Recording) else read_recording(log, keep_gaps=True)
     played = play(recording, interpreter, model=model, learned=learned)
-    here = replay(recording, model=model, from_state=learned)
+    here = replay(recording, model=model, from_state=learned, options=AT_REST_ALONE)
     return Demo(
         recording=recording,
         runtime=interpreter.name,

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ..bench.accuracy import rms_mdps
 from ..bench.broad import Trial, TrueBias, true_bias
 from ..recordings import Recording
-from ..replay import replay
+from ..replay import AT_REST_ALONE, replay
 
 WAYS = (
     "uncorrected",
@@ -20,7 +20,6 @@ WAYS = (
     "zerorate, in motion and by gravity too",
 )
 WHOLE_FROM_S, MOTION_FROM_S = 10.0, 60.0
-_AT_REST_ALONE: dict[str, object] = {"motion": False, "gravity": False}
 
 
 @dataclass(frozen=True)
@@ -53,7 +52,7 @@ def real(
         biases = {way: _peer(way)(recording) for way in WAYS[:2]}
         if find_spec("vqf") is not None:
             biases["vqf"] = _peer("vqf")(recording)
-        for way, options in zip(WAYS[3:], (_AT_REST_ALONE, {})):
+        for way, options in zip(WAYS[3:], (AT_REST_ALONE, {})):
             done = replay(recording, runtime=runtime, options=options)
             biases[way] = _biases(done.table, recording)
             advance(1)

@@ -10,9 +10,9 @@ import numpy as np
 
 from ..loop.read.sessions import Session
 from ..recordings import Recording, open_recording
-from ..replay import replay
+from ..replay import AT_REST_ALONE, replay
 from .job import one_line, still_session
-from .prefilled import AT_REST_ALONE, prefill
+from .prefilled import prefill
 from .replay_power_on import block_means, error_mdps
 
 #: How long a device rests before it moves, and from when on its error counts, both in seconds.
@@ -111,6 +111,7 @@ def _files(prior: Prior, recording: Recording, folder: Path) -> dict[str, dict[s
 def _error(
     recording: Recording, session: Session, files: dict[str, Any], from_s: float, to_s: float
 ) -> float | None:
+    # of the made-up motion the accelerometer shows nothing
     table = replay(recording, options=AT_REST_ALONE, **files).table
     assert table is not None
     bias_dps = block_means(table.to_batches(), session) / recording.scales.gyro_lsb_per_dps

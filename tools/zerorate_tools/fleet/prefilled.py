@@ -9,13 +9,11 @@ from os import PathLike
 import numpy as np
 
 from ..recordings import Recording, Scales
-from ..replay import replay
+from ..replay import AT_REST_ALONE, replay
 
 _STEPS = 8
 _SECONDS_A_STEP = 12.0
 _NOISE_DPS = 0.05
-#: Options of a replay whose recording has a made-up motion, which its accelerometer does not show.
-AT_REST_ALONE: dict[str, object] = {"motion": False, "gravity": False}
 
 
 def prefill(

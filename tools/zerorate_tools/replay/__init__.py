@@ -1,5 +1,5 @@
 """The firmware over a recording, learning as it goes."""
 
-from .replaying import Replay, replay
+from .replaying import AT_REST_ALONE, Replay, replay
 
-__all__ = ["Replay", "replay"]
+__all__ = ["AT_REST_ALONE", "Replay", "replay"]

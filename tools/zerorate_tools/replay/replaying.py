@@ -28,6 +28,10 @@ if TYPE_CHECKING:
     import pandas
 
 
+#: Options that leave out the sources which learn in motion.
+AT_REST_ALONE: dict[str, object] = {"motion": False, "gravity": False}
+
+
 @dataclass
 class Replay:
     """What a replay did.
