@@ -21,7 +21,10 @@ ATTACKS = {
         "a turned bit, then a cut",
         [*_PYTEST, "host_tests/firmware/test_store.py"],
     ),
-    "models": ("cuts, turned bits, noise", [*_PYTEST, "host_tests/tools/test_model.py"]),
+    "models": (
+        "cuts, turned bits, noise",
+        [*_PYTEST, "host_tests/tools/test_model.py", "host_tests/tools/test_model_limits.py"],
+    ),
     "readers": ("damaged files", [*_PYTEST, "host_tests/hostile", "-k", "any or mat_of_one"]),
     "memory": (
         "six files that unpack to gigabytes",

@@ -31,6 +31,7 @@ _EFFECTS_HEAD = ["slots", "instructions, mean", "cycles, mean", "worst"]
 _REPLAY = """\
 Seconds are the processor's, all threads together, the fewest of three runs; memory is the most that
 the process ever held. Parquet in and Parquet out, each sample's bias, source and quality written.
+Learning at rest alone (`--no-motion --no-gravity`); the other sources take about as long again.
 """
 _NAMES = {"thumb": "Cortex-M0+", "rv32": "RV32"}
 _CYCLES = ("cycles", "cycles_worst")
