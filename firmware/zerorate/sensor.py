@@ -1,6 +1,12 @@
 """What the samples are."""
 
 
+def _within(must_be, value, least, most):
+    if not least <= value <= most:
+        raise ValueError("%s%s..%s, not %s" % (must_be, least, most, value))
+    return value
+
+
 class Sensor:
     """What one LSB is and how often it comes.
 
@@ -18,16 +24,12 @@ class Sensor:
         temp_lsb_per_degc: float = 340.0,
         temp_offset_degc: float = 36.53,
     ) -> None:
-        if not 0.01 <= odr_hz <= 8000:
-            raise ValueError("odr_hz must be 0.01..8000, not %s" % odr_hz)
-        if not 1 <= gyro_lsb_per_dps <= 8000:
-            raise ValueError("gyro_lsb_per_dps must be 1..8000, not %s" % gyro_lsb_per_dps)
-        if accel_lsb_per_g and not 1 <= accel_lsb_per_g <= 32768:
-            raise ValueError("accel_lsb_per_g must be 0 or 1..32768, not %s" % accel_lsb_per_g)
-        if temp_lsb_per_degc and not 1 <= temp_lsb_per_degc <= 2000:
-            raise ValueError("temp_lsb_per_degc must be 0 or 1..2000, not %s" % temp_lsb_per_degc)
-        self.odr_hz = odr_hz
-        self.gyro_lsb_per_dps = gyro_lsb_per_dps
-        self.accel_lsb_per_g = accel_lsb_per_g
-        self.temp_lsb_per_degc = temp_lsb_per_degc
+        self.odr_hz = _within("odr_hz must be ", odr_hz, 0.01, 8000)
+        self.gyro_lsb_per_dps = _within("gyro_lsb_per_dps must be ", gyro_lsb_per_dps, 1, 8000)
+        self.accel_lsb_per_g = accel_lsb_per_g and _within(
+            "accel_lsb_per_g must be 0 or ", accel_lsb_per_g, 1, 32768
+        )
+        self.temp_lsb_per_degc = temp_lsb_per_degc and _within(
+            "temp_lsb_per_degc must be 0 or ", temp_lsb_per_degc, 1, 2000
+        )
         self.temp_offset_degc = temp_offset_degc

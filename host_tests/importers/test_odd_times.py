@@ -6,7 +6,9 @@ import pytest
 from zerorate_tools.errors import BadRecording
 from zerorate_tools.importers import Options
 
-from .test_odd_files import RNG, read, table, told
+from .test_odd_files import read, table, told
+
+RNG = np.random.default_rng(3)
 
 # Time
 
