@@ -6,10 +6,7 @@ if TYPE_CHECKING:
 
     from .mpu6050 import MPU6050
 
-try:
-    from micropython import const
-except ImportError:
-    const = int  # type: ignore[assignment]
+const = int  # on a board the compiler itself reads const(...)
 
 _INT_PIN_CFG = const(0x37)
 _INT_ENABLE = const(0x38)

@@ -8,10 +8,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from .mpu6050 import MPU6050
 
-try:
-    from micropython import const
-except ImportError:
-    const = int  # type: ignore[assignment]
+const = int  # on a board the compiler itself reads const(...)
 
 _FIFO_EN = const(0x23)
 _INT_STATUS = const(0x3A)

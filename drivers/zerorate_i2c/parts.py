@@ -9,11 +9,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-try:
-    from micropython import const
-except ImportError:
-    const = int  # type: ignore[assignment]
-
+const = int  # on a board the compiler itself reads const(...)
 
 MPU6050_KIND = const(0)  # packed self-test, one DLPF for both sensors
 MPU6500_KIND = const(1)  # ACCEL_CONFIG2, self-test codes a byte each

@@ -17,10 +17,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from .mpu6050 import MPU6050
 
-try:
-    from micropython import const
-except ImportError:
-    const = int  # type: ignore[assignment]
+const = int  # on a board the compiler itself reads const(...)
 
 _SELF_TEST_GYRO_6500 = const(0x00)
 _SELF_TEST = const(0x0D)

@@ -5,10 +5,7 @@ Register map and descriptions: RM-MPU-6000A-00 rev 4.2, registers 25-28; RM-MPU-
 
 from .parts import ICM20689_KIND, ICM20690_KIND, MPU6050_KIND
 
-try:
-    from micropython import const
-except ImportError:
-    const = int  # type: ignore[assignment]
+const = int  # on a board the compiler itself reads const(...)
 
 _SMPLRT_DIV = const(0x19)
 _CONFIG = const(0x1A)

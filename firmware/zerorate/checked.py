@@ -13,11 +13,7 @@ if TYPE_CHECKING:
     from .corrector import Corrector
 
 
-try:
-    from micropython import const
-except ImportError:
-    const = int  # type: ignore[assignment]
-
+const = int  # on a board the compiler itself reads const(...)
 
 # What a driver says of each read (zerorate_i2c.mpu6050 has the same numbers).
 FRESH = const(0)

@@ -8,11 +8,7 @@ except ImportError:
 from .native import rest, unload
 from .sensor import Sensor
 
-try:
-    from micropython import const
-except ImportError:
-    const = int  # type: ignore[assignment]
-
+const = int  # on a board the compiler itself reads const(...)
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -2,11 +2,7 @@
 
 from .native import chosen
 
-try:
-    from micropython import const
-except ImportError:
-    const = int  # type: ignore[assignment]
-
+const = int  # on a board the compiler itself reads const(...)
 
 # layout: The corrector's state
 _COUNTS = const(8)

@@ -2,11 +2,7 @@
 
 from .explain import without_sign
 
-try:
-    from micropython import const
-except ImportError:
-    const = int  # type: ignore[assignment]
-
+const = int  # on a board the compiler itself reads const(...)
 
 # layout: The state of the source in motion
 _MOTION_REASON = const(17)

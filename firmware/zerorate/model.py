@@ -13,11 +13,7 @@ if TYPE_CHECKING:
 
     from .settings import Sensor
 
-try:
-    from micropython import const
-except ImportError:
-    const = int  # type: ignore[assignment]
-
+const = int  # on a board the compiler itself reads const(...)
 
 # effects.model_file has the same numbers, and all; its 4 KB are there while a model is loaded
 LOADED = const(0)

@@ -4,11 +4,7 @@ from array import array
 
 from .sensor import Sensor  # noqa: F401
 
-try:
-    from micropython import const
-except ImportError:
-    const = int  # type: ignore[assignment]
-
+const = int  # on a board the compiler itself reads const(...)
 
 # layout: The corrector's state
 _FIT_WEIGHTS = const(98)

@@ -1,9 +1,6 @@
 """The angle of a vector, in integers."""
 
-try:
-    from micropython import const
-except ImportError:
-    const = int  # type: ignore[assignment]
+const = int  # on a board the compiler itself reads const(...)
 
 _HALF_PI_Q13 = const(12868)
 _PI_Q13 = const(25736)

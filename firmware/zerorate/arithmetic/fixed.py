@@ -1,10 +1,6 @@
 """Fixed-point arithmetic that never leaves 31 bits."""
 
-try:
-    from micropython import const
-except ImportError:
-    const = int
-
+const = int  # on a board the compiler itself reads const(...)
 ptr32 = None
 
 _LOW_15 = const(0x7FFF)

@@ -4,14 +4,10 @@ The least squares of a window span more orders of magnitude than 31 bits, and a 
 object on a board. A number at word `a` is s[a] * 2^s[a+1]; |s[a]| is in 2^27..2^28, or 0.
 """
 
-try:
-    from micropython import const
-except ImportError:
-    const = int
-
-ptr32 = None
-
 from .fixed import root
+
+const = int  # on a board the compiler itself reads const(...)
+ptr32 = None
 
 _LOW_14 = const(0x3FFF)
 _LEAST_MANTISSA = const(0x8000000)

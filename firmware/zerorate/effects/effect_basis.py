@@ -6,14 +6,10 @@ The tool scales each slot so that no stage leaves +-1 (2^24), and 1 stands for t
 that the fitted range allows. Words of a slot: docs/layout.md.
 """
 
-try:
-    from micropython import const
-except ImportError:
-    const = int
-
-ptr32 = None
-
 from ..arithmetic.fixed import scaled
+
+const = int  # on a board the compiler itself reads const(...)
+ptr32 = None
 
 # layout: An effect slot
 _SLOT_SOURCE = const(0)

@@ -3,11 +3,7 @@
 A source's value is in Q8 of its integer. Words of an input: docs/layout.md.
 """
 
-try:
-    from micropython import const
-except ImportError:
-    const = int
-
+const = int  # on a board the compiler itself reads const(...)
 ptr32 = None
 
 # layout: The effect model and its running state
@@ -34,8 +30,6 @@ _KIND_CHANNEL = const(16)
 # layout: Values that stand for none
 _NO_VALUE = const(-0x3FFFFFFF)
 # layout: end
-
-
 _MOST_SAMPLES = const(16383)
 
 

@@ -7,15 +7,11 @@ C.-Y. Su, 2011, IEEE/ASME Transactions on Mechatronics 16, 734, for plays seen t
 At power-on each stands where its source is: what was before is not known. Words: docs/layout.md.
 """
 
-try:
-    from micropython import const
-except ImportError:
-    const = int
-
-ptr32 = None
-
 from ..arithmetic.fixed import scaled
 from .effect_basis import add_times, centred
+
+const = int  # on a board the compiler itself reads const(...)
+ptr32 = None
 
 # layout: The effect model and its running state
 _SUM_Q14 = const(10)

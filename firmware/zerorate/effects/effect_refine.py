@@ -7,14 +7,10 @@ neither the turn-on offset nor the line is taken for an effect. No coefficient l
 own by more than the bound. Numbers are those of real.py; words of `e`: docs/layout.md.
 """
 
-try:
-    from micropython import const
-except ImportError:
-    const = int
-
-ptr32 = None
-
 from ..arithmetic.real import add, divide, multiply, put, subtract, whole
+
+const = int  # on a board the compiler itself reads const(...)
+ptr32 = None
 
 # layout: The corrector's state
 _WINDOW_N = const(17)
@@ -52,8 +48,6 @@ _SLOT_WORDS = const(40)
 # layout: What of the sample itself a slot follows
 _OF_RATE = const(1)
 # layout: end
-
-
 _REFINE_ROW = const(20)
 
 

@@ -6,16 +6,12 @@ faster than a tick, is computed for every sample. One array `e` holds the model 
 state: docs/layout.md has its words.
 """
 
-try:
-    from micropython import const
-except ImportError:
-    const = int
-
-ptr32 = None
-
 from .effect_basis import basis, contribute
 from .effect_inputs import accumulate, close_tick, tell_time
 from .effect_plays import play
+
+const = int  # on a board the compiler itself reads const(...)
+ptr32 = None
 
 # layout: The corrector's state
 _EFFECT_Q8 = const(67)
@@ -44,8 +40,6 @@ _SLOT_WORDS = const(40)
 _PLAY_STARTED = const(13)
 _PLAY_WORDS = const(15)
 # layout: end
-
-
 _MOST_PENDING = const(4096)
 _MOST_TICKS = const(0x1FFFF000)
 

@@ -18,11 +18,7 @@ from struct import unpack_from
 
 from ..storage.crc32 import checksum
 
-try:
-    from micropython import const
-except ImportError:
-    const = int  # type: ignore[assignment]
-
+const = int  # on a board the compiler itself reads const(...)
 
 LOADED = const(0)
 NO_MODEL = const(1)

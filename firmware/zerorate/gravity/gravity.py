@@ -17,15 +17,11 @@ sub-units; the default has a dead band, ends it after so many counted ones, doub
 all signs agree and halves it when the counter turns.
 """
 
-try:
-    from micropython import const
-except ImportError:
-    const = int
-
-ptr32 = None
-
 from ..arithmetic.atan2 import atan2_q13
 from ..arithmetic.fixed import scaled
+
+const = int  # on a board the compiler itself reads const(...)
+ptr32 = None
 
 # layout: The state of the source against gravity
 _UNIT_ELAPSED_US = const(0)
@@ -71,8 +67,6 @@ _GRAVITY_GAP = const(3)
 # layout: Values that stand for none
 _UNKNOWN_Q8 = const(0x1FFFFFFF)
 # layout: end
-
-
 _PI_Q13 = const(25736)
 _ONE_G_Q24 = const(0x1000000)
 _BAND_Q24 = const(0x300000)

@@ -3,11 +3,7 @@
 from array import array
 from math import pi
 
-try:
-    from micropython import const
-except ImportError:
-    const = int  # type: ignore[assignment]
-
+const = int  # on a board the compiler itself reads const(...)
 
 # layout: The state of the source against gravity
 _GRAVITY_WORDS = const(55)

@@ -4,14 +4,10 @@ The quaternion turns body vectors into the tilt frame of the window. Q28 words a
 steps stay within 0.03 deg of a float64 quaternion over 128 increments of up to 1 rad.
 """
 
-try:
-    from micropython import const
-except ImportError:
-    const = int
-
-ptr32 = None
-
 from ..arithmetic.atan2 import atan2_q13
+
+const = int  # on a board the compiler itself reads const(...)
+ptr32 = None
 
 # layout: The state of the source in motion
 _HALF = const(19)

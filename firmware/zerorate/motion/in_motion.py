@@ -13,13 +13,6 @@ linear. Work is spread: a few nodes or one piece of algebra a sample. The state 
 of 241 words and 3 a node; motion_settings.py makes the settings.
 """
 
-try:
-    from micropython import const
-except ImportError:
-    const = int
-
-ptr32 = None
-
 from ..arithmetic.real import add, copy, whole
 from .attitude import normalise, rotation, sines, turn
 from .increments import close, gather, restart, within
@@ -40,6 +33,9 @@ from .motion_verdict import finish, note_slope, start_window
 from .regression import centre, first_sums, regressors, second_sums, taper
 from .thermal import carry, follow_temperature
 from .tilt_frame import begin_attitude, find_up, lean_back, observe, turn_centre
+
+const = int  # on a board the compiler itself reads const(...)
+ptr32 = None
 
 # layout: The state of the source in motion
 _LENGTH = const(11)

@@ -4,11 +4,7 @@ The ring keeps, a node and axis in one word, the increment (Q13 rad, 15 bits) ab
 (Q12 g, 15 bits). What rounding leaves over stays for the next node, so no angle is lost in the sum.
 """
 
-try:
-    from micropython import const
-except ImportError:
-    const = int
-
+const = int  # on a board the compiler itself reads const(...)
 ptr32 = None
 
 # layout: The state of the source in motion
@@ -35,8 +31,6 @@ _MOTION_SHIFT = const(3)
 _FORCE_GAIN = const(4)
 _NODES = const(8)
 # layout: end
-
-
 _TWO_RAD_Q24 = const(0x1FFFFFF)
 _HALF_RAD_Q24 = const(0x7F0000)  # in a sample: two products with 2 rad fit
 _MOST_ANGLE_Q13 = const(0x3FFF)

@@ -4,14 +4,10 @@ Ten real numbers at _G: the upper triangle of a 3 x 3 matrix with a right-hand s
 column (00 01 02 0y 11 12 1y 22 2y yy). Bias in Q24 rad a node, orientation in Q12 rad.
 """
 
-try:
-    from micropython import const
-except ImportError:
-    const = int
-
-ptr32 = None
-
 from ..arithmetic.real import add, copy, divide, multiply, put, subtract
+
+const = int  # on a board the compiler itself reads const(...)
+ptr32 = None
 
 # layout: The state of the source in motion
 _STAGE = const(12)

@@ -3,11 +3,7 @@
 from array import array
 from math import ceil, log, pi
 
-try:
-    from micropython import const
-except ImportError:
-    const = int  # type: ignore[assignment]
-
+const = int  # on a board the compiler itself reads const(...)
 
 # layout: The state of the source in motion
 _NODES_RING = const(241)

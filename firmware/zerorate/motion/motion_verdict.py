@@ -5,16 +5,12 @@ hold, one whose mean force is not 1 g along one direction (the integration lost 
 that contradicts what is known: a turn that stays turned. Contradiction that lasts is believed.
 """
 
-try:
-    from micropython import const
-except ImportError:
-    const = int
-
-ptr32 = None
-
 from ..arithmetic.real import copy, multiply, put, root_of, subtract, whole
 from .least_squares import covariance, less, place
 from .thermal import forget_slopes, learn_slopes, present
+
+const = int  # on a board the compiler itself reads const(...)
+ptr32 = None
 
 # layout: The state of the source in motion
 _HEAD = const(8)
@@ -65,8 +61,6 @@ _TURNED = const(4)
 _TOO_FAST = const(5)
 _LOST = const(6)
 # layout: end
-
-
 _SETTLED_AFTER = const(3)
 
 

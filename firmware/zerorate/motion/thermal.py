@@ -8,15 +8,11 @@ Three packed numbers an axis at _TEMP_SLOPES: the slope, its covariance with the
 in Q24 rad a node and raw LSB of the thermometer.
 """
 
-try:
-    from micropython import const
-except ImportError:
-    const = int
-
-ptr32 = None
-
 from ..arithmetic.real import add, divide, multiply, pack, put, subtract, unpack
 from .least_squares import place
+
+const = int  # on a board the compiler itself reads const(...)
+ptr32 = None
 
 # layout: The state of the source in motion
 _FILLED = const(9)

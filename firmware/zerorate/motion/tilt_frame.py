@@ -1,15 +1,11 @@
 """The tilt frame of a window: where its mean specific force points up."""
 
-try:
-    from micropython import const
-except ImportError:
-    const = int
-
-ptr32 = None
-
 from ..arithmetic.fixed import root
 from .attitude import heading_q12, rotation
 from .increments import within
+
+const = int  # on a board the compiler itself reads const(...)
+ptr32 = None
 
 # layout: The state of the source in motion
 _TAPER_SUM = const(18)

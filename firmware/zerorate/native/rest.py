@@ -2,11 +2,7 @@
 
 from . import machine_code
 
-try:
-    from micropython import const
-except ImportError:
-    const = int  # type: ignore[assignment]
-
+const = int  # on a board the compiler itself reads const(...)
 
 # what stands in the fourth argument's upper half word (tools/zerorate_tools/kernels/parts.py)
 _ADMIT = const(-0x40000000)

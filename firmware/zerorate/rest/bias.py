@@ -3,15 +3,11 @@
 # US 9,354,080, paragraphs on the determination of the bias: the estimator of this temperature where
 # it is stable and more stable than the fit, else the fit, else the temperature-independent one.
 
-try:
-    from micropython import const
-except ImportError:
-    const = int
-
-ptr32 = None
-
 from .estimators import find
 from .fit import bent_q8, line_q8
+
+const = int  # on a board the compiler itself reads const(...)
+ptr32 = None
 
 # layout: An axis
 _LINE_LOW_Q4 = const(19)

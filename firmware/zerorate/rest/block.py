@@ -9,14 +9,10 @@
 #
 # A frame of `f` is eight words: us since the frame before, ax ay az temp gx gy gz in raw LSB.
 
-try:
-    from micropython import const
-except ImportError:
-    const = int
-
-ptr32 = None
-
 from .step import step
+
+const = int  # on a board the compiler itself reads const(...)
+ptr32 = None
 
 # layout: The corrector's state
 _FRAME = const(0)

@@ -4,14 +4,10 @@
 # least-recently-used cache of the latest temperatures; the others keep a wide range of them.
 # `a` is the first word of an axis, `e` that of an estimator (docs/layout.md).
 
-try:
-    from micropython import const
-except ImportError:
-    const = int
-
-ptr32 = None
-
 from .histogram import add, clear, halve, population, read_out_q8
+
+const = int  # on a board the compiler itself reads const(...)
+ptr32 = None
 
 # layout: The corrector's state
 _LEARN_TEMP = const(58)

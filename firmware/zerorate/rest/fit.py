@@ -9,14 +9,10 @@
 # shifted left until the range fills 26 bits; the two sums of products float, for a point may weigh
 # 65000 times another.
 
-try:
-    from micropython import const
-except ImportError:
-    const = int
-
-ptr32 = None
-
 from ..arithmetic.fixed import clipped, floating_ratio_q26, fraction_q27, room, scaled
+
+const = int  # on a board the compiler itself reads const(...)
+ptr32 = None
 
 # layout: The corrector's state
 _TEMP = const(51)

@@ -1,10 +1,6 @@
 """Is this frame a real reading? Facts: mpu6050 family, faults seen on real buses."""
 
-try:
-    from micropython import const
-except ImportError:
-    const = int
-
+const = int  # on a board the compiler itself reads const(...)
 ptr32 = None
 
 # layout: The corrector's state

@@ -8,11 +8,7 @@
 #
 # `readings` may come one by one (weight 1) or as the sum of `weight` readings of a still stretch.
 
-try:
-    from micropython import const
-except ImportError:
-    const = int
-
+const = int  # on a board the compiler itself reads const(...)
 ptr32 = None
 
 _MOST_READINGS = const(0x3FFF)

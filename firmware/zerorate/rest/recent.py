@@ -7,15 +7,11 @@
 #
 # Variances are LSB^2 in Q8, the walk LSB^2/s in Q16.
 
-try:
-    from micropython import const
-except ImportError:
-    const = int
-
-ptr32 = None
-
 from ..arithmetic.fixed import clipped
 from .bias import curve_q8
+
+const = int  # on a board the compiler itself reads const(...)
+ptr32 = None
 
 # layout: The corrector's state
 _TEMP = const(51)

@@ -7,13 +7,6 @@
 # holds) takes heap at every call. Only where none is left a parameter stands for a second thing,
 # and a remark that begins "eleven words" says for what (host_tests/runtimes/kernel_rules.py).
 
-try:
-    from micropython import const
-except ImportError:
-    const = int
-
-ptr32 = None
-
 from ..arithmetic.fixed import root
 from .bias import curve_q8
 from .estimators import learn_anywhere, learn_here
@@ -21,6 +14,9 @@ from .fit import bend, draw_line
 from .guard import check
 from .recent import absorb, beyond_q8, gain_q14, grown_q8, hand_over, mean_noise_q8
 from .stillness import gather, judge, seems_still
+
+const = int  # on a board the compiler itself reads const(...)
+ptr32 = None
 
 # layout: The corrector's state
 _COUNTS = const(8)
@@ -71,8 +67,6 @@ _FULL_WEIGHT_Q12 = const(51)
 # layout: What a window was
 _STILL = const(1)
 # layout: end
-
-
 _TO_ABSORB = const(0)
 _TO_LEARN_HERE = const(1)
 _TO_DRAW = const(2)

@@ -4,11 +4,7 @@
 # window and the direction of gravity count. A constant turn about the vertical leaves all three
 # alone and cannot be told from a bias; a turn about any other axis moves gravity.
 
-try:
-    from micropython import const
-except ImportError:
-    const = int
-
+const = int  # on a board the compiler itself reads const(...)
 ptr32 = None
 
 # layout: The corrector's state

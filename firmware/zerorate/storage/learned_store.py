@@ -13,11 +13,7 @@ if TYPE_CHECKING:
 
     from ..corrector import Corrector
 
-try:
-    from micropython import const
-except ImportError:
-    const = int  # type: ignore[assignment]
-
+const = int  # on a board the compiler itself reads const(...)
 
 MODEL_BYTES = const(2048)
 _STATE_VERSION = const(1)

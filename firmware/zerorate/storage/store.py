@@ -12,10 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from typing import Any
 
-try:
-    from micropython import const
-except ImportError:
-    const = int  # type: ignore[assignment]
+const = int  # on a board the compiler itself reads const(...)
 
 try:
     from sys import byteorder
