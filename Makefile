@@ -20,7 +20,7 @@ lint: $(VENV)/.dev
 # Kernels have rules of their own (host_tests/runtimes/kernel_rules.py), and machine code has no types.
 FIRMWARE := $(shell find firmware/zerorate -name '*.py')
 KERNELS := $(shell grep -lrE --include='*.py' '^ptr(8|32) = None' firmware/zerorate)
-MACHINE_CODE := $(wildcard firmware/zerorate/native/thumb_*.py firmware/zerorate/native/rv32_*.py)
+MACHINE_CODE := $(wildcard firmware/zerorate/native/*.py)
 BOARD := $(sort $(filter-out $(KERNELS) $(MACHINE_CODE) firmware/zerorate/layout/%,$(FIRMWARE)) \
 	$(filter-out %/linux.py,$(wildcard drivers/zerorate_i2c/*.py)))
 
@@ -54,7 +54,7 @@ mutants: $(VENV)/.dev  ## which share of MUTANTS mutants of each area the tests 
 layout: $(VENV)/.dev  ## write the constants of firmware/zerorate/layout where they are used
 	$(BIN)/python -m host_tests.layout
 
-native: layout  ## write the machine code in firmware/zerorate/native from the kernels
+native: layout  ## write firmware/zerorate/native from the kernels
 	$(BIN)/python -m zerorate_tools.kernels.native_files firmware/zerorate
 	$(BIN)/python -m zerorate_tools.boards.manifests
 

@@ -17,7 +17,7 @@ class Bursts:
         self.corrector = corrector
         self._frame = array("i", [0] * 7)
         self._run = None
-        if rest.is_machine_code:
+        if rest.run:
             self._run = rest.step
             # to look up where they lie takes as long as two samples
             self._state = rest.address(corrector.state)

@@ -5,7 +5,8 @@ try:
 except ImportError:
     from array import array
 
-from .native import rest, unload
+from .machine_code import unload
+from .native import rest
 from .sensor import Sensor
 
 const = int  # on a board the compiler itself reads const(...)
@@ -123,8 +124,8 @@ class Corrector:
         self._begin("gravity", gravity, document, 0)
         walk_lsb = chosen["walk_dps"] * self.sensor.gyro_lsb_per_dps
         self._walk_q16 = max(1, int(min(c[_WALK_MOST_Q16], walk_lsb * walk_lsb * 65536)))
-        if rest.is_machine_code and self.alone and type(self) is Corrector:
-            self.update = rest.bound(self.state, c)  # type: ignore[method-assign]
+        if rest.run and self.alone and type(self) is Corrector:
+            self.update = _bound(self.state, c)  # type: ignore[method-assign]
         self.reset()
 
     def _begin(self, part, wanted, document, start_dps):
@@ -143,7 +144,10 @@ class Corrector:
                 self.left_out.append("Left out: %s." % error)
 
     def _join_others(self):
-        self._examine, self._guard = rest.examined(self.settings)
+        self._examine = rest.check
+        self._guard = self.settings
+        if rest.run:  # an odd address asks the guard alone
+            self._guard = rest.address(self.settings) + 1
         self.alone = False
         if "update" in self.__dict__:
             del self.update
@@ -277,3 +281,15 @@ class Corrector:
         unload("zerorate", "explain")
         unload("zerorate", "explain_sources")
         return text
+
+
+def _bound(s, c):
+    """Machine code's `update`, bound: to look up where two arrays lie takes as long as it."""
+    run = rest.step
+    s_at = rest.address(s)
+    c_at = rest.address(c)
+
+    def update(x, dt_us, kept=(s, c)):
+        return run(s_at, c_at, x, dt_us)
+
+    return update

@@ -1,6 +1,6 @@
 """Says in words what is being learned, or why nothing is."""
 
-from .native import chosen
+from .machine_code import chosen
 
 const = int  # on a board the compiler itself reads const(...)
 

@@ -5,7 +5,7 @@ docs/layout.md has the words of `e`.
 
 from array import array
 
-from .native import unload
+from .machine_code import unload
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

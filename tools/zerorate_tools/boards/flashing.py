@@ -22,7 +22,8 @@ _TRIAL = """
 import gc
 gc.collect()
 try:
-    from zerorate.native import chosen, rest
+    from zerorate.machine_code import chosen
+    from zerorate.native import rest
     if chosen["rest"] != "machine code": print(chosen["rest"])
 except Exception as error:
     print(repr(error))

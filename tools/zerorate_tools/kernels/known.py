@@ -1,7 +1,7 @@
 """What each part's machine code is tried on before a board uses it, and what must come out.
 
-Small arrays that reach most of a part's code within a few calls; firmware/zerorate/native/
-trying.py says how they are written down and run.
+Small arrays that reach most of a part's code within a few calls; firmware/zerorate/trying.py
+says how they are written down and run.
 """
 
 from array import array
@@ -13,7 +13,7 @@ from zerorate.gravity.gravity_settings import gravity_settings, gravity_state
 from zerorate.layout import SETTINGS, STATE, STILLNESS
 from zerorate.model import EffectModel
 from zerorate.motion.motion_settings import motion_settings, motion_state
-from zerorate.native.trying import answer
+from zerorate.trying import answer
 
 from ..model import Binding, Slot, build_model, encoded
 from ..model.term import Term

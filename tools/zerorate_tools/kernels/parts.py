@@ -1,28 +1,32 @@
 """What the firmware's machine code is made of: the parts, and how each is entered.
 
 A part is one piece of code with one entry of four arguments, as MicroPython's inline assembler has
-it: firmware/zerorate/native says what is passed. `what` is a time, or below -2^29, where no clock
+it. `what` is a time, or below -2^29, where no clock
 ends, the number of a stage in its upper half word and a value in its lower one. At odd settings the
 guard alone sees the sample.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+_STAGE = [-0x40000000 + (number << 16) for number in range(7)]
 #: `what` of a burst, to which the number of its samples is added.
-BURST = -0x40000000 + (6 << 16)
+BURST = _STAGE[6]
 
 
 @dataclass(frozen=True)
 class Part:
     """kernels: file and function of what `body`, the entry's C, calls.
 
+    calls: module of the kernels -> what the firmware imports of it from native/ -> how `run`, the
+    machine code, does the same.
     divides: its longest call is made of divisions, worth 370 bytes of a fast one where there is no
     instruction for it.
     """
 
     kernels: Sequence[tuple[str, str]]
     body: str
+    calls: Mapping[str, Mapping[str, str]]
     divides: bool = False
 
 
@@ -51,6 +55,20 @@ PARTS = {
     }
     return 0;
 """,
+        {
+            "rest.step": {
+                "step": "run",
+                "admit(s, c, x, kind)": f"run(s, c, x, {_STAGE[0]} + kind)",
+                "finish(s, c, x, kind)": f"run(s, c, x, {_STAGE[1]} + kind)",
+                "consider(s, c, m, w, source)": f"run(s, c, m, {_STAGE[2]} + (source << 8) + w)",
+            },
+            "rest.guard": {"check": "run"},
+            "rest.estimators": {"reset(s, c, a)": f"run(s, c, 0, {_STAGE[3]} + a)"},
+            "rest.copying": {
+                "copy(source, target, first, end)": f"run(source, target, end, {_STAGE[4]} + first)"
+            },
+            "": {"address(words)": f"run(words, 0, 0, {_STAGE[5]})"},
+        },
         divides=True,
     ),
     "motion": Part(
@@ -60,6 +78,10 @@ PARTS = {
     motion_verdict_clear(a, b);
     return 0;
 """,
+        {
+            "motion.in_motion": {"update": "run"},
+            "motion.motion_verdict": {"clear(s, c)": f"run(s, c, 0, {_STAGE[0]})"},
+        },
     ),
     "gravity": Part(
         [("gravity", "update"), ("gravity", "clear")],
@@ -68,6 +90,7 @@ PARTS = {
     gravity_clear(a, b);
     return 0;
 """,
+        {"gravity.gravity": {"update": "run", "clear(s, c)": f"run(s, c, 0, {_STAGE[0]})"}},
     ),
     "effects": Part(
         [("effects", "sense")],
@@ -75,6 +98,11 @@ PARTS = {
     effects_sense(a, b, c, what, c != 0);
     return 0;
 """,
+        {
+            "effects.effects": {
+                "sense(s, e, x, dt_us, good)": "run(s, e, x if good else 0, dt_us)",
+            }
+        },
     ),
     "refine": Part(
         [("effect_refine", name) for name in ("attend", "begin", "renew")],
@@ -84,5 +112,12 @@ PARTS = {
     else effect_refine_begin(c, what - 1);
     return 0;
 """,
+        {
+            "effects.effect_refine": {
+                "attend(s, c, e)": "run(s, c, e, 0)",
+                "begin(e, slots)": "run(0, 0, e, 1 + slots)",
+                "renew(e)": "run(0, 0, e, -1)",
+            }
+        },
     ),
 }

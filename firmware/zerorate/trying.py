@@ -21,7 +21,7 @@ def tried(part, kind):
     """
     try:
         exec(_TRIED % kind, {})
-        name = __name__.rsplit(".", 1)[0] + "." + kind + "_" + part
+        name = "zerorate.native." + kind + "_" + part
         file = __import__(name, None, None, ("run",))
     except (SyntaxError, NameError):
         return None, "bytecode: this interpreter takes no machine code in a file"
@@ -51,7 +51,7 @@ def answer(run, known):
     left = bytes(a) + bytes(c)
     if crc32 is not None:
         return (crc32(left) & 0xFFFFFFFF).to_bytes(4, "little")
-    from ..storage.crc32 import plain_crc32
+    from .storage.crc32 import plain_crc32
 
     crc = bytearray(4)
     plain_crc32(left, len(left), crc)
