@@ -54,6 +54,15 @@ def test_a_ulog_puts_acceleration_on_the_times_of_the_rates(tmp_path):
     assert recording.scales.odr_hz == pytest.approx(200)
 
 
+def test_the_fields_of_a_structure_are_columns(tmp_path):
+    n = 40
+    imu = {"t": np.arange(n)[:, None] / 100, "wb": np.full((n, 3), 0.01)}
+    scipy.io.savemat(tmp_path / "in.mat", {"imu1": imu})
+    words = ("t_us=imu1.t:s", *(f"g{a}=imu1.wb[{i}]:rad/s" for i, a in enumerate("xyz")))
+    recording, _ = read_foreign(tmp_path / "in.mat", mapping=[*map(parsed_mapping, words)])
+    assert len(recording) == n and recording.scales.odr_hz == pytest.approx(100)
+
+
 def test_a_ulog_of_combined_sensors_has_no_temperature(tmp_path):
     fields = {
         "timestamp": ("uint64_t", [0, 4000]),
@@ -64,6 +73,24 @@ def test_a_ulog_of_combined_sensors_has_no_temperature(tmp_path):
     recording, report = read_foreign(tmp_path / "in.ulg")
     assert recording.accel_g()[0].tolist() == [0, 0, -1]
     assert told(report, "no temperature")
+
+
+def test_a_ulog_with_the_gyro_once_a_second_takes_the_combined_sensors(tmp_path):
+    n = 400
+    gyro = {
+        "timestamp": ("uint64_t", [0, 1_000_000, 2_000_000]),
+        "temperature": ("float", [41.5] * 3),
+    }
+    combined = {
+        "timestamp": ("uint64_t", np.arange(n) * 5000),
+        "gyro_rad": ("float[3]", np.full((n, 3), 0.01)),
+        "accelerometer_m_s2": ("float[3]", [[0, 0, -G]] * n),
+    }
+    gyro |= {axis: ("float", [0.01] * 3) for axis in "xyz"}
+    foreign_files.ulog(tmp_path / "in.ulg", {"sensor_gyro": gyro, "sensor_combined": combined})
+    recording, report = read_foreign(tmp_path / "in.ulg")
+    assert len(recording) == n and recording.temp_degc() == pytest.approx(41.5, abs=0.01)
+    assert told(report, "after PX4's own offsets")
 
 
 def test_a_ulog_that_is_none_or_lacks_the_sensor_is_refused(tmp_path):

@@ -88,8 +88,60 @@ def test_a_header_in_a_comment_and_columns_by_number(tmp_path):
     assert len(recording) == 50
     recording, _ = read(tmp_path, f"{rows}\n", mapping="t_us=1:s gx=2:dps gy=3:dps gz=4:dps")
     assert len(recording) == 50
-    with pytest.raises(BadRecording, match="no column for gx, gy, gz; map it: --map gx=COLUMN:dps"):
+    with pytest.raises(BadRecording, match="if these are rates: --map t_us=1:s --map gx=2:dps"):
         read(tmp_path, f"{rows}\n")
+
+
+def test_columns_that_nothing_names_are_offered_by_what_they_hold(tmp_path):
+    rows = [[i * 20, 0.1, 0.2, 9.79, 0.01, 0.02, -0.03, 21.5] for i in range(50)]
+    ready = "t_us=1:ms ax=2:m/s2 ay=3:m/s2 az=4:m/s2 gx=5:rad/s gy=6:rad/s gz=7:rad/s"
+    text = "\n".join(",".join(map(str, row)) for row in rows)
+    with pytest.raises(BadRecording, match=" ".join(f"--map {word}" for word in ready.split())):
+        read(tmp_path, text)
+    recording, _ = read(tmp_path, text, mapping=ready)
+    assert recording.scales.odr_hz == pytest.approx(50)
+    counts = "\n".join(f"{100 + i % 3},{-40 - i % 2},{7 + i % 5}" for i in range(50))
+    with pytest.raises(BadRecording, match="--map gx=1:lsb --map gy=2:lsb --map gz=3:lsb"):
+        read(tmp_path, counts)
+
+
+def test_cells_may_stand_in_columns_of_blanks(tmp_path):
+    rows = "".join(f"   {i / 100:.7e}   {0.8:.7e}  -8.0e-01\t 9.0e-01 \r\n" for i in range(50))
+    (tmp_path / "in.mat").write_bytes(rows.encode())
+    mapping = [parsed_mapping(word) for word in "t_us=1:s gx=2:dps gy=3:dps gz=4:dps".split()]
+    recording, report = read_foreign(tmp_path / "in.mat", mapping=mapping)
+    assert len(recording) == 50 and not report.dropped
+    assert recording.gyro_dps().mean(axis=0) == pytest.approx([0.8, -0.8, 0.9], abs=0.01)
+
+
+def test_a_rate_in_the_head_is_offered_with_the_units(tmp_path):
+    text = "// Sample rate: 50.0Hz\n" + "".join(f"{x}\n" for x in ["Gyr_X;Gyr_Y;Gyr_Z"])
+    text += "0.1;0.2;0.3\n" * 20
+    with pytest.raises(BadRecording, match="--gyro-unit dps .*, --hz 50 [(]as the file says[)]"):
+        read(tmp_path, text)
+    with pytest.raises(BadRecording, match="no time stamps; give --hz 50 [(]as the file says[)]"):
+        read(tmp_path, text, units={"gyro": "dps"})
+
+
+def test_rows_without_readings_have_no_say_about_the_clock(tmp_path):
+    rows = "".join(f"{1.4e18 + i * 5e6:.0f},0.8,0.8,0.9\n" for i in range(50))
+    notes = "1403636763.853,,,\n1403636763.848,,,\n"
+    recording, report = read(tmp_path, "timestamp [ns],gx_dps,gy_dps,gz_dps\n" + rows + notes)
+    assert len(recording) == 50 and report.dropped["no reading of these columns"] == 2
+    assert not told(report, "ran over")
+
+
+def test_a_flight_is_no_steady_rate(tmp_path):
+    frame = table()
+    frame["gz_dps"] = 60 + 40 * np.sin(np.arange(len(frame)) / 500)
+    assert not told(read(tmp_path, frame)[1], "a steady rate")
+    frame["gz_dps"] = 60 + 0.05 * np.sin(np.arange(len(frame)))
+    assert told(read(tmp_path, frame)[1], "a steady rate of 60 dps")
+
+
+def test_a_pointer_of_git_lfs_is_told_from_a_table(tmp_path):
+    with pytest.raises(BadRecording, match="a pointer of Git LFS, not the file; .*git lfs pull"):
+        read(tmp_path, "version https://git-lfs.github.com/spec/v1\noid sha256:1bf6\nsize 41\n")
 
 
 # Names and units
@@ -120,6 +172,30 @@ def test_a_unit_in_the_name_is_enough(tmp_path):
     frame.columns = ["Time (s)", "GyroX [deg/s]", "GyroY [deg/s]", "GyroZ [deg/s]"]
     recording, _ = read(tmp_path, frame)
     assert recording.gyro_dps().mean() == pytest.approx(0.8, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        "w_RS_S_x [rad s^-1] w_RS_S_y [rad s^-1] w_RS_S_z [rad s^-1]",
+        "raw_angular_rate_x_rad_per_s raw_angular_rate_y_rad_per_s raw_angular_rate_z_rad_per_s",
+        "X (rad/sec) Y (rad/sec) Z (rad/sec)",
+        "imu rate x [radians per second] imu rate y [radians per second] "
+        "imu rate z [radians per second]",
+    ],
+)
+def test_a_unit_of_rates_tells_what_a_column_is(tmp_path, names):
+    frame = table()[["t_s", *(f"g{a}_dps" for a in "xyz")]]
+    frame.columns = ["timestamp_seconds", *re.findall(r"\S.*?(?:[])]|per_s)", names)]
+    recording, _ = read(tmp_path, frame)
+    assert recording.gyro_dps().mean() == pytest.approx(np.degrees(0.8), abs=0.5)
+
+
+def test_body_rates_are_offered(tmp_path):
+    frame = table()[["t_s", *(f"g{a}_dps" for a in "xyz")]]
+    frame.columns = ["t_s", "p", "q", "r"]
+    with pytest.raises(BadRecording, match="if these are rates: --map gx=p:dps --map gy=q:dps"):
+        read(tmp_path, frame)
 
 
 def test_bare_axes_are_offered_too(tmp_path):

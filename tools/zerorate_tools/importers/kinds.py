@@ -27,6 +27,8 @@ _SUFFIXES = {
     **{".mcap": "mcap_file", ".bbl": "blackbox", ".bfl": "blackbox", ".mat": "matlab"},
 }
 
+_OF_TEXT = bytes([9, 10, 13, *range(32, 127)])
+
 
 @contextmanager
 def table_of(path: Path, instance: int, advance: Callable[[float], None]) -> Iterator[Table]:
@@ -55,7 +57,14 @@ def _reader(path: Path) -> str | None:
             raise BadRecording(path, "a folder without metadata.yaml", do=do)
         return "ros_bag"
     by_magic = next((name for magic, name in _MAGIC.items() if _starts(path, magic)), None)
-    return by_magic or _SUFFIXES.get(path.suffix.lower())
+    return by_magic or (None if _is_text(path) else _SUFFIXES.get(path.suffix.lower()))
+
+
+def _is_text(path: Path) -> bool:
+    """Whether a file is text, whatever its name ends with."""
+    with open(path, "rb") as file:
+        first = file.read(4096)
+    return b"\n" in first and not first.translate(None, _OF_TEXT)
 
 
 def _starts(path: Path, magic: bytes) -> bool:

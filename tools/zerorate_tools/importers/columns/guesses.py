@@ -63,6 +63,40 @@ def unit_words(wanted: Mapping[str, Mapped], target: str, unit: str) -> str:
     return f"--{kind_of(target)}-unit {unit}"
 
 
+def likely_columns(first: Mapping[str, np.ndarray]) -> list[str]:
+    """Words as of --map for columns that nothing names: what only grows is time, three whose length
+    stays about gravity are acceleration, the next three are rates; [] where there are no three.
+
+    first: the first rows of every column, in the file's order.
+    """
+    values = {name: column for name, column in first.items() if np.isfinite(column).all()}
+    time = next((name for name, column in values.items() if _only_grows(column)), None)
+    rest = [name for name in values if name != time]
+    out = [] if time is None else [f"t_us={time}:{_likely_time(values[time])}"]
+    rates = "lsb" if all((values[name] % 1 == 0).all() for name in rest) else "dps"
+    for at in range(len(rest) - 2):
+        three = rest[at : at + 3]
+        unit = _gravity_unit([values[name] for name in three])
+        if unit in ("m/s2", "g"):
+            out += [f"{axis}={name}:{unit}" for axis, name in zip(ACCEL, three)]
+            rates = "rad/s" if unit == "m/s2" else "dps"
+            rest = rest[at + 3 :] if len(rest) >= at + 6 else rest[:at]
+            break
+    gyro = [f"{axis}={name}:{rates}" for axis, name in zip(GYRO, rest)]
+    return out + gyro if len(gyro) == len(GYRO) else []
+
+
+def _only_grows(values: np.ndarray) -> bool:
+    steps = np.diff(values)
+    return len(steps) > 0 and bool((steps >= 0).mean() > 0.999 and (steps > 0).mean() > 0.5)
+
+
+def _likely_time(values: np.ndarray) -> str:
+    step = float(np.median(np.diff(values)))
+    by_date = _by_calendar(values)[0]
+    return by_date or next((u for u, s in TIME_S.items() if 1e-4 <= step * s <= 0.1), "s")
+
+
 def _by_habit(target: str, column: str, names: list[str]) -> tuple[str, str] | None:
     """Units that go with names: those of ROS, of ArduPilot, of Android's sensors."""
     text, kind = spelled(column), kind_of(target)
@@ -98,13 +132,22 @@ def _by_range(values: np.ndarray) -> tuple[str | None, str]:
 def _by_gravity(
     wanted: Mapping[str, Mapped], first: Mapping[str, np.ndarray]
 ) -> tuple[str | None, str]:
-    force = np.linalg.norm([first[wanted[axis].column] for axis in ACCEL], axis=0)
+    columns = [first[wanted[axis].column] for axis in ACCEL]
+    unit = _gravity_unit(columns)
+    return unit, f"its usual length is {_usual_length(columns):.4g}" if unit else ""
+
+
+def _gravity_unit(columns: list[np.ndarray]) -> str | None:
+    """The unit in which three columns are as long as gravity."""
+    usual = _usual_length(columns)
+    near = (u for u, g in _GRAVITY.items() if abs(usual / g - 1.0) < _GRAVITY_WITHIN)
+    return next(near, None)
+
+
+def _usual_length(columns: list[np.ndarray]) -> float:
+    force = np.linalg.norm(columns, axis=0)
     force = force[np.isfinite(force)]
-    usual = float(np.median(force)) if len(force) else 0.0
-    for unit, gravity in _GRAVITY.items():
-        if abs(usual / gravity - 1.0) < _GRAVITY_WITHIN:
-            return unit, f"its usual length is {usual:.4g}"
-    return None, ""
+    return float(np.median(force)) if len(force) else 0.0
 
 
 def _likely(target: str, wanted: Mapping[str, Mapped], first: Mapping[str, np.ndarray]) -> str:

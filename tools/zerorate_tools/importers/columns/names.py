@@ -3,6 +3,8 @@
 import os
 import re
 
+from .units import RAW, unit_in_name, without_unit
+
 _AXIS = "([xyz])"
 _GYRO = re.compile(
     r"(?:.*(?:gyroscope|gyrorotation|gyro|gyr|angularvelocity|angularrate|angvel|rotationrate|omega)"
@@ -22,28 +24,28 @@ _TIME = re.compile(
 )
 _SEC = re.compile(r"(.*?)(?:secs?|seconds?)$")
 _NANOSEC = re.compile(r"(.*?)(?:nanosecs?|nsecs?|nanoseconds?)$")
+_LAST_AXIS = re.compile(f".*{_AXIS}$")
 _BARE = re.compile(f"{_AXIS}(?:axis)?$")
-_UNITS = re.compile(
-    r"[_\s.](dps|mdps|deg/s|rad/s|rads|lsb|raw|counts|g|mg|m/s2|ms2|mss|mps2|degc|celsius|c|k|degf|"
-    r"s|sec|ms|us|ns)$"
-)
+_BODY_RATES = dict(zip(("gx", "gy", "gz"), "pqr"))
 
 
 def spelled(name: str) -> str:
     """A name without its unit, case and marks; [0] [1] [2] at its end are x y z."""
     text = re.sub(r"\[([012])\]", lambda m: "xyz"[int(m[1])], name.strip().lower())
-    text = re.sub(r"[\[({<][^\])}>]*[\])}>]\s*$", "", text).strip()
-    return re.sub(r"[^a-z0-9]", "", _UNITS.sub("", text))
+    return re.sub(r"[^a-z0-9]", "", without_unit(text))
 
 
 def gyro_groups(names: list[str]) -> list[dict[str, str]]:
-    """Columns that go together as rates: {gx, gy, gz: name} of each sensor that is in the table."""
-    return _groups(names, _GYRO, "g")
+    """Columns that go together as rates: {gx, gy, gz: name} of each sensor that is in the table.
+
+    By name; where no name tells, by a unit of rates and an axis, as w_RS_S_x [rad s^-1] of EuRoC.
+    """
+    return _groups(names, _GYRO, "g") or _groups(_in_units_of("gx", names), _LAST_AXIS, "g")
 
 
 def accel_beside(names: list[str], gyro: dict[str, str], instance: int) -> dict[str, str]:
     """The acceleration whose names are most like those of the rates; empty where there is none."""
-    groups = _groups(names, _ACCEL, "a")
+    groups = _groups(names, _ACCEL, "a") or _groups(_in_units_of("ax", names), _LAST_AXIS, "a")
     if not groups:
         return {}
 
@@ -55,7 +57,10 @@ def accel_beside(names: list[str], gyro: dict[str, str], instance: int) -> dict[
 
 
 def bare_axes(names: list[str]) -> dict[str, str]:
-    """Columns that are called by their axis alone (x, xaxis), as if they were rates."""
+    """Columns that are called by their axis alone (x, xaxis), or p q r, as if they were rates."""
+    by_letter = {name.lower(): name for name in names}
+    if all(letter in by_letter for letter in _BODY_RATES.values()):
+        return {target: by_letter[letter] for target, letter in _BODY_RATES.items()}
     return next(iter(_groups(names, _BARE, "g")), {})
 
 
@@ -81,6 +86,11 @@ def split_time(names: list[str]) -> tuple[str, str] | None:
         elif sec:
             by_stem.setdefault(sec[1], {})["s"] = name
     return next(((two["s"], two["ns"]) for two in by_stem.values() if len(two) == 2), None)
+
+
+def _in_units_of(target: str, names: list[str]) -> list[str]:
+    """Columns whose name says a physical unit of that kind."""
+    return [name for name in names if unit_in_name(target, name) not in (None, RAW)]
 
 
 def _groups(names: list[str], pattern: re.Pattern, letter: str) -> list[dict[str, str]]:

@@ -10,7 +10,7 @@ from ...errors import BadRecording
 from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP, TIME
 from ..tables.table import Chunk, Table
 from . import names as usual
-from .guesses import guessed_unit, ready_words
+from .guesses import guessed_unit, likely_columns, ready_words
 from .mapping import Mapped, factor_in, parsed_mapping
 from .units import RAW, factors_of, kind_of, unit_in_name, units_of
 
@@ -84,10 +84,13 @@ def planned(
         if unit == RAW:
             raw.add(kind_of(target))
         plan.factors[target] = factors_of(target).get(unit or "", (1.0, 0.0))
+    if unknown and TIME not in wanted and not without_time:
+        unknown[""] = hz_words(table)
     if unknown:
-        what = "unit of column" if len(unknown) == 1 else "units of columns"
-        columns = ", ".join(repr(column) for column in unknown)
-        problem = f"the {what} {columns} {'is' if len(unknown) == 1 else 'are'} not known"
+        named = [repr(column) for column in unknown if column]
+        what = "unit of column" if len(named) == 1 else "units of columns"
+        problem = f"the {what} {', '.join(named)} {'is' if len(named) == 1 else 'are'} not known"
+        problem += ", and there are no time stamps" if "" in unknown else ""
         raise BadRecording(path, problem, do="give " + ", ".join(dict.fromkeys(unknown.values())))
     plan.raw = frozenset(raw)
     return plan
@@ -135,10 +138,25 @@ def _check_there(table: Table, wanted: Mapping[str, Mapped], path: Path) -> None
                 raise BadRecording(path, f"there is no column {column!r}", do=_choose(table))
     missing = [target for target in GYRO if target not in wanted]
     if missing:
-        bare = usual.bare_axes(table.names)
-        words = " ".join(f"--map {t}={c}:dps" for t, c in bare.items() if t in missing)
+        words = _offered(table, wanted, missing)
         do = f"if these are rates: {words}" if words else f"map it: --map {missing[0]}=COLUMN:dps"
         raise BadRecording(path, f"no column for {', '.join(missing)}", do=f"{do}, {_of(table)}")
+
+
+def _offered(table: Table, wanted: Mapping[str, Mapped], missing: list[str]) -> str:
+    """A ready mapping of what may be rates, by names or, where nothing names columns, by values."""
+    bare = usual.bare_axes(table.names)
+    if bare:
+        return " ".join(f"--map {t}={c}:dps" for t, c in bare.items() if t in missing)
+    if wanted or table.names != [str(n + 1) for n in range(len(table.names))]:
+        return ""
+    return " ".join(f"--map {words}" for words in likely_columns(table.first_rows(table.names)))
+
+
+def hz_words(table: Table) -> str:
+    """What to type where there are no time stamps."""
+    said = f" {table.said_hz:g} (as the file says)" if table.said_hz else ""
+    return f"--hz{said or ', samples a second'}"
 
 
 def _choose(table: Table) -> str:

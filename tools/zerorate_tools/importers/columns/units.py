@@ -11,15 +11,34 @@ TEMP_DEGC = {"degc": (1.0, 0.0), "c": (1.0, 0.0), "k": (1.0, -273.15), "degf": (
 RAW = "lsb"
 KINDS = {"t": "time", "g": "gyro", "a": "accel"}
 
+_SEC = r"s(?:ec(?:ond)?s?)?"
+_PER_SEC = rf"(?:[\s_]*(?:/|per)[\s_]*{_SEC}|[\s_*·]{_SEC}\^?-1)"
+_SQUARED = r"(?:/s|\^?2|²|[\s_]*squared|[\s_]*/[\s_]*s)"
+_METRE = "m(?:et(?:er|re)s?)?"
+#: A unit as people write it, whatever its case.
 _WRITTEN = {
-    **{"°/s": "dps", "deg/sec": "dps", "degs": "dps", "degpersec": "dps", "mdeg/s": "mdps"},
-    **{"rads": "rad/s", "rad/sec": "rad/s", "radpersec": "rad/s", "radps": "rad/s", "rps": "rad/s"},
-    **{"m/s^2": "m/s2", "m/s²": "m/s2", "m/s/s": "m/s2", "mss": "m/s2", "ms2": "m/s2"},
-    **{"mps2": "m/s2", "°c": "degc", "celsius": "degc", "℃": "degc", "°f": "degf", "f": "degf"},
-    **{"kelvin": "k", "sec": "s", "seconds": "s", "secs": "s", "second": "s", "msec": "ms"},
-    **{"millis": "ms", "milliseconds": "ms", "usec": "us", "micros": "us", "µs": "us", "μs": "us"},
-    **{"microseconds": "us", "nsec": "ns", "nanosec": "ns", "nanoseconds": "ns", "nsecs": "ns"},
-    **{"counts": "lsb", "raw": "lsb"},
+    "dps": rf"dps|degs|(?:°|deg(?:ree)?s?){_PER_SEC}",
+    "mdps": rf"mdps|m(?:°|deg){_PER_SEC}",
+    "rad/s": rf"rads|rps|radps|rad(?:ian)?s?{_PER_SEC}",
+    "m/s2": rf"mss|ms2|mps2|{_METRE}[\s_]*(?:/|per)[\s_]*{_SEC}{_SQUARED}"
+    rf"|m[\s_*·]{_SEC}\^?-2",
+    "g": "gs?|gees?",
+    "mg": "mg",
+    "degc": "°c|degc|celsius|℃",
+    "c": "c",
+    "degf": "°f|degf|f",
+    "k": "k|kelvin",
+    "s": _SEC,
+    "ms": "ms|m(?:illi)?sec(?:ond)?s?|millis",
+    "us": "[uµμ]s|[uµμ]?sec|micros|micro(?:sec(?:ond)?s?)",
+    "ns": "ns|n(?:ano)?sec(?:ond)?s?",
+    "lsb": "lsb|counts|raw",
+}
+_WRITTEN_BY_KIND = {
+    "time": ("s", "ms", "us", "ns"),
+    "gyro": ("mdps", "dps", "rad/s", "lsb"),
+    "accel": ("m/s2", "mg", "g", "lsb"),
+    "temp": ("degc", "degf", "c", "k", "lsb"),
 }
 _BY_NAME = {"timeus": "us", "timems": "ms", "seconds_elapsed": "s", "__time": "s"}
 _BRACKETS = re.compile(r"[\[({<]\s*([^\])}>]*?)\s*[\])}>]\s*$")
@@ -48,9 +67,28 @@ def unit_in_name(target: str, column: str) -> str | None:
     name = column.strip().lower()
     if target == "t_us" and name in _BY_NAME:
         return _BY_NAME[name]
+    kind = kind_of(target)
     in_brackets = _BRACKETS.search(name)
-    ending = in_brackets[1] if in_brackets else re.split(r"[_\s.]", name)[-1]
-    if ending == name and in_brackets is None:
-        return None
-    unit = _WRITTEN.get(ending, ending)
-    return unit if unit in units_of(target) else None
+    if in_brackets:
+        return next((u for u in _WRITTEN_BY_KIND[kind] if _is_written(u, in_brackets[1])), None)
+    return next((u for u, ending in _ENDINGS[kind].items() if ending.search(name)), None)
+
+
+def without_unit(name: str) -> str:
+    """A lower-case name without the unit in brackets, or of words, at its end."""
+    in_brackets = _BRACKETS.search(name)
+    if in_brackets:
+        return name[: in_brackets.start()].strip()
+    endings = [ending for kind in _ENDINGS.values() for ending in kind.values()]
+    at = [found.start() for found in (ending.search(name) for ending in endings) if found]
+    return name[: min(at)] if at else name
+
+
+def _is_written(unit: str, text: str) -> bool:
+    return re.fullmatch(_WRITTEN[unit], text) is not None
+
+
+_ENDINGS = {
+    kind: {unit: re.compile(rf"(?<=.)[_\s.](?:{_WRITTEN[unit]})$") for unit in units}
+    for kind, units in _WRITTEN_BY_KIND.items()
+}

@@ -1,4 +1,5 @@
-"""MATLAB .mat files as tables: an (n, k) variable `name` becomes columns name[0] ... name[k-1]."""
+"""MATLAB .mat files as tables: an (n, k) variable `name` becomes columns name[0] ... name[k-1], a
+field of a structure `name.field`."""
 
 from collections import Counter
 from functools import partial
@@ -28,7 +29,7 @@ def read(path: Path, instance: int = 0) -> Table:
 def _table(found: dict[str, object], path: Path) -> Table:
     numeric = {
         name: np.atleast_2d(value.T).T
-        for name, value in found.items()
+        for name, value in _flat(found).items()
         if isinstance(value, np.ndarray) and value.dtype.kind in "fiub" and value.ndim <= 2
     }
     numeric = {n: v.T if v.shape[0] == 1 and v.shape[1] > 1 else v for n, v in numeric.items()}
@@ -41,3 +42,15 @@ def _table(found: dict[str, object], path: Path) -> Table:
     if not columns:
         raise BadRecording(path, "no numeric variable", do="name another file")
     return Table(list(columns), partial(one_after_the_other, [columns]))
+
+
+def _flat(found: dict[str, object]) -> dict[str, object]:
+    """The fields of structures as variables of their own: imu.gyro."""
+    out: dict[str, object] = {}
+    for name, value in found.items():
+        if isinstance(value, np.ndarray) and value.dtype.names and value.size == 1:
+            fields = {f"{name}.{field}": value[field].item() for field in value.dtype.names}
+            out |= _flat(fields)
+        else:
+            out[name] = value
+    return out

@@ -1,4 +1,4 @@
-"""PX4 ULog: sensor_gyro with sensor_accel, or sensor_combined."""
+"""PX4 ULog: sensor_gyro with sensor_accel, or sensor_combined where that is logged far faster."""
 
 from functools import partial
 from pathlib import Path
@@ -12,6 +12,8 @@ from .streams import one_after_the_other, si_mapping
 
 KIND = "ULog"
 _TOPICS = ["sensor_gyro", "sensor_accel", "sensor_combined"]
+#: sensor_gyro is passed over where sensor_combined has as many times its samples.
+_FAR_FASTER = 10
 _GYRO, _ACCEL = ("gx", "gy", "gz"), ("ax", "ay", "az")
 
 
@@ -21,18 +23,29 @@ def read(path: Path, instance: int = 0) -> Table:
 
     log = ULog(str(path), message_name_filter_list=_TOPICS)
     gyro = _topic(log, "sensor_gyro", instance)
-    if gyro is not None:
+    combined = _topic(log, "sensor_combined", instance)
+    notes = []
+    if gyro is None and combined is None:
+        problem = f"neither sensor_gyro nor sensor_combined, instance {instance}"
+        raise BadRecording(path, problem, do="log them (SDLOG_PROFILE), or try --instance")
+    if combined is None or (gyro is not None and not _far_faster(combined, gyro)):
         streams = _single_sensors(gyro, _topic(log, "sensor_accel", instance))
     else:
-        combined = _topic(log, "sensor_combined", instance)
-        if combined is None:
-            problem = f"neither sensor_gyro nor sensor_combined, instance {instance}"
-            raise BadRecording(path, problem, do="log them (SDLOG_PROFILE), or try --instance")
         streams = _combined(combined)
+        if gyro is not None:
+            streams += _temperature(gyro)
+            notes = [
+                "sensor_gyro is logged too seldom (SDLOG_PROFILE), so sensor_combined is taken: "
+                "its rates are after PX4's own offsets"
+            ]
     names = list(dict.fromkeys(name for stream in streams for name in stream))
     chunks = partial(one_after_the_other, streams)
     sensor = str(log.msg_info_dict.get("ver_hw", "PX4"))
-    return Table(names, chunks, si_mapping(names), sensor=sensor)
+    return Table(names, chunks, si_mapping(names), sensor=sensor, notes=notes)
+
+
+def _far_faster(one: dict, other: dict) -> bool:
+    return len(one["timestamp"]) > _FAR_FASTER * len(other["timestamp"])
 
 
 def _topic(log: Any, name: str, instance: int) -> dict[str, np.ndarray] | None:
@@ -45,12 +58,19 @@ def _topic(log: Any, name: str, instance: int) -> dict[str, np.ndarray] | None:
 def _single_sensors(gyro: dict, accel: dict | None) -> list[dict[str, np.ndarray]]:
     rates = {"t_us": gyro.get("timestamp_sample", gyro["timestamp"])}
     rates |= {name: gyro[axis] for name, axis in zip(_GYRO, "xyz")}
-    if "temperature" in gyro and np.isfinite(gyro["temperature"]).any():
-        rates["temp"] = gyro["temperature"]
+    for readings in _temperature(gyro):
+        rates["temp"] = readings["temp"]
     if accel is None:
         return [rates]
     force = {"t_us": accel.get("timestamp_sample", accel["timestamp"])}
     return [rates, force | {name: accel[axis] for name, axis in zip(_ACCEL, "xyz")}]
+
+
+def _temperature(gyro: dict) -> list[dict[str, np.ndarray]]:
+    if "temperature" not in gyro or not np.isfinite(gyro["temperature"]).any():
+        return []
+    t_us = gyro.get("timestamp_sample", gyro["timestamp"])
+    return [{"t_us": t_us, "temp": gyro["temperature"]}]
 
 
 def _combined(data: dict[str, np.ndarray]) -> list[dict[str, np.ndarray]]:

@@ -94,7 +94,8 @@ def _of_rates(found: Gathered, plan: Plan) -> list[str]:
     root_hz = math.sqrt(0.5e6 / found.interval_us)
     factor = plan.factors["gx"][0]
     meant = ""
-    if middle > _STEADY_DPS and noise < 0.1 * middle:
+    low, high = np.quantile(rates, [0.25, 0.75], axis=1)
+    if middle > _STEADY_DPS and (high - low).max() < 0.2 * middle:
         said = f"a steady rate of {middle:.3g} dps is no bias of a sound sensor at rest"
         meant = "dps" if factor > 1 else ""
     elif noise > _LOUDEST * root_hz and factor > 1 and _unshaken(found.looked_at, plan):

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...errors import BadRecording
 from ...recordings.recording import ACCEL, GYRO, TEMP
-from ..columns.plan import Plan
+from ..columns.plan import Plan, hz_words
 from ..columns.units import TIME_S
 from ..tables.table import Table
 from .clock import Pace, Unwrapped, refuse_impossible
@@ -42,7 +42,7 @@ def gathered(
     """Read a table once. hz: counts the rows instead of time stamps. fast_dps: beyond it, a rate
     is none that a sensor of this kind measures. Raises BadRecording."""
     if TIME not in plan.wanted and not hz:
-        raise BadRecording(path, "the source has no time stamps", do="give --hz, samples a second")
+        raise BadRecording(path, "the source has no time stamps", do=f"give {hz_words(table)}")
     return _Gathering(table, plan, path, hz, fast_dps, folder).result()
 
 
@@ -102,9 +102,10 @@ class _Gathering:
             columns[TIME] = place * (1e6 / self.hz)
         columns[PLACE] = place.astype(float)
         columns = self._less(columns, np.isfinite(columns[TIME]), "the time stamp is no number")
+        # what has no reading may have no true time either
+        columns = self._less(columns, self._has_any(columns), "no reading of these columns")
         refuse_impossible(columns[TIME], columns[PLACE], self.path)
         columns[TIME] = self.clock(columns[TIME], columns[PLACE])
-        columns = self._less(columns, self._has_any(columns), "no reading of these columns")
         columns = self._less(columns, *self._is_something(columns))
         columns = self._less(columns, *self._not_all_zero(columns))
         columns = self._less(columns, *self._not_too_fast(columns))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+import re
 from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -30,7 +32,8 @@ def delimited(path: Path, advance: Callable[[float], None] = lambda n: None) -> 
     def chunks(names: list[str]) -> Iterator[Chunk]:
         yield from _chunks(path, form, names, table.dropped, advance)
 
-    table = Table(form.names, chunks, calendar=form.dates, notes=[form.note] if form.note else [])
+    notes = [form.note] if form.note else []
+    table = Table(form.names, chunks, calendar=form.dates, notes=notes, said_hz=form.said_hz)
     return table
 
 
@@ -42,6 +45,8 @@ def _chunks(
     advance: Callable[[float], None],
 ) -> Iterator[Chunk]:
     stream, told = open_text(path, form.encoding)
+    if form.delimiter == " ":
+        stream = _SingleBlanks(stream)
     odd = _OddLines(form.skip)
     read = start = 0
     try:
@@ -79,6 +84,31 @@ def _reader(stream, form: Form, names: list[str], odd: _OddLines) -> pyarrow.csv
             check_utf8=False,
         ),
     )
+
+
+class _SingleBlanks(io.RawIOBase):
+    """A text in columns, whose cells one blank parts, with none at either end of a line."""
+
+    def __init__(self, stream) -> None:
+        self._stream = stream
+        self._rest = b""
+
+    def readable(self) -> bool:
+        return True
+
+    def read(self, size: int = -1) -> bytes:
+        """Some `size` bytes of whole lines, more or less; b"" at the end."""
+        while block := self._stream.read(_BLOCK_BYTES if size < 0 else size):
+            lines, newline, self._rest = (self._rest + block).rpartition(b"\n")
+            if newline:
+                return _single_blanks(lines) + newline
+        block, self._rest = self._rest, b""
+        return _single_blanks(block)
+
+
+def _single_blanks(text: bytes) -> bytes:
+    text = re.sub(rb"[ \t]+", b" ", text)
+    return re.sub(rb"(?m)^ | (?=\r?$)", b"", text)
 
 
 class _OddLines:

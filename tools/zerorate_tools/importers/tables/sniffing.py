@@ -19,6 +19,11 @@ _DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d")
 _UNIT = re.compile(
     r"[\[(]?(-|[mun]?s|sec|(m?deg|rad|°)/s|m?dps|m?g|m/s(\^?2|²)|°?c|degc|k|lsb)[\])]?$", re.I
 )
+_RATE = re.compile(
+    r"\b(?:sample|sampling|update|output|data)[ _]?(?:rate|frequency)\b"
+    r"[^\d\n]{0,12}([\d.]*\d)\s*(k?)",
+    re.I,
+)
 _NOT_A_NUMBER = ("", "nan", "null", "none", "na")
 
 
@@ -34,6 +39,7 @@ class Form:
     decimal_comma: bool = False
     dates: frozenset[str] = frozenset()
     note: str = ""
+    said_hz: float | None = None
 
 
 def sniffed(path: Path) -> Form:
@@ -44,6 +50,9 @@ def sniffed(path: Path) -> Form:
     if "\x00" in text[:1000] and not text[:20].isprintable():
         do = "name a table, or a log of a kind that `zerorate import --help` lists"
         raise BadRecording(path, "neither text nor a log of a known kind", do=do)
+    if text.startswith("version https://git-lfs"):
+        do = "fetch the file itself: git lfs pull"
+        raise BadRecording(path, "a pointer of Git LFS, not the file", do=do)
     if text.lstrip()[:1] in ("{", "["):
         do = "write it as a CSV, as pandas does: read_json(..., lines=True).to_csv(...)"
         raise BadRecording(path, "JSON, which is not read", do=do)
@@ -78,7 +87,14 @@ def _table_in(lines: list[str], encoding: str, path: Path) -> Form:
         decimal_comma=delimiter != "," and any(_DECIMAL_COMMA.match(c.strip()) for c in first),
         dates=dates,
         note=note,
+        said_hz=_rate_said(lines[:skip]),
     )
+
+
+def _rate_said(lines: list[str]) -> float | None:
+    """Samples a second, where a line above the table says them."""
+    found = next((said for said in map(_RATE.search, lines) if said), None)
+    return float(found[1]) * (1000.0 if found[2].lower() == "k" else 1.0) if found else None
 
 
 def _with(delimiter: str, lines: list[str]) -> tuple[int, int | None, int, str] | None:
@@ -106,8 +122,8 @@ def _as_many(names: list[str], cells: list[str]) -> bool:
 
 def _cells(line: str, delimiter: str) -> list[str]:
     # the parser of rows takes no cell that is longer than csv's limit either
-    row = next(csv.reader([line[:100_000]], delimiter=delimiter, skipinitialspace=True), [])
-    return row
+    text = " ".join(line.split()) if delimiter == " " else line
+    return next(csv.reader([text[:100_000]], delimiter=delimiter, skipinitialspace=True), [])
 
 
 def _numbers(cells: list[str], delimiter: str) -> int:
@@ -130,8 +146,8 @@ def _names(lines: list[str], at: int | None, first: list[str], delimiter: str):
         text = line.strip()
         if text.startswith(COMMENTS):
             names = [name.strip() for name in _cells(text.lstrip("#/%* "), delimiter)]
-            if len(names) == len(first) and not _numbers(names, delimiter):
-                return _single(names), ""
+            if _as_many(names, first) and not _numbers(names, delimiter):
+                return _single(names + [""] * (len(first) - len(names))), ""
     numbered = [str(number) for number in range(1, len(first) + 1)]
     return numbered, "no line names the columns: they are called 1, 2, 3, ..."
 

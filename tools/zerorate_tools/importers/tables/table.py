@@ -23,7 +23,8 @@ class Table:
     chunks: the rows of the columns asked for, from the first one at each call; it adds to `dropped`
     what it leaves out. mapping: words as of --map that the format itself implies. calendar: columns
     of dates and times, which come as seconds since 1970. lsb: scales that the format states, by the
-    names that Options has for them. read_bytes: of the file, so far, where the reader knows.
+    names that Options has for them. said_hz: what the file says of its rate. read_bytes: of the
+    file, so far, where the reader knows.
     """
 
     names: list[str]
@@ -34,6 +35,7 @@ class Table:
     lsb: dict[str, float] = field(default_factory=dict)
     dropped: Counter[str] = field(default_factory=Counter)
     notes: list[str] = field(default_factory=list)
+    said_hz: float | None = None
     read_bytes: float = 0.0
 
     def first_rows(self, names: list[str]) -> dict[str, np.ndarray]:
