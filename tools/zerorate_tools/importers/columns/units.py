@@ -11,7 +11,7 @@ TEMP_DEGC = {"degc": (1.0, 0.0), "c": (1.0, 0.0), "k": (1.0, -273.15), "degf": (
 RAW = "lsb"
 KINDS = {"t": "time", "g": "gyro", "a": "accel"}
 
-_SEC = r"s(?:ec(?:ond)?s?)?"
+_SEC = "(?:seconds?|secs?|s)"
 _PER_SEC = rf"(?:[\s_]*(?:/|per)[\s_]*{_SEC}|[\s_*·]{_SEC}\^?-1)"
 _SQUARED = r"(?:/s|\^?2|²|[\s_]*squared|[\s_]*/[\s_]*s)"
 _METRE = "m(?:et(?:er|re)s?)?"
@@ -29,9 +29,9 @@ _WRITTEN = {
     "degf": "°f|degf|f",
     "k": "k|kelvin",
     "s": _SEC,
-    "ms": "ms|m(?:illi)?sec(?:ond)?s?|millis",
-    "us": "[uµμ]s|[uµμ]?sec|micros|micro(?:sec(?:ond)?s?)",
-    "ns": "ns|n(?:ano)?sec(?:ond)?s?",
+    "ms": "m(?:seconds?|secs?|s)|millis(?:econds?|ecs?)?",
+    "us": "[uµμ](?:seconds?|secs?|s)|micros(?:econds?|ecs?)?",
+    "ns": "n(?:seconds?|secs?|s)|nanos(?:econds?|ecs?)?",
     "lsb": "lsb|counts|raw",
 }
 _WRITTEN_BY_KIND = {
