@@ -25,12 +25,9 @@ def read(path: Path, instance: int = 0) -> Table:
     gyro = _topic(log, "sensor_gyro", instance)
     combined = _topic(log, "sensor_combined", instance)
     notes = []
-    if gyro is None and combined is None:
-        problem = f"neither sensor_gyro nor sensor_combined, instance {instance}"
-        raise BadRecording(path, problem, do="log them (SDLOG_PROFILE), or try --instance")
-    if combined is None or (gyro is not None and not _far_faster(combined, gyro)):
+    if gyro is not None and (combined is None or not _far_faster(combined, gyro)):
         streams = _single_sensors(gyro, _topic(log, "sensor_accel", instance))
-    else:
+    elif combined is not None:
         streams = _combined(combined)
         if gyro is not None:
             streams += _temperature(gyro)
@@ -38,6 +35,9 @@ def read(path: Path, instance: int = 0) -> Table:
                 "sensor_gyro is logged too seldom (SDLOG_PROFILE), so sensor_combined is taken: "
                 "its rates are after PX4's own offsets"
             ]
+    else:
+        problem = f"neither sensor_gyro nor sensor_combined, instance {instance}"
+        raise BadRecording(path, problem, do="log them (SDLOG_PROFILE), or try --instance")
     names = list(dict.fromkeys(name for stream in streams for name in stream))
     chunks = partial(one_after_the_other, streams)
     sensor = str(log.msg_info_dict.get("ver_hw", "PX4"))
