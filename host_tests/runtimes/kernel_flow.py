@@ -55,6 +55,8 @@ class _Flow:
             return _both(yes, self.through(statement.orelse, known))
         if isinstance(statement, ast.While):
             return self.loop(statement, known)
+        if isinstance(statement, ast.For):
+            return self.counted(statement, known)
         self.read(statement, known)
         if isinstance(statement, ast.Break):
             self.at_breaks[-1] = _both(self.at_breaks[-1], known)
@@ -68,6 +70,14 @@ class _Flow:
         self.through(loop.body, known)
         run_out = None if _is_endless(loop) else known
         return _both(self.at_breaks.pop(), self.through(loop.orelse, run_out))
+
+    def counted(self, loop: ast.For, known: set[str]) -> set[str] | None:
+        """Behind it the counter is another in C: it counts as not set."""
+        self.read(loop.iter, known)
+        counter = _set_in(loop.target)
+        self.at_breaks.append(None)
+        self.through(loop.body, known | counter)
+        return _both(self.at_breaks.pop(), known) - counter
 
     def read(self, node: ast.AST, known: set[str]) -> None:
         for name in ast.walk(node):

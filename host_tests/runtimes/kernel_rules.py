@@ -14,7 +14,7 @@ from zerorate_tools.kernels.reading import KernelFile
 from .kernel_flow import always_returns, read_before_set
 
 _ALLOWED: tuple[type[ast.AST], ...] = (
-    *(ast.Assign, ast.AugAssign, ast.Return, ast.If, ast.While, ast.Expr),
+    *(ast.Assign, ast.AugAssign, ast.Return, ast.If, ast.While, ast.For, ast.Expr),
     *(ast.Break, ast.Continue, ast.Pass, ast.expr_context),
     *(ast.Name, ast.Constant, ast.Compare, ast.BoolOp, ast.UnaryOp, ast.BinOp),
     *(ast.IfExp, ast.Subscript, ast.Call),
@@ -78,6 +78,8 @@ def _body(function: ast.FunctionDef, kernels: Collection[str]) -> Iterator[tuple
         row = getattr(node, "lineno", function.lineno)
         if not isinstance(node, _ALLOWED):
             yield row, f"{type(node).__name__} is not for kernels"
+        elif isinstance(node, ast.For):
+            yield from ((row, what) for what in _counted(node))
         elif isinstance(node, ast.Call):
             yield from ((row, what) for what in _call(node, kernels))
         elif isinstance(node, ast.Return) and node.value is not None and not function.returns:
@@ -86,8 +88,26 @@ def _body(function: ast.FunctionDef, kernels: Collection[str]) -> Iterator[tuple
             yield from ((row, what) for what in _node(node))
 
 
+def _counted(loop: ast.For) -> Iterator[str]:
+    """C counts by a test before each round, Python by numbers known before the first."""
+    if not isinstance(loop.iter, ast.Call) or _name(loop.iter.func) != "range":
+        yield "a for loop counts through a range"
+        return
+    if not isinstance(loop.iter.args[-1], ast.Constant) and len(loop.iter.args) == 3:
+        yield "a range whose step is no number takes heap"
+    names = [n for s in loop.body for n in ast.walk(s) if isinstance(n, ast.Name)]
+    stored = {n.id for n in names if isinstance(n.ctx, ast.Store)}
+    numbers = [n for part in loop.iter.args for n in ast.walk(part)]
+    if stored & {n.id for n in (loop.target, *numbers) if isinstance(n, ast.Name)}:
+        yield "what a for loop counts by changes within it"
+    if any(isinstance(n, ast.Subscript) and _name(n.value) != "c" for n in numbers):
+        yield "the end of a for loop is a number, a local or a setting"
+
+
 def _call(node: ast.Call, kernels: Collection[str]) -> Iterator[str]:
     name = _name(node.func)
+    if name == "range":
+        return
     if name not in kernels:
         yield f"{name or 'an expression'} is called, which is no kernel"
     if node.keywords or any(isinstance(a, ast.Starred) for a in node.args):

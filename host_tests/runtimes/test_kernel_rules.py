@@ -15,6 +15,10 @@ def total(s: ptr32, w: ptr32, n: int) -> int:
         if s[i] > 3 and not w[i] or s[i] < -0x3FFFFFFF:
             continue
         value += s[i] // 3 if s[i] > 0 else -(s[i] >> 30)
+    for k in range(1, n, 2):
+        if s[k] < 0:
+            break
+        value += k
     while True:
         value -= 1
         if value < 100:
@@ -52,7 +56,12 @@ BROKEN = [
     ("return s[-1]", "a negative index"),
     ("return n in s", "In is not for kernels"),
     ("raise ValueError", "Raise is not for kernels"),
-    ("for x in s:\n        n += x\n    return n", "For is not for kernels"),
+    ("for x in s:\n        n += x\n    return n", "a for loop counts through a range"),
+    ("a = n\n    for i in range(a):\n        a -= 1\n    return a", "counts by changes within it"),
+    ("for i in range(3):\n        i += 1\n    return n", "counts by changes within it"),
+    ("for i in range(s[0]):\n        s[0] -= 1\n    return n", "a number, a local or a setting"),
+    ("for i in range(0, n, n):\n        s[i] = 0\n    return n", "takes heap"),
+    ("for i in range(3):\n        s[i] = 0\n    return i", "i is read before it is set"),
     ("a, b = n, n\n    return a", "Tuple is not for kernels"),
     ("s[0] = n", "ends without return on some path"),
     ("if n:\n        return 1", "ends without return on some path"),

@@ -19,12 +19,10 @@ def fraction_q27(a: int, b: int) -> int:
     """Return a / b in Q27 for 0 <= a <= b < 2^20, b > 0."""
     q = 0
     rest = a
-    i = 0
-    while i < 3:
+    for i in range(3):
         rest = rest << 9
         q = (q << 9) + rest // b
         rest = rest % b
-        i += 1
     return q
 
 
@@ -38,14 +36,12 @@ def ratio_q26(a: int, b: int) -> int:
         return sign * 0xFFFFFFF
     q = rest // b
     rest = rest % b
-    i = 0
-    while i < 26:
+    for i in range(26):
         rest = rest << 1
         q = q << 1
         if rest >= b:
             rest -= b
             q += 1
-        i += 1
     return sign * q
 
 

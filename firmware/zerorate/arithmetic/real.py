@@ -87,14 +87,12 @@ def quotient_q27(m: int, n: int) -> int:
     """Return m / n in Q27, for 0 <= m < 2 n <= 2^29, n > 0."""
     q = 0
     rest = m
-    i = 0
-    while i < 28:
+    for i in range(28):
         q = q << 1
         if rest >= n:
             rest -= n
             q += 1
         rest = rest << 1
-        i += 1
     return q
 
 

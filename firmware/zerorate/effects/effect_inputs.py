@@ -39,8 +39,7 @@ def shake(e: ptr32, x: ptr32):
     The sum has its lower 15 bits apart. Each axis counts up to 18900 LSB, 1.15 g at +-2 g.
     """
     total = 0
-    i = 0
-    while i < 3:
+    for i in range(3):
         d = x[i] << 8
         slow = e[_SLOW_Q8 + i] if e[_SLOW_BEGUN] else d
         slow += (d - slow + 16) >> 5
@@ -49,7 +48,6 @@ def shake(e: ptr32, x: ptr32):
         if d > 18900 or d < -18900:
             d = 18900
         total += d * d
-        i += 1
     e[_SLOW_BEGUN] = 1
     e[_SQUARES] += total & 0x7FFF
     e[_SQUARES + 1] += total >> 15

@@ -79,10 +79,8 @@ def observe(s: ptr32, e: ptr32, n: int):
     put(e, _REGRESSORS, 1, 0)
     i = s[_TEMP] - e[_FIRST_TEMP]
     put(e, _REGRESSORS + 2, i, -8)
-    i = 0
-    while i < 3:
+    for i in range(3):
         e[_RATE_Q8 + i] = mean_q8(s[_SEGMENT_TOTAL + i], n)
-        i += 1
     i = 2
     while i < e[_STATES]:
         a = _SLOTS + (i - 2) * _SLOT_WORDS
@@ -163,14 +161,12 @@ def believe(e: ptr32, i: int):
 def bound(e: ptr32, a: int) -> int:
     """Return how far a coefficient of the slot may go: a share of the model's largest."""
     most = 0
-    i = 0
-    while i < 3:
+    for i in range(3):
         m = e[a + _SLOT_OWN + i]
         if m < 0:
             m = -m
         if m > most:
             most = m
-        i += 1
     return (most >> 3) * e[_BOUND_EIGHTHS]
 
 
@@ -233,10 +229,8 @@ def renew(e: ptr32):
         put(e, _REFINE_P + i * _REFINE_ROW, 0, 0)
         i += 1
     put(e, _REFINE_P, 1, 24)
-    i = 0
-    while i < 3:
+    for i in range(3):
         put(e, _THETA + i * _REFINE_ROW, 0, 0)
-        i += 1
 
 
 def doubt(e: ptr32, a: int, p: int):
@@ -250,17 +244,11 @@ def doubt(e: ptr32, a: int, p: int):
 def begin(e: ptr32, slots: int):
     """Know nothing yet of any unit: each coefficient is the model's, give or take the bound."""
     e[_STATES] = slots + 2
-    i = 0
-    while i < 30:
+    for i in range(30):
         put(e, _THETA + 2 * i, 0, 0)
-        i += 1
-    i = 0
-    while i < 100:
+    for i in range(100):
         put(e, _REFINE_P + 2 * i, 0, 0)
-        i += 1
     put(e, _REFINE_P + _REFINE_ROW + 2, 1, 6)
-    i = 0
-    while i < slots:
+    for i in range(slots):
         doubt(e, _SLOTS + i * _SLOT_WORDS, _REFINE_P + (i + 2) * (_REFINE_ROW + 2))
-        i += 1
     renew(e)

@@ -78,15 +78,11 @@ _RADIAN_Q13 = const(8192)
 
 def clear(s: ptr32, c: ptr32):
     """Forget the offsets and everything counted."""
-    i = 0
-    while i < _SPREAD_Q21 + 1:
+    for i in range(_SPREAD_Q21 + 1):
         s[i] = 0
-        i += 1
-    i = 0
-    while i < 3:
+    for i in range(3):
         s[_STEP_Q8 + i] = c[_COARSE_Q8]
         s[_GRAVITY_QUALITY_Q8 + i] = _UNKNOWN_Q8
-        i += 1
 
 
 def update(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
@@ -129,27 +125,23 @@ def gather(s: ptr32, x: ptr32, factor: int, shift: int):
 
 def begin_unit(s: ptr32):
     """Begin the sums of a sub-unit."""
-    i = 0
     s[_UNIT_N] = 0
-    while i < 3:
+    for i in range(3):
         s[_ANGLE_Q22 + i] = 0
         s[_ANGLE_SUM_Q13 + i] = 0
         s[_FORCE_SUM + i] = 0
-        i += 1
 
 
 def end_unit(s: ptr32, c: ptr32):
     """Count the sub-unit's deviations, where the force is near 1 g."""
-    i = 0
     square = 0
-    while i < 3:
+    for i in range(3):
         # a mean rate of 8 g cannot be gravity, and would not fit
         force = ((s[_FORCE_SUM + i] // s[_UNIT_N]) << 12) // c[_ONE_G_LSB]
         if force > 8191 or force < -8191:
             force = 8191
         s[_FORCE_SUM + i] = force
         square += force * force
-        i += 1
     i = _ONE_G_Q24 - square
     if i > _BAND_Q24 or i < -_BAND_Q24:
         s[_LAST_GOOD] = 0
@@ -157,10 +149,8 @@ def end_unit(s: ptr32, c: ptr32):
         s[_GRAVITY_REASON] = _NOT_ONE_G
     else:
         s[_GRAVITY_REASON] = _COUNTING
-        i = 0
-        while i < 3:
+        for i in range(3):
             compare(s, c, i, square)
-            i += 1
     begin_unit(s)
 
 
@@ -262,13 +252,11 @@ def end_interval(s: ptr32, c: ptr32) -> int:
 
     The document's interval is so many sub-units; by default so many that were counted.
     """
-    i = 0
     ended = 0
-    while i < 3:
+    for i in range(3):
         if s[_COUNTED + i] >= c[_UNITS] or (c[_PUSH_Q2] == 0 and s[_UNIT_COUNT] >= c[_UNITS]):
             end_axis(s, c, i)
             ended = 1
-        i += 1
     if s[_UNIT_COUNT] >= c[_UNITS]:
         s[_UNIT_COUNT] = 0
     return ended

@@ -34,10 +34,8 @@ def sines(s: ptr32):
     square = (s[_HALF] * s[_HALF] + s[_HALF + 1] * s[_HALF + 1] + s[_HALF + 2] * s[_HALF + 2]) >> 14
     fourth = ((square >> 1) * (square >> 1)) >> 12
     factor = _ONE_Q14 - ((square * 2731) >> 14) + ((fourth * 137) >> 14)
-    i = 0
-    while i < 3:
+    for i in range(3):
         s[_HALF + i] = (s[_HALF + i] * factor + 0x800) >> 12
-        i += 1
     factor = (((fourth >> 2) * (square >> 2)) >> 10) * 23
     s[_REAL] = ((fourth * 2731) >> 14) - (square << 1) - (factor >> 12)
 
@@ -56,17 +54,13 @@ def turn(s: ptr32):
 
 def normalise(s: ptr32):
     """Bring the quaternion back to length one, to first order."""
-    i = 0
     excess = -0x10000000
-    while i < 4:
+    for i in range(4):
         part = (s[_Q + i] + 0x2000) >> 14
         excess += part * part
-        i += 1
     excess = excess >> 14
-    i = 0
-    while i < 4:
+    for i in range(4):
         s[_Q + i] = s[_Q + i] - ((((s[_Q + i] + 0x2000) >> 14) * excess) >> 1)
-        i += 1
 
 
 def rotation(s: ptr32):

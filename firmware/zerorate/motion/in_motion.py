@@ -118,19 +118,13 @@ def work(s: ptr32, c: ptr32) -> int:
 
 def begin_traversal(s: ptr32):
     """Begin at the window's first node with the bias of this pass removed."""
-    i = 0
-    while i < 3 * _COMPONENT_WORDS:
+    for i in range(3 * _COMPONENT_WORDS):
         s[_SUMS + i] = 0
-        i += 1
-    i = 0
-    while i < 3:
+    for i in range(3):
         s[_BIAS_Q24 + i] = within(whole(s, _BIAS + 2 * i, 0), _MOST_BIAS_Q24)
         s[_BIAS_CARRY_Q24 + i] = 0
-        i += 1
-    i = 0
-    while i < 9:
+    for i in range(9):
         s[_SUM_R + i] = s[_CENTRE + i]
-        i += 1
     s[_UP] = 0
     s[_TAPER_SUM] = 0
     s[_TRAFFIC] = 0
@@ -168,35 +162,25 @@ def visit(s: ptr32, c: ptr32):
 
 def observe_vector(s: ptr32):
     """Take the rotation vector from the start, Q12 rad, and let each slope be its own axis'."""
-    i = 0
-    while i < 9:
+    for i in range(9):
         s[_R + i] = 0
-        i += 1
-    i = 0
-    while i < 3:
+    for i in range(3):
         s[_R + 4 * i] = 0x4000
         s[_Y + i] = s[_Q + 1 + i] >> 15
         if s[_Q] < 0:
             s[_Y + i] = -s[_Y + i]
-        i += 1
 
 
 def sum_up(s: ptr32):
     """Add the node to the sums of the three components, M taken at the node's start."""
-    i = 0
-    while i < 9:
+    for i in range(9):
         s[_SUM_R + i] += s[_R + i] >> 1
-        i += 1
-    i = 0
-    while i < 3:
+    for i in range(3):
         regressors(s, _SUM_R + 3 * i, s[_STAGE])
         first_sums(s, _SUMS + _COMPONENT_WORDS * i, s[_Y + i])
         second_sums(s, _SUMS + _COMPONENT_WORDS * i)
-        i += 1
-    i = 0
-    while i < 9:
+    for i in range(9):
         s[_SUM_R + i] += s[_R + i] - (s[_R + i] >> 1)
-        i += 1
 
 
 def remove_bias(s: ptr32, a: int):
@@ -204,15 +188,13 @@ def remove_bias(s: ptr32, a: int):
 
     What the bias has below a unit is carried from node to node.
     """
-    i = 0
-    while i < 3:
+    for i in range(3):
         s[_BIAS_CARRY_Q24 + i] += s[_BIAS_Q24 + i]
         part = (s[_BIAS_CARRY_Q24 + i] + 0x400) >> 11
         s[_BIAS_CARRY_Q24 + i] -= part << 11
         part = within((s[a + i] >> 15) - part, _MOST_HALF_Q14)
         s[_HALF + i] = part
         s[_TRAFFIC] += part if part > 0 else 0 - part
-        i += 1
 
 
 def tilting(s: ptr32, row: int) -> int:
@@ -313,21 +295,17 @@ def last_pass(s: ptr32, c: ptr32) -> int:
     """Return 1 if the slope is below its threshold or this was the last pass allowed."""
     if s[_PASS] >= c[_PASSES]:
         return 1
-    i = 0
-    while i < 3:
+    for i in range(3):
         slope = whole(s, _SLOPE + 2 * i, 0)
         if slope > c[_SETTLED] or slope < -c[_SETTLED]:
             return 0
-        i += 1
     return 1
 
 
 def remove_slope(s: ptr32, c: ptr32):
     """Add this pass' slope to the bias, note it, and integrate again unless it was the last."""
-    i = 0
-    while i < 6:
+    for i in range(0, 6, 2):
         add(s, _BIAS + i, _BIAS + i, _SLOPE + i)
-        i += 2
     note_slope(s, c)
     if s[_PASS] < c[_PASSES]:
         s[_PASS] += 1

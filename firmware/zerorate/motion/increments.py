@@ -117,8 +117,7 @@ def close(s: ptr32, c: ptr32):
     """
     s[_NODE_ELAPSED_US] -= c[_NODE_US]
     a = _NODES_RING + 3 * s[_HEAD]
-    i = 0
-    while i < 3:
+    for i in range(3):
         over = (s[_NODE_ELAPSED_US] << 10) // c[_NODE_US]
         over = ((s[_BIAS_Q24 + i] >> 8) * over) >> 2
         angle = within((s[_NODE_ANGLE_Q24 + i] - over + 0x400) >> 11, _MOST_ANGLE_Q13)
@@ -127,7 +126,6 @@ def close(s: ptr32, c: ptr32):
         angle = s[_NODE_ANGLE_Q24 + i] - (angle << 11)
         s[_NODE_ANGLE_Q24 + i] = within(angle, _TWO_RAD_Q24)
         s[_NODE_FORCE_Q12 + i] = 0
-        i += 1
     s[_NODE_N] = 0
     next_node(s, c)
 
@@ -147,7 +145,5 @@ def next_node(s: ptr32, c: ptr32):
 
 def restart(s: ptr32):
     """Forget the node and the window, after a gap in time or a bad reading."""
-    i = 0
-    while i < _NEW_NODES + 1:
+    for i in range(_NEW_NODES + 1):
         s[i] = 0
-        i += 1

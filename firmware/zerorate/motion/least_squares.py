@@ -111,17 +111,13 @@ def sweep(s: ptr32, k: int):
     d = place(k, k)
     put(s, _T, 1, 0)
     divide(s, _T, _T, d)
-    i = 0
-    while i < 4:
+    for i in range(4):
         if i != k:
             sweep_row(s, k, i)
-        i += 1
-    i = 0
-    while i < 4:
+    for i in range(4):
         if i != k:
             d = place(i, k)
             multiply(s, d, d, _T)
-        i += 1
     d = place(k, k)
     put(s, d, -s[_T], s[_T + 1])
 
@@ -130,15 +126,13 @@ def sweep_row(s: ptr32, k: int, i: int):
     """Take the pivot's row from row i, from the diagonal on; _T holds one over the pivot."""
     d = place(i, k)
     multiply(s, _T1, d, _T)
-    j = i
-    while j < 4:
+    for j in range(i, 4):
         if j != k:
             d = place(k, j)
             multiply(s, _T2, _T1, d)
             d = place(i, j)
             subtract(s, _T3, d, _T2)
             copy(s, d, _T3, 2)
-        j += 1
 
 
 def covariance(s: ptr32, d: int):
@@ -155,18 +149,14 @@ def covariance(s: ptr32, d: int):
 
 def spread_prior(s: ptr32):
     """Put the covariance into the matrix."""
-    i = 0
     d = _G
-    while i < 20:
+    for i in range(0, 20, 2):
         put(s, _G + i, 0, 0)
-        i += 2
-    i = 0
-    while i < 6:
+    for i in range(6):
         if i == 3 or i == 5:
             d += 2
         copy(s, d, _KNOWN_P + 2 * i, 2)
         d += 2
-        i += 1
 
 
 def magnitude(s: ptr32, a: int):
@@ -188,20 +178,16 @@ def step(s: ptr32):
     i = -s[_STAGE]
     put(s, _T, _LIMIT_Q24, i)
     copy(s, _T1, _T, 2)
-    i = 0
-    while i < 3:
+    for i in range(3):
         d = place(i, 3)
         copy(s, _SLOPE + 2 * i, d, 2)
         copy(s, _T2, d, 2)
         magnitude(s, _T2)
         if less(s, _T1, _T2):
             copy(s, _T1, _T2, 2)
-        i += 1
     divide(s, _T, _T, _T1)
-    i = 0
-    while i < 6:
+    for i in range(0, 6, 2):
         multiply(s, _SLOPE + i, _SLOPE + i, _T)
-        i += 2
 
 
 def shape(s: ptr32, d: int, m: int, y: int):
@@ -245,13 +231,11 @@ def weights(s: ptr32, c: ptr32):
     add(s, _T, _OMEGA, _OMEGA + 2)
     put(s, _OMEGA, s[_T], s[_T + 1] - 1)
     copy(s, _OMEGA + 2, _OMEGA, 2)
-    i = 0
-    while i < 6:
+    for i in range(0, 6, 2):
         if less(s, _OMEGA + i, _HELD_NOISE + i):
             copy(s, _OMEGA + i, _HELD_NOISE + i, 2)
         copy(s, _NOISE_ENERGY + i, _OMEGA + i, 2)
         weigh(s, c, _OMEGA + i)
-        i += 2
 
 
 def weigh(s: ptr32, c: ptr32, a: int):
@@ -264,11 +248,9 @@ def weigh(s: ptr32, c: ptr32, a: int):
 
 def held_weights(s: ptr32, c: ptr32):
     """Set the weights from the noise energies held from earlier windows."""
-    i = 0
-    while i < 6:
+    for i in range(0, 6, 2):
         copy(s, _OMEGA + i, _HELD_NOISE + i, 2)
         weigh(s, c, _OMEGA + i)
-        i += 2
 
 
 def own_square(s: ptr32, i: int):

@@ -66,11 +66,9 @@ _SETTLED_AFTER = const(3)
 
 def clear(s: ptr32, c: ptr32):
     """Know nothing: no bias, the widest covariance, the shortest window."""
-    i = 0
-    while i < 3:
+    for i in range(3):
         put(s, _BIAS + 2 * i, 0, 0)
         s[_MOTION_QUALITY_Q8 + i] = 0x1FFFFFFF
-        i += 1
     forget_slopes(s, c)
     s[_ACCEPTED] = 0
     s[_AGAINST] = 0
@@ -82,18 +80,14 @@ def clear(s: ptr32, c: ptr32):
 
 def know_nothing(s: ptr32, c: ptr32, tilt: int, heading: int):
     """Set the prior to the widest one about no bias, and the noise energies, Q24 rad^2."""
-    i = 0
-    while i < 6:
+    for i in range(6):
         put(s, _KNOWN_P + 2 * i, 0, 0)
-        i += 1
     put(s, _KNOWN_P, c[_START_VARIANCE], c[_START_VARIANCE + 1])
     copy(s, _KNOWN_P + 6, _KNOWN_P, 2)
     copy(s, _KNOWN_P + 10, _KNOWN_P, 2)
-    i = 0
-    while i < 3:
+    for i in range(3):
         put(s, _PRIOR_MEAN + 2 * i, 0, 0)
         put(s, _HELD_NOISE + 2 * i, heading if i == 2 else tilt, 0)
-        i += 1
 
 
 def start_window(s: ptr32, c: ptr32) -> int:
@@ -118,10 +112,8 @@ def start_window(s: ptr32, c: ptr32) -> int:
         know_nothing(s, c, 167772, 1509949)
     else:
         copy(s, _PRIOR_MEAN, _BIAS, 6)
-    n = 0
-    while n < 9:
+    for n in range(9):
         s[_CENTRE + n] = 0
-        n += 1
     s[_START] = 0x4000
     s[_START + 1] = 0
     s[_START + 2] = 0
@@ -183,16 +175,14 @@ def louder(s: ptr32) -> int:
 
 def contradicts(s: ptr32) -> int:
     """Return 1 if an axis moved by more than four sigma of what was known, else 0."""
-    i = 0
     d = _KNOWN_P
-    while i < 3:
+    for i in range(3):
         put(s, _T, s[d], s[d + 1] + 4)
         subtract(s, _T1, _BIAS + 2 * i, _PRIOR_MEAN + 2 * i)
         multiply(s, _T1, _T1, _T1)
         if less(s, _T, _T1):
             return 1
         d += 6 - 2 * i
-        i += 1
     return 0
 
 
@@ -239,17 +229,14 @@ def refuse(s: ptr32, c: ptr32, reason: int):
 
 def keep_noise(s: ptr32):
     """Hold this window's noise energies for the next, a little less."""
-    i = 0
-    while i < 6:
+    for i in range(0, 6, 2):
         put(s, _T, 11469, -14)
         multiply(s, _HELD_NOISE + i, _NOISE_ENERGY + i, _T)
-        i += 2
 
 
 def publish(s: ptr32, c: ptr32):
     """Write bias and one-sigma uncertainty of each axis, LSB in Q8."""
-    i = 0
-    while i < 3:
+    for i in range(3):
         put(s, _T, c[_LSB_A_UNIT], c[_LSB_A_UNIT + 1])
         present(s, i)
         multiply(s, _T1, _T1, _T)
@@ -259,4 +246,3 @@ def publish(s: ptr32, c: ptr32):
         root_of(s, _T1, _T1)
         multiply(s, _T1, _T1, _T)
         s[_MOTION_QUALITY_Q8 + i] = whole(s, _T1, 0)
-        i += 1

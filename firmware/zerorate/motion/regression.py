@@ -51,12 +51,10 @@ def taper(s: ptr32, k: int, stage: int, even: int):
 
 def regressors(s: ptr32, row: int, shift: int):
     """Write a row of M and the weight times it to scratch words."""
-    i = 0
-    while i < 3:
+    for i in range(3):
         m = (s[row + i] + (1 << (shift - 1))) >> shift
         s[_M + i] = m
         s[_WM + i] = (s[_TAPER] * m + 512) >> 10
-        i += 1
 
 
 def first_sums(s: ptr32, a: int, y: int):

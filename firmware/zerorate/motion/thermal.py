@@ -41,13 +41,11 @@ _BEND = const(25)
 
 def forget_slopes(s: ptr32, c: ptr32):
     """Know no slope: 0, with the variance that the settings give it."""
-    i = 0
     put(s, _TEMP_SLOPE_VARIANCE, c[_TEMP_SLOPE_START], c[_TEMP_SLOPE_START + 1])
-    while i < 9:
+    for i in range(0, 9, 3):
         s[_TEMP_SLOPES + i] = 0
         s[_TEMP_SLOPES + i + 1] = 0
         pack(s, _TEMP_SLOPES + i + 2, _TEMP_SLOPE_VARIANCE)
-        i += 3
 
 
 def follow_temperature(s: ptr32, temp: int):
@@ -132,10 +130,8 @@ def bend(s: ptr32, c: ptr32):
 
 def learn_slopes(s: ptr32):
     """Learn from how the window moved each bias; its covariance is still in the swept matrix."""
-    i = 0
-    while i < 3:
+    for i in range(3):
         learn_slope(s, i)
-        i += 1
 
 
 def learn_slope(s: ptr32, i: int):

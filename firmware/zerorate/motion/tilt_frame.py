@@ -33,20 +33,16 @@ _MOST_Q12 = const(0x7FFF)
 
 def begin_attitude(s: ptr32):
     """Set the quaternion to the window's first attitude."""
-    i = 0
-    while i < 4:
+    for i in range(4):
         s[_Q + i] = s[_START + i] << 14
-        i += 1
     s[_LAST_HEADING_Q12] = 0
     s[_HEADING_TURNS] = 0
 
 
 def look_along(s: ptr32, scale: int):
     """Set _START to the quaternion at _LOOK divided by its length, which is `scale`, as Q14."""
-    i = 0
-    while i < 4:
+    for i in range(4):
         s[_START + i] = (s[_LOOK + i] << 14) // scale
-        i += 1
 
 
 def find_up(s: ptr32):
@@ -87,12 +83,10 @@ def lean_back(s: ptr32):
     s[_LOOK + 1] = s[_START + 1] + ((x * s[_START] + y * s[_START + 3]) >> 14)
     s[_LOOK + 2] = s[_START + 2] + ((y * s[_START] - x * s[_START + 3]) >> 14)
     s[_LOOK + 3] = s[_START + 3] + ((x * s[_START + 2] - y * s[_START + 1]) >> 14)
-    i = 0
     x = 0
-    while i < 4:
+    for i in range(4):
         s[_LOOK + i] = s[_LOOK + i] >> 1
         x += s[_LOOK + i] * s[_LOOK + i]
-        i += 1
     look_along(s, root(x))
 
 
@@ -100,13 +94,9 @@ def turn_centre(s: ptr32, shift: int):
     """Set _CENTRE from the means of M in the first attitude's own frame."""
     begin_attitude(s)
     rotation(s)
-    i = 0
-    while i < 3:
-        k = 0
-        while k < 3:
+    for i in range(3):
+        for k in range(3):
             s[_CENTRE + 3 * i + k] = -(turned_mean(s, i, k) << shift)
-            k += 1
-        i += 1
 
 
 def turned_mean(s: ptr32, i: int, k: int) -> int:
@@ -122,12 +112,10 @@ def turned_mean(s: ptr32, i: int, k: int) -> int:
 
 def force_q12(s: ptr32, a: int, row: int) -> int:
     """Return a component of the node's specific force in the tilt frame, Q12 g."""
-    i = 0
     total = 0
-    while i < 3:
+    for i in range(3):
         # the force is the low 15 bits of the word, signed
         total += s[_R + row + i] * (((s[a + i] & 0x7FFF) ^ 0x4000) - 0x4000)
-        i += 1
     return (total + 0x2000) >> 14
 
 

@@ -82,21 +82,15 @@ def plain(s: ptr32, f: ptr32, c: ptr32, p: int) -> int:
 
 def begin_window(s: ptr32, f: ptr32, p: int):
     """Let the frame at word p of f be what the window's sums are less."""
-    i = _WINDOW_SUM
-    while i < _REST:
+    for i in range(_WINDOW_SUM, _REST):
         s[i] = 0
-        i += 1
-    i = 0
-    while i < 7:
+    for i in range(7):
         s[_REFERENCE + i] = f[p + 1 + i]
-        i += 1
     s[_SQUARE_GYRO] = 0
     s[_DIRTY] = 0
-    i = 0
-    while i < 3:
+    for i in range(3):
         s[_EFFECT_SUM_Q8 + i] = 0
         s[_LAST_RATE + i] = 0
-        i += 1
     s[_SQUARE_STEP] = 0
 
 
@@ -126,27 +120,23 @@ def followed(f: ptr32, c: ptr32, p: int, end: int) -> int:
 
 def off_rails(f: ptr32, p: int, end: int) -> int:
     """Return the word behind the frames from p on of which no rate stands at a rail."""
-    k = p
-    while k < end:
+    for k in range(p, end, 8):
         # sixteen bits of a rate are one too many where it is next to a rail
         far = (f[k + 5] + 32767) | (f[k + 6] + 32767) | (f[k + 7] + 32767)
         far |= (f[k + 5] + 32769) | (f[k + 6] + 32769) | (f[k + 7] + 32769)
         if far >> 16:
             return k
-        k += 8
     return end
 
 
 def near(s: ptr32, f: ptr32, p: int, end: int) -> int:
     """Return the word behind the frames from p on that stay near the window's first frame."""
-    k = p
-    while k < end:
+    for k in range(p, end, 8):
         far = (f[k + 1] - s[_REFERENCE] + 512) | (f[k + 2] - s[_REFERENCE + 1] + 512)
         far |= (f[k + 3] - s[_REFERENCE + 2] + 512) | (f[k + 4] - s[_REFERENCE + 3] + 512)
         far |= (f[k + 5] - s[_REFERENCE + 4] + 512) | (f[k + 6] - s[_REFERENCE + 5] + 512)
         if (far | (f[k + 7] - s[_REFERENCE + 6] + 512)) >> 10:
             return k  # the window is no rest from here on
-        k += 8
     return end
 
 
@@ -158,40 +148,34 @@ def add_accelerations(s: ptr32, f: ptr32, p: int, end: int):
         reference = s[_REFERENCE + i]
         total = s[_WINDOW_SUM + i]
         i += 1
-        k = p + i
-        while k < end:
+        for k in range(p + i, end, 8):
             d = f[k] - reference
             total += d
             square += d * d
-            k += 8
         s[_WINDOW_SUM - 1 + i] = total
     s[_SQUARE_ACCEL] = square
 
 
 def add_rates(s: ptr32, f: ptr32, p: int, end: int):
     """Add the frames from word p on to the sums of the window's rates."""
-    i = 0
-    while i < 3:
+    for i in range(3):
         reference = s[_REFERENCE + 4 + i]
         total = 0
         square = 0
         steps = 0
         last = s[_LAST_RATE + i]
-        k = p + 5 + i
-        while k < end:
+        for k in range(p + 5 + i, end, 8):
             d = f[k] - reference
             total += d
             square += d * d
             last = d - last
             steps += last * last
             last = d
-            k += 8
         s[_WINDOW_SUM + 4 + i] += total
         s[_SQUARE_GYRO] += square
         s[_SQUARE_STEP] += steps
         s[_LAST_RATE + i] = last
         s[_EFFECT_SUM_Q8 + i] += s[_EFFECT_Q8 + i] * ((end - p) >> 3)
-        i += 1
 
 
 def account(s: ptr32, f: ptr32, p: int, end: int):
@@ -201,12 +185,10 @@ def account(s: ptr32, f: ptr32, p: int, end: int):
     reference = s[_REFERENCE + 3]
     s[_COUNTS] += (end - p) >> 3
     s[_WINDOW_N] += (end - p) >> 3
-    k = p
-    while k < end:
+    for k in range(p, end, 8):
         elapsed_us += f[k]
         total += f[k + 4] - reference
         f[k] = 0
-        k += 8
     s[_ELAPSED_US] = elapsed_us if elapsed_us < _MOST_US else _MOST_US
     s[_WINDOW_SUM + 3] = total
     s[_FRAME] = f[end - 7]
@@ -220,18 +202,14 @@ def account(s: ptr32, f: ptr32, p: int, end: int):
 
 def correct(s: ptr32, f: ptr32, p: int, end: int):
     """Subtract the bias from the frames from word p on."""
-    i = 0
-    while i < 3:
+    for i in range(3):
         bias = s[_OUT_Q8 + i] + s[_EFFECT_Q8 + i]
         # what is due to a rate, Q8: half an LSB and what was left over, less the bias
         due = s[_CARRY_Q8 + i] + 128 - bias
-        k = p + 5 + i
-        while k < end:
+        for k in range(p + 5 + i, end, 8):
             f[k] += due >> 8
             due = (due & 255) - bias
-            k += 8
         s[_CARRY_Q8 + i] = due + bias - 128
-        i += 1
 
 
 def take(s: ptr32, f: ptr32, c: ptr32, p: int, end: int) -> int:

@@ -5,7 +5,5 @@ ptr32 = None
 
 def copy(s: ptr32, t: ptr32, first: int, end: int):
     """Put the words from `first` up to `end` of `s` into `t`."""
-    i = first
-    while i < end:
+    for i in range(first, end):
         t[i] = s[i]
-        i += 1

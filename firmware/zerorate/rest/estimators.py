@@ -206,10 +206,8 @@ def victim(s: ptr32, c: ptr32, a: int, e: int) -> int:
 
 def copy(s: ptr32, c: ptr32, to: int, e: int):
     """Copy one estimator over another."""
-    i = 0
-    while i < c[_ESTIMATOR_WORDS]:
+    for i in range(c[_ESTIMATOR_WORDS]):
         s[to + i] = s[e + i]
-        i += 1
 
 
 def make_room(s: ptr32, c: ptr32, a: int, temp: int) -> int:

@@ -271,16 +271,12 @@ def bend(s: ptr32, c: ptr32, a: int):
     s[_BEND_NORM_Q18] = 1
     s[_BEND_DOT_Q12] = 0
     s[_BEND_LEFT_Q6] = 0
-    i = 1
-    while i < c[_ESTIMATOR_COUNT]:
+    for i in range(1, c[_ESTIMATOR_COUNT]):
         add_moments(s, c, a, i)
-        i += 1
     s[a + _BOW_MEAN_Q14] = s[_BEND_SQUARE_Q14]
     s[a + _BOW_LEAN_Q14] = (s[_BEND_CUBE_Q14] << 14) // (s[_BEND_SQUARE_Q14] + 1)
-    i = 1
-    while i < c[_ESTIMATOR_COUNT]:
+    for i in range(1, c[_ESTIMATOR_COUNT]):
         add_bow(s, c, a, i)
-        i += 1
     i = (clipped(s[_BEND_DOT_Q12], 0x1FFFF) << 12) // s[_BEND_NORM_Q18]
     i = clipped(i, 0x7FFF)
     s[a + _BOW_Q6] = significant(s, i)
@@ -303,15 +299,11 @@ def bent_q8(s: ptr32, a: int, t: int) -> int:
 def draw_line(s: ptr32, c: ptr32, a: int):
     """Fit the axis' line through its estimators, straight until `bend` is called."""
     weigh(s, c, a)
-    i = 1
-    while i < c[_ESTIMATOR_COUNT]:
+    for i in range(1, c[_ESTIMATOR_COUNT]):
         centre(s, c, a, i)
-        i += 1
-    i = 1
-    while i < c[_ESTIMATOR_COUNT]:
+    for i in range(1, c[_ESTIMATOR_COUNT]):
         if s[_FIT_WEIGHTS + i]:
             lean(s, c, a, i)
-        i += 1
     settle(s, c, a)
 
 

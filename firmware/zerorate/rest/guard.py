@@ -29,33 +29,27 @@ _MOST_US = const(0x1FFFFFFF)  # two of them fit 31 bits: repeats may come for ho
 
 def at_rail(x: ptr32) -> int:
     """Return 1 if a rate of the frame stands at its rail."""
-    i = 4
-    while i < 7:
+    for i in range(4, 7):
         if x[i] > 32766 or x[i] < -32767:
             return 1
-        i += 1
     return 0
 
 
 def all_alike(x: ptr32) -> int:
     """Return 1 if all words of the frame are the same."""
-    i = 1
-    while i < 7:
+    for i in range(1, 7):
         if x[i] != x[0]:
             return 0
-        i += 1
     return 1
 
 
 def exchange(s: ptr32, x: ptr32) -> int:
     """Put the frame in the place of the one before; return 1 if it is the same."""
-    i = 0
     same = 1
-    while i < 7:
+    for i in range(7):
         if x[i] != s[_FRAME + i]:
             same = 0
         s[_FRAME + i] = x[i]
-        i += 1
     return same
 
 

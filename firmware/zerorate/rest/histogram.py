@@ -45,10 +45,8 @@ def clear(s: ptr32, c: ptr32, h: int, middle: int):
 def population(s: ptr32, h: int, bins: int) -> int:
     """Return the number of readings that the histogram stands for."""
     count = 0
-    i = h
-    while i < h + bins:
+    for i in range(h, h + bins):
         count += s[i] & _MOST_READINGS
-        i += 1
     return count
 
 
@@ -90,12 +88,10 @@ def merge(s: ptr32, h: int, bins: int, p: int):
         halve(s, h, bins)
     s[h + p] += s[h + p + 1] & _MOST_READINGS
     s[h + bins + 1 + p] += s[h + bins + 2 + p]
-    k = p + 1
-    while k < bins:
+    for k in range(p + 1, bins):
         s[h + k] = s[h + k + 1]
         if k < bins - 1:
             s[h + bins + 1 + k] = s[h + bins + 2 + k]
-        k += 1
 
 
 def open_gap(s: ptr32, h: int, bins: int, j: int):

@@ -222,8 +222,7 @@ def end_window(s: ptr32, c: ptr32):
     if still:
         s[_LEARN_TEMP] = s[_SEGMENT_TEMP] // still
     elapsed_ms = s[_ELAPSED_US] // 1000
-    i = 0
-    while i < 3:
+    for i in range(3):
         a = c[_AXES] + i * c[_AXIS_WORDS]
         s[a + _OFFSET_AGE_MS] += elapsed_ms
         if s[a + _OFFSET_AGE_MS] > 0x3FFFFFF:
@@ -234,7 +233,6 @@ def end_window(s: ptr32, c: ptr32):
             s[a + _WAITING_SUM] = s[_SEGMENT_TOTAL + i]
             s[a + _WAITING_N] = still << c[_WINDOW_SHIFT]
             s[a + _OFFER] = 0
-        i += 1
     s[_ELAPSED_US] = 0
     s[_WORK] = 1
 
@@ -242,8 +240,7 @@ def end_window(s: ptr32, c: ptr32):
 def learn_at_once(s: ptr32, c: ptr32, x: ptr32):
     """Learn this very reading, moving or still, as the document does: it has no stillness test."""
     s[_LEARN_TEMP] = x[3]
-    i = 0
-    while i < 3:
+    for i in range(3):
         a = c[_AXES] + i * c[_AXIS_WORDS]
         if s[a + _WAITING_N] == 0:  # else what another source found is being learned
             s[a + _WAITING_SUM] = x[4 + i]
@@ -251,7 +248,6 @@ def learn_at_once(s: ptr32, c: ptr32, x: ptr32):
             learn_anywhere(s, c, a)
             learn_here(s, c, a)
             s[a + _WAITING_N] = 0
-        i += 1
 
 
 def examine(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:

@@ -154,24 +154,20 @@ def tip_q8(s: ptr32, c: ptr32) -> int:
 
 def upright(s: ptr32):
     """Begin to watch how gravity leans."""
-    i = 0
-    while i < 4:
+    for i in range(4):
         s[_LEAN_Q4 + i] = 0  # LEAN_NOISE_Q8 stands behind them
-        i += 1
 
 
 def leans(s: ptr32, c: ptr32) -> int:
     """Return 1 if gravity moved steadily over the segment: the device turns, if slowly."""
-    i = 0
     square = 0
-    while i < 3:
+    for i in range(3):
         d = s[_LEAN_Q4 + i] >> 2
         if d > 17000:
             d = 17000
         if d < -17000:
             d = -17000
         square += d * d
-        i += 1
     d = s[_LEAN_NOISE_Q8]
     d = (d if d < 0x3FFFFF else 0x3FFFFF) * c[_LEAN_NOISE_FACTOR_Q4] >> 4
     return 1 if square > c[_LEAN_LIMIT_Q4] + d else 0
@@ -179,9 +175,8 @@ def leans(s: ptr32, c: ptr32) -> int:
 
 def change_q4(s: ptr32, c: ptr32) -> int:
     """Return the largest change of a window's mean rate since the segment began: LSB, Q4."""
-    i = 0
     most = 0
-    while i < 3:
+    for i in range(3):
         d = (
             (s[_REFERENCE + 4 + i] << 4)
             + ((s[_WINDOW_SUM + 4 + i] << 4) >> c[_WINDOW_SHIFT])
@@ -191,14 +186,12 @@ def change_q4(s: ptr32, c: ptr32) -> int:
             d = -d
         if d > most:
             most = d
-        i += 1
     return most
 
 
 def begin(s: ptr32, c: ptr32, anchored: int):
     """Begin a segment with this window; without `anchored` a new rest as well."""
-    i = 0
-    while i < 3:
+    for i in range(3):
         if anchored == 0:
             s[_ANCHOR_Q4 + i] = (s[_REFERENCE + i] << 4) + (
                 (s[_WINDOW_SUM + i] << 4) >> c[_WINDOW_SHIFT]
@@ -207,7 +200,6 @@ def begin(s: ptr32, c: ptr32, anchored: int):
             (s[_WINDOW_SUM + 4 + i] << 4) >> c[_WINDOW_SHIFT]
         )
         s[_SEGMENT_TOTAL + i] = 0
-        i += 1
     if anchored == 0:
         upright(s)
     s[_SEGMENT_TEMP] = 0
@@ -306,13 +298,11 @@ def judge(s: ptr32, c: ptr32) -> int:
         begin(s, c, 0)
     elif i == 0:
         begin(s, c, 1)
-    i = 0
-    while i < 3:
+    for i in range(3):
         total = s[_REFERENCE + 4 + i] << c[_WINDOW_SHIFT]
         total -= (s[_EFFECT_SUM_Q8 + i] + 128) >> 8
         total += s[_WINDOW_SUM + 4 + i]
         s[_SEGMENT_TOTAL + i] += total
-        i += 1
     s[_SEGMENT_TEMP] += s[_TEMP]
     i = s[_SEGMENT_WINDOWS] + 1
     s[_SEGMENT_WINDOWS] = i

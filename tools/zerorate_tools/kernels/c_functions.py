@@ -83,6 +83,10 @@ class _Function:
             yield f"{indent}{text(node.value)};"
         elif isinstance(node, (ast.If, ast.While)):
             yield from self._block(node, indent)
+        elif isinstance(node, ast.For):
+            yield f"{indent}for ({self._counted(node)}) {{"
+            yield from self._body(node.body, indent)
+            yield f"{indent}}}"
         elif isinstance(node, (ast.Break, ast.Continue)):
             yield f"{indent}{type(node).__name__.lower()};"
         else:
@@ -98,6 +102,20 @@ class _Function:
             yield f"{indent}}} else {{"
             yield from self._body(node.orelse, indent)
         yield f"{indent}}}"
+
+    def _counted(self, node: ast.For) -> str:
+        """The head of `for i in range([first,] end[, step])`; what `end` says stays so in it."""
+        call = node.iter
+        if (
+            not (isinstance(call, ast.Call) and isinstance(node.target, ast.Name))
+            or (getattr(call.func, "id", ""), len(call.args) in (1, 2, 3)) != ("range", True)
+            or node.orelse
+        ):
+            raise self._write.refused(node)
+        i = node.target.id
+        numbers = [self._write.text(a) for a in call.args]
+        first, end, step = (["0"] * (len(numbers) == 1) + numbers + ["1"])[:3]
+        return f"{i} = {first}; {i} < {end}; {i} += {step}"
 
     def _body(self, statements: list[ast.stmt], indent: str) -> Iterator[str]:
         for statement in statements:
