@@ -57,7 +57,7 @@ SHOWN void checked_run(int32_t **a, int32_t *frames, int32_t *dt_us, int64_t n, 
                        int32_t *bias_q8, int8_t *source, int32_t *quality_q8, int8_t *verdict) {
     if (!setjmp(escape))
         zerorate_run(a[0], a[1], a[2], a[3], a[4], a[5], a[6], frames, dt_us, n, extra, 0, bias_q8,
-                     source, quality_q8, verdict);
+                     source, quality_q8, verdict, 0, 0);
 }
 """
 _MOST_OPERATIONS = 40000  # of a sample, on the average; 800 are usual, most 21,000

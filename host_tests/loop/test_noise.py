@@ -29,9 +29,12 @@ def test_factorised_products_equal_the_transform_where_nothing_is_missing():
     there = np.ones(30, bool)
     plain, gappy = Whitener(there), GappyWhitener(there)
     x, y = rng.normal(size=(30, 2)), rng.normal(size=(30, 2))
-    a = plain.products(plain.prepare(x), plain.prepare(y))
-    b = gappy.products(gappy.prepare(x), gappy.prepare(y))
-    assert b == pytest.approx(a, rel=1e-6, abs=1e-9)
+    wide = rng.normal(size=(30, 100))
+    for columns in (y, y, wide):  # new, known, and too many to be kept
+        a = plain.products(plain.prepare(x), plain.prepare(columns))
+        b = gappy.products(gappy.prepare(x), gappy.prepare(columns))
+        for one, other in zip(a, b):
+            assert other == pytest.approx(one, rel=1e-6, abs=1e-9)
     assert gappy.logdet == pytest.approx(plain.logdet, rel=1e-9)
 
 

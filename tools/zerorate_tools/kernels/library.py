@@ -128,10 +128,13 @@ def address(words) -> ctypes.c_void_p:
     return ctypes.c_void_p(None if words is None else words.ctypes.data)
 
 
-def run_rows(arrays: tuple, frames, dt_us, extra, n: int) -> tuple[NDArray, ...]:
+def run_rows(
+    arrays: tuple, frames, dt_us, extra, n: int, frozen=None, learn=None
+) -> tuple[NDArray, ...]:
     """(bias_q8, source, quality_q8, each (n, 3), and verdict) of zerorate_run.
 
-    arrays: state, settings and those of the sources and the model, or None; frames are corrected.
+    arrays: state, settings and those of the sources and the model, or None; frames are corrected;
+    frozen: settings of the rows at which learn, (n,) int8, is 0.
     """
     bias, quality = (np.empty((n, 3), np.int32, order="F") for _ in range(2))
     source, verdict = np.empty((n, 3), np.int8, order="F"), np.empty(n, np.int8)
@@ -140,7 +143,7 @@ def run_rows(arrays: tuple, frames, dt_us, extra, n: int) -> tuple[NDArray, ...]
     library().zerorate_run(
         *map(address, arrays),
         *(address(given[0]), address(given[1]), count, address(given[2]), channels),
-        *map(address, (bias, source, quality, verdict)),
+        *map(address, (bias, source, quality, verdict, frozen, learn)),
     )
     if given[0] is not frames:
         frames[:] = given[0]

@@ -1,5 +1,5 @@
 /* For hosts: all rows of a recording in one call. bias_q8, quality_q8 and source: n of each axis,
-   one axis behind the other. */
+   one axis behind the other. Where learn is 0, the settings are those of frozen; it may be null. */
 #ifdef _WIN32
 #define SHOWN __declspec(dllexport)
 #else
@@ -9,11 +9,13 @@
 SHOWN void zerorate_run(int32_t *s, int32_t *c, int32_t *m, int32_t *k, int32_t *r, int32_t *q,
                         int32_t *e, int32_t *frames, const int32_t *dt_us, int64_t n,
                         const int32_t *extra, int64_t channels, int32_t *bias_q8, int8_t *source,
-                        int32_t *quality_q8, int8_t *verdict) {
+                        int32_t *quality_q8, int8_t *verdict, int32_t *frozen,
+                        const int8_t *learn) {
     for (int64_t i = 0; i < n; i++) {
         for (int64_t j = 0; j < channels; j++)
             if (extra[i * channels + j] != GAP) e[CHANNELS + j] = extra[i * channels + j];
-        verdict[i] = (int8_t)zerorate_update(s, c, m, k, r, q, e, frames + 7 * i, dt_us[i]);
+        int32_t *own = learn && !learn[i] ? frozen : c;
+        verdict[i] = (int8_t)zerorate_update(s, own, m, k, r, q, e, frames + 7 * i, dt_us[i]);
         for (int axis = 0; axis < 3; axis++) {
             bias_q8[axis * n + i] = s[OUT_Q8 + axis] + s[EFFECT_Q8 + axis];
             quality_q8[axis * n + i] = s[QUALITY_Q8 + axis];

@@ -1,6 +1,6 @@
 """Effect models: model.json, its twin model.bin, and what is in them."""
 
-from .binary import build_model, decoded, encoded
+from .binary import build_model, decoded, drafted, encoded
 from .files import read_model, write_model
 from .model import Binding, CannotDeploy, Input, Model, Slot
 from .text import from_json, to_json
@@ -12,6 +12,7 @@ __all__ = (
     "Model",
     "Slot",
     "build_model",
+    "drafted",
     "decoded",
     "encoded",
     "from_json",

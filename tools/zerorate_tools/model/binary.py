@@ -51,12 +51,18 @@ def build_model(
 
     Raises CannotDeploy for what does not fit its slots.
     """
-    model = Model(tuple(slots), scales, binding or Binding(), round(tick_s * 1e6))
-    inputs = inputs_for(model.slots, scales, model.tick_s)
     try:
-        return decoded(encoded(replace(model, inputs=inputs)))
+        return decoded(encoded(drafted(slots, scales, binding=binding, tick_s=tick_s)))
     except BadModel as error:  # two of its numbers are one when rounded, or are none
         raise CannotDeploy(f"rounded it is no model: {error.__cause__ or error}") from error
+
+
+def drafted(
+    slots: Sequence[Slot], scales: Scales, *, binding: Binding | None = None, tick_s: float = 1.0
+) -> Model:
+    """The model with its numbers as they are given: `encoded` rounds them."""
+    model = Model(tuple(slots), scales, binding or Binding(), round(tick_s * 1e6))
+    return replace(model, inputs=inputs_for(model.slots, scales, model.tick_s))
 
 
 def encoded(model: Model) -> bytes:

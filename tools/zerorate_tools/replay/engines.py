@@ -100,12 +100,26 @@ class NativeEngine(Engine):
         if not compiled():
             yield from CPythonEngine().run(corrector, batches)
             return
-        settings = np.array(corrector.settings, np.int32)
-        others = [None if words is None else _view(words) for words in others_of(corrector)]
-        arrays = (_view(corrector.state), settings, *others)
+        arrays = _arrays(corrector)
         for batch in batches:
             found = run_rows(arrays, batch.frames, batch.dt_us, batch.extra, len(batch))
             yield Outcome(batch.t_us, batch.frames, *found)
+
+    @staticmethod
+    def run_partly(
+        corrector: Corrector, batch: Frames, learn: NDArray[np.bool_], frozen: array
+    ) -> Outcome:
+        """One batch, by other settings, `frozen`, at the samples where learn, (n,), is not; only
+        where the kernels are compiled."""
+        others, where = np.array(frozen, np.int32), np.ascontiguousarray(learn, np.int8)
+        rows = batch.frames, batch.dt_us, batch.extra, len(batch)
+        found = run_rows(_arrays(corrector), *rows, others, where)
+        return Outcome(batch.t_us, batch.frames, *found)
+
+
+def _arrays(corrector: Corrector) -> tuple[NDArray[np.int32] | None, ...]:
+    others = [None if words is None else _view(words) for words in others_of(corrector)]
+    return _view(corrector.state), np.array(corrector.settings, np.int32), *others
 
 
 @lru_cache(maxsize=1)

@@ -16,6 +16,9 @@ from scipy.linalg import solve_triangular
 from ..read.blocks import can_be_bridged
 from . import noise
 
+#: Columns above which they are tried once, as surrogates are, and not kept whitened; what is kept.
+_FEW, _MOST_KEPT_BYTES = 64, 96 << 20
+
 
 class Whitener:
     """The spectra of one session's noise, and its columns' cross products under each of them."""
@@ -32,9 +35,19 @@ class Whitener:
         """(n, K) block columns to the (n - 1, K) the products are taken of."""
         return noise.transform(columns)
 
-    def products(self, left: np.ndarray, right: np.ndarray) -> np.ndarray:
-        """(shapes, K): left'W right for matching columns of two (n - 1, K) arrays."""
-        return self.weight @ (left * right)
+    def products(self, fixed: np.ndarray, tried: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Products under every colour of (n - 1, L) fixed columns with each other, (shapes, L, L),
+        of (n - 1, K) others with them, (shapes, K, L), and of each other with itself, (shapes, K).
+        """
+        return (
+            self._pairs(fixed, fixed),
+            self._pairs(tried, fixed),
+            self.weight @ (tried * tried),
+        )
+
+    def _pairs(self, left, right):
+        flat = (left[:, :, None] * right[:, None, :]).reshape(len(left), -1)
+        return (self.weight @ flat).reshape(len(self.weight), left.shape[1], right.shape[1])
 
 
 class GappyWhitener(Whitener):
@@ -54,23 +67,38 @@ class GappyWhitener(Whitener):
             factor = np.linalg.cholesky(part.T @ (part * spectrum[:, None]))
             self.logdet[g] = 2 * np.log(np.diag(factor)).sum()
             self.whitening[g] = solve_triangular(factor, unit, lower=True, check_finite=False)
+        self._known: dict[bytes, np.ndarray] = {}
+        self._most = _MOST_KEPT_BYTES // (8 * len(self.spectrum) * max(self.coefficients, 1))
 
     def prepare(self, columns):
         return self._keep.T @ columns[self.available]
 
-    def products(self, left, right):
-        out = np.empty((len(self.whitening), left.shape[1]))
+    def products(self, fixed, tried):
+        white = self._whitened(fixed)
+        both = white @ white.transpose(0, 2, 1)
+        if tried.shape[1] <= _FEW:
+            own = self._whitened(tried)
+            return both, own @ white.transpose(0, 2, 1), (own * own).sum(axis=2)
+        shape = len(self.whitening), tried.shape[1]
+        cross, alone = np.empty((*shape, fixed.shape[1])), np.empty(shape)
         for g, w in enumerate(self.whitening):
-            a = w @ left
-            out[g] = (a * (a if left is right else w @ right)).sum(axis=0)
-        return out
+            own = w @ tried
+            cross[g], alone[g] = (white[g] @ own).T, (own * own).sum(axis=0)
+        return both, cross, alone
 
-    def pairs(self, left, right):
-        """(G, L, R) products of every pair of columns."""
-        out = np.empty((len(self.whitening), left.shape[1], right.shape[1]))
-        for g, w in enumerate(self.whitening):
-            a = w @ left
-            out[g] = a.T @ (a if left is right else w @ right)
+    def _whitened(self, columns):
+        """(shapes, K, N) of (N, K) columns; the same ones are asked for again and again."""
+        keys = [c.tobytes() for c in columns.T]
+        new = [i for i, key in enumerate(keys) if key not in self._known]
+        if new:
+            shapes, n, _ = self.whitening.shape
+            made = (self.whitening.reshape(-1, n) @ columns[:, new]).reshape(shapes, n, len(new))
+            self._known |= {keys[i]: made[:, :, k].copy() for k, i in enumerate(new)}
+        out = np.empty((len(self.whitening), *columns.shape[::-1]))
+        for i, key in enumerate(keys):
+            out[:, i] = self._known[key]
+        while len(self._known) > self._most:
+            del self._known[next(iter(self._known))]
         return out
 
 
@@ -132,14 +160,6 @@ class CrossProducts:
         return CrossProducts(*(getattr(self, f)[keep] for f in self.__dataclass_fields__))
 
 
-def _pairs(w: Whitener, left, right):
-    """(G, L, R) products of every pair of columns."""
-    if isinstance(w, GappyWhitener):
-        return w.pairs(left, right)
-    flat = (left[:, :, None] * right[:, None, :]).reshape(len(left), -1)
-    return (w.weight @ flat).reshape(len(w.weight), left.shape[1], right.shape[1])
-
-
 def cross_products(
     whiteners: list[Whitener], y: list, z: list, x: list | None = None
 ) -> CrossProducts:
@@ -148,19 +168,10 @@ def cross_products(
     parts = []
     for w, ys, zs, xs in zip(whiteners, y, z, x):
         fixed = np.hstack([ys, zs])
-        both, a = _pairs(w, fixed, fixed), ys.shape[1]
-        cross = _pairs(w, xs, fixed)
+        both, cross, xx = w.products(fixed, xs)
+        a = ys.shape[1]
         yy = np.einsum("gaa->ga", both[:, :a, :a])
-        parts.append(
-            (
-                yy,
-                both[:, a:, :a],
-                both[:, a:, a:],
-                cross[:, :, :a],
-                cross[:, :, a:],
-                w.products(xs, xs),
-            )
-        )
+        parts.append((yy, both[:, a:, :a], both[:, a:, a:], cross[:, :, :a], cross[:, :, a:], xx))
     yy, zy, zz, xy, xz, xx = (np.stack(p) for p in zip(*parts))
     return CrossProducts(
         *(yy, zy, zz, xy, xz, xx),

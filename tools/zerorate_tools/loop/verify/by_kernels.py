@@ -9,13 +9,13 @@ from functools import partial
 
 import numpy as np
 
-from ...model import CannotDeploy, Model, Slot, build_model
+from ...model import CannotDeploy, Model, Slot, drafted
 from ...model.term import Term
 from ...recordings import Scales
 from ...replay.samples import Frames
 from ..fit.single import PiecesByLine, fitted_to, is_instant
 from ..read.sessions import Session
-from .firmware import Firmware, at_once, rows
+from .firmware import Firmware, Refused, at_once, rows
 from .power_on import BlockMeans, PowerOn
 
 _LEAD_BLOCKS = 3
@@ -43,11 +43,11 @@ class PiecesByKernels(PiecesByLine):
         key = (tuple(terms), None if applied is None else applied.tobytes())
         if key not in self._known:
             try:
-                models = self.models(straight, terms, applied)
-            except CannotDeploy:
+                devices = self.learned(self.models(straight, terms, applied))
+            except (CannotDeploy, Refused):
                 return np.full((self.session.blocks, 3), np.nan)
             whole = not all(is_instant(t) for t in terms)
-            self._known[key] = self._left(self.learned(models), whole)
+            self._known[key] = self._left(devices, whole)
         return self._known[key]
 
     def models(self, straight, terms, applied=None, more=()) -> list[Model | None]:
@@ -62,7 +62,7 @@ class PiecesByKernels(PiecesByLine):
         pairs = list(zip(kept, fitted))[len(straight) :]
         slots = [Slot(t, (float(x), float(y), float(z)), "") for t, (x, y, z) in pairs]
         every = [*slots, *more]
-        return build_model(every, self._scales, tick_s=part.tick_s) if every else None
+        return drafted(every, self._scales, tick_s=part.tick_s) if every else None
 
     def new(self, models: Sequence[Model | None]) -> list[Firmware]:
         """A device a turn, which has learned nothing, powered on."""

@@ -16,7 +16,7 @@ from ...errors import ZerorateError
 from ...model import Model, encoded
 from ...model.check import sensor_for
 from ...recordings import Scales
-from ...replay.engines import NativeEngine
+from ...replay.engines import Engine, NativeEngine, compiled
 from ...replay.samples import Frames
 
 
@@ -39,7 +39,7 @@ class Firmware:
         # a spread above nothing is in every window: no rest, so nothing is learned
         self._frozen = deepcopy(self._learning)
         self._frozen[SETTINGS.STILL_ACCEL_Q8] = -1
-        self._engine = NativeEngine()
+        self._engine: Engine = NativeEngine()
         self._extra: list[int] = []
         if model is not None:
             self._load(model, channels)
@@ -66,19 +66,20 @@ class Firmware:
         learn: whether rests are learned, (n,) bool or one for all.
         """
         learn = np.broadcast_to(learn, len(frames))
+        if isinstance(self._engine, NativeEngine) and compiled():
+            own = self._own(frames)
+            return self._engine.run_partly(self._corrector, own, learn, self._frozen).bias_q8
         edges = np.flatnonzero(np.diff(learn)) + 1
         parts = zip(np.r_[0, edges], np.r_[edges, len(frames)])
         return np.vstack([self._run(rows(frames, a, b), bool(learn[a])) for a, b in parts])
 
     def _run(self, frames, learn):
-        own = Frames(
-            frames.t_us,
-            frames.frames.copy(),
-            frames.dt_us,
-            np.ascontiguousarray(frames.extra[:, self._extra]),
-        )
         self._corrector.settings = self._learning if learn else self._frozen
-        return next(iter(self._engine.run(self._corrector, [own]))).bias_q8
+        return next(iter(self._engine.run(self._corrector, [self._own(frames)]))).bias_q8
+
+    def _own(self, frames):
+        extra = np.ascontiguousarray(frames.extra[:, self._extra])
+        return Frames(frames.t_us, frames.frames.copy(), frames.dt_us, extra)
 
     @property
     def target_q8(self) -> np.ndarray:

@@ -162,7 +162,8 @@ class MeasurementByPieces:
 
     def __init__(self, pieces: PiecesByKernels, selection: Selection, more: Sequence[Slot]) -> None:
         self.pieces = pieces
-        effects = range(len(selection.found) + 1)
+        # the last, with all effects, is AFTER itself where motion has nothing to add
+        effects = range(max(len(selection.found) + bool(more), 1))
         self.models = {after_first(k): self._models(selection.first(k)) for k in effects}
         if selection.found or more:
             self.models[AFTER] = self._models(selection, more)
