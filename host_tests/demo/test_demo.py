@@ -12,7 +12,7 @@ DESCRIPTION = {
     "seed": 8,
     "sensor": {"odr_hz": 50.0, "gyro_noise_dps": 0.05},
     "bias": {"b0": [5.0, -2.0, 0.5], "b1": [0.05, -0.03, 0.02]},
-    "session": [{"start_degc": 22.0, "temperature": [{"to": 26.0, "minutes": 2}]}],
+    "session": [{"start_degc": 22.0, "temperature": [{"to": 24.0, "minutes": 1}]}],
 }
 
 

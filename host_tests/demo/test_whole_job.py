@@ -1,4 +1,7 @@
-"""`zerorate demo`: learn, close the loop, put what was found back on the chip, and say so."""
+"""`zerorate demo`: learn, close the loop, put what was found back on the chip, and say so.
+
+What it prints is what docs/commands.md shows: host_tests/package runs it and compares.
+"""
 
 import re
 import sys
@@ -6,27 +9,14 @@ from pathlib import Path
 
 import pytest
 from zerorate_tools import demo
-from zerorate_tools.cli import main
 from zerorate_tools.demo import story
-from zerorate_tools.model import read_model
+
+from host_tests.docs.outputs import demo_shown
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    return tmp_path_factory.mktemp("whole job")
-
-
-@pytest.fixture(scope="module")
-def said(find_runtime, folder):
-    """What `zerorate demo` prints, having left its files in `folder`."""
-    find_runtime("x86")
-    import contextlib
-    import io
-
-    out = io.StringIO()
-    with contextlib.redirect_stdout(out):
-        assert main(["demo", "--runtime", "x86", "--out", str(folder)]) == 0
-    return out.getvalue()
+def said(repository):
+    return demo_shown(repository)
 
 
 def figures(said, row):
@@ -52,25 +42,6 @@ def test_micropython_does_better_with_the_model(said):
 def test_micropython_and_this_computer_agree_in_all_three_runs(said):
     assert "equal to the last bit" in said
     assert "Final states equal to those of this computer: yes." in said
-
-
-def test_every_file_that_is_named_is_there(said, folder):
-    named = re.findall(re.escape(str(folder)) + r"/[\w.-]+", said)
-    assert len(named) >= 3
-    assert [name for name in named if not (folder.parent / name).is_file()] == []
-
-
-def test_the_picture_is_drawn(said, folder):
-    assert (folder / "demo.png").read_bytes().startswith(b"\x89PNG")
-
-
-def test_the_model_corrects_what_was_hidden(said, folder):
-    hidden = demo.make_device(folder / "again").hidden
-    backlash = [
-        slot for slot in read_model(folder / "model.bin").slots if slot.term.memory != "none"
-    ]
-    assert [words.partition(",")[0] for words in hidden] == ["hysteresis", "curvature"]
-    assert [slot.effect for slot in backlash] == ["thermal-hysteresis"]
 
 
 def test_each_users_next_command_is_said(said):

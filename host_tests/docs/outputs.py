@@ -11,6 +11,15 @@ from zerorate_tools.demo import broad_trial
 from .pages import blocks
 
 _NUMBER = re.compile(r"(?<![\w.])[+-]?\d[\d,]*(?:\.\d+)?(?:e[+-]?\d+)?")
+#: A minute long; host_tests/package holds it to what the page shows, run away from the checkout.
+DEMO = "zerorate demo --out shown"
+
+
+def demo_shown(repository):
+    """What docs/commands.md shows of the demo."""
+    console = blocks(repository / "docs" / "commands.md", "console")
+    (shown,) = (block.text for block in console if DEMO in commands(block))
+    return shown
 
 
 def refreshed(page, folder, but=None):

@@ -10,7 +10,7 @@ from host_tests.docs.api_page import api_page
 from host_tests.docs.copied_tables import with_copied_tables
 from host_tests.docs.effect_table import with_effect_table
 from host_tests.docs.option_tables import commands_under, with_option_tables
-from host_tests.docs.outputs import commands, refreshed, same_but_for_rounding
+from host_tests.docs.outputs import DEMO, commands, refreshed, same_but_for_rounding
 from host_tests.docs.pages import blocks, pages
 
 #: Pages whose programs run in tests of their own, on fakes of a board, a bus or ROS.
@@ -18,8 +18,6 @@ ELSEWHERE = {
     *("any-imu.md", "linux-service.md", "pico.md", "raspberry-pi.md", "unit-tests.md"),
     "notebook.md",
 }
-#: A minute long; host_tests/package holds it to what the page shows, run away from the checkout.
-DEMO = "zerorate demo --out shown"
 _LINK = re.compile(r"\]\(([^)\s]+)\)")
 
 

@@ -4,6 +4,7 @@ from functools import cache, lru_cache
 from pathlib import Path
 
 import pytest
+from zerorate_fakes.memory import FakeMemory
 
 from . import trace
 from .simulated_sources import columns, tick_means
@@ -65,3 +66,9 @@ def warm_up():
     """The simulated columns of hours, and their means by tick."""
     raw = columns()
     return raw, tick_means(raw)
+
+
+@pytest.fixture
+def memory():
+    """Storage for what was learned, erased."""
+    return FakeMemory(4096)

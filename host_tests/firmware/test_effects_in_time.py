@@ -6,7 +6,7 @@ from array import array
 import numpy as np
 import pytest
 from zerorate import Sensor
-from zerorate.effects import effect_inputs, effects
+from zerorate.effects import effects
 from zerorate.layout import EFFECTS, STATE
 from zerorate_tools.model import Slot
 from zerorate_tools.model.term import Term, evaluate
@@ -213,17 +213,6 @@ def test_a_channel_of_millions_is_held_to_its_range(value):
         effects.sense(state, model.e, still_frame(), 250000, 1)
     wanted = 1e-6 * max(-1e6, min(1e6, value))
     assert state[STATE.EFFECT_Q8] / 256 / 131 == pytest.approx(wanted, abs=1e-4)
-
-
-@pytest.mark.parametrize("shift", [0, 4, 7, 8, 9, 15])
-@pytest.mark.parametrize(("total", "n"), [(0, 1), (70_000, 3), (900_000_001, 1000), (1 << 43, 7)])
-def test_the_mean_of_squares_is_right_at_every_shift(total, n, shift):
-    e = array("i", [0] * (EFFECTS.SQUARES + 2))
-    e[EFFECTS.SQUARES], e[EFFECTS.SQUARES + 1] = total & 0x7FFF, min(total >> 15, (1 << 29) - 1)
-    total = e[EFFECTS.SQUARES] + (e[EFFECTS.SQUARES + 1] << 15)
-    wanted = 256 * total / n / 2**shift
-    got = effect_inputs.mean_square_q8(e, n, shift)
-    assert got == pytest.approx(wanted, abs=2) if wanted < 1 << 23 else got == 0x7FFFFF
 
 
 def test_frames_that_are_no_readings_let_time_pass_and_nothing_else():

@@ -4,7 +4,6 @@ from array import array
 
 import numpy as np
 import pytest
-from zerorate import Corrector
 from zerorate.layout import SETTINGS, STATE
 from zerorate.rest import guard
 
@@ -127,26 +126,6 @@ def test_only_a_rate_that_cannot_be_larger_is_at_the_rail(word, value):
     corrector, _ = play(np.array([frame]))
     at_rail = word >= 4 and value in (-32768, 32767)
     assert corrector.state[COUNTS + guard.RAIL] == at_rail
-
-
-def test_time_up_to_a_leap_passes_and_no_more():
-    corrector = Corrector()
-    leap_us = corrector.settings[SETTINGS.LEAP_US]
-    for number, dt_us in enumerate((0, leap_us, leap_us + 1, leap_us)):
-        verdict = corrector.update(array("i", [1, 2, 3, 4, 5, 6, number]), dt_us)
-        assert verdict == (guard.TIME_LEAPT if dt_us > leap_us else guard.GOOD)
-    assert corrector.state[STATE.ELAPSED_US] == 2 * leap_us
-
-
-def test_a_jump_of_the_temperature_begins_at_its_limit():
-    for sign in (1, -1):
-        corrector = Corrector()
-        limit = corrector.settings[SETTINGS.JUMP_LSB]
-        verdicts = [
-            corrector.update(array("i", [1, 2, 3, temp * sign, 5, 6, temp]), 10000)
-            for temp in (7, 6 + limit, 6 + 2 * limit)
-        ]
-        assert verdicts == [guard.GOOD, guard.GOOD, guard.TEMPERATURE_JUMP]
 
 
 FRAME, ELAPSED_US = STATE.FRAME, STATE.ELAPSED_US

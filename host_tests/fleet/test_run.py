@@ -64,16 +64,16 @@ def test_left_out_devices_gain_by_the_prior(done):
     assert gain["ci95_mdps"][0] > 0 and gain["share_better"] > 0.7
 
 
-def test_a_prior_is_tried_over_no_more_minutes_than_were_recorded(done, data, tmp_path):
+def test_a_prior_is_tried_over_no_more_minutes_than_were_recorded(done, data, tmp_path, scheduler):
     shutil.copytree(done[1] / "parts", tmp_path / "parts")
-    again = fleet(devices_of([data]), tmp_path, workers=1)
+    again = fleet(devices_of([data]), tmp_path, scheduler=scheduler)
     assert again.report["prior"]["benefit"]["minutes"] == 1.5
     assert "error in the first 1.5 minutes" in in_words(again)
 
 
-def test_a_second_run_does_nothing_again(done, data):
+def test_a_second_run_does_nothing_again(done, data, scheduler):
     before = parts_in(done[1])
-    again = fleet(devices_of([data]), done[1], workers=1, minutes=None)
+    again = fleet(devices_of([data]), done[1], scheduler=scheduler, minutes=None)
     assert (again.resumed, again.tasks) == (DEVICES, 0)
     assert parts_in(done[1]) == before
     assert again.report["effects"] == done[0].report["effects"]
@@ -93,10 +93,10 @@ def test_without_a_cache_it_runs_and_says_so_once(data, tmp_path):
     assert (report["devices"], report["failures"]) == (2, [])
 
 
-def test_other_settings_are_another_run(data, tmp_path):
+def test_other_settings_are_another_run(data, tmp_path, scheduler):
     devices = devices_of([data])[:1]
-    first = fleet(devices, tmp_path, workers=1)
-    other = fleet(devices, tmp_path, workers=1, options={"step_degc": 2.0})
+    first = fleet(devices, tmp_path, scheduler=scheduler)
+    other = fleet(devices, tmp_path, scheduler=scheduler, options={"step_degc": 2.0})
     assert (first.resumed, other.resumed) == (0, 0)
 
 
@@ -139,25 +139,27 @@ def test_a_failed_recording_is_reported_and_stops_nothing(with_bad_ones, capsys)
     assert "2 left out" in capsys.readouterr().out
 
 
-def test_a_failed_device_is_tried_again_and_the_others_are_not(with_bad_ones):
+def test_a_failed_device_is_tried_again_and_the_others_are_not(with_bad_ones, scheduler):
     devices = devices_of([with_bad_ones / "in"])
-    fleet(devices, with_bad_ones / "out", workers=1)
+    fleet(devices, with_bad_ones / "out", scheduler=scheduler)
     (with_bad_ones / "in" / "device=mixed" / "s2.parquet").unlink()
-    again = fleet(devices_of([with_bad_ones / "in"]), with_bad_ones / "out", workers=1)
+    again = fleet(devices_of([with_bad_ones / "in"]), with_bad_ones / "out", scheduler=scheduler)
     assert [Path(f["file"]).name for f in again.report["failures"]] == ["lone.csv"]
 
 
-def test_close_on_a_recording_too_short_for_it_says_so(data, tmp_path):
+def test_close_on_a_recording_too_short_for_it_says_so(data, tmp_path, scheduler):
     whole = read_recording(next(data.rglob("*.parquet")))
     write_recording(whole.between(0, 10 * 25), tmp_path / "short.parquet")
-    done = fleet(devices_of([tmp_path / "short.parquet"]), tmp_path, job="close", workers=1)
+    done = fleet(
+        devices_of([tmp_path / "short.parquet"]), tmp_path, job="close", scheduler=scheduler
+    )
     (failure,) = done.report["failures"]
     assert failure["reason"].startswith("close: ") and "too short" in failure["reason"]
 
 
-def test_close_that_finds_nothing_says_so(data, tmp_path):
+def test_close_that_finds_nothing_says_so(data, tmp_path, scheduler):
     logs = sorted(data.rglob("*.parquet"))[:1]
-    done = fleet(devices_of(logs), tmp_path, job="close", workers=1)
+    done = fleet(devices_of(logs), tmp_path, job="close", scheduler=scheduler)
     assert "close found no effect in any device" in in_words(done)
     assert "found no effect in any device" in (tmp_path / "fleet.html").read_text()
 
@@ -169,13 +171,13 @@ def test_without_dask_nothing_is_left_behind(data, tmp_path, monkeypatch):
     assert not (tmp_path / "out").exists()
 
 
-def test_power_ons_of_a_device_remember_those_before(data, tmp_path):
+def test_power_ons_of_a_device_remember_those_before(data, tmp_path, scheduler):
     path = sorted(data.rglob("*.parquet"))[0]
     home = tmp_path / "in" / "device=a"
     home.mkdir(parents=True)
     for name in ("1.parquet", "2.parquet"):
         (home / name).write_bytes(path.read_bytes())
-    fleet(devices_of([tmp_path / "in"]), tmp_path / "out", workers=1, keep=True)
+    fleet(devices_of([tmp_path / "in"]), tmp_path / "out", scheduler=scheduler, keep=True)
     first, second = (
         pq.read_table(tmp_path / "out" / "devices" / "device=a" / f"{n}.replay.parquet")
         for n in (1, 2)
@@ -208,14 +210,9 @@ def test_more_batches_than_the_scheduler_may_hold_all_come_back(monkeypatch):
     assert sorted(batch[0] for batch, _ in results) == list(range(20))
 
 
-def test_an_existing_cluster_is_used(data, tmp_path):
-    from distributed import LocalCluster
-
-    with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address="127.0.0.1:0") as there:
-        devices = devices_of([data])[:2]
-        done = fleet(devices, tmp_path, scheduler=there.scheduler_address)
-        assert done.report["sessions"] == 2
-        assert len(there.workers) == 1
+def test_an_existing_cluster_is_used(data, tmp_path, scheduler):
+    done = fleet(devices_of([data])[:2], tmp_path, scheduler=scheduler)
+    assert done.report["sessions"] == 2
 
 
 def test_a_scheduler_that_does_not_answer_is_said(data, tmp_path, monkeypatch):

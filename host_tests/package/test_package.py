@@ -2,6 +2,7 @@
 
 import importlib.util
 import os
+import re
 import subprocess
 import sys
 import sysconfig
@@ -12,10 +13,9 @@ from pathlib import Path
 import pytest
 import yaml
 from zerorate_tools import __version__
+from zerorate_tools.model import read_model
 
-from host_tests.docs.outputs import commands, same_but_for_rounding
-from host_tests.docs.pages import blocks
-from host_tests.docs.test_pages import DEMO
+from host_tests.docs.outputs import DEMO, demo_shown, same_but_for_rounding
 
 PACKAGES = {
     "zerorate": "firmware",
@@ -69,6 +69,7 @@ def away(built, tmp_path_factory):
         narrow = {**os.environ, "PATH": path, "COLUMNS": "80", "TERM": "dumb"}
         return subprocess.run(words, capture_output=True, text=True, cwd=folder, env=narrow)
 
+    run.folder = folder
     return run
 
 
@@ -126,12 +127,14 @@ def test_the_demo_runs_away_from_the_checkout_and_prints_what_its_page_shows(
     find_runtime("wasm")
     done = away("-m", "zerorate_tools.cli", "demo", "--out", "shown")
     assert done.returncode == 0, done.stderr
-    (shown,) = (
-        block.text
-        for block in blocks(repository / "docs" / "commands.md", "console")
-        if DEMO in commands(block)
-    )
+    shown = demo_shown(repository)
     assert same_but_for_rounding(f"$ {DEMO}\n{done.stdout}", shown), done.stdout
+    named = re.findall(r"^  (shown/\S+)", shown, re.MULTILINE)
+    assert len(named) == 4 and all((away.folder / name).is_file() for name in named)
+    assert (away.folder / "shown" / "demo.png").read_bytes().startswith(b"\x89PNG")
+    slots = read_model(away.folder / "shown" / "model.bin").slots
+    remembering = {slot.effect for slot in slots if slot.term.memory != "none"}
+    assert remembering == {"thermal-hysteresis"}
 
 
 def test_what_runs_is_the_wheel_and_not_the_checkout(away, repository):

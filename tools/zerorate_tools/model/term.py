@@ -11,7 +11,6 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
-from scipy.signal import lfilter
 
 
 @dataclass(frozen=True)
@@ -64,6 +63,8 @@ class Term:
 def first_order_lag(u: np.ndarray, lag_s: float, tick_s: float) -> np.ndarray:
     """z += alpha (u - z), z starting at the first u; alpha = 1 - exp(-tick/lag)."""
     alpha = -math.expm1(-tick_s / lag_s)
+    from scipy.signal import lfilter  # takes seconds to load on a small computer
+
     z, _ = lfilter([alpha], [1.0, alpha - 1.0], u, zi=[(1.0 - alpha) * u[0]])
     return z
 

@@ -1,0 +1,140 @@
+"""Where what was learned is kept: a file, or flash with its erase blocks."""
+
+import os
+
+import pytest
+from zerorate.storage import store as stores
+from zerorate.storage.places import BlockDeviceStorage, FileStorage
+
+from .test_store import BLANK, NEW, OLD, loaded, make_store
+
+
+class TestFile:
+    @pytest.fixture
+    def path(self, tmp_path):
+        return tmp_path / "learned.bin"
+
+    def test_what_is_saved_is_loaded(self, path):
+        for payload in (OLD, NEW, OLD):
+            assert make_store(FileStorage(path)).save(payload)
+        assert loaded(FileStorage(path)) == (stores.LOADED, OLD)
+
+    def test_a_missing_file_is_empty(self, path):
+        assert loaded(FileStorage(path)) == (stores.EMPTY, BLANK)
+
+    def test_a_file_cut_short_at_any_byte_is_never_wrong(self, path):
+        store = make_store(FileStorage(path))
+        store.save(OLD)
+        store.save(NEW)
+        whole = path.read_bytes()
+        for length in range(len(whole)):
+            path.write_bytes(whole[:length])
+            reason, payload = loaded(FileStorage(path))
+            if length >= store.slot_bytes:
+                assert (reason, payload) == (stores.LOADED, OLD)
+            else:
+                assert reason in (stores.EMPTY, stores.DAMAGED) and payload == BLANK
+
+    def test_a_folder_in_its_place_is_a_reason(self, tmp_path):
+        assert loaded(FileStorage(tmp_path)) == (stores.UNREADABLE, BLANK)
+        assert not make_store(FileStorage(tmp_path)).save(OLD)
+
+    @pytest.mark.parametrize(
+        ("offset", "length", "read"),
+        [
+            (0, 4, b"0123"),
+            (7, 3, b"789"),
+            (7, 6, b"789\xff\xff\xff"),
+            (10, 2, b"\xff\xff"),
+            (50, 1, b"\xff"),
+        ],
+    )
+    def test_what_is_beyond_the_end_reads_as_erased(self, path, offset, length, read):
+        path.write_bytes(b"0123456789")
+        buf = bytearray(b"U" * length)
+        FileStorage(path).readblock(offset, buf)
+        assert buf == read
+        FileStorage(path.with_name("missing")).readblock(offset, buf)
+        assert buf == b"\xff" * length
+
+    @pytest.mark.parametrize("synced", [True, False])
+    def test_what_is_written_is_there_and_what_was_there_stays(self, path, monkeypatch, synced):
+        told = []
+        if synced:
+            monkeypatch.setattr(os, "fsync", lambda number: told.append(path.read_bytes()))
+        else:
+            monkeypatch.delattr(os, "fsync")
+        storage, writes = FileStorage(path), [(5, b"abc"), (0, b"xy"), (6, b"BCD"), (20, b"!")]
+        for offset, data in writes:
+            storage.writeblock(offset, data)
+        there = [
+            b"\xff\xff\xff\xff\xffabc",
+            b"xy\xff\xff\xffabc",
+            b"xy\xff\xff\xffaBCD",
+            b"xy\xff\xff\xffaBCD" + bytes(11) + b"!",
+        ]
+        assert path.read_bytes() == there[-1]
+        assert told == (there if synced else [])
+
+
+class FakeFlash:
+    """A block device whose writes can only clear bits of what was erased."""
+
+    BLOCK = 256
+
+    def __init__(self, blocks):
+        self.bytes = bytearray(self.BLOCK * blocks)
+        self.erased = []
+
+    def readblocks(self, block, buf, offset):
+        start = block * self.BLOCK + offset
+        buf[:] = self.bytes[start : start + len(buf)]
+
+    def writeblocks(self, block, buf, offset):
+        start = block * self.BLOCK + offset
+        for i, byte in enumerate(buf):
+            self.bytes[start + i] &= byte
+
+    def ioctl(self, operation, block):
+        assert operation == 6
+        self.erased.append(block)
+        start = block * self.BLOCK
+        self.bytes[start : start + self.BLOCK] = b"\xff" * self.BLOCK
+
+
+def test_on_flash_each_slot_has_an_erase_block_of_its_own():
+    flash = FakeFlash(8)
+    for payload in (OLD, NEW, OLD):
+        storage = BlockDeviceStorage(flash, 5, FakeFlash.BLOCK)
+        assert make_store(storage, pitch=FakeFlash.BLOCK).save(payload)
+    storage = BlockDeviceStorage(flash, 5, FakeFlash.BLOCK)
+    assert loaded(storage, pitch=FakeFlash.BLOCK) == (stores.LOADED, OLD)
+    assert flash.erased == [5, 6, 5]
+
+
+@pytest.mark.parametrize(
+    ("offset", "length", "erased"),
+    [
+        (0, 1, [5]),
+        (0, 256, [5]),
+        (0, 257, [5, 6]),
+        (255, 1, [5]),
+        (255, 2, [5, 6]),
+        (256, 256, [6]),
+        (300, 10, [6]),
+        (100, 600, [5, 6, 7]),
+        (513, 255, [7]),
+    ],
+)
+def test_every_block_that_is_written_is_erased_first_and_no_other(offset, length, erased):
+    flash = FakeFlash(9)
+    storage = BlockDeviceStorage(flash, 5, FakeFlash.BLOCK)
+    data = bytes(i % 251 for i in range(length))
+    storage.writeblock(offset, data)
+    assert flash.erased == erased
+    at = 5 * 256 + offset
+    assert flash.bytes[at : at + length] == data
+    assert set(flash.bytes[5 * 256 : at]) <= {0xFF, 0} and not any(flash.bytes[: 5 * 256])
+    buf = bytearray(length)
+    storage.readblock(offset, buf)
+    assert buf == data
