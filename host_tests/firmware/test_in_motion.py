@@ -16,6 +16,7 @@ from zerorate.motion.motion_settings import motion_settings, motion_state
 from zerorate_tools.simulate import simulate
 
 from . import motions
+from .checked import Words
 
 BIAS, SIGMA = MOTION.MOTION_BIAS_Q8, MOTION.MOTION_QUALITY_Q8
 REASON, REFUSED = MOTION.MOTION_REASON, MOTION.REFUSED
@@ -241,35 +242,6 @@ def test_numbers_in_two_words_keep_25_bits(kernel, exact, a, b):
     kernel(state, 4, 0, 2)
     largest = max(abs(a), abs(b)) if kernel in (real.add, real.subtract) else abs(exact(a, b))
     assert abs(value_at(state, 4) - exact(a, b)) <= largest / (1 << 25)
-
-
-class I31(int):
-    """An integer that asserts that whatever is computed with it fits 31 bits."""
-
-
-def _checked(name):
-    plain = getattr(int, name)
-
-    def operate(*operands):
-        result = plain(*operands)
-        assert result is NotImplemented or -(1 << 30) <= result < 1 << 30, (name, operands)
-        return result if result is NotImplemented else I31(result)
-
-    return operate
-
-
-for _name in ("add", "sub", "mul", "floordiv", "lshift", "rshift", "and", "or", "xor"):
-    setattr(I31, f"__{_name}__", _checked(f"__{_name}__"))
-    setattr(I31, f"__r{_name}__", _checked(f"__r{_name}__"))
-I31.__neg__ = _checked("__neg__")
-
-
-class Words(list):
-    """Words that are read as checking integers."""
-
-    def __getitem__(self, at):
-        found = super().__getitem__(at)
-        return found if isinstance(at, slice) else I31(found)
 
 
 def wild(seed, count=1500):

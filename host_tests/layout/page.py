@@ -13,9 +13,9 @@ many bits stand for the fraction: 256 in a word of `_Q8` is 1. A real is two wor
 exponent of 2; a packed one is one word. Three words of one name are x, y, z.
 
 Some words are shared: below "While ..." stands who else has them, and when. The last column has the
-files below `firmware/zerorate` that write the word, `|`, and the others in which its name stands.
-Who only calls a function of these is not listed, nor are the tools: `loop/verify` of theirs reads
-a replay's state by these names.
+functions that write the word, `|`, and those that read it, behind their file below
+`firmware/zerorate`. Who only calls one of these is not listed, nor are the tools: `loop/verify` of
+theirs reads a replay's state by these names.
 """
 
 
@@ -61,28 +61,33 @@ def row(word, shared, writers, users):
         index = f"{word.index}.."
     what = word.meaning if isinstance(word.count, int) else f"{word.meaning} ({word.count} words)"
     what += " (shared)" if places(word) & shared else ""
-    where = f"{' '.join(sorted(writers))} \\| {' '.join(sorted(users))}"
+    where = f"{by_file(writers)} \\| {by_file(users)}"
     return f"| {index} | `{word.name}` | {word.unit} | {what} | {where} |"
 
 
+def by_file(functions):
+    """Return (file, function) pairs as text."""
+    names = {}
+    for file, function in sorted(functions):
+        names.setdefault(file, []).append(function)
+    return "; ".join(f"{file}: {' '.join(names[file])}" for file in names)
+
+
 def used_in(firmware):
-    """Return name -> the files that write it into an array, those that use it otherwise."""
+    """Return name -> (file, function) pairs that write it into an array, and that read it."""
     found = {}
     for path in sorted(firmware.rglob("*.py")):
         if path.parent.name in ("native", "layout"):
             continue
-        tree = ast.parse(path.read_text(encoding="utf-8"))
-        stored = {
-            id(name)
-            for function in ast.walk(tree)
-            if isinstance(function, ast.FunctionDef)
-            for name in written_names(function)
-        }
         file = path.relative_to(firmware).with_suffix("").as_posix()
-        for node in ast.walk(tree):
-            if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load):
-                writers, users = found.setdefault(node.id[1:], (set(), set()))
-                (writers if id(node) in stored else users).add(file)
+        for function in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if not isinstance(function, ast.FunctionDef):
+                continue
+            stored = {id(name) for name in written_names(function)}
+            for node in ast.walk(function):
+                if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load):
+                    writers, users = found.setdefault(node.id[1:], (set(), set()))
+                    (writers if id(node) in stored else users).add((file, function.name))
     return found
 
 
