@@ -99,7 +99,7 @@ class CheckedCorrector:
                 s[k] = c[_TURN_ON_VARIANCE_Q8]
 
     def keep(self) -> None:
-        """What is learned up to now is right."""
+        """Keep what was learned up to now: it is right."""
         for i in range(len(self._live)):
             copy(self._live[i], self._kept[i], 0, len(self._kept[i]))
 

@@ -226,7 +226,7 @@ class Corrector:
             effects.attend(self.state, self.settings, effects.e)
 
     def use_model(self, effects: "Any") -> None:
-        """Correct by an effect model (model.EffectModel, loaded) before anything is learned."""
+        """Subtract what this model says (a loaded model.EffectModel), and learn what is left."""
         from .native.effects import sense
 
         self._sense = sense
@@ -262,7 +262,7 @@ class Corrector:
 
     @property
     def learned(self) -> bool:
-        """Whether the bias of every axis was learned, and is not of this rest alone."""
+        """Whether every axis has a bias that was learned, not one guessed from the current rest."""
         for axis in range(3):
             if self.state[_SOURCE + axis] <= _ANY_TEMPERATURE:
                 return False
@@ -270,7 +270,7 @@ class Corrector:
 
     @property
     def rests(self) -> bool:
-        """Whether the newest window of samples was still."""
+        """Whether the device was still in the latest window of samples."""
         return self.state[_STILLNESS] == _STILL
 
     def explain(self) -> str:
