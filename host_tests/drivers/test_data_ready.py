@@ -16,34 +16,6 @@ def ready(bench):
     return DataReady(bench.imu, InterruptPin(bench.chip))
 
 
-def test_without_a_pulse_there_is_nothing_to_take(ready):
-    assert not ready.take()
-
-
-def test_a_pulse_is_taken_once(bench, ready):
-    bench.clock.advance_us(10000)
-    assert ready.take()
-    assert not ready.take()
-
-
-def test_the_time_between_samples_is_that_of_the_pulses(bench, ready):
-    for late_us in (0, 3000, 6000):
-        bench.clock.advance_us(10000 + late_us)
-        ready.take()
-        bench.clock.advance_us(10000 - late_us)
-        ready.take()
-        assert ready.dt_us == pytest.approx(10000, abs=6001)
-
-
-def test_samples_nobody_took_are_counted_and_their_time_kept(bench, ready):
-    bench.clock.advance_us(10000)
-    ready.take()
-    bench.clock.advance_us(50000)
-    ready.take()
-    assert ready.missed == 4
-    assert ready.dt_us == 50000
-
-
 def test_a_pulse_between_the_two_readings_of_the_handler_s_words_is_not_taken_twice(bench):
     class Interrupted(DataReady):
         """Its time is read while the next pulse comes."""
@@ -143,13 +115,6 @@ class TestEdges:
         assert (edge.bench.clock.now_us, ready.dt_us) == (4000, 0)
         assert (edge.bench.imu.suspects, edge.bench.imu.restarts) == (1, 0)
         assert edge.bench.read() == VERIFIED  # asked for its settings, which it kept
-
-
-def test_waiting_for_a_sleeping_chip_ends(bench, ready):
-    bench.chip.power_up()
-    before_us = bench.clock.now_us
-    assert not ready.wait(50)
-    assert bench.clock.now_us - before_us == 50000
 
 
 def test_samples_that_pass_without_interrupts_are_counted_by_their_time(bench, ready):

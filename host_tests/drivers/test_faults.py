@@ -11,28 +11,11 @@ def read_some(bench, count=5):
     return [bench.read() for _ in range(count)]
 
 
-def test_a_single_nack_is_tried_again_and_counted(bench):
-    bench.bus.fault("nack")
-    assert bench.read() == FRESH
-    assert bench.imu.bus_errors == 1
-
-
 def test_after_a_bus_error_the_configuration_is_read_back(bench):
     bench.bus.fault("nack")
     assert [bench.read() for _ in range(4)] == [FRESH, VERIFIED, FRESH, FRESH]
     bench.bus.fault("nack")
     assert [bench.read() for _ in range(3)] == [FRESH, VERIFIED, FRESH]
-
-
-def test_a_lasting_nack_passes_after_bounded_retries_and_leaves_the_sample(bench):
-    read_some(bench)
-    before = list(bench.sample)
-    transfers = bench.bus.transfers
-    bench.bus.fault("nack", times=None)
-    with pytest.raises(OSError):
-        bench.read()
-    assert bench.bus.transfers - transfers == 3
-    assert list(bench.sample) == before
 
 
 @pytest.mark.parametrize("at_byte", range(14))
@@ -67,15 +50,6 @@ def test_a_bus_that_dies_between_a_leap_and_its_second_reading_is_suspect(make_b
 def test_a_dead_bus_that_comes_back_goes_on_verified(bench):
     bench.bus.fault("all_ff", times=1)
     assert [bench.read(), bench.read()] == [SUSPECT, VERIFIED]
-
-
-def test_data_frozen_for_sixteen_periods_are_suspect_and_the_chip_is_restarted(bench):
-    read_some(bench)
-    bench.chip.frozen = True
-    statuses = read_some(bench, 20)
-    first = statuses.index(SUSPECT)
-    assert first <= 18
-    assert statuses[first + 1] == RESTARTED
 
 
 def test_data_stand_for_sixteen_periods_and_no_longer(bench):
@@ -220,17 +194,3 @@ def test_a_bus_is_freed_by_nine_clocks_at_most_and_a_stop(bench, monkeypatch, bi
     assert driven == [("sda", 1), ("scl", 1), *clock * min(bits, 9), *stop]
     if bits <= 10:
         assert bench.read() == FRESH
-
-
-def test_sda_shorted_to_ground_is_said_and_not_waited_for(bench):
-    bench.bus.hold_sda(1000)
-    wires = BusWires(bench.bus)
-    before_us = bench.clock.now_us
-    assert not free_bus(wires.scl, wires.sda, bench.clock)
-    assert bench.clock.now_us - before_us < 30000
-
-
-def test_a_free_bus_is_left_with_both_wires_high(bench):
-    wires = BusWires(bench.bus)
-    assert free_bus(wires.scl, wires.sda, bench.clock)
-    assert (wires.scl.value(), wires.sda.value()) == (1, 1)

@@ -50,10 +50,6 @@ def feed(rested):
     return feed
 
 
-def test_a_bias_is_learned(feed):
-    assert feed.bias_lsb() == pytest.approx(100, abs=1)
-
-
 def test_what_came_after_the_last_read_back_is_forgotten_to_the_last_bit(feed):
     feed.rest(1, 100, checked.VERIFIED)
     feed.checked.keep()

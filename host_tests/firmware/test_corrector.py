@@ -10,23 +10,11 @@ from zerorate.motion.motion_settings import motion_settings
 from zerorate.rest import bias
 from zerorate.settings import DEFAULTS
 from zerorate.storage.store import EMPTY, LOADED, OTHER_BINDING, Store
+from zerorate_fakes.memory import FakeMemory
 
 RATES = (800, -300, 40)
 PERIOD_US = 10000
 BLIND = Sensor(accel_lsb_per_g=0.0)
-
-
-class Memory:
-    """A storage of bytes."""
-
-    def __init__(self, size):
-        self.content = bytearray(b"\xff" * size)
-
-    def readblock(self, offset, buf):
-        buf[:] = self.content[offset : offset + len(buf)]
-
-    def writeblock(self, offset, buf):
-        self.content[offset : offset + len(buf)] = buf
 
 
 def rest(corrector, samples, rates=RATES, temp=1000):
@@ -50,7 +38,7 @@ def learned():
 
 def store_for(corrector, binding=b"\x68\0\0\0", memory=None):
     size = 4 * len(corrector.state)
-    return Store(memory or Memory(2 * size + 100), binding, size)
+    return Store(memory or FakeMemory(2 * size + 100), binding, size)
 
 
 def test_by_default_an_estimator_never_speaks_without_its_neighbours(learned):

@@ -2,6 +2,8 @@
 
 import json
 
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
 
@@ -14,5 +16,18 @@ def csv_of(tmp_path):
             scales if isinstance(scales, str) else json.dumps(scales)
         )
         return tmp_path / "bad.csv"
+
+    return write
+
+
+@pytest.fixture
+def parquet_of(tmp_path):
+    """parquet_of(columns) -> the path of a Parquet file of them, with scales."""
+
+    def write(columns):
+        scales = b'{"sensor": "X", "odr_hz": 1, "gyro_lsb_per_dps": 1}'
+        table = pa.table(columns).replace_schema_metadata({b"zerorate": scales})
+        pq.write_table(table, tmp_path / "x.parquet")
+        return tmp_path / "x.parquet"
 
     return write

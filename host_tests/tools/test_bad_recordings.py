@@ -1,23 +1,19 @@
 """A bad recording is refused in one line that names the file, the row, and what to do."""
 
 import gzip
-import json
 
-import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 from zerorate_tools.errors import BadRecording
 from zerorate_tools.recordings import (
-    Scales,
     open_recording,
     read_recording,
-    recording_from_columns,
     write_recording,
 )
 from zerorate_tools.recordings.checks import GAP
 
-from .test_recordings import SCALES, a_recording
+from .test_recordings import a_recording
 
 HEADER = "t_us,gx,gy,gz"
 _SCALES = '{"sensor": "X", "odr_hz": %s, "gyro_lsb_per_dps": 1}'
@@ -104,14 +100,6 @@ def test_a_foreign_csv_is_answered_with_the_command_that_imports_it(csv_of):
         read_recording(csv_of("time,x,y,z\n0,1,2,3\n"))
 
 
-def test_time_going_backwards_between_batches_is_seen(tmp_path):
-    t_us = np.r_[np.arange(100), np.arange(50, 100)]
-    columns = dict.fromkeys(("t_us", "gx", "gy", "gz"), t_us)
-    write_recording(recording_from_columns(columns, Scales("X", 1, 1)), tmp_path / "bad.parquet")
-    with pytest.raises(BadRecording, match="row 101: time goes backwards, from 99 to 50 us"):
-        list(open_recording(tmp_path / "bad.parquet").batches(rows=100))
-
-
 def test_a_truncated_gzip_is_refused(tmp_path):
     write_recording(a_recording(5000), tmp_path / "run.csv.gz")
     whole = (tmp_path / "run.csv.gz").read_bytes()
@@ -145,21 +133,17 @@ def test_a_parquet_without_scales_is_refused(tmp_path):
         ([1, None], "row 2: gx has no value"),
     ],
 )
-def test_wrong_types_in_a_parquet_are_refused(tmp_path, values, complaint):
-    table = pa.table({"t_us": [0, 1], "gx": values, "gy": [1, 1], "gz": [1, 1]})
-    scales = json.dumps({"sensor": "X", "odr_hz": 1, "gyro_lsb_per_dps": 1}).encode()
-    pq.write_table(table.replace_schema_metadata({b"zerorate": scales}), tmp_path / "x.parquet")
+def test_wrong_types_in_a_parquet_are_refused(parquet_of, values, complaint):
+    path = parquet_of({"t_us": [0, 1], "gx": values, "gy": [1, 1], "gz": [1, 1]})
     with pytest.raises(BadRecording, match=complaint):
-        read_recording(tmp_path / "x.parquet")
+        read_recording(path)
 
 
-def test_an_extra_channel_of_fractions_is_told_to_be_integers_gaps_or_not(tmp_path):
+def test_an_extra_channel_of_fractions_is_told_to_be_integers_gaps_or_not(parquet_of):
     columns = {"t_us": [0, 1], "gx": [1, 1], "gy": [1, 1], "gz": [1, 1]}
-    table = pa.table({**columns, "vdd_mv": [4.5, float("nan")]})
-    scales = json.dumps(SCALES.to_json()).encode()
-    pq.write_table(table.replace_schema_metadata({b"zerorate": scales}), tmp_path / "x.parquet")
+    path = parquet_of({**columns, "vdd_mv": [4.5, float("nan")]})
     with pytest.raises(BadRecording, match="column vdd_mv holds double, not integers"):
-        read_recording(tmp_path / "x.parquet", keep_gaps=True)
+        read_recording(path, keep_gaps=True)
 
 
 def test_gaps_of_an_extra_channel_are_kept_when_asked(csv_of):
@@ -189,9 +173,6 @@ def test_text_in_utf_16_is_read(tmp_path):
         (_SCALES % ("9" * 400), r"odr_hz is 9+\.\.\.; write a number from"),
         (_SCALES % ("9" * 5000), "a number of thousands of digits"),
         ("[" * 100_000, "nested too deep"),
-        (_SCALES % "1e-308", "odr_hz is 1e-308; write a number from"),
-        ('{"sensor": "X", "odr_hz": 1, "gyro_lsb_per_dps": 1e300}', "gyro_lsb_per_dps is 1e"),
-        ('{"sensor": "' + "X" * 2_000_000 + '"}', "scales of more than 1 MiB"),
     ],
 )
 def test_scales_that_no_sensor_has_are_refused_in_one_line(tmp_path, scales, complaint):
@@ -227,39 +208,23 @@ def test_a_cell_of_a_quarter_million_letters_is_named_by_its_row(tmp_path):
         read_recording(tmp_path / "x.csv")
 
 
-@pytest.mark.parametrize(("kind", "name", "value"), [
-    ("uint64", "t_us", 2**63 - 1), ("int64", "t_us", 1), ("uint32", "gx", 2**31 - 1),
-    ("int64", "load", -(2**31)), ("int64", "load", 2**31 - 1), ("int16", "gx", -(2**15)),
+@pytest.mark.parametrize(("kind", "name", "value", "bits"), [
+    ("uint64", "t_us", 2**63 - 1, None), ("int64", "t_us", 1, None),
+    ("uint32", "gx", 2**31 - 1, None), ("int16", "gx", -(2**15), None),
+    ("int64", "load", -(2**31), None), ("int64", "load", 2**31 - 1, None),
+    ("uint64", "t_us", 2**63, 64), ("uint32", "gx", 2**31, 32),
+    ("uint32", "load", 2**32 - 1, 32), ("int64", "load", -(2**31) - 1, 32),
 ])  # fmt: skip
-def test_numbers_that_just_fit_are_read(tmp_path, kind, name, value):
-    columns = {n: pa.array([1, 2], pa.int64()) for n in ("t_us", "gx", "gy", "gz", "load")}
-    columns[name] = pa.array([1, value], getattr(pa, kind)())
-    scales = b'{"sensor": "X", "odr_hz": 1, "gyro_lsb_per_dps": 1}'
-    pq.write_table(
-        pa.table(columns).replace_schema_metadata({b"zerorate": scales}), tmp_path / "x.parquet"
-    )
-    assert read_recording(tmp_path / "x.parquet").columns[name].tolist() == [1, value]
-
-
-@pytest.mark.parametrize(
-    ("kind", "name", "value", "complaint"),
-    [
-        ("uint64", "t_us", 2**63, "row 2: t_us is 9223372036854775808, more than 64 bits"),
-        ("uint32", "gx", 2**31, "row 2: gx is 2147483648, more than 32 bits"),
-        ("uint32", "load", 2**32 - 1, "row 2: load is 4294967295, more than 32 bits"),
-        ("int64", "load", -(2**31) - 1, "row 2: load is -2147483649, more than 32 bits"),
-    ],
-)
 def test_numbers_that_do_not_fit_are_refused_instead_of_wrapped(
-    tmp_path, kind, name, value, complaint
+    parquet_of, kind, name, value, bits
 ):
     columns = {n: pa.array([1, 2], pa.int64()) for n in ("t_us", "gx", "gy", "gz", "load")}
-    columns[name] = pa.array([1, value], getattr(pa, kind)())
-    scales = b'{"sensor": "X", "odr_hz": 1, "gyro_lsb_per_dps": 1}'
-    table = pa.table(columns).replace_schema_metadata({b"zerorate": scales})
-    pq.write_table(table, tmp_path / "x.parquet")
-    with pytest.raises(BadRecording, match=complaint):
-        read_recording(tmp_path / "x.parquet")
+    path = parquet_of({**columns, name: pa.array([1, value], getattr(pa, kind)())})
+    if bits is None:
+        assert read_recording(path).columns[name].tolist() == [1, value]
+    else:
+        with pytest.raises(BadRecording, match=f"row 2: {name} is {value}, more than {bits} bits"):
+            read_recording(path)
 
 
 def test_a_gzip_that_is_none_is_refused(tmp_path):

@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.parquet as pq
 import pytest
 from zerorate_tools.errors import BadRecording
 from zerorate_tools.recordings import (
@@ -52,14 +51,12 @@ def test_rows_at_one_time_are_in_order(csv_of):
 
 
 @pytest.mark.parametrize("bad", [0, 1, 99, 100, 199, 200, 249])
-def test_the_row_is_counted_over_batches(tmp_path, bad):
+def test_the_row_is_counted_over_batches(tmp_path, parquet_of, bad):
     t_us = np.arange(250)
     gaps = pa.array([None if row == bad else 7 for row in t_us], pa.int64())
-    table = pa.table({**dict.fromkeys(("t_us", "gx", "gy", "gz"), t_us), "load": gaps})
-    scales = b'{"sensor": "X", "odr_hz": 1, "gyro_lsb_per_dps": 1}'
-    pq.write_table(table.replace_schema_metadata({b"zerorate": scales}), tmp_path / "x.parquet")
+    path = parquet_of({**dict.fromkeys(("t_us", "gx", "gy", "gz"), t_us), "load": gaps})
     with pytest.raises(BadRecording, match=f"row {bad + 1}: load has no value; fill the gaps"):
-        list(open_recording(tmp_path / "x.parquet").batches(rows=100))
+        list(open_recording(path).batches(rows=100))
     if bad:
         t_us[bad] -= 2
         write_recording(
