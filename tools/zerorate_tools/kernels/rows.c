@@ -2,6 +2,11 @@
    one axis behind the other. Where learn is 0, the settings are those of frozen; it may be null. */
 #ifdef _WIN32
 #define SHOWN __declspec(dllexport)
+/* Nothing is to begin: the library has no C library in it. */
+int DllMainCRTStartup(void *library, uint32_t reason, void *reserved) {
+    (void)library, (void)reason, (void)reserved;
+    return 1;
+}
 #else
 #define SHOWN __attribute__((visibility("default")))
 #endif

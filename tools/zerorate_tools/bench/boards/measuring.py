@@ -9,19 +9,23 @@ from typing import Any
 import numpy as np
 
 from ...boards.flashing import flash
+from ...errors import MissingRuntime
 from ...runtimes.pico import CORE_HZ, EmulatedPico, find_pico
 from ..limits import Limit, limits_table, verdicts
 from ..tables import number, table
 from ..workload import CYCLE, Workload, workload
 from .memory import CONFIGURATIONS, heap_and_import, least_heap
-from .playing import Play, on_host, on_pico
+from .playing import Play, Played, on_host, on_pico
 
 #: Samples of each mode that is compared; the workload's own cycle is the first.
 _COMPARED = 1200
 _BURST = 64
+_FROZEN_ROWS = 400
 _ODR_HZ = 1000
 _PROGRAM = Path("examples/keep.py")
 _SIGN = "kept"
+#: An image with this firmware frozen into it, where the boards' folder has one.
+_FROZEN = "FROZEN-*.bin"
 _HEAPS = (24 << 10, 88 << 10)
 STEPS = 1 + len(CONFIGURATIONS) + 8
 
@@ -49,6 +53,15 @@ def measure(advance: Callable[[float], None] = lambda n: None) -> dict[str, Any]
             _measure_rest(pico, found, advance)
             flash(pico.port, say=_nothing, parts=["all"])
             _measure_all(pico, found, advance)
+    try:
+        frozen = find_pico(_FROZEN)
+    except MissingRuntime:
+        found["frozen"] = {}
+    else:
+        with EmulatedPico(frozen) as pico:
+            found["frozen"] = {
+                n: _same(pico, p)[0] for n, p in plays(workload(_FROZEN_ROWS)).items()
+            }
     found["limits"] = [verdict.to_json() for verdict in verdicts(found, LIMITS)]
     return found
 
@@ -76,8 +89,7 @@ def _measure_all(pico: EmulatedPico, found: dict[str, Any], advance) -> None:
     work = workload()
     found["golden"], found["cycles"] = {}, {}
     for name, play in plays(work).items():
-        played = on_pico(pico, play)
-        found["golden"][name] = played.data == on_host(play).data
+        found["golden"][name], played = _same(pico, play)
         if name == "rest":
             found["cycles"]["median"], found["cycles"]["worst"] = played.median, played.worst
             mean = sum(played.cycles) / len(played.cycles)
@@ -88,6 +100,12 @@ def _measure_all(pico: EmulatedPico, found: dict[str, Any], advance) -> None:
         elif name == "bursts":
             found["cycles"]["burst"] = sum(played.cycles) / len(played.cycles) / _BURST
         advance(1)
+
+
+def _same(pico: EmulatedPico, play: Play) -> tuple[bool, Played]:
+    """Whether it ends as on this host, and how it went."""
+    played = on_pico(pico, play)
+    return played.data == on_host(play).data, played
 
 
 def plays(work: Workload) -> dict[str, Play]:
@@ -140,7 +158,14 @@ def second_program() -> str:
 def in_markdown(found: Mapping[str, Any]) -> str:
     """What it must be, heap by part, and the modes that gave equal numbers."""
     heap = table(["with", "heap, bytes"], [[k, number(v)] for k, v in found["heap_bytes"].items()])
-    modes = [[mode, "yes" if equal else "**no**"] for mode, equal in found["golden"].items()]
-    same = table(["mode", "to the last bit as on the host"], modes)
+    modes = [
+        [mode, _yes(equal), _yes(found["frozen"].get(mode))]
+        for mode, equal in found["golden"].items()
+    ]
+    same = table(["mode", "to the last bit as on the host", "frozen into the image"], modes)
     head = f"# {found['board']}\n\nEmulated, with {found['firmware']}.\n"
     return "\n".join([head, limits_table(verdicts(found, LIMITS)), heap, same])
+
+
+def _yes(equal: bool | None) -> str:
+    return "no image here" if equal is None else "yes" if equal else "**no**"
