@@ -4,23 +4,21 @@ import re
 import shutil
 
 import pytest
+from zerorate_tools.bench.broad import trials
 from zerorate_tools.cli import main
 from zerorate_tools.demo import broad_trial
+from zerorate_tools.demo import real as by_real
 from zerorate_tools.demo.real import WAYS, real
 from zerorate_tools.errors import CannotFetch
-from zerorate_tools.runtimes.cache import cache_folder
 
 NOBODY = "http://127.0.0.1:9/"
 
 
 @pytest.fixture
 def cache(tmp_path, monkeypatch):
-    """A cache of this test's own, with the interpreters of the usual one."""
-    usual, own = cache_folder(), tmp_path / "cache"
-    own.mkdir()
-    (own / "runtimes").symlink_to(usual / "runtimes")
-    monkeypatch.setenv("ZERORATE_CACHE", str(own))
-    return own
+    """A cache of this test's own."""
+    monkeypatch.setenv("ZERORATE_CACHE", str(tmp_path))
+    return tmp_path
 
 
 @pytest.fixture
@@ -30,6 +28,12 @@ def filled(real_data, cache):
     name = f"{broad_trial.NAME}.mat"
     shutil.copyfile(real_data / "broad" / name, cache / "broad" / name)
     return cache
+
+
+@pytest.fixture(scope="module")
+def shown(real_data, find_runtime):
+    (trial,) = (t for t in trials(real_data / "broad") if t.name == broad_trial.NAME)
+    return real(trial, find_runtime("x86").name)
 
 
 def test_a_trial_in_the_cache_needs_no_network(filled):
@@ -58,8 +62,7 @@ def test_nothing_is_left_in_the_cache_by_a_failure(cache):
     assert list((cache / "broad").iterdir()) == []
 
 
-def test_the_firmware_finds_the_bias_that_the_cameras_tell(filled, find_runtime):
-    shown = real(broad_trial.broad_trial(NOBODY), find_runtime("x86").name)
+def test_the_firmware_finds_the_bias_that_the_cameras_tell(shown):
     four_sigma_mdps = 4e3 * shown.truth.sigma_dps.max()
     assert shown.whole_mdps["zerorate, from rests"] < four_sigma_mdps
     # who was never at rest knows nothing from rests, and most of it from motion
@@ -68,9 +71,12 @@ def test_the_firmware_finds_the_bias_that_the_cameras_tell(filled, find_runtime)
     assert motion < nothing / 2
 
 
-def test_the_command_credits_the_authors_and_prints_the_table(filled, find_runtime, capsys):
-    find_runtime("x86")
+def test_the_command_credits_the_authors_and_prints_the_table(filled, shown, monkeypatch, capsys):
+    monkeypatch.setattr("zerorate_tools.commands.demo.get_ready", lambda runtime: None)
+    asked = []
+    monkeypatch.setattr(by_real, "real", lambda *given: asked.append(given) or shown)
     assert main(["demo", "--real", "--runtime", "x86"]) == 0
+    assert [(trial.name, runtime) for trial, runtime, _ in asked] == [(broad_trial.NAME, "x86")]
     said = capsys.readouterr().out
     assert "D. Laidig" in said and "CC BY 4.0" in said
     rows = [line for line in said.splitlines() if re.search(r"\d\.\d\s+[\d,]+\.\d$", line)]

@@ -29,7 +29,7 @@ def test_what_nobody_told_the_firmware_is_found_and_named(said):
     assert "found: thermal-hysteresis (confirmed)" in said
 
 
-def test_the_locked_power_on_is_several_times_better(said):
+def test_the_power_on_held_out_is_several_times_better(said):
     (before,), (after,) = figures(said, "before "), figures(said, "after  ")
     assert sum(after) < sum(before) / 4
 

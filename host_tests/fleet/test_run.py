@@ -100,7 +100,7 @@ def test_other_settings_are_another_run(data, tmp_path, scheduler):
     assert (first.resumed, other.resumed) == (0, 0)
 
 
-def test_a_run_cut_off_goes_on_where_it_stopped(data, tmp_path):
+def test_a_run_cut_off_goes_on_where_it_stopped(data, tmp_path, scheduler):
     command = [sys.executable, "-m", "zerorate_tools.cli", "fleet", str(data)]
     options = ["--out", str(tmp_path), "--workers", "1", "--devices-per-task", "1"]
     run = subprocess.Popen([*command, *options], start_new_session=True)
@@ -110,7 +110,8 @@ def test_a_run_cut_off_goes_on_where_it_stopped(data, tmp_path):
     run.wait()
     kept = len(parts_in(tmp_path))
     assert 1 <= kept < DEVICES
-    again = fleet(devices_of([data]), tmp_path, workers=1, devices_per_task=1, minutes=None)
+    options = {"scheduler": scheduler, "devices_per_task": 1, "minutes": None}
+    again = fleet(devices_of([data]), tmp_path, **options)
     assert (again.resumed, again.tasks) == (kept, DEVICES - kept)
     assert again.report["devices"] == DEVICES and not again.report["failures"]
 
@@ -127,9 +128,10 @@ def with_bad_ones(data, tmp_path):
     return tmp_path
 
 
-def test_a_failed_recording_is_reported_and_stops_nothing(with_bad_ones, capsys):
+def test_a_failed_recording_is_reported_and_stops_nothing(with_bad_ones, scheduler, capsys):
     out = with_bad_ones / "out"
-    assert main(["fleet", str(with_bad_ones / "in"), "--out", str(out), "--workers", "1"]) == 0
+    words = ["fleet", str(with_bad_ones / "in"), "--out", str(out), "--scheduler", scheduler]
+    assert main(words) == 0
     report = json.loads((out / "fleet.json").read_text())
     assert (report["devices"], report["sessions"]) == (2, 2)
     reasons = {Path(f["file"]).name: f["reason"] for f in report["failures"]}

@@ -5,11 +5,13 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import ZerorateError
+from ..recordings import Recording
 from ..recordings.writing import recording_writer
 from ..simulate import simulate
 
@@ -67,7 +69,7 @@ def replay_speed(
 
 def write_long(path: Path, hours: float) -> None:
     """Write a simulated warm-up repeated for so long at 100 Hz, ten minutes a batch."""
-    recording, _ = simulate(_SCENARIO, session=1, seed=1)
+    recording = _warm_up()
     columns, total = recording.columns, round(hours * 360_000)
     with recording_writer(path, list(columns), recording.scales) as writer:
         for start in range(0, total, _ROWS):
@@ -75,6 +77,11 @@ def write_long(path: Path, hours: float) -> None:
             rows = {name: values[at % len(recording)] for name, values in columns.items()}
             rows["t_us"] = at * 10_000
             writer.append(rows)
+
+
+@cache
+def _warm_up() -> Recording:
+    return simulate(_SCENARIO, session=1, seed=1)[0]
 
 
 def _one(path: Path, first: Path, hours: float, count: int) -> dict[str, float]:
