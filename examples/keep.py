@@ -1,6 +1,9 @@
 """Four wires: what is learned is kept in a file that survives a power cut."""
 
+import gc
 from array import array
+
+gc.threshold(1024)  # a small heap stays in one piece while what follows is loaded
 
 from zerorate import Corrector, Sensor
 from zerorate.checked import CheckedCorrector

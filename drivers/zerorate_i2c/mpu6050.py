@@ -79,6 +79,9 @@ class MPU6050(Registers):
         self._frozen = False
         # loaded here and let go: who has an object of it needs no more than its registers
         from .identity import identify
+
+        self.who_am_i, row = identify(self, part)
+        unload("identity")
         from .settings import (
             ACCEL_LSB_PER_G,
             ACCEL_RANGES_G,
@@ -92,7 +95,6 @@ class MPU6050(Registers):
 
         gyro_code = index_of(full_scale_dps, GYRO_RANGES_DPS, "full_scale_dps")
         accel_code = index_of(full_scale_g, ACCEL_RANGES_G, "full_scale_g")
-        self.who_am_i, row = identify(self, part)
         self.part = row[1]
         self.temp_lsb_per_degc = row[2]
         self.temp_offset_degc = row[3]
@@ -109,8 +111,8 @@ class MPU6050(Registers):
         self.scales = (self.odr_hz, self.gyro_lsb_per_dps, self.accel_lsb_per_g) + row[2:4]
         self.binding = bytes([self.who_am_i, gyro_code, accel_code, dlpf_code])
         self._settings = register_settings(self.kind, gyro_code, accel_code, dlpf_code, divider)
-        for name in ("identity", "parts", "settings"):
-            unload(name)
+        unload("settings")
+        unload("parts")
         self.kept_power = self._is_configured()
         self.configure()
         self._changed_us = self.clock.ticks_us()

@@ -80,24 +80,13 @@ class Corrector:
         gravity: "bool | None" = None,
         **limits: float,
     ) -> None:
-        from .settings import DEFAULTS, OF_THE_DOCUMENT, checked, settings
+        from .settings import settings
 
         self.sensor = sensor or Sensor()
-        chosen = dict(DEFAULTS)
         if every is None:
             every = document
-        if bins is None:
-            bins = 8 if every or document else 1
-        if document and every:
-            chosen.update(OF_THE_DOCUMENT)
-        if ignore_outside is None:
-            ignore_outside = document and every
-        for name in limits:
-            if name not in chosen:
-                raise ValueError("no such setting: %s" % name)
-            chosen[name] = checked(name, limits[name])
-        self.settings = settings(
-            self.sensor, bins, short, long, document, every, ignore_outside, chosen
+        self.settings, chosen = settings(
+            self.sensor, bins, short, long, document, every, ignore_outside, limits
         )
         unload("zerorate", "settings")
         c = self.settings

@@ -144,8 +144,25 @@ def squared(value, most=1 << 28):
     return max(1, min(most, int(value * value)))
 
 
-def settings(sensor, bins, short, long, document, every, ignore_outside, limits):
-    """Return the kernels' settings, array('i'); `limits` is as in `Corrector`."""
+def chosen_of(document, every, given):
+    """Return all settings by name, those of `given` as they are there. Raises ValueError."""
+    chosen = dict(DEFAULTS)
+    if document and every:
+        chosen.update(OF_THE_DOCUMENT)
+    for name in given:
+        if name not in chosen:
+            raise ValueError("no such setting: %s" % name)
+        chosen[name] = checked(name, given[name])
+    return chosen
+
+
+def settings(sensor, bins, short, long, document, every, ignore_outside, given):
+    """Return the kernels' settings, array('i'), and all by name; arguments are the Corrector's."""
+    limits = chosen_of(document, every, given)
+    if bins is None:
+        bins = 8 if every or document else 1
+    if ignore_outside is None:
+        ignore_outside = document and every
     c = array("i", [0] * _SETTINGS_WORDS)
     windows(c, sensor, limits)
     bins_of(c, sensor, bins, every, document, limits)
@@ -156,7 +173,7 @@ def settings(sensor, bins, short, long, document, every, ignore_outside, limits)
     c[_AXES] = _FIT_WEIGHTS + c[_ESTIMATOR_COUNT] - _TURN_ON_OFFSET_Q8
     c[_AXIS_WORDS] = c[_ESTIMATORS_END]
     c[_WORK_A_SAMPLE] = 12 // c[_WINDOW] + 1
-    return c
+    return c, limits
 
 
 def windows(c, sensor, limits):

@@ -51,7 +51,7 @@ def answer(run, known):
     left = bytes(a) + bytes(c)
     if crc32 is not None:
         return (crc32(left) & 0xFFFFFFFF).to_bytes(4, "little")
-    from .storage.crc32 import plain_crc32
+    from .storage.plain_crc32 import plain_crc32
 
     crc = bytearray(4)
     plain_crc32(left, len(left), crc)

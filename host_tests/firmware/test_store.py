@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from zerorate.storage import store as stores
-from zerorate.storage.crc32 import checksum, plain_crc32
+from zerorate.storage.crc32 import checksum
+from zerorate.storage.plain_crc32 import plain_crc32
 from zerorate.storage.store import Store
 from zerorate_fakes.memory import FakeMemory, PowerCut
 

@@ -2,8 +2,9 @@
 
 from array import array
 
-from zerorate.storage.crc32 import checksum, plain_crc32
+from zerorate.storage.crc32 import checksum
 from zerorate.storage.places import FileStorage
+from zerorate.storage.plain_crc32 import plain_crc32
 from zerorate.storage.store import Store
 from zerorate_fakes.memory import FakeMemory, PowerCut
 
