@@ -29,6 +29,7 @@ _WALK_Q16 = const(29)
 _SUSPECT = const(30)
 _OFFSET_AGE_MS = const(31)
 _LINE_TEMP = const(34)
+_LEFT_Q4 = const(37)
 # layout: The corrector's settings
 _AXES = const(0)
 _AXIS_WORDS = const(15)
@@ -44,6 +45,8 @@ _STILL = const(1)
 _ANY_TEMPERATURE = const(1)
 _IN_MOTION = const(4)
 _GRAVITY = const(5)
+# layout: Values that stand for none
+_NO_VALUE = const(-0x3FFFFFFF)
 # layout: end
 
 
@@ -176,6 +179,7 @@ class Corrector:
             if not same:
                 s[a + _OFFSET_Q8] >>= 1
                 s[a + _OFFSET_VARIANCE_Q8] = c[_TURN_ON_VARIANCE_Q8]
+                s[a + _LEFT_Q4] = _NO_VALUE
                 s[a + _OFFSET_AGE_MS] = 0
 
     def update(self, sample: "array[int]", dt_us: int) -> int:

@@ -11,9 +11,9 @@ _FIT_WEIGHTS = const(98)
 # layout: The last words before the axes
 _TURN_ON_OFFSET_Q8 = const(-3)
 # layout: An axis
-_ESTIMATORS = const(35)
+_ESTIMATORS = const(39)
 # layout: An estimator
-_EST_HISTOGRAM = const(4)
+_EST_HISTOGRAM = const(5)
 # layout: The corrector's settings
 _AXES = const(0)
 _LEAP_US = const(1)
@@ -96,14 +96,14 @@ DEFAULTS = {
     "share": 0.125,  # and at least so many of all the line's readings
     "beyond_degc": 0.5,  # how far outside the line's points a bias is said to lie beyond
     "refit_degc": 0.25,  # the line is fitted again where the temperature moved so far
-    "floor_dps": 0.002,  # no mean of a rest is better known than that
+    "floor_dps": 0.002,  # flicker noise at first: by how much rests differ beyond white noise
     "gate_dps": 0.3,  # a rest this near to what was expected is plausible
     "insist_s": 60.0,  # an implausible rest that lasts so long is believed
     "walk_dps": 0.002,  # speed of the offset's walk at first, a root second
-    "walk_least_dps": 0.0003,  # slowest that is learned
+    "walk_least_dps": 0.0002,  # slowest that is learned
     "walk_most_dps": 0.05,  # and fastest
-    "turn_on_dps": 0.02,  # one sigma of the turn-on offset
-    "slope_dps_per_degc": 0.02,  # how fast the bias may leave the line beyond its points
+    "turn_on_dps": 0.02,  # one sigma of the turn-on offset, until power-ons show it
+    "slope_dps_per_degc": 0.02,  # how fast the bias leaves the line beyond its points, at first
     "motion_most_dps": 0.15,  # another source's bias less well known teaches nothing
     "motion_full_dps": 0.01,  # one sigma with which it counts as one still reading
     "motion_start_dps": 20.0,  # one sigma of the bias in motion before anything is known
@@ -254,7 +254,7 @@ def recent_of(c, sensor, limits):
     """The offset that follows what the curve does not explain."""
     lsb = sensor.gyro_lsb_per_dps
     segment_s = c[_SEGMENT] * c[_WINDOW] / sensor.odr_hz
-    c[_FLOOR_Q8] = squared(limits["floor_dps"] * lsb * 16, 1 << 27)
+    c[_FLOOR_Q8] = squared(limits["floor_dps"] * lsb * 16, 1 << 14)
     c[_GATE_Q4] = max(1, min(0x7FFF, int(limits["gate_dps"] * lsb * 16)))
     c[_INSIST] = max(3, int(limits["insist_s"] / segment_s + 0.5))
     c[_WALK_MOST_Q16] = squared(limits["walk_most_dps"] * lsb * 256, 1 << 23)

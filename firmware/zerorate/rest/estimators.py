@@ -21,13 +21,16 @@ _COLDEST = const(3)
 _HOTTEST = const(4)
 _LEARNED_N = const(5)
 _ORDER = const(6)
-_ESTIMATORS = const(35)
+_FLOOR_Q16 = const(35)
+_LEAVES_Q16 = const(36)
+_ESTIMATORS = const(39)
 # layout: An estimator
 _EST_TEMP = const(0)
 _EST_MEAN_TEMP_Q4 = const(1)
 _EST_BIAS_Q8 = const(2)
 _EST_READINGS = const(3)
-_EST_HISTOGRAM = const(4)
+_EST_SPREAD_Q8 = const(4)
+_EST_HISTOGRAM = const(5)
 # layout: The corrector's settings
 _FIRST_SHORT = const(16)
 _ESTIMATORS_END = const(17)
@@ -39,7 +42,10 @@ _STEP_LSB = const(29)
 _MARGIN_LSB = const(30)
 _PROMOTE = const(31)
 _HALVE_AFTER = const(32)
+_FLOOR_Q8 = const(39)
+_TURN_ON_VARIANCE_Q8 = const(47)
 _FIRST_LONG = const(49)
+_SLOPE_Q16 = const(52)
 # layout: Values that stand for none
 _FREE = const(-0x100000)
 # layout: end
@@ -53,6 +59,8 @@ def reset(s: ptr32, c: ptr32, a: int):
     s[a + _COLDEST] = 32767
     s[a + _HOTTEST] = -32768
     s[a + _LEARNED_N] = 0
+    s[a + _FLOOR_Q16] = c[_FLOOR_Q8] << 8
+    s[a + _LEAVES_Q16] = c[_SLOPE_Q16]
     i = 0
     e = a + _ESTIMATORS
     while e < a + c[_ESTIMATORS_END]:
@@ -60,6 +68,7 @@ def reset(s: ptr32, c: ptr32, a: int):
         s[e + _EST_MEAN_TEMP_Q4] = 0
         s[e + _EST_BIAS_Q8] = 0
         s[e + _EST_READINGS] = 0
+        s[e + _EST_SPREAD_Q8] = c[_TURN_ON_VARIANCE_Q8]
         clear(s, c, e + _EST_HISTOGRAM, 0)
         if i > 0 and i <= c[_SHORT]:
             s[a + _ORDER + i - 1] = e
@@ -221,6 +230,7 @@ def make_room(s: ptr32, c: ptr32, a: int, temp: int) -> int:
     s[e + _EST_TEMP] = (temp + (c[_STEP_LSB] >> 1)) // c[_STEP_LSB] * c[_STEP_LSB]
     s[e + _EST_MEAN_TEMP_Q4] = temp << 4
     s[e + _EST_READINGS] = 0
+    s[e + _EST_SPREAD_Q8] = s[a + _ESTIMATORS + _EST_SPREAD_Q8]
     return e
 
 

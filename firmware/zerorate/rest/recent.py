@@ -9,6 +9,7 @@
 
 from ..arithmetic.fixed import clipped
 from .bias import curve_q8
+from .estimators import find
 
 const = int  # on a board the compiler itself reads const(...)
 ptr32 = None
@@ -37,6 +38,13 @@ _WALK_Q16 = const(29)
 _SUSPECT = const(30)
 _OFFSET_AGE_MS = const(31)
 _KIND = const(33)
+_FLOOR_Q16 = const(35)
+_LEAVES_Q16 = const(36)
+_LEFT_Q4 = const(37)
+_DOUBT_Q8 = const(38)
+_ESTIMATORS = const(39)
+# layout: An estimator
+_EST_SPREAD_Q8 = const(4)
 # layout: The corrector's settings
 _AXES = const(0)
 _WINDOW_SHIFT = const(4)
@@ -49,8 +57,12 @@ _WALK_LEAST_Q16 = const(42)
 _WALK_MOST_Q16 = const(43)
 _PROVISIONAL_Q8 = const(46)
 _TURN_ON_VARIANCE_Q8 = const(47)
-_SLOPE_Q16 = const(52)
+# layout: Values that stand for none
+_NO_VALUE = const(-0x3FFFFFFF)
 # layout: end
+
+_NEIGHBOURS_MS = const(4000)  # segments of one rest follow each other faster
+_STEEPEST_Q16 = const(4095)  # times the farthest temperature it fits 31 bits
 
 
 def grown_q8(s: ptr32, a: int) -> int:
@@ -61,13 +73,13 @@ def grown_q8(s: ptr32, a: int) -> int:
     return s[a + _OFFSET_VARIANCE_Q8] + (((s[a + _WALK_Q16] >> 4) * seconds) >> 4)
 
 
-def mean_noise_q8(s: ptr32, c: ptr32, n: int) -> int:
+def mean_noise_q8(s: ptr32, c: ptr32, a: int, n: int) -> int:
     """Return the variance of the mean of n still readings: their noise, and what no rest shows.
 
     A rest shorter than a segment hides a slow turn from gravity, half as long twice as much of it.
     """
     shorter = (c[_SEGMENT] << c[_WINDOW_SHIFT]) // n
-    variance = c[_FLOOR_Q8]
+    variance = s[a + _FLOOR_Q16] >> 8
     if shorter > 1:
         shorter = shorter * (c[_PROVISIONAL_Q8] >> 4) // 10
         if shorter > 0x3FFF:
@@ -85,7 +97,7 @@ def beyond_q8(s: ptr32, c: ptr32, a: int) -> int:
         return 0
     if d > 0x3FFFF:
         d = 0x3FFFF
-    sigma = (d * c[_SLOPE_Q16]) >> 16
+    sigma = (d * s[a + _LEAVES_Q16]) >> 16
     if sigma > 0x3FFF:
         sigma = 0x3FFF
     return sigma * sigma
@@ -169,6 +181,67 @@ def gain_q14(variance: int, noise: int) -> int:
     return (v << 14) // (v + n + 1)
 
 
+def left_q8(s: ptr32, gain: int) -> int:
+    """Return the variance that a segment taken with that gain, Q14, leaves."""
+    noise = s[_MEAN_NOISE_Q8]
+    return gain * (noise >> 14) + (gain * (noise & 0x3FFF) + 0x2000 >> 14)
+
+
+def relearn_slope(s: ptr32, c: ptr32, a: int, square: int):
+    """Learn how fast the bias leaves the line, where most of what was expected is that.
+
+    Of three errors one is beyond one sigma, so it rises by twice what it falls.
+    """
+    away = beyond_q8(s, c, a)
+    known = s[_GROWN_Q8] + s[_MEAN_NOISE_Q8]
+    if away > known >> 1:
+        slope = s[a + _LEAVES_Q16]
+        if square > known + away:
+            slope += (slope >> 4) + 1
+        else:
+            slope -= slope >> 5
+        s[a + _LEAVES_Q16] = clipped(slope, _STEEPEST_Q16)
+
+
+def approach(s: ptr32, k: int, found: int, shift: int):
+    """Move a learned word towards what was found now."""
+    s[k] += (found - s[k]) >> shift
+
+
+def relearn_floor(s: ptr32, c: ptr32, a: int, change: int):
+    """Learn by how much two means of one rest differ beyond their white noise."""
+    d = 3 * s[a + _WAITING_N]
+    d = s[_NOISE_Q8] // d
+    d = (change * change >> 1) - d
+    d = clipped(d, c[_FLOOR_Q8] << 6)
+    approach(s, a + _FLOOR_Q16, d << 8, 7)
+    if s[a + _FLOOR_Q16] < 0x100:
+        s[a + _FLOOR_Q16] = 0x100
+
+
+def relearn_spread(s: ptr32, c: ptr32, a: int, square: int):
+    """Learn how far this power-on began from what was known, here and at any temperature."""
+    d = clipped(square - s[_MEAN_NOISE_Q8], 0x3FFFFFF)
+    d = d if d > 0 else 0
+    approach(s, a + _ESTIMATORS + _EST_SPREAD_Q8, d, 2)
+    e = s[_LEARN_TEMP]
+    e = find(s, c, a, e)
+    if e:
+        approach(s, e + _EST_SPREAD_Q8, d, 2)
+
+
+def calibrate(s: ptr32, c: ptr32, a: int, error: int):
+    """Learn from a segment's error, LSB Q4, how sure of its bias this very part may be."""
+    relearn_slope(s, c, a, error * error)
+    if s[a + _LEFT_Q4] == _NO_VALUE:
+        relearn_spread(s, c, a, error * error)
+    elif s[a + _OFFSET_AGE_MS] > 2 * _NEIGHBOURS_MS:
+        s[a + _DOUBT_Q8] = 0
+    elif s[a + _OFFSET_AGE_MS] < _NEIGHBOURS_MS and s[a + _OFFSET_FROM] == 0:
+        change = clipped(error - s[a + _LEFT_Q4], 0x3FFF)
+        relearn_floor(s, c, a, change)
+
+
 def follow(s: ptr32, c: ptr32, a: int, error: int):
     """Move the offset towards the error by the Kalman gain, and learn the walk from the error."""
     excess = error * error - s[a + _OFFSET_VARIANCE_Q8]
@@ -179,9 +252,8 @@ def follow(s: ptr32, c: ptr32, a: int, error: int):
         rewalk(s, c, a, excess)
     gain = gain_q14(s[_GROWN_Q8], s[_MEAN_NOISE_Q8])
     move_offset(s, a, (gain * error) >> 10)
-    s[a + _OFFSET_VARIANCE_Q8] = gain * (s[_MEAN_NOISE_Q8] >> 14) + (
-        gain * (s[_MEAN_NOISE_Q8] & 0x3FFF) >> 14
-    )
+    s[a + _LEFT_Q4] = error - (gain * error >> 14)
+    s[a + _OFFSET_VARIANCE_Q8] = left_q8(s, gain)
 
 
 def level_q8(s: ptr32, c: ptr32, a: int) -> int:
@@ -228,6 +300,7 @@ def adopt(s: ptr32, c: ptr32, a: int, error: int) -> int:
     else:
         move_offset(s, a, error << 4)
     s[a + _OFFSET_FROM] = s[a + _OFFER] & 7
+    s[a + _LEFT_Q4] = 0
     s[a + _OFFSET_VARIANCE_Q8] = noise
     s[a + _OFFSET_AGE_MS] = 0
     return 1
@@ -239,7 +312,7 @@ def absorb(s: ptr32, c: ptr32, a: int) -> int:
     The very first one is all curve and no offset.
     """
     error = s[a + _WAITING_N]
-    s[_MEAN_NOISE_Q8] = mean_noise_q8(s, c, error)
+    s[_MEAN_NOISE_Q8] = mean_noise_q8(s, c, a, error)
     error = error_q4(s, c, a)
     if believe(s, c, a, error) == 0:
         return 0
@@ -254,11 +327,12 @@ def believe(s: ptr32, c: ptr32, a: int, error: int) -> int:
     """
     if s[a + _OFFER]:
         return adopt(s, c, a, error)
-    s[a + _OFFSET_FROM] = 0
     if s[a + _KIND] == 0:
         s[a + _SUSPECT] = -1
         s[_RESTS] = c[_INSIST]
+        s[a + _OFFSET_FROM] = 0
         s[a + _OFFSET_Q8] = 0
+        s[a + _LEFT_Q4] = 0
         s[a + _OFFSET_VARIANCE_Q8] = s[_MEAN_NOISE_Q8]
         s[a + _OFFSET_AGE_MS] = 0
         return 1
@@ -266,11 +340,16 @@ def believe(s: ptr32, c: ptr32, a: int, error: int) -> int:
     verdict = plausible(s, c, a, error)
     if verdict == 0:
         return 0
+    held = clipped(error, 0x3FFF)
+    calibrate(s, c, a, held)
+    s[a + _OFFSET_FROM] = 0
     if verdict == 1:
-        held = clipped(error, 0x3FFF)
         follow(s, c, a, held)
     else:
         s[a + _OFFSET_VARIANCE_Q8] = s[_MEAN_NOISE_Q8]
+        s[a + _LEFT_Q4] = 0
+        held = held >> 1  # it may as well be a turn
+        s[a + _DOUBT_Q8] = held * held
     s[a + _OFFSET_AGE_MS] = 0
     return 1
 

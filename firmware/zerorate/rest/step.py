@@ -9,10 +9,10 @@
 
 from ..arithmetic.fixed import root
 from .bias import curve_q8
-from .estimators import learn_anywhere, learn_here
+from .estimators import find, learn_anywhere, learn_here
 from .fit import bend, draw_line
 from .guard import check
-from .recent import absorb, beyond_q8, gain_q14, grown_q8, hand_over, mean_noise_q8
+from .recent import absorb, beyond_q8, gain_q14, grown_q8, hand_over, left_q8, mean_noise_q8
 from .stillness import gather, judge, seems_still
 
 const = int  # on a board the compiler itself reads const(...)
@@ -47,9 +47,16 @@ _WAITING_N = const(1)
 _OFFER = const(12)
 _OFFSET_FROM = const(13)
 _OFFSET_Q8 = const(27)
+_OFFSET_VARIANCE_Q8 = const(28)
 _OFFSET_AGE_MS = const(31)
 _KIND = const(33)
 _LINE_TEMP = const(34)
+_FLOOR_Q16 = const(35)
+_LEFT_Q4 = const(37)
+_DOUBT_Q8 = const(38)
+_ESTIMATORS = const(39)
+# layout: An estimator
+_EST_SPREAD_Q8 = const(4)
 # layout: The corrector's settings
 _AXES = const(0)
 _WINDOW = const(3)
@@ -57,7 +64,6 @@ _WINDOW_SHIFT = const(4)
 _SLEW_Q8 = const(13)
 _WORK_A_SAMPLE = const(14)
 _AXIS_WORDS = const(15)
-_FLOOR_Q8 = const(39)
 _GATE_Q4 = const(40)
 _STALE_LSB = const(45)
 _PROVISIONAL_Q8 = const(46)
@@ -66,6 +72,8 @@ _MOST_SIGMA_Q6 = const(50)
 _FULL_WEIGHT_Q12 = const(51)
 # layout: What a window was
 _STILL = const(1)
+# layout: Values that stand for none
+_NO_VALUE = const(-0x3FFFFFFF)
 # layout: end
 _TO_ABSORB = const(0)
 _TO_LEARN_HERE = const(1)
@@ -73,11 +81,12 @@ _TO_DRAW = const(2)
 _TO_BEND = const(3)
 
 
-def sigma_q8(s: ptr32, c: ptr32, a: int) -> int:
-    """Return one sigma of the axis' bias at the temperature of the latest window, LSB Q8."""
-    # flicker noise is common to all rests: no mean of theirs is better known than that
-    variance = grown_q8(s, a) + (c[_FLOOR_Q8] << 1)
-    variance += beyond_q8(s, c, a)
+def sigma_q8(s: ptr32, a: int) -> int:
+    """Return one sigma of the axis' bias at the temperature of the latest window, LSB Q8.
+
+    What differs from rest to rest is flicker noise, of which faster octaves hold thrice as much.
+    """
+    variance = s[_GROWN_Q8] + 3 * (s[a + _FLOOR_Q16] >> 8) + s[a + _DOUBT_Q8]
     if variance < 0x3FFFFF:
         return root(variance << 8)
     return root(variance) << 4
@@ -91,16 +100,14 @@ def leant_q8(s: ptr32, c: ptr32, a: int, bias: int) -> int:
     """
     error = (a - c[_AXES]) // c[_AXIS_WORDS]
     error = (segment_mean_q8(s, c, error) - bias) >> 4
+    n = s[_SEGMENT_WINDOWS] << c[_WINDOW_SHIFT]
+    s[_MEAN_NOISE_Q8] = mean_noise_q8(s, c, a, n)
     if error > c[_GATE_Q4] or error < -c[_GATE_Q4]:
         return bias
-    n = s[_SEGMENT_WINDOWS] << c[_WINDOW_SHIFT]
-    s[_MEAN_NOISE_Q8] = mean_noise_q8(s, c, n)
-    s[_GROWN_Q8] = beyond_q8(s, c, a)
-    n = grown_q8(s, a)
-    n += s[_GROWN_Q8]
-    if error * error >> 2 > n + s[_MEAN_NOISE_Q8]:
+    if error * error >> 2 > s[_GROWN_Q8] + s[_MEAN_NOISE_Q8]:
         return bias
-    n = gain_q14(n, s[_MEAN_NOISE_Q8])
+    n = gain_q14(s[_GROWN_Q8], s[_MEAN_NOISE_Q8])
+    s[_GROWN_Q8] = left_q8(s, n)
     return bias + (n * error >> 10)
 
 
@@ -109,13 +116,14 @@ def publish(s: ptr32, c: ptr32, a: int, axis: int):
     bias = curve_q8(s, c, a, s[_TEMP]) + s[a + _OFFSET_Q8]
     if s[a + _KIND] == 0:
         return
+    s[_GROWN_Q8] = grown_q8(s, a) + beyond_q8(s, c, a)
     if s[_STILLNESS] == _STILL and s[_SEGMENT_WINDOWS] and c[_EVERY] == 0:
         bias = leant_q8(s, c, a, bias)
     s[_TARGET_Q8 + axis] = bias
     if s[_SOURCE + axis] == 0:
         s[_OUT_Q8 + axis] = bias
     s[_SOURCE + axis] = s[a + _OFFSET_FROM] if s[a + _OFFSET_FROM] else s[a + _KIND]
-    s[_QUALITY_Q8 + axis] = sigma_q8(s, c, a)
+    s[_QUALITY_Q8 + axis] = sigma_q8(s, a)
 
 
 def segment_mean_q8(s: ptr32, c: ptr32, axis: int) -> int:
@@ -255,6 +263,16 @@ def examine(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
     return check(s, c, x, dt_us)
 
 
+def power_on(s: ptr32, c: ptr32, axis: int):
+    """Know the bias as well as this part repeats at this temperature, until a rest tells more."""
+    a = c[_AXES] + axis * c[_AXIS_WORDS]
+    if s[a + _LEFT_Q4] == _NO_VALUE:
+        e = find(s, c, a, s[_TEMP])
+        if e == 0:
+            e = a + _ESTIMATORS
+        s[a + _OFFSET_VARIANCE_Q8] = s[e + _EST_SPREAD_Q8]
+
+
 def begin(s: ptr32, c: ptr32, x: ptr32):
     """Speak for the first frame's temperature, or each one's where windows are long; look for rest.
 
@@ -262,6 +280,9 @@ def begin(s: ptr32, c: ptr32, x: ptr32):
     """
     if s[_COUNTS] == 1 or c[_WINDOW] == 4:
         s[_TEMP] = x[3]
+        power_on(s, c, 0)
+        power_on(s, c, 1)
+        power_on(s, c, 2)
         s[_WORK] = 1
         while s[_WORK]:
             advance(s, c)

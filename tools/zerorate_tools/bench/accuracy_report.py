@@ -28,8 +28,8 @@ temperature and the walk that suits this day best.
 """
 _HONESTY = """\
 In how much of the last power-on the truth lies within two of `quality_lsb`, all sources on; 95 %
-would be exact. Above 99 % it says less than it knows: one sigma of the first seconds is that of any
-part, not yet of one that repeats.
+would be exact. One sigma is learned from the part itself, its flicker noise, its walk and how well
+its power-ons repeat ([learning.md](learning.md#what-it-says-of-itself)).
 """
 _REAL = """\
 RMS over axes and over means of 20 s, true rate zero (Earth's 4 mdps is in it); blocks in which the

@@ -1,0 +1,64 @@
+"""One sigma is learned from the part itself: how it repeats, how it wanders, what may be a turn."""
+
+from copy import deepcopy
+
+import numpy as np
+import pytest
+
+from .played import LSB, play, rest
+from .test_stillness import BIAS_DPS, handled, turning
+
+
+def quality_dps(corrector, axis=0):
+    return corrector.quality_lsb(axis) / LSB
+
+
+def first_quality_dps(corrector):
+    """One sigma at the very first sample of another power-on."""
+    corrector = deepcopy(corrector)
+    corrector.power_on()
+    play(rest(0.01), corrector)
+    return quality_dps(corrector)
+
+
+@pytest.mark.parametrize("spread_dps", [0.0, 0.06])
+def test_a_power_on_begins_as_sure_as_this_part_repeats(spread_dps):
+    corrector, _ = play(rest(10))
+    assert first_quality_dps(corrector) == pytest.approx(0.02, rel=0.1)  # that of any part
+    for seed in range(1, 11):
+        corrector.power_on()
+        play(rest(30, seed, spread_dps * (-1) ** seed * np.ones(3)), corrector)
+    if spread_dps:  # half of the last one's offset is kept, so it is off by one and a half times
+        assert 0.06 < first_quality_dps(corrector) < 0.12
+    else:
+        assert first_quality_dps(corrector) < 0.007
+
+
+def test_what_a_restarted_program_knew_of_a_chip_under_power_is_as_sure_as_it_was():
+    corrector, _ = play(rest(30))
+    before = quality_dps(corrector)
+    corrector.power_on(same=True)
+    play(rest(0.01), corrector)
+    assert quality_dps(corrector) < before + 0.001
+
+
+def test_a_part_whose_bias_wanders_at_rest_is_less_sure_than_one_with_white_noise_alone():
+    frames = rest(600, bias_dps=BIAS_DPS)
+    white, _ = play(frames)
+    halves = np.repeat(np.random.default_rng(1).normal(0, 0.006, (len(frames) // 200, 3)), 200, 0)
+    frames[:, 4:] += halves * LSB
+    wandering, _ = play(frames)
+    for axis in range(3):
+        assert quality_dps(white, axis) < 0.004
+        assert 0.006 < quality_dps(wandering, axis) < 0.014
+
+
+def test_a_bias_that_insisted_may_be_a_turn_until_another_rest_confirms_it():
+    corrector, _ = play(turning(0, 30, axis=2))
+    play(turning(1, 120, axis=2, seed=2), corrector)
+    assert corrector.bias_lsb(2) == pytest.approx(1.2 * LSB, abs=2)
+    assert quality_dps(corrector, 2) == pytest.approx(0.5, rel=0.1)
+    assert quality_dps(corrector, 0) < 0.01
+    play(handled(8, 4) + [0, 0, 0, 0, 0, 0, LSB], corrector)
+    play(turning(1, 10, axis=2, seed=3), corrector)
+    assert quality_dps(corrector, 2) < 0.01
