@@ -9,7 +9,6 @@ import pyarrow as pa
 import pytest
 from pyarrow import parquet
 from zerorate_tools.closing import load
-from zerorate_tools.errors import ZerorateError
 from zerorate_tools.loop.read.gate import CannotClose
 
 from .power_ons import HZ, MPU, at_rest
@@ -125,20 +124,6 @@ def test_recordings_all_in_motion_are_told_to_rest(closing):
         one["gz"] = np.rint(131 * 60 * np.sin(np.arange(N) / (2 + i))).astype(np.int32)
     with pytest.raises(CannotClose, match="s1: only 0.0 minutes are still; .* untouched"):
         closing(every)
-
-
-def test_a_clock_that_wraps_is_a_sentence_too(closing):
-    one = at_rest(1)
-    one["t_us"] = (one["t_us"] + 2**32 - 10**9) % 2**32
-    with pytest.raises(ZerorateError, match=r"row .*time goes backwards.*32 bits.*add 4294967296"):
-        closing([one])
-
-
-def test_a_clock_that_was_set_back_is_to_be_sorted_or_cut(closing):
-    one = at_rest(1)
-    one["t_us"][3000:] -= 10**8
-    with pytest.raises(ZerorateError, match="row .*time goes backwards.* sort or cut"):
-        closing([one])
 
 
 def test_whole_numbers_with_gaps_that_a_table_made_floats_are_integers_with_gaps(tmp_path):

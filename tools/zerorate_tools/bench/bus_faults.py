@@ -155,33 +155,18 @@ class Bench:
         return refused
 
 
-def nack(bench: Bench) -> None:
-    bench.bus.fault("nack", times=2)
-    bench.run(50)
+def of_the_bus(kind: str, times: int) -> Callable[[Bench], None]:
+    """A fault of so many transfers; one that ends within a burst ends behind any of its bytes."""
 
+    def strike(bench: Bench) -> None:
+        bench.bus.fault(kind, times=times, at_byte=bench.now % 14)
+        bench.run(50)
 
-def no_answer(bench: Bench) -> None:
-    bench.bus.fault("nack", times=20)
-    bench.run(50)
-
-
-def gone_in_mid_burst(bench: Bench) -> None:
-    bench.bus.fault("gone", times=3, at_byte=bench.now % 14)
-    bench.run(50)
+    return strike
 
 
 def sda_held_low(bench: Bench) -> None:
     bench.bus.hold_sda(1 + bench.now % 9)
-    bench.run(50)
-
-
-def all_ones(bench: Bench) -> None:
-    bench.bus.fault("all_ff", times=4)
-    bench.run(50)
-
-
-def all_zeros(bench: Bench) -> None:
-    bench.bus.fault("all_00", times=4)
     bench.run(50)
 
 
@@ -259,12 +244,20 @@ def chip_swapped(bench: Bench) -> None:
 
 
 FAULTS: dict[str, Callable[[Bench], None]] = {
-    fault.__name__.replace("_", "-"): fault
-    for fault in (
-        *(nack, no_answer, gone_in_mid_burst, sda_held_low, all_ones, all_zeros, frozen_data),
-        *(torn_words, fifo_desync, fifo_overflow),
-        *(brown_out, brown_out_data_kept, brown_out_awake, chip_swapped),
-    )
+    "nack": of_the_bus("nack", 2),
+    "no-answer": of_the_bus("nack", 20),
+    "gone-in-mid-burst": of_the_bus("gone", 3),
+    "sda-held-low": sda_held_low,
+    "all-ones": of_the_bus("all_ff", 4),
+    "all-zeros": of_the_bus("all_00", 4),
+    "frozen-data": frozen_data,
+    "torn-words": torn_words,
+    "fifo-desync": fifo_desync,
+    "fifo-overflow": fifo_overflow,
+    "brown-out": brown_out,
+    "brown-out-data-kept": brown_out_data_kept,
+    "brown-out-awake": brown_out_awake,
+    "chip-swapped": chip_swapped,
 }
 
 
