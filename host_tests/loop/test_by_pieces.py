@@ -16,6 +16,15 @@ def lagging():
     return Search([session])
 
 
+@pytest.fixture(scope="module")
+def narrow():
+    """The same over two degrees."""
+    (session,) = simulate(5, [("thermal-lag", 20.0)], sessions=1, bare=True).sessions
+    temp = session.sources["temp"]
+    session.sources["temp"] = 25.0 + 2.0 * (temp - temp.min()) / np.ptp(temp)
+    return Search([session])
+
+
 class Kernels:
     """Pieces as a firmware predicts them whose own curve is worth `nats` less than a slope."""
 
@@ -33,14 +42,18 @@ def by(search, judged):
     return r, search.line, [], judged, PiecesByLine(r.sessions[0]), 0
 
 
-def test_a_polynomial_takes_the_place_of_a_curve_that_predicts_worse(lagging):
-    found = polynomial(*by(lagging, Kernels(5.0)))
+def test_a_polynomial_takes_the_place_of_a_curve_that_predicts_worse(narrow):
+    found = polynomial(*by(narrow, Kernels(5.0)))
     assert found.candidate.kind == POLYNOMIAL
-    assert less_slope(lagging.line, found.candidate.terms) == ()
+    assert less_slope(narrow.line, found.candidate.terms) == ()
 
 
-def test_a_curve_that_predicts_as_well_keeps_its_place(lagging):
-    assert polynomial(*by(lagging, Kernels(1.0))) is None
+def test_a_curve_that_predicts_as_well_keeps_its_place(narrow):
+    assert polynomial(*by(narrow, Kernels(1.0))) is None
+
+
+def test_a_curve_over_many_degrees_keeps_its_place(lagging):
+    assert polynomial(*by(lagging, Kernels(5.0))) is None
 
 
 def test_a_lag_is_found_by_pieces_alone(lagging):
@@ -48,6 +61,12 @@ def test_a_lag_is_found_by_pieces_alone(lagging):
     best = memory(r, line, found, lagging.pool, by_line, by_line, taken)
     assert best.candidate.kind == "thermal-lag"
     assert not cancels(r.sessions, line, best.candidate.terms)
+
+
+def test_a_lag_that_the_likelihood_does_not_show_is_left_to_the_noise(lagging, monkeypatch):
+    monkeypatch.setattr("zerorate_tools.loop.search.by_pieces.family_p", lambda *_: 0.02)
+    r, line, found, _, by_line, taken = by(lagging, None)
+    assert memory(r, line, found, lagging.pool, by_line, by_line, taken) is None
 
 
 def test_a_decay_that_only_stands_against_a_warm_up_cancels():

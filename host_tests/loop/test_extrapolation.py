@@ -93,6 +93,13 @@ def test_a_found_effect_is_held_further_out_only_after_several_power_ons():
     assert own.min() <= alone.lo < alone.hi <= own.max()
 
 
+def test_a_kink_of_one_recording_goes_on_beyond_its_temperatures():
+    (session,) = simulate(3, [("temperature-kink", 10.0)], sessions=1, bare=True).sessions
+    found = select([session], on_pieces=PiecesByLine(session)).found
+    [kink] = [f.candidate.terms[0] for f in found if f.candidate.kind == "temperature-kink"]
+    assert kink.hi > session.sources["temp"].max()
+
+
 def test_the_integers_are_held_where_the_numbers_are():
     found = select(simulate(3, [("temperature-quadratic", 5.0)]).sessions[:-1]).found[0]
     term = found.candidate.terms[0]

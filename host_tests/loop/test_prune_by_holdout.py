@@ -71,6 +71,15 @@ def test_what_makes_the_error_smaller_stays_whatever_its_likelihood(monkeypatch)
     assert kinds(left) == ["supply-voltage"] and not left.withdrawn
 
 
+def test_what_takes_hardly_anything_goes_where_one_recording_was_fitted():
+    selection = select(simulate(11, [("supply-voltage", 5.0)]).sessions[:-1])
+    after = [np.full((4, 3), 1.0), np.column_stack([np.full(4, e) for e in (0.97, 0.94, 0.5)])]
+    parts = [[residual] for residual in after]
+    assert unharmed(selection, parts) is selection
+    [one] = unharmed(replace(selection, alone=True), parts).found
+    assert one.axes == (False, True, True)
+
+
 def test_what_the_session_held_out_is_the_worse_for_goes():
     sessions = simulate(11, [("supply-voltage", 5.0)]).sessions
     last = sessions[-1]

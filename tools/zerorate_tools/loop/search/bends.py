@@ -13,7 +13,7 @@ from typing import Protocol
 import numpy as np
 
 from ...model.term import Term
-from ..fit.single import speaks_for
+from ..fit.single import LEAST_NATS
 from .catalogue import Candidate
 from .decide import LEVEL, Decision, family_p
 from .refine import refined
@@ -21,6 +21,8 @@ from .refine import refined
 KINDS = ("temperature-quadratic", "temperature-cubic", "temperature-curve", "temperature-kink")
 #: Of likelihood ratio, by which a kink, which has a place to choose, must beat a curve.
 _KINK_PAYS = 10.0
+#: Nats that pieces left out must gain of what is no bend: not every part has it.
+LEAST_OF_OTHERS = 2.0
 
 
 class JudgedOnPieces(Protocol):
@@ -67,10 +69,17 @@ def find_bends(regression, judged: JudgedOnPieces, straight, pool) -> Bends:
     return bends
 
 
-def on_pieces(decision: Decision, judged: JudgedOnPieces, straight, found, candidate) -> Decision:
-    """A decision for a candidate, unless pieces left out speak against it."""
+def on_pieces(
+    decision: Decision,
+    judged: JudgedOnPieces,
+    straight,
+    found,
+    candidate,
+    least: float = LEAST_NATS,
+) -> Decision:
+    """A decision for a candidate, unless pieces left out do not speak for it by so many nats."""
     gain = judged(straight, found, candidate)
-    accepted = speaks_for(gain)
+    accepted = bool(gain.sum() > least)
     reason = "" if accepted else judged.reason
     return replace(decision, accepted=accepted, session_gains=gain, reason=reason)
 

@@ -26,6 +26,11 @@ _MEMORIES = ("thermal-lag", "thermal-rate", "power-on-transient")
 #: Nats that pieces left out must gain, and what may be left of their error: of a form without
 #: memory, and of one that has to be told from a walk of the noise, which a slow course feigns well.
 _CLEARLY, _CLEARLY_OF_MEMORY = (2.0, 0.97), (5.0, 0.9)
+#: Chance by the likelihood, all that were tried paid for, above which pieces alone tell of no
+#: memory: with one of real parts it is below 0.0001, with seven that noise feigned it was 1.
+_LIKELY = 0.01
+#: Range of temperature in which the firmware's curve is one line, learned in a few bins.
+_NARROW_DEGC = 3.0
 #: Share of the range of temperature beyond which the slope is held.
 _BEYOND = 0.5
 #: Of the error without it that an effect may be. Lags of real parts are 0.6 times; what tells a
@@ -85,9 +90,10 @@ def memory(
         return None
     best = own[gains.index(max(gains))]
     gain = judged(straight, beside, best.terms)
-    if not _is_clear(gain, regression, *_CLEARLY_OF_MEMORY):
+    decision = _decision(regression, every, best.terms, len(own), gain)
+    if decision.p_value > _LIKELY or not _is_clear(gain, regression, *_CLEARLY_OF_MEMORY):
         return None
-    return Found(best, _decision(regression, every, best.terms, len(own), gain))
+    return Found(best, decision)
 
 
 def cancels(sessions: Sequence[Session], beside: Sequence[Term], terms: Sequence[Term]) -> bool:
@@ -126,6 +132,8 @@ def _polynomials(regression, straight) -> list[tuple[Term, ...]]:
     if not straight:
         return []
     lo, hi, _ = ranges(regression.sessions)["temp"]
+    if hi - lo > _NARROW_DEGC:
+        return []
     margin = _BEYOND * (hi - lo)
     slope = replace(straight[0], lo=lo - margin, hi=hi + margin)
     powers = [slope, *(replace(straight[0], lo=lo, hi=hi, power=k) for k in (2, 3))]

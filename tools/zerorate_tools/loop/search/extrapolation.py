@@ -4,7 +4,8 @@ The next session goes a little further in temperature or supply than those befor
 very edge, a large effect is then wrong by what it still changes; followed too far, by what the fit
 does not know. So a term is followed as far as its error there stays within the noise of a block,
 judged with a further power of the source in the fit: what is not known of the curve's shape counts.
-That takes several power-ons; what one alone shows is held at the edge.
+That takes several power-ons. What one alone shows is held at the edge, but for a bend over
+temperature: beyond it the firmware's own curve goes on with its slope; what is held makes a corner.
 """
 
 from __future__ import annotations
@@ -16,12 +17,31 @@ from typing import Any
 import numpy as np
 
 from ...model.term import Term
+from .bends import KINDS
 from .catalogue import OF_MOTION, is_bounded
 
 #: At most this share of the range seen, on either side, and in how many steps it is looked for.
 MOST, _STEPS = 0.25, 10
+#: The same of what one recording shows to go on straight.
+STRAIGHT = 1.0
 #: RMS error beyond the edge, over that of a block's white noise.
 _WITHIN = 1.0
+
+
+def go_on(regression, straight, found) -> None:
+    """The same of one recording: of bends over temperature alone, and a kink goes on straight as
+    the firmware's own curve does, whose corner it would else be."""
+    bends = [f for f in found if f.candidate.kind in KINDS]
+    others = [t for f in found if f not in bends for t in f.candidate.terms]
+    follow_further(regression, [*straight, *others], bends)
+    for f in bends:
+        if f.candidate.kind == "temperature-kink":
+            f.candidate = replace(f.candidate, terms=tuple(map(_straight_on, f.candidate.terms)))
+
+
+def _straight_on(kink: Term) -> Term:
+    margin = STRAIGHT * (kink.hi - kink.lo)
+    return replace(kink, lo=kink.lo - margin, hi=kink.hi + margin)
 
 
 def follow_further(regression, straight, found) -> None:

@@ -14,13 +14,13 @@ from ..fit.single import LEAST_OF_A_PIECE, PIECES, PiecesByLine
 from ..read.sessions import Session
 from . import by_pieces, confounding, drift_test, hysteresis
 from . import steps as events
-from .bends import JudgedOnPieces, find_bends, on_pieces
+from .bends import LEAST_OF_OTHERS, JudgedOnPieces, find_bends, on_pieces
 from .catalogue import Candidate, ranges
 from .catalogue import candidates as all_candidates
 from .collinear import collinear
 from .decide import Decision, decide
 from .detectable import smallest_dps
-from .extrapolation import follow_further
+from .extrapolation import follow_further, go_on
 from .fits_in_slots import fits_in_slots
 from .multiple_testing import MultipleTesting
 from .naming import name_found
@@ -98,8 +98,8 @@ class Search:
         name_found(self.regression, self.straight, self.found, self.pool, self.bends)
         for f in self.like_hysteresis:
             f.confounded_with = list(dict.fromkeys([*f.confounded_with, hysteresis.KIND]))
-        if not self.on_pieces:
-            follow_further(self.regression, self.straight, self.found)
+        further = go_on if self.on_pieces else follow_further
+        further(self.regression, self.straight, self.found)
         r = self.regression
         smallest = self._smallest()
         return Selection(
@@ -292,7 +292,8 @@ class Search:
             if by_pieces.cancels(r.sessions, [*self.straight, *self.terms()], best.terms):
                 self.refused.append((confounding.label(best), "it would only cancel another"))
                 return None
-            decision = on_pieces(decision, self.on_pieces, self.straight, self.terms(), best.terms)
+            beside = self.straight, self.terms()
+            decision = on_pieces(decision, self.on_pieces, *beside, best.terms, LEAST_OF_OTHERS)
         if decision.accepted:
             return Found(best, decision)
         self.refused.append((confounding.label(best), decision.reason))
