@@ -6,7 +6,7 @@ The tool scales each slot so that no stage leaves +-1 (2^24), and 1 stands for t
 that the fitted range allows. Words of a slot: docs/layout.md.
 """
 
-from ..arithmetic.fixed import scaled
+from ..arithmetic.fixed import clipped, scaled
 
 const = int  # on a board the compiler itself reads const(...)
 ptr32 = None
@@ -214,13 +214,8 @@ def add_times(e: ptr32, v: int, a: int, shift: int, to: int):
     """Add v times the three coefficients at word a to three sums in Q14 LSB."""
     i = 3
     while i > 0:
-        d = scaled(v, e[a], shift)
-        d += e[to]
-        if d > 0x1FFFFFFF:
-            d = 0x1FFFFFFF
-        elif d < -0x1FFFFFFF:
-            d = -0x1FFFFFFF
-        e[to] = d
+        d = scaled(v, e[a], shift) + e[to]
+        e[to] = clipped(d, 0x1FFFFFFF)
         to += 1  # eleven words: to and a go on to the next axis
         a += 1
         i -= 1

@@ -3,6 +3,8 @@
 A source's value is in Q8 of its integer. Words of an input: docs/layout.md.
 """
 
+from ..arithmetic.fixed import clipped
+
 const = int  # on a board the compiler itself reads const(...)
 ptr32 = None
 
@@ -58,11 +60,7 @@ def extra(e: ptr32, a: int) -> int:
     v = e[_CHANNELS + e[a + _INPUT_KIND] - _KIND_CHANNEL]
     if v == _NO_VALUE:
         return _NO_VALUE
-    if v > 0x1FFFFFFF:
-        v = 0x1FFFFFFF
-    elif v < -0x1FFFFFFF:
-        v = -0x1FFFFFFF
-    v -= e[a + _INPUT_OFFSET]
+    v = clipped(v, 0x1FFFFFFF) - e[a + _INPUT_OFFSET]
     left = 0 - e[a + _INPUT_SHIFT]
     if left < 0:
         v = v >> (0 - left)

@@ -7,6 +7,7 @@ neither the turn-on offset nor the line is taken for an effect. No coefficient l
 own by more than the bound. Numbers are those of real.py; words of `e`: docs/layout.md.
 """
 
+from ..arithmetic.fixed import clipped
 from ..arithmetic.real import add, divide, multiply, put, subtract, whole
 
 const = int  # on a board the compiler itself reads const(...)
@@ -179,11 +180,7 @@ def move(e: ptr32, a: int, state: int):
     i = 3
     while i > 0:
         d = whole(e, state, shift)
-        if d > most:
-            d = most
-        elif d < 0 - most:
-            d = 0 - most
-        e[a + _SLOT_COEFFICIENT] = e[a + _SLOT_OWN] + d
+        e[a + _SLOT_COEFFICIENT] = e[a + _SLOT_OWN] + clipped(d, most)
         a += 1
         state += _REFINE_ROW
         i -= 1

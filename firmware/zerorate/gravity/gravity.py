@@ -18,7 +18,7 @@ all signs agree and halves it when the counter turns.
 """
 
 from ..arithmetic.atan2 import atan2_q13
-from ..arithmetic.fixed import scaled
+from ..arithmetic.fixed import clipped, scaled
 
 const = int  # on a board the compiler itself reads const(...)
 ptr32 = None
@@ -110,12 +110,8 @@ def gather(s: ptr32, x: ptr32, factor: int, shift: int):
     i = 0
     while i < 3:
         turned = (x[4 + i] << 8) - s[_GRAVITY_BIAS_Q8 + i]
-        turned = scaled(turned, factor, shift)
-        turned += s[_ANGLE_Q22 + i]
-        if turned > _MOST_Q22:
-            turned = _MOST_Q22
-        if turned < -_MOST_Q22:
-            turned = -_MOST_Q22
+        turned = scaled(turned, factor, shift) + s[_ANGLE_Q22 + i]
+        turned = clipped(turned, _MOST_Q22)
         s[_ANGLE_Q22 + i] = turned
         turned = turned >> 9
         s[_ANGLE_SUM_Q13 + i] += turned

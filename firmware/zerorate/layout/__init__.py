@@ -9,74 +9,28 @@ firmware file it begins with `_`.
 Units: LSB of the sensor unless said; a number behind a name's last `_Q` is its fractional bits.
 """
 
-from .codes import (
-    GRAVITY_REASON,
-    GUARD,
-    INPUT_KIND,
-    INSTANT,
-    JOB,
-    LIMITS,
-    MARKS,
-    MEMORY,
-    MOTION_REASON,
-    SOURCE,
-    STILLNESS,
-)
-from .effects import EFFECTS, INPUT, PLAY, RING, SLOT
-from .motion import COMPONENT, GRAVITY, GRAVITY_SETTINGS, MOTION, MOTION_SETTINGS
-from .rest import AXIS, ESTIMATOR, SETTINGS, STATE, TURN_ON
+from . import codes, effects, motion, rest
+from .codes import *  # noqa: F403
+from .effects import *  # noqa: F403
+from .motion import *  # noqa: F403
+from .rest import *  # noqa: F403
+from .words import Array, Codes
 
-ARRAYS = (
-    STATE,
-    TURN_ON,
-    AXIS,
-    ESTIMATOR,
-    SETTINGS,
-    MOTION,
-    COMPONENT,
-    MOTION_SETTINGS,
-    GRAVITY,
-    GRAVITY_SETTINGS,
-    EFFECTS,
-    INPUT,
-    SLOT,
-    PLAY,
-    RING,
-)
-CODES = (
-    GUARD,
-    STILLNESS,
-    SOURCE,
-    JOB,
-    MOTION_REASON,
-    GRAVITY_REASON,
-    INPUT_KIND,
-    MEMORY,
-    INSTANT,
-    MARKS,
-    LIMITS,
-)
+
+def _of(kind, *files):
+    """What the files define of a kind, in their order."""
+    return tuple(one for file in files for one in vars(file).values() if isinstance(one, kind))
+
+
+ARRAYS = _of(Array, rest, motion, effects)
+CODES = _of(Codes, codes)
 
 
 def axis_at(settings, axis):
     """Return the first word of an axis of the corrector's state."""
-    return settings[SETTINGS.AXES] + axis * settings[SETTINGS.AXIS_WORDS]
+    return settings[rest.SETTINGS.AXES] + axis * settings[rest.SETTINGS.AXIS_WORDS]
 
 
 def slot_at(slot):
     """Return the first word of an effect slot."""
-    return EFFECTS.SLOTS + slot * SLOT.size
-
-
-def names():
-    """Return all names as a dict: name -> (number, title of what it belongs to)."""
-    found = {}
-    for array in ARRAYS:
-        for word in array.words:
-            found[word.name] = (word.index, array.title)
-        if array.size_name:
-            found[array.size_name] = (array.size, array.title)
-    for codes in CODES:
-        for name in codes.numbers:
-            found[name] = (codes.numbers[name], codes.title)
-    return found
+    return effects.EFFECTS.SLOTS + slot * effects.SLOT.size

@@ -5,55 +5,18 @@ from .words import Codes
 GUARD = Codes(
     "What the guard says of a frame",
     "guard",
-    GOOD=0,
-    REPEAT=1,
-    RAIL=2,
-    ALL_ZERO=3,
-    ALL_ONES=4,
-    TEMPERATURE_JUMP=5,
-    TIME_STOOD_STILL=6,
-    TIME_LEAPT=7,
+    "GOOD REPEAT RAIL ALL_ZERO ALL_ONES TEMPERATURE_JUMP TIME_STOOD_STILL TIME_LEAPT",
 )
-STILLNESS = Codes(
-    "What a window was",
-    "",
-    UNKNOWN=0,
-    STILL=1,
-    MOVING=2,
-    TURNING=3,
-    SHAKEN=4,
-    SHIFTED=5,
-)
-SOURCE = Codes(
-    "Where a bias comes from",
-    "bias",
-    NONE=0,
-    ANY_TEMPERATURE=1,
-    FIT=2,
-    HERE=3,
-    IN_MOTION=4,
-    GRAVITY=5,
-)
-JOB = Codes("What the source in motion is doing", "", IDLE=0, TRAVERSE=1, SOLVE=2)
+STILLNESS = Codes("What a window was", "", "UNKNOWN STILL MOVING TURNING SHAKEN SHIFTED")
+SOURCE = Codes("Where a bias comes from", "bias", "NONE ANY_TEMPERATURE FIT HERE IN_MOTION GRAVITY")
+JOB = Codes("What the source in motion is doing", "", "IDLE TRAVERSE SOLVE")
 MOTION_REASON = Codes(
     "What a window in motion taught",
     "",
-    NO_WINDOW=0,
-    GROWING=1,
-    LEARNED=2,
-    HARDLY_MOVES=3,
-    TURNED=4,
-    TOO_FAST=5,
-    LOST=6,
-    MOTION_GAP=7,
+    "NO_WINDOW GROWING LEARNED HARDLY_MOVES TURNED TOO_FAST LOST MOTION_GAP",
 )
 GRAVITY_REASON = Codes(
-    "What a sub-unit against gravity was",
-    "",
-    NO_SUB_UNIT=0,
-    COUNTING=1,
-    NOT_ONE_G=2,
-    GRAVITY_GAP=3,
+    "What a sub-unit against gravity was", "", "NO_SUB_UNIT COUNTING NOT_ONE_G GRAVITY_GAP"
 )
 INPUT_KIND = Codes(
     "Sources of effects: an acceleration, the temperature, a mean rate, ..., a channel",
@@ -70,13 +33,10 @@ INPUT_KIND = Codes(
 MEMORY = Codes(
     "An effect slot's memory",
     "",
-    MEMORY_LAG=1,
-    MEMORY_DIFFERENCE=2,
-    MEMORY_RATE=3,
-    MEMORY_BACKLASH=4,
-    MEMORY_PEAK=5,
+    "MEMORY_LAG MEMORY_DIFFERENCE MEMORY_RATE MEMORY_BACKLASH MEMORY_PEAK",
+    first=1,
 )
-INSTANT = Codes("What of the sample itself a slot follows", "", OF_RATE=1, OF_ACCELERATION=2)
+INSTANT = Codes("What of the sample itself a slot follows", "", "OF_RATE OF_ACCELERATION", first=1)
 MARKS = Codes(
     "Values that stand for none",
     "",

@@ -58,13 +58,14 @@ class Array:
 class Codes:
     """Numbers that stand for something. `codes.NAME` is the number.
 
-    owner: the file in which applications find them by name, "" where they are the kernels' own.
+    owner: the file in which applications find them by name, "" where they are the kernels' own;
+    ordered: names of numbers that count up from `first`.
     """
 
-    def __init__(self, title, owner, **numbers):
+    def __init__(self, title, owner, ordered="", first=0, **numbers):
         self.title = title
         self.owner = owner
-        self.numbers = numbers
+        self.numbers = {name: i for i, name in enumerate(ordered.split(), first)} | numbers
 
     def __getattr__(self, name):
         if name in self.numbers:

@@ -13,9 +13,10 @@ linear. Work is spread: a few nodes or one piece of algebra a sample. The state 
 of 241 words and 3 a node; motion_settings.py makes the settings.
 """
 
+from ..arithmetic.fixed import clipped
 from ..arithmetic.real import add, copy, whole
 from .attitude import normalise, rotation, sines, turn
-from .increments import close, gather, restart, within
+from .increments import close, gather, restart
 from .least_squares import (
     covariance,
     held_weights,
@@ -121,7 +122,7 @@ def begin_traversal(s: ptr32):
     for i in range(3 * _COMPONENT_WORDS):
         s[_SUMS + i] = 0
     for i in range(3):
-        s[_BIAS_Q24 + i] = within(whole(s, _BIAS + 2 * i, 0), _MOST_BIAS_Q24)
+        s[_BIAS_Q24 + i] = clipped(whole(s, _BIAS + 2 * i, 0), _MOST_BIAS_Q24)
         s[_BIAS_CARRY_Q24 + i] = 0
     for i in range(9):
         s[_SUM_R + i] = s[_CENTRE + i]
@@ -192,7 +193,7 @@ def remove_bias(s: ptr32, a: int):
         s[_BIAS_CARRY_Q24 + i] += s[_BIAS_Q24 + i]
         part = (s[_BIAS_CARRY_Q24 + i] + 0x400) >> 11
         s[_BIAS_CARRY_Q24 + i] -= part << 11
-        part = within((s[a + i] >> 15) - part, _MOST_HALF_Q14)
+        part = clipped((s[a + i] >> 15) - part, _MOST_HALF_Q14)
         s[_HALF + i] = part
         s[_TRAFFIC] += part if part > 0 else 0 - part
 

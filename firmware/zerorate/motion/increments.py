@@ -4,6 +4,8 @@ The ring keeps, a node and axis in one word, the increment (Q13 rad, 15 bits) ab
 (Q12 g, 15 bits). What rounding leaves over stays for the next node, so no angle is lost in the sum.
 """
 
+from ..arithmetic.fixed import clipped
+
 const = int  # on a board the compiler itself reads const(...)
 ptr32 = None
 
@@ -37,15 +39,6 @@ _MOST_ANGLE_Q13 = const(0x3FFF)
 _MOST_FORCE_Q12 = const(0x7FFF)
 
 
-def within(value: int, most: int) -> int:
-    """Return value held within +-most."""
-    if value > most:
-        return most
-    if value < 0 - most:
-        return 0 - most
-    return value
-
-
 def coning(s: ptr32, j: int, k: int) -> int:
     """Return half the cross product's component of turned angle and increment, Q24 rad."""
     first = ((s[_NODE_ANGLE_Q24 + j] + 0x200) >> 10) * ((s[_FRAME_ANGLE_Q24 + k] + 0x100) >> 9)
@@ -69,15 +62,15 @@ def convert(s: ptr32, c: ptr32, x: ptr32, factor: int):
     i = 0
     while i < 3:
         value = (x[4 + i] * factor + (1 << (c[_MOTION_SHIFT] - 1))) >> c[_MOTION_SHIFT]
-        s[_FRAME_ANGLE_Q24 + i] = within(value, _HALF_RAD_Q24)
+        s[_FRAME_ANGLE_Q24 + i] = clipped(value, _HALF_RAD_Q24)
         if s[_FRAME_ANGLE_Q24 + i] != value:
             s[_FAST] = c[_NODES]
         i += 1
     i = 0
     beyond = 0xFFFFFFF // c[_FORCE_GAIN]  # the most of a force
     while i < 3:
-        value = within(x[i], beyond) * c[_FORCE_GAIN]
-        s[_FRAME_FORCE_Q12 + i] = within((value + 0x1000) >> 13, _MOST_FORCE_Q12)
+        value = clipped(x[i], beyond) * c[_FORCE_GAIN]
+        s[_FRAME_FORCE_Q12 + i] = clipped((value + 0x1000) >> 13, _MOST_FORCE_Q12)
         i += 1
 
 
@@ -104,7 +97,7 @@ def advance(s: ptr32, c: ptr32):
     while i < 3:
         s[_NODE_FORCE_Q12 + i] += s[_FRAME_FORCE_Q12 + i] + s[_SCULLING_Q12 + i]
         angle = s[_NODE_ANGLE_Q24 + i] + s[_FRAME_ANGLE_Q24 + i] + s[_CONING_Q24 + i]
-        s[_NODE_ANGLE_Q24 + i] = within(angle, _TWO_RAD_Q24)
+        s[_NODE_ANGLE_Q24 + i] = clipped(angle, _TWO_RAD_Q24)
         if s[_NODE_ANGLE_Q24 + i] != angle:
             s[_FAST] = c[_NODES]
         i += 1
@@ -120,11 +113,11 @@ def close(s: ptr32, c: ptr32):
     for i in range(3):
         over = (s[_NODE_ELAPSED_US] << 10) // c[_NODE_US]
         over = ((s[_BIAS_Q24 + i] >> 8) * over) >> 2
-        angle = within((s[_NODE_ANGLE_Q24 + i] - over + 0x400) >> 11, _MOST_ANGLE_Q13)
-        over = within(s[_NODE_FORCE_Q12 + i] // s[_NODE_N], _MOST_ANGLE_Q13)
+        angle = clipped((s[_NODE_ANGLE_Q24 + i] - over + 0x400) >> 11, _MOST_ANGLE_Q13)
+        over = clipped(s[_NODE_FORCE_Q12 + i] // s[_NODE_N], _MOST_ANGLE_Q13)
         s[a + i] = (angle << 15) + (over & 0x7FFF)
         angle = s[_NODE_ANGLE_Q24 + i] - (angle << 11)
-        s[_NODE_ANGLE_Q24 + i] = within(angle, _TWO_RAD_Q24)
+        s[_NODE_ANGLE_Q24 + i] = clipped(angle, _TWO_RAD_Q24)
         s[_NODE_FORCE_Q12 + i] = 0
     s[_NODE_N] = 0
     next_node(s, c)

@@ -1,8 +1,7 @@
 """The tilt frame of a window: where its mean specific force points up."""
 
-from ..arithmetic.fixed import root
+from ..arithmetic.fixed import clipped, root
 from .attitude import heading_q12, rotation
-from .increments import within
 
 const = int  # on a board the compiler itself reads const(...)
 ptr32 = None
@@ -77,8 +76,8 @@ def find_up(s: ptr32):
 
 def lean_back(s: ptr32):
     """Turn _START by the mean tilts that the traversal left, Q12 rad."""
-    x = within(-s[_TILT], 4096) << 1
-    y = within(-s[_OTHER_TILT], 4096) << 1
+    x = clipped(-s[_TILT], 4096) << 1
+    y = clipped(-s[_OTHER_TILT], 4096) << 1
     s[_LOOK] = s[_START] - ((x * s[_START + 1] + y * s[_START + 2]) >> 14)
     s[_LOOK + 1] = s[_START + 1] + ((x * s[_START] + y * s[_START + 3]) >> 14)
     s[_LOOK + 2] = s[_START + 2] + ((y * s[_START] - x * s[_START + 3]) >> 14)
@@ -122,9 +121,9 @@ def force_q12(s: ptr32, a: int, row: int) -> int:
 def observe(s: ptr32, a: int):
     """Write both tilts and the heading of the node at word a, Q12 rad."""
     force = force_q12(s, a, 3)
-    s[_Y] = -within(force, _MOST_Q12)
+    s[_Y] = -clipped(force, _MOST_Q12)
     force = force_q12(s, a, 0)
-    s[_Y + 1] = within(force, _MOST_Q12)
+    s[_Y + 1] = clipped(force, _MOST_Q12)
     force = force_q12(s, a, 6)
     s[_UP] += (s[_TAPER] * force + 512) >> 10
     heading = heading_q12(s)
@@ -134,5 +133,5 @@ def observe(s: ptr32, a: int):
         s[_HEADING_TURNS] -= 1
     elif turned < -_WRAP_Q12:
         s[_HEADING_TURNS] += 1
-    heading += within(s[_HEADING_TURNS], 3) * 51472
-    s[_Y + 2] = within(heading, _MOST_Q12)
+    heading += clipped(s[_HEADING_TURNS], 3) * 51472
+    s[_Y + 2] = clipped(heading, _MOST_Q12)
