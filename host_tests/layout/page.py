@@ -4,6 +4,7 @@ import ast
 from pathlib import Path
 
 from zerorate import layout
+from zerorate.layout.words import Codes
 
 _HEAD = """# The words of the firmware's arrays
 
@@ -30,9 +31,11 @@ def page():
             parts.append(f"While {text}:\n")
             parts.append(table([word for word in array.words if word.while_text == text], uses))
     parts.append("## Codes\n")
-    for codes in layout.CODES:
+    for called, codes in vars(layout).items():
+        if not isinstance(codes, Codes):
+            continue
         numbers = ", ".join(f"{number} `{name}`" for name, number in codes.numbers.items())
-        parts.append(f"{codes.title}: {numbers}.\n")
+        parts.append(f"`{called}`: {codes.title[0].lower()}{codes.title[1:]}: {numbers}.\n")
     return "\n".join(parts)
 
 
