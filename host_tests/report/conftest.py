@@ -102,9 +102,9 @@ def shown(request, closed, show):
     page.tab.context.close()
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def tab(outcome, show):
-    """The page of a device with an effect, to do with as one likes."""
+    """The page of a device with an effect: whoever uses a plot leaves it so that others can."""
     page = show(outcome("an effect"))
     yield page.tab
     page.tab.context.close()

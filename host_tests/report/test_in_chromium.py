@@ -153,7 +153,7 @@ class TestInUse:
 
 
 class TestHostileNames:
-    def test_they_are_shown_letter_by_letter(self, outcome, show):
+    def test_they_are_shown_letter_by_letter_and_make_no_element(self, outcome, show):
         closed = outcome("hostile names")
         tab = show(closed).tab
         name = closed.analysis.holdout[0].name
@@ -162,8 +162,5 @@ class TestHostileNames:
         assert name in axis.last.text_content()
         assert tab.locator("#found .effect h3 bdi").first.text_content().startswith("<script>, ")
         assert tab.locator("#plot-effect-1 .xtitle").text_content().startswith("\u2068delayed <scr")
-
-    def test_they_make_no_element(self, outcome, show):
-        tab = show(outcome("hostile names")).tab
         assert tab.locator("img").count() == 0
         assert tab.locator("script").count() == 3
