@@ -91,6 +91,10 @@ def test_a_ulog_with_the_gyro_once_a_second_takes_the_combined_sensors(tmp_path)
     recording, report = read_foreign(tmp_path / "in.ulg")
     assert len(recording) == n and recording.temp_degc() == pytest.approx(41.5, abs=0.01)
     assert told(report, "after PX4's own offsets")
+    gyro["temperature"] = ("float", [0.0] * 3)
+    foreign_files.ulog(tmp_path / "in.ulg", {"sensor_gyro": gyro, "sensor_combined": combined})
+    _, report = read_foreign(tmp_path / "in.ulg")
+    assert told(report, "doubtful: the temperature is 0 throughout")
 
 
 def test_a_ulog_that_is_none_or_lacks_the_sensor_is_refused(tmp_path):

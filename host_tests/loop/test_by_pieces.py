@@ -1,11 +1,20 @@
 """What pieces left out of one recording tell by themselves."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from zerorate_tools.bench.loop.simulated import simulate
 from zerorate_tools.loop.fit.line import is_slope, less_slope, ordinary
 from zerorate_tools.loop.fit.single import PiecesByLine, held
-from zerorate_tools.loop.search.by_pieces import POLYNOMIAL, cancels, memory, polynomial
+from zerorate_tools.loop.search.by_pieces import (
+    POLYNOMIAL,
+    SEGMENTS,
+    cancels,
+    memory,
+    polynomial,
+    segments,
+)
 from zerorate_tools.loop.search.select import Search
 from zerorate_tools.model.term import Term
 
@@ -54,6 +63,31 @@ def test_a_curve_that_predicts_as_well_keeps_its_place(narrow):
 
 def test_a_curve_over_many_degrees_keeps_its_place(lagging):
     assert polynomial(*by(lagging, Kernels(5.0))) is None
+
+
+@pytest.fixture
+def wavy():
+    """A bias that goes up and down twice over the range of temperature."""
+    (session,) = simulate(5, sessions=1, bare=True).sessions
+    temp = session.block_mean(session.sources["temp"])
+    share = (temp - temp.min()) / np.ptp(temp)
+    wave = 0.02 * np.sin(4 * np.pi * share)
+    return Search([replace(session, rate_dps=session.rate_dps + wave[:, None])])
+
+
+def test_segments_follow_what_no_cubic_does(wavy):
+    _, line, _, _, by_line, taken = every = by(wavy, None)
+    found = segments(*every[:3], by_line, by_line, taken)
+    assert found.candidate.kind == SEGMENTS
+    cubic = [replace(line[0], power=k) for k in (2, 3)]
+    left = [np.nanstd(by_line.residual(line, t)) for t in (cubic, found.candidate.terms)]
+    assert left[1] < 0.7 * left[0]
+
+
+def test_segments_have_to_predict_clearly_better_than_what_was_found(wavy, lagging):
+    assert segments(*by(wavy, Kernels(1.0))) is None
+    every = by(lagging, None)
+    assert segments(*every[:3], every[4], every[4], 0) is None
 
 
 def test_a_lag_is_found_by_pieces_alone(lagging):

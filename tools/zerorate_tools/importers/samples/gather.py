@@ -22,7 +22,8 @@ _KEPT = 200
 @dataclass
 class Gathered:
     """The rows, by time, and what they have in common. largest: by kind (gyro, accel). own: by
-    column, samples that have a reading of their own. looked_at: some hundred samples."""
+    column, samples that have a reading of their own. looked_at: some hundred samples, and
+    readings of temperature, which may have times of their own."""
 
     spool: Spool
     rows: int
@@ -60,6 +61,7 @@ class _Gathering:
         self.runs = Runs()
         self.clock = Unwrapped(self._step_us())
         self.kept: list[dict[str, np.ndarray]] = []
+        self.temps: list[np.ndarray] = []
 
     def result(self) -> Gathered:
         try:
@@ -78,6 +80,8 @@ class _Gathering:
         looked_at = {
             n: np.concatenate([k[n] for k in self.kept]) for n in (TIME, *self.readings)
         }  # fmt: skip
+        if TEMP in looked_at:
+            looked_at[TEMP] = np.concatenate(self.temps)
         interval_us, repeated = self._interval_us()
         return Gathered(
             self.spool, self.rows + sum(self.table.dropped.values()), self.samples,
@@ -160,8 +164,12 @@ class _Gathering:
         at = np.flatnonzero(whole)
         at = at[: _KEPT if len(self.kept) else 50 * _KEPT]
         self.kept.append({name: columns[name][at] for name in (TIME, *self.readings)})
+        if TEMP in columns:  # which may have rows of its own
+            temps = columns[TEMP][np.isfinite(columns[TEMP])]
+            self.temps.append(temps[: 50 * _KEPT if len(self.kept) == 1 else _KEPT])
         if len(self.kept) > 2 * _KEPT:
             self.kept = [self.kept[0], *self.kept[1::2]]
+            self.temps = self.temps[::2]
 
     def _check(self):
         refuse_too_fast(self.too_fast, self.samples, self.fastest, self.plan, self.path)

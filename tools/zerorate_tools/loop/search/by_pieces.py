@@ -9,6 +9,8 @@ left out clearly better, by the firmware's own kernels.
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from ...model.term import Term
 from ..fit.line import ordinary
 from ..fit.regression import Regression, predicted
@@ -21,6 +23,9 @@ from .fits_in_slots import fits_in_slots
 from .selection import Found
 
 POLYNOMIAL = "temperature-polynomial"
+SEGMENTS = "temperature-segments"
+#: Bends of a line of segments, at even distances; with its slope they take eight slots at most.
+_BENDS = (4, 5, 6, 7)
 #: What may lag behind temperature, or only seem to: the start of a power-on.
 _MEMORIES = ("thermal-lag", "thermal-rate", "power-on-transient")
 #: Nats that pieces left out must gain, and what may be left of their error: of a form without
@@ -33,6 +38,8 @@ _LIKELY = 0.01
 _NARROW_DEGC = 3.0
 #: Share of the range of temperature beyond which the slope is held.
 _BEYOND = 0.5
+#: The same of the first and the last segment.
+_SEGMENT_BEYOND = 0.1
 #: Of the error without it that an effect may be. Lags of real parts are 0.6 times; what tells a
 #: start's decay from a warm-up by cancelling both is 6 times and more.
 _MOST_TIMES = 2.0
@@ -61,6 +68,31 @@ def polynomial(
         return None
     decision = _decision(regression, straight, best[1:], len(every), gain)
     return Found(Candidate(POLYNOMIAL, best, "catalogue"), decision)
+
+
+def segments(
+    regression: Regression,
+    straight: Sequence[Term],
+    found: Sequence[Found],
+    judged: JudgedOnPieces,
+    by_line: PiecesByLine,
+    taken: int,
+) -> Found | None:
+    """A line over temperature that bends several times, in the place of all that was found; None
+    where it does not predict clearly better: so many parameters follow a walk of the noise as well.
+
+    Arguments as for `polynomial`.
+    """
+    every = [terms for terms in _segments(regression, straight) if fits_in_slots(terms, taken)]
+    if not every:
+        return None
+    best = max(every, key=lambda terms: float(by_line(straight, (), terms).sum()))
+    own = [t for f in found for t in f.candidate.terms]
+    gain = judged(straight, (), best) - (judged(straight, (), own) if own else 0.0)
+    if not _is_clear(gain, regression, *_CLEARLY):
+        return None
+    decision = _decision(regression, straight, best[1:], len(every), gain)
+    return Found(Candidate(SEGMENTS, best, "catalogue"), decision)
 
 
 def memory(
@@ -138,3 +170,17 @@ def _polynomials(regression, straight) -> list[tuple[Term, ...]]:
     slope = replace(straight[0], lo=lo - margin, hi=hi + margin)
     powers = [slope, *(replace(straight[0], lo=lo, hi=hi, power=k) for k in (2, 3))]
     return [tuple(powers[:n]) for n in (1, 2, 3)]
+
+
+def _segments(regression, straight) -> list[tuple[Term, ...]]:
+    """Lines of five to eight segments; the outer ones reach a little beyond what was seen."""
+    if not straight:
+        return []
+    lo, hi, _ = ranges(regression.sessions)["temp"]
+    margin = _SEGMENT_BEYOND * (hi - lo)
+    slope = replace(straight[0], lo=lo - margin, hi=hi + margin)
+    every = []
+    for bends in _BENDS:
+        at = np.linspace(lo, hi, bends + 2)[1:-1] - slope.centre
+        every.append((slope, *(replace(slope, knot=float(knot)) for knot in at)))
+    return every

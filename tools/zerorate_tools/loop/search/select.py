@@ -146,8 +146,15 @@ class Search:
         judged = self.on_pieces, by_line, self.taken
         better = by_pieces.polynomial(r, self.line, self.found, *judged)
         self.found = [better] if better else self.found
-        further = by_pieces.memory(r, self.line, self.found, self.pool, *judged)
-        self.found += [further] if further else []
+        self._remember(*judged)
+        better = by_pieces.segments(r, self.line, self.found, *judged)
+        if better:
+            self.found = [better]
+            self._remember(*judged)
+
+    def _remember(self, *judged):
+        own = by_pieces.memory(self.regression, self.line, self.found, self.pool, *judged)
+        self.found += [own] if own else []
 
     def _hysteresis_of_one_recording(self, curve: tuple[Term, ...]):
         """A sum of play operators with the bend found, or with a whole curve, as one effect."""
