@@ -36,10 +36,8 @@ _CLEARLY, _CLEARLY_OF_MEMORY = (2.0, 0.97), (5.0, 0.9)
 _LIKELY = 0.01
 #: Range of temperature in which the firmware's curve is one line, learned in a few bins.
 _NARROW_DEGC = 3.0
-#: Share of the range of temperature beyond which the slope is held.
+#: Share of the range of temperature beyond which the slope, or the outer segments, are held.
 _BEYOND = 0.5
-#: The same of the first and the last segment.
-_SEGMENT_BEYOND = 0.1
 #: Of the error without it that an effect may be. Lags of real parts are 0.6 times; what tells a
 #: start's decay from a warm-up by cancelling both is 6 times and more.
 _MOST_TIMES = 2.0
@@ -89,9 +87,9 @@ def segments(
     best = max(every, key=lambda terms: float(by_line(straight, (), terms).sum()))
     own = [t for f in found for t in f.candidate.terms]
     gain = judged(straight, (), best) - (judged(straight, (), own) if own else 0.0)
-    if not _is_clear(gain, regression, *_CLEARLY):
-        return None
     decision = _decision(regression, straight, best[1:], len(every), gain)
+    if decision.p_value > _LIKELY or not _is_clear(gain, regression, *_CLEARLY):
+        return None
     return Found(Candidate(SEGMENTS, best, "catalogue"), decision)
 
 
@@ -173,11 +171,12 @@ def _polynomials(regression, straight) -> list[tuple[Term, ...]]:
 
 
 def _segments(regression, straight) -> list[tuple[Term, ...]]:
-    """Lines of five to eight segments; the outer ones reach a little beyond what was seen."""
+    """Lines of five to eight segments; the outer ones go on beyond what was seen, for nothing else
+    does where a model has the slope."""
     if not straight:
         return []
     lo, hi, _ = ranges(regression.sessions)["temp"]
-    margin = _SEGMENT_BEYOND * (hi - lo)
+    margin = _BEYOND * (hi - lo)
     slope = replace(straight[0], lo=lo - margin, hi=hi + margin)
     every = []
     for bends in _BENDS:
