@@ -42,11 +42,6 @@ def test_the_figures_stand_under_the_names_that_others_read(measured, find_runti
     assert len(met) == 10
 
 
-def test_a_missed_bound_stands_out(measured):
-    said = in_markdown(measured.cost())
-    assert "| 2.0 x | at most 1.05 x | **no** |" in said
-
-
 def test_what_cannot_be_measured_is_left_out_and_said(measured, monkeypatch):
     def missing(*args):
         raise MissingRuntime("no C compiler here")

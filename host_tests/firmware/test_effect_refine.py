@@ -78,13 +78,6 @@ def spread(left):
     return left.std(axis=0)
 
 
-def test_a_second_unit_is_left_less_than_half_of_what_differs(model):
-    Unit(model, share=1.35).live(2)
-    before, after = (Unit(each, share=1.35, seed=4).live() for each in (loaded(TWO), model))
-    assert (spread(before)[:2] > 0.005).all()
-    assert (spread(after)[:2] < 0.5 * spread(before)[:2]).all(), (spread(before), spread(after))
-
-
 def test_a_unit_like_the_model_is_not_made_worse_by_as_much_as_a_floor_of_3_mdps(model):
     left = Unit(model, share=1.0).live(2)
     half = len(left) // 2
