@@ -62,7 +62,7 @@ def motion_settings(
     temp_lsb_per_degc=340.0,
     slope_dps_per_degc=0.03,
     bend_degc=64.0,
-    spread=10,
+    spread=20,
     least_dps=5.0,
     least_tilt_dps=0.3,
     least_up_g=0.85,

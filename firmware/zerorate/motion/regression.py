@@ -4,8 +4,8 @@ US 10,451,438: "performing a linear fit of the orientation ... as the function o
 moves the orientation by M(t) b, M the integral of the rotation matrix; where the device keeps its
 attitude on average that is a straight line in time. Two tilts come from the accelerometer's
 gravity in the tilt frame, the heading from the turn about it. The window is tapered by
-(1 - t^2)^2, so that unfinished cycles at its ends count little; what remains at the neighbouring
-shapes 7 t^2 - 1 and 3 t^3 - t (orthogonal under that taper) measures the noise the slope has.
+1 - t^4, so that unfinished cycles at its ends count little; what remains at the neighbouring shapes
+21/5 t^2 - 1 and 15/7 t^3 - t (orthogonal under that taper) measures the noise the slope has.
 
 Sums of one component, 21 words: 6 of M M', 3 of M y, 3 of M, 1 of y, 3 + 3 of M and 1 + 1 of y
 with the two shapes.
@@ -40,9 +40,9 @@ def taper(s: ptr32, k: int, stage: int, even: int):
     """
     t = (2 * k + 1 - (1 << stage)) << (10 - stage)
     square = (t * t) >> 10
-    weight = ((1024 - square) * (1024 - square)) >> 10
-    s[_SHAPE_2] = ((7 * square - 1024) * weight) >> 10
-    s[_SHAPE_3] = ((((3 * square - 1024) * t) >> 10) * weight) >> 10
+    weight = 1024 - (square * square >> 10)
+    s[_SHAPE_2] = ((21 * square // 5 - 1024) * weight) >> 10
+    s[_SHAPE_3] = ((((15 * square // 7 - 1024) * t) >> 10) * weight) >> 10
     if even:
         weight = 1024
     s[_TAPER] = weight
