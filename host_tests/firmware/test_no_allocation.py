@@ -9,7 +9,6 @@ from collections import Counter
 import pytest
 from zerorate.layout import AXIS, MARKS, SETTINGS, STATE, STILLNESS, axis_at
 from zerorate.rest import bias, estimators, fit, guard, histogram, recent
-from zerorate_tools.errors import ZerorateError
 
 from . import trace
 from .trace_on_host import on_cpython
@@ -122,16 +121,3 @@ def test_the_trace_covers_every_event(events):
     mode, seen = events
     missing = [name for name, event in {**ALWAYS, **IN_MODE[mode]}.items() if not seen[event]]
     assert missing == [], f"{mode}: {dict(seen)}"
-
-
-def test_one_allocation_under_the_lock_would_be_found(micropython):
-    script = """
-from micropython import heap_lock, heap_unlock
-heap_lock()
-try:
-    found = [1, 2]
-finally:
-    heap_unlock()
-"""
-    with pytest.raises(ZerorateError, match="MemoryError"):
-        micropython.run(script, check=True)

@@ -78,7 +78,7 @@ def test_the_device_that_rests_for_30_percent_does():
 
 def test_the_day_moves_half_the_time_over_25_degc():
     one_hertz = load_description("day")
-    one_hertz.sensor.odr_hz = 2.0
+    one_hertz.sensor.odr_hz = 1.0
     recording, truth = simulate(one_hertz)
     assert recording.duration_s == pytest.approx(86400, abs=1)
     assert truth.still.mean() == pytest.approx(0.5, abs=0.05)
