@@ -52,7 +52,7 @@ _NO_VALUE = const(-0x3FFFFFFF)
 
 # A piece of heap held through a program's imports, or none as long is left on a small board for the
 # state, its checkpoint and the store's record.
-_held = [bytearray(4992)]
+_held = [bytearray(5376)]
 
 
 class Corrector:
