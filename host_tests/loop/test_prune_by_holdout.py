@@ -78,6 +78,10 @@ def test_what_takes_hardly_anything_goes_where_one_recording_was_fitted():
     assert unharmed(selection, parts) is selection
     [one] = unharmed(replace(selection, alone=True), parts).found
     assert one.axes == (False, True, True)
+    # a slope takes the place of the firmware's own curve, of which a line shows nothing
+    slope = Candidate("temperature-polynomial", (Term("temp", 10.0, 40.0),), "catalogue")
+    with_slope = replace(selection, alone=True, found=[Found(slope, selection.found[0].decision)])
+    assert unharmed(with_slope, parts) is with_slope
 
 
 def test_what_the_session_held_out_is_the_worse_for_goes():

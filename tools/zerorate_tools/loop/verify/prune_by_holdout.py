@@ -12,10 +12,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..fit.line import is_slope
 from ..read.sessions import Session
 from ..search.confounding import label
 from ..search.drift_test import comes_again, follows_time
-from ..search.selection import Selection
+from ..search.selection import Found, Selection
 from .judge import Judgement, judge, residuals, rms_dps
 
 #: Nats that the held-out sessions may lose: a cause that rests there says nothing, not no.
@@ -58,7 +59,8 @@ def unharmed(selection: Selection, after: Sequence[list[np.ndarray]]) -> Selecti
     """
     errors = np.array([rms_dps(r) for r in after])
     used = np.array([f.axes for f in selection.found], bool).reshape(-1, 3)
-    allowed = errors[:-1] * (1.0 - _LEAST_TAKEN if selection.alone else 1.0)
+    least = [_LEAST_TAKEN * (selection.alone and not _has_slope(f)) for f in selection.found]
+    allowed = errors[:-1] * (1.0 - np.array(least)[:, None])
     grows = np.where(used, errors[1:] - allowed, 0.0)
     worst = grows.max(axis=0, initial=0.0)
     for i in reversed(range(len(grows))):
@@ -66,6 +68,12 @@ def unharmed(selection: Selection, after: Sequence[list[np.ndarray]]) -> Selecti
         if axes.any():
             selection = selection.spared(i, axes, _grown(errors, i))
     return selection
+
+
+def _has_slope(found: Found) -> bool:
+    """Whether an effect takes the place of the firmware's own curve: least squares beside a line,
+    which has its slope, do not show what that is worth."""
+    return any(is_slope(t) for t in found.candidate.terms)
 
 
 def _grown(errors: np.ndarray, i: int) -> str:
