@@ -99,7 +99,11 @@ def damaged(whole, damage):
 WORDS = [parsed_mapping(w) for w in ("t_us=t:s", "gx=w[0]:dps", "gy=w[1]:dps", "gz=w[2]:dps")]
 
 
-@pytest.mark.parametrize("place", [176, *range(128, 128 + 4 * (EXAMPLES // 5), 4)])
+# of the file's 880 bytes, the first 128 of which are a text: some of them, or all
+PLACES = range(128, 880, max(1, 5 * (880 - 128) // EXAMPLES))
+
+
+@pytest.mark.parametrize("place", [176, *PLACES])
 def test_a_mat_of_one_damaged_byte_kills_nobody(tmp_path, place):
     source = matlab(tmp_path)
     content = bytearray(source.read_bytes())
