@@ -250,7 +250,7 @@ class Corrector:
         return self.state[_QUALITY_Q8 + axis] / 256
 
     def source(self, axis: int) -> int:
-        """Return where that axis' bias comes from: a constant of bias.py."""
+        """Return where that axis' bias comes from: a number of SOURCE in docs/layout.md."""
         return self.state[_SOURCE + axis]
 
     @property
