@@ -66,19 +66,15 @@ def honesty(name: str, seeds: Sequence[int] = SEEDS) -> dict[str, float]:
     return {"all": float(whole), "first": float(first)}
 
 
-def day(
-    seed: int = 1,
-    peers: Sequence[str] = DAY,
-    advance: Callable[[float], None] = lambda n: None,
-) -> Figures:
+def day(advance: Callable[[float], None] = lambda n: None) -> Figures:
     """The simulated day: peer -> {"all": RMS over all samples, "later": after a minute}, mdps."""
-    sessions, truths = sessions_of("day", seed)
+    sessions, truths = sessions_of("day", 1)
     later = round(LATER_S * sessions[0].odr_hz)
     found = {}
-    for peer in peers:
+    for peer in DAY:
         error = PEERS[peer](sessions)[0] - truths[0]
         found[peer] = {"all": rms_mdps(error), "later": rms_mdps(error[later:])}
         advance(1)
-    error = told_everything("day", seed)
+    error = told_everything("day", 1)
     found[TOLD] = {"all": rms_mdps(error), "later": rms_mdps(error[round(LATER_S) :])}
     return found

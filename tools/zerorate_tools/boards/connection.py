@@ -15,11 +15,11 @@ class BoardError(ZerorateError):
 
 
 @contextmanager
-def connected(port: str, *, restart: bool = True) -> Iterator:
-    """Yield mpremote's transport with the board in its raw REPL, what it ran interrupted.
+def connected(port: str) -> Iterator:
+    """Yield mpremote's transport with the board in its raw REPL, restarted: its memory is empty.
 
-    restart: with a soft reset, so that nothing is left in memory. Raises MissingLibrary without
-    mpremote and BoardError for a port that cannot be opened or a board that says nothing.
+    Raises MissingLibrary without mpremote and BoardError for a port that cannot be opened or a
+    board that says nothing.
     """
     try:
         from mpremote.transport import TransportError
@@ -31,7 +31,7 @@ def connected(port: str, *, restart: bool = True) -> Iterator:
     except TransportError as error:
         raise BoardError(f"{port}: cannot be opened; is the board plugged in?") from error
     try:
-        transport.enter_raw_repl(soft_reset=restart, timeout_overall=_PATIENCE_S)
+        transport.enter_raw_repl(soft_reset=True, timeout_overall=_PATIENCE_S)
         yield transport
     except TransportError as error:
         raise BoardError(f"{port}: {error}; is MicroPython on this board?") from error

@@ -30,7 +30,6 @@ def benefit(
     scales: Scales,
     minutes: float,
     run: Runner,
-    advance: Callable[[float], None] = lambda n: None,
 ) -> dict[str, Any] | None:
     """Errors in the first minutes of left-out devices, without and with a prior.
 
@@ -53,7 +52,6 @@ def benefit(
             result = {name: one_line(result) for name, _, _ in batch}
         found.update({name: r for name, r in result.items() if not isinstance(r, str)})
         failed.update({name: r for name, r in result.items() if isinstance(r, str)})
-        advance(len(batch))
     in_order = {name: found[name] for name in tried if name in found}
     return {**_summary(in_order, minutes), "failed": failed}
 

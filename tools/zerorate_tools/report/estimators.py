@@ -52,11 +52,10 @@ def moments(
     logs: Sequence[str | PathLike[str]],
     model: str | PathLike[str] | None = None,
     every_s: float = 60.0,
-    runtime: str = "native",
 ) -> list[Moment]:
     """Replay recordings one after another, each a power-on, looking at the state every `every_s`.
 
-    model: the effect model to run with; runtime: as of `replay`. Raises ZerorateError.
+    model: the effect model to run with. Raises ZerorateError.
     """
     opened = [open_recording(log, keep_gaps=True) for log in logs]
     corrector = corrector_for(opened[0], {})
@@ -68,7 +67,7 @@ def moments(
         rows = max(1, round(every_s * recording.scales.odr_hz))
         batches = frames_in_batches(recording, rows=rows, channels=channels)
         first_us, minute = None, begin
-        for done in engine(runtime).run(corrector, batches):
+        for done in engine("native").run(corrector, batches):
             first_us = int(done.t_us[0]) if first_us is None else first_us
             minute = begin + (int(done.t_us[-1]) - first_us) / 60e6
             raw = int(done.frames[-1, _TEMP])
