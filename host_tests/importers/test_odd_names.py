@@ -1,0 +1,193 @@
+"""What a column is: by its usual name, by a unit in it, by what it holds."""
+
+import re
+
+import numpy as np
+import pandas as pd
+import pytest
+from zerorate_tools.errors import BadRecording, InFile
+from zerorate_tools.importers import Options, import_recording
+
+from .test_odd_files import read, table, told
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        "imu.gyro.x imu.gyro.y imu.gyro.z",
+        "wx wy wz",
+        "gyr_x gyr_y gyr_z",
+        "AngVelX AngVelY AngVelZ",
+        "Gyroscope_X Gyroscope_Y Gyroscope_Z",
+        "xgyro ygyro zgyro",
+    ],
+)
+def test_usual_names_need_but_a_unit_and_the_words_for_it_work(tmp_path, names):
+    frame = table()[["t_s", *(f"g{a}_dps" for a in "xyz")]]
+    frame.columns = ["t_s", *names.split()]
+    with pytest.raises(BadRecording, match="not known; give --gyro-unit dps [(]or"):
+        read(tmp_path, frame)
+    recording, _ = read(tmp_path, frame, units={"gyro": "dps"})
+    assert recording.gyro_dps().mean() == pytest.approx(0.8, abs=0.02)
+
+
+def test_a_unit_in_the_name_is_enough(tmp_path):
+    frame = table()[["t_s", *(f"g{a}_dps" for a in "xyz")]]
+    frame.columns = ["Time (s)", "GyroX [deg/s]", "GyroY [deg/s]", "GyroZ [deg/s]"]
+    recording, _ = read(tmp_path, frame)
+    assert recording.gyro_dps().mean() == pytest.approx(0.8, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        "w_RS_S_x [rad s^-1] w_RS_S_y [rad s^-1] w_RS_S_z [rad s^-1]",
+        "raw_angular_rate_x_rad_per_s raw_angular_rate_y_rad_per_s raw_angular_rate_z_rad_per_s",
+        "X (rad/sec) Y (rad/sec) Z (rad/sec)",
+        "imu rate x [radians per second] imu rate y [radians per second] "
+        "imu rate z [radians per second]",
+    ],
+)
+def test_a_unit_of_rates_tells_what_a_column_is(tmp_path, names):
+    frame = table()[["t_s", *(f"g{a}_dps" for a in "xyz")]]
+    frame.columns = ["timestamp_seconds", *re.findall(r"\S.*?(?:[])]|per_s)", names)]
+    recording, _ = read(tmp_path, frame)
+    assert recording.gyro_dps().mean() == pytest.approx(np.degrees(0.8), abs=0.5)
+
+
+def test_body_rates_are_offered(tmp_path):
+    frame = table()[["t_s", *(f"g{a}_dps" for a in "xyz")]]
+    frame.columns = ["t_s", "p", "q", "r"]
+    with pytest.raises(BadRecording, match="if these are rates: --map gx=p:dps --map gy=q:dps"):
+        read(tmp_path, frame)
+
+
+def test_bare_axes_are_offered_too(tmp_path):
+    frame = table()[["t_s", *(f"g{a}_dps" for a in "xyz")]]
+    frame.columns = ["t_s", "xaxis", "yaxis", "zaxis"]
+    with pytest.raises(BadRecording, match="--map gx=xaxis:dps --map gy=yaxis:dps"):
+        read(tmp_path, frame)
+
+
+def test_a_phones_sensor_logger_is_known_by_its_columns(tmp_path):
+    frame = table()
+    at_ns = 1_777_636_800_000_000_000 + (frame["t_s"] * 1e9).astype("int64")
+    rates = {a: np.radians(frame[f"g{a}_dps"]) for a in "zyx"}
+    logged = pd.DataFrame({"time": at_ns, "seconds_elapsed": frame["t_s"], **rates})
+    recording, report = read(tmp_path, logged, name="Gyroscope.csv")
+    assert recording.scales.odr_hz == pytest.approx(100, rel=1e-3)
+    assert recording.gyro_dps().mean() == pytest.approx(0.8, abs=0.02)
+    assert told(report, "gyro taken in rad/s: as Sensor Logger writes")
+
+
+def test_a_phones_sensorlog_is_known_by_its_columns(tmp_path):
+    frame = table()
+    logged = {"loggingTime(txt)": [f"2026-05-01 12:00:{t:06.3f} +0200" for t in frame["t_s"]]}
+    logged |= {f"gyroRotation{a.upper()}(rad/s)": np.radians(frame[f"g{a}_dps"]) for a in "xyz"}
+    recording, _ = read(tmp_path, pd.DataFrame(logged))
+    assert recording.scales.odr_hz == pytest.approx(100, rel=1e-3)
+    assert recording.gyro_dps().mean() == pytest.approx(0.8, abs=0.02)
+
+
+def test_a_csv_of_plotjuggler_is_known_by_its_columns(tmp_path):
+    frame = table()
+    columns = {"__time": 1_777_636_800 + frame["t_s"]}
+    for topic in ("/imu", "/second"):
+        columns |= {f"{topic}/angular_velocity/{a}": np.radians(frame[f"g{a}_dps"]) for a in "xyz"}
+        columns |= {f"{topic}/linear_acceleration/{a}": 9.8 * frame[f"a{a}_g"] for a in "xyz"}
+    recording, report = read(tmp_path, pd.DataFrame(columns))
+    assert recording.gyro_dps().mean() == pytest.approx(0.8, abs=0.02)
+    assert recording.accel_g()[:, 2].mean() == pytest.approx(1, abs=0.01)
+    assert told(report, "of several gyroscopes (/imu/angular_velocity/x, /second/")
+    with pytest.raises(BadRecording, match="there are 2 gyroscopes; give --instance 0 to 1"):
+        read(tmp_path, pd.DataFrame(columns), instance=2)
+    with pytest.raises(BadRecording, match="there is one gyroscope; leave --instance away"):
+        read(tmp_path, frame, instance=1)
+
+
+def test_degrees_declared_as_radians_are_refused_with_the_right_words(tmp_path):
+    frame = table()
+    for axis in "xyz":
+        frame[f"g{axis}_dps"] += 60.0 * np.sin(np.arange(2000) / 50)
+    frame.columns = ["t_s", "p", "q", "r", *frame.columns[4:]]
+    words = "gx=p:rad/s gy=q:rad/s gz=r:rad/s"
+    with pytest.raises(BadRecording, match="did you mean dps[?] Give --map gx=p:dps") as error:
+        read(tmp_path, frame, mapping=words)
+    assert "34" in str(error.value)  # more than 3400 dps
+    mended = words.replace("rad/s", "dps")
+    assert read(tmp_path, frame, mapping=mended)[1].doubts == []
+
+
+@pytest.mark.parametrize(
+    ("words", "doubt"),
+    [
+        ("gx=gx_dps:rad/s gy=gy_dps:rad/s gz=gz_dps:rad/s", "a steady rate of 4[56].*mean dps"),
+        ("gx=gx_dps:mdps gy=gy_dps:mdps gz=gz_dps:mdps", None),
+        ("ax=ax_g:m/s2 ay=ay_g:m/s2 az=az_g:m/s2", "usual acceleration is 0.102 g.*mean g[?]"),
+        ("temp=temp_c:k", "usual temperature is -24.*--map temp=temp_c:k"),
+        ("temp=zero:degc", "temperature is 0 throughout.*--map temp=none"),
+    ],
+)
+def test_a_unit_that_cannot_be_is_doubted(tmp_path, words, doubt):
+    _, report = read(tmp_path, table().assign(zero=0), mapping=words)
+    if doubt is None:
+        assert report.doubts == []
+    else:
+        [said] = report.doubts
+        assert re.search(doubt, said)
+
+
+def test_a_rest_in_degrees_declared_as_radians_is_doubted(tmp_path):
+    frame = table().rename(columns={f"g{a}_dps": f"gyro_{a}" for a in "xyz"})
+    frame[[f"gyro_{a}" for a in "xyz"]] -= 0.7
+    _, report = read(tmp_path, frame, units={"gyro": "rad/s"})
+    [said] = report.doubts
+    assert re.search("noise of 3 dps is more .* did you mean dps[?] [(]--gyro-unit dps[)]", said)
+    assert read(tmp_path, frame, units={"gyro": "dps"})[1].doubts == []
+
+
+def test_raw_counts_are_asked_for_units_and_then_scales_in_one_go_each(tmp_path):
+    frame = (16384 * table()[["t_s", *"gx_dps gy_dps gz_dps ax_g ay_g az_g".split()]]).round()
+    frame.columns = ["t_us", "gx", "gy", "gz", "ax", "ay", "az"]
+    frame["temp"] = -3400
+    give = "--gyro-unit lsb .*--accel-unit lsb .*--temp-unit lsb "
+    with pytest.raises(BadRecording, match=give):
+        read(tmp_path, frame)
+    units = dict.fromkeys(("gyro", "accel", "temp"), "lsb")
+    give = "--gyro-lsb-per-dps 131 --accel-lsb-per-g 16384 --temp-lsb-per-degc 340 --temp-offset"
+    with pytest.raises(BadRecording, match=give):
+        read(tmp_path, frame, units=units)
+
+
+def test_radians_declared_as_degrees_are_doubted(tmp_path):
+    frame = table()
+    for axis in "xyz":
+        frame[f"g{axis}_dps"] = np.radians(frame[f"g{axis}_dps"])
+    _, report = read(tmp_path, frame)
+    assert "did you mean rad/s?" in report.doubts[0]
+
+
+def test_ninety_degrees_within_seconds_are_doubted(tmp_path):
+    frame = table(400).assign(temp_c=np.linspace(-20, 74, 400))
+    _, report = read(tmp_path, frame)
+    assert "90.2 degC within 3.99 s cannot be" in report.doubts[0]
+    _, report = read(tmp_path, frame, options=Options(hz=1))
+    assert report.doubts == []
+
+
+def test_rows_that_are_means_are_known_as_such(tmp_path):
+    frame = table(200, 1 / 15)
+    recording, report = read(tmp_path, frame)
+    assert recording.scales.more["row_is_mean_of_s"] == 15
+    assert recording.scales.gyro_lsb_per_dps == 1000
+    assert told(report, "a row every 15 s: each taken as the mean over that time")
+
+
+def test_a_name_as_long_as_names_may_be_is_written(tmp_path):
+    source = tmp_path / "in.csv"
+    source.write_text(table(50).to_csv(index=False))
+    out = tmp_path / ("x" * 242 + ".parquet")
+    import_recording(source, out)
+    assert [path.name for path in tmp_path.glob("*.parquet")] == [out.name]
+    with pytest.raises(InFile, match="the name is longer than 255 bytes; give it a shorter one"):
+        import_recording(source, tmp_path / ("x" * 250 + ".parquet"))
