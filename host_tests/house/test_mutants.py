@@ -12,7 +12,7 @@ def test_annotations_and_written_constants_have_no_mutants():
     found = mutants([GUARD])
     lines = (REPOSITORY / GUARD).read_text(encoding="utf-8").splitlines()
     drawn = {lines[row - 1] for _, _, _, row in found}
-    assert "    repeats = exchange(s, x)" not in drawn and len(found) > 300
+    assert "    repeats = exchange(s, x)" not in drawn and len(found) > 250
     assert not any("const(" in line and "_MOST_US" not in line for line in drawn)
     assert not any(line.startswith("def ") for line in drawn)
 
