@@ -70,6 +70,16 @@ class Corrector:
     be given by name, in its unit. Raises ValueError.
     """
 
+    # of the class, so that who has none of them pays no heap for it
+    effects: "Any" = None
+    schedule: "Any" = None
+    motion = motion_settings = gravity = gravity_settings = None
+    _sense: "Any" = None
+    _observe_motion: "Any" = None
+    _observe_gravity: "Any" = None
+    _examine: "Any" = None
+    _guard: "Any" = None
+
     def __init__(
         self,
         sensor: "Sensor | None" = None,
@@ -97,17 +107,6 @@ class Corrector:
         # would want as much again
         _held.clear()
         self.state = array("i", range(c[_AXES] + 3 * c[_AXIS_WORDS]))
-        self.effects: "Any" = None
-        self.schedule: "Any" = None
-        self.motion = None
-        self.motion_settings = None
-        self.gravity = None
-        self.gravity_settings = None
-        self._sense: "Any" = None
-        self._observe_motion: "Any" = None
-        self._observe_gravity: "Any" = None
-        self._examine: "Any" = None
-        self._guard: "Any" = None
         self.alone = True
         self.left_out = []  # type: ignore[var-annotated]
         if every or document:  # who asks for other rules gets those alone

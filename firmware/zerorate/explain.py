@@ -108,13 +108,14 @@ def axis_text(s, c, sensor, axis):
     """Return one line on one axis."""
     a = c[_AXES] + axis * c[_AXIS_WORDS]
     lsb = sensor.gyro_lsb_per_dps
+    source = s[_SOURCE + axis]
     text = "g%s: bias %.3f dps from %s, +-%.3f dps" % (
         "xyz"[axis],
         without_sign(s[_OUT_Q8 + axis] / 256 / lsb),
-        SOURCES[s[_SOURCE + axis]],
+        SOURCES[source],
         s[_QUALITY_Q8 + axis] / 256 / lsb,
     )
-    if s[_SOURCE + axis] == 0:
+    if source == 0:
         text = "g%s: no bias yet, nothing still was seen" % "xyz"[axis]
     if s[a + _SUSPECT] > 0:
         text += "; a rest far from it is held back (%d of %d)" % (s[a + _SUSPECT], c[_INSIST])

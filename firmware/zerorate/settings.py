@@ -183,14 +183,14 @@ def windows(c, sensor, limits):
     c[_WINDOW_SHIFT] = power_of_two(limits["window_s"] * sensor.odr_hz)
     c[_WINDOW] = 1 << c[_WINDOW_SHIFT]
     window_s = c[_WINDOW] / sensor.odr_hz
-    c[_SEGMENT] = max(1, min(8, int(limits["segment_s"] / window_s + 0.5)))
+    n = max(1, min(8, int(limits["segment_s"] / window_s + 0.5)))
+    c[_SEGMENT] = n
     c[_LEAP_US] = int(min(0x1FFFFFFF, max(0.1e6, 10e6 / sensor.odr_hz)))
     jump_degc = max(400 / 340, 0.5 / sensor.odr_hz)
     c[_JUMP_LSB] = int(jump_degc * sensor.temp_lsb_per_degc) or 0xFFFF
     c[_STILL_GYRO_Q8] = squared(limits["still_dps"] * lsb * 16)
     c[_STILL_ACCEL_Q8] = squared(limits["still_g"] * accel * 16)
     a_window = limits["turn_dps"] * window_s * 0.0174533 * accel  # LSB that gravity may move
-    n = c[_SEGMENT]
     c[_TIP_LIMIT_Q8] = squared(a_window * max(1, n - 1) * 16)
     c[_LEAN_LIMIT_Q4] = squared(a_window * n * (n * n - 1) / 6 * 4)
     c[_LEAN_NOISE_FACTOR_Q4] = _LEAN_NOISE * (n * n - 1) // 3
@@ -202,14 +202,16 @@ def bins_of(c, sensor, bins, every, document, limits):
     """The histograms."""
     if bins != 1 and not 4 <= bins < 20:
         raise ValueError("bins must be 1 or 4..19, not %d" % bins)
-    half = min(32000, int(limits["range_dps"] * sensor.gyro_lsb_per_dps))
+    lsb = sensor.gyro_lsb_per_dps
+    half = min(32000, int(limits["range_dps"] * lsb))
     # an edge beside a reading at the rail stays below 2^16, and 2^14 of them below 2^30
     most = 0xFFFE // (bins + 1)
-    narrow = max(4, min(most, int(limits["narrowest_dps"] * sensor.gyro_lsb_per_dps)))
+    narrow = max(4, min(most, int(limits["narrowest_dps"] * lsb)))
     c[_BINS] = bins
-    c[_WIDTH_LSB] = max(1, 2 * half // bins) if every else narrow
+    width = max(1, 2 * half // bins) if every else narrow
+    c[_WIDTH_LSB] = width
     # the first reading stands in the middle of a bin, not on an edge
-    c[_LOW_LSB] = -(c[_WIDTH_LSB] * bins) // 2 if every else -(bins // 2) * narrow - narrow // 2
+    c[_LOW_LSB] = -(width * bins) // 2 if every else -(bins // 2) * width - width // 2
     c[_NARROWEST_LSB] = 1 if document else narrow
     c[_SPLIT_RATIO] = 2 if document else 4
     c[_LITERAL] = 1 if document else 0
@@ -224,24 +226,26 @@ def estimators_of(c, sensor, short, long, document, limits):
     rate = sensor.odr_hz
     c[_SHORT] = short
     c[_ESTIMATOR_COUNT] = 1 + short + long
-    c[_ESTIMATOR_WORDS] = _EST_HISTOGRAM + 2 * c[_BINS] + 1
-    c[_FIRST_SHORT] = _ESTIMATORS + c[_ESTIMATOR_WORDS]
-    c[_FIRST_LONG] = _ESTIMATORS + (1 + short) * c[_ESTIMATOR_WORDS]
-    c[_ESTIMATORS_END] = _ESTIMATORS + c[_ESTIMATOR_COUNT] * c[_ESTIMATOR_WORDS]
+    words = _EST_HISTOGRAM + 2 * c[_BINS] + 1
+    c[_ESTIMATOR_WORDS] = words
+    c[_FIRST_SHORT] = _ESTIMATORS + words
+    c[_FIRST_LONG] = _ESTIMATORS + (1 + short) * words
+    c[_ESTIMATORS_END] = _ESTIMATORS + c[_ESTIMATOR_COUNT] * words
     c[_STEP_LSB] = max(2, int(limits["step_degc"] * degree))
     c[_MARGIN_LSB] = max(1, int(limits["margin_degc"] * degree))
     c[_PROMOTE] = max(2, int(limits["promote_s"] * rate))
     c[_HALVE_AFTER] = max(16, min(1 << 28, int(limits["halve_after_s"] * rate)))
     c[_ENOUGH_TO_FIT] = max(2, int(limits["fit_s"] * rate))
     c[_MOST_COUNTED] = (
-        0xFFFFF // (c[_ESTIMATOR_COUNT] - 1)
+        0xFFFFF // (short + long)
         if document
         else max(16, min(8192, int(limits["counted_s"] * rate)))
     )
-    c[_LOCAL_SHIFT] = 0
-    while (int(degree * 16) >> (c[_LOCAL_SHIFT] + 1)) >= 8:
-        c[_LOCAL_SHIFT] += 1
-    unit = degree * 16 / (1 << c[_LOCAL_SHIFT])
+    shift = 0
+    while int(degree * 16) >> shift >= 16:
+        shift += 1
+    c[_LOCAL_SHIFT] = shift
+    unit = degree * 16 / (1 << shift)
     c[_LOCAL] = 0 if document else squared(limits["local_degc"] * unit, 1 << 14)
     c[_NEAR] = c[_LOCAL] * max(1, 2048 // c[_MOST_COUNTED])
     c[_STABLE] = max(2, int(limits["stable_s"] * rate))

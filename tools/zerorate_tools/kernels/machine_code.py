@@ -129,14 +129,8 @@ def machine_code(kernels: Kernels, part: str, processor: str, fast: bool = False
 def _linked(folder: Path, text: str, how: Processor, base: int, fast: bool) -> bytes:
     (folder / "part.c").write_text(text, encoding="utf-8")
     (folder / "part.ld").write_text(_SECTIONS.format(base=base), encoding="utf-8")
-    flags = [
-        "-O2" if fast else "-Os",
-        *_COMMON,
-        *how.flags,
-        "-target",
-        how.target,
-        "-Wl,-T,part.ld",
-    ]
+    speed, target = "-O2" if fast else "-Os", ("-target", how.target)
+    flags = [speed, *_COMMON, *how.flags, *target, "-Wl,-T,part.ld"]
     command = [sys.executable, "-m", "ziglang", "cc", *flags, "part.c", "-o", "part.elf"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
     if "No module named ziglang" in done.stderr:
