@@ -5,6 +5,7 @@ from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
+from zerorate_tools.bench.loop.simulated import simulate
 from zerorate_tools.bench.loop.singles import (
     KINDS,
     Single,
@@ -12,6 +13,7 @@ from zerorate_tools.bench.loop.singles import (
     describe,
     look_at_singles,
     single_figures,
+    tellable,
 )
 
 
@@ -49,6 +51,14 @@ def test_an_error_is_about_the_mean_at_rest_of_its_own_stretch():
     error[2:4] += 0.5
     (left,) = _about([error], np.repeat([0, 1], 4), rest, ~rest)
     assert left[:, 0].tolist() == [0.5, 0.5, 0.0, 0.0]
+
+
+@pytest.mark.parametrize("times, least, most", [(0.05, 0.0, 0.05), (10.0, 0.99, 1.0)])
+def test_who_knows_the_noise_lists_large_steps_and_no_small_ones(times, least, most):
+    (session,) = simulate(3, sessions=1, bare=True).sessions
+    dps = times * np.diff(session.rate_dps, axis=0).std(axis=0)
+    chance = tellable(session, {"at_s": session.blocks * session.block_s / 2, "dps": dps})
+    assert least <= chance <= most
 
 
 def test_every_kind_is_described_with_its_effect():

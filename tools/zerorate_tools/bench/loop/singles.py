@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import chi2, ncx2
 from threadpoolctl import threadpool_limits
 
 from ..tables import machine_line
@@ -27,6 +28,8 @@ _FLOOR_DPS, _JUMP_FLOORS = 0.002, {"step": 6.0, "small step": 3.0}
 _WORSE = 1.02
 #: Seconds on either side of a step in which one listed is that step.
 _NEAR_S = 90.0
+#: Share of recordings in which a step may be invented.
+_INVENTED = 0.01
 #: Seconds of a further power-on in which its turn-on offset is learned.
 _LEARNED_S = 180
 _REST = {"kind": "rest", "s": [90, 150]}
@@ -50,7 +53,8 @@ _PATHS = {
 @dataclass
 class Single:
     """What became of one device. errors: (before, after) in mdps by where it was judged; kept:
-    effects deployed; steps: true ones, listed: of those; invented: steps that are none."""
+    effects deployed; steps: true ones, listed: of those; invented: steps that are none; tellable:
+    the chance that who knows the noise lists the first step, None where there is none."""
 
     kind: str
     seed: int
@@ -60,6 +64,7 @@ class Single:
     steps: int
     listed: int
     invented: int
+    tellable: float | None = None
 
     def worse(self, where: str) -> bool:
         """Whether what was deployed makes the error larger by more than 2 % there."""
@@ -148,8 +153,28 @@ def look_at_single(seed: int) -> Single:
     true = [e for e in described["effect"] if e["kind"] == "step"]
     near = [_is_near(event, true, logs, made) for event in said["events"]]
     kept = [step["effect"] for step in said["steps"]]
-    listed = min(len(true), sum(near))
-    return Single(kind, seed, recordings, errors, kept, len(true), listed, len(near) - sum(near))
+    listed, invented = min(len(true), sum(near)), len(near) - sum(near)
+    chance = tellable(analysis.sessions[true[0]["session"] - 1], true[0]) if true else None
+    return Single(kind, seed, recordings, errors, kept, len(true), listed, invented, chance)
+
+
+def tellable(session, step: dict) -> float:
+    """The chance that a step of the bias is listed by who knows level and colour of the noise
+    beside it, where one in a hundred recordings may have one invented: all its places are tried."""
+    from ...loop.fit.regression import Regression
+    from ...loop.search.steps_first import bend_of
+
+    regression, bend = Regression([session]), bend_of(session)
+    regression.settle(bend)
+    base, [whitener] = regression.fit(bend).base, regression.whiteners
+    after = np.arange(session.blocks) >= step["at_s"] / session.block_s
+    column = whitener.prepare(after.astype(float)[:, None])
+    beside, cross, alone = whitener.products(regression.stack(bend)[0], column)
+    size = 0.0  # in its standard deviations, squared
+    for axis, colour in enumerate(base.best):
+        left = cross[colour, 0] @ np.linalg.pinv(beside[colour]) @ cross[colour, 0]
+        size += step["dps"][axis] ** 2 * (alone[colour, 0] - left) / base.variance[axis]
+    return float(ncx2.sf(chi2.isf(_INVENTED / session.blocks, 3), 3, size))
 
 
 def _is_near(event: dict, true: list[dict], logs: list[Path], made: list) -> bool:
@@ -257,6 +282,10 @@ def single_figures(singles: list[Single]) -> list[Figure]:
     for kind, what, limit in (("step", "RMS", 95.0), ("small step", "jump", None)):
         own = [s for s in singles if s.kind == kind]
         rows.append(share(f"steps of 3 floors {what} listed", own, lambda s: bool(s.listed), limit))
+        chances = [s.tellable for s in own if s.tellable is not None]
+        most = 100.0 * float(np.mean(chances)) if chances else float("nan")
+        name = f"steps of 3 floors {what}: who knows the noise lists"
+        rows.append(Figure(name, most, None, True, len(chances)))
     rows.append(share("a step invented", singles, lambda s: s.invented > 0, 1.0, True))
     for kind in KINDS:
         own = [s for s in singles if s.kind == kind]
