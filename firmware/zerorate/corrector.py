@@ -136,9 +136,8 @@ class Corrector:
 
     def _join_others(self):
         self._examine = rest.check
-        self._guard = self.settings
-        if rest.run:  # an odd address asks the guard alone
-            self._guard = rest.address(self.settings) + 1
+        # an odd address asks the guard alone
+        self._guard = rest.address(self.settings) + 1 if rest.run else self.settings
         self.alone = False
         if "update" in self.__dict__:
             del self.update
@@ -277,7 +276,7 @@ class Corrector:
 
 def _bound(s, c):
     """Machine code's `update`, bound: to look up where two arrays lie takes as long as it."""
-    run = rest.step
+    run = rest.run
     s_at = rest.address(s)
     c_at = rest.address(c)
 

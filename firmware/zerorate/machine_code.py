@@ -3,9 +3,6 @@
 import gc
 import sys
 
-# what MicroPython calls its processor -> which code runs there (sys.implementation._mpy)
-_CODE = {3: "thumb", 4: "thumb", 5: "thumb", 6: "thumb", 7: "thumb", 8: "thumb", 11: "rv32"}
-
 # part -> what runs it and why, for Corrector.explain
 chosen = {}  # type: ignore[var-annotated]
 
@@ -15,8 +12,10 @@ def machine_code(part):
 
     a, b, c: arrays, addresses of such, or ints; what: an int or an array.
     """
-    kind = _CODE.get(getattr(sys.implementation, "_mpy", 0) >> 10 & 15)
-    if not kind:
+    # what MicroPython calls its processor: 3 to 8 are Cortex-M, 11 is RV32
+    processor = getattr(sys.implementation, "_mpy", 0) >> 10 & 15
+    kind = "thumb" if 3 <= processor <= 8 else "rv32"
+    if kind == "rv32" and processor != 11:
         if sys.implementation.name == "micropython":  # on a host there is nothing to choose
             chosen[part] = "bytecode: there is no machine code for this processor"
         return None

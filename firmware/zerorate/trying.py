@@ -24,9 +24,9 @@ def tried(part, kind):
         name = "zerorate.native." + kind + "_" + part
         file = __import__(name, None, None, ("run",))
     except (SyntaxError, NameError):
-        return None, "bytecode: this interpreter takes no machine code in a file"
+        return None, "bytecode: this interpreter takes no machine code"
     except (ImportError, ValueError):
-        return None, "bytecode: the file with its machine code is not here, or is another board's"
+        return None, "bytecode: its machine code is not here, or is another board's"
     if answer(file.run, file.KNOWN) != file.ANSWER:
         return None, "bytecode: its machine code gives wrong numbers here"
     return file.run, "machine code"
