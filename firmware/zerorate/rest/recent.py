@@ -50,6 +50,7 @@ _AXES = const(0)
 _WINDOW_SHIFT = const(4)
 _SEGMENT = const(5)
 _AXIS_WORDS = const(15)
+_LITERAL = const(23)
 _FLOOR_Q8 = const(39)
 _GATE_Q4 = const(40)
 _INSIST = const(41)
@@ -190,11 +191,12 @@ def left_q8(s: ptr32, gain: int) -> int:
 def relearn_slope(s: ptr32, c: ptr32, a: int, square: int):
     """Learn how fast the bias leaves the line, where most of what was expected is that.
 
-    Of three errors one is beyond one sigma, so it rises by twice what it falls.
+    Of three errors one is beyond one sigma, so it rises by twice what it falls. By the document the
+    line is straight through all, and what it leaves here says nothing of what it leaves elsewhere.
     """
     away = beyond_q8(s, c, a)
     known = s[_GROWN_Q8] + s[_MEAN_NOISE_Q8]
-    if away > known >> 1:
+    if away > known >> 1 and c[_LITERAL] == 0:
         slope = s[a + _LEAVES_Q16]
         if square > known + away:
             slope += (slope >> 4) + 1
