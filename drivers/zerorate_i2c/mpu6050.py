@@ -1,6 +1,9 @@
 """One chip of the MPU-6050 family: set-up, whole samples, and its faults found and answered."""
 
-from . import clock as system_clock
+try:
+    import utime as system_clock  # a board's own: a Pico need not read a file for 10 ms
+except ImportError:
+    from . import clock as system_clock  # type: ignore[no-redef]
 from .registers import Registers, unload
 
 TYPE_CHECKING = False

@@ -6,7 +6,8 @@ Arguments: the program's file, seconds until the board is switched off, pins of 
 
 import sys
 
-import zerorate_i2c.clock
+import zerorate_i2c.bus_recovery
+import zerorate_i2c.mpu6050
 from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050, Physical
 from zerorate_fakes.pins import BusWires, InterruptPin
 
@@ -26,8 +27,7 @@ chip = FakeMPU6050(Physical(gyro_dps=at_rest))
 bus = FakeI2C(chip)
 wires = BusWires(bus)
 clock = FakeClock(chip)
-for name in ("ticks_us", "ticks_diff", "ticks_add", "sleep_ms"):
-    setattr(zerorate_i2c.clock, name, getattr(clock, name))
+zerorate_i2c.mpu6050.system_clock = zerorate_i2c.bus_recovery.system_clock = clock
 
 
 class Unwired:
@@ -64,6 +64,6 @@ if interrupt < 0:
         if clock.now_us > 1000000 * end_s:
             raise SystemExit
 
-    zerorate_i2c.clock.sleep_ms = give_up
+    clock.sleep_ms = give_up
 with open(program) as file:
     exec(file.read(), {"__name__": "__main__"})

@@ -1,5 +1,6 @@
 """The packages' files as a board loads them soonest: compiled by mpy-cross where that fits."""
 
+import ast
 import re
 import subprocess
 import tempfile
@@ -38,11 +39,14 @@ def board_files(
 ) -> dict[PurePosixPath, bytes]:
     """What to send of parts: .mpy where the board loads what mpy-cross makes, else the source.
 
-    code: the kind of machine code in the place of the kernels' bytecode. Raises MissingLibrary
-    without mpy-cross, ZerorateError for a file that does not compile.
+    code: the kind of machine code in the place of the kernels' bytecode. An `__init__.py` that does
+    nothing is left out: to MicroPython a folder is a package without it, and one takes a Pico 3 ms.
+    Raises MissingLibrary without mpy-cross, ZerorateError for a file that does not compile.
     """
     found = {}
     for name, path in part_files(parts, code).items():
+        if name.name == "__init__.py" and not _does_something(path):
+            continue
         if facts.mpy[0] == mpy_version()[0]:
             is_code = code and name.name.startswith(f"{code}_")
             options = (f"-march={CODES[code]}",) if is_code else ()
@@ -55,6 +59,11 @@ def board_files(
         else:
             found[name] = path.read_bytes()
     return found
+
+
+def _does_something(path: Path) -> bool:
+    body = ast.parse(path.read_text(encoding="utf-8")).body
+    return any(not isinstance(node, ast.Expr) for node in body)
 
 
 def compiled(path: Path, name: str, *options: str, text: str | None = None) -> bytes:
