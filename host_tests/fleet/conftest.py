@@ -23,9 +23,10 @@ def done(data, tmp_path_factory):
     return fleet(devices_of([data]), out, workers=2, minutes=1.5), out
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def scheduler():
-    """The address of a cluster of one worker, which starts once: it imports for seconds."""
+    """The address of a cluster of one worker, which starts once: it imports for seconds. Its threads
+    would see what tests of other files put in the place of the clock."""
     with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address="127.0.0.1:0") as there:
         yield there.scheduler_address
         assert len(there.workers) == 1
