@@ -25,8 +25,10 @@ def done(data, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def scheduler():
-    """The address of a cluster of one worker, which starts once: it imports for seconds. Its threads
-    would see what tests of other files put in the place of the clock."""
+    """The address of a cluster of one worker, which starts once: it imports for seconds.
+
+    It ends with the file, for its threads would see what other tests put in the place of the clock.
+    """
     with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address="127.0.0.1:0") as there:
         yield there.scheduler_address
         assert len(there.workers) == 1
