@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import ZerorateError
 from ..recordings import Recording, Scales
 
 Array = NDArray[np.float64]
@@ -63,10 +64,13 @@ class Trial:
 
 
 def trials(folder: Path) -> Iterator[Trial]:
-    """Every trial of a folder of BROAD's .mat files, by name."""
+    """Every trial of a folder of BROAD's .mat files, by name. Raises ZerorateError without one."""
     from scipy.io import loadmat
 
-    for path in sorted(folder.glob("*.mat")):
+    paths = sorted(folder.glob("*.mat"))
+    if not paths:
+        raise ZerorateError(f"no BROAD trial (.mat) in {folder}; name its folder with --data")
+    for path in paths:
         m = loadmat(path, squeeze_me=True)
         yield Trial(
             path.stem,

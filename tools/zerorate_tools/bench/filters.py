@@ -14,7 +14,6 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ZerorateError
 from ..peers import firmware, first_seconds, given
 from .broad import Trial, trials, true_bias
 from .public_data import data_folder
@@ -94,8 +93,6 @@ def run(data: Path | None = None, advance: Callable[[float], None] = lambda n: N
     Raises ZerorateError without BROAD's folder.
     """
     folder = data or (data_folder() or Path()) / "broad"
-    if not any(folder.glob("*.mat")):
-        raise ZerorateError(f"no BROAD trial (.mat) in {folder}; name its folder with --data")
     found = {}
     for trial in trials(folder):
         found[trial.name] = on_trial(trial)

@@ -120,9 +120,8 @@ def run(data: str | PathLike[str] | None = None) -> dict:
     """Measure and return all figures.
 
     data: the folder of BROAD's .mat files; without it only the simulated table is made.
+    Raises ZerorateError for a folder without one.
     """
     ways = peers()
-    found: dict = {"simulated": simulated(ways), "settling": settling(), "cost": _cost()}
-    if data is not None:
-        found["broad"] = on_broad(ways, Path(data))
-    return found
+    found: dict = {} if data is None else {"broad": on_broad(ways, Path(data))}
+    return found | {"simulated": simulated(ways), "settling": settling(), "cost": _cost()}
