@@ -11,8 +11,11 @@ from zerorate_tools.loop.search.by_pieces import (
     POLYNOMIAL,
     SEGMENTS,
     cancels,
+    is_like_hysteresis,
     memory,
+    of_memory,
     polynomial,
+    remembering,
     segments,
 )
 from zerorate_tools.loop.search.select import Search
@@ -101,6 +104,35 @@ def test_a_lag_that_the_likelihood_does_not_show_is_left_to_the_noise(lagging, m
     monkeypatch.setattr("zerorate_tools.loop.search.by_pieces.family_p", lambda *_: 0.02)
     r, line, found, _, by_line, taken = by(lagging, None)
     assert memory(r, line, found, lagging.pool, by_line, by_line, taken) is None
+
+
+def rival(search):
+    """What remembers temperature and predicts best, and by what it is judged."""
+    by_line = PiecesByLine(search.regression.sessions[0])
+    curve = tuple(replace(search.line[0], power=k) for k in (2, 3))
+    return remembering(search.line, curve, search.pool, by_line), by_line
+
+
+def test_what_remembers_predicts_no_wave(wavy):
+    other, by_line = rival(wavy)
+    best = segments(wavy.regression, wavy.line, [], by_line, by_line, 0)
+    assert other.nats < by_line(wavy.line, (), best.candidate.terms).sum() - 3.0
+
+
+def test_a_lag_takes_the_place_of_what_feigned_it(lagging):
+    other, by_line = rival(lagging)
+    beside = lagging.pool, by_line, by_line, 0
+    found = of_memory(lagging.regression, lagging.line, [], other, *beside)
+    assert found[-1].candidate.kind == "thermal-lag"
+    assert not of_memory(lagging.regression, lagging.line, found, other, *beside)
+
+
+def test_a_lag_is_none_where_a_hysteresis_predicts_as_well(lagging):
+    (session,) = simulate(5, [("thermal-hysteresis", 20.0)], sessions=1, bare=True).sessions
+    for search, alike in ((Search([session]), True), (lagging, False)):
+        by_line = PiecesByLine(search.regression.sessions[0])
+        lag = next(c for c in search.pool if c.kind == "thermal-lag" and c.terms[0].lag_s > 100.0)
+        assert is_like_hysteresis(search.line, (), lag, search.pool, by_line) == alike
 
 
 def test_a_decay_that_only_stands_against_a_warm_up_cancels():

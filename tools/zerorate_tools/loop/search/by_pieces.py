@@ -7,7 +7,7 @@ left out clearly better, by the firmware's own kernels.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,10 +24,13 @@ from .selection import Found
 
 POLYNOMIAL = "temperature-polynomial"
 SEGMENTS = "temperature-segments"
+_NAMES = ("", "quadratic", "curve")
 #: Bends of a line of segments, at even distances; with its slope they take eight slots at most.
 _BENDS = (4, 5, 6, 7)
 #: What may lag behind temperature, or only seem to: the start of a power-on.
-_MEMORIES = ("thermal-lag", "thermal-rate", "power-on-transient")
+MEMORIES = ("thermal-lag", "thermal-rate", "power-on-transient")
+#: What also tells warming from cooling, of a width, and goes another way at another power-on.
+_HYSTERESIS = "thermal-hysteresis"
 #: Nats that pieces left out must gain, and what may be left of their error: of a form without
 #: memory, and of one that has to be told from a walk of the noise, which a slow course feigns well.
 _CLEARLY, _CLEARLY_OF_MEMORY = (2.0, 0.97), (5.0, 0.9)
@@ -111,7 +114,7 @@ def memory(
     own = [
         c
         for c in pool
-        if c.kind in _MEMORIES
+        if c.kind in MEMORIES
         and fits_in_slots([*beside, *c.terms], taken)
         and not cancels(regression.sessions, every, c.terms)
     ]
@@ -119,11 +122,82 @@ def memory(
     if not gains or max(gains) <= 0:
         return None
     best = own[gains.index(max(gains))]
+    if is_like_hysteresis(straight, beside, best, pool, by_line):
+        return None
     gain = judged(straight, beside, best.terms)
     decision = _decision(regression, every, best.terms, len(own), gain)
     if decision.p_value > _LIKELY or not _is_clear(gain, regression, *_CLEARLY_OF_MEMORY):
         return None
     return Found(best, decision)
+
+
+def is_like_hysteresis(straight, beside, best: Candidate, pool, by_line: PiecesByLine) -> bool:
+    """Whether a hysteresis of one width predicts the pieces left out as well as a lag, a rate or a
+    start: one course does not tell which it is, and at another power-on they part."""
+    if best.kind not in MEMORIES:
+        return False
+    loops = [c.terms for c in pool if c.kind == _HYSTERESIS]
+    most = max((float(by_line(straight, beside, terms).sum()) for terms in loops), default=-np.inf)
+    return most >= float(by_line(straight, beside, best.terms).sum())
+
+
+@dataclass
+class Remembering:
+    """A curve over temperature, maybe none, with a memory of it, and the nats both gain."""
+
+    curve: tuple[Term, ...]
+    memory: Candidate
+    nats: float
+
+
+def remembering(straight, curve, pool, by_line: PiecesByLine) -> Remembering | None:
+    """What of all that remembers temperature predicts best, beside the line, a parabola or a cubic.
+
+    curve: the terms of the parabola and the cubic.
+    """
+    best = None
+    for powers in range(len(curve) + 1):
+        beside = curve[:powers]
+        for c in pool:
+            if c.kind in (*MEMORIES, _HYSTERESIS):
+                nats = float(by_line(straight, (), (*beside, *c.terms)).sum())
+                best = best if best and best.nats >= nats else Remembering(beside, c, nats)
+    return best
+
+
+def of_memory(
+    regression: Regression,
+    straight: Sequence[Term],
+    found: Sequence[Found],
+    other: Remembering,
+    pool: Sequence[Candidate],
+    judged: JudgedOnPieces,
+    by_line: PiecesByLine,
+    taken: int,
+) -> list[Found]:
+    """The curve and the memory in the place of all that was found, where that is clear, of another
+    memory where it predicts better; else none.
+
+    Arguments as for `memory`.
+    """
+    c, every = other.memory, [*straight, *other.curve]
+    fits = fits_in_slots([*other.curve, *c.terms], taken)
+    doubtful = c.kind == _HYSTERESIS or is_like_hysteresis(straight, other.curve, c, pool, by_line)
+    if not fits or doubtful or cancels(regression.sessions, every, c.terms):
+        return []
+    own = [t for f in found for t in f.candidate.terms]
+    instant = [t for f in found if f.candidate.kind not in MEMORIES for t in f.candidate.terms]
+    with_it = judged(straight, (), [*other.curve, *c.terms])
+    if own and float((with_it - judged(straight, (), own)).sum()) <= 0.0:
+        return []
+    gain = with_it - (judged(straight, (), instant) if instant else 0.0)
+    tried = sum(x.kind in MEMORIES for x in pool)
+    decision = _decision(regression, every, c.terms, tried, gain)
+    if decision.p_value > _LIKELY or not _is_clear(gain, regression, *_CLEARLY_OF_MEMORY):
+        return []
+    curve = Candidate("temperature-" + _NAMES[len(other.curve)], other.curve, "catalogue")
+    beside = _decision(regression, straight, other.curve, 1, gain)
+    return [*([Found(curve, beside)] if other.curve else []), Found(c, decision)]
 
 
 def cancels(sessions: Sequence[Session], beside: Sequence[Term], terms: Sequence[Term]) -> bool:

@@ -132,12 +132,12 @@ class Search:
         self.found = [Found(c, d) for c, d in bends.found]
         self.refused += bends.refused
         self._hysteresis_of_one_recording(bends.curve)
-        self._by_pieces_alone()
+        self._by_pieces_alone(bends.curve)
         self.bends = len(self.found)
         if any(t.power == 2 for t in self.terms()):
             self.bend = ()
 
-    def _by_pieces_alone(self):
+    def _by_pieces_alone(self, curve: tuple[Term, ...]):
         """What the likelihood may not tell from a walk of the noise, but pieces left out do."""
         assert self.on_pieces is not None
         if any(t.memory == "play" for t in self.terms()):
@@ -149,8 +149,20 @@ class Search:
         self._remember(*judged)
         better = by_pieces.segments(r, self.line, self.found, *judged)
         if better:
+            self._bend_often(better, curve, *judged)
+
+    def _bend_often(self, better: Found, curve: tuple[Term, ...], judged, by_line, taken: int):
+        """A line of many segments, unless what remembers temperature predicts as well: warming up
+        once, both are much alike, and at another power-on they part."""
+        nats = float(by_line(self.line, (), better.candidate.terms).sum())
+        other = by_pieces.remembering(self.line, curve, self.pool, by_line)
+        if other is None or other.nats < nats - hysteresis.TIES_NATS:
             self.found = [better]
-            self._remember(*judged)
+            self._remember(judged, by_line, taken)
+            return
+        self.refused.append((by_pieces.SEGMENTS, "what remembers temperature predicts as well"))
+        beside = self.found, other, self.pool, judged, by_line, taken
+        self.found = by_pieces.of_memory(self.regression, self.line, *beside) or self.found
 
     def _remember(self, *judged):
         own = by_pieces.memory(self.regression, self.line, self.found, self.pool, *judged)
@@ -300,6 +312,10 @@ class Search:
                 self.refused.append((confounding.label(best), "it would only cancel another"))
                 return None
             beside = self.straight, self.terms()
+            by_line = PiecesByLine(r.sessions[0])
+            if by_pieces.is_like_hysteresis(*beside, best, self.pool, by_line):
+                self.refused.append((confounding.label(best), "a hysteresis predicts as well"))
+                return None
             decision = on_pieces(decision, self.on_pieces, *beside, best.terms, LEAST_OF_OTHERS)
         if decision.accepted:
             return Found(best, decision)
