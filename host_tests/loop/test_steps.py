@@ -72,3 +72,16 @@ def test_a_step_is_timed_to_the_second_and_the_accelerometer_is_asked(seen_g):
     (step,) = without_steps([session])[0].steps
     assert step.at_s == pytest.approx(moment * session.tick_s, abs=session.tick_s)
     assert ("the accelerometer saw 0.4 g" in step.said) == bool(seen_g)
+
+
+@pytest.mark.parametrize("floors, follows_dps", [(8.0, 0.0), (0.0, 0.05)])
+def test_what_follows_a_pose_that_changes_often_is_no_step_and_a_step_no_acceleration(
+    floors, follows_dps
+):
+    session, _ = stepped(5, floors, 90)
+    rng, ticks = np.random.default_rng(5), len(session.sources["temp"])
+    pose = np.repeat([0.0, 0.3, -0.1, 0.4, 0.1, -0.2], ticks // 6)
+    for axis, size in zip("xyz", (1.0, 0.5, -0.2)):
+        session.sources[f"acc_{axis}"] = size * pose + rng.normal(0, 1e-3, ticks)
+    session.rate_dps += follows_dps * session.block_mean(session.sources["acc_x"])[:, None]
+    assert [s.block for s in without_steps([session])[0].steps] == ([90] if floors else [])

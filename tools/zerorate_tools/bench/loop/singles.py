@@ -150,7 +150,7 @@ def look_at_single(seed: int) -> Single:
         said = report(analysis)
         errors = _held_out(corrected, logs, made, described)
         errors["a further power-on"] = _further(model, logs, further)
-    true = [e for e in described["effect"] if e["kind"] == "step"]
+    true = [e for e in described["effect"] if e["kind"] == "step" and _took_place(e, made)]
     near = [_is_near(event, true, logs, made) for event in said["events"]]
     kept = [step["effect"] for step in said["steps"]]
     listed, invented = min(len(true), sum(near)), len(near) - sum(near)
@@ -181,6 +181,12 @@ def _is_near(event: dict, true: list[dict], logs: list[Path], made: list) -> boo
     at = [log.stem for log in logs].index(event["recording"].split(".")[0])
     seconds = (event["t_us"] - made[at][1].t_us[0]) / 1e6
     return any(e["session"] == at + 1 and abs(e["at_s"] - seconds) < _NEAR_S for e in true)
+
+
+def _took_place(step: dict, made: list) -> bool:
+    """Whether the recording went on until the step: how long a power-on is, is drawn, too."""
+    truth = made[step["session"] - 1][1]
+    return bool(step["at_s"] < (truth.t_us[-1] - truth.t_us[0]) / 1e6)
 
 
 def _held_out(path: Path, logs: list[Path], made: list, described: dict) -> dict:
@@ -280,7 +286,7 @@ def single_figures(singles: list[Single]) -> list[Figure]:
         for where in ("at rest", "in motion", "a further power-on")
     ]
     for kind, what, limit in (("step", "RMS", 95.0), ("small step", "jump", None)):
-        own = [s for s in singles if s.kind == kind]
+        own = [s for s in singles if s.kind == kind and s.steps]
         rows.append(share(f"steps of 3 floors {what} listed", own, lambda s: bool(s.listed), limit))
         chances = [s.tellable for s in own if s.tellable is not None]
         most = 100.0 * float(np.mean(chances)) if chances else float("nan")

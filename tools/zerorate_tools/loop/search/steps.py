@@ -5,18 +5,19 @@ session are looked at together at the colour that fits best, one step after the 
 stand beside all others.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.stats import chi2
 
-from ...model.term import Term
 from ..fit.cross_products import GappyWhitener
 from ..fit.regression import predicted
 from ..fit.surrogates import NullRatios
 from ..read.sessions import common_sources
-from .catalogue import candidates
+from .catalogue import Candidate, candidates
 from .decide import LEVEL
+from .refine import refined
 
 MOST_PER_SESSION = 4
 _AWAY = 15  # blocks from a step at which a step beside it no longer shows it
@@ -54,37 +55,57 @@ def strongest(regression, terms) -> Step | None:
     return max(steps, key=lambda s: s.ratio, default=None)
 
 
-def find_all(regression, terms) -> list[Step]:
+def find_all(regression, terms, rivals: Sequence[Candidate] = ()) -> list[Step]:
     """Every step beside the terms, strongest first; they stay in the regression as nuisances.
 
-    A kink or a loop that the terms lack is made of steps, too: what follows temperature is taken
-    beside the terms first, wherever it explains more than the steps do, or much beside them.
+    A kink or a loop that the terms lack is made of steps, too: what follows temperature, and other
+    rivals, are taken beside the terms first, wherever one explains more than the steps do, or much
+    beside them.
     """
-    beside, forms = list(terms), _of_temperature(regression.sessions)
+    beside, forms = list(terms), [*_of_temperature(regression.sessions), *rivals]
+    most = len(rivals) + _MOST_FORMS
     while True:
         regression.set_events([])
         steps = sorted(_all(regression, beside), key=lambda s: -s.ratio)
-        if not steps or len(beside) - len(terms) >= _MOST_FORMS:
+        if not steps or not most:
             break
         form, gain = _best_form(regression, beside, forms)
-        _set(regression, steps, None)
         if gain < steps[0].ratio:
+            _set(regression, steps, None)
             form, gain = _best_form(regression, beside, forms)
-        if gain < _A_FORM:
+        if form is None or gain < _A_FORM:
             break
-        beside.append(form)
+        beside += refined(regression, beside, form).terms
+        most -= 1
     _set(regression, steps, None)
-    return _sized(regression, beside, steps)
+    steps = _sized(regression, beside, steps)
+    fitted, first = regression.fit(beside).coefficients, len(terms)
+    return [s for s in steps if not _is_timing(regression, beside[first:], fitted[first:], s)]
 
 
-def _of_temperature(sessions) -> list[Term]:
+def _is_timing(regression, forms, fitted, step: Step) -> bool:
+    """Whether the forms taken beside a step change by more than its size from the block before it
+    to that after it: a reading that is late by seconds makes such a step."""
+    session = regression.sessions[step.session]
+    weight = step.size_dps / np.maximum(step.deviation_dps, 1e-12) ** 2
+    along = predicted(forms, fitted, session) @ weight / (step.size_dps @ weight)
+    last = len(along) - 1
+    return bool(abs(along[min(step.block + 1, last)] - along[max(step.block - 1, 0)]) > 1.0)
+
+
+def _of_temperature(sessions) -> list[Candidate]:
     pool = candidates(sessions) if "temp" in common_sources(sessions) else []
-    return [c.terms[0] for c in pool if c.sources == ["temp"] and len(c.terms) == 1]
+    return [c for c in pool if c.sources == ["temp"] and len(c.terms) == 1]
 
 
-def _best_form(regression, terms, forms) -> tuple[Term | None, float]:
-    gains = regression.gains(terms, [(f,) for f in forms]).sum(axis=1)
-    return (forms[int(gains.argmax())], float(gains.max())) if forms else (None, 0.0)
+def _best_form(regression, terms, forms) -> tuple[Candidate | None, float]:
+    """The form that explains most beside the terms, and its likelihood ratio; one of several terms
+    pays for those that a step does not have (Akaike)."""
+    if not forms:
+        return None, 0.0
+    gains = regression.gains(terms, [f.terms for f in forms]).sum(axis=1)
+    gains = gains - [6.0 * (len(f.terms) - 1) for f in forms]
+    return forms[int(gains.argmax())], float(gains.max())
 
 
 def column(regression, step: Step) -> list[np.ndarray]:

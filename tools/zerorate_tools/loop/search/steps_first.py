@@ -1,8 +1,9 @@
 """Steps before effects: each session's own are found, timed, sized and taken out of it.
 
-Each stretch between two steps has an offset of its own in every fit from then on. Steps must stand
-beside what the sensor's own channels do where those jump often. Where another recorded channel
-does, a jump of the bias may be its doing, and late: the search then lets both compete.
+Each stretch between two steps has an offset of its own in every fit from then on. Where the
+sensor's own channels jump often, what follows them explains more than any one step, or is none;
+where they jump once or twice, steps must stand beside them. Where another recorded channel jumps, a
+jump of the bias may be its doing, and late: the search then lets both compete.
 """
 
 from collections.abc import Sequence
@@ -13,6 +14,7 @@ import numpy as np
 from ...model.term import Term
 from ..fit.regression import Regression
 from ..read.sessions import OWN_SOURCES, Session, common_sources
+from .catalogue import Candidate
 from .steps import Step, find_all
 
 #: The sensor's own channels, and one made of its temperature.
@@ -33,14 +35,17 @@ def without_steps(sessions: Sequence[Session]) -> list[Session]:
     jumping = [n for n in _channels(sessions) if _jumps_often(sessions, n) or _turns(sessions, n)]
     if set(jumping) - _OWN:
         return list(sessions)
-    return [_less(s, _steps(s, [*bend_of(s), *_beside(s, jumping)])) for s in sessions]
+    return [_less(s, _steps(s, jumping)) for s in sessions]
 
 
-def _steps(session, terms) -> list[Step]:
+def _steps(session, jumping) -> list[Step]:
     """Those of one session in their order; one in the middle of a block, which two blocks in turn
     show, is one."""
     out: list[Step] = []
-    for step in sorted(find_all(Regression([session]), terms), key=lambda s: s.block):
+    often = [n for n in jumping if _jumps_often([session], n)]
+    terms = [t for c in _forms(session, set(jumping) - set(often)) for t in c.terms]
+    every = find_all(Regression([session]), [*bend_of(session), *terms], _forms(session, often))
+    for step in sorted(every, key=lambda s: s.block):
         if out and step.block - out[-1].block == 1 and step.size_dps @ out[-1].size_dps > 0:
             deviation = np.hypot(step.deviation_dps, out[-1].deviation_dps)
             size = out[-1].size_dps + step.size_dps
@@ -57,11 +62,13 @@ def bend_of(session: Session) -> list[Term]:
     return [Term("temp", centre=float(temp.mean()), power=k) for k in (1, 2)]
 
 
-def _beside(session, jumping) -> list[Term]:
-    """Terms of the sensor's own channels that jump often, in proportion and squared."""
-    terms = [Term(n, power=k) for n in jumping if n != _RATE for k in (1, 2)]
-    rate = [Term("temp", lag_s=20.0, lag_mode="rate")] if _RATE in jumping else []
-    return [*(t for t in terms if np.ptp(session.block_mean(session.source(t.source))) > 0), *rate]
+def _forms(session, names) -> list[Candidate]:
+    """What follows some of the sensor's own channels: acceleration on its axes together."""
+    groups = [[n for n in names if n.startswith("acc_")], [n for n in names if n == "vib"]]
+    varies = [[n for n in g if np.ptp(session.block_mean(session.source(n))) > 0] for g in groups]
+    every = [[Term(n, power=k) for n in sorted(g)] for g in varies if g for k in (1, 2)]
+    every += [[Term("temp", lag_s=20.0, lag_mode="rate")]] if _RATE in names else []
+    return [Candidate("steps", tuple(terms), "catalogue") for terms in every]
 
 
 def _channels(sessions) -> list[str]:
