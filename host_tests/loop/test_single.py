@@ -1,5 +1,7 @@
 """One recording alone: an effect must gain on what the firmware learns without it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
@@ -9,6 +11,7 @@ from zerorate_tools.loop.analyse import analyse
 from zerorate_tools.loop.fit.single import PiecesByLine, nats, speaks_for
 from zerorate_tools.loop.search.bends import find_bends
 from zerorate_tools.loop.search.select import Search
+from zerorate_tools.loop.search.steps import Step
 from zerorate_tools.loop.verify.by_kernels import PiecesByKernels
 from zerorate_tools.loop.verify.measure import measure_and_prune
 from zerorate_tools.loop.verify.power_on import PowerOn
@@ -131,6 +134,16 @@ def test_pieces_lie_over_the_whole_course_of_temperature():
     fold = PiecesByLine(session).fold
     spans = [np.ptp(temp[fold == k]) for k in range(10)]
     assert np.median(spans) > 0.3 * np.ptp(temp)
+
+
+def test_a_step_whose_size_is_misjudged_is_no_error_of_the_stretch_after_it():
+    (session,) = simulate(1, sessions=1, hours=2.0).sessions
+    step = Step(0, session.blocks // 2, np.full(3, 0.1), 100.0, 0.0)
+    judged = PiecesByLine(replace(session, steps=(step,)))
+    noise = np.random.default_rng(0).normal(0, 0.004, (session.blocks, 3))
+    left = noise + 0.02 * (np.arange(session.blocks) >= step.block)[:, None]
+    assert np.nanstd(judged.about_stretches(left)) == pytest.approx(0.004, rel=0.05)
+    assert PiecesByLine(session).about_stretches(left) is left
 
 
 def test_what_a_piece_holds_changes_its_own_error_alone(tmp_path):

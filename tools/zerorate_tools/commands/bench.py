@@ -102,7 +102,6 @@ _QUICK = {"--quick": {"action": "store_true", "help": "short recordings and one 
 _BROAD = {"--data": {"type": Path, "metavar": "DIR", "help": "folder of BROAD trials (.mat)"}}
 _RECORDINGS = {"--data": {"type": Path, "metavar": "DIR", "help": "folder of real recordings"}}
 _RESUME = {"--resume": {"type": Path, "metavar": "FILE", "help": "outcomes: go on from them"}}
-_RESUME = {"--resume": {"type": Path, "metavar": "FILE", "help": "outcomes: go on from them"}}
 _PLOTS = {"--plots": {"type": Path, "metavar": "DIR", "help": "PNGs of the real recordings"}}
 
 
@@ -245,5 +244,12 @@ BENCHES = {
         lambda bench, a: a.devices,
         "in_words",
         {"--devices": _number(400, "devices"), **_PROCESSES, **_RESUME},
+    ),
+    "variants": Bench(
+        "closing the loop on real recordings cut, bereft of a sensor, with a step",
+        "loop.variants",
+        lambda bench, a, advance: bench.variant_rows(_recordings(a), advance),
+        text="in_words",
+        options=_RECORDINGS,
     ),
 }

@@ -103,6 +103,17 @@ class PiecesByLine:
             out[own] = part.less_offsets(left, part.available)[own]
         return np.where(self.session.available[:, None], out, np.nan)
 
+    def about_stretches(self, left: np.ndarray) -> np.ndarray:
+        """(n, 3) what is left, less the offset of each stretch between steps by what is not left
+        out with a block: no step's size is known so well. As it is where there is no step."""
+        if not self.session.steps:
+            return left
+        out = left.copy()
+        for k, part in enumerate(self.parts):
+            own = self.fold == k
+            out[own] = part.less_offsets(left, part.available)[own]
+        return out
+
     def _squares(self, left):
         """(folds, 3) sums of squares; infinite where there is nothing to sum."""
         squares = np.where(self.session.available[:, None], left**2, 0.0)

@@ -103,7 +103,8 @@ class PiecesByKernels(PiecesByLine):
                 lead, a, b = np.searchsorted(at, (first - _LEAD_BLOCKS, first, last))
                 bias = devices[self.fold[first]].run(rows(frames, lead, b), learn=False)
                 means.add(rows(frames, a, b), bias[a - lead :])
-        return np.where(p.scored[:, None], p.rate_dps - means.blocks_dps(), np.nan)
+        left = np.where(p.scored[:, None], p.rate_dps - means.blocks_dps(), np.nan)
+        return self.about_stretches(left)
 
     def _stretches(self, first, last):
         """(first, one past last) of the blocks from one change of turn to the next."""

@@ -188,7 +188,9 @@ class MeasurementByPieces:
         def biases(frames):
             return {way: run(frames) for way, run in ways.items()}
 
-        return scored(p, _means(p, ways, biases, sink))
+        course = scored(p, _means(p, ways, biases, sink))
+        course.residual = {way: of.about_stretches(r) for way, r in course.residual.items()}
+        return course
 
 
 def _means(p: PowerOn, ways: Iterable[str], biases: Callable[[Frames], dict], sink: Sink) -> dict:
