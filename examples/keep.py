@@ -5,17 +5,20 @@ from array import array
 
 gc.threshold(1024)  # a small heap stays in one piece while what follows is loaded
 
+# each is made before the next is loaded: what only its making needs is gone by then
+from zerorate_i2c.board import setup
+
+imu = setup(scl=5, sda=4)
 from zerorate import Corrector, Sensor
+
+learner = Corrector(Sensor(*imu.scales))
 from zerorate.checked import CheckedCorrector
 from zerorate.storage.learned_store import LearnedStore
 from zerorate.storage.places import FileStorage
 from zerorate.storage.save_schedule import SaveSchedule
 from zerorate.storage.store import REASONS
-from zerorate_i2c.board import setup
 from zerorate_i2c.fifo import EMPTY, Fifo
 
-imu = setup(scl=5, sda=4)
-learner = Corrector(Sensor(*imu.scales))
 store = LearnedStore(FileStorage("learned.bin"), imu.binding, learner)
 print(REASONS[store.load()])
 corrector = CheckedCorrector(learner)

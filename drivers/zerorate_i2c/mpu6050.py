@@ -54,6 +54,22 @@ class MPU6050(Registers):
     are no measurement), repeats (samples read before), torn (read again and found different).
     """
 
+    # set by settings.py, which is let go behind the constructor
+    part: str
+    temp_lsb_per_degc: float
+    temp_offset_degc: float
+    fifo_bytes: int
+    start_up_ms: int
+    kind: int
+    dlpf_hz: float
+    odr_hz: float
+    period_us: int
+    full_scale_dps: int
+    gyro_lsb_per_dps: float
+    accel_lsb_per_g: float
+    scales: "tuple[float, float, float, float, float]"
+    binding: bytes
+
     def __init__(
         self,
         i2c: "Any",
@@ -85,35 +101,9 @@ class MPU6050(Registers):
 
         self.who_am_i, row = identify(self, part)
         unload("identity")
-        from .settings import (
-            ACCEL_LSB_PER_G,
-            ACCEL_RANGES_G,
-            GYRO_LSB_PER_DPS,
-            GYRO_RANGES_DPS,
-            choose_divider,
-            choose_filter,
-            index_of,
-            register_settings,
-        )
+        from .settings import settle
 
-        gyro_code = index_of(full_scale_dps, GYRO_RANGES_DPS, "full_scale_dps")
-        accel_code = index_of(full_scale_g, ACCEL_RANGES_G, "full_scale_g")
-        self.part = row[1]
-        self.temp_lsb_per_degc = row[2]
-        self.temp_offset_degc = row[3]
-        self.fifo_bytes = row[4]
-        self.start_up_ms = row[5]
-        self.kind = row[6]
-        dlpf_code, self.dlpf_hz = choose_filter(self.kind, odr_hz, dlpf_hz)
-        divider, self.odr_hz = choose_divider(dlpf_code, odr_hz)
-        self.period_us = round(1000000 / self.odr_hz)
-        self.full_scale_dps = full_scale_dps
-        self.full_scale_g = full_scale_g
-        self.gyro_lsb_per_dps = GYRO_LSB_PER_DPS[gyro_code]
-        self.accel_lsb_per_g = ACCEL_LSB_PER_G[accel_code]
-        self.scales = (self.odr_hz, self.gyro_lsb_per_dps, self.accel_lsb_per_g) + row[2:4]
-        self.binding = bytes([self.who_am_i, gyro_code, accel_code, dlpf_code])
-        self._settings = register_settings(self.kind, gyro_code, accel_code, dlpf_code, divider)
+        self._settings = settle(self, row, full_scale_dps, full_scale_g, odr_hz, dlpf_hz)
         unload("settings")
         unload("parts")
         self.kept_power = self._is_configured()

@@ -59,6 +59,30 @@ def choose_divider(dlpf_code, odr_hz):
     return divisor - 1, base_hz / divisor
 
 
+def settle(imu, row, full_scale_dps, full_scale_g, odr_hz, dlpf_hz):
+    """Give imu, an MPU6050 whose row of parts.PARTS this is, its attributes; its registers.
+
+    Returns register_settings(...). Raises ValueError for a value that the part cannot take.
+    """
+    gyro_code = index_of(full_scale_dps, GYRO_RANGES_DPS, "full_scale_dps")
+    accel_code = index_of(full_scale_g, ACCEL_RANGES_G, "full_scale_g")
+    imu.part = row[1]
+    imu.temp_lsb_per_degc = row[2]
+    imu.temp_offset_degc = row[3]
+    imu.fifo_bytes = row[4]
+    imu.start_up_ms = row[5]
+    imu.kind = row[6]
+    dlpf_code, imu.dlpf_hz = choose_filter(imu.kind, odr_hz, dlpf_hz)
+    divider, imu.odr_hz = choose_divider(dlpf_code, odr_hz)
+    imu.period_us = round(1000000 / imu.odr_hz)
+    imu.full_scale_dps = full_scale_dps
+    imu.gyro_lsb_per_dps = GYRO_LSB_PER_DPS[gyro_code]
+    imu.accel_lsb_per_g = ACCEL_LSB_PER_G[accel_code]
+    imu.scales = (imu.odr_hz, imu.gyro_lsb_per_dps, imu.accel_lsb_per_g) + row[2:4]
+    imu.binding = bytes([imu.who_am_i, gyro_code, accel_code, dlpf_code])
+    return register_settings(imu.kind, gyro_code, accel_code, dlpf_code, divider)
+
+
 def register_settings(kind, gyro_code, accel_code, dlpf_code, divider):
     """bytearray of (register, value) pairs, in the order in which they are written."""
     gyro_shift = 2 if kind == ICM20690_KIND else 3

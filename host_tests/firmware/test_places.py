@@ -4,7 +4,8 @@ import os
 
 import pytest
 from zerorate.storage import store as stores
-from zerorate.storage.places import BlockDeviceStorage, FileStorage
+from zerorate.storage.block_device import BlockDeviceStorage
+from zerorate.storage.places import FileStorage
 
 from .test_store import BLANK, NEW, OLD, loaded, make_store
 

@@ -19,6 +19,7 @@ PARTS = {
         "zerorate.storage.learned_store",
         "zerorate.storage.save_schedule",
         "zerorate.storage.places",
+        "zerorate.storage.block_device",
         "zerorate_i2c.board",
         "zerorate_i2c.data_ready",
         "zerorate_i2c.fifo",

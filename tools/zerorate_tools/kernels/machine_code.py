@@ -24,6 +24,7 @@ _COMMON = (
     # a loop that subtracts stays one, for there is no division to make of it
     *("-mllvm", "-replexitval=never"),
 )
+_SMALL = ("-mllvm", "-inline-threshold=25", "-mllvm", "-sink-common-insts=1")
 # What every sample runs through: where instructions are saved for the fewest bytes.
 _ALWAYS = "static inline __attribute__((always_inline))"
 _WHOLE = '_Pragma("clang loop unroll(full)")'
@@ -98,7 +99,7 @@ class Processor:
 
 PROCESSORS = {
     "thumb": Processor(
-        *("thumb-freestanding-eabi", "-Os", ("-mcpu=cortex_m0plus", "-mexecute-only")),
+        *("thumb-freestanding-eabi", "-Os", (*_SMALL, "-mcpu=cortex_m0plus", "-mexecute-only")),
         *(_WITHOUT_DIVISION, "asm_thumb", "r0, r1, r2, r3"),
     ),
     # for speed: the boards that have it have heap for half as much again
