@@ -35,16 +35,10 @@ _AXES = const(0)
 _AXIS_WORDS = const(15)
 _WALK_MOST_Q16 = const(43)
 _TURN_ON_VARIANCE_Q8 = const(47)
-# layout: The state of the source in motion
-_MOTION_BIAS_Q8 = const(71)
-# layout: The state of the source against gravity
-_GRAVITY_BIAS_Q8 = const(28)
 # layout: What a window was
 _STILL = const(1)
 # layout: Where a bias comes from
 _ANY_TEMPERATURE = const(1)
-_IN_MOTION = const(4)
-_GRAVITY = const(5)
 # layout: Values that stand for none
 _NO_VALUE = const(-0x3FFFFFFF)
 # layout: end
@@ -77,8 +71,7 @@ class Corrector:
     _sense: "Any" = None
     _observe_motion: "Any" = None
     _observe_gravity: "Any" = None
-    _examine: "Any" = None
-    _guard: "Any" = None
+    _with_others: "Any" = None
 
     def __init__(
         self,
@@ -135,12 +128,13 @@ class Corrector:
                 self.left_out.append("Left out: %s." % error)
 
     def _join_others(self):
-        self._examine = rest.check
-        # an odd address asks the guard alone
-        self._guard = rest.address(self.settings) + 1 if rest.run else self.settings
-        self.alone = False
-        if "update" in self.__dict__:
-            del self.update
+        if self.alone:
+            from .others import Others  # who rests alone has no memory taken by them
+
+            self._with_others = Others(self).update
+            self.alone = False
+            if "update" in self.__dict__:
+                del self.update
 
     def reset(self) -> None:
         """Forget everything that was learned."""
@@ -188,33 +182,7 @@ class Corrector:
         """
         if self.alone:
             return rest.step(self.state, self.settings, sample, dt_us)
-        return self._update_with_others(sample, dt_us)
-
-    # small frames: one of more than eleven words would take heap at every call
-    def _update_with_others(self, sample, dt_us):
-        kind = self._examine(self.state, self._guard, sample, dt_us)
-        self._sense_effects(sample, dt_us, kind)
-        rest.admit(self.state, self.settings, sample, kind)
-        if kind == 0:
-            self._ask_others(sample, dt_us)
-        return rest.finish(self.state, self.settings, sample, kind)
-
-    def _sense_effects(self, sample, dt_us, kind):
-        effects = self.effects
-        if effects is not None:
-            kind = 0 if kind else 1
-            self._sense(self.state, effects.e, sample, dt_us, kind)
-
-    def _ask_others(self, sample, dt_us):
-        if self.motion is not None:
-            if self._observe_motion(self.motion, self.motion_settings, sample, dt_us):
-                rest.consider(self.state, self.settings, self.motion, _MOTION_BIAS_Q8, _IN_MOTION)
-        if self.gravity is not None:
-            if self._observe_gravity(self.gravity, self.gravity_settings, sample, dt_us):
-                rest.consider(self.state, self.settings, self.gravity, _GRAVITY_BIAS_Q8, _GRAVITY)
-        effects = self.effects
-        if effects is not None and effects.attend:
-            effects.attend(self.state, self.settings, effects.e)
+        return self._with_others(sample, dt_us)
 
     def use_model(self, effects: "Any") -> None:
         """Subtract what this model says (a loaded model.EffectModel), and learn what is left."""

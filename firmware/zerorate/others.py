@@ -1,8 +1,69 @@
-"""What a power-on does to the sources that need no rest: their windows hold what was before."""
+"""The sources that need no rest, and the effects: a sample's way through them, and their start."""
+
+from .native import rest
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from array import array
+
+    from .corrector import Corrector
+
+const = int  # on a board the compiler itself reads const(...)
+
+# layout: The state of the source in motion
+_MOTION_BIAS_Q8 = const(71)
+# layout: The state of the source against gravity
+_GRAVITY_BIAS_Q8 = const(28)
+# layout: Where a bias comes from
+_IN_MOTION = const(4)
+_GRAVITY = const(5)
+# layout: end
+
+
+class Others:
+    """What `corrector`, a Corrector, has besides learning at rest."""
+
+    def __init__(self, corrector: "Corrector") -> None:
+        self._of = corrector
+        self._examine = rest.check
+        c = corrector.settings
+        # an odd address asks the guard alone
+        self._guard = rest.address(c) + 1 if rest.run else c
+
+    # small frames: one of more than eleven words would take heap at every call
+    def update(self, sample: "array[int]", dt_us: int) -> int:
+        """As Corrector.update."""
+        kind = self._examine(self._of.state, self._guard, sample, dt_us)
+        self._sense_effects(sample, dt_us, kind)
+        rest.admit(self._of.state, self._of.settings, sample, kind)
+        if kind == 0:
+            self._ask_others(sample, dt_us)
+        return rest.finish(self._of.state, self._of.settings, sample, kind)
+
+    def _sense_effects(self, sample, dt_us, kind):
+        effects = self._of.effects
+        if effects is not None:
+            kind = 0 if kind else 1
+            self._of._sense(self._of.state, effects.e, sample, dt_us, kind)
+
+    def _ask_others(self, sample, dt_us):
+        owner = self._of
+        if owner.motion is not None:
+            if owner._observe_motion(owner.motion, owner.motion_settings, sample, dt_us):
+                self._consider(owner.motion, _MOTION_BIAS_Q8, _IN_MOTION)
+        if owner.gravity is not None:
+            if owner._observe_gravity(owner.gravity, owner.gravity_settings, sample, dt_us):
+                self._consider(owner.gravity, _GRAVITY_BIAS_Q8, _GRAVITY)
+        effects = owner.effects
+        if effects is not None and effects.attend:
+            effects.attend(owner.state, owner.settings, effects.e)
+
+    def _consider(self, found, bias_at, source):
+        rest.consider(self._of.state, self._of.settings, found, bias_at, source)
 
 
 def forget(corrector):
-    """Make the state of each as new."""
+    """Make the state of each source as new: its window holds what was before a power-on."""
     if corrector.motion is not None:
         from .native import motion
 

@@ -9,7 +9,8 @@ from .kernel_rules import remarks
 
 # What the user's object runs at every sample, outside the kernels.
 HOT_METHODS = {
-    "corrector.py": ("update", "_ask_others"),
+    "corrector.py": ("update",),
+    "others.py": ("update", "_sense_effects", "_ask_others", "_consider"),
     "bursts.py": ("update", "_one_by_one", "_update_at"),
     "model.py": ("channel",),
 }

@@ -39,8 +39,13 @@ PARTS = {
         "zerorate.gravity.gravity_settings",
         "zerorate.explain_sources",
     ),
-    "effects": ("zerorate.model", "zerorate.native.effects"),
-    "refine": ("zerorate.model", "zerorate.native.effects", "zerorate.native.refine"),
+    "effects": ("zerorate.model", "zerorate.others", "zerorate.native.effects"),
+    "refine": (
+        "zerorate.model",
+        "zerorate.others",
+        "zerorate.native.effects",
+        "zerorate.native.refine",
+    ),
     "bursts": ("zerorate.bursts",),
     "self-test": ("zerorate_i2c.self_test",),
 }
