@@ -41,10 +41,9 @@ class Others:
         return rest.finish(self._of.state, self._of.settings, sample, kind)
 
     def _sense_effects(self, sample, dt_us, kind):
-        effects = self._of.effects
-        if effects is not None:
+        if self._of.effects is not None:
             kind = 0 if kind else 1
-            self._of._sense(self._of.state, effects.e, sample, dt_us, kind)
+            self._of._sense(self._of.state, self._of.effects.e, sample, dt_us, kind)
 
     def _ask_others(self, sample, dt_us):
         owner = self._of
