@@ -32,17 +32,27 @@ _TURNED_G = 0.5
 
 def without_steps(sessions: Sequence[Session]) -> list[Session]:
     """The sessions without their steps, which they name."""
-    jumping = [n for n in _channels(sessions) if _jumps_often(sessions, n) or _turns(sessions, n)]
-    if set(jumping) - _OWN:
+    if may_be_a_channels(sessions):
         return list(sessions)
+    jumping = _jumping(sessions)
     return [_less(s, _steps(s, jumping)) for s in sessions]
+
+
+def may_be_a_channels(sessions: Sequence[Session]) -> bool:
+    """Whether a jump of the bias may be another recorded channel's doing: steps are then looked for
+    beside the effects."""
+    return bool(set(_jumping(sessions)) - _OWN)
+
+
+def _jumping(sessions) -> list[str]:
+    return [n for n in _channels(sessions) if _jumps_often(sessions, n) or _turns(sessions, n)]
 
 
 def _steps(session, jumping) -> list[Step]:
     """Those of one session in their order; one in the middle of a block, which two blocks in turn
     show, is one."""
     out: list[Step] = []
-    often = [n for n in jumping if _jumps_often([session], n)]
+    often = [n for n in jumping if n != _RATE and _jumps_often([session], n)]
     terms = [t for c in _forms(session, set(jumping) - set(often)) for t in c.terms]
     every = find_all(Regression([session]), [*bend_of(session), *terms], _forms(session, often))
     for step in sorted(every, key=lambda s: s.block):
