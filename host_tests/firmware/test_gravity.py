@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 from zerorate.gravity import gravity
 from zerorate.gravity.gravity_settings import gravity_settings, gravity_state
-from zerorate.layout import GRAVITY, GRAVITY_REASON, GRAVITY_SETTINGS
+from zerorate.layout import GRAVITY, GRAVITY_SETTINGS
 
 from . import motions
 from .checked import Words, checked
@@ -89,6 +89,15 @@ def test_the_truth_lies_within_two_sigma_at_least_ninety_times_of_a_hundred():
             inside += list((np.abs(offset - motion.bias_dps) < 2 * sigma)[known])
     assert len(inside) > 100
     assert np.mean(inside) >= 0.9
+
+
+def test_where_nothing_pushes_one_sigma_is_the_finest_step():
+    settings = gravity_settings()
+    state = gravity_state(settings)
+    state[GRAVITY.SIGN_TURNS] = 3
+    state[GRAVITY.STEP_Q8] = settings[GRAVITY_SETTINGS.FINE_Q8]
+    gravity.judge(state, settings, 0)
+    assert state[SIGMA] == settings[GRAVITY_SETTINGS.FINE_Q8]
 
 
 def test_a_threshold_that_no_interval_can_pass_is_refused():

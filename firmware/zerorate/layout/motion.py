@@ -73,6 +73,7 @@ MOTION = Array(
         ("TEMP_Q8", 1, "LSB", "temperature in the middle of a window"),
         ("THEN_TEMP_Q8", 1, "LSB", "the same at the window before"),
         ("NOW_TEMP_Q8", 1, "LSB", "temperature now"),
+        ("MISFIT_Q16", 1, "", "mean of squared moves of a bias, over what was expected of them"),
         ("NODES_RING", "3 * NODES", "", "a node and axis: turn, rad Q13, above force, g Q12"),
     ),
     (

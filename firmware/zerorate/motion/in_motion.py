@@ -64,7 +64,7 @@ _PRIOR_MEAN = const(173)
 _BIAS = const(179)
 _SLOPE = const(185)
 _CENTRE = const(214)
-_NODES_RING = const(241)
+_NODES_RING = const(242)
 # layout: The sums of one component
 _COMPONENT_WORDS = const(21)
 # layout: The settings of the source in motion

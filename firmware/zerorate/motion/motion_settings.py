@@ -6,7 +6,7 @@ from math import ceil, log, pi
 const = int  # on a board the compiler itself reads const(...)
 
 # layout: The state of the source in motion
-_NODES_RING = const(241)
+_NODES_RING = const(242)
 # layout: The settings of the source in motion
 _NODE_US = const(0)
 _MOTION_GAIN = const(1)
@@ -33,7 +33,7 @@ _BEND = const(25)
 _LEAST_TILT = const(26)
 _MOTION_SETTINGS_WORDS = const(27)
 # layout: end
-_SPARE_NODES = 16
+_SPARE_NODES = 15
 _ALGEBRA = 90
 
 

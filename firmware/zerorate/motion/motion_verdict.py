@@ -5,9 +5,10 @@ hold, one whose mean force is not 1 g along one direction (the integration lost 
 that contradicts what is known: a turn that stays turned. Contradiction that lasts is believed.
 """
 
-from ..arithmetic.real import copy, multiply, put, root_of, subtract, whole
+from ..arithmetic.fixed import clipped
+from ..arithmetic.real import add, copy, divide, multiply, put, root_of, subtract, whole
 from .least_squares import covariance, less, place
-from .thermal import forget_slopes, learn_slopes, present
+from .thermal import forget_slopes, learn_slopes, present, variance_at
 
 const = int  # on a board the compiler itself reads const(...)
 ptr32 = None
@@ -40,8 +41,10 @@ _SLOPE = const(185)
 _HELD_NOISE = const(191)
 _T = const(203)
 _T1 = const(205)
+_T2 = const(207)
 _CENTRE = const(214)
 _NOISE_ENERGY = const(223)
+_MISFIT_Q16 = const(241)
 # layout: The settings of the source in motion
 _LEAST_TRAFFIC = const(7)
 _NODES = const(8)
@@ -62,6 +65,7 @@ _TOO_FAST = const(5)
 _LOST = const(6)
 # layout: end
 _SETTLED_AFTER = const(3)
+_AS_EXPECTED_Q16 = const(0x4000)
 
 
 def clear(s: ptr32, c: ptr32):
@@ -70,6 +74,7 @@ def clear(s: ptr32, c: ptr32):
         put(s, _BIAS + 2 * i, 0, 0)
         s[_MOTION_QUALITY_Q8 + i] = 0x1FFFFFFF
     forget_slopes(s, c)
+    s[_MISFIT_Q16] = _AS_EXPECTED_Q16
     s[_ACCEPTED] = 0
     s[_AGAINST] = 0
     s[_STAGE] = c[_SHORTEST_STAGE]
@@ -198,6 +203,10 @@ def finish(s: ptr32, c: ptr32) -> int:
         s[_STAGE] += 1
         s[_MOTION_REASON] = _GROWING
         return 0
+    if s[_ACCEPTED] and c[_MOTION_DOCUMENT] == 0:
+        follow_misfit(s, 0)
+        follow_misfit(s, 1)
+        follow_misfit(s, 2)
     learn_slopes(s)
     covariance(s, _KNOWN_P)
     keep_noise(s)
@@ -227,6 +236,23 @@ def refuse(s: ptr32, c: ptr32, reason: int):
         i += 2
 
 
+def follow_misfit(s: ptr32, i: int):
+    """Follow how far windows move the bias of axis i beside how far they are expected to.
+
+    A quarter is as it should be: half of each window was seen before, and one bout lasts over several.
+    """
+    a = variance_at(i)
+    add(s, _T, a, place(i, i))  # less the variance that the window leaves
+    subtract(s, _T1, _BIAS + 2 * i, _PRIOR_MEAN + 2 * i)
+    multiply(s, _T1, _T1, _T1)
+    divide(s, _T1, _T1, _T)
+    a = whole(s, _T1, 16)
+    a = clipped(a, 0x40000)
+    s[_MISFIT_Q16] += (a - s[_MISFIT_Q16]) >> 5
+    if s[_MISFIT_Q16] < 0x100:
+        s[_MISFIT_Q16] = 0x100
+
+
 def keep_noise(s: ptr32):
     """Hold this window's noise energies for the next, a little less."""
     for i in range(0, 6, 2):
@@ -243,6 +269,8 @@ def publish(s: ptr32, c: ptr32):
         s[_MOTION_BIAS_Q8 + i] = whole(s, _T1, 0)
         copy(s, _T1, place(i, i), 2)
         put(s, _T1, -s[_T1], s[_T1 + 1])
+        put(s, _T2, s[_MISFIT_Q16], -14)
+        multiply(s, _T1, _T1, _T2)
         root_of(s, _T1, _T1)
         multiply(s, _T1, _T1, _T)
         s[_MOTION_QUALITY_Q8 + i] = whole(s, _T1, 0)

@@ -287,17 +287,17 @@ def let_learn(s: ptr32, c: ptr32, a: int):
 
 
 def adopt(s: ptr32, c: ptr32, a: int, error: int) -> int:
-    """Let what another source found be the level if it is better known than the level is.
+    """Let what another source found be the level if it is known twice as well as the level is.
 
     That source is a filter itself: to weigh its results into another one counted them twice, and
-    what it says supersedes what it said before. What is not better known does not teach the
+    what it says supersedes what it said before. What is not so well known does not teach the
     curve either: where rests exist, it stays theirs.
     """
     noise = (s[a + _OFFER] >> 3) + c[_FLOOR_Q8]
     if s[a + _KIND] == 0:
         s[a + _SUSPECT] = -1
         s[_RESTS] = c[_INSIST]
-    elif noise >= grown_q8(s, a) and s[a + _OFFSET_FROM] != s[a + _OFFER] & 7:
+    elif noise << 2 >= grown_q8(s, a) and s[a + _OFFSET_FROM] != s[a + _OFFER] & 7:
         return 0
     else:
         move_offset(s, a, error << 4)
