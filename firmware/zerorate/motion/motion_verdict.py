@@ -239,7 +239,7 @@ def refuse(s: ptr32, c: ptr32, reason: int):
 def follow_misfit(s: ptr32, i: int):
     """Follow how far windows move the bias of axis i beside how far they are expected to.
 
-    A quarter is as it should be: half of each window was seen before, and one bout lasts over several.
+    A quarter is as it should be: half a window was seen before, and one bout lasts over several.
     """
     a = variance_at(i)
     add(s, _T, a, place(i, i))  # less the variance that the window leaves
