@@ -32,6 +32,17 @@ def test_of_recordings_alike_neither_is_asked(closing):
     assert "one device" not in asked and "whole range" not in asked
 
 
+@pytest.mark.parametrize(
+    ("lacking", "asked"),
+    [(("temp",), "own temperature"), (("ax", "ay", "az"), "record acceleration")],
+)
+def test_a_sensor_that_was_not_recorded_is_asked_for_first(closing, lacking, asked):
+    columns = {name: values for name, values in at_rest(0).items() if name not in lacking}
+    first, *rest = measure_next(closing([columns]))
+    assert asked in first
+    assert not any("own temperature" in r or "record acceleration" in r for r in rest)
+
+
 def test_what_an_import_declares_a_reference_is_no_channel(closing):
     declared = replace(MPU, more={"channels": {"moving": {"role": "reference"}, "odd": None}})
     wander = np.cumsum(np.random.default_rng(5).normal(0, 3, N)).astype(np.int32)

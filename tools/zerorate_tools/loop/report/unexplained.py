@@ -7,6 +7,11 @@ from ...numbers import fixed
 from ..search.catalogue import is_supply, varies
 from ..verify.measured import BEFORE
 
+#: A sensor of the part's own that was not recorded, by a name of what it gives.
+_LACKING = {
+    "temp": "record the sensor's own temperature: most of what moves a bias follows it",
+    "acc_x": "record acceleration as well: a slow turn is no rest, and gravity shows it",
+}
 _ORIENTATION = "hold the device in six orientations, each twice, at constant temperature"
 _COOLING = "a cool-down at the same rate as the warm-up (tells lag, rate and hysteresis apart)"
 _WARMING = "a warm-up at the same rate as the cool-down (tells lag, rate and hysteresis apart)"
@@ -72,7 +77,8 @@ def measure_next(analysis) -> list[str]:
     """What to record so that more could be told, the most useful first."""
     sessions, found = analysis.sessions, analysis.selection.found
     kinds = {f.candidate.kind for f in found}
-    out = [*_another_device(analysis), *_other_temperatures(analysis)]
+    out = [told for name, told in _LACKING.items() if name not in sessions[0].sources]
+    out += [*_another_device(analysis), *_other_temperatures(analysis)]
     if len(sessions) < 5:
         fitted = len(sessions) - 1
         out.append(_MORE.format(_FEW if fitted < 3 else _CHANCE.format(fitted)))
