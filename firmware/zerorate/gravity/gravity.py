@@ -305,4 +305,6 @@ def judge(s: ptr32, c: ptr32, i: int):
     if s[_SIGN_TURNS + i] < 3 and c[_PUSH_Q2]:
         return
     pushed = (s[_SPREAD_Q21] * c[_PUSH_Q2]) >> 10
+    if c[_PUSH_Q2] == 0:  # the literal rules
+        pushed = c[_FINE_Q8] << 2
     s[_GRAVITY_QUALITY_Q8 + i] = (s[_RIPPLE_Q8 + i] << 1) + s[_STEP_Q8 + i] + pushed
