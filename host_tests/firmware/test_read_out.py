@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from zerorate.layout import AXIS, ESTIMATOR, axis_at
+from zerorate.layout import AXIS, ESTIMATOR, SOURCE, axis_at
 
 from .played import LSB, NOISE_LSB, estimators, play, rest
 from .tolerances import DOCUMENT_MDPS, LEARNED_LSB, READ_OUT_MDPS
@@ -81,10 +81,23 @@ def test_a_bias_of_up_to_40_dps_is_learned(bias_dps, rule):
         assert corrector.bias_lsb(axis) == pytest.approx(sign * bias_dps * LSB, abs=limit)
 
 
-def test_a_device_that_never_rests_teaches_nothing():
+def swung(**options):
+    """A corrector after a minute of motion, and its estimators as they were after one frame."""
     frames = rest(60)
     frames[:, 4:] += moving("sinusoid", len(frames), np.random.default_rng(2))[:, None]
-    corrector, _ = play(frames[:1])
+    corrector, _ = play(frames[:1], **options)
     before = estimators(corrector)
     play(frames[1:], corrector)
+    return corrector, before
+
+
+def test_a_device_that_never_rests_teaches_nothing_by_rests():
+    corrector, before = swung(motion=False, gravity=False)
     assert estimators(corrector) == before
+
+
+def test_what_motion_alone_teaches_is_within_two_sigma():
+    corrector, _ = swung()
+    for axis in range(3):
+        assert corrector.source(axis) == SOURCE.IN_MOTION
+        assert abs(corrector.bias_lsb(axis)) < 2 * corrector.quality_lsb(axis)
