@@ -15,6 +15,7 @@ from zerorate_tools.bench.loop.singles import (
     single_figures,
     tellable,
 )
+from zerorate_tools.loop.search.steps import Step
 
 
 def single(kind="nothing", after=1.0, kept=("thermal-lag",), **more):
@@ -59,6 +60,16 @@ def test_who_knows_the_noise_lists_large_steps_and_no_small_ones(times, least, m
     dps = times * np.diff(session.rate_dps, axis=0).std(axis=0)
     chance = tellable(session, {"at_s": session.blocks * session.block_s / 2, "dps": dps})
     assert least <= chance <= most
+
+
+def test_a_step_that_was_listed_is_not_beside_itself():
+    (session,) = simulate(3, sessions=1, bare=True).sessions
+    at_s = session.blocks * session.block_s / 2
+    dps = np.diff(session.rate_dps, axis=0).std(axis=0)
+    found = Step(0, session.blocks // 2, dps, ratio=100.0, p_value=0.0, at_s=at_s)
+    listed = replace(session, steps=(found,))
+    step = {"at_s": at_s, "dps": dps}
+    assert tellable(listed, step) == tellable(session, step)
 
 
 def test_every_kind_is_described_with_its_effect():
