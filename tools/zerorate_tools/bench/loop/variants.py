@@ -87,11 +87,8 @@ def _imported(path: Path, scratch: Path) -> Recording:
 
 def _of(recording: Recording, scratch: Path) -> dict[str, list[Recording]]:
     """Those variants that change anything."""
-    lacking = {
-        "without accelerometer": recording.has_accel,
-        "without temperature": recording.has_temp,
-    }
-    made = {name: make(recording) for name, make in VARIANTS.items() if lacking.get(name, True)}
+    had = dict(zip(BEREFT, (recording.has_accel, recording.has_temp)))
+    made = {name: make(recording) for name, make in VARIANTS.items() if had.get(name, True)}
     return made | {STEP: [_with_step(recording, _STEP_NOISES * _noise_dps(recording, scratch))]}
 
 
