@@ -21,7 +21,7 @@ lint: $(VENV)/.dev
 FIRMWARE := $(shell find firmware/zerorate -name '*.py')
 KERNELS := $(shell grep -lrE --include='*.py' '^ptr(8|32) = None' firmware/zerorate)
 MACHINE_CODE := $(wildcard firmware/zerorate/native/*.py)
-BOARD := $(sort $(filter-out $(KERNELS) $(MACHINE_CODE) firmware/zerorate/layout/%,$(FIRMWARE)) \
+BOARD := $(sort $(filter-out $(KERNELS) $(MACHINE_CODE),$(FIRMWARE)) \
 	$(filter-out %/linux.py,$(wildcard drivers/zerorate_i2c/*.py)))
 
 typecheck: $(VENV)/.dev $(VENV)/.board-stubs
@@ -51,7 +51,7 @@ MUTANTS ?= 25
 mutants: $(VENV)/.dev  ## which share of MUTANTS mutants of each area the tests kill
 	$(BIN)/python -m host_tests.mutants --each $(MUTANTS)
 
-layout: $(VENV)/.dev  ## write the constants of firmware/zerorate/layout where they are used
+layout: $(VENV)/.dev  ## write the constants of tools/zerorate_tools/layout where they are used
 	$(BIN)/python -m host_tests.layout
 
 native: layout  ## write firmware/zerorate/native from the kernels

@@ -12,7 +12,6 @@ _OTHERS = tuple(code for code in _CODE if _CODE[code] not in _FLAGS)
 _FILES = [
     os.path.relpath(os.path.join(folder, name), "zerorate")
     for folder, _, names in os.walk("zerorate")
-    if not folder.endswith("layout")
     for name in sorted(names)
     if name.endswith(".py") and not name.startswith(_OTHERS)
 ]

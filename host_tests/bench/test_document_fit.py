@@ -2,8 +2,8 @@
 
 import pytest
 from zerorate import Corrector
-from zerorate.layout import ESTIMATOR, SETTINGS
 from zerorate.rest import fit
+from zerorate_tools.layout import ESTIMATOR, SETTINGS
 
 
 @pytest.fixture

@@ -1,7 +1,7 @@
 """A model of one unit, refined on another one of the same part."""
 
-from zerorate.layout import SLOT, slot_at
 from zerorate_tools.bench.second_unit import WAYS, SecondUnit, device, errors_mdps, table
+from zerorate_tools.layout import SLOT, slot_at
 from zerorate_tools.loop.verify.firmware import rows
 from zerorate_tools.replay.engines import InterpreterEngine, NativeEngine
 from zerorate_tools.replay.samples import Frames

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 from zerorate import Corrector, Sensor
-from zerorate.layout import AXIS, SETTINGS, axis_at
+from zerorate_tools.layout import AXIS, SETTINGS, axis_at
 from zerorate_tools.recordings import Recording, Scales
 from zerorate_tools.replay.engines import engine
 from zerorate_tools.replay.samples import FRAME, frames_in_batches

@@ -8,8 +8,8 @@ from scipy.signal import lfilter
 from zerorate import Sensor
 from zerorate.effects import effects
 from zerorate.effects.model_file import LOADED, REASONS
-from zerorate.layout import STATE
 from zerorate.model import EffectModel
+from zerorate_tools.layout import STATE
 from zerorate_tools.model import build_model, encoded
 from zerorate_tools.recordings import Scales
 

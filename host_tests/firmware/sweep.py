@@ -11,8 +11,8 @@ from array import array
 
 import numpy as np
 from zerorate import Corrector, Sensor
-from zerorate.layout import SETTINGS
 from zerorate.settings import DEFAULTS, LEAST, MOST
+from zerorate_tools.layout import SETTINGS
 from zerorate_tools.replay.engines import others_of
 
 from .checked_c import CheckedLibrary

@@ -5,7 +5,7 @@ import random
 import numpy as np
 import pytest
 from zerorate import Corrector, Sensor
-from zerorate.layout import GUARD, SETTINGS, STATE
+from zerorate_tools.layout import GUARD, SETTINGS, STATE
 from zerorate_tools.replay.engines import others_of
 
 from . import trace

@@ -8,7 +8,7 @@ import pytest
 from zerorate import checked
 from zerorate.checked import CheckedCorrector
 from zerorate.corrector import Corrector, Sensor
-from zerorate.layout import AXIS, SETTINGS, STATE, TURN_ON
+from zerorate_tools.layout import AXIS, SETTINGS, STATE, TURN_ON
 
 
 class Feed:

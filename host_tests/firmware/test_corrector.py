@@ -5,12 +5,12 @@ from array import array
 import pytest
 from zerorate import Corrector, Sensor
 from zerorate.gravity.gravity_settings import gravity_settings
-from zerorate.layout import MOTION, STATE
 from zerorate.motion.motion_settings import motion_settings
 from zerorate.rest import bias
 from zerorate.settings import DEFAULTS
 from zerorate.storage.store import EMPTY, LOADED, OTHER_BINDING, Store
 from zerorate_fakes.memory import FakeMemory
+from zerorate_tools.layout import MOTION, STATE
 
 RATES = (800, -300, 40)
 PERIOD_US = 10000

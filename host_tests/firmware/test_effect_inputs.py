@@ -4,7 +4,7 @@ from array import array
 
 import pytest
 from zerorate.effects import effect_inputs
-from zerorate.layout import EFFECTS, INPUT, INPUT_KIND
+from zerorate_tools.layout import EFFECTS, INPUT, INPUT_KIND
 
 from .test_effect_kernels import FRAME, MOST, NO_VALUE, inputs
 

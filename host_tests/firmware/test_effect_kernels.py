@@ -4,8 +4,8 @@ from array import array
 
 import pytest
 from zerorate.effects import effect_basis, effect_plays, effects
-from zerorate.layout import EFFECTS, INPUT, INPUT_KIND, LIMITS, MARKS, PLAY, SLOT, slot_at
 from zerorate.model import EffectModel
+from zerorate_tools.layout import EFFECTS, INPUT, INPUT_KIND, LIMITS, MARKS, PLAY, SLOT, slot_at
 
 ONE = 1 << 24
 NO_VALUE = MARKS.NO_VALUE

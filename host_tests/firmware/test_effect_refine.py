@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from zerorate.effects import effect_refine, effects
-from zerorate.layout import EFFECTS, SLOT, STATE, slot_at
+from zerorate_tools.layout import EFFECTS, SLOT, STATE, slot_at
 from zerorate_tools.model import Slot, build_model, encoded
 from zerorate_tools.model.term import Term, evaluate
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from zerorate.effects import effects
-from zerorate.layout import EFFECTS, STATE
+from zerorate_tools.layout import EFFECTS, STATE
 from zerorate_tools.model import Slot
 from zerorate_tools.model.term import Term, evaluate
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from zerorate import Sensor
 from zerorate.effects import effects
-from zerorate.layout import EFFECTS, STATE
+from zerorate_tools.layout import EFFECTS, STATE
 from zerorate_tools.model import Slot
 from zerorate_tools.model.term import Term, evaluate
 

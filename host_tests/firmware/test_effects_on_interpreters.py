@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from zerorate import Sensor
 from zerorate.effects import effects
-from zerorate.layout import EFFECTS, PLAY, SLOT, STATE, slot_at
 from zerorate.model import EffectModel
+from zerorate_tools.layout import EFFECTS, PLAY, SLOT, STATE, slot_at
 from zerorate_tools.model import Binding, Slot, build_model, encoded
 from zerorate_tools.model.term import Term
 

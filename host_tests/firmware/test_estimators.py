@@ -4,8 +4,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from zerorate import Corrector, Sensor
-from zerorate.layout import AXIS, ESTIMATOR, SETTINGS, STATE
 from zerorate.rest import estimators
+from zerorate_tools.layout import AXIS, ESTIMATOR, SETTINGS, STATE
 
 FREE = -1048576
 STEP = 340

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from zerorate import Corrector, Sensor
-from zerorate.layout import AXIS, MARKS, SETTINGS, STATE, axis_at
 from zerorate.rest import bias, fit
+from zerorate_tools.layout import AXIS, MARKS, SETTINGS, STATE, axis_at
 
 from .tolerances import LINE_LSB
 

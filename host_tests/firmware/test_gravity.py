@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 from zerorate.gravity import gravity
 from zerorate.gravity.gravity_settings import gravity_settings, gravity_state
-from zerorate.layout import GRAVITY, GRAVITY_REASON, GRAVITY_SETTINGS
+from zerorate_tools.layout import GRAVITY, GRAVITY_REASON, GRAVITY_SETTINGS
 
 from . import motions
 from .checked import Words, checked

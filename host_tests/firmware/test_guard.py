@@ -4,8 +4,8 @@ from array import array
 
 import numpy as np
 import pytest
-from zerorate.layout import SETTINGS, STATE
 from zerorate.rest import guard
+from zerorate_tools.layout import SETTINGS, STATE
 
 from .played import estimators, play, rest
 

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from zerorate import Corrector, Sensor
-from zerorate.layout import SETTINGS
 from zerorate.rest import histogram
+from zerorate_tools.layout import SETTINGS
 
 MODES = {
     "default": {},

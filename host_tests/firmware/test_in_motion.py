@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 from zerorate.arithmetic import atan2, real
 from zerorate.gravity.gravity_settings import gravity_settings, gravity_state
-from zerorate.layout import MOTION, MOTION_REASON
 from zerorate.motion import attitude, in_motion, motion_verdict
 from zerorate.motion.least_squares import place
 from zerorate.motion.motion_settings import motion_settings, motion_state
+from zerorate_tools.layout import MOTION, MOTION_REASON
 from zerorate_tools.simulate import simulate
 
 from . import motions

@@ -7,8 +7,8 @@ the same state; so what happens in it here happens there.
 from collections import Counter
 
 import pytest
-from zerorate.layout import AXIS, MARKS, SETTINGS, STATE, STILLNESS, axis_at
 from zerorate.rest import bias, estimators, fit, guard, histogram, recent
+from zerorate_tools.layout import AXIS, MARKS, SETTINGS, STATE, STILLNESS, axis_at
 
 from . import trace
 from .trace_on_host import on_cpython

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from zerorate.layout import AXIS, ESTIMATOR, SOURCE, axis_at
+from zerorate_tools.layout import AXIS, ESTIMATOR, SOURCE, axis_at
 
 from .played import LSB, NOISE_LSB, estimators, play, rest
 from .tolerances import DOCUMENT_MDPS, LEARNED_LSB, READ_OUT_MDPS

@@ -1,8 +1,9 @@
 """When what was learned is saved: once it changed, at rest, and seldom enough for the memory."""
 
 import pytest
-from zerorate import Corrector, Sensor, layout
+from zerorate import Corrector, Sensor
 from zerorate.storage.save_schedule import SaveSchedule
+from zerorate_tools import layout
 
 from .test_store import OLD, make_store
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 from zerorate import Corrector, Sensor
-from zerorate.layout import GRAVITY, MOTION, STATE
-from zerorate.layout import SOURCE as SOURCES
+from zerorate_tools.layout import GRAVITY, MOTION, STATE
+from zerorate_tools.layout import SOURCE as SOURCES
 from zerorate_tools.simulate import simulate
 
 from . import motions

@@ -49,7 +49,8 @@ def census(root):
         ),
         "lines that make C and machine code of kernels": sum(map(lines, generator(root))),
         "files of more than 300 lines": sum(lines(p) > 300 for p in written),
-        "files that say where a word of an array is": len(layouts(firmware)),
+        "files that say where a word of an array is": len(layouts(firmware))
+        + (root / "tools" / "zerorate_tools" / "layout").exists(),
         "names of constants with several values in the firmware": len(several(firmware)),
         "circles of imports between modules": len(circles(graph)),
         "circles of imports between packages": len(circles(by_package(graph))),

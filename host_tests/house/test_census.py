@@ -16,9 +16,8 @@ def test_a_constant_has_one_value_in_all_files():
     assert several(written()) == set()
 
 
-def test_no_file_but_the_layout_says_where_a_word_of_the_state_is():
-    """The stores have headers of their own in files."""
-    own = {"layout", "store.py", "learned_store.py"}
+def test_no_file_of_a_board_but_the_headers_of_stores_says_where_a_word_is():
+    own = {"store.py", "learned_store.py"}
     assert {path.name for path in layouts(written())} == own
 
 

@@ -4,7 +4,7 @@ import io
 import re
 import tokenize
 
-from zerorate import layout
+from zerorate_tools import layout
 
 BEGIN = "# layout: "
 END = "# layout: end"

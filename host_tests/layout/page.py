@@ -1,14 +1,15 @@
-"""docs/layout.md: every word of every array, made from firmware/zerorate/layout."""
+"""docs/layout.md: every word of every array, made from tools/zerorate_tools/layout."""
 
 import ast
 from pathlib import Path
 
-from zerorate import layout
-from zerorate.layout.words import Codes
+import zerorate
+from zerorate_tools import layout
+from zerorate_tools.layout.words import Codes
 
 _HEAD = """# The words of the firmware's arrays
 
-Made from `firmware/zerorate/layout` by `make layout`; edit it there. A kernel writes a word as
+Made from `tools/zerorate_tools/layout` by `make layout`; edit it there. A kernel writes a word as
 its letter and its name: `s[_REST]`, `s[a + _OFFSET_Q8]`, `c[_WINDOW]`. A number behind `_Q` is how
 many bits stand for the fraction: 256 in a word of `_Q8` is 1. A real is two words, mantissa and
 exponent of 2; a packed one is one word. Three words of one name are x, y, z.
@@ -22,7 +23,7 @@ theirs reads a replay's state by these names.
 
 def page():
     """Return the page's text."""
-    parts, uses = [_HEAD], used_in(Path(layout.__file__).parents[1])
+    parts, uses = [_HEAD], used_in(Path(zerorate.__file__).parent)
     for array in layout.ARRAYS:
         parts.append(f"## {array.title}\n\n`{array.letter}`: {array.base}{size_of(array)}.\n")
         shared = set().union(*(places(word) for word in array.words if word.while_text))
@@ -80,7 +81,7 @@ def used_in(firmware):
     """Return name -> (file, function) pairs that write it into an array, and that read it."""
     found = {}
     for path in sorted(firmware.rglob("*.py")):
-        if path.parent.name in ("native", "layout"):
+        if path.parent.name == "native":
             continue
         file = path.relative_to(firmware).with_suffix("").as_posix()
         for function in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):

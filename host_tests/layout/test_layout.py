@@ -4,8 +4,9 @@ import re
 from collections import defaultdict
 
 import pytest
-from zerorate import Corrector, explain, explain_sources, layout
+from zerorate import Corrector, explain, explain_sources
 from zerorate.model import EffectModel
+from zerorate_tools import layout
 
 from .lines import files, names_in, refreshed
 from .page import page

@@ -11,7 +11,6 @@ from zerorate.effects import effect_refine
 from zerorate.effects.effects import sense
 from zerorate.gravity import gravity
 from zerorate.gravity.gravity_settings import gravity_settings, gravity_state
-from zerorate.layout import EFFECTS, GRAVITY, MOTION, SETTINGS, SLOT, SOURCE, STATE, STILLNESS
 from zerorate.motion import in_motion, motion_verdict
 from zerorate.motion.motion_settings import motion_settings, motion_state
 from zerorate.rest import guard
@@ -21,6 +20,7 @@ from zerorate_tools.bench.emulated import Emulated, code_in
 from zerorate_tools.kernels.known import answer_by, known_model
 from zerorate_tools.kernels.native_files import plain_kernels
 from zerorate_tools.kernels.parts import BURST, PARTS
+from zerorate_tools.layout import EFFECTS, GRAVITY, MOTION, SETTINGS, SLOT, SOURCE, STATE, STILLNESS
 
 from ..firmware import motions, trace
 from ..firmware.trace_on_host import checksums, corrector_for, frames

@@ -4,8 +4,8 @@ import shlex
 from pathlib import Path
 
 import pytest
-from zerorate.layout import EFFECTS
 from zerorate_tools.cli import parser
+from zerorate_tools.layout import EFFECTS
 from zerorate_tools.report.board import deployment
 
 PROGRAM = """

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from zerorate import Corrector, Sensor
-from zerorate.layout import AXIS, ESTIMATOR, SETTINGS, axis_at
 from zerorate_tools.errors import ZerorateError
+from zerorate_tools.layout import AXIS, ESTIMATOR, SETTINGS, axis_at
 from zerorate_tools.recordings import open_recording, read_recording
 from zerorate_tools.replay import replay
 from zerorate_tools.report.estimators import moments

@@ -6,8 +6,8 @@ import zlib
 import pytest
 from zerorate import Sensor
 from zerorate.effects.model_file import IMPOSSIBLE, LOADED, OTHER_SCALE, TOO_LARGE
-from zerorate.layout import PLAY, SLOT
 from zerorate.model import EffectModel
+from zerorate_tools.layout import PLAY, SLOT
 from zerorate_tools.model import Binding, Slot, build_model, encoded
 from zerorate_tools.model.term import Term
 

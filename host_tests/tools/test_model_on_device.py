@@ -9,9 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from zerorate import Sensor
 from zerorate.effects import model_file
-from zerorate.layout import EFFECTS
 from zerorate.model import EffectModel
 from zerorate_tools.errors import BadModel
+from zerorate_tools.layout import EFFECTS
 from zerorate_tools.model import (
     Slot,
     build_model,

@@ -10,10 +10,11 @@ from typing import Any
 
 from zerorate import Corrector, Sensor
 from zerorate.gravity.gravity_settings import gravity_settings, gravity_state
-from zerorate.layout import SETTINGS, STATE, STILLNESS
 from zerorate.model import EffectModel
 from zerorate.motion.motion_settings import motion_settings, motion_state
 from zerorate.trying import answer
+
+from zerorate_tools.layout import SETTINGS, STATE, STILLNESS
 
 from ..model import Binding, Slot, build_model, encoded
 from ..model.term import Term

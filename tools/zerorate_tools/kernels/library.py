@@ -16,7 +16,8 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from zerorate.layout import EFFECTS, GRAVITY, MOTION, SOURCE, STATE
+
+from zerorate_tools.layout import EFFECTS, GRAVITY, MOTION, SOURCE, STATE
 
 from ..errors import MissingRuntime, ZerorateError
 from ..recordings.checks import GAP

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
-from zerorate.layout import PLAY, SLOT
+from zerorate_tools.layout import PLAY, SLOT
 
 from .model import ONE, CannotDeploy, Slot
 from .scaling import Unit

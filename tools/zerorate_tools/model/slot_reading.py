@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
-from zerorate.layout import SLOT
+from zerorate_tools.layout import SLOT
 
 from .model import ONE, CannotDeploy, Slot
 from .slot_words import MEMORIES, NONE, Q, UnitOf, lsb_q14_per_coefficient, one_of, words_of

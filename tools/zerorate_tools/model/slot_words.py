@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Sequence
 
-from zerorate.layout import SLOT
+from zerorate_tools.layout import SLOT
 
 from .model import ONE, CannotDeploy, Slot
 from .scaling import Unit

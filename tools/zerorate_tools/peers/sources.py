@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from zerorate.layout import GRAVITY, MOTION
+
+from zerorate_tools.layout import GRAVITY, MOTION
 
 from ..kernels.library import run_source
 from .given import Given

@@ -13,7 +13,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from zerorate import Corrector
-from zerorate.layout import STATE
+
+from zerorate_tools.layout import STATE
 
 from ..errors import MissingRuntime, ZerorateError
 from ..kernels.library import library, run_rows, say_once

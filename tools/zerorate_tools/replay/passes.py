@@ -7,8 +7,9 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from zerorate.layout import JOB, MOTION
-from zerorate.layout import MOTION_SETTINGS as SET
+
+from zerorate_tools.layout import JOB, MOTION
+from zerorate_tools.layout import MOTION_SETTINGS as SET
 
 from ..errors import InFile, ZerorateError
 from ..numbers import fixed

@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from zerorate import Corrector
-from zerorate.layout import AXIS, ESTIMATOR, MARKS, SETTINGS, STATE, axis_at
+
+from zerorate_tools.layout import AXIS, ESTIMATOR, MARKS, SETTINGS, STATE, axis_at
 
 from ..recordings import Scales, open_recording
 from ..replay.engines import engine

@@ -9,8 +9,9 @@ from copy import deepcopy
 import numpy as np
 from zerorate import Corrector
 from zerorate.effects.model_file import LOADED, REASONS
-from zerorate.layout import AXIS, SETTINGS, STATE, axis_at
 from zerorate.model import EffectModel
+
+from zerorate_tools.layout import AXIS, SETTINGS, STATE, axis_at
 
 from ...errors import ZerorateError
 from ...model import Model, encoded

@@ -1,4 +1,4 @@
-"""Every word of every array, and every code kept in one: the only place that says where they are.
+"""Every word of every array of the firmware, and every code: the only place that says where.
 
 A file for each part of the firmware. A word takes the index behind the word before it, so to add or
 remove one is to add or remove its line. `make layout` writes the constants that a file uses into
