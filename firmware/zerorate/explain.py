@@ -20,10 +20,7 @@ _WINDOW = const(3)
 _SEGMENT = const(5)
 _AXIS_WORDS = const(15)
 _INSIST = const(41)
-# layout: What a window was
-_STILL = const(1)
-# layout: end
-
+# layout: What the guard says of a frame, in words
 FAULTS = (
     "good frames",
     "repeated frames",
@@ -34,6 +31,9 @@ FAULTS = (
     "frames at a time that stood still",
     "frames after a leap of time",
 )
+# layout: What a window was
+_STILL = const(1)
+# layout: What a window was, in words
 STILLNESS = (
     "No full window has been seen yet.",
     "The device rests.",
@@ -42,6 +42,7 @@ STILLNESS = (
     "No rest to learn from: the accelerometer sees motion.",
     "No rest to learn from: the rate has shifted within it.",
 )
+# layout: Where a bias comes from, in words
 SOURCES = (
     "no bias yet",
     "any temperature",
@@ -50,6 +51,7 @@ SOURCES = (
     "motion",
     "gravity",
 )
+# layout: end
 
 
 def explain(corrector):

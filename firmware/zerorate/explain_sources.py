@@ -17,10 +17,7 @@ _OBSERVED = const(37)
 _GRAVITY_REASON = const(49)
 # layout: The settings of the source against gravity
 _SUB_UNIT_US = const(0)
-# layout: Values that stand for none
-_UNKNOWN_Q8 = const(0x1FFFFFFF)
-# layout: end
-
+# layout: What a window in motion taught, in words
 MOTION = (
     "no window has been seen yet",
     "the first windows grow",
@@ -31,12 +28,16 @@ MOTION = (
     "the latest window taught nothing: the mean force is not 1 g in one direction",
     "the latest window taught nothing: samples were missing",
 )
+# layout: What a sub-unit against gravity was, in words
 LEVEL = (
     "no half-second has been seen yet",
     "counting",
     "nothing is counted: the force is not 1 g",
     "nothing is counted: samples were missing",
 )
+# layout: Values that stand for none
+_UNKNOWN_Q8 = const(0x1FFFFFFF)
+# layout: end
 
 
 def explain_sources(corrector):

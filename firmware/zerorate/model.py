@@ -19,7 +19,6 @@ const = int  # on a board the compiler itself reads const(...)
 LOADED = const(0)
 NO_MODEL = const(1)
 UNREADABLE = const(6)
-_IMPOSSIBLE = const(11)
 # layout: The effect model and its running state
 _SLOT_COUNT = const(0)
 _INPUT_COUNT = const(1)
@@ -56,6 +55,8 @@ _SLOT_WORDS = const(40)
 # layout: A play operator
 _PLAY_STARTED = const(13)
 _PLAY_WORDS = const(15)
+# layout: What the reader of model.bin says
+_IMPOSSIBLE = const(11)
 # layout: Sources of effects: an acceleration, the temperature, a mean rate, ..., a channel
 _KIND_ONE = const(9)
 # layout: Values that stand for none

@@ -46,6 +46,9 @@ def lines(stem, used):
         own = codes.owner == stem
         pairs = [(name if own else f"_{name}", codes.numbers[name]) for name in codes.numbers]
         yield from group(codes.title, pairs, {name for name, _ in pairs} if own else used)
+        if codes.said and codes.said_in[0] == stem:
+            yield f"{BEGIN}{codes.title}, in words"
+            yield from (f"{codes.said_in[1]} = (", *spoken(codes.said.values()), ")")
 
 
 def group(title, pairs, used):
@@ -55,6 +58,11 @@ def group(title, pairs, used):
         yield BEGIN + title
     for name, number in pairs:
         yield f"{name} = const({hexadecimal(number)})"
+
+
+def spoken(texts):
+    """Texts as lines of a tuple."""
+    return [f'    "{text}",' for text in texts]
 
 
 def hexadecimal(number):

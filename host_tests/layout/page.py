@@ -35,8 +35,13 @@ def page():
     for called, codes in vars(layout).items():
         if not isinstance(codes, Codes):
             continue
-        numbers = ", ".join(f"{number} `{name}`" for name, number in codes.numbers.items())
-        parts.append(f"`{called}`: {codes.title[0].lower()}{codes.title[1:]}: {numbers}.\n")
+        title = f"`{called}`: {codes.title[0].lower()}{codes.title[1:]}"
+        numbers = [f"{number} `{name}`" for name, number in codes.numbers.items()]
+        if codes.said:
+            said = zip(numbers, codes.said.values(), strict=True)
+            parts.append("\n".join([f"{title}:\n", *(f'- {n} "{text}"' for n, text in said), ""]))
+        else:
+            parts.append(f"{title}: {', '.join(numbers)}.\n")
     return "\n".join(parts)
 
 

@@ -5,7 +5,9 @@ from collections import defaultdict
 
 import pytest
 from zerorate import Corrector, explain, explain_sources
+from zerorate.effects import model_file
 from zerorate.model import EffectModel
+from zerorate.storage import store
 from zerorate_tools import layout
 
 from .lines import files, names_in, refreshed
@@ -40,7 +42,8 @@ def test_the_page_of_the_settings_is_that_of_the_code(repository):
 def test_no_name_stands_for_two_things():
     names = [word.name for array in layout.ARRAYS for word in array.words]
     names += [array.size_name for array in layout.ARRAYS if array.size_name]
-    names += [name for codes in layout.CODES for name in codes.numbers]
+    numbers = {pair for codes in layout.CODES for pair in codes.numbers.items()}
+    names += [name for name, _ in numbers]  # store and model say some things by the same number
     assert sorted(names) == sorted(set(names))
 
 
@@ -110,10 +113,14 @@ def test_the_arrays_are_as_long_as_the_layout_says():
         (explain.SOURCES, layout.SOURCE),
         (explain_sources.MOTION, layout.MOTION_REASON),
         (explain_sources.LEVEL, layout.GRAVITY_REASON),
+        (model_file.REASONS, layout.MODEL),
+        (store.REASONS, layout.STORE),
     ],
 )
-def test_there_are_words_for_every_code(words, codes):
-    assert sorted(codes.numbers.values()) == list(range(len(words)))
+def test_a_board_says_of_every_code_what_the_layout_says(words, codes):
+    assert dict(zip(codes.numbers.values(), codes.said.values(), strict=True)) == dict(
+        enumerate(words)
+    )
 
 
 def test_every_word_is_used_or_said_to_be_unused(repository):

@@ -20,36 +20,6 @@ from ..storage.crc32 import checksum
 
 const = int  # on a board the compiler itself reads const(...)
 
-LOADED = const(0)
-NO_MODEL = const(1)
-DAMAGED = const(2)  # what a store says as well has the same number there
-TRUNCATED = const(3)
-OTHER_VERSION = const(4)
-OTHER_CHIP = const(5)
-UNREADABLE = const(6)
-OTHER_RANGE = const(7)
-OTHER_FILTER = const(8)
-OTHER_SCALE = const(9)
-TOO_LARGE = const(10)
-IMPOSSIBLE = const(11)
-REASONS = (
-    "loaded",
-    "this is no effect model",
-    "the model is damaged: its checksum differs",
-    "the model is cut short",
-    "the model is of another version",
-    "the model was made for another chip",
-    "the file cannot be read",
-    "the model was made for another range",
-    "the model was made for another filter",
-    "the model was made for other scales",
-    "the model has more than fits",
-    "the model holds what cannot be",
-)
-
-_MODEL_VERSION = const(1)
-_VERSION_WITH_PLAYS = const(2)
-_BODY = const(60)
 # layout: The effect model and its running state
 _INPUT_COUNT = const(1)
 _TICK_US = const(2)
@@ -100,6 +70,34 @@ _PLAY_STARTED = const(13)
 _PLAY_WORDS = const(15)
 # layout: A delay's ring
 _RING_WORDS = const(66)
+# layout: What the reader of model.bin says
+LOADED = const(0)
+NO_MODEL = const(1)
+DAMAGED = const(2)
+TRUNCATED = const(3)
+OTHER_VERSION = const(4)
+OTHER_CHIP = const(5)
+UNREADABLE = const(6)
+OTHER_RANGE = const(7)
+OTHER_FILTER = const(8)
+OTHER_SCALE = const(9)
+TOO_LARGE = const(10)
+IMPOSSIBLE = const(11)
+# layout: What the reader of model.bin says, in words
+REASONS = (
+    "loaded",
+    "this is no effect model",
+    "the model is damaged: its checksum differs",
+    "the model is cut short",
+    "the model is of another version",
+    "the model was made for another chip",
+    "the file cannot be read",
+    "the model was made for another range",
+    "the model was made for another filter",
+    "the model was made for other scales",
+    "the model has more than fits",
+    "the model holds what cannot be",
+)
 # layout: Sources of effects: an acceleration, the temperature, a mean rate, ..., a channel
 _KIND_INSTANT = const(10)
 _KIND_CHANNEL = const(16)
@@ -117,6 +115,9 @@ _MOST_TABLES = const(2)
 _MOST_RINGS = const(2)
 _TABLE_POINTS = const(9)
 # layout: end
+_MODEL_VERSION = const(1)
+_VERSION_WITH_PLAYS = const(2)
+_BODY = const(60)
 _ANY = const(255)
 _MOST_COEFFICIENT = const(0x4000000)
 

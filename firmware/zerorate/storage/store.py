@@ -33,6 +33,7 @@ _AT_BINDING = const(12)
 _HEADER = const(20)
 _CRC = const(4)
 
+# layout: What a store says
 LOADED = const(0)
 EMPTY = const(1)
 DAMAGED = const(2)
@@ -40,6 +41,7 @@ OTHER_BINDING = const(3)
 OTHER_VERSION = const(4)
 OTHER_SIZE = const(5)
 UNREADABLE = const(6)
+# layout: What a store says, in words
 REASONS = (
     "loaded",
     "nothing was ever stored",
@@ -49,6 +51,7 @@ REASONS = (
     "stored with another size",
     "the storage cannot be read",
 )
+# layout: end
 
 
 class Store:

@@ -5,18 +5,104 @@ from .words import Codes
 GUARD = Codes(
     "What the guard says of a frame",
     "guard",
-    "GOOD REPEAT RAIL ALL_ZERO ALL_ONES TEMPERATURE_JUMP TIME_STOOD_STILL TIME_LEAPT",
+    said_in="explain FAULTS",
+    said={
+        "GOOD": "good frames",
+        "REPEAT": "repeated frames",
+        "RAIL": "frames at the rail",
+        "ALL_ZERO": "frames of all zeros",
+        "ALL_ONES": "frames of all ones",
+        "TEMPERATURE_JUMP": "jumps of the temperature",
+        "TIME_STOOD_STILL": "frames at a time that stood still",
+        "TIME_LEAPT": "frames after a leap of time",
+    },
 )
-STILLNESS = Codes("What a window was", "", "UNKNOWN STILL MOVING TURNING SHAKEN SHIFTED")
-SOURCE = Codes("Where a bias comes from", "bias", "NONE ANY_TEMPERATURE FIT HERE IN_MOTION GRAVITY")
+STILLNESS = Codes(
+    "What a window was",
+    "",
+    said_in="explain STILLNESS",
+    said={
+        "UNKNOWN": "No full window has been seen yet.",
+        "STILL": "The device rests.",
+        "MOVING": "No rest to learn from: the gyroscope sees motion.",
+        "TURNING": "No rest to learn from: gravity turns, so the device turns slowly.",
+        "SHAKEN": "No rest to learn from: the accelerometer sees motion.",
+        "SHIFTED": "No rest to learn from: the rate has shifted within it.",
+    },
+)
+SOURCE = Codes(
+    "Where a bias comes from",
+    "bias",
+    said_in="explain SOURCES",
+    said={
+        "NONE": "no bias yet",
+        "ANY_TEMPERATURE": "any temperature",
+        "FIT": "the fit over temperature",
+        "HERE": "this temperature",
+        "IN_MOTION": "motion",
+        "GRAVITY": "gravity",
+    },
+)
 JOB = Codes("What the source in motion is doing", "", "IDLE TRAVERSE SOLVE")
 MOTION_REASON = Codes(
     "What a window in motion taught",
     "",
-    "NO_WINDOW GROWING LEARNED HARDLY_MOVES TURNED TOO_FAST LOST MOTION_GAP",
+    said_in="explain_sources MOTION",
+    said={
+        "NO_WINDOW": "no window has been seen yet",
+        "GROWING": "the first windows grow",
+        "LEARNED": "the latest window taught a bias",
+        "HARDLY_MOVES": "the latest window taught nothing: it hardly moves",
+        "TURNED": "the latest window taught nothing: it turns and stays turned, "
+        "or contradicts what is known",
+        "TOO_FAST": "the latest window taught nothing: it turns too fast",
+        "LOST": "the latest window taught nothing: the mean force is not 1 g in one direction",
+        "MOTION_GAP": "the latest window taught nothing: samples were missing",
+    },
 )
 GRAVITY_REASON = Codes(
-    "What a sub-unit against gravity was", "", "NO_SUB_UNIT COUNTING NOT_ONE_G GRAVITY_GAP"
+    "What a sub-unit against gravity was",
+    "",
+    said_in="explain_sources LEVEL",
+    said={
+        "NO_SUB_UNIT": "no half-second has been seen yet",
+        "COUNTING": "counting",
+        "NOT_ONE_G": "nothing is counted: the force is not 1 g",
+        "GRAVITY_GAP": "nothing is counted: samples were missing",
+    },
+)
+MODEL = Codes(
+    "What the reader of model.bin says",  # what a store says as well has the same number there
+    "model_file",
+    said_in="model_file REASONS",
+    said={
+        "LOADED": "loaded",
+        "NO_MODEL": "this is no effect model",
+        "DAMAGED": "the model is damaged: its checksum differs",
+        "TRUNCATED": "the model is cut short",
+        "OTHER_VERSION": "the model is of another version",
+        "OTHER_CHIP": "the model was made for another chip",
+        "UNREADABLE": "the file cannot be read",
+        "OTHER_RANGE": "the model was made for another range",
+        "OTHER_FILTER": "the model was made for another filter",
+        "OTHER_SCALE": "the model was made for other scales",
+        "TOO_LARGE": "the model has more than fits",
+        "IMPOSSIBLE": "the model holds what cannot be",
+    },
+)
+STORE = Codes(
+    "What a store says",
+    "store",
+    said_in="store REASONS",
+    said={
+        "LOADED": "loaded",
+        "EMPTY": "nothing was ever stored",
+        "DAMAGED": "neither slot is whole",
+        "OTHER_BINDING": "stored for another chip, range or filter",
+        "OTHER_VERSION": "stored by another version",
+        "OTHER_SIZE": "stored with another size",
+        "UNREADABLE": "the storage cannot be read",
+    },
 )
 INPUT_KIND = Codes(
     "Sources of effects: an acceleration, the temperature, a mean rate, ..., a channel",

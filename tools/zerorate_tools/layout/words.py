@@ -59,13 +59,17 @@ class Codes:
     """Numbers that stand for something. `codes.NAME` is the number.
 
     owner: the file in which applications find them by name, "" where they are the kernels' own;
-    ordered: names of numbers that count up from `first`.
+    ordered: names of numbers that count up from `first`; said: instead of them name -> what a board
+    says of it, in the file and under the name of `said_in`.
     """
 
-    def __init__(self, title, owner, ordered="", first=0, **numbers):
+    def __init__(self, title, owner, ordered="", first=0, said_in="", said=(), **numbers):
         self.title = title
         self.owner = owner
-        self.numbers = {name: i for i, name in enumerate(ordered.split(), first)} | numbers
+        self.said_in = tuple(said_in.split())
+        self.said = dict(said)
+        names = [*ordered.split(), *self.said]
+        self.numbers = {name: i for i, name in enumerate(names, first)} | numbers
 
     def __getattr__(self, name):
         if name in self.numbers:
