@@ -72,6 +72,7 @@ _ONE_G_Q24 = const(0x1000000)
 _BAND_Q24 = const(0x300000)
 _HALF_Q24 = const(0x800000)
 _MOST_Q13 = const(0x7FFF)
+_FOUR_RAD_Q22 = const(0xFFFFFF)
 _MOST_Q22 = const(0x3FFFFFF)  # four times as far, in a sub-unit
 _RADIAN_Q13 = const(8192)
 
@@ -89,7 +90,6 @@ def update(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
     """Take the raw frame `x`, dt_us after the one before; return 1 where an interval ended."""
     if dt_us <= 0 or dt_us > c[_GRAVITY_GAP_US]:
         s[_UNIT_ELAPSED_US] = 0
-        s[_UNIT_N] = 0
         s[_LAST_GOOD] = 0
         s[_GRAVITY_REASON] = _GRAVITY_GAP
         begin_unit(s)
@@ -113,8 +113,7 @@ def gather(s: ptr32, x: ptr32, factor: int, shift: int):
         turned = scaled(turned, factor, shift) + s[_ANGLE_Q22 + i]
         turned = clipped(turned, _MOST_Q22)
         s[_ANGLE_Q22 + i] = turned
-        turned = turned >> 9
-        s[_ANGLE_SUM_Q13 + i] += turned
+        s[_ANGLE_SUM_Q13 + i] += turned >> 9
         s[_FORCE_SUM + i] += x[i]
         i += 1
 
@@ -153,20 +152,14 @@ def end_unit(s: ptr32, c: ptr32):
 def compare(s: ptr32, c: ptr32, i: int, square: int):
     """Compare the axis' angle with its pair's since the sub-unit before, and count."""
     across = square - s[_FORCE_SUM + i] * s[_FORCE_SUM + i]
-    if across < _HALF_Q24 or too_far(s[_ANGLE_Q22 + i] >> 9):
+    # of 4 rad or more in a sub-unit the angles may wrap
+    if across < _HALF_Q24 or clipped(s[_ANGLE_Q22 + i], _FOUR_RAD_Q22) != s[_ANGLE_Q22 + i]:
         s[_LAST_GOOD] = s[_LAST_GOOD] & (7 - (1 << i))
         return
     deviation = since_last(s, i, across >> 12)
     if s[_LAST_GOOD] & (1 << i):
         count(s, c, i, deviation)
     s[_LAST_GOOD] = s[_LAST_GOOD] | (1 << i)
-
-
-def too_far(turned: int) -> int:
-    """Return 1 if a sub-unit turned by 4 rad or more: its angles may wrap."""
-    if turned > _MOST_Q13 or turned < -_MOST_Q13:
-        return 1
-    return 0
 
 
 def since_last(s: ptr32, i: int, square: int) -> int:
@@ -198,8 +191,8 @@ def along_q12(s: ptr32, i: int) -> int:
     """Return how far the two axes beside i turned about gravity in the sub-unit, Q12 rad."""
     j = i + 1 if i < 2 else 0
     k = i - 1 if i > 0 else 2
-    first = held(s[_ANGLE_Q22 + j] >> 9) * s[_FORCE_SUM + j]
-    return (first + held(s[_ANGLE_Q22 + k] >> 9) * s[_FORCE_SUM + k]) >> 13
+    first = clipped(s[_ANGLE_Q22 + j] >> 9, _MOST_Q13) * s[_FORCE_SUM + j]
+    return (first + clipped(s[_ANGLE_Q22 + k] >> 9, _MOST_Q13) * s[_FORCE_SUM + k]) >> 13
 
 
 def coupled_q13(s: ptr32, i: int, square: int) -> int:
@@ -215,15 +208,6 @@ def coupled_q13(s: ptr32, i: int, square: int) -> int:
     return (along * (s[_FORCE_SUM + i] >> 1)) // square
 
 
-def held(angle: int) -> int:
-    """Return the angle held within 4 rad."""
-    if angle > _MOST_Q13:
-        return _MOST_Q13
-    if angle < -_MOST_Q13:
-        return -_MOST_Q13
-    return angle
-
-
 def count(s: ptr32, c: ptr32, i: int, deviation: int):
     """Move the axis' counter by the deviation's sign."""
     s[_COUNTED + i] += 1
@@ -237,9 +221,7 @@ def count(s: ptr32, c: ptr32, i: int, deviation: int):
 
 def spread(s: ptr32, deviation: int):
     """Follow how far the deviations go, over all axes, for half a minute or so."""
-    far = deviation if deviation >= 0 else -deviation
-    if far > _RADIAN_Q13:
-        far = _RADIAN_Q13
+    far = clipped(deviation if deviation >= 0 else -deviation, _RADIAN_Q13)
     s[_SPREAD_Q21] += ((far << 8) - s[_SPREAD_Q21]) >> 6
 
 
@@ -270,11 +252,8 @@ def end_axis(s: ptr32, c: ptr32, i: int):
 
 def size_step(s: ptr32, c: ptr32, i: int):
     """Double the step while all signs agree; halve it when the counter turns."""
-    most = s[_COUNTER + i]
-    sign = 1
-    if most < 0:
-        most = -most
-        sign = -1
+    sign = 1 if s[_COUNTER + i] >= 0 else -1
+    most = sign * s[_COUNTER + i]
     if most <= c[_THRESHOLD]:
         return
     if s[_SIGN + i] + sign == 0:

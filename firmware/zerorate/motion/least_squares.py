@@ -84,15 +84,10 @@ def right_side(s: ptr32, i: int):
     j = 0
     while j < 3:
         subtract(s, _T1, _PRIOR_MEAN + 2 * j, _BIAS + 2 * j)
-        multiply_by_prior(s, prior_place(i, j))
+        multiply(s, _T1, _T1, prior_place(i, j))
         add(s, d, d, _T1)
         j += 1
     put(s, _G + 18, 0, 0)
-
-
-def multiply_by_prior(s: ptr32, a: int):
-    """Multiply the number at _T1 by the prior's number at a."""
-    multiply(s, _T1, _T1, a)
 
 
 def prior_place(i: int, j: int) -> int:
@@ -159,30 +154,20 @@ def spread_prior(s: ptr32):
         d += 2
 
 
-def magnitude(s: ptr32, a: int):
-    """Make the number at a positive."""
-    if s[a] < 0:
-        put(s, a, -s[a], s[a + 1])
-
-
 def less(s: ptr32, a: int, b: int) -> int:
     """Return 1 if the number at a is less than the one at b, else 0; uses _T3."""
     subtract(s, _T3, a, b)
-    if s[_T3] < 0:
-        return 1
-    return 0
+    return 1 if s[_T3] < 0 else 0
 
 
 def step(s: ptr32):
     """Take the solution as this pass' slope, no longer than the step that stays linear."""
-    i = -s[_STAGE]
-    put(s, _T, _LIMIT_Q24, i)
+    put(s, _T, _LIMIT_Q24, -s[_STAGE])
     copy(s, _T1, _T, 2)
     for i in range(3):
         d = place(i, 3)
         copy(s, _SLOPE + 2 * i, d, 2)
-        copy(s, _T2, d, 2)
-        magnitude(s, _T2)
+        put(s, _T2, s[d] if s[d] >= 0 else -s[d], s[d + 1])
         if less(s, _T1, _T2):
             copy(s, _T1, _T2, 2)
     divide(s, _T, _T, _T1)

@@ -77,9 +77,7 @@ def clear(s: ptr32, c: ptr32):
     s[_MISFIT_Q16] = _AS_EXPECTED_Q16
     s[_ACCEPTED] = 0
     s[_AGAINST] = 0
-    s[_STAGE] = c[_SHORTEST_STAGE]
-    if c[_MOTION_DOCUMENT]:
-        s[_STAGE] = c[_SHORTEST_STAGE] + 3
+    s[_STAGE] = c[_SHORTEST_STAGE] + 3 * c[_MOTION_DOCUMENT]
     s[_LENGTH] = 1 << s[_STAGE]
 
 
@@ -105,9 +103,7 @@ def start_window(s: ptr32, c: ptr32) -> int:
         s[_MOTION_REASON] = _TOO_FAST
         return 0
     s[_NEW_NODES] = 0
-    s[_PASS] = 0
-    if c[_MOTION_DOCUMENT]:
-        s[_PASS] = 1
+    s[_PASS] = c[_MOTION_DOCUMENT]
     s[_FIRST_NODE] = s[_HEAD] - n
     if s[_FIRST_NODE] < 0:
         s[_FIRST_NODE] += c[_NODES]
@@ -119,20 +115,15 @@ def start_window(s: ptr32, c: ptr32) -> int:
         copy(s, _PRIOR_MEAN, _BIAS, 6)
     for n in range(9):
         s[_CENTRE + n] = 0
-    s[_START] = 0x4000
-    s[_START + 1] = 0
-    s[_START + 2] = 0
-    s[_START + 3] = 0
+    for n in range(4):
+        s[_START + n] = 0 if n else 0x4000
     return 1
 
 
 def note_slope(s: ptr32, c: ptr32):
     """Note the slope of this pass, LSB in Q8, for who wants to see it."""
     i = 0
-    a = s[_PASS] - 1
-    if a > 2:
-        a = 2
-    a = _NOTED_SLOPES_Q8 + 3 * a
+    a = _NOTED_SLOPES_Q8 + 3 * clipped(s[_PASS] - 1, 2)
     while i < 3:
         put(s, _T, c[_LSB_A_UNIT], c[_LSB_A_UNIT + 1])
         multiply(s, _T, _T, _SLOPE + 2 * i)
@@ -163,9 +154,7 @@ def moves(s: ptr32, c: ptr32) -> int:
     """
     if s[_TRAFFIC] >= c[_LEAST_TRAFFIC] << s[_STAGE]:
         return 1
-    if s[_TILTED] < c[_LEAST_TILT] << s[_STAGE] or s[_TILTED] << 1 < s[_TRAFFIC]:
-        return 0
-    return 1
+    return 0 if s[_TILTED] < c[_LEAST_TILT] << s[_STAGE] or s[_TILTED] << 1 < s[_TRAFFIC] else 1
 
 
 def louder(s: ptr32) -> int:
@@ -218,7 +207,6 @@ def finish(s: ptr32, c: ptr32) -> int:
 
 def refuse(s: ptr32, c: ptr32, reason: int):
     """Take back the window's bias; widen or forget what is known if this goes on for long."""
-    i = 0
     copy(s, _BIAS, _PRIOR_MEAN, 6)
     s[_REFUSED] += 1
     if reason != _TURNED and reason != _LOST:
@@ -231,6 +219,7 @@ def refuse(s: ptr32, c: ptr32, reason: int):
         clear(s, c)
         return
     copy(s, _HELD_NOISE, _NOISE_ENERGY, 6)
+    i = 0
     while i < 12:
         put(s, _KNOWN_P + i, s[_KNOWN_P + i], s[_KNOWN_P + i + 1] + 8)
         i += 2
@@ -246,8 +235,7 @@ def follow_misfit(s: ptr32, i: int):
     subtract(s, _T1, _BIAS + 2 * i, _PRIOR_MEAN + 2 * i)
     multiply(s, _T1, _T1, _T1)
     divide(s, _T1, _T1, _T)
-    a = whole(s, _T1, 16)
-    a = clipped(a, 0x40000)
+    a = clipped(whole(s, _T1, 16), 0x40000)
     s[_MISFIT_Q16] += (a - s[_MISFIT_Q16]) >> 5
     if s[_MISFIT_Q16] < 0x100:
         s[_MISFIT_Q16] = 0x100
