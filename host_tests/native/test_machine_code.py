@@ -18,8 +18,10 @@ from zerorate.rest.estimators import reset
 from zerorate.rest.step import admit, consider, finish, step
 from zerorate_tools.bench.emulated import Emulated, code_in
 from zerorate_tools.kernels.known import answer_by, known_model
+from zerorate_tools.kernels.machine_code import INLINED, UNROLLED
 from zerorate_tools.kernels.native_files import plain_kernels
 from zerorate_tools.kernels.parts import BURST, PARTS
+from zerorate_tools.kernels.reading import Kernels
 from zerorate_tools.layout import EFFECTS, GRAVITY, MOTION, SETTINGS, SLOT, SOURCE, STATE, STILLNESS
 
 from ..firmware import motions, trace
@@ -46,6 +48,12 @@ def machine_code(repository):
         return Emulated(processor, code_in(folder / f"{processor}_{part}.py"), counted=False)
 
     return made
+
+
+@pytest.mark.parametrize("name", [*INLINED, *UNROLLED])
+def test_what_is_compiled_for_speed_is_a_kernel(name):
+    """Marked in the text of C by its name: one that is gone would be passed over."""
+    Kernels().kernel(*name.split("_", 1))
 
 
 @processors

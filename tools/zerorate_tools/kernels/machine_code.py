@@ -28,8 +28,8 @@ _SMALL = ("-mllvm", "-inline-threshold=25", "-mllvm", "-sink-common-insts=1")
 # What every sample runs through: where instructions are saved for the fewest bytes.
 _ALWAYS = "static inline __attribute__((always_inline))"
 _WHOLE = '_Pragma("clang loop unroll(full)")'
-_INLINED = ("step_step", "step_admit")
-_UNROLLED = ("stillness_gather", "step_finish")
+INLINED = ("step_step", "step_admit")
+UNROLLED = ("stillness_gather", "step_finish")
 # ARMv6-M cannot divide: most quotients of the kernels are short, and this is short with them
 _SHORT_QUOTIENT = """\
 static __attribute__((noinline)) uint32_t quotient(uint32_t a, uint32_t b) {
@@ -133,9 +133,9 @@ def machine_code(kernels: Kernels, part: str, processor: str, fast: bool = False
 
 def _hinted(text: str) -> str:
     """The C with what is asked for the kernels that every sample runs through."""
-    for name in _INLINED:
+    for name in INLINED:
         text = text.replace(f"static int32_t {name}(", f"{_ALWAYS} int32_t {name}(")
-    for name in _UNROLLED:
+    for name in UNROLLED:
         body = text.partition(f" {name}(")[2].partition("\n}\n")[0]
         text = text.replace(body, body.replace("    while ", f"    {_WHOLE} while "))
     return text
