@@ -62,10 +62,11 @@ def tick_means(raw):
 
 
 def last_samples(raw, ticks):
-    """sources(name) at each tick's last sample but the first's: acceleration and rate of that
-    sample, else the mean of the tick before."""
+    """sources(name) at each tick's last sample but the first's: acceleration, rate and channels of
+    that sample, else the mean of the tick before."""
     scales = {f"acc_{a}": (f"a{a}", 16384.0) for a in "xyz"}
     scales |= {f"rate_{a}": (f"g{a}", 131.0) for a in "xyz"}
+    scales |= {name: (name, 1.0) for name in raw if name not in FRAME}
 
     def source(name):
         if name not in scales:

@@ -2,16 +2,19 @@
 
 import math
 from array import array
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from zerorate import Sensor
 from zerorate.effects import effects
+from zerorate.effects.model_file import LOADED
+from zerorate.model import EffectModel
 from zerorate_tools.layout import EFFECTS, STATE
-from zerorate_tools.model import Slot
+from zerorate_tools.model import Slot, build_model, encoded
 from zerorate_tools.model.term import Term, evaluate
 
-from .simulated_sources import A_TICK, columns, loaded, on_firmware, tick_means
+from .simulated_sources import A_TICK, SCALES, columns, loaded, on_firmware, tick_means
 from .test_effects import BASES, CENTRES, TENTH_OF_THE_FLOOR_DPS, term_over, worst
 
 PLAYS = [
@@ -123,6 +126,44 @@ def test_acceleration_counts_in_the_very_sample(warm_up):
     x, z = raw["ax"] / 16384, raw["az"] / 16384
     wanted = np.column_stack([0.1 * x, 0.02 * x, 0.05 * z**2])
     assert np.abs(got - wanted).max() < 5e-5
+
+
+def radio(n=400):
+    """Raw rows at rest whose supply drops by 60 mV for each sample at which a radio sends."""
+    raw = {name: np.zeros(n, int) for name in ("ax", "ay", "az", "temp", "gx", "gy", "gz")}
+    return raw | {"vdd_mv": 5000 - 60 * (np.random.default_rng(1).random(n) < 0.3)}
+
+
+SUPPLY = Term("vdd_mv", 4930.0, 5050.0, 5000.0)
+
+
+def test_a_channel_acts_at_the_pace_at_which_it_is_set():
+    raw = radio()
+    slots = [Slot(SUPPLY, (0.001, 0.0, -0.002)), Slot(replace(SUPPLY, power=2), (0.0, 1e-5, 0.0))]
+    d = raw["vdd_mv"] - 5000
+    wanted = np.column_stack([0.001 * d, 1e-5 * d**2, -0.002 * d])
+    assert np.abs(on_firmware(loaded(slots), raw) - wanted).max() < 5e-5
+
+
+def test_what_remembers_the_channel_has_its_means_of_a_tick_beside_it():
+    raw, late = radio(), Slot(replace(SUPPLY, lag_mode="lag", lag_s=60.0), (0.0, 0.002, 0.0))
+    both = loaded([Slot(SUPPLY, (0.001, 0.0, 0.0)), late])
+    assert both.channels == ("vdd_mv",)
+    got = on_firmware(both, raw)
+    assert (got[:, 0] == on_firmware(loaded([Slot(SUPPLY, (0.001, 0.0, 0.0))]), raw)[:, 0]).all()
+    assert (got[:, 1] == on_firmware(loaded([late]), raw)[:, 1]).all()
+
+
+def test_a_model_of_before_follows_its_channel_once_a_tick():
+    model = build_model([Slot(SUPPLY, (0.001, 0.0, 0.0))], SCALES)
+    old = replace(model, inputs=(replace(model.inputs[0], of_the_sample=False),))
+    effect_model = EffectModel()
+    assert effect_model.load(encoded(old), Sensor(2.0)) == LOADED
+    raw = radio()
+    got, by_tick = on_firmware(effect_model, raw), (raw["vdd_mv"] - 5000).reshape(-1, A_TICK)
+    # a tick's mean is used in the tick behind it
+    wanted = 0.001 * by_tick.mean(axis=1)[:-1]
+    assert np.abs(got[A_TICK - 1 :: A_TICK, 0][1:] - wanted).max() < 5e-5
 
 
 def test_a_frame_that_is_no_reading_leaves_acceleration_as_it_was():

@@ -7,7 +7,7 @@ import pytest
 from zerorate import Sensor
 from zerorate.effects.model_file import IMPOSSIBLE, LOADED, OTHER_SCALE, TOO_LARGE
 from zerorate.model import EffectModel
-from zerorate_tools.layout import PLAY, SLOT
+from zerorate_tools.layout import INPUT_KIND, PLAY, SLOT
 from zerorate_tools.model import Binding, Slot, build_model, encoded
 from zerorate_tools.model.term import Term
 
@@ -62,6 +62,8 @@ def whole():
     data = bytearray(encoded(build_model(SLOTS, SCALES, binding=Binding(0x68, 0, 0, 3))))
     # a source that stands still fits any shift
     struct.pack_into("<4i", data, PLACES[PLAIN] + 4 * SLOT.SLOT_LOWEST_Q8, 0, 0, 0, 0)
+    # and one of a tick may have any memory
+    struct.pack_into("<i", data, BODY + INPUT_BYTES * CHANNEL, INPUT_KIND.KIND_CHANNEL)
     assert load(data) == LOADED
     return data
 
@@ -83,7 +85,7 @@ def test_a_word_of_a_slot_or_play_operator_has_ends(whole, slot, word, least, mo
 
 
 @pytest.mark.parametrize(("index", "word", "least", "most"), [
-    (TEMPERATURE, 0, 0, 23), (TEMPERATURE, 1, 0, 15), (CHANNEL, 1, -8, 15)
+    (TEMPERATURE, 0, 0, 9), (TEMPERATURE, 1, 0, 15), (CHANNEL, 0, 16, 31), (CHANNEL, 1, -8, 15)
 ])  # fmt: skip
 def test_kind_and_shift_of_an_input_have_ends(whole, index, word, least, most):
     place = BODY + INPUT_BYTES * index + 4 * word
@@ -118,7 +120,7 @@ def test_a_source_stays_within_q24_of_its_centre(whole, slot, shift):
         assert with_range(-1, 0, most) == with_range(0, 1, -most) == IMPOSSIBLE
 
 
-@pytest.mark.parametrize("kind", [10, 12, 13, 15])
+@pytest.mark.parametrize("kind", [10, 12, 13, 15, 24])
 @pytest.mark.parametrize("word", [SLOT.SLOT_MEMORY, SLOT.SLOT_DECAY, SLOT.SLOT_RING])
 def test_what_follows_the_sample_itself_has_no_memory(whole, kind, word):
     of_the_sample = "<ii", BODY + INPUT_BYTES * CHANNEL, kind, 0

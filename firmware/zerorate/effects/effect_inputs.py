@@ -1,4 +1,4 @@
-"""The sources of the effect slots: means over a tick of what the samples and the application say.
+"""The sources of the effect slots: what the samples and the application say, now or in a tick.
 
 A source's value is in Q8 of its integer. Words of an input: docs/layout.md.
 """
@@ -29,6 +29,7 @@ _KIND_VIBRATION = const(7)
 _KIND_TIME = const(8)
 _KIND_INSTANT = const(10)
 _KIND_CHANNEL = const(16)
+_KIND_CHANNEL_NOW = const(24)
 # layout: Values that stand for none
 _NO_VALUE = const(-0x3FFFFFFF)
 # layout: end
@@ -57,7 +58,7 @@ def shake(e: ptr32, x: ptr32):
 
 def extra(e: ptr32, a: int) -> int:
     """Return what the application last said of the input's channel, in 16 bits, or _NO_VALUE."""
-    v = e[_CHANNELS + e[a + _INPUT_KIND] - _KIND_CHANNEL]
+    v = e[_CHANNELS + (e[a + _INPUT_KIND] & 7)]
     if v == _NO_VALUE:
         return _NO_VALUE
     v = clipped(v, 0x1FFFFFFF) - e[a + _INPUT_OFFSET]
@@ -80,6 +81,9 @@ def accumulate(e: ptr32, x: ptr32):
         v = e[a + _INPUT_KIND]
         if v >= _KIND_CHANNEL:
             v = extra(e, a)
+            if v != _NO_VALUE and e[a + _INPUT_KIND] >= _KIND_CHANNEL_NOW:
+                e[a + _INPUT_VALUE_Q8] = v << 8
+                v = _NO_VALUE
         elif v >= _KIND_INSTANT:
             e[a + _INPUT_VALUE_Q8] = x[(v - _KIND_INSTANT + 4) % 7] << 8
             v = _NO_VALUE

@@ -1,9 +1,9 @@
 """What the closed loop has found, subtracted: slots of coefficient times basis (design.md).
 
 Slots are computed once a tick (1 s) on the means of the tick, one slot a sample, so that no sample
-waits for all of them; what depends on the rate or the acceleration itself, which a hand moves
-faster than a tick, is computed for every sample. One array `e` holds the model and its running
-state: docs/layout.md has its words.
+waits for all of them; what depends on the rate, the acceleration or a channel of the application
+itself, which may move faster than a tick, is computed for every sample. One array `e` holds the
+model and its running state: docs/layout.md has its words.
 """
 
 from .effect_basis import basis, contribute
@@ -124,7 +124,7 @@ def run_slot(e: ptr32):
 def add_instant(e: ptr32, good: int):
     """Add to what is held what the slots of this very sample say.
 
-    In a frame that is no reading acceleration is taken as it was; what the rate was says nothing.
+    In a frame that is no reading the rest is taken as it was; what the rate was says nothing.
     """
     a = _SLOTS
     i = e[_SLOT_COUNT]

@@ -101,9 +101,10 @@ REASONS = (
 # layout: Sources of effects: an acceleration, the temperature, a mean rate, ..., a channel
 _KIND_INSTANT = const(10)
 _KIND_CHANNEL = const(16)
+_KIND_CHANNEL_NOW = const(24)
 # layout: What of the sample itself a slot follows
 _OF_RATE = const(1)
-_OF_ACCELERATION = const(2)
+_OF_ANOTHER = const(2)
 # layout: Values that stand for none
 _NO_VALUE = const(-0x3FFFFFFF)
 # layout: How many of each an effect model has at most
@@ -184,7 +185,7 @@ def fill(e, data, sensor):
         at += 4 * _INPUT_SUM
         kind, shift = e[a + _INPUT_KIND], e[a + _INPUT_SHIFT]
         if (
-            not 0 <= kind < _KIND_CHANNEL + _MOST_CHANNELS
+            not 0 <= kind < _KIND_CHANNEL_NOW + _MOST_CHANNELS
             or not (-8 if kind >= _KIND_CHANNEL else 0) <= shift <= 15
         ):
             return IMPOSSIBLE
@@ -263,10 +264,10 @@ def link(e, a, tables):
 
 
 def of_the_sample(kind):
-    """Whether a source is a rate or an acceleration of the sample itself; 0: neither."""
-    if kind < _KIND_INSTANT or kind >= _KIND_CHANNEL:
+    """Whether a source is that of the sample itself: a rate, or another; 0: a tick's."""
+    if kind < _KIND_INSTANT or _KIND_CHANNEL <= kind < _KIND_CHANNEL_NOW:
         return 0
-    return _OF_RATE if kind < _KIND_INSTANT + 3 else _OF_ACCELERATION
+    return _OF_RATE if kind < _KIND_INSTANT + 3 else _OF_ANOTHER
 
 
 def kind_of(e, at):

@@ -23,9 +23,9 @@ those of a Cortex-M0+ without wait states. Alone is a call a sample, in bursts i
 Calling it from MicroPython comes on top: see [boards.md](boards.md).
 """
 _EFFECTS = """\
-What the slots of a model add to a sample on the Cortex-M0+, at 100 Hz. What follows temperature,
-time or a channel of the application is computed once a second, a slot a sample; what follows a rate
-or an acceleration, which a hand moves faster, at every sample.
+What the slots of a model add to a sample on the Cortex-M0+, at 100 Hz. What follows temperature or
+time, or remembers, is computed once a second, a slot a sample; what follows a rate, an acceleration
+or a channel of the application, which may move faster, at every sample.
 """
 _EFFECTS_HEAD = ["slots", "instructions, mean", "cycles, mean", "worst"]
 _REPLAY = """\

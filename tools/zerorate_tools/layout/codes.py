@@ -115,6 +115,7 @@ INPUT_KIND = Codes(
     KIND_ONE=9,
     KIND_INSTANT=10,
     KIND_CHANNEL=16,
+    KIND_CHANNEL_NOW=24,
 )
 MEMORY = Codes(
     "An effect slot's memory",
@@ -122,7 +123,7 @@ MEMORY = Codes(
     "MEMORY_LAG MEMORY_DIFFERENCE MEMORY_RATE MEMORY_BACKLASH MEMORY_PEAK",
     first=1,
 )
-INSTANT = Codes("What of the sample itself a slot follows", "", "OF_RATE OF_ACCELERATION", first=1)
+INSTANT = Codes("What of the sample itself a slot follows", "", "OF_RATE OF_ANOTHER", first=1)
 MARKS = Codes(
     "Values that stand for none",
     "",

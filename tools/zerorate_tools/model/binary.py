@@ -200,7 +200,8 @@ def _there(name: str, of_the_sample: bool, among: Container) -> tuple[str, bool]
 
 def _kind(source: Input, channels: Sequence[str]) -> int:
     if is_channel(source.name):
-        return _FIRST_CHANNEL + list(channels).index(source.name)
+        first = _FIRST_CHANNEL + MOST_CHANNELS * source.of_the_sample
+        return first + list(channels).index(source.name)
     if source.of_the_sample:
         return _KINDS.index(ONE) + 1 + FAST.index(source.name)
     return _KINDS.index(source.name)
@@ -209,7 +210,8 @@ def _kind(source: Input, channels: Sequence[str]) -> int:
 def _input(raw: Sequence[int], channels: Sequence[str]) -> Input:
     kind, shift, offset = raw
     if kind >= _FIRST_CHANNEL:
-        return Input(channels[kind - _FIRST_CHANNEL], False, shift, offset)
+        now, at = divmod(kind - _FIRST_CHANNEL, MOST_CHANNELS)
+        return Input(channels[at], (False, True)[now], shift, offset)
     return Input(_KINDS[kind], kind > _KINDS.index(ONE), shift, offset)
 
 

@@ -35,11 +35,11 @@ class Slot:
 
     @property
     def is_of_the_sample(self) -> bool:
-        """Whether it is computed for every sample: it follows the rate or acceleration and
-        remembers nothing."""
+        """Whether it is computed for every sample: it follows the rate, acceleration or a channel
+        of the application, and remembers nothing."""
         t = self.term
         remembers = t.lag_mode != "none" or t.memory != "none" or t.decay_s + t.delay_s > 0
-        return not remembers and (t.source in FAST or t.second in FAST)
+        return not remembers and (is_fast(t.source) or is_fast(t.second))
 
     @property
     def is_play(self) -> bool:
@@ -53,7 +53,7 @@ class Slot:
     def sources(self) -> list[tuple[str, bool]]:
         """(name, whether of the very sample) of what it follows."""
         names = [self.term.source, *([self.term.second] if self.term.second else [])]
-        return [(n, self.is_of_the_sample and n in FAST) for n in names]
+        return [(n, self.is_of_the_sample and is_fast(n)) for n in names]
 
 
 @dataclass(frozen=True)
@@ -97,12 +97,17 @@ class Model:
     @property
     def channels(self) -> tuple[str, ...]:
         """Names of the extra channels that the application has to give, in their order."""
-        return tuple(i.name for i in self.inputs if is_channel(i.name))
+        return tuple(dict.fromkeys(i.name for i in self.inputs if is_channel(i.name)))
 
 
 def is_channel(name: str) -> bool:
     """Whether a source is none of the sensor's own."""
     return name not in (*FRAME, VIBRATION, TIME, ONE)
+
+
+def is_fast(name: str | None) -> bool:
+    """Whether a source may move faster than a tick: no temperature does."""
+    return name is not None and (name in FAST or is_channel(name))
 
 
 def sources_of(slots: Sequence[Slot]) -> list[tuple[str, bool]]:
