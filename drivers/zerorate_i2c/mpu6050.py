@@ -13,14 +13,11 @@ if TYPE_CHECKING:
 
 const = int  # on a board the compiler itself reads const(...)
 
-_ACCEL_XOUT_H = const(0x3B)
 _WHO_AM_I = const(0x75)
 _PWR_MGMT_1 = const(0x6B)
 _DEVICE_RESET = const(0x80)
 _RESET_MS = const(100)
 _WORDS = const(7)
-_FROZEN_PERIODS = const(16)
-_LEAP_LSB = const(160)
 
 FRESH = const(0)  # a sample
 VERIFIED = const(1)  # a sample, and the configuration was read back right just before it
@@ -69,6 +66,7 @@ class MPU6050(Registers):
     accel_lsb_per_g: float
     scales: "tuple[float, float, float, float, float]"
     binding: bytes
+    _data: "Any" = None
 
     def __init__(
         self,
@@ -93,8 +91,6 @@ class MPU6050(Registers):
         self._check_every = check_every
         self._until_check = check_every
         self._errors_seen = 0
-        self._burst = bytearray(2 * _WORDS)
-        self._previous = bytearray(2 * _WORDS)
         self._frozen = False
         # loaded here and let go: who has an object of it needs no more than its registers
         from .identity import identify
@@ -108,7 +104,6 @@ class MPU6050(Registers):
         unload("parts")
         self.kept_power = self._is_configured()
         self.configure()
-        self._changed_us = self.clock.ticks_us()
 
     def read(self, sample: "array[int]") -> int:
         """Fill sample, array('i') of ax ay az temp gx gy gz in raw LSB, from one burst.
@@ -116,27 +111,21 @@ class MPU6050(Registers):
         Returns FRESH, VERIFIED, RESTARTED or SUSPECT. What was learned from samples since the
         last VERIFIED is in doubt after RESTARTED and after OSError, which passes when the bus
         fails 1 + retries times or another part answers. A sample that leaps is read twice, in
-        case a clone tore it (counted in torn). Allocates nothing while all is well.
+        case a clone tore it (counted in torn). Allocates nothing behind the first while all is
+        well.
         """
-        status = self.verify(1)
-        if status == RESTARTED:
-            return RESTARTED
-        self.read_sample(sample)
-        if self._is_suspect():
-            self.doubt(self._frozen)
-            return SUSPECT
-        if self._has_leapt():
-            self._read_again(sample)
-            if self._is_one_word_repeated(self._burst):
-                self.doubt(False)
-                return SUSPECT
-        return status
+        return self._data_registers().read(sample)
 
     def read_sample(self, sample: "array[int]") -> None:
         """Fill sample from one burst, unexamined."""
-        self._burst, self._previous = self._previous, self._burst
-        self.read_into(_ACCEL_XOUT_H, self._burst)
-        decode(self._burst, 0, sample)
+        self._data_registers().read_sample(sample)
+
+    def _data_registers(self):
+        if self._data is None:  # loaded here: who reads a FIFO has no memory taken by it
+            from .data_registers import DataRegisters
+
+            self._data = DataRegisters(self)
+        return self._data
 
     def verify(self, samples: int) -> int:
         """Read the configuration back if it is time to, samples more being taken on trust.
@@ -186,7 +175,7 @@ class MPU6050(Registers):
             self._until_check = 0
             raise _wrong_device(self, self.who_am_i, "does not keep what is written")
         self.clock.sleep_ms(self.start_up_ms)
-        self._changed_us = self.clock.ticks_us()
+        self.changed_us = self.clock.ticks_us()
 
     def restart(self) -> None:
         """Reset the chip and write its configuration again; OSError when it does not keep it."""
@@ -217,38 +206,6 @@ class MPU6050(Registers):
     # small frames: one of more than eleven words would take heap at every call
     def _is_kept(self, i):
         return self.read_register(self._settings[i]) == self._settings[i + 1]
-
-    def _has_leapt(self):
-        """A word torn between two samples is off by its high byte: about 256 LSB."""
-        burst = self._burst
-        previous = self._previous
-        for i in range(0, 2 * _WORDS, 2):
-            leap = (burst[i] - previous[i]) * 256 + burst[i + 1] - previous[i + 1]
-            if _LEAP_LSB < leap & 0xFFFF < 0x10000 - _LEAP_LSB:  # from -1 to 0 is one step
-                return True
-        return False
-
-    def _read_again(self, sample):
-        """Motion reads the same again; what a chip without shadow registers tore does not."""
-        self.read_sample(sample)
-        if self._burst != self._previous:
-            self.torn += 1
-
-    def _is_suspect(self):
-        burst = self._burst
-        if burst != self._previous:
-            self._changed_us = self.clock.ticks_us()
-            return self._is_one_word_repeated(burst)
-        self.repeats += 1
-        still_us = self.clock.ticks_diff(self.clock.ticks_us(), self._changed_us)
-        self._frozen = still_us > _FROZEN_PERIODS * self.period_us
-        return self._frozen or self._is_one_word_repeated(burst)
-
-    def _is_one_word_repeated(self, burst):
-        for i in range(2, 2 * _WORDS):  # noqa: SIM110 (a generator would allocate)
-            if burst[i] != burst[i & 1]:
-                return False
-        return True
 
 
 def _wrong_device(registers, who_am_i, rest):

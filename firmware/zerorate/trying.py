@@ -54,7 +54,7 @@ def answer(run, known):
     from .storage.plain_crc32 import plain_crc32
 
     crc = bytearray(4)
-    plain_crc32(left, len(left), crc)
+    plain_crc32(left, crc)
     return bytes(crc)
 
 

@@ -68,7 +68,7 @@ def test_a_restart_begins_the_sixteen_periods_anew(bench):
     bench.read()
     bench.clock.advance_us(17 * bench.imu.period_us)
     bench.imu.restart()
-    bench.imu._previous[:] = bench.imu._burst[:] = bytes(range(14))
+    bench.imu._data._previous[:] = bench.imu._data._burst[:] = bytes(range(14))
     bench.chip.registers[0x3B:0x49] = bytes(range(14))
     bench.clock.advance_us(16 * bench.imu.period_us)
     assert bench.imu.read(bench.sample) == FRESH

@@ -19,8 +19,15 @@ HOT = {
         "check",
         "_is_configured",
         "_is_kept",
-    }
-    | {"_is_suspect", "_is_one_word_repeated", "_has_leapt", "_read_again"},
+    },
+    "data_registers.py": {
+        "read",
+        "read_sample",
+        "_is_suspect",
+        "_is_one_word_repeated",
+        "_has_leapt",
+        "_read_again",
+    },
     "registers.py": {"read_register", "read_into", "_transfer"},
     "fifo.py": {
         "read",

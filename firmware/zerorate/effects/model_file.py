@@ -132,7 +132,7 @@ def judge(data):
     if len(data) < _BODY + 4 or len(data) < data[4] | data[5] << 8:
         return TRUNCATED
     crc = bytearray(4)
-    checksum(data, len(data) - 4, crc)
+    checksum(memoryview(data)[: len(data) - 4], crc)
     if bytes(data[-4:]) != bytes(crc) or len(data) != data[4] | data[5] << 8:
         return DAMAGED
     most = (_MOST_SLOTS, _MOST_INPUTS, _MOST_TABLES, _MOST_CHANNELS, _MOST_PLAYS)

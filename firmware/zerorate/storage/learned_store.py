@@ -5,7 +5,7 @@ a cut in the writing of one never costs the other.
 """
 
 from .crc32 import checksum
-from .store import LOADED, Store, pack, slot_bytes
+from .store import LOADED, Store, packed, slot_bytes
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -83,9 +83,6 @@ class LearnedStore:
 
 def _fingerprint(settings):
     """Four bytes that differ between settings."""
-    size = 4 * len(settings)
-    words = bytearray(size)
-    pack(settings, words, 0, size)
     out = bytearray(4)
-    checksum(words, size, out)
+    checksum(packed(settings, 4 * len(settings)), out)
     return bytes(out)

@@ -2,10 +2,18 @@
 
 readblock fills buf with what stands at byte offset; writeblock puts buf there and returns when it
 is durable. Both may raise OSError. Bytes never written may read as anything. The driver of an
-EEPROM needs these two methods and no more; erasing flash is the storage's own business.
+EEPROM needs these two methods and no more; erasing flash is the storage's own business. One that
+has write_pieces(offset, pieces) as well takes a record as it comes, so that it need not be made.
 """
 
 import os
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from array import array
+    from collections.abc import Iterable
+
+    Buffer = bytes | bytearray | memoryview | array[int]
 
 
 class FileStorage:
@@ -17,37 +25,34 @@ class FileStorage:
     def readblock(self, offset: int, buf: "bytearray | memoryview") -> None:
         """Fill buf from the file."""
         count = 0
-        try:
+        if not self._is_missing():
             with open(self.path, "rb") as file:
                 file.seek(offset)
                 count = file.readinto(buf) or 0
-        except OSError:
-            if not self._is_missing():
-                raise
         for i in range(count, len(buf)):
             buf[i] = 0xFF
 
     def writeblock(self, offset: int, buf: "bytes | bytearray | memoryview") -> None:
         """Write buf into the file and to the medium."""
-        with self._open(offset) as file:
+        self.write_pieces(offset, (buf,))
+
+    def write_pieces(self, offset: int, pieces: "Iterable[Buffer]") -> None:
+        """Write what is to stand one behind the other, and all of it to the medium."""
+        if self._is_missing():
+            pieces = (b"\xff" * offset,) + tuple(pieces)
+            offset = 0
+            mode = "w+b"
+        else:
+            mode = "r+b"
+        with open(self.path, mode) as file:
             file.seek(offset)
-            file.write(buf)
+            for piece in pieces:
+                file.write(piece)
             file.flush()
             if hasattr(os, "fsync"):
                 os.fsync(file.fileno())
 
-    def _open(self, offset):
-        try:
-            return open(self.path, "r+b")
-        except OSError:
-            if not self._is_missing():
-                raise
-        file = open(self.path, "w+b")
-        file.write(b"\xff" * offset)
-        return file
-
     def _is_missing(self):
-        """By stat: errno of a missing file is not 2 on every port."""
         try:
             os.stat(self.path)
         except OSError:

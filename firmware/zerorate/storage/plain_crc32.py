@@ -11,12 +11,12 @@ _LOWER = (
 )
 
 
-def plain_crc32(data, length, out):
-    """Put the CRC-32 of data[:length] into out[0:4], little-endian; no number exceeds 16 bits."""
-    upper = 0xFFFF
-    lower = 0xFFFF
-    for i in range(length):
-        lower ^= data[i]
+def plain_crc32(data, out):
+    """As crc32.checksum, of bytes; no number exceeds 16 bits."""
+    lower = (out[0] | out[1] << 8) ^ 0xFFFF
+    upper = (out[2] | out[3] << 8) ^ 0xFFFF
+    for byte in data:
+        lower ^= byte
         for _ in range(2):
             at = 2 * (lower & 15)
             lower = (lower >> 4 | (upper & 15) << 12) ^ (_LOWER[at] << 8 | _LOWER[at + 1])

@@ -5,6 +5,8 @@ A record is  "ZRS" format version size sequence binding payload crc32  with litt
 newest whole record, so until the last byte stands the one before it is whole.
 """
 
+from sys import byteorder
+
 from .crc32 import checksum
 
 TYPE_CHECKING = False
@@ -14,16 +16,6 @@ if TYPE_CHECKING:
 
 const = int  # on a board the compiler itself reads const(...)
 
-try:
-    from sys import byteorder
-
-    from uctypes import addressof, bytearray_at
-
-    if byteorder != "little":
-        raise ImportError
-except ImportError:
-    bytearray_at = None  # type: ignore[assignment]
-
 _FORMAT = const(1)
 _AT_FORMAT = const(3)
 _AT_VERSION = const(4)
@@ -32,6 +24,9 @@ _AT_SEQUENCE = const(8)
 _AT_BINDING = const(12)
 _HEADER = const(20)
 _CRC = const(4)
+# a record is read to be judged in pieces of so many bytes
+_PIECE = const(256)
+_WHOLE = b"\x1c\xdf\x44\x21"  # what CRC-32 makes of anything that ends in its own CRC-32
 
 # layout: What a store says
 LOADED = const(0)
@@ -60,7 +55,8 @@ class Store:
     binding is up to 8 bytes naming chip, range and filter (MPU6050.binding); version is that of
     the payload, 0..255, and older the versions of the same size that load takes besides. base is
     the first byte used, pitch the distance of the slots (an erase block of flash; default: no
-    gap). payload is array('i') of size / 4 items, or bytearray (bytes to save) of size.
+    gap). payload is array('i') of size / 4 items, or bytearray (bytes to save) of size. Where
+    storage has write_pieces, as FileStorage has, saving takes no room for a record.
 
     Raises ValueError for a binding, version, size or pitch that does not fit.
     """
@@ -91,8 +87,7 @@ class Store:
         self._older = older
         self._base = base
         self._pitch = pitch or self.slot_bytes
-        self._record = bytearray(self.slot_bytes)
-        self._crc = bytearray(_CRC)
+        self._header = bytearray(_HEADER)
         self._newest = -1
 
     def load(self, payload: "Any") -> int:
@@ -101,28 +96,31 @@ class Store:
         Never raises for what the storage holds or does. REASONS says each result in words.
         """
         self._require(payload)
+        record = bytearray(
+            self.slot_bytes
+        )  # payload stays as it was until all is known to be right
         try:
-            slot, reason = self._find()
+            slot, reason = self._find(record)
             if slot < 0:
                 return reason
-            if self._judge(slot) != LOADED:
+            if self._judge(slot, record) != LOADED:
                 return UNREADABLE
         except OSError:
             return UNREADABLE
-        self.loaded_version = self._record[_AT_VERSION]
-        unpack(self._record, _HEADER, payload, self.size)
+        self.loaded_version = record[_AT_VERSION]
+        unpack(record, _HEADER, payload, self.size)
         return LOADED
 
     def save(self, payload: "Any") -> bool:
         """Write payload to the older slot and read it back; False when that failed."""
         self._require(payload)
+        piece = bytearray(_PIECE)
         try:
-            self._find()  # anew: where the newest was damaged since, the older is all there is
+            self._find(piece)  # anew: was the newest damaged since, the older is all there is
             slot = 1 if self._newest == 0 else 0
             sequence = self.sequence + 1
-            self._compose(payload, sequence)
-            self.storage.writeblock(self._offset(slot), self._record)
-            written = self._judge(slot) == LOADED and self._sequence() == sequence
+            self._write(slot, payload, sequence)
+            written = self._judge(slot, piece) == LOADED and self._sequence() == sequence
         except OSError:
             written = False
         if not written:
@@ -137,7 +135,7 @@ class Store:
         if len(payload) != self.size and len(payload) * 4 != self.size:
             raise ValueError("payload is of {} bytes".format(self.size))
 
-    def _find(self):
+    def _find(self, piece):
         """(slot to load or -1, reason); notes which slot is the newest whole one of any kind."""
         best = -1
         best_sequence = -1
@@ -146,7 +144,7 @@ class Store:
         self.sequence = 0
         newest_reason = EMPTY
         for slot in range(2):
-            judged = self._judge(slot)
+            judged = self._judge(slot, piece)
             if judged in (EMPTY, DAMAGED):
                 reason = max(reason, judged)
                 continue
@@ -160,50 +158,45 @@ class Store:
                 best_sequence = sequence
         return best, newest_reason if self._newest >= 0 else reason
 
-    def _judge(self, slot):
-        """Read slot into the record and say what it is."""
-        record = self._record
-        self.storage.readblock(self._offset(slot), record)
-        if record[:_AT_FORMAT] != b"ZRS":
-            blank = record[0] in (0x00, 0xFF) and record[0] == record[1] == record[2]
+    def _judge(self, slot, piece):
+        """Read slot through piece, a bytearray, its header to stay, and say what it is."""
+        at = self._offset(slot)
+        header = self._header
+        self.storage.readblock(at, header)
+        if header[:_AT_FORMAT] != b"ZRS":
+            blank = header[0] in (0x00, 0xFF) and header[0] == header[1] == header[2]
             return EMPTY if blank else DAMAGED
-        size = record[_AT_SIZE] | record[_AT_SIZE + 1] << 8
-        if size != self.size:
-            return self._judge_other_size(slot, size)
-        if not self._is_whole(record, size):
+        size = header[_AT_SIZE] | header[_AT_SIZE + 1] << 8
+        if _HEADER + size + _CRC > self._pitch or not self._is_whole(at, size, piece):
             return DAMAGED
-        if record[_AT_FORMAT] != _FORMAT:
+        version = header[_AT_VERSION]
+        if size != self.size:  # a record of another layout
+            return OTHER_VERSION if version != self.version else OTHER_SIZE
+        if header[_AT_FORMAT] != _FORMAT:
             return OTHER_VERSION
-        if record[_AT_BINDING:_HEADER] != self.binding:
+        if header[_AT_BINDING:] != self.binding:
             return OTHER_BINDING
-        version = record[_AT_VERSION]
         return LOADED if version == self.version or version in self._older else OTHER_VERSION
 
-    def _judge_other_size(self, slot, size):
-        """A record of another layout is told from a damaged one by its own checksum."""
-        if _HEADER + size + _CRC > self._pitch:
-            return DAMAGED
-        other = bytearray(_HEADER + size + _CRC)
-        self.storage.readblock(self._offset(slot), other)
-        if not self._is_whole(other, size):
-            return DAMAGED
-        return OTHER_VERSION if other[_AT_VERSION] != self.version else OTHER_SIZE
-
-    def _is_whole(self, record, size):
-        checksum(record, _HEADER + size, self._crc)
-        return record[_HEADER + size :] == self._crc
+    def _is_whole(self, at, size, piece):
+        crc = bytearray(_CRC)
+        size += _HEADER + _CRC
+        for done in range(0, size, len(piece)):
+            part = memoryview(piece)[: size - done]
+            self.storage.readblock(at + done, part)
+            checksum(part, crc)
+        return crc == _WHOLE
 
     def _sequence(self):
         at = _AT_SEQUENCE
-        record = self._record
-        return record[at] | record[at + 1] << 8 | record[at + 2] << 16 | record[at + 3] << 24
+        header = self._header
+        return header[at] | header[at + 1] << 8 | header[at + 2] << 16 | header[at + 3] << 24
 
     def _offset(self, slot):
         return self._base + slot * self._pitch
 
-    def _compose(self, payload, sequence):
-        record = self._record
-        record[:_HEADER] = (
+    def _write(self, slot, payload, sequence):
+        header = (
             b"ZRS"
             + bytes(
                 [_FORMAT, self.version, 0, self.size & 0xFF, self.size >> 8]
@@ -211,9 +204,14 @@ class Store:
             )
             + self.binding
         )
-        pack(payload, record, _HEADER, self.size)
-        checksum(record, _HEADER + self.size, self._crc)
-        record[_HEADER + self.size :] = self._crc
+        payload = packed(payload, self.size)
+        crc = bytearray(_CRC)
+        checksum(header, crc)
+        checksum(payload, crc)
+        if hasattr(self.storage, "write_pieces"):
+            self.storage.write_pieces(self._offset(slot), (header, payload, crc))
+        else:
+            self.storage.writeblock(self._offset(slot), header + bytes(payload) + crc)
 
 
 def slot_bytes(size):
@@ -221,29 +219,23 @@ def slot_bytes(size):
     return _HEADER + size + _CRC
 
 
-def pack(payload, record, at, size):
-    """Payload into record from at on, words little-endian whatever the machine."""
-    if len(payload) == size:
-        record[at : at + size] = payload
-        return
-    if bytearray_at is not None:  # word by word takes the time of five samples
-        record[at : at + size] = bytearray_at(addressof(payload), size)
-        return
+def packed(payload, size):
+    """What has the bytes of payload, words little-endian whatever the machine."""
+    if len(payload) == size or byteorder == "little":
+        return payload
+    record = bytearray(size)
+    at = 0
     for word in payload:
-        record[at] = word & 0xFF
-        record[at + 1] = word >> 8 & 0xFF
-        record[at + 2] = word >> 16 & 0xFF
-        record[at + 3] = word >> 24 & 0xFF
-        at += 4
+        for shift in (0, 8, 16, 24):
+            record[at] = word >> shift & 0xFF
+            at += 1
+    return record
 
 
 def unpack(record, at, payload, size):
-    """The reverse of pack."""
+    """Put size bytes of record from at on into payload, whose words they are little-endian."""
     if len(payload) == size:
         payload[:] = record[at : at + size]
-        return
-    if bytearray_at is not None:
-        bytearray_at(addressof(payload), size)[:] = memoryview(record)[at : at + size]
         return
     for i in range(len(payload)):
         top = record[at + 3]

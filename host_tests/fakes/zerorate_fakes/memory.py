@@ -42,3 +42,13 @@ class FakeMemory:
     def flip(self, bit: int) -> None:
         """Turn one bit, counted over all bytes."""
         self.bytes[bit >> 3] ^= 1 << (bit & 7)
+
+
+class FakeMemoryInPieces(FakeMemory):
+    """One that takes a record as it comes, as a file does."""
+
+    def write_pieces(self, offset: int, pieces: "tuple[bytes, ...]") -> None:
+        """Write one behind the other."""
+        for piece in pieces:
+            self.writeblock(offset, bytes(piece))
+            offset += len(bytes(piece))

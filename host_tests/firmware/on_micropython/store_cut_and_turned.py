@@ -45,8 +45,10 @@ assert load(FileStorage("learned.bin")) == (0, list(NEW))
 assert load(FileStorage("missing.bin"))[0] == 1
 
 plain, own = bytearray(4), bytearray(4)
-plain_crc32(b"123456789", 9, plain)
-checksum(b"123456789", 9, own)
+plain_crc32(b"12345", plain)
+plain_crc32(b"6789", plain)
+checksum(b"12345", own)
+checksum(b"6789", own)
 assert plain == own
 with open("learned.bin", "rb") as file:
     print(file.read().hex(), plain.hex())

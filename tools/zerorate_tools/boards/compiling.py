@@ -11,6 +11,7 @@ from pathlib import Path, PurePosixPath
 from ..errors import MissingLibrary, ZerorateError
 from .asking import BoardFacts
 from .parts import CODES, part_files
+from .short_names import shortened
 
 # Without line numbers, which are a tenth of what a module takes of the heap.
 _OPTIONS = ("-O3",)
@@ -53,8 +54,10 @@ def board_files(
             text = for_boards(path.read_text(encoding="utf-8"))
             if code and name.parent.name == "native":
                 text = _ELSEWHERE.sub("", text)
+            if not is_code:
+                text = shortened(path, text)
             # the module's name is on the board in any case, the file's would be one more string
-            module = ".".join(name.with_suffix("").parts)
+            module = ".".join(name.with_suffix("").parts).removesuffix(".__init__")
             found[name.with_suffix(".mpy")] = compiled(path, module, *options, text=text)
         else:
             found[name] = path.read_bytes()
