@@ -36,6 +36,7 @@ chip.step()
 imu.i2c = RegistersOnly(chip.registers)
 sample = array("i", [0] * 7)
 verified = 0
+imu.read(sample)  # which loads what reads
 micropython.heap_lock()
 verified = verified_of(imu, sample, 2000)
 micropython.heap_unlock()
