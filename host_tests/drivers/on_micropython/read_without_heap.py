@@ -38,6 +38,6 @@ sample = array("i", [0] * 7)
 verified = 0
 imu.read(sample)  # which loads what reads
 micropython.heap_lock()
-verified = verified_of(imu, sample, 2000)
+verified = verified_of(imu, sample, 1999)
 micropython.heap_unlock()
 print(verified, imu.repeats > 1000, imu.restarts)
