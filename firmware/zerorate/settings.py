@@ -91,7 +91,7 @@ DEFAULTS = {
     "halve_after_s": 3600.0,  # readings after which the counts are halved
     "fit_s": 2.0,  # readings that make an estimator a point of the line
     "counted_s": 20.0,  # more readings weigh no more in the line
-    "local_degc": 3.0,  # half the width of the line's neighbourhood
+    "local_degc": 9.0,  # half the width of the line's neighbourhood
     "stable_s": 2.5,  # readings with which an estimator speaks for its temperature
     "share": 0.125,  # and at least so many of all the line's readings
     "beyond_degc": 0.5,  # how far outside the line's points a bias is said to lie beyond
@@ -99,8 +99,8 @@ DEFAULTS = {
     "floor_dps": 0.002,  # flicker noise at first: by how much rests differ beyond white noise
     "gate_dps": 0.3,  # a rest this near to what was expected is plausible
     "insist_s": 60.0,  # an implausible rest that lasts so long is believed
-    "walk_dps": 0.002,  # speed of the offset's walk at first, a root second
-    "walk_least_dps": 0.0002,  # slowest that is learned
+    "walk_dps": 0.0013,  # speed of the offset's walk at first, a root second
+    "walk_least_dps": 0.0001,  # slowest that is learned
     "walk_most_dps": 0.05,  # and fastest
     "turn_on_dps": 0.02,  # one sigma of the turn-on offset, until power-ons show it
     "slope_dps_per_degc": 0.02,  # how fast the bias leaves the line beyond its points, at first

@@ -67,8 +67,11 @@ _STEEPEST_Q16 = const(4095)  # times the farthest temperature it fits 31 bits
 
 
 def grown_q8(s: ptr32, a: int) -> int:
-    """Return the offset's variance now: what it was, and what it has walked since."""
-    seconds = s[a + _OFFSET_AGE_MS] >> 10
+    """Return the offset's variance now: what it was, and what it has walked since.
+
+    Three seconds more than since the segment's end: a mean tells of its middle.
+    """
+    seconds = (s[a + _OFFSET_AGE_MS] >> 10) + 3
     if seconds > 2047:
         seconds = 2047
     return s[a + _OFFSET_VARIANCE_Q8] + (((s[a + _WALK_Q16] >> 4) * seconds) >> 4)
@@ -158,15 +161,15 @@ def rewalk(s: ptr32, c: ptr32, a: int, excess: int):
     speed = speed << 4
     if speed > c[_WALK_MOST_Q16]:
         speed = c[_WALK_MOST_Q16]
-    # long gaps tell more of the walk than neighbours do
+    # long gaps tell more of the walk than neighbours do, and one of them little
     if age > 1023:
         age = 1023
     speed = (speed - s[a + _WALK_Q16]) >> 4
     share = age * age
     share = share // ((share + 0x100000) >> 10)
-    if share < 12:
-        share = 12
-    speed = (speed * share >> 10) << 4
+    if share < 24:
+        share = 24
+    speed = (speed * share >> 12) << 4
     s[a + _WALK_Q16] += speed
     if s[a + _WALK_Q16] < c[_WALK_LEAST_Q16]:
         s[a + _WALK_Q16] = c[_WALK_LEAST_Q16]
@@ -211,10 +214,10 @@ def approach(s: ptr32, k: int, found: int, shift: int):
 
 
 def relearn_floor(s: ptr32, c: ptr32, a: int, change: int):
-    """Learn by how much two means of one rest differ beyond their white noise."""
+    """Learn by how much two means of one rest differ beyond their white noise and the walk."""
     d = 3 * s[a + _WAITING_N]
     d = s[_NOISE_Q8] // d
-    d = (change * change >> 1) - d
+    d = (change * change >> 1) - d - (s[a + _WALK_Q16] >> 8)
     d = clipped(d, c[_FLOOR_Q8] << 6)
     approach(s, a + _FLOOR_Q16, d << 8, 7)
     if s[a + _FLOOR_Q16] < 0x100:
