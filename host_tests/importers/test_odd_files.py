@@ -90,6 +90,31 @@ def test_a_header_in_a_comment_and_columns_by_number(tmp_path):
         read(tmp_path, f"{rows}\n")
 
 
+def test_a_header_in_a_comment_is_one_where_a_column_has_words(tmp_path):
+    rows = "\n".join(f"{i / 100},imu_link,0.8,0.8,0.9" for i in range(50))
+    recording, _ = read(tmp_path, f"%t_s,frame_id,gx_dps,gy_dps,gz_dps\n{rows}\n")
+    assert len(recording) == 50
+
+
+def test_settings_above_a_table_are_not_the_table(tmp_path):
+    head = "sep=,\nFirmware,1.6\nacc_1G,2048\ngyro_scale,1\n" + "d_min,30\n" * 150
+    recording, _ = read(tmp_path, head + table(200).to_csv(index=False))
+    assert len(recording) == 200
+
+
+def test_a_line_of_units_may_have_an_empty_cell_as_the_names_do(tmp_path):
+    frame = table()[["t_s", *(f"g{a}_dps" for a in "xyz"), *(f"a{a}_g" for a in "xyz")]]
+    names = [f"S_67_Gyro_{a}_CAL" for a in "XYZ"] + [f"S_67_Accel_LN_{a}_CAL" for a in "XYZ"]
+    units = "ms\tdeg/s\tdeg/s\tdeg/s\tm/(s^2)\tm/(s^2)\tm/(s^2)\t"
+    frame["t_s"] *= 1000
+    frame.iloc[:, 4:] *= 9.80665
+    rows = frame.assign(end="").to_csv(index=False, header=False, sep="\t")
+    head = "\t".join(["S_67_Timestamp_Unix_CAL", *names]) + "\t\n" + units + "\n"
+    recording, _ = read(tmp_path, '"sep=\t"\n' + head + rows)
+    assert recording.scales.odr_hz == pytest.approx(100, rel=1e-4)
+    assert recording.accel_g()[:, 2].mean() == pytest.approx(1.0, abs=0.01)
+
+
 def test_columns_that_nothing_names_are_offered_by_what_they_hold(tmp_path):
     rows = [[i * 20, 0.1, 0.2, 9.79, 0.01, 0.02, -0.03, 21.5] for i in range(50)]
     ready = "t_us=1:ms ax=2:m/s2 ay=3:m/s2 az=4:m/s2 gx=5:rad/s gy=6:rad/s gz=7:rad/s"

@@ -20,6 +20,8 @@ from .test_odd_files import read, table, told
         "AngVelX AngVelY AngVelZ",
         "Gyroscope_X Gyroscope_Y Gyroscope_Z",
         "xgyro ygyro zgyro",
+        "GyX GyY GyZ",
+        "UncompGyro0 UncompGyro1 UncompGyro2",
     ],
 )
 def test_usual_names_need_but_a_unit_and_the_words_for_it_work(tmp_path, names):
@@ -87,6 +89,22 @@ def test_a_phones_sensorlog_is_known_by_its_columns(tmp_path):
     recording, _ = read(tmp_path, pd.DataFrame(logged))
     assert recording.scales.odr_hz == pytest.approx(100, rel=1e-3)
     assert recording.gyro_dps().mean() == pytest.approx(0.8, abs=0.02)
+
+
+def test_a_log_of_openlog_artemis_is_known_by_its_columns(tmp_path):
+    frame = table()[["t_s", *(f"a{a}_g" for a in "xyz"), *(f"g{a}_dps" for a in "xyz"), "temp_c"]]
+    frame.columns = ["rtcTime", "aX", "aY", "aZ", "gX", "gY", "gZ", "imu_degC"]
+    frame["rtcTime"] = [f"10:00:{t:05.2f}" for t in frame["rtcTime"]]
+    frame[["aX", "aY", "aZ"]] *= 1000
+    recording, report = read(tmp_path, frame)
+    assert told(report, "gyro taken in dps: as OpenLog Artemis writes")
+    assert recording.accel_g()[:, 2].mean() == pytest.approx(1.0, abs=0.01)
+    assert recording.temp_degc()[0] == pytest.approx(25, abs=0.01)
+
+
+def test_acceleration_less_gravity_is_none(tmp_path):
+    frame = table().rename(columns={f"a{a}_g": f"FreeAcc_{a.upper()}_g" for a in "xyz"})
+    assert "ax" not in read(tmp_path, frame)[0].columns
 
 
 def test_a_csv_of_plotjuggler_is_known_by_its_columns(tmp_path):

@@ -61,10 +61,18 @@ def test_dates_of_iso_8601_are_times(tmp_path, stamp):
     assert (np.diff(recording.columns["t_us"]) == 10_000).all()
 
 
-@pytest.mark.parametrize("stamp", ["01.05.2026 12:00:{:06.3f}", "12:00:{:06.3f}"])
-def test_a_time_that_cannot_be_read_says_how_to_write_it(tmp_path, stamp):
+def test_a_time_of_day_is_a_time_and_goes_on_at_midnight(tmp_path):
+    frame = table(500).rename(columns={"t_s": "rtcTime"})
+    stamps = pd.Timestamp("2021-03-05T23:59:57") + pd.to_timedelta(frame["rtcTime"], unit="s")
+    frame["rtcTime"] = stamps.dt.strftime("%H:%M:%S.%f").str[:-4]
+    recording, report = read(tmp_path, frame)
+    assert (np.diff(recording.columns["t_us"]) == 10_000).all()
+    assert told(report, "a clock of 24 hours ran over at row 301: counted on")
+
+
+def test_a_time_that_cannot_be_read_says_how_to_write_it(tmp_path):
     frame = table(500).rename(columns={"t_s": "time"})
-    frame["time"] = [stamp.format(t) for t in frame["time"]]
+    frame["time"] = [f"01.05.2026 12:00:{t:06.3f}" for t in frame["time"]]
     with pytest.raises(BadRecording, match="no time can be read from column 'time'; .*--hz N"):
         read(tmp_path, frame)
 

@@ -98,7 +98,7 @@ def _likely_time(values: np.ndarray) -> str:
 
 
 def _by_habit(target: str, column: str, names: list[str]) -> tuple[str, str] | None:
-    """Units that go with names: those of ROS, of ArduPilot, of Android's sensors."""
+    """Units that go with names: those of ROS, of ArduPilot, of Android's sensors, of SparkFun."""
     text, kind = spelled(column), kind_of(target)
     habit = {"gyro": "rad/s", "accel": "m/s2", "time": "ns"}.get(kind)
     if habit is None:
@@ -107,6 +107,8 @@ def _by_habit(target: str, column: str, names: list[str]) -> tuple[str, str] | N
         return habit, "as in ROS"
     if "seconds_elapsed" in names:
         return habit, "as Sensor Logger writes"
+    if "rtcTime" in names and kind != "time":
+        return ("dps" if kind == "gyro" else "mg"), "as OpenLog Artemis writes"
     if "TimeUS" in names and kind != "time":
         return habit, "as in ArduPilot"
     return None

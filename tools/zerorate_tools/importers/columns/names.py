@@ -8,19 +8,22 @@ from .units import RAW, unit_in_name, without_unit
 _AXIS = "([xyz])"
 _GYRO = re.compile(
     r"(?:.*(?:gyroscope|gyrorotation|gyro|gyr|angularvelocity|angularrate|angvel|rotationrate|omega)"
-    r"(?:uncalibrated|calibrated|unfilt|adc|raw|rad|data|rate|dps|value){0,2}|(?:.*imu)?[wg])"
-    + f"{_AXIS}$|^{_AXIS}(?:gyroscope|gyro|gyr)$"
+    r"(?:uncalibrated|calibrated|unfilt|adc|raw|rad|data|rate|dps|value){0,2}|(?:.*imu)?(?:gy|[wg]))"
+    + f"{_AXIS}(?:cal)?$|^{_AXIS}(?:gyroscope|gyro|gyr)$"
 )
 _ACCEL = re.compile(
     r"(?:.*(?:accelerometer|acceleration|accel|acc|specificforce)"
-    r"(?:uncalibrated|calibrated|smooth|adc|raw|data|ms2|value){0,2}|(?:.*imu)?a)"
-    + f"{_AXIS}$|^{_AXIS}(?:accelerometer|accel|acc)$"
+    r"(?:uncalibrated|calibrated|smooth|adc|raw|data|ms2|value|ln|wr){0,2}|(?:.*imu)?ac?)"
+    + f"{_AXIS}(?:cal)?$|^{_AXIS}(?:accelerometer|accel|acc)$"
 )
+#: Less gravity, so no measure of it.
+_FREE = re.compile(r".*(?:freeacc|useracc)")
 _TEMP = re.compile(r".*(?:temperature|temp|tmp)c?$")
 _NOT_THE_DIE = re.compile(r"ambient|air|baro|bmp|bme|aht|sht|cpu|motor|batt|esc|water|room")
 _TIME = re.compile(
     r"(?:t|ts|time|timestamp|timestampsample|now|stamp|timeus|timems|secondselapsed|datetime|"
-    r"date|utc|millis|micros|loggingtime|.*timestamp|.*headerstamp|sampletime|elapsed|elapsedtime)$"
+    r"date|utc|millis|micros|loggingtime|.*timestamp(?:unix)?(?:cal)?|.*headerstamp|sampletime|"
+    r"elapsed|elapsedtime|.*offsettime|timestartup|timesincestart(?:in)?|rtctime)$"
 )
 _SEC = re.compile(r"(.*?)(?:secs?|seconds?)$")
 _NANOSEC = re.compile(r"(.*?)(?:nanosecs?|nsecs?|nanoseconds?)$")
@@ -45,6 +48,7 @@ def gyro_groups(names: list[str]) -> list[dict[str, str]]:
 
 def accel_beside(names: list[str], gyro: dict[str, str], instance: int) -> dict[str, str]:
     """The acceleration whose names are most like those of the rates; empty where there is none."""
+    names = [name for name in names if not _FREE.match(spelled(name))]
     groups = _groups(names, _ACCEL, "a") or _groups(_in_units_of("ax", names), _LAST_AXIS, "a")
     if not groups:
         return {}
@@ -67,6 +71,7 @@ def bare_axes(names: list[str]) -> dict[str, str]:
 def temperature(names: list[str]) -> str | None:
     """The column that looks like the sensor's own temperature."""
     found = [name for name in names if _TEMP.match(spelled(name))]
+    found += [name for name in names if unit_in_name("temp", name) == "degc"]
     return next((name for name in found if not _NOT_THE_DIE.search(spelled(name))), None)
 
 
@@ -88,6 +93,11 @@ def split_time(names: list[str]) -> tuple[str, str] | None:
     return next(((two["s"], two["ns"]) for two in by_stem.values() if len(two) == 2), None)
 
 
+def _with_letter(text: str) -> str:
+    """A name whose axis is 0, 1 or 2 at its end, as VectorNav's, with x, y or z there."""
+    return text[:-1] + "xyz"[int(text[-1])] if text[-1:] in ("0", "1", "2") else text
+
+
 def _in_units_of(target: str, names: list[str]) -> list[str]:
     """Columns whose name says a physical unit of that kind."""
     return [name for name in names if unit_in_name(target, name) not in (None, RAW)]
@@ -97,9 +107,9 @@ def _groups(names: list[str], pattern: re.Pattern, letter: str) -> list[dict[str
     groups: dict[str, dict[str, str]] = {}
     for name in names:
         text = spelled(name)
-        match = pattern.match(text)
-        if match:
-            axis = next(part for part in match.groups() if part)
-            at = text.rindex(axis) if text.endswith(axis) else text.index(axis)
+        match = pattern.match(text) or pattern.match(_with_letter(text))
+        if match and match.lastindex:
+            at = match.start(match.lastindex)
+            axis = match[match.lastindex]
             groups.setdefault(text[:at] + text[at + 1 :], {}).setdefault(f"{letter}{axis}", name)
     return [group for group in groups.values() if len(group) == 3]

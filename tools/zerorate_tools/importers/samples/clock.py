@@ -7,6 +7,7 @@ import numpy as np
 from ...errors import BadRecording
 
 _LONGEST_PAUSE_US = 10_000_000
+_DAY_US = 86_400e6
 _MOST_US = 2.0**62
 _STRIDE = 64
 _KEPT = 1 << 18
@@ -17,7 +18,7 @@ _REPEATED = 0.2
 
 
 class Unwrapped:
-    """Adds what a counter of 30, 31 or 32 bits lost where it ran over.
+    """Adds what a counter of 30, 31 or 32 bits lost where it ran over, or midnight a time of day.
 
     step_us: what one count is worth, in microseconds; 0 for a column that is no counter.
     """
@@ -30,27 +31,27 @@ class Unwrapped:
 
     def __call__(self, t_us: np.ndarray, place: np.ndarray) -> np.ndarray:
         """(n,) the same stamps, going on where the counter ran over."""
-        if not self._step_us or not len(t_us):
+        if not len(t_us):
             return t_us
         before = np.concatenate([[t_us[0] if self._last is None else self._last], t_us[:-1]])
         self._last = t_us[-1]
         t_us = t_us + self._added
         for at in np.flatnonzero(np.diff(t_us - self._added, prepend=before[0]) < 0)[:1000]:
-            bits = self._bits(before[at], t_us[at] - self._added)
-            if bits:
-                span = 2.0**bits * self._step_us
-                t_us[at:] += span
-                self._added += span
+            clock, span = self._clock(before[at], t_us[at] - self._added)
+            t_us[at:] += span
+            self._added += span
+            if span:
                 row = int(place[at]) + 1
-                self.notes.append(f"a clock of {bits} bits ran over at row {row}: counted on")
+                self.notes.append(f"a clock of {clock} ran over at row {row}: counted on")
         return t_us
 
-    def _bits(self, earlier: float, later: float) -> int | None:
-        for bits in (30, 31, 32):
-            span = 2.0**bits * self._step_us
+    def _clock(self, earlier: float, later: float) -> tuple[str, float]:
+        """What ran over, and microseconds that it holds; 0 where nothing did."""
+        spans = {f"{bits} bits": 2.0**bits * self._step_us for bits in (30, 31, 32)}
+        for clock, span in {**spans, "24 hours": _DAY_US}.items():
             if earlier < span and 0 < later + span - earlier < _LONGEST_PAUSE_US:
-                return bits
-        return None
+                return clock, span
+        return "", 0.0
 
 
 class Pace:

@@ -160,11 +160,14 @@ def _some_numbers(cells: pa.Array) -> np.ndarray:
 
 
 def _seconds(cells: pa.Array) -> np.ndarray:
-    """(n,) seconds since 1970 of ISO-8601 texts; without a zone they count as UTC."""
+    """(n,) seconds since 1970 of ISO-8601 texts, without a zone in UTC, or since midnight of times
+    of the day."""
     import pandas
 
     text = pandas.Series(_decoded(cells), dtype=object).str.strip().str.replace(",", ".")
     text = text.str.replace(r"\s+([+-]\d\d:?\d\d)$", r"\1", regex=True)
+    if text.str.match(r"\d\d?:").any():
+        return pandas.to_timedelta(text, errors="coerce").dt.total_seconds().to_numpy(float)
     stamps = pandas.to_datetime(text, format="ISO8601", utc=True, errors="coerce")
     since = (stamps - pandas.Timestamp(0, tz="UTC")).to_numpy()
     return since.astype("timedelta64[ns]").astype(float) * 1e-9 + np.where(

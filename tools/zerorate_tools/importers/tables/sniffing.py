@@ -9,15 +9,19 @@ from ...errors import BadRecording
 from ...recordings.text import head
 
 _HEAD_BYTES = 1 << 18
-_LINES = 200
+#: Blackbox Explorer writes some 150 lines of settings above its table.
+_LINES = 400
+#: Cells of a row that can hold three rates; two are a setting and its value.
+_CELLS = 3
 _DELIMITERS = (",", ";", "\t", "|", " ")
 COMMENTS = ("#", "//", "%", "*")
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")
 _DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+([eE][-+]?\d+)?$")
-_DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d")
+_DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d|\d\d?:\d\d:\d\d([.,]\d+)?$")
 #: A line of such beneath the names says their units.
 _UNIT = re.compile(
-    r"[\[(]?(-|[mun]?s|sec|(m?deg|rad|°)/s|m?dps|m?g|m/s(\^?2|²)|°?c|degc|k|lsb)[\])]?$", re.I
+    r"[\[(]?(-|[mun]?s|sec|(m?deg|rad|°)/s|m?dps|m?g|m/s(\^?2|²)|m/\(s\^2\)|°?c|degc|k|lsb)[\])]?$",
+    re.I,
 )
 _RATE = re.compile(
     r"\b(?:sample|sampling|update|output|data)[ _]?(?:rate|frequency)\b"
@@ -69,6 +73,8 @@ def sniffed(path: Path) -> Form:
 
 def _table_in(lines: list[str], encoding: str, path: Path) -> Form:
     found = [_with(delimiter, lines) for delimiter in _DELIMITERS]
+    if not any(found):
+        found = [_with(delimiter, lines, 1) for delimiter in _DELIMITERS]
     best = max((one for one in found if one), key=lambda one: one[0], default=None)
     if best is None:
         header = next(line for line in lines if line.strip())
@@ -97,15 +103,26 @@ def _rate_said(lines: list[str]) -> float | None:
     return float(found[1]) * (1000.0 if found[2].lower() == "k" else 1.0) if found else None
 
 
-def _with(delimiter: str, lines: list[str]) -> tuple[int, int | None, int, str] | None:
+def _with(
+    delimiter: str, lines: list[str], least: int = _CELLS
+) -> tuple[int, int | None, int, str] | None:
     """(numbers in the first row, the header's line or None, the first row's line, delimiter) for
-    the first two lines of as many cells, of which the second has numbers; or None."""
+    the first two lines of as many cells, at least so many, of which the second has numbers; or
+    None. A comment of as many cells without numbers is a header, too."""
     above: tuple[int, list[str]] | None = None
+    comment: list[str] = []
     for number, line in enumerate(lines):
+        if line.lstrip().startswith(COMMENTS):
+            comment = _cells(line, delimiter)
         if not line.strip() or line.lstrip().startswith(COMMENTS):
             continue
         cells = _cells(line, delimiter)
+        if len(cells) < least:
+            continue
         numbers = _numbers(cells, delimiter)
+        if numbers > 1 and above is None and _as_many(comment, cells):
+            if not _numbers(comment, delimiter):
+                return numbers, None, number, delimiter
         if numbers == len([c for c in cells if c.strip()]) and numbers > 1 and above is None:
             return numbers, None, number, delimiter
         if numbers and above is not None and _as_many(above[1], cells):
@@ -139,8 +156,9 @@ def _names(lines: list[str], at: int | None, first: list[str], delimiter: str):
         names = [name.strip() for name in _cells(lines[at], delimiter)]
         above = next((line for line in reversed(lines[:at]) if line.strip()), "")
         named = [name.strip() for name in _cells(above, delimiter)]
-        if len(named) == len(names) and all(_UNIT.match(name) for name in names):
-            names = [f"{name} [{unit.strip('[()]')}]" for name, unit in zip(named, names)]
+        if len(named) == len(names) and all(map(_is_unit, names, named)) and any(names):
+            units = [unit.strip("[()]").replace("(s^2", "s^2") for unit in names]
+            names = [f"{name} [{unit}]" if name else "" for name, unit in zip(named, units)]
         return _single(names + [""] * (len(first) - len(names))), ""
     for line in reversed(lines):
         text = line.strip()
@@ -150,6 +168,10 @@ def _names(lines: list[str], at: int | None, first: list[str], delimiter: str):
                 return _single(names + [""] * (len(first) - len(names))), ""
     numbered = [str(number) for number in range(1, len(first) + 1)]
     return numbered, "no line names the columns: they are called 1, 2, 3, ..."
+
+
+def _is_unit(text: str, name: str) -> bool:
+    return bool(_UNIT.match(text)) or not (text or name)
 
 
 def _single(names: list[str]) -> list[str]:
