@@ -96,6 +96,13 @@ def test_a_header_in_a_comment_is_one_where_a_column_has_words(tmp_path):
     assert len(recording) == 50
 
 
+def test_rows_with_a_word_and_no_header_have_columns_by_number(tmp_path):
+    rows = "\n".join(f"GYRO;{i / 100};0.8;0.8;0.9" for i in range(50))
+    mapping = "t_us=2:s gx=3:dps gy=4:dps gz=5:dps"
+    recording, _ = read(tmp_path, rows + "\n", mapping=mapping)
+    assert len(recording) == 50
+
+
 def test_settings_above_a_table_are_not_the_table(tmp_path):
     head = "sep=,\nFirmware,1.6\nacc_1G,2048\ngyro_scale,1\n" + "d_min,30\n" * 150
     recording, _ = read(tmp_path, head + table(200).to_csv(index=False))

@@ -126,6 +126,8 @@ def _with(
         if numbers == len([c for c in cells if c.strip()]) and numbers > 1 and above is None:
             return numbers, None, number, delimiter
         if numbers and above is not None and _as_many(above[1], cells):
+            if numbers == _numbers(above[1], delimiter) >= _CELLS:  # a row itself, with a word
+                return numbers, None, above[0], delimiter
             return numbers, above[0], number, delimiter
         if not numbers or above is None or not _as_many(above[1], cells):
             above = number, cells
