@@ -21,6 +21,7 @@ from zerorate_i2c.fifo import EMPTY, Fifo
 
 store = LearnedStore(FileStorage("learned.bin"), imu.binding, learner)
 print(REASONS[store.load()])
+gc.collect()  # of what was read: the checkpoint takes its place
 corrector = CheckedCorrector(learner)
 schedule = SaveSchedule(store, 3, tolerance=13, corrector=learner)  # 0.1 dps at 131 LSB/dps
 sample = array("i", [0] * 7)

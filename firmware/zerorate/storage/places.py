@@ -3,7 +3,7 @@
 readblock fills buf with what stands at byte offset; writeblock puts buf there and returns when it
 is durable. Both may raise OSError. Bytes never written may read as anything. The driver of an
 EEPROM needs these two methods and no more; erasing flash is the storage's own business. One that
-has write_pieces(offset, pieces) as well takes a record as it comes, so that it need not be made.
+has read_pieces and write_pieces as well gives and takes a record in pieces, so that none is made.
 """
 
 import os
@@ -11,7 +11,7 @@ import os
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from array import array
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
     Buffer = bytes | bytearray | memoryview | array[int]
 
@@ -24,13 +24,26 @@ class FileStorage:
 
     def readblock(self, offset: int, buf: "bytearray | memoryview") -> None:
         """Fill buf from the file."""
-        count = 0
-        if not self._is_missing():
-            with open(self.path, "rb") as file:
+        for _ in self.read_pieces(offset, len(buf), buf):
+            pass
+
+    def read_pieces(
+        self, offset: int, length: int, buf: "bytearray | memoryview"
+    ) -> "Iterator[memoryview]":
+        """Yield what stands there in pieces, each in buf, by one opening of the file."""
+        file = None if self._is_missing() else open(self.path, "rb")
+        try:
+            if file:
                 file.seek(offset)
-                count = file.readinto(buf) or 0
-        for i in range(count, len(buf)):
-            buf[i] = 0xFF
+            for done in range(0, length, len(buf)):
+                piece = memoryview(buf)[: length - done]
+                count = file.readinto(piece) or 0 if file else 0
+                for i in range(count, len(piece)):
+                    piece[i] = 0xFF
+                yield piece
+        finally:
+            if file:
+                file.close()
 
     def writeblock(self, offset: int, buf: "bytes | bytearray | memoryview") -> None:
         """Write buf into the file and to the medium."""

@@ -56,7 +56,7 @@ class Store:
     the payload, 0..255, and older the versions of the same size that load takes besides. base is
     the first byte used, pitch the distance of the slots (an erase block of flash; default: no
     gap). payload is array('i') of size / 4 items, or bytearray (bytes to save) of size. Where
-    storage has write_pieces, as FileStorage has, saving takes no room for a record.
+    storage has read_pieces and write_pieces, as FileStorage has, saving makes no record.
 
     Raises ValueError for a binding, version, size or pitch that does not fit.
     """
@@ -161,13 +161,15 @@ class Store:
     def _judge(self, slot, piece):
         """Read slot through piece, a bytearray, its header to stay, and say what it is."""
         at = self._offset(slot)
+        whole = self._is_whole(at, self.slot_bytes, piece)
         header = self._header
-        self.storage.readblock(at, header)
         if header[:_AT_FORMAT] != b"ZRS":
             blank = header[0] in (0x00, 0xFF) and header[0] == header[1] == header[2]
             return EMPTY if blank else DAMAGED
         size = header[_AT_SIZE] | header[_AT_SIZE + 1] << 8
-        if _HEADER + size + _CRC > self._pitch or not self._is_whole(at, size, piece):
+        if size != self.size:
+            whole = slot_bytes(size) <= self._pitch and self._is_whole(at, slot_bytes(size), piece)
+        if not whole:
             return DAMAGED
         version = header[_AT_VERSION]
         if size != self.size:  # a record of another layout
@@ -178,14 +180,27 @@ class Store:
             return OTHER_BINDING
         return LOADED if version == self.version or version in self._older else OTHER_VERSION
 
-    def _is_whole(self, at, size, piece):
+    def _is_whole(self, at, length, piece):
+        """Whether the record from at on is; its header is kept."""
         crc = bytearray(_CRC)
-        size += _HEADER + _CRC
-        for done in range(0, size, len(piece)):
-            part = memoryview(piece)[: size - done]
-            self.storage.readblock(at + done, part)
+        header = None
+        for part in self._pieces(at, length, piece):
+            if header is None:
+                header = self._header
+                header[:] = part[:_HEADER]
             checksum(part, crc)
         return crc == _WHOLE
+
+    def _pieces(self, at, length, piece):
+        if hasattr(self.storage, "read_pieces"):
+            return self.storage.read_pieces(at, length, piece)
+        return self._blocks(at, length, piece)
+
+    def _blocks(self, at, length, piece):
+        for done in range(0, length, len(piece)):
+            part = memoryview(piece)[: length - done]
+            self.storage.readblock(at + done, part)
+            yield part
 
     def _sequence(self):
         at = _AT_SEQUENCE
