@@ -4,8 +4,9 @@ from array import array
 
 from .native import rest
 
-const = int  # on a board the compiler itself reads const(...)
-
+# layout: names that a board's own compiler reads
+const = int
+# layout: end
 # what the number of samples is added to (tools/zerorate_tools/kernels/parts.py)
 _BURST = const(-0x3FFA0000)
 

@@ -12,16 +12,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from .corrector import Corrector
 
-
-const = int  # on a board the compiler itself reads const(...)
-
-# What a driver says of each read (zerorate_i2c.mpu6050 has the same numbers).
-FRESH = const(0)
-VERIFIED = const(1)
-RESTARTED = const(2)
-SUSPECT = const(3)
-_LONG_US = const(0x20000000)  # a leap of time at any rate; a longer one would leave 31 bits
-
+# layout: names that a board's own compiler reads
+const = int
 # layout: The corrector's state
 _ELAPSED_US = const(16)
 _RESTS = const(60)
@@ -35,6 +27,12 @@ _AXES = const(0)
 _AXIS_WORDS = const(15)
 _TURN_ON_VARIANCE_Q8 = const(47)
 # layout: end
+# What a driver says of each read (zerorate_i2c.mpu6050 has the same numbers).
+FRESH = const(0)
+VERIFIED = const(1)
+RESTARTED = const(2)
+SUSPECT = const(3)
+_LONG_US = const(0x20000000)  # a leap of time at any rate; a longer one would leave 31 bits
 
 
 class CheckedCorrector:

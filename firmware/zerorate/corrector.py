@@ -9,12 +9,12 @@ from .machine_code import unload
 from .native import rest
 from .sensor import Sensor
 
-const = int  # on a board the compiler itself reads const(...)
-
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+# layout: names that a board's own compiler reads
+const = int
 # layout: The corrector's state
 _STILLNESS = const(50)
 _OUT_Q8 = const(61)
@@ -42,8 +42,6 @@ _ANY_TEMPERATURE = const(1)
 # layout: Values that stand for none
 _NO_VALUE = const(-0x3FFFFFFF)
 # layout: end
-
-
 # A piece of heap held through a program's imports, or none as long is left on a small board for the
 # state, its checkpoint and the store's record.
 _held = [bytearray(5376)]

@@ -2,8 +2,8 @@
 
 from .machine_code import chosen
 
-const = int  # on a board the compiler itself reads const(...)
-
+# layout: names that a board's own compiler reads
+const = int
 # layout: The corrector's state
 _COUNTS = const(8)
 _STILLNESS = const(50)

@@ -2,8 +2,8 @@
 
 from .explain import without_sign
 
-const = int  # on a board the compiler itself reads const(...)
-
+# layout: names that a board's own compiler reads
+const = int
 # layout: The state of the source in motion
 _MOTION_REASON = const(17)
 _ACCEPTED = const(68)

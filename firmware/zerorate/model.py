@@ -13,12 +13,8 @@ if TYPE_CHECKING:
 
     from .settings import Sensor
 
-const = int  # on a board the compiler itself reads const(...)
-
-# effects.model_file has the same numbers, and all; its 4 KB are there while a model is loaded
-LOADED = const(0)
-NO_MODEL = const(1)
-UNREADABLE = const(6)
+# layout: names that a board's own compiler reads
+const = int
 # layout: The effect model and its running state
 _SLOT_COUNT = const(0)
 _INPUT_COUNT = const(1)
@@ -64,6 +60,10 @@ _NO_VALUE = const(-0x3FFFFFFF)
 # layout: How many of each an effect model has at most
 _MOST_CHANNELS = const(8)
 # layout: end
+# effects.model_file has the same numbers, and all; its 4 KB are there while a model is loaded
+LOADED = const(0)
+NO_MODEL = const(1)
+UNREADABLE = const(6)
 
 
 class EffectModel:

@@ -8,8 +8,8 @@ if TYPE_CHECKING:
 
     from .corrector import Corrector
 
-const = int  # on a board the compiler itself reads const(...)
-
+# layout: names that a board's own compiler reads
+const = int
 # layout: The state of the source in motion
 _MOTION_BIAS_Q8 = const(71)
 # layout: The state of the source against gravity

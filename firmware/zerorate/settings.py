@@ -4,8 +4,8 @@ from array import array
 
 from .sensor import Sensor  # noqa: F401
 
-const = int  # on a board the compiler itself reads const(...)
-
+# layout: names that a board's own compiler reads
+const = int
 # layout: The corrector's state
 _FIT_WEIGHTS = const(98)
 # layout: The last words before the axes
@@ -70,10 +70,8 @@ _SLOPE_Q16 = const(52)
 _NEAR = const(53)
 _SETTINGS_WORDS = const(54)
 # layout: end
-
 # of how many times the variance that noise gives it gravity's slope may be: 15 by chi squared of 3
 _LEAN_NOISE = const(5)
-
 # What a user may set, in its unit. A time of readings is that many at the output data rate.
 DEFAULTS = {
     "window_s": 0.25,  # a window

@@ -3,11 +3,13 @@
 from pathlib import Path
 
 from .lines import files, refreshed
-from .page import page
-from .settings_page import settings_page
 
 repository = Path(__file__).resolve().parents[2]
 for path in files(repository):
     path.write_text(refreshed(path), encoding="utf-8")
+
+from .page import page  # noqa: E402  the firmware cannot be imported before its lines are there
+from .settings_page import settings_page  # noqa: E402
+
 (repository / "docs" / "layout.md").write_text(page(), encoding="utf-8")
 (repository / "docs" / "settings.md").write_text(settings_page(repository), encoding="utf-8")

@@ -25,8 +25,18 @@ def refreshed(path):
     outside, blocks = _BLOCK.subn("", text)
     if blocks != 1:
         raise ValueError(f"{path.name}: one block from '{BEGIN}...' to '{END}', not {blocks}")
-    made = "\n".join([*lines(path.stem, names_in(outside)), END])
+    used = names_in(outside)
+    made = "\n".join([*for_the_host(outside, used), *lines(path.stem, used), END])
     return _BLOCK.sub(lambda _: made, text)
+
+
+def for_the_host(outside, used):
+    """The lines for names that a board's own compiler reads, where the file has none for them."""
+    if "import const" not in outside:
+        yield f"{BEGIN}names that a board's own compiler reads"
+        yield "const = int"
+        if "ptr32" in used:
+            yield "ptr32 = None"
 
 
 def names_in(text):

@@ -1,7 +1,8 @@
 """The angle of a vector, in integers."""
 
-const = int  # on a board the compiler itself reads const(...)
-
+# layout: names that a board's own compiler reads
+const = int
+# layout: end
 _HALF_PI_Q13 = const(12868)
 _PI_Q13 = const(25736)
 

@@ -1,8 +1,8 @@
 """Fixed-point arithmetic that never leaves 31 bits."""
 
-const = int  # on a board the compiler itself reads const(...)
-ptr32 = None
-
+# layout: names that a board's own compiler reads
+const = int
+# layout: end
 _LOW_15 = const(0x7FFF)
 
 

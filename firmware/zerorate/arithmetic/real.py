@@ -6,9 +6,10 @@ object on a board. A number at word `a` is s[a] * 2^s[a+1]; |s[a]| is in 2^27..2
 
 from .fixed import root
 
-const = int  # on a board the compiler itself reads const(...)
+# layout: names that a board's own compiler reads
+const = int
 ptr32 = None
-
+# layout: end
 _LOW_14 = const(0x3FFF)
 _LEAST_MANTISSA = const(0x8000000)
 _MOST_MANTISSA = const(0x10000000)

@@ -8,9 +8,9 @@ that the fitted range allows. Words of a slot: docs/layout.md.
 
 from ..arithmetic.fixed import clipped, scaled
 
-const = int  # on a board the compiler itself reads const(...)
+# layout: names that a board's own compiler reads
+const = int
 ptr32 = None
-
 # layout: An effect slot
 _SLOT_SOURCE = const(0)
 _SLOT_LOWEST_Q8 = const(1)
@@ -49,8 +49,6 @@ _MEMORY_BACKLASH = const(4)
 _NO_VALUE = const(-0x3FFFFFFF)
 # layout: end
 _ONE_Q24 = const(0x1000000)
-
-
 _RING_LENGTH = const(64)
 
 

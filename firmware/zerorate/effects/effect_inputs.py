@@ -5,9 +5,9 @@ A source's value is in Q8 of its integer. Words of an input: docs/layout.md.
 
 from ..arithmetic.fixed import clipped
 
-const = int  # on a board the compiler itself reads const(...)
+# layout: names that a board's own compiler reads
+const = int
 ptr32 = None
-
 # layout: The effect model and its running state
 _INPUT_COUNT = const(1)
 _HALF_TICKS = const(7)

@@ -10,9 +10,9 @@ At power-on each stands where its source is: what was before is not known. Words
 from ..arithmetic.fixed import scaled
 from .effect_basis import add_times, centred
 
-const = int  # on a board the compiler itself reads const(...)
+# layout: names that a board's own compiler reads
+const = int
 ptr32 = None
-
 # layout: The effect model and its running state
 _SUM_Q14 = const(10)
 # layout: A play operator

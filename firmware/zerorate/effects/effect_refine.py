@@ -10,9 +10,9 @@ own by more than the bound. Numbers are those of real.py; words of `e`: docs/lay
 from ..arithmetic.fixed import clipped
 from ..arithmetic.real import add, divide, multiply, put, subtract, whole
 
-const = int  # on a board the compiler itself reads const(...)
+# layout: names that a board's own compiler reads
+const = int
 ptr32 = None
-
 # layout: The corrector's state
 _WINDOW_N = const(17)
 _SEGMENT_TOTAL = const(46)
@@ -50,8 +50,6 @@ _SLOT_WORDS = const(40)
 _OF_RATE = const(1)
 # layout: end
 _REFINE_ROW = const(20)
-
-
 _WARM_UP = const(64)
 _MOST_RATE = const(0x1FFFFF)
 # exponents of 2: variance of a segment's mean and of the offset's walk a segment, LSB^2

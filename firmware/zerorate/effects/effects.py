@@ -10,9 +10,9 @@ from .effect_basis import basis, contribute
 from .effect_inputs import accumulate, close_tick, tell_time
 from .effect_plays import play
 
-const = int  # on a board the compiler itself reads const(...)
+# layout: names that a board's own compiler reads
+const = int
 ptr32 = None
-
 # layout: The corrector's state
 _EFFECT_Q8 = const(67)
 # layout: The effect model and its running state

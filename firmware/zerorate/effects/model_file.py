@@ -18,8 +18,8 @@ from struct import unpack_from
 
 from ..storage.crc32 import checksum
 
-const = int  # on a board the compiler itself reads const(...)
-
+# layout: names that a board's own compiler reads
+const = int
 # layout: The effect model and its running state
 _INPUT_COUNT = const(1)
 _TICK_US = const(2)

@@ -20,9 +20,9 @@ all signs agree and halves it when the counter turns.
 from ..arithmetic.atan2 import atan2_q13
 from ..arithmetic.fixed import clipped, scaled
 
-const = int  # on a board the compiler itself reads const(...)
+# layout: names that a board's own compiler reads
+const = int
 ptr32 = None
-
 # layout: The state of the source against gravity
 _UNIT_ELAPSED_US = const(0)
 _UNIT_N = const(1)

@@ -3,8 +3,8 @@
 from array import array
 from math import pi
 
-const = int  # on a board the compiler itself reads const(...)
-
+# layout: names that a board's own compiler reads
+const = int
 # layout: The state of the source against gravity
 _GRAVITY_WORDS = const(55)
 # layout: The settings of the source against gravity

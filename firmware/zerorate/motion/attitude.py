@@ -6,9 +6,9 @@ steps stay within 0.03 deg of a float64 quaternion over 128 increments of up to 
 
 from ..arithmetic.atan2 import atan2_q13
 
-const = int  # on a board the compiler itself reads const(...)
+# layout: names that a board's own compiler reads
+const = int
 ptr32 = None
-
 # layout: The state of the source in motion
 _HALF = const(19)
 _REAL = const(22)
@@ -22,7 +22,6 @@ _START_Y = const(31)
 _START_Z = const(32)
 _R = const(33)
 # layout: end
-
 _ONE_Q14 = const(0x4000)
 
 

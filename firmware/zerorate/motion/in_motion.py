@@ -35,9 +35,9 @@ from .regression import centre, first_sums, regressors, second_sums, taper
 from .thermal import carry, follow_temperature
 from .tilt_frame import begin_attitude, find_up, lean_back, observe, turn_centre
 
-const = int  # on a board the compiler itself reads const(...)
+# layout: names that a board's own compiler reads
+const = int
 ptr32 = None
-
 # layout: The state of the source in motion
 _LENGTH = const(11)
 _STAGE = const(12)

@@ -6,9 +6,9 @@ The ring keeps, a node and axis in one word, the increment (Q13 rad, 15 bits) ab
 
 from ..arithmetic.fixed import clipped
 
-const = int  # on a board the compiler itself reads const(...)
+# layout: names that a board's own compiler reads
+const = int
 ptr32 = None
-
 # layout: The state of the source in motion
 _NODE_ELAPSED_US = const(0)
 _NODE_N = const(1)

@@ -6,9 +6,9 @@ column (00 01 02 0y 11 12 1y 22 2y yy). Bias in Q24 rad a node, orientation in Q
 
 from ..arithmetic.real import add, copy, divide, multiply, put, subtract
 
-const = int  # on a board the compiler itself reads const(...)
+# layout: names that a board's own compiler reads
+const = int
 ptr32 = None
-
 # layout: The state of the source in motion
 _STAGE = const(12)
 _SUMS = const(86)
@@ -34,8 +34,6 @@ _COMPONENT_WORDS = const(21)
 # layout: The settings of the source in motion
 _SLOPE_SPREAD = const(21)
 # layout: end
-
-
 # .005 and .01 rad, and .7 rad a window: beyond that a step is not linear
 _FLOOR_TILT_Q24 = const(419)
 _FLOOR_HEADING_Q24 = const(1678)

@@ -3,8 +3,8 @@
 from array import array
 from math import ceil, log, pi
 
-const = int  # on a board the compiler itself reads const(...)
-
+# layout: names that a board's own compiler reads
+const = int
 # layout: The state of the source in motion
 _NODES_RING = const(242)
 # layout: The settings of the source in motion

@@ -10,9 +10,9 @@ from ..arithmetic.real import add, copy, divide, multiply, put, root_of, subtrac
 from .least_squares import covariance, less, place
 from .thermal import forget_slopes, learn_slopes, present, variance_at
 
-const = int  # on a board the compiler itself reads const(...)
+# layout: names that a board's own compiler reads
+const = int
 ptr32 = None
-
 # layout: The state of the source in motion
 _HEAD = const(8)
 _FILLED = const(9)

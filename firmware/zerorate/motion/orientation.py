@@ -2,14 +2,8 @@
 
 from math import cos, pi, sin, sqrt
 
-try:
-    from micropython import const
-except ImportError:
-
-    def const(value):
-        return value
-
-
+# layout: names that a board's own compiler reads
+const = int
 # layout: The state of the source in motion
 _NODE_ELAPSED_US = const(0)
 _NODE_ANGLE_Q24 = const(2)
@@ -21,7 +15,6 @@ _NODE_US = const(0)
 _NODES = const(8)
 _LONGEST = const(16)
 # layout: end
-
 _LEAST_NODES = const(8)  # a second, whose mean force says where up is
 
 

@@ -13,9 +13,9 @@ with the two shapes.
 
 from ..arithmetic.fixed import scaled
 
-const = int  # on a board the compiler itself reads const(...)
+# layout: names that a board's own compiler reads
+const = int
 ptr32 = None
-
 # layout: The state of the source in motion
 _TAPER_SUM = const(18)
 _TAPER = const(60)

@@ -11,9 +11,9 @@ in Q24 rad a node and raw LSB of the thermometer.
 from ..arithmetic.real import add, divide, multiply, pack, put, subtract, unpack
 from .least_squares import place
 
-const = int  # on a board the compiler itself reads const(...)
+# layout: names that a board's own compiler reads
+const = int
 ptr32 = None
-
 # layout: The state of the source in motion
 _FILLED = const(9)
 _AGE_NODES = const(67)

@@ -3,9 +3,9 @@
 from ..arithmetic.fixed import clipped, root
 from .attitude import heading_q12, rotation
 
-const = int  # on a board the compiler itself reads const(...)
+# layout: names that a board's own compiler reads
+const = int
 ptr32 = None
-
 # layout: The state of the source in motion
 _TAPER_SUM = const(18)
 _LAST_HEADING_Q12 = const(23)
@@ -25,7 +25,6 @@ _LOOK = const(203)
 _SUM_M = const(9)
 _COMPONENT_WORDS = const(21)
 # layout: end
-
 _WRAP_Q12 = const(25736)
 _MOST_Q12 = const(0x7FFF)
 

@@ -6,9 +6,9 @@
 from .estimators import find
 from .fit import bent_q8, line_q8
 
-const = int  # on a board the compiler itself reads const(...)
+# layout: names that a board's own compiler reads
+const = int
 ptr32 = None
-
 # layout: An axis
 _LINE_LOW_Q4 = const(19)
 _LINE_HIGH_Q4 = const(20)

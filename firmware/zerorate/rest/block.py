@@ -11,9 +11,9 @@
 
 from .step import step
 
-const = int  # on a board the compiler itself reads const(...)
+# layout: names that a board's own compiler reads
+const = int
 ptr32 = None
-
 # layout: The corrector's state
 _FRAME = const(0)
 _COUNTS = const(8)
@@ -39,7 +39,6 @@ _JUMP_LSB = const(2)
 _WINDOW = const(3)
 _EVERY = const(48)
 # layout: end
-
 _MOST_US = const(0x1FFFFFFF)
 _MOST_LEAP_US = const(0x1FFFFF)  # a window of them and _MOST_US fit 31 bits
 _NEARLY_MOST_COUNT = const(0x1FFFFE00)

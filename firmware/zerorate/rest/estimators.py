@@ -6,9 +6,9 @@
 
 from .histogram import add, clear, halve, population, read_out_q8
 
-const = int  # on a board the compiler itself reads const(...)
+# layout: names that a board's own compiler reads
+const = int
 ptr32 = None
-
 # layout: The corrector's state
 _LEARN_TEMP = const(58)
 _CANDIDATE_THIRD = const(7)
@@ -49,7 +49,6 @@ _SLOPE_Q16 = const(52)
 # layout: Values that stand for none
 _FREE = const(-0x100000)
 # layout: end
-
 _MOST_GIVEN = const(0x1FFFFFF)  # of 18 estimators together below 2^30
 
 

@@ -11,9 +11,9 @@
 
 from ..arithmetic.fixed import clipped, floating_ratio_q26, fraction_q27, room, scaled
 
-const = int  # on a board the compiler itself reads const(...)
+# layout: names that a board's own compiler reads
+const = int
 ptr32 = None
-
 # layout: The corrector's state
 _TEMP = const(51)
 _FIT_SUM_T = const(86)
@@ -66,7 +66,6 @@ _NEAR = const(53)
 # layout: Values that stand for none
 _FREE = const(-0x100000)
 # layout: end
-
 _POINTS_OF_A_BEND = const(5)
 
 

@@ -1,8 +1,8 @@
 """Is this frame a real reading? Facts: mpu6050 family, faults seen on real buses."""
 
-const = int  # on a board the compiler itself reads const(...)
+# layout: names that a board's own compiler reads
+const = int
 ptr32 = None
-
 # layout: The corrector's state
 _FRAME = const(0)
 _COUNTS = const(8)
@@ -23,7 +23,6 @@ TEMPERATURE_JUMP = const(5)
 TIME_STOOD_STILL = const(6)
 TIME_LEAPT = const(7)
 # layout: end
-
 _MOST_US = const(0x1FFFFFFF)  # two of them fit 31 bits: repeats may come for hours
 
 

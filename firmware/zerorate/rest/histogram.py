@@ -8,10 +8,9 @@
 #
 # `readings` may come one by one (weight 1) or as the sum of `weight` readings of a still stretch.
 
-const = int  # on a board the compiler itself reads const(...)
+# layout: names that a board's own compiler reads
+const = int
 ptr32 = None
-
-_MOST_READINGS = const(0x3FFF)
 # layout: The corrector's state
 _EMPTIEST = const(7)
 # layout: An axis
@@ -28,6 +27,7 @@ _IGNORE_OUTSIDE = const(24)
 _ENOUGH_TO_SPLIT = const(25)
 _EVERY = const(48)
 # layout: end
+_MOST_READINGS = const(0x3FFF)
 
 
 def clear(s: ptr32, c: ptr32, h: int, middle: int):

@@ -11,9 +11,9 @@ from ..arithmetic.fixed import clipped
 from .bias import curve_q8
 from .estimators import find
 
-const = int  # on a board the compiler itself reads const(...)
+# layout: names that a board's own compiler reads
+const = int
 ptr32 = None
-
 # layout: The corrector's state
 _TEMP = const(51)
 _NOISE_Q8 = const(53)
@@ -61,7 +61,6 @@ _TURN_ON_VARIANCE_Q8 = const(47)
 # layout: Values that stand for none
 _NO_VALUE = const(-0x3FFFFFFF)
 # layout: end
-
 _NEIGHBOURS_MS = const(4000)  # segments of one rest follow each other faster
 _STEEPEST_Q16 = const(4095)  # times the farthest temperature it fits 31 bits
 

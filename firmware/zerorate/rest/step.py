@@ -15,9 +15,9 @@ from .guard import check
 from .recent import absorb, beyond_q8, gain_q14, grown_q8, hand_over, left_q8, mean_noise_q8
 from .stillness import gather, judge, seems_still
 
-const = int  # on a board the compiler itself reads const(...)
+# layout: names that a board's own compiler reads
+const = int
 ptr32 = None
-
 # layout: The corrector's state
 _COUNTS = const(8)
 _ELAPSED_US = const(16)

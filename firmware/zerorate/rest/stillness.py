@@ -4,9 +4,9 @@
 # window and the direction of gravity count. A constant turn about the vertical leaves all three
 # alone and cannot be told from a bias; a turn about any other axis moves gravity.
 
-const = int  # on a board the compiler itself reads const(...)
+# layout: names that a board's own compiler reads
+const = int
 ptr32 = None
-
 # layout: The corrector's state
 _WINDOW_N = const(17)
 _DIRTY = const(18)
@@ -50,7 +50,6 @@ _TURNING = const(3)
 _SHAKEN = const(4)
 _SHIFTED = const(5)
 # layout: end
-
 _FAR_LSB = const(512)  # a reading farther than that from the window's first is motion:
 _FAR_BITS = const(10)  # of ten bits the squares of a window fit 31
 # by how much of a window's variance noise alone lets two of them differ

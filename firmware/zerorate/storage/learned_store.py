@@ -13,8 +13,9 @@ if TYPE_CHECKING:
 
     from ..corrector import Corrector
 
-const = int  # on a board the compiler itself reads const(...)
-
+# layout: names that a board's own compiler reads
+const = int
+# layout: end
 MODEL_BYTES = const(2048)
 _STATE_VERSION = const(1)
 _AT_MODEL_SIZE = const(4)

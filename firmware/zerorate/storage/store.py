@@ -14,20 +14,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from typing import Any
 
-const = int  # on a board the compiler itself reads const(...)
-
-_FORMAT = const(1)
-_AT_FORMAT = const(3)
-_AT_VERSION = const(4)
-_AT_SIZE = const(6)
-_AT_SEQUENCE = const(8)
-_AT_BINDING = const(12)
-_HEADER = const(20)
-_CRC = const(4)
-# a record is read to be judged in pieces of so many bytes
-_PIECE = const(256)
-_WHOLE = b"\x1c\xdf\x44\x21"  # what CRC-32 makes of anything that ends in its own CRC-32
-
+# layout: names that a board's own compiler reads
+const = int
 # layout: What a store says
 LOADED = const(0)
 EMPTY = const(1)
@@ -47,6 +35,17 @@ REASONS = (
     "the storage cannot be read",
 )
 # layout: end
+_FORMAT = const(1)
+_AT_FORMAT = const(3)
+_AT_VERSION = const(4)
+_AT_SIZE = const(6)
+_AT_SEQUENCE = const(8)
+_AT_BINDING = const(12)
+_HEADER = const(20)
+_CRC = const(4)
+# a record is read to be judged in pieces of so many bytes
+_PIECE = const(256)
+_WHOLE = b"\x1c\xdf\x44\x21"  # what CRC-32 makes of anything that ends in its own CRC-32
 
 
 class Store:
