@@ -8,10 +8,8 @@ _PI_Q13 = const(25736)
 
 
 def arc_q13(z: int) -> int:
-    """Return atan(z) in Q13 rad for z in Q15, 0..1; to within a unit (1.2e-4 rad).
-
-    Odd minimax polynomial of degree 9 (Abramowitz and Stegun 4.4.49, error below 1e-5).
-    """
+    """Return atan(z) in Q13 rad for z in Q15, 0..1; to within a unit (1.2e-4 rad)."""
+    # Odd minimax polynomial of degree 9 (Abramowitz and Stegun 4.4.49, error below 1e-5).
     tangent = z if z < 0x7FFF else 0x7FFF
     square = (tangent * tangent) >> 15
     sum_q15 = 683

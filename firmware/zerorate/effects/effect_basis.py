@@ -1,7 +1,6 @@
 """The basis of one effect slot: what its coefficients are multiplied by, once a tick, in Q24.
 
-Order: clamp, centre, delay, [power first], lag or memory, knot, table or power, second source,
-decay.
+Order: clamp, centre, delay, [power first], lag or memory, knot, table or power, second, decay.
 The tool scales each slot so that no stage leaves +-1 (2^24), and 1 stands for the largest value
 that the fitted range allows. Words of a slot: docs/layout.md.
 """
@@ -69,10 +68,8 @@ def centred(e: ptr32, f: int) -> int:
 
 
 def delayed(e: ptr32, a: int, u: int) -> int:
-    """Return u of so many ticks ago, and keep this one; before the first tick u was as then.
-
-    The ring keeps one of so many ticks; between two a straight line is taken.
-    """
+    """Return u of so many ticks ago, and keep this one; before the first tick u was as then."""
+    # The ring keeps one of so many ticks; between two a straight line is taken.
     ring = e[a + _SLOT_RING]
     if e[a + _SLOT_STARTED] == 0:
         e[ring + _RING_NEWEST] = 0
@@ -111,10 +108,8 @@ def power(v: int, n: int) -> int:
 
 
 def approach(e: ptr32, z: int, f: int, u: int):
-    """Move the first-order lag at z by e[f] / 2^(15 + e[f+1]) of its way to u.
-
-    The word behind z keeps what is below a unit, so that no lag is too long to arrive.
-    """
+    """Move the first-order lag at z by e[f] / 2^(15 + e[f+1]) of its way to u."""
+    # The word behind z keeps what is below a unit, so that no lag is too long to arrive.
     d = u - e[z]
     shift = e[f + 1] + 3
     t = (d >> 12) * e[f]

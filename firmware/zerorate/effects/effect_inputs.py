@@ -37,10 +37,8 @@ _MOST_SAMPLES = const(16383)
 
 
 def shake(e: ptr32, x: ptr32):
-    """Add the frame's squared acceleration, less its slow part, to the tick's vibration.
-
-    The sum has its lower 15 bits apart. Each axis counts up to 18900 LSB, 1.15 g at +-2 g.
-    """
+    """Add the frame's squared acceleration, less its slow part, to the tick's vibration."""
+    # The sum has its lower 15 bits apart. Each axis counts up to 18900 LSB, 1.15 g at +-2 g.
     total = 0
     for i in range(3):
         d = x[i] << 8

@@ -67,10 +67,8 @@ def mean_q8(total: int, n: int) -> int:
 
 
 def observe(s: ptr32, e: ptr32, n: int):
-    """Take a still segment of n samples whose totals, less the effects, stand in s.
-
-    Nothing happens where refinement is off or the segment before is still at work in `refine`.
-    """
+    """Take a still segment of n samples whose totals, less the effects, stand in s."""
+    # Nothing happens where refinement is off or the segment before is still at work in `refine`.
     if e[_REFINE_ON] == 0 or e[_REFINE_WORK]:
         return
     if e[_SEEN] == 0:

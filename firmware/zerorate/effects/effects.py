@@ -45,10 +45,8 @@ _MOST_TICKS = const(0x1FFFF000)
 
 
 def pass_time(e: ptr32, dt_us: int):
-    """Let dt_us go by; where ticks end, take their means and ask for their slots.
-
-    The first sample of a power-on is the beginning of the first tick.
-    """
+    """Let dt_us go by; where ticks end, take their means and ask for their slots."""
+    # The first sample of a power-on is the beginning of the first tick.
     if e[_RUNNING] == 0:
         e[_RUNNING] = 1
         return
@@ -68,10 +66,8 @@ def pass_time(e: ptr32, dt_us: int):
 
 
 def begin_early(e: ptr32, x: ptr32):
-    """Let the first reading of a power-on speak until the first tick ends.
-
-    Else a rest within that tick would be learned with all that the model explains.
-    """
+    """Let the first reading of a power-on speak until the first tick ends."""
+    # Else a rest within that tick would be learned with all that the model explains.
     e[_RUNNING] = 2
     e[_TICKS_DUE] += 1
     close_tick(e)
@@ -122,10 +118,8 @@ def run_slot(e: ptr32):
 
 
 def add_instant(e: ptr32, good: int):
-    """Add to what is held what the slots of this very sample say.
-
-    In a frame that is no reading the rest is taken as it was; what the rate was says nothing.
-    """
+    """Add to what is held what the slots of this very sample say."""
+    # In a frame that is no reading the rest is taken as it was; what the rate was says nothing.
     a = _SLOTS
     i = e[_SLOT_COUNT]
     while i > 0:
@@ -137,11 +131,9 @@ def add_instant(e: ptr32, good: int):
 
 
 def sense(s: ptr32, e: ptr32, x: ptr32, dt_us: int, good: int):
-    """Take the frame x, dt_us after the one before, and leave the effects' sum, LSB Q8, in s.
-
-    good: 0 for a frame that is no reading, of which only the time counts. Call it before the
-    frame is gathered and corrected; do not call it where there is neither slot nor play operator.
-    """
+    """Take the frame x, dt_us after the one before, and leave the effects' sum, LSB Q8, in s."""
+    # good: 0 for a frame that is no reading, of which only the time counts. Call it before the
+    # frame is gathered and corrected; do not call it where there is neither slot nor play operator.
     pass_time(e, dt_us)
     if good:
         accumulate(e, x)

@@ -196,10 +196,8 @@ def along_q12(s: ptr32, i: int) -> int:
 
 
 def coupled_q13(s: ptr32, i: int, square: int) -> int:
-    """Return what the other axes turn the pair's angle by in a sub-unit; square: Q10.
-
-    Their mean over the last 16 s or so is left out: it is their bias, not a turn.
-    """
+    """Return what the other axes turn the pair's angle by in a sub-unit; square: Q10."""
+    # Their mean over the last 16 s or so is left out: it is their bias, not a turn.
     along = along_q12(s, i)
     mean = s[_MEAN_ALONG_Q20 + i]
     mean += ((along << 8) - mean) >> 5
@@ -226,10 +224,8 @@ def spread(s: ptr32, deviation: int):
 
 
 def end_interval(s: ptr32, c: ptr32) -> int:
-    """Step the offsets whose interval is over; return 1 if there was one.
-
-    The document's interval is so many sub-units; by default so many that were counted.
-    """
+    """Step the offsets whose interval is over; return 1 if there was one."""
+    # The document's interval is so many sub-units; by default so many that were counted.
     ended = 0
     for i in range(3):
         if s[_COUNTED + i] >= c[_UNITS] or (c[_PUSH_Q2] == 0 and s[_UNIT_COUNT] >= c[_UNITS]):

@@ -26,10 +26,8 @@ _ONE_Q14 = const(0x4000)
 
 
 def sines(s: ptr32):
-    """Turn the half angles at _HALF, Q14 rad, into the vector and real part of a step, Q16.
-
-    The real part is stored less one. The series leave 2e-4 at a half angle of 1 rad.
-    """
+    """Turn the half angles at _HALF, Q14 rad, into the vector and real part of a step, Q16."""
+    # The real part is stored less one. The series leave 2e-4 at a half angle of 1 rad.
     square = (s[_HALF] * s[_HALF] + s[_HALF + 1] * s[_HALF + 1] + s[_HALF + 2] * s[_HALF + 2]) >> 14
     fourth = ((square >> 1) * (square >> 1)) >> 12
     factor = _ONE_Q14 - ((square * 2731) >> 14) + ((fourth * 137) >> 14)
@@ -80,11 +78,9 @@ def rotation(s: ptr32):
 
 
 def heading_q12(s: ptr32) -> int:
-    """Return how far the quaternion has turned about the vertical since _START, Q12 rad, -2pi..2pi.
-
-    The twist about the vertical of the rotation from the start, which a returning motion brings
-    back; the integral of the vertical rate it would not.
-    """
+    """Return how far it has turned about the vertical since _START, Q12 rad, -2pi..2pi."""
+    # The twist about the vertical of the rotation from the start, which a returning motion brings
+    # back; the integral of the vertical rate it would not.
     w = (s[_Q] + 0x2000) >> 14
     x = (s[_QX] + 0x2000) >> 14
     y = (s[_QY] + 0x2000) >> 14

@@ -87,10 +87,7 @@ _MOST_HALF_Q14 = const(0x3FFF)
 
 
 def update(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
-    """Take the raw frame `x` (ax ay az temp gx gy gz), dt_us after the one before.
-
-    Returns 1 in the sample in which a new bias was learned, else 0.
-    """
+    """Take the raw frame `x`, dt_us after the one before; return 1 where a bias was learned."""
     if dt_us <= 0 or dt_us > c[_MOTION_GAP_US]:
         restart(s)
         s[_JOB] = _IDLE
@@ -185,10 +182,8 @@ def sum_up(s: ptr32):
 
 
 def remove_bias(s: ptr32, a: int):
-    """Take the bias from the node's increment and write its half angles, Q14 rad.
-
-    What the bias has below a unit is carried from node to node.
-    """
+    """Take the bias from the node's increment and write its half angles, Q14 rad."""
+    # What the bias has below a unit is carried from node to node.
     for i in range(3):
         s[_BIAS_CARRY_Q24 + i] += s[_BIAS_Q24 + i]
         part = (s[_BIAS_CARRY_Q24 + i] + 0x400) >> 11

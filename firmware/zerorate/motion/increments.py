@@ -86,9 +86,7 @@ def gather(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
     advance(s, c)
     s[_NODE_N] += 1
     s[_NODE_ELAPSED_US] += dt_us
-    if s[_NODE_ELAPSED_US] < c[_NODE_US]:
-        return 0
-    return 1
+    return 1 if s[_NODE_ELAPSED_US] >= c[_NODE_US] else 0
 
 
 def advance(s: ptr32, c: ptr32):
@@ -104,10 +102,8 @@ def advance(s: ptr32, c: ptr32):
 
 
 def close(s: ptr32, c: ptr32):
-    """Write the full node to the ring and begin the next one.
-
-    The node's last sample reaches over its end: the bias' share of that belongs to the next node.
-    """
+    """Write the full node to the ring and begin the next one."""
+    # The node's last sample reaches over its end: the bias' share of that belongs to the next node.
     s[_NODE_ELAPSED_US] -= c[_NODE_US]
     a = _NODES_RING + 3 * s[_HEAD]
     for i in range(3):

@@ -48,10 +48,8 @@ def place(i: int, j: int) -> int:
 
 
 def element(s: ptr32, d: int, h: int, e: int):
-    """Store at d the number at _T plus the sums of three components at word h, by their weights.
-
-    e: the exponent of those sums.
-    """
+    """Store at d the number at _T plus the sums of three components at word h, by their weights."""
+    # e: the exponent of those sums.
     i = 0
     while i < 6:
         put(s, _T1, s[h], e)
@@ -96,11 +94,9 @@ def prior_place(i: int, j: int) -> int:
 
 
 def sweep(s: ptr32, k: int):
-    """Sweep the matrix on pivot k.
-
-    After pivots 0, 1, 2 it holds the negative inverse and, in its fourth column, the solution
-    (Beaton's operator; stable for a positive definite matrix).
-    """
+    """Sweep the matrix on pivot k."""
+    # After pivots 0, 1, 2 it holds the negative inverse and, in its fourth column, the solution
+    # (Beaton's operator; stable for a positive definite matrix).
     d = place(k, k)
     put(s, _T, 1, 0)
     divide(s, _T, _T, d)
@@ -188,10 +184,8 @@ def shape(s: ptr32, d: int, m: int, y: int):
 
 
 def noise(s: ptr32, i: int):
-    """Store component i's noise energy at the neighbouring shapes, with its floor, at _OMEGA.
-
-    Mean squares of the shapes under the taper: .7684 and .0481 a node.
-    """
+    """Store component i's noise energy at the neighbouring shapes, with its floor, at _OMEGA."""
+    # Mean squares of the shapes under the taper: .7684 and .0481 a node.
     a = _SUMS + _COMPONENT_WORDS * i
     d = _OMEGA + 2 * i
     shape(s, _T3, a + _SHAPES_M, a + _SHAPES_Y)
@@ -207,10 +201,8 @@ def noise(s: ptr32, i: int):
 
 
 def weights(s: ptr32, c: ptr32):
-    """Turn noise energies into weights: both tilts alike, none below what earlier windows had.
-
-    The energies in use are left at _NOISE_ENERGY.
-    """
+    """Turn noise energies into weights: both tilts alike, none below what earlier windows had."""
+    # The energies in use are left at _NOISE_ENERGY.
     add(s, _T, _OMEGA, _OMEGA + 2)
     put(s, _OMEGA, s[_T], s[_T + 1] - 1)
     copy(s, _OMEGA + 2, _OMEGA, 2)

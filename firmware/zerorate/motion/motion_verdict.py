@@ -147,22 +147,18 @@ def verdict(s: ptr32, c: ptr32) -> int:
 
 
 def moves(s: ptr32, c: ptr32) -> int:
-    """Return 1 if the window moves enough to teach, else 0.
-
-    A slow turn about the vertical looks like a bias. So a slow window must mostly tilt, which
-    gravity shows: a hand, a boat and a crane do, a car and a turntable do not.
-    """
+    """Return 1 if the window moves enough to teach, else 0."""
+    # A slow turn about the vertical looks like a bias. So a slow window must mostly tilt, which
+    # gravity shows: a hand, a boat and a crane do, a car and a turntable do not.
     if s[_TRAFFIC] >= c[_LEAST_TRAFFIC] << s[_STAGE]:
         return 1
     return 0 if s[_TILTED] < c[_LEAST_TILT] << s[_STAGE] or s[_TILTED] << 1 < s[_TRAFFIC] else 1
 
 
 def louder(s: ptr32) -> int:
-    """Return 1 if the tilt's noise amplitude is over sixteen times what was held, else 0.
-
-    A bias that jumped leaves this: what is known holds the slope back, and what that leaves is
-    taken for noise. A turn of heading does too, and so is not looked at.
-    """
+    """Return 1 if the tilt's noise amplitude is over sixteen times what was held, else 0."""
+    # A bias that jumped leaves this: what is known holds the slope back, and what that leaves is
+    # taken for noise. A turn of heading does too, and so is not looked at.
     put(s, _T, s[_HELD_NOISE], s[_HELD_NOISE + 1] + 8)
     return less(s, _T, _NOISE_ENERGY)
 
@@ -226,10 +222,8 @@ def refuse(s: ptr32, c: ptr32, reason: int):
 
 
 def follow_misfit(s: ptr32, i: int):
-    """Follow how far windows move the bias of axis i beside how far they are expected to.
-
-    A quarter is as it should be: half a window was seen before, and one bout lasts over several.
-    """
+    """Follow how far windows move the bias of axis i beside how far they are expected to."""
+    # A quarter is as it should be: half a window was seen before, and one bout lasts over several.
     a = variance_at(i)
     add(s, _T, a, place(i, i))  # less the variance that the window leaves
     subtract(s, _T1, _BIAS + 2 * i, _PRIOR_MEAN + 2 * i)

@@ -34,10 +34,8 @@ _SHAPES_Y = const(19)
 
 
 def taper(s: ptr32, k: int, stage: int, even: int):
-    """Write the weight and the two shapes times the taper of node k of 2^stage, Q10.
-
-    even: the weight itself is 1, as in the document; the shapes stay tapered.
-    """
+    """Write the weight and the two shapes times the taper of node k of 2^stage, Q10."""
+    # even: the weight itself is 1, as in the document; the shapes stay tapered.
     t = (2 * k + 1 - (1 << stage)) << (10 - stage)
     square = (t * t) >> 10
     weight = 1024 - (square * square >> 10)
@@ -97,10 +95,8 @@ def refer(s: ptr32, d: int, a: int, mean: int):
 
 
 def centre(s: ptr32, a: int, row: int, shift: int):
-    """Refer the sums at a to the weighted means, and the next traversal's M to its mean.
-
-    The mean of y replaces its sum. The row of the matrix at _CENTRE is where M begins.
-    """
+    """Refer the sums at a to the weighted means, and the next traversal's M to its mean."""
+    # The mean of y replaces its sum. The row of the matrix at _CENTRE is where M begins.
     s[a + _SUM_Y] = mean(s, s[a + _SUM_Y])
     i = 0
     while i < 3:

@@ -61,11 +61,9 @@ def choose(s: ptr32, c: ptr32, a: int, temp: int) -> int:
 
 
 def curve_q8(s: ptr32, c: ptr32, a: int, temp: int) -> int:
-    """Return the learned bias at `temp`: LSB, Q8; 0 while there is none.
-
-    By the document a stable estimator of this temperature speaks alone. By default it speaks with
-    its neighbours, through the local line, which also knows how the bias changes within a degree.
-    """
+    """Return the learned bias at `temp`: LSB, Q8; 0 while there is none."""
+    # By the document a stable estimator of this temperature speaks alone. By default it speaks with
+    # its neighbours, through the local line, which also knows how the bias changes within a degree.
     kind = choose(s, c, a, temp)
     if kind == HERE and c[_LITERAL] == 0 and s[a + _LINE_POINTS]:
         kind = FIT

@@ -46,11 +46,9 @@ _FAR_FROM_RAILS = const(32000)
 
 
 def stretch(s: ptr32, c: ptr32, n: int) -> int:
-    """Return how many of the next n frames may be taken at one look: those within the window.
-
-    None while anything but a plain reading is to be done: work waits, the correction is on its way
-    to its target, every reading is learned or published for its temperature.
-    """
+    """Return how many of the next n frames may be taken at one look: those within the window."""
+    # None while anything but a plain reading is to be done: work waits, the correction is on its
+    # way to its target, every reading is learned or published for its temperature.
     if s[_WORK] or c[_EVERY] or c[_WINDOW] == 4 or c[_LEAP_US] > _MOST_LEAP_US:
         return 0
     if s[_COUNTS] >> 2 < c[_WINDOW] or s[_COUNTS] > _NEARLY_MOST_COUNT:
@@ -94,10 +92,8 @@ def begin_window(s: ptr32, f: ptr32, p: int):
 
 
 def followed(f: ptr32, c: ptr32, p: int, end: int) -> int:
-    """Return the word behind the frames from p on that are plain, the first of them known to be.
-
-    Their rates may stand at a rail: see `off_rails`.
-    """
+    """Return the word behind the frames from p on that are plain, the first of them known to be."""
+    # Their rates may stand at a rail: see `off_rails`.
     k = p + 8
     most = c[_JUMP_LSB]
     while k < end:
@@ -212,10 +208,7 @@ def correct(s: ptr32, f: ptr32, p: int, end: int):
 
 
 def take(s: ptr32, f: ptr32, c: ptr32, p: int, end: int) -> int:
-    """Take frames from word p on at one look each, up to the window's last or one not plain.
-
-    Returns the word behind them.
-    """
+    """Take frames from p on at one look each, up to one not plain; return the word behind them."""
     n = stretch(s, c, (end - p) >> 3)
     if n <= 0 or plain(s, f, c, p) == 0:
         return p
@@ -251,10 +244,8 @@ def one(s: ptr32, f: ptr32, c: ptr32, x: ptr32, p: int):
 
 
 def block(s: ptr32, f: ptr32, c: ptr32, x: ptr32, n: int):
-    """Take n frames of f and correct each in place; its first word becomes the guard's verdict.
-
-    x: room for a frame.
-    """
+    """Take n frames of f and correct each in place; its first word becomes the guard's verdict."""
+    # x: room for a frame.
     p = 0
     end = n << 3
     while p < end:

@@ -76,11 +76,9 @@ def reset(s: ptr32, c: ptr32, a: int):
 
 
 def find(s: ptr32, c: ptr32, a: int, temp: int) -> int:
-    """Return the estimator for `temp`, or 0.
-
-    The one in use keeps a temperature that is a margin beyond its own degree, so that noise at
-    the boundary does not push the others out of the cache.
-    """
+    """Return the estimator for `temp`, or 0."""
+    # The one in use keeps a temperature that is a margin beyond its own degree, so that noise at
+    # the boundary does not push the others out of the cache.
     half = c[_STEP_LSB] >> 1
     e = s[a + _CURRENT]
     if e > 0:
@@ -115,9 +113,7 @@ def third(s: ptr32, a: int, e: int) -> int:
     part = (s[e + _EST_TEMP] - s[a + _COLDEST]) * 3 // span
     if part < 0:
         return 0
-    if part > 2:
-        return 2
-    return part
+    return part if part < 2 else 2
 
 
 def richest(s: ptr32, c: ptr32, a: int, part: int) -> int:
@@ -135,11 +131,7 @@ def richest(s: ptr32, c: ptr32, a: int, part: int) -> int:
 def protected(s: ptr32, c: ptr32, a: int, e: int) -> int:
     """Return 1 if the long-term estimator is the richest of a third the candidate is not in."""
     part = third(s, a, e)
-    if part == s[_CANDIDATE_THIRD]:
-        return 0
-    if richest(s, c, a, part) == e:
-        return 1
-    return 0
+    return 1 if part != s[_CANDIDATE_THIRD] and richest(s, c, a, part) == e else 0
 
 
 def outermost(s: ptr32, c: ptr32, a: int, e: int) -> int:
@@ -171,11 +163,9 @@ def distance(s: ptr32, c: ptr32, a: int, e: int) -> int:
 
 
 def most_crowded(s: ptr32, c: ptr32, a: int, e: int) -> int:
-    """Return the unprotected long-term estimator with the nearest neighbour, or `e` itself.
-
-    After minutes at a temperature more samples tell nothing new of it, but a temperature that
-    nobody remembers has to be guessed: the default keeps them apart, and the outermost ones.
-    """
+    """Return the unprotected long-term estimator with the nearest neighbour, or `e` itself."""
+    # After minutes at a temperature more samples tell nothing new of it, but a temperature that
+    # nobody remembers has to be guessed: the default keeps them apart, and the outermost ones.
     found = e
     s[_NEAREST] = distance(s, c, a, e)
     d = a + c[_FIRST_LONG]

@@ -134,10 +134,8 @@ def centre(s: ptr32, c: ptr32, a: int, i: int):
 
 
 def add_product(s: ptr32, k: int, p: int, r: int):
-    """Add p * r, each below 2^27, to the floating sum at the word in k's low 7 bits.
-
-    The sum is mantissa and shift; by how much p is shifted already stands above those bits.
-    """
+    """Add p * r, each below 2^27, to the floating sum at the word in k's low 7 bits."""
+    # The sum is mantissa and shift; by how much p is shifted already stands above those bits.
     h = k >> 7
     at = k & 127
     if p == 0 or r == 0:
@@ -245,10 +243,8 @@ def add_bow(s: ptr32, c: ptr32, a: int, i: int):
 
 
 def significant(s: ptr32, bow: int) -> int:
-    """Return the bow, LSB Q6, less where it explains little more than it leaves unexplained.
-
-    Of eight points that lie on a line a bow takes a sixth of what noise there is.
-    """
+    """Return the bow, LSB Q6, less where it explains little more than it leaves unexplained."""
+    # Of eight points that lie on a line a bow takes a sixth of what noise there is.
     explained = (bow * (clipped(s[_BEND_DOT_Q12], 0x1FFFF) >> 2)) >> 10
     noise = s[_BEND_LEFT_Q6] - explained
     if noise <= 0:
@@ -259,10 +255,8 @@ def significant(s: ptr32, bow: int) -> int:
 
 
 def bend(s: ptr32, c: ptr32, a: int):
-    """Bend the line just drawn where five estimators or more tell how, less where they tell little.
-
-    Its weights stand, whatever was learned since they were taken.
-    """
+    """Bend the line just drawn where five estimators tell how, less where they tell little."""
+    # Its weights stand, whatever was learned since they were taken.
     if c[_LITERAL] or s[a + _LINE_POINTS] < _POINTS_OF_A_BEND:
         return
     s[_BEND_SQUARE_Q14] = 0

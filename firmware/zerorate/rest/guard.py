@@ -53,12 +53,9 @@ def exchange(s: ptr32, x: ptr32) -> int:
 
 
 def check(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
-    """Return the kind of the frame `x` and count it; only GOOD frames may be learned from.
-
-    A repeat is passed over; every other
-    fault also ends the rest that is being watched, because what stands beside a broken frame may
-    be broken too.
-    """
+    """Return the kind of the frame `x` and count it; only GOOD frames may be learned from."""
+    # A repeat is passed over; every other fault also ends the rest that is being watched, because
+    # what stands beside a broken frame may be broken too.
     step = x[3] - s[_FRAME + 3]
     repeats = exchange(s, x)
     kind = GOOD

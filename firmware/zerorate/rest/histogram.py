@@ -133,10 +133,8 @@ def share_by_mean(s: ptr32, h: int, bins: int, j: int):
 
 
 def emptiest(s: ptr32, c: ptr32, h: int, j: int) -> int:
-    """Return the lower bin of the emptiest adjacent pair without bin j.
-
-    By the document the pair with the fewest readings, else the one with the lowest significance.
-    """
+    """Return the lower bin of the emptiest adjacent pair without bin j."""
+    # By the document the pair with the fewest readings, else the one with the lowest significance.
     s[_EMPTIEST] = 0x3FFFFFFF
     found = 0
     i = h
@@ -173,17 +171,13 @@ def crowded(s: ptr32, c: ptr32, j: int, p: int) -> int:
     if c[_LITERAL] == 0:
         count = (count << 12) // ((s[j + 1] >> 14) - (s[j] >> 14))
         pair = (pair << 12) // ((s[p + 2] >> 14) - (s[p] >> 14))
-    if count > c[_SPLIT_RATIO] * pair:
-        return 1
-    return 0
+    return 1 if count > c[_SPLIT_RATIO] * pair else 0
 
 
 def recentre(s: ptr32, c: ptr32, h: int, k: int) -> int:
-    """Slide the narrow bin k under its mean, so that what it cuts off it cuts off evenly.
-
-    Returns 1 if it moved. A mean in the middle of a bin much wider than the noise is unbiased;
-    that of a bin that cuts the noise on one side is not. No reading changes its bin.
-    """
+    """Slide the narrow bin k under its mean, so that it cuts off evenly; return 1 if it moved."""
+    # A mean in the middle of a bin much wider than the noise is unbiased;
+    # that of a bin that cuts the noise on one side is not. No reading changes its bin.
     if k == 0 or k == c[_BINS] - 1:
         return 0
     h += k  # eleven words: h is from here on the bin itself, k its readings
@@ -204,10 +198,8 @@ def recentre(s: ptr32, c: ptr32, h: int, k: int) -> int:
 
 
 def adapt(s: ptr32, c: ptr32, h: int, k: int) -> int:
-    """Split the bin that crowds (by the document the fullest, else k) and merge the emptiest pair.
-
-    Returns 1 if the edges changed.
-    """
+    """Split the bin that crowds and merge the emptiest pair; return 1 if the edges changed."""
+    # By the document the fullest is split, else k where it crowds.
     if c[_BINS] == 1:
         return 0
     if c[_LITERAL]:
@@ -233,10 +225,7 @@ def adapt(s: ptr32, c: ptr32, h: int, k: int) -> int:
 
 
 def add(s: ptr32, c: ptr32, h: int, a: int) -> int:
-    """Add the readings that wait at the axis `a`.
-
-    Returns 1, or 0 if they were ignored.
-    """
+    """Add the readings that wait at the axis `a`; return 1, or 0 if they were ignored."""
     k = s[a + _WAITING_SUM] // s[a + _WAITING_N]
     k = place(s, c, h, k)
     if k < 0:

@@ -77,10 +77,9 @@ def grown_q8(s: ptr32, a: int) -> int:
 
 
 def mean_noise_q8(s: ptr32, c: ptr32, a: int, n: int) -> int:
-    """Return the variance of the mean of n still readings: their noise, and what no rest shows.
-
-    A rest shorter than a segment hides a slow turn from gravity, half as long twice as much of it.
-    """
+    """Return the variance of the mean of n still readings: their noise, and what no rest shows."""
+    # A rest shorter than a segment hides a slow turn from gravity, half as long twice as much of
+    # it.
     shorter = (c[_SEGMENT] << c[_WINDOW_SHIFT]) // n
     variance = s[a + _FLOOR_Q16] >> 8
     if shorter > 1:
@@ -123,11 +122,9 @@ def move_offset(s: ptr32, a: int, by: int):
 
 
 def plausible(s: ptr32, c: ptr32, a: int, error: int) -> int:
-    """Return 1 if the error is within the gate or six sigma, or has insisted long enough.
-
-    A temperature at which nothing was learned yet widens the six sigma by the slope that is left.
-    A rest that motion ended early has two sigma: gravity had no time to show a slow turn.
-    """
+    """Return 1 if the error is within the gate or six sigma, or has insisted long enough."""
+    # A temperature at which nothing was learned yet widens the six sigma by the slope that is left.
+    # A rest that motion ended early has two sigma: gravity had no time to show a slow turn.
     share = 36
     far = error if error >= 0 else 0 - error
     if far > 0x7FFF:
@@ -191,11 +188,10 @@ def left_q8(s: ptr32, gain: int) -> int:
 
 
 def relearn_slope(s: ptr32, c: ptr32, a: int, square: int):
-    """Learn how fast the bias leaves the line, where most of what was expected is that.
-
-    Of three errors one is beyond one sigma, so it rises by twice what it falls. By the document the
-    line is straight through all, and what it leaves here says nothing of what it leaves elsewhere.
-    """
+    """Learn how fast the bias leaves the line, where most of what was expected is that."""
+    # Of three errors one is beyond one sigma, so it rises by twice what it falls. By the document
+    # the line is straight through all, and what it leaves here says nothing of what it leaves
+    # elsewhere.
     away = beyond_q8(s, c, a)
     known = s[_GROWN_Q8] + s[_MEAN_NOISE_Q8]
     if away > known >> 1 and c[_LITERAL] == 0:
@@ -261,11 +257,9 @@ def follow(s: ptr32, c: ptr32, a: int, error: int):
 
 
 def level_q8(s: ptr32, c: ptr32, a: int) -> int:
-    """Return the axis' turn-on offset, LSB in Q8: what the curve must not learn of this power-on.
-
-    It is what the first minute of rests lies off the curve, less the share that the curve itself
-    may be off where it is asked beyond what it has learned.
-    """
+    """Return the axis' turn-on offset, LSB in Q8: what the curve must not learn of it."""
+    # What the first minute of rests lies off the curve, less the share that the curve itself may be
+    # off where it is asked beyond what it has learned.
     k = c[_AXES] + _TURN_ON_OFFSET_Q8 + (a - c[_AXES]) // c[_AXIS_WORDS]
     if s[_RESTS] < c[_INSIST]:
         off = clipped(s[a + _OFFSET_Q8] >> 4, 0x3FFF)
@@ -289,12 +283,10 @@ def let_learn(s: ptr32, c: ptr32, a: int):
 
 
 def adopt(s: ptr32, c: ptr32, a: int, error: int) -> int:
-    """Let what another source found be the level if it is known twice as well as the level is.
-
-    That source is a filter itself: to weigh its results into another one counted them twice, and
-    what it says supersedes what it said before. What is not so well known does not teach the
-    curve either: where rests exist, it stays theirs.
-    """
+    """Let what another source found be the level if it is known twice as well as the level is."""
+    # That source is a filter itself: to weigh its results into another one counted them twice, and
+    # what it says supersedes what it said before. What is not so well known does not teach the
+    # curve either: where rests exist, it stays theirs.
     noise = (s[a + _OFFER] >> 3) + c[_FLOOR_Q8]
     if s[a + _KIND] == 0:
         s[a + _SUSPECT] = -1
@@ -311,10 +303,8 @@ def adopt(s: ptr32, c: ptr32, a: int, error: int) -> int:
 
 
 def absorb(s: ptr32, c: ptr32, a: int) -> int:
-    """Take the waiting segment into the offset; return 1 if the estimators may learn it.
-
-    The very first one is all curve and no offset.
-    """
+    """Take the waiting segment into the offset; return 1 if the estimators may learn it."""
+    # The very first one is all curve and no offset.
     error = s[a + _WAITING_N]
     s[_MEAN_NOISE_Q8] = mean_noise_q8(s, c, a, error)
     error = error_q4(s, c, a)
@@ -325,10 +315,7 @@ def absorb(s: ptr32, c: ptr32, a: int) -> int:
 
 
 def believe(s: ptr32, c: ptr32, a: int, error: int) -> int:
-    """Let the waiting segment, which lies so far from what was expected, move the offset, or not.
-
-    Returns 1 if the estimators may learn it.
-    """
+    """Let the waiting segment, so far off, move the offset or not; return 1: it may be learned."""
     if s[a + _OFFER]:
         return adopt(s, c, a, error)
     if s[a + _KIND] == 0:

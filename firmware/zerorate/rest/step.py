@@ -82,10 +82,8 @@ _TO_BEND = const(3)
 
 
 def sigma_q8(s: ptr32, a: int) -> int:
-    """Return one sigma of the axis' bias at the temperature of the latest window, LSB Q8.
-
-    What differs from rest to rest is flicker noise, of which faster octaves hold thrice as much.
-    """
+    """Return one sigma of the axis' bias at the temperature of the latest window, LSB Q8."""
+    # What differs from rest to rest is flicker noise, of which faster octaves hold thrice as much.
     variance = s[_GROWN_Q8] + 3 * (s[a + _FLOOR_Q16] >> 8) + s[a + _DOUBT_Q8]
     if variance < 0x3FFFFF:
         return root(variance << 8)
@@ -93,11 +91,9 @@ def sigma_q8(s: ptr32, a: int) -> int:
 
 
 def leant_q8(s: ptr32, c: ptr32, a: int, bias: int) -> int:
-    """Return the bias, LSB Q8, moved by the rest so far, before that is learned or was none.
-
-    A power-on begins with a bias known to some hundredth of a dps; a second of rest knows more.
-    A rest that lies two sigma off is rather a slow turn that gravity does not show yet.
-    """
+    """Return the bias, LSB Q8, moved by the rest so far, before that is learned or was none."""
+    # A power-on begins with a bias known to some hundredth of a dps; a second of rest knows more. A
+    # rest that lies two sigma off is rather a slow turn that gravity does not show yet.
     error = (a - c[_AXES]) // c[_AXIS_WORDS]
     error = (segment_mean_q8(s, c, error) - bias) >> 4
     n = s[_SEGMENT_WINDOWS] << c[_WINDOW_SHIFT]
@@ -143,11 +139,9 @@ def stale(s: ptr32, c: ptr32, a: int) -> int:
 
 
 def advance(s: ptr32, c: ptr32):
-    """Do the next piece of work; axes that have next to nothing to do are done on the way.
-
-    An axis absorbs a segment and learns it for any temperature; learns it for its temperature;
-    draws its line again; bends it and publishes.
-    """
+    """Do the next piece of work; axes that have next to nothing to do are done on the way."""
+    # An axis absorbs a segment and learns it for any temperature; learns it for its temperature;
+    # draws its line again; bends it and publishes.
     axis = (s[_WORK] - 1) >> 2
     piece = (s[_WORK] - 1) & 3
     busy = 0
@@ -190,11 +184,9 @@ def publish_provisional(s: ptr32, axis: int, bias: int, quality: int):
 
 
 def publish_first_rest(s: ptr32, c: ptr32, axis: int):
-    """Publish the mean of the first rest once it is two windows long, before it is learned from.
-
-    One of the first windows of a power-on is enough: few are switched on in motion. It is taken
-    back at once when the rest turns out to be none. Another source's bias stands.
-    """
+    """Publish the mean of the first rest once it is two windows long, before it is learned from."""
+    # One of the first windows of a power-on is enough: few are switched on in motion. It is taken
+    # back at once when the rest turns out to be none. Another source's bias stands.
     if s[_SOURCE + axis] > 1:
         return
     if s[_STILLNESS] == _STILL and (s[_SEGMENT_WINDOWS] > 1 or s[_COUNTS] >> 2 < c[_WINDOW]):
@@ -206,10 +198,8 @@ def publish_first_rest(s: ptr32, c: ptr32, axis: int):
 
 
 def publish_first_glance(s: ptr32, c: ptr32):
-    """Publish the mean of the very first frames, a quarter of a window, if they seem still.
-
-    The window's end confirms it or takes it back.
-    """
+    """Publish the mean of the very first frames, a quarter of a window, if they seem still."""
+    # The window's end confirms it or takes it back.
     shift = c[_WINDOW_SHIFT] - 2
     if c[_EVERY] or seems_still(s, c, shift) == 0:
         return
@@ -274,10 +264,8 @@ def power_on(s: ptr32, c: ptr32, axis: int):
 
 
 def begin(s: ptr32, c: ptr32, x: ptr32):
-    """Speak for the first frame's temperature, or each one's where windows are long; look for rest.
-
-    They are long at a few hertz: four frames there.
-    """
+    """Speak for the first frame's temperature, or each one's where windows are long."""
+    # They are long at a few hertz, four frames. The first quarter of a window may already rest.
     if s[_COUNTS] == 1 or c[_WINDOW] == 4:
         s[_TEMP] = x[3]
         power_on(s, c, 0)
@@ -307,12 +295,10 @@ def admit(s: ptr32, c: ptr32, x: ptr32, kind: int) -> int:
 
 
 def finish(s: ptr32, c: ptr32, x: ptr32, kind: int) -> int:
-    """Subtract the bias from the frame in place and return its kind.
-
-    What rounding to whole LSB leaves over is carried to the next sample, so that no angle is lost
-    in the sum. The bias follows its target no faster than the slew limit. Frames of all zeros or
-    ones and beyond (see guard.py) are left as they are.
-    """
+    """Subtract the bias from the frame in place and return its kind."""
+    # What rounding to whole LSB leaves over is carried to the next sample, so that no angle is lost
+    # in the sum. The bias follows its target no faster than the slew limit. Frames of all zeros or
+    # ones and beyond (see guard.py) are left as they are.
     i = 0
     if kind > 2:
         return kind
@@ -338,10 +324,8 @@ def step(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
 
 
 def speak(s: ptr32, c: ptr32, m: ptr32, w: int, axis: int):
-    """Publish what another source found before anything was learned, if only roughly known.
-
-    Eight times the uncertainty that may teach; beyond that a guess was often worse than none.
-    """
+    """Publish what another source found before anything was learned, if only roughly known."""
+    # Eight times the uncertainty that may teach; beyond that a guess was often worse than none.
     if s[c[_AXES] + axis * c[_AXIS_WORDS] + _KIND] == 0:
         at = w + axis
         if m[at + 3] >> 5 < c[_MOST_SIGMA_Q6]:
@@ -359,10 +343,8 @@ def readings_worth(c: ptr32, sigma: int) -> int:
 
 
 def offer(s: ptr32, c: ptr32, m: ptr32, w: int, axis: int):
-    """Let an axis absorb and learn the bias that another source found: LSB Q8 at m[w+axis].
-
-    Its one sigma stands three words on. It weighs as many still readings as its quality is worth.
-    """
+    """Let an axis absorb and learn the bias that another source found: LSB Q8 at m[w+axis]."""
+    # Its one sigma stands three words on. It weighs as many still readings as its quality is worth.
     a = c[_AXES] + axis * c[_AXIS_WORDS]
     sigma = m[w + 3 + axis] >> 2
     if s[a + _WAITING_N] or sigma > c[_MOST_SIGMA_Q6]:

@@ -100,9 +100,7 @@ def gather(s: ptr32, c: ptr32, x: ptr32) -> int:
         # the thermometer is read in motion as well, and one reading of it is noise
         d = x[3] - s[_REFERENCE + 3]
         s[_WINDOW_SUM + 3] += d
-    if s[_WINDOW_N] < c[_WINDOW]:
-        return 0
-    return 1
+    return 1 if s[_WINDOW_N] >= c[_WINDOW] else 0
 
 
 def spread_q8(s: ptr32, first: int, square: int, shift: int) -> int:
@@ -128,10 +126,8 @@ def seems_still(s: ptr32, c: ptr32, shift: int) -> int:
 
 
 def tip_q8(s: ptr32, c: ptr32) -> int:
-    """Return how far gravity has moved since the rest began, LSB^2 Q8; sum up how it leans.
-
-    Weighted -7, -5 .. 7 the means of eight windows give the slope of a line through them.
-    """
+    """Return how far gravity has moved since the rest began, LSB^2 Q8; sum up how it leans."""
+    # Weighted -7, -5 .. 7 the means of eight windows give the slope of a line through them.
     i = 0
     square = 0
     weight = 2 * s[_SEGMENT_WINDOWS] + 1 - c[_SEGMENT]
@@ -207,17 +203,13 @@ def begin(s: ptr32, c: ptr32, anchored: int):
 
 
 def white(s: ptr32, c: ptr32, spread: int) -> int:
-    """Return 1 if neighbouring samples of the gyroscope share nothing: noise, not motion.
-
-    von Neumann's ratio: the mean squared step is twice the variance for white noise, less for
-    whatever is slower and more for what alternates: 1.375 to 2.75 times is taken for noise.
-    """
-    step = s[_SQUARE_STEP] << (8 - c[_WINDOW_SHIFT])
-    step = step >> 4
+    """Return 1 if neighbouring samples of the gyroscope share nothing: noise, not motion."""
+    # von Neumann's ratio: the mean squared step is twice the variance for white noise, less for
+    # whatever is slower and more for what alternates: 1.375 to 2.75 times is taken for noise.
+    step = s[_SQUARE_STEP] << (8 - c[_WINDOW_SHIFT]) >> 4
     level = spread >> 4
-    if step > level + (level >> 1) - (level >> 3) and step < 3 * level - (level >> 2):
-        return 1
-    return 0
+    least = level + (level >> 1) - (level >> 3)
+    return 1 if step > least and step < 3 * level - (level >> 2) else 0
 
 
 def classify_window(s: ptr32, c: ptr32) -> int:
@@ -250,11 +242,9 @@ def classify_window(s: ptr32, c: ptr32) -> int:
 
 
 def follow_temperature(s: ptr32, c: ptr32):
-    """Smooth the temperature by a line through the windows so far, thirty at most.
-
-    A thermometer's noise of a tenth of a degree, times the slope of the bias, is several mdps. A
-    line has no lag behind a steady rise; level and rise take least-squares shares of the error.
-    """
+    """Smooth the temperature by a line through the windows so far, thirty at most."""
+    # A thermometer's noise of a tenth of a degree, times the slope of the bias, is several mdps. A
+    # line has no lag behind a steady rise; level and rise take least-squares shares of the error.
     level = (s[_REFERENCE + 3] << 4) + ((s[_WINDOW_SUM + 3] << 4) >> c[_WINDOW_SHIFT])
     level = level << 4
     error = level - s[_TEMP_LEVEL_Q8] - ((s[_TEMP_RISE_Q12] + 8) >> 4)
@@ -277,13 +267,11 @@ def follow_temperature(s: ptr32, c: ptr32):
 
 
 def judge(s: ptr32, c: ptr32) -> int:
-    """Close the full window; return how many windows the still segment has that it ends, else 0.
-
-    A segment's sums are then in the shared block, and the next window begins a new one of the
-    same rest, whose gravity still is the anchor: the longer a rest, the slower the turns it shows.
-    What is left of a rest that motion ends is a segment, too, if it has two windows: one that a
-    turn or a shift ends was none.
-    """
+    """Close the full window; return how many windows the still segment has that it ends, else 0."""
+    # A segment's sums are then in the shared block, and the next window begins a new one of the
+    # same rest, whose gravity still is the anchor: the longer a rest, the slower the turns it
+    # shows. What is left of a rest that motion ends is a segment, too, if it has two windows: one
+    # that a turn or a shift ends was none.
     state = classify_window(s, c)
     s[_STILLNESS] = state
     follow_temperature(s, c)

@@ -60,10 +60,6 @@ class SaveSchedule:
         if corrector is not None:
             corrector.schedule = self
 
-    def loaded(self, vital: "array[int]") -> None:
-        """Tell what vital values the loaded state has: they need no saving."""
-        self._remember(vital)
-
     def offer(self, payload: "Any", vital: "array[int]", now_s: int) -> bool:
         """Save payload if it is due at now_s, seconds since power-on; True when it was written."""
         if not self.is_significant(vital):
@@ -76,7 +72,7 @@ class SaveSchedule:
         self._due_s = -1
         if not self._save(payload):
             return False
-        self._remember(vital)
+        self.loaded(vital)
         return True
 
     def _waits(self, now_s):
@@ -102,6 +98,7 @@ class SaveSchedule:
                 return True
         return False
 
-    def _remember(self, vital):
+    def loaded(self, vital: "array[int]") -> None:
+        """Tell what vital values the loaded state has: they need no saving."""
         for i in range(len(self._saved)):
             self._saved[i] = vital[i]

@@ -95,9 +95,8 @@ class Store:
         Never raises for what the storage holds or does. REASONS says each result in words.
         """
         self._require(payload)
-        record = bytearray(
-            self.slot_bytes
-        )  # payload stays as it was until all is known to be right
+        # payload stays as it was until all is known to be right
+        record = bytearray(self.slot_bytes)
         try:
             slot, reason = self._find(record)
             if slot < 0:
