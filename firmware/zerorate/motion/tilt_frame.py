@@ -121,7 +121,8 @@ def observe(s: ptr32, a: int):
     """Write both tilts and the heading of the node at word a, Q12 rad."""
     s[_Y] = -clipped(force_q12(s, a, 3), _MOST_Q12)
     s[_Y + 1] = clipped(force_q12(s, a, 0), _MOST_Q12)
-    s[_UP] += (s[_TAPER] * force_q12(s, a, 6) + 512) >> 10
+    force = force_q12(s, a, 6)
+    s[_UP] += (s[_TAPER] * force + 512) >> 10
     heading = heading_q12(s)
     turned = heading - s[_LAST_HEADING_Q12]
     s[_LAST_HEADING_Q12] = heading

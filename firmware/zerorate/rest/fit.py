@@ -206,9 +206,7 @@ def bow_q14(s: ptr32, a: int, t: int) -> int:
 def share_q13(s: ptr32, i: int) -> int:
     """Return the weight of estimator i, of less than 2^14 where lines are bent, among all."""
     w = s[_FIT_WEIGHTS + i]
-    if w:
-        w = (w << 13) // s[_FIT_SUM_W]
-    return w
+    return (w << 13) // s[_FIT_SUM_W] if w else 0
 
 
 def add_moments(s: ptr32, c: ptr32, a: int, i: int):

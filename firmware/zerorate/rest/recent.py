@@ -66,10 +66,8 @@ _STEEPEST_Q16 = const(4095)  # times the farthest temperature it fits 31 bits
 
 
 def grown_q8(s: ptr32, a: int) -> int:
-    """Return the offset's variance now: what it was, and what it has walked since.
-
-    Three seconds more than since the segment's end: a mean tells of its middle.
-    """
+    """Return the offset's variance now: what it was, and what it has walked since."""
+    # Three seconds more than since the segment's end: a mean tells of its middle.
     seconds = (s[a + _OFFSET_AGE_MS] >> 10) + 3
     if seconds > 2047:
         seconds = 2047
@@ -83,9 +81,7 @@ def mean_noise_q8(s: ptr32, c: ptr32, a: int, n: int) -> int:
     shorter = (c[_SEGMENT] << c[_WINDOW_SHIFT]) // n
     variance = s[a + _FLOOR_Q16] >> 8
     if shorter > 1:
-        shorter = shorter * (c[_PROVISIONAL_Q8] >> 4) // 10
-        if shorter > 0x3FFF:
-            shorter = 0x3FFF
+        shorter = clipped(shorter * (c[_PROVISIONAL_Q8] >> 4) // 10, 0x3FFF)
         variance += shorter * shorter
     return s[_NOISE_Q8] // (3 * n) + variance
 
@@ -97,11 +93,7 @@ def beyond_q8(s: ptr32, c: ptr32, a: int) -> int:
         d = s[a + _LINE_LOW_Q4] - (s[_TEMP] << 4)
     if d < 0 or s[a + _LINE_POINTS] == 0:
         return 0
-    if d > 0x3FFFF:
-        d = 0x3FFFF
-    sigma = (d * s[a + _LEAVES_Q16]) >> 16
-    if sigma > 0x3FFF:
-        sigma = 0x3FFF
+    sigma = clipped((clipped(d, 0x3FFFF) * s[a + _LEAVES_Q16]) >> 16, 0x3FFF)
     return sigma * sigma
 
 

@@ -248,11 +248,6 @@ def learn_at_once(s: ptr32, c: ptr32, x: ptr32):
             s[a + _WAITING_N] = 0
 
 
-def examine(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
-    """Return what the guard says of the frame `x`, `dt_us` after the one before."""
-    return check(s, c, x, dt_us)
-
-
 def power_on(s: ptr32, c: ptr32, axis: int):
     """Know the bias as well as this part repeats at this temperature, until a rest tells more."""
     a = c[_AXES] + axis * c[_AXIS_WORDS]
@@ -318,7 +313,7 @@ def finish(s: ptr32, c: ptr32, x: ptr32, kind: int) -> int:
 
 def step(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
     """Learn from the frame and correct it in place; return what the guard says of it."""
-    kind = examine(s, c, x, dt_us)
+    kind = check(s, c, x, dt_us)
     admit(s, c, x, kind)
     return finish(s, c, x, kind)
 

@@ -4,6 +4,8 @@
 # window and the direction of gravity count. A constant turn about the vertical leaves all three
 # alone and cannot be told from a bias; a turn about any other axis moves gravity.
 
+from ..arithmetic.fixed import clipped
+
 # layout: names that a board's own compiler reads
 const = int
 ptr32 = None
@@ -137,10 +139,7 @@ def tip_q8(s: ptr32, c: ptr32) -> int:
             + ((s[_WINDOW_SUM + i] << 4) >> c[_WINDOW_SHIFT])
             - s[_ANCHOR_Q4 + i]
         )
-        if d > 8191:
-            d = 8191
-        if d < -8191:
-            d = -8191
+        d = clipped(d, 8191)
         square += d * d
         s[_LEAN_Q4 + i] += weight * d
         i += 1
@@ -157,14 +156,9 @@ def leans(s: ptr32, c: ptr32) -> int:
     """Return 1 if gravity moved steadily over the segment: the device turns, if slowly."""
     square = 0
     for i in range(3):
-        d = s[_LEAN_Q4 + i] >> 2
-        if d > 17000:
-            d = 17000
-        if d < -17000:
-            d = -17000
+        d = clipped(s[_LEAN_Q4 + i] >> 2, 17000)
         square += d * d
-    d = s[_LEAN_NOISE_Q8]
-    d = (d if d < 0x3FFFFF else 0x3FFFFF) * c[_LEAN_NOISE_FACTOR_Q4] >> 4
+    d = clipped(s[_LEAN_NOISE_Q8], 0x3FFFFF) * c[_LEAN_NOISE_FACTOR_Q4] >> 4
     return 1 if square > c[_LEAN_LIMIT_Q4] + d else 0
 
 
