@@ -70,13 +70,14 @@ def source_cost() -> dict[str, dict[str, float]]:
 
 def effects_cost() -> dict[str, dict[str, float]]:
     """Slots of a model -> instructions and cycles a sample of them, mean and worst, on a Cortex-M0+
-    at 100 Hz, of which temperature ticks once a second and acceleration never waits."""
+    at 100 Hz, of which temperature ticks once a second; acceleration and channels never wait."""
     recording, _ = simulate("never-rests", session=1, seed=1)
     frames = recording.between(0, _EFFECTS_TO).samples().astype(np.int32)
     warm = [Term("temp", lo=0.0, hi=50.0, centre=25.0, power=k) for k in (1, 2, 3)]
     lying = [Term(f"acc_{a}", lo=-1.0, hi=1.0) for a in "xyz"]
     models = {"three of temperature": warm, "one of acceleration": lying[:1]}
     models |= {"three of acceleration": lying, "three of each": [*warm, *lying]}
+    models |= {"one of a channel": [Term("vdd_mv", lo=4930.0, hi=5050.0, centre=5000.0)]}
     return {name: _of_slots(recording.scales, terms, frames) for name, terms in models.items()}
 
 
@@ -86,6 +87,8 @@ def _of_slots(scales, terms, frames: NDArray) -> dict[str, float]:
     model = build_model([Slot(t, (0.01 / 25**t.power,) * 3, "") for t in terms], scales)
     if effects.load(encoded(model), corrector.sensor) != LOADED:
         raise ZerorateError("the firmware refuses the model whose cost is asked for")
+    for i in range(len(effects.channels)):
+        effects.channel(i, 5010)
     counts, cycles = [], []
     for row in frames:
         code(corrector.state, effects.e, array("i", row.tobytes()), 10000)
