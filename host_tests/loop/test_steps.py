@@ -5,7 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from zerorate_tools.bench.loop.simulated import simulate
+from zerorate_tools.loop.analyse import analyse
 from zerorate_tools.loop.fit.line import ordinary
+from zerorate_tools.loop.report.report import report
 from zerorate_tools.loop.search.steps_first import bend_of, without_steps
 
 
@@ -18,11 +20,16 @@ def stepped(seed, floors, *places, effects=()):
     return session, device.floor_dps
 
 
+def steps_at(session):
+    """Blocks before each step that is listed."""
+    return [s.block - s.share for s in without_steps([session])[0].steps]
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_three_large_steps_hide_none_of_them(seed):
     session, floor = stepped(seed, 40.0, 50, 90, 130)
     (clean,) = without_steps([session])
-    assert [s.block for s in clean.steps] == [50, 90, 130]
+    assert [s.block - s.share for s in clean.steps] == [50, 90, 130]
     for step, sign in zip(clean.steps, (1, -1, 1)):
         off = step.size_dps - sign * 40 * floor * (1, -1, 1)
         assert (np.abs(off) < 5 * step.deviation_dps).all()
@@ -31,7 +38,32 @@ def test_three_large_steps_hide_none_of_them(seed):
 @pytest.mark.parametrize("seed", range(4))
 def test_a_step_of_twice_three_floors_stands_out_of_noise_that_walks(seed):
     session, _ = stepped(seed, 6.0, 90)
-    assert [s.block for s in without_steps([session])[0].steps] == [90]
+    assert steps_at(session) == [pytest.approx(90, abs=0.75)]
+
+
+def test_a_step_in_the_midst_of_a_block_is_one_step_of_its_whole_size():
+    session, floor = stepped(0, 40.0, 90)
+    session.rate_dps[89] += 0.5 * 40.0 * floor * (1, -1, 1)
+    (step,) = without_steps([session])[0].steps
+    assert (step.block, step.share) == (90, 0.5)
+    off = step.size_dps - 40 * floor * (1, -1, 1)
+    assert (np.abs(off) < 4 * step.deviation_dps).all()
+
+
+@pytest.mark.parametrize("floors", [0.0, 40.0])
+def test_a_step_is_taken_out_where_that_leaves_less(floors):
+    session, _ = stepped(0, floors, 90)
+    analysis = analyse([session])
+    (looked_at,) = analysis.sessions
+    assert (len(looked_at.steps), looked_at.listed) == (int(floors > 0), ())
+
+
+def test_a_step_that_stays_in_is_listed_too():
+    session, _ = stepped(0, 40.0, 90)
+    (clean,) = without_steps([session])
+    analysis = analyse([clean])
+    analysis.sessions[0].steps, analysis.sessions[0].listed = (), clean.steps
+    assert [e["kind"] for e in report(analysis)["events"]] == ["step"]
 
 
 def test_nothing_and_what_bends_has_no_step():
@@ -84,4 +116,4 @@ def test_what_follows_a_pose_that_changes_often_is_no_step_and_a_step_no_acceler
     for axis, size in zip("xyz", (1.0, 0.5, -0.2)):
         session.sources[f"acc_{axis}"] = size * pose + rng.normal(0, 1e-3, ticks)
     session.rate_dps += follows_dps * session.block_mean(session.sources["acc_x"])[:, None]
-    assert [s.block for s in without_steps([session])[0].steps] == ([90] if floors else [])
+    assert steps_at(session) == ([pytest.approx(90, abs=0.75)] if floors else [])

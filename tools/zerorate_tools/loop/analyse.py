@@ -1,6 +1,7 @@
 """The whole loop over the sessions of one device, from blocks to a judgement."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from os import PathLike
 
 from threadpoolctl import threadpool_limits
@@ -55,7 +56,18 @@ def analyse(
     )
     sessions = [without_scales(s, motion) for s in sessions]
     whiteners = [whitener(s.available) for s in sessions]  # while they live nobody makes them anew
-    sessions = without_steps(sessions)
+    clean = without_steps(sessions)
+    analysis = _look(clean, at, gate, motion, logs)
+    if len(sessions) == 1 and clean[0].steps:
+        # beside a wide loop an offset a stretch can cost more than steps that stay in
+        whole = _look([replace(sessions[0], listed=clean[0].steps)], at, gate, motion, logs)
+        analysis = min(analysis, whole, key=lambda a: a.judgement.after_rms)
+    del whiteners
+    return analysis
+
+
+def _look(sessions: list[Session], at: int, gate: GateReport, motion, logs) -> Analysis:
+    """Effects of sessions, steps taken out of them or not, and what they are worth."""
     taken = len(slots_of(motion))
     held = [sessions[at]]
     train = [s for i, s in enumerate(sessions) if i != at] or held
@@ -64,7 +76,6 @@ def analyse(
     selection, judgement = prune_by_holdout(selection, held)
     whole = [*selection.straight, *selection.terms]
     floor = floor_dps(judgement.whole, whole)
-    del whiteners
     terms, coefficients = deployed(selection)
     name_earth(selection.found, terms, coefficients, train)
     lines = periodic(train, held, terms, coefficients)

@@ -45,7 +45,6 @@ class Regression:
         self.axes = np.eye(3)
         self._cache: dict[Term, list[np.ndarray]] = {}
         self._extra: list[list[np.ndarray]] = []
-        self._heavisides: dict[int, np.ndarray] = {}
         self._prepare()
         self.scale = np.ones((len(sessions), 3))
         self._known = self._of_steps()
@@ -93,15 +92,6 @@ class Regression:
     def events(self) -> list[list[np.ndarray]]:
         """The further nuisances, prepared."""
         return list(self._extra)
-
-    def heavisides(self, session: int, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """(places, (N, places)) of prepared columns of one session that step up before the blocks
-        at each place."""
-        if session not in self._heavisides:
-            blocks = np.arange(self.sessions[session].blocks)
-            columns = (blocks[:, None] >= at[None]).astype(float)
-            self._heavisides[session] = self.whiteners[session].prepare(columns)
-        return at, self._heavisides[session]
 
     def set_events(self, columns: list[list[np.ndarray]], kept: list | None = None) -> None:
         """Replace the further nuisances. kept: prepared ones that stay."""

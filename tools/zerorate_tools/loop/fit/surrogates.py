@@ -34,8 +34,13 @@ class NullRatios:
     @classmethod
     def of(cls, ratios: np.ndarray, dof: int) -> NullRatios:
         """By some ratios of which none is of a true effect."""
-        mean = max(float(ratios.mean()), dof)
-        return cls(mean, max(float(ratios.var()), 2 * mean**2 / dof), dof)
+        return cls.from_moments(float(ratios.mean()), float(ratios.var()), dof)
+
+    @classmethod
+    def from_moments(cls, mean: float, variance: float, dof: int) -> NullRatios:
+        """By their mean and variance."""
+        mean = max(mean, dof)
+        return cls(mean, max(variance, 2 * mean**2 / dof), dof)
 
     @property
     def inflation(self) -> float:

@@ -41,7 +41,8 @@ class Session:
     ticks_dps: (n * ticks_per_block, 3) rate of each tick at rest, NaN elsewhere; welch: spectrum of
     the samples at rest; tick_weight: (n * ticks_per_block,) samples that count in rate_dps.
     steps: of its bias, already out of rate_dps and ticks_dps; level_dps: (n * ticks_per_block, 3)
-    what they were. known: block means of terms, of these sources or of those that were replaced.
+    what they were; listed: steps that are still in them. known: block means of terms, of these
+    sources or of those that were replaced.
     """
 
     name: str
@@ -59,6 +60,7 @@ class Session:
     welch: Spectrum | None = None
     tick_weight: np.ndarray | None = None
     steps: tuple = ()
+    listed: tuple = ()
     level_dps: np.ndarray | None = None
     known: dict = field(default_factory=dict, repr=False, compare=False)
 

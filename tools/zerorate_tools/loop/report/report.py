@@ -214,7 +214,7 @@ def _events(analysis):
     """Steps as they were looked for first; beside the effects only where these compete with them:
     of what an effect leaves, its own misfit is a step more often than a step is."""
     whole, later = analysis.judgement.whole, may_be_a_channels(analysis.sessions)
-    known = [(s, step) for s in analysis.sessions for step in s.steps]
+    known = [(s, step) for s in analysis.sessions for step in (*s.steps, *s.listed)]
     more = [(whole.sessions[step.session], step) for step in analysis.judgement.steps if later]
     every = sorted([*known, *more], key=lambda pair: (pair[0].name, pair[1].at_s))
     return [_event(s, step) for s, step in every]

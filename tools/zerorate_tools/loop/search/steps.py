@@ -11,17 +11,16 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.stats import chi2
 
-from ..fit.cross_products import GappyWhitener
 from ..fit.regression import predicted
 from ..fit.surrogates import NullRatios
 from ..read.sessions import common_sources
 from .catalogue import Candidate, candidates
 from .decide import LEVEL
 from .refine import refined
+from .step_places import EDGE, best_place, heavisides, tried
 
 MOST_PER_SESSION = 4
 _AWAY = 15  # blocks from a step at which a step beside it no longer shows it
-_EDGE = 5  # blocks at either end where a step cannot be told from the offset
 #: Shares of a step's size that the blocks next to it differ by, as how many means, and the most by
 #: which as many anywhere near do.
 _ABRUPT, _BESIDE, _TREND = (0.5, 1.75), 2, 0.3
@@ -29,14 +28,17 @@ _ABRUPT, _BESIDE, _TREND = (0.5, 1.75), 2, 0.3
 _AROUND = 10
 #: Blocks without rest across which no change is abrupt, if the temperature moved by more in them.
 _UNSEEN, _UNSEEN_DEGC = 3, 1.0
+#: How much chi-squared counts beside the ratios at all places away from every step.
+_THEORY = 1.0
 #: Forms over temperature beside which steps must stand, and the likelihood ratio of one.
 _MOST_FORMS, _A_FORM = 4, 45.0
 
 
 @dataclass
 class Step:
-    """A step: session index, first block after it, sizes in dps per axis with their standard
-    deviations, and how sure. at_s: seconds since the session's start; said: what else was seen.
+    """A step: session index, first block that is all after it, sizes in dps per axis with their
+    standard deviations, and how sure. share: of the block before that one, what is after it; at_s:
+    seconds since the session's start; said: what else was seen.
     """
 
     session: int
@@ -47,6 +49,7 @@ class Step:
     deviation_dps: np.ndarray = field(default_factory=lambda: np.zeros(3))
     at_s: float = 0.0
     said: str = ""
+    share: float = 0.0
 
 
 def strongest(regression, terms) -> Step | None:
@@ -111,7 +114,8 @@ def _best_form(regression, terms, forms) -> tuple[Candidate | None, float]:
 def column(regression, step: Step) -> list[np.ndarray]:
     """(n,) 0 before and 1 after it in its session, 0 in the others."""
     out = [np.zeros(s.blocks) for s in regression.sessions]
-    out[step.session][step.block :] = 1.0
+    at = np.array([step.block - step.share])
+    out[step.session] = heavisides(regression.sessions[step.session], at)[:, 0]
     return out
 
 
@@ -133,7 +137,7 @@ def _all(regression, terms) -> list[Step]:
         steps.remove(min(steps, key=lambda s: s.ratio))
         _set(regression, steps, kept)
     steps = _sized(regression, terms, steps, kept)
-    abrupt = [s for s in steps if _is_abrupt(regression, terms, s, _with_next(steps, s))]
+    abrupt = [s for s in steps if _is_abrupt(regression, terms, s)]
     _set(regression, [], kept)
     return abrupt
 
@@ -163,52 +167,16 @@ def _stand(regression, terms, steps, kept) -> bool:
 
 
 def _tried(regression) -> int:
-    return sum(max(0, s.blocks + 1 - 2 * _EDGE) for s in regression.sessions)
+    return sum(map(tried, regression.sessions))
 
 
 def _best(regression, terms) -> tuple[Step | None, list]:
-    """The largest ratio of all places, and (session, places, ratios) of every session."""
-    fit, z = regression.fit(terms), regression.stack(terms)
-    best, every = None, []
-    for s, session in enumerate(regression.sessions):
-        at, heavisides = regression.heavisides(s, _ground(session))
-        if not len(at):
-            continue
-        ratios = _ratios(regression, fit.base, s, heavisides, z[s])
-        every.append((s, at, ratios))
-        i = int(ratios.argmax())
-        if best is None or ratios[i] > best.ratio:
-            best = Step(s, int(at[i]), np.zeros(3), float(ratios[i]), 1.0)
-    return best, every
-
-
-def _ratios(regression, base, s, heavisides, z) -> np.ndarray:
-    """(places,) likelihood ratios of a step at each, over all axes, at the colours fitted."""
-    w, total = regression.whiteners[s], 0.0
-    for a, colour in enumerate(base.best):
-        h, zs, y = (_white(w, colour, v) for v in (heavisides, z, regression.y[s][:, [a]]))
-        scale = regression.scale[s, a] ** -2.0
-        xz, xx0 = scale * (h.T @ zs), scale * (h**2).sum(axis=0)
-        xx = xx0 - np.einsum("ki,ij,kj->k", xz, base.inverse[a][colour], xz, optimize=True)
-        xy = scale * (h.T @ y)[:, 0] - xz @ base.coefficients[a, colour]
-        gain = np.where(xx > 1e-6 * xx0, xy**2 / np.maximum(xx, 1e-300), 0.0)
-        left = base.rss[a, colour]
-        total = total - base.count * np.log1p(-np.minimum(gain / left, 1 - 1e-9))
-    return np.asarray(total)
-
-
-def _white(w, colour, columns):
-    if isinstance(w, GappyWhitener):
-        return w.whitening[colour] @ columns
-    return np.sqrt(w.weight[colour])[:, None] * columns
-
-
-def _ground(session) -> np.ndarray:
-    """Blocks before which a step may be: in motion a scale factor's error leaps, not the bias."""
-    moved = session.moved
-    free = ~(moved | np.r_[False, moved[:-1]])
-    at = np.arange(_EDGE, session.blocks - _EDGE + 1)
-    return at[free[at]] if len(at) else at
+    """The step that explains most, and (session, places, ratios) of every session."""
+    place, every = best_place(regression, terms)
+    if place is None:
+        return None, every
+    block = int(np.ceil(place.at))
+    return Step(place.session, block, np.zeros(3), place.ratio, 1.0, share=block - place.at), every
 
 
 def _away(regression, steps, every) -> np.ndarray:
@@ -224,9 +192,18 @@ def _survival(ratio: float, away: np.ndarray, axes: int = 3) -> float:
     """Chance of a ratio at one place, by those away from all steps.
 
     On real noise they have a higher mean and a longer tail than chi-squared: a gamma distribution
-    of their mean and variance takes its place where that is longer.
+    of mean and variance takes its place where that is longer. Neighbours are much alike, so that
+    what theory knows counts for as much as all of them.
     """
-    return NullRatios.of(away, axes).survival(ratio) if len(away) >= _EDGE else chi2.sf(ratio, axes)
+    if len(away) < EDGE:
+        return float(chi2.sf(ratio, axes))
+    mean, variance = (
+        (_THEORY * t + own) / (_THEORY + 1)
+        for t, own in zip((axes, 2 * axes), (away.mean(), away.var()))
+    )
+    return max(
+        float(chi2.sf(ratio, axes)), NullRatios.from_moments(mean, variance, axes).survival(ratio)
+    )
 
 
 def _sized(regression, terms, steps, kept=()) -> list[Step]:
@@ -241,28 +218,21 @@ def _sized(regression, terms, steps, kept=()) -> list[Step]:
     for step, size, variance in zip(steps, sizes, variances):
         step.size_dps, step.deviation_dps = size, np.sqrt(np.maximum(variance, 0.0))
         session = regression.sessions[step.session]
-        step.at_s = step.block * session.block_s
+        step.at_s = (step.block - step.share) * session.block_s
     regression.set_events([], before)
     return steps
 
 
-def _with_next(steps, step) -> np.ndarray:
-    """(3,) size of a step with that of the block before or after: one in the midst of a block is
-    two."""
-    near = [s for s in steps if s.session == step.session and abs(s.block - step.block) <= 1]
-    return np.sum([s.size_dps for s in near], axis=0)
-
-
-def _is_abrupt(regression, terms, step: Step, size: np.ndarray) -> bool:
+def _is_abrupt(regression, terms, step: Step) -> bool:
     """Whether the blocks next to it differ by about its size, less the trend around it, which is
     none to speak of: a bend or a slow loop is not so."""
     session = regression.sessions[step.session]
     there = np.flatnonzero(session.available)
     if _is_unseen(session, there, step.block):
         return False
-    weight = size / np.maximum(step.deviation_dps, 1e-12) ** 2
+    weight = step.size_dps / np.maximum(step.deviation_dps, 1e-12) ** 2
     rate = session.rate_dps - predicted(terms, regression.fit(terms).coefficients, session)
-    along = rate[there] @ weight / (size @ weight)
+    along = rate[there] @ weight / (step.size_dps @ weight)
     at = int(np.searchsorted(there, step.block))
     change = np.array([_change(along, i) for i in range(at - _AROUND, at + _AROUND + 1)])
     near = np.abs(np.arange(-_AROUND, _AROUND + 1)) <= 2 * _BESIDE

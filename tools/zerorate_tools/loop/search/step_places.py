@@ -1,0 +1,78 @@
+"""The places at which a step may be, and how much one explains at each.
+
+The noise's colour is refitted at every place: without a step, noise that walks takes most of one
+for its own, and what then explains most need not be the step. Places are blocks at first; where one
+explains most, quarters of a block: half of a step in the midst of a block is in that block.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..fit.likelihood import fit_base, ratios
+
+#: Blocks at either end where a step cannot be told from the offset.
+EDGE = 5
+#: Quarters of a block at which a step is looked for around the best place.
+_QUARTERS = np.arange(-3, 4) / 4
+
+
+@dataclass
+class Place:
+    """A session's index, the blocks before a step in it, and the likelihood ratio of one there."""
+
+    session: int
+    at: float
+    ratio: float
+
+
+def heavisides(session, at: np.ndarray) -> np.ndarray:
+    """(blocks, places) 0 before and 1 after each, and the share of it after one in a block."""
+    return np.clip(np.arange(session.blocks)[:, None] + 1.0 - at[None], 0.0, 1.0)
+
+
+def best_place(regression, terms) -> tuple[Place | None, list]:
+    """Where a step explains most beside the terms and the events that the regression has, and
+    (session, places, ratios) of every session."""
+    products = regression.cross_products(terms)
+    base = fit_base(products, regression.scale, regression.steep)
+    z = regression.stack(terms)
+    best, every = None, []
+    for s, session in enumerate(regression.sessions):
+        at = _ground(session)
+        if not len(at):
+            continue
+        found = _ratios(regression, products, base, z, s, heavisides(session, at))
+        every.append((s, at, found))
+        if best is None or found.max() > best.ratio:
+            best = Place(s, float(at[found.argmax()]), float(found.max()))
+    if best:
+        at = best.at + _QUARTERS
+        columns = heavisides(regression.sessions[best.session], at)
+        found = _ratios(regression, products, base, z, best.session, columns)
+        best = Place(best.session, float(at[found.argmax()]), float(found.max()))
+    return best, every
+
+
+def _ratios(regression, products, base, z, s, columns) -> np.ndarray:
+    """(places,) likelihood ratios of columns of one session's blocks, over all axes."""
+    y, columns = regression.y[s], regression.whiteners[s].prepare(columns)
+    cross, alone = regression.whiteners[s].products(np.hstack([y, z[s]]), columns)[1:]
+    own = np.arange(len(regression.sessions)) == s
+    axes = y.shape[1]
+    xy, xz, xx = (np.multiply.outer(own, p) for p in (cross[..., :axes], cross[..., axes:], alone))
+    beside = replace(products, xy=xy, xz=xz, xx=xx)
+    return ratios(beside, base, regression.scale, regression.steep).sum(axis=1)
+
+
+def tried(session) -> int:
+    """How many places a session has, in motion or not."""
+    return max(0, session.blocks + 1 - 2 * EDGE)
+
+
+def _ground(session) -> np.ndarray:
+    """Blocks before which a step may be: in motion a scale factor's error leaps, not the bias."""
+    moved = session.moved
+    free = ~(moved | np.r_[False, moved[:-1]])
+    at = np.arange(EDGE, session.blocks - EDGE + 1)
+    return at[free[at]] if len(at) else at
