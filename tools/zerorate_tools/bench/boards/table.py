@@ -77,30 +77,30 @@ folder that ZERORATE_BOARDS names.
 
 ## The heap of the second program
 
-The second program of [pico.md](pico.md) wants {least_heap:,} bytes of heap, not 48 KiB (49,152):
-stock MicroPython runs bytecode from the heap alone (its `vfs` has no ROMFS), and some 51,200
-bytes are in use once the program runs. This is what `gc.mem_alloc()` says behind each, after a
-collection; of it 8,373 bytes are names (`micropython.qstr_info()`), each kept for good when first
-met:
+The second program of [pico.md](pico.md) runs in {least_heap:,} bytes of heap; some 46,000 are in
+use once it runs. This is what `gc.mem_alloc()` says behind each, after a collection; of it some
+5,200 bytes are names (`micropython.qstr_info()`), each kept for good when first met. They were
+8,373: `zerorate flash` sends private names as `_a`, `_b`, the same few in every file, and another
+module's constants as numbers.
 
 | bytes | what |
 | ---: | --- |
 | 12,784 | machine code of learning at rest |
-| 7,120 | the chip's driver: registers 1,568, class 2,832, `setup` 512, object and names 2,208 |
-| 6,704 | store 3,216, schedule 1,216, learned store 1,104, file 768, CRC 400 |
-| 5,392 | `zerorate`: `Corrector`, `Sensor`, the choice of machine code |
+| 6,848 | store and learned store 4,736, schedule 1,216, file 896 |
+| 6,384 | the chip's driver: classes and `setup` 4,416, object and names 1,968 |
+| 4,944 | `zerorate`: `Corrector`, `Sensor`, the choice of machine code |
 | 4,080 | MicroPython itself and its file system, at the prompt |
-| 3,056 | `CheckedCorrector`, and a larger table of names |
 | 2,960 | a `Corrector`: state 1,772, settings 216, and the rest of the object |
-| 2,560 | `Fifo` |
-| 2,160 | the store's record, 1,796, and objects |
+| 2,032 | `Fifo` |
 | 1,968 | the checkpoint of the state, 1,772, and its object |
 | 1,600 | the program's own bytecode and names |
-| 768 | a `Fifo` and a `SaveSchedule` |
+| 1,296 | `CheckedCorrector` |
+| 1,280 | a store, a `Fifo`, a `SaveSchedule` and two small arrays |
 
-Beside these a file is open while it saves, 1,148 bytes in one piece, and there are gaps between
-what stays. The machine code is compiled for size but for what every sample runs through;
-checkpoint and record are what makes a chip's brown-out and a power cut harmless. Frozen into a
+Beside these a file is open while it saves, 1,148 bytes in one piece, a record is read whole once,
+at power-on, 1,796 bytes, and there are gaps between what stays. A few names more would take 2,240
+bytes more: the table of names doubles at 300. The machine code is compiled for size but for what
+every sample runs through; the checkpoint is what makes a chip's brown-out harmless. Frozen into a
 build, all bytecode and most names leave the heap.
 """
 
