@@ -15,10 +15,8 @@ _TRIED = "import micropython\n@micropython.asm_%s\ndef f():\n    data(2, 1)\n"
 
 
 def tried(part, kind):
-    """(the part's code of that kind, run(a, b, c, what), or None, and what `chosen` is to say).
-
-    Such code is right only if it does to known arrays what the kernels did when it was made.
-    """
+    """(the part's code of that kind, run(a, b, c, what), or None, and what `chosen` is to say)."""
+    # Such code is right only if it does to known arrays what the kernels did when it was made.
     try:
         exec(_TRIED % kind, {})
         name = "zerorate.native." + kind + "_" + part

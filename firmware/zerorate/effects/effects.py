@@ -95,9 +95,8 @@ def run_slot(e: ptr32):
         tell_time(e)
         if e[_HALF_TICKS] < _MOST_TICKS:
             e[_HALF_TICKS] += 2
-        e[_SUM_Q14] = 0
-        e[_SUM_Q14 + 1] = 0
-        e[_SUM_Q14 + 2] = 0
+        for a in range(3):
+            e[_SUM_Q14 + a] = 0
     if i < e[_SLOT_COUNT]:
         a = _SLOTS + i * _SLOT_WORDS
         if e[a + _SLOT_INSTANT] == 0:
@@ -111,9 +110,8 @@ def run_slot(e: ptr32):
         e[_TICKS_DUE] -= 1
         if e[_RUNNING] == 2:
             begin_again(e)
-        e[_HELD_Q14] = e[_SUM_Q14]
-        e[_HELD_Q14 + 1] = e[_SUM_Q14 + 1]
-        e[_HELD_Q14 + 2] = e[_SUM_Q14 + 2]
+        for a in range(3):
+            e[_HELD_Q14 + a] = e[_SUM_Q14 + a]
     e[_NEXT_SLOT] = i
 
 

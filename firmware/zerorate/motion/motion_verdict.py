@@ -8,7 +8,7 @@ that contradicts what is known: a turn that stays turned. Contradiction that las
 from ..arithmetic.fixed import clipped
 from ..arithmetic.real import add, copy, divide, multiply, put, root_of, subtract, whole
 from .least_squares import covariance, less, place
-from .thermal import forget_slopes, learn_slopes, present, variance_at
+from .thermal import forget_slopes, learn_slope, present, variance_at
 
 # layout: names that a board's own compiler reads
 const = int
@@ -189,10 +189,10 @@ def finish(s: ptr32, c: ptr32) -> int:
         s[_MOTION_REASON] = _GROWING
         return 0
     if s[_ACCEPTED] and c[_MOTION_DOCUMENT] == 0:
-        follow_misfit(s, 0)
-        follow_misfit(s, 1)
-        follow_misfit(s, 2)
-    learn_slopes(s)
+        for i in range(3):
+            follow_misfit(s, i)
+    for i in range(3):
+        learn_slope(s, i)
     covariance(s, _KNOWN_P)
     keep_noise(s)
     s[_ACCEPTED] += 1

@@ -128,14 +128,9 @@ def bend(s: ptr32, c: ptr32):
     add(s, _TEMP_SLOPE_VARIANCE, _TEMP_SLOPE_VARIANCE, _T1)
 
 
-def learn_slopes(s: ptr32):
-    """Learn from how the window moved each bias; its covariance is still in the swept matrix."""
-    for i in range(3):
-        learn_slope(s, i)
-
-
 def learn_slope(s: ptr32, i: int):
     """Move the slope by its regression on the bias, and condition its variance."""
+    # the covariance of how the window moved each bias is still in the swept matrix
     d = _TEMP_SLOPES + 3 * i
     unpack_slope(s, d)
     a = variance_at(i)

@@ -186,13 +186,8 @@ def account(s: ptr32, f: ptr32, p: int, end: int):
         f[k] = 0
     s[_ELAPSED_US] = elapsed_us if elapsed_us < _MOST_US else _MOST_US
     s[_WINDOW_SUM + 3] = total
-    s[_FRAME] = f[end - 7]
-    s[_FRAME + 1] = f[end - 6]
-    s[_FRAME + 2] = f[end - 5]
-    s[_FRAME + 3] = f[end - 4]
-    s[_FRAME + 4] = f[end - 3]
-    s[_FRAME + 5] = f[end - 2]
-    s[_FRAME + 6] = f[end - 1]
+    for k in range(7):
+        s[_FRAME + k] = f[end - 7 + k]
 
 
 def correct(s: ptr32, f: ptr32, p: int, end: int):
@@ -229,18 +224,11 @@ def take(s: ptr32, f: ptr32, c: ptr32, p: int, end: int) -> int:
 
 def one(s: ptr32, f: ptr32, c: ptr32, x: ptr32, p: int):
     """Give the frame at word p to `step`."""
-    x[0] = f[p + 1]
-    x[1] = f[p + 2]
-    x[2] = f[p + 3]
-    x[3] = f[p + 4]
-    x[4] = f[p + 5]
-    x[5] = f[p + 6]
-    x[6] = f[p + 7]
-    dt_us = f[p]
-    f[p] = step(s, c, x, dt_us)
-    f[p + 5] = x[4]
-    f[p + 6] = x[5]
-    f[p + 7] = x[6]
+    for i in range(7):
+        x[i] = f[p + 1 + i]
+    f[p] = step(s, c, x, f[p])
+    for i in range(4, 7):
+        f[p + 1 + i] = x[i]
 
 
 def block(s: ptr32, f: ptr32, c: ptr32, x: ptr32, n: int):

@@ -72,12 +72,9 @@ def gather(s: ptr32, c: ptr32, x: ptr32) -> int:
         s[_SQUARE_ACCEL] = 0
         s[_SQUARE_GYRO] = 0
         s[_SQUARE_STEP] = 0
-        s[_LAST_RATE] = 0
-        s[_LAST_RATE + 1] = 0
-        s[_LAST_RATE + 2] = 0
-        s[_EFFECT_SUM_Q8] = 0
-        s[_EFFECT_SUM_Q8 + 1] = 0
-        s[_EFFECT_SUM_Q8 + 2] = 0
+        for i in range(3):
+            s[_LAST_RATE + i] = 0
+            s[_EFFECT_SUM_Q8 + i] = 0
         s[_DIRTY] = 0
     s[_WINDOW_N] += 1
     if s[_DIRTY] == 0:
