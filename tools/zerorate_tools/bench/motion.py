@@ -34,6 +34,8 @@ TRIAL_SETTLED_S = 60.0
 #: What sigma expects of a part until its rests tell: the scenes' own parts have white noise alone.
 FLICKER_DPS = 0.002
 FLICKERING = f"decision, of a part with {1000 * FLICKER_DPS:g} mdps of flicker noise"
+#: No estimator but a floor: what the windows tell of a bias whose curve over temperature is known.
+TOLD = "in motion, told the curve over temperature"
 
 
 def peers() -> dict[str, Peer]:
@@ -58,18 +60,25 @@ def simulated(ways: Mapping[str, Peer], seeds: Sequence[int] = SEEDS) -> dict:
     for name in SCENARIOS:
         found[name] = {
             way: {"rms_mdps": [], "learned": 0, "wrong": 0, "within": []}
-            for way in (*ways, FLICKERING)
+            for way in (*ways, FLICKERING, TOLD)
         }
         flickering = {FLICKERING: Decision()}
+        told = {TOLD: Source("in_motion", slope_dps_per_degc=0.0001)}
         for seed in seeds:
             _measure(found[name], ways, name, seed)
             _measure(found[name], flickering, _with_flicker(name), seed)
+            _measure(found[name], told, _without_curve(name), seed)
     return found
 
 
 def _with_flicker(name: str) -> Description:
     described = load_description(name)
     return replace(described, noise=replace(described.noise, bias_instability_dps=FLICKER_DPS))
+
+
+def _without_curve(name: str) -> Description:
+    described = load_description(name)
+    return replace(described, bias=replace(described.bias, b1=0.0, b2=0.0, b3=0.0))
 
 
 def _measure(
