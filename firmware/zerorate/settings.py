@@ -89,7 +89,7 @@ DEFAULTS = {
     "halve_after_s": 3600.0,  # readings after which the counts are halved
     "fit_s": 2.0,  # readings that make an estimator a point of the line
     "counted_s": 20.0,  # more readings weigh no more in the line
-    "local_degc": 9.0,  # half the width of the line's neighbourhood
+    "local_degc": 3.0,  # half the width of the line's neighbourhood
     "stable_s": 2.5,  # readings with which an estimator speaks for its temperature
     "share": 0.125,  # and at least so many of all the line's readings
     "beyond_degc": 0.5,  # how far outside the line's points a bias is said to lie beyond
