@@ -136,16 +136,16 @@ def test_a_bus_that_cannot_be_opened_says_what_to_do_about_it(board, number, do)
 
 
 def test_a_full_disk_is_said_and_tried_again(board, monkeypatch):
-    write = board.system.storage.writeblock
+    write = board.system.storage.write_pieces
 
-    def full(offset, buf):
+    def full(offset, pieces):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(board.system.storage, "writeblock", full)
+    monkeypatch.setattr(board.system.storage, "write_pieces", full)
     board.live(20)
     assert any("cannot be written" in line for line in board.said)
     assert board.kept.lines[-1]["bias_dps"] == pytest.approx(BIAS_DPS, abs=0.02)
-    monkeypatch.setattr(board.system.storage, "writeblock", write)
+    monkeypatch.setattr(board.system.storage, "write_pieces", write)
     board.live(70)
     board.restart()
     board.live(1)
