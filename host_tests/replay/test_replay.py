@@ -2,6 +2,7 @@
 
 import errno
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pyarrow as pa
@@ -195,10 +196,10 @@ def test_a_broken_recording_leaves_no_output(tmp_path, capsys):
 def untried(monkeypatch):
     """As in a process that has not asked for the compiled kernels yet."""
     engines.compiled.cache_clear()
-    compiled_library.cache_clear()
+    library_module._library.cache_clear()
     yield monkeypatch
     engines.compiled.cache_clear()
-    compiled_library.cache_clear()
+    library_module._library.cache_clear()
 
 
 def test_without_a_compiler_the_replay_runs_on_cpython_and_says_so_once(minute, untried, capsys):
@@ -220,6 +221,20 @@ def test_a_library_is_compiled_anew_where_no_cache_can_be_written(tmp_path, untr
     assert compiled_library().zerorate_run
     assert capsys.readouterr().err.count("no cache can be kept (Not a directory)") == 1
     assert not list(scratch.iterdir())
+
+
+def test_threads_that_ask_together_compile_it_once(tmp_path, untried):
+    compile_, compiled = library_module._compile, []
+
+    def counted(command, text, target):
+        compiled.append(target)
+        compile_(command, text, target)
+
+    untried.setenv("ZERORATE_CACHE", str(tmp_path))
+    untried.setattr(library_module, "_compile", counted)
+    with ThreadPoolExecutor(4) as threads:
+        found = {id(library) for library in threads.map(lambda _: compiled_library(), range(4))}
+    assert (len(found), len(compiled)) == (1, 1)
 
 
 def test_without_a_place_to_compile_the_replay_runs_on_cpython(minute, tmp_path, untried, capsys):

@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import threading
 from functools import lru_cache
 from multiprocessing import parent_process
 from pathlib import Path
@@ -51,6 +52,8 @@ _TARGETS = {
     ("win32", "arm64"): "aarch64-windows-gnu",
 }
 
+_ONE_AT_A_TIME = threading.Lock()
+
 
 def text_of(*files: str) -> str:
     """C of all kernels, then of files of this folder, with the layout's words that they name."""
@@ -64,13 +67,18 @@ def own_text(*files: str) -> str:
     return "\n".join([words, "", *own])
 
 
-@lru_cache(maxsize=1)
 def library() -> ctypes.CDLL:
     """zerorate_run and zerorate_source (rows.c). Raises MissingRuntime without a C compiler.
 
     A wheel carries it. Else it is compiled and kept in the cache, under a hash of its text; where
     no cache can be written it is compiled for this process alone, and the user is told.
     """
+    with _ONE_AT_A_TIME:  # else each thread that finds none compiles its own
+        return _library()
+
+
+@lru_cache(maxsize=1)
+def _library() -> ctypes.CDLL:
     text, name = text_of("sample.c", "rows.c"), f"kernels{_ending(sys.platform)}"
     key = _key(text, sys.platform, platform.machine().lower())
     prebuilt = _PREBUILT / f"{key}{_ending(sys.platform)}"
