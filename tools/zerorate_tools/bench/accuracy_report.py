@@ -23,8 +23,10 @@ model, for A, B and C alike. What it learned in session 1 comes back from the st
 """
 _DAY = """\
 All begin from nothing: who waits for a first rest to be one pays for that second all day. The last
-row is no estimator but a floor: a Kalman filter that is told the true rests, the true curve over
-temperature and the walk that suits this day best.
+two rows are no estimators but floors: a Kalman filter that is told the true rests, the true curve
+over temperature and the walk that suits this day best; and a Wiener smoother that is told the curve
+and the spectra of bias and noise, sees the device rest all day, and looks ahead. What it leaves is
+flicker noise too fast to be seen through the white noise: nothing comes below it on this part.
 """
 _HONESTY = """\
 In how much of the last power-on the truth lies within two of `quality_lsb`, all sources on; 95 %
