@@ -7,6 +7,7 @@ import pytest
 from zerorate_tools.bench.loop.simulated import simulate
 from zerorate_tools.loop.analyse import analyse
 from zerorate_tools.loop.fit.line import ordinary
+from zerorate_tools.loop.report.in_words import in_words
 from zerorate_tools.loop.report.report import report
 from zerorate_tools.loop.search.steps_first import bend_of, without_steps
 
@@ -64,6 +65,23 @@ def test_a_step_that_stays_in_is_listed_too():
     analysis = analyse([clean])
     analysis.sessions[0].steps, analysis.sessions[0].listed = (), clean.steps
     assert [e["kind"] for e in report(analysis)["events"]] == ["step"]
+
+
+def test_a_report_says_what_the_pieces_left_out_chose():
+    said = [report(analyse([stepped(0, f, 90)[0]])) for f in (0.0, 40.0)]
+    assert all("the same pieces, which flatters" in in_words(r) for r in said)
+    assert ["two steps" in in_words(r) for r in said] == [False, True]
+
+
+def test_a_step_beside_blocks_that_a_hand_had_mostly_is_listed():
+    session, floor = stepped(0, 8.0, 90)
+    per = session.ticks_per_block
+    still = np.ones(session.blocks * per)
+    still[89 * per : 91 * per].reshape(2, per)[:, 1:] = 0.0
+    session.tick_weight = still
+    ticks = np.repeat(session.rate_dps, per, axis=0)
+    session.ticks_dps = np.where(still[:, None] > 0, ticks, np.nan)
+    assert steps_at(session) == [pytest.approx(90, abs=0.75)]
 
 
 def test_nothing_and_what_bends_has_no_step():

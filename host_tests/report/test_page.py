@@ -105,6 +105,10 @@ class TestAnswers:
         assert frozen(closed.result).startswith("Frozen, on the stretches held out, ")
         assert "nothing is confirmed before a second power-on" in closed.page.read_text()
         assert "begins the recording knowing nothing" in closed.page.read_text()
+        for name, once in (("one recording", False), ("an effect", True)):
+            said = outcome(name).page.read_text()
+            assert ("looked at once, at the end" in said) == once
+            assert ("the stretches chose among models" in said) == (not once)
 
     def test_little_is_left_only_where_the_learning_firmware_leaves_less(self, outcome):
         result = outcome("an effect").result

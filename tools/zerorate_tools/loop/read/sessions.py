@@ -104,8 +104,8 @@ class Session:
         """(n,) bool: blocks whose rate is known beside a reference though they were not at rest."""
         if self.ticks_dps is None:
             return np.zeros(self.blocks, bool)
-        at_rest = np.isfinite(self.ticks_dps).all(axis=1).reshape(self.blocks, -1)
-        return self.available & (at_rest.mean(axis=1) < 0.5)
+        at_rest = np.isfinite(self.ticks_dps).all(axis=1)
+        return self.available & (self.block_mean(at_rest.astype(float)) < 0.5)
 
     def block_mean(self, ticks: np.ndarray) -> np.ndarray:
         """Mean over each block of a (n * ticks_per_block,) series: over the ticks that count in its

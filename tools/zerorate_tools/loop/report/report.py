@@ -4,7 +4,7 @@ import numpy as np
 
 from ...model.effects import of_any_channel
 from ..fit.intervals import block_bootstrap, rms
-from ..fit.single import WEAKER
+from ..fit.single import STEPS_CHOSEN, WEAKER
 from ..search.confounding import label
 from ..search.periodic import QUICK_HZ
 from ..search.steps_first import may_be_a_channels
@@ -136,7 +136,8 @@ def _split(analysis):
         "blocks": {s.name: int(s.available.sum()) for s in analysis.sessions},
     }
     if analysis.single:
-        out["how_much_weaker"] = WEAKER
+        session = analysis.sessions[0]
+        out["how_much_weaker"] = WEAKER + STEPS_CHOSEN * bool(session.steps or session.listed)
     if analysis.measured and analysis.measured.inside:
         out["pieces_of"] = inside = analysis.measured.inside
         for way, effects in (("before", 0), ("after", len(analysis.selection.found))):
