@@ -283,3 +283,12 @@ def test_a_power_on_begins_every_memory_anew(warm_up):
     on_firmware(model, columns(seed=5))
     model.power_on()
     assert (on_firmware(model, raw) == first).all()
+
+
+def test_a_sample_as_long_as_a_tick_is_corrected_by_its_own_temperature():
+    raw = {n: np.zeros(20, int) for n in ("ax", "ay", "az", "gx", "gy", "gz")}
+    raw["temp"] = np.arange(0, 6800, 340)  # a degree each
+    slow = loaded([Slot(Term("temp", centre=36.53), (0.01, 0.0, 0.0))], tick_s=15.0)
+    got = on_firmware(slow, raw, dt_us=15_000_000)[:, 0]
+    # the second tick has the first reading, too, which spoke before any tick had ended
+    assert np.abs(got - 0.01 * np.arange(20))[2:].max() < 1e-4

@@ -79,8 +79,8 @@ def wavy():
 
 
 def test_segments_follow_what_no_cubic_does(wavy):
-    _, line, _, _, by_line, taken = every = by(wavy, None)
-    found = segments(*every[:3], by_line, by_line, taken)
+    r, line, _, _, by_line, taken = by(wavy, None)
+    found = segments(r, line, [], by_line, taken)
     assert found.candidate.kind == SEGMENTS
     cubic = [replace(line[0], power=k) for k in (2, 3)]
     left = [np.nanstd(by_line.residual(line, t)) for t in (cubic, found.candidate.terms)]
@@ -88,9 +88,15 @@ def test_segments_follow_what_no_cubic_does(wavy):
 
 
 def test_segments_have_to_predict_clearly_better_than_what_was_found(wavy, lagging):
-    assert segments(*by(wavy, Kernels(1.0))) is None
-    every = by(lagging, None)
-    assert segments(*every[:3], every[4], every[4], 0) is None
+    assert segments(wavy.regression, wavy.line, [], Kernels(1.0), 0) is None
+    by_line = PiecesByLine(lagging.regression.sessions[0])
+    assert segments(lagging.regression, lagging.line, [], by_line, 0) is None
+
+
+def test_segments_take_the_slots_that_motion_leaves_or_none(wavy):
+    r, line, found, _, by_line, _ = by(wavy, None)
+    assert len(segments(r, line, found, by_line, 2).candidate.terms) == 6
+    assert segments(r, line, found, by_line, 4) is None
 
 
 def test_a_lag_is_found_by_pieces_alone(lagging):
@@ -115,7 +121,7 @@ def rival(search):
 
 def test_what_remembers_predicts_no_wave(wavy):
     other, by_line = rival(wavy)
-    best = segments(wavy.regression, wavy.line, [], by_line, by_line, 0)
+    best = segments(wavy.regression, wavy.line, [], by_line, 0)
     assert other.nats < by_line(wavy.line, (), best.candidate.terms).sum() - 3.0
 
 

@@ -1,4 +1,5 @@
-"""What curves over temperature leave of a recording, by least squares, held out as the loop is.
+"""What curves over temperature leave of a recording, held out as the loop is: by least squares, and
+lines of several bends smooth as the loop draws them.
 
 A cubic is the rival. The best of many curves, chosen by what is held out itself, is a floor: no
 search, which may not look there, can be expected to find a curve that leaves less.

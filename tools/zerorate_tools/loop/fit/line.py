@@ -12,6 +12,7 @@ import numpy as np
 from ...model.term import Term
 from ..read.sessions import block_basis
 from .regression import predicted
+from .smooth import bends_often, smooth
 
 #: Of the squared coefficients of play operators, in units of their columns, per block.
 _RIDGE = 5e-5
@@ -31,8 +32,10 @@ def less_slope(straight: Sequence[Term], terms: Sequence[Term]) -> tuple[Term, .
 
 def ordinary(terms, sessions, effects=(), coefficients=None) -> np.ndarray:
     """(terms, 3) dps per unit by least squares over blocks, an offset a session, effects subtracted
-    first; play operators, which are much alike, are shrunk a little.
+    first; play operators, which are much alike, are shrunk a little, and many bends made smooth.
     """
+    if not len(effects) and bends_often(terms):
+        return smooth(terms, sessions)
     x, y = [], []
     for s in sessions:
         there = s.available

@@ -96,6 +96,11 @@ def tick_seconds(path: str | PathLike[str], least_s: float = TICK_S) -> float:
     return max(least_s, _of_one_sample(open_recording(path)))
 
 
+def has_one_sample(scales: Scales, tick_s: float) -> bool:
+    """Whether a tick of such a recording holds one sample."""
+    return scales.odr_hz * tick_s < _ALONE
+
+
 def _of_one_sample(opened: OpenRecording) -> float:
     return round(1.0 / opened.scales.odr_hz, 3)
 
@@ -158,7 +163,7 @@ class _Reader:
         """Of the first tick. Where a tick holds one sample, that is in its middle, so that neither
         jitter nor a rate that is not quite what it says puts two into one and none in the next.
         """
-        alone = self.scales.odr_hz * self.tick_s < _ALONE
+        alone = has_one_sample(self.scales, self.tick_s)
         return int(t_us[0]) - (round(0.5e6 * self.tick_s) if alone else 0)
 
     def _moments(self, name, tick, values):

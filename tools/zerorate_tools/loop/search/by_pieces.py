@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...model.model import MOST_SLOTS
 from ...model.term import Term
 from ..fit.line import ordinary
 from ..fit.regression import Regression, predicted
@@ -25,8 +26,8 @@ from .selection import Found
 POLYNOMIAL = "temperature-polynomial"
 SEGMENTS = "temperature-segments"
 _NAMES = ("", "quadratic", "curve")
-#: Bends of a line of segments, at even distances; with its slope they take eight slots at most.
-_BENDS = (4, 5, 6, 7)
+#: Bends of a line of segments, at even distances, at least; with its slope they take all slots.
+_LEAST_BENDS = 4
 #: What may lag behind temperature, or only seem to: the start of a power-on.
 MEMORIES = ("thermal-lag", "thermal-rate", "power-on-transient")
 #: What also tells warming from cooling, of a width, and goes another way at another power-on.
@@ -76,7 +77,6 @@ def segments(
     straight: Sequence[Term],
     found: Sequence[Found],
     judged: JudgedOnPieces,
-    by_line: PiecesByLine,
     taken: int,
 ) -> Found | None:
     """A line over temperature that bends several times, in the place of all that was found; None
@@ -84,13 +84,12 @@ def segments(
 
     Arguments as for `polynomial`.
     """
-    every = [terms for terms in _segments(regression, straight) if fits_in_slots(terms, taken)]
-    if not every:
+    best = _segments(regression, straight, MOST_SLOTS - 1 - taken)
+    if not best:
         return None
-    best = max(every, key=lambda terms: float(by_line(straight, (), terms).sum()))
     own = [t for f in found for t in f.candidate.terms]
     gain = judged(straight, (), best) - (judged(straight, (), own) if own else 0.0)
-    decision = _decision(regression, straight, best[1:], len(every), gain)
+    decision = _decision(regression, straight, best[1:], 1, gain)
     if decision.p_value > _LIKELY or not _is_clear(gain, regression, *_CLEARLY):
         return None
     return Found(Candidate(SEGMENTS, best, "catalogue"), decision)
@@ -244,16 +243,13 @@ def _polynomials(regression, straight) -> list[tuple[Term, ...]]:
     return [tuple(powers[:n]) for n in (1, 2, 3)]
 
 
-def _segments(regression, straight) -> list[tuple[Term, ...]]:
-    """Lines of five to eight segments; the outer ones go on beyond what was seen, for nothing else
+def _segments(regression, straight, bends: int) -> tuple[Term, ...]:
+    """A line with so many bends; its outer segments go on beyond what was seen, for nothing else
     does where a model has the slope."""
-    if not straight:
-        return []
+    if not straight or bends < _LEAST_BENDS:
+        return ()
     lo, hi, _ = ranges(regression.sessions)["temp"]
     margin = _BEYOND * (hi - lo)
     slope = replace(straight[0], lo=lo - margin, hi=hi + margin)
-    every = []
-    for bends in _BENDS:
-        at = np.linspace(lo, hi, bends + 2)[1:-1] - slope.centre
-        every.append((slope, *(replace(slope, knot=float(knot)) for knot in at)))
-    return every
+    at = np.linspace(lo, hi, bends + 2)[1:-1] - slope.centre
+    return (slope, *(replace(slope, knot=float(knot)) for knot in at))

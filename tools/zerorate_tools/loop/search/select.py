@@ -147,7 +147,7 @@ class Search:
         better = by_pieces.polynomial(r, self.line, self.found, *judged)
         self.found = [better] if better else self.found
         self._remember(*judged)
-        better = by_pieces.segments(r, self.line, self.found, *judged)
+        better = by_pieces.segments(r, self.line, self.found, self.on_pieces, self.taken)
         if better:
             self._bend_often(better, curve, *judged)
 

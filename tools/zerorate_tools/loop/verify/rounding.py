@@ -5,6 +5,7 @@ import numpy as np
 from ...model import Model
 from ...model.term import evaluate
 from ...recordings import Scales
+from ..read.ticks import has_one_sample
 from .firmware import Firmware
 from .power_on import BlockMeans, PowerOn
 
@@ -15,7 +16,8 @@ def rounding_dps(
     """(3,) RMS over a session's blocks of the firmware's effects less the same terms in floats.
 
     terms, coefficients: what the model was made of, (terms, 3) dps per unit. The firmware holds
-    the value of a tick during the next one, and so does the reference.
+    the value of a tick during the next one, and so does the reference, but where a tick is one
+    sample, which it corrects by itself.
     """
     s = power_on.session
     cold = Firmware(scales, model, power_on.channels)
@@ -25,6 +27,7 @@ def rounding_dps(
     exact = np.zeros((s.blocks * s.ticks_per_block, 3))
     for term, c in zip(terms, coefficients):
         exact += np.outer(evaluate(term, s.source, s.tick_s), c)
-    exact = np.vstack([exact[:1], exact[:-1]])
+    if not has_one_sample(scales, s.tick_s):
+        exact = np.vstack([exact[:1], exact[:-1]])
     error = means.blocks_dps() - power_on.block_means(exact)
     return np.sqrt(np.nanmean(error[s.available] ** 2, axis=0))

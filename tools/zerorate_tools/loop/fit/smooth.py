@@ -1,0 +1,86 @@
+"""A line over temperature that bends often, as smooth as the recording says.
+
+By least squares so many bends follow the noise. Here the curve is a straight line and a smooth
+deviation from it, as a Gaussian process of Matern's covariance (5/2) has it: how large and how long
+its waves are is weighed by what the data make of it (restricted likelihood, white noise of each
+axis, the waves alike on all three), and the curve is the mean over all of them, not the likeliest.
+The slots' line is the one nearest to that curve.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ...model.term import Term
+from ..read.sessions import Session
+
+#: Lengths of the waves, of the range of temperature; their variance, of that of a block's noise.
+_LENGTHS = (0.05, 0.1, 0.2, 0.4, 0.8)
+_SIZES = np.r_[0.0, 10.0 ** np.arange(-1.0, 4.1, 0.5)]
+#: Points at which the curve is computed, a segment of the line.
+_POINTS = 3
+_TINY = 1e-9
+
+
+def bends_often(terms: Sequence[Term]) -> bool:
+    """Whether terms are a slope with bends at even distances and nothing else."""
+    if len(terms) < 3 or not np.isfinite(terms[0].lo):
+        return False
+    return all(t.knot is not None and replace(t, knot=None) == terms[0] for t in terms[1:])
+
+
+def smooth(terms: Sequence[Term], sessions: Sequence[Session]) -> np.ndarray:
+    """(terms, 3) dps per unit of a slope and its bends, an offset a session."""
+    corners = _corners(terms)
+    at = np.linspace(corners[0], corners[-1], _POINTS * (len(corners) - 1) + 1)
+    curve = _curve(at, sessions)
+    heights = np.linalg.lstsq(_between(at, corners), curve, rcond=None)[0]
+    slopes = np.diff(heights, axis=0) / np.diff(corners)[:, None]
+    return np.vstack([slopes[:1], np.diff(slopes, axis=0)])
+
+
+def _corners(terms) -> np.ndarray:
+    """(terms + 1,) degC at which the segments begin and end."""
+    knots = terms[0].centre + np.array([t.knot for t in terms[1:]])
+    apart = knots[1] - knots[0]
+    return np.r_[knots[0] - apart, knots, knots[-1] + apart]
+
+
+def _between(degc: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """(n, points) shares of the points between which each temperature lies."""
+    return np.column_stack([np.interp(degc, at, unit) for unit in np.eye(len(at))])
+
+
+def _curve(at: np.ndarray, sessions: Sequence[Session]) -> np.ndarray:
+    """(points, 3) dps: the mean over all lengths and sizes of the waves, by their likelihood."""
+    x, y = [], []
+    for s in sessions:
+        degc, there = s.block_mean(s.source("temp")), s.available
+        x.append(s.less_offsets(np.column_stack([degc, _between(degc, at)]), there)[there])
+        y.append(s.less_offsets(s.rate_dps, there)[there])
+    every, rates = np.vstack(x), np.vstack(y)
+    free = len(rates) - 1 - sum(1 + len(s.steps) for s in sessions)
+    straight, shares = every[:, :1], every[:, 1:]
+    along = straight / max(float((straight**2).sum()), 1e-300)
+    left, waves = (v - straight @ (along.T @ v) for v in (rates, shares))
+    told, curves = [], []
+    for length in _LENGTHS:
+        root = np.linalg.cholesky(_matern(at, length))
+        u, d, v = np.linalg.svd(waves @ root, full_matrices=False)
+        own = u.T @ left
+        rest = (left**2).sum(axis=0) - (own**2).sum(axis=0)
+        for size in _SIZES:
+            grows = 1.0 + size * d**2
+            squares = rest + (own**2 / grows[:, None]).sum(axis=0)
+            likely = -0.5 * np.log(grows).sum() - 0.5 * free * np.log(squares + 1e-300)
+            told.append(likely.sum())
+            curves.append(root @ v.T @ ((size * d / grows)[:, None] * own))
+    weight = np.exp(np.array(told) - max(told))
+    deviation = np.tensordot(weight / weight.sum(), curves, 1)
+    return deviation + at[:, None] * (along.T @ (rates - shares @ deviation))
+
+
+def _matern(at: np.ndarray, length: float) -> np.ndarray:
+    apart = np.sqrt(5.0) * np.abs(at[:, None] - at) / (length * (at[-1] - at[0]))
+    return (1.0 + apart + apart**2 / 3.0) * np.exp(-apart) + _TINY * np.eye(len(at))
