@@ -28,13 +28,14 @@ LEAST_NATS = 0.0
 WEAKER = (
     f"One recording only: {PIECES} pieces of it, interleaved over its course, were held out in "
     f"{FOLDS} turns instead of a whole power-on, each judged by a model fitted to the others. "
-    "Which effects are kept is chosen by the same pieces, which flatters the error after a little. An "
-    "effect that repeats at every power-on cannot be told from one that happened once, and a slow "
-    "cause spans the gaps; nothing is confirmed before a second power-on shows it too."
+    "Which effects are kept is chosen by the same pieces, which flatters the error after a little. "
+    "An effect that repeats at every power-on cannot be told from one that happened once, and a "
+    "slow cause spans the gaps; nothing is confirmed before a second power-on shows it too."
 )
 #: Said beside it where the recording has steps.
 STEPS_CHOSEN = (
-    " Whether every stretch between two steps has an offset of its own is chosen by these pieces, too."
+    " Whether every stretch between two steps has an offset of its own is chosen by these pieces, "
+    "too."
 )
 
 
