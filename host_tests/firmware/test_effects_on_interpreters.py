@@ -18,7 +18,7 @@ from .simulated_sources import SCALES
 
 _HERE = Path(__file__).parent
 UPDATES = 4000
-GOLDEN = 1861782781
+GOLDEN = 1018273669
 TEMP = ("temp", 20.0, 45.0, 32.0)
 TABLE = (0, 0.1, 0.3, 0.2, 0, -1, 1, 0.5, 0)
 SLOTS = [
