@@ -156,6 +156,14 @@ def test_a_turn_beyond_what_a_node_holds_is_refused():
     assert MOTION_REASON.TOO_FAST in learner.reasons
 
 
+@pytest.mark.parametrize("hz", [25.0, 50.0])
+def test_a_window_in_three_passes_is_read_before_it_is_overwritten(hz):
+    motion = motions.swinging(0, 90, hz=hz)
+    learner = Learner(hz=hz, settled_dps=0.0).feed(motion)
+    assert len(learner.learned) >= 8
+    assert MOTION_REASON.LOST not in learner.reasons
+
+
 def test_a_gap_in_time_begins_a_new_window():
     motion = motions.swinging(2, 10)
     learner = Learner().feed(motion)

@@ -84,6 +84,7 @@ _MOTION_GAP = const(7)
 # layout: end
 _MOST_BIAS_Q24 = const(0x7FFFFF)  # half a radian in a node, some 200 deg/s
 _MOST_HALF_Q14 = const(0x3FFF)
+_NODES_A_PIECE = const(4)  # of algebra, by what they cost
 
 
 def update(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
@@ -104,14 +105,18 @@ def update(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
 
 
 def work(s: ptr32, c: ptr32) -> int:
-    """Do the next nodes of a traversal, or the next piece of algebra."""
-    if s[_JOB] == _SOLVE:
-        return solve(s, c)
+    """Do the next nodes of a traversal, or the next pieces of algebra; return 1 as `update`."""
+    # At a low rate one piece a sample would take until new nodes overwrite what is yet to be read.
+    learned = 0
     i = c[_VISITS]
-    while i > 0 and s[_JOB] == _TRAVERSE:
-        visit(s, c)
-        i -= 1
-    return 0
+    while i > 0 and s[_JOB] != _IDLE:
+        if s[_JOB] == _SOLVE:
+            learned = solve(s, c)
+            i -= _NODES_A_PIECE
+        else:
+            visit(s, c)
+            i -= 1
+    return learned
 
 
 def begin_traversal(s: ptr32):
