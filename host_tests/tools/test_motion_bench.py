@@ -54,6 +54,17 @@ def test_a_source_is_measured_from_nothing_with_its_honesty(trial):
     assert np.mean(source.within) >= 0.9
 
 
+def test_strides_that_turn_as_steadily_as_a_bias_leave_tens_of_mdps():
+    errors = []
+    for seed in (11, 12, 14):
+        recording, truth = simulate("never-rests", session=1, seed=seed)
+        bias = Source("in_motion")([given(recording)])[0]
+        error = bias - truth.bias_lsb / recording.scales.gyro_lsb_per_dps
+        errors.append(1000 * np.sqrt(np.mean(error[12000:] ** 2)))
+    print("RMS errors after two minutes", np.round(errors, 1), "mdps")
+    assert max(errors) < 25
+
+
 def test_an_accelerometer_that_strides_push_says_how_unsure_it_is():
     recording, truth = simulate("never-rests", session=1, seed=4)
     source = Source("gravity")

@@ -10,7 +10,7 @@ line, take the slope as bias, remove it, integrate again. Two forms:
 
 A window grows from 2 s while nothing is known, for a large bias turns a long one too far to be
 linear. Work is spread: a few nodes or one piece of algebra a sample. The state is one array('i')
-of 241 words and 3 a node; motion_settings.py makes the settings.
+of 245 words and 3 a node; motion_settings.py makes the settings.
 """
 
 from ..arithmetic.fixed import clipped
@@ -31,9 +31,9 @@ from .least_squares import (
     weights,
 )
 from .motion_verdict import finish, note_slope, start_window
-from .regression import centre, first_sums, regressors, second_sums, taper
+from .regression import centre, first_sums, look_past_vertical, regressors, second_sums, taper
 from .thermal import carry, follow_temperature
-from .tilt_frame import begin_attitude, find_up, lean_back, observe, turn_centre
+from .tilt_frame import begin_attitude, find_up, find_vertical, lean_back, observe, turn_centre
 
 # layout: names that a board's own compiler reads
 const = int
@@ -64,7 +64,7 @@ _PRIOR_MEAN = const(173)
 _BIAS = const(179)
 _SLOPE = const(185)
 _CENTRE = const(214)
-_NODES_RING = const(242)
+_NODES_RING = const(245)
 # layout: The sums of one component
 _COMPONENT_WORDS = const(21)
 # layout: The settings of the source in motion
@@ -180,6 +180,8 @@ def sum_up(s: ptr32):
         s[_SUM_R + i] += s[_R + i] >> 1
     for i in range(3):
         regressors(s, _SUM_R + 3 * i, s[_STAGE])
+        if i < 2:
+            look_past_vertical(s)
         first_sums(s, _SUMS + _COMPONENT_WORDS * i, s[_Y + i])
         second_sums(s, _SUMS + _COMPONENT_WORDS * i)
     for i in range(9):
@@ -276,6 +278,7 @@ def level_and_prior(s: ptr32, c: ptr32, k: int):
     if k == 0:
         find_up(s)
         turn_centre(s, s[_STAGE])
+        find_vertical(s)
     elif k == 1:
         known = 1 if s[_LENGTH] == c[_LONGEST] and s[_ACCEPTED] > 0 else 0
         carry(s, c, known)

@@ -6,7 +6,7 @@ from math import ceil, log, pi
 # layout: names that a board's own compiler reads
 const = int
 # layout: The state of the source in motion
-_NODES_RING = const(242)
+_NODES_RING = const(245)
 # layout: The settings of the source in motion
 _NODE_US = const(0)
 _MOTION_GAIN = const(1)
@@ -60,7 +60,7 @@ def motion_settings(
     start_dps=20.0,
     walk_dps=0.0007,
     temp_lsb_per_degc=340.0,
-    slope_dps_per_degc=0.03,
+    slope_dps_per_degc=0.05,
     bend_degc=64.0,
     spread=20,
     least_dps=5.0,

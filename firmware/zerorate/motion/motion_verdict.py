@@ -45,6 +45,7 @@ _T2 = const(207)
 _CENTRE = const(214)
 _NOISE_ENERGY = const(223)
 _MISFIT_Q16 = const(241)
+_VERTICAL = const(242)
 # layout: The settings of the source in motion
 _LEAST_TRAFFIC = const(7)
 _NODES = const(8)
@@ -117,6 +118,8 @@ def start_window(s: ptr32, c: ptr32) -> int:
         s[_CENTRE + n] = 0
     for n in range(4):
         s[_START + n] = 0 if n else 0x4000
+    for n in range(3):
+        s[_VERTICAL + n] = 0
     return 1
 
 
@@ -156,10 +159,10 @@ def moves(s: ptr32, c: ptr32) -> int:
 
 
 def louder(s: ptr32) -> int:
-    """Return 1 if the tilt's noise amplitude is over sixteen times what was held, else 0."""
+    """Return 1 if the tilt's noise energy is over 512 times what was held, else 0."""
     # A bias that jumped leaves this: what is known holds the slope back, and what that leaves is
     # taken for noise. A turn of heading does too, and so is not looked at.
-    put(s, _T, s[_HELD_NOISE], s[_HELD_NOISE + 1] + 8)
+    put(s, _T, s[_HELD_NOISE], s[_HELD_NOISE + 1] + 9)
     return less(s, _T, _NOISE_ENERGY)
 
 
@@ -236,9 +239,11 @@ def follow_misfit(s: ptr32, i: int):
 
 
 def keep_noise(s: ptr32):
-    """Hold this window's noise energies for the next, a little less."""
+    """Hold this window's noise energies for the next: .8 of the heading's, .25 of the tilts'."""
+    # Gravity shows a tilt's noise in every window anew. A turn as steady as a bias, which a stride
+    # makes, is in no shape: how far a heading strays is seen before or after it.
     for i in range(0, 6, 2):
-        put(s, _T, 11469, -14)
+        put(s, _T, 13107 if i == 4 else 4096, -14)
         multiply(s, _HELD_NOISE + i, _NOISE_ENERGY + i, _T)
 
 

@@ -22,6 +22,7 @@ _TAPER = const(60)
 _SHAPE_2 = const(61)
 _SHAPE_3 = const(62)
 _CENTRE = const(214)
+_VERTICAL = const(242)
 _M = const(203)
 _WM = const(206)
 # layout: The sums of one component
@@ -48,17 +49,26 @@ def taper(s: ptr32, k: int, stage: int, even: int):
 
 
 def regressors(s: ptr32, row: int, shift: int):
-    """Write a row of M and the weight times it to scratch words."""
+    """Write a row of M to scratch words."""
     for i in range(3):
-        m = (s[row + i] + (1 << (shift - 1))) >> shift
-        s[_M + i] = m
-        s[_WM + i] = (s[_TAPER] * m + 512) >> 10
+        s[_M + i] = (s[row + i] + (1 << (shift - 1))) >> shift
+
+
+def look_past_vertical(s: ptr32):
+    """Take from the row of M what a bias about the vertical would turn."""
+    # That becomes a tilt by the swing alone, and so does what the swing does to the force: where
+    # tilts are quiet and the heading is not, they would tell the heading's bias, and wrongly.
+    part = s[_M] * s[_VERTICAL] + s[_M + 1] * s[_VERTICAL + 1]
+    part = (part + s[_M + 2] * s[_VERTICAL + 2] + 0x2000) >> 14
+    for i in range(3):
+        s[_M + i] -= (part * s[_VERTICAL + i] + 0x2000) >> 14
 
 
 def first_sums(s: ptr32, a: int, y: int):
     """Add a node to the sums at a that are linear in M and y, y in Q12 within 15 bits."""
     i = 0
     while i < 3:
+        s[_WM + i] = (s[_TAPER] * s[_M + i] + 512) >> 10
         s[a + _SUM_MY + i] += (s[_WM + i] * y + 512) >> 10
         s[a + _SUM_M + i] += s[_WM + i]
         s[a + _SHAPES_M + i] += (s[_SHAPE_2] * s[_M + i] + 512) >> 10

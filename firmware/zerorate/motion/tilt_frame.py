@@ -7,17 +7,20 @@ from .attitude import heading_q12, rotation
 const = int
 ptr32 = None
 # layout: The state of the source in motion
+_STAGE = const(12)
 _TAPER_SUM = const(18)
 _LAST_HEADING_Q12 = const(23)
 _HEADING_TURNS = const(24)
 _Q = const(25)
 _START = const(29)
 _R = const(33)
+_SUM_R = const(42)
 _Y = const(51)
 _TAPER = const(60)
 _UP = const(63)
 _SUMS = const(86)
 _CENTRE = const(214)
+_VERTICAL = const(242)
 _TILT = const(98)
 _OTHER_TILT = const(119)
 _LOOK = const(203)
@@ -95,6 +98,16 @@ def turn_centre(s: ptr32, shift: int):
     for i in range(3):
         for k in range(3):
             s[_CENTRE + 3 * i + k] = -(turned_mean(s, i, k) << shift)
+
+
+def find_vertical(s: ptr32):
+    """Write the mean of up in the body over the window, from the first attitude's frame."""
+    # Its length tells how steady up was: what turned over has no vertical of its own.
+    for k in range(3):
+        total = 0
+        for j in range(0, 9, 3):
+            total += s[_R + 6 + j // 3] * (s[_SUM_R + j + k] >> s[_STAGE])
+        s[_VERTICAL + k] = total >> 14
 
 
 def turned_mean(s: ptr32, i: int, k: int) -> int:

@@ -74,6 +74,7 @@ MOTION = Array(
         ("THEN_TEMP_Q8", 1, "LSB", "the same at the window before"),
         ("NOW_TEMP_Q8", 1, "LSB", "temperature now"),
         ("MISFIT_Q16", 1, "", "mean of squared moves of a bias, over what was expected of them"),
+        ("VERTICAL", 3, "Q14", "where up is in the body, over the window: 0 before it is known"),
         ("NODES_RING", "3 * NODES", "", "a node and axis: turn, rad Q13, above force, g Q12"),
     ),
     (
