@@ -71,6 +71,14 @@ def test_a_lag_is_not_taken_for_hysteresis():
     assert KIND not in [f.candidate.kind for f in found]
 
 
+@pytest.mark.parametrize("judged_again", [False, True])
+def test_what_a_lag_predicts_nearly_as_well_is_left_to_the_power_on_that_judges(judged_again):
+    session = simulate(302010, [(PRANDTL_ISHLINSKII, 2.0)], sessions=2).sessions[0]
+    found = select([session], on_pieces=PiecesByLine(session), judged_again=judged_again).found
+    named = {f.candidate.kind: f.confounded_with for f in found}
+    assert named == ({KIND: ["thermal-lag"]} if judged_again else {})
+
+
 def test_power_ons_show_more_than_one_width():
     device = simulate(300_003, [(PRANDTL_ISHLINSKII, 5.0)], sessions=4, bare=True)
     terms = [t for f in select(device.sessions[:3]).found for t in f.candidate.terms]

@@ -43,7 +43,8 @@ _STEPS = (1.12, 1.06)
 #: As how many widths the grid's count: neighbours are much alike.
 _APART = 6
 #: Nats by which it must predict better than what is simpler.
-_SIMPLER, TIES_NATS = ("thermal-lag", "thermal-rate", "temperature-kink"), 3.0
+SIMPLER, TIES_NATS = ("thermal-lag", "thermal-rate", "temperature-kink"), 3.0
+AS_WELL = "a lag, a rate or a kink predicts the pieces left out as well"
 #: By which the error on pieces left out must fall where one recording stands alone. Noise that
 #: walks by a third of its white part a block lets it fall by 1.2 to 1.4, by 1.9 where it walks by
 #: more than its white part; a real part's loop in a chamber by 4.6.
@@ -104,15 +105,17 @@ def of_one_recording(
     pool: Sequence[Candidate],
     judged: JudgedOnPieces,
     taken: int,
-    least_factor: float,
+    judged_again: bool,
 ) -> tuple[Found | None, str]:
     """The hysteresis of a recording that stands alone, with its bend as one effect, or why not.
 
     beside: the bend found, then another that may be better with a hysteresis beside it; pool: of
     which lag, rate and kink are asked first, for one course of temperature shows all much alike;
-    taken: slots that others need; least_factor: by which the error on pieces left out must become
-    less than with the bend, geometric mean over the axes. Pieces left out decide, as with bends,
-    but the noise may be as steep as it likes: a course with few turns is much like a walk.
+    taken: slots that others need; judged_again: whether another power-on has the last word. Where
+    none has, no other may predict the pieces nearly as well, and the error on them must fall by
+    LEAST_FACTOR beside the bend, geometric mean over the axes; where one has, what predicts nearly
+    as well is named beside it. Pieces left out decide, as with bends, but the noise may be as steep
+    as it likes: a course with few turns is much like a walk.
     """
     by_line = PiecesByLine(regression.sessions[0])
     best: tuple[float, tuple[Term, ...], Candidate] | None = None
@@ -126,21 +129,31 @@ def of_one_recording(
         return None, ""
     gain, bend, candidate = best
     rival, rivals_gain = _rival(straight, bend, pool, by_line)
-    if rivals_gain > gain - TIES_NATS:
-        return None, "a lag, a rate or a kink predicts the pieces left out as well"
-    ratio = float(regression.gains([*straight, *bend, *rival], [candidate.terms]).sum())
-    p = family_p(ratio, 3 * len(candidate.terms), _tried(candidate))
+    if rivals_gain > gain - (0.0 if judged_again else TIES_NATS):
+        return None, AS_WELL if rivals_gain < gain + TIES_NATS else "a simpler effect predicts better"
+    p, ratio = _chance(regression, [*straight, *bend, *rival.terms], candidate)
+    told_apart = rivals_gain <= gain - TIES_NATS and p <= LEVEL["catalogue"]
+    if judged_again and not told_apart:
+        p, ratio = _chance(regression, [*straight, *bend], candidate)
     if p > LEVEL["catalogue"]:
         return None, "not significant"
     whole = (*bend, *candidate.terms)
     before, after = (_rms(by_line.residual(straight, terms)) for terms in (beside[0], whole))
-    if np.exp(np.log(before / after).mean()) < least_factor:
+    if not judged_again and np.exp(np.log(before / after).mean()) < LEAST_FACTOR:
         return None, "too little of the error to tell it from the noise's walk"
     nats = judged(straight, (), whole)
     nats = nats - judged(straight, (), beside[0]) if beside[0] else nats
     if not speaks_for(nats):
         return None, judged.reason
-    return Found(Candidate(KIND, whole, "catalogue"), Decision(True, p, ratio, 1.0, nats)), ""
+    decision = Decision(True, p, ratio, 1.0, nats)
+    as_well = [] if told_apart else [rival.kind]
+    return Found(Candidate(KIND, whole, "catalogue"), decision, as_well), ""
+
+
+def _chance(regression, beside, candidate: Candidate) -> tuple[float, float]:
+    """That noise gains as much by any of the forms, and the likelihood ratio."""
+    ratio = float(regression.gains(beside, [candidate.terms]).sum())
+    return family_p(ratio, 3 * len(candidate.terms), _tried(candidate)), ratio
 
 
 def _rms(residual: np.ndarray) -> np.ndarray:
@@ -148,14 +161,12 @@ def _rms(residual: np.ndarray) -> np.ndarray:
     return np.sqrt(np.nanmean(residual**2, axis=0))
 
 
-def _rival(straight, bend, pool, by_line) -> tuple[tuple[Term, ...], float]:
-    """Terms of the simpler effect that predicts best with the bend, and the nats."""
-    best: tuple[tuple[Term, ...], float] = (), -np.inf
-    for candidate in pool:
-        if candidate.kind in _SIMPLER:
-            gain = float(by_line(straight, (), (*bend, *candidate.terms)).sum())
-            best = (candidate.terms, gain) if gain > best[1] else best
-    return best
+def _rival(straight, bend, pool, by_line) -> tuple[Candidate, float]:
+    """The simpler effect that predicts best with the bend, and the nats."""
+    simpler = [c for c in pool if c.kind in SIMPLER]
+    gains = [float(by_line(straight, (), (*bend, *c.terms)).sum()) for c in simpler]
+    best = int(np.argmax(gains))
+    return simpler[best], gains[best]
 
 
 def _tried(candidate: Candidate) -> float:

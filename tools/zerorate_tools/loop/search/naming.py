@@ -38,6 +38,7 @@ def name_found(
             near = [f.candidate, *beside]
         f.candidate = _named(regression, rest, near[0])
         names = [confounding.label(_named(regression, rest, c)) for c in near[1:]]
+        names = [*f.confounded_with, *names]
         own = confounding.label(f.candidate)
         f.confounded_with = [n for n in dict.fromkeys(names) if n != own]
 

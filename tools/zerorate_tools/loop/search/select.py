@@ -96,6 +96,8 @@ class Search:
             self._widen_hysteresis()
         self._list_steps()
         name_found(self.regression, self.straight, self.found, self.pool, self.bends)
+        if (hysteresis.KIND, hysteresis.AS_WELL) in self.refused:
+            self.like_hysteresis = [f for f in self.found if f.candidate.kind in hysteresis.SIMPLER]
         for f in self.like_hysteresis:
             f.confounded_with = list(dict.fromkeys([*f.confounded_with, hysteresis.KIND]))
         further = go_on if self.on_pieces else follow_further
@@ -174,7 +176,7 @@ class Search:
         beside = [tuple(self.terms()), *([curve] if curve else [])]
         found, refused = hysteresis.of_one_recording(
             *(self.regression, self.straight, beside, self.pool, self.on_pieces, self.taken),
-            least_factor=1.0 if self.judged_again else hysteresis.LEAST_FACTOR,
+            judged_again=self.judged_again,
         )
         self.found = [found] if found else self.found
         self.refused += [(hysteresis.KIND, refused)] if refused else []
