@@ -33,6 +33,7 @@ _LEFT_Q4 = const(37)
 # layout: The corrector's settings
 _AXES = const(0)
 _AXIS_WORDS = const(15)
+_STEP_LSB = const(29)
 _WALK_MOST_Q16 = const(43)
 _TURN_ON_VARIANCE_Q8 = const(47)
 # layout: What a window was
@@ -42,6 +43,8 @@ _ANY_TEMPERATURE = const(1)
 # layout: Values that stand for none
 _NO_VALUE = const(-0x3FFFFFFF)
 # layout: end
+# Of twice the range of temperature: a model holds a curve half of it farther on either side.
+_ESTIMATORS_OF_A_CURVE = const(16)
 # A piece of heap held through a program's imports, or none as long is left on a small board for the
 # state, its checkpoint and the store's record.
 _held = [bytearray(5376)]
@@ -94,6 +97,7 @@ class Corrector:
         )
         unload("zerorate", "settings")
         c = self.settings
+        self._step_lsb = c[_STEP_LSB]
         # before other sources are loaded, while there is heap in one piece; a list of as many zeros
         # would want as much again
         _held.clear()
@@ -188,6 +192,10 @@ class Corrector:
 
         self._sense = sense
         self.effects = effects
+        # A curve that the model holds whole leaves little but noise at a temperature: estimators
+        # that share its range have more of the readings each.
+        step = effects._curve_lsb // _ESTIMATORS_OF_A_CURVE
+        self.settings[_STEP_LSB] = max(self._step_lsb, step)
         self._join_others()
 
     def load(self, store: "Any", same: bool = False) -> int:

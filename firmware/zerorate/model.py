@@ -78,6 +78,7 @@ class EffectModel:
         self.channels = ()
         self.reason = NO_MODEL
         self.attend: "Any" = None
+        self._curve_lsb = 0
 
     def load_file(self, path: str, sensor: "Sensor", binding: "bytes | None" = None) -> int:
         """As load, from a file."""
@@ -96,7 +97,7 @@ class EffectModel:
         sensor: the Corrector's Sensor; binding: MPU6050.binding, None where no driver is (the
         scales alone are compared). REASONS says each result in words. Raises nothing for data.
         """
-        from .effects.model_file import compare, fill, judge, texts
+        from .effects.model_file import _curve_lsb, compare, fill, judge, texts
 
         self.forget()
         reason = judge(data)
@@ -110,6 +111,7 @@ class EffectModel:
                 reason = _IMPOSSIBLE
         if reason == LOADED:
             self.e[_SLOT_COUNT] = data[6]
+            self._curve_lsb = _curve_lsb(self.e, data[6])
             self.power_on()
         unload("zerorate.effects", "model_file")
         self.reason = reason
@@ -122,6 +124,7 @@ class EffectModel:
         self.channels = ()
         self.reason = NO_MODEL
         self.attend = None
+        self._curve_lsb = 0
 
     def power_on(self) -> None:
         """Begin a power-on: time, means, lags and memories anew; coefficients stay."""

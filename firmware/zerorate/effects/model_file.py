@@ -99,6 +99,7 @@ REASONS = (
     "the model holds what cannot be",
 )
 # layout: Sources of effects: an acceleration, the temperature, a mean rate, ..., a channel
+_KIND_TEMP = const(3)
 _KIND_INSTANT = const(10)
 _KIND_CHANNEL = const(16)
 _KIND_CHANNEL_NOW = const(24)
@@ -261,6 +262,20 @@ def link(e, a, tables):
     if instant:
         e[_INSTANT_SLOTS] += 1
     return True
+
+
+def _curve_lsb(e, slots):
+    """The range of temperature over which the model holds the very line over it, 0: it does not."""
+    for a in range(_SLOTS, _SLOTS + _SLOT_WORDS * slots, _SLOT_WORDS):
+        other = e[a + _SLOT_MEMORY] | e[a + _SLOT_SECOND] | e[a + _SLOT_DECAY] | e[a + _SLOT_RING]
+        if (
+            e[e[a + _SLOT_SOURCE] - _INPUT_VALUE_Q8 + _INPUT_KIND] == _KIND_TEMP
+            and e[a + _SLOT_POWER] == 1
+            and e[a + _SLOT_KNOT] == _NO_VALUE
+            and not other | e[a + _SLOT_TABLE]
+        ):
+            return (e[a + _SLOT_HIGHEST_Q8] - e[a + _SLOT_LOWEST_Q8]) >> 8
+    return 0
 
 
 def of_the_sample(kind):

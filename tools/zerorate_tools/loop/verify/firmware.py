@@ -36,14 +36,14 @@ class Firmware:
             self._corrector = Corrector(sensor_for(scales), motion=False, gravity=False)
         except ValueError as problem:
             raise Refused(f"the firmware cannot run at these scales: {problem}") from problem
-        self._learning = self._corrector.settings
-        # a spread above nothing is in every window: no rest, so nothing is learned
-        self._frozen = deepcopy(self._learning)
-        self._frozen[SETTINGS.STILL_ACCEL_Q8] = -1
         self._engine: Engine = NativeEngine()
         self._extra: list[int] = []
         if model is not None:
             self._load(model, channels)
+        self._learning = self._corrector.settings
+        # a spread above nothing is in every window: no rest, so nothing is learned
+        self._frozen = deepcopy(self._learning)
+        self._frozen[SETTINGS.STILL_ACCEL_Q8] = -1
 
     def _load(self, model, channels):
         effects = EffectModel()
