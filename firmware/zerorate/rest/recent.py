@@ -331,7 +331,7 @@ def believe(s: ptr32, c: ptr32, a: int, error: int) -> int:
     else:
         s[a + _OFFSET_VARIANCE_Q8] = s[_MEAN_NOISE_Q8]
         s[a + _LEFT_Q4] = 0
-        held = held >> 1  # it may as well be a turn
+        held -= held >> 2  # it may as well be a turn, and then all of it is wrong
         s[a + _DOUBT_Q8] = held * held
     s[a + _OFFSET_AGE_MS] = 0
     return 1
