@@ -45,6 +45,7 @@ _APART = 6
 #: Nats by which it must predict better than what is simpler.
 SIMPLER, TIES_NATS = ("thermal-lag", "thermal-rate", "temperature-kink"), 3.0
 AS_WELL = "a lag, a rate or a kink predicts the pieces left out as well"
+BETTER = "a lag, a rate or a kink predicts the pieces left out better"
 #: By which the error on pieces left out must fall where one recording stands alone. Noise that
 #: walks by a third of its white part a block lets it fall by 1.2 to 1.4, by 1.9 where it walks by
 #: more than its white part; a real part's loop in a chamber by 4.6.
@@ -130,7 +131,7 @@ def of_one_recording(
     gain, bend, candidate = best
     rival, rivals_gain = _rival(straight, bend, pool, by_line)
     if rivals_gain > gain - (0.0 if judged_again else TIES_NATS):
-        return None, AS_WELL if rivals_gain < gain + TIES_NATS else "a simpler effect predicts better"
+        return None, AS_WELL if rivals_gain < gain + TIES_NATS else BETTER
     p, ratio = _chance(regression, [*straight, *bend, *rival.terms], candidate)
     told_apart = rivals_gain <= gain - TIES_NATS and p <= LEVEL["catalogue"]
     if judged_again and not told_apart:
