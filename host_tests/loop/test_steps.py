@@ -84,6 +84,14 @@ def test_a_step_beside_blocks_that_a_hand_had_mostly_is_listed():
     assert steps_at(session) == [pytest.approx(90, abs=0.75)]
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_a_slow_change_is_no_step(seed):
+    session, floor = stepped(seed, 0.0)
+    ramp = np.clip((np.arange(session.blocks) - 86) / 8, 0.0, 1.0)
+    session.rate_dps += 20 * floor * np.outer(ramp, (1, -1, 1))
+    assert steps_at(session) == []
+
+
 def test_nothing_and_what_bends_has_no_step():
     listed = 0
     for seed in range(10):

@@ -11,7 +11,7 @@ from ..fit.surrogates import null_ratios
 #: Family-wise levels: the chance that anything of the family passes the first lock on a device
 #: with nothing in it.
 #: Forms of any channel are many, most of them slow and without physics behind them: they pay more.
-LEVEL = {"catalogue": 2.5e-3, "generic": 5e-5, "step": 3e-4}
+LEVEL = {"catalogue": 2.5e-3, "generic": 5e-5, "step": 2e-3}
 #: Shares of a family's level that a kind gets where it is not one. What follows time alone is shown
 #: worst by any recording, for the noise's walk looks alike: it gets more of what others, found at
 #: half its size, can spare (weighted Bonferroni: Genovese, Roeder and Wasserman 2006, Biometrika

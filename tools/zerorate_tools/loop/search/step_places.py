@@ -13,8 +13,13 @@ from ..fit.likelihood import fit_base, ratios
 
 #: Blocks at either end where a step cannot be told from the offset.
 EDGE = 5
+#: Blocks since power-on before which none is looked for: what remembers temperature wakes there.
+_WAKES = 10
 #: Quarters of a block at which a step is looked for around the best place.
 _QUARTERS = np.arange(-3, 4) / 4
+#: Blocks from the middle of a ramp to either end, and shares of them that it is off the place.
+LONGEST = 8.0
+_RAMPS, _OFF = np.array([2.0, 4.0, LONGEST]), np.array([-0.5, 0.0, 0.5])
 
 
 @dataclass
@@ -29,6 +34,20 @@ class Place:
 def heavisides(session, at: np.ndarray) -> np.ndarray:
     """(blocks, places) 0 before and 1 after each, and the share of it after one in a block."""
     return np.clip(np.arange(session.blocks)[:, None] + 1.0 - at[None], 0.0, 1.0)
+
+
+def beyond_ramps(regression, terms, session: int, at: float) -> float:
+    """By how much a step explains more than the best ramp of some blocks around it, as twice a
+    gain in log likelihood."""
+    products = regression.cross_products(terms)
+    base = fit_base(products, regression.scale, regression.steep)
+    blocks = np.arange(regression.sessions[session].blocks)[:, None] + 0.5
+    half = np.repeat(_RAMPS, len(_OFF))
+    ramps = np.clip((blocks - at - half * np.tile(_OFF, len(_RAMPS))) / (2 * half) + 0.5, 0.0, 1.0)
+    steps = heavisides(regression.sessions[session], at + _QUARTERS)
+    columns = np.hstack([steps, ramps])
+    found = _ratios(regression, products, base, regression.stack(terms), session, columns)
+    return float(found[: len(_QUARTERS)].max() - found[len(_QUARTERS) :].max())
 
 
 def best_place(regression, terms) -> tuple[Place | None, list]:
@@ -67,12 +86,12 @@ def _ratios(regression, products, base, z, s, columns) -> np.ndarray:
 
 def tried(session) -> int:
     """How many places a session has, in motion or not."""
-    return max(0, session.blocks + 1 - 2 * EDGE)
+    return max(0, session.blocks + 1 - EDGE - _WAKES)
 
 
 def _ground(session) -> np.ndarray:
     """Blocks before which a step may be: in motion a scale factor's error leaps, not the bias."""
     moved = session.moved
     free = ~(moved | np.r_[False, moved[:-1]])
-    at = np.arange(EDGE, session.blocks - EDGE + 1)
+    at = np.arange(_WAKES, session.blocks - EDGE + 1)
     return at[free[at]] if len(at) else at

@@ -17,7 +17,7 @@ from ..read.sessions import common_sources
 from .catalogue import Candidate, candidates
 from .decide import LEVEL
 from .refine import refined
-from .step_places import EDGE, best_place, heavisides, tried
+from .step_places import EDGE, LONGEST, best_place, beyond_ramps, heavisides, tried
 
 MOST_PER_SESSION = 4
 _AWAY = 15  # blocks from a step at which a step beside it no longer shows it
@@ -30,6 +30,11 @@ _AROUND = 10
 _UNSEEN, _UNSEEN_DEGC = 3, 1.0
 #: How much chi-squared counts beside the ratios at all places away from every step.
 _THEORY = 1.0
+#: Level of every step but the surest of a recording: those with several are the rarer.
+_BESIDE_OTHERS = 1e-4
+#: What a step must explain more than the best ramp in its place, as twice a gain in log likelihood:
+#: less than nothing, for noise that flickers makes a ramp of a small step.
+_LEAST_BEYOND = -4.0
 #: Forms over temperature beside which steps must stand, and the likelihood ratio of one.
 _MOST_FORMS, _A_FORM = 4, 45.0
 
@@ -129,7 +134,7 @@ def _all(regression, terms) -> list[Step]:
         if step is None:
             break
         step.ratio = _gain(regression, terms, steps, step, kept)
-        if chi2.sf(step.ratio, 3) * _tried(regression) > LEVEL["step"]:
+        if chi2.sf(step.ratio, 3) * _tried(regression) > _level(len(steps)):
             break
         steps.append(step)
         _set(regression, steps, kept)
@@ -138,6 +143,7 @@ def _all(regression, terms) -> list[Step]:
         _set(regression, steps, kept)
     steps = _sized(regression, terms, steps, kept)
     abrupt = [s for s in steps if _is_abrupt(regression, terms, s)]
+    abrupt = [s for s in abrupt if _is_no_ramp(regression, terms, steps, s, kept)]
     _set(regression, [], kept)
     return abrupt
 
@@ -163,7 +169,12 @@ def _stand(regression, terms, steps, kept) -> bool:
         step.ratio = _gain(regression, terms, others, step, kept)
         step.p_value = min(1.0, _survival(step.ratio, away) * _tried(regression))
     _set(regression, steps, kept)
-    return all(s.p_value < LEVEL["step"] for s in steps)
+    return all(p < _level(k) for k, p in enumerate(sorted(s.p_value for s in steps)))
+
+
+def _level(steps: int) -> float:
+    """The level of one more step beside so many."""
+    return _BESIDE_OTHERS if steps else LEVEL["step"]
 
 
 def _tried(regression) -> int:
@@ -239,6 +250,15 @@ def _is_abrupt(regression, terms, step: Step) -> bool:
     trend = np.nanmedian(change[~near]) if np.isfinite(change[~near]).any() else 0.0
     largest = np.nanmax(np.r_[change[_AROUND - 1 : _AROUND + 2], -np.inf])
     return bool(abs(trend) < _TREND and _ABRUPT[0] < largest - trend < _ABRUPT[1])
+
+
+def _is_no_ramp(regression, terms, steps, step, kept) -> bool:
+    """Whether no ramp explains clearly more beside the steps farther away, in the place of a step
+    and those near it: a slow loop is one."""
+    near = [s.session == step.session and abs(s.block - step.block) <= LONGEST for s in steps]
+    _set(regression, [s for s, beside in zip(steps, near) if not beside], kept)
+    beyond = beyond_ramps(regression, terms, step.session, step.block - step.share)
+    return beyond > _LEAST_BEYOND
 
 
 def _is_unseen(session, there, block: int) -> bool:
