@@ -57,7 +57,8 @@ def test_a_bias_that_insisted_may_be_a_turn_until_another_rest_confirms_it():
     corrector, _ = play(turning(0, 30, axis=2))
     play(turning(1, 120, axis=2, seed=2), corrector)
     assert corrector.bias_lsb(2) == pytest.approx(1.2 * LSB, abs=2)
-    assert quality_dps(corrector, 2) == pytest.approx(0.75, rel=0.1)  # all of it is within two sigma
+    # all of the turn is within two sigma
+    assert quality_dps(corrector, 2) == pytest.approx(0.75, rel=0.1)
     assert quality_dps(corrector, 0) < 0.01
     play(handled(8, 4) + [0, 0, 0, 0, 0, 0, LSB], corrector)
     play(turning(1, 10, axis=2, seed=3), corrector)
