@@ -3,8 +3,9 @@
 By least squares so many bends follow the noise. Here the curve is a straight line and a smooth
 deviation from it, as a Gaussian process of Matern's covariance (5/2) has it: how large and how long
 its waves are is weighed by what the data make of it (restricted likelihood, white noise of each
-axis, the waves alike on all three), and the curve is the mean over all of them, not the likeliest.
-The slots' line is the one nearest to that curve.
+axis, the waves alike on all three), and the curve is the mean over all of them, not the likeliest
+(Rasmussen and Williams, Gaussian Processes for Machine Learning, 2006, 2.7 and 4.2.1). The slots'
+line is the one nearest to that curve.
 """
 
 from collections.abc import Sequence
@@ -24,7 +25,8 @@ _TINY = 1e-9
 
 
 def bends_often(terms: Sequence[Term]) -> bool:
-    """Whether terms are a slope with bends at even distances and nothing else."""
+    """Whether terms are a slope with bends and nothing else; whoever makes such puts the bends at
+    even distances."""
     if len(terms) < 3 or not np.isfinite(terms[0].lo):
         return False
     return all(t.knot is not None and replace(t, knot=None) == terms[0] for t in terms[1:])
@@ -53,7 +55,7 @@ def _between(degc: np.ndarray, at: np.ndarray) -> np.ndarray:
 
 
 def _curve(at: np.ndarray, sessions: Sequence[Session]) -> np.ndarray:
-    """(points, 3) dps: the mean over all lengths and sizes of the waves, by their likelihood."""
+    """(points, 3) dps: the straight line and a smooth deviation from it."""
     x, y = [], []
     for s in sessions:
         degc, there = s.block_mean(s.source("temp")), s.available
@@ -64,6 +66,16 @@ def _curve(at: np.ndarray, sessions: Sequence[Session]) -> np.ndarray:
     straight, shares = every[:, :1], every[:, 1:]
     along = straight / max(float((straight**2).sum()), 1e-300)
     left, waves = (v - straight @ (along.T @ v) for v in (rates, shares))
+    deviation = _deviation(at, waves, left, free)
+    return deviation + at[:, None] * (along.T @ (rates - shares @ deviation))
+
+
+def _deviation(at: np.ndarray, waves: np.ndarray, left: np.ndarray, free: int) -> np.ndarray:
+    """(points, 3) dps: the mean over all lengths and sizes of the waves, by their likelihood.
+
+    waves: (blocks, points) of what a deviation of 1 at a point adds; left: (blocks, 3) of the
+    rates; free: blocks less what was fitted already.
+    """
     told, curves = [], []
     for length in _LENGTHS:
         root = np.linalg.cholesky(_matern(at, length))
@@ -77,10 +89,10 @@ def _curve(at: np.ndarray, sessions: Sequence[Session]) -> np.ndarray:
             told.append(likely.sum())
             curves.append(root @ v.T @ ((size * d / grows)[:, None] * own))
     weight = np.exp(np.array(told) - max(told))
-    deviation = np.tensordot(weight / weight.sum(), curves, 1)
-    return deviation + at[:, None] * (along.T @ (rates - shares @ deviation))
+    return np.tensordot(weight / weight.sum(), curves, 1)
 
 
 def _matern(at: np.ndarray, length: float) -> np.ndarray:
+    """(points, points) covariance of waves of a length, with 1 on the diagonal."""
     apart = np.sqrt(5.0) * np.abs(at[:, None] - at) / (length * (at[-1] - at[0]))
     return (1.0 + apart + apart**2 / 3.0) * np.exp(-apart) + _TINY * np.eye(len(at))

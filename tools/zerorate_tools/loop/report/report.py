@@ -136,8 +136,8 @@ def _split(analysis):
         "blocks": {s.name: int(s.available.sum()) for s in analysis.sessions},
     }
     if analysis.single:
-        session = analysis.sessions[0]
-        out["how_much_weaker"] = WEAKER + STEPS_CHOSEN * bool(session.steps or session.listed)
+        stepped = analysis.sessions[0].steps or analysis.sessions[0].listed
+        out["how_much_weaker"] = WEAKER + (STEPS_CHOSEN if stepped else "")
     if analysis.measured and analysis.measured.inside:
         out["pieces_of"] = inside = analysis.measured.inside
         for way, effects in (("before", 0), ("after", len(analysis.selection.found))):

@@ -42,8 +42,9 @@ _RIDGE = 1e-7
 _STEPS = (1.12, 1.06)
 #: As how many widths the grid's count: neighbours are much alike.
 _APART = 6
-#: Nats by which it must predict better than what is simpler.
+#: What is simpler, and the nats by which it must predict better.
 SIMPLER, TIES_NATS = ("thermal-lag", "thermal-rate", "temperature-kink"), 3.0
+#: Why it was refused: both stand in the report.
 AS_WELL = "a lag, a rate or a kink predicts the pieces left out as well"
 BETTER = "a lag, a rate or a kink predicts the pieces left out better"
 #: By which the error on pieces left out must fall where one recording stands alone. Noise that
@@ -119,13 +120,7 @@ def of_one_recording(
     as it likes: a course with few turns is much like a walk.
     """
     by_line = PiecesByLine(regression.sessions[0])
-    best: tuple[float, tuple[Term, ...], Candidate] | None = None
-    for bend in beside:
-        candidate, gain = best_hysteresis(regression.sessions, straight, bend, by_line)
-        gain += float(by_line(straight, (), bend).sum()) if bend else 0.0
-        room = candidate and fits_in_slots([*bend, *candidate.terms], taken)
-        if candidate and room and (best is None or gain > best[0]):
-            best = gain, bend, candidate
+    best = _with_a_bend(regression, straight, beside, by_line, taken)
     if best is None:
         return None, ""
     gain, bend, candidate = best
@@ -151,8 +146,22 @@ def of_one_recording(
     return Found(Candidate(KIND, whole, "catalogue"), decision, as_well), ""
 
 
+def _with_a_bend(
+    regression, straight, beside, by_line, taken
+) -> tuple[float, tuple[Term, ...], Candidate] | None:
+    """The nats that the best bend and hysteresis gain together, and both; None where none fits."""
+    best: tuple[float, tuple[Term, ...], Candidate] | None = None
+    for bend in beside:
+        candidate, gain = best_hysteresis(regression.sessions, straight, bend, by_line)
+        gain += float(by_line(straight, (), bend).sum()) if bend else 0.0
+        room = candidate and fits_in_slots([*bend, *candidate.terms], taken)
+        if candidate and room and (best is None or gain > best[0]):
+            best = gain, bend, candidate
+    return best
+
+
 def _chance(regression, beside, candidate: Candidate) -> tuple[float, float]:
-    """That noise gains as much by any of the forms, and the likelihood ratio."""
+    """The chance that noise gains as much by any of the forms, and the likelihood ratio."""
     ratio = float(regression.gains(beside, [candidate.terms]).sum())
     return family_p(ratio, 3 * len(candidate.terms), _tried(candidate)), ratio
 

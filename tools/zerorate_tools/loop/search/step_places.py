@@ -11,9 +11,9 @@ import numpy as np
 
 from ..fit.likelihood import fit_base, ratios
 
-#: Blocks at either end where a step cannot be told from the offset.
+#: Blocks at the end where a step cannot be told from the offset.
 EDGE = 5
-#: Blocks since power-on before which none is looked for: what remembers temperature wakes there.
+#: Blocks at the start where none is looked for: what remembers temperature wakes there.
 _WAKES = 10
 #: Quarters of a block at which a step is looked for around the best place.
 _QUARTERS = np.arange(-3, 4) / 4

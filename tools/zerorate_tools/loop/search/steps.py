@@ -253,8 +253,8 @@ def _is_abrupt(regression, terms, step: Step) -> bool:
 
 
 def _is_no_ramp(regression, terms, steps, step, kept) -> bool:
-    """Whether no ramp explains clearly more beside the steps farther away, in the place of a step
-    and those near it: a slow loop is one."""
+    """Whether no ramp explains clearly more than the step, where those near it are taken out: a
+    slow loop looks like a ramp or like a few small steps."""
     near = [s.session == step.session and abs(s.block - step.block) <= LONGEST for s in steps]
     _set(regression, [s for s, beside in zip(steps, near) if not beside], kept)
     beyond = beyond_ramps(regression, terms, step.session, step.block - step.share)
