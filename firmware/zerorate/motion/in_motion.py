@@ -9,7 +9,7 @@ line, take the slope as bias, remove it, integrate again. Two forms:
   joined with what earlier windows know by weights that the window's own residual sets.
 
 A window grows from 2 s while nothing is known, for a large bias turns a long one too far to be
-linear. Work is spread: a few nodes or one piece of algebra a sample. The state is one array('i')
+linear. Work is spread: a few nodes or pieces of algebra a sample. The state is one array('i')
 of 245 words and 3 a node; motion_settings.py makes the settings.
 """
 
