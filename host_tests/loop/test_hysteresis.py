@@ -79,6 +79,12 @@ def test_what_a_lag_predicts_nearly_as_well_is_left_to_the_power_on_that_judges(
     assert named == ({KIND: ["thermal-lag"]} if judged_again else {})
 
 
+def test_one_recording_names_a_hysteresis_that_predicts_as_well_beside_the_lag():
+    session = simulate(302003, [("thermal-lag", 4.0)], sessions=2).sessions[0]
+    (found,) = select([session], on_pieces=PiecesByLine(session)).found
+    assert (found.candidate.kind, found.confounded_with) == ("thermal-lag", [KIND])
+
+
 def test_power_ons_show_more_than_one_width():
     device = simulate(300_003, [(PRANDTL_ISHLINSKII, 5.0)], sessions=4, bare=True)
     terms = [t for f in select(device.sessions[:3]).found for t in f.candidate.terms]

@@ -30,7 +30,7 @@ _AROUND = 10
 _UNSEEN, _UNSEEN_DEGC = 3, 1.0
 #: How much chi-squared counts beside the ratios at all places away from every step.
 _THEORY = 1.0
-#: Level of every step but the surest of a recording: those with several are the rarer.
+#: Level of every step but the surest of all recordings together: those with several are the rarer.
 _BESIDE_OTHERS = 1e-4
 #: What a step must explain more than the best ramp in its place, as twice a gain in log likelihood:
 #: less than nothing, for noise that flickers makes a ramp of a small step.
