@@ -42,6 +42,17 @@ def test_a_step_of_twice_three_floors_stands_out_of_noise_that_walks(seed):
     assert steps_at(session) == [pytest.approx(90, abs=0.75)]
 
 
+def test_recordings_of_one_device_share_the_chance_of_an_invented_step():
+    session, _ = stepped(0, 6.0, 90)
+    quiet = [stepped(seed, 0.0)[0] for seed in (1, 2, 3)]
+    alone, among = (
+        without_steps([session])[0].steps[0],
+        without_steps([session, *quiet])[0].steps[0],
+    )
+    assert among.block == alone.block
+    assert among.p_value == pytest.approx(4 * alone.p_value)
+
+
 def test_a_step_in_the_midst_of_a_block_is_one_step_of_its_whole_size():
     session, floor = stepped(0, 40.0, 90)
     session.rate_dps[89] += 0.5 * 40.0 * floor * (1, -1, 1)

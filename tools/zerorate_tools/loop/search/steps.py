@@ -63,8 +63,13 @@ def strongest(regression, terms) -> Step | None:
     return max(steps, key=lambda s: s.ratio, default=None)
 
 
-def find_all(regression, terms, rivals: Sequence[Candidate] = ()) -> list[Step]:
+def find_all(
+    regression, terms, rivals: Sequence[Candidate] = (), recordings: int = 1
+) -> list[Step]:
     """Every step beside the terms, strongest first; they stay in the regression as nuisances.
+
+    recordings: in how many of the device steps are looked for one after the other, which share the
+    level.
 
     A kink or a loop that the terms lack is made of steps, too: what follows temperature, and other
     rivals, are taken beside the terms first, wherever one explains more than the steps do, or much
@@ -74,7 +79,7 @@ def find_all(regression, terms, rivals: Sequence[Candidate] = ()) -> list[Step]:
     most = len(rivals) + _MOST_FORMS
     while True:
         regression.set_events([])
-        steps = sorted(_all(regression, beside), key=lambda s: -s.ratio)
+        steps = sorted(_all(regression, beside, recordings), key=lambda s: -s.ratio)
         if not steps or not most:
             break
         form, gain = _best_form(regression, beside, forms)
@@ -124,7 +129,7 @@ def column(regression, step: Step) -> list[np.ndarray]:
     return out
 
 
-def _all(regression, terms) -> list[Step]:
+def _all(regression, terms, recordings: int = 1) -> list[Step]:
     """Steps that stand beside each other; the regression is left as it was."""
     kept = regression.events()
     most = MOST_PER_SESSION * len(regression.sessions)
@@ -134,11 +139,11 @@ def _all(regression, terms) -> list[Step]:
         if step is None:
             break
         step.ratio = _gain(regression, terms, steps, step, kept)
-        if chi2.sf(step.ratio, 3) * _tried(regression) > _level(len(steps)):
+        if chi2.sf(step.ratio, 3) * _tried(regression) * recordings > _level(len(steps)):
             break
         steps.append(step)
         _set(regression, steps, kept)
-    while steps and not _stand(regression, terms, steps, kept):
+    while steps and not _stand(regression, terms, steps, kept, recordings):
         steps.remove(min(steps, key=lambda s: s.ratio))
         _set(regression, steps, kept)
     steps = _sized(regression, terms, steps, kept)
@@ -161,13 +166,14 @@ def _gain(regression, terms, others, step, kept) -> float:
     return float(2.0 * (total - regression.fit(terms).total))
 
 
-def _stand(regression, terms, steps, kept) -> bool:
+def _stand(regression, terms, steps, kept, recordings: int) -> bool:
     """Whether each is beyond what the places away from all of them show; ratios are renewed."""
     away = _away(regression, steps, _best(regression, terms)[1])
     for step in steps:
         others = [s for s in steps if s is not step]
         step.ratio = _gain(regression, terms, others, step, kept)
-        step.p_value = min(1.0, _survival(step.ratio, away) * _tried(regression))
+        p_value = _survival(step.ratio, away) * _tried(regression) * recordings
+        step.p_value = min(1.0, p_value)
     _set(regression, steps, kept)
     return all(p < _level(k) for k, p in enumerate(sorted(s.p_value for s in steps)))
 

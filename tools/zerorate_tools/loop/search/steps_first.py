@@ -35,7 +35,7 @@ def without_steps(sessions: Sequence[Session]) -> list[Session]:
     if may_be_a_channels(sessions):
         return list(sessions)
     jumping = _jumping(sessions)
-    return [_less(s, _steps(s, jumping)) for s in sessions]
+    return [_less(s, _steps(s, jumping, len(sessions))) for s in sessions]
 
 
 def may_be_a_channels(sessions: Sequence[Session]) -> bool:
@@ -48,13 +48,14 @@ def _jumping(sessions) -> list[str]:
     return [n for n in _channels(sessions) if _jumps_often(sessions, n) or _turns(sessions, n)]
 
 
-def _steps(session, jumping) -> list[Step]:
-    """Those of one session in their order; one in the middle of a block, which two blocks in turn
-    show, is one."""
+def _steps(session, jumping, recordings: int) -> list[Step]:
+    """Those of one session of so many in their order; one in the middle of a block, which two
+    blocks in turn show, is one."""
     out: list[Step] = []
     often = [n for n in jumping if n != _RATE and _jumps_often([session], n)]
     terms = [t for c in _forms(session, set(jumping) - set(often)) for t in c.terms]
-    every = find_all(Regression([session]), [*bend_of(session), *terms], _forms(session, often))
+    beside, rivals = [*bend_of(session), *terms], _forms(session, often)
+    every = find_all(Regression([session]), beside, rivals, recordings)
     for step in sorted(every, key=lambda s: s.block):
         if out and step.block - out[-1].block == 1 and step.size_dps @ out[-1].size_dps > 0:
             deviation = np.hypot(step.deviation_dps, out[-1].deviation_dps)
