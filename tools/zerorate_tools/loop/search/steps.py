@@ -30,7 +30,7 @@ _AROUND = 10
 _UNSEEN, _UNSEEN_DEGC = 3, 1.0
 #: How much chi-squared counts beside the ratios at all places away from every step.
 _THEORY = 1.0
-#: Level of every step but the surest of all recordings together: those with several are the rarer.
+#: Level of every step but the surest of one search: recordings with several are the rarer.
 _BESIDE_OTHERS = 1e-4
 #: What a step must explain more than the best ramp in its place, as twice a gain in log likelihood:
 #: less than nothing, for noise that flickers makes a ramp of a small step.
@@ -68,12 +68,9 @@ def find_all(
 ) -> list[Step]:
     """Every step beside the terms, strongest first; they stay in the regression as nuisances.
 
-    recordings: in how many of the device steps are looked for one after the other, which share the
-    level.
-
     A kink or a loop that the terms lack is made of steps, too: what follows temperature, and other
     rivals, are taken beside the terms first, wherever one explains more than the steps do, or much
-    beside them.
+    beside them. recordings: of one device, each searched by itself, which share the level.
     """
     beside, forms = list(terms), [*_of_temperature(regression.sessions), *rivals]
     most = len(rivals) + _MOST_FORMS
