@@ -16,6 +16,9 @@ from .likelihood import Base, fit_base, ratios, session_scale
 
 #: Times the usual distance from the median of so many neighbours.
 _OUTLIER, _NEAR = 6.0, 9
+#: By how much squares of acceleration are shrunk, of their own whitened squares: at rest their sum
+#: is gravity's, a constant, and beside acceleration nothing but noise tells its coefficient.
+_SUM_OF_SQUARES = 1e-3
 
 
 @dataclass
@@ -120,7 +123,11 @@ class Regression:
                 np.column_stack([self.columns(t)[i] for t in candidates])
                 for i in range(len(self.sessions))
             ]
-        return cross_products(self.whiteners, self.y, self.stack(terms), x)
+        out = cross_products(self.whiteners, self.y, self.stack(terms), x)
+        for i, term in enumerate(terms):
+            if term.source.startswith("acc_") and term.power == 2:
+                out.zz[..., i, i] *= 1.0 + _SUM_OF_SQUARES
+        return out
 
     def fit(self, terms) -> Fit:
         """Joint fit with the noise's colour refitted."""
