@@ -83,7 +83,7 @@ def test_every_scored_point_is_in_the_plot_over_temperature_once(outcome, plots)
 
 def test_slots_of_one_source_are_told_apart_and_drawn_as_one_curve(tmp_path):
     effects = [("temperature-cubic", 20.0), ("temperature-quadratic", 10.0)]
-    closed = Closed(tmp_path, device(tmp_path, 1, effects, names=["alone"]))
+    closed = Closed(tmp_path, device(tmp_path, 2, effects, names=["alone"]))
     made, _ = plots_of(closed.analysis, closed.result, closed.logs, closed.folder)
     curve = next(plot for plot in made if plot.key == "effect-1")
     step = closed.result["effects"][0]
