@@ -125,5 +125,5 @@ def test_what_pieces_of_few_recordings_speak_against_is_withdrawn():
     worse = ways | {"after": np.full((4, 3), [0.9, 1.1, 0.9])}
     courses = {"a": Course(np.arange(4), {}, worse), "b": Course(np.arange(4), {}, ways)}
     alone, both = (Measured(courses, ["b"], np.zeros(3), inside=some) for some in ([], ["a"]))
-    assert _unharmed(selection, alone) is selection
-    assert _unharmed(selection, both).found[0].axes == (True, False, True)
+    assert _unharmed(selection, alone, None) is selection
+    assert _unharmed(selection, both, None).found[0].axes == (True, False, True)

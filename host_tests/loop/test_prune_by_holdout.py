@@ -71,17 +71,21 @@ def test_what_makes_the_error_smaller_stays_whatever_its_likelihood(monkeypatch)
     assert kinds(left) == ["supply-voltage"] and not left.withdrawn
 
 
+def never_asked(effect):
+    raise AssertionError(f"effect {effect} is not in doubt")
+
+
 def test_what_takes_hardly_anything_goes_where_one_recording_was_fitted():
     selection = select(simulate(11, [("supply-voltage", 5.0)]).sessions[:-1])
     after = [np.full((4, 3), 1.0), np.column_stack([np.full(4, e) for e in (0.97, 0.94, 0.5)])]
     parts = [[residual] for residual in after]
-    assert unharmed(selection, parts) is selection
-    [one] = unharmed(replace(selection, alone=True), parts).found
+    assert unharmed(selection, parts, never_asked) is selection
+    [one] = unharmed(replace(selection, alone=True), parts, never_asked).found
     assert one.axes == (False, True, True)
     # a slope takes the place of the firmware's own curve, of which a line shows nothing
     slope = Candidate("temperature-polynomial", (Term("temp", 10.0, 40.0),), "catalogue")
     with_slope = replace(selection, alone=True, found=[Found(slope, selection.found[0].decision)])
-    assert unharmed(with_slope, parts) is with_slope
+    assert unharmed(with_slope, parts, never_asked) is with_slope
 
 
 def test_what_the_session_held_out_is_the_worse_for_goes():
@@ -120,6 +124,24 @@ def test_no_effect_reaches_further_than_blocks_that_judged_it():
     assert found.candidate.kind == "vibration" and found.candidate.terms[0].hi < 0.1
 
 
+@pytest.mark.parametrize(
+    "errors, without_it, stays",
+    [
+        ([1.0, 1.2, 0.5], 0.7, True),  # the second is the worse without the first
+        ([1.0, 1.2, 0.5], 0.4, False),  # the second does better alone
+        ([1.0, 1.2, 1.1], 1.3, False),  # both together do harm
+    ],
+)
+def test_an_effect_that_a_later_one_needs_stays(errors, without_it, stays):
+    kind = Candidate("thermal-lag", (Term("temp", lag_s=60.0, lag_mode="lagged"),), "catalogue")
+    both = [Found(kind, Decision(True, 0.0, 0.0, 1.0, np.zeros(1))) for _ in range(2)]
+    selection = replace(select(simulate(2, sessions=1, bare=True).sessions), found=both)
+    parts = [[np.full((4, 3), e)] for e in errors]
+    assert (
+        unharmed(selection, parts, lambda i: [np.full((4, 3), without_it)]) is selection
+    ) == stays
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_each_pass_takes_something_away_until_nothing_is_worse(seed):
     rng = np.random.default_rng(seed)
@@ -128,9 +150,9 @@ def test_each_pass_takes_something_away_until_nothing_is_worse(seed):
     left = replace(select(simulate(2, sessions=1, bare=True).sessions), found=found)
     for _ in range(9):
         after = [[rng.normal(size=(4, 3))] for _ in range(len(left.found) + 1)]
-        less = unharmed(left, after)
+        less = unharmed(left, after, lambda i: [rng.normal(size=(4, 3))])
         if less is left:
             break
         assert less.applied.sum() < left.applied.sum()
         left = less
-    assert unharmed(replace(left, found=[]), after[:1]).found == []
+    assert unharmed(replace(left, found=[]), after[:1], never_asked).found == []

@@ -201,7 +201,8 @@ def _said(found):
 
 def _spared(found):
     axes = [axis for axis, used in zip("xyz", found.axes) if not used]
-    return f"; not corrected on {', '.join(axes)}, where the error would grow" if axes else ""
+    why = "where the error would grow or hardly fall"
+    return f"; not corrected on {', '.join(axes)}, {why}" if axes else ""
 
 
 def _after(analysis, effects: int) -> list[np.ndarray]:

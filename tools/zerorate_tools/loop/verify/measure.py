@@ -2,8 +2,10 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from os import PathLike
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -13,6 +15,7 @@ from ...recordings import Scales, open_recording
 from ...recordings.atomic import written_beside
 from ...recordings.reading import recording_name
 from ..motion.in_motion import slots_of
+from ..search.selection import Selection
 from .analysis import Analysis
 from .by_kernels import PiecesByKernels
 from .corrected import CorrectedWriter
@@ -105,19 +108,40 @@ def measure_and_prune(
         model = model_of(analysis, scales)
         measured = measure(analysis, logs, model, out, online, advance)
         assert measured.measured is not None, "it was just measured"
-        less = _unharmed(analysis.selection, measured.measured)
+        less = _unharmed(
+            analysis.selection, measured.measured, partial(_measured, analysis, logs, scales)
+        )
         if less is analysis.selection:
             return measured, model
         analysis = with_selection(analysis, less)
 
 
-def _unharmed(selection, measured: Measured):
-    """The selection without what the held-out sessions, or then the pieces, do worse with."""
-    each = range(len(selection.found) + 1)
-    less = unharmed(selection, [measured.with_first(k) for k in each])
-    if less is selection and measured.inside:
-        less = unharmed(selection, [measured.with_first(k, measured.inside) for k in each])
-    return less
+def _measured(analysis: Analysis, logs, scales: Scales, selection: Selection) -> Measured:
+    """What the kernels make of other effects than those of the analysis."""
+    other = deployable(with_selection(analysis, selection), scales)
+    with TemporaryDirectory() as scratch:
+        out = Path(scratch) / "corrected.parquet"
+        measured = measure(other, logs, model_of(other, scales), out).measured
+    assert measured is not None, "it was just measured"
+    return measured
+
+
+def _unharmed(selection: Selection, measured: Measured, again: Callable[[Selection], Measured]):
+    """The selection without what the held-out sessions, or then the pieces, do worse with.
+
+    again: measures another selection.
+    """
+    number = len(selection.found)
+    for names in ((), *([measured.inside] if measured.inside else [])):
+        after = [measured.with_first(k, names) for k in range(number + 1)]
+
+        def without(i: int, names=names):
+            return again(selection.without(i)).with_first(number - 1, names)
+
+        less = unharmed(selection, after, without)
+        if less is not selection:
+            return less
+    return selection
 
 
 def _sink(writer, p: PowerOn, test: bool, online: bool) -> Sink:

@@ -4,10 +4,12 @@ An effect that is there hardly ever makes a power-on that no fit has seen less l
 alone made of the others does more often than not. Both the likelihood, which looks where the noise
 is small, and the plain error, which is what counts in the end, must speak against it. What follows
 time alone must come again: time passes in every power-on, where another cause may be at rest. And
-on no axis may the error grow: there the effect is left out, whatever the likelihood says.
+on no axis may the error grow: there the effect is left out, whatever the likelihood says, unless
+those found after it need it: with all of them the error is smaller than before it, and than with
+all but it.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -42,32 +44,52 @@ def prune_by_holdout(selection: Selection, holdout: list[Session]) -> tuple[Sele
         if reason is AGAIN or without.after_rms <= judgement.after_rms:
             said = (label(selection.found[i].candidate), _said(reason, judgement, without))
             return prune_by_holdout(replace(less, withdrawn=[*less.withdrawn, said]), holdout)
-    after = [
-        [r for r, _ in residuals(selection.first(k), holdout)]
-        for k in range(len(selection.found) + 1)
-    ]
-    less = unharmed(selection, after)
+    after = [_left(selection.first(k), holdout) for k in range(len(selection.found) + 1)]
+    less = unharmed(selection, after, lambda i: _left(selection.without(i), holdout))
     return (selection, judgement) if less is selection else prune_by_holdout(less, holdout)
 
 
-def unharmed(selection: Selection, after: Sequence[list[np.ndarray]]) -> Selection:
+def _left(selection: Selection, holdout: list[Session]) -> list[np.ndarray]:
+    return [r for r, _ in residuals(selection, holdout)]
+
+
+def unharmed(
+    selection: Selection,
+    after: Sequence[list[np.ndarray]],
+    without: Callable[[int], list[np.ndarray]],
+) -> Selection:
     """The selection without what makes the error larger, or where one recording alone was fitted
     hardly smaller: of every axis the effect that does so most, or the selection itself where none
     does.
 
-    after: residuals (n, 3) of what was held out with the first 0, 1, ... effects.
+    after: residuals (n, 3) of what was held out with the first 0, 1, ... effects; without: with all
+    but the i-th.
     """
     errors = np.array([rms_dps(r) for r in after])
-    used = np.array([f.axes for f in selection.found], bool).reshape(-1, 3)
-    least = [_LEAST_TAKEN * (selection.alone and not _has_slope(f)) for f in selection.found]
-    allowed = errors[:-1] * (1.0 - np.array(least)[:, None])
-    grows = np.where(used, errors[1:] - allowed, 0.0)
+    grows = _grows(selection, errors, without)
     worst = grows.max(axis=0, initial=0.0)
     for i in reversed(range(len(grows))):
         axes = (grows[i] > 0) & (grows[i] == worst)
         if axes.any():
             selection = selection.spared(i, axes, _grown(errors, i))
     return selection
+
+
+def _grows(selection: Selection, errors: np.ndarray, without) -> np.ndarray:
+    """(effects, 3) by which the error is too large with an effect; zero where later ones need it.
+
+    errors: (1 + effects, 3) with the first so many; without: as for `unharmed`.
+    """
+    used = np.array([f.axes for f in selection.found], bool).reshape(-1, 3)
+    least = [_LEAST_TAKEN * (selection.alone and not _has_slope(f)) for f in selection.found]
+    share = 1.0 - np.array(least)[:, None]
+    grows = np.where(used, errors[1:] - errors[:-1] * share, 0.0)
+    for i in range(len(grows) - 1):
+        needed = (grows[i] > 0) & (errors[-1] <= errors[i] * share[i])
+        if needed.any():
+            needed &= errors[-1] <= rms_dps(without(i)) * share[i]
+            grows[i, needed] = 0.0
+    return grows
 
 
 def _has_slope(found: Found) -> bool:
