@@ -36,6 +36,8 @@ _AXIS_WORDS = const(15)
 _STEP_LSB = const(29)
 _WALK_MOST_Q16 = const(43)
 _TURN_ON_VARIANCE_Q8 = const(47)
+# layout: The effect model and its running state
+_CURVE_LSB = const(28)
 # layout: What a window was
 _STILL = const(1)
 # layout: Where a bias comes from
@@ -194,7 +196,7 @@ class Corrector:
         self.effects = effects
         # A curve that the model holds whole leaves little but noise at a temperature: estimators
         # that share its range have more of the readings each.
-        step = effects._curve_lsb // _ESTIMATORS_OF_A_CURVE
+        step = effects.e[_CURVE_LSB] // _ESTIMATORS_OF_A_CURVE
         self.settings[_STEP_LSB] = max(self._step_lsb, step)
         self._join_others()
 

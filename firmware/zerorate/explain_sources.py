@@ -43,35 +43,19 @@ _UNKNOWN_Q8 = const(0x1FFFFFFF)
 def explain_sources(corrector):
     """Return the lines on the sources that are on."""
     lines = []
-    if corrector.motion is not None:
-        lines.append(explain_motion(corrector.motion, corrector.sensor))
-    if corrector.gravity is not None:
-        r = corrector.gravity
-        lines.append(explain_gravity(r, corrector.sensor))
-        lines.append(observable(r, corrector.gravity_settings))
+    sensor = corrector.sensor
+    m = corrector.motion
+    if m is not None:
+        counts = (MOTION[m[_MOTION_REASON]], m[_ACCEPTED], m[_REFUSED])
+        text = "In motion: %s (%d windows learned, %d refused)" % counts
+        lines.append(text + found(m, _MOTION_BIAS_Q8, _MOTION_QUALITY_Q8, sensor))
+    r = corrector.gravity
+    if r is not None:
+        text = "Against gravity: %s" % LEVEL[r[_GRAVITY_REASON]]
+        lines.append(text + found(r, _GRAVITY_BIAS_Q8, _GRAVITY_QUALITY_Q8, sensor))
+        seen = [observed(r, corrector.gravity_settings, axis) for axis in range(3)]
+        lines.append("Observable against gravity: %s." % ", ".join(seen))
     return lines
-
-
-def explain_motion(m, sensor):
-    """Return a line on the source in motion, whose state is `m`."""
-    text = "In motion: %s (%d windows learned, %d refused)" % (
-        MOTION[m[_MOTION_REASON]],
-        m[_ACCEPTED],
-        m[_REFUSED],
-    )
-    return text + found(m, _MOTION_BIAS_Q8, _MOTION_QUALITY_Q8, sensor)
-
-
-def explain_gravity(r, sensor):
-    """Return a line on the source against gravity, whose state is `r`."""
-    text = "Against gravity: %s" % LEVEL[r[_GRAVITY_REASON]]
-    return text + found(r, _GRAVITY_BIAS_Q8, _GRAVITY_QUALITY_Q8, sensor)
-
-
-def observable(r, c):
-    """Return a line on which axes gravity showed, and for how long."""
-    seen = [observed(r, c, axis) for axis in range(3)]
-    return "Observable against gravity: %s." % ", ".join(seen)
 
 
 def found(s, bias_q8, sigma_q8, sensor):

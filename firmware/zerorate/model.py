@@ -78,7 +78,6 @@ class EffectModel:
         self.channels = ()
         self.reason = NO_MODEL
         self.attend: "Any" = None
-        self._curve_lsb = 0
 
     def load_file(self, path: str, sensor: "Sensor", binding: "bytes | None" = None) -> int:
         """As load, from a file."""
@@ -97,7 +96,7 @@ class EffectModel:
         sensor: the Corrector's Sensor; binding: MPU6050.binding, None where no driver is (the
         scales alone are compared). REASONS says each result in words. Raises nothing for data.
         """
-        from .effects.model_file import _curve_lsb, compare, fill, judge, texts
+        from .effects.model_file import compare, fill, judge, texts
 
         self.forget()
         reason = judge(data)
@@ -111,8 +110,9 @@ class EffectModel:
                 reason = _IMPOSSIBLE
         if reason == LOADED:
             self.e[_SLOT_COUNT] = data[6]
-            self._curve_lsb = _curve_lsb(self.e, data[6])
             self.power_on()
+        else:
+            self.forget()
         unload("zerorate.effects", "model_file")
         self.reason = reason
         return reason
@@ -124,7 +124,6 @@ class EffectModel:
         self.channels = ()
         self.reason = NO_MODEL
         self.attend = None
-        self._curve_lsb = 0
 
     def power_on(self) -> None:
         """Begin a power-on: time, means, lags and memories anew; coefficients stay."""

@@ -120,15 +120,6 @@ LEAST = {"motion_start_dps": 0.001}
 MOST = {"dps": 4000.0, "g": 16.0, "degc": 200.0, "s": 86400.0, "share": 1.0}
 
 
-def checked(name, value):
-    """Return `value` of a setting. Raises ValueError outside of its range."""
-    most = MOST[name.split("_")[-1]]
-    least = LEAST.get(name, 0)
-    if not least <= value <= most:
-        raise ValueError("%s must be %s..%s, not %s" % (name, least, most, value))
-    return value
-
-
 def power_of_two(samples):
     """Return the shift of the power of two nearest to `samples`, 2..8."""
     shift = 2
@@ -150,7 +141,10 @@ def chosen_of(document, every, given):
     for name in given:
         if name not in chosen:
             raise ValueError("no such setting: %s" % name)
-        chosen[name] = checked(name, given[name])
+        least, most = LEAST.get(name, 0), MOST[name.split("_")[-1]]
+        if not least <= given[name] <= most:
+            raise ValueError("%s must be %s..%s, not %s" % (name, least, most, given[name]))
+        chosen[name] = given[name]
     return chosen
 
 

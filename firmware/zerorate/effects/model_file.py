@@ -26,6 +26,7 @@ _TICK_US = const(2)
 _SLOTS_A_SAMPLE = const(6)
 _INSTANT_SLOTS = const(9)
 _PLAY_COUNT = const(19)
+_CURVE_LSB = const(28)
 _INPUTS = const(32)
 _SLOTS = const(112)
 _TABLES = const(432)
@@ -238,14 +239,12 @@ def link(e, a, tables):
         not 0 <= e[a + _SLOT_SOURCE] < e[_INPUT_COUNT]
         or not -1 <= e[a + _SLOT_SECOND] < e[_INPUT_COUNT]
         or not -1 <= e[a + _SLOT_TABLE] < tables
-    ):
-        return False
-    if (
-        not -1 <= e[a + _SLOT_RING] < _MOST_RINGS
+        or not -1 <= e[a + _SLOT_RING] < _MOST_RINGS
         or not 0 <= e[a + _SLOT_DELAY] <= 63 * e[a + _SLOT_RING_STEP]
     ):
         return False
-    instant = of_the_sample(kind_of(e, a + _SLOT_SOURCE))
+    kind = kind_of(e, a + _SLOT_SOURCE)
+    instant = of_the_sample(kind)
     if e[a + _SLOT_SECOND] >= 0 and instant != _OF_RATE:
         instant = of_the_sample(kind_of(e, a + _SLOT_SECOND)) or instant
     if instant and (e[a + _SLOT_MEMORY] or e[a + _SLOT_DECAY] or e[a + _SLOT_RING] >= 0):
@@ -261,21 +260,11 @@ def link(e, a, tables):
     e[a + _SLOT_INSTANT] = instant
     if instant:
         e[_INSTANT_SLOTS] += 1
+    other = e[a + _SLOT_MEMORY] | e[a + _SLOT_SECOND] | e[a + _SLOT_DECAY] | e[a + _SLOT_RING]
+    if kind == _KIND_TEMP and e[a + _SLOT_POWER] == 1 and not other | e[a + _SLOT_TABLE]:
+        if e[a + _SLOT_KNOT] == _NO_VALUE:
+            e[_CURVE_LSB] = (e[a + _SLOT_HIGHEST_Q8] - e[a + _SLOT_LOWEST_Q8]) >> 8
     return True
-
-
-def _curve_lsb(e, slots):
-    """The range of temperature over which the model holds the very line over it, 0: it does not."""
-    for a in range(_SLOTS, _SLOTS + _SLOT_WORDS * slots, _SLOT_WORDS):
-        other = e[a + _SLOT_MEMORY] | e[a + _SLOT_SECOND] | e[a + _SLOT_DECAY] | e[a + _SLOT_RING]
-        if (
-            e[e[a + _SLOT_SOURCE] - _INPUT_VALUE_Q8 + _INPUT_KIND] == _KIND_TEMP
-            and e[a + _SLOT_POWER] == 1
-            and e[a + _SLOT_KNOT] == _NO_VALUE
-            and not other | e[a + _SLOT_TABLE]
-        ):
-            return (e[a + _SLOT_HIGHEST_Q8] - e[a + _SLOT_LOWEST_Q8]) >> 8
-    return 0
 
 
 def of_the_sample(kind):

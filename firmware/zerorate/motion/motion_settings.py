@@ -80,9 +80,6 @@ def motion_settings(
     """
     if not accel_lsb_per_g:
         raise ValueError("learning in motion needs an accelerometer")
-    if not odr_hz * node_s >= 1:
-        least_hz = 1 / node_s
-        raise ValueError("learning in motion needs %g Hz or more, not %g" % (least_hz, odr_hz))
     if not start_dps > 0:
         raise ValueError("start_dps must be above 0, not %s" % start_dps)
     if not 4 <= longest_stage <= 8 or not 1 <= passes <= 8:
@@ -90,13 +87,13 @@ def motion_settings(
     longest = 1 << longest_stage
     steps = (passes + 1) * longest + _ALGEBRA
     rad_per_lsb_us = pi / 180 / gyro_lsb_per_dps * 1e-6 * (1 << 24)
+    least_hz = max(1 / node_s, rad_per_lsb_us * 1e6 / 4096)
+    if not odr_hz >= least_hz:
+        raise ValueError("learning in motion needs %g Hz or more, not %g" % (least_hz, odr_hz))
     sample_us = 1e6 / odr_hz
     shift = 0
     while rad_per_lsb_us * sample_us * (1 << shift) < 4096 and shift < 20:
         shift += 1
-    if not shift:
-        least_hz = rad_per_lsb_us * 1e6 / 4096
-        raise ValueError("learning in motion needs %g Hz or more here, not %g" % (least_hz, odr_hz))
     gain_shift = 0
     while rad_per_lsb_us * (1 << shift) * (1 << gain_shift) < 1024 and gain_shift < 28:
         gain_shift += 1

@@ -70,10 +70,13 @@ class SaveSchedule:
         self._written = True
         self._saved_s = now_s
         self._due_s = -1
-        if not self._save(payload):
-            return False
-        self.loaded(vital)
-        return True
+        begun_us = ticks_us()
+        written = self.store.save(payload)
+        self.saves += 1
+        self.longest_us = max(self.longest_us, ticks_diff(ticks_us(), begun_us))
+        if written:
+            self.loaded(vital)
+        return written
 
     def _waits(self, now_s):
         """True while a rest is better waited for."""
@@ -82,13 +85,6 @@ class SaveSchedule:
         if self._due_s < 0:
             self._due_s = now_s
         return now_s - self._due_s < self.interval_s
-
-    def _save(self, payload):
-        begun_us = ticks_us()
-        written = self.store.save(payload)
-        self.saves += 1
-        self.longest_us = max(self.longest_us, ticks_diff(ticks_us(), begun_us))
-        return written
 
     def is_significant(self, vital: "array[int]") -> bool:
         """True when a vital value is tolerance or more away from the one last saved."""

@@ -135,26 +135,19 @@ class Store:
 
     def _find(self, piece):
         """(slot to load or -1, reason); notes which slot is the newest whole one of any kind."""
-        best = -1
-        best_sequence = -1
         reason = EMPTY
-        self._newest = -1
-        self.sequence = 0
-        newest_reason = EMPTY
+        whole = []
         for slot in range(2):
             judged = self._judge(slot, piece)
             if judged in (EMPTY, DAMAGED):
                 reason = max(reason, judged)
-                continue
-            sequence = self._sequence()
-            if self._newest < 0 or sequence > self.sequence:
-                self._newest = slot
-                self.sequence = sequence
-                newest_reason = judged
-            if judged == LOADED and sequence > best_sequence:
-                best = slot
-                best_sequence = sequence
-        return best, newest_reason if self._newest >= 0 else reason
+            else:
+                whole.append((self._sequence(), -slot, judged))  # of two alike the first
+        whole.sort()
+        self.sequence, newest, reason = whole[-1] if whole else (0, 1, reason)
+        self._newest = -newest
+        fits = [-slot for _, slot, judged in whole if judged == LOADED]
+        return fits[-1] if fits else -1, reason
 
     def _judge(self, slot, piece):
         """Read slot through piece, a bytearray, its header to stay, and say what it is."""
