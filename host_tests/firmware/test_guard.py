@@ -31,6 +31,7 @@ def rails(frames, dt_us):
 
 def temperature_jumps(frames, dt_us):
     frames[::2, 3] += 500
+    frames[1::2, 3] -= 500
 
 
 def time_stands_still(frames, dt_us):
@@ -101,6 +102,22 @@ def test_one_broken_frame_in_a_rest_ends_it_but_a_repeat_does_not(fault, kind, w
     assert corrector.state[STATE.REST] == (1 if kind == guard.REPEAT else 0)
 
 
+def test_the_noise_of_a_thermometer_ends_no_rest():
+    frames = rest(60, 1, (1.0, 2.0, 3.0))
+    frames[:, 3] += np.random.default_rng(2).normal(0, 88, len(frames))  # a quarter of a degree
+    assert (np.abs(np.diff(frames[:, 3])) > 400).sum() > 3
+    _, outcome = play(frames)
+    assert (outcome.verdict == guard.GOOD).all()
+
+
+def test_a_temperature_that_moved_for_good_is_refused_once():
+    frames = rest(60)
+    frames[3000:, 3] += 500
+    _, outcome = play(frames)
+    assert np.flatnonzero(outcome.verdict).tolist() == [3000]
+    assert (outcome.verdict[3000:3001] == guard.TEMPERATURE_JUMP).all()
+
+
 def test_good_frames_are_counted_and_learned_from():
     corrector, outcome = play(rest(20, 1, (1.0, 2.0, 3.0)))
     assert (outcome.verdict == guard.GOOD).all()
@@ -142,6 +159,7 @@ class TestOneFrame:
         state = array("i", [9] * 128)
         state[FRAME : FRAME + 7] = array("i", BEFORE)
         state[ELAPSED_US] = 100
+        state[STATE.TEMP] = BEFORE[3]
         for word in ENDED:
             state[word] = 5
         return state
@@ -157,7 +175,13 @@ class TestOneFrame:
         assert list(state[COUNTS : COUNTS + 8]) == counts
         ended = [0 if kind > guard.REPEAT else before[word] for word in ENDED]
         assert [state[word] for word in ENDED] == ended
-        known = {*range(FRAME, FRAME + 7), *range(COUNTS, COUNTS + 8), *ENDED, ELAPSED_US}
+        known = {
+            *range(FRAME, FRAME + 7),
+            *range(COUNTS, COUNTS + 8),
+            *ENDED,
+            ELAPSED_US,
+            STATE.TEMP,
+        }
         assert [i for i in range(128) if i not in known and state[i] != 9] == []
         return kind
 
@@ -191,6 +215,16 @@ class TestOneFrame:
     def test_it_is_of_the_kind_that_comes_first(self, state, frame, dt_us, kind):
         assert self.check(state, frame, dt_us) == kind
         assert state[ELAPSED_US] == 100 + (dt_us if kind <= guard.REPEAT else 0)
+
+    @pytest.mark.parametrize("sign", [1, -1])
+    def test_a_step_of_the_temperature_is_a_jump_only_if_it_is_also_far_from_the_smoothed_one(
+        self, state, sign
+    ):
+        frame = [1, 2, 3, 40 + sign * JUMP_LSB, 5, 6, 7]
+        state[STATE.TEMP] = 40 + sign
+        assert self.check(array("i", state), frame, 10) == guard.GOOD
+        state[STATE.TEMP] = 40
+        assert self.check(state, frame, 10) == guard.TEMPERATURE_JUMP
 
     @pytest.mark.parametrize("word", range(7))
     def test_one_word_that_differs_makes_it_no_repeat(self, state, word):

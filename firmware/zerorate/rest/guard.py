@@ -10,6 +10,7 @@ _ELAPSED_US = const(16)
 _WINDOW_N = const(17)
 _DIRTY = const(18)
 _REST = const(34)
+_TEMP = const(51)
 # layout: The corrector's settings
 _LEAP_US = const(1)
 _JUMP_LSB = const(2)
@@ -43,13 +44,12 @@ def all_alike(x: ptr32) -> int:
 
 
 def exchange(s: ptr32, x: ptr32) -> int:
-    """Put the frame in the place of the one before; return 1 if it is the same."""
-    same = 1
+    """Put the frame in the place of the one before; return 0 if it is the same."""
+    differs = 0
     for i in range(7):
-        if x[i] != s[_FRAME + i]:
-            same = 0
+        differs |= x[i] ^ s[_FRAME + i]
         s[_FRAME + i] = x[i]
-    return same
+    return differs
 
 
 def check(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
@@ -57,7 +57,7 @@ def check(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
     # A repeat is passed over; every other fault also ends the rest that is being watched, because
     # what stands beside a broken frame may be broken too.
     step = x[3] - s[_FRAME + 3]
-    repeats = exchange(s, x)
+    differs = exchange(s, x)
     kind = GOOD
     if (x[0] == 0 or x[0] == -1) and all_alike(x):
         kind = ALL_ZERO - x[0]
@@ -67,10 +67,12 @@ def check(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
         kind = TIME_STOOD_STILL
     elif dt_us > c[_LEAP_US]:
         kind = TIME_LEAPT
-    elif repeats:
+    elif differs == 0:
         kind = REPEAT
     elif step >= c[_JUMP_LSB] or step <= -c[_JUMP_LSB]:
-        kind = TEMPERATURE_JUMP
+        step = x[3] - s[_TEMP]  # two readings of a noisy thermometer may be as far apart
+        if step >= c[_JUMP_LSB] or step <= -c[_JUMP_LSB]:
+            kind = TEMPERATURE_JUMP
     if kind == GOOD and at_rail(x):
         kind = RAIL
     s[_COUNTS + kind] = (s[_COUNTS + kind] + 1) & 0x1FFFFFFF
@@ -79,7 +81,6 @@ def check(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
         s[_DIRTY] = 0
         s[_REST] = 0
     elif dt_us > 0 and dt_us <= c[_LEAP_US]:
-        s[_ELAPSED_US] += dt_us
-        if s[_ELAPSED_US] > _MOST_US:
-            s[_ELAPSED_US] = _MOST_US
+        elapsed_us = s[_ELAPSED_US] + dt_us
+        s[_ELAPSED_US] = elapsed_us if elapsed_us < _MOST_US else _MOST_US
     return kind

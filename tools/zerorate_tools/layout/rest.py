@@ -192,7 +192,7 @@ SETTINGS = Array(
     (
         ("AXES", 1, "word", "where the axis blocks begin in the state"),
         ("LEAP_US", 1, "us", "a longer time between two samples is a fault"),
-        ("JUMP_LSB", 1, "LSB", "a larger step of the temperature is a fault"),
+        ("JUMP_LSB", 1, "LSB", "a temperature as far from the latest and the mean one is a fault"),
         ("WINDOW", 1, "samples", "a window"),
         ("WINDOW_SHIFT", 1, "bits", "its power of two"),
         ("SEGMENT", 1, "windows", "a segment"),
