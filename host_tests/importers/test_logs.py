@@ -30,6 +30,21 @@ def test_a_mat_is_a_table_of_its_variables(tmp_path):
         read_foreign(tmp_path / "bad.mat", mapping=mapping)
 
 
+def test_a_variable_of_a_mat_that_begins_with_time_is_offered_so(tmp_path):
+    counted = np.column_stack([np.arange(50) / 100, RNG.normal(33000, 20, size=(50, 3))])
+    scipy.io.savemat(tmp_path / "in.mat", {"omega": counted})
+    offered = r"t_us=omega\[0\]:s --map gx=omega\[1\]:dps --map gy=omega\[2\]:dps"
+    with pytest.raises(BadRecording, match=f"if these are rates: --map {offered}"):
+        read_foreign(tmp_path / "in.mat")
+
+
+def test_a_mat_of_arrays_of_three_is_read_by_their_names(tmp_path):
+    arrays = {"Gyr_noise": RNG.normal(size=(50, 3)), "Acc_noise": RNG.normal(size=(50, 3))}
+    scipy.io.savemat(tmp_path / "in.mat", arrays)
+    with pytest.raises(BadRecording, match=r"units of columns 'Gyr_noise\[0\]'.* are not known"):
+        read_foreign(tmp_path / "in.mat")
+
+
 def test_a_ulog_puts_acceleration_on_the_times_of_the_rates(tmp_path):
     n = 20
     stamps, late = np.arange(n) * 5000 + 1000, np.arange(n) * 5000 + 2500
@@ -117,6 +132,13 @@ def test_a_dataflash_log_gives_one_instance(tmp_path):
     assert told(report, "INS_GYROFFS")
     with pytest.raises(BadRecording, match="no IMU message of instance 2"):
         read_foreign(tmp_path / "in.bin", instance=2)
+
+
+def test_units_that_a_log_states_are_not_doubted(tmp_path):
+    shaking = np.radians(RNG.normal(0, 3.0, size=(500, 3)))
+    rows = [(i * 40_000, 0, *rate, 0.0, 0.0, -G, 35.0) for i, rate in enumerate(shaking)]
+    foreign_files.dataflash(tmp_path / "in.bin", rows)
+    assert not told(read_foreign(tmp_path / "in.bin")[1], "did you mean")
 
 
 def test_a_dataflash_log_of_2015_has_milliseconds_and_a_message_a_sensor(tmp_path):

@@ -90,6 +90,32 @@ def test_a_header_in_a_comment_and_columns_by_number(tmp_path):
         read(tmp_path, f"{rows}\n")
 
 
+def test_a_log_that_begins_in_the_middle_of_a_line_is_as_wide_as_most_lines(tmp_path):
+    rows = "\n".join(f"{25 + i / 1000},{i / 100},0.8,0.8,0.9" for i in range(50))
+    log = f"=~=~= PuTTY log 2026.05.08 =~=~=\n08,0.8,0.9\n{rows}\n"
+    recording, report = read(
+        tmp_path, log, mapping="temp=1:degc t_us=2:s gx=3:dps gy=4:dps gz=5:dps"
+    )
+    assert len(recording) == 50 and recording.temp_degc()[0] == pytest.approx(25, abs=0.01)
+    assert report.dropped == {"not as many cells as the header": 1}
+
+
+def test_a_time_of_day_among_columns_without_names_is_offered_as_time(tmp_path):
+    rows = "\n".join(f"2026-05-01   10:00:{i // 5:02d} 0.8  0.8   0.9" for i in range(50))
+    with pytest.raises(BadRecording, match="--map t_us=2:s --map gx=3:dps --map gy=4:dps"):
+        read(tmp_path, f"{rows}\n")
+
+
+def test_no_mapping_is_offered_where_nothing_tells_which_columns_are_rates(tmp_path):
+    rng = np.random.default_rng(4)
+    values = rng.normal(size=(50, 6)) * [0.01, 0.02, 0.01, 0.1, 0.1, 0.1] + 49.0 * (
+        np.arange(6) == 0
+    )
+    rows = "\n".join(",".join(f"{v:.4f}" for v in row) for row in values)
+    with pytest.raises(BadRecording, match="map it: --map gx=COLUMN:dps, COLUMN one of 1, 2, 3"):
+        read(tmp_path, f"{rows}\n")
+
+
 def test_a_header_in_a_comment_is_one_where_a_column_has_words(tmp_path):
     rows = "\n".join(f"{i / 100},imu_link,0.8,0.8,0.9" for i in range(50))
     recording, _ = read(tmp_path, f"%t_s,frame_id,gx_dps,gy_dps,gz_dps\n{rows}\n")

@@ -71,6 +71,13 @@ def test_bare_axes_are_offered_too(tmp_path):
         read(tmp_path, frame)
 
 
+def test_a_quaternion_is_offered_as_no_rates(tmp_path):
+    frame = table()[["t_s", *(f"g{a}_dps" for a in "xyz")]]
+    frame.columns = ["t_s", "x", "y", "z"]
+    with pytest.raises(BadRecording, match="map it: --map gx=COLUMN:dps, COLUMN one of t_s, x"):
+        read(tmp_path, frame.assign(w=1.0))
+
+
 def test_a_phones_sensor_logger_is_known_by_its_columns(tmp_path):
     frame = table()
     at_ns = 1_777_636_800_000_000_000 + (frame["t_s"] * 1e9).astype("int64")

@@ -63,15 +63,22 @@ def unit_words(wanted: Mapping[str, Mapped], target: str, unit: str) -> str:
     return f"--{kind_of(target)}-unit {unit}"
 
 
-def likely_columns(first: Mapping[str, np.ndarray]) -> list[str]:
+def likely_columns(
+    first: Mapping[str, np.ndarray], calendar: frozenset[str] = frozenset()
+) -> list[str]:
     """Words as of --map for columns that nothing names: what only grows is time, three whose length
-    stays about gravity are acceleration, the next three are rates; [] where there are no three.
+    stays about gravity are acceleration, the next three are rates; [] where there are no three, or
+    where without gravity there are more.
 
-    first: the first rows of every column, in the file's order.
+    first: the first rows of every column, in the file's order; calendar: those that are dates.
     """
-    values = {name: column for name, column in first.items() if np.isfinite(column).all()}
-    time = next((name for name, column in values.items() if _only_grows(column)), None)
-    rest = [name for name in values if name != time]
+    values = {n: v for n, v in first.items() if np.isfinite(v).sum() > len(v) / 2}
+    whole = np.isfinite(list(values.values())).all(axis=0)
+    values = {name: column[whole] for name, column in values.items()}
+    times = [name for name in values if name in calendar]
+    times += [name for name in values if name not in calendar and _only_grows(values[name])]
+    time = next(iter(times), None)
+    rest = [name for name in values if name not in times]
     out = [] if time is None else [f"t_us={time}:{_likely_time(values[time])}"]
     rates = "lsb" if all((values[name] % 1 == 0).all() for name in rest) else "dps"
     for at in range(len(rest) - 2):
@@ -82,6 +89,8 @@ def likely_columns(first: Mapping[str, np.ndarray]) -> list[str]:
             rates = "rad/s" if unit == "m/s2" else "dps"
             rest = rest[at + 3 :] if len(rest) >= at + 6 else rest[:at]
             break
+    else:
+        rest = rest if len(rest) == len(GYRO) else []
     gyro = [f"{axis}={name}:{rates}" for axis, name in zip(GYRO, rest)]
     return out + gyro if len(gyro) == len(GYRO) else []
 

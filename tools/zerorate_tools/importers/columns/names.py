@@ -8,12 +8,12 @@ from .units import RAW, unit_in_name, without_unit
 _AXIS = "([xyz])"
 _GYRO = re.compile(
     r"(?:.*(?:gyroscope|gyrorotation|gyro|gyr|angularvelocity|angularrate|angvel|rotationrate|omega)"
-    r"(?:uncalibrated|calibrated|unfilt|adc|raw|rad|data|rate|dps|value){0,2}|(?:.*imu)?(?:gy|[wg]))"
-    + f"{_AXIS}(?:cal)?$|^{_AXIS}(?:gyroscope|gyro|gyr)$"
+    r"(?:uncalibrated|calibrated|unfilt|adc|raw|rad|data|rate|dps|value|static|noise){0,2}"
+    r"|(?:.*imu)?(?:gy|[wg]))" + f"{_AXIS}(?:cal)?$|^{_AXIS}(?:gyroscope|gyro|gyr)$"
 )
 _ACCEL = re.compile(
     r"(?:.*(?:accelerometer|acceleration|accel|acc|specificforce)"
-    r"(?:uncalibrated|calibrated|smooth|adc|raw|data|ms2|value|ln|wr){0,2}|(?:.*imu)?ac?)"
+    r"(?:uncalibrated|calibrated|smooth|adc|raw|data|ms2|value|ln|wr|static|noise){0,2}|(?:.*imu)?ac?)"
     + f"{_AXIS}(?:cal)?$|^{_AXIS}(?:accelerometer|accel|acc)$"
 )
 #: Less gravity, so no measure of it.
@@ -27,6 +27,8 @@ _TIME = re.compile(
 )
 _SEC = re.compile(r"(.*?)(?:secs?|seconds?)$")
 _NANOSEC = re.compile(r"(.*?)(?:nanosecs?|nsecs?|nanoseconds?)$")
+#: A column of a variable of a .mat.
+_ARRAY = re.compile(r"\[\d+\]$")
 _LAST_AXIS = re.compile(f".*{_AXIS}$")
 _BARE = re.compile(f"{_AXIS}(?:axis)?$")
 _BODY_RATES = dict(zip(("gx", "gy", "gz"), "pqr"))
@@ -43,12 +45,13 @@ def gyro_groups(names: list[str]) -> list[dict[str, str]]:
 
     By name; where no name tells, by a unit of rates and an axis, as w_RS_S_x [rad s^-1] of EuRoC.
     """
+    names = _of_three(names)
     return _groups(names, _GYRO, "g") or _groups(_in_units_of("gx", names), _LAST_AXIS, "g")
 
 
 def accel_beside(names: list[str], gyro: dict[str, str], instance: int) -> dict[str, str]:
     """The acceleration whose names are most like those of the rates; empty where there is none."""
-    names = [name for name in names if not _FREE.match(spelled(name))]
+    names = [name for name in _of_three(names) if not _FREE.match(spelled(name))]
     groups = _groups(names, _ACCEL, "a") or _groups(_in_units_of("ax", names), _LAST_AXIS, "a")
     if not groups:
         return {}
@@ -61,11 +64,12 @@ def accel_beside(names: list[str], gyro: dict[str, str], instance: int) -> dict[
 
 
 def bare_axes(names: list[str]) -> dict[str, str]:
-    """Columns that are called by their axis alone (x, xaxis), or p q r, as if they were rates."""
+    """Columns that are called by their axis alone (x, xaxis), or p q r, as if they were rates;
+    beside a w they are a quaternion's."""
     by_letter = {name.lower(): name for name in names}
     if all(letter in by_letter for letter in _BODY_RATES.values()):
         return {target: by_letter[letter] for target, letter in _BODY_RATES.items()}
-    return next(iter(_groups(names, _BARE, "g")), {})
+    return {} if "w" in by_letter else next(iter(_groups(names, _BARE, "g")), {})
 
 
 def temperature(names: list[str]) -> str | None:
@@ -91,6 +95,18 @@ def split_time(names: list[str]) -> tuple[str, str] | None:
         elif sec:
             by_stem.setdefault(sec[1], {})["s"] = name
     return next(((two["s"], two["ns"]) for two in by_stem.values() if len(two) == 2), None)
+
+
+def unnamed(names: list[str]) -> bool:
+    """Whether no name tells anything: numbers, or all the columns of one variable of a .mat."""
+    numbered = names == [str(number) for number in range(1, len(names) + 1)]
+    return numbered or len(names) > 3 and len({_ARRAY.sub("", name) for name in names}) == 1
+
+
+def _of_three(names: list[str]) -> list[str]:
+    """Names without those of a variable of more than three columns: its [0] is no x."""
+    wide = {_ARRAY.sub("", name) for name in names if name.endswith("[3]")}
+    return [name for name in names if _ARRAY.sub("", name) not in wide or "[" not in name]
 
 
 def _with_letter(text: str) -> str:

@@ -19,13 +19,15 @@ _LISTED = 24
 
 @dataclass
 class Plan:
-    """Columns by the names of a recording. raw: kinds (gyro, accel, temp) that are counts."""
+    """Columns by the names of a recording. raw: kinds (gyro, accel, temp) that are counts.
+    by_format: the format itself says what its columns are."""
 
     wanted: dict[str, Mapped]
     factors: dict[str, tuple[float, float]]
     plus: dict[str, float] = field(default_factory=dict)
     raw: frozenset[str] = frozenset()
     notes: list[str] = field(default_factory=list)
+    by_format: bool = False
 
     @property
     def columns(self) -> list[str]:
@@ -67,7 +69,7 @@ def planned(
     if not all(axis in wanted for axis in ACCEL):
         wanted = {target: mapped for target, mapped in wanted.items() if target not in ACCEL}
     _check_there(table, wanted, path)
-    plan = Plan(wanted, {}, notes=notes)
+    plan = Plan(wanted, {}, notes=notes, by_format=bool(table.mapping))
     plan.plus = {t: factors_of(t)[m.plus[1]][0] for t, m in wanted.items() if m.plus}
     raw, unknown = set(), {}
     first = table.first_rows(plan.columns)
@@ -148,9 +150,10 @@ def _offered(table: Table, wanted: Mapping[str, Mapped], missing: list[str]) -> 
     bare = usual.bare_axes(table.names)
     if bare:
         return " ".join(f"--map {t}={c}:dps" for t, c in bare.items() if t in missing)
-    if wanted or table.names != [str(n + 1) for n in range(len(table.names))]:
+    if wanted or not usual.unnamed(table.names):
         return ""
-    return " ".join(f"--map {words}" for words in likely_columns(table.first_rows(table.names)))
+    first = table.first_rows(table.names)
+    return " ".join(f"--map {words}" for words in likely_columns(first, table.calendar))
 
 
 def hz_words(table: Table) -> str:

@@ -85,7 +85,7 @@ def _of_gravity(seen: dict[str, np.ndarray], plan: Plan) -> list[str]:
 
 
 def _of_rates(found: Gathered, plan: Plan) -> list[str]:
-    if "gyro" in plan.raw or found.samples < 200:
+    if "gyro" in plan.raw or plan.by_format or found.samples < 200:
         return []
     rates = np.array([found.looked_at[name] for name in GYRO])
     middle = float(np.abs(np.median(rates, axis=1)).max())

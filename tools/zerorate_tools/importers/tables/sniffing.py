@@ -2,6 +2,7 @@
 
 import csv
 import re
+from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -82,7 +83,9 @@ def _table_in(lines: list[str], encoding: str, path: Path) -> Form:
             raise BadRecording(path, "no table", do="name a CSV with a row for each sample")
         raise BadRecording(path, "no data row", do="name another file")
     _, at, skip, delimiter = best
-    first = _cells(lines[skip], delimiter)
+    first = (
+        _cells(lines[skip], delimiter) if at is not None else _whole_row(lines[skip:], delimiter)
+    )
     names, note = _names(lines, at, first, delimiter)
     dates = frozenset(name for name, cell in zip(names, first) if _DATE.match(cell.strip()))
     return Form(
@@ -95,6 +98,14 @@ def _table_in(lines: list[str], encoding: str, path: Path) -> Form:
         note=note,
         said_hz=_rate_said(lines[:skip]),
     )
+
+
+def _whole_row(lines: list[str], delimiter: str) -> list[str]:
+    """The first row as wide as most: a log of a serial port may begin in the middle of one."""
+    every = (_cells(line, delimiter) for line in lines if not line.lstrip().startswith(COMMENTS))
+    rows = [cells for cells in every if len(cells) >= _CELLS] or [_cells(lines[0], delimiter)]
+    usual = Counter(map(len, rows)).most_common(1)[0][0]
+    return next(cells for cells in rows if len(cells) == usual)
 
 
 def _rate_said(lines: list[str]) -> float | None:
