@@ -60,6 +60,21 @@ def test_a_bias_that_settles_up_to_a_turn_is_at_rest_before_it(still):
     assert resting[:110].all() and resting[210:].all() and not resting[150:165].any()
 
 
+def test_what_stays_where_a_knock_put_it_is_at_rest(still):
+    at_s = np.arange(ODR * 1800) / ODR
+    knocks = 40.0 * (np.abs((at_s - 600) % 100 - 1) < 1) * (at_s >= 600) * (at_s < 702)
+    bias = 0.6 * ((at_s >= 600) & (at_s < 700))
+    resting = still(bias + knocks, np.full(len(at_s), 25.0))
+    assert resting[570:597].all() and resting[605:697].all() and resting[705:].all()
+    assert not resting[600:602].any() and not resting[700:702].any()
+
+
+def test_a_motion_that_the_recording_begins_with_is_motion_until_it_died_down(still):
+    at_s = np.arange(ODR * 1800) / ODR
+    resting = still(2.0 * np.exp(-at_s / 8), np.full(len(at_s), 25.0))
+    assert not resting[:25].any() and resting[40:].all()
+
+
 def test_a_device_mostly_in_motion_keeps_its_rests(still):
     at_s = np.arange(ODR * 1200) / ODR
     moving = at_s % 100 >= 19

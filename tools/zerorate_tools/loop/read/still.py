@@ -39,11 +39,10 @@ def still_ticks(ticks, edges: bool = True) -> np.ndarray:
     quiet = there & _is_quiet(ticks, there)
     rate = _less_temperature(ticks, quiet)
     middle = _running_middle(rate, quiet, max(3, int(_WINDOW_S / ticks.tick_s) | 1))
-    off = np.abs(rate - middle)
     still = quiet & _is_near(rate - middle, there, quiet)
     if ticks.accel is not None:
         still &= _gravity_holds(ticks, there)
-    return still & ~_edges(off, still, there, ticks.tick_s) if edges else still
+    return still & ~_edges(rate, middle, still, there, ticks.tick_s) if edges else still
 
 
 def runs(mask: np.ndarray) -> np.ndarray:
@@ -90,15 +89,23 @@ def _weighted_median(values, weights):
     return values[order[np.searchsorted(total, 0.5 * total[-1])]]
 
 
-def _edges(off, still, there, tick_s):
-    """(m,) bool: ticks that lead without a break into motion and are off by more than noise; no
-    motion takes longer to die down than a lag of the bias does."""
+def _edges(rate, middle, still, there, tick_s):
+    """(m,) bool: ticks that lead without a break into motion and are off the still ones around them
+    by more than noise; no motion takes longer to die down than a lag of the bias does, and what
+    stays where a knock put it is a step of the bias. Near the recording's ends, where still ones
+    lie on one side alone, off the running middle."""
     if still.sum() < 3:
         return np.zeros(len(still), bool)
+    longest = max(1, round(_EDGE_S / tick_s))
+    first, *_, last = np.flatnonzero(still)
+    inside = slice(first + longest, max(last - longest, 0))
+    around = _running_middle(rate, still, 2 * longest + 1)
+    off = np.abs(rate - middle)
+    off[inside] = np.abs(rate - around)[inside]
     usual = _EDGE_SIGMAS * _MAD * np.median(off[still], axis=0)
     moving = there & ~still
     beside = moving | (there & (off > usual).any(axis=1))
-    return binary_dilation(moving, mask=beside, iterations=max(1, round(_EDGE_S / tick_s)))
+    return binary_dilation(moving, mask=beside, iterations=longest)
 
 
 def _is_quiet(ticks, there):
