@@ -10,6 +10,7 @@ from zerorate_tools.loop.fit.single import PiecesByLine, held
 from zerorate_tools.loop.search.by_pieces import (
     POLYNOMIAL,
     SEGMENTS,
+    Remembering,
     cancels,
     is_like_hysteresis,
     memory,
@@ -18,6 +19,7 @@ from zerorate_tools.loop.search.by_pieces import (
     remembering,
     segments,
 )
+from zerorate_tools.loop.search.one_recording import OneRecording
 from zerorate_tools.loop.search.select import Search
 from zerorate_tools.model.term import Term
 
@@ -123,6 +125,21 @@ def test_what_remembers_predicts_no_wave(wavy):
     other, by_line = rival(wavy)
     best = segments(wavy.regression, wavy.line, [], by_line, 0)
     assert other.nats < by_line(wavy.line, (), best.candidate.terms).sum() - 3.0
+
+
+@pytest.mark.parametrize("nats, taken", [(1000.0, True), (5.0, False)])
+def test_segments_that_a_memory_equals_must_be_as_clear_as_one(wavy, monkeypatch, nats, taken):
+    lag = next(c for c in wavy.pool if c.kind == "thermal-lag")
+    monkeypatch.setattr(
+        "zerorate_tools.loop.search.by_pieces.remembering", lambda *_: Remembering((), lag, np.inf)
+    )
+    regression, line, _, judged, by_line, _ = by(wavy, Kernels(nats))
+    better = segments(regression, line, [], Kernels(1000.0), 0)
+    better.decision = replace(better.decision, session_gains=np.array([nats]))
+    one = OneRecording(regression, line, wavy.pool, judged, 0, False)
+    one._bend_often(better, (), by_line)
+    assert [f.candidate.kind for f in one.found] == ([SEGMENTS] if taken else [])
+    assert better.confounded_with == (["thermal-lag"] if taken else [])
 
 
 def test_a_lag_takes_the_place_of_what_feigned_it(lagging):

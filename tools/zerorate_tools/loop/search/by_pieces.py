@@ -125,7 +125,7 @@ def memory(
         return None
     gain = judged(straight, beside, best.terms)
     decision = _decision(regression, every, best.terms, len(own), gain)
-    if decision.p_value > _LIKELY or not _is_clear(gain, regression, *_CLEARLY_OF_MEMORY):
+    if decision.p_value > _LIKELY or not is_clear_memory(regression, decision):
         return None
     return Found(best, decision)
 
@@ -142,11 +142,13 @@ def is_like_hysteresis(straight, beside, best: Candidate, pool, by_line: PiecesB
 
 @dataclass
 class Remembering:
-    """A curve over temperature, maybe none, with a memory of it, and the nats both gain."""
+    """A curve over temperature, maybe none, with a memory of it, and the nats both gain; doubtful:
+    it may as well be a hysteresis, whose width one course does not tell."""
 
     curve: tuple[Term, ...]
     memory: Candidate
     nats: float
+    doubtful: bool = False
 
 
 def remembering(straight, curve, pool, by_line: PiecesByLine) -> Remembering | None:
@@ -161,6 +163,9 @@ def remembering(straight, curve, pool, by_line: PiecesByLine) -> Remembering | N
             if c.kind in (*MEMORIES, _HYSTERESIS):
                 nats = float(by_line(straight, (), (*beside, *c.terms)).sum())
                 best = best if best and best.nats >= nats else Remembering(beside, c, nats)
+    if best:
+        alike = is_like_hysteresis(straight, best.curve, best.memory, pool, by_line)
+        best.doubtful = best.memory.kind == _HYSTERESIS or alike
     return best
 
 
@@ -181,8 +186,7 @@ def of_memory(
     """
     c, every = other.memory, [*straight, *other.curve]
     fits = fits_in_slots([*other.curve, *c.terms], taken)
-    doubtful = c.kind == _HYSTERESIS or is_like_hysteresis(straight, other.curve, c, pool, by_line)
-    if not fits or doubtful or cancels(regression.sessions, every, c.terms):
+    if not fits or cancels(regression.sessions, every, c.terms):
         return []
     own = [t for f in found for t in f.candidate.terms]
     instant = [t for f in found if f.candidate.kind not in MEMORIES for t in f.candidate.terms]
@@ -192,7 +196,7 @@ def of_memory(
     gain = with_it - (judged(straight, (), instant) if instant else 0.0)
     tried = sum(x.kind in MEMORIES for x in pool)
     decision = _decision(regression, every, c.terms, tried, gain)
-    if decision.p_value > _LIKELY or not _is_clear(gain, regression, *_CLEARLY_OF_MEMORY):
+    if decision.p_value > _LIKELY or not is_clear_memory(regression, decision):
         return []
     curve = Candidate("temperature-" + _NAMES[len(other.curve)], other.curve, "catalogue")
     beside = _decision(regression, straight, other.curve, 1, gain)
@@ -215,6 +219,11 @@ def _squares(sessions, terms, coefficients, left: bool) -> float:
         values = s.rate_dps - added if left else added
         total += float((s.less_offsets(values, s.available)[s.available] ** 2).sum())
     return total
+
+
+def is_clear_memory(regression: Regression, decision: Decision) -> bool:
+    """Whether pieces gain what they must of an effect that remembers temperature."""
+    return _is_clear(decision.session_gains, regression, *_CLEARLY_OF_MEMORY)
 
 
 def _is_clear(gain, regression, least_nats: float, most_left: float) -> bool:

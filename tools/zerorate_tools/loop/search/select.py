@@ -10,11 +10,11 @@ from ..fit.common_cause import coherence, turned_axes
 from ..fit.left_out import gains
 from ..fit.line import less_slope
 from ..fit.regression import Regression
-from ..fit.single import LEAST_OF_A_PIECE, PIECES, PiecesByLine
+from ..fit.single import PiecesByLine
 from ..read.sessions import Session
 from . import by_pieces, confounding, drift_test, hysteresis
 from . import steps as events
-from .bends import LEAST_OF_OTHERS, JudgedOnPieces, find_bends, on_pieces
+from .bends import LEAST_OF_OTHERS, JudgedOnPieces, on_pieces
 from .catalogue import Candidate, ranges
 from .catalogue import candidates as all_candidates
 from .collinear import collinear
@@ -25,13 +25,12 @@ from .fits_in_slots import fits_in_slots
 from .multiple_testing import MultipleTesting
 from .naming import name_found
 from .ols_holdout_ratio import ols_holdout_ratio
+from .one_recording import OneRecording
 from .refine import refined
 from .selection import Found, Selection
 
 MOST_EFFECTS = 6
 _KINDS_TRIED = 4
-#: Blocks at rest of one recording below which its bends are not looked for.
-_LEAST_BLOCKS = PIECES * LEAST_OF_A_PIECE
 _START_S = 60.0
 _TURN_BELOW = 1e-3
 #: Of the plain error of sessions left out, which for an effect that is there only drift makes grow.
@@ -89,7 +88,7 @@ class Search:
 
     def run(self) -> Selection:
         if self.on_pieces:
-            self._bend_first()
+            self._look_at_one(self.on_pieces)
         while len(self.found) < MOST_EFFECTS and self._add_one():
             self._drop_idle()
         if not self.on_pieces:
@@ -125,61 +124,14 @@ class Search:
             smallest = smallest_dps(r, beside, quadratic, needed)
             return {**smallest, **smallest_dps(r, self._beside_bend(), bent, needed)}
 
-    def _bend_first(self):
-        assert self.on_pieces is not None
-        if self.regression.sessions[0].available.sum() < _LEAST_BLOCKS:
-            self.refused.append(("temperature-curve", "too few rests to tell by pieces left out"))
-            return
-        bends = find_bends(self.regression, self.on_pieces, self.straight, self.pool)
-        self.found = [Found(c, d) for c, d in bends.found]
-        self.refused += bends.refused
-        self._hysteresis_of_one_recording(bends.curve)
-        self._by_pieces_alone(bends.curve)
-        self.bends = len(self.found)
+    def _look_at_one(self, on_pieces: JudgedOnPieces):
+        r = self.regression
+        one = OneRecording(r, self.line, self.pool, on_pieces, self.taken, self.judged_again)
+        one.look()
+        self.found, self.bends = one.found, len(one.found)
+        self.refused += one.refused
         if any(t.power == 2 for t in self.terms()):
             self.bend = ()
-
-    def _by_pieces_alone(self, curve: tuple[Term, ...]):
-        """What the likelihood may not tell from a walk of the noise, but pieces left out do."""
-        assert self.on_pieces is not None
-        if any(t.memory == "play" for t in self.terms()):
-            return
-        r, by_line = self.regression, PiecesByLine(self.regression.sessions[0])
-        judged = self.on_pieces, by_line, self.taken
-        better = by_pieces.polynomial(r, self.line, self.found, *judged)
-        self.found = [better] if better else self.found
-        self._remember(*judged)
-        better = by_pieces.segments(r, self.line, self.found, self.on_pieces, self.taken)
-        if better:
-            self._bend_often(better, curve, *judged)
-
-    def _bend_often(self, better: Found, curve: tuple[Term, ...], judged, by_line, taken: int):
-        """A line of many segments, unless what remembers temperature predicts as well: warming up
-        once, both are much alike, and at another power-on they part."""
-        nats = float(by_line(self.line, (), better.candidate.terms).sum())
-        other = by_pieces.remembering(self.line, curve, self.pool, by_line)
-        if other is None or other.nats < nats - hysteresis.TIES_NATS:
-            self.found = [better]
-            self._remember(judged, by_line, taken)
-            return
-        self.refused.append((by_pieces.SEGMENTS, "what remembers temperature predicts as well"))
-        beside = self.found, other, self.pool, judged, by_line, taken
-        self.found = by_pieces.of_memory(self.regression, self.line, *beside) or self.found
-
-    def _remember(self, *judged):
-        own = by_pieces.memory(self.regression, self.line, self.found, self.pool, *judged)
-        self.found += [own] if own else []
-
-    def _hysteresis_of_one_recording(self, curve: tuple[Term, ...]):
-        """A sum of play operators with the bend found, or with a whole curve, as one effect."""
-        assert self.on_pieces is not None
-        beside = [tuple(self.terms()), *([curve] if curve else [])]
-        found, refused = hysteresis.of_one_recording(
-            *(self.regression, self.straight, beside, self.pool, self.on_pieces, self.taken),
-            judged_again=self.judged_again,
-        )
-        self.found = [found] if found else self.found
-        self.refused += [(hysteresis.KIND, refused)] if refused else []
 
     def _widen_hysteresis(self):
         """A sum of play operators in place of what was found to remember temperature, or to follow
