@@ -195,7 +195,7 @@ def test_both_sources_take_three_kilobytes():
     assert 4 * words <= 3072
 
 
-@pytest.mark.parametrize("options", [{"longest_stage": 3}, {"passes": 0}])
+@pytest.mark.parametrize("options", [{"longest_stage": 3}, {"passes": 0}, {"passes": 4}])
 def test_settings_that_cannot_work_are_refused(options):
     with pytest.raises(ValueError, match="window"):
         motion_settings(**options)

@@ -82,8 +82,8 @@ def motion_settings(
         raise ValueError("learning in motion needs an accelerometer")
     if not start_dps > 0:
         raise ValueError("start_dps must be above 0, not %s" % start_dps)
-    if not 4 <= longest_stage <= 8 or not 1 <= passes <= 8:
-        raise ValueError("a window needs 16..256 nodes, and 1..8 passes")
+    if not 4 <= longest_stage <= 8 or not 1 <= passes <= 3:
+        raise ValueError("a window needs 16..256 nodes, and 1..3 passes")
     longest = 1 << longest_stage
     steps = (passes + 1) * longest + _ALGEBRA
     rad_per_lsb_us = pi / 180 / gyro_lsb_per_dps * 1e-6 * (1 << 24)

@@ -67,7 +67,7 @@ def windows(recording: OpenRecording | Recording, **options: object) -> Iterator
                 settings[SET.VISITS] = 0
                 slopes = np.array(state[noted : noted + 9]).reshape(3, 3)
                 # the last pass has the last row, however many there were
-                slopes = slopes[[*range(len(passes) - 1), min(settings[SET.PASSES], 3) - 1]]
+                slopes = slopes[[*range(len(passes) - 1), settings[SET.PASSES] - 1]]
                 yield Window(
                     elapsed_us / 1e6,
                     settings[SET.NODE_US] / 1e6,
