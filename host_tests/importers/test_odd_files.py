@@ -1,5 +1,7 @@
 """Tables as people have them: each is read, or the error has the words that mend it."""
 
+import re
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -71,6 +73,19 @@ def test_a_line_of_units_beneath_the_names_is_one(tmp_path, units):
 def test_json_says_what_to_do_with_it(tmp_path):
     with pytest.raises(BadRecording, match="JSON, which is not read; write it as a CSV"):
         read(tmp_path, '{"t": 0.01, "gx": 0.1}\n{"t": 0.02, "gx": 0.1}\n')
+
+
+@pytest.mark.parametrize(
+    "first, words",
+    [
+        (b"PK\x03\x04", "a spreadsheet or an archive; save its table as CSV, or unpack it"),
+        (b"\x93NUMPY\x01", "an array of NumPy; write it with numpy.savetxt"),
+        (b"SQLite format 3\x00", "a database, and no .db3 of ROS 2; write its table as CSV"),
+    ],
+)
+def test_what_holds_tables_and_is_not_read_says_what_to_do_with_it(tmp_path, first, words):
+    with pytest.raises(BadRecording, match=re.escape(words)):
+        read(tmp_path, first + bytes(500))
 
 
 def test_comments_between_rows_are_no_rows(tmp_path):

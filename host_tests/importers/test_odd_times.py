@@ -41,6 +41,23 @@ def test_two_power_ons_in_one_file_are_not_mixed(tmp_path):
         read(tmp_path, pd.concat([frame, frame]))
 
 
+def test_a_stamp_that_lost_or_won_a_digit_is_left_out(tmp_path):
+    frame = table().rename(columns={"t_s": "t_us"})
+    frame["t_us"] = 788_201_245 + 13_000 * np.arange(2000)
+    frame.loc[500, "t_us"] = 79_470_245
+    frame.loc[1500, "t_us"] = 8_077_012_459
+    recording, report = read(tmp_path, frame)
+    assert len(recording) == 1998 and np.diff(recording.columns["t_us"]).max() == 26_000
+    assert told(report, "dropped 2 rows: the time stamp is torn")
+
+
+def test_two_clocks_that_take_turns_are_no_torn_stamps(tmp_path):
+    frame = table()
+    frame.loc[1::2, "t_s"] += 5000
+    recording, report = read(tmp_path, frame)
+    assert len(recording) == 2000 and not report.dropped
+
+
 def test_a_counter_that_ran_over_goes_on(tmp_path):
     frame = table().rename(columns={"t_s": "t_us"})
     frame["t_us"] = (2**32 - 5_000_000 + np.arange(2000) * 10_000) % 2**32

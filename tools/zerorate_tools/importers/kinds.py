@@ -27,6 +27,12 @@ _SUFFIXES = {
     **{".mcap": "mcap_file", ".bbl": "blackbox", ".bfl": "blackbox", ".mat": "matlab"},
 }
 
+#: First bytes of what people have tables in and nothing here reads -> what it is, what to do.
+_OTHERS = {
+    b"PK\x03\x04": ("a spreadsheet or an archive", "save its table as CSV, or unpack it"),
+    b"\x93NUMPY": ("an array of NumPy", "write it with numpy.savetxt(..., delimiter=',')"),
+    b"SQLite format 3": ("a database, and no .db3 of ROS 2", "write its table as CSV"),
+}
 _OF_TEXT = bytes([9, 10, 13, *range(32, 127)])
 
 
@@ -56,6 +62,9 @@ def _reader(path: Path) -> str | None:
             do = "name a file, or the folder of a ROS 2 bag"
             raise BadRecording(path, "a folder without metadata.yaml", do=do)
         return "ros_bag"
+    other = next((words for magic, words in _OTHERS.items() if _starts(path, magic)), None)
+    if other and path.suffix.lower() != ".db3":
+        raise BadRecording(path, other[0], do=other[1])
     by_magic = next((name for magic, name in _MAGIC.items() if _starts(path, magic)), None)
     return by_magic or (None if _is_text(path) else _SUFFIXES.get(path.suffix.lower()))
 

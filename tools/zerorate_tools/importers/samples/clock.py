@@ -7,6 +7,8 @@ import numpy as np
 from ...errors import BadRecording
 
 _LONGEST_PAUSE_US = 10_000_000
+#: Stamps on both sides of a torn one are nearer to each other; of all, so many are torn at most.
+_BESIDE_US, _MOST_TORN = 1e6, 0.01
 _DAY_US = 86_400e6
 _MOST_US = 2.0**62
 _STRIDE = 64
@@ -15,6 +17,18 @@ _KEPT = 1 << 18
 _GAP_INTERVALS = 3.0
 #: Of all steps: beyond that the stamps are coarser than the samples.
 _REPEATED = 0.2
+
+
+def whole_stamps(t_us: np.ndarray) -> np.ndarray:
+    """(n,) bool: not a stamp far from both neighbours, which are beside each other: on its way a
+    digit was lost, or one added. Where that is usual, two clocks take turns, and all are whole."""
+    whole = np.ones(len(t_us), bool)
+    if len(t_us) > 2:
+        steps = np.abs(np.diff(t_us))
+        far = np.minimum(steps[:-1], steps[1:]) > _LONGEST_PAUSE_US
+        torn = far & (np.abs(t_us[2:] - t_us[:-2]) < _BESIDE_US)
+        whole[1:-1] = ~torn | (torn.mean() > _MOST_TORN)
+    return whole
 
 
 class Unwrapped:

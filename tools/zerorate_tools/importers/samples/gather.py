@@ -11,7 +11,7 @@ from ...recordings.recording import ACCEL, GYRO, TEMP
 from ..columns.plan import Plan, hz_words
 from ..columns.units import TIME_S
 from ..tables.table import Table
-from .clock import Pace, Unwrapped, refuse_impossible
+from .clock import Pace, Unwrapped, refuse_impossible, whole_stamps
 from .doubts import refuse_too_fast
 from .order import Runs, in_order
 from .spool import PLACE, TIME, Spool
@@ -109,6 +109,7 @@ class _Gathering:
         # what has no reading may have no true time either
         columns = self._less(columns, self._has_any(columns), "no reading of these columns")
         refuse_impossible(columns[TIME], columns[PLACE], self.path)
+        columns = self._less(columns, whole_stamps(columns[TIME]), "the time stamp is torn")
         columns[TIME] = self.clock(columns[TIME], columns[PLACE])
         columns = self._less(columns, *self._is_something(columns))
         columns = self._less(columns, *self._not_all_zero(columns))
