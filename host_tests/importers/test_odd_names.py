@@ -71,6 +71,14 @@ def test_bare_axes_are_offered_too(tmp_path):
         read(tmp_path, frame)
 
 
+def test_columns_that_may_hold_a_cause_are_said_to_be_left_aside(tmp_path):
+    frame = table().assign(humidity=40.0, volt=3087.0)
+    _, report = read(tmp_path, frame)
+    assert told(report, "left aside: humidity, volt; take one along as --map NAME=COLUMN")
+    recording, report = read(tmp_path, frame, mapping="vdd_mv=volt humidity=humidity")
+    assert "vdd_mv" in recording.columns and not told(report, "left aside")
+
+
 def test_a_quaternion_is_offered_as_no_rates(tmp_path):
     frame = table()[["t_s", *(f"g{a}_dps" for a in "xyz")]]
     frame.columns = ["t_s", "x", "y", "z"]

@@ -16,7 +16,7 @@ from ..recordings import Recording, Scales, check_output, open_recording, record
 from ..recordings.reading import recording_name, whole
 from ..recordings.recording import ACCEL, COLUMNS
 from .columns.mapping import Mapped
-from .columns.plan import planned
+from .columns.plan import left_aside, planned
 from .kinds import table_of
 from .report import Options, Report
 from .samples.conversion import absent, fitting_scales, integer_batches
@@ -112,7 +112,7 @@ def _converted(table, path, options: Options, mapping, units, instance, folder):
         _leave_out_unread(found, plan, report)
         report.doubts += doubts(found, plan)
         scales = fitting_scales(found, plan, table, options, path, report.notes)
-        report.notes += absent(plan)
+        report.notes += [*absent(plan), *left_aside(plan, table)]
         names = [n for n in COLUMNS if n in found.spool.names]
         names += [n for n in plan.wanted if n not in COLUMNS]
         batches = integer_batches(found, plan, scales, path, report)

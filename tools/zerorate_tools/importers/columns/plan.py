@@ -14,7 +14,7 @@ from .guesses import guessed_unit, likely_columns, ready_words
 from .mapping import Mapped, factor_in, parsed_mapping
 from .units import RAW, factors_of, kind_of, unit_in_name, units_of
 
-_LISTED = 24
+_LISTED, _TOLD = 24, 8
 
 
 @dataclass
@@ -162,6 +162,15 @@ def hz_words(table: Table) -> str:
     return f"--hz{said or ', samples a second'}"
 
 
+def left_aside(plan: Plan, table: Table) -> list[str]:
+    """Which named columns a recording goes without, any of which may hold a cause."""
+    aside = [n for n in table.names if n and n not in plan.columns]
+    aside = [n for n in aside if n != usual.time_column(table.names)]
+    if plan.by_format or usual.unnamed(table.names) or not aside:
+        return []
+    return [f"left aside: {_list(aside, _TOLD)}; take one along as --map NAME=COLUMN"]
+
+
 def _choose(table: Table) -> str:
     return f"choose of {_list(table.names)}"
 
@@ -170,9 +179,9 @@ def _of(table: Table) -> str:
     return f"COLUMN one of {_list(table.names)}"
 
 
-def _list(names: list[str]) -> str:
-    more = len(names) - _LISTED
-    return ", ".join(names[:_LISTED]) + (f" and {more} more" if more > 0 else "")
+def _list(names: list[str], most: int = _LISTED) -> str:
+    more = len(names) - most
+    return ", ".join(names[:most]) + (f" and {more} more" if more > 0 else "")
 
 
 def _unit(
