@@ -34,6 +34,15 @@ def test_figures_count_what_was_found_named_and_made_worse():
     assert by_name["held-out error made worse by more than 2 %"].value == 20.0
 
 
+def test_every_size_counts_alike_in_what_is_left():
+    outcomes = [Outcome(Device("2x", i, (("vibration", 2.0),)), after=1.0) for i in range(3)]
+    outcomes.append(Outcome(Device("5x", 1, (("vibration", 5.0),)), after=2.0))
+    by_name = {f.name: f for f in figures(outcomes)}
+    for what in ("vibration", "all fourteen"):
+        assert by_name[f"2x-5x {what}: error after, mean"].value == 1.5
+    assert by_name["2x-5x vibration: error after, rms"].value == pytest.approx(2.5**0.5)
+
+
 def test_a_share_of_none_of_two_hundred_may_still_be_two_percent():
     none = share("found", [None] * 200, bool, 0.5)
     assert none.low == 0.0 and none.high == pytest.approx(1.88, abs=0.01)
@@ -46,6 +55,8 @@ def test_the_whole_benchmark_has_the_numbers_asked_for():
     assert sum(r.startswith("nothing, ") for r in rows) >= 300
     twice = {d.effects[0][0] for d in every if d.row == "2x"}
     assert set(CATALOGUE) < twice and len(CATALOGUE) == 14
+    lags = [d.row for d in every if d.effects[:1] and d.effects[0][0] == "thermal-lag"]
+    assert [lags.count(f"{size}x") for size in (2, 3, 5)] == [50, 20, 20]
     assert len({d.key for d in every}) == len(every)
 
 

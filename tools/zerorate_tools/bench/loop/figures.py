@@ -8,7 +8,19 @@ from typing import TypeVar
 import numpy as np
 from scipy.stats import binomtest
 
-from .devices import CATALOGUE, HIDDEN, KINK, MANY_WIDTHS, NULL, OUT, OUTSIDE, REAL, STEP, TWO
+from .devices import (
+    CATALOGUE,
+    HIDDEN,
+    KINK,
+    MANY_WIDTHS,
+    NULL,
+    OUT,
+    OUTSIDE,
+    REAL,
+    SIZES,
+    STEP,
+    TWO,
+)
 from .files import ROWS
 from .run_trial import Outcome
 
@@ -148,19 +160,26 @@ def _from_files(rows):
 
 
 def _removed(rows):
-    """Mean over devices of the error after over that of the noise alone, by effect and in all."""
-    sizes = [row for row in ("2x", "3x", "5x") if row in rows]
+    """Mean of the error after over that of the noise alone, by effect and in all: every size counts
+    alike, however many devices have it."""
     for effect in (*CATALOGUE, KINK):
-        group = [o for row in sizes for o in _by_effect(rows[row]).get(effect, [])]
-        if group:
-            limit = 1.3 if effect == KINK else 1.1
-            after = np.array([o.after for o in group])
-            yield _times(f"2x-5x {effect}: error after, mean", after.mean(), limit, len(group))
-            yield _times(f"2x-5x {effect}: error after, rms", rms(after), None, len(group))
-    group = [o for row in sizes for o in rows[row] if o.device.effects[0][0] in CATALOGUE]
-    if group:
-        mean = float(np.mean([o.after for o in group]))
-        yield _times("2x-5x all fourteen: error after, mean", mean, 1.1, len(group))
+        sizes = _after(rows, (effect,))
+        if sizes:
+            limit, number = 1.3 if effect == KINK else 1.1, sum(map(len, sizes))
+            mean, square = (np.mean([np.mean(s**power) for s in sizes]) for power in (1, 2))
+            yield _times(f"2x-5x {effect}: error after, mean", mean, limit, number)
+            yield _times(f"2x-5x {effect}: error after, rms", np.sqrt(square), None, number)
+    sizes = _after(rows, CATALOGUE)
+    if sizes:
+        mean, number = np.mean([s.mean() for s in sizes]), sum(map(len, sizes))
+        yield _times("2x-5x all fourteen: error after, mean", mean, 1.1, number)
+
+
+def _after(rows, effects) -> list[np.ndarray]:
+    """The errors after of devices with one of the effects, of each size that there is."""
+    groups = [rows.get(f"{size:g}x", []) for size in SIZES]
+    each = [[o.after for o in group if o.device.effects[0][0] in effects] for group in groups]
+    return [np.array(after) for after in each if after]
 
 
 def rms(values: np.ndarray) -> float:
