@@ -58,6 +58,24 @@ def test_rests_of_a_second_between_motions_are_learned():
         assert corrector.bias_lsb(axis) == pytest.approx(BIAS_DPS[axis] * LSB, abs=LEARNED_LSB)
 
 
+@pytest.mark.parametrize("hz", [5.0, 20.0])
+def test_the_crest_of_a_slow_wave_is_no_first_rest_of_eight_readings(hz):
+    frames = rest(60, 1, BIAS_DPS, odr_hz=hz)
+    frames[:, 6] += 20 * LSB * np.sin(np.arange(len(frames)))
+    frames[96:104, 6] = (BIAS_DPS[2] + 1) * LSB
+    corrector, _ = play(frames, Corrector(Sensor(odr_hz=hz), **RESTS_ALONE))
+    assert [corrector.source(axis) for axis in range(3)] == [0, 0, 0]
+
+
+def test_eight_readings_at_rest_are_learned_where_they_agree_with_what_is_known():
+    moving = handled(3, 1)[:24]
+    known = np.concatenate([rest(4, 1, BIAS_DPS, odr_hz=10), moving])
+    corrector, _ = play(known, Corrector(Sensor(odr_hz=10.0), **RESTS_ALONE))
+    before = estimators(corrector)
+    play(np.concatenate([rest(0.8, 2, BIAS_DPS, odr_hz=10), moving]), corrector)
+    assert estimators(corrector) != before
+
+
 def test_motion_alone_without_a_rest_is_not_learned():
     corrector, _ = play(handled(60, 1), **RESTS_ALONE)
     assert not corrector.learned

@@ -310,21 +310,21 @@ def believe(s: ptr32, c: ptr32, a: int, error: int) -> int:
     """Let the waiting segment, so far off, move the offset or not; return 1: it may be learned."""
     if s[a + _OFFER]:
         return adopt(s, c, a, error)
-    if s[a + _KIND] == 0:
+    verdict = 2
+    held = 0
+    if s[a + _KIND]:
+        s[_GROWN_Q8] = grown_q8(s, a)
+        verdict = plausible(s, c, a, error)
+        if verdict == 0:
+            return 0
+        held = clipped(error, 0x3FFF)
+        calibrate(s, c, a, held)
+    elif s[a + _WAITING_N] <= 8 and s[a + _WAITING_N] < c[_SEGMENT] << c[_WINDOW_SHIFT]:
+        return 0  # the crest of a slow wave looks as still, and nothing is known to doubt it by
+    else:
         s[a + _SUSPECT] = -1
         s[_RESTS] = c[_INSIST]
-        s[a + _OFFSET_FROM] = 0
         s[a + _OFFSET_Q8] = 0
-        s[a + _LEFT_Q4] = 0
-        s[a + _OFFSET_VARIANCE_Q8] = s[_MEAN_NOISE_Q8]
-        s[a + _OFFSET_AGE_MS] = 0
-        return 1
-    s[_GROWN_Q8] = grown_q8(s, a)
-    verdict = plausible(s, c, a, error)
-    if verdict == 0:
-        return 0
-    held = clipped(error, 0x3FFF)
-    calibrate(s, c, a, held)
     s[a + _OFFSET_FROM] = 0
     if verdict == 1:
         follow(s, c, a, held)
