@@ -4,6 +4,7 @@ from copy import deepcopy
 
 import numpy as np
 import pytest
+from zerorate import Corrector, Sensor
 
 from .played import LSB, play, rest
 from .test_stillness import BIAS_DPS, handled, turning
@@ -49,8 +50,18 @@ def test_a_part_whose_bias_wanders_at_rest_is_less_sure_than_one_with_white_nois
     frames[:, 4:] += halves * LSB
     wandering, _ = play(frames)
     for axis in range(3):
-        assert quality_dps(white, axis) < 0.004
+        assert quality_dps(white, axis) < 0.005
         assert 0.006 < quality_dps(wandering, axis) < 0.014
+
+
+@pytest.mark.parametrize(("hz", "octaves"), [(25.0, 6), (100.0, 8), (400.0, 10)])
+def test_each_octave_of_flicker_noise_within_a_segment_adds_half_of_what_segments_show(hz, octaves):
+    flickering, without = (
+        play(rest(10, odr_hz=hz), Corrector(Sensor(odr_hz=hz), floor_dps=floor))[0]
+        for floor in (0.02, 0.0)
+    )
+    added = quality_dps(flickering) ** 2 - quality_dps(without) ** 2
+    assert 0.02**2 * octaves / 2 < added < 0.02**2 * (octaves / 2 + 1)
 
 
 def test_a_bias_that_insisted_may_be_a_turn_until_another_rest_confirms_it():

@@ -81,13 +81,12 @@ _TO_DRAW = const(2)
 _TO_BEND = const(3)
 
 
-def sigma_q8(s: ptr32, a: int) -> int:
+def sigma_q8(s: ptr32, c: ptr32, a: int) -> int:
     """Return one sigma of the axis' bias at the temperature of the latest window, LSB Q8."""
-    # What differs from rest to rest is flicker noise, of which faster octaves hold thrice as much.
-    variance = s[_GROWN_Q8] + 3 * (s[a + _FLOOR_Q16] >> 8) + s[a + _DOUBT_Q8]
-    if variance < 0x3FFFFF:
-        return root(variance << 8)
-    return root(variance) << 4
+    # Flicker noise: each octave from a sample to a segment holds half of what segments differ by.
+    variance = (c[_WINDOW_SHIFT] + 3) * (s[a + _FLOOR_Q16] >> 4) >> 5
+    variance += s[_GROWN_Q8] + s[a + _DOUBT_Q8]
+    return root(variance << 8) if variance < 0x3FFFFF else root(variance) << 4
 
 
 def leant_q8(s: ptr32, c: ptr32, a: int, bias: int) -> int:
@@ -119,7 +118,7 @@ def publish(s: ptr32, c: ptr32, a: int, axis: int):
     if s[_SOURCE + axis] == 0:
         s[_OUT_Q8 + axis] = bias
     s[_SOURCE + axis] = s[a + _OFFSET_FROM] if s[a + _OFFSET_FROM] else s[a + _KIND]
-    s[_QUALITY_Q8 + axis] = sigma_q8(s, a)
+    s[_QUALITY_Q8 + axis] = sigma_q8(s, c, a)
 
 
 def segment_mean_q8(s: ptr32, c: ptr32, axis: int) -> int:
