@@ -56,7 +56,7 @@ def check(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
     """Return the kind of the frame `x` and count it; only GOOD frames may be learned from."""
     # A repeat is passed over; every other fault also ends the rest that is being watched, because
     # what stands beside a broken frame may be broken too.
-    step = x[3] - s[_FRAME + 3]
+    d = x[3] - s[_FRAME + 3]
     differs = exchange(s, x)
     kind = GOOD
     if (x[0] == 0 or x[0] == -1) and all_alike(x):
@@ -69,9 +69,9 @@ def check(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
         kind = TIME_LEAPT
     elif differs == 0:
         kind = REPEAT
-    elif step >= c[_JUMP_LSB] or step <= -c[_JUMP_LSB]:
-        step = x[3] - s[_TEMP]  # two readings of a noisy thermometer may be as far apart
-        if step >= c[_JUMP_LSB] or step <= -c[_JUMP_LSB]:
+    elif d >= c[_JUMP_LSB] or d <= -c[_JUMP_LSB]:
+        d = x[3] - s[_TEMP]  # two readings of a noisy thermometer may be as far apart
+        if d >= c[_JUMP_LSB] or d <= -c[_JUMP_LSB]:
             kind = TEMPERATURE_JUMP
     if kind == GOOD and at_rail(x):
         kind = RAIL
@@ -81,6 +81,6 @@ def check(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
         s[_DIRTY] = 0
         s[_REST] = 0
     elif dt_us > 0 and dt_us <= c[_LEAP_US]:
-        elapsed_us = s[_ELAPSED_US] + dt_us
-        s[_ELAPSED_US] = elapsed_us if elapsed_us < _MOST_US else _MOST_US
+        d = s[_ELAPSED_US] + dt_us
+        s[_ELAPSED_US] = d if d < _MOST_US else _MOST_US
     return kind
