@@ -17,8 +17,9 @@ WARMED_ONCE = ((0, 20.0), (240, 60.0))
 BLOCKS, TICKS, BLOCK_S = 240, 34, 34.0
 
 
-def recording(course, seed=1, hysteresis=1.0, walk=0.0):
-    """One recording in a chamber; hysteresis in tenths of a dps, walk in dps a block."""
+def recording(course, seed=1, hysteresis=1.0, walk=0.0, cubic_dps=0.0):
+    """One recording in a chamber; hysteresis in tenths of a dps, walk in dps a block, cubic of so
+    many dps at 40 degC."""
     rng = np.random.default_rng(seed)
     at = (np.arange(BLOCKS * TICKS) + 0.5) / TICKS
     degc = np.interp(at, *zip(*course)) + rng.normal(0, 0.02, len(at))
@@ -29,6 +30,7 @@ def recording(course, seed=1, hysteresis=1.0, walk=0.0):
     effect = total.reshape(BLOCKS, TICKS).mean(axis=1)
     mean = degc.reshape(BLOCKS, TICKS).mean(axis=1)
     rate = np.outer(mean, (0.004, -0.003, 0.002)) + np.outer((mean / 40) ** 2, (0.1, 0.05, -0.1))
+    rate += np.outer((mean / 40) ** 3, cubic_dps * np.array([1.0, -1.0, 0.5]))
     rate += 0.1 * hysteresis * np.outer(effect, (1.0, -0.3, 0.4))
     rate += rng.normal(0, 0.003, rate.shape) + np.cumsum(rng.normal(0, walk, rate.shape), axis=0)
     return Session("chamber", BLOCK_S, TICKS, rate, np.ones(BLOCKS), {"temp": degc})
@@ -61,6 +63,12 @@ def test_a_part_warmed_once_shows_no_hysteresis():
 @pytest.mark.parametrize("walk", [0.0, 0.001])
 def test_noise_alone_gets_no_play_operators(walk):
     session = recording(DOWN_UP_DOWN, hysteresis=0.0, walk=walk)
+    found = select([session], on_pieces=PiecesByLine(session)).found
+    assert KIND not in [f.candidate.kind for f in found]
+
+
+def test_a_bend_that_pieces_at_its_ends_are_far_out_on_is_no_hysteresis():
+    session = recording(DOWN_UP_DOWN, hysteresis=0.0, walk=0.0004, cubic_dps=0.1)
     found = select([session], on_pieces=PiecesByLine(session)).found
     assert KIND not in [f.candidate.kind for f in found]
 

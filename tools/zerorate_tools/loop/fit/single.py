@@ -72,14 +72,15 @@ class PiecesByLine:
 
     Ordinary least squares with one offset for all pieces, as they are of one power-on, beside a
     straight line; for recordings that the firmware's own kernels cannot be run over. beside: other
-    recordings of the device, to which every turn is fitted as well.
+    recordings of the device, to which every turn is fitted as well; hold: whether a bend is held at
+    the edges of what a turn is fitted to.
     """
 
     reason = "does not predict the pieces left out"
 
-    def __init__(self, session: Session, beside: Sequence[Session] = ()) -> None:
+    def __init__(self, session: Session, beside: Sequence[Session] = (), hold: bool = True) -> None:
         self.fold = fold_of(session)
-        self.session, self.beside = session, beside
+        self.session, self.beside, self.hold = session, beside, hold
         near = np.ones(2 * gap_blocks(session) + 1, bool)
         left = [self.fold == k for k in range(self.fold.max() + 1)]
         self.parts = [_only(session, ~binary_dilation(one, near)) for one in left]
@@ -103,7 +104,7 @@ class PiecesByLine:
         """
         out = np.full((self.session.blocks, 3), np.nan)
         for k, part in enumerate(self.parts):
-            kept, coefficients = fitted_to(part, straight, terms, applied, self.beside)
+            kept, coefficients = fitted_to(part, straight, terms, applied, self.beside, self.hold)
             left = self.session.rate_dps - predicted(kept, coefficients, self.session)
             own = self.fold == k
             out[own] = part.less_offsets(left, part.available)[own]
@@ -128,19 +129,19 @@ class PiecesByLine:
 
 
 def fitted_to(
-    part: Session, straight, terms, applied=None, beside: Sequence[Session] = ()
+    part: Session, straight, terms, applied=None, beside: Sequence[Session] = (), hold: bool = True
 ) -> tuple[list[Term], np.ndarray]:
     """(terms, (terms, 3) dps per unit) fitted to a part of a recording and to others beside it, the
     line first.
 
-    What does not remember is held at the edges of what the part shows of its source; but beside
-    play operators, which go on there and bend against it, as they all do on the board. The line is
-    fitted anew beside what is applied.
+    What does not remember is held at the edges of what the part shows of its source, if asked to;
+    but beside play operators, which go on there and bend against it, as they all do on the board.
+    The line is fitted anew beside what is applied.
     """
     straight = list(straight)
-    loop = any(t.memory == "play" for t in terms)
+    hold = hold and not any(t.memory == "play" for t in terms)
     fitted = [part, *beside]
-    kept = [held(t, fitted) if is_instant(t) and not loop else t for t in terms]
+    kept = [held(t, fitted) if hold and is_instant(t) else t for t in terms]
     every = [*straight, *kept]
     if not every:
         return [], np.zeros((0, 3))

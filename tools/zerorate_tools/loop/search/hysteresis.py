@@ -119,7 +119,8 @@ def of_one_recording(
     as well is named beside it. Pieces left out decide, as with bends, but the noise may be as steep
     as it likes: a course with few turns is much like a walk.
     """
-    by_line = PiecesByLine(regression.sessions[0])
+    # beside play operators no bend is held at the edges: then none is in what they are compared to
+    by_line = PiecesByLine(regression.sessions[0], hold=False)
     best = _with_a_bend(regression, straight, beside, by_line, taken)
     if best is None:
         return None, ""
