@@ -6,18 +6,19 @@ import numpy as np
 import pytest
 from zerorate_tools.bench.loop.simulated import simulate
 from zerorate_tools.loop.fit.line import is_slope, less_slope, ordinary
-from zerorate_tools.loop.fit.single import PiecesByLine, held
+from zerorate_tools.loop.fit.single import PiecesByLine, held, nats_of
 from zerorate_tools.loop.search.by_pieces import (
     POLYNOMIAL,
     SEGMENTS,
     Remembering,
+    _powers,
     cancels,
     is_like_hysteresis,
     memory,
     of_memory,
     polynomial,
     remembering,
-    segments,
+    whole_curve,
 )
 from zerorate_tools.loop.search.one_recording import OneRecording
 from zerorate_tools.loop.search.select import Search
@@ -82,23 +83,56 @@ def wavy():
 
 def test_segments_follow_what_no_cubic_does(wavy):
     r, line, _, _, by_line, taken = by(wavy, None)
-    found = segments(r, line, [], by_line, taken)
+    found = whole_curve(r, line, [], by_line, by_line, taken)
     assert found.candidate.kind == SEGMENTS
     cubic = [replace(line[0], power=k) for k in (2, 3)]
     left = [np.nanstd(by_line.residual(line, t)) for t in (cubic, found.candidate.terms)]
     assert left[1] < 0.7 * left[0]
 
 
+@pytest.fixture
+def parabolic():
+    """A bias that is a parabola over temperature."""
+    (session,) = simulate(5, sessions=1, bare=True).sessions
+    temp = session.block_mean(session.sources["temp"])
+    bent = 0.1 * ((temp - temp.mean()) / np.ptp(temp)) ** 2
+    return Search([replace(session, rate_dps=session.rate_dps + bent[:, None])])
+
+
+def test_powers_follow_a_parabola(parabolic):
+    r, line, _, _, by_line, _ = by(parabolic, None)
+    assert whole_curve(r, line, [], by_line, by_line, 0).candidate.kind == POLYNOMIAL
+
+
+@pytest.mark.parametrize("left, taken", [(0.85, True), (0.95, False)])
+def test_a_whole_curve_leaves_a_tenth_less(parabolic, wavy, left, taken):
+    for search in (parabolic, wavy):
+        r, line, _, _, by_line, _ = by(search, None)
+        judged = Kernels(nats_of(1 / left, int(r.sessions[0].available.sum())))
+        assert bool(whole_curve(r, line, [], judged, by_line, 0)) == taken
+
+
+def test_powers_are_held_or_reach_as_far_beyond_as_pieces_do(parabolic):
+    r, line, _, _, by_line, _ = by(parabolic, None)
+    held_at, going_on = (_powers(r, line, by_line)[k][0] for k in (0, 2))
+    degc = r.sessions[0].block_mean(r.sessions[0].sources["temp"])
+    parts = [degc[p.available] for p in by_line.parts]
+    beyond = max(degc.max() - min(p.max() for p in parts), max(p.min() for p in parts) - degc.min())
+    assert held_at.lo - going_on.lo == pytest.approx(beyond)
+    assert going_on.hi - held_at.hi == pytest.approx(beyond)
+
+
 def test_segments_have_to_predict_clearly_better_than_what_was_found(wavy, lagging):
-    assert segments(wavy.regression, wavy.line, [], Kernels(1.0), 0) is None
+    by_line = PiecesByLine(wavy.regression.sessions[0])
+    assert whole_curve(wavy.regression, wavy.line, [], Kernels(1.0), by_line, 0) is None
     by_line = PiecesByLine(lagging.regression.sessions[0])
-    assert segments(lagging.regression, lagging.line, [], by_line, 0) is None
+    assert whole_curve(lagging.regression, lagging.line, [], by_line, by_line, 0) is None
 
 
 def test_segments_take_the_slots_that_motion_leaves_or_none(wavy):
     r, line, found, _, by_line, _ = by(wavy, None)
-    assert len(segments(r, line, found, by_line, 2).candidate.terms) == 6
-    assert segments(r, line, found, by_line, 4) is None
+    assert len(whole_curve(r, line, found, by_line, by_line, 2).candidate.terms) == 6
+    assert whole_curve(r, line, found, by_line, by_line, 4) is None
 
 
 def test_a_lag_is_found_by_pieces_alone(lagging):
@@ -123,7 +157,7 @@ def rival(search):
 
 def test_what_remembers_predicts_no_wave(wavy):
     other, by_line = rival(wavy)
-    best = segments(wavy.regression, wavy.line, [], by_line, 0)
+    best = whole_curve(wavy.regression, wavy.line, [], by_line, by_line, 0)
     assert other.nats < by_line(wavy.line, (), best.candidate.terms).sum() - 3.0
 
 
@@ -134,7 +168,7 @@ def test_segments_that_a_memory_equals_must_be_as_clear_as_one(wavy, monkeypatch
         "zerorate_tools.loop.search.by_pieces.remembering", lambda *_: Remembering((), lag, np.inf)
     )
     regression, line, _, judged, by_line, _ = by(wavy, Kernels(nats))
-    better = segments(regression, line, [], Kernels(1000.0), 0)
+    better = whole_curve(regression, line, [], Kernels(1000.0), by_line, 0)
     better.decision = replace(better.decision, session_gains=np.array([nats]))
     one = OneRecording(regression, line, wavy.pool, judged, 0, False)
     one._bend_often(better, (), by_line)

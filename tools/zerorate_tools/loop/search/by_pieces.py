@@ -35,6 +35,8 @@ _HYSTERESIS = "thermal-hysteresis"
 #: Nats that pieces left out must gain, and what may be left of their error: of a form without
 #: memory, and of one that has to be told from a walk of the noise, which a slow course feigns well.
 _CLEARLY, _CLEARLY_OF_MEMORY = (2.0, 0.97), (5.0, 0.9)
+#: The same of a line of segments, the best of some.
+_CLEARLY_OF_SEGMENTS = (2.0, 0.9)
 #: Chance by the likelihood, all that were tried paid for, above which pieces alone tell of no
 #: memory: with one of real parts it is below 0.0001, with seven that noise feigned it was 1.
 _LIKELY = 0.01
@@ -72,27 +74,34 @@ def polynomial(
     return Found(Candidate(POLYNOMIAL, best, "catalogue"), decision)
 
 
-def segments(
+def whole_curve(
     regression: Regression,
     straight: Sequence[Term],
     found: Sequence[Found],
     judged: JudgedOnPieces,
+    by_line: PiecesByLine,
     taken: int,
 ) -> Found | None:
-    """A line over temperature that bends several times, in the place of all that was found; None
-    where it does not predict clearly better: so many parameters follow a walk of the noise as well.
+    """A line over temperature that bends several times, a parabola or a cubic, in the place of all
+    that was found; None where it does not predict clearly better: so many parameters follow a walk
+    of the noise as well, and powers leave what was seen the faster.
 
     Arguments as for `polynomial`.
     """
-    best = _segments(regression, straight, MOST_SLOTS - 1 - taken)
+    bent, powers = _segments(regression, straight, MOST_SLOTS - 1 - taken), []
+    if bent:
+        powers = _powers(regression, straight, by_line)
+    every = [*bent, *powers]
+    best = max(every, key=lambda terms: float(by_line(straight, (), terms).sum()), default=())
     if not best:
         return None
     own = [t for f in found for t in f.candidate.terms]
     gain = judged(straight, (), best) - (judged(straight, (), own) if own else 0.0)
-    decision = _decision(regression, straight, best[1:], 1, gain)
-    if decision.p_value > _LIKELY or not _is_clear(gain, regression, *_CLEARLY):
+    decision = _decision(regression, straight, best[1:], len(every), gain)
+    least = _CLEARLY_OF_SEGMENTS if best in bent else _CLEARLY_OF_MEMORY
+    if decision.p_value > _LIKELY or not _is_clear(gain, regression, *least):
         return None
-    return Found(Candidate(SEGMENTS, best, "catalogue"), decision)
+    return Found(Candidate(SEGMENTS if best in bent else POLYNOMIAL, best, "catalogue"), decision)
 
 
 def memory(
@@ -246,19 +255,42 @@ def _polynomials(regression, straight) -> list[tuple[Term, ...]]:
     lo, hi, _ = ranges(regression.sessions)["temp"]
     if hi - lo > _NARROW_DEGC:
         return []
-    margin = _BEYOND * (hi - lo)
-    slope = replace(straight[0], lo=lo - margin, hi=hi + margin)
+    slope = _reaching(straight[0], lo, hi, _BEYOND * (hi - lo))
     powers = [slope, *(replace(straight[0], lo=lo, hi=hi, power=k) for k in (2, 3))]
     return [tuple(powers[:n]) for n in (1, 2, 3)]
 
 
-def _segments(regression, straight, bends: int) -> tuple[Term, ...]:
-    """A line with so many bends; its outer segments go on beyond what was seen, for nothing else
-    does where a model has the slope."""
-    if not straight or bends < _LEAST_BENDS:
-        return ()
+def _powers(regression, straight, by_line: PiecesByLine) -> list[tuple[Term, ...]]:
+    """A parabola and a cubic, held at the edges of what was seen or going on as far beyond as
+    pieces left out can judge."""
     lo, hi, _ = ranges(regression.sessions)["temp"]
-    margin = _BEYOND * (hi - lo)
-    slope = replace(straight[0], lo=lo - margin, hi=hi + margin)
-    at = np.linspace(lo, hi, bends + 2)[1:-1] - slope.centre
-    return (slope, *(replace(slope, knot=float(knot)) for knot in at))
+    slopes = [_reaching(straight[0], lo, hi, margin) for margin in (0.0, _furthest(by_line))]
+    each = [[replace(slope, power=k) for k in (1, 2, 3)] for slope in slopes]
+    return [tuple(powers[:n]) for powers in each for n in (2, 3)]
+
+
+def _segments(regression, straight, most_bends: int) -> list[tuple[Term, ...]]:
+    """Lines with so many bends and fewer; their outer segments go on beyond what was seen, for
+    nothing else does where a model has the slope, or are held there."""
+    if not straight:
+        return []
+    lo, hi, _ = ranges(regression.sessions)["temp"]
+    every = []
+    for bends in range(_LEAST_BENDS, most_bends + 1):
+        at = np.linspace(lo, hi, bends + 2)[1:-1] - straight[0].centre
+        for share in (_BEYOND, 0.0):
+            slope = _reaching(straight[0], lo, hi, share * (hi - lo))
+            every.append((slope, *(replace(slope, knot=float(knot)) for knot in at)))
+    return every
+
+
+def _reaching(line: Term, lo: float, hi: float, margin: float) -> Term:
+    return replace(line, lo=lo - margin, hi=hi + margin)
+
+
+def _furthest(by_line: PiecesByLine) -> float:
+    """By how much a piece left out leaves the range of temperature of the others, at most."""
+    degc = by_line.session.block_mean(by_line.session.source("temp"))
+    whole = degc[by_line.session.available]
+    seen = [degc[part.available] for part in by_line.parts]
+    return float(max(max(s.min() - whole.min(), whole.max() - s.max()) for s in seen))

@@ -68,7 +68,7 @@ class OneRecording:
         better = by_pieces.polynomial(self.regression, self.line, self.found, *judged)
         self.found = [better] if better else self.found
         self._remember(by_line)
-        better = by_pieces.segments(self.regression, self.line, self.found, self.judged, self.taken)
+        better = by_pieces.whole_curve(self.regression, self.line, self.found, *judged)
         if better:
             self._bend_often(better, curve, by_line)
 
