@@ -56,6 +56,7 @@ def check(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
     """Return the kind of the frame `x` and count it; only GOOD frames may be learned from."""
     # A repeat is passed over; every other fault also ends the rest that is being watched, because
     # what stands beside a broken frame may be broken too.
+    # d is any difference: with a local more a call would take heap
     d = x[3] - s[_FRAME + 3]
     differs = exchange(s, x)
     kind = GOOD

@@ -88,20 +88,20 @@ def whole_curve(
 
     Arguments as for `polynomial`.
     """
-    bent, powers = _segments(regression, straight, MOST_SLOTS - 1 - taken), []
-    if bent:
-        powers = _powers(regression, straight, by_line)
-    every = [*bent, *powers]
+    bent = _segments(regression, straight, MOST_SLOTS - 1 - taken)
+    every = [*bent, *(_powers(regression, straight, by_line) if bent else ())]
     best = max(every, key=lambda terms: float(by_line(straight, (), terms).sum()), default=())
     if not best:
         return None
     own = [t for f in found for t in f.candidate.terms]
     gain = judged(straight, (), best) - (judged(straight, (), own) if own else 0.0)
     decision = _decision(regression, straight, best[1:], len(every), gain)
-    least = _CLEARLY_OF_SEGMENTS if best in bent else _CLEARLY_OF_MEMORY
+    kind, least = (SEGMENTS, _CLEARLY_OF_SEGMENTS)
+    if best not in bent:
+        kind, least = (POLYNOMIAL, _CLEARLY_OF_MEMORY)
     if decision.p_value > _LIKELY or not _is_clear(gain, regression, *least):
         return None
-    return Found(Candidate(SEGMENTS if best in bent else POLYNOMIAL, best, "catalogue"), decision)
+    return Found(Candidate(kind, best, "catalogue"), decision)
 
 
 def memory(
