@@ -10,8 +10,8 @@ from .tables import number, table
 
 OURS = "zerorate"
 SESSION_2 = {
-    "all": {"warm-up-a": 7.0, "warm-up-b": 12.0, "warm-up-c": 35.0},
-    "first": {"warm-up-a": 20.0, "warm-up-b": 40.0, "warm-up-c": 50.0},
+    "all": {"warm-up-a": 1.2, "warm-up-b": 3.5, "warm-up-c": 14.0},
+    "first": {"warm-up-a": 3.0, "warm-up-b": 10.0, "warm-up-c": 15.0},
 }
 _PARTS = {"all": "RMS", "first": "first 15 s"}
 
