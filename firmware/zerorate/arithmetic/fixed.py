@@ -104,9 +104,9 @@ def clipped(x: int, most: int) -> int:
 
 def root(square: int) -> int:
     """Return the integer square root of 0 <= square < 2^30."""
-    bit = 1 << 14
-    if square < 0x1000000:
-        bit = 1 << 11
+    bit = 1 << 11 if square < 0x1000000 else 1 << 14
+    if square < 0x10000:
+        bit = 1 << 7
     found = 0
     while bit:
         more = found + bit

@@ -282,7 +282,7 @@ def admit(s: ptr32, c: ptr32, x: ptr32, kind: int) -> int:
         if c[_EVERY]:
             learn_at_once(s, c, x)
     i = c[_WORK_A_SAMPLE]
-    while i > 0 and s[_WORK]:
+    while s[_WORK] and i > 0:
         advance(s, c)
         i -= 1
     return kind
