@@ -87,8 +87,8 @@ def test_slots_of_one_source_are_told_apart_and_drawn_as_one_curve(tmp_path):
     made, _ = plots_of(closed.analysis, closed.result, closed.logs, closed.folder)
     curve = next(plot for plot in made if plot.key == "effect-1")
     step = closed.result["effects"][0]
-    assert step["effect"] == "temperature-curve"
-    assert list(step["coefficients"]) == ["temp^2", "temp^3"]
+    assert step["effect"] == "temperature-polynomial"
+    assert list(step["coefficients"]) == ["temp^1", "temp^2", "temp^3"]
     assert (curve.views, curve.panels[0].x_label) == ((), "temperature, °C")
 
 
