@@ -4,15 +4,15 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 from zerorate_tools.bench.loop.simulated import simulate
-from zerorate_tools.closing import close
+from zerorate_tools.closing import close, load
 from zerorate_tools.loop.search.catalogue import Candidate
 from zerorate_tools.loop.search.selection import Found, Selection
 from zerorate_tools.loop.verify.firmware import Firmware, Refused
-from zerorate_tools.loop.verify.measure import _unharmed
+from zerorate_tools.loop.verify.measure import _measured, _unharmed
 from zerorate_tools.loop.verify.measured import Course, Measured
 from zerorate_tools.model import read_model
 from zerorate_tools.model.term import Term
-from zerorate_tools.recordings import Scales
+from zerorate_tools.recordings import Scales, open_recording
 from zerorate_tools.replay import replay
 from zerorate_tools.replay.engines import CPythonEngine
 from zerorate_tools.replay.samples import frames_in_batches
@@ -127,3 +127,16 @@ def test_what_pieces_of_few_recordings_speak_against_is_withdrawn():
     alone, both = (Measured(courses, ["b"], np.zeros(3), inside=some) for some in ([], ["a"]))
     assert _unharmed(selection, alone, None) is selection
     assert _unharmed(selection, both, None).found[0].axes == (True, False, True)
+
+
+def test_what_a_trial_notes_is_not_said_of_what_is_deployed(monkeypatch, logs):
+    analysis = load(logs[:1])
+    before = list(analysis.gate.notes)
+
+    def noting(trial, scales):
+        trial.gate.notes.append("found but left out: of the trial")
+        return trial
+
+    monkeypatch.setattr("zerorate_tools.loop.verify.measure.deployable", noting)
+    _measured(analysis, logs[:1], open_recording(logs[0]).scales, analysis.selection)
+    assert analysis.gate.notes == before

@@ -15,6 +15,7 @@ from ...recordings import Scales, open_recording
 from ...recordings.atomic import written_beside
 from ...recordings.reading import recording_name
 from ..motion.in_motion import slots_of
+from ..read.gate import GateReport
 from ..search.selection import Selection
 from .analysis import Analysis
 from .by_kernels import PiecesByKernels
@@ -118,7 +119,8 @@ def measure_and_prune(
 
 def _measured(analysis: Analysis, logs, scales: Scales, selection: Selection) -> Measured:
     """What the kernels make of other effects than those of the analysis."""
-    other = deployable(with_selection(analysis, selection), scales)
+    trial = replace(analysis, gate=GateReport())  # what it notes is not of what is deployed
+    other = deployable(with_selection(trial, selection), scales)
     with TemporaryDirectory() as scratch:
         out = Path(scratch) / "corrected.parquet"
         measured = measure(other, logs, model_of(other, scales), out).measured
