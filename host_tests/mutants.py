@@ -1,8 +1,7 @@
 """What share of mutants do the tests of an area kill? `make mutants`; cosmic-ray makes the mutants.
 
-A sample by a seed, of each area the same number. A mutant stands in the place of its function, or
-of its module where it is outside of all functions, in a fork of its own, which runs the area's
-tests until one fails: first those that call the function. No file changes. A kernel's mutant is
+A sample by a seed, of each area the same number. A mutant stands in the place of its module in a
+fork of its own, which runs the area's tests until one fails. No file changes. A kernel's mutant is
 what CPython runs, and what the C for hosts is made of; machine code for boards plays no part.
 Mutants that mean the same are listed in mutants.toml, each with why; they are drawn but not run.
 """
@@ -123,10 +122,9 @@ def area_score(name, count, seed):
             found["same"] += 1
             continue
         text = mutate_code(source, plugins.get_operator(operator)(), occurrence)
-        drawn[number] = (file, row, text)
+        drawn[number] = (file, text)
         said[number] = f"survived: {file}:{row} {operator} {occurrence}: {line}"
-    told = Path(os.environ["ZERORATE_CACHE"]) / f"{name}.json"
-    for number, end in sorted(ends(tests, drawn, told).items()):
+    for number, end in ends(tests, drawn).items():
         found["survived" if end == "passed" else "killed"] += 1
         if end == "passed":
             print(said[number], flush=True)

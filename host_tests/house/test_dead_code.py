@@ -13,7 +13,7 @@ GENERATED = ("*/zerorate/native/*",)
 #: Called by others: pytest, Python, its import, a template of the report, a program sent as text,
 #: whoever uses the fakes as if they were the real bus.
 CALLED_BY_OTHERS = {
-    *("pytest_configure", "pytest_terminal_summary", "pytest_runtestloop"),
+    *("pytest_configure", "pytest_terminal_summary"),
     *("busio_i2c", "polled", "impatient"),
     *("__getattr__", "__dir__", "handle_starttag", "handle_data"),
     *("_constant", "_subscript", "_binop", "_unaryop", "_boolop", "_ifexp"),
