@@ -2,11 +2,17 @@
 
 import json
 
+import numpy as np
 import pytest
 from zerorate_tools.bench.loop.bin_tables import hipnuc
-from zerorate_tools.bench.loop.devices import CATALOGUE, Device, devices
+from zerorate_tools.bench.loop.devices import CATALOGUE, TOLD, Device, devices
 from zerorate_tools.bench.loop.figures import figures, share
 from zerorate_tools.bench.loop.run_trial import Outcome, run_trial
+from zerorate_tools.bench.loop.simulated import (
+    PRANDTL_ISHLINSKII,
+    PRANDTL_ISHLINSKII_TOLD,
+    simulate,
+)
 from zerorate_tools.bench.loop.trials import looked_at, markdown, renewed
 
 
@@ -14,6 +20,22 @@ def test_a_device_is_looked_at_and_judged():
     outcome = run_trial(Device("5x", 1, (("thermal-lag", 5.0),)))
     assert outcome.named("thermal-lag") and outcome.tied_to(("temp",))
     assert outcome.after < 1.2 < outcome.before
+
+
+def test_told_a_loop_an_offset_is_left_once_the_temperature_has_swept_it():
+    kind = PRANDTL_ISHLINSKII_TOLD
+    left, noise = (simulate(302_001, e, 2).sessions[-1].rate_dps for e in ([(kind, 5.0)], []))
+    warm = slice(*(int(f * len(left)) for f in (0.6, 1.0)))
+    assert np.ptp(left - noise, axis=0).min() > 1e-3
+    assert np.ptp((left - noise)[warm], axis=0).max() < 1e-9
+
+
+def test_who_is_told_a_loop_leaves_less_unless_its_start_misleads():
+    seeds = range(302_000, 302_004)
+    loop = ((PRANDTL_ISHLINSKII, 5.0),)
+    told = [run_trial(Device(TOLD, seed, loop, sessions=3)) for seed in seeds]
+    assert all(o.after <= o.before for o in told)
+    assert np.mean([o.after for o in told]) < 0.8 * np.mean([o.before for o in told])
 
 
 def test_figures_count_what_was_found_named_and_made_worse():

@@ -18,7 +18,9 @@ from .devices import (
     OUTSIDE,
     REAL,
     SIZES,
+    START_KNOWN,
     STEP,
+    TOLD,
     TWO,
 )
 from .files import ROWS
@@ -200,22 +202,24 @@ def _many_widths(rows):
     """Hysteresis of Prandtl-Ishlinskii form: of all numbers of power-ons, and of each."""
     each = {row: group for row, group in rows.items() if row.startswith(MANY_WIDTHS)}
     every = [o for group in each.values() for o in group]
-    if not every:
-        return
-    named = partial(Outcome.named, effect="thermal-hysteresis")
-    name = "2x hysteresis of many widths"
-    yield share(f"{name}: found", every, named, 95.0)
-    yield _times(f"{name}: error after, mean", np.mean([o.after for o in every]), 1.2, len(every))
+    yield from _of_many_widths("", every, 95.0, 1.2)
+    yield from _of_many_widths(", told but for its start", rows.get(TOLD, []))
+    yield from _of_many_widths(", kept where it starts", rows.get(START_KNOWN, []))
     for row, group in each.items():
-        where = f"{name}, {row.split()[-1]} power-ons"
-        yield share(f"{where}: found", group, named, None)
-        yield _times(
-            f"{where}: error after, mean", np.mean([o.after for o in group]), None, len(group)
-        )
+        yield from _of_many_widths(f", {row.split()[-1]} power-ons", group)
+
+
+def _of_many_widths(which, group, found=None, after=None):
+    name = f"2x hysteresis of many widths{which}"
+    if group:
+        named = partial(Outcome.named, effect="thermal-hysteresis")
+        yield share(f"{name}: found", group, named, found)
+        mean = np.mean([o.after for o in group])
+        yield _times(f"{name}: error after, mean", mean, after, len(group))
 
 
 def _made_worse(outcomes):
-    blocks = [o for o in outcomes if o.device.row not in ROWS]
+    blocks = [o for o in outcomes if o.device.row not in (*ROWS, TOLD)]
     with_recorded = [o for o in blocks if not o.device.row.startswith(HIDDEN)]
     name = "held-out error made worse by more than 2 %"
     yield share(name, with_recorded, lambda o: o.worse, 2.0, at_most=True)

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from .devices import Device
+from .devices import TOLD, Device
 from .quiet import cut_into_sessions
 
 
@@ -52,6 +52,8 @@ def run_trial(device: Device) -> Outcome:
     from .simulated import simulate
 
     began = time.process_time()
+    if device.row == TOLD:
+        return _told(device)
     if device.real:
         sessions, noise = cut_into_sessions(device.real, device.seed)
     else:
@@ -64,20 +66,54 @@ def run_trial(device: Device) -> Outcome:
     return outcome
 
 
+def _told(device: Device) -> Outcome:
+    """What a model of the loop itself leaves, which takes it to start where the temperature does:
+    found where some axis of the last session is nearer with it, and it corrects those alone."""
+    from .simulated import PRANDTL_ISHLINSKII_TOLD, simulate
+
+    (_, size), n = device.effects[0], device.sessions
+    made = simulate(device.seed, device.effects, n)
+    left = simulate(device.seed, [(PRANDTL_ISHLINSKII_TOLD, size)], n)
+    before, after = _left_by_line(made.sessions), _left_by_line(left.sessions)
+    nearest = np.minimum(before, after)
+    unit = _noise_rms(made.sessions[-1], made.noise_dps[-1])
+    errors = [float(np.sqrt((e**2).mean())) / unit for e in (before, nearest)]
+    found = ["thermal-hysteresis"] if (after < before).any() else []
+    return Outcome(device, found, before=errors[0], after=errors[1])
+
+
+def _left_by_line(sessions) -> np.ndarray:
+    """(3,) RMS of the last session beside the line over temperature of the others."""
+    from ...loop.fit.line import ordinary
+    from ...loop.fit.regression import predicted
+    from ...loop.search.select import straight_line
+    from ...loop.verify.judge import rms_dps, scored
+
+    line = straight_line(sessions[:-1])
+    of_line = predicted(line, ordinary(line, sessions[:-1]), sessions[-1])
+    return rms_dps([scored(sessions[-1], of_line)[0]])
+
+
+def _noise_rms(session, noise_dps: np.ndarray) -> float:
+    """Of the blocks scored, over the axes."""
+    from ...loop.verify.judge import scored
+
+    noise, _ = scored(replace(session, rate_dps=noise_dps), np.zeros(noise_dps.shape))
+    return float(np.sqrt(np.nanmean(noise**2)))
+
+
 def judged(device: Device, sessions: list, noise_dps: np.ndarray) -> Outcome:
     """What the loop says of sessions. noise_dps: (n, 3) of the last one, nothing else in it."""
     from ...loop.fit.single import PiecesByLine
     from ...loop.search.confounding import label
     from ...loop.search.select import select
-    from ...loop.verify.judge import scored
     from ...loop.verify.prune_by_holdout import prune_by_holdout
 
     alone = PiecesByLine(sessions[0]) if len(sessions) == 2 else None
     selection, verdict = prune_by_holdout(
         select(sessions[:-1], 0, alone, judged_again=True), sessions[-1:]
     )
-    noise, _ = scored(replace(sessions[-1], rate_dps=noise_dps), np.zeros(noise_dps.shape))
-    unit = float(np.sqrt(np.nanmean(noise**2)))
+    unit = _noise_rms(sessions[-1], noise_dps)
     found = selection.found
     return Outcome(
         device,
