@@ -1,7 +1,9 @@
 """report.html: one file that needs nothing else."""
 
+import json
 from collections.abc import Sequence
 from functools import lru_cache
+from importlib.metadata import version
 from importlib.resources import files
 from typing import Any
 
@@ -11,55 +13,60 @@ from .board import Deployment
 from .colours import ROLES
 from .plot import Plot
 from .plotly_form import plain
-from .safe_json import script_json
 
 # Heights in CSS pixels: of a panel in a stack, alone, beside others and under others, and of what
 # is about them (page.js).
 _STACKED_PX, _ALONE_PX, _BESIDE_PX, _UNDER_PX, _EDGE_PX = 120, 230, 300, 246, 64
+_UNSAFE = {ord(c): f"\\u{ord(c):04x}" for c in "<>&\u2028\u2029'"}
 
 
 def page(
-    result: dict[str, Any],
-    plots: Sequence[Plot],
-    board: Deployment,
-    notes: Sequence[str],
-    made: str,
+    result: dict[str, Any], plots: Sequence[Plot], board: Deployment, notes: Sequence[str]
 ) -> str:
-    """The page's text. result: what report.json holds; notes: why a plot is missing; made: by whom
-    and when.
-    """
+    """The page's text. result: what report.json holds; notes: why a plot is missing."""
+    return rendered(
+        "page.html.j2",
+        plots,
+        r=result,
+        headline=sentences.headline(result),
+        why_both=sentences.why_both(result),
+        corrected=any(sentences.corrects_at_rest(effect) for effect in result["effects"]),
+        deployed=any(effect["coefficients"] for effect in result["effects"]),
+        board=board,
+        notes=notes,
+        smallest=smallest(result),
+        faults=faults(result),
+    )
+
+
+def rendered(
+    template: str, plots: Sequence[Plot], package: str = __package__, **values: Any
+) -> str:
+    """The text of a package's template with plots, style and script in it, and these values."""
     from plotly.offline import get_plotlyjs
 
     return (
-        _environment()
-        .get_template("page.html.j2")
+        _environment(package)
+        .get_template(template)
         .render(
-            r=result,
-            headline=sentences.headline(result),
-            why_both=sentences.why_both(result),
             plots={p.key: p for p in plots},
-            corrected=any(sentences.corrects_at_rest(effect) for effect in result["effects"]),
-            deployed=any(effect["coefficients"] for effect in result["effects"]),
-            board=board,
-            notes=notes,
-            made=made,
-            smallest=smallest(result),
-            faults=faults(result),
+            made=f"zerorate {version('zerorate')}",
             roles=ROLES,
             data=script_json([plain(p) for p in plots]),
             plotly_js=get_plotlyjs(),
             style=_own("page.css"),
             script=_own("page.js"),
+            **values,
         )
     )
 
 
-@lru_cache(maxsize=1)
-def _environment():
-    from jinja2 import Environment, PackageLoader, StrictUndefined
+@lru_cache
+def _environment(package: str = __package__):
+    from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 
     environment = Environment(
-        loader=PackageLoader(__package__, ""),
+        loader=ChoiceLoader([PackageLoader(place, "") for place in (package, __package__)]),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
@@ -72,6 +79,12 @@ def _environment():
         kinds=kinds, words=sentences, height=height, legend=legend, zip=zip, axes="xyz"
     )
     return environment
+
+
+def script_json(value: Any) -> str:
+    """JSON without any character that could end a <script>, begin a comment or break a line."""
+    text = json.dumps(value, allow_nan=False, separators=(",", ":"), ensure_ascii=False)
+    return text.translate(_UNSAFE)
 
 
 def _own(name: str) -> str:

@@ -1,7 +1,6 @@
 """The report of a closed loop, written into a folder: one page, and pictures where wanted."""
 
 from collections.abc import Sequence
-from importlib.metadata import version
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -41,10 +40,9 @@ def write_report(
     folder = Path(folder)
     plots, notes = plots_of(analysis, result, logs, folder)
     board = deployment(final(folder), read_model(folder / "model.bin").channels)
-    text = page(result, plots, board, notes, f"zerorate {version('zerorate')}")
     path = folder / "report.html"
     with written_beside(path) as temporary:
-        temporary.write_text(text, encoding="utf-8")
+        temporary.write_text(page(result, plots, board, notes), encoding="utf-8")
     if png:
         from .png import write_pngs
 
