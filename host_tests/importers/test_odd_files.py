@@ -176,6 +176,21 @@ def test_columns_that_nothing_names_are_offered_by_what_they_hold(tmp_path):
         read(tmp_path, counts)
 
 
+def test_numbers_of_a_kind_and_quaternions_are_offered_as_no_rates(tmp_path):
+    rng = np.random.default_rng(6)
+    wide = [
+        [i / 50, 3, *rng.normal([0, 0, 9.8], 0.02), 4, *rng.normal(0, 0.1, 3)] for i in range(50)
+    ]
+    with pytest.raises(BadRecording, match="--map az=5:m/s2 --map gx=7:rad/s --map gy=8:rad/s"):
+        read(tmp_path, "\n".join(",".join(f"{v:.6g}" for v in row) for row in wide))
+    turned = np.column_stack(
+        [np.sin(np.arange(50) / 9), np.zeros((50, 2)), np.cos(np.arange(50) / 9)]
+    )
+    wide = [[*q, *rng.normal([0, 0, 9.8], 0.02), *rng.normal(0, 0.1, 3)] for q in turned]
+    with pytest.raises(BadRecording, match="--map az=7:m/s2 --map gx=8:rad/s --map gy=9:rad/s"):
+        read(tmp_path, "\n".join(",".join(f"{v:.6g}" for v in row) for row in wide))
+
+
 def test_cells_may_stand_in_columns_of_blanks(tmp_path):
     rows = "".join(f"   {i / 100:.7e}   {0.8:.7e}  -8.0e-01\t 9.0e-01 \r\n" for i in range(50))
     (tmp_path / "in.mat").write_bytes(rows.encode())

@@ -97,6 +97,26 @@ def test_a_phones_sensor_logger_is_known_by_its_columns(tmp_path):
     assert told(report, "gyro taken in rad/s: as Sensor Logger writes")
 
 
+def test_axes_of_a_phones_sensor_logger_are_offered_in_its_unit(tmp_path):
+    frame = table()[["t_s", *(f"g{a}_dps" for a in "xyz")]]
+    frame.columns = ["seconds_elapsed", "x", "y", "z"]
+    with pytest.raises(BadRecording, match="--map gx=x:rad/s --map gy=y:rad/s"):
+        read(tmp_path, frame, name="turned.csv")
+
+
+def test_names_that_are_units_tell_them(tmp_path):
+    frame = table()[["t_s", *(f"g{a}_dps" for a in "xyz")]]
+    recording, _ = read(
+        tmp_path, frame.assign(t_s=1000 * frame["t_s"]).rename(columns={"t_s": "Millis"})
+    )
+    assert recording.scales.odr_hz == pytest.approx(100)
+
+
+def test_the_temperature_of_a_witmotion_is_known(tmp_path):
+    recording, _ = read(tmp_path, table().rename(columns={"temp_c": "T(°)"}))
+    assert recording.temp_degc()[0] == pytest.approx(25, abs=0.01)
+
+
 def test_a_phones_sensorlog_is_known_by_its_columns(tmp_path):
     frame = table()
     logged = {"loggingTime(txt)": [f"2026-05-01 12:00:{t:06.3f} +0200" for t in frame["t_s"]]}
@@ -117,8 +137,9 @@ def test_a_log_of_openlog_artemis_is_known_by_its_columns(tmp_path):
     assert recording.temp_degc()[0] == pytest.approx(25, abs=0.01)
 
 
-def test_acceleration_less_gravity_is_none(tmp_path):
-    frame = table().rename(columns={f"a{a}_g": f"FreeAcc_{a.upper()}_g" for a in "xyz"})
+@pytest.mark.parametrize("name", ["FreeAcc_{}_g", "lacc_{}_g", "LinAcc{} (g)"])
+def test_acceleration_less_gravity_is_none(tmp_path, name):
+    frame = table().rename(columns={f"a{a}_g": name.format(a.upper()) for a in "xyz"})
     assert "ax" not in read(tmp_path, frame)[0].columns
 
 

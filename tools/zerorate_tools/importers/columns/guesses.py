@@ -14,6 +14,8 @@ _GRAVITY_WITHIN = 0.15
 #: Seconds since 1970 of the years 2001 and 2100.
 _CALENDAR_S = (1e9, 4.1e9)
 _DEGC, _KELVIN = (-60.0, 130.0), (230.0, 400.0)
+#: So near to one is the squared length of a quaternion that was rounded.
+_OF_ONE = 3e-4
 #: Rates at which anyone records, Hz.
 _LIKELY_HZ = (0.02, 40_000.0)
 
@@ -29,9 +31,9 @@ def guessed_unit(
     first: the first rows of the columns wanted.
     """
     column = wanted[target].column
-    by_habit = _by_habit(target, column, names)
-    if by_habit is not None:
-        return by_habit
+    habit = by_habit(target, column, names)
+    if habit is not None:
+        return habit
     values = first[column][np.isfinite(first[column])]
     if not len(values):
         return None, ""
@@ -68,7 +70,7 @@ def likely_columns(
 ) -> list[str]:
     """Words as of --map for columns that nothing names: what only grows is time, three whose length
     stays about gravity are acceleration, the next three are rates; [] where there are no three, or
-    where without gravity there are more.
+    where without gravity there are more. Numbers of a kind and quaternions are neither.
 
     first: the first rows of every column, in the file's order; calendar: those that are dates.
     """
@@ -78,7 +80,7 @@ def likely_columns(
     times = [name for name in values if name in calendar]
     times += [name for name in values if name not in calendar and _only_grows(values[name])]
     time = next(iter(times), None)
-    rest = [name for name in values if name not in times]
+    rest = _no_quaternion({n: values[n] for n in values if n not in times and _varies(values[n])})
     out = [] if time is None else [f"t_us={time}:{_likely_time(values[time])}"]
     rates = "lsb" if all((values[name] % 1 == 0).all() for name in rest) else "dps"
     for at in range(len(rest) - 2):
@@ -95,6 +97,21 @@ def likely_columns(
     return out + gyro if len(gyro) == len(GYRO) else []
 
 
+def _varies(values: np.ndarray) -> bool:
+    """Not one whole number throughout, as that of a sensor or of a kind of line."""
+    return len(values) < 2 or np.ptp(values) > 0 or values[0] == 0 or values[0] % 1 != 0
+
+
+def _no_quaternion(values: Mapping[str, np.ndarray]) -> list[str]:
+    """Names without four columns beside each other whose length is always one."""
+    names = list(values)
+    for at in range(len(names) - 3):
+        four = np.array([values[name] for name in names[at : at + 4]])
+        if four.shape[1] > 1 and np.abs((four**2).sum(axis=0) - 1.0).max() < _OF_ONE:
+            return names[:at] + names[at + 4 :]
+    return names
+
+
 def _only_grows(values: np.ndarray) -> bool:
     steps = np.diff(values)
     return len(steps) > 0 and bool((steps >= 0).mean() > 0.999 and (steps > 0).mean() > 0.5)
@@ -106,7 +123,7 @@ def _likely_time(values: np.ndarray) -> str:
     return by_date or next((u for u, s in TIME_S.items() if 1e-4 <= step * s <= 0.1), "s")
 
 
-def _by_habit(target: str, column: str, names: list[str]) -> tuple[str, str] | None:
+def by_habit(target: str, column: str, names: list[str]) -> tuple[str, str] | None:
     """Units that go with names: those of ROS, of ArduPilot, of Android's sensors, of SparkFun."""
     text, kind = spelled(column), kind_of(target)
     habit = {"gyro": "rad/s", "accel": "m/s2", "time": "ns"}.get(kind)

@@ -17,7 +17,7 @@ _ACCEL = re.compile(
     + f"{_AXIS}(?:cal)?$|^{_AXIS}(?:accelerometer|accel|acc)$"
 )
 #: Less gravity, so no measure of it.
-_FREE = re.compile(r".*(?:freeacc|useracc)")
+_FREE = re.compile(r".*(?:freeacc|useracc|linacc)|lacc")
 _TEMP = re.compile(r".*(?:temperature|temp|tmp)c?$")
 _NOT_THE_DIE = re.compile(r"ambient|air|baro|bmp|bme|aht|sht|cpu|motor|batt|esc|water|room")
 _TIME = re.compile(

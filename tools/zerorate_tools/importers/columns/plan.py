@@ -10,7 +10,7 @@ from ...errors import BadRecording
 from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP, TIME
 from ..tables.table import Chunk, Table
 from . import names as usual
-from .guesses import guessed_unit, likely_columns, ready_words
+from .guesses import by_habit, guessed_unit, likely_columns, ready_words
 from .mapping import Mapped, factor_in, parsed_mapping
 from .units import RAW, factors_of, kind_of, unit_in_name, units_of
 
@@ -149,7 +149,8 @@ def _offered(table: Table, wanted: Mapping[str, Mapped], missing: list[str]) -> 
     """A ready mapping of what may be rates, by names or, where nothing names columns, by values."""
     bare = usual.bare_axes(table.names)
     if bare:
-        return " ".join(f"--map {t}={c}:dps" for t, c in bare.items() if t in missing)
+        unit = (by_habit("gx", bare["gx"], table.names) or ("dps", ""))[0]
+        return " ".join(f"--map {t}={c}:{unit}" for t, c in bare.items() if t in missing)
     if wanted or not usual.unnamed(table.names):
         return ""
     first = table.first_rows(table.names)

@@ -40,7 +40,14 @@ _WRITTEN_BY_KIND = {
     "accel": ("m/s2", "mg", "g", "lsb"),
     "temp": ("degc", "degf", "c", "k", "lsb"),
 }
-_BY_NAME = {"timeus": "us", "timems": "ms", "seconds_elapsed": "s", "__time": "s"}
+#: Whole names that tell a unit; T(°) is what WitMotion writes.
+_BY_NAME = {
+    "time": {
+        "timeus": "us", "timems": "ms", "micros": "us", "millis": "ms", "seconds_elapsed": "s",
+        "__time": "s",
+    },
+    "temp": {"t(°)": "degc"},
+}  # fmt: skip
 _BRACKETS = re.compile(r"[\[({<]\s*([^\])}>]*?)\s*[\])}>]\s*$")
 
 
@@ -65,9 +72,9 @@ def units_of(target: str) -> tuple[str, ...]:
 def unit_in_name(target: str, column: str) -> str | None:
     """The unit that a column's own name ends with (gx_dps, ax [m/s2], temp_C), or None."""
     name = column.strip().lower()
-    if target == "t_us" and name in _BY_NAME:
-        return _BY_NAME[name]
     kind = kind_of(target)
+    if name in _BY_NAME.get(kind, {}):
+        return _BY_NAME[kind][name]
     in_brackets = _BRACKETS.search(name)
     if in_brackets:
         return next((u for u in _WRITTEN_BY_KIND[kind] if _is_written(u, in_brackets[1])), None)
