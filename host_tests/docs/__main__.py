@@ -6,11 +6,9 @@ import tempfile
 from pathlib import Path
 
 from .api_page import api_page
-from .copied_tables import with_copied_tables
-from .effect_table import with_effect_table
-from .option_tables import with_option_tables
 from .outputs import refreshed
 from .pages import blocks, pages
+from .tables import with_tables
 
 
 def main(repository, only=()):
@@ -25,11 +23,6 @@ def main(repository, only=()):
                 for picture in Path(folder).glob("shown/demo.png"):
                     shutil.copy(picture, docs)
         page.write_text(with_tables(page.read_text(encoding="utf-8"), docs), encoding="utf-8")
-
-
-def with_tables(text, docs):
-    """The text with all its marked places filled anew."""
-    return with_effect_table(with_copied_tables(with_option_tables(text), docs))
 
 
 if __name__ == "__main__":

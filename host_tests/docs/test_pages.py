@@ -7,11 +7,9 @@ import pytest
 from zerorate_tools.cli import parser
 
 from host_tests.docs.api_page import api_page
-from host_tests.docs.copied_tables import with_copied_tables
-from host_tests.docs.effect_table import with_effect_table
-from host_tests.docs.option_tables import commands_under, with_option_tables
 from host_tests.docs.outputs import DEMO, commands, refreshed, same_but_for_rounding
 from host_tests.docs.pages import blocks, pages
+from host_tests.docs.tables import commands_under, with_tables
 
 #: Pages whose programs run in tests of their own, on fakes of a board, a bus or ROS.
 ELSEWHERE = {
@@ -70,17 +68,9 @@ def test_the_api_is_what_the_docstrings_say(repository):
     assert read(repository / "docs" / "api.md") == api_page(repository), "`make docs` writes it"
 
 
-@pytest.mark.parametrize(
-    "filled",
-    [
-        pytest.param(lambda text, docs: with_option_tables(text), id="options"),
-        pytest.param(with_copied_tables, id="copied"),
-        pytest.param(lambda text, docs: with_effect_table(text), id="effects"),
-    ],
-)
-def test_tables_are_what_they_are_made_from(repository, filled):
+def test_tables_are_what_they_are_made_from(repository):
     for page in pages(repository):
-        assert filled(read(page), repository / "docs") == read(page), "`make docs` writes them"
+        assert with_tables(read(page), repository / "docs") == read(page), "`make docs` writes them"
 
 
 def test_every_command_has_its_section(repository):

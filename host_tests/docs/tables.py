@@ -1,20 +1,43 @@
-"""Tables of a sub-command's arguments, from the parser itself, into a page's marked places."""
+"""The marked places of a page: arguments of commands, effects, tables copied from other pages.
+
+One begins with `<!-- options of NAME -->`, `<!-- effects -->` or `<!-- table N of PAGE -->`, so
+that a figure is written once, and ends with `<!-- end -->`.
+"""
 
 import argparse
 import re
 
 from zerorate_tools.cli import parser
+from zerorate_tools.model.effects import ANY_CHANNEL, EFFECTS
 
-_PLACE = re.compile(r"<!-- options of ([\w ]+) -->\n.*?<!-- end -->", re.DOTALL)
+_PLACE = re.compile(
+    r"<!-- (?:options of ([\w ]+)|table (\d+) of ([\w.-]+)|effects) -->\n(.*?)<!-- end -->",
+    re.DOTALL,
+)
+_TABLE = re.compile(r"(?:^\|.*\n)+", re.MULTILINE)
 
 
-def with_option_tables(text):
-    """The text with each place `<!-- options of NAME --> ... <!-- end -->` filled anew."""
+def with_tables(text, docs):
+    """The text with all its marked places filled anew; docs: the folder of the other pages."""
 
     def filled(match):
-        return f"<!-- options of {match[1]} -->\n{option_table(match[1].split())}<!-- end -->"
+        names, number, page, before = match.groups()
+        if names:
+            table = option_table(names.split())
+        elif page:
+            table = _TABLE.findall((docs / page).read_text(encoding="utf-8"))[int(number) - 1]
+        else:
+            table = effect_table()
+        return match[0].replace(f"\n{before}<!-- end", f"\n{table}<!-- end")
 
     return _PLACE.sub(filled, text)
+
+
+def effect_table():
+    """Every effect that the loop knows: its kind, in words, what it says."""
+    titles = [f"{'any channel: ' * (row.source == ANY_CHANNEL)}{row.title}" for row in EFFECTS]
+    rows = [f"| `{row.kind}` | {t} | {row.meaning} |" for row, t in zip(EFFECTS, titles)]
+    return "\n".join(["| effect | | |", "|---|---|---|", *rows, ""])
 
 
 def option_table(names):
