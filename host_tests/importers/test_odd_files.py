@@ -88,6 +88,12 @@ def test_what_holds_tables_and_is_not_read_says_what_to_do_with_it(tmp_path, fir
         read(tmp_path, first + bytes(500))
 
 
+def test_lines_of_blanks_are_no_rows(tmp_path):
+    text = table(50).to_csv(index=False).replace("\n", "\n  \n")
+    recording, report = read(tmp_path, text)
+    assert len(recording) == 50 and not report.dropped
+
+
 def test_comments_between_rows_are_no_rows(tmp_path):
     lines = table(200).to_csv(index=False).splitlines()
     lines.insert(50, "# somebody knocked")

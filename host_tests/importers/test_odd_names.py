@@ -71,6 +71,16 @@ def test_bare_axes_are_offered_too(tmp_path):
         read(tmp_path, frame)
 
 
+def test_a_temperature_of_another_name_is_offered(tmp_path):
+    frame = table().rename(columns={"temp_c": "temp_h"}).assign(temp_cpu=40.0)
+    _, report = read(tmp_path, frame)
+    words = "by its name, but temp_h, temp_cpu: the bias cannot be followed over temperature"
+    assert told(report, f"{words}; if one of them is the sensor's or near it: --map temp=temp_h")
+    assert "temp" in read(tmp_path, frame, mapping="temp=temp_h")[0].columns
+    _, report = read(tmp_path, table(), mapping="temp=none")
+    assert told(report, "no temperature: the bias")
+
+
 def test_columns_that_may_hold_a_cause_are_said_to_be_left_aside(tmp_path):
     frame = table().assign(humidity=40.0, volt=3087.0)
     _, report = read(tmp_path, frame)
@@ -211,6 +221,16 @@ def test_raw_counts_are_asked_for_units_and_then_scales_in_one_go_each(tmp_path)
     give = "--gyro-lsb-per-dps 131 --accel-lsb-per-g 16384 --temp-lsb-per-degc 340 --temp-offset"
     with pytest.raises(BadRecording, match=give):
         read(tmp_path, frame, units=units)
+
+
+def test_rare_single_readings_are_not_doubted_for_their_noise(tmp_path):
+    rng = np.random.default_rng(5)
+    frame = table(500, hz=0.5)
+    for axis in "xyz":
+        frame[f"g{axis}_dps"] = np.radians(0.8 + 0.08 * rng.standard_normal(500))
+    frame.columns = [name.replace("dps", "rad/s") for name in frame]
+    _, report = read(tmp_path, frame)
+    assert not told(report, "doubtful")
 
 
 def test_radians_declared_as_degrees_are_doubted(tmp_path):

@@ -68,7 +68,12 @@ def test_a_counter_that_ran_over_goes_on(tmp_path):
 
 @pytest.mark.parametrize(
     "stamp",
-    ["2026-05-01T12:00:{:06.3f}Z", "2026-05-01 12:00:{:06.3f}", "2026-05-01T14:00:{:06.3f}+02:00"],
+    [
+        "2026-05-01T12:00:{:06.3f}Z",
+        "2026-05-01 12:00:{:06.3f}",
+        "2026-05-01T14:00:{:06.3f}+02:00",
+        "2026/05/01 12:00:{:06.3f}",
+    ],
 )
 def test_dates_of_iso_8601_are_times(tmp_path, stamp):
     frame = table().rename(columns={"t_s": "time"})
@@ -87,9 +92,33 @@ def test_a_time_of_day_is_a_time_and_goes_on_at_midnight(tmp_path):
     assert told(report, "a clock of 24 hours ran over at row 301: counted on")
 
 
+@pytest.mark.parametrize("stamp", ["01.05.2026 11:59:{}", "5/1/2026, 11:59:{} AM"])
+def test_a_day_in_any_order_may_stand_before_a_time_of_it(tmp_path, stamp):
+    noon = stamp.replace("11:59", "12:00").replace("AM", "PM")
+    seconds = [f"{i / 100:06.3f}" for i in range(5900, 6000)]
+    times = [stamp.format(s) for s in seconds] + [noon.format(f"00.{i:02d}0") for i in range(100)]
+    recording, _ = read(tmp_path, table(200).assign(t_s=times).rename(columns={"t_s": "time"}))
+    assert (np.diff(recording.columns["t_us"]) == 10_000).all()
+
+
+def test_a_column_of_days_beside_one_of_times_is_no_time(tmp_path):
+    frame = table(500).rename(columns={"t_s": "Time"})
+    frame["Time"] = [f"12:00:{t:06.3f}" for t in frame["Time"]]
+    for day in ("05/05/2021", "20210505"):
+        recording, _ = read(tmp_path, frame.assign(Date=day)[["Date", *frame]])
+        assert (np.diff(recording.columns["t_us"]) == 10_000).all()
+
+
+def test_midnight_falls_between_rows_that_are_rare(tmp_path):
+    stamps = pd.Timestamp("2021-03-05T23:50") + pd.to_timedelta(np.arange(100) * 15, unit="s")
+    frame = table(100).assign(t_s=stamps.strftime("%H:%M:%S")).rename(columns={"t_s": "time"})
+    recording, _ = read(tmp_path, frame)
+    assert (np.diff(recording.columns["t_us"]) == 15_000_000).all()
+
+
 def test_a_time_that_cannot_be_read_says_how_to_write_it(tmp_path):
     frame = table(500).rename(columns={"t_s": "time"})
-    frame["time"] = [f"01.05.2026 12:00:{t:06.3f}" for t in frame["time"]]
+    frame["time"] = [f"May 1st, at noon and {t:06.3f}" for t in frame["time"]]
     with pytest.raises(BadRecording, match="no time can be read from column 'time'; .*--hz N"):
         read(tmp_path, frame)
 

@@ -112,7 +112,7 @@ def _converted(table, path, options: Options, mapping, units, instance, folder):
         _leave_out_unread(found, plan, report)
         report.doubts += doubts(found, plan)
         scales = fitting_scales(found, plan, table, options, path, report.notes)
-        report.notes += [*absent(plan), *left_aside(plan, table)]
+        report.notes += [*absent(plan, table.names), *left_aside(plan, table)]
         names = [n for n in COLUMNS if n in found.spool.names]
         names += [n for n in plan.wanted if n not in COLUMNS]
         batches = integer_batches(found, plan, scales, path, report)

@@ -79,9 +79,18 @@ def temperature(names: list[str]) -> str | None:
     return next((name for name in found if not _NOT_THE_DIE.search(spelled(name))), None)
 
 
-def time_column(names: list[str]) -> str | None:
-    """The column that looks like time stamps."""
-    return next((name for name in names if _TIME.match(spelled(name))), None)
+def other_temperatures(names: list[str]) -> list[str]:
+    """Columns of temperatures that are not called as the sensor's own is, the likelier ones first;
+    none where one is."""
+    if temperature(names):
+        return []
+    found = [name for name in names if re.search("temp|tmp", spelled(name))]
+    return sorted(found, key=lambda name: bool(_NOT_THE_DIE.search(spelled(name))))
+
+
+def time_columns(names: list[str]) -> list[str]:
+    """The columns that look like time stamps."""
+    return [name for name in names if _TIME.match(spelled(name))]
 
 
 def split_time(names: list[str]) -> tuple[str, str] | None:

@@ -120,12 +120,20 @@ def _found(
     names = {**names, **usual.accel_beside(table.names, gyro, instance)}
     temp = usual.temperature(table.names)
     found = {t: Mapped(t, c) for t, c in {**names, **({TEMP: temp} if temp else {})}.items()}
-    split, time = usual.split_time(table.names), usual.time_column(table.names)
+    split, time = usual.split_time(table.names), _time_column(table)
     if split:
         found[TIME] = Mapped(TIME, split[0], "s", (split[1], "ns"))
     elif time:
         found[TIME] = Mapped(TIME, time)
     return found
+
+
+def _time_column(table: Table) -> str | None:
+    """Of the columns called as times the first in which one goes on: no day beside a time of it."""
+    found = usual.time_columns(table.names)
+    first = table.first_rows(found) if len(found) > 1 else {}
+    differ = (name for name, values in first.items() if len(np.unique(values[values > 0])) > 1)
+    return next(differ, next(iter(found), None))
 
 
 def _axes_of_a_gyro_file(table: Table, path: Path) -> dict[str, str]:
@@ -166,7 +174,7 @@ def hz_words(table: Table) -> str:
 def left_aside(plan: Plan, table: Table) -> list[str]:
     """Which named columns a recording goes without, any of which may hold a cause."""
     aside = [n for n in table.names if n and n not in plan.columns]
-    aside = [n for n in aside if n != usual.time_column(table.names)]
+    aside = [n for n in aside if n not in usual.time_columns(table.names)]
     if plan.by_format or usual.unnamed(table.names) or not aside:
         return []
     return [f"left aside: {_list(aside, _TOLD)}; take one along as --map NAME=COLUMN"]

@@ -30,7 +30,10 @@ def _table(found: dict[str, object], path: Path) -> Table:
     numeric = {
         name: np.atleast_2d(value.T).T
         for name, value in _flat(found).items()
-        if isinstance(value, np.ndarray) and value.dtype.kind in "fiub" and value.ndim <= 2
+        if not name.startswith("__")
+        and isinstance(value, np.ndarray)
+        and value.dtype.kind in "fiub"
+        and value.ndim <= 2
     }
     numeric = {n: v.T if v.shape[0] == 1 and v.shape[1] > 1 else v for n, v in numeric.items()}
     rows = max(Counter(len(v) for v in numeric.values()), default=0)
@@ -40,7 +43,8 @@ def _table(found: dict[str, object], path: Path) -> Table:
             for k in range(value.shape[1]):
                 columns[name if value.shape[1] == 1 else f"{name}[{k}]"] = value[:, k]
     if not columns:
-        raise BadRecording(path, "no numeric variable", do="name another file")
+        do = "tables and timetables only MATLAB reads: write one with writetable as a CSV"
+        raise BadRecording(path, "no variable of numbers", do=do)
     return Table(list(columns), partial(one_after_the_other, [columns]))
 
 

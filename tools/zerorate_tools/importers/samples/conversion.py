@@ -11,6 +11,7 @@ from ...recordings import Scales
 from ...recordings.checks import GAP
 from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP
 from ...recordings.scales import EXAMPLE
+from ..columns.names import other_temperatures
 from ..columns.plan import Plan
 from ..columns.units import kind_of
 from ..report import Options, Report
@@ -166,11 +167,15 @@ def _channel(name: str, values: np.ndarray, place: np.ndarray, path: Path) -> np
     return np.where(np.isnan(values), GAP, np.rint(values)).astype(np.int32)
 
 
-def absent(plan: Plan) -> list[str]:
-    """What cannot be learned without the columns that are not there."""
+def absent(plan: Plan, names: list[str]) -> list[str]:
+    """What cannot be learned without the columns that are not there. names: of all columns."""
     out = []
     if ACCEL[0] not in plan.wanted:
         out.append("no acceleration: nothing can be learned against gravity")
     if TEMP not in plan.wanted:
-        out.append("no temperature: the bias cannot be followed over temperature")
+        other = other_temperatures(names)
+        is_near = "is" if len(other) == 1 else "one of them is"
+        offer = f"; if {is_near} the sensor's or near it: --map temp={other[0]}" if other else ""
+        listed = f" by its name, but {', '.join(other)}" if other else ""
+        out.append(f"no temperature{listed}: the bias cannot be followed over temperature{offer}")
     return out

@@ -27,6 +27,8 @@ _FASTEST_DEGC_S, _LEAST_DEGC = 1.0, 3.0
 _TRUE_DEGC = (-60.0, 130.0)
 #: White noise that no such sensor is below, and none above, dps per square root of Hz.
 _QUIETEST, _LOUDEST = 2e-4, 0.1
+#: Rows that are rarer may each be a single reading, with all noise up to there, Hz.
+_SINGLE_HZ = 10.0
 #: Of one sample to the next, where nothing shakes.
 _UNSHAKEN_G = 0.02
 _STEADY_DPS = 25.0
@@ -98,7 +100,11 @@ def _of_rates(found: Gathered, plan: Plan) -> list[str]:
     if middle > _STEADY_DPS and (high - low).max() < 0.2 * middle:
         said = f"a steady rate of {middle:.3g} dps is no bias of a sound sensor at rest"
         meant = "dps" if factor > 1 else ""
-    elif noise > _LOUDEST * root_hz and factor > 1 and _unshaken(found.looked_at, plan):
+    elif (
+        noise > _LOUDEST * max(root_hz, math.sqrt(_SINGLE_HZ / 2))
+        and factor > 1
+        and _unshaken(found.looked_at, plan)
+    ):
         said, meant = f"noise of {noise:.2g} dps is more than such a sensor has at rest", "dps"
     elif 0 < noise < _QUIETEST * root_hz and factor == 1.0 and found.interval_us < 2e5:
         said, meant = f"noise of {noise * 1e3:.2g} mdps is less than such a sensor has", "rad/s"

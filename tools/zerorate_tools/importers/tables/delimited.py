@@ -15,10 +15,11 @@ import pyarrow.csv
 
 from ...errors import BadRecording
 from ...recordings.text import damaged, open_text
-from .sniffing import COMMENTS, Form, sniffed
+from .sniffing import COMMENTS, DAY, Form, sniffed
 from .table import Chunk, Table
 
 _BLOCK_BYTES = 1 << 22
+_HALF_DAY_S = 43_200.0
 _NO_VALUE = ["", "nan", "NaN", "NAN", "NA", "null", "None", "-", "--"]
 
 
@@ -121,7 +122,8 @@ class _OddLines:
 
     def take(self, row: pyarrow.csv.InvalidRow) -> str:
         """Arrow's handler of such a line."""
-        if not str(row.text).lstrip().startswith(COMMENTS):
+        text = str(row.text).lstrip()
+        if text and not text.startswith(COMMENTS):
             self._count += 1
             if row.number is not None:
                 self._rows.append(row.number - self._before - 1)
@@ -161,18 +163,31 @@ def _some_numbers(cells: pa.Array) -> np.ndarray:
 
 def _seconds(cells: pa.Array) -> np.ndarray:
     """(n,) seconds since 1970 of ISO-8601 texts, without a zone in UTC, or since midnight of times
-    of the day."""
+    of the day, whose day may stand before them in any order."""
     import pandas
 
-    text = pandas.Series(_decoded(cells), dtype=object).str.strip().str.replace(",", ".")
+    text = pandas.Series(_decoded(cells), dtype=object).str.strip()
+    text = text.str.replace(rf"^{DAY}", "", regex=True).str.replace(",", ".")
     text = text.str.replace(r"\s+([+-]\d\d:?\d\d)$", r"\1", regex=True)
     if text.str.match(r"\d\d?:").any():
-        return pandas.to_timedelta(text, errors="coerce").dt.total_seconds().to_numpy(float)
+        return _since_midnight(text)
+    text = text.str.replace(r"^(\d{4})/(\d\d)/", r"\1-\2-", regex=True)
     stamps = pandas.to_datetime(text, format="ISO8601", utc=True, errors="coerce")
     since = (stamps - pandas.Timestamp(0, tz="UTC")).to_numpy()
     return since.astype("timedelta64[ns]").astype(float) * 1e-9 + np.where(
         np.isnat(since), np.nan, 0.0
     )
+
+
+def _since_midnight(text) -> np.ndarray:
+    """(n,) seconds of times of the day, of which an hour may end with AM or PM."""
+    import pandas
+
+    half = text.str.extract(r"\s*([ap])\.?m\.?$", flags=re.I)[0].str.lower()
+    clock = text.str.replace(r"(?i)\s*[ap]\.?m\.?$", "", regex=True)
+    of_day_s = pandas.to_timedelta(clock, errors="coerce").dt.total_seconds().to_numpy(float)
+    of_half_s = of_day_s % _HALF_DAY_S + _HALF_DAY_S * (half == "p").to_numpy()
+    return np.where(half.isna(), of_day_s, of_half_s)
 
 
 def _decoded(cells: pa.Array) -> list[str | None]:

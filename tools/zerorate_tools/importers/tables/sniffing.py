@@ -18,7 +18,12 @@ _DELIMITERS = (",", ";", "\t", "|", " ")
 COMMENTS = ("#", "//", "%", "*")
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")
 _DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+([eE][-+]?\d+)?$")
-_DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d|\d\d?:\d\d:\d\d([.,]\d+)?$")
+#: A day before a time of the day, whatever its order.
+DAY = r"\d\d?[./-]\d\d?[./-]\d{4},?\s+"
+_DATE = re.compile(
+    rf"\d{{4}}[-/]\d\d[-/]\d\d[T ]\d\d:\d\d|(?:{DAY})?\d\d?:\d\d:\d\d([.,]\d+)?(\s*[ap]\.?m\.?)?$",
+    re.I,
+)
 #: A line of such beneath the names says their units.
 _UNIT = re.compile(
     r"[\[(]?(-|[mun]?s|sec|(m?deg|rad|°)/s|m?dps|m?g|m/s(\^?2|²)|m/\(s\^2\)|°?c|degc|k|lsb)[\])]?$",
