@@ -13,9 +13,7 @@ from .tables import machine, machine_line, number, table
 _MADE = """\
 Made by `zerorate bench accuracy`, everyone on the same samples in one run. Real recordings are read
 from `ZERORATE_DATA`, or from `shared/data` beside the checkout. Where others report another figure
-of a filter for a scenario of the same words, it hangs on what the words leave open: imufusion on A
-leaves 94 mdps, not 46, where the part moves as power comes on, and the cubics on C leave 44 and 63,
-not 127 and 122, of a bias that does not walk.
+of a filter for a scenario of the same words, `zerorate bench peers` shows what it hangs on.
 """
 _SESSION_2 = """\
 Session 1 warms from 20 to 45 degC in 40 minutes; then the power is cut; session 2 warms from 17 to

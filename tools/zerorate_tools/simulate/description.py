@@ -33,7 +33,7 @@ def load_description(source: str | PathLike[str] | Table | Description) -> Descr
     if isinstance(source, Mapping):
         return _from_table(source, "description")
     path = bundled(str(source)) or Path(source)
-    return _from_table(_parsed(path), str(path))
+    return _from_table(parsed(path), str(path))
 
 
 def bundled(name: str) -> Path | None:
@@ -47,7 +47,7 @@ def bundled_names() -> list[str]:
     return sorted(path.stem for path in (Path(__file__).parent / "scenarios").glob("*.toml"))
 
 
-def _parsed(path: Path) -> Any:
+def parsed(path: Path) -> Any:
     """The tables of a description's file, not looked at yet. Raises as load_description."""
     try:
         data = path.read_bytes()
