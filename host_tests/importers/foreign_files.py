@@ -7,7 +7,7 @@ import numpy as np
 from rosbags.rosbag1 import Writer as Writer1
 from rosbags.rosbag2 import StoragePlugin
 from rosbags.rosbag2 import Writer as Writer2
-from rosbags.typesys import Stores, get_typestore
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 
 def ulog(path, topics):
@@ -92,6 +92,17 @@ def bag(folder, kind, imu=True):
     return path if kind == "ros2" else next(path.glob("*.db3" if kind == "db3" else "*.mcap"))
 
 
+def bag_of_a_driver(path):
+    """A bag of ROS 1 whose messages, of a driver's own type, hold an Imu each."""
+    store = get_typestore(Stores.ROS1_NOETIC)
+    store.register(get_types_from_msg("string raw\nsensor_msgs/Imu imu", "driver/msg/Own"))
+    own = store.types["driver/msg/Own"]
+    messages = [(t, ns, own("$", one)) for t, ns, one in _messages(store) if t == "/imu/data"]
+    with Writer1(path) as writer:
+        _write(writer, messages, Stores.ROS1_NOETIC, store)
+    return path
+
+
 def _messages(store):
     types = store.types
 
@@ -122,8 +133,8 @@ def _messages(store):
     return out
 
 
-def _write(writer, messages, stores):
-    store, connections = get_typestore(stores), {}
+def _write(writer, messages, stores, store=None):
+    store, connections = store or get_typestore(stores), {}
     encode = store.serialize_ros1 if stores is Stores.ROS1_NOETIC else store.serialize_cdr
     for topic, ns, message in messages:
         if topic not in connections:

@@ -183,6 +183,12 @@ def test_a_bag_of_other_topics_says_what_it_has(bag_of):
         read_foreign(bag_of("ros2", imu=False))
 
 
+def test_an_imu_within_the_message_of_a_driver_is_read(tmp_path):
+    recording, _ = read_foreign(foreign_files.bag_of_a_driver(tmp_path / "own.bag"))
+    assert len(recording) == 600
+    assert recording.gyro_dps()[0, 0] == pytest.approx(np.degrees(0.01), abs=0.005)
+
+
 def test_a_bag_that_is_cut_off_is_refused_in_one_line(bag_of):
     for kind in ("ros1", "db3", "mcap"):
         source = bag_of(kind)

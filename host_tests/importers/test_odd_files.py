@@ -6,7 +6,9 @@ import numpy as np
 import pandas as pd
 import pytest
 from zerorate_tools.errors import BadRecording
-from zerorate_tools.importers import parsed_mapping, read_foreign
+from zerorate_tools.importers import Options, parsed_mapping, read_foreign
+
+from .foreign_files import vectornav_line
 
 HEAD = "t_s,gx_dps,gy_dps,gz_dps"
 
@@ -234,3 +236,19 @@ def test_a_flight_is_no_steady_rate(tmp_path):
 def test_a_pointer_of_git_lfs_is_told_from_a_table(tmp_path):
     with pytest.raises(BadRecording, match="a pointer of Git LFS, not the file; .*git lfs pull"):
         read(tmp_path, "version https://git-lfs.github.com/spec/v1\noid sha256:1bf6\nsize 41\n")
+
+
+def test_lines_of_a_vectornav_need_but_their_rate(tmp_path):
+    lines = "\n".join([vectornav_line((0.01, 0.02, 0.03))] * 50)
+    recording, _ = read(tmp_path, lines, options=Options(hz=40))
+    assert recording.gyro_dps()[0] == pytest.approx(np.degrees([0.01, 0.02, 0.03]), abs=0.005)
+    assert recording.accel_g()[0, 2] == pytest.approx(-1.0, abs=0.01)
+    assert recording.temp_degc()[0] == pytest.approx(26.8, abs=0.01)
+
+
+def test_three_as_long_as_9_8_are_gravity_before_three_as_long_as_1(tmp_path):
+    rng = np.random.default_rng(8)
+    rest = [0.6, 0.0, 0.8, 0.0, 0.0, 9.8, 0.0, 0.0, 0.0] + 0.01 * rng.normal(size=(50, 9))
+    text = "\n".join(",".join(f"{v:.4f}" for v in row) for row in rest)
+    with pytest.raises(BadRecording, match="--map az=6:m/s2 --map gx=7:rad/s --map gy=8:rad/s"):
+        read(tmp_path, text)

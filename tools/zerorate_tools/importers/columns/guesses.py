@@ -83,14 +83,15 @@ def likely_columns(
     rest = _no_quaternion({n: values[n] for n in values if n not in times and _varies(values[n])})
     out = [] if time is None else [f"t_us={time}:{_likely_time(values[time])}"]
     rates = "lsb" if all((values[name] % 1 == 0).all() for name in rest) else "dps"
-    for at in range(len(rest) - 2):
-        three = rest[at : at + 3]
-        unit = _gravity_unit([values[name] for name in three])
-        if unit in ("m/s2", "g"):
-            out += [f"{axis}={name}:{unit}" for axis, name in zip(ACCEL, three)]
-            rates = "rad/s" if unit == "m/s2" else "dps"
-            rest = rest[at + 3 :] if len(rest) >= at + 6 else rest[:at]
-            break
+    threes = [[values[name] for name in rest[at : at + 3]] for at in range(len(rest) - 2)]
+    units = [_gravity_unit(three) for three in threes]
+    # 9.8 is met by chance more rarely than 1
+    unit = next((unit for unit in ("m/s2", "g") if unit in units), None)
+    if unit:
+        at = units.index(unit)
+        out += [f"{axis}={name}:{unit}" for axis, name in zip(ACCEL, rest[at : at + 3])]
+        rates = "rad/s" if unit == "m/s2" else "dps"
+        rest = rest[at + 3 :] if len(rest) >= at + 6 else rest[:at]
     else:
         rest = rest if len(rest) == len(GYRO) else []
     gyro = [f"{axis}={name}:{rates}" for axis, name in zip(GYRO, rest)]

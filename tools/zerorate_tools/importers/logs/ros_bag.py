@@ -9,6 +9,7 @@ from ..tables.table import Table
 from .messages import Logged, is_wanted, table_of_messages
 
 KIND = "ROS bag"
+_IMU = "sensor_msgs/msg/Imu"
 
 
 def read(path: Path, instance: int = 0) -> Table:
@@ -22,13 +23,23 @@ def _bag(path: Path) -> Table:
 
     bag = AnyReader([path], default_typestore=get_typestore(Stores.LATEST))
     bag.open()
-    connections = [one for one in bag.connections if is_wanted(one.msgtype)]
+    kinds = {one.topic: one.msgtype for one in bag.connections}
+    within = {topic: _field_of_imu(bag.typestore, kind) for topic, kind in kinds.items()}
+    connections = [one for one in bag.connections if is_wanted(one.msgtype) or within[one.topic]]
 
     def messages() -> Iterator[Logged]:
         for connection, at_ns, raw in bag.messages(connections=connections):
-            yield connection.topic, at_ns, bag.deserialize(raw, connection.msgtype)
+            message = bag.deserialize(raw, connection.msgtype)
+            field = within[connection.topic]
+            yield connection.topic, at_ns, getattr(message, field) if field else message
 
-    return table_of_messages(path, {one.topic: one.msgtype for one in bag.connections}, messages)
+    return table_of_messages(path, {t: _IMU if within[t] else kinds[t] for t in kinds}, messages)
+
+
+def _field_of_imu(store, kind: str) -> str | None:
+    """The field in which a message of a driver's own holds an Imu, as bags of ROS 1 say it."""
+    fields = store.fielddefs.get(kind, ([], []))[1]
+    return next((name for name, (_, of) in fields if of == _IMU), None)
 
 
 def _database(path: Path) -> Table:

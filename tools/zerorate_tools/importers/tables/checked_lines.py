@@ -15,6 +15,11 @@ from .table import Chunk, Table
 
 _BLOCK_BYTES = 1 << 20
 _LONGEST_LINE = 4096
+#: What stands where in lines of VectorNav's, by its manual.
+_KNOWN = {
+    b"VNYMR": "ax=7:m/s2 ay=8:m/s2 az=9:m/s2 gx=10:rad/s gy=11:rad/s gz=12:rad/s",
+    b"VNIMU": "ax=4:m/s2 ay=5:m/s2 az=6:m/s2 gx=7:rad/s gy=8:rad/s gz=9:rad/s temp=10:degc",
+}
 
 
 def has_checked_lines(path: Path) -> bool:
@@ -45,7 +50,8 @@ def checked_lines(path: Path, advance: Callable[[float], None] = lambda n: None)
             yield Chunk(place + np.array(good, np.int64), by_name)
             place += len(ours)
 
-    table = Table(names, chunks, notes=[f"lines of ${kind.decode('ascii', 'replace')}"])
+    notes = [f"lines of ${kind.decode('ascii', 'replace')}"]
+    table = Table(names, chunks, mapping=_KNOWN.get(kind, "").split(), notes=notes)
     return table
 
 
