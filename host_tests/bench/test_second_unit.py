@@ -1,6 +1,6 @@
 """A model of one unit, refined on another one of the same part."""
 
-from zerorate_tools.bench.second_unit import WAYS, SecondUnit, device, errors_mdps, table
+from zerorate_tools.bench.second_unit import WAYS, SecondUnit, device, errors_mdps, in_markdown
 from zerorate_tools.layout import SLOT, slot_at
 from zerorate_tools.loop.verify.firmware import rows
 from zerorate_tools.replay.engines import InterpreterEngine, NativeEngine
@@ -32,7 +32,7 @@ def test_its_coefficients_move_towards_its_own():
 
 
 def test_the_table_has_a_row_for_every_way():
-    rows = table([{NONE: 3.0, AS_IT_IS: 2.0, REFINED: 1.0}]).splitlines()
+    rows = in_markdown([{NONE: 3.0, AS_IT_IS: 2.0, REFINED: 1.0}]).splitlines()
     assert rows[-1] == "| refined | 1.0 | 1.0 |" and len(rows) == 2 + len(WAYS)
 
 

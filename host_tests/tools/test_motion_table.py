@@ -1,7 +1,7 @@
 """The tables of `bench motion` say what each figure must be, and whether it is."""
 
 import pytest
-from zerorate_tools.bench.motion_table import LIMITS_MDPS, table
+from zerorate_tools.bench.motion_table import LIMITS_MDPS, in_markdown
 
 
 @pytest.fixture
@@ -21,7 +21,7 @@ def found():
 
 
 def verdicts(found):
-    (line,) = (line for line in table(found).splitlines() if "is it?" in line)
+    (line,) = (line for line in in_markdown(found).splitlines() if "is it?" in line)
     return [cell.strip() for cell in line.split("|")[2:-1]]
 
 
@@ -50,7 +50,7 @@ def test_one_window_learned_on_a_turntable_is_one_too_many(found):
 
 
 def test_honesty_is_counted_in_percent(found):
-    assert "| decision |" + " 95 % |" * len(LIMITS_MDPS) in table(found)
+    assert "| decision |" + " 95 % |" * len(LIMITS_MDPS) in in_markdown(found)
 
 
 def test_the_decision_is_judged_beside_vqf_on_whole_trials(found):
@@ -59,6 +59,6 @@ def test_the_decision_is_judged_beside_vqf_on_whole_trials(found):
 
     ways = {"vqf": rows(11.0), "decision": rows(3.0)}
     found["broad"] = {"whole": ways, "motion": ways, "trials": {}}
-    assert "at or below vqf on the whole trial: yes" in table(found)
+    assert "at or below vqf on the whole trial: yes" in in_markdown(found)
     ways["decision"] = rows(12.0)
-    assert "at or below vqf on the whole trial: **no**" in table(found)
+    assert "at or below vqf on the whole trial: **no**" in in_markdown(found)

@@ -2,6 +2,7 @@
 
 from .bus_faults import FAULTS, run_fault
 from .store_faults import run_store
+from .tables import table
 
 
 def run() -> dict:
@@ -28,20 +29,11 @@ def passed(found: dict) -> bool:
     )
 
 
-def table(found: dict) -> str:
-    """Both tables as text."""
-    lines = [
-        f"{'fault':<28}{'injected':>9}{'detected':>9}{'learned from':>13}{'false handed out':>17}"
-    ]
-    for name, row in found["faults"].items():
-        lines.append(
-            f"{name:<28}{row['injected']:>9}{row['detected']:>9}"
-            f"{row['learned_from']:>13}{row['false_samples']:>17}"
-        )
-    lines += ["", f"{'store':<28}{'cuts':>9}{'flips':>9}{'wrong loads':>13}{'exceptions':>17}"]
+def in_markdown(found: dict) -> str:
+    """Both tables."""
+    rows = [[name, *row.values()] for name, row in found["faults"].items()]
     store = found["store"]
-    lines.append(
-        f"{store['bytes']} bytes a slot".ljust(28) + f"{store['cuts']:>9}{store['flips']:>9}"
-        f"{store['wrong_loads']:>13}{store['exceptions']:>17}"
-    )
-    return "\n".join(lines)
+    counts = [store[name] for name in ("cuts", "flips", "wrong_loads", "exceptions")]
+    faults = table(["fault", "injected", "detected", "learned from", "false handed out"], rows)
+    head = ["store", "cuts", "flips", "wrong loads", "exceptions"]
+    return faults + "\n" + table(head, [[f"{store['bytes']} bytes a slot", *counts]])

@@ -1,12 +1,13 @@
 """The tables of `bench motion`, each figure beside what it must be."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
 from .motion import run
+from .tables import table
 
-__all__ = ["LIMITS_MDPS", "run", "table"]
+__all__ = ["LIMITS_MDPS", "in_markdown", "run"]
 
 # most RMS error of the decision after two minutes, mdps, of every seed or of the median one; None:
 # no window may be learned wrongly
@@ -23,28 +24,50 @@ LIMITS_MDPS: dict[str, float | None] = {
 }
 _BY_MEDIAN = {"never-rests"}
 _DECISION = "decision"
+_HONESTY = """\
+Truth within two sigma, mean over the seeds; must be 90 % of a source's verdicts, and of the \
+decision at the end of each ten seconds:
+"""
+_SETTLING = """\
+Against gravity, a device at rest with biases of 2.0 and -1.5 dps; within 50 mdps after, ripple \
+(standard deviation) and mean error of the last 200 s:
+"""
+_SETTLING_HEAD = ["form", "s", "ripple, mdps", "mean error, mdps"]
+_BROAD = "BROAD, RMS error after one minute, mdps: median over trials and axes (mean):\n"
+_BROAD_HEAD = ["", "whole trial", "its motion alone", "motion: truth within 2 sigma"]
+_TRUTH_HEAD = ["trial", "bias", "one sigma", "by its motion alone", "one sigma"]
+_TRUTH = ("bias_dps", "sigma_dps", "motion_dps", "motion_sigma_dps")
 
 
-def table(found: Mapping) -> str:
-    """All tables as Markdown."""
+def in_markdown(found: Mapping) -> str:
+    """All tables."""
+    return "\n".join(_parts(found))
+
+
+def _parts(found: Mapping) -> Iterator[str]:
     scenarios = found["simulated"]
-    lines = ["# Bias without rest, measured", "", "`zerorate bench motion` wrote this page.", ""]
-    lines += ["Simulated, RMS error after two minutes, mdps, each seed (windows learned):", ""]
-    lines += _head(["", *scenarios])
-    for way in next(iter(scenarios.values())):
-        cells = [_cell(rows[way]) for rows in scenarios.values()]
-        lines.append(f"| {way} | " + " | ".join(cells) + " |")
-    wanted = [_wanted(name) for name in scenarios]
-    lines.append("| **must be** | " + " | ".join(wanted) + " |")
-    lines.append(
-        "| **is it?** | " + " | ".join(_kept(scenarios, name) for name in scenarios) + " |"
-    )
-    lines += ["", *_honesty_lines(scenarios)]
-    lines += ["", *_settling_lines(found["settling"])]
-    lines += ["", "A sample of each source on a Cortex-M0+, in cycles: " + _cost(found["cost"])]
+    yield "# Bias without rest, measured\n\n`zerorate bench motion` wrote this page.\n"
+    yield "Simulated, RMS error after two minutes, mdps, each seed (windows learned):\n"
+    yield table(["", *scenarios], list(_errors(scenarios)))
+    yield _HONESTY
+    yield table(["", *scenarios], list(_honesty(scenarios)))
+    yield _SETTLING
+    yield table(_SETTLING_HEAD, [[form, *row.values()] for form, row in found["settling"].items()])
+    yield f"A sample of each source on a Cortex-M0+, in cycles: {_cost(found['cost'])}\n"
     if "broad" in found:
-        lines += ["", *_broad_lines(found["broad"])]
-    return "\n".join(lines)
+        broad = found["broad"]
+        yield _BROAD
+        yield table(_BROAD_HEAD, list(_on_broad(broad)))
+        yield _beside_vqf(broad) + "\n"
+        yield "True bias by the optical attitude, dps:\n"
+        yield table(_TRUTH_HEAD, list(_truth(broad["trials"])))
+
+
+def _errors(scenarios: Mapping) -> Iterator[list[str]]:
+    for way in next(iter(scenarios.values())):
+        yield [way, *(_cell(rows[way]) for rows in scenarios.values())]
+    yield ["**must be**", *(_wanted(name) for name in scenarios)]
+    yield ["**is it?**", *(_kept(scenarios, name) for name in scenarios)]
 
 
 def _cell(row: Mapping) -> str:
@@ -68,19 +91,11 @@ def _kept(scenarios: Mapping, name: str) -> str:
     return "yes" if judged <= limit else "**no**"
 
 
-def _honesty_lines(scenarios: Mapping) -> list[str]:
-    lines = [
-        "Truth within two sigma, mean over the seeds; must be 90 % of a source's verdicts, and of "
-        "the decision at the end of each ten seconds:",
-        "",
-    ]
-    lines += _head(["", *scenarios])
+def _honesty(scenarios: Mapping) -> Iterator[list[str]]:
     for way in next(iter(scenarios.values())):
         within = [rows[way]["within"] for rows in scenarios.values()]
         if any(within):
-            cells = [f"{100 * np.mean(one):.0f} %" if one else "" for one in within]
-            lines.append(f"| {way} | " + " | ".join(cells) + " |")
-    return lines
+            yield [way, *(f"{100 * np.mean(one):.0f} %" if one else "" for one in within)]
 
 
 def _cost(found: Mapping | str) -> str:
@@ -93,50 +108,27 @@ def _cost(found: Mapping | str) -> str:
     return "; ".join(costs) + "."
 
 
-def _settling_lines(forms: Mapping) -> list[str]:
-    lines = [
-        "Against gravity, a device at rest with biases of 2.0 and -1.5 dps; within "
-        "50 mdps after, ripple (standard deviation) and mean error of the last 200 s:",
-        "",
-    ]
-    lines += _head(["form", "s", "ripple, mdps", "mean error, mdps"])
-    for form, row in forms.items():
-        cells = (row["seconds"], row["ripple_mdps"], row["mean_mdps"])
-        lines.append(f"| {form} | " + " | ".join(str(cell) for cell in cells) + " |")
-    return lines
-
-
-def _broad_lines(broad: Mapping) -> list[str]:
-    lines = ["BROAD, RMS error after one minute, mdps: median over trials and axes (mean):", ""]
-    lines += _head(["", "whole trial", "its motion alone", "motion: truth within 2 sigma"])
+def _on_broad(broad: Mapping) -> Iterator[list[str]]:
     for way in broad["whole"]:
         cells = []
         for part in ("whole", "motion"):
-            errors = [x for row in broad[part][way].values() for x in row["rms_mdps"]]
+            errors = _errors_of(broad[part][way])
             cells.append(f"{np.median(errors):.0f} ({np.mean(errors):.0f})")
         inside = [row.get("within_two_sigma") for row in broad["motion"][way].values()]
         known = [x for x in inside if x is not None]
-        cells.append(f"{100 * np.mean(known):.0f} %" if known else "")
-        lines.append(f"| {way} | " + " | ".join(cells) + " |")
-    lines += ["", _beside_vqf(broad)]
-    lines += ["", "True bias by the optical attitude, dps:", ""]
-    lines += _head(["trial", "bias", "one sigma", "by its motion alone", "one sigma"])
-    for name, truth in broad["trials"].items():
-        columns = ("bias_dps", "sigma_dps", "motion_dps", "motion_sigma_dps")
-        cells = [" ".join(f"{x:.3f}" for x in truth[column]) for column in columns]
-        lines.append(f"| {name} | " + " | ".join(cells) + " |")
-    return lines
+        yield [way, *cells, f"{100 * np.mean(known):.0f} %" if known else ""]
+
+
+def _truth(trials: Mapping) -> Iterator[list[str]]:
+    for name, truth in trials.items():
+        yield [name, *(" ".join(f"{x:.3f}" for x in truth[column]) for column in _TRUTH)]
 
 
 def _beside_vqf(broad: Mapping) -> str:
-    ours, theirs = (_median(broad["whole"][way]) for way in (_DECISION, "vqf"))
+    ours, theirs = (np.median(_errors_of(broad["whole"][way])) for way in (_DECISION, "vqf"))
     kept = "yes" if ours <= theirs else "**no**"
     return f"The decision must be at or below vqf on the whole trial: {kept}."
 
 
-def _median(rows: Mapping) -> float:
-    return float(np.median([x for row in rows.values() for x in row["rms_mdps"]]))
-
-
-def _head(cells: Sequence[str]) -> list[str]:
-    return ["| " + " | ".join(cells) + " |", "|" + "---|" * len(cells)]
+def _errors_of(rows: Mapping) -> list[float]:
+    return [x for row in rows.values() for x in row["rms_mdps"]]

@@ -18,6 +18,7 @@ from ..model.term import Term, evaluate
 from ..recordings import Scales
 from ..replay.engines import NativeEngine
 from ..replay.samples import Frames
+from .tables import table
 
 SCALES = Scales("MPU-6050", 25.0, 131.0, 16384.0, 340.0, 36.53)
 RATE = Term("temp", 0.0, 70.0, 30.0, lag_s=30.0, lag_mode="rate")
@@ -105,10 +106,8 @@ def run(seeds: int) -> list[dict[str, float]]:
     return [errors_mdps(seed) for seed in range(seeds)]
 
 
-def table(units: list[dict[str, float]]) -> str:
-    """Median and worst of the units, in Markdown."""
-    lines = [f"| {len(units)} units, mdps | median | worst |", "| --- | ---: | ---: |"]
-    for way in WAYS:
-        errors = [unit[way] for unit in units]
-        lines.append(f"| {way} | {np.median(errors):.1f} | {max(errors):.1f} |")
-    return "\n".join(lines)
+def in_markdown(units: list[dict[str, float]]) -> str:
+    """Median and worst of the units."""
+    errors = {way: [unit[way] for unit in units] for way in WAYS}
+    rows = [[way, f"{np.median(of):.1f}", f"{max(of):.1f}"] for way, of in errors.items()]
+    return table([f"{len(units)} units, mdps", "median", "worst"], rows)

@@ -150,7 +150,6 @@ BENCHES = {
         "every fault of a bus and every cut of a write; exit code 1 when one goes unnoticed",
         "faults",
         lambda bench, a, advance: bench.run(),
-        text="table",
         judged=True,
     ),
     "filters": Bench(
@@ -164,8 +163,7 @@ BENCHES = {
         "fleet",
         lambda bench, a, advance: bench.run(sorted(a.devices), advance=advance),
         lambda bench, a: bench.steps(a.devices, bench.WORKERS),
-        "markdown",
-        {
+        options={
             "--devices": {
                 **{"type": int, "nargs": "+", "metavar": "N", "default": (100, 500, 2000)},
                 "help": "sizes of the fleet (100 500 2000)",
@@ -206,7 +204,6 @@ BENCHES = {
         "the bias learned in motion beside vqf's",
         "motion_table",
         lambda bench, a, advance: bench.run(a.data),
-        text="table",
         options=_BROAD,
     ),
     "peers": Bench(
@@ -227,7 +224,6 @@ BENCHES = {
         "one unit's effect model on another unit, refined",
         "second_unit",
         lambda bench, a, advance: bench.run(a.seeds),
-        text="table",
         options={"--seeds": _number(20, "units")},
     ),
     "service": Bench(

@@ -6,7 +6,7 @@ from ...fleet.fleet_in_words import WAYS, scenario_in_words
 from ..tables import machine_line, table
 
 
-def markdown(found: dict[str, Any]) -> str:
+def in_markdown(found: dict[str, Any]) -> str:
     """Scaling, the prior's worth, and a million devices."""
     length = (
         f"Each device has one recording of {found['minutes']:g} minutes at {found['odr_hz']:g} Hz "
