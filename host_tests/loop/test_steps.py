@@ -95,6 +95,19 @@ def test_a_step_beside_blocks_that_a_hand_had_mostly_is_listed():
     assert steps_at(session) == [pytest.approx(90, abs=0.75)]
 
 
+@pytest.mark.parametrize("share", [0.2, 0.5, 0.8])
+def test_a_step_between_rests_is_listed_though_the_first_block_after_has_both_its_sides(share):
+    session, floor = stepped(0, 20.0, 90)
+    per = session.ticks_per_block
+    session.tick_weight = np.ones(session.blocks * per)
+    session.tick_weight[88 * per : 91 * per] = 0.0
+    session.tick_weight[[90 * per, 91 * per - 1]] = 1.0 - share, share
+    session.rate_dps[90] -= (1.0 - share) * 20.0 * floor * (1, -1, 1)
+    session.rate_dps[88:90], session.weight[88:90] = np.nan, 0.0
+    [step] = without_steps([session])[0].steps
+    assert np.abs(step.size_dps / floor) == pytest.approx([20.0] * 3, abs=5.0)
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_a_slow_change_is_no_step(seed):
     session, floor = stepped(seed, 0.0)

@@ -1,5 +1,7 @@
 """What of a recording counts as rest."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from zerorate_tools.bench.loop.rests import (
@@ -12,6 +14,7 @@ from zerorate_tools.loop.read.still import still_ticks
 from zerorate_tools.loop.read.ticks import read_ticks
 from zerorate_tools.recordings import Recording, Scales
 
+from .power_ons import SCALES as WITH_ACCELEROMETER
 from .power_ons import turning, written
 
 ODR = 20
@@ -73,6 +76,21 @@ def test_a_motion_that_the_recording_begins_with_is_motion_until_it_died_down(st
     at_s = np.arange(ODR * 1800) / ODR
     resting = still(2.0 * np.exp(-at_s / 8), np.full(len(at_s), 25.0))
     assert not resting[:25].any() and resting[40:].all()
+
+
+def test_what_shakes_as_a_recording_begins_or_ends_is_no_rest(tmp_path):
+    rng, seconds = np.random.default_rng(4), 600
+    at_s = np.arange(int(ODR) * seconds) / ODR
+    shaken = (at_s < 60) | (at_s >= 540)
+    columns = turning(4, np.zeros(len(at_s)), ODR)
+    columns["temp"] = np.zeros(len(at_s), np.int32)
+    for name, g in zip(("ax", "ay", "az"), (0.0, 0.0, 1.0)):
+        noise = rng.normal(0, np.where(shaken, 0.3, 0.004))
+        columns[name] = np.round((g + noise) * 16384).astype(np.int32)
+    [path] = written(tmp_path, [Recording(columns, replace(WITH_ACCELEROMETER, odr_hz=ODR), "run")])
+    resting = still_ticks(read_ticks(path))
+    assert resting[:50].mean() < 0.2 and resting[550:].mean() < 0.2
+    assert resting[75:525].all()
 
 
 def test_a_device_mostly_in_motion_keeps_its_rests(still):

@@ -143,7 +143,7 @@ def _running_middle(rate, quiet, window):
 
 def _gravity_holds(ticks, there):
     """(m,) bool: the direction of gravity does not turn by more than its own noise allows over ten
-    ticks.
+    ticks; near the recording's ends, from there inwards.
     """
     lag = max(1, int(10.0 / ticks.tick_s))
     if len(there) <= 2 * lag:
@@ -151,8 +151,8 @@ def _gravity_holds(ticks, there):
     smooth = np.column_stack(
         [median_filter(ticks.accel[:, a], 5, mode="nearest") for a in range(3)]
     )
-    turned = np.zeros(len(there))
-    change = np.linalg.norm(smooth[2 * lag :] - smooth[: -2 * lag], axis=1)
-    turned[lag:-lag] = change
-    usual = np.quantile(change, 0.5)
+    at = np.arange(len(there))
+    before, after = np.maximum(at - lag, 0), np.minimum(at + lag, at[-1])
+    turned = np.linalg.norm(smooth[after] - smooth[before], axis=1)
+    usual = np.quantile(turned[lag:-lag], 0.5)
     return turned < max(8.0 * usual, 0.03)

@@ -32,8 +32,32 @@ class Place:
 
 
 def heavisides(session, at: np.ndarray) -> np.ndarray:
-    """(blocks, places) 0 before and 1 after each, and the share of it after one in a block."""
-    return np.clip(np.arange(session.blocks)[:, None] + 1.0 - at[None], 0.0, 1.0)
+    """(blocks, places) 0 before and 1 after each, and of a block with one in it the share after."""
+    out = np.clip(np.arange(session.blocks)[:, None] + 1.0 - at[None], 0.0, 1.0)
+    for k in np.flatnonzero(at % 1.0):
+        if 0.0 <= at[k] < session.blocks:
+            out[int(at[k]), k] = _share_after(session, float(at[k]))
+    return out
+
+
+def _share_after(session, at: float) -> float:
+    """Of the ticks that count in a block's rate, those after a place in it: a hand that put the
+    device aside left rest at one of its ends."""
+    per, block = session.ticks_per_block, int(at)
+    weight = (
+        np.ones(per) if session.tick_weight is None else session.tick_weight.reshape(-1, per)[block]
+    )
+    after = np.clip(np.arange(per) + 1.0 - (at - block) * per, 0.0, 1.0)
+    return float(after @ weight / weight.sum()) if weight.any() else block + 1.0 - at
+
+
+def _around(session, at: float) -> np.ndarray:
+    """Places by quarters of a block around one, and where the device did not rest there around the
+    first and the last block of that: the step may be in either."""
+    there = np.flatnonzero(session.available)
+    k = int(np.searchsorted(there, at))
+    ends = [there[k - 1] + 1.0, float(there[k])] if 0 < k < len(there) else []
+    return np.unique(np.add.outer([at, *ends], _QUARTERS))
 
 
 def beyond_ramps(regression, terms, session: int, at: float) -> float:
@@ -44,10 +68,10 @@ def beyond_ramps(regression, terms, session: int, at: float) -> float:
     blocks = np.arange(regression.sessions[session].blocks)[:, None] + 0.5
     half = np.repeat(_RAMPS, len(_OFF))
     ramps = np.clip((blocks - at - half * np.tile(_OFF, len(_RAMPS))) / (2 * half) + 0.5, 0.0, 1.0)
-    steps = heavisides(regression.sessions[session], at + _QUARTERS)
+    steps = heavisides(regression.sessions[session], _around(regression.sessions[session], at))
     columns = np.hstack([steps, ramps])
     found = _ratios(regression, products, base, regression.stack(terms), session, columns)
-    return float(found[: len(_QUARTERS)].max() - found[len(_QUARTERS) :].max())
+    return float(found[: steps.shape[1]].max() - found[steps.shape[1] :].max())
 
 
 def best_place(regression, terms) -> tuple[Place | None, list]:
@@ -66,7 +90,7 @@ def best_place(regression, terms) -> tuple[Place | None, list]:
         if best is None or found.max() > best.ratio:
             best = Place(s, float(at[found.argmax()]), float(found.max()))
     if best:
-        at = best.at + _QUARTERS
+        at = _around(regression.sessions[best.session], best.at)
         columns = heavisides(regression.sessions[best.session], at)
         found = _ratios(regression, products, base, z, best.session, columns)
         best = Place(best.session, float(at[found.argmax()]), float(found.max()))
