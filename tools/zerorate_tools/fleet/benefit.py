@@ -9,10 +9,10 @@ from scipy import stats
 
 from ..model import encoded
 from ..recordings import Scales
-from .first_minutes import SCENARIOS, WAYS, try_batch
+from .first_minutes import SCENARIOS, WAYS, Prior, try_batch
 from .job import one_line
 from .part import part_of
-from .prior import prior_model
+from .prior import prior_json, prior_model
 
 FOLDS = 5
 LEAST_DEVICES = 10
@@ -56,11 +56,14 @@ def benefit(
     return {**_summary(in_order, minutes), "failed": failed}
 
 
-def _prior(names, curves, fold_of, fold: int, scales: Scales) -> bytes:
+def _prior(names, curves, fold_of, fold: int, scales: Scales) -> Prior:
     rest = [i for i, name in enumerate(names) if fold_of[name] != fold]
     part = part_of([names[i] for i in rest], [curves[i] for i in rest])
     assert part is not None
-    return encoded(prior_model(part, scales))
+    curve = prior_json(part)["curve"]
+    degc = np.array([point["degc"] for point in curve])
+    bias_dps = np.array([point["bias_dps"] for point in curve])
+    return Prior(encoded(prior_model(part, scales)), degc, bias_dps)
 
 
 def _summary(found: dict[str, Any], minutes: float) -> dict[str, Any]:
@@ -69,7 +72,8 @@ def _summary(found: dict[str, Any], minutes: float) -> dict[str, Any]:
     for name in SCENARIOS:
         rows = [device[name] for device in found.values() if name in device]
         if rows:
-            columns = {way: np.array([row[way] for row in rows]) for way in WAYS}
+            ways = [way for way in WAYS if way in rows[0]]
+            columns = {way: np.array([row[way] for row in rows]) for way in ways}
             scenarios[name] = {**_errors(columns), "gain": _gain(columns), "devices": len(rows)}
     return {"minutes": minutes, "devices": len(found), "folds": FOLDS, "scenarios": scenarios}
 

@@ -2,7 +2,9 @@
 
 import tempfile
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -10,6 +12,7 @@ from ..loop.read.sessions import Session
 from ..recordings import Recording, open_recording
 from ..replay import AT_REST_ALONE, replay
 from .job import one_line, still_session
+from .prefilled import prefill
 from .replay_power_on import block_means, error_mdps
 
 #: How long a device rests before it moves, and from when on its error counts, both in seconds.
@@ -18,7 +21,7 @@ SCENARIOS = {
     "at-rest-for-10-s": (10.0, 10.0),
     "always-at-rest": (np.inf, 5.0),
 }
-WAYS = ("without", "prior")
+WAYS = ("without", "prior", "prefilled")
 _MOTION_DPS, _MOTION_HZ = 30.0, 0.7
 _MOST_LSB = 32767
 
@@ -26,23 +29,30 @@ _MOST_LSB = 32767
 Trial = dict[str, dict[str, float]]
 
 
-def try_prior(prior: bytes, path: str, minutes: float) -> Trial:
+@dataclass(frozen=True)
+class Prior:
+    """A prior on its way to a worker. model: bytes of model.bin; degc, bias_dps: its curve."""
+
+    model: bytes
+    degc: np.ndarray
+    bias_dps: np.ndarray
+
+
+def try_prior(prior: Prior, path: str, minutes: float) -> Trial:
     """Scenario -> way -> error in mdps over the first minutes of a recording of a left-out device.
 
-    prior: bytes of model.bin. The firmware replays the recording as if the device had begun to move
-    after its rest; the error is the rms over axes and still blocks, after that rest, of the rate
-    less the firmware's bias. An empty dict where nothing is still. Raises BadRecording.
+    The firmware replays the recording as if the device had begun to move after its rest; the error
+    is the rms over axes and still blocks, after that rest, of the rate less the firmware's bias. An
+    empty dict where nothing is still. Raises BadRecording.
     """
     session, recording = still_session(path), beginning(path, minutes)
     found: Trial = {}
     with tempfile.TemporaryDirectory(prefix="zerorate-prior-") as scratch:
-        model = Path(scratch) / "model.bin"
-        model.write_bytes(prior)
+        files = _files(prior, recording, Path(scratch))
         for name, (rest_s, from_s) in SCENARIOS.items():
             moved = moving_from(recording, rest_s)
             errors = {
-                way: _error(moved, session, used, from_s, 60 * minutes)
-                for way, used in zip(WAYS, (None, model))
+                way: _error(moved, session, files[way], from_s, 60 * minutes) for way in files
             }
             if all(value is not None for value in errors.values()):
                 found[name] = {way: value for way, value in errors.items() if value is not None}
@@ -50,7 +60,7 @@ def try_prior(prior: bytes, path: str, minutes: float) -> Trial:
 
 
 def try_batch(
-    priors: Sequence[bytes], minutes: float, batch: Sequence[tuple[str, str, int]]
+    priors: Sequence[Prior], minutes: float, batch: Sequence[tuple[str, str, int]]
 ) -> dict[str, Trial | str]:
     """One task: device -> `try_prior`, or why it failed, for each (device, path, its prior)."""
     found: dict[str, Trial | str] = {}
@@ -87,11 +97,22 @@ def moving_from(recording: Recording, rest_s: float) -> Recording:
     return Recording(columns, recording.scales, recording.name)
 
 
+def _files(prior: Prior, recording: Recording, folder: Path) -> dict[str, dict[str, Any]]:
+    """Way -> what `replay` is given for it."""
+    model, state = folder / "model.bin", folder / "state.bin"
+    model.write_bytes(prior.model)
+    files: dict[str, dict[str, Any]] = {"without": {}, "prior": {"model": model}}
+    if recording.has_temp and len(prior.degc) > 1:
+        prefill(prior.degc, prior.bias_dps, recording.scales, state)
+        files["prefilled"] = {"from_state": state}
+    return files
+
+
 def _error(
-    recording: Recording, session: Session, model: Path | None, from_s: float, to_s: float
+    recording: Recording, session: Session, files: dict[str, Any], from_s: float, to_s: float
 ) -> float | None:
     # of the made-up motion the accelerometer shows nothing
-    table = replay(recording, options=AT_REST_ALONE, model=model).table
+    table = replay(recording, options=AT_REST_ALONE, **files).table
     assert table is not None
     bias_dps = block_means(table.to_batches(), session) / recording.scales.gyro_lsb_per_dps
     errors = error_mdps(session, bias_dps, from_s, to_s)

@@ -14,7 +14,11 @@ _SCENARIOS = {
     "at-rest-for-10-s": "at rest for 10 s, then moving",
     "always-at-rest": "always at rest",
 }
-WAYS = {"without": "without a prior", "prior": "with the prior"}
+WAYS = {
+    "without": "without a prior",
+    "prior": "with the prior",
+    "prefilled": "with the mean curve as if learned instead",
+}
 
 
 def in_words(fleet: Fleet) -> str:
@@ -81,6 +85,7 @@ def _prior(prior: dict[str, Any]) -> Iterator[str]:
         both = ", ".join(
             f"{words} {_mdps(found[way]['median_mdps'])} ({_mdps(found[way]['p95_mdps'])})"
             for way, words in WAYS.items()
+            if way in found
         )
         yield f"  {_SCENARIOS[name]}: {both}"
 

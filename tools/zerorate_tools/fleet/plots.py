@@ -14,7 +14,7 @@ _MOST_LINES = 15
 _MOST_DEVICES = 400
 _VIEWS = ("less each one's level", "as they are")
 _AXES = "xyz"
-_ROLES = {"without": "before", "prior": "after"}
+_ROLES = {"without": "before", "prior": "after", "prefilled": "event"}
 
 
 def plots_of(report: dict[str, Any], part: Part | None) -> list[Plot]:
@@ -123,10 +123,11 @@ def first_minutes(tried: dict[str, Any]) -> Plot:
     """A panel a scenario: median error of each way to start, and where 95 % of devices are."""
     panels, series = [], []
     for number, (scenario, found) in enumerate(tried["scenarios"].items()):
-        most = 1.05 * max(found[way]["p95_mdps"] for way in WAYS)
+        ways = [way for way in WAYS if way in found and way != "prefilled"]
+        most = 1.05 * max(found[way]["p95_mdps"] for way in ways)
         title = scenario_in_words(scenario)
         panels.append(Panel(title, "mdps", "", x_range=(0.0, most), y_names=("", "")))
-        for row, way in enumerate(WAYS):
+        for row, way in enumerate(ways):
             median, p95 = found[way]["median_mdps"], found[way]["p95_mdps"]
             y = -float(row)
             look: dict[str, Any] = {"panel": number, "name": WAYS[way], "role": _ROLES[way]}

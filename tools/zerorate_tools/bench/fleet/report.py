@@ -51,8 +51,9 @@ def _prior(tried: dict[str, Any]) -> str:
     rows = []
     for name, found in tried["scenarios"].items():
         for way, words in WAYS.items():
-            median, p95 = found[way]["median_mdps"], found[way]["p95_mdps"]
-            rows.append((scenario_in_words(name), words, f"{median:.4g}", f"{p95:.4g}"))
+            if way in found:
+                median, p95 = found[way]["median_mdps"], found[way]["p95_mdps"]
+                rows.append((scenario_in_words(name), words, f"{median:.4g}", f"{p95:.4g}"))
         gain, (low, high) = found["gain"]["median_mdps"], found["gain"]["ci95_mdps"]
         better = f"{gain:.4g} ({low:.4g} to {high:.4g})"
         rows.append(("", "gain by the prior, 95 %", better, f"{found['gain']['share_better']:.0%}"))
