@@ -33,7 +33,7 @@ def test_a_mat_is_a_table_of_its_variables(tmp_path):
 def test_a_variable_of_a_mat_that_begins_with_time_is_offered_so(tmp_path):
     counted = np.column_stack([np.arange(50) / 100, RNG.normal(33000, 20, size=(50, 3))])
     scipy.io.savemat(tmp_path / "in.mat", {"omega": counted})
-    offered = r"t_us=omega\[0\]:s --map gx=omega\[1\]:dps --map gy=omega\[2\]:dps"
+    offered = r"t_us=omega\[0\]:s --map gx=omega\[1\]:lsb --map gy=omega\[2\]:lsb"
     with pytest.raises(BadRecording, match=f"if these are rates: --map {offered}"):
         read_foreign(tmp_path / "in.mat")
 

@@ -199,6 +199,13 @@ def test_numbers_of_a_kind_and_quaternions_are_offered_as_no_rates(tmp_path):
         read(tmp_path, "\n".join(",".join(f"{v:.6g}" for v in row) for row in wide))
 
 
+def test_what_is_faster_than_any_sensor_is_offered_as_no_rates(tmp_path):
+    rng = np.random.default_rng(9)
+    rest = [0.0, 0.0, 9.8, 8e4, 6e4, -7e4] + 0.01 * rng.normal(size=(50, 6))
+    with pytest.raises(BadRecording, match="map it: --map gx=COLUMN:dps"):
+        read(tmp_path, "\n".join(",".join(f"{v:.4f}" for v in row) for row in rest))
+
+
 def test_cells_may_stand_in_columns_of_blanks(tmp_path):
     rows = "".join(f"   {i / 100:.7e}   {0.8:.7e}  -8.0e-01\t 9.0e-01 \r\n" for i in range(50))
     (tmp_path / "in.mat").write_bytes(rows.encode())

@@ -7,13 +7,14 @@ import numpy as np
 from ...recordings.recording import ACCEL, GYRO, TEMP, TIME
 from .mapping import Mapped
 from .names import spelled
-from .units import STANDARD_GRAVITY, TIME_S, factors_of, kind_of, unit_in_name
+from .units import RATE_DPS, RAW, STANDARD_GRAVITY, TIME_S, factors_of, kind_of, unit_in_name
 
 _GRAVITY = {"m/s2": STANDARD_GRAVITY, "g": 1.0, "mg": 1000.0}
 _GRAVITY_WITHIN = 0.15
 #: Seconds since 1970 of the years 2001 and 2100.
 _CALENDAR_S = (1e9, 4.1e9)
 _DEGC, _KELVIN = (-60.0, 130.0), (230.0, 400.0)
+_FASTEST_DPS = 2050.0
 #: So near to one is the squared length of a quaternion that was rounded.
 _OF_ONE = 3e-4
 #: Rates at which anyone records, Hz.
@@ -80,22 +81,30 @@ def likely_columns(
     times = [name for name in values if name in calendar]
     times += [name for name in values if name not in calendar and _only_grows(values[name])]
     time = next(iter(times), None)
-    rest = _no_quaternion({n: values[n] for n in values if n not in times and _varies(values[n])})
     out = [] if time is None else [f"t_us={time}:{_likely_time(values[time])}"]
-    rates = "lsb" if all((values[name] % 1 == 0).all() for name in rest) else "dps"
-    threes = [[values[name] for name in rest[at : at + 3]] for at in range(len(rest) - 2)]
+    rest = _no_quaternion({n: values[n] for n in values if n not in times and _varies(values[n])})
+    accel, unit, gyro = _by_values({name: values[name] for name in rest})
+    usual = max((abs(float(np.median(values[name]))) for name in gyro), default=0.0)
+    if len(gyro) < len(GYRO) or unit != RAW and usual * RATE_DPS[unit] > _FASTEST_DPS:
+        return []
+    return out + accel + [f"{axis}={name}:{unit}" for axis, name in zip(GYRO, gyro)]
+
+
+def _by_values(values: Mapping[str, np.ndarray]) -> tuple[list[str], str, list[str]]:
+    """Words for three columns as long as gravity, the unit of the rates, and which may be rates."""
+    names = list(values)
+    threes = [[values[name] for name in names[at : at + 3]] for at in range(len(names) - 2)]
     units = [_gravity_unit(three) for three in threes]
     # 9.8 is met by chance more rarely than 1
     unit = next((unit for unit in ("m/s2", "g") if unit in units), None)
-    if unit:
-        at = units.index(unit)
-        out += [f"{axis}={name}:{unit}" for axis, name in zip(ACCEL, rest[at : at + 3])]
-        rates = "rad/s" if unit == "m/s2" else "dps"
-        rest = rest[at + 3 :] if len(rest) >= at + 6 else rest[:at]
-    else:
-        rest = rest if len(rest) == len(GYRO) else []
-    gyro = [f"{axis}={name}:{rates}" for axis, name in zip(GYRO, rest)]
-    return out + gyro if len(gyro) == len(GYRO) else []
+    if unit is None:
+        every = np.array(list(values.values()))
+        counted = (every % 1 == 0).all() or np.abs(np.median(every, axis=1)).max() > _FASTEST_DPS
+        return [], RAW if counted else "dps", names if len(names) == len(GYRO) else []
+    at = units.index(unit)
+    accel = [f"{axis}={name}:{unit}" for axis, name in zip(ACCEL, names[at : at + 3])]
+    rest = names[at + 3 :] if len(names) >= at + 6 else names[:at]
+    return accel, "rad/s" if unit == "m/s2" else "dps", rest[: len(GYRO)]
 
 
 def _varies(values: np.ndarray) -> bool:
