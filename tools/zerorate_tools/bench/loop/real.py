@@ -5,11 +5,10 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..public_data import BIN_TABLES, CLOSED_ALONE, CLOSED_TOGETHER, told_of
 from ..tables import machine_line, table
-from .bin_tables import hipnuc, rms_mdps
+from .bin_tables import draw_chip, hipnuc, rms_mdps
 from .curves import best_curve_rms_dps, cubic_left
 
 
@@ -19,7 +18,7 @@ def real_rows(data: Path, plots: Path | None = None) -> dict[str, dict]:
 
     before, after: by the firmware's own kernels; cubic: by double precision, on the same pieces.
 
-    plots: a folder for a PNG of each, or None.
+    plots: a folder for pictures: of a recording those of its report, of a table what is left.
     """
     rows = {}
     if plots:
@@ -29,17 +28,15 @@ def real_rows(data: Path, plots: Path | None = None) -> dict[str, dict]:
     with tempfile.TemporaryDirectory() as scratch:
         for name, paths in every.items():
             if paths:
-                rows[name] = _closed(name, paths, Path(scratch), plots)
+                rows[name] = _closed(paths, Path(scratch), plots)
     for path in sorted((data / BIN_TABLES).glob("*.log")):
         rows[path.name] = hipnuc(path)
         if plots:
-            from .plots import draw_chip
-
             draw_chip(path, plots / f"{path.stem}.png")
     return rows
 
 
-def _closed(name: str, paths: list[Path], scratch: Path, plots: Path | None) -> dict:
+def _closed(paths: list[Path], scratch: Path, plots: Path | None) -> dict:
     from ...closing import load
     from ...importers import import_recording
     from ...loop.report.report import report
@@ -49,25 +46,30 @@ def _closed(name: str, paths: list[Path], scratch: Path, plots: Path | None) -> 
     for path, log in zip(paths, logs):
         import_recording(path, log, **told_of(path))
     analysis, _ = measure_and_prune(load([*logs]), logs, scratch / "corrected.parquet")
-    row = _row(analysis, report(analysis))
+    told = report(analysis)
+    row = _row(analysis, told)
     if "vn200" in paths[0].parent.name:
         row["flip"] = _flip(analysis.sessions[0], float(analysis.floor_dps[2]))
     if plots:
-        from .plots import draw_recording
+        from ...report.held_out import held_out
+        from ...report.png import write_pngs
+        from ...report.residual_plots import against_temperature, against_time
 
-        draw_recording(analysis, cubic_left(analysis), name, plots / f"{logs[0].stem}.png")
+        parts = held_out(analysis)
+        drawn = against_time(parts, told["events"]), against_temperature(parts)
+        write_pngs([plot for plot in drawn if plot is not None], plots / logs[0].stem)
     return row
 
 
 def _row(analysis, told: dict) -> dict:
     judgement, rival = analysis.judgement, cubic_left(analysis)
     best = best_curve_rms_dps(analysis)
-    left = _rms(judgement.residual_after)
-    cubic = None if rival is None else _rms(rival)
+    left = rms_mdps(np.vstack(judgement.residual_after))
+    cubic = None if rival is None else rms_mdps(np.vstack(rival))
     effects = [f"{effect['effect']} ({effect['confidence']})" for effect in told["effects"]]
     beside = [", ".join(effect["confounded_with"]) for effect in told["effects"]]
     return {
-        "before_mdps": _rms(judgement.residual_before),
+        "before_mdps": rms_mdps(np.vstack(judgement.residual_before)),
         "after_mdps": left,
         "after_xyz_mdps": "/".join(f"{v:.0f}" for v in told["after_mdps"]),
         "cubic_mdps": "no temperature" if cubic is None else cubic,
@@ -145,8 +147,3 @@ def in_words(rows: dict[str, dict]) -> str:
 def _median(values: Iterable[float]) -> float:
     every = list(values)
     return float(np.median(every)) if every else float("nan")
-
-
-def _rms(parts: list[NDArray[np.float64]]) -> float:
-    rows = np.vstack(parts)
-    return rms_mdps(rows[np.isfinite(rows).all(axis=1)])

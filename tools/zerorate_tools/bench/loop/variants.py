@@ -124,8 +124,8 @@ def _looked_at(whole: Recording, variant: str, made: list[Recording], scratch: P
         return {"refused": str(problem)}
     told = report(analysis)
     row = {
-        "before_mdps": _rms(analysis.judgement.residual_before),
-        "after_mdps": _rms(analysis.judgement.residual_after),
+        "before_mdps": rms_mdps(np.vstack(analysis.judgement.residual_before)),
+        "after_mdps": rms_mdps(np.vstack(analysis.judgement.residual_after)),
         "found": ", ".join(effect["effect"] for effect in told["effects"]),
         "steps_listed": len(told["events"]),
     }
@@ -185,11 +185,6 @@ def _seen(own, other) -> np.ndarray:
     known = own.block_mean(own.sources["temp"])[own.available]
     degc = other.block_mean(other.sources["temp"])
     return (degc > known.min() - _NEAR_DEGC) & (degc < known.max() + _NEAR_DEGC)
-
-
-def _rms(parts) -> float:
-    rows = np.vstack(parts)
-    return rms_mdps(rows[np.isfinite(rows).all(axis=1)])
 
 
 def in_words(rows: list[dict]) -> str:
