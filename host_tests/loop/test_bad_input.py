@@ -161,10 +161,11 @@ def test_a_channel_named_like_a_source_of_the_model_is_set_aside_and_named(closi
     assert "rename the column" in closing(every).gate.dropped["vib"]
 
 
-def test_a_recording_that_is_mostly_a_gap_is_told_to_be_cut(closing):
+@pytest.mark.parametrize("hours, words", [(10, "10.0 h of its"), (1.9, "114.0 min of its")])
+def test_a_recording_that_is_mostly_a_gap_is_told_to_be_cut(closing, hours, words):
     one = at_rest(1)
-    one["t_us"][N // 2 :] += 10 * 3600 * 1_000_000
-    with pytest.raises(CannotClose, match="s0: nothing for 10.0 h of its .* cut it there"):
+    one["t_us"][N // 2 :] += int(hours * 3600 * 1_000_000)
+    with pytest.raises(CannotClose, match=f"s0: nothing for {words} .* cut it there"):
         closing([one])
 
 

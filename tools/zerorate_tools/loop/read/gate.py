@@ -108,10 +108,11 @@ def without_long_gaps(ticks: list) -> None:
         filled = np.flatnonzero(t.count > 0)
         longest = int(np.diff(filled).max(initial=0))
         if longest > _MOST_GAP * len(t.count):
+            unit, span_s = ("h", 3600) if longest * t.tick_s > 7200 else ("min", 60)
+            gap, whole = (n * t.tick_s / span_s for n in (longest, len(t.count)))
             raise CannotClose(
-                f"{t.name}: nothing for {longest * t.tick_s / 3600:.1f} h of its "
-                f"{len(t.count) * t.tick_s / 3600:.1f} h; cut it there: what follows is a "
-                "recording of its own"
+                f"{t.name}: nothing for {gap:.1f} {unit} of its {whole:.1f} {unit}; "
+                "cut it there: what follows is a recording of its own"
             )
 
 
