@@ -42,7 +42,8 @@ AREAS = {
             "mpu6050.py", "fifo.py", "data_ready.py", "bus_recovery.py", "settings.py",
             "identity.py", "registers.py")],
         ["host_tests/drivers/test_" + name for name in (
-            "mpu6050.py", "faults.py", "fifo.py", "data_ready.py", "settings.py")],
+            "mpu6050.py", "faults.py", "fifo.py", "fifo_by_hand.py", "data_ready.py",
+            "settings.py")],
     ),
     "storage": (
         [f"firmware/zerorate/storage/{n}.py" for n in ("store", "places", "learned_store")],

@@ -25,8 +25,6 @@ _SCALES = '{"sensor": "X", "odr_hz": %s, "gyro_lsb_per_dps": 1}'
         ("", "empty file"),
         (f"{HEADER}\n", "no data row"),
         ("t_us,gx,gy\n0,1,2\n", "column gz is missing.*zerorate import"),
-        (f"{HEADER},gx\n0,1,2,3,4\n", "column gx comes twice"),
-        (f"{HEADER},ax\n0,1,2,3,4\n", "only ax is there"),
         (f"{HEADER}\n0,1,2,3\n1,1.5,2,3\n", "row 2: gx is '1.5', no integer"),
         (f"{HEADER}\n0,1,2,3\n1,one,2,3\n", "row 2: gx is 'one', no integer"),
         (f"{HEADER}\n0,1,2,3\n1,nan,2,3\n", "row 2: gx has no value; drop the row"),
@@ -35,7 +33,6 @@ _SCALES = '{"sensor": "X", "odr_hz": %s, "gyro_lsb_per_dps": 1}'
         (f"{HEADER}\n0,1,2,3\n1,1,2\n", "row 2: 3 cells where the header names 4"),
         (f"{HEADER}\n0,1,2,3\n1,1,x,3\n2,1,2\n", "row 2: gy is 'x', no integer"),
         (f"\n\n{HEADER}\n0,1,2,3\n1,1,2\n2,1,x,3\n", "row 2: 3 cells where the header names 4"),
-        (f"{HEADER}\n0,1,2,3\n1,1,x,y\n", "row 2: gy is 'x', no integer"),
         (f"{HEADER}\n5,1,2,3\n9,1,2,3\n7,1,2,3\n", "row 3: time goes .* from 9 to 7 us; sort or"),
         (f"{HEADER}\n0,1,2,3\n1,99999999999,2,3\n", "row 2: gx is 99999999999, more than 32 bits"),
         (f"{HEADER}\n0,1,2,3\n1,99999999999999999999,2,3\n", "bad.csv"),
@@ -72,18 +69,20 @@ def test_a_clock_that_ran_over_is_told_from_time_that_goes_backwards(csv_of, bit
     [
         ("{", "bad.json: the scales are not JSON .line 1"),
         ("[]", "no JSON object"),
-        ({"odr_hz": 1, "gyro_lsb_per_dps": 1}, "lack sensor; add .sensor.: .MPU-6050. "),
-        ({"sensor": "X", "gyro_lsb_per_dps": 1}, "lack odr_hz"),
         ({}, "lack sensor, odr_hz, gyro_lsb_per_dps; add"),
         ({"sensor": "X", "odr_hz": 0, "gyro_lsb_per_dps": 1}, "odr_hz is 0"),
         ({"sensor": "X", "odr_hz": "fast", "gyro_lsb_per_dps": 1}, "odr_hz is 'fast', no number"),
-        ('{"sensor": "X", "odr_hz": NaN, "gyro_lsb_per_dps": 1}', "odr_hz is nan"),
+        (_SCALES % "NaN", "odr_hz is nan"),
+        (_SCALES % ("9" * 400), r"odr_hz is 9+\.\.\.; write a number from"),
+        (_SCALES % ("9" * 5000), "a number of thousands of digits"),
+        ("[" * 100_000, "nested too deep"),
     ],
 )
 def test_bad_scales_are_refused_in_one_line(csv_of, scales, complaint):
     path = csv_of(f"{HEADER}\n0,1,2,3\n", scales)
-    with pytest.raises(BadRecording, match=complaint):
+    with pytest.raises(BadRecording, match=complaint) as error:
         read_recording(path)
+    assert len(str(error.value)) < 400
 
 
 def test_a_csv_without_scales_says_what_to_write(csv_of):
@@ -167,22 +166,6 @@ def test_text_in_utf_16_is_read(tmp_path):
     assert read_recording(tmp_path / "x.csv").columns["gz"].tolist() == [4]
 
 
-@pytest.mark.parametrize(
-    ("scales", "complaint"),
-    [
-        (_SCALES % ("9" * 400), r"odr_hz is 9+\.\.\.; write a number from"),
-        (_SCALES % ("9" * 5000), "a number of thousands of digits"),
-        ("[" * 100_000, "nested too deep"),
-    ],
-)
-def test_scales_that_no_sensor_has_are_refused_in_one_line(tmp_path, scales, complaint):
-    (tmp_path / "x.csv").write_text("t_us,gx,gy,gz\n1,2,3,4\n")
-    (tmp_path / "x.json").write_text(scales)
-    with pytest.raises(BadRecording, match=complaint) as error:
-        read_recording(tmp_path / "x.csv")
-    assert len(str(error.value)) < 400
-
-
 SCALES_OF_ALL = {"odr_hz": 1, "gyro_lsb_per_dps": 1, "accel_lsb_per_g": 1}
 SCALES_OF_ALL |= {"sensor": "X", "temp_lsb_per_degc": 1, "temp_offset_degc": 1}
 
@@ -201,11 +184,9 @@ def test_every_scale_has_ends(csv_of, key, least, most):
             read_recording(csv_of(text, {**SCALES_OF_ALL, key: beyond}))
 
 
-def test_a_cell_of_a_quarter_million_letters_is_named_by_its_row(tmp_path):
-    (tmp_path / "x.csv").write_text("t_us,gx,gy,gz\n1,2,3,4\n2," + "a" * 250_000 + ",3,4\n")
-    (tmp_path / "x.json").write_text('{"sensor": "X", "odr_hz": 1, "gyro_lsb_per_dps": 1}')
+def test_a_cell_of_a_quarter_million_letters_is_named_by_its_row(csv_of):
     with pytest.raises(BadRecording, match="row 2: gx is 'a{40}', no integer"):
-        read_recording(tmp_path / "x.csv")
+        read_recording(csv_of(f"{HEADER}\n1,2,3,4\n2,{'a' * 250_000},3,4\n"))
 
 
 @pytest.mark.parametrize(("kind", "name", "value", "bits"), [
