@@ -5,6 +5,7 @@ from copy import deepcopy
 import numpy as np
 import pytest
 from zerorate import Corrector, Sensor
+from zerorate_tools.simulate.noise import flicker
 
 from .played import LSB, play, rest
 from .test_stillness import BIAS_DPS, handled, turning
@@ -54,10 +55,34 @@ def test_a_part_whose_bias_wanders_at_rest_is_less_sure_than_one_with_white_nois
         assert 0.006 < quality_dps(wandering, axis) < 0.014
 
 
+def with_flicker_noise(frames, dps):
+    noisy = frames.copy()
+    noisy[:, 4:] += LSB * flicker(np.random.default_rng(1), len(frames), 0.01, np.full(3, dps))
+    return noisy
+
+
+def mean_quality_dps(frames):
+    corrector, _ = play(frames)
+    return np.mean([quality_dps(corrector, axis) for axis in range(3)])
+
+
+def test_a_minute_of_rest_shows_whether_there_is_flicker_noise():
+    frames = rest(60, bias_dps=BIAS_DPS)
+    assert mean_quality_dps(frames) < 0.0038
+    assert mean_quality_dps(with_flicker_noise(frames, 0.006)) > 0.0085
+
+
+def test_rests_of_a_second_too_short_for_two_segments_show_it_as_well():
+    parts = [f for n in range(40) for f in (handled(9, n), rest(1.1, 99 + n, BIAS_DPS))]
+    frames = np.concatenate([rest(2.6, bias_dps=BIAS_DPS), *parts])
+    assert mean_quality_dps(frames) < 0.0035
+    assert mean_quality_dps(with_flicker_noise(frames, 0.006)) > 0.0085
+
+
 @pytest.mark.parametrize(("hz", "octaves"), [(25.0, 6), (100.0, 8), (400.0, 10)])
 def test_each_octave_of_flicker_noise_within_a_segment_adds_half_of_what_segments_show(hz, octaves):
     flickering, without = (
-        play(rest(10, odr_hz=hz), Corrector(Sensor(odr_hz=hz), floor_dps=floor))[0]
+        play(rest(4, odr_hz=hz), Corrector(Sensor(odr_hz=hz), floor_dps=floor))[0]
         for floor in (0.02, 0.0)
     )
     added = quality_dps(flickering) ** 2 - quality_dps(without) ** 2

@@ -7,7 +7,7 @@
 #
 # Variances are LSB^2 in Q8, the walk LSB^2/s in Q16.
 
-from ..arithmetic.fixed import clipped
+from ..arithmetic.fixed import clipped, scaled
 from .bias import curve_q8
 from .estimators import find
 
@@ -44,6 +44,7 @@ _LEFT_Q4 = const(37)
 _DOUBT_Q8 = const(38)
 _ESTIMATORS = const(39)
 # layout: An estimator
+_EST_READINGS = const(3)
 _EST_SPREAD_Q8 = const(4)
 # layout: The corrector's settings
 _AXES = const(0)
@@ -69,8 +70,7 @@ def grown_q8(s: ptr32, a: int) -> int:
     """Return the offset's variance now: what it was, and what it has walked since."""
     # Three seconds more than since the segment's end: a mean tells of its middle.
     seconds = (s[a + _OFFSET_AGE_MS] >> 10) + 3
-    if seconds > 2047:
-        seconds = 2047
+    seconds = seconds if seconds < 2047 else 2047
     return s[a + _OFFSET_VARIANCE_Q8] + (((s[a + _WALK_Q16] >> 4) * seconds) >> 4)
 
 
@@ -118,12 +118,10 @@ def plausible(s: ptr32, c: ptr32, a: int, error: int) -> int:
     # A temperature at which nothing was learned yet widens the six sigma by the slope that is left.
     # A rest that motion ended early has two sigma: gravity had no time to show a slow turn.
     share = 36
-    far = error if error >= 0 else 0 - error
-    if far > 0x7FFF:
-        far = 0x7FFF
+    far = clipped(error, 0x7FFF)
     if s[a + _WAITING_N] < c[_SEGMENT] << c[_WINDOW_SHIFT]:
         share = 4
-    elif far <= c[_GATE_Q4]:
+    elif far <= c[_GATE_Q4] and far >= -c[_GATE_Q4]:
         far = 0
     far = far * far // share
     share = beyond_q8(s, c, a)
@@ -142,21 +140,14 @@ def rewalk(s: ptr32, c: ptr32, a: int, excess: int):
     """Learn the speed of the walk from the squared error that noise does not explain."""
     age = (s[a + _OFFSET_AGE_MS] >> 6) + 1
     speed = (clipped(excess, 0x1FFFFF) << 8) // age
-    if speed > 0x1FFFFFF:
-        speed = 0x1FFFFFF
-    if speed < -0x17FFFFF:  # forty times it, the share of a short age, fits
-        speed = -0x17FFFFF
-    speed = speed << 4
-    if speed > c[_WALK_MOST_Q16]:
-        speed = c[_WALK_MOST_Q16]
+    speed = clipped(speed, 0x17FFFFF) << 4  # forty times it, the share of a short age, fits
+    speed = speed if speed < c[_WALK_MOST_Q16] else c[_WALK_MOST_Q16]
     # long gaps tell more of the walk than neighbours do, and one of them little
-    if age > 1023:
-        age = 1023
+    age = age if age < 1023 else 1023
     speed = (speed - s[a + _WALK_Q16]) >> 4
     share = age * age
     share = share // ((share + 0x100000) >> 10)
-    if share < 24:
-        share = 24
+    share = share if share > 24 else 24
     speed = (speed * share >> 12) << 4
     s[a + _WALK_Q16] += speed
     if s[a + _WALK_Q16] < c[_WALK_LEAST_Q16]:
@@ -182,8 +173,7 @@ def left_q8(s: ptr32, gain: int) -> int:
 def relearn_slope(s: ptr32, c: ptr32, a: int, square: int):
     """Learn how fast the bias leaves the line, where most of what was expected is that."""
     # Of three errors one is beyond one sigma, so it rises by twice what it falls. By the document
-    # the line is straight through all, and what it leaves here says nothing of what it leaves
-    # elsewhere.
+    # the line is straight through all, and what it leaves here says nothing of elsewhere.
     away = beyond_q8(s, c, a)
     known = s[_GROWN_Q8] + s[_MEAN_NOISE_Q8]
     if away > known >> 1 and c[_LITERAL] == 0:
@@ -200,13 +190,26 @@ def approach(s: ptr32, k: int, found: int, shift: int):
     s[k] += (found - s[k]) >> shift
 
 
-def relearn_floor(s: ptr32, c: ptr32, a: int, change: int):
-    """Learn by how much two means of one rest differ beyond their white noise and the walk."""
-    d = 3 * s[a + _WAITING_N]
-    d = s[_NOISE_Q8] // d
-    d = (change * change >> 1) - d - (s[a + _WALK_Q16] >> 8)
-    d = clipped(d, c[_FLOOR_Q8] << 6)
-    approach(s, a + _FLOOR_Q16, d << 8, 7)
+def relearn_floor(s: ptr32, c: ptr32, a: int, error: int):
+    """Learn by how much rests differ beyond their white noise and the walk."""
+    # What was believed first counts eight times; of what was learned the latest 128. Half the
+    # squared difference of neighbours is its own; an error after a gap counts by the share it has.
+    d = error - s[a + _LEFT_Q4]
+    d = clipped(d, 0x3FFF)
+    d = (d * d >> 1) - (s[a + _WALK_Q16] >> 8)
+    weight = 0x8000
+    if s[a + _OFFSET_AGE_MS] > _NEIGHBOURS_MS:
+        d = error * error - s[_GROWN_Q8]
+        n = s[_GROWN_Q8] + s[_MEAN_NOISE_Q8]
+        weight = (s[a + _FLOOR_Q16] >> 8) + c[_FLOOR_Q8]
+        weight = gain_q14(weight, n) << 3
+    n = 3 * s[a + _WAITING_N]
+    d = clipped(d - s[_NOISE_Q8] // n, c[_FLOOR_Q8] << 6)
+    n = c[_SEGMENT] << c[_WINDOW_SHIFT]
+    n = s[a + _ESTIMATORS + _EST_READINGS] // n + 8
+    d = ((d << 8) - s[a + _FLOOR_Q16]) // (n if n < 128 else 128)
+    d = scaled(d, weight, 15)
+    s[a + _FLOOR_Q16] += d
     if s[a + _FLOOR_Q16] < 0x100:
         s[a + _FLOOR_Q16] = 0x100
 
@@ -225,13 +228,12 @@ def relearn_spread(s: ptr32, c: ptr32, a: int, square: int):
 def calibrate(s: ptr32, c: ptr32, a: int, error: int):
     """Learn from a segment's error, LSB Q4, how sure of its bias this very part may be."""
     relearn_slope(s, c, a, error * error)
+    if s[a + _OFFSET_AGE_MS] > 2 * _NEIGHBOURS_MS and s[a + _LEFT_Q4] != _NO_VALUE:
+        s[a + _DOUBT_Q8] = 0
     if s[a + _LEFT_Q4] == _NO_VALUE:
         relearn_spread(s, c, a, error * error)
-    elif s[a + _OFFSET_AGE_MS] > 2 * _NEIGHBOURS_MS:
-        s[a + _DOUBT_Q8] = 0
-    elif s[a + _OFFSET_AGE_MS] < _NEIGHBOURS_MS and s[a + _OFFSET_FROM] == 0:
-        change = clipped(error - s[a + _LEFT_Q4], 0x3FFF)
-        relearn_floor(s, c, a, change)
+    elif s[a + _OFFSET_FROM] == 0:
+        relearn_floor(s, c, a, error)
 
 
 def follow(s: ptr32, c: ptr32, a: int, error: int):
@@ -256,8 +258,7 @@ def level_q8(s: ptr32, c: ptr32, a: int) -> int:
     if s[_RESTS] < c[_INSIST]:
         off = clipped(s[a + _OFFSET_Q8] >> 4, 0x3FFF)
         usual = off * off
-        if usual < c[_TURN_ON_VARIANCE_Q8]:
-            usual = c[_TURN_ON_VARIANCE_Q8]
+        usual = usual if usual > c[_TURN_ON_VARIANCE_Q8] else c[_TURN_ON_VARIANCE_Q8]
         s[k] = beyond_q8(s, c, a)
         usual = gain_q14(s[k], usual)
         s[k] = s[a + _OFFSET_Q8] - (off * usual >> 10)
@@ -279,7 +280,7 @@ def adopt(s: ptr32, c: ptr32, a: int, error: int) -> int:
     # That source is a filter itself: to weigh its results into another one counted them twice, and
     # what it says supersedes what it said before. What is not so well known does not teach the
     # curve either: where rests exist, it stays theirs.
-    noise = (s[a + _OFFER] >> 3) + c[_FLOOR_Q8]
+    noise = (s[a + _OFFER] >> 3) + (s[a + _FLOOR_Q16] >> 7)
     if s[a + _KIND] == 0:
         s[a + _SUSPECT] = -1
         s[_RESTS] = c[_INSIST]
