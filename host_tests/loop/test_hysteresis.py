@@ -1,8 +1,12 @@
 """Hysteresis of many widths is found where a course can show it, and nowhere else."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from zerorate_tools.bench.loop.simulated import PRANDTL_ISHLINSKII, simulate
+from zerorate_tools.loop.fit.line import ordinary
+from zerorate_tools.loop.fit.regression import predicted
 from zerorate_tools.loop.fit.single import PiecesByLine
 from zerorate_tools.loop.read.sessions import Session
 from zerorate_tools.loop.search.hysteresis import KIND, best_hysteresis, may_show, passed_twice
@@ -17,15 +21,18 @@ WARMED_ONCE = ((0, 20.0), (240, 60.0))
 BLOCKS, TICKS, BLOCK_S = 240, 34, 34.0
 
 
-def recording(course, seed=1, hysteresis=1.0, walk=0.0, cubic_dps=0.0):
+PLAYS = ((4.0, 1.0), (12.0, 0.7), (30.0, 1.5))
+
+
+def recording(course, seed=1, hysteresis=1.0, walk=0.0, cubic_dps=0.0, plays=PLAYS, lopsided=0.1):
     """One recording in a chamber; hysteresis in tenths of a dps, walk in dps a block, cubic of so
-    many dps at 40 degC."""
+    many dps at 40 degC; plays: radii in degC, and weights."""
     rng = np.random.default_rng(seed)
     at = (np.arange(BLOCKS * TICKS) + 0.5) / TICKS
     degc = np.interp(at, *zip(*course)) + rng.normal(0, 0.02, len(at))
     total = sum(
-        w * (play(degc, 2 * r) - degc) / r + w * 0.1 * (play(degc, 2 * r) / 40) ** 2
-        for r, w in ((4.0, 1.0), (12.0, 0.7), (30.0, 1.5))
+        w * (play(degc, 2 * r) - degc) / r + w * lopsided * (play(degc, 2 * r) / 40) ** 2
+        for r, w in plays
     )
     effect = total.reshape(BLOCKS, TICKS).mean(axis=1)
     mean = degc.reshape(BLOCKS, TICKS).mean(axis=1)
@@ -40,6 +47,12 @@ def left(session, terms):
     """(3,) RMS dps of pieces left out in turn."""
     residual = PiecesByLine(session).residual(straight_line([session]), terms)
     return np.sqrt(np.nanmean(residual**2, axis=0))
+
+
+def fitted_left(session, terms):
+    """RMS dps that terms fitted to all of it leave."""
+    rate = session.rate_dps - predicted(terms, ordinary(terms, [session]), session)
+    return np.sqrt((session.less_offsets(rate, session.available) ** 2).mean())
 
 
 def test_a_chamber_s_loop_is_named_and_taken_away_on_pieces_left_out():
@@ -103,6 +116,39 @@ def test_what_power_ons_show_as_well_by_many_widths_names_them_beside():
     device = simulate(303_003, [(PRANDTL_ISHLINSKII, 2.0)], sessions=3)
     (found,) = select(device.sessions[:2]).found
     assert found.candidate.kind == "power-on-transient" and KIND in found.confounded_with
+
+
+@pytest.mark.parametrize(
+    "plays",
+    [
+        ((2.0, -1.3), (9.0, 0.7), (40.9, -1.4), (46.0, -1.0)),
+        ((2.5, 1.2), (3.1, 1.3), (27.4, -0.9), (42.9, -1.5)),
+    ],
+)
+def test_the_widths_found_leave_hardly_more_than_the_true_ones(plays):
+    session = recording(DOWN_UP_DOWN, plays=plays, lopsided=0.5)
+    line = straight_line([session])
+    beside = (*line, replace(line[0], power=2))
+    many = lambda straight, beside, terms: np.array([float(len(terms))])  # noqa: E731
+    candidate, _ = best_hysteresis([session], line, beside[1:], many)
+    first = candidate.terms[0]
+    true = [replace(first, width=2 * r, power=k) for r, _ in plays for k in (1, 2)]
+    assert fitted_left(session, [*beside, *candidate.terms]) < 1.1 * fitted_left(
+        session, [*beside, *true]
+    )
+
+
+class CurveBendsAlready(PiecesByLine):
+    """As the firmware's kernels may judge: no bend gains on their own curve, play operators do."""
+
+    def __call__(self, straight, found, candidate):
+        return np.full(10, 1.0 if any(t.memory == "play" for t in candidate) else -1.0)
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_a_bend_that_the_firmware_s_curve_has_is_none_of_a_hysteresis_s_gain(seed):
+    session = recording(DOWN_UP_DOWN, seed=seed, hysteresis=0.0, walk=0.001, cubic_dps=0.1)
+    assert select([session], on_pieces=CurveBendsAlready(session)).found == []
 
 
 def test_what_predicts_no_better_is_not_proposed():

@@ -5,8 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from zerorate_tools.bench.loop.simulated import simulate
+from zerorate_tools.loop import analyse as loop
 from zerorate_tools.loop.analyse import analyse
 from zerorate_tools.loop.fit.line import ordinary
+from zerorate_tools.loop.fit.single import PiecesByLine
 from zerorate_tools.loop.report.in_words import in_words
 from zerorate_tools.loop.report.report import report
 from zerorate_tools.loop.search.steps_first import bend_of, without_steps
@@ -68,6 +70,20 @@ def test_a_step_is_taken_out_where_that_leaves_less(floors):
     analysis = analyse([session])
     (looked_at,) = analysis.sessions
     assert (len(looked_at.steps), looked_at.listed) == (int(floors > 0), ())
+
+
+class StretchesAreDear(PiecesByLine):
+    """As the firmware's kernels may judge, whose curve has learned the steps."""
+
+    def residual(self, straight, terms, applied=None):
+        return (100.0 if self.session.steps else 1.0) * super().residual(straight, terms, applied)
+
+
+def test_who_judges_the_pieces_says_whether_a_step_stays_in(monkeypatch):
+    session, _ = stepped(0, 40.0, 90)
+    monkeypatch.setattr(loop, "_on_pieces", lambda session, motion, logs: StretchesAreDear(session))
+    (looked_at,) = analyse([session]).sessions
+    assert (len(looked_at.steps), len(looked_at.listed)) == (0, 1)
 
 
 def test_a_step_that_stays_in_is_listed_too():

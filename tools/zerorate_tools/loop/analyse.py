@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from os import PathLike
 
+import numpy as np
 from threadpoolctl import threadpool_limits
 
 from ..recordings import open_recording
@@ -32,6 +33,7 @@ from .search.select import select
 from .search.steps_first import without_steps
 from .verify.analysis import Analysis
 from .verify.by_kernels import PiecesByKernels
+from .verify.judge import rms_dps
 from .verify.power_on import PowerOn, ideal_dps
 from .verify.prune_by_holdout import prune_by_holdout
 
@@ -61,9 +63,17 @@ def analyse(
     if len(sessions) == 1 and clean[0].steps:
         # beside a wide loop an offset a stretch can cost more than steps that stay in
         whole = _look([replace(sessions[0], listed=clean[0].steps)], at, gate, motion, logs)
-        analysis = min(analysis, whole, key=lambda a: a.judgement.after_rms)
+        analysis = min(analysis, whole, key=lambda a: _left_dps(a, motion, logs))
     del whiteners
     return analysis
+
+
+def _left_dps(analysis: Analysis, motion, logs) -> float:
+    """RMS of what is left of pieces of one recording, by the firmware's own kernels where they
+    can be run: they have learned the steps, too."""
+    s, by_pieces = analysis.selection, _on_pieces(analysis.sessions[0], motion, logs)
+    left = rms_dps([by_pieces.residual(s.straight, s.terms, s.applied)])
+    return float(np.nan_to_num((left**2).sum(), nan=np.inf) ** 0.5)
 
 
 def _look(sessions: list[Session], at: int, gate: GateReport, motion, logs) -> Analysis:

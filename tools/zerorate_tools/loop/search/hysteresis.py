@@ -2,9 +2,9 @@
 
 One backlash has one width; a real loop has rounded ends and inner loops of its own. Which widths,
 how many, and whether lopsided (with squares) is chosen by what predicts best what is left out: the
-widths by least squares over a geometric grid and then between its points, the form by the pieces
-or the power-ons left out in turn. That is what keeps it small: a form with more operators has to
-predict better, and its place on the board is limited.
+widths by least squares over a fine geometric grid, the form by the pieces or the power-ons left out
+in turn. That is what keeps it small: a form with more operators has to predict better, and its
+place on the board is limited.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -27,8 +27,9 @@ from .selection import Found
 KIND = "thermal-hysteresis"
 #: Of one width, or what else a few power-ons take a sum of many widths for.
 LIKE_IT = (KIND, "temperature-peak", "thermal-lag", "thermal-rate", "power-on-transient")
-#: Radii of the grid, as shares of the range of temperature: its ends and how many.
-_FINEST, _WIDEST, _GRID = 0.015, 0.65, 12
+#: Radii of the grid, as shares of the range of temperature: its ends, how many, and of how many
+#: every choice is tried.
+_FINEST, _WIDEST, _GRID, _FEW = 0.015, 0.65, 64, 12
 _MOST_OPERATORS = min(4, MOST_PLAYS)
 #: Share of the range that must have been passed both warming and cooling: a part only warmed once
 #: shows no difference between the two.
@@ -39,7 +40,8 @@ _LEAST_SPAN_DEGC = 3.0
 _BLOCKS_A_NUMBER = 6
 #: Of a coefficient's squares, on those of the columns: beside it, no two operators fight.
 _RIDGE = 1e-7
-_STEPS = (1.12, 1.06)
+#: Of the logarithm of the squares left, below which a choice leaves no less.
+_LEAST_GAIN = 1e-6
 #: As how many widths the grid's count: neighbours are much alike.
 _APART = 6
 #: What is simpler, and the nats by which it must predict better.
@@ -115,7 +117,7 @@ def of_one_recording(
     which lag, rate and kink are asked first, for one course of temperature shows all much alike;
     taken: slots that others need; judged_again: whether another power-on has the last word. Where
     none has, no other may predict the pieces nearly as well, and the error on them must fall by
-    LEAST_FACTOR beside the bend, geometric mean over the axes; where one has, what predicts nearly
+    LEAST_FACTOR beside the bend; where one has, what predicts nearly
     as well is named beside it. Pieces left out decide, as with bends, but the noise may be as steep
     as it likes: a course with few turns is much like a walk.
     """
@@ -135,8 +137,7 @@ def of_one_recording(
     if p > LEVEL["catalogue"]:
         return None, "not significant"
     whole = (*bend, *candidate.terms)
-    before, after = (_rms(by_line.residual(straight, terms)) for terms in (beside[0], whole))
-    if not judged_again and np.exp(np.log(before / after).mean()) < LEAST_FACTOR:
+    if not judged_again and _factor(straight, beside, whole, by_line) < LEAST_FACTOR:
         return None, "too little of the error to tell it from the noise's walk"
     nats = judged(straight, (), whole)
     nats = nats - judged(straight, (), beside[0]) if beside[0] else nats
@@ -167,9 +168,13 @@ def _chance(regression, beside, candidate: Candidate) -> tuple[float, float]:
     return family_p(ratio, 3 * len(candidate.terms), _tried(candidate)), ratio
 
 
-def _rms(residual: np.ndarray) -> np.ndarray:
-    """(3,) over the blocks."""
-    return np.sqrt(np.nanmean(residual**2, axis=0))
+def _factor(straight, beside, whole, by_line) -> float:
+    """By how much the error of pieces left out falls from that beside the better bend, geometric
+    mean over the axes; the kernels, whose curve bends already, may have found none."""
+    logs = [
+        np.log(np.nanmean(by_line.residual(straight, t) ** 2, axis=0)) for t in (whole, *beside)
+    ]
+    return float(np.exp(0.5 * (min(x.mean() for x in logs[1:]) - logs[0].mean())))
 
 
 def _rival(straight, bend, pool, by_line) -> tuple[Candidate, float]:
@@ -197,7 +202,7 @@ def _forms(sessions, beside) -> Iterator[tuple[Term, ...]]:
     for powers in ((1,), (1, 2)):
         for number in range(1, _MOST_OPERATORS + 1):
             if fits.rows >= _BLOCKS_A_NUMBER * (fits.fixed + number * (1 + len(powers))):
-                yield fits.terms(fits.refined(fits.of_grid(number, powers), powers), powers)
+                yield fits.terms(fits.best(number, powers), powers)
 
 
 def _some_of(session: Session) -> np.ndarray:
@@ -254,17 +259,20 @@ class _Fits:
                 self._columns[radius, n] = self._beside(self._stacked(means))[:, 0]
         return self._columns[radius, power]
 
-    def _design(self, radii, powers):
-        return np.column_stack([self._column(r, p) for p in powers for r in radii])
-
-    def of_grid(self, number: int, powers: Sequence[int]) -> list[float]:
-        """The radii of the grid that leave least, of every choice of so many."""
-        x = self._design(self._grid, powers)
+    def best(self, number: int, powers: Sequence[int]) -> list[float]:
+        """The radii of the grid that leave least: of every choice from a few of them, then with two
+        in the places of any others, until none leaves less. One by one they stop short of it."""
+        x = np.column_stack([self._column(r, p) for p in powers for r in self._grid])
         products, xy = x.T @ x, x.T @ self._y
-        choices = np.array(list(combinations(range(_GRID), number)))
-        at = np.hstack([choices + _GRID * i for i in range(len(powers))])
-        left = self._left(products[at[:, :, None], at[:, None, :]], xy[at])
-        return [float(r) for r in self._grid[choices[left.argmin()]]]
+        few = np.linspace(0, _GRID - 1, _FEW).round().astype(int)
+        choices, least, best = few[np.array(list(combinations(range(_FEW), number)))], np.inf, few
+        while True:
+            at = np.hstack([choices + _GRID * i for i in range(len(powers))])
+            left = self._left(products[at[:, :, None], at[:, None, :]], xy[at])
+            if left.min() > least - _LEAST_GAIN:
+                return [float(r) for r in self._grid[best]]
+            least, best = left.min(), choices[left.argmin()]
+            choices = _exchanged(best)
 
     def _left(self, products, xy):
         """(...,) sum over the axes of the logarithm of the squares left."""
@@ -274,20 +282,13 @@ class _Fits:
         left = whole - (fitted * (2 * xy - products @ fitted)).sum(axis=-2)
         return np.log(np.maximum(left, 1e-9 * whole)).sum(axis=-1)
 
-    def _loss(self, radii, powers) -> float:
-        x = self._design(radii, powers)
-        return float(self._left(x.T @ x, x.T @ self._y))
 
-    def refined(self, radii: list[float], powers: Sequence[int]) -> list[float]:
-        """The radii between the points of the grid, one after the other."""
-        least = self._loss(radii, powers)
-        for step in _STEPS:
-            for i in range(len(radii)):
-                for factor in (step, 1 / step):
-                    trial = [*radii[:i], radii[i] * factor, *radii[i + 1 :]]
-                    loss = self._loss(trial, powers)
-                    while loss < least - 1e-3:
-                        radii, least = trial, loss
-                        trial = [*radii[:i], radii[i] * factor, *radii[i + 1 :]]
-                        loss = self._loss(trial, powers)
-        return radii
+def _exchanged(choice: np.ndarray) -> np.ndarray:
+    """(n, number) places of the grid, of which all but two at most are those of a choice."""
+    new = min(2, len(choice))
+    every = np.array(list(combinations(range(_GRID), new)))
+    rows = []
+    for kept in combinations(choice, len(choice) - new):
+        free = every[~np.isin(every, kept).any(axis=1)]
+        rows.append(np.hstack([np.tile(np.array(kept, int), (len(free), 1)), free]))
+    return np.vstack(rows)
