@@ -41,11 +41,6 @@ def test_a_pulse_between_the_two_readings_of_the_handler_s_words_is_not_taken_tw
     assert not ready.take()
 
 
-def test_waiting_ends_with_the_next_sample(bench, ready):
-    assert ready.wait(20)
-    assert bench.chip.samples_made > 0
-
-
 class TestEdges:
     """The handler called by hand, at the times chosen."""
 

@@ -84,12 +84,6 @@ def test_one_byte_that_differs_makes_a_frame_a_sample(make_bench, byte):
     assert bench.imu.suspects == 2
 
 
-def test_polling_faster_than_the_chip_samples_is_not_frozen_data(bench):
-    bench.chip.step()
-    assert {bench.imu.read(bench.sample) for _ in range(50)} == {FRESH}
-    assert bench.imu.repeats == 49
-
-
 def test_a_burst_is_one_sample_even_when_the_chip_samples_in_its_middle(bench):
     bench.bus.between_bytes = lambda i: bench.chip.step() if i == 6 else None
     for _ in range(20):
@@ -129,13 +123,6 @@ class TestAChipWithoutShadowRegisters:
         for _ in range(100):
             assert max(abs(word - 256) for word in self.tear(clone, at_byte)) < 20
         assert clone.imu.torn > 5
-
-    def test_motion_is_read_again_and_not_counted(self, make_bench):
-        bench = make_bench(source=[[300 * row + word for word in range(7)] for row in range(50)])
-        for row in range(50):
-            bench.read()
-            assert list(bench.sample) == [300 * row + word for word in range(7)]
-        assert bench.imu.torn == 0
 
 
 def test_a_brown_out_is_found_by_the_next_read_back(make_bench):
