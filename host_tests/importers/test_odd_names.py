@@ -22,6 +22,8 @@ from .test_odd_files import read, table, told
         "xgyro ygyro zgyro",
         "GyX GyY GyZ",
         "UncompGyro0 UncompGyro1 UncompGyro2",
+        "gx_mean gy_mean gz_mean",
+        "roll_rate pitch_rate yaw_rate",
     ],
 )
 def test_usual_names_need_but_a_unit_and_the_words_for_it_work(tmp_path, names):
@@ -46,6 +48,7 @@ def test_a_unit_in_the_name_is_enough(tmp_path):
         "w_RS_S_x [rad s^-1] w_RS_S_y [rad s^-1] w_RS_S_z [rad s^-1]",
         "raw_angular_rate_x_rad_per_s raw_angular_rate_y_rad_per_s raw_angular_rate_z_rad_per_s",
         "X (rad/sec) Y (rad/sec) Z (rad/sec)",
+        "x-axis (rad/s) y-axis (rad/s) z-axis (rad/s)",
         "imu rate x [radians per second] imu rate y [radians per second] "
         "imu rate z [radians per second]",
     ],
@@ -112,6 +115,15 @@ def test_axes_of_a_phones_sensor_logger_are_offered_in_its_unit(tmp_path):
     frame.columns = ["seconds_elapsed", "x", "y", "z"]
     with pytest.raises(BadRecording, match="--map gx=x:rad/s --map gy=y:rad/s"):
         read(tmp_path, frame, name="turned.csv")
+
+
+def test_a_topic_of_px4_as_a_csv_is_known_by_its_columns(tmp_path):
+    frame = table()[["t_s", *(f"g{a}_dps" for a in "xyz")]].assign(device_id=1, error_count=0)
+    frame.columns = ["timestamp", "x", "y", "z", "device_id", "error_count"]
+    frame["timestamp"] = (1e6 * frame["timestamp"]).astype(int)
+    recording, report = read(tmp_path, frame, name="log_sensor_gyro_0.csv")
+    assert recording.scales.odr_hz == pytest.approx(100)
+    assert told(report, "gyro taken in rad/s: as PX4 writes")
 
 
 def test_names_that_are_units_tell_them(tmp_path):

@@ -109,6 +109,20 @@ def test_a_column_of_days_beside_one_of_times_is_no_time(tmp_path):
         assert (np.diff(recording.columns["t_us"]) == 10_000).all()
 
 
+@pytest.mark.parametrize("name, scale", [("Zeit (s)", 1), ("Temps (s)", 1), ("uptime_ms", 1000)])
+def test_a_column_in_a_unit_of_time_that_only_grows_is_the_time(tmp_path, name, scale):
+    frame = table(500).assign(t_s=lambda f: scale * f["t_s"]).rename(columns={"t_s": name})
+    recording, _ = read(tmp_path, frame.assign(**{"delay (s)": 0.5})[["delay (s)", *frame]])
+    assert (np.diff(recording.columns["t_us"]) == 10_000).all()
+
+
+def test_a_column_of_dates_is_the_time_whatever_it_is_called(tmp_path):
+    frame = table(500).rename(columns={"t_s": "hhmmss.ms"})
+    frame["hhmmss.ms"] = [f"12:00:{t:06.3f}" for t in frame["hhmmss.ms"]]
+    recording, _ = read(tmp_path, frame)
+    assert (np.diff(recording.columns["t_us"]) == 10_000).all()
+
+
 def test_midnight_falls_between_rows_that_are_rare(tmp_path):
     stamps = pd.Timestamp("2021-03-05T23:50") + pd.to_timedelta(np.arange(100) * 15, unit="s")
     frame = table(100).assign(t_s=stamps.strftime("%H:%M:%S")).rename(columns={"t_s": "time"})

@@ -79,7 +79,7 @@ def likely_columns(
     whole = np.isfinite(list(values.values())).all(axis=0)
     values = {name: column[whole] for name, column in values.items()}
     times = [name for name in values if name in calendar]
-    times += [name for name in values if name not in calendar and _only_grows(values[name])]
+    times += [name for name in values if name not in calendar and only_grows(values[name])]
     time = next(iter(times), None)
     out = [] if time is None else [f"t_us={time}:{_likely_time(values[time])}"]
     rest = _no_quaternion({n: values[n] for n in values if n not in times and _varies(values[n])})
@@ -122,7 +122,8 @@ def _no_quaternion(values: Mapping[str, np.ndarray]) -> list[str]:
     return names
 
 
-def _only_grows(values: np.ndarray) -> bool:
+def only_grows(values: np.ndarray) -> bool:
+    """Whether a column goes on from row to row, as times do."""
     steps = np.diff(values)
     return len(steps) > 0 and bool((steps >= 0).mean() > 0.999 and (steps > 0).mean() > 0.5)
 
@@ -134,7 +135,7 @@ def _likely_time(values: np.ndarray) -> str:
 
 
 def by_habit(target: str, column: str, names: list[str]) -> tuple[str, str] | None:
-    """Units that go with names: those of ROS, of ArduPilot, of Android's sensors, of SparkFun."""
+    """Units that go with names: those of ROS, ArduPilot, PX4, Android's sensors, SparkFun."""
     text, kind = spelled(column), kind_of(target)
     habit = {"gyro": "rad/s", "accel": "m/s2", "time": "ns"}.get(kind)
     if habit is None:
@@ -145,6 +146,8 @@ def by_habit(target: str, column: str, names: list[str]) -> tuple[str, str] | No
         return habit, "as Sensor Logger writes"
     if "rtcTime" in names and kind != "time":
         return ("dps" if kind == "gyro" else "mg"), "as OpenLog Artemis writes"
+    if "device_id" in names and "error_count" in names:
+        return ("us" if kind == "time" else habit), "as PX4 writes"
     if "TimeUS" in names and kind != "time":
         return habit, "as in ArduPilot"
     return None

@@ -6,32 +6,35 @@ import re
 from .units import RAW, unit_in_name, without_unit
 
 _AXIS = "([xyz])"
+#: After the axis: calibrated, or a mean of many readings.
+_MADE = "(?:cal|mean|avg)?"
 _GYRO = re.compile(
     r"(?:.*(?:gyroscope|gyrorotation|gyro|gyr|angularvelocity|angularrate|angvel|rotationrate|omega)"
     r"(?:uncalibrated|calibrated|unfilt|adc|raw|rad|data|rate|dps|value|static|noise){0,2}"
-    r"|(?:.*imu)?(?:gy|[wg]))" + f"{_AXIS}(?:cal)?$|^{_AXIS}(?:gyroscope|gyro|gyr)$"
+    r"|(?:.*imu)?(?:gy|[wg]))" + f"{_AXIS}{_MADE}$|^{_AXIS}(?:gyroscope|gyro|gyr)$"
 )
 _ACCEL = re.compile(
     r"(?:.*(?:accelerometer|acceleration|accel|acc|specificforce)"
     r"(?:uncalibrated|calibrated|smooth|adc|raw|data|ms2|value|ln|wr|static|noise){0,2}|(?:.*imu)?ac?)"
-    + f"{_AXIS}(?:cal)?$|^{_AXIS}(?:accelerometer|accel|acc)$"
+    + f"{_AXIS}{_MADE}$|^{_AXIS}(?:accelerometer|accel|acc)$"
 )
 #: Less gravity, so no measure of it.
 _FREE = re.compile(r".*(?:freeacc|useracc|linacc)|lacc")
-_TEMP = re.compile(r".*(?:temperature|temp|tmp)c?$")
+_TEMP = re.compile(r".*(?:temperature|temp|tmp)c?(?:mean|avg)?$")
 _NOT_THE_DIE = re.compile(r"ambient|air|baro|bmp|bme|aht|sht|cpu|motor|batt|esc|water|room")
 _TIME = re.compile(
     r"(?:t|ts|time|timestamp|timestampsample|now|stamp|timeus|timems|secondselapsed|datetime|"
     r"date|utc|millis|micros|loggingtime|.*timestamp(?:unix)?(?:cal)?|.*headerstamp|sampletime|"
-    r"elapsed|elapsedtime|.*offsettime|timestartup|timesincestart(?:in)?|rtctime)$"
+    r"elapsed|elapsedtime|epoch?|.*offsettime|timestartup|timesincestart(?:in)?|rtctime)$"
 )
 _SEC = re.compile(r"(.*?)(?:secs?|seconds?)$")
 _NANOSEC = re.compile(r"(.*?)(?:nanosecs?|nsecs?|nanoseconds?)$")
 #: A column of a variable of a .mat.
 _ARRAY = re.compile(r"\[\d+\]$")
-_LAST_AXIS = re.compile(f".*{_AXIS}$")
+_LAST_AXIS = re.compile(f".*{_AXIS}(?:axis)?$")
 _BARE = re.compile(f"{_AXIS}(?:axis)?$")
 _BODY_RATES = dict(zip(("gx", "gy", "gz"), "pqr"))
+_TURNS = {"rollrate": "gyrox", "pitchrate": "gyroy", "yawrate": "gyroz"}
 
 
 def spelled(name: str) -> str:
@@ -85,12 +88,18 @@ def other_temperatures(names: list[str]) -> list[str]:
     if temperature(names):
         return []
     found = [name for name in names if re.search("temp|tmp", spelled(name))]
+    found = [name for name in found if not unit_in_name("t_us", name)]
     return sorted(found, key=lambda name: bool(_NOT_THE_DIE.search(spelled(name))))
 
 
 def time_columns(names: list[str]) -> list[str]:
     """The columns that look like time stamps."""
     return [name for name in names if _TIME.match(spelled(name))]
+
+
+def in_units_of_time(names: list[str]) -> list[str]:
+    """Columns whose name says a unit of time, whatever it is in: `Zeit (s)`."""
+    return [name for name in names if unit_in_name("t_us", name)]
 
 
 def split_time(names: list[str]) -> tuple[str, str] | None:
@@ -131,7 +140,7 @@ def _in_units_of(target: str, names: list[str]) -> list[str]:
 def _groups(names: list[str], pattern: re.Pattern, letter: str) -> list[dict[str, str]]:
     groups: dict[str, dict[str, str]] = {}
     for name in names:
-        text = spelled(name)
+        text = re.sub("|".join(_TURNS), lambda turn: _TURNS[turn[0]], spelled(name))
         match = pattern.match(text) or pattern.match(_with_letter(text))
         if match and match.lastindex:
             at = match.start(match.lastindex)

@@ -10,7 +10,7 @@ from ...errors import BadRecording
 from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP, TIME
 from ..tables.table import Chunk, Table
 from . import names as usual
-from .guesses import by_habit, guessed_unit, likely_columns, ready_words
+from .guesses import by_habit, guessed_unit, likely_columns, only_grows, ready_words
 from .mapping import Mapped, factor_in, parsed_mapping
 from .units import RAW, factors_of, kind_of, unit_in_name, units_of
 
@@ -129,8 +129,13 @@ def _found(
 
 
 def _time_column(table: Table) -> str | None:
-    """Of the columns called as times the first in which one goes on: no day beside a time of it."""
+    """Of the columns called as times the first in which one goes on: no day beside a time of it.
+    Where none is, one of dates, or one in a unit of time that only grows."""
     found = usual.time_columns(table.names)
+    if not found:
+        other = [*sorted(table.calendar), *usual.in_units_of_time(table.names)]
+        first = table.first_rows(list(dict.fromkeys(other))) if other else {}
+        return next((name for name, values in first.items() if only_grows(values)), None)
     first = table.first_rows(found) if len(found) > 1 else {}
     differ = (name for name, values in first.items() if len(np.unique(values[values > 0])) > 1)
     return next(differ, next(iter(found), None))

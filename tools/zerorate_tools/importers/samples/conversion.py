@@ -174,7 +174,7 @@ def absent(plan: Plan, names: list[str]) -> list[str]:
         out.append("no acceleration: nothing can be learned against gravity")
     if TEMP not in plan.wanted:
         other = other_temperatures(names)
-        is_near = "is" if len(other) == 1 else "one of them is"
+        is_near = "it is" if len(other) == 1 else "one of them is"
         offer = f"; if {is_near} the sensor's or near it: --map temp={other[0]}" if other else ""
         listed = f" by its name, but {', '.join(other)}" if other else ""
         out.append(f"no temperature{listed}: the bias cannot be followed over temperature{offer}")
