@@ -245,6 +245,13 @@ def test_rare_single_readings_are_not_doubted_for_their_noise(tmp_path):
     assert not told(report, "doubtful")
 
 
+def test_readings_with_fractions_are_offered_no_counts(tmp_path):
+    frame = table().rename(columns=lambda name: name.replace("_dps", "").replace("_g", ""))
+    frame[["ax", "ay", "az"]] *= 0.03  # of something that falls freely
+    with pytest.raises(BadRecording, match="--gyro-unit dps .* --accel-unit g [(]or"):
+        read(tmp_path, frame)
+
+
 def test_radians_declared_as_degrees_are_doubted(tmp_path):
     frame = table()
     for axis in "xyz":

@@ -192,18 +192,19 @@ def _usual_length(columns: list[np.ndarray]) -> float:
 
 
 def _likely(target: str, wanted: Mapping[str, Mapped], first: Mapping[str, np.ndarray]) -> str:
+    values = first[wanted[target].column]
+    values = values[np.isfinite(values)]
+    counted = bool(len(values)) and (values % 1 == 0).all()
     if target == TEMP:
-        values = first[wanted[TEMP].column]
-        values = values[np.isfinite(values)]
-        return "lsb" if len(values) and (values % 1 == 0).all() else "degc"
+        return "lsb" if counted else "degc"
     if not all(axis in wanted for axis in ACCEL):
         return "dps" if target in GYRO else "m/s2"
     unit = wanted["ax"].unit or unit_in_name("ax", wanted["ax"].column)
     unit = unit or _by_gravity(wanted, first)[0]
     if target in ACCEL:
-        return unit or "lsb"
+        return unit or ("lsb" if counted else "g")
     # those who keep to one system of units keep to it for both
-    return {"m/s2": "rad/s", None: "lsb", "lsb": "lsb"}.get(unit, "dps")
+    return {"m/s2": "rad/s", None: "lsb" if counted else "dps", "lsb": "lsb"}.get(unit, "dps")
 
 
 def _time_words(values: np.ndarray, column: str) -> str:
