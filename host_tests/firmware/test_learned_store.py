@@ -96,20 +96,18 @@ def test_state_and_model_have_two_slots_each_one_after_the_other(saved, base, pi
     begins = [base, base + of_state, base + 2 * of_state, base + 2 * of_state + of_model]
     assert [at for at in range(len(memory.bytes)) if memory.bytes[at : at + 3] == b"ZRS"] == begins
     assert stores.end == begins[-1] + of_model
+    assert set(memory.bytes[stores.end :]) == {0xFF}
     assert [memory.bytes[at + 4] for at in begins] == [1] * 4  # versions
 
 
-def test_state_of_other_settings_is_refused(memory, saved):
-    assert blank(memory, still_dps=0.2).load() == store.OTHER_BINDING
+@pytest.mark.parametrize("options", [{"binding": bytes([0x70, 0, 0, 3])}, {"still_dps": 0.2}])
+def test_state_of_another_chip_or_other_settings_is_refused(memory, saved, options):
+    assert blank(memory, **options).load() == store.OTHER_BINDING
 
 
 @pytest.mark.parametrize("options", [{"document": True}, {"every": True}, {"short": 2}])
 def test_state_of_other_estimators_is_refused(memory, saved, options):
     assert blank(memory, **options).load() not in (store.LOADED, store.EMPTY)
-
-
-def test_state_of_another_chip_is_refused(memory, saved):
-    assert blank(memory, bytes([0x70, 0, 0, 3])).load() == store.OTHER_BINDING
 
 
 @pytest.mark.parametrize("size", [64, 255, 256, 0x150, MODEL_BYTES - 1, MODEL_BYTES])
@@ -140,11 +138,3 @@ def test_a_cut_in_the_writing_of_one_does_not_cost_the_other(memory, saved, cut)
     again = blank(memory)
     assert again.load() == store.LOADED
     assert again.load_model() == MODEL
-
-
-def test_both_stay_before_the_end(memory, saved):
-    stores = LearnedStore(memory, BINDING, saved)
-    for _ in range(3):
-        assert stores.save() and stores.save_model(MODEL)
-    assert set(memory.bytes[stores.end :]) == {0xFF}
-    assert stores.end < 11000
