@@ -1,6 +1,6 @@
 """The ways through a kernel: does each end with return, is each local set before it is read?
 
-C checks neither and goes on with whatever the register held.
+C checks neither and goes on with 0, or with whatever the register held.
 """
 
 import ast
