@@ -17,7 +17,8 @@ def found():
     }
     settling = {"default": {"seconds": 40.0, "ripple_mdps": 9.0, "mean_mdps": 1.0}}
     cost = {name: {"cycles": 900.0, "cycles_worst": 9000.0} for name in ("in_motion", "gravity")}
-    return {"simulated": simulated, "settling": settling, "cost": cost}
+    flicker = {"rests-30": {"firmware": [1.0, 0.96, 0.94, 0.93]}}
+    return {"simulated": simulated, "flicker": flicker, "settling": settling, "cost": cost}
 
 
 def verdicts(found):
@@ -51,6 +52,10 @@ def test_one_window_learned_on_a_turntable_is_one_too_many(found):
 
 def test_honesty_is_counted_in_percent(found):
     assert "| decision |" + " 95 % |" * len(LIMITS_MDPS) in in_markdown(found)
+
+
+def test_honesty_is_counted_by_flicker_noise_too(found):
+    assert "| rests-30, firmware | 100 % | 96 % | 94 % | 93 % |" in in_markdown(found)
 
 
 def test_the_decision_is_judged_beside_vqf_on_whole_trials(found):

@@ -21,6 +21,7 @@ from ..simulate.description import load_description
 from ..simulate.schema import Description
 from .accuracy import rms_mdps
 from .broad import Trial, TrueBias, trials, true_bias
+from .flicker import by_flicker, with_flicker
 from .native_cost import source_cost
 from .settling import settling
 
@@ -66,14 +67,9 @@ def simulated(ways: Mapping[str, Peer], seeds: Sequence[int] = SEEDS) -> dict:
         told = {TOLD: Source("in_motion", slope_dps_per_degc=0.0001)}
         for seed in seeds:
             _measure(found[name], ways, name, seed)
-            _measure(found[name], flickering, _with_flicker(name), seed)
+            _measure(found[name], flickering, with_flicker(name, FLICKER_DPS), seed)
             _measure(found[name], told, _without_curve(name), seed)
     return found
-
-
-def _with_flicker(name: str) -> Description:
-    described = load_description(name)
-    return replace(described, noise=replace(described.noise, bias_instability_dps=FLICKER_DPS))
 
 
 def _without_curve(name: str) -> Description:
@@ -153,4 +149,5 @@ def run(data: str | PathLike[str] | None = None) -> dict:
     """
     ways = peers()
     found: dict = {} if data is None else {"broad": on_broad(ways, Path(data))}
-    return found | {"simulated": simulated(ways), "settling": settling(), "cost": _cost()}
+    found |= {"simulated": simulated(ways), "flicker": by_flicker()}
+    return found | {"settling": settling(), "cost": _cost()}

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from .flicker import FLICKERS_MDPS, SEEDS
 from .motion import run
 from .tables import table
 
@@ -28,6 +29,11 @@ _HONESTY = """\
 Truth within two sigma, mean over the seeds; must be 90 % of a source's verdicts, and of the \
 decision at the end of each ten seconds:
 """
+_FLICKER = f"""\
+Truth within two sigma, by flicker noise of the part, mean of {len(SEEDS)} seeds. Bayes' rule has \
+all rests so far, and is told their noise, but not how large flicker noise and walk are:
+"""
+_FLICKER_HEAD = ["", *(f"{mdps} mdps" for mdps in FLICKERS_MDPS)]
 _SETTLING = """\
 Against gravity, a device at rest with biases of 2.0 and -1.5 dps; within 50 mdps after, ripple \
 (standard deviation) and mean error of the last 200 s:
@@ -51,6 +57,8 @@ def _parts(found: Mapping) -> Iterator[str]:
     yield table(["", *scenarios], list(_errors(scenarios)))
     yield _HONESTY
     yield table(["", *scenarios], list(_honesty(scenarios)))
+    yield _FLICKER
+    yield table(_FLICKER_HEAD, list(_by_flicker(found["flicker"])))
     yield _SETTLING
     yield table(_SETTLING_HEAD, [[form, *row.values()] for form, row in found["settling"].items()])
     yield f"A sample of each source on a Cortex-M0+, in cycles: {_cost(found['cost'])}\n"
@@ -96,6 +104,12 @@ def _honesty(scenarios: Mapping) -> Iterator[list[str]]:
         within = [rows[way]["within"] for rows in scenarios.values()]
         if any(within):
             yield [way, *(f"{100 * np.mean(one):.0f} %" if one else "" for one in within)]
+
+
+def _by_flicker(scenes: Mapping) -> Iterator[list[str]]:
+    for name, ways in scenes.items():
+        for way, shares in ways.items():
+            yield [f"{name}, {way}", *(f"{100 * share:.0f} %" for share in shares)]
 
 
 def _cost(found: Mapping | str) -> str:

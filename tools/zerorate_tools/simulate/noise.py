@@ -23,12 +23,16 @@ def flicker(rng: np.random.Generator, n: int, dt_s: float, floor: np.ndarray) ->
     all of one variance s2: one-sided density h/f with h = s2/ln 2, Allan variance 2 ln2 h
     (IEEE Std 952, annex C; the factor 0.664 of some data sheets is this over the bias instability).
     """
-    octaves = max(int(np.ceil(np.log2(_OCTAVES_TO_S / dt_s))), 1)
     std = np.asarray(floor, float) / np.sqrt(2.0)
     total = np.zeros((n, len(std)))
-    for tau_s in dt_s * 2.0 ** np.arange(octaves):
+    for tau_s in octaves_s(dt_s):
         total += gauss_markov(rng, n, dt_s, tau_s, std)
     return total
+
+
+def octaves_s(dt_s: float) -> np.ndarray:
+    """Time constants of flicker noise, s: an octave each, from a sample's to 4e4 s."""
+    return dt_s * 2.0 ** np.arange(max(int(np.ceil(np.log2(_OCTAVES_TO_S / dt_s))), 1))
 
 
 def gauss_markov(
