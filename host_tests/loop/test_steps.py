@@ -172,6 +172,20 @@ def test_a_step_is_timed_to_the_second_and_the_accelerometer_is_asked(seen_g):
     assert ("the accelerometer saw 0.4 g" in step.said) == bool(seen_g)
 
 
+def test_stress_that_the_accelerometer_sees_in_hundredths_of_a_g_is_no_sensitivity_to_it():
+    session, floor = stepped(3, 40.0, 40, 80, 130)
+    rng, per = np.random.default_rng(3), session.ticks_per_block
+    stressed = np.repeat(stepped(3, 1.0, 40, 80, 130)[0].rate_dps / floor, per, axis=0)
+    quiet = np.repeat(stepped(3, 0.0)[0].rate_dps / floor, per, axis=0)
+    clicks = 0.02 * (np.arange(len(stressed)) // per >= 60) - 0.02 * (
+        np.arange(len(stressed)) // per >= 105
+    )
+    for i, axis in enumerate("xyz"):
+        seen = 0.02 * (stressed - quiet)[:, i] + clicks
+        session.sources[f"acc_{axis}"] = (i == 2) + seen + rng.normal(0, 1e-4, len(seen))
+    assert steps_at(session) == [pytest.approx(block, abs=0.75) for block in (40, 80, 130)]
+
+
 @pytest.mark.parametrize("floors, follows_dps", [(8.0, 0.0), (0.0, 0.05)])
 def test_what_follows_a_pose_that_changes_often_is_no_step_and_a_step_no_acceleration(
     floors, follows_dps

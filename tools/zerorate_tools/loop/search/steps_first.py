@@ -26,8 +26,9 @@ _BESIDE, _OF_USUAL, _JUMPS = 3, 6.0, 4
 #: Ticks around a moment in which the accelerometer is looked at; what it must see, in g and in
 #: times its usual change.
 _MOMENT, _SEEN_G, _SEEN = 10, 0.02, 6.0
-#: By how much an acceleration at rest differs where the device was turned over.
-_TURNED_G = 0.5
+#: By how much an acceleration at rest differs where the device was turned over; and what is less
+#: than any pose that a part, of some tenths of a dps a g, shows: stress of the board makes it, too.
+_TURNED_G, _TILTED_G = 0.5, 0.1
 
 
 def without_steps(sessions: Sequence[Session]) -> list[Session]:
@@ -45,7 +46,10 @@ def may_be_a_channels(sessions: Sequence[Session]) -> bool:
 
 
 def _jumping(sessions) -> list[str]:
-    return [n for n in _channels(sessions) if _jumps_often(sessions, n) or _turns(sessions, n)]
+    names = [n for n in _channels(sessions) if not n.startswith("acc_")]
+    tilts = {n: _range_g(sessions, n) for n in _channels(sessions) if n.startswith("acc_")}
+    names += [n for n, g in tilts.items() if g > _TILTED_G]
+    return [n for n in names if _jumps_often(sessions, n) or tilts.get(n, 0.0) > _TURNED_G]
 
 
 def _steps(session, jumping, recordings: int) -> list[Step]:
@@ -94,11 +98,10 @@ def _jumps_often(sessions, name) -> bool:
     return sum(_times(j > _OF_USUAL * usual) for j in jumps) >= _JUMPS
 
 
-def _turns(sessions, name) -> bool:
-    """Whether a channel is an acceleration that shows a device turned over, which no knock does."""
-    if not name.startswith("acc_"):
-        return False
-    return max(np.ptp(_blocks(s, name)[s.available]) for s in sessions) > _TURNED_G
+def _range_g(sessions, name) -> float:
+    """The most by which an acceleration at rest differs within a session: no knock turns a device
+    over."""
+    return max(np.ptp(_blocks(s, name)[s.available]) for s in sessions)
 
 
 def _blocks(session, name):
@@ -108,8 +111,8 @@ def _blocks(session, name):
 
 
 def _jumps(session, name) -> np.ndarray:
-    """(n,) by how much the blocks after each differ from those before it."""
-    values = _blocks(session, name)
+    """(rests,) by how much the blocks at rest after each differ from those before it."""
+    values = _blocks(session, name)[session.available]
     total = np.r_[0.0, np.cumsum(values)]
     at = np.arange(len(values))
     before, after = np.maximum(at - _BESIDE, 0), np.minimum(at + _BESIDE, len(values))
@@ -147,8 +150,9 @@ def _timed(session: Session, step: Step) -> Step:
     along = session.ticks_dps @ (weight / (step.size_dps @ weight))
     places = np.arange(max(first + 1, 1), min(last, len(along)))
     near = along[max(first, 0) : last + 1]
-    before = along[max(0, first - 2 * per) : max(first, 0)]
-    level = np.nanmean(before) if np.isfinite(before).any() else np.nanmin(near)
+    before = along[: max(first, 0)]
+    before = before[np.isfinite(before)][-2 * per :]  # of the rest before, wherever it ended
+    level = before.mean() if len(before) else np.nanmin(near)
     # the step is one in these units: before it the ticks are nearer to the level, after it to one
     nearer = np.nan_to_num(along - level - 0.5)
     total = np.cumsum(nearer[: last + 1])
