@@ -112,13 +112,6 @@ def test_a_whole_curve_leaves_a_tenth_less(parabolic, wavy, left, taken):
         assert bool(whole_curve(r, line, [], judged, by_line, 0)) == taken
 
 
-def test_a_line_of_segments_may_leave_a_little_more_than_powers(parabolic, wavy):
-    for search, taken in ((parabolic, False), (wavy, True)):
-        r, line, _, _, by_line, _ = by(search, None)
-        judged = Kernels(nats_of(1 / 0.92, int(r.sessions[0].available.sum())))
-        assert bool(whole_curve(r, line, [], judged, by_line, 0)) == taken
-
-
 def test_powers_are_held_or_reach_as_far_beyond_as_pieces_do(parabolic):
     r, line, _, _, by_line, _ = by(parabolic, None)
     held_at, going_on = (_powers(r, line, by_line)[k][0] for k in (0, 2))

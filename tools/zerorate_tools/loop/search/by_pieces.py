@@ -36,7 +36,7 @@ _HYSTERESIS = "thermal-hysteresis"
 #: memory, and of one that has to be told from a walk of the noise, which a slow course feigns well.
 _CLEARLY, _CLEARLY_OF_MEMORY = (2.0, 0.97), (5.0, 0.9)
 #: The same of a line of segments, the best of some.
-_CLEARLY_OF_SEGMENTS = (2.0, 0.93)
+_CLEARLY_OF_SEGMENTS = (2.0, 0.9)
 #: Chance by the likelihood, all that were tried paid for, above which pieces alone tell of no
 #: memory: with one of real parts it is below 0.0001, with seven that noise feigned it was 1.
 _LIKELY = 0.01
