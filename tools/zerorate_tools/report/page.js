@@ -63,7 +63,9 @@
     const values = [...drawn, ...across].filter((v) => v > 0);
     const least = Math.min(...values), times = Math.max(...values) / least;
     if (times > 40) return { dtick: 1 };
-    const first = Math.floor(Math.log10(least)) - 1, of = times > 6 ? [1, 2, 5] : [1, 1.5, 2, 3, 5, 7];
+    const close = [1, 1.2, 1.4, 1.6, 1.8, 2, 2.2, 2.5, 2.8, 3.2, 3.6, 4, 4.5, 5, 5.5, 6, 7, 8, 9];
+    const of = times > 6 ? [1, 2, 5] : times > 2.5 ? [1, 1.5, 2, 3, 5, 7] : close;
+    const first = Math.floor(Math.log10(least)) - 1;
     const at = [...Array(5).keys()].flatMap((k) => of.map((n) => Number(n + "e" + (first + k))));
     return { tickvals: at, ticktext: at.map(String) };
   }
