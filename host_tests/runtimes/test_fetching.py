@@ -1,12 +1,13 @@
 """Fetching an interpreter: whole or not at all, and one line for a person when it cannot be."""
 
+import hashlib
 import platform
 from pathlib import Path
 
 import pytest
 from zerorate_tools.cli import main
 from zerorate_tools.errors import MissingRuntime
-from zerorate_tools.runtimes import NAMES, cache, debian, fetch
+from zerorate_tools.runtimes import NAMES, cache, debian, fetch, unix_port
 from zerorate_tools.runtimes.cache import fill, runtime_folder
 
 RELEASE = 'ID={}\nVERSION_CODENAME="bookworm"\n'
@@ -87,6 +88,54 @@ def test_a_missing_apt_is_named(pretend_release, monkeypatch):
     monkeypatch.setenv("PATH", "")
     with pytest.raises(MissingRuntime, match="apt-get is missing"):
         debian._own_mirror()
+
+
+@pytest.fixture
+def torn_mirror(tmp_path, monkeypatch):
+    """A mirror whose lists apt refuses, with one package, and the SHA-256 that is pinned."""
+
+    def refuse(*_, **__):
+        raise MissingRuntime("File has unexpected size")
+
+    def build(sha256):
+        (tmp_path / "micropython_1_i386.deb").write_text("a package")
+        (tmp_path / "pins").write_text(f"{sha256}  micropython_1_i386.deb\n")
+        monkeypatch.setattr(debian, "_PINNED", tmp_path / "pins")
+        monkeypatch.setattr(debian, "_own_mirror", lambda: f"copy:{tmp_path}")
+        monkeypatch.setattr(debian, "_apt", refuse)
+        (tmp_path / "fetched").mkdir()
+        return tmp_path / "fetched"
+
+    return build
+
+
+needs_apt = pytest.mark.skipif(not Path(debian._APT_HELPER).is_file(), reason="no apt here")
+
+
+@needs_apt
+def test_lists_out_of_step_leave_the_pinned_packages(torn_mirror):
+    folder = torn_mirror(hashlib.sha256(b"a package").hexdigest())
+    (deb,) = debian.fetch_packages(folder, "i386", ["micropython"])
+    assert deb.read_text() == "a package"
+
+
+@needs_apt
+def test_a_pinned_package_with_another_hash_is_refused(torn_mirror):
+    folder = torn_mirror("0" * 64)
+    with pytest.raises(MissingRuntime, match="Hash Sum mismatch"):
+        debian.fetch_packages(folder, "i386", ["micropython"])
+    assert list(folder.glob("*.deb")) == []
+
+
+def test_what_is_not_pinned_keeps_the_complaint_of_the_lists(torn_mirror):
+    folder = torn_mirror("0" * 64)
+    with pytest.raises(MissingRuntime, match="unexpected size"):
+        debian.fetch_packages(folder, "i386", ["micropython", "libc6"])
+
+
+@pytest.mark.parametrize("architecture", ["i386", "armhf"])
+def test_all_that_an_interpreter_needs_is_pinned(architecture):
+    assert set(debian._pinned(architecture)) == set(unix_port._PACKAGES)
 
 
 @pytest.mark.parametrize("name", ["x86", "x64"])

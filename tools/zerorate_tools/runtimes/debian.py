@@ -1,7 +1,9 @@
 """Packages of Debian 13, fetched and unpacked into a folder: nothing of the system is changed.
 
 A second apt configuration is made from the machine's own Debian source with the suite replaced,
-so the mirror, proxies and certificates are those that the machine already uses.
+so the mirror, proxies and certificates are those that the machine already uses. A mirror may
+serve an architecture's list that its release file does not know; debian13.sha256 pins what the
+interpreters of other architectures need, for that case.
 """
 
 import platform
@@ -16,6 +18,8 @@ from zerorate_tools.errors import MissingRuntime
 
 _SUITE = "trixie"
 _KEYRING = "/usr/share/keyrings/debian-archive-keyring"
+_PINNED = Path(__file__).with_name("debian13.sha256")
+_APT_HELPER = "/usr/lib/apt/apt-helper"
 
 
 def fetch_packages(folder: Path, architecture: str, packages: Sequence[str]) -> list[Path]:
@@ -23,10 +27,15 @@ def fetch_packages(folder: Path, architecture: str, packages: Sequence[str]) -> 
 
     Raises MissingRuntime when this machine has no apt or no Debian source, or apt fails.
     """
-    with tempfile.TemporaryDirectory(prefix="zerorate-apt-") as state:
-        options = _second_configuration(Path(state), architecture)
-        _apt([*options, "update"], cwd=folder)
-        _apt([*options, "download", *packages], cwd=folder)
+    mirror = _own_mirror()
+    try:
+        _download_listed(mirror, folder, architecture, packages)
+    except MissingRuntime:
+        pinned = _pinned(architecture)
+        if not set(packages) <= set(pinned):
+            raise
+        for package in packages:
+            _download_pinned(mirror, folder, *pinned[package])
     return sorted(folder.glob("*.deb"))
 
 
@@ -51,11 +60,30 @@ def host_architecture() -> str:
     return names[platform.machine()]
 
 
-def _second_configuration(state: Path, architecture: str) -> list[str]:
+def _download_listed(mirror: str, folder: Path, architecture: str, packages: Sequence[str]) -> None:
+    with tempfile.TemporaryDirectory(prefix="zerorate-apt-") as state:
+        options = _second_configuration(Path(state), mirror, architecture)
+        _apt([*options, "update"], cwd=folder)
+        _apt([*options, "download", *packages], cwd=folder)
+
+
+def _pinned(architecture: str) -> dict[str, tuple[str, str]]:
+    """SHA-256 and path below the mirror of every pinned package of an architecture, by name."""
+    lines = [line.split() for line in _PINNED.read_text(encoding="utf-8").splitlines()]
+    wanted = [(sha, path) for sha, path in lines if path.endswith(f"_{architecture}.deb")]
+    return {Path(path).name.split("_")[0]: (sha, path) for sha, path in wanted}
+
+
+def _download_pinned(mirror: str, folder: Path, sha256: str, path: str) -> None:
+    target = folder / Path(path).name
+    _output_of([_APT_HELPER, "download-file", f"{mirror}/{path}", str(target), f"SHA256:{sha256}"])
+
+
+def _second_configuration(state: Path, mirror: str, architecture: str) -> list[str]:
     for name in ("lists/partial", "cache/archives/partial"):
         (state / name).mkdir(parents=True)
     (state / "status").touch()
-    (state / "own.sources").write_text(_source(_own_mirror()), encoding="utf-8")
+    (state / "own.sources").write_text(_source(mirror), encoding="utf-8")
     settings = {
         "Dir::Etc::SourceList": state / "own.sources",
         "Dir::Etc::SourceParts": "/dev/null",
