@@ -29,7 +29,7 @@ def fetch_packages(folder: Path, architecture: str, packages: Sequence[str]) -> 
     """
     mirror = _own_mirror()
     try:
-        _download_listed(mirror, folder, architecture, packages)
+        _download_listed(folder, architecture, packages)
     except MissingRuntime:
         pinned = _pinned(architecture)
         if not set(packages) <= set(pinned):
@@ -60,9 +60,9 @@ def host_architecture() -> str:
     return names[platform.machine()]
 
 
-def _download_listed(mirror: str, folder: Path, architecture: str, packages: Sequence[str]) -> None:
+def _download_listed(folder: Path, architecture: str, packages: Sequence[str]) -> None:
     with tempfile.TemporaryDirectory(prefix="zerorate-apt-") as state:
-        options = _second_configuration(Path(state), mirror, architecture)
+        options = _second_configuration(Path(state), architecture)
         _apt([*options, "update"], cwd=folder)
         _apt([*options, "download", *packages], cwd=folder)
 
@@ -79,11 +79,11 @@ def _download_pinned(mirror: str, folder: Path, sha256: str, path: str) -> None:
     _output_of([_APT_HELPER, "download-file", f"{mirror}/{path}", str(target), f"SHA256:{sha256}"])
 
 
-def _second_configuration(state: Path, mirror: str, architecture: str) -> list[str]:
+def _second_configuration(state: Path, architecture: str) -> list[str]:
     for name in ("lists/partial", "cache/archives/partial"):
         (state / name).mkdir(parents=True)
     (state / "status").touch()
-    (state / "own.sources").write_text(_source(mirror), encoding="utf-8")
+    (state / "own.sources").write_text(_source(_own_mirror()), encoding="utf-8")
     settings = {
         "Dir::Etc::SourceList": state / "own.sources",
         "Dir::Etc::SourceParts": "/dev/null",
