@@ -72,7 +72,8 @@ def test_a_day_in_small_teaches_nothing_wrong_and_loses_nothing(monkeypatch):
     monkeypatch.setattr("time.time", lambda: 1 / 0)  # a clock set back cannot matter: nobody looks
     found = run(hours=0.4, faults=30, seed=3)
     assert found["worst_mdps"] < 15 and found["rms_mdps"] < 5
-    assert found["first_line_after_kill_mdps"] < 30 and found["kills"] >= 2
+    assert found["first_line_after_kill_mdps"] < 30
+    assert found["kills"] > found["faults"]["kill"] and found["refused_writes"] > 0
     assert found["downs"] > 10 and found["unexplained_downs"] == 0
     assert found["samples"] > 0.99 * found["samples_due"]
 

@@ -10,6 +10,7 @@ import math
 import random
 import tempfile
 from collections import Counter
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -45,16 +46,16 @@ class Disk(FileStorage):
         self.clock = clock
         self.refused = 0
 
-    def writeblock(self, offset: int, buf: Any) -> None:
+    def write_pieces(self, offset: int, pieces: Iterable[Any]) -> None:
         """As FileStorage, with the faults."""
         if self.clock.now_us < self.full_until_us:
             self.refused += 1
             raise OSError(28, "No space left on device")
         if self.kill_after is not None:
-            part, self.kill_after = bytes(buf)[: self.kill_after], None
-            super().writeblock(offset, part)
+            part, self.kill_after = b"".join(map(bytes, pieces))[: self.kill_after], None
+            super().write_pieces(offset, (part,))
             raise Killed
-        super().writeblock(offset, buf)
+        super().write_pieces(offset, pieces)
 
 
 class World:
