@@ -13,13 +13,13 @@ from scipy.signal import lfilter
 from ...recordings import OpenRecording, Scales, open_recording
 from ...recordings.checks import GAP
 from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP, TIME
+from .bad_readings import BadReadings
 from .beside_reference import WIDTH, change_of, delay_products
 from .beside_reference import products as of_turning
 from .reference import Reference, declared
 from .welch import Segments
 
 TICK_S = 1.0
-_RAIL = 32767
 #: Samples a tick below which it is taken to hold one.
 _ALONE = 1.5
 #: First-order high-pass of the acceleration for its vibration, per sample.
@@ -124,8 +124,7 @@ class _Reader:
         self.sums, self.vibration = _Sums(), _Vibration()
         self.start: int | None = None
         self.size = self.samples = 0
-        self.previous = None
-        self.faults = {"clipped": 0, "repeated": 0, "all-zero": 0, "temperature-jump": 0}
+        self.bad = BadReadings(names, scales.odr_hz)
         self.digest = hashlib.sha256()
         self.centre = None
         self.reference = Reference(names, scales.gyro_lsb_per_dps)
@@ -144,7 +143,7 @@ class _Reader:
         self.samples += len(t_us)
         tick = ((t_us - self.start) / (self.tick_s * 1e6)).astype(np.int64)
         self.size = max(self.size, int(tick[-1]) + 1)
-        good = self._good(batch, gyro)
+        good = self.bad.set_aside(batch)
         self._channels(batch, tick, good)
         if self.reference.names:
             self._true_rate(batch, t_us, tick, gyro, good)
@@ -199,31 +198,6 @@ class _Reader:
         for i, column in enumerate(rows.T):
             self.sums.add(f"{name}{i}", tick, column, self.size)
 
-    def _good(self, batch, gyro):
-        """(n,) bool: no rail, no exact repeat of the whole sample, no frame of zeros, no leap of
-        temperature.
-        """
-        frame = np.column_stack([batch[n] for n in self.names if n in COLUMNS and n != TIME])
-        before = np.vstack(
-            [self.previous if self.previous is not None else frame[:1] + 1, frame[:-1]]
-        )
-        self.previous = frame[-1:]
-        clipped = (np.abs(gyro) >= _RAIL).any(axis=1)
-        repeated = (frame == before).all(axis=1) & (self.scales.odr_hz > 2.0)
-        zero = (frame == 0).all(axis=1)
-        bad = {"clipped": clipped, "repeated": repeated, "all-zero": zero}
-        if TEMP in self.names:
-            at = [n for n in self.names if n in COLUMNS and n != TIME].index(TEMP)
-            leap = np.abs(frame[:, at] - before[:, at]) >= 400
-            bad["temperature-jump"] = leap & (self.scales.odr_hz > 2.0)
-            bad["temperature-jump"][0] &= self.samples > len(frame)
-            bad["temperature-jump"] |= np.abs(frame[:, at]) >= _RAIL
-        seen = np.zeros(len(frame), bool)
-        for name, mask in bad.items():  # a sample counts once, for the first of its faults
-            self.faults[name] += int((mask & ~seen).sum())
-            seen |= mask
-        return ~seen
-
     def _mean(self, name):
         total, count = (self.sums.get(_key(name) + of, self.size) for of in ("", " count"))
         return gap_filled(np.where(count > 0, total / np.maximum(count, 1), np.nan))
@@ -262,7 +236,7 @@ class _Reader:
         return Ticks(
             name, self.scales, self.tick_s, self.start or 0, raw, rate, rate_var,
             accel, accel_var, vib, temp,
-            reference, extra, self.faults, self.samples, self.digest.hexdigest(),
+            reference, extra, self.bad.faults, self.samples, self.digest.hexdigest(),
             self._attitude(), delay, turning, self.segments,
         )  # fmt: skip
 

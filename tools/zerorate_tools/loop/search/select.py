@@ -10,16 +10,15 @@ from ..fit.common_cause import coherence, turned_axes
 from ..fit.left_out import gains
 from ..fit.line import less_slope
 from ..fit.regression import Regression
-from ..fit.single import PiecesByLine
 from ..read.sessions import Session
-from . import by_pieces, confounding, drift_test, hysteresis
+from . import confounding, hysteresis
 from . import steps as events
-from .bends import LEAST_OF_OTHERS, JudgedOnPieces, on_pieces
+from .bends import JudgedOnPieces
 from .catalogue import Candidate, ranges
 from .catalogue import candidates as all_candidates
 from .collinear import collinear
-from .decide import Decision, decide
 from .detectable import smallest_dps
+from .examine import Examiner
 from .extrapolation import follow_further, go_on
 from .fits_in_slots import fits_in_slots
 from .multiple_testing import MultipleTesting
@@ -31,11 +30,9 @@ from .selection import Found, Selection
 
 MOST_EFFECTS = 6
 _KINDS_TRIED = 4
-_START_S = 60.0
 _TURN_BELOW = 1e-3
-#: Of the plain error of sessions left out, which for an effect that is there only drift makes grow.
-_MOST_GROWTH = 1.05
-#: Of it, what a sum of play operators must leave of that of what it takes the place of.
+#: Of the plain error of sessions left out, what a sum of play operators must leave of that of what
+#: it takes the place of.
 _WELL_BELOW = 0.8
 
 
@@ -62,7 +59,6 @@ class Search:
         self.bend = tuple(replace(t, power=2) for t in self.line)
         self.found: list[Found] = []
         self.pool = all_candidates(sessions)
-        self.singles = [c.terms[0] for c in self.pool if len(c.terms) == 1]
         self.steps: list[events.Step] = []
         self.like_hysteresis: list[Found] = []
         self.refused: list[tuple[str, str]] = []
@@ -74,6 +70,11 @@ class Search:
         """What each candidate must reach, beside the bend that one recording may have shown."""
         power_ons = len(self.regression.sessions) > 1
         return MultipleTesting(self.regression, self.pool, self.straight, self.bend, power_ons)
+
+    @cached_property
+    def examiner(self) -> Examiner:
+        """Whom every candidate has to pass."""
+        return Examiner(self.testing, self.on_pieces)
 
     @property
     def straight(self) -> tuple[Term, ...]:
@@ -226,14 +227,11 @@ class Search:
         if not self.regression.outliers:
             return self._consider(c)
         nuisances = self._nuisances(c)
-        self._settle([*nuisances, *c.terms])
+        self.regression.settle([*nuisances, *c.terms])
         found = self._consider(c)
         if not found:
-            self._settle(self._beside_bend())
+            self.regression.settle(self._beside_bend())
         return found
-
-    def _settle(self, terms):
-        self.regression.settle(terms)
 
     def _step_is_larger(self, ratio: float) -> bool:
         if len(self.steps) >= events.MOST_PER_SESSION * len(self.regression.sessions):
@@ -249,55 +247,11 @@ class Search:
         self.regression.set_events([events.column(self.regression, s) for s in self.steps])
 
     def _consider(self, c: Candidate) -> Found | None:
-        r, nuisances = self.regression, self._nuisances(c)
-        best = refined(self.regression, [*self.straight, *self.terms()], c)
-        if self._is_a_start(best):
-            self.refused.append((confounding.label(best), "the start of a lag's own memory"))
-            return None
-        if collinear(best.terms, self.terms(), self.regression.sessions):
-            self.refused.append((confounding.label(best), "found already, all but the same"))
-            return None
-        ratio = float(self.regression.gains(nuisances, [best.terms]).sum())
-        decision = self._decision(nuisances, best, ratio)
-        if decision.accepted and self._grows_with(best):
-            decision = replace(decision, accepted=False, reason="makes what is left out worse")
-        if decision.accepted and self.on_pieces:
-            if by_pieces.cancels(r.sessions, [*self.straight, *self.terms()], best.terms):
-                self.refused.append((confounding.label(best), "it would only cancel another"))
-                return None
-            beside = self.straight, self.terms()
-            by_line = PiecesByLine(r.sessions[0])
-            if by_pieces.is_like_hysteresis(*beside, best, self.pool, by_line):
-                self.refused.append((confounding.label(best), "a hysteresis predicts as well"))
-                return None
-            decision = on_pieces(decision, self.on_pieces, *beside, best.terms, LEAST_OF_OTHERS)
-        if decision.accepted:
-            return Found(best, decision)
-        self.refused.append((confounding.label(best), decision.reason))
+        said = self.examiner.examine(c, self.straight, self.terms(), self._nuisances(c))
+        if isinstance(said, Found):
+            return said
+        self.refused.append(said)
         return None
-
-    def _decision(self, nuisances, c: Candidate, ratio: float) -> Decision:
-        r, tried = self.regression, self.testing.tried(c)
-        if self.testing.is_by_time(c):
-            return drift_test.considered(r, nuisances, c, ratio, tried)
-        return decide(r, nuisances, c, ratio, tried, self.singles)
-
-    def _grows_with(self, candidate: Candidate) -> bool:
-        """Whether the plain error of what is left out grows with a candidate as deployed."""
-        return (
-            ols_holdout_ratio(self.regression, self.straight, self.terms(), candidate.terms)
-            > _MOST_GROWTH
-        )
-
-    def _is_a_start(self, candidate: Candidate) -> bool:
-        """Whether a transient is no longer than a found lag of temperature takes to forget what it
-        assumed before the power-on; or what play operators assumed, which is kept for long."""
-        if candidate.kind == "power-on-transient" and any(t.memory == "play" for t in self.terms()):
-            return True
-        lags = [t.lag_s for t in self.terms() if t.lag_mode != "none"]
-        if candidate.kind != "power-on-transient" or not lags:
-            return False
-        return candidate.terms[0].decay_s < _START_S + 2.0 * max(lags)
 
     def _drop_idle(self):
         """An effect that the later ones explain is taken out again; the others' parameters are
@@ -306,7 +260,7 @@ class Search:
         for i in reversed(range(self.bends, len(self.found))):
             c = self.found[i].candidate
             rest = [*self.straight, *self.terms(leave=i)]
-            if self._is_idle(c, rest):
+            if self.examiner.is_idle(c, rest):
                 self.refused.append((confounding.label(c), "explained by effects found later"))
                 self.dropped.add(confounding.label(c))
                 del self.found[i]
@@ -314,12 +268,6 @@ class Search:
                 better = refined(self.regression, rest, c)
                 if not collinear(better.terms, rest, self.regression.sessions):
                     self.found[i].candidate = better
-
-    def _is_idle(self, c: Candidate, rest: list[Term]) -> bool:
-        if self.testing.is_by_time(c):
-            chance = drift_test.chance(self.regression, rest, c.terms)
-            return chance * self.testing.tried(c) > drift_test.LEVEL
-        return float(self.regression.gains(rest, [c.terms]).sum()) < self.testing.least_ratio(c)
 
     def _list_steps(self):
         """Steps again from none, beside the effects found."""

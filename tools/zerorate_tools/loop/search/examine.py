@@ -1,0 +1,115 @@
+"""One candidate, examined beside what was found: whatever speaks against taking it."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from ...model.term import Term
+from ..fit.single import PiecesByLine
+from . import by_pieces, drift_test
+from .bends import LEAST_OF_OTHERS, JudgedOnPieces, on_pieces
+from .catalogue import Candidate
+from .collinear import collinear
+from .confounding import label
+from .decide import Decision, decide
+from .multiple_testing import MultipleTesting
+from .ols_holdout_ratio import ols_holdout_ratio
+from .refine import refined
+from .selection import Found
+
+_TRANSIENT = "power-on-transient"
+#: Decay, less two lags, below which a transient is but the start of that lag.
+_START_S = 60.0
+#: Of the plain error of sessions left out, which for an effect that is there only drift makes grow.
+_MOST_GROWTH = 1.05
+
+
+class Examiner:
+    """Of all candidates of one search.
+
+    testing: what each must reach; judged: what judges effects of a session that stands alone by
+    pieces of it left out.
+    """
+
+    def __init__(self, testing: MultipleTesting, judged: JudgedOnPieces | None) -> None:
+        self.testing, self.judged = testing, judged
+        self.regression, self.pool = testing.regression, testing.pool
+        self.singles = [c.terms[0] for c in self.pool if len(c.terms) == 1]
+
+    def examine(
+        self,
+        candidate: Candidate,
+        straight: Sequence[Term],
+        found: Sequence[Term],
+        nuisances: Sequence[Term],
+    ) -> Found | tuple[str, str]:
+        """The effect where its parameters fit best; or its label, and why it is refused.
+
+        straight, found: the line and the effects, which are deployed beside it; nuisances: these,
+        and the bend beside which it is tested.
+        """
+        best = refined(self.regression, [*straight, *found], candidate)
+        reason = self._seen_in_others(best, found)
+        if not reason:
+            decision = self._decision(best, straight, found, nuisances)
+            if decision.accepted:
+                return Found(best, decision)
+            reason = decision.reason
+        return label(best), reason
+
+    def is_idle(self, c: Candidate, rest: Sequence[Term]) -> bool:
+        """Whether the rest of the terms explain what an effect was taken for."""
+        if self.testing.is_by_time(c):
+            chance = drift_test.chance(self.regression, rest, c.terms)
+            return chance * self.testing.tried(c) > drift_test.LEVEL
+        return float(self.regression.gains(rest, [c.terms]).sum()) < self.testing.least_ratio(c)
+
+    def _seen_in_others(self, best, found) -> str:
+        """Why what it explains is of an effect found already; empty where it is its own."""
+        if _is_a_start(best, found):
+            return "the start of a lag's own memory"
+        if collinear(best.terms, found, self.regression.sessions):
+            return "found already, all but the same"
+        return ""
+
+    def _decision(self, best, straight, found, nuisances) -> Decision:
+        """By the likelihood, by the plain error, and by pieces left out."""
+        decision = self._by_likelihood(best, nuisances)
+        if decision.accepted and self._makes_worse(best, straight, found):
+            return replace(decision, accepted=False, reason="makes what is left out worse")
+        if decision.accepted and self.judged:
+            return self._by_pieces(decision, self.judged, best, straight, found)
+        return decision
+
+    def _by_likelihood(self, best, nuisances) -> Decision:
+        r = self.regression
+        ratio = float(r.gains(nuisances, [best.terms]).sum())
+        tried = self.testing.tried(best)
+        if self.testing.is_by_time(best):
+            return drift_test.considered(r, nuisances, best, ratio, tried)
+        return decide(r, nuisances, best, ratio, tried, self.singles)
+
+    def _makes_worse(self, best, straight, found) -> bool:
+        """Whether the plain error of what is left out grows with a candidate as deployed."""
+        return ols_holdout_ratio(self.regression, straight, found, best.terms) > _MOST_GROWTH
+
+    def _by_pieces(self, decision, judged: JudgedOnPieces, best, straight, found) -> Decision:
+        sessions, beside = self.regression.sessions, (straight, found)
+        reason = ""
+        if by_pieces.cancels(sessions, [*straight, *found], best.terms):
+            reason = "it would only cancel another"
+        elif by_pieces.is_like_hysteresis(*beside, best, self.pool, PiecesByLine(sessions[0])):
+            reason = "a hysteresis predicts as well"
+        if reason:
+            return replace(decision, accepted=False, reason=reason)
+        return on_pieces(decision, judged, *beside, best.terms, LEAST_OF_OTHERS)
+
+
+def _is_a_start(candidate: Candidate, found: Sequence[Term]) -> bool:
+    """Whether a transient is no longer than a found lag of temperature takes to forget what it
+    assumed before the power-on; or what play operators assumed, which is kept for long."""
+    if candidate.kind != _TRANSIENT:
+        return False
+    if any(t.memory == "play" for t in found):
+        return True
+    lags = [t.lag_s for t in found if t.lag_mode != "none"]
+    return bool(lags) and candidate.terms[0].decay_s < _START_S + 2.0 * max(lags)
