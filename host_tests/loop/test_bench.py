@@ -4,15 +4,12 @@ import json
 
 import numpy as np
 import pytest
+from zerorate_tools.bench.loop.added_effects import PRANDTL_ISHLINSKII, PRANDTL_ISHLINSKII_TOLD
 from zerorate_tools.bench.loop.bin_tables import hipnuc
 from zerorate_tools.bench.loop.devices import CATALOGUE, TOLD, Device, devices
 from zerorate_tools.bench.loop.figures import figures, share
 from zerorate_tools.bench.loop.run_trial import Outcome, run_trial
-from zerorate_tools.bench.loop.simulated import (
-    PRANDTL_ISHLINSKII,
-    PRANDTL_ISHLINSKII_TOLD,
-    simulate,
-)
+from zerorate_tools.bench.loop.simulated import simulate
 from zerorate_tools.bench.loop.trials import looked_at, markdown, renewed
 
 

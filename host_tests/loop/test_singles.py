@@ -6,11 +6,10 @@ from dataclasses import asdict, replace
 import numpy as np
 import pytest
 from zerorate_tools.bench.loop.simulated import simulate
+from zerorate_tools.bench.loop.single_devices import KINDS, describe
 from zerorate_tools.bench.loop.singles import (
-    KINDS,
     Single,
     _about,
-    describe,
     look_at_singles,
     single_figures,
     tellable,

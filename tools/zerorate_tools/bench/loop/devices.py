@@ -110,7 +110,7 @@ def _effects(seeds: int) -> Iterator[Device]:
 
 
 def _many_widths(seeds: int) -> Iterator[Device]:
-    from .simulated import PRANDTL_ISHLINSKII, PRANDTL_ISHLINSKII_KNOWN
+    from .added_effects import PRANDTL_ISHLINSKII, PRANDTL_ISHLINSKII_KNOWN
 
     for n, i in product(POWER_ONS, range(seeds)):
         seed = _SEEDS["many widths"] + 1000 * n + i

@@ -69,7 +69,8 @@ def run_trial(device: Device) -> Outcome:
 def _told(device: Device) -> Outcome:
     """What a model of the loop itself leaves, which takes it to start where the temperature does:
     found where some axis of the last session is nearer with it, and it corrects those alone."""
-    from .simulated import PRANDTL_ISHLINSKII_TOLD, simulate
+    from .added_effects import PRANDTL_ISHLINSKII_TOLD
+    from .simulated import simulate
 
     (_, size), n = device.effects[0], device.sessions
     made = simulate(device.seed, device.effects, n)
