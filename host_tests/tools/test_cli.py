@@ -93,6 +93,31 @@ def test_a_folder_that_is_not_there_ends_in_one_line_and_2(tmp_path):
 
 @pytest.mark.parametrize(
     "words",
+    [
+        "replay run.parquet --out run.parquet",
+        "replay run.parquet --out new.parquet --state ./run.parquet",
+        "replay run.parquet --out new.parquet --state new.parquet",
+        "replay run.parquet --out state.parquet --from-state state.parquet",
+        "import run.parquet --out again/run.parquet",
+        "compare run.parquet --out run.parquet",
+        "simulate turntable --out new.parquet --truth new.parquet",
+    ],
+)
+def test_no_command_writes_over_what_it_reads_or_writes(words, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "state.parquet").write_text("the only copy")
+    with recording_writer("run.parquet", ["t_us", "gx", "gy", "gz"], SCALES) as writer:
+        writer.append({name: np.arange(9) for name in ("t_us", "gx", "gy", "gz")})
+    (tmp_path / "again").symlink_to(tmp_path)
+    before = {p.name: p.read_bytes() for p in tmp_path.glob("*.parquet")}
+    ran = zerorate(*words.split())
+    assert ran.returncode == 2 and ran.stderr.count("\n") == 1
+    assert "written" in ran.stderr and "name" in ran.stderr
+    assert {p.name: p.read_bytes() for p in tmp_path.glob("*.parquet")} == before
+
+
+@pytest.mark.parametrize(
+    "words",
     [["fly"], ["simulate"], ["import", "x"], ["import", "x", "--out", "y", "--hz", "0"]],
 )
 def test_wrong_words_end_in_2_with_the_usage(words):

@@ -23,7 +23,9 @@ def run(arguments: argparse.Namespace) -> None:
     from ..compare import compare
     from ..compare.show import table, write_page
     from ..progress import progress
+    from ..recordings.atomic import check_apart
 
+    check_apart([arguments.out], arguments.logs)
     with progress("comparing", len(arguments.logs) + 3) as advance:
         compared = compare(arguments.logs, advance)
     print(table(compared))

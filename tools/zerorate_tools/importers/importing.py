@@ -13,6 +13,7 @@ import numpy as np
 
 from ..errors import BadRecording
 from ..recordings import Recording, Scales, check_output, open_recording, recording_writer
+from ..recordings.atomic import check_apart
 from ..recordings.reading import recording_name, whole
 from ..recordings.recording import ACCEL, COLUMNS
 from .columns.mapping import Mapped
@@ -53,6 +54,7 @@ def import_recording(
     Raises BadRecording, MissingLibrary.
     """
     check_output(out)
+    check_apart([out], [source])
     folder = Path(out).resolve().parent
     with _opened(Path(source), options, mapping, units, instance, advance, folder) as one:
         with recording_writer(out, one.names, one.scales) as writer:

@@ -20,6 +20,7 @@ _MINE = f"{zlib.crc32(platform.node().encode()):08x}"
 _MARK = re.compile(r"\.(?:([0-9a-f]{8})-)?([0-9]+)\.partial(\..*)?", re.DOTALL)
 _HELD = {getattr(signal, name) for name in ("SIGTERM", "SIGINT", "SIGHUP") if hasattr(signal, name)}
 _under_way: set[Path] = set()
+_Path = str | os.PathLike[str]
 
 
 @contextmanager
@@ -55,6 +56,21 @@ def check_name(path: Path) -> None:
     if len(os.fsencode(path.name)) > _LONGEST_NAME:
         problem = f"the name is longer than {_LONGEST_NAME} bytes"
         raise InFile(path, problem, do="give it a shorter one")
+
+
+def check_apart(outputs: Iterable[_Path | None], inputs: Iterable[_Path | None]) -> None:
+    """Raise InFile if an output is a file that is read, too, or two outputs are one; None: none."""
+    read = {Path(path).resolve() for path in inputs if path is not None}
+    written: set[Path] = set()
+    for path in outputs:
+        if path is None:
+            continue
+        place = Path(path).resolve()
+        if place in read:
+            raise InFile(path, "would be written over, but is read", do="name another to write")
+        if place in written:
+            raise InFile(path, "would be written twice", do="name another for one of the two")
+        written.add(place)
 
 
 @contextmanager

@@ -18,7 +18,7 @@ from zerorate.settings import DEFAULTS
 
 from ..errors import BadModel, InFile, ZerorateError
 from ..recordings import Recording, open_recording
-from ..recordings.atomic import written_beside
+from ..recordings.atomic import check_apart, written_beside
 from ..recordings.reading import OpenRecording
 from .bias_table import SOURCES, VERDICTS, ReplayWriter, table
 from .engines import Outcome, engine, others_of
@@ -87,6 +87,8 @@ def replay(
     """
     if out is not None and Path(out).suffix != ".parquet":
         raise InFile(out, "a replay is written as Parquet", do="end the name in .parquet")
+    check_apart([out, state], [None if isinstance(log, Recording) else log, model])
+    check_apart([out], [from_state])
     recording = log if isinstance(log, Recording) else open_recording(log, keep_gaps=True)
     corrector = corrector_for(recording, options or {})
     channels = load_model(corrector, Path(model), recording) if model is not None else ()

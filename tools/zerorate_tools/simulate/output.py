@@ -10,7 +10,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from ..recordings import check_output, write_recording
-from ..recordings.atomic import all_written_together, written_beside
+from ..recordings.atomic import all_written_together, check_apart, written_beside
 from .description import load_description
 from .device import Truth, simulate, simulate_sessions
 from .schema import Description, Table
@@ -36,6 +36,7 @@ def simulate_to_files(
     """
     described = load_description(description)
     check_output(out)
+    check_apart([out, truth], [])
     many = session is None and len(described.sessions) > 1
     if session is None:
         made = simulate_sessions(described, seed=seed)
