@@ -22,6 +22,7 @@ from zerorate_tools.loop.search.by_pieces import (
 )
 from zerorate_tools.loop.search.one_recording import OneRecording
 from zerorate_tools.loop.search.select import Search
+from zerorate_tools.loop.search.selection import Found
 from zerorate_tools.model.term import Term
 
 
@@ -41,15 +42,19 @@ def narrow():
 
 
 class Kernels:
-    """Pieces as a firmware predicts them whose own curve is worth `nats` less than a slope."""
+    """Pieces as a firmware predicts them whose own curve is worth `nats` less than a slope, which
+    leaves so much of its plain error."""
 
     reason = "-"
 
-    def __init__(self, nats):
-        self.nats = nats
+    def __init__(self, nats, left=1.0):
+        self.nats, self.left = nats, left
 
     def __call__(self, straight, found, candidate):
         return np.array([self.nats if any(is_slope(t) for t in candidate) else 0.0])
+
+    def residual(self, straight, terms):
+        return np.full((9, 3), self.left if any(is_slope(t) for t in terms) else 1.0)
 
 
 def by(search, judged):
@@ -112,6 +117,15 @@ def test_a_whole_curve_leaves_a_tenth_less(parabolic, wavy, left, taken):
         assert bool(whole_curve(r, line, [], judged, by_line, 0)) == taken
 
 
+@pytest.mark.parametrize("nats, left, taken", [(3, 0.85, True), (3, 0.95, False), (1, 0.5, False)])
+def test_segments_may_leave_a_tenth_less_of_the_plain_error(wavy, parabolic, nats, left, taken):
+    judged = Kernels(nats, left)
+    for search in (wavy, parabolic):  # of a parabola in the place of one, too
+        r, line, _, _, by_line, _ = by(search, None)
+        found = whole_curve(r, line, [], judged, by_line, 0)
+        assert (found.candidate.kind if found else None) == (SEGMENTS if taken else None)
+
+
 def test_powers_are_held_or_reach_as_far_beyond_as_pieces_do(parabolic):
     r, line, _, _, by_line, _ = by(parabolic, None)
     held_at, going_on = (_powers(r, line, by_line)[k][0] for k in (0, 2))
@@ -161,18 +175,27 @@ def test_what_remembers_predicts_no_wave(wavy):
     assert other.nats < by_line(wavy.line, (), best.candidate.terms).sum() - 3.0
 
 
-@pytest.mark.parametrize("nats, taken", [(1000.0, True), (5.0, False)])
-def test_segments_that_a_memory_equals_must_be_as_clear_as_one(wavy, monkeypatch, nats, taken):
+@pytest.mark.parametrize(
+    "nats, left, beside, taken",
+    [
+        (1000.0, 1.0, [], True),
+        (5.0, 1.0, [], False),
+        (5.0, 0.85, [], True),
+        (5.0, 0.85, ["power-on-transient"], False),
+    ],
+)
+def test_segments_that_a_memory_equals_must_be_clear(wavy, monkeypatch, nats, left, beside, taken):
     lag = next(c for c in wavy.pool if c.kind == "thermal-lag")
     monkeypatch.setattr(
         "zerorate_tools.loop.search.by_pieces.remembering", lambda *_: Remembering((), lag, np.inf)
     )
-    regression, line, _, judged, by_line, _ = by(wavy, Kernels(nats))
+    regression, line, _, judged, by_line, _ = by(wavy, Kernels(nats, left))
     better = whole_curve(regression, line, [], Kernels(1000.0), by_line, 0)
     better.decision = replace(better.decision, session_gains=np.array([nats]))
-    one = OneRecording(regression, line, wavy.pool, judged, 0, False)
+    before = [Found(c, better.decision) for kind in beside for c in wavy.pool if c.kind == kind][:1]
+    one = OneRecording(regression, line, wavy.pool, judged, 0, False, before)
     one._bend_often(better, (), by_line)
-    assert [f.candidate.kind for f in one.found] == ([SEGMENTS] if taken else [])
+    assert [f.candidate.kind for f in one.found] == ([SEGMENTS] if taken else beside)
     assert better.confounded_with == (["thermal-lag"] if taken else [])
 
 

@@ -84,24 +84,37 @@ def whole_curve(
 ) -> Found | None:
     """A line over temperature that bends several times, a parabola or a cubic, in the place of all
     that was found; None where it does not predict clearly better: so many parameters follow a walk
-    of the noise as well, and powers leave what was seen the faster.
+    of the noise as well, and powers leave what was seen the faster. The line may also leave clearly
+    less of the plain error, which is what counts in the end and what a few bad pieces decide.
 
     Arguments as for `polynomial`.
     """
     bent = _segments(regression, straight, MOST_SLOTS - 1 - taken)
     every = [*bent, *(_powers(regression, straight, by_line) if bent else ())]
-    best = max(every, key=lambda terms: float(by_line(straight, (), terms).sum()), default=())
-    if not best:
-        return None
     own = [t for f in found for t in f.candidate.terms]
-    gain = judged(straight, (), best) - (judged(straight, (), own) if own else 0.0)
-    decision = _decision(regression, straight, best[1:], len(every), gain)
-    kind, least = (SEGMENTS, _CLEARLY_OF_SEGMENTS)
-    if best not in bent:
-        kind, least = (POLYNOMIAL, _CLEARLY_OF_MEMORY)
-    if decision.p_value > _LIKELY or not _is_clear(gain, regression, *least):
-        return None
-    return Found(Candidate(kind, best, "catalogue"), decision)
+    for some in (every, bent):
+        best = max(some, key=lambda terms: float(by_line(straight, (), terms).sum()), default=())
+        gain = judged(straight, (), best) - (judged(straight, (), own) if own else 0.0)
+        if best in bent:
+            kind, clear = SEGMENTS, _is_clear(gain, regression, *_CLEARLY_OF_SEGMENTS)
+            clear = clear or leaves_less(judged, straight, own, best, gain)
+        else:
+            kind, clear = POLYNOMIAL, _is_clear(gain, regression, *_CLEARLY_OF_MEMORY)
+        if best and clear:
+            decision = _decision(regression, straight, best[1:], len(every), gain)
+            if decision.p_value <= _LIKELY:
+                return Found(Candidate(kind, best, "catalogue"), decision)
+    return None
+
+
+def leaves_less(judged, straight, own, segments, gain) -> bool:
+    """Whether a line of segments leaves clearly less of the plain error over the axes than what was
+    found, and the pieces do not speak against it."""
+    least, most_left = _CLEARLY_OF_SEGMENTS
+    if gain.sum() <= least:
+        return False
+    mean_square = [np.nanmean(judged.residual(straight, [*t]) ** 2) for t in (segments, own)]
+    return bool(mean_square[0] <= most_left**2 * mean_square[1])
 
 
 def memory(

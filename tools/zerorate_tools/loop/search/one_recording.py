@@ -75,24 +75,37 @@ class OneRecording:
     def _bend_often(self, better: Found, curve: Sequence[Term], by_line: PiecesByLine):
         """A line of many segments, unless what remembers temperature predicts as well: warming up
         once, both are much alike, and at another power-on they part. Then that is taken, or where
-        it is not clear the line, if it is as clear as what remembers has to be."""
+        it is not clear the line, if it is clear itself."""
         nats = float(by_line(self.line, (), better.candidate.terms).sum())
         other = by_pieces.remembering(self.line, curve, self.pool, by_line)
         if other is None or other.nats < nats - hysteresis.TIES_NATS:
             self.found = [better]
             self._remember(by_line)
             return
+        found: list[Found] = []
         if not other.doubtful:
             judged = self.judged, by_line, self.taken
             beside = self.regression, self.line, self.found, other
             found = by_pieces.of_memory(*beside, self.pool, *judged)
-            if not found and by_pieces.is_clear_memory(self.regression, better.decision):
-                better.confounded_with = [other.memory.kind]
-                found = [better]
-            self.found = found or self.found
+        if not found and self._is_clear(better, other.doubtful):
+            better.confounded_with = [other.memory.kind]
+            found = [better]
+        self.found = found or self.found
         if better not in self.found:
             said = "what remembers temperature predicts as well"
             self.refused.append((by_pieces.SEGMENTS, said))
+
+    def _is_clear(self, better: Found, doubtful: bool) -> bool:
+        """Whether a line is as clear as what remembers has to be, or one of segments leaves less
+        than what was found, if none of that remembers."""
+        if not doubtful and by_pieces.is_clear_memory(self.regression, better.decision):
+            return True
+        if any(f.candidate.kind in by_pieces.MEMORIES for f in self.found):
+            return False
+        terms, gain = better.candidate.terms, better.decision.session_gains
+        segments = better.candidate.kind == by_pieces.SEGMENTS
+        less = by_pieces.leaves_less(self.judged, self.line, self._terms(), terms, gain)
+        return segments and less
 
     def _remember(self, by_line: PiecesByLine):
         own = by_pieces.memory(
