@@ -8,10 +8,12 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
+from zerorate import Corrector, Sensor
 from zerorate_tools.cli import main
 from zerorate_tools.errors import InFile, MissingRuntime, ZerorateError
 from zerorate_tools.kernels import library as library_module
 from zerorate_tools.kernels.library import library as compiled_library
+from zerorate_tools.layout import AXIS, STATE, axis_at
 from zerorate_tools.model import Slot, build_model, write_model
 from zerorate_tools.model.term import Term
 from zerorate_tools.recordings import write_recording
@@ -31,6 +33,9 @@ DESCRIPTION = {
         }
     ],
 }
+
+
+FIRST_AXIS = axis_at(Corrector(Sensor(50, 131, 16384)).settings, 0)
 
 
 @pytest.fixture(scope="module")
@@ -163,6 +168,39 @@ def test_a_state_of_another_shape_is_refused_by_name(log, tmp_path):
     state = tmp_path / "state.bin"
     state.write_bytes(b"\0" * 100)
     with pytest.raises(InFile, match="state.bin: 100 bytes"):
+        replay(log, from_state=state)
+
+
+def as_words(state):
+    return np.frombuffer(state, "<i4").copy()
+
+
+def with_word(state, at, word):
+    words = as_words(state)
+    words[at] = word
+    return words
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda state: 0 * as_words(state),
+        lambda state: ~(0 * as_words(state)),
+        lambda state: np.roll(as_words(state), 1),
+        lambda state: with_word(state, -1, 2**30),
+        lambda state: with_word(state, STATE.WORK, 13),
+        lambda state: with_word(state, STATE.SOURCE, 9),
+        lambda state: with_word(state, FIRST_AXIS + AXIS.ORDER, 5000),
+        lambda state: with_word(state, FIRST_AXIS + AXIS.CURRENT, 5000),
+        lambda state: with_word(state, FIRST_AXIS + AXIS.LINE_SHIFT, -1),
+    ],
+)
+def test_a_damaged_state_is_refused_and_no_kernel_goes_where_it_says(
+    log, reference, damage, tmp_path
+):
+    state = tmp_path / "state.bin"
+    state.write_bytes(damage(reference.state).astype("<i4").tobytes())
+    with pytest.raises(InFile, match="state.bin: damaged, or no state at all; name a file"):
         replay(log, from_state=state)
 
 

@@ -23,6 +23,7 @@ from ..recordings.reading import OpenRecording
 from .bias_table import SOURCES, VERDICTS, ReplayWriter, table
 from .engines import Outcome, engine, others_of
 from .samples import frames_in_batches, sensor_of
+from .state_check import can_be_a_state
 
 if TYPE_CHECKING:
     import pandas
@@ -137,6 +138,8 @@ def load_state(corrector: Corrector, path: Path, resume: bool) -> None:
     for part in _parts(corrector):
         part[:] = words[: len(part)]
         words = words[len(part) :]
+    if not can_be_a_state(corrector):
+        raise InFile(path, "damaged, or no state at all", do="name a file that --state wrote")
     if not resume:
         corrector.power_on()
 
