@@ -1,6 +1,5 @@
 """Truth within two sigma on parts with more and less flicker noise: the firmware, Bayes' rule."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -20,12 +19,12 @@ SEEDS = range(1, 11)
 _STRETCH_S = 10.0
 
 
-def by_flicker(seeds: Sequence[int] = SEEDS) -> dict:
+def by_flicker() -> dict:
     """Scene -> "firmware", "Bayes' rule" -> mean share within two sigma, each flicker noise's."""
     found: dict = {}
     for name in SCENES:
         scenes = [with_flicker(name, mdps / 1000) for mdps in FLICKERS_MDPS]
-        shares = np.mean([[_shares(scene, seed) for scene in scenes] for seed in seeds], axis=0)
+        shares = np.mean([[_shares(scene, seed) for scene in scenes] for seed in SEEDS], axis=0)
         found[name] = dict(zip(("firmware", "Bayes' rule"), np.round(shares.T, 4).tolist()))
     return found
 

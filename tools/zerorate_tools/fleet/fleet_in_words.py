@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from .whole_fleet import Fleet
 
-_FAILURES = 10
+_FAILURES, _NAMES = 10, 8
 _SCENARIOS = {
     "never-at-rest": "never at rest",
     "at-rest-for-10-s": "at rest for 10 s, then moving",
@@ -106,6 +106,6 @@ def _failures(failures: list[dict[str, str]]) -> Iterator[str]:
         yield f"  and {len(failures) - _FAILURES} more, all in fleet.json"
 
 
-def _some(names: list[str], most: int = 8) -> str:
-    more = f" and {len(names) - most} more" if len(names) > most else ""
-    return ", ".join(names[:most]) + more
+def _some(names: list[str]) -> str:
+    more = f" and {len(names) - _NAMES} more" if len(names) > _NAMES else ""
+    return ", ".join(names[:_NAMES]) + more

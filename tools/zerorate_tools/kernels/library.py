@@ -115,17 +115,17 @@ def say_once(text: str) -> None:
         print(f"zerorate: {text}", file=sys.stderr)
 
 
-def prebuild(folder: Path = _PREBUILT) -> list[Path]:
+def prebuild() -> list[Path]:
     """Write the library for every system that a wheel is for. Raises MissingRuntime."""
-    folder.mkdir(exist_ok=True)
-    for old in folder.iterdir():
+    _PREBUILT.mkdir(exist_ok=True)
+    for old in _PREBUILT.iterdir():
         old.unlink()
     text = text_of("sample.c", "rows.c")
     for system in _TARGETS:
         with tempfile.TemporaryDirectory(prefix="zerorate-kernels-") as scratch:
             name = f"{_key(text, *system)}{_ending(system[0])}"
-            shutil.copy(cross_compiled(text, system, Path(scratch) / name), folder)
-    return sorted(folder.iterdir())
+            shutil.copy(cross_compiled(text, system, Path(scratch) / name), _PREBUILT)
+    return sorted(_PREBUILT.iterdir())
 
 
 def cross_compiled(text: str, system: tuple[str, str], target: Path) -> Path:
