@@ -132,6 +132,53 @@ def test_a_slow_change_is_no_step(seed):
     assert steps_at(session) == []
 
 
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("spoiled", [(0.5,), (0.25, 0.4)])
+def test_a_disturbance_of_seconds_is_no_step(seed, spoiled):
+    session, floor = stepped(seed, 0.0)
+    session.rate_dps[90 : 90 + len(spoiled)] += 60 * floor * np.outer(spoiled, (1, -1, 1))
+    assert steps_at(session) == []
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_step_that_comes_back_after_a_minute_is_two(seed):
+    session, _ = stepped(seed, 30.0, 90, 93)
+    assert steps_at(session) == [90, 93]
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_two_steps_of_one_sign_a_minute_apart_are_two(seed):
+    session, floor = stepped(seed, 40.0, 90)
+    session.rate_dps[93:] += 40.0 * floor * (1, -1, 1)
+    assert steps_at(session) == [90, 93]
+
+
+@pytest.mark.parametrize("blocks", [3, 5, 8])
+@pytest.mark.parametrize("settles", [False, True])
+def test_a_change_of_minutes_is_not_two_steps(blocks, settles):
+    session, floor = stepped(1, 0.0)
+    since = np.maximum((np.arange(session.blocks) - 86) / blocks, 0.0)
+    change = 1 - np.exp(-since) if settles else np.minimum(since, 1.0)
+    session.rate_dps += 60 * floor * np.outer(change, (1, -1, 1))
+    assert steps_at(session) == []
+
+
+@pytest.mark.parametrize("back, slope", [(93, 0.0), (140, -0.2)])
+def test_steps_are_timed_beside_each_other_and_beside_what_follows_temperature(back, slope):
+    session, floor = stepped(5, 0.0)
+    rng, per = np.random.default_rng(5), session.ticks_per_block
+    moments, temp = (90 * per + 2, back * per + 1), session.sources["temp"]
+    rate = slope * temp / (temp[91 * per] - temp[90 * per])
+    for moment, sign in zip(moments, (1, -1)):
+        rate[moment:] += sign
+    ticks = np.repeat(session.rate_dps, per, axis=0) + rng.normal(0, 1e-4, (180 * per, 3))
+    ticks += 30 * floor * rate[:, None]
+    session.ticks_dps, session.tick_weight = ticks, np.ones(len(ticks))
+    session.rate_dps = ticks.reshape(180, per, 3).mean(axis=1)
+    at = [s.at_s / session.tick_s for s in without_steps([session])[0].steps]
+    assert at == pytest.approx(moments, abs=1)
+
+
 def test_nothing_and_what_bends_has_no_step():
     listed = 0
     for seed in range(10):

@@ -48,7 +48,7 @@ class Regression:
         self.axes = np.eye(3)
         self._cache: dict[Term, list[np.ndarray]] = {}
         self._extra: list[list[np.ndarray]] = []
-        self._prepare()
+        self.prepare()
         self.scale = np.ones((len(sessions), 3))
         self._known = self._of_steps()
         self._extra = list(self._known)
@@ -63,13 +63,14 @@ class Regression:
                 out.append([w.prepare(b[:, None])[:, 0] for w, b in zip(self.whiteners, own)])
         return out
 
-    def _prepare(self):
+    def prepare(self) -> None:
+        """Take the rates up anew, along the axes as they are."""
         self.y = [w.prepare(r @ self.axes.T) for w, r in zip(self.whiteners, self.rate)]
 
     def turn(self, axes: np.ndarray) -> None:
         """Look along other axes."""
         self.axes = axes
-        self._prepare()
+        self.prepare()
 
     @contextmanager
     def in_sensor_axes(self) -> Iterator[None]:
@@ -148,7 +149,7 @@ class Regression:
             clean, count = _without_outliers(s.rate_dps - model)
             self.rate[i] = clean + model
             self.outliers += count
-        self._prepare()
+        self.prepare()
         self.scale = session_scale(self.cross_products(terms))
 
     def gains(self, terms, candidates, chunk: int = 400) -> np.ndarray:

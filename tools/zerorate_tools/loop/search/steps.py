@@ -17,7 +17,7 @@ from ..read.sessions import common_sources
 from .catalogue import Candidate, candidates
 from .decide import LEVEL
 from .refine import refined
-from .step_places import EDGE, LONGEST, best_place, beyond_ramps, heavisides, tried
+from .step_places import EDGE, LONGEST, best_place, best_slow, beyond_ramps, heavisides, tried
 
 MOST_PER_SESSION = 4
 _AWAY = 15  # blocks from a step at which a step beside it no longer shows it
@@ -35,6 +35,8 @@ _BESIDE_OTHERS = 1e-4
 #: What a step must explain more than the best ramp in its place, as twice a gain in log likelihood:
 #: less than nothing, for noise that flickers makes a ramp of a small step.
 _LEAST_BEYOND = -4.0
+#: The same of two of one sign beside the best slow change: they have sizes and a place more.
+_BOTH_BEYOND = 20.0
 #: Forms over temperature beside which steps must stand, and the likelihood ratio of one.
 _MOST_FORMS, _A_FORM = 4, 45.0
 
@@ -127,8 +129,17 @@ def column(regression, step: Step) -> list[np.ndarray]:
 
 
 def _all(regression, terms, recordings: int = 1) -> list[Step]:
-    """Steps that stand beside each other; the regression is left as it was."""
+    """Abrupt steps that stand beside each other; the regression is left as it was."""
     kept = regression.events()
+    steps = standing(regression, terms, recordings, kept)
+    abrupt = [s for s in steps if _is_abrupt(regression, terms, s)]
+    abrupt = [s for s in abrupt if _is_no_ramp(regression, terms, steps, s, kept)]
+    _set(regression, [], kept)
+    return abrupt
+
+
+def standing(regression, terms, recordings: int, kept) -> list[Step]:
+    """Steps that stand beside each other, abrupt or not; the regression is left with them."""
     most = MOST_PER_SESSION * len(regression.sessions)
     steps: list[Step] = []
     while len(steps) < most:
@@ -143,11 +154,7 @@ def _all(regression, terms, recordings: int = 1) -> list[Step]:
     while steps and not _stand(regression, terms, steps, kept, recordings):
         steps.remove(min(steps, key=lambda s: s.ratio))
         _set(regression, steps, kept)
-    steps = _sized(regression, terms, steps, kept)
-    abrupt = [s for s in steps if _is_abrupt(regression, terms, s)]
-    abrupt = [s for s in abrupt if _is_no_ramp(regression, terms, steps, s, kept)]
-    _set(regression, [], kept)
-    return abrupt
+    return _sized(regression, terms, steps, kept)
 
 
 def _set(regression, steps, kept):
@@ -257,11 +264,20 @@ def _is_abrupt(regression, terms, step: Step) -> bool:
 
 def _is_no_ramp(regression, terms, steps, step, kept) -> bool:
     """Whether no ramp explains clearly more than the step, where those near it are taken out: a
-    slow loop looks like a ramp or like a few small steps."""
+    slow loop looks like a ramp or like a few small steps. Two near each other may stand together.
+    """
     near = [s.session == step.session and abs(s.block - step.block) <= LONGEST for s in steps]
-    _set(regression, [s for s, beside in zip(steps, near) if not beside], kept)
-    beyond = beyond_ramps(regression, terms, step.session, step.block - step.share)
-    return beyond > _LEAST_BEYOND
+    others = [s for s, beside in zip(steps, near) if not beside]
+    _set(regression, others, kept)
+    if beyond_ramps(regression, terms, step.session, step.block - step.share) > _LEAST_BEYOND:
+        return True
+    both = [s for s, beside in zip(steps, near) if beside]
+    if len(both) != 2 or both[0].size_dps @ both[1].size_dps < 0:
+        return False
+    slow = best_slow(regression, terms, step.session, [s.block - s.share for s in both])
+    alone = regression.fit(terms).total
+    _set(regression, [*others, *both], kept)
+    return 2.0 * (regression.fit(terms).total - alone) - slow > _BOTH_BEYOND
 
 
 def _is_unseen(session, there, block: int) -> bool:

@@ -15,6 +15,7 @@ from ...model.term import Term
 from ..fit.regression import Regression
 from ..read.sessions import OWN_SOURCES, Session, common_sources
 from .catalogue import Candidate
+from .disturbed import hold_disturbed
 from .steps import Step, find_all
 
 #: The sensor's own channels, and one made of its temperature.
@@ -26,6 +27,8 @@ _BESIDE, _OF_USUAL, _JUMPS = 3, 6.0, 4
 #: Ticks around a moment in which the accelerometer is looked at; what it must see, in g and in
 #: times its usual change.
 _MOMENT, _SEEN_G, _SEEN = 10, 0.02, 6.0
+#: Blocks before and after a step in which its second is looked for, and as many rests beyond them.
+_NEAR = 2
 #: By how much an acceleration at rest differs where the device was turned over; and what is less
 #: than any pose that a part, of some tenths of a dps a g, shows: stress of the board makes it, too.
 _TURNED_G, _TILTED_G = 0.5, 0.1
@@ -59,7 +62,9 @@ def _steps(session, jumping, recordings: int) -> list[Step]:
     often = [n for n in jumping if n != _RATE and _jumps_often([session], n)]
     terms = [t for c in _forms(session, set(jumping) - set(often)) for t in c.terms]
     beside, rivals = [*bend_of(session), *terms], _forms(session, often)
-    every = find_all(Regression([session]), beside, rivals, recordings)
+    regression = Regression([session])
+    hold_disturbed(regression, beside, recordings)
+    every = find_all(regression, beside, rivals, recordings)
     for step in sorted(every, key=lambda s: s.block):
         if out and step.block - out[-1].block == 1 and step.size_dps @ out[-1].size_dps > 0:
             deviation = np.hypot(step.deviation_dps, out[-1].deviation_dps)
@@ -130,33 +135,26 @@ def _less(session: Session, steps: list[Step]) -> Session:
     """The session with the steps taken out of its rates."""
     if not steps:
         return session
-    steps = [_timed(session, s) for s in steps]
-    ticks = np.zeros((session.blocks * session.ticks_per_block, 3))
-    time_s = session.time_s()
-    for step in steps:
-        ticks[time_s > step.at_s] += step.size_dps
+    time_s = session.time_s()[:, None]
+    levels = [np.where(time_s > s.at_s, s.size_dps, 0.0) for s in steps]
+    for k, step in enumerate(steps):
+        others = sum(levels[:k] + levels[k + 1 :], np.zeros_like(levels[k]))
+        steps[k] = _timed(session, step, others)
+        levels[k] = np.where(time_s > steps[k].at_s, step.size_dps, 0.0)
+    ticks = sum(levels[1:], levels[0])
     rate = session.rate_dps - np.column_stack([session.block_mean(ticks[:, a]) for a in range(3)])
     at_rest = None if session.ticks_dps is None else session.ticks_dps - ticks
     return replace(session, rate_dps=rate, ticks_dps=at_rest, steps=tuple(steps), level_dps=ticks)
 
 
-def _timed(session: Session, step: Step) -> Step:
-    """The step at the second where its ticks part best, with what the accelerometer saw there."""
+def _timed(session: Session, step: Step, others: np.ndarray) -> Step:
+    """The step at the second where its ticks part best, with what the accelerometer saw there.
+    others: (ticks, 3) dps that the other steps add."""
     if session.ticks_dps is None:
         return step
-    per = session.ticks_per_block
-    first, last = (step.block - 2) * per, (step.block + 2) * per
     weight = step.size_dps / np.maximum(step.deviation_dps, 1e-12) ** 2
-    along = session.ticks_dps @ (weight / (step.size_dps @ weight))
-    places = np.arange(max(first + 1, 1), min(last, len(along)))
-    near = along[max(first, 0) : last + 1]
-    before = along[: max(first, 0)]
-    before = before[np.isfinite(before)][-2 * per :]  # of the rest before, wherever it ended
-    level = before.mean() if len(before) else np.nanmin(near)
-    # the step is one in these units: before it the ticks are nearer to the level, after it to one
-    nearer = np.nan_to_num(along - level - 0.5)
-    total = np.cumsum(nearer[: last + 1])
-    at = int(places[total[places - 1].argmin()])
+    along = (session.ticks_dps - others) @ (weight / (step.size_dps @ weight))
+    at = _parting(along, step.block, session.ticks_per_block)
     there = np.flatnonzero(np.isfinite(along))
     place = int(np.searchsorted(there, at))
     next_there = there[min(place, len(there) - 1)]
@@ -164,6 +162,19 @@ def _timed(session: Session, step: Step) -> Step:
     moment, said = _by_accelerometer(session, at, int(next_there))
     at_s = (moment if moment is not None else middle) * session.tick_s
     return replace(step, at_s=float(at_s), said=said)
+
+
+def _parting(along: np.ndarray, block: int, per: int) -> int:
+    """The tick near a block at which a step of one, beside a line, leaves least of the ticks there:
+    what temperature makes of them moves no step."""
+    there = np.flatnonzero(np.isfinite(along))
+    places = np.arange(max((block - _NEAR) * per + 1, 1), min((block + _NEAR) * per, len(along)))
+    first, last = np.searchsorted(there, [(block - _NEAR) * per, (block + _NEAR) * per])
+    near = there[max(first - _NEAR * per, 0) : last + _NEAR * per]
+    line = np.linalg.qr(np.column_stack([np.ones(len(near)), near - near.mean()]))[0]
+    left = along[near][:, None] - (near[:, None] >= places)
+    left -= line @ (line.T @ left)
+    return int(places[(left**2).sum(axis=0).argmin()])
 
 
 def _by_accelerometer(session, first, last) -> tuple[int | None, str]:
