@@ -124,6 +124,7 @@ def test_segments_may_leave_a_tenth_less_of_the_plain_error(wavy, parabolic, nat
         r, line, _, _, by_line, _ = by(search, None)
         found = whole_curve(r, line, [], judged, by_line, 0)
         assert (found.candidate.kind if found else None) == (SEGMENTS if taken else None)
+        assert whole_curve(r, line, [], judged, by_line, 0, by_error=False) is None
 
 
 def test_powers_are_held_or_reach_as_far_beyond_as_pieces_do(parabolic):

@@ -81,23 +81,24 @@ def whole_curve(
     judged: JudgedOnPieces,
     by_line: PiecesByLine,
     taken: int,
+    by_error: bool = True,
 ) -> Found | None:
     """A line over temperature that bends several times, a parabola or a cubic, in the place of all
     that was found; None where it does not predict clearly better: so many parameters follow a walk
     of the noise as well, and powers leave what was seen the faster. The line may also leave clearly
     less of the plain error, which is what counts in the end and what a few bad pieces decide.
 
-    Arguments as for `polynomial`.
+    Arguments as for `polynomial`; by_error: whether the plain error is asked.
     """
     bent = _segments(regression, straight, MOST_SLOTS - 1 - taken)
     every = [*bent, *(_powers(regression, straight, by_line) if bent else ())]
     own = [t for f in found for t in f.candidate.terms]
-    for some in (every, bent):
+    for some in (every, bent) if by_error else (every,):
         best = max(some, key=lambda terms: float(by_line(straight, (), terms).sum()), default=())
         gain = judged(straight, (), best) - (judged(straight, (), own) if own else 0.0)
         if best in bent:
             kind, clear = SEGMENTS, _is_clear(gain, regression, *_CLEARLY_OF_SEGMENTS)
-            clear = clear or leaves_less(judged, straight, own, best, gain)
+            clear = clear or by_error and leaves_less(judged, straight, own, best, gain)
         else:
             kind, clear = POLYNOMIAL, _is_clear(gain, regression, *_CLEARLY_OF_MEMORY)
         if best and clear:

@@ -68,7 +68,9 @@ class OneRecording:
         better = by_pieces.polynomial(self.regression, self.line, self.found, *judged)
         self.found = [better] if better else self.found
         self._remember(by_line)
-        better = by_pieces.whole_curve(self.regression, self.line, self.found, *judged)
+        # where another power-on has the last word, it has less to choose from
+        alone = not self.judged_again
+        better = by_pieces.whole_curve(self.regression, self.line, self.found, *judged, alone)
         if better:
             self._bend_often(better, curve, by_line)
 
@@ -100,7 +102,7 @@ class OneRecording:
         than what was found, if none of that remembers."""
         if not doubtful and by_pieces.is_clear_memory(self.regression, better.decision):
             return True
-        if any(f.candidate.kind in by_pieces.MEMORIES for f in self.found):
+        if self.judged_again or any(f.candidate.kind in by_pieces.MEMORIES for f in self.found):
             return False
         terms, gain = better.candidate.terms, better.decision.session_gains
         segments = better.candidate.kind == by_pieces.SEGMENTS
