@@ -17,7 +17,6 @@ from ..fit.line import ordinary
 from ..fit.regression import Regression, predicted
 from ..fit.single import PiecesByLine, nats_of
 from ..read.sessions import Session
-from .bends import JudgedOnPieces
 from .catalogue import Candidate, ranges
 from .decide import Decision, family_p
 from .fits_in_slots import fits_in_slots
@@ -49,14 +48,7 @@ _BEYOND = 0.5
 _MOST_TIMES = 2.0
 
 
-def polynomial(
-    regression: Regression,
-    straight: Sequence[Term],
-    found: Sequence[Found],
-    judged: JudgedOnPieces,
-    by_line: PiecesByLine,
-    taken: int,
-) -> Found | None:
+def polynomial(regression, straight, found, judged, by_line, taken) -> Found | None:
     """A line, parabola or cubic over temperature with slots of its own, in the place of the bend
     found; None where it does not predict clearly better.
 
@@ -74,15 +66,7 @@ def polynomial(
     return Found(Candidate(POLYNOMIAL, best, "catalogue"), decision)
 
 
-def whole_curve(
-    regression: Regression,
-    straight: Sequence[Term],
-    found: Sequence[Found],
-    judged: JudgedOnPieces,
-    by_line: PiecesByLine,
-    taken: int,
-    by_error: bool = True,
-) -> Found | None:
+def whole_curve(regression, straight, found, judged, by_line, taken, by_error=True) -> Found | None:
     """A line over temperature that bends several times, a parabola or a cubic, in the place of all
     that was found; None where it does not predict clearly better: so many parameters follow a walk
     of the noise as well, and powers leave what was seen the faster. The line may also leave clearly
@@ -118,15 +102,7 @@ def leaves_less(judged, straight, own, segments, gain) -> bool:
     return bool(mean_square[0] <= most_left**2 * mean_square[1])
 
 
-def memory(
-    regression: Regression,
-    straight: Sequence[Term],
-    found: Sequence[Found],
-    pool: Sequence[Candidate],
-    judged: JudgedOnPieces,
-    by_line: PiecesByLine,
-    taken: int,
-) -> Found | None:
+def memory(regression, straight, found, pool, judged, by_line, taken) -> Found | None:
     """The lag, rate or start that predicts best beside what was found, where clearly better.
 
     Arguments as for `polynomial`; pool: the candidates, of which others are passed over.
@@ -192,16 +168,7 @@ def remembering(straight, curve, pool, by_line: PiecesByLine) -> Remembering | N
     return best
 
 
-def of_memory(
-    regression: Regression,
-    straight: Sequence[Term],
-    found: Sequence[Found],
-    other: Remembering,
-    pool: Sequence[Candidate],
-    judged: JudgedOnPieces,
-    by_line: PiecesByLine,
-    taken: int,
-) -> list[Found]:
+def of_memory(regression, straight, found, other, pool, judged, by_line, taken) -> list[Found]:
     """The curve and the memory in the place of all that was found, where that is clear, of another
     memory where it predicts better; else none.
 
