@@ -21,10 +21,7 @@ ATTACKS = {
         "a turned bit, then a cut",
         [*_PYTEST, "host_tests/firmware", "-k", "test_store or test_places"],
     ),
-    "models": (
-        "cuts, turned bits, noise",
-        [*_PYTEST, "host_tests/tools", "-k", "test_model"],
-    ),
+    "models": ("cuts, turned bits, noise", [*_PYTEST, "host_tests/tools", "-k", "test_model"]),
     "readers": ("damaged files", [*_PYTEST, "host_tests/hostile", "-k", "any or mat_of_one"]),
     "memory": (
         "six files that unpack to gigabytes",

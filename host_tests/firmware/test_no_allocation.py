@@ -90,11 +90,7 @@ ALWAYS = {
     "shaken": ("stillness", STILLNESS.SHAKEN),
     "shifted": ("stillness", STILLNESS.SHIFTED),
 }
-LINE = {
-    "promotion": ("copy", False),
-    "line": ("source", bias.FIT),
-    "beyond": ("beyond", 1),
-}
+LINE = {"promotion": ("copy", False), "line": ("source", bias.FIT), "beyond": ("beyond", 1)}
 # One bin, which is the default, is never split.
 BINS = {"merge": ("merge", ""), "split": ("open_gap", "")}
 IN_MODE = {

@@ -6,12 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from zerorate_tools.errors import BadRecording
-from zerorate_tools.importers import (
-    Options,
-    import_recording,
-    parsed_mapping,
-    read_foreign,
-)
+from zerorate_tools.importers import Options, import_recording, parsed_mapping, read_foreign
 from zerorate_tools.recordings import (
     Scales,
     read_recording,

@@ -15,12 +15,7 @@ from zerorate_tools.loop.search.steps import Step
 from zerorate_tools.loop.verify.by_kernels import PiecesByKernels
 from zerorate_tools.loop.verify.measure import measure_and_prune
 from zerorate_tools.loop.verify.power_on import PowerOn
-from zerorate_tools.recordings import (
-    Recording,
-    Scales,
-    read_recording,
-    write_recording,
-)
+from zerorate_tools.recordings import Recording, Scales, read_recording, write_recording
 from zerorate_tools.replay.samples import frames_in_batches
 
 SCALES = Scales("MPU-6050", 1.0, 1310.0, 16384.0, 340.0, 36.53)

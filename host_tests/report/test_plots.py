@@ -39,8 +39,7 @@ def test_thinning_keeps_the_extremes_and_the_order(n, seed):
 
 
 @pytest.mark.parametrize(
-    ("name", "said"),
-    [("run-4", "run-4"), ("29_disturbed_stationary", "what was held out")],
+    ("name", "said"), [("run-4", "run-4"), ("29_disturbed_stationary", "what was held out")]
 )
 def test_the_label_of_the_time_axis_fits_a_phone(outcome, name, said):
     [part] = held_out(outcome("an effect").analysis)

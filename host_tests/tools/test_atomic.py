@@ -13,11 +13,7 @@ import pytest
 from zerorate_tools import closing
 from zerorate_tools.errors import InFile
 from zerorate_tools.recordings import atomic, write_recording
-from zerorate_tools.recordings.atomic import (
-    all_written_together,
-    written_beside,
-    written_together,
-)
+from zerorate_tools.recordings.atomic import all_written_together, written_beside, written_together
 from zerorate_tools.simulate import simulate_to_files
 
 from .test_recordings import a_recording

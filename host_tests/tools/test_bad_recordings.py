@@ -6,11 +6,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 from zerorate_tools.errors import BadRecording
-from zerorate_tools.recordings import (
-    open_recording,
-    read_recording,
-    write_recording,
-)
+from zerorate_tools.recordings import open_recording, read_recording, write_recording
 from zerorate_tools.recordings.checks import GAP
 
 from .test_recordings import a_recording

@@ -117,8 +117,7 @@ def test_no_command_writes_over_what_it_reads_or_writes(words, tmp_path, monkeyp
 
 
 @pytest.mark.parametrize(
-    "words",
-    [["fly"], ["simulate"], ["import", "x"], ["import", "x", "--out", "y", "--hz", "0"]],
+    "words", [["fly"], ["simulate"], ["import", "x"], ["import", "x", "--out", "y", "--hz", "0"]]
 )
 def test_wrong_words_end_in_2_with_the_usage(words):
     ran = zerorate(*words)

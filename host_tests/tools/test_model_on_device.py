@@ -12,12 +12,7 @@ from zerorate.effects import model_file
 from zerorate.model import EffectModel
 from zerorate_tools.errors import BadModel
 from zerorate_tools.layout import EFFECTS
-from zerorate_tools.model import (
-    Slot,
-    build_model,
-    decoded,
-    encoded,
-)
+from zerorate_tools.model import Slot, build_model, decoded, encoded
 
 from .test_model import BINDING, DEVICE, PLAY, SCALES, SLOTS
 

@@ -4,12 +4,7 @@ import numpy as np
 import pytest
 from zerorate_tools.errors import BadDescription
 from zerorate_tools.recordings import read_recording
-from zerorate_tools.simulate import (
-    read_truth,
-    simulate,
-    simulate_sessions,
-    simulate_to_files,
-)
+from zerorate_tools.simulate import read_truth, simulate, simulate_sessions, simulate_to_files
 
 AXES = ("gx", "gy", "gz")
 OTHERS = ("ax", "ay", "az", "temp")

@@ -3,10 +3,7 @@
 import numpy as np
 import pytest
 from zerorate_tools.errors import BadDescription
-from zerorate_tools.simulate import (
-    simulate,
-    simulate_sessions,
-)
+from zerorate_tools.simulate import simulate, simulate_sessions
 
 from .test_simulate import device, moved
 

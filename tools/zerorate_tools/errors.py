@@ -21,12 +21,7 @@ class InFile(ZerorateError):
     """
 
     def __init__(
-        self,
-        path: str | PathLike[str],
-        problem: str,
-        *,
-        row: int | None = None,
-        do: str = "",
+        self, path: str | PathLike[str], problem: str, *, row: int | None = None, do: str = ""
     ) -> None:
         place = str(path) if row is None else f"{path}: row {row}"
         super().__init__(f"{place}: {problem}" + (f"; {do}" if do else ""))

@@ -15,9 +15,7 @@ def steps(seeds: Sequence[int]) -> int:
 
 
 def measure(
-    hours: Sequence[float],
-    seeds: Sequence[int],
-    advance: Callable[[float], None] = lambda n: None,
+    hours: Sequence[float], seeds: Sequence[int], advance: Callable[[float], None] = lambda n: None
 ) -> dict[str, Any]:
     """The figures of `cost` and of `accuracy` in one dict; `limits` holds those of both."""
     found = cost(advance, hours) | accuracy_report.accuracy(advance, seeds)

@@ -77,12 +77,7 @@ def fusion(rate: Array, accel: Array, hz: float, own: bool) -> Array:
     return found
 
 
-FILTERS: dict[str, Filter] = {
-    "Madgwick": madgwick,
-    "Mahony": mahony,
-    "VQF": vqf,
-    "Fusion": fusion,
-}
+FILTERS: dict[str, Filter] = {"Madgwick": madgwick, "Mahony": mahony, "VQF": vqf, "Fusion": fusion}
 _NO_BIAS = "Madgwick"
 _WITH_GOOD_BIAS = ("VQF", "Fusion")
 

@@ -29,9 +29,7 @@ print(report.rows_written, time.monotonic() - start, used.ru_utime + used.ru_sti
 
 
 def run(
-    gigabytes: float,
-    folder: Path | None = None,
-    advance: Callable[[float], None] = lambda n: None,
+    gigabytes: float, folder: Path | None = None, advance: Callable[[float], None] = lambda n: None
 ) -> dict[str, float]:
     """gb, rows, seconds by the wall and of the processor, peak_mb of an import into Parquet.
 

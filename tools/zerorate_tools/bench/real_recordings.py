@@ -29,11 +29,7 @@ def nothing(sessions) -> list[NDArray[np.float64]]:
     return [np.zeros_like(one.rate_dps) for one in sessions]
 
 
-COLUMNS: dict[str, Peer] = {
-    "uncorrected": nothing,
-    "mean of the first 10 s": first_seconds,
-    **OURS,
-}
+COLUMNS: dict[str, Peer] = {"uncorrected": nothing, "mean of the first 10 s": first_seconds, **OURS}
 
 
 def rest_errors(recording: Recording, peer: Peer) -> dict[str, float]:

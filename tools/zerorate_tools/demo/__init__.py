@@ -4,12 +4,4 @@ from .device import Device, make_device
 from .job import back_on_the_chip, closed, first_power_on
 from .play_and_score import Demo, demo
 
-__all__ = [
-    "Demo",
-    "Device",
-    "back_on_the_chip",
-    "closed",
-    "demo",
-    "first_power_on",
-    "make_device",
-]
+__all__ = ["Demo", "Device", "back_on_the_chip", "closed", "demo", "first_power_on", "make_device"]

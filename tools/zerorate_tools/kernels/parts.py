@@ -98,11 +98,7 @@ PARTS = {
     effects_sense(a, b, c, what, c != 0);
     return 0;
 """,
-        {
-            "effects.effects": {
-                "sense(s, e, x, dt_us, good)": "run(s, e, x if good else 0, dt_us)",
-            }
-        },
+        {"effects.effects": {"sense(s, e, x, dt_us, good)": "run(s, e, x if good else 0, dt_us)"}},
     ),
     "refine": Part(
         [("effect_refine", name) for name in ("attend", "begin", "renew")],

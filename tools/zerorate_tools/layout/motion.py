@@ -79,9 +79,7 @@ MOTION = Array(
     ),
     (
         Overlay(
-            "HALF",
-            "a sample is gathered",
-            ("FRAME_ANGLE_Q24", 3, "rad", "turned in the sample"),
+            "HALF", "a sample is gathered", ("FRAME_ANGLE_Q24", 3, "rad", "turned in the sample")
         ),
         Overlay(
             "R",

@@ -10,13 +10,7 @@ from zerorate_tools.layout import PLAY, SLOT
 from .model import ONE, CannotDeploy, Slot
 from .scaling import Unit
 from .slot_reading import shorter
-from .slot_words import (
-    largest_shift,
-    mantissas,
-    most_of,
-    source_words,
-    value_of_one,
-)
+from .slot_words import largest_shift, mantissas, most_of, source_words, value_of_one
 from .term import Term
 
 Pair = tuple[Slot | None, Slot | None]

@@ -103,11 +103,7 @@ def _slot(values: Mapping[str, Any]) -> Slot:
     if len(coefficients) != 3:
         raise ValueError("coefficient_dps has three numbers")
     effect = _string(values.get("effect", ""), "effect")
-    return Slot(
-        Term.from_dict(term),
-        (coefficients[0], coefficients[1], coefficients[2]),
-        effect,
-    )
+    return Slot(Term.from_dict(term), (coefficients[0], coefficients[1], coefficients[2]), effect)
 
 
 def _check_choices(term: Mapping[str, Any]) -> None:

@@ -9,10 +9,7 @@ from .estimators import Estimator, Moment
 from .plot import Line, Panel, Plot, Series
 from .residual_plots import AXES
 
-KINDS = (
-    ("long", "long-term estimators", "square"),
-    ("short", "short-term estimators", "circle"),
-)
+KINDS = (("long", "long-term estimators", "square"), ("short", "short-term estimators", "circle"))
 _AXIS = 0
 
 

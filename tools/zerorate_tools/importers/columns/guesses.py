@@ -22,10 +22,7 @@ _LIKELY_HZ = (0.02, 40_000.0)
 
 
 def guessed_unit(
-    target: str,
-    wanted: Mapping[str, Mapped],
-    names: list[str],
-    first: Mapping[str, np.ndarray],
+    target: str, wanted: Mapping[str, Mapped], names: list[str], first: Mapping[str, np.ndarray]
 ) -> tuple[str | None, str]:
     """(unit, why) of a column whose unit nobody named; (None, "") where nothing tells it.
 

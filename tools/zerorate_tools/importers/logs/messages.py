@@ -29,9 +29,7 @@ def is_wanted(kind: str) -> bool:
 
 
 def table_of_messages(
-    path: Path,
-    topics: dict[str, str],
-    messages: Callable[[], Iterable[Logged]],
+    path: Path, topics: dict[str, str], messages: Callable[[], Iterable[Logged]]
 ) -> Table:
     """A row a message, with the columns of its topic. topics: topic -> type.
 

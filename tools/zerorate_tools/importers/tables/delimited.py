@@ -69,10 +69,7 @@ def _reader(stream, form: Form, names: list[str], odd: _OddLines) -> pyarrow.csv
     return pyarrow.csv.open_csv(
         stream,
         read_options=pyarrow.csv.ReadOptions(
-            block_size=_BLOCK_BYTES,
-            column_names=form.names,
-            skip_rows=form.skip,
-            use_threads=False,
+            block_size=_BLOCK_BYTES, column_names=form.names, skip_rows=form.skip, use_threads=False
         ),
         parse_options=pyarrow.csv.ParseOptions(
             delimiter=form.delimiter, invalid_row_handler=odd.take

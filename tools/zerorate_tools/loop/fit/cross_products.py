@@ -39,11 +39,7 @@ class Whitener:
         """Products under every colour of (n - 1, L) fixed columns with each other, (shapes, L, L),
         of (n - 1, K) others with them, (shapes, K, L), and of each other with itself, (shapes, K).
         """
-        return (
-            self._pairs(fixed, fixed),
-            self._pairs(tried, fixed),
-            self.weight @ (tried * tried),
-        )
+        return (self._pairs(fixed, fixed), self._pairs(tried, fixed), self.weight @ (tried * tried))
 
     def _pairs(self, left, right):
         flat = (left[:, :, None] * right[:, None, :]).reshape(len(left), -1)

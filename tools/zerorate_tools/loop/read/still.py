@@ -1,11 +1,7 @@
 """Which ticks were still, judged without assuming a small bias."""
 
 import numpy as np
-from scipy.ndimage import (
-    binary_dilation,
-    median_filter,
-    uniform_filter1d,
-)
+from scipy.ndimage import binary_dilation, median_filter, uniform_filter1d
 from scipy.stats import chi2
 
 _SPREAD = 2.0  # times the quiet spread

@@ -33,10 +33,7 @@ def report(analysis: Analysis) -> dict:
         "floor_mdps": _mdps(analysis.floor_dps),
         "before_mdps": _mdps(j.before_dps),
         "after_mdps": _mdps(j.after_dps),
-        "ci95_mdps": {
-            "before": _interval(j.residual_before),
-            "after": _interval(j.residual_after),
-        },
+        "ci95_mdps": {"before": _interval(j.residual_before), "after": _interval(j.residual_after)},
         "in_all": _in_all(analysis),
         **_by_kernels(analysis),
         "truth": _truth(analysis),

@@ -82,10 +82,7 @@ def may_show(sessions: Sequence[Session]) -> bool:
 
 
 def best_hysteresis(
-    sessions: Sequence[Session],
-    straight: Sequence[Term],
-    beside: Sequence[Term],
-    judged: Judged,
+    sessions: Sequence[Session], straight: Sequence[Term], beside: Sequence[Term], judged: Judged
 ) -> tuple[Candidate | None, float]:
     """The sum of play operators that predicts best what is left out, and the nats that it gains;
     None where none does better.
