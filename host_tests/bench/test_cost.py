@@ -1,7 +1,7 @@
 """`zerorate bench cost`: every figure that it promises."""
 
 import pytest
-from zerorate_tools.bench import cost as bench
+from zerorate_tools.bench import cost_report as bench
 from zerorate_tools.bench.cost_report import in_markdown
 from zerorate_tools.errors import MissingRuntime
 

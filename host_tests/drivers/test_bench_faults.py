@@ -3,7 +3,7 @@
 import pytest
 from zerorate_tools.bench import faults
 from zerorate_tools.bench.bus_faults import FAULTS, run_fault
-from zerorate_tools.bench.store_faults import StoreUnderFaults
+from zerorate_tools.bench.faults import StoreUnderFaults
 
 
 @pytest.mark.parametrize("name", sorted(FAULTS))

@@ -8,8 +8,8 @@ import sys
 
 import pytest
 from zerorate_tools import __version__
-from zerorate_tools.boards.asking import BoardFacts
 from zerorate_tools.boards.compiling import board_files, mpy_version
+from zerorate_tools.boards.connection import BoardFacts
 from zerorate_tools.boards.manifests import FOLDERS, manifests
 from zerorate_tools.boards.parts import PARTS, REST, UnknownPart, chosen_parts, part_files
 

@@ -3,7 +3,7 @@
 import copy
 
 import pytest
-from zerorate_tools.fleet.page import headline, write_page
+from zerorate_tools.fleet.plots import headline, write_page
 
 HOSTILE = "<script>document.title='taken'</script>"
 

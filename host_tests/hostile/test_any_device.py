@@ -15,8 +15,7 @@ from zerorate_tools.boards.frames import encode
 from zerorate_tools.boards.recorder import Recorded, Recorder
 from zerorate_tools.model import build_model, encoded, from_json, to_json
 from zerorate_tools.recordings import read_recording, write_recording
-from zerorate_tools.report.page import _environment, script_json
-from zerorate_tools.report.plotly_form import markup
+from zerorate_tools.report.page import _environment, markup, script_json
 
 from ..tools.test_model import SCALES, SLOTS
 from .patience import PATIENT

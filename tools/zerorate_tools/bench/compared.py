@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..compare import Compared, compare
-from ..compare.judge import FIRST_REST, FRESH, NOTHING, TooFewRests
-from ..compare.rests import rests_of
+from ..compare.judge import FIRST_REST, FRESH, NOTHING, TooFewRests, rests_of
 from ..importers import import_recording
 from ..peers import firmware, given
 from ..peers.online import fusion, vqf_default

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from . import accuracy_report, cost_report
-from .cost import STEPS, cost
+from .cost_report import STEPS, cost
 from .limits import ACCURACY, COST, limits_table, verdicts
 from .tables import machine_line
 

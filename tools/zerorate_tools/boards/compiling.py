@@ -9,7 +9,7 @@ from functools import cache
 from pathlib import Path, PurePosixPath
 
 from ..errors import MissingLibrary, ZerorateError
-from .asking import BoardFacts
+from .connection import BoardFacts
 from .parts import CODES, part_files
 from .short_names import shortened
 

@@ -9,9 +9,8 @@ from importlib.resources import files
 from pathlib import Path, PurePosixPath
 
 from ..errors import InFile
-from .asking import BoardFacts, ask
 from .compiling import board_files, machine_code
-from .connection import BoardError, connected, told
+from .connection import BoardError, BoardFacts, ask, connected, told
 from .parts import PACKAGES, chosen_parts
 
 _LIBRARY = "lib"

@@ -1,7 +1,6 @@
 """The whole job without hardware: chip, bus, driver and firmware inside a real MicroPython."""
 
-from .device import Device, make_device
-from .job import back_on_the_chip, closed, first_power_on
+from .job import Device, back_on_the_chip, closed, first_power_on, make_device
 from .play_and_score import Demo, demo
 
 __all__ = ["Demo", "Device", "back_on_the_chip", "closed", "demo", "first_power_on", "make_device"]

@@ -12,7 +12,7 @@ from ..compare import Compared
 from ..numbers import fixed
 from ..report.kinds import meaning
 from .broad_trial import CREDIT
-from .device import Device
+from .job import Device
 from .play_and_score import Demo
 from .real import MOTION_FROM_S, WAYS, WHOLE_FROM_S, Real
 from .score import seconds

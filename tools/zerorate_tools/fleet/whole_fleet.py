@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import json
 import time
+import uuid
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import pyarrow as pa
 import pyarrow.parquet as pq
 
 from ..errors import ZerorateError
-from ..recordings.atomic import written_together
+from ..recordings.atomic import clear_left_over, written_beside, written_together
 from ..recordings.scales import scales_from_text
 from ..replay.engines import compiled
 from .benefit import Runner, benefit
@@ -24,7 +26,6 @@ from .curve import Curve
 from .devices import Device
 from .job import JOBS, Job, one_line, run_batch
 from .part import Part, curve_effects, part_of, step_effects
-from .parts import Parts
 from .prior import prior_json, write_prior
 from .rows import table_of
 
@@ -141,7 +142,7 @@ def _conclude(
     minutes: float | None,
     client: Client,
 ) -> dict[str, Any]:
-    from .page import write_page
+    from .plots import write_page
 
     found = list(results)
     sensor = _main_sensor(found)
@@ -209,3 +210,49 @@ def _worst(found: Sequence[dict[str, Any]], most: int = 10) -> list[dict[str, An
         if s["error_mdps"]
     ]
     return sorted(rows, key=lambda row: -max(row["error_mdps"]))[:most]
+
+
+class Parts:
+    """The folder `parts` of a run: Parquet files with a device a row, as results come, so that
+    a run cut off goes on where it stopped."""
+
+    def __init__(self, out: Path) -> None:
+        self.folder = out / "parts"
+        self.folder.mkdir(parents=True, exist_ok=True)
+        clear_left_over(self.folder)
+
+    def add(self, results: Iterable[dict[str, Any]]) -> None:
+        """Write the results of a batch: whole, or not at all."""
+        rows = list(results)
+        table = pa.table(
+            {
+                "device": [row["device"] for row in rows],
+                "fingerprint": [row["fingerprint"] for row in rows],
+                "whole": [not row["failures"] for row in rows],
+                "result": [json.dumps(row) for row in rows],
+            }
+        )
+        with written_beside(self.folder / f"{uuid.uuid4().hex}.parquet") as temporary:
+            pq.write_table(table, temporary, compression="zstd")
+
+    def whole(self) -> set[str]:
+        """Fingerprints of the devices that were done without a failure."""
+        done: set[str] = set()
+        for path in self._files():
+            table = pq.read_table(path, columns=["fingerprint", "whole"])
+            pairs = zip(table["fingerprint"].to_pylist(), table["whole"].to_pylist())
+            done.update(fingerprint for fingerprint, whole in pairs if whole)
+        return done
+
+    def results(self, fingerprints: dict[str, str]) -> Iterator[dict[str, Any]]:
+        """Each device's latest result; fingerprints: device -> the one that counts."""
+        latest: dict[str, str] = {}
+        for path in self._files():
+            table = pq.read_table(path, columns=["device", "fingerprint", "result"])
+            for device, fingerprint, result in zip(*(c.to_pylist() for c in table.columns)):
+                if fingerprints.get(device) == fingerprint:
+                    latest[device] = result
+        return (json.loads(latest[device]) for device in fingerprints if device in latest)
+
+    def _files(self) -> list[Path]:
+        return sorted(self.folder.glob("[!.]*.parquet"), key=lambda path: path.stat().st_mtime_ns)

@@ -18,8 +18,7 @@ from .held_out import fitted_noise, held_out
 from .kinds import title
 from .page import page
 from .plot import Plot
-from .residual_plots import against_temperature, against_time
-from .summary_plot import at_a_glance
+from .residual_plots import against_temperature, against_time, at_a_glance
 
 #: Moments at which the firmware's state is looked at, of all recordings together.
 _MOST_MOMENTS = 120

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from ...boards import needs as kept_needs
-from ...boards.asking import BoardFacts
 from ...boards.compiling import board_files, mpy_version
+from ...boards.connection import BoardFacts
 from ...boards.needs import needs
 from ...boards.parts import REST
 from ..native_cost import code_bytes

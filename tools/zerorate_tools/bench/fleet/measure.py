@@ -2,14 +2,17 @@
 
 import os
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ...fleet import Fleet, devices_of, fleet
 from ...fleet.cluster import MOST_BYTES, MOST_DEVICES, MOST_WAITING, cluster, run_all
-from .simulated_devices import MINUTES, ODR_HZ, write_devices
+from ...recordings import write_recording
+from ...simulate import simulate
 
 SIZES = (100, 500, 2000)
 WORKERS = (1, 2)
@@ -22,6 +25,12 @@ CORES = 64
 #: Dask's own measure of what its scheduler spends on a task, and keeps of one: about 1 ms (up to
 #: 0.2 ms at best) and some kilobytes (distributed documentation, "Scheduling overhead").
 SCHEDULER_S_A_TASK = 1e-3
+#: Typical of an MPU-6050: devices differ in level by far more than in how they follow temperature.
+LEVEL_DPS, LEVEL_DEVIATION_DPS = (0.4, -0.9, 0.2), 1.0
+SLOPE_DPS_PER_DEGC, SLOPE_DEVIATION = (0.025, -0.018, 0.012), 0.006
+BEND_DPS_PER_DEGC2, BEND_DEVIATION = (3e-4, -2e-4, 1e-4), 5e-5
+MINUTES = 3.0
+ODR_HZ = 25.0
 
 
 def run(
@@ -123,4 +132,38 @@ def on_paper(row: dict[str, float], minutes: float, odr_hz: float, size_bytes: f
         "tasks_per_s": tasks / (hours * 3600),
         "scheduler_share": tasks * SCHEDULER_S_A_TASK / (hours * 3600),
         "most_waiting": MOST_WAITING,
+    }
+
+
+def write_devices(folder: Path, minutes: float, numbers: Iterable[int]) -> None:
+    """Write `device=NUMBER/session-1.parquet` for each: a warm-up by 12 degC, at rest."""
+    for number in numbers:
+        home = folder / f"device={number:05d}"
+        home.mkdir(parents=True)
+        recording, _ = simulate(description(number, minutes))
+        write_recording(recording, home / "session-1.parquet")
+
+
+def description(number: int, minutes: float = MINUTES) -> dict[str, Any]:
+    """Device `number` of the part, as `zerorate simulate` takes it."""
+    rng = np.random.default_rng(number)
+
+    def own(mean: tuple[float, ...], deviation: float) -> list[float]:
+        return (np.array(mean) + deviation * rng.standard_normal(3)).tolist()
+
+    start = float(rng.uniform(20, 26))
+    return {
+        "name": "session-1",
+        "seed": number,
+        "sensor": {"odr_hz": ODR_HZ, "gyro_noise_dps": 0.05, "gyro_noise_at_hz": 100.0},
+        "bias": {
+            "b0": own(LEVEL_DPS, LEVEL_DEVIATION_DPS),
+            "b1": own(SLOPE_DPS_PER_DEGC, SLOPE_DEVIATION),
+            "b2": own(BEND_DPS_PER_DEGC2, BEND_DEVIATION),
+        },
+        "noise": {"bias_instability_dps": 0.002},
+        "every_session": {
+            "start_degc": start,
+            "temperature": [{"to": start + 12.0, "tau_s": 60.0, "minutes": minutes}],
+        },
     }

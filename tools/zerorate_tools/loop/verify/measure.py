@@ -8,18 +8,23 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
+import pyarrow as pa
 from threadpoolctl import threadpool_limits
 
 from ...model import Model
+from ...model.term import evaluate
 from ...recordings import Scales, open_recording
 from ...recordings.atomic import written_beside
+from ...recordings.parquet_format import TableWriter
 from ...recordings.reading import recording_name
+from ...replay.samples import Frames
 from ..motion.in_motion import slots_of
 from ..read.gate import GateReport
+from ..read.ticks import has_one_sample
 from ..search.selection import Selection
 from .analysis import Analysis
 from .by_kernels import PiecesByKernels
-from .corrected import CorrectedWriter
+from .firmware import Firmware
 from .judge import Judgement, rms_dps
 from .measured import (
     AFTER,
@@ -31,10 +36,12 @@ from .measured import (
     MeasurementByPieces,
     Sink,
 )
-from .power_on import PowerOn, ideal_dps
+from .power_on import BlockMeans, PowerOn, ideal_dps
 from .prune_by_holdout import unharmed
-from .rounding import rounding_dps
 from .slots import deployable, model_of, with_selection
+
+_AXES = ("gx", "gy", "gz")
+WAYS = ("before", "after", "online")
 
 
 def measure(
@@ -204,3 +211,51 @@ def judged(analysis: Analysis, measured: Measured) -> Analysis:
         residual_after=after,
     )
     return replace(analysis, judgement=j, measured=measured)
+
+
+class CorrectedWriter(TableWriter):
+    """Writes corrected.parquet, one for all recordings, piece by piece as the kernels give it."""
+
+    def write(self, recording: str, frames: Frames, test: np.ndarray, biases: dict) -> None:
+        """Append samples of a recording (its file's name).
+
+        test: (n,) bool, of the part held out; biases: (n, 3) LSB in Q8 by way, of which those in
+        WAYS are written.
+        """
+        columns = {
+            "recording": _repeated(recording, len(test)),
+            "t_us": pa.array(frames.t_us),
+            "split": pa.DictionaryArray.from_arrays(test.astype(np.int8), ["train", "test"]),
+        }
+        for way in WAYS:
+            if way in biases:
+                lsb = biases[way] / np.float32(256.0)
+                columns.update({f"bias_{way}_{g}": lsb[:, a] for a, g in enumerate(_AXES)})
+        self.append(pa.table(columns))
+
+
+def _repeated(text: str, n: int) -> pa.DictionaryArray:
+    return pa.DictionaryArray.from_arrays(np.zeros(n, np.int8), [text])
+
+
+def rounding_dps(
+    power_on: PowerOn, model: Model, terms, coefficients, scales: Scales
+) -> np.ndarray:
+    """(3,) RMS over a session's blocks of the firmware's effects less the same terms in floats.
+
+    terms, coefficients: what the model was made of, (terms, 3) dps per unit. The firmware holds
+    the value of a tick during the next one, and so does the reference, but where a tick is one
+    sample, which it corrects by itself.
+    """
+    s = power_on.session
+    cold = Firmware(scales, model, power_on.channels)
+    means = BlockMeans(power_on)
+    for frames in power_on.frames():
+        means.add(frames, cold.run(frames, learn=False))
+    exact = np.zeros((s.blocks * s.ticks_per_block, 3))
+    for term, c in zip(terms, coefficients):
+        exact += np.outer(evaluate(term, s.source, s.tick_s), c)
+    if not has_one_sample(scales, s.tick_s):
+        exact = np.vstack([exact[:1], exact[:-1]])
+    error = means.blocks_dps() - power_on.block_means(exact)
+    return np.sqrt(np.nanmean(error[s.available] ** 2, axis=0))
