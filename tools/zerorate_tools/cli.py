@@ -63,15 +63,11 @@ def parser() -> argparse.ArgumentParser:
     top.add_argument("--version", action="version", version=f"zerorate {__version__}")
     subparsers = top.add_subparsers(metavar="COMMAND", required=True)
     for name in COMMANDS:
-        module = _module_of(name)
+        # `import` is a word of the language, so its module cannot bear that name alone
+        module = f"{__package__}.commands.{'import_' if name == 'import' else name}"
         if find_spec(module) is not None:
             import_module(module).add_parser(subparsers)
     return top
-
-
-def _module_of(command: str) -> str:
-    # `import` is a word of the language, so its module cannot bear that name alone
-    return f"{__package__}.commands.{'import_' if command == 'import' else command}"
 
 
 def _complain(message: str, exit_code: int) -> int:

@@ -130,7 +130,7 @@ def on_broad(ways: Mapping[str, Peer], folder: Path) -> dict:
     found: dict = {"trials": {}, "whole": {w: {} for w in ways}, "motion": {w: {} for w in ways}}
     for trial in trials(folder):
         truth = true_bias(trial)
-        found["trials"][trial.name] = _described(truth)
+        found["trials"][trial.name] = {n: np.round(v, 5).tolist() for n, v in vars(truth).items()}
         for part, cut in (("whole", trial), ("motion", trial.in_motion())):
             for way, peer in ways.items():
                 found[part][way][trial.name] = _on_trial(peer, cut, truth)
@@ -156,10 +156,6 @@ def _measured(peer: Peer, one: Given, bias: NDArray[np.float64]) -> dict:
         "wrong": getattr(peer, "wrong", 0),
         "within_two_sigma": inside,
     }
-
-
-def _described(truth: TrueBias) -> dict:
-    return {name: np.round(value, 5).tolist() for name, value in vars(truth).items()}
 
 
 def _cost() -> dict[str, dict[str, float]] | str:

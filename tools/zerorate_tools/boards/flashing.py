@@ -138,10 +138,11 @@ class Installer:
         self._say(f"{facts}")
         text = files(__package__).joinpath("on_board/install.py").read_text(encoding="utf-8")
         self._do(text)
-        self._finish_earlier()
+        for package in PACKAGES:  # what an attempt before this one left whole beside main.py
+            self._do(f"if is_folder({package!r}): put_in_place(None, {package!r}, {_LIBRARY!r})")
         code = machine_code(facts)
         flashed = self._install_packages(_packages(parts, facts, code), facts)
-        if code and (why := self._refusal()):
+        if code and (why := self._do(_TRIAL).strip()):
             self._say(f"         the machine code does not run here ({why}): bytecode in its place")
             sent = flashed.sent_bytes
             flashed = self._install_packages(_packages(parts, facts, ""), facts)
@@ -161,15 +162,6 @@ class Installer:
             self._install_package(package, wanted, flashed)
         self._do(f"remove({_STAGE!r})")
         return flashed
-
-    def _refusal(self) -> str:
-        """Why the board does not run the machine code of the rest path; nothing where it does."""
-        return self._do(_TRIAL).strip()
-
-    def _finish_earlier(self) -> None:
-        """Put in place what an attempt before this one left whole beside main.py."""
-        for package in PACKAGES:
-            self._do(f"if is_folder({package!r}): put_in_place(None, {package!r}, {_LIBRARY!r})")
 
     def _install_package(self, package: str, wanted: dict, flashed: Flashed) -> None:
         place, stage = f"{_LIBRARY}/{package}", f"{_STAGE}/{package}"

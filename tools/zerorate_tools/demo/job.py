@@ -28,9 +28,9 @@ class Device:
     hidden: list[str]
 
 
-def make_device(folder: Path, description: Path | dict = DESCRIPTION) -> Device:
+def make_device(folder: Path) -> Device:
     """Simulate a device and write its recordings as power-on-N.parquet. Raises ZerorateError."""
-    described = load_description(description)
+    described = load_description(DESCRIPTION)
     folder.mkdir(parents=True, exist_ok=True)
     logs, truths = [], []
     for number, (recording, truth) in enumerate(simulate_sessions(described), start=1):

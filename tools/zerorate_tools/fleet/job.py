@@ -93,7 +93,7 @@ def run_device(job: Job, device: Device) -> dict[str, Any]:
     return {
         "device": device.name,
         "fingerprint": job.fingerprint(device),
-        "sensor": _sensor(good, failures),
+        "sensor": open_recording(good[0]).scales.to_json() if good else None,
         "sessions": summaries,
         "curve": None if curve is None else curve.to_json(),
         "steps": _steps(job, device, good, failures) if job.kind == "close" and good else [],
@@ -112,10 +112,6 @@ def one_line(error: BaseException) -> str:
 
     text = " ".join(str(error).split())
     return text if isinstance(error, ZerorateError) else f"{type(error).__name__}: {text}"
-
-
-def _sensor(good: Sequence[str], failures: list[dict[str, str]]) -> dict[str, Any] | None:
-    return open_recording(good[0]).scales.to_json() if good else None
 
 
 def _steps(job, device, good, failures) -> list[dict[str, Any]]:

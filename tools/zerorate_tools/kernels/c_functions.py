@@ -62,7 +62,8 @@ class _Function:
     def text(self) -> str:
         """The function."""
         node = self._node
-        stored = {n.id for n in ast.walk(node) if isinstance(n, ast.Name) and _is_stored(n)}
+        names = [n for n in ast.walk(node) if isinstance(n, ast.Name)]
+        stored = {n.id for n in names if isinstance(n.ctx, ast.Store)}
         own = sorted(stored - {a.arg for a in node.args.args})
         body = node.body[1 if ast.get_docstring(node) else 0 :]
         lines = [f"    int32_t {local} = 0;" for local in own]
@@ -120,7 +121,3 @@ class _Function:
     def _body(self, statements: list[ast.stmt], indent: str) -> Iterator[str]:
         for statement in statements:
             yield from self._statement(statement, indent + "    ")
-
-
-def _is_stored(node: ast.AST) -> bool:
-    return isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)

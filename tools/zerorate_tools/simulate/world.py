@@ -39,7 +39,8 @@ def build(description: Description, number: int, seed: int) -> World:
     session = description.sessions[number - 1]
     dt_s = 1.0 / description.sensor.odr_hz
     session, lengths = _varied(session, stream(seed, number, "temperature"))
-    n = max(int(round(_duration_s(session, lengths) / dt_s)), 1)
+    duration_s = session.s + 60 * session.minutes + 3600 * session.hours or sum(lengths)
+    n = max(int(round(duration_s / dt_s)), 1)
     t_s = np.arange(n) * dt_s
     temp = path(t_s, session.start_degc, session.temperature, lengths)
     rate, attitude, accel = _moved(description, session, t_s, stream(seed, number, "motion"))
@@ -70,10 +71,6 @@ def _varied(session: Session, rng: np.random.Generator) -> tuple[Session, list[f
     factors = np.exp(session.vary_time * rng.standard_normal(len(lengths)))
     varied = Session(**{**vars(session), "start_degc": start, "temperature": segments})
     return varied, [length * factor for length, factor in zip(lengths, factors)]
-
-
-def _duration_s(session: Session, lengths: list[float]) -> float:
-    return session.s + 60 * session.minutes + 3600 * session.hours or sum(lengths)
 
 
 def _moved(

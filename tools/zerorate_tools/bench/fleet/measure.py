@@ -55,7 +55,8 @@ def run(
             tried = minutes if (number, count) == (sizes[-1], workers[-1]) else None
             devices = devices_of([data])[:number]
             largest = fleet(devices, out, workers=count, minutes=tried, advance=advance)
-            rows.append(_row(number, count, largest, _bytes_of(out)))
+            size = sum(path.stat().st_size for path in out.rglob("*") if path.is_file())
+            rows.append(_row(number, count, largest, size))
     return {
         "minutes": minutes,
         "odr_hz": ODR_HZ,
@@ -99,10 +100,6 @@ def _row(number: int, workers: int, done: Fleet, out_bytes: int) -> dict[str, fl
         "peak_bytes": done.peak_bytes,
         "out_bytes": out_bytes,
     }
-
-
-def _bytes_of(out: Path) -> int:
-    return sum(path.stat().st_size for path in out.rglob("*") if path.is_file())
 
 
 def on_paper(row: dict[str, float], minutes: float, odr_hz: float, size_bytes: float) -> dict:

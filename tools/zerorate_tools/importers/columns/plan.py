@@ -150,7 +150,9 @@ def _check_there(table: Table, wanted: Mapping[str, Mapped], path: Path) -> None
     for mapped in wanted.values():
         for column in mapped.columns:
             if column not in table.names:
-                raise BadRecording(path, f"there is no column {column!r}", do=_choose(table))
+                raise BadRecording(
+                    path, f"there is no column {column!r}", do=f"choose of {_list(table.names)}"
+                )
     missing = [target for target in GYRO if target not in wanted]
     if missing:
         words = _offered(table, wanted, missing)
@@ -183,10 +185,6 @@ def left_aside(plan: Plan, table: Table) -> list[str]:
     if plan.by_format or usual.unnamed(table.names) or not aside:
         return []
     return [f"left aside: {_list(aside, _TOLD)}; take one along as --map NAME=COLUMN"]
-
-
-def _choose(table: Table) -> str:
-    return f"choose of {_list(table.names)}"
 
 
 def _of(table: Table) -> str:

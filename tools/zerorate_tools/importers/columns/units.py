@@ -77,7 +77,8 @@ def unit_in_name(target: str, column: str) -> str | None:
         return _BY_NAME[kind][name]
     in_brackets = _BRACKETS.search(name)
     if in_brackets:
-        return next((u for u in _WRITTEN_BY_KIND[kind] if _is_written(u, in_brackets[1])), None)
+        units = _WRITTEN_BY_KIND[kind]
+        return next((u for u in units if re.fullmatch(_WRITTEN[u], in_brackets[1])), None)
     return next((u for u, ending in _ENDINGS[kind].items() if ending.search(name)), None)
 
 
@@ -89,10 +90,6 @@ def without_unit(name: str) -> str:
     endings = [ending for kind in _ENDINGS.values() for ending in kind.values()]
     at = [found.start() for found in (ending.search(name) for ending in endings) if found]
     return name[: min(at)] if at else name
-
-
-def _is_written(unit: str, text: str) -> bool:
-    return re.fullmatch(_WRITTEN[unit], text) is not None
 
 
 _ENDINGS = {

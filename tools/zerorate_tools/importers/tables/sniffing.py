@@ -34,7 +34,6 @@ _RATE = re.compile(
     r"[^\d\n]{0,12}([\d.]*\d)\s*(k?)",
     re.I,
 )
-_NOT_A_NUMBER = ("", "nan", "null", "none", "na")
 
 
 @dataclass(frozen=True)

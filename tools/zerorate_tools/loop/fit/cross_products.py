@@ -54,7 +54,8 @@ class GappyWhitener(Whitener):
     def __init__(self, available: np.ndarray):
         super().__init__(available)
         self.coefficients = int(available.sum()) - 1
-        self._keep = _contrasts(self.coefficients + 1)
+        # (n, n - 1) without a mean: what is left of n blocks when their offset is free
+        self._keep = noise.transform(np.eye(self.coefficients + 1)).T
         part = noise.transform(np.eye(self.n))[:, available] @ self._keep
         self.logdet = np.empty(len(self.spectrum))
         self.whitening = np.empty((len(self.spectrum), self.coefficients, self.coefficients))
@@ -111,13 +112,6 @@ class BridgedWhitener(Whitener):
         at, there = np.arange(self.n), np.flatnonzero(self.available)
         filled = [np.interp(at, there, c[there]) for c in columns.T]
         return noise.transform(np.column_stack(filled)) if filled else np.zeros((self.n - 1, 0))
-
-
-def _contrasts(n: int) -> np.ndarray:
-    """(n, n - 1) orthonormal columns without a mean: what is left of n blocks when their offset is
-    free.
-    """
-    return noise.transform(np.eye(n)).T
 
 
 _KNOWN: WeakValueDictionary[bytes, Whitener] = WeakValueDictionary()

@@ -2,20 +2,20 @@
 
 import numpy as np
 
+_LENGTH, _DRAWS = 15, 400
 
-def block_bootstrap(
-    parts: list[np.ndarray], statistic, length: int = 15, draws: int = 400, seed: int = 0
-) -> tuple[np.ndarray, np.ndarray]:
+
+def block_bootstrap(parts: list[np.ndarray], statistic) -> tuple[np.ndarray, np.ndarray]:
     """2.5 % and 97.5 % points of a statistic of (n, ...) rows drawn in runs (Kuensch 1989).
 
     parts: one array a session, rows in time order, NaN rows dropped; statistic: of the rows drawn.
     """
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(0)
     rows = np.vstack([p[np.isfinite(p).all(axis=1)] for p in parts])
-    length = max(1, min(length, len(rows) // 3))
+    length = max(1, min(_LENGTH, len(rows) // 3))
     runs = -(-len(rows) // length)
     values = []
-    for _ in range(draws):
+    for _ in range(_DRAWS):
         start = rng.integers(0, len(rows) - length + 1, runs)
         at = (start[:, None] + np.arange(length)).ravel()[: len(rows)]
         values.append(statistic(rows[at]))

@@ -105,13 +105,13 @@ def ratios(g: CrossProducts, base: Base, scale: np.ndarray, steep: bool = True) 
     return np.maximum(out, 0.0)
 
 
-def session_scale(g: CrossProducts, rounds: int = 3) -> np.ndarray:
+def session_scale(g: CrossProducts) -> np.ndarray:
     """(S, A) each session's own noise level beside the others', geometric mean one; shrunk towards
     it.
     """
     s, axes = len(g.count), g.yy.shape[2]
     scale = np.ones((s, axes))
-    for _ in range(rounds if s > 1 else 0):
+    for _ in range(3 if s > 1 else 0):
         base = fit_base(g, scale)
         for a, (i, b) in enumerate(zip(base.best, base.fitted)):
             own = (

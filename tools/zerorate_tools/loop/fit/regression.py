@@ -39,9 +39,9 @@ class Regression:
     that a cause common to them does not count three times.
     """
 
-    def __init__(self, sessions: list[Session], whiteners: list | None = None):
+    def __init__(self, sessions: list[Session]):
         self.sessions = sessions
-        self.whiteners = whiteners or [whitener(s.available) for s in sessions]
+        self.whiteners = [whitener(s.available) for s in sessions]
         self.rate = [s.rate_dps for s in sessions]
         self.outliers = 0
         self.steep = True  # whether the noise may be steeper than a random walk

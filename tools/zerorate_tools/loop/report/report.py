@@ -57,13 +57,10 @@ def report(analysis: Analysis) -> dict:
 
 def verdict(analysis: Analysis) -> str:
     """nothing-found, effects-found or unexplained-residual."""
-    if analysis.selection.found or analysis.motion.found or _in_the_bias(analysis.lines):
+    in_the_bias = any(line.hz < QUICK_HZ for line in analysis.lines)
+    if analysis.selection.found or analysis.motion.found or in_the_bias:
         return "effects-found"
     return "unexplained-residual" if analysis.judgement.residual_test.left else "nothing-found"
-
-
-def _in_the_bias(lines):
-    return any(line.hz < QUICK_HZ for line in lines)
 
 
 def _mdps(values) -> list[float]:

@@ -94,11 +94,6 @@ def is_bounded(fields: dict) -> bool:
     return fields.get("lag_mode") in ("difference", "rate") or fields.get("memory") == "backlash"
 
 
-def _is_even(choice: dict) -> bool:
-    """Whether a basis is the same on either side of zero, so that one side shows the other."""
-    return choice.get("power") == 2 and choice.get("centre") == 0.0
-
-
 def _fields(choice: dict, span: dict, source: str) -> dict:
     lo, hi, mean = span.get(source, (0.0, 1.0, 0.0))
     fields = dict(choice)
@@ -110,7 +105,7 @@ def _fields(choice: dict, span: dict, source: str) -> dict:
         fields["centre"] = 0.0
     if source == "time":
         fields["centre"] = 0.0
-    if _is_even(choice):
+    if choice.get("power") == 2 and choice.get("centre") == 0.0:  # one side shows the other
         reach = max(-fields["lo"], fields["hi"])
         fields.update(lo=-reach, hi=reach)
     if "curve" in fields:

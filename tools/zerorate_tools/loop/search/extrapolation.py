@@ -112,7 +112,9 @@ class _Error:
         self.beside = {t: _beside(t, name, regression.sessions) for t in self.terms}
         every = [*straight, *terms, further]
         self.places = [len(straight) + i for i in at] + [len(every) - 1]
-        self.covariance = _relative_covariance(regression, every)
+        with regression.in_sensor_axes():
+            # (3, J, J), over the variance of a block's white noise
+            self.covariance = regression.fit(every).base.unscaled
 
     def at(self, edge: float, beyond: float) -> float:
         """RMS over the axes, over the white noise of a block."""
@@ -155,9 +157,3 @@ def _beside(term: Term, name: str, sessions) -> float:
     centre, power = (term.centre, term.power) if term.source != name else (term.second_centre, 1)
     factor = np.concatenate([s.source(own) for s in sessions]) - centre
     return float(np.sqrt((factor ** (2 * power)).mean()))
-
-
-def _relative_covariance(regression, terms) -> np.ndarray:
-    """(3, J, J) covariance of the coefficients over the variance of a block's white noise."""
-    with regression.in_sensor_axes():
-        return regression.fit(terms).base.unscaled

@@ -93,7 +93,8 @@ def best_hysteresis(
         return None, 0.0
     best, chosen = 0.0, tuple[Term, ...]()
     for terms in _forms(sessions, [*straight, *beside]):
-        gain = float(judged(straight, beside, terms).sum()) - _price(terms)
+        gain = float(judged(straight, beside, terms).sum())
+        gain -= len({t.width for t in terms})  # nats, for each width, which was looked for
         if gain > best:
             best, chosen = gain, terms
     return (Candidate(KIND, chosen, "catalogue") if chosen else None), best
@@ -186,11 +187,6 @@ def _tried(candidate: Candidate) -> float:
     """Forms compared, times the choices among widths that differ."""
     widths = len({t.width for t in candidate.terms})
     return 2.0 * _MOST_OPERATORS * comb(_APART, widths)
-
-
-def _price(terms: Sequence[Term]) -> float:
-    """Nats that a form must gain: one for each width, which was looked for."""
-    return float(len({t.width for t in terms}))
 
 
 def _forms(sessions, beside) -> Iterator[tuple[Term, ...]]:

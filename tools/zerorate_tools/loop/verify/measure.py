@@ -222,8 +222,9 @@ class CorrectedWriter(TableWriter):
         test: (n,) bool, of the part held out; biases: (n, 3) LSB in Q8 by way, of which those in
         WAYS are written.
         """
+        one = np.zeros(len(test), np.int8)
         columns = {
-            "recording": _repeated(recording, len(test)),
+            "recording": pa.DictionaryArray.from_arrays(one, [recording]),
             "t_us": pa.array(frames.t_us),
             "split": pa.DictionaryArray.from_arrays(test.astype(np.int8), ["train", "test"]),
         }
@@ -232,10 +233,6 @@ class CorrectedWriter(TableWriter):
                 lsb = biases[way] / np.float32(256.0)
                 columns.update({f"bias_{way}_{g}": lsb[:, a] for a, g in enumerate(_AXES)})
         self.append(pa.table(columns))
-
-
-def _repeated(text: str, n: int) -> pa.DictionaryArray:
-    return pa.DictionaryArray.from_arrays(np.zeros(n, np.int8), [text])
 
 
 def rounding_dps(
