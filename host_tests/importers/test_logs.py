@@ -152,9 +152,6 @@ def test_a_dataflash_log_of_2015_has_milliseconds_and_a_message_a_sensor(tmp_pat
         assert recording.scales.odr_hz == pytest.approx(50)
 
 
-# Bags
-
-
 @pytest.fixture
 def bag_of(tmp_path):
     """A bag of a kind (ros1, ros2, db3, mcap) with 200 Hz of Imu, and 1 Hz of Temperature."""

@@ -22,6 +22,12 @@ def table(n=2000, hz=100.0):
     return pd.DataFrame(columns | {"temp_c": 25 + 0.001 * np.arange(n)})
 
 
+def rates(names, n=2000):
+    """The time and the rates of that rest under these names; what is named beyond them is 1."""
+    frame = table(n)[["t_s", *(f"g{a}_dps" for a in "xyz")]]
+    return frame.set_axis(names[:4], axis=1).assign(**dict.fromkeys(names[4:], 1.0))
+
+
 def read(tmp_path, frame, name="in.csv", mapping="", **options):
     """What an import makes of a frame, or of a text."""
     if isinstance(frame, pd.DataFrame):
@@ -32,11 +38,13 @@ def read(tmp_path, frame, name="in.csv", mapping="", **options):
     return read_foreign(tmp_path / name, mapping=words, **options)
 
 
+def lines(rows):
+    """A text of numbers without a head."""
+    return "\n".join(",".join(f"{v:.6g}" for v in row) for row in rows)
+
+
 def told(report, words):
     return any(words in line for line in report.lines())
-
-
-# Text
 
 
 @pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "utf-16-le", "latin-1"])
@@ -104,7 +112,7 @@ def test_comments_between_rows_are_no_rows(tmp_path):
 
 
 def test_a_header_in_a_comment_and_columns_by_number(tmp_path):
-    rows = "\n".join("0.01,0.8,0.8,0.9".replace("0.01", str(i / 100)) for i in range(50))
+    rows = lines([i / 100, 0.8, 0.8, 0.9] for i in range(50))
     recording, _ = read(tmp_path, f"# {HEAD}\n{rows}\n")
     assert len(recording) == 50
     recording, _ = read(tmp_path, f"{rows}\n", mapping="t_us=1:s gx=2:dps gy=3:dps gz=4:dps")
@@ -130,13 +138,9 @@ def test_a_time_of_day_among_columns_without_names_is_offered_as_time(tmp_path):
 
 
 def test_no_mapping_is_offered_where_nothing_tells_which_columns_are_rates(tmp_path):
-    rng = np.random.default_rng(4)
-    values = rng.normal(size=(50, 6)) * [0.01, 0.02, 0.01, 0.1, 0.1, 0.1] + 49.0 * (
-        np.arange(6) == 0
-    )
-    rows = "\n".join(",".join(f"{v:.4f}" for v in row) for row in values)
+    values = [0.01, 0.02, 0.01, 0.1, 0.1, 0.1] * np.random.default_rng(4).normal(size=(50, 6))
     with pytest.raises(BadRecording, match="map it: --map gx=COLUMN:dps, COLUMN one of 1, 2, 3"):
-        read(tmp_path, f"{rows}\n")
+        read(tmp_path, lines(values + [49.0, 0, 0, 0, 0, 0]))
 
 
 def test_a_header_in_a_comment_is_one_where_a_column_has_words(tmp_path):
@@ -174,14 +178,14 @@ def test_a_line_of_units_may_have_an_empty_cell_as_the_names_do(tmp_path):
 def test_columns_that_nothing_names_are_offered_by_what_they_hold(tmp_path):
     rows = [[i * 20, 0.1, 0.2, 9.79, 0.01, 0.02, -0.03, 21.5] for i in range(50)]
     ready = "t_us=1:ms ax=2:m/s2 ay=3:m/s2 az=4:m/s2 gx=5:rad/s gy=6:rad/s gz=7:rad/s"
-    text = "\n".join(",".join(map(str, row)) for row in rows)
+    text = lines(rows)
     with pytest.raises(BadRecording, match=" ".join(f"--map {word}" for word in ready.split())):
         read(tmp_path, text)
     recording, _ = read(tmp_path, text, mapping=ready)
     assert recording.scales.odr_hz == pytest.approx(50)
-    counts = "\n".join(f"{100 + i % 3},{-40 - i % 2},{7 + i % 5}" for i in range(50))
+    counts = [[100 + i % 3, -40 - i % 2, 7 + i % 5] for i in range(50)]
     with pytest.raises(BadRecording, match="--map gx=1:lsb --map gy=2:lsb --map gz=3:lsb"):
-        read(tmp_path, counts)
+        read(tmp_path, lines(counts))
 
 
 def test_numbers_of_a_kind_and_quaternions_are_offered_as_no_rates(tmp_path):
@@ -190,27 +194,33 @@ def test_numbers_of_a_kind_and_quaternions_are_offered_as_no_rates(tmp_path):
         [i / 50, 3, *rng.normal([0, 0, 9.8], 0.02), 4, *rng.normal(0, 0.1, 3)] for i in range(50)
     ]
     with pytest.raises(BadRecording, match="--map az=5:m/s2 --map gx=7:rad/s --map gy=8:rad/s"):
-        read(tmp_path, "\n".join(",".join(f"{v:.6g}" for v in row) for row in wide))
-    turned = np.column_stack(
-        [np.sin(np.arange(50) / 9), np.zeros((50, 2)), np.cos(np.arange(50) / 9)]
-    )
+        read(tmp_path, lines(wide))
+    angle = np.arange(50) / 9
+    turned = np.column_stack([np.sin(angle), np.zeros((50, 2)), np.cos(angle)])
     wide = [[*q, *rng.normal([0, 0, 9.8], 0.02), *rng.normal(0, 0.1, 3)] for q in turned]
     with pytest.raises(BadRecording, match="--map az=7:m/s2 --map gx=8:rad/s --map gy=9:rad/s"):
-        read(tmp_path, "\n".join(",".join(f"{v:.6g}" for v in row) for row in wide))
+        read(tmp_path, lines(wide))
 
 
-def test_what_is_faster_than_any_sensor_is_offered_as_no_rates(tmp_path):
-    rng = np.random.default_rng(9)
-    rest = [0.0, 0.0, 9.8, 8e4, 6e4, -7e4] + 0.01 * rng.normal(size=(50, 6))
-    with pytest.raises(BadRecording, match="map it: --map gx=COLUMN:dps"):
-        read(tmp_path, "\n".join(",".join(f"{v:.4f}" for v in row) for row in rest))
+@pytest.mark.parametrize(
+    ("rest", "offered"),
+    [
+        # faster than any sensor
+        ([0.0, 0.0, 9.8, 8e4, 6e4, -7e4], "map it: --map gx=COLUMN:dps"),
+        # as long as gravity twice: 9.8 comes first
+        ([0.6, 0, 0.8, 0, 0, 9.8, 0, 0, 0], "--map az=6:m/s2 --map gx=7:rad/s --map gy=8:rad/s"),
+    ],
+)
+def test_a_rest_of_columns_without_names_is_told_by_how_large_they_are(tmp_path, rest, offered):
+    noise = np.random.default_rng(8).normal(0, 0.01, (50, len(rest)))
+    with pytest.raises(BadRecording, match=offered):
+        read(tmp_path, lines(rest + noise))
 
 
 def test_cells_may_stand_in_columns_of_blanks(tmp_path):
     rows = "".join(f"   {i / 100:.7e}   {0.8:.7e}  -8.0e-01\t 9.0e-01 \r\n" for i in range(50))
-    (tmp_path / "in.mat").write_bytes(rows.encode())
-    mapping = [parsed_mapping(word) for word in "t_us=1:s gx=2:dps gy=3:dps gz=4:dps".split()]
-    recording, report = read_foreign(tmp_path / "in.mat", mapping=mapping)
+    words = "t_us=1:s gx=2:dps gy=3:dps gz=4:dps"
+    recording, report = read(tmp_path, rows, "in.mat", words)
     assert len(recording) == 50 and not report.dropped
     assert recording.gyro_dps().mean(axis=0) == pytest.approx([0.8, -0.8, 0.9], abs=0.01)
 
@@ -251,11 +261,3 @@ def test_lines_of_a_vectornav_need_but_their_rate(tmp_path):
     assert recording.gyro_dps()[0] == pytest.approx(np.degrees([0.01, 0.02, 0.03]), abs=0.005)
     assert recording.accel_g()[0, 2] == pytest.approx(-1.0, abs=0.01)
     assert recording.temp_degc()[0] == pytest.approx(26.8, abs=0.01)
-
-
-def test_three_as_long_as_9_8_are_gravity_before_three_as_long_as_1(tmp_path):
-    rng = np.random.default_rng(8)
-    rest = [0.6, 0.0, 0.8, 0.0, 0.0, 9.8, 0.0, 0.0, 0.0] + 0.01 * rng.normal(size=(50, 9))
-    text = "\n".join(",".join(f"{v:.4f}" for v in row) for row in rest)
-    with pytest.raises(BadRecording, match="--map az=6:m/s2 --map gx=7:rad/s --map gy=8:rad/s"):
-        read(tmp_path, text)

@@ -8,7 +8,7 @@ import pytest
 from zerorate_tools.errors import BadRecording, InFile
 from zerorate_tools.importers import Options, import_recording
 
-from .test_odd_files import read, table, told
+from .test_odd_files import rates, read, table, told
 
 
 @pytest.mark.parametrize(
@@ -27,8 +27,7 @@ from .test_odd_files import read, table, told
     ],
 )
 def test_usual_names_need_but_a_unit_and_the_words_for_it_work(tmp_path, names):
-    frame = table()[["t_s", *(f"g{a}_dps" for a in "xyz")]]
-    frame.columns = ["t_s", *names.split()]
+    frame = rates(["t_s", *names.split()])
     with pytest.raises(BadRecording, match="not known; give --gyro-unit dps [(]or"):
         read(tmp_path, frame)
     recording, _ = read(tmp_path, frame, units={"gyro": "dps"})
@@ -36,9 +35,8 @@ def test_usual_names_need_but_a_unit_and_the_words_for_it_work(tmp_path, names):
 
 
 def test_a_unit_in_the_name_is_enough(tmp_path):
-    frame = table()[["t_s", *(f"g{a}_dps" for a in "xyz")]]
-    frame.columns = ["Time (s)", "GyroX [deg/s]", "GyroY [deg/s]", "GyroZ [deg/s]"]
-    recording, _ = read(tmp_path, frame)
+    names = ["Time (s)", "GyroX [deg/s]", "GyroY [deg/s]", "GyroZ [deg/s]"]
+    recording, _ = read(tmp_path, rates(names))
     assert recording.gyro_dps().mean() == pytest.approx(0.8, abs=0.02)
 
 
@@ -54,24 +52,25 @@ def test_a_unit_in_the_name_is_enough(tmp_path):
     ],
 )
 def test_a_unit_of_rates_tells_what_a_column_is(tmp_path, names):
-    frame = table()[["t_s", *(f"g{a}_dps" for a in "xyz")]]
-    frame.columns = ["timestamp_seconds", *re.findall(r"\S.*?(?:[])]|per_s)", names)]
-    recording, _ = read(tmp_path, frame)
+    names = re.findall(r"\S.*?(?:[])]|per_s)", names)
+    recording, _ = read(tmp_path, rates(["timestamp_seconds", *names]))
     assert recording.gyro_dps().mean() == pytest.approx(np.degrees(0.8), abs=0.5)
 
 
-def test_body_rates_are_offered(tmp_path):
-    frame = table()[["t_s", *(f"g{a}_dps" for a in "xyz")]]
-    frame.columns = ["t_s", "p", "q", "r"]
-    with pytest.raises(BadRecording, match="if these are rates: --map gx=p:dps --map gy=q:dps"):
-        read(tmp_path, frame)
-
-
-def test_bare_axes_are_offered_too(tmp_path):
-    frame = table()[["t_s", *(f"g{a}_dps" for a in "xyz")]]
-    frame.columns = ["t_s", "xaxis", "yaxis", "zaxis"]
-    with pytest.raises(BadRecording, match="--map gx=xaxis:dps --map gy=yaxis:dps"):
-        read(tmp_path, frame)
+@pytest.mark.parametrize(
+    ("names", "offered"),
+    [
+        ("t_s p q r", "if these are rates: --map gx=p:dps --map gy=q:dps"),
+        ("t_s xaxis yaxis zaxis", "--map gx=xaxis:dps --map gy=yaxis:dps"),
+        # a quaternion is none
+        ("t_s x y z w", "map it: --map gx=COLUMN:dps, COLUMN one of t_s, x"),
+        # a phone's Sensor Logger
+        ("seconds_elapsed x y z", "--map gx=x:rad/s --map gy=y:rad/s"),
+    ],
+)
+def test_what_may_be_rates_is_offered_as_such(tmp_path, names, offered):
+    with pytest.raises(BadRecording, match=offered):
+        read(tmp_path, rates(names.split()), name="turned.csv")
 
 
 def test_a_temperature_of_another_name_is_offered(tmp_path):
@@ -92,13 +91,6 @@ def test_columns_that_may_hold_a_cause_are_said_to_be_left_aside(tmp_path):
     assert "vdd_mv" in recording.columns and not told(report, "left aside")
 
 
-def test_a_quaternion_is_offered_as_no_rates(tmp_path):
-    frame = table()[["t_s", *(f"g{a}_dps" for a in "xyz")]]
-    frame.columns = ["t_s", "x", "y", "z"]
-    with pytest.raises(BadRecording, match="map it: --map gx=COLUMN:dps, COLUMN one of t_s, x"):
-        read(tmp_path, frame.assign(w=1.0))
-
-
 def test_a_phones_sensor_logger_is_known_by_its_columns(tmp_path):
     frame = table()
     at_ns = 1_777_636_800_000_000_000 + (frame["t_s"] * 1e9).astype("int64")
@@ -110,16 +102,8 @@ def test_a_phones_sensor_logger_is_known_by_its_columns(tmp_path):
     assert told(report, "gyro taken in rad/s: as Sensor Logger writes")
 
 
-def test_axes_of_a_phones_sensor_logger_are_offered_in_its_unit(tmp_path):
-    frame = table()[["t_s", *(f"g{a}_dps" for a in "xyz")]]
-    frame.columns = ["seconds_elapsed", "x", "y", "z"]
-    with pytest.raises(BadRecording, match="--map gx=x:rad/s --map gy=y:rad/s"):
-        read(tmp_path, frame, name="turned.csv")
-
-
 def test_a_topic_of_px4_as_a_csv_is_known_by_its_columns(tmp_path):
-    frame = table()[["t_s", *(f"g{a}_dps" for a in "xyz")]].assign(device_id=1, error_count=0)
-    frame.columns = ["timestamp", "x", "y", "z", "device_id", "error_count"]
+    frame = rates(["timestamp", "x", "y", "z", "device_id", "error_count"])
     frame["timestamp"] = (1e6 * frame["timestamp"]).astype(int)
     recording, report = read(tmp_path, frame, name="log_sensor_gyro_0.csv")
     assert recording.scales.odr_hz == pytest.approx(100)
@@ -127,10 +111,8 @@ def test_a_topic_of_px4_as_a_csv_is_known_by_its_columns(tmp_path):
 
 
 def test_names_that_are_units_tell_them(tmp_path):
-    frame = table()[["t_s", *(f"g{a}_dps" for a in "xyz")]]
-    recording, _ = read(
-        tmp_path, frame.assign(t_s=1000 * frame["t_s"]).rename(columns={"t_s": "Millis"})
-    )
+    frame = rates(["Millis", "gx_dps", "gy_dps", "gz_dps"])
+    recording, _ = read(tmp_path, frame.assign(Millis=1000 * frame["Millis"]))
     assert recording.scales.odr_hz == pytest.approx(100)
 
 

@@ -10,8 +10,6 @@ from .test_odd_files import read, table, told
 
 RNG = np.random.default_rng(3)
 
-# Time
-
 
 def test_a_gap_of_five_minutes_does_not_change_the_rate(tmp_path):
     frame = table()
@@ -175,9 +173,6 @@ def test_stamps_beyond_64_bits_are_refused_with_their_row(tmp_path):
     text = "t_us,gx_dps,gy_dps,gz_dps\n1,1,1,1\n18446744073709551615,1,1,1\n"
     with pytest.raises(BadRecording, match="row 2: the time stamp is .*name the unit"):
         read(tmp_path, text)
-
-
-# Sensors at their own times
 
 
 def test_temperature_once_a_second_is_interpolated_and_said(tmp_path):

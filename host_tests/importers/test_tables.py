@@ -28,9 +28,6 @@ def told(report, words):
     return any(words in line for line in report.lines())
 
 
-# Tables by a mapping
-
-
 def test_a_mapping_with_units_gives_integers(tmp_path):
     n = np.arange(4.0)
     source = table(

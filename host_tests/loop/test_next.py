@@ -17,14 +17,15 @@ N = 3000
 at_rest = partial(power_ons.at_rest, n=N, swing_degc=4.0)
 
 
-def test_recordings_that_begin_far_apart_are_asked_whether_they_are_of_one_device(closing):
-    asked = measure_next(closing([at_rest(0), at_rest(1), at_rest(2, bias_lsb=160)]))
-    assert "of one device: s2 begins 1.2 dps away from what the others taught" in asked[0]
-
-
-def test_temperatures_that_nothing_fitted_has_seen_are_asked_for(closing):
-    asked = measure_next(closing([at_rest(0), at_rest(1), at_rest(2, middle_degc=40.0)]))
-    assert "s2 goes from 36 to 44 degC, what was fitted from 21 to 29" in asked[0]
+@pytest.mark.parametrize(
+    ("other", "asked"),
+    [
+        ({"bias_lsb": 160}, "of one device: s2 begins 1.2 dps away from what the others taught"),
+        ({"middle_degc": 40.0}, "s2 goes from 36 to 44 degC, what was fitted from 21 to 29"),
+    ],
+)
+def test_a_recording_unlike_the_others_is_asked_about(closing, other, asked):
+    assert asked in measure_next(closing([at_rest(0), at_rest(1), at_rest(2, **other)]))[0]
 
 
 def test_of_recordings_alike_neither_is_asked(closing):

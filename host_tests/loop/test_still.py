@@ -96,9 +96,6 @@ def test_a_device_mostly_in_motion_keeps_its_rests(still):
     assert resting.sum() > 0.8 * 228 and not resting[25:98].any()
 
 
-# Rest is rest at any rate
-
-
 @pytest.mark.parametrize("accel", [False, True])
 @pytest.mark.parametrize("noise_dps", NOISES_DPS)
 @pytest.mark.parametrize("odr_hz", RATES_HZ)

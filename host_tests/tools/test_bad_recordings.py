@@ -21,8 +21,7 @@ _SCALES = '{"sensor": "X", "odr_hz": %s, "gyro_lsb_per_dps": 1}'
         ("", "empty file"),
         (f"{HEADER}\n", "no data row"),
         ("t_us,gx,gy\n0,1,2\n", "column gz is missing.*zerorate import"),
-        (f"{HEADER}\n0,1,2,3\n1,1.5,2,3\n", "row 2: gx is '1.5', no integer"),
-        (f"{HEADER}\n0,1,2,3\n1,one,2,3\n", "row 2: gx is 'one', no integer"),
+        ("time,x,y,z\n0,1,2,3\n", "t_us, gx, gy, gz are.*zerorate import .*bad.csv --out"),
         (f"{HEADER}\n0,1,2,3\n1,nan,2,3\n", "row 2: gx has no value; drop the row"),
         (f"{HEADER}\n0,1,2,3\n1,,2,3\n", "row 2: gx has no value"),
         (f"{HEADER},vdd_mv\n0,1,2,3,4\n1,1,2,3,\n", "row 2: vdd_mv has no value; fill the gaps"),
@@ -88,11 +87,6 @@ def test_a_csv_without_scales_says_what_to_write(csv_of):
         read_recording(path)
     path.with_name("bad.json").write_text("{" + str(raised.value).partition("{")[2])
     assert read_recording(path).scales.temp_offset_degc == 36.53
-
-
-def test_a_foreign_csv_is_answered_with_the_command_that_imports_it(csv_of):
-    with pytest.raises(BadRecording, match="t_us, gx, gy, gz are.*zerorate import .*bad.csv --out"):
-        read_recording(csv_of("time,x,y,z\n0,1,2,3\n"))
 
 
 def test_a_truncated_gzip_is_refused(tmp_path):

@@ -34,28 +34,23 @@ def test_every_demand_that_is_met_is_said_to_be(found):
     assert set(verdicts(found)) == {"yes"}
 
 
-def test_one_seed_beyond_the_limit_is_one_too_many(found):
-    found["simulated"]["trembling"]["decision"]["rms_mdps"][1] = 30.1
-    assert refused(found) == ["trembling"]
+@pytest.mark.parametrize(
+    ("scene", "way", "row", "met"),
+    [
+        ("trembling", "decision", {"rms_mdps": [5.0, 30.1]}, False),  # one seed is one too many
+        ("never-rests", "decision", {"rms_mdps": [5.0, 14.9, 29.0]}, True),  # by the median
+        ("never-rests", "decision", {"rms_mdps": [5.0, 15.1, 15.2]}, False),
+        ("turntable", "in motion", {"wrong": 1}, False),
+    ],
+)
+def test_a_demand_that_is_not_met_is_said(found, scene, way, row, met):
+    found["simulated"][scene][way] |= row
+    assert refused(found) == ([] if met else [scene])
 
 
-def test_periodic_motion_is_judged_by_the_median_of_its_seeds(found):
-    for errors, said in (([5.0, 14.9, 29.0], []), ([5.0, 15.1, 15.2], ["never-rests"])):
-        found["simulated"]["never-rests"]["decision"]["rms_mdps"] = errors
-        assert refused(found) == said
-
-
-def test_one_window_learned_on_a_turntable_is_one_too_many(found):
-    found["simulated"]["turntable"]["in motion"]["wrong"] = 1
-    assert refused(found) == ["turntable"]
-
-
-def test_honesty_is_counted_in_percent(found):
-    assert "| decision |" + " 95 % |" * len(LIMITS_MDPS) in in_markdown(found)
-
-
-def test_honesty_is_counted_by_flicker_noise_too(found):
+def test_honesty_is_counted_in_percent_and_by_flicker_noise_too(found):
     assert "| rests-30, firmware | 100 % | 96 % | 94 % | 93 % |" in in_markdown(found)
+    assert "| decision |" + " 95 % |" * len(LIMITS_MDPS) in in_markdown(found)
 
 
 def test_the_decision_is_judged_beside_vqf_on_whole_trials(found):

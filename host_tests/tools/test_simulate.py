@@ -26,9 +26,6 @@ def moved(motion):
     return {"sensor": {"gyro_lsb_per_dps": 131.0}, "every_session": {"motion": motion}}
 
 
-# The same words give the same device
-
-
 def test_the_same_seed_gives_the_same_recording_bit_for_bit():
     first, second, other = (simulate("car", seed=seed)[0] for seed in (3, 3, 4))
     assert all((first.columns[n] == second.columns[n]).all() for n in first.columns)
@@ -46,9 +43,6 @@ def test_one_session_alone_is_the_same_as_among_all():
     every = list(simulate_sessions("warm-up-c"))
     alone, _ = simulate("warm-up-c", session=2)
     np.testing.assert_array_equal(alone.columns["gy"], every[1][0].columns["gy"])
-
-
-# Noise
 
 
 def test_white_noise_has_the_given_rms_and_block_means_have_less_of_it():
@@ -105,9 +99,6 @@ def test_a_louder_session_is_louder():
     sessions = [{"noise_scale": 1.0}, {"noise_scale": 3.0}]
     quiet, loud = simulate_sessions(device(sensor={"gyro_noise_dps": 0.05}, session=sessions))
     assert loud[0].gyro_dps().std() == pytest.approx(3 * quiet[0].gyro_dps().std(), rel=0.05)
-
-
-# Motion and attitude
 
 
 @pytest.mark.parametrize("kind", ["swing", "stride", "wave", "hand"])
@@ -185,9 +176,6 @@ def test_vibration_shakes_the_accelerometer_at_any_rate_and_turns_nothing():
         recording, truth = simulate(device(10, odr_hz, every_session={"motion": motion}))
         assert recording.accel_g().std(axis=0) == pytest.approx([0.3] * 3, rel=0.15)
         assert truth.still.all()
-
-
-# Files, and what is refused
 
 
 def test_files_hold_the_recordings_and_the_truth_only_where_asked(tmp_path):

@@ -21,9 +21,6 @@ UP_AND_DOWN = {
 }
 
 
-# Bias and effects
-
-
 def test_the_bias_is_the_given_polynomial_about_25_degc():
     bias = {"b0": [1, 2, 3], "b1": 0.1, "b2": 0.01, "b3": [0, 0, 0.001]}
     _, truth = simulate(device(60, 1.0, bias=bias, every_session=WARM_UP))
@@ -150,9 +147,6 @@ def test_a_delay_between_stamp_and_reading_shows_in_motion():
     assert (np.diff(recording.columns["t_us"]) >= 0).all()
 
 
-# Outside any catalogue
-
-
 POSE = {"kind": "pose", "s": 5}
 LOAD = {"load": {"kind": "levels", "low": 0.0, "high": 100.0, "mean_s": 200.0}}
 
@@ -192,9 +186,6 @@ def test_a_channel_is_counted_in_its_unit_and_a_copy_is_a_copy():
     }
     recording, _ = simulate(device(1, channels=channels))
     assert set(recording.columns["volt"]) == set(recording.columns["volt_again"]) == {3300}
-
-
-# Effects of a wanted size
 
 
 def test_an_effect_of_wanted_size_has_it_over_all_sessions():
