@@ -47,3 +47,10 @@ def test_a_model_without_the_slope_leaves_them_as_they_are(term):
     own = step_degc(corrector)
     corrector.use_model(model_of(term))
     assert step_degc(corrector) == own
+
+
+def test_an_axis_that_the_model_leaves_alone_learns_as_without_a_model():
+    corrector = Corrector(SENSOR)
+    own = step_degc(corrector)
+    corrector.use_model(loaded([Slot(SLOPE, (0.001, 0.0, 0.001)), Slot(BEND, (0.001, 0.0, 0.001))]))
+    assert step_degc(corrector) == own

@@ -262,7 +262,7 @@ def link(e, a, tables):
         e[_INSTANT_SLOTS] += 1
     other = e[a + _SLOT_MEMORY] | e[a + _SLOT_SECOND] | e[a + _SLOT_DECAY] | e[a + _SLOT_RING]
     if kind == _KIND_TEMP and e[a + _SLOT_POWER] == 1 and not other | e[a + _SLOT_TABLE]:
-        if e[a + _SLOT_KNOT] == _NO_VALUE:
+        if e[a + _SLOT_KNOT] == _NO_VALUE and all(e[a + _SLOT_OWN : a + _SLOT_OWN + 3]):
             e[_CURVE_LSB] = (e[a + _SLOT_HIGHEST_Q8] - e[a + _SLOT_LOWEST_Q8]) >> 8
     return True
 

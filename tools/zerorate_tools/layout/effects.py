@@ -27,7 +27,7 @@ EFFECTS = Array(
         ("SLOW_BEGUN", 1, "", "1 once the slow part has begun"),
         ("REFINE_ON", 1, "", "1: the coefficients go on learning"),
         ("BOUND_EIGHTHS", 1, "", "how far they may go, in eighths of the slot's largest"),
-        ("CURVE_LSB", 1, "LSB", "of temperature, that the line over it holds; 0: no such slot"),
+        ("CURVE_LSB", 1, "LSB", "of temperature, that a line on every axis holds; 0: none"),
         ("SPARE_EFFECTS", 3, "", "unused"),
         ("INPUTS", 72, "", "12 blocks of an input"),
         ("CHANNELS", 8, "", "what the application last said of each"),
