@@ -10,12 +10,11 @@ from zerorate_tools.loop.search.bends import KINDS as BENDS
 from zerorate_tools.model.effects import EFFECTS
 from zerorate_tools.numbers import chance, figure
 from zerorate_tools.report import kinds
-from zerorate_tools.report.allan_plot import longest
 from zerorate_tools.report.held_out import held_out, trend
 from zerorate_tools.report.plot import thinned
 from zerorate_tools.report.png import picture, write_pngs
 from zerorate_tools.report.report_folder import plots_of
-from zerorate_tools.report.residual_plots import against_time
+from zerorate_tools.report.residual_plots import against_time, longest
 
 from host_tests.report.devices import Closed, device
 

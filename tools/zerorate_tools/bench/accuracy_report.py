@@ -71,7 +71,6 @@ def accuracy(
 
 
 def in_markdown(found: Mapping[str, Any]) -> str:
-    """The tables of `accuracy`."""
     limits = limits_table(verdicts(found, ACCURACY))
     return "\n".join(
         ["# Accuracy\n", _MADE, machine_line(found["machine"]), limits, *sections(found)]

@@ -77,7 +77,6 @@ def _measures(work: Workload, hours) -> dict[str, Callable[[], Any]]:
 
 
 def in_markdown(found: Mapping[str, Any]) -> str:
-    """The tables of `cost`."""
     limits = limits_table(verdicts(found, COST))
     return "\n".join(["# Cost\n", _MADE, machine_line(found["machine"]), limits, *sections(found)])
 

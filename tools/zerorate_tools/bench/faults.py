@@ -38,7 +38,6 @@ def passed(found: dict) -> bool:
 
 
 def in_markdown(found: dict) -> str:
-    """Both tables."""
     rows = [[name, *row.values()] for name, row in found["faults"].items()]
     store = found["store"]
     counts = [store[name] for name in ("cuts", "flips", "wrong_loads", "exceptions")]

@@ -88,7 +88,6 @@ def _lines() -> list[bytes]:
 
 
 def in_words(found: dict[str, float]) -> str:
-    """One line."""
     return (
         f"{found['gb']:.2f} GB of CSV, {found['rows']:,.0f} rows: {found['seconds']:.0f} s "
         f"({found['processor_s']:.0f} s of a processor), at most {found['peak_mb']:.0f} MB\n"

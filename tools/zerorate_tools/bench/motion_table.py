@@ -46,7 +46,6 @@ _TRUTH = ("bias_dps", "sigma_dps", "motion_dps", "motion_sigma_dps")
 
 
 def in_markdown(found: Mapping) -> str:
-    """All tables."""
     return "\n".join(_parts(found))
 
 

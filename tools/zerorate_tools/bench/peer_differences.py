@@ -83,7 +83,6 @@ def peer_differences(
 
 
 def in_markdown(found: dict[str, list[dict]]) -> str:
-    """The table."""
     cells = [
         [
             f"{row['peer']}, {row['scenario'][-1].upper()}",

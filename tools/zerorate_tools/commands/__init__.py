@@ -1,1 +1,1 @@
-"""One module a sub-command: its arguments, and a thin call of a public function."""
+"""A module a sub-command: `add_parser` registers it, `run` is a thin call of a public function."""

@@ -5,7 +5,6 @@ from pathlib import Path
 
 
 def add_parser(subparsers) -> None:
-    """Register the sub-command."""
     parser = subparsers.add_parser(
         "allan",
         help="Allan deviation of a recording at rest",

@@ -5,7 +5,6 @@ from pathlib import Path
 
 
 def add_parser(subparsers) -> None:
-    """Register the sub-command."""
     parser = subparsers.add_parser(
         "close",
         help="find effects that the model lacks, and correct them",

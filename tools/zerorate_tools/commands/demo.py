@@ -6,7 +6,6 @@ from pathlib import Path
 
 
 def add_parser(subparsers) -> None:
-    """Register the sub-command."""
     parser = subparsers.add_parser(
         "demo",
         help="the whole job without hardware",

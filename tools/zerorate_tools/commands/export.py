@@ -5,7 +5,6 @@ from pathlib import Path
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Register the sub-command."""
     parser = subparsers.add_parser("export", help="write the firmware as C, for no MicroPython")
     actions = parser.add_subparsers(metavar="LANGUAGE", required=True)
     c = actions.add_parser("c", help="one header, one C file and a test program")

@@ -5,7 +5,6 @@ from pathlib import Path
 
 
 def add_parser(subparsers) -> None:
-    """Register the sub-command."""
     parser = subparsers.add_parser(
         "flash",
         help="put the firmware and the driver on a MicroPython board",
@@ -28,7 +27,6 @@ def add_parser(subparsers) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Copy, saying each file."""
     from ..boards.flashing import flash
 
     a = arguments

@@ -5,7 +5,6 @@ from pathlib import Path
 
 
 def add_parser(subparsers) -> None:
-    """Register the sub-command."""
     parser = subparsers.add_parser(
         "fleet",
         help="many devices' recordings at once, and a prior for the next device",

@@ -14,7 +14,6 @@ Columns that no line names are called 1, 2, 3; an (n, 3) variable of a .mat name
 
 
 def add_parser(subparsers) -> None:
-    """Register the sub-command."""
     parser = subparsers.add_parser(
         "import",
         help="turn a foreign recording into this form",
@@ -56,7 +55,6 @@ def add_parser(subparsers) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Import and print the report."""
     from ..importers import Options, import_recording
     from ..progress import progress
 

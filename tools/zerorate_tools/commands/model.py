@@ -7,7 +7,6 @@ FILE = "a model.bin or model.json"
 
 
 def add_parser(subparsers) -> None:
-    """Register the sub-command."""
     parser = subparsers.add_parser(
         "model",
         help="show, check or compare effect models",
@@ -45,7 +44,6 @@ def _add_check(actions) -> None:
 
 
 def run_show(arguments: argparse.Namespace) -> None:
-    """Print a model."""
     from ..model import read_model, to_json
     from ..model.model_in_words import in_words
 
@@ -69,7 +67,6 @@ def run_check(arguments: argparse.Namespace) -> None:
 
 
 def run_diff(arguments: argparse.Namespace) -> int:
-    """Print what differs, a line each."""
     from ..model import read_model
     from ..model.model_in_words import differences
 

@@ -5,7 +5,6 @@ from pathlib import Path
 
 
 def add_parser(subparsers) -> None:
-    """Register the sub-command."""
     parser = subparsers.add_parser(
         "record",
         help="make a recording from a board or a Linux I2C bus",
@@ -39,7 +38,6 @@ def add_parser(subparsers) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Record and say what came of it."""
     from ..boards.recording import record
     from ..progress import progress
 

@@ -12,7 +12,6 @@ if TYPE_CHECKING:
 
 
 def add_parser(subparsers) -> None:
-    """Register the sub-command."""
     parser = subparsers.add_parser(
         "replay",
         help="run the firmware over a recording",
@@ -69,7 +68,6 @@ def add_sources(parser, default: str = "yes") -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Replay and print what it did."""
     from ..progress import progress
     from ..recordings import open_recording
     from ..replay import replay

@@ -6,7 +6,6 @@ from pathlib import Path
 
 
 def add_parser(subparsers) -> None:
-    """Register the sub-command."""
     parser = subparsers.add_parser(
         "run",
         help="correct for ever on a Linux board, as a service",
@@ -31,7 +30,6 @@ def add_parser(subparsers) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Serve until interrupted."""
     import signal
 
     from zerorate.storage.places import FileStorage

@@ -7,7 +7,6 @@ from .replay import add_sources
 
 
 def add_parser(subparsers) -> None:
-    """Register the sub-command."""
     parser = subparsers.add_parser(
         "watch",
         help="the firmware live on a recording being written, or on a board",

@@ -46,7 +46,6 @@ class Curve:
         return [t for t, least in zip(TERMS, _LEAST_SPAN_DEGC) if least == 0 or span >= least]
 
     def to_json(self) -> dict[str, Any]:
-        """Plain values."""
         seen = None if np.isnan(self.low_degc) else [self.low_degc, self.high_degc]
         return {
             "information": self.information.tolist(),
@@ -57,7 +56,6 @@ class Curve:
 
     @classmethod
     def from_json(cls, values: dict[str, Any]) -> Curve:
-        """Inverse of `to_json`."""
         low, high = values["degc"] or (np.nan, np.nan)
         information, score = np.array(values["information"]), np.array(values["score"])
         return cls(information, score, low, high, values["blocks"])

@@ -20,10 +20,10 @@ from ..errors import ZerorateError
 from ..recordings.atomic import clear_left_over, written_beside, written_together
 from ..recordings.scales import scales_from_text
 from ..replay.engines import compiled
-from .benefit import Runner, benefit
 from .cluster import cluster, in_batches, run_all, size_of
 from .curve import Curve
 from .devices import Device
+from .first_minutes import Runner, benefit
 from .job import JOBS, Job, one_line, run_batch
 from .part import Part, curve_effects, part_of, step_effects
 from .prior import prior_json, write_prior

@@ -40,7 +40,6 @@ class Expressions:
         return NotKernel(self._path, what)
 
     def binary(self, operator: ast.operator, left: str, right: str, node: ast.AST) -> str:
-        """An operation on two texts."""
         if type(operator) in _CALLED:
             return f"{_CALLED[type(operator)]}({left}, {right})"
         if type(operator) in _PLAIN:

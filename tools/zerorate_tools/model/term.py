@@ -50,7 +50,6 @@ class Term:
 
     @classmethod
     def from_dict(cls, values: dict) -> Term:
-        """Inverse of `to_dict`."""
         infinite = {"lo": -math.inf, "second_lo": -math.inf, "hi": math.inf, "second_hi": math.inf}
         filled: dict[str, Any] = {
             k: infinite[k] if v is None and k in infinite else v for k, v in values.items()

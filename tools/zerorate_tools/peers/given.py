@@ -23,7 +23,6 @@ class Given:
 
     @property
     def odr_hz(self) -> float:
-        """The output data rate."""
         return self.recording.scales.odr_hz
 
 

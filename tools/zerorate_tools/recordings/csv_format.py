@@ -161,6 +161,5 @@ class CsvWriter:
         self._writer.write_batch(arrow_batch(columns, self._schema))
 
     def close(self) -> None:
-        """Flush and close the file."""
         self._writer.close()
         self._file.close()

@@ -74,14 +74,12 @@ class TableWriter:
         self._writer: pq.ParquetWriter | None = None
 
     def append(self, table: pa.Table) -> None:
-        """Write a table."""
         if self._writer is None:
             schema = table.schema
             self._writer = pq.ParquetWriter(self._path, schema, compression="zstd", **self._how)
         self._writer.write_table(table)
 
     def close(self) -> None:
-        """Finish the file."""
         if self._writer is not None:
             self._writer.close()
 

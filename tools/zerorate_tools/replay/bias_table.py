@@ -57,5 +57,4 @@ class ReplayWriter(TableWriter):
         )
 
     def write(self, outcome: Outcome) -> None:
-        """Append a batch."""
         self.append(table(outcome))

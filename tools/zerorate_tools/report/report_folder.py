@@ -9,7 +9,6 @@ from ..errors import ZerorateError
 from ..loop.verify.analysis import Analysis
 from ..model import read_model
 from ..recordings.atomic import final, written_beside
-from .allan_plot import deviations
 from .board import deployment
 from .effect_plots import effect_plots
 from .estimator_plots import held_over_time, inside
@@ -18,7 +17,7 @@ from .held_out import fitted_noise, held_out
 from .kinds import title
 from .page import page
 from .plot import Plot
-from .residual_plots import against_temperature, against_time, at_a_glance
+from .residual_plots import against_temperature, against_time, at_a_glance, deviations
 
 #: Moments at which the firmware's state is looked at, of all recordings together.
 _MOST_MOMENTS = 120

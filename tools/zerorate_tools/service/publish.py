@@ -29,7 +29,6 @@ class Lines:
         self._stream = stream
 
     def put(self, line: bytes) -> None:
-        """Write and flush."""
         self._stream.write(line.decode())
         self._stream.flush()
 
@@ -62,7 +61,6 @@ class Datagrams:
             pass
 
     def close(self) -> None:
-        """Close the socket."""
         self._socket.close()
 
 

@@ -35,7 +35,6 @@ def wander(clock: Clock, *, mean: float = 0.0, std: float = 1.0, tau_s: float = 
 
 
 def walk(clock: Clock, *, start: float = 0.0, per_rt_s: float = 0.01):
-    """Random walk."""
     return start + random_walk(clock.rng, len(clock.t_s), clock.dt_s, np.array([per_rt_s]))[:, 0]
 
 

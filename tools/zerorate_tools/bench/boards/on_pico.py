@@ -17,7 +17,6 @@ _TAKE = 0x40070010
 
 
 def fill(words):
-    """Words from the host."""
     mem32[_LENGTH] = 4 * len(words)
     mem32[_FILL] = addressof(words)
 

@@ -56,7 +56,6 @@ class Spool:
         )
 
     def finish(self) -> None:
-        """End writing."""
         self._writer.close()
         self._file.seek(0)
         self._reader = pa.ipc.open_file(pa.PythonFile(self._file, "r"))
@@ -71,7 +70,6 @@ class Spool:
         return (self.read(number) for number in range(len(self.pieces)))
 
     def close(self) -> None:
-        """Give the file back."""
         self._reader = None
         self._file.close()
 
