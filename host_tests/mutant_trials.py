@@ -18,12 +18,8 @@ NOT_IN_PROCESS = " and ".join(
 )
 # What no mutant is in, and each process would else load anew.
 LOADED_ONCE = (
-    "hypothesis.strategies",
-    "hypothesis.internal.conjecture.engine",
-    "_hypothesis_pytestplugin",
-    "numpy",
-    "pyarrow.parquet",
-    "pyarrow.csv",
+    *("hypothesis.strategies", "hypothesis.internal.conjecture.engine"),
+    *("_hypothesis_pytestplugin", "numpy", "pyarrow.parquet", "pyarrow.csv"),
 )
 
 

@@ -34,13 +34,8 @@ def test_nothing_is_found_where_there_is_noise_alone(kind):
 @pytest.mark.parametrize(
     "effect",
     [
-        "temperature-quadratic",
-        "temperature-kink",
-        "thermal-lag",
-        "thermal-hysteresis",
-        "linear-acceleration",
-        "supply-temperature",
-        "scale-factor",
+        *("temperature-quadratic", "temperature-kink", "thermal-lag", "thermal-hysteresis"),
+        *("linear-acceleration", "supply-temperature", "scale-factor"),
     ],
 )
 def test_an_undeclared_effect_of_three_floors_is_found_named_and_removed(effect):

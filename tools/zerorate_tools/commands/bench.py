@@ -120,15 +120,13 @@ _COST_AND_ACCURACY = Bench(
 )
 BENCHES = {
     "accuracy": Bench(
-        "the bias error beside everyone else's",
-        "accuracy_report",
+        *("the bias error beside everyone else's", "accuracy_report"),
         lambda bench, a, advance: bench.accuracy(advance, _seeds(a)),
         lambda bench, a: bench.steps(_seeds(a)),
         options=_QUICK,
     ),
     "boards": Bench(
-        "memory, time and numbers on an emulated Pico",
-        "boards",
+        *("memory, time and numbers on an emulated Pico", "boards"),
         lambda bench, a, advance: bench.measure(advance),
         lambda bench, a: bench.STEPS,
     ),
@@ -140,8 +138,7 @@ BENCHES = {
         judged=True,
     ),
     "cost": Bench(
-        "instructions, heap, sizes and replay speed",
-        "cost_report",
+        *("instructions, heap, sizes and replay speed", "cost_report"),
         lambda bench, a, advance: bench.cost(advance, _hours(a)),
         lambda bench, a: bench.STEPS,
         options=_QUICK,
@@ -153,14 +150,12 @@ BENCHES = {
         judged=True,
     ),
     "filters": Bench(
-        "heading of attitude filters fed by zerorate",
-        "filters",
+        *("heading of attitude filters fed by zerorate", "filters"),
         lambda bench, a, advance: bench.run(a.data, advance),
         options=_BROAD,
     ),
     "fleet": Bench(
-        "many devices at once, and what a prior is worth",
-        "fleet",
+        *("many devices at once, and what a prior is worth", "fleet"),
         lambda bench, a, advance: bench.run(sorted(a.devices), advance=advance),
         lambda bench, a: bench.steps(a.devices, bench.WORKERS),
         options={
@@ -171,8 +166,7 @@ BENCHES = {
         },
     ),
     "import": Bench(
-        "seconds and memory of importing a huge CSV, made and not kept",
-        "import_size",
+        *("seconds and memory of importing a huge CSV, made and not kept", "import_size"),
         lambda bench, a, advance: bench.run(a.gb, a.folder, advance),
         lambda bench, a: 2,
         "in_words",
@@ -182,8 +176,7 @@ BENCHES = {
         },
     ),
     "loop": Bench(
-        "what closing the loop finds, and what it invents",
-        "loop",
+        *("what closing the loop finds, and what it invents", "loop"),
         lambda bench, a, advance: bench.run(
             *(a.nulls, a.seeds, a.processes),
             **{name: getattr(a, name) for name in ("data", "resume", "plots", "rows")},
@@ -201,34 +194,29 @@ BENCHES = {
         },
     ),
     "motion": Bench(
-        "the bias learned in motion beside vqf's",
-        "motion_table",
+        *("the bias learned in motion beside vqf's", "motion_table"),
         lambda bench, a, advance: bench.run(a.data),
         options=_BROAD,
     ),
     "peers": Bench(
-        "what the figures of other filters hang on",
-        "peer_differences",
+        *("what the figures of other filters hang on", "peer_differences"),
         lambda bench, a, advance: bench.peer_differences(_seeds(a), advance),
         lambda bench, a: len(bench.CASES),
         options=_QUICK,
     ),
     "real": Bench(
-        "closing the loop on real recordings, each alone",
-        "loop.real",
+        *("closing the loop on real recordings, each alone", "loop.real"),
         lambda bench, a, advance: bench.real_rows(_recordings(a), a.plots),
         text="in_words",
         options={**_RECORDINGS, **_PLOTS},
     ),
     "refine": Bench(
-        "one unit's effect model on another unit, refined",
-        "second_unit",
+        *("one unit's effect model on another unit, refined", "second_unit"),
         lambda bench, a, advance: bench.run(a.seeds),
         options={"--seeds": _number(20, "units")},
     ),
     "service": Bench(
-        "`zerorate run` through faults, kills, full disks",
-        "service",
+        *("`zerorate run` through faults, kills, full disks", "service"),
         lambda bench, a, advance: bench.run(a.hours, a.faults),
         text="in_words",
         options={"--hours": _number(24.0, "simulated"), "--faults": _number(1000, "how many")},

@@ -3,8 +3,7 @@
 from .words import Codes
 
 GUARD = Codes(
-    "What the guard says of a frame",
-    "guard",
+    *("What the guard says of a frame", "guard"),
     said_in="explain FAULTS",
     said={
         "GOOD": "good frames",
@@ -18,8 +17,7 @@ GUARD = Codes(
     },
 )
 STILLNESS = Codes(
-    "What a window was",
-    "",
+    *("What a window was", ""),
     said_in="explain STILLNESS",
     said={
         "UNKNOWN": "No full window has been seen yet.",
@@ -31,8 +29,7 @@ STILLNESS = Codes(
     },
 )
 SOURCE = Codes(
-    "Where a bias comes from",
-    "bias",
+    *("Where a bias comes from", "bias"),
     said_in="explain SOURCES",
     said={
         "NONE": "no bias yet",
@@ -45,8 +42,7 @@ SOURCE = Codes(
 )
 JOB = Codes("What the source in motion is doing", "", "IDLE TRAVERSE SOLVE")
 MOTION_REASON = Codes(
-    "What a window in motion taught",
-    "",
+    *("What a window in motion taught", ""),
     said_in="explain_sources MOTION",
     said={
         "NO_WINDOW": "no window has been seen yet",
@@ -61,8 +57,7 @@ MOTION_REASON = Codes(
     },
 )
 GRAVITY_REASON = Codes(
-    "What a sub-unit against gravity was",
-    "",
+    *("What a sub-unit against gravity was", ""),
     said_in="explain_sources LEVEL",
     said={
         "NO_SUB_UNIT": "no half-second has been seen yet",
@@ -91,8 +86,7 @@ MODEL = Codes(
     },
 )
 STORE = Codes(
-    "What a store says",
-    "store",
+    *("What a store says", "store"),
     said_in="store REASONS",
     said={
         "LOADED": "loaded",
@@ -105,8 +99,7 @@ STORE = Codes(
     },
 )
 INPUT_KIND = Codes(
-    "Sources of effects: an acceleration, the temperature, a mean rate, ..., a channel",
-    "",
+    *("Sources of effects: an acceleration, the temperature, a mean rate, ..., a channel", ""),
     KIND_ACCEL=0,
     KIND_TEMP=3,
     KIND_RATE=4,
@@ -118,22 +111,19 @@ INPUT_KIND = Codes(
     KIND_CHANNEL_NOW=24,
 )
 MEMORY = Codes(
-    "An effect slot's memory",
-    "",
+    *("An effect slot's memory", ""),
     "MEMORY_LAG MEMORY_DIFFERENCE MEMORY_RATE MEMORY_BACKLASH MEMORY_PEAK",
     first=1,
 )
 INSTANT = Codes("What of the sample itself a slot follows", "", "OF_RATE OF_ANOTHER", first=1)
 MARKS = Codes(
-    "Values that stand for none",
-    "",
+    *("Values that stand for none", ""),
     FREE=-1048576,  # temperature of a free estimator
     NO_VALUE=-0x3FFFFFFF,  # of an input that nothing was heard of, of a slot without a knot
     UNKNOWN_Q8=0x1FFFFFFF,  # one sigma of a bias that is not known
 )
 LIMITS = Codes(
-    "How many of each an effect model has at most",
-    "",
+    *("How many of each an effect model has at most", ""),
     MOST_SLOTS=8,
     MOST_INPUTS=12,
     MOST_CHANNELS=8,

@@ -3,10 +3,7 @@
 from .words import Array
 
 EFFECTS = Array(
-    "The effect model and its running state",
-    "e",
-    "`EffectModel.e`",
-    "EFFECTS_WORDS",
+    *("The effect model and its running state", "e", "`EffectModel.e`", "EFFECTS_WORDS"),
     (
         ("SLOT_COUNT", 1, "", "slots in use, 0: no model"),
         ("INPUT_COUNT", 1, "", "inputs in use"),
@@ -53,10 +50,7 @@ EFFECTS = Array(
 )
 
 INPUT = Array(
-    "An input of the effect model",
-    "a",
-    "`_INPUTS + i * _INPUT_WORDS`",
-    "INPUT_WORDS",
+    *("An input of the effect model", "a", "`_INPUTS + i * _INPUT_WORDS`", "INPUT_WORDS"),
     (
         ("INPUT_KIND", 1, "code INPUT_KIND", "which source"),
         ("INPUT_SHIFT", 1, "bits", "by which its values are shifted right to fit 16 bits"),
@@ -68,10 +62,7 @@ INPUT = Array(
 )
 
 SLOT = Array(
-    "An effect slot",
-    "a",
-    "`_SLOTS + i * _SLOT_WORDS`",
-    "SLOT_WORDS",
+    *("An effect slot", "a", "`_SLOTS + i * _SLOT_WORDS`", "SLOT_WORDS"),
     (
         ("SLOT_SOURCE", 1, "word", "its input's value"),
         ("SLOT_LOWEST_Q8", 1, "", "the source is held above"),
@@ -104,10 +95,7 @@ SLOT = Array(
 )
 
 PLAY = Array(
-    "A play operator",
-    "a",
-    "`_PLAYS + i * _PLAY_WORDS`",
-    "PLAY_WORDS",
+    *("A play operator", "a", "`_PLAYS + i * _PLAY_WORDS`", "PLAY_WORDS"),
     (
         ("PLAY_SOURCE", 5, "", "as a slot's source: word, lowest, highest, centre, shift"),
         ("PLAY_RADIUS", 1, "Q24", "how far behind its source it stays"),
@@ -120,10 +108,7 @@ PLAY = Array(
 )
 
 RING = Array(
-    "A delay's ring",
-    "ring",
-    "`_RINGS + i * _RING_WORDS`",
-    "RING_WORDS",
+    *("A delay's ring", "ring", "`_RINGS + i * _RING_WORDS`", "RING_WORDS"),
     (
         ("RING_NEWEST", 1, "", "place of the newest value"),
         ("RING_AGE", 1, "ticks", "since it was kept"),

@@ -3,10 +3,7 @@
 from .words import Array, Overlay
 
 MOTION = Array(
-    "The state of the source in motion",
-    "s",
-    "`Corrector.motion`",
-    "",
+    *("The state of the source in motion", "s", "`Corrector.motion`", ""),
     (
         ("NODE_ELAPSED_US", 1, "us", "of the node so far"),
         ("NODE_N", 1, "samples", "in the node so far"),
@@ -82,55 +79,45 @@ MOTION = Array(
             "HALF", "a sample is gathered", ("FRAME_ANGLE_Q24", 3, "rad", "turned in the sample")
         ),
         Overlay(
-            "R",
-            "the algebra runs",
+            *("R", "the algebra runs"),
             ("G", 20, "real", "normal equations: 00 01 02 0y 11 12 1y 22 2y yy"),
         ),
         Overlay(
-            "SUMS",
-            "the first traversal has ended",
+            *("SUMS", "the first traversal has ended"),
             ("TILT_FIT", 12, "", "first component's block up to SUM_Y"),
             ("TILT", 1, "rad Q12", "its mean: one tilt"),
             ("TILT_FIT_REST", 20, "", "up to the second component's SUM_Y"),
             ("OTHER_TILT", 1, "rad Q12", "the other tilt"),
         ),
         Overlay(
-            "PRIOR",
-            "what is known is carried to a window",
+            *("PRIOR", "what is known is carried to a window"),
             ("BENT", 2, "real", "variance that a bend of the curve adds"),
         ),
         Overlay(
-            "SLOPE",
-            "the slope over temperature of an axis is at work",
+            *("SLOPE", "the slope over temperature of an axis is at work"),
             ("TEMP_SLOPE", 2, "real", "the slope"),
             ("TEMP_SLOPE_COVARIANCE", 2, "real", "its covariance with the bias"),
             ("TEMP_SLOPE_VARIANCE", 2, "real", "its variance"),
         ),
         Overlay(
-            "T",
-            "a node is added to the sums",
+            *("T", "a node is added to the sums"),
             ("M", 3, "", "a row of regressors"),
             ("WM", 3, "", "the same times the taper"),
         ),
         Overlay(
-            "T",
-            "a sample is gathered",
+            *("T", "a sample is gathered"),
             ("CONING_Q24", 3, "rad", "half the cross product of turn and increment"),
             ("SCULLING_Q12", 3, "g", "what turning back to the node's start adds to the force"),
         ),
         Overlay(
-            "T",
-            "the tilt frame is found",
+            *("T", "the tilt frame is found"),
             ("LOOK", 4, "", "quaternion to be brought to length one"),
         ),
     ),
 )
 
 COMPONENT = Array(
-    "The sums of one component",
-    "a",
-    "`_SUMS + i * _COMPONENT_WORDS`",
-    "COMPONENT_WORDS",
+    *("The sums of one component", "a", "`_SUMS + i * _COMPONENT_WORDS`", "COMPONENT_WORDS"),
     (
         ("SUM_MM", 6, "", "weighted M M': 00 01 02 11 12 22"),
         ("SUM_MY", 3, "", "weighted M y"),
@@ -174,10 +161,7 @@ MOTION_SETTINGS = Array(
 )
 
 GRAVITY = Array(
-    "The state of the source against gravity",
-    "s",
-    "`Corrector.gravity`",
-    "GRAVITY_WORDS",
+    *("The state of the source against gravity", "s", "`Corrector.gravity`", "GRAVITY_WORDS"),
     (
         ("UNIT_ELAPSED_US", 1, "us", "of the sub-unit so far"),
         ("UNIT_N", 1, "samples", "in the sub-unit so far"),

@@ -3,10 +3,7 @@
 from .words import Array, Overlay
 
 STATE = Array(
-    "The corrector's state",
-    "s",
-    "`Corrector.state`",
-    "",
+    *("The corrector's state", "s", "`Corrector.state`", ""),
     (
         ("FRAME", 7, "LSB", "the frame before: ax ay az temp gx gy gz"),
         ("SCRATCH", 1, "", "what a kernel leaves for the next one"),
@@ -59,29 +56,24 @@ STATE = Array(
     ),
     (
         Overlay(
-            "SCRATCH",
-            "a histogram looks for its emptiest pair of bins",
+            *("SCRATCH", "a histogram looks for its emptiest pair of bins"),
             ("EMPTIEST", 1, "", "readings, or readings for their width, of the emptiest pair"),
         ),
         Overlay(
-            "SCRATCH",
-            "a long-term estimator is chosen to be replaced",
+            *("SCRATCH", "a long-term estimator is chosen to be replaced"),
             ("CANDIDATE_THIRD", 1, "0..2", "third of the range in which the candidate lies"),
         ),
         Overlay(
-            "SCRATCH",
-            "another source's bias is considered",
+            *("SCRATCH", "another source's bias is considered"),
             ("OFFERED_SOURCE", 1, "code SOURCE", "the source"),
         ),
         Overlay(
-            "FIT_SUM_T",
-            "a segment is absorbed, or a bias published",
+            *("FIT_SUM_T", "a segment is absorbed, or a bias published"),
             ("MEAN_NOISE_Q8", 1, "LSB^2", "variance of the segment's mean"),
             ("GROWN_Q8", 1, "LSB^2", "variance of the offset now; published: of the curve beyond"),
         ),
         Overlay(
-            "FIT_SUM_T",
-            "the line is bent",
+            *("FIT_SUM_T", "the line is bent"),
             ("BEND_SQUARE_Q14", 1, "", "weighted mean square of the points' temperatures"),
             ("BEND_CUBE_Q14", 1, "", "their weighted mean cube"),
             ("BEND_NORM_Q18", 1, "", "weighted mean square of the bow"),
@@ -89,8 +81,7 @@ STATE = Array(
             ("BEND_LEFT_Q6", 1, "LSB^2", "weighted mean square of what the line leaves"),
         ),
         Overlay(
-            "FIT_SUM_T",
-            "a long-term estimator is chosen to be replaced",
+            *("FIT_SUM_T", "a long-term estimator is chosen to be replaced"),
             ("NEAREST", 1, "LSB", "distance of the most crowded estimator's neighbour"),
         ),
         Overlay(
@@ -102,19 +93,13 @@ STATE = Array(
 )
 
 TURN_ON = Array(
-    "The last words before the axes",
-    "c[_AXES]",
-    "the first axis block",
-    "",
+    *("The last words before the axes", "c[_AXES]", "the first axis block", ""),
     (("TURN_ON_OFFSET_Q8", 3, "LSB", "turn-on offset of each axis, kept out of its curve"),),
     first=-3,
 )
 
 AXIS = Array(
-    "An axis",
-    "a",
-    "`c[_AXES] + axis * c[_AXIS_WORDS]`",
-    "",
+    *("An axis", "a", "`c[_AXES] + axis * c[_AXIS_WORDS]`", ""),
     (
         ("WAITING_SUM", 1, "LSB", "sum of the readings that wait to be learned"),
         ("WAITING_N", 1, "readings", "how many they are, 0: none"),
@@ -160,10 +145,7 @@ AXIS = Array(
 )
 
 ESTIMATOR = Array(
-    "An estimator",
-    "e",
-    "`a + _ESTIMATORS + i * c[_ESTIMATOR_WORDS]`",
-    "",
+    *("An estimator", "e", "`a + _ESTIMATORS + i * c[_ESTIMATOR_WORDS]`", ""),
     (
         ("EST_TEMP", 1, "LSB", "temperature it is for, or FREE"),
         ("EST_MEAN_TEMP_Q4", 1, "LSB", "mean temperature of its readings"),
@@ -175,10 +157,7 @@ ESTIMATOR = Array(
 )
 
 SETTINGS = Array(
-    "The corrector's settings",
-    "c",
-    "`Corrector.settings`",
-    "SETTINGS_WORDS",
+    *("The corrector's settings", "c", "`Corrector.settings`", "SETTINGS_WORDS"),
     (
         ("AXES", 1, "word", "where the axis blocks begin in the state"),
         ("LEAP_US", 1, "us", "a longer time between two samples is a fault"),

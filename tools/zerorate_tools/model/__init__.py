@@ -6,17 +6,6 @@ from .model import Binding, CannotDeploy, Input, Model, Slot
 from .text import from_json, to_json
 
 __all__ = (
-    "Binding",
-    "CannotDeploy",
-    "Input",
-    "Model",
-    "Slot",
-    "build_model",
-    "drafted",
-    "decoded",
-    "encoded",
-    "from_json",
-    "read_model",
-    "to_json",
-    "write_model",
-)
+    "Binding", "CannotDeploy", "Input", "Model", "Slot", "build_model", "drafted", "decoded",
+    "encoded", "from_json", "read_model", "to_json", "write_model",
+)  # fmt: skip

@@ -6,13 +6,6 @@ from .scales import Scales
 from .writing import check_output, recording_from_columns, recording_writer, write_recording
 
 __all__ = [
-    "OpenRecording",
-    "Recording",
-    "Scales",
-    "check_output",
-    "open_recording",
-    "read_recording",
-    "recording_from_columns",
-    "recording_writer",
-    "write_recording",
-]
+    "OpenRecording", "Recording", "Scales", "check_output", "open_recording", "read_recording",
+    "recording_from_columns", "recording_writer", "write_recording",
+]  # fmt: skip

@@ -10,13 +10,7 @@ from .engines import Outcome
 
 SOURCES = ("none", "any-temperature", "fit", "this-temperature", "in-motion", "gravity")
 VERDICTS = (
-    "good",
-    "repeat",
-    "rail",
-    "all-zero",
-    "all-ones",
-    "temperature-jump",
-    "time-stood-still",
+    *("good", "repeat", "rail", "all-zero", "all-ones", "temperature-jump", "time-stood-still"),
     "time-leapt",
 )
 _AXES = "xyz"

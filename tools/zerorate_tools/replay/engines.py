@@ -22,11 +22,7 @@ from ..recordings.checks import GAP
 from .samples import Frames
 
 _OTHERS = (
-    "motion.bin",
-    "motion_settings.bin",
-    "gravity.bin",
-    "gravity_settings.bin",
-    "effects.bin",
+    *("motion.bin", "motion_settings.bin", "gravity.bin", "gravity_settings.bin", "effects.bin"),
 )
 _OUTPUT = np.dtype([("verdict", "<i4"), ("bias", "<i4", 3), ("source", "<i4", 3), ("q", "<i4", 3)])
 

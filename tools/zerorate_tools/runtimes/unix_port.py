@@ -11,12 +11,7 @@ from zerorate_tools.runtimes.debian import fetch_packages, host_architecture, un
 from zerorate_tools.runtimes.native import UnixPort
 
 _PACKAGES = (
-    "micropython",
-    "libc6",
-    "libffi8",
-    "libmbedcrypto16",
-    "libmbedtls21",
-    "libmbedx509-7",
+    *("micropython", "libc6", "libffi8", "libmbedcrypto16", "libmbedtls21", "libmbedx509-7"),
     "libgcc-s1",
 )
 _ARCHITECTURES = {"x86": "i386", "armhf": "armhf", "x64": "amd64"}

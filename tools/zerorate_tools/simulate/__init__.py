@@ -6,13 +6,6 @@ from .output import read_truth, simulate_to_files, write_truth
 from .reference import reference
 
 __all__ = [
-    "Truth",
-    "bundled_names",
-    "load_description",
-    "read_truth",
-    "reference",
-    "simulate",
-    "simulate_sessions",
-    "simulate_to_files",
-    "write_truth",
-]
+    "Truth", "bundled_names", "load_description", "read_truth", "reference", "simulate",
+    "simulate_sessions", "simulate_to_files", "write_truth",
+]  # fmt: skip

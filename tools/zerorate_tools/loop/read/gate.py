@@ -32,11 +32,7 @@ _MOST_RATE_APART = 0.05
 #: Of the rests, beyond which it is said that the firmware takes them for motion.
 _MOST_SHAKEN = 0.3
 _SETTINGS = (
-    "sensor",
-    "odr_hz",
-    "gyro_lsb_per_dps",
-    "accel_lsb_per_g",
-    "temp_lsb_per_degc",
+    *("sensor", "odr_hz", "gyro_lsb_per_dps", "accel_lsb_per_g", "temp_lsb_per_degc"),
     "temp_offset_degc",
 )
 

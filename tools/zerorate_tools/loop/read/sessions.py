@@ -13,16 +13,7 @@ from .turns import Turns
 
 #: Sources of effect slots that are not extra channels, whose names extra channels cannot have.
 OWN_SOURCES = (
-    "one",
-    "time",
-    "temp",
-    "vib",
-    "acc_x",
-    "acc_y",
-    "acc_z",
-    "rate_x",
-    "rate_y",
-    "rate_z",
+    *("one", "time", "temp", "vib", "acc_x", "acc_y", "acc_z", "rate_x", "rate_y", "rate_z"),
 )
 
 _MOST_KNOWN = 1000

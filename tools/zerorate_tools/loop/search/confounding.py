@@ -43,11 +43,7 @@ def complexity(candidate) -> tuple[int, int]:
     """
     family = 0 if candidate.family == "catalogue" else 1
     forms = (
-        "channel",
-        "channel-lag",
-        "channel-square",
-        "channel-product",
-        "channel-rate",
+        *("channel", "channel-lag", "channel-square", "channel-product", "channel-rate"),
         "channel-kink",
     )
     order = forms.index(candidate.kind) if candidate.kind in forms else len(forms)
