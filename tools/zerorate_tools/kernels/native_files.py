@@ -156,10 +156,6 @@ def main(arguments: Sequence[str]) -> int:
     return 0
 
 
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
-
-
 def known(part: str) -> tuple:
     """The part's KNOWN (see trying.answer)."""
     rounds, what, new, bits, *arrays = _KNOWN[part]()
@@ -234,3 +230,7 @@ _KNOWN: dict[str, Callable[[], tuple]] = {
     "effects": _effects,
     "refine": _refine,
 }
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
