@@ -12,6 +12,7 @@ from zerorate_tools.loop.fit.single import PiecesByLine
 from zerorate_tools.loop.report.in_words import in_words
 from zerorate_tools.loop.report.report import report
 from zerorate_tools.loop.search.steps_first import bend_of, without_steps
+from zerorate_tools.model.term import first_order_lag
 
 
 def stepped(seed, floors, *places, effects=()):
@@ -21,6 +22,21 @@ def stepped(seed, floors, *places, effects=()):
     for at, sign in zip(places, (1, -1, 1)):
         session.rate_dps[at:] += sign * floors * device.floor_dps * (1, -1, 1)
     return session, device.floor_dps
+
+
+def in_a_freezer(seed, floors, place):
+    """A session taken in and out of a freezer whose part is late behind the thermometer."""
+    device = simulate(seed, sessions=1, bare=True)
+    (session,) = device.sessions
+    box = np.interp(
+        session.time_s(), [800, 1100, 1900, 2200, 2800, 3000], [24, -16, -16, 40, 40, 0]
+    )
+    session.sources["temp"] = temp = first_order_lag(box, 20.0, session.tick_s)
+    part = session.block_mean(first_order_lag(temp, 10.0, session.tick_s))[:, None] - 20.0
+    bias = part * (0.012, -0.01, 0.008) + part**2 * (-3e-4, 1e-4, 3e-4)
+    session.rate_dps = device.noise_dps[0] + bias
+    session.rate_dps[place:] += floors * device.floor_dps * (1, -1, 1)
+    return session
 
 
 def steps_at(session):
@@ -130,6 +146,12 @@ def test_a_slow_change_is_no_step(seed):
     ramp = np.clip((np.arange(session.blocks) - 86) / 8, 0.0, 1.0)
     session.rate_dps += 20 * floor * np.outer(ramp, (1, -1, 1))
     assert steps_at(session) == []
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_part_that_is_late_behind_its_thermometer_makes_no_step_and_hides_none(seed):
+    assert steps_at(in_a_freezer(seed, 0.0, 122)) == []
+    assert steps_at(in_a_freezer(seed, 10.0, 122)) == [pytest.approx(122, abs=1.0)]
 
 
 @pytest.mark.parametrize("seed", range(3))

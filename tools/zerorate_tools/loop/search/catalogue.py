@@ -1,6 +1,6 @@
 """What the bias of these sessions can follow: the rows of model/effects.py, each in its places."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import product
 
 import numpy as np
@@ -81,6 +81,9 @@ def is_supply(name: str) -> bool:
 #: Blocks beyond either limit of a source's range, and the further share of all blocks.
 _FEW, _FEW_SHARE = 1, 0.01
 
+#: Lags in s of the rates of temperature that a part follows which is late by seconds.
+_LATE_S = (1.0, 8.0)
+
 #: Share of its range by which the source of a difference may leave it.
 _MARGIN = 0.5
 
@@ -158,6 +161,25 @@ def candidates(sessions: list[Session]) -> list[Candidate]:
         for row in forms:
             out += _expand(row, name, "generic", span, others)
     return [c for c in out if _is_finite(c, sessions)]
+
+
+def of_temperature(sessions: list[Session]) -> list[Candidate]:
+    """Every candidate that is one slot of temperature alone, and what a late part adds."""
+    if "temp" not in common_sources(sessions):
+        return []
+    own = [c for c in candidates(sessions) if c.sources == ["temp"] and len(c.terms) == 1]
+    return [*own, *_late(sessions)]
+
+
+def _late(sessions) -> list[Candidate]:
+    """What a part adds that is late behind its thermometer by seconds, or early: the rate of
+    temperature times the slope of the bias, which bends with temperature."""
+    centre = float(np.mean([s.sources["temp"].mean() for s in sessions]))
+    rates = [Term("temp", lag_s=lag, lag_mode="rate") for lag in _LATE_S]
+    return [
+        Candidate("thermal-rate", (r, replace(r, second="temp", second_centre=centre)), "catalogue")
+        for r in rates
+    ]
 
 
 def _group(row: Effect, span, varied, sessions) -> list[Candidate]:

@@ -13,8 +13,7 @@ from scipy.stats import chi2
 
 from ..fit.regression import predicted
 from ..fit.surrogates import NullRatios
-from ..read.sessions import common_sources
-from .catalogue import Candidate, candidates
+from .catalogue import Candidate, of_temperature
 from .decide import LEVEL
 from .refine import refined
 from .step_places import EDGE, LONGEST, best_place, best_slow, beyond_ramps, heavisides, tried
@@ -70,11 +69,12 @@ def find_all(
 ) -> list[Step]:
     """Every step beside the terms, strongest first; they stay in the regression as nuisances.
 
-    A kink or a loop that the terms lack is made of steps, too: what follows temperature, and other
-    rivals, are taken beside the terms first, wherever one explains more than the steps do, or much
-    beside them. recordings: of one device, each searched by itself, which share the level.
+    A kink or a loop that the terms lack is made of steps, too, and a part that is late behind its
+    thermometer makes one at every corner: what follows temperature, and other rivals, are taken
+    beside the terms first, wherever one explains more than the steps do, or much beside them.
+    recordings: of one device, each searched by itself, which share the level.
     """
-    beside, forms = list(terms), [*_of_temperature(regression.sessions), *rivals]
+    beside, forms = list(terms), [*of_temperature(regression.sessions), *rivals]
     most = len(rivals) + _MOST_FORMS
     while True:
         regression.set_events([])
@@ -103,11 +103,6 @@ def _is_timing(regression, forms, fitted, step: Step) -> bool:
     along = predicted(forms, fitted, session) @ weight / (step.size_dps @ weight)
     last = len(along) - 1
     return bool(abs(along[min(step.block + 1, last)] - along[max(step.block - 1, 0)]) > 1.0)
-
-
-def _of_temperature(sessions) -> list[Candidate]:
-    pool = candidates(sessions) if "temp" in common_sources(sessions) else []
-    return [c for c in pool if c.sources == ["temp"] and len(c.terms) == 1]
 
 
 def _best_form(regression, terms, forms) -> tuple[Candidate | None, float]:
