@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 from zerorate_tools.bench.loop.added_effects import PRANDTL_ISHLINSKII, PRANDTL_ISHLINSKII_TOLD
 from zerorate_tools.bench.loop.bin_tables import hipnuc
-from zerorate_tools.bench.loop.devices import CATALOGUE, TOLD, Device, devices
+from zerorate_tools.bench.loop.devices import CATALOGUE, MANY_WIDTHS, NULL, TOLD, Device, devices
 from zerorate_tools.bench.loop.figures import figures, share
 from zerorate_tools.bench.loop.run_trial import Outcome, run_trial
 from zerorate_tools.bench.loop.simulated import simulate
 from zerorate_tools.bench.loop.trials import looked_at, markdown, renewed
+
+_AND_WITHDRAWN = "found, or found and withdrawn"
 
 
 def test_a_device_is_looked_at_and_judged():
@@ -31,7 +33,7 @@ def test_who_is_told_a_loop_leaves_less_unless_its_start_misleads():
     seeds = range(302_000, 302_004)
     loop = ((PRANDTL_ISHLINSKII, 5.0),)
     told = [run_trial(Device(TOLD, seed, loop, sessions=3)) for seed in seeds]
-    assert all(o.after <= o.before for o in told)
+    assert all(o.after <= o.before and o.after <= o.unpruned for o in told)
     assert np.mean([o.after for o in told]) < 0.8 * np.mean([o.before for o in told])
 
 
@@ -51,6 +53,16 @@ def test_figures_count_what_was_found_named_and_made_worse():
     assert by_name["2x, named rightly of those found"].met
     assert by_name["outside, 2x load-kink: tied to load"].value == 100.0
     assert by_name["held-out error made worse by more than 2 %"].value == 20.0
+
+
+def test_what_was_found_and_withdrawn_is_counted_beside_what_was_kept():
+    gone, kept = ({"withdrawn": ["thermal-hysteresis"]}, {"found": ["thermal-hysteresis"]})
+    for row, name in ((f"{MANY_WIDTHS}, 2", "2x hysteresis of many widths"), (NULL, "nothing")):
+        outcomes = [Outcome(Device(row, i), **some) for i, some in enumerate((gone, kept, {}, {}))]
+        counted = [
+            f.value for f in figures(outcomes) if _AND_WITHDRAWN in f.name and name in f.name
+        ]
+        assert counted and set(counted) == {50.0}
 
 
 def test_every_size_counts_alike_in_what_is_left():

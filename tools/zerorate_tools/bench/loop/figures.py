@@ -103,6 +103,12 @@ def _where_nothing_is(rows):
     for row, group in rows.items():
         if row.startswith(NULL) or row == REAL:
             yield share(f"step listed in {row}", group, lambda o: o.events > 0, None)
+    if noise:
+        yield share("found, or found and withdrawn, in nothing", noise, _found_at_first, None)
+
+
+def _found_at_first(o: Outcome) -> bool:
+    return bool(o.found or o.withdrawn)
 
 
 def _by_effect(group: list[Outcome]) -> dict[str, list[Outcome]]:
@@ -214,8 +220,10 @@ def _of_many_widths(which, group, found=None, after=None):
     if group:
         named = partial(Outcome.named, effect="thermal-hysteresis")
         yield share(f"{name}: found", group, named, found)
-        mean = np.mean([o.after for o in group])
-        yield _times(f"{name}: error after, mean", mean, after, len(group))
+        yield share(f"{name}: found, or found and withdrawn", group, _found_at_first, None)
+        errors = np.mean([(o.after, o.unpruned) for o in group], axis=0)
+        yield _times(f"{name}: error after, mean", errors[0], after, len(group))
+        yield _times(f"{name}: were nothing withdrawn", errors[1], None, len(group))
 
 
 def _made_worse(outcomes):

@@ -11,6 +11,7 @@ from .quiet import cut_into_sessions
 @dataclass
 class Outcome:
     """What the loop said of a device. before, after: held-out RMS over that of the noise alone;
+    unpruned: after, had the held-out session taken nothing out again; withdrawn: what it took;
     in_motion_mdps: error while it moves, of devices whose row asks for it."""
 
     device: Device
@@ -24,6 +25,8 @@ class Outcome:
     after: float = 1.0
     cpu_s: float = 0.0
     in_motion_mdps: float | None = None
+    unpruned: float = 1.0
+    withdrawn: list[str] = field(default_factory=list)
 
     def named(self, effect: str) -> bool:
         """Whether an effect is among the named, or among what is confounded with one of them."""
@@ -76,11 +79,22 @@ def _told(device: Device) -> Outcome:
     made = simulate(device.seed, device.effects, n)
     left = simulate(device.seed, [(PRANDTL_ISHLINSKII_TOLD, size)], n)
     before, after = _left_by_line(made.sessions), _left_by_line(left.sessions)
-    nearest = np.minimum(before, after)
     unit = _noise_rms(made.sessions[-1], made.noise_dps[-1])
-    errors = [float(np.sqrt((e**2).mean())) / unit for e in (before, nearest)]
-    found = ["thermal-hysteresis"] if (after < before).any() else []
-    return Outcome(device, found, before=errors[0], after=errors[1])
+    of_all = [_rms(e) / unit for e in (before, np.minimum(before, after), after)]
+    said = ["thermal-hysteresis"]
+    nearer = bool((after < before).any())
+    return Outcome(
+        device,
+        said if nearer else [],
+        before=of_all[0],
+        after=of_all[1],
+        unpruned=of_all[2],
+        withdrawn=[] if nearer else said,
+    )
+
+
+def _rms(each: np.ndarray) -> float:
+    return float(np.sqrt((each**2).mean()))
 
 
 def _left_by_line(sessions) -> np.ndarray:
@@ -108,12 +122,13 @@ def judged(device: Device, sessions: list, noise_dps: np.ndarray) -> Outcome:
     from ...loop.fit.single import PiecesByLine
     from ...loop.search.confounding import label
     from ...loop.search.select import select
+    from ...loop.verify.judge import residuals, rms_dps
     from ...loop.verify.prune_by_holdout import prune_by_holdout
 
     alone = PiecesByLine(sessions[0]) if len(sessions) == 2 else None
-    selection, verdict = prune_by_holdout(
-        select(sessions[:-1], 0, alone, judged_again=True), sessions[-1:]
-    )
+    every = select(sessions[:-1], 0, alone, judged_again=True)
+    selection, verdict = prune_by_holdout(every, sessions[-1:])
+    unpruned = rms_dps([left for left, _ in residuals(every, sessions[-1:])])
     unit = _noise_rms(sessions[-1], noise_dps)
     found = selection.found
     return Outcome(
@@ -126,4 +141,6 @@ def judged(device: Device, sessions: list, noise_dps: np.ndarray) -> Outcome:
         bool(verdict.residual_test.left),
         float(verdict.before_rms / unit),
         float(verdict.after_rms / unit),
+        unpruned=_rms(unpruned) / unit,
+        withdrawn=[name for name, _ in selection.withdrawn],
     )
