@@ -5,7 +5,6 @@ import math
 
 import pytest
 
-NUMBERS = [float]
 THREE = (float, float, float)
 INTERVALS = [(float, float)]
 BOTH = {"before": INTERVALS, "after": INTERVALS}

@@ -19,8 +19,9 @@ from zerorate.rest import guard
 from zerorate.rest.estimators import reset
 from zerorate.rest.step import admit, consider, finish, step
 from zerorate_tools.bench.emulated import Emulated, code_in
+from zerorate_tools.kernels.known import answer_by, known_model
 from zerorate_tools.kernels.machine_code import INLINED, UNROLLED
-from zerorate_tools.kernels.native_files import answer_by, known_model, plain_kernels
+from zerorate_tools.kernels.native_files import plain_kernels
 from zerorate_tools.kernels.parts import BURST, PARTS
 from zerorate_tools.kernels.reading import Kernels
 from zerorate_tools.layout import EFFECTS, GRAVITY, MOTION, SETTINGS, SLOT, SOURCE, STATE, STILLNESS
