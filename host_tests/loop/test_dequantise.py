@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from zerorate_tools.loop.read.dequantise import dequantise
+from zerorate_tools.loop.read.dequantise import dequantise, step_lsb
 
 WARMING = 20 + 8 * (1 - np.exp(-np.arange(3600) / 400))
 
@@ -45,3 +45,11 @@ def test_a_course_never_leaves_the_steps_by_more_than_half_a_jump(stays):
     raw = np.concatenate([np.full(length, float(level)) for level, length in stays])
     jump = np.abs(np.diff(raw)).max(initial=1.0)
     assert (np.abs(dequantise(raw) - raw) <= jump / 2 + 1e-9).all()
+
+
+@pytest.mark.parametrize(
+    "step, noise, seen", [(170, 0, 170), (170, 20, 170), (32, 40, 0), (1, 9, 0)]
+)
+def test_the_step_of_a_channel_is_known_where_it_stands_on_levels(step, noise, seen):
+    samples = 340 * WARMING[:, None] + noise * np.random.default_rng(3).normal(size=(3600, 4))
+    assert step_lsb((step * np.round(samples / step)).mean(axis=1)) == seen

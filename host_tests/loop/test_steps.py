@@ -154,6 +154,22 @@ def test_a_part_that_is_late_behind_its_thermometer_makes_no_step_and_hides_none
     assert steps_at(in_a_freezer(seed, 10.0, 122)) == [pytest.approx(122, abs=1.0)]
 
 
+@pytest.mark.parametrize(
+    "step_degc, off_axis, listed", [(0.0, 0, 1), (1.0, 0, 0), (1.0, 6, 1), (0.3, 0, 1)]
+)
+def test_a_step_along_the_slope_that_a_reading_of_the_thermometer_would_make_is_none(
+    step_degc, off_axis, listed
+):
+    device = simulate(1, sessions=1, bare=True)
+    ([session], floor) = device.sessions, device.floor_dps
+    slope = 20.0 * floor * (1, -1, 1)
+    temp = session.block_mean(session.sources["temp"])
+    session.rate_dps = device.noise_dps[0] + np.outer(temp, slope)
+    session.rate_dps[90:] += 0.8 * slope + off_axis * floor * (1, 1, 0)
+    session.temp_step_degc = step_degc
+    assert len(steps_at(session)) == listed
+
+
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("spoiled", [(0.5,), (0.25, 0.4)])
 def test_a_disturbance_of_seconds_is_no_step(seed, spoiled):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .dequantise import dequantise
+from .dequantise import dequantise, step_lsb
 from .earth import earth_of
 from .sessions import OWN_SOURCES, Session, block_means
 from .still import runs, still_ticks
@@ -72,7 +72,7 @@ def session_of(ticks: Ticks, block_s: float) -> Session:
         ticks.name, per * ticks.tick_s, per, mean, np.where(share < _LEAST_STILL, 0.0, share),
         sources_of(ticks, m), ticks.start_us, earth=earth, delay=ticks.delay,
         turns=turns_of(ticks), ticks_dps=np.where(still[:, None], rate_at_rest, np.nan),
-        welch=_welch(ticks), tick_weight=weight,
+        welch=_welch(ticks), tick_weight=weight, temp_step_degc=_temp_step_degc(ticks),
     )  # fmt: skip
 
 
@@ -83,9 +83,18 @@ def _welch(ticks: Ticks):
 
 
 def _temperature(ticks: Ticks) -> np.ndarray:
+    return ticks.scales.temp_degc(0) + dequantise(_temp_lsb(ticks)) / ticks.scales.temp_lsb_per_degc
+
+
+def _temp_step_degc(ticks: Ticks) -> float:
     lsb_per_degc = ticks.scales.temp_lsb_per_degc
-    zero_degc = ticks.scales.temp_degc(0)
-    return zero_degc + dequantise((ticks.temp - zero_degc) * lsb_per_degc) / lsb_per_degc
+    if ticks.temp is None or not lsb_per_degc:
+        return 0.0
+    return step_lsb(_temp_lsb(ticks)) / lsb_per_degc
+
+
+def _temp_lsb(ticks: Ticks) -> np.ndarray:
+    return (ticks.temp - ticks.scales.temp_degc(0)) * ticks.scales.temp_lsb_per_degc
 
 
 def sources_of(ticks: Ticks, m: int) -> dict[str, np.ndarray]:

@@ -5,6 +5,8 @@ take a rate of change for it, and what is then left of a warm-up looks like an e
 the same at each power-on.
 """
 
+from itertools import pairwise
+
 import numpy as np
 from scipy.stats import norm
 
@@ -12,6 +14,8 @@ from scipy.stats import norm
 _WHOLE = 0.03
 #: Ticks that a step lasts on average where it is a staircase at all.
 _LONG = 2
+#: Ticks for which no mean of samples that waver between two steps stays the same.
+_STANDS = 10
 #: Deviations of the samples' own noise that are tried, in steps; more of it averages the steps out.
 _NOISES = (0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3)
 #: By how much the course must be less rough than what was read.
@@ -31,6 +35,17 @@ def dequantise(raw_lsb: np.ndarray) -> np.ndarray:
     rough = [_roughness(c) for c in courses]
     best = int(np.argmin(rough))
     return courses[best] if rough[best] < _SMOOTHER * _roughness(raw_lsb) else raw_lsb
+
+
+def step_lsb(raw_lsb: np.ndarray) -> float:
+    """The step of (m,) means of an integer channel: the least between two levels, one after the
+    other, on which it stands for long; 0 where it does not do so.
+    """
+    whole = np.abs(raw_lsb - np.round(raw_lsb)) <= _WHOLE
+    stays = [(a, b) for a, b in _stays(raw_lsb, whole) if b - a >= _STANDS]
+    near = [(a, c) for (a, b), (c, _) in pairwise(stays) if c - b <= _STANDS]
+    steps = [abs(round(raw_lsb[c]) - round(raw_lsb[a])) for a, c in near]
+    return float(min((s for s in steps if s), default=0))
 
 
 def _roughness(course):

@@ -32,7 +32,8 @@ class Session:
     ticks_dps: (n * ticks_per_block, 3) rate of each tick at rest, NaN elsewhere; welch: spectrum of
     the samples at rest; tick_weight: (n * ticks_per_block,) samples that count in rate_dps.
     steps: of its bias, already out of rate_dps and ticks_dps; level_dps: (n * ticks_per_block, 3)
-    what they were; listed: steps that are still in them. known: block means of terms, of these
+    what they were; listed: steps that are still in them. temp_step_degc: of the thermometer's
+    readings, 0 where it is too fine to be seen. known: block means of terms, of these
     sources or of those that were replaced.
     """
 
@@ -53,6 +54,7 @@ class Session:
     steps: tuple = ()
     listed: tuple = ()
     level_dps: np.ndarray | None = None
+    temp_step_degc: float = 0.0
     known: dict = field(default_factory=dict, repr=False, compare=False)
 
     @property

@@ -32,6 +32,9 @@ _NEAR = 2
 #: By how much an acceleration at rest differs where the device was turned over; and what is less
 #: than any pose that a part, of some tenths of a dps a g, shows: stress of the board makes it, too.
 _TURNED_G, _TILTED_G = 0.5, 0.1
+#: Steps of the thermometer by which it may be wrong, and chi-squared of two axes (1 in 1,000) by
+#: which a step is off the slope.
+_OF_READING, _OFF_SLOPE = 1.1, 13.8
 
 
 def without_steps(sessions: Sequence[Session]) -> list[Session]:
@@ -65,6 +68,8 @@ def _steps(session, jumping, recordings: int) -> list[Step]:
     regression = Regression([session])
     hold_disturbed(regression, beside, recordings)
     every = find_all(regression, beside, rivals, recordings)
+    slopes = regression.fit(beside).coefficients
+    every = [s for s in every if not _is_thermometers(session, slopes, s)]
     for step in sorted(every, key=lambda s: s.block):
         if out and step.block - out[-1].block == 1 and step.size_dps @ out[-1].size_dps > 0:
             deviation = np.hypot(step.deviation_dps, out[-1].deviation_dps)
@@ -72,6 +77,21 @@ def _steps(session, jumping, recordings: int) -> list[Step]:
             step = replace(out.pop(), size_dps=size, deviation_dps=deviation)
         out.append(step)
     return out
+
+
+def _is_thermometers(session, fitted, step: Step) -> bool:
+    """Whether a step may be that of the thermometer's readings: it is along the slope of the bias
+    over temperature, and no larger than one. Between two readings nobody knows when the temperature
+    moved."""
+    bend = bend_of(session)
+    if not bend or not session.temp_step_degc:
+        return False
+    degc = session.block_mean(session.sources["temp"])[min(step.block, session.blocks - 1)]
+    along = [t.power * (degc - t.centre) ** (t.power - 1) for t in bend] @ fitted[: len(bend)]
+    weight = 1.0 / np.maximum(step.deviation_dps, 1e-12) ** 2
+    off_degc = (weight * along) @ step.size_dps / ((weight * along) @ along)
+    beside = weight @ (step.size_dps - off_degc * along) ** 2
+    return bool(abs(off_degc) <= _OF_READING * session.temp_step_degc and beside < _OFF_SLOPE)
 
 
 def bend_of(session: Session) -> list[Term]:
