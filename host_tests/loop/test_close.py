@@ -12,6 +12,7 @@ from zerorate_tools.loop.analyse import sessions_of
 from zerorate_tools.loop.read.gate import CannotClose
 from zerorate_tools.loop.read.still import still_ticks
 from zerorate_tools.loop.read.ticks import read_ticks
+from zerorate_tools.loop.report.report import report
 from zerorate_tools.recordings import Recording, Scales
 
 from .power_ons import SCALES, recording, turning, written
@@ -90,6 +91,14 @@ def test_two_sessions_leave_one_to_choose_on_and_one_to_judge_by(logs):
     analysis = load(logs[:2])
     assert [s.name for s in analysis.train] == ["session-1"]
     assert "thermal-hysteresis" in [f.candidate.kind for f in analysis.selection.found]
+
+
+def test_nothing_that_is_deployed_is_told_as_refused(logs):
+    analysis = load(logs[:2])
+    for effect in ("thermal-hysteresis", "temperature-kink"):
+        analysis.selection.refused.append((effect, "another of its kind"))
+    told = dict(report(analysis)["gate"]["considered_and_refused"])
+    assert "thermal-hysteresis" not in told and "temperature-kink" in told
 
 
 def test_long_recordings_with_long_gaps_get_longer_blocks(tmp_path):

@@ -230,6 +230,7 @@ def _event(session, step):
 
 
 def _gate(analysis):
+    kept = {label(f.candidate) for f in analysis.selection.found}
     return {
         "faults": analysis.gate.faults,
         "channels_dropped": analysis.gate.dropped,
@@ -239,6 +240,7 @@ def _gate(analysis):
         "considered_and_refused": [
             [what, why.replace("sessions", "pieces") if analysis.single else why]
             for what, why in dict.fromkeys(analysis.selection.refused)
+            if what not in kept  # another of the kind was, which reads as if it were this one
         ],
     }
 
