@@ -3,6 +3,7 @@
 import copy
 
 import pytest
+from zerorate_tools.bench.fleet import in_markdown, on_paper
 from zerorate_tools.fleet.plots import headline, write_page
 
 HOSTILE = "<script>document.title='taken'</script>"
@@ -57,3 +58,9 @@ def test_chromium_draws_every_plot_without_a_word(done, browser):
     page.close()
     assert said == []
     assert drawn >= 3 and wide <= 390
+
+
+def test_a_bench_of_too_few_devices_for_a_prior_says_so():
+    million = on_paper({"cpu_s": 1.0, "devices": 6, "out_bytes": 1}, 1.5, 25.0, 1000.0)
+    some = {"minutes": 1.5, "odr_hz": 25.0, "bytes_per_recording": 1000.0, "scaling": []}
+    assert "it takes 10 devices" in in_markdown({**some, "prior": None, "million": million})

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..fleet import Fleet, devices_of, fleet
 from ..fleet.cluster import MOST_BYTES, MOST_DEVICES, MOST_WAITING, cluster, run_all
+from ..fleet.first_minutes import LEAST_DEVICES
 from ..fleet.fleet_in_words import WAYS, scenario_in_words
 from ..recordings import write_recording
 from ..simulate import simulate
@@ -176,7 +177,10 @@ def in_markdown(found: dict[str, Any]) -> str:
         "of the replays, without the cluster's start and the report at the end."
     )
     parts = ["# Fleet", machine_line(), "## Scaling", length, _scaling(found["scaling"])]
-    parts += ["## A prior for a new device", _about(found["prior"]), _prior(found["prior"])]
+    prior = found["prior"]
+    few = f"Not tried: it takes {LEAST_DEVICES} devices."
+    tried = [_about(prior), _prior(prior)] if prior else [few]
+    parts += ["## A prior for a new device", *tried]
     parts += ["## A million devices, on paper", _million(found["million"])]
     return "\n\n".join(part.strip() for part in parts) + "\n"
 
