@@ -45,6 +45,8 @@ SIZES = (2.0, 3.0, 5.0)
 #: Devices at the smallest size, of those at the others: there it is counted how many are found, and
 #: of twenty a limit of 98 % is missed by one that noise alone hides.
 _SMALLEST = 2.5
+#: The same for many widths, of which no limit is missed by the luck of a few.
+_OF_MANY = 2
 HIDDEN_FLOORS = 5.0
 _SEEDS = {"null": 10_000, "effect": 200_000, "hidden": 400_000, "real": 600_000, "pair": 800_000}
 _SEEDS["many widths"] = 300_000
@@ -112,7 +114,7 @@ def _effects(seeds: int) -> Iterator[Device]:
 def _many_widths(seeds: int) -> Iterator[Device]:
     from .added_effects import PRANDTL_ISHLINSKII, PRANDTL_ISHLINSKII_KNOWN
 
-    for n, i in product(POWER_ONS, range(seeds)):
+    for n, i in product(POWER_ONS, range(_OF_MANY * seeds)):
         seed = _SEEDS["many widths"] + 1000 * n + i
         loop, known = ((PRANDTL_ISHLINSKII, 2.0),), ((PRANDTL_ISHLINSKII_KNOWN, 2.0),)
         yield Device(f"{MANY_WIDTHS}, {n}", seed, loop, sessions=n)

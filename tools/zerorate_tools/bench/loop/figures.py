@@ -210,7 +210,7 @@ def _many_widths(rows):
     every = [o for group in each.values() for o in group]
     yield from _of_many_widths("", every, 95.0, 1.2)
     yield from _of_many_widths(", told but for its start", rows.get(TOLD, []))
-    yield from _of_many_widths(", kept where it starts", rows.get(START_KNOWN, []))
+    yield from _of_many_widths(", kept where it starts", rows.get(START_KNOWN, []), 95.0, 1.2)
     for row, group in each.items():
         yield from _of_many_widths(f", {row.split()[-1]} power-ons", group)
 
