@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from zerorate_tools.bench.loop.added_effects import PRANDTL_ISHLINSKII
+from zerorate_tools.bench.loop.added_effects import PRANDTL_ISHLINSKII, PRANDTL_ISHLINSKII_KNOWN
 from zerorate_tools.bench.loop.simulated import simulate
 from zerorate_tools.loop.fit.line import ordinary
 from zerorate_tools.loop.fit.regression import predicted
@@ -150,6 +150,12 @@ class CurveBendsAlready(PiecesByLine):
 def test_a_bend_that_the_firmware_s_curve_has_is_none_of_a_hysteresis_s_gain(seed):
     session = recording(DOWN_UP_DOWN, seed=seed, hysteresis=0.0, walk=0.001, cubic_dps=0.1)
     assert select([session], on_pieces=CurveBendsAlready(session)).found == []
+
+
+@pytest.mark.parametrize("seed", [304_000, 304_020])
+def test_a_wide_loop_that_is_gone_through_one_way_is_no_memory_of_a_peak(seed):
+    sessions = simulate(seed, [(PRANDTL_ISHLINSKII_KNOWN, 2.0)], 4).sessions
+    assert [f.candidate.kind for f in select(sessions[:-1]).found] == [KIND]
 
 
 def test_what_predicts_no_better_is_not_proposed():

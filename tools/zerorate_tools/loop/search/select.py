@@ -159,13 +159,15 @@ class Search:
         return gains(self.regression, [*straight, *beside], terms)
 
     def _is_better(self, candidate: Candidate, own: list[Found]) -> bool:
-        """Whether the plain error of what is left out is well below that with a simpler form."""
+        """Whether the plain error of what is left out is well below that with a simpler form, or
+        below it at all: a peak's memory is what a wide loop shows that is gone through one way."""
         simpler = [t for f in own for t in f.candidate.terms]
         with_own, with_sum = (
             ols_holdout_ratio(self.regression, self.straight, self.terms(), terms)
             for terms in (simpler, candidate.terms)
         )
-        return with_sum < _WELL_BELOW * with_own
+        of_peak = any(f.candidate.kind == "temperature-peak" for f in own)
+        return with_sum < (1.0 if of_peak else _WELL_BELOW) * with_own
 
     def _look_afresh(self):
         r = self.regression
