@@ -15,7 +15,7 @@ from zerorate_tools.loop.search.decide import Decision
 from zerorate_tools.loop.search.select import select
 from zerorate_tools.loop.search.selection import Found
 from zerorate_tools.loop.verify.judge import judge
-from zerorate_tools.loop.verify.prune_by_holdout import prune_by_holdout, unharmed
+from zerorate_tools.loop.verify.prune_by_holdout import prune_by_holdout, unharmed, worthwhile
 from zerorate_tools.model.term import Term
 
 
@@ -86,6 +86,19 @@ def test_what_takes_hardly_anything_goes_where_one_recording_was_fitted():
     slope = Candidate("temperature-polynomial", (Term("temp", 10.0, 40.0),), "catalogue")
     with_slope = replace(selection, alone=True, found=[Found(slope, selection.found[0].decision)])
     assert unharmed(with_slope, parts, never_asked) is with_slope
+
+
+def test_what_takes_less_than_a_tenth_over_the_axes_goes_where_one_recording_was_fitted():
+    selection = select(simulate(11, [("supply-voltage", 5.0)]).sessions[:-1])
+    bend = Candidate("temperature-quadratic", (Term("temp", 10.0, 40.0, power=2),), "catalogue")
+    bent = replace(selection, found=[Found(bend, selection.found[0].decision)])
+    before, little, enough = ([np.full((4, 3), [1.0, e, e])] for e in (1.0, 0.9, 0.8))
+    [(_, said)] = worthwhile(replace(bent, alone=True), [before, little]).withdrawn
+    assert "hardly falls" in said
+    for other, after in ((bent, little), (replace(selection, alone=True), little)):
+        assert worthwhile(other, [before, after]) is other
+    alone = replace(bent, alone=True)
+    assert worthwhile(alone, [before, enough]) is alone
 
 
 def test_what_the_session_held_out_is_the_worse_for_goes():

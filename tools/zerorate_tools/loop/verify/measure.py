@@ -37,7 +37,7 @@ from .measured import (
     Sink,
 )
 from .power_on import BlockMeans, PowerOn, ideal_dps
-from .prune_by_holdout import unharmed
+from .prune_by_holdout import unharmed, worthwhile
 from .slots import deployable, model_of, with_selection
 
 _AXES = ("gx", "gy", "gz")
@@ -148,6 +148,8 @@ def _unharmed(selection: Selection, measured: Measured, again: Callable[[Selecti
             return again(selection.without(i)).with_first(number - 1, names)
 
         less = unharmed(selection, after, without)
+        if less is selection and not names:
+            less = worthwhile(selection, after)
         if less is not selection:
             return less
     return selection

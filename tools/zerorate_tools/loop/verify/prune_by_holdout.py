@@ -26,6 +26,9 @@ MOST_LOST = 0.5
 #: Of the error without it, on an axis, that an effect must take away where one recording alone was
 #: fitted: what takes less made a further power-on worse as often as better.
 _LEAST_TAKEN = 0.05
+#: Of the error over the axes, that all which follows temperature or time must take away there: of
+#: what takes less a further power-on was worse as often as better, and the worse by more.
+_LEAST_IN_ALL = 0.1
 AGAIN = "it does not come again alike in what was held out"
 
 
@@ -73,6 +76,22 @@ def unharmed(
         if axes.any():
             selection = selection.spared(i, axes, _grown(errors, i))
     return selection
+
+
+def worthwhile(selection: Selection, after: Sequence[list[np.ndarray]]) -> Selection:
+    """The selection without its last effect, where one recording alone was fitted and all of them,
+    which follow temperature or time, take hardly anything of the error over the axes.
+
+    after: as for `unharmed`.
+    """
+    errors = np.array([rms_dps(r) for r in after])
+    of_heat = {t.source for t in selection.terms} <= {"temp", "time"}
+    if not (selection.alone and selection.found and of_heat):
+        return selection
+    if np.linalg.norm(errors[-1]) <= (1.0 - _LEAST_IN_ALL) * np.linalg.norm(errors[0]):
+        return selection
+    last = len(selection.found) - 1
+    return selection.spared(last, [True] * 3, _grown(errors, last))
 
 
 def _grows(selection: Selection, errors: np.ndarray, without) -> np.ndarray:
