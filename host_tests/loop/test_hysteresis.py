@@ -113,12 +113,6 @@ def test_power_ons_show_more_than_one_width():
     assert len({t.width for t in terms if t.memory in ("backlash", "play")}) > 1
 
 
-def test_what_power_ons_show_as_well_by_many_widths_names_them_beside():
-    device = simulate(303_003, [(PRANDTL_ISHLINSKII, 2.0)], sessions=3)
-    (found,) = select(device.sessions[:2]).found
-    assert found.candidate.kind == "power-on-transient" and KIND in found.confounded_with
-
-
 @pytest.mark.parametrize(
     "plays",
     [

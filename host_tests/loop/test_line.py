@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from zerorate_tools.bench.loop.simulated import simulate
 from zerorate_tools.loop.fit.line import by_axis, ordinary, with_line
-from zerorate_tools.loop.fit.single import fitted_to
+from zerorate_tools.loop.fit.single import PiecesByLine
 from zerorate_tools.model.term import Term
 
 LINE, SLOPE = Term("temp", centre=25.0), Term("temp", 10.0, 50.0, 25.0)
@@ -18,7 +18,7 @@ def session():
 
 def test_an_axis_without_an_effect_is_fitted_as_if_it_were_not_there(session):
     applied = np.array([[1.0, 1.0, 1.0], [1.0, 0.0, 1.0]])
-    _, spared = fitted_to(session, [LINE], [BEND, LAG], applied)
+    _, spared = PiecesByLine(session, hold=False).fitted_to(session, [LINE], [BEND, LAG], applied)
     alone, both = ordinary([LINE, BEND], [session]), ordinary([LINE, BEND, LAG], [session])
     assert np.allclose(spared[:2, 1], alone[:, 1])
     assert not np.allclose(spared[:2, 1], both[:2, 1])

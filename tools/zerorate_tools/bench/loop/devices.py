@@ -37,8 +37,8 @@ PAIRS = (
 )
 #: Hysteresis of many widths, by how many power-ons; the last one is held out.
 MANY_WIDTHS, POWER_ONS = "many widths", (2, 3, 4, 5, 6)
-#: The same devices, kept before power-on where their temperature begins, as a model takes it to be;
-#: and not closed, but what a model leaves that is told the loop, though not where it stands.
+#: The same, kept before power-on where their temperature begins, as a model takes it to be; and not
+#: closed, but what a model leaves that is told the loop, though not where it stands.
 START_KNOWN, TOLD = "start known", "told"
 #: Sizes in floors, all of which must come down to the noise.
 SIZES = (2.0, 3.0, 5.0)
@@ -50,6 +50,8 @@ _OF_MANY = 2
 HIDDEN_FLOORS = 5.0
 _SEEDS = {"null": 10_000, "effect": 200_000, "hidden": 400_000, "real": 600_000, "pair": 800_000}
 _SEEDS["many widths"] = 300_000
+#: Devices on which nothing was developed.
+_SEEDS["start known"] = 300_070
 NULL, REAL, OUT, HIDDEN, TWO = "nothing", "real noise", "outside", "not recorded", "two at once"
 
 
@@ -115,10 +117,10 @@ def _many_widths(seeds: int) -> Iterator[Device]:
     from .added_effects import PRANDTL_ISHLINSKII, PRANDTL_ISHLINSKII_KNOWN
 
     for n, i in product(POWER_ONS, range(_OF_MANY * seeds)):
-        seed = _SEEDS["many widths"] + 1000 * n + i
+        seed, fresh = (_SEEDS[row] + 1000 * n + i for row in ("many widths", "start known"))
         loop, known = ((PRANDTL_ISHLINSKII, 2.0),), ((PRANDTL_ISHLINSKII_KNOWN, 2.0),)
         yield Device(f"{MANY_WIDTHS}, {n}", seed, loop, sessions=n)
-        yield Device(START_KNOWN, seed, known, sessions=n)
+        yield Device(START_KNOWN, fresh, known, sessions=n)
         yield Device(TOLD, seed, loop, sessions=n)
 
 

@@ -23,10 +23,10 @@ _FEW, _MOST_KEPT_BYTES = 64, 96 << 20
 class Whitener:
     """The spectra of one session's noise, and its columns' cross products under each of them."""
 
-    def __init__(self, available: np.ndarray):
+    def __init__(self, available: np.ndarray, few: bool = False):
         self.available = available
         self.n = len(available)
-        self.spectrum = noise.spectra(self.n)
+        self.spectrum = noise.spectra(self.n)[noise.FEW if few else slice(None)]
         self.weight = 1.0 / self.spectrum
         self.logdet = np.log(self.spectrum).sum(axis=1)
         self.coefficients = self.n - 1
@@ -51,8 +51,8 @@ class GappyWhitener(Whitener):
     colour.
     """
 
-    def __init__(self, available: np.ndarray):
-        super().__init__(available)
+    def __init__(self, available: np.ndarray, few: bool = False):
+        super().__init__(available, few)
         self.coefficients = int(available.sum()) - 1
         # (n, n - 1) without a mean: what is left of n blocks when their offset is free
         self._keep = noise.transform(np.eye(self.coefficients + 1)).T
@@ -104,8 +104,8 @@ class BridgedWhitener(Whitener):
     alike.
     """
 
-    def __init__(self, available: np.ndarray):
-        super().__init__(available)
+    def __init__(self, available: np.ndarray, few: bool = False):
+        super().__init__(available, few)
         self.coefficients = int(available.sum()) - 1
 
     def prepare(self, columns):
@@ -114,22 +114,22 @@ class BridgedWhitener(Whitener):
         return noise.transform(np.column_stack(filled)) if filled else np.zeros((self.n - 1, 0))
 
 
-_KNOWN: WeakValueDictionary[bytes, Whitener] = WeakValueDictionary()
+_KNOWN: WeakValueDictionary[tuple[bytes, bool], Whitener] = WeakValueDictionary()
 
 
-def whitener(available: np.ndarray) -> Whitener:
-    """The cheapest one that the gaps allow; the same again while anyone holds it."""
-    key = available.tobytes()
+def whitener(available: np.ndarray, few: bool = False) -> Whitener:
+    """The cheapest one that the gaps allow; the same again while anyone holds it. few: colours."""
+    key = available.tobytes(), few
     known = _KNOWN.get(key)
     if known is None:
-        known = _KNOWN[key] = _new(available)
+        known = _KNOWN[key] = _new(available)(available, few)
     return known
 
 
-def _new(available):
+def _new(available) -> type[Whitener]:
     if available.all():
-        return Whitener(available)
-    return BridgedWhitener(available) if can_be_bridged(available) else GappyWhitener(available)
+        return Whitener
+    return BridgedWhitener if can_be_bridged(available) else GappyWhitener
 
 
 @dataclass

@@ -1,43 +1,59 @@
 """Does a candidate predict sessions that its fit did not see?"""
 
+from collections.abc import Sequence
+
 import numpy as np
+
+from ...model.term import Term
+from .shrunk import remembers_by_plays, shrink
 
 #: Of coefficients about zero, over their size in all sessions: wide, so that only what the other
 #: sessions all but fail to show is held back.
 _SPREAD = 3.0
 
 
-def spread_of(coefficients: np.ndarray, own: slice) -> np.ndarray:
-    """(J,) about zero of the (A, J) coefficients fitted on all sessions; infinite but for the own
-    ones of a candidate.
+def precision_of(regression, g, base, terms: Sequence[Term], own: slice) -> np.ndarray:
+    """(A, J) of coefficients about zero, over the white part of the noise: of the own ones of a
+    candidate wide, as large as all sessions show them; of play operators as large as is likely.
+
+    base: the fit of all sessions to the products g.
     """
-    out = np.full(coefficients.shape[1], np.inf)
-    size = np.sqrt((coefficients[:, own] ** 2).mean(axis=0))
-    out[own] = _SPREAD * np.maximum(size, 1e-300)
-    return out
+    out = np.zeros(base.fitted.shape)
+    size = np.sqrt((base.fitted[:, own] ** 2).mean(axis=0))
+    out[:, own] = base.variance[:, None] / (_SPREAD * np.maximum(size, 1e-300)) ** 2
+    shrunk = of_plays(g, regression.scale, terms)
+    return np.where(shrunk > 0, shrunk, out)
 
 
-def fitted_without(g, s: int, a: int, c: int, variance, scale: np.ndarray, spread=None):
+def of_plays(g, scale: np.ndarray, terms: Sequence[Term]) -> np.ndarray:
+    """(J,) precision of play operators among terms, as `precision_of`; zero of all else."""
+    if not remembers_by_plays(terms):
+        return np.zeros(g.zz.shape[-1])
+    return shrink(g, scale, terms).precision
+
+
+def fitted_without(g, s: int, a: int, c: int, scale: np.ndarray, precision=None):
     """(J,) coefficients of an axis at a colour, fitted on the other sessions than s; arguments as
-    for `session_misfit`, variance of this axis.
+    for `session_misfit`, precision of this axis.
     """
     others = np.arange(len(g.count)) != s
     w = scale[others, a] ** -2.0
     zz = np.tensordot(w, g.zz[others, c], 1)
-    if spread is not None:
-        zz = zz + np.diag(variance / spread**2)
+    if precision is not None:
+        zz = zz + np.diag(precision)
     return np.linalg.lstsq(zz, w @ g.zy[others, c, :, a], rcond=1e-12)[0]
 
 
-def session_misfit(g, s: int, colour, variance, scale: np.ndarray, spread=None) -> float:
+def session_misfit(g, s: int, colour, variance, scale: np.ndarray, precision=None) -> float:
     """Weighted squares of session s left by coefficients fitted on the other sessions.
 
     colour: (A,) grid index and variance: (A,) dps^2 at which every fit is weighted; scale: (S, A);
-    spread: (J,) of coefficients about zero, known before the fit, infinite where it is not.
+    precision: (A, J) of coefficients about zero, known before the fit (`precision_of`).
     """
     total = 0.0
     for a, c in enumerate(colour):
-        b = fitted_without(g, s, a, c, variance[a], scale, spread)
+        own = None if precision is None else precision[a]
+        b = fitted_without(g, s, a, c, scale, own)
         rss = g.yy[s, c, a] - 2 * g.zy[s, c, :, a] @ b + b @ g.zz[s, c] @ b
         total += scale[s, a] ** -2.0 * rss / variance[a]
     return float(total)
@@ -51,11 +67,10 @@ def gains(regression, terms, candidate) -> np.ndarray:
     prediction differs. A column of the candidate that the other sessions do not show is worth
     nothing there, not anything: its coefficients are of the size that all sessions give.
     """
-    full = regression.fit([*terms, *candidate]).base
-    spread = spread_of(full.fitted, slice(len(terms), len(terms) + len(candidate)))
-    misfit = []
-    for chosen, known in ((terms, None), ([*terms, *candidate], spread)):
-        g = regression.cross_products(chosen)
+    both, own = [*terms, *candidate], slice(len(terms), len(terms) + len(candidate))
+    full, whole = regression.fit(both).base, regression.cross_products(both)
+    precision, misfit = precision_of(regression, whole, full, both, own), []
+    for g, known in ((regression.cross_products(terms), None), (whole, precision)):
         each = range(len(g.count))
         misfit.append(
             [session_misfit(g, s, full.best, full.variance, regression.scale, known) for s in each]

@@ -11,7 +11,8 @@ import numpy as np
 
 from ...model.term import Term
 from ..read.sessions import block_basis
-from .regression import predicted
+from .regression import Regression, predicted
+from .shrunk import remembers_by_plays, shrink
 from .smooth import bends_often, smooth
 
 #: Of the squared coefficients of play operators, in units of their columns, per block.
@@ -50,6 +51,14 @@ def ordinary(terms, sessions, effects=(), coefficients=None) -> np.ndarray:
         x.append(np.diag(np.sqrt(rows * np.array(plays)) * scale))
         y.append(np.zeros((len(plays), 3)))
     return np.linalg.lstsq(np.vstack(x) / scale, np.vstack(y), rcond=1e-12)[0] / scale[:, None]
+
+
+def shrunk(regression: Regression, terms: Sequence[Term]) -> np.ndarray:
+    """(terms, 3) dps per unit of terms with play operators among them, beside the noise's colour,
+    their weights as large as is likely."""
+    with regression.in_sensor_axes():
+        fitted = shrink(regression.cross_products(terms), regression.scale, terms)
+    return fitted.coefficients[: len(terms)]
 
 
 def by_axis(
@@ -91,6 +100,9 @@ def deployed(selection, effects: bool = True) -> tuple[list, np.ndarray]:
 
 
 def _fit_of(selection):
+    regression = selection.regression
+    if remembers_by_plays(selection.terms) and not selection.stands_alone:
+        return lambda terms: shrunk(regression, terms)
     if selection.alone:
-        return lambda terms: ordinary(terms, selection.regression.sessions)
-    return lambda terms: selection.regression.fit(terms).coefficients
+        return lambda terms: ordinary(terms, regression.sessions)
+    return lambda terms: regression.fit(terms).coefficients

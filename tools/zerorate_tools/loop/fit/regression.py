@@ -36,12 +36,13 @@ class Regression:
     """Residuals of some sessions and the cached columns of every term asked for.
 
     Axes are scaled by their noise and perhaps turned (`axes`, (3, 3): turned = rate @ axes.T), so
-    that a cause common to them does not count three times.
+    that a cause common to them does not count three times. few: only some colours of the noise, for
+    fits that weigh them all (`fit/shrunk.py`).
     """
 
-    def __init__(self, sessions: list[Session]):
+    def __init__(self, sessions: list[Session], few: bool = False):
         self.sessions = sessions
-        self.whiteners = [whitener(s.available) for s in sessions]
+        self.whiteners = [whitener(s.available, few) for s in sessions]
         self.rate = [s.rate_dps for s in sessions]
         self.outliers = 0
         self.steep = True  # whether the noise may be steeper than a random walk

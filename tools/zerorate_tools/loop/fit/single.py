@@ -7,14 +7,16 @@ offset and one course of temperature, and a slow cause outlasts any gap.
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from scipy.ndimage import binary_dilation
 
 from ...model.term import Term
 from ..read.sessions import Session
-from .line import by_axis, ordinary, with_line
-from .regression import predicted
+from .line import by_axis, ordinary, shrunk, with_line
+from .regression import Regression, predicted
+from .shrunk import remembers_by_plays
 
 #: Pieces, and the turns in which they are left out: each turn has pieces far apart.
 PIECES, FOLDS = 20, 10
@@ -73,14 +75,20 @@ class PiecesByLine:
     Ordinary least squares with one offset for all pieces, as they are of one power-on, beside a
     straight line; for recordings that the firmware's own kernels cannot be run over. beside: other
     recordings of the device, to which every turn is fitted as well; hold: whether a bend is held at
-    the edges of what a turn is fitted to.
+    the edges of what a turn is fitted to; shrunk: whether play operators are as large as is likely.
     """
 
     reason = "does not predict the pieces left out"
 
-    def __init__(self, session: Session, beside: Sequence[Session] = (), hold: bool = True) -> None:
+    def __init__(
+        self,
+        session: Session,
+        beside: Sequence[Session] = (),
+        hold: bool = True,
+        shrunk: bool = False,
+    ) -> None:
         self.fold = fold_of(session)
-        self.session, self.beside, self.hold = session, beside, hold
+        self.session, self.beside, self.hold, self.shrunk = session, beside, hold, shrunk
         near = np.ones(2 * gap_blocks(session) + 1, bool)
         left = [self.fold == k for k in range(self.fold.max() + 1)]
         self.parts = [_only(session, ~binary_dilation(one, near)) for one in left]
@@ -104,7 +112,7 @@ class PiecesByLine:
         """
         out = np.full((self.session.blocks, 3), np.nan)
         for k, part in enumerate(self.parts):
-            kept, coefficients = fitted_to(part, straight, terms, applied, self.beside, self.hold)
+            kept, coefficients = self.fitted_to(part, straight, terms, applied)
             left = self.session.rate_dps - predicted(kept, coefficients, self.session)
             own = self.fold == k
             out[own] = part.less_offsets(left, part.available)[own]
@@ -121,32 +129,34 @@ class PiecesByLine:
             out[own] = part.less_offsets(left, part.available)[own]
         return out
 
+    def fitted_to(
+        self, part: Session, straight, terms, applied=None
+    ) -> tuple[list[Term], np.ndarray]:
+        """(terms, (terms, 3) dps per unit) fitted to a part of the recording and to others beside
+        it, the line first.
+
+        What does not remember is held at the edges of what the part shows of its source, if asked
+        to; but beside play operators, which go on there and bend against it, as they all do on the
+        board. The line is fitted anew beside what is applied.
+        """
+        straight, fitted = list(straight), [part, *self.beside]
+        plays = remembers_by_plays(terms)
+        hold = self.hold and not plays
+        kept = [held(t, fitted) if hold and is_instant(t) else t for t in terms]
+        every = [*straight, *kept]
+        if not every:
+            return [], np.zeros((0, 3))
+        each = np.ones((len(kept), 3)) if applied is None else applied
+        fit = partial(ordinary, sessions=fitted)
+        if plays and self.shrunk:
+            fit = partial(shrunk, Regression(fitted, few=True))
+        return every, by_axis(fit, every, with_line(straight, terms, each))
+
     def _squares(self, left):
         """(folds, 3) sums of squares; infinite where there is nothing to sum."""
         squares = np.where(self.session.available[:, None], left**2, 0.0)
         sums = [squares[self.fold == k].sum(axis=0) for k in range(len(self.parts))]
         return np.nan_to_num(sums, nan=np.inf)
-
-
-def fitted_to(
-    part: Session, straight, terms, applied=None, beside: Sequence[Session] = (), hold: bool = True
-) -> tuple[list[Term], np.ndarray]:
-    """(terms, (terms, 3) dps per unit) fitted to a part of a recording and to others beside it, the
-    line first.
-
-    What does not remember is held at the edges of what the part shows of its source, if asked to;
-    but beside play operators, which go on there and bend against it, as they all do on the board.
-    The line is fitted anew beside what is applied.
-    """
-    straight = list(straight)
-    hold = hold and not any(t.memory == "play" for t in terms)
-    fitted = [part, *beside]
-    kept = [held(t, fitted) if hold and is_instant(t) else t for t in terms]
-    every = [*straight, *kept]
-    if not every:
-        return [], np.zeros((0, 3))
-    each = np.ones((len(kept), 3)) if applied is None else applied
-    return every, by_axis(lambda t: ordinary(t, fitted), every, with_line(straight, terms, each))
 
 
 def is_instant(term: Term) -> bool:

@@ -107,17 +107,14 @@ def of_one_recording(
     pool: Sequence[Candidate],
     judged: JudgedOnPieces,
     taken: int,
-    judged_again: bool,
 ) -> tuple[Found | None, str]:
     """The hysteresis of a recording that stands alone, with its bend as one effect, or why not.
 
     beside: the bend found, then another that may be better with a hysteresis beside it; pool: of
     which lag, rate and kink are asked first, for one course of temperature shows all much alike;
-    taken: slots that others need; judged_again: whether another power-on has the last word. Where
-    none has, no other may predict the pieces nearly as well, and the error on them must fall by
-    LEAST_FACTOR beside the bend; where one has, what predicts nearly
-    as well is named beside it. Pieces left out decide, as with bends, but the noise may be as steep
-    as it likes: a course with few turns is much like a walk.
+    taken: slots that others need. No other may predict the pieces nearly as well, and the error on
+    them must fall by LEAST_FACTOR beside the bend. Pieces left out decide, as with bends, but the
+    noise may be as steep as it likes: a course with few turns is much like a walk.
     """
     # beside play operators no bend is held at the edges: then none is in what they are compared to
     by_line = PiecesByLine(regression.sessions[0], hold=False)
@@ -126,24 +123,20 @@ def of_one_recording(
         return None, ""
     gain, bend, candidate = best
     rival, rivals_gain = _rival(straight, bend, pool, by_line)
-    if rivals_gain > gain - (0.0 if judged_again else TIES_NATS):
+    if rivals_gain > gain - TIES_NATS:
         return None, AS_WELL if rivals_gain < gain + TIES_NATS else BETTER
     p, ratio = _chance(regression, [*straight, *bend, *rival.terms], candidate)
-    told_apart = rivals_gain <= gain - TIES_NATS and p <= LEVEL["catalogue"]
-    if judged_again and not told_apart:
-        p, ratio = _chance(regression, [*straight, *bend], candidate)
     if p > LEVEL["catalogue"]:
         return None, "not significant"
     whole = (*bend, *candidate.terms)
-    if not judged_again and _factor(straight, beside, whole, by_line) < LEAST_FACTOR:
+    if _factor(straight, beside, whole, by_line) < LEAST_FACTOR:
         return None, "too little of the error to tell it from the noise's walk"
     nats = judged(straight, (), whole)
     nats = nats - judged(straight, (), beside[0]) if beside[0] else nats
     if not speaks_for(nats):
         return None, judged.reason
     decision = Decision(True, p, ratio, 1.0, nats)
-    as_well = [] if told_apart else [rival.kind]
-    return Found(Candidate(KIND, whole, "catalogue"), decision, as_well), ""
+    return Found(Candidate(KIND, whole, "catalogue"), decision), ""
 
 
 def _with_a_bend(

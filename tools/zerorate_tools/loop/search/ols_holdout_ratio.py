@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...model.term import Term
-from ..fit.left_out import fitted_without, spread_of
+from ..fit.left_out import fitted_without, precision_of
 from ..fit.line import ordinary
 from ..fit.regression import predicted
 
@@ -33,11 +33,12 @@ def _square(regression, straight, effects, last=0):
     every = [*straight, *effects]
     fit = regression.fit(every)
     g = regression.cross_products(every)
-    spread = spread_of(fit.base.fitted, slice(len(every) - last, len(every)))
+    own = slice(len(every) - last, len(every))
+    precision = precision_of(regression, g, fit.base, every, own)
     total = 0.0
     for s, session in enumerate(regression.sessions):
         others = [o for i, o in enumerate(regression.sessions) if i != s]
-        fitted = _fitted_without(regression, g, fit.base, s, spread)[len(straight) : len(every)]
+        fitted = _fitted_without(regression, g, fit.base, s, precision)[len(straight) : len(every)]
         model = predicted(effects, fitted, session)
         if straight:
             line = ordinary(straight, others, effects, fitted)
@@ -47,10 +48,10 @@ def _square(regression, straight, effects, last=0):
     return total
 
 
-def _fitted_without(regression, g, base, session, spread):
+def _fitted_without(regression, g, base, session, precision):
     """(columns, 3) dps per unit by generalised least squares on the other sessions."""
     turned = [
-        fitted_without(g, session, a, colour, variance, regression.scale, spread)
-        for a, (colour, variance) in enumerate(zip(base.best, base.variance))
+        fitted_without(g, session, a, colour, regression.scale, precision[a])
+        for a, colour in enumerate(base.best)
     ]
     return np.linalg.solve(regression.axes, np.array(turned)).T

@@ -10,6 +10,7 @@ from ..fit.single import LEAST_OF_A_PIECE, PIECES, PiecesByLine
 from . import by_pieces, hysteresis
 from .bends import JudgedOnPieces, find_bends
 from .catalogue import Candidate
+from .likely_hysteresis import of_a_pair
 from .selection import Found
 
 #: Blocks at rest below which bends are not looked for.
@@ -51,13 +52,15 @@ class OneRecording:
 
     def _look_for_hysteresis(self, curve: tuple[Term, ...]):
         """A sum of play operators with the bend found, or with a whole curve, as one effect."""
-        terms = self._terms()
+        terms, taken = self._terms(), self.taken
         beside = [tuple(terms), *([curve] if curve else [])]
         straight = less_slope(self.line, terms)
-        found, refused = hysteresis.of_one_recording(
-            *(self.regression, straight, beside, self.pool, self.judged, self.taken),
-            judged_again=self.judged_again,
-        )
+        if self.judged_again:
+            found, refused = of_a_pair(self.regression, straight, terms, self.pool, taken)
+        else:
+            found, refused = hysteresis.of_one_recording(
+                self.regression, straight, beside, self.pool, self.judged, taken
+            )
         self.found = [found] if found else self.found
         self.refused += [(hysteresis.KIND, refused)] if refused else []
 

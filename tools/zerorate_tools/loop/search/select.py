@@ -7,9 +7,9 @@ import numpy as np
 
 from ...model.term import Term
 from ..fit.common_cause import coherence, turned_axes
-from ..fit.left_out import gains
 from ..fit.line import less_slope
 from ..fit.regression import Regression
+from ..fit.shrunk import evidence
 from ..read.sessions import Session
 from . import confounding, hysteresis
 from . import steps as events
@@ -21,9 +21,9 @@ from .detectable import smallest_dps
 from .examine import Examiner
 from .extrapolation import follow_further, go_on
 from .fits_in_slots import fits_in_slots
+from .likely_hysteresis import likeliest
 from .multiple_testing import MultipleTesting
 from .naming import name_found
-from .ols_holdout_ratio import ols_holdout_ratio
 from .one_recording import OneRecording
 from .refine import refined
 from .selection import Found, Selection
@@ -31,9 +31,6 @@ from .selection import Found, Selection
 MOST_EFFECTS = 6
 _KINDS_TRIED = 4
 _TURN_BELOW = 1e-3
-#: Of the plain error of sessions left out, what a sum of play operators must leave of that of what
-#: it takes the place of.
-_WELL_BELOW = 0.8
 
 
 def straight_line(sessions: list[Session]) -> tuple[Term, ...]:
@@ -115,6 +112,7 @@ class Search:
             self.pool,
             smallest,
             bool(self.on_pieces),
+            judged_again=self.judged_again,
         )
 
     def _smallest(self):
@@ -136,38 +134,22 @@ class Search:
 
     def _widen_hysteresis(self):
         """A sum of play operators in place of what was found to remember temperature, or to follow
-        the start of a power-on, where it predicts better."""
+        the start of a power-on, where it is likelier."""
         own = [f for f in self.found if f.candidate.kind in hysteresis.LIKE_IT]
         if not own:
             return
         before, self.found = self.found, [f for f in self.found if f not in own]
         simpler = [t for f in own for t in f.candidate.terms]
-        candidate, gain = hysteresis.best_hysteresis(
-            self.regression.sessions, self.straight, self.terms(), self._nats
-        )
-        lost = float(self._nats(self.straight, self.terms(), simpler).sum()) - gain
+        beside = [*self.straight, *self.terms()]
+        candidate, gain = likeliest(self.regression, beside)
+        lost = evidence(self.regression, beside, simpler) - gain
         found = None
-        if candidate and lost < 0 and self._is_better(candidate, own):
+        if candidate and lost < 0:
             if fits_in_slots([*self.terms(), *candidate.terms], self.taken):
-                self._look_afresh()
-                found = self._consider(candidate)
+                found = Found(candidate, own[0].decision)
         self.found = [*self.found, found] if found else before
         if candidate and not found and lost < hysteresis.TIES_NATS:
             self.like_hysteresis = [f for f in own if f.candidate.kind != hysteresis.KIND]
-
-    def _nats(self, straight, beside, terms):
-        return gains(self.regression, [*straight, *beside], terms)
-
-    def _is_better(self, candidate: Candidate, own: list[Found]) -> bool:
-        """Whether the plain error of what is left out is well below that with a simpler form, or
-        below it at all: a peak's memory is what a wide loop shows that is gone through one way."""
-        simpler = [t for f in own for t in f.candidate.terms]
-        with_own, with_sum = (
-            ols_holdout_ratio(self.regression, self.straight, self.terms(), terms)
-            for terms in (simpler, candidate.terms)
-        )
-        of_peak = any(f.candidate.kind == "temperature-peak" for f in own)
-        return with_sum < (1.0 if of_peak else _WELL_BELOW) * with_own
 
     def _look_afresh(self):
         r = self.regression

@@ -47,7 +47,13 @@ class Selection:
     pool: list[Candidate]
     smallest_dps: dict[str, float]
     alone: bool = False  # whether one recording was fitted, whose pieces judged
+    judged_again: bool = False  # whether another one, held out, has the last word
     withdrawn: list[tuple[str, str]] = field(default_factory=list)  # see `prune_by_holdout`
+
+    @property
+    def stands_alone(self) -> bool:
+        """Whether there is no other recording."""
+        return self.alone and not self.judged_again
 
     def first(self, effects: int) -> Selection:
         """The same with the first so many effects alone."""

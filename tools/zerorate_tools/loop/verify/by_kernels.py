@@ -13,7 +13,7 @@ from ...model import CannotDeploy, Model, Slot, drafted
 from ...model.term import Term
 from ...recordings import Scales
 from ...replay.samples import Frames
-from ..fit.single import PiecesByLine, fitted_to, is_instant
+from ..fit.single import PiecesByLine, is_instant
 from ..read.sessions import Session
 from .firmware import Firmware, Refused, at_once, rows
 from .power_on import BlockMeans, PowerOn
@@ -30,8 +30,14 @@ class PiecesByKernels(PiecesByLine):
 
     reason = "on pieces left out it gains nothing on the firmware's own curve"
 
-    def __init__(self, power_on: PowerOn, scales: Scales, beside: Sequence[Session] = ()) -> None:
-        super().__init__(power_on.session, beside)
+    def __init__(
+        self,
+        power_on: PowerOn,
+        scales: Scales,
+        beside: Sequence[Session] = (),
+        shrunk: bool = False,
+    ) -> None:
+        super().__init__(power_on.session, beside, shrunk=shrunk)
         self.power_on, self._scales = power_on, scales
         self._known: dict[tuple, np.ndarray] = {}
 
@@ -58,7 +64,7 @@ class PiecesByKernels(PiecesByLine):
         return [self._model(straight, terms, applied, [*more], part) for part in self.parts]
 
     def _model(self, straight, terms, applied, more, part):
-        kept, fitted = fitted_to(part, straight, terms, applied, self.beside)
+        kept, fitted = self.fitted_to(part, straight, terms, applied)
         pairs = list(zip(kept, fitted))[len(straight) :]
         slots = [Slot(t, (float(x), float(y), float(z)), "") for t, (x, y, z) in pairs]
         every = [*slots, *more]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..fit.common_cause import coherence
-from ..fit.left_out import session_misfit
+from ..fit.left_out import of_plays, session_misfit
 from ..fit.line import deployed
 from ..fit.noise import IS_STEEP
 from ..fit.regression import Regression, predicted
@@ -172,7 +172,10 @@ def _gains(whole: Regression, selection: Selection, trained: int) -> np.ndarray:
         train_only = [g.of(np.r_[np.arange(trained), s]) for s in holdout]
         scales = [np.vstack([whole.scale[:trained], whole.scale[s : s + 1]]) for s in holdout]
         known = full.best, full.variance
-        return sum(session_misfit(t, trained, *known, c) for t, c in zip(train_only, scales))
+        plays = of_plays(g.of(np.arange(trained)), whole.scale[:trained], terms)
+        shrunk = np.tile(plays, (len(full.best), 1))
+        each = zip(train_only, scales)
+        return sum(session_misfit(t, trained, *known, c, shrunk) for t, c in each)
 
     with_all = misfit(every)
     out = []

@@ -96,7 +96,7 @@ def _course_of(analysis, power_ons, model, scales) -> Callable[[str, bool, Sink]
 
 def _by_pieces(analysis, power_on, scales) -> MeasurementByPieces:
     beside = [s for s in analysis.train if s.name != power_on.session.name]
-    pieces = PiecesByKernels(power_on, scales, beside)
+    pieces = PiecesByKernels(power_on, scales, beside, shrunk=not analysis.single)
     return MeasurementByPieces(pieces, analysis.selection, slots_of(analysis.motion))
 
 

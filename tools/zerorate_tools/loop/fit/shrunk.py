@@ -1,0 +1,114 @@
+"""Weights of play operators, as large as the recordings say.
+
+Play operators of several widths are much alike: by least squares they fight, and follow the noise.
+Here their weights are normal about zero (ridge), those of the squares by themselves. How large they
+are, and the colour of the noise, is weighed by what the recordings make of it (restricted
+likelihood, the sizes alike on all axes, the colour of each its own); the weights are the mean over
+all sizes and colours, not the likeliest (Rasmussen and Williams, Gaussian Processes for Machine
+Learning, 2006, 2.7).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from ...model.term import Term
+from .cross_products import CrossProducts
+from .noise import LOG_PRIOR
+
+#: Variance of what all operators add, of that of a block's white noise; and of it, that of squares.
+_SIZES = np.r_[1e-3, 10.0 ** np.arange(-1.0, 4.1, 0.5)]
+_OF_SQUARES = (1e-3, 0.1, 0.3, 1.0)
+_TINY = 1e-10
+
+
+def remembers_by_plays(terms: Sequence[Term]) -> bool:
+    """Whether some terms are play operators."""
+    return any(t.memory == "play" for t in terms)
+
+
+@dataclass
+class Shrunk:
+    """coefficients: (J, A) of terms, as large as is likely; precision: (J,) of those of the play
+    operators about zero, over the white part of the noise, at the likeliest size, else zero; nats:
+    by which they, of any size, are likelier than none of them."""
+
+    coefficients: np.ndarray
+    precision: np.ndarray
+    nats: float
+
+
+def shrink(g: CrossProducts, scale: np.ndarray, terms: Sequence[Term], own=None) -> Shrunk:
+    """Terms fitted to products of them, which are the first of the columns.
+
+    scale: (S, A) noise of each session; own: which terms are shrunk, if not the play operators.
+    """
+    axes = [_Axis(g, scale[:, a], a) for a in range(scale.shape[1])]
+    groups = _groups(terms, axes[0].zz.shape[-1], own)
+    spans = [axes[0].spans(own, np.any(groups, axis=0)) for own in groups]
+    precisions, told, fitted = [], [], []
+    for sizes in product(_SIZES, *[_OF_SQUARES] * (len(groups) - 1)):
+        shares = np.cumprod(sizes)
+        parts = [own * span / share for own, span, share in zip(groups, spans, shares)]
+        precision = np.sum([np.zeros(axes[0].zz.shape[-1]), *parts], axis=0)
+        each = [axis.fit(precision) for axis in axes]
+        precisions.append(precision)
+        told.append(sum(t for t, _ in each))
+        fitted.append(np.column_stack([c for _, c in each]))
+    weight = np.exp(np.array(told) - max(told))
+    mean = np.tensordot(weight / weight.sum(), fitted, 1)
+    nats = float(max(told) + np.log(weight.mean()) - told[0])
+    return Shrunk(mean, precisions[int(np.argmax(told))], nats)
+
+
+def _groups(terms, columns: int, own: slice | None) -> list[np.ndarray]:
+    """(columns,) of zero and one: the play operators, and their squares where there are any."""
+    shrunk = [t.memory == "play" for t in terms]
+    if own is not None:
+        shrunk = [i in range(*own.indices(len(terms))) for i in range(len(terms))]
+    powers = [t.power * s for t, s in zip(terms, shrunk)] + [0] * (columns - len(terms))
+    return [np.array(powers) == p for p in sorted({*powers} - {0})]
+
+
+def evidence(regression, terms: Sequence[Term], candidate: Sequence[Term]) -> float:
+    """Nats by which a candidate of any size is likelier beside terms than none."""
+    every, own = [*terms, *candidate], slice(len(terms), None)
+    return shrink(regression.cross_products(every), regression.scale, every, own).nats
+
+
+class _Axis:
+    """Products of one axis over all sessions, by colour."""
+
+    def __init__(self, g: CrossProducts, scale: np.ndarray, axis: int) -> None:
+        w = 1.0 / scale**2
+        self.zz = np.tensordot(w, g.zz, 1)
+        self.zy = np.tensordot(w, g.zy[..., axis], 1)
+        self.yy = w @ g.yy[..., axis]
+        self.logdet, self.count = g.logdet.sum(axis=0), g.count.sum()
+        diagonal = np.einsum("gjj->j", self.zz)
+        self.tiny = _TINY * diagonal + 1e-300
+
+    def spans(self, own: np.ndarray, plays: np.ndarray) -> float:
+        """Sum of the variances of columns, less what all but play operators take of them."""
+        zz = self.zz[0] + np.diag(self.tiny)
+        rest = zz[np.ix_(~plays, ~plays)]
+        cross = zz[np.ix_(~plays, own)]
+        taken = np.einsum("jk,jk->", cross, np.linalg.solve(rest, cross)) if len(rest) else 0.0
+        return max((np.trace(zz[np.ix_(own, own)]) - taken) / self.count, 1e-300)
+
+    def fit(self, precision: np.ndarray) -> tuple[float, np.ndarray]:
+        """Log likelihood, and (J,) coefficients, over all colours."""
+        factor = np.linalg.cholesky(self.zz + np.diag(precision + self.tiny))
+        half = np.linalg.solve(factor, self.zy[..., None])[..., 0]
+        fitted = np.linalg.solve(factor.transpose(0, 2, 1), half[..., None])[..., 0]
+        left = np.maximum(self.yy - (half**2).sum(axis=1), 1e-300)
+        shrunk = precision > 0
+        free = self.count - (~shrunk).sum()
+        likely = 0.5 * np.log(precision[shrunk]).sum() - 0.5 * free * np.log(left)
+        likely -= np.log(np.einsum("gjj->gj", factor)).sum(axis=1) + 0.5 * self.logdet
+        likely += LOG_PRIOR if len(likely) == len(LOG_PRIOR) else 0.0
+        top = likely.max()
+        weight = np.exp(likely - top)
+        return float(top + np.log(weight.sum())), weight @ fitted / weight.sum()
