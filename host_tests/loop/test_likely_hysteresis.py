@@ -79,3 +79,9 @@ def test_a_loop_that_two_power_ons_show_is_named():
     (found,) = select(sessions[:-1]).found
     assert found.candidate.kind == KIND
     assert {t.memory for t in found.candidate.terms} == {"play"}
+
+
+def test_a_lag_that_is_nearly_as_likely_is_named_beside_it():
+    sessions = simulate(200_010, [("thermal-lag", 2.0)], 4).sessions
+    (found,) = select(sessions[:-1]).found
+    assert found.candidate.kind == KIND and "thermal-lag" in found.confounded_with

@@ -146,7 +146,9 @@ class Search:
         found = None
         if candidate and lost < 0:
             if fits_in_slots([*self.terms(), *candidate.terms], self.taken):
-                found = Found(candidate, own[0].decision)
+                near = [f.candidate.kind for f in own if lost > -hysteresis.TIES_NATS]
+                as_well = [kind for kind in near if kind != hysteresis.KIND]
+                found = Found(candidate, own[0].decision, as_well)
         self.found = [*self.found, found] if found else before
         if candidate and not found and lost < hysteresis.TIES_NATS:
             self.like_hysteresis = [f for f in own if f.candidate.kind != hysteresis.KIND]
