@@ -7,6 +7,7 @@ from zerorate_tools.bench.loop.simulated import simulate
 from zerorate_tools.loop.fit.line import ordinary, shrunk
 from zerorate_tools.loop.fit.regression import Regression, predicted
 from zerorate_tools.loop.fit.shrunk import evidence
+from zerorate_tools.loop.fit.single import PiecesByLine
 from zerorate_tools.loop.search.catalogue import candidates
 from zerorate_tools.loop.search.hysteresis import KIND
 from zerorate_tools.loop.search.likely_hysteresis import likeliest, of_a_pair
@@ -85,3 +86,12 @@ def test_a_lag_that_is_nearly_as_likely_is_named_beside_it():
     sessions = simulate(200_010, [("thermal-lag", 2.0)], 4).sessions
     (found,) = select(sessions[:-1]).found
     assert found.candidate.kind == KIND and "thermal-lag" in found.confounded_with
+
+
+@pytest.mark.parametrize("seed", [302_301, 302_309, 302_313])
+def test_a_bend_and_a_lag_of_one_of_two_power_ons_are_no_hysteresis(seed):
+    effects = [("temperature-quadratic", 4.0), ("thermal-lag", 4.0)]
+    first, _ = simulate(seed, effects, 2, bare=True).sessions
+    found = select([first], on_pieces=PiecesByLine(first), judged_again=True).found
+    bend, lag = (f.candidate.kind for f in found)
+    assert bend in ("temperature-quadratic", "temperature-curve") and lag == "thermal-lag"

@@ -51,15 +51,16 @@ def of_a_pair(
 ) -> tuple[Found | None, str]:
     """The hysteresis that one recording shows, or why not; another has the last word.
 
-    bend: what was found, whose place it takes; pool: of which lag, rate and kink must not be
-    likelier, and are named where nearly as likely; taken: slots that others need.
+    bend: what was found, whose place it takes; pool: of which lag, rate and kink, beside the bend,
+    must not be likelier, and are named where nearly as likely; taken: slots that others need.
     """
     candidate, nats = likeliest(regression, straight)
     if candidate is None or not fits_in_slots(candidate.terms, taken):
         return None, ""
-    simpler = [(c.kind, evidence(regression, straight, c.terms)) for c in pool if c.kind in SIMPLER]
+    beside, of_bend = [*straight, *bend], evidence(regression, straight, bend) if bend else 0.0
+    simpler = [(c.kind, evidence(regression, beside, c.terms)) for c in pool if c.kind in SIMPLER]
     rival, most = max(simpler, key=itemgetter(1))
-    most = max(most, evidence(regression, straight, bend) if bend else 0.0)
+    most = of_bend + max(most, 0.0)
     if most > nats:
         return None, AS_WELL if most < nats + TIES_NATS else BETTER
     if nats < _LEAST_NATS:
