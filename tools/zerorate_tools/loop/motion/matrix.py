@@ -1,0 +1,196 @@
+"""The matrix of a gyroscope from its motion: scale factor, cross-axis sensitivity, turned axes.
+
+`error = M rate`, nine entries common to the recordings. Each recording also has a bias, its drift,
+its accelerometer's errors, a delay and a lever arm, which are fitted beside them and integrated out.
+The noise is the hand's acceleration: its spectrum comes from the residuals of each recording.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.ndimage import uniform_filter1d
+
+from .windows import MATRIX, OWN, OWN_SIGMA, REST_SIGMA, Moving, rows_of, tapers
+
+#: Short windows first: a large bias bends long ones.
+_SECONDS = (10.0, 20.0, 40.0, 40.0)
+#: Sizes that a group of entries may have; the last allows what a data sheet does.
+_SIZES = (3e-4, 1e-3, 3e-3, 1e-2, 3e-2)
+#: Of half-overlapped windows under a Hann taper, the share that counts (Welch 1967).
+_OVERLAP = 0.95
+_FOLDS, _BLOCKS = 4, 8
+_AT = np.cumsum([MATRIX, *OWN.values()])
+_BIAS, _DRIFT = slice(_AT[0], _AT[1]), slice(_AT[1], _AT[2])
+_OWN_PRECISION = np.concatenate([np.full(n, OWN_SIGMA[name] ** -2) for name, n in OWN.items()])
+
+
+@dataclass
+class Shown:
+    """What windows say of the nine entries, everything else integrated out: a quadratic form.
+
+    normal: (9, 9); right: (9,); nats gained by entries m are `right m - m normal m / 2`.
+    """
+
+    normal: np.ndarray = field(default_factory=lambda: np.zeros((MATRIX, MATRIX)))
+    right: np.ndarray = field(default_factory=lambda: np.zeros(MATRIX))
+
+    def __add__(self, other: "Shown") -> "Shown":
+        return Shown(self.normal + other.normal, self.right + other.right)
+
+    def gain(self, entries: np.ndarray) -> float:
+        """Nats by which the entries (9,) are likelier than none."""
+        return float(self.right @ entries - 0.5 * entries @ self.normal @ entries)
+
+
+@dataclass
+class Fitted:
+    """A recording beside a matrix: its own errors, and rows of its windows.
+
+    errors: (w, q, 3); columns: (w, q, 3, p); precision: (q,) of a row; folds: (w,) of a window.
+    """
+
+    moving: Moving
+    bias: np.ndarray
+    drift: np.ndarray
+    errors: np.ndarray
+    columns: np.ndarray
+    precision: np.ndarray
+    folds: np.ndarray
+
+    def shown(self, matrix: np.ndarray, folds=range(_FOLDS)) -> Shown:
+        """What its windows of some folds say, linear about the matrix."""
+        take = np.isin(self.folds, folds)
+        normal, right = _normal(self.errors[take], self.columns[take], self.precision)
+        _add_own(normal, right, self)
+        own, back = normal[MATRIX:, MATRIX:], normal[:MATRIX, MATRIX:]
+        bare = normal[:MATRIX, :MATRIX] - back @ np.linalg.solve(own, back.T)
+        right = right[:MATRIX] - back @ np.linalg.solve(own, right[MATRIX:])
+        return Shown(bare, right + bare @ matrix.ravel())
+
+
+def fit(recordings: list[Moving]) -> tuple[np.ndarray, list[Fitted]]:
+    """(3, 3) the matrix of all, and each recording beside it; recordings without a whole window in
+    motion are left out."""
+    matrix = np.zeros((3, 3))
+    fitted: dict[str, Fitted] = {}
+    for seconds in _SECONDS:
+        for moving in recordings:
+            before = fitted.get(moving.name)
+            beside = _beside(moving, seconds, matrix, before)
+            if beside is not None:
+                fitted[moving.name] = beside
+        every = list(fitted.values())
+        if not every:
+            break
+        step = entries_of(sum((f.shown(matrix) for f in every), Shown()))[0].reshape(3, 3) - matrix
+        for f in every:
+            _move(f, step)
+        matrix = matrix + step
+    return matrix, list(fitted.values())
+
+
+def entries_of(shown: Shown) -> tuple[np.ndarray, np.ndarray]:
+    """(9,) posterior mean of the entries and (9, 9) its covariance. Scale factors, cross-axis
+    sensitivities and turns of the axes each have a size of their own, averaged by its evidence."""
+    groups = _groups()
+    cases = []
+    for sizes in np.stack(np.meshgrid(*[_SIZES] * len(groups)), -1).reshape(-1, len(groups)):
+        prior = sum(s**2 * g for s, g in zip(sizes, groups))
+        root = np.linalg.cholesky(prior)
+        inner = np.eye(MATRIX) + root.T @ shown.normal @ root
+        covariance = root @ np.linalg.solve(inner, root.T)
+        mean = covariance @ shown.right
+        evidence = 0.5 * shown.right @ mean - 0.5 * np.linalg.slogdet(inner)[1]
+        cases.append((evidence, mean, covariance))
+    weight = np.exp(np.array([c[0] for c in cases]) - max(c[0] for c in cases))
+    weight /= weight.sum()
+    mean = sum(w * c[1] for w, c in zip(weight, cases))
+    spread = sum(w * (c[2] + np.outer(c[1] - mean, c[1] - mean)) for w, c in zip(weight, cases))
+    return mean, spread
+
+
+def _groups():
+    """(9, 9) projections on scale factors, on cross-axis sensitivities, on turns of the axes."""
+    turn = np.arange(MATRIX).reshape(3, 3).T.ravel()
+    diagonal = np.diag(np.eye(3).ravel())
+    symmetric = 0.5 * (np.eye(MATRIX) + np.eye(MATRIX)[turn])
+    return diagonal, symmetric - diagonal, np.eye(MATRIX) - symmetric
+
+
+def _beside(moving, seconds, matrix, before) -> Fitted | None:
+    bias, drift = (np.zeros(3), np.zeros(3)) if before is None else (before.bias, before.drift)
+    rows = list(rows_of(moving, seconds, matrix, bias, drift))
+    if not rows:
+        return before
+    errors, columns = np.stack([r[0] for r in rows]), np.stack([r[1] for r in rows])
+    folds = np.arange(len(rows)) * _BLOCKS // len(rows) % _FOLDS
+    fitted = Fitted(moving, bias, drift, errors, columns, np.ones(errors.shape[1]), folds)
+    _, at = tapers(8, seconds)
+    for _ in range(4):
+        fitted.precision = 1.0 / _variances(fitted, matrix, at)[at]
+    fitted.precision = fitted.precision / _contradiction(fitted, matrix)
+    return fitted
+
+
+def _contradiction(f: Fitted, matrix: np.ndarray) -> float:
+    """By how much parts of a recording differ more than their errors allow (Birge 1932): a hand
+    whose acceleration moves with the turning fits one part and not the next. 1 where they agree."""
+    excess = [
+        _distance(f.shown(matrix, [k]), f.shown(matrix, [j for j in range(_FOLDS) if j != k]))
+        for k in set(f.folds)
+    ]
+    return max(1.0, float(np.mean(excess)) / MATRIX) if len(excess) > 1 else 1.0
+
+
+def _distance(one: Shown, other: Shown) -> float:
+    """Chi-squared of two statements being of one matrix; a size that no part exceeds bounds what
+    either leaves open."""
+    bound = np.eye(MATRIX) * _SIZES[-1] ** -2
+    inverses = [np.linalg.inv(s.normal + bound) for s in (one, other)]
+    apart = inverses[0] @ one.right - inverses[1] @ other.right
+    return float(apart @ np.linalg.solve(sum(inverses), apart))
+
+
+def _variances(f: Fitted, matrix, at) -> np.ndarray:
+    """(k,) of a row of each frequency, from what is left; what the fit took is put back."""
+    normal, right = _normal(f.errors, f.columns, f.precision)
+    _add_own(normal, right, f)
+    normal[:MATRIX, :MATRIX] += np.eye(MATRIX) * _SIZES[-1] ** -2
+    right[:MATRIX] -= matrix.ravel() * _SIZES[-1] ** -2
+    inverse = np.linalg.inv(normal)
+    left = (f.errors - f.columns @ (inverse @ right)) ** 2
+    taken = np.einsum("wqap,pr,wqar->wqa", f.columns, inverse, f.columns, optimize=True)
+    free = 1.0 - np.minimum(taken * f.precision[None, :, None], 1.0)
+    many = at.max() + 1
+    sums = [np.bincount(at, x.sum(axis=(0, 2)), many) for x in (left, free)]
+    return np.exp(uniform_filter1d(np.log(sums[0] / np.maximum(sums[1], 1e-3)), 3, mode="nearest"))
+
+
+def _normal(errors, columns, precision):
+    weighted = columns * (_OVERLAP * precision)[None, :, None, None]
+    flat = weighted.reshape(-1, columns.shape[-1])
+    return flat.T @ columns.reshape(flat.shape), flat.T @ errors.ravel()
+
+
+def _add_own(normal, right, f: Fitted) -> None:
+    """Add the priors of a recording's own errors, and its rests, to normal equations."""
+    at = np.arange(MATRIX, len(right))
+    normal[at, at] += _OWN_PRECISION
+    now = np.zeros(len(right))
+    now[_BIAS], now[_DRIFT] = f.bias, f.drift
+    right[MATRIX:] -= _OWN_PRECISION * now[MATRIX:]
+    for at_s, *rate in f.moving.rests:
+        design = np.zeros((3, len(right)))
+        design[:, _BIAS], design[:, _DRIFT] = np.eye(3), at_s * np.eye(3)
+        normal += design.T @ design / REST_SIGMA**2
+        right += design.T @ (np.array(rate) - f.bias - at_s * f.drift) / REST_SIGMA**2
+
+
+def _move(f: Fitted, step: np.ndarray) -> None:
+    """Move a recording's bias and drift to where they are likeliest beside a moved matrix."""
+    normal, right = _normal(f.errors, f.columns, f.precision)
+    _add_own(normal, right, f)
+    right = right[MATRIX:] - normal[MATRIX:, :MATRIX] @ step.ravel()
+    own = np.linalg.solve(normal[MATRIX:, MATRIX:], right)
+    f.bias = f.bias + own[:3]
+    f.drift = f.drift + own[3:6]

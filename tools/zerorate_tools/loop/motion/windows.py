@@ -1,0 +1,176 @@
+"""Windows of a recording in motion, each a measurement of the rate error by gravity.
+
+The rates are integrated over a window to R(t), body to the window's first frame. Without rate errors
+`R a` is gravity plus the hand's acceleration. An error turns it by theta(t), which is linear in the
+errors. Cosines and sines under a Hann taper turn each window into rows. The taper and its slope end
+at zero, so a slow row sees only the hand's position, which is bounded: its noise is small there.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from os import PathLike
+
+import numpy as np
+
+from ...recordings import open_recording
+from ...recordings.recording import ACCEL, GYRO, TIME
+from ...simulate.attitude import IDENTITY, integrate, into_body
+from ..read.still import runs, still_ticks
+from ..read.ticks import TICK_S, Ticks, read_ticks
+
+#: Names of the columns: the matrix by rows, then what each recording has of its own.
+MATRIX = 9
+OWN = {"bias": 3, "drift": 3, "accel_bias": 3, "accel_shape": 5, "delay": 1, "lever": 3}
+#: Standard deviations before a recording is seen: rad/s, rad/s a segment, g, share, s, m. A part's
+#: zero-rate output and accelerometer by their data sheets, a chip's filters, an arm's length.
+OWN_SIGMA = {
+    **{"bias": np.radians(20.0), "drift": np.radians(0.001), "accel_bias": 0.05},
+    **{"accel_shape": 0.02, "delay": 0.01, "lever": 0.3},
+}
+#: A device is in motion where its rates spread by this in a window.
+LEAST_DPS = 5.0
+#: Rows reach up to this frequency: above it a hand shakes as it turns, which looks like an error.
+_MOST_HZ = 0.5
+_COLUMNS_HZ = 10.0
+_G_MPS2 = 9.80665
+_RAIL = 32767
+#: Of a recording whose rates spread by less no window moves.
+_WORTH_READING_DPS = 1.0
+#: Rests this long are a reading of the bias, with what it wanders meanwhile.
+_REST_TICKS, REST_SIGMA = 10, np.radians(0.005)
+
+
+@dataclass(frozen=True)
+class Moving:
+    """A recording as motion needs it.
+
+    rate: (n, 3) rad/s less `offset` (3,), which is near the bias; accel: (n, 3) g; at_s: (n,) from
+    the recording's middle; usable: (n,) bool, no rail; rests: (k, 4) s and rad/s less the offset.
+    """
+
+    name: str
+    rate: np.ndarray
+    accel: np.ndarray
+    at_s: np.ndarray
+    usable: np.ndarray
+    offset: np.ndarray
+    rests: np.ndarray
+
+    @property
+    def dt_s(self) -> float:
+        """Seconds between samples."""
+        return float(self.at_s[-1] - self.at_s[0]) / (len(self.at_s) - 1)
+
+    def spans(self, seconds: float) -> list[slice]:
+        """Windows of so many seconds, half overlapped, that move, without gap or rail."""
+        n = round(seconds / self.dt_s)
+        spans = [slice(a, a + n) for a in range(0, len(self.rate) - n + 1, n // 2)] if n > 8 else []
+        return [s for s in spans if self._moves(s, n)]
+
+    def _moves(self, s: slice, n: int) -> bool:
+        whole = abs(self.at_s[s][-1] - self.at_s[s][0] - (n - 1) * self.dt_s) < 5 * self.dt_s
+        spread = np.degrees(np.sqrt(self.rate[s].var(axis=0).sum()))
+        return whole and spread > LEAST_DPS and bool(self.usable[s].all())
+
+
+def moving_of(path: str | PathLike[str], ticks: Ticks | None = None) -> Moving | None:
+    """A recording read for its motion; None where it has no accelerometer or never turns.
+
+    Raises BadRecording.
+    """
+    opened = open_recording(path, keep_gaps=True)
+    if opened.scales.accel_lsb_per_g is None or not set(ACCEL) <= set(opened.column_names):
+        return None
+    t_us, gyro, accel = _samples(opened)
+    to_rad = np.radians(1.0) / opened.scales.gyro_lsb_per_dps
+    rate = gyro * to_rad
+    if len(t_us) < 16 or np.degrees(rate.std(axis=0).max()) < _WORTH_READING_DPS:
+        return None
+    rests = _rests(ticks or read_ticks(path, TICK_S))
+    offset = np.median(rests[:, 1:] if len(rests) else rate, axis=0)
+    at_s = (t_us - 0.5 * (t_us[0] + t_us[-1])) * 1e-6
+    usable = (np.abs(np.hstack([gyro, accel])) < _RAIL).all(axis=1)
+    rests[:, 0] += (t_us[0] - 0.5 * (t_us[0] + t_us[-1])) * 1e-6
+    rests[:, 1:] -= offset
+    g = accel / opened.scales.accel_lsb_per_g
+    return Moving(opened.name, rate - offset, g, at_s, usable, offset, rests)
+
+
+def _rests(ticks: Ticks) -> np.ndarray:
+    """(k, 4) s from the recording's start and mean rate in rad/s of its rests, ten ticks each."""
+    still = runs(still_ticks(ticks))
+    parts = [(a, min(a + _REST_TICKS, end)) for first, end in still
+             for a in range(first, end, _REST_TICKS)]
+    rows = [[0.5 * (a + b) * ticks.tick_s, *np.radians(ticks.rate[a:b].mean(axis=0))]
+            for a, b in parts if b - a >= _REST_TICKS // 2]
+    return np.array(rows).reshape(-1, 4)
+
+
+def _samples(opened):
+    """Times in us, rates and accelerations in LSB."""
+    rows = [
+        (b[TIME], np.column_stack([b[n] for n in GYRO]), np.column_stack([b[n] for n in ACCEL]))
+        for b in opened.batches(rows=1 << 18)
+    ]
+    return tuple(np.concatenate(part) for part in zip(*rows))
+
+
+def columns_of(moving: Moving, span: slice, matrix, bias, drift) -> tuple[np.ndarray, np.ndarray]:
+    """(m, 3) acceleration in the window's first frame in g, and (m, 3, p) its change by a unit of
+    each error, at some 16 a second. matrix, bias and drift are taken out of the rates first."""
+    dt_s, measured, accel = moving.dt_s, moving.rate[span], moving.accel[span]
+    at_s = moving.at_s[span]
+    rate = measured - measured @ matrix.T - bias - np.outer(at_s, drift)
+    per = max(1, round(1.0 / (_COLUMNS_HZ * dt_s)))
+
+    def mean(x):
+        whole = len(x) // per * per
+        return x[:whole].reshape(-1, per, *x.shape[1:]).mean(axis=1)
+
+    attitude = integrate(np.degrees(rate), dt_s, IDENTITY)
+    to_start = np.stack([into_body(attitude, e) for e in np.eye(3)], axis=1)
+    seen = np.einsum("nij,nj->ni", to_start, accel)
+    turned = [np.einsum("nai,nj->naij", to_start, measured).reshape(-1, 3, 9)]
+    turned += [to_start, to_start * at_s[:, None, None]]
+    theta = -np.cumsum(mean(np.concatenate(turned, axis=2)), axis=0) * dt_s * per
+    late = mean(np.einsum("nij,nj->ni", to_start, rate))[:, :, None]
+    up = seen.mean(axis=0) / np.linalg.norm(seen.mean(axis=0))
+    by_rate = -np.cross(np.concatenate([theta, late], axis=2), up[None, :, None], axis=1)
+    shape = np.einsum("nij,kjl,nl->nik", to_start, _SHAPES, accel)
+    lever = np.zeros_like(to_start)
+    lever[1:-1] = np.diff(to_start, n=2, axis=0) / dt_s**2 / _G_MPS2
+    own = mean(np.concatenate([to_start, shape], axis=2))
+    return mean(seen), np.concatenate([by_rate[:, :, :-1], own, by_rate[:, :, -1:], mean(lever)], 2)
+
+
+def _shapes():
+    """(5, 3, 3) scales and cross-axis of an accelerometer, without its scale common to the axes:
+    that is gravity's own size."""
+    shapes = np.zeros((5, 3, 3))
+    shapes[0], shapes[1] = np.diag([1.0, -1.0, 0.0]), np.diag([1.0, 1.0, -2.0]) / np.sqrt(3)
+    for k, (i, j) in enumerate(((0, 1), (0, 2), (1, 2)), start=2):
+        shapes[k, i, j] = shapes[k, j, i] = 1.0
+    return shapes
+
+
+_SHAPES = _shapes()
+
+
+def tapers(n: int, seconds: float) -> tuple[np.ndarray, np.ndarray]:
+    """(q, n) rows, each without what is constant, and (q,) the number of their frequency."""
+    at = (np.arange(n) + 0.5) / n
+    hann = np.sin(np.pi * at) ** 2
+    waves = np.arange(1, int(_MOST_HZ * seconds) + 1)[:, None]
+    cosines, sines = np.cos(2 * np.pi * waves * at), np.sin(2 * np.pi * waves * at)
+    cosines[0] += 0.5  # the one that the taper does not make orthogonal to a constant
+    rows = np.stack([cosines, sines], axis=1).reshape(-1, n) * hann
+    return rows * np.sqrt(2.0 / (0.375 * n)), np.repeat(waves.ravel() - 1, 2)
+
+
+def rows_of(moving: Moving, seconds: float, matrix, bias, drift) -> Iterator:
+    """(q, 3) and (q, 3, p) of each window, and the window's middle in s."""
+    for span in moving.spans(seconds):
+        seen, columns = columns_of(moving, span, matrix, bias, drift)
+        rows, _ = tapers(len(seen), seconds)
+        middle_s = float(moving.at_s[span].mean())
+        yield rows @ seen, np.tensordot(rows, columns, 1), middle_s
