@@ -5,9 +5,10 @@ from collections.abc import Callable
 from os import PathLike
 from pathlib import Path
 
+from .closing_in_motion import shown_in_motion, write_in_motion
 from .errors import ZerorateError
 from .loop.analyse import analyse, sessions_of
-from .loop.read.gate import CannotClose
+from .loop.read.gate import CannotClose, TooLittleRest
 from .loop.read.ticks import read_ticks, tick_seconds
 from .loop.report.report import as_json, report
 from .loop.verify.analysis import Analysis
@@ -67,13 +68,35 @@ def close(
     """
     from .report import write_report  # its libraries are large
 
-    analysis = load(logs, holdout, advance)
+    try:
+        analysis = load(logs, holdout, advance)
+    except TooLittleRest as problem:
+        return _close_in_motion(logs, out, holdout, advance, problem)
     with written_together(out) as folder:
         corrected = folder / "corrected.parquet"
         analysis, model = measure_and_prune(analysis, logs, corrected, online, advance)
         write_model(model, folder)
         result = json.loads(json.dumps(report(analysis), default=as_json))
-        with written_beside(folder / "report.json") as temporary:
-            temporary.write_text(json.dumps(result, indent=1, allow_nan=False), encoding="utf-8")
+        _write_json(folder, result)
         write_report(analysis, result, logs, folder, png)
     return result
+
+
+def _close_in_motion(logs, out, holdout, advance, problem: TooLittleRest) -> dict:
+    """Close the loop on what motion shows; the problem is raised where it shows nothing."""
+    ticks = [read_ticks(log) for log in logs]
+    names = [t.name for t in ticks]
+    at = None if holdout is None else _index(holdout, logs, names, names)
+    shown = shown_in_motion(ticks, at)
+    if shown is None:
+        raise problem
+    with written_together(out) as folder:
+        result = write_in_motion(shown, logs, at, folder, advance)
+        result = json.loads(json.dumps(result, default=as_json))
+        _write_json(folder, result)
+    return result
+
+
+def _write_json(folder: Path, result: dict) -> None:
+    with written_beside(folder / "report.json") as temporary:
+        temporary.write_text(json.dumps(result, indent=1, allow_nan=False), encoding="utf-8")

@@ -28,6 +28,7 @@ def add_parser(subparsers) -> None:
 def run(arguments: argparse.Namespace) -> None:
     """Close the loop and print what was found."""
     from ..closing import close
+    from ..closing_in_motion import motion_in_words
     from ..loop.report.in_words import in_words
     from ..progress import progress
     from ..report.sentences import headline, why_both
@@ -41,6 +42,10 @@ def run(arguments: argparse.Namespace) -> None:
             online=arguments.online,
             png=arguments.png,
         )
+    if "in_motion" in result:
+        print(motion_in_words(result))
+        print(f"report: {arguments.out / 'report.html'}")
+        return
     print(headline(result) + ".")
     if why := why_both(result):
         print(why)

@@ -17,6 +17,7 @@ from .read.blocks import sessions_from
 from .read.gate import (
     CannotClose,
     GateReport,
+    TooLittleRest,
     enough,
     readable,
     same_settings,
@@ -55,6 +56,7 @@ def analyse(
         [s for i, s in enumerate(sessions) if i != at] or sessions,
         [sessions[at]] if len(sessions) > 1 else [],
         len(sessions) == 1,
+        logs,
     )
     sessions = [without_scales(s, motion) for s in sessions]
     whiteners = [whitener(s.available) for s in sessions]  # while they live nobody makes them anew
@@ -118,7 +120,7 @@ def sessions_of(ticks: list[Ticks]) -> tuple[list[Session], GateReport]:
                 raise
             gate.notes.append(f"left out: {problem}")
     if not kept:
-        raise CannotClose("; ".join(n.removeprefix("left out: ") for n in gate.notes))
+        raise TooLittleRest("; ".join(n.removeprefix("left out: ") for n in gate.notes))
     for name in {n for t in ticks for n in t.extra if n in OWN_SOURCES}:
         gate.dropped[name] = "named like a source of the model's own: rename the column"
     shaken(kept, gate)

@@ -1,6 +1,8 @@
 """What motion shows: scale factor and cross-axis, and readings that come late."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from os import PathLike
 
 import numpy as np
 
@@ -9,8 +11,10 @@ from ...model.term import Term
 from ..read.reference import Run
 from ..read.sessions import Session
 from ..read.turns import GIVEN
+from .by_gravity import by_gravity
 from .rate_scale import RateScale, fit_rate_scale
 from .timing import Timing, timing_of
+from .windows import moving_of
 
 _RATES = ("rate_x", "rate_y", "rate_z")
 
@@ -33,9 +37,15 @@ class InMotion:
         return self.rate_scale if self.rate_scale is not None and self.rate_scale.found else None
 
 
-def in_motion(train: list[Session], holdout: list[Session], single: bool) -> InMotion:
+def in_motion(
+    train: list[Session],
+    holdout: list[Session],
+    single: bool,
+    logs: Mapping[str, str | PathLike[str]] | None = None,
+) -> InMotion:
     """What the training sessions' motion shows. single: one recording, of whose turns every third
-    is held out."""
+    is held out; logs: the recordings, whose windows in motion are asked where turns between rests
+    and references show nothing. Raises CannotClose."""
     if any(s.turns is None for s in [*train, *holdout]):
         return InMotion()
     turns = [s.turns for s in train if s.turns]
@@ -44,9 +54,17 @@ def in_motion(train: list[Session], holdout: list[Session], single: bool) -> InM
     runs, held = [t.runs for t in turns], [r for s in holdout if s.turns for r in s.turns.runs]
     if single:
         runs, held = _every_third(runs[0])
-    turning = fit_rate_scale(runs, held, turns[0].beside, turns[0].unit)
+    turning = fit_rate_scale(runs, held, turns[0].beside, turns[0].unit) if turns else None
+    if logs and (turning is None or not turning.found):
+        turning = _by_windows(train, holdout, logs) or turning
     delays = [(s.delay, s.tick_s) for s in train if s.delay is not None]
     return InMotion(turning, timing_of(delays) if len(delays) == len(train) else None)
+
+
+def _by_windows(train, holdout, logs) -> RateScale | None:
+    """What gravity shows of the matrix, window by window."""
+    parts = [[moving_of(logs[s.name]) for s in some] for some in (train, holdout)]
+    return by_gravity(*([m for m in part if m is not None] for part in parts))
 
 
 def _every_third(runs: list[Run]) -> tuple[list[list[Run]], list[Run]]:

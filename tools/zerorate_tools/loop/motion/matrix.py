@@ -18,7 +18,7 @@ _SECONDS = (10.0, 20.0, 40.0, 40.0)
 _SIZES = (3e-4, 1e-3, 3e-3, 1e-2, 3e-2)
 #: Of half-overlapped windows under a Hann taper, the share that counts (Welch 1967).
 _OVERLAP = 0.95
-_FOLDS, _BLOCKS = 4, 8
+FOLDS, _BLOCKS = 4, 8
 _AT = np.cumsum([MATRIX, *OWN.values()])
 _BIAS, _DRIFT = slice(_AT[0], _AT[1]), slice(_AT[1], _AT[2])
 _OWN_PRECISION = np.concatenate([np.full(n, OWN_SIGMA[name] ** -2) for name, n in OWN.items()])
@@ -37,6 +37,10 @@ class Shown:
     def __add__(self, other: "Shown") -> "Shown":
         return Shown(self.normal + other.normal, self.right + other.right)
 
+    def weaker(self, times: float) -> "Shown":
+        """The same with its variances so many times as large."""
+        return Shown(self.normal / times, self.right / times)
+
     def gain(self, entries: np.ndarray) -> float:
         """Nats by which the entries (9,) are likelier than none."""
         return float(self.right @ entries - 0.5 * entries @ self.normal @ entries)
@@ -46,7 +50,8 @@ class Shown:
 class Fitted:
     """A recording beside a matrix: its own errors, and rows of its windows.
 
-    errors: (w, q, 3); columns: (w, q, 3, p); precision: (q,) of a row; folds: (w,) of a window.
+    errors: (w, q, 3); columns: (w, q, 3, p); tilting: (w, q, 3, 3) by a steady turn of the window's
+    frame in rad/s; precision: (q,) of a row; folds: (w,) of a window.
     """
 
     moving: Moving
@@ -54,10 +59,11 @@ class Fitted:
     drift: np.ndarray
     errors: np.ndarray
     columns: np.ndarray
+    tilting: np.ndarray
     precision: np.ndarray
     folds: np.ndarray
 
-    def shown(self, matrix: np.ndarray, folds=range(_FOLDS)) -> Shown:
+    def shown(self, matrix: np.ndarray, folds=range(FOLDS)) -> Shown:
         """What its windows of some folds say, linear about the matrix."""
         take = np.isin(self.folds, folds)
         normal, right = _normal(self.errors[take], self.columns[take], self.precision)
@@ -67,6 +73,22 @@ class Fitted:
         right = right[:MATRIX] - back @ np.linalg.solve(own, right[MATRIX:])
         return Shown(bare, right + bare @ matrix.ravel())
 
+    def tilts(self, matrix: np.ndarray, entries: np.ndarray, fold: int | None) -> np.ndarray:
+        """(w,) degrees a minute by which each window's frame tilts against gravity, with entries
+        (9,) in the place of the matrix; what the recording has of its own is fitted anew."""
+        step = entries - matrix.ravel()
+        normal, right = _normal(self.errors, self.columns, self.precision)
+        _add_own(normal, right, self)
+        right = right[MATRIX:] - normal[MATRIX:, :MATRIX] @ step
+        own = np.linalg.solve(normal[MATRIX:, MATRIX:], right)
+        left = self.errors - self.columns @ np.r_[step, own]
+        take = self.folds >= 0 if fold is None else self.folds == fold
+        slow = self.tilting * self.precision[None, :, None, None]
+        square = np.einsum("wqac,wqad->wcd", slow, self.tilting)[take]
+        score = np.einsum("wqac,wqa->wc", slow, left)[take]
+        rate = np.einsum("wcd,wd->wc", np.linalg.pinv(square, rcond=1e-6, hermitian=True), score)
+        return np.degrees(np.linalg.norm(rate, axis=1)) * 60.0
+
 
 def fit(recordings: list[Moving]) -> tuple[np.ndarray, list[Fitted]]:
     """(3, 3) the matrix of all, and each recording beside it; recordings without a whole window in
@@ -75,10 +97,9 @@ def fit(recordings: list[Moving]) -> tuple[np.ndarray, list[Fitted]]:
     fitted: dict[str, Fitted] = {}
     for seconds in _SECONDS:
         for moving in recordings:
-            before = fitted.get(moving.name)
-            beside = _beside(moving, seconds, matrix, before)
-            if beside is not None:
-                fitted[moving.name] = beside
+            now = _beside(moving, seconds, matrix, fitted.get(moving.name))
+            if now is not None:
+                fitted[moving.name] = now
         every = list(fitted.values())
         if not every:
             break
@@ -89,13 +110,23 @@ def fit(recordings: list[Moving]) -> tuple[np.ndarray, list[Fitted]]:
     return matrix, list(fitted.values())
 
 
+def beside(moving: Moving, matrix: np.ndarray) -> Fitted | None:
+    """A recording with errors of its own beside a matrix that it took no part in."""
+    fitted = None
+    for seconds in _SECONDS:
+        fitted = _beside(moving, seconds, matrix, fitted)
+        if fitted is not None:
+            _move(fitted, np.zeros((3, 3)))
+    return fitted
+
+
 def entries_of(shown: Shown) -> tuple[np.ndarray, np.ndarray]:
     """(9,) posterior mean of the entries and (9, 9) its covariance. Scale factors, cross-axis
     sensitivities and turns of the axes each have a size of their own, averaged by its evidence."""
-    groups = _groups()
+    kinds = groups()
     cases = []
-    for sizes in np.stack(np.meshgrid(*[_SIZES] * len(groups)), -1).reshape(-1, len(groups)):
-        prior = sum(s**2 * g for s, g in zip(sizes, groups))
+    for sizes in np.stack(np.meshgrid(*[_SIZES] * len(kinds)), -1).reshape(-1, len(kinds)):
+        prior = sum(s**2 * g for s, g in zip(sizes, kinds))
         root = np.linalg.cholesky(prior)
         inner = np.eye(MATRIX) + root.T @ shown.normal @ root
         covariance = root @ np.linalg.solve(inner, root.T)
@@ -109,7 +140,7 @@ def entries_of(shown: Shown) -> tuple[np.ndarray, np.ndarray]:
     return mean, spread
 
 
-def _groups():
+def groups():
     """(9, 9) projections on scale factors, on cross-axis sensitivities, on turns of the axes."""
     turn = np.arange(MATRIX).reshape(3, 3).T.ravel()
     diagonal = np.diag(np.eye(3).ravel())
@@ -122,9 +153,10 @@ def _beside(moving, seconds, matrix, before) -> Fitted | None:
     rows = list(rows_of(moving, seconds, matrix, bias, drift))
     if not rows:
         return before
-    errors, columns = np.stack([r[0] for r in rows]), np.stack([r[1] for r in rows])
-    folds = np.arange(len(rows)) * _BLOCKS // len(rows) % _FOLDS
-    fitted = Fitted(moving, bias, drift, errors, columns, np.ones(errors.shape[1]), folds)
+    errors, columns = np.stack([r[0] for r in rows]), np.stack([r[1][..., :-3] for r in rows])
+    tilting = np.stack([r[1][..., -3:] for r in rows])
+    folds = np.arange(len(rows)) * _BLOCKS // len(rows) % FOLDS
+    fitted = Fitted(moving, bias, drift, errors, columns, tilting, np.ones(errors.shape[1]), folds)
     _, at = tapers(8, seconds)
     for _ in range(4):
         fitted.precision = 1.0 / _variances(fitted, matrix, at)[at]
@@ -136,13 +168,13 @@ def _contradiction(f: Fitted, matrix: np.ndarray) -> float:
     """By how much parts of a recording differ more than their errors allow (Birge 1932): a hand
     whose acceleration moves with the turning fits one part and not the next. 1 where they agree."""
     excess = [
-        _distance(f.shown(matrix, [k]), f.shown(matrix, [j for j in range(_FOLDS) if j != k]))
+        distance(f.shown(matrix, [k]), f.shown(matrix, [j for j in range(FOLDS) if j != k]))
         for k in set(f.folds)
     ]
     return max(1.0, float(np.mean(excess)) / MATRIX) if len(excess) > 1 else 1.0
 
 
-def _distance(one: Shown, other: Shown) -> float:
+def distance(one: Shown, other: Shown) -> float:
     """Chi-squared of two statements being of one matrix; a size that no part exceeds bounds what
     either leaves open."""
     bound = np.eye(MATRIX) * _SIZES[-1] ** -2

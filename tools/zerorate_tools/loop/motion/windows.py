@@ -99,10 +99,16 @@ def moving_of(path: str | PathLike[str], ticks: Ticks | None = None) -> Moving |
 def _rests(ticks: Ticks) -> np.ndarray:
     """(k, 4) s from the recording's start and mean rate in rad/s of its rests, ten ticks each."""
     still = runs(still_ticks(ticks))
-    parts = [(a, min(a + _REST_TICKS, end)) for first, end in still
-             for a in range(first, end, _REST_TICKS)]
-    rows = [[0.5 * (a + b) * ticks.tick_s, *np.radians(ticks.rate[a:b].mean(axis=0))]
-            for a, b in parts if b - a >= _REST_TICKS // 2]
+    parts = [
+        (a, min(a + _REST_TICKS, end))
+        for first, end in still
+        for a in range(first, end, _REST_TICKS)
+    ]
+    rows = [
+        [0.5 * (a + b) * ticks.tick_s, *np.radians(ticks.rate[a:b].mean(axis=0))]
+        for a, b in parts
+        if b - a >= _REST_TICKS // 2
+    ]
     return np.array(rows).reshape(-1, 4)
 
 
@@ -116,8 +122,9 @@ def _samples(opened):
 
 
 def columns_of(moving: Moving, span: slice, matrix, bias, drift) -> tuple[np.ndarray, np.ndarray]:
-    """(m, 3) acceleration in the window's first frame in g, and (m, 3, p) its change by a unit of
-    each error, at some 16 a second. matrix, bias and drift are taken out of the rates first."""
+    """(m, 3) acceleration in the window's first frame in g, and (m, 3, p + 3) what a unit of each
+    error adds to it, the last three by a steady turn of that frame, at some ten a second. matrix,
+    bias and drift are taken out of the rates first."""
     dt_s, measured, accel = moving.dt_s, moving.rate[span], moving.accel[span]
     at_s = moving.at_s[span]
     rate = measured - measured @ matrix.T - bias - np.outer(at_s, drift)
@@ -135,12 +142,14 @@ def columns_of(moving: Moving, span: slice, matrix, bias, drift) -> tuple[np.nda
     theta = -np.cumsum(mean(np.concatenate(turned, axis=2)), axis=0) * dt_s * per
     late = mean(np.einsum("nij,nj->ni", to_start, rate))[:, :, None]
     up = seen.mean(axis=0) / np.linalg.norm(seen.mean(axis=0))
-    by_rate = -np.cross(np.concatenate([theta, late], axis=2), up[None, :, None], axis=1)
+    steady = np.eye(3) * (np.arange(len(theta)) * dt_s * per)[:, None, None]
+    by_rate = -np.cross(np.concatenate([theta, late, steady], 2), up[None, :, None], axis=1)
     shape = np.einsum("nij,kjl,nl->nik", to_start, _SHAPES, accel)
     lever = np.zeros_like(to_start)
     lever[1:-1] = np.diff(to_start, n=2, axis=0) / dt_s**2 / _G_MPS2
     own = mean(np.concatenate([to_start, shape], axis=2))
-    return mean(seen), np.concatenate([by_rate[:, :, :-1], own, by_rate[:, :, -1:], mean(lever)], 2)
+    parts = [by_rate[:, :, :-4], own, by_rate[:, :, -4:-3], mean(lever), by_rate[:, :, -3:]]
+    return mean(seen), np.concatenate(parts, axis=2)
 
 
 def _shapes():
@@ -168,9 +177,8 @@ def tapers(n: int, seconds: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def rows_of(moving: Moving, seconds: float, matrix, bias, drift) -> Iterator:
-    """(q, 3) and (q, 3, p) of each window, and the window's middle in s."""
+    """(q, 3) and (q, 3, p + 3) of each window."""
     for span in moving.spans(seconds):
         seen, columns = columns_of(moving, span, matrix, bias, drift)
         rows, _ = tapers(len(seen), seconds)
-        middle_s = float(moving.at_s[span].mean())
-        yield rows @ seen, np.tensordot(rows, columns, 1), middle_s
+        yield rows @ seen, np.tensordot(rows, columns, 1)

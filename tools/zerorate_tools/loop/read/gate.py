@@ -123,6 +123,10 @@ def _same_chip(first, other) -> None:
             )
 
 
+class TooLittleRest(CannotClose):
+    """No recording rests long enough; what only motion shows may still be found."""
+
+
 def enough(session: Session) -> None:
     """Raise CannotClose where too little of a recording is still."""
     needed_s = max(LEAST_BLOCKS * session.block_s, LEAST_S)
@@ -134,7 +138,7 @@ def enough(session: Session) -> None:
             "better an hour"
         )
     if still_s < needed_s:
-        raise CannotClose(
+        raise TooLittleRest(
             f"{session.name}: only {_have(still_s)} minutes are still; "
             f"{_needed(session, needed_s)}: leave the device untouched for longer"
         )

@@ -15,7 +15,7 @@ def motion_effects(analysis: Analysis, after_mdps: list[float]) -> list[dict]:
     same = {"before_mdps": after_mdps, "after_mdps": after_mdps, "confounded_with": []}
     out = []
     if motion.scales is not None:
-        out.append({**_turning(motion.scales), **same})
+        out.append({**turning(motion.scales), **same})
     if motion.timing is not None and motion.timing.found:
         out.append({**_timing(motion.timing), **same})
     slow = (line for line in analysis.lines if line.hz < QUICK_HZ)
@@ -37,7 +37,7 @@ def interference(lines: list[Line]) -> list[dict]:
     ]
 
 
-def _turning(t: RateScale) -> dict:
+def turning(t: RateScale) -> dict:
     names = ("rate_x", "rate_y", "rate_z")
     return {
         "effect": t.kind,
@@ -47,10 +47,18 @@ def _turning(t: RateScale) -> dict:
         "deviation": {n: [float(v) for v in c] for n, c in zip(names, t.deviation.T)},
         "confidence": "confirmed" if t.confirmed else "tentative",
         "p_value": t.p_value,
-        "in_motion": {"before": t.before, "after": t.after, "unit": f"{t.unit} rms a turn"},
-        "said": f"{t.kind} over {t.runs} turns, measured beside {t.reference}; it does not show "
+        "in_motion": {"before": t.before, "after": t.after, "unit": _unit(t)},
+        "said": f"{t.kind} over {t.runs} {_of_what(t)}, measured beside {t.reference}; it does not show "
         "at rest, where before and after are measured",
     }
+
+
+def _of_what(t: RateScale) -> str:
+    return "windows" if t.unseen is not None else "turns"
+
+
+def _unit(t: RateScale) -> str:
+    return t.unit if t.unseen is not None else f"{t.unit} rms a turn"
 
 
 def _timing(t: Timing) -> dict:

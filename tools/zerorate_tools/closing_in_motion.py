@@ -1,0 +1,143 @@
+"""`zerorate close` on recordings that hardly rest: what gravity shows of scale factor and axes."""
+
+from collections.abc import Callable, Sequence
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+
+from .loop.motion.by_gravity import by_gravity
+from .loop.motion.in_motion import InMotion, slots_of
+from .loop.motion.rate_scale import RateScale
+from .loop.motion.windows import moving_of
+from .loop.read.ticks import Ticks
+from .loop.report.motion_effects import turning
+from .loop.verify.firmware import Firmware
+from .loop.verify.measure import CorrectedWriter
+from .model import Model, build_model, write_model
+from .model.binding import binding_of
+from .recordings import open_recording
+from .recordings.atomic import written_beside
+from .replay.samples import frames_in_batches
+
+_AXES = "xyz"
+_ROWS = 1 << 17
+_BLIND = "no rest was long enough, so nothing that only rest shows was looked for"
+
+
+def shown_in_motion(ticks: Sequence[Ticks], holdout: int | None) -> RateScale | None:
+    """What windows in motion show of the matrix; None without motion. holdout: index of the
+    recording held out, by default the last. Raises CannotClose."""
+    every = [moving_of(t.path, t) for t in ticks if t.path is not None]
+    at = (len(every) - 1 if holdout is None else holdout) if len(every) > 1 else None
+    train = [m for i, m in enumerate(every) if m is not None and i != at]
+    held = [] if at is None else [m for m in [every[at]] if m is not None]
+    return by_gravity(train, held)
+
+
+def write_in_motion(
+    shown: RateScale,
+    logs: Sequence[str | PathLike[str]],
+    holdout: int | None,
+    folder: Path,
+    advance: Callable[[float], None],
+) -> dict:
+    """Write model.json, model.bin, corrected.parquet and report.html; what report.json holds."""
+    from .report.motion_page import motion_page  # its libraries are large
+
+    scales = open_recording(logs[0]).scales
+    slots = slots_of(InMotion(shown))
+    model = build_model(slots, scales, binding=binding_of(scales))
+    at = len(logs) - 1 if holdout is None else holdout
+    held = {Path(log).name for i, log in enumerate(logs) if i == at or len(logs) == 1}
+    with written_beside(folder / "corrected.parquet") as temporary:
+        writer = CorrectedWriter(temporary)
+        for log in logs:
+            _correct(writer, Path(log), model, Path(log).name in held)
+            advance(1)
+        writer.close()
+    write_model(model, folder)
+    result = _result(shown, [Path(log).name for log in logs], sorted(held))
+    with written_beside(folder / "report.html") as temporary:
+        temporary.write_text(motion_page(result, folder), encoding="utf-8")
+    return result
+
+
+def _correct(writer: CorrectedWriter, log: Path, model: Model, test: bool) -> None:
+    scales = open_recording(log).scales
+    ways = {"before": Firmware(scales, None)}
+    ways["after"] = Firmware(scales, model) if model.slots else ways["before"].copy()
+    for frames in frames_in_batches(open_recording(log, keep_gaps=True), _ROWS, ()):
+        biases = {way: device.run(frames, learn=False) for way, device in ways.items()}
+        writer.write(log.name, frames, np.full(len(frames), test), biases)
+
+
+def _result(shown: RateScale, names: list[str], held: list[str]) -> dict:
+    nothing = [None] * 3
+    found = [turning(shown)] if shown.found else []
+    train = names if len(names) == 1 else [n for n in names if n not in held]
+    unit = "windows within one recording" if len(names) == 1 else "power-on session"
+    return {
+        "split": {"unit": unit, "train": train, "test": held},
+        "floor_mdps": nothing,
+        "before_mdps": nothing,
+        "after_mdps": nothing,
+        "ci95_mdps": {"before": nothing, "after": nothing},
+        "effects": [
+            {**e, "before_mdps": nothing, "after_mdps": nothing, "confounded_with": []}
+            for e in found
+        ],
+        "events": [],
+        "in_motion": {
+            "before": round(shown.before, 3),
+            "after": round(shown.after if found else shown.before, 3),
+            "unit": shown.unit,
+            "matrix_percent": np.round(100 * shown.matrix, 4).tolist(),
+            "ci95_percent": np.round(196 * shown.deviation, 4).tolist(),
+            "not_seen": not_seen(shown),
+            "windows": shown.runs,
+        },
+        "unexplained": {"what_is_known": _BLIND, "measure_next": advice(shown)},
+        "verdict": "effects-found" if found else "nothing-found",
+    }
+
+
+def not_seen(shown: RateScale) -> list[str]:
+    """Names of the entries that the motion did not show: the axis that reads, the axis turned."""
+    if shown.unseen is None:
+        return []
+    at = zip(*np.nonzero(shown.unseen))
+    return [f"{_AXES[i]} from {_AXES[j]}" if i != j else f"scale of {_AXES[i]}" for i, j in at]
+
+
+def advice(shown: RateScale) -> list[str]:
+    """What to record next: turns that were missing, and rest."""
+    missing = (
+        [] if shown.unseen is None else [_AXES[j] for j in np.flatnonzero(np.diag(shown.unseen))]
+    )
+    turns = [f"hold {axis} level and turn the device about it, several times" for axis in missing]
+    return [*turns, "leave the device untouched for two minutes to show what only rest shows"]
+
+
+def motion_in_words(result: dict) -> str:
+    """The result in a few lines for a terminal."""
+    m = result["in_motion"]
+    effect = result["effects"][0] if result["effects"] else None
+    if effect:
+        lines = [
+            f"{effect['effect']} ({effect['confidence']}): on motion held out, gravity sees "
+            f"{m['before']:.2f} -> {m['after']:.2f} {m['unit']}"
+        ]
+        rows = zip(_AXES, m["matrix_percent"], m["ci95_percent"])
+        lines += [
+            f"error of {axis}, % of the rate of x y z: "
+            + "  ".join(f"{v:+.3f} +-{c:.3f}" for v, c in zip(values, spread))
+            for axis, values, spread in rows
+        ]
+    else:
+        lines = [f"found: nothing in motion; gravity sees {m['before']:.2f} {m['unit']}"]
+    lines += [f"not seen in this motion: {', '.join(m['not_seen'])}"] if m["not_seen"] else []
+    lines.append(f"note: {result['unexplained']['what_is_known']}")
+    return "\n".join(
+        [*lines, *(f"record next: {a}" for a in result["unexplained"]["measure_next"])]
+    )
