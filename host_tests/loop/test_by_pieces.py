@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from zerorate_tools.bench.loop.simulated import simulate
+from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.loop.fit.line import is_slope, less_slope, ordinary
 from zerorate_tools.loop.fit.single import PiecesByLine, held, nats_of
 from zerorate_tools.loop.search.by_pieces import (

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from zerorate_tools.bench.loop.simulated import simulate
+from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.fit.single import PiecesByLine
 from zerorate_tools.loop.read.sessions import block_basis

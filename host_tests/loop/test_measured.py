@@ -3,7 +3,7 @@
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
-from zerorate_tools.bench.loop.simulated import simulate
+from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.closing import close, load
 from zerorate_tools.loop.search.catalogue import Candidate
 from zerorate_tools.loop.search.selection import Found, Selection

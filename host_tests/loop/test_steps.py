@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from zerorate_tools.bench.loop.simulated import simulate
+from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.loop import analyse as loop
 from zerorate_tools.loop.analyse import analyse
 from zerorate_tools.loop.fit.line import ordinary
