@@ -29,10 +29,9 @@ class Limit:
     def verdict(self, found: Mapping[str, Any]) -> Verdict:
         """This bound beside what was found."""
         try:
-            value = self.measured(found)
+            return Verdict(self, float(self.measured(found)))
         except (KeyError, TypeError):
             return Verdict(self, None)
-        return Verdict(self, float(value))
 
 
 @dataclass(frozen=True)
