@@ -7,7 +7,7 @@ import pytest
 from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.loop.fit.line import is_slope, less_slope, ordinary
 from zerorate_tools.loop.fit.single import PiecesByLine, held, nats_of
-from zerorate_tools.loop.search.by_pieces import (
+from zerorate_tools.loop.search.cross_validation import (
     POLYNOMIAL,
     SEGMENTS,
     Remembering,
@@ -158,7 +158,7 @@ def test_a_lag_is_found_by_pieces_alone(lagging):
 
 
 def test_a_lag_that_the_likelihood_does_not_show_is_left_to_the_noise(lagging, monkeypatch):
-    monkeypatch.setattr("zerorate_tools.loop.search.by_pieces.family_p", lambda *_: 0.02)
+    monkeypatch.setattr("zerorate_tools.loop.search.cross_validation.family_p", lambda *_: 0.02)
     r, line, found, _, by_line, taken = by(lagging, None)
     assert memory(r, line, found, lagging.pool, by_line, by_line, taken) is None
 
@@ -188,7 +188,8 @@ def test_what_remembers_predicts_no_wave(wavy):
 def test_segments_that_a_memory_equals_must_be_clear(wavy, monkeypatch, nats, left, beside, taken):
     lag = next(c for c in wavy.pool if c.kind == "thermal-lag")
     monkeypatch.setattr(
-        "zerorate_tools.loop.search.by_pieces.remembering", lambda *_: Remembering((), lag, np.inf)
+        "zerorate_tools.loop.search.cross_validation.remembering",
+        lambda *_: Remembering((), lag, np.inf),
     )
     regression, line, _, judged, by_line, _ = by(wavy, Kernels(nats, left))
     better = whole_curve(regression, line, [], Kernels(1000.0), by_line, 0)
