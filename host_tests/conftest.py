@@ -133,6 +133,6 @@ def repository():
 @pytest.fixture(scope="session")
 def real_data():
     """The folder of real recordings: $ZERORATE_DATA, else shared/data beside the checkout."""
-    from zerorate_tools.bench.public_data import data_folder
+    from zerorate_bench.public_data import data_folder
 
     return data_folder() or pytest.skip("no real recordings; ZERORATE_DATA names their folder")

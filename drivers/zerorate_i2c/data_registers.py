@@ -1,6 +1,6 @@
 """Whole samples out of the chip's data registers: none torn, frozen or made of one word."""
 
-from .mpu6050 import RESTARTED, SUSPECT, decode
+from .registers import decode
 
 const = int  # on a board the compiler itself reads const(...)
 
@@ -20,21 +20,17 @@ class DataRegisters:
         self._stands_still = False
 
     def read(self, sample):
-        """As MPU6050.read."""
-        imu = self._imu
-        status = imu.verify(1)
-        if status == RESTARTED:
-            return RESTARTED
+        """Fill sample from a burst; False, and imu.doubt called, where it is no measurement."""
         self.read_sample(sample)
         if self._is_suspect():
-            imu.doubt(self._stands_still)
-            return SUSPECT
+            self._imu.doubt(self._stands_still)
+            return False
         if self._has_leapt():
             self._read_again(sample)
             if self._is_one_word_repeated(self._burst):
-                imu.doubt(False)
-                return SUSPECT
-        return status
+                self._imu.doubt(False)
+                return False
+        return True
 
     def read_sample(self, sample):
         """As MPU6050.read_sample."""

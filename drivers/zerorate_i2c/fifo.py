@@ -2,7 +2,8 @@
 
 from array import array
 
-from .mpu6050 import RESTARTED, SUSPECT, decode
+from .mpu6050 import RESTARTED, SUSPECT
+from .registers import decode
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

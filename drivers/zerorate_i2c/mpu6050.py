@@ -17,20 +17,11 @@ _WHO_AM_I = const(0x75)
 _PWR_MGMT_1 = const(0x6B)
 _DEVICE_RESET = const(0x80)
 _RESET_MS = const(100)
-_WORDS = const(7)
 
 FRESH = const(0)  # a sample
 VERIFIED = const(1)  # a sample, and the configuration was read back right just before it
 RESTARTED = const(2)  # no sample: the configuration was lost and has been written again
 SUSPECT = const(3)  # no measurement can look like this frame: do not learn from it
-
-
-def decode(frames: "bytes | bytearray", start: int, sample: "array[int]") -> None:
-    """Seven big-endian 16-bit words of frames from start on to signed integers in sample."""
-    for i in range(_WORDS):
-        word = frames[start] << 8 | frames[start + 1]
-        start += 2
-        sample[i] = word - ((word & 0x8000) << 1)
 
 
 class MPU6050(Registers):
@@ -114,7 +105,10 @@ class MPU6050(Registers):
         case a clone tore it (counted in torn). Allocates nothing behind the first while all is
         well.
         """
-        return self._data_registers().read(sample)
+        status = self.verify(1)
+        if status != RESTARTED and not self._data_registers().read(sample):
+            return SUSPECT
+        return status
 
     def read_sample(self, sample: "array[int]") -> None:
         """Fill sample from one burst, unexamined."""

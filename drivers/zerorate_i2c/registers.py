@@ -4,7 +4,12 @@ import sys
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from array import array
     from typing import Any
+
+const = int  # on a board the compiler itself reads const(...)
+
+_WORDS = const(7)
 
 
 class Registers:
@@ -56,6 +61,14 @@ class Registers:
                 pass
         self.bus_errors += 1
         return False
+
+
+def decode(frames: "bytes | bytearray", start: int, sample: "array[int]") -> None:
+    """Seven big-endian 16-bit words of frames from start on to signed integers in sample."""
+    for i in range(_WORDS):
+        word = frames[start] << 8 | frames[start + 1]
+        start += 2
+        sample[i] = word - ((word & 0x8000) << 1)
 
 
 def unload(name):

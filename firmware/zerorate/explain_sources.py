@@ -1,7 +1,5 @@
 """Says in words what the sources that need no rest are doing: in motion, and against gravity."""
 
-from .explain import without_sign
-
 # layout: names that a board's own compiler reads
 const = int
 # layout: The state of the source in motion
@@ -64,7 +62,8 @@ def found(s, bias_q8, sigma_q8, sensor):
     for axis in range(3):
         if s[sigma_q8 + axis] < _UNKNOWN_Q8:
             lsb = 256 * sensor.gyro_lsb_per_dps
-            pair = (without_sign(s[bias_q8 + axis] / lsb), s[sigma_q8 + axis] / lsb)
+            # what is shown as zero has no minus
+            pair = (round(s[bias_q8 + axis] / lsb, 3) + 0.0, s[sigma_q8 + axis] / lsb)
             text.append("g%s %.3f +-%.3f" % (("xyz"[axis],) + pair))
     return "; %s dps." % ", ".join(text) if text else "."
 

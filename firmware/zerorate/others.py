@@ -5,8 +5,7 @@ from .native import rest
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from array import array
-
-    from .corrector import Corrector
+    from typing import Any
 
 # layout: names that a board's own compiler reads
 const = int
@@ -23,7 +22,7 @@ _GRAVITY = const(5)
 class Others:
     """What `corrector`, a Corrector, has besides learning at rest."""
 
-    def __init__(self, corrector: "Corrector") -> None:
+    def __init__(self, corrector: "Any") -> None:
         self._of = corrector
         self._examine = rest.check
         c = corrector.settings

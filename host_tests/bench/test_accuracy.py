@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from zerorate_tools.bench.accuracy import second_power_on
+from zerorate_bench.accuracy import second_power_on
 from zerorate_tools.peers import HOW, PEERS, ardupilot_cubic, given, px4_cubic
 from zerorate_tools.simulate import simulate_sessions
 

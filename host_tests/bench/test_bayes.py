@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from zerorate_tools.bench.bayes import believed, segments
-from zerorate_tools.bench.flicker import bayes_error, with_flicker
+from zerorate_bench.bayes import believed, segments
+from zerorate_bench.flicker import bayes_error, with_flicker
 from zerorate_tools.simulate import simulate
 
 PARTS = range(1, 7)

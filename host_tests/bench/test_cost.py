@@ -1,8 +1,8 @@
 """`zerorate bench cost`: every figure that it promises."""
 
 import pytest
-from zerorate_tools.bench import cost_report as bench
-from zerorate_tools.bench.cost_report import in_markdown
+from zerorate_bench import cost_report as bench
+from zerorate_bench.cost_report import in_markdown
 from zerorate_tools.errors import MissingRuntime
 
 ONE = {"instructions": 480.0, "instructions_c": 470.0, "median": 400, "worst": 9000}

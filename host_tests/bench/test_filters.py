@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from zerorate_tools.bench.broad import Trial
-from zerorate_tools.bench.filters import heading_error_deg
+from zerorate_bench.filters import heading_error_deg
+from zerorate_tools.demo.broad import Trial
 
 HZ, SECONDS, REST_S = 300.0, 60, 20
 

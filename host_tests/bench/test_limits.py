@@ -1,7 +1,7 @@
 """A figure beside its bound: met, missed or not measured, and said so in the table."""
 
 import pytest
-from zerorate_tools.bench.limits import ACCURACY, COST, limits_table, verdicts
+from zerorate_bench.limits import ACCURACY, COST, limits_table, verdicts
 
 ONE = {"instructions": 480.0, "instructions_c": 470.0, "cycles": 480.0, "cycles_worst": 12e3}
 BAD = {"instructions": 880.0, "instructions_c": 470.0, "cycles": 680.0, "cycles_worst": 18e3}

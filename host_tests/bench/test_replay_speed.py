@@ -2,7 +2,7 @@
 
 import pyarrow.parquet as pq
 import pytest
-from zerorate_tools.bench.replay_speed import replay_speed, write_long
+from zerorate_bench.replay_speed import replay_speed, write_long
 
 MOST_GROWTH = 1.2
 

@@ -1,6 +1,6 @@
 """A model of one unit, refined on another one of the same part."""
 
-from zerorate_tools.bench.second_unit import WAYS, SecondUnit, device, errors_mdps, in_markdown
+from zerorate_bench.second_unit import WAYS, SecondUnit, device, errors_mdps, in_markdown
 from zerorate_tools.layout import SLOT, slot_at
 from zerorate_tools.loop.verify.firmware import rows
 from zerorate_tools.replay.engines import InterpreterEngine, NativeEngine

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from zerorate_tools.bench.told import told_everything, told_the_future
+from zerorate_bench.told import told_everything, told_the_future
 from zerorate_tools.simulate import simulate_sessions
 
 FLICKERING = {

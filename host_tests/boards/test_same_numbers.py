@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from zerorate_tools.bench.boards.measuring import plays
-from zerorate_tools.bench.boards.playing import Play, on_host, on_pico
-from zerorate_tools.bench.workload import workload
+from zerorate_bench.boards.measuring import plays
+from zerorate_bench.boards.playing import Play, on_host, on_pico
+from zerorate_bench.workload import workload
 from zerorate_tools.boards.flashing import flash
 
 from host_tests.firmware import trace

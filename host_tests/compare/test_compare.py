@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from zerorate_tools.bench.broad import trials
-from zerorate_tools.bench.compared import SAME, beside_truth, denied
+from zerorate_bench.compared import SAME, beside_truth, denied
 from zerorate_tools.cli import main
 from zerorate_tools.compare import compare, judge
 from zerorate_tools.compare.judge import FIRST_REST, FRESH, NOTHING, TAUGHT, TooFewRests
 from zerorate_tools.compare.show import write_page
+from zerorate_tools.demo.broad import trials
 from zerorate_tools.recordings import Recording, Scales, write_recording
 
 HZ, LSB = 50.0, 131.0

@@ -4,10 +4,10 @@ import re
 import shutil
 
 import pytest
-from zerorate_tools.bench.broad import trials
 from zerorate_tools.cli import main
 from zerorate_tools.demo import broad_trial
 from zerorate_tools.demo import real as by_real
+from zerorate_tools.demo.broad import trials
 from zerorate_tools.demo.real import WAYS, real
 from zerorate_tools.errors import CannotFetch
 

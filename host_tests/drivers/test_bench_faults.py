@@ -1,9 +1,9 @@
 """`zerorate bench faults`: every fault is detected and none is learned from; no load is wrong."""
 
 import pytest
-from zerorate_tools.bench import faults
-from zerorate_tools.bench.bus_faults import FAULTS, run_fault
-from zerorate_tools.bench.faults import StoreUnderFaults
+from zerorate_bench import faults
+from zerorate_bench.bus_faults import FAULTS, run_fault
+from zerorate_bench.faults import StoreUnderFaults
 
 
 @pytest.mark.parametrize("name", sorted(FAULTS))
@@ -19,7 +19,7 @@ def test_the_faults_that_look_like_data_do_hand_out_false_samples(name):
 
 
 def test_a_corrector_that_takes_nothing_back_would_learn_from_them(monkeypatch):
-    monkeypatch.setattr("zerorate_tools.bench.bus_faults.Watch.take_back", lambda self: None)
+    monkeypatch.setattr("zerorate_bench.bus_faults.Watch.take_back", lambda self: None)
     assert run_fault("brown-out-awake")["learned_from"] > 0
 
 

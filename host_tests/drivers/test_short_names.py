@@ -59,7 +59,7 @@ def test_two_names_that_meet_stay_two(files):
 
 def test_a_constant_of_another_module_is_its_number(short):
     text = (short / "zerorate_i2c" / "fifo.py").read_text()
-    assert "from .mpu6050 import decode\n" in text and "status >= 2" in text
+    assert "from .registers import decode\n" in text and "status >= 2" in text
 
 
 def test_the_numbers_are_the_golden_ones(short, repository, find_runtime):

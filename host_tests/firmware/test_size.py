@@ -3,7 +3,7 @@
 import re
 
 from zerorate import Corrector
-from zerorate_tools.bench.memory import import_heap_bytes
+from zerorate_bench.memory import import_heap_bytes
 
 from .tolerances import IMPORT_BYTES, STATE_BYTES
 

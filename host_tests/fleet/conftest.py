@@ -2,7 +2,7 @@
 
 import pytest
 from distributed import LocalCluster
-from zerorate_tools.bench.fleet import write_devices
+from zerorate_bench.fleet import write_devices
 from zerorate_tools.fleet import devices_of, fleet
 
 DEVICES = 12

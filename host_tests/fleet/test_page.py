@@ -3,7 +3,7 @@
 import copy
 
 import pytest
-from zerorate_tools.bench.fleet import in_markdown, on_paper
+from zerorate_bench.fleet import in_markdown, on_paper
 from zerorate_tools.fleet.plots import headline, write_page
 
 HOSTILE = "<script>document.title='taken'</script>"

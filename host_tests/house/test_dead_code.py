@@ -6,6 +6,7 @@ CODE = (
     "firmware/zerorate",
     "drivers/zerorate_i2c",
     "tools/zerorate_tools",
+    "tools/zerorate_bench",
     "host_tests",
     "examples",
 )

@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 import pytest
-from zerorate_tools.bench.public_data import recordings, told_of
+from zerorate_bench.public_data import recordings, told_of
 from zerorate_tools.importers import import_recording, read_foreign
 from zerorate_tools.recordings import read_recording
 from zerorate_tools.recordings.checks import GAP

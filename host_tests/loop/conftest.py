@@ -1,7 +1,7 @@
 """A device with hysteresis, closed once for all who look at what came out."""
 
 import pytest
-from zerorate_tools.bench.loop.simulated import simulate
+from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.closing import close, load
 from zerorate_tools.recordings import Recording
 

@@ -4,13 +4,13 @@ import json
 
 import numpy as np
 import pytest
-from zerorate_tools.bench.loop.added_effects import PRANDTL_ISHLINSKII, PRANDTL_ISHLINSKII_TOLD
-from zerorate_tools.bench.loop.bin_tables import hipnuc
-from zerorate_tools.bench.loop.devices import CATALOGUE, MANY_WIDTHS, NULL, TOLD, Device, devices
-from zerorate_tools.bench.loop.figures import figures, share
-from zerorate_tools.bench.loop.run_trial import Outcome, run_trial
-from zerorate_tools.bench.loop.simulated import simulate
-from zerorate_tools.bench.loop.trials import looked_at, markdown, renewed
+from zerorate_bench.loop.added_effects import PRANDTL_ISHLINSKII, PRANDTL_ISHLINSKII_TOLD
+from zerorate_bench.loop.bin_tables import hipnuc
+from zerorate_bench.loop.devices import CATALOGUE, MANY_WIDTHS, NULL, TOLD, Device, devices
+from zerorate_bench.loop.figures import figures, share
+from zerorate_bench.loop.run_trial import Outcome, run_trial
+from zerorate_bench.loop.simulated import simulate
+from zerorate_bench.loop.trials import looked_at, markdown, renewed
 
 _AND_WITHDRAWN = "found, or found and withdrawn"
 

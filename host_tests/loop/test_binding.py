@@ -16,7 +16,7 @@ from zerorate.effects.model_file import (
     REASONS,
 )
 from zerorate.model import EffectModel
-from zerorate_tools.bench.loop.simulated import simulate
+from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.closing import close
 from zerorate_tools.loop.read.gate import CannotClose
 from zerorate_tools.model import Binding, Slot, build_model, encoded, read_model

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
-from zerorate_tools.bench.loop.simulated import simulate
+from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.closing import load
 from zerorate_tools.loop.analyse import sessions_of
 from zerorate_tools.loop.read.gate import CannotClose

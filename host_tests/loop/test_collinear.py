@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from zerorate_tools.bench.loop.simulated import simulate
+from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.search.collinear import collinear
 from zerorate_tools.model.term import Term

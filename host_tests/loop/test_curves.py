@@ -4,8 +4,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from zerorate_tools.bench.loop.curves import best_curve_rms_dps, cubic_left
-from zerorate_tools.bench.loop.simulated import simulate
+from zerorate_bench.loop.curves import best_curve_rms_dps, cubic_left
+from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.loop.search.select import straight_line
 
 

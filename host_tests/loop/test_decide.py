@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from zerorate_tools.bench.loop.simulated import simulate
+from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.loop.search.decide import effective, predicts
 from zerorate_tools.loop.search.select import Search
 

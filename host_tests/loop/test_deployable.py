@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from zerorate_tools.bench.loop.simulated import simulate
+from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.loop.analyse import analyse
 from zerorate_tools.loop.verify.slots import deployable
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from zerorate_tools.bench.loop.simulated import simulate
+from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.loop.fit.noise import spectra
 from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.search import drift_test

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from zerorate_tools.bench.loop.simulated import simulate
+from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.fit.single import PiecesByLine
 from zerorate_tools.loop.read.sessions import block_basis
-from zerorate_tools.loop.search.by_pieces import POLYNOMIAL
 from zerorate_tools.loop.search.catalogue import Candidate, candidates
+from zerorate_tools.loop.search.cross_validation import POLYNOMIAL
 from zerorate_tools.loop.search.extrapolation import MOST, followed, go_on
 from zerorate_tools.loop.search.select import select, straight_line
 from zerorate_tools.loop.search.selection import Found

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from zerorate_tools.bench.loop.simulated import HOSTILE, simulate
+from zerorate_bench.loop.simulated import HOSTILE, simulate
 from zerorate_tools.loop.analyse import analyse
 from zerorate_tools.loop.fit.single import PiecesByLine
 from zerorate_tools.loop.read.sessions import block_basis

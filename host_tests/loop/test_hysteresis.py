@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from zerorate_tools.bench.loop.added_effects import PRANDTL_ISHLINSKII, PRANDTL_ISHLINSKII_KNOWN
-from zerorate_tools.bench.loop.simulated import simulate
+from zerorate_bench.loop.added_effects import PRANDTL_ISHLINSKII, PRANDTL_ISHLINSKII_KNOWN
+from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.loop.fit.line import ordinary
 from zerorate_tools.loop.fit.regression import predicted
 from zerorate_tools.loop.fit.single import PiecesByLine

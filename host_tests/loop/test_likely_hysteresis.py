@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from zerorate_tools.bench.loop.added_effects import PRANDTL_ISHLINSKII_KNOWN
-from zerorate_tools.bench.loop.simulated import simulate
+from zerorate_bench.loop.added_effects import PRANDTL_ISHLINSKII_KNOWN
+from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.loop.fit.line import ordinary, shrunk
 from zerorate_tools.loop.fit.regression import Regression, predicted
 from zerorate_tools.loop.fit.shrunk import evidence

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from zerorate_tools.bench.loop.simulated import simulate
+from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.loop.fit.line import by_axis, ordinary, with_line
 from zerorate_tools.loop.fit.single import PiecesByLine
 from zerorate_tools.model.term import Term

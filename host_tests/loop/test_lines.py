@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from zerorate_tools.bench.loop.simulated import flicker
+from zerorate_bench.loop.simulated import flicker
 from zerorate_tools.loop.read.lines import find, spectrum
 from zerorate_tools.loop.read.sessions import Session
 from zerorate_tools.loop.read.welch import SEGMENT, Segments

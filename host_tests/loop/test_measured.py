@@ -3,12 +3,12 @@
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
-from zerorate_tools.bench.loop.simulated import simulate
+from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.closing import close, load
 from zerorate_tools.loop.search.catalogue import Candidate
 from zerorate_tools.loop.search.selection import Found, Selection
 from zerorate_tools.loop.verify.firmware import Firmware, Refused
-from zerorate_tools.loop.verify.measure import _measured, _unharmed
+from zerorate_tools.loop.verify.measure import _measured, _without_harmful
 from zerorate_tools.loop.verify.measured import Course, Measured
 from zerorate_tools.model import read_model
 from zerorate_tools.model.term import Term
@@ -125,8 +125,8 @@ def test_what_pieces_of_few_recordings_speak_against_is_withdrawn():
     worse = ways | {"after": np.full((4, 3), [0.9, 1.1, 0.9])}
     courses = {"a": Course(np.arange(4), {}, worse), "b": Course(np.arange(4), {}, ways)}
     alone, both = (Measured(courses, ["b"], np.zeros(3), inside=some) for some in ([], ["a"]))
-    assert _unharmed(selection, alone, None) is selection
-    assert _unharmed(selection, both, None).found[0].axes == (True, False, True)
+    assert _without_harmful(selection, alone, None) is selection
+    assert _without_harmful(selection, both, None).found[0].axes == (True, False, True)
 
 
 def test_what_a_trial_notes_is_not_said_of_what_is_deployed(monkeypatch, logs):

@@ -5,7 +5,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from zerorate_tools.bench.loop.simulated import simulate
+from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.loop.analyse import analyse
 from zerorate_tools.loop.report.report import report
 from zerorate_tools.loop.report.unexplained import _unrecorded, measure_next

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from zerorate_bench.loop.simulated import flicker
 from zerorate_tools.allan import Noise, overlapping
-from zerorate_tools.bench.loop.simulated import flicker
 from zerorate_tools.loop.fit import noise
 from zerorate_tools.loop.fit.cross_products import (
     BridgedWhitener,

@@ -1,7 +1,7 @@
 """The plain error of sessions left out, and the firmware's room."""
 
 import pytest
-from zerorate_tools.bench.loop.simulated import simulate
+from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.search.fits_in_slots import fits_in_slots
 from zerorate_tools.loop.search.ols_holdout_ratio import ols_holdout_ratio

@@ -5,7 +5,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from zerorate_tools.bench.loop.simulated import simulate
+from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.loop.analyse import analyse
 from zerorate_tools.loop.fit.line import deployed
 from zerorate_tools.loop.report.in_words import in_words
@@ -15,7 +15,11 @@ from zerorate_tools.loop.search.decide import Decision
 from zerorate_tools.loop.search.select import select
 from zerorate_tools.loop.search.selection import Found
 from zerorate_tools.loop.verify.judge import judge
-from zerorate_tools.loop.verify.prune_by_holdout import prune_by_holdout, unharmed, worthwhile
+from zerorate_tools.loop.verify.prune_by_holdout import (
+    prune_by_holdout,
+    without_harmful,
+    without_marginal,
+)
 from zerorate_tools.model.term import Term
 
 
@@ -79,13 +83,13 @@ def test_what_takes_hardly_anything_goes_where_one_recording_was_fitted():
     selection = select(simulate(11, [("supply-voltage", 5.0)]).sessions[:-1])
     after = [np.full((4, 3), 1.0), np.column_stack([np.full(4, e) for e in (0.97, 0.94, 0.5)])]
     parts = [[residual] for residual in after]
-    assert unharmed(selection, parts, never_asked) is selection
-    [one] = unharmed(replace(selection, alone=True), parts, never_asked).found
+    assert without_harmful(selection, parts, never_asked) is selection
+    [one] = without_harmful(replace(selection, alone=True), parts, never_asked).found
     assert one.axes == (False, True, True)
     # a slope takes the place of the firmware's own curve, of which a line shows nothing
     slope = Candidate("temperature-polynomial", (Term("temp", 10.0, 40.0),), "catalogue")
     with_slope = replace(selection, alone=True, found=[Found(slope, selection.found[0].decision)])
-    assert unharmed(with_slope, parts, never_asked) is with_slope
+    assert without_harmful(with_slope, parts, never_asked) is with_slope
 
 
 def test_what_takes_less_than_a_tenth_over_the_axes_goes_where_one_recording_was_fitted():
@@ -93,12 +97,12 @@ def test_what_takes_less_than_a_tenth_over_the_axes_goes_where_one_recording_was
     bend = Candidate("temperature-quadratic", (Term("temp", 10.0, 40.0, power=2),), "catalogue")
     bent = replace(selection, found=[Found(bend, selection.found[0].decision)])
     before, little, enough = ([np.full((4, 3), [1.0, e, e])] for e in (1.0, 0.9, 0.8))
-    [(_, said)] = worthwhile(replace(bent, alone=True), [before, little]).withdrawn
+    [(_, said)] = without_marginal(replace(bent, alone=True), [before, little]).withdrawn
     assert "hardly falls" in said
     for other, after in ((bent, little), (replace(selection, alone=True), little)):
-        assert worthwhile(other, [before, after]) is other
+        assert without_marginal(other, [before, after]) is other
     alone = replace(bent, alone=True)
-    assert worthwhile(alone, [before, enough]) is alone
+    assert without_marginal(alone, [before, enough]) is alone
 
 
 def test_what_the_session_held_out_is_the_worse_for_goes():
@@ -151,7 +155,7 @@ def test_an_effect_that_a_later_one_needs_stays(errors, without_it, stays):
     selection = replace(select(simulate(2, sessions=1, bare=True).sessions), found=both)
     parts = [[np.full((4, 3), e)] for e in errors]
     assert (
-        unharmed(selection, parts, lambda i: [np.full((4, 3), without_it)]) is selection
+        without_harmful(selection, parts, lambda i: [np.full((4, 3), without_it)]) is selection
     ) == stays
 
 
@@ -163,9 +167,9 @@ def test_each_pass_takes_something_away_until_nothing_is_worse(seed):
     left = replace(select(simulate(2, sessions=1, bare=True).sessions), found=found)
     for _ in range(9):
         after = [[rng.normal(size=(4, 3))] for _ in range(len(left.found) + 1)]
-        less = unharmed(left, after, lambda i: [rng.normal(size=(4, 3))])
+        less = without_harmful(left, after, lambda i: [rng.normal(size=(4, 3))])
         if less is left:
             break
         assert less.applied.sum() < left.applied.sum()
         left = less
-    assert unharmed(replace(left, found=[]), after[:1], never_asked).found == []
+    assert without_harmful(replace(left, found=[]), after[:1], never_asked).found == []

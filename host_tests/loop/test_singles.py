@@ -5,9 +5,9 @@ from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
-from zerorate_tools.bench.loop.simulated import simulate
-from zerorate_tools.bench.loop.single_devices import KINDS, describe
-from zerorate_tools.bench.loop.singles import (
+from zerorate_bench.loop.simulated import simulate
+from zerorate_bench.loop.single_devices import KINDS, describe
+from zerorate_bench.loop.singles import (
     Single,
     _about,
     look_at_singles,

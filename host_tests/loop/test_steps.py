@@ -4,14 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from zerorate_tools.bench.loop.simulated import simulate
+from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.loop import analyse as loop
 from zerorate_tools.loop.analyse import analyse
 from zerorate_tools.loop.fit.line import ordinary
 from zerorate_tools.loop.fit.single import PiecesByLine
 from zerorate_tools.loop.report.in_words import in_words
 from zerorate_tools.loop.report.report import report
-from zerorate_tools.loop.search.steps_first import bend_of, without_steps
+from zerorate_tools.loop.search.steps_first import bend_of, remove_steps
 from zerorate_tools.model.term import first_order_lag
 
 
@@ -41,13 +41,13 @@ def in_a_freezer(seed, floors, place):
 
 def steps_at(session):
     """Blocks before each step that is listed."""
-    return [s.block - s.share for s in without_steps([session])[0].steps]
+    return [s.block - s.share for s in remove_steps([session])[0].steps]
 
 
 @pytest.mark.parametrize("seed", range(5))
 def test_three_large_steps_hide_none_of_them(seed):
     session, floor = stepped(seed, 40.0, 50, 90, 130)
-    (clean,) = without_steps([session])
+    (clean,) = remove_steps([session])
     assert [s.block - s.share for s in clean.steps] == [50, 90, 130]
     for step, sign in zip(clean.steps, (1, -1, 1)):
         off = step.size_dps - sign * 40 * floor * (1, -1, 1)
@@ -64,8 +64,8 @@ def test_recordings_of_one_device_share_the_chance_of_an_invented_step():
     session, _ = stepped(0, 6.0, 90)
     quiet = [stepped(seed, 0.0)[0] for seed in (1, 2, 3)]
     alone, among = (
-        without_steps([session])[0].steps[0],
-        without_steps([session, *quiet])[0].steps[0],
+        remove_steps([session])[0].steps[0],
+        remove_steps([session, *quiet])[0].steps[0],
     )
     assert among.block == alone.block
     assert among.p_value == pytest.approx(4 * alone.p_value)
@@ -74,7 +74,7 @@ def test_recordings_of_one_device_share_the_chance_of_an_invented_step():
 def test_a_step_in_the_midst_of_a_block_is_one_step_of_its_whole_size():
     session, floor = stepped(0, 40.0, 90)
     session.rate_dps[89] += 0.5 * 40.0 * floor * (1, -1, 1)
-    (step,) = without_steps([session])[0].steps
+    (step,) = remove_steps([session])[0].steps
     assert (step.block, step.share) == (90, 0.5)
     off = step.size_dps - 40 * floor * (1, -1, 1)
     assert (np.abs(off) < 4 * step.deviation_dps).all()
@@ -104,7 +104,7 @@ def test_who_judges_the_pieces_says_whether_a_step_stays_in(monkeypatch):
 
 def test_a_step_that_stays_in_is_listed_too():
     session, _ = stepped(0, 40.0, 90)
-    (clean,) = without_steps([session])
+    (clean,) = remove_steps([session])
     analysis = analyse([clean])
     analysis.sessions[0].steps, analysis.sessions[0].listed = (), clean.steps
     assert [e["kind"] for e in report(analysis)["events"]] == ["step"]
@@ -136,7 +136,7 @@ def test_a_step_between_rests_is_listed_though_the_first_block_after_has_both_it
     session.tick_weight[[90 * per, 91 * per - 1]] = 1.0 - share, share
     session.rate_dps[90] -= (1.0 - share) * 20.0 * floor * (1, -1, 1)
     session.rate_dps[88:90], session.weight[88:90] = np.nan, 0.0
-    [step] = without_steps([session])[0].steps
+    [step] = remove_steps([session])[0].steps
     assert np.abs(step.size_dps / floor) == pytest.approx([20.0] * 3, abs=5.0)
 
 
@@ -213,7 +213,7 @@ def test_steps_are_timed_beside_each_other_and_beside_what_follows_temperature(b
     ticks += 30 * floor * rate[:, None]
     session.ticks_dps, session.tick_weight = ticks, np.ones(len(ticks))
     session.rate_dps = ticks.reshape(180, per, 3).mean(axis=1)
-    at = [s.at_s / session.tick_s for s in without_steps([session])[0].steps]
+    at = [s.at_s / session.tick_s for s in remove_steps([session])[0].steps]
     assert at == pytest.approx(moments, abs=1)
 
 
@@ -222,19 +222,19 @@ def test_nothing_and_what_bends_has_no_step():
     for seed in range(10):
         for effect in ((), [("thermal-hysteresis", 5.0)], [("temperature-kink", 5.0)]):
             session, _ = stepped(seed, 0.0, effects=effect)
-            listed += len(without_steps([session])[0].steps)
+            listed += len(remove_steps([session])[0].steps)
     assert listed == 0
 
 
 def test_jumps_of_a_recorded_supply_are_left_to_its_effect():
     sessions = simulate(11, [("supply-voltage", 10.0)], sessions=3).sessions
-    assert not any(s.steps for s in without_steps(sessions))
+    assert not any(s.steps for s in remove_steps(sessions))
 
 
 def test_what_is_fitted_has_an_offset_in_every_stretch():
     session, _ = stepped(3, 200.0, 60)
     terms, without = bend_of(session), stepped(3, 0.0)[0]
-    clean = replace(without_steps([session])[0], rate_dps=session.rate_dps)
+    clean = replace(remove_steps([session])[0], rate_dps=session.rate_dps)
     fitted = ordinary(terms, [clean])
     assert fitted == pytest.approx(ordinary(terms, [without]), abs=2e-4)
     assert fitted != pytest.approx(ordinary(terms, [session]), abs=2e-4)
@@ -252,7 +252,7 @@ def test_a_step_is_timed_to_the_second_and_the_accelerometer_is_asked(seen_g):
     for i, axis in enumerate("xyz"):
         session.sources[f"acc_{axis}"] = (i == 2) + rng.normal(0, 1e-3, len(ticks))
     session.sources["acc_x"][moment:] += seen_g
-    (step,) = without_steps([session])[0].steps
+    (step,) = remove_steps([session])[0].steps
     assert step.at_s == pytest.approx(moment * session.tick_s, abs=session.tick_s)
     assert ("the accelerometer saw 0.4 g" in step.said) == bool(seen_g)
 

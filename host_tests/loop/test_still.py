@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from zerorate_tools.bench.loop.rests import NOISES_DPS, RATES_HZ, share_used, shares_with_turn
+from zerorate_bench.loop.rests import NOISES_DPS, RATES_HZ, share_used, shares_with_turn
 from zerorate_tools.loop.read.still import still_ticks
 from zerorate_tools.loop.read.ticks import read_ticks
 from zerorate_tools.recordings import Recording, Scales

@@ -1,7 +1,7 @@
 """Real recordings as others might have made them: what `zerorate bench variants` counts."""
 
 import numpy as np
-from zerorate_tools.bench.loop import variants
+from zerorate_bench.loop import variants
 from zerorate_tools.recordings import Recording, Scales
 
 

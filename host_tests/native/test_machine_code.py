@@ -18,7 +18,7 @@ from zerorate.motion.motion_settings import motion_settings, motion_state
 from zerorate.rest import guard
 from zerorate.rest.estimators import reset
 from zerorate.rest.step import admit, consider, finish, step
-from zerorate_tools.bench.emulated import Emulated, code_in
+from zerorate_bench.emulated import Emulated, code_in
 from zerorate_tools.kernels.known import answer_by, known_model
 from zerorate_tools.kernels.machine_code import INLINED, UNROLLED
 from zerorate_tools.kernels.native_files import plain_kernels

@@ -101,6 +101,12 @@ def test_the_wheel_carries_every_file_of_a_package_and_no_other(repository, buil
     assert carried == sources(repository, package)
 
 
+def test_it_carries_nothing_that_only_a_checkout_needs(built):
+    names = zipfile.ZipFile(built[1]).namelist()
+    folders = {name.partition("/")[0] for name in names}
+    assert {name for name in folders if not name.endswith(".dist-info")} == set(PACKAGES)
+
+
 def test_it_carries_machine_code_scenarios_and_templates(built):
     names = zipfile.ZipFile(built[1]).namelist()
     for part in (
@@ -163,6 +169,13 @@ def test_firmware_and_command_line_run_on_every_python_that_is_here(version, bui
     )
     done = subprocess.run([python, "-c", code], capture_output=True, text=True)
     assert "zerorate demo" in done.stdout, done.stderr
+
+
+def test_without_a_checkout_bench_says_in_a_line_how_to_get_it(away):
+    done = away("-m", "zerorate_tools.cli", "bench", "faults")
+    assert done.returncode == 2
+    (line,) = done.stderr.splitlines()
+    assert "pip install -e '.[tools,bench]'" in line
 
 
 def test_without_its_extra_a_command_says_in_a_line_what_to_install(bare):

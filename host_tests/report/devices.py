@@ -3,7 +3,7 @@
 import json
 from dataclasses import replace
 
-from zerorate_tools.bench.loop.simulated import simulate
+from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.closing import load
 from zerorate_tools.loop.report.report import as_json, report
 from zerorate_tools.loop.verify.measure import measure

@@ -15,9 +15,9 @@ from types import SimpleNamespace
 
 import pytest
 from zerorate.storage.places import FileStorage
+from zerorate_bench.service import run
 from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050, Physical
 from zerorate_i2c.mpu6050 import MPU6050
-from zerorate_tools.bench.service import run
 from zerorate_tools.errors import ZerorateError
 from zerorate_tools.layout import AXIS, axis_at
 from zerorate_tools.service import Datagrams, Service, System, UnixSocket

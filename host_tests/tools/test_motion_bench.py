@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from zerorate_tools.bench.broad import Trial, true_bias
+from zerorate_tools.demo.broad import Trial, true_bias
 from zerorate_tools.peers import given
 from zerorate_tools.peers.sources import Source
 from zerorate_tools.simulate import simulate

@@ -1,7 +1,7 @@
 """The tables of `bench motion` say what each figure must be, and whether it is."""
 
 import pytest
-from zerorate_tools.bench.motion_table import LIMITS_MDPS, in_markdown
+from zerorate_bench.motion_table import LIMITS_MDPS, in_markdown
 
 
 @pytest.fixture

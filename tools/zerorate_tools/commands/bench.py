@@ -19,7 +19,7 @@ _QUICK_SEEDS = (1,)
 
 @dataclass(frozen=True)
 class Bench:
-    """help: in a line; module: below zerorate_tools.bench, loaded when the bench is run.
+    """help: in a line; module: below zerorate_bench, loaded when the bench is run.
 
     found: the figures, of that module, the arguments and what is told of steps done; steps: how
     many, None where nobody knows; text: the module's function that makes figures Markdown; options:
@@ -58,7 +58,7 @@ def _run(bench: Bench, arguments: argparse.Namespace) -> int:
     from ..progress import progress
     from ..recordings.atomic import written_beside
 
-    module = import_module(f"..bench.{bench.module}", __package__)
+    module = _module(bench.module)
     with progress("measuring", bench.steps(module, arguments)) as advance:
         found = bench.found(module, arguments, advance)
     if getattr(arguments, "page", None):
@@ -76,20 +76,34 @@ def _run(bench: Bench, arguments: argparse.Namespace) -> int:
     return 1 if bench.judged and not module.passed(found) else 0
 
 
+def _module(name: str) -> Any:
+    """A module of zerorate_bench. Raises ZerorateError where it is not installed."""
+    from ..errors import ZerorateError
+
+    try:
+        return import_module(f"zerorate_bench.{name}")
+    except ModuleNotFoundError as error:
+        if error.name != "zerorate_bench":
+            raise
+        do = "unpack the source distribution and run `pip install -e '.[tools,bench]'` there"
+        raise ZerorateError(f"the wheel has no benchmarks; {do}") from None
+
+
 def _hours(arguments: argparse.Namespace) -> tuple[float, ...]:
-    from ..bench.replay_speed import HOURS
+    from zerorate_bench.replay_speed import HOURS
 
     return _QUICK_HOURS if arguments.quick else HOURS
 
 
 def _seeds(arguments: argparse.Namespace) -> tuple[int, ...]:
-    from ..bench.accuracy import SEEDS
+    from zerorate_bench.accuracy import SEEDS
 
     return _QUICK_SEEDS if arguments.quick else SEEDS
 
 
 def _recordings(arguments: argparse.Namespace) -> Path:
-    from ..bench.public_data import data_folder
+    from zerorate_bench.public_data import data_folder
+
     from ..errors import ZerorateError
 
     folder = arguments.data or data_folder()

@@ -6,9 +6,9 @@ estimation, Data 6(7):72, 2021; github.com/dlaidig/broad, CC BY 4.0.
 
 from pathlib import Path
 
-from ..bench.broad import Trial, trials
 from ..errors import CannotFetch
 from ..runtimes.cache import cache_folder
+from .broad import Trial, trials
 
 CREDIT = "BROAD, D. Laidig et al., Data 6(7):72, 2021, CC BY 4.0, github.com/dlaidig/broad"
 NAME = "02_undisturbed_slow_rotation_B"

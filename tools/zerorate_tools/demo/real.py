@@ -7,10 +7,9 @@ from importlib.util import find_spec
 import numpy as np
 from numpy.typing import NDArray
 
-from ..bench.accuracy import rms_mdps
-from ..bench.broad import Trial, TrueBias, true_bias
 from ..recordings import Recording
 from ..replay import AT_REST_ALONE, replay
+from .broad import Trial, TrueBias, rms_mdps, true_bias
 
 WAYS = (
     "uncorrected",

@@ -1,12 +1,10 @@
-"""A fleet's report in words, for the terminal."""
+"""What a run of a fleet came to, and in words for the terminal."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from .whole_fleet import Fleet
+from dataclasses import dataclass, field
+from typing import Any
 
 _FAILURES, _NAMES = 10, 8
 _SCENARIOS = {
@@ -19,6 +17,28 @@ WAYS = {
     "prior": "with the prior",
     "prefilled": "with the mean curve as if learned instead",
 }
+
+
+@dataclass
+class Fleet:
+    """What a run came to.
+
+    report: what fleet.json holds; resumed: devices that an earlier run had done; tasks, peak_bytes
+    busy_s and cpu_s: tasks of the cluster, the largest worker's memory and the seconds that all
+    tasks took, by the clock and by the processor;
+    start_s, work_s, conclude_s: seconds until the cluster stood, until the last device was done,
+    and from then on.
+    """
+
+    report: dict[str, Any] = field(default_factory=dict)
+    resumed: int = 0
+    tasks: int = 0
+    peak_bytes: int = 0
+    busy_s: float = 0.0
+    cpu_s: float = 0.0
+    start_s: float = 0.0
+    work_s: float = 0.0
+    conclude_s: float = 0.0
 
 
 def in_words(fleet: Fleet) -> str:

@@ -84,7 +84,7 @@ def run_device(job: Job, device: Device) -> dict[str, Any]:
             try:
                 session = still_session(path)
                 state = Path(scratch) / "state.bin"
-                summaries.append(replay_power_on(job, path, session, state, job.folder(device)))
+                summaries.append(_replayed(job, path, session, state, device))
                 sessions.append(session)
                 good.append(path)
             except Exception as error:  # of a stranger's file; the fleet goes on
@@ -99,6 +99,12 @@ def run_device(job: Job, device: Device) -> dict[str, Any]:
         "steps": _steps(job, device, good, failures) if job.kind == "close" and good else [],
         "failures": failures,
     }
+
+
+def _replayed(job: Job, path: str, session: Session, state: Path, device: Device) -> dict[str, Any]:
+    return replay_power_on(
+        *(path, session, state, job.folder(device)), model=job.model, options=dict(job.options)
+    )
 
 
 def still_session(path: str) -> Session:

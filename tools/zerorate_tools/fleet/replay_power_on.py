@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -14,18 +14,22 @@ from ..loop.read.sessions import Session
 from ..recordings.reading import recording_name
 from ..replay import replay
 
-if TYPE_CHECKING:
-    from .job import Job
-
 _FIRST_S = 60.0
 _GYRO = ("bias_gx", "bias_gy", "bias_gz")
 
 
 def replay_power_on(
-    job: Job, path: str, session: Session, state: Path, folder: Path | None
+    path: str,
+    session: Session,
+    state: Path,
+    folder: Path | None,
+    *,
+    model: str | None,
+    options: dict[str, Any],
 ) -> dict[str, Any]:
     """Replay a recording from what `state` holds, if it is there, and leave the state in it.
 
+    folder: keeps the replay's table; model, options: as of `replay`.
     error_mdps: per axis the rms of what the firmware's bias misses of the still blocks, the first
     minute not counted. Raises ZerorateError.
     """
@@ -36,8 +40,8 @@ def replay_power_on(
         out,
         state=state,
         from_state=state if state.exists() else None,
-        model=job.model,
-        options=dict(job.options),
+        model=model,
+        options=options,
     )
     columns = ["t_us", *_GYRO]
     bias_lsb = block_means(pq.ParquetFile(out).iter_batches(columns=columns), session)

@@ -7,7 +7,6 @@ import time
 import uuid
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
 from functools import partial
 from os import PathLike
 from pathlib import Path
@@ -24,6 +23,7 @@ from .cluster import cluster, in_batches, run_all, size_of
 from .curve import Curve
 from .devices import Device
 from .first_minutes import Runner, benefit
+from .fleet_in_words import Fleet
 from .job import JOBS, Job, one_line, run_batch
 from .part import Part, curve_effects, part_of, step_effects
 from .prior import prior_json, write_prior
@@ -31,28 +31,6 @@ from .rows import table_of
 
 if TYPE_CHECKING:
     from distributed import Client
-
-
-@dataclass
-class Fleet:
-    """What a run came to.
-
-    report: what fleet.json holds; resumed: devices that an earlier run had done; tasks, peak_bytes
-    busy_s and cpu_s: tasks of the cluster, the largest worker's memory and the seconds that all
-    tasks took, by the clock and by the processor;
-    start_s, work_s, conclude_s: seconds until the cluster stood, until the last device was done,
-    and from then on.
-    """
-
-    report: dict[str, Any] = field(default_factory=dict)
-    resumed: int = 0
-    tasks: int = 0
-    peak_bytes: int = 0
-    busy_s: float = 0.0
-    cpu_s: float = 0.0
-    start_s: float = 0.0
-    work_s: float = 0.0
-    conclude_s: float = 0.0
 
 
 def fleet(

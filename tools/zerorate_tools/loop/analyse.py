@@ -31,7 +31,7 @@ from .search.catalogue import extra_channels
 from .search.naming import name_earth
 from .search.periodic import periodic
 from .search.select import select
-from .search.steps_first import without_steps
+from .search.steps_first import remove_steps
 from .verify.analysis import Analysis
 from .verify.by_kernels import PiecesByKernels
 from .verify.judge import rms_dps
@@ -60,7 +60,7 @@ def analyse(
     )
     sessions = [without_scales(s, motion) for s in sessions]
     whiteners = [whitener(s.available) for s in sessions]  # while they live nobody makes them anew
-    clean = without_steps(sessions)
+    clean = remove_steps(sessions)
     analysis = _look(clean, at, gate, motion, logs)
     if len(sessions) == 1 and clean[0].steps:
         # beside a wide loop an offset a stretch can cost more than steps that stay in
@@ -73,8 +73,8 @@ def analyse(
 def _left_dps(analysis: Analysis, motion, logs) -> float:
     """RMS of what is left of pieces of one recording, by the firmware's own kernels where they
     can be run: they have learned the steps, too."""
-    s, by_pieces = analysis.selection, _on_pieces(analysis.sessions[0], motion, logs)
-    left = rms_dps([by_pieces.residual(s.straight, s.terms, s.applied)])
+    s, on_pieces = analysis.selection, _on_pieces(analysis.sessions[0], motion, logs)
+    left = rms_dps([on_pieces.residual(s.straight, s.terms, s.applied)])
     return float(np.nan_to_num((left**2).sum(), nan=np.inf) ** 0.5)
 
 
@@ -83,8 +83,8 @@ def _look(sessions: list[Session], at: int, gate: GateReport, motion, logs) -> A
     taken = len(slots_of(motion))
     held = [sessions[at]]
     train = [s for i, s in enumerate(sessions) if i != at] or held
-    by_pieces = _on_pieces(train[0], motion, logs) if len(train) == 1 else None
-    selection = select(train, taken, by_pieces, len(sessions) > 1)
+    on_pieces = _on_pieces(train[0], motion, logs) if len(train) == 1 else None
+    selection = select(train, taken, on_pieces, len(sessions) > 1)
     selection, judgement = prune_by_holdout(selection, held)
     whole = [*selection.straight, *selection.terms]
     floor = floor_dps(judgement.whole, whole)

@@ -3,23 +3,17 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...errors import BadRecording
 from ...recordings.recording import ACCEL, GYRO, TEMP
 from ..columns.guesses import unit_words
 from ..columns.plan import Plan
 from .clock import duration
-
-if TYPE_CHECKING:
-    from .gather import Gathered
+from .gather import Gathered
 
 #: The widest range of these sensors, and a little.
 FASTEST_DPS = 2050.0
-_FAST_SHARE = 0.001
 _GRAVITY = {"m/s2": 9.80665, "mg": 1000.0}
 _GRAVITY_WITHIN = 0.2
 #: Nothing with mass warms or cools faster than that.
@@ -32,19 +26,6 @@ _SINGLE_HZ = 10.0
 #: Of one sample to the next, where nothing shakes.
 _UNSHAKEN_G = 0.02
 _STEADY_DPS = 25.0
-
-
-def refuse_too_fast(
-    too_fast: int, samples: int, fastest_dps: float, plan: Plan, path: Path
-) -> None:
-    """Raise BadRecording where more than a spike is faster than any range of these sensors."""
-    if too_fast <= _FAST_SHARE * (samples + too_fast):
-        return
-    meant = "dps" if plan.factors["gx"][0] > 1 else "mdps"
-    problem = f"{fastest_dps:.4g} dps is more than these sensors measure, in {too_fast} rows"
-    words = unit_words(plan.wanted, "gx", meant)
-    do = f"did you mean {meant}? Give {words}; if it is true, give --gyro-lsb-per-dps"
-    raise BadRecording(path, problem, do=do)
 
 
 def doubts(found: Gathered, plan: Plan) -> list[str]:

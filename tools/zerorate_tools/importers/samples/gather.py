@@ -8,15 +8,16 @@ import numpy as np
 
 from ...errors import BadRecording
 from ...recordings.recording import ACCEL, GYRO, TEMP
+from ..columns.guesses import unit_words
 from ..columns.plan import Plan, hz_words
 from ..columns.units import TIME_S
 from ..tables.table import Table
 from .clock import Pace, Unwrapped, refuse_impossible, whole_stamps
-from .doubts import refuse_too_fast
 from .order import Runs, in_order
 from .spool import PLACE, TIME, Spool
 
 _KEPT = 200
+_FAST_SHARE = 0.001
 
 
 @dataclass
@@ -45,6 +46,19 @@ def gathered(
     if TIME not in plan.wanted and not hz:
         raise BadRecording(path, "the source has no time stamps", do=f"give {hz_words(table)}")
     return _Gathering(table, plan, path, hz, fast_dps, folder).result()
+
+
+def _refuse_too_fast(
+    too_fast: int, samples: int, fastest_dps: float, plan: Plan, path: Path
+) -> None:
+    """Raise BadRecording where more than a spike is faster than any range of these sensors."""
+    if too_fast <= _FAST_SHARE * (samples + too_fast):
+        return
+    meant = "dps" if plan.factors["gx"][0] > 1 else "mdps"
+    problem = f"{fastest_dps:.4g} dps is more than these sensors measure, in {too_fast} rows"
+    words = unit_words(plan.wanted, "gx", meant)
+    do = f"did you mean {meant}? Give {words}; if it is true, give --gyro-lsb-per-dps"
+    raise BadRecording(path, problem, do=do)
 
 
 class _Gathering:
@@ -173,7 +187,7 @@ class _Gathering:
             self.temps = self.temps[::2]
 
     def _check(self):
-        refuse_too_fast(self.too_fast, self.samples, self.fastest, self.plan, self.path)
+        _refuse_too_fast(self.too_fast, self.samples, self.fastest, self.plan, self.path)
         if not self.samples:
             dropped = self.table.dropped + self.dropped
             do = "; ".join(f"{count} rows: {why}" for why, count in dropped.items())

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...model.term import Term
-from .shrunk import remembers_by_plays, shrink
+from .shrunk import has_play_operators, shrink
 
 #: Of coefficients about zero, over their size in all sessions: wide, so that only what the other
 #: sessions all but fail to show is held back.
@@ -27,7 +27,7 @@ def precision_of(regression, g, base, terms: Sequence[Term], own: slice) -> np.n
 
 def of_plays(g, scale: np.ndarray, terms: Sequence[Term]) -> np.ndarray:
     """(J,) precision of play operators among terms, as `precision_of`; zero of all else."""
-    if not remembers_by_plays(terms):
+    if not has_play_operators(terms):
         return np.zeros(g.zz.shape[-1])
     return shrink(g, scale, terms).precision
 

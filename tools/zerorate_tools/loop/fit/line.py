@@ -12,7 +12,7 @@ import numpy as np
 from ...model.term import Term
 from ..read.sessions import block_basis
 from .regression import Regression, predicted
-from .shrunk import remembers_by_plays, shrink
+from .shrunk import has_play_operators, shrink
 from .smooth import bends_often, smooth
 
 #: Of the squared coefficients of play operators, in units of their columns, per block.
@@ -101,7 +101,7 @@ def deployed(selection, effects: bool = True) -> tuple[list, np.ndarray]:
 
 def _fit_of(selection):
     regression = selection.regression
-    if remembers_by_plays(selection.terms) and not selection.stands_alone:
+    if has_play_operators(selection.terms) and not selection.stands_alone:
         return lambda terms: shrunk(regression, terms)
     if selection.alone:
         return lambda terms: ordinary(terms, regression.sessions)

@@ -24,7 +24,7 @@ _OF_SQUARES = (1e-3, 0.1, 0.3, 1.0)
 _TINY = 1e-10
 
 
-def remembers_by_plays(terms: Sequence[Term]) -> bool:
+def has_play_operators(terms: Sequence[Term]) -> bool:
     """Whether some terms are play operators."""
     return any(t.memory == "play" for t in terms)
 

@@ -16,7 +16,7 @@ from ...model.term import Term
 from ..read.sessions import Session
 from .line import by_axis, ordinary, shrunk, with_line
 from .regression import Regression, predicted
-from .shrunk import remembers_by_plays
+from .shrunk import has_play_operators
 
 #: Pieces, and the turns in which they are left out: each turn has pieces far apart.
 PIECES, FOLDS = 20, 10
@@ -140,7 +140,7 @@ class PiecesByLine:
         board. The line is fitted anew beside what is applied.
         """
         straight, fitted = list(straight), [part, *self.beside]
-        plays = remembers_by_plays(terms)
+        plays = has_play_operators(terms)
         hold = self.hold and not plays
         kept = [held(t, fitted) if hold and is_instant(t) else t for t in terms]
         every = [*straight, *kept]

@@ -166,7 +166,9 @@ def _effects(analysis):
                 "noise_inflation": round(f.decision.inflation, 2),
                 "nats_on_sessions_left_out": [round(float(g), 2) for g in f.decision.session_gains],
                 "nats_on_holdout": round(float(analysis.judgement.gains[i]), 2),
-                "said": _said(f) + (NO_TEMPERATURE if analysis.may_be_heat(i) else "") + _spared(f),
+                "said": _said(f)
+                + (NO_TEMPERATURE if analysis.may_be_heat(i) else "")
+                + _uncorrected_axes(f),
             }
         )
     return out
@@ -193,7 +195,7 @@ def _said(found):
     return f"{kind} of {sources}"
 
 
-def _spared(found):
+def _uncorrected_axes(found):
     axes = [axis for axis, used in zip("xyz", found.axes) if not used]
     why = "where the error would grow or hardly fall"
     return f"; not corrected on {', '.join(axes)}, {why}" if axes else ""

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from ...model.term import Term
 from ..fit.single import PiecesByLine
-from . import by_pieces, drift_test
+from . import cross_validation, drift_test
 from .bends import LEAST_OF_OTHERS, JudgedOnPieces, on_pieces
 from .catalogue import Candidate
 from .collinear import collinear
@@ -95,9 +95,11 @@ class Examiner:
     def _by_pieces(self, decision, judged: JudgedOnPieces, best, straight, found) -> Decision:
         sessions, beside = self.regression.sessions, (straight, found)
         reason = ""
-        if by_pieces.cancels(sessions, [*straight, *found], best.terms):
+        if cross_validation.cancels(sessions, [*straight, *found], best.terms):
             reason = "it would only cancel another"
-        elif by_pieces.is_like_hysteresis(*beside, best, self.pool, PiecesByLine(sessions[0])):
+        elif cross_validation.is_like_hysteresis(
+            *beside, best, self.pool, PiecesByLine(sessions[0])
+        ):
             reason = "a hysteresis predicts as well"
         if reason:
             return replace(decision, accepted=False, reason=reason)

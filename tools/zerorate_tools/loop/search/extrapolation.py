@@ -18,8 +18,8 @@ import numpy as np
 
 from ...model.term import Term
 from .bends import KINDS
-from .by_pieces import POLYNOMIAL
 from .catalogue import OF_MOTION, is_bounded, ranges
+from .cross_validation import POLYNOMIAL
 
 #: At most this share of the range seen, on either side, and in how many steps it is looked for.
 MOST, _STEPS = 0.25, 10

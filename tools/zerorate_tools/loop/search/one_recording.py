@@ -7,7 +7,7 @@ from ...model.term import Term
 from ..fit.line import less_slope
 from ..fit.regression import Regression
 from ..fit.single import LEAST_OF_A_PIECE, PIECES, PiecesByLine
-from . import by_pieces, hysteresis
+from . import cross_validation, hysteresis
 from .bends import JudgedOnPieces, find_bends
 from .catalogue import Candidate
 from .likely_hysteresis import of_a_pair
@@ -68,12 +68,14 @@ class OneRecording:
         """What the likelihood may not tell from a walk of the noise, but pieces left out do."""
         by_line = PiecesByLine(self.regression.sessions[0])
         judged = self.judged, by_line, self.taken
-        better = by_pieces.polynomial(self.regression, self.line, self.found, *judged)
+        better = cross_validation.polynomial(self.regression, self.line, self.found, *judged)
         self.found = [better] if better else self.found
         self._remember(by_line)
         # where another power-on has the last word, it has less to choose from
         alone = not self.judged_again
-        better = by_pieces.whole_curve(self.regression, self.line, self.found, *judged, alone)
+        better = cross_validation.whole_curve(
+            self.regression, self.line, self.found, *judged, alone
+        )
         if better:
             self._bend_often(better, curve, by_line)
 
@@ -82,7 +84,7 @@ class OneRecording:
         once, both are much alike, and at another power-on they part. Then that is taken, or where
         it is not clear the line, if it is clear itself."""
         nats = float(by_line(self.line, (), better.candidate.terms).sum())
-        other = by_pieces.remembering(self.line, curve, self.pool, by_line)
+        other = cross_validation.remembering(self.line, curve, self.pool, by_line)
         if other is None or other.nats < nats - hysteresis.TIES_NATS:
             self.found = [better]
             self._remember(by_line)
@@ -91,29 +93,31 @@ class OneRecording:
         if not other.doubtful:
             judged = self.judged, by_line, self.taken
             beside = self.regression, self.line, self.found, other
-            found = by_pieces.of_memory(*beside, self.pool, *judged)
+            found = cross_validation.of_memory(*beside, self.pool, *judged)
         if not found and self._is_clear(better, other.doubtful):
             better.confounded_with = [other.memory.kind]
             found = [better]
         self.found = found or self.found
         if better not in self.found:
             said = "what remembers temperature predicts as well"
-            self.refused.append((by_pieces.SEGMENTS, said))
+            self.refused.append((cross_validation.SEGMENTS, said))
 
     def _is_clear(self, better: Found, doubtful: bool) -> bool:
         """Whether a line is as clear as what remembers has to be, or one of segments leaves less
         than what was found, if none of that remembers."""
-        if not doubtful and by_pieces.is_clear_memory(self.regression, better.decision):
+        if not doubtful and cross_validation.is_clear_memory(self.regression, better.decision):
             return True
-        if self.judged_again or any(f.candidate.kind in by_pieces.MEMORIES for f in self.found):
+        if self.judged_again or any(
+            f.candidate.kind in cross_validation.MEMORIES for f in self.found
+        ):
             return False
         terms, gain = better.candidate.terms, better.decision.session_gains
-        segments = better.candidate.kind == by_pieces.SEGMENTS
-        less = by_pieces.leaves_less(self.judged, self.line, self._terms(), terms, gain)
+        segments = better.candidate.kind == cross_validation.SEGMENTS
+        less = cross_validation.leaves_less(self.judged, self.line, self._terms(), terms, gain)
         return segments and less
 
     def _remember(self, by_line: PiecesByLine):
-        own = by_pieces.memory(
+        own = cross_validation.memory(
             self.regression, self.line, self.found, self.pool, self.judged, by_line, self.taken
         )
         self.found += [own] if own else []

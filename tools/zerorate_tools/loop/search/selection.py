@@ -27,7 +27,7 @@ class Found:
     confounded_with: list[str] = field(default_factory=list)
     axes: tuple[bool, ...] = (True, True, True)
 
-    def spared(self, axes: Iterable[bool]) -> Found:
+    def without_axes(self, axes: Iterable[bool]) -> Found:
         """The same without what it corrects on some axes, (3,) bool."""
         kept = tuple(a and not s for a, s in zip(self.axes, axes))
         return replace(self, axes=kept)
@@ -64,9 +64,9 @@ class Selection:
         found = [f for i, f in enumerate(self.found) if i != effect]
         return replace(self, found=found)
 
-    def spared(self, effect: int, axes: Iterable[bool], reason: str) -> Selection:
+    def without_axes(self, effect: int, axes: Iterable[bool], reason: str) -> Selection:
         """The same with an effect taken from some axes, and withdrawn where none is left."""
-        less = self.found[effect].spared(axes)
+        less = self.found[effect].without_axes(axes)
         if not any(less.axes):
             said = (label(less.candidate), reason)
             return replace(self.without(effect), withdrawn=[*self.withdrawn, said])

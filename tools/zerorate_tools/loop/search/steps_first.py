@@ -37,8 +37,8 @@ _TURNED_G, _TILTED_G = 0.5, 0.1
 _OF_READING, _OFF_SLOPE = 1.1, 13.8
 
 
-def without_steps(sessions: Sequence[Session]) -> list[Session]:
-    """The sessions without their steps, which they name."""
+def remove_steps(sessions: Sequence[Session]) -> list[Session]:
+    """Return the sessions without their steps, which they name."""
     if may_be_a_channels(sessions):
         return list(sessions)
     jumping = _jumping(sessions)

@@ -37,7 +37,7 @@ from .measured import (
     Sink,
 )
 from .power_on import BlockMeans, PowerOn, ideal_dps
-from .prune_by_holdout import unharmed, worthwhile
+from .prune_by_holdout import without_harmful, without_marginal
 from .slots import deployable, model_of, with_selection
 
 _AXES = ("gx", "gy", "gz")
@@ -116,7 +116,7 @@ def measure_and_prune(
         model = model_of(analysis, scales)
         measured = measure(analysis, logs, model, out, online, advance)
         assert measured.measured is not None, "it was just measured"
-        less = _unharmed(
+        less = _without_harmful(
             analysis.selection, measured.measured, partial(_measured, analysis, logs, scales)
         )
         if less is analysis.selection:
@@ -135,7 +135,9 @@ def _measured(analysis: Analysis, logs, scales: Scales, selection: Selection) ->
     return measured
 
 
-def _unharmed(selection: Selection, measured: Measured, again: Callable[[Selection], Measured]):
+def _without_harmful(
+    selection: Selection, measured: Measured, again: Callable[[Selection], Measured]
+):
     """The selection without what the held-out sessions, or then the pieces, do worse with.
 
     again: measures another selection.
@@ -147,9 +149,9 @@ def _unharmed(selection: Selection, measured: Measured, again: Callable[[Selecti
         def without(i: int, names=names):
             return again(selection.without(i)).with_first(number - 1, names)
 
-        less = unharmed(selection, after, without)
+        less = without_harmful(selection, after, without)
         if less is selection and not names:
-            less = worthwhile(selection, after)
+            less = without_marginal(selection, after)
         if less is not selection:
             return less
     return selection

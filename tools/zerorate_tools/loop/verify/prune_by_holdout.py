@@ -48,7 +48,7 @@ def prune_by_holdout(selection: Selection, holdout: list[Session]) -> tuple[Sele
             said = (label(selection.found[i].candidate), _said(reason, judgement, without))
             return prune_by_holdout(replace(less, withdrawn=[*less.withdrawn, said]), holdout)
     after = [_left(selection.first(k), holdout) for k in range(len(selection.found) + 1)]
-    less = unharmed(selection, after, lambda i: _left(selection.without(i), holdout))
+    less = without_harmful(selection, after, lambda i: _left(selection.without(i), holdout))
     return (selection, judgement) if less is selection else prune_by_holdout(less, holdout)
 
 
@@ -56,7 +56,7 @@ def _left(selection: Selection, holdout: list[Session]) -> list[np.ndarray]:
     return [r for r, _ in residuals(selection, holdout)]
 
 
-def unharmed(
+def without_harmful(
     selection: Selection,
     after: Sequence[list[np.ndarray]],
     without: Callable[[int], list[np.ndarray]],
@@ -74,15 +74,15 @@ def unharmed(
     for i in reversed(range(len(grows))):
         axes = (grows[i] > 0) & (grows[i] == worst)
         if axes.any():
-            selection = selection.spared(i, axes, _grown(errors, i))
+            selection = selection.without_axes(i, axes, _grown(errors, i))
     return selection
 
 
-def worthwhile(selection: Selection, after: Sequence[list[np.ndarray]]) -> Selection:
+def without_marginal(selection: Selection, after: Sequence[list[np.ndarray]]) -> Selection:
     """The selection without its last effect, where one recording alone was fitted and all of them,
     which follow temperature or time, take hardly anything of the error over the axes.
 
-    after: as for `unharmed`.
+    after: as for `without_harmful`.
     """
     errors = np.array([rms_dps(r) for r in after])
     of_heat = {t.source for t in selection.terms} <= {"temp", "time"}
@@ -91,13 +91,13 @@ def worthwhile(selection: Selection, after: Sequence[list[np.ndarray]]) -> Selec
     if np.linalg.norm(errors[-1]) <= (1.0 - _LEAST_IN_ALL) * np.linalg.norm(errors[0]):
         return selection
     last = len(selection.found) - 1
-    return selection.spared(last, [True] * 3, _grown(errors, last))
+    return selection.without_axes(last, [True] * 3, _grown(errors, last))
 
 
 def _grows(selection: Selection, errors: np.ndarray, without) -> np.ndarray:
     """(effects, 3) by which the error is too large with an effect; zero where later ones need it.
 
-    errors: (1 + effects, 3) with the first so many; without: as for `unharmed`.
+    errors: (1 + effects, 3) with the first so many; without: as for `without_harmful`.
     """
     used = np.array([f.axes for f in selection.found], bool).reshape(-1, 3)
     least = [_LEAST_TAKEN * (selection.alone and not _has_slope(f)) for f in selection.found]

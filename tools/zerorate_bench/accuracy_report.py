@@ -1,0 +1,132 @@
+"""`zerorate bench accuracy`: the tables and their figures."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
+
+from zerorate_tools.peers import HOW, PEERS
+
+from .accuracy import DAY, FIRST_S, SCENARIOS, SEEDS, day, honesty, second_power_on
+from .limits import ACCURACY, SESSION_2, limits_table, verdicts
+from .public_data import data_folder, recordings
+from .real_recordings import COLUMNS, real
+from .tables import machine, machine_line, number, table
+
+_MADE = """\
+Made by `zerorate bench accuracy`, everyone on the same samples in one run. Real recordings are read
+from `ZERORATE_DATA`, or from `shared/data` beside the checkout. Where others report another figure
+of a filter for a scenario of the same words, `zerorate bench peers` shows what it hangs on.
+"""
+_SESSION_2 = """\
+Session 1 warms from 20 to 45 degC in 40 minutes; then the power is cut; session 2 warms from 17 to
+44 degC in 20. Everyone is given the same samples. `zerorate` has default settings and no effect
+model, for A, B and C alike. What it learned in session 1 comes back from the store, so its first
+{first:.0f} s are from the store.
+"""
+_DAY = """\
+All begin from nothing: who waits for a first rest to be one pays for that second all day. The last
+two rows are no estimators but floors: a Kalman filter that is told the true rests, the true curve
+over temperature and the walk that suits this day best; and a Wiener smoother that is told the curve
+and the spectra of bias and noise, sees the device rest all day, and looks ahead. What it leaves is
+flicker noise too fast to be seen through the white noise: nothing comes below it on this part.
+"""
+_HONESTY = """\
+In how much of the last power-on the truth lies within two of `quality_lsb`, all sources on; 95 %
+would be exact. One sigma is learned from the part itself, its flicker noise, its walk and how well
+its power-ons repeat ([learning.md](learning.md#what-it-says-of-itself)).
+"""
+_REAL = """\
+RMS over axes and over means of 20 s, true rate zero (Earth's 4 mdps is in it); blocks in which the
+sensor was handled are left out. First all of it, then without the first 20 s (8 readings).
+"""
+
+
+def steps(seeds: Sequence[int] = SEEDS) -> int:
+    """How often `accuracy` advances."""
+    folder = data_folder()
+    logs = len(recordings(folder)) if folder else 0
+    return len(DAY) + len(SCENARIOS) * len(seeds) * len(PEERS) + logs
+
+
+def accuracy(
+    advance: Callable[[float], None] = lambda n: None, seeds: Sequence[int] = SEEDS
+) -> dict[str, Any]:
+    """All figures, mdps: day_rms_mdps, session_2_rms_mdps, real_rms_mdps (None without data)."""
+    folder = data_folder()
+    found: dict[str, Any] = {
+        "machine": machine(),
+        "seeds": list(seeds),
+        "day_rms_mdps": day(advance=advance),
+        "session_2_rms_mdps": {
+            name: second_power_on(name, seeds=seeds, advance=advance) for name in SCENARIOS
+        },
+        "within_two_sigma": {
+            **{name: honesty(name, seeds) for name in SCENARIOS},
+            "day": honesty("day", seeds[:1]),
+        },
+        "session_2_limits_mdps": SESSION_2,
+        "session_2_how": HOW,
+        "real_rms_mdps": real(folder, advance) if folder else None,
+    }
+    found["limits"] = [verdict.to_json() for verdict in verdicts(found, ACCURACY)]
+    return found
+
+
+def in_markdown(found: Mapping[str, Any]) -> str:
+    limits = limits_table(verdicts(found, ACCURACY))
+    return "\n".join(
+        ["# Accuracy\n", _MADE, machine_line(found["machine"]), limits, *sections(found)]
+    )
+
+
+def sections(found: Mapping[str, Any]) -> Iterator[str]:
+    """The tables of the day, of session 2 and of the real recordings, one below the other."""
+    yield from _second_power_on(found["session_2_rms_mdps"], len(found["seeds"]))
+    yield from _day(found["day_rms_mdps"])
+    if found.get("within_two_sigma"):
+        yield from _honesty(found["within_two_sigma"])
+    yield from _real(found["real_rms_mdps"])
+
+
+def _day(figures: Mapping[str, Mapping]) -> Iterator[str]:
+    rows = [[peer, number(f["all"]), number(f["later"])] for peer, f in figures.items()]
+    yield "## A simulated day: half of it moving, 25 degC of change\n"
+    yield _DAY
+    yield table(["RMS bias error, mdps", "all day", "after the first minute"], rows)
+
+
+def _honesty(figures: Mapping[str, Mapping]) -> Iterator[str]:
+    rows = [
+        [name, *(f"{100 * shares[part]:.0f} %" for part in ("all", "first"))]
+        for name, shares in figures.items()
+    ]
+    yield "## Is one sigma one sigma?\n"
+    yield _HONESTY
+    yield table(["truth within two sigma", "all", f"first {FIRST_S:.0f} s"], rows)
+
+
+def _second_power_on(figures: Mapping[str, Mapping], seeds: int) -> Iterator[str]:
+    header = ["RMS bias error, mdps", "how"]
+    header += [f"{name[-1].upper()} {part}" for part in ("all", "first 15 s") for name in figures]
+    rows: list[list[object]] = []
+    for peer in PEERS:
+        parts = [figures[name][peer][part] for part in ("all", "first") for name in figures]
+        rows.append([peer, HOW[peer], *map(number, parts)])
+    bounds = [f"{bound:g}" for part in SESSION_2.values() for bound in part.values()]
+    rows.append(["zerorate must be at most", "", *bounds])
+    yield f"## Session 2, after a warm-up and a power cut; all, and the first {FIRST_S:.0f} s\n"
+    yield _SESSION_2.format(first=FIRST_S)
+    yield "One seed.\n" if seeds == 1 else f"Median of {seeds} seeds.\n"
+    yield table(header, rows)
+
+
+def _real(figures: Mapping | None) -> Iterator[str]:
+    yield "## Real recordings at rest\n"
+    if figures is None:
+        yield "Left out: no real recordings here; ZERORATE_DATA names their folder.\n"
+        return
+    rows = [
+        [name, *(f"{number(f['all'])} / {number(f['later'])}" for f in columns.values())]
+        for name, columns in figures.items()
+    ]
+    yield _REAL
+    yield table(["mdps", *COLUMNS], rows)

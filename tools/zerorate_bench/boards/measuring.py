@@ -1,0 +1,171 @@
+"""All figures of `zerorate bench boards`."""
+
+import tempfile
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from zerorate_tools.boards.flashing import flash
+from zerorate_tools.errors import MissingRuntime
+from zerorate_tools.runtimes.pico import CORE_HZ, EmulatedPico, find_pico
+
+from ..limits import Limit, limits_table, verdicts
+from ..tables import number, table
+from ..workload import CYCLE, Workload, workload
+from .memory import CONFIGURATIONS, heap_and_import, least_heap
+from .playing import Play, Played, on_host, on_pico
+
+#: Samples of each mode that is compared; the workload's own cycle is the first.
+_COMPARED = 1200
+_BURST = 64
+_FROZEN_ROWS = 400
+_ODR_HZ = 1000
+_PROGRAM = Path("examples/keep.py")
+_SIGN = "kept"
+#: An image with this firmware frozen into it, where the boards' folder has one.
+_FROZEN = "FROZEN-*.bin"
+_HEAPS = (24 << 10, 88 << 10)
+STEPS = 1 + len(CONFIGURATIONS) + 8
+
+_KB = 1024
+LIMITS = (
+    Limit("heap of import, driver, object", 28 * _KB, "bytes", lambda f: f["heap_bytes"]["rest"]),
+    Limit("heap with motion and gravity", 45 * _KB, "bytes", lambda f: f["heap_bytes"]["all"]),
+    Limit("heap with everything", 80 * _KB, "bytes", lambda f: f["heap_bytes"]["everything"]),
+    Limit("least heap of the second program", 48 << 10, "bytes", lambda f: f["least_heap_bytes"]),
+    Limit("median sample", 1600, "cycles", lambda f: f["cycles"]["median"]),
+    Limit("worst sample", 14000, "cycles", lambda f: f["cycles"]["worst"]),
+    Limit("a sample in bursts of 64", 500, "cycles", lambda f: f["cycles"]["burst"]),
+    Limit("share of 125 MHz at 1 kHz", 1.3, "%", lambda f: f["share_percent"]),
+    Limit("import of what flash sends", 0.15, "s", lambda f: f["import_s"]),
+    Limit("sent by flash", 40 * _KB, "bytes", lambda f: f["flash_bytes"]),
+)
+
+
+def measure(advance: Callable[[float], None] = lambda n: None) -> dict[str, Any]:
+    """The figures, from an emulated Pico. Raises MissingRuntime where none can be had."""
+    parts = find_pico()
+    found: dict[str, Any] = {"firmware": parts.firmware.name}
+    with tempfile.TemporaryDirectory(prefix="zerorate-pico-") as folder:
+        with EmulatedPico(parts, link=Path(folder) / "tty") as pico:
+            _measure_rest(pico, found, advance)
+            flash(pico.port, say=_nothing, parts=["all"])
+            _measure_all(pico, found, advance)
+    try:
+        frozen = find_pico(_FROZEN)
+    except MissingRuntime:
+        found["frozen"] = {}
+    else:
+        with EmulatedPico(frozen) as pico:
+            found["frozen"] = {
+                n: _same(pico, p)[0] for n, p in plays(workload(_FROZEN_ROWS)).items()
+            }
+    found["limits"] = [verdict.to_json() for verdict in verdicts(found, LIMITS)]
+    return found
+
+
+def _nothing(line: str) -> None:
+    pass
+
+
+def _measure_rest(pico: EmulatedPico, found: dict[str, Any], advance) -> None:
+    flashed = flash(pico.port, say=_nothing)
+    found["board"], found["flash_bytes"] = str(flashed.facts), flashed.sent_bytes
+    found["heap_bytes"] = {}
+    found["heap_bytes"]["rest"], found["import_s"] = heap_and_import(pico, "rest")
+    advance(1)
+    program = second_program()
+    found["least_heap_bytes"] = least_heap(pico, program, _SIGN, *_HEAPS)
+    advance(1)
+
+
+def _measure_all(pico: EmulatedPico, found: dict[str, Any], advance) -> None:
+    for name in CONFIGURATIONS:
+        if name not in found["heap_bytes"]:
+            found["heap_bytes"][name], _ = heap_and_import(pico, name)
+            advance(1)
+    work = workload()
+    found["golden"], found["cycles"] = {}, {}
+    for name, play in plays(work).items():
+        found["golden"][name], played = _same(pico, play)
+        if name == "rest":
+            found["cycles"]["median"], found["cycles"]["worst"] = played.median, played.worst
+            mean = sum(played.cycles) / len(played.cycles)
+            found["share_percent"] = 100 * mean * _ODR_HZ / CORE_HZ
+        elif name == "object":
+            found["cycles"]["object_median"] = played.median
+            found["cycles"]["object_worst"] = played.worst
+        elif name == "bursts":
+            found["cycles"]["burst"] = sum(played.cycles) / len(played.cycles) / _BURST
+        advance(1)
+
+
+def _same(pico: EmulatedPico, play: Play) -> tuple[bool, Played]:
+    """Whether it ends as on this host, and how it went."""
+    played = on_pico(pico, play)
+    return played.data == on_host(play).data, played
+
+
+def plays(work: Workload) -> dict[str, Play]:
+    """Mode -> what is run in it."""
+    few = work.rows[:_COMPARED]
+    alone = Play(work.rows[:CYCLE], settings=work.settings, state=work.state)
+    return {
+        "rest": replace(alone, at_once=0),
+        "object": alone,
+        "bursts": replace(alone, rows=work.rows[: CYCLE // _BURST * _BURST], at_once=_BURST),
+        "every": Play(few, {"every": True}),
+        "document": Play(few, {"document": True}),
+        "motion": Play(_turning(few), {"gravity": False}),
+        "motion and gravity": Play(_turning(few), {}),
+        "effects, refined": Play(few, model=model()),
+    }
+
+
+def _turning(rows: np.ndarray) -> np.ndarray:
+    """The rows with a motion of tens of degrees a second and the gravity that turns with it."""
+    turned = rows.copy()
+    phase = np.arange(len(rows)) / 100.0
+    for axis in range(3):
+        turned[:, 5 + axis] += (6000 * np.sin(2.1 * phase + 2 * axis)).astype(np.int32)
+        turned[:, 1 + axis] += (4000 * np.sin(2.1 * phase + axis)).astype(np.int32)
+    return np.clip(turned, -32000, 32000)
+
+
+def model() -> bytes:
+    """An effect model of two slots for the sensor of the plays."""
+    from zerorate_tools.model import Slot, build_model, encoded
+    from zerorate_tools.model.term import Term
+    from zerorate_tools.recordings import Scales
+
+    slots = [
+        Slot(Term("temp", 20, 45, 32.5, power=2), (0.001, -0.002, 0.0003)),
+        Slot(Term("temp", 20, 45, 32.5), (0.004, 0.001, -0.002)),
+    ]
+    return encoded(build_model(slots, Scales("MPU-6050", 100.0, 131.0, 16384.0, 340.0, 36.53)))
+
+
+def second_program() -> str:
+    """The text of docs/pico.md's second program."""
+    from zerorate_tools.kernels.reading import firmware_package
+
+    checkout = firmware_package().parents[1]
+    return (checkout / _PROGRAM).read_text(encoding="utf-8")
+
+
+def in_markdown(found: Mapping[str, Any]) -> str:
+    """What it must be, heap by part, and the modes that gave equal numbers."""
+    heap = table(["with", "heap, bytes"], [[k, number(v)] for k, v in found["heap_bytes"].items()])
+    modes = [
+        [mode, _yes(equal), _yes(found["frozen"].get(mode))]
+        for mode, equal in found["golden"].items()
+    ]
+    same = table(["mode", "to the last bit as on the host", "frozen into the image"], modes)
+    head = f"# {found['board']}\n\nEmulated, with {found['firmware']}.\n"
+    return "\n".join([head, limits_table(verdicts(found, LIMITS)), heap, same])
+
+
+def _yes(equal: bool | None) -> str:
+    return "no image here" if equal is None else "yes" if equal else "**no**"

@@ -1,0 +1,189 @@
+"""Boards, what memory they have, and what the firmware needs of it: docs/boards.md.
+
+python -m zerorate_bench.boards.table [FIGURES] > docs/boards.md, where FIGURES is what
+`zerorate bench --json FIGURES boards` wrote: its needs go to boards/needs.json first.
+"""
+
+import json
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from zerorate_tools.boards import needs as kept_needs
+from zerorate_tools.boards.compiling import board_files, mpy_version
+from zerorate_tools.boards.connection import BoardFacts
+from zerorate_tools.boards.needs import needs
+from zerorate_tools.boards.parts import REST
+
+from ..native_cost import code_bytes
+from ..tables import table
+
+#: Heap that a program needs beside the firmware: its text, a store, a FIFO and its buffers.
+_PROGRAM = 16_000
+_BOTH = (REST, "motion", "gravity")
+
+
+@dataclass(frozen=True)
+class Board:
+    """A kind of board: heap free at the prompt, megahertz, and the code that it runs."""
+
+    name: str
+    heap_free: int
+    mhz: int
+    code: str
+    measured: bool = False
+
+
+BOARDS = (
+    Board("RP2040 (Pico)", 241_808, 125, "thumb", measured=True),
+    Board("RP2350 (Pico 2)", 480_000, 150, "thumb"),
+    Board("STM32F405", 100_000, 168, "thumb"),
+    Board("SAMD21", 20_000, 48, "thumb"),
+    Board("SAMD51", 130_000, 120, "thumb"),
+    Board("ESP32", 160_000, 240, ""),
+    Board("ESP32-C3", 150_000, 160, "rv32"),
+    Board("ESP8266", 36_000, 80, ""),
+    Board("micro:bit v2", 60_000, 64, "thumb"),
+)
+_HEAD = """# Which board, and what fits
+
+Measured: the row of the RP2040, on an emulated Pico with stock MicroPython 1.28 (`zerorate bench
+boards`), and every board's flash, the size of what `zerorate flash` sends for learning at rest.
+Reckoned, and marked "some": free heap, which is what makers and users tell; heap needed, which is
+the Pico's, with RV32's larger code; a sample's time, which is the Pico's cycles by the board's
+clock. Another core needs fewer cycles, and RV32 is taken for as fast as a Cortex-M0+. No board was
+at hand.
+
+Code for RV32 is compiled for speed: there a sample takes no more instructions than by C -O2. On an
+ESP32-C3 that is {rest_more:,} bytes more of heap and flash than a Pico's code at rest, and
+{both_more:,} with motion and gravity.
+
+A program's own needs, some 16 KB with a store and a FIFO, come on top of the heap. Machine code
+goes to every Cortex-M and to RISC-V by `zerorate flash`; elsewhere, and where `mip` installed the
+sources, the same kernels run as bytecode.
+"""
+_FOOT = """
+On the emulated Pico, on the recording of the bench: the kernels of learning at rest with their call
+take {median:,.0f} cycles a sample, the worst {worst:,.0f}; `Corrector.update` takes
+{object_median:,.0f}, the worst {object_worst:,.0f}; in bursts of 64 (`Bursts.update`) it is
+{burst:,.0f} a sample. As bytecode a sample takes some {bytecode:,.0f}. What fits no heap can be
+frozen into a build: in MicroPython's `ports/rp2`, `make FROZEN_MANIFEST=FILE`, where FILE includes
+the board's own manifest and this project's `manifest.py`. The image takes 129 KB more of flash, all
+sources together 9 KB of heap, and on the emulated Pico it gave the same numbers in every mode, to
+the last bit: `zerorate bench boards` compares it where it is `firmware/FROZEN-1.28.0.bin` in the
+folder that ZERORATE_BOARDS names.
+
+## The heap of the second program
+
+The second program of [pico.md](pico.md) runs in {least_heap:,} bytes of heap; some 46,000 are in
+use once it runs. This is what `gc.mem_alloc()` says behind each, after a collection; of it some
+5,200 bytes are names (`micropython.qstr_info()`), each kept for good when first met. They were
+8,373: `zerorate flash` sends private names as `_a`, `_b`, the same few in every file, and another
+module's constants as numbers.
+
+| bytes | what |
+| ---: | --- |
+| 12,784 | machine code of learning at rest |
+| 6,848 | store and learned store 4,736, schedule 1,216, file 896 |
+| 6,384 | the chip's driver: classes and `setup` 4,416, object and names 1,968 |
+| 4,944 | `zerorate`: `Corrector`, `Sensor`, the choice of machine code |
+| 4,080 | MicroPython itself and its file system, at the prompt |
+| 2,960 | a `Corrector`: state 1,772, settings 216, and the rest of the object |
+| 2,032 | `Fifo` |
+| 1,968 | the checkpoint of the state, 1,772, and its object |
+| 1,600 | the program's own bytecode and names |
+| 1,296 | `CheckedCorrector` |
+| 1,280 | a store, a `Fifo`, a `SaveSchedule` and two small arrays |
+
+Beside these a file is open while it saves, 1,148 bytes in one piece, a record is read whole once,
+at power-on, 1,796 bytes, and there are gaps between what stays. A few names more would take 2,240
+bytes more: the table of names doubles at 300. The machine code is compiled for size but for what
+every sample runs through; the checkpoint is what makes a chip's brown-out harmless. Frozen into a
+build, all bytecode and most names leave the heap.
+"""
+
+
+def page() -> str:
+    """The text of docs/boards.md."""
+    head = ["board", "runs", "heap free", "rest", "motion, gravity", "flash", "a sample", "verdict"]
+    rows = table(head, [_row(board) for board in BOARDS])
+    more = _more("rv32")
+    opening = _HEAD.format(rest_more=more[REST], both_more=sum(more[part] for part in _BOTH))
+    return "\n".join([opening, rows, _foot()]).rstrip() + "\n"
+
+
+def _more(code: str) -> dict[str, int]:
+    """Part -> bytes of this code that the Pico's has not."""
+    bytes_of = code_bytes()
+    return {part: size - bytes_of["thumb"][part] for part, size in bytes_of[code].items()}
+
+
+def _foot() -> str:
+    kept = needs()
+    return _FOOT.format(**kept["cycles"], least_heap=kept["heap"]["least"]).lstrip()
+
+
+def needs_of(found: Mapping[str, Any]) -> dict[str, dict[str, int]]:
+    """What `measure` found, as needs.json has it; what it does not measure stays as it is."""
+    heap, before = found["heap_bytes"], needs()
+    parts = {part: heap[part] - heap[REST] for part in ("motion", "gravity", "effects")}
+    parts["gravity"] = max(parts["gravity"], heap["all"] - heap["motion"])  # the two together
+    return {
+        "native": {REST: heap[REST], **parts},
+        "bytecode": before["bytecode"],
+        "heap": {"least": found["least_heap_bytes"]},
+        "cycles": {**before["cycles"], **{k: round(v) for k, v in found["cycles"].items()}},
+    }
+
+
+def _row(board: Board) -> list[str]:
+    kept = needs()["native" if board.code else "bytecode"]
+    rest = kept[REST]
+    both = rest + kept["motion"] + kept.get("gravity", 0)
+    if board.code:
+        more = _more(board.code)
+        rest, both = rest + more[REST], both + sum(more[part] for part in _BOTH)
+    some = "" if board.measured else "some "
+    cycles = needs()["cycles"]["object_median" if board.code else "bytecode"]
+    return [
+        board.name,
+        f"machine code, {board.mhz} MHz" if board.code else f"bytecode, {board.mhz} MHz",
+        f"{some}{board.heap_free:,}",
+        f"{some}{rest:,}",
+        f"{some}{both:,}",
+        f"{_flash_bytes(board.code):,}",
+        f"{some}{cycles / board.mhz:,.0f} us",
+        verdict(board.heap_free, rest, both),
+    ]
+
+
+@cache
+def _flash_bytes(code: str) -> int:
+    return sum(map(len, board_files([REST], BoardFacts(mpy=mpy_version()), code).values()))
+
+
+def verdict(heap_free: int, rest: int, both: int) -> str:
+    """What of it the heap has room for, in words."""
+    if heap_free >= both + _PROGRAM:
+        return "all sources"
+    if heap_free >= rest + _PROGRAM:
+        return "learning at rest"
+    if heap_free >= rest:
+        return "learning at rest, in a small program"
+    return "frozen alone"
+
+
+def main(figures: Path | None) -> None:
+    """Print the page, after needs.json was written anew from `figures`."""
+    if figures is not None:
+        found = needs_of(json.loads(figures.read_text(encoding="utf-8")))
+        text = json.dumps(found, indent=2) + "\n"
+        Path(kept_needs.__file__).with_name("needs.json").write_text(text, encoding="utf-8")
+    print(page(), end="")
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]) if sys.argv[1:] else None)

@@ -1,0 +1,143 @@
+"""`zerorate bench cost`: what a sample costs, what a replay does, and the tables of it."""
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+from zerorate_tools.errors import MissingRuntime
+
+from .limits import COST, limits_table, verdicts
+from .memory import heap_bytes_per_update, import_heap_bytes, mpy_sizes, state_bytes
+from .native_cost import code_bytes, effects_cost, native_cost
+from .replay_speed import HOURS, replay_speed
+from .tables import machine, machine_line, number, table
+from .workload import Workload, workload
+
+STEPS = 6
+__all__ = ["STEPS", "cost", "in_markdown", "sections"]
+
+_MADE = """\
+Made by `zerorate bench cost`, which also writes `--json FILE`. Counts of instructions and bytes are
+the same on every machine; times and what follows from them are this machine's, in time of the
+processor, so that they may be measured while others use it.
+"""
+_HOW = """\
+One minute of a simulated warm-up with rests and motion, effects off, as after `Corrector()`: guard,
+stillness, histograms, estimators and correction of three axes. Both columns are machine code of the
+same kernels, executed by an emulated Cortex-M0 and RV32 (Unicorn): what the firmware carries, and
+all of it compiled for speed (C -O2). Both must end in the same state to the last bit. Cycles are
+those of a Cortex-M0+ without wait states. Alone is a call a sample, in bursts is 64 samples a call.
+Calling it from MicroPython comes on top: see [boards.md](boards.md).
+"""
+_EFFECTS = """\
+What the slots of a model add to a sample on the Cortex-M0+, at 100 Hz. What follows temperature or
+time, or remembers, is computed once a second, a slot a sample; what follows a rate, an acceleration
+or a channel of the application, which may move faster, at every sample.
+"""
+_EFFECTS_HEAD = ["slots", "instructions, mean", "cycles, mean", "worst"]
+_REPLAY = """\
+Seconds are the processor's, all threads together, the fewest of three runs; memory is the most that
+the process ever held. Parquet in and Parquet out, each sample's bias, source and quality written.
+Learning at rest alone (`--no-motion --no-gravity`); the other sources take about as long again.
+"""
+_NAMES = {"thumb": "Cortex-M0+", "rv32": "RV32"}
+_CYCLES = ("cycles", "cycles_worst")
+_HEAD = ["a sample", "instructions", "C -O2", "against C", "worst", "cycles, median", "worst"]
+
+
+def cost(advance: Callable[[float], None] = lambda n: None, hours=HOURS) -> dict[str, Any]:
+    """All figures; what cannot be measured here is None, and `left_out` says why."""
+    work = workload()
+    left_out: dict[str, str] = {}
+    found: dict[str, Any] = {"machine": machine()}
+    for name, measure in _measures(work, hours).items():
+        try:
+            found[name] = measure()
+        except MissingRuntime as missing:
+            found[name], left_out[name] = None, str(missing)
+        advance(1)
+    heap, replay = found["heap_bytes_per_update_by_interpreter"], found["replay_by_hours"]
+    found["heap_bytes_per_update"] = max(heap.values()) if heap else None
+    found["state_bytes_by_array"] = state_bytes()
+    found["state_bytes"] = found["state_bytes_by_array"]["state"]
+    found["replay_samples_per_s"] = min(one["samples_per_s"] for one in replay.values())
+    found["left_out"] = left_out
+    found["limits"] = [verdict.to_json() for verdict in verdicts(found, COST)]
+    return found
+
+
+def _measures(work: Workload, hours) -> dict[str, Callable[[], Any]]:
+    return {
+        "heap_bytes_per_update_by_interpreter": lambda: heap_bytes_per_update(work),
+        "native": lambda: native_cost(work),
+        "effects": effects_cost,
+        "code_bytes": code_bytes,
+        "import_heap_bytes": import_heap_bytes,
+        "mpy_bytes": mpy_sizes,
+        "replay_by_hours": lambda: replay_speed(hours),
+    }
+
+
+def in_markdown(found: Mapping[str, Any]) -> str:
+    limits = limits_table(verdicts(found, COST))
+    return "\n".join(["# Cost\n", _MADE, machine_line(found["machine"]), limits, *sections(found)])
+
+
+def sections(found: Mapping[str, Any]) -> Iterator[str]:
+    """The tables of a sample, of memory and of the replay, one below the other."""
+    yield "## A sample\n"
+    yield _HOW
+    yield table(_HEAD, list(_per_sample(found)))
+    yield "Bytes of machine code, each part loaded by who uses it:\n"
+    yield table(["part", *(found["code_bytes"] or {})], list(_code(found)))
+    yield "## Effects\n"
+    yield _EFFECTS
+    yield table(_EFFECTS_HEAD, list(_effects(found)))
+    yield "## Memory\n"
+    yield table(["what", "bytes"], list(_memory(found)))
+    yield "## Replay on one core\n"
+    yield _REPLAY
+    yield table(["at 100 Hz", "samples/s", "kernels alone", "peak MB"], list(_replay(found)))
+    for name, why in found["left_out"].items():
+        yield f"Left out: {name}: {why}.\n"
+
+
+def _per_sample(found: Mapping[str, Any]) -> Iterator[list[str]]:
+    for processor, figures in (found["native"] or {}).items():
+        for how, one in figures.items():
+            mean, c = one["instructions"], one["instructions_c"]
+            cycles = [f"{one[name]:,.0f}" if name in one else "" for name in _CYCLES]
+            row = [f"{mean:,.0f}", f"{c:,.0f}", f"{mean / c:.2f} x", f"{one['worst']:,.0f}"]
+            yield [f"{_NAMES[processor]}, {how}", *row, *cycles]
+
+
+def _code(found: Mapping[str, Any]) -> Iterator[list[str]]:
+    sizes = found["code_bytes"] or {}
+    for part in next(iter(sizes.values()), {}):
+        yield [part, *(f"{of[part]:,}" for of in sizes.values())]
+
+
+def _effects(found: Mapping[str, Any]) -> Iterator[list[str]]:
+    for slots, one in (found.get("effects") or {}).items():
+        yield [slots, *(f"{one[n]:,.0f}" for n in ("instructions", *_CYCLES))]
+
+
+def _memory(found: Mapping[str, Any]) -> Iterator[list[str]]:
+    for name, size in (found["heap_bytes_per_update_by_interpreter"] or {}).items():
+        yield [f"heap an update, {name}", f"{size:g}"]
+    for name, size in found["state_bytes_by_array"].items():
+        yield [f"array of {name}", f"{size:,}"]
+    if found["import_heap_bytes"] is not None:
+        yield ["heap of `import zerorate`, wasm", f"{found['import_heap_bytes']:,}"]
+    for name, size in (found["mpy_bytes"] or {}).items():
+        yield [f"all .mpy, {name}", f"{size:,}"]
+
+
+def _replay(found: Mapping[str, Any]) -> Iterator[list[str]]:
+    for hours, one in found["replay_by_hours"].items():
+        alone = one.get("kernel_samples_per_s")
+        yield [
+            f"{hours} h",
+            f"{one['samples_per_s']:,.0f}",
+            f"{alone:,.0f}" if alone else "",
+            number(one["peak_bytes"] / 1e6),
+        ]

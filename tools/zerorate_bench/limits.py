@@ -1,0 +1,120 @@
+"""What the figures of cost and accuracy must be, and whether they are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from .tables import number, table
+
+OURS = "zerorate"
+SESSION_2 = {
+    "all": {"warm-up-a": 1.2, "warm-up-b": 3.5, "warm-up-c": 14.0},
+    "first": {"warm-up-a": 3.0, "warm-up-b": 10.0, "warm-up-c": 15.0},
+}
+_PARTS = {"all": "RMS", "first": "first 15 s"}
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A figure's bound. measured: takes all figures, raises KeyError or TypeError without it."""
+
+    figure: str
+    bound: float
+    unit: str
+    measured: Callable[[Mapping[str, Any]], float]
+    at_least: bool = False
+
+    def verdict(self, found: Mapping[str, Any]) -> Verdict:
+        """This bound beside what was found."""
+        try:
+            return Verdict(self, float(self.measured(found)))
+        except (KeyError, TypeError):
+            return Verdict(self, None)
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """A bound and the figure measured for it, None where it could not be measured."""
+
+    limit: Limit
+    value: float | None
+
+    @property
+    def met(self) -> bool | None:
+        """Whether the bound is kept; None where nothing was measured."""
+        if self.value is None:
+            return None
+        if self.limit.at_least:
+            return self.value >= self.limit.bound
+        return self.value <= self.limit.bound
+
+    def to_json(self) -> dict[str, object]:
+        """figure, measured, at_most or at_least, unit, met."""
+        kind = "at_least" if self.limit.at_least else "at_most"
+        found = {"figure": self.limit.figure, "measured": self.value, kind: self.limit.bound}
+        return {**found, "unit": self.limit.unit, "met": self.met}
+
+
+def _native(processor: str, how: str, figure: str) -> Callable[[Mapping[str, Any]], float]:
+    return lambda found: found["native"][processor][how][figure]
+
+
+def _against_c(processor: str, how: str) -> Callable[[Mapping[str, Any]], float]:
+    def ratio(found: Mapping[str, Any]) -> float:
+        one = found["native"][processor][how]
+        return one["instructions"] / one["instructions_c"]
+
+    return ratio
+
+
+def _growth(found: Mapping[str, Any]) -> float:
+    peaks = {float(h): figures["peak_bytes"] for h, figures in found["replay_by_hours"].items()}
+    return peaks[max(peaks)] / peaks[min(peaks)]
+
+
+def _error(name: str, part: str) -> Callable[[Mapping[str, Any]], float]:
+    return lambda found: found["session_2_rms_mdps"][name][OURS][part]
+
+
+COST = (
+    *(
+        Limit(f"instructions against C -O2, {name}, {how}", 1.05, "x", _against_c(processor, how))
+        for processor, name in (("thumb", "Cortex-M0+"), ("rv32", "RV32"))
+        for how in ("alone", "bursts")
+    ),
+    Limit("cycles in the kernel alone, median", 600, "cycles", _native("thumb", "alone", "cycles")),
+    Limit(
+        "cycles in the kernel alone, worst",
+        13000,
+        "cycles",
+        _native("thumb", "alone", "cycles_worst"),
+    ),
+    Limit("cycles a sample in bursts", 500, "cycles", _native("thumb", "bursts", "cycles")),
+    Limit("heap an update", 0, "bytes", lambda f: f["heap_bytes_per_update"]),
+    Limit("replay on one core", 2e6, "samples/s", lambda f: f["replay_samples_per_s"], True),
+    Limit("replay's memory, longest against shortest", 1.2, "x", _growth),
+)
+ACCURACY = tuple(
+    Limit(f"session 2, {_PARTS[part]}, {name[-1].upper()}", bound, "mdps", _error(name, part))
+    for part, bounds in SESSION_2.items()
+    for name, bound in bounds.items()
+)
+
+
+def verdicts(found: Mapping[str, Any], limits: tuple[Limit, ...]) -> list[Verdict]:
+    """Each limit beside its figure."""
+    return [limit.verdict(found) for limit in limits]
+
+
+def limits_table(found: list[Verdict]) -> str:
+    """Markdown: figure, measured, bound, met."""
+    return table(["figure", "measured", "must be", "met"], [_row(verdict) for verdict in found])
+
+
+def _row(verdict: Verdict) -> list[str]:
+    limit = verdict.limit
+    measured = "not measured" if verdict.value is None else f"{number(verdict.value)} {limit.unit}"
+    bound = f"at {'least' if limit.at_least else 'most'} {limit.bound:,.10g} {limit.unit}"
+    return [limit.figure, measured, bound, {True: "yes", False: "**no**", None: "-"}[verdict.met]]

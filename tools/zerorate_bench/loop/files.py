@@ -1,0 +1,196 @@
+"""Devices that are simulated sample by sample, written to files and closed as a user would.
+
+What follows no block at rest (motion, lines, Earth's rotation) is shown here alone; a few of the
+rest are run as well, so that the quick devices of the other rows are known to stand for real files.
+"""
+
+import tempfile
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .devices import Device
+from .run_trial import Outcome
+
+_FACES = ("+x", "-y", "-z", "-x", "+y", "+z")
+_PATH = [
+    {"to": 42.0, "minutes": 8},
+    {"minutes": 5},
+    {"to": 26.0, "minutes": 14},
+    {"minutes": 4},
+    {"to": 46.0, "minutes": 16},
+    {"minutes": 3},
+]
+_TURNED = [
+    bout
+    for face in _FACES
+    for bout in (
+        {"kind": "rest", "s": [40, 90]},
+        {"kind": "pose", "face": face, "s": 3},
+        {"kind": "rest", "s": 15},
+        {"kind": "turn", "axis": "random", "deg": 100, "s": 3},
+    )
+]
+_POSED = [
+    bout
+    for face in _FACES
+    for bout in ({"kind": "rest", "s": [120, 240]}, {"kind": "pose", "face": face, "s": 3})
+]
+_HANDLED = [{"kind": "rest", "s": [60, 90]}, {"kind": "hand", "s": [30, 60]}]
+_IN_THE_HAND = [
+    bout
+    for face in _FACES
+    for bout in (
+        {"kind": "rest", "s": [40, 70]},
+        {"kind": "hand", "s": [20, 30]},
+        {"kind": "pose", "face": face, "s": 3},
+    )
+]
+_OF_ACCELERATION = [[1.0, 0.3, 0.0], [0.0, 1.0, -0.3], [0.3, 0.0, 1.0]]
+#: Seconds of a power-on before its error in motion counts: the turn-on offset is learned first.
+_LEARNED_S = 600
+_FLOOR_DPS = 0.002
+_CROSS = [[0.0, 0.01, -0.005], [0.005, 0.0, 0.01], [-0.01, 0.005, 0.0]]
+_HISTORY = {"kind": "hysteresis", "rms_dps": 2 * _FLOOR_DPS, "beyond_temperature": True}
+HELD_IN_A_HAND = "files, acceleration 80 mdps, a third of it in the hand"
+#: Row -> what of a description differs, the effect that must be named ("" for none), and whether
+#: the attitude is recorded beside it.
+ROWS: dict[str, tuple[dict, str, bool]] = {
+    "files, nothing": ({}, "", False),
+    "files, nothing, turned over with Earth in it": (
+        {"motion": _POSED, "latitude_deg": 50.0},
+        "",
+        False,
+    ),
+    "files, nothing, handled with attitude": ({"motion": _HANDLED}, "", True),
+    "files, hysteresis at 2x": ({"effect": [_HISTORY]}, "thermal-hysteresis", False),
+    "files, a line of 40 s at 2x": (
+        {"effect": [{"kind": "periodic", "hz": 0.025, "rms_dps": 2 * _FLOOR_DPS}]},
+        "periodic-interference",
+        False,
+    ),
+    "files, mains folded to 1.7 Hz at 2x": (
+        {"effect": [{"kind": "periodic", "hz": 51.7, "rms_dps": 2 * _FLOOR_DPS}]},
+        "periodic-interference",
+        False,
+    ),
+    "files, scale 1 % beside gravity": (
+        {"motion": _TURNED, "effect": [{"kind": "scale", "dps": [0.01, -0.01, 0.01]}]},
+        "scale-factor",
+        False,
+    ),
+    "files, cross-axis 1 % beside gravity": (
+        {"motion": _TURNED, "effect": [{"kind": "scale", "dps": 1.0, "matrix": _CROSS}]},
+        "cross-axis",
+        False,
+    ),
+    "files, scale 0.1 % beside attitude": (
+        {"motion": _HANDLED, "effect": [{"kind": "scale", "dps": [0.001, -0.001, 0.001]}]},
+        "scale-factor",
+        True,
+    ),
+    HELD_IN_A_HAND: (
+        {
+            "motion": _IN_THE_HAND,
+            "effect": [{"kind": "linear-g", "dps": 0.08, "matrix": _OF_ACCELERATION}],
+        },
+        "linear-acceleration",
+        False,
+    ),
+    "files, readings 2 ms late": (
+        {"motion": _HANDLED, "effect": [{"kind": "timing", "delay_ms": 2.0}]},
+        "sample-timing",
+        True,
+    ),
+}
+
+
+def file_devices(seeds: int) -> list[Device]:
+    """So many of each row."""
+    return [Device(row, 900_000 + i) for row in ROWS for i in range(seeds)]
+
+
+def description(row: str) -> dict:
+    """Of a row's device: four sessions of fifty minutes at 10 Hz, an MPU-6050."""
+    more = dict(ROWS[row][0])
+    motion = more.pop("motion", [])
+    return {
+        "sessions": 4,
+        "sensor": {"odr_hz": 10.0, "gyro_noise_at_hz": 100.0, "accel_bias_g": [0.03, -0.02, 0.04]},
+        "bias": {"b0": [1.2, -0.8, 0.4], "b1": [0.02, -0.015, 0.01], "turn_on_dps": 0.02},
+        "noise": {"bias_instability_dps": _FLOOR_DPS, "random_walk_dps": 0.00005},
+        "every_session": {
+            "start_degc": 22.0,
+            "vary_degc": 2.0,
+            "vary_time": 0.15,
+            "temperature": _PATH,
+            "motion": motion,
+        },
+        "channels": {"load": {"kind": "levels", "low": 0.0, "high": 100.0, "mean_s": 300.0}},
+        **more,
+    }
+
+
+def look_at_files(device: Device) -> Outcome:
+    """Simulate a device into files, close them, and take the report's word for what was found."""
+    from zerorate_tools.closing import load
+    from zerorate_tools.loop.report.report import report
+
+    with tempfile.TemporaryDirectory() as folder:
+        made = list(_written(device, Path(folder)))
+        paths = [path for path, _ in made]
+        analysis = load([*paths])
+        said = report(analysis)
+        in_motion = None
+        if device.row == HELD_IN_A_HAND:
+            in_motion = _in_motion_mdps(analysis, *made[-1])
+    effects, judgement, quick = said["effects"], analysis.judgement, said["interference"]
+    floor = float(np.sqrt(np.mean(analysis.floor_dps**2)))
+    return Outcome(
+        device,
+        [effect["effect"] for effect in effects] + ["periodic-interference"] * len(quick),
+        [effect["sources"] for effect in effects] + [[]] * len(quick),
+        [effect["confounded_with"] for effect in effects] + [[]] * len(quick),
+        [effect["confidence"] for effect in effects] + ["tentative"] * len(quick),
+        len(said["events"]),
+        bool(judgement.residual_test.left),
+        judgement.before_rms / floor,
+        judgement.after_rms / floor,
+        in_motion_mdps=in_motion,
+    )
+
+
+def _in_motion_mdps(analysis, path: Path, truth) -> float:
+    """RMS over the moving samples and the axes of the firmware's error, learning as it goes."""
+    from zerorate_tools.loop.verify.firmware import Firmware
+    from zerorate_tools.loop.verify.slots import model_of
+    from zerorate_tools.recordings import open_recording
+    from zerorate_tools.replay.samples import frames_in_batches
+
+    recording = open_recording(path)
+    scales = recording.scales
+    device = Firmware(scales, model_of(analysis, scales))
+    device.power_on()
+    bias = np.vstack([device.run(frames) for frames in frames_in_batches(recording)]) / 256
+    error = (bias - truth.bias_lsb) / scales.gyro_lsb_per_dps
+    counts = ~truth.still & (truth.t_us - truth.t_us[0] > 1e6 * _LEARNED_S)
+    return float(1e3 * np.sqrt((error[counts] ** 2).mean()))
+
+
+def _written(device: Device, folder: Path) -> Iterator[tuple[Path, Any]]:
+    """(file, truth) of every session."""
+    from zerorate_tools.recordings import write_recording
+    from zerorate_tools.simulate import simulate_sessions
+
+    made = simulate_sessions(description(device.row), seed=device.seed)
+    for i, (recording, truth) in enumerate(made):
+        columns = dict(recording.columns)
+        if ROWS[device.row][2]:
+            for name, q in zip(("qw", "qx", "qy", "qz"), truth.attitude.T):
+                columns[name] = np.rint(q * 2**29).astype(np.int32)
+        path = folder / f"session-{i + 1}.parquet"
+        write_recording(replace(recording, columns=columns), path)
+        yield path, truth

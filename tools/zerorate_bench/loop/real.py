@@ -1,0 +1,149 @@
+"""The loop on real recordings: before, after, the floor, and a cubic over temperature beside."""
+
+import tempfile
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+
+from ..public_data import BIN_TABLES, CLOSED_ALONE, CLOSED_TOGETHER, told_of
+from ..tables import machine_line, table
+from .bin_tables import draw_chip, hipnuc, rms_mdps
+from .curves import best_curve_rms_dps, cubic_left
+
+
+def real_rows(data: Path, plots: Path | None = None) -> dict[str, dict]:
+    """Name -> figures in mdps (RMS over the axes, held out) and what was found, of every recording
+    alone, of those of one device together, and of tables of means.
+
+    before, after: by the firmware's own kernels; cubic: by double precision, on the same pieces.
+
+    plots: a folder for pictures: of a recording those of its report, of a table what is left.
+    """
+    rows = {}
+    if plots:
+        plots.mkdir(parents=True, exist_ok=True)
+    every = {Path(name).name: [data / name] for name in CLOSED_ALONE if (data / name).exists()}
+    every |= {name: sorted(data.glob(pattern)) for name, pattern in CLOSED_TOGETHER.items()}
+    with tempfile.TemporaryDirectory() as scratch:
+        for name, paths in every.items():
+            if paths:
+                rows[name] = _closed(paths, Path(scratch), plots)
+    for path in sorted((data / BIN_TABLES).glob("*.log")):
+        rows[path.name] = hipnuc(path)
+        if plots:
+            draw_chip(path, plots / f"{path.stem}.png")
+    return rows
+
+
+def _closed(paths: list[Path], scratch: Path, plots: Path | None) -> dict:
+    from zerorate_tools.closing import load
+    from zerorate_tools.importers import import_recording
+    from zerorate_tools.loop.report.report import report
+    from zerorate_tools.loop.verify.measure import measure_and_prune
+
+    logs = [scratch / f"{path.parent.name}-{path.name.split('.')[0]}.parquet" for path in paths]
+    for path, log in zip(paths, logs):
+        import_recording(path, log, **told_of(path))
+    analysis, _ = measure_and_prune(load([*logs]), logs, scratch / "corrected.parquet")
+    told = report(analysis)
+    row = _row(analysis, told)
+    if "vn200" in paths[0].parent.name:
+        row["flip"] = _flip(analysis.sessions[0], float(analysis.floor_dps[2]))
+    if plots:
+        from zerorate_tools.report.held_out import held_out
+        from zerorate_tools.report.png import write_pngs
+        from zerorate_tools.report.residual_plots import against_temperature, against_time
+
+        parts = held_out(analysis)
+        drawn = against_time(parts, told["events"]), against_temperature(parts)
+        write_pngs([plot for plot in drawn if plot is not None], plots / logs[0].stem)
+    return row
+
+
+def _row(analysis, told: dict) -> dict:
+    judgement, rival = analysis.judgement, cubic_left(analysis)
+    best = best_curve_rms_dps(analysis)
+    left = rms_mdps(np.vstack(judgement.residual_after))
+    cubic = None if rival is None else rms_mdps(np.vstack(rival))
+    effects = [f"{effect['effect']} ({effect['confidence']})" for effect in told["effects"]]
+    beside = [", ".join(effect["confounded_with"]) for effect in told["effects"]]
+    return {
+        "before_mdps": rms_mdps(np.vstack(judgement.residual_before)),
+        "after_mdps": left,
+        "after_xyz_mdps": "/".join(f"{v:.0f}" for v in told["after_mdps"]),
+        "cubic_mdps": "no temperature" if cubic is None else cubic,
+        "of_cubic": "" if cubic is None else round(left / cubic, 3),
+        "best_curve_of_cubic": "" if not cubic or best is None else round(1e3 * best / cubic, 3),
+        "noise_of_a_block_mdps": _noise(analysis),
+        "floor_mdps": rms_mdps(analysis.floor_dps),
+        "found": ", ".join(effects) or "nothing",
+        "confounded_with": "; ".join(b for b in beside if b),
+        "withdrawn": ", ".join(what for what, _ in told["gate"]["withdrawn"]),
+        "steps_listed": len(told["events"]),
+        "drift_unexplained": "yes" if judgement.residual_test.left else "no",
+    }
+
+
+def _flip(session, floor_dps: float) -> str:
+    """What turning the part over did to its z rate, beside what Earth's rotation can do.
+
+    floor_dps: of the z axis: what a mean over each side is uncertain by.
+    """
+    from zerorate_tools.loop.read.earth import EARTH_DPS
+
+    up = session.block_mean(session.sources["acc_z"]) > 0
+    there = session.available
+    if not (up & there).any() or not (~up & there).any():
+        return "not turned over"
+    change = 1e3 * (
+        session.rate_dps[up & there, 2].mean() - session.rate_dps[~up & there, 2].mean()
+    )
+    sure = 2e3 * floor_dps * np.sqrt(2.0)
+    earth = 2e3 * EARTH_DPS
+    said = f"{change:+.1f} +- {sure:.1f} mdps over a turn; Earth's rotation can be {earth:.1f}: "
+    if abs(change) - sure <= earth:
+        return said + "these data cannot tell the two apart"
+    return said + f"at least {abs(change) - sure - earth:.1f} mdps are acceleration's"
+
+
+def _noise(analysis) -> float:
+    """White noise of a block, mdps, by the rates' differences from one block to the next."""
+    changes = [np.diff(s.rate_dps[s.available], n=2, axis=0) for s in analysis.holdout]
+    return round(float(1e3 * np.sqrt((np.vstack(changes) ** 2).mean() / 6)), 2)
+
+
+#: Of the error before, and of a cubic's, that the error after may be; of a cubic's, the median.
+_MOST_OF_BEFORE, _MOST_OF_CUBIC, _MEDIAN = 1.0, 1.05, 0.7
+
+
+def in_words(rows: dict[str, dict]) -> str:
+    """The page of `zerorate bench real`: what is missed first, then every recording."""
+    closed = {name: row for name, row in rows.items() if "of_cubic" in row}
+    worse = [n for n, r in closed.items() if r["after_mdps"] > _MOST_OF_BEFORE * r["before_mdps"]]
+    ratios = {n: r["of_cubic"] for n, r in closed.items() if r["of_cubic"] != ""}
+    beaten = [n for n, ratio in ratios.items() if ratio > _MOST_OF_CUBIC]
+    median = _median(ratios.values())
+    floors = [
+        min(r["of_cubic"], r["best_curve_of_cubic"]) for r in closed.values() if r["of_cubic"] != ""
+    ]
+    lines = [
+        "# Closing the loop on real recordings",
+        "",
+        "`zerorate bench real` wrote this page. " + machine_line(),
+        f"Worse than before: {', '.join(worse) or 'none'}.",
+        f"Worse than a cubic by more than 5 %, held out alike: {', '.join(beaten) or 'none'}.",
+        f"Error after, over the cubic's: {median:.2f} in the median (asked for: {_MEDIAN}).",
+        f"The same of the best of many curves over temperature, where it leaves less, chosen on "
+        f"each axis by what was held out itself: {_median(floors):.2f}.",
+        "",
+    ]
+    keys = list(dict.fromkeys(k for row in rows.values() for k in row))
+    header = ("recording", *(k.replace("_", " ") for k in keys))
+    cells = [(name, *(row.get(k, "") for k in keys)) for name, row in rows.items()]
+    return "\n".join([*lines, table(header, cells)])
+
+
+def _median(values: Iterable[float]) -> float:
+    every = list(values)
+    return float(np.median(every)) if every else float("nan")

@@ -1,0 +1,146 @@
+"""One device looked at: simulated, closed, and judged by a session that no fit has seen."""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from .devices import TOLD, Device
+from .quiet import cut_into_sessions
+
+
+@dataclass
+class Outcome:
+    """What the loop said of a device. before, after: held-out RMS over that of the noise alone;
+    unpruned: after, had the held-out session taken nothing out again; withdrawn: what it took;
+    in_motion_mdps: error while it moves, of devices whose row asks for it."""
+
+    device: Device
+    found: list[str] = field(default_factory=list)
+    sources: list[list[str]] = field(default_factory=list)
+    rivals: list[list[str]] = field(default_factory=list)
+    confidence: list[str] = field(default_factory=list)
+    events: int = 0
+    excess: bool = False
+    before: float = 1.0
+    after: float = 1.0
+    cpu_s: float = 0.0
+    in_motion_mdps: float | None = None
+    unpruned: float = 1.0
+    withdrawn: list[str] = field(default_factory=list)
+
+    def named(self, effect: str) -> bool:
+        """Whether an effect is among the named, or among what is confounded with one of them."""
+        everything = [*self.found, *(r for rivals in self.rivals for r in rivals)]
+        return any(effect in n.split("+") for n in everything)
+
+    def tied_to(self, channels: tuple[str, ...]) -> bool:
+        """Whether an effect found follows exactly these channels."""
+        return any(set(s) == set(channels) for s in self.sources)
+
+    @property
+    def confirmed(self) -> bool:
+        """Whether any effect is said to be sure."""
+        return "confirmed" in self.confidence
+
+    @property
+    def worse(self) -> bool:
+        """Whether the error held out has grown by more than 2 %."""
+        return self.after > 1.02 * self.before
+
+
+def run_trial(device: Device) -> Outcome:
+    """Simulate a device, run the loop on it and judge by its last session."""
+    import time
+
+    from .simulated import simulate
+
+    began = time.process_time()
+    if device.row == TOLD:
+        return _told(device)
+    if device.real:
+        sessions, noise = cut_into_sessions(device.real, device.seed)
+    else:
+        made = simulate(
+            device.seed, list(device.effects), device.sessions, 1.0, device.noise, device.hidden
+        )
+        sessions, noise = made.sessions, made.noise_dps
+    outcome = judged(device, sessions, noise[-1])
+    outcome.cpu_s = time.process_time() - began
+    return outcome
+
+
+def _told(device: Device) -> Outcome:
+    """What a model of the loop itself leaves, which takes it to start where the temperature does:
+    found where some axis of the last session is nearer with it, and it corrects those alone."""
+    from .added_effects import PRANDTL_ISHLINSKII_TOLD
+    from .simulated import simulate
+
+    (_, size), n = device.effects[0], device.sessions
+    made = simulate(device.seed, device.effects, n)
+    left = simulate(device.seed, [(PRANDTL_ISHLINSKII_TOLD, size)], n)
+    before, after = _left_by_line(made.sessions), _left_by_line(left.sessions)
+    unit = _noise_rms(made.sessions[-1], made.noise_dps[-1])
+    of_all = [_rms(e) / unit for e in (before, np.minimum(before, after), after)]
+    said = ["thermal-hysteresis"]
+    nearer = bool((after < before).any())
+    return Outcome(
+        device,
+        said if nearer else [],
+        before=of_all[0],
+        after=of_all[1],
+        unpruned=of_all[2],
+        withdrawn=[] if nearer else said,
+    )
+
+
+def _rms(each: np.ndarray) -> float:
+    return float(np.sqrt((each**2).mean()))
+
+
+def _left_by_line(sessions) -> np.ndarray:
+    """(3,) RMS of the last session beside the line over temperature of the others."""
+    from zerorate_tools.loop.fit.line import ordinary
+    from zerorate_tools.loop.fit.regression import predicted
+    from zerorate_tools.loop.search.select import straight_line
+    from zerorate_tools.loop.verify.judge import rms_dps, scored
+
+    line = straight_line(sessions[:-1])
+    of_line = predicted(line, ordinary(line, sessions[:-1]), sessions[-1])
+    return rms_dps([scored(sessions[-1], of_line)[0]])
+
+
+def _noise_rms(session, noise_dps: np.ndarray) -> float:
+    """Of the blocks scored, over the axes."""
+    from zerorate_tools.loop.verify.judge import scored
+
+    noise, _ = scored(replace(session, rate_dps=noise_dps), np.zeros(noise_dps.shape))
+    return float(np.sqrt(np.nanmean(noise**2)))
+
+
+def judged(device: Device, sessions: list, noise_dps: np.ndarray) -> Outcome:
+    """What the loop says of sessions. noise_dps: (n, 3) of the last one, nothing else in it."""
+    from zerorate_tools.loop.fit.single import PiecesByLine
+    from zerorate_tools.loop.search.confounding import label
+    from zerorate_tools.loop.search.select import select
+    from zerorate_tools.loop.verify.judge import residuals, rms_dps
+    from zerorate_tools.loop.verify.prune_by_holdout import prune_by_holdout
+
+    alone = PiecesByLine(sessions[0]) if len(sessions) == 2 else None
+    every = select(sessions[:-1], 0, alone, judged_again=True)
+    selection, verdict = prune_by_holdout(every, sessions[-1:])
+    unpruned = rms_dps([left for left, _ in residuals(every, sessions[-1:])])
+    unit = _noise_rms(sessions[-1], noise_dps)
+    found = selection.found
+    return Outcome(
+        device,
+        [label(f.candidate) for f in found],
+        [f.candidate.sources for f in found],
+        [f.confounded_with for f in found],
+        [verdict.confidence(i) for i in range(len(found))],
+        len(selection.steps),
+        bool(verdict.residual_test.left),
+        float(verdict.before_rms / unit),
+        float(verdict.after_rms / unit),
+        unpruned=_rms(unpruned) / unit,
+        withdrawn=[name for name, _ in selection.withdrawn],
+    )

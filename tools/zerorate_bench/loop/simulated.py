@@ -1,0 +1,175 @@
+"""A fast simulated device at block level, for the loop's tests and its table of false alarms.
+
+Noise, temperature path and channels are drawn from a seed; `added_effects` adds effects.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.fft import irfft, rfft
+from zerorate_tools.loop.read.sessions import Session
+from zerorate_tools.model.term import first_order_lag
+
+from .added_effects import add_effect, add_parts
+
+BLOCK_S = 20.0
+TICKS = 4
+
+
+@dataclass
+class Device:
+    """Sessions with what the loop must not see: the noise alone (n, 3) of each session and the
+    floor per axis.
+    """
+
+    sessions: list[Session]
+    noise_dps: list[np.ndarray]
+    floor_dps: np.ndarray
+    truth: list[str] = field(default_factory=list)
+
+
+def flicker(rng: np.random.Generator, n: int, sigma: float, exponent: float = 1.0) -> np.ndarray:
+    """(n,) noise of spectrum sigma^2 / f^exponent (Kasdin 1995, Proc. IEEE 83(5), fractional
+    differences).
+    """
+    k = np.arange(1, 2 * n)
+    h = np.concatenate([[1.0], np.cumprod((exponent / 2 + k - 1) / k)])
+    white = rng.normal(0, sigma, 2 * n)
+    return irfft(rfft(h, 4 * n) * rfft(white, 4 * n))[n : 2 * n]
+
+
+def temperature_path(rng: np.random.Generator, ticks: int, tick_s: float) -> np.ndarray:
+    """(ticks,) degC: chamber-like ramps up and down at three rates with holds, and the part's own
+    heating.
+    """
+    stretch = max(1.0, ticks * tick_s / 3600.0 / 4)
+    t, level = 0.0, rng.uniform(17, 20)
+    points, high = [(t, level)], True
+    while t < ticks * tick_s:
+        to = rng.uniform(33, 36) if high else rng.choice([rng.uniform(17, 20), rng.uniform(23, 29)])
+        t += abs(to - level) / rng.choice([0.015, 0.025, 0.05]) * stretch
+        points.append((t, to))
+        t += rng.uniform(60, 400) * stretch
+        points.append((t, to))
+        level, high = to, not high
+    at = (np.arange(ticks) + 0.5) * tick_s
+    ambient = np.interp(at, *np.array(points).T)
+    return first_order_lag(ambient, 60.0, tick_s) + 8.0 * (1 - np.exp(-at / rng.uniform(300, 600)))
+
+
+def _levels(rng, ticks, tick_s, every_s, low, high):
+    out, i = np.empty(ticks), 0
+    while i < ticks:
+        step = max(1, int(rng.exponential(every_s) / tick_s))
+        out[i : i + step] = rng.uniform(low, high)
+        i += step
+    return out
+
+
+def _wander(rng, ticks, tick_s, tau_s):
+    walk = np.cumsum(rng.normal(size=ticks + 4000))
+    slow = first_order_lag(walk - first_order_lag(walk, tau_s, tick_s), tau_s / 3, tick_s)[4000:]
+    return (slow - slow.mean()) / (slow.std() + 1e-12)
+
+
+def channels(rng: np.random.Generator, ticks: int, tick_s: float) -> dict[str, np.ndarray]:
+    """Ticks of temperature, orientation, vibration, supply, and channels outside the catalogue."""
+    faces = np.vstack([np.eye(3), -np.eye(3)])
+    turn = np.repeat(rng.integers(0, 6, ticks), max(1, int(400 / tick_s)))[:ticks]
+    acc = faces[turn] + rng.normal(0, 0.02, (ticks, 3))
+    return {
+        "temp": temperature_path(rng, ticks, tick_s),
+        **{f"acc_{a}": acc[:, i] for i, a in enumerate("xyz")},
+        "vib": 0.01 + _levels(rng, ticks, tick_s, 500.0, 0.0, 0.2) ** 2,
+        "vdd_mv": 3300
+        + 40 * _wander(rng, ticks, tick_s, 900.0)
+        + _levels(rng, ticks, tick_s, 600.0, -60.0, 60.0),
+        "load": _levels(rng, ticks, tick_s, 400.0, 0.0, 1.0),
+        "humidity": 45 + 10 * _wander(rng, ticks, tick_s, 1800.0),
+    }
+
+
+def motion(rng: np.random.Generator, ticks: int, tick_s: float) -> dict[str, np.ndarray]:
+    """Rates of turn in dps with a reference beside them (a table), at rest in between."""
+    out = {}
+    for axis in "xyz":
+        moving = _levels(rng, ticks, tick_s, 120.0, 0.0, 1.0) > 0.6
+        out[f"rate_{axis}"] = moving * _levels(rng, ticks, tick_s, 120.0, -90.0, 90.0)
+    return out
+
+
+def noise(rng: np.random.Generator, n: int, kind: str, level: np.ndarray) -> np.ndarray:
+    """(n, 3) dps. level: rows white, flicker, walk per axis; kind: see `HOSTILE`."""
+    out = np.empty((n, 3))
+    for a in range(3):
+        white, pink, walk = level[:, a]
+        x = rng.normal(0, white, n) + flicker(rng, n, pink) + np.cumsum(rng.normal(0, walk, n))
+        if kind == "walk4":
+            x += np.cumsum(rng.normal(0, walk * np.sqrt(15), n))
+        elif kind == "steep":
+            x += flicker(rng, n, 0.5 * walk * np.sqrt(60.0 / n), 3.0)
+        elif kind == "telegraph":
+            x += 2.0 * white * (np.cumsum(rng.random(n) < 0.02) % 2)
+        elif kind == "outliers":
+            x += (rng.random(n) < 0.02) * rng.normal(0, 15 * white, n)
+        out[:, a] = x
+    return out
+
+
+HOSTILE = ("walk4", "steep", "telegraph", "outliers", "unequal")
+
+
+def _hidden(rng: np.random.Generator, n: int) -> np.ndarray:
+    """(n,) a slow cause nobody recorded: a different smooth wander in every session."""
+    return (
+        _wander(rng, n * TICKS, BLOCK_S / TICKS, rng.uniform(400, 1800)).reshape(n, TICKS).mean(1)
+    )
+
+
+def simulate(
+    seed: int,
+    effects: Sequence[tuple[str, float]] = (),
+    sessions: int = 4,
+    hours: float = 1.0,
+    noise_kind: str = "plain",
+    hidden: float = 0.0,
+    bare: bool = False,
+) -> Device:
+    """A device. effects: (name in `added_effects`, size in floors); hidden: size of a cause that is
+    not recorded; bare: temperature only, no further channels.
+    """
+    rng = np.random.default_rng(seed)
+    n = int(hours * 3600 / BLOCK_S)
+    floor, level = _noise_level(rng)
+    made, noises = [], []
+    turning = any(name in ("scale-factor", "cross-axis") for name, _ in effects)
+    for i in range(sessions):
+        sources = channels(rng, n * TICKS, BLOCK_S / TICKS)
+        if turning:
+            sources.update(motion(rng, n * TICKS, BLOCK_S / TICKS))
+        if bare:
+            sources = {"temp": sources["temp"]}
+        scale = [1.0, 3.0, 0.5, 2.0][i % 4] if noise_kind == "unequal" else 1.0
+        noises.append(noise(rng, n, noise_kind, level * scale))
+        made.append(
+            Session(f"session-{i + 1}", BLOCK_S, TICKS, noises[-1].copy(), np.ones(n), sources)
+        )
+    line = rng.normal(0, 0.02, 3)
+    for s in made:
+        t = s.block_mean(s.sources["temp"]) - 25.0
+        s.rate_dps += rng.normal(0, 0.5) + np.outer(t, line) + rng.normal(0, 0.02, 3)
+    for name, size in effects:
+        add_effect(rng, made, name, size * floor)
+    if hidden:
+        add_parts(rng, made, [_hidden(rng, n) for _ in made], hidden * floor)
+    return Device(made, noises, floor, [name for name, _ in effects])
+
+
+def _noise_level(rng):
+    white = rng.uniform(0.5e-3, 1.0e-3, 3)
+    pink = rng.uniform(0.5e-3, 0.9e-3, 3)
+    walk = rng.uniform(0.02e-3, 0.07e-3, 3)
+    m = np.arange(1, 400)[:, None]
+    floor = np.sqrt((white**2 / m + 0.441 * pink**2 + walk**2 * m / 3).min(axis=0))
+    return floor, np.array([white, pink, walk])

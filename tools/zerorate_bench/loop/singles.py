@@ -1,0 +1,254 @@
+"""One simulated recording alone, or two: what is deployed, and whether it makes anything worse.
+
+The truth is known, so the error is that of the bias itself, white noise left out, each stretch
+between two steps about its own mean at rest: what was left out, at rest; the same device in the
+hand; and a further power-on that nobody has seen.
+"""
+
+import json
+import tempfile
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import chi2, ncx2
+from threadpoolctl import threadpool_limits
+
+from ..tables import machine_line
+from .figures import Figure, share
+from .single_devices import KINDS, describe
+from .trials import figure_table
+
+_WORSE = 1.02
+#: Seconds on either side of a step in which one listed is that step.
+_NEAR_S = 90.0
+#: Share of recordings in which a step may be invented.
+_INVENTED = 0.01
+#: Seconds of a further power-on in which its turn-on offset is learned.
+_LEARNED_S = 180
+
+
+@dataclass
+class Single:
+    """What became of one device. errors: (before, after) in mdps by where it was judged; kept:
+    effects deployed; steps: true ones, listed: of those; invented: steps that are none; tellable:
+    the chance that who knows the noise lists the first step, None where there is none."""
+
+    kind: str
+    seed: int
+    recordings: int
+    errors: dict[str, tuple[float, float]]
+    kept: list[str]
+    steps: int
+    listed: int
+    invented: int
+    tellable: float | None = None
+
+    def worse(self, where: str) -> bool:
+        """Whether what was deployed makes the error larger by more than 2 % there."""
+        before, after = self.errors.get(where, (1.0, 1.0))
+        return bool(self.kept) and after > _WORSE * before
+
+    @property
+    def found(self) -> bool:
+        """Whether anything is deployed."""
+        return bool(self.kept)
+
+
+def look_at_single(seed: int) -> Single:
+    """Simulate a device, close its recordings, and judge by the truth."""
+    from zerorate_tools.closing import load
+    from zerorate_tools.loop.report.report import report
+    from zerorate_tools.loop.verify.measure import measure_and_prune
+    from zerorate_tools.recordings import write_recording
+    from zerorate_tools.simulate import simulate_sessions
+
+    described, kind, recordings = describe(seed)
+    *made, further = list(simulate_sessions(described, seed=seed))
+    with tempfile.TemporaryDirectory() as folder:
+        logs = [Path(folder) / f"power-on-{i + 1}.parquet" for i in range(recordings)]
+        for log, (recording, _) in zip(logs, made):
+            write_recording(recording, log)
+        corrected = Path(folder) / "corrected.parquet"
+        analysis, model = measure_and_prune(load([*logs]), logs, corrected)
+        said = report(analysis)
+        errors = _held_out(corrected, logs, made, described)
+        errors["a further power-on"] = _further(model, logs, further)
+    true = [e for e in described["effect"] if e["kind"] == "step" and _took_place(e, made)]
+    near = [_is_near(event, true, logs, made) for event in said["events"]]
+    kept = [step["effect"] for step in said["steps"]]
+    listed, invented = min(len(true), sum(near)), len(near) - sum(near)
+    chance = tellable(analysis.sessions[true[0]["session"] - 1], true[0]) if true else None
+    return Single(kind, seed, recordings, errors, kept, len(true), listed, invented, chance)
+
+
+def tellable(session, step: dict) -> float:
+    """The chance that a step of the bias is listed by who knows level and colour of the noise
+    beside it, where one in a hundred recordings may have one invented: all its places are tried."""
+    from zerorate_tools.loop.fit.regression import Regression
+    from zerorate_tools.loop.search.steps_first import bend_of
+
+    session = replace(session, steps=())  # else the very step that was listed is beside it
+    regression, bend = Regression([session]), bend_of(session)
+    regression.settle(bend)
+    base, [whitener] = regression.fit(bend).base, regression.whiteners
+    after = np.arange(session.blocks) >= step["at_s"] / session.block_s
+    column = whitener.prepare(after.astype(float)[:, None])
+    beside, cross, alone = whitener.products(regression.stack(bend)[0], column)
+    size = 0.0  # in its standard deviations, squared
+    for axis, colour in enumerate(base.best):
+        left = cross[colour, 0] @ np.linalg.pinv(beside[colour]) @ cross[colour, 0]
+        size += step["dps"][axis] ** 2 * (alone[colour, 0] - left) / base.variance[axis]
+    return float(ncx2.sf(chi2.isf(_INVENTED / session.blocks, 3), 3, size))
+
+
+def _is_near(event: dict, true: list[dict], logs: list[Path], made: list) -> bool:
+    at = [log.stem for log in logs].index(event["recording"].split(".")[0])
+    seconds = (event["t_us"] - made[at][1].t_us[0]) / 1e6
+    return any(e["session"] == at + 1 and abs(e["at_s"] - seconds) < _NEAR_S for e in true)
+
+
+def _took_place(step: dict, made: list) -> bool:
+    """Whether the recording went on until the step: how long a power-on is, is drawn, too."""
+    truth = made[step["session"] - 1][1]
+    return bool(step["at_s"] < (truth.t_us[-1] - truth.t_us[0]) / 1e6)
+
+
+def _held_out(path: Path, logs: list[Path], made: list, described: dict) -> dict:
+    """(before, after) mdps at rest and in motion, over the samples that were left out."""
+    import pyarrow.parquet as pq
+
+    table = pq.read_table(path)
+    names, split = (np.array(table[c].to_pylist()) for c in ("recording", "split"))
+    parts: dict[str, list] = {"at rest": [], "in motion": []}
+    for i, (log, (_, truth)) in enumerate(zip(logs, made)):
+        own = names == log.name
+        rows = np.searchsorted(truth.t_us, np.array(table["t_us"])[own])
+        held = split[own] == "test"
+        edges = [e["at_s"] for e in described["effect"] if e.get("session") == i + 1]
+        stretch = np.searchsorted(edges, (truth.t_us[rows] - truth.t_us[0]) / 1e6)
+        both = []
+        for way in ("before", "after"):
+            said = np.column_stack([np.array(table[f"bias_{way}_g{a}"])[own] for a in "xyz"])
+            both.append((said - truth.bias_lsb[rows]) / 131.0)
+        for where, there in (("at rest", truth.still[rows]), ("in motion", ~truth.still[rows])):
+            if (held & there).any():
+                parts[where].append(_about(both, stretch, truth.still[rows] & held, held & there))
+    return {
+        where: tuple(float(1e3 * np.sqrt((np.vstack(p) ** 2).mean())) for p in zip(*some))
+        for where, some in parts.items()
+        if some
+    }
+
+
+def _about(both, stretch, rest, scored) -> list[NDArray[np.float64]]:
+    """Errors before and after, each stretch about its own mean at rest."""
+    out = []
+    for error in both:
+        level = np.zeros_like(error)
+        for s in np.unique(stretch):
+            if (rest & (stretch == s)).any():
+                level[stretch == s] = error[rest & (stretch == s)].mean(axis=0)
+        out.append((error - level)[scored])
+    return out
+
+
+def _further(model, logs: list[Path], further) -> tuple[float, float]:
+    """(before, after) mdps over a power-on that nobody saw, by a firmware that has lived through
+    the recordings and learns no more than the first minutes of this one."""
+    from zerorate_tools.loop.verify.firmware import Firmware
+    from zerorate_tools.recordings import open_recording
+    from zerorate_tools.replay.samples import frames_in_batches
+
+    recording, truth = further
+    errors: list[float] = []
+    for own in (None, model if model.slots else None):
+        device = Firmware(recording.scales, own)
+        for log in logs:
+            device.power_on()
+            for frames in frames_in_batches(open_recording(log)):
+                device.run(frames)
+        device.power_on()
+        parts = [device.run(f, _first(f, recording)) for f in frames_in_batches(recording)]
+        bias = np.vstack(parts) / 256.0
+        error = (bias - truth.bias_lsb) / recording.scales.gyro_lsb_per_dps
+        error = error[truth.t_us - truth.t_us[0] > 1e6 * _LEARNED_S]
+        errors.append(float(1e3 * np.sqrt((error**2).mean())))
+    return errors[0], errors[1]
+
+
+def _first(frames, recording) -> NDArray[np.bool_]:
+    """(n,) whether a sample is of the first minutes."""
+    return frames.t_us - recording.columns["t_us"][0] < 1e6 * _LEARNED_S
+
+
+def look_at_singles(
+    number: int,
+    processes: int = 2,
+    resume: Path | None = None,
+    advance: Callable[[float], None] = lambda n: None,
+) -> list[Single]:
+    """So many devices, of every kind alike. resume: a file of outcomes, one a line, that a run
+    broken off goes on from."""
+    lines = resume.read_text("utf-8").splitlines() if resume and resume.exists() else []
+    known = {s.seed: s for s in (Single(**json.loads(line)) for line in lines)}
+    out = [known[seed] for seed in range(number) if seed in known]
+    advance(len(out))
+    with ProcessPoolExecutor(processes, initializer=threadpool_limits, initargs=(1,)) as pool:
+        for single in pool.map(look_at_single, [s for s in range(number) if s not in known]):
+            if resume:
+                with resume.open("a", encoding="utf-8") as file:
+                    file.write(json.dumps(asdict(single)) + "\n")
+            advance(1)
+            out.append(single)
+    return out
+
+
+def single_figures(singles: list[Single]) -> list[Figure]:
+    """Shares made worse, and of steps listed and invented."""
+    rows = [
+        share(f"deployed and worse by more than 2 %, {where}", singles, _is_worse(where), 1.0, True)
+        for where in ("at rest", "in motion", "a further power-on")
+    ]
+    for kind, what, limit in (("step", "RMS", 95.0), ("small step", "jump", None)):
+        own = [s for s in singles if s.kind == kind and s.steps]
+        rows.append(share(f"steps of 3 floors {what} listed", own, lambda s: bool(s.listed), limit))
+        chances = [s.tellable for s in own if s.tellable is not None]
+        most = 100.0 * float(np.mean(chances)) if chances else float("nan")
+        name = f"steps of 3 floors {what}: who knows the noise lists"
+        rows.append(Figure(name, most, None, True, len(chances)))
+    rows.append(share("a step invented", singles, lambda s: s.invented > 0, 1.0, True))
+    for kind in KINDS:
+        own = [s for s in singles if s.kind == kind]
+        rows.append(share(f"{kind}: deployed anything", own, lambda s: s.found, None))
+        for where in ("at rest", "a further power-on") if own else ():
+            ratio = [np.divide(*s.errors[where][::-1]) for s in own]
+            name = f"{kind}: error after over before, {where}, mean"
+            rows.append(Figure(name, float(np.mean(ratio)), None, True, len(own), unit="x"))
+    return rows
+
+
+def _is_worse(where: str) -> Callable[[Single], bool]:
+    return lambda s: s.worse(where)
+
+
+def run_singles(
+    number: int,
+    processes: int = 2,
+    resume: Path | None = None,
+    advance: Callable[[float], None] = lambda n: None,
+) -> dict:
+    """So many devices: their figures, and what became of each, as plain values."""
+    singles = look_at_singles(number, processes, resume, advance)
+    figures = [f.to_dict() for f in single_figures(singles)]
+    return {"devices": number, "figures": figures, "each": [asdict(s) for s in singles]}
+
+
+def in_words(result: dict) -> str:
+    """The figures as Markdown."""
+    lines = [f"# One recording or two, of {result['devices']} simulated devices", ""]
+    lines += ["`zerorate bench singles` wrote this page. " + machine_line(), ""]
+    return "\n".join([*lines, figure_table(result["figures"])])

@@ -1,0 +1,199 @@
+"""Bias without rest: both sources and the decision beside vqf, simulated and on BROAD.
+
+zerorate bench motion --data FOLDER/broad --json motion.json
+"""
+
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from zerorate_tools.demo.broad import Trial, TrueBias, rms_mdps, trials, true_bias
+from zerorate_tools.errors import MissingRuntime
+from zerorate_tools.peers import Given, Peer, given, vqf_clip_raised, vqf_default
+from zerorate_tools.peers.firmware import Decision
+from zerorate_tools.peers.sources import Source
+from zerorate_tools.simulate import simulate
+from zerorate_tools.simulate.description import load_description
+from zerorate_tools.simulate.schema import Description
+
+from .flicker import by_flicker, with_flicker
+from .native_cost import source_cost
+
+SCENARIOS = (
+    *("never-rests", "rests-30", "short-rests", "trembling", "slow-tilt", "slow-log"),
+    *("turntable", "turntable-vertical", "car"),
+)
+SEEDS = (1, 2, 3)
+SETTLED_S = 120.0
+TRIAL_SETTLED_S = 60.0
+#: What sigma expects of a part until its rests tell: the scenes' own parts have white noise alone.
+FLICKER_DPS = 0.002
+FLICKERING = f"decision, of a part with {1000 * FLICKER_DPS:g} mdps of flicker noise"
+#: No estimator but a floor: what the windows tell of a bias whose curve over temperature is known.
+TOLD = "in motion, told the curve over temperature"
+NEAR_MDPS = 50.0
+_RIPPLE_S = 200.0
+_OBSERVABLE = (0, 1)
+_RESTING = {
+    "name": "flat on a table",
+    "seed": 1,
+    "sensor": {"odr_hz": 100.0, "gyro_noise_dps": 0.05},
+    "bias": {"b0": [2.0, -1.5, 0.7]},
+    "session": [
+        {
+            "start_degc": 25.0,
+            "temperature": [{"to": 25.0, "minutes": 15}],
+            "motion": [{"kind": "rest", "minutes": 15}],
+        }
+    ],
+}
+FORMS = {
+    "coarse, then fine (the default)": {},
+    "the document's own form, steps of 50 mdps": {
+        "document": True,
+        "coarse_dps": 0.05,
+        "threshold": 0,
+    },
+    "the document's own form, steps of 12.5 mdps": {
+        "document": True,
+        "coarse_dps": 0.0125,
+        "threshold": 0,
+    },
+}
+
+
+def peers() -> dict[str, Peer]:
+    """Every way that is measured, by its name in the tables."""
+    return {
+        "vqf": vqf_default,
+        "vqf, clip 25 dps": vqf_clip_raised,
+        "in motion, the document's own form": Source("in_motion", document=True),
+        "in motion": Source("in_motion"),
+        "in motion, bias within 0.5 dps as vqf assumes": Source("in_motion", start_dps=0.5),
+        "gravity, the document's own form": Source("gravity", document=True),
+        "gravity": Source("gravity"),
+        "decision, bias within 0.5 dps": Decision(motion_start_dps=0.5),
+        "rests alone": Decision(motion=False, gravity=False),
+        "decision": Decision(),
+    }
+
+
+def simulated(ways: Mapping[str, Peer], seeds: Sequence[int] = SEEDS) -> dict:
+    """Scenario -> way -> each seed's RMS error after two minutes, mdps, windows, honesty."""
+    found: dict = {}
+    for name in SCENARIOS:
+        found[name] = {
+            way: {"rms_mdps": [], "learned": 0, "wrong": 0, "within": []}
+            for way in (*ways, FLICKERING, TOLD)
+        }
+        flickering = {FLICKERING: Decision()}
+        told = {TOLD: Source("in_motion", slope_dps_per_degc=0.0001)}
+        for seed in seeds:
+            _measure(found[name], ways, name, seed)
+            _measure(found[name], flickering, with_flicker(name, FLICKER_DPS), seed)
+            _measure(found[name], told, _without_curve(name), seed)
+    return found
+
+
+def _without_curve(name: str) -> Description:
+    described = load_description(name)
+    return replace(described, bias=replace(described.bias, b1=0.0, b2=0.0, b3=0.0))
+
+
+def _measure(
+    rows: dict[str, dict], ways: Mapping[str, Peer], scene: str | Description, seed: int
+) -> None:
+    recording, truth = simulate(scene, session=1, seed=seed)
+    one = given(recording)
+    bias = truth.bias_lsb / recording.scales.gyro_lsb_per_dps
+    for way, peer in ways.items():
+        with suppress(ValueError):  # too slow a rate for the source in motion
+            row = _measured(peer, one, bias)
+            _add(rows[way], row, round(SETTLED_S * one.odr_hz))
+
+
+def _add(row: dict, measured: dict, after: int) -> None:
+    row["rms_mdps"].append(round(rms_mdps(measured["error_dps"][after:]), 1))
+    row["learned"] += measured.get("learned", 0)
+    row["wrong"] += measured.get("wrong", 0)
+    if measured.get("within_two_sigma") is not None:
+        row["within"].append(measured["within_two_sigma"])
+
+
+def on_broad(ways: Mapping[str, Peer], folder: Path) -> dict:
+    """trials: each one's true bias; whole, motion: way -> errors per trial and axis, mdps."""
+    found: dict = {"trials": {}, "whole": {w: {} for w in ways}, "motion": {w: {} for w in ways}}
+    for trial in trials(folder):
+        truth = true_bias(trial)
+        found["trials"][trial.name] = {n: np.round(v, 5).tolist() for n, v in vars(truth).items()}
+        for part, cut in (("whole", trial), ("motion", trial.in_motion())):
+            for way, peer in ways.items():
+                found[part][way][trial.name] = _on_trial(peer, cut, truth)
+    return found
+
+
+def _on_trial(peer: Peer, trial: Trial, truth: TrueBias) -> dict:
+    one = given(trial.recording())
+    row = _measured(peer, one, np.tile(truth.bias_dps, (len(one.rate_dps), 1)))
+    error = row.pop("error_dps")[round(TRIAL_SETTLED_S * trial.hz) :]
+    return {"rms_mdps": [round(rms_mdps(error[:, axis]), 1) for axis in range(3)], **row}
+
+
+def _measured(peer: Peer, one: Given, bias: NDArray[np.float64]) -> dict:
+    if not isinstance(peer, Source | Decision):
+        return {"error_dps": peer([one])[0] - bias}
+    peer.truth_dps = [bias]
+    error = peer([one])[0] - bias
+    inside = float(np.mean(peer.within)) if peer.within else None
+    return {
+        "error_dps": error,
+        "learned": getattr(peer, "learned", 0),
+        "wrong": getattr(peer, "wrong", 0),
+        "within_two_sigma": inside,
+    }
+
+
+def _cost() -> dict[str, dict[str, float]] | str:
+    try:
+        return source_cost()
+    except MissingRuntime as error:
+        return str(error)
+
+
+def run(data: str | PathLike[str] | None = None) -> dict:
+    """Measure and return all figures.
+
+    data: the folder of BROAD's .mat files; without it only the simulated table is made.
+    Raises ZerorateError for a folder without one.
+    """
+    ways = peers()
+    found: dict = {} if data is None else {"broad": on_broad(ways, Path(data))}
+    found |= {"simulated": simulated(ways), "flicker": by_flicker()}
+    return found | {"settling": settling(), "cost": _cost()}
+
+
+def settling() -> dict:
+    """Form -> seconds until within 50 mdps, and the ripple (standard deviation) at the end, mdps.
+
+    On a device that lies flat with biases of 2.0 and -1.5 dps on its level axes; the slower, and
+    the worse, of the two. The third axis points along gravity and is not observable.
+    """
+    recording, truth = simulate(_RESTING)
+    one = given(recording)
+    bias = truth.bias_lsb / recording.scales.gyro_lsb_per_dps
+    found = {}
+    for form, options in FORMS.items():
+        error = 1000 * (Source("gravity", **options)([one])[0] - bias)[:, _OBSERVABLE]
+        near = np.abs(error) < NEAR_MDPS
+        first = np.where(near.any(axis=0), near.argmax(axis=0) / one.odr_hz, np.inf)
+        last = error[-round(_RIPPLE_S * one.odr_hz) :]
+        found[form] = {
+            "seconds": round(float(first.max()), 1),
+            "ripple_mdps": round(float(last.std(axis=0).max()), 1),
+            "mean_mdps": round(float(np.abs(last.mean(axis=0)).max()), 1),
+        }
+    return found

@@ -1,0 +1,54 @@
+"""What the cost benchmarks run: one motion-and-rest cycle in the middle of a simulated warm-up."""
+
+from array import array
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from zerorate import Corrector
+from zerorate_tools.replay.engines import engine
+from zerorate_tools.replay.replaying import corrector_for
+from zerorate_tools.replay.samples import Frames, frames_in_batches
+from zerorate_tools.simulate import simulate
+
+SCENARIO = "warm-up-b"
+#: Options of the rest path alone, as a board has it that was sent nothing else.
+REST: dict[str, object] = {"motion": False, "gravity": False}
+CYCLE = 6000
+_BEFORE = 120_000
+
+
+@dataclass(frozen=True)
+class Workload:
+    """Frames (n, 8) int32 of dt_us and seven words, the settings, and the state they start from."""
+
+    rows: NDArray[np.int32]
+    settings: NDArray[np.int32]
+    state: NDArray[np.int32]
+
+    def files(self) -> dict[str, bytes]:
+        """The files that the programs under test read."""
+        parts = {"frames": self.rows, "settings": self.settings, "state": self.state}
+        return {f"{name}.bin": part.astype("<i4").tobytes() for name, part in parts.items()}
+
+
+def workload(samples: int = 2 * CYCLE) -> Workload:
+    """`samples` frames after twenty minutes of warming, when every estimator is in use."""
+    recording, _ = simulate(SCENARIO, session=1, seed=1)
+    corrector = corrector_for(recording, REST)
+    batches = list(frames_in_batches(recording, rows=_BEFORE))
+    for _ in engine("native").run(corrector, batches[:1]):
+        pass
+    return Workload(_rows(batches[1])[:samples], _words(corrector.settings), _state(corrector))
+
+
+def _rows(batch: Frames) -> NDArray[np.int32]:
+    return np.c_[batch.dt_us, batch.frames].astype(np.int32)
+
+
+def _state(corrector: Corrector) -> NDArray[np.int32]:
+    return _words(corrector.state)
+
+
+def _words(values: array) -> NDArray[np.int32]:
+    return np.array(values, np.int32)
