@@ -179,6 +179,16 @@ BENCHES = {
             }
         },
     ),
+    "heading": Bench(
+        *("heading lost in motion, without and with what gravity shows", "heading"),
+        lambda bench, a, advance: bench.run(a.data, advance),
+        options={
+            "--data": {
+                **{"type": Path, "nargs": "+", "metavar": "DIR", "required": True},
+                "help": "folders of BROAD trials (.mat)",
+            }
+        },
+    ),
     "import": Bench(
         *("seconds and memory of importing a huge CSV, made and not kept", "import_size"),
         lambda bench, a, advance: bench.run(a.gb, a.folder, advance),

@@ -25,8 +25,8 @@ class DifferentDevices(CannotClose):
     def __init__(self, groups: Sequence[Sequence[str]]) -> None:
         names = " and ".join(f"({', '.join(sorted(g))})" for g in groups)
         super().__init__(
-            f"these recordings do not have the same axes: {names} differ by more than recordings of "
-            "one device do; close each group by itself"
+            f"these recordings do not have the same axes: {names} differ by more than recordings "
+            "of one device do; close each group by itself"
         )
         self.groups = groups
 
@@ -61,19 +61,20 @@ def by_gravity(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
     )
     p = float(chi2.sf(shown.right @ np.linalg.pinv(shown.normal) @ shown.right, MATRIX))
     fastest = np.degrees(np.max([np.abs(f.moving.rate).max(axis=0) for f in fitted], axis=0))
-    windows = sum(len(f.errors) for f in fitted)
     unseen = np.sqrt(np.diag(np.linalg.pinv(shown.normal + _FAINT))) > UNSEEN
     return RateScale(
-        *(entries.reshape(3, 3), np.sqrt(np.diag(covariance)).reshape(3, 3), p),
-        *(
-            _kind(entries, covariance),
-            BESIDE,
-            np.array([gain, before - after]),
-            before,
-            after,
-            UNIT,
-        ),
-        *(windows, fastest, unseen.reshape(3, 3)),
+        matrix=entries.reshape(3, 3),
+        deviation=np.sqrt(np.diag(covariance)).reshape(3, 3),
+        p_value=p,
+        kind=_kind(entries, covariance),
+        reference=BESIDE,
+        gains=np.array([gain, before - after]),
+        before=before,
+        after=after,
+        unit=UNIT,
+        runs=sum(len(f.errors) for f in fitted),
+        fastest_dps=fastest,
+        unseen=unseen.reshape(3, 3),
     )
 
 

@@ -1,7 +1,7 @@
 """The matrix of a gyroscope from its motion: scale factor, cross-axis sensitivity, turned axes.
 
 `error = M rate`, nine entries common to the recordings. Each recording also has a bias, its drift,
-its accelerometer's errors, a delay and a lever arm, which are fitted beside them and integrated out.
+its accelerometer's errors, a delay and a lever arm. All are fitted beside them.
 The noise is the hand's acceleration: its spectrum comes from the residuals of each recording.
 """
 

@@ -31,8 +31,8 @@ class RateScale:
     matrix: (3, 3) dps per dps, what the gyroscope adds; p_value: of no such matrix; kind:
     scale-factor, cross-axis or both; reference: what it was measured against; gains: share of the
     squared error that it removes in each session left out; before, after: RMS error of the runs
-    held out, in `unit`; fastest_dps: (3,) up to which it was seen; unseen: (3, 3) bool, entries that
-    the motion did not show.
+    held out, in `unit`; fastest_dps: (3,) up to which it was seen; unseen: (3, 3) bool, entries
+    that the motion did not show.
     """
 
     matrix: np.ndarray

@@ -1,6 +1,6 @@
 """Windows of a recording in motion, each a measurement of the rate error by gravity.
 
-The rates are integrated over a window to R(t), body to the window's first frame. Without rate errors
+The rates are integrated over a window to R(t), body to the window's first frame. Without errors
 `R a` is gravity plus the hand's acceleration. An error turns it by theta(t), which is linear in the
 errors. Cosines and sines under a Hann taper turn each window into rows. The taper and its slope end
 at zero, so a slow row sees only the hand's position, which is bounded: its noise is small there.

@@ -48,8 +48,8 @@ def turning(t: RateScale) -> dict:
         "confidence": "confirmed" if t.confirmed else "tentative",
         "p_value": t.p_value,
         "in_motion": {"before": t.before, "after": t.after, "unit": _unit(t)},
-        "said": f"{t.kind} over {t.runs} {_of_what(t)}, measured beside {t.reference}; it does not show "
-        "at rest, where before and after are measured",
+        "said": f"{t.kind} over {t.runs} {_of_what(t)}, measured beside {t.reference}; it does not "
+        "show at rest, where before and after are measured",
     }
 
 

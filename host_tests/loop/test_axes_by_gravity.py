@@ -1,0 +1,88 @@
+"""Recordings that only move: scale factor and axes from gravity, by `close` itself."""
+
+import json
+
+import numpy as np
+import pytest
+from scipy.ndimage import gaussian_filter1d
+from zerorate_tools.closing import close
+from zerorate_tools.loop.motion.by_gravity import DifferentDevices
+from zerorate_tools.loop.read.gate import CannotClose
+from zerorate_tools.recordings import Recording, Scales
+from zerorate_tools.recordings.writing import write_recording
+from zerorate_tools.simulate.attitude import IDENTITY, integrate, into_body
+
+_HZ, _MINUTES = 50.0, 5.0
+_SCALES = Scales("MPU-6050", _HZ, 32.8, 8192.0, None, None)
+_MATRIX = np.array([[0.012, 0.0, 0.003], [0.0, -0.009, 0.0], [0.003, 0.0, 0.006]])
+
+
+def handled(seed, matrix, dps=60.0, about=(1.0, 1.0, 1.0)):
+    """A device turned in the hand without a rest: bias 0.4 dps, a hand that sways by 3 cm."""
+    rng, n = np.random.default_rng(seed), int(_HZ * _MINUTES * 60)
+
+    def smooth(seconds):
+        waves = gaussian_filter1d(rng.standard_normal((n, 3)), seconds * _HZ, axis=0)
+        return waves / waves.std(axis=0)
+
+    true = smooth(0.4) * dps * np.array(about)
+    attitude = integrate(true, 1 / _HZ, IDENTITY)
+    hand = np.gradient(np.gradient(0.03 * smooth(0.3), 1 / _HZ, axis=0), 1 / _HZ, axis=0) / 9.81
+    accel = into_body(attitude, hand + [0.0, 0.0, 1.0]) + 0.003 * rng.standard_normal((n, 3))
+    rate = true + true @ matrix.T + [0.4, -0.3, 0.2] + 0.05 * rng.standard_normal((n, 3))
+    columns = {"t_us": np.arange(n, dtype=np.int64) * int(1e6 / _HZ)}
+    for letter, values, lsb in (("g", rate, 32.8), ("a", accel, 8192.0)):
+        words = np.clip(np.round(values * lsb), -32768, 32767).astype(np.int64)
+        columns.update({letter + axis: words[:, i] for i, axis in enumerate("xyz")})
+    return Recording(columns, _SCALES, f"run-{seed}")
+
+
+@pytest.fixture
+def recorded(tmp_path):
+    def write(seed, *args, **how):
+        path = tmp_path / f"run-{seed}.parquet"
+        write_recording(handled(seed, *args, **how), path)
+        return path
+
+    return write
+
+
+def test_the_matrix_of_a_device_that_never_rests_is_found_and_deployed(recorded, tmp_path):
+    result = close([recorded(1, _MATRIX), recorded(2, _MATRIX)], tmp_path / "closed")
+    motion = result["in_motion"]
+    off = np.array(motion["matrix_percent"]) / 100 - _MATRIX
+    assert np.abs(off).max() < 0.001  # a third of the smallest entry
+    assert motion["after"] < 0.5 * motion["before"]
+    model = json.loads((tmp_path / "closed" / "model.json").read_text())
+    assert {s["source"] for s in model["slots"]} == {"rate_x", "rate_y", "rate_z"}
+
+
+def test_one_recording_alone_is_judged_on_windows_left_out(recorded, tmp_path):
+    result = close([recorded(3, _MATRIX)], tmp_path / "closed")
+    assert result["effects"][0]["effect"].startswith("scale-factor")
+    assert result["in_motion"]["after"] < result["in_motion"]["before"]
+
+
+@pytest.mark.parametrize("seed", [4, 5])
+def test_nothing_is_deployed_where_the_axes_are_right(recorded, tmp_path, seed):
+    result = close([recorded(seed, np.zeros((3, 3)))], tmp_path / "closed")
+    assert result["effects"] == []
+    assert json.loads((tmp_path / "closed" / "model.json").read_text())["slots"] == []
+
+
+def test_motion_about_one_axis_names_what_it_did_not_show(recorded, tmp_path):
+    result = close([recorded(6, _MATRIX, about=(1.0, 0.0, 0.0))], tmp_path / "closed")
+    assert {"scale of y", "scale of z"} <= set(result["in_motion"]["not_seen"])
+    assert any("turn the device about it" in a for a in result["unexplained"]["measure_next"])
+
+
+def test_recordings_of_two_devices_are_refused_by_name(recorded, tmp_path):
+    one, other = [recorded(s, _MATRIX) for s in (7, 8)], [recorded(s, -_MATRIX) for s in (9, 10)]
+    with pytest.raises(DifferentDevices) as refused:
+        close([*one, *other, recorded(11, _MATRIX)], tmp_path / "closed")
+    assert sorted(map(sorted, refused.value.groups)) == [["run-10", "run-9"], ["run-7", "run-8"]]
+
+
+def test_a_recording_that_neither_rests_nor_turns_is_refused(recorded, tmp_path):
+    with pytest.raises(CannotClose, match="minutes"):
+        close([recorded(12, np.zeros((3, 3)), dps=2.0)], tmp_path / "closed")

@@ -1,0 +1,131 @@
+"""Heading lost in motion on BROAD, without and with the matrix that gravity showed.
+
+VQF runs with its own bias estimation off. The bias is that of the first rest. The heading error is
+against the optics, over the motion, after a constant turn between their frame and the sensor's.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+from zerorate_tools.demo.broad import Trial, trials
+from zerorate_tools.loop.motion.by_gravity import DifferentDevices, by_gravity
+from zerorate_tools.loop.motion.windows import Moving, moving_of
+from zerorate_tools.recordings.writing import write_recording
+
+from .tables import table
+
+Array = NDArray[np.float64]
+_G = 9.80665
+_EVERY = 10
+#: Two sets of axes: the trials of ../shared/reference/motion.md's groups.
+GROUPS = (("01", "02", "06", "12", "16", "24"), ("21", "29", "30"))
+LIMITS = (0.7, 2.5)
+
+
+def run(folders: list[Path], advance: Callable[[float], None] = lambda n: None) -> dict:
+    """Trial -> degrees before and after, fitted on the other trials of its group and on its own
+    first half; and whether both groups together are refused. Raises ZerorateError."""
+    every = {t.name[:2]: t for folder in folders for t in trials(folder)}
+    with TemporaryDirectory() as scratch:
+        moving = {n: _moving(t, Path(scratch) / f"{n}.parquet") for n, t in every.items()}
+    found: dict = {"others": {}, "halves": {}, "refused": _refused(list(moving.values()))}
+    for number, group in enumerate(GROUPS):
+        own = [n for n in group if n in every]
+        for name in own:
+            others = [moving[n] for n in own if n != name]
+            shown = by_gravity(others, []) if others else None
+            found["others"][name] = _row(every[name], number, shown)
+            found["halves"][name] = _half(every[name], moving[name], number)
+            advance(1)
+    return found
+
+
+def _moving(trial: Trial, path: Path) -> Moving:
+    recording = trial.recording()
+    scales = replace(recording.scales, temp_lsb_per_degc=None, temp_offset_degc=None)
+    write_recording(replace(recording, scales=scales), path)
+    moving = moving_of(path)
+    assert moving is not None, "a trial moves"
+    return moving
+
+
+def _refused(moving: list[Moving]) -> list[list[str]]:
+    try:
+        by_gravity(moving, [])
+    except DifferentDevices as problem:
+        return [sorted(group) for group in problem.groups]
+    return []
+
+
+def _row(trial: Trial, group: int, shown, first: float = 0.0) -> dict:
+    """Degrees RMS, over the motion from a share of it on; as deployed: only what was found."""
+    matrix = shown.matrix if shown is not None and shown.found else np.zeros((3, 3))
+    before, after = (heading_error_deg(trial, m, first) for m in (np.zeros((3, 3)), matrix))
+    return {"group": group, "before": before, "after": after, "found": bool(matrix.any())}
+
+
+def _half(trial: Trial, moving: Moving, group: int) -> dict:
+    """Fitted on the first half of the motion, judged on the second."""
+    at = np.flatnonzero(trial.moving)
+    middle = int((at[0] + at[-1]) / 2)
+    early = moving.rests[moving.rests[:, 0] < moving.at_s[middle]]
+    part = {k: getattr(moving, k)[:middle] for k in ("rate", "accel", "at_s", "usable")}
+    return _row(trial, group, by_gravity([replace(moving, **part, rests=early)], []), 0.5)
+
+
+def heading_error_deg(trial: Trial, matrix: Array, first: float = 0.0) -> float:
+    """RMS heading error of VQF fed `(1 - matrix)(rate - bias of the first rest)`.
+
+    first: the share of the motion before which nothing counts.
+    """
+    from vqf import VQF
+
+    at = np.flatnonzero(trial.moving)
+    rest = slice(round(0.5 * trial.hz), at[0] - round(0.5 * trial.hz))
+    rate = np.radians(trial.rate_dps - trial.rate_dps[rest].mean(axis=0))
+    vqf = VQF(1.0 / trial.hz, motionBiasEstEnabled=False, restBiasEstEnabled=False)
+    accel = np.ascontiguousarray(trial.accel_g * _G)
+    attitude = vqf.updateBatch(np.ascontiguousarray(rate - rate @ matrix.T), accel)["quat6D"]
+    seen = np.isfinite(trial.attitude).all(axis=1) & trial.moving
+    seen[: at[0] + round(first * (at[-1] - at[0]))] = False
+    use = np.flatnonzero(seen)[::_EVERY]
+    order = [1, 2, 3, 0]
+    ours, optical = (Rotation.from_quat(q[use][:, order]) for q in (attitude, trial.attitude))
+    left = _heading(ours, optical, Rotation.identity())
+    for _ in range(8):
+        turn = Rotation.from_rotvec(np.outer(left, [0.0, 0.0, 1.0]))
+        left = _heading(ours, optical, (ours.inv() * turn * optical).mean())
+    return float(np.degrees(np.sqrt(np.mean((left - left[:5].mean()) ** 2))))
+
+
+def _heading(ours: Rotation, optical: Rotation, frame: Rotation) -> Array:
+    q = (ours * frame * optical.inv()).as_quat()
+    return 2.0 * np.unwrap(np.arctan2(q[:, 2], q[:, 3]), period=np.pi)
+
+
+def in_markdown(found: dict) -> str:
+    """Both tables, with what the medians must be, and who was told from whom."""
+    parts = []
+    for number, limit in enumerate(LIMITS):
+        after = [r["after"] for r in found["others"].values() if r["group"] == number]
+        if after:
+            met = "yes" if np.median(after) <= limit else "NO"
+            parts.append(
+                f"Group {number + 1}, fitted on its other trials: median {np.median(after):.2f} "
+                f"degrees, must be at most {limit}: {met}."
+            )
+    groups = " and ".join(", ".join(g) for g in found["refused"])
+    parts.append(f"All trials as one device: {f'refused, {groups}' if groups else 'NOT refused'}.")
+    for key, words in (("others", "other trials"), ("halves", "its first half")):
+        heads = ["trial", "deployed", "before, degrees", f"after, fitted on {words}"]
+        rows = [
+            [name, "yes" if r["found"] else "nothing", f"{r['before']:.2f}", f"{r['after']:.2f}"]
+            for name, r in found[key].items()
+        ]
+        parts.append(table(heads, rows))
+    return "\n\n".join(parts)
