@@ -110,7 +110,10 @@ def _heading(ours: Rotation, optical: Rotation, frame: Rotation) -> Array:
 
 def in_markdown(found: dict) -> str:
     """Both tables, with what the medians must be, and who was told from whom."""
-    parts = []
+    parts = [
+        "# Heading in motion, measured",
+        "`zerorate bench heading` wrote this page from trials of BROAD (D. Laidig et al., CC BY 4.0).",
+    ]
     for number, limit in enumerate(LIMITS):
         after = [r["after"] for r in found["others"].values() if r["group"] == number]
         if after:
