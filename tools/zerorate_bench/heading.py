@@ -112,7 +112,8 @@ def in_markdown(found: dict) -> str:
     """Both tables, with what the medians must be, and who was told from whom."""
     parts = [
         "# Heading in motion, measured",
-        "`zerorate bench heading` wrote this page from trials of BROAD (D. Laidig et al., CC BY 4.0).",
+        "`zerorate bench heading` wrote this page from trials of BROAD "
+        "(D. Laidig et al., CC BY 4.0).",
     ]
     for number, limit in enumerate(LIMITS):
         after = [r["after"] for r in found["others"].values() if r["group"] == number]

@@ -204,9 +204,16 @@ def _compiler() -> list[str]:
 
 
 def _zig() -> list[str]:
-    if importlib.util.find_spec("ziglang") is None:
-        raise MissingRuntime("no C compiler here; `pip install ziglang` is one")
-    return [sys.executable, "-m", "ziglang", "cc"]
+    return zig_cc("no C compiler here; `pip install ziglang` is one")
+
+
+def zig_cc(missing: str) -> list[str]:
+    """The command of ziglang's C compiler, itself: `-m ziglang` would run a ziglang.py of the
+    working folder. Raises MissingRuntime, which says `missing`."""
+    found = importlib.util.find_spec("ziglang")
+    if found is None or found.origin is None or Path(found.origin).name != "__init__.py":
+        raise MissingRuntime(missing)
+    return [str(Path(found.origin).with_name("zig")), "cc"]
 
 
 if __name__ == "__main__":

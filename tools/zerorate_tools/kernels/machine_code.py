@@ -7,14 +7,14 @@ the code, for MicroPython aligns frozen ARMv6-M code to two bytes and literals w
 
 import struct
 import subprocess
-import sys
 import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..errors import MissingRuntime, ZerorateError
+from ..errors import ZerorateError
 from .c_functions import ARITHMETIC, kernels_in_c
+from .library import zig_cc
 from .parts import PARTS
 from .reading import Kernels
 
@@ -145,10 +145,9 @@ def _linked(folder: Path, text: str, how: Processor, base: int, level: str) -> b
     (folder / "part.c").write_text(text, encoding="utf-8")
     (folder / "part.ld").write_text(_SECTIONS.format(base=base), encoding="utf-8")
     flags = [level, *_COMMON, *how.flags, "-target", how.target, "-Wl,-T,part.ld"]
-    command = [sys.executable, "-m", "ziglang", "cc", *flags, "part.c", "-o", "part.elf"]
+    zig = zig_cc("machine code is made by ziglang: pip install 'zerorate[bench]'")
+    command = [*zig, *flags, "part.c", "-o", "part.elf"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
-    if "No module named ziglang" in done.stderr:
-        raise MissingRuntime("machine code is made by ziglang: pip install 'zerorate[bench]'")
     if done.returncode:
         raise ZerorateError(f"the kernels do not compile for {how.target}: {done.stderr[:400]}")
     elf = (folder / "part.elf").read_bytes()

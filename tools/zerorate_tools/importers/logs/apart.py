@@ -15,6 +15,7 @@ from pathlib import Path
 
 import pyarrow as pa
 
+from ...child import python_child
 from ...errors import BadRecording, MissingLibrary
 from ..samples.spool import PLACE
 from ..tables.table import Chunk, Table
@@ -41,13 +42,12 @@ def table_apart(
     instance: which of several sensors; advance: takes bytes as they are read. Raises BadRecording,
     MissingLibrary.
     """
-    command = [sys.executable, "-c", _RUN, reader, str(path), str(instance), str(os.getpid())]
     child = subprocess.Popen(
-        command,
+        python_child(_RUN, reader, str(path), str(instance), str(os.getpid())),
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
-        env=os.environ | _ALONE | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+        env=os.environ | _ALONE,
     )
     try:
         yield _Rows(child, path, advance).table

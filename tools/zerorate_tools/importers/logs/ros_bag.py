@@ -46,7 +46,7 @@ def _database(path: Path) -> Table:
     from rosbags.typesys import Stores, get_typestore
 
     store = get_typestore(Stores.LATEST)
-    bag = sqlite3.connect(f"file:{path}?mode=ro", uri=True)
+    bag = sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True)
     try:
         rows = bag.execute("SELECT id, name, type FROM topics").fetchall()
     except sqlite3.DatabaseError as error:
