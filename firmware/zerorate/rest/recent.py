@@ -114,6 +114,12 @@ def move_offset(s: ptr32, a: int, by: int):
     s[a + _OFFSET_Q8] = clipped(s[a + _OFFSET_Q8] + by, 0xFFFFFF)
 
 
+def well_known(s: ptr32, c: ptr32, a: int) -> int:
+    """Return 1 if the axis has learned from as long a rest as must insist, else 0."""
+    n = c[_INSIST] * c[_SEGMENT]
+    return 1 if s[a + _ESTIMATORS + _EST_READINGS] >> c[_WINDOW_SHIFT] >= n else 0
+
+
 def plausible(s: ptr32, c: ptr32, a: int, error: int) -> int:
     """Return 1 if the error is within the gate or six sigma, or has insisted long enough."""
     # A temperature at which nothing was learned yet widens the six sigma by the slope that is left.
@@ -143,6 +149,10 @@ def plausible(s: ptr32, c: ptr32, a: int, error: int) -> int:
             return 0
     s[a + _SUSPECT] = 0
     move_offset(s, a, error << 4)
+    # a bias that was well known has jumped at whatever temperature: that is no slope of its curve
+    if well_known(s, c, a):
+        share = c[_AXES] + _TURN_ON_OFFSET_Q8 + (a - c[_AXES]) // c[_AXIS_WORDS]
+        s[share] = clipped(s[share] + (error << 4), 0xFFFFFF)
     return 2
 
 

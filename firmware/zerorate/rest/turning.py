@@ -5,6 +5,7 @@
 # along gravity is no evidence against a bias that is known.
 
 from ..arithmetic.fixed import clipped, root
+from .recent import well_known
 
 # layout: names that a board's own compiler reads
 const = int
@@ -18,15 +19,9 @@ _WAITING_N = const(1)
 _OFFER = const(12)
 _SUSPECT = const(30)
 _LEFT_Q4 = const(37)
-_ESTIMATORS = const(39)
-# layout: An estimator
-_EST_READINGS = const(3)
 # layout: The corrector's settings
 _AXES = const(0)
-_WINDOW_SHIFT = const(4)
-_SEGMENT = const(5)
 _AXIS_WORDS = const(15)
-_INSIST = const(41)
 # layout: Values that stand for none
 _NO_VALUE = const(-0x3FFFFFFF)
 # layout: end
@@ -80,10 +75,9 @@ def suspect_turn(s: ptr32, c: ptr32):
     a = c[_AXES]
     last = a + 3 * c[_AXIS_WORDS]
     turn = seems_a_turn(s, c)
-    n = c[_INSIST] * c[_SEGMENT] << c[_WINDOW_SHIFT]
     while a < last:
         s[a + _OFFER] = 0
-        if turn and s[a + _LEFT_Q4] != _NO_VALUE and s[a + _ESTIMATORS + _EST_READINGS] >= n:
+        if turn and s[a + _LEFT_Q4] != _NO_VALUE and well_known(s, c, a):
             s[a + _OFFER] = _MAY_TURN
         a += c[_AXIS_WORDS]
 
