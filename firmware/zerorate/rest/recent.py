@@ -149,10 +149,9 @@ def plausible(s: ptr32, c: ptr32, a: int, error: int) -> int:
             return 0
     s[a + _SUSPECT] = 0
     move_offset(s, a, error << 4)
-    # a bias that was well known has jumped at whatever temperature: that is no slope of its curve
-    if well_known(s, c, a):
-        share = c[_AXES] + _TURN_ON_OFFSET_Q8 + (a - c[_AXES]) // c[_AXIS_WORDS]
-        s[share] = clipped(s[share] + (error << 4), 0xFFFFFF)
+    # it jumped at whatever temperature: that is no slope of its curve
+    share = c[_AXES] + _TURN_ON_OFFSET_Q8 + (a - c[_AXES]) // c[_AXIS_WORDS]
+    s[share] = clipped(s[share] + (error << 4), 0xFFFFFF)
     return 2
 
 
