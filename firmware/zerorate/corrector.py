@@ -34,6 +34,7 @@ _LEFT_Q4 = const(37)
 _AXES = const(0)
 _AXIS_WORDS = const(15)
 _STEP_LSB = const(29)
+_GATE_Q4 = const(40)
 _WALK_MOST_Q16 = const(43)
 _TURN_ON_VARIANCE_Q8 = const(47)
 # layout: The effect model and its running state
@@ -153,7 +154,7 @@ class Corrector:
         self.power_on()
 
     def power_on(self, same: bool = False) -> None:
-        """Begin a new power-on with what `state` holds: its curves stand, half of its offsets.
+        """Begin a new power-on with what `state` holds: its curves, jumps, half of its offsets.
 
         same: only the program began anew, and the chip kept its power: the offsets stand, too.
         """
@@ -173,7 +174,9 @@ class Corrector:
             s[a + _SUSPECT] = 0
             s[a + _LINE_TEMP] = -32768
             if not same:
-                s[a + _OFFSET_Q8] >>= 1
+                # what is beyond the gate was a jump, and stays
+                if abs(s[a + _OFFSET_Q8]) >> 4 < c[_GATE_Q4]:
+                    s[a + _OFFSET_Q8] >>= 1
                 s[a + _OFFSET_VARIANCE_Q8] = c[_TURN_ON_VARIANCE_Q8]
                 s[a + _LEFT_Q4] = _NO_VALUE
                 s[a + _OFFSET_AGE_MS] = 0

@@ -63,6 +63,7 @@ _TURN_ON_VARIANCE_Q8 = const(47)
 _NO_VALUE = const(-0x3FFFFFFF)
 # layout: end
 _NEIGHBOURS_MS = const(4000)  # segments of one rest follow each other faster
+_LONGER = const(-4)  # so many times as long must a rest insist that may be a turn
 _STEEPEST_Q16 = const(4095)  # times the farthest temperature it fits 31 bits
 
 
@@ -113,14 +114,23 @@ def move_offset(s: ptr32, a: int, by: int):
     s[a + _OFFSET_Q8] = clipped(s[a + _OFFSET_Q8] + by, 0xFFFFFF)
 
 
+def well_known(s: ptr32, c: ptr32, a: int) -> int:
+    """Return 1 if the axis has learned from as long a rest as must insist, else 0."""
+    n = c[_INSIST] * c[_SEGMENT]
+    return 1 if s[a + _ESTIMATORS + _EST_READINGS] >> c[_WINDOW_SHIFT] >= n else 0
+
+
 def plausible(s: ptr32, c: ptr32, a: int, error: int) -> int:
     """Return 1 if the error is within the gate or six sigma, or has insisted long enough."""
     # A temperature at which nothing was learned yet widens the six sigma by the slope that is left.
-    # A rest that motion ended early has two sigma: gravity had no time to show a slow turn.
+    # A rest that motion ended early has two sigma: gravity had no time to show a slow turn. What
+    # may be a turn has three.
     share = 36
     far = clipped(error, 0x7FFF)
     if s[a + _WAITING_N] < c[_SEGMENT] << c[_WINDOW_SHIFT]:
         share = 4
+    elif s[a + _OFFER]:
+        share = 9
     elif far <= c[_GATE_Q4] and far >= -c[_GATE_Q4]:
         far = 0
     far = far * far // share
@@ -128,11 +138,20 @@ def plausible(s: ptr32, c: ptr32, a: int, error: int) -> int:
     if far <= s[_GROWN_Q8] + s[_MEAN_NOISE_Q8] + share:
         s[a + _SUSPECT] = 0
         return 1
-    s[a + _SUSPECT] += 1
-    if s[a + _SUSPECT] < c[_INSIST]:
-        return 0
+    if s[a + _OFFER]:
+        s[a + _DOUBT_Q8] = clipped(error, 0x3FFF) * clipped(error, 0x3FFF)
+        s[a + _SUSPECT] = s[a + _SUSPECT] - 1 if s[a + _SUSPECT] < 0 else -1
+        if s[a + _SUSPECT] > _LONGER * c[_INSIST]:
+            return 0
+    else:
+        s[a + _SUSPECT] = s[a + _SUSPECT] + 1 if s[a + _SUSPECT] > 0 else 1
+        if s[a + _SUSPECT] < c[_INSIST]:
+            return 0
     s[a + _SUSPECT] = 0
     move_offset(s, a, error << 4)
+    # it jumped at whatever temperature: that is no slope of its curve
+    share = c[_AXES] + _TURN_ON_OFFSET_Q8 + (a - c[_AXES]) // c[_AXIS_WORDS]
+    s[share] = clipped(s[share] + (error << 4), 0xFFFFFF)
     return 2
 
 
@@ -225,11 +244,22 @@ def relearn_spread(s: ptr32, c: ptr32, a: int, square: int):
         approach(s, e + _EST_SPREAD_Q8, d, 2)
 
 
+def doubt(s: ptr32, a: int, error: int):
+    """Let a rest that agrees end the doubt; one along gravity, and a little off, lets it fade."""
+    left = s[a + _DOUBT_Q8]
+    if s[a + _OFFER] and left:
+        left -= left >> 2
+        left = left if left > error * error else error * error
+    else:
+        left = 0
+    s[a + _DOUBT_Q8] = left
+
+
 def calibrate(s: ptr32, c: ptr32, a: int, error: int):
     """Learn from a segment's error, LSB Q4, how sure of its bias this very part may be."""
     relearn_slope(s, c, a, error * error)
     if s[a + _OFFSET_AGE_MS] > 2 * _NEIGHBOURS_MS and s[a + _LEFT_Q4] != _NO_VALUE:
-        s[a + _DOUBT_Q8] = 0
+        doubt(s, a, error)
     if s[a + _LEFT_Q4] == _NO_VALUE:
         relearn_spread(s, c, a, error * error)
     elif s[a + _OFFSET_FROM] == 0:
@@ -309,7 +339,7 @@ def absorb(s: ptr32, c: ptr32, a: int) -> int:
 
 def believe(s: ptr32, c: ptr32, a: int, error: int) -> int:
     """Let the waiting segment, so far off, move the offset or not; return 1: it may be learned."""
-    if s[a + _OFFER]:
+    if s[a + _OFFER] > 0:
         return adopt(s, c, a, error)
     verdict = 2
     held = 0

@@ -14,6 +14,7 @@ from .fit import bend, draw_line
 from .guard import check
 from .recent import absorb, beyond_q8, gain_q14, grown_q8, hand_over, left_q8, mean_noise_q8
 from .stillness import gather, judge, seems_still
+from .turning import end_of_rest, suspect_turn
 
 # layout: names that a board's own compiler reads
 const = int
@@ -229,7 +230,10 @@ def end_window(s: ptr32, c: ptr32):
         if still and c[_EVERY] == 0:
             s[a + _WAITING_SUM] = s[_SEGMENT_TOTAL + i]
             s[a + _WAITING_N] = still << c[_WINDOW_SHIFT]
-            s[a + _OFFER] = 0
+    if still and c[_EVERY] == 0:
+        suspect_turn(s, c)
+    if s[_STILLNESS] != _STILL:
+        end_of_rest(s, c)
     s[_ELAPSED_US] = 0
     s[_WORK] = 1
 

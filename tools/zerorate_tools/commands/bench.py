@@ -157,6 +157,12 @@ BENCHES = {
         lambda bench, a: bench.STEPS,
         options=_QUICK,
     ),
+    "deceived": Bench(
+        *("how often it is sure of a wrong bias among things that turn", "deceived"),
+        lambda bench, a, advance: bench.run(a.seeds, advance),
+        lambda bench, a: bench.steps(a.seeds),
+        options={"--seeds": _number(50, "runs of each world")},
+    ),
     "faults": Bench(
         "every fault of a bus and every cut of a write; exit code 1 when one goes unnoticed",
         "faults",

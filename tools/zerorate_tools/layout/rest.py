@@ -108,7 +108,12 @@ AXIS = Array(
         ("HOTTEST", 1, "LSB", "highest temperature learned"),
         ("LEARNED_N", 1, "readings", "learned since the counts were halved"),
         ("ORDER", 6, "words", "the short-term estimators, latest used first"),
-        ("OFFER", 1, "", "another source's variance, LSB^2 Q4, times 8, and its code; 0: a rest"),
+        (
+            "OFFER",
+            1,
+            "",
+            "another source's variance, LSB^2 Q4, times 8, its code; 0: rest; -1: or turn",
+        ),
         ("OFFSET_FROM", 1, "code SOURCE", "source that the offset was adopted from, 0: rests"),
         ("LINE_T0_Q4", 1, "LSB", "temperature from which the line counts"),
         ("LINE_MEAN_T", 1, "LSB", "mean temperature beyond it, shifted by LINE_SHIFT"),

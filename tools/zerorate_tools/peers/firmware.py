@@ -50,9 +50,13 @@ class Decision:
         self.within = []
         return [self._biases(number, one) for number, one in enumerate(sessions)]
 
-    def _biases(self, number: int, one: Given) -> NDArray[np.float64]:
+    def states(self, one: Given) -> list[NDArray]:
+        """Bias and its one sigma, dps, and the source, each (n, 3), from nothing."""
         corrector = corrector_for(one.recording, dict(self.options))
-        bias, sigma, source = _run(corrector, one, "bias_q8", "quality_q8", "source")
+        return _run(corrector, one, "bias_q8", "quality_q8", "source")
+
+    def _biases(self, number: int, one: Given) -> NDArray[np.float64]:
+        bias, sigma, source = self.states(one)
         if self.truth_dps is not None:
             known = source > 0
             inside = np.abs(bias - self.truth_dps[number]) < 2 * sigma
