@@ -64,7 +64,10 @@ def imu_bus(imu_chip: FakeMPU6050, request: pytest.FixtureRequest) -> FakeI2C:
 
 @pytest.fixture
 def smbus(imu_bus: FakeI2C, monkeypatch: pytest.MonkeyPatch) -> SMBus:
-    """smbus2.SMBus on imu_bus, which `import smbus` and `smbus2.SMBus(n)` now open, too."""
+    """smbus2.SMBus on imu_bus, which every SMBus that a program opens is on, too.
+
+    `from smbus2 import SMBus` may come before or after: the class itself is patched.
+    """
     opened = SMBus(imu_bus)
     module = types.ModuleType("smbus")
     module.SMBus = lambda *bus, **options: opened  # type: ignore[attr-defined]
@@ -74,8 +77,26 @@ def smbus(imu_bus: FakeI2C, monkeypatch: pytest.MonkeyPatch) -> SMBus:
     except ImportError:
         monkeypatch.setitem(sys.modules, "smbus2", module)
     else:
-        monkeypatch.setattr(smbus2, "SMBus", lambda *bus, **options: opened)
+        _forward(smbus2.SMBus, opened, monkeypatch)
     return opened
+
+
+def _forward(real: type, opened: SMBus, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Make every object of the real class do what the fake does, until the test ends."""
+
+    def begin(self: Any, *bus: Any, **options: Any) -> None:
+        self.fd, self.funcs = None, opened.funcs
+
+    monkeypatch.setattr(real, "__init__", begin)
+    pec = property(lambda self: opened.pec, lambda self, enable: opened.enable_pec(enable))
+    monkeypatch.setattr(real, "pec", pec)
+    for name in dir(SMBus):
+        if not name.startswith("_"):
+            monkeypatch.setattr(real, name, _forwarded(opened, name))
+
+
+def _forwarded(opened: SMBus, name: str) -> Any:
+    return lambda self, *words, **options: getattr(opened, name)(*words, **options)
 
 
 @pytest.fixture

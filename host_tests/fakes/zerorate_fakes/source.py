@@ -15,12 +15,19 @@ _GYRO_NOISE_DPS = 0.005
 _ACCEL_NOISE_G = 0.0004
 
 
+def _three(name, value):
+    """The value of three axes, or a function of time."""
+    if not callable(value) and len(value) != 3:
+        raise ValueError(f"{name} has {len(value)} values; give three, one an axis")
+    return value
+
+
 class Physical:
     """What the chip feels: rates in dps, acceleration in g, its temperature in degC.
 
     Each is constant, or a function of the seconds since the first sample. The chip makes words of
     it as its registers say: range, saturation, and noise of the filter's bandwidth. noise: 1 is
-    what the data sheet says, 0 is none; seed: of the noise.
+    what the data sheet says, 0 is none; seed: of the noise. Raises ValueError.
     """
 
     def __init__(
@@ -31,8 +38,8 @@ class Physical:
         noise: float = 1,
         seed: int = 1,
     ) -> None:
-        self.gyro_dps = gyro_dps
-        self.accel_g = accel_g
+        self.gyro_dps = _three("gyro_dps", gyro_dps)
+        self.accel_g = _three("accel_g", accel_g)
         self.temp_degc = temp_degc
         self.noise = noise
         self._random = seed & 0x7FFFFFFF or 1
