@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from .binary import encoded
 from .model import Model, Slot, is_channel
+from .rate_matrix import matrix_in_words
 from .term import Term
 
 UNITS = {"temp": "degC", "vib": "g^2", "time": "s", "one": ""}
@@ -29,7 +30,8 @@ def in_words(model: Model) -> str:
     for number, slot in enumerate(model.slots, 1):
         lines += ["", f"{number}. {slot.effect or 'effect'}: {basis_in_words(slot)}"]
         lines += [f"   {line}" for line in _numbers(slot)]
-    return "\n".join(lines)
+    matrix = matrix_in_words(model)
+    return "\n".join([*lines, *([""] if matrix else []), *matrix])
 
 
 def slots_in_words(model: Model) -> str:
