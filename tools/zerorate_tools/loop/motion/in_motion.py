@@ -14,7 +14,7 @@ from ..read.turns import GIVEN
 from .by_gravity import by_gravity
 from .rate_scale import RateScale, fit_rate_scale
 from .timing import Timing, timing_of
-from .windows import moving_of
+from .windows import LONGEST_S, moving_of
 
 _RATES = ("rate_x", "rate_y", "rate_z")
 
@@ -63,8 +63,14 @@ def in_motion(
 
 def _by_windows(train, holdout, logs) -> RateScale | None:
     """What gravity shows of the matrix, window by window."""
-    parts = [[moving_of(logs[s.name]) for s in some] for some in (train, holdout)]
+    moving = [[s for s in some if _moving_s(s) > LONGEST_S] for some in (train, holdout)]
+    parts = [[moving_of(logs[s.name]) for s in some] for some in moving]
     return by_gravity(*([m for m in part if m is not None] for part in parts))
+
+
+def _moving_s(session: Session) -> float:
+    """Seconds that a session was not at rest."""
+    return float((1.0 - session.weight).sum() * session.block_s)
 
 
 def _every_third(runs: list[Run]) -> tuple[list[list[Run]], list[Run]]:

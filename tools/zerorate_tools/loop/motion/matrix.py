@@ -10,10 +10,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
-from .windows import MATRIX, OWN, OWN_SIGMA, REST_SIGMA, Moving, rows_of, tapers
+from .windows import LONGEST_S, MATRIX, OWN, OWN_SIGMA, REST_SIGMA, Moving, rows_of, tapers
 
 #: Short windows first: a large bias bends long ones.
-_SECONDS = (10.0, 20.0, 40.0, 40.0)
+_SECONDS = (10.0, 20.0, LONGEST_S, LONGEST_S)
 #: Sizes that a group of entries may have; the last allows what a data sheet does.
 _SIZES = (3e-4, 1e-3, 3e-3, 1e-2, 3e-2)
 #: Of half-overlapped windows under a Hann taper, the share that counts (Welch 1967).

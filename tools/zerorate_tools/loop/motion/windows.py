@@ -34,6 +34,8 @@ _MOST_HZ = 0.5
 _COLUMNS_HZ = 10.0
 _G_MPS2 = 9.80665
 _RAIL = 32767
+#: The longest window; what moves for less shows nothing.
+LONGEST_S = 40.0
 #: Of a recording whose rates spread by less no window moves.
 _WORTH_READING_DPS = 1.0
 #: Rests this long are a reading of the bias, with what it wanders meanwhile.
