@@ -10,10 +10,10 @@ ROOT = Path(__file__).resolve().parents[2]
 SCRIPTS = Path(__file__).parent / "on_micropython"
 MODULES = [ROOT / "drivers", ROOT / "host_tests" / "fakes"]
 HOT = {
-    "mpu6050.py": "decode read read_sample verify doubt check _is_configured _is_kept",
+    "mpu6050.py": "read read_sample verify doubt check _is_configured _is_kept",
     "data_registers.py": "read read_sample _is_suspect _is_one_word_repeated _has_leapt "
     "_read_again",
-    "registers.py": "read_register read_into _transfer",
+    "registers.py": "decode read_register read_into _transfer",
     "fifo.py": "read _load _count _count_bytes _take _transfer _align _deliver _is_doubtful",
     "data_ready.py": "_on_edge take",
 }

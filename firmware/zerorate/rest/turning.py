@@ -48,9 +48,23 @@ def along(s: ptr32, c: ptr32, size: int) -> int:
     """Return the segment's error along gravity: LSB, Q4. size: of gravity."""
     total = 0
     for i in range(3):
-        part = off_q4(s, c, i)
-        total += part * up(s, i)
+        total += off_q4(s, c, i) * up(s, i)
     return total // size
+
+
+def square_aside(s: ptr32, c: ptr32, axis: int, slope_q10: int) -> int:
+    """Return the square of an axis' error that is not along gravity. slope_q10: error by gravity."""
+    aside = off_q4(s, c, axis)
+    aside = clipped(aside - (slope_q10 * up(s, axis) >> 10), 0x3FFF)
+    return aside * aside
+
+
+def asides(s: ptr32, c: ptr32, slope_q10: int) -> int:
+    """Return the square of the segment's error that is not along gravity."""
+    total = square_aside(s, c, 0, slope_q10)
+    total += square_aside(s, c, 1, slope_q10)
+    total += square_aside(s, c, 2, slope_q10)
+    return total
 
 
 def seems_a_turn(s: ptr32, c: ptr32) -> int:
@@ -60,11 +74,7 @@ def seems_a_turn(s: ptr32, c: ptr32) -> int:
     if size == 0:
         return 0
     turn = along(s, c, size)
-    aside = 0
-    for i in range(3):
-        d = off_q4(s, c, i) - turn * up(s, i) // size
-        d = clipped(d, 0x3FFF)
-        aside += d * d
+    aside = asides(s, c, (turn << 10) // size)
     turn = clipped(turn >> 1, 0x3FFF)
     return 1 if aside <= turn * turn else 0
 
