@@ -12,7 +12,7 @@ DOCUMENT_MDPS = (4.0, 25.0)
 LEARNED_LSB = 1.5
 
 # Design: state of three axes, and the heap that importing the firmware takes on a 32-bit port,
-# beside the piece that it holds until a Corrector takes it for its state. The design's 36 KB, and 2 KB
-# more for what tells a turn from a bias: without it 408 of 550 moving devices were sure of a wrong one.
+# beside the piece that it holds until a Corrector takes it for its state: 36 KB, and 2 KB more
+# for what tells a turn from a bias. Without that 408 of 550 moving devices were sure of a wrong one.
 STATE_BYTES = 3072
 IMPORT_BYTES = 38912

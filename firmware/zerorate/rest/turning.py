@@ -53,7 +53,7 @@ def along(s: ptr32, c: ptr32, size: int) -> int:
 
 
 def square_aside(s: ptr32, c: ptr32, axis: int, slope_q10: int) -> int:
-    """Return the square of an axis' error that is not along gravity. slope_q10: error by gravity."""
+    """Return the square of an axis' error aside from gravity. slope_q10: error by gravity."""
     aside = off_q4(s, c, axis)
     aside = clipped(aside - (slope_q10 * up(s, axis) >> 10), 0x3FFF)
     return aside * aside
