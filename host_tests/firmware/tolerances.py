@@ -13,6 +13,6 @@ LEARNED_LSB = 1.5
 
 # Design: state of three axes, and the heap that importing the firmware takes on a 32-bit port,
 # beside the piece that it holds until a Corrector takes it for its state: 36 KB, and 2 KB more
-# for what tells a turn from a bias. Without that 408 of 550 moving devices were sure of a wrong one.
+# for what tells a turn from a bias. Without that 408 of 550 moving devices trusted a wrong bias.
 STATE_BYTES = 3072
 IMPORT_BYTES = 38912
