@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter1d
 from zerorate_tools.closing import close
-from zerorate_tools.loop.motion.by_gravity import DifferentDevices
+from zerorate_tools.loop.motion.by_gravity import DifferentDevices, by_gravity
+from zerorate_tools.loop.motion.windows import moving_of
 from zerorate_tools.loop.read.gate import CannotClose
 from zerorate_tools.recordings import Recording, Scales
 from zerorate_tools.recordings.writing import write_recording
@@ -17,9 +18,9 @@ _SCALES = Scales("MPU-6050", _HZ, 32.8, 8192.0, None, None)
 _MATRIX = np.array([[0.012, 0.0, 0.003], [0.0, -0.009, 0.0], [0.003, 0.0, 0.006]])
 
 
-def handled(seed, matrix, dps=60.0, about=(1.0, 1.0, 1.0)):
+def handled(seed, matrix, dps=60.0, about=(1.0, 1.0, 1.0), minutes=_MINUTES):
     """A device turned in the hand without a rest: bias 0.4 dps, a hand that sways by 3 cm."""
-    rng, n = np.random.default_rng(seed), int(_HZ * _MINUTES * 60)
+    rng, n = np.random.default_rng(seed), int(_HZ * minutes * 60)
 
     def smooth(seconds):
         waves = gaussian_filter1d(rng.standard_normal((n, 3)), seconds * _HZ, axis=0)
@@ -86,3 +87,7 @@ def test_recordings_of_two_devices_are_refused_by_name(recorded, tmp_path):
 def test_a_recording_that_neither_rests_nor_turns_is_refused(recorded, tmp_path):
     with pytest.raises(CannotClose, match="minutes"):
         close([recorded(12, np.zeros((3, 3)), dps=2.0)], tmp_path / "closed")
+
+
+def test_motion_of_one_window_shows_nothing_as_nothing_is_left_to_judge_on(recorded):
+    assert by_gravity([moving_of(recorded(13, _MATRIX, minutes=0.7))], []) is None

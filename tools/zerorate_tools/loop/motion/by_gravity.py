@@ -41,7 +41,8 @@ class Scatter:
 
 
 def by_gravity(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
-    """The matrix of the recordings to fit, judged on windows held out; None where none moves.
+    """The matrix of the recordings to fit, judged on windows held out; None where none moves
+    or too little to be judged on.
 
     holdout: recordings held out whole; without any, every fourth part of each is, in turn. Raises
     DifferentDevices.
@@ -54,6 +55,8 @@ def by_gravity(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
     entries, covariance = entries_of(shown)
     held = [f for f in (beside(m, matrix) for m in holdout) if f is not None]
     judged = [(f, None, entries) for f in held] or list(_folds(fitted, matrix, inflation))
+    if not judged:
+        return None
     gain = sum(f.shown(matrix, ALL if k is None else [k]).gain(m) for f, k, m in judged)
     before, after = (
         _tilt([f.tilts(matrix, x, k) for f, k, m in judged for x in [0.0 * m if bare else m]])
