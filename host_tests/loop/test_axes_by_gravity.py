@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter1d
 from zerorate_tools.closing import close
-from zerorate_tools.loop.motion.by_gravity import DifferentDevices, by_gravity
-from zerorate_tools.loop.motion.windows import moving_of
+from zerorate_tools.loop.motion.by_gravity import by_gravity
+from zerorate_tools.loop.motion.device import Shown, device_of
+from zerorate_tools.loop.motion.same_device import DifferentDevices
+from zerorate_tools.loop.motion.windows import columns_of, moving_of
 from zerorate_tools.loop.read.gate import CannotClose
 from zerorate_tools.recordings import Recording, Scales
 from zerorate_tools.recordings.writing import write_recording
@@ -90,4 +92,21 @@ def test_a_recording_that_neither_rests_nor_turns_is_refused(recorded, tmp_path)
 
 
 def test_motion_of_one_window_shows_nothing_as_nothing_is_left_to_judge_on(recorded):
-    assert by_gravity([moving_of(recorded(13, _MATRIX, minutes=0.7))], []) is None
+    assert by_gravity([moving_of(recorded(13, _MATRIX, minutes=0.2))], []) is None
+
+
+def test_a_recording_that_differs_from_the_rest_widens_what_is_said_of_the_device():
+    alike = [Shown(np.eye(9) * 1e8, np.full(9, 1e8 * x)) for x in (0.001, 0.001, 0.001)]
+    apart = [*alike[:2], Shown(np.eye(9) * 1e8, np.full(9, 1e8 * 0.005))]
+    sigma = [np.sqrt(np.diag(device_of(s).covariance)).max() for s in (alike, apart)]
+    assert sigma[0] < 1e-4 and sigma[1] > 5e-4
+
+
+def test_hours_of_samples_give_the_same_columns_in_parts_as_at_once(recorded, monkeypatch):
+    moving = moving_of(recorded(14, _MATRIX, minutes=1.0))
+    nothing = np.zeros((3, 3)), np.zeros(3), np.zeros(3)
+    parts = columns_of(moving, *nothing)
+    monkeypatch.setattr("zerorate_tools.loop.motion.windows._CHUNK", 1 << 20)
+    once = columns_of(moving, *nothing)
+    np.testing.assert_allclose(parts.theta, once.theta, atol=1e-9)
+    np.testing.assert_allclose(parts.seen, once.seen, atol=1e-9)

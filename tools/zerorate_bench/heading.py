@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 from zerorate_tools.demo.broad import Trial, trials
-from zerorate_tools.loop.motion.by_gravity import DifferentDevices, by_gravity
+from zerorate_tools.loop.motion.by_gravity import by_gravity
+from zerorate_tools.loop.motion.same_device import DifferentDevices
 from zerorate_tools.loop.motion.windows import Moving, moving_of
 from zerorate_tools.recordings.writing import write_recording
 

@@ -5,45 +5,26 @@ its accelerometer's errors, a delay and a lever arm. All are fitted beside them.
 The noise is the hand's acceleration: its spectrum comes from the residuals of each recording.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
+from .device import SIZES, Shown, device_of
+from .same_device import distance
 from .windows import LONGEST_S, MATRIX, OWN, OWN_SIGMA, REST_SIGMA, Moving, rows_of, tapers
 
 #: Short windows first: a large bias bends long ones.
 _SECONDS = (10.0, 20.0, LONGEST_S, LONGEST_S)
-#: Sizes that a group of entries may have; the last allows what a data sheet does.
-_SIZES = (3e-4, 1e-3, 3e-3, 1e-2, 3e-2)
-#: Of half-overlapped windows under a Hann taper, the share that counts (Welch 1967).
-_OVERLAP = 0.95
-FOLDS, _BLOCKS = 4, 8
+#: Windows of a length are used where there are so many: the noise's spectrum comes from them.
+_LEAST_WINDOWS = 8
+#: Of windows under a Hann taper, each a quarter on, the share that counts (Welch 1967).
+_OVERLAP = 0.52
+FOLDS = 4
+_LEAST_BLOCK, _MOST_BLOCKS = 4, 8
 _AT = np.cumsum([MATRIX, *OWN.values()])
 _BIAS, _DRIFT = slice(_AT[0], _AT[1]), slice(_AT[1], _AT[2])
 _OWN_PRECISION = np.concatenate([np.full(n, OWN_SIGMA[name] ** -2) for name, n in OWN.items()])
-
-
-@dataclass
-class Shown:
-    """What windows say of the nine entries, everything else integrated out: a quadratic form.
-
-    normal: (9, 9); right: (9,); nats gained by entries m are `right m - m normal m / 2`.
-    """
-
-    normal: np.ndarray = field(default_factory=lambda: np.zeros((MATRIX, MATRIX)))
-    right: np.ndarray = field(default_factory=lambda: np.zeros(MATRIX))
-
-    def __add__(self, other: "Shown") -> "Shown":
-        return Shown(self.normal + other.normal, self.right + other.right)
-
-    def weaker(self, times: float) -> "Shown":
-        """The same with its variances so many times as large."""
-        return Shown(self.normal / times, self.right / times)
-
-    def gain(self, entries: np.ndarray) -> float:
-        """Nats by which the entries (9,) are likelier than none."""
-        return float(self.right @ entries - 0.5 * entries @ self.normal @ entries)
 
 
 @dataclass
@@ -63,9 +44,16 @@ class Fitted:
     precision: np.ndarray
     folds: np.ndarray
 
-    def shown(self, matrix: np.ndarray, folds=range(FOLDS)) -> Shown:
-        """What its windows of some folds say, linear about the matrix."""
-        take = np.isin(self.folds, folds)
+    def shown(self, matrix: np.ndarray, fold: int | None = None) -> Shown:
+        """What its windows say, or those of one fold, linear about the matrix."""
+        return self._of(matrix, self.folds >= 0 if fold is None else self.folds == fold)
+
+    def without(self, matrix: np.ndarray, fold: int) -> Shown:
+        """What its windows say without a fold, nor those that lie next to it and share its data."""
+        held = np.pad(self.folds == fold, 1)
+        return self._of(matrix, ~(held[:-2] | held[1:-1] | held[2:]))
+
+    def _of(self, matrix, take) -> Shown:
         normal, right = _normal(self.errors[take], self.columns[take], self.precision)
         _add_own(normal, right, self)
         own, back = normal[MATRIX:, MATRIX:], normal[:MATRIX, MATRIX:]
@@ -103,7 +91,7 @@ def fit(recordings: list[Moving]) -> tuple[np.ndarray, list[Fitted]]:
         every = list(fitted.values())
         if not every:
             break
-        step = entries_of(sum((f.shown(matrix) for f in every), Shown()))[0].reshape(3, 3) - matrix
+        step = device_of([f.shown(matrix) for f in every]).entries.reshape(3, 3) - matrix
         for f in every:
             _move(f, step)
         matrix = matrix + step
@@ -120,42 +108,17 @@ def beside(moving: Moving, matrix: np.ndarray) -> Fitted | None:
     return fitted
 
 
-def entries_of(shown: Shown) -> tuple[np.ndarray, np.ndarray]:
-    """(9,) posterior mean of the entries and (9, 9) its covariance. Scale factors, cross-axis
-    sensitivities and turns of the axes each have a size of their own, averaged by its evidence."""
-    kinds = groups()
-    cases = []
-    for sizes in np.stack(np.meshgrid(*[_SIZES] * len(kinds)), -1).reshape(-1, len(kinds)):
-        prior = sum(s**2 * g for s, g in zip(sizes, kinds))
-        root = np.linalg.cholesky(prior)
-        inner = np.eye(MATRIX) + root.T @ shown.normal @ root
-        covariance = root @ np.linalg.solve(inner, root.T)
-        mean = covariance @ shown.right
-        evidence = 0.5 * shown.right @ mean - 0.5 * np.linalg.slogdet(inner)[1]
-        cases.append((evidence, mean, covariance))
-    weight = np.exp(np.array([c[0] for c in cases]) - max(c[0] for c in cases))
-    weight /= weight.sum()
-    mean = sum(w * c[1] for w, c in zip(weight, cases))
-    spread = sum(w * (c[2] + np.outer(c[1] - mean, c[1] - mean)) for w, c in zip(weight, cases))
-    return mean, spread
-
-
-def groups():
-    """(9, 9) projections on scale factors, on cross-axis sensitivities, on turns of the axes."""
-    turn = np.arange(MATRIX).reshape(3, 3).T.ravel()
-    diagonal = np.diag(np.eye(3).ravel())
-    symmetric = 0.5 * (np.eye(MATRIX) + np.eye(MATRIX)[turn])
-    return diagonal, symmetric - diagonal, np.eye(MATRIX) - symmetric
-
-
 def _beside(moving, seconds, matrix, before) -> Fitted | None:
     bias, drift = (np.zeros(3), np.zeros(3)) if before is None else (before.bias, before.drift)
+    fit_in = [s for s in _SECONDS if s <= seconds and len(moving.spans(s)) >= _LEAST_WINDOWS]
+    seconds = max(fit_in, default=_SECONDS[0])
     rows = list(rows_of(moving, seconds, matrix, bias, drift))
     if not rows:
-        return before
+        return None
     errors, columns = np.stack([r[0] for r in rows]), np.stack([r[1][..., :-3] for r in rows])
     tilting = np.stack([r[1][..., -3:] for r in rows])
-    folds = np.arange(len(rows)) * _BLOCKS // len(rows) % FOLDS
+    blocks = min(max(len(rows) // _LEAST_BLOCK, FOLDS), _MOST_BLOCKS)
+    folds = np.arange(len(rows)) * blocks // len(rows) % FOLDS
     fitted = Fitted(moving, bias, drift, errors, columns, tilting, np.ones(errors.shape[1]), folds)
     _, at = tapers(8, seconds)
     for _ in range(4):
@@ -167,28 +130,16 @@ def _beside(moving, seconds, matrix, before) -> Fitted | None:
 def _contradiction(f: Fitted, matrix: np.ndarray) -> float:
     """By how much parts of a recording differ more than their errors allow (Birge 1932): a hand
     whose acceleration moves with the turning fits one part and not the next. 1 where they agree."""
-    excess = [
-        distance(f.shown(matrix, [k]), f.shown(matrix, [j for j in range(FOLDS) if j != k]))
-        for k in set(f.folds)
-    ]
+    excess = [distance(f.shown(matrix, k), f.without(matrix, k)) for k in set(f.folds)]
     return max(1.0, float(np.mean(excess)) / MATRIX) if len(excess) > 1 else 1.0
-
-
-def distance(one: Shown, other: Shown) -> float:
-    """Chi-squared of two statements being of one matrix; a size that no part exceeds bounds what
-    either leaves open."""
-    bound = np.eye(MATRIX) * _SIZES[-1] ** -2
-    inverses = [np.linalg.inv(s.normal + bound) for s in (one, other)]
-    apart = inverses[0] @ one.right - inverses[1] @ other.right
-    return float(apart @ np.linalg.solve(sum(inverses), apart))
 
 
 def _variances(f: Fitted, matrix, at) -> np.ndarray:
     """(k,) of a row of each frequency, from what is left; what the fit took is put back."""
     normal, right = _normal(f.errors, f.columns, f.precision)
     _add_own(normal, right, f)
-    normal[:MATRIX, :MATRIX] += np.eye(MATRIX) * _SIZES[-1] ** -2
-    right[:MATRIX] -= matrix.ravel() * _SIZES[-1] ** -2
+    normal[:MATRIX, :MATRIX] += np.eye(MATRIX) * SIZES[-1] ** -2
+    right[:MATRIX] -= matrix.ravel() * SIZES[-1] ** -2
     inverse = np.linalg.inv(normal)
     left = (f.errors - f.columns @ (inverse @ right)) ** 2
     taken = np.einsum("wqap,pr,wqar->wqa", f.columns, inverse, f.columns, optimize=True)

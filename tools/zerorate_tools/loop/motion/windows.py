@@ -1,9 +1,9 @@
 """Windows of a recording in motion, each a measurement of the rate error by gravity.
 
 The rates are integrated over a window to R(t), body to the window's first frame. Without errors
-`R a` is gravity plus the hand's acceleration. An error turns it by theta(t), which is linear in the
-errors. Cosines and sines under a Hann taper turn each window into rows. The taper and its slope end
-at zero, so a slow row sees only the hand's position, which is bounded: its noise is small there.
+`R a` is gravity plus the hand's acceleration. An error turns all of it by theta(t), linear in the
+errors. Cosines and sines under a Hann taper turn each window into rows. The taper and its slope
+end at zero, so a slow row sees only the hand's position, which is bounded: there is little noise.
 """
 
 from collections.abc import Iterator
@@ -32,6 +32,8 @@ LEAST_DPS = 5.0
 #: Rows reach up to this frequency: above it a hand shakes as it turns, which looks like an error.
 _MOST_HZ = 0.5
 _COLUMNS_HZ = 10.0
+#: Columns are made in parts of this many, so that hours of samples need no more memory.
+_CHUNK = 512
 _G_MPS2 = 9.80665
 _RAIL = 32767
 #: The longest window; what moves for less shows nothing.
@@ -64,9 +66,9 @@ class Moving:
         return float(self.at_s[-1] - self.at_s[0]) / (len(self.at_s) - 1)
 
     def spans(self, seconds: float) -> list[slice]:
-        """Windows of so many seconds, half overlapped, that move, without gap or rail."""
+        """Windows of so many seconds, each a quarter on, that move, without gap or rail."""
         n = round(seconds / self.dt_s)
-        spans = [slice(a, a + n) for a in range(0, len(self.rate) - n + 1, n // 2)] if n > 8 else []
+        spans = [slice(a, a + n) for a in range(0, len(self.rate) - n + 1, n // 4)] if n > 8 else []
         return [s for s in spans if self._moves(s, n)]
 
     def _moves(self, s: slice, n: int) -> bool:
@@ -123,35 +125,77 @@ def _samples(opened):
     return tuple(np.concatenate(part) for part in zip(*rows))
 
 
-def columns_of(moving: Moving, span: slice, matrix, bias, drift) -> tuple[np.ndarray, np.ndarray]:
-    """(m, 3) acceleration in the window's first frame in g, and (m, 3, p + 3) what a unit of each
-    error adds to it, the last three by a steady turn of that frame, at some ten a second. matrix,
-    bias and drift are taken out of the rates first."""
+@dataclass(frozen=True)
+class Columns:
+    """A recording at about ten samples a second, in one frame that stands still.
+
+    at: (m,) index of each one's first sample; seen: (m, 3) specific force, g; theta: (m, 3, r)
+    what a unit of each rate error has turned that frame by; own: (m, 3, s) g that a unit of each
+    other error adds; step_s: seconds between them.
+    """
+
+    at: np.ndarray
+    seen: np.ndarray
+    theta: np.ndarray
+    own: np.ndarray
+    step_s: float
+
+    def of(self, span: slice) -> tuple[np.ndarray, np.ndarray]:
+        """(k, 3) specific force less its mean and (k, 3, p + 3) what a unit of each error adds to
+        it; the last three by a steady turn of the frame."""
+        seen, theta = self.seen[span], self.theta[span]
+        turned = theta - theta[len(theta) // 2]
+        turned[..., -1] = theta[..., -1]  # a delay turns at once
+        by_rate = -np.cross(turned, seen[:, :, None], axis=1)
+        steady = np.eye(3) * (np.arange(len(seen)) * self.step_s)[:, None, None]
+        by_turn = -np.cross(steady, seen.mean(axis=0)[None, :, None], axis=1)
+        own = self.own[span]
+        parts = [by_rate[..., :-1], own[..., :_LEVER], by_rate[..., -1:], own[..., _LEVER:]]
+        return seen, np.concatenate([*parts, by_turn], axis=2)
+
+
+#: Columns of `own` before the lever arm's: the accelerometer's bias and shape.
+_LEVER = OWN["accel_bias"] + OWN["accel_shape"]
+
+
+def columns_of(moving: Moving, matrix, bias, drift) -> Columns:
+    """What each error does to a recording, with matrix, bias and drift taken out of its rates.
+
+    Titterton and Weston 2004, 12.3: an error of the rate e turns the frame by the integral of R e.
+    """
+    per = max(1, round(1.0 / (_COLUMNS_HZ * moving.dt_s)))
+    chunk, whole = per * _CHUNK, len(moving.rate) // per * per
+    attitude, theta, parts = IDENTITY, np.zeros((3, MATRIX + 6)), []
+    for first in range(0, whole, chunk):
+        span = slice(first, min(first + chunk, whole))
+        attitude, part = _chunk_of(moving, span, per, attitude, matrix, bias, drift)
+        part[1][:, :, :-1] = np.cumsum(part[1][:, :, :-1], axis=0) + theta
+        theta = part[1][-1, :, :-1]
+        parts.append(part)
+    seen, theta, own = (np.concatenate(p) for p in zip(*parts))
+    return Columns(np.arange(len(seen)) * per, seen, theta, own, per * moving.dt_s)
+
+
+def _chunk_of(moving, span, per, attitude, matrix, bias, drift):
+    """The attitude after a chunk; its specific force, turns of each step and other columns."""
     dt_s, measured, accel = moving.dt_s, moving.rate[span], moving.accel[span]
     at_s = moving.at_s[span]
     rate = measured - measured @ matrix.T - bias - np.outer(at_s, drift)
-    per = max(1, round(1.0 / (_COLUMNS_HZ * dt_s)))
 
     def mean(x):
-        whole = len(x) // per * per
-        return x[:whole].reshape(-1, per, *x.shape[1:]).mean(axis=1)
+        return x.reshape(-1, per, *x.shape[1:]).mean(axis=1)
 
-    attitude = integrate(np.degrees(rate), dt_s, IDENTITY)
-    to_start = np.stack([into_body(attitude, e) for e in np.eye(3)], axis=1)
-    seen = np.einsum("nij,nj->ni", to_start, accel)
-    turned = [np.einsum("nai,nj->naij", to_start, measured).reshape(-1, 3, 9)]
-    turned += [to_start, to_start * at_s[:, None, None]]
-    theta = -np.cumsum(mean(np.concatenate(turned, axis=2)), axis=0) * dt_s * per
-    late = mean(np.einsum("nij,nj->ni", to_start, rate))[:, :, None]
-    up = seen.mean(axis=0) / np.linalg.norm(seen.mean(axis=0))
-    steady = np.eye(3) * (np.arange(len(theta)) * dt_s * per)[:, None, None]
-    by_rate = -np.cross(np.concatenate([theta, late, steady], 2), up[None, :, None], axis=1)
-    shape = np.einsum("nij,kjl,nl->nik", to_start, _SHAPES, accel)
-    lever = np.zeros_like(to_start)
-    lever[1:-1] = np.diff(to_start, n=2, axis=0) / dt_s**2 / _G_MPS2
-    own = mean(np.concatenate([to_start, shape], axis=2))
-    parts = [by_rate[:, :, :-4], own, by_rate[:, :, -4:-3], mean(lever), by_rate[:, :, -3:]]
-    return mean(seen), np.concatenate(parts, axis=2)
+    attitudes = integrate(np.degrees(rate), dt_s, attitude)
+    still = np.stack([into_body(attitudes, e) for e in np.eye(3)], axis=1)
+    turned = [(still[:, :, :, None] * measured[:, None, None, :]).reshape(-1, 3, MATRIX)]
+    turned = mean(np.concatenate([*turned, still, still * at_s[:, None, None]], axis=2))
+    late = mean(still @ rate[:, :, None])
+    shape = still @ np.moveaxis(accel @ np.moveaxis(_SHAPES, 1, 2), 0, 2)
+    lever = np.zeros_like(still)
+    lever[1:-1] = np.diff(still, n=2, axis=0) / dt_s**2 / _G_MPS2
+    theta = np.concatenate([-turned * dt_s * per, late], axis=2)
+    own = mean(np.concatenate([still, shape, lever], axis=2))
+    return attitudes[-1], (mean((still @ accel[:, :, None])[..., 0]), theta, own)
 
 
 def _shapes():
@@ -180,7 +224,14 @@ def tapers(n: int, seconds: float) -> tuple[np.ndarray, np.ndarray]:
 
 def rows_of(moving: Moving, seconds: float, matrix, bias, drift) -> Iterator:
     """(q, 3) and (q, 3, p + 3) of each window."""
-    for span in moving.spans(seconds):
-        seen, columns = columns_of(moving, span, matrix, bias, drift)
-        rows, _ = tapers(len(seen), seconds)
-        yield rows @ seen, np.tensordot(rows, columns, 1)
+    spans = moving.spans(seconds)
+    if not spans:
+        return
+    columns = columns_of(moving, matrix, bias, drift)
+    long = int(seconds / columns.step_s)
+    rows, _ = tapers(long, seconds)
+    for span in spans:
+        first = int(np.searchsorted(columns.at, span.start))
+        seen, of = columns.of(slice(first, first + long))
+        if len(seen) == long:
+            yield rows @ seen, np.tensordot(rows, of, 1)
