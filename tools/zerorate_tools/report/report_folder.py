@@ -1,6 +1,6 @@
 """The report of a closed loop, written into a folder: one page, and pictures where wanted."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -25,7 +25,7 @@ _MOST_MOMENTS = 120
 
 def write_report(
     analysis: Analysis,
-    result: dict[str, Any],
+    result: Mapping[str, Any],
     logs: Sequence[str | PathLike[str]],
     folder: str | PathLike[str],
     png: bool = False,
@@ -50,7 +50,7 @@ def write_report(
 
 def plots_of(
     analysis: Analysis,
-    result: dict[str, Any],
+    result: Mapping[str, Any],
     logs: Sequence[str | PathLike[str]],
     folder: str | PathLike[str],
 ) -> tuple[list[Plot], list[str]]:

@@ -1,12 +1,13 @@
 """What a report says in sentences; every number in them is one of report.json."""
 
+from collections.abc import Mapping
 from typing import Any
 
 from ..loop.read.turns import GIVEN
 from ..numbers import figure
 from .kinds import title
 
-Report = dict[str, Any]
+Report = Mapping[str, Any]
 
 
 #: Less than this share of the error before is left: most of it is explained, or a board gains.
