@@ -59,14 +59,13 @@ def close(
     holdout: str | PathLike[str] | None = None,
     advance: Callable[[float], None] = lambda n: None,
     online: bool = False,
-    png: bool = False,
 ) -> LoopReport:
     """Run the loop; write report.html, report.json, model.json, model.bin and corrected.parquet.
 
     out: the folder, made where it is not there; online: what the learning firmware subtracts goes
-    into corrected.parquet, too; png: the report's plots as pictures, too; advance: called twice for
-    each recording. The files are all replaced, or none is. Returns what report.json holds. Raises
-    ZerorateError (BadRecording, CannotClose, CannotDeploy, Refused).
+    into corrected.parquet, too; advance: called twice for each recording. The files are all
+    replaced, or none is. Returns what report.json holds. Raises ZerorateError (BadRecording,
+    CannotClose, CannotDeploy, Refused).
     """
     from .report import write_report  # its libraries are large
 
@@ -80,7 +79,7 @@ def close(
         write_model(model, folder)
         result = json.loads(json.dumps(report(analysis), default=as_json))
         _write_json(folder, result)
-        write_report(analysis, result, logs, folder, png)
+        write_report(analysis, result, logs, folder)
     return result
 
 

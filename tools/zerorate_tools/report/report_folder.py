@@ -1,4 +1,4 @@
-"""The report of a closed loop, written into a folder: one page, and pictures where wanted."""
+"""The report of a closed loop, written into a folder: one page."""
 
 from collections.abc import Mapping, Sequence
 from os import PathLike
@@ -28,9 +28,8 @@ def write_report(
     result: Mapping[str, Any],
     logs: Sequence[str | PathLike[str]],
     folder: str | PathLike[str],
-    png: bool = False,
 ) -> Path:
-    """Write report.html, and with `png` plots/*.png, beside the model in `folder`; its path.
+    """Write report.html beside the model in `folder`; its path.
 
     analysis: of `closing.load`; result: what report.json holds, whose numbers are shown;
     logs: the recordings, replayed to show the estimators. Raises OSError.
@@ -41,10 +40,6 @@ def write_report(
     path = folder / "report.html"
     with written_beside(path) as temporary:
         temporary.write_text(page(result, plots, board, notes), encoding="utf-8")
-    if png:
-        from .png import write_pngs
-
-        write_pngs(plots, folder / "plots")
     return path
 
 
