@@ -22,11 +22,6 @@ def programs(repository):
     return {"board": board, "linux": linux, "suite": suite}
 
 
-def test_each_is_about_ten_lines(programs):
-    for text in programs.values():
-        assert len([line for line in text.splitlines() if line.strip()]) <= 12
-
-
 def test_the_program_for_a_board_reads_and_corrects(programs, repository, find_runtime):
     folders = ("firmware", "drivers", "host_tests/fakes")
     done = find_runtime("x86").run(
