@@ -82,16 +82,16 @@ def _what(result: Report) -> str:
 
 def how_sure(effect: Report) -> str:
     """What confirmed or tentative means here."""
-    if effect["confidence"] == "confirmed" and not corrects_at_rest(effect):
-        return "Confirmed: what was held out and took no part in finding it shows it too."
-    if effect["confidence"] == "confirmed":
+    if effect["confidence"] != "confirmed":
         return (
-            "Confirmed: it also lowers the error on the recording that was held out and took no "
-            "part in finding it, and nothing beyond the part's own noise is left there."
+            "Tentative: the fitted recordings show it, but the held-out data do not settle it. "
+            "Record more before you rely on it."
         )
+    if not corrects_at_rest(effect):
+        return "Confirmed: the held-out data, which took no part in finding it, show it too."
     return (
-        "Tentative: it was found in the recordings that were fitted on, but what was held out "
-        "does not settle it. Record more before you rely on it."
+        "Confirmed: it also lowers the error of the held-out recording, which took no part in "
+        "finding it, and leaves nothing but the part's own noise there."
     )
 
 
