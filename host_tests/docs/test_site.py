@@ -27,6 +27,8 @@ def test_the_reference_has_every_public_name(site):
     page = (site / "api.html").read_text(encoding="utf-8")
     named = {name.rpartition(".")[2] for name in re.findall(r'<h3 id="([\w.]+)"', page)}
     assert {*zerorate_tools.__all__, *BESIDES, *FAKES} <= named
+    text = re.sub(r"<[^>]+>", "", page)
+    assert "ignore_outside: bool" in text and "odr_hz: float = 100.0" in text  # constructors, too
 
 
 @pytest.mark.parametrize(
