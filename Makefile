@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 # Halves of the list, not turns: what a module shares is made once then.
 PYTEST_ARGS ?= -n auto --dist worksteal
 
-.PHONY: demo test lint typecheck typecheck-tools pytest fuzz sweep day mutants attacks layout native docs lock wasm runtimes node wheel clean
+.PHONY: demo test lint typecheck typecheck-tools pytest fuzz sweep day mutants attacks layout native docs site lock wasm runtimes node wheel clean
 
 demo: $(VENV)/.tools wasm  ## the whole job on built-in input, no hardware
 	$(BIN)/zerorate demo
@@ -61,6 +61,9 @@ native: layout  ## write firmware/zerorate/native from the kernels
 docs: $(VENV)/.dev wasm  ## write what in docs/ and README.md is made by a command
 	$(BIN)/python -m host_tests.docs
 
+site: $(VENV)/.dev  ## docs/ as a site in site/, with search; site/index.html opens from disk
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
+
 wasm: $(VENV)/.tools node
 	$(BIN)/zerorate runtimes get wasm
 
@@ -108,4 +111,4 @@ wheel: $(VENV)/.dev  ## dist/*.whl and dist/*.tar.gz
 	$(BIN)/python -m hatchling build -d dist
 
 clean:
-	rm -rf $(VENV) dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf $(VENV) dist site .mypy_cache .ruff_cache .pytest_cache .hypothesis

@@ -1,6 +1,6 @@
 """A model of one unit, refined on another one of the same part."""
 
-from zerorate_bench.second_unit import WAYS, SecondUnit, device, errors_mdps, in_markdown
+from zerorate_bench.second_unit import WAYS, SecondUnit, device, errors_mdps
 from zerorate_tools.layout import SLOT, slot_at
 from zerorate_tools.loop.verify.firmware import rows
 from zerorate_tools.replay.engines import InterpreterEngine, NativeEngine
@@ -29,11 +29,6 @@ def test_its_coefficients_move_towards_its_own():
         moved = e[at + SLOT.SLOT_COEFFICIENT] / e[at + SLOT.SLOT_OWN]
         own = unit.share[slot, axis]
         assert abs(moved - own) < 0.7 * abs(1.0 - own), (slot, axis, moved, own)
-
-
-def test_the_table_has_a_row_for_every_way():
-    rows = in_markdown([{NONE: 3.0, AS_IT_IS: 2.0, REFINED: 1.0}]).splitlines()
-    assert rows[-1] == "| refined | 1.0 | 1.0 |" and len(rows) == 2 + len(WAYS)
 
 
 def test_a_board_refines_as_this_computer_does(micropython):

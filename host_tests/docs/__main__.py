@@ -1,11 +1,10 @@
-"""`make docs`: writes what in docs/ is made by a command: API, pictures, console output."""
+"""`make docs`: writes what in docs/ is made by a command: tables, pictures, console output."""
 
 import shutil
 import sys
 import tempfile
 from pathlib import Path
 
-from .api_page import api_page
 from .outputs import refreshed
 from .pages import blocks, pages
 from .tables import with_tables
@@ -14,7 +13,6 @@ from .tables import with_tables
 def main(repository, only=()):
     """Write the pages anew; only: names of those whose commands are run, `none`, all by default."""
     docs = repository / "docs"
-    (docs / "api.md").write_text(api_page(repository), encoding="utf-8")
     for page in pages(repository):
         if blocks(page, "console") and (not only or page.name in only):
             print(page.relative_to(repository), flush=True)

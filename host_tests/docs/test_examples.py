@@ -20,7 +20,7 @@ SHOWN = {
     "pico.md": ["main.py", "keep.py", "interrupt.py", "pins.py"],
     "raspberry-pi.md": ["raspberry_pi.py"],
     "linux-service.md": ["ros2_node.py"],
-    "any-imu.md": ["bmi160.py", "lsm6dso.py"],
+    "any-imu.md": ["bmi160.py", "lsm6dso.py", "bmi270.py"],
 }
 BIAS_DPS = [0.31, -0.19, 0.08]
 LINE = r"before (\S+) (\S+) (\S+)  after (\S+) (\S+) (\S+) dps"
@@ -197,6 +197,14 @@ def test_beside_another_driver_the_bias_goes(example, unit, repository, monkeypa
     for part, left, within in ((rates[:7], BIAS_DPS, 0.06), (rates[-500:], [0, 0, 0], 0.02)):
         means = [sum(row[axis] for row in part) / len(part) / unit for axis in range(3)]
         assert means == pytest.approx(left, abs=within)
+
+
+def test_a_chip_of_ones_own_is_a_table_and_its_bias_is_found(repository):
+    program = str(repository / "examples" / "bmi270.py")
+    done = subprocess.run([sys.executable, program], capture_output=True, text=True, check=True)
+    assert done.stdout in snippets(repository, "any-imu.md", "text")
+    found = ast.literal_eval(done.stdout.partition(": ")[2])
+    assert found == pytest.approx([0.5, -0.3, 0.1], abs=0.005)
 
 
 @pytest.fixture

@@ -6,7 +6,6 @@ import shlex
 import pytest
 from zerorate_tools.cli import parser
 
-from host_tests.docs.api_page import api_page
 from host_tests.docs.outputs import DEMO, commands, refreshed, same_but_for_rounding
 from host_tests.docs.pages import blocks, pages
 from host_tests.docs.tables import commands_under, with_tables
@@ -16,6 +15,7 @@ ELSEWHERE = {
     *("any-imu.md", "linux-service.md", "pico.md", "raspberry-pi.md", "unit-tests.md"),
     "notebook.md",
 }
+COMMANDS = ("zerorate ", "mpremote ", "python -m ", "cc ", "make wheel", "pipx ", "uv tool ")
 _LINK = re.compile(r"\]\(([^)\s]+)\)")
 
 
@@ -43,10 +43,7 @@ def test_shell_blocks_hold_nothing_but_commands_of_this_project(repository):
     for page in pages(repository):
         for block in blocks(page, "sh"):
             for line in block.text.splitlines():
-                assert line.startswith(("zerorate ", "mpremote ", "python -m ", "cc ")), (
-                    page.name,
-                    line,
-                )
+                assert line.startswith(COMMANDS), (page.name, line)
 
 
 def test_programs_run_and_console_blocks_show_what_their_commands_print(
@@ -64,10 +61,6 @@ def test_programs_run_and_console_blocks_show_what_their_commands_print(
         )
 
 
-def test_the_api_is_what_the_docstrings_say(repository):
-    assert read(repository / "docs" / "api.md") == api_page(repository), "`make docs` writes it"
-
-
 def test_tables_are_what_they_are_made_from(repository):
     for page in pages(repository):
         assert with_tables(read(page), repository / "docs") == read(page), "`make docs` writes them"
@@ -78,8 +71,8 @@ def test_every_command_has_its_section(repository):
     assert set(commands_under()) <= set(sections)
 
 
-def test_every_relative_link_leads_to_a_file_and_a_heading(repository):
-    for page in pages(repository):
+def test_every_link_of_a_page_beside_the_site_leads_to_a_file_and_a_heading(repository):
+    for page in (repository / name for name in ("README.md", "CONTRIBUTING.md")):
         for link in _LINK.findall(read(page)):
             path, _, heading = link.partition("#")
             target = (page.parent / path).resolve() if path else page
@@ -92,10 +85,11 @@ def test_every_relative_link_leads_to_a_file_and_a_heading(repository):
                 assert heading in anchors, f"{page.name}: {link}"
 
 
-def test_every_page_is_in_the_index(repository):
-    index = read(repository / "docs" / "README.md")
-    names = {page.name for page in (repository / "docs").glob("*.md")} - {"README.md"}
-    assert [name for name in sorted(names) if f"({name})" not in index] == []
+def test_a_page_that_installs_zerorate_says_what_holds_until_it_is_published(repository):
+    told = "(README.md#install)"
+    for page in (repository / "docs").glob("*.md"):
+        asked = re.search(r"pip install '?zerorate", read(page)) and page.name != "README.md"
+        assert not asked or told in read(page), page.name
 
 
 def test_no_page_is_without_a_title(repository):

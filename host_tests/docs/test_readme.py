@@ -22,11 +22,6 @@ def programs(repository):
     return {"board": board, "linux": linux, "suite": suite}
 
 
-def test_each_is_about_ten_lines(programs):
-    for text in programs.values():
-        assert len([line for line in text.splitlines() if line.strip()]) <= 12
-
-
 def test_the_program_for_a_board_reads_and_corrects(programs, repository, find_runtime):
     folders = ("firmware", "drivers", "host_tests/fakes")
     done = find_runtime("x86").run(
@@ -90,5 +85,5 @@ def test_every_make_target_that_is_named_is_one(repository):
 def test_every_file_and_folder_that_is_named_is_there(repository):
     text = (repository / "docs" / "design.md").read_text(encoding="utf-8")
     rooms = re.findall(r"^\| `([\w/]+)` \|", text, re.MULTILINE)
-    assert len(rooms) == 6
+    assert len(rooms) == 13
     assert [room for room in rooms if not (repository / room).is_dir()] == []

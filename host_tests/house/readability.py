@@ -7,7 +7,10 @@ from pathlib import Path
 import textstat
 from markdown_it import MarkdownIt
 
-PAGES = ("README.md", "docs/learning.md")
+PAGES = (
+    *("README.md", "docs/README.md", "docs/learning.md", "docs/closing.md", "docs/motion.md"),
+    *("docs/design.md", "docs/fleet.md", "docs/extending.md"),
+)
 MOST_WORDS_A_SENTENCE = 16
 LEAST_READING_EASE = 55  # Flesch: 50 to 60 is "fairly difficult", 60 to 70 "plain English"
 

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter1d
+from zerorate_tools import LoopReport
 from zerorate_tools.closing import close
 from zerorate_tools.loop.motion.by_gravity import by_gravity
 from zerorate_tools.loop.motion.device import Shown, device_of
@@ -14,6 +15,8 @@ from zerorate_tools.loop.read.gate import CannotClose
 from zerorate_tools.recordings import Recording, Scales
 from zerorate_tools.recordings.writing import write_recording
 from zerorate_tools.simulate.attitude import IDENTITY, integrate, into_body
+
+from .test_report_form import breaches
 
 _HZ, _MINUTES = 50.0, 5.0
 _SCALES = Scales("MPU-6050", _HZ, 32.8, 8192.0, None, None)
@@ -52,6 +55,7 @@ def recorded(tmp_path):
 
 def test_the_matrix_of_a_device_that_never_rests_is_found_and_deployed(recorded, tmp_path):
     result = close([recorded(1, _MATRIX), recorded(2, _MATRIX)], tmp_path / "closed")
+    assert breaches(result, LoopReport) == []
     motion = result["in_motion"]
     off = np.array(motion["matrix_percent"]) / 100 - _MATRIX
     assert np.abs(off).max() < 0.001  # a third of the smallest entry

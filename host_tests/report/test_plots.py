@@ -12,7 +12,6 @@ from zerorate_tools.numbers import chance, figure
 from zerorate_tools.report import kinds
 from zerorate_tools.report.held_out import held_out, trend
 from zerorate_tools.report.plot import thinned
-from zerorate_tools.report.png import picture, write_pngs
 from zerorate_tools.report.report_folder import plots_of
 from zerorate_tools.report.residual_plots import against_time, longest
 
@@ -148,20 +147,3 @@ def test_figures_have_three_digits(value, said):
 
 def test_a_chance_below_a_millionth_is_not_told_apart():
     assert (chance(3e-51), chance(0.0011)) == ("below 10⁻⁶", "0.00110")
-
-
-def test_pictures_are_written_of_every_plot_whatever_the_names(outcome, tmp_path):
-    closed = outcome("hostile names")
-    made, _ = plots_of(closed.analysis, closed.result, closed.logs, closed.folder)
-    paths = write_pngs(made, tmp_path)
-    assert [p.name for p in paths] == [f"{plot.key}.png" for plot in made]
-    for path in paths:
-        assert path.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
-
-
-def test_a_picture_shows_every_view(plots):
-    axes = picture(plots["residual-temperature"]).axes
-    assert [a.get_title(loc="left") for a in axes][::3] == [
-        "x axis, mdps, after",
-        "x axis, mdps, before",
-    ]

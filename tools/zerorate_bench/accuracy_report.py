@@ -12,31 +12,33 @@ from .real_recordings import COLUMNS, real
 from .tables import machine, machine_line, number, table
 
 _MADE = """\
-Made by `zerorate bench accuracy`, everyone on the same samples in one run. Real recordings are read
-from `ZERORATE_DATA`, or from `shared/data` beside the checkout. Where others report another figure
-of a filter for a scenario of the same words, `zerorate bench peers` shows what it hangs on.
+Made by `zerorate bench accuracy` in one run, with the same samples for everyone. Real recordings
+are read from `ZERORATE_DATA`, or from `shared/data` beside the checkout. Others may report
+another figure for the same filter and scenario; `zerorate bench peers` shows what it depends on.
 """
 _SESSION_2 = """\
-Session 1 warms from 20 to 45 degC in 40 minutes; then the power is cut; session 2 warms from 17 to
-44 degC in 20. Everyone is given the same samples. `zerorate` has default settings and no effect
-model, for A, B and C alike. What it learned in session 1 comes back from the store, so its first
-{first:.0f} s are from the store.
+Session 1 warms from 20 to 45 degC in 40 minutes. Then the power is cut. Session 2 warms from 17
+to 44 degC in 20 minutes. `zerorate` has default settings and no effect model, for A, B and C
+alike. It loads what it learned in session 1 from the store, so its first {first:.0f} s are from
+the store.
 """
 _DAY = """\
-All begin from nothing: who waits for a first rest to be one pays for that second all day. The last
-two rows are no estimators but floors: a Kalman filter that is told the true rests, the true curve
-over temperature and the walk that suits this day best; and a Wiener smoother that is told the curve
-and the spectra of bias and noise, sees the device rest all day, and looks ahead. What it leaves is
-flicker noise too fast to be seen through the white noise: nothing comes below it on this part.
+All begin with nothing learned. Waiting a second for the first rest raises the daily RMS. The last
+two rows are floors, not estimators. The first is a Kalman filter that knows the true rests, the
+true curve over temperature and the best walk for this day. The second is a Wiener smoother that
+knows the curve and the spectra of bias and noise, sees a device that rests all day, and looks
+ahead. It leaves flicker noise that the white noise hides. Nothing gets below it on this part.
 """
 _HONESTY = """\
-In how much of the last power-on the truth lies within two of `quality_lsb`, all sources on; 95 %
-would be exact. One sigma is learned from the part itself, its flicker noise, its walk and how well
-its power-ons repeat ([learning.md](learning.md#what-it-says-of-itself)).
+The share of the last power-on in which the truth lies within two `quality_lsb`, with all sources
+on. 95 % would be exact. The firmware learns one sigma from the part itself: from its flicker
+noise, its walk, and how well its power-ons repeat
+([learning.md](learning.md#what-it-says-of-itself)).
 """
 _REAL = """\
-RMS over axes and over means of 20 s, true rate zero (Earth's 4 mdps is in it); blocks in which the
-sensor was handled are left out. First all of it, then without the first 20 s (8 readings).
+RMS over axes and over means of 20 s. The true rate is zero, but for Earth's 4 mdps. Blocks in
+which the sensor was handled are left out. The first figure is of the whole recording, the second
+without its first 20 s (8 readings).
 """
 
 

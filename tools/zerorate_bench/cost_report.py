@@ -16,28 +16,29 @@ STEPS = 6
 __all__ = ["STEPS", "cost", "in_markdown", "sections"]
 
 _MADE = """\
-Made by `zerorate bench cost`, which also writes `--json FILE`. Counts of instructions and bytes are
-the same on every machine; times and what follows from them are this machine's, in time of the
-processor, so that they may be measured while others use it.
+Made by `zerorate bench cost`, which also writes `--json FILE`. Counts of instructions and bytes
+are the same on every machine. Times are this machine's, in processor time, so other work hardly
+changes them.
 """
 _HOW = """\
-One minute of a simulated warm-up with rests and motion, effects off, as after `Corrector()`: guard,
-stillness, histograms, estimators and correction of three axes. Both columns are machine code of the
-same kernels, executed by an emulated Cortex-M0 and RV32 (Unicorn): what the firmware carries, and
-all of it compiled for speed (C -O2). Both must end in the same state to the last bit. Cycles are
-those of a Cortex-M0+ without wait states. Alone is a call a sample, in bursts is 64 samples a call.
-Calling it from MicroPython comes on top: see [boards.md](boards.md).
+The input is one minute of a simulated warm-up with rests and motion, without effects, as after
+`Corrector()`. It covers guard, stillness, histograms, estimators and the correction of three
+axes. Both columns are machine code of the same kernels on an emulated Cortex-M0 and RV32
+(Unicorn). One is what the firmware has; the other is compiled for speed (C -O2). Both end in the
+same state to the last bit. Cycles are those of a Cortex-M0+ without wait states. "Alone" is one
+call for each sample; "bursts" is one call for 64. The call from MicroPython comes on top: see
+[boards.md](boards.md).
 """
 _EFFECTS = """\
-What the slots of a model add to a sample on the Cortex-M0+, at 100 Hz. What follows temperature or
-time, or remembers, is computed once a second, a slot a sample; what follows a rate, an acceleration
-or a channel of the application, which may move faster, at every sample.
+What the slots of a model add to a sample on the Cortex-M0+, at 100 Hz. A slot of temperature, of
+time or with a memory is computed once a second, one slot a sample. A slot of a rate, an
+acceleration or a channel is computed at every sample.
 """
 _EFFECTS_HEAD = ["slots", "instructions, mean", "cycles, mean", "worst"]
 _REPLAY = """\
-Seconds are the processor's, all threads together, the fewest of three runs; memory is the most that
-the process ever held. Parquet in and Parquet out, each sample's bias, source and quality written.
-Learning at rest alone (`--no-motion --no-gravity`); the other sources take about as long again.
+Seconds are processor time of all threads together, the least of three runs. Memory is the peak of
+the process. It reads Parquet and writes Parquet with the bias, source and quality of each sample.
+It learns at rest alone (`--no-motion --no-gravity`); the other sources take about as long again.
 """
 _NAMES = {"thumb": "Cortex-M0+", "rv32": "RV32"}
 _CYCLES = ("cycles", "cycles_worst")

@@ -17,13 +17,13 @@ from .accuracy import SEEDS
 from .tables import machine_line, number, table
 
 _HOW = """\
-Made by `zerorate bench peers`. The scenarios of the accuracy table are words, and whoever simulates
-them must choose what the words leave open. Each row changes one thing and runs the same peer.
+Made by `zerorate bench peers`. The accuracy table describes its scenarios in words, and a
+simulation must choose what the words leave open. Each row changes one such choice and runs the
+same peer.
 
-imufusion learns at rest only and begins at zero, so its figure is mostly the first minute: whether
-the part rests or moves when power comes on. A cubic fitted on session 1 knows nothing of a walk; on
-C its figure is mostly the walk, that of the fitted session as well as that of the next, and differs
-much from seed to seed.
+imufusion learns at rest only and starts at zero. Its figure is mostly the first minute: it
+depends on whether the part rests or moves at power-on. A cubic fitted on session 1 does not know
+a walk. On C its figure is mostly the walk of both sessions, and differs much from seed to seed.
 """
 Table = dict[str, Any]
 Change = Callable[[Table], None]

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from .errors import ZerorateError
     from .importers import import_recording, read_foreign
     from .loop.read.stretch import deviation_of as allan_deviation
+    from .loop.report.result import LoopReport
     from .model import Model, read_model, write_model
     from .recordings import Recording, Scales, open_recording, read_recording, write_recording
     from .replay import Replay
@@ -36,6 +37,7 @@ _HOME = {
     "replay": "replay_recording=replay Replay",
     "replay.plot": "plot_replay=plot",
     "closing": "close_loop=close",
+    "loop.report.result": "LoopReport",
     "loop.read.stretch": "allan_deviation=deviation_of",
     "model": "read_model write_model Model",
     "errors": "ZerorateError",
@@ -43,8 +45,8 @@ _HOME = {
 __all__ = [
     "Recording", "Scales", "read_recording", "open_recording", "write_recording",
     "import_recording", "read_foreign", "simulate_sessions", "replay_recording", "Replay",
-    "plot_replay", "close_loop", "allan_deviation", "read_model", "write_model", "Model",
-    "ZerorateError",
+    "plot_replay", "close_loop", "LoopReport", "allan_deviation", "read_model", "write_model",
+    "Model", "ZerorateError",
 ]  # fmt: skip
 
 

@@ -1,9 +1,10 @@
 """`zerorate close`: recordings in, what was found out."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from os import PathLike
 from pathlib import Path
+from typing import Any
 
 from .closing_in_motion import shown_in_motion, write_in_motion
 from .errors import ZerorateError
@@ -11,6 +12,7 @@ from .loop.analyse import analyse, sessions_of
 from .loop.read.gate import CannotClose, TooLittleRest
 from .loop.read.ticks import read_ticks, tick_seconds
 from .loop.report.report import as_json, report
+from .loop.report.result import LoopReport
 from .loop.verify.analysis import Analysis
 from .loop.verify.measure import measure_and_prune
 from .model import write_model
@@ -57,14 +59,13 @@ def close(
     holdout: str | PathLike[str] | None = None,
     advance: Callable[[float], None] = lambda n: None,
     online: bool = False,
-    png: bool = False,
-) -> dict:
+) -> LoopReport:
     """Run the loop; write report.html, report.json, model.json, model.bin and corrected.parquet.
 
     out: the folder, made where it is not there; online: what the learning firmware subtracts goes
-    into corrected.parquet, too; png: the report's plots as pictures, too; advance: called twice for
-    each recording. The files are all replaced, or none is. Returns what report.json holds. Raises
-    ZerorateError (BadRecording, CannotClose, CannotDeploy, Refused).
+    into corrected.parquet, too; advance: called twice for each recording. The files are all
+    replaced, or none is. Returns what report.json holds. Raises ZerorateError (BadRecording,
+    CannotClose, CannotDeploy, Refused).
     """
     from .report import write_report  # its libraries are large
 
@@ -78,11 +79,11 @@ def close(
         write_model(model, folder)
         result = json.loads(json.dumps(report(analysis), default=as_json))
         _write_json(folder, result)
-        write_report(analysis, result, logs, folder, png)
+        write_report(analysis, result, logs, folder)
     return result
 
 
-def _close_in_motion(logs, out, holdout, advance, problem: TooLittleRest) -> dict:
+def _close_in_motion(logs, out, holdout, advance, problem: TooLittleRest) -> LoopReport:
     """Close the loop on what motion shows; the problem is raised where it shows nothing."""
     ticks = [read_ticks(log) for log in logs]
     names = [t.name for t in ticks]
@@ -91,12 +92,12 @@ def _close_in_motion(logs, out, holdout, advance, problem: TooLittleRest) -> dic
     if shown is None:
         raise problem
     with written_together(out) as folder:
-        result = write_in_motion(shown, logs, at, folder, advance)
-        result = json.loads(json.dumps(result, default=as_json))
+        found = write_in_motion(shown, logs, at, folder, advance)
+        result = json.loads(json.dumps(found, default=as_json))
         _write_json(folder, result)
     return result
 
 
-def _write_json(folder: Path, result: dict) -> None:
+def _write_json(folder: Path, result: Mapping[str, Any]) -> None:
     with written_beside(folder / "report.json") as temporary:
         temporary.write_text(json.dumps(result, indent=1, allow_nan=False), encoding="utf-8")

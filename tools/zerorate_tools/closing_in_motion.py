@@ -1,8 +1,9 @@
 """`zerorate close` on recordings that hardly rest: what gravity shows of scale factor and axes."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -119,7 +120,7 @@ def advice(shown: RateScale) -> list[str]:
     return [*turns, "leave the device untouched for two minutes to show what only rest shows"]
 
 
-def motion_in_words(result: dict) -> str:
+def motion_in_words(result: Mapping[str, Any]) -> str:
     """The result in a few lines for a terminal."""
     m = result["in_motion"]
     effect = result["effects"][0] if result["effects"] else None

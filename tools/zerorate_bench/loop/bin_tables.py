@@ -41,29 +41,6 @@ def hipnuc(path: Path) -> dict:
     }
 
 
-def draw_chip(path: Path, to: Path) -> None:
-    """A chip's table: bins, and what line, cubic and the chosen order leave of those held out."""
-    import matplotlib.pyplot as plt
-
-    table = read(path)
-    even = np.arange(len(table.temp_degc)) % 2 == 0
-    train = table.of(even)
-    order = chosen(train)
-    figure, panels = plt.subplots(3, 1, figsize=(8, 8), sharex=True, layout="constrained")
-    figure.suptitle(path.name)
-    for axis, panel in enumerate(panels):
-        for k, name in ((1, "line"), (3, "cubic"), (order, f"order {order}")):
-            rows = table.rate_dps - fitted(train, table.temp_degc, k)
-            colour = {1: "tab:gray", 3: "tab:orange"}.get(k, "tab:blue")
-            panel.plot(table.temp_degc, 1e3 * rows[:, axis], color=colour, lw=0.8, label=name)
-            panel.plot(table.temp_degc[~even], 1e3 * rows[~even, axis], "o", ms=4, color=colour)
-        panel.set_ylabel(f"{'xyz'[axis]}, mdps left")
-    panels[0].legend(title="dots: bins held out", ncols=3, fontsize="small")
-    panels[-1].set_xlabel("degC")
-    figure.savefig(to, dpi=80)
-    plt.close(figure)
-
-
 def read(path: Path) -> Table:
     """A log of HiPNUC's device-side means. Unit A's lines have one column more than unit B's."""
     rows = []

@@ -8,35 +8,29 @@ import numpy as np
 
 from ..public_data import BIN_TABLES, CLOSED_ALONE, CLOSED_TOGETHER, told_of
 from ..tables import machine_line, table
-from .bin_tables import draw_chip, hipnuc, rms_mdps
+from .bin_tables import hipnuc, rms_mdps
 from .curves import best_curve_rms_dps, cubic_left
 
 
-def real_rows(data: Path, plots: Path | None = None) -> dict[str, dict]:
+def real_rows(data: Path) -> dict[str, dict]:
     """Name -> figures in mdps (RMS over the axes, held out) and what was found, of every recording
     alone, of those of one device together, and of tables of means.
 
     before, after: by the firmware's own kernels; cubic: by double precision, on the same pieces.
-
-    plots: a folder for pictures: of a recording those of its report, of a table what is left.
     """
     rows = {}
-    if plots:
-        plots.mkdir(parents=True, exist_ok=True)
     every = {Path(name).name: [data / name] for name in CLOSED_ALONE if (data / name).exists()}
     every |= {name: sorted(data.glob(pattern)) for name, pattern in CLOSED_TOGETHER.items()}
     with tempfile.TemporaryDirectory() as scratch:
         for name, paths in every.items():
             if paths:
-                rows[name] = _closed(paths, Path(scratch), plots)
+                rows[name] = _closed(paths, Path(scratch))
     for path in sorted((data / BIN_TABLES).glob("*.log")):
         rows[path.name] = hipnuc(path)
-        if plots:
-            draw_chip(path, plots / f"{path.stem}.png")
     return rows
 
 
-def _closed(paths: list[Path], scratch: Path, plots: Path | None) -> dict:
+def _closed(paths: list[Path], scratch: Path) -> dict:
     from zerorate_tools.closing import load
     from zerorate_tools.importers import import_recording
     from zerorate_tools.loop.report.report import report
@@ -50,14 +44,6 @@ def _closed(paths: list[Path], scratch: Path, plots: Path | None) -> dict:
     row = _row(analysis, told)
     if "vn200" in paths[0].parent.name:
         row["flip"] = _flip(analysis.sessions[0], float(analysis.floor_dps[2]))
-    if plots:
-        from zerorate_tools.report.held_out import held_out
-        from zerorate_tools.report.png import write_pngs
-        from zerorate_tools.report.residual_plots import against_temperature, against_time
-
-        parts = held_out(analysis)
-        drawn = against_time(parts, told["events"]), against_temperature(parts)
-        write_pngs([plot for plot in drawn if plot is not None], plots / logs[0].stem)
     return row
 
 

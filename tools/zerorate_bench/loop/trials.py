@@ -28,7 +28,6 @@ def run(
     processes: int = 2,
     data: str | PathLike[str] | None = None,
     resume: str | PathLike[str] | None = None,
-    plots: str | PathLike[str] | None = None,
     size: bool = True,
     rows: str | None = None,
     advance: Callable[[float], None] = lambda n: None,
@@ -37,7 +36,7 @@ def run(
 
     nulls: devices of each kind of nothing; seeds: devices an effect; data: folder of the real
     recordings, else ZERORATE_DATA, else none; resume: a file of outcomes, one a line, that a run
-    broken off goes on from; plots: a folder for PNGs of the real recordings; size: time and memory
+    broken off goes on from; size: time and memory
     of a device of 4 sessions of 8 hours at 100 Hz; rows: only devices whose key holds this text,
     and nothing else.
     """
@@ -56,7 +55,7 @@ def run(
     if folder and folder.is_dir() and not rows:
         from .real import real_rows
 
-        result["real_recordings"] = real_rows(folder, Path(plots) if plots else None)
+        result["real_recordings"] = real_rows(folder)
     result["figures"] = [f.to_dict() for f in found]
     result["false_alarms"] = _examples(outcomes)
     return result

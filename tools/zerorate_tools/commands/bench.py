@@ -116,7 +116,6 @@ _QUICK = {"--quick": {"action": "store_true", "help": "short recordings and one 
 _BROAD = {"--data": {"type": Path, "metavar": "DIR", "help": "folder of BROAD trials (.mat)"}}
 _RECORDINGS = {"--data": {"type": Path, "metavar": "DIR", "help": "folder of real recordings"}}
 _RESUME = {"--resume": {"type": Path, "metavar": "FILE", "help": "outcomes: go on from them"}}
-_PLOTS = {"--plots": {"type": Path, "metavar": "DIR", "help": "PNGs of the real recordings"}}
 
 
 def _number(default: float, what: str) -> dict[str, Any]:
@@ -209,7 +208,7 @@ BENCHES = {
         *("what closing the loop finds, and what it invents", "loop"),
         lambda bench, a, advance: bench.run(
             *(a.nulls, a.seeds, a.processes),
-            **{name: getattr(a, name) for name in ("data", "resume", "plots", "rows")},
+            **{name: getattr(a, name) for name in ("data", "resume", "rows")},
         ),
         text="markdown",
         options={
@@ -220,7 +219,6 @@ BENCHES = {
             "--page": {"type": Path, "metavar": "FILE", "help": "page to renew with the figures"},
             **_RECORDINGS,
             **_RESUME,
-            **_PLOTS,
         },
     ),
     "motion": Bench(
@@ -236,9 +234,9 @@ BENCHES = {
     ),
     "real": Bench(
         *("closing the loop on real recordings, each alone", "loop.real"),
-        lambda bench, a, advance: bench.real_rows(_recordings(a), a.plots),
+        lambda bench, a, advance: bench.real_rows(_recordings(a)),
         text="in_words",
-        options={**_RECORDINGS, **_PLOTS},
+        options=_RECORDINGS,
     ),
     "refine": Bench(
         *("one unit's effect model on another unit, refined", "second_unit"),

@@ -21,7 +21,6 @@ def add_parser(subparsers) -> None:
         action="store_true",
         help="bias_online_g? in corrected.parquet: the firmware learning as it goes",
     )
-    parser.add_argument("--png", action="store_true", help="the report's plots as pictures, too")
     parser.set_defaults(run=run)
 
 
@@ -40,7 +39,6 @@ def run(arguments: argparse.Namespace) -> None:
             arguments.holdout,
             advance,
             online=arguments.online,
-            png=arguments.png,
         )
     if "in_motion" in result:
         print(motion_in_words(result))

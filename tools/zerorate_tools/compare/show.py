@@ -12,24 +12,34 @@ from .judge import FIRST_REST, NOTHING, Compared
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
+from matplotlib.axes import Axes  # noqa: E402
+from matplotlib.ticker import LogFormatter  # noqa: E402
 
 _COLOURS = ("#8d8d93", "#d55e00", "#cc79a7", "#d98200", "#56b4e9", "#0072b2")
 _MARKS = "xsv^oD"
-_HEAD = (
-    "way",
-    "would have been wrong by, deg/s",
-    "heading lost, deg/min",
-    "against the first rest",
-)
+_HEAD = ("way", "error, deg/s", "heading lost, deg/min", "against the first rest")
+#: A drawing in inches, at 10 points, for a desk and for a phone of 390 CSS pixels.
+_WIDE, _NARROW = (9.0, 4.5), (3.7, 4.4)
 _NOTE = (
     "A rest shows the bias: the mean rate. Each way is asked 3 s before a rest begins what it "
     "takes the bias for; the rest says how wrong that was (root mean square over later rests). "
     "Rests of over a minute count as several. The Earth's rate, 0.25 deg/min at most, is in every "
     "rest: what differs by less is no difference."
 )
-_STYLE = "body{font:16px/1.5 sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem}"
-_STYLE += "td,th{padding:.2rem 1rem .2rem 0;text-align:right}td:first-child,th:first-child"
-_STYLE += "{text-align:left}svg{width:100%;height:auto}.ours{font-weight:bold}"
+_STYLE = """
+body { font: 16px/1.5 sans-serif; max-width: 60rem; margin: 1rem auto; padding: 0 1rem }
+h1 { font-size: 1.4rem; line-height: 1.25 }
+td, th { padding: .2rem .6rem .2rem 0; text-align: right }
+td:first-child, th:first-child { text-align: left }
+svg { max-width: 100%; height: auto }
+.ours { font-weight: bold }
+.narrow { display: none }
+@media (max-width: 56rem) {
+  table { font-size: .85rem }
+  .wide { display: none }
+  .narrow { display: block }
+}
+"""
 
 
 def rows(compared: Compared) -> list[tuple[str, str, str, str]]:
@@ -67,16 +77,28 @@ def write_page(compared: Compared, path: Path) -> None:
     page = (
         f"<!doctype html><html lang=en><meta charset=utf-8><title>zerorate compare</title>"
         f"<meta name=viewport content='width=device-width'><style>{_STYLE}</style>"
-        f"<h1>{html.escape(compared.headline())}</h1><p>{names}</p>{_plot(compared)}"
+        f"<h1>{html.escape(compared.headline())}</h1><p>{names}</p>"
+        f"<div class=wide>{_plot(compared, _WIDE)}</div>"
+        f"<div class=narrow>{_plot(compared, _NARROW)}</div>"
         f"<table><tr>{head}</tr>{body}</table><p>{_NOTE}</p></html>\n"
     )
     with written_beside(path) as temporary:
         temporary.write_text(page, encoding="utf-8")
 
 
-def _plot(compared: Compared) -> str:
+def _plot(compared: Compared, inches: tuple[float, float]) -> str:
     """SVG: the heading that each way would have lost a minute, at each later rest."""
-    figure, axes = plt.subplots(figsize=(9, 4.5))
+    with plt.rc_context({"svg.fonttype": "none", "font.size": 10, "legend.fontsize": 10}):
+        figure, axes = plt.subplots(figsize=inches, layout="constrained")
+        _draw(compared, axes)
+        figure.legend(loc="outside lower left", ncols=3 if inches == _WIDE else 1, frameon=False)
+        text = io.StringIO()
+        figure.savefig(text, format="svg")
+        plt.close(figure)
+    return text.getvalue().partition("<svg")[2].join(["<svg", ""])
+
+
+def _draw(compared: Compared, axes: Axes) -> None:
     logs = np.array([number for number, _ in compared.rests])
     minutes = np.array([rest.start_s for _, rest in compared.rests]) / 60
     gap = 0.05 * minutes.max() + 0.1
@@ -88,15 +110,10 @@ def _plot(compared: Compared) -> str:
     at = minutes + np.array(begins)[logs]
     for way, colour, mark in zip(compared.error_dps, _COLOURS, _MARKS):
         lost = 60 * np.abs(compared.about_vertical_dps(way))
-        axes.plot(at, np.maximum(lost, 1e-3), mark, color=colour, markersize=4, label=way)
+        axes.plot(at, np.maximum(lost, 1e-3), mark, color=colour, markersize=5, label=way)
     axes.set_yscale("log")
     axes.yaxis.set_major_formatter("{x:g}")
-    axes.set_xlabel("minutes since power-on" + (", one log after the other" if logs.any() else ""))
+    axes.yaxis.set_minor_formatter(LogFormatter(minor_thresholds=(1.5, 0.5)))
+    axes.set_xlabel("minutes since power-on" + (", log after log" if logs.any() else ""))
     axes.set_ylabel("heading lost, deg/min")
     axes.grid(True, which="major", alpha=0.3)
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.15), ncols=3, frameon=False)
-    figure.tight_layout()
-    text = io.StringIO()
-    figure.savefig(text, format="svg")
-    plt.close(figure)
-    return text.getvalue().partition("<svg")[2].join(["<svg", ""])

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..closing import close
+from ..loop.report.result import LoopReport
 from ..recordings import write_recording
 from ..replay import AT_REST_ALONE, replay
 from ..simulate import load_description, simulate_sessions
@@ -54,7 +55,7 @@ def first_power_on(device: Device, runtime: str = "wasm") -> Demo:
     return demo(device.logs[0], runtime, truth_dps=device.truth_dps[0])
 
 
-def closed(device: Device, folder: Path) -> dict:
+def closed(device: Device, folder: Path) -> LoopReport:
     """Close the loop over all power-ons, the last held out; what report.json holds."""
     return close(list(device.logs), folder)
 

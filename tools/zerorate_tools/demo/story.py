@@ -4,7 +4,9 @@ import os
 import shutil
 import sys
 import textwrap
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -70,7 +72,7 @@ def scored(shown: Demo) -> list[str]:
     ]
 
 
-def chapter_two(device: Device, result: dict) -> str:
+def chapter_two(device: Device, result: Mapping[str, Any]) -> str:
     """What closing the loop found, and how much better that makes the held-out power-on."""
     first, last, holdout = (
         device.logs[0].stem,

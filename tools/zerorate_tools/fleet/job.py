@@ -15,6 +15,7 @@ from urllib.parse import quote
 from ..loop.read.blocks import session_of
 from ..loop.read.sessions import Session
 from ..loop.read.ticks import read_ticks
+from ..loop.report.result import Effect
 from ..recordings import open_recording
 from .curve import curve_of
 from .devices import Device
@@ -120,7 +121,7 @@ def one_line(error: BaseException) -> str:
     return text if isinstance(error, ZerorateError) else f"{type(error).__name__}: {text}"
 
 
-def _steps(job, device, good, failures) -> list[dict[str, Any]]:
+def _steps(job, device, good, failures) -> list[Effect]:
     from ..closing import close
 
     with tempfile.TemporaryDirectory(prefix="zerorate-fleet-") as scratch:

@@ -1,6 +1,8 @@
 """report.html of recordings in motion: before, after, and the matrix with its intervals."""
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from .board import deployment
 from .page import rendered
@@ -9,7 +11,7 @@ from .page import rendered
 _HALF_PX = 60
 
 
-def motion_page(result: dict, folder: Path) -> str:
+def motion_page(result: Mapping[str, Any], folder: Path) -> str:
     """The page's text. result: what report.json holds; folder: where the model is."""
     from ..recordings.atomic import final
 

@@ -1,7 +1,9 @@
 "use strict";
 (() => {
   const root = document.documentElement;
-  const wide = matchMedia("(min-width: 760px)");
+  const screenIsWide = matchMedia("(min-width: 760px)");
+  const onPaper = () => root.dataset.paper !== undefined;
+  const wide = () => onPaper() || screenIsWide.matches;
   const dark = matchMedia("(prefers-color-scheme: dark)");
   const touch = matchMedia("(pointer: coarse)").matches;
   const plots = JSON.parse(document.getElementById("plots").textContent);
@@ -40,7 +42,7 @@
 
   // Where each panel stands, in shares of the drawing: rows, or columns where there is room.
   function places(plot, width, height) {
-    const rows = plot.stacked || !wide.matches;
+    const rows = plot.stacked || !wide();
     const gap = rows ? (plot.stacked ? 26 : 62) : 58;
     const room = (rows ? height : width) - gap * (plot.panels.length - 1);
     const whole = plot.panels.reduce((sum, panel) => sum + (plot.stacked ? panel.share : 1), 0);
@@ -80,7 +82,7 @@
     layout["xaxis" + suffix(number)] = {
       ...common, ...(panel.log ? marks(plot, number, "x") : {}), domain: place.x, anchor: "y" + suffix(number), range: panel.x_range || undefined,
       matches: plot.stacked && number ? "x" : undefined, showticklabels: !plot.stacked || last,
-      title: (plot.stacked || !wide.matches) && !last ? undefined : { text: wide.matches ? panel.x_label : panel.x_narrow, font: { size: 12, color: css("--muted") }, standoff: 6 },
+      title: (plot.stacked || !wide()) && !last ? undefined : { text: wide() ? panel.x_label : panel.x_narrow, font: { size: 12, color: css("--muted") }, standoff: 6 },
     };
     layout["yaxis" + suffix(number)] = {
       ...common, ...(panel.log ? marks(plot, number, "y") : {}), domain: place.y, anchor: "x" + suffix(number), range: panel.y_range || undefined, nticks: panel.log ? undefined : 5,
@@ -105,7 +107,7 @@
     layout.annotations.push({
       text: line.text, showarrow: false, font: { size: 11, color: own.color },
       // upright where there is little room, for the lines are closer than their names are long
-      textangle: flat || wide.matches ? 0 : -90,
+      textangle: flat || wide() ? 0 : -90,
       xref: flat ? x + " domain" : x, yref: flat ? y : y + " domain", xanchor: flat ? "right" : "left", yanchor: flat ? "bottom" : "top",
       x: flat ? 1 : line.value, y: flat ? (panel.log ? Math.log10(line.value) : line.value) : 1,
     });
@@ -187,6 +189,26 @@
     all();
   });
   dark.addEventListener("change", () => { say(); all(); });
+
+  // A page that is printed has the paper's width and is light; afterwards it is what it was.
+  let theme;
+  const toPaper = () => {
+    if (onPaper()) return;
+    theme = root.dataset.theme;
+    root.dataset.theme = "light";
+    root.dataset.paper = "";
+    all();
+  };
+  const toScreen = () => {
+    if (!onPaper()) return;
+    delete root.dataset.paper;
+    delete root.dataset.theme;
+    if (theme) root.dataset.theme = theme;
+    all();
+  };
+  addEventListener("beforeprint", toPaper);
+  addEventListener("afterprint", toScreen);
+  matchMedia("print").addEventListener("change", (print) => (print.matches ? toPaper() : toScreen()));
 
   let waiting = 0;
   let width = innerWidth;

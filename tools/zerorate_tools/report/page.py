@@ -1,7 +1,7 @@
 """report.html: one file that needs nothing else."""
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from functools import lru_cache
 from html import escape
@@ -24,7 +24,7 @@ _UNSAFE = {ord(c): f"\\u{ord(c):04x}" for c in "<>&\u2028\u2029'"}
 
 
 def page(
-    result: dict[str, Any], plots: Sequence[Plot], board: Deployment, notes: Sequence[str]
+    result: Mapping[str, Any], plots: Sequence[Plot], board: Deployment, notes: Sequence[str]
 ) -> str:
     """The page's text. result: what report.json holds; notes: why a plot is missing."""
     return rendered(
@@ -111,13 +111,13 @@ def legend(plot: Plot) -> list[dict[str, str]]:
     return list(seen.values())
 
 
-def smallest(result: dict[str, Any]) -> list[tuple[str, float]]:
+def smallest(result: Mapping[str, Any]) -> list[tuple[str, float]]:
     """(effect in words, mdps), the best shown first."""
     sizes = result["smallest_detectable_mdps"].items()
     return [(kinds.title(kind), value) for kind, value in sorted(sizes, key=lambda item: item[1])]
 
 
-def faults(result: dict[str, Any]) -> list[tuple[str, str]]:
+def faults(result: Mapping[str, Any]) -> list[tuple[str, str]]:
     """(recording, its bad samples in words), of recordings that have any."""
     rows = []
     for name, counts in result["gate"]["faults"].items():

@@ -1,4 +1,4 @@
-"""A plot before anything draws it: the page hands it to Plotly, `png.py` to Matplotlib."""
+"""A plot before anything draws it: the page hands it to Plotly."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field

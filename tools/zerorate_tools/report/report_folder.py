@@ -1,6 +1,6 @@
-"""The report of a closed loop, written into a folder: one page, and pictures where wanted."""
+"""The report of a closed loop, written into a folder: one page."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -25,12 +25,11 @@ _MOST_MOMENTS = 120
 
 def write_report(
     analysis: Analysis,
-    result: dict[str, Any],
+    result: Mapping[str, Any],
     logs: Sequence[str | PathLike[str]],
     folder: str | PathLike[str],
-    png: bool = False,
 ) -> Path:
-    """Write report.html, and with `png` plots/*.png, beside the model in `folder`; its path.
+    """Write report.html beside the model in `folder`; its path.
 
     analysis: of `closing.load`; result: what report.json holds, whose numbers are shown;
     logs: the recordings, replayed to show the estimators. Raises OSError.
@@ -41,16 +40,12 @@ def write_report(
     path = folder / "report.html"
     with written_beside(path) as temporary:
         temporary.write_text(page(result, plots, board, notes), encoding="utf-8")
-    if png:
-        from .png import write_pngs
-
-        write_pngs(plots, folder / "plots")
     return path
 
 
 def plots_of(
     analysis: Analysis,
-    result: dict[str, Any],
+    result: Mapping[str, Any],
     logs: Sequence[str | PathLike[str]],
     folder: str | PathLike[str],
 ) -> tuple[list[Plot], list[str]]:

@@ -1,5 +1,6 @@
 """The error of the held-out part: against time, and against temperature by heating and cooling."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -110,7 +111,7 @@ def _steps(parts, events):
     return lines
 
 
-def at_a_glance(result: dict[str, Any]) -> Plot:
+def at_a_glance(result: Mapping[str, Any]) -> Plot:
     """Every number in it is one of report.json."""
     series, rows = [], -np.arange(len(_ROWS), dtype=float)
     for name, shift in (("before", _APART), ("after", -_APART)):

@@ -1,28 +1,54 @@
 """What a report says in sentences; every number in them is one of report.json."""
 
+from collections.abc import Mapping
 from typing import Any
 
 from ..loop.read.turns import GIVEN
 from ..numbers import figure
 from .kinds import title
 
-Report = dict[str, Any]
+Report = Mapping[str, Any]
+
+
+#: Less than this share of the error before is left: most of it is explained, or a board gains.
+_MOST, _WORTH = 0.5, 0.8
 
 
 def headline(result: Report) -> str:
-    """The answer, plain text: what the learning firmware leaves, then the frozen comparison."""
-    return ". ".join(filter(None, (on_the_board(result), frozen(result))))
+    """The answer, plain text: effect, gain on held-out data, gain of a board that learns."""
+    return ". ".join(filter(None, (on_held_out(result), on_the_board(result))))
+
+
+def on_held_out(result: Report) -> str:
+    """What was found, and the error without and with it on data that it was not fitted to."""
+    whole = result["in_all"]
+    before, after, floor = (figure(whole[k]) for k in ("before_mdps", "after_mdps", "floor_mdps"))
+    unexplained = result["verdict"] == "unexplained-residual"
+    names = [title(e["effect"], e["sources"]) for e in result["effects"] if corrects_at_rest(e)]
+    left = f"{after} mdps on held-out data (noise floor {floor})"
+    if not names:
+        nothing = "that the firmware does not already correct"
+        why = "that explains the error" if unexplained else nothing
+        return f"Nothing was found {_what(result)} {why}: {left}"
+    named = capital(", ".join(names[:-1]) + " and " * (len(names) > 1) + names[-1])
+    if whole["after_mdps"] >= whole["before_mdps"]:
+        return f"{named}: no gain, {before} to {left}"
+    share = "most" if whole["after_mdps"] < _MOST * whole["before_mdps"] else "part"
+    verb = "explains" if len(names) == 1 else "explain"
+    rest = ". No recorded channel explains the rest" if unexplained else ""
+    return f"{named} {verb} {share} of the error: {before} to {left}{rest}"
 
 
 def on_the_board(result: Report) -> str:
     """What is left where the firmware goes on learning; nothing where it was not run."""
     if "online" not in result:
         return ""
-    whole = result["online"]["in_all"]
-    said = f"On the board, which goes on learning, {figure(whole['after_mdps'])} mdps are left"
-    if any(corrects_at_rest(effect) for effect in result["effects"]):
-        said += f", {figure(whole['before_mdps'])} without the effects"
-    return said
+    before, after = (result["online"]["in_all"][k] for k in ("before_mdps", "after_mdps"))
+    who = "A board that keeps learning at rest"
+    if not any(map(corrects_at_rest, result["effects"])):
+        return f"{who} leaves {figure(after)} mdps"
+    gain = "nothing" if after >= before else "little" if after > _WORTH * before else "too"
+    return f"{who} gains {gain}: {figure(before)} to {figure(after)} mdps"
 
 
 def why_both(result: Report) -> str:
@@ -31,36 +57,15 @@ def why_both(result: Report) -> str:
         return ""
     if "how_much_weaker" in result["split"]:
         return (
-            "The board begins the recording knowing nothing and learns as it goes, so its first "
-            "minutes are in its figure. Frozen knows what the pieces around each one taught: it is "
-            "what a board has that went through such a course before."
+            "The board starts the recording with nothing learned, so its figure includes its first "
+            "minutes. The model of the held-out figure was fitted to the other pieces."
         )
-    left, frozen_left = (r["in_all"]["after_mdps"] for r in (result["online"], result))
-    little = ", so little is left there with or without a model" if left < frozen_left else ""
+    left, held_out = (r["in_all"]["after_mdps"] for r in (result["online"], result))
+    little = ", so little is left with or without a model" if left < held_out else ""
     return (
-        f"The board learns the bias anew at every rest{little}. Frozen is as if the device never "
-        "rested again after its first minute: it shows what the model knows by itself, which "
-        "counts for as long as the device moves."
-    )
-
-
-def frozen(result: Report) -> str:
-    """What the comparison of frozen models says."""
-    whole = result["in_all"]
-    before, after, floor = (figure(whole[k]) for k in ("before_mdps", "after_mdps", "floor_mdps"))
-    where = _where(result)
-    if result["verdict"] == "unexplained-residual":
-        return f"{where}, {after} mdps are left that nothing recorded explains (floor {floor})"
-    if not any(corrects_at_rest(effect) for effect in result["effects"]):
-        return (
-            f"Nothing was found {_what(result)} that the firmware does not already correct: "
-            f"{where[0].lower()}{where[1:]}, the error is {before} mdps (floor {floor})"
-        )
-    if whole["after_mdps"] < whole["before_mdps"]:
-        return f"{where}, the error fell from {before} to {after} mdps (floor {floor})"
-    return (
-        f"{where}, what was found did not help: the error went from {before} to {after} mdps "
-        f"(floor {floor})"
+        f"The board measures the bias at every rest{little}. On held-out data the model works "
+        "alone: the device never rests after its first minute. This gain counts while the device "
+        "moves."
     )
 
 
@@ -75,24 +80,18 @@ def _what(result: Report) -> str:
     return "in the bias, beside the reference," if beside else "at rest"
 
 
-def _where(result: Report) -> str:
-    alone = "how_much_weaker" in result["split"]
-    where = "the stretches" if alone else "the session"
-    return f"Frozen, on {where} held out" if "online" in result else f"On {where} held out"
-
-
 def how_sure(effect: Report) -> str:
     """What confirmed or tentative means here."""
-    if effect["confidence"] == "confirmed" and not corrects_at_rest(effect):
-        return "Confirmed: what was held out and took no part in finding it shows it too."
-    if effect["confidence"] == "confirmed":
+    if effect["confidence"] != "confirmed":
         return (
-            "Confirmed: it also lowers the error on the recording that was held out and took no "
-            "part in finding it, and nothing beyond the part's own noise is left there."
+            "Tentative: the fitted recordings show it, but the held-out data do not settle it. "
+            "Record more before you rely on it."
         )
+    if not corrects_at_rest(effect):
+        return "Confirmed: the held-out data, which took no part in finding it, show it too."
     return (
-        "Tentative: it was found in the recordings that were fitted on, but what was held out "
-        "does not settle it. Record more before you rely on it."
+        "Confirmed: it also lowers the error of the held-out recording, which took no part in "
+        "finding it, and leaves nothing but the part's own noise there."
     )
 
 

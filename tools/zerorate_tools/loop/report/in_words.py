@@ -1,9 +1,12 @@
 """A report in a few lines for a terminal."""
 
+from collections.abc import Mapping
+from typing import Any
+
 from ...numbers import fixed
 
 
-def in_words(result: dict) -> str:
+def in_words(result: Mapping[str, Any]) -> str:
     """How good it is now, what was found and how sure, what is left, what to record next."""
     lines = [
         _judged_on(result["split"]),
