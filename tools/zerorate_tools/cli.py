@@ -27,7 +27,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     given = sys.argv[1:] if argv is None else argv
     if argv is None:  # a program of its own: a half-written file goes before it ends
-        signal.signal(signal.SIGTERM, _end)
+        for name in {"SIGTERM", "SIGHUP"} & set(dir(signal)):
+            number = getattr(signal, name)
+            if signal.getsignal(number) != signal.SIG_IGN:  # by nohup
+                signal.signal(number, _end)
     try:
         arguments = parser().parse_args(given or ["--help"])
         return arguments.run(arguments) or 0
@@ -46,7 +49,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _end(number: int, frame: FrameType | None) -> None:
     # no exception: one that is raised while a library's C calls back is lost in there
-    from .recordings.atomic import drop_all
+    from .recordings.drafts import drop_all
 
     drop_all()
     signal.signal(number, signal.SIG_DFL)

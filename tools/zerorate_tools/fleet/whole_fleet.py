@@ -16,7 +16,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from ..errors import ZerorateError
-from ..recordings.atomic import clear_left_over, written_beside, written_together
+from ..recordings.atomic import written_beside, written_together
+from ..recordings.drafts import clear_left_over
 from ..recordings.scales import scales_from_text
 from ..replay.engines import compiled
 from .cluster import cluster, in_batches, run_all, size_of

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from ..errors import BadModel
 from ..recordings.atomic import written_together
+from ..recordings.drafts import settle
 from .binary import decoded, encoded
 from .model import CannotDeploy, Model
 from .text import from_json, to_json
@@ -16,6 +17,7 @@ def read_model(path: str | PathLike[str]) -> Model:
     One from model.json is as its integers hold it, as if it had been read from its model.bin.
     """
     path = Path(path)
+    settle(path.parent)
     try:
         data = path.read_bytes()
     except OSError as error:

@@ -2,53 +2,48 @@
 
 import errno
 import os
-import platform
-import re
-import shutil
-import signal
-import zlib
 from collections.abc import Iterable, Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
+from ..ending import undisturbed
 from ..errors import InFile
+from .drafts import clear_left_over, drop, is_draft, make_draft, put_in_place
 
-_ENDING = 40
 _LONGEST_NAME = 255
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EROFS)
-_MINE = f"{zlib.crc32(platform.node().encode()):08x}"
-_MARK = re.compile(r"\.(?:([0-9a-f]{8})-)?([0-9]+)\.partial(\..*)?", re.DOTALL)
-_HELD = {getattr(signal, name) for name in ("SIGTERM", "SIGINT", "SIGHUP") if hasattr(signal, name)}
-_under_way: set[Path] = set()
 _Path = str | os.PathLike[str]
 
 
 @contextmanager
 def written_beside(path: str | os.PathLike[str]) -> Iterator[Path]:
-    """Yield a file name beside `path`, renamed onto it when the block ends well, else deleted.
+    """Yield a file of the same name in a draft, renamed onto `path` when the block ends well.
 
-    The name keeps the suffixes, as libraries choose a format by them. What a killed run left beside
-    it goes. Raises InFile if the folder does not exist or cannot be written, or has no room.
+    Else it is deleted. What killed runs left half-written in the folder goes. Raises InFile if the
+    folder does not exist or cannot be written, or has no room.
     """
-    path = Path(path)
-    clear_left_over(path.parent)
-    temporary = path.with_name(_beside(path.name))
-    _under_way.add(temporary)
-    try:
-        temporary.touch()
-    except OSError as error:
-        do = "name a folder that exists and is yours"
-        raise _cannot_be_written(path, error, do) from error
-    try:
-        check_name(path)
-        yield temporary
-        os.replace(temporary, path)
-    except OSError as error:
-        if error.errno not in _FULL:
-            raise
-        raise _cannot_be_written(path, error, "make room, or name another folder") from error
-    finally:
-        _drop(temporary)
+    with all_written_beside([path]) as temporaries:
+        yield temporaries[0]
+
+
+@contextmanager
+def all_written_beside(paths: Iterable[str | os.PathLike[str]]) -> Iterator[list[Path]]:
+    """As written_beside, of several files: all of them take their places, or none does."""
+    places = [Path(path) for path in paths]
+    first = next(iter(places), Path())
+    drafts: dict[Path, Path] = {}
+    with ExitStack() as stack:
+        for place in places:
+            check_name(place)
+            if place.parent not in drafts:
+                draft = _draft(place.parent, place, "name a folder that exists and is yours")
+                drafts[place.parent] = stack.enter_context(draft)
+        temporaries = [drafts[place.parent] / place.name for place in places]
+        with _no_room_said(first, "make room, or name another folder"):
+            for temporary in temporaries:
+                temporary.touch()
+            yield temporaries
+            _put_in_place(list(drafts.values()), first)
 
 
 def check_name(path: Path) -> None:
@@ -85,126 +80,73 @@ def written_together(folder: str | os.PathLike[str]) -> Iterator[Path]:
 
 @contextmanager
 def all_written_together(folders: Iterable[str | os.PathLike[str]]) -> Iterator[list[Path]]:
-    """Yield a draft of each folder; the files of all go to their places, or none does."""
+    """Yield a draft of each folder; the files of all go to their places, or none does.
+
+    One rename decides: a program killed before it has written nothing, one killed after it has
+    written all, which the next that reads or writes there finishes (`drafts.settle`).
+    """
+    wanted = [Path(folder) for folder in folders]
+    drafts: dict[Path, Path] = {}
+    within = []
     with ExitStack() as stack:
-        drafts = {stack.enter_context(_draft(Path(folder))): Path(folder) for folder in folders}
-        yield list(drafts)
-        with _undisturbed():
-            _take_places(drafts)
+        for folder in wanted:
+            there = _lowest_there(folder)
+            if there.resolve() not in drafts:
+                draft = _draft(there, folder, "name a folder that is yours")
+                drafts[there.resolve()] = stack.enter_context(draft)
+            within.append(drafts[there.resolve()] / folder.relative_to(there))
+        with _no_room_said(wanted[0], "all is as it was; make room"):
+            for inside in within:
+                inside.mkdir(parents=True, exist_ok=True)
+            yield within
+            _put_in_place(list(drafts.values()), wanted[0])
+
+
+def _lowest_there(folder: Path) -> Path:
+    """The folder itself, or the lowest above it that there is. Raises InFile for a file."""
+    there = next((f for f in (folder, *folder.parents) if os.path.lexists(f)), Path())
+    if not there.is_dir():
+        raise InFile(folder, f"cannot be written: {there} is no folder", do="name another folder")
+    return there
 
 
 @contextmanager
-def _draft(folder: Path) -> Iterator[Path]:
-    was_there = folder.is_dir()
-    draft = folder / _mark()
+def _draft(folder: Path, told: Path, do: str) -> Iterator[Path]:
     try:
-        folder.mkdir(parents=True, exist_ok=True)
         clear_left_over(folder)
-        shutil.rmtree(draft, ignore_errors=True)
-        _under_way.add(draft)
-        draft.mkdir()
+        draft = make_draft(folder)
     except OSError as error:
-        do = "name a folder that is yours"
-        raise _cannot_be_written(folder, error, do) from error
+        raise _cannot_be_written(told, error, do) from error
     try:
         yield draft
+    finally:
+        drop(draft)
+
+
+@contextmanager
+def _no_room_said(path: Path, do: str) -> Iterator[None]:
+    try:
+        yield
     except OSError as error:
         if error.errno not in _FULL:
             raise
-        raise _cannot_be_written(folder, error, "all is as it was; make room") from error
-    finally:
-        _drop(draft)
-        if not was_there:
-            with suppress(OSError):  # it stays where something is in it
-                folder.rmdir()
+        raise _cannot_be_written(path, error, do) from error
+
+
+def _put_in_place(drafts: list[Path], path: Path) -> None:
+    try:
+        with undisturbed():
+            put_in_place(drafts)
+    except OSError as error:
+        place = Path(error.filename2 or error.filename or path)
+        raise _cannot_be_written(place, error, "all is as it was") from error
 
 
 def final(path: Path) -> Path:
     """Where a file of a draft goes in the end; any other path as it is."""
-    return Path(*(part for part in path.parts if not _MARK.fullmatch(part) or "partial." in part))
-
-
-def clear_left_over(folder: Path) -> None:
-    """Remove from a folder what killed runs of this machine left half-written."""
-    for path in folder.glob(".*.partial*"):
-        mark = _MARK.fullmatch(path.name)
-        if mark and mark[1] in (None, _MINE) and not _lives(int(mark[2])):
-            _drop(path)
-
-
-def drop_all() -> None:
-    """Remove all that this process has half-written, as it ends now."""
-    for path in list(_under_way):
-        if path.name.startswith(_mark()):  # a fork has its parent's
-            _drop(path)
-
-
-def _drop(path: Path) -> None:
-    with suppress(OSError):
-        shutil.rmtree(path) if path.is_dir() else path.unlink(missing_ok=True)
-    _under_way.discard(path)
-
-
-def _take_places(drafts: dict[Path, Path]) -> None:
-    """Rename each file of each draft; where one cannot be, those before it come back."""
-    places = {  # by resolved names, as two folders may be one
-        path.resolve(): (folder / path.relative_to(draft), draft / f"old-{number}")
-        for draft, folder in drafts.items()
-        for number, path in enumerate(sorted(p for p in draft.rglob("*") if p.is_file()))
-    }
-    done: list[tuple[Path, Path]] = []
-    for path, (place, kept) in places.items():
-        try:
-            place.parent.mkdir(parents=True, exist_ok=True)
-            if place.is_dir():
-                raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(place))
-            if place.exists():
-                os.replace(place, kept)
-            done.append((place, kept))
-            os.replace(path, place)
-        except OSError as error:
-            for taken, before in reversed(done):
-                os.replace(before, taken) if before.exists() else taken.unlink(missing_ok=True)
-            raise _cannot_be_written(place, error, "all is as it was") from error
-
-
-@contextmanager
-def _undisturbed() -> Iterator[None]:
-    """Signals that end the program wait for the end of the block, where they can be held."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, _HELD)
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    return Path(*(part for part in path.parts if not is_draft(part)))
 
 
 def _cannot_be_written(path: Path, error: OSError, do: str) -> InFile:
     why = os.strerror(error.errno) if error.errno else str(error)
     return InFile(final(path), f"cannot be written: {why}", do=do)
-
-
-def _lives(pid: int) -> bool:
-    if os.name == "nt":
-        return True  # where a signal 0 would end it
-    try:
-        os.kill(pid, 0)
-    except (ProcessLookupError, OverflowError):
-        return False
-    except PermissionError:
-        return True
-    return True
-
-
-def _mark() -> str:
-    return f".{_MINE}-{os.getpid()}.partial"
-
-
-def _beside(name: str) -> str:
-    """The name with a mark before it; where that is too long, its checksum and its end."""
-    mark = f"{_mark()}."
-    if len(os.fsencode(mark + name)) > _LONGEST_NAME:
-        name = f"{zlib.crc32(os.fsencode(name)):08x}{name[-_ENDING:]}"
-    return mark + name

@@ -10,6 +10,7 @@ import numpy as np
 from ..errors import BadRecording
 from . import csv_format, parquet_format
 from .checks import BatchChecker, check_names
+from .drafts import settle
 from .recording import Columns, Recording, in_order
 from .scales import Scales
 
@@ -45,6 +46,7 @@ class OpenRecording:
         checker.finish()
 
     def _read_header(self) -> None:
+        settle(self.path.parent)
         if not self.path.is_file():
             what = "is a folder" if self.path.is_dir() else "no such file"
             raise BadRecording(self.path, what, do="name a recording (.csv, .csv.gz or .parquet)")

@@ -21,7 +21,7 @@ from zerorate_tools.layout import AXIS, GRAVITY, MOTION, SETTINGS, STATE, Array,
 
 from ..errors import BadModel, InFile, ZerorateError
 from ..recordings import Recording, open_recording
-from ..recordings.atomic import check_apart, written_beside
+from ..recordings.atomic import all_written_beside, check_apart
 from ..recordings.reading import OpenRecording
 from .bias_table import SOURCES, VERDICTS, ReplayWriter, table
 from .engines import Outcome, engine, others_of
@@ -103,15 +103,17 @@ def replay(
     runner = engine(runtime)
     outcomes = runner.run(corrector, batches)
     done = Replay()
+    wanted = [path for path in (out, state) if path is not None]
     with ExitStack() as files:
-        sink = _sink(done, out, files)
+        drafts = dict(zip(wanted, files.enter_context(all_written_beside(wanted))))
+        sink = _sink(done, None if out is None else drafts[out], files)
         for outcome in outcomes:
             done.count(outcome)
             sink(outcome)
             advance(len(outcome.t_us))
         done.state = state_bytes(corrector)
         if state is not None:
-            files.enter_context(written_beside(state)).write_bytes(done.state)
+            drafts[state].write_bytes(done.state)
     done.explanation = f"{corrector.explain()}\nThe kernels ran {runner.way}."
     return done
 
@@ -181,9 +183,9 @@ def load_model(corrector: Corrector, path: Path, recording) -> tuple[str, ...]:
     return tuple(effects.channels)
 
 
-def _sink(done: Replay, out, files: ExitStack) -> Callable[[Outcome], None]:
+def _sink(done: Replay, out: Path | None, files: ExitStack) -> Callable[[Outcome], None]:
     if out is not None:
-        writer = ReplayWriter(files.enter_context(written_beside(out)))
+        writer = ReplayWriter(out)
         files.callback(writer.close)
         return writer.write
     parts: list[pa.Table] = []
