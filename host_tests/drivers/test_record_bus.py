@@ -1,11 +1,16 @@
 """A recording from a bus holds every verified sample once, whatever happens on the way."""
 
+import errno
+import signal
+from io import FileIO
+
 import numpy as np
 import pytest
 from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050
 from zerorate_tools.boards.bus import record_bus
 from zerorate_tools.boards.recorder import Recorded, Recorder
-from zerorate_tools.recordings import read_recording
+from zerorate_tools.errors import InFile, ZerorateError
+from zerorate_tools.recordings import growing, read_recording
 
 
 def counting():
@@ -104,17 +109,17 @@ def test_a_bus_that_fails_for_a_while_is_waited_for(request, kind):
     assert result.lost > 0
 
 
-def test_a_bus_that_fails_for_good_keeps_what_was_verified_and_passes_the_error(machine):
+def test_a_bus_that_fails_for_good_keeps_what_was_verified_and_says_so(machine):
     machine.at(5, lambda: machine.bus.fault("nack", times=None))
-    with pytest.raises(OSError):
+    with pytest.raises(ZerorateError, match=r"I2C: .*; 4\d\d samples, .* are in .*run.parquet"):
         machine.record(seconds=60)
-    assert len(machine.columns()["gz"]) == pytest.approx(400, abs=100)
+    assert len(machine.columns()["gz"]) == pytest.approx(475, abs=25)
 
 
 def test_another_chip_ends_the_recording_with_an_error_that_names_it(machine):
     other = FakeMPU6050(counting(), part="MPU-6500")
     machine.at(5, lambda: machine.bus.devices.update({0x68: other}))
-    with pytest.raises(OSError, match="MPU-6500"):
+    with pytest.raises(ZerorateError, match="MPU-6500"):
         machine.record(seconds=60)
 
 
@@ -125,13 +130,48 @@ def test_no_chip_writes_no_file(machine):
     assert not machine.out.exists()
 
 
-def test_control_c_ends_a_recording_that_is_then_whole(machine):
-    def interrupt():
-        raise KeyboardInterrupt
-
-    machine.at(4, interrupt)
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_a_signal_ends_a_recording_that_is_then_whole(machine, name):
+    machine.at(4, lambda: signal.raise_signal(getattr(signal, name)))
     result = machine.record(seconds=None)
-    assert result.samples == len(machine.columns()["gz"]) > 300
+    assert result.samples == len(machine.columns()["gz"]) > 380
+    assert [p.name for p in machine.out.parent.iterdir()] == ["run.parquet"]
+
+
+@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EIO, errno.EFBIG])
+def test_a_full_disk_is_no_bus_error_and_all_before_it_is_kept(machine, monkeypatch, number):
+    class FullFile(FileIO):
+        def write(self, data):
+            if self.tell() > 10_000:
+                super().write(data[:100])  # torn, as full disks do
+                raise OSError(number, "said by the system")
+            return super().write(data)
+
+    monkeypatch.setattr(growing, "FileIO", FullFile)
+    with pytest.raises(InFile, match=r"run.parquet: no more can be written: .*; the \d+ samples"):
+        machine.record(seconds=60)
+    assert len(machine.columns()["gz"]) > 200
+    assert [p.name for p in machine.out.parent.iterdir()] == ["run.parquet"]
+
+
+def test_an_older_recording_stays_where_no_sample_comes(machine):
+    machine.out.write_bytes(b"older")
+    machine.at(0.4, lambda: machine.bus.fault("nack", times=None))
+    with pytest.raises(ZerorateError, match="no sample had come"):
+        machine.record(seconds=60)
+    assert machine.out.read_bytes() == b"older"
+    assert [p.name for p in machine.out.parent.iterdir()] == ["run.parquet"]
+
+
+def test_what_is_recorded_is_in_the_file_twice_a_second_at_any_rate(machine):
+    rows = []
+
+    def look():
+        rows.append(len(read_recording(machine.out.with_name("run.partial.csv"))))
+
+    machine.at(6.1, look)
+    machine.record(seconds=8, odr_hz=10)
+    assert rows[0] > 10 * (6.1 - 2)
 
 
 class TestLostSamples:

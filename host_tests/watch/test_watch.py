@@ -11,7 +11,7 @@ from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050
 from zerorate_tools.boards.bus import stream_bus
 from zerorate_tools.cli import main
 from zerorate_tools.errors import BadRecording
-from zerorate_tools.recordings import recording_writer, write_recording
+from zerorate_tools.recordings import growing_recording, write_recording
 from zerorate_tools.replay import replay
 from zerorate_tools.replay.replaying import state_bytes
 from zerorate_tools.simulate import simulate
@@ -163,11 +163,11 @@ def test_a_file_begun_anew_is_a_new_power_on(writer):
     assert second["t_us"][0] == first["t_us"][0]
 
 
-def test_what_record_is_writing_is_found_before_it_has_its_name(tmp_path, recording):
-    out = tmp_path / "run.csv"
-    with recording_writer(out, recording.column_names, recording.scales) as writing:
+@pytest.mark.parametrize("name", ["run.csv", "run.csv.gz", "run.parquet"])
+def test_what_record_is_writing_is_found_before_it_has_its_name(tmp_path, recording, name):
+    out = tmp_path / name
+    with growing_recording(out, recording.column_names, recording.scales) as writing:
         writing.append(recording.between(0, 500).columns)
-        writing._file.flush()
         assert not out.exists()
         assert len(CsvTail(out).read()["t_us"]) == 500
 

@@ -8,11 +8,14 @@ from zerorate_i2c import clock
 from zerorate_i2c.fifo import EMPTY, Fifo
 from zerorate_i2c.mpu6050 import FRESH, MPU6050, RESTARTED, VERIFIED
 
-from ..recordings import Scales, recording_writer
+from ..ending import noted_signals
+from ..errors import ZerorateError, os_error_in_words
+from ..recordings import Scales, growing_recording
 from .recorder import COLUMNS, Recorded, Recorder, SampleTaker, scales_of
 
 _POLLS_A_PERIOD = 3
 _PATIENCE_S = 5.0
+_VERIFY_S = 0.5
 _SCALES = ("part", "odr_hz", "gyro_lsb_per_dps", "accel_lsb_per_g", "temp_lsb_per_degc")
 
 
@@ -28,23 +31,25 @@ def record_bus(
 ) -> Recorded:
     """Record from the chip on i2c, any object with the driver's two methods, into out.
 
-    seconds None records until KeyboardInterrupt; options are MPU6050's (address, odr_hz,
-    full_scale_dps ...); done(seconds) is told of progress. A bus that fails is waited for up to
-    5 s; then OSError passes, and out holds what had been verified.
+    seconds None records until a signal that ends programs; options are MPU6050's (address, odr_hz,
+    full_scale_dps ...); done(seconds) is told of progress. Samples are verified, and on the disk,
+    twice a second. A bus that fails is waited for up to 5 s; then ZerorateError says so, and out
+    holds what had been verified. Raises OSError where no chip answers, InFile without room.
     """
-    imu = MPU6050(i2c, clock=time_source, **options)
+    check_every = max(1, min(100, round(options.get("odr_hz", 100) * _VERIFY_S)))
+    imu = MPU6050(i2c, clock=time_source, **{"check_every": check_every, **options})
     values = {name: getattr(imu, name) for name in (*_SCALES, "temp_offset_degc", "binding")}
     result = Recorded()
-    with recording_writer(out, COLUMNS, scales_of({**values, "source": source})) as writer:
-        recorder = Recorder(writer.append, imu.period_us, result)
+    with growing_recording(out, COLUMNS, scales_of({**values, "source": source})) as growing:
+        recorder = Recorder(growing.append, imu.period_us, result)
         failure = _run(_feed(imu), imu, recorder, seconds, done)
         if failure is None and _is_verified(imu):
             recorder.confirm()
         recorder.discard()
-        recorder.flush()
     result.restarts, result.bus_errors = imu.restarts, imu.bus_errors
     if failure:
-        raise failure
+        text = f"{source}: {os_error_in_words(failure)}; {result.kept(out)}"
+        raise ZerorateError(text) from failure
     return result
 
 
@@ -69,24 +74,24 @@ def stream_bus(
 
 
 def _run(feed, imu: MPU6050, recorder: SampleTaker, seconds, done) -> OSError | None:
-    """Feed the recorder until time is up; the error that ended it, if one did."""
+    """Feed the recorder until time is up or a signal came; the error that ended it, if one did."""
     sample = array("i", [0] * 7)
     begun = good = reported = imu.clock.ticks_us()
-    while seconds is None or imu.clock.ticks_diff(good, begun) < seconds * 1e6:
-        try:
-            status, t_us, is_new = feed.read(sample)
+    with noted_signals() as came:
+        while not came and (seconds is None or imu.clock.ticks_diff(good, begun) < seconds * 1e6):
+            try:
+                status, t_us, is_new = feed.read(sample)
+            except OSError as error:
+                recorder.discard()
+                if imu.clock.ticks_diff(imu.clock.ticks_us(), good) > _PATIENCE_S * 1e6:
+                    return error
+                imu.clock.sleep_ms(100)
+                continue
             _note(recorder, status, t_us, sample if is_new else None)
             good = imu.clock.ticks_us()
-        except OSError as error:
-            recorder.discard()
-            if imu.clock.ticks_diff(imu.clock.ticks_us(), good) > _PATIENCE_S * 1e6:
-                return error
-            imu.clock.sleep_ms(100)
-        except KeyboardInterrupt:
-            break
-        if imu.clock.ticks_diff(good, reported) > 1_000_000:
-            done(imu.clock.ticks_diff(good, reported) / 1e6)
-            reported = good
+            if imu.clock.ticks_diff(good, reported) > 1_000_000:
+                done(imu.clock.ticks_diff(good, reported) / 1e6)
+                reported = good
     return None
 
 

@@ -3,10 +3,12 @@
 import json
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from importlib.resources import files
 from pathlib import Path
 
-from ..recordings import Scales, recording_writer
+from ..ending import noted_signals
+from ..recordings import Scales, growing_recording
 from ..recordings.scales import scales_from_text
 from .connection import BoardError, connected
 from .frames import MESSAGE, SAMPLE, SAMPLE_BYTES, SCALES, FrameReader, sample_of
@@ -28,21 +30,21 @@ def record_port(
     """Start the streamer on the board at port and record what it sends into out.
 
     setup: MicroPython source that makes `imu`, an MPU6050 (default: I2C(0), the driver's defaults).
-    seconds None records until KeyboardInterrupt. Raises BoardError for a board that is silent for
-    10 s or cannot run the streamer; what had come by then is kept.
+    seconds None records until a signal that ends programs. Raises BoardError for a board that is
+    silent for 10 s, unplugged, or cannot run the streamer; what had been verified is kept. Raises
+    InFile without room.
     """
     with connected(port) as board:
         board.exec_raw_no_follow(program(setup or _default_setup()))
         stream = BoardStream(board.serial, port)
         scales = stream.scales()
-        with recording_writer(out, COLUMNS, scales) as writer:
-            recorder = Recorder(writer.append, 1e6 / scales.odr_hz, Recorded())
+        with growing_recording(out, COLUMNS, scales) as growing:
+            recorder = Recorder(growing.append, 1e6 / scales.odr_hz, Recorded())
             failure = stream.record(recorder, seconds, done)
             recorder.confirm() if failure is None else recorder.discard()
-            recorder.flush()
-        board.serial.write(b"\x03\x03")
+        _interrupt(board)
     if failure:
-        raise failure
+        raise BoardError(f"{failure}; {recorder.result.kept(out)}") from failure
     return recorder.result
 
 
@@ -61,9 +63,14 @@ def stream_port(
         recorder = take(stream.scales())
         failure = stream.record(recorder, seconds, done)
         recorder.flush()
-        board.serial.write(b"\x03\x03")
+        _interrupt(board)
     if failure:
         raise failure
+
+
+def _interrupt(board) -> None:
+    with suppress(OSError):  # it may have been unplugged
+        board.serial.write(b"\x03\x03")
 
 
 def program(setup: str) -> str:
@@ -106,20 +113,20 @@ class BoardStream:
             raise BoardError(f"{self._port}: {what}; is its `imu` an MPU6050?") from error
 
     def record(self, recorder: SampleTaker, seconds: float | None, done) -> BoardError | None:
-        """Hand samples to recorder until time is up; the error that ended it, if one did."""
+        """Hand samples to recorder until time is up or a signal came; the error that ended it."""
         begun = time.monotonic()
         reported = begun
-        try:
-            while seconds is None or time.monotonic() - begun < seconds:
-                for kind, payload in self._frames():
+        with noted_signals() as came:
+            while not came and (seconds is None or time.monotonic() - begun < seconds):
+                try:
+                    frames = self._frames()
+                except BoardError as error:
+                    return error
+                for kind, payload in frames:
                     self._take(recorder, kind, payload)
                 recorder.result.bytes_skipped = self._reader.skipped
                 done(time.monotonic() - reported)
                 reported = time.monotonic()
-        except BoardError as error:
-            return error
-        except KeyboardInterrupt:
-            pass
         return None
 
     def _take(self, recorder: SampleTaker, kind: int, payload: bytes) -> None:
@@ -147,7 +154,10 @@ class BoardStream:
             recorder.add(self._t_us, words)
 
     def _frames(self) -> list[tuple[int, bytes]]:
-        data = self._serial.read(max(1, self._serial.in_waiting))
+        try:
+            data = self._serial.read(max(1, self._serial.in_waiting))
+        except OSError as error:
+            raise BoardError(f"{self._port}: unplugged, or taken by another program") from error
         if data:
             self._heard = time.monotonic()
             self._tail = (self._tail + data)[-4096:]

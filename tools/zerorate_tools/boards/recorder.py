@@ -1,7 +1,8 @@
-"""Rows of a recording being made: written in batches, believed only when the chip was verified."""
+"""Rows of a recording being made: written, and believed, only when the chip was verified."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Protocol
 
 import numpy as np
@@ -10,7 +11,6 @@ from ..model.binding import KEY, NAMES
 from ..recordings import Scales
 
 COLUMNS = ["t_us", "ax", "ay", "az", "temp", "gx", "gy", "gz"]
-_BATCH = 2048
 _STAYS_LATE = 8
 
 
@@ -30,6 +30,12 @@ class Recorded:
     dropped: int = 0
     bytes_skipped: int = 0
     seconds: float = 0.0
+
+    def kept(self, out: Path) -> str:
+        """Where the samples are, for an error that ended a recording."""
+        if not self.samples:
+            return "no sample had come"
+        return f"{self.samples} samples, {self.seconds:.1f} s, are in {out}"
 
     @property
     def rate_hz(self) -> float:
@@ -70,7 +76,7 @@ class SampleTaker(Protocol):
 
 
 class Recorder:
-    """Takes samples one by one and hands them to append(columns) in batches.
+    """Takes samples one by one and hands them to append(columns) when they are known to be good.
 
     Rows wait until confirm() says that the chip was configured right all the while, and discard()
     drops those that wait. Time starts at 0 with the first row and must not go backwards.
@@ -83,7 +89,6 @@ class Recorder:
         self._period_us = period_us
         self.result = result
         self._waiting: list[tuple[int, ...]] = []
-        self._confirmed: list[tuple[int, ...]] = []
         self._start_us: int | None = None
         self._expected_us = 0.0
         self._late_in_a_row = 0
@@ -113,11 +118,15 @@ class Recorder:
         self._expected_us += (1 + follow) * self._period_us
 
     def confirm(self) -> None:
-        """What waits is good."""
-        self._confirmed += self._waiting
+        """What waits is good, and handed over. Raises what append raises."""
+        if not self._waiting:
+            return
+        rows = np.array(self._waiting, dtype=np.int64)
         self._waiting.clear()
-        if len(self._confirmed) >= _BATCH:
-            self.flush()
+        columns = dict(zip(COLUMNS, rows.T, strict=True))
+        self._append({k: v if k == "t_us" else v.astype(np.int32) for k, v in columns.items()})
+        self.result.samples += len(rows)
+        self.result.seconds = float(rows[-1, 0]) / 1e6
 
     def discard(self) -> None:
         """What waits is in doubt."""
@@ -125,15 +134,7 @@ class Recorder:
         self._waiting.clear()
 
     def flush(self) -> None:
-        """Hand over what is confirmed."""
-        if not self._confirmed:
-            return
-        rows = np.array(self._confirmed, dtype=np.int64)
-        self.result.samples += len(rows)
-        self.result.seconds = float(rows[-1, 0]) / 1e6
-        columns = dict(zip(COLUMNS, rows.T, strict=True))
-        self._append({k: v if k == "t_us" else v.astype(np.int32) for k, v in columns.items()})
-        self._confirmed.clear()
+        """What is confirmed was handed over."""
 
 
 def scales_of(values: dict) -> Scales:

@@ -1,6 +1,7 @@
 """`zerorate record`: a recording from a board or from a Linux I2C bus."""
 
 import argparse
+import sys
 from pathlib import Path
 
 
@@ -8,11 +9,13 @@ def add_parser(subparsers) -> None:
     parser = subparsers.add_parser(
         "record",
         help="make a recording from a board or a Linux I2C bus",
-        description="Record a chip until Ctrl-C: PORT is a board's serial port or /dev/i2c-N.",
+        description="Record a chip until Ctrl-C: PORT is a board's serial port or /dev/i2c-N. "
+        "Until it ends the recording is in NAME.partial.csv, also if the program is killed.",
     )
-    parser.add_argument("port", metavar="PORT", help="/dev/ttyACM0, COM3 or /dev/i2c-1")
+    parser.add_argument("port", nargs="?", metavar="PORT", help="/dev/ttyACM0, COM3 or /dev/i2c-1")
+    parser.add_argument("--out", type=Path, metavar="FILE", help=".parquet, .csv or .csv.gz")
     parser.add_argument(
-        "--out", type=Path, required=True, metavar="FILE", help=".parquet, .csv or .csv.gz"
+        "--recover", type=Path, metavar="FILE", help="finish the .partial.csv of a killed one"
     )
     parser.add_argument("--seconds", type=float, metavar="S", help="end by itself after this long")
     group = parser.add_argument_group("on a Linux bus")
@@ -38,9 +41,34 @@ def add_parser(subparsers) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
+    from ..errors import ZerorateError
+
+    if (arguments.port is None) == (arguments.recover is None):
+        raise ZerorateError("name a PORT to record, or a file by --recover FILE")
+    if arguments.recover is not None:
+        _recover(arguments)
+    elif arguments.out is None:
+        raise ZerorateError("name the file to record into by --out FILE")
+    else:
+        _record(arguments)
+
+
+def _recover(arguments: argparse.Namespace) -> None:
+    from ..recordings import open_recording, recover
+
+    target = recover(arguments.recover, arguments.out)
+    samples = sum(len(columns["t_us"]) for columns in open_recording(target).batches())
+    print(f"{target}: {samples} samples of {arguments.recover}")
+
+
+def _record(arguments: argparse.Namespace) -> None:
     from ..boards.recording import record
     from ..progress import progress
+    from ..recordings.growing import left_over
 
+    for partial in left_over(arguments.out):
+        finish = f"zerorate record --recover {partial} finishes it"
+        print(f"{partial}: of a recording that was killed; {finish}", file=sys.stderr)
     names = ("address", "odr_hz", "full_scale_dps", "full_scale_g", "dlpf_hz", "part", "setup")
     options = {k: v for k in names if (v := getattr(arguments, k)) is not None}
     if "setup" in options:
@@ -49,4 +77,4 @@ def run(arguments: argparse.Namespace) -> None:
         result = record(
             arguments.port, arguments.out, seconds=arguments.seconds, done=done, **options
         )
-    print(f"{arguments.out}: {result}")
+    print(f"{arguments.out}: {result}" if result.samples else "no sample came, nothing is written")

@@ -245,6 +245,21 @@ def _left_over(draft: Path) -> Iterator[bool]:
             os.close(held)
 
 
+def lock(descriptor: int) -> bool:
+    """Lock an open file or folder until it is closed; whether there are locks here.
+
+    Raises BlockingIOError where another has it.
+    """
+    try:
+        if fcntl is not None:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise
+    except OSError:  # a file system without them
+        return False
+    return fcntl is not None
+
+
 def _lock(folder: Path) -> int | None:
     """A descriptor that holds the folder's lock until it is closed; None where there are no locks.
 
@@ -254,14 +269,13 @@ def _lock(folder: Path) -> int | None:
         return None
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        if lock(descriptor):
+            return descriptor
     except BlockingIOError:
         os.close(descriptor)
         raise
-    except OSError:  # a file system without locks
-        os.close(descriptor)
-        return None
-    return descriptor
+    os.close(descriptor)
+    return None
 
 
 def _is_folder(path: Path) -> bool:

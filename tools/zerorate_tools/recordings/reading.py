@@ -13,6 +13,7 @@ from .checks import BatchChecker, check_names
 from .drafts import settle
 from .recording import Columns, Recording, in_order
 from .scales import Scales
+from .unfinished import unfinished_of
 
 if TYPE_CHECKING:
     import pyarrow.parquet as pq
@@ -49,7 +50,7 @@ class OpenRecording:
         settle(self.path.parent)
         if not self.path.is_file():
             what = "is a folder" if self.path.is_dir() else "no such file"
-            raise BadRecording(self.path, what, do="name a recording (.csv, .csv.gz or .parquet)")
+            raise BadRecording(self.path, what, do=_instead_of(self.path))
         if self.path.name.endswith(csv_format.SUFFIXES):
             self._header = csv_format.read_header(self.path)
             self.column_names = list(self._header.names)
@@ -69,6 +70,12 @@ class OpenRecording:
         if self._parquet is not None:
             return parquet_format.batches(self._parquet, self.path, rows)
         return csv_format.batches(self.path, self._header)
+
+
+def _instead_of(path: Path) -> str:
+    if unfinished := unfinished_of(path):
+        return f"{unfinished[-1]} is there: zerorate record --recover {unfinished[-1]}"
+    return "name a recording (.csv, .csv.gz or .parquet)"
 
 
 def open_recording(path: str | PathLike[str], *, keep_gaps: bool = False) -> OpenRecording:

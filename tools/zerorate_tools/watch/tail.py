@@ -11,6 +11,7 @@ from ..errors import BadRecording
 from ..recordings import csv_format
 from ..recordings.checks import check_names
 from ..recordings.recording import TIME, Columns
+from ..recordings.unfinished import unfinished_of
 
 _MOST_BYTES = 1 << 20
 
@@ -18,22 +19,21 @@ _MOST_BYTES = 1 << 20
 def growing_file(path: Path) -> Path:
     """The file to follow for a recording of this name.
 
-    `zerorate record` gives it its name only when it is whole, so until then it is the hidden one
-    beside. Raises BadRecording for what cannot be followed.
+    While `zerorate record` makes it, it is the CSV beside (recordings.growing). Raises BadRecording
+    for what cannot be followed.
     """
+    if not path.is_file() and (unfinished := unfinished_of(path)):
+        return unfinished[-1]
     if path.name.endswith(".parquet"):
         problem = "a Parquet file has its index at its end, so it cannot be read while it grows"
         raise BadRecording(path, problem, do="record to .csv, or use `zerorate replay` afterwards")
     if path.name.endswith(".gz"):
         problem = "gzip holds rows back until a block of them is full"
         raise BadRecording(path, problem, do="record to .csv, or use `zerorate replay` afterwards")
-    if path.is_file():
-        return path
-    hidden = sorted(path.parent.glob(f".*.partial/{path.name}"), key=lambda p: p.stat().st_mtime)
-    if not hidden:
+    if not path.is_file():
         do = "name a .csv that is being written, a board's port or /dev/i2c-N"
         raise BadRecording(path, "no such file", do=do)
-    return hidden[-1]
+    return path
 
 
 class CsvTail:
