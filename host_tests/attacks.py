@@ -27,7 +27,18 @@ ATTACKS = {
         "six files that unpack to gigabytes",
         [*_PYTEST, "-s", "host_tests/hostile/test_bombs.py"],
     ),
-    "writers": ("SIGTERM, full disks", [*_PYTEST, "host_tests/tools/test_atomic.py"]),
+    "writers": (
+        "signals, full disks",
+        [*_PYTEST, "host_tests/tools", "-k", "test_atomic or test_drafts or test_growing"],
+    ),
+    "writers, killed": (
+        "kill -9 at each rename, and at lengths of files",
+        ["-m", "host_tests.tools.killed_writers"],
+    ),
+    "recorders, killed": (
+        "SIGTERM, SIGHUP, SIGINT, kill -9, full disks, unpluggings",
+        ["-m", "host_tests.tools.killed_recorders"],
+    ),
     "reports": (
         "hostile names",
         [*_PYTEST, "host_tests/report/test_page.py", "host_tests/fleet/test_page.py", "-k", "name"],

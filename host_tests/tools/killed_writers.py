@@ -24,7 +24,12 @@ from zerorate_tools import closing
 from zerorate_tools.kernels.export import export_c
 from zerorate_tools.model import Slot, build_model, write_model
 from zerorate_tools.model.term import Term
-from zerorate_tools.recordings import Scales, recording_from_columns, write_recording
+from zerorate_tools.recordings import (
+    Scales,
+    growing_recording,
+    recording_from_columns,
+    write_recording,
+)
 from zerorate_tools.recordings.atomic import written_together
 from zerorate_tools.recordings.drafts import clear_left_over
 from zerorate_tools.replay import replay
@@ -72,6 +77,13 @@ def replayed(version):
     replay(recording(version), "bias.parquet", state="learned.bin", runtime="cpython")
 
 
+def recorded(version):
+    made = recording(version)
+    with growing_recording("run.parquet", made.column_names, made.scales) as growing:
+        for first in range(0, len(made), 1000):
+            growing.append(made.between(first, first + 1000).columns)
+
+
 WRITERS = {
     "Parquet": lambda version: write_recording(recording(version), "run.parquet"),
     "CSV": lambda version: write_recording(recording(version), "run.csv"),
@@ -80,6 +92,7 @@ WRITERS = {
     "close": closed,
     "simulate": simulated,
     "replay": replayed,
+    "record": recorded,
     "export c": lambda version: export_c("c", sensor_of(scales(version))),
 }
 
@@ -192,7 +205,8 @@ class Trials:
         for folder in [place, *(p for p in place.rglob("*") if p.is_dir())]:
             if folder.is_dir() and not folder.name.startswith(".zerorate"):
                 clear_left_over(folder)
-        left = contents(place)
+        # what a killed recorder has not finished stays, by its name
+        left = {name: data for name, data in contents(place).items() if ".partial" not in name}
         if left not in (self.old, self.new):
             yield f"afterwards there are {sorted(left)}, partly old and partly new"
 

@@ -49,9 +49,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _end(number: int, frame: FrameType | None) -> None:
     # no exception: one that is raised while a library's C calls back is lost in there
-    from .recordings.drafts import drop_all
-
-    drop_all()
+    # and nothing is imported here: where it was not, nothing is half-written
+    if drafts := sys.modules.get(f"{__package__}.recordings.drafts"):
+        drafts.drop_all()
     signal.signal(number, signal.SIG_DFL)
     os.kill(os.getpid(), number)
 
