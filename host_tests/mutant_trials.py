@@ -14,7 +14,10 @@ REPOSITORY = Path(__file__).resolve().parents[1]
 # Tests in other processes, and two that take long and see little that others do not.
 NOT_IN_PROCESS = " and ".join(
     "not " + name
-    for name in ("micropython", "heap", "runtime", "last_byte", "any_slot", "no_intermediate")
+    for name in (
+        *("micropython", "heap", "runtime", "last_byte", "any_slot", "no_intermediate"),
+        *("signal_at_any_rename", "end_by_a_signal"),
+    )
 )
 # What no mutant is in, and each process would else load anew.
 LOADED_ONCE = (

@@ -70,9 +70,16 @@ AREAS = {
     ),
     "recordings": (
         ["tools/zerorate_tools/recordings/" + name for name in (
-            "checks.py", "csv_format.py", "scales.py", "atomic.py", "bounded.py")],
+            "checks.py", "csv_format.py", "scales.py", "bounded.py")],
         ["host_tests/tools/test_recordings.py", "host_tests/tools/test_bad_recordings.py",
-         "host_tests/tools/test_recording_limits.py", "host_tests/tools/test_atomic.py"],
+         "host_tests/tools/test_recording_limits.py"],
+    ),
+    "writers": (
+        ["tools/zerorate_tools/ending.py"]
+        + ["tools/zerorate_tools/recordings/" + name for name in (
+            "atomic.py", "drafts.py", "growing.py", "unfinished.py")],
+        ["host_tests/tools/test_" + name for name in (
+            "atomic.py", "drafts.py", "ending.py", "growing.py")],
     ),
 }  # fmt: skip
 
@@ -147,8 +154,10 @@ def main(arguments=None):
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("areas", nargs="*", choices=[*AREAS, []], help="default: all")
     parser.add_argument("--each", type=int, default=25, help="mutants of an area")
-    parser.add_argument("--seed", type=int, default=1)
+    drawn = random.SystemRandom().randrange(1 << 31)
+    parser.add_argument("--seed", type=int, default=drawn, help="of the draw; default: a new one")
     chosen = parser.parse_args(arguments)
+    print(f"{chosen.each} of each area, --seed {chosen.seed}", flush=True)
     os.chdir(REPOSITORY)
     # one cache for all: what is compiled is kept by its text, and a mutant's is another
     with tempfile.TemporaryDirectory(prefix="zerorate-mutants-") as cache:

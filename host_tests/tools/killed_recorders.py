@@ -33,6 +33,7 @@ from host_tests.tools.killed_writers import contents
 from host_tests.tools.killed_writers import recording as a_recording
 
 MOST_S = 2.0
+PATIENCE_S = 60
 KINDS = ("SIGTERM", "SIGHUP", "SIGINT", "SIGKILL", "full", "unplugged")
 _BOARD_HZ = 100
 _SCALES = (
@@ -163,8 +164,11 @@ class Trial:
             if self.kind.startswith("SIG"):
                 select.select([ours], [], [], self.after_s)  # it has ended by itself, or time is up
                 os.kill(child, getattr(signal, self.kind))
+            ended = select.select([ours], [], [], PATIENCE_S)[0]
+            if not ended:
+                os.kill(child, signal.SIGKILL)
             status = os.waitpid(child, 0)[1]
-        return self._judged(status)
+        return self._judged(status, [] if ended else ["it went on"])
 
     def _record(self, pipe):
         code = 70
@@ -180,8 +184,7 @@ class Trial:
         finally:
             os._exit(code)
 
-    def _judged(self, status):
-        problems = []
+    def _judged(self, status, problems):
         if os.WIFEXITED(status) and os.WEXITSTATUS(status) not in (0, 2, 130):
             problems.append(f"it ended with {os.WEXITSTATUS(status)}")
         write_recording(a_recording(2, 50), self.folder / "next.csv")  # the next command here
