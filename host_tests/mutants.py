@@ -46,12 +46,42 @@ AREAS = {
             "settings.py")],
     ),
     "storage": (
-        [f"firmware/zerorate/storage/{n}.py" for n in ("store", "places", "learned_store")],
-        ["host_tests/firmware/test_store.py", "host_tests/firmware/test_learned_store.py"],
+        ["firmware/zerorate/storage/" + name for name in (
+            "store.py", "places.py", "learned_store.py", "save_schedule.py")],
+        ["host_tests/firmware/test_" + name for name in (
+            "store.py", "learned_store.py", "save_schedule.py")],
     ),
     "guard": (
         ["firmware/zerorate/rest/guard.py", "firmware/zerorate/checked.py"],
         ["host_tests/firmware/test_guard.py", "host_tests/firmware/test_checked.py"],
+    ),
+    "rest": (
+        ["firmware/zerorate/rest/" + name for name in (
+            "bias.py", "block.py", "copying.py", "estimators.py", "fit.py", "histogram.py",
+            "recent.py", "step.py", "stillness.py", "turning.py")],
+        ["host_tests/firmware/test_" + name for name in (
+            "estimators.py", "fit.py", "histogram.py", "turning.py", "stillness.py",
+            "turn_on.py", "quality.py", "guard.py", "bursts.py",
+            "model_of_the_curve.py")],
+    ),
+    "motion": (
+        ["firmware/zerorate/motion/" + name for name in (
+            "attitude.py", "in_motion.py", "increments.py", "least_squares.py",
+            "motion_verdict.py", "orientation.py", "regression.py", "thermal.py",
+            "tilt_frame.py")],
+        ["host_tests/firmware/test_in_motion.py", "host_tests/firmware/test_orientation.py"],
+    ),
+    "gravity": (
+        ["firmware/zerorate/gravity/gravity.py", "firmware/zerorate/gravity/gravity_settings.py"],
+        ["host_tests/firmware/test_gravity.py"],
+    ),
+    "importers": (
+        ["tools/zerorate_tools/importers/" + name for name in (
+            "importing.py", "report.py", "columns/names.py", "columns/guesses.py",
+            "samples/between.py", "samples/conversion.py", "samples/gather.py",
+            "tables/columnar.py", "logs/messages.py")],
+        ["host_tests/importers/test_" + name for name in (
+            "tables.py", "odd_files.py", "odd_names.py", "odd_times.py")],
     ),
     "effects": (
         ["firmware/zerorate/effects/" + name for name in (

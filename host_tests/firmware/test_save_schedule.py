@@ -2,6 +2,7 @@
 
 import pytest
 from zerorate import Corrector, Sensor
+from zerorate.storage import save_schedule
 from zerorate.storage.save_schedule import SaveSchedule
 from zerorate_tools import layout
 
@@ -27,6 +28,21 @@ class TestSavingAtRest:
         assert not schedule.offer(OLD, [0, -10, 0], 10)
         assert not schedule.offer(OLD, [0, -10, 0], 3609)
         assert schedule.offer(OLD, [0, -10, 0], 3610)
+
+    def test_and_waits_anew_after_a_save(self, schedule):
+        schedule.offer(OLD, [0, -10, 0], 10)
+        assert schedule.offer(OLD, [0, -10, 0], 3610)
+        assert not schedule.offer(OLD, [0, -20, 0], 7300)
+        assert not schedule.offer(OLD, [0, -20, 0], 10899)
+        assert schedule.offer(OLD, [0, -20, 0], 10900)
+
+    def test_the_longest_save_is_kept(self, schedule, corrector, monkeypatch):
+        corrector.state[layout.STATE.STILLNESS] = layout.STILLNESS.STILL
+        times_us = iter([0, 500, 1000, 1900, 3000, 3100])
+        monkeypatch.setattr(save_schedule, "ticks_us", lambda: next(times_us))
+        for number in range(1, 4):
+            assert schedule.offer(OLD, [0, -10 * number, 0], 3600 * number)
+        assert (schedule.longest_us, schedule.saves) == (900, 3)
 
     def test_what_saving_costs_is_told(self, schedule, corrector):
         assert "Nothing was saved yet" in corrector.explain()
