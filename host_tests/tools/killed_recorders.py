@@ -160,7 +160,8 @@ class Trial:
         if child == 0:
             self._record(theirs)
         os.close(theirs)
-        with os.fdopen(ours, "rb"):
+        with os.fdopen(ours, "rb", buffering=0) as began:
+            began.read(1)  # a fork forgets a signal that comes before Python runs in it
             if self.kind.startswith("SIG"):
                 select.select([ours], [], [], self.after_s)  # it has ended by itself, or time is up
                 os.kill(child, getattr(signal, self.kind))
@@ -173,6 +174,7 @@ class Trial:
     def _record(self, pipe):
         code = 70
         try:
+            os.write(pipe, b"!")
             more = [] if self.seconds is None else ["--seconds", str(self.seconds)]
             sys.argv = ["zerorate", "record", *self.way(self.chip, self.hz), *more]
             sys.argv += ["--out", str(self.out)]

@@ -232,6 +232,14 @@ def test_what_needs_one_rename_has_one(tmp_path, monkeypatch):
     assert [r for r in renames if str(tmp_path) in r] == [str(tmp_path / n) for n in ("o", "new")]
 
 
+def test_the_drafts_of_several_folders_go_after_a_failure(tmp_path):
+    (tmp_path / "a").mkdir()
+    (tmp_path / "b").mkdir()
+    with pytest.raises(ValueError), all_written_together([tmp_path / "a", tmp_path / "b"]):
+        raise ValueError
+    assert contents(tmp_path) == {} and not list(tmp_path.rglob(".zerorate*"))
+
+
 def no_links(*arguments, **options):
     raise OSError(errno.EPERM, "no links here")
 
