@@ -32,9 +32,9 @@ class Fifo:
     """Samples of imu, an MPU6050, out of its FIFO, up to batch frames a transfer.
 
     After read() dt_us is the time in microseconds from the sample before to this one, over any
-    loss. Counters: frames delivered, lost samples (of overflow, lost alignment, bus errors and
-    restarts; estimated from time), overflows, misalignments. Raises ValueError for a batch that
-    the bus cannot transfer.
+    loss, and 0 for RESTARTED; newest_us is when this one was taken, by the clock. Counters: frames
+    delivered, lost samples (of overflow, lost alignment, bus errors and restarts; estimated from
+    time), overflows, misalignments. Raises ValueError for a batch that the bus cannot transfer.
     """
 
     def __init__(self, imu: "MPU6050", batch: int = 8) -> None:
@@ -87,6 +87,7 @@ class Fifo:
         now_us = self.imu.clock.ticks_us()
         if status == RESTARTED or self._dirty:
             self._lose(now_us)
+            self.dt_us = 0  # the next sample's has it all
             return RESTARTED if status == RESTARTED else EMPTY
         self._status |= status
         count = self._count(now_us)
@@ -139,7 +140,7 @@ class Fifo:
     def _align(self, count, now_us):
         """Choose the time step so that the newest of count frames is at most a period old."""
         period_us = self.imu.period_us
-        age_us = self.imu.clock.ticks_diff(now_us, self._newest_us) - count * period_us
+        age_us = self.imu.clock.ticks_diff(now_us, self.newest_us) - count * period_us
         if age_us < 0:
             self._step_us = period_us - (-age_us + count - 1) // count
         elif age_us > period_us:
@@ -150,7 +151,7 @@ class Fifo:
     def _deliver(self, sample, status):
         decode(self._block, _FRAME * self._next, sample)
         self._next += 1
-        self._newest_us = self.imu.clock.ticks_add(self._newest_us, self._step_us)
+        self.newest_us = self.imu.clock.ticks_add(self.newest_us, self._step_us)
         self._gap_us += self._step_us
         if self._jumped(sample):
             self.lost += 1
@@ -188,7 +189,7 @@ class Fifo:
 
     def _mind_silence(self, now_us):
         """No frame for long: the chip sleeps or has stopped."""
-        silent_us = self.imu.clock.ticks_diff(now_us, self._newest_us)
+        silent_us = self.imu.clock.ticks_diff(now_us, self.newest_us)
         if silent_us > _SILENT_PERIODS * self.imu.period_us:
             self.imu.doubt(True)
 
@@ -201,15 +202,15 @@ class Fifo:
         self._dirty = True
         self.imu.write_register(_USER_CTRL, _FIFO_RESET)
         self.imu.write_register(_USER_CTRL, _FIFO_ON)
-        gone_us = self.imu.clock.ticks_diff(now_us, self._newest_us)
+        gone_us = self.imu.clock.ticks_diff(now_us, self.newest_us)
         self.lost += max(0, gone_us // self.imu.period_us)
         self._gap_us += gone_us
         self._begin(now_us)
-        self._gap_us -= self.imu.clock.ticks_diff(now_us, self._newest_us)
+        self._gap_us -= self.imu.clock.ticks_diff(now_us, self.newest_us)
 
     def _begin(self, now_us):
         """The FIFO is empty now: the sample before its first was taken half a period ago."""
-        self._newest_us = self.imu.clock.ticks_add(now_us, -self.imu.period_us // 2)
+        self.newest_us = self.imu.clock.ticks_add(now_us, -self.imu.period_us // 2)
         self._loaded = 0
         self._next = 0
         self._same = 0

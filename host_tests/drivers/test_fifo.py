@@ -207,3 +207,29 @@ def test_stop_leaves_the_fifo_off_through_restarts(fifo_bench):
     fifo_bench.fifo.stop()
     fifo_bench.imu.restart()
     assert fifo_bench.chip.registers[0x6A] == fifo_bench.chip.registers[0x23] == 0
+
+
+def test_the_time_that_a_program_adds_up_is_the_chips_over_restarts(fifo_bench):
+    """As examples/main.py does it: dt_us is added for every status but EMPTY."""
+    taken_us, step = {}, fifo_bench.chip.step
+
+    def noted():
+        taken_us[fifo_bench.chip.samples_made] = fifo_bench.clock.now_us
+        return step()
+
+    fifo_bench.chip.step = noted
+    passed_us, restarts, ends = 0, 0, []
+    for _ in range(10):
+        for _ in range(300):
+            fifo_bench.run(PERIOD_US // 10)
+            status = fifo_bench.fifo.read(fifo_bench.bench.sample)
+            restarts += status == RESTARTED
+            if status != EMPTY:
+                passed_us += fifo_bench.fifo.dt_us
+            if status in (FRESH, VERIFIED):
+                ends.append((passed_us, taken_us[fifo_bench.bench.sample[6]]))
+        fifo_bench.chip.power_up()
+        fifo_bench.imu.doubt(False)
+    (first_us, first_taken_us), *_, (last_us, last_taken_us) = ends
+    assert restarts == 9
+    assert last_us - first_us == pytest.approx(last_taken_us - first_taken_us, abs=PERIOD_US)
