@@ -43,6 +43,8 @@ _CURVE_LSB = const(28)
 _STILL = const(1)
 # layout: Where a bias comes from
 _ANY_TEMPERATURE = const(1)
+# layout: What a store says
+_OUT_OF_RANGE = const(7)
 # layout: Values that stand for none
 _NO_VALUE = const(-0x3FFFFFFF)
 # layout: end
@@ -211,7 +213,14 @@ class Corrector:
         """
         reason = store.load(self.state)
         if reason == 0:
-            self.power_on(same)
+            from .storage.soundness import is_sound
+
+            if is_sound(self.state, self.settings):
+                self.power_on(same)
+            else:
+                self.reset()
+                reason = _OUT_OF_RANGE
+            unload("zerorate.storage", "soundness")
         return reason
 
     def save(self, store: "Any") -> bool:

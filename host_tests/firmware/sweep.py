@@ -12,6 +12,7 @@ from array import array
 import numpy as np
 from zerorate import Corrector, Sensor
 from zerorate.settings import DEFAULTS, LEAST, MOST
+from zerorate.storage.soundness import is_sound
 from zerorate_tools.layout import SETTINGS
 from zerorate_tools.replay.engines import others_of
 
@@ -117,6 +118,8 @@ def attack(library, number, rows=ROWS):
         if left or any(w is not None and w[-64:].any() for w in words):
             return f"{left or 'a word behind an array'}, power-on {part}, with {chosen}"
         corrector.state[:] = array("i", words[0][:-64].tolist())
+        if not is_sound(corrector.state, corrector.settings):
+            return f"a state that no store would give back, power-on {part}, with {chosen}"
         corrector.power_on()
         words[0][:-64] = corrector.state
     return ""

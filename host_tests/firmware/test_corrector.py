@@ -8,9 +8,9 @@ from zerorate.gravity.gravity_settings import gravity_settings
 from zerorate.motion.motion_settings import motion_settings
 from zerorate.rest import bias
 from zerorate.settings import DEFAULTS
-from zerorate.storage.store import EMPTY, LOADED, OTHER_BINDING, Store
+from zerorate.storage.store import EMPTY, LOADED, OTHER_BINDING, OUT_OF_RANGE, Store
 from zerorate_fakes.memory import FakeMemory
-from zerorate_tools.layout import MOTION, STATE
+from zerorate_tools.layout import AXIS, ESTIMATOR, MOTION, STATE, axis_at
 
 RATES = (800, -300, 40)
 PERIOD_US = 10000
@@ -99,6 +99,47 @@ def test_a_store_that_is_empty_or_of_another_chip_leaves_a_clean_start(learned):
     other = store_for(fresh, binding=b"\x70\0\0\0", memory=store.storage)
     assert fresh.load(other) == OTHER_BINDING
     assert list(fresh.state) == list(Corrector().state)
+
+
+@pytest.mark.parametrize(
+    ("name", "word"),
+    [
+        ("CURRENT", 5000),
+        ("ORDER", 0),
+        ("HOTTEST", -32000),
+        ("LINE_SHIFT", 31),
+        ("OFFSET_AGE_MS", -64),
+        ("WALK_Q16", 0),
+    ],
+)
+def test_a_state_that_cannot_be_starts_afresh_and_says_so(learned, name, word):
+    learned.state[axis_at(learned.settings, 1) + getattr(AXIS, name)] = word
+    store = store_for(learned)
+    assert learned.save(store)
+    again = Corrector()
+    assert again.load(store_for(again, memory=store.storage)) == OUT_OF_RANGE
+    assert list(again.state) == list(Corrector().state)
+    rest(again, 1000)
+    assert again.learned
+
+
+@pytest.mark.parametrize(
+    ("at", "by"),
+    [
+        (ESTIMATOR.EST_TEMP, 1 << 16),
+        (ESTIMATOR.EST_READINGS, -100),
+        (ESTIMATOR.EST_BIAS_Q8, 1 << 20),
+        (ESTIMATOR.EST_HISTOGRAM, 2 << 28),  # an edge above the next: a bin without width
+        (ESTIMATOR.EST_HISTOGRAM + 1, 5),  # readings where no bin is
+        (ESTIMATOR.EST_HISTOGRAM + 2, 1 << 24),
+    ],
+)
+def test_an_estimator_that_contradicts_itself_starts_afresh(learned, at, by):
+    e = learned.state[axis_at(learned.settings, 0) + AXIS.CURRENT]
+    learned.state[e + at] += by
+    store = store_for(learned)
+    assert learned.save(store)
+    assert Corrector().load(store_for(Corrector(), memory=store.storage)) == OUT_OF_RANGE
 
 
 @pytest.mark.parametrize(

@@ -178,7 +178,7 @@ def test_a_storage_that_reads_another_thing_each_time_cannot_be_read(memory_of_t
 
 
 def test_every_reason_has_words():
-    assert len(stores.REASONS) == stores.UNREADABLE + 1
+    assert len(stores.REASONS) == stores.OUT_OF_RANGE + 1
     assert "another chip" in stores.REASONS[stores.OTHER_BINDING]
     assert "version" in stores.REASONS[stores.OTHER_VERSION]
 

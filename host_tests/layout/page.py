@@ -12,7 +12,9 @@ _HEAD = """# The words of the firmware's arrays
 Made from `tools/zerorate_tools/layout` by `make layout`; edit it there. A kernel writes a word as
 its letter and its name: `s[_REST]`, `s[a + _OFFSET_Q8]`, `c[_WINDOW]`. A number behind `_Q` is how
 many bits stand for the fraction: 256 in a word of `_Q8` is 1. A real is two words, mantissa and
-exponent of 2; a packed one is one word. Three words of one name are x, y, z.
+exponent of 2; a packed one is one word. Three words of one name are x, y, z. Behind what a word is
+stands what it can be, where that is less than 31 bits: a stored state with anything else is not
+loaded.
 
 Some words are shared: below "While ..." stands who else has them, and when. The last column has the
 functions that write the word, `|`, and those that read it, behind their file below
@@ -70,6 +72,7 @@ def row(word, shared, writers, users):
         index = f"{word.index}.."
     what = word.meaning if isinstance(word.count, int) else f"{word.meaning} ({word.count} words)"
     what += " (shared)" if places(word) & shared else ""
+    what += f"; {word.least}..{word.most}" if word.limited else ""
     where = f"{by_file(writers)} \\| {by_file(users)}"
     return f"| {index} | `{word.name}` | {word.unit} | {what} | {where} |"
 

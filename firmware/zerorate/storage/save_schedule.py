@@ -34,6 +34,7 @@ class SaveSchedule:
     While flash is erased and written nothing else runs. With `corrector`, a Corrector, a save waits
     for a rest, where a gap costs nothing, but no longer than one write's share of a day; and its
     `explain` tells what saving costs. saves: how many there were; longest_us: of one of them.
+    retry_s: seconds until a write that failed is tried again (default: one write's share of a day).
     """
 
     def __init__(
@@ -43,12 +44,14 @@ class SaveSchedule:
         tolerance: int,
         writes_a_day: int = 24,
         corrector: "Any" = None,
+        retry_s: int = 0,
     ) -> None:
         if writes_a_day < 1:
             raise ValueError("writes_a_day is at least 1")
         self.store = store
         self.tolerance = tolerance
         self.interval_s = _DAY_S // writes_a_day
+        self._retry_s = retry_s or self.interval_s
         self.postponed = 0
         self.saves = 0
         self.longest_us = 0
@@ -64,11 +67,10 @@ class SaveSchedule:
         """Save payload if it is due at now_s, seconds since power-on; True when it was written."""
         if not self.is_significant(vital):
             return False
-        if self._written and now_s - self._saved_s < self.interval_s or self._waits(now_s):
+        if not self.is_due(now_s) or self._waits(now_s):
             self.postponed += 1
             return False
-        self._written = True
-        self._saved_s = now_s
+        self.written_at(now_s)
         self._due_s = -1
         begun_us = ticks_us()
         written = self.store.save(payload)
@@ -76,7 +78,13 @@ class SaveSchedule:
         self.longest_us = max(self.longest_us, ticks_diff(ticks_us(), begun_us))
         if written:
             self.loaded(vital)
+        else:
+            self._saved_s = now_s - self.interval_s + self._retry_s
         return written
+
+    def is_due(self, now_s: int) -> bool:
+        """True when a write's share of a day has passed since the last one."""
+        return not self._written or now_s - self._saved_s >= self.interval_s
 
     def _waits(self, now_s):
         """True while a rest is better waited for."""
@@ -93,6 +101,11 @@ class SaveSchedule:
             if moved >= self.tolerance or moved <= -self.tolerance:
                 return True
         return False
+
+    def written_at(self, saved_s: int) -> None:
+        """Tell when the state was last written, in seconds of `now_s`: below 0 before power-on."""
+        self._written = True
+        self._saved_s = saved_s
 
     def loaded(self, vital: "array[int]") -> None:
         """Tell what vital values the loaded state has: they need no saving."""

@@ -24,6 +24,7 @@ OTHER_BINDING = const(3)
 OTHER_VERSION = const(4)
 OTHER_SIZE = const(5)
 UNREADABLE = const(6)
+OUT_OF_RANGE = const(7)
 # layout: What a store says, in words
 REASONS = (
     "loaded",
@@ -33,6 +34,7 @@ REASONS = (
     "stored by another version",
     "stored with another size",
     "the storage cannot be read",
+    "what was stored cannot be: its checksum is right, a word is not",
 )
 # layout: end
 _FORMAT = const(1)

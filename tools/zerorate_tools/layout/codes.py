@@ -96,6 +96,7 @@ STORE = Codes(
         "OTHER_VERSION": "stored by another version",
         "OTHER_SIZE": "stored with another size",
         "UNREADABLE": "the storage cannot be read",
+        "OUT_OF_RANGE": "what was stored cannot be: its checksum is right, a word is not",
     },
 )
 INPUT_KIND = Codes(

@@ -1,16 +1,23 @@
 """What a word, an array and a list of codes are."""
 
+END = 2**30  # every word fits 31 bits
+
 
 class Word:
-    """One name of an array: its index, how many words it has (text where settings say), and why."""
+    """One name of an array: its index, how many words it has (text where settings say), and why.
 
-    def __init__(self, name, index, count, unit, meaning, while_text=""):
-        self.name = name
+    least, most: what it can be; a line of the layout ends in both, or in neither where its unit
+    says it (bits: 0..30) or it may be anything of 31 bits.
+    """
+
+    def __init__(self, index, line, while_text=""):
+        self.name, self.count, self.unit, self.meaning, *limits = line
         self.index = index
-        self.count = count
-        self.unit = unit
-        self.meaning = meaning
         self.while_text = while_text
+        self.limited = bool(limits)
+        self.least: int
+        self.most: int
+        self.least, self.most = limits or ((0, 30) if self.unit == "bits" else (-END, END - 1))
 
 
 class Overlay:
@@ -43,10 +50,15 @@ class Array:
 
     def _placed(self, lines, index, while_text):
         words = []
-        for name, count, unit, meaning in lines:
-            words.append(Word(name, index, count, unit, meaning, while_text))
-            index += 0 if isinstance(count, str) else count
+        for line in lines:
+            words.append(Word(index, line, while_text))
+            index += 0 if isinstance(words[-1].count, str) else words[-1].count
         return words
+
+    def ranges(self):
+        """Return (least, most) of every word whose place no setting moves, in their order."""
+        words = [word for word in self.words if not word.while_text and word.count.__class__ is int]
+        return [(word.least, word.most) for word in words for _ in range(word.count)]
 
     def __getattr__(self, name):
         for word in self.words:

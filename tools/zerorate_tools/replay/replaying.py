@@ -15,9 +15,21 @@ import numpy as np
 import pyarrow as pa
 from zerorate import Corrector
 from zerorate.settings import DEFAULTS
+from zerorate.storage.soundness import is_sound
 
 from zerorate_tools import layout
-from zerorate_tools.layout import AXIS, GRAVITY, MOTION, SETTINGS, STATE, Array, axis_at
+from zerorate_tools.layout import (
+    EFFECTS,
+    GRAVITY,
+    INPUT,
+    LIMITS,
+    MOTION,
+    MOTION_SETTINGS,
+    PLAY,
+    SLOT,
+    STATE,
+    Array,
+)
 
 from ..errors import BadModel, InFile, ZerorateError
 from ..recordings import Recording, open_recording
@@ -33,8 +45,6 @@ if TYPE_CHECKING:
 
 #: Options that leave out the sources which learn in motion.
 AT_REST_ALONE: dict[str, object] = {"motion": False, "gravity": False}
-_END = 2**30
-_LAST_PIECE = 12  # of the work that a window leaves: four an axis
 
 
 @dataclass
@@ -142,12 +152,34 @@ def load_state(corrector: Corrector, path: Path, resume: bool) -> None:
         raise InFile(path, problem, do="use the settings it was written with")
     words = array("i", np.frombuffer(content, "<i4").tolist())
     for part in _parts(corrector):
-        part[:] = words[: len(part)]
+        if corrector.effects is None or part is not corrector.effects.e:
+            part[:] = words[: len(part)]
+        elif resume and not _resumed(part, words):
+            raise InFile(path, "of another effect model", do="name the model it was written with")
         words = words[len(part) :]
     if not can_be_a_state(corrector):
         raise InFile(path, "damaged, or no state at all", do="name a file that --state wrote")
     if not resume:
         corrector.power_on()
+
+
+def _resumed(e: array, words: array) -> bool:
+    """Let effect model `e` go on from the words that one left; False where that was another."""
+    first = EFFECTS
+    counts = (first.SLOT_COUNT, first.INPUT_COUNT, first.TICK_US, first.SLOTS_A_SAMPLE)
+    given = {*counts, first.INSTANT_SLOTS, first.PLAY_COUNT, *range(first.TABLES, first.RINGS)}
+    for at, block, end, most in (
+        (first.INPUTS, INPUT, INPUT.INPUT_SUM, LIMITS.MOST_INPUTS),
+        (first.SLOTS, SLOT, SLOT.SLOT_STARTED, LIMITS.MOST_SLOTS),
+        (first.PLAYS, PLAY, PLAY.PLAY_STARTED, LIMITS.MOST_PLAYS),
+    ):
+        given.update(at + i * block.size + k for i in range(most) for k in range(end))
+    left = words[: len(e)]
+    slots = e[first.SLOT_COUNT] + e[first.PLAY_COUNT]
+    if any(e[i] != left[i] for i in given) or not 0 <= left[first.NEXT_SLOT] < max(1, slots):
+        return False
+    e[:] = left
+    return True
 
 
 def state_bytes(corrector: Corrector) -> bytes:
@@ -204,40 +236,33 @@ def _count(counts: dict[str, int], names: tuple[str, ...], codes: np.ndarray) ->
 
 
 def can_be_a_state(corrector: Corrector) -> bool:
-    """Whether each word fits 31 bits, and those that say which or where say one that there is: the
-    kernels go where they say, unasked."""
-    state, settings = corrector.state, corrector.settings
-    parts = [(state, STATE), (corrector.motion, MOTION), (corrector.gravity, GRAVITY)]
-    axes = [axis_at(settings, axis) for axis in range(3)]
-    there = [(words, array) for words, array in parts if words is not None]
+    """Whether the words of every source are such as can be: the kernels go where they say, unasked.
+
+    In the layout's ranges, each code one that there is, each node one of the ring.
+    """
+    state, motion, gravity = corrector.state, corrector.motion, corrector.gravity
     return (
-        all(-_END <= word < _END for words, _ in there for word in words)
-        and 0 <= state[STATE.WORK] <= _LAST_PIECE
-        and all(_codes_hold(words, array, 0) for words, array in there)
-        and all(_codes_hold(state, AXIS, at) for at in axes)
-        and all(_estimators_hold(state, settings, at) for at in axes)
+        is_sound(state, corrector.settings)
+        and _words_hold(state, STATE)
+        and (gravity is None or _words_hold(gravity, GRAVITY))
+        and (motion is None or _words_hold(motion, MOTION) and _nodes_hold(corrector))
     )
 
 
-def _codes_hold(words: Sequence[int], array: Array, at: int) -> bool:
-    """Whether each code and each shift of an array, or of a block of it at `at`, is one."""
+def _words_hold(words: Sequence[int], array: Array) -> bool:
     for word in array.words:
+        if word.while_text:
+            continue
         kind, _, name = word.unit.partition(" ")
-        known = range(31) if kind == "bits" else None
-        known = getattr(layout, name).numbers.values() if kind == "code" else known
-        if known is not None and not word.while_text:
-            first = at + word.index
-            if any(code not in known for code in words[first : first + word.count]):
+        codes = set(getattr(layout, name).numbers.values()) if kind == "code" else None
+        end = len(words) if isinstance(word.count, str) else word.index + word.count
+        for value in words[word.index : end]:
+            if not word.least <= value <= word.most or codes and value not in codes:
                 return False
     return True
 
 
-def _estimators_hold(state: Sequence[int], settings: Sequence[int], at: int) -> bool:
-    """Whether the estimator in use and the order of the short-term ones are of this axis."""
-    size = settings[SETTINGS.ESTIMATOR_WORDS]
-    short = range(at + settings[SETTINGS.FIRST_SHORT], at + settings[SETTINGS.FIRST_LONG], size)
-    order = at + AXIS.ORDER
-    in_use = range(short.start, at + settings[SETTINGS.ESTIMATORS_END], size)
-    return sorted(state[order : order + len(short)]) == list(short) and state[
-        at + AXIS.CURRENT
-    ] in (0, *in_use)
+def _nodes_hold(corrector: Corrector) -> bool:
+    words, nodes = corrector.motion, corrector.motion_settings[MOTION_SETTINGS.NODES]
+    at = [word.index for word in MOTION.words if word.unit == "node"]
+    return all(0 <= words[i] < nodes for i in at) and words[MOTION.FILLED] <= nodes

@@ -1,0 +1,187 @@
+"""Every word of a stored state turned, its checksum right: what the firmware makes of it.
+
+python -m host_tests.turned_words [--values N] [--seed N]. Each word gets N values, drawn by the
+seed. The state is stored, loaded, and run by the compiled kernels through rest over the
+temperatures that it had learned. It is to be refused, or to do no harm for good: no signal, no
+exception, and within ROUNDS times forty minutes no bias is wrong by more than WRONG_MDPS beyond
+the state that nobody turned, for the last ten minutes of a round. Exits 1 otherwise.
+"""
+
+import argparse
+import json
+import os
+import random
+import sys
+from array import array
+from dataclasses import replace
+
+import numpy as np
+from zerorate import Corrector
+from zerorate.storage.learned_store import LearnedStore
+from zerorate.storage.store import LOADED, OUT_OF_RANGE
+from zerorate_fakes.memory import FakeMemory
+from zerorate_tools.layout import AXIS, ESTIMATOR, SETTINGS
+from zerorate_tools.replay.engines import engine
+from zerorate_tools.replay.samples import Frames
+
+WRONG_MDPS = 10.0
+ROUNDS = 8
+_LSB_PER_DPS = 131.0
+_ODR_HZ = 100
+_BIAS_LSB = (800, -300, 40)
+_SLOPE = (0.03, -0.02, 0.01)  # LSB/LSB of temperature
+_BINDING = b"\x68\0\0\0"
+_END = 2**30
+_ENDS = (0, 1, -1, 2, 0x3FFF, 0x7FFF, -0x8000, 1 << 20, 1 << 29, _END - 1, -_END)
+
+
+def rest(minutes, cold_lsb, warm_lsb, seed):
+    """(frames, biases in LSB) of a rest whose temperature goes to and fro, 20 minutes a way."""
+    n = minutes * 60 * _ODR_HZ
+    noise = np.random.default_rng(seed)
+    way = np.abs((np.arange(n) / (20 * 60 * _ODR_HZ) + 1) % 2 - 1)
+    temp = cold_lsb + (warm_lsb - cold_lsb) * way
+    bias = np.array(_BIAS_LSB) + np.outer(temp, _SLOPE)
+    words = np.empty((n, 7), np.int32)
+    words[:, :3] = np.rint((0, 0, 16384) + noise.normal(0, 30, (n, 3)))
+    words[:, 3] = np.rint(temp)
+    words[:, 4:] = np.rint(bias + noise.normal(0, 6.5, (n, 3)))
+    period_us = 1_000_000 // _ODR_HZ
+    steps = np.full(n, period_us, np.int32)
+    return Frames(np.arange(n) * period_us, words, steps, np.empty((n, 0), np.int32)), bias
+
+
+def run(corrector, frames):
+    """The biases, LSB, that the compiled kernels publish; the frames stay as they are."""
+    frames = replace(frames, frames=frames.frames.copy())
+    return next(engine("native").run(corrector, [frames])).bias_q8 / 256
+
+
+def learned(options):
+    """A state after 40 minutes of rest between 18 and 30 degC."""
+    corrector = Corrector(motion=False, gravity=False, **options)
+    run(corrector, rest(40, -6300, -2200, 1)[0])
+    return array("i", corrector.state)
+
+
+def stored(state, options):
+    """(what a load says, the corrector that loaded it): the store is written by this very state."""
+    memory = FakeMemory(1 << 16)
+    writer = Corrector(motion=False, gravity=False, **options)
+    writer.state[:] = state
+    assert LearnedStore(memory, _BINDING, writer).save()
+    reader = Corrector(motion=False, gravity=False, **options)
+    return LearnedStore(memory, _BINDING, reader).load(), reader
+
+
+def error_mdps(corrector, frames, bias_lsb):
+    """The largest error of the last ten minutes, averaged over seconds, three axes."""
+    off = (run(corrector, frames) - bias_lsb)[-600 * _ODR_HZ :]
+    return float(np.abs(off.reshape(600, _ODR_HZ, 3).mean(1)).max() / _LSB_PER_DPS * 1000)
+
+
+def values(word, count, draw):
+    """Values for a word that holds `word`: bits of it turned, ends of ranges, anything."""
+    turned = [word ^ 1 << draw.randrange(30), word ^ 1 << draw.randrange(16, 30), -word, 2 * word]
+    turned += [draw.choice(_ENDS), draw.randrange(-_END, _END), word + draw.choice((-1, 1))]
+    return [max(-_END, min(_END - 1, draw.choice(turned))) for _ in range(count)]
+
+
+def in_a_child(function):
+    """(what the function returned, 0), or (None, the signal or -1 for an exception)."""
+    reader, writer = os.pipe()
+    child = os.fork()
+    if not child:
+        os.close(reader)
+        try:
+            with open(writer, "w") as file:
+                json.dump(function(), file)
+            os._exit(0)
+        except BaseException as error:
+            print(repr(error), file=sys.stderr, flush=True)
+            os._exit(1)
+    os.close(writer)
+    with open(reader) as file:
+        answer = file.read()
+    status = os.waitpid(child, 0)[1]
+    if status:
+        return None, status & 0x7F or -1
+    return json.loads(answer), 0
+
+
+def name_of(at, settings):
+    """The word's name, by the layout."""
+    axis, k = divmod(at - settings[SETTINGS.AXES], settings[SETTINGS.AXIS_WORDS])
+    if axis < 0:
+        return f"word {at}"
+    words, e = AXIS.words, k - AXIS.ESTIMATORS
+    if e >= 0:
+        estimator, k = divmod(e, settings[SETTINGS.ESTIMATOR_WORDS])
+        words = ESTIMATOR.words
+    name = max((w for w in words if w.index <= k and not w.while_text), key=lambda w: w.index)
+    return f"axis {axis} " + (f"estimator {estimator} " if e >= 0 else "") + name.name
+
+
+def attack(options, count, seed, only=None):
+    """Counts of what became of the turned states, and lines on those that fell."""
+    state = learned(options)
+    settings = Corrector(**options).settings
+    frames, bias = rest(40, -6000, -2500, 2)
+    reason, corrector = stored(state, options)
+    assert reason == LOADED
+    usual = max(error_mdps(corrector, frames, bias) for _ in range(ROUNDS))
+    told = {"loaded": 0, "afresh": 0, "signals": 0, "exceptions": 0, "wrong": 0}
+    lines = []
+    first = settings[SETTINGS.AXES]
+    for at in range(first, len(state)) if only is None else only:
+        for value in values(state[at], count, random.Random(f"{seed} {at}")):
+            turned = array("i", state)
+            turned[at] = value
+            if turned == state:
+                continue
+
+            def what(turned=turned):
+                reason, corrector = stored(turned, options)
+                off = 0.0
+                for _ in range(ROUNDS if reason == LOADED else 0):
+                    off = error_mdps(corrector, frames, bias)
+                    if off < usual + WRONG_MDPS:
+                        break
+                return reason, off
+
+            answer, fell = in_a_child(what)
+            kind = "signals" if fell > 0 else "exceptions" if fell else ""
+            if not kind:
+                reason, off = answer
+                kind = "loaded" if reason == LOADED else "afresh"
+                assert reason in (LOADED, OUT_OF_RANGE)
+                if off > usual + WRONG_MDPS:
+                    kind = "wrong"
+            told[kind] += 1
+            if kind not in ("loaded", "afresh"):
+                off = "" if fell else f", {off:.0f} mdps where {usual:.1f} are usual"
+                name = name_of(at, settings)
+                lines.append(f"{kind}: {name}, {state[at]} became {value}{off}")
+                print(lines[-1], flush=True)
+    return told, lines
+
+
+SETTINGS_TRIED = ({}, {"bins": 8}, {"document": True})
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--values", type=int, default=3, help="of each word")
+    parser.add_argument("--seed", type=int, default=34)
+    arguments = parser.parse_args()
+    fallen = 0
+    for options in SETTINGS_TRIED:
+        told, lines = attack(options, arguments.values, arguments.seed)
+        fallen += len(lines)
+        counts = ", ".join(f"{number} {kind}" for kind, number in told.items())
+        print(f"{options or 'by default'}: {counts}", flush=True)
+    return 1 if fallen else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
