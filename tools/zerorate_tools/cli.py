@@ -8,9 +8,10 @@ from collections.abc import Sequence
 from importlib import import_module
 from importlib.util import find_spec
 from types import FrameType
+from typing import Any, TextIO
 
 from . import __version__
-from .errors import MissingLibrary, ZerorateError, os_error_in_words
+from .errors import MissingLibrary, ZerorateError, os_error_in_words, printable
 
 COMMANDS = (
     *("demo", "import", "record", "simulate", "replay", "close", "compare", "allan", "model"),
@@ -31,6 +32,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             number = getattr(signal, name)
             if signal.getsignal(number) != signal.SIG_IGN:  # by nohup
                 signal.signal(number, _end)
+        sys.stdout = _Printable(sys.stdout)
     try:
         arguments = parser().parse_args(given or ["--help"])
         return arguments.run(arguments) or 0
@@ -38,6 +40,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _complain(str(error), error.exit_code)
     except ModuleNotFoundError as error:
         return _complain(_what_to_install(error), ZerorateError.exit_code)
+    except UnicodeEncodeError as error:
+        name = error.object[max(0, error.start - 40) : error.end + 40]
+        problem = "not UTF-8; rename the file or folder of that name"
+        return _complain(f"{' '.join(name.split())}: {problem}", ZerorateError.exit_code)
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return _BROKEN_PIPE
@@ -45,6 +51,20 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _complain(os_error_in_words(error), ZerorateError.exit_code)
     except KeyboardInterrupt:
         return _complain("interrupted; nothing half-written was left", _INTERRUPTED)
+
+
+class _Printable:
+    """A text stream that writes only what a terminal may have."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+
+    def write(self, text: str) -> int:
+        """Write it printable."""
+        return self._stream.write(printable(text))
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
 
 
 def _end(number: int, frame: FrameType | None) -> None:
@@ -74,7 +94,7 @@ def parser() -> argparse.ArgumentParser:
 
 
 def _complain(message: str, exit_code: int) -> int:
-    print(f"zerorate: {message}", file=sys.stderr)
+    print(printable(f"zerorate: {message}"), file=sys.stderr)
     return exit_code
 
 

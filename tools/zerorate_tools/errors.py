@@ -1,7 +1,28 @@
 """What goes wrong in words for a person: the command line prints one line of it and exits."""
 
 import errno
+import unicodedata
 from os import PathLike
+
+
+def printable(text: str) -> str:
+    """The text as a terminal may have it: no escape, no mark that turns its direction, no half.
+
+    Names of files and columns come from others. Every character that is no sign, by Unicode's
+    categories of control, format and surrogate, is written as Python writes it; lines stay.
+    """
+    return "".join(
+        c if c in "\n\t" or unicodedata.category(c) not in ("Cc", "Cf", "Cs") else ascii(c)[1:-1]
+        for c in text
+    )
+
+
+def refuse_odd_name(path: str | PathLike[str]) -> None:
+    """Raise InFile where the name is not UTF-8: neither reports nor recordings can hold it."""
+    try:
+        str(path).encode()
+    except UnicodeEncodeError:
+        raise InFile(path, "its name is not UTF-8", do="rename it") from None
 
 
 class ZerorateError(Exception):
@@ -10,7 +31,7 @@ class ZerorateError(Exception):
     exit_code = 2
 
     def __init__(self, message: str) -> None:
-        super().__init__(" ".join(str(message).split()))
+        super().__init__(printable(" ".join(str(message).split())))
 
 
 class InFile(ZerorateError):

@@ -123,6 +123,6 @@ def _setting(text: str) -> tuple[str, float]:
     name, _, value = text.partition("=")
     try:
         number = float(value)
-    except ValueError as error:
+        return name, int(number) if name in ("bins", "short", "long") else number
+    except (ValueError, OverflowError) as error:
         raise argparse.ArgumentTypeError(f"{text}: not of the form NAME=NUMBER") from error
-    return name, int(number) if name in ("bins", "short", "long") else number

@@ -14,10 +14,17 @@ def add_parser(subparsers) -> None:
     parser.add_argument("--out", type=Path, metavar="FILE", help=".parquet, .csv or .csv.gz")
     parser.add_argument("--truth", type=Path, metavar="FILE", help="the true bias too (.parquet)")
     parser.add_argument("--session", type=int, metavar="N", help="this power-on only, 1-based")
-    parser.add_argument("--seed", type=int, metavar="N", help="instead of the description's")
+    parser.add_argument("--seed", type=_seed, metavar="N", help="instead of the description's")
     parser.add_argument("--list", action="store_true", help="list the bundled scenarios")
     parser.add_argument("--entries", action="store_true", help="what a description may say")
     parser.set_defaults(run=run, refuse=parser.error)
+
+
+def _seed(text: str) -> int:
+    seed = int(text)
+    if seed < 0:
+        raise argparse.ArgumentTypeError(f"{seed} is below 0; write 0 or more")
+    return seed
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
+from ..errors import printable
 from ..loop.read.blocks import session_of
 from ..loop.read.sessions import Session
 from ..loop.read.ticks import read_ticks
@@ -89,7 +90,7 @@ def run_device(job: Job, device: Device) -> dict[str, Any]:
                 sessions.append(session)
                 good.append(path)
             except Exception as error:  # of a stranger's file; the fleet goes on
-                failures.append({"file": path, "reason": one_line(error)})
+                failures.append({"file": printable(path), "reason": one_line(error)})
     curve = curve_of(sessions) if sessions else None
     return {
         "device": device.name,

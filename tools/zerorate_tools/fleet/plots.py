@@ -154,7 +154,7 @@ def write_page(report: dict[str, Any], part: Part | None, path: Path) -> None:
     said = {"headline": headline(report), "ways": WAYS, "scenario": scenario_in_words}
     text = rendered("fleet.html.j2", plots_of(report, part), __package__, r=report, **said)
     with written_beside(path) as temporary:
-        temporary.write_text(text, encoding="utf-8")
+        temporary.write_text(text, encoding="utf-8", errors="backslashreplace")
 
 
 def headline(report: dict[str, Any]) -> str:

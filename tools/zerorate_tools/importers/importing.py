@@ -3,6 +3,8 @@
 At no time is more than some thousand rows in memory.
 """
 
+import errno
+import stat
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -11,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import BadRecording
+from ..errors import BadRecording, refuse_odd_name
 from ..recordings import Recording, Scales, check_output, open_recording, recording_writer
 from ..recordings.atomic import check_apart
 from ..recordings.reading import recording_name, whole
@@ -53,6 +55,7 @@ def import_recording(
     that were read since it was called last. The other arguments are those of `read_foreign`.
     Raises BadRecording, MissingLibrary.
     """
+    _require(Path(source))
     check_output(out)
     check_apart([out], [source])
     folder = Path(out).resolve().parent
@@ -84,10 +87,21 @@ def read_foreign(
     return Recording(columns, one.scales, recording_name(path)), one.report
 
 
+def _require(path: Path) -> None:
+    """Raise BadRecording for what is neither a file nor a folder: a pipe would be waited for."""
+    refuse_odd_name(path)
+    try:
+        kind = path.stat().st_mode
+    except OSError as error:
+        problem = "no such file" if error.errno == errno.ENOENT else error.strerror or str(error)
+        raise BadRecording(path, problem, do="name a file to import") from error
+    if not stat.S_ISREG(kind) and not stat.S_ISDIR(kind):
+        raise BadRecording(path, "neither a file nor a folder", do="copy it into a file first")
+
+
 @contextmanager
 def _opened(path, options, mapping, units, instance, advance: Advance, folder) -> Iterator[_Import]:
-    if not path.exists():
-        raise BadRecording(path, "no such file", do="name a file to import")
+    _require(path)
     if path.is_file() and path.stat().st_size == 0:
         raise BadRecording(path, "empty file", do="name another file")
     own = None if mapping else _own_form(path)

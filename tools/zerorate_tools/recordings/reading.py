@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..errors import BadRecording
+from ..errors import BadRecording, refuse_odd_name
 from . import csv_format, parquet_format
 from .checks import BatchChecker, check_names
 from .drafts import settle
@@ -47,6 +47,7 @@ class OpenRecording:
         checker.finish()
 
     def _read_header(self) -> None:
+        refuse_odd_name(self.path)
         settle(self.path.parent)
         if not self.path.is_file():
             what = "is a folder" if self.path.is_dir() else "no such file"

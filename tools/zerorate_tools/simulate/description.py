@@ -57,6 +57,8 @@ def parsed(path: Path) -> Any:
     load = _yaml if path.suffix in (".yaml", ".yml") else _toml
     try:
         return load(data)
+    except RecursionError as error:
+        raise BadDescription(path, "nested too deeply", do="correct the text there") from error
     except (ValueError, UnicodeDecodeError) as error:
         raise BadDescription(path, str(error), do="correct the text there") from error
 

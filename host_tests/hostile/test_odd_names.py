@@ -1,0 +1,63 @@
+"""Names, numbers and files that are none: one printable line, exit code 2, no traceback."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+_LOG = "t_us,gx,gy,gz\n" + "".join(f"{i * 10000},{i % 7},{i % 5},{i % 3}\n" for i in range(500))
+_NOT_UTF8 = os.fsdecode(b"a\xff.csv")
+_LOOP = ["import", "loop", "--out", "o.parquet"]
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "loop").symlink_to("loop")
+    os.mkfifo(tmp_path / "fifo")
+    (tmp_path / _NOT_UTF8).write_text(_LOG)
+    (tmp_path / "run.csv").write_text(_LOG)
+    (tmp_path / "run.json").write_text('{"sensor":"x","odr_hz":100,"gyro_lsb_per_dps":131.0}')
+    (tmp_path / "deep.toml").write_text("a=" + "[" * 5000 + "]" * 5000)
+    (tmp_path / "deep.yaml").write_text("[" * 5000 + "]" * 5000)
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("words", "problem"),
+    [
+        (["import", _NOT_UTF8, "--out", "o.parquet"], r"a\udcff.csv: its name is not UTF-8"),
+        (["allan", _NOT_UTF8], r"a\udcff.csv: its name is not UTF-8"),
+        (["replay", _NOT_UTF8, "--out", "o.parquet"], r"a\udcff.csv: its name is not UTF-8"),
+        (["allan", "\x1b[31mx\u202e.csv"], r"\x1b[31mx\u202e.csv: no such file"),
+        (_LOOP, "loop: Too many levels of symbolic links"),
+        (["import", "fifo", "--out", "o.parquet"], "fifo: neither a file nor a folder"),
+        (["simulate", "hysteresis", "--seed", "-1"], "-1 is below 0"),
+        (["simulate", "deep.toml", "--out", "s.parquet"], "deep.toml: nested too deeply"),
+        (["simulate", "deep.yaml", "--out", "s.parquet"], "deep.yaml: nested too deeply"),
+        (["replay", "run.csv", "--out", "o.parquet", "--set", "bins=1e400"], "bins=1e400: not of"),
+        (["replay", "run.csv", "--out", "o.parquet", "--model", "/dev/zero"], "zero: is no file"),
+    ],
+    ids=str,
+)
+def test_it_is_one_printable_line_that_says_what_to_do(folder, words, problem):
+    command = [sys.executable, "-m", "zerorate_tools.cli", *words]
+    done = subprocess.run(command, cwd=folder, capture_output=True, timeout=60)
+    said = done.stderr.decode()
+    assert done.returncode == 2 and problem in said and "Traceback" not in said
+    assert "\x1b" not in said and "\u202e" not in said
+    assert said.startswith("usage") or len(said.splitlines()) == 1
+    assert not list(Path(folder).glob("[os].parquet"))
+
+
+def test_one_folder_that_is_not_utf8_leaves_the_fleet_standing(folder):
+    for name in ("good", os.fsdecode(b"b\xffd")):
+        (folder / "logs" / name).mkdir(parents=True)
+        for kind in ("csv", "json"):
+            text = (folder / f"run.{kind}").read_text()
+            (folder / "logs" / name / f"1.{kind}").write_text(text)
+    command = [sys.executable, "-m", "zerorate_tools.cli", "fleet", "logs", "--out", "found"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, timeout=100)
+    said = (done.stdout + done.stderr).decode()
+    assert r"b\udcffd/1.csv: its name is not UTF-8; rename it" in said and "Traceback" not in said
