@@ -21,6 +21,7 @@ ATTACKS = {
         "a turned bit, then a cut",
         [*_PYTEST, "host_tests/firmware", "-k", "test_store or test_places"],
     ),
+    "a state, checksum right": ("every word turned", ["-m", "host_tests.turned_words"]),
     "models": ("cuts, turned bits, noise", [*_PYTEST, "host_tests/tools", "-k", "test_model"]),
     "readers": ("damaged files", [*_PYTEST, "host_tests/hostile", "-k", "any or mat_of_one"]),
     "memory": (
@@ -44,6 +45,11 @@ ATTACKS = {
         [*_PYTEST, "host_tests/report/test_page.py", "host_tests/fleet/test_page.py", "-k", "name"],
     ),
     "31 bits": ("random sensors and settings", ["-m", "host_tests.firmware.sweep"]),
+    "service restarts": ("10,000, in order and by kill", ["-m", "host_tests.service.restarts"]),
+    "service": (
+        "1,000 readers, failing sinks, buses",
+        [*_PYTEST, "host_tests/service", "-k", "not restarts"],
+    ),
     "a board's day": ("resets, unpluggings", ["-m", "host_tests.boards.day"]),
 }
 

@@ -21,7 +21,13 @@ class LinuxI2C:
 
         self._message = i2c_msg
         self._owned = isinstance(bus, (int, str))
-        self._bus = SMBus(bus) if self._owned else bus
+        self._bus = SMBus(None) if self._owned else bus
+        if self._owned:
+            try:
+                self._bus.open(bus)
+            except OSError:  # what is open but no I2C bus: smbus2 leaves its descriptor open
+                self._bus.close()
+                raise
         self._raw = bool(int(self._bus.funcs) & _I2C_FUNC_I2C)
         self.max_burst = 0 if self._raw else _BLOCK_MAX
 

@@ -4,6 +4,7 @@ import configparser
 import errno
 import json
 import os
+import resource
 import runpy
 import signal
 import socket
@@ -20,13 +21,31 @@ from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050, Physical
 from zerorate_i2c.mpu6050 import MPU6050
 from zerorate_tools.errors import ZerorateError
 from zerorate_tools.layout import AXIS, axis_at
-from zerorate_tools.service import Datagrams, Service, System, UnixSocket
+from zerorate_tools.service import Datagrams, Lines, Service, System, UnixSocket
+from zerorate_tools.service.serve import notify
 
 BIAS_DPS = (0.31, -0.19, 0.08)
 
 
+class CountedFile(FileStorage):
+    """A file that notes when it was written, by a board's clock."""
+
+    def __init__(self, path, clock):
+        super().__init__(path)
+        self.clock, self.writes_us = clock, []
+
+    def write_pieces(self, offset, pieces):
+        super().write_pieces(offset, pieces)
+        self.writes_us.append(self.clock.now_us)
+
+    def ago_s(self):
+        return (self.clock.now_us - self.writes_us[-1]) / 1e6
+
+
 class Kept:
     """A sink that keeps its lines."""
+
+    lost = 0
 
     def __init__(self):
         self.lines = []
@@ -41,13 +60,16 @@ class Kept:
 class Board:
     """A chip at rest, its bus, a file, and a service on them."""
 
-    def __init__(self, folder):
-        self.chip = FakeMPU6050(Physical(gyro_dps=BIAS_DPS))
+    def __init__(self, folder, gyro_dps=BIAS_DPS):
+        self.chip = FakeMPU6050(Physical(gyro_dps=gyro_dps))
         self.clock = FakeClock(self.chip)
         self.bus = FakeI2C(self.chip, self.clock)
         self.said, self.told = [], []
-        storage = FileStorage(str(folder / "learned.bin"))
-        self.system = System(self.open, storage, self.clock, self.said.append, self.told.append)
+        self.file = CountedFile(str(folder / "learned.bin"), self.clock)
+        self.system = System(
+            *(self.open, self.file, self.clock, self.said.append, self.told.append),
+            stored_ago_s=self.file.ago_s,
+        )
         self.restart()
 
     def open(self):
@@ -153,6 +175,162 @@ def test_a_full_disk_is_said_and_tried_again(board, monkeypatch):
     assert "loaded" in board.said[-1]
 
 
+def test_restarts_write_once_an_hour_at_most_whatever_ends_them(tmp_path):
+    board = Board(tmp_path, lambda _: [bias + board.clock.now_us / 36e9 for bias in BIAS_DPS])
+    for number in range(30):
+        board.restart()
+        board.live(8)
+        if number % 2:
+            board.service._keep_at_the_end()
+        board.clock.now_us += 500_000_000  # switched off
+    hours = board.clock.now_us / 3.6e9
+    writes_us = board.file.writes_us
+    assert hours - 1 <= len(writes_us) <= hours + 1
+    assert min(b - a for a, b in zip(writes_us, writes_us[1:])) >= 3.6e9 - 2e6
+
+
+def test_what_was_learned_in_an_hour_of_short_lives_is_kept(board):
+    board.live(30)
+    board.clock.advance_us(3_600_000_000)
+    board.restart()
+    board.live(20)
+    board.service._keep_at_the_end()
+    assert len(board.file.writes_us) == 2
+
+
+def test_t_us_is_true_over_an_outage_and_the_line_behind_it_is_marked(board):
+    board.live(5)
+    before, began_us = board.kept.lines[-1], board.clock.now_us
+    board.bus.fault("hang", times=None)
+    board.live(6)
+    board.bus.mend()
+    lines = len(board.kept.lines)
+    board.live(5)
+    first, last = board.kept.lines[lines], board.kept.lines[-1]
+    assert last["t_us"] - before["t_us"] == pytest.approx(board.clock.now_us - began_us, abs=8e4)
+    assert first["gap_us"] == first["t_us"] - before["t_us"] > 5e6
+    assert not any("gap_us" in line for line in board.kept.lines[lines + 1 :])
+
+
+def test_a_systemd_that_is_gone_is_counted_and_said_once(board, monkeypatch):
+    monkeypatch.setenv("NOTIFY_SOCKET", "/nowhere/notify")
+    board.system = replace(board.system, notify=notify)
+    board.restart()
+    board.live(20)
+    assert board.service.notify_failures >= 5 and len(board.kept.lines) > 400
+    assert [line for line in board.said if line.startswith("systemd: ")] == [board.said[-2]]
+
+
+def test_a_thousand_readers_end_nobody(tmp_path):
+    """More than the process may have descriptors: those beyond a hundred are refused."""
+    path, soft = tmp_path / "imu.sock", resource.getrlimit(resource.RLIMIT_NOFILE)
+    sink, readers = UnixSocket(path), []
+    try:
+        for _ in range(1000):
+            reader = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+            reader.connect(str(path))
+            readers.append(reader)
+            sink.put(b"{}\n")
+            if len(readers) == 300:  # from here on no descriptor is left for the service's end
+                used = len(os.listdir("/proc/self/fd"))
+                resource.setrlimit(resource.RLIMIT_NOFILE, (used + 800, soft[1]))
+        assert readers[0].recv(100) == b"{}\n" * 33 + b"{"
+        assert sink.refused == 900
+        for reader in readers:
+            reader.close()
+        sink.put(b"{}\n")
+        sink.put(b"{}\n")
+        again = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        again.connect(str(path))
+        sink.put(b"last\n")
+        assert again.recv(100) == b"last\n"
+        again.close()
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, soft)
+        sink.close()
+
+
+def test_without_a_descriptor_left_a_reader_waits_and_the_service_lives(tmp_path):
+    path, soft = tmp_path / "imu.sock", resource.getrlimit(resource.RLIMIT_NOFILE)
+    sink = UnixSocket(path)
+    reader = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    reader.connect(str(path))
+    try:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (reader.fileno() + 1, soft[1]))
+        sink.put(b"{}\n")
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, soft)
+    assert sink.refused == 1
+    sink.put(b"later\n")
+    assert reader.recv(100) == b"later\n"
+    reader.close()
+    sink.close()
+
+
+def test_a_living_socket_is_not_taken_over_and_a_dead_one_is(tmp_path):
+    path = tmp_path / "imu.sock"
+    sink = UnixSocket(path)
+    with pytest.raises(ZerorateError, match="imu.sock: a service answers there; end it"):
+        UnixSocket(path)
+    sink._server.close()  # killed: the file stays
+    UnixSocket(path).close()
+    with pytest.raises(ZerorateError, match="none: no such folder; make it"):
+        UnixSocket(tmp_path / "none" / "imu.sock")
+
+
+def test_a_full_stdout_loses_lines_and_nothing_else():
+    with open("/dev/full", "w") as full:
+        sink = Lines(full)
+        for _ in range(1000):
+            sink.put(b"{}\n")
+    assert sink.lost == 1000
+
+
+def test_a_pipe_whose_reader_sleeps_holds_nobody_up_and_gets_whole_lines():
+    reader, writer = os.pipe()
+    with open(writer, "w") as stream:
+        sink = Lines(stream)
+        for number in range(5000):
+            sink.put(json.dumps({"number": number, "more": "x" * 100}).encode() + b"\n")
+            if number == 3000:
+                os.read(reader, 30000)
+    lines = open(reader, "rb").read().split(b"\n")
+    assert sink.lost > 1000 and json.loads(lines[-2])["number"] > 3000
+
+
+@pytest.mark.parametrize("address", [":99999", "127.0.0.1:99999", "127.0.0.1:0", "127.0.0.1"])
+def test_an_address_that_cannot_be_is_one_line(address):
+    with pytest.raises(ZerorateError, match=f"--udp {address}: write ADDRESS:PORT"):
+        Datagrams(address)
+
+
+def test_a_bus_that_opens_but_is_none_leaves_no_descriptor(tmp_path):
+    from zerorate_i2c.linux import LinuxI2C
+
+    (tmp_path / "i2c-7").touch()
+    before = len(os.listdir("/proc/self/fd"))
+    for _ in range(20):
+        with pytest.raises(OSError):
+            LinuxI2C(str(tmp_path / "i2c-7"))
+    assert len(os.listdir("/proc/self/fd")) == before
+
+
+@pytest.mark.parametrize(
+    "options",
+    [["--g", "4", "--dlpf-hz", "20", "--part", "MPU-6500"], ["--dps", "500"]],
+)
+def test_it_runs_on_an_emulated_chip_without_hardware(tmp_path, options):
+    command = [sys.executable, "-m", "zerorate_tools.cli", "run", "fake:", *options]
+    process = subprocess.Popen(
+        [*command, "--state", str(tmp_path / "learned.bin")],
+        **{"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True},
+    )
+    line = json.loads(process.stdout.readline())
+    process.terminate()
+    assert "MPU-6" in process.communicate(timeout=30)[1]
+    assert line["accel_g"][2] == pytest.approx(1, abs=0.05)
+
+
 def test_a_slow_reader_gets_whole_lines_and_holds_nobody_up(tmp_path):
     sink = UnixSocket(tmp_path / "imu.sock")
     reader = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
@@ -213,7 +391,7 @@ def test_the_real_process_comes_back_after_kill_9(tmp_path):
         said.append(process.communicate()[1])
     assert lines[0]["bias_dps"] == pytest.approx(BIAS_DPS, abs=0.05)
     assert "nothing was ever stored" in said[0] and "loaded" in said[1]
-    assert "loaded" in said[2] and "kept what was learned" in said[2]
+    assert "loaded" in said[2] and "within the hour, is not kept" in said[2]
 
 
 def test_the_unit_has_a_watchdog_and_no_rights(repository):

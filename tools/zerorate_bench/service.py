@@ -44,6 +44,7 @@ class Disk(FileStorage):
         super().__init__(str(path))
         self.clock = clock
         self.refused = 0
+        self._written_us = 0
 
     def write_pieces(self, offset: int, pieces: Iterable[Any]) -> None:
         """As FileStorage, with the faults."""
@@ -55,6 +56,11 @@ class Disk(FileStorage):
             super().write_pieces(offset, (part,))
             raise Killed
         super().write_pieces(offset, pieces)
+        self._written_us = self.clock.now_us
+
+    def ago_s(self) -> float:
+        """Since it was last written, by a clock that no killed process takes with it."""
+        return (self.clock.now_us - self._written_us) / 1e6
 
 
 class World:
@@ -115,6 +121,8 @@ class Judge:
         self.awaiting = False
         self.after_kill_dps: list[float] = []
 
+    lost = 0
+
     def put(self, line: bytes) -> None:
         """One published line."""
         self.lines += 1
@@ -160,7 +168,12 @@ def run(hours: float = 24, faults: int = 1000, seed: int = 1) -> dict:
     done: Counter[str] = Counter()
     with tempfile.TemporaryDirectory() as folder:
         disk = Disk(Path(folder) / "learned.bin", clock)
-        system = System(lambda: MPU6050(bus, odr_hz=ODR_HZ, clock=clock), disk, clock, _silent)
+        system = System(
+            lambda: MPU6050(bus, odr_hz=ODR_HZ, clock=clock),
+            *(disk, clock, _silent),
+            stored_ago_s=disk.ago_s,
+            writes_a_day=24 * 60,  # sixty times as many as a real one has, for the faults to meet
+        )
         service = Service(system, [judge])
         thawed_us = 0
         while clock.now_us < end_us:

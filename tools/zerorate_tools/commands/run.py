@@ -11,9 +11,10 @@ def add_parser(subparsers) -> None:
         help="correct for ever on a Linux board, as a service",
         description="Read the chip, learn its bias at rest, keep what is learned, and publish the "
         "corrected samples as lines of JSON: on standard output, a Unix socket, or by UDP. A line "
-        "has rate_dps without bias, bias_dps, accel_g, temp_degc, and t_us since the start.",
+        "has rate_dps without bias, bias_dps, accel_g, temp_degc, and t_us since the start; gap_us "
+        "where samples are missing before it.",
     )
-    parser.add_argument("bus", metavar="BUS", help="I2C bus: /dev/i2c-1")
+    parser.add_argument("bus", metavar="BUS", help="/dev/i2c-1, or fake: for an emulated chip")
     parser.add_argument(
         "--state", type=Path, metavar="FILE", default=Path("learned.bin"), help="what was learned"
     )
@@ -24,25 +25,37 @@ def add_parser(subparsers) -> None:
         ("--address", "address", lambda text: int(text, 0), 0x68, "of the chip (0x68)"),
         ("--hz", "odr_hz", float, 100.0, "output data rate (100)"),
         ("--dps", "full_scale_dps", int, 250, "250, 500, 1000 or 2000"),
+        ("--g", "full_scale_g", int, 2, "2, 4, 8 or 16"),
+        ("--dlpf-hz", "dlpf_hz", float, None, "the chip's low-pass filter (by --hz)"),
     ):
         parser.add_argument(flag, dest=dest, type=kind, default=default, metavar="N", help=what)
+    parser.add_argument("--part", metavar="NAME", help="the chip, where its id says too little")
+    parser.add_argument("--model", type=Path, metavar="FILE", help="effect model to subtract")
     parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> None:
     import signal
+    import time
 
     from zerorate.storage.places import FileStorage
     from zerorate_i2c import clock
     from zerorate_i2c.linux import LinuxI2C
     from zerorate_i2c.mpu6050 import MPU6050
 
-    from ..errors import ZerorateError
-    from ..service import Datagrams, Lines, Service, Sink, System, UnixSocket
+    from ..errors import InFile, ZerorateError
+    from ..model import encoded, read_model
+    from ..service import Datagrams, FakeBus, Lines, Service, Sink, System, UnixSocket
+
+    if not arguments.state.parent.is_dir():
+        raise InFile(arguments.state.parent, "no such folder", do="make it, or name another")
+    names = ("odr_hz", "full_scale_dps", "full_scale_g", "dlpf_hz", "part")
+    options = {name: getattr(arguments, name) for name in names}
+    model = encoded(read_model(arguments.model)) if arguments.model else b""
+    fake = FakeBus(arguments.address, arguments.part) if arguments.bus == "fake:" else None
 
     def open_imu():
-        options = {name: getattr(arguments, name) for name in ("odr_hz", "full_scale_dps")}
-        bus = LinuxI2C(arguments.bus)
+        bus = fake or LinuxI2C(arguments.bus)
         try:
             return MPU6050(bus, arguments.address, **options)
         except ValueError as error:
@@ -54,6 +67,9 @@ def run(arguments: argparse.Namespace) -> None:
     def say(line: str) -> None:
         print(line, file=sys.stderr, flush=True)
 
+    def stored_ago_s() -> float:
+        return time.time() - arguments.state.stat().st_mtime
+
     sinks: list[Sink] = []
     if arguments.socket:
         sinks.append(UnixSocket(arguments.socket))
@@ -61,5 +77,6 @@ def run(arguments: argparse.Namespace) -> None:
         sinks.append(Datagrams(arguments.udp, arguments.remote))
     # systemd ends a service with SIGTERM; Ctrl-C and it do the same
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    system = System(open_imu, FileStorage(str(arguments.state)), clock, say)
-    Service(system, sinks or [Lines(sys.stdout)]).run()
+    storage = FileStorage(str(arguments.state))
+    system = System(open_imu, storage, clock, say, stored_ago_s=stored_ago_s)
+    Service(system, sinks or [Lines(sys.stdout)], model).run()

@@ -1,6 +1,7 @@
 """`zerorate run`: the firmware as a service of a Linux board."""
 
+from .fake_bus import FakeBus
 from .publish import Datagrams, Lines, Sink, UnixSocket
 from .serve import Service, System
 
-__all__ = ["Datagrams", "Lines", "Service", "Sink", "System", "UnixSocket"]
+__all__ = ["Datagrams", "FakeBus", "Lines", "Service", "Sink", "System", "UnixSocket"]

@@ -1,19 +1,27 @@
 """Where corrected samples go: lines of JSON to a stream, a Unix socket, or datagrams.
 
-No reader can hold the service up: what one does not take in time is dropped for it, a whole line.
+No reader can hold the service up or end it: what one does not take in time is dropped for it, a
+whole line, and counted in `lost`.
 """
 
 import os
+import select
 import socket
 from ipaddress import ip_address
 from pathlib import Path
 from typing import Protocol, TextIO
 
-from ..errors import ZerorateError
+from ..errors import InFile, ZerorateError
+
+#: Readers of a socket at once: the service keeps descriptors for its bus and its file.
+MOST_READERS = 100
+_HIGHEST_PORT = 65535
 
 
 class Sink(Protocol):
-    """Takes lines."""
+    """Takes lines. lost: how many of them did not go, for one reader or another."""
+
+    lost: int
 
     def put(self, line: bytes) -> None:
         """One line of JSON, ended."""
@@ -23,14 +31,37 @@ class Sink(Protocol):
 
 
 class Lines:
-    """Lines on a text stream, standard output as a rule."""
+    """Lines on a stream with a descriptor, standard output as a rule.
+
+    A pipe that nobody reads any more raises BrokenPipeError: the service was for that reader.
+    """
 
     def __init__(self, stream: TextIO) -> None:
-        self._stream = stream
+        stream.flush()
+        self._descriptor = stream.fileno()
+        self._left = b""
+        self.lost = 0
 
     def put(self, line: bytes) -> None:
-        self._stream.write(line.decode())
-        self._stream.flush()
+        """Write; where there is no room a line is lost whole, and one that was begun is ended."""
+        self._left = self._rest_of(self._left)
+        rest = self._rest_of(line) if not self._left else line
+        if rest == line:
+            self.lost += 1
+        else:
+            self._left = rest
+
+    def _rest_of(self, text: bytes) -> bytes:
+        """What did not go, without waiting for a reader of a pipe."""
+        try:
+            # a pipe that is writable takes a page, and a line is less than that
+            if text and select.select([], [self._descriptor], [], 0)[1]:
+                return text[os.write(self._descriptor, text) :]
+        except BrokenPipeError:
+            raise
+        except OSError:
+            pass
+        return text
 
     def close(self) -> None:
         """The stream is its owner's."""
@@ -43,8 +74,11 @@ class Datagrams:
         host, _, port = address.rpartition(":")
         try:
             target, number = ip_address(host.strip("[]")), int(port)
+            if not 0 < number <= _HIGHEST_PORT:
+                raise ValueError(port)
         except ValueError:
-            raise ZerorateError(f"--udp {address}: write ADDRESS:PORT, as 127.0.0.1:9750") from None
+            do = f"write ADDRESS:PORT, as 127.0.0.1:9750, the port 1..{_HIGHEST_PORT}"
+            raise ZerorateError(f"--udp {address}: {do}") from None
         if not remote and not target.is_loopback:
             do = "add --remote if everybody on that network may read and forge them"
             raise ZerorateError(f"--udp {address} leaves this machine; {do}")
@@ -52,30 +86,43 @@ class Datagrams:
         self._target = (str(target), number)
         self._socket = socket.socket(family, socket.SOCK_DGRAM)
         self._socket.setblocking(False)
+        self.lost = 0
 
     def put(self, line: bytes) -> None:
         """Send; a datagram that cannot go is lost, as datagrams are."""
         try:
             self._socket.sendto(line, self._target)
         except OSError:
-            pass
+            self.lost += 1
 
     def close(self) -> None:
         self._socket.close()
 
 
 class UnixSocket:
-    """A stream socket at path that any number of readers connect to: `nc -U path`."""
+    """A stream socket at path that up to MOST_READERS connect to: `nc -U path`.
+
+    refused: how many came beyond that. Raises InFile where the path cannot be had.
+    """
 
     def __init__(self, path: Path) -> None:
         self._path = path
+        self.lost = self.refused = 0
+        self._readers: dict[socket.socket, bytes] = {}
+        if not path.parent.is_dir():
+            raise InFile(path.parent, "no such folder", do="make it, or name another socket")
         if path.is_socket():
+            if _answers(path):
+                raise InFile(path, "a service answers there", do="end it, or name another socket")
             path.unlink()  # of a service that was killed
         self._server = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
-        self._server.bind(os.fspath(path))
+        try:
+            self._server.bind(os.fspath(path))
+        except OSError as error:
+            self._server.close()
+            raise InFile(path, error.strerror or str(error), do="name another socket") from error
         self._server.listen()
         self._server.setblocking(False)
-        self._readers: dict[socket.socket, bytes] = {}
 
     def put(self, line: bytes) -> None:
         """Send to every reader; one that has not taken its last line whole misses this one."""
@@ -83,9 +130,10 @@ class UnixSocket:
         for reader, left in list(self._readers.items()):
             try:
                 text = left or line
+                self.lost += bool(left)
                 self._readers[reader] = text[reader.send(text) :]
             except BlockingIOError:
-                pass
+                self.lost += not left
             except OSError:
                 reader.close()
                 del self._readers[reader]
@@ -100,7 +148,26 @@ class UnixSocket:
         try:
             while True:
                 reader, _ = self._server.accept()
+                if len(self._readers) >= MOST_READERS:
+                    self.refused += 1
+                    reader.close()
+                    continue
                 reader.setblocking(False)
                 self._readers[reader] = b""
         except BlockingIOError:
             pass
+        except OSError:  # no descriptor is left: who waits is asked in when there is one
+            self.refused += 1
+
+
+def _answers(path: Path) -> bool:
+    """Whether a service listens on the socket, be it too busy to take one more."""
+    with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as caller:
+        caller.setblocking(False)
+        try:
+            caller.connect(os.fspath(path))
+        except (ConnectionRefusedError, FileNotFoundError):
+            return False
+        except BlockingIOError:
+            pass
+    return True

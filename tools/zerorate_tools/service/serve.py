@@ -1,6 +1,7 @@
 """Read, learn, keep, publish: one loop that outlives the bus, the disk and its own death."""
 
 import json
+import math
 import os
 import socket
 from array import array
@@ -12,21 +13,21 @@ from zerorate import Corrector, Sensor
 from zerorate.checked import CheckedCorrector
 from zerorate.storage.learned_store import LearnedStore
 from zerorate.storage.save_schedule import SaveSchedule
-from zerorate.storage.store import REASONS
+from zerorate.storage.store import LOADED, REASONS
 from zerorate_i2c.fifo import EMPTY, Fifo
 
-from ..errors import os_error_in_words
+from ..errors import ZerorateError, os_error_in_words
 from .publish import Sink
 
 _LEAST_PAUSE_MS = 10
 _BUS_PAUSE_MS = 1000
 _ALIVE_US = 2_000_000
-_WRITES_A_DAY = 24 * 60
+_RETRY_S = 60
 _TOLERANCE_DPS = 0.01
 
 
 def notify(text: str) -> None:
-    """Tell systemd (sd_notify); nothing where it does not listen."""
+    """Tell systemd (sd_notify); nothing where there is none. Raises OSError where it is gone."""
     path = os.environ.get("NOTIFY_SOCKET", "")
     if path:
         with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as out:
@@ -40,7 +41,8 @@ class System:
 
     open_imu: a new MPU6050, raises OSError; storage: as zerorate.storage.places; clock: functions
     of zerorate_i2c.clock, which only goes forward, so that a clock set back is not seen; say: a
-    line of log; notify: to systemd.
+    line of log; notify: to systemd; stored_ago_s: since the storage was last written, seconds, by
+    whatever clock outlives the process. A wrong one costs a write, or puts one off by an hour.
     """
 
     open_imu: Callable[[], Any]
@@ -48,19 +50,25 @@ class System:
     clock: Any
     say: Callable[[str], None]
     notify: Callable[[str], None] = notify
+    stored_ago_s: Callable[[], float] = lambda: math.inf
+    writes_a_day: int = 24
 
 
 class Service:
-    """One chip, corrected for ever. bus_failures counts the times the chip had to be opened anew.
+    """One chip, corrected for ever.
 
-    sinks: where lines go. Each has `t_us` since the start, `rate_dps` without bias, `bias_dps`,
-    `accel_g` and `temp_degc`.
+    bus_failures counts the times the chip had to be opened anew, notify_failures what systemd was
+    not told, `lost` of each sink its lines. sinks: where lines go. Each has `t_us` since the start,
+    `rate_dps` without bias, `bias_dps`, `accel_g`, `temp_degc`, and `gap_us` since the line before
+    where samples are missing between the two. model: bytes of an effect model, used where it fits.
     """
 
-    def __init__(self, system: System, sinks: Sequence[Sink]) -> None:
+    def __init__(self, system: System, sinks: Sequence[Sink], model: bytes = b"") -> None:
         self.system = system
         self.sinks = sinks
+        self._model = model
         self.bus_failures = 0
+        self.notify_failures = 0
         self.samples = 0
         self.t_us = 0
         self._imu: Any = None
@@ -69,6 +77,10 @@ class Service:
         self._binding = b""
         self._sample = array("i", [0] * 7)
         self._bias_lsb = array("i", [0] * 3)
+        self._newest_us: int | None = None
+        self._published_us: int | None = None
+        self._is_stored = False
+        self._said_lost = False
         self._told_us = system.clock.ticks_us() - _ALIVE_US
 
     def step(self) -> None:
@@ -84,50 +96,105 @@ class Service:
         if status == EMPTY:
             self.system.clock.sleep_ms(max(_LEAST_PAUSE_MS, self._imu.period_us // 500))
             return
-        self.t_us += self._fifo.dt_us
-        if self._corrector.update(self._sample, self._fifo.dt_us, status):
+        dt_us = self._passed_us()
+        self.t_us += dt_us
+        if self._corrector.update(self._sample, dt_us, status):
             self.samples += 1
             self._publish()
         self._keep()
 
+    def _passed_us(self) -> int:
+        """Microseconds since the sample before, which another FIFO than this may have given."""
+        last_us, self._newest_us = self._newest_us, self._fifo.newest_us
+        if last_us is None:
+            return self._fifo.dt_us
+        return self.system.clock.ticks_diff(self._newest_us, last_us)
+
     def run(self) -> None:
-        """Until interrupted; then what was learned is written once more."""
+        """Until interrupted; then what was learned is written if an hour has passed since."""
         try:
             while True:
                 self.step()
         except KeyboardInterrupt:
-            if self._corrector is not None and self._store.save():
-                self.system.say("kept what was learned")
+            if self._corrector is not None:
+                self._keep_at_the_end()
         finally:
+            lost = sum(sink.lost for sink in self.sinks)
+            if lost or self.bus_failures or self.notify_failures:
+                self.system.say(
+                    f"lost {lost} lines, the bus {self.bus_failures} times, "
+                    f"systemd {self.notify_failures} times"
+                )
             for sink in self.sinks:
                 sink.close()
+
+    def _keep_at_the_end(self) -> None:
+        if self._schedule.is_due(self._now_s()):
+            kept = self._store.save()
+            self.system.say("kept what was learned" if kept else "what was learned is lost")
+        elif self._schedule.is_significant(self._bias_lsb):
+            self.system.say("what was learned since the last write, within the hour, is not kept")
+        else:
+            self.system.say("kept what was learned")
+
+    def _now_s(self) -> int:
+        return self.t_us // 1_000_000
+
+    def _notify(self, text: str) -> None:
+        try:
+            self.system.notify(text)
+        except OSError as error:
+            if not self.notify_failures:
+                self.system.say(f"systemd: {os_error_in_words(error)}; going on without it")
+            self.notify_failures += 1
 
     def _alive(self) -> None:
         clock = self.system.clock
         now_us = clock.ticks_us()
         if clock.ticks_diff(now_us, self._told_us) >= _ALIVE_US:
             self._told_us = now_us
-            self.system.notify("WATCHDOG=1")
+            self._notify("WATCHDOG=1")
 
     def _open(self) -> None:
         self._imu = self.system.open_imu()
         self._fifo = Fifo(self._imu)
         if self._corrector is None or self._imu.binding != self._binding:
             self._begin()
-        self.system.notify("READY=1")
+        self._notify("READY=1")
 
     def _begin(self) -> None:
         """A chip that was not known: begin with what is stored of it."""
         imu = self._imu
         self._binding = imu.binding
         learner = Corrector(Sensor(*imu.scales))
+        if self._model:
+            self._use_model(learner)
         self._store = LearnedStore(self.system.storage, imu.binding, learner)
-        self.system.say(
-            f"{imu.part}, {imu.odr_hz:g} Hz: {REASONS[self._store.load(imu.kept_power)]}"
-        )
+        reason = self._store.load(imu.kept_power)
+        self.system.say(f"{imu.part}, {imu.odr_hz:g} Hz: {REASONS[reason]}")
         self._corrector = CheckedCorrector(learner)
         tolerance = max(1, round(_TOLERANCE_DPS * imu.gyro_lsb_per_dps))
-        self._schedule = SaveSchedule(self._store, 3, tolerance, _WRITES_A_DAY, learner)
+        self._schedule = SaveSchedule(
+            self._store, 3, tolerance, self.system.writes_a_day, learner, retry_s=_RETRY_S
+        )
+        self._is_stored = reason == LOADED
+        if self._is_stored:
+            ago_s = self.system.stored_ago_s()
+            ago_s = ago_s if 0 <= ago_s < self._schedule.interval_s else self._schedule.interval_s
+            self._schedule.written_at(self._now_s() - int(ago_s))
+
+    def _use_model(self, learner: Corrector) -> None:
+        """Subtract what the model says. Raises ZerorateError where it is of another device."""
+        from zerorate.effects.model_file import REASONS as MODEL_REASONS
+        from zerorate.model import EffectModel
+
+        effects = EffectModel()
+        reason = effects.load(self._model, learner.sensor, self._binding)
+        if reason != LOADED:
+            raise ZerorateError(f"--model: {MODEL_REASONS[reason]}")
+        if effects.channels:
+            raise ZerorateError(f"--model: it follows the channel {effects.channels[0]}, not here")
+        learner.use_model(effects)
 
     def _lose(self, error: OSError) -> None:
         """The bus has failed for good: what came since the last check is in doubt."""
@@ -143,15 +210,18 @@ class Service:
         self.system.clock.sleep_ms(_BUS_PAUSE_MS)
 
     def _keep(self) -> None:
-        """Write what was learned, at rest, when it moved, once a minute at most."""
+        """Write what was learned, at rest, when it moved, once an hour at most."""
         learner = self._corrector.corrector
         if learner.learned:  # and not of this rest alone
             for axis in range(3):
                 self._bias_lsb[axis] = round(learner.bias_lsb(axis))
+            if self._is_stored:  # what this power-on began with needs no writing
+                self._schedule.loaded(self._bias_lsb)
+                self._is_stored = False
         if not self._schedule.is_significant(self._bias_lsb):
             return
         saves = self._schedule.saves
-        kept = self._schedule.offer(learner.state, self._bias_lsb, self.t_us // 1_000_000)
+        kept = self._schedule.offer(learner.state, self._bias_lsb, self._now_s())
         if not kept and self._schedule.saves > saves:
             self.system.say("what was learned cannot be written; trying again in a minute")
 
@@ -165,6 +235,12 @@ class Service:
             "accel_g": [round(sample[axis] / imu.accel_lsb_per_g, 5) for axis in range(3)],
             "temp_degc": round(imu.temperature_degc(sample[3]), 2),
         }
+        last_us, self._published_us = self._published_us, self.t_us
+        if last_us is not None and self.t_us - last_us > 2 * imu.period_us:
+            line["gap_us"] = self.t_us - last_us
         text = json.dumps(line, separators=(",", ":")).encode() + b"\n"
         for sink in self.sinks:
             sink.put(text)
+            if sink.lost and not self._said_lost:
+                self._said_lost = True
+                self.system.say("a reader is too slow, or has no room: its lines are lost")
