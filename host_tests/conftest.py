@@ -6,10 +6,10 @@ from pathlib import Path
 
 import hypothesis
 import pytest
+from zerorate_bench.boards.pico import VARIABLE, find_pico
+from zerorate_bench.boards.pico import boards_folder as named_folder
 from zerorate_tools.errors import MissingRuntime
 from zerorate_tools.runtimes import NAMES, available, find, how_to_get
-from zerorate_tools.runtimes.pico import VARIABLE, find_pico
-from zerorate_tools.runtimes.pico import boards_folder as named_folder
 
 _REPOSITORY = Path(__file__).resolve().parents[1]
 _CHROMIUM = "chromium"

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 from zerorate_bench.accuracy import second_power_on
-from zerorate_tools.peers import HOW, PEERS, ardupilot_cubic, given, px4_cubic
+from zerorate_bench.peers import HOW, PEERS, ardupilot_cubic, px4_cubic
+from zerorate_tools.peers import given
 from zerorate_tools.simulate import simulate_sessions
 
 CURVED = {

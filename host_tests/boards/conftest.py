@@ -4,8 +4,8 @@ import time
 
 import pytest
 import serial
+from zerorate_bench.boards.pico import EmulatedPico
 from zerorate_tools.boards.flashing import flash
-from zerorate_tools.runtimes.pico import EmulatedPico
 
 # The board's own seconds are a fraction of these where the machine is free.
 PATIENCE_S = 240

@@ -7,10 +7,10 @@ import subprocess
 import sys
 
 import pytest
+from zerorate_bench.native.manifests import FOLDERS, manifests
 from zerorate_tools import __version__
 from zerorate_tools.boards.compiling import board_files, mpy_version
 from zerorate_tools.boards.connection import BoardFacts
-from zerorate_tools.boards.manifests import FOLDERS, manifests
 from zerorate_tools.boards.parts import PARTS, REST, UnknownPart, chosen_parts, part_files
 
 from host_tests.drivers.unix_board import UnixBoard
@@ -56,7 +56,7 @@ class TestParts:
 @pytest.mark.parametrize(("name", "text"), [pytest.param(*m, id=str(m[0])) for m in manifests()])
 class TestMip:
     def test_its_file_is_fresh(self, repository, name, text):
-        remedy = "python -m zerorate_tools.boards.manifests writes it again"
+        remedy = "python -m zerorate_bench.native.manifests writes it again"
         assert (repository / name).read_text() == text, remedy
 
     def test_every_file_that_it_names_is_beside_it(self, repository, name, text):

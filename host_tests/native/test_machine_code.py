@@ -18,10 +18,10 @@ from zerorate.motion.motion_settings import motion_settings, motion_state
 from zerorate.rest import guard
 from zerorate.rest.estimators import reset
 from zerorate.rest.step import admit, consider, finish, step
-from zerorate_bench.emulated import Emulated, code_in
+from zerorate_bench.native.emulated import Emulated, code_in
+from zerorate_bench.native.machine_code import INLINED, UNROLLED
+from zerorate_bench.native.native_files import plain_kernels
 from zerorate_tools.kernels.known import answer_by, known_model
-from zerorate_tools.kernels.machine_code import INLINED, UNROLLED
-from zerorate_tools.kernels.native_files import plain_kernels
 from zerorate_tools.kernels.parts import BURST, PARTS
 from zerorate_tools.kernels.reading import Kernels
 from zerorate_tools.layout import EFFECTS, GRAVITY, MOTION, SETTINGS, SLOT, SOURCE, STATE, STILLNESS

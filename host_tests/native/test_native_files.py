@@ -3,9 +3,9 @@
 import struct
 
 import pytest
+from zerorate_bench.native.machine_code import machine_code, problems
+from zerorate_bench.native.native_files import stale
 from zerorate_tools.errors import ZerorateError
-from zerorate_tools.kernels.machine_code import machine_code, problems
-from zerorate_tools.kernels.native_files import stale
 from zerorate_tools.kernels.reading import Kernels
 
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from zerorate_bench.peers.sources import Source
 from zerorate_tools.demo.broad import Trial, true_bias
 from zerorate_tools.peers import given
-from zerorate_tools.peers.sources import Source
 from zerorate_tools.simulate import simulate
 
 HZ = 100.0

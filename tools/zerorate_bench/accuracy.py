@@ -5,10 +5,11 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 from zerorate_tools.demo.broad import rms_mdps
-from zerorate_tools.peers import OURS, PEERS, Given, Peer, given
+from zerorate_tools.peers import Given, Peer, given
 from zerorate_tools.peers.firmware import within_two_sigma
 from zerorate_tools.simulate import simulate_sessions
 
+from .peers import OURS, PEERS
 from .told import told_everything, told_the_future
 
 SCENARIOS = ("warm-up-a", "warm-up-b", "warm-up-c")

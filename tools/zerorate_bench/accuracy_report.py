@@ -3,10 +3,9 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
-from zerorate_tools.peers import HOW, PEERS
-
 from .accuracy import DAY, FIRST_S, SCENARIOS, SEEDS, day, honesty, second_power_on
 from .limits import ACCURACY, SESSION_2, limits_table, verdicts
+from .peers import HOW, PEERS
 from .public_data import data_folder, recordings
 from .real_recordings import COLUMNS, real
 from .tables import machine, machine_line, number, table

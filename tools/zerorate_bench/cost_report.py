@@ -7,7 +7,7 @@ from zerorate_tools.errors import MissingRuntime
 
 from .limits import COST, limits_table, verdicts
 from .memory import heap_bytes_per_update, import_heap_bytes, mpy_sizes, state_bytes
-from .native_cost import code_bytes, effects_cost, native_cost
+from .native.native_cost import code_bytes, effects_cost, native_cost
 from .replay_speed import HOURS, replay_speed
 from .tables import machine, machine_line, number, table
 from .workload import Workload, workload

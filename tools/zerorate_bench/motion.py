@@ -15,13 +15,14 @@ from zerorate_tools.demo.broad import Trial, TrueBias, rms_mdps, trials, true_bi
 from zerorate_tools.errors import MissingRuntime
 from zerorate_tools.peers import Given, Peer, given, vqf_clip_raised, vqf_default
 from zerorate_tools.peers.firmware import Decision
-from zerorate_tools.peers.sources import Source
 from zerorate_tools.simulate import simulate
 from zerorate_tools.simulate.description import load_description
 from zerorate_tools.simulate.schema import Description
 
+from zerorate_bench.peers.sources import Source
+
 from .flicker import by_flicker, with_flicker
-from .native_cost import source_cost
+from .native.native_cost import source_cost
 
 SCENARIOS = (
     *("never-rests", "rests-30", "short-rests", "trembling", "slow-tilt", "slow-log"),

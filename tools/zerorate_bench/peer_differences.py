@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 from zerorate_tools.demo.broad import rms_mdps
-from zerorate_tools.peers import Given, Peer, ardupilot_cubic, fusion, given, px4_cubic
+from zerorate_tools.peers import Given, Peer, fusion, given
 from zerorate_tools.simulate import simulate
 from zerorate_tools.simulate.description import bundled, parsed
 
 from .accuracy import SEEDS
+from .peers.cubic import ardupilot_cubic, px4_cubic
 from .tables import machine_line, number, table
 
 _HOW = """\

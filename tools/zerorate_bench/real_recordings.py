@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 from zerorate_tools.demo.broad import rms_mdps
 from zerorate_tools.importers import read_foreign
 from zerorate_tools.loop.read.still import runs
-from zerorate_tools.peers import OURS, Given, Peer, given
+from zerorate_tools.peers import Given, Peer, given
 from zerorate_tools.peers.online import first_seconds
 from zerorate_tools.recordings import Recording
 
+from .peers import OURS
 from .public_data import recordings, told_of
 
 BLOCK_S = 20.0

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 from zerorate_tools.boards.flashing import flash
 from zerorate_tools.errors import MissingRuntime
-from zerorate_tools.runtimes.pico import CORE_HZ, EmulatedPico, find_pico
 
 from ..limits import Limit, limits_table, verdicts
 from ..tables import number, table
 from ..workload import CYCLE, Workload, workload
 from .memory import CONFIGURATIONS, heap_and_import, least_heap
+from .pico import CORE_HZ, EmulatedPico, find_pico
 from .playing import Play, Played, on_host, on_pico
 
 #: Samples of each mode that is compared; the workload's own cycle is the first.

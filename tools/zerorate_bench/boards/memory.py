@@ -5,7 +5,8 @@ import time
 
 import serial
 from zerorate_tools.boards.connection import connected, told
-from zerorate_tools.runtimes.pico import EmulatedPico
+
+from .pico import EmulatedPico
 
 _MEASURED = """
 import gc, time

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from zerorate import Corrector, Sensor
 from zerorate.bursts import Bursts
 from zerorate_tools.boards.connection import connected, told
-from zerorate_tools.runtimes.pico import EmulatedPico
 
 from ..workload import REST
+from .pico import EmulatedPico
 
 SENSOR = (100.0, 131.0, 16384.0, 340.0, 36.53)
 _MARKS = 3

@@ -18,7 +18,7 @@ from zerorate_tools.boards.connection import BoardFacts
 from zerorate_tools.boards.needs import needs
 from zerorate_tools.boards.parts import REST
 
-from ..native_cost import code_bytes
+from ..native.native_cost import code_bytes
 from ..tables import table
 
 #: Heap that a program needs beside the firmware: its text, a store, a FIFO and its buffers.

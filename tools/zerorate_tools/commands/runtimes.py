@@ -19,19 +19,29 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
 
 
 def get(arguments: argparse.Namespace) -> int:
+
     from zerorate_tools.errors import MissingRuntime
     from zerorate_tools.runtimes import fetch
-    from zerorate_tools.runtimes.pico import fetch_rp2040
 
     missing = 0
     for name in arguments.names:
         try:
-            fetch_rp2040() if name == "rp2040" else fetch(name)
+            _fetch_emulator() if name == "rp2040" else fetch(name)
             print(f"{name}: ready")
         except MissingRuntime as error:
             missing += 1
             print(f"zerorate: {name}: {error}", file=sys.stderr)
     return MissingRuntime.exit_code if missing else 0
+
+
+def _fetch_emulator() -> None:
+    from zerorate_tools.errors import MissingRuntime
+
+    try:
+        from zerorate_bench.boards.pico import fetch_rp2040
+    except ModuleNotFoundError:
+        raise MissingRuntime("the emulated Pico is in a checkout only") from None
+    fetch_rp2040()
 
 
 def list_all(arguments: argparse.Namespace) -> None:

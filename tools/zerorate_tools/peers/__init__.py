@@ -4,31 +4,11 @@ A peer takes a sequence of Given, one a power-on, and returns for each the bias 
 it would have subtracted from each sample; NaN where it cannot be run (a channel is absent).
 """
 
-from .cubic import ardupilot_cubic, px4_cubic
 from .firmware import Peer, firmware
 from .given import Given, given
 from .online import first_seconds, fusion, vqf_clip_raised, vqf_default
 
-ONLINE: dict[str, Peer] = {
-    "mean of the first 10 s": first_seconds,
-    "imufusion": fusion,
-    "vqf": vqf_default,
-    "vqf, clip 25 dps": vqf_clip_raised,
-}
-OFFLINE: dict[str, Peer] = {
-    "PX4-style cubic": px4_cubic,
-    "ArduPilot-style cubic": ardupilot_cubic,
-}
-OURS: dict[str, Peer] = {
-    "US 9,354,080's rules": firmware(document=True),
-    "US 9,354,080's rules, on rests": firmware(document=True, every=False),
-    "zerorate": firmware(),
-}
-PEERS = {**ONLINE, **OFFLINE, **OURS}
-HOW = {
-    **dict.fromkeys(ONLINE, "on the device, knowing nothing"),
-    **dict.fromkeys(OFFLINE, "fitted to the first power-on, told its rests"),
-    **dict.fromkeys(OURS, "on the device, after the first power-on"),
-}
-
-__all__ = ["HOW", "OFFLINE", "ONLINE", "OURS", "PEERS", "Given", "Peer", "firmware", "given"]
+__all__ = [
+    "Given", "Peer", "firmware", "first_seconds", "fusion", "given", "vqf_clip_raised",
+    "vqf_default",
+]  # fmt: skip

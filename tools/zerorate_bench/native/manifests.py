@@ -1,6 +1,6 @@
 """Writes what `mip` installs from: a package.json a folder for the rest path, PART.json for more.
 
-python -m zerorate_tools.boards.manifests, in a checkout; a test fails while one is stale.
+python -m zerorate_bench.native.manifests, in a checkout; a test fails while one is stale.
 """
 
 import json
@@ -8,8 +8,8 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 
-from .. import __version__
-from .parts import PACKAGES, PARTS, REST, part_files
+from zerorate_tools import __version__
+from zerorate_tools.boards.parts import PACKAGES, PARTS, REST, part_files
 
 FOLDERS = dict(zip(PACKAGES, ("firmware", "drivers"), strict=True))
 

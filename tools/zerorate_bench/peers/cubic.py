@@ -11,8 +11,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter
-
-from .given import Given
+from zerorate_tools.peers.given import Given
 
 _ORDER = 3
 _MEDIAN = 31

@@ -13,7 +13,6 @@ from zerorate.gravity.gravity_settings import gravity_settings, gravity_state
 from zerorate.model import EffectModel
 from zerorate.motion.motion_settings import motion_settings, motion_state
 from zerorate_tools.errors import ZerorateError
-from zerorate_tools.kernels.machine_code import PROCESSORS, machine_code
 from zerorate_tools.kernels.parts import BURST, PARTS
 from zerorate_tools.kernels.reading import Kernels, firmware_package
 from zerorate_tools.model import Slot, build_model, encoded
@@ -21,8 +20,9 @@ from zerorate_tools.model.check import sensor_for
 from zerorate_tools.model.term import Term
 from zerorate_tools.simulate import simulate
 
+from ..workload import CYCLE, Workload
 from .emulated import Emulated, code_in, emulated
-from .workload import CYCLE, Workload
+from .machine_code import PROCESSORS, machine_code
 
 # frames of 14 bytes in the 1024 bytes of an MPU-6050's FIFO, of which it loses none at this
 AT_ONCE = 64

@@ -6,7 +6,8 @@ from array import array
 from pathlib import Path
 
 from zerorate_tools.errors import MissingRuntime, ZerorateError
-from zerorate_tools.kernels.native_files import ENTERED
+
+from .native_files import ENTERED
 
 _CODE, _END, _STACK, _DATA = 0x10000, 0x30000, 0x80000, 0x100000
 _SIZE = 0x10000

@@ -21,10 +21,10 @@ import tty
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..errors import MissingRuntime
-from .cache import runtime_folder
-from .node import node_command
-from .packages import install, locked_version
+from zerorate_tools.errors import MissingRuntime
+from zerorate_tools.runtimes.cache import runtime_folder
+from zerorate_tools.runtimes.node import node_command
+from zerorate_tools.runtimes.packages import install, locked_version
 
 _HERE = Path(__file__).parent / "rp2040"
 _PACKAGE = "rp2040js"

@@ -4,11 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-
+from zerorate_tools.kernels.library import run_source
 from zerorate_tools.layout import GRAVITY, MOTION
-
-from ..kernels.library import run_source
-from .given import Given
+from zerorate_tools.peers.given import Given
 
 _MOTION_WORDS = MOTION.MOTION_BIAS_Q8, MOTION.MOTION_QUALITY_Q8
 _GRAVITY_WORDS = GRAVITY.GRAVITY_BIAS_Q8, GRAVITY.GRAVITY_QUALITY_Q8

@@ -12,11 +12,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..errors import ZerorateError
-from .c_functions import ARITHMETIC, kernels_in_c
-from .library import zig_cc
-from .parts import PARTS
-from .reading import Kernels
+from zerorate_tools.errors import ZerorateError
+from zerorate_tools.kernels.c_functions import ARITHMETIC, kernels_in_c
+from zerorate_tools.kernels.library import zig_cc
+from zerorate_tools.kernels.parts import PARTS
+from zerorate_tools.kernels.reading import Kernels
 
 _COMMON = (
     *("-ffreestanding", "-fno-jump-tables", "-fwrapv", "-fno-sanitize=undefined", "-fno-builtin"),
