@@ -15,6 +15,7 @@ import numpy as np
 from ...recordings import open_recording
 from ...recordings.recording import ACCEL, GYRO, TIME
 from ...simulate.attitude import IDENTITY, integrate, into_body
+from ..read.saturation import saturated
 from ..read.still import runs, still_ticks
 from ..read.ticks import TICK_S, Ticks, read_ticks
 
@@ -93,7 +94,7 @@ def moving_of(path: str | PathLike[str], ticks: Ticks | None = None) -> Moving |
     rests = _rests(ticks or read_ticks(path, TICK_S))
     offset = np.median(rests[:, 1:] if len(rests) else rate, axis=0)
     at_s = (t_us - 0.5 * (t_us[0] + t_us[-1])) * 1e-6
-    usable = (np.abs(np.hstack([gyro, accel])) < _RAIL).all(axis=1)
+    usable = (np.abs(np.hstack([gyro, accel])) < _RAIL).all(axis=1) & ~saturated(gyro)
     rests[:, 0] += (t_us[0] - 0.5 * (t_us[0] + t_us[-1])) * 1e-6
     rests[:, 1:] -= offset
     g = accel / opened.scales.accel_lsb_per_g
