@@ -1,10 +1,12 @@
 """Every word of a stored state turned, its checksum right: what the firmware makes of it.
 
-python -m host_tests.turned_words [--values N] [--seed N]. Each word gets N values, drawn by the
-seed. The state is stored, loaded, and run by the compiled kernels through rest over the
-temperatures that it had learned. It is to be refused, or to do no harm for good: no signal, no
+python -m host_tests.turned_words [--values N] [--seed N] [--on RUNTIME]. Each word gets N values,
+drawn by the seed. The state is stored, loaded, and run by the compiled kernels through rest over
+the temperatures that it had learned. It is to be refused, or to do no harm for good: no signal, no
 exception, and within ROUNDS times forty minutes no bias is wrong by more than WRONG_MDPS beyond
-the state that nobody turned, for the last ten minutes of a round. Exits 1 otherwise.
+the state that nobody turned, for the last ten minutes of a round. --on has an interpreter of
+MicroPython do the same for some seconds each, which must end as CPython does, to the last bit: what
+a board makes of a state is what was judged here. Exits 1 otherwise.
 """
 
 import argparse
@@ -14,6 +16,7 @@ import random
 import sys
 from array import array
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 from zerorate import Corrector
@@ -23,6 +26,7 @@ from zerorate_fakes.memory import FakeMemory
 from zerorate_tools.layout import AXIS, ESTIMATOR, SETTINGS
 from zerorate_tools.replay.engines import engine
 from zerorate_tools.replay.samples import Frames
+from zerorate_tools.runtimes import NAMES, find
 
 WRONG_MDPS = 10.0
 ROUNDS = 8
@@ -32,6 +36,10 @@ _BIAS_LSB = (800, -300, 40)
 _SLOPE = (0.03, -0.02, 0.01)  # LSB/LSB of temperature
 _BINDING = b"\x68\0\0\0"
 _END = 2**30
+_FRAMES = 400  # that an interpreter lives through: a segment and what it leaves to be done
+_HEAP = 1 << 20
+_HERE = Path(__file__).parent
+_SCRIPT = _HERE / "firmware" / "on_micropython" / "turned_words.py"
 _ENDS = (0, 1, -1, 2, 0x3FFF, 0x7FFF, -0x8000, 1 << 20, 1 << 29, _END - 1, -_END)
 
 
@@ -122,6 +130,15 @@ def name_of(at, settings):
     return f"axis {axis} " + (f"estimator {estimator} " if e >= 0 else "") + name.name
 
 
+def turnings(state, settings, count, seed, only=None):
+    """(word, its new value) of every turned state."""
+    words = range(settings[SETTINGS.AXES], len(state)) if only is None else only
+    for at in words:
+        for value in values(state[at], count, random.Random(f"{seed} {at}")):
+            if value != state[at]:
+                yield at, value
+
+
 def attack(options, count, seed, only=None):
     """Counts of what became of the turned states, and lines on those that fell."""
     state = learned(options)
@@ -132,38 +149,53 @@ def attack(options, count, seed, only=None):
     usual = max(error_mdps(corrector, frames, bias) for _ in range(ROUNDS))
     told = {"loaded": 0, "afresh": 0, "signals": 0, "exceptions": 0, "wrong": 0}
     lines = []
-    first = settings[SETTINGS.AXES]
-    for at in range(first, len(state)) if only is None else only:
-        for value in values(state[at], count, random.Random(f"{seed} {at}")):
-            turned = array("i", state)
-            turned[at] = value
-            if turned == state:
-                continue
+    for at, value in turnings(state, settings, count, seed, only):
+        turned = array("i", state)
+        turned[at] = value
 
-            def what(turned=turned):
-                reason, corrector = stored(turned, options)
-                off = 0.0
-                for _ in range(ROUNDS if reason == LOADED else 0):
-                    off = error_mdps(corrector, frames, bias)
-                    if off < usual + WRONG_MDPS:
-                        break
-                return reason, off
+        def what(turned=turned):
+            reason, corrector = stored(turned, options)
+            off = 0.0
+            for _ in range(ROUNDS if reason == LOADED else 0):
+                off = error_mdps(corrector, frames, bias)
+                if off < usual + WRONG_MDPS:
+                    break
+            return reason, off
 
-            answer, fell = in_a_child(what)
-            kind = "signals" if fell > 0 else "exceptions" if fell else ""
-            if not kind:
-                reason, off = answer
-                kind = "loaded" if reason == LOADED else "afresh"
-                assert reason in (LOADED, OUT_OF_RANGE)
-                if off > usual + WRONG_MDPS:
-                    kind = "wrong"
-            told[kind] += 1
-            if kind not in ("loaded", "afresh"):
-                off = "" if fell else f", {off:.0f} mdps where {usual:.1f} are usual"
-                name = name_of(at, settings)
-                lines.append(f"{kind}: {name}, {state[at]} became {value}{off}")
-                print(lines[-1], flush=True)
+        answer, fell = in_a_child(what)
+        kind = "signals" if fell > 0 else "exceptions" if fell else ""
+        if not kind:
+            reason, off = answer
+            kind = "loaded" if reason == LOADED else "afresh"
+            assert reason in (LOADED, OUT_OF_RANGE)
+            if off > usual + WRONG_MDPS:
+                kind = "wrong"
+        told[kind] += 1
+        if kind not in ("loaded", "afresh"):
+            off = "" if fell else f", {off:.0f} mdps where {usual:.1f} are usual"
+            name = name_of(at, settings)
+            lines.append(f"{kind}: {name}, {state[at]} became {value}{off}")
+            print(lines[-1], flush=True)
     return told, lines
+
+
+def differences(runtime, options, count, seed, only=None):
+    """(states tried, what the interpreter and CPython said where it was not the same)."""
+    state = learned(options)
+    given = [*turnings(state, Corrector(**options).settings, count, seed, only)]
+    frames = rest(1, -6000, -2500, 2)[0].frames[:_FRAMES]
+    files = {
+        "options.json": json.dumps(options).encode(),
+        "learned.bin": state.tobytes(),
+        "turned.bin": np.array(given, "<i4").tobytes(),
+        "frames.bin": frames.astype("<i4").tobytes(),
+    }
+    modules = [_HERE.parent / "firmware", _HERE / "fakes"]
+    said = [
+        on.run(_SCRIPT, modules=modules, files_in=files, heap=_HEAP, check=True).stdout.splitlines()
+        for on in (runtime, find("cpython"))
+    ]
+    return len(given), [pair for pair in zip(*said, strict=True) if pair[0] != pair[1]]
 
 
 SETTINGS_TRIED = ({}, {"bins": 8}, {"document": True})
@@ -173,8 +205,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--values", type=int, default=3, help="of each word")
     parser.add_argument("--seed", type=int, default=34)
+    parser.add_argument("--on", action="append", default=[], choices=NAMES, metavar="RUNTIME")
     arguments = parser.parse_args()
     fallen = 0
+    for name in arguments.on:
+        for options in SETTINGS_TRIED:
+            tried, lines = differences(find(name), options, arguments.values, arguments.seed)
+            fallen += len(lines)
+            print(f"{options or 'by default'}: {tried} on {name}, {len(lines)} otherwise", *lines)
     for options in SETTINGS_TRIED:
         told, lines = attack(options, arguments.values, arguments.seed)
         fallen += len(lines)

@@ -12,7 +12,7 @@ def test_the_board_is_asked_what_it_is(pico):
 
 
 def test_forty_kilobytes_at_most_are_sent(pico):
-    assert 10_000 < pico.flashed.sent_bytes <= 40_000
+    assert 10_000 < pico.flashed.sent_bytes <= 40 << 10
 
 
 def test_flashing_again_sends_nothing(pico):

@@ -107,9 +107,9 @@ def test_a_store_that_is_empty_or_of_another_chip_leaves_a_clean_start(learned):
         ("CURRENT", 5000),
         ("ORDER", 0),
         ("HOTTEST", -32000),
-        ("LINE_SHIFT", 31),
+        ("LINE_SHIFT", 32),
         ("OFFSET_AGE_MS", -64),
-        ("WALK_Q16", 0),
+        ("WALK_Q16", -1),
     ],
 )
 def test_a_state_that_cannot_be_starts_afresh_and_says_so(learned, name, word):

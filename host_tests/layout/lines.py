@@ -53,9 +53,10 @@ def lines(stem, used):
             words.append((f"_{array.size_name}", array.size))
         yield from group(array.title, words, used)
     for name, array in vars(layout).items():
-        if f"_{name}_RANGES" in used:
-            yield f"{BEGIN}{array.title}: the least and the most of each word"
-            yield from (f"_{name}_RANGES = (", *map(pair, array.ranges()), ")")
+        if f"_{name}_BITS" in used:
+            yield f"{BEGIN}{array.title}: bits of each word, 64 more, or 96 where it has a sign"
+            text = array.bits().decode().replace("\\", "\\\\")
+            yield f'_{name}_BITS = b"{text}"'
     for codes in layout.CODES:
         own = codes.owner == stem
         pairs = [(name if own else f"_{name}", codes.numbers[name]) for name in codes.numbers]
@@ -72,11 +73,6 @@ def group(title, pairs, used):
         yield BEGIN + title
     for name, number in pairs:
         yield f"{name} = const({hexadecimal(number)})"
-
-
-def pair(limits):
-    """A word's least and most as a line of a tuple."""
-    return f"    ({', '.join(map(hexadecimal, limits))}),"
 
 
 def spoken(texts):

@@ -34,7 +34,6 @@ class SaveSchedule:
     While flash is erased and written nothing else runs. With `corrector`, a Corrector, a save waits
     for a rest, where a gap costs nothing, but no longer than one write's share of a day; and its
     `explain` tells what saving costs. saves: how many there were; longest_us: of one of them.
-    retry_s: seconds until a write that failed is tried again (default: one write's share of a day).
     """
 
     def __init__(
@@ -44,14 +43,12 @@ class SaveSchedule:
         tolerance: int,
         writes_a_day: int = 24,
         corrector: "Any" = None,
-        retry_s: int = 0,
     ) -> None:
         if writes_a_day < 1:
             raise ValueError("writes_a_day is at least 1")
         self.store = store
         self.tolerance = tolerance
         self.interval_s = _DAY_S // writes_a_day
-        self._retry_s = retry_s or self.interval_s
         self.postponed = 0
         self.saves = 0
         self.longest_us = 0
@@ -78,8 +75,6 @@ class SaveSchedule:
         self.longest_us = max(self.longest_us, ticks_diff(ticks_us(), begun_us))
         if written:
             self.loaded(vital)
-        else:
-            self._saved_s = now_s - self.interval_s + self._retry_s
         return written
 
     def is_due(self, now_s: int) -> bool:

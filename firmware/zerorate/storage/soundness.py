@@ -32,56 +32,10 @@ _STEP_LSB = const(29)
 _MARGIN_LSB = const(30)
 _EVERY = const(48)
 _FIRST_LONG = const(49)
-# layout: An axis: the least and the most of each word
-_AXIS_RANGES = (
-    (-0x40000000, 0x3FFFFFFF),
-    (0, 16383),
-    (0, 16383),
-    (-65535, 65535),
-    (-65535, 65535),
-    (0, 0x10000000),
-    (0, 16383),
-    (0, 16383),
-    (0, 16383),
-    (0, 16383),
-    (0, 16383),
-    (0, 16383),
-    (-1, 0x3FFFFFFF),
-    (0, 5),
-    (-0x40000000, 0x3FFFFFFF),
-    (-0x40000000, 0x3FFFFFFF),
-    (-0x40000000, 0x3FFFFFFF),
-    (-0x40000000, 0x3FFFFFFF),
-    (0, 26),
-    (-0x40000000, 0x3FFFFFFF),
-    (-0x40000000, 0x3FFFFFFF),
-    (0, 0x3FFFFFFF),
-    (0, 18),
-    (-0x40000000, 0x3FFFFFFF),
-    (-0x40000000, 0x3FFFFFFF),
-    (-0x40000000, 0x3FFFFFFF),
-    (-0x40000000, 0x3FFFFFFF),
-    (-0xFFFFFF, 0xFFFFFF),
-    (0, 0x1FFFFFFF),
-    (1, 0x800000),
-    (-0x40000000, 0x3FFFFFFF),
-    (0, 0x3FFFFFF),
-    (0, 1),
-    (0, 5),
-    (-65535, 65535),
-    (256, 0x10000000),
-    (0, 4095),
-    (-0x3FFFFFFF, 32767),
-    (0, 0xFFF8001),
-)
-# layout: An estimator: the least and the most of each word
-_ESTIMATOR_RANGES = (
-    (-0x100000, 0x1FFFF),
-    (-0xFFFFF, 0xFFFFF),
-    (-0xFFFFFF, 0xFFFFFF),
-    (0, 0x2003FFF),
-    (0, 0x8000000),
-)
+# layout: An axis: bits of each word, 64 more, or 96 where it has a sign
+_AXIS_BITS = b"~NNpp]NNNNNN~C~~~~E~~^E~~~~x]X~ZACp]L~\\"
+# layout: An estimator: bits of each word, 64 more, or 96 where it has a sign
+_ESTIMATOR_BITS = b"ttxZ\\"
 # layout: Values that stand for none
 _FREE = const(-0x100000)
 # layout: end
@@ -96,17 +50,17 @@ def is_sound(s, c):
     """
     for axis in range(3):
         a = c[_AXES] + axis * c[_AXIS_WORDS]
-        if not (_within(s, a, _AXIS_RANGES) and _orders(s, c, a) and _spans(s, c, a)):
+        if not (_within(s, a, _AXIS_BITS) and _orders(s, c, a) and _spans(s, c, a)):
             return False
         for e in range(a + _ESTIMATORS, a + c[_ESTIMATORS_END], c[_ESTIMATOR_WORDS]):
-            if not (_within(s, e, _ESTIMATOR_RANGES) and _lies(s, c, a, e) and _counts(s, c, e)):
+            if not (_within(s, e, _ESTIMATOR_BITS) and _lies(s, c, a, e) and _counts(s, c, e)):
                 return False
     return True
 
 
-def _within(s, at, ranges):
-    for least, most in ranges:
-        if not least <= s[at] <= most:
+def _within(s, at, limits):
+    for limit in limits:
+        if s[at] >> (limit & 31) not in (0, -(limit >> 5 & 1)):
             return False
         at += 1
     return True

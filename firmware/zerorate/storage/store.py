@@ -34,7 +34,7 @@ REASONS = (
     "stored by another version",
     "stored with another size",
     "the storage cannot be read",
-    "what was stored cannot be: its checksum is right, a word is not",
+    "a word of what was stored cannot be",
 )
 # layout: end
 _FORMAT = const(1)

@@ -96,7 +96,7 @@ STORE = Codes(
         "OTHER_VERSION": "stored by another version",
         "OTHER_SIZE": "stored with another size",
         "UNREADABLE": "the storage cannot be read",
-        "OUT_OF_RANGE": "what was stored cannot be: its checksum is right, a word is not",
+        "OUT_OF_RANGE": "a word of what was stored cannot be",
     },
 )
 INPUT_KIND = Codes(

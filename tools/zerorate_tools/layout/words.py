@@ -19,6 +19,10 @@ class Word:
         self.most: int
         self.least, self.most = limits or ((0, 30) if self.unit == "bits" else (-END, END - 1))
 
+    def bits(self):
+        """Return what Array.bits says of one word."""
+        return (96 if self.least < 0 else 64) + max(self.most, ~self.least).bit_length()
+
 
 class Overlay:
     """Words in the place of others, from the word `at` on, `while_text`: when they are theirs."""
@@ -55,10 +59,13 @@ class Array:
             index += 0 if isinstance(words[-1].count, str) else words[-1].count
         return words
 
-    def ranges(self):
-        """Return (least, most) of every word whose place no setting moves, in their order."""
+    def bits(self):
+        """Return ASCII that says of every word whose place no setting moves how many bits it has.
+
+        64 and the number of bits; 96 and the bits beside the sign where a word may be negative.
+        """
         words = [word for word in self.words if not word.while_text and word.count.__class__ is int]
-        return [(word.least, word.most) for word in words for _ in range(word.count)]
+        return bytes(word.bits() for word in words for _ in range(word.count))
 
     def __getattr__(self, name):
         for word in self.words:

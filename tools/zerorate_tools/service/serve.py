@@ -174,9 +174,7 @@ class Service:
         self.system.say(f"{imu.part}, {imu.odr_hz:g} Hz: {REASONS[reason]}")
         self._corrector = CheckedCorrector(learner)
         tolerance = max(1, round(_TOLERANCE_DPS * imu.gyro_lsb_per_dps))
-        self._schedule = SaveSchedule(
-            self._store, 3, tolerance, self.system.writes_a_day, learner, retry_s=_RETRY_S
-        )
+        self._schedule = SaveSchedule(self._store, 3, tolerance, self.system.writes_a_day, learner)
         self._is_stored = reason == LOADED
         if self._is_stored:
             ago_s = self.system.stored_ago_s()
@@ -223,6 +221,7 @@ class Service:
         saves = self._schedule.saves
         kept = self._schedule.offer(learner.state, self._bias_lsb, self._now_s())
         if not kept and self._schedule.saves > saves:
+            self._schedule.written_at(self._now_s() - self._schedule.interval_s + _RETRY_S)
             self.system.say("what was learned cannot be written; trying again in a minute")
 
     def _publish(self) -> None:
