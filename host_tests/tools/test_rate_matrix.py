@@ -1,9 +1,11 @@
 """What `model show` prints of a matrix does in other programs what the firmware does."""
 
+import itertools
 import re
 
 import numpy as np
 import pytest
+import yaml
 from zerorate_tools.model import Slot, build_model
 from zerorate_tools.model.model_in_words import in_words
 from zerorate_tools.model.rate_matrix import rate_matrix
@@ -12,7 +14,9 @@ from zerorate_tools.recordings import Scales
 
 _SCALES = Scales("MPU-6050", 100.0, 131.0, 16384.0, None, None)
 _ERROR = np.array([[0.01, 0.002, -0.003], [0.004, -0.02, 0.001], [0.0, 0.005, 0.006]])
-_RATE = np.array([120.0, -45.0, 200.0])
+_BIAS, _MEASURED = np.array([0.4, -0.3, 0.2]), np.array([120.0, -45.0, 200.0])
+#: What the firmware makes of it.
+_TRUE = (np.eye(3) - _ERROR) @ (_MEASURED - _BIAS)
 
 
 @pytest.fixture
@@ -22,31 +26,58 @@ def model():
     return build_model(slots, _SCALES)
 
 
-def printed(model, heading, rows=3):
-    """The numbers of the lines after a heading."""
+def after(model, heading):
+    """The lines after the one that begins with a heading."""
     lines = in_words(model).splitlines()
-    at = next(i for i, line in enumerate(lines) if line.strip().startswith(heading))
-    return np.array(
-        [re.findall(r"-?\d+\.\d+", line) for line in lines[at + 1 : at + 1 + rows]], float
-    )
+    return lines[next(i for i, t in enumerate(lines) if t.strip().startswith(heading)) + 1 :]
+
+
+def numbers(lines):
+    return np.array([re.findall(r"-?\d+\.\d+", line) for line in lines], float)
+
+
+def in_yaml(model, heading, name):
+    """A matrix of the YAML after a heading."""
+    lines = itertools.takewhile(lambda line: line.startswith("  "), after(model, heading))
+    return yaml.safe_load("\n".join(lines))[name]
 
 
 def test_the_matrix_subtracts_what_the_slots_add(model):
     np.testing.assert_allclose(rate_matrix(model), np.eye(3) - _ERROR, atol=1e-6)
 
 
-def test_fusion_with_these_settings_gives_the_same_rates(model):
-    text = next(line for line in in_words(model).splitlines() if "sensitivity" in line)
-    sensitivity = np.array(re.findall(r"-?\d+\.\d+", text), float)
-    ours = printed(model, "misalignment") @ (sensitivity * _RATE)
-    np.testing.assert_allclose(ours, _RATE - _ERROR @ _RATE, atol=1e-3)
+def test_the_plain_matrix_times_the_rate_less_its_bias_is_the_true_rate(model):
+    ours = numbers(after(model, "corrected rate")[:3]) @ (_MEASURED - _BIAS)
+    np.testing.assert_allclose(ours, _TRUE, atol=2e-3)
 
 
-def test_kalibr_with_these_settings_predicts_the_measured_rates(model):
-    lower, rotation = printed(model, "M:"), printed(model, "C_gyro_i:")
+def test_fusion_with_these_settings_gives_the_true_rate(model):
+    fusion = pytest.importorskip("imufusion")
+    lines = after(model, "misalignment")
+    ours = fusion.model_inertial(_MEASURED, numbers(lines[:3]), numbers(lines[3:4])[0], _BIAS)
+    np.testing.assert_allclose(ours, _TRUE, atol=2e-3)
+
+
+def test_kalibr_with_these_settings_predicts_the_measured_rate(model):
+    """Scale-misalignment: measured = M C_gyro_i true + bias (A, of acceleration, is zero)."""
+    of = in_yaml(model, "kalibr", "gyroscopes")
+    lower, rotation = np.array(of["M"]), np.array(of["C_gyro_i"])
     assert np.abs(np.triu(lower, 1)).max() == 0.0
     np.testing.assert_allclose(rotation @ rotation.T, np.eye(3), atol=1e-5)
-    np.testing.assert_allclose(lower @ rotation @ (_RATE - _ERROR @ _RATE), _RATE, atol=2e-3)
+    np.testing.assert_allclose(lower @ rotation @ _TRUE + _BIAS, _MEASURED, atol=2e-3)
+
+
+def test_open_vins_with_these_settings_gives_the_true_rate(model):
+    """true = R_IMUtoGYRO^T Tw^-1 (measured - bias), Tg zero."""
+    of = in_yaml(model, "OpenVINS", "imu0")
+    inner = np.linalg.solve(np.array(of["Tw"]), _MEASURED - _BIAS)
+    np.testing.assert_allclose(np.array(of["R_IMUtoGYRO"]).T @ inner, _TRUE, atol=2e-3)
+
+
+@pytest.mark.parametrize("firmware", ["Betaflight, iNav", "ArduPilot"])
+def test_flight_controllers_without_a_parameter_get_a_line_and_no_number(model, firmware):
+    (line,) = (t for t in in_words(model).splitlines() if t.startswith(firmware))
+    assert re.search("no (setting|parameter) takes it", line) and not re.search(r"\d", line)
 
 
 def test_a_model_without_rates_has_no_matrix():

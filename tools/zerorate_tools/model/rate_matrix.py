@@ -9,6 +9,13 @@ from .model import Model
 from .term import Term
 
 _RATES = ("rate_x", "rate_y", "rate_z")
+#: Flight controllers that have no such parameter, and what they do with a gyroscope's readings.
+_WITHOUT = (
+    "Betaflight, iNav: no setting takes it. They subtract gyroZero (iNav: gyro_zero_x, _y, _z) "
+    "and rotate by align_* and no more.",
+    "ArduPilot: no parameter takes it. It subtracts INS_GYROFFS_X, _Y, _Z and rotates by "
+    "AHRS_ORIENTATION and no more.",
+)
 
 
 def rate_matrix(model: Model) -> np.ndarray | None:
@@ -25,14 +32,14 @@ def _is_plain(term: Term) -> bool:
 
 
 def matrix_in_words(model: Model) -> list[str]:
-    """Lines to copy: the matrix itself, x-io Fusion's settings, kalibr's YAML; none without one."""
+    """Lines to copy: the matrix itself, and what takes it in other programs; none without one."""
     matrix = rate_matrix(model)
     if matrix is None:
         return []
     sensitivity = np.diag(matrix)
     # FusionModelInertial: misalignment (sensitivity * (measured - offset))
     misalignment = matrix / sensitivity
-    # kalibr's scale-misalignment model: measured = M C_gyro_i true, M lower triangular
+    # kalibr's scale-misalignment model: measured = M C_gyro_i true + bias, M lower triangular
     lower, rotation = _lower_and_rotation(np.linalg.inv(matrix))
     return [
         "corrected rate = matrix x (measured rate - bias), no unit:",
@@ -41,12 +48,12 @@ def matrix_in_words(model: Model) -> list[str]:
         "  misalignment:",
         *_rows(misalignment, "    "),
         f"  sensitivity: {_numbers(sensitivity)}",
-        "kalibr (ROS), imu.yaml, model scale-misalignment:",
-        "  gyroscopes:",
-        "    M:",
-        *_rows(lower, "    - ", yaml=True),
-        "    C_gyro_i:",
-        *_rows(rotation, "    - ", yaml=True),
+        "kalibr, imu.yaml, model scale-misalignment:",
+        *_yaml("gyroscopes", {"M": lower, "C_gyro_i": rotation}),
+        # OpenVINS inverts Tw and transposes R_IMUtoGYRO; its model "kalibr" has Tw lower triangular
+        "OpenVINS (ROS 1 and 2), kalibr_imu_chain.yaml, model kalibr:",
+        *_yaml("imu0", {"Tw": lower, "R_IMUtoGYRO": rotation}),
+        *_WITHOUT,
     ]
 
 
@@ -56,6 +63,11 @@ def _lower_and_rotation(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     lower, rotation = upper[::-1, ::-1], turn[::-1, ::-1]
     signs = np.sign(np.diag(lower))
     return lower * signs, rotation * signs[:, None]
+
+
+def _yaml(heading: str, matrices: dict[str, np.ndarray]) -> list[str]:
+    parts = [[f"    {name}:", *_rows(m, "    - ", yaml=True)] for name, m in matrices.items()]
+    return [f"  {heading}:", *(line for part in parts for line in part)]
 
 
 def _rows(matrix: np.ndarray, before: str = "  ", yaml: bool = False) -> list[str]:
