@@ -2,13 +2,18 @@
 
 import os
 import shutil
+from dataclasses import dataclass
 from pathlib import Path
 
 import hypothesis
+import numpy as np
 import pytest
 from zerorate_bench.boards.pico import VARIABLE, find_pico
 from zerorate_bench.boards.pico import boards_folder as named_folder
 from zerorate_tools.errors import MissingRuntime
+from zerorate_tools.model import Slot, build_model, write_model
+from zerorate_tools.model.term import Term
+from zerorate_tools.recordings import Scales
 from zerorate_tools.runtimes import NAMES, available, find, how_to_get
 
 _REPOSITORY = Path(__file__).resolve().parents[1]
@@ -50,6 +55,28 @@ def pytest_terminal_summary(terminalreporter):
 
 def _browser():
     return next(filter(None, map(shutil.which, _CHROMIUMS)), None)
+
+
+@dataclass(frozen=True)
+class MatrixModel:
+    """A model.bin of scale factors and axes: the error (3, 3) that it takes out, and rates."""
+
+    path: Path
+    error: np.ndarray
+    lsb_per_dps: float
+    rates_dps: np.ndarray
+
+
+@pytest.fixture
+def matrix_model(tmp_path):
+    """A MatrixModel; its rates (500, 3) change with every sample."""
+    error = np.array([[0.01, 0.002, -0.003], [0.004, -0.02, 0.001], [0.0, 0.005, 0.006]])
+    terms = [Term(f"rate_{axis}", -250.0, 250.0) for axis in "xyz"]
+    slots = [Slot(term, tuple(column), "scale-factor") for term, column in zip(terms, error.T)]
+    scales = Scales("MPU-6050", 100.0, 131.0, 16384.0, None, None)
+    write_model(build_model(slots, scales), tmp_path)
+    rates = np.random.default_rng(1).uniform(-240, 240, (500, 3))
+    return MatrixModel(tmp_path / "model.bin", error, 131.0, rates)
 
 
 @pytest.fixture(scope="session")

@@ -5,6 +5,7 @@ import shutil
 import subprocess
 from array import array
 
+import numpy as np
 import pytest
 from zerorate import Sensor
 from zerorate_tools.cli import main
@@ -42,6 +43,26 @@ def test_it_ends_the_golden_trace_in_the_golden_state(tmp_path, golden):
         made.zerorate_update(z, (ctypes.c_int32 * 7)(*row.tolist()), dt)
     state = array("i", z[: len(corrector.state)])
     assert checksums(state.tobytes(), b"")["state"] == golden["default"]["state"]
+
+
+def test_a_model_is_applied_to_every_sample_as_on_a_board(tmp_path, matrix_model):
+    assert main(["export", "c", str(tmp_path / "c"), "--model", str(matrix_model.path)]) == 0
+    sources = [tmp_path / "c" / "zerorate.c", tmp_path / "c" / "zerorate_test.c"]
+    subprocess.run(["cc", *WARNINGS, *sources, "-o", tmp_path / "program"], check=True)
+    subprocess.run([tmp_path / "program"], check=True, capture_output=True)
+    library = tmp_path / "zerorate.so"
+    subprocess.run(["cc", "-shared", "-fPIC", sources[0], "-o", library], check=True)
+    made, z = ctypes.CDLL(str(library)), (ctypes.c_int32 * 4096)()
+    made.zerorate_begin(z)
+    lsb, left = matrix_model.lsb_per_dps, []
+    for rate in matrix_model.rates_dps:
+        words = [round(v * lsb) for v in rate]
+        sample = (ctypes.c_int32 * 7)(0, 0, 16384, 0, *words)
+        made.zerorate_update(z, sample, 10000)
+        left.append([(sample[4 + i] - words[i]) / lsb for i in range(3)])
+    # each rate is rounded to an LSB on its way in and out, and what that leaves over is carried
+    wanted = -matrix_model.rates_dps @ matrix_model.error.T
+    np.testing.assert_allclose(left, wanted, atol=1.1 / lsb)
 
 
 def test_a_scale_that_cannot_be_is_one_line(tmp_path, capsys):

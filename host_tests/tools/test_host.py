@@ -3,7 +3,9 @@
 from math import nan, radians
 from random import Random
 
+import numpy as np
 import pytest
+from zerorate_tools.errors import BadModel
 from zerorate_tools.host import FloatCorrector
 
 BIAS_DPS = (0.31, -0.19, 1.08)
@@ -54,3 +56,18 @@ def test_what_is_no_number_teaches_nothing():
 def test_an_unknown_unit_is_refused():
     with pytest.raises(ValueError, match="rate is one of"):
         FloatCorrector(100, rate="deg/s")
+
+
+@pytest.mark.parametrize(("rate", "unit"), [("dps", 1.0), ("rad/s", radians(1))])
+def test_a_matrix_is_applied_to_every_sample(matrix_model, rate, unit):
+    corrector = FloatCorrector(100, rate=rate, model=matrix_model.path)
+    given = matrix_model.rates_dps * unit
+    left = [corrector.update(tuple(row), (0, 0, 1)) for row in given]
+    wanted = given - given @ matrix_model.error.T
+    np.testing.assert_allclose(left, wanted, atol=0.001 * unit)
+
+
+def test_a_file_that_is_no_model_is_refused_by_name(tmp_path):
+    (tmp_path / "model.bin").write_bytes(b"no model")
+    with pytest.raises(BadModel, match=r"model\.bin"):
+        FloatCorrector(100, model=tmp_path / "model.bin")

@@ -6,24 +6,21 @@ import re
 import numpy as np
 import pytest
 import yaml
-from zerorate_tools.model import Slot, build_model
+from zerorate_tools.model import Slot, build_model, read_model
 from zerorate_tools.model.model_in_words import in_words
 from zerorate_tools.model.rate_matrix import rate_matrix
 from zerorate_tools.model.term import Term
 from zerorate_tools.recordings import Scales
 
-_SCALES = Scales("MPU-6050", 100.0, 131.0, 16384.0, None, None)
-_ERROR = np.array([[0.01, 0.002, -0.003], [0.004, -0.02, 0.001], [0.0, 0.005, 0.006]])
 _BIAS, _MEASURED = np.array([0.4, -0.3, 0.2]), np.array([120.0, -45.0, 200.0])
-#: What the firmware makes of it.
+#: What the firmware makes of it with the matrix of the model.
+_ERROR = np.array([[0.01, 0.002, -0.003], [0.004, -0.02, 0.001], [0.0, 0.005, 0.006]])
 _TRUE = (np.eye(3) - _ERROR) @ (_MEASURED - _BIAS)
 
 
 @pytest.fixture
-def model():
-    terms = [Term(f"rate_{axis}", -250.0, 250.0) for axis in "xyz"]
-    slots = [Slot(term, tuple(column), "scale-factor") for term, column in zip(terms, _ERROR.T)]
-    return build_model(slots, _SCALES)
+def model(matrix_model):
+    return read_model(matrix_model.path)
 
 
 def after(model, heading):

@@ -7,8 +7,10 @@ which they know to 1/256 of one, is taken off the reading as it came.
 from array import array
 from collections.abc import Sequence
 from math import isfinite, pi
+from os import PathLike
 
 from zerorate import Corrector, Sensor
+from zerorate.model import EffectModel
 
 _WORD = 32767
 #: Of an LSB a degC; the words then hold -96 to 96 degC about 25.
@@ -22,8 +24,9 @@ class FloatCorrector:
     """Takes the bias off rates in dps or rad/s, learned from rests as on a board.
 
     odr_hz: how often samples come; full_scale_dps, full_scale_g: the sensor's ranges, which choose
-    the LSB (see `said`); rate: "dps" or "rad/s"; accel: "g" or "m/s2"; options: keywords of
-    zerorate.Corrector. corrector is that one, to be saved and asked. Raises ValueError.
+    the LSB (see `said`); rate: "dps" or "rad/s"; accel: "g" or "m/s2"; model: a model.bin that
+    `zerorate close` wrote, whose scales then choose the LSB; options: keywords of
+    zerorate.Corrector. corrector is that one, to be saved and asked. Raises ValueError; BadModel.
     """
 
     def __init__(
@@ -33,18 +36,24 @@ class FloatCorrector:
         full_scale_g: float = 16.0,
         rate: str = "dps",
         accel: str = "g",
+        model: str | PathLike[str] | None = None,
         **options: float,
     ) -> None:
         if rate not in RATE_UNITS or accel not in ACCEL_UNITS:
             units = f"rate is one of {list(RATE_UNITS)}, accel one of {list(ACCEL_UNITS)}"
             raise ValueError(f"{units}, not {rate} and {accel}")
-        gyro_lsb_per_dps = _WORD / full_scale_dps
-        accel_lsb_per_g = _WORD / full_scale_g
-        scales = (odr_hz, gyro_lsb_per_dps, accel_lsb_per_g, _TEMP_LSB_PER_DEGC)
-        self.corrector = Corrector(Sensor(*scales, _TEMP_OFFSET_DEGC), **options)
+        scales = [_WORD / full_scale_dps, _WORD / full_scale_g]
+        temp = [_TEMP_LSB_PER_DEGC, _TEMP_OFFSET_DEGC]
+        effects = None
+        if model is not None:
+            effects, scales, temp = _loaded(model, odr_hz, scales, temp)
+        self.corrector = Corrector(Sensor(odr_hz, *scales, *temp), **options)
+        if effects is not None:
+            self.corrector.use_model(effects)
         self.refused = 0
-        self._rate_lsb = gyro_lsb_per_dps * RATE_UNITS[rate]
-        self._accel_lsb = accel_lsb_per_g * ACCEL_UNITS[accel]
+        self._rate_lsb = scales[0] * RATE_UNITS[rate]
+        self._accel_lsb = scales[1] * ACCEL_UNITS[accel]
+        self._temp_lsb, self._temp_offset_degc = temp
         self._unit = rate
         self._dt_us = round(1e6 / odr_hz)
         self._sample = array("i", [0] * 7)
@@ -73,7 +82,7 @@ class FloatCorrector:
         for axis in range(3):
             sample[axis] = _word(accel[axis] * self._accel_lsb)
             sample[4 + axis] = _word(rate[axis] * self._rate_lsb)
-        sample[3] = _word((temp_degc - _TEMP_OFFSET_DEGC) * _TEMP_LSB_PER_DEGC)
+        sample[3] = _word((temp_degc - self._temp_offset_degc) * self._temp_lsb)
         dt_us = self._dt_us if dt_s is None else round(dt_s * 1e6)
         if self.corrector.update(sample, dt_us):
             self.refused += 1
@@ -86,6 +95,19 @@ class FloatCorrector:
 
     def _bias(self, axis: int) -> float:
         return self.corrector.bias_lsb(axis) / self._rate_lsb
+
+
+def _loaded(path, odr_hz, scales, temp):
+    """The model in a file, and the scales of rate, acceleration and temperature that it has."""
+    from .model.check import check_model  # its libraries are large
+
+    own = check_model(path).scales
+    scales = [own.gyro_lsb_per_dps, own.accel_lsb_per_g or scales[1]]
+    if own.temp_lsb_per_degc:
+        temp = [own.temp_lsb_per_degc, own.temp_offset_degc]
+    effects = EffectModel()
+    effects.load_file(str(path), Sensor(odr_hz, *scales, *temp))
+    return effects, scales, temp
 
 
 def _word(value: float) -> int:

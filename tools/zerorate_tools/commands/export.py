@@ -14,6 +14,9 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     for name, default in (("accel-lsb-per-g", 16384.0), ("temp-lsb-per-degc", 340.0)):
         text = f"{default:g}; 0 where there is none"
         c.add_argument(f"--{name}", type=float, default=default, metavar="N", help=text)
+    c.add_argument(
+        "--model", type=Path, metavar="FILE", help="a model.bin; its scales replace those above"
+    )
     c.set_defaults(run=run)
 
 
@@ -30,7 +33,7 @@ def run(arguments: argparse.Namespace) -> None:
             arguments.accel_lsb_per_g,
             arguments.temp_lsb_per_degc,
         )
-        paths = export_c(arguments.folder, sensor)
+        paths = export_c(arguments.folder, sensor, arguments.model)
     except ValueError as error:
         raise ZerorateError(str(error)) from error
     for path in paths:
