@@ -23,7 +23,8 @@ from zerorate import Corrector
 from zerorate.storage.learned_store import LearnedStore
 from zerorate.storage.store import LOADED, OUT_OF_RANGE
 from zerorate_fakes.memory import FakeMemory
-from zerorate_tools.layout import AXIS, ESTIMATOR, SETTINGS
+from zerorate_tools.layout import SETTINGS
+from zerorate_tools.layout.naming import named_state
 from zerorate_tools.replay.engines import engine
 from zerorate_tools.replay.samples import Frames
 from zerorate_tools.runtimes import NAMES, find
@@ -117,19 +118,6 @@ def in_a_child(function):
     return json.loads(answer), 0
 
 
-def name_of(at, settings):
-    """The word's name, by the layout."""
-    axis, k = divmod(at - settings[SETTINGS.AXES], settings[SETTINGS.AXIS_WORDS])
-    if axis < 0:
-        return f"word {at}"
-    words, e = AXIS.words, k - AXIS.ESTIMATORS
-    if e >= 0:
-        estimator, k = divmod(e, settings[SETTINGS.ESTIMATOR_WORDS])
-        words = ESTIMATOR.words
-    name = max((w for w in words if w.index <= k and not w.while_text), key=lambda w: w.index)
-    return f"axis {axis} " + (f"estimator {estimator} " if e >= 0 else "") + name.name
-
-
 def turnings(state, settings, count, seed, only=None):
     """(word, its new value) of every turned state."""
     words = range(settings[SETTINGS.AXES], len(state)) if only is None else only
@@ -173,7 +161,7 @@ def attack(options, count, seed, only=None):
         told[kind] += 1
         if kind not in ("loaded", "afresh"):
             off = "" if fell else f", {off:.0f} mdps where {usual:.1f} are usual"
-            name = name_of(at, settings)
+            name = named_state(settings)[at][0]
             lines.append(f"{kind}: {name}, {state[at]} became {value}{off}")
             print(lines[-1], flush=True)
     return told, lines

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from . import trace
-from .trace_on_host import GOLDEN, checksums, on_machine_code
+from .trace_on_host import GOLDEN, checksums, on_machine_code, where_it_parts
 
 modes = pytest.mark.parametrize("mode", sorted(trace.MODES))
 
@@ -36,8 +36,18 @@ def test_the_kernels_that_are_compiled_give_what_cpython_gives(trace_on_host):
 def test_the_numbers_are_those_that_were_committed(mode, trace_on_host):
     golden = json.loads(GOLDEN.read_text(encoding="utf-8"))
     assert checksums(*trace_on_host(mode)) == golden[mode], (
-        "the firmware gives other numbers; if that is meant: python -m host_tests.golden"
+        f"the firmware gives other numbers, {where_it_parts(mode, *trace_on_host(mode))}; "
+        "if that is meant: python -m host_tests.golden"
     )
+
+
+def test_where_the_numbers_part_from_those_committed_is_said(trace_on_host):
+    state, biases = map(bytearray, trace_on_host("every"))
+    assert where_it_parts("every", state, biases).startswith("no bias differs; 0 words")
+    state[4 * 61] ^= 1
+    biases[12 * 1234] ^= 1
+    said = where_it_parts("every", state, biases)
+    assert said.startswith("first at samples 1216 and on; 1 words of the state: OUT_Q8[0] ")
 
 
 def test_a_difference_of_one_bit_in_one_bias_is_found(trace_on_host):

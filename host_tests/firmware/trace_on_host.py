@@ -8,11 +8,13 @@ from pathlib import Path
 import numpy as np
 from zerorate import Corrector, Sensor
 from zerorate_tools.layout import STATE
+from zerorate_tools.layout.naming import named_state
 
 from . import trace
 from .played import by_machine_code
 
 GOLDEN = Path(__file__).resolve().parents[1] / "golden" / "trace.json"
+WHERE = GOLDEN.with_name("where.json")
 
 
 def corrector_for(mode):
@@ -54,7 +56,28 @@ def checksums(state, biases):
     return {"state": f"{zlib.crc32(state):08x}", "bias": f"{zlib.crc32(biases):08x}"}
 
 
+def details(state, biases):
+    """Every word of the final state, and a CRC-32 of each act's biases: they say where two part."""
+    act = 12 * trace.ACT
+    acts = [zlib.crc32(biases[at : at + act]) for at in range(0, len(biases), act)]
+    return {"state": array("i", state).tolist(), "acts": acts}
+
+
+def where_it_parts(mode, state, biases):
+    """In words: the first act, and the words of the final state, that are not as committed."""
+    old = json.loads(WHERE.read_text(encoding="utf-8"))[mode]
+    new = details(state, biases)
+    acts = [n for n, (a, b) in enumerate(zip(old["acts"], new["acts"])) if a != b]
+    names = [name for name, _ in named_state(corrector_for(mode).settings)]
+    words = [f"{n} {a} -> {b}" for n, a, b in zip(names, old["state"], new["state"]) if a != b]
+    first = f"first at samples {acts[0] * trace.ACT} and on" if acts else "no bias differs"
+    return f"{first}; {len(words)} words of the state: {', '.join(words[:8])}"
+
+
 def renew_golden():
     """Write what this firmware makes of the trace into host_tests/golden, on purpose."""
-    golden = {mode: checksums(*on_cpython(mode)) for mode in trace.MODES}
+    done = {mode: on_cpython(mode) for mode in trace.MODES}
+    golden = {mode: checksums(*one) for mode, one in done.items()}
     GOLDEN.write_text(json.dumps(golden, indent=2) + "\n", encoding="utf-8")
+    where = {mode: details(*one) for mode, one in done.items()}
+    WHERE.write_text(json.dumps(where) + "\n", encoding="utf-8")

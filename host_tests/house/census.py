@@ -27,6 +27,7 @@ def census(root):
         "Python files": len(written),
         "lines in them": sum(map(lines, written)),
         **own,
+        "of these in the wheel": sum(lines(p) for p in written if in_wheel(root, p)),
         "generated files": len(made),
         "lines in them, and those that `make layout` writes": sum(
             [*(len(p.read_text("utf-8").splitlines()) for p in made), *map(made_lines, python)]
@@ -35,6 +36,13 @@ def census(root):
         "files that say where a word of an array is": len(layouts(firmware)) + 1,
         "words to learn": words(root / "docs" / "glossary.md"),
     }
+
+
+def in_wheel(root, path):
+    """Whether a user installs the file: firmware, drivers, fakes and tools, no bench, no test."""
+    place = path.relative_to(root).as_posix()
+    others = ("tools/zerorate_bench/", "host_tests/")
+    return place.startswith("host_tests/fakes/") or not place.startswith(others)
 
 
 def lines(path):

@@ -15,7 +15,7 @@ from .errors import MissingLibrary, ZerorateError, os_error_in_words, printable
 
 COMMANDS = (
     *("demo", "import", "record", "simulate", "replay", "close", "compare", "allan", "model"),
-    *("flash", "fleet", "run", "watch", "bench", "runtimes", "export"),
+    *("state", "flash", "fleet", "run", "watch", "bench", "runtimes", "export"),
 )
 _INTERRUPTED = 130
 _BROKEN_PIPE = 141

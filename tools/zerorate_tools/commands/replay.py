@@ -53,7 +53,7 @@ def add_parser(subparsers) -> None:
         "--set",
         action="append",
         default=[],
-        type=_setting,
+        type=setting,
         metavar="NAME=VALUE",
         help="a setting of the firmware, for example step_degc=2",
     )
@@ -119,7 +119,7 @@ def _shares(counts: dict[str, int], total: int) -> str:
     return ", ".join(f"{name} {number} ({number / total:.1%})" for name, number in counts.items())
 
 
-def _setting(text: str) -> tuple[str, float]:
+def setting(text: str) -> tuple[str, float]:
     name, _, value = text.partition("=")
     try:
         number = float(value)
