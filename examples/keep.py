@@ -16,11 +16,10 @@ from zerorate.checked import CheckedCorrector
 from zerorate.storage.learned_store import LearnedStore
 from zerorate.storage.places import FileStorage
 from zerorate.storage.save_schedule import SaveSchedule
-from zerorate.storage.store import REASONS
 from zerorate_i2c.fifo import EMPTY, Fifo
 
 store = LearnedStore(FileStorage("learned.bin"), imu.binding, learner)
-print(REASONS[store.load()])
+print(store.in_words(store.load()))
 gc.collect()  # of what was read: the checkpoint takes its place
 corrector = CheckedCorrector(learner)
 schedule = SaveSchedule(store, 3, tolerance=13, corrector=learner)  # 0.1 dps at 131 LSB/dps

@@ -35,7 +35,6 @@ _AXES = const(0)
 _AXIS_WORDS = const(15)
 _STEP_LSB = const(29)
 _GATE_Q4 = const(40)
-_WALK_MOST_Q16 = const(43)
 _TURN_ON_VARIANCE_Q8 = const(47)
 # layout: The effect model and its running state
 _CURVE_LSB = const(28)
@@ -52,7 +51,7 @@ _NO_VALUE = const(-0x3FFFFFFF)
 _ESTIMATORS_OF_A_CURVE = const(16)
 # A piece of heap held through a program's imports, or none as long is left on a small board for the
 # state, its checkpoint and the store's record.
-_held = [bytearray(5376)]
+_held = [bytearray(5600)]
 
 
 class Corrector:
@@ -97,7 +96,7 @@ class Corrector:
         self.sensor = sensor or Sensor()
         if every is None:
             every = document
-        self.settings, chosen = settings(
+        self.settings, self._walk_q16, chosen = settings(
             self.sensor, bins, short, long, document, every, ignore_outside, limits
         )
         unload("zerorate", "settings")
@@ -113,8 +112,7 @@ class Corrector:
             motion, gravity = bool(motion), bool(gravity)
         self._begin("motion", motion, document, chosen["motion_start_dps"])
         self._begin("gravity", gravity, document, 0)
-        walk_lsb = chosen["walk_dps"] * self.sensor.gyro_lsb_per_dps
-        self._walk_q16 = max(1, int(min(c[_WALK_MOST_Q16], walk_lsb * walk_lsb * 65536)))
+        unload("zerorate.arithmetic", "ratio")
         if rest.run and self.alone and type(self) is Corrector:
             self.update = _bound(self.state, c)  # type: ignore[method-assign]
         self.reset()

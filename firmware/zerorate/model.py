@@ -11,7 +11,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from .settings import Sensor
+    from .sensor import Sensor
 
 # layout: names that a board's own compiler reads
 const = int

@@ -2,7 +2,7 @@
 
 from array import array
 
-from .sensor import Sensor  # noqa: F401
+from .arithmetic.ratio import Ratio
 
 # layout: names that a board's own compiler reads
 const = int
@@ -121,16 +121,11 @@ MOST = {"dps": 4000.0, "g": 16.0, "degc": 200.0, "s": 86400.0, "share": 1.0}
 
 
 def power_of_two(samples):
-    """Return the shift of the power of two nearest to `samples`, 2..8."""
+    """Return the shift of the power of two nearest to `samples`, a Ratio, 2..8."""
     shift = 2
-    while shift < 8 and samples * 2 > 3 << shift:
+    while shift < 8 and samples.over * 2 > (3 << shift) * samples.under:
         shift += 1
     return shift
-
-
-def squared(value, most=1 << 28):
-    """Return the square of `value`, at least 1."""
-    return max(1, min(most, int(value * value)))
 
 
 def chosen_of(document, every, given):
@@ -149,56 +144,63 @@ def chosen_of(document, every, given):
 
 
 def settings(sensor, bins, short, long, document, every, ignore_outside, given):
-    """Return the kernels' settings, array('i'), and all by name; arguments are the Corrector's."""
+    """Return the kernels' settings, array('i'), the first walk, and all by name.
+
+    The arguments are the Corrector's. All that is computed is of integers: floats of any width
+    give the same.
+    """
     limits = chosen_of(document, every, given)
     if bins is None:
         bins = 8 if every or document else 1
     if ignore_outside is None:
         ignore_outside = document and every
     c = array("i", [0] * _SETTINGS_WORDS)
-    windows(c, sensor, limits)
-    bins_of(c, sensor, bins, every, document, limits)
+    rate = Ratio(sensor.odr_hz)
+    lsb = Ratio(sensor.gyro_lsb_per_dps)
+    windows(c, rate, lsb, sensor, limits)
+    bins_of(c, rate, lsb, bins, every, document, limits)
     c[_IGNORE_OUTSIDE] = 1 if ignore_outside else 0
     c[_EVERY] = 1 if every else 0
-    estimators_of(c, sensor, short, long, document, limits)
-    recent_of(c, sensor, limits)
+    degree = Ratio(sensor.temp_lsb_per_degc or 1000)
+    estimators_of(c, rate, degree, short, long, document, limits)
+    recent_of(c, rate, lsb, degree, limits)
     c[_AXES] = _FIT_WEIGHTS + c[_ESTIMATOR_COUNT] - _TURN_ON_OFFSET_Q8
     c[_AXIS_WORDS] = c[_ESTIMATORS_END]
     c[_WORK_A_SAMPLE] = 12 // c[_WINDOW] + 1
-    return c, limits
+    walk_q16 = (lsb * limits["walk_dps"] * 256).squared(c[_WALK_MOST_Q16])
+    return c, walk_q16, limits
 
 
-def windows(c, sensor, limits):
+def windows(c, rate, lsb, sensor, limits):
     """Guard, window and stillness."""
-    lsb = sensor.gyro_lsb_per_dps
-    accel = sensor.accel_lsb_per_g
-    c[_WINDOW_SHIFT] = power_of_two(limits["window_s"] * sensor.odr_hz)
+    accel = Ratio(sensor.accel_lsb_per_g)
+    c[_WINDOW_SHIFT] = power_of_two(rate * limits["window_s"])
     c[_WINDOW] = 1 << c[_WINDOW_SHIFT]
-    window_s = c[_WINDOW] / sensor.odr_hz
-    n = max(1, min(8, int(limits["segment_s"] / window_s + 0.5)))
+    window_s = Ratio(c[_WINDOW]) / rate
+    n = max(1, min(8, (Ratio(limits["segment_s"]) / window_s).nearest()))
     c[_SEGMENT] = n
-    c[_LEAP_US] = int(min(0x1FFFFFFF, max(0.1e6, 10e6 / sensor.odr_hz)))
-    jump_degc = max(400 / 340, 0.5 / sensor.odr_hz)
-    c[_JUMP_LSB] = int(jump_degc * sensor.temp_lsb_per_degc) or 0xFFFF
-    c[_STILL_GYRO_Q8] = squared(limits["still_dps"] * lsb * 16)
-    c[_STILL_ACCEL_Q8] = squared(limits["still_g"] * accel * 16)
-    a_window = limits["turn_dps"] * window_s * 0.0174533 * accel  # LSB that gravity may move
-    c[_TIP_LIMIT_Q8] = squared(a_window * max(1, n - 1) * 16)
-    c[_LEAN_LIMIT_Q4] = squared(a_window * n * (n * n - 1) / 6 * 4)
+    c[_LEAP_US] = min(0x1FFFFFFF, max(100000, (Ratio(10000000) / rate).floor()))
+    jump = Ratio(sensor.temp_lsb_per_degc)
+    c[_JUMP_LSB] = max((jump * 400 / 340).floor(), (jump / 2 / rate).floor()) or 0xFFFF
+    c[_STILL_GYRO_Q8] = (lsb * limits["still_dps"] * 16).squared()
+    c[_STILL_ACCEL_Q8] = (accel * limits["still_g"] * 16).squared()
+    # LSB that gravity may move
+    a_window = window_s * limits["turn_dps"] * 0.0174533 * accel
+    c[_TIP_LIMIT_Q8] = (a_window * max(1, n - 1) * 16).squared()
+    c[_LEAN_LIMIT_Q4] = (a_window * n * (n * n - 1) / 6 * 4).squared()
     c[_LEAN_NOISE_FACTOR_Q4] = _LEAN_NOISE * (n * n - 1) // 3
-    c[_CHANGE_LIMIT_Q8] = squared(limits["change_dps"] * lsb * 16)
-    c[_SLEW_Q8] = max(1, min(1 << 24, int(limits["slew_dps_per_s"] * lsb * 256 / sensor.odr_hz)))
+    c[_CHANGE_LIMIT_Q8] = (lsb * limits["change_dps"] * 16).squared()
+    c[_SLEW_Q8] = max(1, min(1 << 24, (lsb * limits["slew_dps_per_s"] * 256 / rate).floor()))
 
 
-def bins_of(c, sensor, bins, every, document, limits):
+def bins_of(c, rate, lsb, bins, every, document, limits):
     """The histograms."""
     if bins != 1 and not 4 <= bins < 20:
         raise ValueError("bins must be 1 or 4..19, not %d" % bins)
-    lsb = sensor.gyro_lsb_per_dps
-    half = min(32000, int(limits["range_dps"] * lsb))
+    half = min(32000, (lsb * limits["range_dps"]).floor())
     # an edge beside a reading at the rail stays below 2^16, and 2^14 of them below 2^30
     most = 0xFFFE // (bins + 1)
-    narrow = max(4, min(most, int(limits["narrowest_dps"] * lsb)))
+    narrow = max(4, min(most, (lsb * limits["narrowest_dps"]).floor()))
     c[_BINS] = bins
     width = max(1, 2 * half // bins) if every else narrow
     c[_WIDTH_LSB] = width
@@ -207,15 +209,13 @@ def bins_of(c, sensor, bins, every, document, limits):
     c[_NARROWEST_LSB] = 1 if document else narrow
     c[_SPLIT_RATIO] = 2 if document else 4
     c[_LITERAL] = 1 if document else 0
-    c[_ENOUGH_TO_SPLIT] = max(1, int(limits["split_s"] * sensor.odr_hz)) if document else 64
+    c[_ENOUGH_TO_SPLIT] = max(1, (rate * limits["split_s"]).floor()) if document else 64
 
 
-def estimators_of(c, sensor, short, long, document, limits):
+def estimators_of(c, rate, degree, short, long, document, limits):
     """The estimators and the line through them."""
     if not 1 <= short <= 6 or not 1 <= long or short + long > 18:
         raise ValueError("short must be 1..6 and short + long at most 18")
-    degree = sensor.temp_lsb_per_degc or 1000.0
-    rate = sensor.odr_hz
     c[_SHORT] = short
     c[_ESTIMATOR_COUNT] = 1 + short + long
     words = _EST_HISTOGRAM + 2 * c[_BINS] + 1
@@ -223,41 +223,41 @@ def estimators_of(c, sensor, short, long, document, limits):
     c[_FIRST_SHORT] = _ESTIMATORS + words
     c[_FIRST_LONG] = _ESTIMATORS + (1 + short) * words
     c[_ESTIMATORS_END] = _ESTIMATORS + c[_ESTIMATOR_COUNT] * words
-    c[_STEP_LSB] = max(2, int(limits["step_degc"] * degree))
-    c[_MARGIN_LSB] = max(1, int(limits["margin_degc"] * degree))
-    c[_PROMOTE] = max(2, int(limits["promote_s"] * rate))
-    c[_HALVE_AFTER] = max(16, min(1 << 28, int(limits["halve_after_s"] * rate)))
-    c[_ENOUGH_TO_FIT] = max(2, int(limits["fit_s"] * rate))
+    c[_STEP_LSB] = max(2, (degree * limits["step_degc"]).floor())
+    c[_MARGIN_LSB] = max(1, (degree * limits["margin_degc"]).floor())
+    c[_PROMOTE] = max(2, (rate * limits["promote_s"]).floor())
+    c[_HALVE_AFTER] = max(16, min(1 << 28, (rate * limits["halve_after_s"]).floor()))
+    c[_ENOUGH_TO_FIT] = max(2, (rate * limits["fit_s"]).floor())
     c[_MOST_COUNTED] = (
         0xFFFFF // (short + long)
         if document
-        else max(16, min(8192, int(limits["counted_s"] * rate)))
+        else max(16, min(8192, (rate * limits["counted_s"]).floor()))
     )
     shift = 0
-    while int(degree * 16) >> shift >= 16:
+    while (degree * 16).floor() >> shift >= 16:
         shift += 1
     c[_LOCAL_SHIFT] = shift
     unit = degree * 16 / (1 << shift)
-    c[_LOCAL] = 0 if document else squared(limits["local_degc"] * unit, 1 << 14)
+    c[_LOCAL] = 0 if document else (unit * limits["local_degc"]).squared(1 << 14)
     c[_NEAR] = c[_LOCAL] * max(1, 2048 // c[_MOST_COUNTED])
-    c[_STABLE] = max(2, int(limits["stable_s"] * rate))
-    c[_SHARE_Q8] = int(limits["share"] * 256)
-    c[_BEYOND_Q4] = int(limits["beyond_degc"] * degree * 16)
-    c[_STALE_LSB] = max(1, int(limits["refit_degc"] * degree))
+    c[_STABLE] = max(2, (rate * limits["stable_s"]).floor())
+    c[_SHARE_Q8] = (Ratio(256) * limits["share"]).floor()
+    c[_BEYOND_Q4] = (degree * limits["beyond_degc"] * 16).floor()
+    c[_STALE_LSB] = max(1, (degree * limits["refit_degc"]).floor())
 
 
-def recent_of(c, sensor, limits):
+def recent_of(c, rate, lsb, degree, limits):
     """The offset that follows what the curve does not explain."""
-    lsb = sensor.gyro_lsb_per_dps
-    segment_s = c[_SEGMENT] * c[_WINDOW] / sensor.odr_hz
-    c[_FLOOR_Q8] = squared(limits["floor_dps"] * lsb * 16, 1 << 14)
-    c[_GATE_Q4] = max(1, min(0x7FFF, int(limits["gate_dps"] * lsb * 16)))
-    c[_INSIST] = max(3, int(limits["insist_s"] / segment_s + 0.5))
-    c[_WALK_MOST_Q16] = squared(limits["walk_most_dps"] * lsb * 256, 1 << 23)
-    c[_WALK_LEAST_Q16] = squared(limits["walk_least_dps"] * lsb * 256, c[_WALK_MOST_Q16])
-    c[_PROVISIONAL_Q8] = max(1, min(1 << 28, int(limits["turn_dps"] * lsb * 256)))
-    c[_TURN_ON_VARIANCE_Q8] = squared(limits["turn_on_dps"] * lsb * 16, 1 << 27)
-    slope = limits["slope_dps_per_degc"] * lsb / (sensor.temp_lsb_per_degc or 1000.0)
-    c[_SLOPE_Q16] = max(1, min(4095, int(slope * 65536)))
-    c[_MOST_SIGMA_Q6] = max(1, min(8191, int(limits["motion_most_dps"] * lsb * 64)))
-    c[_FULL_WEIGHT_Q12] = int(min(1 << 29, 256 * squared(limits["motion_full_dps"] * lsb * 64)))
+    segment_s = Ratio(c[_SEGMENT] * c[_WINDOW]) / rate
+    c[_FLOOR_Q8] = (lsb * limits["floor_dps"] * 16).squared(1 << 14)
+    c[_GATE_Q4] = max(1, min(0x7FFF, (lsb * limits["gate_dps"] * 16).floor()))
+    c[_INSIST] = max(3, (Ratio(limits["insist_s"]) / segment_s).nearest())
+    c[_WALK_MOST_Q16] = (lsb * limits["walk_most_dps"] * 256).squared(1 << 23)
+    c[_WALK_LEAST_Q16] = (lsb * limits["walk_least_dps"] * 256).squared(c[_WALK_MOST_Q16])
+    c[_PROVISIONAL_Q8] = max(1, min(1 << 28, (lsb * limits["turn_dps"] * 256).floor()))
+    c[_TURN_ON_VARIANCE_Q8] = (lsb * limits["turn_on_dps"] * 16).squared(1 << 27)
+    slope = lsb * limits["slope_dps_per_degc"] / degree
+    c[_SLOPE_Q16] = max(1, min(4095, (slope * 65536).floor()))
+    c[_MOST_SIGMA_Q6] = max(1, min(8191, (lsb * limits["motion_most_dps"] * 64).floor()))
+    full = (lsb * limits["motion_full_dps"] * 64).squared()
+    c[_FULL_WEIGHT_Q12] = min(1 << 29, 256 * full)

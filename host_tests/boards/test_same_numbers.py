@@ -36,6 +36,14 @@ def test_rates_and_states_are_equal(all_parts, modes, mode):
     assert played.data == on_host(play).data
 
 
+@pytest.mark.parametrize("odr_hz", [12.5, 100.0, 1000 / 7, 500.0])
+def test_a_board_computes_the_settings_of_this_host(all_parts, odr_hz):
+    rows = np.zeros((1, 8), np.int32)
+    for gyro, accel, temp in ((131.0, 16384.0, 340.0), (16.4, 2048.0, 326.8)):
+        play = Play(rows, {}, sensor=(odr_hz, gyro, accel, temp, 36.53))
+        assert on_pico(all_parts, play).data == on_host(play).data
+
+
 def test_a_difference_in_one_sample_is_found(all_parts, modes):
     rows = modes["rest"].rows[:ROWS].copy()
     play = replace(modes["rest"], rows=rows)

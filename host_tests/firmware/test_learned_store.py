@@ -92,17 +92,38 @@ def test_state_and_model_have_two_slots_each_one_after_the_other(saved, base, pi
     stores = LearnedStore(memory, BINDING, saved, base, pitch)
     for _ in range(2):
         assert stores.save() and stores.save_model(MODEL)
-    of_state, of_model = pitch or 4 * len(saved.state) + 24, pitch or MODEL_BYTES + 24
+    words = len(saved.state) + len(saved.settings)
+    of_state, of_model = pitch or 4 * words + 24, pitch or MODEL_BYTES + 24
     begins = [base, base + of_state, base + 2 * of_state, base + 2 * of_state + of_model]
     assert [at for at in range(len(memory.bytes)) if memory.bytes[at : at + 3] == b"ZRS"] == begins
     assert stores.end == begins[-1] + of_model
     assert set(memory.bytes[stores.end :]) == {0xFF}
-    assert [memory.bytes[at + 4] for at in begins] == [1] * 4  # versions
+    assert [memory.bytes[at + 4] for at in begins] == [2, 2, 1, 1]  # versions
 
 
 @pytest.mark.parametrize("options", [{"binding": bytes([0x70, 0, 0, 3])}, {"still_dps": 0.2}])
 def test_state_of_another_chip_or_other_settings_is_refused(memory, saved, options):
     assert blank(memory, **options).load() == store.OTHER_BINDING
+
+
+@pytest.mark.parametrize(
+    ("binding", "sensor", "options", "named"),
+    [
+        ([0x70, 0, 0, 3], {}, {}, "another chip: code 0x68, not 0x70"),
+        ([0x68, 1, 0, 3], {}, {}, "another gyroscope range: code 0x00, not 0x01"),
+        ([0x68, 0, 2, 3], {}, {}, "another accelerometer range: code 0x00, not 0x02"),
+        ([0x68, 0, 0, 4], {}, {}, "another filter: code 0x03, not 0x04"),
+        (BINDING, {"odr_hz": 200.0}, {}, "stored with another odr_hz"),
+        (BINDING, {"temp_lsb_per_degc": 333.87}, {}, "stored with another temp_lsb_per_degc"),
+        (BINDING, {}, {"still_dps": 0.2}, "stored with another still_dps"),
+        (BINDING, {}, {"promote_s": 6.0}, "stored with another promote_s"),
+        (BINDING, {}, {"fit_s": 3, "gate_dps": 0.2}, "another fit_s and another gate_dps"),
+    ],
+)
+def test_a_refusal_names_what_differs(memory, saved, binding, sensor, options, named):
+    own = Corrector(Sensor(**{"odr_hz": 100.0, **sensor}), **options)
+    stores = LearnedStore(memory, bytes(binding), own)
+    assert named in stores.in_words(stores.load())
 
 
 @pytest.mark.parametrize("options", [{"document": True}, {"every": True}, {"short": 2}])

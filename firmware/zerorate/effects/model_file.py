@@ -16,6 +16,7 @@ Little-endian:
 
 from struct import unpack_from
 
+from ..arithmetic.ratio import Ratio
 from ..storage.crc32 import checksum
 
 # layout: names that a board's own compiler reads
@@ -178,7 +179,8 @@ def fill(e, data, sensor):
     e[_TICK_US] = tick_us
     # none of an empty model: the kernel would compute what is not there
     slots = data[6] + data[10]
-    e[_SLOTS_A_SAMPLE] = int(2e6 * slots / (sensor.odr_hz * tick_us)) + 1 if slots else 0
+    each = Ratio(2000000 * slots) / sensor.odr_hz / tick_us
+    e[_SLOTS_A_SAMPLE] = each.floor() + 1 if slots else 0
     at = _BODY
     for i in range(data[7]):
         a = _INPUTS + _INPUT_WORDS * i

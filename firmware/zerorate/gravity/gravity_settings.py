@@ -1,7 +1,8 @@
 """The settings and the state of the source against gravity, made once."""
 
 from array import array
-from math import pi
+
+from ..arithmetic.ratio import PI, Ratio
 
 # layout: names that a board's own compiler reads
 const = int
@@ -51,28 +52,32 @@ def gravity_settings(
         raise ValueError("learning by gravity needs %g Hz or more, not %g" % (least_hz, odr_hz))
     if not 0 <= threshold < units:
         raise ValueError("the threshold must be below the sub-units")
-    per_lsb_us = pi / 180 / gyro_lsb_per_dps * 1e-6 * (1 << 22) / 256
-    sample_us = 1e6 / odr_hz
+    rate, lsb, degree = Ratio(odr_hz), Ratio(gyro_lsb_per_dps), Ratio(*PI) / 180
+    per_lsb_us = degree / lsb * (1 << 14) / 1000000
+    a_sample = per_lsb_us / rate * 1000000
     shift = 15
-    while per_lsb_us * sample_us * (1 << shift) < 4096 and shift < 30:
+    while (a_sample * (1 << shift)).floor() < 4096 and shift < 30:
         shift += 1
+    gain = per_lsb_us * (1 << shift)
     gain_shift = 0
-    while per_lsb_us * (1 << shift) * (1 << gain_shift) < 1024 and gain_shift < 28:
+    while (gain * (1 << gain_shift)).floor() < 1024 and gain_shift < 28:
         gain_shift += 1
-    q8 = gyro_lsb_per_dps * 256
+    q8 = lsb * 256
+    sub_unit = Ratio(sub_unit_s)
     c = [0] * _GRAVITY_SETTINGS_WORDS
-    c[_SUB_UNIT_US] = int(sub_unit_s * 1e6)
-    c[_GRAVITY_GAIN] = int(per_lsb_us * (1 << shift) * (1 << gain_shift) + 0.5)
+    c[_SUB_UNIT_US] = (sub_unit * 1000000).floor()
+    c[_GRAVITY_GAIN] = (gain * (1 << gain_shift)).nearest()
     c[_GRAVITY_GAIN_SHIFT] = gain_shift
     c[_GRAVITY_SHIFT] = shift
     c[_UNITS] = units
     c[_THRESHOLD] = threshold
-    c[_DEAD_Q13] = 0 if document else int(dead_dps * sub_unit_s * pi / 180 * 8192)
-    c[_COARSE_Q8] = max(1, int(coarse_dps * q8))
-    c[_FINE_Q8] = max(1, int(fine_dps * q8))
-    c[_ONE_G_LSB] = int(accel_lsb_per_g)
-    c[_GRAVITY_GAP_US] = int(2 * sample_us)
-    c[_PUSH_Q2] = 0 if document else max(1, int(4 * q8 * 180 / pi / 8192 / sub_unit_s / PUSH))
+    c[_DEAD_Q13] = 0 if document else (sub_unit * dead_dps * degree * 8192).floor()
+    c[_COARSE_Q8] = max(1, (q8 * coarse_dps).floor())
+    c[_FINE_Q8] = max(1, (q8 * fine_dps).floor())
+    c[_ONE_G_LSB] = Ratio(accel_lsb_per_g).floor()
+    c[_GRAVITY_GAP_US] = (Ratio(2000000) / rate).floor()
+    push = q8 / degree / (2048 * PUSH) / sub_unit
+    c[_PUSH_Q2] = 0 if document else max(1, push.floor())
     return array("i", c)
 
 

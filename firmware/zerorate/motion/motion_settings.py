@@ -1,7 +1,8 @@
 """The settings and the state of the source in motion, made once."""
 
 from array import array
-from math import ceil, log, pi
+
+from ..arithmetic.ratio import PI, Ratio
 
 # layout: names that a board's own compiler reads
 const = int
@@ -38,15 +39,28 @@ _ALGEBRA = 90
 
 
 def _real(value):
-    """Return mantissa and exponent of a positive number, as real.py holds them."""
+    """Return mantissa and exponent of a Ratio above 0, as real.py holds them."""
     exponent = 0
-    while value < 1 << 27:
-        value *= 2
+    over, under = value.over, value.under
+    while over < under << 27:
+        over *= 2
         exponent -= 1
-    while value >= 1 << 28:
-        value /= 2
+    while over >= under << 28:
+        under *= 2
         exponent += 1
-    return int(value), exponent
+    return over // under, exponent
+
+
+def _square(value):
+    return value * value
+
+
+def _nearest_power(value):
+    """Return the power of two that a Ratio of 1 or more is nearest to, by its logarithm."""
+    power = 0
+    while value.over * value.over >= value.under * value.under << 2 * power + 1:
+        power += 1
+    return power
 
 
 def motion_settings(
@@ -86,46 +100,50 @@ def motion_settings(
         raise ValueError("a window needs 16..256 nodes, and 1..3 passes")
     longest = 1 << longest_stage
     steps = (passes + 1) * longest + _ALGEBRA
-    rad_per_lsb_us = pi / 180 / gyro_lsb_per_dps * 1e-6 * (1 << 24)
-    least_hz = max(1 / node_s, rad_per_lsb_us * 1e6 / 4096)
+    rate, lsb, degree = Ratio(odr_hz), Ratio(gyro_lsb_per_dps), Ratio(*PI) / 180
+    rad_per_lsb_us = degree / lsb * (1 << 24) / 1000000
+    least_hz = max(1 / node_s, 0.0174533 / gyro_lsb_per_dps * 4096)
     if not odr_hz >= least_hz:
         raise ValueError("learning in motion needs %g Hz or more, not %g" % (least_hz, odr_hz))
-    sample_us = 1e6 / odr_hz
     shift = 0
-    while rad_per_lsb_us * sample_us * (1 << shift) < 4096 and shift < 20:
+    a_sample = rad_per_lsb_us / rate * 1000000
+    while (a_sample * (1 << shift)).floor() < 4096 and shift < 20:
         shift += 1
+    gain = rad_per_lsb_us * (1 << shift)
     gain_shift = 0
-    while rad_per_lsb_us * (1 << shift) * (1 << gain_shift) < 1024 and gain_shift < 28:
+    while (gain * (1 << gain_shift)).floor() < 1024 and gain_shift < 28:
         gain_shift += 1
-    unit = node_s * (1 << 24) * pi / 180
+    node = Ratio(node_s)
+    unit = node * (1 << 24) * degree
     c = [0] * _MOTION_SETTINGS_WORDS
-    c[_NODE_US] = int(node_s * 1e6)
-    c[_MOTION_GAIN] = int(rad_per_lsb_us * (1 << shift) * (1 << gain_shift) + 0.5)
+    c[_NODE_US] = (node * 1000000).floor()
+    c[_MOTION_GAIN] = (gain * (1 << gain_shift)).nearest()
     c[_MOTION_GAIN_SHIFT] = gain_shift
     c[_MOTION_SHIFT] = shift
-    c[_FORCE_GAIN] = int((1 << 25) / accel_lsb_per_g + 0.5)
-    c[_VISITS] = ceil(steps / (_SPARE_NODES * node_s * odr_hz))
-    c[_MOTION_GAP_US] = int(2 * sample_us)
-    c[_LEAST_TRAFFIC] = int(least_dps * node_s * pi / 180 * (1 << 13))
+    c[_FORCE_GAIN] = (Ratio(1 << 25) / accel_lsb_per_g).nearest()
+    c[_VISITS] = -(Ratio(-steps) / (rate * node * _SPARE_NODES)).floor()
+    c[_MOTION_GAP_US] = (Ratio(2000000) / rate).floor()
+    c[_LEAST_TRAFFIC] = (node * degree * (1 << 13) * least_dps).floor()
     c[_NODES] = longest + _SPARE_NODES
     c[_PASSES] = passes
-    c[_LSB_A_UNIT], c[_LSB_A_UNIT + 1] = _real(gyro_lsb_per_dps * 256 / unit)
-    c[_BIAS_WALK], c[_BIAS_WALK + 1] = _real((walk_dps * unit) ** 2 * node_s)
-    c[_START_VARIANCE], c[_START_VARIANCE + 1] = _real((start_dps * unit) ** 2)
+    c[_LSB_A_UNIT], c[_LSB_A_UNIT + 1] = _real(lsb * 256 / unit)
+    c[_BIAS_WALK], c[_BIAS_WALK + 1] = _real(_square(unit * walk_dps) * node)
+    c[_START_VARIANCE], c[_START_VARIANCE + 1] = _real(_square(unit * start_dps))
     c[_LONGEST] = longest
     c[_SHORTEST_STAGE] = longest_stage - 3
-    c[_LEAST_UP] = int(least_up_g * 4096)
+    c[_LEAST_UP] = (Ratio(4096) * least_up_g).floor()
     c[_PATIENCE] = patience
     c[_MOTION_DOCUMENT] = 1 if document else 0
     c[_SLOPE_SPREAD] = spread
-    c[_SETTLED] = int(settled_dps * unit)
+    c[_SETTLED] = (unit * settled_dps).floor()
     least_tilt_dps = least_dps if document else least_tilt_dps
-    c[_LEAST_TILT] = int(least_tilt_dps * node_s * pi / 180 * (1 << 13))
+    c[_LEAST_TILT] = (node * degree * (1 << 13) * least_tilt_dps).floor()
     if temp_lsb_per_degc:
+        temp = Ratio(temp_lsb_per_degc)
         c[_TEMP_SLOPE_START], c[_TEMP_SLOPE_START + 1] = _real(
-            (slope_dps_per_degc * unit / temp_lsb_per_degc) ** 2
+            _square(unit * slope_dps_per_degc / temp)
         )
-        c[_BEND] = int(log(bend_degc * temp_lsb_per_degc) / log(2) + 0.5)
+        c[_BEND] = _nearest_power(temp * bend_degc)
     return array("i", c)
 
 

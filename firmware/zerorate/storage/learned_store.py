@@ -4,8 +4,9 @@ The state changes all day and the model when a person brings one, so each has it
 a cut in the writing of one never costs the other.
 """
 
+from ..machine_code import unload
 from .crc32 import checksum
-from .store import LOADED, Store, packed, slot_bytes
+from .store import LOADED, OTHER_BINDING, REASONS, Store, packed, slot_bytes
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 const = int
 # layout: end
 MODEL_BYTES = const(2048)
-_STATE_VERSION = const(1)
+_STATE_VERSION = const(2)
 _AT_MODEL_SIZE = const(4)
 
 
@@ -25,7 +26,7 @@ class LearnedStore:
     """The stores of `corrector`, a Corrector, on `storage` (see storage.py) from byte `base` on.
 
     binding: MPU6050.binding, the chip's id, range and filter; the state is bound to the
-    corrector's settings as well. pitch: distance of slots, an erase block of flash (default: no
+    corrector's settings as well, which go with it into the record. pitch: distance of slots, an erase block of flash (default: no
     gap). end is the first byte behind both. Raises ValueError for a pitch that is too small.
     """
 
@@ -40,7 +41,9 @@ class LearnedStore:
         self.corrector = corrector
         size = 4 * len(corrector.state)
         bound = bytes(binding) + _fingerprint(corrector.settings)
-        self.state = Store(storage, bound, size, _STATE_VERSION, base=base, pitch=pitch)
+        self.state = Store(
+            storage, bound, size, _STATE_VERSION, (), base, pitch, corrector.settings
+        )
         base += 2 * (pitch or self.state.slot_bytes)
         self._model_place = (storage, binding, base, pitch)
         self.end = base + 2 * (pitch or slot_bytes(MODEL_BYTES))
@@ -54,9 +57,19 @@ class LearnedStore:
         """Put what was learned into the corrector and begin a power-on; LOADED or why not.
 
         same: the chip kept its power (MPU6050.kept_power), only the program began anew.
-        store.REASONS says each result in words; the corrector is as it was when it is not LOADED.
+        in_words says each result; the corrector is as it was when it is not LOADED.
         """
         return self.corrector.load(self.state, same)
+
+    def in_words(self, reason: int) -> str:
+        """What load returned, in words; of another binding also what of it or which setting."""
+        if reason != OTHER_BINDING:
+            return REASONS[reason]
+        from .differing import differing
+
+        text = differing(self.state, self.corrector)
+        unload("zerorate.storage", "differing")
+        return text
 
     def save(self, payload: "Any" = None) -> bool:
         """Write what the corrector has learned; False when the storage failed.

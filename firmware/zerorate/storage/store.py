@@ -1,7 +1,7 @@
 """Learned state kept over a power cut: two slots, the newest whole one counts.
 
 A record is  "ZRS" format version size sequence binding payload crc32  with little-endian numbers
-(1, 1, 2, 4, 8 bytes) and CRC-32 of all before it. A save writes the slot that does not hold the
+(1, 1, 2, 4, 8 bytes) and CRC-32 of all before it; size is that of payload and what goes with it. A save writes the slot that does not hold the
 newest whole record, so until the last byte stands the one before it is whole.
 """
 
@@ -30,7 +30,7 @@ REASONS = (
     "loaded",
     "nothing was ever stored",
     "neither slot is whole",
-    "stored for another chip, range or filter",
+    "stored for another chip, range, filter or other settings",
     "stored by another version",
     "stored with another size",
     "the storage cannot be read",
@@ -56,8 +56,8 @@ class Store:
     binding is up to 8 bytes naming chip, range and filter (MPU6050.binding); version is that of
     the payload, 0..255, and older the versions of the same size that load takes besides. base is
     the first byte used, pitch the distance of the slots (an erase block of flash; default: no
-    gap). payload is array('i') of size / 4 items, or bytearray (bytes to save) of size. Where
-    storage has read_pieces and write_pieces, as FileStorage has, saving makes no record.
+    gap). payload is array('i') of size / 4 items, or bytearray (bytes to save) of size; goes_with,
+    an array('i'), is written behind it, and not loaded. Where storage has read_pieces and write_pieces, as FileStorage has, saving makes no record.
 
     Raises ValueError for a binding, version, size or pitch that does not fit.
     """
@@ -71,10 +71,13 @@ class Store:
         older: "Sequence[int]" = (),
         base: int = 0,
         pitch: int = 0,
+        goes_with: "Any" = (),
     ) -> None:
         if len(binding) > 8 or not 0 < size < 65536 or not 0 <= version < 256:
             raise ValueError("binding is of 8 bytes at most, size of 1..65535, version of 0..255")
-        self.slot_bytes = slot_bytes(size)
+        self._goes_with = goes_with
+        self._all = size + 4 * len(goes_with)
+        self.slot_bytes = slot_bytes(self._all)
         if 0 < pitch < self.slot_bytes:
             raise ValueError("a slot takes {} bytes, pitch is {}".format(self.slot_bytes, pitch))
         self.storage = storage
@@ -110,6 +113,13 @@ class Store:
         self.loaded_version = record[_AT_VERSION]
         unpack(record, _HEADER, payload, self.size)
         return LOADED
+
+    def newest(self) -> bytearray:
+        """Return the record of the newest whole slot, of whatever binding. Raises OSError."""
+        record = bytearray(self.slot_bytes)
+        self._find(record)
+        self._judge(self._newest, record)
+        return record
 
     def save(self, payload: "Any") -> bool:
         """Write payload to the older slot and read it back; False when that failed."""
@@ -160,12 +170,12 @@ class Store:
             blank = header[0] in (0x00, 0xFF) and header[0] == header[1] == header[2]
             return EMPTY if blank else DAMAGED
         size = header[_AT_SIZE] | header[_AT_SIZE + 1] << 8
-        if size != self.size:
+        if size != self._all:
             whole = slot_bytes(size) <= self._pitch and self._is_whole(at, slot_bytes(size), piece)
         if not whole:
             return DAMAGED
         version = header[_AT_VERSION]
-        if size != self.size:  # a record of another layout
+        if size != self._all:  # a record of another layout
             return OTHER_VERSION if version != self.version else OTHER_SIZE
         if header[_AT_FORMAT] != _FORMAT:
             return OTHER_VERSION
@@ -207,19 +217,21 @@ class Store:
         header = (
             b"ZRS"
             + bytes(
-                [_FORMAT, self.version, 0, self.size & 0xFF, self.size >> 8]
+                [_FORMAT, self.version, 0, self._all & 0xFF, self._all >> 8]
                 + [sequence >> shift & 0xFF for shift in (0, 8, 16, 24)]
             )
             + self.binding
         )
-        payload = packed(payload, self.size)
         crc = bytearray(_CRC)
-        checksum(header, crc)
-        checksum(payload, crc)
+        parts = [header, packed(payload, self.size), crc]
+        if self._goes_with:
+            parts.insert(2, packed(self._goes_with, self._all - self.size))
+        for part in parts[:-1]:
+            checksum(part, crc)
         if hasattr(self.storage, "write_pieces"):
-            self.storage.write_pieces(self._offset(slot), (header, payload, crc))
+            self.storage.write_pieces(self._offset(slot), parts)
         else:
-            self.storage.writeblock(self._offset(slot), header + bytes(payload) + crc)
+            self.storage.writeblock(self._offset(slot), b"".join([bytes(part) for part in parts]))
 
 
 def slot_bytes(size):

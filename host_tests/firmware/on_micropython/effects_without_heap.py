@@ -5,7 +5,7 @@ from array import array
 from micropython import const, heap_lock, heap_unlock
 from zerorate.effects.effects import sense
 from zerorate.model import EffectModel
-from zerorate.settings import Sensor
+from zerorate.sensor import Sensor
 
 # layout: The corrector's state
 _EFFECT_Q8 = const(67)

@@ -75,11 +75,7 @@ def run(options, sensor, count, at_once, model):
         mem32[_MARK] = 1
         mem32[_MARK] = 0
     corrector = Corrector(Sensor(*sensor), **options)
-    others = (corrector.motion_settings, corrector.motion, corrector.gravity_settings)
-    # a board's floats are of single precision, so that the last bit of a setting may be another
-    for words in (corrector.settings, corrector.state) + others + (corrector.gravity,):
-        if words is not None:
-            fill(words)
+    fill(corrector.state)
     if model:
         from zerorate.model import EffectModel
 
@@ -96,6 +92,7 @@ def run(options, sensor, count, at_once, model):
         one_by_one(corrector.update, count)
     else:
         by_kernel(corrector, count)
-    for words in (corrector.state, corrector.motion, corrector.gravity):
+    c = corrector
+    for words in (c.settings, c.motion_settings, c.gravity_settings, c.motion, c.gravity, c.state):
         if words is not None:
             give(words)

@@ -24,14 +24,14 @@ _PATIENCE_S = 600
 class Play:
     """What is run: rows (n, 8) of dt_us and seven words, through a corrector of these options.
 
-    settings, state: what the corrector begins with, its own where None; at_once: samples a call,
-    0 for the kernels without the object; model: bytes of an effect model that is refined as well.
+    state: what the corrector begins with, its own where None; its settings are always its own.
+    at_once: samples a call, 0 for the kernels without the object; model: bytes of an effect model
+    that is refined as well.
     """
 
     rows: NDArray[np.int32]
     options: dict[str, Any] = field(default_factory=REST.copy)
     sensor: tuple[float, ...] = SENSOR
-    settings: NDArray[np.int32] | None = None
     state: NDArray[np.int32] | None = None
     at_once: int = 1
     model: bytes = b""
@@ -39,15 +39,14 @@ class Play:
     def corrector(self) -> Corrector:
         """A corrector as the play begins with."""
         made = Corrector(Sensor(*self.sensor), **self.options)
-        for words, given in ((made.settings, self.settings), (made.state, self.state)):
-            if given is not None:
-                words[:] = array("i", [int(word) for word in given])
+        if self.state is not None:
+            made.state[:] = array("i", [int(word) for word in self.state])
         return made
 
 
 @dataclass(frozen=True)
 class Played:
-    """How it ended: bytes of the frames and the states behind it, and cycles of each call."""
+    """How it ended: bytes of the frames, the settings and the states, and cycles of each call."""
 
     data: bytes
     cycles: tuple[int, ...] = ()
@@ -65,11 +64,7 @@ class Played:
 
 def on_pico(pico: EmulatedPico, play: Play) -> Played:
     """Run it on a Pico that has the packages. Raises BoardError and mpremote's errors."""
-    begun = play.corrector()
-    others = (begun.motion_settings, begun.motion, begun.gravity_settings, begun.gravity)
-    arrays = [words for words in (begun.settings, begun.state, *others) if words is not None]
-    begin = b"".join(words.tobytes() for words in arrays)
-    pico.give(begin + play.rows.astype("<i4").tobytes())
+    pico.give(play.corrector().state.tobytes() + play.rows.astype("<i4").tobytes())
     pico.ask("spans")
     pico.taken()
     p = play
@@ -107,7 +102,8 @@ def on_host(play: Play) -> Played:
             sample = row[1:]
             corrector.update(sample, row[0])
             left.extend(sample)
-    for words in (corrector.state, corrector.motion, corrector.gravity):
+    c = corrector
+    for words in (c.settings, c.motion_settings, c.gravity_settings, c.motion, c.gravity, c.state):
         if words is not None:
             left.extend(words)
     return Played(left.tobytes())
