@@ -1,4 +1,4 @@
-"""Fractions of integers: settings come out the same whatever the width of the floats they are in."""
+"""Fractions of integers: settings come out the same at any width of the floats given."""
 
 from math import frexp
 

@@ -26,7 +26,8 @@ class LearnedStore:
     """The stores of `corrector`, a Corrector, on `storage` (see storage.py) from byte `base` on.
 
     binding: MPU6050.binding, the chip's id, range and filter; the state is bound to the
-    corrector's settings as well, which go with it into the record. pitch: distance of slots, an erase block of flash (default: no
+    corrector's settings as well, which go with it into the record. pitch: distance of slots, an
+    erase block of flash (default: no
     gap). end is the first byte behind both. Raises ValueError for a pitch that is too small.
     """
 

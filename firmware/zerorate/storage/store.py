@@ -1,7 +1,8 @@
 """Learned state kept over a power cut: two slots, the newest whole one counts.
 
 A record is  "ZRS" format version size sequence binding payload crc32  with little-endian numbers
-(1, 1, 2, 4, 8 bytes) and CRC-32 of all before it; size is that of payload and what goes with it. A save writes the slot that does not hold the
+(1, 1, 2, 4, 8 bytes) and CRC-32 of all before it; size is that of payload and what goes with it. A
+save writes the slot that does not hold the
 newest whole record, so until the last byte stands the one before it is whole.
 """
 
@@ -57,7 +58,8 @@ class Store:
     the payload, 0..255, and older the versions of the same size that load takes besides. base is
     the first byte used, pitch the distance of the slots (an erase block of flash; default: no
     gap). payload is array('i') of size / 4 items, or bytearray (bytes to save) of size; goes_with,
-    an array('i'), is written behind it, and not loaded. Where storage has read_pieces and write_pieces, as FileStorage has, saving makes no record.
+    an array('i'), is written behind it, and not loaded. Where storage has read_pieces and
+    write_pieces, as FileStorage has, saving makes no record.
 
     Raises ValueError for a binding, version, size or pitch that does not fit.
     """
