@@ -173,6 +173,9 @@ class Trial:
 
     def _record(self, pipe):
         code = 70
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # also where a shell ignores them
+        for number in (signal.SIGTERM, signal.SIGHUP):
+            signal.signal(number, signal.SIG_DFL)
         try:
             os.write(pipe, b"!")
             more = [] if self.seconds is None else ["--seconds", str(self.seconds)]

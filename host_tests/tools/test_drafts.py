@@ -260,6 +260,7 @@ def send(event, arguments, number=int(sys.argv[2])):
 threading.Thread(target=threading.Event().wait, daemon=True).start()
 for number in (signal.SIGTERM, signal.SIGHUP):
     signal.signal(number, cli._end)
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background ignores it
 sys.addaudithook(send)
 with written_together("out") as draft:
     for name in ("a", "b", "c"):
