@@ -7,14 +7,21 @@ from pathlib import Path
 import textstat
 from markdown_it import MarkdownIt
 
-PAGES = (
-    *("README.md", "docs/README.md", "docs/learning.md", "docs/closing.md", "docs/motion.md"),
-    *("docs/design.md", "docs/fleet.md", "docs/extending.md"),
-)
+#: Beside those of docs.
+PAGES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md")
+#: Tables and lists of names.
+_NO_PROSE = {"api.md", "glossary.md", "layout.md"}
 MOST_WORDS_A_SENTENCE = 16
 LEAST_READING_EASE = 55  # Flesch: 50 to 60 is "fairly difficult", 60 to 70 "plain English"
 
 _NOT_PROSE = ("heading", "th", "td")
+
+
+def pages(root):
+    """Every page that is read as prose, below the folder `root`."""
+    docs = sorted(p.relative_to(root).as_posix() for p in (root / "docs").glob("*.md"))
+    names = (page for page in docs if Path(page).name not in _NO_PROSE and "figures" not in page)
+    return [*PAGES, *names]
 
 
 def prose(markdown):
@@ -55,4 +62,4 @@ def main(pages):
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:] or PAGES))
+    sys.exit(main(sys.argv[1:] or pages(Path())))

@@ -11,12 +11,12 @@ _CONSTANT = re.compile(r"^_(\w+) = const\((\w+)\)  # (.+)$", re.MULTILINE)
 _HEAD = """# What a user may set
 
 Made from `firmware/zerorate/settings.py` by `make layout`; edit that file. Give any of them by
-name: `Corrector(sensor, still_dps=0.5)`. The unit is behind the last `_`; a time of readings, as
-`promote_s`, is as many as the output data rate gives in it. The words that a setting makes are in
-[layout.md](layout.md). Outside of its range `Corrector` raises ValueError; within them, and within
-those of `Sensor`, nothing leaves 31 bits (`make sweep`). A window has a power of two samples, 4 to
-256, as near to `window_s` as it gets, and a segment at most eight windows: of 100 Hz a segment of
-2.5 s has 2.56 s.
+name: `Corrector(sensor, still_dps=0.5)`. The unit is behind the last `_`. A time of readings, as
+`promote_s`, is as many readings as the output data rate gives in it. The words that a setting
+makes are in [layout.md](layout.md). Outside of its range `Corrector` raises ValueError; within
+them, and within those of `Sensor`, nothing leaves 31 bits (`make sweep`). A window has a power of
+two samples, 4 to 256, as near to `window_s` as it gets. A segment has at most eight windows. At
+100 Hz a segment of 2.5 s is 2.56 s long.
 
 To change one for good, edit `DEFAULTS` there and run `make layout`.
 

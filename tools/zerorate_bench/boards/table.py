@@ -50,39 +50,48 @@ BOARDS = (
 )
 _HEAD = """# Which board, and what fits
 
-Measured: the row of the RP2040, on an emulated Pico with stock MicroPython 1.28 (`zerorate bench
-boards`), and every board's flash, the size of what `zerorate flash` sends for learning at rest.
-Reckoned, and marked "some": free heap, which is what makers and users tell; heap needed, which is
-the Pico's, with RV32's larger code; a sample's time, which is the Pico's cycles by the board's
-clock. Another core needs fewer cycles, and RV32 is taken for as fast as a Cortex-M0+. No board was
-at hand.
+The row of the RP2040 is measured, on an emulated Pico with stock MicroPython 1.28 (`zerorate bench
+boards`). So is every board's flash: what `zerorate flash` sends for learning at rest. Figures with
+"some" are estimates:
 
-Code for RV32 is compiled for speed: there a sample takes no more instructions than by C -O2. On an
-ESP32-C3 that is {rest_more:,} bytes more of heap and flash than a Pico's code at rest, and
-{both_more:,} with motion and gravity.
+- Free heap is what makers and users report.
+- Heap needed is the Pico's, with RV32's larger code.
+- A sample's time is the Pico's cycles by the board's clock. Another core needs fewer cycles. RV32
+  is taken to be as fast as a Cortex-M0+.
 
-A program's own needs, some 16 KB with a store and a FIFO, come on top of the heap. Machine code
-goes to every Cortex-M and to RISC-V by `zerorate flash`; elsewhere, and where `mip` installed the
-sources, the same kernels run as bytecode.
+No board was at hand.
+
+Code for RV32 is compiled for speed: a sample takes no more instructions than with C -O2. So an
+ESP32-C3 needs {rest_more:,} bytes more of heap and flash than a Pico at rest. With motion and
+gravity it needs {both_more:,} bytes more.
+
+A program's own needs come on top of the heap: some 16 KB with a store and a FIFO. `zerorate flash`
+sends machine code to every Cortex-M and to RISC-V. On other boards the same kernels run as
+bytecode, and so they do where `mip` installed the sources.
 """
 _FOOT = """
-On the emulated Pico, on the recording of the bench: the kernels of learning at rest with their call
-take {median:,.0f} cycles a sample, the worst {worst:,.0f}; `Corrector.update` takes
-{object_median:,.0f}, the worst {object_worst:,.0f}; in bursts of 64 (`Bursts.update`) it is
-{burst:,.0f} a sample. As bytecode a sample takes some {bytecode:,.0f}. What fits no heap can be
-frozen into a build: in MicroPython's `ports/rp2`, `make FROZEN_MANIFEST=FILE`, where FILE includes
-the board's own manifest and this project's `manifest.py`. The image takes 129 KB more of flash, all
-sources together 9 KB of heap, and on the emulated Pico it gave the same numbers in every mode, to
-the last bit: `zerorate bench boards` compares it where it is `firmware/FROZEN-1.28.0.bin` in the
-folder that ZERORATE_BOARDS names.
+Cycles a sample on the emulated Pico, with the recording of the bench:
+
+| what | mean | worst |
+| --- | ---: | ---: |
+| the kernels of learning at rest, with their call | {median:,.0f} | {worst:,.0f} |
+| `Corrector.update` | {object_median:,.0f} | {object_worst:,.0f} |
+| `Bursts.update`, 64 at once | {burst:,.0f} | |
+| as bytecode | some {bytecode:,.0f} | |
+
+A build can hold what fits no heap. In MicroPython's `ports/rp2` run `make FROZEN_MANIFEST=FILE`.
+FILE includes the board's own manifest and this project's `manifest.py`. The image takes 129 KB
+more of flash; all sources together take 9 KB of heap. On the emulated Pico it gave the same
+numbers in every mode, to the last bit. `zerorate bench boards` compares it if it is
+`firmware/FROZEN-1.28.0.bin` in the folder that ZERORATE_BOARDS names.
 
 ## The heap of the second program
 
-The second program of [pico.md](pico.md) runs in {least_heap:,} bytes of heap; some 46,000 are in
-use once it runs. This is what `gc.mem_alloc()` says behind each, after a collection; of it some
-5,200 bytes are names (`micropython.qstr_info()`), each kept for good when first met. They were
-8,373: `zerorate flash` sends private names as `_a`, `_b`, the same few in every file, and another
-module's constants as numbers.
+The second program of [pico.md](pico.md) runs in {least_heap:,} bytes of heap. Some 46,000 are in
+use once it runs. The table shows `gc.mem_alloc()` behind each, after a collection. Some 5,200
+bytes of it are names (`micropython.qstr_info()`). MicroPython keeps a name for good. So `zerorate
+flash` sends private names as `_a`, `_b`, the same few in every file, and another module's
+constants as numbers.
 
 | bytes | what |
 | ---: | --- |
@@ -98,11 +107,11 @@ module's constants as numbers.
 | 1,296 | `CheckedCorrector` |
 | 1,280 | a store, a `Fifo`, a `SaveSchedule` and two small arrays |
 
-Beside these a file is open while it saves, 1,148 bytes in one piece, a record is read whole once,
-at power-on, 1,796 bytes, and there are gaps between what stays. A few names more would take 2,240
-bytes more: the table of names doubles at 300. The machine code is compiled for size but for what
-every sample runs through; the checkpoint is what makes a chip's brown-out harmless. Frozen into a
-build, all bytecode and most names leave the heap.
+More heap is taken at times. A file is open while it saves: 1,148 bytes in one piece. A record is
+read whole at power-on: 1,796 bytes. There are gaps between what stays. A few names more would
+take 2,240 bytes, because the table of names doubles at 300. The machine code is compiled for
+size, except for what every sample runs through. The checkpoint makes a brown-out of the chip
+harmless. Frozen into a build, all bytecode and most names leave the heap.
 """
 
 

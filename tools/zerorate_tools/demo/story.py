@@ -84,7 +84,7 @@ def chapter_two(device: Device, result: Mapping[str, Any]) -> str:
         "2. The loop is closed: what does the firmware's model lack?",
         f"   Fitted on {first} to {last}; {holdout} was held out and looked at once.",
         *_found(result["effects"]),
-        *(f"   the truth, of which nobody told it: {words}" for words in device.hidden),
+        *(f"   hidden from the firmware: {words}" for words in device.hidden),
         f"   Error in {holdout}, offset taken from its first still minute, then frozen:",
         "                    gx        gy        gz",
     ]

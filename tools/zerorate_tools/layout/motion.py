@@ -150,7 +150,7 @@ MOTION_SETTINGS = Array(
         ("LONGEST", 1, "nodes", "the full window"),
         ("SHORTEST_STAGE", 1, "bits", "power of two of the first window"),
         ("LEAST_UP", 1, "g Q12", "mean force along the vertical: of less the window is lost"),
-        ("PATIENCE", 1, "windows", "that contradict in a row are believed"),
+        ("PATIENCE", 1, "windows", "that contradict in a row are accepted"),
         ("MOTION_DOCUMENT", 1, "", "1: the literal rules of US 10,451,438"),
         ("SLOPE_SPREAD", 1, "", "variance of a window's slope over its noise energy"),
         ("SETTLED", 1, "rad Q24", "a node: a slope below this needs no further pass"),

@@ -37,7 +37,7 @@ def read_scales(path: Path, column_names: list[str]) -> Scales:
     except FileNotFoundError as error:
         example = example_for(column_names)
         do = f"write there, with your sensor's numbers for these of an MPU-6050: {example}"
-        problem = f"what one LSB means is not told: there is no {beside.name} beside it"
+        problem = f"what one LSB means is unknown: there is no {beside.name} beside it"
         raise BadRecording(path, problem, do=do) from error
 
 

@@ -76,8 +76,6 @@ def engine(name: str) -> Engine:
     """
     if name == "native":
         return NativeEngine()
-    if name == "numba":
-        raise MissingRuntime("Numba is used no more: `native` runs the same kernels, compiled by C")
     if name == "cpython":
         return CPythonEngine()
     from ..runtimes import find
