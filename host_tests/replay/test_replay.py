@@ -6,7 +6,7 @@ import pyarrow.parquet as pq
 import pytest
 from zerorate import Corrector, Sensor
 from zerorate_tools.cli import main
-from zerorate_tools.errors import InFile, MissingRuntime, ZerorateError
+from zerorate_tools.errors import InFile, ZerorateError
 from zerorate_tools.layout import AXIS, STATE, axis_at
 from zerorate_tools.model import Slot, build_model, write_model
 from zerorate_tools.model.term import Term
@@ -222,11 +222,6 @@ def test_a_broken_recording_leaves_no_output(tmp_path, capsys):
     assert main(["replay", str(bad), "--out", str(out)]) == 2
     assert list(tmp_path.iterdir()) == [bad]
     assert capsys.readouterr().err.count("\n") == 1
-
-
-def test_numba_is_refused_with_the_name_that_took_its_place(log):
-    with pytest.raises(MissingRuntime, match="`native` runs the same kernels"):
-        replay(log, runtime="numba")
 
 
 def test_choices_of_sources_in_one_process_are_compiled_apart(simulated):

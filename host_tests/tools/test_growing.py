@@ -131,7 +131,7 @@ def test_what_is_being_recorded_is_not_recovered(tmp_path, new):
         ("x.partial.csv", None, "x.partial.csv: cannot be opened: No such file"),
         ("x.partial.csv", "t_us,gx,gy,gz\n1,2", "no sample was recorded; delete it"),
         ("x.partial.csv", "", "no sample was recorded; delete it"),
-        ("x.partial.csv", "t_us,gx,gy,gz\n0,1,2,3\n", "x.parquet what one LSB means is not told"),
+        ("x.partial.csv", "t_us,gx,gy,gz\n0,1,2,3\n", "x.parquet what one LSB means is unknown"),
     ],
 )
 def test_what_cannot_be_recovered_stays(tmp_path, name, content, said):
