@@ -1,0 +1,100 @@
+"""Small steps of an import, each against a plain reading of what it says."""
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from zerorate_tools.importers.columns.guesses import likely_columns
+from zerorate_tools.importers.columns.names import accel_beside
+from zerorate_tools.importers.logs.messages import table_of_messages
+from zerorate_tools.importers.samples.between import _distance
+from zerorate_tools.importers.tables.columnar import columnar
+
+times = st.lists(st.integers(-1000, 1000), min_size=1, max_size=20)
+
+
+@given(times, times)
+def test_the_distance_is_that_to_the_nearest_reading(t_us, at):
+    at = np.array(sorted(at), float)
+    plain = [min(abs(t - other) for other in at) for t in t_us]
+    assert _distance(np.array(t_us, float), at).tolist() == plain
+
+
+@pytest.mark.parametrize(
+    ("gyro", "instance", "chosen"),
+    [
+        ("imu2/gyro_x", 0, "imu2/acc_x"),  # the most alike, whichever is asked for
+        ("imu1/gyro_x", 1, "imu1/acc_x"),
+        ("wx", 0, "imu1/acc_x"),  # of those alike, the one of the same number
+        ("wx", 1, "imu2/acc_x"),
+        ("wx", 7, "imu1/acc_x"),  # of which there is none: the first
+    ],
+)
+def test_the_acceleration_beside_rates_is_the_one_most_alike(gyro, instance, chosen):
+    names = [f"{imu}/acc_{axis}" for imu in ("imu1", "imu2") for axis in "xyz"]
+    assert accel_beside(names, {"gx": gyro}, instance)["ax"] == chosen
+
+
+@pytest.mark.parametrize(("unit", "ns"), [("s", 10**9), ("ms", 10**6), ("us", 1000), ("ns", 1)])
+def test_dates_of_any_unit_are_seconds_since_1970(tmp_path, unit, ns):
+    counts = [0, 1, 10**18 // ns, -(10**9) // ns]
+    path = tmp_path / "in.parquet"
+    pq.write_table(pa.table({"at": pa.array(counts, pa.timestamp(unit))}), path)
+    (chunk,) = columnar(path).chunks(["at"])
+    assert chunk.columns["at"].tolist() == [count * ns * 1e-9 for count in counts]
+
+
+@pytest.mark.parametrize("rows", [1, 1000, 200_000])
+def test_what_is_read_of_a_file_adds_up_to_its_size(tmp_path, rows):
+    path, read = tmp_path / "in.parquet", []
+    pq.write_table(pa.table({"gx": np.arange(rows), "name": ["a"] * rows}), path)
+    table = columnar(path, read.append)
+    assert table.names == ["gx"]
+    chunks = [*table.chunks(["gx"])]
+    places = np.concatenate([chunk.place for chunk in chunks])
+    assert sum(read) == pytest.approx(path.stat().st_size)
+    assert (places == np.arange(rows)).all() and len(chunks) == 1 + (rows - 1 >> 16)
+
+
+def stamped(**stamp):
+    """A message of an IMU whose header has that stamp."""
+    vector = SimpleNamespace(x=1.0, y=2.0, z=3.0)
+    return SimpleNamespace(
+        header=SimpleNamespace(stamp=SimpleNamespace(**stamp)),
+        angular_velocity=vector,
+        linear_acceleration=vector,
+    )
+
+
+@pytest.mark.parametrize(
+    ("message", "t_us"),
+    [
+        (stamped(sec=3, nanosec=5000), 3000005.0),
+        (stamped(sec=3, nsec=5000), 3000005.0),
+        (stamped(sec=0, nanosec=5000), 5.0),
+        (stamped(sec=3, nanosec=0), 3000000.0),
+        (stamped(sec=0, nanosec=0), 7.0),  # no clock was set: when it was logged
+        (stamped(sec=3), 7.0),
+        (stamped(nanosec=5), 7.0),
+        ({"angular_velocity": {"x": 1.0, "y": 2.0, "z": 3.0}}, 7.0),
+    ],
+)
+def test_a_message_without_a_whole_stamp_has_the_time_when_it_was_logged(message, t_us):
+    table = table_of_messages(
+        Path("bag"), {"/imu": "sensor_msgs/Imu"}, lambda: [("/imu", 7000, message)]
+    )
+    (chunk,) = table.chunks(table.names)
+    assert chunk.columns["t_us"].tolist() == [t_us]
+    assert chunk.columns["/imu/angular_velocity/z"].tolist() == [3.0]
+
+
+@pytest.mark.parametrize(("constant", "is_rate"), [(0.0, True), (0.5, True), (2.0, False)])
+def test_a_whole_number_that_stays_is_of_a_kind_of_line_and_no_rate(constant, is_rate):
+    noise = np.random.default_rng(1).normal(0, 20, (2, 50))
+    columns = {"a": np.arange(50) * 0.01, "b": noise[0], "c": noise[1], "d": np.full(50, constant)}
+    assert bool(likely_columns(columns)) == is_rate
