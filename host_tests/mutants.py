@@ -75,7 +75,7 @@ AREAS = {
     "motion": (
         ["firmware/zerorate/motion/" + name for name in (
             "attitude.py", "in_motion.py", "increments.py", "least_squares.py",
-            "motion_verdict.py", "orientation.py", "regression.py", "thermal.py",
+            "motion_verdict.py", "orientation.py", "posterior.py", "regression.py", "thermal.py",
             "tilt_frame.py")],
         ["host_tests/firmware/test_" + name for name in ("in_motion.py", "orientation.py")]
         + [KNOWN],

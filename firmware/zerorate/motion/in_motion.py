@@ -10,7 +10,7 @@ line, take the slope as bias, remove it, integrate again. Two forms:
 
 A window grows from 2 s while nothing is known, for a large bias turns a long one too far to be
 linear. Work is spread: a few nodes or pieces of algebra a sample. The state is one array('i')
-of 245 words and 3 a node; motion_settings.py makes the settings.
+of 257 words and 3 a node; motion_settings.py makes the settings.
 """
 
 from ..arithmetic.fixed import clipped
@@ -31,6 +31,7 @@ from .least_squares import (
     weights,
 )
 from .motion_verdict import finish, note_slope, start_window
+from .posterior import know_prior, publish, shrink, weigh_prior
 from .regression import centre, first_sums, look_past_vertical, regressors, second_sums, taper
 from .thermal import carry, follow_temperature
 from .tilt_frame import begin_attitude, find_up, find_vertical, lean_back, observe, turn_centre
@@ -54,6 +55,7 @@ _SUM_R = const(42)
 _Y = const(51)
 _BIAS_CARRY_Q24 = const(54)
 _BIAS_Q24 = const(57)
+_TAPER = const(60)
 _UP = const(63)
 _TRAFFIC = const(65)
 _TILTED = const(66)
@@ -64,7 +66,8 @@ _PRIOR_MEAN = const(173)
 _BIAS = const(179)
 _SLOPE = const(185)
 _CENTRE = const(214)
-_NODES_RING = const(245)
+_TURN_SUM = const(245)
+_NODES_RING = const(257)
 # layout: The sums of one component
 _COMPONENT_WORDS = const(21)
 # layout: The settings of the source in motion
@@ -74,7 +77,7 @@ _NODES = const(8)
 _PASSES = const(9)
 _LONGEST = const(16)
 _MOTION_DOCUMENT = const(20)
-_SETTLED = const(22)
+_SETTLED = const(23)
 # layout: What the source in motion is doing
 _IDLE = const(0)
 _TRAVERSE = const(1)
@@ -85,6 +88,7 @@ _MOTION_GAP = const(7)
 _MOST_BIAS_Q24 = const(0x7FFFFF)  # half a radian in a node, some 200 deg/s
 _MOST_HALF_Q14 = const(0x3FFF)
 _NODES_A_PIECE = const(4)  # of algebra, by what they cost
+_ROUNDS = const(6)  # where one sigma is a fifth of the bias, less of them stop halfway
 
 
 def update(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
@@ -124,6 +128,7 @@ def begin_traversal(s: ptr32):
     for i in range(3 * _COMPONENT_WORDS):
         s[_SUMS + i] = 0
     for i in range(3):
+        s[_TURN_SUM + i] = 0
         s[_BIAS_Q24 + i] = clipped(whole(s, _BIAS + 2 * i, 0), _MOST_BIAS_Q24)
         s[_BIAS_CARRY_Q24 + i] = 0
     for i in range(9):
@@ -197,6 +202,7 @@ def remove_bias(s: ptr32, a: int):
         s[_BIAS_CARRY_Q24 + i] -= part << 11
         part = clipped((s[a + i] >> 15) - part, _MOST_HALF_Q14)
         s[_HALF + i] = part
+        s[_TURN_SUM + i] += (s[_TAPER] * part + 512) >> 10
         s[_TRAFFIC] += part if part > 0 else 0 - part
 
 
@@ -238,8 +244,26 @@ def solve(s: ptr32, c: ptr32) -> int:
         s[_PASS] = c[_PASSES]
         remove_slope(s, c)
     else:
+        return conclude(s, c, k - 34)
+    return 0
+
+
+def conclude(s: ptr32, c: ptr32, k: int) -> int:
+    """Judge the window and, if it taught, do piece k of publishing; return 1 after the last."""
+    if k == 0:
+        know_prior(s)
+        if finish(s, c) == 0:
+            s[_JOB] = _IDLE
+    elif k > 4 * _ROUNDS + 1:
         s[_JOB] = _IDLE
-        return finish(s, c)
+        publish(s, c)
+        return 1
+    elif k & 3 == 1:
+        if k > 1:
+            shrink(s, c)
+        weigh_prior(s, c)
+    else:
+        sweep(s, (k & 3) - 2 if k & 3 else 2)
     return 0
 
 
@@ -269,7 +293,9 @@ def solve_document(s: ptr32, c: ptr32, k: int) -> int:
         own_variance(s, c, k - 10)
     else:
         s[_JOB] = _IDLE
-        return finish(s, c)
+        if finish(s, c):
+            publish(s, c)
+            return 1
     return 0
 
 

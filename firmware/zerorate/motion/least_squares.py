@@ -11,6 +11,7 @@ const = int
 ptr32 = None
 # layout: The state of the source in motion
 _STAGE = const(12)
+_TAPER_SUM = const(18)
 _SUMS = const(86)
 _KNOWN_P = const(149)
 _PRIOR = const(161)
@@ -24,6 +25,7 @@ _T1 = const(205)
 _T2 = const(207)
 _T3 = const(209)
 _NOISE_ENERGY = const(223)
+_TURN_SUM = const(245)
 _G = const(33)
 # layout: The sums of one component
 _SUM_MM = const(0)
@@ -32,7 +34,9 @@ _SHAPES_M = const(13)
 _SHAPES_Y = const(19)
 _COMPONENT_WORDS = const(21)
 # layout: The settings of the source in motion
-_SLOPE_SPREAD = const(21)
+_TILT_SPREAD = const(21)
+_HEADING_SPREAD = const(22)
+_MATRIX_ERROR = const(27)
 # layout: end
 # .005 and .01 rad, and .7 rad a window: beyond that a step is not linear
 _FLOOR_TILT_Q24 = const(419)
@@ -206,26 +210,53 @@ def weights(s: ptr32, c: ptr32):
     add(s, _T, _OMEGA, _OMEGA + 2)
     put(s, _OMEGA, s[_T], s[_T + 1] - 1)
     copy(s, _OMEGA + 2, _OMEGA, 2)
-    for i in range(0, 6, 2):
-        if less(s, _OMEGA + i, _HELD_NOISE + i):
-            copy(s, _OMEGA + i, _HELD_NOISE + i, 2)
-        copy(s, _NOISE_ENERGY + i, _OMEGA + i, 2)
-        weigh(s, c, _OMEGA + i)
+    false_turn(s, c)
+    for i in range(3):
+        d = _OMEGA + 2 * i
+        if less(s, d, _HELD_NOISE + 2 * i):
+            copy(s, d, _HELD_NOISE + 2 * i, 2)
+        copy(s, _NOISE_ENERGY + 2 * i, d, 2)
+        weigh(s, c, i)
 
 
-def weigh(s: ptr32, c: ptr32, a: int):
-    """Replace a noise energy by the weight it gives."""
-    put(s, _T, c[_SLOPE_SPREAD], 0)
-    multiply(s, _T1, _T, a)
+def false_turn(s: ptr32, c: ptr32):
+    """Store at _T2 the variance of a bias that an error of scale and axes makes of the turning."""
+    # Rates that come back leave none of it; the mean rate of the window all.
+    put(s, _T2, 0, 0)
+    for i in range(3):
+        put(s, _T, s[_TURN_SUM + i], 21)
+        multiply(s, _T, _T, _T)
+        add(s, _T2, _T2, _T)
+    put(s, _T, s[_TAPER_SUM], 0)
+    multiply(s, _T, _T, _T)
+    divide(s, _T2, _T2, _T)
+    put(s, _T, c[_MATRIX_ERROR], c[_MATRIX_ERROR + 1])
+    multiply(s, _T2, _T2, _T)
+
+
+def weigh(s: ptr32, c: ptr32, i: int):
+    """Replace component i's noise energy by the weight it gives beside the false turn at _T2."""
+    a = _SUMS + _COMPONENT_WORDS * i
+    square = 0
+    for k in range(3):
+        square += s[a]
+        a += 3 - k
+    put(s, _T, square, 2 * s[_STAGE] - 42)
+    multiply(s, _T1, _T, _T2)
+    a = _OMEGA + 2 * i
+    put(s, _T, c[_HEADING_SPREAD] if i == 2 else c[_TILT_SPREAD], 0)
+    multiply(s, _T, _T, a)
+    add(s, _T1, _T1, _T)
     put(s, _T, 1, 0)
     divide(s, a, _T, _T1)
 
 
 def held_weights(s: ptr32, c: ptr32):
     """Set the weights from the noise energies held from earlier windows."""
-    for i in range(0, 6, 2):
-        copy(s, _OMEGA + i, _HELD_NOISE + i, 2)
-        weigh(s, c, _OMEGA + i)
+    put(s, _T2, 0, 0)
+    for i in range(3):
+        copy(s, _OMEGA + 2 * i, _HELD_NOISE + 2 * i, 2)
+        weigh(s, c, i)
 
 
 def own_square(s: ptr32, i: int):
@@ -246,7 +277,7 @@ def own_slope(s: ptr32, i: int):
 def own_variance(s: ptr32, c: ptr32, i: int):
     """Put the variance of component i's own slope on the matrix' diagonal, negative."""
     own_square(s, i)
-    put(s, _T, -c[_SLOPE_SPREAD], 0)
+    put(s, _T, -c[_TILT_SPREAD], 0)
     multiply(s, _T, _T, _OMEGA + 2 * i)
     d = place(i, i)
     divide(s, d, _T, _T1)

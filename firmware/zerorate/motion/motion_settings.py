@@ -7,7 +7,7 @@ from ..arithmetic.ratio import PI, Ratio
 # layout: names that a board's own compiler reads
 const = int
 # layout: The state of the source in motion
-_NODES_RING = const(245)
+_NODES_RING = const(257)
 # layout: The settings of the source in motion
 _NODE_US = const(0)
 _MOTION_GAIN = const(1)
@@ -27,12 +27,15 @@ _SHORTEST_STAGE = const(17)
 _LEAST_UP = const(18)
 _PATIENCE = const(19)
 _MOTION_DOCUMENT = const(20)
-_SLOPE_SPREAD = const(21)
-_SETTLED = const(22)
-_TEMP_SLOPE_START = const(23)
-_BEND = const(25)
-_LEAST_TILT = const(26)
-_MOTION_SETTINGS_WORDS = const(27)
+_TILT_SPREAD = const(21)
+_HEADING_SPREAD = const(22)
+_SETTLED = const(23)
+_TEMP_SLOPE_START = const(24)
+_BEND = const(26)
+_MATRIX_ERROR = const(27)
+_USUAL = const(29)
+_LEAST_TILT = const(31)
+_MOTION_SETTINGS_WORDS = const(32)
 # layout: end
 _SPARE_NODES = 15
 _ALGEBRA = 90
@@ -76,7 +79,10 @@ def motion_settings(
     temp_lsb_per_degc=340.0,
     slope_dps_per_degc=0.05,
     bend_degc=64.0,
-    spread=20,
+    tilt_spread=2,
+    heading_spread=11,
+    matrix_error=0.01,
+    usual_dps=0.5,
     least_dps=5.0,
     least_tilt_dps=0.3,
     least_up_g=0.85,
@@ -88,7 +94,9 @@ def motion_settings(
     odr_hz: samples a second; node_s: time of a node; longest_stage: the window is 2^that nodes;
     start_dps: one sigma of the bias before anything is known; walk_dps: its random walk a root
     second; slope_dps_per_degc: one sigma of its slope over temperature, which grows as much again
-    over bend_degc; spread: the variance of a window's slope over that of the noise beside it;
+    over bend_degc; tilt_spread, heading_spread: the variance of a window's slope over that of the
+    noise beside it; matrix_error: one sigma of an entry of scale and axes; usual_dps: half of all
+    parts have a smaller bias;
     least_dps: mean rate, of all axes together, below which a window is not motion, unless it
     mostly tilts and by least_tilt_dps or more. Raises ValueError.
     """
@@ -134,7 +142,13 @@ def motion_settings(
     c[_LEAST_UP] = (Ratio(4096) * least_up_g).floor()
     c[_PATIENCE] = patience
     c[_MOTION_DOCUMENT] = 1 if document else 0
-    c[_SLOPE_SPREAD] = spread
+    # Noise is as large in a slope as beside it, that of a walk 5.6 times; half a window was seen
+    # before. The document's own form has one number for all.
+    c[_TILT_SPREAD] = 20 if document else tilt_spread
+    c[_HEADING_SPREAD] = heading_spread
+    if not document:
+        c[_MATRIX_ERROR], c[_MATRIX_ERROR + 1] = _real(_square(Ratio(matrix_error)))
+        c[_USUAL], c[_USUAL + 1] = _real(_square(unit * usual_dps))
     c[_SETTLED] = (unit * settled_dps).floor()
     least_tilt_dps = least_dps if document else least_tilt_dps
     c[_LEAST_TILT] = (node * degree * (1 << 13) * least_tilt_dps).floor()

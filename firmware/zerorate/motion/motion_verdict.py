@@ -6,9 +6,10 @@ that contradicts what is known: a turn that stays turned. Contradiction that las
 """
 
 from ..arithmetic.fixed import clipped
-from ..arithmetic.real import add, copy, divide, multiply, put, root_of, subtract, whole
+from ..arithmetic.real import add, copy, divide, multiply, put, subtract, whole
 from .least_squares import covariance, less, place
-from .thermal import forget_slopes, learn_slope, present, variance_at
+from .posterior import follow_turn
+from .thermal import forget_slopes, learn_slope, variance_at
 
 # layout: names that a board's own compiler reads
 const = int
@@ -31,7 +32,6 @@ _TILTED = const(66)
 _ACCEPTED = const(68)
 _REFUSED = const(69)
 _AGAINST = const(70)
-_MOTION_BIAS_Q8 = const(71)
 _MOTION_QUALITY_Q8 = const(74)
 _NOTED_SLOPES_Q8 = const(77)
 _KNOWN_P = const(149)
@@ -41,7 +41,6 @@ _SLOPE = const(185)
 _HELD_NOISE = const(191)
 _T = const(203)
 _T1 = const(205)
-_T2 = const(207)
 _CENTRE = const(214)
 _NOISE_ENERGY = const(223)
 _MISFIT_Q16 = const(241)
@@ -56,7 +55,7 @@ _SHORTEST_STAGE = const(17)
 _LEAST_UP = const(18)
 _PATIENCE = const(19)
 _MOTION_DOCUMENT = const(20)
-_LEAST_TILT = const(26)
+_LEAST_TILT = const(31)
 # layout: What a window in motion taught
 _GROWING = const(1)
 _LEARNED = const(2)
@@ -195,12 +194,12 @@ def finish(s: ptr32, c: ptr32) -> int:
         for i in range(3):
             follow_misfit(s, i)
     for i in range(3):
+        follow_turn(s, i)
         learn_slope(s, i)
     covariance(s, _KNOWN_P)
     keep_noise(s)
     s[_ACCEPTED] += 1
     s[_AGAINST] = 0
-    publish(s, c)
     return 1
 
 
@@ -245,19 +244,3 @@ def keep_noise(s: ptr32):
     for i in range(0, 6, 2):
         put(s, _T, 13107 if i == 4 else 4096, -14)
         multiply(s, _HELD_NOISE + i, _NOISE_ENERGY + i, _T)
-
-
-def publish(s: ptr32, c: ptr32):
-    """Write bias and one-sigma uncertainty of each axis, LSB in Q8."""
-    for i in range(3):
-        put(s, _T, c[_LSB_A_UNIT], c[_LSB_A_UNIT + 1])
-        present(s, i)
-        multiply(s, _T1, _T1, _T)
-        s[_MOTION_BIAS_Q8 + i] = whole(s, _T1, 0)
-        copy(s, _T1, place(i, i), 2)
-        put(s, _T1, -s[_T1], s[_T1 + 1])
-        put(s, _T2, s[_MISFIT_Q16], -14)
-        multiply(s, _T1, _T1, _T2)
-        root_of(s, _T1, _T1)
-        multiply(s, _T1, _T1, _T)
-        s[_MOTION_QUALITY_Q8 + i] = whole(s, _T1, 0)

@@ -34,8 +34,8 @@ _TEMP_SLOPE_COVARIANCE = const(187)
 _TEMP_SLOPE_VARIANCE = const(189)
 # layout: The settings of the source in motion
 _BIAS_WALK = const(12)
-_TEMP_SLOPE_START = const(23)
-_BEND = const(25)
+_TEMP_SLOPE_START = const(24)
+_BEND = const(26)
 # layout: end
 
 

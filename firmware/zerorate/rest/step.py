@@ -326,6 +326,9 @@ def speak(s: ptr32, c: ptr32, m: ptr32, w: int, axis: int):
     # Eight times the uncertainty that may teach; beyond that a guess was often worse than none.
     if s[c[_AXES] + axis * c[_AXIS_WORDS] + _KIND] == 0:
         at = w + axis
+        if s[_SOURCE + axis] and s[_SOURCE + axis] != s[_OFFERED_SOURCE]:
+            if m[at + 3] >= s[_QUALITY_Q8 + axis]:
+                return
         if m[at + 3] >> 5 < c[_MOST_SIGMA_Q6]:
             s[_TARGET_Q8 + axis] = m[at]
             if s[_SOURCE + axis] == 0:

@@ -72,6 +72,8 @@ MOTION = Array(
         ("NOW_TEMP_Q8", 1, "LSB", "temperature now"),
         ("MISFIT_Q16", 1, "", "mean of squared moves of a bias, over what was expected of them"),
         ("VERTICAL", 3, "Q14", "where up is in the body, over the window: 0 before it is known"),
+        ("TURN_SUM", 3, "rad Q14", "tapered sum of the half turns"),
+        ("TURN_MEAN", 9, "rad Q14", "an axis: mean half turn of what taught it, a node"),
         ("NODES_RING", "3 * NODES", "", "a node and axis: turn, rad Q13, above force, g Q12"),
     ),
     (
@@ -152,10 +154,13 @@ MOTION_SETTINGS = Array(
         ("LEAST_UP", 1, "g Q12", "mean force along the vertical: of less the window is lost"),
         ("PATIENCE", 1, "windows", "that contradict in a row are accepted"),
         ("MOTION_DOCUMENT", 1, "", "1: the literal rules of US 10,451,438"),
-        ("SLOPE_SPREAD", 1, "", "variance of a window's slope over its noise energy"),
+        ("TILT_SPREAD", 1, "", "variance of a tilt's slope over its noise energy"),
+        ("HEADING_SPREAD", 1, "", "the same of the heading"),
         ("SETTLED", 1, "rad Q24", "a node: a slope below this needs no further pass"),
         ("TEMP_SLOPE_START", 2, "real", "variance of the slope over temperature, not yet known"),
         ("BEND", 1, "bits", "temperature over which it grows as much again"),
+        ("MATRIX_ERROR", 2, "real", "variance of an entry of scale and axes"),
+        ("USUAL", 2, "real", "square of the bias that half of all parts stay below"),
         ("LEAST_TILT", 1, "rad Q14", "a node: a slow window that tilts less teaches nothing"),
     ),
 )
