@@ -50,6 +50,17 @@ def feed(rested):
     return feed
 
 
+def test_what_was_learned_in_motion_is_kept_and_taken_back_to_the_last_word():
+    corrector = Corrector(Sensor(odr_hz=100.0), motion=True)
+    feed = CheckedCorrector(corrector)
+    kept = array("i", range(7, 7 + len(corrector.motion)))
+    corrector.motion[:] = kept
+    feed.keep()
+    corrector.motion[:] = array("i", [0] * len(kept))
+    feed.take_back()
+    assert corrector.motion == kept
+
+
 def test_what_came_after_the_last_read_back_is_forgotten_to_the_last_bit(feed):
     feed.rest(1, 100, checked.VERIFIED)
     feed.checked.keep()

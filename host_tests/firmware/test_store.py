@@ -1,5 +1,6 @@
 """What was learned survives a power cut at any byte and any one bit turned, or is not believed."""
 
+import struct
 from array import array
 from binascii import crc32
 from pathlib import Path
@@ -213,6 +214,25 @@ def test_a_payload_of_another_length_is_a_value_error(memory, length):
     for use in (make_store(memory).save, make_store(memory).load):
         with pytest.raises(ValueError, match="48 bytes"):
             use(bytearray(length))
+
+
+@pytest.mark.parametrize("order", ["big", "little"])
+def test_words_are_stored_little_endian_whatever_the_machine(monkeypatch, order):
+    monkeypatch.setattr(stores, "byteorder", order)
+    assert bytes(stores.packed(OLD, 4 * WORDS)) == struct.pack(f"<{WORDS}i", *OLD)
+    plain = bytearray(b"any bytes")
+    assert stores.packed(plain, len(plain)) is plain
+
+
+@pytest.mark.parametrize("words", [WORDS - 1, WORDS + 1, 2 * WORDS])
+@pytest.mark.parametrize("other", [0, 1])
+def test_a_record_of_another_size_or_version_is_told_apart_and_stays(memory, words, other):
+    pitch = 4 * stores.slot_bytes(4 * WORDS)
+    older = Store(memory, BINDING, 4 * words, version=1 + other, pitch=pitch)
+    assert older.save(array("i", range(words))) and older.save(array("i", range(words)))
+    found = (stores.OTHER_SIZE, stores.OTHER_VERSION)[other]
+    assert loaded(memory, pitch=pitch) == (found, BLANK)
+    assert older.load(array("i", [0] * words)) == stores.LOADED
 
 
 @given(st.binary(max_size=300))

@@ -81,6 +81,34 @@ def test_any_32_bit_extra_channel_survives(tmp_path, values, file_name):
     assert read_recording(tmp_path / file_name).columns["load"].tolist() == values
 
 
+@settings(max_examples=20, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    st.lists(st.integers(-(2**62), 2**62), min_size=1, max_size=20, unique=True),
+    st.sampled_from(FORMATS),
+)
+def test_any_time_of_62_bits_survives(tmp_path, times, file_name):
+    columns = {name: np.arange(len(times)) for name in ("gx", "gy", "gz", "temp", "zz")}
+    recording = recording_from_columns({"t_us": np.array(sorted(times)), **columns}, SCALES)
+    write_recording(recording, tmp_path / file_name)
+    assert read_recording(tmp_path / file_name).columns["t_us"].tolist() == sorted(times)
+
+
+DTYPES = [f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)]
+
+
+@given(st.data(), st.sampled_from(DTYPES))
+def test_a_channel_is_taken_where_it_fits_32_bits_whatever_its_type(data, dtype):
+    limits = np.iinfo(dtype)
+    near = [-(2**31) - 1, -(2**31), 2**31 - 1, 2**31, limits.min, limits.max, 0]
+    value = data.draw(st.sampled_from([n for n in near if limits.min <= n <= limits.max]))
+    held = np.array([0, value], dtype)
+    if -(2**31) <= value < 2**31:
+        assert a_recording(2, load=held).columns["load"].tolist() == [0, value]
+    else:
+        with pytest.raises(BadRecording, match=f"row 2: load is {value}, more than 32 bits"):
+            a_recording(2, load=held)
+
+
 def test_without_acceleration_and_temperature_no_such_scales_are_needed(tmp_path):
     columns = {name: np.arange(3) for name in ("t_us", "gx", "gy", "gz")}
     recording = recording_from_columns(columns, Scales("X", 1.0, 100.0))

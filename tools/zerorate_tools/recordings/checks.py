@@ -95,12 +95,7 @@ class BatchChecker:
         return wide.astype(np.int32, copy=False)
 
     def _check_range(self, name: str, wide: np.ndarray, most: int, bits: str) -> None:
-        held = np.iinfo(wide.dtype)
-        if held.max <= most and held.min >= -most - 1:
-            return
-        outside = wide > most
-        if held.min < -most - 1:
-            outside |= wide < -most - 1
+        outside = (wide > most) | (wide < -most - 1)
         if outside.any():
             at = int(np.argmax(outside))
             problem = f"{name} is {wide[at]}, more than {bits} bits"
