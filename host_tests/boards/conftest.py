@@ -22,6 +22,10 @@ class Console:
     def close(self):
         self._serial.close()
 
+    def press(self, keys):
+        """Send bytes as a terminal does."""
+        self._serial.write(keys)
+
     def lines(self):
         """Whole lines, for as long as the board prints any in time."""
         until = time.monotonic() + PATIENCE_S

@@ -25,7 +25,7 @@ def start(pico):
     opened = []
 
     def start(program):
-        with connected(pico.port) as board:
+        with connected(pico.port, go_on=False) as board:
             board.fs_writefile("main.py", program.encode(), chunk_size=1024)
         opened.append(Console(pico.port))
         pico.ask("power")
@@ -86,3 +86,27 @@ def test_a_recording_is_made_and_the_firmware_watched(pico, tmp_path, capsys):
     assert recording.columns["gx"].mean() == pytest.approx(40, abs=3)
     assert main(["watch", pico.port, "--for", "3", "--setup", str(setup)]) == 0
     assert "bias dps" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("command", ["flash", "flash --dry-run", "record", "watch"])
+def test_after_each_command_the_program_runs_again_at_a_friendly_prompt(
+    pico, programs, start, tmp_path, command
+):
+    start(programs[0]).close()
+    arguments = [*command.split(), pico.port]
+    if command == "record":
+        arguments += ["--out", str(tmp_path / "run.csv")]
+    if command in ("record", "watch"):
+        arguments += ["--seconds" if command == "record" else "--for", "2"]
+    assert main(arguments) == 0
+    console = Console(pico.port)
+    try:
+        assert next(rates(console))
+        console.press(b"\x03")
+        assert "KeyboardInterrupt" in console.line_with("KeyboardInterrupt")
+        console.press(b"\x04")
+        assert console.line_with("soft reboot")
+        assert next(rates(console))
+        assert not any("raw REPL" in line for line in console.said)
+    finally:
+        console.close()

@@ -88,7 +88,7 @@ def least_heap(pico: EmulatedPico, program: str, sign: str, low: int, high: int)
 
 def runs_in(pico: EmulatedPico, program: str, sign: str, heap: int) -> bool:
     """Whether the program prints `sign` before an error, on a board of that heap."""
-    with connected(pico.port) as board:
+    with connected(pico.port, go_on=False) as board:
         board.exec(
             "import os\nfor n in ('learned.bin',):\n try: os.remove(n)\n except OSError: pass"
         )

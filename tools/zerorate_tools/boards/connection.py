@@ -2,13 +2,15 @@
 
 import ast
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stdout, suppress
 from dataclasses import dataclass
+from io import StringIO
 
 from ..errors import MissingLibrary, ZerorateError
 
-# A board's own programs and a busy machine between them may take long to answer.
-_PATIENCE_S = 30
+# A board that is just starting loses the key that stops its program; it is pressed again. Its own
+# programs and a busy machine between them may take long to answer.
+_PATIENCE_S = (3, 10, 30)
 _LONG_S = 120
 _QUESTION = """
 import gc, os, sys
@@ -30,9 +32,10 @@ class BoardError(ZerorateError):
 
 
 @contextmanager
-def connected(port: str) -> Iterator:
+def connected(port: str, go_on: bool = True) -> Iterator:
     """Yield mpremote's transport with the board in its raw REPL, restarted: its memory is empty.
 
+    Behind it the board is restarted once more and runs its main.py, unless go_on is False.
     Raises MissingLibrary without mpremote and BoardError for a port that cannot be opened or a
     board that says nothing.
     """
@@ -46,12 +49,35 @@ def connected(port: str) -> Iterator:
     except TransportError as error:
         raise BoardError(f"{port}: cannot be opened; is the board plugged in?") from error
     try:
-        transport.enter_raw_repl(soft_reset=True, timeout_overall=_PATIENCE_S)
+        _stop(transport)
         yield transport
     except TransportError as error:
         raise BoardError(f"{port}: {error}; is MicroPython on this board?") from error
     finally:
+        if go_on:
+            _let_run(transport.serial)
         transport.close()
+
+
+def _stop(transport) -> None:
+    """Stop what runs, and restart the board into its raw REPL. Raises TransportError."""
+    from mpremote.transport import TransportError
+
+    for patience_s in _PATIENCE_S:
+        try:
+            with redirect_stdout(StringIO()):  # where mpremote prints what came instead
+                transport.enter_raw_repl(soft_reset=True, timeout_overall=patience_s)
+            return
+        except TransportError:
+            if patience_s == _PATIENCE_S[-1]:
+                raise
+
+
+def _let_run(serial) -> None:
+    """Leave the raw REPL and restart, in the keys of a terminal: what runs ends, main.py begins."""
+    with suppress(OSError):  # it may have been unplugged
+        serial.write(b"\r\x03\x03\r\x02\x04")
+        serial.flush()
 
 
 def told(transport, program: str, patience_s: float | None = None) -> str:

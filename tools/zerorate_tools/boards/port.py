@@ -3,7 +3,6 @@
 import json
 import time
 from collections.abc import Callable
-from contextlib import suppress
 from importlib.resources import files
 from pathlib import Path
 
@@ -42,7 +41,6 @@ def record_port(
             recorder = Recorder(growing.append, 1e6 / scales.odr_hz, Recorded())
             failure = stream.record(recorder, seconds, done)
             recorder.confirm() if failure is None else recorder.discard()
-        _interrupt(board)
     if failure:
         raise BoardError(f"{failure}; {recorder.result.kept(out)}") from failure
     return recorder.result
@@ -63,14 +61,8 @@ def stream_port(
         recorder = take(stream.scales())
         failure = stream.record(recorder, seconds, done)
         recorder.flush()
-        _interrupt(board)
     if failure:
         raise failure
-
-
-def _interrupt(board) -> None:
-    with suppress(OSError):  # it may have been unplugged
-        board.serial.write(b"\x03\x03")
 
 
 def program(setup: str) -> str:
