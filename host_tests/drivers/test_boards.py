@@ -83,6 +83,26 @@ class TestFlash:
         assert board_says(blank_board, "import zerorate.bursts, zerorate_i2c.fifo; print(2)") == "2"
         assert not list(blank_board.folder.rglob("in_motion*"))
 
+    def test_a_model_brings_what_it_needs(self, flashed, blank_board, tmp_path):
+        model = tmp_path / "made" / "model.bin"
+        slot = Slot(Term("temp", 20.0, 45.0, 30.0), (0.01, 0.0, 0.0))
+        write_model(
+            build_model([slot], Scales("MPU-6050", 100, 131, 16384, 340, 36.53)), model.parent
+        )
+        flashed(model=model)
+        names = {path.name for path in (blank_board.folder / "lib/zerorate").rglob("*.mpy")}
+        assert {"model.mpy", "effects.mpy", "model_file.mpy"} <= names
+
+    def test_a_part_sent_before_stays_until_only_is_asked_for(self, flashed, blank_board):
+        flashed(parts=["bursts"])
+        bursts = blank_board.folder / "lib/zerorate/bursts.mpy"
+        said, _ = flashed()
+        assert bursts.exists() and any("kept" in line and "bursts" in line for line in said)
+        said, _ = flashed(dry_run=True, only=True)
+        assert bursts.exists() and any("removed" in line for line in said)
+        said, _ = flashed(only=True)
+        assert not bursts.exists() and any("removed" in line for line in said)
+
     def test_flashing_again_sends_nothing(self, flashed):
         flashed()
         said, again = flashed()

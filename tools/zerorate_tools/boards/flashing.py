@@ -11,7 +11,7 @@ from pathlib import Path, PurePosixPath
 from ..errors import InFile
 from .compiling import board_files, machine_code
 from .connection import BoardError, BoardFacts, ask, connected, told
-from .parts import PACKAGES, chosen_parts
+from .parts import PACKAGES, REST, chosen_parts, parts_there
 
 _LIBRARY = "lib"
 _STAGE = "zerorate.new"
@@ -51,22 +51,24 @@ def flash(
     say: Callable[[str], None] = print,
     model: Path | None = None,
     parts: Iterable[str] = (),
+    only: bool = False,
 ) -> Flashed:
     """Put the packages into lib on the board at port, compiled for what it is.
 
-    parts: what is sent besides the rest path, keys of PARTS; main: a file that becomes main.py;
-    model: a model.bin or model.json, to model.bin, where `EffectModel.load_file` finds it. What
+    parts: what is sent besides the rest path, keys of PARTS; only: parts that the board has and
+    that are not named are removed; main: a file that becomes main.py; model: a model.bin or
+    model.json, to model.bin, where `EffectModel.load_file` finds it, with the part it needs. What
     the board has already is not sent again, be it from an attempt that was cut short; a package
     takes its place as a whole, after its files' CRC-32 was found right. dry_run only tells.
     Raises BoardError, BadModel, InFile, UnknownPart.
     """
-    chosen = chosen_parts(parts)
+    chosen = chosen_parts([*parts, *(["effects"] if model is not None else [])])
     extra = _own_files(main, model)
     if dry_run:
-        return _told(port, chosen, extra, say)
+        return _told(port, chosen, extra, say, only)
     with connected(port) as board:
         installer = Installer(board, port, say)
-        return installer.install(chosen, extra)
+        return installer.install(chosen, extra, only)
 
 
 def _own_files(main: Path | None, model: Path | None) -> dict[PurePosixPath, bytes]:
@@ -87,10 +89,11 @@ def _read(path: Path) -> bytes:
         raise InFile(path, f"cannot be read: {error.strerror}", do="name a program") from error
 
 
-def _told(port: str, parts, extra, say) -> Flashed:
+def _told(port: str, parts, extra, say, only: bool) -> Flashed:
     try:
         with connected(port) as board:
             facts = ask(board)
+            parts = Installer(board, port, say).with_those_there(parts, only)
     except BoardError as error:
         say(f"{error}\nWhat any board would get:")
         facts = BoardFacts()
@@ -132,15 +135,32 @@ class Installer:
         self._board, self._port, self._say = board, port, say
         self._waiting: list[str] = []
 
-    def install(self, parts: tuple[str, ...], extra: dict[PurePosixPath, bytes]) -> Flashed:
+        text = files(__package__).joinpath("on_board/install.py").read_text(encoding="utf-8")
+        self._do(text)
+
+    def with_those_there(self, parts: tuple[str, ...], only: bool) -> tuple[str, ...]:
+        """The parts with those that the board has, or, with only, without; says which."""
+        there = parts_there(PurePosixPath(name).relative_to(_LIBRARY) for name in self._sent())
+        before = [part for part in chosen_parts(there) if part in there.difference(parts, {REST})]
+        if before and only:
+            self._say(f"removed, for it is not named: {', '.join(before)}")
+        elif before:
+            self._say(f"kept, as sent before: {', '.join(before)} (--only removes it)")
+        return parts if only else chosen_parts([*parts, *before])
+
+    def _sent(self) -> list[str]:
+        return [name for package in PACKAGES for name in self._there(f"{_LIBRARY}/{package}")]
+
+    def install(
+        self, parts: tuple[str, ...], extra: dict[PurePosixPath, bytes], only: bool = False
+    ) -> Flashed:
         """All of it; see flash."""
         facts = ask(self._board)
         self._say(f"{facts}")
-        text = files(__package__).joinpath("on_board/install.py").read_text(encoding="utf-8")
-        self._do(text)
         for package in PACKAGES:  # what an attempt before this one left whole beside main.py
             self._do(f"if is_folder({package!r}): put_in_place(None, {package!r}, {_LIBRARY!r})")
         code = machine_code(facts)
+        parts = self.with_those_there(parts, only)
         flashed = self._install_packages(_packages(parts, facts, code), facts)
         if code and (why := self._do(_TRIAL).strip()):
             self._say(f"         the machine code does not run here ({why}): bytecode in its place")

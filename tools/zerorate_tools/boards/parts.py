@@ -54,6 +54,17 @@ def chosen_parts(named: Iterable[str]) -> tuple[str, ...]:
     return tuple(part for part in PARTS if part == REST or part in wanted or "all" in wanted)
 
 
+def parts_there(files: Iterable[PurePosixPath]) -> set[str]:
+    """The parts of which a board has every module that a program imports, by its files in lib."""
+    there = {".".join(file.with_suffix("").parts) for file in files}
+    return {part for part, roots in PARTS.items() if there.issuperset(_modules(roots))}
+
+
+def _modules(roots: Iterable[str]) -> Iterator[str]:
+    """Those that are no package: of a package that does nothing a board gets no file."""
+    return (root for root in roots if module_file(root).name != "__init__.py")
+
+
 def part_files(parts: Iterable[str], code: str = "") -> dict[PurePosixPath, Path]:
     """Path below lib on the board -> file, for all that these parts import, in order of name.
 

@@ -21,8 +21,16 @@ def add_parser(subparsers) -> None:
         metavar="PARTS",
         help="more than learning at rest: motion,gravity,effects,refine,bursts,self-test or all",
     )
+    parser.add_argument(
+        "--only", action="store_true", help="remove parts sent before that are not named now"
+    )
     parser.add_argument("--main", type=Path, metavar="FILE", help="copy FILE to main.py too")
-    parser.add_argument("--model", type=Path, metavar="FILE", help="copy FILE to model.bin too")
+    parser.add_argument(
+        "--model",
+        type=Path,
+        metavar="FILE",
+        help="copy FILE to model.bin too, and send what it needs",
+    )
     parser.set_defaults(run=run)
 
 
@@ -30,4 +38,4 @@ def run(arguments: argparse.Namespace) -> None:
     from ..boards.flashing import flash
 
     a = arguments
-    flash(a.port, dry_run=a.dry_run, main=a.main, model=a.model, parts=a.parts)
+    flash(a.port, dry_run=a.dry_run, main=a.main, model=a.model, parts=a.parts, only=a.only)
