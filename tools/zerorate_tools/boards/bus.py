@@ -11,7 +11,7 @@ from zerorate_i2c.mpu6050 import FRESH, MPU6050, RESTARTED, VERIFIED
 from ..ending import noted_signals
 from ..errors import ZerorateError, os_error_in_words
 from ..recordings import Scales, growing_recording
-from .recorder import COLUMNS, Recorded, Recorder, SampleTaker, scales_of
+from .recorder import COLUMNS, Heard, Recorded, Recorder, SampleTaker, appending, scales_of
 
 _POLLS_A_PERIOD = 3
 _PATIENCE_S = 5.0
@@ -25,23 +25,25 @@ def record_bus(
     *,
     seconds: float | None = None,
     source: str = "I2C",
-    done: Callable[[float], None] = lambda seconds: None,
+    done: Callable[[float], object] = lambda seconds: None,
+    heard: Heard | None = None,
     time_source=clock,
     **options,
 ) -> Recorded:
     """Record from the chip on i2c, any object with the driver's two methods, into out.
 
     seconds None records until a signal that ends programs; options are MPU6050's (address, odr_hz,
-    full_scale_dps ...); done(seconds) is told of progress. Samples are verified, and on the disk,
+    full_scale_dps ...); done(seconds) is told of progress, and ends it by what is true; heard: see
+    Heard. Samples are verified, and on the disk,
     twice a second. A bus that fails is waited for up to 5 s; then ZerorateError says so, and out
     holds what had been verified. Raises OSError where no chip answers, InFile without room.
     """
     check_every = max(1, min(100, round(options.get("odr_hz", 100) * _VERIFY_S)))
     imu = MPU6050(i2c, clock=time_source, **{"check_every": check_every, **options})
     values = {name: getattr(imu, name) for name in (*_SCALES, "temp_offset_degc", "binding")}
-    result = Recorded()
-    with growing_recording(out, COLUMNS, scales_of({**values, "source": source})) as growing:
-        recorder = Recorder(growing.append, imu.period_us, result)
+    result, scales = Recorded(), scales_of({**values, "source": source})
+    with growing_recording(out, COLUMNS, scales) as growing:
+        recorder = Recorder(appending(growing.append, heard, scales), imu.period_us, result)
         failure = _run(_feed(imu), imu, recorder, seconds, done)
         if failure is None and _is_verified(imu):
             recorder.confirm()
@@ -59,7 +61,7 @@ def stream_bus(
     *,
     seconds: float | None = None,
     source: str = "I2C",
-    done: Callable[[float], None] = lambda seconds: None,
+    done: Callable[[float], object] = lambda seconds: None,
     time_source=clock,
     **options,
 ) -> None:
@@ -90,7 +92,8 @@ def _run(feed, imu: MPU6050, recorder: SampleTaker, seconds, done) -> OSError | 
             _note(recorder, status, t_us, sample if is_new else None)
             good = imu.clock.ticks_us()
             if imu.clock.ticks_diff(good, reported) > 1_000_000:
-                done(imu.clock.ticks_diff(good, reported) / 1e6)
+                if done(imu.clock.ticks_diff(good, reported) / 1e6):
+                    return None
                 reported = good
     return None
 

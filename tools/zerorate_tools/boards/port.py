@@ -11,7 +11,7 @@ from ..recordings import Scales, growing_recording
 from ..recordings.scales import scales_from_text
 from .connection import BoardError, connected
 from .frames import MESSAGE, SAMPLE, SAMPLE_BYTES, SCALES, FrameReader, sample_of
-from .recorder import COLUMNS, Recorded, Recorder, SampleTaker, scales_of
+from .recorder import COLUMNS, Heard, Recorded, Recorder, SampleTaker, appending, scales_of
 
 _TICKS = 1 << 30
 _SILENCE_S = 10.0
@@ -24,12 +24,14 @@ def record_port(
     *,
     seconds: float | None = None,
     setup: str = "",
-    done: Callable[[float], None] = lambda seconds: None,
+    done: Callable[[float], object] = lambda seconds: None,
+    heard: Heard | None = None,
 ) -> Recorded:
     """Start the streamer on the board at port and record what it sends into out.
 
     setup: MicroPython source that makes `imu`, an MPU6050 (default: I2C(0), the driver's defaults).
-    seconds None records until a signal that ends programs. Raises BoardError for a board that is
+    seconds None records until a signal that ends programs, or until done returns what is true;
+    heard: see Heard. Raises BoardError for a board that is
     silent for 10 s, unplugged, or cannot run the streamer; what had been verified is kept. Raises
     InFile without room.
     """
@@ -38,7 +40,8 @@ def record_port(
         stream = BoardStream(board.serial, port)
         scales = stream.scales()
         with growing_recording(out, COLUMNS, scales) as growing:
-            recorder = Recorder(growing.append, 1e6 / scales.odr_hz, Recorded())
+            append = appending(growing.append, heard, scales)
+            recorder = Recorder(append, 1e6 / scales.odr_hz, Recorded())
             failure = stream.record(recorder, seconds, done)
             recorder.confirm() if failure is None else recorder.discard()
     if failure:
@@ -52,7 +55,7 @@ def stream_port(
     *,
     seconds: float | None = None,
     setup: str = "",
-    done: Callable[[float], None] = lambda seconds: None,
+    done: Callable[[float], object] = lambda seconds: None,
 ) -> None:
     """As record_port, into the SampleTaker that take(scales) makes."""
     with connected(port) as board:
@@ -117,7 +120,8 @@ class BoardStream:
                 for kind, payload in frames:
                     self._take(recorder, kind, payload)
                 recorder.result.bytes_skipped = self._reader.skipped
-                done(time.monotonic() - reported)
+                if done(time.monotonic() - reported):
+                    return None
                 reported = time.monotonic()
         return None
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..model.binding import KEY, NAMES
 from ..recordings import Scales
+from ..recordings.recording import Columns
 
 COLUMNS = ["t_us", "ax", "ay", "az", "temp", "gx", "gy", "gz"]
 _STAYS_LATE = 8
@@ -55,6 +56,25 @@ class Recorded:
         ):
             text += f", {count} {what}" if count else ""
         return text
+
+
+#: Of a recording's scales, what each batch of its verified samples is given to as well.
+Heard = Callable[[Scales], Callable[[Columns], None]]
+
+
+def appending(
+    append: Callable[[Columns], None], heard: Heard | None, scales: Scales
+) -> Callable[[Columns], None]:
+    """What appends a batch, and gives it to who hears it."""
+    if heard is None:
+        return append
+    hear = heard(scales)
+
+    def both(columns: Columns) -> None:
+        append(columns)
+        hear(columns)
+
+    return both
 
 
 class SampleTaker(Protocol):

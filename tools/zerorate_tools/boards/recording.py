@@ -10,6 +10,7 @@ from ..errors import MissingLibrary, ZerorateError
 from ..recordings import Scales
 from .recorder import Recorded, SampleTaker
 
+FAKE = "fake:"
 _BUS = re.compile(r"/dev/i2c-\d+|\d+")
 
 
@@ -18,15 +19,18 @@ def record(
     out: str | Path,
     *,
     seconds: float | None = None,
-    done: Callable[[float], None] = lambda seconds: None,
+    done: Callable[[float], object] = lambda seconds: None,
     **options,
 ) -> Recorded:
-    """Record from /dev/i2c-N (or N) or from a board on a serial port into out.
+    """Record from /dev/i2c-N (or N) or from a board on a serial port into out; `fake:` is an
+    emulated chip in a simulated hand, whose time costs none.
 
     seconds None records until KeyboardInterrupt. options: see record_bus and record_port. Raises
     MissingLibrary without smbus2 or mpremote, ZerorateError for a board that does not answer or a
     setting that no part can take, OSError for a bus that does not.
     """
+    if port_or_bus == FAKE:
+        return _record_fake(Path(out), seconds=seconds, done=done, **options)
     if _BUS.fullmatch(port_or_bus):
         return _record_linux(port_or_bus, Path(out), seconds=seconds, done=done, **options)
     from .port import record_port
@@ -39,7 +43,7 @@ def stream(
     take: Callable[[Scales], SampleTaker],
     *,
     seconds: float | None = None,
-    done: Callable[[float], None] = lambda seconds: None,
+    done: Callable[[float], object] = lambda seconds: None,
     **options,
 ) -> None:
     """As record, but into the SampleTaker that take(scales) makes."""
@@ -52,6 +56,17 @@ def stream(
     from .port import stream_port
 
     stream_port(port_or_bus, take, seconds=seconds, done=done, **options)
+
+
+def _record_fake(out: Path, **options) -> Recorded:
+    from .bus import record_bus
+    from .fake_hand import in_hand
+
+    bus, clock = in_hand()
+    try:
+        return record_bus(bus, out, source=FAKE, time_source=clock, **options)
+    except ValueError as error:
+        raise ZerorateError(f"{FAKE} {error}") from error
 
 
 def _record_linux(bus: str, out: Path, **options) -> Recorded:

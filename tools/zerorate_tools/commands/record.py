@@ -9,7 +9,8 @@ def add_parser(subparsers) -> None:
     parser = subparsers.add_parser(
         "record",
         help="make a recording from a board or a Linux I2C bus",
-        description="Record a chip until Ctrl-C: PORT is a board's serial port or /dev/i2c-N. "
+        description="Record a chip until Ctrl-C: PORT is a board's serial port, /dev/i2c-N, "
+        "or fake: for an emulated chip in a simulated hand. "
         "Until it ends the recording is in NAME.partial.csv, also if the program is killed.",
     )
     parser.add_argument("port", nargs="?", metavar="PORT", help="/dev/ttyACM0, COM3 or /dev/i2c-1")
@@ -18,6 +19,9 @@ def add_parser(subparsers) -> None:
         "--recover", type=Path, metavar="FILE", help="finish the .partial.csv of a killed one"
     )
     parser.add_argument("--seconds", type=float, metavar="S", help="end by itself after this long")
+    parser.add_argument(
+        "--guide", action="store_true", help="say how to turn it in the hand, until all is known"
+    )
     group = parser.add_argument_group("on a Linux bus")
     group.add_argument(
         "--address", type=lambda text: int(text, 0), metavar="N", help="of the chip (0x68)"
@@ -73,8 +77,34 @@ def _record(arguments: argparse.Namespace) -> None:
     options = {k: v for k in names if (v := getattr(arguments, k)) is not None}
     if "setup" in options:
         options["setup"] = options["setup"].read_text(encoding="utf-8")
+    if arguments.guide:
+        _guided(arguments, options)
+        return
     with progress(f"recording {arguments.port}", arguments.seconds) as done:
         result = record(
             arguments.port, arguments.out, seconds=arguments.seconds, done=done, **options
         )
-    print(f"{arguments.out}: {result}" if result.samples else "no sample came, nothing is written")
+    print(_made(arguments.out, result))
+
+
+def _guided(arguments: argparse.Namespace, options: dict) -> None:
+    """Record until every entry is known; say what is not where it ends before."""
+    from ..boards.recording import FAKE, record
+    from ..guide import Guide, screen, unknown
+
+    with screen() as shown, Guide(shown, waits=arguments.port == FAKE) as guide:
+        result = record(
+            *(arguments.port, arguments.out),
+            seconds=arguments.seconds,
+            done=guide.done,
+            heard=guide.heard,
+            **options,
+        )
+    print(_made(arguments.out, result))
+    if guide.known is not None and not guide.known.all_known:
+        print(f"not known yet: {', '.join(unknown(guide.known))}")
+    print(f"next: zerorate close {arguments.out} --out closed")
+
+
+def _made(out: Path, result) -> str:
+    return f"{out}: {result}" if result.samples else "no sample came, nothing is written"

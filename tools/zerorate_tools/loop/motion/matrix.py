@@ -17,7 +17,7 @@ from .windows import LONGEST_S, MATRIX, OWN, OWN_SIGMA, REST_SIGMA, Moving, rows
 #: Short windows first: a large bias bends long ones.
 _SECONDS = (10.0, 20.0, LONGEST_S, LONGEST_S)
 #: Windows of a length are used where there are so many: the noise's spectrum comes from them.
-_LEAST_WINDOWS = 8
+LEAST_WINDOWS = 8
 #: Of windows under a Hann taper, each a quarter on, the share that counts (Welch 1967).
 _OVERLAP = 0.52
 FOLDS = 4
@@ -110,7 +110,7 @@ def beside(moving: Moving, matrix: np.ndarray) -> Fitted | None:
 
 def _beside(moving, seconds, matrix, before) -> Fitted | None:
     bias, drift = (np.zeros(3), np.zeros(3)) if before is None else (before.bias, before.drift)
-    fit_in = [s for s in _SECONDS if s <= seconds and len(moving.spans(s)) >= _LEAST_WINDOWS]
+    fit_in = [s for s in _SECONDS if s <= seconds and len(moving.spans(s)) >= LEAST_WINDOWS]
     seconds = max(fit_in, default=_SECONDS[0])
     rows = list(rows_of(moving, seconds, matrix, bias, drift))
     if not rows:

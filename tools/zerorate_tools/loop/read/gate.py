@@ -133,7 +133,7 @@ def enough(session: Session) -> None:
     have_s = session.blocks * session.block_s
     still_s = int(session.available.sum()) * session.block_s
     if have_s < needed_s:
-        raise CannotClose(
+        raise TooLittleRest(
             f"{session.name}: {_have(have_s)} minutes are too short; {_needed(session, needed_s)}, "
             "better an hour"
         )
