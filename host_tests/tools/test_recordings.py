@@ -96,16 +96,22 @@ def test_any_time_of_62_bits_survives(tmp_path, times, file_name):
 DTYPES = [f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)]
 
 
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.data(), st.sampled_from(DTYPES))
-def test_a_channel_is_taken_where_it_fits_32_bits_whatever_its_type(data, dtype):
-    limits = np.iinfo(dtype)
+def test_a_channel_is_taken_where_it_fits_32_bits_whatever_its_type(tmp_path, data, dtype):
+    limits, path = np.iinfo(dtype), tmp_path / "run.parquet"
     near = [-(2**31) - 1, -(2**31), 2**31 - 1, 2**31, limits.min, limits.max, 0]
     value = data.draw(st.sampled_from([n for n in near if limits.min <= n <= limits.max]))
     held = np.array([0, value], dtype)
+    write_recording(a_recording(2), path)
+    pq.write_table(pq.read_table(path).append_column("load", pa.array(held)), path)
     if -(2**31) <= value < 2**31:
+        assert read_recording(path).columns["load"].tolist() == [0, value]
         assert a_recording(2, load=held).columns["load"].tolist() == [0, value]
     else:
         with pytest.raises(BadRecording, match=f"row 2: load is {value}, more than 32 bits"):
+            read_recording(path)
+        with pytest.raises(BadRecording, match=f"row 2: load is {value}, which does not fit"):
             a_recording(2, load=held)
 
 

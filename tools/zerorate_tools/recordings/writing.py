@@ -71,9 +71,16 @@ def recording_writer(
 def recording_from_columns(
     columns: Mapping[str, np.ndarray], scales: Scales, name: str = "recording"
 ) -> Recording:
-    """A Recording out of integer arrays of any width: t_us becomes int64, the others int32."""
-    narrow = {
-        key: np.asarray(values).astype(np.int64 if key == "t_us" else np.int32, copy=False)
-        for key, values in columns.items()
-    }
+    """A Recording out of integer arrays of any width: t_us becomes int64, the others int32.
+
+    Raises BadRecording for a number that does not fit.
+    """
+    narrow = {}
+    for key, values in columns.items():
+        wide = np.asarray(values)
+        narrow[key] = wide.astype(np.int64 if key == "t_us" else np.int32, copy=False)
+        if (narrow[key] != wide).any():
+            row = int(np.argmax(narrow[key] != wide))
+            problem = f"{key} is {wide[row]}, which does not fit"
+            raise BadRecording(name, problem, row=row + 1, do="scale the column")
     return Recording(narrow, scales, name)
