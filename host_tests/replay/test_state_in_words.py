@@ -63,13 +63,16 @@ def test_of_a_store_the_newest_whole_record_counts(tmp_path, corrector, capsys):
     path.write_bytes(memory.bytes)
     assert main(["state", "show", str(path), "--find", "out_q8[0]"]) == 0
     assert capsys.readouterr().out.split()[-5:] == ["61", "OUT_Q8[0]", "512", "2", "LSB"]
+    assert store.save_model(b"ZRM")  # a record of another kind
+    path.write_bytes(memory.bytes)
+    assert by_name(path)["WINDOW"].raw == 32  # of the settings, which are stored, too
     damaged = bytearray(memory.bytes)
     damaged[store.state.slot_bytes + 100] ^= 1
     path.write_bytes(damaged)
     assert by_name(path)["OUT_Q8[0]"].raw == 256
     damaged[100] ^= 1
     path.write_bytes(damaged)
-    with pytest.raises(InFile, match="no record of this store is whole"):
+    with pytest.raises(InFile, match="no state of this store is whole"):
         words_of_file(path)
 
 

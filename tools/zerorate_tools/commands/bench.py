@@ -1,9 +1,10 @@
 """`zerorate bench`: what is claimed, measured. The benches are in a checkout, not in the wheel."""
 
+import argparse
 from importlib.util import find_spec
 
 
-def add_parser(subparsers) -> None:
+def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     """Register the sub-command with every bench that is there."""
     parser = subparsers.add_parser(
         "bench",
@@ -19,7 +20,7 @@ def add_parser(subparsers) -> None:
         add_benches(parser)
 
 
-def _refuse(arguments) -> None:
+def _refuse(arguments: argparse.Namespace) -> None:
     from ..errors import ZerorateError
 
     do = "unpack the source distribution and run `pip install -e '.[tools,bench]'` there"

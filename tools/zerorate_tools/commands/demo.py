@@ -3,9 +3,10 @@
 import argparse
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 
-def add_parser(subparsers) -> None:
+def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     parser = subparsers.add_parser(
         "demo",
         help="the whole job without hardware",
@@ -117,7 +118,7 @@ def run_real(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def draw_into(folder: Path, draw: Callable[..., None], *shown) -> Path:
+def draw_into(folder: Path, draw: Callable[..., None], *shown: Any) -> Path:
     """Draw demo.png into a folder, made where it is not there."""
     from ..recordings.atomic import written_beside
 

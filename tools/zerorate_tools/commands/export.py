@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 
-def add_parser(subparsers: argparse._SubParsersAction) -> None:
+def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     parser = subparsers.add_parser("export", help="write the firmware as C, for no MicroPython")
     actions = parser.add_subparsers(metavar="LANGUAGE", required=True)
     c = actions.add_parser("c", help="one header, one C file and a test program")

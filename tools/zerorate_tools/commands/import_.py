@@ -2,6 +2,7 @@
 
 import argparse
 from pathlib import Path
+from typing import Any
 
 _EPILOG = """\
 A mapping names a column of the recording, where it comes from, and its unit:
@@ -13,7 +14,7 @@ Columns that no line names are called 1, 2, 3; an (n, 3) variable of a .mat name
 """
 
 
-def add_parser(subparsers) -> None:
+def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     parser = subparsers.add_parser(
         "import",
         help="turn a foreign recording into this form",
@@ -77,7 +78,7 @@ def run(arguments: argparse.Namespace) -> None:
         print(" ", line)
 
 
-def _mapping(text: str):
+def _mapping(text: str) -> Any:
     from ..importers import parsed_mapping
 
     try:

@@ -6,7 +6,7 @@ from pathlib import Path
 FILE = "a model.bin or model.json"
 
 
-def add_parser(subparsers) -> None:
+def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     parser = subparsers.add_parser(
         "model",
         help="show, check or compare effect models",
@@ -24,7 +24,7 @@ def add_parser(subparsers) -> None:
     diff.set_defaults(run=run_diff)
 
 
-def _add_check(actions) -> None:
+def _add_check(actions: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     check = actions.add_parser(
         "check",
         help="say whether a device would load a model",

@@ -3,9 +3,10 @@
 import argparse
 import sys
 from pathlib import Path
+from typing import Any
 
 
-def add_parser(subparsers) -> None:
+def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     parser = subparsers.add_parser(
         "record",
         help="make a recording from a board or a Linux I2C bus",
@@ -87,7 +88,7 @@ def _record(arguments: argparse.Namespace) -> None:
     print(_made(arguments.out, result))
 
 
-def _guided(arguments: argparse.Namespace, options: dict) -> None:
+def _guided(arguments: argparse.Namespace, options: dict[str, Any]) -> None:
     """Record until every entry is known; say what is not where it ends before."""
     from ..boards.recording import FAKE, record
     from ..guide import Guide, screen, unknown
@@ -106,5 +107,5 @@ def _guided(arguments: argparse.Namespace, options: dict) -> None:
     print(f"next: zerorate close {arguments.out} --out closed")
 
 
-def _made(out: Path, result) -> str:
+def _made(out: Path, result: Any) -> str:
     return f"{out}: {result}" if result.samples else "no sample came, nothing is written"

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from ..replay.passes import Window
 
 
-def add_parser(subparsers) -> None:
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     parser = subparsers.add_parser(
         "replay",
         help="run the firmware over a recording",
@@ -60,7 +60,7 @@ def add_parser(subparsers) -> None:
     parser.set_defaults(run=run, refuse=parser.error)
 
 
-def add_sources(parser, default: str = "yes") -> None:
+def add_sources(parser: argparse.ArgumentParser, default: str = "yes") -> None:
     """Add --motion, --gravity and their opposites; default: what help says of it."""
     for name, how in (("motion", "in motion"), ("gravity", "against gravity")):
         told = f"learn {how} as well (default: {default})"

@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 
-def add_parser(subparsers) -> None:
+def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     parser = subparsers.add_parser(
         "run",
         help="correct for ever on a Linux board, as a service",
@@ -54,7 +54,7 @@ def run(arguments: argparse.Namespace) -> None:
     model = encoded(read_model(arguments.model)) if arguments.model else b""
     fake = FakeBus(arguments.address, arguments.part) if arguments.bus == "fake:" else None
 
-    def open_imu():
+    def open_imu() -> MPU6050:
         bus = fake or LinuxI2C(arguments.bus)
         try:
             return MPU6050(bus, arguments.address, **options)

@@ -6,7 +6,7 @@ import sys
 _GETTABLE = ("wasm", "x86", "armhf", "x64", "rp2040")
 
 
-def add_parser(subparsers: argparse._SubParsersAction) -> None:
+def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     parser = subparsers.add_parser("runtimes", help="fetch and list the MicroPython interpreters")
     actions = parser.add_subparsers(metavar="ACTION", required=True)
     getting = actions.add_parser("get", help="fetch into the cache what is not there yet")

@@ -6,7 +6,7 @@ from pathlib import Path
 from .replay import setting
 
 
-def add_parser(subparsers) -> None:
+def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     parser = subparsers.add_parser("state", help="show what a stored state holds, word by word")
     actions = parser.add_subparsers(metavar="ACTION", required=True)
     show = actions.add_parser("show", help="each word of a state or store: name, value, unit")
@@ -14,7 +14,7 @@ def add_parser(subparsers) -> None:
     show.add_argument("--find", metavar="TEXT", default="", help="only words with this in the name")
     show.add_argument(
         "--set", action="append", default=[], type=setting, metavar="NAME=VALUE",
-        help="a setting it was made with, where that changes its size: bins=8",
+        help="a setting of a state file that changes its size, as bins=8; a store holds its own",
     )  # fmt: skip
     show.set_defaults(run=run)
 

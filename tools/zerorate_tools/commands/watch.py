@@ -6,7 +6,7 @@ from pathlib import Path
 from .replay import add_sources
 
 
-def add_parser(subparsers) -> None:
+def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     parser = subparsers.add_parser(
         "watch",
         help="the firmware live on a recording being written, or on a board",

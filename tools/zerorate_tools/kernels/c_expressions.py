@@ -2,6 +2,7 @@
 
 import ast
 from collections.abc import Callable, Mapping
+from pathlib import Path
 
 from .reading import NotKernel
 
@@ -15,7 +16,9 @@ _UNARY = {ast.USub: "-", ast.Invert: "~", ast.Not: "!"}
 class Expressions:
     """Writes expressions; constants: names folded to numbers; function: a kernel's name in C."""
 
-    def __init__(self, path, constants: Mapping[str, int], function: Callable[[str], str]) -> None:
+    def __init__(
+        self, path: Path, constants: Mapping[str, int], function: Callable[[str], str]
+    ) -> None:
         self._path, self._constants, self._function = path, constants, function
 
     def text(self, node: ast.expr) -> str:

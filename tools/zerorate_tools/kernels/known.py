@@ -26,7 +26,7 @@ _SCALES = Scales("MPU-6050", 4.0, 131.0, 16384.0, 340.0, 36.53)
 _SHAKY = {"still_dps": 40.0, "still_g": 1.0, "turn_dps": 20.0, "change_dps": 40.0}
 
 
-def known(part: str) -> tuple:
+def known(part: str) -> tuple[Any, ...]:
     """The part's KNOWN (see trying.answer)."""
     rounds, what, new, bits, *arrays = _KNOWN[part]()
     return (rounds, what, new, bits, *(_sparse(words) for words in arrays))
@@ -47,17 +47,17 @@ def _corrector() -> Corrector:
     return Corrector(Sensor(), bins=4, short=1, long=2, **limits)
 
 
-def _rest() -> tuple:
+def _rest() -> tuple[Any, ...]:
     corrector = _corrector()
     return 2, BURST + 10, 8 * 10, 5, corrector.state, corrector.settings, [0] * (8 * 10)
 
 
-def _motion() -> tuple:
+def _motion() -> tuple[Any, ...]:
     settings = motion_settings(node_s=0.02, longest_stage=4, least_dps=0.001, least_up_g=0.0)
     return 60, 10000, 7, 10, motion_state(settings), settings, _FRAME
 
 
-def _gravity() -> tuple:
+def _gravity() -> tuple[Any, ...]:
     settings = gravity_settings(sub_unit_s=0.04, units=4, threshold=1)
     return 30, 10000, 7, 12, gravity_state(settings), settings, _FRAME
 
@@ -79,11 +79,11 @@ def known_model() -> EffectModel:
     return model
 
 
-def _effects() -> tuple:
+def _effects() -> tuple[Any, ...]:
     return 20, 250000, 7, 12, [0] * 100, known_model().e, _FRAME
 
 
-def _refine() -> tuple:
+def _refine() -> tuple[Any, ...]:
     model = known_model()
     model.refine()
     state, settings = Corrector().state[:100], array("i", [0] * SETTINGS.size)
@@ -93,7 +93,7 @@ def _refine() -> tuple:
     return 20, 0, 0, 0, state, settings, model.e
 
 
-_KNOWN: dict[str, Callable[[], tuple]] = {
+_KNOWN: dict[str, Callable[[], tuple[Any, ...]]] = {
     "rest": _rest,
     "motion": _motion,
     "gravity": _gravity,

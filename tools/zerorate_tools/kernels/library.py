@@ -11,9 +11,11 @@ import subprocess
 import sys
 import tempfile
 import threading
+from collections.abc import Sequence
 from functools import lru_cache
 from multiprocessing import parent_process
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -145,19 +147,25 @@ def _key(text: str, system: str, machine: str) -> str:
     return f"{hashlib.sha256(text.encode()).hexdigest()[:16]}-{system}-{machine}"
 
 
-def address(words) -> ctypes.c_void_p:
+def address(words: NDArray[Any] | None) -> ctypes.c_void_p:
     """Where a NumPy array begins, for a call of the library; None is a null pointer."""
     return ctypes.c_void_p(None if words is None else words.ctypes.data)
 
 
 def run_rows(
-    arrays: tuple, frames, dt_us, extra, n: int, frozen=None, learn=None
-) -> tuple[NDArray, ...]:
+    arrays: Sequence[NDArray[Any] | None],
+    frames: NDArray[np.int32],
+    dt_us: NDArray[np.int32],
+    extra: NDArray[np.int32],
+    frozen: NDArray[np.int32] | None = None,
+    learn: NDArray[np.int8] | None = None,
+) -> tuple[NDArray[Any], ...]:
     """(bias_q8, source, quality_q8, each (n, 3), and verdict) of zerorate_run.
 
     arrays: state, settings and those of the sources and the model, or None; frames are corrected;
     frozen: settings of the rows at which learn, (n,) int8, is 0.
     """
+    n = len(frames)
     bias, quality = (np.empty((n, 3), np.int32, order="F") for _ in range(2))
     source, verdict = np.empty((n, 3), np.int8, order="F"), np.empty(n, np.int8)
     given = [np.ascontiguousarray(part, np.int32) for part in (frames, dt_us, extra)]
@@ -172,7 +180,16 @@ def run_rows(
     return bias, source, quality, verdict
 
 
-def run_source(gravity: bool, state, settings, rows, dt_us, at, learned, words) -> None:
+def run_source(
+    gravity: bool,
+    state: NDArray[np.int32],
+    settings: NDArray[np.int32],
+    rows: NDArray[np.int32],
+    dt_us: NDArray[Any],
+    at: tuple[int, int],
+    learned: NDArray[np.int8],
+    words: NDArray[np.int32],
+) -> None:
     """zerorate_source; at: (bias, sigma), words of the state; learned and words are written."""
     dt_us = np.ascontiguousarray(dt_us, np.int32)
     library().zerorate_source(

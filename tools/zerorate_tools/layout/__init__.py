@@ -9,15 +9,22 @@ firmware file it begins with `_`.
 Units: LSB of the sensor unless said; a number behind a name's last `_Q` is its fractional bits.
 """
 
+from collections.abc import Sequence
+from types import ModuleType
+from typing import TypeVar
+
 from . import codes, effects, motion, rest
 from .codes import *  # noqa: F403
 from .effects import *  # noqa: F403
 from .motion import *  # noqa: F403
 from .rest import *  # noqa: F403
-from .words import Array, Codes
+from .words import Array as Array
+from .words import Codes
+
+_Kind = TypeVar("_Kind")
 
 
-def _of(kind, *files):
+def _of(kind: type[_Kind], *files: ModuleType) -> tuple[_Kind, ...]:
     """What the files define of a kind, in their order."""
     return tuple(one for file in files for one in vars(file).values() if isinstance(one, kind))
 
@@ -26,11 +33,11 @@ ARRAYS = _of(Array, rest, motion, effects)
 CODES = _of(Codes, codes)
 
 
-def axis_at(settings, axis):
+def axis_at(settings: Sequence[int], axis: int) -> int:
     """Return the first word of an axis of the corrector's state."""
     return settings[rest.SETTINGS.AXES] + axis * settings[rest.SETTINGS.AXIS_WORDS]
 
 
-def slot_at(slot):
+def slot_at(slot: int) -> int:
     """Return the first word of an effect slot."""
     return effects.EFFECTS.SLOTS + slot * effects.SLOT.size

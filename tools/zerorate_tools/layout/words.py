@@ -1,5 +1,10 @@
 """What a word, an array and a list of codes are."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
 END = 2**30  # every word fits 31 bits
 
 
@@ -10,8 +15,10 @@ class Word:
     says it (bits: 0..30) or it may be anything of 31 bits.
     """
 
-    def __init__(self, index, line, while_text=""):
-        self.name, self.count, self.unit, self.meaning, *limits = line
+    def __init__(self, index: int, line: Sequence[Any], while_text: str = "") -> None:
+        self.name: str = line[0]
+        self.count: int | str = line[1]
+        self.unit, self.meaning, *limits = line[2:]
         self.index = index
         self.while_text = while_text
         self.limited = bool(limits)
@@ -19,7 +26,7 @@ class Word:
         self.most: int
         self.least, self.most = limits or ((0, 30) if self.unit == "bits" else (-END, END - 1))
 
-    def bits(self):
+    def bits(self) -> int:
         """Return what Array.bits says of one word."""
         return (96 if self.least < 0 else 64) + max(self.most, ~self.least).bit_length()
 
@@ -27,7 +34,7 @@ class Word:
 class Overlay:
     """Words in the place of others, from the word `at` on, `while_text`: when they are theirs."""
 
-    def __init__(self, at, while_text, *lines):
+    def __init__(self, at: str, while_text: str, *lines: Sequence[Any]) -> None:
         self.at = at
         self.while_text = while_text
         self.lines = lines
@@ -40,7 +47,16 @@ class Array:
     size_name: the constant that says how many words it has. Raises AttributeError for no word.
     """
 
-    def __init__(self, title, letter, base, size_name, lines, overlays=(), first=0):
+    def __init__(
+        self,
+        title: str,
+        letter: str,
+        base: str,
+        size_name: str,
+        lines: Sequence[Sequence[Any]],
+        overlays: Sequence[Overlay] = (),
+        first: int = 0,
+    ) -> None:
         self.title = title
         self.letter = letter
         self.base = base
@@ -52,22 +68,23 @@ class Array:
             at = getattr(self, overlay.at)
             self.words = self.words + self._placed(overlay.lines, at, overlay.while_text)
 
-    def _placed(self, lines, index, while_text):
-        words = []
+    def _placed(self, lines: Sequence[Sequence[Any]], index: int, while_text: str) -> list[Word]:
+        words: list[Word] = []
         for line in lines:
             words.append(Word(index, line, while_text))
             index += 0 if isinstance(words[-1].count, str) else words[-1].count
         return words
 
-    def bits(self):
+    def bits(self) -> bytes:
         """Return ASCII that says of every word whose place no setting moves how many bits it has.
 
         64 and the number of bits; 96 and the bits beside the sign where a word may be negative.
         """
-        words = [word for word in self.words if not word.while_text and word.count.__class__ is int]
-        return bytes(word.bits() for word in words for _ in range(word.count))
+        words = [word for word in self.words if not word.while_text]
+        counted = [(word, word.count) for word in words if isinstance(word.count, int)]
+        return bytes(word.bits() for word, count in counted for _ in range(count))
 
-    def __getattr__(self, name):
+    def __getattr__(self, name: str) -> int:
         for word in self.words:
             if word.name == name:
                 return word.index
@@ -82,15 +99,24 @@ class Codes:
     says of it, in the file and under the name of `said_in`.
     """
 
-    def __init__(self, title, owner, ordered="", first=0, said_in="", said=(), **numbers):
+    def __init__(
+        self,
+        title: str,
+        owner: str,
+        ordered: str = "",
+        first: int = 0,
+        said_in: str = "",
+        said: Mapping[str, str] | None = None,
+        **numbers: int,
+    ) -> None:
         self.title = title
         self.owner = owner
         self.said_in = tuple(said_in.split())
-        self.said = dict(said)
+        self.said = dict(said or {})
         names = [*ordered.split(), *self.said]
         self.numbers = {name: i for i, name in enumerate(names, first)} | numbers
 
-    def __getattr__(self, name):
+    def __getattr__(self, name: str) -> int:
         if name in self.numbers:
             return self.numbers[name]
         raise AttributeError(name)

@@ -2,9 +2,10 @@
 
 import struct
 import zlib
-from collections.abc import Container, Sequence
+from collections.abc import Callable, Container, Sequence
 from dataclasses import replace
 from os import PathLike
+from typing import Any
 
 from ..errors import BadModel
 from ..recordings import Scales
@@ -112,7 +113,7 @@ def decoded(data: bytes, path: str | PathLike[str] = "model.bin") -> Model:
         raise BadModel(path, problem, do="write it again with `zerorate close`") from error
 
 
-def _checked_head(data: bytes, path: str | PathLike[str]) -> tuple:
+def _checked_head(data: bytes, path: str | PathLike[str]) -> tuple[Any, ...]:
     if data[:3] != b"ZRM":
         raise BadModel(path, "is no effect model", do="name a model.bin or model.json")
     if len(data) > 3 and data[3] not in (VERSION, VERSION_WITH_PLAYS):
@@ -127,7 +128,7 @@ def _checked_head(data: bytes, path: str | PathLike[str]) -> tuple:
     return head
 
 
-def _decoded_body(data: bytes, head: tuple) -> Model:
+def _decoded_body(data: bytes, head: tuple[Any, ...]) -> Model:
     n_slots, n_inputs, n_tables, n_channels, n_plays = head[3:8]
     at = _HEAD.size
     raw_inputs = [_INPUT.unpack_from(data, at + _INPUT.size * i) for i in range(n_inputs)]
@@ -166,7 +167,7 @@ def _short_table(table: Sequence[float] | None) -> tuple[float, ...] | None:
     )
 
 
-def _units(model: Model):
+def _units(model: Model) -> Callable[[str], Unit]:
     inputs = {i.name: i for i in model.inputs}
     return lambda name: Unit(inputs.get(name, Input(name)), model.scales, model.tick_s)
 
@@ -193,7 +194,7 @@ def _check_room(model: Model, plain: Sequence[Slot], plays: int) -> None:
         raise CannotDeploy("a slot follows a source that is no input of the model")
 
 
-def _there(name: str, of_the_sample: bool, among: Container) -> tuple[str, bool]:
+def _there(name: str, of_the_sample: bool, among: Container[tuple[str, bool]]) -> tuple[str, bool]:
     """The input for a source: a model of before accelerations were of the sample has the tick's."""
     return name, of_the_sample and (name, True) in among
 

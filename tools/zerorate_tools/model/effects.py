@@ -38,11 +38,13 @@ class Effect:
     title: str
     meaning: str
     fields: Mapping[str, Any] = field(default_factory=dict)
-    grids: Mapping[str, tuple | str] = field(default_factory=dict)
-    curve: Callable[[NDArray], NDArray] | None = None
+    grids: Mapping[str, tuple[Any, ...] | str] = field(default_factory=dict)
+    curve: Callable[[NDArray[Any]], NDArray[Any]] | None = None
 
 
-def table_of(curve: Callable[[NDArray], NDArray], lo: float, hi: float) -> tuple[float, ...]:
+def table_of(
+    curve: Callable[[NDArray[Any]], NDArray[Any]], lo: float, hi: float
+) -> tuple[float, ...]:
     """Nine points of a curve over a range, moved and scaled to reach from -1 to 1.
 
     NaN where the curve has no value there, or the same one everywhere.
@@ -53,7 +55,7 @@ def table_of(curve: Callable[[NDArray], NDArray], lo: float, hi: float) -> tuple
         return tuple(np.clip((2 * at - least - most) / (most - least), -1, 1).tolist())
 
 
-def curve_of(kind: str) -> Callable[[NDArray], NDArray]:
+def curve_of(kind: str) -> Callable[[NDArray[Any]], NDArray[Any]]:
     """The curve of a row. Raises KeyError, which names what has one."""
     curves = {row.kind: row.curve for row in EFFECTS if row.curve}
     if kind not in curves:

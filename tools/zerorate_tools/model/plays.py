@@ -67,7 +67,7 @@ def words_of_play(
     return [*source, min(max(radius, 0), 2 * _ONE), *mantissas(q14, 1, slot, gyro)]
 
 
-def _lsb_q14(term: Term, unit_of, shift: int) -> list[float]:
+def _lsb_q14(term: Term, unit_of: Callable[[str], Unit], shift: int) -> list[float]:
     """LSB in Q14 at an operator of 1 and at its square, for a coefficient of 1 dps per unit."""
     gyro = unit_of("rate_x").q8_per_unit / 256
     return [value_of_one(unit_of(term.source), shift) ** p * gyro * (1 << 14) for p in (1, 2)]

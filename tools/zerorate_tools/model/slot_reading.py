@@ -55,7 +55,9 @@ def slot_of(
     return slot
 
 
-def _term(words, name_of, unit_of, tick_s) -> Term:
+def _term(
+    words: Sequence[int], name_of: Callable[[int], str], unit_of: UnitOf, tick_s: float
+) -> Term:
     source, *range_q8 = words[SLOT.SLOT_SOURCE : SLOT.SLOT_SHIFT]
     other, *range_of_other_q8 = words[SLOT.SLOT_SECOND : SLOT.SLOT_SECOND + SLOT.SLOT_SHIFT]
     name, second = name_of(source), name_of(other) if other >= 0 else None
@@ -114,11 +116,12 @@ def shorter(value: float) -> Iterator[float]:
     yield from (float(f"{value:.{digits}g}") for digits in range(1, 18))
 
 
-def _shortest_of(exact, axis: int, slot: Slot, is_same: Callable[[Slot], bool]) -> Slot:
+def _shortest_of(
+    exact: list[float], axis: int, slot: Slot, is_same: Callable[[Slot], bool]
+) -> Slot:
     for number in shorter(exact[axis]):
-        values = list(exact)
-        values[axis] = number
-        trial = replace(slot, coefficient_dps=tuple(values))
+        values = [*exact[:axis], number, *exact[axis + 1 :]]
+        trial = Slot(slot.term, (values[0], values[1], values[2]), slot.effect)
         if is_same(trial):
             return trial
-    return replace(slot, coefficient_dps=tuple(exact))
+    return Slot(slot.term, (exact[0], exact[1], exact[2]), slot.effect)

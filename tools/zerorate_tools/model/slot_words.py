@@ -63,7 +63,9 @@ def words_of(
     ]
 
 
-def source_words(name, lo, hi, centre, unit_of, index_of) -> list[int]:
+def source_words(
+    name: str, lo: float, hi: float, centre: float, unit_of: UnitOf, index_of: IndexOf
+) -> list[int]:
     """Input, lowest, highest, centre, and room for the shift."""
     if name == ONE:
         return [index_of(name), 0, 256, 0, 0]
@@ -173,7 +175,9 @@ def lsb_q14_per_coefficient(slot: Slot, unit_of: UnitOf, shift: int, second_shif
     return one * (1 << 14)
 
 
-def _coefficient_words(slot, unit_of, shift, second_shift):
+def _coefficient_words(
+    slot: Slot, unit_of: UnitOf, shift: int, second_shift: int
+) -> tuple[int, ...]:
     factor = lsb_q14_per_coefficient(slot, unit_of, shift, second_shift)
     gyro = unit_of("rate_x").q8_per_unit / 256
     q14 = [c * gyro * factor for c in slot.coefficient_dps]

@@ -7,6 +7,7 @@ decay.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -40,7 +41,7 @@ class Term:
     decay_s: float = 0.0
     table: tuple[float, ...] | None = None
 
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, Any]:
         """Plain values; infinite limits become None so that the result is valid JSON, and no table
         is left out."""
         values = asdict(self)
@@ -49,7 +50,7 @@ class Term:
         return {k: None if isinstance(v, float) and math.isinf(v) else v for k, v in values.items()}
 
     @classmethod
-    def from_dict(cls, values: dict) -> Term:
+    def from_dict(cls, values: dict[str, Any]) -> Term:
         infinite = {"lo": -math.inf, "second_lo": -math.inf, "hi": math.inf, "second_hi": math.inf}
         filled: dict[str, Any] = {
             k: infinite[k] if v is None and k in infinite else v for k, v in values.items()
@@ -102,7 +103,7 @@ def _remembered(term: Term, u: np.ndarray, tick_s: float) -> np.ndarray:
     return u
 
 
-def evaluate(term: Term, sources, tick_s: float) -> np.ndarray:
+def evaluate(term: Term, sources: Callable[[str], np.ndarray], tick_s: float) -> np.ndarray:
     """(m,) basis at each tick. `sources` is called with a name and returns the (m,) tick means."""
     u = np.clip(sources(term.source), term.lo, term.hi) - term.centre
     if term.delay_s:

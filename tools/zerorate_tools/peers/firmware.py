@@ -1,6 +1,7 @@
 """This project's firmware on the same samples, online and unaided."""
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,7 +51,7 @@ class Decision:
         self.within = []
         return [self._biases(number, one) for number, one in enumerate(sessions)]
 
-    def states(self, one: Given) -> list[NDArray]:
+    def states(self, one: Given) -> list[NDArray[Any]]:
         """Bias and its one sigma, dps, and the source, each (n, 3), from nothing."""
         corrector = corrector_for(one.recording, dict(self.options))
         return _run(corrector, one, "bias_q8", "quality_q8", "source")
@@ -81,7 +82,7 @@ def within_two_sigma(
     return float(np.nanmean(inside)), float(np.nanmean(first))
 
 
-def _run(corrector: Corrector, one: Given, *names: str) -> list[NDArray]:
+def _run(corrector: Corrector, one: Given, *names: str) -> list[NDArray[Any]]:
     """What of its outcomes is named, each (n, 3), those in LSB Q8 in dps."""
     outcomes = list(engine("native").run(corrector, frames_in_batches(one.recording)))
     lsb = 256 * one.recording.scales.gyro_lsb_per_dps

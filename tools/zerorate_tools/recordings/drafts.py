@@ -16,6 +16,7 @@ import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Any
 
 from ..errors import InFile
 
@@ -204,7 +205,7 @@ def _is_of_no_switch(draft: Path) -> bool:
     return Path(lead).is_dir()
 
 
-def _said(file: Path):
+def _said(file: Path) -> Any:
     try:
         return json.loads(file.read_bytes())
     except (OSError, ValueError):

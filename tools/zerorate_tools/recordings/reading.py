@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -67,7 +67,7 @@ class OpenRecording:
             do = f"turn it into a recording: zerorate import {self.path} --out imported.parquet"
             raise BadRecording(self.path, "neither .csv, .csv.gz nor .parquet", do=do)
 
-    def _arrow_batches(self, rows: int) -> Iterator:
+    def _arrow_batches(self, rows: int) -> Iterator[Any]:
         if self._parquet is not None:
             return parquet_format.batches(self._parquet, self.path, rows)
         return csv_format.batches(self.path, self._header)

@@ -97,7 +97,7 @@ class NativeEngine(Engine):
             return
         arrays = _arrays(corrector)
         for batch in batches:
-            found = run_rows(arrays, batch.frames, batch.dt_us, batch.extra, len(batch))
+            found = run_rows(arrays, batch.frames, batch.dt_us, batch.extra)
             yield Outcome(batch.t_us, batch.frames, *found)
 
     @staticmethod
@@ -107,7 +107,7 @@ class NativeEngine(Engine):
         """One batch, by other settings, `frozen`, at the samples where learn, (n,), is not; only
         where the kernels are compiled."""
         others, where = np.array(frozen, np.int32), np.ascontiguousarray(learn, np.int8)
-        rows = batch.frames, batch.dt_us, batch.extra, len(batch)
+        rows = batch.frames, batch.dt_us, batch.extra
         found = run_rows(_arrays(corrector), *rows, others, where)
         return Outcome(batch.t_us, batch.frames, *found)
 

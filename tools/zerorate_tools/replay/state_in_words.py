@@ -2,22 +2,22 @@
 
 import re
 import zlib
-from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 from os import PathLike
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from zerorate import Corrector
 from zerorate.model import EffectModel
 
 from .. import layout
 from ..errors import InFile, ZerorateError
-from ..layout.naming import named_source, named_state
+from ..layout import SETTINGS
+from ..layout.naming import Names, named, named_source, named_state
 
 _MAGIC, _HEADER, _CRC = b"ZRS", 20, 4
+_STATE_VERSION = 2  # the models of a store are of version 1
 _MOST_BYTES = 1 << 20
 _FRACTION = re.compile(r"_Q(\d+)\b")
 
@@ -61,26 +61,34 @@ def words_of_file(
             data = file.read(_MOST_BYTES)
     except OSError as error:
         raise InFile(path, str(error.strerror), do="name a state or a store") from error
-    if _MAGIC in data[:3]:
-        data = _newest_record(Path(path), data)
-    words = np.frombuffer(data[: len(data) // 4 * 4], "<i4")
-    return list(_named(Path(path), words, options or {}))
+    if data[:3] == _MAGIC:
+        words = np.frombuffer(_newest_record(Path(path), data), "<i4")
+        first = len(words) - SETTINGS.size  # its settings lie behind the state
+        settings = words[first:].tolist()
+        arrays = [("state", named_state(settings)), ("settings", named(SETTINGS, SETTINGS.size))]
+    else:
+        words = np.frombuffer(data[: len(data) // 4 * 4], "<i4")
+        arrays = _arrays(Path(path), len(words), options or {})
+    places = [(array, n, *one) for array, names in arrays for n, one in enumerate(names)]
+    return [Word(a, n, name, int(raw), unit) for (a, n, name, unit), raw in zip(places, words)]
 
 
 def _newest_record(path: Path, data: bytes) -> bytes:
-    """The payload of the newest whole record of a store of two slots."""
+    """The payload of the newest whole state in a store: two slots, behind them a model's two."""
     found = []
     for at in (m.start() for m in re.finditer(_MAGIC, data)):
         size = int.from_bytes(data[at + 6 : at + 8], "little")
         record = data[at : at + _HEADER + size + _CRC]
-        if zlib.crc32(record[:-_CRC]).to_bytes(4, "little") == record[-_CRC:]:
+        whole = zlib.crc32(record[:-_CRC]).to_bytes(4, "little") == record[-_CRC:]
+        if whole and record[4] == _STATE_VERSION:
             found.append((int.from_bytes(record[8:12], "little"), record[_HEADER:-_CRC]))
     if not found:
-        raise InFile(path, "no record of this store is whole", do="load an older copy")
+        raise InFile(path, "no state of this store is whole", do="load an older copy")
     return max(found)[1]
 
 
-def _named(path: Path, words: NDArray[np.int32], options: dict[str, object]) -> Iterator[Word]:
+def _arrays(path: Path, length: int, options: dict[str, object]) -> list[tuple[str, Names]]:
+    """The arrays of a state file of so many words, with the names of theirs."""
     try:
         corrector = Corrector(**{**options, "motion": True, "gravity": True})
     except (TypeError, ValueError) as error:
@@ -90,16 +98,10 @@ def _named(path: Path, words: NDArray[np.int32], options: dict[str, object]) -> 
     sizes["effects"] = len(EffectModel().e)
     for there in product((False, True), repeat=len(sizes)):
         others = [name for name, is_there in zip(sizes, there) if is_there]
-        if len(words) == len(state) + sum(sizes[name] for name in others):
-            break
-    else:
-        problem = f"{4 * len(words)} bytes where a state with these settings has {4 * len(state)}"
-        raise InFile(path, problem, do="name its settings with --set")
-    at = 0
-    for array, names in [("state", state), *((n, named_source(n, sizes[n])) for n in others)]:
-        for number, (name, unit) in enumerate(names):
-            yield Word(array, number, name, int(words[at]), unit)
-            at += 1
+        if length == len(state) + sum(sizes[name] for name in others):
+            return [("state", state), *((n, named_source(n, sizes[n])) for n in others)]
+    problem = f"{4 * length} bytes where a state with these settings has {4 * len(state)}"
+    raise InFile(path, problem, do="name its settings with --set")
 
 
 def in_words(words: list[Word]) -> str:
