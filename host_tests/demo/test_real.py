@@ -81,9 +81,3 @@ def test_the_command_credits_the_authors_and_prints_the_table(filled, shown, mon
     assert "D. Laidig" in said and "CC BY 4.0" in said
     rows = [line for line in said.splitlines() if re.search(r"\d\.\d\s+[\d,]+\.\d$", line)]
     assert len(rows) >= len(WAYS) - 1
-
-
-def test_a_recording_of_ones_own_beside_it_is_refused(tmp_path, capsys):
-    with pytest.raises(SystemExit):
-        main(["demo", "--real", str(tmp_path / "own.parquet")])
-    assert "leave out LOG" in capsys.readouterr().err

@@ -80,10 +80,3 @@ def test_every_make_target_that_is_named_is_one(repository):
     for page in (repository / "README.md", repository / "docs" / "README.md"):
         named = re.findall(r"`make ([a-z-]+)`", page.read_text(encoding="utf-8"))
         assert named and set(named) <= targets
-
-
-def test_every_file_and_folder_that_is_named_is_there(repository):
-    text = (repository / "docs" / "design.md").read_text(encoding="utf-8")
-    rooms = re.findall(r"^\| `([\w/]+)` \|", text, re.MULTILINE)
-    assert len(rooms) == 13
-    assert [room for room in rooms if not (repository / room).is_dir()] == []

@@ -12,10 +12,7 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         help="the whole job without hardware",
         description="The whole job on a built-in device, no hardware: an emulated chip on an "
         "emulated I2C bus, driver and firmware on a real MicroPython, the loop closed, and what it "
-        "found run by MicroPython again. With a LOG, that recording is played instead.",
-    )
-    parser.add_argument(
-        "log", nargs="?", type=Path, metavar="LOG", help="a recording at rest; default: built-in"
+        "found run by MicroPython again.",
     )
     parser.add_argument(
         "--real",
@@ -28,19 +25,13 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
     parser.add_argument(
         "--runtime", default="wasm", metavar="NAME", help="wasm (default), x86, armhf, or a path"
     )
-    parser.set_defaults(run=run, refuse=parser.error)
+    parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Do the whole job, or play one recording."""
-    if arguments.real and arguments.log is not None:
-        arguments.refuse("--real brings its own recording: leave out LOG")
+    """Do the whole job, or run over the public recording."""
     get_ready(arguments.runtime)
-    if arguments.real:
-        return run_real(arguments)
-    if arguments.log is not None:
-        return run_log(arguments)
-    return run_job(arguments)
+    return run_real(arguments) if arguments.real else run_job(arguments)
 
 
 def get_ready(runtime: str) -> None:
@@ -56,19 +47,6 @@ def get_ready(runtime: str) -> None:
             raise
         with progress(f"fetching MicroPython ({runtime})"):
             fetch(runtime)
-
-
-def run_log(arguments: argparse.Namespace) -> int:
-    """Play one recording; exit code 1 if the interpreters disagree."""
-    from ..demo import demo, story
-    from ..demo.picture import draw
-    from ..progress import progress
-
-    with progress("playing through chip, bus, driver and firmware"):
-        shown = demo(arguments.log, arguments.runtime)
-    print("\n".join([*story.played(shown), *story.scored(shown)]))
-    print(story.ending([(draw_into(arguments.out, draw, shown), "bias, what is left, angle lost")]))
-    return 0 if shown.same_state else 1
 
 
 def run_job(arguments: argparse.Namespace) -> int:

@@ -1,17 +1,10 @@
 """`zerorate replay`: the firmware over a recording."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from ..recordings.reading import OpenRecording
-    from ..replay.passes import Window
 
 
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     parser = subparsers.add_parser(
         "replay",
         help="run the firmware over a recording",
@@ -42,13 +35,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument("--every", action="store_true", help="learn every reading, moving or still")
     parser.add_argument("--model", type=Path, metavar="FILE", help="an effect model to load")
     add_sources(parser, "yes, but not with --document or --every")
-    parser.add_argument(
-        "--plot",
-        type=Path,
-        metavar="PATH",
-        help="draw the orientation before and after each pass of the source in motion: the latest "
-        "window into a .png, or a dozen into a folder",
-    )
     parser.add_argument(
         "--set",
         action="append",
@@ -82,7 +68,6 @@ def run(arguments: argparse.Namespace) -> None:
     if arguments.every or arguments.rests:
         options["every"] = arguments.every
     recording = open_recording(arguments.log, keep_gaps=True)
-    taught = _to_plot(recording, arguments) if arguments.plot else []
     with progress(f"replaying {arguments.log.name}", recording.n_samples) as advance:
         done = replay(
             arguments.log,
@@ -100,19 +85,6 @@ def run(arguments: argparse.Namespace) -> None:
     print("  source of the bias:", _shares(done.sources, done.samples))
     for line in done.explanation.splitlines():
         print(" ", line)
-    if arguments.plot:
-        from ..replay.passes import plot_windows
-
-        for picture in plot_windows(taught, arguments.plot):
-            print(picture)
-
-
-def _to_plot(recording: OpenRecording, arguments: argparse.Namespace) -> list[Window]:
-    from ..replay.passes import windows_to_plot
-
-    options = dict(arguments.set)
-    start = {"start_dps": options["motion_start_dps"]} if "motion_start_dps" in options else {}
-    return windows_to_plot(recording, arguments.plot, document=arguments.document, **start)
 
 
 def _shares(counts: dict[str, int], total: int) -> str:

@@ -52,7 +52,7 @@ def _axes(dps: list[float]) -> str:
 
 def first_power_on(device: Device, runtime: str = "wasm") -> Demo:
     """The first power-on of a device that has learned nothing yet, on MicroPython."""
-    return demo(device.logs[0], runtime, truth_dps=device.truth_dps[0])
+    return demo(device.logs[0], runtime, device.truth_dps[0])
 
 
 def closed(device: Device, folder: Path) -> LoopReport:
@@ -75,4 +75,4 @@ def _last_power_on(device: Device, model: Path | None, runtime: str) -> Demo:
             before = state if state.exists() else None
             replay(log, model=model, from_state=before, state=state, options=AT_REST_ALONE)
         last, truth = device.logs[-1], device.truth_dps[-1]
-        return demo(last, runtime, truth_dps=truth, model=model, learned=state)
+        return demo(last, runtime, truth, model=model, learned=state)

@@ -1,28 +1,16 @@
-"""The demo's pictures: bias and temperature, what is left of the bias, the angle that is lost."""
+"""The demo's pictures: bias and temperature, and what is left of the bias."""
 
 from pathlib import Path
 
 import matplotlib
 import numpy as np
 
-from .play_and_score import Demo
-from .score import SETTLE_S, seconds
+from .play_and_score import SETTLE_S, Demo, seconds
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
 _COLOURS = ("#0072B2", "#D55E00", "#009E73")
-
-
-def draw(shown: Demo, path: Path) -> None:
-    """Write the picture of one recording as PNG."""
-    figure, (top, middle, bottom) = plt.subplots(3, 1, figsize=(9, 10), sharex=True)
-    _biases(top, shown)
-    _left(middle, shown, _most(shown))
-    middle.set_title("What is left of it, 5 s means", loc="left")
-    _angles(bottom, shown)
-    bottom.set_xlabel("minutes since power-on")
-    _write(figure, path)
 
 
 def draw_job(first: Demo, before: Demo, after: Demo, path: Path) -> None:
@@ -56,9 +44,8 @@ def _biases(axes, shown: Demo) -> None:
     for i, axis in enumerate("xyz"):
         known = np.where(shown.bias_dps[:, i] == 0, np.nan, shown.bias_dps[:, i])
         axes.plot(minutes, known, color=_COLOURS[i], label=f"g{axis}")
-        if shown.truth_dps is not None:
-            few = slice(None, None, max(1, len(minutes) // 200))
-            axes.plot(minutes[few], shown.truth_dps[few, i], "k:", linewidth=1)
+        few = slice(None, None, max(1, len(minutes) // 200))
+        axes.plot(minutes[few], shown.truth_dps[few, i], "k:", linewidth=1)
     axes.set_ylabel("dps")
     _legend_above(axes)
     scales = shown.recording.scales
@@ -68,8 +55,8 @@ def _biases(axes, shown: Demo) -> None:
             minutes, scales.temp_degc(shown.recording.columns["temp"]), color="0.75", zorder=0
         )
         warm.set_ylabel("die temperature, degC (grey)", color="0.4")
-    truth = "" if shown.truth_dps is None else " (dotted: the truth)"
-    axes.set_title(f"Bias found in {shown.recording.name} on MicroPython{truth}", loc="left")
+    found = f"Bias found in {shown.recording.name} on MicroPython (dotted: the truth)"
+    axes.set_title(found, loc="left")
 
 
 def _legend_above(axes) -> None:
@@ -77,8 +64,7 @@ def _legend_above(axes) -> None:
 
 
 def _error_mdps(shown: Demo):
-    target = shown.recording.gyro_dps() if shown.truth_dps is None else shown.truth_dps
-    return (target - shown.bias_dps) * 1e3
+    return (shown.truth_dps - shown.bias_dps) * 1e3
 
 
 def _left(axes, shown: Demo, most: float) -> None:
@@ -101,24 +87,3 @@ def _most(shown: Demo) -> float:
 def _smoothed(values, shown: Demo):
     width = max(1, int(5 * shown.recording.scales.odr_hz))
     return np.convolve(values, np.ones(width) / width, mode="same")
-
-
-def _angles(axes, shown: Demo) -> None:
-    minutes, t_s = _minutes(shown), seconds(shown.recording)
-    rate = shown.recording.gyro_dps()
-    target = rate if shown.truth_dps is None else shown.truth_dps
-    later = t_s >= SETTLE_S
-    steps = np.diff(t_s[later], append=t_s[-1])[:, None]
-    first = rate[t_s < SETTLE_S].mean(axis=0)
-    curves = {
-        "uncorrected": target[later],
-        "mean of the first 10 s": target[later] - first,
-        "zerorate": (target - shown.bias_dps)[later],
-    }
-    for (name, error), style in zip(curves.items(), ("0.6", "#D55E00", "#0072B2")):
-        lost = np.linalg.norm(np.cumsum(error * steps, axis=0), axis=1)
-        axes.plot(minutes[later], np.maximum(lost, 1e-3), color=style, label=name)
-    axes.set_yscale("log")
-    axes.set_ylabel("degrees")
-    _legend_above(axes)
-    axes.set_title("Angle lost by integration", loc="left")
