@@ -15,15 +15,19 @@ from ..firmware import trace
 from ..firmware.trace_on_host import checksums, corrector_for, frames
 
 pytestmark = pytest.mark.skipif(not shutil.which("cc"), reason="no C compiler (cc) here")
-WARNINGS = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-Wno-unused-parameter"]
+WARNINGS = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror"]
+
+
+def sources_in(folder):
+    """The firmware and its test program, as a compiler takes them."""
+    return ["-I", folder, folder / "zerorate.c", folder / "test" / "zerorate_test.c"]
 
 
 def test_the_test_program_says_that_the_state_is_equal(tmp_path, capsys):
     assert main(["export", "c", str(tmp_path / "c")]) == 0
-    names = [line.rpartition("/")[2] for line in capsys.readouterr().out.splitlines()]
-    assert names == ["zerorate.h", "zerorate.c", "zerorate_test.c"]
-    sources = [tmp_path / "c" / "zerorate.c", tmp_path / "c" / "zerorate_test.c"]
-    program = tmp_path / "program"
+    names = {line.rpartition("/c/")[2] for line in capsys.readouterr().out.splitlines()}
+    assert {"zerorate.h", "zerorate.c", "zerorate_units.h", "test/zerorate_test.c"} <= names
+    sources, program = sources_in(tmp_path / "c"), tmp_path / "program"
     subprocess.run(["cc", *WARNINGS, "-O1", *sources, "-o", program], check=True)
     assert subprocess.run([program], check=True, capture_output=True).stdout.startswith(b"equal")
 
@@ -47,11 +51,11 @@ def test_it_ends_the_golden_trace_in_the_golden_state(tmp_path, golden):
 
 def test_a_model_is_applied_to_every_sample_as_on_a_board(tmp_path, matrix_model):
     assert main(["export", "c", str(tmp_path / "c"), "--model", str(matrix_model.path)]) == 0
-    sources = [tmp_path / "c" / "zerorate.c", tmp_path / "c" / "zerorate_test.c"]
+    sources = sources_in(tmp_path / "c")
     subprocess.run(["cc", *WARNINGS, *sources, "-o", tmp_path / "program"], check=True)
     subprocess.run([tmp_path / "program"], check=True, capture_output=True)
     library = tmp_path / "zerorate.so"
-    subprocess.run(["cc", "-shared", "-fPIC", sources[0], "-o", library], check=True)
+    subprocess.run(["cc", "-shared", "-fPIC", *sources[:3], "-o", library], check=True)
     made, z = ctypes.CDLL(str(library)), (ctypes.c_int32 * 4096)()
     made.zerorate_begin(z)
     lsb, left = matrix_model.lsb_per_dps, []

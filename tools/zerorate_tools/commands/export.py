@@ -7,7 +7,7 @@ from pathlib import Path
 def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     parser = subparsers.add_parser("export", help="write the firmware as C, for no MicroPython")
     actions = parser.add_subparsers(metavar="LANGUAGE", required=True)
-    c = actions.add_parser("c", help="one header, one C file and a test program")
+    c = actions.add_parser("c", help="a header, a C file, a test program, and what builders read")
     c.add_argument("folder", type=Path, metavar="DIR", help="made if it is not there")
     for name, default in (("odr-hz", 100.0), ("gyro-lsb-per-dps", 131.0)):
         c.add_argument(f"--{name}", type=float, default=default, metavar="N", help=f"{default:g}")

@@ -66,7 +66,9 @@ class _Function:
         stored = {n.id for n in names if isinstance(n.ctx, ast.Store)}
         own = sorted(stored - {a.arg for a in node.args.args})
         body = node.body[1 if ast.get_docstring(node) else 0 :]
-        lines = [f"    int32_t {local} = 0;" for local in own]
+        used = {n.id for n in names}
+        lines = [f"    (void){arg.arg};" for arg in node.args.args if arg.arg not in used]
+        lines += [f"    int32_t {local} = 0;" for local in own]
         lines += [line for statement in body for line in self._statement(statement, "    ")]
         return "\n".join([f"static {self.head()} {{", *lines, "}", ""])
 

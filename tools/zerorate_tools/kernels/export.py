@@ -1,5 +1,6 @@
 """The rest path, and an effect model, as a header and a C file, with a test program."""
 
+import re
 import zlib
 from array import array
 from collections.abc import Iterable
@@ -8,8 +9,22 @@ from pathlib import Path
 
 from zerorate import Corrector, Sensor
 from zerorate.model import EffectModel
+from zerorate.storage.learned_store import _STATE_VERSION
+from zerorate.storage.soundness import _NEAR_Q8
+from zerorate.storage.store import REASONS
 
-from zerorate_tools.layout import EFFECTS
+from zerorate_tools import __version__
+from zerorate_tools.layout import (
+    AXIS,
+    EFFECTS,
+    ESTIMATOR,
+    MARKS,
+    SETTINGS,
+    SOURCE,
+    STATE,
+    STILLNESS,
+    STORE,
+)
 
 from ..model.check import check_model, sensor_for
 from ..recordings.atomic import written_together
@@ -17,35 +32,12 @@ from .c_functions import kernels_in_c
 from .reading import Kernels
 
 _SAMPLES = 5000
-_HEADER = """\
-/* zerorate: keeps a gyroscope's bias at zero. Made by `zerorate export c`; see docs/c.md.
-   Integers of 32 bits only: no heap, no float, no library. MIT licence. */
-#ifndef ZERORATE_H
-#define ZERORATE_H
-#include <stdint.h>
-
-#define ZERORATE_STATE_WORDS {state}
-#define ZERORATE_SETTINGS_WORDS {settings}
-#define ZERORATE_EFFECTS_WORDS {words}
-
-typedef struct {{
-    int32_t state[ZERORATE_STATE_WORDS]; /* what was learned: save and load it as it is */
-    int32_t settings[ZERORATE_SETTINGS_WORDS];
-{effects}}} zerorate_t;
-
-#ifdef __cplusplus
-extern "C" {{
-#endif
-/* Forget everything. */
-void zerorate_begin(zerorate_t *z);
-/* sample: ax ay az temp gx gy gz, raw LSB, rates corrected in place; dt_us: since the one before.
-   Returns 0 for a good reading, else what is wrong with the frame (1 repeated ... 7 time leapt). */
-int32_t zerorate_update(zerorate_t *z, int32_t sample[7], int32_t dt_us);
-{channels}#ifdef __cplusplus
-}}
-#endif
-#endif
-"""
+_FOLDER = Path(__file__).parent / "exported"
+_ARRAYS = {"STATE": STATE, "AXIS": AXIS, "ESTIMATOR": ESTIMATOR, "SETTINGS": SETTINGS}
+_PACKAGED = (
+    *("library.json", "library.properties", "CMakeLists.txt", "idf_component.yml"),
+    *("zephyr/module.yml", "zephyr/Kconfig", "examples/yaw/yaw.ino"),
+)
 _CHANNELS = """\
 /* What an extra channel of the model reads now; numbers: {names}. */
 void zerorate_channel(zerorate_t *z, int32_t number, int32_t value);
@@ -58,12 +50,20 @@ _SOURCE = """\
 static const int32_t first_settings[ZERORATE_SETTINGS_WORDS] = {{{settings}}};
 static const int32_t first_state[][2] = {{{state}}};
 
-void zerorate_begin(zerorate_t *z) {{
-    for (int i = 0; i < ZERORATE_SETTINGS_WORDS; i++) z->settings[i] = first_settings[i];
+static void begin_state(zerorate_t *z) {{
     for (int i = 0; i < ZERORATE_STATE_WORDS; i++) z->state[i] = 0;
     for (unsigned i = 0; i < sizeof first_state / sizeof *first_state; i++)
         z->state[first_state[i][0]] = first_state[i][1];
+}}
+
+static void begin_effects(zerorate_t *z) {{
 {begin}}}
+
+void zerorate_begin(zerorate_t *z) {{
+    for (int i = 0; i < ZERORATE_SETTINGS_WORDS; i++) z->settings[i] = first_settings[i];
+    begin_state(z);
+    begin_effects(z);
+}}
 
 int32_t zerorate_update(zerorate_t *z, int32_t sample[7], int32_t dt_us) {{
 {update}}}
@@ -122,7 +122,7 @@ def export_c(
     sensor: Sensor | None = None,
     model: str | PathLike[str] | None = None,
 ) -> list[Path]:
-    """Write zerorate.h, zerorate.c and zerorate_test.c into `folder`; their paths.
+    """Write the header, the C file, a test program and what builders read into `folder`; paths.
 
     sensor: rate and scales, an MPU-6050 at +-250 dps and 100 Hz by default; model: a model.bin of
     `zerorate close`, whose scales are taken instead. Raises BadModel.
@@ -134,26 +134,79 @@ def export_c(
     corrector = Corrector(sensor, motion=False, gravity=False)
     if model is not None:
         corrector.use_model(effects)
-    state, c, has_model = corrector.state, corrector.settings, model is not None
-    dt_us = round(1e6 / corrector.sensor.odr_hz)
-    texts = {
-        "zerorate.h": _HEADER.format(
-            state=len(state), settings=len(c), words=len(effects.e), **_declared(effects, has_model)
-        ),
-        "zerorate.c": _SOURCE.format(
-            kernels=_kernels(effects, has_model),
-            settings=", ".join(map(str, c)),
-            state=_pairs(state),
-            begin=_BEGIN_MODEL if has_model else "",
-            update=_WITH_MODEL if has_model else _BARE,
-        )
-        + (_CHANNEL.format(count=len(effects.channels), at=EFFECTS.CHANNELS) * has_model),
-        "zerorate_test.c": _TEST.format(samples=_SAMPLES, dt_us=dt_us, crc=_crc(corrector, dt_us)),
-    }
+    texts = {**_code(corrector, effects, model is not None), **_packages(corrector.sensor)}
     with written_together(folder) as draft:
         for name, text in texts.items():
+            (draft / name).parent.mkdir(parents=True, exist_ok=True)
             (draft / name).write_text(text, encoding="utf-8")
     return [Path(folder) / name for name in texts]
+
+
+def _code(corrector: Corrector, effects: EffectModel, has_model: bool) -> dict[str, str]:
+    """Name -> text of the header, the C file and the test program."""
+    state, c, dt_us = corrector.state, corrector.settings, round(1e6 / corrector.sensor.odr_hz)
+    declared = _declared(effects, has_model)
+    counts = {"STATE": len(state), "SETTINGS": len(c), "EFFECTS": len(effects.e)}
+    header = {f"{name}_WORDS": str(count) for name, count in counts.items()}
+    header |= {"EFFECTS": declared["effects"], "CHANNELS": declared["channels"]}
+    last = max(STORE.numbers.values())
+    header["REASONS"] = "\n".join(
+        f"    ZERORATE_{name} = {number}{',' * (number < last)} /* {REASONS[number]} */"
+        for name, number in STORE.numbers.items()
+    )
+    source = _SOURCE.format(
+        kernels=_kernels(effects, has_model),
+        settings=", ".join(map(str, c)),
+        state=_pairs(state),
+        begin=_BEGIN_MODEL if has_model else "    (void)z;\n",
+        update=_WITH_MODEL if has_model else _BARE,
+    )
+    source += _CHANNEL.format(count=len(effects.channels), at=EFFECTS.CHANNELS) * has_model
+    return {
+        "zerorate.h": _filled("zerorate.h", corrector.sensor, header),
+        "zerorate_units.h": _filled("zerorate_units.h", corrector.sensor, {}),
+        "zerorate.c": f"{source}\n{_stored(corrector)}",
+        "test/zerorate_test.c": _TEST.format(
+            samples=_SAMPLES, dt_us=dt_us, crc=_crc(corrector, dt_us)
+        ),
+    }
+
+
+def _stored(corrector: Corrector) -> str:
+    """What begins a power-on, saves and loads, with the layout's words that it names."""
+    text = (_FOLDER / "stored.c").read_text(encoding="utf-8")
+    words = {
+        f"{name}_{word}": getattr(array, ("EST_" if name == "ESTIMATOR" else "") + word)
+        for name, array in _ARRAYS.items()
+        for word in sorted(set(re.findall(rf"\b{name}_(\w+)", text)) - {"BITS"})
+    }
+    words |= {"NO_VALUE": MARKS.NO_VALUE, "FREE": MARKS.FREE, "STILL": STILLNESS.STILL}
+    words |= {"ANY_TEMPERATURE": SOURCE.ANY_TEMPERATURE, "NEAR_Q8": _NEAR_Q8}
+    words |= {"RECORD_VERSION": _STATE_VERSION, "OWN_STEP_LSB": corrector._step_lsb}
+    lines = [f"#define {name} ({value})" for name, value in words.items()]
+    for name in ("AXIS", "ESTIMATOR"):
+        bits = "".join(f"\\x{bit:02x}" for bit in _ARRAYS[name].bits())
+        lines.append(f'#define {name}_BITS "{bits}"')
+    return "\n".join([*lines, "", text])
+
+
+def _packages(sensor: Sensor) -> dict[str, str]:
+    """Name -> text of what Arduino, PlatformIO, ESP-IDF and Zephyr read."""
+    return {name: _filled(name, sensor, {}) for name in _PACKAGED}
+
+
+def _filled(name: str, sensor: Sensor, more: dict[str, str]) -> str:
+    """The text of a file of this folder, its @NAMES@ replaced."""
+    text = (_FOLDER / name).read_text(encoding="utf-8")
+    values = dict(zip(("MAJOR", "MINOR", "PATCH"), __version__.split(".")))
+    scales = (sensor.gyro_lsb_per_dps, sensor.accel_lsb_per_g, sensor.temp_lsb_per_degc)
+    numbers = (sensor.odr_hz, *scales, sensor.temp_offset_degc)
+    values |= {
+        k: repr(float(v)) for k, v in zip(("ODR_HZ", "GYRO", "ACCEL", "TEMP", "OFFSET"), numbers)
+    }
+    return re.sub(
+        "@([A-Z_]+)@", lambda found: {"VERSION": __version__, **values, **more}[found[1]], text
+    )
 
 
 def _declared(effects: EffectModel, has_model: bool) -> dict[str, str]:

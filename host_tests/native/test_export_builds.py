@@ -1,0 +1,138 @@
+"""What is exported builds as C99 and C++, for Arduino, ESP-IDF and Zephyr, as far as stubs show.
+
+The builders' own packages are in no registry that a test may use: the sketch is compiled against
+a stub of Arduino, and the build file is run by CMake with stubs of ESP-IDF's and Zephyr's commands.
+"""
+
+import json
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+from zerorate_tools import __version__
+from zerorate_tools.cli import main
+
+STRICT = ["-Wall", "-Wextra", "-Wpedantic", "-Werror"]
+LANGUAGES = {"c99": ["-x", "c", "-std=c99"], "c++": ["-x", "c++", "-std=c++11"]}
+USER = """\
+#include "zerorate_units.h"
+#include <stdio.h>
+#if ZERORATE_VERSION_MAJOR < 0
+#error
+#endif
+static zerorate_t z;
+int main(void) {
+    float left = 0.0f;
+    zerorate_begin(&z);
+    for (int32_t n = 0; n < 6000; n++) {
+        float gyro[3] = {1.5f, -0.25f, 0.5f}, accel[3] = {0.0f, 0.0f, 1.0f};
+        for (int i = 0; i < 3; i++) gyro[i] += (float)(n * 7919 % 13 - 6) / 131.0f;
+        accel[0] += (float)(n * 104729 % 11 - 5) / 4000.0f;
+        zerorate_update_dps(&z, gyro, accel, 25.0f + (float)(n % 3) / 340.0f, 0.01f);
+        if (n >= 5000) left += gyro[0] / 1000.0f;
+    }
+    printf("%s %d %.4f %.4f %.4f\\n", ZERORATE_VERSION, (int)zerorate_learned(&z),
+           (double)zerorate_bias_dps(&z, 0), (double)zerorate_quality_dps(&z, 0), (double)left);
+    return 0;
+}
+"""
+
+
+def needs(*programs):
+    """Skip a test where one of the programs is missing."""
+    missing = [name for name in programs if not shutil.which(name)]
+    return pytest.mark.skipif(bool(missing), reason=f"no {' '.join(missing)} here")
+
+
+@pytest.fixture(scope="module")
+def exported(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("export") / "zerorate"
+    assert main(["export", "c", str(folder)]) == 0
+    return folder
+
+
+def built(compiler, *arguments, cwd):
+    subprocess.run([compiler, *STRICT, "-O1", *map(str, arguments)], check=True, cwd=cwd)
+
+
+@needs("cc", "g++")
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_rates_in_degrees_lose_their_bias_and_nothing_warns(exported, tmp_path, language):
+    (tmp_path / "user.c").write_text(USER)
+    compiler = "g++" if language == "c++" else "cc"
+    sources = [exported / "zerorate.c", tmp_path / "user.c"]
+    built(compiler, *LANGUAGES[language], "-I", exported, *sources, "-o", "user", cwd=tmp_path)
+    said = subprocess.run([tmp_path / "user"], check=True, capture_output=True, text=True).stdout
+    version, learned, bias, quality, left = said.split()
+    assert (version, learned) == (__version__, "1")
+    assert float(bias) == pytest.approx(1.5, abs=0.01)
+    assert 0 < float(quality) < 0.02
+    assert float(left) == pytest.approx(0, abs=0.01)
+
+
+@needs("g++")
+def test_the_sketch_prints_yaw_with_and_without(exported, tmp_path):
+    sketch = exported / "examples" / "yaw" / "yaw.ino"
+    stub = Path(__file__).with_name("arduino_stub.h")
+    (tmp_path / "Wire.h").write_text("")
+    built("cc", "-c", exported / "zerorate.c", cwd=tmp_path)
+    sources = ["-include", stub, "-x", "c++", "-std=c++11", sketch, "-x", "none", "zerorate.o"]
+    built("g++", "-I", exported, "-I", ".", *sources, "-o", "yaw", cwd=tmp_path)
+    said = subprocess.run([tmp_path / "yaw"], check=True, capture_output=True, text=True).stdout
+    lines = re.findall(r"yaw without (\S+)  with (\S+) deg(.*)", said)
+    assert len(lines) > 50 and "nothing is learned" in lines[0][2] and lines[-1][2] == ""
+    without, corrected = (float(number) for number in lines[-1][:2])
+    assert without == pytest.approx(2 * 60, rel=0.05)  # 2 dps of bias for a minute
+    assert abs(corrected) < 1.0
+
+
+ESP = """\
+cmake_minimum_required(VERSION 3.10)
+project(firmware C)
+set(ESP_PLATFORM 1)
+function(idf_component_register)
+  cmake_parse_arguments(A "" "" "SRCS;INCLUDE_DIRS" ${ARGN})
+  add_library(component ${A_SRCS})
+  target_include_directories(component PUBLIC ${A_INCLUDE_DIRS})
+endfunction()
+add_subdirectory(zerorate)
+"""
+ZEPHYR = """\
+cmake_minimum_required(VERSION 3.10)
+project(firmware C)
+set(CONFIG_ZERORATE y)
+macro(zephyr_library)
+  add_library(component STATIC)
+endmacro()
+macro(zephyr_library_sources)
+  target_sources(component PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/${ARGN})
+endmacro()
+macro(zephyr_include_directories)
+  target_include_directories(component PUBLIC ${ARGN})
+endmacro()
+add_subdirectory(zerorate)
+"""
+
+
+@needs("cmake", "cc")
+@pytest.mark.parametrize("project", [ESP, ZEPHYR], ids=["esp-idf", "zephyr"])
+def test_the_build_file_makes_a_library_of_it(exported, tmp_path, project):
+    shutil.copytree(exported, tmp_path / "zerorate")
+    (tmp_path / "CMakeLists.txt").write_text(project)
+    for command in (["cmake", "-S", ".", "-B", "build"], ["cmake", "--build", "build"]):
+        subprocess.run(command, check=True, cwd=tmp_path, capture_output=True)
+    assert list((tmp_path / "build").rglob("libcomponent.a"))
+
+
+def test_what_describes_it_has_its_version_and_names_files_that_are_there(exported):
+    described = json.loads((exported / "library.json").read_text())
+    assert described["version"] == __version__
+    assert all((exported / name).is_file() for name in described["headers"])
+    assert f"version={__version__}" in (exported / "library.properties").read_text()
+    assert f'version: "{__version__}"' in (exported / "idf_component.yml").read_text()
+    module = (exported / "zephyr" / "module.yml").read_text()
+    kconfig = re.search(r"kconfig: (\S+)", module)[1]
+    assert "config ZERORATE" in (exported / kconfig).read_text()
+    assert "@" not in "".join(p.read_text() for p in exported.rglob("*") if p.is_file())
