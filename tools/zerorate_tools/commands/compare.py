@@ -10,7 +10,8 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         help="how wrong your average at boot would have been, and zerorate",
         description="At each later rest of the recordings: how wrong the mean of the first rest, "
         "vqf, imufusion and zerorate would have been, in deg/s and degrees of heading lost a "
-        "minute. It needs nothing but the logs: power-ons of one device, in their order.",
+        "minute; and what the matrix of scale factors and axes would win in motion. It needs "
+        "nothing but the logs: power-ons of one device, in their order.",
     )
     parser.add_argument("logs", nargs="+", type=Path, metavar="LOG", help="a recording")
     parser.add_argument("--out", type=Path, metavar="FILE", help="write one HTML page with a plot")
@@ -18,16 +19,26 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Print the headline and the table; write the page where one is asked for."""
-    from ..compare import compare
-    from ..compare.show import table, write_page
+    """Print the headline and the table, and what the matrix would win; write the page."""
+    from ..compare import TooFewRests, compare, matrix_of
+    from ..compare.show import in_motion, table, write_page
     from ..progress import progress
     from ..recordings.atomic import check_apart
 
     check_apart([arguments.out], arguments.logs)
-    with progress("comparing", len(arguments.logs) + 3) as advance:
-        compared = compare(arguments.logs, advance)
+    with progress("comparing", len(arguments.logs) + 4) as advance:
+        won = matrix_of(arguments.logs)
+        advance(1)
+        try:
+            compared = compare(arguments.logs, advance)
+        except TooFewRests:
+            if won is None or not won.deployed or arguments.out is not None:
+                raise
+            print(in_motion(won))
+            return
     print(table(compared))
+    if won is not None:
+        print(f"\n{in_motion(won)}")
     if arguments.out is not None:
-        write_page(compared, arguments.out)
+        write_page(compared, arguments.out, won)
         print(f"\n{arguments.out}")

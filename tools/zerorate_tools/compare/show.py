@@ -9,6 +9,7 @@ import numpy as np
 
 from ..recordings.atomic import written_beside
 from .judge import FIRST_REST, NOTHING, Compared
+from .matrix import Won
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
@@ -18,6 +19,7 @@ from matplotlib.ticker import LogFormatter  # noqa: E402
 _COLOURS = ("#8d8d93", "#d55e00", "#cc79a7", "#d98200", "#56b4e9", "#0072b2")
 _MARKS = "xsv^oD"
 _HEAD = ("way", "error, deg/s", "heading lost, deg/min", "against the first rest")
+_MOTION_HEAD = ("in motion, deg/min, left out", "tilt", "heading", "")
 #: A drawing in inches, at 10 points, for a desk and for a phone of 390 CSS pixels.
 _WIDE, _NARROW = (9.0, 4.5), (3.7, 4.4)
 _NOTE = (
@@ -28,7 +30,8 @@ _NOTE = (
 )
 _STYLE = """
 body { font: 16px/1.5 sans-serif; max-width: 60rem; margin: 1rem auto; padding: 0 1rem }
-h1 { font-size: 1.4rem; line-height: 1.25 }
+h1, h2 { font-size: 1.4rem; line-height: 1.25 }
+h2 { font-size: 1.1rem }
 td, th { padding: .2rem .6rem .2rem 0; text-align: right }
 td:first-child, th:first-child { text-align: left }
 svg { max-width: 100%; height: auto }
@@ -55,16 +58,25 @@ def rows(compared: Compared) -> list[tuple[str, str, str, str]]:
 def table(compared: Compared) -> str:
     """The headline and the table, in plain text."""
     lines = [("way", "deg/s", "heading, deg/min", "against the first rest"), *rows(compared)]
-    widths = [max(len(line[i]) for line in lines if line[2]) for i in range(3)]
-    text = [
+    return "\n".join([compared.headline(), "", *_aligned(lines)])
+
+
+def in_motion(won: Won) -> str:
+    """What the matrix would win: the sentence and its rows, in plain text."""
+    lines = [_MOTION_HEAD, *won.rows()] if won.rows() else []
+    return "\n".join([won.sentence(), *([""] if lines else []), *_aligned(lines)])
+
+
+def _aligned(lines: list[tuple[str, str, str, str]]) -> list[str]:
+    widths = [max((len(line[i]) for line in lines if line[2]), default=0) for i in range(3)]
+    return [
         f"{way:{widths[0]}}  {wrong:>{widths[1]}}  {lost:>{widths[2]}}  {word}".rstrip()
         for way, wrong, lost, word in lines
     ]
-    return "\n".join([compared.headline(), "", *text])
 
 
-def write_page(compared: Compared, path: Path) -> None:
-    """One HTML file with headline, plot and table, which needs no other."""
+def write_page(compared: Compared, path: Path, won: Won | None = None) -> None:
+    """One HTML file with headline, plot and tables, which needs no other."""
     escaped = [[html.escape(cell) for cell in row] for row in rows(compared)]
     body = "".join(
         f"<tr{' class=ours' if row[0] == compared.ours else ''}>"
@@ -80,10 +92,19 @@ def write_page(compared: Compared, path: Path) -> None:
         f"<h1>{html.escape(compared.headline())}</h1><p>{names}</p>"
         f"<div class=wide>{_plot(compared, _WIDE)}</div>"
         f"<div class=narrow>{_plot(compared, _NARROW)}</div>"
-        f"<table><tr>{head}</tr>{body}</table><p>{_NOTE}</p></html>\n"
+        f"<table><tr>{head}</tr>{body}</table><p>{_NOTE}</p>{_motion_html(won)}</html>\n"
     )
     with written_beside(path) as temporary:
         temporary.write_text(page, encoding="utf-8")
+
+
+def _motion_html(won: Won | None) -> str:
+    if won is None:
+        return ""
+    lines = [_MOTION_HEAD, *won.rows()] if won.rows() else []
+    cells = ["".join(f"<td>{html.escape(cell)}</td>" for cell in line[:3]) for line in lines]
+    table = "".join(f"<tr>{row}</tr>" for row in cells)
+    return f"<h2>{html.escape(won.sentence())}</h2><table>{table}</table>"
 
 
 def _plot(compared: Compared, inches: tuple[float, float]) -> str:
