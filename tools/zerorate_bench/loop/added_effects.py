@@ -3,6 +3,7 @@
 A size is of what survives a refit of offset, T and T^2: what those take is no news to any model.
 """
 
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
@@ -14,6 +15,9 @@ PRANDTL_ISHLINSKII = "prandtl-ishlinskii"
 #: is left of the first by a model told its weights, but not where it was kept.
 PRANDTL_ISHLINSKII_KNOWN = f"{PRANDTL_ISHLINSKII}, start known"
 PRANDTL_ISHLINSKII_TOLD = f"{PRANDTL_ISHLINSKII}, told"
+#: Curves of a recorded channel.
+CURVE_OF = "humidity"
+CURVES = ("power of 1.5 above a threshold", "sigmoid", "half a sine", "notch")
 #: Deviation of the temperature before a power-on from its first one.
 KEPT_OFF_DEGC = 3.0
 
@@ -50,7 +54,7 @@ def add_effect(rng, sessions, name, size_dps):
     if name in ("linear-acceleration", "squared-acceleration", "scale-factor", "cross-axis"):
         _add_matrix(rng, sessions, name, size_dps)
         return
-    shapes = _shapes_of(rng, sessions)
+    shapes = (_curves if name in CURVES else _shapes_of)(rng, sessions)
     sized_as = PRANDTL_ISHLINSKII if name == PRANDTL_ISHLINSKII_TOLD else name
     parts, whole = ([shapes[n](s) for s in sessions] for n in (name, sized_as))
     # T^2 is what the refit takes, so its own size is counted beside T alone.
@@ -95,6 +99,24 @@ def _many_plays(rng):
         return session.block_mean(total)
 
     return shape
+
+
+def _curve(of) -> Callable[[Session], np.ndarray]:
+    return lambda s: s.block_mean(of(s.sources[CURVE_OF]))
+
+
+def _curves(rng, sessions) -> dict:
+    """Curves of a channel that no catalogue lists, anywhere within what was recorded."""
+    seen = np.concatenate([s.sources[CURVE_OF] for s in sessions])
+    lo, span = seen.min(), np.ptp(seen)
+    at, wide = lo + rng.uniform(0.3, 0.7) * span, rng.uniform(0.08, 0.15) * span
+    forms = (
+        lambda h: np.maximum(h - at, 0.0) ** 1.5,
+        lambda h: np.tanh((h - at) / wide),
+        lambda h: np.sin(np.pi * (h - lo) / span),
+        lambda h: np.exp(-0.5 * ((h - at) / wide) ** 2),
+    )
+    return {name: _curve(form) for name, form in zip(CURVES, forms)}
 
 
 def _term(**fields):

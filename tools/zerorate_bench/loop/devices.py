@@ -52,6 +52,11 @@ _SEEDS = {"null": 10_000, "effect": 200_000, "hidden": 400_000, "real": 600_000,
 _SEEDS["many widths"] = 300_000
 #: Devices on which nothing was developed.
 _SEEDS["start known"] = 300_070
+#: Devices on which nothing was developed; and by how many power-ons they are told.
+_SEEDS["curve"], _CURVE_POWER_ONS = 900_000, (4, 6)
+#: Devices a curve and a number of power-ons, of those of an effect; their size in floors.
+_OF_A_CURVE, _CURVE_FLOORS = 0.65, 3.0
+CURVE = "3x curve of a channel"
 NULL, REAL, OUT, HIDDEN, TWO = "nothing", "real noise", "outside", "not recorded", "two at once"
 
 
@@ -92,6 +97,7 @@ def devices(nulls: int, seeds: int, real: list[str]) -> list[Device]:
         *_effects(seeds),
         *_pairs(seeds),
         *_many_widths(seeds),
+        *_curves(seeds),
         *_hidden(max(seeds, nulls // 2)),
     ]
     for k, kind in enumerate(HOSTILE):
@@ -122,6 +128,13 @@ def _many_widths(seeds: int) -> Iterator[Device]:
         yield Device(f"{MANY_WIDTHS}, {n}", seed, loop, sessions=n)
         yield Device(START_KNOWN, fresh, known, sessions=n)
         yield Device(TOLD, seed, loop, sessions=n)
+
+
+def _curves(seeds: int) -> Iterator[Device]:
+    from .added_effects import CURVES
+
+    for n, curve, i in product(_CURVE_POWER_ONS, CURVES, range(int(_OF_A_CURVE * seeds))):
+        yield Device(CURVE, _SEEDS["curve"] + 1000 * n + i, ((curve, _CURVE_FLOORS),), sessions=n)
 
 
 def _hidden(number: int) -> Iterator[Device]:

@@ -8,8 +8,10 @@ from typing import TypeVar
 import numpy as np
 from scipy.stats import binomtest
 
+from .added_effects import CURVE_OF
 from .devices import (
     CATALOGUE,
+    CURVE,
     HIDDEN,
     KINK,
     MANY_WIDTHS,
@@ -83,6 +85,7 @@ def figures(outcomes: list[Outcome], whole: bool = True) -> list[Figure]:
         *_where_nothing_is(rows),
         *_catalogue(rows),
         *_outside(rows.get(OUT, [])),
+        *_curves(rows.get(CURVE, [])),
         *_unrecorded(rows),
         *_removed(rows),
         *_pairs(rows.get(TWO, [])),
@@ -141,6 +144,18 @@ def _outside(group):
         channels = OUTSIDE[effect]
         name = f"outside, 2x {effect}: tied to {' and '.join(channels)}"
         yield share(name, some, partial(Outcome.tied_to, channels=channels), 90.0)
+
+
+def _curves(group):
+    tied = partial(Outcome.tied_to, channels=(CURVE_OF,))
+    if group:
+        yield share(f"{CURVE}: tied to it", group, tied, 95.0)
+    for effect, some in _by_effect(group).items():
+        name = f"{CURVE}, {effect}"
+        yield share(f"{name}: tied to it", some, tied, None)
+        after = np.array([o.after for o in some if o.within])
+        if len(after):
+            yield _times(f"{name}: error after, mean", after.mean(), 1.2, len(after))
 
 
 def _unrecorded(rows):

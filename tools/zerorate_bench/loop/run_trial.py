@@ -4,7 +4,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from .devices import TOLD, Device
+from .added_effects import CURVE_OF
+from .devices import CURVE, TOLD, Device
 from .quiet import cut_into_sessions
 
 
@@ -12,7 +13,8 @@ from .quiet import cut_into_sessions
 class Outcome:
     """What the loop said of a device. before, after: held-out RMS over that of the noise alone;
     unpruned: after, had the held-out session taken nothing out again; withdrawn: what it took;
-    in_motion_mdps: error while it moves, of devices whose row asks for it."""
+    in_motion_mdps: error while it moves, of devices whose row asks for it; within: whether what an
+    effect follows stays, in the held-out session, within what the others show of it."""
 
     device: Device
     found: list[str] = field(default_factory=list)
@@ -27,6 +29,7 @@ class Outcome:
     in_motion_mdps: float | None = None
     unpruned: float = 1.0
     withdrawn: list[str] = field(default_factory=list)
+    within: bool = True
 
     def named(self, effect: str) -> bool:
         """Whether an effect is among the named, or among what is confounded with one of them."""
@@ -143,4 +146,12 @@ def judged(device: Device, sessions: list, noise_dps: np.ndarray) -> Outcome:
         float(verdict.after_rms / unit),
         unpruned=_rms(unpruned) / unit,
         withdrawn=[name for name, _ in selection.withdrawn],
+        within=device.row != CURVE or _is_within(sessions, CURVE_OF),
     )
+
+
+def _is_within(sessions: list, name: str) -> bool:
+    """Whether the last session's blocks stay within those of the others."""
+    *some, last = [s.block_mean(s.source(name)) for s in sessions]
+    seen = np.concatenate(some)
+    return bool(seen.min() <= last.min() and last.max() <= seen.max())

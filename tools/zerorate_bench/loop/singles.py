@@ -97,11 +97,11 @@ def tellable(session, step: dict) -> float:
     base, [whitener] = regression.fit(bend).base, regression.whiteners
     after = np.arange(session.blocks) >= step["at_s"] / session.block_s
     column = whitener.prepare(after.astype(float)[:, None])
-    beside, cross, alone = whitener.products(regression.stack(bend)[0], column)
+    beside, cross, alone = whitener.products(regression.stack(bend)[0], column, 1)
     size = 0.0  # in its standard deviations, squared
     for axis, colour in enumerate(base.best):
         left = cross[colour, 0] @ np.linalg.pinv(beside[colour]) @ cross[colour, 0]
-        size += step["dps"][axis] ** 2 * (alone[colour, 0] - left) / base.variance[axis]
+        size += step["dps"][axis] ** 2 * (alone[colour, 0, 0, 0] - left) / base.variance[axis]
     return float(ncx2.sf(chi2.isf(_INVENTED / session.blocks, 3), 3, size))
 
 

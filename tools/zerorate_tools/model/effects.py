@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .model import TABLE_POINTS
+from .term import Term
 
 #: Sources of a row: every recorded channel in turn; every channel whose name says it is a supply.
 ANY_CHANNEL, SUPPLY = "any channel", "supply"
@@ -30,7 +31,8 @@ class Effect:
     and meaning: what a person calls it, and what it says of the device (of a channel's form the
     title goes behind the channel's name). fields: of its `term.Term`; grids: further fields, the
     values tried for each, `knot` as shares of the range, a centre by name. curve: (n,) -> (n,) in
-    the source's unit, for what is no power: the board holds nine points of it.
+    the source's unit, for what is no power: the board holds nine points of it. free: a curve of any
+    form, as smooth as the recordings say (`loop/fit/free_curve.py`).
     """
 
     kind: str
@@ -40,6 +42,7 @@ class Effect:
     fields: Mapping[str, Any] = field(default_factory=dict)
     grids: Mapping[str, tuple[Any, ...] | str] = field(default_factory=dict)
     curve: Callable[[NDArray[Any]], NDArray[Any]] | None = None
+    free: bool = False
 
 
 def table_of(
@@ -61,6 +64,12 @@ def curve_of(kind: str) -> Callable[[NDArray[Any]], NDArray[Any]]:
     if kind not in curves:
         raise KeyError(f"no effect {kind} has a curve; these do: {', '.join(curves) or 'none'}")
     return curves[kind]
+
+
+def is_free(term: Term) -> bool:
+    """Whether the nine points of a term's curve were told by recordings, and by no row."""
+    told = (table_of(row.curve, term.lo, term.hi) for row in EFFECTS if row.curve)
+    return term.table is not None and term.table not in told
 
 
 def of_any_channel(kind: str) -> bool:
@@ -146,27 +155,15 @@ EFFECTS: tuple[Effect, ...] = (
     ),
     Effect("channel", ANY_CHANNEL, "in proportion", "The bias moves in proportion to it."),
     Effect(
-        *("channel-square", ANY_CHANNEL, "its square"),
-        "The bias moves with its square.",
-        fields={"power": 2},
-        grids={"centre": ("mean", "lo", "hi")},
-    ),
-    Effect(
         *("channel-lag", ANY_CHANNEL, "lagged"),
         "The bias follows it late, as through a first-order lag.",
         fields={"lag_mode": "lag"},
         grids={"lag_s": (60.0, 180.0, 540.0, 1600.0)},
     ),
     Effect(
-        *("channel-delay", ANY_CHANNEL, "delayed"),
-        "The bias follows it some time later.",
-        grids={"delay_s": _DELAYS_S},
-    ),
-    Effect(
-        *("channel-delay-square", ANY_CHANNEL, "its square, delayed"),
-        "The bias follows its square some time later.",
-        fields={"power": 2},
-        grids={"delay_s": _DELAYS_S, "centre": ("mean", "lo")},
+        *("channel-product", ANY_CHANNEL, "a product"),
+        "The bias follows the product of the two.",
+        grids={"second": "every", **_CENTRES},
     ),
     Effect(
         *("channel-rate", ANY_CHANNEL, "its rate of change"),
@@ -175,24 +172,31 @@ EFFECTS: tuple[Effect, ...] = (
         grids={"lag_s": (40.0, 160.0)},
     ),
     Effect(
-        *("channel-lag-square", ANY_CHANNEL, "its square, lagged"),
-        "The bias follows its square late, as through a first-order lag.",
-        fields={"lag_mode": "lag", "power": 2, "power_first": True},
-        grids={"lag_s": (60.0, 180.0, 540.0), "centre": ("mean", "lo", "hi")},
-    ),
-    Effect(
-        *("channel-kink", ANY_CHANNEL, "above a threshold"),
-        "Only above a threshold does the bias follow it.",
-        grids={"knot": (0.2, 0.35, 0.5, 0.65, 0.8)},
-    ),
-    Effect(
         *("channel-peak", ANY_CHANNEL, "memory of its highest value"),
         "The bias depends on its highest value since power-on.",
         fields={"memory": "peak"},
     ),
     Effect(
-        *("channel-product", ANY_CHANNEL, "a product"),
-        "The bias follows the product of the two.",
-        grids={"second": "every", **_CENTRES},
+        *("channel-delay", ANY_CHANNEL, "delayed"),
+        "The bias follows it some time later.",
+        grids={"delay_s": _DELAYS_S},
+    ),
+    Effect(
+        *("channel-curve", ANY_CHANNEL, "along a curve"),
+        "The bias follows it along a smooth curve.",
+        free=True,
+    ),
+    Effect(
+        *("channel-lag-curve", ANY_CHANNEL, "lagged, along a curve"),
+        "The bias follows it late, as through a first-order lag, along a smooth curve.",
+        fields={"lag_mode": "lag"},
+        grids={"lag_s": (60.0, 180.0, 540.0)},
+        free=True,
+    ),
+    Effect(
+        *("channel-delay-curve", ANY_CHANNEL, "delayed, along a curve"),
+        "The bias follows it some time later along a smooth curve.",
+        grids={"delay_s": _DELAYS_S},
+        free=True,
     ),
 )

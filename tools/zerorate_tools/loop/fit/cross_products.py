@@ -7,11 +7,11 @@ surrogates) is a sum of these over sessions.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from weakref import WeakValueDictionary
 
 import numpy as np
-from scipy.linalg import solve_triangular
+from scipy.linalg import block_diag, solve_triangular
 
 from ..read.blocks import can_be_bridged
 from . import noise
@@ -35,15 +35,23 @@ class Whitener:
         """(n, K) block columns to the (n - 1, K) the products are taken of."""
         return noise.transform(columns)
 
-    def products(self, fixed: np.ndarray, tried: np.ndarray) -> tuple[np.ndarray, ...]:
+    def products(
+        self, fixed: np.ndarray, tried: np.ndarray, size: int = 1
+    ) -> tuple[np.ndarray, ...]:
         """Products under every colour of (n - 1, L) fixed columns with each other, (shapes, L, L),
-        of (n - 1, K) others with them, (shapes, K, L), and of each other with itself, (shapes, K).
+        of (n - 1, K) others with them, (shapes, K, L), and of each so many others, which are tried
+        together, with each other, (shapes, K / size, size, size).
         """
-        return (self._pairs(fixed, fixed), self._pairs(tried, fixed), self.weight @ (tried * tried))
+        groups = tried.reshape(len(tried), -1, size)
+        own = self._summed(groups[:, :, :, None] * groups[:, :, None, :])
+        return self._pairs(fixed, fixed), self._pairs(tried, fixed), own
 
     def _pairs(self, left, right):
-        flat = (left[:, :, None] * right[:, None, :]).reshape(len(left), -1)
-        return (self.weight @ flat).reshape(len(self.weight), left.shape[1], right.shape[1])
+        return self._summed(left[:, :, None] * right[:, None, :])
+
+    def _summed(self, values):
+        flat = self.weight @ values.reshape(len(values), -1)
+        return flat.reshape(len(self.weight), *values.shape[1:])
 
 
 class GappyWhitener(Whitener):
@@ -70,18 +78,19 @@ class GappyWhitener(Whitener):
     def prepare(self, columns):
         return self._keep.T @ columns[self.available]
 
-    def products(self, fixed, tried):
+    def products(self, fixed, tried, size=1):
         white = self._whitened(fixed)
         both = white @ white.transpose(0, 2, 1)
-        if tried.shape[1] <= _FEW:
-            own = self._whitened(tried)
-            return both, own @ white.transpose(0, 2, 1), (own * own).sum(axis=2)
         shape = len(self.whitening), tried.shape[1]
-        cross, alone = np.empty((*shape, fixed.shape[1])), np.empty(shape)
+        cross = np.empty((*shape, fixed.shape[1]))
+        groups = np.empty((shape[0], shape[1] // size, size, size))
+        known = self._whitened(tried) if tried.shape[1] <= _FEW else None
         for g, w in enumerate(self.whitening):
-            own = w @ tried
-            cross[g], alone[g] = (white[g] @ own).T, (own * own).sum(axis=0)
-        return both, cross, alone
+            own = (w @ tried).T if known is None else known[g]
+            cross[g] = own @ white[g].T
+            each = own.reshape(-1, size, own.shape[1])
+            groups[g] = each @ each.transpose(0, 2, 1)
+        return both, cross, groups
 
     def _whitened(self, columns):
         """(shapes, K, N) of (N, K) columns; the same ones are asked for again and again."""
@@ -134,14 +143,15 @@ def _new(available) -> type[Whitener]:
 
 @dataclass
 class CrossProducts:
-    """Cross products by (session, shape, ...). y: axes A; z: nuisances J; x: candidates K."""
+    """Cross products by (session, shape, ...). y: axes A; z: nuisances J; x: candidates K of so
+    many columns P each."""
 
     yy: np.ndarray  # S G A
     zy: np.ndarray  # S G J A
     zz: np.ndarray  # S G J J
-    xy: np.ndarray  # S G K A
-    xz: np.ndarray  # S G K J
-    xx: np.ndarray  # S G K
+    xy: np.ndarray  # S G K P A
+    xz: np.ndarray  # S G K P J
+    xx: np.ndarray  # S G K P P
     logdet: np.ndarray  # S G
     count: np.ndarray  # S
 
@@ -149,19 +159,28 @@ class CrossProducts:
         """Some sessions, by their index."""
         return CrossProducts(*(getattr(self, f)[keep] for f in self.__dataclass_fields__))
 
+    def mapped(self, first: int, by: np.ndarray) -> CrossProducts:
+        """With (P, Q) sums of nuisances in the place of P of them from the first of these on."""
+        j = self.zz.shape[-1]
+        whole = block_diag(np.eye(first), by, np.eye(j - first - len(by)))
+        zz, xz = whole.T @ self.zz @ whole, self.xz @ whole
+        return replace(self, zz=zz, zy=whole.T @ self.zy, xz=xz)
+
 
 def cross_products(
-    whiteners: list[Whitener], y: list, z: list, x: list | None = None
+    whiteners: list[Whitener], y: list, z: list, x: list | None = None, size: int = 1
 ) -> CrossProducts:
-    """Products of prepared columns, a session an entry: y (N, A), z (N, J), x (N, K)."""
+    """Products of prepared columns, a session an entry: y (N, A), z (N, J), x (N, K); of x each so
+    many are one candidate."""
     x = x if x is not None else [np.zeros((len(v), 0)) for v in y]
     parts = []
     for w, ys, zs, xs in zip(whiteners, y, z, x):
         fixed = np.hstack([ys, zs])
-        both, cross, xx = w.products(fixed, xs)
+        both, cross, xx = w.products(fixed, xs, size)
         a = ys.shape[1]
         yy = np.einsum("gaa->ga", both[:, :a, :a])
-        parts.append((yy, both[:, a:, :a], both[:, a:, a:], cross[:, :, :a], cross[:, :, a:], xx))
+        cross = cross.reshape(len(cross), -1, size, cross.shape[2])
+        parts.append((yy, both[:, a:, :a], both[:, a:, a:], cross[..., :a], cross[..., a:], xx))
     yy, zy, zz, xy, xz, xx = (np.stack(p) for p in zip(*parts))
     return CrossProducts(
         *(yy, zy, zz, xy, xz, xx),

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...model.term import Term
+from .free_curve import is_curve
 from .shrunk import has_play_operators, shrink
 
 #: Of coefficients about zero, over their size in all sessions: wide, so that only what the other
@@ -14,21 +15,25 @@ _SPREAD = 3.0
 
 def precision_of(regression, g, base, terms: Sequence[Term], own: slice) -> np.ndarray:
     """(A, J) of coefficients about zero, over the white part of the noise: of the own ones of a
-    candidate wide, as large as all sessions show them; of play operators as large as is likely.
+    candidate wide, as large as all sessions show them; of the parts of a curve, and of play
+    operators, as large as is likely.
 
     base: the fit of all sessions to the products g.
     """
     out = np.zeros(base.fitted.shape)
-    size = np.sqrt((base.fitted[:, own] ** 2).mean(axis=0))
-    out[:, own] = base.variance[:, None] / (_SPREAD * np.maximum(size, 1e-300)) ** 2
+    if is_curve(terms[own]):
+        out = shrink(g, regression.scale, terms, own, alike=False).precision
+    else:
+        size = np.sqrt((base.fitted[:, own] ** 2).mean(axis=0))
+        out[:, own] = base.variance[:, None] / (_SPREAD * np.maximum(size, 1e-300)) ** 2
     shrunk = of_plays(g, regression.scale, terms)
     return np.where(shrunk > 0, shrunk, out)
 
 
 def of_plays(g, scale: np.ndarray, terms: Sequence[Term]) -> np.ndarray:
-    """(J,) precision of play operators among terms, as `precision_of`; zero of all else."""
+    """(A, J) precision of play operators among terms, as `precision_of`; zero of all else."""
     if not has_play_operators(terms):
-        return np.zeros(g.zz.shape[-1])
+        return np.zeros((scale.shape[1], g.zz.shape[-1]))
     return shrink(g, scale, terms).precision
 
 

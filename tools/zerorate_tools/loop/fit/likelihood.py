@@ -11,6 +11,8 @@ from .cross_products import CrossProducts
 from .noise import LOG_PRIOR, NO_STEEP
 
 _RIDGE = 1e-10
+#: Share of a column's squares that nuisances must leave.
+_OWN = 1e-6
 
 
 def _weights(scale: np.ndarray) -> np.ndarray:
@@ -96,13 +98,25 @@ def ratios(g: CrossProducts, base: Base, scale: np.ndarray, steep: bool = True) 
         w = _weights(scale[:, a])
         xz = np.tensordot(w, g.xz, 1)
         xx0 = np.tensordot(w, g.xx, 1)
-        xx = xx0 - np.einsum("gki,gij,gkj->gk", xz, base.inverse[a], xz, optimize=True)
-        xy = np.tensordot(w, g.xy[..., a], 1) - np.einsum("gki,gi->gk", xz, base.coefficients[a])
-        gain = np.where(xx > 1e-6 * xx0, xy**2 / np.maximum(xx, 1e-300), 0.0)
+        xx = xx0 - np.einsum("gkpi,gij,gkqj->gkpq", xz, base.inverse[a], xz, optimize=True)
+        along = np.einsum("gkpi,gi->gkp", xz, base.coefficients[a])
+        gain = _gain(xx, xx0, np.tensordot(w, g.xy[..., a], 1) - along)
         rss = np.maximum(base.rss[a][:, None] - gain, 1e-9 * base.rss[a][:, None])
         ll = _loglik(rss, logdet[:, None], count, (g.count * np.log(scale[:, a])).sum(), steep)
         out[:, a] = 2 * (ll.max(axis=0) - base.loglik[a].max())
     return np.maximum(out, 0.0)
+
+
+def _gain(xx: np.ndarray, whole: np.ndarray, xy: np.ndarray) -> np.ndarray:
+    """(G, K) squares that candidates explain. xx: (G, K, P, P) products of what the nuisances leave
+    of their columns, and whole: of these; xy: (G, K, P) with the residual."""
+    if xx.shape[-1] == 1:
+        one, own, y = xx[..., 0, 0], whole[..., 0, 0], xy[..., 0]
+        return np.where(one > _OWN * own, y**2 / np.maximum(one, 1e-300), 0.0)
+    size = np.sqrt(np.maximum(np.einsum("gkpp->gkp", whole), 1e-300))
+    unit = xx / (size[..., :, None] * size[..., None, :]) + _RIDGE * np.eye(xx.shape[-1])
+    y = xy / size
+    return (y * np.linalg.solve(unit, y[..., None])[..., 0]).sum(axis=-1)
 
 
 def session_scale(g: CrossProducts) -> np.ndarray:

@@ -118,17 +118,18 @@ class Regression:
         ]
 
     def cross_products(self, terms, candidates=None) -> CrossProducts:
-        """Products of residual, terms and single-column candidates."""
-        x = None
+        """Products of residual, terms and candidates: tuples of equally many terms."""
+        x, size = None, 1
         if candidates:
+            every, size = [t for c in candidates for t in c], len(candidates[0])
             x = [
-                np.column_stack([self.columns(t)[i] for t in candidates])
+                np.column_stack([self.columns(t)[i] for t in every])
                 for i in range(len(self.sessions))
             ]
-        out = cross_products(self.whiteners, self.y, self.stack(terms), x)
-        for i, term in enumerate(terms):
-            if term.source.startswith("acc_") and term.power == 2:
-                out.zz[..., i, i] *= 1.0 + _SUM_OF_SQUARES
+        out = cross_products(self.whiteners, self.y, self.stack(terms), x, size)
+        _shrink_squares(out.zz, terms)
+        for k, c in enumerate(candidates or ()):
+            _shrink_squares(out.xx[:, :, k], c)
         return out
 
     def fit(self, terms) -> Fit:
@@ -158,18 +159,20 @@ class Regression:
         of terms.
         """
         out = np.zeros((len(candidates), len(self.axes)))
-        single = [i for i, c in enumerate(candidates) if len(c) == 1]
-        for at in range(0, len(single), chunk):
-            part = single[at : at + chunk]
-            g = self.cross_products(terms, [candidates[i][0] for i in part])
-            out[part] = ratios(g, fit_base(g, self.scale, self.steep), self.scale, self.steep)
-        base = None
-        for i, c in enumerate(candidates):
-            if len(c) > 1:
-                base = base or fit_base(self.cross_products(terms), self.scale, self.steep)
-                more = fit_base(self.cross_products([*terms, *c]), self.scale, self.steep)
-                out[i] = 2 * (more.loglik.max(axis=1) - base.loglik.max(axis=1))
+        for size in {len(c) for c in candidates}:
+            alike = [i for i, c in enumerate(candidates) if len(c) == size]
+            for at in range(0, len(alike), chunk // size):
+                part = alike[at : at + chunk // size]
+                g = self.cross_products(terms, [candidates[i] for i in part])
+                out[part] = ratios(g, fit_base(g, self.scale, self.steep), self.scale, self.steep)
         return np.maximum(out, 0.0)
+
+
+def _shrink_squares(products: np.ndarray, terms) -> None:
+    """Shrink what follows squares of acceleration: (..., J, J) of terms, which are the first."""
+    for i, term in enumerate(terms):
+        if term.source.startswith("acc_") and term.power == 2:
+            products[..., i, i] *= 1.0 + _SUM_OF_SQUARES
 
 
 def predicted(terms, coefficients: np.ndarray, session: Session) -> np.ndarray:

@@ -31,7 +31,7 @@ def has_play_operators(terms: Sequence[Term]) -> bool:
 
 @dataclass
 class Shrunk:
-    """coefficients: (J, A) of terms, as large as is likely; precision: (J,) of those of the play
+    """coefficients: (J, A) of terms, as large as is likely; precision: (A, J) of those of the play
     operators about zero, over the white part of the noise, at the likeliest size, else zero; nats:
     by which they, of any size, are likelier than none of them."""
 
@@ -40,10 +40,13 @@ class Shrunk:
     nats: float
 
 
-def shrink(g: CrossProducts, scale: np.ndarray, terms: Sequence[Term], own=None) -> Shrunk:
+def shrink(
+    g: CrossProducts, scale: np.ndarray, terms: Sequence[Term], own=None, alike: bool = True
+) -> Shrunk:
     """Terms fitted to products of them, which are the first of the columns.
 
-    scale: (S, A) noise of each session; own: which terms are shrunk, if not the play operators.
+    scale: (S, A) noise of each session; own: which terms are shrunk, if not the play operators;
+    alike: whether they are of one size on all axes, or each axis has its own.
     """
     axes = [_Axis(g, scale[:, a], a) for a in range(scale.shape[1])]
     groups = _groups(terms, axes[0].zz.shape[-1], own)
@@ -55,12 +58,16 @@ def shrink(g: CrossProducts, scale: np.ndarray, terms: Sequence[Term], own=None)
         precision = np.sum([np.zeros(axes[0].zz.shape[-1]), *parts], axis=0)
         each = [axis.fit(precision) for axis in axes]
         precisions.append(precision)
-        told.append(sum(t for t, _ in each))
-        fitted.append(np.column_stack([c for _, c in each]))
-    weight = np.exp(np.array(told) - max(told))
-    mean = np.tensordot(weight / weight.sum(), fitted, 1)
-    nats = float(max(told) + np.log(weight.mean()) - told[0])
-    return Shrunk(mean, precisions[int(np.argmax(told))], nats)
+        told.append([t for t, _ in each])
+        fitted.append([c for _, c in each])
+    likely = np.array(told)
+    if alike:
+        likely = np.repeat(likely.sum(axis=1, keepdims=True), len(axes), axis=1)
+    weight = np.exp(likely - likely.max(axis=0))
+    mean = np.einsum("sa,saj->ja", weight / weight.sum(axis=0), np.array(fitted))
+    nats = likely.max(axis=0) + np.log(weight.mean(axis=0)) - likely[0]
+    total = float(nats.mean() if alike else nats.sum())
+    return Shrunk(mean, np.array(precisions)[likely.argmax(axis=0)], total)
 
 
 def _groups(terms, columns: int, own: slice | None) -> list[np.ndarray]:

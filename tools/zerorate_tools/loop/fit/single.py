@@ -12,8 +12,10 @@ from functools import partial
 import numpy as np
 from scipy.ndimage import binary_dilation
 
+from ...model.effects import is_free
 from ...model.term import Term
 from ..read.sessions import Session
+from .free_curve import draw
 from .line import by_axis, ordinary, shrunk, with_line
 from .regression import Regression, predicted
 from .shrunk import has_play_operators
@@ -143,6 +145,9 @@ class PiecesByLine:
         plays = has_play_operators(terms)
         hold = self.hold and not plays
         kept = [held(t, fitted) if hold and is_instant(t) else t for t in terms]
+        for i in [i for i, t in enumerate(kept) if is_free(t)]:
+            beside = [*straight, *kept[:i], *kept[i + 1 :]]
+            kept[i], _ = draw(Regression(fitted, few=True), beside, kept[i])
         every = [*straight, *kept]
         if not every:
             return [], np.zeros((0, 3))
@@ -189,7 +194,9 @@ def speaks_for(gain: np.ndarray) -> bool:
 
 def held(term: Term, sessions: Sequence[Session]) -> Term:
     """The term held at the edges of what some sessions show of its source; one that reaches beyond
-    all that the source does, as far beyond them."""
+    all that the source does, as far beyond them; one with a curve, where that ends."""
+    if term.table:
+        return term
     seen = np.concatenate([s.block_mean(s.source(term.source))[s.available] for s in sessions])
     every = np.concatenate([s.source(term.source) for s in sessions])
     margins = np.maximum([every.min() - term.lo, term.hi - every.max()], 0.0)

@@ -17,7 +17,7 @@ from ...model.term import Term
 from ..read.sessions import Session
 
 #: Lengths of the waves, of the range of temperature; their variance, of that of a block's noise.
-_LENGTHS = (0.05, 0.1, 0.2, 0.4, 0.8)
+LENGTHS = (0.05, 0.1, 0.2, 0.4, 0.8)
 _SIZES = np.r_[0.0, 10.0 ** np.arange(-1.0, 4.1, 0.5)]
 #: Points at which the curve is computed, a segment of the line.
 _POINTS = 3
@@ -77,8 +77,8 @@ def _deviation(at: np.ndarray, waves: np.ndarray, left: np.ndarray, free: int) -
     rates; free: blocks less what was fitted already.
     """
     told, curves = [], []
-    for length in _LENGTHS:
-        root = np.linalg.cholesky(_matern(at, length))
+    for length in LENGTHS:
+        root = np.linalg.cholesky(matern(at, length))
         u, d, v = np.linalg.svd(waves @ root, full_matrices=False)
         own = u.T @ left
         rest = (left**2).sum(axis=0) - (own**2).sum(axis=0)
@@ -92,7 +92,7 @@ def _deviation(at: np.ndarray, waves: np.ndarray, left: np.ndarray, free: int) -
     return np.tensordot(weight / weight.sum(), curves, 1)
 
 
-def _matern(at: np.ndarray, length: float) -> np.ndarray:
+def matern(at: np.ndarray, length: float) -> np.ndarray:
     """(points, points) covariance of waves of a length, with 1 on the diagonal."""
     apart = np.sqrt(5.0) * np.abs(at[:, None] - at) / (length * (at[-1] - at[0]))
     return (1.0 + apart + apart**2 / 3.0) * np.exp(-apart) + _TINY * np.eye(len(at))

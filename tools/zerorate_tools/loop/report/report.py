@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from ...model.effects import of_any_channel
+from ...model.effects import is_free, of_any_channel
+from ..fit.free_curve import draw
 from ..fit.intervals import block_bootstrap, rms
 from ..fit.single import STEPS_CHOSEN, WEAKER
 from ..search.confounding import label
@@ -169,9 +170,20 @@ def _effects(analysis):
                 "said": _said(f)
                 + (NO_TEMPERATURE if analysis.may_be_heat(i) else "")
                 + _uncorrected_axes(f),
+                **_lost(selection, i),
             }
         )
     return out
+
+
+def _lost(selection, i: int) -> dict[str, float]:
+    """Of a curve of any form, what the slot's one form for all axes loses of its squares."""
+    [term, *more] = selection.found[i].candidate.terms
+    if more or not is_free(term):
+        return {}
+    rest = selection.without(i)
+    lost = draw(selection.regression, [*rest.straight, *rest.terms], term)[1]
+    return {"lost_by_projection": round(lost, 4)}
 
 
 def _name(slot, own):

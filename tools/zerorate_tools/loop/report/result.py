@@ -70,7 +70,8 @@ class _Effect(TypedDict):
 class Effect(_Effect, total=False):
     """What was found: what it follows, its slots, and the error before it and with it.
 
-    coefficients: of each slot three, dps per unit of its basis; empty where it corrects nothing.
+    coefficients: of each slot three, dps per unit of its basis; empty where it corrects nothing;
+    lost_by_projection: share of the squares of a curve that one form for all axes loses.
     """
 
     ci95_mdps: list[list[float]]
@@ -81,6 +82,7 @@ class Effect(_Effect, total=False):
     deviation: dict[str, list[float]]
     amplitude_mdps: list[float]
     in_motion: dict[str, Any]
+    lost_by_projection: float
 
 
 class _Event(TypedDict):

@@ -8,6 +8,7 @@ import numpy as np
 from ...model import effects
 from ...model.effects import ANY_CHANNEL, SUPPLY, Effect, table_of
 from ...model.term import Term
+from ..fit.free_curve import is_curve, parts
 from ..motion.rate_scale import LEAST_RUNS
 from ..read.sessions import Session, block_basis, common_sources
 from ..read.turns import GIVEN
@@ -36,6 +37,16 @@ class Candidate:
     terms: tuple[Term, ...]
     family: str  # catalogue or generic
     refine: tuple[str, ...] = field(default=())
+
+    @property
+    def is_free(self) -> bool:
+        """Whether its terms are the parts of a curve that is still to be told: one slot."""
+        return is_curve(self.terms)
+
+    @property
+    def slots(self) -> tuple[Term, ...]:
+        """Terms of which the board needs a slot each."""
+        return self.terms[:1] if self.is_free else self.terms
 
     @property
     def sources(self) -> list[str]:
@@ -136,7 +147,9 @@ def _expand(row: Effect, source: str, family: str, span, others=()) -> list[Cand
     out = []
     for values in product(*grids.values()):
         fields = _fields({**fixed, **dict(zip(grids, values))}, span, source)
-        out.append(Candidate(row.kind, (Term(source, **fields),), family, refine))
+        term = Term(source, **fields)
+        terms = parts(term) if row.free else (term,)
+        out.append(Candidate(row.kind, terms, family, refine))
     return out
 
 

@@ -4,9 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...model.effects import of_any_channel
+from ...model import effects
+from ...model.effects import is_free, of_any_channel
+from ..fit.free_curve import parts
 from .catalogue import Candidate
-from .refine import refined
+from .refine import drawn, refined
 
 #: Effects within this many nats of the best are named beside it.
 NATS = 3.0
@@ -20,14 +22,14 @@ def rivals(regression, terms, chosen, candidates, ratios) -> list[Candidate]:
 
     ratios: (K,) of the candidates beside the same terms.
     """
-    best = regression.gains(terms, [chosen.terms]).sum()
+    best = _worth(regression, terms, chosen)
     tried = {label(chosen): (chosen, best)}
     for i in np.argsort(-ratios):
         c = candidates[i]
         if label(c) in tried or ratios[i] < best - 2 * _WORTH_REFINING:
             continue
-        c = refined(regression, terms, c)
-        tried[label(c)] = (c, regression.gains(terms, [c.terms]).sum())
+        c = drawn(regression, terms, refined(regression, terms, c))
+        tried[label(c)] = (c, _worth(regression, terms, c))
     top = max(r for _, r in tried.values())
     near = [c for c, r in tried.values() if r > top - 2 * NATS and c is not chosen]
     tied = tried[label(chosen)][1] > top - 2 * NATS
@@ -37,17 +39,19 @@ def rivals(regression, terms, chosen, candidates, ratios) -> list[Candidate]:
     return [first, *(c for c in rest if c is not first)]
 
 
+def _worth(regression, terms, c: Candidate) -> float:
+    """The likelihood ratio, less what a curve that was drawn chose its form by (Akaike)."""
+    form = len(parts(c.terms[0])) - 1 if is_free(c.terms[0]) else 0
+    return float(regression.gains(terms, [c.terms]).sum()) - 2 * form
+
+
 def complexity(candidate) -> tuple[int, int]:
-    """What a tie is broken by: a catalogue's effect before a form of any channel, then fewer free
-    parameters.
+    """What a tie is broken by: a catalogue's effect before a form of any channel, these in the
+    order of their rows, then fewer free parameters.
     """
-    family = 0 if candidate.family == "catalogue" else 1
-    forms = (
-        *("channel", "channel-lag", "channel-square", "channel-product", "channel-rate"),
-        "channel-kink",
-    )
-    order = forms.index(candidate.kind) if candidate.kind in forms else len(forms)
-    return family, order if family else len(candidate.refine)
+    if candidate.family == "catalogue":
+        return 0, len(candidate.refine)
+    return 1, [row.kind for row in effects.EFFECTS].index(candidate.kind)
 
 
 def label(candidate) -> str:

@@ -19,7 +19,7 @@ def smallest_dps(regression, nuisances, pool, needed) -> dict[str, float]:
     single = [c for c in pool if len(c.terms) == 1]
     if not single:
         return {}
-    g = regression.cross_products(nuisances, [c.terms[0] for c in single])
+    g = regression.cross_products(nuisances, [c.terms for c in single])
     base = regression.fit(nuisances).base
     information = _information(g, base, regression.scale)
     out: dict[str, float] = {}
@@ -39,7 +39,7 @@ def _information(g, base, scale):
     total = np.zeros(g.xx.shape[2])
     for a, i in enumerate(base.best):
         w = scale[:, a] ** -2.0
-        xz, xx = np.tensordot(w, g.xz[:, i], 1), w @ g.xx[:, i]
+        xz, xx = np.tensordot(w, g.xz[:, i, :, 0], 1), w @ g.xx[:, i, :, 0, 0]
         left = xx - np.einsum("ki,ij,kj->k", xz, base.inverse[a][i], xz)
         total += np.where(left > 1e-6 * xx, left, 0.0) / base.variance[a]
     return total

@@ -94,7 +94,7 @@ def repeats(regression, terms, candidate) -> tuple[float, float]:
     own variance by the fitted noise, summed over the axes: chi-squared of A and A (S - 1) degrees
     of freedom where there is nothing but that noise.
     """
-    g = regression.cross_products(terms, candidate)
+    g = regression.cross_products(terms, [candidate])
     base = regression.fit([*terms, *candidate]).base
     mean = spread = 0.0
     for a, colour in enumerate(base.best):
@@ -112,11 +112,11 @@ def _by_session(g, colour, a, weight):
     and with itself."""
     zz = g.zz[:, colour]
     inverse = np.linalg.pinv(np.tensordot(weight, zz, 1))
-    of_x = inverse @ (weight @ g.xz[:, colour, 0])
+    of_x = inverse @ (weight @ g.xz[:, colour, 0, 0])
     of_y = inverse @ (weight @ g.zy[:, colour, :, a])
-    xz, zy = g.xz[:, colour, 0], g.zy[:, colour, :, a]
-    along = g.xy[:, colour, 0, a] - xz @ of_y - zy @ of_x + (zz @ of_y) @ of_x
-    return weight * along, weight * (g.xx[:, colour, 0] - 2 * xz @ of_x + (zz @ of_x) @ of_x)
+    xz, zy = g.xz[:, colour, 0, 0], g.zy[:, colour, :, a]
+    along = g.xy[:, colour, 0, 0, a] - xz @ of_y - zy @ of_x + (zz @ of_y) @ of_x
+    return weight * along, weight * (g.xx[:, colour, 0, 0, 0] - 2 * xz @ of_x + (zz @ of_x) @ of_x)
 
 
 def smallest_square(tried: float, axes: int, sessions: int) -> float:

@@ -13,7 +13,7 @@ from .confounding import label
 from .decide import Decision, decide
 from .multiple_testing import MultipleTesting
 from .ols_holdout_ratio import ols_holdout_ratio
-from .refine import refined
+from .refine import drawn, refined
 from .selection import Found
 
 _TRANSIENT = "power-on-transient"
@@ -50,9 +50,10 @@ class Examiner:
         best = refined(self.regression, [*straight, *found], candidate)
         reason = self._seen_in_others(best, found)
         if not reason:
-            decision = self._decision(best, straight, found, nuisances)
+            told = drawn(self.regression, [*straight, *found], best)
+            decision = self._decision(best, told, straight, found, nuisances)
             if decision.accepted:
-                return Found(best, decision)
+                return Found(told, decision)
             reason = decision.reason
         return label(best), reason
 
@@ -71,13 +72,14 @@ class Examiner:
             return "found already, all but the same"
         return ""
 
-    def _decision(self, best, straight, found, nuisances) -> Decision:
-        """By the likelihood, by the plain error, and by pieces left out."""
+    def _decision(self, best, told, straight, found, nuisances) -> Decision:
+        """By the likelihood, by the plain error, and by pieces left out. told: the candidate with
+        its curve drawn."""
         decision = self._by_likelihood(best, nuisances)
         if decision.accepted and self._makes_worse(best, straight, found):
             return replace(decision, accepted=False, reason="makes what is left out worse")
         if decision.accepted and self.judged:
-            return self._by_pieces(decision, self.judged, best, straight, found)
+            return self._by_pieces(decision, self.judged, told, straight, found)
         return decision
 
     def _by_likelihood(self, best, nuisances) -> Decision:

@@ -1,14 +1,26 @@
 """The parameters of a candidate between the points of its grid."""
 
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from ...model.effects import DELAY_STEP_S
+from ...model.effects import DELAY_STEP_S, is_free
+from ...model.term import Term
+from ..fit.free_curve import draw
 from .catalogue import REFINED, Candidate
 
 _ROUNDS = 2
+
+
+def drawn(regression, beside: Sequence[Term], candidate: Candidate) -> Candidate:
+    """The candidate, with its curve told by the recordings where any curve will do."""
+    first = candidate.terms[0]
+    if not (candidate.is_free or len(candidate.terms) == 1 and is_free(first)):
+        return candidate
+    return replace(candidate, terms=(draw(regression, beside, first)[0],))
 
 
 def refined(regression, terms, candidate: Candidate) -> Candidate:
@@ -23,10 +35,15 @@ def _along(regression, terms, candidate, name):
     term = candidate.terms[0]
     at = getattr(term, name)
 
+    def moved(value):
+        change: dict[str, Any] = {name: float(value)}
+        return tuple(replace(t, **change) for t in candidate.terms)
+
     def worse(value):
-        trial = replace(term, **{name: float(value)})
-        gain = regression.gains(terms, [(trial,)]).sum()
-        regression.forget(trial)
+        trial = moved(value)
+        gain = regression.gains(terms, [trial]).sum()
+        for t in trial:
+            regression.forget(t)
         return -gain
 
     best, least = at, worse(at)
@@ -39,7 +56,7 @@ def _along(regression, terms, candidate, name):
         )
         if found.fun <= least:
             best, least = float(back(found.x)), found.fun
-    return replace(candidate, terms=(replace(term, **{name: best}),))
+    return replace(candidate, terms=moved(best))
 
 
 def _intervals(term, name, at):

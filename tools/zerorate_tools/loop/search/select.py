@@ -25,7 +25,7 @@ from .likely_hysteresis import likeliest
 from .multiple_testing import MultipleTesting
 from .naming import name_found
 from .one_recording import OneRecording
-from .refine import refined
+from .refine import drawn, refined
 from .selection import Found, Selection
 
 MOST_EFFECTS = 6
@@ -199,7 +199,7 @@ class Search:
                 c.kind in kinds
                 or len(kinds) >= _KINDS_TRIED
                 or confounding.label(c) in self.dropped
-                or not fits_in_slots([*self.terms(), *c.terms], self.taken)
+                or not fits_in_slots([*self.terms(), *c.slots], self.taken)
             ):
                 continue
             kinds.append(c.kind)
@@ -251,7 +251,7 @@ class Search:
                 self.dropped.add(confounding.label(c))
                 del self.found[i]
             else:
-                better = refined(self.regression, rest, c)
+                better = drawn(self.regression, rest, refined(self.regression, rest, c))
                 if not collinear(better.terms, rest, self.regression.sessions):
                     self.found[i].candidate = better
 

@@ -115,7 +115,8 @@ def best_place(regression, terms) -> tuple[Place | None, list]:
 def _ratios(regression, products, base, z, s, columns) -> np.ndarray:
     """(places,) likelihood ratios of columns of one session's blocks, over all axes."""
     y, columns = regression.y[s], regression.whiteners[s].prepare(columns)
-    cross, alone = regression.whiteners[s].products(np.hstack([y, z[s]]), columns)[1:]
+    cross, alone = regression.whiteners[s].products(np.hstack([y, z[s]]), columns, 1)[1:]
+    cross = cross[:, :, None]
     own = np.arange(len(regression.sessions)) == s
     axes = y.shape[1]
     xy, xz, xx = (np.multiply.outer(own, p) for p in (cross[..., :axes], cross[..., axes:], alone))

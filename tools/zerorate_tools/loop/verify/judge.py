@@ -172,8 +172,7 @@ def _gains(whole: Regression, selection: Selection, trained: int) -> np.ndarray:
         train_only = [g.of(np.r_[np.arange(trained), s]) for s in holdout]
         scales = [np.vstack([whole.scale[:trained], whole.scale[s : s + 1]]) for s in holdout]
         known = full.best, full.variance
-        plays = of_plays(g.of(np.arange(trained)), whole.scale[:trained], terms)
-        shrunk = np.tile(plays, (len(full.best), 1))
+        shrunk = of_plays(g.of(np.arange(trained)), whole.scale[:trained], terms)
         each = zip(train_only, scales)
         return sum(session_misfit(t, trained, *known, c, shrunk) for t, c in each)
 

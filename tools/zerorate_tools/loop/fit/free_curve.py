@@ -1,0 +1,79 @@
+"""A curve of any form over one source, as smooth as the recordings say.
+
+A straight line and a smooth deviation from it, as a Gaussian process of Matern's covariance (5/2)
+has it, at the nine points that the board holds. How large and how long its waves are, and the
+colour of the noise, is weighed by what the recordings make of it (restricted likelihood); the curve
+is the mean over all of them (`fit/shrunk.py`; Rasmussen and Williams, Gaussian Processes for
+Machine Learning, 2006, 2.7).
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ...model.model import TABLE_POINTS
+from ...model.term import Term
+from ..read.sessions import block_basis
+from .shrunk import shrink
+from .smooth import LENGTHS, matern
+
+#: Share of the variance of a curve that the parts by which it is looked for carry.
+_MOST = 0.9
+
+
+def parts(term: Term) -> tuple[Term, ...]:
+    """The term with one of several curves, each in turn: coefficients that are alike in size and
+    independent make of them the line and the waves of every length. Those that carry most of the
+    variance alone: chance pays for each. None adds an offset."""
+    at = np.linspace(-1.0, 1.0, TABLE_POINTS)
+    centred = np.eye(TABLE_POINTS) - 1.0 / TABLE_POINTS
+    waves = np.mean([matern(at, length) for length in LENGTHS], axis=0)
+    variance, forms = np.linalg.eigh(centred @ (np.outer(at, at) + waves) @ centred)
+    least = np.searchsorted(np.cumsum(variance), (1.0 - _MOST) * variance.sum())
+    tables = (forms * np.sqrt(np.maximum(variance, 0.0))).T[least:]
+    return tuple(replace(term, table=tuple(table.tolist())) for table in tables)
+
+
+def is_curve(terms: Sequence[Term]) -> bool:
+    """Whether terms are the parts of one curve that is still to be told."""
+    return len(terms) > 1 and all(t.table for t in terms)
+
+
+def draw(regression, beside: Sequence[Term], term: Term) -> tuple[Term, float]:
+    """The term with the curve that the recordings tell beside other terms, in one form for all
+    axes; and the share of the squares that is lost where these follow curves of different forms."""
+    each = [replace(term, table=tuple(point.tolist())) for point in np.eye(TABLE_POINTS)]
+    with regression.in_sensor_axes():
+        values = _values(regression, beside, each)
+    squares, axes = np.linalg.eigh(values.T @ _products(each, regression.sessions) @ values)
+    form = values @ axes[:, -1]
+    least, most = form.min(), form.max()
+    if not most > least:
+        return term, 0.0
+    table = np.clip((2 * form - least - most) / (most - least), -1, 1)
+    return replace(term, table=tuple(table.tolist())), float(squares[:-1].sum() / squares.sum())
+
+
+def _values(regression, beside, each) -> np.ndarray:
+    """(points, 3) dps of the curve at its points."""
+    at = np.linspace(-1.0, 1.0, len(each))
+    every = [*beside, *each]
+    g, first = regression.cross_products(every), len(beside)
+    own = slice(first + 1, first + 1 + len(each))
+    told, curves = [], []
+    for length in LENGTHS:
+        root = np.column_stack([at, np.linalg.cholesky(matern(at, length))])
+        columns = [*beside, each[0], *each]
+        said = shrink(g.mapped(first, root), regression.scale, columns, own, alike=False)
+        told.append(said.nats)
+        curves.append(root @ said.coefficients[first : first + root.shape[1]])
+    weight = np.exp(np.array(told) - max(told))
+    return np.tensordot(weight / weight.sum(), curves, 1)
+
+
+def _products(each, sessions) -> np.ndarray:
+    """(points, points) of what 1 at each point adds to the blocks, offsets aside."""
+    rows = [np.column_stack([block_basis(t, s) for t in each]) for s in sessions]
+    added = np.vstack([s.less_offsets(r, s.available)[s.available] for r, s in zip(rows, sessions)])
+    return added.T @ added
