@@ -80,16 +80,6 @@ def test_a_chip_that_runs_fast_does_not_outrun_the_clock(fifo_bench):
     assert max(abs(slip) for slip in fifo_bench.slips_us()) <= 2 * PERIOD_US
 
 
-def test_an_overflow_is_told_counted_and_kept_right_in_time(fifo_bench):
-    fifo_bench.drain(100000)
-    fifo_bench.drain(1500000)
-    fifo_bench.drain(100000)
-    assert fifo_bench.fifo.overflows == 1
-    assert abs(fifo_bench.fifo.lost - fifo_bench.missing()) <= 1
-    assert fifo_bench.missing() >= 150
-    assert max(abs(slip) for slip in fifo_bench.slips_us()) <= PERIOD_US
-
-
 @pytest.mark.parametrize("lost_bytes", [1, 2, 7, 13])
 def test_lost_alignment_is_found_before_a_frame_of_it_is_delivered(fifo_bench, lost_bytes):
     fifo_bench.drain(100000)
@@ -126,29 +116,6 @@ def test_a_frame_half_written_when_counted_is_no_loss(fifo_bench):
     fifo_bench.drain()
     assert fifo_bench.fifo.misalignments == 0
     assert fifo_bench.fifo.lost == 0
-
-
-def test_a_bus_lost_in_mid_burst_costs_samples_but_not_alignment(fifo_bench):
-    fifo_bench.drain(100000)
-    fifo_bench.run(100000)
-    fifo_bench.bus.fault("gone", skip=2, at_byte=20)
-    fifo_bench.drain()
-    fifo_bench.drain(100000)
-    assert fifo_bench.imu.bus_errors == 1
-    assert abs(fifo_bench.fifo.lost - fifo_bench.missing()) <= 1
-    assert max(abs(slip) for slip in fifo_bench.slips_us()) <= PERIOD_US
-
-
-def test_a_brown_out_restarts_the_chip_with_its_fifo(fifo_bench):
-    fifo_bench.drain(100000)
-    fifo_bench.chip.power_up()
-    statuses = []
-    for _ in range(10):
-        statuses += fifo_bench.drain(100000)
-    assert RESTARTED in statuses
-    assert fifo_bench.imu.restarts == 1
-    assert fifo_bench.chip.registers[0x23] == 0xF8
-    assert statuses[-1] == FRESH
 
 
 @pytest.mark.parametrize("kind", ["all_ff", "all_00"])

@@ -1,6 +1,5 @@
 """What was learned survives a power cut at any byte and any one bit turned, or is not believed."""
 
-import struct
 from array import array
 from binascii import crc32
 from pathlib import Path
@@ -89,17 +88,6 @@ def test_power_cut_at_every_byte_of_every_write_loads_the_newest_whole(kind, tor
         assert make_store(memory).save(after)
 
 
-def test_after_a_power_cut_the_next_save_spares_the_whole_slot(memory_of_two):
-    memory_of_two.cut_after = 10
-    with pytest.raises(PowerCut):
-        make_store(memory_of_two).save(OLD)
-    memory_of_two.cut_after = 10
-    with pytest.raises(PowerCut):
-        make_store(memory_of_two).save(OLD)
-    memory_of_two.cut_after = None
-    assert loaded(memory_of_two) == (stores.LOADED, NEW)
-
-
 def test_every_bit_turned_in_either_slot_loads_the_newest_whole(memory_of_two):
     slot_bits = 8 * make_store(memory_of_two).slot_bytes
     for bit in range(2 * slot_bits):
@@ -145,11 +133,6 @@ def test_noise_is_never_loaded_and_never_raises(noise):
     assert reason != stores.LOADED and payload == BLANK
 
 
-def test_a_chip_that_comes_back_finds_its_own_slot(memory_of_two):
-    assert make_store(memory_of_two, binding=b"\x70").save(OLD)
-    assert loaded(memory_of_two) == (stores.LOADED, NEW)
-
-
 def test_an_older_version_loads_where_it_is_taken_and_says_which(memory):
     make_store(memory, version=3).save(OLD)
     store = make_store(memory, version=4, older=(2, 3))
@@ -176,12 +159,6 @@ def test_a_storage_that_reads_another_thing_each_time_cannot_be_read(memory_of_t
 
     memory_of_two.readblock = read
     assert loaded(memory_of_two) == (stores.UNREADABLE, BLANK)
-
-
-def test_every_reason_has_words():
-    assert len(stores.REASONS) == stores.OUT_OF_RANGE + 1
-    assert "another chip" in stores.REASONS[stores.OTHER_BINDING]
-    assert "version" in stores.REASONS[stores.OTHER_VERSION]
 
 
 @pytest.mark.parametrize(
@@ -214,14 +191,6 @@ def test_a_payload_of_another_length_is_a_value_error(memory, length):
     for use in (make_store(memory).save, make_store(memory).load):
         with pytest.raises(ValueError, match="48 bytes"):
             use(bytearray(length))
-
-
-@pytest.mark.parametrize("order", ["big", "little"])
-def test_words_are_stored_little_endian_whatever_the_machine(monkeypatch, order):
-    monkeypatch.setattr(stores, "byteorder", order)
-    assert bytes(stores.packed(OLD, 4 * WORDS)) == struct.pack(f"<{WORDS}i", *OLD)
-    plain = bytearray(b"any bytes")
-    assert stores.packed(plain, len(plain)) is plain
 
 
 @pytest.mark.parametrize("words", [WORDS - 1, WORDS + 1, 2 * WORDS])

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .noise import gauss_markov, random_walk
+from .noise import gauss_markov
 from .paths import durations, path
 
 
@@ -34,10 +34,6 @@ def wander(clock: Clock, *, mean: float = 0.0, std: float = 1.0, tau_s: float = 
     return mean + gauss_markov(clock.rng, n, clock.dt_s, tau_s, np.array([std]))[:, 0]
 
 
-def walk(clock: Clock, *, start: float = 0.0, per_rt_s: float = 0.01):
-    return start + random_walk(clock.rng, len(clock.t_s), clock.dt_s, np.array([per_rt_s]))[:, 0]
-
-
 def levels(clock: Clock, *, low: float = 0.0, high: float = 1.0, mean_s: float = 300.0):
     """Random levels between low and high, each held mean_s on average."""
     change = np.cumsum(clock.rng.random(len(clock.t_s)) < clock.dt_s / mean_s)
@@ -47,12 +43,6 @@ def levels(clock: Clock, *, low: float = 0.0, high: float = 1.0, mean_s: float =
 def square(clock: Clock, *, low: float = 0.0, high: float = 1.0, period_s: float, share=0.5):
     """On and off: high for this share of each period."""
     return np.where((clock.t_s / period_s) % 1.0 < share, high, low)
-
-
-def sine(clock: Clock, *, mean: float = 0.0, amplitude: float = 1.0, period_s: float):
-    """Periodic, with a phase of its own each session."""
-    phase = clock.rng.uniform(0, 2 * np.pi)
-    return mean + amplitude * np.sin(2 * np.pi * clock.t_s / period_s + phase)
 
 
 def along(clock: Clock, *, start: float, path: list):
@@ -71,10 +61,8 @@ def _path(t_s: np.ndarray, start: float, segments: list) -> np.ndarray:
 
 CHANNELS: dict[str, Callable[..., np.ndarray]] = {
     "wander": wander,
-    "walk": walk,
     "levels": levels,
     "square": square,
-    "sine": sine,
     "path": along,
     "constant": constant,
 }

@@ -104,16 +104,6 @@ def scale(world: World, *, matrix: list | None = None) -> np.ndarray:
     return world.rate_dps @ np.asarray(np.eye(3) if matrix is None else matrix, float).T
 
 
-def scale_temperature(world: World) -> np.ndarray:
-    """(n, 3) rate in dps times degrees above 25."""
-    return world.rate_dps * (world.temp_degc - 25)[:, None]
-
-
-def squared_rate(world: World) -> np.ndarray:
-    """(n, 3) each axis's own rate squared, dps^2."""
-    return world.rate_dps**2
-
-
 def periodic(world: World, *, hz: float, phase_deg: float = 0.0) -> np.ndarray:
     """A line in the spectrum, sampled as it is (above half the data rate it shows as an alias)."""
     return np.sin(2 * np.pi * hz * world.t_s + np.radians(phase_deg))
@@ -171,15 +161,13 @@ EFFECTS: dict[str, Callable[..., np.ndarray]] = {
     "supply": supply,
     "supply-temperature": supply_temperature,
     "scale": scale,
-    "scale-temperature": scale_temperature,
-    "squared-rate": squared_rate,
     "periodic": periodic,
     "step": step,
     "channel": channel,
 }
 TIMING = ("delay_ms", "clock_ppm", "jitter_us")
 """Options of kind timing, which no waveform has."""
-RATE_EFFECTS = ("scale", "scale-temperature")
+RATE_EFFECTS = ("scale",)
 """These are no zero-rate output: they are in the reading, not in the true bias."""
 
 
