@@ -161,8 +161,8 @@ def test_what_npm_complains_of_is_told_in_one_line(tmp_path, monkeypatch, capsys
         "echo 'npm error A complete log is in x' >&2\nexit 1\n"
     )
     npm.chmod(0o755)
-    monkeypatch.setattr("zerorate_tools.runtimes.packages.node_command", lambda: ["node"])
-    monkeypatch.setattr("zerorate_tools.runtimes.packages.npm_command", lambda: [str(npm)])
+    monkeypatch.setattr("zerorate_tools.runtimes.node.node_command", lambda: ["node"])
+    monkeypatch.setattr("zerorate_tools.runtimes.node.npm_command", lambda: [str(npm)])
     assert main(["runtimes", "get", "wasm"]) == 2
     assert capsys.readouterr().err.endswith(": the network is gone\n")
 

@@ -5,8 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from zerorate_tools.errors import MissingRuntime
-from zerorate_tools.runtimes.native import CPython, UnixPort
-from zerorate_tools.runtimes.runtime import Runtime
+from zerorate_tools.runtimes.runtime import CPython, Runtime, UnixPort
 from zerorate_tools.runtimes.unix_port import fetch_unix_port, find_unix_port
 from zerorate_tools.runtimes.wasm import fetch_wasm, find_wasm
 

@@ -1,7 +1,9 @@
 """One interpreter, and what running a script on it gives."""
 
+import os
 import shutil
 import subprocess
+import sys
 import tempfile
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
@@ -146,3 +148,31 @@ def _read_back(job: Job) -> dict[str, bytes]:
 def _why_failed(name: str, script: str, result: Result) -> str:
     lines = (result.stderr or result.stdout).strip().splitlines() or ["no message"]
     return f"{script} failed on {name} with exit code {result.returncode}: {lines[-1]}"
+
+
+class CPython(Runtime):
+    """The Python that runs these tools."""
+
+    name = "cpython"
+
+    def command(self, job: Job) -> list[str]:
+        return [sys.executable, "-B", job.script, *job.args]
+
+    def environment(self, job: Job) -> dict[str, str]:
+        return {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, job.modules))}
+
+
+class UnixPort(Runtime):
+    """MicroPython's unix port, started by `launcher` (a loader, an emulator, or nothing)."""
+
+    def __init__(self, name: str, executable: Path, launcher: tuple[str, ...] = ()) -> None:
+        self.name = name
+        self.executable = executable
+        self.launcher = launcher
+
+    def command(self, job: Job) -> list[str]:
+        heap = [] if job.heap_bytes is None else ["-X", f"heapsize={job.heap_bytes}"]
+        return [*self.launcher, str(self.executable), *heap, job.script, *job.args]
+
+    def environment(self, job: Job) -> dict[str, str]:
+        return {**os.environ, "MICROPYPATH": ":".join([".frozen", *map(str, job.modules)])}

@@ -8,7 +8,7 @@ from pathlib import Path
 from zerorate_tools.errors import MissingRuntime
 from zerorate_tools.runtimes.cache import fill, runtime_folder
 from zerorate_tools.runtimes.debian import fetch_packages, host_architecture, unpack, unpack_one
-from zerorate_tools.runtimes.native import UnixPort
+from zerorate_tools.runtimes.runtime import UnixPort
 
 _PACKAGES = (
     *("micropython", "libc6", "libffi8", "libmbedcrypto16", "libmbedtls21", "libmbedx509-7"),

@@ -5,8 +5,7 @@ from pathlib import Path
 
 from zerorate_tools.errors import MissingRuntime
 from zerorate_tools.runtimes.cache import runtime_folder
-from zerorate_tools.runtimes.node import node_command
-from zerorate_tools.runtimes.packages import install, locked_version
+from zerorate_tools.runtimes.node import install, locked_version, node_command
 from zerorate_tools.runtimes.runtime import Job, Runtime
 
 _HERE = Path(__file__).parent / "webassembly"

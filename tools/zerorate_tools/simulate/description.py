@@ -7,10 +7,22 @@ from typing import Any
 
 from ..errors import BadDescription, MissingLibrary
 from .effects import EFFECTS, TIMING
-from .entries import check_value, filled, is_number, known, table, tables
 from .motion import FACES, MOTIONS
 from .paths import seconds
-from .schema import Bias, Description, Noise, Sensor, Session, Table
+from .schema import (
+    Bias,
+    Description,
+    Noise,
+    Sensor,
+    Session,
+    Table,
+    check_value,
+    filled,
+    is_number,
+    known,
+    table,
+    tables,
+)
 
 _TOP = (
     *("name", "seed", "latitude_deg", "sensor", "bias", "noise", "every_session", "session"),

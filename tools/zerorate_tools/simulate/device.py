@@ -12,10 +12,9 @@ from ..recordings import Recording, Scales, recording_from_columns
 from . import noise
 from .description import load_description
 from .effects import RATE_EFFECTS, lagged
-from .entries import axes
 from .noise import stream
 from .scaling import coefficients, waveform
-from .schema import Description, Sensor, Table
+from .schema import Description, Sensor, Table, axes
 from .world import World, build
 
 

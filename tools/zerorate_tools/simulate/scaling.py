@@ -10,9 +10,8 @@ import numpy as np
 
 from ..errors import BadDescription
 from .effects import EFFECTS, RATE_EFFECTS
-from .entries import axes
 from .noise import stream
-from .schema import Description
+from .schema import Description, axes
 from .world import World
 
 _ALWAYS = ("kind", "dps", "rms_dps", "beyond_temperature", "session")

@@ -1,4 +1,4 @@
-"""Killed anywhere, a writer leaves what was there or all that it wrote."""
+"""Killed anywhere, a writer leaves the old or all of the new, a recorder all but two seconds."""
 
 import sys
 
@@ -7,7 +7,14 @@ import pytest
 if sys.platform == "win32":
     pytest.skip("processes fork and have limits there", allow_module_level=True)
 
+from host_tests.tools.killed_recorders import MOST_S, trials
 from host_tests.tools.killed_writers import Trials
+
+
+def test_a_recorder_killed_at_a_random_moment_loses_two_seconds_at_most():
+    fallen, most_s, ends = trials(24, seed=1)
+    assert not fallen and most_s <= MOST_S
+    assert ends["run"] >= 8 and ends["recovered"] >= 2
 
 
 @pytest.mark.parametrize("name", ["CSV", "Parquet", "model", "simulate"])
