@@ -88,7 +88,7 @@ AREAS = {
         ["tools/zerorate_tools/importers/" + name for name in (
             "importing.py", "report.py", "columns/names.py", "columns/guesses.py",
             "samples/between.py", "samples/conversion.py", "samples/gather.py",
-            "tables/columnar.py", "logs/messages.py")],
+            "logs/columnar.py", "logs/messages.py")],
         ["host_tests/importers/test_" + name for name in (
             "small_steps.py", "tables.py", "odd_files.py", "odd_names.py", "odd_times.py")],
     ),

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from zerorate_bench.foreign_logs import binary as foreign_files
 from zerorate_tools.errors import ZerorateError
 from zerorate_tools.importers import Options, import_recording
 from zerorate_tools.recordings import (
@@ -17,7 +18,6 @@ from zerorate_tools.recordings import (
 )
 from zerorate_tools.simulate import simulate
 
-from ..importers import foreign_files
 from .patience import PATIENT
 
 NAMES = ("t_us", "gx", "gy", "gz")

@@ -8,11 +8,11 @@ import pytest
 import scipy.io
 from hypothesis import given
 from hypothesis import strategies as st
+from zerorate_bench.foreign_logs import binary as foreign_files
 from zerorate_tools.errors import BadRecording
 from zerorate_tools.importers import parsed_mapping, read_foreign
 from zerorate_tools.importers.logs.apart import written
 
-from ..importers import foreign_files
 from .patience import EXAMPLES, PATIENT
 
 _LONGEST_S = 20

@@ -5,10 +5,9 @@ import sys
 import numpy as np
 import pytest
 import scipy.io
+from zerorate_bench.foreign_logs import binary as foreign_files
 from zerorate_tools.errors import BadRecording, MissingLibrary
 from zerorate_tools.importers import parsed_mapping, read_foreign
-
-from . import foreign_files
 
 RNG = np.random.default_rng(5)
 G = 9.80665

@@ -5,10 +5,9 @@ import re
 import numpy as np
 import pandas as pd
 import pytest
+from zerorate_bench.foreign_logs.binary import vectornav_line
 from zerorate_tools.errors import BadRecording
 from zerorate_tools.importers import Options, parsed_mapping, read_foreign
-
-from .foreign_files import vectornav_line
 
 HEAD = "t_s,gx_dps,gy_dps,gz_dps"
 
@@ -32,7 +31,7 @@ def read(tmp_path, frame, name="in.csv", mapping="", **options):
     """What an import makes of a frame, or of a text."""
     if isinstance(frame, pd.DataFrame):
         frame = frame.to_csv(index=False)
-    content = frame if isinstance(frame, bytes) else frame.encode()
+    content = frame if isinstance(frame, bytes) else f"{frame.rstrip()}\n".encode()
     (tmp_path / name).write_bytes(content)
     words = [parsed_mapping(word) for word in mapping.split()]
     return read_foreign(tmp_path / name, mapping=words, **options)
@@ -80,16 +79,21 @@ def test_a_line_of_units_beneath_the_names_is_one(tmp_path, units):
     assert recording.gyro_dps().mean() == pytest.approx(0.8, abs=0.02)
 
 
-def test_json_says_what_to_do_with_it(tmp_path):
-    with pytest.raises(BadRecording, match="JSON, which is not read; write it as a CSV"):
-        read(tmp_path, '{"t": 0.01, "gx": 0.1}\n{"t": 0.02, "gx": 0.1}\n')
+def test_json_without_numbers_says_what_to_do(tmp_path):
+    with pytest.raises(BadRecording, match="JSON, and no numbers in it; write an object for each"):
+        read(tmp_path, '{"t": "now"}\n{"t": "then"}\n')
+
+
+def test_a_line_that_is_no_json_is_counted(tmp_path):
+    lines = table(50).to_json(orient="records", lines=True).splitlines()
+    recording, report = read(tmp_path, "\n".join([*lines[:49], lines[49][:20]]), "in.jsonl")
+    assert len(recording) == 49 and report.dropped["a line that is no JSON"] == 1
 
 
 @pytest.mark.parametrize(
     "first, words",
     [
-        (b"PK\x03\x04", "a spreadsheet or an archive; save its table as CSV, or unpack it"),
-        (b"\x93NUMPY\x01", "an array of NumPy; write it with numpy.savetxt"),
+        (b"PK\x03\x04", "the zip is cut off or damaged; copy it again"),
         (b"SQLite format 3\x00", "a database, and no .db3 of ROS 2; write its table as CSV"),
     ],
 )

@@ -53,8 +53,10 @@ def test_a_unit_in_the_name_is_enough(tmp_path):
 )
 def test_a_unit_of_rates_tells_what_a_column_is(tmp_path, names):
     names = re.findall(r"\S.*?(?:[])]|per_s)", names)
-    recording, _ = read(tmp_path, rates(["timestamp_seconds", *names]))
-    assert recording.gyro_dps().mean() == pytest.approx(np.degrees(0.8), abs=0.5)
+    frame = rates(["timestamp_seconds", *names])
+    frame[names] = np.radians(frame[names])
+    recording, _ = read(tmp_path, frame)
+    assert recording.gyro_dps().mean() == pytest.approx(0.8, abs=0.02)
 
 
 @pytest.mark.parametrize(
@@ -105,6 +107,7 @@ def test_a_phones_sensor_logger_is_known_by_its_columns(tmp_path):
 def test_a_topic_of_px4_as_a_csv_is_known_by_its_columns(tmp_path):
     frame = rates(["timestamp", "x", "y", "z", "device_id", "error_count"])
     frame["timestamp"] = (1e6 * frame["timestamp"]).astype(int)
+    frame[["x", "y", "z"]] = np.radians(frame[["x", "y", "z"]])
     recording, report = read(tmp_path, frame, name="log_sensor_gyro_0.csv")
     assert recording.scales.odr_hz == pytest.approx(100)
     assert told(report, "gyro taken in rad/s: as PX4 writes")
@@ -181,7 +184,6 @@ def test_degrees_declared_as_radians_are_refused_with_the_right_words(tmp_path):
     [
         ("gx=gx_dps:rad/s gy=gy_dps:rad/s gz=gz_dps:rad/s", "a steady rate of 4[56].*mean dps"),
         ("gx=gx_dps:mdps gy=gy_dps:mdps gz=gz_dps:mdps", None),
-        ("ax=ax_g:m/s2 ay=ay_g:m/s2 az=az_g:m/s2", "usual acceleration is 0.102 g.*mean g[?]"),
         ("temp=temp_c:k", "usual temperature is -24.*--map temp=temp_c:k"),
         ("temp=zero:degc", "temperature is 0 throughout.*--map temp=none"),
     ],
@@ -234,12 +236,38 @@ def test_readings_with_fractions_are_offered_no_counts(tmp_path):
         read(tmp_path, frame)
 
 
-def test_radians_declared_as_degrees_are_doubted(tmp_path):
+def test_radians_named_as_degrees_are_refused_unless_somebody_types_the_unit(tmp_path):
     frame = table()
     for axis in "xyz":
         frame[f"g{axis}_dps"] = np.radians(frame[f"g{axis}_dps"])
-    _, report = read(tmp_path, frame)
+    with pytest.raises(BadRecording, match="did you mean rad/s[?] Give --map gx=gx_dps:rad/s"):
+        read(tmp_path, frame)
+    _, report = read(tmp_path, frame, mapping="gx=gx_dps:dps gy=gy_dps:dps gz=gz_dps:dps")
     assert "did you mean rad/s?" in report.doubts[0]
+
+
+@pytest.mark.parametrize(
+    ("times", "words", "cure"),
+    [
+        (1.0, "ax=ax_g:m/s2 ay=ay_g:m/s2 az=az_g:m/s2", "0.102 g.*did you mean g[?] Give --map ax"),
+        (0.25, "", "0.25 g, and gravity alone is 1 g; leave it out by --map ax=none"),
+        (2.0, "", "2 g, and gravity alone is 1 g; leave it out by --map ax=none"),
+        (4096, "ax=ax_g:lsb ay=ay_g:lsb az=az_g:lsb", "0.25 g.*give --accel-lsb-per-g 4096;"),
+    ],
+)
+def test_a_force_that_cannot_be_gravity_is_refused(tmp_path, times, words, cure):
+    frame = table()
+    frame[["ax_g", "ay_g", "az_g"]] *= times
+    scale = Options(accel_lsb_per_g=16384.0)
+    with pytest.raises(BadRecording, match=cure):
+        read(tmp_path, frame, mapping=words, options=scale)
+    assert "ax" not in read(tmp_path, frame, mapping="ax=none")[0].columns
+
+
+def test_a_force_that_shakes_may_be_larger_than_gravity(tmp_path):
+    frame = table()
+    frame["az_g"] = 1 + 3 * np.sin(np.arange(len(frame)) / 3)
+    assert "ax" in read(tmp_path, frame)[0].columns
 
 
 def test_ninety_degrees_within_seconds_are_doubted(tmp_path):

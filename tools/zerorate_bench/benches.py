@@ -166,6 +166,14 @@ BENCHES = {
         },
     ),
     "import": Bench(
+        "logs as other tools write them: right or refused; exit code 1 where one is wrong",
+        "foreign_imports",
+        lambda bench, a, advance: bench.run(a.only, advance),
+        lambda bench, a: bench.steps(),
+        options={"--only": {"metavar": "TEXT", "default": "", "help": "logs whose row holds it"}},
+        judged=True,
+    ),
+    "import-size": Bench(
         *("seconds and memory of importing a huge CSV, made and not kept", "import_size"),
         lambda bench, a, advance: bench.run(a.gb, a.folder, advance),
         lambda bench, a: 2,

@@ -14,8 +14,8 @@ from . import __version__
 from .errors import MissingLibrary, ZerorateError, os_error_in_words, printable
 
 COMMANDS = (
-    *("demo", "import", "record", "simulate", "replay", "close", "compare", "allan", "model"),
-    *("state", "flash", "fleet", "run", "watch", "bench", "runtimes", "export"),
+    *("demo", "import", "cut", "record", "simulate", "replay", "close", "compare", "allan"),
+    *("model", "state", "flash", "fleet", "run", "watch", "bench", "runtimes", "export"),
 )
 _INTERRUPTED = 130
 _BROKEN_PIPE = 141

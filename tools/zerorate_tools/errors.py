@@ -77,6 +77,7 @@ class MissingLibrary(ZerorateError):
         **{"smbus2": "linux", "dask": "fleet", "distributed": "fleet"},
         **{"ahrs": "bench", "imufusion": "bench", "vqf": "bench"},
         **{"rosbags": "logs", "mcap": "logs", "orangebox": "logs"},
+        **{"h5py": "logs"},
     }
 
     def __init__(self, library: str) -> None:

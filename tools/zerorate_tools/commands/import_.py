@@ -24,9 +24,15 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("source", type=Path, metavar="SRC", help="the foreign recording")
     parser.add_argument(
-        "--out", type=Path, required=True, metavar="FILE", help=".parquet, .csv or .csv.gz"
+        "sources", type=Path, nargs="+", metavar="SRC", help="foreign recordings of one device"
+    )
+    parser.add_argument(
+        "--out",
+        type=Path,
+        required=True,
+        metavar="FILE",
+        help=".parquet, .csv or .csv.gz; for several SRC the folder of their .parquet",
     )
     parser.add_argument(
         "--map",
@@ -56,26 +62,29 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
 
 
 def run(arguments: argparse.Namespace) -> None:
-    from ..importers import Options, import_recording
+    from ..importers import Options, import_recording, import_together
     from ..progress import progress
 
     known = {k: v for k, v in vars(arguments).items() if k in Options.__dataclass_fields__}
     units = {k: getattr(arguments, f"{k}_unit") for k in ("time", "gyro", "accel", "temp")}
-    source = arguments.source
-    size = source.stat().st_size if source.is_file() else None
-    with progress(f"importing {source.name}", size) as advance:
-        report = import_recording(
-            source,
-            arguments.out,
-            options=Options(**known),
-            mapping=arguments.map,
-            units={kind: unit.lower() for kind, unit in units.items() if unit},
-            instance=arguments.instance,
-            advance=advance,
-        )
-    print(arguments.out)
-    for line in report.lines():
-        print(" ", line)
+    sources = arguments.sources
+    size = sum(source.stat().st_size for source in sources if source.is_file())
+    how = {
+        "options": Options(**known),
+        "mapping": arguments.map,
+        "units": {kind: unit.lower() for kind, unit in units.items() if unit},
+        "instance": arguments.instance,
+    }
+    with progress(f"importing {sources[0].name}", size or None) as advance:
+        if len(sources) == 1 and not arguments.out.is_dir():
+            report = import_recording(sources[0], arguments.out, **how, advance=advance)
+            reports = {arguments.out: report}
+        else:
+            reports = import_together(sources, arguments.out, **how, advance=advance)
+    for out, report in reports.items():
+        print(out)
+        for line in report.lines():
+            print(" ", line)
 
 
 def _mapping(text: str) -> Any:

@@ -6,7 +6,7 @@ At no time is more than some thousand rows in memory.
 import errno
 import stat
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -15,18 +15,36 @@ import numpy as np
 
 from ..errors import BadRecording, refuse_odd_name
 from ..recordings import Recording, Scales, check_output, open_recording, recording_writer
-from ..recordings.atomic import check_apart
+from ..recordings.atomic import check_apart, written_together
 from ..recordings.reading import recording_name, whole
 from ..recordings.recording import ACCEL, COLUMNS
 from .columns.mapping import Mapped
-from .columns.plan import left_aside, planned
+from .columns.plan import Plan, left_aside, planned
 from .kinds import table_of
 from .report import Options, Report
-from .samples.conversion import absent, fitting_scales, integer_batches
+from .samples.conversion import (
+    Common,
+    absent,
+    fitting_scales,
+    integer_batches,
+    without_wide_counts,
+)
 from .samples.doubts import FASTEST_DPS, doubts
 from .samples.gather import Gathered, gathered
+from .tables.sensors import told_apart
+from .tables.table import Table
 
 Advance = Callable[[float], None]
+
+
+@dataclass(frozen=True)
+class _How:
+    """What the user says of the sources beforehand."""
+
+    options: Options
+    mapping: Sequence[Mapped]
+    units: Mapping[str, str] | None
+    instance: int
 
 
 @dataclass
@@ -37,6 +55,17 @@ class _Import:
     names: list[str]
     batches: Iterator[dict[str, np.ndarray]]
     report: Report
+
+
+@dataclass
+class _Source:
+    """A foreign file whose rows lie in a spool, with all that is needed to make them integers."""
+
+    path: Path
+    table: Table
+    plan: Plan
+    found: Gathered
+    options: Options
 
 
 def import_recording(
@@ -55,15 +84,32 @@ def import_recording(
     that were read since it was called last. The other arguments are those of `read_foreign`.
     Raises BadRecording, MissingLibrary.
     """
-    _require(Path(source))
-    check_output(out)
-    check_apart([out], [source])
-    folder = Path(out).resolve().parent
-    with _opened(Path(source), options, mapping, units, instance, advance, folder) as one:
-        with recording_writer(out, one.names, one.scales) as writer:
-            for batch in one.batches:
-                writer.append(batch)
-    return one.report
+    how = _How(options or Options(), mapping, units, instance)
+    return _imported([Path(source)], [Path(out)], how, advance)[0]
+
+
+def import_together(
+    sources: Sequence[str | PathLike[str]],
+    folder: str | PathLike[str],
+    *,
+    options: Options | None = None,
+    mapping: Sequence[Mapped] = (),
+    units: Mapping[str, str] | None = None,
+    instance: int = 0,
+    advance: Advance = lambda n: None,
+) -> dict[Path, Report]:
+    """Convert foreign files of one device, each to NAME.parquet in a folder, all in one scale.
+
+    The arguments are those of `import_recording`. Raises BadRecording, MissingLibrary, and InFile
+    where the folder cannot be written; then none is written.
+    """
+    paths = [Path(source) for source in sources]
+    names = [f"{Path(path.name.removesuffix('.gz')).stem}.parquet" for path in paths]
+    how = _How(options or Options(), mapping, units, instance)
+    check_apart([Path(folder) / name for name in names], paths)
+    with written_together(folder) as draft:
+        reports = _imported(paths, [draft / name for name in names], how, advance)
+    return {Path(folder) / name: report for name, report in zip(names, reports)}
 
 
 def read_foreign(
@@ -82,7 +128,9 @@ def read_foreign(
     Raises BadRecording, MissingLibrary.
     """
     path = Path(source)
-    with _opened(path, options, mapping, units, instance, lambda n: None, None) as one:
+    how = _How(options or Options(), mapping, units, instance)
+    with ExitStack() as files:
+        one = _ready([_opened(path, how, lambda n: None, None, files)])[0]
         columns = whole(one.batches, one.names, path)
     return Recording(columns, one.scales, recording_name(path)), one.report
 
@@ -99,43 +147,78 @@ def _require(path: Path) -> None:
         raise BadRecording(path, "neither a file nor a folder", do="copy it into a file first")
 
 
-@contextmanager
-def _opened(path, options, mapping, units, instance, advance: Advance, folder) -> Iterator[_Import]:
+def _imported(sources: list[Path], outs: list[Path], how: _How, advance: Advance) -> list[Report]:
+    for source, out in zip(sources, outs):
+        _require(source)
+        check_output(out)
+    check_apart(outs, sources)
+    folder = outs[0].resolve().parent
+    with ExitStack() as files:
+        opened = [_opened(source, how, advance, folder, files) for source in sources]
+        ready = _ready(opened)
+        writers = [
+            files.enter_context(recording_writer(out, one.names, one.scales))
+            for out, one in zip(outs, ready)
+        ]
+        for writer, one in zip(writers, ready):
+            for batch in one.batches:
+                writer.append(batch)
+    return [one.report for one in ready]
+
+
+def _opened(
+    path: Path, how: _How, advance: Advance, folder: Path | None, files: ExitStack
+) -> _Import | _Source:
+    """files: closes what lies in a spool."""
     _require(path)
     if path.is_file() and path.stat().st_size == 0:
         raise BadRecording(path, "empty file", do="name another file")
-    own = None if mapping else _own_form(path)
+    own = None if how.mapping or path.suffix == ".parquet" else _own_form(path)
     if own is not None:
-        yield own
-        return
-    with table_of(path, instance, advance) as table:
-        found, one = _converted(table, path, options or Options(), mapping, units, instance, folder)
-        try:
-            yield one
-        finally:
-            found.spool.close()
+        return own
+    with table_of(path, how.instance, advance) as table:
+        # only what a child has read in safety is opened here
+        own = _own_form(path) if table.own_form and not how.mapping else None
+        if own is not None:
+            return own
+        source = _gathered(table, path, how, folder)
+    files.callback(source.found.spool.close)
+    return source
 
 
-def _converted(table, path, options: Options, mapping, units, instance, folder):
+def _gathered(table: Table, path: Path, how: _How, folder: Path | None) -> _Source:
+    table, instance = told_apart(table, how.instance, path)
+    options = how.options
     plan = planned(
-        table, mapping, path, units=units, instance=instance, without_time=options.hz is not None
+        *(table, how.mapping, path),
+        units=how.units,
+        instance=instance,
+        without_time=options.hz is not None,
     )
+    options = without_wide_counts(plan, options)
     raw = "gyro" in plan.raw
     fast_dps = np.inf if raw or options.gyro_lsb_per_dps else FASTEST_DPS
     found = gathered(table, plan, path, hz=options.hz, fast_dps=fast_dps, folder=folder)
-    try:
-        report = Report(found.rows, dropped=found.dropped, notes=found.notes)
-        _leave_out_unread(found, plan, report)
-        report.doubts += doubts(found, plan)
-        scales = fitting_scales(found, plan, table, options, path, report.notes)
-        report.notes += [*absent(plan, table.names), *left_aside(plan, table)]
-        names = [n for n in COLUMNS if n in found.spool.names]
-        names += [n for n in plan.wanted if n not in COLUMNS]
-        batches = integer_batches(found, plan, scales, path, report)
-    except BaseException:
-        found.spool.close()
-        raise
-    return found, _Import(scales, names, batches, report)
+    return _Source(path, table, plan, found, options)
+
+
+def _ready(opened: list[_Import | _Source]) -> list[_Import]:
+    """Each as integers, all that were read in one scale."""
+    common = Common([one.found for one in opened if isinstance(one, _Source)])
+    return [one if isinstance(one, _Import) else _converted(one, common) for one in opened]
+
+
+def _converted(source: _Source, common: Common) -> _Import:
+    path, table, plan, found = source.path, source.table, source.plan, source.found
+    report = Report(found.rows, dropped=found.dropped, notes=found.notes)
+    _leave_out_unread(found, plan, report)
+    scales = fitting_scales(found, common, plan, table, source.options, path, report.notes)
+    report.doubts += doubts(found, plan, scales, path)
+    report.notes += [*absent(plan, table.names), *left_aside(plan, table)]
+    names = [n for n in COLUMNS if n in found.spool.names]
+    names += [n for n in plan.wanted if n not in COLUMNS]
+    batches = integer_batches(found, plan, scales, path, report)
+    return _Import(scales, names, batches, report)
 
 
 def _leave_out_unread(found: Gathered, plan, report: Report) -> None:

@@ -1,12 +1,14 @@
 """Which reader a file needs, told by its first bytes and then by its name."""
 
+import zipfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from ..errors import BadRecording
+from ..recordings.text import head
+from .tables.archive import archive, folder_of_tables
 from .tables.checked_lines import checked_lines, has_checked_lines
-from .tables.columnar import columnar
 from .tables.delimited import delimited
 from .tables.table import Table
 
@@ -19,20 +21,21 @@ _MAGIC = {
     b"\x89MCAP0\r\n": "mcap_file",
     b"H Product:Blackbox": "blackbox",
     b"MATLAB 5.0": "matlab",
-    b"\x89HDF": "matlab",
+    b"MATLAB 7.3": "hdf5",
+    b"\x89HDF": "hdf5",
+    b"\x93NUMPY": "numpy_file",
+    b"PAR1": "columnar",
+    b"ARROW1": "columnar",
     b"FMT,": "dataflash",
 }
 _SUFFIXES = {
     **{".ulg": "ulog", ".ulog": "ulog", ".bin": "dataflash", ".bag": "ros_bag", ".db3": "ros_bag"},
     **{".mcap": "mcap_file", ".bbl": "blackbox", ".bfl": "blackbox", ".mat": "matlab"},
+    **{".h5": "hdf5", ".hdf5": "hdf5", ".npy": "numpy_file", ".npz": "numpy_file"},
+    **{".parquet": "columnar", ".feather": "columnar"},
 }
-
-#: First bytes of what people have tables in and nothing here reads -> what it is, what to do.
-_OTHERS = {
-    b"PK\x03\x04": ("a spreadsheet or an archive", "save its table as CSV, or unpack it"),
-    b"\x93NUMPY": ("an array of NumPy", "write it with numpy.savetxt(..., delimiter=',')"),
-    b"SQLite format 3": ("a database, and no .db3 of ROS 2", "write its table as CSV"),
-}
+_DATABASE = b"SQLite format 3"
+_ZIP = b"PK\x03\x04"
 _OF_TEXT = bytes([9, 10, 13, *range(32, 127)])
 
 
@@ -48,8 +51,15 @@ def table_of(path: Path, instance: int, advance: Callable[[float], None]) -> Ite
 
         with table_apart(reader, path, instance, advance) as table:
             yield table
-    elif path.name.lower().endswith(".parquet") or _starts(path, b"PAR1"):
-        yield columnar(path, advance)
+    elif path.is_dir():
+        yield folder_of_tables(path, advance)
+    elif _starts(path, _ZIP):
+        with archive(path) as unpacked:
+            if unpacked.is_dir():
+                yield folder_of_tables(unpacked, advance, path)
+            else:
+                with table_of(unpacked, instance, advance) as table:
+                    yield table
     elif has_checked_lines(path):
         yield checked_lines(path, advance)
     else:
@@ -58,15 +68,27 @@ def table_of(path: Path, instance: int, advance: Callable[[float], None]) -> Ite
 
 def _reader(path: Path) -> str | None:
     if path.is_dir():
-        if not (path / "metadata.yaml").is_file():
-            do = "name a file, or the folder of a ROS 2 bag"
-            raise BadRecording(path, "a folder without metadata.yaml", do=do)
-        return "ros_bag"
-    other = next((words for magic, words in _OTHERS.items() if _starts(path, magic)), None)
-    if other and path.suffix.lower() != ".db3":
-        raise BadRecording(path, other[0], do=other[1])
+        return "ros_bag" if (path / "metadata.yaml").is_file() else None
+    if _starts(path, _DATABASE) and path.suffix.lower() != ".db3":
+        do = "write its table as CSV"
+        raise BadRecording(path, "a database, and no .db3 of ROS 2", do=do)
+    if _starts(path, _ZIP):
+        return "numpy_file" if _holds_arrays(path) else None
     by_magic = next((name for magic, name in _MAGIC.items() if _starts(path, magic)), None)
-    return by_magic or (None if _is_text(path) else _SUFFIXES.get(path.suffix.lower()))
+    if by_magic:
+        return by_magic
+    if head(path, 1000)[0].removeprefix(b"\xef\xbb\xbf").lstrip()[:1] in (b"{", b"["):
+        return "json_file"
+    return None if _is_text(path) else _SUFFIXES.get(path.suffix.lower())
+
+
+def _holds_arrays(path: Path) -> bool:
+    try:
+        with zipfile.ZipFile(path) as packed:
+            names = packed.namelist()
+    except (zipfile.BadZipFile, OSError) as error:
+        raise BadRecording(path, "the zip is cut off or damaged", do="copy it again") from error
+    return bool(names) and all(name.endswith(".npy") for name in names)
 
 
 def _is_text(path: Path) -> bool:

@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from os import PathLike
 
 
 @dataclass
@@ -20,6 +21,11 @@ class Options:
     temp_lsb_per_degc: float | None = None
     temp_offset_degc: float | None = None
     more: Mapping[str, object] = field(default_factory=dict)
+
+
+def cut_words(path: PathLike[str], row: int) -> str:
+    """What to do where a file holds two recordings, the second from that row on."""
+    return f"cut it there: zerorate cut {path} --at-row {row} --out FOLDER"
 
 
 @dataclass

@@ -29,9 +29,14 @@ def open_file(path: Path) -> pq.ParquetFile:
             return pq.ParquetFile(path, pre_buffer=False, buffer_size=_BUFFER_BYTES)
     except MemoryError as error:
         raise _too_large(path) from error
-    except (pa.ArrowInvalid, OSError) as error:
+    except Exception as error:  # of a damaged one, whatever its parser stumbles over
         problem = "no Parquet file, or cut off"
         raise BadRecording(path, problem, do="copy the file again") from error
+
+
+def has_scales(file: pq.ParquetFile) -> bool:
+    """Whether the schema's metadata says that this is a recording."""
+    return _KEY in (file.schema_arrow.metadata or {})
 
 
 def read_scales(file: pq.ParquetFile, path: Path) -> Scales:
@@ -53,7 +58,7 @@ def batches(
         yield from each_at_most(found)
     except MemoryError as error:
         raise _too_large(path) from error
-    except (pa.ArrowInvalid, OSError) as error:
+    except Exception as error:
         problem = "the Parquet data is damaged"
         raise BadRecording(path, problem, do="copy the file again") from error
 

@@ -79,19 +79,28 @@ def likely_columns(
     times += [name for name in values if name not in calendar and only_grows(values[name])]
     time = next(iter(times), None)
     out = [] if time is None else [f"t_us={time}:{_likely_time(values[time])}"]
-    rest = _no_quaternion({n: values[n] for n in values if n not in times and _varies(values[n])})
-    accel, unit, gyro = _by_values({name: values[name] for name in rest})
+    rest = {n: values[n] for n in values if n not in times and _varies(values[n])}
+    moving = {name: column for name, column in rest.items() if np.ptp(column) > 0}
+    # where some readings change, what never does is a covariance or a setting
+    rest = moving if len(moving) >= len(GYRO) else rest
+    rest = {name: rest[name] for name in _no_quaternion(rest)}
+    accel, unit, gyro = _by_values(rest, list(first))
     usual = max((abs(float(np.median(values[name]))) for name in gyro), default=0.0)
     if len(gyro) < len(GYRO) or unit != RAW and usual * RATE_DPS[unit] > _FASTEST_DPS:
         return []
     return out + accel + [f"{axis}={name}:{unit}" for axis, name in zip(GYRO, gyro)]
 
 
-def _by_values(values: Mapping[str, np.ndarray]) -> tuple[list[str], str, list[str]]:
-    """Words for three columns as long as gravity, the unit of the rates, and which may be rates."""
+def _by_values(
+    values: Mapping[str, np.ndarray], order: list[str]
+) -> tuple[list[str], str, list[str]]:
+    """Words for three columns as long as gravity, the unit of the rates, and which may be rates.
+
+    order: of all columns; three go together only where they are beside each other.
+    """
     names = list(values)
-    threes = [[values[name] for name in names[at : at + 3]] for at in range(len(names) - 2)]
-    units = [_gravity_unit(three) for three in threes]
+    threes = [names[at : at + 3] for at in range(len(names) - 2)]
+    units = [gravity_unit([values[n] for n in t]) if _beside(t, order) else None for t in threes]
     # 9.8 is met by chance more rarely than 1
     unit = next((unit for unit in ("m/s2", "g") if unit in units), None)
     if unit is None:
@@ -100,8 +109,12 @@ def _by_values(values: Mapping[str, np.ndarray]) -> tuple[list[str], str, list[s
         return [], RAW if counted else "dps", names if len(names) == len(GYRO) else []
     at = units.index(unit)
     accel = [f"{axis}={name}:{unit}" for axis, name in zip(ACCEL, names[at : at + 3])]
-    rest = names[at + 3 :] if len(names) >= at + 6 else names[:at]
-    return accel, "rad/s" if unit == "m/s2" else "dps", rest[: len(GYRO)]
+    others = [n for n in (*range(at + 3, len(threes)), *range(at - 2)) if _beside(threes[n], order)]
+    return accel, "rad/s" if unit == "m/s2" else "dps", threes[others[0]] if others else []
+
+
+def _beside(names: list[str], order: list[str]) -> bool:
+    return order.index(names[-1]) - order.index(names[0]) == len(names) - 1
 
 
 def _varies(values: np.ndarray) -> bool:
@@ -171,11 +184,11 @@ def _by_gravity(
     wanted: Mapping[str, Mapped], first: Mapping[str, np.ndarray]
 ) -> tuple[str | None, str]:
     columns = [first[wanted[axis].column] for axis in ACCEL]
-    unit = _gravity_unit(columns)
+    unit = gravity_unit(columns)
     return unit, f"its usual length is {_usual_length(columns):.4g}" if unit else ""
 
 
-def _gravity_unit(columns: list[np.ndarray]) -> str | None:
+def gravity_unit(columns: list[np.ndarray]) -> str | None:
     """The unit in which three columns are as long as gravity."""
     usual = _usual_length(columns)
     near = (u for u, g in _GRAVITY.items() if abs(usual / g - 1.0) < _GRAVITY_WITHIN)
@@ -204,10 +217,16 @@ def _likely(target: str, wanted: Mapping[str, Mapped], first: Mapping[str, np.nd
     return {"m/s2": "rad/s", None: "lsb" if counted else "dps", "lsb": "lsb"}.get(unit, "dps")
 
 
+def likely_units_of_time(step: float) -> dict[str, float]:
+    """Unit -> samples a second, of those in which anyone would have recorded so fast."""
+    hz = {unit: 1.0 / (step * seconds) for unit, seconds in TIME_S.items()} if step else {}
+    return {unit: f for unit, f in hz.items() if _LIKELY_HZ[0] <= f <= _LIKELY_HZ[1]}
+
+
 def _time_words(values: np.ndarray, column: str) -> str:
     steps = np.diff(values[np.isfinite(values)])
-    step = float(np.median(np.abs(steps))) if len(steps) else 0.0
-    rates = {unit: 1.0 / (step * seconds) for unit, seconds in TIME_S.items()} if step else {}
-    likely = {u: hz for u, hz in rates.items() if _LIKELY_HZ[0] <= hz <= _LIKELY_HZ[1]}
+    steps = np.abs(steps[steps != 0])  # two sensors at one time
+    step = float(np.median(steps)) if len(steps) else 0.0
+    likely = likely_units_of_time(step)
     would = " or ".join(f"{unit} ({hz:.4g} Hz)" for unit, hz in likely.items())
     return f"--time-unit {would or 'with one of ' + ', '.join(TIME_S)}"

@@ -10,16 +10,22 @@ _AXIS = "([xyz])"
 _MADE = "(?:cal|mean|avg)?"
 _GYRO = re.compile(
     r"(?:.*(?:gyroscope|gyrorotation|gyro|gyr|angularvelocity|angularrate|angvel|rotationrate|omega)"
-    r"(?:uncalibrated|calibrated|unfilt|adc|raw|rad|data|rate|dps|value|static|noise){0,2}"
+    r"(?:uncalibrated|calibrated|corrected|unfilt|adc|raw|rad|data|rate|dps|values?|static|noise)"
+    r"{0,2}"
     r"|(?:.*imu)?(?:gy|[wg]))" + f"{_AXIS}{_MADE}$|^{_AXIS}(?:gyroscope|gyro|gyr)$"
 )
 _ACCEL = re.compile(
     r"(?:.*(?:accelerometer|acceleration|accel|acc|specificforce)"
-    r"(?:uncalibrated|calibrated|smooth|adc|raw|data|ms2|value|ln|wr|static|noise){0,2}|(?:.*imu)?ac?)"
-    + f"{_AXIS}{_MADE}$|^{_AXIS}(?:accelerometer|accel|acc)$"
+    r"(?:uncalibrated|calibrated|smooth|adc|raw|data|ms2|values?|ln|wr|static|noise){0,2}"
+    r"|(?:.*imu)?(?:ac?|gf))" + f"{_AXIS}{_MADE}$|^{_AXIS}(?:accelerometer|accel|acc)$"
 )
-#: Less gravity, so no measure of it.
-_FREE = re.compile(r".*(?:freeacc|useracc|linacc)|lacc")
+#: Less gravity, or gravity as a filter has it: no measure of it.
+_FREE = re.compile(r".*(?:freeacc|useracc|linacc|gravity)|lacc")
+#: How sure numbers are, and no readings.
+_SPREAD = re.compile(r".*(?:covariance|variance|stddev|sigma)")
+#: As the sensor has it, and less a bias that somebody took away; motionRotation is CoreMotion's.
+_RAW = re.compile(r".*(?:raw|uncal|uncomp|unfilt)")
+_CORRECTED = re.compile(r".*(?:corrected|compensated|calibrated|unbiased|filtered|motionrotation)")
 _TEMP = re.compile(r".*(?:temperature|temp|tmp)c?(?:mean|avg)?$")
 _NOT_THE_DIE = re.compile(r"ambient|air|baro|bmp|bme|aht|sht|cpu|motor|batt|esc|water|room")
 _TIME = re.compile(
@@ -47,15 +53,25 @@ def gyro_groups(names: list[str]) -> list[dict[str, str]]:
     """Columns that go together as rates: {gx, gy, gz: name} of each sensor that is in the table.
 
     By name; where no name tells, by a unit of rates and an axis, as w_RS_S_x [rad s^-1] of EuRoC.
+    Those come first that are called raw, those last from which somebody took a bias away.
     """
     names = _of_three(names)
-    return _groups(names, _GYRO, "g") or _groups(_in_units_of("gx", names), _LAST_AXIS, "g")
+    groups = _groups(names, _GYRO, "g") or _groups(_in_units_of("gx", names), _LAST_AXIS, "g")
+    return sorted(groups, key=lambda group: _corrected(spelled(group["gx"])))
 
 
-def accel_beside(names: list[str], gyro: dict[str, str], instance: int) -> dict[str, str]:
-    """The acceleration whose names are most like those of the rates; empty where there is none."""
+def _corrected(text: str) -> int:
+    return 0 if _RAW.match(text) else 2 if _CORRECTED.match(text) else 1
+
+
+def accel_groups(names: list[str]) -> list[dict[str, str]]:
+    """Columns that go together as acceleration with gravity in it: {ax, ay, az: name}."""
     names = [name for name in _of_three(names) if not _FREE.match(spelled(name))]
-    groups = _groups(names, _ACCEL, "a") or _groups(_in_units_of("ax", names), _LAST_AXIS, "a")
+    return _groups(names, _ACCEL, "a") or _groups(_in_units_of("ax", names), _LAST_AXIS, "a")
+
+
+def most_alike(groups: list[dict[str, str]], gyro: dict[str, str], instance: int) -> dict[str, str]:
+    """The acceleration whose names are most like those of the rates; empty where there is none."""
     if not groups:
         return {}
 
@@ -122,7 +138,9 @@ def unnamed(names: list[str]) -> bool:
 
 
 def _of_three(names: list[str]) -> list[str]:
-    """Names without those of a variable of more than three columns: its [0] is no x."""
+    """Names without those of a variable of more than three columns, whose [0] is no x, and without
+    covariances."""
+    names = [name for name in names if not _SPREAD.match(spelled(name))]
     wide = {_ARRAY.sub("", name) for name in names if name.endswith("[3]")}
     return [name for name in names if _ARRAY.sub("", name) not in wide or "[" not in name]
 
@@ -141,9 +159,12 @@ def _groups(names: list[str], pattern: re.Pattern, letter: str) -> list[dict[str
     groups: dict[str, dict[str, str]] = {}
     for name in names:
         text = re.sub("|".join(_TURNS), lambda turn: _TURNS[turn[0]], spelled(name))
+        before, _, last = name.rpartition(".")
         match = pattern.match(text) or pattern.match(_with_letter(text))
+        match = match or pattern.match(spelled(last))
         if match and match.lastindex:
-            at = match.start(match.lastindex)
-            axis = match[match.lastindex]
-            groups.setdefault(text[:at] + text[at + 1 :], {}).setdefault(f"{letter}{axis}", name)
+            at, axis = match.start(match.lastindex), match[match.lastindex]
+            others = match.string[:at] + match.string[at + 1 :]
+            whose = "" if match.string != spelled(last) else before
+            groups.setdefault(whose + others, {}).setdefault(f"{letter}{axis}", name)
     return [group for group in groups.values() if len(group) == 3]

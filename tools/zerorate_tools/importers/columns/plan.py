@@ -10,7 +10,14 @@ from ...errors import BadRecording
 from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP, TIME
 from ..tables.table import Chunk, Table
 from . import names as usual
-from .guesses import by_habit, guessed_unit, likely_columns, only_grows, ready_words
+from .guesses import (
+    by_habit,
+    gravity_unit,
+    guessed_unit,
+    likely_columns,
+    only_grows,
+    ready_words,
+)
 from .mapping import Mapped, factor_in, parsed_mapping
 from .units import RAW, factors_of, kind_of, unit_in_name, units_of
 
@@ -20,7 +27,8 @@ _LISTED, _TOLD = 24, 8
 @dataclass
 class Plan:
     """Columns by the names of a recording. raw: kinds (gyro, accel, temp) that are counts.
-    by_format: the format itself says what its columns are."""
+    by_format: the format itself says what its columns are. typed: kinds whose unit the user named.
+    """
 
     wanted: dict[str, Mapped]
     factors: dict[str, tuple[float, float]]
@@ -28,6 +36,7 @@ class Plan:
     raw: frozenset[str] = frozenset()
     notes: list[str] = field(default_factory=list)
     by_format: bool = False
+    typed: frozenset[str] = frozenset()
 
     @property
     def columns(self) -> list[str]:
@@ -70,6 +79,8 @@ def planned(
         wanted = {target: mapped for target, mapped in wanted.items() if target not in ACCEL}
     _check_there(table, wanted, path)
     plan = Plan(wanted, {}, notes=notes, by_format=bool(table.mapping))
+    named = [t for t, mapped in given.items() if mapped.unit and t in COLUMNS]
+    plan.typed = frozenset([*(units or {}), *map(kind_of, named)])
     plan.plus = {t: factors_of(t)[m.plus[1]][0] for t, m in wanted.items() if m.plus}
     raw, unknown = set(), {}
     first = table.first_rows(plan.columns)
@@ -117,7 +128,7 @@ def _found(
             raise BadRecording(path, problem, do=do)
         names = groups[instance] if groups else _axes_of_a_gyro_file(table, path)
     gyro = names or {t: m.column for t, m in given.items() if t in GYRO}
-    names = {**names, **usual.accel_beside(table.names, gyro, instance)}
+    names = {**names, **usual.most_alike(_with_gravity(table), gyro, instance)}
     temp = usual.temperature(table.names)
     found = {t: Mapped(t, c) for t, c in {**names, **({TEMP: temp} if temp else {})}.items()}
     split, time = usual.split_time(table.names), _time_column(table)
@@ -126,6 +137,16 @@ def _found(
     elif time:
         found[TIME] = Mapped(TIME, time)
     return found
+
+
+def _with_gravity(table: Table) -> list[dict[str, str]]:
+    """Of several accelerations those that are as long as gravity: others lack it."""
+    groups = usual.accel_groups(table.names)
+    if len(groups) < 2:
+        return groups
+    first = table.first_rows([name for group in groups for name in group.values()])
+    having = [one for one in groups if gravity_unit([first[name] for name in one.values()])]
+    return having or groups
 
 
 def _time_column(table: Table) -> str | None:
@@ -170,6 +191,15 @@ def _offered(table: Table, wanted: Mapping[str, Mapped], missing: list[str]) -> 
         return ""
     first = table.first_rows(table.names)
     return " ".join(f"--map {words}" for words in likely_columns(first, table.calendar))
+
+
+def divided_by(plan: Plan, kind: str, lsb: float) -> None:
+    """Take counts that are wider than 16 bits as readings: the counts over their scale."""
+    plan.raw -= {kind}
+    for target in plan.wanted:
+        if target in COLUMNS and kind_of(target) == kind:
+            plan.factors[target] = (1.0 / lsb, 0.0)
+    plan.notes.append(f"{kind}: counts of {lsb:g} are wider than 16 bits, and stored coarser")
 
 
 def hz_words(table: Table) -> str:

@@ -5,7 +5,10 @@ import re
 
 STANDARD_GRAVITY = 9.80665
 TIME_S = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
-RATE_DPS = {"dps": 1.0, "deg/s": 1.0, "mdps": 1e-3, "rad/s": 180 / math.pi}
+RATE_DPS = {
+    **{"dps": 1.0, "deg/s": 1.0, "mdps": 1e-3},
+    **{"rad/s": 180 / math.pi, "mrad/s": 0.18 / math.pi},
+}
 ACCEL_G = {"g": 1.0, "mg": 1e-3, "m/s2": 1 / STANDARD_GRAVITY}
 TEMP_DEGC = {"degc": (1.0, 0.0), "c": (1.0, 0.0), "k": (1.0, -273.15), "degf": (5 / 9, -160 / 9)}
 RAW = "lsb"
@@ -19,7 +22,8 @@ _METRE = "m(?:et(?:er|re)s?)?"
 _WRITTEN = {
     "dps": rf"dps|degs|(?:°|deg(?:ree)?s?){_PER_SEC}",
     "mdps": rf"mdps|m(?:°|deg){_PER_SEC}",
-    "rad/s": rf"rads|rps|radps|rad(?:ian)?s?{_PER_SEC}",
+    "rad/s": rf"rads|rps|rad(?:ian)?s?ps|radpersec|rad(?:ian)?s?{_PER_SEC}",
+    "mrad/s": rf"mrad(?:ian)?s?{_PER_SEC}",
     "m/s2": rf"mss|ms2|mps2|{_METRE}[\s_]*(?:/|per)[\s_]*{_SEC}{_SQUARED}"
     rf"|m[\s_*·]{_SEC}\^?-2",
     "g": "gs?|gees?",
@@ -36,7 +40,7 @@ _WRITTEN = {
 }
 _WRITTEN_BY_KIND = {
     "time": ("s", "ms", "us", "ns"),
-    "gyro": ("mdps", "dps", "rad/s", "lsb"),
+    "gyro": ("mdps", "dps", "mrad/s", "rad/s", "lsb"),
     "accel": ("m/s2", "mg", "g", "lsb"),
     "temp": ("degc", "degf", "c", "k", "lsb"),
 }
@@ -48,6 +52,8 @@ _BY_NAME = {
     },
     "temp": {"t(°)": "degc"},
 }  # fmt: skip
+#: Of a column of an array.
+_INDEX = re.compile(r"\[\d+\]$")
 _BRACKETS = re.compile(r"[\[({<]\s*([^\])}>]*?)\s*[\])}>]\s*$")
 
 
@@ -71,7 +77,7 @@ def units_of(target: str) -> tuple[str, ...]:
 
 def unit_in_name(target: str, column: str) -> str | None:
     """The unit that a column's own name ends with (gx_dps, ax [m/s2], temp_C), or None."""
-    name = column.strip().lower()
+    name = _INDEX.sub("", column.strip().lower())
     kind = kind_of(target)
     if name in _BY_NAME.get(kind, {}):
         return _BY_NAME[kind][name]

@@ -24,6 +24,7 @@ MEMORY_MB = 400
 _CPU_S, _CPU_S_PER_MB = 60, 6
 _WORDS_BYTES = 1 << 16
 _ABOUT, _READ = b"about", b"read"
+_TOLD = ("names", "mapping", "sensor", "lsb", "notes", "words", "own_form")
 _RUN = "from zerorate_tools.importers.logs.apart import main; main()"
 _ALONE = {
     "ARROW_DEFAULT_MEMORY_POOL": "system",
@@ -162,7 +163,7 @@ def written(reader: str, path: Path, instance: int, out: int) -> dict:
 
 
 def _write(table: Table, out: int) -> None:
-    about = {key: getattr(table, key) for key in ("names", "mapping", "sensor", "lsb", "notes")}
+    about = {key: getattr(table, key) for key in _TOLD}
     about["calendar"] = sorted(table.calendar)
     schema = pa.schema([(name, pa.float64()) for name in (PLACE, *table.names)])
     schema = schema.with_metadata({_ABOUT: json.dumps(about)})

@@ -2,10 +2,10 @@
 
 import json
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from ...errors import BadRecording
 from ..tables.table import Table
 from .messages import Logged, is_wanted, table_of_messages
 
@@ -15,16 +15,21 @@ _CODINGS = ("cdr", "ros1", "json")
 
 def read(path: Path, instance: int = 0) -> Table:
     """Raises BadRecording, ModuleNotFoundError."""
-    from mcap.reader import make_reader
+    from mcap.exceptions import McapError
+    from mcap.reader import NonSeekingReader, make_reader
 
     file = open(path, "rb")
-    summary = make_reader(file).get_summary()
+    try:
+        summary = make_reader(file).get_summary()
+    except McapError:
+        summary = None
     if summary is None:
-        do = "mend it with `mcap recover`"
-        raise BadRecording(path, "it has no summary, as of a recording that was cut off", do=do)
+        channels, schemas = _of_records(path)
+    else:
+        channels, schemas = summary.channels, summary.schemas
     kinds, decoders = {}, {}
-    for channel in summary.channels.values():
-        schema = summary.schemas.get(channel.schema_id)
+    for channel in channels.values():
+        schema = schemas.get(channel.schema_id)
         kinds[channel.topic] = schema.name if schema else ""
         if channel.message_encoding not in _CODINGS:
             kinds[channel.topic] = f"in {channel.message_encoding}, which is not read"
@@ -32,11 +37,30 @@ def read(path: Path, instance: int = 0) -> Table:
             decoders[channel.topic] = _decoder(channel.message_encoding, schema)
 
     def messages() -> Iterator[Logged]:
-        found = make_reader(file).iter_messages(topics=list(decoders), log_time_order=False)
+        file.seek(0)
+        # by what follows what in the file, which needs no summary
+        found = NonSeekingReader(file).iter_messages(topics=list(decoders), log_time_order=False)
         for _, channel, message in found:
-            yield channel.topic, message.log_time, decoders[channel.topic](message.data)
+            yield channel.topic, message.log_time, partial(decoders[channel.topic], message.data)
 
     return table_of_messages(path, kinds, messages)
+
+
+def _of_records(path: Path) -> tuple[dict[int, Any], dict[int, Any]]:
+    """Channels and schemas by number, of a file that has no summary."""
+    from mcap.records import Channel, Schema
+    from mcap.stream_reader import StreamReader
+
+    found: dict[type, dict[int, Any]] = {Channel: {}, Schema: {}}
+    with open(path, "rb") as file:
+        try:
+            for record in StreamReader(file).records:
+                if isinstance(record, (Channel, Schema)):
+                    found[type(record)][record.id] = record
+        except Exception:  # where it is cut off
+            if not found[Channel]:
+                raise
+    return found[Channel], found[Schema]
 
 
 def _decoder(coding: str, schema: Any) -> Callable[[bytes], Any]:

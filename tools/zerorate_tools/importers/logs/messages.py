@@ -1,9 +1,9 @@
 """ROS messages of inertial sensors and thermometers as rows, named as PlotJuggler names them."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from ...errors import BadRecording
 from ..tables.table import Table
@@ -19,8 +19,9 @@ _FIELDS = {
 _UNITS = {"temperature": " [degc]"}
 _TIME = "t_us"
 
-#: topic, when it was logged in nanoseconds, the message
-Logged = tuple[str, int, Any]
+#: topic, when it was logged in nanoseconds, what decodes the message
+Logged = tuple[str, int, Callable[[], Any]]
+T = TypeVar("T")
 
 
 def is_wanted(kind: str) -> bool:
@@ -29,7 +30,7 @@ def is_wanted(kind: str) -> bool:
 
 
 def table_of_messages(
-    path: Path, topics: dict[str, str], messages: Callable[[], Iterable[Logged]]
+    path: Path, topics: dict[str, str], messages: Callable[[], Iterator[Logged]]
 ) -> Table:
     """A row a message, with the columns of its topic. topics: topic -> type.
 
@@ -49,13 +50,41 @@ def table_of_messages(
         names += columns[topic].values()
 
     def rows() -> Iterator[dict[str, float]]:
-        for topic, logged_ns, message in messages():
+        for topic, logged_ns, decoded in as_far_as_it_goes(messages(), table.notes):
+            try:
+                message = decoded()
+            except MemoryError:
+                raise
+            except Exception:  # a message of bytes that are none of its type
+                table.dropped["a message that cannot be decoded"] += 1
+                yield {}
+                continue
             row = {_TIME: _time_us(message, logged_ns)}
             for field, name in columns[topic].items():
                 row[name] = _number(message, field)
             yield row
 
-    return Table(names, partial(chunks_of, rows), sensor="IMU of ROS")
+    table = Table(names, partial(chunks_of, rows), sensor="IMU of ROS")
+    return table
+
+
+def as_far_as_it_goes(found: Iterator[T], notes: list[str]) -> Iterator[T]:
+    """What comes before the place where a file is cut off or damaged; a note says that it is.
+
+    Nothing is salvaged of a file whose first message cannot be had.
+    """
+    count = 0
+    try:
+        for one in found:
+            yield one
+            count += 1
+    except (GeneratorExit, MemoryError):
+        raise
+    except Exception as error:
+        if not count:
+            raise
+        words = " ".join(str(error).split())[:60] or type(error).__name__
+        notes[:] = [*notes, f"cut off or damaged after {count} messages ({words}): those are taken"]
 
 
 def _time_us(message: Any, logged_ns: int) -> float:

@@ -1,6 +1,7 @@
 """From physical units to integers, piece by piece, every loss counted."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ from ...recordings.checks import GAP
 from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP
 from ...recordings.scales import EXAMPLE
 from ..columns.names import other_temperatures
-from ..columns.plan import Plan
+from ..columns.plan import Plan, divided_by
 from ..columns.units import kind_of
 from ..report import Options, Report
 from ..tables.table import Table
@@ -34,13 +35,41 @@ _SCALES_OF = {
     "accel": ("accel_lsb_per_g",),
     "temp": ("temp_lsb_per_degc", "temp_offset_degc"),
 }
+#: 16 bits hold 15 dps, the least range that is made, and gravity.
+_WIDEST = {"gyro": 32768 / 15.0, "accel": 32768.0}
 #: Rows that come more slowly are means over the time between them: no such sensor is that slow.
 MEANS_FROM_US = 1.5e6
 _LOOKED_AT = 64
 
 
+def without_wide_counts(plan: Plan, options: Options) -> Options:
+    """Options without the scales of counts that no 16 bits hold; the plan divides by them."""
+    for kind, (key, *_) in _SCALES_OF.items():
+        lsb, most = getattr(options, key), _WIDEST.get(kind)
+        if kind in plan.raw and lsb and most and lsb > most:
+            divided_by(plan, kind, lsb)
+            options = replace(options, **{key: None})  # type: ignore[arg-type]
+    return options
+
+
+class Common:
+    """What several sources of one device have in common: one scale holds the readings of all."""
+
+    def __init__(self, found: list[Gathered]) -> None:
+        kinds = ("gyro", "accel")
+        self.largest = {k: max((one.largest[k] for one in found), default=0.0) for k in kinds}
+        seen = [one.looked_at[TEMP] for one in found if TEMP in one.looked_at]
+        self.temps = np.concatenate([np.empty(0), *seen])
+
+
 def fitting_scales(
-    found: Gathered, plan: Plan, table: Table, options: Options, path: Path, notes: list[str]
+    found: Gathered,
+    common: Common,
+    plan: Plan,
+    table: Table,
+    options: Options,
+    path: Path,
+    notes: list[str],
 ) -> Scales:
     """What is given, what the format states, else what holds every reading. Raises BadRecording."""
 
@@ -57,16 +86,16 @@ def fitting_scales(
     gyro = pick("gyro_lsb_per_dps")
     if gyro is None:
         ranges = (*(_FINE if means else ()), *_GYRO_RANGES)
-        gyro = _fitting("gyro", "dps", ranges, found, notes)
+        gyro = _fitting("gyro", "dps", ranges, common, notes)
     accel = temp = offset = None
     if "ax" in plan.wanted:
         accel = pick("accel_lsb_per_g")
         if accel is None:
-            accel = _fitting("accel", "g", _ACCEL_RANGES, found, notes)
+            accel = _fitting("accel", "g", _ACCEL_RANGES, common, notes)
     if TEMP in plan.wanted:
         temp, offset = pick("temp_lsb_per_degc"), pick("temp_offset_degc")
         if temp is None and offset is None:
-            temp, offset = _temperature_scale(found, notes)
+            temp, offset = _temperature_scale(common, notes)
         temp = _TEMP_LSB if temp is None else temp
         offset = _TEMP_OFFSET if offset is None else offset
     more = dict(options.more)
@@ -85,8 +114,8 @@ def fitting_scales(
     )
 
 
-def _fitting(kind, unit, ranges, found: Gathered, notes) -> float:
-    largest = found.largest[kind]
+def _fitting(kind, unit, ranges, common: Common, notes) -> float:
+    largest = common.largest[kind]
     lsb = next((lsb for lsb in ranges if largest * lsb < _RAIL), ranges[-1])
     ends = round(32768 / lsb, -1 if kind == "gyro" else 0)
     fastest = "fastest rate" if kind == "gyro" else "strongest acceleration"
@@ -94,9 +123,9 @@ def _fitting(kind, unit, ranges, found: Gathered, notes) -> float:
     return lsb
 
 
-def _temperature_scale(found: Gathered, notes) -> tuple[float, float]:
+def _temperature_scale(common: Common, notes) -> tuple[float, float]:
     """The scale of the part whose integers the readings are, so that these come back exactly."""
-    seen = np.unique(found.looked_at[TEMP])
+    seen = np.unique(common.temps)
     seen = seen[np.isfinite(seen)]
     for _, part, lsb, offset, *_ in PARTS if len(seen) >= _DISTINCT else ():
         counts = (seen - offset) * lsb

@@ -1,13 +1,16 @@
-"""What cannot be true of a recording, said in words with what was probably meant."""
+"""What cannot be true of a recording is refused; what hardly can is said. Each with a cure."""
 
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 
-from ...recordings.recording import ACCEL, GYRO, TEMP
-from ..columns.guesses import unit_words
+from ...errors import BadRecording
+from ...recordings import Scales
+from ...recordings.recording import ACCEL, GYRO, TEMP, TIME
+from ..columns.guesses import likely_units_of_time, unit_words
 from ..columns.plan import Plan
 from .clock import duration
 from .gather import Gathered
@@ -16,6 +19,13 @@ from .gather import Gathered
 FASTEST_DPS = 2050.0
 _GRAVITY = {"m/s2": 9.80665, "mg": 1000.0}
 _GRAVITY_WITHIN = 0.2
+#: A sensor's scale may be off by so much, and a speed that was gained adds little over so long.
+_LEAST_G, _MOST_G, _GRAVITY_FROM_US = 0.8, 1.25, 2e6
+#: The middle half of forces that do not change is within so much of each other.
+_STEADY_G = 0.1
+_RANGES_LSB = (16384, 8192, 4096, 2048, 1024)
+#: Whoever records faster has no such sensor.
+_FASTEST_HZ = 40_000.0
 #: Nothing with mass warms or cools faster than that.
 _FASTEST_DEGC_S, _LEAST_DEGC = 1.0, 3.0
 _TRUE_DEGC = (-60.0, 130.0)
@@ -28,10 +38,11 @@ _UNSHAKEN_G = 0.02
 _STEADY_DPS = 25.0
 
 
-def doubts(found: Gathered, plan: Plan) -> list[str]:
-    """Sentences, of which each names what to do."""
-    seen = found.looked_at
-    out = [*_of_gravity(seen, plan), *_of_rates(found, plan), *_of_temperature(seen, plan)]
+def doubts(found: Gathered, plan: Plan, scales: Scales, path: Path) -> list[str]:
+    """Sentences, of which each names what to do. Raises BadRecording for what cannot be true."""
+    _refuse_gravity(found.looked_at, plan, scales, path)
+    _refuse_pace(found, plan, path)
+    out = [*_of_rates(found, plan, path), *_of_temperature(found.looked_at, plan)]
     return [f"doubtful: {words}" for words in out]
 
 
@@ -53,21 +64,48 @@ def of_time(temp_degc: np.ndarray, span_us: float, counted: bool) -> list[str]:
     ]
 
 
-def _of_gravity(seen: dict[str, np.ndarray], plan: Plan) -> list[str]:
-    if "ax" not in seen or "accel" in plan.raw:
-        return []
+def _refuse_gravity(seen: dict[str, np.ndarray], plan: Plan, scales: Scales, path: Path) -> None:
+    """Who ends not much faster than he began was pushed by 1 g on the average, however he moved:
+    the usual length of the force is no less, and where it never changes no more."""
+    if "ax" not in seen or np.ptp(seen["t_us"]) < _GRAVITY_FROM_US:
+        return
+    lsb = scales.accel_lsb_per_g or 1.0
     force = np.linalg.norm([seen[name] for name in ACCEL], axis=0)
-    force = force[np.isfinite(force)]
+    force = force[np.isfinite(force)] / (lsb if "accel" in plan.raw else 1.0)
     usual = float(np.median(force)) if len(force) else 1.0
+    low, high = np.quantile(force, [0.25, 0.75]) if len(force) else (1.0, 1.0)
+    steady = high - low < _STEADY_G * usual
+    if _LEAST_G <= usual and (usual <= _MOST_G or not steady):
+        return
+    problem = f"the usual acceleration is {usual:.3g} g, and gravity alone is 1 g"
+    do = _meant(usual, plan, lsb)
+    raise BadRecording(path, problem, do=f"{do}leave it out by --map ax=none")
+
+
+def _meant(usual_g: float, plan: Plan, lsb: float) -> str:
+    """Ready words for a unit or scale in which it would be gravity, where one is known."""
+    if "accel" in plan.raw:
+        near = [r for r in _RANGES_LSB if abs(math.log(usual_g * lsb / r)) < _GRAVITY_WITHIN]
+        return f"give --accel-lsb-per-g {near[0]}; else " if near else ""
     for unit, size in _GRAVITY.items():
         for ratio, meant in ((size, unit), (1 / size, "g")):
-            if usual > 0 and abs(math.log(usual / ratio)) < _GRAVITY_WITHIN:
-                words = unit_words(plan.wanted, "ax", meant)
-                return [f"the usual acceleration is {usual:.3g} g: did you mean {meant}? ({words})"]
-    return []
+            if usual_g > 0 and abs(math.log(usual_g / ratio)) < _GRAVITY_WITHIN:
+                return f"did you mean {meant}? Give {unit_words(plan.wanted, 'ax', meant)}; else "
+    return ""
 
 
-def _of_rates(found: Gathered, plan: Plan) -> list[str]:
+def _refuse_pace(found: Gathered, plan: Plan, path: Path) -> None:
+    hz = 1e6 / found.interval_us
+    if hz > _FASTEST_HZ and not found.counted:
+        step = found.interval_us * 1e-6 / plan.factors[TIME][0]
+        unit, likely_hz = next(iter(likely_units_of_time(step).items()), ("s", 0.0))
+        words = f"--map t_us={plan.wanted[TIME].column}:{unit}"
+        problem = f"{hz:.3g} samples a second are more than such a sensor has"
+        do = f"did you mean {unit} ({likely_hz:.4g} Hz)? Give {words}"
+        raise BadRecording(path, problem, do=do)
+
+
+def _of_rates(found: Gathered, plan: Plan, path: Path) -> list[str]:
     if "gyro" in plan.raw or plan.by_format or found.samples < 200:
         return []
     rates = np.array([found.looked_at[name] for name in GYRO])
@@ -91,8 +129,13 @@ def _of_rates(found: Gathered, plan: Plan) -> list[str]:
         said, meant = f"noise of {noise * 1e3:.2g} mdps is less than such a sensor has", "rad/s"
     else:
         return []
-    asked = f": did you mean {meant}? ({unit_words(plan.wanted, 'gx', meant)})" if meant else ""
-    return [said + asked]
+    if not meant:
+        return [said]
+    words = unit_words(plan.wanted, "gx", meant)
+    if "gyro" in plan.typed:
+        return [f"{said}: did you mean {meant}? ({words})"]
+    do = f"did you mean {meant}? Give {words}; or name the unit as it is, which is believed"
+    raise BadRecording(path, said, do=do)
 
 
 def _unshaken(seen: dict[str, np.ndarray], plan: Plan) -> bool:

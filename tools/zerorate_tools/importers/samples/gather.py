@@ -13,6 +13,7 @@ from ..columns.plan import Plan, hz_words
 from ..columns.units import TIME_S
 from ..tables.table import Table
 from .clock import Pace, Unwrapped, refuse_impossible, whole_stamps
+from .counts import Counts
 from .order import Runs, in_order
 from .spool import PLACE, TIME, Spool
 
@@ -74,6 +75,7 @@ class _Gathering:
         self.own: Counter[str] = Counter()
         self.runs = Runs()
         self.clock = Unwrapped(self._step_us())
+        self.counts = Counts(plan.raw)
         self.kept: list[dict[str, np.ndarray]] = []
         self.temps: list[np.ndarray] = []
 
@@ -83,11 +85,12 @@ class _Gathering:
                 self._take(self.plan.physical(chunk), chunk.place)
             self.spool.finish()
             self._check()
+            counted = self.counts.notes(self.path)
             self.spool = in_order(self.spool, self.path, self.folder)
         except BaseException:
             self.spool.close()
             raise
-        notes = [*self.table.notes, *self.plan.notes, *self.clock.notes]
+        notes = [*self.table.notes, *self.plan.notes, *self.clock.notes, *counted]
         back = self.runs.steps_back
         if back:
             notes.append(f"time goes back at {back} rows: sorted by time")
@@ -125,6 +128,7 @@ class _Gathering:
         refuse_impossible(columns[TIME], columns[PLACE], self.path)
         columns = self._less(columns, whole_stamps(columns[TIME]), "the time stamp is torn")
         columns[TIME] = self.clock(columns[TIME], columns[PLACE])
+        self.counts.signed(columns)
         columns = self._less(columns, *self._is_something(columns))
         columns = self._less(columns, *self._not_all_zero(columns))
         columns = self._less(columns, *self._not_too_fast(columns))

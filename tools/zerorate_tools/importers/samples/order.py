@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import BadRecording
+from ..report import cut_words
 from .spool import PLACE, TIME, Spool
 
 #: Rows that may wait for their turn: some 150 MB.
@@ -48,8 +49,7 @@ class Runs:
         for begin, end, place in sorted(self._long):
             if before is not None and latest - begin > _SHARED * (end - begin):
                 row = max(place, before) + 1
-                do = "cut it there: a recording is one power-on"
-                raise BadRecording(path, "time begins anew", row=row, do=do)
+                raise BadRecording(path, "time begins anew", row=row, do=cut_words(path, row))
             if end > latest:
                 latest, before = end, place
 

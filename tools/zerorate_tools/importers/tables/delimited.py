@@ -15,11 +15,13 @@ import pyarrow.csv
 
 from ...errors import BadRecording
 from ...recordings.text import damaged, open_text
+from ..report import cut_words
 from .sniffing import COMMENTS, DAY, Form, sniffed
 from .table import Chunk, Table
 
 _BLOCK_BYTES = 1 << 22
 _HALF_DAY_S = 43_200.0
+_A_NAME = re.compile(r"[^\W\d]")
 _NO_VALUE = ["", "nan", "NaN", "NAN", "NA", "null", "None", "-", "--"]
 
 
@@ -34,7 +36,13 @@ def delimited(path: Path, advance: Callable[[float], None] = lambda n: None) -> 
         yield from _chunks(path, form, names, table.dropped, advance)
 
     notes = [form.note] if form.note else []
-    table = Table(form.names, chunks, calendar=form.dates, notes=notes, said_hz=form.said_hz)
+    table = Table(
+        *(form.names, chunks),
+        calendar=form.dates,
+        words=form.words,
+        notes=notes,
+        said_hz=form.said_hz,
+    )
     return table
 
 
@@ -46,17 +54,26 @@ def _chunks(
     advance: Callable[[float], None],
 ) -> Iterator[Chunk]:
     stream, told = open_text(path, form.encoding)
-    if form.delimiter == " ":
-        stream = _SingleBlanks(stream)
+    watched = _Watched(stream)
     odd = _OddLines(form.skip)
     read = start = 0
+    held = None
     try:
-        for batch in _reader(stream, form, names, odd):
+        whole = _SingleBlanks(watched) if form.delimiter == " " else watched
+        for batch in _reader(whole, form, names, odd):
             place = odd.places(start, batch.num_rows)
             start = int(place[-1]) + 1 if len(place) else start
-            yield Chunk(place, {n: _numbers(batch.column(n), n, form) for n in names})
+            if held is not None:
+                yield held
+            held = Chunk(place, {n: _numbers(batch.column(n), n, form) for n in names})
+            _refuse_other_names(batch, held, path, dropped)
             advance(told() - read)
             read = told()
+        if held is not None and len(held.place) and not watched.ended and not odd.is_last:
+            held = Chunk(held.place[:-1], {n: values[:-1] for n, values in held.columns.items()})
+            dropped["the last line does not end, so a digit may be missing"] += 1
+        if held is not None:
+            yield held
     except pa.ArrowInvalid as error:
         raise _in_words(path, error) from error
     except (OSError, EOFError, pa.ArrowException) as error:
@@ -82,6 +99,46 @@ def _reader(stream, form: Form, names: list[str], odd: _OddLines) -> pyarrow.csv
             check_utf8=False,
         ),
     )
+
+
+class _Watched(io.RawIOBase):
+    """A stream that knows whether what was read of it ended with the end of a line."""
+
+    def __init__(self, stream) -> None:
+        self._stream = stream
+        self.ended = True
+
+    def readable(self) -> bool:
+        return True
+
+    def read(self, size: int = -1) -> bytes:
+        block = self._stream.read(size)
+        if block:
+            self.ended = block.endswith((b"\n", b"\r", b"\0"))
+        return block
+
+
+def _refuse_other_names(
+    batch: pa.RecordBatch, chunk: Chunk, path: Path, dropped: Counter[str]
+) -> None:
+    """Raise BadRecording where a line of other names stands among the rows: what follows may be
+    anything. The same names again are counted, and their row taken away."""
+    unread = np.isnan(np.array(list(chunk.columns.values()), ndmin=2)).all(axis=0)
+    same = []
+    for at in np.flatnonzero(unread)[:100].tolist():
+        cells = _decoded(pa.array([column[at].as_py() for column in batch.columns], pa.string()))
+        words = [(cell or "").strip() for cell in cells]
+        if not all(map(_A_NAME.match, words)) or len(set(words)) < max(len(words), len("xyz")):
+            continue
+        if words != list(chunk.columns):
+            problem = f"another line of names stands there ({', '.join(words)[:60]})"
+            row = int(chunk.place[at]) + 1
+            raise BadRecording(path, problem, row=row, do=cut_words(path, row))
+        same.append(at)
+    if same:
+        chunk.place = np.delete(chunk.place, same)
+        chunk.columns = {n: np.delete(values, same) for n, values in chunk.columns.items()}
+        dropped["the line of names again"] += len(same)
 
 
 class _SingleBlanks(io.RawIOBase):
@@ -134,15 +191,24 @@ class _OddLines:
             self._rows = [row for row in self._rows if row > kept[-1]]
         return kept
 
+    @property
+    def is_last(self) -> bool:
+        """Whether such a line came after the last row."""
+        return bool(self._rows)
+
     def counted(self) -> Counter[str]:
         """How many rows there were that cannot be read."""
         return Counter({"not as many cells as the header": self._count} if self._count else {})
 
 
 def _numbers(cells: pa.Array, name: str, form: Form) -> np.ndarray:
-    """(n,) float64, NaN where a cell is no number."""
+    """(n,) float64, NaN where a cell is no number; of a column of words each one's number."""
+    if name in form.words:
+        words = pa.array(form.words[name], cells.type)
+        codes = pc.index_in(pc.utf8_trim_whitespace(cells), value_set=words)
+        return pc.cast(codes, pa.float64()).to_numpy(zero_copy_only=False)
     if name in form.dates:
-        return _seconds(cells)
+        return seconds_of(cells)
     if form.decimal_comma:
         cells = pc.replace_substring(cells, ",", ".")
     try:
@@ -158,7 +224,7 @@ def _some_numbers(cells: pa.Array) -> np.ndarray:
     return pandas.to_numeric(text, errors="coerce").to_numpy(dtype=float)
 
 
-def _seconds(cells: pa.Array) -> np.ndarray:
+def seconds_of(cells: pa.Array) -> np.ndarray:
     """(n,) seconds since 1970 of ISO-8601 texts, without a zone in UTC, or since midnight of times
     of the day, whose day may stand before them in any order."""
     import pandas

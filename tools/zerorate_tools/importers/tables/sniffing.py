@@ -3,24 +3,29 @@
 import csv
 import re
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from ...errors import BadRecording
 from ...recordings.text import head
+from ..columns.units import without_unit
 
 _HEAD_BYTES = 1 << 18
+#: What some programs write before the first line of UTF-8.
+MARK = b"\xef\xbb\xbf"
 #: Blackbox Explorer writes some 150 lines of settings above its table.
 _LINES = 400
 #: Cells of a row that can hold three rates; two are a setting and its value.
 _CELLS = 3
+#: Rows that are looked at for words, and how many words at most tell rows apart.
+_SEEN, MOST_WORDS = 3000, 12
 _DELIMITERS = (",", ";", "\t", "|", " ")
 COMMENTS = ("#", "//", "%", "*")
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")
 _DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+([eE][-+]?\d+)?$")
 #: A day before a time of the day, whatever its order.
 DAY = r"\d\d?[./-]\d\d?[./-]\d{4},?\s+"
-_DATE = re.compile(
+DATE = re.compile(
     rf"\d{{4}}[-/]\d\d[-/]\d\d[T ]\d\d:\d\d|(?:{DAY})?\d\d?:\d\d:\d\d([.,]\d+)?(\s*[ap]\.?m\.?)?$",
     re.I,
 )
@@ -39,7 +44,7 @@ _RATE = re.compile(
 @dataclass(frozen=True)
 class Form:
     """How a text holds its table. names: of the columns, as numbers from 1 where nothing names
-    them; skip: lines before the first row."""
+    them; skip: lines before the first row; words: by column, where its cells are few words."""
 
     names: list[str]
     skip: int
@@ -47,6 +52,7 @@ class Form:
     encoding: str
     decimal_comma: bool = False
     dates: frozenset[str] = frozenset()
+    words: dict[str, list[str]] = field(default_factory=dict)
     note: str = ""
     said_hz: float | None = None
 
@@ -62,9 +68,6 @@ def sniffed(path: Path) -> Form:
     if text.startswith("version https://git-lfs"):
         do = "fetch the file itself: git lfs pull"
         raise BadRecording(path, "a pointer of Git LFS, not the file", do=do)
-    if text.lstrip()[:1] in ("{", "["):
-        do = "write it as a CSV, as pandas does: read_json(..., lines=True).to_csv(...)"
-        raise BadRecording(path, "JSON, which is not read", do=do)
     lines = text.splitlines()
     if not whole:
         lines = lines[:-1]
@@ -73,10 +76,10 @@ def sniffed(path: Path) -> Form:
             raise BadRecording(path, "empty file", do="name another file")
         problem = f"no line ends within the first {_HEAD_BYTES >> 10} KiB"
         raise BadRecording(path, problem, do="name a table with a sample on each line")
-    return _table_in(lines[:_LINES], encoding, path)
+    return _table_in(lines[:_LINES], lines, encoding, path)
 
 
-def _table_in(lines: list[str], encoding: str, path: Path) -> Form:
+def _table_in(lines: list[str], every: list[str], encoding: str, path: Path) -> Form:
     found = [_with(delimiter, lines) for delimiter in _DELIMITERS]
     if not any(found):
         found = [_with(delimiter, lines, 1) for delimiter in _DELIMITERS]
@@ -91,7 +94,7 @@ def _table_in(lines: list[str], encoding: str, path: Path) -> Form:
         _cells(lines[skip], delimiter) if at is not None else _whole_row(lines[skip:], delimiter)
     )
     names, note = _names(lines, at, first, delimiter)
-    dates = frozenset(name for name, cell in zip(names, first) if _DATE.match(cell.strip()))
+    dates = frozenset(name for name, cell in zip(names, first) if DATE.match(cell.strip()))
     return Form(
         names,
         skip,
@@ -99,9 +102,25 @@ def _table_in(lines: list[str], encoding: str, path: Path) -> Form:
         encoding,
         decimal_comma=delimiter != "," and any(_DECIMAL_COMMA.match(c.strip()) for c in first),
         dates=dates,
+        words=_words(every[skip:], names, delimiter, dates),
         note=note,
         said_hz=_rate_said(lines[:skip]),
     )
+
+
+def _words(
+    lines: list[str], names: list[str], delimiter: str, dates: frozenset[str]
+) -> dict[str, list[str]]:
+    """The words of those columns that have few, in the order in which they come first."""
+    rows = [_cells(line, delimiter) for line in lines[:_SEEN]]
+    rows = [[cell.strip() for cell in row] for row in rows if len(row) == len(names)]
+    out = {}
+    for name, cells in zip(names, zip(*rows)):
+        found = [cell for cell in cells if cell and not _numbers([cell], delimiter)]
+        kinds = list(dict.fromkeys(found))
+        if name not in dates and len(found) > 0.8 * len(cells) and 2 <= len(kinds) <= MOST_WORDS:
+            out[name] = kinds
+    return out
 
 
 def _whole_row(lines: list[str], delimiter: str) -> list[str]:
@@ -163,7 +182,7 @@ def _cells(line: str, delimiter: str) -> list[str]:
 def _numbers(cells: list[str], delimiter: str) -> int:
     def is_one(cell: str) -> bool:
         comma = delimiter != "," and _DECIMAL_COMMA.match(cell)
-        return bool(_NUMBER.match(cell) or comma or _DATE.match(cell))
+        return bool(_NUMBER.match(cell) or comma or DATE.match(cell))
 
     return sum(is_one(cell.strip()) for cell in cells)
 
@@ -176,6 +195,8 @@ def _names(lines: list[str], at: int | None, first: list[str], delimiter: str):
         if len(named) == len(names) and all(map(_is_unit, names, named)) and any(names):
             units = [unit.strip("[()]").replace("(s^2", "s^2") for unit in names]
             names = [f"{name} [{unit}]" if name else "" for name, unit in zip(named, units)]
+        else:
+            names = _with_those_above(names, lines[:at], delimiter)
         return _single(names + [""] * (len(first) - len(names))), ""
     for line in reversed(lines):
         text = line.strip()
@@ -185,6 +206,27 @@ def _names(lines: list[str], at: int | None, first: list[str], delimiter: str):
                 return _single(names + [""] * (len(first) - len(names))), ""
     numbered = [str(number) for number in range(1, len(first) + 1)]
     return numbered, "no line names the columns: they are called 1, 2, 3, ..."
+
+
+def _with_those_above(names: list[str], lines: list[str], delimiter: str) -> list[str]:
+    """Names that are empty or come twice, behind those of the lines above: gyro over x, y and z."""
+    for line in reversed(lines):
+        above = [cell.strip() for cell in _cells(line, delimiter)]
+        if len(set(names)) == len(names) and all(names) or not _as_many(names, above):
+            return names
+        if _numbers(above, delimiter) or not any(above):
+            return names
+        for at in range(1, len(above)):  # one cell over several columns
+            if not above[at] and names[at]:
+                above[at] = above[at - 1]
+        names = [_joined(*both) for both in zip(above, names)]
+    return names
+
+
+def _joined(above: str, name: str) -> str:
+    """`gyro (rad/s)` over `x` is `gyro x (rad/s)`."""
+    stem = without_unit(above.lower())
+    return " ".join(filter(None, (above[: len(stem)], name))) + above[len(stem) :]
 
 
 def _is_unit(text: str, name: str) -> bool:

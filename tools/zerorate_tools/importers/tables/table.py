@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from itertools import islice
 
 import numpy as np
 
@@ -23,25 +24,30 @@ class Table:
     chunks: the rows of the columns asked for, from the first one at each call; it adds to `dropped`
     what it leaves out. mapping: words as of --map that the format itself implies. calendar: columns
     of dates and times, which come as seconds since 1970. lsb: scales that the format states, by the
-    names that Options has for them. said_hz: what the file says of its rate. read_bytes: of the
-    file, so far, where the reader knows.
+    names that Options has for them. words: columns of words, of which there are few: they come as
+    each word's number. said_hz: what the file says of its rate. read_bytes: of the file, so far,
+    where the reader knows. own_form: it is a recording of this project's already. parts: files
+    whose chunks take turns.
     """
 
     names: list[str]
     chunks: Callable[[list[str]], Iterator[Chunk]]
     mapping: list[str] = field(default_factory=list)
     calendar: frozenset[str] = frozenset()
+    words: dict[str, list[str]] = field(default_factory=dict)
     sensor: str = ""
     lsb: dict[str, float] = field(default_factory=dict)
     dropped: Counter[str] = field(default_factory=Counter)
     notes: list[str] = field(default_factory=list)
     said_hz: float | None = None
     read_bytes: float = 0.0
+    own_form: bool = False
+    parts: int = 1
 
     def first_rows(self, names: list[str]) -> dict[str, np.ndarray]:
         """The columns asked for, of the first chunk; empty ones where there is no row."""
         dropped = self.dropped.copy()
-        chunk = next(self.chunks(names), None)
+        found = [chunk.columns for chunk in islice(self.chunks(names), self.parts)]
         self.dropped.clear()
         self.dropped.update(dropped)
-        return chunk.columns if chunk else {name: np.empty(0) for name in names}
+        return {n: np.concatenate([np.empty(0), *(one[n] for one in found)]) for n in names}

@@ -69,16 +69,16 @@ def vectornav_line(rates, accel=(0.0, 0.0, -9.8), temp=26.8):
     return f"${text}*{checksum:02X}"
 
 
-def bag(folder, kind, imu=True):
-    """Three seconds of sensor_msgs/Imu at 200 Hz, and of Temperature at 1 Hz; where it is.
-
-    kind: ros1, ros2 (a folder), db3 (its file alone), mcap, mcap-json.
+def bag(folder, kind, imu=True, world=None, torn=()):
+    """Three seconds of sensor_msgs/Imu at 200 Hz, and of Temperature at 1 Hz, or a world; where it
+    is. kind: ros1, ros2 (a folder), db3 (its file alone), mcap, mcap-json. torn: numbers of JSON
+    messages that are cut off.
     """
-    messages = _messages(get_typestore(Stores.ROS1_NOETIC if kind == "ros1" else Stores.LATEST))
-    messages = [one for one in messages if imu or one[0] != "/imu/data"]
+    store = get_typestore(Stores.ROS1_NOETIC if kind == "ros1" else Stores.LATEST)
+    messages = [one for one in _messages(store, world) if imu or one[0] != "/imu/data"]
     folder.mkdir(exist_ok=True)
     if kind == "mcap-json":
-        return _mcap_of_json(folder / "run.mcap", messages)
+        return _mcap_of_json(folder / "run.mcap", messages, torn)
     if kind == "ros1":
         path = folder / "run.bag"
         path.unlink(missing_ok=True)
@@ -103,7 +103,18 @@ def bag_of_a_driver(path):
     return path
 
 
-def _messages(store):
+def _readings(world):
+    """(ns, rates, force, degC) of each sample."""
+    if world is None:
+        return [
+            (i * 5_000_000, (0.01 + 1e-5 * i, 0.0, 0.0), (0.0, 0.0, 9.80665), 25.0 + i / 200)
+            for i in range(600)
+        ]
+    at_ns = np.rint(world.t_s * 1e9).astype(int).tolist()
+    return list(zip(at_ns, world.rad.tolist(), world.mps2.tolist(), world.degc.tolist()))
+
+
+def _messages(store, world=None):
     types = store.types
 
     def header(ns):
@@ -115,18 +126,17 @@ def _messages(store):
     vector = types["geometry_msgs/msg/Vector3"]
     nothing = np.zeros(9)
     out = []
-    for i in range(600):
-        ns = i * 5_000_000
+    for i, (ns, rate, force, degc) in enumerate(_readings(world)):
         if i % 200 == 0:
             warm = types["sensor_msgs/msg/Temperature"]
-            out.append(("/imu/temperature", ns, warm(header(ns), 25.0 + i / 200, 0.0)))
+            out.append(("/imu/temperature", ns, warm(header(ns), degc, 0.0)))
         message = types["sensor_msgs/msg/Imu"](
             header=header(ns),
             orientation=types["geometry_msgs/msg/Quaternion"](0.0, 0.0, 0.0, 1.0),
             orientation_covariance=nothing,
-            angular_velocity=vector(0.01 + 1e-5 * i, 0.0, 0.0),
+            angular_velocity=vector(*rate),
             angular_velocity_covariance=nothing,
-            linear_acceleration=vector(0.0, 0.0, 9.80665),
+            linear_acceleration=vector(*force),
             linear_acceleration_covariance=nothing,
         )
         out.append(("/imu/data", ns, message))
@@ -142,18 +152,19 @@ def _write(writer, messages, stores, store=None):
         writer.write(connections[topic], ns, encode(message, message.__msgtype__))
 
 
-def _mcap_of_json(path, messages):
+def _mcap_of_json(path, messages, torn):
     from mcap.writer import Writer
 
     with open(path, "wb") as file:
-        writer = Writer(file)
+        writer = Writer(file, chunk_size=1 << 16)
         writer.start()
         channels = {}
-        for topic, ns, message in messages:
+        for number, (topic, ns, message) in enumerate(messages):
             if topic not in channels:
                 schema = writer.register_schema(message.__msgtype__, "jsonschema", b"{}")
                 channels[topic] = writer.register_channel(topic, "json", schema)
             data = json.dumps(message, default=_as_json).encode()
+            data = data[: len(data) // 2] if number in torn else data
             writer.add_message(channels[topic], ns, data, ns)
         writer.finish()
     return path
@@ -167,8 +178,8 @@ def blackbox(path, rows):
     """A Betaflight log of intra frames: time, three gyro counts of 1 dps, three of 1/2048 g."""
     names = ["loopIteration", "time", *(f"gyroADC[{i}]" for i in range(3))]
     names += [f"accSmooth[{i}]" for i in range(3)]
-    fields = {
-        "name": names,
+    fields: dict[str, list] = {
+        "name": list(names),
         "signed": [0, 0, *[1] * 6],
         "predictor": [0] * 8,
         "encoding": [1, 1, *[0] * 6],

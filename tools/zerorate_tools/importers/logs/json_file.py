@@ -1,0 +1,131 @@
+"""JSON: an object a line, a list of objects, an object of lists, or pandas' object of objects."""
+
+import json
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from itertools import chain, islice
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+
+from ...errors import BadRecording
+from ...recordings.text import head, open_text
+from ..tables.delimited import seconds_of
+from ..tables.sniffing import DATE, MOST_WORDS
+from ..tables.table import Chunk, Table
+from .arrays import table_of_arrays
+
+KIND = "JSON"
+_ROWS, _SEEN = 1 << 13, 3000
+_LONGEST_LIST = 9
+_DO = "write an object for each sample, one a line"
+
+
+def read(path: Path, instance: int = 0) -> Table:
+    """Raises BadRecording."""
+    if _is_object(head(path, 1 << 18)[0].partition(b"\n")[0]):
+        return _of_records(lambda dropped: _lines(path, dropped), path)
+    stream = open_text(path, head(path, 4096)[1])[0]
+    held = json.loads(stream.read())
+    if isinstance(held, dict) and len(lists := [v for v in held.values() if _is_records(v)]) == 1:
+        held = lists[0]
+    if _is_records(held):
+        return _of_records(lambda dropped: iter(held), path)
+    if not isinstance(held, dict):
+        raise BadRecording(path, "JSON, and no records in it", do=_DO)
+    columns = {k: list(v.values()) if isinstance(v, dict) else v for k, v in held.items()}
+    arrays: dict[str, object] = {k: np.array(v) for k, v in columns.items() if isinstance(v, list)}
+    return table_of_arrays(arrays, path, _DO)
+
+
+def _is_object(line: bytes) -> bool:
+    try:
+        return isinstance(json.loads(line), dict)
+    except ValueError:
+        return False
+
+
+def _is_records(held: Any) -> bool:
+    return isinstance(held, list) and bool(held) and isinstance(held[0], dict)
+
+
+def _lines(path: Path, dropped: Counter[str]) -> Iterator[Any]:
+    """The object of each line; None where a line holds none."""
+    stream, rest = open_text(path, head(path, 4096)[1])[0], b""
+    while block := stream.read(1 << 20):
+        *lines, rest = (rest + block).split(b"\n")
+        yield from (_object(line, dropped) for line in lines if line.strip())
+    if rest.strip():
+        yield _object(rest, dropped)
+
+
+def _object(line: bytes, dropped: Counter[str]) -> Any:
+    try:
+        return json.loads(line)
+    except ValueError:
+        dropped["a line that is no JSON"] += 1
+        return None
+
+
+def _of_records(begun, path: Path) -> Table:
+    """begun: makes the records from the first on, of which some may be no object."""
+    seen = [dict(_flat(record)) for record in islice(begun(Counter()), _SEEN)]
+    by_name: dict[str, list[Any]] = {}
+    for name, value in chain.from_iterable(record.items() for record in seen):
+        by_name.setdefault(name, []).append(value)
+    texts = {n: [v for v in found if isinstance(v, str)] for n, found in by_name.items()}
+    texts = {n: found for n, found in texts.items() if len(found) > 0.8 * len(by_name[n])}
+    dates = frozenset(name for name, found in texts.items() if DATE.match(found[0]))
+    kinds = {name: list(dict.fromkeys(found)) for name, found in texts.items()}
+    words = {n: k for n, k in kinds.items() if n not in dates and 2 <= len(k) <= MOST_WORDS}
+    names = [name for name in by_name if name not in texts or name in dates or name in words]
+    if not set(names) - set(words):
+        raise BadRecording(path, "JSON, and no numbers in it", do=_DO)
+
+    def chunks(wanted: list[str]) -> Iterator[Chunk]:
+        place, records = 0, begun(table.dropped)
+        while some := [dict(_flat(record)) for record in islice(records, _ROWS)]:
+            columns = {n: [record.get(n) for record in some] for n in wanted}
+            yield Chunk(
+                np.arange(place, place + len(some)),
+                {n: _column(v, n in dates, words.get(n)) for n, v in columns.items()},
+            )
+            place += len(some)
+
+    table = Table(names, chunks, calendar=dates, words=words)
+    return table
+
+
+def _flat(record: Any, before: str = "") -> Iterator[tuple[str, Any]]:
+    """Numbers and texts of an object by their path: angular_velocity.x; those of a short list by
+    their number. A text that is a number is one."""
+    items: Iterable[tuple[str, Any]] = ()
+    if isinstance(record, dict):
+        items = ((f"{before}.{key}".lstrip("."), value) for key, value in record.items())
+    elif isinstance(record, list) and len(record) <= _LONGEST_LIST:
+        items = ((f"{before}[{at}]", value) for at, value in enumerate(record))
+    for name, value in items:
+        if isinstance(value, (dict, list)):
+            yield from _flat(value, name)
+        elif isinstance(value, str):
+            yield name, _number(value)
+        elif value is not None:
+            yield name, value
+
+
+def _number(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def _column(values: list[Any], is_date: bool, words: list[str] | None) -> np.ndarray:
+    if is_date:
+        return seconds_of(pa.array([v if isinstance(v, str) else None for v in values]))
+    if words is not None:
+        code = {word: float(at) for at, word in enumerate(words)}
+        return np.array([code.get(value, np.nan) for value in values])
+    return np.array([v if isinstance(v, (int, float)) else np.nan for v in values], float)

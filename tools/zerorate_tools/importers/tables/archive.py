@@ -1,0 +1,128 @@
+"""Several files as one recording: a zip, or a folder, with a table for each sensor of a phone."""
+
+import re
+import tempfile
+import zipfile
+from collections import Counter
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from itertools import chain, zip_longest
+from pathlib import Path
+
+import numpy as np
+
+from ...errors import BadRecording
+from ..columns import names as usual
+from .delimited import delimited
+from .table import Chunk, Table
+
+_TABLES = (".csv", ".txt", ".tsv", ".dat")
+#: No log packs so well: deflate takes 1,032 bytes to one at its best, a table 20.
+_MOST_UNPACKED = 300
+_PER_SENSOR = re.compile("gyro|accel|angular|rotation|temp", re.I)
+
+
+@contextmanager
+def archive(path: Path) -> Iterator[Path]:
+    """The unpacked folder of a zip, or its only file. Raises BadRecording."""
+    with tempfile.TemporaryDirectory() as folder, zipfile.ZipFile(path) as packed:
+        members = [m for m in packed.infolist() if not m.is_dir() and not _is_hidden(m.filename)]
+        if any(member.filename == "[Content_Types].xml" for member in members):
+            raise BadRecording(path, "a spreadsheet", do="save its table as CSV")
+        if sum(m.file_size for m in members) > _MOST_UNPACKED * max(1, path.stat().st_size):
+            problem = f"it unpacks to more than {_MOST_UNPACKED} times its size, as no log does"
+            raise BadRecording(path, problem, do="unpack it, and import what is in it")
+        try:
+            found = [Path(packed.extract(member, folder)) for member in members]
+        except (zipfile.BadZipFile, OSError, RuntimeError, NotImplementedError, EOFError) as error:
+            do = "unpack it, and import what is in it"
+            raise BadRecording(path, f"it cannot be unpacked ({error})", do=do) from error
+        if not found:
+            raise BadRecording(path, "an empty zip", do="name another file")
+        yield found[0] if len(found) == 1 else Path(folder)
+
+
+def _is_hidden(name: str) -> bool:
+    """What a Mac or an editor puts beside files."""
+    return any(part.startswith((".", "__MACOSX")) for part in Path(name).parts)
+
+
+def folder_of_tables(
+    path: Path, advance: Callable[[float], None], said: Path | None = None
+) -> Table:
+    """The tables of a folder beside each other, by the time that they share. Raises BadRecording.
+
+    Columns get the name of their file before their own: `Gyroscope x`. Blocks of rows of the files
+    take turns. said: the file that the folder was unpacked from.
+    """
+    found = _tables_in(path, advance)
+    tables = {file.stem: table for file, table in found if _is_of_sensors(table, file)}
+    path = said or path
+    if not tables:
+        do = "name a file, or the folder of a ROS 2 bag or of a phone's tables"
+        raise BadRecording(path, "no table with rates in it", do=do)
+    rates = [stem for stem, table in tables.items() if usual.gyro_groups(table.names)]
+    if len(rates) > 1 and not any("gyro" in stem.lower() for stem in rates):
+        problem = f"several recordings ({', '.join(rates)})"
+        do = "import them together: zerorate import FILE FILE ... --out FOLDER"
+        raise BadRecording(path, problem, do=do)
+    times = Counter(name for t in tables.values() for name in usual.time_columns(t.names))
+    shared = [name for name, count in times.items() if count == len(tables)]
+    if not shared and len(tables) > 1:
+        do = "write them into one table first"
+        raise BadRecording(path, f"the tables {', '.join(tables)} share no time", do=do)
+    return _together(tables, shared)
+
+
+def _tables_in(path: Path, advance: Callable[[float], None]) -> Iterator[tuple[Path, Table]]:
+    for file in sorted(path.rglob("*")):
+        if file.suffix.lower() in _TABLES and not _is_hidden(str(file.relative_to(path))):
+            try:
+                yield file, delimited(file, advance)
+            except BadRecording:  # a note, a setting
+                continue
+
+
+def _is_of_sensors(table: Table, file: Path) -> bool:
+    named = any(map(_PER_SENSOR.search, [file.stem, *table.names]))
+    return bool(usual.time_columns(table.names)) and (named or bool(usual.gyro_groups(table.names)))
+
+
+def _together(tables: dict[str, Table], shared: list[str]) -> Table:
+    own = {
+        (stem, name): name if _holds(name, stem) else f"{stem} {name}"
+        for stem, table in tables.items()
+        for name in table.names
+        if name not in shared
+    }
+
+    def of_one(stem: str, table: Table, wanted: list[str]) -> Iterator[dict[str, np.ndarray]]:
+        ours = {n: own[stem, n] for n in table.names if own.get((stem, n)) in wanted}
+        times = [n for n in wanted if n in shared]
+        for chunk in table.chunks([*times, *ours]) if ours or times == wanted else ():
+            out = dict.fromkeys(wanted, np.full(len(chunk.place), np.nan))
+            out |= {n: chunk.columns[n] for n in times}
+            yield out | {said: chunk.columns[n] for n, said in ours.items()}
+        both.dropped.update(table.dropped)
+        table.dropped.clear()
+
+    def chunks(wanted: list[str]) -> Iterator[Chunk]:
+        place = 0
+        turns = [of_one(stem, table, wanted) for stem, table in tables.items()]
+        for columns in filter(None, chain.from_iterable(zip_longest(*turns))):
+            size = len(next(iter(columns.values())))
+            yield Chunk(np.arange(place, place + size), columns)
+            place += size
+
+    calendar = frozenset(
+        own.get((stem, name), name) for stem, table in tables.items() for name in table.calendar
+    )
+    note = f"of the tables {', '.join(tables)}"
+    both = Table(
+        [*shared, *own.values()], chunks, calendar=calendar, notes=[note], parts=len(tables)
+    )
+    return both
+
+
+def _holds(name: str, stem: str) -> bool:
+    return usual.spelled(stem) in usual.spelled(name)
