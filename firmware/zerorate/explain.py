@@ -20,6 +20,7 @@ _WINDOW = const(3)
 _SEGMENT = const(5)
 _AXIS_WORDS = const(15)
 _INSIST = const(41)
+_EVERY = const(48)
 # layout: What the guard says of a frame, in words
 FAULTS = (
     "good frames",
@@ -118,7 +119,8 @@ def axis_text(s, c, sensor, axis):
         s[_QUALITY_Q8 + axis] / 256 / lsb,
     )
     if source == 0:
-        text = "g%s: no bias yet, nothing still was seen" % "xyz"[axis]
+        seen = "few readings lie in its range" if c[_EVERY] else "nothing still was seen"
+        text = "g%s: no bias yet, %s" % ("xyz"[axis], seen)
     if s[a + _SUSPECT] > 0:
         text += "; a rest far from it is held back (%d of %d)" % (s[a + _SUSPECT], c[_INSIST])
     if s[a + _BEYOND]:

@@ -128,6 +128,16 @@ def power_of_two(samples):
     return shift
 
 
+def has_meaning(name, document, every):
+    """Return whether those rules look at the setting."""
+    # The document's fit is through all estimators and readings, its bins as narrow as they get.
+    if name == "range_dps":
+        return every
+    if name == "split_s":
+        return document
+    return not document or name not in ("narrowest_dps", "local_degc", "counted_s")
+
+
 def chosen_of(document, every, given):
     """Return all settings by name, those of `given` as they are there. Raises ValueError."""
     chosen = dict(DEFAULTS)
@@ -139,6 +149,8 @@ def chosen_of(document, every, given):
         least, most = LEAST.get(name, 0), MOST[name.split("_")[-1]]
         if not least <= given[name] <= most:
             raise ValueError("%s must be %s..%s, not %s" % (name, least, most, given[name]))
+        if not has_meaning(name, document, every):
+            raise ValueError("%s means nothing with these rules: leave it out" % name)
         chosen[name] = given[name]
     return chosen
 
@@ -229,7 +241,7 @@ def estimators_of(c, rate, degree, short, long, document, limits):
     c[_HALVE_AFTER] = max(16, min(1 << 28, (rate * limits["halve_after_s"]).floor()))
     c[_ENOUGH_TO_FIT] = max(2, (rate * limits["fit_s"]).floor())
     c[_MOST_COUNTED] = (
-        0xFFFFF // (short + long)
+        0xFFFFF // max(8, short + long)
         if document
         else max(16, min(8192, (rate * limits["counted_s"]).floor()))
     )

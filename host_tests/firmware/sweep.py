@@ -11,7 +11,7 @@ from array import array
 
 import numpy as np
 from zerorate import Corrector, Sensor
-from zerorate.settings import DEFAULTS, LEAST, MOST
+from zerorate.settings import DEFAULTS, LEAST, MOST, has_meaning
 from zerorate.storage.soundness import is_sound
 from zerorate_tools.layout import SETTINGS
 from zerorate_tools.replay.engines import others_of
@@ -51,6 +51,8 @@ def options(draw, device):
     if draw.random() < 0.7:  # so that few rows learn, evict and fit
         found["window_s"] = 0.0001
     for name in draw.sample(sorted(DEFAULTS), draw.choice([0, 1, 3, 8, len(DEFAULTS)])):
+        if not has_meaning(name, found["document"], found["every"]):
+            continue
         found[name] = between(draw, LEAST.get(name, 0.0), MOST[name.split("_")[-1]])
     return found
 

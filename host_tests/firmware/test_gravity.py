@@ -94,7 +94,7 @@ def test_the_truth_lies_within_two_sigma_at_least_ninety_times_of_a_hundred():
 def test_where_nothing_pushes_one_sigma_is_the_finest_step():
     settings = gravity_settings()
     state = gravity_state(settings)
-    state[GRAVITY.SIGN_TURNS] = 3
+    state[GRAVITY.SIGN_TURNS], state[OBSERVED] = 3, 1
     state[GRAVITY.STEP_Q8] = settings[GRAVITY_SETTINGS.FINE_Q8]
     gravity.judge(state, settings, 0)
     assert state[SIGMA] == settings[GRAVITY_SETTINGS.FINE_Q8]

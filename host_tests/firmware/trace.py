@@ -15,7 +15,6 @@ LIMITS = {
     "halve_after_s": 60.0,
     "fit_s": 5.0,
     "insist_s": 10.0,
-    "local_degc": 3.0,
 }
 MODES = {
     "default": {"motion": False, "gravity": False},

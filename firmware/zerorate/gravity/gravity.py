@@ -277,7 +277,7 @@ def step(s: ptr32, c: ptr32, i: int):
 def judge(s: ptr32, c: ptr32, i: int):
     """Write one sigma: known once the signs have turned twice, by the ripple's size then, and by
     how far the deviations go, for a motion may push always the same way."""
-    if s[_SIGN_TURNS + i] < 3 and c[_PUSH_Q2]:
+    if s[_SIGN_TURNS + i] < 3 and c[_PUSH_Q2] or s[_OBSERVED + i] == 0:
         return
     pushed = (s[_SPREAD_Q21] * c[_PUSH_Q2]) >> 10
     if c[_PUSH_Q2] == 0:  # the literal rules

@@ -93,9 +93,12 @@ def gravity_state(settings):
 def join(corrector, document, _):
     """Let a Corrector learn against gravity. Raises ValueError where its sensor does not do."""
     sensor = corrector.sensor
-    corrector.gravity_settings = gravity_settings(
-        sensor.odr_hz, sensor.gyro_lsb_per_dps, sensor.accel_lsb_per_g, document=document
-    )
+    scales = (sensor.odr_hz, sensor.gyro_lsb_per_dps, sensor.accel_lsb_per_g)
+    if document:  # it gives no numbers: these err least (docs/motion.md)
+        options = {"document": True, "threshold": 0, "sub_unit_s": max(0.25, 2 / sensor.odr_hz)}
+    else:
+        options = {}
+    corrector.gravity_settings = gravity_settings(*scales, **options)
     from ..native.gravity import update
 
     corrector._observe_gravity = update

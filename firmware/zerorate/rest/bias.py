@@ -75,7 +75,5 @@ def curve_q8(s: ptr32, c: ptr32, a: int, temp: int) -> int:
         return s[kind + _EST_BIAS_Q8]
     if kind == ANY_TEMPERATURE:
         return s[a + _ESTIMATORS + _EST_BIAS_Q8]
-    if c[_LITERAL] == 0:
-        kind = bent_q8(s, a, temp << 4)
-        return line_q8(s, a, temp << 4) + kind
-    return line_q8(s, a, temp << 4)
+    kind = bent_q8(s, a, temp << 4)
+    return line_q8(s, a, temp << 4) + kind

@@ -255,7 +255,7 @@ def significant(s: ptr32, bow: int) -> int:
 def bend(s: ptr32, c: ptr32, a: int):
     """Bend the line just drawn where five estimators tell how, less where they tell little."""
     # Its weights stand, whatever was learned since they were taken.
-    if c[_LITERAL] or s[a + _LINE_POINTS] < _POINTS_OF_A_BEND:
+    if s[a + _LINE_POINTS] < _POINTS_OF_A_BEND:
         return
     s[_BEND_SQUARE_Q14] = 0
     s[_BEND_CUBE_Q14] = 0
@@ -270,7 +270,7 @@ def bend(s: ptr32, c: ptr32, a: int):
         add_bow(s, c, a, i)
     i = (clipped(s[_BEND_DOT_Q12], 0x1FFFF) << 12) // s[_BEND_NORM_Q18]
     i = clipped(i, 0x7FFF)
-    s[a + _BOW_Q6] = significant(s, i)
+    s[a + _BOW_Q6] = i if c[_LITERAL] else significant(s, i)
 
 
 def bent_q8(s: ptr32, a: int, t: int) -> int:

@@ -59,6 +59,7 @@ _WALK_LEAST_Q16 = const(42)
 _WALK_MOST_Q16 = const(43)
 _PROVISIONAL_Q8 = const(46)
 _TURN_ON_VARIANCE_Q8 = const(47)
+_EVERY = const(48)
 # layout: Values that stand for none
 _NO_VALUE = const(-0x3FFFFFFF)
 # layout: end
@@ -339,6 +340,8 @@ def absorb(s: ptr32, c: ptr32, a: int) -> int:
 
 def believe(s: ptr32, c: ptr32, a: int, error: int) -> int:
     """Let the waiting segment, so far off, move the offset or not; return 1: it may be learned."""
+    if c[_LITERAL] or c[_EVERY]:
+        return 1  # the document has its curve alone: what others found are readings of it
     if s[a + _OFFER] > 0:
         return adopt(s, c, a, error)
     verdict = 2

@@ -65,6 +65,7 @@ _WINDOW_SHIFT = const(4)
 _SLEW_Q8 = const(13)
 _WORK_A_SAMPLE = const(14)
 _AXIS_WORDS = const(15)
+_LITERAL = const(23)
 _GATE_Q4 = const(40)
 _STALE_LSB = const(45)
 _PROVISIONAL_Q8 = const(46)
@@ -113,7 +114,7 @@ def publish(s: ptr32, c: ptr32, a: int, axis: int):
     if s[a + _KIND] == 0:
         return
     s[_GROWN_Q8] = grown_q8(s, a) + beyond_q8(s, c, a)
-    if s[_STILLNESS] == _STILL and s[_SEGMENT_WINDOWS] and c[_EVERY] == 0:
+    if s[_STILLNESS] == _STILL and s[_SEGMENT_WINDOWS] and c[_EVERY] == 0 and c[_LITERAL] == 0:
         bias = leant_q8(s, c, a, bias)
     s[_TARGET_Q8 + axis] = bias
     if s[_SOURCE + axis] == 0:
@@ -166,7 +167,7 @@ def advance(s: ptr32, c: ptr32):
                 busy = 0
             else:
                 bend(s, c, a)
-            if s[a + _WAITING_N] and c[_EVERY] == 0:
+            if s[a + _WAITING_N] and c[_EVERY] == 0 and c[_LITERAL] == 0:
                 hand_over(s, c, a)
             s[a + _WAITING_N] = 0
             publish(s, c, a, axis)

@@ -3,7 +3,7 @@
 from array import array
 
 from ..machine_code import unload
-from ..settings import DEFAULTS, settings
+from ..settings import DEFAULTS, has_meaning, settings
 from .store import unpack
 
 # layout: names that a board's own compiler reads
@@ -40,6 +40,8 @@ def moved_by(sensor, words):
     moves = {}
     first = _made(sensor, {})
     for name in _OF_SENSOR + tuple(DEFAULTS):
+        if not has_meaning(name, False, False):
+            continue
         made = _changed(sensor, name)
         moves[name] = [i for i in words if made[i] != first[i]], _count(made, first)
     names = []

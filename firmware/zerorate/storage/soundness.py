@@ -11,7 +11,6 @@ _CURRENT = const(2)
 _COLDEST = const(3)
 _HOTTEST = const(4)
 _ORDER = const(6)
-_OFFSET_FROM = const(13)
 _OFFSET_Q8 = const(27)
 _ESTIMATORS = const(39)
 # layout: An estimator
@@ -26,6 +25,7 @@ _AXIS_WORDS = const(15)
 _FIRST_SHORT = const(16)
 _ESTIMATORS_END = const(17)
 _BINS = const(18)
+_LITERAL = const(23)
 _SHORT = const(26)
 _ESTIMATOR_WORDS = const(28)
 _STEP_LSB = const(29)
@@ -79,7 +79,7 @@ def _orders(s, c, a):
 
 def _spans(s, c, a):
     """Whether the axis has learned at temperatures, or at none, and has an offset if it may."""
-    if c[_EVERY] and s[a + _OFFSET_Q8] and s[a + _OFFSET_FROM] == 0:
+    if (c[_EVERY] or c[_LITERAL]) and s[a + _OFFSET_Q8]:
         return False
     if s[a + _COLDEST] <= s[a + _HOTTEST]:
         return True
