@@ -64,8 +64,7 @@ def test_the_document_on_rests_learns_no_motion():
 def test_the_documents_forms_of_all_three_are_within_reach():
     corrector = Corrector(document=True, motion=True, gravity=True)
     assert corrector.motion_settings == motion_settings(document=True)
-    literal = gravity_settings(document=True, sub_unit_s=0.25, threshold=0)
-    assert corrector.gravity_settings == literal
+    assert corrector.gravity_settings == gravity_settings(document=True)
 
 
 def test_a_resting_device_reads_zero(learned):

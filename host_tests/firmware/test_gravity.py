@@ -64,7 +64,7 @@ def test_the_documents_own_form_moves_by_one_step_an_interval():
     counter = Counter(document=True, coarse_dps=0.05, threshold=0).feed(motion)
     offsets = np.array([offset for _, offset, _ in counter.learned])
     steps = np.abs(np.diff(offsets, axis=0))
-    assert len(offsets) == 15
+    assert len(offsets) == 30, "of eight quarters of a second each"
     assert set(np.round(steps.ravel() * 131 * 256)) <= {0, int(0.05 * 131 * 256)}
 
 

@@ -32,9 +32,9 @@ def gravity_settings(
     odr_hz=100.0,
     gyro_lsb_per_dps=131.0,
     accel_lsb_per_g=16384.0,
-    sub_unit_s=0.5,
+    sub_unit_s=None,
     units=8,
-    threshold=3,
+    threshold=None,
     dead_dps=0.03,
     coarse_dps=0.1,
     fine_dps=0.0125,
@@ -43,8 +43,14 @@ def gravity_settings(
     """Return the settings as array('i').
 
     units: sub-units an interval; threshold: what a counter must pass; coarse_dps, fine_dps: first
-    and smallest step. document: one step of coarse_dps and no dead band. Raises ValueError.
+    and smallest step. document: one step of coarse_dps, no dead band and no threshold, and by
+    default sub-units of 0.25 s, not 0.5: it gives no numbers, and with these it errs least
+    (docs/motion.md). Raises ValueError.
     """
+    if sub_unit_s is None:
+        sub_unit_s = 0.25 if document and odr_hz >= 8 else 0.5
+    if threshold is None:
+        threshold = 0 if document else 3
     if not accel_lsb_per_g:
         raise ValueError("learning by gravity needs an accelerometer")
     if not odr_hz * sub_unit_s >= 2:
@@ -93,12 +99,9 @@ def gravity_state(settings):
 def join(corrector, document, _):
     """Let a Corrector learn against gravity. Raises ValueError where its sensor does not do."""
     sensor = corrector.sensor
-    scales = (sensor.odr_hz, sensor.gyro_lsb_per_dps, sensor.accel_lsb_per_g)
-    if document:  # it gives no numbers: these err least (docs/motion.md)
-        options = {"document": True, "threshold": 0, "sub_unit_s": max(0.25, 2 / sensor.odr_hz)}
-    else:
-        options = {}
-    corrector.gravity_settings = gravity_settings(*scales, **options)
+    corrector.gravity_settings = gravity_settings(
+        sensor.odr_hz, sensor.gyro_lsb_per_dps, sensor.accel_lsb_per_g, document=document
+    )
     from ..native.gravity import update
 
     corrector._observe_gravity = update
