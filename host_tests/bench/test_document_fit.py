@@ -26,7 +26,7 @@ def test_a_line_through_a_point_that_moves_meanwhile_stays_at_its_bias(corrector
     s[mean_temp_q4] += before
     fit.centre(s, c, a, 1)
     s[mean_temp_q4] += after
-    fit.lean(s, c, a, 1)
+    fit.add_covariance(s, c, a, 1)
     fit.settle(s, c, a)
     for temp_q4 in (-3740 << 4, -3700 << 4):
         assert fit.line_q8(s, a, temp_q4) == 350 << 8

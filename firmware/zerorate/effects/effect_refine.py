@@ -136,7 +136,7 @@ def restore(e: ptr32, axis: int, to: int):
         i += 2
 
 
-def believe(e: ptr32, i: int):
+def update_state(e: ptr32, i: int):
     """Let state i of each axis, and its row of the covariance, learn from the misses."""
     divide(e, _REFINE_B, _REFINE_GAIN + 2 * i, _INNOVATION)
     axis = 0
@@ -201,7 +201,7 @@ def refine(e: ptr32):
     elif i < n + 4:
         miss(e, i - n - 1)
     elif i < 2 * n + 4:
-        believe(e, i - n - 4)
+        update_state(e, i - n - 4)
     else:
         i = 2
         while i < n and e[_SEEN] >= _WARM_UP:

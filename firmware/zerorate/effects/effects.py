@@ -66,7 +66,7 @@ def pass_time(e: ptr32, dt_us: int):
 
 
 def begin_early(e: ptr32, x: ptr32):
-    """Let the first reading of a power-on speak until the first tick ends."""
+    """Use the first reading of a power-on until the first tick ends."""
     # Else a rest within that tick would be learned with all that the model explains.
     e[_RUNNING] = 2
     e[_TICKS_DUE] += 1

@@ -34,7 +34,7 @@ from .motion_verdict import finish, note_slope, start_window
 from .posterior import know_prior, publish, shrink, weigh_prior
 from .regression import centre, first_sums, look_past_vertical, regressors, second_sums, taper
 from .thermal import carry, follow_temperature
-from .tilt_frame import begin_attitude, find_up, find_vertical, lean_back, observe, turn_centre
+from .tilt_frame import begin_attitude, find_up, find_vertical, observe, turn_centre, turn_start
 
 # layout: names that a board's own compiler reads
 const = int
@@ -226,7 +226,7 @@ def solve(s: ptr32, c: ptr32) -> int:
     if k < 3:
         centre(s, _SUMS + _COMPONENT_WORDS * k, 3 * k, s[_STAGE])
     elif k == 3:
-        lean_back(s)
+        turn_start(s)
     elif k < 16:
         normal_equations(s, k - 4)
     elif k == 16:

@@ -76,7 +76,7 @@ def find_up(s: ptr32):
     look_along(s, scale)
 
 
-def lean_back(s: ptr32):
+def turn_start(s: ptr32):
     """Turn _START by the mean tilts that the traversal left, Q12 rad."""
     x = clipped(-s[_TILT], 4096) << 1
     y = clipped(-s[_OTHER_TILT], 4096) << 1

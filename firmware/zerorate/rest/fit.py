@@ -157,7 +157,7 @@ def add_product(s: ptr32, k: int, p: int, r: int):
     s[at] += p
 
 
-def lean(s: ptr32, c: ptr32, a: int, i: int):
+def add_covariance(s: ptr32, c: ptr32, a: int, i: int):
     """Add estimator i to the weighted variance and covariance."""
     w = s[_FIT_WEIGHTS + i]
     k = s[a + _LINE_SHIFT]
@@ -197,7 +197,7 @@ def along_q14(s: ptr32, a: int, t: int) -> int:
     return ((off << s[a + _LINE_SHIFT]) - s[a + _LINE_MEAN_T]) >> 12
 
 
-def bow_q14(s: ptr32, a: int, t: int) -> int:
+def parabola_q14(s: ptr32, a: int, t: int) -> int:
     """Return the parabola that no line through the weighted points holds any of."""
     bow = (t * t - s[a + _BOW_LEAN_Q14] * t >> 14) - s[a + _BOW_MEAN_Q14]
     return clipped(bow, 0x7FFF)
@@ -221,7 +221,7 @@ def add_moments(s: ptr32, c: ptr32, a: int, i: int):
     s[_BEND_CUBE_Q14] += ((i * i >> 13) * i >> 13) * w + 0x2000 >> 15
 
 
-def add_bow(s: ptr32, c: ptr32, a: int, i: int):
+def add_parabola(s: ptr32, c: ptr32, a: int, i: int):
     """Add estimator i to the squares of bow and of what the line leaves, and to their product."""
     w = share_q13(s, i)
     if w == 0:
@@ -233,7 +233,7 @@ def add_bow(s: ptr32, c: ptr32, a: int, i: int):
     left = (left - line_q8(s, a, i) + 2) >> 2
     left = clipped(left, 0x1FFF)  # LSB, Q6
     i = along_q14(s, a, i)
-    i = bow_q14(s, a, i)
+    i = parabola_q14(s, a, i)
     i = clipped(i, 0x3FFF)
     s[_BEND_NORM_Q18] += ((i * i >> 11) * w + 0x800) >> 12
     s[_BEND_DOT_Q12] += ((i * left >> 10) * w + 0x400) >> 11
@@ -267,7 +267,7 @@ def bend(s: ptr32, c: ptr32, a: int):
     s[a + _BOW_MEAN_Q14] = s[_BEND_SQUARE_Q14]
     s[a + _BOW_LEAN_Q14] = (s[_BEND_CUBE_Q14] << 14) // (s[_BEND_SQUARE_Q14] + 1)
     for i in range(1, c[_ESTIMATOR_COUNT]):
-        add_bow(s, c, a, i)
+        add_parabola(s, c, a, i)
     i = (clipped(s[_BEND_DOT_Q12], 0x1FFFF) << 12) // s[_BEND_NORM_Q18]
     i = clipped(i, 0x7FFF)
     s[a + _BOW_Q6] = i if c[_LITERAL] else significant(s, i)
@@ -284,7 +284,7 @@ def bent_q8(s: ptr32, a: int, t: int) -> int:
     if at < s[a + _LINE_LOW_Q4] - margin:
         at = s[a + _LINE_LOW_Q4] - margin
     at = along_q14(s, a, at)
-    return bow_q14(s, a, at) * s[a + _BOW_Q6] >> 12
+    return parabola_q14(s, a, at) * s[a + _BOW_Q6] >> 12
 
 
 def draw_line(s: ptr32, c: ptr32, a: int):
@@ -294,7 +294,7 @@ def draw_line(s: ptr32, c: ptr32, a: int):
         centre(s, c, a, i)
     for i in range(1, c[_ESTIMATOR_COUNT]):
         if s[_FIT_WEIGHTS + i]:
-            lean(s, c, a, i)
+            add_covariance(s, c, a, i)
     settle(s, c, a)
 
 

@@ -296,7 +296,7 @@ def level_q8(s: ptr32, c: ptr32, a: int) -> int:
     return s[k]
 
 
-def let_learn(s: ptr32, c: ptr32, a: int):
+def remove_turn_on(s: ptr32, c: ptr32, a: int):
     """Take the turn-on offset out of what the estimators are about to learn."""
     if a == c[_AXES] and s[_RESTS] < c[_INSIST]:
         s[_RESTS] += 1
@@ -306,7 +306,7 @@ def let_learn(s: ptr32, c: ptr32, a: int):
     s[a + _WAITING_SUM] = clipped(off, n * 0x7FFF)
 
 
-def adopt(s: ptr32, c: ptr32, a: int, error: int) -> int:
+def take_over(s: ptr32, c: ptr32, a: int, error: int) -> int:
     """Let what another source found be the level if it is known twice as well as the level is."""
     # That source is a filter itself: to weigh its results into another one counted them twice, and
     # what it says supersedes what it said before. What is not so well known does not teach the
@@ -332,18 +332,18 @@ def absorb(s: ptr32, c: ptr32, a: int) -> int:
     error = s[a + _WAITING_N]
     s[_MEAN_NOISE_Q8] = mean_noise_q8(s, c, a, error)
     error = error_q4(s, c, a)
-    if believe(s, c, a, error) == 0:
+    if update_offset(s, c, a, error) == 0:
         return 0
-    let_learn(s, c, a)
+    remove_turn_on(s, c, a)
     return 1
 
 
-def believe(s: ptr32, c: ptr32, a: int, error: int) -> int:
+def update_offset(s: ptr32, c: ptr32, a: int, error: int) -> int:
     """Let the waiting segment, so far off, move the offset or not; return 1: it may be learned."""
     if c[_LITERAL] or c[_EVERY]:
         return 1  # the document has its curve alone: what others found are readings of it
     if s[a + _OFFER] > 0:
-        return adopt(s, c, a, error)
+        return take_over(s, c, a, error)
     verdict = 2
     held = 0
     if s[a + _KIND]:

@@ -322,7 +322,7 @@ def step(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
     return finish(s, c, x, kind)
 
 
-def speak(s: ptr32, c: ptr32, m: ptr32, w: int, axis: int):
+def publish_offer(s: ptr32, c: ptr32, m: ptr32, w: int, axis: int):
     """Publish what another source found before anything was learned, if only roughly known."""
     # Eight times the uncertainty that may teach; beyond that a guess was often worse than none.
     if s[c[_AXES] + axis * c[_AXIS_WORDS] + _KIND] == 0:
@@ -364,9 +364,9 @@ def consider(s: ptr32, c: ptr32, m: ptr32, w: int, source: int):
         advance(s, c)
     s[_LEARN_TEMP] = s[_TEMP]
     s[_OFFERED_SOURCE] = source
-    speak(s, c, m, w, 0)
-    speak(s, c, m, w, 1)
-    speak(s, c, m, w, 2)
+    publish_offer(s, c, m, w, 0)
+    publish_offer(s, c, m, w, 1)
+    publish_offer(s, c, m, w, 2)
     offer(s, c, m, w, 0)
     offer(s, c, m, w, 1)
     offer(s, c, m, w, 2)
