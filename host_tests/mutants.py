@@ -56,7 +56,8 @@ AREAS = {
         ["firmware/zerorate/storage/" + name for name in (
             "store.py", "places.py", "learned_store.py", "save_schedule.py", "soundness.py")],
         ["host_tests/firmware/test_" + name for name in (
-            "store.py", "learned_store.py", "save_schedule.py", "corrector.py")],
+            "store.py", "store_records.py", "places.py", "learned_store.py", "save_schedule.py",
+            "corrector.py")],
     ),
     "guard": (
         ["firmware/zerorate/rest/guard.py", "firmware/zerorate/checked.py"],
@@ -67,7 +68,7 @@ AREAS = {
             "bias.py", "block.py", "copying.py", "estimators.py", "fit.py", "histogram.py",
             "recent.py", "step.py", "stillness.py", "turning.py")],
         ["host_tests/firmware/test_" + name for name in (
-            "estimators.py", "fit.py", "histogram.py", "turning.py", "stillness.py",
+            "estimators.py", "fit.py", "histogram.py", "read_out.py", "turning.py", "stillness.py",
             "turn_on.py", "quality.py", "guard.py", "bursts.py",
             "model_of_the_curve.py")]
         + [KNOWN, GOLDEN],
@@ -82,7 +83,7 @@ AREAS = {
     ),
     "gravity": (
         ["firmware/zerorate/gravity/gravity.py", "firmware/zerorate/gravity/gravity_settings.py"],
-        ["host_tests/firmware/test_gravity.py", KNOWN],
+        ["host_tests/firmware/test_gravity.py", "host_tests/firmware/test_documents.py", KNOWN],
     ),
     "importers": (
         ["tools/zerorate_tools/importers/" + name for name in (
@@ -96,7 +97,7 @@ AREAS = {
         ["firmware/zerorate/effects/" + name for name in (
             "effects.py", "effect_basis.py", "effect_inputs.py", "effect_plays.py")],
         ["host_tests/firmware/test_effect" + name for name in (
-            "_kernels.py", "s_in_time.py", "s_on_interpreters.py")]
+            "_inputs.py", "_kernels.py", "s.py", "s_in_time.py", "s_on_interpreters.py")]
         + [KNOWN],
     ),
     "models": (

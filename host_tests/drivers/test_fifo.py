@@ -191,6 +191,7 @@ def test_the_time_that_a_program_adds_up_is_the_chips_over_restarts(fifo_bench):
             fifo_bench.run(PERIOD_US // 10)
             status = fifo_bench.fifo.read(fifo_bench.bench.sample)
             restarts += status == RESTARTED
+            assert status != RESTARTED or fifo_bench.fifo.dt_us == 0
             if status != EMPTY:
                 passed_us += fifo_bench.fifo.dt_us
             if status in (FRESH, VERIFIED):

@@ -58,6 +58,15 @@ def test_the_first_record_has_sequence_one_and_words_are_little_endian(
     assert loaded(memory, version=7) == (stores.LOADED, words)
 
 
+@pytest.mark.parametrize("byteorder", ["little", "big"])
+def test_what_goes_with_the_words_is_little_endian_behind_them(memory, monkeypatch, byteorder):
+    monkeypatch.setattr(stores, "byteorder", byteorder)
+    settings = array("i", [1, -1, 0x12345678])
+    store = make_store(memory, goes_with=settings)
+    assert store.save(OLD)
+    assert memory.bytes[: store.slot_bytes] == record(OLD.tobytes() + settings.tobytes())
+
+
 BAD = bytes([0x5A]) * 72
 ZEROS, ONES = bytes(72), b"\xff" * 72
 OTHER = {

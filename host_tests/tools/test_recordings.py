@@ -81,6 +81,13 @@ def test_any_32_bit_extra_channel_survives(tmp_path, values, file_name):
     assert read_recording(tmp_path / file_name).columns["load"].tolist() == values
 
 
+@pytest.mark.parametrize("file_name", FORMATS)
+def test_every_small_number_of_an_extra_channel_is_a_number(tmp_path, file_name):
+    values = np.arange(-1000, 1000)
+    write_recording(a_recording(2000, load=values), tmp_path / file_name)
+    np.testing.assert_array_equal(read_recording(tmp_path / file_name).columns["load"], values)
+
+
 @settings(max_examples=20, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     st.lists(st.integers(-(2**62), 2**62), min_size=1, max_size=20, unique=True),
