@@ -97,14 +97,16 @@ class FloatCorrector:
         return self.corrector.bias_lsb(axis) / self._rate_lsb
 
 
-def _loaded(path, odr_hz, scales, temp):
+def _loaded(
+    path: str | PathLike[str], odr_hz: float, scales: list[float], temp: list[float]
+) -> tuple[EffectModel, list[float], list[float]]:
     """The model in a file, and the scales of rate, acceleration and temperature that it has."""
     from .model.check import check_model  # its libraries are large
 
     own = check_model(path).scales
     scales = [own.gyro_lsb_per_dps, own.accel_lsb_per_g or scales[1]]
     if own.temp_lsb_per_degc:
-        temp = [own.temp_lsb_per_degc, own.temp_offset_degc]
+        temp = [own.temp_lsb_per_degc, own.temp_offset_degc or 0.0]
     effects = EffectModel()
     effects.load_file(str(path), Sensor(odr_hz, *scales, *temp))
     return effects, scales, temp

@@ -1,11 +1,12 @@
 """The demo's pictures: bias and temperature, and what is left of the bias."""
 
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 import numpy as np
 
-from .play_and_score import SETTLE_S, Demo, seconds
+from .play_and_score import SETTLE_S, Array, Demo, seconds
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
@@ -29,17 +30,17 @@ def draw_job(first: Demo, before: Demo, after: Demo, path: Path) -> None:
     _write(figure, path)
 
 
-def _write(figure, path: Path) -> None:
+def _write(figure: Any, path: Path) -> None:
     figure.tight_layout()
     figure.savefig(path, dpi=110, format="png")
     plt.close(figure)
 
 
-def _minutes(shown: Demo):
+def _minutes(shown: Demo) -> Array:
     return seconds(shown.recording) / 60
 
 
-def _biases(axes, shown: Demo) -> None:
+def _biases(axes: Any, shown: Demo) -> None:
     minutes = _minutes(shown)
     for i, axis in enumerate("xyz"):
         known = np.where(shown.bias_dps[:, i] == 0, np.nan, shown.bias_dps[:, i])
@@ -59,15 +60,15 @@ def _biases(axes, shown: Demo) -> None:
     axes.set_title(found, loc="left")
 
 
-def _legend_above(axes) -> None:
+def _legend_above(axes: Any) -> None:
     axes.legend(loc="lower right", bbox_to_anchor=(1, 1), ncol=3, fontsize=8, frameon=False)
 
 
-def _error_mdps(shown: Demo):
+def _error_mdps(shown: Demo) -> Array:
     return (shown.truth_dps - shown.bias_dps) * 1e3
 
 
-def _left(axes, shown: Demo, most: float) -> None:
+def _left(axes: Any, shown: Demo, most: float) -> None:
     error = _error_mdps(shown)
     for i, axis in enumerate("xyz"):
         smooth = _smoothed(error[:, i], shown)
@@ -84,6 +85,6 @@ def _most(shown: Demo) -> float:
     return max(5.0, 1.3 * float(np.nanmax(np.abs(smooth))))
 
 
-def _smoothed(values, shown: Demo):
+def _smoothed(values: Array, shown: Demo) -> Array:
     width = max(1, int(5 * shown.recording.scales.odr_hz))
     return np.convolve(values, np.ones(width) / width, mode="same")

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.util import find_spec
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,6 +71,6 @@ def _peer(way: str) -> Callable[[Recording], NDArray[np.float64]]:
     return lambda recording: peer([given(recording)])[0]
 
 
-def _biases(table, recording: Recording) -> NDArray[np.float64]:
+def _biases(table: Any, recording: Recording) -> NDArray[np.float64]:
     lsb = recording.scales.gyro_lsb_per_dps
     return np.stack([table[f"bias_g{axis}"].to_numpy() for axis in "xyz"], axis=1) / lsb

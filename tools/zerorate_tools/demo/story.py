@@ -93,7 +93,7 @@ def chapter_two(device: Device, result: Mapping[str, Any]) -> str:
     return "\n".join(lines)
 
 
-def _found(effects: list[dict]) -> list[str]:
+def _found(effects: list[dict[str, Any]]) -> list[str]:
     lines = []
     for effect in effects:
         lines.append(f"   found: {effect['effect']} ({effect['confidence']})")

@@ -1,5 +1,7 @@
 """Who runs the firmware over a recording: machine code, CPython, or a MicroPython."""
 
+from __future__ import annotations
+
 import shutil
 import tempfile
 from abc import ABC, abstractmethod
@@ -9,6 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +22,7 @@ from zerorate_tools.layout import STATE
 from ..errors import MissingRuntime, ZerorateError
 from ..kernels.library import library, run_rows, say_once
 from ..recordings.checks import GAP
+from ..runtimes import Runtime, find
 from .samples import Frames
 
 _OTHERS = (
@@ -47,7 +51,7 @@ class Outcome:
         return np.minimum(np.minimum(self.source[:, 0], self.source[:, 1]), self.source[:, 2])
 
 
-def others_of(corrector: Corrector) -> tuple[array | None, ...]:
+def others_of(corrector: Corrector) -> tuple[array[int] | None, ...]:
     """The arrays of the sources and the model that are on, None for each that is not."""
     effects = corrector.effects.e if corrector.effects is not None else None
     return (
@@ -78,7 +82,6 @@ def engine(name: str) -> Engine:
         return NativeEngine()
     if name == "cpython":
         return CPythonEngine()
-    from ..runtimes import find
 
     return InterpreterEngine(find(name))
 
@@ -102,7 +105,7 @@ class NativeEngine(Engine):
 
     @staticmethod
     def run_partly(
-        corrector: Corrector, batch: Frames, learn: NDArray[np.bool_], frozen: array
+        corrector: Corrector, batch: Frames, learn: NDArray[np.bool_], frozen: array[int]
     ) -> Outcome:
         """One batch, by other settings, `frozen`, at the samples where learn, (n,), is not; only
         where the kernels are compiled."""
@@ -128,7 +131,7 @@ def compiled() -> bool:
     return True
 
 
-def _view(words: array) -> NDArray[np.int32]:
+def _view(words: array[int]) -> NDArray[np.int32]:
     return np.frombuffer(words, np.int32)
 
 
@@ -151,7 +154,7 @@ class CPythonEngine(Engine):
             yield _outcome(batch, rows)
 
     @staticmethod
-    def _one(corrector: Corrector, frame: array, dt_us: int) -> tuple:
+    def _one(corrector: Corrector, frame: array[int], dt_us: int) -> tuple[Any, ...]:
         verdict = corrector.update(frame, dt_us)
         s = corrector.state
         bias = [s[STATE.OUT_Q8 + axis] + s[STATE.EFFECT_Q8 + axis] for axis in range(3)]
@@ -162,7 +165,7 @@ class CPythonEngine(Engine):
 class InterpreterEngine(Engine):
     """The firmware on a MicroPython of its own; the recording goes in and out through files."""
 
-    def __init__(self, runtime) -> None:
+    def __init__(self, runtime: Runtime) -> None:
         self._runtime = runtime
         self.way = f"in MicroPython: {runtime.name}"
 
@@ -211,7 +214,7 @@ class InterpreterEngine(Engine):
             yield _outcome(batch, part["o"])
 
 
-def _outcome(batch: Frames, rows: NDArray) -> Outcome:
+def _outcome(batch: Frames, rows: NDArray[Any]) -> Outcome:
     source, verdict = rows["source"].astype(np.int8), rows["verdict"].astype(np.int8)
     return Outcome(batch.t_us, batch.frames, rows["bias"], source, rows["q"], verdict)
 

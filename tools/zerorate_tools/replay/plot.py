@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -50,7 +50,7 @@ def plot(recording: Recording, replayed: Replay) -> Figure:
     return figure.update_layout(title=title, template="plotly_white", legend_traceorder="normal")
 
 
-def _draw_axis(figure: Figure, minutes, few, lsb_per_dps: float, axis: str) -> None:
+def _draw_axis(figure: Figure, minutes: Any, few: Any, lsb_per_dps: float, axis: str) -> None:
     known = few["source"].to_numpy() != "none"
     bias = np.where(known, few[f"bias_g{axis}"], np.nan) / lsb_per_dps
     two_sigma = 2 * few[f"quality_g{axis}"].to_numpy() / lsb_per_dps

@@ -163,7 +163,7 @@ def load_state(corrector: Corrector, path: Path, resume: bool) -> None:
         corrector.power_on()
 
 
-def _resumed(e: array, words: array) -> bool:
+def _resumed(e: array[int], words: array[int]) -> bool:
     """Let effect model `e` go on from the words that one left; False where that was another."""
     first = EFFECTS
     counts = (first.SLOT_COUNT, first.INPUT_COUNT, first.TICK_US, first.SLOTS_A_SAMPLE)
@@ -187,12 +187,14 @@ def state_bytes(corrector: Corrector) -> bytes:
     return np.concatenate(_parts(corrector)).astype("<i4").tobytes()
 
 
-def _parts(corrector: Corrector) -> list[array]:
+def _parts(corrector: Corrector) -> list[array[int]]:
     motion, _, gravity, _, effects = others_of(corrector)
     return [part for part in (corrector.state, motion, gravity, effects) if part is not None]
 
 
-def load_model(corrector: Corrector, path: Path, recording) -> tuple[str, ...]:
+def load_model(
+    corrector: Corrector, path: Path, recording: OpenRecording | Recording
+) -> tuple[str, ...]:
     """Give the corrector an effect model; returns the extra channels it follows.
 
     Raises BadModel where it is refused, or follows a channel that the recording lacks.

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +10,7 @@ from zerorate import Sensor
 
 from ..recordings import Recording, Scales
 from ..recordings.reading import OpenRecording
+from ..recordings.recording import Columns
 
 FRAME = ("ax", "ay", "az", "temp", "gx", "gy", "gz")
 _MOST_US = 1 << 29
@@ -55,7 +57,7 @@ def frames_in_batches(
         before = int(columns["t_us"][-1])
 
 
-def frames_of(columns: Mapping, before_us: int, channels: Sequence[str] = ()) -> Frames:
+def frames_of(columns: Mapping[str, Any], before_us: int, channels: Sequence[str] = ()) -> Frames:
     """Columns as Frames, with these extra channels. before_us: when the sample before them came."""
     t_us = np.asarray(columns["t_us"], np.int64)
     steps = np.clip(np.diff(t_us, prepend=before_us), -_MOST_US, _MOST_US)
@@ -69,7 +71,7 @@ def frames_of(columns: Mapping, before_us: int, channels: Sequence[str] = ()) ->
     return Frames(t_us, frames, steps.astype(np.int32), extra)
 
 
-def _batches(recording: OpenRecording | Recording, rows: int) -> Iterator[dict]:
+def _batches(recording: OpenRecording | Recording, rows: int) -> Iterator[Columns]:
     if isinstance(recording, OpenRecording):
         yield from recording.batches(rows)
         return

@@ -3,7 +3,7 @@
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -53,7 +53,7 @@ def _bias(bias_dps: float, quality_dps: float, source: str) -> str:
 class Area:
     """A part of the terminal that is drawn anew."""
 
-    def __init__(self, area) -> None:
+    def __init__(self, area: Any) -> None:
         self._area = area
 
     def show(self, live: Live, notes: list[str]) -> None:
@@ -88,7 +88,7 @@ def sparkline(values: np.ndarray) -> str:
     return "".join(_BARS[int(s * (len(_BARS) - 1) + 0.5)] for s in share)
 
 
-def _table(live: Live):
+def _table(live: Live) -> Any:
     from rich import box
     from rich.table import Table
 
