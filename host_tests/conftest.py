@@ -67,14 +67,18 @@ class MatrixModel:
     rates_dps: np.ndarray
 
 
+def matrix_slots(error):
+    """Three rate slots that take the error (3, 3) out."""
+    terms = [Term(f"rate_{axis}", -250.0, 250.0) for axis in "xyz"]
+    return [Slot(term, tuple(column), "scale-factor") for term, column in zip(terms, error.T)]
+
+
 @pytest.fixture
 def matrix_model(tmp_path):
     """A MatrixModel; its rates (500, 3) change with every sample."""
     error = np.array([[0.01, 0.002, -0.003], [0.004, -0.02, 0.001], [0.0, 0.005, 0.006]])
-    terms = [Term(f"rate_{axis}", -250.0, 250.0) for axis in "xyz"]
-    slots = [Slot(term, tuple(column), "scale-factor") for term, column in zip(terms, error.T)]
     scales = Scales("MPU-6050", 100.0, 131.0, 16384.0, None, None)
-    write_model(build_model(slots, scales), tmp_path)
+    write_model(build_model(matrix_slots(error), scales), tmp_path)
     rates = np.random.default_rng(1).uniform(-240, 240, (500, 3))
     return MatrixModel(tmp_path / "model.bin", error, 131.0, rates)
 
