@@ -1,5 +1,7 @@
 """When what was learned is saved: once it changed, at rest, and seldom enough for the memory."""
 
+from time import monotonic_ns
+
 import pytest
 from zerorate import Corrector, Sensor
 from zerorate.storage import save_schedule
@@ -79,3 +81,9 @@ class TestSchedule:
         memory.broken = True
         assert [schedule.offer(OLD, [100, 0, 0], second) for second in range(100)] == [False] * 100
         assert schedule.store.failures == 1
+
+
+def test_on_a_host_ticks_are_microseconds_too():
+    before = monotonic_ns()
+    assert before // 1000 <= save_schedule.ticks_us() <= monotonic_ns() // 1000
+    assert save_schedule.ticks_diff(7, 9) == -2

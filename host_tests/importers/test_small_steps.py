@@ -10,10 +10,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from zerorate_tools.importers.columns.guesses import likely_columns
-from zerorate_tools.importers.columns.names import accel_beside
+from zerorate_tools.importers.columns.names import accel_groups, most_alike
+from zerorate_tools.importers.logs import columnar
 from zerorate_tools.importers.logs.messages import table_of_messages
 from zerorate_tools.importers.samples.between import _distance
-from zerorate_tools.importers.tables.columnar import columnar
 
 times = st.lists(st.integers(-1000, 1000), min_size=1, max_size=20)
 
@@ -37,7 +37,7 @@ def test_the_distance_is_that_to_the_nearest_reading(t_us, at):
 )
 def test_the_acceleration_beside_rates_is_the_one_most_alike(gyro, instance, chosen):
     names = [f"{imu}/acc_{axis}" for imu in ("imu1", "imu2") for axis in "xyz"]
-    assert accel_beside(names, {"gx": gyro}, instance)["ax"] == chosen
+    assert most_alike(accel_groups(names), {"gx": gyro}, instance)["ax"] == chosen
 
 
 @pytest.mark.parametrize(("unit", "ns"), [("s", 10**9), ("ms", 10**6), ("us", 1000), ("ns", 1)])
@@ -45,20 +45,20 @@ def test_dates_of_any_unit_are_seconds_since_1970(tmp_path, unit, ns):
     counts = [0, 1, 10**18 // ns, -(10**9) // ns]
     path = tmp_path / "in.parquet"
     pq.write_table(pa.table({"at": pa.array(counts, pa.timestamp(unit))}), path)
-    (chunk,) = columnar(path).chunks(["at"])
+    (chunk,) = columnar.read(path).chunks(["at"])
     assert chunk.columns["at"].tolist() == [count * ns * 1e-9 for count in counts]
 
 
 @pytest.mark.parametrize("rows", [1, 1000, 200_000])
-def test_what_is_read_of_a_file_adds_up_to_its_size(tmp_path, rows):
-    path, read = tmp_path / "in.parquet", []
+def test_rows_come_in_order_a_batch_at_a_time(tmp_path, rows):
+    path = tmp_path / "in.parquet"
     pq.write_table(pa.table({"gx": np.arange(rows), "name": ["a"] * rows}), path)
-    table = columnar(path, read.append)
+    table = columnar.read(path)
     assert table.names == ["gx"]
     chunks = [*table.chunks(["gx"])]
-    places = np.concatenate([chunk.place for chunk in chunks])
-    assert sum(read) == pytest.approx(path.stat().st_size)
-    assert (places == np.arange(rows)).all() and len(chunks) == 1 + (rows - 1 >> 16)
+    for found in ([c.place for c in chunks], [c.columns["gx"] for c in chunks]):
+        assert (np.concatenate(found) == np.arange(rows)).all()
+    assert len(chunks) == 1 + (rows - 1 >> 16)
 
 
 def stamped(**stamp):
@@ -85,9 +85,8 @@ def stamped(**stamp):
     ],
 )
 def test_a_message_without_a_whole_stamp_has_the_time_when_it_was_logged(message, t_us):
-    table = table_of_messages(
-        Path("bag"), {"/imu": "sensor_msgs/Imu"}, lambda: [("/imu", 7000, message)]
-    )
+    logged = [("/imu", 7000, lambda: message)]
+    table = table_of_messages(Path("bag"), {"/imu": "sensor_msgs/Imu"}, lambda: iter(logged))
     (chunk,) = table.chunks(table.names)
     assert chunk.columns["t_us"].tolist() == [t_us]
     assert chunk.columns["/imu/angular_velocity/z"].tolist() == [3.0]
@@ -98,3 +97,36 @@ def test_a_whole_number_that_stays_is_of_a_kind_of_line_and_no_rate(constant, is
     noise = np.random.default_rng(1).normal(0, 20, (2, 50))
     columns = {"a": np.arange(50) * 0.01, "b": noise[0], "c": noise[1], "d": np.full(50, constant)}
     assert bool(likely_columns(columns)) == is_rate
+
+
+def unnamed(draw):
+    """Columns that nothing names, in any order of their groups, and what each group is."""
+    random = np.random.default_rng(draw(st.integers(0, 1000)))
+    n, force = 60, draw(st.sampled_from([1.0, 9.80665]))
+    up = np.sin(np.linspace(0, 9, n)) * draw(st.floats(0.5, 1.5))
+    # no two of the three are as long as gravity
+    accel = force * (1 / np.sqrt(3) + 0.02 * np.array([up, -up, 0 * up]))
+    accel += random.normal(0, force / 50, (3, n))
+    rates = random.normal(0, 0.5 if force > 2 else 60.0, (3, n))
+    turn = np.array([np.cos(up / 2), np.sin(up / 2), 0 * up, 0 * up])
+    unit, count = draw(st.sampled_from([("s", 0.01), ("ms", 10.0), ("us", 10_000.0), ("ns", 1e7)]))
+    begin = draw(st.sampled_from([0.0, 1e9, 1.7e9])) * 0.01 / count if unit == "ns" else 0.0
+    groups = {"t": [begin + np.arange(n) * count], "a": accel, "g": rates}
+    if draw(st.booleans()):
+        groups["q"] = turn
+    if draw(st.booleans()):
+        groups["k"] = [np.full(n, float(draw(st.sampled_from([1, 7, -3]))))]
+    order = draw(st.permutations(sorted(groups)))
+    return unit, force, {f"{g}{i}": v for g in order for i, v in enumerate(groups[g])}, order
+
+
+@given(st.data())
+def test_columns_that_nothing_names_are_told_by_their_values(data):
+    unit, force, columns, order = unnamed(data.draw)
+    gyro_first = order.index("g") < order.index("a")
+    found = likely_columns(columns)
+    accel, rate = ("g", "dps") if force == 1.0 else ("m/s2", "rad/s")
+    wanted = [f"t_us=t0:{unit}"]
+    wanted += [f"{axis}=a{i}:{accel}" for i, axis in enumerate(("ax", "ay", "az"))]
+    wanted += [f"{axis}=g{i}:{rate}" for i, axis in enumerate(("gx", "gy", "gz"))]
+    assert found == wanted, (order, gyro_first)
