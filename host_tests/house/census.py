@@ -1,4 +1,4 @@
-"""How large the house is and how much of it is said twice: python -m host_tests.house.census."""
+"""How large the house is: python -m host_tests.house.census."""
 
 import ast
 import re
@@ -32,9 +32,7 @@ def census(root):
         "lines in them, and those that `make layout` writes": sum(
             [*(len(p.read_text("utf-8").splitlines()) for p in made), *map(made_lines, python)]
         ),
-        "files of more than 300 lines": sum(lines(p) > 300 for p in written),
         "files that say where a word of an array is": len(layouts(firmware)) + 1,
-        "words to learn": words(root / "docs" / "glossary.md"),
     }
 
 
@@ -73,11 +71,6 @@ def several(firmware):
     """The names that stand for different numbers in different files."""
     pairs = {pair for p in firmware for pair in _CONST.findall(p.read_text(encoding="utf-8"))}
     return {name for name, times in Counter(name for name, _ in pairs).items() if times > 1}
-
-
-def words(glossary):
-    """Rows of the glossary."""
-    return sum(line.startswith("|") for line in glossary.read_text().splitlines()) - 2
 
 
 if __name__ == "__main__":
