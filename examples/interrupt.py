@@ -9,6 +9,7 @@ from zerorate_i2c.board import setup
 from zerorate_i2c.data_ready import DataReady
 
 imu = setup(scl=5, sda=4)
+print("found:", imu.part)
 ready = DataReady(imu, Pin(6, Pin.IN))
 corrector = CheckedCorrector(Corrector(Sensor(*imu.scales)))
 sample = array("i", [0] * 7)

@@ -9,6 +9,7 @@ gc.threshold(1024)  # a small heap stays in one piece while what follows is load
 from zerorate_i2c.board import setup
 
 imu = setup(scl=5, sda=4)
+print("found:", imu.part)
 from zerorate import Corrector, Sensor
 
 learner = Corrector(Sensor(*imu.scales))

@@ -8,6 +8,7 @@ from zerorate_i2c.board import setup
 from zerorate_i2c.fifo import EMPTY, Fifo
 
 imu = setup(scl=5, sda=4)  # GP5 and GP4 of a Pico; on an ESP32 scl=22, sda=21
+print("found:", imu.part)
 fifo = Fifo(imu)
 corrector = CheckedCorrector(Corrector(Sensor(*imu.scales)))
 sample = array("i", [0] * 7)  # ax ay az temp gx gy gz, raw LSB

@@ -17,8 +17,8 @@ def identify(registers, name):
     try:
         who_am_i = registers.read_register(_WHO_AM_I)
     except OSError as error:
-        text = "nothing answers at I2C address 0x{:02x}, no id was read: check power, wiring, AD0"
-        raise OSError(error.args[0], text.format(registers.address))
+        text = "nothing answers at I2C address 0x{:02x}, no id was read: check power, wiring, AD0{}"
+        raise OSError(error.args[0], text.format(registers.address, scanned(registers.i2c)))
     row = part_by_id(who_am_i) if name is None else part_by_name(name)
     if who_am_i in (0x00, 0xFF):
         raise wrong_device(registers, who_am_i, "a dead bus: check pull-ups and wiring")
@@ -26,6 +26,15 @@ def identify(registers, name):
         advice = "no part known: if you know which one it is, name it, as in part='MPU-6500'"
         raise wrong_device(registers, who_am_i, advice)
     return who_am_i, row
+
+
+def scanned(i2c):
+    """What else answers on the bus, to be added to a sentence; "" of a bus that cannot look."""
+    try:
+        seen = ["0x%02x" % address for address in i2c.scan()]
+    except (AttributeError, OSError):
+        return ""
+    return "; a scan of the bus sees " + (", ".join(seen) or "nothing at all")
 
 
 def wrong_device(registers, who_am_i, rest):

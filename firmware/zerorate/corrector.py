@@ -127,7 +127,12 @@ class Corrector:
                 )
                 unload(package, name)
                 self._join_others()
-            except (ImportError, ValueError) as error:
+            except ImportError:
+                if wanted:
+                    raise
+                text = "Left out: %s is not on this board; zerorate flash --with %s sends it."
+                self.left_out.append(text % (part, part))
+            except ValueError as error:
                 if wanted:
                     raise
                 self.left_out.append("Left out: %s." % error)

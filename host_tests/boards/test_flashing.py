@@ -1,6 +1,7 @@
 """The firmware put on an emulated Pico: stock MicroPython on an emulated RP2040."""
 
-from zerorate_tools.boards.connection import connected
+import pytest
+from zerorate_tools.boards.connection import BoardError, connected
 from zerorate_tools.boards.flashing import flash
 
 
@@ -17,6 +18,18 @@ def test_forty_four_kilobytes_at_most_are_sent(pico):
 
 def test_flashing_again_sends_nothing(pico):
     assert flash(pico.port, say=lambda line: None).sent_bytes == 0
+
+
+def test_a_board_with_little_heap_says_so_in_a_sentence(pico):
+    hog = "import gc\ngc.collect()\nhog = bytearray(gc.mem_free() - 9000)\n"
+    with connected(pico.port, go_on=False) as board:
+        board.fs_writefile("boot.py", hog.encode())
+    try:
+        with pytest.raises(BoardError, match="too little heap free; .*boot.py"):
+            flash(pico.port, parts=["motion"], say=lambda line: None)
+    finally:
+        with connected(pico.port, go_on=False) as board:
+            board.exec("import os\nos.remove('boot.py')")
 
 
 def test_power_cut_while_a_part_is_put_in_place_leaves_a_firmware_that_runs(pico, monkeypatch):

@@ -1,5 +1,7 @@
 """Boards on a serial port: flashed and recorded from, the unix port standing in for one."""
 
+import os
+import pty
 import re
 import sys
 import threading
@@ -8,8 +10,8 @@ from pathlib import Path, PurePosixPath
 import pytest
 from zerorate_fakes import FakeI2C, FakeMPU6050
 from zerorate_fakes.smbus import SMBus
-from zerorate_tools.boards.connection import BoardError
-from zerorate_tools.boards.flashing import flash
+from zerorate_tools.boards.connection import BoardError, BoardFacts
+from zerorate_tools.boards.flashing import flash, older
 from zerorate_tools.boards.frames import MESSAGE, SAMPLE, FrameReader, encode
 from zerorate_tools.boards.recording import record
 from zerorate_tools.cli import main
@@ -45,6 +47,47 @@ def blank_board(find_runtime, tmp_path):
     board.close()
 
 
+class TestPortThatDoesNotOpen:
+    """Each reason has its own sentence, with what to do."""
+
+    def said(self, capsys, port):
+        assert main(["flash", str(port)]) == 2
+        (line,) = capsys.readouterr().err.splitlines()
+        return line
+
+    def test_no_such_port(self, capsys):
+        assert "plugged in" in self.said(capsys, "/dev/no-such-port")
+
+    def test_a_port_that_another_program_has_open(self, capsys):
+        serial = pytest.importorskip("serial")
+        _, slave = pty.openpty()
+        with serial.Serial(os.ttyname(slave), exclusive=True):
+            assert "another program has it open" in self.said(capsys, os.ttyname(slave))
+
+    @pytest.mark.parametrize("name", ["a-file", "."])
+    def test_what_is_no_serial_port(self, capsys, tmp_path, name):
+        (tmp_path / "a-file").write_text("")
+        assert "is no serial port" in self.said(capsys, tmp_path / name)
+
+    def test_a_port_of_another_group(self, capsys, monkeypatch):
+        def refuse(*args, **options):
+            raise PermissionError(13, "Permission denied")
+
+        monkeypatch.setattr("serial.Serial.open", refuse)
+        assert "dialout" in self.said(capsys, "/dev/ttyACM0")
+
+
+@pytest.mark.parametrize(
+    ("mpy", "architecture", "told"),
+    [((6, 1), "armv6m", True), ((6, 2), "rv32imc", True), ((6, 3), "armv6m", False)]
+    + [((6, 2), "xtensawin", False), ((5, 0), "armv6m", False)],
+)
+def test_a_micropython_too_old_for_machine_code_is_told(mpy, architecture, told):
+    lines = older(BoardFacts(version=(1, 22, 0), mpy=mpy, architecture=architecture))
+    assert bool(lines) == told
+    assert all("bytecode" in line and "1.23" in line for line in lines)
+
+
 class TestFlash:
     @pytest.fixture
     def flashed(self, blank_board):
@@ -59,7 +102,7 @@ class TestFlash:
     def test_a_dry_run_without_a_board_lists_what_any_board_would_get(self):
         said = []
         flashed = flash("/dev/no-such-port", dry_run=True, say=said.append)
-        assert "/dev/no-such-port: cannot be opened" in said[0]
+        assert "/dev/no-such-port: is not there" in said[0]
         assert PurePosixPath("lib/zerorate_i2c/mpu6050.mpy") in flashed.files
         assert f"{flashed.total:8d}  bytes" in said[-2]
         assert "heap needed" in said[-1]
@@ -181,7 +224,7 @@ class TestFlash:
             flash("/dev/no-such-port", **{option: Path("nowhere")})
 
     def test_no_board_is_one_line(self):
-        with pytest.raises(BoardError, match="/dev/no-such-port: cannot be opened"):
+        with pytest.raises(BoardError, match="/dev/no-such-port: is not there"):
             flash("/dev/no-such-port")
 
 

@@ -27,6 +27,14 @@ FACTS = {  # reference: data sheets, temperature formula and FIFO size by WHO_AM
 }
 
 
+def test_where_no_chip_answers_a_scan_of_the_bus_is_told():
+    bus = FakeI2C({0x69: FakeMPU6050()})
+    with pytest.raises(OSError, match="a scan of the bus sees 0x69"):
+        MPU6050(bus, clock=FakeClock())
+    with pytest.raises(OSError, match="sees nothing at all"):
+        MPU6050(FakeI2C({}), clock=FakeClock())
+
+
 def test_the_table_of_parts_has_every_id_once_known():
     assert {row[0] for row in PARTS} == set(FACTS)
 

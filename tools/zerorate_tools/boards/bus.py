@@ -41,7 +41,7 @@ def record_bus(
     check_every = max(1, min(100, round(options.get("odr_hz", 100) * _VERIFY_S)))
     imu = MPU6050(i2c, clock=time_source, **{"check_every": check_every, **options})
     values = {name: getattr(imu, name) for name in (*_SCALES, "temp_offset_degc", "binding")}
-    result, scales = Recorded(), scales_of({**values, "source": source})
+    result, scales = Recorded(part=values["part"]), scales_of({**values, "source": source})
     with growing_recording(out, COLUMNS, scales) as growing:
         recorder = Recorder(appending(growing.append, heard, scales), imu.period_us, result)
         failure = _run(_feed(imu), imu, recorder, seconds, done)

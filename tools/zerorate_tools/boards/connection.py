@@ -1,10 +1,12 @@
 """A MicroPython board on a serial port, through mpremote's raw REPL."""
 
 import ast
+import errno
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stdout, suppress
 from dataclasses import dataclass
 from io import StringIO
+from pathlib import Path
 
 from ..errors import MissingLibrary, ZerorateError
 
@@ -27,6 +29,15 @@ _ARCHITECTURES = (
 )
 
 
+#: errno -> why a port does not open, and what to do.
+_CLOSED: dict[int | None, str] = {
+    errno.EACCES: "no permission; sudo usermod -aG dialout $USER, then log in again",
+    errno.EPERM: "no permission; sudo usermod -aG dialout $USER, then log in again",
+    errno.EBUSY: "another program has it open; close that terminal, Thonny or mpremote",
+    errno.EAGAIN: "another program has it open; close that terminal, Thonny or mpremote",
+}
+
+
 class BoardError(ZerorateError):
     """A board that does not answer, or does not do what it was told."""
 
@@ -40,17 +51,19 @@ def connected(port: str, go_on: bool = True) -> Iterator:
     board that says nothing.
     """
     try:
-        from mpremote.transport import TransportError
+        from mpremote.transport import TransportError, TransportExecError
         from mpremote.transport_serial import SerialTransport
     except ImportError as error:
         raise MissingLibrary("mpremote") from error
     try:
         transport = SerialTransport(port, timeout=2)
-    except TransportError as error:
-        raise BoardError(f"{port}: cannot be opened; is the board plugged in?") from error
+    except (TransportError, OSError) as error:
+        raise BoardError(f"{port}: {_why_closed(port)}") from error
     try:
         _stop(transport)
         yield transport
+    except TransportExecError as error:
+        raise BoardError(f"{port}: {_said(error.error_output)}") from error
     except TransportError as error:
         raise BoardError(f"{port}: {error}; is MicroPython on this board?") from error
     finally:
@@ -71,6 +84,42 @@ def _stop(transport) -> None:
         except TransportError:
             if patience_s == _PATIENCE_S[-1]:
                 raise
+
+
+def _why_closed(port: str) -> str:
+    """Why a port cannot be opened, which mpremote does not tell, and what to do."""
+    from serial import Serial
+
+    try:
+        Serial(port, exclusive=True).close()
+    except (OSError, ValueError) as error:
+        if (code := getattr(error, "errno", None)) in _CLOSED:
+            return _CLOSED[code]
+        what = "is no serial port" if Path(port).exists() else "is not there"
+        return f"{what}; {_plugged_in()}"
+    return "could not be opened a moment ago; try again"
+
+
+def _plugged_in() -> str:
+    from serial.tools.list_ports import comports
+
+    ports = [port.device for port in comports() if port.vid is not None]
+    if not ports:
+        return "no board is plugged in, by USB's own list; is it a cable with data wires?"
+    return f"USB ports here: {', '.join(sorted(ports))}"
+
+
+def _said(traceback: str) -> str:
+    """What a program of these tools met on a board, and what to do."""
+    last = [line.strip() for line in traceback.splitlines() if line.strip()][-1]
+    if last.startswith("MemoryError"):
+        return (
+            "the board has too little heap free; let its boot.py take less, leave out parts, or "
+            "freeze the packages into its image (docs/boards.md)"
+        )
+    if "ENOSPC" in last or "Errno 28" in last:
+        return "the board's file system is full; delete files on it: mpremote rm :FILE"
+    return f"the board says: {last}"
 
 
 def _let_run(serial) -> None:

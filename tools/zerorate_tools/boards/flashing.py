@@ -9,7 +9,7 @@ from importlib.resources import files
 from pathlib import Path, PurePosixPath
 
 from ..errors import InFile
-from .compiling import board_files, machine_code
+from .compiling import board_files, machine_code, mpy_version
 from .connection import BoardError, BoardFacts, ask, connected, told
 from .parts import PACKAGES, REST, chosen_parts, parts_there
 
@@ -103,13 +103,29 @@ def _told(port: str, parts, extra, say, only: bool) -> Flashed:
         say(f"{len(data):8d}  {name}")
     flashed = Flashed(facts, {name: len(data) for name, data in contents.items()})
     say(f"{flashed.total:8d}  bytes in {len(contents)} files, of {', '.join(parts)} (dry run)")
-    for line in room(facts, parts, flashed.total):
+    for line in [*older(facts), *room(facts, parts, flashed.total)]:
         say(line)
     return flashed
 
 
 def _packages(parts, facts: BoardFacts, code: str) -> dict[PurePosixPath, bytes]:
     return {_LIBRARY / name: data for name, data in board_files(parts, facts, code).items()}
+
+
+def older(facts: BoardFacts) -> list[str]:
+    """A line where a newer MicroPython would run machine code, and this one does not."""
+    from .needs import needs
+
+    newest = mpy_version()
+    kinds = ("armv", "rv32")
+    if facts.mpy[0] != newest[0] or facts.mpy >= newest or facts.architecture[:4] not in kinds:
+        return []
+    cycles = needs()["cycles"]
+    slower = round(cycles["bytecode"] / cycles["median"], -1)
+    return [
+        f"this MicroPython loads no machine code of .mpy {newest[0]}.{newest[1]}: kernels run as "
+        f"bytecode, some {slower:.0f} times slower; MicroPython 1.23 or newer runs it"
+    ]
 
 
 def room(facts: BoardFacts, parts: Iterable[str], total: int) -> list[str]:
@@ -160,6 +176,8 @@ class Installer:
         for package in PACKAGES:  # what an attempt before this one left whole beside main.py
             self._do(f"if is_folder({package!r}): put_in_place(None, {package!r}, {_LIBRARY!r})")
         code = machine_code(facts)
+        for line in older(facts):
+            self._say(line)
         parts = self.with_those_there(parts, only)
         flashed = self._install_packages(_packages(parts, facts, code), facts)
         if code and (why := self._do(_TRIAL).strip()):

@@ -41,7 +41,7 @@ def record_port(
         scales = stream.scales()
         with growing_recording(out, COLUMNS, scales) as growing:
             append = appending(growing.append, heard, scales)
-            recorder = Recorder(append, 1e6 / scales.odr_hz, Recorded())
+            recorder = Recorder(append, 1e6 / scales.odr_hz, Recorded(part=scales.sensor))
             failure = stream.record(recorder, seconds, done)
             recorder.confirm() if failure is None else recorder.discard()
     if failure:

@@ -20,7 +20,8 @@ class Recorded:
     """What a recording came to: samples written, lost on the way (never seen), dropped as doubtful.
 
     dropped: frames a board sent that never arrived (among the lost); bytes_skipped: in no frame;
-    restarts: the chip had to be configured again; bus_errors: transfers that failed.
+    restarts: the chip had to be configured again; bus_errors: transfers that failed;
+    part: the chip.
     """
 
     samples: int = 0
@@ -31,6 +32,7 @@ class Recorded:
     dropped: int = 0
     bytes_skipped: int = 0
     seconds: float = 0.0
+    part: str = ""
 
     def kept(self, out: Path) -> str:
         """Where the samples are, for an error that ended a recording."""
@@ -45,6 +47,7 @@ class Recorded:
 
     def __str__(self) -> str:
         text = (
+            f"{self.part}{', ' if self.part else ''}"
             f"{self.samples} samples in {self.seconds:.1f} s ({self.rate_hz:.1f} Hz), "
             f"{self.lost} lost, {self.doubtful} dropped as doubtful"
         )
