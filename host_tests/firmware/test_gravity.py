@@ -91,13 +91,44 @@ def test_the_truth_lies_within_two_sigma_at_least_ninety_times_of_a_hundred():
     assert np.mean(inside) >= 0.9
 
 
-def test_where_nothing_pushes_one_sigma_is_the_finest_step():
+@pytest.mark.parametrize("turns", [3, 4, 7])
+def test_where_nothing_pushes_one_sigma_is_the_finest_step(turns):
     settings = gravity_settings()
     state = gravity_state(settings)
-    state[GRAVITY.SIGN_TURNS], state[OBSERVED] = 3, 1
+    unknown = state[SIGMA]
+    state[GRAVITY.SIGN_TURNS], state[OBSERVED] = 2, 1
+    gravity.judge(state, settings, 0)
+    assert state[SIGMA] == unknown
+    state[GRAVITY.SIGN_TURNS] = turns
     state[GRAVITY.STEP_Q8] = settings[GRAVITY_SETTINGS.FINE_Q8]
     gravity.judge(state, settings, 0)
     assert state[SIGMA] == settings[GRAVITY_SETTINGS.FINE_Q8]
+
+
+@pytest.mark.parametrize("options", [{}, {"document": True}])
+def test_a_sub_unit_has_two_samples_at_least(options):
+    assert gravity_settings(odr_hz=4.0, **options)
+    with pytest.raises(ValueError, match="4 Hz or more, not 3.9"):
+        gravity_settings(odr_hz=3.9, **options)
+
+
+def test_by_the_document_every_deviation_counts_and_sub_units_are_short():
+    words = GRAVITY_SETTINGS
+    literal = gravity_settings(document=True)
+    assert literal[words.DEAD_Q13] == literal[words.THRESHOLD] == literal[words.PUSH_Q2] == 0
+    assert literal[words.SUB_UNIT_US] == 250_000
+    assert gravity_settings(odr_hz=7.9, document=True)[words.SUB_UNIT_US] == 500_000
+
+
+@pytest.mark.parametrize("dt_us", [0, -1, 10_000_000])
+def test_a_gap_begins_the_sub_unit_anew_and_ends_no_interval(dt_us):
+    settings = gravity_settings()
+    state = gravity_state(settings)
+    frame = [0, 0, 16384, 0, 9, 9, 9]
+    assert gravity.update(state, settings, frame, 10_000) == 0 < state[GRAVITY.UNIT_N]
+    assert gravity.update(state, settings, frame, dt_us) == 0
+    assert state[GRAVITY.UNIT_N] == state[GRAVITY.UNIT_ELAPSED_US] == 0
+    assert state[REASON] == GRAVITY_REASON.GRAVITY_GAP
 
 
 def test_a_threshold_that_no_interval_can_pass_is_refused():
