@@ -66,7 +66,7 @@ AREAS = {
     "rest": (
         ["firmware/zerorate/rest/" + name for name in (
             "bias.py", "block.py", "copying.py", "estimators.py", "fit.py", "histogram.py",
-            "recent.py", "step.py", "stillness.py", "turning.py")],
+            "recent.py", "step.py", "stillness.py")],
         ["host_tests/firmware/test_" + name for name in (
             "estimators.py", "fit.py", "histogram.py", "read_out.py", "turning.py", "stillness.py",
             "turn_on.py", "quality.py", "guard.py", "bursts.py",

@@ -11,7 +11,7 @@ _FIT_WEIGHTS = const(98)
 # layout: The last words before the axes
 _TURN_ON_OFFSET_Q8 = const(-3)
 # layout: An axis
-_ESTIMATORS = const(39)
+_ESTIMATORS = const(40)
 # layout: An estimator
 _EST_HISTOGRAM = const(5)
 # layout: The corrector's settings
@@ -68,7 +68,11 @@ _MOST_SIGMA_Q6 = const(50)
 _FULL_WEIGHT_Q12 = const(51)
 _SLOPE_Q16 = const(52)
 _NEAR = const(53)
-_SETTINGS_WORDS = const(54)
+_TURNING_LSB = const(54)
+_TURN_HALVES = const(55)
+_TILT_SPEED = const(56)
+_ONE_G = const(57)
+_SETTINGS_WORDS = const(58)
 # layout: end
 # of how many times the variance that noise gives it gravity's slope may be: 15 by chi squared of 3
 _LEAN_NOISE = const(5)
@@ -96,6 +100,8 @@ DEFAULTS = {
     "refit_degc": 0.25,  # the line is fitted again where the temperature moved so far
     "floor_dps": 0.002,  # flicker noise at first: by how much rests differ beyond white noise
     "gate_dps": 0.3,  # a rest this near to what was expected is plausible
+    "turning_dps": 1.0,  # one sigma of what an apparent rest may turn about the vertical
+    "turning_s": 100.0,  # a rest of that time halves it
     "insist_s": 60.0,  # an implausible rest that lasts so long is believed
     "walk_dps": 0.0013,  # speed of the offset's walk at first, a root second
     "walk_least_dps": 0.0001,  # slowest that is learned
@@ -198,6 +204,7 @@ def windows(c, rate, lsb, sensor, limits):
     c[_STILL_ACCEL_Q8] = (accel * limits["still_g"] * 16).squared()
     # LSB that gravity may move
     a_window = window_s * limits["turn_dps"] * 0.0174533 * accel
+    c[_ONE_G] = max(1, min(0x7FF, (accel / 16).nearest()))
     c[_TIP_LIMIT_Q8] = (a_window * max(1, n - 1) * 16).squared()
     c[_LEAN_LIMIT_Q4] = (a_window * n * (n * n - 1) / 6 * 4).squared()
     c[_LEAN_NOISE_FACTOR_Q4] = _LEAN_NOISE * (n * n - 1) // 3
@@ -264,6 +271,9 @@ def recent_of(c, rate, lsb, degree, limits):
     c[_FLOOR_Q8] = (lsb * limits["floor_dps"] * 16).squared(1 << 14)
     c[_GATE_Q4] = max(1, min(0x7FFF, (lsb * limits["gate_dps"] * 16).floor()))
     c[_INSIST] = max(3, (Ratio(limits["insist_s"]) / segment_s).nearest())
+    c[_TURNING_LSB] = max(1, min(0x3FFF, (lsb * limits["turning_dps"]).floor()))
+    c[_TURN_HALVES] = max(1, min(400, (Ratio(limits["turning_s"]) / segment_s).nearest()))
+    c[_TILT_SPEED] = max(1, min(4095, (lsb * 57.2958 / segment_s / 16).nearest()))
     c[_WALK_MOST_Q16] = (lsb * limits["walk_most_dps"] * 256).squared(1 << 23)
     c[_WALK_LEAST_Q16] = (lsb * limits["walk_least_dps"] * 256).squared(c[_WALK_MOST_Q16])
     c[_PROVISIONAL_Q8] = max(1, min(1 << 28, (lsb * limits["turn_dps"] * 256).floor()))

@@ -47,6 +47,7 @@ _GRAVITY_REASON = const(49)
 _SKIPPED = const(50)
 _MEAN_ALONG_Q20 = const(51)
 _SPREAD_Q21 = const(54)
+_LEFT_OUT_Q13 = const(55)
 # layout: The settings of the source against gravity
 _SUB_UNIT_US = const(0)
 _GRAVITY_GAIN = const(1)
@@ -79,7 +80,7 @@ _RADIAN_Q13 = const(8192)
 
 def clear(s: ptr32, c: ptr32):
     """Forget the offsets and everything counted."""
-    for i in range(_SPREAD_Q21 + 1):
+    for i in range(_LEFT_OUT_Q13 + 3):
         s[i] = 0
     for i in range(3):
         s[_STEP_Q8 + i] = c[_COARSE_Q8]
@@ -203,6 +204,7 @@ def coupled_q13(s: ptr32, i: int, square: int) -> int:
     mean += ((along << 8) - mean) >> 5
     s[_MEAN_ALONG_Q20 + i] = mean
     along -= mean >> 8
+    s[_LEFT_OUT_Q13 + i] = ((mean >> 8) * (s[_FORCE_SUM + i] >> 1)) // square
     return (along * (s[_FORCE_SUM + i] >> 1)) // square
 
 
@@ -280,6 +282,9 @@ def judge(s: ptr32, c: ptr32, i: int):
     if s[_SIGN_TURNS + i] < 3 and c[_PUSH_Q2] or s[_OBSERVED + i] == 0:
         return
     pushed = (s[_SPREAD_Q21] * c[_PUSH_Q2]) >> 10
+    turned = clipped(s[_LEFT_OUT_Q13 + i], _RADIAN_Q13)
+    turned = turned if turned > 0 else 0 - turned
+    pushed += turned * c[_PUSH_Q2] << 2  # a turn that lasts was taken for bias
     if c[_PUSH_Q2] == 0:  # the literal rules
         pushed = c[_FINE_Q8] << 2
     s[_GRAVITY_QUALITY_Q8 + i] = (s[_RIPPLE_Q8 + i] << 1) + s[_STEP_Q8 + i] + pushed

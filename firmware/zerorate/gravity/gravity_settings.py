@@ -7,7 +7,7 @@ from ..arithmetic.ratio import PI, Ratio
 # layout: names that a board's own compiler reads
 const = int
 # layout: The state of the source against gravity
-_GRAVITY_WORDS = const(55)
+_GRAVITY_WORDS = const(58)
 # layout: The settings of the source against gravity
 _SUB_UNIT_US = const(0)
 _GRAVITY_GAIN = const(1)

@@ -234,21 +234,28 @@ def false_turn(s: ptr32, c: ptr32):
     multiply(s, _T2, _T2, _T)
 
 
+def own_squares(s: ptr32, i: int):
+    """Store at _T the sum of squares of component i's three M."""
+    k = 3
+    square = 0
+    a = _SUMS + _COMPONENT_WORDS * i
+    while k > 0:
+        square += s[a]
+        a += k
+        k -= 1
+    a = 2 * s[_STAGE] - 42
+    put(s, _T, square, a)
+
+
 def weigh(s: ptr32, c: ptr32, i: int):
     """Replace component i's noise energy by the weight it gives beside the false turn at _T2."""
-    a = _SUMS + _COMPONENT_WORDS * i
-    square = 0
-    for k in range(3):
-        square += s[a]
-        a += 3 - k
-    put(s, _T, square, 2 * s[_STAGE] - 42)
+    own_squares(s, i)
     multiply(s, _T1, _T, _T2)
-    a = _OMEGA + 2 * i
     put(s, _T, c[_HEADING_SPREAD] if i == 2 else c[_TILT_SPREAD], 0)
-    multiply(s, _T, _T, a)
+    multiply(s, _T, _T, _OMEGA + 2 * i)
     add(s, _T1, _T1, _T)
     put(s, _T, 1, 0)
-    divide(s, a, _T, _T1)
+    divide(s, _OMEGA + 2 * i, _T, _T1)
 
 
 def held_weights(s: ptr32, c: ptr32):

@@ -9,6 +9,7 @@ from ..arithmetic.fixed import clipped
 from ..arithmetic.real import add, copy, divide, multiply, put, subtract, whole
 from .least_squares import covariance, less, place
 from .posterior import follow_turn
+from .regression import mean
 from .thermal import forget_slopes, learn_slope, variance_at
 
 # layout: names that a board's own compiler reads
@@ -45,6 +46,7 @@ _CENTRE = const(214)
 _NOISE_ENERGY = const(223)
 _MISFIT_Q16 = const(241)
 _VERTICAL = const(242)
+_TURN_SUM = const(245)
 # layout: The settings of the source in motion
 _LEAST_TRAFFIC = const(7)
 _NODES = const(8)
@@ -148,13 +150,25 @@ def verdict(s: ptr32, c: ptr32) -> int:
     return _LEARNED
 
 
+def net(s: ptr32) -> int:
+    """Return the sum of the half turns that did not come back, as _TRAFFIC."""
+    total = 0
+    for i in range(3):
+        turn = mean(s, s[_TURN_SUM + i])
+        total += turn if turn > 0 else 0 - turn
+    return total << s[_STAGE]
+
+
 def moves(s: ptr32, c: ptr32) -> int:
     """Return 1 if the window moves enough to teach, else 0."""
-    # A slow turn about the vertical looks like a bias. So a slow window must mostly tilt, which
-    # gravity shows: a hand, a boat and a crane do, a car and a turntable do not.
-    if s[_TRAFFIC] >= c[_LEAST_TRAFFIC] << s[_STAGE]:
+    # Only what comes back counts: a turn that goes on looks like a bias. A slow one about the
+    # vertical does too, so a slow window must mostly tilt, which gravity shows: a hand, a boat and
+    # a crane do, a car and a turntable do not.
+    back = s[_TRAFFIC] - net(s)
+    if back >= c[_LEAST_TRAFFIC] << s[_STAGE]:
         return 1
-    return 0 if s[_TILTED] < c[_LEAST_TILT] << s[_STAGE] or s[_TILTED] << 1 < s[_TRAFFIC] else 1
+    least = c[_LEAST_TILT] << s[_STAGE]
+    return 0 if back < least or s[_TILTED] < least or s[_TILTED] << 1 < s[_TRAFFIC] else 1
 
 
 def louder(s: ptr32) -> int:

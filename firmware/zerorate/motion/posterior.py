@@ -8,13 +8,13 @@ tails about no bias. It is a mixture of normal ones: where the bias is b, of the
 
 from ..arithmetic.real import add, copy, divide, multiply, put, root_of, whole
 from .least_squares import place, spread_prior
+from .regression import mean
 from .thermal import present, variance_at
 
 # layout: names that a board's own compiler reads
 const = int
 ptr32 = None
 # layout: The state of the source in motion
-_TAPER_SUM = const(18)
 _MOTION_BIAS_Q8 = const(71)
 _MOTION_QUALITY_Q8 = const(74)
 _SLOPE = const(185)
@@ -52,11 +52,17 @@ def follow_turn(s: ptr32, i: int):
     a = variance_at(i)
     add(s, _T, a, place(i, i))  # less the variance that the window leaves
     divide(s, _T, _T, a)
-    gain = whole(s, _T, 14)
-    for a in range(_TURN_MEAN + 3 * i, _TURN_MEAN + 3 * i + 3):
-        turn = s[_TURN_SUM + (a - _TURN_MEAN) % 3]
-        turn = (turn << 8) // (s[_TAPER_SUM] >> 2) - s[a]
-        s[a] += (gain * turn + 0x2000) >> 14
+    a = whole(s, _T, 14)
+    follow_component(s, i, 0, a)
+    follow_component(s, i, 1, a)
+    follow_component(s, i, 2, a)
+
+
+def follow_component(s: ptr32, i: int, k: int, gain: int):
+    """Move component k of axis i's mean turn towards the window's by a gain, Q14."""
+    a = _TURN_MEAN + 3 * i + k
+    turn = mean(s, s[_TURN_SUM + k]) - s[a]
+    s[a] += (gain * turn + 0x2000) >> 14
 
 
 def filter_variance(s: ptr32, c: ptr32, i: int):

@@ -16,7 +16,7 @@ _LINE_SAMPLES = const(21)
 _LINE_POINTS = const(22)
 _BEYOND = const(32)
 _KIND = const(33)
-_ESTIMATORS = const(39)
+_ESTIMATORS = const(40)
 # layout: An estimator
 _EST_BIAS_Q8 = const(2)
 _EST_READINGS = const(3)

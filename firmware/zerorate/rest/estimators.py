@@ -23,7 +23,7 @@ _LEARNED_N = const(5)
 _ORDER = const(6)
 _FLOOR_Q16 = const(35)
 _LEAVES_Q16 = const(36)
-_ESTIMATORS = const(39)
+_ESTIMATORS = const(40)
 # layout: An estimator
 _EST_TEMP = const(0)
 _EST_MEAN_TEMP_Q4 = const(1)

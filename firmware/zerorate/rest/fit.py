@@ -46,7 +46,7 @@ _LINE_POINTS = const(22)
 _BOW_Q6 = const(23)
 _BOW_MEAN_Q14 = const(24)
 _BOW_LEAN_Q14 = const(25)
-_ESTIMATORS = const(39)
+_ESTIMATORS = const(40)
 # layout: An estimator
 _EST_TEMP = const(0)
 _EST_MEAN_TEMP_Q4 = const(1)

@@ -3,22 +3,26 @@
 # One number an axis, added to the learned curve: a random walk seen through the mean of every still
 # segment, weighed by a scalar Kalman filter. How fast it walks is learned from how far each segment
 # lies from what was expected. A segment that lies implausibly far is learned only when it insists:
-# a constant turn about the vertical looks just like it, but does not last.
+# a constant turn about the vertical looks just like it, but does not last. A turn is along
+# gravity, while a bias that jumps has a direction of its own in the body.
 #
 # Variances are LSB^2 in Q8, the walk LSB^2/s in Q16.
 
 from ..arithmetic.fixed import clipped, scaled
 from .bias import curve_q8
 from .estimators import find
+from .stillness import hidden_q4, level_q4, size, up
 
 # layout: names that a board's own compiler reads
 const = int
 ptr32 = None
 # layout: The corrector's state
+_REST = const(34)
 _TEMP = const(51)
 _NOISE_Q8 = const(53)
 _LEARN_TEMP = const(58)
 _RESTS = const(60)
+_TARGET_Q8 = const(73)
 _MEAN_NOISE_Q8 = const(86)
 _GROWN_Q8 = const(87)
 # layout: The last words before the axes
@@ -41,8 +45,9 @@ _KIND = const(33)
 _FLOOR_Q16 = const(35)
 _LEAVES_Q16 = const(36)
 _LEFT_Q4 = const(37)
-_DOUBT_Q8 = const(38)
-_ESTIMATORS = const(39)
+_DOUBT_Q4 = const(38)
+_HELD_Q4 = const(39)
+_ESTIMATORS = const(40)
 # layout: An estimator
 _EST_READINGS = const(3)
 _EST_SPREAD_Q8 = const(4)
@@ -63,6 +68,7 @@ _EVERY = const(48)
 # layout: Values that stand for none
 _NO_VALUE = const(-0x3FFFFFFF)
 # layout: end
+_MOST_DOUBT_Q4 = const(0x7FFFF)
 _NEIGHBOURS_MS = const(4000)  # segments of one rest follow each other faster
 _LONGER = const(-4)  # so many times as long must a rest insist that may be a turn
 _STEEPEST_Q16 = const(4095)  # times the farthest temperature it fits 31 bits
@@ -121,6 +127,85 @@ def well_known(s: ptr32, c: ptr32, a: int) -> int:
     return 1 if s[a + _ESTIMATORS + _EST_READINGS] >> c[_WINDOW_SHIFT] >= n else 0
 
 
+def off_q1(s: ptr32, c: ptr32, axis: int) -> int:
+    """Return how far the waiting segment lies from the bias that is subtracted: LSB, Q1."""
+    a = c[_AXES] + axis * c[_AXIS_WORDS]
+    n = s[a + _WAITING_N]
+    mean = s[a + _WAITING_SUM]
+    mean = ((mean // n) << 8) + ((mean % n) << 8) // n
+    return clipped((mean - s[_TARGET_Q8 + axis]) >> 7, 0x3FFF)
+
+
+def along(s: ptr32, c: ptr32) -> int:
+    """Return the segment's error, LSB Q1, times gravity, in units of 16 LSB."""
+    total = 0
+    for i in range(3):
+        total += off_q1(s, c, i) * up(s, i)
+    return total
+
+
+def square(s: ptr32, c: ptr32) -> int:
+    """Return the square of the segment's error: LSB^2, Q2."""
+    total = off_q1(s, c, 0) * off_q1(s, c, 0) + off_q1(s, c, 1) * off_q1(s, c, 1)
+    return total + off_q1(s, c, 2) * off_q1(s, c, 2)
+
+
+def seems_a_turn(s: ptr32, c: ptr32) -> int:
+    """Return 1 if the waiting segment's error is along gravity or too small to show yet."""
+    g = size(s)
+    if g == 0:
+        return 0
+    turn = along(s, c) // g
+    aside = square(s, c) - turn * turn
+    turn = 2 * turn // 5
+    g = level_q4(s, c, g) >> 2  # Q1, twice
+    return 1 if aside <= turn * turn + g * g else 0
+
+
+def suspect_turn(s: ptr32, c: ptr32):
+    """Note for the waiting segment of every axis what it may hide, and whether it may be a turn."""
+    # A turn only where the bias is well known: from as long a rest as must insist, and found again
+    # since power-on. It insists anew in every rest: only an unbroken one tells that it is none.
+    turn = seems_a_turn(s, c)
+    note(s, c, 0, turn)
+    note(s, c, 1, turn)
+    note(s, c, 2, turn)
+
+
+def note(s: ptr32, c: ptr32, axis: int, turn: int):
+    """As suspect_turn, for one axis."""
+    # _OFFER: minus twice what the segment may hide, LSB Q4, and minus 1 where it may be a turn.
+    a = c[_AXES] + axis * c[_AXIS_WORDS]
+    s[a + _OFFER] = 0 - 2 * hidden_q4(s, c, axis)
+    if turn and s[a + _LEFT_Q4] != _NO_VALUE and well_known(s, c, a):
+        s[a + _OFFER] -= 1
+    if s[_REST] < 2 and s[a + _SUSPECT] < 0:
+        s[a + _SUSPECT] = 0
+
+
+def hold(s: ptr32, a: int, error: int) -> int:
+    """Note the error that is held back; return how many segments before it agreed with it."""
+    # A negative number counts what may be turns.
+    far = clipped(error if error > 0 else 0 - error, _MOST_DOUBT_Q4)
+    off = far - s[a + _HELD_Q4]
+    s[a + _HELD_Q4] = far
+    far = far >> 3
+    return 0 if off > far or off < 0 - far else s[a + _SUSPECT]
+
+
+def insists(s: ptr32, c: ptr32, a: int, error: int) -> int:
+    """Hold the implausible segment back; return 1 once such ones have lasted long enough."""
+    # One that no turn makes goes on counting in another pose, where a turn would be about another
+    # axis.
+    n = hold(s, a, error)
+    if n <= 0 and s[a + _OFFER] & 1:
+        s[a + _SUSPECT] = n - 1
+        return 1 if n - 1 <= _LONGER * c[_INSIST] else 0
+    n = n + 1 if n > 0 else 1
+    s[a + _SUSPECT] = n
+    return 1 if n >= c[_INSIST] else 0
+
+
 def plausible(s: ptr32, c: ptr32, a: int, error: int) -> int:
     """Return 1 if the error is within the gate or six sigma, or has insisted long enough."""
     # A temperature at which nothing was learned yet widens the six sigma by the slope that is left.
@@ -130,7 +215,7 @@ def plausible(s: ptr32, c: ptr32, a: int, error: int) -> int:
     far = clipped(error, 0x7FFF)
     if s[a + _WAITING_N] < c[_SEGMENT] << c[_WINDOW_SHIFT]:
         share = 4
-    elif s[a + _OFFER]:
+    elif s[a + _OFFER] & 1:
         share = 9
     elif far <= c[_GATE_Q4] and far >= -c[_GATE_Q4]:
         far = 0
@@ -139,15 +224,8 @@ def plausible(s: ptr32, c: ptr32, a: int, error: int) -> int:
     if far <= s[_GROWN_Q8] + s[_MEAN_NOISE_Q8] + share:
         s[a + _SUSPECT] = 0
         return 1
-    if s[a + _OFFER]:
-        s[a + _DOUBT_Q8] = clipped(error, 0x3FFF) * clipped(error, 0x3FFF)
-        s[a + _SUSPECT] = s[a + _SUSPECT] - 1 if s[a + _SUSPECT] < 0 else -1
-        if s[a + _SUSPECT] > _LONGER * c[_INSIST]:
-            return 0
-    else:
-        s[a + _SUSPECT] = s[a + _SUSPECT] + 1 if s[a + _SUSPECT] > 0 else 1
-        if s[a + _SUSPECT] < c[_INSIST]:
-            return 0
+    if insists(s, c, a, error) == 0:
+        return 0
     s[a + _SUSPECT] = 0
     move_offset(s, a, error << 4)
     # it jumped at whatever temperature: that is no slope of its curve
@@ -246,21 +324,25 @@ def relearn_spread(s: ptr32, c: ptr32, a: int, square: int):
 
 
 def doubt(s: ptr32, a: int, error: int):
-    """Let a rest that agrees end the doubt; one along gravity, and a little off, lets it fade."""
-    left = s[a + _DOUBT_Q8]
-    if s[a + _OFFER] and left:
-        left -= left >> 2
-        left = left if left > error * error else error * error
+    """Let a segment of that error, LSB Q4, tell how much of the bias may still be a turn."""
+    hidden = (0 - s[a + _OFFER]) >> 1
+    held = s[a + _DOUBT_Q4]
+    if error * error // 9 > s[_GROWN_Q8] + s[_MEAN_NOISE_Q8]:
+        # it moves the bias, perhaps by a turn
+        far = error if error > 0 else 0 - error
+        hidden = hidden if hidden < far else far
+        held = held if held > hidden else hidden
+    elif s[a + _LEFT_Q4] == _NO_VALUE:
+        held = 0  # no turn begins again as it was before a power-off
     else:
-        left = 0
-    s[a + _DOUBT_Q8] = left
+        held = held if held < hidden else hidden
+    s[a + _DOUBT_Q4] = held
 
 
 def calibrate(s: ptr32, c: ptr32, a: int, error: int):
     """Learn from a segment's error, LSB Q4, how sure of its bias this very part may be."""
     relearn_slope(s, c, a, error * error)
-    if s[a + _OFFSET_AGE_MS] > 2 * _NEIGHBOURS_MS and s[a + _LEFT_Q4] != _NO_VALUE:
-        doubt(s, a, error)
+    doubt(s, a, error)
     if s[a + _LEFT_Q4] == _NO_VALUE:
         relearn_spread(s, c, a, error * error)
     elif s[a + _OFFSET_FROM] == 0:
@@ -365,8 +447,11 @@ def update_offset(s: ptr32, c: ptr32, a: int, error: int) -> int:
     else:
         s[a + _OFFSET_VARIANCE_Q8] = s[_MEAN_NOISE_Q8]
         s[a + _LEFT_Q4] = 0
-        held -= held >> 2  # it may as well be a turn, and then all of it is wrong
-        s[a + _DOUBT_Q8] = held * held
+        # it may as well be a turn, and then all of it is wrong
+        held = s[a + _HELD_Q4] - (s[a + _HELD_Q4] >> 2)
+        verdict = (0 - s[a + _OFFER]) >> 1
+        s[a + _DOUBT_Q4] = verdict if verdict > held else held
+    s[a + _HELD_Q4] = 0
     s[a + _OFFSET_AGE_MS] = 0
     return 1
 

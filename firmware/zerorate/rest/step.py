@@ -12,9 +12,17 @@ from .bias import curve_q8
 from .estimators import find, learn_anywhere, learn_here
 from .fit import bend, draw_line
 from .guard import check
-from .recent import absorb, beyond_q8, gain_q14, grown_q8, hand_over, left_q8, mean_noise_q8
-from .stillness import gather, judge, seems_still
-from .turning import end_of_rest, suspect_turn
+from .recent import (
+    absorb,
+    beyond_q8,
+    gain_q14,
+    grown_q8,
+    hand_over,
+    left_q8,
+    mean_noise_q8,
+    suspect_turn,
+)
+from .stillness import gather, hidden_q4, judge, seems_still, tilting_q4
 
 # layout: names that a board's own compiler reads
 const = int
@@ -54,8 +62,9 @@ _KIND = const(33)
 _LINE_TEMP = const(34)
 _FLOOR_Q16 = const(35)
 _LEFT_Q4 = const(37)
-_DOUBT_Q8 = const(38)
-_ESTIMATORS = const(39)
+_DOUBT_Q4 = const(38)
+_HELD_Q4 = const(39)
+_ESTIMATORS = const(40)
 # layout: An estimator
 _EST_SPREAD_Q8 = const(4)
 # layout: The corrector's settings
@@ -87,8 +96,14 @@ def sigma_q8(s: ptr32, c: ptr32, a: int) -> int:
     """Return one sigma of the axis' bias at the temperature of the latest window, LSB Q8."""
     # Flicker noise: each octave from a sample to a segment holds half of what segments differ by.
     variance = (c[_WINDOW_SHIFT] + 3) * (s[a + _FLOOR_Q16] >> 4) >> 5
-    variance += s[_GROWN_Q8] + s[a + _DOUBT_Q8]
-    return root(variance << 8) if variance < 0x3FFFFF else root(variance) << 4
+    variance += s[_GROWN_Q8]
+    doubt = s[a + _DOUBT_Q4]
+    doubt = doubt if doubt > s[a + _HELD_Q4] else s[a + _HELD_Q4]
+    if doubt < 0x1000:
+        variance += doubt * doubt
+        doubt = 0
+    doubt = doubt << 4
+    return doubt + (root(variance << 8) if variance < 0x3FFFFF else root(variance) << 4)
 
 
 def leant_q8(s: ptr32, c: ptr32, a: int, bias: int) -> int:
@@ -105,7 +120,10 @@ def leant_q8(s: ptr32, c: ptr32, a: int, bias: int) -> int:
         return bias
     n = gain_q14(s[_GROWN_Q8], s[_MEAN_NOISE_Q8])
     s[_GROWN_Q8] = left_q8(s, n)
-    return bias + (n * error >> 10)
+    error = n * error >> 10
+    n = n * tilting_q4(s, c) >> 14
+    s[_GROWN_Q8] += n * n
+    return bias + error
 
 
 def publish(s: ptr32, c: ptr32, a: int, axis: int):
@@ -193,6 +211,8 @@ def publish_first_rest(s: ptr32, c: ptr32, axis: int):
     if s[_STILLNESS] == _STILL and (s[_SEGMENT_WINDOWS] > 1 or s[_COUNTS] >> 2 < c[_WINDOW]):
         level = segment_mean_q8(s, c, axis)
         publish_provisional(s, axis, level, c[_PROVISIONAL_Q8])
+        level = hidden_q4(s, c, axis) << 4
+        s[_QUALITY_Q8 + axis] += level
     elif s[_SOURCE + axis] == 1:
         publish_provisional(s, axis, 0, 0)
         s[_SOURCE + axis] = 0
@@ -210,6 +230,8 @@ def publish_first_glance(s: ptr32, c: ptr32):
             bias = (s[_REFERENCE + 4 + i] << 8) - (s[_EFFECT_SUM_Q8 + i] >> shift)
             bias += (s[_WINDOW_SUM + 4 + i] << 8) >> shift
             publish_provisional(s, i, bias, c[_PROVISIONAL_Q8] << 1)
+            bias = hidden_q4(s, c, i) << 4
+            s[_QUALITY_Q8 + i] += bias
         i += 1
 
 
@@ -233,8 +255,6 @@ def end_window(s: ptr32, c: ptr32):
             s[a + _WAITING_N] = still << c[_WINDOW_SHIFT]
     if still and c[_EVERY] == 0:
         suspect_turn(s, c)
-    if s[_STILLNESS] != _STILL:
-        end_of_rest(s, c)
     s[_ELAPSED_US] = 0
     s[_WORK] = 1
 

@@ -4,7 +4,7 @@
 # window and the direction of gravity count. A constant turn about the vertical leaves all three
 # alone and cannot be told from a bias; a turn about any other axis moves gravity.
 
-from ..arithmetic.fixed import clipped
+from ..arithmetic.fixed import clipped, root
 
 # layout: names that a board's own compiler reads
 const = int
@@ -33,6 +33,7 @@ _TEMP_WINDOWS = const(56)
 _TIP_Q8 = const(57)
 _EFFECT_Q8 = const(67)
 _EFFECT_SUM_Q8 = const(70)
+_TARGET_Q8 = const(73)
 _SQUARE_STEP = const(82)
 _LAST_RATE = const(83)
 # layout: The corrector's settings
@@ -45,6 +46,10 @@ _TIP_LIMIT_Q8 = const(9)
 _LEAN_LIMIT_Q4 = const(10)
 _LEAN_NOISE_FACTOR_Q4 = const(11)
 _CHANGE_LIMIT_Q8 = const(12)
+_TURNING_LSB = const(54)
+_TURN_HALVES = const(55)
+_TILT_SPEED = const(56)
+_ONE_G = const(57)
 # layout: What a window was
 _STILL = const(1)
 _MOVING = const(2)
@@ -53,6 +58,9 @@ _SHAKEN = const(4)
 _SHIFTED = const(5)
 # layout: end
 _FAR_LSB = const(512)  # a reading farther than that from the window's first is motion:
+_MOST_SEGMENTS = const(0x3FFF)
+_MOST_G = const(0x7FF)
+_MOST_HIDDEN_Q4 = const(0x7FFFF)
 _FAR_BITS = const(10)  # of ten bits the squares of a window fit 31
 # by how much of a window's variance noise alone lets two of them differ
 _GRAVITY_NOISE = const(18)  # the mean accelerations: 27 by chi squared of 3, for noise is coloured
@@ -188,9 +196,11 @@ def begin(s: ptr32, c: ptr32, anchored: int):
         s[_SEGMENT_TOTAL + i] = 0
     if anchored == 0:
         upright(s)
+        s[_REST] = 0
+    if s[_REST] < _MOST_SEGMENTS:
+        s[_REST] += 1
     s[_SEGMENT_TEMP] = 0
     s[_SEGMENT_WINDOWS] = 0
-    s[_REST] = 1
 
 
 def white(s: ptr32, c: ptr32, spread: int) -> int:
@@ -293,3 +303,64 @@ def judge(s: ptr32, c: ptr32) -> int:
         i = 0
     upright(s)
     return i
+
+
+# What of a rest may be a turn: along gravity any, which only time and other poses tell from a bias;
+# across it what had no time to tilt the device.
+
+
+def up(s: ptr32, axis: int) -> int:
+    """Return gravity along the axis where the rest began, in units of 16 LSB."""
+    return clipped(s[_ANCHOR_Q4 + axis] >> 8, _MOST_G)
+
+
+def size(s: ptr32) -> int:
+    """Return the size of gravity where the rest began, in units of 16 LSB."""
+    total = up(s, 0) * up(s, 0) + up(s, 1) * up(s, 1)
+    return root(total + up(s, 2) * up(s, 2))
+
+
+def level_q4(s: ptr32, c: ptr32, g: int) -> int:
+    """Return the turn about a level axis that gravity of that size hides yet: LSB, Q4."""
+    # g: of 0 nothing is hidden across it, for there is no gravity.
+    if g == 0:
+        return 0
+    moved = root(s[_TIP_Q8] + c[_TIP_LIMIT_Q8]) * c[_TILT_SPEED] // g
+    return clipped(moved // (s[_REST] if s[_REST] else 1), 0x3FFF)
+
+
+def tilting_q4(s: ptr32, c: ptr32) -> int:
+    """Return the same of a rest that goes on, also of one that has no segment yet."""
+    g = size(s)
+    g = level_q4(s, c, g)
+    if s[_REST] < 2 and s[_SEGMENT_WINDOWS]:
+        g = g * c[_SEGMENT] // s[_SEGMENT_WINDOWS]
+    return clipped(g, 0x3FFF)
+
+
+def steady_q4(s: ptr32, c: ptr32) -> int:
+    """Return the turn about the vertical that lasts as long as the rest, one sigma, LSB Q4."""
+    # As fast a turn as the bias is as likely as that bias; of all turns as steady half end in time.
+    total = c[_TURNING_LSB] * c[_TURNING_LSB]
+    for i in range(3):
+        rate = clipped(s[_TARGET_Q8 + i] >> 8, 0x3FFF)
+        total += rate * rate >> 1
+    rate = c[_TURN_HALVES]
+    total = (root(total) << 4) * (2 * rate - s[_REST] % rate) // (2 * rate)
+    rate = s[_REST] // rate
+    return total >> rate if rate < 30 else 0
+
+
+def hidden_q4(s: ptr32, c: ptr32, axis: int) -> int:
+    """Return how much of a turn the rest so far may hide on the axis: one sigma, LSB Q4."""
+    g = size(s)
+    turn = steady_q4(s, c)
+    if g and s[_REST]:
+        share = up(s, axis)
+        share = ((share if share > 0 else 0 - share) << 10) // g
+        axis = (g << 10) // c[_ONE_G]  # eleven words: axis is from here on what is beyond 1 g
+        axis = clipped(axis, 0x3FFF) - 1024
+        if axis > 0:
+            share += root(axis << 11)  # an acceleration that adds up to it leans as far
+        turn = (turn * (share if share < 1024 else 1024) >> 10) + level_q4(s, c, g)
+    return clipped(turn, _MOST_HIDDEN_Q4)

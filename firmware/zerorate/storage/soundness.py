@@ -12,7 +12,7 @@ _COLDEST = const(3)
 _HOTTEST = const(4)
 _ORDER = const(6)
 _OFFSET_Q8 = const(27)
-_ESTIMATORS = const(39)
+_ESTIMATORS = const(40)
 # layout: An estimator
 _EST_TEMP = const(0)
 _EST_MEAN_TEMP_Q4 = const(1)
@@ -33,7 +33,7 @@ _MARGIN_LSB = const(30)
 _EVERY = const(48)
 _FIRST_LONG = const(49)
 # layout: An axis: bits of each word, 64 more, or 96 where it has a sign
-_AXIS_BITS = b"~NNpp]NNNNNN~C~~~~E~~^E~~~~x]X~ZACp]L~\\"
+_AXIS_BITS = b"~NNpp]NNNNNN~C~~~~E~~^E~~~~x]X~ZACp]L~SS"
 # layout: An estimator: bits of each word, 64 more, or 96 where it has a sign
 _ESTIMATOR_BITS = b"ttxZ\\"
 # layout: Values that stand for none

@@ -17,7 +17,7 @@ from .parts import PARTS, part_files
 _INNER = frozenset(
     "settings trying identity parts bus_recovery machine_code crc32 plain_crc32 soundness explain "
     "explain_sources data_registers bias block copying estimators fit fixed histogram recent "
-    "stillness turning".split()
+    "stillness".split()
 )
 # Names that every MicroPython has in its own tables: as parameters they cost nothing.
 _PARAMETERS = (

@@ -191,6 +191,7 @@ GRAVITY = Array(
         ("SKIPPED", 1, "sub-units", "without 1 g"),
         ("MEAN_ALONG_Q20", 3, "rad", "mean turn of the other axes about gravity"),
         ("SPREAD_Q21", 1, "rad", "mean size of the deviations"),
+        ("LEFT_OUT_Q13", 3, "rad", "what that mean turn would turn the pair by"),
     ),
 )
 
