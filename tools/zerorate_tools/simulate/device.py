@@ -69,7 +69,9 @@ def simulate_sessions(
     return _sessions(described, range(1, len(described.sessions) + 1), seed)
 
 
-def _sessions(described: Description, numbers: Iterable[int], seed: int | None):
+def _sessions(
+    described: Description, numbers: Iterable[int], seed: int | None
+) -> Iterator[tuple[Recording, Truth]]:
     seed = described.seed if seed is None else seed
     everyone = (build(described, n + 1, seed) for n in range(len(described.sessions)))
     per_unit = coefficients(described, everyone, seed)
@@ -77,7 +79,9 @@ def _sessions(described: Description, numbers: Iterable[int], seed: int | None):
         yield _measured(described, build(described, number, seed), per_unit, seed)
 
 
-def _measured(described: Description, world: World, per_unit: list[np.ndarray], seed: int):
+def _measured(
+    described: Description, world: World, per_unit: list[np.ndarray], seed: int
+) -> tuple[Recording, Truth]:
     sensor, number = described.sensor, world.number
     zero_rate = zero_rate_dps(described, world, seed)
     rate = world.rate_dps.copy()
@@ -108,7 +112,9 @@ def _measured(described: Description, world: World, per_unit: list[np.ndarray], 
     return recording, truth
 
 
-def _timed(described: Description, world: World, rate_dps: np.ndarray, seed: int):
+def _timed(
+    described: Description, world: World, rate_dps: np.ndarray, seed: int
+) -> tuple[np.ndarray, np.ndarray]:
     t_s, stamps = world.t_s, world.t_s
     for effect in described.effects:
         if effect["kind"] != "timing":

@@ -4,6 +4,7 @@
 """
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from scipy.signal import lfilter
@@ -21,10 +22,10 @@ def hysteresis(world: World, *, width_degc: float = 4.0) -> np.ndarray:
 def prandtl_ishlinskii(
     world: World,
     *,
-    widths_degc: list | None = None,
-    weights: list | None = None,
+    widths_degc: list[Any] | None = None,
+    weights: list[Any] | None = None,
     lopsided: float = 0.0,
-    kept_off_degc: float | list = 0.0,
+    kept_off_degc: float | list[float] = 0.0,
 ) -> np.ndarray:
     """A weighted sum of backlashes, degC, as real parts have: widths 2, 6 and 15 alike by default.
 
@@ -73,7 +74,7 @@ def peak_temperature(world: World) -> np.ndarray:
     return np.maximum.accumulate(world.temp_degc) - world.temp_degc
 
 
-def linear_g(world: World, *, matrix: list | None = None) -> np.ndarray:
+def linear_g(world: World, *, matrix: list[Any] | None = None) -> np.ndarray:
     """(n, 3) specific force in g, mixed by a 3x3 matrix (a row a gyro axis; default: identity)."""
     return world.accel_g @ np.asarray(np.eye(3) if matrix is None else matrix, float).T
 
@@ -99,7 +100,7 @@ def supply_temperature(world: World, *, at_mv: float = 3300.0) -> np.ndarray:
     return supply(world, at_mv=at_mv) * (world.temp_degc - 25)
 
 
-def scale(world: World, *, matrix: list | None = None) -> np.ndarray:
+def scale(world: World, *, matrix: list[Any] | None = None) -> np.ndarray:
     """(n, 3) rate in dps mixed by a 3x3 matrix (scale factor, cross-axis; default: identity)."""
     return world.rate_dps @ np.asarray(np.eye(3) if matrix is None else matrix, float).T
 

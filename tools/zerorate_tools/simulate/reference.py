@@ -4,6 +4,7 @@ import dataclasses
 import inspect
 import textwrap
 from collections.abc import Callable, Mapping
+from typing import Any
 
 from .channels import CHANNELS
 from .effects import EFFECTS
@@ -51,11 +52,11 @@ def _table(name: str, cls: type) -> str:
     return f"[{name}]  {inspect.getdoc(cls)}\n\n" + "\n".join(entries) + "\n"
 
 
-def _kinds(kinds: Mapping[str, Callable]) -> str:
+def _kinds(kinds: Mapping[str, Callable[..., Any]]) -> str:
     return "".join(_kind(name, kind) for name, kind in kinds.items())
 
 
-def _kind(name: str, kind: Callable) -> str:
+def _kind(name: str, kind: Callable[..., Any]) -> str:
     options = [
         option.name if option.default is option.empty else f"{option.name}={_value(option.default)}"
         for option in inspect.signature(kind).parameters.values()
