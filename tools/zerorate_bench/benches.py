@@ -165,6 +165,12 @@ BENCHES = {
             }
         },
     ),
+    "heading-simulated": Bench(
+        *("errors of scale and axes in five kinds of simulated motion", "heading_simulated"),
+        lambda bench, a, advance: bench.run(a.devices, a.processes, advance),
+        lambda bench, a: bench.steps(a.devices),
+        options={"--devices": _number(20, "devices of each kind"), **_PROCESSES},
+    ),
     "import": Bench(
         "logs as other tools write them: right or refused; exit code 1 where one is wrong",
         "foreign_imports",

@@ -65,7 +65,7 @@ def _refused(moving: list[Moving]) -> list[list[str]]:
 
 def _row(trial: Trial, group: int, shown, first: float = 0.0) -> dict:
     """Degrees RMS, over the motion from a share of it on; as deployed: only what was found."""
-    matrix = shown.matrix if shown is not None and shown.found else np.zeros((3, 3))
+    matrix = shown.deployed if shown is not None and shown.found else np.zeros((3, 3))
     before, after = (heading_error_deg(trial, m, first) for m in (np.zeros((3, 3)), matrix))
     return {"group": group, "before": before, "after": after, "found": bool(matrix.any())}
 

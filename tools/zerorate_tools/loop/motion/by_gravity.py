@@ -13,6 +13,8 @@ BESIDE = "gravity while it moved"
 UNIT = "degrees a minute of tilt"
 #: Posterior sigma of an entry above which the motion did not show it: a data sheet's 0.5 %.
 UNSEEN = 0.005
+#: Of devices without errors, so many may be said to have one.
+_LEVEL = 1 / 200
 
 
 def by_gravity(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
@@ -27,9 +29,10 @@ def by_gravity(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
         return None
     check_one_device([(f.moving.name, f.shown(matrix)) for f in fitted])
     device = device_of([f.shown(matrix) for f in fitted])
+    share = device.share([f.heading for f in fitted])
     entries, covariance, shown = device.entries, device.covariance, device.shown
     held = [f for f in (beside(m, matrix) for m in holdout) if f is not None]
-    judged = [(f, None, entries) for f in held] or list(_folds(fitted, matrix))
+    judged = [(f, None, share * entries) for f in held] or list(_folds(fitted, matrix, share))
     if not judged:
         return None
     gain = sum(f.shown(matrix, k).gain(m) for f, k, m in judged)
@@ -37,14 +40,15 @@ def by_gravity(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
         _tilt([f.tilts(matrix, x, k) for f, k, m in judged for x in [0.0 * m if bare else m]])
         for bare in (True, False)
     )
-    # a likelihood ratio on data that the fit never saw: Markov bounds its chance without a matrix
-    p = float(np.exp(-max(gain, 0.0)))
     fastest = np.degrees(np.max([np.abs(f.moving.rate).max(axis=0) for f in fitted], axis=0))
     unseen = np.sqrt(np.diag(np.linalg.pinv(shown.normal + _FAINT))) > UNSEEN
     return RateScale(
         matrix=entries.reshape(3, 3),
         deviation=np.sqrt(np.diag(covariance)).reshape(3, 3),
-        p_value=p,
+        # a likelihood ratio averaged over sizes: Markov bounds its chance without errors
+        p_value=float(np.exp(-max(device.nats, 0.0))),
+        level=_LEVEL,
+        share=share,
         kind=_kind(entries, covariance),
         reference=BESIDE,
         gains=np.array([gain, before - after]),
@@ -61,13 +65,13 @@ def by_gravity(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
 _FAINT = np.eye(MATRIX) * 1e-2
 
 
-def _folds(fitted, matrix):
+def _folds(fitted, matrix, share):
     """Each recording's part held out, with the entries that all other parts show."""
     for k in range(FOLDS):
         left = [f for f in fitted if (f.folds == k).any() and (f.folds != k).any()]
         if left:
             entries = device_of([f.without(matrix, k) for f in fitted]).entries
-            yield from ((f, k, entries) for f in left)
+            yield from ((f, k, share * entries) for f in left)
 
 
 def _tilt(parts) -> float:

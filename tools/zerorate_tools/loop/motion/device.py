@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from itertools import product
 
 import numpy as np
+from scipy.special import logsumexp
 
 from .windows import MATRIX
 
@@ -17,6 +18,10 @@ from .windows import MATRIX
 SIZES = (3e-4, 1e-3, 3e-3, 1e-2, 3e-2)
 #: Scatter of an entry between recordings: none, up to a change of temperature by 50 degrees.
 _SCATTER = (0.0, 3e-4, 1e-3, 3e-3)
+#: Stands for no scatter where it is divided by.
+_NO_SCATTER = 1e-6
+#: Sigmas by which heading must be lessened: one recording in forty may be wrong.
+_SURE = 2.0
 
 
 @dataclass
@@ -48,30 +53,81 @@ class Shown:
 @dataclass(frozen=True)
 class Device:
     """Posterior of the nine entries: mean (9,) and covariance (9, 9); shown: what all recordings
-    say together, with the likeliest scatter."""
+    say together, with the likeliest scatter; nats: by which errors are likelier than none at all;
+    cases: the device under each scatter; weight: (c,) of each."""
 
     entries: np.ndarray
     covariance: np.ndarray
     shown: Shown
+    nats: float
+    weight: np.ndarray
+    cases: Sequence["_Case"]
+
+    def share(self, headings: Sequence[np.ndarray]) -> float:
+        """The largest share, 0 to 1, of the entries that surely lessens the heading lost in the
+        recordings seen. headings: (9, 9) each, mean square of heading by entries.
+
+        With d taken out of M, the mean square of heading grows where `d Q M < d Q d / 2`; M is
+        each recording's own, told by its windows and by the device's entries.
+        """
+        pulls = [h @ self.entries for h in headings]
+        less, square = np.transpose([c.along(pulls) for c in self.cases])
+        mean = self.weight @ less
+        sigma = np.sqrt(self.weight @ (square + less**2) - mean**2)
+        size = sum(pull @ self.entries for pull in pulls)
+        return float(np.clip(2.0 * (mean - _SURE * sigma) / max(size, 1e-300), 0.0, 1.0))
+
+
+@dataclass(frozen=True)
+class _Case:
+    """The device under one scatter: what all say, (9,) entries, their covariance and evidence."""
+
+    scatter: float
+    statements: Sequence[Shown]
+    shown: Shown
+    evidence: float
+    entries: np.ndarray
+    covariance: np.ndarray
+
+    def along(self, pulls: Sequence[np.ndarray]) -> tuple[float, float]:
+        """Mean and variance of the sum, over recordings, of pull (9,) times its own entries."""
+        tight = np.eye(MATRIX) / max(self.scatter, _NO_SCATTER) ** 2
+        mean, variance, common = 0.0, 0.0, np.zeros(MATRIX)
+        for one, pull in zip(self.statements, pulls):
+            own = np.linalg.solve(one.normal + tight, pull)
+            mean += own @ (one.right + tight @ self.entries)
+            variance += own @ pull
+            common += tight @ own
+        return mean, variance + common @ self.covariance @ common
 
 
 def device_of(statements: Sequence[Shown]) -> Device:
     """The device of which every recording states something. Scale factors, cross-axis
-    sensitivities and turns of the axes each have a size of their own."""
-    cases = []
-    for sigma in _SCATTER if len(statements) > 1 else _SCATTER[:1]:
-        parts = [s.scattered(sigma) for s in statements]
-        shown = sum((p[0] for p in parts), Shown())
-        cases.append((shown, *_posteriors(shown, sum(p[1] for p in parts))))
-    evidence = np.stack([c[1] for c in cases])
-    weight = np.exp(evidence - evidence.max())
-    weight /= weight.sum()
-    means, covariances = np.stack([c[2] for c in cases]), np.stack([c[3] for c in cases])
-    mean = np.einsum("ts,tsi->i", weight, means)
+    sensitivities and turns of the axes each have a size of their own. So has the scatter; of one
+    recording it is told what it is in that recording."""
+    cases = [_case(statements, s) for s in (_SCATTER if len(statements) > 1 else _SCATTER[:1])]
+    evidence = np.array([c.evidence for c in cases])
+    nats = float(logsumexp(evidence) - np.log(len(cases)))
+    weight = np.exp(evidence - logsumexp(evidence))
+    means = np.stack([c.entries for c in cases])
+    mean = weight @ means
     apart = means - mean
-    spread = np.einsum("ts,tsij->ij", weight, covariances)
-    spread += np.einsum("ts,tsi,tsj->ij", weight, apart, apart)
-    return Device(mean, spread, cases[int(weight.sum(axis=1).argmax())][0])
+    spread = np.einsum("c,cij->ij", weight, np.stack([c.covariance for c in cases]))
+    spread += np.einsum("c,ci,cj->ij", weight, apart, apart)
+    return Device(mean, spread, cases[int(weight.argmax())].shown, nats, weight, cases)
+
+
+def _case(statements, sigma) -> _Case:
+    """Under one scatter, averaged over the sizes."""
+    parts = [s.scattered(sigma) for s in statements]
+    shown = sum((p[0] for p in parts), Shown())
+    nats, means, covariances = _posteriors(shown, sum(p[1] for p in parts))
+    evidence = float(logsumexp(nats) - np.log(len(nats)))
+    weight = np.exp(nats - logsumexp(nats))
+    mean = weight @ means
+    spread = np.einsum("s,sij->ij", weight, covariances)
+    spread += np.einsum("s,si,sj->ij", weight, means - mean, means - mean)
+    return _Case(sigma, statements, shown, evidence, mean, spread)
 
 
 def _posteriors(shown: Shown, nats: float):

@@ -91,7 +91,7 @@ def rates_of_turning(session: Session, motion: InMotion) -> np.ndarray:
     if scales is None or scales.reference != GIVEN or "rate_x" not in session.sources:
         return np.zeros((session.blocks, 3))
     rate = np.column_stack([session.block_mean(session.sources[n]) for n in _RATES])
-    return rate @ scales.matrix.T
+    return rate @ scales.deployed.T
 
 
 def slots_of(motion: InMotion) -> list[Slot]:
@@ -100,5 +100,5 @@ def slots_of(motion: InMotion) -> list[Slot]:
     if t is None:
         return []
     terms = [Term(n, -float(f), float(f)) for n, f in zip(_RATES, t.fastest_dps)]
-    columns = [(float(x), float(y), float(z)) for x, y, z in t.matrix.T]
+    columns = [(float(x), float(y), float(z)) for x, y, z in t.deployed.T]
     return [Slot(term, column, t.kind) for term, column in zip(terms, columns)]

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
-from .device import SIZES, Shown, device_of
+from .device import SIZES, Shown, device_of, groups
 from .same_device import distance
 from .windows import LONGEST_S, MATRIX, OWN, OWN_SIGMA, REST_SIGMA, Moving, rows_of, tapers
 
@@ -24,6 +24,8 @@ FOLDS = 4
 _LEAST_BLOCK, _MOST_BLOCKS = 4, 8
 _AT = np.cumsum([MATRIX, *OWN.values()])
 _BIAS, _DRIFT = slice(_AT[0], _AT[1]), slice(_AT[1], _AT[2])
+#: A turn of the axes turns the frame that headings are told in, once: no heading is lost by it.
+_NO_TURN = np.eye(MATRIX) - groups()[-1]
 _OWN_PRECISION = np.concatenate([np.full(n, OWN_SIGMA[name] ** -2) for name, n in OWN.items()])
 
 
@@ -32,7 +34,8 @@ class Fitted:
     """A recording beside a matrix: its own errors, and rows of its windows.
 
     errors: (w, q, 3); columns: (w, q, 3, p); tilting: (w, q, 3, 3) by a steady turn of the window's
-    frame in rad/s; precision: (q,) of a row; folds: (w,) of a window.
+    frame in rad/s; precision: (q,) of a row; folds: (w,) of a window; heading: (9, 9) its mean
+    square by entries.
     """
 
     moving: Moving
@@ -43,6 +46,7 @@ class Fitted:
     tilting: np.ndarray
     precision: np.ndarray
     folds: np.ndarray
+    heading: np.ndarray
 
     def shown(self, matrix: np.ndarray, fold: int | None = None) -> Shown:
         """What its windows say, or those of one fold, linear about the matrix."""
@@ -53,8 +57,15 @@ class Fitted:
         held = np.pad(self.folds == fold, 1)
         return self._of(matrix, ~(held[:-2] | held[1:-1] | held[2:]))
 
-    def _of(self, matrix, take) -> Shown:
-        normal, right = _normal(self.errors[take], self.columns[take], self.precision)
+    def slow_and_quick(self, matrix: np.ndarray) -> tuple[Shown, Shown]:
+        """What its slow rows say and what its quick ones do, as much in each."""
+        size = self.precision * (self.columns[..., :MATRIX] ** 2).sum(axis=(0, 2, 3))
+        slow = np.cumsum(size) < 0.5 * size.sum()
+        every = self.folds >= 0
+        return self._of(matrix, every, slow), self._of(matrix, every, ~slow)
+
+    def _of(self, matrix, take, rows=1.0) -> Shown:
+        normal, right = _normal(self.errors[take], self.columns[take], self.precision * rows)
         _add_own(normal, right, self)
         own, back = normal[MATRIX:, MATRIX:], normal[:MATRIX, MATRIX:]
         bare = normal[:MATRIX, :MATRIX] - back @ np.linalg.solve(own, back.T)
@@ -119,7 +130,9 @@ def _beside(moving, seconds, matrix, before) -> Fitted | None:
     tilting = np.stack([r[1][..., -3:] for r in rows])
     blocks = min(max(len(rows) // _LEAST_BLOCK, FOLDS), _MOST_BLOCKS)
     folds = np.arange(len(rows)) * blocks // len(rows) % FOLDS
-    fitted = Fitted(moving, bias, drift, errors, columns, tilting, np.ones(errors.shape[1]), folds)
+    even, heading = np.ones(errors.shape[1]), _NO_TURN @ np.mean([r[2] for r in rows], axis=0)
+    heading = heading @ _NO_TURN
+    fitted = Fitted(moving, bias, drift, errors, columns, tilting, even, folds, heading)
     _, at = tapers(8, seconds)
     for _ in range(4):
         fitted.precision = 1.0 / _variances(fitted, matrix, at)[at]
@@ -129,9 +142,11 @@ def _beside(moving, seconds, matrix, before) -> Fitted | None:
 
 def _contradiction(f: Fitted, matrix: np.ndarray) -> float:
     """By how much parts of a recording differ more than their errors allow (Birge 1932): a hand
-    whose acceleration moves with the turning fits one part and not the next. 1 where they agree."""
+    whose acceleration moves with the turning fits one part and not the next, or slow rows and not
+    quick ones, where a turn weighs less. 1 where they agree."""
+    bands = distance(*f.slow_and_quick(matrix)) / MATRIX
     excess = [distance(f.shown(matrix, k), f.without(matrix, k)) for k in set(f.folds)]
-    return max(1.0, float(np.mean(excess)) / MATRIX) if len(excess) > 1 else 1.0
+    return max(1.0, bands, float(np.mean(excess)) / MATRIX if len(excess) > 1 else 1.0)
 
 
 def _variances(f: Fitted, matrix, at) -> np.ndarray:

@@ -32,7 +32,7 @@ class RateScale:
     scale-factor, cross-axis or both; reference: what it was measured against; gains: share of the
     squared error that it removes in each session left out; before, after: RMS error of the runs
     held out, in `unit`; fastest_dps: (3,) up to which it was seen; unseen: (3, 3) bool, entries
-    that the motion did not show.
+    that the motion did not show; level: of p; share: how much of the matrix is deployed.
     """
 
     matrix: np.ndarray
@@ -47,11 +47,18 @@ class RateScale:
     runs: int
     fastest_dps: np.ndarray
     unseen: np.ndarray | None = None
+    level: float = LEVEL
+    share: float = 1.0
 
     @property
     def found(self) -> bool:
         """Whether M is significant and every session is better predicted with it."""
-        return self.p_value < LEVEL and bool((self.gains > 0).all())
+        return self.p_value < self.level and bool((self.gains > 0).all())
+
+    @property
+    def deployed(self) -> np.ndarray:
+        """(3, 3) of the matrix, what is taken out."""
+        return self.share * self.matrix
 
     @property
     def confirmed(self) -> bool:

@@ -169,34 +169,47 @@ def columns_of(moving: Moving, matrix, bias, drift) -> Columns:
     attitude, theta, parts = IDENTITY, np.zeros((3, MATRIX + 6)), []
     for first in range(0, whole, chunk):
         span = slice(first, min(first + chunk, whole))
-        attitude, part = _chunk_of(moving, span, per, attitude, matrix, bias, drift)
-        part[1][:, :, :-1] = np.cumsum(part[1][:, :, :-1], axis=0) + theta
-        theta = part[1][-1, :, :-1]
-        parts.append(part)
+        attitude, steps, late, seen, own = _chunk_of(
+            moving, span, per, attitude, matrix, bias, drift
+        )
+        ends = np.cumsum(steps[0], axis=0) + theta
+        middle = ends - steps[0] + steps[1]
+        theta = ends[-1]
+        parts.append((seen, np.concatenate([middle, late], axis=2), own))
     seen, theta, own = (np.concatenate(p) for p in zip(*parts))
     return Columns(np.arange(len(seen)) * per, seen, theta, own, per * moving.dt_s)
 
 
 def _chunk_of(moving, span, per, attitude, matrix, bias, drift):
-    """The attitude after a chunk; its specific force, turns of each step and other columns."""
+    """The attitude after a chunk; of each step the turns until its end and their mean within it,
+    what a delay adds, the specific force, and columns of what is no rate."""
     dt_s, measured, accel = moving.dt_s, moving.rate[span], moving.accel[span]
-    at_s = moving.at_s[span]
-    rate = measured - measured @ matrix.T - bias - np.outer(at_s, drift)
-
-    def mean(x):
-        return x.reshape(-1, per, *x.shape[1:]).mean(axis=1)
-
+    at_s = moving.at_s[span, None]
+    rate = measured - measured @ matrix.T - bias - at_s * drift
     attitudes = integrate(np.degrees(rate), dt_s, attitude)
     still = np.stack([into_body(attitudes, e) for e in np.eye(3)], axis=1)
-    turned = [(still[:, :, :, None] * measured[:, None, None, :]).reshape(-1, 3, MATRIX)]
-    turned = mean(np.concatenate([*turned, still, still * at_s[:, None, None]], axis=2))
-    late = mean(still @ rate[:, :, None])
-    shape = still @ np.moveaxis(accel @ np.moveaxis(_SHAPES, 1, 2), 0, 2)
-    lever = np.zeros_like(still)
-    lever[1:-1] = np.diff(still, n=2, axis=0) / dt_s**2 / _G_MPS2
-    theta = np.concatenate([-turned * dt_s * per, late], axis=2)
-    own = mean(np.concatenate([still, shape, lever], axis=2))
-    return attitudes[-1], (mean((still @ accel[:, :, None])[..., 0]), theta, own)
+    until_end, mean_within = np.ones(per), 1.0 - np.arange(per) / per
+    one = np.ones_like(at_s)
+    by = np.hstack([measured, one, at_s]).reshape(-1, per, 5)
+    rated = [by * w[:, None] for w in (until_end, mean_within)]
+    by = np.concatenate([*rated, np.hstack([accel, rate]).reshape(-1, per, 6)], axis=2)
+    sums = still.reshape(-1, per, 9).transpose(0, 2, 1) @ by
+    sums = sums.reshape(-1, 3, 3, by.shape[2])
+    steps = [-dt_s * _by_rate(sums[..., k : k + 5]) for k in (0, 5)]
+    forced, late = sums[..., 10:13] / per, np.einsum("maii->ma", sums[..., 13:]) / per
+    seen = np.einsum("maii->ma", forced)
+    shape = np.einsum("maij,kij->mak", forced, _SHAPES)
+    first = np.diff(still, axis=0)
+    first = np.concatenate([first[:1], first, first[-1:]])
+    lever = (first[per::per] - first[:-per:per]) / (per * dt_s**2 * _G_MPS2)
+    own = np.concatenate([sums[..., 3] / per, shape, lever], axis=2)
+    return attitudes[-1], steps, late[..., None], seen, own
+
+
+def _by_rate(sums: np.ndarray) -> np.ndarray:
+    """(m, 3, 15) from (m, 3, 3, 5): of the rates, of one and of time, times each axis."""
+    turned = sums[..., :3].reshape(-1, 3, MATRIX)
+    return np.concatenate([turned, sums[..., 3], sums[..., 4]], axis=2)
 
 
 def _shapes():
@@ -224,7 +237,7 @@ def tapers(n: int, seconds: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def rows_of(moving: Moving, seconds: float, matrix, bias, drift) -> Iterator:
-    """(q, 3) and (q, 3, p + 3) of each window."""
+    """(q, 3) and (q, 3, p + 3) of each window, and (9, 9) mean square of its heading by entries."""
     spans = moving.spans(seconds)
     if not spans:
         return
@@ -235,4 +248,7 @@ def rows_of(moving: Moving, seconds: float, matrix, bias, drift) -> Iterator:
         first = int(np.searchsorted(columns.at, span.start))
         seen, of = columns.of(slice(first, first + long))
         if len(seen) == long:
-            yield rows @ seen, np.tensordot(rows, of, 1)
+            up = seen.mean(axis=0) / np.linalg.norm(seen.mean(axis=0))
+            theta = columns.theta[first : first + long, :, :MATRIX]
+            heading = np.einsum("kir,i->kr", theta - theta[0], up)
+            yield rows @ seen, np.tensordot(rows, of, 1), heading.T @ heading / long

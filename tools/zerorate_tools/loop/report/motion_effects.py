@@ -43,7 +43,7 @@ def turning(t: RateScale) -> dict:
         "effect": t.kind,
         "sources": list(names),
         "parameters": [{"source": n, "limit_dps": float(f)} for n, f in zip(names, t.fastest_dps)],
-        "coefficients": {n: [float(v) for v in c] for n, c in zip(names, t.matrix.T)},
+        "coefficients": {n: [float(v) for v in c] for n, c in zip(names, t.deployed.T)},
         "deviation": {n: [float(v) for v in c] for n, c in zip(names, t.deviation.T)},
         "confidence": "confirmed" if t.confirmed else "tentative",
         "p_value": t.p_value,
