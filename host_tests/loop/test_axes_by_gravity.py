@@ -1,6 +1,7 @@
 """Recordings that only move: scale factor and axes from gravity, by `close` itself."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -114,3 +115,18 @@ def test_hours_of_samples_give_the_same_columns_in_parts_as_at_once(recorded, mo
     once = columns_of(moving, *nothing)
     np.testing.assert_allclose(parts.theta, once.theta, atol=1e-9)
     np.testing.assert_allclose(parts.seen, once.seen, atol=1e-9)
+
+
+def test_what_an_error_has_turned_is_told_at_the_middle_of_a_step(recorded):
+    moving = moving_of(recorded(15, np.zeros((3, 3)), minutes=0.5))
+    nothing = np.zeros((3, 3)), np.zeros(3), np.zeros(3)
+    columns = columns_of(replace(moving, rate=np.zeros_like(moving.rate)), *nothing)
+    per, bias_of_z = columns.at[1], 11
+    turned_s = -columns.theta[:, 2, bias_of_z]
+    np.testing.assert_allclose(turned_s, (columns.at + (per + 1) / 2) / _HZ, rtol=1e-3)
+
+
+@pytest.mark.parametrize(("precision", "share"), [(1e4, 0.0), (1e8, 1.0)])
+def test_only_entries_that_surely_lessen_the_heading_lost_are_deployed(precision, share):
+    said = Shown(np.eye(9) * precision, np.eye(3).ravel() * 0.01 * precision)
+    assert device_of([said]).share([np.eye(9)]) == share

@@ -30,7 +30,7 @@ NOTHING, COHERENT = "nothing", "coherent"
 _WORLDS = {**KINDS, COHERENT: coherent}
 _LSB, _LSB_PER_G, _RAIL = 16.4, 4096.0, 32767
 #: Recordings of at most so many samples, for the bench's own time.
-_MOST_SAMPLES = 400_000
+_MOST_SAMPLES = 60_000
 _SIGMAS = 2.0
 #: Samples of a piece in which heading is lost.
 _PIECE = 6000
@@ -203,6 +203,6 @@ _INTRODUCTION = """\
 
 A device has scale factors off by 0.3 to 2 %, cross-axis sensitivities of up to 1 % and axes turned
 by 0.3 to 5 degrees. Its one recording has 5 to 60 minutes, 0 to 90 % of them at rest, at 25 to 400
-Hz, and at most 400,000 samples. Entries found: of the nine entries of each matrix that are known to
+Hz, and at most 60,000 samples. Entries found: of the nine entries of each matrix that are known to
 a third of their size, those told apart from nothing. Left: the median heading lost
 after, of that before."""

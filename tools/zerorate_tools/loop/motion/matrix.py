@@ -57,15 +57,8 @@ class Fitted:
         held = np.pad(self.folds == fold, 1)
         return self._of(matrix, ~(held[:-2] | held[1:-1] | held[2:]))
 
-    def slow_and_quick(self, matrix: np.ndarray) -> tuple[Shown, Shown]:
-        """What its slow rows say and what its quick ones do, as much in each."""
-        size = self.precision * (self.columns[..., :MATRIX] ** 2).sum(axis=(0, 2, 3))
-        slow = np.cumsum(size) < 0.5 * size.sum()
-        every = self.folds >= 0
-        return self._of(matrix, every, slow), self._of(matrix, every, ~slow)
-
-    def _of(self, matrix, take, rows=1.0) -> Shown:
-        normal, right = _normal(self.errors[take], self.columns[take], self.precision * rows)
+    def _of(self, matrix, take) -> Shown:
+        normal, right = _normal(self.errors[take], self.columns[take], self.precision)
         _add_own(normal, right, self)
         own, back = normal[MATRIX:, MATRIX:], normal[:MATRIX, MATRIX:]
         bare = normal[:MATRIX, :MATRIX] - back @ np.linalg.solve(own, back.T)
@@ -142,11 +135,9 @@ def _beside(moving, seconds, matrix, before) -> Fitted | None:
 
 def _contradiction(f: Fitted, matrix: np.ndarray) -> float:
     """By how much parts of a recording differ more than their errors allow (Birge 1932): a hand
-    whose acceleration moves with the turning fits one part and not the next, or slow rows and not
-    quick ones, where a turn weighs less. 1 where they agree."""
-    bands = distance(*f.slow_and_quick(matrix)) / MATRIX
+    whose acceleration moves with the turning fits one part and not the next. 1 where they agree."""
     excess = [distance(f.shown(matrix, k), f.without(matrix, k)) for k in set(f.folds)]
-    return max(1.0, bands, float(np.mean(excess)) / MATRIX if len(excess) > 1 else 1.0)
+    return max(1.0, float(np.mean(excess)) / MATRIX) if len(excess) > 1 else 1.0
 
 
 def _variances(f: Fitted, matrix, at) -> np.ndarray:
