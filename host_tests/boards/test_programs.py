@@ -68,11 +68,21 @@ def test_the_first_program_learns_and_goes_on_after_every_fault_of_the_sensor(
 
 
 def test_the_second_program_keeps_what_it_learned_through_a_power_cut(pico, programs, start):
-    console = start(programs[1])
+    console = start(programs[2])
     assert console.line_with("stored")
     assert console.line_with("kept")
     pico.ask("power")
     assert console.line_with("loaded")
+
+
+def test_the_yaw_that_is_printed_stands_still_with_the_bias_taken_off(pico, programs, start):
+    console = start(programs[1])
+    for _ in range(15):
+        without, corrected = re.search(
+            r"without (\S+)  with (\S+) deg", console.line_with("yaw")
+        ).groups()
+    assert float(without) == pytest.approx(15 * BIAS_DPS[2], abs=0.2)
+    assert abs(float(corrected)) < 0.2
 
 
 def test_a_recording_is_made_and_the_firmware_watched(pico, tmp_path, capsys):

@@ -17,7 +17,7 @@ HERE = Path(__file__).parent
 SHOWN = {
     "faults.md": [],
     "wiring.md": [],
-    "pico.md": ["main.py", "keep.py", "interrupt.py", "pins.py"],
+    "pico.md": ["main.py", "yaw.py", "keep.py", "interrupt.py", "pins.py"],
     "raspberry-pi.md": ["raspberry_pi.py"],
     "linux-service.md": ["ros2_node.py"],
     "any-imu.md": ["bmi160.py", "lsm6dso.py", "bmi270.py"],
@@ -77,6 +77,13 @@ class TestOnABoard:
         result = run("main.py", interrupt=-1)
         assert len(rows(result.stdout)) == 29, result.stderr
         takes_the_bias_off(result.stdout)
+
+    def test_yaw_stands_with_the_bias_taken_off_and_drifts_without(self, run):
+        found = re.findall(r"yaw without (\S+)  with (\S+) deg", run("yaw.py", interrupt=-1).stdout)
+        assert len(found) == 29
+        without, corrected = map(float, found[-1])
+        assert without == pytest.approx(29 * BIAS_DPS[2], abs=0.2)
+        assert abs(corrected) < 0.1 * without
 
     def test_what_was_learned_is_kept_over_a_power_cut(self, run):
         first = run("keep.py", interrupt=-1)

@@ -7,10 +7,12 @@ import subprocess
 import sys
 
 import pytest
+from zerorate_bench.boards.table import needs_of
 from zerorate_bench.native.manifests import FOLDERS, manifests
 from zerorate_tools import __version__
 from zerorate_tools.boards.compiling import board_files, mpy_version
 from zerorate_tools.boards.connection import BoardFacts
+from zerorate_tools.boards.needs import heap_needed
 from zerorate_tools.boards.parts import PARTS, REST, UnknownPart, chosen_parts, part_files
 
 from host_tests.drivers.unix_board import UnixBoard
@@ -135,3 +137,15 @@ class TestFreezing:
 
 def test_the_manifest_has_the_project_version(repository):
     assert f'version="{__version__}"' in (repository / "manifest.py").read_text()
+
+
+def test_the_page_of_boards_prints_the_heap_that_was_measured(monkeypatch):
+    heap = {"rest": 100, "all": 170, "motion": 150, "gravity": 130, "effects": 140}
+    kept = needs_of({"heap_bytes": heap, "least_heap_bytes": 200, "cycles": {}})
+    monkeypatch.setattr("zerorate_tools.boards.needs.needs", lambda: kept)
+    for parts, bytes_ in (
+        (["rest"], 100),
+        (["rest", "gravity"], 130),
+        (["rest", "motion", "gravity"], 170),
+    ):
+        assert heap_needed(parts, "thumb") == bytes_

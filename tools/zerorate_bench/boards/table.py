@@ -15,7 +15,7 @@ from typing import Any
 from zerorate_tools.boards import needs as kept_needs
 from zerorate_tools.boards.compiling import board_files, mpy_version
 from zerorate_tools.boards.connection import BoardFacts
-from zerorate_tools.boards.needs import needs
+from zerorate_tools.boards.needs import BOTH, heap_needed, needs
 from zerorate_tools.boards.parts import REST
 
 from ..native.native_cost import code_bytes
@@ -139,7 +139,7 @@ def needs_of(found: Mapping[str, Any]) -> dict[str, dict[str, int]]:
     """What `measure` found, as needs.json has it; what it does not measure stays as it is."""
     heap, before = found["heap_bytes"], needs()
     parts = {part: heap[part] - heap[REST] for part in ("motion", "gravity", "effects")}
-    parts["gravity"] = max(parts["gravity"], heap["all"] - heap["motion"])  # the two together
+    parts[BOTH] = heap["all"] - heap[REST]
     return {
         "native": {REST: heap[REST], **parts},
         "bytecode": before["bytecode"],
@@ -149,9 +149,7 @@ def needs_of(found: Mapping[str, Any]) -> dict[str, dict[str, int]]:
 
 
 def _row(board: Board) -> list[str]:
-    kept = needs()["native" if board.code else "bytecode"]
-    rest = kept[REST]
-    both = rest + kept["motion"] + kept.get("gravity", 0)
+    rest, both = heap_needed([REST], board.code), heap_needed(_BOTH, board.code)
     if board.code:
         more = _more(board.code)
         rest, both = rest + more[REST], both + sum(more[part] for part in _BOTH)
