@@ -174,6 +174,12 @@ def test_every_scale_has_ends(csv_of, key, least, most):
             read_recording(csv_of(text, {**SCALES_OF_ALL, key: beyond}))
 
 
+def test_a_row_is_of_one_mebibyte_at_most(csv_of):
+    with pytest.raises(BadRecording, match="a row is longer than 1 MiB; name a CSV file with a"):
+        read_recording(csv_of(f"{HEADER}\n1,2,3,4\n2,{'7' * (1 << 21)},3,4\n"))
+    assert len(read_recording(csv_of(f"{HEADER}\n1,{'0' * (1 << 19)}2,3,4\n"))) == 1
+
+
 def test_a_cell_of_a_quarter_million_letters_is_named_by_its_row(csv_of):
     with pytest.raises(BadRecording, match="row 2: gx is 'a{40}', no integer"):
         read_recording(csv_of(f"{HEADER}\n1,2,3,4\n2,{'a' * 250_000},3,4\n"))
