@@ -136,40 +136,31 @@ def off_q1(s: ptr32, c: ptr32, axis: int) -> int:
     return clipped((mean - s[_TARGET_Q8 + axis]) >> 7, 0x3FFF)
 
 
-def along(s: ptr32, c: ptr32) -> int:
-    """Return the segment's error, LSB Q1, times gravity, in units of 16 LSB."""
-    total = 0
-    for i in range(3):
-        total += off_q1(s, c, i) * up(s, i)
-    return total
-
-
 def square(s: ptr32, c: ptr32) -> int:
     """Return the square of the segment's error: LSB^2, Q2."""
-    total = off_q1(s, c, 0) * off_q1(s, c, 0) + off_q1(s, c, 1) * off_q1(s, c, 1)
-    return total + off_q1(s, c, 2) * off_q1(s, c, 2)
-
-
-def seems_a_turn(s: ptr32, c: ptr32) -> int:
-    """Return 1 if the waiting segment's error is along gravity or too small to show yet."""
-    g = size(s)
-    if g == 0:
-        return 0
-    turn = along(s, c) // g
-    aside = square(s, c) - turn * turn
-    turn = 2 * turn // 5
-    g = level_q4(s, c, g) >> 2  # Q1, twice
-    return 1 if aside <= turn * turn + g * g else 0
+    total = 0
+    for i in range(3):
+        off = off_q1(s, c, i)
+        total += off * off
+    return total
 
 
 def suspect_turn(s: ptr32, c: ptr32):
     """Note for the waiting segment of every axis what it may hide, and whether it may be a turn."""
-    # A turn only where the bias is well known: from as long a rest as must insist, and found again
-    # since power-on. It insists anew in every rest: only an unbroken one tells that it is none.
-    turn = seems_a_turn(s, c)
-    note(s, c, 0, turn)
-    note(s, c, 1, turn)
-    note(s, c, 2, turn)
+    # It may where its error is along gravity, or too small to show yet, and the bias is well known:
+    # from as long a rest as must insist, and found again since power-on. It insists anew in every
+    # rest: only an unbroken one tells that it is none.
+    g = size(s)
+    turn = 0
+    if g:
+        turn = off_q1(s, c, 0) * up(s, 0) + off_q1(s, c, 1) * up(s, 1)
+        turn = (turn + off_q1(s, c, 2) * up(s, 2)) // g
+        aside = square(s, c) - turn * turn
+        turn = 2 * turn // 5
+        g = level_q4(s, c, g) >> 2  # Q1, twice
+        turn = 1 if aside <= turn * turn + g * g else 0
+    for g in range(3):
+        note(s, c, g, turn)
 
 
 def note(s: ptr32, c: ptr32, axis: int, turn: int):

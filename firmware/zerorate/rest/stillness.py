@@ -316,8 +316,10 @@ def up(s: ptr32, axis: int) -> int:
 
 def size(s: ptr32) -> int:
     """Return the size of gravity where the rest began, in units of 16 LSB."""
-    total = up(s, 0) * up(s, 0) + up(s, 1) * up(s, 1)
-    return root(total + up(s, 2) * up(s, 2))
+    total = 0
+    for i in range(3):
+        total += up(s, i) * up(s, i)
+    return root(total)
 
 
 def level_q4(s: ptr32, c: ptr32, g: int) -> int:
