@@ -294,3 +294,27 @@ def test_a_name_as_long_as_names_may_be_is_written(tmp_path):
     assert [path.name for path in tmp_path.glob("*.parquet")] == [out.name]
     with pytest.raises(InFile, match="the name is longer than 255 bytes; give it a shorter one"):
         import_recording(source, tmp_path / ("x" * 250 + ".parquet"))
+
+
+@pytest.mark.parametrize(
+    ("name", "names", "told"),
+    [
+        ("Raw.csv", "X_(m/s^2) Y_(m/s^2) Z_(m/s^2)", "no rates [(]the unit of .X_"),
+        ("turned.csv", "x y z", "no rates [(]they are as long as gravity"),
+        ("Magnetometer.csv", "x y z", "no rates [(]the file is called Magnetometer.csv"),
+    ],
+)
+def test_axes_of_another_sensor_are_offered_as_no_rates(tmp_path, name, names, told):
+    (tmp_path / "Gyroscope.csv").write_text("t_s,x,y,z\n")
+    frame = table()[["t_s", "ax_g", "ay_g", "az_g"]].set_axis(["t_s", *names.split()], axis=1)
+    with pytest.raises(BadRecording, match=told) as error:
+        read(tmp_path, frame, name=name)
+    assert "--map gx=X" not in str(error.value) and "--map gx=x" not in str(error.value)
+    assert "likely in Gyroscope.csv: zerorate import" in str(error.value)
+
+
+def test_an_accelerometer_in_the_file_beside_is_said(tmp_path):
+    (tmp_path / "Accelerometer.csv").write_text("t_s,x,y,z\n")
+    frame = table()[["t_s", "gx_dps", "gy_dps", "gz_dps"]]
+    _, report = read(tmp_path, frame, name="Gyroscope.csv")
+    assert told(report, "Accelerometer.csv is beside it: zerorate import")

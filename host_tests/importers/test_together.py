@@ -71,3 +71,14 @@ def test_a_row_that_is_not_there_is_no_place_to_cut(tmp_path, rows):
     with pytest.raises(BadRecording, match="it has no row"):
         cut(source, rows, tmp_path / "parts")
     assert not (tmp_path / "parts").exists()
+
+
+def test_files_of_two_recordings_in_a_folder_are_not_mixed(tmp_path):
+    table(tmp_path / "Gyroscope.csv", 1.0)
+    still = pd.DataFrame({"t_s": np.arange(5000) / 100, "ax_g": 0.0, "ay_g": 0.0, "az_g": 1.0})
+    still.to_csv(tmp_path / "Accelerometer.csv", index=False)
+    with pytest.raises(BadRecording, match="do not begin and end together"):
+        import_together([tmp_path], tmp_path / "out")
+    still[:500].to_csv(tmp_path / "Accelerometer.csv", index=False)
+    [out] = import_together([tmp_path], tmp_path / "out")
+    assert read_recording(out).accel_g()[:, 2].mean() == pytest.approx(1.0)

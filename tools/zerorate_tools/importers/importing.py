@@ -22,6 +22,7 @@ from .columns.mapping import Mapped
 from .columns.plan import Plan, left_aside, planned
 from .kinds import table_of
 from .report import Options, Report
+from .samples.between import refuse_two_recordings
 from .samples.conversion import (
     Common,
     absent,
@@ -199,6 +200,8 @@ def _gathered(table: Table, path: Path, how: _How, folder: Path | None) -> _Sour
     raw = "gyro" in plan.raw
     fast_dps = np.inf if raw or options.gyro_lsb_per_dps else FASTEST_DPS
     found = gathered(table, plan, path, hz=options.hz, fast_dps=fast_dps, folder=folder)
+    if table.parts > 1:
+        refuse_two_recordings(found.spool, path)
     return _Source(path, table, plan, found, options)
 
 
@@ -214,7 +217,7 @@ def _converted(source: _Source, common: Common) -> _Import:
     _leave_out_unread(found, plan, report)
     scales = fitting_scales(found, common, plan, table, source.options, path, report.notes)
     report.doubts += doubts(found, plan, scales, path)
-    report.notes += [*absent(plan, table.names), *left_aside(plan, table)]
+    report.notes += [*absent(plan, table.names, path), *left_aside(plan, table)]
     names = [n for n in COLUMNS if n in found.spool.names]
     names += [n for n in plan.wanted if n not in COLUMNS]
     batches = integer_batches(found, plan, scales, path, report)

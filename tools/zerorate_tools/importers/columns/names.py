@@ -31,7 +31,7 @@ _NOT_THE_DIE = re.compile(r"ambient|air|baro|bmp|bme|aht|sht|cpu|motor|batt|esc|
 _TIME = re.compile(
     r"(?:t|ts|time|timestamp|timestampsample|now|stamp|timeus|timems|secondselapsed|datetime|"
     r"date|utc|millis|micros|loggingtime|.*timestamp(?:unix)?(?:cal)?|.*headerstamp|sampletime|"
-    r"elapsed|elapsedtime|epoch?|.*offsettime|timestartup|timesincestart(?:in)?|rtctime)$"
+    r"gpst|gpstime|tow|timeofweek|elapsed|elapsedtime|epoch?|.*offsettime|timestartup|timesincestart(?:in)?|rtctime)$"
 )
 _SEC = re.compile(r"(.*?)(?:secs?|seconds?)$")
 _NANOSEC = re.compile(r"(.*?)(?:nanosecs?|nsecs?|nanoseconds?)$")
@@ -129,6 +129,11 @@ def split_time(names: list[str]) -> tuple[str, str] | None:
         elif sec:
             by_stem.setdefault(sec[1], {})["s"] = name
     return next(((two["s"], two["ns"]) for two in by_stem.values() if len(two) == 2), None)
+
+
+def of_other_unit(name: str) -> bool:
+    """Whether a name ends with a unit in brackets that is none of rates: X (m/s^2), Y (µT)."""
+    return name.rstrip()[-1:] in (")", "]") and unit_in_name("gx", name) is None
 
 
 def unnamed(names: list[str]) -> bool:

@@ -1,5 +1,6 @@
 """Which columns of a table an import takes, in which units, decided once before the rows."""
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -22,6 +23,7 @@ from .mapping import Mapped, factor_in, parsed_mapping
 from .units import RAW, factors_of, kind_of, unit_in_name, units_of
 
 _LISTED, _TOLD = 24, 8
+_OTHER_SENSOR = re.compile("acc|mag|euler|quat|orient|heading|grav|baro|gps|location", re.I)
 
 
 @dataclass
@@ -176,9 +178,33 @@ def _check_there(table: Table, wanted: Mapping[str, Mapped], path: Path) -> None
                 )
     missing = [target for target in GYRO if target not in wanted]
     if missing:
-        words = _offered(table, wanted, missing)
-        do = f"if these are rates: {words}" if words else f"map it: --map {missing[0]}=COLUMN:dps"
+        do = f"map it: --map {missing[0]}=COLUMN:dps"
+        if other := _of_another_sensor(table, path):
+            do = f"these are no rates ({other}){_beside(path)}; else {do}"
+        elif words := _offered(table, wanted, missing):
+            do = f"if these are rates: {words}"
         raise BadRecording(path, f"no column for {', '.join(missing)}", do=f"{do}, {_of(table)}")
+
+
+def _of_another_sensor(table: Table, path: Path) -> str:
+    """What tells that the columns of three axes are another sensor's; empty where nothing does."""
+    named = _OTHER_SENSOR.search(path.stem)
+    if named and "gyro" not in path.stem.lower():
+        return f"the file is called {path.name}"
+    three = list(usual.bare_axes(table.names).values())
+    if any(map(usual.of_other_unit, three)):
+        return f"the unit of {three[0]!r}"
+    if three and gravity_unit(list(table.first_rows(three).values())):
+        return "they are as long as gravity"
+    return ""
+
+
+def _beside(path: Path) -> str:
+    """Where the rates are likely to be."""
+    gyro = next((f for f in sorted(path.parent.glob("*.csv")) if "gyro" in f.stem.lower()), None)
+    if gyro is None:
+        return ""
+    return f", which are likely in {gyro.name}: zerorate import {path.parent} takes both"
 
 
 def _offered(table: Table, wanted: Mapping[str, Mapped], missing: list[str]) -> str:

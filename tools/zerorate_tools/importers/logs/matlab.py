@@ -12,5 +12,7 @@ def read(path: Path, instance: int = 0) -> Table:
     """The variables that share the most rows. Raises BadRecording."""
     import scipy.io
 
-    do = "tables and timetables only MATLAB reads: write one with writetable as a CSV"
-    return table_of_arrays(scipy.io.loadmat(path), path, do)
+    do = "objects, tables and timetables only MATLAB reads: save plain arrays, by save -v7"
+    found = scipy.io.loadmat(path)
+    found.pop("None", None)  # what an object of MATLAB's own comes as
+    return table_of_arrays(found, path, do)

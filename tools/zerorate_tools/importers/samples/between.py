@@ -1,15 +1,32 @@
 """Readings of slower sensors, put at the times of the samples."""
 
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 
+from ...errors import BadRecording
 from ...recordings.recording import ACCEL, COLUMNS, TEMP
 from .clock import duration
 from .gather import Gathered
 from .spool import PLACE, TIME, Spool
 
 _ACCEL_WITHIN_US = 1e6
+_TOGETHER_US, _TOGETHER = 5e6, 0.02
+
+
+def refuse_two_recordings(spool: Spool, path: Path) -> None:
+    """Raise BadRecording where the files of a folder hold rates and forces of other times: those of
+    one recording begin and end together."""
+    rates, force = spool.span_us("gx"), spool.span_us("ax")
+    if rates is None or force is None:
+        return
+    within = max(_TOGETHER_US, _TOGETHER * (rates[1] - rates[0]))
+    if max(abs(one - other) for one, other in zip(rates, force)) > within:
+        problem = (
+            "its rates and its acceleration do not begin and end together, as in one recording"
+        )
+        raise BadRecording(path, problem, do="import the file of the gyroscope alone")
 
 
 class Bridged:

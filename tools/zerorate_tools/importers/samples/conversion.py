@@ -196,11 +196,14 @@ def _channel(name: str, values: np.ndarray, place: np.ndarray, path: Path) -> np
     return np.where(np.isnan(values), GAP, np.rint(values)).astype(np.int32)
 
 
-def absent(plan: Plan, names: list[str]) -> list[str]:
+def absent(plan: Plan, names: list[str], path: Path) -> list[str]:
     """What cannot be learned without the columns that are not there. names: of all columns."""
     out = []
     if ACCEL[0] not in plan.wanted:
-        out.append("no acceleration: nothing can be learned against gravity")
+        in_gyro = path.is_file() and "gyro" in path.stem.lower()
+        beside = [f.name for f in sorted(path.parent.glob("*[Aa]ccel*.csv"))] if in_gyro else []
+        take = f"; {beside[0]} is beside it: zerorate import {path.parent}" if beside else ""
+        out.append(f"no acceleration: nothing can be learned against gravity{take}")
     if TEMP not in plan.wanted:
         other = other_temperatures(names)
         is_near = "it is" if len(other) == 1 else "one of them is"

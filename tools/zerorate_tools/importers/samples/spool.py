@@ -69,6 +69,13 @@ class Spool:
     def __iter__(self) -> Iterator[dict[str, np.ndarray]]:
         return (self.read(number) for number in range(len(self.pieces)))
 
+    def span_us(self, name: str) -> tuple[float, float] | None:
+        """When a column has its first and its last reading; None where it has none."""
+        ends = [piece.ends[name] for piece in self.pieces if name in piece.ends]
+        if not ends:
+            return None
+        return min(first[0] for first, _ in ends), max(last[0] for _, last in ends)
+
     def close(self) -> None:
         self._reader = None
         self._file.close()
