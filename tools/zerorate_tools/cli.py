@@ -1,14 +1,17 @@
 """The one entry point, `zerorate`: sub-commands are thin calls of public functions."""
 
+# PYTHON_ARGCOMPLETE_OK
 import argparse
+import difflib
 import os
+import re
 import signal
 import sys
 from collections.abc import Sequence
 from importlib import import_module
 from importlib.util import find_spec
 from types import FrameType
-from typing import Any, TextIO
+from typing import Any, NoReturn, TextIO
 
 from . import __version__
 from .errors import MissingLibrary, ZerorateError, os_error_in_words, printable
@@ -34,7 +37,12 @@ def main(argv: Sequence[str] | None = None) -> int:
                 signal.signal(number, _end)
         sys.stdout = _Printable(sys.stdout)
     try:
-        arguments = parser().parse_args(given or ["--help"])
+        found = parser()
+        if "_ARGCOMPLETE" in os.environ:  # a shell asks what may come next
+            import argcomplete
+
+            argcomplete.autocomplete(found)
+        arguments = found.parse_args(given or ["--help"])
         return arguments.run(arguments) or 0
     except ZerorateError as error:
         return _complain(str(error), error.exit_code)
@@ -76,9 +84,32 @@ def _end(number: int, frame: FrameType | None) -> None:
     os.kill(os.getpid(), number)
 
 
+class _Parser(argparse.ArgumentParser):
+    """Says what was probably meant where a word is none of those that there are."""
+
+    def error(self, message: str) -> NoReturn:
+        """Print usage and the message, and exit with 2."""
+        wrong = re.search(r"invalid choice: '(.*?)'|unrecognized arguments: (\S+)", message)
+        if wrong:
+            word = wrong[1] or wrong[2].partition("=")[0]
+            near = difflib.get_close_matches(word, sorted(_words_of(self)), 1)
+            message += f"; did you mean {near[0]}?" if near else ""
+        super().error(message)
+
+
+def _words_of(parser: argparse.ArgumentParser) -> set[str]:
+    """Commands, choices and options of a parser and of those below it."""
+    words: set[str] = set()
+    for action in parser._actions:
+        words.update(action.option_strings, map(str, action.choices or ()))
+        if isinstance(action, argparse._SubParsersAction):
+            words.update(*(_words_of(below) for below in action.choices.values()))
+    return words
+
+
 def parser() -> argparse.ArgumentParser:
     """The parser with every sub-command whose module is there."""
-    top = argparse.ArgumentParser(
+    top = _Parser(
         prog="zerorate",
         description="Keeps a MEMS gyroscope's zero-rate output at zero.",
         epilog="Begin with `zerorate demo`; `zerorate COMMAND --help` says more of each.",

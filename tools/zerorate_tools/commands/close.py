@@ -3,6 +3,8 @@
 import argparse
 from pathlib import Path
 
+from .as_json import add_json, print_json
+
 
 def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     parser = subparsers.add_parser(
@@ -21,6 +23,7 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         action="store_true",
         help="bias_online_g? in corrected.parquet: the firmware learning as it goes",
     )
+    add_json(parser)
     parser.set_defaults(run=run)
 
 
@@ -40,6 +43,9 @@ def run(arguments: argparse.Namespace) -> None:
             advance,
             online=arguments.online,
         )
+    if arguments.json:
+        print_json({**result, "folder": arguments.out})
+        return
     if "in_motion" in result:
         print(motion_in_words(result))
         print(f"report: {arguments.out / 'report.html'}")

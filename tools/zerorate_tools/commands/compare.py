@@ -3,6 +3,8 @@
 import argparse
 from pathlib import Path
 
+from .as_json import add_json, print_json
+
 
 def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     parser = subparsers.add_parser(
@@ -15,6 +17,7 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
     )
     parser.add_argument("logs", nargs="+", type=Path, metavar="LOG", help="a recording")
     parser.add_argument("--out", type=Path, metavar="FILE", help="write one HTML page with a plot")
+    add_json(parser)
     parser.set_defaults(run=run)
 
 
@@ -34,11 +37,15 @@ def run(arguments: argparse.Namespace) -> None:
         except TooFewRests:
             if won is None or not won.deployed or arguments.out is not None:
                 raise
-            print(in_motion(won))
+            print_json({"in_motion": won}) if arguments.json else print(in_motion(won))
             return
+    if arguments.out is not None:
+        write_page(compared, arguments.out, won)
+    if arguments.json:
+        print_json({**compared.figures(), "in_motion": won, "page": arguments.out})
+        return
     print(table(compared))
     if won is not None:
         print(f"\n{in_motion(won)}")
     if arguments.out is not None:
-        write_page(compared, arguments.out, won)
         print(f"\n{arguments.out}")

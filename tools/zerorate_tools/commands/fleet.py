@@ -3,6 +3,8 @@
 import argparse
 from pathlib import Path
 
+from .as_json import add_json, print_json
+
 
 def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     parser = subparsers.add_parser(
@@ -38,6 +40,7 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
     group.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster that is there")
     group.add_argument("--workers", type=_count, metavar="N", help="processes here (all cores)")
     group.add_argument("--devices-per-task", type=_count, metavar="N", help="instead of by size")
+    add_json(parser)
     parser.set_defaults(run=run)
 
 
@@ -55,8 +58,11 @@ def run(arguments: argparse.Namespace) -> int:
     }
     with progress("devices", len(devices)) as advance:
         done = fleet(devices, out, **options, advance=advance)
-    print(in_words(done))
-    print(f"written: {out}")
+    if arguments.json:
+        print_json({"written": out, "resumed": done.resumed, **done.report})
+    else:
+        print(in_words(done))
+        print(f"written: {out}")
     return 0 if done.report["sessions"] else 1
 
 

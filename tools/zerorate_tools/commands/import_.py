@@ -4,6 +4,8 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from .as_json import add_json, print_json
+
 _EPILOG = """\
 A mapping names a column of the recording, where it comes from, and its unit:
   --map gx=gyro_x:rad/s --map temp=T:degc --map t_us=time:ms --map vdd_mv=volts:x1000
@@ -58,6 +60,7 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
     parser.add_argument(
         "--instance", type=int, default=0, metavar="N", help="of several sensors in a log (0)"
     )
+    add_json(parser)
     parser.set_defaults(run=run)
 
 
@@ -81,6 +84,9 @@ def run(arguments: argparse.Namespace) -> None:
             reports = {arguments.out: report}
         else:
             reports = import_together(sources, arguments.out, **how, advance=advance)
+    if arguments.json:
+        print_json({"recordings": [{"file": o, **vars(report)} for o, report in reports.items()]})
+        return
     for out, report in reports.items():
         print(out)
         for line in report.lines():

@@ -3,6 +3,8 @@
 import argparse
 from pathlib import Path
 
+from .as_json import add_json, print_json
+
 
 def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     parser = subparsers.add_parser(
@@ -43,6 +45,7 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         metavar="NAME=VALUE",
         help="a setting of the firmware, for example step_degc=2",
     )
+    add_json(parser)
     parser.set_defaults(run=run, refuse=parser.error)
 
 
@@ -80,6 +83,10 @@ def run(arguments: argparse.Namespace) -> None:
             options=options,
             advance=advance,
         )
+    if arguments.json:
+        names = ("samples", "verdicts", "sources", "explanation")
+        print_json({"file": arguments.out, **{name: getattr(done, name) for name in names}})
+        return
     print(f"{arguments.out}: {done.samples} samples")
     print("  verdicts:", _shares(done.verdicts, done.samples))
     print("  source of the bias:", _shares(done.sources, done.samples))

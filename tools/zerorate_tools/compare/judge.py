@@ -137,6 +137,21 @@ class Compared:
         times = max(theirs_lost, least) / max(mine_lost, least)
         return Verdict(way, against, word, times)
 
+    def figures(self) -> dict[str, object]:
+        """All that the table says, as numbers."""
+        ways = {
+            way: {
+                "error_dps": self.rms_dps(way),
+                "heading_deg_per_min": self.heading_deg_per_min(way),
+                "against_first_rest": self.verdict(way, FIRST_REST).word,
+            }
+            for way in self.error_dps
+        }
+        return {
+            **{"logs": self.names, "later_rests": len(self.rests), "ways": ways},
+            **{"left_out": self.left_out, "headline": self.headline()},
+        }
+
     @property
     def ours(self) -> str:
         """The way of zerorate that the headline is about."""
