@@ -15,7 +15,7 @@ from zerorate_tools.simulate import simulate_to_files
 @pytest.mark.parametrize(
     ("typed", "meant"),
     [
-        (["improt", "x.csv"], "did you mean import?"),
+        (["f1eet", "x.csv"], "did you mean fleet?"),
         (["close", "x.parquet", "--out", "x", "--holdut=y"], "did you mean --holdout?"),
         (["fleet", "x", "--out", "y", "--job", "repaly"], "did you mean replay?"),
     ],
