@@ -79,3 +79,19 @@ def test_json_of_an_import_has_a_recording_for_each_source(tmp_path, capsys):
     assert main(["import", source, "--out", out, "--json"]) == 0
     [one] = json.loads(capsys.readouterr().out)["recordings"]
     assert one["file"] == out and one["rows_written"] == 50
+
+
+def test_the_demo_says_that_it_fetches_before_it_does(monkeypatch, capsys):
+    from zerorate_tools import runtimes
+    from zerorate_tools.commands.demo import get_ready
+    from zerorate_tools.errors import MissingRuntime
+
+    def not_there(name):
+        raise MissingRuntime(name)
+
+    def fetched(name):
+        assert f"fetching MicroPython ({name}), once" in capsys.readouterr().err
+
+    monkeypatch.setattr(runtimes, "find", not_there)
+    monkeypatch.setattr(runtimes, "fetch", fetched)
+    get_ready("wasm")

@@ -1,6 +1,7 @@
 """`zerorate demo`: the whole job without hardware."""
 
 import argparse
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -45,6 +46,7 @@ def get_ready(runtime: str) -> None:
     except MissingRuntime:
         if runtime not in NAMES:
             raise
+        print(f"fetching MicroPython ({runtime}), once ...", file=sys.stderr, flush=True)
         with progress(f"fetching MicroPython ({runtime})"):
             fetch(runtime)
 

@@ -63,6 +63,8 @@ def _in_wheel(*candidates: str) -> Path | None:
 
 
 _INSTALL = ["ci", "--ignore-scripts", "--no-audit", "--no-fund", "--no-update-notifier"]
+# a machine without a network hears of it in seconds: npm tries for more than a minute by itself
+_INSTALL += ["--fetch-retries=1", "--fetch-retry-mintimeout=1000", "--fetch-timeout=60000"]
 
 
 def locked_version(source: Path, package: str) -> str:
