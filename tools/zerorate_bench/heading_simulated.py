@@ -201,8 +201,9 @@ _INTRODUCTION = """\
 
 `zerorate bench heading-simulated --devices {devices}` wrote this page: {devices} devices a kind.
 
-A device has scale factors off by 0.3 to 2 %, cross-axis sensitivities of up to 1 % and axes turned
-by 0.3 to 5 degrees. Its one recording has 5 to 60 minutes, 0 to 90 % of them at rest, at 25 to 400
-Hz, and at most 60,000 samples. Entries found: of the nine entries of each matrix that are known to
-a third of their size, those told apart from nothing. Left: the median heading lost
-after, of that before."""
+Scale factors are off by 0.3 to 2 %. Cross-axis terms reach 1 %. Axes are turned by 0.3 to 5 degrees.
+Each device has one recording of 5 to 60 minutes. It rests for 0 to 90 % of them. Its rate is 25 to
+400 Hz. A recording has at most 60,000 samples.
+
+Entries found counts those known to a third of their size. Left is the part of the lost heading that
+stays, a median."""
