@@ -201,7 +201,7 @@ _INTRODUCTION = """\
 
 `zerorate bench heading-simulated --devices {devices}` wrote this page: {devices} devices a kind.
 
-Scale factors are off by 0.3 to 2 %. Cross-axis terms reach 1 %. Axes are turned by 0.3 to 5 degrees.
+Scale factors are off by 0.3 to 2 %. Cross-axis terms reach 1 %. Axes are turned by up to 5 degrees.
 Each device has one recording of 5 to 60 minutes. It rests for 0 to 90 % of them. Its rate is 25 to
 400 Hz. A recording has at most 60,000 samples.
 
