@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from zerorate_bench.loop.corners import simulate_corners
 from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.loop import analyse as loop
 from zerorate_tools.loop.analyse import analyse
@@ -283,8 +282,3 @@ def test_what_follows_a_pose_that_changes_often_is_no_step_and_a_step_no_acceler
         session.sources[f"acc_{axis}"] = size * pose + rng.normal(0, 1e-3, ticks)
     session.rate_dps += follows_dps * session.block_mean(session.sources["acc_x"])[:, None]
     assert steps_at(session) == ([pytest.approx(90, abs=0.75)] if floors else [])
-
-
-def test_a_charger_that_is_switched_on_down_and_off_makes_no_step():
-    (session,) = remove_steps(simulate_corners(612).sessions)
-    assert session.steps == ()

@@ -92,8 +92,8 @@ def is_supply(name: str) -> bool:
 #: Blocks beyond either limit of a source's range, and the further share of all blocks.
 _FEW, _FEW_SHARE = 1, 0.01
 
-#: Lags in s, each three times the last: between two of them a mean of both is as good.
-_LATE_S = tuple(2.0 * 3.0**i for i in range(7))
+#: Lags in s of the rates of temperature that a part follows which is late by seconds.
+_LATE_S = (1.0, 8.0)
 
 #: Share of its range by which the source of a difference may leave it.
 _MARGIN = 0.5
@@ -181,16 +181,18 @@ def of_temperature(sessions: list[Session]) -> list[Candidate]:
     if "temp" not in common_sources(sessions):
         return []
     own = [c for c in candidates(sessions) if c.sources == ["temp"] and len(c.terms) == 1]
-    return [*own, _late(sessions)]
+    return [*own, *_late(sessions)]
 
 
-def _late(sessions: list[Session]) -> Candidate:
-    """What a part adds that is behind its thermometer by any lags, or before it: a bend over the
-    temperature of each lag. At a corner of the temperature it changes as abruptly as a step."""
+def _late(sessions) -> list[Candidate]:
+    """What a part adds that is late behind its thermometer by seconds, or early: the rate of
+    temperature times the slope of the bias, which bends with temperature."""
     centre = float(np.mean([s.sources["temp"].mean() for s in sessions]))
-    lagged = [Term("temp", centre=centre, lag_s=lag, lag_mode="lag") for lag in _LATE_S]
-    bends = [replace(t, power=power) for t in lagged for power in (1, 2)]
-    return Candidate("thermal-lag", tuple(bends), "catalogue")
+    rates = [Term("temp", lag_s=lag, lag_mode="rate") for lag in _LATE_S]
+    return [
+        Candidate("thermal-rate", (r, replace(r, second="temp", second_centre=centre)), "catalogue")
+        for r in rates
+    ]
 
 
 def _group(row: Effect, span, varied, sessions) -> list[Candidate]:
