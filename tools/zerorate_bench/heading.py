@@ -23,7 +23,7 @@ from .tables import table
 Array = NDArray[np.float64]
 _G = 9.80665
 _EVERY = 10
-#: Two sets of axes: the trials of ../shared/reference/motion.md's groups.
+#: Two sets of axes: trials whose matrices agree with each other, and not with the other set's.
 GROUPS = (("01", "02", "06", "12", "16", "24"), ("21", "29", "30"))
 LIMITS = (0.7, 2.5)
 

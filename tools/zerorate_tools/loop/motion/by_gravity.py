@@ -47,7 +47,7 @@ def by_gravity(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
         deviation=np.sqrt(np.diag(covariance)).reshape(3, 3),
         # a likelihood ratio averaged over sizes: Markov bounds its chance without errors
         p_value=float(np.exp(-max(device.nats, 0.0))),
-        level=_LEVEL,
+        level=0.0 if all(f.moving.planar for f in fitted) else _LEVEL,
         share=share,
         kind=_kind(entries, covariance),
         reference=BESIDE,

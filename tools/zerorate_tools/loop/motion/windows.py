@@ -33,6 +33,9 @@ LEAST_DPS = 5.0
 #: Rows reach up to this frequency: above it a hand shakes as it turns, which looks like an error.
 _MOST_HZ = 0.5
 _COLUMNS_HZ = 10.0
+#: Shares, of the mean square, of rates about other axes than the main one and of gravity beside its
+#: mean direction, below which a device turns about one axis in one pose: a tenth of it, rms.
+_PLANAR = 0.01
 #: Columns are made in parts of this many, so that hours of samples need no more memory.
 _CHUNK = 512
 _G_MPS2 = 9.80665
@@ -66,6 +69,18 @@ class Moving:
         """Seconds between samples."""
         return float(self.at_s[-1] - self.at_s[0]) / (len(self.at_s) - 1)
 
+    @property
+    def planar(self) -> bool:
+        """Whether it turns about one axis in one pose, as a robot on a floor. An acceleration that
+        goes with such turns, as speed times rate does, is then no different from axes that are off.
+        """
+        n = max(1, round(1.0 / self.dt_s))
+        accel, rate = (x[: len(x) // n * n].reshape(-1, n, 3) for x in (self.accel, self.rate))
+        moves = np.degrees(np.sqrt((rate**2).sum(axis=2).mean(axis=1))) > LEAST_DPS
+        poses = accel[moves].mean(axis=1)
+        poses = poses / np.linalg.norm(poses, axis=1, keepdims=True)
+        return _beside_main(poses) < _PLANAR and _beside_main(rate[moves].reshape(-1, 3)) < _PLANAR
+
     def spans(self, seconds: float) -> list[slice]:
         """Windows of so many seconds, each a quarter on, that move, without gap or rail."""
         n = round(seconds / self.dt_s)
@@ -76,6 +91,12 @@ class Moving:
         whole = abs(self.at_s[s][-1] - self.at_s[s][0] - (n - 1) * self.dt_s) < 5 * self.dt_s
         spread = np.degrees(np.sqrt(self.rate[s].var(axis=0).sum()))
         return whole and spread > LEAST_DPS and bool(self.usable[s].all())
+
+
+def _beside_main(vectors: np.ndarray) -> float:
+    """Share of the mean square of vectors (n, 3) that lies across their main direction."""
+    squares = np.linalg.eigvalsh(vectors.T @ vectors)
+    return float(1.0 - squares[-1] / max(squares.sum(), 1e-300))
 
 
 def moving_of(path: str | PathLike[str], ticks: Ticks | None = None) -> Moving | None:
