@@ -92,6 +92,12 @@ def _recordings(arguments: argparse.Namespace) -> Path:
 
 _QUICK = {"--quick": {"action": "store_true", "help": "short recordings and one seed"}}
 _BROAD = {"--data": {"type": Path, "metavar": "DIR", "help": "folder of BROAD trials (.mat)"}}
+_FOLDERS = {
+    "--data": {
+        **{"type": Path, "nargs": "+", "metavar": "DIR", "required": True},
+        "help": "folders of BROAD trials (.mat)",
+    }
+}
 _RECORDINGS = {"--data": {"type": Path, "metavar": "DIR", "help": "folder of real recordings"}}
 _RESUME = {"--resume": {"type": Path, "metavar": "FILE", "help": "outcomes: go on from them"}}
 
@@ -158,12 +164,7 @@ BENCHES = {
     "heading": Bench(
         *("heading lost in motion, without and with what gravity shows", "heading"),
         lambda bench, a, advance: bench.run(a.data, advance),
-        options={
-            "--data": {
-                **{"type": Path, "nargs": "+", "metavar": "DIR", "required": True},
-                "help": "folders of BROAD trials (.mat)",
-            }
-        },
+        options=_FOLDERS,
     ),
     "heading-simulated": Bench(
         *("errors of scale and axes in five kinds of simulated motion", "heading_simulated"),
@@ -222,6 +223,11 @@ BENCHES = {
         lambda bench, a, advance: bench.real_rows(_recordings(a)),
         text="in_words",
         options=_RECORDINGS,
+    ),
+    "real-motion": Bench(
+        *("the bias at the end of real motion beside other filters'", "real_motion"),
+        lambda bench, a, advance: bench.run(a.data, advance),
+        options=_FOLDERS,
     ),
     "service": Bench(
         *("`zerorate run` through faults, kills, full disks", "service"),
