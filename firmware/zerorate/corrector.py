@@ -50,7 +50,7 @@ _NO_VALUE = const(-0x3FFFFFFF)
 # Of twice the range of temperature: a model holds a curve half of it farther on either side.
 _ESTIMATORS_OF_A_CURVE = const(16)
 # A piece of heap held through a program's imports, or none as long is left on a small board for the
-# state, its checkpoint and the store's record.
+# state, its checkpoint and an open file.
 _held = [bytearray(5600)]
 
 
@@ -112,7 +112,7 @@ class Corrector:
             motion, gravity = bool(motion), bool(gravity)
         self._begin("motion", motion, document, chosen["motion_start_dps"])
         self._begin("gravity", gravity, document, 0)
-        unload("zerorate.arithmetic", "ratio")
+        unload("zerorate", "ratio")
         if rest.run and self.alone and type(self) is Corrector:
             self.update = _bound(self.state, c)  # type: ignore[method-assign]
         self.reset()
@@ -224,6 +224,8 @@ class Corrector:
                 self.reset()
                 reason = _OUT_OF_RANGE
             unload("zerorate.storage", "soundness")
+        elif not any(self.state):  # what was read again was not what had been judged
+            self.reset()
         return reason
 
     def save(self, store: "Any") -> bool:

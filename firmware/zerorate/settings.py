@@ -2,7 +2,7 @@
 
 from array import array
 
-from .arithmetic.ratio import Ratio
+from .ratio import Ratio
 
 # layout: names that a board's own compiler reads
 const = int

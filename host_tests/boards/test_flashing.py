@@ -12,8 +12,8 @@ def test_the_board_is_asked_what_it_is(pico):
     assert facts.heap_free > 200_000 and facts.disk_free > 1_000_000
 
 
-def test_forty_four_kilobytes_at_most_are_sent(pico):
-    assert 10_000 < pico.flashed.sent_bytes <= 44 << 10
+def test_forty_two_kilobytes_at_most_are_sent(pico):
+    assert 10_000 < pico.flashed.sent_bytes <= 42 << 10
 
 
 def test_flashing_again_sends_nothing(pico):

@@ -50,9 +50,9 @@ class TestParts:
         with pytest.raises(UnknownPart, match="no such part: music; these are: rest, motion"):
             chosen_parts(["music"])
 
-    def test_the_rest_path_compiled_is_forty_four_kilobytes_at_most(self):
+    def test_the_rest_path_compiled_is_forty_two_kilobytes_at_most(self):
         total = sum(map(len, board_files([REST], BoardFacts(mpy=mpy_version())).values()))
-        assert 10_000 < total <= 44 << 10
+        assert 10_000 < total <= 42 << 10
 
 
 @pytest.mark.parametrize(("name", "text"), [pytest.param(*m, id=str(m[0])) for m in manifests()])

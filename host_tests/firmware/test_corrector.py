@@ -9,7 +9,7 @@ from zerorate.motion.motion_settings import motion_settings
 from zerorate.rest import bias
 from zerorate.settings import DEFAULTS
 from zerorate.storage.soundness import is_sound
-from zerorate.storage.store import EMPTY, LOADED, OTHER_BINDING, OUT_OF_RANGE, Store
+from zerorate.storage.store import EMPTY, LOADED, OTHER_BINDING, OUT_OF_RANGE, UNREADABLE, Store
 from zerorate_fakes.memory import FakeMemory
 from zerorate_tools.layout import AXIS, ESTIMATOR, MOTION, STATE, axis_at
 
@@ -103,6 +103,23 @@ def test_a_store_that_is_empty_or_of_another_chip_leaves_a_clean_start(learned):
     other = store_for(fresh, binding=b"\x70\0\0\0", memory=store.storage)
     assert fresh.load(other) == OTHER_BINDING
     assert list(fresh.state) == list(Corrector().state)
+
+
+def test_a_storage_that_reads_otherwise_while_a_state_is_filled_leaves_a_clean_start(learned):
+    store = store_for(learned)
+    learned.save(store)
+    reads, readblock = [], store.storage.readblock
+    pieces = 2 * -(-store.slot_bytes // 256)  # of both slots, to find the newest
+
+    def read(offset, buf):
+        readblock(offset, buf)
+        reads.append(offset)
+        buf[-1] ^= len(reads) > pieces
+
+    store.storage.readblock = read
+    again = Corrector()
+    assert again.load(store_for(again, memory=store.storage)) == UNREADABLE
+    assert list(again.state) == list(Corrector().state)
 
 
 @pytest.mark.parametrize(

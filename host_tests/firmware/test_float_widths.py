@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from zerorate import Corrector, Sensor
 from zerorate import settings as rest
-from zerorate.arithmetic.ratio import Ratio
+from zerorate.ratio import Ratio
 
 RATES_HZ = [4.0, 12.5, 100.0, 1000 / 7, 1000.0]
 GYRO_LSB_PER_DPS = [131.0, 65.5, 32.8, 16.4]

@@ -1,6 +1,7 @@
 """State and effect model of a device come back after a power cut, or a reason does."""
 
 import random
+import sys
 from array import array
 from binascii import crc32
 
@@ -124,6 +125,12 @@ def test_a_refusal_names_what_differs(memory, saved, binding, sensor, options, n
     own = Corrector(Sensor(**{"odr_hz": 100.0, **sensor}), **options)
     stores = LearnedStore(memory, bytes(binding), own)
     assert named in stores.in_words(stores.load())
+
+
+def test_without_the_part_that_names_it_a_refusal_says_the_reason_alone(memory, saved, monkeypatch):
+    monkeypatch.setitem(sys.modules, "zerorate.storage.differing", None)
+    stores = LearnedStore(memory, bytes([0x70, 0, 0, 3]), Corrector(Sensor(odr_hz=100.0)))
+    assert stores.in_words(stores.load()) == store.REASONS[store.OTHER_BINDING]
 
 
 @pytest.mark.parametrize("options", [{"document": True}, {"every": True}, {"short": 2}])

@@ -158,7 +158,7 @@ def test_a_storage_that_reads_another_thing_each_time_cannot_be_read(memory_of_t
         buf[-1] ^= len(reads) > 2
 
     memory_of_two.readblock = read
-    assert loaded(memory_of_two) == (stores.UNREADABLE, BLANK)
+    assert loaded(memory_of_two) == (stores.UNREADABLE, array("i", [0] * WORDS))
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,7 @@ Little-endian:
 
 from struct import unpack_from
 
-from ..arithmetic.ratio import Ratio
+from ..ratio import Ratio
 from ..storage.crc32 import checksum
 
 # layout: names that a board's own compiler reads

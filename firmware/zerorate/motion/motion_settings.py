@@ -2,7 +2,7 @@
 
 from array import array
 
-from ..arithmetic.ratio import PI, Ratio
+from ..ratio import PI, Ratio
 
 # layout: names that a board's own compiler reads
 const = int

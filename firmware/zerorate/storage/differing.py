@@ -27,7 +27,7 @@ def differing(store, corrector):
             return "stored for another %s: code 0x%02x, not 0x%02x" % found
     own = corrector.settings
     stored = array("i", range(len(own)))
-    unpack(record, _HEADER + store.size, stored, 4 * len(own))
+    unpack(record, -_HEADER - store.size, stored, 4 * len(own))
     names = moved_by(corrector.sensor, [i for i in range(len(own)) if own[i] != stored[i]])
     return "stored with another " + (" and another ".join(names) or "rule of learning")
 

@@ -63,11 +63,16 @@ class LearnedStore:
         return self.corrector.load(self.state, same)
 
     def in_words(self, reason: int) -> str:
-        """What load returned, in words; of another binding also what of it or which setting."""
+        """What load returned, in words; of another binding also what of it or which setting.
+
+        A board names that only where it has the part `differing`.
+        """
         if reason != OTHER_BINDING:
             return REASONS[reason]
-        from .differing import differing
-
+        try:
+            from .differing import differing
+        except ImportError:
+            return REASONS[reason]
         text = differing(self.state, self.corrector)
         unload("zerorate.storage", "differing")
         return text

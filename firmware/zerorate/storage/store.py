@@ -99,22 +99,25 @@ class Store:
     def load(self, payload: "Any") -> int:
         """Fill payload from the newest whole slot that fits; LOADED, or why it is left as it was.
 
+        A storage that reads otherwise once that slot was found leaves payload all 0, UNREADABLE.
         Never raises for what the storage holds or does. REASONS says each result in words.
         """
         self._require(payload)
-        # payload stays as it was until all is known to be right
-        record = bytearray(self.slot_bytes)
+        # read again straight into payload: a record beside it is more than a small heap has left
+        piece = bytearray(_PIECE)
+        slot = -1
         try:
-            slot, reason = self._find(record)
+            slot, reason = self._find(piece)
             if slot < 0:
                 return reason
-            if self._judge(slot, record) != LOADED:
-                return UNREADABLE
+            if self._judge(slot, piece, payload) == LOADED:
+                self.loaded_version = self._header[_AT_VERSION]
+                return LOADED
         except OSError:
-            return UNREADABLE
-        self.loaded_version = record[_AT_VERSION]
-        unpack(record, _HEADER, payload, self.size)
-        return LOADED
+            pass
+        for i in range(len(payload) if slot >= 0 else 0):
+            payload[i] = 0
+        return UNREADABLE
 
     def newest(self) -> bytearray:
         """Return the record of the newest whole slot, of whatever binding. Raises OSError."""
@@ -163,10 +166,10 @@ class Store:
         fits = [-slot for _, slot, judged in whole if judged == LOADED]
         return fits[-1] if fits else -1, reason
 
-    def _judge(self, slot, piece):
+    def _judge(self, slot, piece, payload=None):
         """Read slot through piece, a bytearray, its header to stay, and say what it is."""
         at = self._offset(slot)
-        whole = self._is_whole(at, self.slot_bytes, piece)
+        whole = self._is_whole(at, self.slot_bytes, piece, payload)
         header = self._header
         if header[:_AT_FORMAT] != b"ZRS":
             blank = header[0] in (0x00, 0xFF) and header[0] == header[1] == header[2]
@@ -185,15 +188,17 @@ class Store:
             return OTHER_BINDING
         return LOADED if version == self.version or version in self._older else OTHER_VERSION
 
-    def _is_whole(self, at, length, piece):
-        """Whether the record from at on is; its header is kept."""
+    def _is_whole(self, at, length, piece, payload=None):
+        """Whether the record from at on is; its header is kept, and payload, if any, filled."""
         crc = bytearray(_CRC)
-        header = None
+        at_payload = -_HEADER
         for part in self._pieces(at, length, piece):
-            if header is None:
-                header = self._header
-                header[:] = part[:_HEADER]
+            if at_payload < 0:
+                self._header[:] = part[:_HEADER]
             checksum(part, crc)
+            if payload is not None:
+                unpack(part, at_payload, payload, self.size)
+            at_payload += len(part)
         return crc == _WHOLE
 
     def _pieces(self, at, length, piece):
@@ -254,13 +259,16 @@ def packed(payload, size):
     return record
 
 
-def unpack(record, at, payload, size):
-    """Put size bytes of record from at on into payload, whose words they are little-endian."""
-    if len(payload) == size:
-        payload[:] = record[at : at + size]
-        return
-    for i in range(len(payload)):
-        top = record[at + 3]
-        word = record[at] | record[at + 1] << 8 | record[at + 2] << 16
-        payload[i] = word | (top - ((top & 0x80) << 1)) << 24
-        at += 4
+def unpack(part, at, payload, size):
+    """Put what of part, a record's bytes from byte `at` of payload on, is payload's into it.
+
+    size: payload's bytes; its words, if it is of such, are little-endian.
+    """
+    step = 1 if len(payload) == size else 4
+    for i in range(max(0, -at), min(len(part), size - at), step):
+        if step == 1:
+            payload[at + i] = part[i]
+        else:
+            top = part[i + 3]
+            word = part[i] | part[i + 1] << 8 | part[i + 2] << 16
+            payload[(at + i) // 4] = word | (top - ((top & 0x80) << 1)) << 24

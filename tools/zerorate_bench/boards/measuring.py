@@ -40,7 +40,7 @@ LIMITS = (
     Limit("a sample in bursts of 64", 500, "cycles", lambda f: f["cycles"]["burst"]),
     Limit("share of 125 MHz at 1 kHz", 1.3, "%", lambda f: f["share_percent"]),
     Limit("import of what flash sends", 0.15, "s", lambda f: f["import_s"]),
-    Limit("sent by flash", 44 * _KB, "bytes", lambda f: f["flash_bytes"]),
+    Limit("sent by flash", 42 * _KB, "bytes", lambda f: f["flash_bytes"]),
 )
 
 

@@ -108,7 +108,7 @@ constants as numbers.
 | 1,280 | a store, a `Fifo`, a `SaveSchedule` and two small arrays |
 
 More heap is taken at times. A file is open while it saves: 1,148 bytes in one piece. A record is
-read whole at power-on: 1,796 bytes. There are gaps between what stays. A few names more would
+read at power-on in pieces of 256 bytes. There are gaps between what stays. A few names more would
 take 2,240 bytes, because the table of names doubles at 300. The machine code is compiled for
 size, except for what every sample runs through. The checkpoint makes a brown-out of the chip
 harmless. Frozen into a build, all bytecode and most names leave the heap.

@@ -34,6 +34,7 @@ PARTS = {
     ),
     "bursts": ("zerorate.bursts",),
     "self-test": ("zerorate_i2c.self_test",),
+    "differing": ("zerorate.storage.differing",),
 }
 _NATIVE = "zerorate.native"
 #: Kinds of machine code, as zerorate/native names its files -> how mpy-cross calls the processor.

@@ -16,8 +16,8 @@ from .parts import PARTS, part_files
 # Modules that no program imports: most are let go as soon as an object is made.
 _INNER = frozenset(
     "settings trying identity parts bus_recovery machine_code crc32 plain_crc32 soundness explain "
-    "explain_sources data_registers bias block copying estimators fit fixed histogram recent "
-    "stillness".split()
+    "explain_sources differing ratio data_registers bias block copying estimators fit fixed "
+    "histogram recent stillness".split()
 )
 # Names that every MicroPython has in its own tables: as parameters they cost nothing.
 _PARAMETERS = (

@@ -19,7 +19,8 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         type=lambda text: text.split(","),
         default=[],
         metavar="PARTS",
-        help="more than learning at rest: motion,gravity,effects,refine,bursts,self-test or all",
+        help="more than learning at rest: motion,gravity,effects,refine,bursts,self-test,"
+        "differing or all",
     )
     parser.add_argument(
         "--only", action="store_true", help="remove parts sent before that are not named now"
