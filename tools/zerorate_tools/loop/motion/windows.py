@@ -78,7 +78,8 @@ class Moving:
         accel, rate = (x[: len(x) // n * n].reshape(-1, n, 3) for x in (self.accel, self.rate))
         moves = np.degrees(np.sqrt((rate**2).sum(axis=2).mean(axis=1))) > LEAST_DPS
         poses = accel[moves].mean(axis=1)
-        poses = poses / np.linalg.norm(poses, axis=1, keepdims=True)
+        # an accelerometer that reads nothing has no pose
+        poses = poses / np.maximum(np.linalg.norm(poses, axis=1, keepdims=True), 1e-9)
         return _beside_main(poses) < _PLANAR and _beside_main(rate[moves].reshape(-1, 3)) < _PLANAR
 
     def spans(self, seconds: float) -> list[slice]:
