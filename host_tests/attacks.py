@@ -45,7 +45,13 @@ ATTACKS = {
     ),
     "reports": (
         "hostile names",
-        [*_PYTEST, "host_tests/report/test_page.py", "host_tests/fleet/test_page.py", "-k", "name"],
+        [
+            *_PYTEST,
+            "host_tests/report/test_page.py",
+            "host_tests/fleet/test_devices.py",
+            "-k",
+            "name",
+        ],
     ),
     "31 bits": ("random sensors and settings", ["-m", "host_tests.firmware.sweep"]),
     "service restarts": ("10,000, in order and by kill", ["-m", "host_tests.service.restarts"]),

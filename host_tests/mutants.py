@@ -56,8 +56,7 @@ AREAS = {
         ["firmware/zerorate/storage/" + name for name in (
             "store.py", "places.py", "learned_store.py", "save_schedule.py", "soundness.py")],
         ["host_tests/firmware/test_" + name for name in (
-            "store.py", "store_records.py", "places.py", "learned_store.py", "save_schedule.py",
-            "corrector.py")],
+            "store.py", "store_records.py", "places.py", "learned_store.py", "corrector.py")],
     ),
     "guard": (
         ["firmware/zerorate/rest/guard.py", "firmware/zerorate/checked.py"],
@@ -68,9 +67,8 @@ AREAS = {
             "bias.py", "block.py", "copying.py", "estimators.py", "fit.py", "histogram.py",
             "recent.py", "step.py", "stillness.py")],
         ["host_tests/firmware/test_" + name for name in (
-            "estimators.py", "fit.py", "histogram.py", "read_out.py", "turning.py", "stillness.py",
-            "turn_on.py", "quality.py", "guard.py", "bursts.py",
-            "model_of_the_curve.py")]
+            "estimators.py", "fit.py", "histogram.py", "stillness.py", "turn_on.py",
+            "quality.py", "guard.py", "bursts.py")]
         + [KNOWN, GOLDEN],
     ),
     "motion": (

@@ -1,5 +1,6 @@
 """LinuxI2C reads and writes through smbus2's own messages, or by blocks where there is no more."""
 
+import os
 from array import array
 
 import pytest
@@ -8,6 +9,10 @@ from zerorate_fakes.smbus import SMBus
 from zerorate_i2c.fifo import Fifo
 from zerorate_i2c.linux import LinuxI2C
 from zerorate_i2c.mpu6050 import MPU6050
+from zerorate_tools.errors import MissingRuntime
+
+from host_tests.drivers.linux_bus import machine
+from host_tests.drivers.linux_bus.run import run_guest
 
 pytest.importorskip("smbus2")
 
@@ -48,3 +53,23 @@ def test_a_read_too_long_for_blocks_is_refused():
 def test_a_missing_device_file_is_an_os_error():
     with pytest.raises(OSError):
         LinuxI2C("/dev/i2c-of-no-machine")
+
+
+@pytest.fixture
+def found():
+    if os.environ.get("ZERORATE_REQUIRE_LINUX_BUS"):
+        machine.fetch()
+    try:
+        return run_guest()
+    except MissingRuntime as missing:
+        pytest.skip(str(missing))
+
+
+# One test: booting the machine takes a minute, and workers of pytest-xdist share no fixtures.
+def test_a_real_kernels_bus_is_recorded_from_and_corrected_from(found):
+    record = found["record"]
+    assert record["rows"] == record["samples"] > 100
+    assert record["false_rows"] == record["out_of_order"] == 0
+    assert record["really_lost"] < record["rows"]
+    assert record["said_lost"] == pytest.approx(record["really_lost"], abs=record["rows"] / 10)
+    assert found["corrector"]["bias_lsb"][:2] == pytest.approx([44, -21], abs=1)

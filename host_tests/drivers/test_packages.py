@@ -1,10 +1,12 @@
 """What is flashed, installed by mip and frozen are the packages' own files, found by imports."""
 
+import ast
 import json
 import os
 import re
 import subprocess
 import sys
+from pathlib import PurePosixPath
 
 import pytest
 from zerorate_bench.boards.table import needs_of
@@ -14,8 +16,11 @@ from zerorate_tools.boards.compiling import board_files, mpy_version
 from zerorate_tools.boards.connection import BoardFacts
 from zerorate_tools.boards.needs import heap_needed
 from zerorate_tools.boards.parts import PARTS, REST, UnknownPart, chosen_parts, part_files
+from zerorate_tools.boards.short_names import short_names, shortened
 
 from host_tests.drivers.unix_board import UnixBoard
+from host_tests.firmware import trace
+from host_tests.firmware.trace_on_host import GOLDEN, checksums
 
 # What any build of MicroPython gives the freezing tool to know its strings by.
 STRINGS = "QCFG(BYTES_IN_LEN, (1))\nQCFG(BYTES_IN_HASH, (1))\nQ(__init__)\n"
@@ -149,3 +154,66 @@ def test_the_page_of_boards_prints_the_heap_that_was_measured(monkeypatch):
         (["rest", "motion", "gravity"], 170),
     ):
         assert heap_needed(parts, "thumb") == bytes_
+
+
+@pytest.fixture(scope="module")
+def files():
+    """Path on the board -> file, of all parts."""
+    return part_files(PARTS)
+
+
+@pytest.fixture(scope="module")
+def short(files, tmp_path_factory):
+    """A folder with all of it, its names short."""
+    folder = tmp_path_factory.mktemp("short")
+    for name, path in files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(shortened(path, path.read_text()))
+    return folder
+
+
+def public(text):
+    """What a program may call: names, methods and their parameters, less what begins with _."""
+    tree = ast.parse(text)
+    return {
+        (node.name, *(arg.arg for arg in node.args.args))
+        for node in ast.walk(tree)
+        if isinstance(node, ast.FunctionDef) and not node.name.startswith("_")
+    }
+
+
+@pytest.mark.parametrize("name", ["checked", "corrector", "storage/store", "storage/places"])
+def test_what_a_program_may_call_keeps_its_names(short, files, name):
+    name = PurePosixPath(f"zerorate/{name}.py")
+    nested = {("update", "x", "dt_us", "kept")}
+    before = public(files[name].read_text()) - nested
+    assert before and before <= public((short / name).read_text())
+
+
+def test_two_names_that_meet_stay_two(files):
+    names = short_names()
+    assert len(names) > 100 and len(set(names.values())) < 50
+    for path in files.values():
+        tree = ast.parse(path.read_text())
+        attributes = {n.attr for n in ast.walk(tree) if isinstance(n, ast.Attribute)}
+        attributes |= {n.name for n in ast.walk(tree) if isinstance(n, ast.FunctionDef)}
+        after = [names.get(name, name) for name in attributes]
+        assert len(after) == len(set(after)), path
+
+
+def test_a_constant_of_another_module_is_its_number(short):
+    text = (short / "zerorate_i2c" / "fifo.py").read_text()
+    assert "from .registers import decode\n" in text and "status >= 2" in text
+
+
+def test_the_numbers_are_the_golden_ones(short, repository, find_runtime):
+    there = repository / "host_tests" / "firmware"
+    result = find_runtime("wasm").run(
+        there / "on_micropython" / "trace_without_heap.py",
+        ["ignoring", trace.UPDATES["ignoring"]],
+        modules=[short, there],
+        files_out=["state.bin", "bias.bin"],
+        check=True,
+    )
+    golden = json.loads(GOLDEN.read_text())["ignoring"]
+    assert checksums(result.files["state.bin"], result.files["bias.bin"]) == golden

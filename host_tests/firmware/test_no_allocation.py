@@ -4,13 +4,17 @@ The trace runs under a locked heap in test_equal_to_the_last_bit.py, where every
 the same state; so what happens in it here happens there.
 """
 
+import re
 from collections import Counter
 
 import pytest
+from zerorate import Corrector
 from zerorate.rest import bias, estimators, fit, guard, histogram, recent
+from zerorate_bench.memory import import_heap_bytes
 from zerorate_tools.layout import AXIS, MARKS, SETTINGS, STATE, STILLNESS, axis_at
 
 from . import trace
+from .played import IMPORT_BYTES, STATE_BYTES
 from .trace_on_host import on_cpython
 
 _FREE = -1048576
@@ -117,3 +121,20 @@ def test_the_trace_covers_every_event(events):
     mode, seen = events
     missing = [name for name, event in {**ALWAYS, **IN_MODE[mode]}.items() if not seen[event]]
     assert missing == [], f"{mode}: {dict(seen)}"
+
+
+def test_the_state_of_three_axes_stays_within_its_limit(capsys):
+    size = len(Corrector().state) * 4
+    with capsys.disabled():
+        print(f"\nstate of three axes: {size} bytes")
+    assert 0 < size <= STATE_BYTES
+
+
+def test_importing_the_firmware_takes_no_more_heap_than_it_may(find_runtime, repository, capsys):
+    find_runtime("wasm")
+    taken = import_heap_bytes(repository / "firmware")
+    source = (repository / "firmware" / "zerorate" / "corrector.py").read_text()
+    held = int(re.search(r"^_held = \[bytearray\((\d+)\)\]$", source, re.MULTILINE)[1])
+    with capsys.disabled():
+        print(f"\nheap of `import zerorate` on wasm: {taken} bytes, {held} of them held")
+    assert 8192 < taken - held <= IMPORT_BYTES

@@ -8,8 +8,7 @@ repository = Path(__file__).resolve().parents[2]
 for path in files(repository):
     path.write_text(refreshed(path), encoding="utf-8")
 
-from .page import page  # noqa: E402  the firmware cannot be imported before its lines are there
-from .settings_page import settings_page  # noqa: E402
+from . import page  # noqa: E402  the firmware cannot be imported before its lines are there
 
-(repository / "docs" / "layout.md").write_text(page(), encoding="utf-8")
-(repository / "docs" / "settings.md").write_text(settings_page(repository), encoding="utf-8")
+(repository / "docs" / "layout.md").write_text(page.page(), encoding="utf-8")
+(repository / "docs" / "settings.md").write_text(page.settings_page(repository), encoding="utf-8")

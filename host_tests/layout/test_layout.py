@@ -8,8 +8,7 @@ from zerorate.model import EffectModel
 from zerorate_tools import layout
 
 from .lines import files, names_in, refreshed
-from .page import page
-from .settings_page import settings_page
+from .page import page, settings_page
 
 # a real at `a` has its exponent at `a + 1`
 _NUMBERED = re.compile(r"\b[scem]\[(\d+|[af] \+ ([2-9]|\d\d+)\b)[^]]*\]")

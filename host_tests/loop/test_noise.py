@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from zerorate_bench.loop.simulated import flicker
+from zerorate_bench.loop.simulated import flicker, simulate
 from zerorate_tools.allan import Noise, overlapping
 from zerorate_tools.loop.fit import noise
 from zerorate_tools.loop.fit.cross_products import (
@@ -11,9 +11,16 @@ from zerorate_tools.loop.fit.cross_products import (
     Whitener,
     whitener,
 )
-from zerorate_tools.loop.fit.noise import noise_of
+from zerorate_tools.loop.fit.noise import noise_of, spectra
 from zerorate_tools.loop.fit.regression import Regression
+from zerorate_tools.loop.read.lines import find, spectrum
 from zerorate_tools.loop.read.sessions import Session
+from zerorate_tools.loop.read.welch import SEGMENT, Segments
+from zerorate_tools.loop.search import drift_test
+from zerorate_tools.loop.search.catalogue import Candidate
+from zerorate_tools.loop.search.periodic import periodic
+from zerorate_tools.loop.search.select import Search
+from zerorate_tools.model.term import Term
 
 
 def test_a_random_walk_is_diagonal_in_the_transform():
@@ -84,3 +91,167 @@ def test_the_deviation_of_fitted_noise_is_the_deviation_of_the_noise():
 def test_too_short_a_rate_has_no_deviation():
     with pytest.raises(ValueError, match="9 samples"):
         overlapping(np.zeros((8, 3)), 1.0)
+
+
+DRIFT = (Term("time"),)
+LOW = drift_test.lowness(spectra(180))
+
+
+def bare_sessions(seed, sessions=3):
+    """Sessions of nothing but noise."""
+    device = simulate(seed, sessions=sessions, bare=True)
+    for s, alone in zip(device.sessions, device.noise_dps):
+        s.rate_dps = alone
+    return device.sessions
+
+
+def drifting(slopes_dps_an_hour):
+    sessions = bare_sessions(3)
+    for s, slope in zip(sessions, slopes_dps_an_hour):
+        hours = np.linspace(0.0, 1.0, s.blocks)
+        s.rate_dps = s.rate_dps + np.outer(hours, [slope, -slope, 0.5 * slope])
+    return Regression(sessions)
+
+
+def test_two_chances_together_are_fishers():
+    assert drift_test.together(0.03) == pytest.approx(0.03)
+    assert drift_test.together(0.05, 0.05) == pytest.approx(0.0175, abs=1e-4)
+
+
+def test_noises_alike_cost_nothing_and_one_that_is_steeper_than_the_others_does():
+    slow, white = LOW.argmax(), LOW.argmin()
+    same, other = np.full((3, len(LOW)), -1e6), np.full((3, len(LOW)), -1e6)
+    same[:, slow] = 0.0
+    other[[0, 1, 2], [slow, white, white]] = 0.0
+    assert drift_test.common_colour(same, LOW) == pytest.approx(0.0, abs=0.1)
+    assert drift_test.common_colour(other, LOW) < -5.0
+
+
+def test_a_drift_that_comes_again_has_a_mean_and_one_that_turns_about_has_a_spread():
+    mean, spread = drift_test.repeats(drifting([0.01, 0.01, 0.01]), [], DRIFT)
+    assert mean > 100 and spread < 25
+    mean, spread = drift_test.repeats(drifting([0.01, -0.01, 0.0]), [], DRIFT)
+    assert spread > 30 and mean < 5
+
+
+def test_a_drift_that_turns_about_is_noise():
+    assert drift_test.chance(drifting([0.01, 0.01, 0.01]), [], DRIFT) < 1e-6
+    assert drift_test.chance(drifting([0.01, -0.01, 0.0]), [], DRIFT) > 0.05
+
+
+def test_in_noise_alone_the_chance_is_hardly_smaller_than_it_says():
+    chances = [drift_test.chance(Regression(bare_sessions(seed)), [], DRIFT) for seed in range(120)]
+    # Fitted on the same hour, the noise's colour takes some drift of its own for an effect.
+    assert np.mean(np.array(chances) < 0.1) < 0.25
+    assert min(chances) > drift_test.LEVEL
+
+
+def test_more_power_ons_show_a_smaller_drift():
+    each = [drift_test.smallest_square(4.0, 3, sessions) / sessions for sessions in (2, 3, 6)]
+    assert each == sorted(each, reverse=True)
+    assert 2 < each[-1] < each[0] < 10
+
+
+def test_only_what_needs_no_channel_follows_time():
+    def follows(**fields):
+        return drift_test.follows_time(Candidate("any", (Term(**fields),), "catalogue"))
+
+    assert follows(source="time") and follows(source="one", decay_s=300.0)
+    assert not follows(source="temp") and not follows(source="time", second="temp")
+
+
+@pytest.mark.parametrize("seed", [5000012, 5000024])
+def test_a_drift_of_twice_the_floor_is_found_beside_a_walking_noise(seed):
+    found = Search(simulate(seed, [("time-drift", 2.0)]).sessions[:-1]).run().found
+    assert [f.candidate.kind for f in found] == ["time-drift"]
+
+
+N, STEP_S = 3600, 1.0
+
+
+def coloured(rng):
+    walk = np.cumsum(rng.normal(0, 2e-4, (N, 3)), axis=0)
+    pink = np.column_stack([flicker(rng, N, 1e-3) for _ in range(3)])
+    return rng.normal(0, 3e-3, (N, 3)) + pink + walk
+
+
+def lines(rates):
+    spectra = [spectrum(r, STEP_S, 4096) for r in rates]
+    return find(spectra[:-1], spectra[-1:], 2.0 * 4096 / N, 10 / N)
+
+
+def test_coloured_noise_has_no_lines():
+    for seed in range(20):
+        rng = np.random.default_rng(seed)
+        assert lines([coloured(rng) for _ in range(4)]) == []
+
+
+@pytest.mark.parametrize("seed", [216, 372])
+def test_the_humps_of_a_walk_in_one_short_recording_are_no_lines(seed):
+    rng = np.random.default_rng(seed)
+    rate = rng.normal(0, 1e-3, (880, 3)) + np.cumsum(rng.normal(0, 2e-4, (880, 3)), axis=0)
+    assert find([spectrum(rate, STEP_S, 1024)], [], 2.0 * 1024 / 880, 10 / 880) == []
+
+
+@pytest.mark.parametrize("period_s", [7.3, 60.0, 240.0])
+def test_a_line_is_found_with_its_period_and_amplitude(period_s):
+    rng = np.random.default_rng(1)
+    t = np.arange(N) * STEP_S
+    size = np.array([4e-3, 1e-3, 3e-3])
+    rates = [
+        coloured(rng) + np.outer(np.sin(2 * np.pi * t / period_s + rng.uniform(0, 6)), size)
+        for _ in range(4)
+    ]
+    (line,) = lines(rates)
+    assert 1 / line.hz == pytest.approx(period_s, rel=0.06) and line.in_holdout
+    assert line.amplitude_dps[0] == pytest.approx(size[0], rel=0.3)
+
+
+def test_a_broad_hump_is_said_once():
+    rng = np.random.default_rng(5)
+    rates = []
+    for _ in range(4):
+        spectrum_of = np.fft.rfft(coloured(rng), axis=0)
+        hz = np.fft.rfftfreq(N, STEP_S)
+        gain = 1 + 40 * np.exp(-(((hz - 0.2) / 0.006) ** 2))
+        rates.append(np.fft.irfft(spectrum_of * gain[:, None], N, axis=0))
+    found = lines(rates)
+    assert len(found) == 1 and found[0].hz == pytest.approx(0.2, abs=0.01)
+
+
+def test_the_steps_of_a_ramping_temperature_that_was_subtracted_are_no_line():
+    rng = np.random.default_rng(3)
+    temp = np.floor(8 * (20 + 0.04 * np.arange(N))) / 8
+    rate = Term("temp", lag_s=8.0, lag_mode="rate")
+    sessions = []
+    for name in ("a", "b", "c"):
+        whole = np.ones(N // 20)
+        ticks = coloured(rng)
+        block = ticks.reshape(-1, 20, 3).mean(axis=1)
+        session = Session(name, 20.0, 20, block, whole, {"temp": temp}, ticks_dps=ticks)
+        sessions.append(session)
+    alone = np.array([[0.0, 0.0, 0.0]])
+    assert periodic(sessions[:2], sessions[2:], [rate], alone) == []
+    assert periodic(sessions[:2], sessions[2:], [rate], np.array([[2.0, -1.5, 3.0]])) == []
+
+
+def test_a_line_of_one_session_alone_is_not_the_devices():
+    rng = np.random.default_rng(2)
+    rates = [coloured(rng) for _ in range(4)]
+    rates[0] += 0.01 * np.sin(2 * np.pi * np.arange(N) / 50)[:, None]
+    assert lines(rates) == []
+
+
+def test_segments_that_were_not_at_rest_are_left_out():
+    rng = np.random.default_rng(3)
+    rate = rng.normal(0, 0.05, (6 * SEGMENT, 3))
+    tick = np.arange(len(rate)) // 100
+    still = np.ones(tick[-1] + 1, bool)
+    still[0] = False
+    segments = Segments()
+    for part in np.array_split(np.arange(len(rate)), 7):
+        segments.add(tick[part], rate[part])
+    quick = segments.at_rest(still, 100.0)
+    assert quick.averages == 5
+    # the window widens a bin by half: 1.5 times what white noise has in one
+    assert quick.power[5:-5].mean() == pytest.approx(1.5 * 2 * 0.05**2 / SEGMENT, rel=0.1)

@@ -1,9 +1,15 @@
 """The page on paper: Chromium's print-to-pdf, at once and after the page was used."""
 
+import json
 import subprocess
 
 import numpy as np
 import pytest
+from zerorate_tools.model import build_model, write_model
+from zerorate_tools.recordings import Scales
+from zerorate_tools.report.motion_page import motion_page, targets_of
+
+from ..conftest import matrix_slots
 
 pdfium = pytest.importorskip("pypdfium2")
 
@@ -76,3 +82,105 @@ def test_printed_in_the_dark_every_plot_is_there_in_light(outcome, show, tmp_pat
     assert tab.evaluate("document.getElementById('plot-allan').clientWidth") == before
     assert tab.evaluate("document.documentElement.dataset.theme") is None
     tab.context.close()
+
+
+ERROR = np.array([[0.012, 0.001, -0.002], [0.003, -0.009, 0.004], [-0.001, 0.002, 0.006]])
+CI = np.full((3, 3), 0.0005)
+
+
+def test_a_target_shows_where_a_turn_about_its_axis_is_read():
+    target = targets_of(ERROR, np.zeros((3, 3)), CI)[0]
+    before, after = target.readings
+    assert (target.axis, target.right, target.up) == ("x", "y", "z")
+    assert before.right == pytest.approx(np.degrees(0.003))  # y reads 0.3 % of a turn about x
+    assert before.up == pytest.approx(np.degrees(-0.001))
+    assert before.turn == pytest.approx(360 * 1.012)
+    assert (after.right, after.up, after.turn) == (0.0, 0.0, 360.0)
+    assert after.turn_ci == pytest.approx(0.18)
+
+
+def result_of(ci=CI, found=True, not_seen=()):
+    effect = {"effect": "scale-factor+cross-axis", "confidence": "confirmed"}
+    return {
+        "effects": [effect] if found else [],
+        "unexplained": {"what_is_known": "Nothing.", "measure_next": ["turn it"]},
+        "in_motion": {
+            **{"before": 1.0, "after": 0.2, "unit": "degrees a minute of tilt", "windows": 12},
+            "matrix_percent": (100 * ERROR).tolist(),
+            "ci95_percent": (100 * ci).tolist(),
+            "not_seen": list(not_seen),
+        },
+    }
+
+
+@pytest.fixture
+def opened(tmp_path, browser):
+    """opened(result, share, width, theme) -> a tab with the page."""
+    tabs = []
+
+    def open_page(result, share=1.0, width=1200, theme="light"):
+        scales = Scales("MPU-6050", 100.0, 131.0, 16384.0, None, None)
+        slots = matrix_slots(share * ERROR) if result["effects"] else []
+        write_model(build_model(slots, scales), tmp_path)
+        (tmp_path / "report.html").write_text(motion_page(json_round(result), tmp_path))
+        tab = browser.new_page(viewport={"width": width, "height": 844}, color_scheme=theme)
+        tabs.append(tab)
+        tab.goto((tmp_path / "report.html").as_uri())
+        return tab
+
+    yield open_page
+    for tab in tabs:
+        tab.close()
+
+
+def json_round(result):
+    return json.loads(json.dumps(result))
+
+
+def dots(tab, role):
+    """(x, y) of a role's dots in the three targets, in units of the drawing."""
+    found = tab.locator(f".targets svg:not(.turn) circle.{role}")
+    return [
+        (float(found.nth(i).get_attribute("cx")), float(found.nth(i).get_attribute("cy")))
+        for i in range(found.count())
+    ]
+
+
+def test_dots_lie_before_where_the_axes_are_off_and_after_in_the_middle(opened):
+    tab = opened(result_of())
+    before, after = np.array(dots(tab, "before")), np.array(dots(tab, "after"))
+    assert np.abs(after).max() < 2
+    wanted = np.array([(ERROR[(j + 1) % 3, j], -ERROR[(j + 2) % 3, j]) for j in range(3)])
+    scale = before[0, 0] / wanted[0, 0]
+    np.testing.assert_allclose(before, wanted * scale, atol=0.2)
+
+
+def test_what_the_model_leaves_is_what_after_shows(opened):
+    tab = opened(result_of(), share=0.5)
+    before, after = np.array(dots(tab, "before")), np.array(dots(tab, "after"))
+    np.testing.assert_allclose(after, 0.5 * before, atol=0.5)
+
+
+def test_where_nothing_is_deployed_there_is_no_after(opened):
+    tab = opened(result_of(found=False))
+    assert dots(tab, "after") == [] and len(dots(tab, "before")) == 3
+
+
+@pytest.mark.parametrize("width", [390, 1200])
+def test_it_is_read_on_a_phone_and_on_a_desk(opened, width):
+    ci = CI.copy()
+    ci[:, 2] = 0.03  # turns about z were not seen
+    tab = opened(result_of(ci, not_seen=["scale of z"]), width=width)
+    assert tab.evaluate("document.documentElement.scrollWidth") == width
+    labels = tab.locator("svg[role=img]")
+    assert all(len(labels.nth(i).get_attribute("aria-label")) > 30 for i in range(labels.count()))
+    seen = np.abs(np.array(dots(tab, "before"))).max()
+    assert 20 < seen < 100  # an interval that was not seen makes the others no smaller
+
+
+def test_it_is_printed_in_light_from_a_dark_screen(opened, tmp_path):
+    tab = opened(result_of(), theme="dark")
+    (tmp_path / "paper.pdf").write_bytes(tab.pdf(format="A4"))
+    paper = pdfium.PdfDocument(tmp_path / "paper.pdf")[0].render(scale=1).to_numpy()[:, :, :3]
+    assert np.median(paper) == 255  # white
+    assert (paper.max(axis=2) < 60).sum() > 200  # text is black, not the grey of a dark screen

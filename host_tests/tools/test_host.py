@@ -1,12 +1,20 @@
 """`FloatCorrector`: floats in, the same floats without their bias out."""
 
+import itertools
+import re
 from math import nan, radians
 from random import Random
 
 import numpy as np
 import pytest
+import yaml
 from zerorate_tools.errors import BadModel
 from zerorate_tools.host import FloatCorrector
+from zerorate_tools.model import Slot, build_model, read_model
+from zerorate_tools.model.model_in_words import in_words
+from zerorate_tools.model.rate_matrix import rate_matrix
+from zerorate_tools.model.term import Term
+from zerorate_tools.recordings import Scales
 
 BIAS_DPS = (0.31, -0.19, 1.08)
 
@@ -71,3 +79,74 @@ def test_a_file_that_is_no_model_is_refused_by_name(tmp_path):
     (tmp_path / "model.bin").write_bytes(b"no model")
     with pytest.raises(BadModel, match=r"model\.bin"):
         FloatCorrector(100, model=tmp_path / "model.bin")
+
+
+_BIAS, _MEASURED = np.array([0.4, -0.3, 0.2]), np.array([120.0, -45.0, 200.0])
+#: What the firmware makes of it with the matrix of the model.
+_ERROR = np.array([[0.01, 0.002, -0.003], [0.004, -0.02, 0.001], [0.0, 0.005, 0.006]])
+_TRUE = (np.eye(3) - _ERROR) @ (_MEASURED - _BIAS)
+
+
+@pytest.fixture
+def model(matrix_model):
+    return read_model(matrix_model.path)
+
+
+def after(model, heading):
+    """The lines after the one that begins with a heading."""
+    lines = in_words(model).splitlines()
+    return lines[next(i for i, t in enumerate(lines) if t.strip().startswith(heading)) + 1 :]
+
+
+def numbers(lines):
+    return np.array([re.findall(r"-?\d+\.\d+", line) for line in lines], float)
+
+
+def in_yaml(model, heading, name):
+    """A matrix of the YAML after a heading."""
+    lines = itertools.takewhile(lambda line: line.startswith("  "), after(model, heading))
+    return yaml.safe_load("\n".join(lines))[name]
+
+
+def test_the_matrix_subtracts_what_the_slots_add(model):
+    np.testing.assert_allclose(rate_matrix(model), np.eye(3) - _ERROR, atol=1e-6)
+
+
+def test_the_plain_matrix_times_the_rate_less_its_bias_is_the_true_rate(model):
+    ours = numbers(after(model, "corrected rate")[:3]) @ (_MEASURED - _BIAS)
+    np.testing.assert_allclose(ours, _TRUE, atol=2e-3)
+
+
+def test_fusion_with_these_settings_gives_the_true_rate(model):
+    fusion = pytest.importorskip("imufusion")
+    lines = after(model, "misalignment")
+    ours = fusion.model_inertial(_MEASURED, numbers(lines[:3]), numbers(lines[3:4])[0], _BIAS)
+    np.testing.assert_allclose(ours, _TRUE, atol=2e-3)
+
+
+def test_kalibr_with_these_settings_predicts_the_measured_rate(model):
+    """Scale-misalignment: measured = M C_gyro_i true + bias (A, of acceleration, is zero)."""
+    of = in_yaml(model, "kalibr", "gyroscopes")
+    lower, rotation = np.array(of["M"]), np.array(of["C_gyro_i"])
+    assert np.abs(np.triu(lower, 1)).max() == 0.0
+    np.testing.assert_allclose(rotation @ rotation.T, np.eye(3), atol=1e-5)
+    np.testing.assert_allclose(lower @ rotation @ _TRUE + _BIAS, _MEASURED, atol=2e-3)
+
+
+def test_open_vins_with_these_settings_gives_the_true_rate(model):
+    """true = R_IMUtoGYRO^T Tw^-1 (measured - bias), Tg zero."""
+    of = in_yaml(model, "OpenVINS", "imu0")
+    inner = np.linalg.solve(np.array(of["Tw"]), _MEASURED - _BIAS)
+    np.testing.assert_allclose(np.array(of["R_IMUtoGYRO"]).T @ inner, _TRUE, atol=2e-3)
+
+
+@pytest.mark.parametrize("firmware", ["Betaflight, iNav", "ArduPilot"])
+def test_flight_controllers_without_a_parameter_get_a_line_and_no_number(model, firmware):
+    (line,) = (t for t in in_words(model).splitlines() if t.startswith(firmware))
+    assert re.search("no (setting|parameter) takes it", line) and not re.search(r"\d", line)
+
+
+def test_a_model_without_rates_has_no_matrix():
+    slot = Slot(Term("temp", 10.0, 40.0), (0.01, 0.0, 0.0), "channel")
+    scales = Scales("MPU-6050", 100.0, 131.0, 16384.0, 340.0, 36.53)
+    assert rate_matrix(build_model([slot], scales)) is None

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from zerorate_tools.cli import main
+from zerorate_tools.numbers import fixed
 from zerorate_tools.simulate import simulate_to_files
 
 
@@ -95,3 +96,11 @@ def test_the_demo_says_that_it_fetches_before_it_does(monkeypatch, capsys):
     monkeypatch.setattr(runtimes, "find", not_there)
     monkeypatch.setattr(runtimes, "fetch", fetched)
     get_ready("wasm")
+
+
+@pytest.mark.parametrize(
+    ("value", "sign", "shown"),
+    [(-0.0004, "+", "+0.000"), (-0.0, "", "0.000"), (-0.0006, "+", "-0.001"), (1.5, "", "1.500")],
+)
+def test_what_rounds_to_zero_has_no_minus(value, sign, shown):
+    assert fixed(value, 3, sign) == shown
