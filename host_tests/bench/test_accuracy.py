@@ -8,11 +8,10 @@ from scipy.spatial.transform import Rotation
 from zerorate import Corrector
 from zerorate.rest import fit
 from zerorate_bench.accuracy import second_power_on
-from zerorate_bench.bayes import believed, segments
+from zerorate_bench.bayes import believed, segments, told_everything, told_the_future
 from zerorate_bench.filters import heading_error_deg
-from zerorate_bench.flicker import bayes_error, with_flicker
+from zerorate_bench.motion import bayes_error, with_flicker
 from zerorate_bench.peers import HOW, PEERS, ardupilot_cubic, px4_cubic
-from zerorate_bench.told import told_everything, told_the_future
 from zerorate_tools.demo.broad import Trial
 from zerorate_tools.layout import ESTIMATOR, SETTINGS
 from zerorate_tools.peers import given

@@ -6,7 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from zerorate_tools.demo import broad_trial
+from zerorate_tools.demo import broad
 
 from .pages import blocks
 
@@ -46,7 +46,7 @@ def commands(block):
 
 
 def _needs_the_network(block):
-    trial = broad_trial.kept_in() / f"{broad_trial.NAME}.mat"
+    trial = broad.kept_in() / f"{broad.NAME}.mat"
     return "demo --real" in block.text and not trial.exists()
 
 

@@ -10,7 +10,7 @@ from collections import Counter
 import pytest
 from zerorate import Corrector
 from zerorate.rest import bias, estimators, fit, guard, histogram, recent
-from zerorate_bench.memory import import_heap_bytes
+from zerorate_bench.cost_report import import_heap_bytes
 from zerorate_tools.layout import AXIS, MARKS, SETTINGS, STATE, STILLNESS, axis_at
 
 from . import trace

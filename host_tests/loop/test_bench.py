@@ -8,11 +8,19 @@ import pytest
 from zerorate_bench.loop import variants
 from zerorate_bench.loop.added_effects import PRANDTL_ISHLINSKII, PRANDTL_ISHLINSKII_TOLD
 from zerorate_bench.loop.bin_tables import hipnuc
-from zerorate_bench.loop.devices import CATALOGUE, MANY_WIDTHS, NULL, TOLD, Device, devices
+from zerorate_bench.loop.devices import (
+    CATALOGUE,
+    KINDS,
+    MANY_WIDTHS,
+    NULL,
+    TOLD,
+    Device,
+    describe,
+    devices,
+)
 from zerorate_bench.loop.figures import figures, share
 from zerorate_bench.loop.run_trial import Outcome, run_trial
 from zerorate_bench.loop.simulated import simulate
-from zerorate_bench.loop.single_devices import KINDS, describe
 from zerorate_bench.loop.singles import (
     Single,
     _about,

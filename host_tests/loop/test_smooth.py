@@ -5,8 +5,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from zerorate_bench.loop.curves import best_curve_rms_dps, cubic_left
 from zerorate_bench.loop.devices import CURVE, Device
+from zerorate_bench.loop.real import best_curve_rms_dps, cubic_left
 from zerorate_bench.loop.run_trial import run_trial
 from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.loop.fit.free_curve import draw, parts

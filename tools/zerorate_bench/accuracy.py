@@ -6,11 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 from zerorate_tools.demo.broad import rms_mdps
 from zerorate_tools.peers import Given, Peer, given
-from zerorate_tools.peers.firmware import within_two_sigma
+from zerorate_tools.peers.online import within_two_sigma
 from zerorate_tools.simulate import simulate_sessions
 
+from .bayes import told_everything, told_the_future
 from .peers import OURS, PEERS
-from .told import told_everything, told_the_future
 
 SCENARIOS = ("warm-up-a", "warm-up-b", "warm-up-c")
 SEEDS = (1, 2, 3, 4, 5)

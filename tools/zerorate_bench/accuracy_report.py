@@ -1,13 +1,22 @@
 """`zerorate bench accuracy`: the tables and their figures."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from zerorate_tools.demo.broad import rms_mdps
+from zerorate_tools.importers import read_foreign
+from zerorate_tools.loop.read.still import runs
+from zerorate_tools.peers import Given, Peer, given
+from zerorate_tools.peers.online import first_seconds
+from zerorate_tools.recordings import Recording
 
 from .accuracy import DAY, FIRST_S, SCENARIOS, SEEDS, day, honesty, second_power_on
 from .limits import ACCURACY, SESSION_2, limits_table, verdicts
-from .peers import HOW, PEERS
-from .public_data import data_folder, recordings
-from .real_recordings import COLUMNS, real
+from .peers import HOW, OURS, PEERS
+from .public_data import data_folder, recordings, told_of
 from .tables import machine, machine_line, number, table
 
 _MADE = """\
@@ -131,3 +140,54 @@ def _real(figures: Mapping | None) -> Iterator[str]:
     ]
     yield _REAL
     yield table(["mdps", *COLUMNS], rows)
+
+
+BLOCK_S = 20.0
+_START_READINGS = 8
+_HANDLED = 3.0
+
+
+def nothing(sessions) -> list[NDArray[np.float64]]:
+    """No correction."""
+    return [np.zeros_like(one.rate_dps) for one in sessions]
+
+
+COLUMNS: dict[str, Peer] = {"uncorrected": nothing, "mean of the first 10 s": first_seconds, **OURS}
+
+
+def rest_errors(recording: Recording, peer: Peer) -> dict[str, float]:
+    """RMS over axes and blocks of rest, mdps: "all", and "later" without the start."""
+    still = recording.columns.get("moving")
+    one = given(recording, None if still is None else still == 0)
+    residual = one.rate_dps - peer([one])[0]
+    start = max(BLOCK_S * one.odr_hz, _START_READINGS)
+    blocks = [(first, residual[first:end]) for first, end in _rests(one)]
+    later = [block.mean(axis=0) for first, block in blocks if first >= start]
+    every = [block.mean(axis=0) for _, block in blocks]
+    return {"all": rms_mdps(np.array(every)), "later": rms_mdps(np.array(later))}
+
+
+def _rests(one: Given) -> Iterator[tuple[int, int]]:
+    """First and end of each block at rest; those with far more noise than most are handled ones."""
+    size = max(1, round(BLOCK_S * one.odr_hz))
+    blocks = []
+    for start, end in runs(one.still):
+        cuts = np.linspace(start, end, max(1, (end - start) // size) + 1).astype(int)
+        blocks += list(zip(cuts[:-1], cuts[1:]))
+    spreads = np.array([one.rate_dps[first:end].std(axis=0).max() for first, end in blocks])
+    for block, spread in zip(blocks, spreads):
+        if spread <= _HANDLED * np.median(spreads):
+            yield block
+
+
+def real(
+    folder: Path, advance: Callable[[float], None] = lambda n: None
+) -> dict[str, dict[str, dict[str, float]]]:
+    """Each recording of the data folder: name -> column -> `rest_errors`."""
+    found = {}
+    for path in recordings(folder):
+        name = f"{path.parent.name}/{path.name.split('.')[0]}"
+        recording, _ = read_foreign(path, **told_of(path))
+        found[name] = {column: rest_errors(recording, peer) for column, peer in COLUMNS.items()}
+        advance(1)
+    return found

@@ -14,14 +14,15 @@ from numpy.typing import NDArray
 from zerorate_tools.demo.broad import Trial, TrueBias, rms_mdps, trials, true_bias
 from zerorate_tools.errors import MissingRuntime
 from zerorate_tools.peers import Given, Peer, given, vqf_clip_raised, vqf_default
-from zerorate_tools.peers.firmware import Decision
-from zerorate_tools.simulate import simulate
+from zerorate_tools.peers.online import Decision
+from zerorate_tools.recordings import Recording
+from zerorate_tools.simulate import Truth, simulate
 from zerorate_tools.simulate.description import load_description
 from zerorate_tools.simulate.schema import Description
 
 from zerorate_bench.peers.sources import Source
 
-from .flicker import by_flicker, with_flicker
+from .bayes import believed, segments
 from .native.native_cost import source_cost
 
 SCENARIOS = (
@@ -198,3 +199,51 @@ def settling() -> dict:
             "mean_mdps": round(float(np.abs(last.mean(axis=0)).max()), 1),
         }
     return found
+
+
+FLICKERS_MDPS = (0, 1, 2, 4)
+SCENES = ("rests-30", "short-rests", "turntable")
+SEEDS_FLICKER = range(1, 11)
+_STRETCH_S = 10.0
+
+
+def by_flicker() -> dict:
+    """Scene -> "firmware", "Bayes' rule" -> mean share within two sigma, each flicker noise's."""
+    found: dict = {}
+    for name in SCENES:
+        scenes = [with_flicker(name, mdps / 1000) for mdps in FLICKERS_MDPS]
+        shares = np.mean(
+            [[_shares(scene, seed) for scene in scenes] for seed in SEEDS_FLICKER], axis=0
+        )
+        found[name] = dict(zip(("firmware", "Bayes' rule"), np.round(shares.T, 4).tolist()))
+    return found
+
+
+def with_flicker(name: str, flicker_dps: float) -> Description:
+    """The bundled scene, its part with that flicker noise."""
+    described = load_description(name)
+    return replace(described, noise=replace(described.noise, bias_instability_dps=flicker_dps))
+
+
+def _shares(scene: Description, seed: int) -> tuple[float, float]:
+    recording, truth = simulate(scene, session=1, seed=seed)
+    firmware = Decision()
+    firmware.truth_dps = [truth.bias_lsb / recording.scales.gyro_lsb_per_dps]
+    firmware([given(recording)])
+    error, sigma = bayes_error(scene, recording, truth)
+    return float(np.mean(firmware.within)), float(np.mean(np.abs(error) < 2 * sigma))
+
+
+def bayes_error(
+    scene: Description, recording: Recording, truth: Truth
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Error and one sigma by Bayes' rule, dps, at each end of ten seconds after the first rest."""
+    hz = recording.scales.odr_hz
+    warm = truth.temp_degc - truth.temp_degc[0]
+    noise_dps = scene.sensor.gyro_noise_dps
+    rests = segments(recording.gyro_dps(), warm, truth.still, hz, noise_dps)
+    every = round(_STRETCH_S * hz)
+    ends = np.arange(every, len(warm) + 1, every)
+    ends = ends[ends >= rests.spans.end_s[0] * hz]
+    bias, sigma = believed(rests, ends / hz, warm[ends - 1], 1 / hz)
+    return bias - truth.bias_lsb[ends - 1] / recording.scales.gyro_lsb_per_dps, sigma

@@ -4,8 +4,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from .flicker import FLICKERS_MDPS, SEEDS
-from .motion import run
+from .motion import FLICKERS_MDPS, SEEDS, run
 from .tables import table
 
 __all__ = ["LIMITS_MDPS", "in_markdown", "run"]

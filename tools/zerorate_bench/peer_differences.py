@@ -14,7 +14,7 @@ from zerorate_tools.simulate import simulate
 from zerorate_tools.simulate.description import bundled, parsed
 
 from .accuracy import SEEDS
-from .peers.cubic import ardupilot_cubic, px4_cubic
+from .peers.sources import ardupilot_cubic, px4_cubic
 from .tables import machine_line, number, table
 
 _HOW = """\

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from zerorate_tools.demo.broad import Trial, rms_mdps, trials
 from zerorate_tools.peers import Given, Peer, fusion, given, vqf_default
-from zerorate_tools.peers.firmware import Decision
+from zerorate_tools.peers.online import Decision
 
 from .tables import machine_line, number, table
 

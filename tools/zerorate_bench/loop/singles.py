@@ -18,8 +18,8 @@ from scipy.stats import chi2, ncx2
 from threadpoolctl import threadpool_limits
 
 from ..tables import machine_line
+from .devices import KINDS, describe
 from .figures import Figure, share
-from .single_devices import KINDS, describe
 from .trials import figure_table
 
 _WORSE = 1.02

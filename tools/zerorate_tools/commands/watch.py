@@ -29,8 +29,7 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
 
 def run(arguments: argparse.Namespace) -> int:
     """Watch; 1 where no sample ever came."""
-    from ..watch.options import WatchOptions
-    from ..watch.watching import watch
+    from ..watch.watching import WatchOptions, watch
 
     options = WatchOptions(
         seconds=arguments.seconds,

@@ -5,9 +5,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 from zerorate_tools.errors import MissingRuntime
+from zerorate_tools.runtimes.node import fetch_wasm, find_wasm
 from zerorate_tools.runtimes.runtime import CPython, Runtime, UnixPort
 from zerorate_tools.runtimes.unix_port import fetch_unix_port, find_unix_port
-from zerorate_tools.runtimes.wasm import fetch_wasm, find_wasm
 
 #: The four on which the firmware must give the same state to the last bit. `find` also knows
 #: x64, what a user's `apt install micropython` gives.
