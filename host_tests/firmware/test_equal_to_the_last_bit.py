@@ -4,8 +4,9 @@ import json
 
 import numpy as np
 import pytest
+from zerorate_tools.layout import GRAVITY, MOTION
 
-from . import trace
+from . import swung, trace
 from .trace_on_host import GOLDEN, checksums, on_machine_code, where_it_parts
 
 modes = pytest.mark.parametrize("mode", sorted(trace.MODES))
@@ -56,3 +57,22 @@ def test_a_difference_of_one_bit_in_one_bias_is_found(trace_on_host):
     turned[12 * 1234] ^= 1
     with pytest.raises(AssertionError, match="sample 1234"):
         same((state, bytes(turned)), (state, biases))
+
+
+@pytest.mark.parametrize("source", swung.SOURCES)
+def test_the_numbers_of_a_device_that_swings_are_those_that_were_committed(source):
+    golden = json.loads(swung.GOLDEN.read_text(encoding="utf-8"))[source]
+    parts = [n for n, (a, b) in enumerate(zip(golden, swung.checksums(source))) if a != b]
+    assert not parts, f"other numbers in parts {parts[:3]}; if that is meant: -m host_tests.golden"
+
+
+def test_a_device_that_swings_is_known_in_motion_and_against_gravity():
+    for source, bias, within_lsb in (
+        ("motion", MOTION.MOTION_BIAS_Q8, 40),
+        ("gravity", GRAVITY.GRAVITY_BIAS_Q8, 260),
+    ):
+        update, state, settings = swung.SOURCES[source]()
+        for frame, dt_us in swung.frames():
+            update(state, settings, frame, dt_us)
+        found_lsb = np.array(state[bias : bias + 3]) / 256
+        assert np.abs(found_lsb - swung.BIAS_LSB).max() < within_lsb, source

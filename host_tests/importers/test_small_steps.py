@@ -1,5 +1,6 @@
 """Small steps of an import, each against a plain reading of what it says."""
 
+import zipfile
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -9,6 +10,8 @@ import pyarrow.parquet as pq
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from zerorate_tools.errors import ZerorateError
+from zerorate_tools.importers import read_foreign
 from zerorate_tools.importers.columns.guesses import likely_columns
 from zerorate_tools.importers.columns.names import accel_groups, most_alike
 from zerorate_tools.importers.logs import columnar
@@ -130,3 +133,22 @@ def test_columns_that_nothing_names_are_told_by_their_values(data):
     wanted += [f"{axis}=a{i}:{accel}" for i, axis in enumerate(("ax", "ay", "az"))]
     wanted += [f"{axis}=g{i}:{rate}" for i, axis in enumerate(("gx", "gy", "gz"))]
     assert found == wanted, (order, gyro_first)
+
+
+def test_columns_that_are_whole_in_no_row_are_taken_for_nothing():
+    rows = np.arange(99)
+    columns = {name: np.where(rows % 3 == n, np.nan, rows) for n, name in enumerate("abc")}
+    assert likely_columns(columns) == []
+
+
+@pytest.mark.parametrize("at", range(0, 400, 8))
+def test_any_damage_of_a_zip_is_said_in_one_line(tmp_path, at):
+    path = tmp_path / "in.zip"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as packed:
+        packed.writestr("run.csv", "t_s,gx_dps,gy_dps,gz_dps\n" + "0.1,1,2,3\n" * 99)
+    content = bytearray(path.read_bytes())
+    content[at % len(content)] ^= 0xB5
+    path.write_bytes(content)
+    with pytest.raises(ZerorateError) as caught:
+        read_foreign(path)
+    assert "\n" not in str(caught.value)

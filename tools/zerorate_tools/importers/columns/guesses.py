@@ -74,6 +74,8 @@ def likely_columns(
     """
     values = {n: v for n, v in first.items() if np.isfinite(v).sum() > len(v) / 2}
     whole = np.isfinite(list(values.values())).all(axis=0)
+    if not whole.any():
+        return []
     values = {name: column[whole] for name, column in values.items()}
     times = [name for name in values if name in calendar]
     times += [name for name in values if name not in calendar and only_grows(values[name])]

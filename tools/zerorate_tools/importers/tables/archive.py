@@ -25,21 +25,28 @@ _PER_SENSOR = re.compile("gyro|accel|angular|rotation|temp", re.I)
 @contextmanager
 def archive(path: Path) -> Iterator[Path]:
     """The unpacked folder of a zip, or its only file. Raises BadRecording."""
-    with tempfile.TemporaryDirectory() as folder, zipfile.ZipFile(path) as packed:
+    with tempfile.TemporaryDirectory() as folder:
+        try:
+            found = _unpacked(path, folder)
+        except BadRecording:
+            raise
+        except Exception as error:  # of a damaged one, whatever its parser stumbles over
+            do = "unpack it, and import what is in it"
+            raise BadRecording(path, f"it cannot be unpacked ({error})", do=do) from error
+        if not found:
+            raise BadRecording(path, "an empty zip", do="name another file")
+        yield found[0] if len(found) == 1 else Path(folder)
+
+
+def _unpacked(path: Path, folder: str) -> list[Path]:
+    with zipfile.ZipFile(path) as packed:
         members = [m for m in packed.infolist() if not m.is_dir() and not _is_hidden(m.filename)]
         if any(member.filename == "[Content_Types].xml" for member in members):
             raise BadRecording(path, "a spreadsheet", do="save its table as CSV")
         if sum(m.file_size for m in members) > _MOST_UNPACKED * max(1, path.stat().st_size):
             problem = f"it unpacks to more than {_MOST_UNPACKED} times its size, as no log does"
             raise BadRecording(path, problem, do="unpack it, and import what is in it")
-        try:
-            found = [Path(packed.extract(member, folder)) for member in members]
-        except (zipfile.BadZipFile, OSError, RuntimeError, NotImplementedError, EOFError) as error:
-            do = "unpack it, and import what is in it"
-            raise BadRecording(path, f"it cannot be unpacked ({error})", do=do) from error
-        if not found:
-            raise BadRecording(path, "an empty zip", do="name another file")
-        yield found[0] if len(found) == 1 else Path(folder)
+        return [Path(packed.extract(member, folder)) for member in members]
 
 
 def _is_hidden(name: str) -> bool:

@@ -1,0 +1,170 @@
+"""An import makes of rows in chunks what a plain reading of the whole makes of them."""
+
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from zerorate_tools.errors import BadRecording
+from zerorate_tools.importers import Options, parsed_mapping
+from zerorate_tools.importers.importing import _gathered, _How, _ready
+from zerorate_tools.importers.samples.between import refuse_two_recordings
+from zerorate_tools.importers.samples.clock import duration
+from zerorate_tools.importers.samples.spool import Spool
+from zerorate_tools.importers.tables.table import Chunk, Table
+from zerorate_tools.recordings.checks import GAP
+from zerorate_tools.recordings.reading import whole
+
+RATES, FORCE = ("gx_dps", "gy_dps", "gz_dps"), ("ax_g", "ay_g", "az_g")
+PATH = Path("log.csv")
+
+
+def table(columns, cuts=()):
+    """A table whose rows come in chunks that end there."""
+    size = len(next(iter(columns.values())))
+    bounds = [0, *sorted(cuts), size]
+
+    def chunks(wanted):
+        for a, b in zip(bounds, bounds[1:]):
+            yield Chunk(np.arange(a, b), {name: columns[name][a:b].copy() for name in wanted})
+
+    return Table(list(columns), chunks)
+
+
+def imported(columns, cuts=(), **options):
+    """(columns, scales, report) of an import of such a table."""
+    mapping = [parsed_mapping("level=level")] if "level" in columns else ()
+    source = _gathered(table(columns, cuts), PATH, _How(Options(**options), mapping, None, 0), None)
+    one = _ready([source])[0]
+    return whole(one.batches, one.names, PATH), one.scales, one.report
+
+
+def log(random, n, hz):
+    """A log of a gyroscope and slower sensors, with rows that are none, in no strict order."""
+    # what goes back by 10 s, or on, is a torn stamp
+    at = np.cumsum(1 + (random.random(n) < 0.02) * random.integers(0, 90, n) * (hz > 1)) / hz
+    columns = {"t_s": at + random.choice([0.0, 1.7e9])}
+    fastest = random.choice([3.0, 240.0, 249.0, 400.0, 900.0, 1800.0])
+    columns |= {name: fastest * random.uniform(-1, 1, n) for name in RATES}
+    columns |= {name: (name == "az_g") + random.normal(0, 0.05, n) for name in FORCE}
+    columns |= {"temp_c": random.normal(25, 3, n), "level": random.integers(-9, 9, n) + 0.0}
+    within = slice(1, n - 1)
+    for names in (FORCE, ("temp_c",), ("level",), RATES, ("gy_dps",), ("t_s",)):
+        share = 0.05 if names[0] in (*RATES, "t_s") else random.choice([0.0, 0.5, 0.95, 1.0])
+        lacks = random.random(n)[within] < (0.0 if hz < 1 and share == 0.05 else share)
+        for name in names:
+            columns[name][within][lacks] = np.nan
+    late = random.uniform(0, random.choice([1.0, 4.0]) if hz > 1 else 1.0, n - 2)
+    order = np.r_[0, 1 + np.argsort(np.arange(n - 2) + late), n - 1]
+    return {name: values[order] for name, values in columns.items()}
+
+
+def plainly(columns, hz):
+    """(columns as floats, dropped, longest line of each slower sensor), by the whole at once."""
+    rows = {name: values.copy() for name, values in columns.items()}
+    readings = [name for name in rows if name != "t_s"]
+    dropped = Counter()
+
+    def keep(good, reason):
+        dropped[reason] += int((~good).sum())
+        for name in rows:
+            rows[name] = rows[name][good]
+
+    keep(np.isfinite(rows["t_s"]), "the time stamp is no number")
+    keep(np.any([np.isfinite(rows[n]) for n in readings], axis=0), "no reading of these columns")
+    rates = np.isfinite([rows[name] for name in RATES])
+    keep(rates.all(axis=0) | ~rates.any(axis=0), "a reading is no number")
+    order = np.argsort(rows["t_s"], kind="stable")
+    rows = {name: values[order] for name, values in rows.items()}
+    sample, longest = np.isfinite(rows["gx_dps"]), {}
+    near = np.ones(sample.sum(), bool)
+    t_us, out = rows["t_s"] * 1e6, {}
+    for name in (*RATES, *FORCE, "temp_c"):
+        there = np.isfinite(rows[name])
+        lacks = (sample & ~there)[sample]
+        at, mine = t_us[there], t_us[sample]
+        out[name] = np.where(lacks, np.interp(mine, at, rows[name][there]), rows[name][sample])
+        after = np.searchsorted(at, mine).clip(1, len(at) - 1)
+        if lacks.any():
+            longest[name] = (at[after] - at[after - 1])[lacks].max()
+        if name in FORCE:
+            nearest = np.minimum(np.abs(at[after] - mine), np.abs(mine - at[after - 1]))
+            near &= ~lacks | (nearest <= max(1e6, 3e6 / hz))
+    out["t_us"] = t_us[sample]
+    level = rows["level"][sample]
+    out["level"] = np.where(np.isnan(level), GAP, level)
+    dropped["no acceleration within a second"] = int((~near).sum())
+    return {name: values[near] for name, values in out.items()}, +dropped, longest
+
+
+@given(
+    st.integers(0, 1 << 30), st.integers(60, 300), st.sampled_from([0.4, 10.0, 100.0]), st.data()
+)
+def test_rows_in_chunks_are_read_as_the_whole(seed, n, hz, data):
+    columns = log(np.random.default_rng(seed), n, hz)
+    cuts = data.draw(st.lists(st.integers(1, n - 1), max_size=5))
+    found, scales, report = imported(columns, cuts)
+    plain, dropped, longest = plainly(columns, hz)
+    assert (found["t_us"] == np.rint(plain["t_us"])).all() and len(found["t_us"]) == len(
+        found["gx"]
+    )
+    assert (found["level"] == plain["level"]).all()
+    lsb = dict.fromkeys(RATES, scales.gyro_lsb_per_dps) | dict.fromkeys(
+        FORCE, scales.accel_lsb_per_g
+    )
+    for name, per_unit in {**lsb, "temp_c": scales.temp_lsb_per_degc}.items():
+        short = name.partition("_")[0]
+        counts = np.rint(plain[name] * per_unit)
+        assert np.abs(found[short] - counts).max() <= (name in longest), name
+    assert report.dropped == dropped and not report.clipped
+    assert (report.rows_read, report.rows_written) == (n, len(plain["t_us"]))
+    for name, what in (("ax_g", "acceleration"), ("temp_c", "temperature")):
+        said = [note for note in report.notes if note.startswith(f"{what} interpolated")]
+        wanted = [f"at most {duration(longest[name] * 1e-6)}"] if name in longest else []
+        assert [note.partition("over ")[2] for note in said] == wanted
+
+
+SIZES = {name: st.floats(0.1, most) for name, most in (("rate", 2040.0), ("force", 15.0))}
+
+
+@given(SIZES["rate"], SIZES["force"], st.sampled_from([0.02, 3.0]))
+def test_the_scale_is_the_finest_that_holds_every_reading(rate, force, step_s):
+    n = 80
+    ups = np.where(np.arange(n) % 2, 1.0, -1.0)
+    columns = {"t_s": np.arange(n) * step_s, **dict.fromkeys(RATES, rate * ups)}
+    columns |= {name: np.full(n, 0.577) for name in FORCE}
+    columns["az_g"][7] = force
+    found, scales, report = imported(columns)
+    ranges = [1000.0, 500.0, 200.0] * (step_s > 2) + [131.0, 65.5, 32.8, 16.4]
+    fit = [lsb for lsb in ranges if rate * lsb < 32767]
+    assert scales.gyro_lsb_per_dps == (fit or ranges[-1:])[0]
+    assert scales.accel_lsb_per_g == max(r for r in (2048, 4096, 8192, 16384) if force * r < 32767)
+    assert bool(report.clipped) == (not fit)
+    assert found["gx"].max() == round(min(rate * scales.gyro_lsb_per_dps, 32767))
+    assert ("row_is_mean_of_s" in scales.more) == (step_s > 2)
+
+
+@pytest.mark.parametrize(
+    ("rates_s", "force_s", "is_one"),
+    [
+        ((0, 100), (5, 95), True),  # 5 s of 100 s are not too many
+        ((0, 100), (5.1, 100), False),
+        ((0, 100), (0, 94.9), False),
+        ((0, 1000), (-20, 1020), True),  # a fiftieth of 1000 s
+        ((0, 1000), (20.1, 1000), False),
+        ((0, 100), None, True),
+    ],
+)
+def test_tables_of_one_recording_begin_and_end_together(rates_s, force_s, is_one):
+    spool = Spool(["t_us", "gx", "ax"])
+    for name, span in (("gx", rates_s), ("ax", force_s or ())):
+        at = np.array(span) * 1e6
+        other = np.full(len(at), np.nan)
+        spool.append({"t_us": at, "gx": other, "ax": other, name: at * 0 + 1})
+    if is_one:
+        refuse_two_recordings(spool, PATH)
+        return
+    with pytest.raises(BadRecording, match="do not begin and end together"):
+        refuse_two_recordings(spool, PATH)
