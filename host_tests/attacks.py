@@ -49,7 +49,7 @@ ATTACKS = {
         [
             *_PYTEST,
             "host_tests/report/test_page.py",
-            "host_tests/fleet/test_devices.py",
+            "host_tests/fleet/test_population.py",
             "-k",
             "name",
         ],

@@ -5,9 +5,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from .outputs import refreshed
-from .pages import blocks, pages
-from .tables import with_tables
+from .outputs import blocks, pages, refreshed, with_tables
 
 
 def main(repository, only=()):

@@ -1,14 +1,16 @@
 """The console blocks of a page: what each `$ command` in them prints, run top to bottom."""
 
+import argparse
 import os
 import re
 import subprocess
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 
+from zerorate_tools.cli import parser
 from zerorate_tools.demo import broad
-
-from .pages import blocks
+from zerorate_tools.model.effects import ANY_CHANNEL, EFFECTS
 
 _NUMBER = re.compile(r"(?<![\w.])[+-]?\d[\d,]*(?:\.\d+)?(?:e[+-]?\d+)?")
 #: A minute long; host_tests/package holds it to what the page shows, run away from the checkout.
@@ -97,3 +99,108 @@ def _value(text):
 
 def _close(one, other, relative):
     return abs(one - other) <= max(relative * max(abs(one), abs(other)), 0.2)
+
+
+_PLACE = re.compile(
+    r"<!-- (?:options of ([\w ]+)|table (\d+) of ([\w.-]+)|effects) -->\n(.*?)<!-- end -->",
+    re.DOTALL,
+)
+_TABLE = re.compile(r"(?:^\|.*\n)+", re.MULTILINE)
+
+
+def with_tables(text, docs):
+    """The text with all its marked places filled anew; docs: the folder of the other pages."""
+
+    def filled(match):
+        names, number, page, before = match.groups()
+        if names:
+            table = option_table(names.split())
+        elif page:
+            table = _TABLE.findall((docs / page).read_text(encoding="utf-8"))[int(number) - 1]
+        else:
+            table = effect_table()
+        return match[0].replace(f"\n{before}<!-- end", f"\n{table}<!-- end")
+
+    return _PLACE.sub(filled, text)
+
+
+def effect_table():
+    """Every effect that the loop knows: its kind, in words, what it says."""
+    titles = [f"{'any channel: ' * (row.source == ANY_CHANNEL)}{row.title}" for row in EFFECTS]
+    rows = [f"| `{row.kind}` | {t} | {row.meaning} |" for row, t in zip(EFFECTS, titles)]
+    return "\n".join(["| effect | | |", "|---|---|---|", *rows, ""])
+
+
+def option_table(names):
+    """The arguments of a sub-command (or of one of its own) as a Markdown table.
+
+    Of a command that has sub-commands only: these, each with what it does.
+    """
+    found = _parser_of(names)
+    groups = [a for a in found._actions if isinstance(a, argparse._SubParsersAction)]
+    if groups:
+        rows = [f"| `{one.dest}` | {_text(one)} |" for one in groups[0]._choices_actions]
+        return "\n".join([f"| `{' '.join(names)}` | |", "|---|---|", *rows, ""])
+    rows = [
+        f"| {_name(action)} | {_text(action)} |"
+        for action in found._actions
+        if not isinstance(action, argparse._HelpAction)
+    ]
+    return "\n".join(["| argument | |", "|---|---|", *rows, ""])
+
+
+def commands_under(names=()):
+    """The names of the sub-commands of `zerorate`, or of one of its commands."""
+    return sorted(_choices(_parser_of(names)))
+
+
+def _parser_of(names):
+    found = parser()
+    for name in names:
+        found = _choices(found)[name]
+    return found
+
+
+def _choices(of):
+    groups = [a for a in of._actions if isinstance(a, argparse._SubParsersAction)]
+    return groups[0].choices if groups else {}
+
+
+def _name(action):
+    shown = action.metavar or (action.dest.upper() if action.nargs != 0 else "")
+    if action.choices and not action.metavar:
+        shown = "{" + ",".join(map(str, action.choices)) + "}"
+    if not action.option_strings:
+        return f"`{shown}`"
+    if isinstance(action, argparse.BooleanOptionalAction):
+        return " ".join(f"`{option}`" for option in action.option_strings)
+    return "`" + f"{action.option_strings[-1]} {shown}".strip() + "`"
+
+
+def _text(action):
+    return (action.help or "").replace("|", "\\|").replace("%%", "%")
+
+
+_BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class Block:
+    """A fenced block: its language, its text and where the text is in the page."""
+
+    language: str
+    text: str
+    start: int
+    end: int
+
+
+def pages(repository):
+    """Every page, README.md first."""
+    return [repository / "README.md", *sorted((repository / "docs").glob("**/*.md"))]
+
+
+def blocks(page, *languages):
+    """The blocks of a page in these languages, in order."""
+    text = Path(page).read_text(encoding="utf-8")
+    found = (Block(m[1], m[2], m.start(2), m.end(2)) for m in _BLOCK.finditer(text))
+    return [block for block in found if block.language in languages]

@@ -9,7 +9,7 @@ import pytest
 import zerorate_tools as zt
 from zerorate_tools.recordings import Recording, Scales
 
-from host_tests.docs.pages import blocks
+from host_tests.docs.outputs import blocks
 
 
 @pytest.fixture(scope="module")

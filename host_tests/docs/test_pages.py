@@ -14,9 +14,16 @@ from zerorate_fakes.smbus import SMBus
 from zerorate_tools import __version__
 from zerorate_tools.cli import parser
 
-from host_tests.docs.outputs import DEMO, commands, refreshed, same_but_for_rounding
-from host_tests.docs.pages import blocks, pages
-from host_tests.docs.tables import commands_under, with_tables
+from host_tests.docs.outputs import (
+    DEMO,
+    blocks,
+    commands,
+    commands_under,
+    pages,
+    refreshed,
+    same_but_for_rounding,
+    with_tables,
+)
 
 #: Pages whose programs run in tests of their own, on fakes of a board, a bus or ROS.
 ELSEWHERE = {

@@ -13,9 +13,8 @@ from zerorate_tools.boards.bus import record_bus
 from zerorate_tools.boards.port import record_port
 from zerorate_tools.cli import main
 from zerorate_tools.closing import close
-from zerorate_tools.guide.guided import Guide
 from zerorate_tools.guide.known import KNOWN, KnownSoFar
-from zerorate_tools.guide.screen import NAMES, Bars, asked, shares, unknown
+from zerorate_tools.guide.screen import NAMES, Bars, Guide, asked, shares, unknown
 from zerorate_tools.recordings import read_recording
 from zerorate_tools.simulate import load_description, simulate
 

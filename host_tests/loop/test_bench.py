@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from zerorate_bench.loop import variants
 from zerorate_bench.loop.added_effects import PRANDTL_ISHLINSKII, PRANDTL_ISHLINSKII_TOLD
-from zerorate_bench.loop.bin_tables import hipnuc
 from zerorate_bench.loop.devices import (
     CATALOGUE,
     KINDS,
@@ -19,6 +18,7 @@ from zerorate_bench.loop.devices import (
     devices,
 )
 from zerorate_bench.loop.figures import figures, share
+from zerorate_bench.loop.real import hipnuc
 from zerorate_bench.loop.run_trial import Outcome, run_trial
 from zerorate_bench.loop.simulated import simulate
 from zerorate_bench.loop.singles import (

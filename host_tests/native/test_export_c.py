@@ -1,13 +1,18 @@
 """The exported C is the firmware: it compiles alone, and gives the golden numbers."""
 
 import ctypes
+import random
 import shutil
 import subprocess
 from array import array
 
 import numpy as np
 import pytest
-from zerorate import Sensor
+from zerorate import Corrector, Sensor
+from zerorate.storage import store as reasons
+from zerorate.storage.crc32 import checksum
+from zerorate.storage.learned_store import LearnedStore
+from zerorate_fakes.memory import FakeMemory, PowerCut
 from zerorate_tools.cli import main
 from zerorate_tools.kernels.export import export_c
 
@@ -72,3 +77,191 @@ def test_a_model_is_applied_to_every_sample_as_on_a_board(tmp_path, matrix_model
 def test_a_scale_that_cannot_be_is_one_line(tmp_path, capsys):
     assert main(["export", "c", str(tmp_path), "--odr-hz", "0"]) == 2
     assert capsys.readouterr().err == "zerorate: odr_hz must be 0.01..8000, not 0.0\n"
+
+
+BINDING = bytes([0x68, 0, 0, 3])
+READ = ctypes.CFUNCTYPE(
+    ctypes.c_int32, ctypes.c_void_p, ctypes.c_uint32, ctypes.c_void_p, ctypes.c_uint32
+)
+
+
+class CStore(ctypes.Structure):
+    """zerorate_store_t, without the room at its end."""
+
+    _fields_ = [
+        ("read", READ),
+        ("write", READ),
+        ("context", ctypes.c_void_p),
+        ("base", ctypes.c_uint32),
+        ("pitch", ctypes.c_uint32),
+        ("binding", ctypes.c_uint8 * 4),
+        ("record", ctypes.c_uint8 * 4096),
+    ]
+
+
+@pytest.fixture(scope="module")
+def library(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("c")
+    export_c(folder, Sensor())
+    command = ["cc", "-O1", "-shared", "-fPIC", folder / "zerorate.c", "-o", folder / "z.so"]
+    subprocess.run(command, check=True)
+    return ctypes.CDLL(str(folder / "z.so"))
+
+
+class InC:
+    """A zerorate_t whose store is a FakeMemory."""
+
+    def __init__(self, library, memory, binding=BINDING):
+        corrector = Corrector(Sensor(), motion=False, gravity=False)
+        self.words, self.memory, self._c = len(corrector.state), memory, library
+        self.z = (ctypes.c_int32 * (self.words + len(corrector.settings)))()
+        size = 24 + 4 * len(self.z)
+        self.size = size
+        self.store = CStore(READ(self._read), READ(self._write), None, 0, size)
+        self.store.binding[:] = binding
+        self._c.zerorate_begin(self.z)
+
+    @property
+    def state(self):
+        return array("i", self.z[: self.words])
+
+    def _read(self, _, at, data, count):
+        piece = bytearray(count)
+        try:
+            self.memory.readblock(at, piece)
+        except OSError:
+            return 1
+        ctypes.memmove(data, bytes(piece), count)
+        return 0
+
+    def _write(self, _, at, data, count):
+        try:
+            self.memory.writeblock(at, ctypes.string_at(data, count))
+        except (OSError, PowerCut):
+            return 1
+        return 0
+
+    def update(self, sample, dt_us):
+        self._c.zerorate_update(self.z, (ctypes.c_int32 * 7)(*sample), dt_us)
+
+    def load(self, same=False):
+        return self._c.zerorate_load(self.z, ctypes.byref(self.store), int(same))
+
+    def save(self):
+        return bool(self._c.zerorate_save(self.z, ctypes.byref(self.store)))
+
+
+def in_python(memory, binding=BINDING):
+    corrector = Corrector(Sensor(), motion=False, gravity=False)
+    return LearnedStore(memory, binding, corrector)
+
+
+def rested(seed, count=4000):
+    """Frames of rests at changing temperatures, with a jump of the bias."""
+    noise = random.Random(seed).gauss
+    for i in range(count):
+        bias = 400 + seed if i < count // 2 else 120
+        accel = [round(noise(mean, 40)) for mean in (0, 0, 16384)]
+        gyro = [round(noise(bias, 6.5)) for _ in range(3)]
+        yield array("i", [*accel, round(-3000 + i / 2 + noise(0, 8)), *gyro])
+
+
+@pytest.fixture
+def both(library):
+    """Python's store and C's after the same samples, each on its own memory."""
+    python, c = in_python(FakeMemory(8192)), InC(library, FakeMemory(8192))
+    for sample in rested(1):
+        c.update(sample, 10000)
+        python.corrector.update(sample, 10000)
+    assert c.state == python.corrector.state
+    return python, c
+
+
+def alike(library, memory, same=False):
+    """Load what a memory holds by both; the reason, once it was found to be one, and the state."""
+    python, c = in_python(memory), InC(library, memory)
+    reason = python.load(same)
+    assert (c.load(same), c.state) == (reason, python.corrector.state)
+    return reason
+
+
+def test_records_are_the_same_to_the_byte(both):
+    python, c = both
+    for _ in range(3):
+        assert python.save() and c.save()
+        assert python.state.storage.bytes == c.memory.bytes
+
+
+@pytest.mark.parametrize("same", [False, True])
+def test_a_power_on_begins_with_the_same_state_and_goes_on_alike(library, both, same):
+    _, c = both
+    assert c.save()
+    assert alike(library, c.memory, same) == reasons.LOADED
+    python, again = in_python(c.memory), InC(library, c.memory)
+    assert python.load(same) == again.load(same) == reasons.LOADED
+    for sample in rested(2, 500):
+        again.update(sample, 10000)
+        python.corrector.update(sample, 10000)
+    assert again.state == python.corrector.state
+
+
+def test_a_cut_at_any_byte_leaves_what_was_stored_before(library, both):
+    _, c = both
+    assert c.save()
+    for cut in [*range(0, c.size, 53), *range(c.size - 6, c.size)]:
+        memory = FakeMemory(8192)
+        memory.bytes[:] = c.memory.bytes
+        writer = InC(library, memory)
+        writer.z[: c.words] = c.z[: c.words]
+        memory.cut_after = cut
+        assert not writer.save()
+        memory.cut_after = None
+        assert alike(library, memory) == reasons.LOADED
+
+
+def test_any_bit_turned_is_said_as_by_python(library, both):
+    _, c = both
+    assert c.save()
+    luck = random.Random(3)
+    bits = [*range(24 * 8), *(luck.randrange(8 * c.size) for _ in range(150))]
+    for _ in range(2):
+        for bit in bits:
+            c.memory.flip(bit)
+            alike(library, c.memory)
+            c.memory.flip(bit)
+        assert c.save()
+
+
+def test_a_turned_word_with_a_right_checksum_is_refused_where_python_refuses(library, both):
+    _, c = both
+    assert c.save()
+    luck, seen = random.Random(4), set()
+    for _ in range(400):
+        memory = FakeMemory(8192)
+        memory.bytes[:] = c.memory.bytes
+        at = 20 + 4 * luck.randrange(c.words)
+        word = luck.choice([luck.randrange(-(2**31), 2**31), luck.randrange(-300, 300)])
+        memory.bytes[at : at + 4] = word.to_bytes(4, "little", signed=True)
+        check = bytearray(4)
+        checksum(bytes(memory.bytes[: c.size - 4]), check)
+        memory.bytes[c.size - 4 : c.size] = check
+        seen.add(alike(library, memory))
+    assert seen == {reasons.LOADED, reasons.OUT_OF_RANGE}
+
+
+def test_each_reason_is_said_as_by_python(library, both):
+    _, c = both
+    assert alike(library, FakeMemory(8192)) == reasons.EMPTY
+    assert c.save()
+    other = InC(library, c.memory, bytes([0x70, 0, 0, 3]))
+    assert other.load() == reasons.OTHER_BINDING
+    for at, reason in ((4, reasons.OTHER_VERSION), (3, reasons.OTHER_VERSION)):
+        memory = FakeMemory(8192)
+        memory.bytes[:] = c.memory.bytes
+        memory.bytes[at] ^= 4
+        check = bytearray(4)
+        checksum(bytes(memory.bytes[: c.size - 4]), check)
+        memory.bytes[c.size - 4 : c.size] = check
+        assert alike(library, memory) == reason
+    c.memory.broken = True
+    assert (c.load(), c.save()) == (reasons.UNREADABLE, False)

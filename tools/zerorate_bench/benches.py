@@ -110,7 +110,7 @@ def _number(default: float, what: str) -> dict[str, Any]:
 _PROCESSES = {"--processes": _number(2, "at once")}
 BENCHES = {
     "accuracy": Bench(
-        *("the bias error beside everyone else's", "accuracy_report"),
+        *("the bias error beside everyone else's", "accuracy"),
         lambda bench, a, advance: bench.accuracy(advance, _seeds(a)),
         lambda bench, a: bench.steps(_seeds(a)),
         options=_QUICK,

@@ -203,7 +203,7 @@ def settling() -> dict:
 
 FLICKERS_MDPS = (0, 1, 2, 4)
 SCENES = ("rests-30", "short-rests", "turntable")
-SEEDS_FLICKER = range(1, 11)
+FLICKER_SEEDS = range(1, 11)
 _STRETCH_S = 10.0
 
 
@@ -213,7 +213,7 @@ def by_flicker() -> dict:
     for name in SCENES:
         scenes = [with_flicker(name, mdps / 1000) for mdps in FLICKERS_MDPS]
         shares = np.mean(
-            [[_shares(scene, seed) for scene in scenes] for seed in SEEDS_FLICKER], axis=0
+            [[_shares(scene, seed) for scene in scenes] for seed in FLICKER_SEEDS], axis=0
         )
         found[name] = dict(zip(("firmware", "Bayes' rule"), np.round(shares.T, 4).tolist()))
     return found

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from .motion import FLICKERS_MDPS, SEEDS, run
+from .motion import FLICKER_SEEDS, FLICKERS_MDPS, run
 from .tables import table
 
 __all__ = ["LIMITS_MDPS", "in_markdown", "run"]
@@ -29,7 +29,8 @@ Truth within two sigma, mean over the seeds; must be 90 % of a source's verdicts
 decision at the end of each ten seconds:
 """
 _FLICKER = f"""\
-Truth within two sigma, by flicker noise of the part, mean of {len(SEEDS)} seeds. Bayes' rule has \
+Truth within two sigma, by flicker noise of the part, mean of {len(FLICKER_SEEDS)} seeds. Bayes' \
+rule has \
 all rests so far, and is told their noise, but not how large flicker noise and walk are:
 """
 _FLICKER_HEAD = ["", *(f"{mdps} mdps" for mdps in FLICKERS_MDPS)]

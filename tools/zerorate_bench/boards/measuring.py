@@ -14,8 +14,7 @@ from ..limits import Limit, limits_table, verdicts
 from ..tables import number, table
 from ..workload import CYCLE, Workload, workload
 from .memory import CONFIGURATIONS, heap_and_import, least_heap
-from .pico import CORE_HZ, EmulatedPico, find_pico
-from .playing import Play, Played, on_host, on_pico
+from .pico import CORE_HZ, EmulatedPico, Play, Played, find_pico, on_host, on_pico
 
 #: Samples of each mode that is compared; the workload's own cycle is the first.
 _COMPARED = 1200

@@ -16,7 +16,7 @@ from zerorate_tools.recordings.recording import ACCEL, GYRO, TEMP, TIME
 
 from ..public_data import CLOSED_ALONE, told_of
 from ..tables import machine_line, table
-from .bin_tables import rms_mdps
+from .real import rms_mdps
 
 #: A step that is put in: where in the course, and of how many times the noise of a block.
 _STEP_AT, _STEP_NOISES = 0.6, 10.0

@@ -14,7 +14,6 @@ import numpy as np
 from ..numbers import chance, figure
 from . import kinds, sentences
 from .board import Deployment
-from .colours import ROLES
 from .plot import Line, Panel, Plot, Series
 
 # Heights in CSS pixels: of a panel in a stack, alone, beside others and under others, and of what
@@ -182,3 +181,24 @@ def _values(series: Series) -> dict[str, Any]:
 def _numbers(values: Iterable[float]) -> list[float | None]:
     """Five digits, which a screen cannot show; None where a line breaks."""
     return [float(f"{v:.5g}") if np.isfinite(v) else None for v in np.asarray(values, float)]
+
+
+#: Role -> colour on light ground, colour on dark ground.
+ROLES: dict[str, tuple[str, str]] = {
+    "before": ("#8d8d93", "#85858d"),
+    "after": ("#0072b2", "#56b4e9"),
+    "floor": ("#00795a", "#2fc49b"),
+    "heating": ("#c44e00", "#f08a45"),
+    "cooling": ("#0072b2", "#56b4e9"),
+    "held": ("#8d8d93", "#85858d"),
+    "x": ("#0072b2", "#56b4e9"),
+    "y": ("#c44e00", "#f08a45"),
+    "z": ("#00795a", "#2fc49b"),
+    "model": ("#1b1b1f", "#f2f2f4"),
+    "context": ("#6c6c74", "#a0a0a8"),
+    "event": ("#a8417f", "#e08abf"),
+    "long": ("#0072b2", "#56b4e9"),
+    "short": ("#d98200", "#e6a532"),
+    "any": ("#00795a", "#2fc49b"),
+    "now": ("#1b1b1f", "#f2f2f4"),
+}

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from ..motion.in_motion import Timing
 from ..motion.rate_scale import RateScale
-from ..motion.timing import Timing
 from ..read.lines import Line
 from ..search.periodic import QUICK_HZ
 from ..verify.analysis import Analysis

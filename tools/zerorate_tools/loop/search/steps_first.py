@@ -8,6 +8,7 @@ jump of the bias may be its doing, and late: the search then lets both compete.
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -15,8 +16,7 @@ from ...model.term import Term
 from ..fit.regression import Regression
 from ..read.sessions import OWN_SOURCES, Session, common_sources
 from .catalogue import Candidate
-from .disturbed import hold_disturbed
-from .steps import Step, find_all
+from .steps import MOST_PER_SESSION, Step, find_all, standing
 
 #: The sensor's own channels, and one made of its temperature.
 _RATE = "rate of temp"
@@ -211,3 +211,42 @@ def _by_accelerometer(session, first, last) -> tuple[int | None, str]:
         return None, ""
     said = f"the accelerometer saw {seen[at]:.2g} g at that moment: mechanical stress or a knock"
     return at, said
+
+
+#: Blocks between two steps that undo each other up to which they are a disturbance: none need lie
+#: between them whole.
+_DISTURBED = 2.0
+#: Cosine of two steps' sizes below which they undo each other.
+_UNDONE = -0.5
+
+
+def hold_disturbed(regression, terms, recordings: int = 1) -> None:
+    """Hold every disturbance's blocks on a line between their neighbours."""
+    kept = regression.events()
+    for _ in range(MOST_PER_SESSION):
+        steps = sorted(standing(regression, terms, recordings, kept), key=lambda s: s.block)
+        regression.set_events([], kept)
+        disturbed = [(a, b) for a, b in pairwise(steps) if _undoes(a, b)]
+        if not disturbed:
+            break
+        for a, b in disturbed:
+            _hold(regression, a, b)
+        regression.prepare()
+
+
+def _undoes(a: Step, b: Step) -> bool:
+    apart = (b.block - b.share) - (a.block - a.share)
+    both = np.linalg.norm(a.size_dps) * np.linalg.norm(b.size_dps)
+    undone = a.size_dps @ b.size_dps < _UNDONE * both
+    return bool(a.session == b.session and apart <= _DISTURBED and undone)
+
+
+def _hold(regression, a: Step, b: Step) -> None:
+    """The blocks from one step to another."""
+    rate = regression.rate[a.session].copy()
+    at = np.arange(a.block - int(np.ceil(a.share)), b.block)
+    there = regression.sessions[a.session].available.copy()
+    there[at] = False
+    for axis in range(3):
+        rate[at, axis] = np.interp(at, np.flatnonzero(there), rate[there, axis])
+    regression.rate[a.session] = rate
