@@ -212,12 +212,6 @@ BENCHES = {
         lambda bench, a, advance: bench.run(a.data),
         options=_BROAD,
     ),
-    "peers": Bench(
-        *("what the figures of other filters hang on", "peer_differences"),
-        lambda bench, a, advance: bench.peer_differences(_seeds(a), advance),
-        lambda bench, a: len(bench.CASES),
-        options=_QUICK,
-    ),
     "real": Bench(
         *("closing the loop on real recordings, each alone", "loop.real"),
         lambda bench, a, advance: bench.real_rows(_recordings(a)),
