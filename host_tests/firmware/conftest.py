@@ -42,17 +42,17 @@ def trace_on(repository):
 
 @pytest.fixture(scope="session")
 def source_on(repository):
-    """source_on(runtime, name, motion) -> the source's state by a MicroPython whose heap is locked.
+    """source_on(runtime, name, samples) -> the states by a MicroPython whose heap is locked.
 
-    name: in_motion or gravity.
+    name: in_motion, gravity or together.
     """
 
-    def run(runtime, name, motion):
+    def run(runtime, name, samples):
         result = runtime.run(
             _HERE / "on_micropython" / "motion_without_heap.py",
-            [name, str(len(motion.samples))],
+            [name, str(len(samples))],
             modules=[repository / "firmware"],
-            files_in={"samples.bin": motion.samples.astype("int32").tobytes()},
+            files_in={"samples.bin": samples.astype("int32").tobytes()},
             files_out=["state.bin"],
             check=True,
         )

@@ -173,4 +173,4 @@ def test_bytecode_counts_what_cpython_counts_and_allocates_nothing(
 ):
     expected = Counter(hz=25.0).feed(short_motion)
     assert expected.learned
-    assert source_on(micropython, "gravity", short_motion) == expected.state.tobytes()
+    assert source_on(micropython, "gravity", short_motion.samples) == expected.state.tobytes()

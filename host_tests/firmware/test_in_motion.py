@@ -291,4 +291,4 @@ def expected(short_motion):
 def test_bytecode_learns_what_cpython_learns_and_allocates_nothing(
     micropython, source_on, short_motion, expected
 ):
-    assert source_on(micropython, "in_motion", short_motion) == expected
+    assert source_on(micropython, "in_motion", short_motion.samples) == expected

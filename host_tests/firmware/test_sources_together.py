@@ -60,17 +60,9 @@ def expected(samples):
 
 
 def test_every_interpreter_decides_the_same_and_allocates_nothing(
-    micropython, repository, samples, expected
+    micropython, source_on, samples, expected
 ):
-    result = micropython.run(
-        repository / "host_tests" / "firmware" / "on_micropython" / "sources_without_heap.py",
-        [str(len(samples))],
-        modules=[repository / "firmware"],
-        files_in={"samples.bin": samples.astype(np.int32).tobytes()},
-        files_out=["state.bin"],
-        check=True,
-    )
-    assert result.files["state.bin"] == expected
+    assert source_on(micropython, "together", samples) == expected
 
 
 def test_the_kernels_that_are_compiled_decide_the_same(samples, expected):
