@@ -98,7 +98,7 @@ AREAS = {
         ["firmware/zerorate/effects/" + name for name in (
             "effects.py", "effect_basis.py", "effect_inputs.py", "effect_plays.py")],
         ["host_tests/firmware/test_effect" + name for name in (
-            "_inputs.py", "_kernels.py", "s.py", "s_in_time.py", "s_on_interpreters.py")]
+            "_refine.py", "_kernels.py", "s.py", "s_in_time.py", "s_on_interpreters.py")]
         + [KNOWN],
     ),
     "models": (
@@ -121,7 +121,7 @@ AREAS = {
         + ["tools/zerorate_tools/recordings/" + name for name in (
             "atomic.py", "drafts.py", "growing.py", "unfinished.py")],
         ["host_tests/tools/test_" + name for name in (
-            "atomic.py", "drafts.py", "ending.py", "growing.py")],
+            "atomic.py", "drafts.py", "growing.py")],
     ),
 }  # fmt: skip
 
