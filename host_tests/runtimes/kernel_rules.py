@@ -6,10 +6,14 @@ a shift by 32 differs between processors, and bytecode takes heap for what leave
 
 import ast
 import re
+import subprocess
+import tempfile
 from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 
-from zerorate_tools.kernels.reading import KernelFile
+from zerorate_tools.kernels.c_functions import kernels_in_c
+from zerorate_tools.kernels.library import zig_cc
+from zerorate_tools.kernels.reading import KernelFile, Kernels
 
 _ALLOWED: tuple[type[ast.AST], ...] = (
     *(ast.Assign, ast.AugAssign, ast.Return, ast.If, ast.While, ast.For, ast.Expr),
@@ -40,6 +44,19 @@ def breaches(path: Path, kernels: Collection[str]) -> list[str]:
     ]
 
 
+def left_open(package: Path) -> list[str]:
+    """What clang says of the kernels: locals that some way leaves unset, ways without return."""
+    kernels = Kernels(package)
+    every = [(file.name, name) for file in kernels.files.values() for name in file.kernels]
+    text = re.sub(r"^(    int32_t \w+) = 0;", r"\1;", kernels_in_c(kernels, *every), flags=re.M)
+    asked = ["-Wno-everything", "-Wconditional-uninitialized", "-Wuninitialized", "-Wreturn-type"]
+    with tempfile.TemporaryDirectory() as folder:
+        out = ["-x", "c", "-c", "-", "-o", f"{folder}/kernels.o"]
+        command = [*zig_cc("pip install ziglang"), *asked, *out]
+        said = subprocess.run(command, input=text, capture_output=True, text=True).stderr
+    return re.findall(r"(?:warning|error): (.+)", said)
+
+
 def remarks(function: ast.FunctionDef, lines: Sequence[str]) -> str:
     """What the function's remarks of "eleven words" say: what a parameter is from there on."""
     text = "\n".join(lines[function.lineno - 1 : function.end_lineno])
@@ -64,14 +81,12 @@ def _signature(function: ast.FunctionDef) -> Iterator[tuple[int, str]]:
             yield parameter.lineno, f"{parameter.arg} is none of {', '.join(_KINDS)}"
     if function.returns and _name(function.returns) != "int":
         yield function.lineno, "a result is an int"
-    if function.returns and not always_returns(function.body):
-        yield function.lineno, f"{function.name} ends without return on some path"
 
 
 def _body(function: ast.FunctionDef, kernels: Collection[str]) -> Iterator[tuple[int, str]]:
     has_docstring = ast.get_docstring(function) is not None
     statements = function.body[1:] if has_docstring else function.body
-    yield from read_before_set(function, statements)
+    yield from _after_its_loop(statements)
     for node in (n for statement in statements for n in ast.walk(statement)):
         row = getattr(node, "lineno", function.lineno)
         if not isinstance(node, _ALLOWED):
@@ -100,6 +115,20 @@ def _counted(loop: ast.For) -> Iterator[str]:
         yield "what a for loop counts by changes within it"
     if any(isinstance(n, ast.Subscript) and _name(n.value) != "c" for n in numbers):
         yield "the end of a for loop is a number, a local or a setting"
+
+
+def _after_its_loop(statements: Sequence[ast.stmt]) -> Iterator[tuple[int, str]]:
+    nodes = [node for statement in statements for node in ast.walk(statement)]
+    set_last = {id(t): n for n in nodes if isinstance(n, ast.Assign) for t in n.targets}
+    names = [n for n in nodes if isinstance(n, ast.Name)]
+    # what an assignment sets is behind what it reads
+    names.sort(key=lambda n: (set_last.get(id(n), n).end_lineno, id(n) in set_last))
+    read = {id(n.target) for n in nodes if isinstance(n, ast.AugAssign)}
+    for loop in (n for n in nodes if isinstance(n, ast.For)):
+        counter, end = _name(loop.target), loop.end_lineno or 0
+        following = next((n for n in names if n.id == counter and n.lineno > end), None)
+        if following and (isinstance(following.ctx, ast.Load) or id(following) in read):
+            yield following.lineno, f"{counter}, which a loop counted, is another in C behind it"
 
 
 def _call(node: ast.Call, kernels: Collection[str]) -> Iterator[str]:
@@ -137,97 +166,3 @@ def _is_small(value: object) -> bool:
 
 def _name(node: ast.expr | None) -> str:
     return node.id if isinstance(node, ast.Name) else ""
-
-
-def always_returns(statements: Sequence[ast.stmt]) -> bool:
-    """Does every way through the statements end with return?"""
-    last = statements[-1]
-    if isinstance(last, ast.If):
-        return bool(last.orelse) and always_returns(last.body) and always_returns(last.orelse)
-    if isinstance(last, ast.While):
-        return _is_endless(last) and not any(isinstance(n, ast.Break) for n in ast.walk(last))
-    return isinstance(last, ast.Return)
-
-
-def read_before_set(
-    function: ast.FunctionDef, statements: Sequence[ast.stmt]
-) -> Iterator[tuple[int, str]]:
-    """Row and text for each local that some way reads before it sets it."""
-    nodes = [node for statement in statements for node in ast.walk(statement)]
-    stored = {n.id for n in nodes if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
-    flow = _Flow(stored)
-    flow.through(statements, {a.arg for a in function.args.args})
-    for row, name in sorted(flow.early):
-        yield row, f"{name} is read before it is set on some path"
-
-
-def _is_endless(loop: ast.While) -> bool:
-    return isinstance(loop.test, ast.Constant) and bool(loop.test.value)
-
-
-class _Flow:
-    """Follows which locals are set; a state is the set of their names, None where no way leads."""
-
-    def __init__(self, local_names: set[str]) -> None:
-        self.local_names = local_names
-        self.early: set[tuple[int, str]] = set()
-        self.at_breaks: list[set[str] | None] = []
-
-    def through(self, statements: Sequence[ast.stmt], known: set[str] | None) -> set[str] | None:
-        for statement in statements:
-            if known is None:
-                return None
-            known = self.past(statement, known)
-        return known
-
-    def past(self, statement: ast.stmt, known: set[str]) -> set[str] | None:
-        if isinstance(statement, ast.If):
-            self.read(statement.test, known)
-            yes = self.through(statement.body, known)
-            return _both(yes, self.through(statement.orelse, known))
-        if isinstance(statement, ast.While):
-            return self.loop(statement, known)
-        if isinstance(statement, ast.For):
-            return self.counted(statement, known)
-        self.read(statement, known)
-        if isinstance(statement, ast.Break):
-            self.at_breaks[-1] = _both(self.at_breaks[-1], known)
-        if isinstance(statement, (ast.Break, ast.Continue, ast.Return)):
-            return None
-        return known | _set_in(statement)
-
-    def loop(self, loop: ast.While, known: set[str]) -> set[str] | None:
-        self.read(loop.test, known)
-        self.at_breaks.append(None)
-        self.through(loop.body, known)
-        run_out = None if _is_endless(loop) else known
-        return _both(self.at_breaks.pop(), self.through(loop.orelse, run_out))
-
-    def counted(self, loop: ast.For, known: set[str]) -> set[str] | None:
-        """Behind it the counter is another in C: it counts as not set."""
-        self.read(loop.iter, known)
-        counter = _set_in(loop.target)
-        self.at_breaks.append(None)
-        self.through(loop.body, known | counter)
-        return _both(self.at_breaks.pop(), known) - counter
-
-    def read(self, node: ast.AST, known: set[str]) -> None:
-        for name in ast.walk(node):
-            if isinstance(name, ast.Name) and name.id in self.local_names - known:
-                if isinstance(name.ctx, ast.Load) or _is_augmented(node, name):
-                    self.early.add((name.lineno, name.id))
-
-
-def _both(one: set[str] | None, other: set[str] | None) -> set[str] | None:
-    if one is None or other is None:
-        return other if one is None else one
-    return one & other
-
-
-def _is_augmented(node: ast.AST, name: ast.Name) -> bool:
-    return isinstance(node, ast.AugAssign) and node.target is name
-
-
-def _set_in(node: ast.AST) -> set[str]:
-    names = (n for n in ast.walk(node) if isinstance(n, ast.Name))
-    return {n.id for n in names if isinstance(n.ctx, ast.Store)}
