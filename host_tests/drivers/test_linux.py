@@ -9,7 +9,6 @@ from zerorate_fakes.smbus import SMBus
 from zerorate_i2c.fifo import Fifo
 from zerorate_i2c.linux import LinuxI2C
 from zerorate_i2c.mpu6050 import MPU6050
-from zerorate_tools.errors import MissingRuntime
 
 from host_tests.drivers.linux_bus import machine
 from host_tests.drivers.linux_bus.run import run_guest
@@ -57,12 +56,10 @@ def test_a_missing_device_file_is_an_os_error():
 
 @pytest.fixture
 def found():
-    if os.environ.get("ZERORATE_REQUIRE_LINUX_BUS"):
-        machine.fetch()
-    try:
-        return run_guest()
-    except MissingRuntime as missing:
-        pytest.skip(str(missing))
+    if not os.environ.get("ZERORATE_REQUIRE_LINUX_BUS"):
+        pytest.skip("it boots a Linux for a minute; ZERORATE_REQUIRE_LINUX_BUS=1 does so, as in CI")
+    machine.fetch()
+    return run_guest()
 
 
 # One test: booting the machine takes a minute, and workers of pytest-xdist share no fixtures.
