@@ -174,3 +174,13 @@ def test_bytecode_counts_what_cpython_counts_and_allocates_nothing(
     expected = Counter(hz=25.0).feed(short_motion)
     assert expected.learned
     assert source_on(micropython, "gravity", short_motion.samples) == expected.state.tobytes()
+
+
+def test_what_forgets_all_leaves_nothing_of_what_was_counted():
+    settings = gravity_settings()
+    fresh = gravity_state(settings)
+    dirty = fresh[:]
+    for at in range(len(dirty)):
+        dirty[at] = 12345
+    gravity.clear(dirty, settings)
+    assert dirty == fresh

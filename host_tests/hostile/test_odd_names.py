@@ -18,7 +18,9 @@ def folder(tmp_path):
     os.mkfifo(tmp_path / "fifo")
     (tmp_path / _NOT_UTF8).write_text(_LOG)
     (tmp_path / "run.csv").write_text(_LOG)
+    (tmp_path / "log.csv").write_text(_LOG.replace("gx,gy,gz", "gx_dps,gy_dps,gz_dps"))
     (tmp_path / "run.json").write_text('{"sensor":"x","odr_hz":100,"gyro_lsb_per_dps":131.0}')
+    (tmp_path / "dev.toml").write_text("[every_session]\nminutes = 0.1\n")
     (tmp_path / "deep.toml").write_text("a=" + "[" * 5000 + "]" * 5000)
     (tmp_path / "deep.yaml").write_text("[" * 5000 + "]" * 5000)
     return tmp_path
@@ -38,6 +40,11 @@ def folder(tmp_path):
         (["simulate", "deep.yaml", "--out", "s.parquet"], "deep.yaml: nested too deeply"),
         (["replay", "run.csv", "--out", "o.parquet", "--set", "bins=1e400"], "bins=1e400: not of"),
         (["replay", "run.csv", "--out", "o.parquet", "--model", "/dev/zero"], "zero: is no file"),
+        (["replay", "run.csv", "--out", "o.parquet", "--state", "fifo"], "fifo: cannot be written"),
+        (["simulate", "dev.toml", "--out", "o.parquet", "--truth", "fifo"], "fifo: cannot be"),
+        (["record", "/dev/i2c-77", "--out", "o.csv", "--setup", "\n"], "No such file"),
+        (["import", "run.csv", "--out", "o.parquet", "--hz", "inf"], "inf is no finite number"),
+        (["import", "log.csv", "--out", "o.parquet", "--hz", "1e-300"], "the time stamp is 1e+306"),
     ],
     ids=str,
 )
@@ -48,7 +55,7 @@ def test_it_is_one_printable_line_that_says_what_to_do(folder, words, problem):
     assert done.returncode == 2 and problem in said and "Traceback" not in said
     assert "\x1b" not in said and "\u202e" not in said
     assert said.startswith("usage") or len(said.splitlines()) == 1
-    assert not list(Path(folder).glob("[os].parquet"))
+    assert not list(Path(folder).glob("[os].parquet")) and (folder / "fifo").is_fifo()
 
 
 def test_one_folder_that_is_not_utf8_leaves_the_fleet_standing(folder):

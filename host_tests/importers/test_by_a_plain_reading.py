@@ -168,3 +168,11 @@ def test_tables_of_one_recording_begin_and_end_together(rates_s, force_s, is_one
         return
     with pytest.raises(BadRecording, match="do not begin and end together"):
         refuse_two_recordings(spool, PATH)
+
+
+@given(st.floats(0.01, 1000.0), st.lists(st.integers(1, 79), max_size=3))
+def test_rows_that_are_counted_come_at_the_rate_that_is_given(hz, cuts):
+    columns = {name: np.sin(np.arange(80.0)) for name in RATES}
+    found, scales, _ = imported(columns, cuts, hz=hz)
+    assert np.abs(found["t_us"] - np.arange(80) * 1e6 / hz).max() <= 0.5
+    assert scales.odr_hz == hz

@@ -1,6 +1,7 @@
 """`zerorate import`: foreign recordings into the project's own form."""
 
 import argparse
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -53,7 +54,7 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
     parser.add_argument("--accel-lsb-per-g", type=_above_zero, metavar="N", help=chosen)
     parser.add_argument("--temp-lsb-per-degc", type=_above_zero, metavar="N", help=chosen)
     parser.add_argument(
-        "--temp-offset-degc", type=float, metavar="N", help="temperature of a raw reading of 0"
+        "--temp-offset-degc", type=_finite, metavar="N", help="temperature of a raw reading of 0"
     )
     for kind in ("time", "gyro", "accel", "temp"):
         parser.add_argument(f"--{kind}-unit", metavar="UNIT", help="where a mapping names none")
@@ -109,7 +110,14 @@ def _hz(text: str) -> float:
 
 
 def _above_zero(text: str) -> float:
-    value = float(text)
-    if not value > 0:
+    value = _finite(text)
+    if value <= 0:
         raise argparse.ArgumentTypeError(f"{text} is not above 0")
+    return value
+
+
+def _finite(text: str) -> float:
+    value = float(text)
+    if not isfinite(value):
+        raise argparse.ArgumentTypeError(f"{text} is no finite number")
     return value

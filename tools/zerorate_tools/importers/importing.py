@@ -174,12 +174,12 @@ def _opened(
     _require(path)
     if path.is_file() and path.stat().st_size == 0:
         raise BadRecording(path, "empty file", do="name another file")
-    own = None if how.mapping or path.suffix == ".parquet" else _own_form(path)
+    own = None if how.mapping or path.suffix == ".parquet" else _own_form(path, how)
     if own is not None:
         return own
     with table_of(path, how.instance, advance) as table:
         # only what a child has read in safety is opened here
-        own = _own_form(path) if table.own_form and not how.mapping else None
+        own = _own_form(path, how) if table.own_form and not how.mapping else None
         if own is not None:
             return own
         source = _gathered(table, path, how, folder)
@@ -236,12 +236,14 @@ def _leave_out_unread(found: Gathered, plan, report: Report) -> None:
         report.notes.append(f"column {column!r} left out: no number is in it")
 
 
-def _own_form(path: Path) -> _Import | None:
+def _own_form(path: Path, how: _How) -> _Import | None:
     try:
         opened = open_recording(path, keep_gaps=True)
     except BadRecording:
         return None
-    report = Report(notes=["a recording in this form already"], odr_hz=opened.scales.odr_hz)
+    note = "a recording in this form already"
+    note += ": its own scales and times are kept" if how.options != Options() or how.units else ""
+    report = Report(notes=[note], odr_hz=opened.scales.odr_hz)
 
     def batches() -> Iterator[dict[str, np.ndarray]]:
         first = last = None

@@ -120,7 +120,8 @@ class _Gathering:
         if TIME in columns:
             columns[TIME] = columns[TIME] * 1e6
         else:
-            columns[TIME] = place * (1e6 / self.hz)
+            with np.errstate(over="ignore"):  # what no integer holds is refused below
+                columns[TIME] = place * (1e6 / self.hz)
         columns[PLACE] = place.astype(float)
         columns = self._less(columns, np.isfinite(columns[TIME]), "the time stamp is no number")
         # what has no reading may have no true time either
