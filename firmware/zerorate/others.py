@@ -13,6 +13,8 @@ const = int
 _MOTION_BIAS_Q8 = const(71)
 # layout: The state of the source against gravity
 _GRAVITY_BIAS_Q8 = const(28)
+# layout: The effect model and its running state
+_HELD_Q14 = const(13)
 # layout: Where a bias comes from
 _IN_MOTION = const(4)
 _GRAVITY = const(5)
@@ -57,7 +59,20 @@ class Others:
             effects.attend(owner.state, owner.settings, effects.e)
 
     def _consider(self, found, bias_at, source):
+        # found on raw rates: it contains the effects that stand; what goes with a turn or a force
+        # comes and goes with it
+        self._shift(found, bias_at, -1)
         rest.consider(self._of.state, self._of.settings, found, bias_at, source)
+        self._shift(found, bias_at, 1)
+
+    def _shift(self, found, bias_at, sign):
+        if self._of.effects is not None:
+            i = 0
+            while i < 3:
+                held = sign * (self._of.effects.e[_HELD_Q14 + i] + 32 >> 6)
+                found[bias_at] += held
+                bias_at += 1
+                i += 1
 
 
 def forget(corrector):

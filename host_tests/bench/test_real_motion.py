@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from scipy.io import savemat
-from zerorate_bench.real_motion import COLD, FIRST_REST, NONE, OURS, in_markdown, run
+from zerorate_bench.real_motion import COLD, FIRST_REST, NONE, OURS, TOLD, in_markdown, run
 
 HZ = 100
 BIAS_DPS = np.array([0.3, -0.2, 0.1])
@@ -33,6 +33,7 @@ def test_the_bias_at_the_end_of_the_motion_is_judged_by_the_rest_after_it(folder
     uncorrected = 1000 * np.sqrt(np.mean(BIAS_DPS**2))
     for start in (FIRST_REST, COLD):
         assert found[start][NONE]["made"] == pytest.approx(uncorrected, abs=5)
+        assert found[start][TOLD]["made"] == found[start][OURS]["made"]  # no other trial tells
     assert found[FIRST_REST][OURS]["made"] < 10
     assert found[COLD][OURS]["made"] > 50  # ten seconds of motion say little: the rest is not used
 

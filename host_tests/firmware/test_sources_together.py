@@ -11,11 +11,15 @@ from zerorate.arithmetic import real
 from zerorate.motion import least_squares, posterior
 from zerorate.motion.motion_settings import motion_settings, motion_state
 from zerorate.rest import step
-from zerorate_tools.layout import GRAVITY, MOTION, SOURCE, STATE
+from zerorate_tools.layout import EFFECTS, GRAVITY, MOTION, SOURCE, STATE
+from zerorate_tools.model import Slot
+from zerorate_tools.model.term import Term
+from zerorate_tools.recordings import Scales
 from zerorate_tools.simulate import simulate
 
 from . import motions
 from .played import by_machine_code, estimators
+from .simulated_sources import loaded
 
 HZ = 25.0
 DT_US = 40000
@@ -88,6 +92,30 @@ def test_the_output_slews_no_faster_than_stated_when_the_source_changes(samples)
     most = [max(found) * HZ for found in steps.values()]
     print("steepest change of the output:", np.round(most, 3), "dps/s")
     assert 0 < max(most) <= 0.5
+
+
+MATRIX = [Slot(Term("rate_x", -500.0, 500.0), (0.02, 0.0, 0.01), "scale-factor")]
+OF_TEMPERATURE = [Slot(Term("temp", 0.0, 60.0, 30.0), (0.1, -0.05, 0.08), "temperature")]
+
+
+@pytest.mark.parametrize("slots", [MATRIX, OF_TEMPERATURE])
+def test_what_is_found_in_motion_has_no_effect_in_it_that_is_subtracted_already(samples, slots):
+    scales = Scales("MPU-6050", HZ, LSB, 16384, 340.0, 36.53)
+    sensor = Sensor(HZ)
+    plain, modelled = Corrector(sensor), Corrector(sensor)
+    modelled.use_model(loaded(slots, scales, sensor))
+    swinging = samples[: round(60 * HZ)]
+    for corrector in (plain, modelled):
+        by_machine_code(corrector, swinging.astype(np.int32), np.full(len(swinging), DT_US))
+        assert corrector.motion[MOTION_LEARNED] > 0
+    by_python = Corrector(sensor)
+    by_python.use_model(loaded(slots, scales, sensor))
+    assert words(played(by_python, swinging)) == words(modelled)
+    held = np.array(modelled.effects.e[EFFECTS.HELD_Q14 : EFFECTS.HELD_Q14 + 3]) / 2**14
+    for axis in range(3):
+        less = (plain.state[STATE.TARGET_Q8 + axis] - modelled.state[STATE.TARGET_Q8 + axis]) / 256
+        assert less == pytest.approx(held[axis], abs=0.02 * LSB)
+    assert bool(held.any()) == (slots is OF_TEMPERATURE)
 
 
 def test_it_says_what_each_source_is_doing(samples):

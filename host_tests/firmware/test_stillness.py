@@ -160,8 +160,8 @@ BIAS_DPS_TURNING = np.array([0.4, -0.7, 1.1])
 SHAKEN = "shaken"
 
 
-def recorded(*parts, warms_degc=0.0):
-    """A recording, z up; a part is seconds and its rate, dps, or SHAKEN."""
+def recorded(*parts, warms_degc=0.0, load_g=1.0):
+    """A recording, z up; a part is seconds and its rate, dps, or SHAKEN; the last bears a load."""
     rng = np.random.default_rng(1)
     rate, accel = [], []
     for seconds, what in parts:
@@ -169,7 +169,8 @@ def recorded(*parts, warms_degc=0.0):
         shaken = 20.0 if what is SHAKEN else 0.0
         rate.append(np.zeros((n, 3)) + (0 if what is SHAKEN else what))
         rate[-1] += rng.standard_normal((n, 3)) * (NOISE_DPS + shaken)
-        accel.append([0, 0, 1] + rng.standard_normal((n, 3)) * (0.002 + shaken / 100))
+        load = load_g if len(accel) == len(parts) - 1 else 1.0
+        accel.append([0, 0, load] + rng.standard_normal((n, 3)) * (0.002 + shaken / 100))
     gyro = np.round((np.concatenate(rate) + BIAS_DPS_TURNING) * LSB_PER_DPS).astype(np.int64)
     force = np.round(np.concatenate(accel) * LSB_PER_G).astype(np.int64)
     n = len(gyro)
@@ -182,9 +183,9 @@ def recorded(*parts, warms_degc=0.0):
     return given(Recording(columns, scales, "turns"))
 
 
-def followed(*parts, warms_degc=0.0):
+def followed(*parts, **how):
     """Error and one sigma, dps, at the end of each second."""
-    bias, sigma, _ = Decision().states(recorded(*parts, warms_degc=warms_degc))
+    bias, sigma, _ = Decision().states(recorded(*parts, **how))
     return (bias - BIAS_DPS_TURNING)[HZ - 1 :: HZ], sigma[HZ - 1 :: HZ]
 
 
@@ -222,11 +223,20 @@ def test_a_bias_that_moves_across_gravity_is_no_turn():
     assert np.abs(error[-1] - jump).max() < 0.02
 
 
-def test_one_unbroken_rest_tells_at_last_that_it_is_no_turn():
-    error, sigma = followed(KNOWN, (2, SHAKEN), (270, 0.6 * ABOUT_Z))
+def test_a_rest_of_ten_halvings_tells_at_last_that_it_is_no_turn():
+    error, sigma = followed(KNOWN, (2, SHAKEN), (1150, 0.6 * ABOUT_Z))
     off = np.abs(error - 0.6 * ABOUT_Z)[102:, 2]
+    assert off[900] > 0.5  # a turn may last so long
     assert off[-1] < 0.02
     assert np.mean(off[10:] < 2 * sigma[112:, 2]) == 1.0
+
+
+def test_a_bank_that_more_than_1_g_tells_leans_the_axis_of_a_turn():
+    load_g = 1.1  # a bank of 25 degrees: 3 dps at 85 m/s
+    bank = np.arccos(1 / load_g)
+    turn = 3.0 * np.array([np.sin(bank), 0.0, np.cos(bank)])
+    error, _ = followed(KNOWN, (2, SHAKEN), (400, turn), load_g=load_g)
+    assert np.abs(error[100:]).max() < 0.02
 
 
 def test_what_is_hardly_known_is_given_up_as_before():

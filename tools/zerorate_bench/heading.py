@@ -33,7 +33,7 @@ def run(folders: list[Path], advance: Callable[[float], None] = lambda n: None) 
     first half; and whether both groups together are refused. Raises ZerorateError."""
     every = {t.name[:2]: t for folder in folders for t in trials(folder)}
     with TemporaryDirectory() as scratch:
-        moving = {n: _moving(t, Path(scratch) / f"{n}.parquet") for n, t in every.items()}
+        moving = {n: moving_in(t, Path(scratch) / f"{n}.parquet") for n, t in every.items()}
     found: dict = {"others": {}, "halves": {}, "refused": _refused(list(moving.values()))}
     for number, group in enumerate(GROUPS):
         own = [n for n in group if n in every]
@@ -46,7 +46,8 @@ def run(folders: list[Path], advance: Callable[[float], None] = lambda n: None) 
     return found
 
 
-def _moving(trial: Trial, path: Path) -> Moving:
+def moving_in(trial: Trial, path: Path) -> Moving:
+    """What the trial's motion shows; path: where its recording is written for that."""
     recording = trial.recording()
     scales = replace(recording.scales, temp_lsb_per_degc=None, temp_offset_degc=None)
     write_recording(replace(recording, scales=scales), path)

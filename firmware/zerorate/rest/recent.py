@@ -11,7 +11,7 @@
 from ..arithmetic.fixed import clipped, scaled
 from .bias import curve_q8
 from .estimators import find
-from .stillness import hidden_q4, level_q4, size, up
+from .stillness import hidden_q4, lean_q10, level_q4, size, up
 
 # layout: names that a board's own compiler reads
 const = int
@@ -65,12 +65,12 @@ _WALK_MOST_Q16 = const(43)
 _PROVISIONAL_Q8 = const(46)
 _TURN_ON_VARIANCE_Q8 = const(47)
 _EVERY = const(48)
+_TURN_HALVES = const(55)
 # layout: Values that stand for none
 _NO_VALUE = const(-0x3FFFFFFF)
 # layout: end
 _MOST_DOUBT_Q4 = const(0x7FFFF)
 _NEIGHBOURS_MS = const(4000)  # segments of one rest follow each other faster
-_LONGER = const(-4)  # so many times as long must a rest insist that may be a turn
 _STEEPEST_Q16 = const(4095)  # times the farthest temperature it fits 31 bits
 
 
@@ -148,15 +148,15 @@ def square(s: ptr32, c: ptr32) -> int:
 def suspect_turn(s: ptr32, c: ptr32):
     """Note for the waiting segment of every axis what it may hide, and whether it may be a turn."""
     # It may where its error is along gravity, or too small to show yet, and the bias is well known:
-    # from as long a rest as must insist, and found again since power-on. It insists anew in every
-    # rest: only an unbroken one tells that it is none.
+    # from as long a rest as must insist, and found again since power-on. Along: within 22 degrees,
+    # and the bank that more than 1 g tells.
     g = size(s)
     turn = 0
     if g:
         turn = off_q1(s, c, 0) * up(s, 0) + off_q1(s, c, 1) * up(s, 1)
         turn = (turn + off_q1(s, c, 2) * up(s, 2)) // g
         aside = square(s, c) - turn * turn
-        turn = 2 * turn // 5
+        turn = turn * clipped(410 + lean_q10(c, g), 1024) >> 10
         g = level_q4(s, c, g) >> 2  # Q1, twice
         turn = 1 if aside <= turn * turn + g * g else 0
     for g in range(3):
@@ -170,13 +170,10 @@ def note(s: ptr32, c: ptr32, axis: int, turn: int):
     s[a + _OFFER] = 0 - 2 * hidden_q4(s, c, axis)
     if turn and s[a + _LEFT_Q4] != _NO_VALUE and well_known(s, c, a):
         s[a + _OFFER] -= 1
-    if s[_REST] < 2 and s[a + _SUSPECT] < 0:
-        s[a + _SUSPECT] = 0
 
 
 def hold(s: ptr32, a: int, error: int) -> int:
     """Note the error that is held back; return how many segments before it agreed with it."""
-    # A negative number counts what may be turns.
     far = clipped(error if error > 0 else 0 - error, _MOST_DOUBT_Q4)
     off = far - s[a + _HELD_Q4]
     s[a + _HELD_Q4] = far
@@ -186,13 +183,11 @@ def hold(s: ptr32, a: int, error: int) -> int:
 
 def insists(s: ptr32, c: ptr32, a: int, error: int) -> int:
     """Hold the implausible segment back; return 1 once such ones have lasted long enough."""
-    # One that no turn makes goes on counting in another pose, where a turn would be about another
-    # axis.
+    # What may be a turn does not count before ten halvings: of a thousand turns one lasts so long.
+    # What is none goes on counting in another pose, where a turn would be about another axis.
     n = hold(s, a, error)
-    if n <= 0 and s[a + _OFFER] & 1:
-        s[a + _SUSPECT] = n - 1
-        return 1 if n - 1 <= _LONGER * c[_INSIST] else 0
-    n = n + 1 if n > 0 else 1
+    if n or (s[a + _OFFER] & 1) == 0 or s[_REST] > 10 * c[_TURN_HALVES]:
+        n += 1
     s[a + _SUSPECT] = n
     return 1 if n >= c[_INSIST] else 0
 

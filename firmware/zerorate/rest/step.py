@@ -374,7 +374,7 @@ def offer(s: ptr32, c: ptr32, m: ptr32, w: int, axis: int):
     s[a + _WAITING_N] = readings_worth(c, sigma)
     if s[a + _WAITING_N]:
         # the bias, LSB Q4, as often as it counts
-        s[a + _WAITING_SUM] = (m[w + axis] - s[_EFFECT_Q8 + axis] >> 4) * s[a + _WAITING_N] >> 4
+        s[a + _WAITING_SUM] = (m[w + axis] >> 4) * s[a + _WAITING_N] >> 4
         s[a + _OFFER] = (((sigma * sigma) >> 4) << 3) + s[_OFFERED_SOURCE]
 
 

@@ -353,6 +353,13 @@ def steady_q4(s: ptr32, c: ptr32) -> int:
     return total >> rate if rate < 30 else 0
 
 
+def lean_q10(c: ptr32, g: int) -> int:
+    """Return the tangent of how far an acceleration leans gravity that makes it more than 1 g."""
+    # It is the bank of an aircraft in a coordinated turn, whose load is 1 / cos(bank).
+    over = clipped((g << 10) // c[_ONE_G], 0x3FFF) - 1024
+    return root(over << 11) if over > 0 else 0
+
+
 def hidden_q4(s: ptr32, c: ptr32, axis: int) -> int:
     """Return how much of a turn the rest so far may hide on the axis: one sigma, LSB Q4."""
     g = size(s)
@@ -360,9 +367,6 @@ def hidden_q4(s: ptr32, c: ptr32, axis: int) -> int:
     if g and s[_REST]:
         share = up(s, axis)
         share = ((share if share > 0 else 0 - share) << 10) // g
-        axis = (g << 10) // c[_ONE_G]  # eleven words: axis is from here on what is beyond 1 g
-        axis = clipped(axis, 0x3FFF) - 1024
-        if axis > 0:
-            share += root(axis << 11)  # an acceleration that adds up to it leans as far
+        share += lean_q10(c, g)
         turn = (turn * (share if share < 1024 else 1024) >> 10) + level_q4(s, c, g)
     return clipped(turn, _MOST_HIDDEN_Q4)

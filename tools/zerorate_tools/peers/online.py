@@ -10,7 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from zerorate import Corrector
+from zerorate.effects.model_file import LOADED, REASONS
+from zerorate.model import EffectModel
 
+from ..errors import ZerorateError
+from ..model import Model, encoded
 from ..recordings import Recording
 from ..replay.engines import engine
 from ..replay.replaying import corrector_for
@@ -132,12 +136,13 @@ def firmware(**options: object) -> Peer:
 class Decision:
     """As `firmware`, one power-on a session; options: keywords of zerorate.Corrector.
 
+    model: the effects that are taken out first; the bias is what is left of the rate then.
     After a call `within` holds, for each axis at the end of every stretch of ten seconds in which
     it had a bias, whether the truth given in `truth_dps` lay within two sigma.
     """
 
-    def __init__(self, **options: object) -> None:
-        self.options = options
+    def __init__(self, model: Model | None = None, **options: object) -> None:
+        self.model, self.options = model, options
         self.truth_dps: Sequence[NDArray[np.float64]] | None = None
         self.within: list[bool] = []
 
@@ -147,8 +152,17 @@ class Decision:
         return [self._biases(number, one) for number, one in enumerate(sessions)]
 
     def states(self, one: Given) -> list[NDArray[Any]]:
-        """Bias and its one sigma, dps, and the source, each (n, 3), from nothing."""
+        """Bias and its one sigma, dps, and the source, each (n, 3), from nothing.
+
+        Raises ZerorateError for a model that the firmware refuses.
+        """
         corrector = corrector_for(one.recording, dict(self.options))
+        if self.model is not None:
+            effects = EffectModel()
+            reason = effects.load(encoded(self.model), corrector.sensor)
+            if reason != LOADED:
+                raise ZerorateError(f"the firmware refuses the model: {REASONS[reason]}")
+            corrector.use_model(effects)
         return _run(corrector, one, "bias_q8", "quality_q8", "source")
 
     def _biases(self, number: int, one: Given) -> NDArray[np.float64]:
