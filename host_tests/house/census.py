@@ -8,6 +8,8 @@ from pathlib import Path
 _CONST = re.compile(r"^(_?[A-Z][A-Z0-9_]*) = const\((-?\w+)\)", re.MULTILINE)
 _MADE = re.compile(r"^# layout: (?!end$).*?^# layout: end$", re.DOTALL | re.MULTILINE)
 
+_LOOP, _JUDGING = "tools/zerorate_tools/loop", ("search", "fit", "verify")
+
 
 def census(root):
     """What is counted, in words -> how many."""
@@ -33,6 +35,10 @@ def census(root):
             [*(len(p.read_text("utf-8").splitlines()) for p in made), *map(made_lines, python)]
         ),
         "files that say where a word of an array is": len(layouts(firmware)) + 1,
+        "lines of the loop": sum(lines(p) for p in written if p.is_relative_to(root / _LOOP)),
+        "numbers that its search, fits and verdicts set": sum(
+            len(set_numbers(p)) for folder in _JUDGING for p in (root / _LOOP / folder).glob("*.py")
+        ),
     }
 
 
@@ -65,6 +71,24 @@ def subscripts(path):
     tree = ast.parse(path.read_text(encoding="utf-8"))
     inside = (n.slice for n in ast.walk(tree) if isinstance(n, ast.Subscript))
     return {name.id for part in inside for name in ast.walk(part) if isinstance(name, ast.Name)}
+
+
+def set_numbers(path):
+    """The names of constants of a module that a number is written in, a bound, a size or a grid."""
+    rows = [n for n in ast.parse(path.read_text("utf-8")).body if isinstance(n, ast.Assign)]
+    numbers = [
+        n
+        for n in rows
+        if any(isinstance(getattr(c, "value", ""), float | int) for c in ast.walk(n.value))
+    ]
+    names = {
+        name.id
+        for n in numbers
+        for t in n.targets
+        for name in ast.walk(t)
+        if isinstance(name, ast.Name)
+    }
+    return {name for name in names if name.isupper()}
 
 
 def several(firmware):

@@ -59,6 +59,8 @@ _SEEDS["curve"], _CURVE_POWER_ONS = 900_000, (4, 6)
 #: Devices a curve and a number of power-ons, of those of an effect; their size in floors.
 _OF_A_CURVE, _CURVE_FLOORS = 0.65, 3.0
 CURVE = "3x curve of a channel"
+#: Recordings in which a sharp turn of the temperature may be taken for a step.
+CORNERS, _SEEDS["corners"], _CORNERS_A_SEED = "corners of temperature", 1_000_000, 15
 NULL, REAL, OUT, HIDDEN, TWO = "nothing", "real noise", "outside", "not recorded", "two at once"
 
 
@@ -100,6 +102,7 @@ def devices(nulls: int, seeds: int, real: list[str]) -> list[Device]:
         *_pairs(seeds),
         *_many_widths(seeds),
         *_curves(seeds),
+        *(Device(CORNERS, _SEEDS["corners"] + i) for i in range(_CORNERS_A_SEED * seeds)),
         *_hidden(max(seeds, nulls // 2)),
     ]
     for k, kind in enumerate(HOSTILE):

@@ -11,6 +11,7 @@ from scipy.stats import binomtest
 from .added_effects import CURVE_OF
 from .devices import (
     CATALOGUE,
+    CORNERS,
     CURVE,
     HIDDEN,
     KINK,
@@ -86,6 +87,7 @@ def figures(outcomes: list[Outcome], whole: bool = True) -> list[Figure]:
         *_catalogue(rows),
         *_outside(rows.get(OUT, [])),
         *_curves(rows.get(CURVE, [])),
+        *_corners(rows.get(CORNERS, [])),
         *_unrecorded(rows),
         *_removed(rows),
         *_pairs(rows.get(TWO, [])),
@@ -108,6 +110,11 @@ def _where_nothing_is(rows):
             yield share(f"step listed in {row}", group, lambda o: o.events > 0, None)
     if noise:
         yield share("found, or found and withdrawn, in nothing", noise, _found_at_first, None)
+
+
+def _corners(group):
+    if group:
+        yield share(f"step invented at {CORNERS}", group, lambda o: o.events > 0, 1.0, True)
 
 
 def _found_at_first(o: Outcome) -> bool:
@@ -242,7 +249,7 @@ def _of_many_widths(which, group, found=None, after=None):
 
 
 def _made_worse(outcomes):
-    blocks = [o for o in outcomes if o.device.row not in (*ROWS, TOLD)]
+    blocks = [o for o in outcomes if o.device.row not in (*ROWS, TOLD, CORNERS)]
     with_recorded = [o for o in blocks if not o.device.row.startswith(HIDDEN)]
     name = "held-out error made worse by more than 2 %"
     yield share(name, with_recorded, lambda o: o.worse, 2.0, at_most=True)

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from .added_effects import CURVE_OF
-from .devices import CURVE, TOLD, Device
+from .devices import CORNERS, CURVE, TOLD, Device
 from .quiet import cut_into_sessions
 
 
@@ -60,6 +60,8 @@ def run_trial(device: Device) -> Outcome:
     began = time.process_time()
     if device.row == TOLD:
         return _told(device)
+    if device.row == CORNERS:
+        return _corners(device)
     if device.real:
         sessions, noise = cut_into_sessions(device.real, device.seed)
     else:
@@ -70,6 +72,16 @@ def run_trial(device: Device) -> Outcome:
     outcome = judged(device, sessions, noise[-1])
     outcome.cpu_s = time.process_time() - began
     return outcome
+
+
+def _corners(device: Device) -> Outcome:
+    """The steps that are taken out of a recording before anything else is looked for."""
+    from zerorate_tools.loop.search.steps_first import remove_steps
+
+    from .corners import simulate_corners
+
+    [session] = remove_steps(simulate_corners(device.seed).sessions)
+    return Outcome(device, events=len(session.steps))
 
 
 def _told(device: Device) -> Outcome:

@@ -141,7 +141,7 @@ def simulate(
     """
     rng = np.random.default_rng(seed)
     n = int(hours * 3600 / BLOCK_S)
-    floor, level = _noise_level(rng)
+    floor, level = noise_level(rng)
     made, noises = [], []
     turning = any(name in ("scale-factor", "cross-axis") for name, _ in effects)
     for i in range(sessions):
@@ -166,7 +166,8 @@ def simulate(
     return Device(made, noises, floor, [name for name, _ in effects])
 
 
-def _noise_level(rng):
+def noise_level(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """(3,) floor in dps, and rows of white, flicker and walk of three axes."""
     white = rng.uniform(0.5e-3, 1.0e-3, 3)
     pink = rng.uniform(0.5e-3, 0.9e-3, 3)
     walk = rng.uniform(0.02e-3, 0.07e-3, 3)
