@@ -14,6 +14,8 @@ from zerorate import Corrector, Sensor
 
 learner = Corrector(Sensor(*imu.scales))
 from zerorate.checked import CheckedCorrector
+
+corrector = CheckedCorrector(learner)
 from zerorate.storage.learned_store import LearnedStore
 from zerorate.storage.places import FileStorage
 from zerorate.storage.save_schedule import SaveSchedule
@@ -21,8 +23,7 @@ from zerorate_i2c.fifo import EMPTY, Fifo
 
 store = LearnedStore(FileStorage("learned.bin"), imu.binding, learner)
 print(store.in_words(store.load()))
-gc.collect()  # of what was read: the checkpoint takes its place
-corrector = CheckedCorrector(learner)
+corrector.keep()  # what was read is right
 schedule = SaveSchedule(store, 3, tolerance=13, corrector=learner)  # 0.1 dps at 131 LSB/dps
 sample = array("i", [0] * 7)
 bias_lsb = array("i", [0] * 3)

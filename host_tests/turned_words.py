@@ -20,8 +20,8 @@ from pathlib import Path
 
 import numpy as np
 from zerorate import Corrector
+from zerorate.storage.codes import LOADED, OUT_OF_RANGE
 from zerorate.storage.learned_store import LearnedStore
-from zerorate.storage.store import LOADED, OUT_OF_RANGE
 from zerorate_fakes.memory import FakeMemory
 from zerorate_tools.layout import SETTINGS
 from zerorate_tools.layout.naming import named_state

@@ -212,7 +212,7 @@ class Corrector:
         """Begin a power-on with what `store` holds; returns its reason, 0 if it was loaded.
 
         store: a store.Store of `4 * len(corrector.state)` bytes; same: as of power_on. Anything
-        but 0 leaves a clean start; store.REASONS says why.
+        but 0 leaves a clean start; reasons.REASONS says why.
         """
         reason = store.load(self.state)
         if reason == 0:

@@ -8,8 +8,9 @@ from zerorate.gravity.gravity_settings import gravity_settings
 from zerorate.motion.motion_settings import motion_settings
 from zerorate.rest import bias
 from zerorate.settings import DEFAULTS
+from zerorate.storage.codes import EMPTY, LOADED, OTHER_BINDING, OUT_OF_RANGE, UNREADABLE
 from zerorate.storage.soundness import is_sound
-from zerorate.storage.store import EMPTY, LOADED, OTHER_BINDING, OUT_OF_RANGE, UNREADABLE, Store
+from zerorate.storage.store import Store
 from zerorate_fakes.memory import FakeMemory
 from zerorate_tools.layout import AXIS, ESTIMATOR, MOTION, STATE, axis_at
 

@@ -8,7 +8,7 @@ from time import monotonic_ns
 
 import pytest
 from zerorate import Corrector, Sensor
-from zerorate.storage import save_schedule, store
+from zerorate.storage import codes, reasons, save_schedule
 from zerorate.storage.learned_store import MODEL_BYTES, LearnedStore
 from zerorate.storage.save_schedule import SaveSchedule
 from zerorate_fakes.memory import FakeMemory, PowerCut
@@ -52,13 +52,13 @@ def saved(memory, learned_words):
 def test_a_new_device_says_that_nothing_was_stored(memory):
     stores = blank(memory)
     before = array("i", stores.corrector.state)
-    assert stores.load() == store.EMPTY
+    assert stores.load() == codes.EMPTY
     assert stores.corrector.state == before
 
 
 def test_what_was_learned_is_what_a_new_power_on_begins_with(memory, saved):
     stores = blank(memory)
-    assert stores.load() == store.LOADED
+    assert stores.load() == codes.LOADED
     saved.power_on()
     assert stores.corrector.state == saved.state
 
@@ -68,7 +68,7 @@ def test_a_program_that_began_anew_on_a_chip_that_kept_its_power_keeps_its_offse
     memory, saved, same
 ):
     stores = blank(memory)
-    assert stores.load(same) == store.LOADED
+    assert stores.load(same) == codes.LOADED
     saved.power_on(same)
     assert stores.corrector.state == saved.state
 
@@ -77,7 +77,7 @@ def test_a_storage_that_fails_is_said(memory, saved):
     memory.broken = True
     stores = LearnedStore(memory, BINDING, saved)
     assert (stores.save(), stores.save_model(MODEL)) == (False, False)
-    assert (stores.load(), stores.load_model()) == (store.UNREADABLE, b"")
+    assert (stores.load(), stores.load_model()) == (codes.UNREADABLE, b"")
 
 
 def test_state_is_bound_to_every_word_of_the_settings(memory, saved):
@@ -87,9 +87,9 @@ def test_state_is_bound_to_every_word_of_the_settings(memory, saved):
     )
     for word in (0, len(settings) - 1):
         settings[word] ^= 1
-        assert LearnedStore(memory, BINDING, saved).load() == store.OTHER_BINDING
+        assert LearnedStore(memory, BINDING, saved).load() == codes.OTHER_BINDING
         settings[word] ^= 1
-    assert LearnedStore(memory, BINDING, saved).load() == store.LOADED
+    assert LearnedStore(memory, BINDING, saved).load() == codes.LOADED
 
 
 @pytest.mark.parametrize(("base", "pitch"), [(0, 0), (100, 0), (0, 4096), (4096, 4096)])
@@ -109,7 +109,7 @@ def test_state_and_model_have_two_slots_each_one_after_the_other(saved, base, pi
 
 @pytest.mark.parametrize("options", [{"binding": bytes([0x70, 0, 0, 3])}, {"still_dps": 0.2}])
 def test_state_of_another_chip_or_other_settings_is_refused(memory, saved, options):
-    assert blank(memory, **options).load() == store.OTHER_BINDING
+    assert blank(memory, **options).load() == codes.OTHER_BINDING
 
 
 @pytest.mark.parametrize(
@@ -135,12 +135,12 @@ def test_a_refusal_names_what_differs(memory, saved, binding, sensor, options, n
 def test_without_the_part_that_names_it_a_refusal_says_the_reason_alone(memory, saved, monkeypatch):
     monkeypatch.setitem(sys.modules, "zerorate.storage.differing", None)
     stores = LearnedStore(memory, bytes([0x70, 0, 0, 3]), Corrector(Sensor(odr_hz=100.0)))
-    assert stores.in_words(stores.load()) == store.REASONS[store.OTHER_BINDING]
+    assert stores.in_words(stores.load()) == reasons.REASONS[codes.OTHER_BINDING]
 
 
 @pytest.mark.parametrize("options", [{"document": True}, {"every": True}, {"short": 2}])
 def test_state_of_other_estimators_is_refused(memory, saved, options):
-    assert blank(memory, **options).load() not in (store.LOADED, store.EMPTY)
+    assert blank(memory, **options).load() not in (codes.LOADED, codes.EMPTY)
 
 
 @pytest.mark.parametrize("size", [64, 255, 256, 0x150, MODEL_BYTES - 1, MODEL_BYTES])
@@ -169,7 +169,7 @@ def test_a_cut_in_the_writing_of_one_does_not_cost_the_other(memory, saved, cut)
             write()
         memory.cut_after = None
     again = blank(memory)
-    assert again.load() == store.LOADED
+    assert again.load() == codes.LOADED
     assert again.load_model() == MODEL
 
 

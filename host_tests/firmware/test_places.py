@@ -3,7 +3,7 @@
 import os
 
 import pytest
-from zerorate.storage import store as stores
+from zerorate.storage import codes
 from zerorate.storage.block_device import BlockDeviceStorage
 from zerorate.storage.places import FileStorage
 
@@ -18,10 +18,10 @@ class TestFile:
     def test_what_is_saved_is_loaded(self, path):
         for payload in (OLD, NEW, OLD):
             assert make_store(FileStorage(path)).save(payload)
-        assert loaded(FileStorage(path)) == (stores.LOADED, OLD)
+        assert loaded(FileStorage(path)) == (codes.LOADED, OLD)
 
     def test_a_missing_file_is_empty(self, path):
-        assert loaded(FileStorage(path)) == (stores.EMPTY, BLANK)
+        assert loaded(FileStorage(path)) == (codes.EMPTY, BLANK)
 
     def test_a_file_cut_short_at_any_byte_is_never_wrong(self, path):
         store = make_store(FileStorage(path))
@@ -32,12 +32,12 @@ class TestFile:
             path.write_bytes(whole[:length])
             reason, payload = loaded(FileStorage(path))
             if length >= store.slot_bytes:
-                assert (reason, payload) == (stores.LOADED, OLD)
+                assert (reason, payload) == (codes.LOADED, OLD)
             else:
-                assert reason in (stores.EMPTY, stores.DAMAGED) and payload == BLANK
+                assert reason in (codes.EMPTY, codes.DAMAGED) and payload == BLANK
 
     def test_a_folder_in_its_place_is_a_reason(self, tmp_path):
-        assert loaded(FileStorage(tmp_path)) == (stores.UNREADABLE, BLANK)
+        assert loaded(FileStorage(tmp_path)) == (codes.UNREADABLE, BLANK)
         assert not make_store(FileStorage(tmp_path)).save(OLD)
 
     @pytest.mark.parametrize(
@@ -109,7 +109,7 @@ def test_on_flash_each_slot_has_an_erase_block_of_its_own():
         storage = BlockDeviceStorage(flash, 5, FakeFlash.BLOCK)
         assert make_store(storage, pitch=FakeFlash.BLOCK).save(payload)
     storage = BlockDeviceStorage(flash, 5, FakeFlash.BLOCK)
-    assert loaded(storage, pitch=FakeFlash.BLOCK) == (stores.LOADED, OLD)
+    assert loaded(storage, pitch=FakeFlash.BLOCK) == (codes.LOADED, OLD)
     assert flash.erased == [5, 6, 5]
 
 

@@ -5,6 +5,7 @@ from array import array
 from binascii import crc32
 
 import pytest
+from zerorate.storage import codes
 from zerorate.storage import store as stores
 from zerorate.storage.store import Store
 from zerorate_fakes.memory import FakeMemory
@@ -34,7 +35,7 @@ def test_a_record_is_as_it_is_documented_to_the_byte(size, sequence):
     before, after = (bytes((3 * i + add) & 0xFF for i in range(size)) for add in (1, 2))
     memory = image(record(before, sequence), pitch=1024)
     store = Store(memory, BINDING, size, pitch=1024)
-    assert (store.sequence, store.loaded_version, store.saves, store.failures) == (-1, -1, 0, 0)
+    assert (store.sequence, store.saves, store.failures) == (-1, 0, 0)
     assert store.slot_bytes == size + 24
     assert store.save(after)
     assert memory.bytes[:1024].rstrip(b"\xff") == record(before, sequence).rstrip(b"\xff")
@@ -55,7 +56,7 @@ def test_the_first_record_has_sequence_one_and_words_are_little_endian(
     assert store.save(words)
     little = b"".join(word.to_bytes(4, "little", signed=True) for word in words)
     assert memory.bytes[: store.slot_bytes] == record(little, version=7)
-    assert loaded(memory, version=7) == (stores.LOADED, words)
+    assert loaded(memory, version=7) == (codes.LOADED, words)
 
 
 @pytest.mark.parametrize("byteorder", ["little", "big"])
@@ -79,37 +80,37 @@ OTHER = {
 @pytest.mark.parametrize(
     ("slots", "reason", "payload"),
     [
-        ((ZEROS, ONES), stores.EMPTY, BLANK),
-        ((ZEROS, ZEROS), stores.EMPTY, BLANK),
-        ((ONES, ONES), stores.EMPTY, BLANK),
-        ((ONES, BAD), stores.DAMAGED, BLANK),
-        ((BAD, ONES), stores.DAMAGED, BLANK),
-        ((b"\x00\x00\xff" + ONES[3:], ONES), stores.DAMAGED, BLANK),
-        ((b"\x00\xff\xff" + ONES[3:], ONES), stores.DAMAGED, BLANK),
-        ((b"\xff\x00\x00" + ZEROS[3:], ONES), stores.DAMAGED, BLANK),
-        ((b"\x00\xff\x00" + ONES[3:], ONES), stores.DAMAGED, BLANK),
-        ((b"\xff\xff\x00" + ONES[3:], ONES), stores.DAMAGED, BLANK),
-        ((b"\xff\x00\xff" + ONES[3:], ONES), stores.DAMAGED, BLANK),
-        ((b"\x01\x01\x01" + ONES[3:], ONES), stores.DAMAGED, BLANK),
-        ((b"\xfe\xfe\xfe" + ONES[3:], ONES), stores.DAMAGED, BLANK),
-        ((b"\x00\x00\x00" + ONES[3:], ONES), stores.EMPTY, BLANK),
-        ((record(OLD, 1), record(NEW, 2)), stores.LOADED, NEW),
-        ((record(NEW, 2), record(OLD, 1)), stores.LOADED, NEW),
-        ((record(OLD, 0), ONES), stores.LOADED, OLD),
-        ((ONES, record(OLD, 0)), stores.LOADED, OLD),
-        ((record(OLD, 5), record(NEW, 5)), stores.LOADED, OLD),
-        ((record(OLD, 0xFF), record(NEW, 0x100)), stores.LOADED, NEW),
-        ((record(OLD, 0xFF00), record(NEW, 0x10000)), stores.LOADED, NEW),
-        ((record(OLD, 0xFF0000), record(NEW, 0x1000000)), stores.LOADED, NEW),
-        ((record(OLD, 1), OTHER["chip"]), stores.LOADED, OLD),
-        ((OTHER["version"], record(OLD, 10)), stores.LOADED, OLD),
-        ((OTHER["chip"], BAD), stores.OTHER_BINDING, BLANK),
-        ((BAD, OTHER["chip"]), stores.OTHER_BINDING, BLANK),
-        ((OTHER["version"], record(NEW, 8, binding=b"\x70")), stores.OTHER_VERSION, BLANK),
-        ((OTHER["version"], record(NEW, 10, binding=b"\x70")), stores.OTHER_BINDING, BLANK),
-        ((record(NEW, 8, binding=b"\x70"), OTHER["form"]), stores.OTHER_VERSION, BLANK),
-        ((OTHER["form"], ONES), stores.OTHER_VERSION, BLANK),
-        ((record(OLD)[:-1] + b"\x00", ONES), stores.DAMAGED, BLANK),
+        ((ZEROS, ONES), codes.EMPTY, BLANK),
+        ((ZEROS, ZEROS), codes.EMPTY, BLANK),
+        ((ONES, ONES), codes.EMPTY, BLANK),
+        ((ONES, BAD), codes.DAMAGED, BLANK),
+        ((BAD, ONES), codes.DAMAGED, BLANK),
+        ((b"\x00\x00\xff" + ONES[3:], ONES), codes.DAMAGED, BLANK),
+        ((b"\x00\xff\xff" + ONES[3:], ONES), codes.DAMAGED, BLANK),
+        ((b"\xff\x00\x00" + ZEROS[3:], ONES), codes.DAMAGED, BLANK),
+        ((b"\x00\xff\x00" + ONES[3:], ONES), codes.DAMAGED, BLANK),
+        ((b"\xff\xff\x00" + ONES[3:], ONES), codes.DAMAGED, BLANK),
+        ((b"\xff\x00\xff" + ONES[3:], ONES), codes.DAMAGED, BLANK),
+        ((b"\x01\x01\x01" + ONES[3:], ONES), codes.DAMAGED, BLANK),
+        ((b"\xfe\xfe\xfe" + ONES[3:], ONES), codes.DAMAGED, BLANK),
+        ((b"\x00\x00\x00" + ONES[3:], ONES), codes.EMPTY, BLANK),
+        ((record(OLD, 1), record(NEW, 2)), codes.LOADED, NEW),
+        ((record(NEW, 2), record(OLD, 1)), codes.LOADED, NEW),
+        ((record(OLD, 0), ONES), codes.LOADED, OLD),
+        ((ONES, record(OLD, 0)), codes.LOADED, OLD),
+        ((record(OLD, 5), record(NEW, 5)), codes.LOADED, OLD),
+        ((record(OLD, 0xFF), record(NEW, 0x100)), codes.LOADED, NEW),
+        ((record(OLD, 0xFF00), record(NEW, 0x10000)), codes.LOADED, NEW),
+        ((record(OLD, 0xFF0000), record(NEW, 0x1000000)), codes.LOADED, NEW),
+        ((record(OLD, 1), OTHER["chip"]), codes.LOADED, OLD),
+        ((OTHER["version"], record(OLD, 10)), codes.LOADED, OLD),
+        ((OTHER["chip"], BAD), codes.OTHER_BINDING, BLANK),
+        ((BAD, OTHER["chip"]), codes.OTHER_BINDING, BLANK),
+        ((OTHER["version"], record(NEW, 8, binding=b"\x70")), codes.OTHER_VERSION, BLANK),
+        ((OTHER["version"], record(NEW, 10, binding=b"\x70")), codes.OTHER_BINDING, BLANK),
+        ((record(NEW, 8, binding=b"\x70"), OTHER["form"]), codes.OTHER_VERSION, BLANK),
+        ((OTHER["form"], ONES), codes.OTHER_VERSION, BLANK),
+        ((record(OLD)[:-1] + b"\x00", ONES), codes.DAMAGED, BLANK),
     ],
 )  # fmt: skip
 def test_of_two_slots_the_newest_that_fits_is_loaded_or_it_is_said_why_not(slots, reason, payload):
@@ -135,17 +136,17 @@ def test_a_save_goes_to_the_slot_that_is_not_the_newest(slots, written):
     assert make_store(memory).save(OLD)
     changed = {at // 72 for at in range(144) if memory.bytes[at] != before[at]}
     assert changed == {written}
-    assert loaded(memory) == (stores.LOADED, OLD)
+    assert loaded(memory) == (codes.LOADED, OLD)
 
 
 @pytest.mark.parametrize(
     ("size", "version", "reason"),
     [
-        (20, 1, stores.OTHER_SIZE),
-        (20, 2, stores.OTHER_VERSION),
-        (0x12C, 1, stores.OTHER_SIZE),
-        (512 - 24, 1, stores.OTHER_SIZE),
-        (512 - 23, 1, stores.DAMAGED),
+        (20, 1, codes.OTHER_SIZE),
+        (20, 2, codes.OTHER_VERSION),
+        (0x12C, 1, codes.OTHER_SIZE),
+        (512 - 24, 1, codes.OTHER_SIZE),
+        (512 - 23, 1, codes.DAMAGED),
     ],
 )
 def test_a_whole_record_of_another_size_is_known_up_to_the_pitch(size, version, reason):
@@ -153,7 +154,7 @@ def test_a_whole_record_of_another_size_is_known_up_to_the_pitch(size, version, 
     other = record(other[20 : 20 + size], version=version)
     assert loaded(image(other, pitch=512), pitch=512) == (reason, BLANK)
     other = other[:-1] + bytes([other[-1] ^ 1])
-    assert loaded(image(other, pitch=512), pitch=512) == (stores.DAMAGED, BLANK)
+    assert loaded(image(other, pitch=512), pitch=512) == (codes.DAMAGED, BLANK)
 
 
 @pytest.mark.parametrize("slots", [(), (record(OLD, 1),), (record(OLD, 1), record(NEW, 2))])

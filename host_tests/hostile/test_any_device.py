@@ -7,6 +7,7 @@ from html.parser import HTMLParser
 
 from hypothesis import given
 from hypothesis import strategies as st
+from zerorate.storage import codes
 from zerorate.storage import store as stores
 from zerorate_fakes.memory import FakeMemory
 from zerorate_tools.boards import port
@@ -86,8 +87,8 @@ def test_any_bytes_in_a_store_behind_a_right_beginning(noise, start, version):
     memory.bytes[:160] = noise
     memory.bytes[72 : 76 + len(start)] = b"ZRS\x01" + start
     store = stores.Store(memory, b"\x68\0\0\3", 48, version)
-    assert store.load(payload) != stores.LOADED and set(payload) == {99}
-    assert store.save(array("i", range(12))) and store.load(payload) == stores.LOADED
+    assert store.load(payload) != codes.LOADED and set(payload) == {99}
+    assert store.save(array("i", range(12))) and store.load(payload) == codes.LOADED
 
 
 class Elements(HTMLParser):

@@ -61,6 +61,7 @@ def lines(stem, used):
         own = codes.owner == stem
         pairs = [(name if own else f"_{name}", codes.numbers[name]) for name in codes.numbers]
         yield from group(codes.title, pairs, {name for name, _ in pairs} if own else used)
+        used = used - {name for name, _ in pairs}  # another list's name has the same number there
         if codes.said and codes.said_in[0] == stem:
             yield f"{BEGIN}{codes.title}, in words"
             yield from (f"{codes.said_in[1]} = (", *spoken(codes.said.values()), ")")

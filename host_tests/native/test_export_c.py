@@ -9,7 +9,7 @@ from array import array
 import numpy as np
 import pytest
 from zerorate import Corrector, Sensor
-from zerorate.storage import store as reasons
+from zerorate.storage import codes
 from zerorate.storage.crc32 import checksum
 from zerorate.storage.learned_store import LearnedStore
 from zerorate_fakes.memory import FakeMemory, PowerCut
@@ -196,9 +196,9 @@ def test_records_are_the_same_to_the_byte(both):
 def test_a_power_on_begins_with_the_same_state_and_goes_on_alike(library, both, same):
     _, c = both
     assert c.save()
-    assert alike(library, c.memory, same) == reasons.LOADED
+    assert alike(library, c.memory, same) == codes.LOADED
     python, again = in_python(c.memory), InC(library, c.memory)
-    assert python.load(same) == again.load(same) == reasons.LOADED
+    assert python.load(same) == again.load(same) == codes.LOADED
     for sample in rested(2, 500):
         again.update(sample, 10000)
         python.corrector.update(sample, 10000)
@@ -216,7 +216,7 @@ def test_a_cut_at_any_byte_leaves_what_was_stored_before(library, both):
         memory.cut_after = cut
         assert not writer.save()
         memory.cut_after = None
-        assert alike(library, memory) == reasons.LOADED
+        assert alike(library, memory) == codes.LOADED
 
 
 def test_any_bit_turned_is_said_as_by_python(library, both):
@@ -246,16 +246,16 @@ def test_a_turned_word_with_a_right_checksum_is_refused_where_python_refuses(lib
         checksum(bytes(memory.bytes[: c.size - 4]), check)
         memory.bytes[c.size - 4 : c.size] = check
         seen.add(alike(library, memory))
-    assert seen == {reasons.LOADED, reasons.OUT_OF_RANGE}
+    assert seen == {codes.LOADED, codes.OUT_OF_RANGE}
 
 
 def test_each_reason_is_said_as_by_python(library, both):
     _, c = both
-    assert alike(library, FakeMemory(8192)) == reasons.EMPTY
+    assert alike(library, FakeMemory(8192)) == codes.EMPTY
     assert c.save()
     other = InC(library, c.memory, bytes([0x70, 0, 0, 3]))
-    assert other.load() == reasons.OTHER_BINDING
-    for at, reason in ((4, reasons.OTHER_VERSION), (3, reasons.OTHER_VERSION)):
+    assert other.load() == codes.OTHER_BINDING
+    for at, reason in ((4, codes.OTHER_VERSION), (3, codes.OTHER_VERSION)):
         memory = FakeMemory(8192)
         memory.bytes[:] = c.memory.bytes
         memory.bytes[at] ^= 4
@@ -264,4 +264,4 @@ def test_each_reason_is_said_as_by_python(library, both):
         memory.bytes[c.size - 4 : c.size] = check
         assert alike(library, memory) == reason
     c.memory.broken = True
-    assert (c.load(), c.save()) == (reasons.UNREADABLE, False)
+    assert (c.load(), c.save()) == (codes.UNREADABLE, False)

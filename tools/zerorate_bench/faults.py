@@ -3,7 +3,8 @@
 from array import array
 
 from zerorate.corrector import Corrector
-from zerorate.storage.store import LOADED, Store
+from zerorate.storage.codes import LOADED
+from zerorate.storage.store import Store
 from zerorate_fakes.memory import FakeMemory, PowerCut
 
 from .bus_faults import FAULTS, run_fault

@@ -18,7 +18,7 @@ _OF_SENSOR = ("odr_hz", "gyro_lsb_per_dps", "accel_lsb_per_g", "temp_lsb_per_deg
 def differing(store, corrector):
     """Return in words why the newest record of store, a LearnedStore's, is of another binding."""
     try:
-        record = store.newest()
+        record = newest(store)
     except OSError as error:
         return "what is stored cannot be read again: %s" % error
     for i in range(4):
@@ -30,6 +30,14 @@ def differing(store, corrector):
     unpack(record, -_HEADER - store.size, stored, 4 * len(own))
     names = moved_by(corrector.sensor, [i for i in range(len(own)) if own[i] != stored[i]])
     return "stored with another " + (" and another ".join(names) or "rule of learning")
+
+
+def newest(store):
+    """Return the record of the newest whole slot, of whatever binding. Raises OSError."""
+    record = bytearray(store.slot_bytes)
+    store._find(record)
+    store._judge(store._newest, record)
+    return record
 
 
 def moved_by(sensor, words):

@@ -6,7 +6,7 @@ a cut in the writing of one never costs the other.
 
 from ..machine_code import unload
 from .crc32 import checksum
-from .store import LOADED, OTHER_BINDING, REASONS, Store, packed, slot_bytes
+from .store import Store, packed, slot_bytes
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -16,6 +16,10 @@ if TYPE_CHECKING:
 
 # layout: names that a board's own compiler reads
 const = int
+# layout: What the reader of model.bin says
+_LOADED = const(0)
+# layout: What a store says
+_OTHER_BINDING = const(3)
 # layout: end
 MODEL_BYTES = const(2048)
 _STATE_VERSION = const(2)
@@ -42,9 +46,7 @@ class LearnedStore:
         self.corrector = corrector
         size = 4 * len(corrector.state)
         bound = bytes(binding) + _fingerprint(corrector.settings)
-        self.state = Store(
-            storage, bound, size, _STATE_VERSION, (), base, pitch, corrector.settings
-        )
+        self.state = Store(storage, bound, size, _STATE_VERSION, base, pitch, corrector.settings)
         base += 2 * (pitch or self.state.slot_bytes)
         self._model_place = (storage, binding, base, pitch)
         self.end = base + 2 * (pitch or slot_bytes(MODEL_BYTES))
@@ -67,15 +69,19 @@ class LearnedStore:
 
         A board names that only where it has the part `differing`.
         """
-        if reason != OTHER_BINDING:
-            return REASONS[reason]
-        try:
-            from .differing import differing
-        except ImportError:
-            return REASONS[reason]
-        text = differing(self.state, self.corrector)
-        unload("zerorate.storage", "differing")
-        return text
+        if reason == _OTHER_BINDING:
+            try:
+                from .differing import differing
+
+                text = differing(self.state, self.corrector)
+                unload("zerorate.storage", "differing")
+                return text
+            except ImportError:
+                pass
+        from .reasons import REASONS
+
+        unload("zerorate.storage", "reasons")
+        return REASONS[reason]
 
     def save(self, payload: "Any" = None) -> bool:
         """Write what the corrector has learned; False when the storage failed.
@@ -87,7 +93,7 @@ class LearnedStore:
     def load_model(self) -> bytes:
         """The bytes of the effect model, for EffectModel.load, or b"" (see model.load's reason)."""
         padded = bytearray(MODEL_BYTES)
-        if self.model_store().load(padded) != LOADED:
+        if self.model_store().load(padded) != _LOADED:
             return b""
         return bytes(padded[: padded[_AT_MODEL_SIZE] | padded[_AT_MODEL_SIZE + 1] << 8])
 

@@ -12,31 +12,19 @@ from .crc32 import checksum
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from typing import Any
 
 # layout: names that a board's own compiler reads
 const = int
+# layout: What the reader of model.bin says
+_LOADED = const(0)
+_DAMAGED = const(2)
+_OTHER_VERSION = const(4)
+_UNREADABLE = const(6)
 # layout: What a store says
-LOADED = const(0)
-EMPTY = const(1)
-DAMAGED = const(2)
-OTHER_BINDING = const(3)
-OTHER_VERSION = const(4)
-OTHER_SIZE = const(5)
-UNREADABLE = const(6)
-OUT_OF_RANGE = const(7)
-# layout: What a store says, in words
-REASONS = (
-    "loaded",
-    "nothing was ever stored",
-    "neither slot is whole",
-    "stored for another chip, range, filter or other settings",
-    "stored by another version",
-    "stored with another size",
-    "the storage cannot be read",
-    "a word of what was stored cannot be",
-)
+_EMPTY = const(1)
+_OTHER_BINDING = const(3)
+_OTHER_SIZE = const(5)
 # layout: end
 _FORMAT = const(1)
 _AT_FORMAT = const(3)
@@ -55,11 +43,10 @@ class Store:
     """Payloads of size bytes in two slots of storage (see storage.py).
 
     binding is up to 8 bytes naming chip, range and filter (MPU6050.binding); version is that of
-    the payload, 0..255, and older the versions of the same size that load takes besides. base is
-    the first byte used, pitch the distance of the slots (an erase block of flash; default: no
-    gap). payload is array('i') of size / 4 items, or bytearray (bytes to save) of size; goes_with,
-    an array('i'), is written behind it, and not loaded. Where storage has read_pieces and
-    write_pieces, as FileStorage has, saving makes no record.
+    the payload, 0..255. base is the first byte used, pitch the distance of the slots (an erase
+    block of flash; default: no gap). payload is array('i') of size / 4 items, or bytearray (bytes
+    to save) of size; goes_with, an array('i'), is written behind it, and not loaded. Where storage
+    has read_pieces and write_pieces, as FileStorage has, saving makes no record.
 
     Raises ValueError for a binding, version, size or pitch that does not fit.
     """
@@ -70,7 +57,6 @@ class Store:
         binding: bytes,
         size: int,
         version: int = 1,
-        older: "Sequence[int]" = (),
         base: int = 0,
         pitch: int = 0,
         goes_with: "Any" = (),
@@ -86,11 +72,9 @@ class Store:
         self.binding = bytes(binding) + bytes(8 - len(binding))
         self.size = size
         self.version = version
-        self.loaded_version = -1
         self.sequence = -1
         self.saves = 0
         self.failures = 0
-        self._older = older
         self._base = base
         self._pitch = pitch or self.slot_bytes
         self._header = bytearray(_HEADER)
@@ -100,7 +84,7 @@ class Store:
         """Fill payload from the newest whole slot that fits; LOADED, or why it is left as it was.
 
         A storage that reads otherwise once that slot was found leaves payload all 0, UNREADABLE.
-        Never raises for what the storage holds or does. REASONS says each result in words.
+        Never raises for what the storage holds or does. reasons.REASONS says each result in words.
         """
         self._require(payload)
         # read again straight into payload: a record beside it is more than a small heap has left
@@ -110,21 +94,13 @@ class Store:
             slot, reason = self._find(piece)
             if slot < 0:
                 return reason
-            if self._judge(slot, piece, payload) == LOADED:
-                self.loaded_version = self._header[_AT_VERSION]
-                return LOADED
+            if self._judge(slot, piece, payload) == _LOADED:
+                return _LOADED
         except OSError:
             pass
         for i in range(len(payload) if slot >= 0 else 0):
             payload[i] = 0
-        return UNREADABLE
-
-    def newest(self) -> bytearray:
-        """Return the record of the newest whole slot, of whatever binding. Raises OSError."""
-        record = bytearray(self.slot_bytes)
-        self._find(record)
-        self._judge(self._newest, record)
-        return record
+        return _UNREADABLE
 
     def save(self, payload: "Any") -> bool:
         """Write payload to the older slot and read it back; False when that failed."""
@@ -135,7 +111,7 @@ class Store:
             slot = 1 if self._newest == 0 else 0
             sequence = self.sequence + 1
             self._write(slot, payload, sequence)
-            written = self._judge(slot, piece) == LOADED and self._sequence() == sequence
+            written = self._judge(slot, piece) == _LOADED and self._sequence() == sequence
         except OSError:
             written = False
         if not written:
@@ -152,18 +128,18 @@ class Store:
 
     def _find(self, piece):
         """(slot to load or -1, reason); notes which slot is the newest whole one of any kind."""
-        reason = EMPTY
+        reason = _EMPTY
         whole = []
         for slot in range(2):
             judged = self._judge(slot, piece)
-            if judged in (EMPTY, DAMAGED):
+            if judged in (_EMPTY, _DAMAGED):
                 reason = max(reason, judged)
             else:
                 whole.append((self._sequence(), -slot, judged))  # of two alike the first
         whole.sort()
         self.sequence, newest, reason = whole[-1] if whole else (0, 1, reason)
         self._newest = -newest
-        fits = [-slot for _, slot, judged in whole if judged == LOADED]
+        fits = [-slot for _, slot, judged in whole if judged == _LOADED]
         return fits[-1] if fits else -1, reason
 
     def _judge(self, slot, piece, payload=None):
@@ -173,20 +149,20 @@ class Store:
         header = self._header
         if header[:_AT_FORMAT] != b"ZRS":
             blank = header[0] in (0x00, 0xFF) and header[0] == header[1] == header[2]
-            return EMPTY if blank else DAMAGED
+            return _EMPTY if blank else _DAMAGED
         size = header[_AT_SIZE] | header[_AT_SIZE + 1] << 8
         if size != self._all:
             whole = slot_bytes(size) <= self._pitch and self._is_whole(at, slot_bytes(size), piece)
         if not whole:
-            return DAMAGED
+            return _DAMAGED
         version = header[_AT_VERSION]
         if size != self._all:  # a record of another layout
-            return OTHER_VERSION if version != self.version else OTHER_SIZE
+            return _OTHER_VERSION if version != self.version else _OTHER_SIZE
         if header[_AT_FORMAT] != _FORMAT:
-            return OTHER_VERSION
+            return _OTHER_VERSION
         if header[_AT_BINDING:] != self.binding:
-            return OTHER_BINDING
-        return LOADED if version == self.version or version in self._older else OTHER_VERSION
+            return _OTHER_BINDING
+        return _LOADED if version == self.version else _OTHER_VERSION
 
     def _is_whole(self, at, length, piece, payload=None):
         """Whether the record from at on is; its header is kept, and payload, if any, filled."""

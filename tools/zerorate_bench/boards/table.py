@@ -89,7 +89,7 @@ numbers in every mode, to the last bit. `zerorate bench boards` compares it if i
 
 The second program of [pico.md](pico.md) runs in {least_heap:,} bytes of heap; the bench's limit is
 49,152 bytes. Some 46,000 are in use once it runs. The table shows `gc.mem_alloc()`
-behind each, after a collection. Some 5,200
+behind each, after a collection. Some 5,000
 bytes of it are names (`micropython.qstr_info()`). MicroPython keeps a name for good. So `zerorate
 flash` sends private names as `_a`, `_b`, the same few in every file, and another module's
 constants as numbers.

@@ -16,9 +16,14 @@ from .parts import PARTS, part_files
 # Modules that no program imports: most are let go as soon as an object is made.
 _INNER = frozenset(
     "settings trying identity parts bus_recovery machine_code crc32 plain_crc32 soundness explain "
-    "explain_sources differing ratio data_registers bias block copying estimators fit fixed "
-    "histogram recent stillness".split()
+    "explain_sources differing ratio data_registers bias block copying estimators fit "
+    "fixed histogram recent stillness".split()
 )
+# Modules that are read once and let go: what they call the words of a user is to go with them.
+_LET_GO = ("settings",)
+_WORDS = "_words"
+# A string that is no longer becomes a name that MicroPython keeps.
+_LONGEST_KEPT = 10
 # Names that every MicroPython has in its own tables: as parameters they cost nothing.
 _PARAMETERS = (
     *("key", "value", "index", "items", "args", "sep", "id", "main", "keys", "values", "lower"),
@@ -45,6 +50,8 @@ def shortened(path: Path, text: str) -> str:
         if isinstance(node, ast.FunctionDef) and _is_inner(node.name, path):
             _rename(node, _parameters(node, own), ast.Name, ast.arg)
     _rename(tree, short_names())
+    if path.stem in _LET_GO:
+        _set_words_apart(tree)
     return ast.unparse(tree)
 
 
@@ -81,6 +88,30 @@ def _put_in_constants(tree: ast.Module, path: Path) -> None:
             values |= {alias.name: there[alias.name] for alias in node.names if alias.name in there}
             node.names = [alias for alias in node.names if alias.name not in there]
     _PutIn(values).visit(tree)
+
+
+def _set_words_apart(tree: ast.Module) -> None:
+    """Short strings as parts of one long one: MicroPython keeps each short string for good."""
+    apart = _Apart()
+    tree.body[1:] = [apart.visit(node) for node in tree.body[1:]]
+    text = ast.Constant(" ".join(apart.words))
+    split = ast.Call(ast.Attribute(text, "split", ast.Load()), [], [])
+    tree.body.insert(1, ast.Assign([ast.Name(_WORDS, ast.Store())], split, lineno=0))
+    ast.fix_missing_locations(tree)
+
+
+class _Apart(ast.NodeTransformer):
+    def __init__(self) -> None:
+        self.words: list[str] = []
+
+    def visit_Constant(self, node: ast.Constant) -> ast.expr:
+        word = node.value
+        if not isinstance(word, str) or not word.isidentifier() or len(word) > _LONGEST_KEPT:
+            return node
+        if word not in self.words:
+            self.words.append(word)
+        place = ast.Constant(self.words.index(word))
+        return ast.Subscript(ast.Name(_WORDS, ast.Load()), place, ast.Load())
 
 
 class _PutIn(ast.NodeTransformer):

@@ -10,8 +10,8 @@ from pathlib import Path
 from zerorate import Corrector, Sensor
 from zerorate.model import EffectModel
 from zerorate.storage.learned_store import _STATE_VERSION
+from zerorate.storage.reasons import REASONS
 from zerorate.storage.soundness import _NEAR_Q8
-from zerorate.storage.store import REASONS
 
 from zerorate_tools import __version__
 from zerorate_tools.layout import (

@@ -86,8 +86,8 @@ MODEL = Codes(
     },
 )
 STORE = Codes(
-    *("What a store says", "store"),
-    said_in="store REASONS",
+    *("What a store says", "codes"),
+    said_in="reasons REASONS",
     said={
         "LOADED": "loaded",
         "EMPTY": "nothing was ever stored",

@@ -11,9 +11,10 @@ from typing import Any
 
 from zerorate import Corrector, Sensor
 from zerorate.checked import CheckedCorrector
+from zerorate.storage.codes import LOADED
 from zerorate.storage.learned_store import LearnedStore
+from zerorate.storage.reasons import REASONS
 from zerorate.storage.save_schedule import SaveSchedule
-from zerorate.storage.store import LOADED, REASONS
 from zerorate_i2c.fifo import EMPTY, Fifo
 
 from ..errors import ZerorateError, os_error_in_words
