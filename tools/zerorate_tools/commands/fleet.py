@@ -16,9 +16,12 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         "over the same DIR, it does only what is left.",
     )
     parser.add_argument(
-        "recordings", nargs="+", metavar="RECORDING", help="files, patterns, or folders of them"
+        "recordings",
+        nargs="+",
+        metavar="RECORDING",
+        help="files, patterns, or folders of them; s3://, gs:// too",
     )
-    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder to write")
+    parser.add_argument("--out", type=_folder, required=True, metavar="DIR", help="folder to write")
     parser.add_argument(
         "--job", choices=("replay", "close"), default="replay", help="run for each (replay)"
     )
@@ -64,6 +67,12 @@ def run(arguments: argparse.Namespace) -> int:
         print(in_words(done))
         print(f"written: {out}")
     return 0 if done.report["sessions"] else 1
+
+
+def _folder(text: str) -> Path:
+    if "://" in text:
+        raise argparse.ArgumentTypeError(f"{text} is no folder of this machine; name one")
+    return Path(text)
 
 
 def _count(text: str) -> int:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import os
+import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
@@ -21,6 +23,7 @@ MOST_DEVICES = 64
 MOST_BYTES = 64 << 20
 _TASKS_A_WORKER = 8
 _CONNECT_S = 10
+_POLL_S = 0.1
 
 
 def in_batches(
@@ -87,20 +90,38 @@ def _client_of(distributed, address: str) -> Client:
         do = "name it as `dask scheduler` prints it, tcp://HOST:8786"
         raise ZerorateError(f"{address}: no Dask scheduler answers there; {do}") from error
     try:
-        if not client.wait_for_workers(1, timeout=_CONNECT_S):
-            client.submit(_knows_zerorate, pure=False).result()
-    except TimeoutError as error:
+        client.wait_for_workers(1, timeout=_CONNECT_S)
+        _check_workers(client, address)
+    except asyncio.TimeoutError as error:  # another one than Python's, before 3.11
         client.close()
         raise ZerorateError(f"{address}: no worker there; start some: dask worker") from error
-    except ImportError as error:
+    except ZerorateError:
         client.close()
-        do = "install zerorate[tools,fleet] there"
-        raise ZerorateError(f"{address}: its workers lack {error.name}; {do}") from error
+        raise
     return client
 
 
-def _knows_zerorate() -> None:
-    from . import job  # noqa: F401
+#: Of builtins alone: a worker without zerorate cannot even load a function of it.
+_LACKS = """next((n for n in ("numpy", "pandas", "pyarrow", "zerorate_tools", "zerorate")
+if __import__("importlib.util").util.find_spec(n) is None), "")"""
+
+
+def _check_workers(client: Client, address: str) -> None:
+    """Raise ZerorateError naming a worker that does not answer, or lacks what the jobs need.
+
+    They are asked beside their work, so one that is busy for long answers, too.
+    """
+    for worker in client.nthreads():
+        try:
+            lacks = client.run(eval, _LACKS, workers=[worker], callback_timeout=_CONNECT_S).get(
+                worker
+            )
+        except (OSError, asyncio.TimeoutError) as error:
+            do = "end it there, then start this command again"
+            raise ZerorateError(f"{address}: worker {worker} does not answer; {do}") from error
+        if lacks:
+            do = "pip install 'zerorate[tools,fleet]' there"
+            raise ZerorateError(f"{address}: worker {worker} lacks {lacks}; {do}")
 
 
 def size_of(client: Client) -> int:
@@ -140,7 +161,7 @@ def run_all(
         return True
 
     alone = go_on()
-    for future in finished:
+    for future in _each(client, finished):
         batch = under_way.pop(future.key)
         error = future.exception() if future.status == "error" else None
         blamed = isinstance(error, KilledWorker) and not alone
@@ -152,3 +173,29 @@ def run_all(
             yield batch, error if error is not None else future.result()
         future.release()
         alone = go_on()
+
+
+def _each(client: Client, finished: Any) -> Iterator[Any]:
+    """Futures as they finish. Raises ZerorateError where a cluster of others has lost its last
+    worker, or its scheduler; one made here starts workers anew by itself."""
+    seen: list[str] = []
+    last_s = time.monotonic()
+    address = client.scheduler.address if client.scheduler is not None else ""
+    while finished.count():
+        if finished.has_ready():
+            future = next(finished)
+            if future.cancelled():  # as all are when the scheduler is lost
+                do = "start it again, then this command: what was done is kept"
+                raise ZerorateError(f"{address}: the scheduler is gone; {do}")
+            yield future
+            continue
+        time.sleep(_POLL_S)
+        if client.cluster is not None:
+            continue
+        workers = list(client.nthreads()) if client.status == "running" else []
+        if workers:
+            seen, last_s = workers, time.monotonic()
+        elif time.monotonic() - last_s > _CONNECT_S:
+            gone = f"its workers are gone ({', '.join(seen)})" if seen else "its workers are gone"
+            do = "start them again, then this command: what was done is kept"
+            raise ZerorateError(f"{address}: {gone}; {do}")

@@ -5,13 +5,14 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from glob import glob, has_magic
 from os import PathLike
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from urllib.parse import unquote
 
 from ..errors import ZerorateError
 from ..recordings.csv_format import SUFFIXES as CSV
 from ..recordings.parquet_format import SUFFIXES as PARQUET
 from ..recordings.reading import recording_name
+from .places import is_url, size_and_change, urls_of
 
 _PARTITION = "device="
 
@@ -26,7 +27,7 @@ class Device:
     @property
     def size_bytes(self) -> int:
         """Bytes of its recordings; a file that is gone counts none."""
-        return sum(p.stat().st_size for p in map(Path, self.recordings) if p.is_file())
+        return sum(size for size, _ in map(size_and_change, self.recordings))
 
 
 def devices_of(
@@ -36,15 +37,20 @@ def devices_of(
 ) -> list[Device]:
     """Group recordings by device, both in the order of their names (2 before 10).
 
-    sources: files, glob patterns, or folders, which are searched; device_from: a regular
+    sources: files, glob patterns, or folders, which are searched, here or at a URL that fsspec
+    knows (s3://bucket/folder); device_from: a regular
     expression whose first group, found in a file's path, names its device; without it a folder
     `device=NAME` on the path does, else each file is a device of its own. without: a folder that
     is left out. Raises ZerorateError.
     """
     pattern = _compiled(device_from)
     found: dict[str, list[str]] = {}
-    for path in _files(sources, Path(without).resolve() if without else None):
-        found.setdefault(_device(path, pattern), []).append(str(path))
+    named = [str(source) for source in sources]
+    here = [source for source in named if not is_url(source)]
+    urls = [url for source in named if is_url(source) for url in urls_of(source)]
+    files = [str(path) for path in _files(here, Path(without).resolve() if without else None)]
+    for name in dict.fromkeys([*files, *urls]):
+        found.setdefault(_device(PurePosixPath(name), pattern), []).append(name)
     return [
         Device(name, tuple(sorted(found[name], key=_natural)))
         for name in sorted(found, key=_natural)
@@ -99,14 +105,14 @@ def _is_recording(path: Path) -> bool:
     return named and path.is_file()
 
 
-def _device(path: Path, pattern: re.Pattern[str] | None) -> str:
+def _device(path: PurePosixPath, pattern: re.Pattern[str] | None) -> str:
     if pattern is not None:
         match = pattern.search(path.as_posix())
         if match is None or not match.group(1):
             raise ZerorateError(f"{path}: --device-from finds no device in this path; correct it")
         return match.group(1)
     parts = [part for part in path.parts if part.startswith(_PARTITION)]
-    return unquote(parts[-1].removeprefix(_PARTITION)) if parts else recording_name(path)
+    return unquote(parts[-1].removeprefix(_PARTITION)) if parts else recording_name(Path(path))
 
 
 def _natural(text: str) -> list[tuple[bool, int, str]]:

@@ -17,6 +17,7 @@ from ..recordings import Recording, Scales, open_recording
 from ..replay import AT_REST_ALONE, replay
 from .job import one_line, still_session
 from .part import part_of
+from .places import here
 from .prior import prior_json, prior_model
 from .replay_power_on import block_means, error_mdps
 
@@ -60,9 +61,10 @@ def try_prior(prior: Prior, path: str, minutes: float) -> Trial:
     is the rms over axes and still blocks, after that rest, of the rate less the firmware's bias. An
     empty dict where nothing is still. Raises BadRecording.
     """
-    session, recording = still_session(path), beginning(path, minutes)
     found: Trial = {}
     with tempfile.TemporaryDirectory(prefix="zerorate-prior-") as scratch:
+        with here(path, scratch) as near:
+            session, recording = still_session(near), beginning(near, minutes)
         files = _files(prior, recording, Path(scratch))
         for name, (rest_s, from_s) in SCENARIOS.items():
             moved = moving_from(recording, rest_s)

@@ -5,9 +5,11 @@ import sys
 import tempfile
 import time
 from collections.abc import Sequence
+from contextlib import ExitStack
 from dataclasses import asdict, dataclass, field
 from hashlib import sha256
 from json import dumps
+from os import PathLike
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
@@ -20,6 +22,7 @@ from ..loop.report.result import Effect
 from ..recordings import open_recording
 from .curve import curve_of
 from .devices import Device
+from .places import here, size_and_change
 from .replay_power_on import replay_power_on
 
 JOBS = ("replay", "close")
@@ -41,8 +44,7 @@ class Job:
 
     def fingerprint(self, device: Device) -> str:
         """Changes with the job and with the recordings' names, sizes and times of change."""
-        stats = [(p, p.stat()) for p in map(Path, device.recordings) if p.exists()]
-        files = [[str(p), s.st_size, s.st_mtime_ns] for p, s in stats]
+        files = [[place, *size_and_change(place)] for place in device.recordings]
         text = dumps([asdict(self), device.recordings, files], sort_keys=True)
         return sha256(text.encode()).hexdigest()[:32]
 
@@ -80,22 +82,24 @@ def run_device(job: Job, device: Device) -> dict[str, Any]:
     others, `curve` and `steps` what they show together.
     """
     failures: list[dict[str, str]] = []
-    sessions, summaries, good = [], [], []
+    sessions, summaries, good, sensor = [], [], [], None
     with tempfile.TemporaryDirectory(prefix="zerorate-fleet-") as scratch:
-        for path in device.recordings:
+        for place in device.recordings:
             try:
-                session = still_session(path)
-                state = Path(scratch) / "state.bin"
-                summaries.append(_replayed(job, path, session, state, device))
+                with here(place, scratch) as path:
+                    session = still_session(path)
+                    state = Path(scratch) / "state.bin"
+                    summaries.append(_replayed(job, path, session, state, device) | {"file": place})
+                    sensor = sensor or open_recording(path).scales.to_json()
                 sessions.append(session)
-                good.append(path)
+                good.append(place)
             except Exception as error:  # of a stranger's file; the fleet goes on
-                failures.append({"file": printable(path), "reason": one_line(error)})
+                failures.append({"file": printable(place), "reason": one_line(error)})
     curve = curve_of(sessions) if sessions else None
     return {
         "device": device.name,
         "fingerprint": job.fingerprint(device),
-        "sensor": open_recording(good[0]).scales.to_json() if good else None,
+        "sensor": sensor,
         "sessions": summaries,
         "curve": None if curve is None else curve.to_json(),
         "steps": _steps(job, device, good, failures) if job.kind == "close" and good else [],
@@ -127,7 +131,11 @@ def _steps(job, device, good, failures) -> list[Effect]:
 
     with tempfile.TemporaryDirectory(prefix="zerorate-fleet-") as scratch:
         try:
-            return close(list(good), job.folder(device) or scratch)["effects"]
+            with ExitStack() as copies:
+                logs: list[str | PathLike[str]] = [
+                    copies.enter_context(here(place, scratch)) for place in good
+                ]
+                return close(logs, job.folder(device) or scratch)["effects"]
         except Exception as error:
             failures.append({"file": device.name, "reason": f"close: {one_line(error)}"})
             return []

@@ -27,6 +27,7 @@ from .first_minutes import Runner, benefit
 from .fleet_in_words import Fleet
 from .job import JOBS, Job, one_line, run_batch
 from .part import Part, curve_effects, part_of, step_effects
+from .places import is_url
 from .prior import prior_json, write_prior
 from .rows import table_of
 
@@ -60,6 +61,8 @@ def fleet(
     """
     if job not in JOBS:
         raise ZerorateError(f"{job}: no such job; choose of {', '.join(JOBS)}")
+    if is_url(str(out)):
+        raise ZerorateError(f"{out}: results are written to a folder of this machine; name one")
     folder = Path(out)
     own = str(folder.resolve() / "devices") if keep else None
     work = Job(job, options or {}, str(Path(model).resolve()) if model else None, own)
@@ -87,7 +90,8 @@ def fleet(
 
 
 def _absolute(device: Device) -> Device:
-    return Device(device.name, tuple(str(Path(path).resolve()) for path in device.recordings))
+    places = (p if is_url(p) else str(Path(p).resolve()) for p in device.recordings)
+    return Device(device.name, tuple(places))
 
 
 def _noted(
