@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from zerorate_tools import demo
 from zerorate_tools.cli import main
-from zerorate_tools.demo import broad, story
+from zerorate_tools.demo import broad_trial, story
 from zerorate_tools.demo import real as by_real
 from zerorate_tools.demo.broad import trials
 from zerorate_tools.demo.real import WAYS, real
@@ -97,40 +97,40 @@ def cache(tmp_path, monkeypatch):
 def filled(real_data, cache):
     """The cache with the trial in it, as if fetched."""
     (cache / "broad").mkdir()
-    name = f"{broad.NAME}.mat"
+    name = f"{broad_trial.NAME}.mat"
     shutil.copyfile(real_data / "broad" / name, cache / "broad" / name)
     return cache
 
 
 @pytest.fixture(scope="module")
 def shown(real_data, find_runtime):
-    (trial,) = (t for t in trials(real_data / "broad") if t.name == broad.NAME)
+    (trial,) = (t for t in trials(real_data / "broad") if t.name == broad_trial.NAME)
     return real(trial, find_runtime("x86").name)
 
 
 def test_a_trial_in_the_cache_needs_no_network(filled):
-    trial = broad.broad_trial(NOBODY)
-    assert trial.name == broad.NAME
+    trial = broad_trial.broad_trial(NOBODY)
+    assert trial.name == broad_trial.NAME
     assert len(trial.rate_dps) > 50_000
 
 
 def test_without_a_network_one_line_says_so_and_what_to_do(cache, monkeypatch, capsys):
-    monkeypatch.setattr(broad, "FOLDER_URL", NOBODY)
+    monkeypatch.setattr(broad_trial, "FOLDER_URL", NOBODY)
     assert main(["demo", "--real", "--runtime", "cpython"]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert "is there a network?" in line and str(cache / "broad") in line
 
 
 def test_a_damaged_trial_is_fetched_again_and_never_used(filled):
-    file = filled / "broad" / f"{broad.NAME}.mat"
+    file = filled / "broad" / f"{broad_trial.NAME}.mat"
     file.write_bytes(file.read_bytes()[:-1] + b"x")
     with pytest.raises(CannotFetch, match="network"):
-        broad.broad_trial(NOBODY)
+        broad_trial.broad_trial(NOBODY)
 
 
 def test_nothing_is_left_in_the_cache_by_a_failure(cache):
     with pytest.raises(CannotFetch):
-        broad.broad_trial(NOBODY)
+        broad_trial.broad_trial(NOBODY)
     assert list((cache / "broad").iterdir()) == []
 
 
@@ -148,7 +148,7 @@ def test_the_command_credits_the_authors_and_prints_the_table(filled, shown, mon
     asked = []
     monkeypatch.setattr(by_real, "real", lambda *given: asked.append(given) or shown)
     assert main(["demo", "--real", "--runtime", "x86"]) == 0
-    assert [(trial.name, runtime) for trial, runtime, _ in asked] == [(broad.NAME, "x86")]
+    assert [(trial.name, runtime) for trial, runtime, _ in asked] == [(broad_trial.NAME, "x86")]
     said = capsys.readouterr().out
     assert "D. Laidig" in said and "CC BY 4.0" in said
     rows = [line for line in said.splitlines() if re.search(r"\d\.\d\s+[\d,]+\.\d$", line)]

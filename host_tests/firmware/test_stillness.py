@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 from zerorate import Corrector, Sensor
-from zerorate_tools.peers.online import Decision, firmware, given
+from zerorate_tools.peers.firmware import Decision, firmware
+from zerorate_tools.peers.given import given
 from zerorate_tools.recordings import Recording, Scales
 
 from .played import LEARNED_LSB, LSB, estimators, play, rest

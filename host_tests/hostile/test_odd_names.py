@@ -16,6 +16,7 @@ _LOOP = ["import", "loop", "--out", "o.parquet"]
 def folder(tmp_path):
     (tmp_path / "loop").symlink_to("loop")
     os.mkfifo(tmp_path / "fifo")
+    (tmp_path / "link").symlink_to("fifo")
     (tmp_path / _NOT_UTF8).write_text(_LOG)
     (tmp_path / "run.csv").write_text(_LOG)
     (tmp_path / "log.csv").write_text(_LOG.replace("gx,gy,gz", "gx_dps,gy_dps,gz_dps"))
@@ -42,6 +43,7 @@ def folder(tmp_path):
         (["replay", "run.csv", "--out", "o.parquet", "--model", "/dev/zero"], "zero: is no file"),
         (["replay", "run.csv", "--out", "o.parquet", "--state", "fifo"], "fifo: cannot be written"),
         (["simulate", "dev.toml", "--out", "o.parquet", "--truth", "fifo"], "fifo: cannot be"),
+        (["simulate", "dev.toml", "--out", "o.parquet", "--truth", "link"], "link: cannot be"),
         (["record", "/dev/i2c-77", "--out", "o.csv", "--setup", "\n"], "No such file"),
         (["import", "run.csv", "--out", "o.parquet", "--hz", "inf"], "inf is no finite number"),
         (["import", "log.csv", "--out", "o.parquet", "--hz", "1e-300"], "the time stamp is 1e+306"),

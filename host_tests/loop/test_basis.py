@@ -27,7 +27,7 @@ from zerorate_tools.loop.fit.single import PiecesByLine
 from zerorate_tools.loop.read.gate import CannotClose
 from zerorate_tools.loop.verify.slots import deployable
 from zerorate_tools.model import Binding, Slot, build_model, encoded, read_model
-from zerorate_tools.model.files import binding_of
+from zerorate_tools.model.binding import binding_of
 from zerorate_tools.model.term import Term, evaluate, first_order_lag, play
 from zerorate_tools.recordings import Scales, write_recording
 

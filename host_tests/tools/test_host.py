@@ -11,7 +11,8 @@ import yaml
 from zerorate_tools.errors import BadModel
 from zerorate_tools.host import FloatCorrector
 from zerorate_tools.model import Slot, build_model, read_model
-from zerorate_tools.model.model_in_words import in_words, rate_matrix
+from zerorate_tools.model.model_in_words import in_words
+from zerorate_tools.model.rate_matrix import rate_matrix
 from zerorate_tools.model.term import Term
 from zerorate_tools.recordings import Scales
 

@@ -16,9 +16,10 @@ from zerorate_tools.replay import replay
 from zerorate_tools.replay.replaying import state_bytes
 from zerorate_tools.simulate import simulate
 from zerorate_tools.watch import watch
+from zerorate_tools.watch.board import Watcher
+from zerorate_tools.watch.options import WatchOptions
 from zerorate_tools.watch.screen import Lines, sparkline
 from zerorate_tools.watch.tail import CsvTail
-from zerorate_tools.watch.watching import Watcher, WatchOptions
 
 DESCRIPTION = {
     "name": "run",

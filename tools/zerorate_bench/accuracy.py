@@ -10,7 +10,8 @@ from zerorate_tools.demo.broad import rms_mdps
 from zerorate_tools.importers import read_foreign
 from zerorate_tools.loop.read.still import runs
 from zerorate_tools.peers import Given, Peer, given
-from zerorate_tools.peers.online import first_seconds, within_two_sigma
+from zerorate_tools.peers.firmware import within_two_sigma
+from zerorate_tools.peers.online import first_seconds
 from zerorate_tools.recordings import Recording
 from zerorate_tools.simulate import simulate_sessions
 
@@ -91,8 +92,7 @@ def day(advance: Callable[[float], None] = lambda n: None) -> Figures:
 _MADE = """\
 Made by `zerorate bench accuracy` in one run, with the same samples for everyone. Real recordings
 are read from `ZERORATE_DATA`, or from `shared/data` beside the checkout. Others may report
-another figure for the same filter and scenario. That of imufusion doubles where the part moves at
-power-on. That of a cubic on C is a third where the bias does not walk.
+another figure for the same filter and scenario.
 """
 _SESSION_2 = """\
 Session 1 warms from 20 to 45 degC in 40 minutes. Then the power is cut. Session 2 warms from 17

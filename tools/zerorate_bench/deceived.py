@@ -10,7 +10,8 @@ from zlib import crc32
 
 import numpy as np
 from numpy.typing import NDArray
-from zerorate_tools.peers.online import Decision, given
+from zerorate_tools.peers.firmware import Decision
+from zerorate_tools.peers.given import given
 from zerorate_tools.recordings import Recording, Scales
 from zerorate_tools.simulate.attitude import facing, integrate, into_body
 from zerorate_tools.simulate.motion import Bout, Start, hand

@@ -22,7 +22,7 @@ from zerorate_tools.recordings.writing import write_recording
 from zerorate_tools.simulate.attitude import facing, integrate, into_body
 from zerorate_tools.simulate.motion import FACES, Start
 
-from .deceived_worlds import KINDS, coherent
+from .heading_worlds import KINDS, coherent
 from .tables import table
 
 Array = NDArray[np.float64]

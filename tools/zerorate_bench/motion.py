@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from zerorate_tools.demo.broad import Trial, TrueBias, rms_mdps, trials, true_bias
 from zerorate_tools.errors import MissingRuntime
 from zerorate_tools.peers import Given, Peer, given, vqf_clip_raised, vqf_default
-from zerorate_tools.peers.online import Decision
+from zerorate_tools.peers.firmware import Decision
 from zerorate_tools.recordings import Recording
 from zerorate_tools.simulate import Truth, simulate
 from zerorate_tools.simulate.description import load_description

@@ -15,9 +15,9 @@ from zerorate_tools.loop.motion.by_gravity import by_gravity
 from zerorate_tools.loop.motion.in_motion import InMotion, slots_of
 from zerorate_tools.loop.motion.rate_scale import RateScale
 from zerorate_tools.model import Model, build_model
-from zerorate_tools.model.files import binding_of
+from zerorate_tools.model.binding import binding_of
 from zerorate_tools.peers import Given, Peer, fusion, given, vqf_default
-from zerorate_tools.peers.online import Decision
+from zerorate_tools.peers.firmware import Decision
 
 from .heading import GROUPS, moving_in
 from .tables import machine_line, number, table

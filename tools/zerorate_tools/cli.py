@@ -137,7 +137,7 @@ def parser() -> argparse.ArgumentParser:
 
 
 def _complain(message: str, exit_code: int) -> int:
-    print(printable(f"zerorate: {' '.join(message.split())}"), file=sys.stderr)
+    print(printable(f"zerorate: {' '.join(message.splitlines())}"), file=sys.stderr)
     return exit_code
 
 

@@ -16,7 +16,7 @@ from .loop.report.motion_effects import turning
 from .loop.verify.firmware import Firmware
 from .loop.verify.measure import CorrectedWriter
 from .model import Model, build_model, write_model
-from .model.files import binding_of
+from .model.binding import binding_of
 from .recordings import open_recording
 from .recordings.atomic import written_beside
 from .replay.samples import frames_in_batches

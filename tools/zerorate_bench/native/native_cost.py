@@ -16,7 +16,7 @@ from zerorate_tools.errors import ZerorateError
 from zerorate_tools.kernels.parts import BURST, PARTS
 from zerorate_tools.kernels.reading import Kernels, firmware_package
 from zerorate_tools.model import Slot, build_model, encoded
-from zerorate_tools.model.files import sensor_for
+from zerorate_tools.model.check import sensor_for
 from zerorate_tools.model.term import Term
 from zerorate_tools.simulate import simulate
 

@@ -9,7 +9,7 @@ from zerorate_tools.peers import (
     vqf_default,
 )
 
-from .sources import ardupilot_cubic, px4_cubic
+from .cubic import ardupilot_cubic, px4_cubic
 
 ONLINE: dict[str, Peer] = {
     "mean of the first 10 s": first_seconds,

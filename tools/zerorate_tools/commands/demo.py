@@ -86,7 +86,7 @@ def run_job(arguments: argparse.Namespace) -> int:
 def run_real(arguments: argparse.Namespace) -> int:
     """The firmware on a real recording, beside others."""
     from ..demo import story
-    from ..demo.broad import broad_trial
+    from ..demo.broad_trial import broad_trial
     from ..demo.real import real
     from ..progress import progress
 

@@ -54,7 +54,7 @@ def run_show(arguments: argparse.Namespace) -> None:
 def run_check(arguments: argparse.Namespace) -> None:
     """Print that the model would be loaded, or raise why not."""
     from ..model import Binding
-    from ..model.files import check_model
+    from ..model.check import check_model
     from ..model.model_in_words import slots_in_words
     from ..recordings import open_recording
 

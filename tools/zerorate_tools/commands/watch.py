@@ -29,7 +29,8 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
 
 def run(arguments: argparse.Namespace) -> int:
     """Watch; 1 where no sample ever came."""
-    from ..watch.watching import WatchOptions, watch
+    from ..watch.options import WatchOptions
+    from ..watch.watching import watch
 
     options = WatchOptions(
         seconds=arguments.seconds,

@@ -16,9 +16,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import CannotFetch, ZerorateError
+from ..errors import ZerorateError
 from ..recordings import Recording, Scales
-from ..runtimes.cache import cache_folder
 
 Array = NDArray[np.float64]
 _G = 9.81
@@ -155,48 +154,3 @@ def _compare(
         attitude = attitude * Rotation.from_rotvec(rate @ matrix.T * dt)
     ends = [Rotation.from_quat(trial.attitude[at][:, [1, 2, 3, 0]]) for at in (starts, starts + n)]
     return (ends[0].inv() * ends[1] * attitude.inv()).as_rotvec(), slopes
-
-
-CREDIT = "BROAD, D. Laidig et al., Data 6(7):72, 2021, CC BY 4.0, github.com/dlaidig/broad"
-NAME = "02_undisturbed_slow_rotation_B"
-COMMIT = "7e2f8189bb4a3ac91eae32c69b6bc87f08a6e2ad"
-FOLDER_URL = f"https://raw.githubusercontent.com/dlaidig/broad/{COMMIT}/data_mat/"
-SHA256 = "2ab69f86aab5fcc018399068baaabc725bb4b53862aefbef70eaf0256da1930a"
-_TIMEOUT_S = 30
-
-
-def broad_trial(folder_url: str | None = None) -> Trial:
-    """The trial, fetched into the cache where it is not there yet (3.6 MB). Raises CannotFetch.
-
-    folder_url: a mirror's folder instead of FOLDER_URL.
-    """
-    path = _fetched(folder_url or FOLDER_URL)
-    return next(trial for trial in trials(path.parent) if trial.name == NAME)
-
-
-def kept_in() -> Path:
-    """The folder of the cache that holds the trial."""
-    return cache_folder() / "broad"
-
-
-def _fetched(folder_url: str) -> Path:
-    import pooch
-
-    pooch.get_logger().setLevel("WARNING")
-    file = f"{NAME}.mat"
-    try:
-        path = pooch.retrieve(
-            folder_url + file,
-            known_hash=f"sha256:{SHA256}",
-            fname=file,
-            path=kept_in(),
-            downloader=pooch.HTTPDownloader(timeout=_TIMEOUT_S),
-        )
-    except OSError as error:  # of requests, too: its errors are OSErrors
-        do = f"try again with a network, or put that file into {kept_in()}"
-        raise CannotFetch(
-            f"{folder_url}{file} cannot be fetched, is there a network? {do}"
-        ) from error
-    except ValueError as error:
-        raise CannotFetch(f"{folder_url}{file} is not the file with SHA-256 {SHA256}") from error
-    return Path(path)

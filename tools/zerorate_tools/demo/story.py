@@ -13,7 +13,7 @@ import numpy as np
 from ..compare import Compared
 from ..numbers import fixed
 from ..report.kinds import meaning
-from .broad import CREDIT
+from .broad_trial import CREDIT
 from .job import Device
 from .play_and_score import Demo, seconds
 from .real import MOTION_FROM_S, WAYS, WHOLE_FROM_S, Real

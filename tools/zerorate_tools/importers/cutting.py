@@ -8,7 +8,7 @@ from pathlib import Path
 from ..errors import BadRecording
 from ..recordings import open_recording, recording_writer
 from ..recordings.atomic import written_together
-from ..recordings.csv_format import open_text
+from ..recordings.text import open_text
 from .tables.sniffing import MARK, Form, sniffed
 
 _BLOCK_BYTES = 1 << 20

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ..errors import BadRecording
-from ..recordings.csv_format import head
+from ..recordings.text import head
 from .tables.archive import archive, folder_of_tables
 from .tables.checked_lines import checked_lines, has_checked_lines
 from .tables.delimited import delimited

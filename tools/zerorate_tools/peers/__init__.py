@@ -4,16 +4,9 @@ A peer takes a sequence of Given, one a power-on, and returns for each the bias 
 it would have subtracted from each sample; NaN where it cannot be run (a channel is absent).
 """
 
-from .online import (
-    Given,
-    Peer,
-    firmware,
-    first_seconds,
-    fusion,
-    given,
-    vqf_clip_raised,
-    vqf_default,
-)
+from .firmware import Peer, firmware
+from .given import Given, given
+from .online import first_seconds, fusion, vqf_clip_raised, vqf_default
 
 __all__ = [
     "Given", "Peer", "firmware", "first_seconds", "fusion", "given", "vqf_clip_raised",

@@ -2,7 +2,7 @@
 
 import csv
 import io
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,6 +16,7 @@ from ..errors import BadRecording
 from .checks import arrow_batch, check_names
 from .recording import TIME
 from .scales import MOST_BYTES, Scales, example_for, scales_from_text
+from .text import damaged, head, open_text
 
 SUFFIXES = (".csv", ".csv.gz")
 _HEADER_BYTES = 1 << 16
@@ -162,68 +163,3 @@ class CsvWriter:
     def close(self) -> None:
         self._writer.close()
         self._file.close()
-
-
-_PACKED = {
-    b"\x1f\x8b": "gzip",
-    b"BZh": "bz2",
-    b"\x28\xb5\x2f\xfd": "zstd",
-    b"\x04\x22\x4d\x18": "lz4",
-}
-_MARKS = {
-    b"\xff\xfe\x00\x00": "utf-32",
-    b"\x00\x00\xfe\xff": "utf-32",
-    b"\xff\xfe": "utf-16",
-    b"\xfe\xff": "utf-16",
-    b"\xef\xbb\xbf": "utf-8",
-}
-
-
-def open_text(path: Path, encoding: str = "utf-8") -> tuple[pa.NativeFile, Callable[[], int]]:
-    """The text as UTF-8 bytes, and how many bytes of the file itself were read so far."""
-    raw = pa.OSFile(str(path))
-    stream = raw
-    packed = _packed(path)
-    if packed is not None:
-        stream = pa.CompressedInputStream(raw, packed)
-    if encoding != "utf-8":
-        stream = pa.transcoding_input_stream(stream, encoding, "utf-8")
-    return stream, raw.tell
-
-
-def head(path: Path, size: int) -> tuple[bytes, str]:
-    """The first `size` bytes, unpacked, and the encoding that they are in. Raises BadRecording."""
-    try:
-        content = open_text(path)[0].read(size)
-    except (OSError, EOFError, pa.ArrowException) as error:
-        raise damaged(path) from error
-    return content, _encoding(content)
-
-
-def damaged(path: Path) -> BadRecording:
-    """What to raise where a packed file cannot be unpacked."""
-    kind = _packed(path) or "file"
-    return BadRecording(path, f"the {kind} data is cut off or damaged", do="copy the file again")
-
-
-def _packed(path: Path) -> str | None:
-    with open(path, "rb") as file:
-        start = file.read(4)
-    return next((name for mark, name in _PACKED.items() if start.startswith(mark)), None)
-
-
-def _encoding(content: bytes) -> str:
-    for mark, name in _MARKS.items():
-        if content.startswith(mark):
-            return name
-    sample = content[:4096]
-    if len(sample) > 8 and sample[1::2].count(0) > 0.4 * len(sample):
-        return "utf-16-le"
-    if len(sample) > 8 and sample[::2].count(0) > 0.4 * len(sample):
-        return "utf-16-be"
-    try:
-        content[: len(content) - 3].decode("utf-8")
-    except UnicodeDecodeError as error:
-        # a letter cut in two at the end is no sign of another encoding
-        return "utf-8" if error.start > len(content) - 8 else "latin-1"
-    return "utf-8"

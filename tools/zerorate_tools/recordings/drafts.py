@@ -225,7 +225,7 @@ def _moves(draft: Path, folder: Path) -> list[_Move]:
         if place.is_dir() or (_is_folder(path) and os.path.lexists(place)):
             number = errno.EISDIR if place.is_dir() else errno.ENOTDIR
             raise OSError(number, os.strerror(number), os.fspath(place))
-        if place.exists() and not place.is_file() and not place.is_symlink():
+        if place.exists() and not place.is_file():
             number = errno.EOPNOTSUPP  # a device, a pipe: what is not written but replaced
             raise OSError(number, os.strerror(number), os.fspath(place))
         found.append((path, place))

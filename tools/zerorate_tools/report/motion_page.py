@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..model import read_model
-from ..model.model_in_words import rate_matrix
+from ..model.rate_matrix import rate_matrix
 from .board import deployment
 from .page import rendered
 

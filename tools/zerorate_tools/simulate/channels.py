@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from .attitude import durations, path
 from .noise import gauss_markov
+from .paths import durations, path
 
 Table = Mapping[str, Any]
 

@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import BadDescription, MissingLibrary
-from .attitude import seconds
 from .effects import EFFECTS, TIMING
 from .motion import FACES, MOTIONS
+from .paths import seconds
 from .schema import (
     Bias,
     Description,

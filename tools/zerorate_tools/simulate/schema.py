@@ -7,7 +7,7 @@ from typing import Any, get_origin
 import numpy as np
 
 from ..errors import BadDescription
-from .attitude import durations
+from .paths import durations
 
 Table = Mapping[str, Any]
 

@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 
 from ..errors import BadDescription
-from .attitude import durations, facing, integrate, into_body, multiply, path, rotation, seconds
+from .attitude import facing, integrate, into_body, multiply, rotation
 from .channels import CHANNELS, Channel, Clock
 from .motion import MOTIONS, Start, face_up
 from .noise import stream
+from .paths import durations, path, seconds
 from .schema import Description, Session
 
 _EARTH_DPS = 360 / 86164.0905

@@ -11,7 +11,7 @@ import numpy as np
 import pyarrow as pa
 
 from ...errors import BadRecording
-from ...recordings.csv_format import head, open_text
+from ...recordings.text import head, open_text
 from ..tables.delimited import seconds_of
 from ..tables.sniffing import DATE, MOST_WORDS
 from ..tables.table import Chunk, Table

@@ -201,7 +201,8 @@ def absent(plan: Plan, names: list[str], path: Path) -> list[str]:
     out = []
     if ACCEL[0] not in plan.wanted:
         in_gyro = path.is_file() and "gyro" in path.stem.lower()
-        beside = [f.name for f in sorted(path.parent.glob("*[Aa]ccel*.csv"))] if in_gyro else []
+        found = [f.name for f in sorted(path.parent.glob("*[Aa]ccel*.csv"))] if in_gyro else []
+        beside = [name for name in found if "linear" not in name.lower()]  # which has no gravity
         take = f"; {beside[0]} is beside it: zerorate import {path.parent}" if beside else ""
         out.append(f"no acceleration: nothing can be learned against gravity{take}")
     if TEMP not in plan.wanted:

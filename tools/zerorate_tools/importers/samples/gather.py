@@ -25,7 +25,7 @@ _FAST_SHARE = 0.001
 class Gathered:
     """The rows, by time, and what they have in common. largest: by kind (gyro, accel). own: by
     column, samples that have a reading of their own. looked_at: some hundred samples, and
-    readings of temperature, which may have times of their own."""
+    readings of acceleration and temperature, which may have times of their own."""
 
     spool: Spool
     rows: int
@@ -77,7 +77,7 @@ class _Gathering:
         self.clock = Unwrapped(self._step_us())
         self.counts = Counts(plan.raw)
         self.kept: list[dict[str, np.ndarray]] = []
-        self.temps: list[np.ndarray] = []
+        self.beside: dict[str, list[np.ndarray]] = {}
 
     def result(self) -> Gathered:
         try:
@@ -97,8 +97,7 @@ class _Gathering:
         looked_at = {
             n: np.concatenate([k[n] for k in self.kept]) for n in (TIME, *self.readings)
         }  # fmt: skip
-        if TEMP in looked_at:
-            looked_at[TEMP] = np.concatenate(self.temps)
+        looked_at |= {name: np.concatenate(pieces) for name, pieces in self.beside.items()}
         interval_us, repeated = self._interval_us()
         return Gathered(
             self.spool, self.rows + sum(self.table.dropped.values()), self.samples,
@@ -184,12 +183,19 @@ class _Gathering:
         at = np.flatnonzero(whole)
         at = at[: _KEPT if len(self.kept) else 50 * _KEPT]
         self.kept.append({name: columns[name][at] for name in (TIME, *self.readings)})
-        if TEMP in columns:  # which may have rows of its own
-            temps = columns[TEMP][np.isfinite(columns[TEMP])]
-            self.temps.append(temps[: 50 * _KEPT if len(self.kept) == 1 else _KEPT])
+        for group in (ACCEL, (TEMP,)):
+            if group[0] in columns:
+                self._look_beside(columns, group)
         if len(self.kept) > 2 * _KEPT:
             self.kept = [self.kept[0], *self.kept[1::2]]
-            self.temps = self.temps[::2]
+            self.beside = {name: pieces[::2] for name, pieces in self.beside.items()}
+
+    def _look_beside(self, columns, names):
+        """Keep some readings of a sensor that may have rows of its own."""
+        at = np.flatnonzero(np.isfinite([columns[name] for name in names]).all(axis=0))
+        at = at[: _KEPT if self.beside.get(names[0]) else 50 * _KEPT]
+        for name in names if len(at) else ():
+            self.beside.setdefault(name, []).append(columns[name][at])
 
     def _check(self):
         _refuse_too_fast(self.too_fast, self.samples, self.fastest, self.plan, self.path)

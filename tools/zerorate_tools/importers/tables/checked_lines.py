@@ -10,7 +10,7 @@ import numpy as np
 import pyarrow as pa
 
 from ...errors import BadRecording
-from ...recordings.csv_format import damaged, head, open_text
+from ...recordings.text import damaged, head, open_text
 from .table import Chunk, Table
 
 _BLOCK_BYTES = 1 << 20

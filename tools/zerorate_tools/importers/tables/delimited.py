@@ -14,7 +14,7 @@ import pyarrow.compute as pc
 import pyarrow.csv
 
 from ...errors import BadRecording
-from ...recordings.csv_format import damaged, open_text
+from ...recordings.text import damaged, open_text
 from ..report import cut_words
 from .sniffing import COMMENTS, DAY, Form, sniffed
 from .table import Chunk, Table

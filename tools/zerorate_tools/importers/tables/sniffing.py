@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ...errors import BadRecording
-from ...recordings.csv_format import head
+from ...recordings.text import head
 from ..columns.units import without_unit
 
 _HEAD_BYTES = 1 << 18

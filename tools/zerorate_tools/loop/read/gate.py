@@ -8,7 +8,7 @@ from scipy.stats import spearmanr
 from zerorate.settings import DEFAULTS
 
 from ...errors import ZerorateError
-from ...model.files import NAMES, binding_of
+from ...model.binding import NAMES, binding_of
 from .sessions import OWN_SOURCES, Session
 
 LEAST_BLOCKS = 15

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...model import CannotDeploy, Model, Slot, build_model
-from ...model.files import binding_of
+from ...model.binding import binding_of
 from ...recordings import Scales
 from ..fit.line import deployed
 from ..fit.noise import floor_dps
