@@ -30,6 +30,38 @@ AT_REST = "told the curve and the spectra, at rest all day, and the future"
 DAY = ("mean of the first 10 s", "imufusion", "vqf, clip 25 dps", *OURS)
 
 Figures = dict[str, dict[str, float]]
+_MADE = """\
+Made by `zerorate bench accuracy` in one run, with the same samples for everyone. Real recordings
+are read from `ZERORATE_DATA`, or from `shared/data` beside the checkout. Others may report
+another figure for the same filter and scenario.
+"""
+_SESSION_2 = """\
+Session 1 warms from 20 to 45 degC in 40 minutes. Then the power is cut. Session 2 warms from 17
+to 44 degC in 20 minutes. `zerorate` has default settings and no effect model, for A, B and C
+alike. It loads what it learned in session 1 from the store, so its first {first:.0f} s are from
+the store.
+"""
+_DAY = """\
+All begin with nothing learned. Waiting a second for the first rest raises the daily RMS. The last
+two rows are floors, not estimators. The first is a Kalman filter that knows the true rests, the
+true curve over temperature and the best walk for this day. The second is a Wiener smoother that
+knows the curve and the spectra of bias and noise, sees a device that rests all day, and looks
+ahead. It leaves flicker noise that the white noise hides. Nothing gets below it on this part.
+"""
+_HONESTY = """\
+The share of the last power-on in which the truth lies within two `quality_lsb`, with all sources
+on. 95 % would be exact. The firmware learns one sigma from the part itself: from its flicker
+noise, its walk, and how well its power-ons repeat
+([learning.md](learning.md#what-it-says-of-itself)).
+"""
+_REAL = """\
+RMS over axes and over means of 20 s. The true rate is zero, but for Earth's 4 mdps. Blocks in
+which the sensor was handled are left out. The first figure is of the whole recording, the second
+without its first 20 s (8 readings).
+"""
+BLOCK_S = 20.0
+_START_READINGS = 8
+_HANDLED = 3.0
 
 
 def sessions_of(name: str, seed: int) -> tuple[list[Given], list[NDArray[np.float64]]]:
@@ -87,37 +119,6 @@ def day(advance: Callable[[float], None] = lambda n: None) -> Figures:
     least = told_the_future("day", 1) * 1000
     found[AT_REST] = {"all": least, "later": least}
     return found
-
-
-_MADE = """\
-Made by `zerorate bench accuracy` in one run, with the same samples for everyone. Real recordings
-are read from `ZERORATE_DATA`, or from `shared/data` beside the checkout. Others may report
-another figure for the same filter and scenario.
-"""
-_SESSION_2 = """\
-Session 1 warms from 20 to 45 degC in 40 minutes. Then the power is cut. Session 2 warms from 17
-to 44 degC in 20 minutes. `zerorate` has default settings and no effect model, for A, B and C
-alike. It loads what it learned in session 1 from the store, so its first {first:.0f} s are from
-the store.
-"""
-_DAY = """\
-All begin with nothing learned. Waiting a second for the first rest raises the daily RMS. The last
-two rows are floors, not estimators. The first is a Kalman filter that knows the true rests, the
-true curve over temperature and the best walk for this day. The second is a Wiener smoother that
-knows the curve and the spectra of bias and noise, sees a device that rests all day, and looks
-ahead. It leaves flicker noise that the white noise hides. Nothing gets below it on this part.
-"""
-_HONESTY = """\
-The share of the last power-on in which the truth lies within two `quality_lsb`, with all sources
-on. 95 % would be exact. The firmware learns one sigma from the part itself: from its flicker
-noise, its walk, and how well its power-ons repeat
-([learning.md](learning.md#what-it-says-of-itself)).
-"""
-_REAL = """\
-RMS over axes and over means of 20 s. The true rate is zero, but for Earth's 4 mdps. Blocks in
-which the sensor was handled are left out. The first figure is of the whole recording, the second
-without its first 20 s (8 readings).
-"""
 
 
 def steps(seeds: Sequence[int] = SEEDS) -> int:
@@ -210,11 +211,6 @@ def _real(figures: Mapping | None) -> Iterator[str]:
     ]
     yield _REAL
     yield table(["mdps", *COLUMNS], rows)
-
-
-BLOCK_S = 20.0
-_START_READINGS = 8
-_HANDLED = 3.0
 
 
 def nothing(sessions) -> list[NDArray[np.float64]]:

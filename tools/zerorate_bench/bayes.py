@@ -26,6 +26,10 @@ _MEDIAN_DPS, _FACTOR, _NEARLY_NONE_DPS = 0.0017, 2.5, 0.00025
 _WALK_DPS = {0.0: 0.4, 0.0001: 0.3, 0.0003: 0.2, 0.0013: 0.1}
 #: Standard deviations of the parabola over temperature: dps, dps/degC, dps/degC^2.
 _PARABOLA_DPS = np.array([6.3, 0.03, 0.001])
+#: Standard deviation of a second's walk, dps: of 0.1 to 1 mdps the best on the day.
+_WALK_DPS_TOLD = 0.0004
+_DEGREE = 3
+_BANDS = 60
 
 
 class Spans(NamedTuple):
@@ -122,12 +126,6 @@ def _flicker(a: Spans, b: Spans, dt_s: float) -> Array:
             np.fill_diagonal(one, 2 * (1 - exprel(-long)) / long)
         total += one / 2
     return total
-
-
-#: Standard deviation of a second's walk, dps: of 0.1 to 1 mdps the best on the day.
-_WALK_DPS_TOLD = 0.0004
-_DEGREE = 3
-_BANDS = 60
 
 
 def told_everything(scenario: str | dict[str, Any], seed: int) -> Array:

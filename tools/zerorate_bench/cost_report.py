@@ -50,6 +50,29 @@ It learns at rest alone (`--no-motion --no-gravity`); the other sources take abo
 _NAMES = {"thumb": "Cortex-M0+", "rv32": "RV32"}
 _CYCLES = ("cycles", "cycles_worst")
 _HEAD = ["a sample", "instructions", "C -O2", "against C", "worst", "cycles, median", "worst"]
+_IMPORT = Path(__file__).with_name("heap_of_import.mjs")
+_ARCHITECTURES = {"thumb": "armv6m", "rv32": "rv32imc"}
+_UPDATES = """
+import gc
+from array import array
+from zerorate import Corrector
+rows = array("i", open("frames.bin", "rb").read())
+corrector, x = Corrector(motion=False, gravity=False), array("i", [0] * 7)
+def drive(first, end):
+    for i in range(first, end):
+        for k in range(7):
+            x[k] = rows[8 * i + 1 + k]
+        corrector.update(x, rows[8 * i])
+def taken(first, end):
+    before = gc.mem_alloc()
+    drive(first, end)
+    return gc.mem_alloc() - before
+drive(0, 600)
+gc.collect()
+gc.disable()
+taken(0, 1)
+print((taken(600, 6600) - taken(600, 601)) / 5999)
+"""
 
 
 def cost(advance: Callable[[float], None] = lambda n: None, hours=HOURS) -> dict[str, Any]:
@@ -149,31 +172,6 @@ def _replay(found: Mapping[str, Any]) -> Iterator[list[str]]:
             f"{alone:,.0f}" if alone else "",
             number(one["peak_bytes"] / 1e6),
         ]
-
-
-_IMPORT = Path(__file__).with_name("heap_of_import.mjs")
-_ARCHITECTURES = {"thumb": "armv6m", "rv32": "rv32imc"}
-_UPDATES = """
-import gc
-from array import array
-from zerorate import Corrector
-rows = array("i", open("frames.bin", "rb").read())
-corrector, x = Corrector(motion=False, gravity=False), array("i", [0] * 7)
-def drive(first, end):
-    for i in range(first, end):
-        for k in range(7):
-            x[k] = rows[8 * i + 1 + k]
-        corrector.update(x, rows[8 * i])
-def taken(first, end):
-    before = gc.mem_alloc()
-    drive(first, end)
-    return gc.mem_alloc() - before
-drive(0, 600)
-gc.collect()
-gc.disable()
-taken(0, 1)
-print((taken(600, 6600) - taken(600, 601)) / 5999)
-"""
 
 
 def heap_bytes_per_update(work: Workload) -> dict[str, float]:

@@ -54,6 +54,21 @@ say, at a rate at which somebody might have recorded.
 _OPTION = re.compile(r"--[a-z-]+ [^\s,;()]+(?: \(or [^)]*\))?")
 #: A reading of time by another unit: `us (1000 Hz) or ms (1 Hz)`.
 _UNIT_OF_TIME = re.compile(r"--time-unit ((?:\S+ \([^)]*\)(?: or )?)+)")
+_HEADER = b"t_s,gx_dps,gy_dps,gz_dps,ax_g,ay_g,az_g,temp_degC\n"
+_ROWS = 100_000
+_HZ = 100
+_DIGITS = 8
+_BIAS_DPS, _NOISE_DPS, _NOISE_G = (0.3, -0.2, 0.1), 0.05, 0.002
+_TIMED = """
+import resource, sys, time
+from zerorate_tools.importers import import_recording
+start = time.monotonic()
+report = import_recording(*sys.argv[1:])
+used = resource.getrusage(resource.RUSAGE_SELF)
+unit = 1 if sys.platform == "darwin" else 1024
+print(report.rows_written, time.monotonic() - start, used.ru_utime + used.ru_stime,
+      used.ru_maxrss * unit)
+"""
 
 
 def run(only: str = "", advance: Callable[[float], None] = lambda n: None) -> dict[str, object]:
@@ -192,23 +207,6 @@ def in_markdown(found: dict) -> str:
     counted = table(["of", *kinds], [[len(outcomes), *(outcomes.count(kind) for kind in kinds)]])
     rows = [[row["log"], row["outcome"]] for row in found["rows"]]
     return f"{_HEAD}\n{counted}{_WORDS}\n{table(['log', 'import'], rows)}"
-
-
-_HEADER = b"t_s,gx_dps,gy_dps,gz_dps,ax_g,ay_g,az_g,temp_degC\n"
-_ROWS = 100_000
-_HZ = 100
-_DIGITS = 8
-_BIAS_DPS, _NOISE_DPS, _NOISE_G = (0.3, -0.2, 0.1), 0.05, 0.002
-_TIMED = """
-import resource, sys, time
-from zerorate_tools.importers import import_recording
-start = time.monotonic()
-report = import_recording(*sys.argv[1:])
-used = resource.getrusage(resource.RUSAGE_SELF)
-unit = 1 if sys.platform == "darwin" else 1024
-print(report.rows_written, time.monotonic() - start, used.ru_utime + used.ru_stime,
-      used.ru_maxrss * unit)
-"""
 
 
 def run_import_size(

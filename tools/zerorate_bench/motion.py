@@ -66,6 +66,10 @@ FORMS = {
         "threshold": 0,
     },
 }
+FLICKERS_MDPS = (0, 1, 2, 4)
+SCENES = ("rests-30", "short-rests", "turntable")
+FLICKER_SEEDS = range(1, 11)
+_STRETCH_S = 10.0
 
 
 def peers() -> dict[str, Peer]:
@@ -199,12 +203,6 @@ def settling() -> dict:
             "mean_mdps": round(float(np.abs(last.mean(axis=0)).max()), 1),
         }
     return found
-
-
-FLICKERS_MDPS = (0, 1, 2, 4)
-SCENES = ("rests-30", "short-rests", "turntable")
-FLICKER_SEEDS = range(1, 11)
-_STRETCH_S = 10.0
 
 
 def by_flicker() -> dict:

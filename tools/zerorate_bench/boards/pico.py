@@ -41,6 +41,9 @@ _PACKAGE = "rp2040js"
 VARIABLE = "ZERORATE_BOARDS"
 #: The clock that the emulated core runs at.
 CORE_HZ = 125_000_000
+SENSOR = (100.0, 131.0, 16384.0, 340.0, 36.53)
+_MARKS = 3
+_PATIENCE_S = 600
 
 
 @dataclass(frozen=True)
@@ -185,11 +188,6 @@ class EmulatedPico:
         while data := self._process.stdout.read(4096):
             if not poll.poll(0):  # else nobody listens, and a board drops what it says
                 os.write(self._master, data)
-
-
-SENSOR = (100.0, 131.0, 16384.0, 340.0, 36.53)
-_MARKS = 3
-_PATIENCE_S = 600
 
 
 @dataclass(frozen=True)

@@ -62,6 +62,26 @@ CURVE = "3x curve of a channel"
 #: Recordings in which a sharp turn of the temperature may be taken for a step.
 CORNERS, _SEEDS["corners"], _CORNERS_A_SEED = "corners of temperature", 1_000_000, 15
 NULL, REAL, OUT, HIDDEN, TWO = "nothing", "real noise", "outside", "not recorded", "two at once"
+#: A step has an RMS about the mean of 3 floors, half its jump, as every effect's size is its RMS;
+#: a small one a jump of 3 floors.
+KINDS = ("nothing", "step", "shock", "hysteresis", "lag", "kink", "small step")
+_FLOOR_DPS, _JUMP_FLOORS = 0.002, {"step": 6.0, "small step": 3.0}
+_REST = {"kind": "rest", "s": [90, 150]}
+_HAND = {"kind": "hand", "s": [8, 16]}
+_SHOCK = {"kind": "vibration", "g": 4.0, "s": 2}
+#: Temperature by name: to degC, a minute.
+_PATHS = {
+    "slow": [{"to": 45.0, "minutes": 32}, {"minutes": 4}, {"to": 24.0, "minutes": 34}],
+    "fast": [
+        {"to": 50.0, "minutes": 5},
+        {"minutes": 20},
+        {"to": 20.0, "minutes": 7},
+        {"minutes": 18},
+        {"to": 40.0, "minutes": 5},
+        {"minutes": 10},
+    ],
+    "warm-up": [{"to": 41.0, "tau_s": 900, "minutes": 60}],
+}
 
 
 @dataclass(frozen=True)
@@ -153,28 +173,6 @@ def _pairs(seeds: int) -> Iterator[Device]:
     for k, pair in enumerate(PAIRS):
         for i in range(seeds):
             yield Device(TWO, _SEEDS["pair"] + 1000 * k + i, tuple((e, 2.0) for e in pair))
-
-
-#: A step has an RMS about the mean of 3 floors, half its jump, as every effect's size is its RMS;
-#: a small one a jump of 3 floors.
-KINDS = ("nothing", "step", "shock", "hysteresis", "lag", "kink", "small step")
-_FLOOR_DPS, _JUMP_FLOORS = 0.002, {"step": 6.0, "small step": 3.0}
-_REST = {"kind": "rest", "s": [90, 150]}
-_HAND = {"kind": "hand", "s": [8, 16]}
-_SHOCK = {"kind": "vibration", "g": 4.0, "s": 2}
-#: Temperature by name: to degC, a minute.
-_PATHS = {
-    "slow": [{"to": 45.0, "minutes": 32}, {"minutes": 4}, {"to": 24.0, "minutes": 34}],
-    "fast": [
-        {"to": 50.0, "minutes": 5},
-        {"minutes": 20},
-        {"to": 20.0, "minutes": 7},
-        {"minutes": 18},
-        {"to": 40.0, "minutes": 5},
-        {"minutes": 10},
-    ],
-    "warm-up": [{"to": 41.0, "tau_s": 900, "minutes": 60}],
-}
 
 
 def describe(seed: int) -> tuple[dict, str, int]:

@@ -19,6 +19,15 @@ from zerorate_tools.model.term import Term
 from ..public_data import BIN_TABLES, CLOSED_ALONE, CLOSED_TOGETHER, told_of
 from ..tables import machine_line, table
 
+#: Of the error before, and of a cubic's, that the error after may be; of a cubic's, the median.
+_MOST_OF_BEFORE, _MOST_OF_CUBIC, _MEDIAN = 1.0, 1.05, 0.7
+#: No temperature of a part is so far.
+_FAR_DEGC = 1e4
+_POWERS, _MOST_BENDS = 7, 12
+_G_DPS = 180 / np.pi
+_MOST = 5
+_LEAST_SAMPLES = 100  # a bin of one sample says nothing
+
 
 def real_rows(data: Path) -> dict[str, dict]:
     """Name -> figures in mdps (RMS over the axes, held out) and what was found, of every recording
@@ -107,10 +116,6 @@ def _noise(analysis) -> float:
     return round(float(1e3 * np.sqrt((np.vstack(changes) ** 2).mean() / 6)), 2)
 
 
-#: Of the error before, and of a cubic's, that the error after may be; of a cubic's, the median.
-_MOST_OF_BEFORE, _MOST_OF_CUBIC, _MEDIAN = 1.0, 1.05, 0.7
-
-
 def in_words(rows: dict[str, dict]) -> str:
     """The page of `zerorate bench real`: what is missed first, then every recording."""
     closed = {name: row for name, row in rows.items() if "of_cubic" in row}
@@ -141,11 +146,6 @@ def in_words(rows: dict[str, dict]) -> str:
 def _median(values: Iterable[float]) -> float:
     every = list(values)
     return float(np.median(every)) if every else float("nan")
-
-
-#: No temperature of a part is so far.
-_FAR_DEGC = 1e4
-_POWERS, _MOST_BENDS = 7, 12
 
 
 def cubic_left(analysis) -> list[NDArray[np.float64]] | None:
@@ -207,11 +207,6 @@ def _least_mean_square(left: NDArray[np.float64]) -> float:
     apart = np.maximum(own - 2 * e + own.T, 1e-300)
     share = np.clip((own - e) / apart, 0.0, 1.0)
     return float((own - 2 * share * (own - e) + share**2 * apart).min())
-
-
-_G_DPS = 180 / np.pi
-_MOST = 5
-_LEAST_SAMPLES = 100  # a bin of one sample says nothing
 
 
 @dataclass(frozen=True)

@@ -24,6 +24,9 @@ MOST_BYTES = 64 << 20
 _TASKS_A_WORKER = 8
 _CONNECT_S = 10
 _POLL_S = 0.1
+#: Of builtins alone: a worker without zerorate cannot even load a function of it.
+_LACKS = """next((n for n in ("numpy", "pandas", "pyarrow", "zerorate_tools", "zerorate")
+if __import__("importlib.util").util.find_spec(n) is None), "")"""
 
 
 def in_batches(
@@ -99,11 +102,6 @@ def _client_of(distributed, address: str) -> Client:
         client.close()
         raise
     return client
-
-
-#: Of builtins alone: a worker without zerorate cannot even load a function of it.
-_LACKS = """next((n for n in ("numpy", "pandas", "pyarrow", "zerorate_tools", "zerorate")
-if __import__("importlib.util").util.find_spec(n) is None), "")"""
 
 
 def _check_workers(client: Client, address: str) -> None:

@@ -21,6 +21,8 @@ NAMES = [f"{i} from {j}" if i != j else f"scale of {i}" for i in AXES for j in A
 REST_S = 5.0
 _LINE_S = 10.0
 _BAR = 30
+#: A window of 10 s, the shortest, ends this often.
+_LOOK_S = 2.5
 
 
 class Shown(Protocol):
@@ -125,10 +127,6 @@ def _table(sigma: np.ndarray):
 def shares(sigma: np.ndarray) -> np.ndarray:
     """Of the way from what a data sheet leaves open to what is asked for, in decades."""
     return np.clip(np.log(SIZES[-1] / sigma) / np.log(SIZES[-1] / KNOWN), 0.0, 1.0)
-
-
-#: A window of 10 s, the shortest, ends this often.
-_LOOK_S = 2.5
 
 
 class Guide:

@@ -20,6 +20,25 @@ from .plot import Line, Panel, Plot, Series
 # is about them (page.js).
 _STACKED_PX, _ALONE_PX, _BESIDE_PX, _UNDER_PX, _EDGE_PX = 120, 230, 300, 246, 64
 _UNSAFE = {ord(c): f"\\u{ord(c):04x}" for c in "<>&\u2028\u2029'"}
+#: Role -> colour on light ground, colour on dark ground.
+ROLES: dict[str, tuple[str, str]] = {
+    "before": ("#8d8d93", "#85858d"),
+    "after": ("#0072b2", "#56b4e9"),
+    "floor": ("#00795a", "#2fc49b"),
+    "heating": ("#c44e00", "#f08a45"),
+    "cooling": ("#0072b2", "#56b4e9"),
+    "held": ("#8d8d93", "#85858d"),
+    "x": ("#0072b2", "#56b4e9"),
+    "y": ("#c44e00", "#f08a45"),
+    "z": ("#00795a", "#2fc49b"),
+    "model": ("#1b1b1f", "#f2f2f4"),
+    "context": ("#6c6c74", "#a0a0a8"),
+    "event": ("#a8417f", "#e08abf"),
+    "long": ("#0072b2", "#56b4e9"),
+    "short": ("#d98200", "#e6a532"),
+    "any": ("#00795a", "#2fc49b"),
+    "now": ("#1b1b1f", "#f2f2f4"),
+}
 
 
 def page(
@@ -181,24 +200,3 @@ def _values(series: Series) -> dict[str, Any]:
 def _numbers(values: Iterable[float]) -> list[float | None]:
     """Five digits, which a screen cannot show; None where a line breaks."""
     return [float(f"{v:.5g}") if np.isfinite(v) else None for v in np.asarray(values, float)]
-
-
-#: Role -> colour on light ground, colour on dark ground.
-ROLES: dict[str, tuple[str, str]] = {
-    "before": ("#8d8d93", "#85858d"),
-    "after": ("#0072b2", "#56b4e9"),
-    "floor": ("#00795a", "#2fc49b"),
-    "heating": ("#c44e00", "#f08a45"),
-    "cooling": ("#0072b2", "#56b4e9"),
-    "held": ("#8d8d93", "#85858d"),
-    "x": ("#0072b2", "#56b4e9"),
-    "y": ("#c44e00", "#f08a45"),
-    "z": ("#00795a", "#2fc49b"),
-    "model": ("#1b1b1f", "#f2f2f4"),
-    "context": ("#6c6c74", "#a0a0a8"),
-    "event": ("#a8417f", "#e08abf"),
-    "long": ("#0072b2", "#56b4e9"),
-    "short": ("#d98200", "#e6a532"),
-    "any": ("#00795a", "#2fc49b"),
-    "now": ("#1b1b1f", "#f2f2f4"),
-}

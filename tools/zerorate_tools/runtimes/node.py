@@ -15,6 +15,9 @@ from .cache import fill, runtime_folder
 
 _OLDEST = 18
 _SYSTEM_CERTIFICATES = Path("/etc/ssl/certs/ca-certificates.crt")
+_HERE = Path(__file__).parent / "webassembly"
+_PACKAGE = "@micropython/micropython-webassembly-pyscript"
+_JOB_FILE = ".job.json"
 
 
 def node_command() -> list[str]:
@@ -99,11 +102,6 @@ def _complaint(stderr: str) -> str:
     lines = [line for line in stderr.strip().splitlines() if "complete log" not in line]
     reasons = [line for line in lines if "reason:" in line] or lines[-1:] or ["no message"]
     return reasons[0].removeprefix("npm error").strip()
-
-
-_HERE = Path(__file__).parent / "webassembly"
-_PACKAGE = "@micropython/micropython-webassembly-pyscript"
-_JOB_FILE = ".job.json"
 
 
 class Wasm(Runtime):

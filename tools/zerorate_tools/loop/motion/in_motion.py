@@ -17,6 +17,10 @@ from .rate_scale import RateScale, fit_rate_scale
 from .windows import LONGEST_S, moving_of
 
 _RATES = ("rate_x", "rate_y", "rate_z")
+LEVEL = 1e-4
+_RUN_S = 30.0
+#: Below this there is nothing to fix: a tenth of a millisecond moves a hand's motion by 0.03 dps.
+_LEAST_S = 1e-4
 
 
 @dataclass(frozen=True)
@@ -119,12 +123,6 @@ def slots_of(motion: InMotion) -> list[Slot]:
     terms = [Term(n, -float(f), float(f)) for n, f in zip(_RATES, t.fastest_dps)]
     columns = [(float(x), float(y), float(z)) for x, y, z in t.deployed.T]
     return [Slot(term, column, t.kind) for term, column in zip(terms, columns)]
-
-
-LEVEL = 1e-4
-_RUN_S = 30.0
-#: Below this there is nothing to fix: a tenth of a millisecond moves a hand's motion by 0.03 dps.
-_LEAST_S = 1e-4
 
 
 def timing_of(sessions_products: list[tuple[np.ndarray, float]]) -> Timing | None:

@@ -35,6 +35,11 @@ _TURNED_G, _TILTED_G = 0.5, 0.1
 #: Steps of the thermometer by which it may be wrong, and chi-squared of two axes (1 in 1,000) by
 #: which a step is off the slope.
 _OF_READING, _OFF_SLOPE = 1.1, 13.8
+#: Blocks between two steps that undo each other up to which they are a disturbance: none need lie
+#: between them whole.
+_DISTURBED = 2.0
+#: Cosine of two steps' sizes below which they undo each other.
+_UNDONE = -0.5
 
 
 def remove_steps(sessions: Sequence[Session]) -> list[Session]:
@@ -211,13 +216,6 @@ def _by_accelerometer(session, first, last) -> tuple[int | None, str]:
         return None, ""
     said = f"the accelerometer saw {seen[at]:.2g} g at that moment: mechanical stress or a knock"
     return at, said
-
-
-#: Blocks between two steps that undo each other up to which they are a disturbance: none need lie
-#: between them whole.
-_DISTURBED = 2.0
-#: Cosine of two steps' sizes below which they undo each other.
-_UNDONE = -0.5
 
 
 def hold_disturbed(regression, terms, recordings: int = 1) -> None:
