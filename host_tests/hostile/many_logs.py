@@ -27,6 +27,7 @@ from types import SimpleNamespace
 
 from zerorate_bench.foreign_logs import arrays, flights, phones, robots
 from zerorate_bench.foreign_logs.world import World
+from zerorate_tools.child import ALONE, MEMORY_MB
 from zerorate_tools.errors import ZerorateError
 from zerorate_tools.importers import read_foreign
 from zerorate_tools.importers.logs import apart
@@ -35,7 +36,6 @@ from zerorate_tools.recordings import read_recording, write_recording
 from host_tests.tools.killed_writers import recording
 
 MOST_MB = 600
-_ALONE = {"ARROW_DEFAULT_MEMORY_POOL": "system", "MALLOC_ARENA_MAX": "1", "OMP_NUM_THREADS": "1"}
 TIMES, OF_PARQUET = 20_000, 100_000
 _SAMPLES, _EACH_FORK, _MOST_S = 60, 2000, 10
 _at = mmap.mmap(-1, 9)  # the number of the mutant that a fork is at, and whether it is guarded
@@ -109,7 +109,7 @@ def in_this_process(reader, path, instance, advance):
     """In the place of `table_apart`: the child's work, and its limit, without a child."""
     out = os.memfd_create("rows")
     _at[8] = 1
-    resource.setrlimit(resource.RLIMIT_DATA, (apart.MEMORY_MB << 20, resource.RLIM_INFINITY))
+    resource.setrlimit(resource.RLIMIT_DATA, (MEMORY_MB << 20, resource.RLIM_INFINITY))
     try:
         words = apart.written(reader, path, instance, os.dup(out))
     finally:
@@ -220,8 +220,8 @@ class Trial:
 
 def main():
     """Print what fell and a line of each format; 1 if anything did."""
-    if os.environ | _ALONE != os.environ:  # they are read as a process begins
-        os.execve(sys.executable, [sys.executable, *sys.orig_argv[1:]], os.environ | _ALONE)
+    if os.environ | ALONE != os.environ:  # they are read as a process begins
+        os.execve(sys.executable, [sys.executable, *sys.orig_argv[1:]], os.environ | ALONE)
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("formats", nargs="*", choices=[*FORMATS, []], help="default: all")
     parser.add_argument("--times", type=int, help=f"of each; {TIMES}, of Parquet {OF_PARQUET}")

@@ -6,13 +6,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from zerorate_tools import cli
-from zerorate_tools.importers.logs import apart
 from zerorate_tools.importers.logs.ros_bag import read
 from zerorate_tools.kernels.library import zig_cc
-from zerorate_tools.recordings import parquet_format, write_recording
-
-from ..tools.killed_writers import recording
 
 _TRAP = "open('sprung', 'w').close(); raise SystemExit(3)\n"
 _BEGINNINGS = {
@@ -57,15 +52,3 @@ def test_a_database_whose_name_has_marks_of_a_uri_is_read_and_nothing_is_made(tm
     with pytest.raises(Exception, match="no"):  # it has no topic, which is said of this very file
         read(path)
     assert [p.name for p in tmp_path.iterdir()] == [path.name]
-
-
-@pytest.mark.parametrize("command", ["replay", "close", "allan", "compare"])
-def test_a_parquet_that_ends_its_reader_ends_no_command(tmp_path, monkeypatch, capsys, command):
-    write_recording(recording(1, 50), tmp_path / "x.parquet")
-    dies = [sys.executable, "-c", "import os; os.abort()"]
-    monkeypatch.setattr(apart, "python_child", lambda *words: dies)
-    monkeypatch.setattr(parquet_format, "open_file", None)  # not in this process
-    out = [] if command in ("allan", "compare") else ["--out", str(tmp_path / "out.parquet")]
-    assert cli.main([command, str(tmp_path / "x.parquet"), *out]) == 2
-    said = capsys.readouterr().err
-    assert "x.parquet: its reader ended with -6" in said and len(said.splitlines()) == 1

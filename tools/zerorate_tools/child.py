@@ -1,8 +1,18 @@
-"""The command of a Python child that runs no code from the folder one stands in."""
+"""A Python child that runs no code from the folder one stands in, and its limits."""
 
 import os
+import signal
 import sys
 
+MEMORY_MB = 400
+#: The environment of a child that reads what may be damaged: nothing of it runs at once.
+ALONE = {
+    "ARROW_DEFAULT_MEMORY_POOL": "system",
+    "MALLOC_ARENA_MAX": "1",
+    "OMP_NUM_THREADS": "1",
+    "OPENBLAS_NUM_THREADS": "1",
+}
+_CPU_S, _CPU_S_PER_MB = 60, 6
 # -I leaves out the working folder and PYTHONPATH; the parent's own paths come as an argument.
 _BEGIN = "import os, sys; sys.path[:] = sys.argv.pop().split(os.pathsep); "
 
@@ -11,3 +21,27 @@ def python_child(code: str, *arguments: str) -> list[str]:
     """The command that runs code, which sees the arguments from sys.argv[1] on."""
     paths = os.pathsep.join(filter(None, sys.path))
     return [sys.executable, "-I", "-c", _BEGIN + code, *arguments, paths]
+
+
+def limit_myself(size: int) -> None:
+    """In the child: no more memory or processor, from now on, than a file of so many bytes needs.
+
+    Windows has no such limits.
+    """
+    try:
+        import resource
+    except ImportError:
+        return
+    most = MEMORY_MB << 20
+    resource.setrlimit(resource.RLIMIT_DATA, (most, most))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    used = resource.getrusage(resource.RUSAGE_SELF)
+    seconds = int(used.ru_utime + used.ru_stime + _CPU_S + _CPU_S_PER_MB * size / 1e6)
+    resource.setrlimit(resource.RLIMIT_CPU, (seconds, resource.RLIM_INFINITY))
+
+
+def how_it_ended(code: int) -> tuple[str, str]:
+    """Of a child that ended before it had read a file: the problem, and what to do."""
+    if code == -getattr(signal, "SIGXCPU", 24):
+        return "takes too long to read", "cut it into parts"
+    return f"its reader ended with {code}", "the file is damaged: copy it again"

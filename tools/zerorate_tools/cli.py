@@ -10,7 +10,6 @@ import sys
 from collections.abc import Sequence
 from importlib import import_module
 from importlib.util import find_spec
-from pathlib import Path
 from types import FrameType
 from typing import Any, NoReturn, TextIO
 
@@ -44,7 +43,6 @@ def main(argv: Sequence[str] | None = None) -> int:
 
             argcomplete.autocomplete(found)
         arguments = found.parse_args(given or ["--help"])
-        _read_in_safety(arguments)
         return arguments.run(arguments) or 0
     except ZerorateError as error:
         return _complain(str(error), error.exit_code)
@@ -75,16 +73,6 @@ class _Printable:
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._stream, name)
-
-
-def _read_in_safety(arguments: argparse.Namespace) -> None:
-    """Raise BadRecording where a child with limits cannot read one of the command's Parquet logs:
-    in this process a damaged one might end more than its own reading."""
-    for log in getattr(arguments, "logs", None) or [getattr(arguments, "log", None)]:
-        if isinstance(log, Path) and log.suffix == ".parquet" and log.is_file():
-            from .importers.logs.apart import read_in_safety
-
-            read_in_safety("columnar", log)
 
 
 def _end(number: int, frame: FrameType | None) -> None:

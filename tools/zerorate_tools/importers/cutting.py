@@ -28,6 +28,8 @@ def cut(
     try:
         opened = open_recording(path, keep_gaps=True)
     except BadRecording:
+        if path.suffix == ".parquet":  # no table of text
+            raise
         opened = None
     with written_together(folder) as draft:
         parts = (

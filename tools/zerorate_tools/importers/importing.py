@@ -174,14 +174,10 @@ def _opened(
     _require(path)
     if path.is_file() and path.stat().st_size == 0:
         raise BadRecording(path, "empty file", do="name another file")
-    own = None if how.mapping or path.suffix == ".parquet" else _own_form(path, how)
+    own = None if how.mapping else _own_form(path, how)
     if own is not None:
         return own
     with table_of(path, how.instance, advance) as table:
-        # only what a child has read in safety is opened here
-        own = _own_form(path, how) if table.own_form and not how.mapping else None
-        if own is not None:
-            return own
         source = _gathered(table, path, how, folder)
     files.callback(source.found.spool.close)
     return source

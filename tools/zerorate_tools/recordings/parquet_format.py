@@ -34,11 +34,6 @@ def open_file(path: Path) -> pq.ParquetFile:
         raise BadRecording(path, problem, do="copy the file again") from error
 
 
-def has_scales(file: pq.ParquetFile) -> bool:
-    """Whether the schema's metadata says that this is a recording."""
-    return _KEY in (file.schema_arrow.metadata or {})
-
-
 def read_scales(file: pq.ParquetFile, path: Path) -> Scales:
     """The scales in the schema's metadata. Raises BadRecording."""
     text = (file.schema_arrow.metadata or {}).get(_KEY)

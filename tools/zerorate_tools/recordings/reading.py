@@ -11,6 +11,7 @@ from ..errors import BadRecording, refuse_odd_name
 from . import csv_format, parquet_format
 from .checks import BatchChecker, check_names
 from .drafts import settle
+from .guarded import read_in_safety
 from .recording import Columns, Recording, in_order
 from .scales import Scales
 from .unfinished import unfinished_of
@@ -58,6 +59,7 @@ class OpenRecording:
             check_names(self.column_names, self.path)
             self.scales = csv_format.read_scales(self.path, self.column_names)
         elif self.path.name.endswith(parquet_format.SUFFIXES):
+            read_in_safety(self.path)
             file = self._parquet = parquet_format.open_file(self.path)
             self.column_names = list(file.schema_arrow.names)
             check_names(self.column_names, self.path)

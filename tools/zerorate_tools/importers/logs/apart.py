@@ -5,7 +5,6 @@ Whatever a damaged file makes its parser do, it ends there: what comes back is r
 
 import json
 import os
-import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -15,23 +14,15 @@ from pathlib import Path
 
 import pyarrow as pa
 
-from ...child import python_child
+from ...child import ALONE, MEMORY_MB, how_it_ended, limit_myself, python_child
 from ...errors import BadRecording, MissingLibrary
 from ..samples.spool import PLACE
 from ..tables.table import Chunk, Table
 
-MEMORY_MB = 400
-_CPU_S, _CPU_S_PER_MB = 60, 6
 _WORDS_BYTES = 1 << 16
 _ABOUT, _READ = b"about", b"read"
-_TOLD = ("names", "mapping", "sensor", "lsb", "notes", "words", "own_form")
+_TOLD = ("names", "mapping", "sensor", "lsb", "notes", "words")
 _RUN = "from zerorate_tools.importers.logs.apart import main; main()"
-_ALONE = {
-    "ARROW_DEFAULT_MEMORY_POOL": "system",
-    "MALLOC_ARENA_MAX": "1",
-    "OMP_NUM_THREADS": "1",
-    "OPENBLAS_NUM_THREADS": "1",
-}
 
 
 @contextmanager
@@ -48,7 +39,7 @@ def table_apart(
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
-        env=os.environ | _ALONE,
+        env=os.environ | ALONE,
     )
     try:
         yield _Rows(child, path, advance).table
@@ -58,13 +49,6 @@ def table_apart(
         for pipe in (child.stdout, child.stderr):
             assert pipe is not None
             pipe.close()
-
-
-def read_in_safety(reader: str, path: Path) -> None:
-    """Read a file to its end in the child and keep nothing. Raises BadRecording."""
-    with table_apart(reader, path, 0, lambda read_bytes: None) as table:
-        for _ in table.chunks([]):
-            pass
 
 
 class _Rows:
@@ -126,10 +110,7 @@ class _Rows:
             return MissingLibrary(words["library"])
         problem, do = words.get("problem"), words.get("do", "copy the file again")
         if problem is None:
-            code = self._child.wait()
-            late = code == -getattr(signal, "SIGXCPU", 24)
-            problem = "takes too long to read" if late else f"its reader ended with {code}"
-            do = "cut it into parts" if late else "the file is damaged: copy it again"
+            problem, do = how_it_ended(self._child.wait())
         return BadRecording(self._path, problem, do=do)
 
 
@@ -140,7 +121,7 @@ def main() -> None:
     silent = os.open(os.devnull, os.O_WRONLY)
     os.dup2(silent, 1)
     os.dup2(silent, 2)
-    _limit(_size(path))
+    limit_myself(_size(path))
     words = written(reader, path, instance, out)
     # a parent that is gone reads nothing
     if os.getppid() == parent or os.name == "nt":
@@ -186,15 +167,3 @@ def _write(table: Table, out: int) -> None:
 def _size(path: Path) -> int:
     files = path.rglob("*") if path.is_dir() else [path]
     return sum(file.stat().st_size for file in files if file.is_file())
-
-
-def _limit(size: int) -> None:
-    try:
-        import resource
-    except ImportError:  # Windows has no such limits
-        return
-    most = MEMORY_MB << 20
-    resource.setrlimit(resource.RLIMIT_DATA, (most, most))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    seconds = int(_CPU_S + _CPU_S_PER_MB * size / 1e6)
-    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 5))

@@ -9,7 +9,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from ...errors import BadRecording
-from ...recordings.parquet_format import batches, has_scales, open_file
+from ...recordings.parquet_format import batches, open_file
 from ..tables.sniffing import MOST_WORDS
 from ..tables.table import Chunk, Table
 
@@ -50,8 +50,7 @@ def read(path: Path, instance: int = 0) -> Table:
             yield Chunk(np.arange(place, place + batch.num_rows), columns)
             place += batch.num_rows
 
-    own = not feather and has_scales(source)
-    return Table(names, chunks, calendar=dates, words=words, own_form=own)
+    return Table(names, chunks, calendar=dates, words=words)
 
 
 def _words(batch: pa.RecordBatch) -> dict[str, list[str]]:

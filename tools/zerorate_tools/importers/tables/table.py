@@ -26,8 +26,7 @@ class Table:
     of dates and times, which come as seconds since 1970. lsb: scales that the format states, by the
     names that Options has for them. words: columns of words, of which there are few: they come as
     each word's number. said_hz: what the file says of its rate. read_bytes: of the file, so far,
-    where the reader knows. own_form: it is a recording of this project's already. parts: files
-    whose chunks take turns.
+    where the reader knows. parts: files whose chunks take turns.
     """
 
     names: list[str]
@@ -41,7 +40,6 @@ class Table:
     notes: list[str] = field(default_factory=list)
     said_hz: float | None = None
     read_bytes: float = 0.0
-    own_form: bool = False
     parts: int = 1
 
     def first_rows(self, names: list[str]) -> dict[str, np.ndarray]:

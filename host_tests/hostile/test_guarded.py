@@ -1,0 +1,64 @@
+"""A Parquet file that ends its parser ends a child, whoever reads it, and no command or program."""
+
+import os
+import sys
+
+import pytest
+from zerorate_tools import cli
+from zerorate_tools.errors import BadRecording
+from zerorate_tools.fleet.devices import Device
+from zerorate_tools.fleet.job import Job, run_device
+from zerorate_tools.importers.logs import apart
+from zerorate_tools.recordings import guarded, parquet_format, read_recording, write_recording
+
+from ..tools.killed_writers import recording
+
+_ENDED = "x.parquet: its reader ended with -6; the file is damaged: copy it again"
+
+
+@pytest.fixture
+def log(tmp_path):
+    write_recording(recording(1, 50), tmp_path / "x.parquet")
+    return tmp_path / "x.parquet"
+
+
+@pytest.fixture
+def deadly(monkeypatch, log):
+    """A log at which every child of a reader dies."""
+    dies = [sys.executable, "-c", "import os; os.abort()"]
+    for module in (apart, guarded):
+        monkeypatch.setattr(module, "python_child", lambda *words: dies)
+    monkeypatch.setattr(guarded, "_readers", {})
+    monkeypatch.setattr(parquet_format, "open_file", None)  # not in this process
+    return log
+
+
+@pytest.mark.parametrize("command", ["import", "cut", "replay", "close", "allan", "compare"])
+def test_it_is_one_line_of_a_command(deadly, capsys, command):
+    more = {"allan": [], "compare": [], "cut": ["--at-row", "9", "--out", "parts"]}
+    out = more.get(command, ["--out", str(deadly.with_name("out.parquet"))])
+    assert cli.main([command, str(deadly), *out]) == 2
+    said = capsys.readouterr().err
+    assert _ENDED in said and len(said.splitlines()) == 1
+
+
+def test_it_is_an_error_in_python_and_a_failure_of_one_device(deadly):
+    with pytest.raises(BadRecording, match="its reader ended with -6"):
+        read_recording(deadly)
+    (failure,) = run_device(Job(), Device("a", (str(deadly),)))["failures"]
+    assert _ENDED in failure["reason"]
+
+
+def test_a_reader_that_was_killed_or_is_a_parents_is_replaced(log, tmp_path, monkeypatch):
+    monkeypatch.setattr(guarded, "_readers", {})
+    assert len(read_recording(log)) == 50
+    reader = guarded._readers[os.getpid()]
+    reader._child.kill()
+    reader._child.wait()
+    log.touch()
+    assert len(read_recording(log)) == 50
+    log.touch()
+    if (child := os.fork()) == 0:
+        os._exit(len(read_recording(log)) != 50 or len(guarded._readers) != 2)
+    assert os.waitpid(child, 0)[1] == 0
+    assert len(read_recording(log)) == 50
