@@ -28,6 +28,7 @@ ATTACKS = {
     "models": ("cuts, turned bits, noise", [*_PYTEST, "host_tests/tools", "-k", "test_model"]),
     "readers": ("damaged files", [*_PYTEST, "host_tests/hostile", "-k", "any or mat_of_one"]),
     "logs": ("damaged logs of 15 formats", ["-m", "host_tests.hostile.many_logs"]),
+    "commands": ("odd files, names, numbers, places", ["-m", "host_tests.hostile.odd_commands"]),
     "memory": (
         "six files that unpack to gigabytes",
         [*_PYTEST, "-s", "host_tests/hostile/test_bombs.py"],

@@ -1,10 +1,12 @@
 """A Parquet file that ends its parser ends a child, whoever reads it, and no command or program."""
 
 import os
+import subprocess
 import sys
 
 import pytest
 from zerorate_tools import cli
+from zerorate_tools.child import MEMORY_MB
 from zerorate_tools.errors import BadRecording
 from zerorate_tools.fleet.devices import Device
 from zerorate_tools.fleet.job import Job, run_device
@@ -47,6 +49,14 @@ def test_it_is_an_error_in_python_and_a_failure_of_one_device(deadly):
         read_recording(deadly)
     (failure,) = run_device(Job(), Device("a", (str(deadly),)))["failures"]
     assert _ENDED in failure["reason"]
+
+
+def test_limits_that_a_user_set_lower_stop_no_reader(log):
+    whose = "import resource as r; r.setrlimit(r.RLIMIT_CPU, (20, 20)); "
+    whose += f"r.setrlimit(r.RLIMIT_DATA, ({MEMORY_MB << 20},) * 2); "
+    reads = f"import zerorate_tools as z; print(len(z.read_recording({str(log)!r})))"
+    done = subprocess.run([sys.executable, "-c", whose + reads], capture_output=True, text=True)
+    assert done.stdout == "50\n", done.stderr
 
 
 def test_a_reader_that_was_killed_or_is_a_parents_is_replaced(log, tmp_path, monkeypatch):

@@ -23,7 +23,17 @@ _BEGINNINGS = {
 @pytest.fixture
 def trapped(tmp_path, monkeypatch):
     """A working folder in which every module that a child imports is a trap."""
-    for name in ("pyulog", "numpy", "scipy", "pymavlink", "rosbags", "ziglang", "pyarrow", "json"):
+    for name in (
+        "multiprocessing",
+        "pyulog",
+        "numpy",
+        "scipy",
+        "pymavlink",
+        "rosbags",
+        "ziglang",
+        "pyarrow",
+        "json",
+    ):
         (tmp_path / f"{name}.py").write_text(_TRAP)
     monkeypatch.chdir(tmp_path)
     return tmp_path
@@ -35,6 +45,16 @@ def test_an_import_runs_nothing_of_the_working_folder(trapped, name):
     zerorate = Path(sys.executable).with_name("zerorate")
     done = subprocess.run([zerorate, "import", name, "--out", "o.parquet"], capture_output=True)
     assert done.returncode in (1, 2), done.stderr
+    assert not (trapped / "sprung").exists()
+
+
+@pytest.mark.skipif(sys.version_info < (3, 11), reason="Python cannot be told to, before 3.11")
+def test_a_fleet_runs_nothing_of_the_working_folder(trapped):
+    (trapped / "x.csv").write_text("t_us,gx,gy,gz\n1,2,3,4\n")
+    zerorate = Path(sys.executable).with_name("zerorate")
+    fleet = [zerorate, "fleet", "x.csv", "--out", "o", "--workers", "1"]
+    subprocess.run(fleet, capture_output=True)
+    assert (trapped / "o" / "fleet.json").exists()
     assert not (trapped / "sprung").exists()
 
 

@@ -15,6 +15,7 @@ from zerorate.storage.learned_store import LearnedStore
 from zerorate_fakes.memory import FakeMemory, PowerCut
 from zerorate_tools.cli import main
 from zerorate_tools.kernels.export import export_c
+from zerorate_tools.model import read_model, write_model
 
 from ..firmware import trace
 from ..firmware.trace_on_host import checksums, corrector_for, frames
@@ -52,6 +53,15 @@ def test_it_ends_the_golden_trace_in_the_golden_state(tmp_path, golden):
         made.zerorate_update(z, (ctypes.c_int32 * 7)(*row.tolist()), dt)
     state = array("i", z[: len(corrector.state)])
     assert checksums(state.tobytes(), b"")["state"] == golden["default"]["state"]
+
+
+def test_a_model_may_be_named_by_its_readable_twin(tmp_path, matrix_model):
+    model = read_model(matrix_model.path)
+    write_model(model, tmp_path)
+    for kind in ("bin", "json"):
+        export_c(tmp_path / kind, model=tmp_path / f"model.{kind}")
+    of_bin, of_json = ((tmp_path / kind / "zerorate.c").read_text() for kind in ("bin", "json"))
+    assert of_bin == of_json
 
 
 def test_a_model_is_applied_to_every_sample_as_on_a_board(tmp_path, matrix_model):

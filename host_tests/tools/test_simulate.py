@@ -224,7 +224,7 @@ def test_yaml_and_toml_describe_alike(tmp_path):
             "no channel 'vdd_mv'; add .channels.vdd_mv",
         ),
         (device(channels={"load": {"kind": "none"}}), "channel load"),
-        ("nowhere", "No such file.*warm-up-a"),
+        ("nowhere", "no such file.*warm-up-a"),
     ],
 )
 def test_an_impossible_description_is_refused_in_one_line(description, complaint):

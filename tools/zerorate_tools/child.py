@@ -32,16 +32,21 @@ def limit_myself(size: int) -> None:
         import resource
     except ImportError:
         return
-    most = MEMORY_MB << 20
-    resource.setrlimit(resource.RLIMIT_DATA, (most, most))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     used = resource.getrusage(resource.RUSAGE_SELF)
-    seconds = int(used.ru_utime + used.ru_stime + _CPU_S + _CPU_S_PER_MB * size / 1e6)
-    resource.setrlimit(resource.RLIMIT_CPU, (seconds, resource.RLIM_INFINITY))
+    cpu_s = int(used.ru_utime + used.ru_stime + _CPU_S + _CPU_S_PER_MB * size / 1e6)
+    for what, most in (
+        (resource.RLIMIT_DATA, MEMORY_MB << 20),
+        (resource.RLIMIT_CORE, 0),
+        (resource.RLIMIT_CPU, cpu_s),
+    ):
+        hard = resource.getrlimit(what)[1]  # which a user may have set lower
+        resource.setrlimit(what, (most if hard < 0 else min(most, hard), hard))
 
 
 def how_it_ended(code: int) -> tuple[str, str]:
     """Of a child that ended before it had read a file: the problem, and what to do."""
     if code == -getattr(signal, "SIGXCPU", 24):
         return "takes too long to read", "cut it into parts"
+    if code > 0:  # no parser's doing
+        return f"its reader ended with {code}", "look whether `ulimit -a` allows it too little"
     return f"its reader ended with {code}", "the file is damaged: copy it again"

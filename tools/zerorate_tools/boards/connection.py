@@ -57,7 +57,7 @@ def connected(port: str, go_on: bool = True) -> Iterator:
         raise MissingLibrary("mpremote") from error
     try:
         transport = SerialTransport(port, timeout=2)
-    except (TransportError, OSError) as error:
+    except (TransportError, OSError, ValueError) as error:  # the last: a URL of no known kind
         raise BoardError(f"{port}: {_why_closed(port)}") from error
     try:
         _stop(transport)

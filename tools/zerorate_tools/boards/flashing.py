@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from importlib.resources import files
 from pathlib import Path, PurePosixPath
 
-from ..errors import InFile
+from ..small_file import bytes_of
 from .compiling import board_files, machine_code, mpy_version
 from .connection import BoardError, BoardFacts, ask, connected, told
 from .parts import PACKAGES, REST, chosen_parts, parts_there
@@ -78,15 +78,8 @@ def _own_files(main: Path | None, model: Path | None) -> dict[PurePosixPath, byt
 
         found[PurePosixPath("model.bin")] = encoded(read_model(model))
     if main is not None:
-        found[PurePosixPath("main.py")] = _read(Path(main))
+        found[PurePosixPath("main.py")] = bytes_of(main, "name a program")
     return found
-
-
-def _read(path: Path) -> bytes:
-    try:
-        return path.read_bytes()
-    except OSError as error:
-        raise InFile(path, f"cannot be read: {error.strerror}", do="name a program") from error
 
 
 def _told(port: str, parts, extra, say, only: bool) -> Flashed:

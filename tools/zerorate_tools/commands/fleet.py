@@ -4,6 +4,7 @@ import argparse
 from pathlib import Path
 
 from .as_json import add_json, print_json
+from .numbers_given import above_zero
 
 
 def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -34,7 +35,7 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
     parser.add_argument("--model", type=Path, metavar="FILE", help="an effect model to load")
     parser.add_argument(
         "--minutes",
-        type=_positive,
+        type=above_zero,
         default=5.0,
         metavar="N",
         help="of a new device, to try the prior on (5)",
@@ -79,11 +80,4 @@ def _count(text: str) -> int:
     number = int(text)
     if number < 1:
         raise argparse.ArgumentTypeError(f"{text} is not 1 or more")
-    return number
-
-
-def _positive(text: str) -> float:
-    number = float(text)
-    if not 0 < number < 1e6:
-        raise argparse.ArgumentTypeError(f"{text} is not above 0")
     return number

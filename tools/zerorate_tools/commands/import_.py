@@ -1,11 +1,11 @@
 """`zerorate import`: foreign recordings into the project's own form."""
 
 import argparse
-from math import isfinite
 from pathlib import Path
 from typing import Any
 
 from .as_json import add_json, print_json
+from .numbers_given import above_zero, finite
 
 _EPILOG = """\
 A mapping names a column of the recording, where it comes from, and its unit:
@@ -50,11 +50,11 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
     )
     parser.add_argument("--sensor", metavar="NAME", help="the part, for the record")
     chosen = "scale to write; chosen where it is not given"
-    parser.add_argument("--gyro-lsb-per-dps", type=_above_zero, metavar="N", help=chosen)
-    parser.add_argument("--accel-lsb-per-g", type=_above_zero, metavar="N", help=chosen)
-    parser.add_argument("--temp-lsb-per-degc", type=_above_zero, metavar="N", help=chosen)
+    parser.add_argument("--gyro-lsb-per-dps", type=above_zero, metavar="N", help=chosen)
+    parser.add_argument("--accel-lsb-per-g", type=above_zero, metavar="N", help=chosen)
+    parser.add_argument("--temp-lsb-per-degc", type=above_zero, metavar="N", help=chosen)
     parser.add_argument(
-        "--temp-offset-degc", type=_finite, metavar="N", help="temperature of a raw reading of 0"
+        "--temp-offset-degc", type=finite, metavar="N", help="temperature of a raw reading of 0"
     )
     for kind in ("time", "gyro", "accel", "temp"):
         parser.add_argument(f"--{kind}-unit", metavar="UNIT", help="where a mapping names none")
@@ -106,18 +106,4 @@ def _mapping(text: str) -> Any:
 def _hz(text: str) -> float:
     """A rate, or a fraction: 0.0666667 for 1/15 would be a row off after some hours."""
     over, slash, under = text.partition("/")
-    return _above_zero(over) / (_above_zero(under) if slash else 1.0)
-
-
-def _above_zero(text: str) -> float:
-    value = _finite(text)
-    if value <= 0:
-        raise argparse.ArgumentTypeError(f"{text} is not above 0")
-    return value
-
-
-def _finite(text: str) -> float:
-    value = float(text)
-    if not isfinite(value):
-        raise argparse.ArgumentTypeError(f"{text} is no finite number")
-    return value
+    return above_zero(over) / (above_zero(under) if slash else 1.0)

@@ -5,6 +5,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from .numbers_given import above_zero
+
 
 def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     parser = subparsers.add_parser(
@@ -19,7 +21,9 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
     parser.add_argument(
         "--recover", type=Path, metavar="FILE", help="finish the .partial.csv of a killed one"
     )
-    parser.add_argument("--seconds", type=float, metavar="S", help="end by itself after this long")
+    parser.add_argument(
+        "--seconds", type=above_zero, metavar="S", help="end by itself after this long"
+    )
     parser.add_argument(
         "--guide", action="store_true", help="say how to turn it in the hand, until all is known"
     )
@@ -45,7 +49,8 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
     parser.set_defaults(run=run)
 
 
-def run(arguments: argparse.Namespace) -> None:
+def run(arguments: argparse.Namespace) -> int:
+    """Record, or finish a recording; 1 where no sample came."""
     from ..errors import ZerorateError
 
     if (arguments.port is None) == (arguments.recover is None):
@@ -55,7 +60,8 @@ def run(arguments: argparse.Namespace) -> None:
     elif arguments.out is None:
         raise ZerorateError("name the file to record into by --out FILE")
     else:
-        _record(arguments)
+        return _record(arguments)
+    return 0
 
 
 def _recover(arguments: argparse.Namespace) -> None:
@@ -66,10 +72,11 @@ def _recover(arguments: argparse.Namespace) -> None:
     print(f"{target}: {samples} samples of {arguments.recover}")
 
 
-def _record(arguments: argparse.Namespace) -> None:
+def _record(arguments: argparse.Namespace) -> int:
     from ..boards.recording import record
     from ..progress import progress
     from ..recordings.growing import left_over
+    from ..small_file import text_of
 
     for partial in left_over(arguments.out):
         finish = f"zerorate record --recover {partial} finishes it"
@@ -77,18 +84,17 @@ def _record(arguments: argparse.Namespace) -> None:
     names = ("address", "odr_hz", "full_scale_dps", "full_scale_g", "dlpf_hz", "part", "setup")
     options = {k: v for k in names if (v := getattr(arguments, k)) is not None}
     if "setup" in options:
-        options["setup"] = options["setup"].read_text(encoding="utf-8")
+        options["setup"] = text_of(options["setup"], "name MicroPython source")
     if arguments.guide:
-        _guided(arguments, options)
-        return
+        return _guided(arguments, options)
     with progress(f"recording {arguments.port}", arguments.seconds) as done:
         result = record(
             arguments.port, arguments.out, seconds=arguments.seconds, done=done, **options
         )
-    print(_made(arguments.out, result))
+    return _made(arguments.out, result)
 
 
-def _guided(arguments: argparse.Namespace, options: dict[str, Any]) -> None:
+def _guided(arguments: argparse.Namespace, options: dict[str, Any]) -> int:
     """Record until every entry is known; say what is not where it ends before."""
     from ..boards.recording import FAKE, record
     from ..guide import Guide, screen, unknown
@@ -101,11 +107,14 @@ def _guided(arguments: argparse.Namespace, options: dict[str, Any]) -> None:
             heard=guide.heard,
             **options,
         )
-    print(_made(arguments.out, result))
+    code = _made(arguments.out, result)
     if guide.known is not None and not guide.known.all_known:
         print(f"not known yet: {', '.join(unknown(guide.known))}")
-    print(f"next: zerorate close {arguments.out} --out closed")
+    if not code:
+        print(f"next: zerorate close {arguments.out} --out closed")
+    return code
 
 
-def _made(out: Path, result: Any) -> str:
-    return f"{out}: {result}" if result.samples else "no sample came, nothing is written"
+def _made(out: Path, result: Any) -> int:
+    print(f"{out}: {result}" if result.samples else "no sample came, nothing is written")
+    return 0 if result.samples else 1

@@ -71,10 +71,10 @@ def run(arguments: argparse.Namespace) -> None:
         return time.time() - arguments.state.stat().st_mtime
 
     sinks: list[Sink] = []
-    if arguments.socket:
-        sinks.append(UnixSocket(arguments.socket))
     if arguments.udp:
         sinks.append(Datagrams(arguments.udp, arguments.remote))
+    if arguments.socket:  # last: it leaves a file where the other is refused
+        sinks.append(UnixSocket(arguments.socket))
     # systemd ends a service with SIGTERM; Ctrl-C and it do the same
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     storage = FileStorage(str(arguments.state))

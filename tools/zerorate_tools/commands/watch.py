@@ -3,6 +3,7 @@
 import argparse
 from pathlib import Path
 
+from .numbers_given import above_zero
 from .replay import add_sources
 
 
@@ -15,9 +16,11 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         "a board's serial port, or /dev/i2c-N.",
     )
     parser.add_argument("source", metavar="SOURCE", help="run.csv, /dev/ttyACM0 or /dev/i2c-1")
-    parser.add_argument("--for", dest="seconds", type=_positive, metavar="SECONDS", help="then end")
+    parser.add_argument(
+        "--for", dest="seconds", type=above_zero, metavar="SECONDS", help="then end"
+    )
     parser.add_argument("--once", action="store_true", help="show what is there, and end")
-    parser.add_argument("--every", type=_positive, metavar="SECONDS", help="between two looks")
+    parser.add_argument("--every", type=above_zero, metavar="SECONDS", help="between two looks")
     parser.add_argument("--plain", action="store_true", help="lines, on a terminal too")
     parser.add_argument("--model", type=Path, metavar="FILE", help="an effect model to load")
     add_sources(parser)
@@ -29,6 +32,7 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
 
 def run(arguments: argparse.Namespace) -> int:
     """Watch; 1 where no sample ever came."""
+    from ..small_file import text_of
     from ..watch.options import WatchOptions
     from ..watch.watching import watch
 
@@ -39,13 +43,6 @@ def run(arguments: argparse.Namespace) -> int:
         plain=arguments.plain,
         settings={"motion": arguments.motion, "gravity": arguments.gravity},
         model=arguments.model,
-        setup=arguments.setup.read_text(encoding="utf-8") if arguments.setup else "",
+        setup=text_of(arguments.setup, "name MicroPython source") if arguments.setup else "",
     )
     return 0 if watch(arguments.source, options) else 1
-
-
-def _positive(text: str) -> float:
-    number = float(text)
-    if not 0 < number < 1e9:
-        raise argparse.ArgumentTypeError(f"{text} is not above 0")
-    return number

@@ -8,6 +8,7 @@ import os
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from tempfile import gettempdir
 from typing import TYPE_CHECKING, Any
 
 from ..errors import MissingLibrary, ZerorateError
@@ -75,15 +76,25 @@ def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterato
                 "distributed.deploy.lost-worker-timeout": "1 hour",
             }
         ),
-        distributed.LocalCluster(
-            n_workers=workers or os.cpu_count() or 1,
-            threads_per_worker=1,
-            dashboard_address="127.0.0.1:0",
-            silence_logs=logging.CRITICAL,
-        ) as local,
+        _started(distributed, workers or os.cpu_count() or 1) as local,
         distributed.Client(local) as client,
     ):
         yield client
+
+
+def _started(distributed, workers: int) -> Any:
+    """A cluster of processes of this machine. Raises ZerorateError where none can begin."""
+    os.environ["PYTHONSAFEPATH"] = "1"  # or they import from the working folder, before 3.11 still
+    try:
+        return distributed.LocalCluster(
+            n_workers=workers,
+            threads_per_worker=1,
+            dashboard_address="127.0.0.1:0",
+            silence_logs=logging.CRITICAL,
+        )
+    except (OSError, RuntimeError) as error:
+        room = f"make room in {gettempdir()}, or ask for fewer --workers"
+        raise ZerorateError(f"no worker can be started here: {error}; {room}") from error
 
 
 def _client_of(distributed, address: str) -> Client:

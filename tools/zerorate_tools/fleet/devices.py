@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from glob import glob, has_magic
 from os import PathLike
+from os.path import realpath
 from pathlib import Path, PurePosixPath
 from urllib.parse import unquote
 
@@ -48,7 +49,7 @@ def devices_of(
     named = [str(source) for source in sources]
     here = [source for source in named if not is_url(source)]
     urls = [url for source in named if is_url(source) for url in urls_of(source)]
-    files = [str(path) for path in _files(here, Path(without).resolve() if without else None)]
+    files = [str(path) for path in _files(here, Path(realpath(without)) if without else None)]
     for name in dict.fromkeys([*files, *urls]):
         found.setdefault(_device(PurePosixPath(name), pattern), []).append(name)
     return [

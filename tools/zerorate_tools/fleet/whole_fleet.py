@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import time
 import uuid
 from collections import Counter
@@ -64,7 +65,7 @@ def fleet(
     if is_url(str(out)):
         raise ZerorateError(f"{out}: results are written to a folder of this machine; name one")
     folder = Path(out)
-    own = str(folder.resolve() / "devices") if keep else None
+    own = os.path.join(os.path.realpath(folder), "devices") if keep else None
     work = Job(job, options or {}, str(Path(model).resolve()) if model else None, own)
     devices = [_absolute(device) for device in devices]
     wanted = {device.name: work.fingerprint(device) for device in devices}

@@ -26,6 +26,7 @@ from zerorate_tools.layout import (
     STORE,
 )
 
+from ..model.binary import encoded
 from ..model.check import check_model, sensor_for
 from ..recordings.atomic import written_together
 from .c_functions import kernels_in_c
@@ -124,13 +125,14 @@ def export_c(
 ) -> list[Path]:
     """Write the header, the C file, a test program and what builders read into `folder`; paths.
 
-    sensor: rate and scales, an MPU-6050 at +-250 dps and 100 Hz by default; model: a model.bin of
-    `zerorate close`, whose scales are taken instead. Raises BadModel.
+    sensor: rate and scales, an MPU-6050 at +-250 dps and 100 Hz by default; model: a model.bin or
+    model.json of `zerorate close`, whose scales are taken instead. Raises BadModel.
     """
     effects = EffectModel()
     if model is not None:
-        sensor = sensor_for(check_model(model).scales)
-        effects.load_file(str(model), sensor)
+        checked = check_model(model)
+        sensor = sensor_for(checked.scales)
+        effects.load(encoded(checked), sensor)
     corrector = Corrector(sensor, motion=False, gravity=False)
     if model is not None:
         corrector.use_model(effects)

@@ -6,11 +6,10 @@ from pathlib import Path
 from ..errors import BadModel
 from ..recordings.atomic import written_together
 from ..recordings.drafts import settle
+from ..small_file import bytes_of
 from .binary import decoded, encoded
 from .model import CannotDeploy, Model
 from .text import from_json, to_json
-
-_MOST_BYTES = 1 << 20
 
 
 def read_model(path: str | PathLike[str]) -> Model:
@@ -20,16 +19,7 @@ def read_model(path: str | PathLike[str]) -> Model:
     """
     path = Path(path)
     settle(path.parent)
-    try:
-        if path.exists() and not path.is_file():  # a device has no end, a pipe may have no writer
-            raise BadModel(path, "is no file", do="name a model.bin or model.json")
-        with open(path, "rb") as file:
-            data = file.read(_MOST_BYTES + 1)
-    except OSError as error:
-        problem = "no such file" if not path.exists() else f"cannot be read: {error.strerror}"
-        raise BadModel(path, problem, do="name a model.bin or model.json") from error
-    if len(data) > _MOST_BYTES:
-        raise BadModel(path, "too large for an effect model", do="name a model.bin or model.json")
+    data = bytes_of(path, "name a model.bin or model.json", BadModel)
     if data[:1] != b"{" and data.lstrip()[:1] != b"{":
         return decoded(data, path)
     model = from_json(data, path)

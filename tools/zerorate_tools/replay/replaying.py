@@ -35,6 +35,7 @@ from ..errors import BadModel, InFile, ZerorateError
 from ..recordings import Recording, open_recording
 from ..recordings.atomic import all_written_beside, check_apart
 from ..recordings.reading import OpenRecording
+from ..small_file import bytes_of
 from .bias_table import SOURCES, VERDICTS, ReplayWriter, table
 from .engines import Outcome, engine, others_of
 from .samples import frames_in_batches, sensor_of
@@ -142,10 +143,7 @@ def corrector_for(recording: OpenRecording | Recording, options: dict[str, objec
 
 def load_state(corrector: Corrector, path: Path, resume: bool) -> None:
     """Put a state file into the corrector. Raises InFile."""
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise InFile(path, str(error.strerror), do="name a file that --state wrote") from error
+    content = bytes_of(path, "name a file that --state wrote")
     wanted = len(state_bytes(corrector))
     if len(content) != wanted:
         problem = f"{len(content)} bytes where a state with these settings has {wanted}"

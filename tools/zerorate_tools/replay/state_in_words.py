@@ -15,10 +15,10 @@ from .. import layout
 from ..errors import InFile, ZerorateError
 from ..layout import SETTINGS
 from ..layout.naming import Names, named, named_source, named_state
+from ..small_file import bytes_of
 
 _MAGIC, _HEADER, _CRC = b"ZRS", 20, 4
 _STATE_VERSION = 2  # the models of a store are of version 1
-_MOST_BYTES = 1 << 20
 _FRACTION = re.compile(r"_Q(\d+)\b")
 
 
@@ -56,11 +56,7 @@ def words_of_file(
     options: the keywords of zerorate.Corrector that the state was made with, where they change its
     size. Raises InFile.
     """
-    try:
-        with open(path, "rb") as file:
-            data = file.read(_MOST_BYTES)
-    except OSError as error:
-        raise InFile(path, str(error.strerror), do="name a state or a store") from error
+    data = bytes_of(path, "name a state or a store")
     if data[:3] == _MAGIC:
         words = np.frombuffer(_newest_record(Path(path), data), "<i4")
         first = len(words) - SETTINGS.size  # its settings lie behind the state

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import BadDescription, MissingLibrary
+from ..small_file import bytes_of
 from .effects import EFFECTS, TIMING
 from .motion import FACES, MOTIONS
 from .paths import seconds
@@ -61,11 +62,8 @@ def bundled_names() -> list[str]:
 
 def parsed(path: Path) -> Any:
     """The tables of a description's file, not looked at yet. Raises as load_description."""
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        do = f"name a .toml or .yaml, or one of {', '.join(bundled_names())}"
-        raise BadDescription(path, error.strerror or "cannot be read", do=do) from error
+    do = f"name a .toml or .yaml, or one of {', '.join(bundled_names())}"
+    data = bytes_of(path, do, BadDescription)
     load = _yaml if path.suffix in (".yaml", ".yml") else _toml
     try:
         return load(data)
