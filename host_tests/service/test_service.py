@@ -4,6 +4,7 @@ import configparser
 import errno
 import json
 import os
+import re
 import resource
 import runpy
 import signal
@@ -11,17 +12,24 @@ import socket
 import subprocess
 import sys
 import time
+import urllib.request
 from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from zerorate.storage.places import FileStorage
 from zerorate_bench.service import run
 from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050, Physical
+from zerorate_i2c.fifo import EMPTY, Fifo
 from zerorate_i2c.mpu6050 import MPU6050
 from zerorate_tools.errors import ZerorateError
-from zerorate_tools.layout import AXIS, axis_at
-from zerorate_tools.service import Datagrams, Lines, Service, System, UnixSocket
+from zerorate_tools.importers import read_foreign
+from zerorate_tools.layout import AXIS, STATE, axis_at
+from zerorate_tools.model import Slot, build_model, encoded, read_model, write_model
+from zerorate_tools.model.term import Term
+from zerorate_tools.recordings import Scales
+from zerorate_tools.service import Datagrams, Lines, Metrics, Service, System, UnixSocket
 from zerorate_tools.service.serve import notify
 
 BIAS_DPS = (0.31, -0.19, 0.08)
@@ -61,6 +69,7 @@ class Board:
     """A chip at rest, its bus, a file, and a service on them."""
 
     def __init__(self, folder, gyro_dps=BIAS_DPS):
+        folder.mkdir(exist_ok=True)
         self.chip = FakeMPU6050(Physical(gyro_dps=gyro_dps))
         self.clock = FakeClock(self.chip)
         self.bus = FakeI2C(self.chip, self.clock)
@@ -212,6 +221,56 @@ def test_t_us_is_true_over_an_outage_and_the_line_behind_it_is_marked(board):
     assert not any("gap_us" in line for line in board.kept.lines[lines + 1 :])
 
 
+def test_what_it_publishes_is_imported_as_the_chip_gave_it(board, tmp_path):
+    given = []
+    read = Fifo.read
+
+    def noted(fifo, sample):
+        status = read(fifo, sample)
+        given.extend([sample[4:7].tolist()] if status != EMPTY else [])
+        return status
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Fifo, "read", noted)
+        board.live(5)
+    lines = board.kept.lines
+    (tmp_path / "service.jsonl").write_text("\n".join(map(json.dumps, lines)))
+    recording, _ = read_foreign(tmp_path / "service.jsonl")
+    rates = np.column_stack([recording.columns[axis] for axis in ("gx", "gy", "gz")])
+    assert rates.tolist() == given[-len(lines) :] and len(lines) > 100
+    assert (
+        np.diff(recording.columns["t_us"]).tolist() == np.diff([x["t_us"] for x in lines]).tolist()
+    )
+
+
+def asked(port):
+    with urllib.request.urlopen(f"http://127.0.0.1:{port}/metrics", timeout=5) as answer:
+        return dict(line.rsplit(" ", 1) for line in answer.read().decode().splitlines())
+
+
+def test_prometheus_has_the_newest_line_and_a_port_in_use_is_one_line(board):
+    pytest.importorskip("prometheus_client")
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    metrics = Metrics(f"127.0.0.1:{port}")
+    try:
+        assert float(asked(port)["zerorate_samples_total"]) == 0
+        board.service.sinks = [board.kept, metrics]
+        board.live(5)
+        found, newest = asked(port), board.kept.lines[-1]
+        assert float(found["zerorate_samples_total"]) == len(board.kept.lines)
+        for number, axis in enumerate("xyz"):
+            of_axis = float(found[f'zerorate_bias_dps{{axis="{axis}"}}'])
+            assert of_axis == newest["bias_dps"][number] != 0
+        with pytest.raises(ZerorateError, match=f"--metrics 127.0.0.1:{port}: .*another port"):
+            Metrics(f"127.0.0.1:{port}")
+    finally:
+        metrics.close()
+    with pytest.raises(ZerorateError, match="--remote"):
+        Metrics("192.0.2.1:9751")
+
+
 def test_a_systemd_that_is_gone_is_counted_and_said_once(board, monkeypatch):
     monkeypatch.setenv("NOTIFY_SOCKET", "/nowhere/notify")
     board.system = replace(board.system, notify=notify)
@@ -320,15 +379,53 @@ def test_a_bus_that_opens_but_is_none_leaves_no_descriptor(tmp_path):
     [["--g", "4", "--dlpf-hz", "20", "--part", "MPU-6500"], ["--dps", "500"]],
 )
 def test_it_runs_on_an_emulated_chip_without_hardware(tmp_path, options):
+    line, said = first_line(tmp_path, *options)
+    assert "MPU-6" in said
+    assert line["accel_g"][2] == pytest.approx(1, abs=0.05)
+
+
+def model_of(folder, temp_lsb_per_degc, channel="temp"):
+    """The file of a model that says 0.01 dps a degC on x, for the chip at 25 Hz."""
+    slot = Slot(Term(channel, 0.0, 50.0, 5.0), (0.01, 0.0, 0.0))
+    scales = Scales("MPU-6050", 25, 131, 16384, temp_lsb_per_degc, 36.53)
+    return str(write_model(build_model([slot], scales), folder)[1])
+
+
+def first_line(folder, *options):
+    """The first line of a service on an emulated chip, and what it said; None where it ended."""
     command = [sys.executable, "-m", "zerorate_tools.cli", "run", "fake:", *options]
     process = subprocess.Popen(
-        [*command, "--state", str(tmp_path / "learned.bin")],
-        **{"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True},
+        command, **{"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}, cwd=folder
     )
-    line = json.loads(process.stdout.readline())
+    line = process.stdout.readline()
     process.terminate()
-    assert "MPU-6" in process.communicate(timeout=30)[1]
-    assert line["accel_g"][2] == pytest.approx(1, abs=0.05)
+    return json.loads(line) if line else None, process.communicate(timeout=30)[1]
+
+
+def test_a_model_is_subtracted(board, tmp_path):
+    model = encoded(read_model(model_of(tmp_path, 340)))
+    board.service = Service(board.system, [board.kept], model)
+    board.live(5)
+    state = board.service._corrector.corrector.state
+    # at 25 degC, in LSB Q8; bias_dps is all that is subtracted
+    assert state[STATE.EFFECT_Q8] == pytest.approx(0.2 * 131 * 256, rel=0.05)
+    assert board.kept.lines[-1]["bias_dps"] == pytest.approx(BIAS_DPS, abs=0.02)
+
+
+def test_a_model_of_another_chip_or_of_a_channel_is_one_line(tmp_path):
+    for named, problem in (
+        (model_of(tmp_path / "a", 326.8), "--model: .*other scales"),
+        (model_of(tmp_path / "b", 340, "vdd_mv"), "--model: .*vdd_mv"),
+        ("none.bin", "none.bin: no such file"),
+    ):
+        line, said = first_line(tmp_path, "--hz", "25", "--model", named)
+        assert line is None and re.search(problem, said) and said.count("\n") == 1
+
+
+@pytest.mark.parametrize("option", [("--state", "no/learned.bin"), ("--socket", "no/imu.sock")])
+def test_a_folder_that_is_missing_is_named(tmp_path, option):
+    line, said = first_line(tmp_path, *option)
+    assert line is None and said.startswith("zerorate: no: no such folder; make it, or name")
 
 
 def test_a_slow_reader_gets_whole_lines_and_holds_nobody_up(tmp_path):

@@ -77,7 +77,7 @@ class MissingLibrary(ZerorateError):
         **{"smbus2": "linux", "dask": "fleet", "distributed": "fleet", "fsspec": "fleet"},
         **{"ahrs": "bench", "imufusion": "bench", "vqf": "bench"},
         **{"rosbags": "logs", "mcap": "logs", "orangebox": "logs"},
-        **{"h5py": "logs"},
+        **{"h5py": "logs", "prometheus_client": "metrics"},
     }
 
     def __init__(self, library: str) -> None:

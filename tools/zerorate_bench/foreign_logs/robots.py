@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from . import binary
-from .world import World, log, table, text
+from .world import BIAS_DPS, World, log, table, text
 
 _IMU = "angular_velocity.x,angular_velocity.y,angular_velocity.z"
 _FORCE = "linear_acceleration.x,linear_acceleration.y,linear_acceleration.z"
@@ -143,3 +143,22 @@ def json_lines(folder: Path, world: World) -> Path:
     lines = map(message, world.t_s, world.rad, world.mps2)
     (folder / "in.jsonl").write_text("\n".join(lines) + "\n")
     return folder / "in.jsonl"
+
+
+@log("zerorate run, the lines of a service that was killed")
+def service_lines(folder: Path, world: World) -> Path:
+    lines = [
+        json.dumps(
+            {
+                "t_us": round(t * 1e6) + 10_000,
+                "rate_dps": (raw - np.array(BIAS_DPS)).round(5).tolist(),
+                "raw_dps": raw.round(5).tolist(),
+                "bias_dps": list(BIAS_DPS),
+                "accel_g": force.round(5).tolist(),
+                "temp_degc": round(degc, 2),
+            }
+        )
+        for t, raw, force, degc in zip(world.t_s, world.dps, world.g, world.degc)
+    ]
+    (folder / "service.jsonl").write_text("\n".join(lines)[:-40])
+    return folder / "service.jsonl"

@@ -11,8 +11,8 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         help="correct for ever on a Linux board, as a service",
         description="Read the chip, learn its bias at rest, keep what is learned, and publish the "
         "corrected samples as lines of JSON: on standard output, a Unix socket, or by UDP. A line "
-        "has rate_dps without bias, bias_dps, accel_g, temp_degc, and t_us since the start; gap_us "
-        "where samples are missing before it.",
+        "has rate_dps without bias, raw_dps with it, bias_dps, accel_g, temp_degc, and t_us since "
+        "the start; gap_us where samples are missing before it. `zerorate import` reads them.",
     )
     parser.add_argument("bus", metavar="BUS", help="/dev/i2c-1, or fake: for an emulated chip")
     parser.add_argument(
@@ -20,7 +20,9 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
     )
     parser.add_argument("--socket", type=Path, metavar="FILE", help="Unix socket for readers")
     parser.add_argument("--udp", metavar="HOST:PORT", help="datagrams, to this machine only")
-    parser.add_argument("--remote", action="store_true", help="let --udp leave this machine")
+    parser.add_argument("--metrics", metavar="HOST:PORT", help="metrics for Prometheus")
+    what = "let --udp and --metrics leave this machine"
+    parser.add_argument("--remote", action="store_true", help=what)
     for flag, dest, kind, default, what in (
         ("--address", "address", lambda text: int(text, 0), 0x68, "of the chip (0x68)"),
         ("--hz", "odr_hz", float, 100.0, "output data rate (100)"),
@@ -45,7 +47,7 @@ def run(arguments: argparse.Namespace) -> None:
 
     from ..errors import InFile, ZerorateError
     from ..model import encoded, read_model
-    from ..service import Datagrams, FakeBus, Lines, Service, Sink, System, UnixSocket
+    from ..service import Datagrams, FakeBus, Lines, Metrics, Service, Sink, System, UnixSocket
 
     if not arguments.state.parent.is_dir():
         raise InFile(arguments.state.parent, "no such folder", do="make it, or name another")
@@ -73,7 +75,9 @@ def run(arguments: argparse.Namespace) -> None:
     sinks: list[Sink] = []
     if arguments.udp:
         sinks.append(Datagrams(arguments.udp, arguments.remote))
-    if arguments.socket:  # last: it leaves a file where the other is refused
+    if arguments.metrics:
+        sinks.append(Metrics(arguments.metrics, arguments.remote))
+    if arguments.socket:  # last: it leaves a file where another is refused
         sinks.append(UnixSocket(arguments.socket))
     # systemd ends a service with SIGTERM; Ctrl-C and it do the same
     signal.signal(signal.SIGTERM, signal.default_int_handler)

@@ -7,7 +7,7 @@ whole line, and counted in `lost`.
 import os
 import select
 import socket
-from ipaddress import ip_address
+from ipaddress import IPv4Address, IPv6Address, ip_address
 from pathlib import Path
 from typing import Protocol, TextIO
 
@@ -67,21 +67,27 @@ class Lines:
         """The stream is its owner's."""
 
 
+def address_of(flag: str, text: str, remote: bool) -> tuple[IPv4Address | IPv6Address, int]:
+    """Address and port of ADDRESS:PORT. Raises ZerorateError; for another machine's, but remote."""
+    host, _, port = text.rpartition(":")
+    try:
+        address, number = ip_address(host.strip("[]")), int(port)
+        if not 0 < number <= _HIGHEST_PORT:
+            raise ValueError(port)
+    except ValueError:
+        do = f"write ADDRESS:PORT, as 127.0.0.1:9750, the port 1..{_HIGHEST_PORT}"
+        raise ZerorateError(f"{flag} {text}: {do}") from None
+    if not remote and not address.is_loopback:
+        do = "add --remote if everybody on that network may read and forge them"
+        raise ZerorateError(f"{flag} {text} leaves this machine; {do}")
+    return address, number
+
+
 class Datagrams:
     """A line a datagram to HOST:PORT, loopback unless remote. Raises ZerorateError."""
 
     def __init__(self, address: str, remote: bool = False) -> None:
-        host, _, port = address.rpartition(":")
-        try:
-            target, number = ip_address(host.strip("[]")), int(port)
-            if not 0 < number <= _HIGHEST_PORT:
-                raise ValueError(port)
-        except ValueError:
-            do = f"write ADDRESS:PORT, as 127.0.0.1:9750, the port 1..{_HIGHEST_PORT}"
-            raise ZerorateError(f"--udp {address}: {do}") from None
-        if not remote and not target.is_loopback:
-            do = "add --remote if everybody on that network may read and forge them"
-            raise ZerorateError(f"--udp {address} leaves this machine; {do}")
+        target, number = address_of("--udp", address, remote)
         family = socket.AF_INET6 if target.version == 6 else socket.AF_INET
         self._target = (str(target), number)
         self._socket = socket.socket(family, socket.SOCK_DGRAM)

@@ -60,8 +60,9 @@ class Service:
 
     bus_failures counts the times the chip had to be opened anew, notify_failures what systemd was
     not told, `lost` of each sink its lines. sinks: where lines go. Each has `t_us` since the start,
-    `rate_dps` without bias, `bias_dps`, `accel_g`, `temp_degc`, and `gap_us` since the line before
-    where samples are missing between the two. model: bytes of an effect model, used where it fits.
+    `rate_dps` without bias, `raw_dps` as the chip has it, `bias_dps`, `accel_g`, `temp_degc`, and
+    `gap_us` since the line before where samples are missing between the two. model: bytes of an
+    effect model, used where it fits.
     """
 
     def __init__(self, system: System, sinks: Sequence[Sink], model: bytes = b"") -> None:
@@ -99,9 +100,10 @@ class Service:
             return
         dt_us = self._passed_us()
         self.t_us += dt_us
+        raw_lsb = self._sample[4:7]
         if self._corrector.update(self._sample, dt_us, status):
             self.samples += 1
-            self._publish()
+            self._publish(raw_lsb)
         self._keep()
 
     def _passed_us(self) -> int:
@@ -225,12 +227,13 @@ class Service:
             self._schedule.written_at(self._now_s() - self._schedule.interval_s + _RETRY_S)
             self.system.say("what was learned cannot be written; trying again in a minute")
 
-    def _publish(self) -> None:
+    def _publish(self, raw_lsb: "array[int]") -> None:
         imu, sample, learner = self._imu, self._sample, self._corrector.corrector
         lsb = imu.gyro_lsb_per_dps
         line = {
             "t_us": self.t_us,
             "rate_dps": [round(sample[4 + axis] / lsb, 5) for axis in range(3)],
+            "raw_dps": [round(raw / lsb, 5) for raw in raw_lsb],
             "bias_dps": [round(learner.bias_lsb(axis) / lsb, 5) for axis in range(3)],
             "accel_g": [round(sample[axis] / imu.accel_lsb_per_g, 5) for axis in range(3)],
             "temp_degc": round(imu.temperature_degc(sample[3]), 2),

@@ -21,8 +21,8 @@ _ACCEL = re.compile(
 )
 #: Less gravity, or gravity as a filter has it: no measure of it.
 _FREE = re.compile(r".*(?:freeacc|useracc|linacc|gravity)|lacc")
-#: How sure numbers are, and no readings.
-_SPREAD = re.compile(r".*(?:covariance|variance|stddev|sigma)")
+#: How sure numbers are, or what somebody takes away: no readings.
+_SPREAD = re.compile(r".*(?:covariance|variance|stddev|sigma|bias(?:dps|rads)?[xyz0-9]*$)")
 #: As the sensor has it, and less a bias that somebody took away; motionRotation is CoreMotion's.
 _RAW = re.compile(r".*(?:raw|uncal|uncomp|unfilt)")
 _CORRECTED = re.compile(r".*(?:corrected|compensated|calibrated|unbiased|filtered|motionrotation)")
