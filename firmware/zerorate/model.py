@@ -35,7 +35,8 @@ _CHANNELS = const(104)
 _SLOTS = const(112)
 _TABLES = const(432)
 _PLAYS = const(902)
-_EFFECTS_WORDS = const(992)
+_SENSED = const(992)
+_EFFECTS_WORDS = const(999)
 # layout: An input of the effect model
 _INPUT_KIND = const(0)
 _INPUT_SUM = const(3)
@@ -69,12 +70,14 @@ UNREADABLE = const(6)
 class EffectModel:
     """An effect model and its running state, in `e`; without slots while no model is loaded.
 
+    sensed: the latest frame, its rates less the effects;
     channels: names of the extra channels that the model follows, in the order of their index;
     attend: the kernel that refines coefficients, None while it is off.
     """
 
     def __init__(self) -> None:
         self.e = array("i", [0] * _EFFECTS_WORDS)
+        self.sensed = memoryview(self.e)[_SENSED:]
         self.channels = ()
         self.reason = NO_MODEL
         self.attend: "Any" = None

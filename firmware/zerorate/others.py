@@ -13,8 +13,6 @@ const = int
 _MOTION_BIAS_Q8 = const(71)
 # layout: The state of the source against gravity
 _GRAVITY_BIAS_Q8 = const(28)
-# layout: The effect model and its running state
-_HELD_Q14 = const(13)
 # layout: Where a bias comes from
 _IN_MOTION = const(4)
 _GRAVITY = const(5)
@@ -48,31 +46,19 @@ class Others:
 
     def _ask_others(self, sample, dt_us):
         owner = self._of
-        if owner.motion is not None:
-            if owner._observe_motion(owner.motion, owner.motion_settings, sample, dt_us):
-                self._consider(owner.motion, _MOTION_BIAS_Q8, _IN_MOTION)
-        if owner.gravity is not None:
-            if owner._observe_gravity(owner.gravity, owner.gravity_settings, sample, dt_us):
-                self._consider(owner.gravity, _GRAVITY_BIAS_Q8, _GRAVITY)
         effects = owner.effects
+        if effects is not None:
+            sample = effects.sensed
+        found = owner.motion
+        if found is not None:
+            if owner._observe_motion(found, owner.motion_settings, sample, dt_us):
+                rest.consider(owner.state, owner.settings, found, _MOTION_BIAS_Q8, _IN_MOTION)
+        found = owner.gravity
+        if found is not None:
+            if owner._observe_gravity(found, owner.gravity_settings, sample, dt_us):
+                rest.consider(owner.state, owner.settings, found, _GRAVITY_BIAS_Q8, _GRAVITY)
         if effects is not None and effects.attend:
             effects.attend(owner.state, owner.settings, effects.e)
-
-    def _consider(self, found, bias_at, source):
-        # found on raw rates: it contains the effects that stand; what goes with a turn or a force
-        # comes and goes with it
-        self._shift(found, bias_at, -1)
-        rest.consider(self._of.state, self._of.settings, found, bias_at, source)
-        self._shift(found, bias_at, 1)
-
-    def _shift(self, found, bias_at, sign):
-        if self._of.effects is not None:
-            i = 0
-            while i < 3:
-                held = sign * (self._of.effects.e[_HELD_Q14 + i] + 32 >> 6)
-                found[bias_at] += held
-                bias_at += 1
-                i += 1
 
 
 def forget(corrector):

@@ -10,8 +10,9 @@ from zerorate import Corrector, Sensor
 from zerorate.arithmetic import real
 from zerorate.motion import least_squares, posterior
 from zerorate.motion.motion_settings import motion_settings, motion_state
+from zerorate.motion.orientation import orientation
 from zerorate.rest import step
-from zerorate_tools.layout import EFFECTS, GRAVITY, MOTION, SOURCE, STATE
+from zerorate_tools.layout import GRAVITY, MOTION, SOURCE, STATE
 from zerorate_tools.model import Slot
 from zerorate_tools.model.term import Term
 from zerorate_tools.recordings import Scales
@@ -20,6 +21,7 @@ from zerorate_tools.simulate import simulate
 from . import motions
 from .played import by_machine_code, estimators
 from .simulated_sources import loaded
+from .test_orientation import as_rotation
 
 HZ = 25.0
 DT_US = 40000
@@ -94,28 +96,47 @@ def test_the_output_slews_no_faster_than_stated_when_the_source_changes(samples)
     assert 0 < max(most) <= 0.5
 
 
-MATRIX = [Slot(Term("rate_x", -500.0, 500.0), (0.02, 0.0, 0.01), "scale-factor")]
-OF_TEMPERATURE = [Slot(Term("temp", 0.0, 60.0, 30.0), (0.1, -0.05, 0.08), "temperature")]
+SCALES = Scales("MPU-6050", HZ, LSB, 16384, 340.0, 36.53)
+RATES = [Term(f"rate_{axis}", -500.0, 500.0) for axis in "xyz"]
+SCALE_AND_AXES = np.array([[0.05, -0.02, 0.01], [0.03, -0.04, 0.02], [-0.01, 0.02, 0.03]])
+MATRIX = [Slot(t, tuple(c), "scale-factor") for t, c in zip(RATES, SCALE_AND_AXES.T.tolist())]
+PER_DEGC = np.array([0.1, -0.05, 0.08])
+OF_TEMPERATURE = [Slot(Term("temp", 0.0, 60.0, 30.0), tuple(PER_DEGC), "temperature")]
+
+
+def with_effect(samples, slots):
+    """The samples of a device that has what these slots say."""
+    rates = samples[:, 4:].astype(float)
+    if slots is MATRIX:  # the slots read the rate as it is measured
+        rates = rates @ np.linalg.inv(np.eye(3) - SCALE_AND_AXES).T
+    else:
+        rates = rates + PER_DEGC * (SCALES.temp_offset_degc - 30.0) * LSB
+    return np.column_stack([samples[:, :4], np.round(rates)]).astype(np.int32)
 
 
 @pytest.mark.parametrize("slots", [MATRIX, OF_TEMPERATURE])
-def test_what_is_found_in_motion_has_no_effect_in_it_that_is_subtracted_already(samples, slots):
-    scales = Scales("MPU-6050", HZ, LSB, 16384, 340.0, 36.53)
+def test_with_its_effects_taken_out_a_device_learns_in_motion_what_one_without_them_does(slots):
+    lean = Rotation.from_rotvec([0.5, -0.6, 0.2])
+    clean = motions.swinging(7, 90, hz=HZ, bias_dps=BIAS_DPS, start=lean).samples
     sensor = Sensor(HZ)
-    plain, modelled = Corrector(sensor), Corrector(sensor)
-    modelled.use_model(loaded(slots, scales, sensor))
-    swinging = samples[: round(60 * HZ)]
-    for corrector in (plain, modelled):
-        by_machine_code(corrector, swinging.astype(np.int32), np.full(len(swinging), DT_US))
+    plain, modelled, left_in = (Corrector(sensor) for _ in range(3))
+    modelled.use_model(loaded(slots, SCALES, sensor))
+    affected = with_effect(clean, slots)
+    times = np.full(len(clean), DT_US)
+    for corrector, rows in ((plain, clean), (modelled, affected), (left_in, affected)):
+        by_machine_code(corrector, rows.astype(np.int32), times)
         assert corrector.motion[MOTION_LEARNED] > 0
     by_python = Corrector(sensor)
-    by_python.use_model(loaded(slots, scales, sensor))
-    assert words(played(by_python, swinging)) == words(modelled)
-    held = np.array(modelled.effects.e[EFFECTS.HELD_Q14 : EFFECTS.HELD_Q14 + 3]) / 2**14
-    for axis in range(3):
-        less = (plain.state[STATE.TARGET_Q8 + axis] - modelled.state[STATE.TARGET_Q8 + axis]) / 256
-        assert less == pytest.approx(held[axis], abs=0.02 * LSB)
-    assert bool(held.any()) == (slots is OF_TEMPERATURE)
+    by_python.use_model(loaded(slots, SCALES, sensor))
+    assert words(played(by_python, affected)) == words(modelled)
+    expected, found, wrong = (
+        np.array(c.state[STATE.TARGET_Q8 : STATE.TARGET_Q8 + 3]) / 256 / LSB
+        for c in (plain, modelled, left_in)
+    )
+    assert found == pytest.approx(expected, abs=0.025)
+    assert np.abs(wrong - expected).max() > 0.1
+    up = [as_rotation(orientation(c)).inv().apply([0, 0, 1]) for c in (plain, modelled)]
+    assert up[0] == pytest.approx(up[1], abs=0.005)
 
 
 def test_it_says_what_each_source_is_doing(samples):

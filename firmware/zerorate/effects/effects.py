@@ -6,6 +6,7 @@ itself, which may move faster than a tick, is computed for every sample. One arr
 model and its running state: docs/layout.md has its words.
 """
 
+from ..arithmetic.fixed import clipped
 from .effect_basis import basis, contribute
 from .effect_inputs import accumulate, close_tick, tell_time
 from .effect_plays import play
@@ -29,8 +30,10 @@ _SUM_Q14 = const(10)
 _HELD_Q14 = const(13)
 _NOW_Q14 = const(16)
 _PLAY_COUNT = const(19)
+_SENSED_CARRY_Q8 = const(29)
 _SLOTS = const(112)
 _PLAYS = const(902)
+_SENSED = const(992)
 # layout: An effect slot
 _SLOT_INSTANT = const(33)
 _SLOT_STARTED = const(34)
@@ -42,6 +45,7 @@ _PLAY_WORDS = const(15)
 # layout: end
 _MOST_PENDING = const(4096)
 _MOST_TICKS = const(0x1FFFF000)
+_MOST_RATE = const(0x7FFF)
 
 
 def pass_time(e: ptr32, dt_us: int):
@@ -128,6 +132,20 @@ def add_instant(e: ptr32, good: int):
         i -= 1
 
 
+def lessen(s: ptr32, e: ptr32, x: ptr32):
+    """Leave the frame x at _SENSED, its rates less the effects, for sources beside rests."""
+    # A turn whose scale is off leaves an angle that looks like a bias.
+    i = 0
+    while i < 4:
+        e[_SENSED + i] = x[i]
+        i += 1
+    while i < 7:
+        d = (x[i] << 8) - s[_EFFECT_Q8 - 4 + i] + e[_SENSED_CARRY_Q8 - 4 + i]
+        e[_SENSED + i] = clipped((d + 128) >> 8, _MOST_RATE)
+        e[_SENSED_CARRY_Q8 - 4 + i] = d - ((d + 128 >> 8) << 8)
+        i += 1
+
+
 def sense(s: ptr32, e: ptr32, x: ptr32, dt_us: int, good: int):
     """Take the frame x, dt_us after the one before, and leave the effects' sum, LSB Q8, in s."""
     # good: 0 for a frame that is no reading, of which only the time counts. Call it before the
@@ -156,3 +174,5 @@ def sense(s: ptr32, e: ptr32, x: ptr32, dt_us: int, good: int):
     while i < 3:
         s[_EFFECT_Q8 + i] = (e[_NOW_Q14 + i] + 32) >> 6
         i += 1
+    if good:
+        lessen(s, e, x)

@@ -4,6 +4,8 @@ from math import cos, pi, sin, sqrt
 
 # layout: names that a board's own compiler reads
 const = int
+# layout: The corrector's state
+_OUT_Q8 = const(61)
 # layout: The state of the source in motion
 _NODE_ELAPSED_US = const(0)
 _NODE_ANGLE_Q24 = const(2)
@@ -31,7 +33,7 @@ def orientation(corrector):
     c = corrector.motion_settings
     count = min(m[_FILLED], c[_LONGEST])
     scale = pi / 180 / corrector.sensor.gyro_lsb_per_dps * 1e-6
-    bias = [corrector.bias_lsb(axis) * scale for axis in range(3)]  # rad a us
+    bias = [corrector.state[_OUT_Q8 + axis] / 256 * scale for axis in range(3)]  # rad a us
     q, up = (1.0, 0.0, 0.0, 0.0), [0.0, 0.0, 0.0]
     for n in range(count):
         at = _NODES_RING + 3 * ((m[_HEAD] - count + n) % c[_NODES])

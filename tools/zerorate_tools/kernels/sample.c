@@ -1,15 +1,3 @@
-static void shift(int32_t *found, const int32_t *e, int32_t sign) {
-    for (int32_t i = 0; e && i < 3; i++) found[i] += sign * ((e[HELD_Q14 + i] + 32) >> 6);
-}
-
-/* As the glue around it in others.py. */
-static void consider(int32_t *s, int32_t *c, int32_t *found, int32_t at, const int32_t *e,
-                     int32_t source) {
-    shift(found + at, e, -1);
-    step_consider(s, c, found, at, source);
-    shift(found + at, e, 1);
-}
-
 /* What Corrector.update does with a sample; a null pointer is a source or a model that is off. */
 int32_t zerorate_update(int32_t *s, int32_t *c, int32_t *m, int32_t *k, int32_t *r, int32_t *q,
                         int32_t *e, int32_t *x, int32_t dt_us) {
@@ -17,10 +5,11 @@ int32_t zerorate_update(int32_t *s, int32_t *c, int32_t *m, int32_t *k, int32_t 
     if (e) effects_sense(s, e, x, dt_us, kind == 0);
     step_admit(s, c, x, kind);
     if (kind == 0) {
-        if (m && in_motion_update(m, k, x, dt_us))
-            consider(s, c, m, MOTION_BIAS_Q8, e, IN_MOTION);
-        if (r && gravity_update(r, q, x, dt_us))
-            consider(s, c, r, GRAVITY_BIAS_Q8, e, GRAVITY);
+        int32_t *sensed = e ? e + SENSED : x;
+        if (m && in_motion_update(m, k, sensed, dt_us))
+            step_consider(s, c, m, MOTION_BIAS_Q8, IN_MOTION);
+        if (r && gravity_update(r, q, sensed, dt_us))
+            step_consider(s, c, r, GRAVITY_BIAS_Q8, GRAVITY);
         if (e && e[REFINE_ON]) effect_refine_attend(s, c, e);
     }
     return step_finish(s, c, x, kind);

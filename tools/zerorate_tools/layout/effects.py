@@ -25,7 +25,7 @@ EFFECTS = Array(
         ("REFINE_ON", 1, "", "1: the coefficients go on learning"),
         ("BOUND_EIGHTHS", 1, "", "how far they may go, in eighths of the slot's largest"),
         ("CURVE_LSB", 1, "LSB", "of temperature, that a line on every axis holds; 0: none"),
-        ("SPARE_EFFECTS", 3, "", "unused"),
+        ("SENSED_CARRY_Q8", 3, "LSB", "what rounding the rates of SENSED left over"),
         ("INPUTS", 72, "", "12 blocks of an input"),
         ("CHANNELS", 8, "", "what the application last said of each"),
         ("SLOTS", 320, "", "8 blocks of a slot"),
@@ -46,6 +46,7 @@ EFFECTS = Array(
         ("THETA", 60, "real", "the states of the three axes"),
         ("REFINE_P", 200, "real", "their covariance, by rows"),
         ("PLAYS", 90, "", "6 blocks of a play operator"),
+        ("SENSED", 7, "LSB", "the frame, its rates less the effects: for sources beside rests"),
     ),
 )
 
