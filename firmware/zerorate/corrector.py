@@ -37,7 +37,7 @@ _STEP_LSB = const(29)
 _GATE_Q4 = const(40)
 _TURN_ON_VARIANCE_Q8 = const(47)
 # layout: The effect model and its running state
-_CURVE_LSB = const(28)
+_CURVE_LSB = const(35)
 # layout: What a window was
 _STILL = const(1)
 # layout: Where a bias comes from

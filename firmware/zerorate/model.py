@@ -16,26 +16,25 @@ if TYPE_CHECKING:
 # layout: names that a board's own compiler reads
 const = int
 # layout: The effect model and its running state
-_SLOT_COUNT = const(0)
-_INPUT_COUNT = const(1)
-_TICK_ELAPSED_US = const(3)
-_TICKS_DUE = const(4)
-_NEXT_SLOT = const(5)
-_HALF_TICKS = const(7)
-_RUNNING = const(8)
-_SUM_Q14 = const(10)
-_HELD_Q14 = const(13)
-_PLAY_COUNT = const(19)
-_SQUARES = const(23)
-_SLOW_BEGUN = const(25)
-_REFINE_ON = const(26)
-_BOUND_EIGHTHS = const(27)
-_INPUTS = const(32)
-_CHANNELS = const(104)
-_SLOTS = const(112)
-_TABLES = const(432)
-_PLAYS = const(902)
-_SENSED = const(992)
+_SLOT_COUNT = const(7)
+_INPUT_COUNT = const(8)
+_TICK_ELAPSED_US = const(10)
+_TICKS_DUE = const(11)
+_NEXT_SLOT = const(12)
+_HALF_TICKS = const(14)
+_RUNNING = const(15)
+_SUM_Q14 = const(17)
+_HELD_Q14 = const(20)
+_PLAY_COUNT = const(26)
+_SQUARES = const(30)
+_SLOW_BEGUN = const(32)
+_REFINE_ON = const(33)
+_BOUND_EIGHTHS = const(34)
+_INPUTS = const(39)
+_CHANNELS = const(111)
+_SLOTS = const(119)
+_TABLES = const(439)
+_PLAYS = const(909)
 _EFFECTS_WORDS = const(999)
 # layout: An input of the effect model
 _INPUT_KIND = const(0)
@@ -70,14 +69,12 @@ UNREADABLE = const(6)
 class EffectModel:
     """An effect model and its running state, in `e`; without slots while no model is loaded.
 
-    sensed: the latest frame, its rates less the effects;
     channels: names of the extra channels that the model follows, in the order of their index;
     attend: the kernel that refines coefficients, None while it is off.
     """
 
     def __init__(self) -> None:
         self.e = array("i", [0] * _EFFECTS_WORDS)
-        self.sensed = memoryview(self.e)[_SENSED:]
         self.channels = ()
         self.reason = NO_MODEL
         self.attend: "Any" = None

@@ -48,7 +48,7 @@ class Others:
         owner = self._of
         effects = owner.effects
         if effects is not None:
-            sample = effects.sensed
+            sample = effects.e  # its first words are the frame less the effects
         found = owner.motion
         if found is not None:
             if owner._observe_motion(found, owner.motion_settings, sample, dt_us):

@@ -9,13 +9,13 @@ from ..arithmetic.fixed import clipped
 const = int
 ptr32 = None
 # layout: The effect model and its running state
-_INPUT_COUNT = const(1)
-_HALF_TICKS = const(7)
-_SLOW_Q8 = const(20)
-_SQUARES = const(23)
-_SLOW_BEGUN = const(25)
-_INPUTS = const(32)
-_CHANNELS = const(104)
+_INPUT_COUNT = const(8)
+_HALF_TICKS = const(14)
+_SLOW_Q8 = const(27)
+_SQUARES = const(30)
+_SLOW_BEGUN = const(32)
+_INPUTS = const(39)
+_CHANNELS = const(111)
 # layout: An input of the effect model
 _INPUT_KIND = const(0)
 _INPUT_SHIFT = const(1)

@@ -14,7 +14,7 @@ from .effect_basis import add_times, centred
 const = int
 ptr32 = None
 # layout: The effect model and its running state
-_SUM_Q14 = const(10)
+_SUM_Q14 = const(17)
 # layout: A play operator
 _PLAY_RADIUS = const(5)
 _PLAY_SHIFT = const(6)

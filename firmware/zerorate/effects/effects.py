@@ -17,23 +17,23 @@ ptr32 = None
 # layout: The corrector's state
 _EFFECT_Q8 = const(67)
 # layout: The effect model and its running state
-_SLOT_COUNT = const(0)
-_TICK_US = const(2)
-_TICK_ELAPSED_US = const(3)
-_TICKS_DUE = const(4)
-_NEXT_SLOT = const(5)
-_SLOTS_A_SAMPLE = const(6)
-_HALF_TICKS = const(7)
-_RUNNING = const(8)
-_INSTANT_SLOTS = const(9)
-_SUM_Q14 = const(10)
-_HELD_Q14 = const(13)
-_NOW_Q14 = const(16)
-_PLAY_COUNT = const(19)
-_SENSED_CARRY_Q8 = const(29)
-_SLOTS = const(112)
-_PLAYS = const(902)
-_SENSED = const(992)
+_SENSED = const(0)
+_SLOT_COUNT = const(7)
+_TICK_US = const(9)
+_TICK_ELAPSED_US = const(10)
+_TICKS_DUE = const(11)
+_NEXT_SLOT = const(12)
+_SLOTS_A_SAMPLE = const(13)
+_HALF_TICKS = const(14)
+_RUNNING = const(15)
+_INSTANT_SLOTS = const(16)
+_SUM_Q14 = const(17)
+_HELD_Q14 = const(20)
+_NOW_Q14 = const(23)
+_PLAY_COUNT = const(26)
+_SENSED_CARRY_Q8 = const(36)
+_SLOTS = const(119)
+_PLAYS = const(909)
 # layout: An effect slot
 _SLOT_INSTANT = const(33)
 _SLOT_STARTED = const(34)
@@ -45,7 +45,7 @@ _PLAY_WORDS = const(15)
 # layout: end
 _MOST_PENDING = const(4096)
 _MOST_TICKS = const(0x1FFFF000)
-_MOST_RATE = const(0x7FFF)
+_MOST_READING = const(0x7FFF)
 
 
 def pass_time(e: ptr32, dt_us: int):
@@ -141,7 +141,7 @@ def lessen(s: ptr32, e: ptr32, x: ptr32):
         i += 1
     while i < 7:
         d = (x[i] << 8) - s[_EFFECT_Q8 - 4 + i] + e[_SENSED_CARRY_Q8 - 4 + i]
-        e[_SENSED + i] = clipped((d + 128) >> 8, _MOST_RATE)
+        e[_SENSED + i] = clipped((d + 128) >> 8, _MOST_READING)
         e[_SENSED_CARRY_Q8 - 4 + i] = d - ((d + 128 >> 8) << 8)
         i += 1
 

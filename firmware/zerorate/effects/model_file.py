@@ -22,17 +22,17 @@ from ..storage.crc32 import checksum
 # layout: names that a board's own compiler reads
 const = int
 # layout: The effect model and its running state
-_INPUT_COUNT = const(1)
-_TICK_US = const(2)
-_SLOTS_A_SAMPLE = const(6)
-_INSTANT_SLOTS = const(9)
-_PLAY_COUNT = const(19)
-_CURVE_LSB = const(28)
-_INPUTS = const(32)
-_SLOTS = const(112)
-_TABLES = const(432)
-_RINGS = const(450)
-_PLAYS = const(902)
+_INPUT_COUNT = const(8)
+_TICK_US = const(9)
+_SLOTS_A_SAMPLE = const(13)
+_INSTANT_SLOTS = const(16)
+_PLAY_COUNT = const(26)
+_CURVE_LSB = const(35)
+_INPUTS = const(39)
+_SLOTS = const(119)
+_TABLES = const(439)
+_RINGS = const(457)
+_PLAYS = const(909)
 # layout: An input of the effect model
 _INPUT_KIND = const(0)
 _INPUT_SHIFT = const(1)

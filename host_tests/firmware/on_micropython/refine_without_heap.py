@@ -18,9 +18,9 @@ _WINDOW_SHIFT = const(4)
 _SEGMENT = const(5)
 _SETTINGS_WORDS = const(58)
 # layout: The effect model and its running state
-_SLOT_COUNT = const(0)
-_SLOTS = const(112)
-_REFINE_WORK = const(582)
+_SLOT_COUNT = const(7)
+_SLOTS = const(119)
+_REFINE_WORK = const(589)
 # layout: An effect slot
 _SLOT_VALUE = const(39)
 _SLOT_WORDS = const(40)

@@ -37,7 +37,7 @@ _WORDS = {
     **{name: getattr(STATE, name) for name in ("OUT_Q8", "EFFECT_Q8", "QUALITY_Q8", "SOURCE")},
     **{"MOTION_BIAS_Q8": MOTION.MOTION_BIAS_Q8, "GRAVITY_BIAS_Q8": GRAVITY.GRAVITY_BIAS_Q8},
     **{"IN_MOTION": SOURCE.IN_MOTION, "GRAVITY": SOURCE.GRAVITY},
-    **{name: getattr(EFFECTS, name) for name in ("CHANNELS", "REFINE_ON", "SENSED")},
+    **{name: getattr(EFFECTS, name) for name in ("CHANNELS", "REFINE_ON")},
     "GAP": GAP,
 }
 # -O1 compiles in a third of the time of -O2, and replays as fast

@@ -5,6 +5,7 @@ from .words import Array
 EFFECTS = Array(
     *("The effect model and its running state", "e", "`EffectModel.e`", "EFFECTS_WORDS"),
     (
+        ("SENSED", 7, "LSB", "the frame, its rates less the effects: for sources beside rests"),
         ("SLOT_COUNT", 1, "", "slots in use, 0: no model"),
         ("INPUT_COUNT", 1, "", "inputs in use"),
         ("TICK_US", 1, "us", "a tick"),
@@ -46,7 +47,6 @@ EFFECTS = Array(
         ("THETA", 60, "real", "the states of the three axes"),
         ("REFINE_P", 200, "real", "their covariance, by rows"),
         ("PLAYS", 90, "", "6 blocks of a play operator"),
-        ("SENSED", 7, "LSB", "the frame, its rates less the effects: for sources beside rests"),
     ),
 )
 

@@ -15,8 +15,8 @@ _EFFECT_Q8 = const(67)
 _QUALITY_Q8 = const(76)
 _SOURCE = const(79)
 # layout: The effect model and its running state
-_REFINE_ON = const(26)
-_CHANNELS = const(104)
+_REFINE_ON = const(33)
+_CHANNELS = const(111)
 # layout: end
 
 
