@@ -46,19 +46,20 @@ class Others:
 
     def _ask_others(self, sample, dt_us):
         owner = self._of
+        if owner.effects is not None:
+            sample = owner.effects.e  # its first words are the frame less the effects
+        if owner.motion is not None:
+            if owner._observe_motion(owner.motion, owner.motion_settings, sample, dt_us):
+                self._consider(owner.motion, _MOTION_BIAS_Q8, _IN_MOTION)
+        if owner.gravity is not None:
+            if owner._observe_gravity(owner.gravity, owner.gravity_settings, sample, dt_us):
+                self._consider(owner.gravity, _GRAVITY_BIAS_Q8, _GRAVITY)
         effects = owner.effects
-        if effects is not None:
-            sample = effects.e  # its first words are the frame less the effects
-        found = owner.motion
-        if found is not None:
-            if owner._observe_motion(found, owner.motion_settings, sample, dt_us):
-                rest.consider(owner.state, owner.settings, found, _MOTION_BIAS_Q8, _IN_MOTION)
-        found = owner.gravity
-        if found is not None:
-            if owner._observe_gravity(found, owner.gravity_settings, sample, dt_us):
-                rest.consider(owner.state, owner.settings, found, _GRAVITY_BIAS_Q8, _GRAVITY)
         if effects is not None and effects.attend:
             effects.attend(owner.state, owner.settings, effects.e)
+
+    def _consider(self, found, bias_at, source):
+        rest.consider(self._of.state, self._of.settings, found, bias_at, source)
 
 
 def forget(corrector):

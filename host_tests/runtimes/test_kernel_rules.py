@@ -164,7 +164,7 @@ def frame_words(runtime: UnixPort, source: Path) -> dict[str, int]:
 # What a program runs at every sample, outside the kernels.
 HOT_METHODS = {
     "firmware/zerorate/corrector.py": "update",
-    "firmware/zerorate/others.py": "update _sense_effects _ask_others _consider _shift",
+    "firmware/zerorate/others.py": "update _sense_effects _ask_others _consider",
     "firmware/zerorate/bursts.py": "update _one_by_one _update_at",
     "firmware/zerorate/model.py": "channel",
     "drivers/zerorate_i2c/mpu6050.py": "read read_sample verify doubt check _is_configured "
