@@ -1,15 +1,19 @@
 """A Parquet file that ends its parser ends a child, whoever reads it, and no command or program."""
 
 import os
+import struct
 import subprocess
 import sys
 
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 from zerorate_tools import cli
 from zerorate_tools.child import MEMORY_MB
 from zerorate_tools.errors import BadRecording
 from zerorate_tools.fleet.devices import Device
 from zerorate_tools.fleet.job import Job, run_device
+from zerorate_tools.importers import read_foreign
 from zerorate_tools.importers.logs import apart
 from zerorate_tools.recordings import guarded, parquet_format, read_recording, write_recording
 
@@ -49,6 +53,25 @@ def test_it_is_an_error_in_python_and_a_failure_of_one_device(deadly):
         read_recording(deadly)
     (failure,) = run_device(Job(), Device("a", (str(deadly),)))["failures"]
     assert _ENDED in failure["reason"]
+
+
+@pytest.mark.parametrize("footer", [b"\xff" * 30_000_000, b"\x19\xfc" * 1000])
+def test_any_footer_is_one_line(tmp_path, footer):
+    whole = b"PAR1" + footer + struct.pack("<I", len(footer)) + b"PAR1"
+    (tmp_path / "x.parquet").write_bytes(whole)
+    for reads in (read_recording, read_foreign):
+        with pytest.raises(BadRecording, match="x.parquet: ") as refused:
+            reads(tmp_path / "x.parquet")
+        assert "\n" not in str(refused.value)
+
+
+def test_a_column_that_is_there_twice_is_named(tmp_path):
+    table = pa.table([pa.array([1, 2])] * 3, names=["t_us", "gx_dps", "gx_dps"])
+    pq.write_table(table, tmp_path / "x.parquet")
+    with pytest.raises(BadRecording, match="gx_dps comes twice"):
+        read_recording(tmp_path / "x.parquet")
+    with pytest.raises(BadRecording, match="the column 'gx_dps' is there twice"):
+        read_foreign(tmp_path / "x.parquet")
 
 
 def test_limits_that_a_user_set_lower_stop_no_reader(log):

@@ -17,6 +17,7 @@ _BEGINNINGS = {
     "x.bag": b"#ROSBAG V2.0\n",
     "x.db3": b"SQLite format 3\0",
     "x.mcap": b"\x89MCAP0\r\n",
+    "x.parquet": b"PAR1",
 }
 
 

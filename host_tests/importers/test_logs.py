@@ -174,6 +174,12 @@ def test_a_bag_gives_rates_with_the_temperature_of_another_topic(bag_of, kind):
     assert told(report, "gyro taken in rad/s: as in ROS")
 
 
+def test_a_message_of_json_that_is_none_is_left_out_and_counted(bag_of):
+    recording, report = read_foreign(bag_of("mcap-json", torn=(70, 700)))
+    assert 590 < len(recording) < 600
+    assert report.dropped["a message that cannot be decoded"]
+
+
 def test_a_bag_of_other_topics_says_what_it_has(bag_of):
     with pytest.raises(BadRecording, match="no topic of type sensor_msgs/Imu.*/imu/temperature"):
         read_foreign(bag_of("ros2", imu=False))
