@@ -19,6 +19,7 @@ from zerorate_tools.fleet import devices_of, fleet
 from zerorate_tools.fleet.cluster import cluster, run_all
 from zerorate_tools.fleet.first_minutes import beginning, moving_from
 from zerorate_tools.fleet.fleet_in_words import in_words
+from zerorate_tools.fleet.whole_fleet import Parts
 from zerorate_tools.model import read_model
 from zerorate_tools.recordings import read_recording, write_recording
 from zerorate_tools.replay import replay
@@ -77,6 +78,16 @@ def test_a_second_run_does_nothing_again(done, data, scheduler):
     assert (again.resumed, again.tasks) == (DEVICES, 0)
     assert parts_in(done[1]) == before
     assert again.report["effects"] == done[0].report["effects"]
+
+
+def test_the_devices_of_a_damaged_part_are_done_again(tmp_path):
+    parts = Parts(tmp_path)
+    parts.add([{"device": "a", "fingerprint": "1", "failures": []}])
+    (torn,) = parts._files()
+    parts.add([{"device": "b", "fingerprint": "2", "failures": []}])
+    torn.write_bytes(torn.read_bytes()[:300])
+    assert parts.whole() == {"2"}
+    assert [row["device"] for row in parts.results({"a": "1", "b": "2"})] == ["b"]
 
 
 def test_without_a_cache_it_runs_and_says_so_once(data, tmp_path):

@@ -16,9 +16,10 @@ from typing import TYPE_CHECKING, Any
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from ..errors import ZerorateError
+from ..errors import BadRecording, ZerorateError
 from ..recordings.atomic import written_beside, written_together
 from ..recordings.drafts import clear_left_over
+from ..recordings.guarded import read_in_safety
 from ..recordings.scales import scales_from_text
 from ..replay.engines import compiled
 from .cluster import cluster, in_batches, run_all, size_of
@@ -239,4 +240,14 @@ class Parts:
         return (json.loads(latest[device]) for device in fingerprints if device in latest)
 
     def _files(self) -> list[Path]:
-        return sorted(self.folder.glob("[!.]*.parquet"), key=lambda path: path.stat().st_mtime_ns)
+        found = filter(_is_whole, self.folder.glob("[!.]*.parquet"))
+        return sorted(found, key=lambda path: path.stat().st_mtime_ns)
+
+
+def _is_whole(part: Path) -> bool:
+    """Whether it can be read; the devices of one that was damaged since are done again."""
+    try:
+        read_in_safety(part)
+    except BadRecording:
+        return False
+    return True
