@@ -17,6 +17,10 @@ def folder(tmp_path):
     (tmp_path / "loop").symlink_to("loop")
     os.mkfifo(tmp_path / "fifo")
     (tmp_path / "link").symlink_to("fifo")
+    (tmp_path / "folder").mkdir()
+    for name in ("folder/gyro.csv", "piped.json"):
+        os.mkfifo(tmp_path / name)
+    (tmp_path / "piped.csv").write_text(_LOG)
     (tmp_path / _NOT_UTF8).write_text(_LOG)
     (tmp_path / "run.csv").write_text(_LOG)
     (tmp_path / "log.csv").write_text(_LOG.replace("gx,gy,gz", "gx_dps,gy_dps,gz_dps"))
@@ -42,6 +46,8 @@ def folder(tmp_path):
         (["replay", "run.csv", "--out", "o.parquet", "--set", "bins=1e400"], "bins=1e400: not of"),
         (["replay", "run.csv", "--out", "o.parquet", "--model", "/dev/zero"], "zero: is no file"),
         (["replay", "run.csv", "--out", "o.parquet", "--from-state", "fifo"], "fifo: is no file"),
+        (["import", "folder", "--out", "o.parquet"], "folder: no table with rates in it"),
+        (["allan", "piped.csv"], "piped.json: is no file; write there"),
         (["simulate", "fifo", "--out", "s.parquet"], "fifo: is no file"),
         (["state", "show", "/dev/zero"], "zero: is no file"),
         (["flash", "none", "--dry-run", "--main", "/dev/zero"], "zero: is no file"),

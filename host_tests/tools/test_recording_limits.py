@@ -135,7 +135,7 @@ def test_scales_are_of_a_megabyte_at_most(tmp_path, size):
     if size <= 1 << 20:
         assert len(read_recording(tmp_path / "x.csv").scales.sensor) == size - len(text)
     else:
-        with pytest.raises(BadRecording, match="scales of more than 1 MiB; write them as a short"):
+        with pytest.raises(BadRecording, match="x.json: more than 1 MiB; write there"):
             read_recording(tmp_path / "x.csv")
 
 

@@ -13,9 +13,10 @@ import pyarrow.compute as pc
 import pyarrow.csv
 
 from ..errors import BadRecording
+from ..small_file import bytes_of
 from .checks import arrow_batch, check_names
 from .recording import TIME
-from .scales import MOST_BYTES, Scales, example_for, scales_from_text
+from .scales import Scales, example_for, scales_from_text
 from .text import damaged, head, open_text
 
 SUFFIXES = (".csv", ".csv.gz")
@@ -31,14 +32,12 @@ def scales_path(path: Path) -> Path:
 def read_scales(path: Path, column_names: list[str]) -> Scales:
     """The scales beside a CSV, whole for its columns. Raises BadRecording."""
     beside = scales_path(path)
-    try:
-        with open(beside, "rb") as file:
-            return scales_from_text(file.read(MOST_BYTES + 1), beside, column_names)
-    except FileNotFoundError as error:
-        example = example_for(column_names)
-        do = f"write there, with your sensor's numbers for these of an MPU-6050: {example}"
+    example = example_for(column_names)
+    do = f"write there, with your sensor's numbers for these of an MPU-6050: {example}"
+    if not beside.exists():
         problem = f"what one LSB means is unknown: there is no {beside.name} beside it"
-        raise BadRecording(path, problem, do=do) from error
+        raise BadRecording(path, problem, do=do)
+    return scales_from_text(bytes_of(beside, do, BadRecording), beside, column_names)
 
 
 @dataclass(frozen=True)

@@ -83,7 +83,8 @@ def folder_of_tables(
 
 def _tables_in(path: Path, advance: Callable[[float], None]) -> Iterator[tuple[Path, Table]]:
     for file in sorted(path.rglob("*")):
-        if file.suffix.lower() in _TABLES and not _is_hidden(str(file.relative_to(path))):
+        hidden = _is_hidden(str(file.relative_to(path)))
+        if file.suffix.lower() in _TABLES and not hidden and file.is_file():  # a pipe has no end
             try:
                 yield file, delimited(file, advance)
             except BadRecording:  # a note, a setting
