@@ -19,7 +19,7 @@ SHOWN = {
     "wiring.md": [],
     "pico.md": ["main.py", "yaw.py", "keep.py", "interrupt.py", "pins.py"],
     "raspberry-pi.md": ["raspberry_pi.py"],
-    "linux-service.md": ["ros2_node.py"],
+    "linux-service.md": [],
     "any-imu.md": ["bmi160.py", "lsm6dso.py", "bmi270.py"],
 }
 BIAS_DPS = [0.31, -0.19, 0.08]

@@ -169,7 +169,7 @@ CALLED_BY_OTHERS = {
     *("__getattr__", "__dir__", "handle_starttag", "handle_data"),
     *("_constant", "_subscript", "_binop", "_unaryop", "_boolop", "_ifexp"),
     *("how_sure", "found_in_short", "write_device", "make_folders", "put_in_place"),
-    *("unlock", "enable_pec", "block_process_call", "get_code"),
+    *("unlock", "enable_pec", "block_process_call", "get_code", "generate_launch_description"),
 }
 
 

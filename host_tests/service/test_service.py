@@ -6,7 +6,6 @@ import json
 import os
 import re
 import resource
-import runpy
 import signal
 import socket
 import subprocess
@@ -14,7 +13,6 @@ import sys
 import time
 import urllib.request
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -501,22 +499,3 @@ def test_the_unit_has_a_watchdog_and_no_rights(repository):
     assert service["Type"] == "notify" and int(service["WatchdogSec"]) >= 15
     assert service["DynamicUser"] == "yes" and service["DevicePolicy"] == "closed"
     assert service["Restart"] == "always"
-
-
-def message(rate, second):
-    axes = ("x", "y", "z")
-    return SimpleNamespace(
-        header=SimpleNamespace(stamp=SimpleNamespace(sec=int(second), nanosec=0)),
-        angular_velocity=SimpleNamespace(**dict(zip(axes, rate))),
-        linear_acceleration=SimpleNamespace(x=0.0, y=0.0, z=9.81),
-        angular_velocity_covariance=[0.0] * 9,
-    )
-
-
-def test_the_core_of_the_ros_node_needs_no_ros(repository):
-    core = runpy.run_path(str(repository / "examples" / "ros2_node.py"))["ImuCore"](odr_hz=50.0)
-    for number in range(1000):
-        # the stamps stand still and go back: the sensor's own pace holds
-        corrected = core.correct(message((0.01 + 0.0001 * (number % 5), 0, -0.02), -number // 100))
-    assert corrected.angular_velocity.z == pytest.approx(0, abs=0.0005)
-    assert corrected.angular_velocity_covariance[0] > 0
