@@ -14,7 +14,7 @@ import pytest
 from zerorate_tools import __version__
 from zerorate_tools.cli import main
 
-STRICT = ["-Wall", "-Wextra", "-Wpedantic", "-Werror"]
+STRICT = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"]
 LANGUAGES = {"c99": ["-x", "c", "-std=c99"], "c++": ["-x", "c++", "-std=c++11"]}
 USER = """\
 #include "zerorate_units.h"

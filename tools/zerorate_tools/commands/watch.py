@@ -3,6 +3,7 @@
 import argparse
 from pathlib import Path
 
+from ..errors import ZerorateError
 from .numbers_given import above_zero
 from .replay import add_sources
 
@@ -24,6 +25,8 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
     parser.add_argument("--plain", action="store_true", help="lines, on a terminal too")
     parser.add_argument("--model", type=Path, metavar="FILE", help="an effect model to load")
     add_sources(parser)
+    parser.add_argument("--own", action="store_true", help="what the board's own program prints")
+    parser.add_argument("--plot", type=Path, metavar="FILE", help="then draw the bias over time")
     parser.add_argument(
         "--setup", type=Path, metavar="FILE", help="on a board: source that makes `imu`"
     )
@@ -32,6 +35,8 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
 
 def run(arguments: argparse.Namespace) -> int:
     """Watch; 1 where no sample ever came."""
+    if arguments.own and (arguments.model or arguments.setup):
+        raise ZerorateError("--own leaves the board's program as it is; drop --model and --setup")
     from ..small_file import text_of
     from ..watch.options import WatchOptions
     from ..watch.watching import watch
@@ -44,5 +49,12 @@ def run(arguments: argparse.Namespace) -> int:
         settings={"motion": arguments.motion, "gravity": arguments.gravity},
         model=arguments.model,
         setup=text_of(arguments.setup, "name MicroPython source") if arguments.setup else "",
+        own=arguments.own,
     )
-    return 0 if watch(arguments.source, options) else 1
+    live = watch(arguments.source, options)
+    if live and arguments.plot:
+        from ..watch.picture import draw
+
+        draw(live, arguments.plot)
+        print(arguments.plot)
+    return 0 if live else 1

@@ -17,7 +17,7 @@ from ..replay.samples import Frames, frames_of
 #: From so many samples at once on, compiled kernels are worth their loading.
 _MANY = 20_000
 _SHOWN_S = 1.0
-_HISTORY = 900
+HISTORY = 900  # a quarter of an hour
 
 
 class Live:
@@ -45,7 +45,7 @@ class Live:
         self.samples, self.start_us, self._kept = 0, 0, -1
         self.rate_dps, self.left_dps = np.full(3, np.nan), np.full(3, np.nan)
         self.temp_degc: float | None = None
-        self.history: deque[np.ndarray] = deque(maxlen=_HISTORY)
+        self.history: deque[np.ndarray] = deque(maxlen=HISTORY)
 
     def feed(self, columns: Columns) -> None:
         """Let the firmware take a batch of samples."""
@@ -57,6 +57,20 @@ class Live:
         for outcome in runner.run(self.corrector, [batch]):
             self._note(raw, outcome.frames, outcome.t_us)
             self._keep(outcome)
+
+    def headline(self) -> str:
+        """Source, sensor, and how much came."""
+        minutes, seconds = divmod(int(self.duration_s), 60)
+        return (
+            f"{self.name}  {self.scales.sensor}  {minutes}:{seconds:02d} min, "
+            f"{self.samples:,} samples, {self.rate_hz:.1f} Hz"
+        )
+
+    def conditions(self) -> list[str]:
+        """How warm it is, a line each."""
+        if self.temp_degc is None:
+            return ["no thermometer"]
+        return [f"temperature {self.temp_degc:.2f} degC"]
 
     @property
     def duration_s(self) -> float:

@@ -13,7 +13,7 @@ class WatchOptions:
 
     seconds: end after so long; once: end with what is there; every_s: between two looks (default
     0.5 on a terminal, 2 in a pipe); settings, model: as of Live; setup: as of
-    record_port.
+    record_port; own: show what the board's own program prints, and leave it running.
     """
 
     seconds: float | None = None
@@ -23,6 +23,7 @@ class WatchOptions:
     settings: dict[str, Any] | None = None
     model: Path | None = None
     setup: str = ""
+    own: bool = False
 
     def seconds_between_looks(self, shown: Screen) -> float:
         """Seconds between two looks on that screen."""

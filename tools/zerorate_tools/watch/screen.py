@@ -1,6 +1,7 @@
 """What a person sees: a screen that renews itself, or lines where there is no terminal."""
 
 import sys
+from collections import deque
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, Protocol
@@ -8,16 +9,37 @@ from typing import Any, Protocol
 import numpy as np
 
 from ..numbers import fixed
-from .live import Live
 
 _BARS = "▁▂▃▄▅▆▇█"
 _WIDTH = 24
 
 
+class Shown(Protocol):
+    """What is shown: Live, or Told of a board's own program. A quality of NaN is not known."""
+
+    name: str
+    temp_degc: float | None
+    rate_dps: np.ndarray
+    left_dps: np.ndarray
+    history: deque[np.ndarray]
+
+    @property
+    def duration_s(self) -> float: ...
+    @property
+    def bias_dps(self) -> np.ndarray: ...
+    @property
+    def quality_dps(self) -> np.ndarray: ...
+    @property
+    def source(self) -> list[str]: ...
+    def headline(self) -> str: ...
+    def conditions(self) -> list[str]: ...
+    def learning(self) -> list[str]: ...
+
+
 class Screen(Protocol):
     """Takes what there is to say, as often as one likes."""
 
-    def show(self, live: Live, notes: list[str]) -> None:
+    def show(self, live: Shown, notes: list[str]) -> None:
         """Show the firmware's state, and what is to be said of the source."""
 
 
@@ -36,7 +58,7 @@ def screen(plain: bool = False) -> Iterator[Screen]:
 class Lines:
     """A line each time, for a pipe, a log or a test."""
 
-    def show(self, live: Live, notes: list[str]) -> None:
+    def show(self, live: Shown, notes: list[str]) -> None:
         """Print time, temperature, and per axis bias, quality and source."""
         axes = zip("xyz", live.bias_dps, live.quality_dps, live.source)
         biases = "  ".join(f"{axis} {_bias(*known)}" for axis, *known in axes)
@@ -47,7 +69,10 @@ class Lines:
 
 def _bias(bias_dps: float, quality_dps: float, source: str) -> str:
     # a bias that nobody knows is not known to +-0
-    return "none" if source == "none" else f"{fixed(bias_dps, 3, '+')}±{quality_dps:.3f} {source}"
+    if source == "none":
+        return source
+    sigma = "" if np.isnan(quality_dps) else f"±{quality_dps:.3f}"
+    return f"{fixed(bias_dps, 3, '+')}{sigma} {source}"
 
 
 class Area:
@@ -56,26 +81,17 @@ class Area:
     def __init__(self, area: Any) -> None:
         self._area = area
 
-    def show(self, live: Live, notes: list[str]) -> None:
+    def show(self, live: Shown, notes: list[str]) -> None:
         """Draw it."""
         from rich.console import Group
         from rich.text import Text
 
         # Text, not str: a file's name may hold what rich takes for markup
-        parts = [Text(headline(live), style="bold"), _table(live), Text(_temperature(live))]
-        parts += [Text(line) for line in _learning(live)]
+        parts = [Text(live.headline(), style="bold"), _table(live)]
+        parts += [Text(line) for line in [*live.conditions(), *_learning(live)]]
         parts += [Text(note, style="yellow") for note in notes]
         parts.append(Text("Ctrl-C ends.", style="dim"))
         self._area.update(Group(*parts), refresh=True)
-
-
-def headline(live: Live) -> str:
-    """Source, sensor, and how much came."""
-    minutes, seconds = divmod(int(live.duration_s), 60)
-    return (
-        f"{live.name}  {live.scales.sensor}  {minutes}:{seconds:02d} min, "
-        f"{live.samples:,} samples, {live.rate_hz:.1f} Hz"
-    )
 
 
 def sparkline(values: np.ndarray) -> str:
@@ -88,7 +104,7 @@ def sparkline(values: np.ndarray) -> str:
     return "".join(_BARS[int(s * (len(_BARS) - 1) + 0.5)] for s in share)
 
 
-def _table(live: Live) -> Any:
+def _table(live: Shown) -> Any:
     from rich import box
     from rich.table import Table
 
@@ -100,18 +116,13 @@ def _table(live: Live) -> Any:
     past = np.array(live.history).reshape(-1, 3)
     for i, source in enumerate(live.source):
         signed = [fixed(v[i], 3, "+") for v in (live.rate_dps, live.left_dps, live.bias_dps)]
-        sigma = "" if source == "none" else f"{live.quality_dps[i]:.3f}"
+        unknown = source == "none" or np.isnan(live.quality_dps[i])
+        sigma = "" if unknown else f"{live.quality_dps[i]:.3f}"
         table.add_row(f"g{'xyz'[i]}", *signed, sigma, source, sparkline(past[:, i]))
     return table
 
 
-def _temperature(live: Live) -> str:
-    if live.temp_degc is None:
-        return "no thermometer"
-    return f"temperature {live.temp_degc:.2f} degC"
-
-
-def _learning(live: Live) -> list[str]:
+def _learning(live: Shown) -> list[str]:
     """The firmware's words but for what the table has: of an axis only what is behind its bias."""
     said = []
     for line in live.learning():

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from .live import Live
 from .options import WatchOptions
-from .screen import Screen, screen
+from .screen import Screen, Shown, screen
 from .tail import CsvTail
 
 _DEVICE = re.compile(r"/dev/.+|COM\d+|\d+")
@@ -16,13 +16,18 @@ _STALLED_S = 3.0
 _STALLED_SAMPLES = 20
 
 
-def watch(source: str, options: WatchOptions | None = None) -> Live | None:
+def watch(source: str, options: WatchOptions | None = None) -> Shown | None:
     """Run the firmware on what comes from a growing CSV, a board's port or /dev/i2c-N, and show it.
 
-    Ends at Ctrl-C as well. Returns the firmware as it was at the end, None where nothing came.
+    Ends at Ctrl-C as well. Returns the firmware as it was at the end, what the board's own program
+    said with `own`, None where nothing came.
     Raises ZerorateError for a source that cannot be followed.
     """
     options = options or WatchOptions()
+    if options.own:
+        from .own import watch_own
+
+        return watch_own(source, options)
     if is_device(source):
         from .board import watch_board
 
