@@ -390,10 +390,17 @@ def model_of(folder, temp_lsb_per_degc, channel="temp"):
 
 
 def first_line(folder, *options):
-    """The first line of a service on an emulated chip, and what it said; None where it ended."""
-    command = [sys.executable, "-m", "zerorate_tools.cli", "run", "fake:", *options]
+    """The first line of a service on an emulated chip, and what it said; None where it ended.
+
+    Without numpy: docs/linux-service.md installs the extra `linux` alone.
+    """
+    start = (
+        "import sys; sys.modules['numpy'] = None; from zerorate_tools.cli import main; exit(main())"
+    )
     process = subprocess.Popen(
-        command, **{"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}, cwd=folder
+        [sys.executable, "-c", start, "run", "fake:", *options],
+        **{"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True},
+        cwd=folder,
     )
     line = process.stdout.readline()
     process.terminate()
@@ -414,10 +421,15 @@ def test_a_model_of_another_chip_or_of_a_channel_is_one_line(tmp_path):
     for named, problem in (
         (model_of(tmp_path / "a", 326.8), "--model: .*other scales"),
         (model_of(tmp_path / "b", 340, "vdd_mv"), "--model: .*vdd_mv"),
-        ("none.bin", "none.bin: no such file"),
+        ("none.bin", "none.bin: No such file"),
     ):
         line, said = first_line(tmp_path, "--hz", "25", "--model", named)
         assert line is None and re.search(problem, said) and said.count("\n") == 1
+
+
+def test_a_model_that_fits_is_taken(tmp_path):
+    line, said = first_line(tmp_path, "--hz", "25", "--model", model_of(tmp_path, 340))
+    assert line and "--model" not in said
 
 
 @pytest.mark.parametrize("option", [("--state", "no/learned.bin"), ("--socket", "no/imu.sock")])

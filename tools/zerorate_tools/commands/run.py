@@ -46,14 +46,13 @@ def run(arguments: argparse.Namespace) -> None:
     from zerorate_i2c.mpu6050 import MPU6050
 
     from ..errors import InFile, ZerorateError
-    from ..model import encoded, read_model
     from ..service import Datagrams, FakeBus, Lines, Metrics, Service, Sink, System, UnixSocket
 
     if not arguments.state.parent.is_dir():
         raise InFile(arguments.state.parent, "no such folder", do="make it, or name another")
     names = ("odr_hz", "full_scale_dps", "full_scale_g", "dlpf_hz", "part")
     options = {name: getattr(arguments, name) for name in names}
-    model = encoded(read_model(arguments.model)) if arguments.model else b""
+    model = _model_bytes(arguments.model) if arguments.model else b""
     fake = FakeBus(arguments.address, arguments.part) if arguments.bus == "fake:" else None
 
     def open_imu() -> MPU6050:
@@ -84,3 +83,12 @@ def run(arguments: argparse.Namespace) -> None:
     storage = FileStorage(str(arguments.state))
     system = System(open_imu, storage, clock, say, stored_ago_s=stored_ago_s)
     Service(system, sinks or [Lines(sys.stdout)], model).run()
+
+
+def _model_bytes(path: Path) -> bytes:
+    """The bytes of model.bin, which need no library; those of its readable twin need tools."""
+    if path.suffix != ".json":
+        return path.read_bytes()
+    from ..model import encoded, read_model
+
+    return encoded(read_model(path))
