@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from zerorate_bench.loop.corners import simulate_corners
 from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.loop import analyse as loop
 from zerorate_tools.loop.analyse import analyse
@@ -282,3 +283,9 @@ def test_what_follows_a_pose_that_changes_often_is_no_step_and_a_step_no_acceler
         session.sources[f"acc_{axis}"] = size * pose + rng.normal(0, 1e-3, ticks)
     session.rate_dps += follows_dps * session.block_mean(session.sources["acc_x"])[:, None]
     assert steps_at(session) == ([pytest.approx(90, abs=0.75)] if floors else [])
+
+
+@pytest.mark.parametrize("seed", [5_000_015, 5_000_028, 5_000_058, 5_000_100])
+def test_a_part_that_is_late_at_a_sharp_corner_of_temperature_makes_no_step(seed):
+    (session,) = simulate_corners(seed).sessions
+    assert steps_at(session) == []

@@ -47,6 +47,8 @@ class Regression:
         self.outliers = 0
         self.steep = True  # whether the noise may be steeper than a random walk
         self.axes = np.eye(3)
+        #: Of the weights of terms about zero, over the variance of a block's white noise.
+        self.precision: dict[Term, float] = {}
         self._cache: dict[Term, list[np.ndarray]] = {}
         self._extra: list[list[np.ndarray]] = []
         self.prepare()
@@ -127,10 +129,17 @@ class Regression:
                 for i in range(len(self.sessions))
             ]
         out = cross_products(self.whiteners, self.y, self.stack(terms), x, size)
-        _shrink_squares(out.zz, terms)
+        self._shrink(out.zz, terms)
         for k, c in enumerate(candidates or ()):
-            _shrink_squares(out.xx[:, :, k], c)
+            self._shrink(out.xx[:, :, k], c)
         return out
+
+    def _shrink(self, products: np.ndarray, terms) -> None:
+        """Shrink terms that are the first of (S, ..., J, J), each session's share of it alike."""
+        for i, term in enumerate(terms):
+            if term.source.startswith("acc_") and term.power == 2:
+                products[..., i, i] *= 1.0 + _SUM_OF_SQUARES
+            products[..., i, i] += self.precision.get(term, 0.0) / len(self.sessions)
 
     def fit(self, terms) -> Fit:
         """Joint fit with the noise's colour refitted."""
@@ -166,13 +175,6 @@ class Regression:
                 g = self.cross_products(terms, [candidates[i] for i in part])
                 out[part] = ratios(g, fit_base(g, self.scale, self.steep), self.scale, self.steep)
         return np.maximum(out, 0.0)
-
-
-def _shrink_squares(products: np.ndarray, terms) -> None:
-    """Shrink what follows squares of acceleration: (..., J, J) of terms, which are the first."""
-    for i, term in enumerate(terms):
-        if term.source.startswith("acc_") and term.power == 2:
-            products[..., i, i] *= 1.0 + _SUM_OF_SQUARES
 
 
 def predicted(terms, coefficients: np.ndarray, session: Session) -> np.ndarray:

@@ -94,6 +94,8 @@ _FEW, _FEW_SHARE = 1, 0.01
 
 #: Lags in s of the rates of temperature that a part follows which is late by seconds.
 _LATE_S = (1.0, 8.0)
+#: Lags in s of all parts that may be late, each three times the last: between two nothing is lost.
+_LAGS_S = (5.0, 15.0, 45.0, 135.0, 405.0, 1215.0)
 
 #: Share of its range by which the source of a difference may leave it.
 _MARGIN = 0.5
@@ -182,6 +184,15 @@ def of_temperature(sessions: list[Session]) -> list[Candidate]:
         return []
     own = [c for c in candidates(sessions) if c.sources == ["temp"] and len(c.terms) == 1]
     return [*own, *_late(sessions)]
+
+
+def lags(sessions: list[Session]) -> list[Term]:
+    """What parts that are late behind the thermometer add, or early, and the squares of it."""
+    if "temp" not in common_sources(sessions):
+        return []
+    centre = float(np.mean([s.sources["temp"].mean() for s in sessions]))
+    own = [Term("temp", centre=centre, lag_s=lag, lag_mode="difference") for lag in _LAGS_S]
+    return [replace(t, power=k, power_first=k > 1) for t in own for k in (1, 2)]
 
 
 def _late(sessions) -> list[Candidate]:

@@ -12,8 +12,9 @@ import numpy as np
 from scipy.stats import chi2
 
 from ..fit.regression import predicted
+from ..fit.shrunk import shrink
 from ..fit.surrogates import NullRatios
-from .catalogue import Candidate, of_temperature
+from .catalogue import Candidate, lags, of_temperature
 from .decide import LEVEL
 from .refine import refined
 from .step_places import EDGE, LONGEST, best_place, best_slow, beyond_ramps, heavisides, tried
@@ -89,10 +90,33 @@ def find_all(
             break
         beside += refined(regression, beside, form).terms
         most -= 1
+    if steps and lags(regression.sessions):
+        stand = _beside_lags(regression, terms, beside[len(terms) :], recordings)
+        steps = [s for s in steps if any(_is_same(s, other) for other in stand)]
     _set(regression, steps, None)
     steps = _sized(regression, beside, steps)
     fitted, first = regression.fit(beside).coefficients, len(terms)
     return [s for s in steps if not _is_timing(regression, beside[first:], fitted[first:], s)]
+
+
+def _is_same(a: Step, b: Step) -> bool:
+    """Whether two are the same one, found beside other terms."""
+    return a.session == b.session and abs(a.block - b.block) <= _BESIDE
+
+
+def _beside_lags(regression, terms, forms, recordings) -> list[Step]:
+    """The steps that stand beside terms, forms and what all parts add that are late, by seconds to
+    minutes, or early. Its weights are as large as is likely beside the terms alone, for a form or a
+    step takes the place of several; they stay shrunk so."""
+    regression.set_events([])
+    late = lags(regression.sessions)
+    own = slice(len(terms), len(terms) + len(late))
+    products = regression.cross_products([*terms, *late])
+    squares = np.einsum("sgjj->j", products.zz)[own]
+    alike = products.mapped(own.start, np.diag(squares**-0.5))
+    said = shrink(alike, regression.scale, [*terms, *late[:1] * len(late)], own)
+    regression.precision = dict(zip(late, (said.precision[0, own] * squares).tolist()))
+    return _all(regression, [*terms, *forms, *late], recordings)
 
 
 def _is_timing(regression, forms, fitted, step: Step) -> bool:

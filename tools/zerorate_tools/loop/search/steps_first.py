@@ -73,8 +73,8 @@ def _steps(session, jumping, recordings: int) -> list[Step]:
     regression = Regression([session])
     hold_disturbed(regression, beside, recordings)
     every = find_all(regression, beside, rivals, recordings)
-    slopes = regression.fit(beside).coefficients
-    every = [s for s in every if not _is_thermometers(session, slopes, s)]
+    regression.set_events([])
+    every = [s for s in every if not _is_thermometers(regression, beside, s)]
     for step in sorted(every, key=lambda s: s.block):
         if out and step.block - out[-1].block == 1 and step.size_dps @ out[-1].size_dps > 0:
             deviation = np.hypot(step.deviation_dps, out[-1].deviation_dps)
@@ -84,19 +84,31 @@ def _steps(session, jumping, recordings: int) -> list[Step]:
     return out
 
 
-def _is_thermometers(session, fitted, step: Step) -> bool:
-    """Whether a step may be that of the thermometer's readings: it is along the slope of the bias
-    over temperature, and no larger than one. Between two readings nobody knows when the temperature
-    moved."""
-    bend = bend_of(session)
-    if not bend or not session.temp_step_degc:
+def _is_thermometers(regression, beside, step: Step) -> bool:
+    """Whether a step may be that of the thermometer's readings: what a jump of the temperature by
+    no more than one makes of a block's bias leaves nothing of it. Between two readings nobody knows
+    when the temperature moved. beside: the terms, without the late parts that are shrunk."""
+    [session] = regression.sessions
+    if not bend_of(session) or not session.temp_step_degc:
         return False
+    every = [*beside, *regression.precision]
     degc = session.block_mean(session.sources["temp"])[min(step.block, session.blocks - 1)]
-    along = [t.power * (degc - t.centre) ** (t.power - 1) for t in bend] @ fitted[: len(bend)]
+    jump = np.array([_slope(t, degc, session.block_s) for t in every])
+    along, most = jump @ regression.fit(every).coefficients, _OF_READING * session.temp_step_degc
     weight = 1.0 / np.maximum(step.deviation_dps, 1e-12) ** 2
-    off_degc = (weight * along) @ step.size_dps / ((weight * along) @ along)
-    beside = weight @ (step.size_dps - off_degc * along) ** 2
-    return bool(abs(off_degc) <= _OF_READING * session.temp_step_degc and beside < _OFF_SLOPE)
+    off_degc = np.clip((weight * along) @ step.size_dps / ((weight * along) @ along), -most, most)
+    return bool(weight @ (step.size_dps - off_degc * along) ** 2 < _OFF_SLOPE)
+
+
+def _slope(term: Term, degc: float, block_s: float) -> float:
+    """Of the mean of a block over a jump of temperature before it, per degC; a lag forgets it."""
+    if term.source != "temp":
+        return 0.0
+    kept = 1.0
+    if term.lag_s:
+        unit_s = 1.0 if term.lag_mode == "rate" else term.lag_s
+        kept = -np.expm1(-block_s / term.lag_s) * unit_s / block_s
+    return float(kept * term.power * (degc - term.centre) ** (term.power - 1))
 
 
 def bend_of(session: Session) -> list[Term]:
