@@ -57,28 +57,33 @@ _OUTS = (
     *("o", "o.csv", "o.csv.gz", "o.txt", ".parquet", "o.parquet/", "nowhere/o.parquet", "o/o/o"),
     *("shut/o.parquet", "n" * 247 + ".parquet", "a\nb.parquet", "\x1b[31m.parquet"),
 )
-# a command's words; those in brackets are there sometimes; capitals, what is drawn
+# a command's words; those in brackets are there sometimes; capitals, what is drawn, with what is
+# sound there if it is not what is sound anywhere
 FORMS = {
-    "import": "import --out OUT LOG [--hz NUMBER] [--map WORD] [--sensor WORD] [--json] [LOG] "
-    "[--gyro-lsb-per-dps NUMBER] [--temp-offset-degc NUMBER] [--instance NUMBER]",
-    "cut": "cut LOG --at-row NUMBER --out OUT [--at-row NUMBER]",
-    "simulate": "simulate DEVICE --out OUT [--truth OUT] [--session NUMBER] [--seed NUMBER]",
-    "replay": "replay LOG --out OUT [--state OUT] [--from-state STATE] [--resume] [--model MODEL] "
-    "[--set WORD] [--set bins=NUMBER] [--set step_degc=NUMBER] [--document] [--every] "
-    "[--no-motion] [--no-gravity] [--json] [--runtime WORD]",
-    "close": "close --out OUT LOG [LOG] [--holdout LOG] [--online] [--json]",
-    "compare": "compare LOG [LOG] [--out OUT] [--json]",
+    "import": "import --out OUT LOG [--hz NUMBER:50] [--map WORD:temp=none] [--sensor WORD] [LOG] "
+    "[--gyro-lsb-per-dps NUMBER] [--temp-offset-degc NUMBER] [--instance NUMBER:0] [--json]",
+    "cut": "cut LOG --at-row NUMBER:9 --out OUT:parts [--at-row NUMBER]",
+    "simulate": "simulate DEVICE --out OUT [--truth OUT:t.parquet] [--session NUMBER:1] "
+    "[--seed NUMBER]",
+    "replay": "replay LOG --out OUT [--state OUT:s.bin] [--from-state STATE] [--resume] [--json] "
+    "[--set WORD:short=30] [--set bins=NUMBER:8] [--set step_degc=NUMBER] [--document] [--every] "
+    "[--model MODEL] [--no-motion] [--no-gravity] [--runtime WORD:native]",
+    "close": "close --out OUT:c LOG [LOG] [--holdout LOG] [--online] [--json]",
+    "compare": "compare LOG [LOG] [--out OUT:c.html] [--json]",
     "allan": "allan LOG",
-    "model": "model WORD MODEL [MODEL] [--log LOG] [--chip-id NUMBER] [--filter NUMBER]",
-    "state": "state show STATE [--set WORD] [--set bins=NUMBER] [--find WORD]",
-    "flash": "flash LOG --dry-run [--with WORD] [--main LOG] [--model MODEL] [--only]",
-    "record": "record fake: --seconds NUMBER --out OUT [--hz NUMBER] [--dps NUMBER] [--part WORD]",
-    "recover": "record --recover LOG [--out OUT]",
-    "run": "run LOG [--state STATE] [--socket OUT] [--udp WORD] [--hz NUMBER] [--model MODEL]",
-    "watch": "watch LOG --once [--model MODEL] [--every NUMBER] [--for NUMBER]",
-    "fleet": "fleet --out OUT LOG [--device-from WORD] [--model MODEL] [--minutes NUMBER] "
-    "[--workers NUMBER] [--scheduler WORD] [--keep] [--json]",
-    "export": "export c OUT [--model MODEL] [--odr-hz NUMBER] [--gyro-lsb-per-dps NUMBER]",
+    "model": "model WORD MODEL [MODEL] [--log LOG] [--chip-id NUMBER:0x68] [--filter NUMBER:3]",
+    "state": "state show STATE [--set WORD:short=30] [--set bins=NUMBER:8] [--find WORD]",
+    "flash": "flash LOG:nowhere --dry-run [--with WORD:rest] [--main LOG:run.csv] [--only] "
+    "[--model MODEL]",
+    "record": "record fake: --seconds NUMBER --out OUT [--hz NUMBER:50] [--dps NUMBER:500] "
+    "[--part WORD:MPU-6050]",
+    "recover": "record --recover LOG:left.partial.csv [--out OUT]",
+    "run": "run LOG:fake: [--state STATE:learned.bin] [--socket OUT:s] [--hz NUMBER:50] "
+    "[--udp WORD:127.0.0.1:9] [--model MODEL]",
+    "watch": "watch LOG:run.csv --once [--model MODEL] [--every NUMBER] [--for NUMBER]",
+    "fleet": "fleet --out OUT:f LOG [--device-from WORD:(.*)] [--model MODEL] [--minutes NUMBER] "
+    "[--workers NUMBER] [--keep] [--json]",
+    "export": "export c OUT:ex [--model MODEL] [--odr-hz NUMBER] [--gyro-lsb-per-dps NUMBER]",
 }
 
 
@@ -87,12 +92,12 @@ def line(name, odd, draw):
     always, *options = re.split(r" ?\[|\] ?\[?", FORMS[name])
     some = [option for option in options if option and draw.random() < 0.2]
     words = " ".join([always, *some]).split()
-    kinds = {at: word.rpartition("=")[2] for at, word in enumerate(words)}
-    places = [at for at, kind in kinds.items() if kind in _SOUND]
-    wrong = draw.sample(places, min(len(places), draw.choice((0, 1, 1, 1, 1, 2, 3))))
-    for at in places:
-        choice = (odd if at in wrong else _SOUND)[kinds[at]]
-        words[at] = words[at].removesuffix(kinds[at]) + draw.choice(choice)
+    forms = (re.fullmatch(r"(.*?)([A-Z]+)(?::(.*))?", word) for word in words)
+    kinds = {at: form.groups() for at, form in enumerate(forms) if form and form[2] in _SOUND}
+    wrong = draw.sample([*kinds], min(len(kinds), draw.choice((0, 1, 1, 1, 1, 2, 3))))
+    for at, (before, kind, sound) in kinds.items():
+        one = draw.choice(odd[kind] if at in wrong else _SOUND[kind])
+        words[at] = before + (sound if sound and at not in wrong else one)
     return words
 
 

@@ -51,7 +51,8 @@ _ZIPS = {
 def make(folder, draw):
     """Write all into an empty folder."""
     (folder / "dev.toml").write_text("[every_session]\nminutes = 0.5\n")
-    _csv(folder, "run")
+    for name in ("run", "left.partial"):
+        _csv(folder, name)
     simulate_to_files({"every_session": {"minutes": 1}}, folder / "run.parquet", seed=1)
     with contextlib.chdir(folder), open(os.devnull, "w") as null, contextlib.redirect_stdout(null):
         cli.main(["replay", "run.parquet", "--out", "bias.parquet", "--state", "state.bin"])

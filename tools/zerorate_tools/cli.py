@@ -94,7 +94,7 @@ class _Parser(argparse.ArgumentParser):
             word = wrong[1] or wrong[2].partition("=")[0]
             near = difflib.get_close_matches(word, sorted(_words_of(self)), 1)
             message += f"; did you mean {near[0]}?" if near else ""
-        super().error(message)
+        super().error(printable(message))
 
 
 def _words_of(parser: argparse.ArgumentParser) -> set[str]:

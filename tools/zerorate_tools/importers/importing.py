@@ -153,7 +153,7 @@ def _imported(sources: list[Path], outs: list[Path], how: _How, advance: Advance
         _require(source)
         check_output(out)
     check_apart(outs, sources)
-    folder = outs[0].resolve().parent
+    folder = outs[0].absolute().parent
     with ExitStack() as files:
         opened = [_opened(source, how, advance, folder, files) for source in sources]
         ready = _ready(opened)

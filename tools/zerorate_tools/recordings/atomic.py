@@ -4,6 +4,7 @@ import errno
 import os
 from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, contextmanager
+from os.path import realpath
 from pathlib import Path
 
 from ..ending import undisturbed
@@ -55,12 +56,12 @@ def check_name(path: Path) -> None:
 
 def check_apart(outputs: Iterable[_Path | None], inputs: Iterable[_Path | None]) -> None:
     """Raise InFile if an output is a file that is read, too, or two outputs are one; None: none."""
-    read = {Path(path).resolve() for path in inputs if path is not None}
-    written: set[Path] = set()
+    read = {realpath(path) for path in inputs if path is not None}
+    written: set[str] = set()
     for path in outputs:
         if path is None:
             continue
-        place = Path(path).resolve()
+        place = realpath(path)
         if place in read:
             raise InFile(path, "would be written over, but is read", do="name another to write")
         if place in written:
