@@ -194,14 +194,15 @@ def ended_badly(code, said):
 
 def left_badly(code, words, changed, new):
     """What is wrong with the files that a command left."""
-    if code != _ALIVE and (drafts := [name for name in new if ".partial" in name]):
+    keeps = words[0] in ("fleet", "record")  # what they have so far
+    if code != _ALIVE and not keeps and (drafts := [name for name in new if ".partial" in name]):
         yield f"left {drafts[0]}"
     named = {os.path.normpath(word) for word in words}
     named |= {name.removesuffix(".gz").removesuffix(".csv") + ".json" for name in named}
     strange = [name for name in changed if not named & {name, *map(str, Path(name).parents)}]
     if strange and "." not in named:
         yield f"changed {strange}"
-    if code == 2 and words[0] != "fleet" and (changed or new):  # which keeps what it has
+    if code == 2 and not keeps and (changed or new):
         yield f"failed, and changed {sorted(changed)[:3]}, made {sorted(new)[:3]}"
     if code == 0 and "--out" in words and not changed and not new:
         yield "wrote nothing"

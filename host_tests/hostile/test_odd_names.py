@@ -46,6 +46,7 @@ def folder(tmp_path):
         (["replay", "run.csv", "--out", "o.parquet", "--set", "bins=1e400"], "bins=1e400: not of"),
         (["replay", "run.csv", "--out", "o.parquet", "--model", "/dev/zero"], "zero: is no file"),
         (["replay", "run.csv", "--out", "o.parquet", "--from-state", "fifo"], "fifo: is no file"),
+        (["record", "--recover", "."], ".: nothing that `zerorate record` leaves behind"),
         (["import", "loop", "--out", "folder"], "loop: Too many levels of symbolic links"),
         (["state", "show", "run.csv", "--set", "\x1b[31m"], r"\x1b[31m: not of the form"),
         (["import", "folder", "--out", "o.parquet"], "folder: no table with rates in it"),

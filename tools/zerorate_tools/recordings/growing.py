@@ -124,9 +124,9 @@ def recover(partial: str | PathLike[str], out: str | PathLike[str] | None = None
     Raises BadRecording for what is none of them, or is still being written; InFile.
     """
     partial = Path(partial)
-    target = Path(out) if out is not None else _target(partial)
-    _check_name(target)
     with _taken(partial) as file:
+        target = Path(out) if out is not None else _target(partial)
+        _check_name(target)
         file.truncate(_end_of_last_row(file))
         file.seek(0)
         if not file.read(_BLOCK).partition(b"\n")[2]:
