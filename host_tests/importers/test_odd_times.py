@@ -39,6 +39,22 @@ def test_two_power_ons_in_one_file_are_not_mixed(tmp_path):
         read(tmp_path, pd.concat([frame, frame]))
 
 
+@pytest.mark.parametrize("back_s", [65.536, 3600])
+def test_a_short_counter_that_ran_over_and_the_end_of_summer_time_are_no_disorder(tmp_path, back_s):
+    frame = table()
+    frame["t_s"] += 7200
+    frame.loc[1000:, "t_s"] -= back_s
+    with pytest.raises(BadRecording, match="row 1001: time begins anew; cut it there"):
+        read(tmp_path, frame)
+
+
+def test_times_of_which_most_are_no_numbers_are_refused(tmp_path):
+    frame = table()
+    frame["t_s"] = [f"{1000 * t:,.2f}" for t in frame["t_s"]]
+    with pytest.raises(BadRecording, match=r"1900 of 2000 time stamps are no numbers; .*--hz"):
+        read(tmp_path, frame)
+
+
 def test_a_stamp_that_lost_or_won_a_digit_is_left_out(tmp_path):
     frame = table().rename(columns={"t_s": "t_us"})
     frame["t_us"] = 788_201_245 + 13_000 * np.arange(2000)

@@ -19,6 +19,7 @@ from .spool import PLACE, TIME, Spool
 
 _KEPT = 200
 _FAST_SHARE = 0.001
+_NO_TIME = "the time stamp is no number"
 
 
 @dataclass
@@ -122,7 +123,7 @@ class _Gathering:
             with np.errstate(over="ignore"):  # what no integer holds is refused below
                 columns[TIME] = place * (1e6 / self.hz)
         columns[PLACE] = place.astype(float)
-        columns = self._less(columns, np.isfinite(columns[TIME]), "the time stamp is no number")
+        columns = self._less(columns, np.isfinite(columns[TIME]), _NO_TIME)
         # what has no reading may have no true time either
         columns = self._less(columns, self._has_any(columns), "no reading of these columns")
         refuse_impossible(columns[TIME], columns[PLACE], self.path)
@@ -205,6 +206,12 @@ class _Gathering:
             if not do and not self.rows:
                 raise BadRecording(self.path, "no data row", do="name another file")
             raise BadRecording(self.path, "no sample is left", do=do or "no row has three rates")
+        torn = self.dropped[_NO_TIME]
+        if torn > self.rows / 2:
+            do = "write it as a number or a date, or give --hz"
+            raise BadRecording(
+                self.path, f"{torn} of {self.rows} time stamps are no numbers", do=do
+            )
         self.runs.refuse_a_restart(self.path)
 
     def _interval_us(self) -> tuple[float, list[str]]:

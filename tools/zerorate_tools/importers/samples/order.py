@@ -43,8 +43,14 @@ class Runs:
         self._last = t_us[-1]
 
     def refuse_a_restart(self, path: Path) -> None:
-        """Raise BadRecording where two long stretches claim the same time."""
+        """Raise BadRecording where two long stretches claim the same time, or where one leads back
+        to well before the one above it: a clock was set back, or a counter ran over. Halves in the
+        wrong order fit together."""
         self._close(self._last)
+        for (above, _, _), (begin, end, place) in zip(self._long, self._long[1:]):
+            if above - end > _SHARED * (end - begin):
+                row = place + 1
+                raise BadRecording(path, "time begins anew", row=row, do=cut_words(path, row))
         latest, before = -np.inf, None
         for begin, end, place in sorted(self._long):
             if before is not None and latest - begin > _SHARED * (end - begin):
