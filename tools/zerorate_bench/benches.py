@@ -172,6 +172,12 @@ BENCHES = {
         lambda bench, a: bench.steps(a.devices),
         options={"--devices": _number(20, "devices of each kind"), **_PROCESSES},
     ),
+    "heading-size": Bench(
+        "what closing recordings in motion costs; exit code 1 where it is too much",
+        "heading_size",
+        lambda bench, a, advance: bench.run(),
+        judged=True,
+    ),
     "import": Bench(
         "logs as other tools write them: right or refused; exit code 1 where one is wrong",
         "foreign_imports",

@@ -98,7 +98,12 @@ def simulated(case: Case) -> tuple[Recording, Array, Array]:
     rng = np.random.default_rng([case.number, crc32(case.kind.encode()), case.off])
     hz = float(rng.choice([25.0, 50.0, 100.0, 200.0, 400.0]))
     seconds = min(60 * np.exp(rng.uniform(np.log(5), np.log(60))), _MOST_SAMPLES / hz)
-    parts = list(_stretches(case, rng, hz, seconds))
+    return recorded(case, rng, hz, seconds, rng.uniform(0.0, 0.9))
+
+
+def recorded(case: Case, rng, hz: float, seconds: float, resting: float):
+    """As `simulated`, for so many seconds of which a share rests."""
+    parts = list(_stretches(case, rng, hz, seconds, resting))
     rate, force, up = (np.concatenate(part) for part in zip(*parts))
     gyro = np.eye(3) + (_errors(rng) if case.off else 0.0)
     measured = rate @ gyro.T + rng.normal(0, 0.5, 3) + _white(rng, rate, 0.004 * np.sqrt(hz))
@@ -128,10 +133,10 @@ def _errors(rng: np.random.Generator) -> Array:
     )
 
 
-def _stretches(case: Case, rng, hz: float, seconds: float) -> Iterator[tuple[Array, ...]]:
+def _stretches(case: Case, rng, hz, seconds, resting) -> Iterator[tuple[Array, ...]]:
     """Rates, specific force and the vertical, in the body: motion of 20 to 120 s and rests in
     turn."""
-    resting, dt_s, at_s = rng.uniform(0.0, 0.9), 1 / hz, 0.0
+    dt_s, at_s = 1 / hz, 0.0
     up = FACES[str(rng.choice(list(FACES)))] if case.kind in ("hand", "walking") else _UP
     attitude = facing(up)
     while at_s < seconds:
