@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from zerorate_bench import heading_size
 from zerorate_bench.heading_simulated import Case, outcome
 from zerorate_bench.motion_table import LIMITS_MDPS, in_markdown
 from zerorate_bench.peers.sources import Source
@@ -139,3 +140,11 @@ def test_the_decision_is_judged_beside_vqf_on_whole_trials(found):
 @pytest.mark.parametrize("number", [0, 2])
 def test_a_robot_on_a_floor_whose_gyroscope_is_right_gets_no_matrix(number):
     assert not outcome(Case("robot", number, off=False))["found"]
+
+
+def test_what_closing_costs_in_motion_is_measured_and_held_against_its_limits():
+    size = heading_size.Size(1, 120.0, 50.0, 0.2, 60.0, 1.0)
+    (found,) = heading_size.run([size])
+    assert 0.5 < found["cpu_s"] and 0.05 < found["gb"] < 1.0
+    assert heading_size.passed([found])
+    assert not heading_size.passed([{**found, "limits": [60.0, 0.01]}])
