@@ -12,7 +12,7 @@ from ..loop.motion.by_gravity import by_gravity
 from ..loop.motion.in_motion import InMotion, slots_of
 from ..loop.motion.matrix import beside
 from ..loop.motion.same_device import DifferentDevices
-from ..loop.motion.windows import BIAS, LEAST_DPS, Moving, moving_of
+from ..loop.motion.windows import LEAST_DPS, Moving, moving_of
 from ..loop.read.reference import Reference, attitude_names
 from ..recordings import open_recording
 from ..recordings.recording import TIME
@@ -132,7 +132,7 @@ def _lost(one: Moving, matrix: NDArray, attitude: NDArray) -> NDArray[np.float64
     and the sensor's is fitted.
     """
     fitted = beside(one, matrix)
-    bias = np.zeros(3) if fitted is None else fitted.own[BIAS]
+    bias = np.zeros(3) if fitted is None else fitted.bias
     rate = np.degrees(one.rate - one.rate @ matrix.T - bias)
     ours, seen = integrate(rate, one.dt_s, IDENTITY), np.isfinite(attitude).all(axis=1)
     ends, second = _stretches(one, seen), round(1.0 / one.dt_s)

@@ -16,8 +16,6 @@ from .windows import MATRIX
 
 #: Sizes that a group of entries may have; the last allows what a data sheet does.
 SIZES = (3e-4, 1e-3, 3e-3, 1e-2, 3e-2)
-#: Axes of two chips on one board, or of a chip set by hand, may be turned by more.
-_TURNED = (*SIZES, 1e-1)
 #: Scatter of an entry between recordings: none, up to a change of temperature by 50 degrees.
 _SCATTER = (0.0, 3e-4, 1e-3, 3e-3)
 #: Stands for no scatter where it is divided by.
@@ -148,7 +146,5 @@ def groups() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return diagonal, symmetric - diagonal, np.eye(MATRIX) - symmetric
 
 
-#: (150, 9, 9) roots of the priors; projections are their own roots.
-_ROOTS = np.einsum(
-    "sk,kij->sij", np.array(list(product(SIZES, SIZES, _TURNED))), np.stack(groups())
-)
+#: (125, 9, 9) roots of the priors; projections are their own roots.
+_ROOTS = np.einsum("sk,kij->sij", np.array(list(product(SIZES, repeat=3))), np.stack(groups()))

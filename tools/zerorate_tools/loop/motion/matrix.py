@@ -12,19 +12,7 @@ from scipy.ndimage import uniform_filter1d
 
 from .device import SIZES, Shown, device_of, groups
 from .same_device import distance
-from .windows import (
-    ACCEL_SHAPE,
-    BIAS,
-    DRIFT,
-    LONGEST_S,
-    MATRIX,
-    OWN,
-    OWN_SIGMA,
-    REST_SIGMA,
-    Moving,
-    rows_of,
-    tapers,
-)
+from .windows import LONGEST_S, MATRIX, OWN, OWN_SIGMA, REST_SIGMA, Moving, rows_of, tapers
 
 #: Short windows first: a large bias bends long ones.
 _SECONDS = (10.0, 20.0, LONGEST_S, LONGEST_S)
@@ -34,10 +22,10 @@ LEAST_WINDOWS = 8
 _OVERLAP = 0.52
 FOLDS = 4
 _LEAST_BLOCK, _MOST_BLOCKS = 4, 8
+_AT = np.cumsum([MATRIX, *OWN.values()])
+_BIAS, _DRIFT = slice(_AT[0], _AT[1]), slice(_AT[1], _AT[2])
 #: A turn of the axes turns the frame that headings are told in, once: no heading is lost by it.
 _NO_TURN = np.eye(MATRIX) - groups()[-1]
-#: Of its own errors those before a delay and a lever arm, which are small, are taken out.
-TAKEN_OUT = ACCEL_SHAPE.stop
 _OWN_PRECISION = np.concatenate([np.full(n, OWN_SIGMA[name] ** -2) for name, n in OWN.items()])
 
 
@@ -51,7 +39,8 @@ class Fitted:
     """
 
     moving: Moving
-    own: np.ndarray
+    bias: np.ndarray
+    drift: np.ndarray
     errors: np.ndarray
     columns: np.ndarray
     tilting: np.ndarray
@@ -124,10 +113,10 @@ def beside(moving: Moving, matrix: np.ndarray) -> Fitted | None:
 
 
 def _beside(moving, seconds, matrix, before) -> Fitted | None:
-    own = np.zeros(sum(OWN.values())) if before is None else before.own.copy()
+    bias, drift = (np.zeros(3), np.zeros(3)) if before is None else (before.bias, before.drift)
     fit_in = [s for s in _SECONDS if s <= seconds and len(moving.spans(s)) >= LEAST_WINDOWS]
     seconds = max(fit_in, default=_SECONDS[0])
-    rows = list(rows_of(moving, seconds, matrix, own))
+    rows = list(rows_of(moving, seconds, matrix, bias, drift))
     if not rows:
         return None
     errors, columns = np.stack([r[0] for r in rows]), np.stack([r[1][..., :-3] for r in rows])
@@ -136,7 +125,7 @@ def _beside(moving, seconds, matrix, before) -> Fitted | None:
     folds = np.arange(len(rows)) * blocks // len(rows) % FOLDS
     even, heading = np.ones(errors.shape[1]), _NO_TURN @ np.mean([r[2] for r in rows], axis=0)
     heading = heading @ _NO_TURN
-    fitted = Fitted(moving, own, errors, columns, tilting, even, folds, heading)
+    fitted = Fitted(moving, bias, drift, errors, columns, tilting, even, folds, heading)
     _, at = tapers(8, seconds)
     for _ in range(4):
         fitted.precision = 1.0 / _variances(fitted, matrix, at)[at]
@@ -176,18 +165,21 @@ def _add_own(normal, right, f: Fitted) -> None:
     """Add the priors of a recording's own errors, and its rests, to normal equations."""
     at = np.arange(MATRIX, len(right))
     normal[at, at] += _OWN_PRECISION
-    right[MATRIX:] -= _OWN_PRECISION * f.own
+    now = np.zeros(len(right))
+    now[_BIAS], now[_DRIFT] = f.bias, f.drift
+    right[MATRIX:] -= _OWN_PRECISION * now[MATRIX:]
     for at_s, *rate in f.moving.rests:
-        design = np.zeros((3, len(f.own)))
-        design[:, BIAS], design[:, DRIFT] = np.eye(3), at_s * np.eye(3)
-        normal[MATRIX:, MATRIX:] += design.T @ design / REST_SIGMA**2
-        right[MATRIX:] += design.T @ (np.array(rate) - design @ f.own) / REST_SIGMA**2
+        design = np.zeros((3, len(right)))
+        design[:, _BIAS], design[:, _DRIFT] = np.eye(3), at_s * np.eye(3)
+        normal += design.T @ design / REST_SIGMA**2
+        right += design.T @ (np.array(rate) - f.bias - at_s * f.drift) / REST_SIGMA**2
 
 
 def _move(f: Fitted, step: np.ndarray) -> None:
-    """Move a recording's own errors to where they are likeliest beside a moved matrix."""
+    """Move a recording's bias and drift to where they are likeliest beside a moved matrix."""
     normal, right = _normal(f.errors, f.columns, f.precision)
     _add_own(normal, right, f)
     right = right[MATRIX:] - normal[MATRIX:, :MATRIX] @ step.ravel()
     own = np.linalg.solve(normal[MATRIX:, MATRIX:], right)
-    f.own[:TAKEN_OUT] += own[:TAKEN_OUT]
+    f.bias = f.bias + own[:3]
+    f.drift = f.drift + own[3:6]
