@@ -145,11 +145,6 @@ BENCHES = {
         lambda bench, a, advance: bench.run(),
         judged=True,
     ),
-    "filters": Bench(
-        *("heading of attitude filters fed by zerorate", "filters"),
-        lambda bench, a, advance: bench.run(a.data, advance),
-        options=_BROAD,
-    ),
     "fleet": Bench(
         *("many devices at once, and what a prior is worth", "fleet"),
         lambda bench, a, advance: bench.run(sorted(a.devices), advance=advance),
