@@ -33,7 +33,7 @@ def smooth(start: Start, values: Array, edge_s: float = _EDGE_S) -> Array:
     return np.asarray((sums[width:] - sums[:-width]) / width)
 
 
-def upright(start: Start, turn_dps: Array) -> Array:
+def about_vertical(start: Start, turn_dps: Array) -> Array:
     """(n, 3) rates of a turn about the vertical, which gravity never shows."""
     return np.asarray(turn_dps[:, None] * start.up)
 
@@ -52,14 +52,14 @@ def pans(start: Start) -> Bout:
     sign, fast = start.rng.integers(2), start.rng.uniform(0.5, 14.0)
     draw = lambda k: fast * start.rng.uniform(0.7, 1.0) * (-1) ** (k * sign)  # noqa: E731
     turn = pieces(start, 0.8, 6.0, draw)
-    return Bout(upright(start, turn) + kicks(start, turn, 0.3, 20.0))
+    return Bout(about_vertical(start, turn) + kicks(start, turn, 0.3, 20.0))
 
 
 def pan_head(start: Start) -> Bout:
     """A motor's pan head: 0.4 to 4 dps, left and right, a tremor of a second between."""
     fast = start.rng.uniform(0.4, 4.0)
     turn = pieces(start, 8.0, 40.0, lambda k: fast * (-1) ** k)
-    return Bout(upright(start, smooth(start, turn)) + kicks(start, turn, 1.0, 2.0))
+    return Bout(about_vertical(start, smooth(start, turn)) + kicks(start, turn, 1.0, 2.0))
 
 
 def vacuum(start: Start) -> Bout:
@@ -67,7 +67,7 @@ def vacuum(start: Start) -> Bout:
     turn = pieces(start, 2.0, 12.0, lambda k: start.rng.choice([-40.0, 40.0, -8.0, 8.0, 0.0, 0.0]))
     runs = pieces(start, 5.0, 20.0, lambda k: start.rng.choice([0.0, 1.0]))
     hum = start.rng.standard_normal((len(turn), 3)) * 0.004 * runs[:, None]
-    return Bout(upright(start, smooth(start, turn)), hum)
+    return Bout(about_vertical(start, smooth(start, turn)), hum)
 
 
 def aircraft(start: Start) -> Bout:
@@ -88,7 +88,7 @@ def car(start: Start, mps: float = 0.0) -> Bout:
     draw = lambda k: 0.0 if k % 3 == 2 else start.rng.uniform(-4.0, 4.0)  # noqa: E731
     turn = smooth(start, pieces(start, 15.0, 60.0, draw), 3.0)
     sideways = np.cross(start.up, body_axis("level", start))
-    return Bout(upright(start, turn), (np.radians(turn) * mps / _G_MPS2)[:, None] * sideways)
+    return Bout(about_vertical(start, turn), (np.radians(turn) * mps / _G_MPS2)[:, None] * sideways)
 
 
 def car_pressed(start: Start) -> Bout:
@@ -100,7 +100,7 @@ def creep(start: Start) -> Bout:
     """Slow turns about the vertical, 0.05 to 1.2 dps, a shake of the hand between."""
     fast = np.exp(start.rng.uniform(np.log(0.05), np.log(1.2)))
     turn = pieces(start, 20.0, 80.0, lambda k: fast * start.rng.uniform(0.8, 1.2))
-    return Bout(upright(start, turn) + kicks(start, turn, 2.0, 30.0))
+    return Bout(about_vertical(start, turn) + kicks(start, turn, 2.0, 30.0))
 
 
 def boat(start: Start) -> Bout:
@@ -123,7 +123,7 @@ def begun_in_a_turn(start: Start) -> Bout:
     """Switched on in a turn of 0.3 to 5 dps about the vertical that ends after 2 to 100 s."""
     ends_s = np.exp(start.rng.uniform(np.log(2.0), np.log(100.0)))
     turn = np.where(start.t_s < ends_s, start.rng.uniform(0.3, 5.0), 0.0)
-    return Bout(upright(start, turn))
+    return Bout(about_vertical(start, turn))
 
 
 def level_turn(start: Start) -> Bout:

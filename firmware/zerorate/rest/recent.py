@@ -449,7 +449,7 @@ def update_offset(s: ptr32, c: ptr32, a: int, error: int) -> int:
     return 1
 
 
-def hand_over(s: ptr32, c: ptr32, a: int):
+def keep_level(s: ptr32, c: ptr32, a: int):
     """Keep the level: what the curve has just learned at this temperature leaves the offset."""
     if s[a + _SUSPECT] < 0:
         s[a + _SUSPECT] = 0

@@ -17,7 +17,7 @@ from .recent import (
     beyond_q8,
     gain_q14,
     grown_q8,
-    hand_over,
+    keep_level,
     left_q8,
     mean_noise_q8,
     suspect_turn,
@@ -186,7 +186,7 @@ def advance(s: ptr32, c: ptr32):
             else:
                 bend(s, c, a)
             if s[a + _WAITING_N] and c[_EVERY] == 0 and c[_LITERAL] == 0:
-                hand_over(s, c, a)
+                keep_level(s, c, a)
             s[a + _WAITING_N] = 0
             publish(s, c, a, axis)
             axis += 1

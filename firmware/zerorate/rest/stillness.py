@@ -132,8 +132,8 @@ def seems_still(s: ptr32, c: ptr32, shift: int) -> int:
     return 1
 
 
-def tip_q8(s: ptr32, c: ptr32) -> int:
-    """Return how far gravity has moved since the rest began, LSB^2 Q8; sum up how it leans."""
+def gravity_moved_q8(s: ptr32, c: ptr32) -> int:
+    """Return how far gravity has moved since the rest began, LSB^2 Q8; sum up how it tilts."""
     # Weighted -7, -5 .. 7 the means of eight windows give the slope of a line through them.
     i = 0
     square = 0
@@ -151,13 +151,13 @@ def tip_q8(s: ptr32, c: ptr32) -> int:
     return square
 
 
-def upright(s: ptr32):
-    """Begin to watch how gravity leans."""
+def begin_tilt(s: ptr32):
+    """Begin to watch how gravity tilts."""
     for i in range(4):
         s[_LEAN_Q4 + i] = 0  # LEAN_NOISE_Q8 stands behind them
 
 
-def leans(s: ptr32, c: ptr32) -> int:
+def tilts_steadily(s: ptr32, c: ptr32) -> int:
     """Return 1 if gravity moved steadily over the segment: the device turns, if slowly."""
     square = 0
     for i in range(3):
@@ -195,7 +195,7 @@ def begin(s: ptr32, c: ptr32, anchored: int):
         )
         s[_SEGMENT_TOTAL + i] = 0
     if anchored == 0:
-        upright(s)
+        begin_tilt(s)
         s[_REST] = 0
     if s[_REST] < _MOST_SEGMENTS:
         s[_REST] += 1
@@ -228,7 +228,7 @@ def classify_window(s: ptr32, c: ptr32) -> int:
     s[_NOISE_Q8] += (noise_q8 - s[_NOISE_Q8]) >> 3
     if s[_REST] == 0:
         return _STILL
-    s[_TIP_Q8] = tip_q8(s, c)
+    s[_TIP_Q8] = gravity_moved_q8(s, c)
     shake_q8 = shake_q8 >> c[_WINDOW_SHIFT]
     s[_LEAN_NOISE_Q8] += shake_q8
     if s[_TIP_Q8] > c[_TIP_LIMIT_Q8] + _GRAVITY_NOISE * shake_q8:
@@ -297,11 +297,11 @@ def judge(s: ptr32, c: ptr32) -> int:
     if i < c[_SEGMENT]:
         return 0
     s[_SEGMENT_WINDOWS] = 0
-    if leans(s, c):
+    if tilts_steadily(s, c):
         s[_STILLNESS] = _TURNING
         s[_REST] = 0
         i = 0
-    upright(s)
+    begin_tilt(s)
     return i
 
 

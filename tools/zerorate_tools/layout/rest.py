@@ -24,7 +24,7 @@ STATE = Array(
         ),
         ("SQUARE_GYRO", 1, "LSB^2", "sum of squares, three axes together"),
         ("ANCHOR_Q4", 3, "LSB", "mean acceleration where the rest began"),
-        ("LEAN_Q4", 3, "LSB", "sum of mean accelerations times -7, -5 .. 7: how gravity leans"),
+        ("LEAN_Q4", 3, "LSB", "sum of mean accelerations times -7, -5 .. 7: how gravity tilts"),
         ("LEAN_NOISE_Q8", 1, "LSB^2", "sum of the variances of the segment's mean accelerations"),
         ("FIRST_RATE_Q4", 3, "LSB", "mean rate of the segment's first window"),
         ("SEGMENT_TOTAL", 3, "LSB", "sums of the rates of the segment, less the effects"),
