@@ -48,6 +48,13 @@ def test_a_short_counter_that_ran_over_and_the_end_of_summer_time_are_no_disorde
         read(tmp_path, frame)
 
 
+def test_a_row_that_is_written_twice_is_one_sample(tmp_path):
+    frame = table()
+    recording, report = read(tmp_path, frame.loc[np.repeat(np.arange(2000), 2)])
+    assert recording.columns["t_us"].tolist() == [i * 10_000 for i in range(2000)]
+    assert told(report, "dropped 2000 rows: the row before once more")
+
+
 def test_times_of_which_most_are_no_numbers_are_refused(tmp_path):
     frame = table()
     frame["t_s"] = [f"{1000 * t:,.2f}" for t in frame["t_s"]]

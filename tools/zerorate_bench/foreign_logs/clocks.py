@@ -94,6 +94,22 @@ def out_of_order(folder: Path, world: World) -> Path:
     return text(folder / "in.csv", frame.iloc[order])
 
 
+@log("every row written twice")
+def written_twice(folder: Path, world: World) -> Path:
+    return text(folder / "in.csv", _plain(world).loc[np.repeat(np.arange(world.samples), 2)])
+
+
+@log("rows shuffled throughout")
+def shuffled(folder: Path, world: World) -> Path:
+    return text(folder / "in.csv", _plain(world).sample(frac=1, random_state=1))
+
+
+@log("milliseconds with commas between thousands")
+def thousands(folder: Path, world: World) -> Path:
+    said = [f"{1000 * t:,.2f}" for t in world.t_s]
+    return text(folder / "in.csv", _with_time("time_ms", said, world))
+
+
 @log("the same line of names again among the rows")
 def names_again(folder: Path, world: World) -> Path:
     frame = _plain(world)

@@ -104,6 +104,15 @@ def phyphox_zip(folder: Path, world: World) -> Path:
     return zipped(folder / "in.zip", _phyphox(folder / "in", world, quoting=1), folder / "in")
 
 
+@log("phyphox, the zip of rates and acceleration without gravity")
+def phyphox_free(folder: Path, world: World) -> Path:
+    names = "Time (s)," + ",".join(f"Linear Acceleration {a} (m/s^2)" for a in "xyz")
+    gyro = _phyphox(folder / "in", world)[1]
+    free = table(names, world.t_s, world.mps2 - [0, 0, STANDARD_GRAVITY])
+    files = [text(folder / "in" / "Linear Accelerometer.csv", free), gyro]
+    return zipped(folder / "in.zip", files, folder / "in")
+
+
 @log("phyphox, one file with an absolute value")
 def phyphox_file(folder: Path, world: World) -> Path:
     names = [f"Gyroscope {a} (rad/s)" for a in "xyz"]

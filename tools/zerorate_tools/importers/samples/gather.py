@@ -74,6 +74,7 @@ class _Gathering:
         self.fastest = 0.0
         self.largest = {"gyro": 0.0, "accel": 0.0}
         self.own: Counter[str] = Counter()
+        self.before = np.full(1 + len(self.readings), np.nan)
         self.runs = Runs()
         self.clock = Unwrapped(self._step_us())
         self.counts = Counts(plan.raw)
@@ -129,6 +130,7 @@ class _Gathering:
         refuse_impossible(columns[TIME], columns[PLACE], self.path)
         columns = self._less(columns, whole_stamps(columns[TIME]), "the time stamp is torn")
         columns[TIME] = self.clock(columns[TIME], columns[PLACE])
+        columns = self._less(columns, *self._not_written_twice(columns))
         self.counts.signed(columns)
         columns = self._less(columns, *self._is_something(columns))
         columns = self._less(columns, *self._not_all_zero(columns))
@@ -155,6 +157,13 @@ class _Gathering:
         others = [columns[name] for name in self.readings if name not in GYRO]
         beside = np.isfinite(others).any(axis=0) if others else np.zeros(rates.shape[1], bool)
         return rates.all(axis=0) | (~rates.any(axis=0) & beside), "a reading is no number"
+
+    def _not_written_twice(self, columns):
+        """Not the row before once more, its time with it: that is no second sample."""
+        rows = np.array([columns[name] for name in (TIME, *self.readings)])
+        before = np.column_stack([self.before, rows[:, :-1]]) if rows.size else rows
+        self.before = rows[:, -1] if rows.size else self.before
+        return ~(rows == before).all(axis=0), "the row before once more"
 
     def _not_all_zero(self, columns):
         """Three rates alone may well be zero on a coarse scale; with gravity, or 0 degC, they are
