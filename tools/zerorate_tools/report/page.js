@@ -94,6 +94,8 @@
     });
   }
 
+  const LETTER_PX = 8; // of the names of lines, with the room between two of them
+
   function across(line, number, panel, layout) {
     const own = { color: colour(line.role), width: line.text ? 1.6 : 1, dash: line.dash };
     const x = "x" + suffix(number), y = "y" + suffix(number);
@@ -104,10 +106,12 @@
       x0: flat ? 0 : line.value, x1: flat ? 1 : line.value, y0: flat ? line.value : 0, y1: flat ? line.value : 1,
     });
     if (!line.text) return;
+    // upright where the lines are closer than their names are long
+    const named = panel.lines.filter((one) => one.text && one.axis !== "y").length;
+    const fits = (named + 1) * line.text.length * LETTER_PX < layout.width;
     layout.annotations.push({
       text: line.text, showarrow: false, font: { size: 11, color: own.color },
-      // upright where there is little room, for the lines are closer than their names are long
-      textangle: flat || wide() ? 0 : -90,
+      textangle: flat || fits ? 0 : -90,
       xref: flat ? x + " domain" : x, yref: flat ? y : y + " domain", xanchor: flat ? "right" : "left", yanchor: flat ? "bottom" : "top",
       x: flat ? 1 : line.value, y: flat ? (panel.log ? Math.log10(line.value) : line.value) : 1,
     });
