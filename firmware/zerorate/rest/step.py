@@ -106,7 +106,7 @@ def sigma_q8(s: ptr32, c: ptr32, a: int) -> int:
     return doubt + (root(variance << 8) if variance < 0x3FFFFF else root(variance) << 4)
 
 
-def leant_q8(s: ptr32, c: ptr32, a: int, bias: int) -> int:
+def moved_by_rest_q8(s: ptr32, c: ptr32, a: int, bias: int) -> int:
     """Return the bias, LSB Q8, moved by the rest so far, before that is learned or was none."""
     # A power-on begins with a bias known to some hundredth of a dps; a second of rest knows more. A
     # rest that lies two sigma off is rather a slow turn that gravity does not show yet.
@@ -133,7 +133,7 @@ def publish(s: ptr32, c: ptr32, a: int, axis: int):
         return
     s[_GROWN_Q8] = grown_q8(s, a) + beyond_q8(s, c, a)
     if s[_STILLNESS] == _STILL and s[_SEGMENT_WINDOWS] and c[_EVERY] == 0 and c[_LITERAL] == 0:
-        bias = leant_q8(s, c, a, bias)
+        bias = moved_by_rest_q8(s, c, a, bias)
     s[_TARGET_Q8 + axis] = bias
     if s[_SOURCE + axis] == 0:
         s[_OUT_Q8 + axis] = bias
