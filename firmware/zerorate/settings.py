@@ -101,7 +101,7 @@ DEFAULTS = {
     "floor_dps": 0.002,  # flicker noise at first: by how much rests differ beyond white noise
     "gate_dps": 0.3,  # a rest this near to what was expected is plausible
     "turning_dps": 1.0,  # one sigma of what an apparent rest may turn about the vertical
-    "turning_s": 200.0,  # a rest of that time halves it
+    "turning_s": 100.0,  # a rest of that time halves it
     "insist_s": 60.0,  # an implausible rest that lasts so long is believed
     "walk_dps": 0.0013,  # speed of the offset's walk at first, a root second
     "walk_least_dps": 0.0001,  # slowest that is learned

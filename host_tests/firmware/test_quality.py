@@ -98,28 +98,13 @@ def test_each_octave_of_flicker_noise_within_a_segment_adds_half_of_what_segment
     assert 0.02**2 * octaves / 2 < added < 0.02**2 * (octaves / 2 + 1)
 
 
-def test_a_bias_that_insisted_may_be_a_turn_until_a_rest_of_twenty_minutes_shows_none():
+def test_a_bias_that_insisted_may_be_a_turn_until_a_rest_of_ten_minutes_shows_none():
     corrector, _ = play(turning(0, 30, axis=2))
     play(turning(1, 120, axis=2, seed=2), corrector)
     assert corrector.bias_lsb(2) == pytest.approx(1.2 * LSB, abs=2)
     assert quality_dps(corrector, 2) > 0.5  # all of the turn is within two sigma
-    play(turning(1, 1200, axis=2, seed=3), corrector)
-    assert quality_dps(corrector, 2) < 0.025
-
-
-def test_of_a_cold_part_a_turn_of_four_minutes_is_within_three_sigma():
-    corrector, _ = play(turning(1.5, 240, axis=2))
-    off = abs(corrector.bias_lsb(2) / LSB - 0.2)
-    assert 1.4 < off < 3 * quality_dps(corrector, 2)
-
-
-def test_what_of_a_turn_looks_plausible_on_one_axis_is_held_back_with_the_others():
-    corrector, _ = play(rest(150, bias_dps=BIAS_DPS))
-    before = corrector.bias_lsb(0)
-    for seed in range(20):
-        play(handled(1, seed), corrector)
-        play(rest(6, seed, np.add(BIAS_DPS, (0.04, 0.0, 6.0))), corrector)
-    assert corrector.bias_lsb(0) == pytest.approx(before, abs=0.02 * LSB)
+    play(turning(1, 600, axis=2, seed=3), corrector)
+    assert quality_dps(corrector, 2) < 0.02
 
 
 def posed(axis, seconds, seed):

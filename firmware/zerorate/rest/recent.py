@@ -160,22 +160,16 @@ def suspect_turn(s: ptr32, c: ptr32):
         g = level_q4(s, c, g) >> 2  # Q1, twice
         turn = 1 if aside <= turn * turn + g * g else 0
     for g in range(3):
-        if s[c[_AXES] + g * c[_AXIS_WORDS] + _HELD_Q4]:
-            turn |= 2
-    for g in range(3):
         note(s, c, g, turn)
 
 
 def note(s: ptr32, c: ptr32, axis: int, turn: int):
-    """As suspect_turn, for one axis; 2 more where one was held back last."""
+    """As suspect_turn, for one axis."""
     # _OFFER: minus twice what the segment may hide, LSB Q4, and minus 1 where it may be a turn.
     a = c[_AXES] + axis * c[_AXIS_WORDS]
     s[a + _OFFER] = 0 - 2 * hidden_q4(s, c, axis)
-    if turn & 1 and s[a + _LEFT_Q4] != _NO_VALUE and well_known(s, c, a):
+    if turn and s[a + _LEFT_Q4] != _NO_VALUE and well_known(s, c, a):
         s[a + _OFFER] -= 1
-        # a turn is about all axes, also where its share would be plausible
-        if turn > 2 and s[a + _HELD_Q4] == 0:
-            s[a + _WAITING_N] = 0
 
 
 def hold(s: ptr32, a: int, error: int) -> int:
@@ -189,11 +183,10 @@ def hold(s: ptr32, a: int, error: int) -> int:
 
 def insists(s: ptr32, c: ptr32, a: int, error: int) -> int:
     """Hold the implausible segment back; return 1 once such ones have lasted long enough."""
-    # What may be a turn does not count before one in a thousand lasts so long: their share halves
-    # twice where one sigma halves once.
+    # What may be a turn does not count before ten halvings: of a thousand turns one lasts so long.
     # What is none goes on counting in another pose, where a turn would be about another axis.
     n = hold(s, a, error)
-    if n or (s[a + _OFFER] & 1) == 0 or s[_REST] > 5 * c[_TURN_HALVES]:
+    if n or (s[a + _OFFER] & 1) == 0 or s[_REST] > 10 * c[_TURN_HALVES]:
         n += 1
     s[a + _SUSPECT] = n
     return 1 if n >= c[_INSIST] else 0
