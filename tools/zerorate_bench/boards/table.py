@@ -88,28 +88,12 @@ numbers in every mode, to the last bit. `zerorate bench boards` compares it if i
 ## The heap of the second program
 
 The second program of [pico.md](pico.md) runs in {least_heap:,} bytes of heap; the bench's limit is
-49,152 bytes. 48,240 are in use once it runs, and 1,148 more while a file is open. So the limit
-needs 236 bytes fewer, and more where gaps lie between. The table shows `gc.mem_alloc()` behind
-each, after a collection. Some 5,150 bytes of it are names (`micropython.qstr_info()`).
-MicroPython keeps a name for good. So `zerorate flash` sends private names as `_a`, `_b`, the
-same few in every file, and another module's constants as numbers.
-
-| bytes | what |
-| ---: | --- |
-| 22,816 | `zerorate` with machine code, and a `Corrector`: state 1,784, settings 232 |
-| 6,608 | store and learned store 4,672, schedule 1,168, file 768 |
-| 6,256 | the chip's driver: classes and `setup` 4,416, object and names 1,840 |
-| 5,488 | MicroPython itself, its file system, and the program's own bytecode and names |
-| 2,320 | `Fifo` |
-| 2,032 | the checkpoint of the state, 1,784, and its object |
-| 1,440 | a store, a `Fifo`, a `SaveSchedule` and two small arrays |
-| 1,280 | `CheckedCorrector` |
-
-More heap is taken at times. A file is open while it saves: 1,148 bytes in one piece. A record is
-read at power-on in pieces of 256 bytes. There are gaps between what stays. A few names more would
-take 2,240 bytes, because the table of names doubles at 300. The machine code is compiled for
-size, except for what every sample runs through. The checkpoint makes a brown-out of the chip
-harmless. Frozen into a build, all bytecode and most names leave the heap.
+49,152 bytes. A file is open while it saves, and a record is read at power-on in pieces of 256
+bytes: both take heap for a while. There are gaps between what stays. MicroPython keeps a name
+for good. So `zerorate flash` sends private names as `_a`, `_b`, the same few in every file, and
+another module's constants as numbers. The machine code is compiled for size, except for what
+every sample runs through. The checkpoint makes a brown-out of the chip harmless. Frozen into a
+build, all bytecode and most names leave the heap.
 """
 
 
