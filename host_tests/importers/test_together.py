@@ -102,7 +102,7 @@ def test_acceleration_without_gravity_in_a_file_beside_is_refused(tmp_path):
 _REFUSED = {
     *("pickled", "parquet_cut", "database", "spreadsheet", "zip_of_pictures", "zip_of_runs"),
     *("rows_of_numbered_sensors", "gnss_logger", "only_covariances", "ros2_echo", "sketch_lines"),
-    *("plotter_lines", "sentences", "offset_counts"),
+    *("plotter_lines", "sentences", "offset_counts", "thousands"),
 }
 
 
