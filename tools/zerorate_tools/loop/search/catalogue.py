@@ -187,7 +187,7 @@ def of_temperature(sessions: list[Session]) -> list[Candidate]:
 
 
 def lags(sessions: list[Session]) -> list[Term]:
-    """What parts that are late behind the thermometer add, or early, and the squares of it."""
+    """The temperature less its lags, and the squares: what parts add that are late, or early."""
     if "temp" not in common_sources(sessions):
         return []
     centre = float(np.mean([s.sources["temp"].mean() for s in sessions]))

@@ -105,9 +105,11 @@ def _is_same(a: Step, b: Step) -> bool:
 
 
 def _beside_lags(regression, terms, forms, recordings) -> list[Step]:
-    """The steps that stand beside terms, forms and what all parts add that are late, by seconds to
-    minutes, or early. Its weights are as large as is likely beside the terms alone, for a form or a
-    step takes the place of several; they stay shrunk so."""
+    """The steps that remain significant beside terms, forms and all lags of temperature together.
+
+    The lags are shrunk as they are likeliest beside the terms alone, because a form or a step takes
+    the place of several. Leaves that shrinkage in regression.precision.
+    """
     regression.set_events([])
     late = lags(regression.sessions)
     own = slice(len(terms), len(terms) + len(late))

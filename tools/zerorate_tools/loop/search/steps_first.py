@@ -85,9 +85,8 @@ def _steps(session, jumping, recordings: int) -> list[Step]:
 
 
 def _is_thermometers(regression, beside, step: Step) -> bool:
-    """Whether a step may be that of the thermometer's readings: what a jump of the temperature by
-    no more than one makes of a block's bias leaves nothing of it. Between two readings nobody knows
-    when the temperature moved. beside: the terms, without the late parts that are shrunk."""
+    """Whether a jump of the temperature by one reading at most explains the step: nobody knows when
+    the temperature moved between two readings. beside: the terms, without the shrunk lags."""
     [session] = regression.sessions
     if not bend_of(session) or not session.temp_step_degc:
         return False
@@ -101,7 +100,7 @@ def _is_thermometers(regression, beside, step: Step) -> bool:
 
 
 def _slope(term: Term, degc: float, block_s: float) -> float:
-    """Of the mean of a block over a jump of temperature before it, per degC; a lag forgets it."""
+    """A term's change in the mean of a block, per degC of a jump before it; a lag forgets it."""
     if term.source != "temp":
         return 0.0
     kept = 1.0
