@@ -172,7 +172,7 @@ def area_score(name, count, seed):
             found["same"] += 1
             continue
         text = mutate_code(source, plugins.get_operator(operator)(), occurrence)
-        drawn[number] = (file, text)
+        drawn[number] = (file, row, text)
         said[number] = f"survived: {file}:{row} {operator} {occurrence}: {line}"
     for number, end in ends(tests, drawn).items():
         found["survived" if end == "passed" else "killed"] += 1

@@ -164,7 +164,8 @@ GENERATED = ("*/zerorate/native/*",)
 #: Called by others: pytest, Python, its import, a template of the report, a program sent as text,
 #: whoever uses the fakes as if they were the real bus.
 CALLED_BY_OTHERS = {
-    *("pytest_configure", "pytest_terminal_summary"),
+    *("pytest_configure", "pytest_terminal_summary", "pytest_runtest_protocol"),
+    *("pytest_sessionfinish", "pytest_collection_modifyitems"),
     *("busio_i2c", "polled", "impatient"),
     *("__getattr__", "__dir__", "handle_starttag", "handle_data"),
     *("_constant", "_subscript", "_binop", "_unaryop", "_boolop", "_ifexp"),
@@ -224,10 +225,10 @@ def test_mutants_of_functions_and_of_modules_are_told_from_those_that_live(tmp_p
         "from limits import below\n\ndef test_it():\n    assert below(1) and not below(4)\n"
     )
     monkeypatch.syspath_prepend(tmp_path)
-    changes = [("<", "<="), ("<", ">"), ("3", "2"), ("3", "0")]
+    changes = [("<", "<=", 5), ("<", ">", 5), ("3", "2", 1), ("3", "0", 1)]
     drawn = {
-        number: (str(tmp_path / "limits.py"), source.replace(before, after))
-        for number, (before, after) in enumerate(changes)
+        number: (str(tmp_path / "limits.py"), row, source.replace(before, after))
+        for number, (before, after, row) in enumerate(changes)
     }
     found = ends([str(tmp_path)], drawn)
     assert [found[number] for number in range(4)] == ["passed", "killed", "passed", "killed"]
