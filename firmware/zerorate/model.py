@@ -18,6 +18,7 @@ const = int
 # layout: The effect model and its running state
 _SLOT_COUNT = const(7)
 _INPUT_COUNT = const(8)
+_TICK_US = const(9)
 _TICK_ELAPSED_US = const(10)
 _TICKS_DUE = const(11)
 _NEXT_SLOT = const(12)
@@ -64,6 +65,7 @@ _MOST_CHANNELS = const(8)
 LOADED = const(0)
 NO_MODEL = const(1)
 UNREADABLE = const(6)
+_WITHOUT_MODEL_US = const(1_000_000)
 
 
 class EffectModel:
@@ -75,9 +77,8 @@ class EffectModel:
 
     def __init__(self) -> None:
         self.e = array("i", [0] * _EFFECTS_WORDS)
-        self.channels = ()
-        self.reason = NO_MODEL
         self.attend: "Any" = None
+        self.forget()
 
     def load_file(self, path: str, sensor: "Sensor", binding: "bytes | None" = None) -> int:
         """As load, from a file."""
@@ -121,6 +122,7 @@ class EffectModel:
         """Have no model."""
         for i in range(_EFFECTS_WORDS):
             self.e[i] = 0
+        self.e[_TICK_US] = _WITHOUT_MODEL_US  # time is divided by it all the same
         self.channels = ()
         self.reason = NO_MODEL
         self.attend = None

@@ -7,6 +7,8 @@ from io import FileIO
 import numpy as np
 import pytest
 from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050
+from zerorate_tools import cli
+from zerorate_tools.boards import fake_hand
 from zerorate_tools.boards.bus import record_bus
 from zerorate_tools.boards.recorder import Recorded, Recorder
 from zerorate_tools.errors import InFile, ZerorateError
@@ -157,6 +159,15 @@ def test_a_full_disk_is_no_bus_error_and_all_before_it_is_kept(machine, monkeypa
         machine.record(seconds=60)
     assert len(machine.columns()["gz"]) > 200
     assert [p.name for p in machine.out.parent.iterdir()] == ["run.parquet"]
+
+
+def test_the_command_ends_with_1_where_every_sample_is_in_doubt(machine, monkeypatch, capsys):
+    machine.at(0.28, machine.chip.power_up)
+    monkeypatch.setattr(fake_hand, "in_hand", lambda: (machine.bus, machine.clock))
+    words = ["record", "fake:", "--out", str(machine.out), "--seconds", "0.3"]
+    assert cli.main(words) == 1
+    assert capsys.readouterr().out == "no sample came, nothing is written\n"
+    assert list(machine.out.parent.iterdir()) == []
 
 
 def test_an_older_recording_stays_where_no_sample_comes(machine):

@@ -1,7 +1,9 @@
 """Many recordings at once: nothing stops the rest, and what was done stays done."""
 
+import errno
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -126,6 +128,31 @@ def test_a_run_cut_off_goes_on_where_it_stopped(data, tmp_path, scheduler):
     again = fleet(devices_of([data]), tmp_path, **options)
     assert (again.resumed, again.tasks) == (kept, DEVICES - kept)
     assert again.report["devices"] == DEVICES and not again.report["failures"]
+
+
+def test_a_full_disk_is_one_line_and_what_was_done_is_kept(
+    data, tmp_path, scheduler, monkeypatch, capsys
+):
+    write_whole, written = pq.write_table, []
+
+    def write(table, where, **options):
+        write_whole(table, where, **options)
+        written.append(where)
+        if len(written) == 2:
+            where.write_bytes(where.read_bytes()[:300])  # torn, as full disks do
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("zerorate_tools.fleet.whole_fleet.pq.write_table", write)
+    folders = [str(folder) for folder in sorted(data.iterdir())[:3]]
+    words = ["fleet", *folders, "--out", str(tmp_path / "out"), "--scheduler", scheduler]
+    words += ["--devices-per-task", "1"]
+    assert main(words) == 2
+    assert re.search(
+        r"zerorate: .*: No space left on device; make room.*\n\Z", capsys.readouterr().err
+    )
+    assert len(list((tmp_path / "out").rglob("*"))) == len(["parts", "one of three"])
+    assert main(words) == 0
+    assert "3 devices" in capsys.readouterr().out
 
 
 @pytest.fixture

@@ -127,3 +127,22 @@ def test_libraries_say_nothing_on_the_terminal(tmp_path, capfd):
         except BadRecording:
             pass
     assert capfd.readouterr() == ("", "")
+
+
+STARTS = {
+    "x.ulg": b"ULog\x01\x12\x35\x01" + bytes(8),
+    "x.mcap": b"\x89MCAP0\r\n",
+    "x.bag": b"#ROSBAG V2.0\n",
+    "x.bin": b"\xa3\x95\x80",
+    "x.bbl": b"H Product:Blackbox flight data\n",
+}
+
+
+@pytest.mark.parametrize("name", [*STARTS, "none.ulg", "none.mcap"])
+def test_gigabytes_of_zeros_are_refused_after_their_start(tmp_path, impatient, name):
+    with open(tmp_path / name, "wb") as file:
+        file.write(STARTS.get(name, b""))
+        file.truncate(3 << 30)
+    signal.alarm(_LONGEST_S)
+    with pytest.raises(BadRecording, match=name):
+        read_foreign(tmp_path / name)

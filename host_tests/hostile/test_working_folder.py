@@ -49,7 +49,6 @@ def test_an_import_runs_nothing_of_the_working_folder(trapped, name):
     assert not (trapped / "sprung").exists()
 
 
-@pytest.mark.skipif(sys.version_info < (3, 11), reason="Python cannot be told to, before 3.11")
 def test_a_fleet_runs_nothing_of_the_working_folder(trapped):
     (trapped / "x.csv").write_text("t_us,gx,gy,gz\n1,2,3,4\n")
     zerorate = Path(sys.executable).with_name("zerorate")

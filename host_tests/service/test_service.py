@@ -389,8 +389,8 @@ def model_of(folder, temp_lsb_per_degc, channel="temp"):
     return str(write_model(build_model([slot], scales), folder)[1])
 
 
-def first_line(folder, *options):
-    """The first line of a service on an emulated chip, and what it said; None where it ended.
+def first_line(folder, *options, bus="fake:"):
+    """The first line of a service on a bus, and what it said; None where it ended.
 
     Without numpy: docs/linux-service.md installs the extra `linux` alone.
     """
@@ -398,7 +398,7 @@ def first_line(folder, *options):
         "import sys; sys.modules['numpy'] = None; from zerorate_tools.cli import main; exit(main())"
     )
     process = subprocess.Popen(
-        [sys.executable, "-c", start, "run", "fake:", *options],
+        [sys.executable, "-c", start, "run", bus, *options],
         **{"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True},
         cwd=folder,
     )
@@ -430,6 +430,13 @@ def test_a_model_of_another_chip_or_of_a_channel_is_one_line(tmp_path):
 def test_a_model_that_fits_is_taken(tmp_path):
     line, said = first_line(tmp_path, "--hz", "25", "--model", model_of(tmp_path, 340))
     assert line and "--model" not in said
+
+
+@pytest.mark.parametrize("bus", ["learned.bin", ".", "/dev/null"])
+def test_what_can_never_be_a_bus_is_not_waited_for(tmp_path, bus):
+    (tmp_path / "learned.bin").touch()
+    line, said = first_line(tmp_path, bus=bus)
+    assert line is None and said.startswith(f"zerorate: {bus}: no I2C bus") and "-*" in said
 
 
 @pytest.mark.parametrize("option", [("--state", "no/learned.bin"), ("--socket", "no/imu.sock")])

@@ -2,12 +2,13 @@
 
 import struct
 import zlib
+from array import array
 from dataclasses import replace
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from zerorate import Sensor
+from zerorate import Corrector, Sensor
 from zerorate.effects import model_file
 from zerorate.model import EffectModel
 from zerorate_tools.errors import BadModel
@@ -134,3 +135,21 @@ def test_a_refused_model_leaves_none(model):
     held.load(encoded(model), Sensor())
     held.load(encoded(model), Sensor(), bytes([1, 0, 0, 3]))
     assert held.e[EFFECTS.SLOT_COUNT] == 0
+
+
+def test_a_device_whose_model_is_not_loaded_yet_or_no_longer_goes_on_without_effects(model):
+    held, device, plain = EffectModel(), Corrector(), Corrector()
+    device.use_model(held)
+
+    def live():
+        for _ in range(300):
+            frames = [array("i", [0, 0, 16384, 0, 40, -20, 10]) for _ in range(2)]
+            device.update(frames[0], 10_000)
+            plain.update(frames[1], 10_000)
+        return frames[0] == frames[1]
+
+    assert live()
+    held.load(encoded(model), device.sensor, DEVICE)
+    assert not live()
+    held.forget()
+    assert live()

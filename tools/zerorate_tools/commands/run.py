@@ -1,8 +1,10 @@
 """`zerorate run`: the firmware as a service of a Linux board."""
 
 import argparse
+import errno
 import sys
 from pathlib import Path
+from typing import Any
 
 
 def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -36,6 +38,10 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
     parser.set_defaults(run=run)
 
 
+#: What opening says of a path that is something else, and stays so.
+_NO_BUS = (errno.ENOTTY, errno.EISDIR, errno.ENOTDIR)
+
+
 def run(arguments: argparse.Namespace) -> None:
     import signal
     import time
@@ -55,8 +61,17 @@ def run(arguments: argparse.Namespace) -> None:
     model = _model_bytes(arguments.model) if arguments.model else b""
     fake = FakeBus(arguments.address, arguments.part) if arguments.bus == "fake:" else None
 
+    def open_bus() -> Any:
+        try:
+            return LinuxI2C(arguments.bus)
+        except OSError as error:
+            if error.errno not in _NO_BUS:
+                raise
+            do = "`ls /dev/i2c-*` says which there are"
+            raise ZerorateError(f"{arguments.bus}: no I2C bus; {do}") from error
+
     def open_imu() -> MPU6050:
-        bus = fake or LinuxI2C(arguments.bus)
+        bus = fake or open_bus()
         try:
             return MPU6050(bus, arguments.address, **options)
         except ValueError as error:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import os
+import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -84,7 +85,7 @@ def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterato
 
 def _started(distributed, workers: int) -> Any:
     """A cluster of processes of this machine. Raises ZerorateError where none can begin."""
-    os.environ["PYTHONSAFEPATH"] = "1"  # or they import from the working folder, before 3.11 still
+    _safe_path()
     try:
         return distributed.LocalCluster(
             n_workers=workers,
@@ -95,6 +96,15 @@ def _started(distributed, workers: int) -> Any:
     except (OSError, RuntimeError) as error:
         room = f"make room in {gettempdir()}, or ask for fewer --workers"
         raise ZerorateError(f"no worker can be started here: {error}; {room}") from error
+
+
+def _safe_path() -> None:
+    """Let no child of this process import from the working folder."""
+    os.environ["PYTHONSAFEPATH"] = "1"
+    if sys.version_info < (3, 11):  # knows no such word; its children get our own paths later
+        from multiprocessing import util
+
+        util._args_from_interpreter_flags = lambda: ["-I"]  # type: ignore[attr-defined]
 
 
 def _client_of(distributed, address: str) -> Client:

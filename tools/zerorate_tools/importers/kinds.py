@@ -34,6 +34,9 @@ _SUFFIXES = {
     **{".h5": "hdf5", ".hdf5": "hdf5", ".npy": "numpy_file", ".npz": "numpy_file"},
     **{".parquet": "columnar", ".feather": "columnar"},
 }
+#: Logs of messages, whose readers would look for the next one through any number of zeros.
+_OF_MESSAGES = ("ulog", "dataflash", "mcap_file", "ros_bag", "blackbox")
+_LONGEST_START, _ZEROS = 64, 4096
 _DATABASE = b"SQLite format 3"
 _ZIP = b"PK\x03\x04"
 _OF_TEXT = bytes([9, 10, 13, *range(32, 127)])
@@ -76,6 +79,8 @@ def _reader(path: Path) -> str | None:
         return "numpy_file" if _holds_arrays(path) else None
     by_magic = next((name for magic, name in _MAGIC.items() if _starts(path, magic)), None)
     if by_magic:
+        if by_magic in _OF_MESSAGES and _goes_on_with_zeros(path):
+            raise BadRecording(path, "nothing but zeros behind its start", do="copy the file again")
         return by_magic
     if head(path, 1000)[0].removeprefix(b"\xef\xbb\xbf").lstrip()[:1] in (b"{", b"["):
         return "json_file"
@@ -96,6 +101,12 @@ def _is_text(path: Path) -> bool:
     with open(path, "rb") as file:
         first = file.read(4096)
     return b"\n" in first and not first.translate(None, _OF_TEXT)
+
+
+def _goes_on_with_zeros(path: Path) -> bool:
+    with open(path, "rb") as file:
+        file.seek(_LONGEST_START)
+        return file.read(_ZEROS) == bytes(_ZEROS)
 
 
 def _starts(path: Path, magic: bytes) -> bool:
