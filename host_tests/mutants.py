@@ -7,6 +7,9 @@ Mutants that mean the same are listed in mutants.toml, each with why; they are d
 """
 
 import argparse
+import ast
+import contextlib
+import itertools
 import os
 import random
 import re
@@ -29,9 +32,7 @@ except ImportError:  # Python 3.10
 SURVIVORS_AND_WHY = Path(__file__).with_name("mutants.toml")
 # What no test can tell apart: annotations, constants that `make layout` writes, == and is of what
 # there is only one of, what is done without a module that MicroPython has and the tests have too.
-_SAME = re.compile(
-    r"^\s*(def |from |import |#)|^\s+\w+: .*[,=]$|^    \) ->|TYPE_CHECKING|^@|^except ImportError:"
-)
+_SAME = re.compile(r"^\s*(from |import |#)|TYPE_CHECKING|^@|^except ImportError:")
 _SAME_OF_SMALL_INTEGERS = ("Eq_Is", "NotEq_IsNot")
 _LAYOUT = re.compile(r"^# layout: .*?^# layout: end", re.MULTILINE | re.DOTALL)
 
@@ -126,6 +127,17 @@ AREAS = {
 }  # fmt: skip
 
 
+def _annotations(source):
+    """[(start, end)] of all annotations, each (row, column)."""
+    kinds = (ast.arg, ast.AnnAssign), (ast.FunctionDef, ast.AsyncFunctionDef)
+    nodes = list(ast.walk(ast.parse(source)))
+    found = [node.annotation for node in nodes if isinstance(node, kinds[0])]
+    found += [node.returns for node in nodes if isinstance(node, kinds[1])]
+    return [
+        ((a.lineno, a.col_offset), (a.end_lineno, a.end_col_offset)) for a in found if a is not None
+    ]
+
+
 def mutants(files):
     """[(file, operator, occurrence, row)] of all that can be told apart."""
     found = []
@@ -135,16 +147,19 @@ def mutants(files):
         written = [
             source.count("\n", 0, end) for part in _LAYOUT.finditer(source) for end in part.span()
         ]
+        annotations = _annotations(source)
         nodes = list(ast_nodes(get_ast(source)))
         for name in sorted(plugins.operator_names()):
             operator_class = plugins.get_operator(name)
             if operator_class.arguments() or name.endswith(_SAME_OF_SMALL_INTEGERS):
                 continue
             operator = operator_class()
-            at = [start[0] for node in nodes for start, _ in operator.mutation_positions(node)]
-            for occurrence, row in enumerate(at):
+            at = [start for node in nodes for start, _ in operator.mutation_positions(node)]
+            for occurrence, start in enumerate(at):
+                row = start[0]
                 in_layout = any(a < row <= b for a, b in zip(written[::2], written[1::2]))
-                if not in_layout and not _SAME.search(rows[row - 1]):
+                annotates = any(a <= start < b for a, b in annotations)
+                if not in_layout and not annotates and not _SAME.search(rows[row - 1]):
                     found.append((file, name, occurrence, row))
     return found
 
@@ -158,20 +173,28 @@ def same(mutant, text):
     return ""
 
 
+def draws(files, seed):
+    """Yield (file, operator, occurrence, row, line, mutated text), all that are Python."""
+    every = mutants(files)
+    for file, operator, occurrence, row in random.Random(seed).sample(every, len(every)):
+        source = (REPOSITORY / file).read_text(encoding="utf-8")
+        # the * of a parameter list is no product, and cosmic-ray knows no dot after except
+        with contextlib.suppress(SyntaxError, AttributeError):
+            text = mutate_code(source, plugins.get_operator(operator)(), occurrence)
+            ast.parse(text)
+            yield file, operator, occurrence, row, source.splitlines()[row - 1].strip(), text
+
+
 def area_score(name, count, seed):
     """Counter of killed, survived, same; prints each survivor."""
     files, tests = AREAS[name]
-    every = mutants(files)
     found, drawn, said = Counter(), {}, {}
-    for number, (file, operator, occurrence, row) in enumerate(
-        random.Random(seed).sample(every, min(count, len(every)))
+    for number, (file, operator, occurrence, row, line, text) in enumerate(
+        itertools.islice(draws(files, seed), count)
     ):
-        source = (REPOSITORY / file).read_text(encoding="utf-8")
-        line = source.splitlines()[row - 1].strip()
         if same((file, operator), line):
             found["same"] += 1
             continue
-        text = mutate_code(source, plugins.get_operator(operator)(), occurrence)
         drawn[number] = (file, row, text)
         said[number] = f"survived: {file}:{row} {operator} {occurrence}: {line}"
     for number, end in ends(tests, drawn).items():
