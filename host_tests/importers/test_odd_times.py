@@ -186,10 +186,14 @@ def test_a_rate_overrides_a_time_column_and_says_so(tmp_path):
     assert told(report, "time column 'timestamp' left aside, as --hz is given")
 
 
-def test_a_time_of_unknown_unit_is_offered_with_its_rate(tmp_path):
+def test_a_time_of_unknown_unit_is_taken_where_one_can_be_and_else_offered_with_its_rate(tmp_path):
     frame = table().rename(columns={"t_s": "time"})
+    _, report = read(tmp_path, frame)
+    assert told(report, "time taken in s: that is 100 Hz")
     with pytest.raises(BadRecording, match=r"give --time-unit s \(100 Hz\)"):
-        read(tmp_path, frame)
+        read(tmp_path, frame.rename(columns={"time": "min.timestamp"}))
+    with pytest.raises(BadRecording, match=r"give --time-unit s \(0.1 Hz\) or ms \(100 Hz\)"):
+        read(tmp_path, frame.assign(time=frame["time"] * 1000))
 
 
 def test_stamps_beyond_64_bits_are_refused_with_their_row(tmp_path):

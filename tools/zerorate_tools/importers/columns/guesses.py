@@ -1,5 +1,6 @@
 """Units that the readings themselves tell, and the words that name one where they do not."""
 
+import re
 from collections.abc import Mapping
 
 import numpy as np
@@ -7,6 +8,7 @@ import numpy as np
 from ...recordings.recording import ACCEL, GYRO, TEMP, TIME
 from .mapping import Mapped
 from .names import spelled
+from .turning import dps_of_one
 from .units import RATE_DPS, RAW, STANDARD_GRAVITY, TIME_S, factors_of, kind_of, unit_in_name
 
 _GRAVITY = {"m/s2": STANDARD_GRAVITY, "g": 1.0, "mg": 1000.0}
@@ -19,16 +21,29 @@ _FASTEST_DPS = 2050.0
 _OF_ONE = 3e-4
 #: Rates at which anyone records, Hz.
 _LIKELY_HZ = (0.02, 40_000.0)
+#: Names of times in none of the units that a recording may have.
+_OTHER_TIME = re.compile(r"min|hour|hr|day|frame|tick|count")
+#: Violent motion makes gravity seem to turn up to this much faster or slower than it does.
+TURNED_WITHIN = 1.75
+#: Counts of gyroscopes and mrad/s are this large, in dps, and not told apart.
+_COUNTS_DPS = (0.005, 0.1)
 
 
 def guessed_unit(
-    target: str, wanted: Mapping[str, Mapped], names: list[str], first: Mapping[str, np.ndarray]
+    target: str,
+    wanted: Mapping[str, Mapped],
+    names: list[str],
+    first: Mapping[str, np.ndarray],
+    t_s: np.ndarray | None = None,
 ) -> tuple[str | None, str]:
     """(unit, why) of a column whose unit nobody named; (None, "") where nothing tells it.
 
-    first: the first rows of the columns wanted.
+    first: the first rows of the columns wanted; t_s: their times, where known.
     """
     column = wanted[target].column
+    turned = _by_turning(wanted, first, t_s) if target in GYRO and t_s is not None else None
+    if turned is not None:
+        return turned, "gravity turns with it"
     habit = by_habit(target, column, names)
     if habit is not None:
         return habit
@@ -36,7 +51,8 @@ def guessed_unit(
     if not len(values):
         return None, ""
     if target == TIME:
-        return _by_calendar(values)
+        by_date = _by_calendar(values)
+        return by_date if by_date[0] else _by_pace(values, column)
     if target == TEMP:
         return _by_range(values)
     if target in ACCEL:
@@ -44,10 +60,30 @@ def guessed_unit(
     return None, ""
 
 
+def _by_turning(
+    wanted: Mapping[str, Mapped], first: Mapping[str, np.ndarray], t_s: np.ndarray
+) -> str | None:
+    """The unit of rates in which they turn gravity as it is seen to turn."""
+    if not all(axis in wanted for axis in ACCEL):
+        return None
+    rates, force = (np.array([first[wanted[n].column] for n in axes]) for axes in (GYRO, ACCEL))
+    dps = dps_of_one(rates, force, t_s)
+    counted = (rates[np.isfinite(rates)] % 1 == 0).all()
+    if dps is None or counted and _COUNTS_DPS[0] < dps < _COUNTS_DPS[1]:
+        return None
+    return rate_unit_of(dps)
+
+
+def rate_unit_of(dps: float) -> str | None:
+    """The unit that stands for about so many dps."""
+    near = (u for u, one in RATE_DPS.items() if abs(np.log(dps / one)) < np.log(TURNED_WITHIN))
+    return next(near, None)
+
+
 def ready_words(target: str, wanted: Mapping[str, Mapped], first: Mapping[str, np.ndarray]) -> str:
     """What to type for a unit that nothing tells."""
     if target == TIME:
-        return _time_words(first[wanted[target].column], wanted[target].column)
+        return _time_words(first[wanted[target].column])
     unit = _likely(target, wanted, first)
     others = ", ".join(u for u in (*factors_of(target), "lsb") if u != unit and u != "c")
     left_out = ", or leave it out: --map temp=none" if target == TEMP else ""
@@ -216,7 +252,9 @@ def _likely(target: str, wanted: Mapping[str, Mapped], first: Mapping[str, np.nd
     if target in ACCEL:
         return unit or ("lsb" if counted else "g")
     # those who keep to one system of units keep to it for both
-    return {"m/s2": "rad/s", None: "lsb" if counted else "dps", "lsb": "lsb"}.get(unit, "dps")
+    likely = {"m/s2": "rad/s", None: "lsb" if counted else "dps", "lsb": "lsb"}.get(unit, "dps")
+    fast = float(np.abs(values).max(initial=0.0)) * RATE_DPS.get(likely, 1.0) > _FASTEST_DPS
+    return "dps" if fast and likely == "rad/s" else likely
 
 
 def likely_units_of_time(step: float) -> dict[str, float]:
@@ -225,10 +263,22 @@ def likely_units_of_time(step: float) -> dict[str, float]:
     return {unit: f for unit, f in hz.items() if _LIKELY_HZ[0] <= f <= _LIKELY_HZ[1]}
 
 
-def _time_words(values: np.ndarray, column: str) -> str:
+def _by_pace(values: np.ndarray, column: str) -> tuple[str | None, str]:
+    """The only unit in which anyone would have recorded so fast, where the name is of no other."""
+    likely = likely_units_of_time(_usual_step(values))
+    if len(likely) != 1 or _OTHER_TIME.search(column.lower()):
+        return None, ""
+    unit, hz = next(iter(likely.items()))
+    return unit, f"that is {hz:.4g} Hz"
+
+
+def _usual_step(values: np.ndarray) -> float:
     steps = np.diff(values[np.isfinite(values)])
     steps = np.abs(steps[steps != 0])  # two sensors at one time
-    step = float(np.median(steps)) if len(steps) else 0.0
-    likely = likely_units_of_time(step)
+    return float(np.median(steps)) if len(steps) else 0.0
+
+
+def _time_words(values: np.ndarray) -> str:
+    likely = likely_units_of_time(_usual_step(values))
     would = " or ".join(f"{unit} ({hz:.4g} Hz)" for unit, hz in likely.items())
     return f"--time-unit {would or 'with one of ' + ', '.join(TIME_S)}"

@@ -86,11 +86,12 @@ def planned(
     plan.plus = {t: factors_of(t)[m.plus[1]][0] for t, m in wanted.items() if m.plus}
     raw, unknown = set(), {}
     first = table.first_rows(plan.columns)
+    t_s = _times_s(plan, table, units or {}, first, path)
     for target, mapped in wanted.items():
         if target not in COLUMNS:
             plan.factors[target] = (factor_in(mapped.unit or "1") or 1.0, 0.0)
             continue
-        unit = _unit(target, plan, table, units or {}, first, path)
+        unit = _unit(target, plan, table, units or {}, first, path, t_s)
         if unit is None and target == TIME and np.isnan(first[mapped.column]).all():
             do = "write seconds, or dates as 2026-05-01T12:00:00.250; or count the rows: --hz N"
             raise BadRecording(path, f"no time can be read from column {mapped.column!r}", do=do)
@@ -252,6 +253,20 @@ def _list(names: list[str], most: int = _LISTED) -> str:
     return ", ".join(names[:most]) + (f" and {more} more" if more > 0 else "")
 
 
+def _times_s(
+    plan: Plan, table: Table, units: Mapping[str, str], first: dict[str, np.ndarray], path: Path
+) -> np.ndarray | None:
+    """Times of the first rows, where their unit is told."""
+    if TIME not in plan.wanted:
+        return None
+    mapped = plan.wanted[TIME]
+    unit = _unit(TIME, plan, table, units, first, path)
+    if unit is None:
+        return None
+    t_s = first[mapped.column] * factors_of(TIME)[unit][0]
+    return t_s + (first[mapped.plus[0]] * plan.plus[TIME] if mapped.plus else 0.0)
+
+
 def _unit(
     target: str,
     plan: Plan,
@@ -259,6 +274,7 @@ def _unit(
     units: Mapping[str, str],
     first: dict[str, np.ndarray],
     path: Path,
+    t_s: np.ndarray | None = None,
 ) -> str | None:
     mapped = plan.wanted[target]
     if mapped.column in table.calendar:
@@ -266,7 +282,7 @@ def _unit(
     kind = kind_of(target)
     unit = mapped.unit or unit_in_name(target, mapped.column) or units.get(kind)
     if unit is None:
-        unit, why = guessed_unit(target, plan.wanted, table.names, first)
+        unit, why = guessed_unit(target, plan.wanted, table.names, first, t_s)
         note = f"{kind} taken in {unit}: {why}"
         if unit is not None and note not in plan.notes:
             plan.notes.append(note)

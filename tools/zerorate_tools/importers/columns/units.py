@@ -54,6 +54,8 @@ _BY_NAME = {
 }  # fmt: skip
 #: Of a column of an array.
 _INDEX = re.compile(r"\[\d+\]$")
+#: m/(sec^2), as Shimmer writes; no unit in brackets.
+_DENOMINATOR = re.compile(r"/\(([^()]*)\)$")
 _BRACKETS = re.compile(r"[\[({<]\s*([^\])}>]*?)\s*[\])}>]\s*$")
 
 
@@ -77,7 +79,7 @@ def units_of(target: str) -> tuple[str, ...]:
 
 def unit_in_name(target: str, column: str) -> str | None:
     """The unit that a column's own name ends with (gx_dps, ax [m/s2], temp_C), or None."""
-    name = _INDEX.sub("", column.strip().lower())
+    name = _DENOMINATOR.sub(r"/\1", _INDEX.sub("", column.strip().lower()))
     kind = kind_of(target)
     if name in _BY_NAME.get(kind, {}):
         return _BY_NAME[kind][name]
@@ -90,6 +92,7 @@ def unit_in_name(target: str, column: str) -> str | None:
 
 def without_unit(name: str) -> str:
     """A lower-case name without the unit in brackets, or of words, at its end."""
+    name = _DENOMINATOR.sub(r"/\1", name)
     in_brackets = _BRACKETS.search(name)
     if in_brackets:
         return name[: in_brackets.start()].strip()

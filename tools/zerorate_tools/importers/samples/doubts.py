@@ -10,8 +10,9 @@ import numpy as np
 from ...errors import BadRecording
 from ...recordings import Scales
 from ...recordings.recording import ACCEL, GYRO, TEMP, TIME
-from ..columns.guesses import likely_units_of_time, unit_words
+from ..columns.guesses import TURNED_WITHIN, likely_units_of_time, rate_unit_of, unit_words
 from ..columns.plan import Plan
+from ..columns.turning import dps_of_one
 from .clock import duration
 from .gather import Gathered
 
@@ -42,7 +43,11 @@ def doubts(found: Gathered, plan: Plan, scales: Scales, path: Path) -> list[str]
     """Sentences, of which each names what to do. Raises BadRecording for what cannot be true."""
     _refuse_gravity(found.looked_at, plan, scales, path)
     _refuse_pace(found, plan, path)
-    out = [*_of_rates(found, plan, path), *_of_temperature(found.looked_at, plan)]
+    out = [
+        *_of_rates(found, plan, path),
+        *_of_turning(found.looked_at, plan, scales, path),
+        *_of_temperature(found.looked_at, plan),
+    ]
     return [f"doubtful: {words}" for words in out]
 
 
@@ -131,6 +136,28 @@ def _of_rates(found: Gathered, plan: Plan, path: Path) -> list[str]:
         return []
     if not meant:
         return [said]
+    words = unit_words(plan.wanted, "gx", meant)
+    if "gyro" in plan.typed:
+        return [f"{said}: did you mean {meant}? ({words})"]
+    do = f"did you mean {meant}? Give {words}; or name the unit as it is, which is believed"
+    raise BadRecording(path, said, do=do)
+
+
+def _of_turning(seen: dict[str, np.ndarray], plan: Plan, scales: Scales, path: Path) -> list[str]:
+    """Whether the rates turn gravity as fast as it is seen to turn."""
+    if plan.by_format or len(seen.get("ax", ())) != len(seen[TIME]):
+        return []
+    rates, force = (np.array([seen[name] for name in axes]) for axes in (GYRO, ACCEL))
+    lsb = (scales.gyro_lsb_per_dps if "gyro" in plan.raw else None) or 1.0
+    times = (dps_of_one(rates, force, seen[TIME] * 1e-6) or 1.0 / lsb) * lsb
+    if 1.0 / TURNED_WITHIN < times < TURNED_WITHIN:
+        return []
+    said = f"gravity turns {times:.2g} times as fast as the rates"
+    if "gyro" in plan.raw:
+        return [f"{said}: did you mean --gyro-lsb-per-dps {lsb / times:.3g}? Or is the time wrong"]
+    meant = rate_unit_of(times * plan.factors["gx"][0])
+    if meant is None:
+        return [f"{said}: their unit or the time is wrong"]
     words = unit_words(plan.wanted, "gx", meant)
     if "gyro" in plan.typed:
         return [f"{said}: did you mean {meant}? ({words})"]

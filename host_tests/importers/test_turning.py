@@ -1,0 +1,118 @@
+"""The unit of rates by gravity, which they turn: in a hand it is told, at rest it is not."""
+
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+from zerorate_tools.errors import BadRecording
+from zerorate_tools.importers import Options, import_recording
+from zerorate_tools.importers.columns.mapping import parsed_mapping
+from zerorate_tools.importers.columns.turning import dps_of_one
+
+UNITS_DPS = {"dps": 1.0, "mdps": 1e-3, "rad/s": 180 / np.pi, "mrad/s": 0.18 / np.pi}
+
+
+def in_a_hand(seed=1, hz=50.0, seconds=30.0, axes=(1, 1, 1), push_g=0.3):
+    """t_s (n,), rates in dps and force in g, both (3, n): turns of a hand about some axes."""
+    rng = np.random.default_rng(seed)
+    t_s = np.arange(int(seconds * hz)) / hz
+    waves = rng.uniform(0.1, 0.6, (3, 4, 1)), rng.uniform(0, 6.3, (3, 4, 1))
+    rates = 60 * np.sin(6.283 * waves[0] * t_s + waves[1]).sum(axis=1)
+    rates *= np.array(axes)[:, np.newaxis]
+    pose = Rotation.identity()
+    force = []
+    for rate in rates.T:
+        force.append(pose.inv().apply([0.3, -0.5, 0.8]))
+        pose = pose * Rotation.from_rotvec(np.radians(rate / hz))
+    pushed = push_g * np.sin(6.283 * rng.uniform(1, 3, (3, 1)) * t_s)
+    noise = rng.normal(0, 0.01, (3, len(t_s)))
+    return t_s, rates + rng.normal(0, 0.1, rates.shape) + 0.8, np.transpose(force) + pushed + noise
+
+
+@settings(max_examples=12)
+@given(
+    seed=st.integers(0, 10**6),
+    hz=st.sampled_from([10.0, 25.0, 104.0, 400.0]),
+    dps=st.sampled_from([*UNITS_DPS.values(), 1 / 131, 1 / 16.4]),
+)
+def test_in_a_hand_gravity_tells_the_size_of_rates(seed, hz, dps):
+    t_s, rates, force = in_a_hand(seed, hz)
+    assert dps_of_one(rates / dps, force, t_s) == pytest.approx(dps, rel=0.15)
+
+
+@settings(max_examples=12)
+@given(seed=st.integers(0, 10**6), hz=st.sampled_from([10.0, 104.0]))
+def test_at_rest_and_from_axes_that_do_not_belong_together_nothing_is_told(seed, hz):
+    t_s, rates, force = in_a_hand(seed, hz)
+    rng = np.random.default_rng(seed)
+    still = np.array([[0.1], [0.2], [0.97]]) + rng.normal(0, 0.01, force.shape)
+    assert dps_of_one(rng.normal(0.5, 0.1, rates.shape), still, t_s) is None
+    assert dps_of_one(-rates, force, t_s) is None
+
+
+def test_gaps_and_cells_without_a_number_do_not_change_what_is_told():
+    t_s, rates, force = in_a_hand(seconds=60.0)
+    rates[:, 700:720] = np.nan
+    t_s[1500:] += 400.0
+    assert dps_of_one(rates, force, t_s) == pytest.approx(1.0, rel=0.1)
+    assert dps_of_one(rates[:, :500], force[:, :500], t_s[:500]) is None  # of ten seconds
+
+
+def written(tmp_path, dps=1.0, names="gyro_x,gyro_y,gyro_z", start_s=0.0):
+    t_s, rates, force = in_a_hand()
+    columns = {"t": t_s + start_s, **dict(zip(names.split(","), rates / dps))}
+    path = tmp_path / "in.csv"
+    pd.DataFrame(columns | dict(zip(("acc_x", "acc_y", "acc_z"), force))).to_csv(path, index=False)
+    return path, rates
+
+
+@pytest.mark.parametrize("unit", UNITS_DPS)
+def test_rates_and_times_whose_unit_nobody_names_are_taken_as_they_must_be(tmp_path, unit):
+    path, rates = written(tmp_path, UNITS_DPS[unit])
+    report = import_recording(path, tmp_path / "out.csv")
+    assert f"gyro taken in {unit}: gravity turns with it" in report.notes
+    assert "time taken in s: that is 50 Hz" in report.notes
+    read = pd.read_csv(tmp_path / "out.csv")
+    assert np.allclose(read["gx"] * np.ptp(rates[0]) / np.ptp(read["gx"]), rates[0], atol=0.1)
+
+
+def test_a_unit_in_a_name_that_gravity_contradicts_is_refused_with_the_true_one(tmp_path):
+    path, _ = written(tmp_path, UNITS_DPS["rad/s"], "gx_dps,gy_dps,gz_dps")
+    with pytest.raises(BadRecording, match="gravity turns 5[5-9] times as fast.*gx=gx_dps:rad/s"):
+        import_recording(path, tmp_path / "out.csv")
+    given = [parsed_mapping(f"{axis}={axis}_dps:dps") for axis in ("gx", "gy", "gz")]
+    report = import_recording(path, tmp_path / "out.csv", mapping=given)
+    assert "did you mean rad/s?" in " ".join(report.doubts)
+
+
+def test_counts_of_another_range_are_doubted_by_the_scale_that_gravity_tells(tmp_path):
+    path, _ = written(tmp_path, 1 / 16.4)
+    how = {"units": {"gyro": "lsb"}, "options": Options(gyro_lsb_per_dps=131.0)}
+    report = import_recording(path, tmp_path / "out.csv", **how)
+    assert "did you mean --gyro-lsb-per-dps 16." in " ".join(report.doubts)
+    how["options"] = Options(gyro_lsb_per_dps=16.4)
+    assert not import_recording(path, tmp_path / "out.csv", **how).doubts
+
+
+def test_acceleration_per_second_squared_in_brackets_is_read(tmp_path):
+    t_s, rates, force = in_a_hand()
+    names = [f"Foot {{}} {axis} CAL {{}}" for axis in "XYZ"]
+    columns = {"Timestamp CAL ms": t_s * 1e3}
+    columns |= dict(zip((n.format("Gyroscope", "deg/sec") for n in names), rates))
+    wide = (n.format("Wide Range Accelerometer", "m/(sec^2)") for n in names)
+    path = tmp_path / "in.csv"
+    pd.DataFrame(columns | dict(zip(wide, force * 9.80665))).to_csv(path, index=False)
+    import_recording(path, tmp_path / "out.csv")
+    read = pd.read_csv(tmp_path / "out.csv")
+    assert np.allclose(read["az"] / 16384, force[2], atol=0.001)
+
+
+def test_minutes_are_no_seconds(tmp_path):
+    t_s, rates, force = in_a_hand()
+    columns = {"t_min": t_s / 60, **dict(zip(("gx_dps", "gy_dps", "gz_dps"), rates))}
+    path = tmp_path / "in.csv"
+    pd.DataFrame(columns | dict(zip(("ax", "ay", "az"), force))).to_csv(path, index=False)
+    with pytest.raises(BadRecording):
+        import_recording(path, tmp_path / "out.csv")
