@@ -265,3 +265,12 @@ def test_lines_of_a_vectornav_need_but_their_rate(tmp_path):
     assert recording.gyro_dps()[0] == pytest.approx(np.degrees([0.01, 0.02, 0.03]), abs=0.005)
     assert recording.accel_g()[0, 2] == pytest.approx(-1.0, abs=0.01)
     assert recording.temp_degc()[0] == pytest.approx(26.8, abs=0.01)
+
+
+def test_a_channel_that_would_lose_its_digits_is_offered_with_a_factor(tmp_path):
+    frame = table().assign(quat_w=np.cos(np.linspace(0.0, 3.0, len(table()))))
+    with pytest.raises(BadRecording, match="qw loses its digits.*--map qw=quat_w:x10000") as no:
+        read(tmp_path, frame, mapping="qw=quat_w")
+    words = str(no.value).rpartition("--map ")[2]
+    recording, _ = read(tmp_path, frame, mapping=words)
+    assert recording.columns["qw"] == pytest.approx(1e4 * frame["quat_w"], abs=0.51)

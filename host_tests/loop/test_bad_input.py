@@ -7,10 +7,11 @@ import numpy as np
 import pyarrow as pa
 import pytest
 from pyarrow import parquet
-from zerorate_tools.closing import load
+from zerorate_tools.closing import close, load
 from zerorate_tools.loop.read.gate import CannotClose
+from zerorate_tools.recordings import Recording
 
-from .power_ons import HZ, MPU, at_rest
+from .power_ons import HZ, MPU, at_rest, written
 
 N = 6000
 
@@ -106,6 +107,14 @@ def test_beside_an_hour_a_short_one_is_told_why_it_needs_more_than_alone(closing
     analysis = closing([*(at_rest(i, 60 * 60 * 5) for i in range(2)), at_rest(4, 1400)])
     (note,) = analysis.gate.notes
     assert "s2: 4.6 minutes are too short; 5 minutes at rest are needed (15 blocks of 20 s" in note
+
+
+def test_motion_without_acceleration_is_told_what_would_tell_of_it(tmp_path):
+    one = {name: values for name, values in at_rest(0).items() if name not in ("ax", "ay", "az")}
+    one["gz"] = np.rint(131 * 60 * np.sin(np.arange(N) / 2)).astype(np.int32)
+    logs = written(tmp_path, [Recording(one, replace(MPU, accel_lsb_per_g=None), "s0")])
+    with pytest.raises(CannotClose, match="untouched for longer; or record acceleration"):
+        close(logs, tmp_path / "closed")
 
 
 def test_recordings_all_in_motion_are_told_to_rest(closing):

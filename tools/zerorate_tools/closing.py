@@ -89,6 +89,8 @@ def _close_in_motion(logs, out, holdout, advance, problem: TooLittleRest) -> Loo
     names = [t.name for t in ticks]
     at = None if holdout is None else _index(holdout, logs, names, names)
     shown = shown_in_motion(ticks, at)
+    if shown is None and all(t.scales.accel_lsb_per_g is None for t in ticks):
+        raise TooLittleRest(f"{problem}; or record acceleration: gravity tells what moves")
     if shown is None:
         raise problem
     with written_together(out) as folder:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...errors import BadRecording
 from ...recordings import Scales
-from ...recordings.recording import ACCEL, GYRO, TEMP, TIME
+from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP, TIME
 from ..columns.guesses import TURNED_WITHIN, likely_units_of_time, rate_unit_of, unit_words
 from ..columns.plan import Plan
 from ..columns.turning import dps_of_one
@@ -37,12 +37,15 @@ _SINGLE_HZ = 10.0
 #: Of one sample to the next, where nothing shakes.
 _UNSHAKEN_G = 0.02
 _STEADY_DPS = 25.0
+#: A tenth of what a channel does may be lost by rounding.
+_MOST_ROUNDED = 0.1
 
 
 def doubts(found: Gathered, plan: Plan, scales: Scales, path: Path) -> list[str]:
     """Sentences, of which each names what to do. Raises BadRecording for what cannot be true."""
     _refuse_gravity(found.looked_at, plan, scales, path)
     _refuse_pace(found, plan, path)
+    _refuse_coarse_channels(found.looked_at, plan, path)
     out = [
         *_of_rates(found, plan, path),
         *_of_turning(found.looked_at, plan, scales, path),
@@ -108,6 +111,21 @@ def _refuse_pace(found: Gathered, plan: Plan, path: Path) -> None:
         problem = f"{hz:.3g} samples a second are more than such a sensor has"
         do = f"did you mean {unit} ({likely_hz:.4g} Hz)? Give {words}"
         raise BadRecording(path, problem, do=do)
+
+
+def _refuse_coarse_channels(seen: dict[str, np.ndarray], plan: Plan, path: Path) -> None:
+    """A channel is stored in whole numbers: those of a quaternion would all be 0 and 1."""
+    for name, mapped in plan.wanted.items():
+        if name in COLUMNS or mapped.unit is not None:
+            continue
+        values = seen[name][np.isfinite(seen[name])]
+        spread = float(np.std(values)) if len(values) else 0.0
+        if spread and np.std(values - np.rint(values)) > _MOST_ROUNDED * spread:
+            factor = 10.0 ** (4 - math.floor(math.log10(np.abs(values).max())))
+            do = (
+                f"keep its digits: --map {name}={mapped.column}:x{factor * plan.factors[name][0]:g}"
+            )
+            raise BadRecording(path, f"{name} loses its digits as a whole number", do=do)
 
 
 def _of_rates(found: Gathered, plan: Plan, path: Path) -> list[str]:
