@@ -109,6 +109,16 @@ def test_acceleration_per_second_squared_in_brackets_is_read(tmp_path):
     assert np.allclose(read["az"] / 16384, force[2], atol=0.001)
 
 
+def test_rates_with_which_gravity_turns_are_not_doubted_for_their_noise(tmp_path):
+    t_s, rates, force = in_a_hand(push_g=0.0)
+    rates[:, :1000] += np.random.default_rng(2).normal(0, 2.0, (3, 1000))
+    columns = dict(zip(("gx (rad/s)", "gy (rad/s)", "gz (rad/s)"), np.radians(rates)))
+    path = tmp_path / "in.csv"
+    columns |= {"t_s": t_s, **dict(zip(("ax_g", "ay_g", "az_g"), force))}
+    pd.DataFrame(columns).to_csv(path, index=False)
+    assert not import_recording(path, tmp_path / "out.csv").doubts
+
+
 def test_minutes_are_no_seconds(tmp_path):
     t_s, rates, force = in_a_hand()
     columns = {"t_min": t_s / 60, **dict(zip(("gx_dps", "gy_dps", "gz_dps"), rates))}

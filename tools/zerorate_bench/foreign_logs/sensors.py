@@ -197,6 +197,13 @@ def pandas_levels(folder: Path, world: World) -> Path:
     return text(folder / "in.csv", frame, index=True)
 
 
+@log("names over two lines that end with a delimiter, as rows do not")
+def two_lines_and_a_delimiter(folder: Path, world: World) -> Path:
+    head = "Time (s);IMU Acceleration;;;IMU Gyroscope (rad/s);;;\n;X;Y;Z;X;Y;Z;\n"
+    frame = table("t,ax,ay,az,gx,gy,gz", world.t_s, world.mps2, world.rad)
+    return text(folder / "in.csv", frame, head, sep=";", header=False)
+
+
 @log("a corrected rate before the raw one")
 def corrected_first(folder: Path, world: World) -> Path:
     names = [

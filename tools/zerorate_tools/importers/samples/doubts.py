@@ -46,11 +46,12 @@ def doubts(found: Gathered, plan: Plan, scales: Scales, path: Path) -> list[str]
     _refuse_gravity(found.looked_at, plan, scales, path)
     _refuse_pace(found, plan, path)
     _refuse_coarse_channels(found.looked_at, plan, path)
-    out = [
-        *_of_rates(found, plan, path),
-        *_of_turning(found.looked_at, plan, scales, path),
-        *_of_temperature(found.looked_at, plan),
-    ]
+    times = _gravity_turns_times(found.looked_at, plan, scales)
+    if times is None:
+        out = _of_rates(found, plan, path)
+    else:
+        out = _of_turning(times, plan, scales, path)
+    out += _of_temperature(found.looked_at, plan)
     return [f"doubtful: {words}" for words in out]
 
 
@@ -161,18 +162,23 @@ def _of_rates(found: Gathered, plan: Plan, path: Path) -> list[str]:
     raise BadRecording(path, said, do=do)
 
 
-def _of_turning(seen: dict[str, np.ndarray], plan: Plan, scales: Scales, path: Path) -> list[str]:
-    """Whether the rates turn gravity as fast as it is seen to turn."""
+def _gravity_turns_times(seen: dict[str, np.ndarray], plan: Plan, scales: Scales) -> float | None:
+    """How much faster gravity turns than the rates say; None where it does not tell."""
     if plan.by_format or len(seen.get("ax", ())) != len(seen[TIME]):
-        return []
+        return None
     rates, force = (np.array([seen[name] for name in axes]) for axes in (GYRO, ACCEL))
-    lsb = (scales.gyro_lsb_per_dps if "gyro" in plan.raw else None) or 1.0
-    times = (dps_of_one(rates, force, seen[TIME] * 1e-6) or 1.0 / lsb) * lsb
+    dps = dps_of_one(rates, force, seen[TIME] * 1e-6)
+    lsb = scales.gyro_lsb_per_dps if "gyro" in plan.raw else None
+    return dps and dps * (lsb or 1.0)
+
+
+def _of_turning(times: float, plan: Plan, scales: Scales, path: Path) -> list[str]:
     if 1.0 / TURNED_WITHIN < times < TURNED_WITHIN:
         return []
     said = f"gravity turns {times:.2g} times as fast as the rates"
     if "gyro" in plan.raw:
-        return [f"{said}: did you mean --gyro-lsb-per-dps {lsb / times:.3g}? Or is the time wrong"]
+        lsb = (scales.gyro_lsb_per_dps or 1.0) / times
+        return [f"{said}: did you mean --gyro-lsb-per-dps {lsb:.3g}? Or is the time wrong"]
     meant = rate_unit_of(times * plan.factors["gx"][0])
     if meant is None:
         return [f"{said}: their unit or the time is wrong"]

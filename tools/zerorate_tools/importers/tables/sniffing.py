@@ -169,8 +169,9 @@ def _with(
 
 
 def _as_many(names: list[str], cells: list[str]) -> bool:
-    trailing = len(cells) == len(names) + 1 and not cells[-1].strip()
-    return len(cells) == len(names) or trailing
+    """Whether two lines have as many cells; one may end with a delimiter."""
+    fewer, more = sorted((names, cells), key=len)
+    return len(more) - len(fewer) == (1 if len(more) > len(fewer) and not more[-1].strip() else 0)
 
 
 def _cells(line: str, delimiter: str) -> list[str]:
@@ -197,13 +198,13 @@ def _names(lines: list[str], at: int | None, first: list[str], delimiter: str):
             names = [f"{name} [{unit}]" if name else "" for name, unit in zip(named, units)]
         else:
             names = _with_those_above(names, lines[:at], delimiter)
-        return _single(names + [""] * (len(first) - len(names))), ""
+        return _as_wide(names, first), ""
     for line in reversed(lines):
         text = line.strip()
         if text.startswith(COMMENTS):
             names = [name.strip() for name in _cells(text.lstrip("#/%* "), delimiter)]
             if _as_many(names, first) and not _numbers(names, delimiter):
-                return _single(names + [""] * (len(first) - len(names))), ""
+                return _as_wide(names, first), ""
     numbered = [str(number) for number in range(1, len(first) + 1)]
     return numbered, "no line names the columns: they are called 1, 2, 3, ..."
 
@@ -231,6 +232,11 @@ def _joined(above: str, name: str) -> str:
 
 def _is_unit(text: str, name: str) -> bool:
     return bool(_UNIT.match(text)) or not (text or name)
+
+
+def _as_wide(names: list[str], first: list[str]) -> list[str]:
+    """A name for each cell of the first row."""
+    return _single((names + [""] * (len(first) - len(names)))[: len(first)])
 
 
 def _single(names: list[str]) -> list[str]:
