@@ -19,8 +19,10 @@ def coherence(regression, terms) -> tuple[float, np.ndarray]:
     p, at = 1.0, _LOWEST[0]
     for lowest in _LOWEST:
         rows = np.vstack([_scaled(regression, fit, i, r)[:lowest] for i, r in enumerate(residual)])
-        sign, logdet = np.linalg.slogdet(np.corrcoef(rows.T) + 1e-9 * np.eye(3))
-        this = chi2.sf(-max(len(rows) - 1 - 11 / 6, 1.0) * logdet, 3) * len(_LOWEST)
+        if len(rows) <= 3:  # so few lie in a plane, whatever they are
+            continue
+        logdet = np.linalg.slogdet(np.corrcoef(rows.T) + 1e-9 * np.eye(3))[1]
+        this = chi2.sf(-(len(rows) - 1 - 11 / 6) * logdet, 3) * len(_LOWEST)
         if this < p:
             p, at = this, lowest
     low = np.vstack([r[:at] / regression.scale[i] for i, r in enumerate(residual)])

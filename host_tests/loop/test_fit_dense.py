@@ -1,0 +1,401 @@
+"""The loop's fits give what the textbook gives, with whole covariance matrices in float64."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.stats import chi2
+from zerorate_tools.loop.fit import shrunk as shrinking
+from zerorate_tools.loop.fit.common_cause import coherence, turned_axes
+from zerorate_tools.loop.fit.cross_products import GappyWhitener, Whitener, cross_products, whitener
+from zerorate_tools.loop.fit.left_out import fitted_without, gains, of_plays, session_misfit
+from zerorate_tools.loop.fit.likelihood import fit_base, ratios, session_scale
+from zerorate_tools.loop.fit.regression import Regression, predicted
+from zerorate_tools.loop.search.steps import Step
+from zerorate_tools.model.term import Term
+
+from . import dense
+from .dense import A, B, C, D
+
+SCALE = np.array([[0.5, 1.0, 1.0], [1.0, 1.0, 2.0], [2.0, 1.0, 0.5]])
+
+
+@pytest.fixture(scope="module")
+def sessions():
+    """Two whole ones, and one with a gap too long to be bridged."""
+    return [dense.made(1, 18), dense.made(2, 21), dense.made(3, 24, gap=range(5, 17))]
+
+
+@pytest.fixture
+def regression(sessions):
+    made = Regression(sessions)
+    made.scale = SCALE
+    return made
+
+
+def problems(sessions, terms):
+    return [dense.problem(sessions, terms, SCALE[:, a]) for a in range(3)]
+
+
+def test_a_fit_is_that_of_generalised_least_squares_under_every_colour(regression, sessions):
+    fit = regression.fit([A, B])
+    for a, p in enumerate(problems(sessions, [A, B])):
+        likely, told, squares, inverse = dense.fitted(p, a)
+        constant = fit.base.loglik[a] - likely
+        assert constant == pytest.approx(np.zeros(len(likely)), abs=1e-5)
+        assert fit.base.rss[a] == pytest.approx(squares, rel=1e-7)
+        assert fit.base.coefficients[a] == pytest.approx(told, rel=1e-5, abs=1e-9)
+        assert fit.base.inverse[a] == pytest.approx(inverse, rel=1e-6, abs=1e-12)
+        best = likely.argmax()
+        assert fit.base.best[a] == best and fit.base.count == len(p.y)
+        assert fit.coefficients[:, a] == pytest.approx(told[best], rel=1e-5)
+        assert fit.base.variance[a] == pytest.approx(squares[best] / len(p.y), rel=1e-7)
+        assert fit.base.unscaled[a] == pytest.approx(inverse[best], rel=1e-6)
+    assert fit.total == pytest.approx(sum(fit.base.loglik.max(axis=1)))
+
+
+@pytest.mark.parametrize("steep", [True, False])
+def test_a_candidate_s_ratio_is_twice_what_the_likelihood_gains(regression, sessions, steep):
+    regression.steep = steep
+    candidates = [(C,), (D,), (C, D), (B,), (A,)]
+    found = regression.gains([A, B], candidates, chunk=2)
+    may = np.array([steep or not s.slope for s in dense.SHAPES])
+    for k, more in enumerate([(C,), (D,), (C, D)]):
+        for a in range(3):
+            before, after = (
+                dense.fitted(problems(sessions, terms)[a], a)[0][may].max()
+                for terms in ([A, B], [A, B, *more])
+            )
+            assert found[k, a] == pytest.approx(2 * (after - before), rel=1e-4, abs=1e-6)
+    # what is fitted already, or is nothing, gains nothing
+    assert np.abs(found[3:]).max() < 1e-6
+
+
+def test_two_columns_all_but_alike_gain_what_one_of_them_does(regression, sessions):
+    for s in sessions:
+        s.sources["twin"] = s.sources["c"] * (1 + 1e-9)
+    one, both = regression.gains([A], [(C,), (C, Term("twin"))])
+    assert both == pytest.approx(one, rel=1e-3, abs=1e-6)
+
+
+def test_a_session_twice_as_noisy_weighs_a_quarter():
+    quiet = [dense.made(seed, 400) for seed in (1, 2, 3)]
+    loud = [*quiet[:2], replace(quiet[2], rate_dps=4 * quiet[2].rate_dps)]
+    for s in loud:  # noise alone, so that no walk differs between them
+        s.rate_dps[:] = np.random.default_rng(s.blocks + int(s.name[1])).normal(size=(400, 3))
+    loud[2].rate_dps *= 4
+    scale = session_scale(Regression(loud).cross_products([A]))
+    assert np.log(scale).sum(axis=0) == pytest.approx(np.zeros(3), abs=0.2)
+    assert scale[2] / scale[0] == pytest.approx([4, 4, 4], rel=0.12)
+    alike = [dense.made(seed, 400) for seed in (1, 2, 3)]
+    for s in alike:
+        s.rate_dps[:] = np.random.default_rng(int(s.name[1])).normal(size=(400, 3))
+    assert (session_scale(Regression(alike).cross_products([A])) == 1).all()
+    assert (session_scale(Regression(loud[:1]).cross_products([A])) == 1).all()
+
+
+@pytest.mark.parametrize("few", [False, True])
+def test_a_short_gap_is_a_straight_line_in_every_column(few):
+    bridged = dense.made(4, 40, gap=(7, 8))
+    there, at = np.flatnonzero(bridged.available), np.arange(40)
+    columns = np.column_stack([bridged.rate_dps, bridged.sources["a"], bridged.sources["b"]])
+    drawn = np.column_stack([np.interp(at, there, c[there]) for c in columns.T])
+    p = dense.problem([dense.made(4, 40)], [A])
+    q = dense.contrasts(dense.made(4, 40))
+    w = whitener(bridged.available, few)
+    made = w.prepare(columns)
+    g = cross_products([w], [made[:, :3]], [made[:, 3:4]], [made[:, 4:]])
+    assert g.count.tolist() == [37]
+    shapes = [i for i, s in enumerate(dense.SHAPES) if not few or is_of_the_few(s)]
+    for row, shape in enumerate(shapes):
+        to = np.linalg.inv(p.v[shape])
+        every = (q.T @ drawn).T @ to @ (q.T @ drawn)
+        assert g.yy[0, row] == pytest.approx(np.diag(every)[:3], rel=1e-7)
+        assert g.zy[0, row, 0] == pytest.approx(every[3, :3], rel=1e-6, abs=1e-9)
+        assert g.zz[0, row] == pytest.approx(every[3:4, 3:4], rel=1e-7)
+        assert g.xy[0, row, 0, 0] == pytest.approx(every[4, :3], rel=1e-6, abs=1e-9)
+        assert g.xz[0, row, 0, 0] == pytest.approx(every[4, 3:4], rel=1e-6, abs=1e-9)
+        assert g.xx[0, row, 0] == pytest.approx(every[4:, 4:], rel=1e-7)
+        assert g.logdet[0, row] == pytest.approx(np.linalg.slogdet(p.v[shape])[1], rel=1e-7)
+    assert len(g.logdet[0]) == len(shapes)
+    assert whitener(bridged.available, few) is w
+
+
+def is_of_the_few(shape):
+    return not shape.slope and shape.flicker in (0, 0.2, 1.3) and shape.walk in (0, 0.03, 0.15, 1)
+
+
+def test_products_of_some_sessions_and_of_sums_of_nuisances(regression):
+    g = regression.cross_products([A, B, C], [(D,)])
+    some = g.of(np.array([2, 0]))
+    assert (some.yy == g.yy[[2, 0]]).all() and some.count.tolist() == g.count[[2, 0]].tolist()
+    sums = np.array([[1.0], [2.0]])
+    by = g.mapped(1, sums)
+    whole = np.array([[1.0, 0.0], [0.0, 1.0], [0.0, 2.0]])
+    assert by.zz == pytest.approx(whole.T @ g.zz @ whole)
+    assert by.zy == pytest.approx(whole.T @ g.zy)
+    assert by.xz == pytest.approx(g.xz @ whole) and (by.xx == g.xx).all()
+    first = g.mapped(0, np.array([[1.0], [1.0]]))
+    assert first.zz.shape[-1] == 2 and first.zz[..., 1, 1] == pytest.approx(g.zz[..., 2, 2])
+
+
+def test_whitened_columns_that_are_known_are_given_again_and_no_more_are_kept_than_may_be():
+    there = np.ones(20, bool)
+    there[3:15] = False
+    plain, w = GappyWhitener(there), GappyWhitener(there)
+    w._most = 3
+    rng = np.random.default_rng(0)
+    x, y = w.prepare(rng.normal(size=(20, 1))), w.prepare(rng.normal(size=(20, 8)))
+    for columns in (y[:, :3], y[:, 2:5], y):
+        for one, other in zip(w.products(x, columns), plain.products(x, columns)):
+            assert one == pytest.approx(other)
+        assert len(w._known) <= 3
+
+
+def test_what_an_earlier_step_took_is_a_nuisance_of_its_session(sessions):
+    stepped = replace(sessions[1], steps=(Step(0, 9, np.zeros(3), 180.0, 0.0),))
+    without = stepped.rate_dps.copy()
+    with_step = without + 5.0 * (np.arange(21) >= 9)[:, None]
+    fits = [
+        Regression([sessions[0], replace(stepped, rate_dps=rate)]).fit([A])
+        for rate in (without, with_step)
+    ]
+    assert fits[0].coefficients == pytest.approx(fits[1].coefficients, rel=1e-6)
+    assert fits[0].base.fitted.shape == (3, 2)
+    regression = Regression([sessions[0], stepped])
+    assert len(regression.events()) == 1
+    regression.set_events([[np.arange(18.0) > 4, np.zeros(21)]])
+    assert len(regression.events()) == 2
+    regression.set_events([], kept=[])
+    assert regression.events() == []
+    regression.set_events([])
+    assert len(regression.events()) == 1
+
+
+def test_turned_axes_are_turned_back_and_coefficients_are_of_the_sensor(regression):
+    plain = regression.fit([A, B]).coefficients
+    turned = np.array([[0.6, 0.8, 0.0], [-0.8, 0.6, 0.0], [0.0, 0.0, 2.0]])
+    alike = Regression(regression.sessions)
+    straight = alike.fit([A, B]).coefficients
+    alike.turn(np.diag([3.0, 0.5, 2.0]))
+    assert alike.fit([A, B]).coefficients == pytest.approx(straight, rel=1e-6)
+    regression.turn(turned)
+    rate = regression.sessions[0].rate_dps @ turned.T
+    assert regression.y[0] == pytest.approx(regression.whiteners[0].prepare(rate))
+    with regression.in_sensor_axes():
+        assert regression.fit([A, B]).coefficients == pytest.approx(plain)
+    assert (regression.axes == turned).all()
+    assert regression.y[0] == pytest.approx(regression.whiteners[0].prepare(rate))
+
+
+def test_what_is_left_is_what_the_columns_do_not_hold(regression, sessions):
+    fit = regression.fit([A, B])
+    left = regression.left([A, B], fit)
+    for i, s in enumerate(sessions):
+        model = predicted([A, B], fit.coefficients, s)
+        assert model == pytest.approx(
+            np.column_stack([s.sources["a"], s.sources["b"]]) @ fit.coefficients
+        )
+        own = regression.whiteners[i].prepare(np.nan_to_num(s.rate_dps) - model)
+        assert left[i] == pytest.approx(own)
+
+
+def test_squares_of_acceleration_are_shrunk_by_a_thousandth_and_told_weights_by_their_precision():
+    session = dense.made(5, 30, names=("acc_x", "b"))
+    square, linear = Term("acc_x", power=2), Term("acc_x")
+    for terms in ([square, linear, B], [linear, square, B]):
+        g = Regression([session]).cross_products(terms)
+        p = dense.problem([session], [linear, B])
+        own = dense.contrasts(session).T @ session.sources["acc_x"] ** 2
+        at = terms.index(square)
+        expected = [own @ np.linalg.inv(v) @ own for v in p.v]
+        assert g.zz[0, :, at, at] == pytest.approx(1.001 * np.array(expected), rel=1e-7)
+    two = Regression([session, session])
+    two.precision[B] = 6.0
+    plain, more = Regression([session, session]).cross_products([B]), two.cross_products([B])
+    assert more.zz - plain.zz == pytest.approx(np.full_like(more.zz, 3.0))
+    tried = two.cross_products([linear], [(B,), (square,)])
+    assert tried.xx[:, :, 0] == pytest.approx(more.zz)
+
+
+def test_outlying_blocks_are_held_at_their_neighbours(sessions):
+    calm = dense.made(7, 200)
+    calm.rate_dps[:] = np.random.default_rng(7).normal(size=(200, 3))
+    calm.rate_dps += 3.0 * calm.sources["a"][:, None]
+    wild = replace(calm, rate_dps=calm.rate_dps.copy())
+    wild.rate_dps[[20, 150], [0, 2]] += 40.0
+    regression = Regression([wild])
+    regression.settle([A])
+    assert regression.outliers == 2
+    apart = regression.rate[0] - calm.rate_dps
+    assert np.abs(apart).max() < 4 and (np.abs(apart) > 0).sum() == 2
+    assert regression.fit([A]).coefficients == pytest.approx(np.full((1, 3), 3.0), abs=0.1)
+    few = Regression([dense.made(8, 12, gap=range(2, 8))])
+    few.rate[0][0] = 1e6
+    few.settle([A])
+    assert few.outliers == 0
+
+
+def test_a_session_left_out_is_predicted_by_the_others_alone(regression, sessions):
+    found = gains(regression, [A], [B])
+    full = regression.fit([A, B]).base
+    for s in range(3):
+        lost = []
+        for terms, own in (([A], []), ([A, B], [1])):
+            total = 0.0
+            for a, p in enumerate(problems(sessions, terms)):
+                to = np.linalg.inv(p.v[full.best[a]])
+                others = np.concatenate(
+                    [np.arange(r.start, r.stop) for k, r in enumerate(p.rows) if k != s]
+                )
+                x, y, v = p.x[others], p.y[others, a], to[np.ix_(others, others)]
+                zz = x.T @ v @ x
+                for j in own:  # normal about zero, three times as wide as it is on all axes
+                    size = np.sqrt((full.fitted[:, j] ** 2).mean())
+                    zz[j, j] += full.variance[a] / (3.0 * size) ** 2
+                b = np.linalg.solve(zz, x.T @ v @ y)
+                r = p.rows[s]
+                left = p.y[r, a] - p.x[r] @ b
+                total += left @ to[r, r] @ left / full.variance[a]
+            lost.append(total)
+        assert found[s] == pytest.approx(0.5 * (lost[0] - lost[1]), rel=1e-4, abs=1e-7)
+
+
+PLAYS = [
+    replace(A, memory="play", width=1.0),
+    replace(A, memory="play", width=2.5),
+    replace(A, memory="play", width=1.0, power=2),
+]
+
+
+def played(session):
+    """The session with what the play operators make of its source as sources of their own."""
+    from zerorate_tools.model.term import play
+
+    a = session.sources["a"]
+    made = {"p": play(a, 1.0), "q": play(a, 2.5), "r": play(a, 1.0) ** 2}
+    return replace(session, sources={**session.sources, **made})
+
+
+def test_weights_of_play_operators_are_the_mean_of_their_distribution():
+    sessions = [dense.made(11, 16), dense.made(12, 22, gap=range(6, 15))]
+    both = [played(s) for s in sessions]
+    regression = Regression(sessions, few=True)
+    few = [s for s in dense.SHAPES if is_of_the_few(s)]
+    p = dense.problem(both, [B, Term("p"), Term("q")], shapes_=few)
+    sizes = [(1e-3,), *((10.0**e,) for e in np.arange(-1, 4.1, 0.5))]
+    for alike in (True, False):
+        nats, mean = dense.shrunk(p, [[1, 2]], sizes, alike)
+        told = shrinking.shrink(
+            regression.cross_products([B, *PLAYS[:2]]),
+            regression.scale,
+            [B, *PLAYS[:2]],
+            alike=alike,
+        )
+        assert told.coefficients == pytest.approx(mean, rel=1e-4, abs=1e-7)
+        assert told.nats == pytest.approx(nats, abs=1e-5)
+
+
+def test_squares_of_play_operators_have_a_size_of_their_own_under_all_colours():
+    sessions = [dense.made(13, 20)]
+    both = [played(s) for s in sessions]
+    p = dense.problem(both, [B, Term("p"), Term("r"), Term("q")])
+    every = [B, PLAYS[0], PLAYS[2], PLAYS[1]]
+    sizes = dense.products_of(
+        [1e-3, *(10.0**e for e in np.arange(-1, 4.1, 0.5))], [(1e-3, 0.1, 0.3, 1.0)]
+    )
+    regression = Regression(sessions)
+    nats, mean = dense.shrunk(p, [[1, 3], [2]], sizes)
+    g = regression.cross_products(every)
+    told = shrinking.shrink(g, regression.scale, every)
+    assert told.coefficients == pytest.approx(mean, rel=1e-4, abs=1e-7)
+    assert told.nats == pytest.approx(nats, abs=1e-5)
+    assert (told.precision[:, 0] == 0).all() and (told.precision[:, 1:] > 0).all()
+    assert (of_plays(g, regression.scale, every) == told.precision).all()
+    assert (of_plays(g, regression.scale, [B, B, B, B]) == 0).all()
+    assert shrinking.evidence(regression, [B], every[1:]) == pytest.approx(nats, abs=1e-5)
+
+
+def test_other_terms_are_shrunk_where_they_are_named(regression, sessions):
+    p = dense.problem(sessions, [A, B, C], SCALE[:, 0])
+    alone = Regression(sessions)
+    alone.scale = np.repeat(SCALE[:, :1], 3, axis=1)
+    sizes = [(1e-3,), *((10.0**e,) for e in np.arange(-1, 4.1, 0.5))]
+    nats, mean = dense.shrunk(p, [[1, 2]], sizes, alike=False)
+    terms = [A, B, C]
+    told = shrinking.shrink(
+        alone.cross_products(terms), alone.scale, terms, slice(1, 3), alike=False
+    )
+    assert told.coefficients == pytest.approx(mean, rel=1e-4, abs=1e-7)
+    assert told.nats == pytest.approx(nats, abs=1e-5)
+
+
+def test_a_coefficient_known_to_be_small_is_held_back(regression):
+    g = regression.cross_products([A, B])
+    free = fitted_without(g, 0, 1, 3, regression.scale)
+    held = fitted_without(g, 0, 1, 3, regression.scale, np.array([0.0, 1e12]))
+    assert abs(held[1]) < 1e-6 * abs(free[1])
+    misfits = [session_misfit(g, 0, [3] * 3, np.ones(3) * v, regression.scale) for v in (1.0, 2.0)]
+    assert misfits[0] == pytest.approx(2 * misfits[1])
+
+
+def test_axes_of_one_recording_that_share_a_cause_are_told_from_axes_that_do_not():
+    def of(seed, common):
+        made = dense.made(seed, 120)
+        rng = np.random.default_rng(seed)
+        made.rate_dps[:] = rng.normal(size=(120, 3)) * [1.0, 2.0, 1.0]
+        made.rate_dps += common * np.outer(np.sin(np.arange(120) / 20), [1.0, 2.0, -1.0])
+        return Regression([made])
+
+    chances = [coherence(of(seed, 0.0), [])[0] for seed in range(60)]
+    assert min(chances) > 1e-3 and 0.02 < np.mean(np.array(chances) < 0.1) < 0.2
+    p, covariance = coherence(of(1, 1.5), [])
+    assert p < 1e-3
+    along = np.linalg.eigh(covariance)[1][:, -1]
+    assert np.abs(along @ [1, 2, -1]) / np.sqrt(6) > 0.97
+
+
+def test_the_chance_of_a_common_cause_is_bartletts(sessions):
+    regression = Regression(sessions[:2])
+    fit, best = regression.fit([A]), {}
+    left = regression.left([A], fit)
+    for lowest in (3, 6, 12, 24):
+        rows = []
+        for i, s in enumerate(sessions[:2]):
+            own = np.column_stack(
+                [dense.spectrum(dense.SHAPES[g], s.blocks) for g in fit.base.best]
+            )
+            rows.append((left[i] / np.sqrt(own))[:lowest])
+        rows = np.vstack(rows)
+        logdet = np.log(np.linalg.det(np.corrcoef(rows.T)))
+        best[lowest] = 4 * chi2.sf(-(len(rows) - 1 - 11 / 6) * logdet, 3)
+    p, covariance = coherence(regression, [A])
+    assert p == pytest.approx(min(1.0, min(best.values())), rel=1e-4)
+    at = min(best, key=best.get) if p < 1 else 3
+    low = np.vstack([r[:at] for r in left])
+    assert covariance == pytest.approx(low.T @ low / len(low))
+
+
+def test_turned_axes_have_equal_white_noise_and_the_first_is_along_what_is_common(sessions):
+    regression = Regression(sessions[:2])
+    axes = turned_axes(regression, [A])
+    white = np.diag(regression.fit([A]).base.variance)
+    assert axes @ white @ axes.T == pytest.approx(np.eye(3), abs=1e-9)
+    _, covariance = coherence(regression, [A])
+    spread = np.diag(axes @ covariance @ axes.T)
+    assert spread[0] >= spread[1] >= spread[2] > 0
+    alike = replace(sessions[0], rate_dps=np.zeros_like(sessions[0].rate_dps))
+    assert (turned_axes(Regression([alike]), [A]) == np.eye(3)).all()
+
+
+def test_ratios_beside_nothing_are_those_of_one_column(sessions):
+    g = Regression(sessions[:1]).cross_products([], [(A,)])
+    base = fit_base(g, np.ones((1, 3)))
+    found = ratios(g, base, np.ones((1, 3)))
+    for a in range(3):
+        p = dense.problem(sessions[:1], [A])
+        after = dense.fitted(p, a)[0].max()
+        p.x = p.x[:, :0]
+        before = dense.fitted(p, a)[0].max()
+        assert found[0, a] == pytest.approx(2 * (after - before), rel=1e-5, abs=1e-7)
+    assert isinstance(Regression(sessions[:1]).whiteners[0], Whitener)
