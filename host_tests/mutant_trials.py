@@ -32,6 +32,7 @@ NOT_IN_PROCESS = " and ".join(
 LOADED_ONCE = (
     *("hypothesis.strategies", "hypothesis.internal.conjecture.engine"),
     *("_hypothesis_pytestplugin", "numpy", "pyarrow.parquet", "pyarrow.csv"),
+    *("scipy.fft", "scipy.linalg", "scipy.ndimage", "scipy.signal", "scipy.stats"),
 )
 
 

@@ -44,6 +44,7 @@ GOLDEN = (
 )
 SWUNG = GOLDEN.replace("the_numbers", "the_numbers_of_a_device_that_swings")
 
+_COMMANDS = REPOSITORY / "tools" / "zerorate_tools" / "commands"
 # area -> (files, tests)
 AREAS = {
     "drivers": (
@@ -116,6 +117,17 @@ AREAS = {
             "checks.py", "csv_format.py", "scales.py", "bounded.py")],
         ["host_tests/tools/test_recordings.py", "host_tests/tools/test_bad_recordings.py",
          "host_tests/tools/test_recording_limits.py"],
+    ),
+    "commands": (
+        sorted(str(path.relative_to(REPOSITORY)) for path in _COMMANDS.glob("[a-z]*.py")),
+        ["host_tests/tools/test_words_reach.py"],
+    ),
+    "fit": (
+        ["tools/zerorate_tools/loop/fit/" + name for name in (
+            "common_cause.py", "cross_products.py", "free_curve.py", "intervals.py",
+            "left_out.py", "likelihood.py", "line.py", "noise.py", "regression.py", "shrunk.py",
+            "single.py", "smooth.py", "surrogates.py")],
+        ["host_tests/loop/test_fit_" + name for name in ("dense.py", "by_hand.py")],
     ),
     "writers": (
         ["tools/zerorate_tools/ending.py"]
