@@ -80,7 +80,9 @@ AREAS = {
             "motion_verdict.py", "orientation.py", "posterior.py", "regression.py", "thermal.py",
             "tilt_frame.py")],
         [SWUNG, KNOWN]
-        + ["host_tests/firmware/test_" + name for name in ("in_motion.py", "orientation.py")],
+        + ["host_tests/firmware/test_" + name for name in (
+            "in_motion.py", "orientation.py", "motion_frame.py", "motion_fit.py",
+            "motion_known.py", "motion_verdicts.py")],
     ),
     "gravity": (
         ["firmware/zerorate/gravity/gravity.py", "firmware/zerorate/gravity/gravity_settings.py"],
@@ -94,7 +96,7 @@ AREAS = {
             "logs/columnar.py", "logs/messages.py")],
         ["host_tests/importers/test_" + name for name in (
             "by_a_plain_reading.py", "small_steps.py", "tables.py", "odd_files.py",
-            "odd_names.py", "odd_times.py", "units_told.py")],
+            "odd_names.py", "odd_times.py", "units_told.py", "together.py", "logs.py")],
     ),
     "effects": (
         ["firmware/zerorate/effects/" + name for name in (

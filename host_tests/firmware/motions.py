@@ -2,6 +2,7 @@
 
 import numpy as np
 from scipy.spatial.transform import Rotation
+from zerorate.arithmetic import real
 
 GYRO_LSB_PER_DPS = 131.0
 ACCEL_LSB_PER_G = 16384.0
@@ -83,3 +84,14 @@ class Fed:
 
     def errors_mdps(self, bias_dps, after_s=0.0):
         return np.array([1000 * (b - bias_dps) for t, b, _ in self.learned if t >= after_s])
+
+
+def stored(state, at, value):
+    """Put a float at word `at` as a number in two words."""
+    mantissa, exponent = np.frexp(value)
+    real.put(state, at, int(mantissa * (1 << 29)), int(exponent) - 29)
+
+
+def value_at(state, at):
+    """The number in two words at word `at`, a float."""
+    return float(np.ldexp(float(state[at]), state[at + 1]))

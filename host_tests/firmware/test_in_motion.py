@@ -18,6 +18,7 @@ from zerorate_tools.simulate import simulate
 
 from . import motions
 from .checked import Words
+from .motions import stored, value_at
 
 BIAS, SIGMA = MOTION.MOTION_BIAS_Q8, MOTION.MOTION_QUALITY_Q8
 REASON, REFUSED = MOTION.MOTION_REASON, MOTION.REFUSED
@@ -228,15 +229,6 @@ def test_the_angle_of_a_vector_is_right_to_two_units(y, x):
 
 
 numbers = st.floats(1e-20, 1e20) | st.floats(-1e20, -1e-20)
-
-
-def stored(state, at, value):
-    mantissa, exponent = np.frexp(value)
-    real.put(state, at, int(mantissa * (1 << 29)), int(exponent) - 29)
-
-
-def value_at(state, at):
-    return float(np.ldexp(float(state[at]), state[at + 1]))
 
 
 @pytest.mark.parametrize(

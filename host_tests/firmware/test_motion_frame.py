@@ -1,0 +1,169 @@
+"""The tilt frame and the nodes of the source in motion beside the same in floats."""
+
+from array import array
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+from zerorate.motion import attitude, increments, tilt_frame
+from zerorate.motion.motion_settings import motion_state
+from zerorate_tools.layout import MOTION, MOTION_SETTINGS
+
+from .motion_words import Q12, Q14, SETTINGS, put_rotation, put_words, rotation_at
+
+
+@pytest.fixture
+def state():
+    return motion_state(SETTINGS)
+
+
+@pytest.fixture(params=range(4))
+def draw(request):
+    return np.random.default_rng(request.param)
+
+
+@pytest.mark.parametrize("size", [60, 4096, 300000])
+@pytest.mark.parametrize("way", [[0, 0, 1], [0, 0, -1], [1, 0, 0], [0, -1, 0], [0.6, 0.3, -0.7]])
+def test_the_least_turn_makes_the_mean_force_vertical(state, draw, way, size):
+    force = Rotation.from_rotvec(draw.normal(0, 0.3, 3)).apply(way) * size / np.linalg.norm(way)
+    put_words(state, MOTION.OTHER_TILT, force[:1])
+    put_words(state, MOTION.TILT, -force[1:2])
+    put_words(state, MOTION.UP, force[2:])
+    tilt_frame.find_up(state)
+    length = np.linalg.norm(state[MOTION.START : MOTION.START + 4]) / Q14
+    assert length == pytest.approx(1, abs=0.02 if size < 100 else 1e-3)
+    turn = rotation_at(state, MOTION.START)
+    assert turn.apply(force / size)[2] == pytest.approx(1, abs=0.002 if size < 100 else 1e-5)
+    # about a level axis: of what points down first half about x
+    least = turn if force[2] >= 0 else turn * Rotation.from_rotvec([-np.pi, 0, 0])
+    assert abs(least.as_rotvec()[2]) < (0.05 if size < 100 else 2e-3)
+
+
+def test_no_force_turns_nothing(state):
+    tilt_frame.find_up(state)
+    assert list(state[MOTION.START : MOTION.START + 4]) == [Q14, 0, 0, 0]
+
+
+@pytest.mark.parametrize("most_rad", [0.05, 0.9, 3.0])
+def test_the_start_is_turned_by_the_mean_tilts_up_to_one_radian_each(state, draw, most_rad):
+    start, tilts = Rotation.from_rotvec(draw.normal(0, 1, 3)), draw.uniform(-most_rad, most_rad, 2)
+    put_rotation(state, MOTION.START, start, Q14)
+    put_words(state, MOTION.TILT, Q12 * tilts[:1])
+    put_words(state, MOTION.OTHER_TILT, Q12 * tilts[1:])
+    tilt_frame.turn_start(state)
+    x, y = -np.clip(tilts, -1, 1) / 2
+    expected = Rotation.from_quat([x, y, 0, 1]) * start
+    assert (rotation_at(state, MOTION.START) * expected.inv()).magnitude() < 6e-4
+    assert np.linalg.norm(state[MOTION.START : MOTION.START + 4]) == pytest.approx(Q14, abs=4)
+
+
+def test_a_node_is_seen_as_two_tilts_and_its_force_upwards(state, draw):
+    turn, force = Rotation.from_rotvec(draw.normal(0, 0.5, 3)), draw.uniform(-0.9, 0.9, 3)
+    put_rotation(state, MOTION.Q, turn, 1 << 28)
+    state[MOTION.START] = Q14
+    at, up = MOTION.NODES_RING, []
+    for weight in (1024, 300):
+        put_words(state, at, draw.integers(-9, 9, 3) * 32768 + (np.rint(force * Q12) % 32768))
+        state[MOTION.TAPER] = weight
+        attitude.rotation(state)
+        before = state[MOTION.UP]
+        tilt_frame.observe(state, at)
+        up.append(state[MOTION.UP] - before)
+    seen = turn.apply(force) * Q12
+    assert list(state[MOTION.Y : MOTION.Y + 2]) == pytest.approx([-seen[1], seen[0]], abs=1.5)
+    assert up == pytest.approx([seen[2], seen[2] * 300 / 1024], abs=1.5)
+
+
+@pytest.mark.parametrize("way", [1, -1])
+def test_the_heading_counts_whole_turns_up_to_eight_radians(state, way):
+    state[MOTION.START] = Q14
+    out = np.linspace(0, 20, 90)
+    for heading in way * np.concatenate([out, out[::-1], -out[:40]]):
+        # a quaternion and its negative are one attitude, but not one heading
+        w, z = np.cos(heading / 2), np.sin(heading / 2)
+        put_words(state, MOTION.Q, (1 << 28) * np.array([w, 0, 0, z]))
+        attitude.rotation(state)
+        tilt_frame.observe(state, MOTION.NODES_RING)
+        expected = np.clip(heading * Q12, -0x7FFF, 0x7FFF)
+        assert state[MOTION.Y + 2] == pytest.approx(expected, abs=3)
+
+
+def test_the_heading_is_the_twist_about_the_vertical_since_the_start(state, draw):
+    start, level = Rotation.from_rotvec(draw.normal(0, 1, 3)), [*draw.normal(0, 0.5, 2), 0]
+    twist = draw.uniform(-1.5, 1.5)
+    turn = Rotation.from_rotvec(level) * Rotation.from_rotvec([0, 0, twist]) * start
+    put_rotation(state, MOTION.START, start, Q14)
+    put_rotation(state, MOTION.Q, turn, 1 << 28)
+    x, y, z, w = (turn * start.inv()).as_quat()
+    off = attitude.heading_q12(state) - Q12 * 2 * np.arctan2(z, w)
+    assert abs((off + 3) % round(2 * np.pi * Q12)) < 7  # up to the sign of the quaternion
+
+
+def test_the_mean_of_up_in_the_body_is_that_of_the_window(state, draw):
+    start = Rotation.from_rotvec(draw.normal(0, 1, 3))
+    tilt_of = Rotation.from_rotvec(draw.normal(0, 0.4, (128, 3)))
+    state[MOTION.STAGE] = 7
+    put_rotation(state, MOTION.START, start, Q14)
+    put_words(state, MOTION.SUM_R, Q14 * tilt_of.as_matrix().sum(axis=0).ravel())
+    tilt_frame.begin_attitude(state)
+    attitude.rotation(state)
+    tilt_frame.find_vertical(state)
+    expected = Q14 * (start.as_matrix()[2] @ tilt_of.as_matrix().mean(axis=0))
+    assert list(state[MOTION.VERTICAL : MOTION.VERTICAL + 3]) == pytest.approx(expected, abs=4)
+
+
+def test_a_node_holds_the_turn_of_its_samples_and_their_mean_force(state, draw):
+    state[MOTION.FILLED] = 1
+    rates_dps, force_g = draw.uniform(-150, 150, (13, 3)), draw.uniform(-1, 1, (13, 3))
+    node_us, dt_us = SETTINGS[MOTION_SETTINGS.NODE_US], 10000
+    turn, total = Rotation.identity(), np.zeros(3)
+    for rate, force in zip(rates_dps, force_g):
+        frame = array("i", [int(v) for v in np.rint([*force * 16384, 0, *rate * 131])])
+        full = increments.gather(state, SETTINGS, frame, dt_us)
+        # in the frame of the node's start
+        total += force + np.cross(turn.as_rotvec(), force)
+        turn = turn * Rotation.from_rotvec(np.radians(rate) * dt_us * 1e-6)
+    assert full
+    angle = np.array(state[MOTION.NODE_ANGLE_Q24 : MOTION.NODE_ANGLE_Q24 + 3]) / (1 << 24)
+    plain = np.radians(rates_dps.sum(axis=0)) * dt_us * 1e-6
+    off = np.linalg.norm(angle - turn.as_rotvec())
+    assert off < 0.003 and off < 0.3 * np.linalg.norm(plain - turn.as_rotvec())
+    increments.close(state, SETTINGS)
+    assert state[MOTION.NODE_ELAPSED_US] == 13 * dt_us - node_us
+    assert state[MOTION.HEAD] == state[MOTION.NEW_NODES] == state[MOTION.AGE_NODES] == 1
+    words = np.array(state[MOTION.NODES_RING : MOTION.NODES_RING + 3])
+    left = np.array(state[MOTION.NODE_ANGLE_Q24 : MOTION.NODE_ANGLE_Q24 + 3]) / (1 << 24)
+    assert (words >> 15) / 8192 + left == pytest.approx(angle, abs=1e-7)
+    force = ((words & 0x7FFF) ^ 0x4000) - 0x4000
+    assert force / Q12 == pytest.approx(total / 13, abs=0.01)
+
+
+def test_the_part_of_a_sample_that_reaches_over_a_node_takes_its_bias_along(state):
+    put_words(state, MOTION.BIAS_Q24, [1 << 20, -(1 << 19), 0])
+    state[MOTION.NODE_N], node_us = 1, SETTINGS[MOTION_SETTINGS.NODE_US]
+    state[MOTION.NODE_ELAPSED_US] = node_us + node_us // 4
+    increments.close(state, SETTINGS)
+    # a quarter of the bias of a node, rounded to Q13, was held back
+    kept = [word >> 15 for word in state[MOTION.NODES_RING : MOTION.NODES_RING + 3]]
+    assert kept == [-(1 << 18) >> 11, 1 << 17 >> 11, 0]
+    left = state[MOTION.NODE_ANGLE_Q24 : MOTION.NODE_ANGLE_Q24 + 3]
+    assert list(left) == [1 << 18, -(1 << 17), 0]
+
+
+def test_the_ring_goes_round_and_a_fast_turn_is_remembered_until_it_has_left(state):
+    nodes = SETTINGS[MOTION_SETTINGS.NODES]
+    dps = round(200 * 131)  # a tenth of a second: .35 rad; two seconds: beyond
+    fast = array("i", [0, 0, 16384, 0, 0, dps, 0])
+    still = array("i", [0, 0, 16384, 0, 0, 0, 0])
+    increments.gather(state, SETTINGS, fast, 100000)
+    assert state[MOTION.FAST] == 0
+    increments.gather(state, SETTINGS, fast, 200000)
+    assert state[MOTION.FAST] == nodes
+    for number in range(1, nodes + 1):
+        increments.gather(state, SETTINGS, still, SETTINGS[MOTION_SETTINGS.NODE_US])
+        increments.close(state, SETTINGS)
+        assert state[MOTION.HEAD] == number % nodes
+        assert state[MOTION.FILLED] == number
+        assert state[MOTION.FAST] == nodes - number
+    increments.next_node(state, SETTINGS)
+    assert (state[MOTION.HEAD], state[MOTION.FILLED], state[MOTION.FAST]) == (1, nodes, 0)
