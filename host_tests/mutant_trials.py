@@ -4,6 +4,7 @@ The tests that reach a mutant's line run first, the fastest first of all. If the
 run, too: what the C that is made of a kernel does is not seen here.
 """
 
+import contextlib
 import importlib.abc
 import importlib.machinery
 import importlib.util
@@ -27,12 +28,6 @@ NOT_IN_PROCESS = " and ".join(
         *("micropython", "bytecode", "heap", "runtime", "last_byte", "any_slot", "no_intermediate"),
         *("signal_at_any_rename", "end_by_a_signal"),
     )
-)
-# What no mutant is in, and each process would else load anew.
-LOADED_ONCE = (
-    *("hypothesis.strategies", "hypothesis.internal.conjecture.engine"),
-    *("_hypothesis_pytestplugin", "numpy", "pyarrow.parquet", "pyarrow.csv"),
-    *("scipy.fft", "scipy.linalg", "scipy.ndimage", "scipy.signal", "scipy.stats"),
 )
 
 
@@ -98,7 +93,11 @@ class Reach:
 
     def pytest_sessionfinish(self, exitstatus):
         rows = [[test, file, sorted(lines)] for (test, file), lines in self.lines.items()]
-        self.written.write_text(json.dumps([rows, self.took_s]), encoding="utf-8")
+        # what no mutant is in, and each process would else load anew
+        others = [
+            n for n, m in sys.modules.items() if "site-packages" in str(vars(m).get("__file__"))
+        ]
+        self.written.write_text(json.dumps([rows, self.took_s, others]), encoding="utf-8")
 
 
 class NearestFirst:
@@ -150,14 +149,15 @@ def _fail(tests, plugin):
 
 def ends(tests, drawn):
     """{number: how it ends} of drawn, {number: (file, row, mutated text)}."""
-    for name in LOADED_ONCE:
-        importlib.import_module(name)
     before_s = os.times().children_user
     with tempfile.TemporaryDirectory(prefix="zerorate-reach-") as folder:
         reach = Reach({REPOSITORY / file for file, _, _ in drawn.values()}, Path(folder, "reach"))
         if _end_of(lambda: _fail(tests, reach), 900) != "passed":
             raise SystemExit("the tests fail as they are")
-        reached, took_s = json.loads(reach.written.read_text(encoding="utf-8"))
+        reached, took_s, others = json.loads(reach.written.read_text(encoding="utf-8"))
+    for name in others:
+        with contextlib.suppress(ImportError):
+            importlib.import_module(name)
     patience_s = int(os.times().children_user - before_s) + 30
 
     def mutated(file, row, text):
