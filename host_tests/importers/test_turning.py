@@ -42,6 +42,22 @@ def test_in_a_hand_gravity_tells_the_size_of_rates(seed, hz, dps):
     assert dps_of_one(rates / dps, force, t_s) == pytest.approx(dps, rel=0.15)
 
 
+@pytest.mark.parametrize("length_m", [0.3, 2.0])
+def test_a_pendulum_whose_pushes_move_with_it_does_not_mislead(tmp_path, length_m):
+    t_s = np.arange(3000) / 100
+    swing = 0.5 * np.exp(-t_s / 60) * np.sin(np.sqrt(9.8 / length_m) * t_s)
+    rate = np.gradient(swing, t_s)
+    rng = np.random.default_rng(1)
+    along = np.cos(swing) + rate**2 * length_m / 9.8
+    noise = rng.normal(0, 0.005, (3, len(t_s)))
+    force = np.array([along, 0 * t_s + 0.05 * rate, 0 * t_s]) + noise
+    rates = np.array([0 * rate, 0 * rate, rate]) + rng.normal(0, 0.002, (3, len(t_s)))
+    columns = {"t_s": t_s, **dict(zip(("gx (rad/s)", "gy (rad/s)", "gz (rad/s)"), rates))}
+    path = tmp_path / "in.csv"
+    pd.DataFrame(columns | dict(zip(("ax_g", "ay_g", "az_g"), force))).to_csv(path, index=False)
+    assert not import_recording(path, tmp_path / "out.csv").doubts
+
+
 @settings(max_examples=12)
 @given(seed=st.integers(0, 10**6), hz=st.sampled_from([10.0, 104.0]))
 def test_at_rest_and_from_axes_that_do_not_belong_together_nothing_is_told(seed, hz):

@@ -23,10 +23,11 @@ _OF_ONE = 3e-4
 _LIKELY_HZ = (0.02, 40_000.0)
 #: Names of times in none of the units that a recording may have.
 _OTHER_TIME = re.compile(r"min|hour|hr|day|frame|tick|count")
-#: Violent motion makes gravity seem to turn up to this much faster or slower than it does.
-TURNED_WITHIN = 1.75
-#: Counts of gyroscopes and mrad/s are this large, in dps, and not told apart.
-_COUNTS_DPS = (0.005, 0.1)
+#: Pushes that move with the turning, as a pendulum's, make gravity seem to turn up to so many times
+#: slower. Units are 17 times apart, or more.
+TURNED_WITHIN = 4.1
+#: Of such sizes in dps, within that, are counts of gyroscopes; and so is mrad/s.
+_COUNTS_DPS = (0.002, 0.4)
 
 
 def guessed_unit(
@@ -75,7 +76,7 @@ def _by_turning(
 
 
 def rate_unit_of(dps: float) -> str | None:
-    """The unit that stands for about so many dps."""
+    """The unit that stands for so many dps, by as little as gravity tells it."""
     near = (u for u, one in RATE_DPS.items() if abs(np.log(dps / one)) < np.log(TURNED_WITHIN))
     return next(near, None)
 

@@ -134,8 +134,8 @@ def _of_rates(found: Gathered, plan: Plan, path: Path) -> list[str]:
         return []
     rates = np.array([found.looked_at[name] for name in GYRO])
     middle = float(np.abs(np.median(rates, axis=1)).max())
-    steps = np.diff(rates[:, :1000], axis=1)
-    noise = float(np.median(np.abs(steps))) * 1.4826 / math.sqrt(2)
+    left = np.diff(rates[:, :1000], n=3, axis=1)  # by a turn that is even over four samples
+    noise = float(np.median(np.abs(left))) * 1.4826 / math.sqrt(20)
     root_hz = math.sqrt(0.5e6 / found.interval_us)
     factor = plan.factors["gx"][0]
     meant = ""
