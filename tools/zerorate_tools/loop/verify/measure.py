@@ -11,7 +11,7 @@ import numpy as np
 import pyarrow as pa
 from threadpoolctl import threadpool_limits
 
-from ...model import Model
+from ...model import Model, Slot
 from ...model.term import evaluate
 from ...recordings import Scales, open_recording
 from ...recordings.atomic import written_beside
@@ -245,8 +245,8 @@ def rounding_dps(
     """(3,) RMS over a session's blocks of the firmware's effects less the same terms in floats.
 
     terms, coefficients: what the model was made of, (terms, 3) dps per unit. The firmware holds
-    the value of a tick during the next one, and so does the reference, but where a tick is one
-    sample, which it corrects by itself.
+    the value of a tick during the next one, and so does the reference, but for what it computes of
+    every sample, and where a tick is one sample.
     """
     s = power_on.session
     cold = Firmware(scales, model, power_on.channels)
@@ -255,8 +255,8 @@ def rounding_dps(
         means.add(frames, cold.run(frames, learn=False))
     exact = np.zeros((s.blocks * s.ticks_per_block, 3))
     for term, c in zip(terms, coefficients):
-        exact += np.outer(evaluate(term, s.source, s.tick_s), c)
-    if not has_one_sample(scales, s.tick_s):
-        exact = np.vstack([exact[:1], exact[:-1]])
+        added = np.outer(evaluate(term, s.source, s.tick_s), c)
+        at_once = has_one_sample(scales, s.tick_s) or Slot(term, (0.0,) * 3).is_of_the_sample
+        exact += added if at_once else np.vstack([added[:1], added[:-1]])
     error = means.blocks_dps() - power_on.block_means(exact)
     return np.sqrt(np.nanmean(error[s.available] ** 2, axis=0))

@@ -1,0 +1,920 @@
+"""What judges by data that no fit has seen, beside plain loops over samples and small tables."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+from zerorate_tools.loop.fit.left_out import of_plays
+from zerorate_tools.loop.fit.noise import IS_STEEP, floor_dps
+from zerorate_tools.loop.fit.regression import Regression
+from zerorate_tools.loop.fit.single import PiecesByLine
+from zerorate_tools.loop.motion.in_motion import InMotion
+from zerorate_tools.loop.read.earth import Earth
+from zerorate_tools.loop.read.sessions import Session
+from zerorate_tools.loop.search.catalogue import Candidate
+from zerorate_tools.loop.search.decide import Decision
+from zerorate_tools.loop.search.selection import Found, Selection
+from zerorate_tools.loop.verify import measure, measured, power_on
+from zerorate_tools.loop.verify import prune_by_holdout as prune
+from zerorate_tools.loop.verify.analysis import Analysis
+from zerorate_tools.loop.verify.firmware import Firmware, Refused, at_once, rows
+from zerorate_tools.loop.verify.judge import (
+    Judgement,
+    ResidualTest,
+    judge,
+    residual_test,
+    residuals,
+    rms_dps,
+    scored,
+)
+from zerorate_tools.loop.verify.power_on import BlockMeans, PowerOn, TurnOn, ideal_dps, turn_on
+from zerorate_tools.loop.verify.slots import deployable, model_of, slots, with_selection
+from zerorate_tools.model import CannotDeploy, Slot, drafted
+from zerorate_tools.model.term import Term
+from zerorate_tools.recordings import Recording, Scales, write_recording
+from zerorate_tools.replay.samples import Frames
+
+from . import dense
+from .dense import A, B, C
+
+SCALES = Scales("MPU-6050", 5.0, 131.0, 16384.0, 340.0, 36.53)
+PER, TICKS, HZ = 20, 4, 5  # samples and ticks a block, samples a tick
+LINE = Term("temp", centre=25.0)
+
+
+def effect(*terms, kind="supply-voltage", axes=(True, True, True)):
+    decision = Decision(True, 0.0, 0.0, 1.0, np.zeros(1), tried=1.0)
+    return Found(Candidate(kind, terms, "catalogue"), decision, axes=axes)
+
+
+def selected(sessions, *found, line=(), **more):
+    return Selection([*found], [], [], 0, Regression(sessions), line, (), [], {}, **more)
+
+
+# --- the firmware over a session ---
+
+
+def at_rest(seed=0, blocks=40, bias_lsb=(30, -20, 10), noise_lsb=4.0):
+    rng, n = np.random.default_rng(seed), blocks * PER
+    columns = {"t_us": np.arange(n, dtype=np.int64) * 200_000 + 5_000_000}
+    for name, bias in zip(("gx", "gy", "gz"), bias_lsb):
+        columns[name] = np.rint(rng.normal(bias, noise_lsb, n)).astype(np.int32)
+    for name, g in zip(("ax", "ay", "az"), (0, 0, 16384)):
+        columns[name] = np.rint(rng.normal(g, 60, n)).astype(np.int32)
+    columns["temp"] = np.rint(rng.normal(-3000, 3, n)).astype(np.int32)
+    columns["volt"] = np.rint(rng.normal(5000, 50, n)).astype(np.int32)
+    return columns
+
+
+def powered_on(folder, columns, channels=(), name="s", **more):
+    """A recording on disk and its session, a block of four seconds."""
+    path = folder / f"{name}.parquet"
+    write_recording(Recording(columns, SCALES, name), path)
+    rate = np.column_stack([columns[g] for g in ("gx", "gy", "gz")]) / 131.0
+    blocks = -(-len(rate) // PER)
+    whole = np.full((blocks * PER, 3), np.nan)
+    whole[: len(rate)] = rate
+    means = np.nanmean(whole.reshape(blocks, PER, 3), axis=1)
+    degc = 36.53 + np.resize(columns["temp"], blocks * PER) / 340
+    sources = {"temp": degc.reshape(-1, HZ).mean(axis=1)}
+    session = Session(
+        *(name, 4.0, TICKS, means, np.ones(blocks), sources),
+        start_us=int(columns["t_us"][0]),
+        tick_weight=np.full(blocks * TICKS, float(HZ)),
+    )
+    session = replace(session, **more)
+    every = np.ones(session.blocks, bool)
+    return PowerOn(session, path, 131.0, session.rate_dps, every, channels)
+
+
+def test_every_sample_has_its_tick_and_block(tmp_path):
+    columns = at_rest(blocks=6)
+    columns = {name: values[:-3] for name, values in columns.items()}
+    p = powered_on(tmp_path, columns, ("volt",))
+    short = replace(p, session=replace(p.session, rate_dps=p.session.rate_dps[:5]))
+    (frames,) = p.frames()
+    at = np.arange(6 * PER - 3)
+    assert p.ticks(frames).tolist() == (at // HZ).tolist()
+    assert p.blocks(frames).tolist() == (at // PER).tolist()
+    assert short.blocks(frames).max() == 4  # what is left over goes with the last block
+    assert frames.extra[:, 0].tolist() == columns["volt"].tolist()
+    pieces = [(block, len(part)) for block, part in p.by_blocks()]
+    assert pieces == [(0, 20), (1, 20), (2, 20), (3, 20), (4, 20), (5, 17)]
+    joined = np.vstack([part.frames for _, part in p.by_blocks()])
+    assert (joined == frames.frames).all()
+
+
+def test_steps_are_taken_out_of_the_samples_in_whole_counts(tmp_path):
+    columns = at_rest(blocks=6)
+    plain = powered_on(tmp_path, columns)
+    level = np.zeros((6 * TICKS, 3))
+    level[10:] = np.array([3.7, -2.25, 5.0]) / 131.0
+    stepped = replace(plain, session=replace(plain.session, level_dps=level))
+    (frames,), (less,) = plain.frames(), stepped.frames()
+    taken = (frames.frames - less.frames)[:, 4:]
+    assert (taken[: 10 * HZ] == 0).all()
+    after = taken[10 * HZ :]
+    for axis, counts in enumerate((3.7, -2.25, 5.0)):
+        assert set(after[:, axis]) <= {np.floor(counts), np.ceil(counts)}
+        assert after[:60, axis].mean() == pytest.approx(counts, abs=0.02)
+    assert (frames.frames[:, :4] == less.frames[:, :4]).all()
+
+
+def test_means_of_blocks_are_over_the_ticks_that_count(tmp_path):
+    p = powered_on(tmp_path, at_rest(blocks=6))
+    weight = p.session.tick_weight.copy()
+    weight[:TICKS], weight[5] = 0.0, 1.0
+    p = replace(p, session=replace(p.session, tick_weight=weight))
+    assert (p.tick_weight == weight).all()
+    ticks = np.random.default_rng(0).normal(size=(6 * TICKS, 3))
+    ticks[9] = np.nan
+    means = p.block_means(ticks)
+    assert np.isnan(means[0]).all()
+    assert means[1] == pytest.approx((5 * ticks[4] + ticks[5] + 5 * ticks[6] + 5 * ticks[7]) / 16)
+    assert means[2] == pytest.approx((ticks[8] + ticks[10] + ticks[11]) / 3)
+
+
+def test_biases_of_samples_are_gathered_into_means_of_blocks(tmp_path):
+    columns = at_rest(blocks=6)
+    columns = {name: np.delete(values, [21, 22, 50], axis=0) for name, values in columns.items()}
+    p = powered_on(tmp_path, columns, rate_dps=np.ones((5, 3)), weight=np.ones(5),
+                   tick_weight=np.full(5 * TICKS, 5.0))  # fmt: skip
+    (frames,) = p.frames()
+    bias = np.random.default_rng(1).integers(-9000, 9000, (len(frames), 3))
+    means = BlockMeans(p)
+    for part in np.array_split(np.arange(len(frames)), 4):
+        means.add(rows(frames, part[0], part[-1] + 1), bias[part])
+    at = p.ticks(frames)
+    for tick in (0, 4, 10, 19):
+        expected = bias[at == tick].mean(axis=0) / 256 / 131
+        assert means.ticks_dps()[tick] == pytest.approx(expected)
+    each = [bias[at == tick].mean(axis=0) / 256 / 131 for tick in range(4, 8)]
+    assert means.blocks_dps()[1] == pytest.approx(np.mean(each, axis=0))
+    assert means.blocks_dps().shape == (5, 3)
+    assert np.isnan(BlockMeans(p).ticks_dps()).all()
+
+
+def test_what_an_ideal_bias_would_be_has_earth_s_rate_at_the_first_rest_in_it(tmp_path):
+    session = powered_on(tmp_path, at_rest(blocks=20)).session
+    assert (ideal_dps(session, InMotion()) == session.rate_dps).all()
+    turning = np.outer(np.arange(22 * TICKS), [1.0, 2.0, 3.0])
+    earth = replace(session, earth=Earth(turning, 0.0, ""))
+    by_block = turning[: 20 * TICKS].reshape(20, TICKS, 3).mean(axis=1)
+    expected = session.rate_dps + by_block[:15].mean(axis=0)  # of a minute in blocks of 4 s
+    assert ideal_dps(earth, InMotion()) == pytest.approx(expected)
+
+
+class Scripted:
+    """A device that knows its offset after so many samples; notes what it was asked."""
+
+    def __init__(self, known_after, bias_q8=(256, 0, 0)):
+        self.known_after, self.bias_q8 = known_after, np.array(bias_q8)
+        self.seen, self.offset, self.on = 0, None, 0
+
+    def copy(self):
+        return Scripted(self.known_after, self.bias_q8)
+
+    def power_on(self):
+        self.on += 1
+
+    def set_offset(self, offset):
+        self.offset = offset
+
+    def run(self, frames, learn=True):
+        self.seen += len(frames)
+        return np.repeat([self.bias_q8], len(frames), axis=0)
+
+    @property
+    def offset_is_known(self):
+        return np.array([self.seen >= self.known_after] * 2 + [False])
+
+    @property
+    def target_q8(self):
+        return np.array([9000, -700, 5])
+
+
+@pytest.mark.parametrize("known_after", [0, 16 * PER, 10**9])
+def test_an_axis_never_known_takes_its_offset_from_the_truth_beside_it(tmp_path, known_after):
+    p = powered_on(tmp_path, at_rest(blocks=60))
+    told = turn_on(Scripted(known_after), p)
+    assert told.blocks == 29
+    first = p.rate_dps[:15].mean(axis=0) - np.array([1, 0, 0]) / 131
+    beside = np.round(first * 131 * 256)
+    known = np.array([known_after < 10**9] * 2 + [False])
+    assert told.offset_q8.tolist() == np.where(known, 0, beside).tolist()
+
+
+class Telling(Scripted):
+    """The same, all axes known at once."""
+
+    def copy(self):
+        return Telling(self.known_after, self.bias_q8)
+
+    @property
+    def offset_is_known(self):
+        return np.array([self.seen >= self.known_after] * 3)
+
+    @property
+    def target_q8(self):
+        return np.array([self.seen, 2 * self.seen, -self.seen])
+
+
+@pytest.mark.parametrize(
+    ("known_after", "blocks"),
+    # at once; within the first still minute; at its end; behind it; and never
+    [(0, 15), (5 * PER, 19), (14 * PER, 28), (16 * PER, 29), (10**9, 29)],
+)
+def test_the_offset_is_told_by_the_first_still_minute_or_as_much_again_where_there_is_doubt(
+    tmp_path, known_after, blocks
+):
+    p = powered_on(tmp_path, at_rest(blocks=60))
+    told = turn_on(Telling(known_after), p)
+    assert isinstance(told, TurnOn) and told.blocks == blocks
+    # what a learning copy asks for, less what a frozen one does
+    expected = (
+        [0, 0, 0]
+        if known_after < 10**9
+        else np.round((p.rate_dps[:15].mean(axis=0) - [1 / 131, 0, 0]) * 131 * 256)
+    )
+    assert told.offset_q8.tolist() == list(expected)
+    rest_later = replace(p, session=replace(p.session, weight=(np.arange(60) > 4).astype(float)))
+    assert turn_on(Telling(0), rest_later).blocks == 20
+
+
+def test_a_device_at_rest_knows_its_offset_and_it_is_what_differs_from_the_learned_curve(tmp_path):
+    taught = powered_on(tmp_path, at_rest(0, 60), name="a")
+    again = powered_on(tmp_path, at_rest(1, 60, (55, -20, -15)), name="b")
+    device = Firmware(SCALES, None)
+    device.power_on()
+    for frames in taught.frames():
+        device.run(frames)
+    told = turn_on(device, again)
+    assert told.offset_q8 / 256 == pytest.approx([25, 0, -25], abs=2.5)
+    ready = device.copy()
+    ready.power_on()
+    ready.set_offset(told.offset_q8)
+    (frames,) = again.frames()
+    frozen = ready.run(frames, learn=False)
+    assert frozen[-1] / 256 == pytest.approx([55, -20, -15], abs=2)
+    assert ready.offset_is_known.tolist() == [False] * 3
+    ready.run(frames)
+    assert ready.offset_is_known.tolist() == [True] * 3
+    assert ready.target_q8 / 256 == pytest.approx([55, -20, -15], abs=2)
+
+
+def test_samples_that_may_not_be_learned_are_run_by_a_device_that_learns_nothing(tmp_path):
+    p = powered_on(tmp_path, at_rest(0, 40))
+    (frames,) = p.frames()
+    before = frames.frames.copy()
+    half = np.arange(len(frames)) < 400
+    partly, first, none = (Firmware(SCALES, None) for _ in range(3))
+    for d in (partly, first, none):
+        d.power_on()
+    bias = partly.run(frames, half)
+    assert (bias[:400] == first.run(rows(frames, 0, 400))).all()
+    assert (frames.frames == before).all()
+    assert bias.shape == (800, 3) and np.abs(bias[-1]).max() > 0
+    none.run(frames, False)
+    assert not none.offset_is_known.any()
+    twin = partly.copy()
+    assert (twin.run(frames) == partly.run(frames)).all()
+
+
+def test_the_compiled_device_and_the_plain_one_learn_the_same_parts(tmp_path):
+    from zerorate_tools.replay.engines import CPythonEngine
+
+    (frames,) = powered_on(tmp_path, at_rest(0, 12)).frames()
+    may = (np.arange(len(frames)) // 60) % 2 == 0
+    compiled, plain = Firmware(SCALES, None), Firmware(SCALES, None)
+    plain._engine = CPythonEngine()
+    assert (compiled.run(frames, may) == plain.run(frames, may)).all()
+
+
+def test_a_model_is_subtracted_by_the_device_that_holds_it_channel_by_channel(tmp_path):
+    p = powered_on(tmp_path, at_rest(0, 12), ("other", "volt"))
+    (frames,) = powered_on(tmp_path, at_rest(0, 12), ("volt",)).frames()
+    both = Frames(
+        frames.t_us, frames.frames, frames.dt_us, np.hstack([0 * frames.extra, frames.extra])
+    )
+    slot = Slot(Term("volt", 4000.0, 6000.0, 5000.0), (0.001, 0.0, -0.002), "supply-voltage")
+    model = drafted([slot], SCALES, tick_s=1.0)
+    bias = Firmware(SCALES, model, p.channels).run(both, learn=False)
+    expected = (frames.extra[-1, 0] - 5000) * np.array([0.001, 0.0, -0.002]) * 131
+    assert bias[-1] / 256 == pytest.approx(expected, abs=0.5)
+    other = Scales("MPU-6050", 5.0, 65.5, 16384.0, 340.0, 36.53)
+    with pytest.raises(Refused, match="refuses the model"):
+        Firmware(other, model, ("volt",))
+
+
+def test_all_are_run_and_what_they_return_is_in_their_order():
+    assert at_once([lambda x: x + 1, lambda x: x * 10, lambda x: -x], 4) == [5, 40, -4]
+
+
+# --- judging ---
+
+
+@pytest.mark.parametrize(
+    ("p", "nats", "common", "smooth"),
+    [
+        *((1e-3, 4.0, False, False), (0.9e-3, 0.0, True, False)),
+        *((0.5, 4.1, False, True), (1e-9, 9.0, True, True)),
+    ],
+)
+def test_something_is_left_where_axes_move_together_or_drift_smoothly(p, nats, common, smooth):
+    test = ResidualTest(p, nats, np.zeros(3))
+    assert (test.common, test.smooth, test.left) == (common, smooth, common or smooth)
+
+
+def judgement(before, after, gains, p=1.0):
+    test = ResidualTest(p, 0.0, np.zeros(3))
+    figures = np.array(before), np.array(after), np.array(gains)
+    return Judgement(*figures, test, [], [], [], [], None)
+
+
+@pytest.mark.parametrize(
+    ("after", "gain", "p", "said"),
+    [
+        *(([1.0, 1.0, 1.0], 2.1, 1.0, "confirmed"), ([1.0, 1.0, 1.0], 2.0, 1.0, "tentative")),
+        *(([1.0, 1.0, 1.01], 9.0, 1.0, "tentative"), ([0.5, 0.5, 0.5], 9.0, 1e-9, "tentative")),
+    ],
+)
+def test_an_effect_is_confirmed_where_it_gains_and_the_error_does_not_grow(after, gain, p, said):
+    assert judgement([1.0, 1.0, 1.0], after, [gain], p).confidence(0) == said
+
+
+def test_the_figure_of_three_axes_is_their_root_mean_square():
+    one = judgement([1.0, 2.0, 2.0], [3.0, 0.0, 0.0], [])
+    assert one.before_rms == pytest.approx(np.sqrt(3)) and one.after_rms == pytest.approx(
+        np.sqrt(3)
+    )
+    parts = [np.array([[1.0, np.nan, 2.0]]), np.array([[3.0, 4.0, np.nan]])]
+    assert rms_dps(parts) == pytest.approx([np.sqrt(5), 4.0, 2.0])
+
+
+def test_the_first_still_minute_gives_the_offset_and_is_not_scored():
+    session = dense.made(1, 12, gap=(1, 8))
+    model = np.outer(session.sources["a"], [1.0, 0.0, -1.0])
+    left, offset = scored(session, model)
+    first = [0, 2, 3]  # three still blocks of 20 s
+    expected = (session.rate_dps - model)[first].mean(axis=0)
+    assert offset == pytest.approx(expected)
+    assert np.isnan(left[:4]).all() and np.isnan(left[8]).all()
+    assert left[4] == pytest.approx(session.rate_dps[4] - model[4] - expected)
+    part = replace(session, weight=(np.arange(12) < 6).astype(float))
+    left, offset = scored(session, model, part)
+    there = [0, 2, 3, 4, 5]
+    assert offset == pytest.approx((session.rate_dps - model)[there].mean(axis=0))
+    assert np.isfinite(left[0]).all() and np.isnan(left[8]).all()
+
+
+@pytest.fixture(scope="module")
+def sessions():
+    made = [dense.made(seed, 24) for seed in (1, 2, 3, 4)]
+    for s in made:
+        s.rate_dps += 3.0 * s.sources["a"][:, None]
+    return made
+
+
+def test_smoothness_is_what_steep_noise_explains_better_on_the_worst_axis(sessions):
+    regression = Regression(sessions[:2])
+    told = residual_test(regression, [A])
+    p = dense.problem(sessions[:2], [A])
+    nats = [dense.fitted(p, a)[0] for a in range(3)]
+    steep = max(n[IS_STEEP].max() - n[~IS_STEEP].max() for n in nats)
+    assert told.steep_nats == pytest.approx(steep, abs=1e-5)
+    assert np.linalg.norm(told.direction) == pytest.approx(1.0)
+    regression.turn(np.diag([2.0, 1.0, 5.0]))
+    assert residual_test(regression, [A]).coherence_p == pytest.approx(told.coherence_p)
+
+
+def test_a_session_held_out_is_judged_by_what_the_others_fit(sessions):
+    train, held = sessions[:3], sessions[3:]
+    selection = selected(train, effect(A), effect(B))
+    told = judge(selection, held)
+    coefficients = selection.regression.fit([A, B]).coefficients
+    assert told.residual_before[0] == pytest.approx(
+        scored(held[0], np.zeros((24, 3)))[0], nan_ok=True
+    )
+    model = np.column_stack([held[0].sources["a"], held[0].sources["b"]]) @ coefficients
+    left, offset = scored(held[0], model)
+    assert told.residual_after[0] == pytest.approx(left, nan_ok=True)
+    assert told.offsets_dps[0] == pytest.approx(offset)
+    assert told.before_dps == pytest.approx(rms_dps(told.residual_before))
+    assert told.after_dps == pytest.approx(rms_dps([left]))
+    assert told.after_rms < told.before_rms
+    assert len(told.whole.sessions) == 4
+    ((same, _),) = residuals(selection, held, effects=False)
+    assert same == pytest.approx(told.residual_before[0], nan_ok=True)
+
+
+def test_an_effect_gains_what_the_session_held_out_loses_without_it(sessions):
+    train, held = sessions[:3], sessions[3:]
+    told = judge(selected(train, effect(A), effect(B)), held)
+    whole = told.whole
+    full = whole.fit([A, B]).base
+    assert told.steps == []
+    clean = [replace(s, rate_dps=r) for s, r in zip(whole.sessions, whole.rate)]
+    problems = [dense.problem(clean, [A, B], whole.scale[:, a]) for a in range(3)]
+
+    def misfit(keep):
+        total = 0.0
+        for a, p in enumerate(problems):
+            to, at, x = np.linalg.inv(p.v[full.best[a]]), p.rows[3], p.x[:, keep]
+            fit = np.arange(p.rows[3].start)
+            v = to[np.ix_(fit, fit)]
+            b = np.linalg.solve(x[fit].T @ v @ x[fit], x[fit].T @ v @ p.y[fit, a])
+            left = p.y[at, a] - x[at] @ b
+            total += left @ to[at, at] @ left / full.variance[a]
+        return total
+
+    with_all = misfit([0, 1])
+    assert told.gains == pytest.approx(
+        [0.5 * (misfit([1]) - with_all), 0.5 * (misfit([0]) - with_all)], rel=1e-4
+    )
+    twice = judge(selected(train, effect(A), effect(B)), [held[0], replace(held[0], name="again")])
+    assert twice.gains[0] > told.gains[0] > 10
+
+
+def test_play_operators_are_held_back_in_what_a_session_held_out_gains(sessions):
+    plays = [replace(A, memory="play", width=w) for w in (1.0, 2.0)]
+    told = judge(selected(sessions[:3], effect(*plays)), sessions[3:])
+    whole = told.whole
+    g = whole.cross_products(plays)
+    assert (of_plays(g, whole.scale, plays) > 0).all() and np.isfinite(told.gains).all()
+    assert told.gains[0] > 0
+
+
+def test_of_one_recording_every_effect_is_judged_by_pieces_left_out():
+    session = dense.made(5, 120)
+    session.rate_dps += 3.0 * session.sources["a"][:, None]
+    selection = selected([session], effect(A), effect(B), alone=True)
+    told = judge(selection, [session])
+    pieces = PiecesByLine(session)
+    assert told.gains == pytest.approx([pieces([], [B], [A]).sum(), pieces([], [A], [B]).sum()])
+    after = pieces.residual([], [A, B], np.ones((2, 3)))
+    assert told.residual_after[0] == pytest.approx(after) and not told.offsets_dps[0].any()
+    assert told.residual_before[0] == pytest.approx(pieces.residual([], []))
+    assert told.whole is selection.regression and told.steps == []
+    spared = replace(selection, found=[effect(A, axes=(False, True, True))])
+    ((left, _),) = residuals(spared, [session])
+    assert left[:, 0] == pytest.approx(told.residual_before[0][:, 0])
+    other = replace(session, name="other")
+    assert len(judge(selection, [other]).whole.sessions) == 2
+
+
+# --- what held-out data speak against ---
+
+
+def parts(*errors):
+    """Residuals whose RMS on each axis is what is said, with the first 0, 1, ... effects."""
+    return [[np.tile(e, (4, 1)).astype(float)] for e in errors]
+
+
+def never(i):
+    raise AssertionError(f"effect {i} is not in doubt")
+
+
+@pytest.fixture(scope="module")
+def three():
+    return selected([dense.made(1, 24)], effect(A), effect(B), effect(C))
+
+
+def axes(selection):
+    return [f.axes for f in selection.found]
+
+
+ALL = (True, True, True)
+
+
+def test_what_makes_no_axis_worse_stays(three):
+    after = parts([4, 4, 4], [3, 4, 3], [2, 4, 3], [2, 3, 3])
+    assert prune.without_harmful(three, after, never) is three
+
+
+def test_an_effect_goes_from_the_axis_on_which_the_error_grows_most(three):
+    after = parts([4, 4, 4], [5, 4, 3], [4, 6, 3], [4, 6, 4])
+    asked = []
+
+    def without(i):
+        asked.append(i)
+        return parts([1, 1, 1])[0]
+
+    less = prune.without_harmful(three, after, without)
+    assert axes(less) == [(False, True, True), (True, False, True), (True, True, False)]
+    assert asked == [0]  # whose error later ones may have made good
+    assert [f.axes for f in three.found] == [ALL] * 3
+
+
+def test_on_an_axis_the_worst_goes_alone(three):
+    after = parts([1, 1, 1], [1.5, 1, 1], [3, 1, 1], [3.2, 1, 1])
+    less = prune.without_harmful(three, after, never)
+    assert axes(less) == [ALL, (False, True, True), ALL]
+
+
+def test_an_effect_that_later_ones_need_stays_where_with_them_it_is_better_than_before(three):
+    after = parts([1, 1, 1], [1.5, 1, 1], [0.8, 1, 1], [0.8, 1, 1])
+    assert prune.without_harmful(three, after, lambda i: parts([0.9, 1, 1])[0]) is three
+    less = prune.without_harmful(three, after, lambda i: parts([0.7, 1, 1])[0])
+    assert axes(less)[0] == (False, True, True)
+
+
+def test_what_was_taken_from_every_axis_is_withdrawn_with_both_errors(three):
+    after = parts([1, 1, 1], [2, 2, 2], [2, 2, 2], [2, 2, 2])
+    less = prune.without_harmful(three, after, never)
+    assert len(less.found) == 2
+    [(name, why)] = less.withdrawn
+    assert name == "supply-voltage" and "grows: with it 2e+03 mdps, without 1e+03" in why
+
+
+def test_of_one_recording_what_takes_less_than_a_twentieth_goes(three):
+    alone = replace(three, alone=True)
+    after = parts([1, 1, 1], [0.96, 0.94, 0.5], [0.5, 0.5, 0.4], [0.4, 0.4, 0.3])
+    less = prune.without_harmful(alone, after, lambda i: parts([0.3, 1, 1])[0])
+    assert axes(less)[0] == (False, True, True)
+    assert prune.without_harmful(three, after, never) is three
+    slope = Term("temp", 10.0, 40.0)
+    sloped = replace(alone, found=[effect(slope), *alone.found[1:]])
+    after = parts([1, 1, 1], [0.96, 0.96, 0.96], [0.5, 0.5, 0.5], [0.4, 0.4, 0.4])
+    assert prune.without_harmful(sloped, after, never) is sloped
+
+
+def test_an_axis_that_an_effect_does_not_correct_is_not_its_doing(three):
+    spared = replace(three, found=[effect(A, axes=(False, True, True))])
+    after = parts([1, 1, 1], [2, 0.5, 0.5])
+    assert prune.without_harmful(spared, after, never) is spared
+    assert prune.without_harmful(replace(three, found=[]), parts([1, 1, 1]), never).found == []
+
+
+@pytest.mark.parametrize(("last", "stays"), [(0.91, False), (0.901, False), (0.899, True)])
+def test_of_one_recording_heat_must_take_a_tenth_in_all(three, last, stays):
+    heat = replace(three, alone=True, found=[effect(Term("temp")), effect(Term("time"))])
+    after = parts([1, 1, 1], [0.95, 0.95, 0.95], [last, last, last])
+    less = prune.without_marginal(heat, after)
+    assert (less is heat) == stays
+    if not stays:
+        assert len(less.found) == 1 and "hardly falls: with it" in less.withdrawn[0][1]
+    assert prune.without_marginal(replace(heat, alone=False), after).found == heat.found
+    volts = replace(heat, found=[effect(Term("temp")), effect(Term("vdd_mv"))])
+    assert prune.without_marginal(volts, after) is volts
+    none = replace(heat, found=[])
+    assert prune.without_marginal(none, after[:1]) is none
+
+
+def test_what_a_session_held_out_speaks_against_is_withdrawn_with_both_errors(sessions):
+    train = sessions[:3]
+    last = replace(
+        sessions[3], rate_dps=sessions[3].rate_dps - 6.0 * sessions[3].sources["a"][:, None]
+    )
+    selection = selected(train, effect(A))
+    less, told = prune.prune_by_holdout(selection, [last])
+    assert less.found == []
+    [(name, why)] = less.withdrawn
+    with_it, without = judge(selection, [last]), judge(less, [last])
+    assert name == "supply-voltage" and f"{-with_it.gains[0]:.1f} nats" in why
+    assert f"error with it {1e3 * with_it.after_rms:.3g} mdps" in why
+    assert f"without {1e3 * without.after_rms:.3g}" in why
+    assert told.after_rms == without.after_rms
+
+
+def test_a_good_effect_stays_and_a_loss_of_less_than_half_a_nat_is_none(sessions, monkeypatch):
+    selection = selected(sessions[:3], effect(A))
+    less, told = prune.prune_by_holdout(selection, sessions[3:])
+    assert less is selection and told.gains[0] > 10
+    for gain, asked in ((-0.5, 1), (-0.51, 2)):
+        judged = []
+
+        def nearly(selection, holdout, gain=gain, judged=judged):
+            judged.append(selection)
+            told = judge(selection, holdout)
+            return replace(told, gains=np.full(len(selection.found), gain))
+
+        monkeypatch.setattr(prune, "judge", nearly)
+        # whatever the likelihood says, the plain error is the larger without it: it stays
+        assert prune.prune_by_holdout(selection, sessions[3:])[0] is selection
+        assert len(judged) == asked
+
+
+def test_what_follows_time_alone_must_come_again(monkeypatch):
+    made = [dense.made(seed, 40) for seed in (1, 2, 3, 4)]
+    drift = effect(Term("time"), kind="time-drift")
+    again = []
+
+    def comes(whole, terms, candidate, tried):
+        again.append((len(whole.sessions), list(terms), candidate, tried))
+        return answer
+
+    monkeypatch.setattr(prune, "comes_again", comes)
+    for s in made:
+        s.rate_dps += np.outer(np.arange(40.0), [1, 1, 1])
+    selection = selected(made[:3], drift, line=(B,))
+    answer = True
+    kept, _ = prune.prune_by_holdout(selection, made[3:])
+    assert drift in kept.found and again[0] == (4, [B], drift.candidate, 1.0)
+    answer = False
+    left, _ = prune.prune_by_holdout(selection, made[3:])
+    assert drift not in left.found and prune.AGAIN in left.withdrawn[0][1]
+    alone = selected(made[:1], drift)
+    again.clear()
+    prune.prune_by_holdout(alone, made[3:])
+    assert not again  # one recording cannot say whether it comes again
+
+
+# --- slots, and what an analysis says ---
+
+
+def analysed(sessions, *found, holdout=1, **more):
+    train, held = sessions[:-holdout], sessions[-holdout:]
+    selection = selected(train, *found, **more)
+    judged = judge(selection, held)
+    return Analysis(sessions, train, held, selection, judged, np.zeros(3))
+
+
+@pytest.fixture(scope="module")
+def warm():
+    made = [dense.made(seed, 24, names=("temp", "vdd_mv", "a")) for seed in (1, 2, 3, 4)]
+    for s in made:
+        s.sources["vdd_mv"] = 5000 + 10 * s.sources["vdd_mv"]
+        s.rate_dps += 0.01 * (s.sources["vdd_mv"] - 5000)[:, None] * [1, 2, 3]
+    return made
+
+
+VOLTS = Term("vdd_mv", 4900.0, 5100.0, 5000.0)
+WARM = Term("temp", -20.0, 30.0, 5.0, power=2)
+
+
+def test_slots_are_of_the_terms_in_their_order_without_the_line(warm):
+    two = effect(WARM, replace(WARM, power=3), kind="temperature-polynomial")
+    selection = selected(warm[:3], effect(VOLTS), two, line=(LINE,))
+    told = np.arange(12.0).reshape(4, 3)
+    made = slots(selection, told)
+    assert [s.effect for s in made] == ["supply-voltage", *["temperature-polynomial"] * 2]
+    assert [s.term for s in made] == selection.terms
+    assert [s.coefficient_dps for s in made] == [(3, 4, 5), (6, 7, 8), (9, 10, 11)]
+
+
+def test_a_model_of_the_first_effects_has_them_fitted_by_themselves(warm):
+    analysis = analysed(warm, effect(VOLTS), effect(WARM))
+    assert analysis.coefficients == pytest.approx(
+        analysis.selection.regression.fit([VOLTS, WARM]).coefficients
+    )
+    whole, first = model_of(analysis, SCALES), model_of(analysis, SCALES, effects=1)
+    assert [len(m.slots) for m in (whole, first, model_of(analysis, SCALES, effects=0))] == [
+        2,
+        1,
+        0,
+    ]
+    alone = analysis.selection.regression.fit([VOLTS]).coefficients[0]
+    assert first.slots[0].coefficient_dps == pytest.approx(alone, rel=0.02)
+    assert whole.tick_s == 20.0
+
+
+@pytest.mark.parametrize("at", [0, 1])
+def test_the_effect_that_cannot_be_deployed_is_left_out_judged_anew_and_noted(warm, at):
+    beyond = effect(replace(VOLTS, lag_mode="lag", lag_s=1e9), kind="thermal-lag")
+    found = [effect(VOLTS), effect(WARM)]
+    assert deployable(analysis := analysed(warm, *found), SCALES) is analysis
+    found.insert(at, beyond)
+    analysis = analysed(warm, *found)
+    less = deployable(analysis, SCALES)
+    assert [f.candidate.kind for f in less.selection.found] == ["supply-voltage"] * 2
+    assert len(less.judgement.gains) == 2 and "found but left out: " in less.gate.notes[0]
+    both = [*less.selection.straight, *less.selection.terms]
+    assert less.floor_dps == pytest.approx(floor_dps(less.judgement.whole, both))
+
+
+def test_what_cannot_be_deployed_without_an_effect_is_an_error(warm, monkeypatch):
+    from zerorate_tools.loop.verify import slots as module
+
+    def never_fits(*arguments, **named):
+        raise CannotDeploy("too much of motion")
+
+    monkeypatch.setattr(module, "build_model", never_fits)
+    with pytest.raises(CannotDeploy):
+        deployable(analysed(warm), SCALES)
+
+
+def test_with_fewer_effects_an_analysis_is_judged_anew(warm):
+    analysis = analysed(warm, effect(VOLTS), effect(WARM))
+    less = with_selection(analysis, analysis.selection.without(1))
+    assert less.judgement.after_dps == pytest.approx(
+        judge(analysis.selection.without(1), warm[3:]).after_dps
+    )
+    assert (less.floor_dps > 0).all() and less.sessions == analysis.sessions
+
+
+def test_confidence_is_tentative_with_few_power_ons_beside_earth_and_for_time_without_a_thermometer(
+    warm,
+):
+    analysis = analysed(warm, effect(VOLTS))
+    sure = replace(analysis, judgement=judgement([1, 1, 1], [0.5] * 3, [9.0]))
+    assert sure.confidence(0) == "confirmed" and not sure.few and not sure.single
+    few = replace(sure, train=warm[:2])
+    assert few.few and few.confidence(0) == "tentative"
+    beside = replace(effect(VOLTS), confounded_with=["earth-rotation"])
+    beside_earth = replace(sure, selection=replace(sure.selection, found=[beside]))
+    assert beside_earth.confidence(0) == "tentative"
+    time = replace(sure, selection=replace(sure.selection, found=[effect(Term("time"))]))
+    assert time.confidence(0) == "confirmed" and not time.may_be_heat(0)
+    blind = replace(time, sessions=[replace(warm[0], sources={})])
+    assert blind.may_be_heat(0) and blind.confidence(0) == "tentative" and blind.single
+    volts = replace(blind, selection=sure.selection)
+    assert not volts.may_be_heat(0) and volts.confidence(0) == "confirmed"
+    doubtful = replace(sure, judgement=judgement([1, 1, 1], [2.0] * 3, [9.0]))
+    assert doubtful.confidence(0) == "tentative"
+
+
+# --- what the kernels make of it ---
+
+
+class Counting:
+    """A device that subtracts its number and, learning, one LSB more for every sample it lives."""
+
+    def __init__(self, scales, model, channels=()):
+        self.number = 0 if model is None else model
+        self.lived, self.on, self.offset = 0, 0, np.zeros(3, int)
+
+    def copy(self):
+        twin = Counting(None, self.number)
+        twin.lived, twin.on, twin.offset = self.lived, self.on, self.offset
+        return twin
+
+    def power_on(self):
+        self.on += 1
+
+    def set_offset(self, offset_q8):
+        self.offset = np.array(offset_q8)
+
+    def run(self, frames, learn=True):
+        bias = np.full((len(frames), 3), 256 * self.number) + self.offset
+        if learn:
+            bias = bias + 256 * (self.lived + np.arange(len(frames)))[:, None]
+            self.lived += len(frames)
+        return bias
+
+
+@pytest.fixture
+def counting(monkeypatch):
+    monkeypatch.setattr(measured, "Firmware", Counting)
+    told = TurnOn(np.array([128, 0, -128]), 3)
+    monkeypatch.setattr(measured, "turn_on", lambda device, p: told)
+
+
+@pytest.fixture
+def pair(tmp_path):
+    return [powered_on(tmp_path, at_rest(i, 6), name=n) for i, n in enumerate(("a", "b"))]
+
+
+def nothing(name, frames, biases):
+    pass
+
+
+def test_devices_live_through_the_training_and_are_run_frozen_over_what_is_held_out(counting, pair):
+    m = measured.Measurement(pair, ["a"], ["b"], [None, 1, 2], SCALES, {})
+    m.learn()
+    assert [d.lived for d in m.devices] == [120] * 3 and [d.on for d in m.devices] == [1] * 3
+    seen = []
+    course = m.course(
+        "b", False, lambda name, frames, biases: seen.append((name, len(frames), {*biases}))
+    )
+    ways = {"before", "after_1", "after", "online_before", "online"}
+    assert set(course.residual) == ways and seen == [("b", 120, ways)]
+    assert course.unscored == 3 and course.offset_dps["after"] == pytest.approx(
+        [0.5 / 131, 0, -0.5 / 131]
+    )
+    assert set(course.offset_dps) == {"before", "after_1", "after"}
+    assert course.time_s.tolist() == [2, 6, 10, 14, 18, 22]
+    for way, number in (("before", 0), ("after_1", 1), ("after", 2)):
+        assert course.bias[way][:, 1] * 131 == pytest.approx(np.full(6, number))
+        assert course.bias[way][:, 0] * 131 == pytest.approx(np.full(6, number + 0.5))
+    left = pair[1].rate_dps - course.bias["after"]
+    assert np.isnan(course.residual["after"][:3]).all()
+    assert course.residual["after"][3:] == pytest.approx(left[3:])
+    # learning, it goes on from what the training taught
+    assert course.bias["online_before"][:, 0] * 131 == pytest.approx(120 + 9.5 + 20 * np.arange(6))
+    assert course.bias["online"][:, 0] * 131 == pytest.approx(122 + 9.5 + 20 * np.arange(6))
+    assert [d.lived for d in m.devices] == [120] * 3
+
+
+def test_over_what_was_fitted_only_before_and_after_are_run_and_online_as_it_began(counting, pair):
+    m = measured.Measurement(pair, ["a"], ["b"], [None, 1, 2], SCALES, {})
+    m.learn()
+    assert set(m.course("a", False, nothing).residual) == {"before", "after"}
+    course = m.course("a", True, nothing)
+    assert set(course.residual) == {"before", "after", "online_before", "online"}
+    assert course.bias["online"][:, 0] * 131 == pytest.approx(2 + 9.5 + 20 * np.arange(6))
+    assert course.bias["online_before"][:, 0] * 131 == pytest.approx(9.5 + 20 * np.arange(6))
+
+
+def test_without_a_model_after_is_as_before(counting, pair):
+    m = measured.Measurement(pair, ["a"], ["b"], [None], SCALES, {})
+    m.learn()
+    course = m.course("b", False, nothing)
+    assert course.bias["after"] == pytest.approx(course.bias["before"])
+    some = measured.Measurement(pair, ["a"], ["b"], [None, 1], SCALES, {"a": SimpleNamespace(
+        course=lambda sink, learning: sorted(learning))})  # fmt: skip
+    some.learn()
+    assert some.course("a", False, nothing) == []
+    assert some.course("a", True, nothing) == ["online", "online_before"]
+
+
+def test_the_ways_of_what_was_measured():
+    assert [measured.after_first(k) for k in range(3)] == ["before", "after_1", "after_2"]
+    ways = {"before": np.ones(1), "after_1": np.ones(1) * 2, "after": np.ones(1) * 3}
+    offsets = {"before": np.array([1.0, 2.0, 3.0])}
+    a, b = (measured.Course(np.zeros(1), {}, ways, o) for o in (offsets, {}))
+    found = measured.Measured({"a": a, "b": b}, ["b"], np.zeros(3))
+    assert found.residuals("after_1") == [ways["after_1"]]
+    assert [found.with_first(k)[0][0] for k in range(3)] == [1, 2, 3]
+    assert len(found.with_first(0, ["a", "b"])) == 2
+    assert found.offsets("after")[0].tolist() == [0, 0, 0]
+    other = measured.Measured({"a": a}, ["a"], np.zeros(3))
+    assert other.offsets("after")[0].tolist() == [1, 2, 3]
+    assert other.inside == [] and other.by == measured.BY
+
+
+def test_models_are_none_those_of_the_first_effects_and_the_whole_one(warm):
+    analysis = analysed(warm, effect(VOLTS), effect(WARM))
+    whole = model_of(analysis, SCALES)
+    models = measure.models_of(analysis, whole, SCALES)
+    assert (
+        models[0] is None and models[-1] is whole and [len(m.slots) for m in models[1:]] == [1, 2]
+    )
+    none = analysed(warm)
+    assert measure.models_of(none, model_of(none, SCALES), SCALES) == [None]
+
+
+def test_columns_of_the_corrected_rows_are_what_was_subtracted(tmp_path):
+    (frames,) = powered_on(tmp_path, at_rest(0, 2)).frames()
+    test = np.arange(40) >= 30
+    biases = {"before": np.full((40, 3), 256), "after": np.arange(120).reshape(40, 3), "after_1": 0}
+    writer = measure.CorrectedWriter(tmp_path / "o.parquet")
+    writer.write("a.csv", frames, test, biases)
+    writer.write("b.csv", frames, ~test, biases)
+    writer.close()
+    table = pq.read_table(tmp_path / "o.parquet").to_pandas()
+    assert table["recording"].tolist() == ["a.csv"] * 40 + ["b.csv"] * 40
+    assert table["split"].tolist()[:40] == ["train"] * 30 + ["test"] * 10
+    assert table["t_us"].tolist() == frames.t_us.tolist() * 2
+    assert (table["bias_before_gx"] == 1).all()
+    assert table["bias_after_gz"].tolist()[:40] == (np.arange(40) * 3 + 2).__truediv__(256).tolist()
+    assert "bias_after_1_gx" not in table and "bias_online_gx" not in table
+
+
+def test_what_the_integers_round_is_the_difference_to_the_same_terms_in_floats(tmp_path):
+    columns = at_rest(0, 20)
+    columns["volt"] = np.rint(5000 + 300 * np.sin(np.arange(400) / 40)).astype(np.int32)
+    p = powered_on(tmp_path, columns, ("volt",))
+    volts = columns["volt"].reshape(-1, HZ).mean(axis=1)
+    p.session.sources["volt"] = volts
+    term = Term("volt", 4000.0, 6000.0, 5000.0, lag_mode="lag", lag_s=8.0)
+    told = np.array([[0.001, -0.002, 0.0]])
+    model = drafted([Slot(term, tuple(told[0]), "x")], SCALES, tick_s=1.0)
+    exact = measure.rounding_dps(p, model, [term], told, SCALES)
+    assert exact[2] == 0 and exact[:2].max() < 2e-3
+    wrong = measure.rounding_dps(p, model, [term], told + [[0.001, 0.0, 0.0]], SCALES)
+    lagged = []
+    at = volts[0] - 5000.0
+    for v in volts:
+        at += (1 - np.exp(-1 / 8)) * (v - 5000.0 - at)
+        lagged.append(at)
+    held = np.r_[lagged[0], lagged[:-1]].reshape(20, 4).mean(axis=1)
+    assert wrong[0] == pytest.approx(0.001 * np.sqrt((held**2).mean()), rel=0.02)
+
+
+def test_which_sessions_have_pieces_left_out(warm):
+    analysis = analysed(warm, effect(VOLTS))
+    assert measure._inside(analysis) == []
+    few = replace(analysis, train=warm[:2])
+    assert measure._inside(few) == ["s1", "s2"]
+    assert measure._inside(replace(few, sessions=warm[:1])) == []
+
+
+def test_a_whole_device_is_measured_and_written(tmp_path):
+    columns = [at_rest(i, 40) for i in range(4)]
+    for c in columns:
+        volts = c["volt"] + (np.arange(800) % 400 > 200) * 400
+        c["volt"] = volts.astype(np.int32)
+        c["gx"] = c["gx"] + np.rint((volts - 5000) * 0.1).astype(np.int32)
+    every = [powered_on(tmp_path, c, name=n) for c, n in zip(columns, "abcd")]
+    made = []
+    for p, c in zip(every, columns):
+        p.session.sources["volt"] = c["volt"].reshape(-1, HZ).mean(axis=1)
+        made.append(p.session)
+    analysis = analysed(made, effect(Term("volt", 4000.0, 6000.0, 5000.0)))
+    logs, out, steps = [p.path for p in every], tmp_path / "corrected.parquet", []
+    told, model = measure.measure_and_prune(analysis, logs, out, True, steps.append)
+    assert len(model.slots) == 1 and steps == [1] * len(steps) and len(steps) % 4 == 0
+    assert told.judgement.after_dps[0] < 0.3 * told.judgement.before_dps[0]
+    found = told.measured
+    assert (found.holdout, found.inside, set(found.sessions)) == (["d"], [], set("abcd"))
+    assert found.rounding_dps.max() < 1e-3
+    table = pq.read_table(out).to_pandas()
+    assert set(table[table["recording"] == "d.parquet"]["split"]) == {"test"}
+    assert set(table[table["recording"] != "d.parquet"]["split"]) == {"train"}
+    assert "bias_online_gx" in table
+    left = columns[3]["gx"] - table[table["recording"] == "d.parquet"]["bias_after_gx"]
+    blocks = left.to_numpy().reshape(40, PER).mean(axis=1)[15:] / 131
+    assert np.sqrt((blocks**2).mean()) == pytest.approx(told.judgement.after_dps[0], rel=0.05)
+    assert power_on.PowerOn is PowerOn
