@@ -87,15 +87,19 @@ def plainly(columns, hz):
         at, mine = t_us[there], t_us[sample]
         out[name] = np.where(lacks, np.interp(mine, at, rows[name][there]), rows[name][sample])
         after = np.searchsorted(at, mine).clip(1, len(at) - 1)
-        if lacks.any():
-            longest[name] = (at[after] - at[after - 1])[lacks].max()
-        if name in FORCE:
-            nearest = np.minimum(np.abs(at[after] - mine), np.abs(mine - at[after - 1]))
-            near &= ~lacks | (nearest <= max(1e6, 3e6 / hz))
+        spans = at[after] - at[after - 1]
+        no_gap = spans <= max(1e6, 3 * np.quantile(np.diff(at), 0.9))
+        if (lacks & no_gap).any():
+            longest[name] = spans[lacks & no_gap].max()
+        in_gap = lacks & ~no_gap
+        if name in ("ax_g", "temp_c"):
+            what = {"ax_g": "acceleration", "temp_c": "temperature"}[name]
+            reason = f"in a gap of the {what}; without it: --map {name.partition('_')[0]}=none"
+            dropped[reason] = int((near & in_gap).sum())
+        near &= ~in_gap
     out["t_us"] = t_us[sample]
     level = rows["level"][sample]
     out["level"] = np.where(np.isnan(level), GAP, level)
-    dropped["no acceleration within a second"] = int((~near).sum())
     return {name: values[near] for name, values in out.items()}, +dropped, longest
 
 

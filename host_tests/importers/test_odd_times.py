@@ -72,11 +72,12 @@ def test_a_stamp_that_lost_or_won_a_digit_is_left_out(tmp_path):
     assert told(report, "dropped 2 rows: the time stamp is torn")
 
 
-def test_two_clocks_that_take_turns_are_no_torn_stamps(tmp_path):
+@pytest.mark.parametrize("behind_s", [0.2, 5000])
+def test_two_clocks_that_take_turns_are_two_devices(tmp_path, behind_s):
     frame = table()
-    frame.loc[1::2, "t_s"] += 5000
-    recording, report = read(tmp_path, frame)
-    assert len(recording) == 2000 and not report.dropped
+    frame.loc[1::2, "t_s"] += behind_s
+    with pytest.raises(BadRecording, match="2 devices take turns: time goes back .*file of its"):
+        read(tmp_path, frame)
 
 
 def test_a_counter_that_ran_over_goes_on(tmp_path):
@@ -158,13 +159,39 @@ def test_a_time_that_cannot_be_read_says_how_to_write_it(tmp_path):
         read(tmp_path, frame)
 
 
-def test_stamps_that_are_coarser_than_the_samples_tell_the_rate(tmp_path):
+def test_rows_that_share_a_coarse_stamp_are_spread_over_it(tmp_path):
     frame = table()
-    frame["t_s"] = frame["t_s"].round(1)
-    frame.loc[1000:, "t_s"] += 300
+    exact = frame["t_s"].to_numpy() + 3.47
+    exact[1000:] += 300
+    recording, report = read(tmp_path, frame.assign(t_s=np.floor(exact)))
+    assert recording.scales.odr_hz == pytest.approx(100, rel=1e-3)
+    assert recording.columns["t_us"] == pytest.approx(exact * 1e6, abs=1e6)
+    assert np.diff(recording.columns["t_us"]).min() > 0
+    assert recording.duration_s == pytest.approx(exact[-1] - exact[0], abs=0.6)
+    assert told(report, "rows that share a time stamp of 1 s are spread over it, 100 each")
+
+
+def test_rows_that_share_a_stamp_unevenly_are_refused(tmp_path):
+    frame = table().assign(t_s=lambda f: np.floor(f["t_s"]))
+    kept = RNG.random(2000) > 0.3
+    with pytest.raises(BadRecording, match="share each time stamp of 1 s, .*write finer times"):
+        read(tmp_path, frame[kept])
+
+
+def test_rows_of_two_devices_in_turn_are_told_by_their_levels(tmp_path):
+    frame = table()
+    frame.loc[1::2, "gy_dps"] += 0.5
+    with pytest.raises(BadRecording, match="2 devices take turns: the readings change"):
+        read(tmp_path, frame)
+
+
+@pytest.mark.parametrize("names", [["temp_c"], ["ax_g", "ay_g", "az_g"]])
+def test_a_gap_of_a_slower_sensor_stays_a_gap(tmp_path, names):
+    frame = table()
+    frame.loc[800:1399, names] = np.nan
     recording, report = read(tmp_path, frame)
-    assert recording.scales.odr_hz == pytest.approx(100, rel=0.01)
-    assert told(report, "time stamps repeat, and rows at a time that stands still teach nothing")
+    assert len(recording) == 1400 and np.diff(recording.columns["t_us"]).max() == 6_010_000
+    assert any("in a gap of the" in reason for reason in report.dropped)
 
 
 def test_seconds_and_nanoseconds_are_added(tmp_path):

@@ -16,16 +16,19 @@ from zerorate_tools.importers.columns.guesses import likely_columns
 from zerorate_tools.importers.columns.names import accel_groups, most_alike
 from zerorate_tools.importers.logs import columnar
 from zerorate_tools.importers.logs.messages import table_of_messages
-from zerorate_tools.importers.samples.between import _distance
+from zerorate_tools.importers.samples.between import _spans
 
 times = st.lists(st.integers(-1000, 1000), min_size=1, max_size=20)
 
 
 @given(times, times)
-def test_the_distance_is_that_to_the_nearest_reading(t_us, at):
-    at = np.array(sorted(at), float)
-    plain = [min(abs(t - other) for other in at) for t in t_us]
-    assert _distance(np.array(t_us, float), at).tolist() == plain
+def test_a_span_is_that_between_the_readings_around_a_time(t_us, at):
+    at = sorted(set(at))
+    found = _spans(np.array(t_us, float), np.array(at, float))
+    for t, span in zip(t_us, found):
+        later = [other for other in at if other >= t]
+        earlier = [other for other in at if other < t]
+        assert span == (later or [t])[0] - (earlier or [t])[-1]
 
 
 @pytest.mark.parametrize(

@@ -135,7 +135,10 @@ def _imported(source: Path, out: Path, words: list[str]) -> tuple[int, str]:
     """(exit code, what was said) of the command."""
     stdout, stderr = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(stdout), contextlib.redirect_stderr(stderr):
-        code = main(["import", str(source), "--out", str(out), *words])
+        try:
+            code = main(["import", str(source), "--out", str(out), *words])
+        except SystemExit as refused:  # words that are no words of the command line
+            code = int(refused.code or 0)
     lines = (stderr if code else stdout).getvalue().splitlines()
     return code, " / ".join(line.strip() for line in (lines if code else lines[1:]))
 
@@ -169,7 +172,7 @@ def _off(recording: Recording, log: Log) -> str:
     at = at + first
     if (at < 0).any() or (at >= world.samples).any() or (np.diff(at) <= 0).any():
         return f"its times are not those of the log: {t_s[-1] - t_s[0]:.4g} s"
-    if len(at) < log.least * world.samples:
+    if not log.least * world.samples <= len(at) <= log.most * world.samples:
         return f"{len(at)} samples of {world.samples}"
     far = [("rates", recording.gyro_dps() - world.dps[at], _DPS)]
     if "ax" in recording.columns:

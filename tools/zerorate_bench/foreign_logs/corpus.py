@@ -1,6 +1,6 @@
 """Every log of the corpus; importing the modules that write them registers them."""
 
-from . import arrays, clocks, flights, phones, robots, sensors
+from . import arrays, changed, clocks, flights, phones, robots, sensors, tools  # noqa: F401
 from .world import CORPUS, Log, World
 
-__all__ = ["CORPUS", "Log", "World", "arrays", "clocks", "flights", "phones", "robots", "sensors"]
+__all__ = ["CORPUS", "Log", "World"]

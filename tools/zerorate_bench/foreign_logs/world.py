@@ -67,24 +67,25 @@ class World:
 
 @dataclass(frozen=True)
 class Log:
-    """One log of the corpus. words: what a user knows and types beside the file's name; least:
-    the share of the samples that a sound import holds."""
+    """One log of the corpus. words: what a user knows and types beside the file's name; least and
+    most: the share of the samples that a sound import holds, which is none beyond all of them."""
 
     what: str
     write: Callable[[Path, World], Path]
     words: str = ""
     least: float = 0.98
+    most: float = 1.0
 
 
 #: Every log, in the order of the modules that write them.
 CORPUS: list[Log] = []
 
 
-def log(what: str, words: str = "", least: float = 0.98):
+def log(what: str, words: str = "", least: float = 0.98, most: float = 1.0):
     """Register a writer of a log: it takes a folder and a world, and returns the log's path."""
 
     def add(write: Callable[[Path, World], Path]) -> Callable[[Path, World], Path]:
-        CORPUS.append(Log(what, write, words, least))
+        CORPUS.append(Log(what, write, words, least, most))
         return write
 
     return add

@@ -195,7 +195,7 @@ def by_habit(target: str, column: str, names: list[str]) -> tuple[str, str] | No
         return habit, "as Sensor Logger writes"
     if "rtcTime" in names and kind != "time":
         return ("dps" if kind == "gyro" else "mg"), "as OpenLog Artemis writes"
-    if "device_id" in names and "error_count" in names:
+    if "timestamp_sample" in names or {"device_id", "error_count"} <= set(names):
         return ("us" if kind == "time" else habit), "as PX4 writes"
     if "TimeUS" in names and kind != "time":
         return habit, "as in ArduPilot"

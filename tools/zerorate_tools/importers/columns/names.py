@@ -12,7 +12,7 @@ _GYRO = re.compile(
     r"(?:.*(?:gyroscope|gyrorotation|gyro|gyr|angularvelocity|angularrate|angvel|rotationrate|omega)"
     r"(?:uncalibrated|calibrated|corrected|unfilt|adc|raw|rad|data|rate|dps|values?|static|noise)"
     r"{0,2}"
-    r"|(?:.*imu)?(?:gy|[wg]))" + f"{_AXIS}{_MADE}$|^{_AXIS}(?:gyroscope|gyro|gyr)$"
+    r"|(?:.*imu)?(?:gy|[wg]|pqr))" + f"{_AXIS}{_MADE}$|^{_AXIS}(?:gyroscope|gyro|gyr)$"
 )
 _ACCEL = re.compile(
     r"(?:.*(?:accelerometer|acceleration|accel|acc|specificforce)"
@@ -30,7 +30,7 @@ _TEMP = re.compile(r".*(?:temperature|temp|tmp)c?(?:mean|avg)?$")
 _NOT_THE_DIE = re.compile(r"ambient|air|baro|bmp|bme|aht|sht|cpu|motor|batt|esc|water|room")
 _TIME = re.compile(
     r"(?:t|ts|time|timestamp|timestampsample|now|stamp|timeus|timems|secondselapsed|datetime|"
-    r"date|utc|millis|micros|loggingtime|.*timestamp(?:unix)?(?:cal)?|.*headerstamp|sampletime|"
+    r"date|utc|millis|micros|loggingtime|.*timestamp(?:unix|sincereboot)?(?:cal)?|.*headerstamp|sampletime|"
     r"gpst|gpstime|tow|timeofweek|elapsed|elapsedtime|epoch?|.*offsettime|timestartup|timesincestart(?:in)?|rtctime)$"
 )
 _SEC = re.compile(r"(.*?)(?:secs?|seconds?)$")
@@ -38,7 +38,8 @@ _NANOSEC = re.compile(r"(.*?)(?:nanosecs?|nsecs?|nanoseconds?)$")
 #: A column of a variable of a .mat.
 _ARRAY = re.compile(r"\[\d+\]$")
 _LAST_AXIS = re.compile(f".*{_AXIS}(?:axis)?$")
-_BARE = re.compile(f"{_AXIS}(?:axis)?$")
+#: Of an array that is called by all its axes, or by nothing, too.
+_BARE = re.compile(f"(?:xyz|values?)?{_AXIS}(?:axis)?$")
 _BODY_RATES = dict(zip(("gx", "gy", "gz"), "pqr"))
 _TURNS = {"rollrate": "gyrox", "pitchrate": "gyroy", "yawrate": "gyroz"}
 
@@ -133,7 +134,8 @@ def split_time(names: list[str]) -> tuple[str, str] | None:
 
 def of_other_unit(name: str) -> bool:
     """Whether a name ends with a unit in brackets that is none of rates: X (m/s^2), Y (µT)."""
-    return name.rstrip()[-1:] in (")", "]") and unit_in_name("gx", name) is None
+    has_unit = name.rstrip()[-1:] in (")", "]") and not _ARRAY.search(name)
+    return has_unit and unit_in_name("gx", name) is None
 
 
 def unnamed(names: list[str]) -> bool:

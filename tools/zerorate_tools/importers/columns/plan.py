@@ -214,7 +214,7 @@ def _offered(table: Table, wanted: Mapping[str, Mapped], missing: list[str]) -> 
     if bare:
         unit = (by_habit("gx", bare["gx"], table.names) or ("dps", ""))[0]
         return " ".join(f"--map {t}={c}:{unit}" for t, c in bare.items() if t in missing)
-    if wanted or not usual.unnamed(table.names):
+    if set(wanted) - {TIME} or not usual.unnamed(table.names):
         return ""
     first = table.first_rows(table.names)
     return " ".join(f"--map {words}" for words in likely_columns(first, table.calendar))

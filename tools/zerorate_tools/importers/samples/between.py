@@ -1,5 +1,6 @@
 """Readings of slower sensors, put at the times of the samples."""
 
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -7,11 +8,13 @@ import numpy as np
 
 from ...errors import BadRecording
 from ...recordings.recording import ACCEL, COLUMNS, TEMP
-from .clock import duration
+from .clock import duration, longest_us
 from .gather import Gathered
 from .spool import PLACE, TIME, Spool
 
-_ACCEL_WITHIN_US = 1e6
+SAID = {"ax": "acceleration", TEMP: "temperature"}
+#: Steps of each piece that are looked at; so many of all are no gap, however unsteady a sensor is.
+_LOOKED_AT, _USUAL = 1000, 0.9
 _TOGETHER_US, _TOGETHER = 5e6, 0.02
 
 
@@ -32,15 +35,19 @@ def refuse_two_recordings(spool: Spool, path: Path) -> None:
 class Bridged:
     """The samples of a spool, with what lacks a reading of its own on a line between those around.
 
+    Where a column has a gap, by its own usual interval, no line spans it: its samples are dropped.
     stretches: by column, the longest time in microseconds that such a line spans.
     """
 
     def __init__(self, found: Gathered) -> None:
         self._found, self._spool = found, found.spool
         self.stretches: dict[str, float] = {}
-        self.dropped = 0
+        self.dropped: Counter[str] = Counter()
         self._columns = [name for name in self._spool.names if self._is_bridged(name)]
         self._after = {name: _next_readings(self._spool, name) for name in self._columns}
+        self._longest_us = {
+            name: longest_us(_usual_us(self._spool, name)) for name in self._columns
+        }
 
     def __iter__(self) -> Iterator[dict[str, np.ndarray]]:
         """Columns of each piece's samples, none NaN but those of extra channels."""
@@ -58,9 +65,8 @@ class Bridged:
 
     def notes(self) -> list[str]:
         """What was put on lines, and how long those were."""
-        said = {"ax": "acceleration", TEMP: "temperature"}
         return [
-            f"{said.get(name, name)} interpolated between its readings, over at most "
+            f"{SAID.get(name, name)} interpolated between its readings, over at most "
             f"{duration(stretch * 1e-6)}"
             for name, stretch in self.stretches.items()
             if name not in ACCEL[1:]
@@ -84,33 +90,44 @@ class Bridged:
         if not len(at):
             return values
         lacking = whole & ~there
-        if lacking.any():
-            spans = np.diff(at)[np.clip(np.searchsorted(at, t_us[lacking]) - 1, 0, len(at) - 2)] \
-                if len(at) > 1 else np.zeros(1)  # fmt: skip
-            self.stretches[name] = max(self.stretches.get(name, 0.0), float(spans.max()))
         filled = values.copy()
         filled[lacking] = np.interp(t_us[lacking], at, readings)
-        if name in ACCEL:
-            filled[lacking & (_distance(t_us, at) > self._accel_within_us())] = np.nan
+        spans = _spans(t_us, at)
+        filled[lacking & (spans > self._longest_us[name])] = np.nan
+        bridged = spans[lacking & np.isfinite(filled)]
+        if len(bridged):
+            self.stretches[name] = max(self.stretches.get(name, 0.0), float(bridged.max()))
         return filled
 
-    def _accel_within_us(self) -> float:
-        return max(_ACCEL_WITHIN_US, 3.0 * self._found.interval_us)
-
     def _near_enough(self, columns):
-        """Less the samples that have no acceleration near them."""
-        if "ax" not in columns:
-            return columns
-        good = np.isfinite([columns[name] for name in ACCEL]).all(axis=0)
-        self.dropped += int((~good).sum())
-        return {name: values[good] for name, values in columns.items()}
+        """Less the samples that lie in a gap of the acceleration or of the temperature."""
+        for group in (ACCEL, (TEMP,)):
+            if group[0] in columns:
+                good = np.isfinite([columns[name] for name in group]).all(axis=0)
+                self.dropped[group[0]] += int((~good).sum())
+                columns = {name: values[good] for name, values in columns.items()}
+        return columns
 
 
-def _distance(t_us: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """(n,) microseconds to the nearest of the sorted `at`."""
-    after = np.clip(np.searchsorted(at, t_us), 0, len(at) - 1)
-    before = np.clip(after - 1, 0, len(at) - 1)
-    return np.minimum(np.abs(at[after] - t_us), np.abs(t_us - at[before]))
+def _spans(t_us: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """(n,) microseconds between the two of the sorted `at` around each time; before the first and
+    after the last, to that one."""
+    ends = np.concatenate([[np.nan], at, [np.nan]])
+    after = np.searchsorted(at, t_us) + 1
+    spans = ends[after] - ends[after - 1]
+    return np.where(np.isnan(spans), np.maximum(at[0] - t_us, t_us - at[-1]), spans)
+
+
+def _usual_us(spool: Spool, name: str) -> float:
+    """The time from one reading of a column to the next that few exceed."""
+    usual, last = [], np.empty(0)
+    for columns in spool:
+        at = columns[TIME][np.isfinite(columns[name])]
+        steps = np.diff(np.concatenate([last, at]))
+        usual.append(steps[:_LOOKED_AT])
+        last = at[-1:] if len(at) else last
+    every = np.concatenate([np.empty(0), *usual])
+    return float(np.quantile(every, _USUAL)) if len(every) else 0.0
 
 
 def _next_readings(spool: Spool, name: str) -> list[tuple[float, float] | None]:

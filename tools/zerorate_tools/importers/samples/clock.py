@@ -16,9 +16,7 @@ _MOST_US = 2.0**62
 _STRIDE = 64
 _KEPT = 1 << 18
 #: Beyond as many usual intervals, and a second, is a gap.
-_GAP_INTERVALS = 3.0
-#: Of all steps: beyond that the stamps are coarser than the samples.
-_REPEATED = 0.2
+GAP_INTERVALS, GAP_LEAST_US = 3.0, 1e6
 
 
 def whole_stamps(t_us: np.ndarray) -> np.ndarray:
@@ -76,33 +74,24 @@ class Pace:
     means over 64 intervals, or fewer in a short recording."""
 
     def __init__(self) -> None:
-        self.notes: list[str] = []
         self._means: list[np.ndarray] = []
-        self._first: np.ndarray = np.empty(0)
+        self.first: np.ndarray = np.empty(0)
 
     def add(self, t_us: np.ndarray) -> None:
         """Take the stamps of samples in order."""
-        if len(self._first) < _KEPT:
-            self._first = np.concatenate([self._first, t_us[: _KEPT - len(self._first)]])
+        if len(self.first) < _KEPT:
+            self.first = np.concatenate([self.first, t_us[: _KEPT - len(self.first)]])
         self._means.append(np.diff(t_us[::_STRIDE]) / _STRIDE)
         if len(self._means) > 4096:
             self._means = [np.concatenate(self._means)[:: 1 + len(self._means) // 8192]]
 
     def interval_us(self, path: Path) -> float:
         """Raises BadRecording where time stands still."""
-        stride = min(_STRIDE, max(1, len(self._first) // 16))
+        stride = min(_STRIDE, max(1, len(self.first) // 16))
         means = np.concatenate(self._means) if self._means else np.empty(0)
         if stride < _STRIDE:
-            means = np.diff(self._first[::stride]) / stride
+            means = np.diff(self.first[::stride]) / stride
         usual = float(np.median(means)) if len(means) else 0.0
-        steps = np.diff(self._first)
-        went = steps[steps > 0]
-        if len(went) and (steps == 0).mean() > _REPEATED:
-            usual = float(went[went <= _GAP_INTERVALS * np.median(went)].sum()) / len(steps)
-            self.notes = [
-                "doubtful: time stamps repeat, and rows at a time that stands still teach nothing: "
-                f"give --hz {1e6 / usual:.4g}"
-            ]
         if usual <= 0:
             usual = float(np.mean(means)) if len(means) else 0.0
         if usual <= 0:
@@ -110,11 +99,16 @@ class Pace:
         return usual
 
 
+def longest_us(interval_us: float) -> float:
+    """Until when a reading counts as the next one: a later one is beyond a gap."""
+    return max(GAP_INTERVALS * interval_us, GAP_LEAST_US)
+
+
 class Gaps:
     """Counts pauses that are far longer than the usual interval."""
 
     def __init__(self, interval_us: float) -> None:
-        self._least_us = max(_GAP_INTERVALS * interval_us, 1e6)
+        self._least_us = longest_us(interval_us)
         self._last: float | None = None
         self.count = 0
         self.longest_us = 0.0

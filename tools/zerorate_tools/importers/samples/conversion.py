@@ -17,7 +17,7 @@ from ..columns.plan import Plan, divided_by
 from ..columns.units import kind_of
 from ..report import Options, Report
 from ..tables.table import Table
-from .between import Bridged
+from .between import SAID, Bridged
 from .clock import Gaps
 from .doubts import of_time
 from .gather import Gathered
@@ -160,8 +160,9 @@ def integer_batches(
     if first is None:
         problem, do = "no sample is left", "map the acceleration of this sensor, or none: ax=none"
         raise BadRecording(path, problem, do=do)
-    if bridged.dropped:
-        report.dropped["no acceleration within a second"] += bridged.dropped
+    for name, count in bridged.dropped.items():
+        if count:
+            report.dropped[f"in a gap of the {SAID[name]}; without it: --map {name}=none"] += count
     report.duration_s = float(last - first) * 1e-6
     report.odr_hz = scales.odr_hz
     report.notes += [*gaps.note(), *bridged.notes()]

@@ -12,10 +12,13 @@ from ..columns.guesses import unit_words
 from ..columns.plan import Plan, hz_words
 from ..columns.units import TIME_S
 from ..tables.table import Table
+from .changes import refuse_change_of_unit
 from .clock import Pace, Unwrapped, refuse_impossible, whole_stamps
 from .counts import Counts
 from .order import Runs, in_order
 from .spool import PLACE, TIME, Spool
+from .ticks import Ticks, evenly
+from .turns import refuse_turns
 
 _KEPT = 200
 _FAST_SHARE = 0.001
@@ -74,6 +77,7 @@ class _Gathering:
         self.fastest = 0.0
         self.largest = {"gyro": 0.0, "accel": 0.0}
         self.own: Counter[str] = Counter()
+        self.unfiltered: list[dict[str, np.ndarray]] = []
         self.before = np.full(1 + len(self.readings), np.nan)
         self.runs = Runs()
         self.clock = Unwrapped(self._step_us())
@@ -88,7 +92,10 @@ class _Gathering:
             self.spool.finish()
             self._check()
             counted = self.counts.notes(self.path)
+            self._refuse_turns(self.unfiltered)
             self.spool = in_order(self.spool, self.path, self.folder)
+            if self.runs.steps_back:
+                self._refuse_turns([self._some(n, columns) for n, columns in enumerate(self.spool)])
         except BaseException:
             self.spool.close()
             raise
@@ -134,12 +141,23 @@ class _Gathering:
         self.counts.signed(columns)
         columns = self._less(columns, *self._is_something(columns))
         columns = self._less(columns, *self._not_all_zero(columns))
+        self.unfiltered.append(self._some(len(self.unfiltered), columns))
         columns = self._less(columns, *self._not_too_fast(columns))
         whole = np.isfinite([columns[name] for name in GYRO]).all(axis=0)
         self.samples += int(whole.sum())
         self.runs.add(columns[TIME][whole], columns[PLACE][whole])
         self._measure(columns, whole)
         self.spool.append(columns)
+
+    def _refuse_turns(self, stretches):
+        names = [n for n in (*GYRO, *ACCEL) if n in self.plan.wanted]
+        refuse_turns(stretches, names, self.path)
+
+    def _some(self, number, columns):
+        """The first samples of a piece, more of the first piece."""
+        at = np.flatnonzero(np.isfinite([columns[name] for name in GYRO]).all(axis=0))
+        at = at[: _KEPT if number else 50 * _KEPT]
+        return {name: columns[name][at] for name in (TIME, *self.readings)}
 
     def _less(self, columns, good, reason):
         if good.all():
@@ -190,14 +208,13 @@ class _Gathering:
                 self.largest[kind] = max(self.largest[kind], float(sizes.max(initial=0.0)))
         for name in self.readings:
             self.own[name] += int(np.isfinite(columns[name][whole]).sum())
-        at = np.flatnonzero(whole)
-        at = at[: _KEPT if len(self.kept) else 50 * _KEPT]
-        self.kept.append({name: columns[name][at] for name in (TIME, *self.readings)})
+        self.kept.append(self._some(len(self.kept), columns))
         for group in (ACCEL, (TEMP,)):
             if group[0] in columns:
                 self._look_beside(columns, group)
         if len(self.kept) > 2 * _KEPT:
             self.kept = [self.kept[0], *self.kept[1::2]]
+            self.unfiltered = [self.unfiltered[0], *self.unfiltered[1::2]]
             self.beside = {name: pieces[::2] for name, pieces in self.beside.items()}
 
     def _look_beside(self, columns, names):
@@ -208,6 +225,7 @@ class _Gathering:
             self.beside.setdefault(name, []).append(columns[name][at])
 
     def _check(self):
+        refuse_change_of_unit(self.unfiltered, self.plan, self.table, self.path)
         _refuse_too_fast(self.too_fast, self.samples, self.fastest, self.plan, self.path)
         if not self.samples:
             dropped = self.table.dropped + self.dropped
@@ -226,7 +244,15 @@ class _Gathering:
     def _interval_us(self) -> tuple[float, list[str]]:
         if self.hz:
             return 1e6 / self.hz, []
+        pace, notes = self._pace(), []
+        ticks = Ticks(pace.first)
+        if ticks.coarse:
+            self.spool, note = evenly(self.spool, ticks, self.path, self.folder)
+            pace, notes = self._pace(), [note]
+        return pace.interval_us(self.path), notes
+
+    def _pace(self) -> Pace:
         pace = Pace()
         for columns in self.spool:
             pace.add(columns[TIME][np.isfinite(columns["gx"])])
-        return pace.interval_us(self.path), pace.notes
+        return pace

@@ -16,7 +16,7 @@ import pyarrow.csv
 from ...errors import BadRecording
 from ...recordings.text import damaged, open_text
 from ..report import cut_words
-from .sniffing import COMMENTS, DAY, Form, sniffed
+from .sniffing import COMMENTS, DAY, Form, sniffed, without_arrows
 from .table import Chunk, Table
 
 _BLOCK_BYTES = 1 << 22
@@ -59,7 +59,7 @@ def _chunks(
     read = start = 0
     held = None
     try:
-        whole = _SingleBlanks(watched) if form.delimiter == " " else watched
+        whole = _Lines(watched, form) if form.delimiter == " " or form.arrows else watched
         for batch in _reader(whole, form, names, odd):
             place = odd.places(start, batch.num_rows)
             start = int(place[-1]) + 1 if len(place) else start
@@ -141,11 +141,12 @@ def _refuse_other_names(
         dropped["the line of names again"] += len(same)
 
 
-class _SingleBlanks(io.RawIOBase):
-    """A text in columns, whose cells one blank parts, with none at either end of a line."""
+class _Lines(io.RawIOBase):
+    """A text whose lines are told apart as its form says: one blank parts cells in columns, with
+    none at either end, and a clock before an arrow is a cell."""
 
-    def __init__(self, stream) -> None:
-        self._stream = stream
+    def __init__(self, stream, form: Form) -> None:
+        self._stream, self._form = stream, form
         self._rest = b""
 
     def readable(self) -> bool:
@@ -156,9 +157,13 @@ class _SingleBlanks(io.RawIOBase):
         while block := self._stream.read(_BLOCK_BYTES if size < 0 else size):
             lines, newline, self._rest = (self._rest + block).rpartition(b"\n")
             if newline:
-                return _single_blanks(lines) + newline
+                return self._changed(lines) + newline
         block, self._rest = self._rest, b""
-        return _single_blanks(block)
+        return self._changed(block)
+
+    def _changed(self, lines: bytes) -> bytes:
+        lines = without_arrows(lines) if self._form.arrows else lines
+        return _single_blanks(lines) if self._form.delimiter == " " else lines
 
 
 def _single_blanks(text: bytes) -> bytes:
@@ -231,6 +236,7 @@ def seconds_of(cells: pa.Array) -> np.ndarray:
 
     text = pandas.Series(_decoded(cells), dtype=object).str.strip()
     text = text.str.replace(rf"^{DAY}", "", regex=True).str.replace(",", ".")
+    text = text.str.replace(r"^(\d\d?:\d\d:\d\d):(\d+)", r"\1.\2", regex=True)
     text = text.str.replace(r"\s+([+-]\d\d:?\d\d)$", r"\1", regex=True)
     if text.str.match(r"\d\d?:").any():
         return _since_midnight(text)

@@ -3,7 +3,7 @@
 import csv
 import re
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from ...errors import BadRecording
@@ -26,9 +26,11 @@ _DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+([eE][-+]?\d+)?$")
 #: A day before a time of the day, whatever its order.
 DAY = r"\d\d?[./-]\d\d?[./-]\d{4},?\s+"
 DATE = re.compile(
-    rf"\d{{4}}[-/]\d\d[-/]\d\d[T ]\d\d:\d\d|(?:{DAY})?\d\d?:\d\d:\d\d([.,]\d+)?(\s*[ap]\.?m\.?)?$",
+    rf"\d{{4}}[-/]\d\d[-/]\d\d[T ]\d\d:\d\d|(?:{DAY})?\d\d?:\d\d:\d\d([.,:]\d+)?(\s*[ap]\.?m\.?)?$",
     re.I,
 )
+#: What the Arduino IDE puts before each line of its monitor.
+_CLOCK = re.compile(rb"(?m)^(\d\d:\d\d:\d\d\.\d+) -> (?=[^\r\n]*?([,;\t |]))")
 #: A line of such beneath the names says their units.
 _UNIT = re.compile(
     r"[\[(]?(-|[mun]?s|sec|(m?deg|rad|°)/s|m?dps|m?g|m/s(\^?2|²)|m/\(s\^2\)|°?c|degc|k|lsb)[\])]?$",
@@ -44,7 +46,8 @@ _RATE = re.compile(
 @dataclass(frozen=True)
 class Form:
     """How a text holds its table. names: of the columns, as numbers from 1 where nothing names
-    them; skip: lines before the first row; words: by column, where its cells are few words."""
+    them; skip: lines before the first row; words: by column, where its cells are few words;
+    arrows: a clock and an arrow stand before lines."""
 
     names: list[str]
     skip: int
@@ -55,13 +58,15 @@ class Form:
     words: dict[str, list[str]] = field(default_factory=dict)
     note: str = ""
     said_hz: float | None = None
+    arrows: bool = False
 
 
 def sniffed(path: Path) -> Form:
     """The form of a text, told from its first lines. Raises BadRecording."""
     content, encoding = head(path, _HEAD_BYTES)
     whole = len(content) < _HEAD_BYTES
-    text = content.decode(encoding, errors="replace").lstrip("\ufeff")
+    plain = without_arrows(content)
+    text = plain.decode(encoding, errors="replace").lstrip("\ufeff")
     if "\x00" in text[:1000] and not text[:20].isprintable():
         do = "name a table, or a log of a kind that `zerorate import --help` lists"
         raise BadRecording(path, "neither text nor a log of a known kind", do=do)
@@ -76,7 +81,13 @@ def sniffed(path: Path) -> Form:
             raise BadRecording(path, "empty file", do="name another file")
         problem = f"no line ends within the first {_HEAD_BYTES >> 10} KiB"
         raise BadRecording(path, problem, do="name a table with a sample on each line")
-    return _table_in(lines[:_LINES], lines, encoding, path)
+    form = _table_in(lines[:_LINES], lines, encoding, path)
+    return replace(form, arrows=plain != content)
+
+
+def without_arrows(content: bytes) -> bytes:
+    """A clock and an arrow before a line as a cell of its own."""
+    return _CLOCK.sub(lambda found: found[1] + found[2], content)
 
 
 def _table_in(lines: list[str], every: list[str], encoding: str, path: Path) -> Form:
@@ -100,7 +111,7 @@ def _table_in(lines: list[str], every: list[str], encoding: str, path: Path) -> 
         skip,
         delimiter,
         encoding,
-        decimal_comma=delimiter != "," and any(_DECIMAL_COMMA.match(c.strip()) for c in first),
+        decimal_comma=any(_DECIMAL_COMMA.match(c.strip()) for c in first),
         dates=dates,
         words=_words(every[skip:], names, delimiter, dates),
         note=note,
@@ -182,8 +193,7 @@ def _cells(line: str, delimiter: str) -> list[str]:
 
 def _numbers(cells: list[str], delimiter: str) -> int:
     def is_one(cell: str) -> bool:
-        comma = delimiter != "," and _DECIMAL_COMMA.match(cell)
-        return bool(_NUMBER.match(cell) or comma or DATE.match(cell))
+        return any(form.match(cell) for form in (_NUMBER, _DECIMAL_COMMA, DATE))
 
     return sum(is_one(cell.strip()) for cell in cells)
 
@@ -193,20 +203,29 @@ def _names(lines: list[str], at: int | None, first: list[str], delimiter: str):
         names = [name.strip() for name in _cells(lines[at], delimiter)]
         above = next((line for line in reversed(lines[:at]) if line.strip()), "")
         named = [name.strip() for name in _cells(above, delimiter)]
-        if len(named) == len(names) and all(map(_is_unit, names, named)) and any(names):
-            units = [unit.strip("[()]").replace("(s^2", "s^2") for unit in names]
-            names = [f"{name} [{unit}]" if name else "" for name, unit in zip(named, units)]
+        comments = [line.strip() for line in (above, *lines[at + 1 : at + 2])]
+        said = [_in_comment(line, delimiter) for line in comments if line.startswith(COMMENTS)]
+        for of, units in ((named, names), *((names, units) for units in said)):
+            if len(of) == len(units) and all(map(_is_unit, units, of)) and any(units):
+                units = [unit.strip("[()]").replace("(s^2", "s^2") for unit in units]
+                names = [f"{name} [{unit}]" if name else "" for name, unit in zip(of, units)]
+                break
         else:
             names = _with_those_above(names, lines[:at], delimiter)
         return _as_wide(names, first), ""
     for line in reversed(lines):
         text = line.strip()
         if text.startswith(COMMENTS):
-            names = [name.strip() for name in _cells(text.lstrip("#/%* "), delimiter)]
+            names = _in_comment(text, delimiter)
             if _as_many(names, first) and not _numbers(names, delimiter):
                 return _as_wide(names, first), ""
     numbered = [str(number) for number in range(1, len(first) + 1)]
     return numbered, "no line names the columns: they are called 1, 2, 3, ..."
+
+
+def _in_comment(comment: str, delimiter: str) -> list[str]:
+    """The cells of a comment."""
+    return [cell.strip() for cell in _cells(comment.lstrip("#/%* "), delimiter)]
 
 
 def _with_those_above(names: list[str], lines: list[str], delimiter: str) -> list[str]:
