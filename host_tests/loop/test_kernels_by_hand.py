@@ -1,0 +1,180 @@
+"""Pieces of one recording judged by the firmware itself, beside devices run one by one."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from zerorate_tools.loop.fit.single import PiecesByLine
+from zerorate_tools.loop.search.steps import Step
+from zerorate_tools.loop.verify import measured
+from zerorate_tools.loop.verify.by_kernels import PiecesByKernels
+from zerorate_tools.loop.verify.firmware import Firmware
+from zerorate_tools.model import Slot
+from zerorate_tools.model.term import Term
+
+from .test_verify_by_hand import PER, SCALES, at_rest, effect, powered_on, selected
+
+VOLTS = Term("volt", 4000.0, 6000.0, 5000.0)
+LAGGED = replace(VOLTS, lag_mode="lag", lag_s=20.0)
+BLOCKS = 60
+
+
+@pytest.fixture(scope="module")
+def power_on(tmp_path_factory):
+    """A minute of blocks whose bias follows a voltage that switches."""
+    columns = at_rest(3, BLOCKS)
+    columns["volt"] = np.where(np.arange(BLOCKS * PER) % 400 > 200, 5200, 4900).astype(np.int32)
+    columns["gx"] = columns["gx"] + np.rint((columns["volt"] - 5000) * 0.1).astype(np.int32)
+    made = powered_on(tmp_path_factory.mktemp("one"), columns, ("volt",))
+    made.session.sources["volt"] = columns["volt"].reshape(-1, 5).mean(axis=1)
+    return made
+
+
+def one_by_one(pieces, models, whole=None):
+    """(n, 3) dps left by the device of each turn, which has learned what is not left out in it."""
+    p = pieces.power_on
+    (frames,) = p.frames()
+    blocks = p.blocks(frames)
+    out = np.full((len(blocks), 3), np.nan)
+    for k, (part, model) in enumerate(zip(pieces.parts, models)):
+        device = Firmware(SCALES, model, p.channels)
+        device.power_on()
+        device.run(frames, part.available[blocks])
+        device.power_on()
+        device.set_offset((0, 0, 0))
+        bias = device.run(frames, learn=False) / 256 / 131
+        own = pieces.fold[blocks] == k
+        out[own] = bias[own]
+    means = out.reshape(-1, PER, 3).mean(axis=1)
+    return p.rate_dps - means
+
+
+def test_a_piece_s_error_is_that_of_a_device_that_has_not_learned_it(power_on):
+    pieces = PiecesByKernels(power_on, SCALES)
+    left = pieces.residual([], [])
+    assert left == pytest.approx(one_by_one(pieces, [None] * 10), abs=0.1 / 131)
+    assert pieces.residual([], []) is left  # not run again
+    scored = replace(power_on, scored=np.arange(BLOCKS) % 7 > 0)
+    some = PiecesByKernels(scored, SCALES).residual([], [])
+    assert np.isnan(some[::7]).all() and some[1] == pytest.approx(left[1])
+
+
+@pytest.mark.parametrize("term", [VOLTS, LAGGED])
+def test_a_piece_s_model_is_fitted_to_the_others_and_run_by_its_device(power_on, term):
+    pieces = PiecesByKernels(power_on, SCALES)
+    models = pieces.models([], [term])
+    for model, part in zip(models, pieces.parts):
+        [slot] = model.slots
+        kept, told = PiecesByLine(power_on.session).fitted_to(part, [], [term])
+        assert slot.coefficient_dps == pytest.approx(told[0], abs=1e-6)
+        assert (slot.term.lo, slot.term.hi) == pytest.approx((kept[0].lo, kept[0].hi), abs=1)
+    left = pieces.residual([], [term])
+    assert left == pytest.approx(one_by_one(pieces, models), abs=0.15 / 131)
+    gained = pieces([], [], [term]).sum()
+    assert (gained > 5) if term is VOLTS else np.isfinite(gained)
+    spared = pieces.residual([], [term], np.array([[0.0, 1.0, 1.0]]))
+    assert spared[:, 0] == pytest.approx(pieces.residual([], [])[:, 0], abs=0.15 / 131)
+    assert not np.allclose(spared, left)
+
+
+def test_what_the_firmware_cannot_hold_has_no_error_and_gains_nothing(power_on):
+    pieces = PiecesByKernels(power_on, SCALES)
+    beyond = replace(VOLTS, lag_mode="lag", lag_s=1e9)
+    assert np.isnan(pieces.residual([], [beyond])).all()
+    assert pieces.residual([], [beyond]).shape == (BLOCKS, 3)
+
+
+def test_the_line_is_fitted_beside_the_terms_and_is_no_slot(power_on):
+    pieces = PiecesByKernels(power_on, SCALES)
+    line = Term("temp", centre=25.0)
+    more = [Slot(Term("temp", 0.0, 50.0, 25.0, 2), (0.001, 0.0, 0.0), "x")]
+    models = pieces.models([line], [VOLTS], None, more)
+    assert [s.term.source for s in models[0].slots] == ["volt", "temp"]
+    kept, told = PiecesByLine(power_on.session).fitted_to(pieces.parts[0], [line], [VOLTS])
+    assert models[0].slots[0].coefficient_dps == pytest.approx(told[1], abs=1e-6)
+    assert pieces.models([line], []) == [None] * 10
+    assert models[0].tick_s == 1.0
+
+
+def test_every_sample_is_run_by_the_device_of_its_turn_or_by_one_for_all(power_on):
+    pieces = PiecesByKernels(power_on, SCALES)
+    (frames,) = power_on.frames()
+    turn = pieces.fold[power_on.blocks(frames)]
+    slot = [Slot(VOLTS, (0.001, 0.0, 0.0), "x")]
+    (model,) = {m.slots: m for m in pieces.models([], [], None, slot)}.values()
+    devices = pieces.new([model if k == 4 else None for k in range(10)])
+    bias = pieces.bias_q8(devices, frames)
+    alone = devices[4].copy().run(frames, learn=False)
+    assert (bias[turn == 4] == alone[turn == 4]).all() and np.abs(bias[turn == 4, 0]).max() > 0
+    assert (bias[turn != 4] == 0).all()
+    single = pieces.new([model])
+    assert (pieces.bias_q8(single, frames) == alone).all()
+    learning = pieces.bias_q8(pieces.new([None]), frames, learn=True)
+    assert learning[-1] / 256 == pytest.approx([30, -20, 10], abs=25)
+
+
+@pytest.fixture(scope="module")
+def by_pieces(power_on):
+    pieces = PiecesByKernels(power_on, SCALES)
+    chosen = selected([power_on.session], effect(VOLTS), effect(LAGGED), alone=True)
+    return pieces, chosen
+
+
+def test_of_one_recording_every_way_is_run_and_scored(by_pieces):
+    pieces, chosen = by_pieces
+    m = measured.MeasurementByPieces(pieces, chosen, [])
+    assert list(m.models) == ["before", "after_1", "after"]
+    assert [len(m.models[way][0].slots) for way in ("after_1", "after")] == [1, 2]
+    seen = []
+    course = m.course(lambda name, frames, biases: seen.append(sorted(biases)))
+    ways = ["after", "after_1", "before", "online", "online_before"]
+    assert seen == [ways] and sorted(course.residual) == ways
+    assert course.residual["before"] == pytest.approx(pieces.residual([], []), abs=0.1 / 131)
+    every = pieces.residual([], [VOLTS, LAGGED], np.ones((2, 3)))
+    assert course.residual["after"] == pytest.approx(every, abs=0.1 / 131)
+    assert course.unscored == 0 and course.offset_dps == {}
+    given = {"online": lambda frames: np.full((len(frames), 3), 256 * 131)}
+    other = m.course(lambda *a: None, given)
+    assert other.bias["online"] == pytest.approx(np.ones((BLOCKS, 3)))
+    assert "online_before" not in other.residual
+
+
+def test_what_motion_showed_is_beside_all_effects_alone(by_pieces):
+    pieces, chosen = by_pieces
+    more = [Slot(Term("rate_x", -100.0, 100.0), (0.01, 0.0, 0.0), "scale-factor")]
+    m = measured.MeasurementByPieces(pieces, chosen, more)
+    assert list(m.models) == ["before", "after_1", "after_2", "after"]
+    assert len(m.models["after"][0].slots) == 3 and len(m.models["after_2"][0].slots) == 2
+    none = measured.MeasurementByPieces(pieces, chosen.first(0), [])
+    assert list(none.models) == ["before"]
+    alone = measured.MeasurementByPieces(pieces, chosen.first(0), more)
+    assert list(alone.models) == ["before", "after"]
+
+
+def test_a_stretch_behind_a_step_is_judged_about_its_own_mean(power_on):
+    session = replace(power_on.session, steps=(Step(0, 30, np.full(3, 0.5), 100.0, 0.0),))
+    stepped = PiecesByKernels(replace(power_on, session=session), SCALES)
+    left = stepped.residual([], [])
+    plain = PiecesByKernels(power_on, SCALES).residual([], [])
+    assert left == pytest.approx(stepped.about_stretches(plain), abs=0.1 / 131)
+    assert not np.allclose(left, plain)
+
+
+def test_no_online_is_written_unless_it_was_asked_for(tmp_path, power_on):
+    from zerorate_tools.loop.verify.measure import _sink
+
+    class Writer:
+        rows = []
+
+        def write(self, recording, frames, test, biases):
+            self.rows.append((recording, test.tolist(), sorted(biases)))
+
+    (frames,) = power_on.frames()
+    few = frames.__class__(frames.t_us[:2], frames.frames[:2], frames.dt_us[:2], frames.extra[:2])
+    biases = dict.fromkeys(("before", "after", "online"), 0)
+    for test, online in ((True, False), (False, True)):
+        _sink(Writer(), power_on, test, online)("s", few, biases)
+    assert Writer.rows == [
+        ("s.parquet", [True, True], ["after", "before"]),
+        ("s.parquet", [False, False], ["after", "before", "online"]),
+    ]
