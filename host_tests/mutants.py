@@ -59,7 +59,8 @@ AREAS = {
         ["firmware/zerorate/storage/" + name for name in (
             "store.py", "places.py", "learned_store.py", "save_schedule.py", "soundness.py")],
         ["host_tests/firmware/test_" + name for name in (
-            "store.py", "store_records.py", "places.py", "learned_store.py", "corrector.py")],
+            "store.py", "store_records.py", "places.py", "learned_store.py", "corrector.py",
+            "soundness.py")],
     ),
     "guard": (
         ["firmware/zerorate/rest/guard.py", "firmware/zerorate/checked.py"],
@@ -188,7 +189,8 @@ def same(mutant, text):
     """Why the mutant means the same, by mutants.toml, or ""."""
     for entry in tomllib.loads(SURVIVORS_AND_WHY.read_text(encoding="utf-8"))["same"]:
         names = entry["operators"]
-        if entry["file"] == mutant[0] and entry["line"] == text and mutant[1] in names:
+        there = mutant[0].startswith(entry["file"])
+        if there and entry["line"] == text and mutant[1].rpartition("/")[2] in names:
             return entry["why"]
     return ""
 

@@ -40,6 +40,17 @@ class TestFile:
         assert loaded(FileStorage(tmp_path)) == (codes.UNREADABLE, BLANK)
         assert not make_store(FileStorage(tmp_path)).save(OLD)
 
+    @pytest.mark.parametrize("size", [1, 3, 5, 7, 16])
+    def test_pieces_joined_are_the_file_and_then_erased(self, path, size):
+        path.write_bytes(bytes(range(40)))
+        there = bytes(range(40)) + b"\xff" * 60
+        for offset in (0, 1, 13, 39, 40, 45):
+            for length in range(1, 50):
+                pieces = FileStorage(path).read_pieces(offset, length, bytearray(size))
+                found = [bytes(piece) for piece in pieces]
+                assert b"".join(found) == there[offset : offset + length]
+                assert {len(piece) for piece in found[:-1]} <= {size}
+
     @pytest.mark.parametrize(
         ("offset", "length", "read"),
         [

@@ -156,7 +156,14 @@ def test_a_storage_that_reads_another_thing_each_time_cannot_be_read(memory_of_t
 
 @pytest.mark.parametrize(
     "options",
-    [{"binding": bytes(9)}, {"version": -1}, {"version": 256}, {"pitch": 1}, {"pitch": 71}],
+    [
+        {"binding": bytes(9)},
+        {"version": -1},
+        {"version": 256},
+        {"pitch": 1},
+        {"pitch": 71},
+        {"pitch": -1},
+    ],
     ids=str,
 )
 def test_what_does_not_fit_is_a_value_error(memory, options):

@@ -66,7 +66,7 @@ class Store:
         self._goes_with = goes_with
         self._all = size + 4 * len(goes_with)
         self.slot_bytes = slot_bytes(self._all)
-        if 0 < pitch < self.slot_bytes:
+        if pitch and pitch < self.slot_bytes:
             raise ValueError("a slot takes {} bytes, pitch is {}".format(self.slot_bytes, pitch))
         self.storage = storage
         self.binding = bytes(binding) + bytes(8 - len(binding))
