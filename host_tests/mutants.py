@@ -138,6 +138,15 @@ AREAS = {
             "measured.py", "power_on.py", "prune_by_holdout.py", "slots.py")],
         ["host_tests/loop/test_verify_by_hand.py", "host_tests/loop/test_kernels_by_hand.py"],
     ),
+    # what one search is made of; its course is judged by whole closings
+    "search": (
+        ["tools/zerorate_tools/loop/search/" + name for name in (
+            "catalogue.py", "collinear.py", "confounding.py", "decide.py", "detectable.py",
+            "drift_test.py", "fits_in_slots.py", "multiple_testing.py", "naming.py",
+            "ols_holdout_ratio.py", "periodic.py", "refine.py", "selection.py",
+            "step_places.py")],
+        ["host_tests/loop/test_search_by_hand.py"],
+    ),
     "writers": (
         ["tools/zerorate_tools/ending.py"]
         + ["tools/zerorate_tools/recordings/" + name for name in (

@@ -1,0 +1,912 @@
+"""What a search is told, may propose and must pay: beside plain sums and dense solutions."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+from scipy.stats import chi2, f, norm
+from zerorate_tools.loop.fit.left_out import gains
+from zerorate_tools.loop.fit.line import ordinary
+from zerorate_tools.loop.fit.regression import Regression
+from zerorate_tools.loop.read.earth import Earth
+from zerorate_tools.loop.read.lines import Line
+from zerorate_tools.loop.read.sessions import Session
+from zerorate_tools.loop.search import (
+    catalogue,
+    confounding,
+    decide,
+    detectable,
+    drift_test,
+    naming,
+    periodic,
+    refine,
+    step_places,
+)
+from zerorate_tools.loop.search.catalogue import Candidate, candidates, ranges, varies
+from zerorate_tools.loop.search.collinear import collinear
+from zerorate_tools.loop.search.fits_in_slots import fits_in_slots
+from zerorate_tools.loop.search.multiple_testing import MultipleTesting
+from zerorate_tools.loop.search.ols_holdout_ratio import ols_holdout_ratio
+from zerorate_tools.loop.search.selection import Found, Selection
+from zerorate_tools.loop.search.steps import Step
+from zerorate_tools.model.term import Term, first_order_lag
+
+from . import dense
+from .dense import A, B, C, D
+
+VOLTS, TEMP = Term("vdd_mv", 4900.0, 5100.0, 5000.0), Term("temp", 10.0, 40.0, 25.0)
+
+
+def candidate(*terms, kind="vibration", family="catalogue", refine=()):
+    return Candidate(kind, terms, family, refine)
+
+
+@pytest.fixture
+def sessions():
+    return [dense.made(1, 20), dense.made(2, 23), dense.made(3, 26)]
+
+
+def changed(s, name="a", by=3.0):
+    return replace(s, rate_dps=s.rate_dps + by * s.sources[name][:, None])
+
+
+# --- what must be paid ---
+
+
+def test_a_family_s_chance_is_that_of_one_times_all_that_were_tried():
+    assert decide.family_p(20.0, 3, 5.0) == pytest.approx(5 * chi2.sf(20.0, 3))
+    assert decide.family_p(1.0, 3, 5.0) == 1.0
+    for family, level in (("catalogue", 2.5e-3), ("generic", 5e-5), ("step", 2e-3)):
+        least = decide.smallest_ratio(family, 3, 7.0)
+        assert decide.family_p(least, 3, 7.0) == pytest.approx(level)
+
+
+def test_as_many_tests_as_their_columns_are_apart():
+    assert decide.effective(np.zeros((5, 3))) == decide.effective(np.ones((5, 1))) == 1.0
+    assert decide.effective(np.eye(5)[:, :3] * [1.0, 9.0, 0.1]) == pytest.approx(3.0)
+    two = np.column_stack([[1.0, 0.0, 0.0], [0.6, 0.8, 0.0]])
+    values = np.array([1.6, 0.4])
+    assert decide.effective(two) == pytest.approx(np.sqrt(values).sum() ** 2 / 2)
+    with_none = np.column_stack([two, np.zeros(3)])
+    assert decide.effective(with_none) == pytest.approx(decide.effective(two))
+
+
+@pytest.mark.parametrize(
+    ("nats", "speaks"),
+    [
+        *(([3.1], True), ([3.0], False), ([1.6, 1.6], True), ([1.4, 1.4], False)),
+        *(([4.0, 0.0], False), ([5.0, 6.0, -1.0], True), ([5.0, 5.0, -1.0], False)),
+        *(([9.0, 9.0, -2.9], True), ([9.0, 9.0, -3.0], False)),
+        *(([2.0, 2.0, 2.0, -1.0], True), ([9.0, 9.0, -1.0, -1.0], False)),
+    ],
+)
+def test_sessions_left_out_speak_for_it(nats, speaks):
+    assert decide.predicts(np.array(nats)) is speaks
+
+
+def test_every_lock_must_open(sessions, monkeypatch):
+    null = SimpleNamespace(survival=lambda ratio, columns: p_value * columns, inflation=1.5)
+    monkeypatch.setattr(decide, "null_ratios", lambda *a: null)
+    regression = Regression(sessions)
+    one = candidate(A)
+    p_value = 1e-6
+    low = decide.decide(regression, [], one, 5.0, 10.0, [B])
+    assert (low.accepted, low.reason, low.inflation) == (False, "not significant", 1.0)
+    assert low.p_value == decide.family_p(5.0, 3, 10.0) and low.ratio == 5.0
+    p_value = 1e-2
+    noisy = decide.decide(regression, [], one, 40.0, 2.0, [B])
+    assert not noisy.accepted and noisy.p_value == 0.02 and noisy.inflation == 1.5
+    assert "irrelevant channels" in noisy.reason
+    p_value = 1e-6
+    monkeypatch.setattr(decide, "gains", lambda *a: np.array(nats))
+    nats = [5.0, 5.0, 5.0]
+    good = decide.decide(regression, [], one, 40.0, 2.0, [B])
+    assert good.accepted and good.reason == "" and good.p_value == pytest.approx(2e-6)
+    assert good.session_gains.tolist() == nats
+    nats = [5.0, -5.0, -5.0]
+    bad = decide.decide(regression, [], one, 40.0, 2.0, [B])
+    assert not bad.accepted and "sessions left out" in bad.reason
+    alone = decide.decide(Regression(sessions[:1]), [], one, 40.0, 2.0, [B])
+    assert alone.accepted and len(alone.session_gains) == 0
+    # of two columns chance has six degrees of freedom
+    two = decide.decide(regression, [], candidate(A, B), 5.0, 1.0, [B])
+    assert two.p_value == decide.family_p(5.0, 6, 1.0)
+    assert decide.decide(regression, [], one, 80.0, 1e9, [B]).p_value <= 1.0
+
+
+def pool():
+    return [
+        *(candidate(t, kind="thermal-lag") for t in (A, B)),
+        candidate(C, kind="time-drift"),
+        candidate(D, kind="vibration"),
+        candidate(A, B, kind="linear-acceleration"),
+        candidate(B, kind="channel", family="generic"),
+    ]
+
+
+def test_the_shares_of_a_family_are_by_weight_and_add_up(sessions):
+    testing = MultipleTesting(Regression(sessions), pool(), (), (), False)
+    shares = {c.kind: testing.grid(c.kind) / testing.tried(c) for c in pool()}
+    assert shares["time-drift"] == pytest.approx(6 / 9)
+    for kind in ("vibration", "thermal-lag", "linear-acceleration"):
+        assert shares[kind] == pytest.approx(1 / 9)
+    assert shares["channel"] == 1.0
+    assert testing.grid("vibration") == testing.grid("linear-acceleration") == 1.0
+
+
+def test_a_grid_counts_as_many_as_its_columns_beside_line_and_bend(sessions):
+    regression = Regression(sessions)
+    testing = MultipleTesting(regression, pool(), (C,), (D,), False)
+
+    def stacked(*terms):
+        p = dense.problem(sessions, terms)
+        return p.x
+
+    x, z = stacked(A, B), stacked(C, D)
+    left = x - z @ np.linalg.lstsq(z, x, rcond=None)[0]
+    assert testing.grid("thermal-lag") == pytest.approx(decide.effective(left))
+    quadratic = [candidate(t, kind="temperature-quadratic") for t in (A, B)]
+    bend = MultipleTesting(regression, quadratic, (C,), (D,), False)
+    z = stacked(C)
+    left = x - z @ np.linalg.lstsq(z, x, rcond=None)[0]
+    assert bend.grid("temperature-quadratic") == pytest.approx(decide.effective(left))
+    plain = MultipleTesting(regression, pool(), (), (), False)
+    assert plain.grid("thermal-lag") == pytest.approx(decide.effective(x))
+
+
+def test_what_follows_time_is_asked_other_questions_where_it_can_come_again(sessions):
+    regression = Regression(sessions)
+    drift = candidate(Term("time"), kind="time-drift")
+    every = [*pool(), drift]
+    for power_ons in (True, False):
+        testing = MultipleTesting(regression, every, (), (), power_ons)
+        assert testing.is_by_time(drift) is power_ons and not testing.is_by_time(every[3])
+        tried = testing.tried(drift)
+        if power_ons:
+            assert testing.least_ratio(drift) == pytest.approx(chi2.isf(0.01, 3))
+            assert testing.needed(drift) == drift_test.smallest_square(tried, 3, 3)
+        else:
+            assert testing.least_ratio(drift) == decide.smallest_ratio("catalogue", 3, tried)
+            assert testing.needed(drift) == testing.least_ratio(drift)
+    both = every[4]
+    assert testing.least_ratio(both) == decide.smallest_ratio("catalogue", 6, testing.tried(both))
+    assert testing.needed(both) == decide.smallest_ratio("catalogue", 3, testing.tried(both))
+
+
+# --- what follows time ---
+
+
+def test_chances_taken_together_are_fishers():
+    assert drift_test.together(0.2) == pytest.approx(0.2)
+    assert drift_test.together(0.2, 0.3) == pytest.approx(chi2.sf(-2 * np.log(0.06), 4))
+    assert 0 < drift_test.together(0.0, 1.0) < 1e-290
+
+
+@pytest.mark.parametrize(
+    ("fields", "follows"),
+    [
+        ({"source": "time"}, True),
+        ({"source": "one", "decay_s": 9.0}, True),
+        ({"source": "a"}, False),
+        ({"source": "time", "second": "a"}, False),
+    ],
+)
+def test_what_follows_the_clock_alone(fields, follows):
+    assert drift_test.follows_time(candidate(Term(**fields))) is follows
+    assert not drift_test.follows_time(candidate(Term(**fields), A))
+
+
+def test_a_mean_and_a_spread_are_of_the_sessions_own_coefficients(sessions):
+    scale = np.array([[0.5, 1.0, 1.0], [1.0, 1.0, 2.0], [2.0, 1.0, 0.5]])
+    regression = Regression([changed(s) for s in sessions])
+    regression.scale = scale
+    mean, spread = drift_test.repeats(regression, [B], [A])
+    base = regression.fit([B, A]).base
+    expected = np.zeros(2)
+    for a, colour in enumerate(base.best):
+        p = dense.problem(regression.sessions, [B, A], scale[:, a])
+        to = np.linalg.inv(p.v[colour])
+        z, x, y = p.x[:, :1], p.x[:, 1], p.y[:, a]
+        take = np.linalg.solve(z.T @ to @ z, z.T @ to)
+        x, y = x - z @ (take @ x), y - z @ (take @ y)
+        along = np.array([x[r] @ to[r, r] @ y[r] for r in p.rows])
+        size = np.array([x[r] @ to[r, r] @ x[r] for r in p.rows])
+        common = along.sum() / size.sum()
+        expected += (
+            np.array([common**2 * size.sum(), ((along - common * size) ** 2 / size).sum()])
+            / base.variance[a]
+        )
+    assert (mean, spread) == pytest.approx(tuple(expected), rel=1e-5)
+    ratio = drift_test.ratio_with_common_colour(regression, [B], [A])
+    free = 6
+    between = (spread + 4) / (free + 4)
+    both = chi2.sf(ratio, 3), f.sf(mean / 3 / between, 3, free + 4)
+    told = drift_test.chance(regression, [B], [A])
+    assert told == pytest.approx(chi2.sf(-2 * np.log(both).sum(), 4))
+    decision = drift_test.considered(regression, [B], candidate(A), 50.0, 2.0)
+    assert decision.p_value == pytest.approx(2 * told) and decision.tried == 2.0
+    assert decision.accepted and decision.reason == "" and decision.ratio == 50.0
+    assert decision.session_gains == pytest.approx(gains(regression, [B], [A]))
+    dear = drift_test.considered(regression, [B], candidate(A), 50.0, 1.01e-3 / told)
+    assert not dear.accepted and "walk" in dear.reason
+    for tried, again in ((0.99e-6 / told, True), (1.01e-6 / told, False)):
+        assert drift_test.comes_again(regression, [B], candidate(A), tried) is again
+
+
+def test_a_colour_that_three_axes_share_costs_what_student_s_t_says():
+    low = np.array([0.0, 1.0, 2.0])
+    likely = np.array([[0.0, -50.0, -50.0], [-50.0, -50.0, -1.0]])
+    costs = []
+    for common in np.linspace(0.0, 2.0, 31):
+        off = (low - common) / 0.7
+        costs.append((likely - 2.0 * np.log1p(off**2 / 3)).max(axis=1).sum())
+    assert drift_test.common_colour(likely, low) == pytest.approx(max(costs))
+    spectrum = np.exp(np.array([[4.0, 2.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0]]))
+    assert drift_test.lowness(spectrum) == pytest.approx([3.0 - 1.5, 0.0])
+
+
+def test_a_ratio_with_a_common_colour_is_the_gain_of_both_fits(sessions):
+    regression = Regression([changed(s, by=0.4) for s in sessions])
+    low = drift_test.lowness(regression.whiteners[2].spectrum)
+    told = [
+        drift_test.common_colour(regression.fit(terms).base.loglik, low) for terms in ([B], [B, A])
+    ]
+    found = drift_test.ratio_with_common_colour(regression, [B], [A])
+    assert found == pytest.approx(2 * (told[1] - told[0]))
+    assert drift_test.ratio_with_common_colour(regression, [A], [A]) == pytest.approx(0, abs=1e-6)
+
+
+def test_the_smallest_square_passes_now_and_with_one_power_on_more():
+    for tried, n in ((1.0, 2), (20.0, 3)):
+        squares = []
+        for level, count in ((1e-3, n), (1e-6, n + 1)):
+            free = 3 * (count - 1) + 4
+
+            def over(x, free=free, level=level, tried=tried):
+                each = chi2.sf(x, 3), f.sf(x / 3, 3, free)
+                return np.log(drift_test.together(*each) * tried / level)
+
+            squares.append(brentq(over, 1.0, 500.0))
+        least = drift_test.smallest_square(tried, 3, n)
+        assert least == pytest.approx(max(squares[0], squares[1] * n / (n + 1)))
+
+
+# --- what could have been shown, and the plain error ---
+
+
+def test_the_smallest_effect_is_what_passes_nine_times_in_ten(sessions):
+    regression = Regression(sessions)
+    regression.scale = np.array([[0.5, 1.0, 1.0], [1.0, 1.0, 2.0], [2.0, 1.0, 0.5]])
+    kinds = [candidate(A, kind="x"), candidate(C, kind="x"), candidate(D, kind="y")]
+    kinds += [candidate(B, kind="none"), candidate(A, B, kind="two")]
+    found = detectable.smallest_dps(regression, [B], kinds, lambda c: 16.0)
+    base = regression.fit([B]).base
+    sizes = {}
+    for term in (A, C, D):
+        information = 0.0
+        for a, colour in enumerate(base.best):
+            p = dense.problem(sessions, [term, B], regression.scale[:, a])
+            to = np.linalg.inv(p.v[colour])
+            x, z = p.x[:, 0], p.x[:, 1:]
+            left = x - z @ np.linalg.solve(z.T @ to @ z, z.T @ to @ x)
+            information += left @ to @ left / base.variance[a]
+        columns = [np.column_stack([s.sources[term.source], s.sources["b"]]) for s in sessions]
+        whole = np.vstack([c - c.mean(axis=0) for c in columns])
+        left = (
+            whole[:, 0] - whole[:, 1:] @ np.linalg.lstsq(whole[:, 1:], whole[:, 0], rcond=None)[0]
+        )
+        need = (4.0 + norm.ppf(0.9)) ** 2
+        sizes[term] = np.sqrt(need / information) * left.std()
+    assert found["x"] == pytest.approx(min(sizes[A], sizes[C]), rel=1e-5)
+    assert found["y"] == pytest.approx(sizes[D], rel=1e-5)
+    assert set(found) == {"x", "y"}  # what B holds, and what has two terms, is not named
+    assert detectable.smallest_dps(regression, [B], kinds[-1:], None) == {}
+
+
+@pytest.mark.parametrize("straight", [[], [C]])
+def test_the_plain_error_is_that_of_each_session_by_a_fit_to_the_others(sessions, straight):
+    regression = Regression([changed(s) for s in sessions])
+    regression.turn(np.diag([2.0, 1.0, 0.5]))
+
+    def squares(effects, own):
+        every = [*straight, *effects]
+        fit = regression.fit(every)
+        total = 0.0
+        for k, s in enumerate(regression.sessions):
+            b = np.zeros((len(every), 3))
+            for a, colour in enumerate(fit.base.best):
+                p = dense.problem(regression.sessions, every)
+                turned = p.y * [2.0, 1.0, 0.5]
+                to = np.linalg.inv(p.v[colour])
+                at = np.concatenate(
+                    [np.arange(r.start, r.stop) for j, r in enumerate(p.rows) if j != k]
+                )
+                zz = p.x[at].T @ to[np.ix_(at, at)] @ p.x[at]
+                for j in own:
+                    size = np.sqrt((fit.base.fitted[:, j] ** 2).mean())
+                    zz[j, j] += fit.base.variance[a] / (3 * size) ** 2
+                b[:, a] = np.linalg.solve(zz, p.x[at].T @ to[np.ix_(at, at)] @ turned[at, a])
+            b = b / [2.0, 1.0, 0.5]
+            n = len(straight)
+            others = [o for j, o in enumerate(regression.sessions) if j != k]
+            model = sum(np.outer(s.sources[t.source], c) for t, c in zip(effects, b[n:]))
+            if straight:
+                line = (
+                    ordinary(straight, others, effects, b[n:])
+                    if effects
+                    else ordinary(straight, others)
+                )
+                model = model + np.outer(s.sources["c"], line[0])
+            left = s.rate_dps - model
+            total += ((left - left.mean(axis=0)) ** 2).sum()
+        return total
+
+    n = len(straight)
+    expected = np.sqrt(squares([B, A], [n + 1]) / squares([B], []))
+    assert ols_holdout_ratio(regression, straight, [B], [A]) == pytest.approx(expected, rel=1e-4)
+    assert expected < 0.5
+    assert ols_holdout_ratio(Regression(sessions[:1]), straight, [], [A]) == 1.0
+
+
+def test_a_memory_that_others_of_its_source_leave_nothing_of_is_the_same(sessions):
+    lags = [Term("a", lag_s=s, lag_mode="lag") for s in (30.0, 31.0, 400.0)]
+    assert collinear(lags[:1], lags[1:2], sessions)
+    assert not collinear(lags[:1], lags[2:], sessions)
+    assert not collinear(lags[:1], [replace(lags[1], source="b")], sessions)
+    assert not collinear([A], lags, sessions) and not collinear(lags[:1], [A], sessions)
+    assert not collinear(lags[:2], lags[1:2], sessions) and not collinear(lags[:1], [], sessions)
+    for memory in ({"delay_s": 20.0}, {"decay_s": 99.0}, {"width": 1.0, "memory": "backlash"}):
+        one = Term("a", **memory)
+        assert collinear([one], [replace(one, centre=0.01)], sessions)
+
+
+# --- places of steps ---
+
+
+def test_before_a_step_is_nothing_and_of_the_block_with_it_in_the_share_behind_it():
+    session = Session("x", 20.0, 4, np.zeros((6, 3)), np.ones(6), {})
+    told = step_places.heavisides(session, np.array([2.0, 2.25, 5.5, 0.0]))
+    assert told[:, 0].tolist() == [0, 0, 1, 1, 1, 1]
+    assert told[:, 1].tolist() == [0, 0, 0.75, 1, 1, 1]
+    assert told[:, 2].tolist() == [0, 0, 0, 0, 0, 0.5] and (told[:, 3] == 1).all()
+    weight = np.ones(24)
+    weight[8:10] = 0.0  # the first half of block 2 was no rest
+    half = replace(session, tick_weight=weight)
+    assert step_places.heavisides(half, np.array([2.25]))[2, 0] == 1.0
+    assert step_places.heavisides(half, np.array([2.75]))[2, 0] == 0.5
+    none = replace(session, tick_weight=np.zeros(24))
+    assert step_places.heavisides(none, np.array([2.25]))[2, 0] == 0.75
+
+
+@pytest.mark.parametrize(("blocks", "places"), [(100, 86), (15, 1), (14, 0), (3, 0)])
+def test_a_step_is_looked_for_away_from_either_end(blocks, places):
+    session = Session("x", 20.0, 1, np.zeros((blocks, 3)), np.ones(blocks), {})
+    assert step_places.tried(session) == places
+    ground = step_places._ground(session)
+    assert len(ground) == places
+    if places:
+        assert (ground[0], ground[-1]) == (10, blocks - 5)
+
+
+def test_no_step_is_looked_for_beside_motion():
+    ticks = np.zeros((40, 3))
+    ticks[20:22] = np.nan
+    session = Session("x", 20.0, 1, np.zeros((40, 3)), np.ones(40), {}, ticks_dps=ticks)
+    assert sorted(set(range(10, 36)) - set(step_places._ground(session))) == [20, 21, 22]
+
+
+@pytest.fixture
+def stepped():
+    """Three sessions, the second with a step a quarter into its block 31."""
+    made = [dense.made(seed, 60) for seed in (4, 5, 6)]
+    for s in made:
+        rng = np.random.default_rng(int(s.name[1]))
+        s.rate_dps[:] = rng.normal(size=(60, 3))
+    column = np.clip(np.arange(60) + 1.0 - 31.25, 0, 1)
+    made[1].rate_dps += np.outer(column, [9.0, -9.0, 0.0])
+    return made
+
+
+def test_the_best_place_is_where_a_step_explains_most_to_a_quarter_of_a_block(stepped):
+    regression = Regression(stepped)
+    place, every = step_places.best_place(regression, [A])
+    assert place.session == 1 and place.at == pytest.approx(31.25)
+    assert [s for s, _, _ in every] == [0, 1, 2] and len(every[0][1]) == 46
+    column = np.clip(np.arange(60) + 1.0 - 31.25, 0, 1)
+    with_it = [
+        replace(s, sources={**s.sources, "s": column * (i == 1)}) for i, s in enumerate(stepped)
+    ]
+    expected = Regression(with_it).gains([A], [(Term("s"),)]).sum()
+    assert place.ratio == pytest.approx(expected, rel=1e-6)
+    whole = (np.arange(60) >= 31) * 1.0
+    with_it[1].sources["s"] = whole
+    at = list(every[1][1]).index(31)
+    assert every[1][2][at] == pytest.approx(
+        Regression(with_it).gains([A], [(Term("s"),)]).sum(), rel=1e-6
+    )
+    short = Session(
+        "x",
+        20.0,
+        1,
+        np.random.default_rng(0).normal(size=(12, 3)),
+        np.ones(12),
+        {"a": np.arange(12.0)},
+    )
+    assert step_places.best_place(Regression([short]), [A]) == (None, [])
+
+
+def test_a_step_explains_more_than_a_ramp_and_a_ramp_more_than_a_step(stepped):
+    sharp = Regression(stepped)
+    assert step_places.beyond_ramps(sharp, [A], 1, 31.25) > 20
+    slow = [replace(s, rate_dps=s.rate_dps.copy()) for s in stepped]
+    slow[0].rate_dps += np.outer(np.clip((np.arange(60) - 26) / 12, 0, 1), [9.0, -9.0, 9.0])
+    assert step_places.beyond_ramps(Regression(slow), [A], 0, 32.0) < -10
+    ramp = step_places.best_slow(Regression(slow), [A], 0, [28.0, 36.0])
+    assert ramp > 60
+    assert step_places.best_slow(sharp, [A], 0, [28.0, 36.0]) < 25
+    settles = [replace(s, rate_dps=s.rate_dps.copy()) for s in stepped]
+    since = np.maximum(np.arange(60) + 0.5 - 28, 0)
+    settles[0].rate_dps += np.outer(1 - np.exp(-since / 4), [9.0, -9.0, 9.0])
+    found = step_places.best_slow(Regression(settles), [A], 0, [28.0, 32.0])
+    column = [
+        replace(s, sources={**s.sources, "e": (1 - np.exp(-since / 4)) * (i == 0)})
+        for i, s in enumerate(settles)
+    ]
+    expected = Regression(column).gains([A], [(Term("e"),)]).sum()
+    assert 0.999 * expected < found < 1.05 * expected
+
+
+def test_where_the_device_did_not_rest_a_step_may_be_at_either_end():
+    session = Session("x", 20.0, 1, np.zeros((20, 3)), np.ones(20), {})
+    assert step_places._around(session, 7.0).tolist() == np.arange(6.25, 7.76, 0.25).tolist()
+    gap = replace(session, weight=(~np.isin(np.arange(20), (6, 7, 8, 9))).astype(float))
+    around = step_places._around(gap, 8.0)
+    assert {6.0, 10.0, 8.0, 5.25, 10.75} <= set(around) and around.max() == 10.75
+
+
+# --- the catalogue ---
+
+
+def warm(blocks=50, seed=0, **more):
+    rng = np.random.default_rng(seed)
+    sources = {
+        "temp": np.linspace(20.0, 30.0, blocks),
+        "acc_x": np.linspace(-0.2, 0.3, blocks),
+        "acc_y": np.zeros(blocks),
+        "acc_z": np.ones(blocks),
+        "vib": np.full(blocks, 0.1),
+        "vdd_mv": 5000 + 20 * rng.normal(size=blocks),
+        "load": rng.normal(size=blocks),
+        **more,
+    }
+    return Session(f"w{seed}", 20.0, 1, rng.normal(size=(blocks, 3)), np.ones(blocks), sources)
+
+
+def test_a_source_s_range_leaves_out_extremes_that_no_several_blocks_share():
+    session = warm(blocks=200)
+    session.sources["load"][[3, 50, 90]] = [99.0, 98.0, 97.0]
+    span = ranges([session])
+    load = np.sort(session.sources["load"])
+    few = int(1 + 0.01 * 200)
+    assert few == 3 and span["load"] == (load[few], load[-1 - few], pytest.approx(load.mean()))
+    assert span["load"][1] < 10
+    assert span["temp"] == (20.0, 30.0, pytest.approx(25.0))
+    assert span["time"] == (10.0, 3990.0, pytest.approx(2000.0))
+    unseen = replace(session, weight=(np.arange(200) < 100).astype(float))
+    assert ranges([unseen])["temp"][1] == session.sources["temp"][99]
+    two = ranges([session, warm(blocks=2, seed=1)])
+    assert two["temp"][:2] == (20.0, 30.0) and set(two) == set(span)
+    tiny = ranges([warm(blocks=2)])["load"]
+    assert tiny[0] <= tiny[1]
+
+
+@pytest.mark.parametrize(
+    ("name", "span", "moves"),
+    [
+        ("temp", 0.31, True),
+        ("temp", 0.29, False),
+        ("acc_x", 0.11, True),
+        ("acc_x", 0.09, False),
+        ("rate_y", 2.1, True),
+        ("rate_y", 1.9, False),
+        ("load", 1e-6, True),
+        ("load", 0.0, False),
+        ("time", 0.0, True),
+    ],
+)
+def test_a_source_that_hardly_moves_shows_nothing(name, span, moves):
+    sessions = [warm(), warm()]
+    sessions[0].sources[name] = np.zeros(50)
+    sessions[1].sources[name] = np.linspace(5.0, 5.0 + span, 50)
+    assert bool(varies(name, sessions)) is moves
+
+
+@pytest.mark.parametrize(
+    ("name", "supply"),
+    [
+        ("vdd_mv", True),
+        ("VBAT", True),
+        ("Supply 5V", True),
+        ("my_volts", True),
+        ("vcc", True),
+        ("load", False),
+    ],
+)
+def test_a_supply_is_told_by_its_name(name, supply):
+    assert catalogue.is_supply(name) is supply
+    assert catalogue.extra_channels(warm()) == ("vdd_mv", "load")
+
+
+def of_kind(found, kind):
+    return [c for c in found if c.kind == kind]
+
+
+def test_candidates_are_the_rows_of_effects_in_their_places():
+    session = warm()
+    found = candidates([session])
+    span = ranges([session])
+    [bend] = of_kind(found, "temperature-quadratic")
+    assert bend.terms == (Term("temp", 20.0, 30.0, span["temp"][2], power=2),)
+    cubic = of_kind(found, "temperature-cubic")
+    assert [c.terms[0].centre for c in cubic] == [span["temp"][2], 20.0, 30.0]
+    assert cubic[0].refine == ("centre",) and bend.refine == ()
+    kinks = of_kind(found, "temperature-kink")
+    at = [
+        20 + 10 * share - span["temp"][2]
+        for share in (0.15, 0.25, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85)
+    ]
+    assert [c.terms[0].knot for c in kinks] == pytest.approx(at) and kinks[0].refine == ("knot",)
+    lag = of_kind(found, "thermal-lag")
+    assert (lag[0].terms[0].lo, lag[0].terms[0].hi) == (15.0, 35.0)  # half of its range further
+    rate = of_kind(found, "thermal-rate")
+    assert (rate[0].terms[0].lo, rate[0].terms[0].hi) == (15.0, 35.0)
+    loop = of_kind(found, "thermal-hysteresis")
+    assert (loop[0].terms[0].lo, loop[0].terms[0].hi) == (15.0, 35.0)
+    [peak] = of_kind(found, "temperature-peak") or [None]
+    assert peak is None  # it only ever rises here: no memory of anything
+    [drift] = of_kind(found, "time-drift")
+    assert drift.terms[0].centre == 0.0 and drift.sources == ["time"]
+    decay = of_kind(found, "power-on-transient")
+    assert len(decay) == 7 and decay[0].sources == [] and decay[0].terms[0].centre == 0.0
+    assert decay[0].terms[0].lo == -np.inf
+    [volts] = of_kind(found, "supply-voltage")
+    assert volts.sources == ["vdd_mv"] and volts.family == "catalogue"
+    product = of_kind(found, "supply-temperature")
+    assert len(product) == 9 and product[0].sources == ["vdd_mv", "temp"]
+    both = {(c.terms[0].centre, c.terms[0].second_centre) for c in product}
+    assert (span["vdd_mv"][0], 30.0) in both and len(both) == 9
+    assert product[0].terms[0].second_lo == 20.0 and product[0].terms[0].second_hi == 30.0
+    [linear] = of_kind(found, "linear-acceleration")
+    assert [t.source for t in linear.terms] == ["acc_x", "acc_y", "acc_z"]
+    [squared] = of_kind(found, "squared-acceleration")
+    lo, hi, _ = span["acc_x"]
+    reach = max(-lo, hi)
+    assert (squared.terms[0].lo, squared.terms[0].hi, squared.terms[0].centre) == (
+        -reach,
+        reach,
+        0.0,
+    )
+    assert not of_kind(found, "vibration") and not of_kind(found, "rate-scale")
+    others = {
+        c.terms[0].second for c in of_kind(found, "channel-product") if c.terms[0].source == "load"
+    }
+    assert others == {"temp"}  # the supply comes before it, and has the two's product
+    first = {
+        c.terms[0].second
+        for c in of_kind(found, "channel-product")
+        if c.terms[0].source == "vdd_mv"
+    }
+    assert first == {"temp", "load"}
+    curve = of_kind(found, "channel-curve")
+    assert {c.family for c in curve} == {"generic"} and all(c.is_free for c in curve)
+    assert len(curve[0].slots) == 1 and len(volts.slots) == 1 and not volts.is_free
+
+
+def test_what_does_not_vary_or_was_not_recorded_is_no_candidate():
+    still = warm(temp=np.full(50, 20.0), acc_x=np.zeros(50))
+    found = candidates([still])
+    assert not [c for c in found if "temp" in c.sources or "acc_x" in c.sources]
+    bare = replace(warm(), sources={})
+    assert {c.kind for c in candidates([bare])} == {"time-drift", "power-on-transient"}
+    turning = {f"rate_{a}": np.linspace(0.0, 9.0, 50) for a in "xyz"}
+    assert of_kind(candidates([warm(**turning)]), "rate-scale")
+    shaken = candidates([warm(vib=np.linspace(0.0, 1.0, 50))])
+    assert of_kind(shaken, "vibration")
+
+
+def test_forms_of_temperature_are_of_one_slot_and_a_late_part_adds_its_rate_times_its_slope():
+    session = warm()
+    found = catalogue.of_temperature([session])
+    late = [c for c in found if len(c.terms) == 2]
+    assert [c.terms[0].lag_s for c in late] == [1.0, 8.0]
+    assert all(c.terms[1].second == "temp" for c in late)
+    assert late[0].terms[1].second_centre == pytest.approx(25.0)
+    assert all(c.sources == ["temp"] for c in found) and len(found) > 10
+    lags = catalogue.lags([session])
+    assert [t.lag_s for t in lags] == [s for s in (5, 15, 45, 135, 405, 1215) for _ in (1, 2)]
+    assert [t.power for t in lags] == [1, 2] * 6 and lags[1].power_first and not lags[0].power_first
+    assert lags[0].centre == pytest.approx(25.0) and lags[0].lag_mode == "difference"
+    bare = replace(session, sources={})
+    assert catalogue.of_temperature([bare]) == [] == catalogue.lags([bare])
+
+
+def test_only_bounded_bases_go_on_beyond_their_source():
+    for fields, bounded in (
+        ({"lag_mode": "difference"}, True),
+        ({"lag_mode": "rate"}, True),
+        ({"memory": "backlash"}, True),
+        ({"memory": "peak"}, False),
+        ({"lag_mode": "lag"}, False),
+        ({}, False),
+    ):
+        assert catalogue.is_bounded(fields) is bounded
+
+
+# --- names ---
+
+
+def test_a_simpler_effect_is_a_catalogue_s_or_one_of_fewer_free_parameters():
+    order = [
+        candidate(A, refine=()),
+        candidate(A, refine=("lag_s",)),
+        candidate(A, refine=("centre", "second_centre")),
+        candidate(A, kind="channel", family="generic"),
+        candidate(A, kind="channel-lag", family="generic"),
+        candidate(A, kind="channel-curve", family="generic"),
+    ]
+    worth = [confounding.complexity(c) for c in order]
+    assert worth == sorted(worth) and len(set(worth)) == 6
+    assert confounding.label(order[0]) == "vibration"
+    assert confounding.label(order[3]) == "channel(a)"
+    pair = candidate(replace(A, second="b"), kind="channel-product", family="generic")
+    assert confounding.label(pair) == "channel-product(a, b)"
+
+
+@pytest.mark.parametrize(
+    ("kind", "lag_s", "name", "mode"),
+    [
+        ("thermal-rate", 50.0, "thermal-rate", "rate"),
+        ("thermal-rate", 50.1, "thermal-lag", "difference"),
+        ("thermal-lag", 40.0, "thermal-rate", "rate"),
+        ("thermal-lag", 400.0, "thermal-lag", "difference"),
+    ],
+)
+def test_a_rate_and_a_lag_are_named_by_their_seconds(kind, lag_s, name, mode):
+    one = candidate(Term("temp", lag_s=lag_s, lag_mode="rate"), kind=kind)
+    named = confounding.named(one, np.ones((1, 3)))
+    assert named.kind == name and named.terms[0].lag_mode == mode
+
+
+def test_a_matrix_is_named_by_where_most_of_it_is():
+    rates = candidate(*(Term(f"rate_{a}") for a in "xyz"), kind="rate-scale")
+    names = [
+        confounding.named(rates, matrix).kind
+        for matrix in (np.eye(3), 1 - np.eye(3), np.ones((3, 3)))
+    ]
+    assert names == ["scale-factor", "cross-axis", "scale-factor+cross-axis"]
+    same = candidate(A)
+    assert confounding.named(same, np.ones((1, 3))) is same
+
+
+def test_of_effects_that_tie_the_simplest_is_named_and_the_others_stay_beside_it(sessions):
+    for s in sessions:
+        s.sources["twin"] = s.sources["a"] * 1.0001
+    made = [changed(s) for s in sessions]
+    regression = Regression(made)
+    lagged = candidate(Term("a", lag_s=0.1, lag_mode="lag"), kind="channel-lag", family="generic")
+    plain = candidate(Term("twin"), kind="channel", family="generic")
+    catalogued = candidate(A, kind="vibration")
+    far = candidate(B, kind="supply-voltage")
+    every = [lagged, plain, catalogued, far]
+    ratios = regression.gains([], [c.terms for c in every]).sum(axis=1)
+    found = confounding.rivals(regression, [], lagged, every, ratios)
+    assert found[0] is catalogued and found[1] is lagged and set(map(id, found)) == {
+        id(lagged), id(plain), id(catalogued)}  # fmt: skip
+    alone = confounding.rivals(regression, [], catalogued, every, ratios)
+    assert alone[0] is catalogued and far not in alone
+    worse = confounding.rivals(regression, [], far, every, ratios)
+    assert worse[0] is far  # others explain more than it: no tie
+
+
+def test_names_given_are_the_simplest_s_with_what_ties_beside_it(sessions):
+    regression = Regression([changed(s) for s in sessions])
+    lagged = candidate(Term("a", lag_s=0.1, lag_mode="lag"), kind="channel-lag", family="generic")
+    pool_ = [candidate(A, kind="vibration"), candidate(B, kind="supply-voltage")]
+    decision = decide.Decision(True, 0.0, 0.0, 1.0, np.zeros(1))
+    found = [Found(lagged, decision)]
+    naming.name_found(regression, (), found, pool_, 0)
+    assert found[0].candidate.kind == "vibration"
+    assert found[0].confounded_with == ["channel-lag(a)"]
+    kept = [Found(lagged, decision, ["vibration", "other"])]
+    naming.name_found(regression, (), kept, pool_, 1)
+    assert kept[0].candidate.kind == "channel-lag"
+    assert kept[0].confounded_with == ["vibration", "other"]
+    slope = [Found(candidate(TEMP, kind="temperature-polynomial"), decision)]
+    naming.name_found(regression, (), slope, pool_, 0)
+    assert slope[0].candidate.kind == "temperature-polynomial"
+
+
+def test_earth_is_named_beside_what_follows_a_pose_and_is_no_larger(sessions):
+    for s in sessions:
+        s.sources["acc_x"] = np.sign(s.sources["a"])
+    earthly = [replace(s, earth=Earth(np.zeros((s.blocks, 3)), 0.004, "")) for s in sessions]
+    term = Term("acc_x")
+    decision = decide.Decision(True, 0.0, 0.0, 1.0, np.zeros(1))
+
+    def beside(kind, size, some):
+        found = [Found(candidate(term, kind=kind), decision)]
+        naming.name_earth(found, [B, term], np.array([[9.0] * 3, [size, 0, 0]]), some)
+        return found[0].confounded_with
+
+    assert beside("linear-acceleration", 0.002, earthly) == ["earth-rotation"]
+    assert beside("squared-acceleration", 0.002, earthly) == ["earth-rotation"]
+    assert beside("linear-acceleration", 0.5, earthly) == []
+    assert beside("vibration", 0.002, earthly) == []
+    assert beside("linear-acceleration", 0.002, sessions) == []
+
+
+# --- refinement, slots, selections, lines ---
+
+
+def test_a_lag_is_refined_to_where_it_is_likeliest():
+    made = [dense.made(seed, 80) for seed in (1, 2)]
+    for s in made:
+        s.rate_dps[:] = np.random.default_rng(1).normal(size=(80, 3)) * 0.05
+        s.rate_dps += first_order_lag(s.sources["a"], 130.0, 20.0)[:, None]
+    regression = Regression(made)
+    start = candidate(Term("a", lag_s=80.0, lag_mode="lag"), refine=("lag_s",))
+    found = refine.refined(regression, [], start)
+    assert found.terms[0].lag_s == pytest.approx(130.0, rel=0.03)
+    assert len(regression._cache) <= 2  # what was tried is not kept
+    far = candidate(Term("a", lag_s=20.0, lag_mode="lag"), refine=("lag_s",))
+    assert refine.refined(regression, [], far).terms[0].lag_s <= 20.0 * 2.2 * 1.001
+    unmoved = candidate(Term("a", lag_s=80.0, lag_mode="lag"))
+    assert refine.refined(regression, [], unmoved) == unmoved
+
+
+def test_a_knot_and_two_centres_are_refined_within_a_fifth_of_the_range():
+    made = [dense.made(seed, 120) for seed in (1, 2)]
+    for s in made:
+        s.sources["a"] = np.random.default_rng(3).uniform(0, 10, 120)
+        s.sources["b"] = np.random.default_rng(4).uniform(-1, 1, 120)
+        s.rate_dps[:] = np.random.default_rng(5).normal(size=(120, 3)) * 0.05
+        s.rate_dps += np.maximum(s.sources["a"] - 6.5, 0)[:, None]
+    kink = candidate(Term("a", 0.0, 10.0, 0.0, knot=5.5), refine=("knot",))
+    found = refine.refined(Regression(made), [], kink)
+    assert found.terms[0].knot == pytest.approx(6.5, abs=0.1)
+    for s in made:
+        s.rate_dps[:] = np.random.default_rng(5).normal(size=(120, 3)) * 0.05
+        s.rate_dps += ((s.sources["a"] - 4.0) * (s.sources["b"] - 0.3))[:, None]
+    both = Term("a", 0.0, 10.0, 5.0, second="b", second_lo=-1.0, second_hi=1.0)
+    start = candidate(both, refine=("centre", "second_centre"))
+    found = refine.refined(Regression(made), [], start).terms[0]
+    assert found.centre == pytest.approx(4.0, abs=0.15)
+    assert found.second_centre == pytest.approx(0.3, abs=0.05)
+
+
+def test_a_delay_is_refined_between_its_neighbours_too():
+    made = [dense.made(seed, 100) for seed in (1, 2)]
+    for s in made:
+        s.sources["a"] = (np.arange(100) % 30 > 15) * 1.0
+        s.rate_dps[:] = np.random.default_rng(5).normal(size=(100, 3)) * 0.02
+        s.rate_dps += np.r_[np.full(5, s.sources["a"][0]), s.sources["a"][:-5]][:, None]
+    start = candidate(Term("a", delay_s=120.0), refine=("delay_s",))
+    found = refine.refined(Regression(made), [], start).terms[0]
+    assert round(found.delay_s / 20.0) == 5
+    same = candidate(A)
+    assert refine.drawn(Regression(made), [], same) is same
+
+
+LAG = Term("temp", lag_s=9.0, lag_mode="lag")
+PLAY = Term("temp", memory="play", width=1.0)
+
+
+@pytest.mark.parametrize(
+    ("terms", "taken", "fits"),
+    [
+        ([LAG] * 8, 0, True),
+        ([LAG] * 9, 0, False),
+        ([LAG] * 6, 2, True),
+        ([LAG] * 6, 3, False),
+        ([replace(PLAY, width=float(w)) for w in range(1, 7)] + [LAG] * 8, 0, True),
+        ([replace(PLAY, width=float(w)) for w in range(1, 8)], 0, False),
+        ([replace(PLAY, width=float(w), power=p) for w in range(1, 7) for p in (1, 2)], 0, True),
+        ([replace(LAG, delay_s=float(d)) for d in (1, 2)], 0, True),
+        ([replace(LAG, delay_s=float(d)) for d in (1, 2, 3)], 0, False),
+        ([replace(LAG, table=(0.0,) * 9)] * 2, 0, True),
+        ([replace(LAG, table=(0.0,) * 9)] * 3, 0, False),
+        ([Term(f"c{k}", second=f"d{k}") for k in range(4)] + [Term("time"), Term("one")], 0, True),
+        ([Term(f"c{k}", second=f"d{k}") for k in range(4)] + [Term("c9")], 0, False),
+    ],
+)
+def test_what_the_board_has_room_for(terms, taken, fits):
+    assert fits_in_slots(terms, taken) is fits
+
+
+def test_a_selection_with_less_in_it():
+    decision = decide.Decision(True, 0.0, 0.0, 1.0, np.zeros(1))
+    found = [Found(candidate(A, B), decision), Found(candidate(TEMP), decision)]
+    line = (Term("temp"),)
+    whole = Selection(found, [], [], 0, None, line, (), [], {})
+    assert whole.terms == [A, B, TEMP] and whole.straight == ()
+    assert whole.first(1).straight == line and whole.first(1).found == found[:1]
+    assert whole.without(0).found == found[1:] and whole.without(1).found == found[:1]
+    less = whole.without_axes(0, (True, False, False), "worse")
+    assert less.found[0].axes == (False, True, True) and less.found[1] is found[1]
+    assert less.applied.tolist() == [[0, 1, 1], [0, 1, 1], [1, 1, 1]]
+    gone = less.without_axes(0, (False, True, True), "worse")
+    assert gone.found == found[1:] and gone.withdrawn == [("vibration", "worse")]
+    assert found[0].axes == (True, True, True) and whole.first(0).applied.shape == (0, 3)
+    alone = replace(whole, alone=True)
+    assert alone.stands_alone and not replace(alone, judged_again=True).stands_alone
+    assert not whole.stands_alone
+
+
+@pytest.mark.parametrize(
+    ("quick", "slow", "same"),
+    [
+        (10.1, 0.1, True),
+        (9.9, 0.1, True),
+        (10.1, 0.13, False),
+        (10.5, 0.5, True),
+        (10.1, 0.119, True),
+    ],
+)
+def test_a_slow_line_may_be_a_quick_one_as_ticks_show_it(quick, slow, same):
+    lines = [Line(hz, np.ones(3), 1e-9, True) for hz in (quick, slow)]
+    assert periodic._folds(*lines, 1.0) is same
+
+
+def with_ticks(rate, name="x", temp=None):
+    sources = {} if temp is None else {"temp": temp}
+    return Session(
+        name,
+        20.0,
+        20,
+        rate.reshape(-1, 20, 3).mean(axis=1),
+        np.ones(len(rate) // 20),
+        sources,
+        ticks_dps=rate,
+    )
+
+
+def test_a_line_in_ticks_is_found_where_there_are_enough_of_them_at_rest():
+    t = np.arange(2000.0)
+    wave = 4e-3 * np.sin(2 * np.pi * t / 50)[:, None]
+    made = [
+        with_ticks(np.random.default_rng(k).normal(0, 1e-3, (2000, 3)) + wave, str(k))
+        for k in range(4)
+    ]
+    (line,) = periodic.periodic(made[:3], made[3:], [], np.zeros((0, 3)))
+    assert line.hz == pytest.approx(1 / 50, rel=0.03) and line.in_holdout
+    torn = [replace(s, ticks_dps=s.ticks_dps.copy()) for s in made]
+    torn[0].ticks_dps[:190] = np.nan
+    assert periodic.periodic(torn[:3], torn[3:], [], np.zeros((0, 3)))
+    torn[0].ticks_dps[:210] = np.nan
+    assert periodic.periodic(torn[:3], torn[3:], [], np.zeros((0, 3))) == []
+    short = [with_ticks(s.ticks_dps[:380], s.name) for s in made]
+    assert periodic.periodic(short[:3], short[3:], [], np.zeros((0, 3))) == []
+    none = [replace(s, ticks_dps=None) for s in made]
+    assert periodic.periodic(none[:3], none[3:], [], np.zeros((0, 3))) == []
+
+
+def test_a_line_that_a_term_explains_is_none_and_one_that_it_makes_is_none():
+    t = np.arange(2000.0)
+    temp = 25 + np.sin(2 * np.pi * t / 50)
+    rng = np.random.default_rng(0)
+    noise = [rng.normal(0, 1e-3, (2000, 3)) for _ in range(4)]
+    term, told = Term("temp", centre=25.0), np.full((1, 3), 4e-3)
+    moved = [
+        with_ticks(n + np.outer(temp - 25, told[0]), str(k), temp) for k, n in enumerate(noise)
+    ]
+    assert periodic.periodic(moved[:3], moved[3:], [], np.zeros((0, 3)))
+    assert periodic.periodic(moved[:3], moved[3:], [term], told) == []
+    still = [with_ticks(n, str(k), temp) for k, n in enumerate(noise)]
+    assert periodic.periodic(still[:3], still[3:], [term], told) == []
+
+
+def test_steps_know_their_place():
+    step = Step(1, 7, np.ones(3), 20.0, 0.1)
+    assert (step.session, step.block, step.share, step.at_s) == (1, 7, 0.0, 0.0)
