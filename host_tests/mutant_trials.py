@@ -26,7 +26,7 @@ NOT_IN_PROCESS = " and ".join(
     "not " + name
     for name in (
         *("micropython", "bytecode", "heap", "runtime", "last_byte", "any_slot", "no_intermediate"),
-        *("signal_at_any_rename", "end_by_a_signal"),
+        *("every_interpreter", "signal_at_any_rename", "end_by_a_signal"),
     )
 )
 

@@ -3,10 +3,12 @@
 from array import array
 from pathlib import Path
 
+import numpy as np
 import pytest
 from zerorate import Corrector
 from zerorate.bursts import Bursts
 from zerorate.rest import block
+from zerorate_tools.layout import SETTINGS
 
 from . import trace
 from .trace_on_host import corrector_for, frames
@@ -42,6 +44,53 @@ def test_the_kernel_gives_what_single_updates_give(one_by_one, at_once):
         done.extend(burst)
     assert done.tobytes() == words
     assert corrector.state.tobytes() == state
+
+
+def odd_frames(count, seed):
+    """A rest in which every tenth frame is odd: at an edge of what is taken at one look."""
+    draw = np.random.default_rng(seed)
+    frames = np.zeros((count, 8), int)
+    frames[:, 0] = 10_000
+    frames[:, 1:] = np.rint(
+        draw.normal([10, -20, 16384, 700, 120, -80, 40], [9, 9, 9, 3, 5, 5, 5], (count, 7))
+    )
+    jump, leap_us = (Corrector().settings[at] for at in (SETTINGS.JUMP_LSB, SETTINGS.LEAP_US))
+    for n in np.flatnonzero(draw.random(count) < 0.1)[1:]:
+        row, kind = frames[n], draw.integers(8)
+        axis, by = draw.integers(3), draw.choice([-1, 0, 1])
+        if kind == 0:
+            row[0] = draw.choice([0, -1, 1, leap_us + by, 3 * leap_us])
+        elif kind == 1:
+            row[4] = frames[n - 1, 4] + draw.choice([-1, 1]) * (jump + by)
+        elif kind == 2:
+            row[5:] = frames[n - 1, 5:]
+            row[5 + axis] += by
+        elif kind == 3:
+            row[5:] = draw.choice([0, -1, row[5]])
+            row[5 + axis] += by
+        elif kind == 4:
+            row[5 + axis] = draw.choice([-1, 1]) * draw.choice([32000 + by, 32766 + by])
+        elif kind == 5:
+            row[1 + draw.integers(7)] += draw.choice([-1, 1]) * (512 + by)
+        elif kind == 6:
+            row[1:] = draw.choice([0, -1])
+        else:
+            row[1:4] += draw.integers(-3000, 3000, 3)
+    return [array("i", row.tolist()) for row in frames]
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_odd_frames_within_a_burst_are_judged_as_by_themselves(seed):
+    rows, expected = odd_frames(900, seed), array("i")
+    single, burst = (Corrector(motion=False, gravity=False) for _ in range(2))
+    for row in rows:
+        frame = row[1:]
+        expected.append(single.update(frame, row[0]))
+        expected.extend(frame)
+    words, room = array("i", b"".join(row.tobytes() for row in rows)), array("i", [0] * 7)
+    block.block(burst.state, words, burst.settings, room, len(rows))
+    assert list(words) == list(expected)
+    assert list(burst.state) == list(single.state)
 
 
 def test_most_frames_of_a_rest_are_taken_at_one_look(monkeypatch):
