@@ -143,8 +143,9 @@ def _end_of(forked, seconds):
 
 
 def _fail(tests, plugin):
-    quiet = ["-q", "-x", "-p", "no:cacheprovider", "-p", "no:xdist", "-k", NOT_IN_PROCESS]
-    return pytest.main([*quiet, *tests], plugins=[plugin]) != 0
+    # plain: else pytest loads modules named like tests (drift_test.py) by itself
+    quiet = ["-q", "-x", "--assert=plain", "-p", "no:cacheprovider", "-p", "no:xdist"]
+    return pytest.main([*quiet, "-k", NOT_IN_PROCESS, *tests], plugins=[plugin]) != 0
 
 
 def ends(tests, drawn):

@@ -776,6 +776,10 @@ def test_a_knot_and_two_centres_are_refined_within_a_fifth_of_the_range():
     kink = candidate(Term("a", 0.0, 10.0, 0.0, knot=5.5), refine=("knot",))
     found = refine.refined(Regression(made), [], kink)
     assert found.terms[0].knot == pytest.approx(6.5, abs=0.1)
+    for start in (4.0, 9.0):  # a fifth of the range, and no further
+        far = replace(kink, terms=(replace(kink.terms[0], knot=start),))
+        found = refine.refined(Regression(made), [], far).terms[0].knot
+        assert abs(found - start) == pytest.approx(2.0, abs=0.1)
     for s in made:
         s.rate_dps[:] = np.random.default_rng(5).normal(size=(120, 3)) * 0.05
         s.rate_dps += ((s.sources["a"] - 4.0) * (s.sources["b"] - 0.3))[:, None]
