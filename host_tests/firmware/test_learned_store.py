@@ -245,6 +245,20 @@ class TestSchedule:
         assert schedule.store.failures == 1
 
 
+@pytest.mark.parametrize("writes_a_day", [1, 2, 86400])
+def test_a_days_budget_is_spread_over_the_day(memory, writes_a_day):
+    schedule = SaveSchedule(make_store(memory), 3, tolerance=10, writes_a_day=writes_a_day)
+    schedule.written_at(-5)
+    share_s = 86400 // writes_a_day
+    assert [schedule.is_due(share_s - 5 + by) for by in (-1, 0)] == [False, True]
+
+
+@pytest.mark.parametrize("writes_a_day", [0, -1])
+def test_a_budget_below_one_write_a_day_is_refused(memory, writes_a_day):
+    with pytest.raises(ValueError, match="at least 1"):
+        SaveSchedule(make_store(memory), 3, tolerance=10, writes_a_day=writes_a_day)
+
+
 def test_on_a_host_ticks_are_microseconds_too():
     before = monotonic_ns()
     assert before // 1000 <= save_schedule.ticks_us() <= monotonic_ns() // 1000

@@ -1,6 +1,7 @@
 """A bad recording is refused in one line that names the file, the row, and what to do."""
 
 import gzip
+import math
 
 import pyarrow as pa
 import pyarrow.parquet as pq
@@ -57,6 +58,31 @@ def test_a_clock_that_ran_over_is_told_from_time_that_goes_backwards(csv_of, bit
                       (6_000_000, "sort or cut the recording there")):  # fmt: skip
         with pytest.raises(BadRecording, match=f"row 2: time goes backwards.*{do}"):
             read_recording(csv_of(f"{HEADER}\n{last},1,2,3\n{later},1,2,3\n"))
+
+
+@pytest.mark.parametrize(("earlier", "later"), [(100, -(1 << 33)), (1 << 33, 5), (5000, 4000)])
+def test_time_that_goes_back_by_other_than_a_clock_s_range_is_to_be_sorted(csv_of, earlier, later):
+    with pytest.raises(BadRecording, match="sort or cut the recording there"):
+        read_recording(csv_of(f"{HEADER}\n{earlier},1,2,3\n{later},1,2,3\n"))
+
+
+@pytest.mark.parametrize(
+    ("rates", "complaint"),
+    [
+        ([1.0, None, math.nan], "row 2: gx is None"),
+        ([1.0, math.inf, 2.0], "row 2: gx is inf"),
+        ([1.0, math.nan, 2.0], "row 2: gx is nan"),
+        ([1.5, 2.0, 3.0], "column gx holds double, not integers"),
+    ],
+)
+def test_rates_that_are_floats_are_refused_by_the_first_that_is_no_number(
+    tmp_path, rates, complaint
+):
+    columns = {"t_us": [1, 2, 3], "gx": pa.array(rates, pa.float64()), "gy": [1] * 3, "gz": [1] * 3}
+    table = pa.table(columns).replace_schema_metadata({"zerorate": _SCALES % "100"})
+    pq.write_table(table, tmp_path / "run.parquet")
+    with pytest.raises(BadRecording, match=complaint):
+        read_recording(tmp_path / "run.parquet")
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 import json
 import sys
+from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
@@ -192,6 +193,10 @@ def test_memory_within_a_bound_is_given_and_beyond_it_refused():
         with at_most(2000), pytest.raises(MemoryError):
             bytearray(1000 << 20)
     assert resource.getrlimit(resource.RLIMIT_DATA) == before
+    taken = int(Path("/proc/self/statm").read_text().split()[5]) * resource.getpagesize()
+    with at_most(100):
+        bound, _ = resource.getrlimit(resource.RLIMIT_DATA)
+    assert abs(bound - taken - (100 << 20)) < 8 << 20
     sizes = each_at_most(iter(map(bytearray, (20 << 20, 600 << 20))), 40)
     assert len(next(sizes)) == 20 << 20
     bytearray(600 << 20)  # what takes the item is not bound
