@@ -146,8 +146,8 @@ AREAS = {
             "catalogue.py", "collinear.py", "confounding.py", "decide.py", "detectable.py",
             "drift_test.py", "fits_in_slots.py", "multiple_testing.py", "naming.py",
             "ols_holdout_ratio.py", "periodic.py", "refine.py", "selection.py",
-            "step_places.py")],
-        ["host_tests/loop/test_search_by_hand.py"],
+            "step_places.py", "steps.py")],
+        ["host_tests/loop/test_search_by_hand.py", "host_tests/loop/test_steps_by_hand.py"],
     ),
     "writers": (
         ["tools/zerorate_tools/ending.py"]

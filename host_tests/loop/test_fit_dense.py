@@ -399,3 +399,49 @@ def test_ratios_beside_nothing_are_those_of_one_column(sessions):
         before = dense.fitted(p, a)[0].max()
         assert found[0, a] == pytest.approx(2 * (after - before), rel=1e-5, abs=1e-7)
     assert isinstance(Regression(sessions[:1]).whiteners[0], Whitener)
+
+
+@pytest.mark.parametrize(("times", "differs"), [(1.16, False), (1.23, True)])
+def test_a_session_is_noisier_beyond_two_and_a_half_deviations_of_what_it_may_seem(times, differs):
+    one = dense.made(1, 400)
+    one.rate_dps[:] = np.random.default_rng(3).normal(size=(400, 3))
+    loud = replace(one, rate_dps=times * one.rate_dps)
+    scale = session_scale(Regression([one, loud]).cross_products([]))
+    expected = times**0.5 if differs else 1.0
+    assert scale[1] == pytest.approx([expected] * 3) and scale[0] == pytest.approx(
+        [1 / expected] * 3
+    )
+
+
+def test_a_block_is_an_outlier_beyond_six_robust_deviations_from_nine_neighbours():
+    made = dense.made(7, 900)
+    made.rate_dps[:] = np.random.default_rng(7).normal(size=(900, 3))
+    made.rate_dps[::45, 1] += np.linspace(-13, 13, 20)
+    regression = Regression([made])
+    regression.settle([])
+    held = 0
+    for a in range(3):
+        column = made.rate_dps[:, a]
+        padded = np.r_[[column[0]] * 4, column, [column[-1]] * 4]
+        middle = np.median(np.lib.stride_tricks.sliding_window_view(padded, 9), axis=1)
+        off = np.abs(column - middle)
+        out = off > 6 * 1.4826 * np.median(off)
+        assert regression.rate[0][:, a] == pytest.approx(np.where(out, middle, column))
+        held += out.sum()
+    assert regression.outliers == held and 2 < held < 15
+
+
+def test_play_operators_alone_are_shrunk_with_nothing_beside_them():
+    sessions = [dense.made(13, 20)]
+    few = [s for s in dense.SHAPES if is_of_the_few(s)]
+    both = [played(s) for s in sessions]
+    p = dense.problem(both, [Term("p"), Term("r")], shapes_=few)
+    regression = Regression(sessions, few=True)
+    every = [PLAYS[0], PLAYS[2]]
+    told = shrinking.shrink(regression.cross_products(every), regression.scale, every)
+    sizes = dense.products_of(
+        [1e-3, *(10.0**e for e in np.arange(-1, 4.1, 0.5))], [(1e-3, 0.1, 0.3, 1.0)]
+    )
+    nats, mean = dense.shrunk(p, [[0], [1]], sizes)
+    assert told.coefficients == pytest.approx(mean, rel=1e-4, abs=1e-7)
+    assert told.nats == pytest.approx(nats, abs=1e-5)

@@ -7,6 +7,7 @@ import pytest
 from zerorate_tools.loop.fit.single import PiecesByLine
 from zerorate_tools.loop.search.steps import Step
 from zerorate_tools.loop.verify import measured
+from zerorate_tools.loop.verify import power_on as module
 from zerorate_tools.loop.verify.by_kernels import PiecesByKernels
 from zerorate_tools.loop.verify.firmware import Firmware
 from zerorate_tools.model import Slot
@@ -82,6 +83,14 @@ def test_what_the_firmware_cannot_hold_has_no_error_and_gains_nothing(power_on):
     beyond = replace(VOLTS, lag_mode="lag", lag_s=1e9)
     assert np.isnan(pieces.residual([], [beyond])).all()
     assert pieces.residual([], [beyond]).shape == (BLOCKS, 3)
+
+
+@pytest.mark.parametrize("terms", [[], [VOLTS], [LAGGED]])
+def test_a_recording_read_in_parts_gives_what_it_gives_at_once(power_on, monkeypatch, terms):
+    whole = PiecesByKernels(power_on, SCALES).residual([], terms)
+    monkeypatch.setattr(module, "_ROWS", 170)
+    parts = PiecesByKernels(power_on, SCALES).residual([], terms)
+    assert parts == pytest.approx(whole, abs=0.3 / 131)
 
 
 def test_the_line_is_fitted_beside_the_terms_and_is_no_slot(power_on):

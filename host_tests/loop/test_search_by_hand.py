@@ -11,7 +11,7 @@ from zerorate_tools.loop.fit.left_out import gains
 from zerorate_tools.loop.fit.line import ordinary
 from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.read.earth import Earth
-from zerorate_tools.loop.read.lines import Line
+from zerorate_tools.loop.read.lines import Line, Spectrum
 from zerorate_tools.loop.read.sessions import Session
 from zerorate_tools.loop.search import (
     catalogue,
@@ -224,7 +224,8 @@ def test_a_mean_and_a_spread_are_of_the_sessions_own_coefficients(sessions):
     between = (spread + 4) / (free + 4)
     both = chi2.sf(ratio, 3), f.sf(mean / 3 / between, 3, free + 4)
     told = drift_test.chance(regression, [B], [A])
-    assert told == pytest.approx(chi2.sf(-2 * np.log(both).sum(), 4))
+    expected = np.log(chi2.sf(-2 * np.log(both).sum(), 4))
+    assert np.log(told) == pytest.approx(expected) and -600 < expected < 0
     decision = drift_test.considered(regression, [B], candidate(A), 50.0, 2.0)
     assert decision.p_value == pytest.approx(2 * told) and decision.tried == 2.0
     assert decision.accepted and decision.reason == "" and decision.ratio == 50.0
@@ -355,6 +356,9 @@ def test_a_memory_that_others_of_its_source_leave_nothing_of_is_the_same(session
     assert collinear(lags[:1], lags[1:2], sessions)
     assert not collinear(lags[:1], lags[2:], sessions)
     assert not collinear(lags[:1], [replace(lags[1], source="b")], sessions)
+    for s in sessions:
+        s.sources["b"] = s.sources["a"]
+    assert not collinear([replace(lags[0], source="b")], lags[1:2], sessions)
     assert not collinear([A], lags, sessions) and not collinear(lags[:1], [A], sessions)
     assert not collinear(lags[:2], lags[1:2], sessions) and not collinear(lags[:1], [], sessions)
     for memory in ({"delay_s": 20.0}, {"decay_s": 99.0}, {"width": 1.0, "memory": "backlash"}):
@@ -456,6 +460,17 @@ def test_a_step_explains_more_than_a_ramp_and_a_ramp_more_than_a_step(stepped):
     ]
     expected = Regression(column).gains([A], [(Term("e"),)]).sum()
     assert 0.999 * expected < found < 1.05 * expected
+    best = 0.0
+    for first in np.arange(24.0, 32.0, 0.25):
+        since = np.arange(60) + 0.5 - first
+        for length in 4.0 * np.array([0.5, 0.75, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0]):
+            ramp, curve = np.clip(since / length, 0, 1), 1 - np.exp(-np.maximum(since, 0) / length)
+            for form in (ramp, curve):
+                settles[0].sources["e"] = form
+                for s in settles[1:]:
+                    s.sources["e"] = np.zeros(60)
+                best = max(best, Regression(settles).gains([A], [(Term("e"),)]).sum())
+    assert found == pytest.approx(best, rel=1e-6)
 
 
 def test_where_the_device_did_not_rest_a_step_may_be_at_either_end():
@@ -719,10 +734,14 @@ def test_names_given_are_the_simplest_s_with_what_ties_beside_it(sessions):
     naming.name_found(regression, (), found, pool_, 0)
     assert found[0].candidate.kind == "vibration"
     assert found[0].confounded_with == ["channel-lag(a)"]
-    kept = [Found(lagged, decision, ["vibration", "other"])]
-    naming.name_found(regression, (), kept, pool_, 1)
+    twin = candidate(replace(A, centre=1.0), kind="channel", family="generic")
+    kept = [Found(lagged, decision, ["other"])]
+    naming.name_found(regression, (), kept, [*pool_, twin], 1)
     assert kept[0].candidate.kind == "channel-lag"
-    assert kept[0].confounded_with == ["vibration", "other"]
+    assert kept[0].confounded_with == ["other", "vibration"]
+    again = [Found(lagged, decision)]
+    naming.name_found(regression, (), again, [*pool_, twin], 0)
+    assert set(again[0].confounded_with) == {"channel-lag(a)", "channel(a)"}
     slope = [Found(candidate(TEMP, kind="temperature-polynomial"), decision)]
     naming.name_found(regression, (), slope, pool_, 0)
     assert slope[0].candidate.kind == "temperature-polynomial"
@@ -914,3 +933,39 @@ def test_a_line_that_a_term_explains_is_none_and_one_that_it_makes_is_none():
 def test_steps_know_their_place():
     step = Step(1, 7, np.ones(3), 20.0, 0.1)
     assert (step.session, step.block, step.share, step.at_s) == (1, 7, 0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "least", "most"),
+    [
+        *(("lag_s", 8.0, 7200.0), ("delay_s", 1.0, 1200.0), ("decay_s", 40.0, 14400.0)),
+        ("width", 0.3, 30.0),
+    ],
+)
+def test_what_is_refined_stays_within_what_the_firmware_and_a_recording_can_hold(name, least, most):
+    for sign, start, end in ((1, 1.5 * least, least), (-1, most / 1.5, most)):
+        told = SimpleNamespace(
+            gains=lambda terms, trial, sign=sign: np.array([[-sign * getattr(trial[0][0], name)]]),
+            forget=lambda term: None,
+        )
+        one = candidate(Term("a", **{name: start}), refine=(name,))
+        found = getattr(refine.refined(told, [], one).terms[0], name)
+        assert found == pytest.approx(end, rel=0.03)
+        assert least * 0.999 <= found <= most * 1.001
+
+
+def test_quick_lines_are_of_the_samples_where_all_recordings_have_them_alike():
+    def with_spectrum(step_hz, peak):
+        power = np.ones((200, 3))
+        power[40] += peak
+        welch = Spectrum(power, step_hz, 50.0)
+        return Session("x", 20.0, 1, np.zeros((9, 3)), np.ones(9), {}, welch=welch)
+
+    none = np.zeros((0, 3))
+    loud = [with_spectrum(0.1, 100.0) for _ in range(3)]
+    (line,) = periodic.periodic(loud[:2], loud[2:], [], none)
+    assert line.hz == pytest.approx(4.0) and line.in_holdout
+    assert periodic.periodic(loud[:2], [with_spectrum(0.2, 100.0)], [], none) == []
+    assert periodic.periodic(loud[:2], [replace(loud[2], welch=None)], [], none) == []
+    slow = [with_spectrum(0.01, 100.0) for _ in range(3)]
+    assert periodic.periodic(slow[:2], slow[2:], [], none) == []  # ticks show what is so slow

@@ -1,0 +1,223 @@
+"""Steps of the bias beside fits that have each of them as a column of its own."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.stats import chi2
+from zerorate_tools.loop.fit.regression import Regression
+from zerorate_tools.loop.search import steps as listed
+from zerorate_tools.loop.search.catalogue import Candidate
+from zerorate_tools.loop.search.steps import Step, column, find_all, standing, strongest
+from zerorate_tools.model.term import Term
+
+from . import dense
+from .dense import A, B
+
+BLOCKS = 60
+
+
+def noise(seed, blocks=BLOCKS, **sources):
+    made = dense.made(seed, blocks)
+    made.rate_dps[:] = np.random.default_rng(100 + seed).normal(size=(blocks, 3))
+    return replace(made, sources={**made.sources, **sources})
+
+
+def stepped(session, *steps):
+    """The session with steps (block, share of the block before it, sizes)."""
+    rate = session.rate_dps.copy()
+    for block, share, size in steps:
+        rate += np.outer(np.clip(np.arange(session.blocks) + 1.0 + share - block, 0, 1), size)
+    return replace(session, rate_dps=rate)
+
+
+@pytest.fixture
+def sessions():
+    """Three, with a step in the second and a larger one in the third."""
+    return [
+        noise(4),
+        stepped(noise(5), (31, 0.75, [25.0, -25.0, 0.0])),
+        stepped(noise(6), (22, 0.0, [30.0, 30.0, 30.0])),
+    ]
+
+
+def as_terms(sessions, steps):
+    """The sessions with each step as a source, and terms of these."""
+    terms = [Term(f"step{k}") for k in range(len(steps))]
+    out = []
+    for i, s in enumerate(sessions):
+        own = {}
+        for k, step in enumerate(steps):
+            at = np.clip(np.arange(s.blocks) + 1.0 + step.share - step.block, 0, 1)
+            own[f"step{k}"] = at * (i == step.session)
+        out.append(replace(s, sources={**s.sources, **own}))
+    return out, terms
+
+
+def test_steps_are_listed_with_place_size_and_time_the_strongest_first(sessions):
+    regression = Regression(sessions)
+    found = find_all(regression, [A])
+    assert [(s.session, s.block, s.share) for s in found] == [(2, 22, 0.0), (1, 31, 0.75)]
+    assert [s.at_s for s in found] == [22 * 20.0, 30.25 * 20.0]
+    made, terms = as_terms(sessions, found)
+    plain = Regression(made)
+    fit = plain.fit([A, *terms])
+    for k, step in enumerate(found):
+        assert step.size_dps == pytest.approx(fit.coefficients[1 + k], rel=1e-6)
+        spread = [
+            np.sqrt(fit.base.unscaled[a][1 + k, 1 + k] * fit.base.variance[a]) for a in range(3)
+        ]
+        assert step.deviation_dps == pytest.approx(spread, rel=1e-6)
+        others = [t for j, t in enumerate(terms) if j != k]
+        gained = 2 * (fit.total - plain.fit([A, *others]).total)
+        assert step.ratio == pytest.approx(gained, rel=1e-6)
+        assert step.p_value < 1e-9
+    assert len(regression.events()) == 2  # they stay as nuisances
+    assert regression.fit([A]).base.total == pytest.approx(fit.base.total)
+
+
+def test_the_chance_of_a_step_pays_for_every_place_and_recording(sessions):
+    one = stepped(noise(8), (30, 0.0, [1.9, 1.9, 1.9]))
+    single = standing(Regression([one]), [A], 1, [])
+    many = standing(Regression([one]), [A], 7, [])
+    assert len(single) == len(many) == 1
+    assert many[0].p_value == pytest.approx(7 * single[0].p_value)
+    theory = chi2.sf(single[0].ratio, 3) * (BLOCKS + 1 - 15)
+    assert single[0].p_value >= theory * 0.999
+    assert standing(Regression([one]), [A], 10**9, []) == []
+    weak = Regression([stepped(noise(8), (30, 0.0, [0.6] * 3))])
+    assert standing(weak, [A], 1, []) == []
+
+
+def test_a_chance_is_by_the_places_away_from_steps_where_their_tail_is_longer():
+    rng = np.random.default_rng(0)
+    assert listed._survival(20.0, np.zeros(0)) == chi2.sf(20.0, 3)
+    quiet = rng.chisquare(3, 500) * 0.2
+    assert listed._survival(20.0, quiet) == chi2.sf(20.0, 3)
+    loud = rng.chisquare(3, 500) * 3
+    mean, variance = (3 + loud.mean()) / 2, (6 + loud.var()) / 2
+    shape = mean**2 / variance
+    draws = rng.gamma(shape, mean / shape, 400_000)
+    assert listed._survival(20.0, loud) == pytest.approx((draws > 20.0).mean(), rel=0.05)
+    few = loud[:4]
+    assert listed._survival(20.0, few) == chi2.sf(20.0, 3)
+
+
+def test_places_near_a_step_of_the_session_say_nothing_of_chance():
+    at, ratios = np.arange(10, 56), np.arange(46.0)
+    steps = [Step(0, 30, np.zeros(3), 1.0, 1.0), Step(1, 11, np.zeros(3), 1.0, 1.0)]
+    away = listed._away(None, steps, [(0, at, ratios), (2, at, ratios)])
+    kept = [r for a, r in zip(at, ratios) if abs(a - 30) > 15] + list(ratios)
+    assert away.tolist() == kept
+    assert listed._away(None, steps, []).tolist() == []
+
+
+def test_the_strongest_step_is_that_of_the_largest_ratio(sessions):
+    regression = Regression(sessions)
+    found = strongest(regression, [A])
+    assert (found.session, found.block) == (2, 22) and regression.events() == []
+    assert strongest(Regression(sessions[:1]), [A]) is None
+
+
+def test_a_step_s_column_is_of_its_session_alone(sessions):
+    step = Step(1, 31, np.zeros(3), 1.0, 1.0, share=0.75)
+    first, second, third = column(Regression(sessions), step)
+    assert not first.any() and not third.any()
+    assert second[:30].max() == 0 and second[30] == 0.75 and second[31:].min() == 1
+
+
+def test_no_more_than_four_steps_a_recording_are_looked_for():
+    places = [(b, 0.0, [20.0 * (-1) ** k] * 3) for k, b in enumerate((12, 20, 28, 36, 44, 52))]
+    found = standing(Regression([stepped(noise(9, 70), *places)]), [], 1, [])
+    assert len(found) <= 4
+
+
+def test_what_bends_slowly_is_no_abrupt_change():
+    slow = noise(4)
+    slow.rate_dps += np.outer(np.clip((np.arange(BLOCKS) - 20) / 16, 0, 1), [20.0, 20.0, -20.0])
+    assert find_all(Regression([slow]), []) == []
+    sharp = stepped(noise(4), (28, 0.0, [20.0, 20.0, -20.0]))
+    assert [s.block for s in find_all(Regression([sharp]), [])] == [28]
+
+
+def test_two_of_one_sign_a_few_blocks_apart_stand_together_and_two_that_make_a_ramp_do_not():
+    two = stepped(noise(4), (26, 0.0, [20.0, 20.0, -20.0]), (31, 0.0, [20.0, 20.0, -20.0]))
+    assert [s.block for s in sorted(find_all(Regression([two]), []), key=lambda s: s.block)] == [
+        26,
+        31,
+    ]
+    back = stepped(noise(4), (26, 0.0, [20.0] * 3), (31, 0.0, [-20.0] * 3))
+    assert len(find_all(Regression([back]), [])) == 2
+
+
+@pytest.mark.parametrize(
+    ("gap", "degc", "unseen"),
+    [((30, 33), 9.0, True), ((30, 32), 9.0, False), ((30, 33), 0.1, False), ((30, 33), None, True)],
+)
+def test_a_change_across_blocks_without_rest_is_none_where_temperature_moved(gap, degc, unseen):
+    session = noise(4)
+    session.weight[slice(*gap)] = 0.0
+    if degc is not None:
+        session.sources["temp"] = np.linspace(0.0, degc, BLOCKS) * BLOCKS / 4
+    there = np.flatnonzero(session.available)
+    assert bool(listed._is_unseen(session, there, gap[1])) is unseen
+    assert not listed._is_unseen(session, there, 5)
+    assert not listed._is_unseen(session, there, 0)
+
+
+def test_a_change_is_between_means_of_two_blocks_with_one_between_left_out():
+    along = np.array([1.0, 2.0, 3.0, 10.0, 20.0, 40.0, 80.0])
+    assert listed._change(along, 3) == (10 + 20) / 2 - (1 + 2) / 2
+    assert listed._change(along, 6) == 80 - (10 + 20) / 2
+    assert listed._change(along, 2) == (3 + 10) / 2 - 1
+    assert np.isnan(listed._change(along, 1)) and np.isnan(listed._change(along, 7))
+
+
+def test_what_was_taken_beside_a_step_may_make_it_by_its_timing():
+    session = noise(4)
+    session.sources["j"] = np.where(np.arange(BLOCKS) >= 30, 1.0, 0.0)
+    regression = Regression([session])
+    step = Step(0, 30, np.array([2.0, 0.0, 0.0]), 9.0, 0.0, np.array([1.0, 1.0, 1.0]))
+    forms = [Term("j")]
+    assert listed._is_timing(regression, forms, np.array([[2.1, 0.0, 0.0]]), step)
+    assert not listed._is_timing(regression, forms, np.array([[1.9, 9.0, 0.0]]), step)
+    assert listed._is_timing(regression, forms, np.array([[-2.1, 0.0, 0.0]]), step)
+    sure = replace(
+        step, size_dps=np.array([2.0, 2.0, 0.0]), deviation_dps=np.array([1.0, 2.0, 9.0])
+    )
+    weight = np.array([2.0, 0.5, 0.0])
+    along = np.array([3.0, -1.0, 0.0]) @ weight / (sure.size_dps @ weight)
+    assert listed._is_timing(regression, forms, np.array([[3.0, -1.0, 0.0]]), sure) is bool(
+        along > 1
+    )
+
+
+def test_a_form_of_several_terms_pays_for_those_that_a_step_does_not_have(sessions):
+    regression = Regression(sessions[:1])
+    one, two = (Candidate("x", terms, "catalogue") for terms in ((A,), (A, B)))
+    gains = [regression.gains([], [c.terms]).sum() for c in (one, two)]
+    form, gain = listed._best_form(regression, [], [one, two])
+    worth = [gains[0], gains[1] - 6.0]
+    assert gain == pytest.approx(max(worth)) and form is (one, two)[int(np.argmax(worth))]
+    assert listed._best_form(regression, [], []) == (None, 0.0)
+
+
+def test_what_a_recorded_channel_does_is_no_step_where_it_is_a_rival():
+    switched = np.where((np.arange(BLOCKS) // 15) % 2 > 0, 1.0, 0.0)
+    session = noise(4, load=switched)
+    session.rate_dps += np.outer(switched, [9.0, -9.0, 9.0])
+    rival = Candidate("channel", (Term("load"),), "generic")
+    assert len(find_all(Regression([session]), [])) > 0
+    assert find_all(Regression([session]), [], [rival]) == []
+
+
+def test_two_are_the_same_within_two_blocks_of_one_session():
+    def at(session, block):
+        return Step(session, block, np.zeros(3), 1.0, 1.0)
+
+    assert listed._is_same(at(0, 5), at(0, 7)) and listed._is_same(at(0, 7), at(0, 5))
+    assert not listed._is_same(at(0, 5), at(0, 8)) and not listed._is_same(at(0, 5), at(1, 5))
+
+
+def test_the_level_of_a_step_beside_others_is_lower():
+    assert (listed._level(0), listed._level(1), listed._level(3)) == (2e-3, 1e-4, 1e-4)
