@@ -187,9 +187,8 @@ def test_what_was_taken_beside_a_step_may_make_it_by_its_timing():
     )
     weight = np.array([2.0, 0.5, 0.0])
     along = np.array([3.0, -1.0, 0.0]) @ weight / (sure.size_dps @ weight)
-    assert listed._is_timing(regression, forms, np.array([[3.0, -1.0, 0.0]]), sure) is bool(
-        along > 1
-    )
+    both = np.array([[3.0, -1.0, 0.0]])
+    assert listed._is_timing(regression, forms, both, sure) is bool(along > 1)
 
 
 def test_a_form_of_several_terms_pays_for_those_that_a_step_does_not_have(sessions):
