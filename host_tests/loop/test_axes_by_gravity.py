@@ -24,7 +24,7 @@ _SCALES = Scales("MPU-6050", _HZ, 32.8, 8192.0, None, None)
 _MATRIX = np.array([[0.012, 0.0, 0.003], [0.0, -0.009, 0.0], [0.003, 0.0, 0.006]])
 
 
-def handled(seed, matrix, dps=60.0, about=(1.0, 1.0, 1.0), minutes=_MINUTES):
+def handled(seed, matrix, dps=60.0, about=(1.0, 1.0, 1.0), minutes=_MINUTES, seen=False):
     """A device turned in the hand without a rest: bias 0.4 dps, a hand that sways by 3 cm."""
     rng, n = np.random.default_rng(seed), int(_HZ * minutes * 60)
 
@@ -41,6 +41,9 @@ def handled(seed, matrix, dps=60.0, about=(1.0, 1.0, 1.0), minutes=_MINUTES):
     for letter, values, lsb in (("g", rate, 32.8), ("a", accel, 8192.0)):
         words = np.clip(np.round(values * lsb), -32768, 32767).astype(np.int64)
         columns.update({letter + axis: words[:, i] for i, axis in enumerate("xyz")})
+    if seen:
+        parts = np.round(30000 * attitude[:n]).astype(np.int64)
+        columns.update({f"q{part}": parts[:, i] for i, part in enumerate("wxyz")})
     return Recording(columns, _SCALES, f"run-{seed}")
 
 
@@ -69,6 +72,16 @@ def test_one_recording_alone_is_judged_on_windows_left_out(recorded, tmp_path):
     result = close([recorded(3, _MATRIX)], tmp_path / "closed")
     assert result["effects"][0]["effect"].startswith("scale-factor")
     assert result["in_motion"]["after"] < result["in_motion"]["before"]
+
+
+@pytest.mark.parametrize("others", [1, 0])
+def test_with_an_attitude_the_heading_of_what_was_held_out_is_told(recorded, tmp_path, others):
+    logs = [recorded(20 + i, _MATRIX, minutes=1.9) for i in range(others)]
+    logs.append(recorded(22, _MATRIX, minutes=1.9, seen=True))
+    motion = close(logs, tmp_path / "closed")["in_motion"]
+    assert motion["heading_before"] > 1.0
+    assert motion["heading_after"] < 0.4 * motion["heading_before"]
+    assert "degrees a minute of heading" in (tmp_path / "closed" / "report.html").read_text()
 
 
 @pytest.mark.parametrize("seed", [4, 5])

@@ -93,6 +93,8 @@ class _Parser(argparse.ArgumentParser):
         if wrong:
             word = wrong[1] or wrong[2].partition("=")[0]
             near = difflib.get_close_matches(word, sorted(_words_of(self)), 1)
+            if near == [word]:
+                near, message = [], f"{message}: it is an option of another command"
             message += f"; did you mean {near[0]}?" if near else ""
         super().error(printable(message))
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from .loop.motion.by_gravity import by_gravity
+from .loop.motion.heading import heading_lost, heading_lost_by
 from .loop.motion.in_motion import InMotion, slots_of
 from .loop.motion.rate_scale import RateScale
 from .loop.motion.windows import moving_of
@@ -59,9 +60,20 @@ def write_in_motion(
         writer.close()
     write_model(model, folder)
     result = _result(shown, [Path(log).name for log in logs], sorted(held))
+    if shown.found:
+        result["in_motion"].update(_headings(shown, [Path(log) for log in logs], held))
     with written_beside(folder / "report.html") as temporary:
         temporary.write_text(motion_page(result, folder), encoding="utf-8")
     return result
+
+
+def _headings(shown: RateScale, logs: list[Path], held: set[str]) -> dict[str, Any]:
+    """Of what was held out, where it has an attitude; of a log alone its second half."""
+    every = {log: m for log in logs if log.name in held and (m := moving_of(log)) is not None}
+    lost = heading_lost(every) if len(logs) == 1 else heading_lost_by(every, shown)
+    if lost is None:
+        return {}
+    return dict(zip(("heading_before", "heading_after"), np.round(lost, 3).tolist()))
 
 
 def _correct(writer: CorrectedWriter, log: Path, model: Model, test: bool) -> None:
@@ -129,6 +141,11 @@ def motion_in_words(result: Mapping[str, Any]) -> str:
             f"{effect['effect']} ({effect['confidence']}): on motion held out, gravity sees "
             f"{m['before']:.2f} -> {m['after']:.2f} {m['unit']}"
         ]
+        if "heading_before" in m:
+            before, after = m["heading_before"], m["heading_after"]
+            lines.append(
+                f"against the attitude {before:.2f} -> {after:.2f} degrees a minute of heading"
+            )
         rows = zip(_AXES, m["matrix_percent"], m["ci95_percent"])
         lines += [
             f"error of {axis}, % of the rate of x y z: "
