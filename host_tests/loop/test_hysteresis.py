@@ -66,7 +66,7 @@ def test_a_chamber_s_loop_is_named_and_taken_away_on_pieces_left_out():
     assert found[0].candidate.kind == KIND
     after = left(session, found[0].candidate.terms)
     assert (after < 0.1 * left(session, ())).all()
-    slots = [Slot(t, (0.001, 0.0, 0.0), KIND) for t in found[0].candidate.terms]
+    slots = [Slot(t, (1e-6, 0.0, 0.0), KIND) for t in found[0].candidate.terms]
     assert len(build_model(slots, SCALES).slots) == len(slots)
 
 
@@ -98,11 +98,11 @@ def test_a_lag_is_not_taken_for_hysteresis():
 
 
 @pytest.mark.parametrize("judged_again", [False, True])
-def test_what_a_lag_predicts_nearly_as_well_is_left_to_the_power_on_that_judges(judged_again):
+def test_a_hysteresis_that_a_lag_predicts_nearly_as_well_is_no_lag(judged_again):
     session = simulate(302010, [(PRANDTL_ISHLINSKII, 2.0)], sessions=2).sessions[0]
     found = select([session], on_pieces=PiecesByLine(session), judged_again=judged_again).found
-    named = {f.candidate.kind: f.confounded_with for f in found}
-    assert named == ({KIND: ["thermal-lag"]} if judged_again else {})
+    assert [f.candidate.kind for f in found] == [KIND]
+    assert any(t.memory == "play" for t in found[0].candidate.terms) == judged_again
 
 
 def test_one_recording_names_a_hysteresis_that_predicts_as_well_beside_the_lag():
@@ -241,5 +241,5 @@ def test_a_bend_and_a_lag_of_one_of_two_power_ons_are_no_hysteresis(seed):
     effects = [("temperature-quadratic", 4.0), ("thermal-lag", 4.0)]
     first, _ = simulate(seed, effects, 2, bare=True).sessions
     found = select([first], on_pieces=PiecesByLine(first), judged_again=True).found
-    bend, lag = (f.candidate.kind for f in found)
-    assert bend in ("temperature-quadratic", "temperature-curve") and lag == "thermal-lag"
+    bend, lag = sorted(f.candidate.kind for f in found)
+    assert bend in ("temperature-kink", "temperature-curve") and lag == "thermal-lag"

@@ -8,9 +8,10 @@ import pytest
 from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.closing import close, load
 from zerorate_tools.loop.analyse import analyse
+from zerorate_tools.loop.fit.line import less_slope
 from zerorate_tools.loop.fit.single import PiecesByLine, nats, speaks_for
-from zerorate_tools.loop.search.bends import find_bends
-from zerorate_tools.loop.search.select import Search
+from zerorate_tools.loop.search.curve import ByPieces, smooth_curve
+from zerorate_tools.loop.search.select import Search, select
 from zerorate_tools.loop.search.steps import Step
 from zerorate_tools.loop.verify.by_kernels import PiecesByKernels
 from zerorate_tools.loop.verify.measure import measure_and_prune
@@ -83,20 +84,40 @@ def bent():
     return Search([session], on_pieces=PiecesByLine(session))
 
 
-def test_a_bend_that_pieces_speak_against_is_refused_with_the_reason(bent):
-    def judged(straight, found, candidate):
+def by_pieces(search):
+    own = search.regression, search.line, search.pool, search.on_pieces
+    (found,) = ByPieces(*own, taken=0).look([])
+    return found
+
+
+class SpeakAgainst(PiecesByLine):
+    reason = "the kernels say no"
+
+    def __call__(self, straight, found, candidate):
         return np.array([-1.0, 0.1, 0.0, 0.1, -1.0])
 
-    judged.reason = "the kernels say no"
-    bends = find_bends(bent.regression, judged, bent.straight, bent.pool)
-    assert bends.found == []
-    assert ("temperature-quadratic", "the kernels say no") in bends.refused
+
+def test_a_curve_that_pieces_speak_against_is_refused(bent):
+    session = bent.regression.sessions[0]
+    assert select([session], on_pieces=SpeakAgainst(session)).found == []
 
 
-def test_of_bends_that_predict_the_pieces_the_likeliest_is_taken(bent):
-    bends = find_bends(bent.regression, bent.on_pieces, bent.straight, bent.pool)
-    assert [c.kind for c, _ in bends.found] == ["temperature-quadratic"]
-    assert bends.found[0][1].session_gains.sum() > 1
+def test_a_bend_that_pieces_show_is_a_smooth_curve_with_a_slope_of_its_own(bent):
+    best = by_pieces(bent)
+    assert best.candidate.kind == "temperature-curve" and best.decision.accepted
+    assert less_slope(bent.line, best.candidate.terms) == ()
+
+
+def test_a_kink_is_no_smooth_curve():
+    session = simulate(3, [("temperature-kink", 20.0)], sessions=1, bare=True).sessions[0]
+    search = Search([session], on_pieces=PiecesByLine(session))
+    assert by_pieces(search).candidate.kind == "temperature-kink"
+
+
+@pytest.mark.parametrize("taken, bends", [(0, 7), (3, 4), (6, 0)])
+def test_a_curve_bends_in_the_slots_that_others_leave(bent, taken, bends):
+    every = smooth_curve(bent.regression.sessions, bent.line, taken)
+    assert sum(len(c.terms) - 1 for c in every) == bends
 
 
 def test_a_piece_far_off_either_way_does_not_drown_the_others():
@@ -178,3 +199,10 @@ def test_rests_that_are_few_and_far_between_teach_no_bend(seed):
     session.weight[~rests] = 0.0
     found = analyse([session]).selection
     assert any("too few rests" in reason for _, reason in found.refused)
+
+
+def test_a_recording_without_temperature_shows_no_curve_over_it():
+    (session,) = simulate(3, [("time-drift", 5.0)], sessions=1, bare=True).sessions
+    blind = replace(session, sources={k: v for k, v in session.sources.items() if k != "temp"})
+    found = select([blind], on_pieces=PiecesByLine(blind)).found
+    assert all("temp" not in f.candidate.sources for f in found)

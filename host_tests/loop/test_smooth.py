@@ -13,7 +13,8 @@ from zerorate_tools.loop.fit.free_curve import draw, parts
 from zerorate_tools.loop.fit.line import ordinary
 from zerorate_tools.loop.fit.regression import Regression, predicted
 from zerorate_tools.loop.fit.single import PiecesByLine, held
-from zerorate_tools.loop.fit.smooth import bends_often
+from zerorate_tools.loop.fit.smooth import curve_of
+from zerorate_tools.loop.read.sessions import block_basis
 from zerorate_tools.loop.search.catalogue import candidates, ranges
 from zerorate_tools.loop.search.select import straight_line
 from zerorate_tools.model.effects import is_free
@@ -71,9 +72,9 @@ def test_it_follows_the_noise_less_than_least_squares_do(quiet):
     for _ in range(8):
         noisy = made(quiet, rate + rng.normal(0.0, 0.02, quiet.blocks))
         terms = seven_bends(quiet)
-        # in another order the same line is none of many bends at even distances
-        by_squares = ordinary([*terms[1:], terms[0]], [noisy])
-        by_squares = np.vstack([by_squares[-1:], by_squares[:-1]])
+        columns = np.column_stack([block_basis(t, noisy) for t in terms])
+        columns, rates = (v - v.mean(axis=0) for v in (columns, noisy.rate_dps))
+        by_squares = np.linalg.lstsq(columns, rates, rcond=None)[0]
         every.append([left(quiet, rate, f) for f in (ordinary(terms, [noisy]), by_squares)])
     smooth, squares = np.sqrt(np.mean(np.square(every), axis=0))
     assert smooth < 0.7 * squares
@@ -86,11 +87,17 @@ def test_a_turn_on_offset_is_each_session_s_own(quiet):
     assert left(quiet, rate, fitted) < 0.1 * rate.std()
 
 
-def test_a_single_kink_is_no_line_that_bends_often(quiet):
+def test_a_single_kink_is_no_curve_and_what_is_beside_one_is_none_of_it(quiet):
     terms = seven_bends(quiet)
-    assert bends_often(terms)
-    assert not bends_often(terms[:2])
-    assert not bends_often([*terms[:-1], Term("acc_x")])
+    assert curve_of([Term("acc_x"), *terms]) == list(range(1, 9))
+    assert curve_of(terms[:2]) == []
+
+
+def test_what_is_beside_a_curve_is_fitted_with_it(quiet):
+    lag = Term("temp", lag_s=300.0, lag_mode="difference")
+    rate = 0.05 * np.sin(2 * np.pi * share_of(quiet)) + 0.02 * block_basis(lag, quiet)
+    fitted = ordinary([lag, *seven_bends(quiet)], [made(quiet, rate)])
+    assert fitted[0] == pytest.approx(0.02, rel=0.05)
 
 
 def alone(session, line):

@@ -8,17 +8,8 @@ from ..model import effects
 _FOUND_OTHERWISE = {
     "temperature-curve": (
         "Curve over temperature",
-        "The bias follows a curve over temperature that is more than a bend.",
-    ),
-    "temperature-polynomial": (
-        "Polynomial over temperature",
-        "The bias follows a line, parabola or cubic over temperature more closely than the "
-        "firmware's own curve does.",
-    ),
-    "temperature-segments": (
-        "Line over temperature that bends several times",
-        "The bias follows a curve over temperature with more bends than a cubic has. Each number "
-        "below is what one more bend adds to the slope from there on.",
+        "The bias follows a smooth curve over temperature. The first number below is its slope, "
+        "each other one what a bend adds to the slope from there on.",
     ),
     "scale-factor": ("Scale factor", "The rates are too large or too small by a constant share."),
     "cross-axis": ("Cross-axis sensitivity", "A turn about one axis shows on the others."),

@@ -13,7 +13,7 @@ from ...model.term import Term
 from ..read.sessions import block_basis
 from .regression import Regression, predicted
 from .shrunk import has_play_operators, shrink
-from .smooth import bends_often, smooth
+from .smooth import curve_of, smooth
 
 #: Of the squared coefficients of play operators, in units of their columns, per block.
 _RIDGE = 5e-5
@@ -33,10 +33,11 @@ def less_slope(straight: Sequence[Term], terms: Sequence[Term]) -> tuple[Term, .
 
 def ordinary(terms, sessions, effects=(), coefficients=None) -> np.ndarray:
     """(terms, 3) dps per unit by least squares over blocks, an offset a session, effects subtracted
-    first; play operators, which are much alike, are shrunk a little, and many bends made smooth.
+    first; play operators, which are much alike, are shrunk a little, and bends made smooth.
     """
-    if not len(effects) and bends_often(terms):
-        return smooth(terms, sessions)
+    curve = curve_of(terms)
+    if curve and not len(effects):
+        return smooth(terms, curve, sessions)
     x, y = [], []
     for s in sessions:
         there = s.available

@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...model.term import Term
-from ..read.sessions import Session
+from ..read.sessions import Session, block_basis
 
 #: Lengths of the waves, of the range of temperature; their variance, of that of a block's noise.
 LENGTHS = (0.05, 0.1, 0.2, 0.4, 0.8)
@@ -24,22 +24,29 @@ _POINTS = 3
 _TINY = 1e-9
 
 
-def bends_often(terms: Sequence[Term]) -> bool:
-    """Whether terms are a slope with bends and nothing else; whoever makes such puts the bends at
+def curve_of(terms: Sequence[Term]) -> list[int]:
+    """Which terms are one slope and its bends, two and more; whoever makes such puts the bends at
     even distances."""
-    if len(terms) < 3 or not np.isfinite(terms[0].lo):
-        return False
-    return all(t.knot is not None and replace(t, knot=None) == terms[0] for t in terms[1:])
+    bent = [i for i, t in enumerate(terms) if t.knot is not None and np.isfinite(t.lo)]
+    for first, slope in enumerate(terms):
+        own = [i for i in bent if replace(terms[i], knot=None) == slope]
+        if len(own) > 1:
+            return [first, *own]
+    return []
 
 
-def smooth(terms: Sequence[Term], sessions: Sequence[Session]) -> np.ndarray:
-    """(terms, 3) dps per unit of a slope and its bends, an offset a session."""
-    corners = _corners(terms)
+def smooth(terms: Sequence[Term], own: Sequence[int], sessions: Sequence[Session]) -> np.ndarray:
+    """(terms, 3) dps per unit by least squares, an offset a session, those of a slope and its bends
+    (`curve_of`) by the curve nearest to which they are."""
+    corners = _corners([terms[i] for i in own])
     at = np.linspace(corners[0], corners[-1], _POINTS * (len(corners) - 1) + 1)
-    curve = _curve(at, sessions)
+    beside = [i for i in range(len(terms)) if i not in own]
+    curve, others = _curve(at, [terms[i] for i in beside], sessions)
     heights = np.linalg.lstsq(_between(at, corners), curve, rcond=None)[0]
     slopes = np.diff(heights, axis=0) / np.diff(corners)[:, None]
-    return np.vstack([slopes[:1], np.diff(slopes, axis=0)])
+    out = np.empty((len(terms), 3))
+    out[own], out[beside] = np.vstack([slopes[:1], np.diff(slopes, axis=0)]), others
+    return out
 
 
 def _corners(terms) -> np.ndarray:
@@ -54,20 +61,27 @@ def _between(degc: np.ndarray, at: np.ndarray) -> np.ndarray:
     return np.column_stack([np.interp(degc, at, unit) for unit in np.eye(len(at))])
 
 
-def _curve(at: np.ndarray, sessions: Sequence[Session]) -> np.ndarray:
-    """(points, 3) dps: the straight line and a smooth deviation from it."""
+def _curve(
+    at: np.ndarray, beside: Sequence[Term], sessions: Sequence[Session]
+) -> tuple[np.ndarray, np.ndarray]:
+    """(points, 3) dps of the straight line and a smooth deviation from it, and (terms, 3) dps per
+    unit of what is beside."""
     x, y = [], []
     for s in sessions:
         degc, there = s.block_mean(s.source("temp")), s.available
-        x.append(s.less_offsets(np.column_stack([degc, _between(degc, at)]), there)[there])
+        columns = [degc, *(block_basis(t, s) for t in beside), _between(degc, at)]
+        x.append(s.less_offsets(np.column_stack(columns), there)[there])
         y.append(s.less_offsets(s.rate_dps, there)[there])
-    every, rates = np.vstack(x), np.vstack(y)
-    free = len(rates) - 1 - sum(1 + len(s.steps) for s in sessions)
-    straight, shares = every[:, :1], every[:, 1:]
-    along = straight / max(float((straight**2).sum()), 1e-300)
-    left, waves = (v - straight @ (along.T @ v) for v in (rates, shares))
+    every, rates, plain = np.vstack(x), np.vstack(y), 1 + len(beside)
+    free = len(rates) - plain - sum(1 + len(s.steps) for s in sessions)
+    scale = np.maximum(every[:, :plain].std(axis=0), 1e-300)
+    line, shares = every[:, :plain] / scale, every[:, plain:]
+    own = np.linalg.qr(line)[0]
+    left, waves = (v - own @ (own.T @ v) for v in (rates, shares))
     deviation = _deviation(at, waves, left, free)
-    return deviation + at[:, None] * (along.T @ (rates - shares @ deviation))
+    rest = rates - shares @ deviation
+    fitted = np.linalg.lstsq(line, rest, rcond=1e-12)[0] / scale[:, None]
+    return deviation + at[:, None] * fitted[0], fitted[1:]
 
 
 def _deviation(at: np.ndarray, waves: np.ndarray, left: np.ndarray, free: int) -> np.ndarray:

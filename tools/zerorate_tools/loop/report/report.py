@@ -187,8 +187,11 @@ def _lost(selection, i: int) -> dict[str, float]:
 
 
 def _name(slot, own):
-    """A slot's source, with its power where an effect has several slots of one source."""
+    """A slot's source, with its power where an effect has several slots of one source; a bend with
+    its place."""
     term = slot.term
+    if term.knot is not None:
+        return f"{term.source}>{term.centre + term.knot:.4g}"
     alone = sum(other.term.source == term.source for other in own) == 1
     return term.source if alone else f"{term.source}^{term.power}"
 

@@ -5,11 +5,16 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...model.term import Term
+from ..fit.line import ordinary
+from ..fit.regression import predicted
 from ..read.sessions import Session, block_basis
 
 #: Share of a term's squares that others must leave: with less, coefficients would be huge and
 #: opposite, which no integers hold and no other power-on repeats.
 _OWN_SHARE = 0.003
+#: Of the error without it that an effect may be. Lags of real parts are 0.6 times; what tells a
+#: start's decay from a warm-up by cancelling both is 6 times and more.
+_MOST_TIMES = 2.0
 
 
 def collinear(terms: Sequence[Term], others: Sequence[Term], sessions: list[Session]) -> bool:
@@ -39,3 +44,21 @@ def _within(term, sessions):
     """(blocks,) basis of all sessions where there is a rate, less each session's own mean."""
     parts = [block_basis(term, s)[s.available] for s in sessions]
     return np.concatenate([p - p.mean() for p in parts])
+
+
+def cancels(sessions: Sequence[Session], beside: Sequence[Term], terms: Sequence[Term]) -> bool:
+    """Whether terms are far larger than the error that they explain: then they only stand against
+    others, as a start's decay against a warm-up, and not at another power-on."""
+    without = _squares(sessions, beside, ordinary(beside, sessions) if beside else None, True)
+    fitted = ordinary([*beside, *terms], sessions)[len(beside) :]
+    return _squares(sessions, terms, fitted, False) > _MOST_TIMES**2 * without
+
+
+def _squares(sessions, terms, coefficients, left: bool) -> float:
+    """Of what terms add to the bias, or leave of it, offsets aside, in all."""
+    total = 0.0
+    for s in sessions:
+        added = predicted(terms, coefficients, s) if len(terms) else 0.0
+        values = s.rate_dps - added if left else added
+        total += float((s.less_offsets(values, s.available)[s.available] ** 2).sum())
+    return total

@@ -1,10 +1,13 @@
 """When a candidate counts as found: several locks, each of which must open."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 from scipy.stats import chi2
 
+from ...model.term import Term
 from ..fit.left_out import gains
 from ..fit.surrogates import null_ratios
 
@@ -22,6 +25,22 @@ LEAST_GAIN = 3.0
 #: Nats that one of at least three may lose: odds of twenty to one against.
 MOST_LOST = 3.0
 
+#: Nats that pieces of one recording must gain; and the chance by the likelihood, all of its kind
+#: that were tried paid for, above which pieces alone tell of no memory: with one of real parts it
+#: is below 0.0001, with seven that noise feigned it was 1.
+LEAST_OF_PIECES, LIKELY = 2.0, 0.01
+
+
+class JudgedOnPieces(Protocol):
+    """What an effect gains on pieces of a recording that are left out; `reason` of a refusal."""
+
+    reason: str
+
+    def __call__(
+        self, straight: Sequence[Term], found: Sequence[Term], candidate: Sequence[Term]
+    ) -> np.ndarray:
+        """(folds,) nats by which each piece is better predicted with the candidate."""
+
 
 @dataclass
 class Decision:
@@ -34,6 +53,19 @@ class Decision:
     session_gains: np.ndarray
     reason: str = ""
     tried: float = 1.0
+
+    def on_pieces(
+        self,
+        judged: JudgedOnPieces,
+        straight: Sequence[Term],
+        found: Sequence[Term],
+        candidate: Sequence[Term],
+    ) -> "Decision":
+        """The same, unless pieces left out do not speak for the candidate."""
+        gain = judged(straight, found, candidate)
+        accepted = bool(gain.sum() > LEAST_OF_PIECES)
+        reason = "" if accepted else judged.reason
+        return replace(self, accepted=accepted, session_gains=gain, reason=reason)
 
 
 def family_p(ratio: float, dof: int, tried: float) -> float:

@@ -4,13 +4,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from ...model.term import Term
+from ..fit.line import less_slope
 from ..fit.single import PiecesByLine
-from . import cross_validation, drift_test
-from .bends import LEAST_OF_OTHERS, JudgedOnPieces, on_pieces
+from . import drift_test
 from .catalogue import Candidate
-from .collinear import collinear
+from .collinear import cancels, collinear
 from .confounding import label
-from .decide import Decision, decide
+from .decide import Decision, JudgedOnPieces, decide
+from .hysteresis import is_like_hysteresis
 from .multiple_testing import MultipleTesting
 from .ols_holdout_ratio import ols_holdout_ratio
 from .refine import drawn, refined
@@ -97,15 +98,13 @@ class Examiner:
     def _by_pieces(self, decision, judged: JudgedOnPieces, best, straight, found) -> Decision:
         sessions, beside = self.regression.sessions, (straight, found)
         reason = ""
-        if cross_validation.cancels(sessions, [*straight, *found], best.terms):
+        if cancels(sessions, [*less_slope(straight, best.terms), *found], best.terms):
             reason = "it would only cancel another"
-        elif cross_validation.is_like_hysteresis(
-            *beside, best, self.pool, PiecesByLine(sessions[0])
-        ):
+        elif is_like_hysteresis(*beside, best, self.pool, PiecesByLine(sessions[0])):
             reason = "a hysteresis predicts as well"
         if reason:
             return replace(decision, accepted=False, reason=reason)
-        return on_pieces(decision, judged, *beside, best.terms, LEAST_OF_OTHERS)
+        return decision.on_pieces(judged, *beside, best.terms)
 
 
 def _is_a_start(candidate: Candidate, found: Sequence[Term]) -> bool:

@@ -4,8 +4,8 @@ The next session goes a little further in temperature or supply than those befor
 very edge, a large effect is then wrong by what it still changes; followed too far, by what the fit
 does not know. So a term is followed as far as its error there stays within the noise of a block,
 judged with a further power of the source in the fit: what is not known of the curve's shape counts.
-That takes several power-ons. What one alone shows is held at the edge, but for a bend over
-temperature: beyond it the firmware's own curve goes on with its slope; what is held makes a corner.
+That takes several power-ons. What one alone shows is held at the edge; its curve over temperature
+goes on straight.
 """
 
 from __future__ import annotations
@@ -17,42 +17,12 @@ from typing import Any
 import numpy as np
 
 from ...model.term import Term
-from .bends import KINDS
-from .catalogue import OF_MOTION, is_bounded, ranges
-from .cross_validation import POLYNOMIAL
+from .catalogue import OF_MOTION, is_bounded
 
 #: At most this share of the range seen, on either side, and in how many steps it is looked for.
 MOST, _STEPS = 0.25, 10
-#: The same of what one recording shows to go on straight, or as a parabola; a cubic half as far.
-#: Five real recordings over 20 degC and more, cut at either end, are predicted there as well so as
-#: held, and better than twice as far.
-STRAIGHT, _PARABOLA = 1.0, 0.1
-_GO_ON = ("temperature-kink", "temperature-quadratic", POLYNOMIAL)
 #: RMS error beyond the edge, over that of a block's white noise.
 _WITHIN = 1.0
-
-
-def go_on(regression, straight, found) -> None:
-    """The same of one recording: of bends over temperature alone. A kink goes on straight as the
-    firmware's own curve does, whose corner it would else be, and so does the slope of powers."""
-    bends = [f for f in found if f.candidate.kind in KINDS]
-    others = [t for f in found if f not in bends for t in f.candidate.terms]
-    follow_further(regression, [*straight, *others], bends)
-    for f in found:
-        if f.candidate.kind in _GO_ON:
-            lo, hi, _ = ranges(regression.sessions)["temp"]
-            f.candidate = replace(f.candidate, terms=_gone_on(f.candidate.terms, lo, hi))
-
-
-def _gone_on(terms: tuple[Term, ...], lo: float, hi: float) -> tuple[Term, ...]:
-    """The terms with limits that are at least so far beyond what was seen."""
-    top = max(t.power for t in terms)
-    out = []
-    for t in terms:
-        straight = STRAIGHT if top == 1 else MOST
-        margin = (straight if t.power == 1 else _PARABOLA / (top - 1)) * (hi - lo)
-        out.append(replace(t, lo=min(t.lo, lo - margin), hi=max(t.hi, hi + margin)))
-    return tuple(out)
 
 
 def follow_further(regression, straight, found) -> None:

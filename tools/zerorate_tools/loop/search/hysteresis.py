@@ -18,15 +18,16 @@ from ...model.term import Term, play
 from ..fit.regression import Regression
 from ..fit.single import PiecesByLine, speaks_for
 from ..read.sessions import Session, block_basis
-from .bends import JudgedOnPieces
 from .catalogue import Candidate
-from .decide import LEVEL, Decision, family_p
+from .decide import LEVEL, Decision, JudgedOnPieces, family_p
 from .fits_in_slots import fits_in_slots
 from .selection import Found
 
 KIND = "thermal-hysteresis"
 #: Of one width, or what else a few power-ons take a sum of many widths for.
 LIKE_IT = (KIND, "temperature-peak", "thermal-lag", "thermal-rate", "power-on-transient")
+#: What may lag behind temperature, or only seem to: the start of a power-on.
+MEMORIES = ("thermal-lag", "thermal-rate", "power-on-transient")
 #: Radii of the grid, as shares of the range of temperature: its ends, how many, and of how many
 #: every choice is tried.
 _FINEST, _WIDEST, _GRID, _FEW = 0.015, 0.65, 64, 12
@@ -81,6 +82,16 @@ def may_show(sessions: Sequence[Session]) -> bool:
     return np.ptp(degc) >= _LEAST_SPAN_DEGC and passed_twice(sessions) >= _LEAST_PASSED_TWICE
 
 
+def is_like_hysteresis(straight, beside, best: Candidate, pool, by_line: PiecesByLine) -> bool:
+    """Whether a hysteresis of one width predicts the pieces left out as well as a lag, a rate or a
+    start: one course does not tell which it is, and at another power-on they part."""
+    if best.kind not in MEMORIES:
+        return False
+    loops = [c.terms for c in pool if c.kind == KIND]
+    most = max((float(by_line(straight, beside, terms).sum()) for terms in loops), default=-np.inf)
+    return most >= float(by_line(straight, beside, best.terms).sum())
+
+
 def best_hysteresis(
     sessions: Sequence[Session], straight: Sequence[Term], beside: Sequence[Term], judged: Judged
 ) -> tuple[Candidate | None, float]:
@@ -103,36 +114,35 @@ def best_hysteresis(
 def of_one_recording(
     regression: Regression,
     straight: Sequence[Term],
-    beside: Sequence[tuple[Term, ...]],
+    bends: Sequence[tuple[Term, ...]],
     pool: Sequence[Candidate],
     judged: JudgedOnPieces,
     taken: int,
 ) -> tuple[Found | None, str]:
     """The hysteresis of a recording that stands alone, with its bend as one effect, or why not.
 
-    beside: the bend found, then another that may be better with a hysteresis beside it; pool: of
-    which lag, rate and kink are asked first, for one course of temperature shows all much alike;
-    taken: slots that others need. No other may predict the pieces nearly as well, and the error on
-    them must fall by LEAST_FACTOR beside the bend. Pieces left out decide, as with bends, but the
-    noise may be as steep as it likes: a course with few turns is much like a walk.
+    bends: of which the one that predicts best with a hysteresis is taken; pool: of which lag, rate
+    and kink are asked first, for one course of temperature shows all much alike; taken: slots that
+    others need. No other may predict the pieces nearly as well, and the error on them must fall by
+    LEAST_FACTOR beside the bend. Pieces left out decide, as with curves, but the noise may be as
+    steep as it likes: a course with few turns is much like a walk.
     """
     # beside play operators no bend is held at the edges: then none is in what they are compared to
     by_line = PiecesByLine(regression.sessions[0], hold=False)
-    best = _with_a_bend(regression, straight, beside, by_line, taken)
+    best = _with_a_bend(regression, straight, bends, by_line, taken)
     if best is None:
         return None, ""
     gain, bend, candidate = best
-    rival, rivals_gain = _rival(straight, bend, pool, by_line)
-    if rivals_gain > gain - TIES_NATS:
-        return None, AS_WELL if rivals_gain < gain + TIES_NATS else BETTER
+    rival, most = _rival(straight, bend, pool, by_line)
+    if most > gain - TIES_NATS:
+        return None, AS_WELL if most < gain + TIES_NATS else BETTER
     p, ratio = _chance(regression, [*straight, *bend, *rival.terms], candidate)
     if p > LEVEL["catalogue"]:
         return None, "not significant"
     whole = (*bend, *candidate.terms)
-    if _factor(straight, beside, whole, by_line) < LEAST_FACTOR:
+    if _factor(straight, bends, whole, by_line) < LEAST_FACTOR:
         return None, "too little of the error to tell it from the noise's walk"
     nats = judged(straight, (), whole)
-    nats = nats - judged(straight, (), beside[0]) if beside[0] else nats
     if not speaks_for(nats):
         return None, judged.reason
     decision = Decision(True, p, ratio, 1.0, nats)
@@ -140,11 +150,11 @@ def of_one_recording(
 
 
 def _with_a_bend(
-    regression, straight, beside, by_line, taken
+    regression, straight, bends, by_line, taken
 ) -> tuple[float, tuple[Term, ...], Candidate] | None:
     """The nats that the best bend and hysteresis gain together, and both; None where none fits."""
     best: tuple[float, tuple[Term, ...], Candidate] | None = None
-    for bend in beside:
+    for bend in bends:
         candidate, gain = best_hysteresis(regression.sessions, straight, bend, by_line)
         gain += float(by_line(straight, (), bend).sum()) if bend else 0.0
         room = candidate and fits_in_slots([*bend, *candidate.terms], taken)
@@ -159,12 +169,10 @@ def _chance(regression, beside, candidate: Candidate) -> tuple[float, float]:
     return family_p(ratio, 3 * len(candidate.terms), _tried(candidate)), ratio
 
 
-def _factor(straight, beside, whole, by_line) -> float:
-    """By how much the error of pieces left out falls from that beside the better bend, geometric
-    mean over the axes; the kernels, whose curve bends already, may have found none."""
-    logs = [
-        np.log(np.nanmean(by_line.residual(straight, t) ** 2, axis=0)) for t in (whole, *beside)
-    ]
+def _factor(straight, bends, whole, by_line) -> float:
+    """By how much the error of pieces left out falls from that beside the best bend, geometric mean
+    over the axes; the kernels, whose curve bends already, may have found none."""
+    logs = [np.log(np.nanmean(by_line.residual(straight, t) ** 2, axis=0)) for t in (whole, *bends)]
     return float(np.exp(0.5 * (min(x.mean() for x in logs[1:]) - logs[0].mean())))
 
 

@@ -9,28 +9,29 @@ from ...model.term import Term
 from ..fit.common_cause import coherence, turned_axes
 from ..fit.line import less_slope
 from ..fit.regression import Regression
-from ..fit.shrunk import evidence
+from ..fit.shrunk import evidence, has_play_operators
 from ..read.sessions import Session
-from . import confounding, hysteresis
+from . import confounding, curve, hysteresis
 from . import steps as events
-from .bends import JudgedOnPieces
 from .catalogue import Candidate, ranges
 from .catalogue import candidates as all_candidates
 from .collinear import collinear
+from .decide import JudgedOnPieces
 from .detectable import smallest_dps
 from .examine import Examiner
-from .extrapolation import follow_further, go_on
+from .extrapolation import follow_further
 from .fits_in_slots import fits_in_slots
-from .likely_hysteresis import likeliest
+from .likely_hysteresis import likeliest, of_a_pair
 from .multiple_testing import MultipleTesting
 from .naming import name_found
-from .one_recording import OneRecording
 from .refine import drawn, refined
 from .selection import Found, Selection
 
 MOST_EFFECTS = 6
 _KINDS_TRIED = 4
 _TURN_BELOW = 1e-3
+#: Beside which there is no bend.
+_BENDS = ("temperature-quadratic", curve.KIND)
 
 
 def straight_line(sessions: list[Session]) -> tuple[Term, ...]:
@@ -53,14 +54,15 @@ class Search:
         self.regression = Regression(sessions)
         self.on_pieces = on_pieces
         self.line = straight_line(sessions)
-        self.bend = tuple(replace(t, power=2) for t in self.line)
+        self.own_bend = tuple(replace(t, power=2) for t in self.line)
         self.found: list[Found] = []
         self.pool = all_candidates(sessions)
         self.steps: list[events.Step] = []
         self.like_hysteresis: list[Found] = []
         self.refused: list[tuple[str, str]] = []
         self.dropped: set[str] = set()
-        self.bends = 0
+        self.kept = 0
+        self.forms: list[Candidate] = []
 
     @cached_property
     def testing(self) -> MultipleTesting:
@@ -78,6 +80,11 @@ class Search:
         """The line, unless a slope found has its place."""
         return less_slope(self.line, self.terms())
 
+    @property
+    def bend(self) -> tuple[Term, ...]:
+        """The bend beside the line, unless a curve found has its place."""
+        return less_slope(self.own_bend, self.terms())
+
     def terms(self, leave: int | None = None) -> list[Term]:
         return [t for i, f in enumerate(self.found) if i != leave for t in f.candidate.terms]
 
@@ -86,19 +93,22 @@ class Search:
 
     def run(self) -> Selection:
         if self.on_pieces:
-            self._look_at_one(self.on_pieces)
+            self._begin_with_one(self.on_pieces)
         while len(self.found) < MOST_EFFECTS and self._add_one():
             self._drop_idle()
-        if not self.on_pieces:
+        if self.on_pieces:
+            self._by_pieces(self.on_pieces)
+        else:
             self._widen_hysteresis()
         self._list_steps()
-        name_found(self.regression, self.straight, self.found, self.pool, self.bends)
+        named = [c for c in self.pool if c.kind != curve.KIND]
+        name_found(self.regression, self.straight, self.found, named, self.kept)
         if (hysteresis.KIND, hysteresis.AS_WELL) in self.refused:
             self.like_hysteresis = [f for f in self.found if f.candidate.kind in hysteresis.SIMPLER]
         for f in self.like_hysteresis:
             f.confounded_with = list(dict.fromkeys([*f.confounded_with, hysteresis.KIND]))
-        further = go_on if self.on_pieces else follow_further
-        further(self.regression, self.straight, self.found)
+        if not self.on_pieces:
+            follow_further(self.regression, self.straight, self.found)
         r = self.regression
         smallest = self._smallest()
         return Selection(
@@ -108,7 +118,7 @@ class Search:
             r.outliers,
             r,
             self.line,
-            self.bend,
+            self.own_bend,
             self.pool,
             smallest,
             bool(self.on_pieces),
@@ -117,20 +127,39 @@ class Search:
 
     def _smallest(self):
         r, needed, beside = self.regression, self.testing.needed, [*self.straight, *self.terms()]
-        bent = [c for c in self.pool if c.kind != "temperature-quadratic"]
-        quadratic = [c for c in self.pool if c.kind == "temperature-quadratic"]
+        every = [*self.pool, *self.forms]
+        bent = [c for c in every if c.kind != "temperature-quadratic"]
+        quadratic = [c for c in every if c.kind == "temperature-quadratic"]
         with r.in_sensor_axes():
             smallest = smallest_dps(r, beside, quadratic, needed)
             return {**smallest, **smallest_dps(r, self._beside_bend(), bent, needed)}
 
-    def _look_at_one(self, on_pieces: JudgedOnPieces):
-        r = self.regression
-        one = OneRecording(r, self.line, self.pool, on_pieces, self.taken, self.judged_again)
-        one.look()
-        self.found, self.bends = one.found, len(one.found)
-        self.refused += one.refused
-        if any(t.power == 2 for t in self.terms()):
-            self.bend = ()
+    def _begin_with_one(self, judged: JudgedOnPieces):
+        """The hysteresis that one course of temperature shows, else a curve as a candidate."""
+        r, every = self.regression, self.pool
+        self.pool = [c for c in every if c.kind not in curve.FORMS]
+        if not curve.shows_a_curve(r.sessions[0]):
+            self.refused.append((curve.KIND, "too few rests to tell by pieces left out"))
+            return
+        self.forms, bend = [c for c in every if c.kind in curve.FORMS], curve.powers(every)
+        if self.judged_again:
+            found, refused = of_a_pair(r, self.line, bend, every, self.taken)
+        else:
+            asked = self.line, [(), bend[:1], bend], every, judged, self.taken
+            found, refused = hysteresis.of_one_recording(r, *asked)
+        if found:
+            self.found, self.kept = [found], 1
+        else:
+            self.pool += curve.smooth_curve(r.sessions, self.line, self.taken)
+        self.refused += [(hysteresis.KIND, refused)] if refused else []
+
+    def _by_pieces(self, judged: JudgedOnPieces):
+        """What pieces left out tell of temperature, in the place of a curve that was found."""
+        enough = curve.shows_a_curve(self.regression.sessions[0])
+        if enough and not has_play_operators(self.terms()):
+            others = [f for f in self.found if f.candidate.kind != curve.KIND]
+            own = [*self.pool, *self.forms], judged, self.taken
+            self.found = curve.ByPieces(self.regression, self.line, *own).look(others)
 
     def _widen_hysteresis(self):
         """A sum of play operators in place of what was found to remember temperature, or to follow
@@ -163,7 +192,7 @@ class Search:
             r.settle(nuisances)
 
     def _nuisances(self, candidate: Candidate) -> list[Term]:
-        bend = () if candidate.kind == "temperature-quadratic" else self.bend
+        bend = () if candidate.kind in _BENDS else self.bend
         return [*self.straight, *bend, *self.terms()]
 
     def _ratios(self):
@@ -171,7 +200,7 @@ class Search:
         r, groups = self.regression, [c.terms for c in self.pool]
         choose = r.gains([*self.straight, *self.terms()], groups).sum(axis=1)
         test = r.gains(self._beside_bend(), groups).sum(axis=1)
-        test = np.where([c.kind == "temperature-quadratic" for c in self.pool], choose, test)
+        test = np.where([c.kind in _BENDS for c in self.pool], choose, test)
         return choose, test
 
     def _add_one(self) -> bool:
@@ -243,7 +272,7 @@ class Search:
         """An effect that the later ones explain is taken out again; the others' parameters are
         refined together.
         """
-        for i in reversed(range(self.bends, len(self.found))):
+        for i in reversed(range(self.kept, len(self.found))):
             c = self.found[i].candidate
             rest = [*self.straight, *self.terms(leave=i)]
             if self.examiner.is_idle(c, rest):

@@ -38,6 +38,8 @@ def prune_by_holdout(selection: Selection, holdout: list[Session]) -> tuple[Sele
     What is taken out is said in `Selection.withdrawn`, with the error that it would have left.
     """
     judgement = judge(selection, holdout)
+    if selection.stands_alone:
+        return selection, judgement
     for i in [int(i) for i in judgement.gains.argsort()]:
         less = selection.without(i)
         reason = _spoken_against(selection, judgement, i)
