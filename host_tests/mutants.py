@@ -72,8 +72,8 @@ AREAS = {
             "recent.py", "step.py", "stillness.py")],
         ["host_tests/firmware/test_" + name for name in (
             "estimators.py", "fit.py", "histogram.py", "stillness.py", "turn_on.py",
-            "quality.py", "guard.py", "bursts.py", "windows.py", "sources_together.py",
-            "documents.py")]
+            "quality.py", "guard.py", "bursts.py", "windows.py", "offsets.py",
+            "sources_together.py", "documents.py")]
         + [KNOWN, GOLDEN],
     ),
     "motion": (
