@@ -539,6 +539,13 @@ def test_the_grid_has_every_pair_of_flicker_and_walk_and_steep_noise_beside_litt
     plain = {(s.flicker, s.walk) for s in every if not s.slope}
     assert len(plain) == 72 and all(s.steep == 0 for s in every if not s.slope)
     assert {0.0, 3.5} <= {f for f, _ in plain} and {0.0, 3.0} <= {w for _, w in plain}
+    for values in zip(*plain):  # none is farther from its neighbour than a factor of four
+        above = sorted({*values} - {0.0})
+        assert all(2 < high / low < 4 for low, high in zip(above, above[1:]))
+    corners = sorted({s.steep for s in every if s.slope})
+    assert len(corners) == 6 and (corners[0], corners[-1]) == (0.01, 1.0)
+    assert all(2 < high / low < 3 for low, high in zip(corners, corners[1:]))
+    assert {s.flicker for s in every if s.slope} == {0.0, 0.08}
     steep = [s for s in every if s.slope]
     assert {s.slope for s in steep} == {3, 4} and len(steep) == 24 and len(set(every)) == 96
     assert all(s.walk == 0 and s.steep > 0 for s in steep)
