@@ -12,7 +12,7 @@ from zerorate_tools.loop.fit.intervals import block_bootstrap, rms
 from zerorate_tools.loop.fit.left_out import precision_of
 from zerorate_tools.loop.fit.noise import FEW, floor_dps, noise_of, shapes
 from zerorate_tools.loop.fit.regression import Regression
-from zerorate_tools.loop.fit.smooth import bends_often, matern, smooth
+from zerorate_tools.loop.fit.smooth import curve_of, matern, smooth
 from zerorate_tools.loop.fit.surrogates import NullRatios, null_ratios
 from zerorate_tools.loop.read.sessions import Session
 from zerorate_tools.loop.search.steps import Step
@@ -158,18 +158,21 @@ def bends(lo=15.0, apart=4.0, number=4):
     return [slope, *(replace(slope, knot=apart * (k + 1.0)) for k in range(number))]
 
 
-def test_a_line_that_bends_often_is_the_mean_of_all_curves_by_their_likelihood(sessions):
-    terms = bends()
+@pytest.mark.parametrize("beside", [[], [A]])
+def test_a_line_that_bends_often_is_the_mean_of_all_curves_by_their_likelihood(sessions, beside):
+    terms = [*beside, *bends()]
     corners = 15.0 + 4.0 * np.arange(6)
     at = np.linspace(corners[0], corners[-1], 16)
-    degc = [s.sources["temp"] for s in sessions]
-    shares = [np.column_stack([np.interp(d, at, u) for u in np.eye(16)]) for d in degc]
-    columns = [np.column_stack([d, c]) for d, c in zip(degc, shares)]
+    columns, plain = [], 1 + len(beside)
+    for s in sessions:
+        shares = np.column_stack([np.interp(s.sources["temp"], at, u) for u in np.eye(16)])
+        others = [s.sources[t.source] for t in beside]
+        columns.append(np.column_stack([s.sources["temp"], *others, shares]))
     x, y = with_offsets(sessions, columns, [s.rate_dps for s in sessions])
-    straight, w = x[:, :1], x[:, 1:]
+    straight, w = x[:, :plain], x[:, plain:]
     p = straight @ np.linalg.pinv(straight)
     left, waves = y - p @ y, w - p @ w
-    free = len(y) - 1 - 3  # offsets: one session, and two stretches
+    free = len(y) - plain - 3  # offsets: one session, and two stretches
     told, curves = [], []
     for length in (0.05, 0.1, 0.2, 0.4, 0.8):
         d = np.sqrt(5) * np.abs(at[:, None] - at) / (length * (at[-1] - at[0]))
@@ -184,21 +187,22 @@ def test_a_line_that_bends_often_is_the_mean_of_all_curves_by_their_likelihood(s
             curves.append(size * k @ waves.T @ to @ left)
     weight = np.exp(np.array(told) - max(told))
     deviation = np.tensordot(weight / weight.sum(), curves, 1)
-    curve = deviation + at[:, None] * (np.linalg.pinv(straight) @ (y - w @ deviation))
+    fitted = np.linalg.pinv(straight) @ (y - w @ deviation)
+    curve = deviation + at[:, None] * fitted[0]
     nearest = np.column_stack([np.interp(at, corners, u) for u in np.eye(6)])
     heights = np.linalg.lstsq(nearest, curve, rcond=None)[0]
     slopes = np.diff(heights, axis=0) / 4.0
-    expected = np.vstack([slopes[:1], np.diff(slopes, axis=0)])
-    assert smooth(terms, sessions) == pytest.approx(expected, rel=1e-4, abs=1e-7)
+    expected = np.vstack([fitted[1:], slopes[:1], np.diff(slopes, axis=0)])
+    assert smooth(terms, curve_of(terms), sessions) == pytest.approx(expected, rel=1e-4, abs=1e-7)
     assert line.ordinary(terms, sessions) == pytest.approx(expected, rel=1e-4, abs=1e-7)
 
 
-def test_a_slope_with_two_bends_or_more_bends_often_and_nothing_else_does():
+def test_a_slope_with_two_bends_or_more_is_a_curve_and_nothing_else_is():
     terms = bends()
-    assert bends_often(terms) and bends_often(terms[:3]) and not bends_often(terms[:2])
-    assert not bends_often([replace(t, lo=-np.inf) for t in terms])
-    assert not bends_often([*terms, replace(terms[0], power=2)])
-    assert not bends_often([*terms, replace(terms[1], source="a")])
+    assert curve_of(terms) == [0, 1, 2, 3, 4]
+    assert curve_of([A, *terms[:3]]) == [1, 2, 3] and curve_of(terms[:2]) == []
+    assert curve_of([replace(t, lo=-np.inf) for t in terms]) == []
+    assert curve_of([*terms, replace(terms[1], source="a")]) == [0, 1, 2, 3, 4]
 
 
 def test_a_free_curve_is_the_likeliest_form_over_its_nine_points():
