@@ -8,7 +8,14 @@ from scipy.stats import chi2
 from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.search import steps as listed
 from zerorate_tools.loop.search.catalogue import Candidate
-from zerorate_tools.loop.search.steps import Step, column, find_all, standing, strongest
+from zerorate_tools.loop.search.steps import (
+    Step,
+    column,
+    find_all,
+    standing,
+    steps_and_lags,
+    strongest,
+)
 from zerorate_tools.model.term import Term
 
 from . import dense
@@ -207,7 +214,7 @@ def test_what_a_recorded_channel_does_is_no_step_where_it_is_a_rival():
     session.rate_dps += np.outer(switched, [9.0, -9.0, 9.0])
     rival = Candidate("channel", (Term("load"),), "generic")
     assert len(find_all(Regression([session]), [])) > 0
-    assert find_all(Regression([session]), [], [rival]) == []
+    assert steps_and_lags(Regression([session]), [], [rival])[0] == []
 
 
 def test_two_are_the_same_within_two_blocks_of_one_session():
@@ -220,3 +227,11 @@ def test_two_are_the_same_within_two_blocks_of_one_session():
 
 def test_the_level_of_a_step_beside_others_is_lower():
     assert (listed._level(0), listed._level(1), listed._level(3)) == (2e-3, 1e-4, 1e-4)
+
+
+def test_terms_are_shrunk_inside_a_with_alone(sessions):
+    regression = Regression(sessions)
+    free = regression.fit([A]).coefficients
+    with regression.shrinking({A: 1e12}):
+        assert regression.fit([A]).coefficients == pytest.approx(np.zeros((1, 3)), abs=1e-6)
+    assert (regression.fit([A]).coefficients == free).all()

@@ -2,7 +2,7 @@
 turned.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 
@@ -47,8 +47,7 @@ class Regression:
         self.outliers = 0
         self.steep = True  # whether the noise may be steeper than a random walk
         self.axes = np.eye(3)
-        #: Of the weights of terms about zero, over the variance of a block's white noise.
-        self.precision: dict[Term, float] = {}
+        self._precision: Mapping[Term, float] = {}
         self._cache: dict[Term, list[np.ndarray]] = {}
         self._extra: list[list[np.ndarray]] = []
         self.prepare()
@@ -82,6 +81,14 @@ class Regression:
         self.turn(np.eye(3))
         yield
         self.turn(axes)
+
+    @contextmanager
+    def shrinking(self, precision: Mapping[Term, float]) -> Iterator[None]:
+        """Shrink some terms inside a `with`. precision: of the weight of each about zero, over the
+        variance of a block's white noise."""
+        self._precision = precision
+        yield
+        self._precision = {}
 
     def columns(self, term: Term) -> list[np.ndarray]:
         """Prepared (N,) column of each session."""
@@ -139,7 +146,7 @@ class Regression:
         for i, term in enumerate(terms):
             if term.source.startswith("acc_") and term.power == 2:
                 products[..., i, i] *= 1.0 + _SUM_OF_SQUARES
-            products[..., i, i] += self.precision.get(term, 0.0) / len(self.sessions)
+            products[..., i, i] += self._precision.get(term, 0.0) / len(self.sessions)
 
     def fit(self, terms) -> Fit:
         """Joint fit with the noise's colour refitted."""

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.stats import chi2
 
+from ...model.term import Term
 from ..fit.regression import predicted
 from ..fit.shrunk import shrink
 from ..fit.surrogates import NullRatios
@@ -65,10 +66,16 @@ def strongest(regression, terms) -> Step | None:
     return max(steps, key=lambda s: s.ratio, default=None)
 
 
-def find_all(
+def find_all(regression, terms) -> list[Step]:
+    """Every step beside the terms, strongest first; they stay in the regression as nuisances."""
+    return steps_and_lags(regression, terms)[0]
+
+
+def steps_and_lags(
     regression, terms, rivals: Sequence[Candidate] = (), recordings: int = 1
-) -> list[Step]:
-    """Every step beside the terms, strongest first; they stay in the regression as nuisances.
+) -> tuple[list[Step], dict[Term, float]]:
+    """The steps of `find_all`, and the shrinkage of the lags of temperature beside which they stand
+    (`Regression.shrinking`).
 
     A kink or a loop that the terms lack is made of steps, too, and a part that is late behind its
     thermometer makes one at every corner: what follows temperature, and other rivals, are taken
@@ -76,7 +83,7 @@ def find_all(
     recordings: of one device, each searched by itself, which share the level.
     """
     beside, forms = list(terms), [*of_temperature(regression.sessions), *rivals]
-    most = len(rivals) + _MOST_FORMS
+    most, late = len(rivals) + _MOST_FORMS, dict[Term, float]()
     while True:
         regression.set_events([])
         steps = sorted(_all(regression, beside, recordings), key=lambda s: -s.ratio)
@@ -91,12 +98,15 @@ def find_all(
         beside += refined(regression, beside, form).terms
         most -= 1
     if steps and lags(regression.sessions):
-        stand = _beside_lags(regression, terms, beside[len(terms) :], recordings)
+        late = _shrunk_lags(regression, terms)
+        with regression.shrinking(late):
+            stand = _all(regression, [*beside, *late], recordings)
         steps = [s for s in steps if any(_is_same(s, other) for other in stand)]
     _set(regression, steps, None)
     steps = _sized(regression, beside, steps)
     fitted, first = regression.fit(beside).coefficients, len(terms)
-    return [s for s in steps if not _is_timing(regression, beside[first:], fitted[first:], s)]
+    forms, fitted = beside[first:], fitted[first:]
+    return [s for s in steps if not _is_timing(regression, forms, fitted, s)], late
 
 
 def _is_same(a: Step, b: Step) -> bool:
@@ -104,12 +114,9 @@ def _is_same(a: Step, b: Step) -> bool:
     return a.session == b.session and abs(a.block - b.block) <= _BESIDE
 
 
-def _beside_lags(regression, terms, forms, recordings) -> list[Step]:
-    """The steps that remain significant beside terms, forms and all lags of temperature together.
-
-    The lags are shrunk as they are likeliest beside the terms alone, because a form or a step takes
-    the place of several. Leaves that shrinkage in regression.precision.
-    """
+def _shrunk_lags(regression, terms) -> dict[Term, float]:
+    """All lags of temperature together, shrunk as they are likeliest beside the terms alone,
+    because a form or a step takes the place of several."""
     regression.set_events([])
     late = lags(regression.sessions)
     own = slice(len(terms), len(terms) + len(late))
@@ -117,8 +124,7 @@ def _beside_lags(regression, terms, forms, recordings) -> list[Step]:
     squares = np.einsum("sgjj->j", products.zz)[own]
     alike = products.mapped(own.start, np.diag(squares**-0.5))
     said = shrink(alike, regression.scale, [*terms, *late[:1] * len(late)], own)
-    regression.precision = dict(zip(late, (said.precision[0, own] * squares).tolist()))
-    return _all(regression, [*terms, *forms, *late], recordings)
+    return dict(zip(late, (said.precision[0, own] * squares).tolist()))
 
 
 def _is_timing(regression, forms, fitted, step: Step) -> bool:

@@ -6,7 +6,7 @@ where they jump once or twice, steps must stand beside them. Where another recor
 jump of the bias may be its doing, and late: the search then lets both compete.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
@@ -16,7 +16,7 @@ from ...model.term import Term
 from ..fit.regression import Regression
 from ..read.sessions import OWN_SOURCES, Session, common_sources
 from .catalogue import Candidate
-from .steps import MOST_PER_SESSION, Step, find_all, standing
+from .steps import MOST_PER_SESSION, Step, standing, steps_and_lags
 
 #: The sensor's own channels, and one made of its temperature.
 _RATE = "rate of temp"
@@ -72,9 +72,9 @@ def _steps(session, jumping, recordings: int) -> list[Step]:
     beside, rivals = [*bend_of(session), *terms], _forms(session, often)
     regression = Regression([session])
     hold_disturbed(regression, beside, recordings)
-    every = find_all(regression, beside, rivals, recordings)
+    every, late = steps_and_lags(regression, beside, rivals, recordings)
     regression.set_events([])
-    every = [s for s in every if not _is_thermometers(regression, beside, s)]
+    every = [s for s in every if not _is_thermometers(regression, beside, late, s)]
     for step in sorted(every, key=lambda s: s.block):
         if out and step.block - out[-1].block == 1 and step.size_dps @ out[-1].size_dps > 0:
             deviation = np.hypot(step.deviation_dps, out[-1].deviation_dps)
@@ -84,16 +84,18 @@ def _steps(session, jumping, recordings: int) -> list[Step]:
     return out
 
 
-def _is_thermometers(regression, beside, step: Step) -> bool:
+def _is_thermometers(regression, beside, late: Mapping[Term, float], step: Step) -> bool:
     """Whether a jump of the temperature by one reading at most explains the step: nobody knows when
-    the temperature moved between two readings. beside: the terms, without the shrunk lags."""
+    the temperature moved between two readings. late: the shrunk lags, beside the terms."""
     [session] = regression.sessions
     if not bend_of(session) or not session.temp_step_degc:
         return False
-    every = [*beside, *regression.precision]
+    every = [*beside, *late]
+    with regression.shrinking(late):
+        fitted = regression.fit(every).coefficients
     degc = session.block_mean(session.sources["temp"])[min(step.block, session.blocks - 1)]
     jump = np.array([_slope(t, degc, session.block_s) for t in every])
-    along, most = jump @ regression.fit(every).coefficients, _OF_READING * session.temp_step_degc
+    along, most = jump @ fitted, _OF_READING * session.temp_step_degc
     weight = 1.0 / np.maximum(step.deviation_dps, 1e-12) ** 2
     off_degc = np.clip((weight * along) @ step.size_dps / ((weight * along) @ along), -most, most)
     return bool(weight @ (step.size_dps - off_degc * along) ** 2 < _OFF_SLOPE)
