@@ -926,7 +926,7 @@ def test_what_the_kernels_find_harmful_goes_by_what_was_held_out_and_then_by_the
     needed = course(before=1.0, after_1=1.5, after=0.9)
 
     for alone, stays in ((0.95, True), (0.5, False)):
-        others = course(before=9.0, after_1=alone, after=alone)
+        others = course(before=9.0, after_1=alone, after=9.0)
 
         def again(selection, others=others):
             asked.append(selection.terms)
