@@ -8,10 +8,11 @@ import pytest
 from scipy.ndimage import gaussian_filter1d
 from zerorate_tools import LoopReport
 from zerorate_tools.closing import close
-from zerorate_tools.loop.motion.by_gravity import by_gravity
+from zerorate_tools.loop.motion.by_gravity import _tilt, by_gravity
 from zerorate_tools.loop.motion.device import Shown, device_of
+from zerorate_tools.loop.motion.matrix import beside
 from zerorate_tools.loop.motion.same_device import DifferentDevices
-from zerorate_tools.loop.motion.windows import columns_of, moving_of
+from zerorate_tools.loop.motion.windows import ACCEL_BIAS, MATRIX, OWN, columns_of, moving_of
 from zerorate_tools.loop.read.gate import CannotClose
 from zerorate_tools.recordings import Recording, Scales
 from zerorate_tools.recordings.writing import write_recording
@@ -122,7 +123,7 @@ def test_a_recording_that_differs_from_the_rest_widens_what_is_said_of_the_devic
 
 def test_hours_of_samples_give_the_same_columns_in_parts_as_at_once(recorded, monkeypatch):
     moving = moving_of(recorded(14, _MATRIX, minutes=1.0))
-    nothing = np.zeros((3, 3)), np.zeros(3), np.zeros(3)
+    nothing = np.zeros((3, 3)), np.zeros(sum(OWN.values()))
     parts = columns_of(moving, *nothing)
     monkeypatch.setattr("zerorate_tools.loop.motion.windows._CHUNK", 1 << 20)
     once = columns_of(moving, *nothing)
@@ -132,11 +133,39 @@ def test_hours_of_samples_give_the_same_columns_in_parts_as_at_once(recorded, mo
 
 def test_what_an_error_has_turned_is_told_at_the_middle_of_a_step(recorded):
     moving = moving_of(recorded(15, np.zeros((3, 3)), minutes=0.5))
-    nothing = np.zeros((3, 3)), np.zeros(3), np.zeros(3)
+    nothing = np.zeros((3, 3)), np.zeros(sum(OWN.values()))
     columns = columns_of(replace(moving, rate=np.zeros_like(moving.rate)), *nothing)
     per, bias_of_z = columns.at[1], 11
     turned_s = -columns.theta[:, 2, bias_of_z]
     np.testing.assert_allclose(turned_s, (columns.at + (per + 1) / 2) / _HZ, rtol=1e-3)
+
+
+def test_on_a_floor_an_axis_turned_is_no_different_from_an_accelerometers_bias(recorded):
+    moving = moving_of(recorded(16, np.zeros((3, 3)), about=(0.0, 0.0, 1.0), minutes=3.0))
+    moving = replace(moving, accel=np.zeros_like(moving.accel) + [0.0, 0.0, 1.0])
+    columns = beside(moving, np.zeros((3, 3))).columns
+    turned, bias = columns[..., 2].ravel(), columns[..., MATRIX + ACCEL_BIAS.start].ravel()
+    cosine = turned @ bias / np.sqrt((turned @ turned) * (bias @ bias))
+    assert 1.0 - abs(cosine) < 1e-4  # 3e-4 where the turn is half a sample late
+
+
+def test_even_shaking_on_a_floor_says_nothing_of_the_scale_about_the_vertical(recorded):
+    moving = moving_of(recorded(18, np.zeros((3, 3)), about=(0.0, 0.0, 1.0), minutes=3.0))
+    shaken = np.random.default_rng(1).normal([0.0, 0.0, 1.0], 0.02, moving.accel.shape)
+    said = beside(replace(moving, accel=shaken), np.zeros((3, 3))).shown(np.zeros((3, 3)))
+    assert said.normal[8, 8] < 0.05**-2  # a sigma of 0.015 where shaking, turned, is in the columns
+
+
+def test_a_loud_recording_that_hides_tilts_does_not_outweigh_a_quiet_one_when_judged():
+    quiet, loud = np.array([[2.0, 100.0]]), np.array([[300.0, 0.001]])
+    assert _tilt([quiet, loud]) == pytest.approx(2.2, abs=0.1)
+
+
+def test_an_accelerometers_bias_is_taken_out_before_gravity_is_asked(recorded):
+    moving = moving_of(recorded(17, np.zeros((3, 3)), minutes=3.0))
+    wrong = np.array([0.05, -0.04, 0.03])
+    fitted = beside(replace(moving, accel=moving.accel + wrong), np.zeros((3, 3)))
+    np.testing.assert_allclose(fitted.own[ACCEL_BIAS], wrong, atol=0.002)
 
 
 @pytest.mark.parametrize(("precision", "share"), [(1e4, 0.0), (1e8, 1.0)])

@@ -9,7 +9,14 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
-from zerorate_tools.simulate.attitude import facing, integrate, into_body
+from zerorate_tools.simulate.attitude import (
+    IDENTITY,
+    facing,
+    integrate,
+    into_body,
+    multiply,
+    rotation,
+)
 from zerorate_tools.simulate.motion import Bout, Start, stride, vibration
 
 Array = NDArray[np.float64]
@@ -24,13 +31,19 @@ def hand(start: Start) -> Bout:
 
 
 def walking(start: Start) -> Bout:
-    """In a pocket: strides, corners every few seconds, 1 to 1.6 m/s along the path."""
+    """In a pocket: strides, corners every few seconds, 1 to 1.6 m/s along the path. The leg swings
+    about one pose and pushes along the path, so that a walker's speed stays that of a walker."""
     leg = stride(start, dps=start.rng.uniform(60, 140), hz=start.rng.uniform(0.8, 1.1))
     assert leg.push_g is not None
+    swung = rotation(np.cumsum(leg.rate_dps, axis=0) * start.dt_s)
+    before = np.vstack([IDENTITY, swung[:-1]]) * [1.0, -1.0, -1.0, -1.0]
+    vector = multiply(before, swung)[:, 1:]
+    swing = np.degrees(2.0 * vector) / start.dt_s
     yaw = _smooth(start, 1.5, 4.0)[:, 0] * 20.0
     speed = start.rng.uniform(1.0, 1.6) * _edges(start)
-    rate = leg.rate_dps + _upright(start, leg.rate_dps, yaw)
-    return Bout(rate, leg.push_g + _along(start, rate, yaw, speed))
+    rate = swing + _upright(start, swing, yaw)
+    pushed = into_body(swung, leg.push_g)  # from the path's frame, which turns by the yaw alone
+    return Bout(rate, pushed + _along(start, rate, yaw, speed))
 
 
 def drone(start: Start) -> Bout:

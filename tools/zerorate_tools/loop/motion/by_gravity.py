@@ -31,6 +31,9 @@ def by_gravity(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
     device = device_of([f.shown(matrix) for f in fitted])
     share = device.share([f.heading for f in fitted])
     entries, covariance, shown = device.entries, device.covariance, device.shown
+    # small sizes are the better guess; how far off it is, is not said as if they were known
+    wide = device_of([f.shown(matrix) for f in fitted], large=True)
+    deviation = np.sqrt(np.diag(wide.covariance) + (wide.entries - entries) ** 2)
     held = [f for f in (beside(m, matrix) for m in holdout) if f is not None]
     judged = [(f, None, share * entries) for f in held] or list(_folds(fitted, matrix, share))
     if not judged:
@@ -44,7 +47,7 @@ def by_gravity(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
     unseen = np.sqrt(np.diag(np.linalg.pinv(shown.normal + _FAINT))) > UNSEEN
     return RateScale(
         matrix=entries.reshape(3, 3),
-        deviation=np.sqrt(np.diag(covariance)).reshape(3, 3),
+        deviation=deviation.reshape(3, 3),
         # a likelihood ratio averaged over sizes: Markov bounds its chance without errors
         p_value=float(np.exp(-max(device.nats, 0.0))),
         level=0.0 if all(f.moving.planar for f in fitted) else _LEVEL,
@@ -75,8 +78,8 @@ def _folds(fitted, matrix, share):
 
 
 def _tilt(parts) -> float:
-    every = np.concatenate(parts) if parts else np.zeros(0)
-    return float(np.sqrt((every**2).mean())) if len(every) else float("nan")
+    tilt, worth = np.concatenate([np.zeros((0, 2)), *parts]).T
+    return float(np.sqrt(worth @ tilt**2 / worth.sum())) if worth.any() else float("nan")
 
 
 def _kind(entries, covariance) -> str:

@@ -16,6 +16,8 @@ from .windows import MATRIX
 
 #: Sizes that a group of entries may have; the last allows what a data sheet does.
 SIZES = (3e-4, 1e-3, 3e-3, 1e-2, 3e-2)
+#: Axes of two chips on one board, or of a chip set by hand, may be turned by more.
+_TURNED = (*SIZES, 1e-1)
 #: Scatter of an entry between recordings: none, up to a change of temperature by 50 degrees.
 _SCATTER = (0.0, 3e-4, 1e-3, 3e-3)
 #: Stands for no scatter where it is divided by.
@@ -101,11 +103,14 @@ class _Case:
         return mean, variance + common @ self.covariance @ common
 
 
-def device_of(statements: Sequence[Shown]) -> Device:
+def device_of(statements: Sequence[Shown], large: bool = False) -> Device:
     """The device of which every recording states something. Scale factors, cross-axis
     sensitivities and turns of the axes each have a size of their own. So has the scatter; of one
-    recording it is told what it is in that recording."""
-    cases = [_case(statements, s) for s in (_SCATTER if len(statements) > 1 else _SCATTER[:1])]
+    recording it is told what it is in that recording. large: sizes are as likely before as they
+    are large (uniform in the standard deviation, Gelman 2006), and not all alike."""
+    cases = [
+        _case(statements, s, large) for s in (_SCATTER if len(statements) > 1 else _SCATTER[:1])
+    ]
     evidence = np.array([c.evidence for c in cases])
     nats = float(logsumexp(evidence) - np.log(len(cases)))
     weight = np.exp(evidence - logsumexp(evidence))
@@ -117,21 +122,21 @@ def device_of(statements: Sequence[Shown]) -> Device:
     return Device(mean, spread, cases[int(weight.argmax())].shown, nats, weight, cases)
 
 
-def _case(statements, sigma) -> _Case:
+def _case(statements, sigma, large) -> _Case:
     """Under one scatter, averaged over the sizes."""
     parts = [s.scattered(sigma) for s in statements]
     shown = sum((p[0] for p in parts), Shown())
-    nats, means, covariances = _posteriors(shown, sum(p[1] for p in parts))
-    evidence = float(logsumexp(nats) - np.log(len(nats)))
-    weight = np.exp(nats - logsumexp(nats))
+    nats, means, covariances = _posteriors(shown, sum(p[1] for p in parts) + _LIKELY[int(large)])
+    evidence = float(logsumexp(nats))
+    weight = np.exp(nats - evidence)
     mean = weight @ means
     spread = np.einsum("s,sij->ij", weight, covariances)
     spread += np.einsum("s,si,sj->ij", weight, means - mean, means - mean)
     return _Case(sigma, statements, shown, evidence, mean, spread)
 
 
-def _posteriors(shown: Shown, nats: float):
-    """Evidence, mean and covariance of the entries under each of the sizes."""
+def _posteriors(shown: Shown, nats: np.ndarray):
+    """Evidence, mean and covariance of the entries under each of the sizes. nats: (150,) before."""
     inner = np.eye(MATRIX) + _ROOTS @ shown.normal @ _ROOTS
     covariance = _ROOTS @ np.linalg.solve(inner, _ROOTS)
     mean = covariance @ shown.right
@@ -146,5 +151,7 @@ def groups() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return diagonal, symmetric - diagonal, np.eye(MATRIX) - symmetric
 
 
-#: (125, 9, 9) roots of the priors; projections are their own roots.
-_ROOTS = np.einsum("sk,kij->sij", np.array(list(product(SIZES, repeat=3))), np.stack(groups()))
+_EACH = np.array(list(product(SIZES, SIZES, _TURNED)))
+#: (150, 9, 9) roots of the priors; projections are their own roots; (2, 150) nats of each before.
+_ROOTS = np.einsum("sk,kij->sij", _EACH, np.stack(groups()))
+_LIKELY = np.log([w / w.sum() for w in (np.ones(len(_EACH)), _EACH.prod(axis=1))])

@@ -15,7 +15,7 @@ from ..read.reference import Reference, attitude_names
 from .by_gravity import by_gravity
 from .in_motion import InMotion, slots_of
 from .matrix import beside
-from .windows import LEAST_DPS, Moving
+from .windows import BIAS, LEAST_DPS, Moving
 
 #: Headings are told over stretches of this length: filters with a magnetometer forget as soon.
 _STRETCH_S = 30.0
@@ -88,7 +88,7 @@ def _lost(one: Moving, matrix: NDArray, attitude: NDArray) -> NDArray[np.float64
     and the sensor's is fitted.
     """
     fitted = beside(one, matrix)
-    bias = np.zeros(3) if fitted is None else fitted.bias
+    bias = np.zeros(3) if fitted is None else fitted.own[BIAS]
     rate = np.degrees(one.rate - one.rate @ matrix.T - bias)
     ours, seen = integrate(rate, one.dt_s, IDENTITY), np.isfinite(attitude).all(axis=1)
     ends, second = _stretches(one, seen), round(1.0 / one.dt_s)

@@ -12,7 +12,19 @@ from scipy.ndimage import uniform_filter1d
 
 from .device import SIZES, Shown, device_of, groups
 from .same_device import distance
-from .windows import LONGEST_S, MATRIX, OWN, OWN_SIGMA, REST_SIGMA, Moving, rows_of, tapers
+from .windows import (
+    ACCEL_SHAPE,
+    BIAS,
+    DRIFT,
+    LONGEST_S,
+    MATRIX,
+    OWN,
+    OWN_SIGMA,
+    REST_SIGMA,
+    Moving,
+    rows_of,
+    tapers,
+)
 
 #: Short windows first: a large bias bends long ones.
 _SECONDS = (10.0, 20.0, LONGEST_S, LONGEST_S)
@@ -22,10 +34,10 @@ LEAST_WINDOWS = 8
 _OVERLAP = 0.52
 FOLDS = 4
 _LEAST_BLOCK, _MOST_BLOCKS = 4, 8
-_AT = np.cumsum([MATRIX, *OWN.values()])
-_BIAS, _DRIFT = slice(_AT[0], _AT[1]), slice(_AT[1], _AT[2])
 #: A turn of the axes turns the frame that headings are told in, once: no heading is lost by it.
 _NO_TURN = np.eye(MATRIX) - groups()[-1]
+#: Of its own errors those before a delay and a lever arm, which are small, are taken out.
+TAKEN_OUT = ACCEL_SHAPE.stop
 _OWN_PRECISION = np.concatenate([np.full(n, OWN_SIGMA[name] ** -2) for name, n in OWN.items()])
 
 
@@ -39,8 +51,7 @@ class Fitted:
     """
 
     moving: Moving
-    bias: np.ndarray
-    drift: np.ndarray
+    own: np.ndarray
     errors: np.ndarray
     columns: np.ndarray
     tilting: np.ndarray
@@ -66,8 +77,9 @@ class Fitted:
         return Shown(bare, right + bare @ matrix.ravel())
 
     def tilts(self, matrix: np.ndarray, entries: np.ndarray, fold: int | None) -> np.ndarray:
-        """(w,) degrees a minute by which each window's frame tilts against gravity, with entries
-        (9,) in the place of the matrix; what the recording has of its own is fitted anew."""
+        """(w, 2) degrees a minute by which each window's frame tilts against gravity, with entries
+        (9,) in the place of the matrix, and what that is worth: a hand that pushes hides a tilt.
+        What the recording has of its own is fitted anew."""
         step = entries - matrix.ravel()
         normal, right = _normal(self.errors, self.columns, self.precision)
         _add_own(normal, right, self)
@@ -79,7 +91,8 @@ class Fitted:
         square = np.einsum("wqac,wqad->wcd", slow, self.tilting)[take]
         score = np.einsum("wqac,wqa->wc", slow, left)[take]
         rate = np.einsum("wcd,wd->wc", np.linalg.pinv(square, rcond=1e-6, hermitian=True), score)
-        return np.degrees(np.linalg.norm(rate, axis=1)) * 60.0
+        tilt = np.degrees(np.linalg.norm(rate, axis=1)) * 60.0
+        return np.column_stack([tilt, np.trace(square, axis1=1, axis2=2)])
 
 
 def fit(recordings: list[Moving]) -> tuple[np.ndarray, list[Fitted]]:
@@ -113,10 +126,10 @@ def beside(moving: Moving, matrix: np.ndarray) -> Fitted | None:
 
 
 def _beside(moving, seconds, matrix, before) -> Fitted | None:
-    bias, drift = (np.zeros(3), np.zeros(3)) if before is None else (before.bias, before.drift)
+    own = np.zeros(sum(OWN.values())) if before is None else before.own.copy()
     fit_in = [s for s in _SECONDS if s <= seconds and len(moving.spans(s)) >= LEAST_WINDOWS]
     seconds = max(fit_in, default=_SECONDS[0])
-    rows = list(rows_of(moving, seconds, matrix, bias, drift))
+    rows = list(rows_of(moving, seconds, matrix, own))
     if not rows:
         return None
     errors, columns = np.stack([r[0] for r in rows]), np.stack([r[1][..., :-3] for r in rows])
@@ -125,7 +138,7 @@ def _beside(moving, seconds, matrix, before) -> Fitted | None:
     folds = np.arange(len(rows)) * blocks // len(rows) % FOLDS
     even, heading = np.ones(errors.shape[1]), _NO_TURN @ np.mean([r[2] for r in rows], axis=0)
     heading = heading @ _NO_TURN
-    fitted = Fitted(moving, bias, drift, errors, columns, tilting, even, folds, heading)
+    fitted = Fitted(moving, own, errors, columns, tilting, even, folds, heading)
     _, at = tapers(8, seconds)
     for _ in range(4):
         fitted.precision = 1.0 / _variances(fitted, matrix, at)[at]
@@ -165,21 +178,18 @@ def _add_own(normal, right, f: Fitted) -> None:
     """Add the priors of a recording's own errors, and its rests, to normal equations."""
     at = np.arange(MATRIX, len(right))
     normal[at, at] += _OWN_PRECISION
-    now = np.zeros(len(right))
-    now[_BIAS], now[_DRIFT] = f.bias, f.drift
-    right[MATRIX:] -= _OWN_PRECISION * now[MATRIX:]
+    right[MATRIX:] -= _OWN_PRECISION * f.own
     for at_s, *rate in f.moving.rests:
-        design = np.zeros((3, len(right)))
-        design[:, _BIAS], design[:, _DRIFT] = np.eye(3), at_s * np.eye(3)
-        normal += design.T @ design / REST_SIGMA**2
-        right += design.T @ (np.array(rate) - f.bias - at_s * f.drift) / REST_SIGMA**2
+        design = np.zeros((3, len(f.own)))
+        design[:, BIAS], design[:, DRIFT] = np.eye(3), at_s * np.eye(3)
+        normal[MATRIX:, MATRIX:] += design.T @ design / REST_SIGMA**2
+        right[MATRIX:] += design.T @ (np.array(rate) - design @ f.own) / REST_SIGMA**2
 
 
 def _move(f: Fitted, step: np.ndarray) -> None:
-    """Move a recording's bias and drift to where they are likeliest beside a moved matrix."""
+    """Move a recording's own errors to where they are likeliest beside a moved matrix."""
     normal, right = _normal(f.errors, f.columns, f.precision)
     _add_own(normal, right, f)
     right = right[MATRIX:] - normal[MATRIX:, :MATRIX] @ step.ravel()
     own = np.linalg.solve(normal[MATRIX:, MATRIX:], right)
-    f.bias = f.bias + own[:3]
-    f.drift = f.drift + own[3:6]
+    f.own[:TAKEN_OUT] += own[:TAKEN_OUT]

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from os import PathLike
 
 import numpy as np
+from scipy.signal import welch
 
 from ...recordings import open_recording
 from ...recordings.recording import ACCEL, GYRO, TIME
@@ -21,12 +22,16 @@ from ..read.ticks import TICK_S, Ticks, read_ticks
 
 #: Names of the columns: the matrix by rows, then what each recording has of its own.
 MATRIX = 9
-OWN = {"bias": 3, "drift": 3, "accel_bias": 3, "accel_shape": 5, "delay": 1, "lever": 3}
-#: Standard deviations before a recording is seen: rad/s, rad/s a segment, g, share, s, m. A part's
-#: zero-rate output and accelerometer by their data sheets, a chip's filters, an arm's length.
+OWN = {"bias": 3, "drift": 3, "accel_bias": 3, "accel_shape": 5}
+OWN |= {"delay": 1, "velocity": 3, "lever": 3}
+_AT = np.cumsum([0, *OWN.values()])
+BIAS, DRIFT, ACCEL_BIAS, ACCEL_SHAPE = (slice(a, b) for a, b in zip(_AT[:4], _AT[1:5]))
+#: Standard deviations before a recording is seen: rad/s, rad/s a segment, g, share, s, m/s, m. A
+#: part's zero-rate output and accelerometer by their data sheets, a chip's filters, a walk along an
+#: axis of the body, an arm's length.
 OWN_SIGMA = {
     **{"bias": np.radians(20.0), "drift": np.radians(0.001), "accel_bias": 0.05},
-    **{"accel_shape": 0.02, "delay": 0.01, "lever": 0.3},
+    **{"accel_shape": 0.02, "delay": 0.01, "velocity": 1.5, "lever": 0.3},
 }
 #: A device is in motion where its rates spread by this in a window.
 LEAST_DPS = 5.0
@@ -152,13 +157,15 @@ def _samples(opened):
 class Columns:
     """A recording at about ten samples a second, in one frame that stands still.
 
-    at: (m,) index of each one's first sample; seen: (m, 3) specific force, g; theta: (m, 3, r)
-    what a unit of each rate error has turned that frame by; own: (m, 3, s) g that a unit of each
-    other error adds; step_s: seconds between them.
+    at: (m,) index of each one's first sample; seen: (m, 3) specific force, g; loud: (m, 3) of it,
+    what is louder than rows; theta: (m, 3, r) what a unit of each rate error has turned that frame
+    by; own: (m, 3, s) the attitude, and g that a unit of each error adds without gravity; step_s:
+    seconds between them.
     """
 
     at: np.ndarray
     seen: np.ndarray
+    loud: np.ndarray
     theta: np.ndarray
     own: np.ndarray
     step_s: float
@@ -166,23 +173,22 @@ class Columns:
     def of(self, span: slice) -> tuple[np.ndarray, np.ndarray]:
         """(k, 3) specific force less its mean and (k, 3, p + 3) what a unit of each error adds to
         it; the last three by a steady turn of the frame."""
-        seen, theta = self.seen[span], self.theta[span]
+        seen, theta, own = self.seen[span], self.theta[span], self.own[span]
+        gravity, attitude = seen.mean(axis=0), own[..., :3]
+        force = gravity + self.loud[span]
         turned = theta - theta[len(theta) // 2]
         turned[..., -1] = theta[..., -1]  # a delay turns at once
-        by_rate = -np.cross(turned, seen[:, :, None], axis=1)
         steady = np.eye(3) * (np.arange(len(seen)) * self.step_s)[:, None, None]
-        by_turn = -np.cross(steady, seen.mean(axis=0)[None, :, None], axis=1)
-        own = self.own[span]
-        parts = [by_rate[..., :-1], own[..., :_LEVER], by_rate[..., -1:], own[..., _LEVER:]]
-        return seen, np.concatenate([*parts, by_turn], axis=2)
+        by_rate = -np.cross(turned, force[..., None], axis=1)
+        by_turn = -np.cross(steady, gravity[None, :, None], axis=1)
+        felt = np.einsum("mai,ma->mi", attitude, force)
+        shape = np.einsum("mai,kij,mj->mak", attitude, _SHAPES, felt, optimize=True)
+        parts = [by_rate[..., :-1], attitude, shape, by_rate[..., -1:], own[..., 3:], by_turn]
+        return seen, np.concatenate(parts, axis=2)
 
 
-#: Columns of `own` before the lever arm's: the accelerometer's bias and shape.
-_LEVER = OWN["accel_bias"] + OWN["accel_shape"]
-
-
-def columns_of(moving: Moving, matrix, bias, drift) -> Columns:
-    """What each error does to a recording, with matrix, bias and drift taken out of its rates.
+def columns_of(moving: Moving, matrix, own) -> Columns:
+    """What each error does to a recording, with the matrix and its own errors (18,) taken out.
 
     Titterton and Weston 2004, 12.3: an error of the rate e turns the frame by the integral of R e.
     """
@@ -191,41 +197,62 @@ def columns_of(moving: Moving, matrix, bias, drift) -> Columns:
     attitude, theta, parts = IDENTITY, np.zeros((3, MATRIX + 6)), []
     for first in range(0, whole, chunk):
         span = slice(first, min(first + chunk, whole))
-        attitude, steps, late, seen, own = _chunk_of(
-            moving, span, per, attitude, matrix, bias, drift
-        )
+        attitude, steps, late, seen, added = _chunk_of(moving, span, per, attitude, matrix, own)
         ends = np.cumsum(steps[0], axis=0) + theta
         middle = ends - steps[0] + steps[1]
         theta = ends[-1]
-        parts.append((seen, np.concatenate([middle, late], axis=2), own))
+        parts.append((seen, np.concatenate([middle, late], axis=2), added))
     seen, theta, own = (np.concatenate(p) for p in zip(*parts))
-    return Columns(np.arange(len(seen)) * per, seen, theta, own, per * moving.dt_s)
+    step_s = per * moving.dt_s
+    return Columns(np.arange(len(seen)) * per, seen, _loud(seen, step_s), theta, own, step_s)
 
 
-def _chunk_of(moving, span, per, attitude, matrix, bias, drift):
+def _loud(seen: np.ndarray, step_s: float) -> np.ndarray:
+    """(m, 3) the pushes that show when they are turned: those louder than what rows hear.
+
+    Even noise is as even in a frame that turns, so it says nothing of the turn. A push of power S
+    among noise of power N in the rows says (1 - N / S) of what it would without.
+    """
+    hz, power = welch(seen, 1 / step_s, nperseg=min(round(LONGEST_S / step_s), len(seen)), axis=0)
+    power = power.mean(axis=1)
+    rows = power[2:][hz[2:] <= _MOST_HZ].max(initial=0.0)
+    gain = np.clip(1.0 - rows / np.maximum(power, 1e-300), 0.0, 1.0) * (hz > _MOST_HZ)
+    spectrum = np.fft.rfft(seen, axis=0)
+    at = np.fft.rfftfreq(len(seen), step_s)
+    return np.fft.irfft(spectrum * np.interp(at, hz, gain)[:, None], len(seen), axis=0)
+
+
+def _chunk_of(moving, span, per, attitude, matrix, own):
     """The attitude after a chunk; of each step the turns until its end and their mean within it,
     what a delay adds, the specific force, and columns of what is no rate."""
     dt_s, measured, accel = moving.dt_s, moving.rate[span], moving.accel[span]
     at_s = moving.at_s[span, None]
-    rate = measured - measured @ matrix.T - bias - at_s * drift
+    rate = measured - measured @ matrix.T - own[BIAS] - at_s * own[DRIFT]
+    shape = np.tensordot(own[ACCEL_SHAPE], _SHAPES, 1)
+    accel = accel - own[ACCEL_BIAS] - accel @ shape
     attitudes = integrate(np.degrees(rate), dt_s, attitude)
-    still = np.stack([into_body(attitudes, e) for e in np.eye(3)], axis=1)
+    still = np.stack([into_body(np.vstack([attitude, attitudes]), e) for e in np.eye(3)], axis=1)
+    meanwhile, still = 0.5 * (still[:-1] + still[1:]), still[1:]
     until_end, mean_within = np.ones(per), 1.0 - np.arange(per) / per
     one = np.ones_like(at_s)
     by = np.hstack([measured, one, at_s]).reshape(-1, per, 5)
     rated = [by * w[:, None] for w in (until_end, mean_within)]
-    by = np.concatenate([*rated, np.hstack([accel, rate]).reshape(-1, per, 6)], axis=2)
-    sums = still.reshape(-1, per, 9).transpose(0, 2, 1) @ by
-    sums = sums.reshape(-1, 3, 3, by.shape[2])
-    steps = [-dt_s * _by_rate(sums[..., k : k + 5]) for k in (0, 5)]
-    forced, late = sums[..., 10:13] / per, np.einsum("maii->ma", sums[..., 13:]) / per
-    seen = np.einsum("maii->ma", forced)
-    shape = np.einsum("maij,kij->mak", forced, _SHAPES)
+    steps = [-dt_s * _by_rate(_summed(meanwhile, x)) for x in rated]
+    sums = _summed(still, np.hstack([accel, rate, one]).reshape(-1, per, 7)) / per
+    seen = np.einsum("maii->ma", sums[..., :3])
+    late = np.einsum("maii->ma", sums[..., 3:6])
     first = np.diff(still, axis=0)
     first = np.concatenate([first[:1], first, first[-1:]])
     lever = (first[per::per] - first[:-per:per]) / (per * dt_s**2 * _G_MPS2)
-    own = np.concatenate([sums[..., 3] / per, shape, lever], axis=2)
+    velocity = np.add.reduceat(first[1:], np.arange(0, len(still), per)) / (per * dt_s * _G_MPS2)
+    own = np.concatenate([sums[..., 6], velocity, lever], axis=2)
     return attitudes[-1], steps, late[..., None], seen, own
+
+
+def _summed(still: np.ndarray, by: np.ndarray) -> np.ndarray:
+    """(m, 3, 3, k) sums over each step of attitudes (n, 3, 3) times each of by (m, per, k)."""
+    m, per, k = by.shape
+    return (still.reshape(m, per, 9).transpose(0, 2, 1) @ by).reshape(m, 3, 3, k)
 
 
 def _by_rate(sums: np.ndarray) -> np.ndarray:
@@ -258,12 +285,12 @@ def tapers(n: int, seconds: float) -> tuple[np.ndarray, np.ndarray]:
     return rows * np.sqrt(2.0 / (0.375 * n)), np.repeat(waves.ravel() - 1, 2)
 
 
-def rows_of(moving: Moving, seconds: float, matrix, bias, drift) -> Iterator:
+def rows_of(moving: Moving, seconds: float, matrix, own) -> Iterator:
     """(q, 3) and (q, 3, p + 3) of each window, and (9, 9) mean square of its heading by entries."""
     spans = moving.spans(seconds)
     if not spans:
         return
-    columns = columns_of(moving, matrix, bias, drift)
+    columns = columns_of(moving, matrix, own)
     long = int(seconds / columns.step_s)
     rows, _ = tapers(long, seconds)
     for span in spans:
