@@ -10,6 +10,7 @@ from zerorate_i2c.board import setup
 
 imu = setup(scl=5, sda=4)
 print("found:", imu.part)
+del setup  # its heap, too
 from zerorate import Corrector, Sensor
 
 learner = Corrector(Sensor(*imu.scales))

@@ -21,4 +21,5 @@ def setup(scl, sda, bus=None, freq=400000, **options):
     unload("bus_recovery")
     if bus is None:
         bus = sda // 2 % 2 if sys.platform == "rp2" else 0
+    unload("board")
     return MPU6050(I2C(bus, scl=wires[0], sda=wires[1], freq=freq), **options)

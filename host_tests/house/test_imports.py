@@ -142,7 +142,7 @@ def test_a_constant_has_one_value_in_all_files():
 
 
 def test_no_file_of_a_board_but_the_headers_of_stores_says_where_a_word_is():
-    own = {"store.py", "learned_store.py", "differing.py"}
+    own = {"store.py", "differing.py"}
     assert {path.name for path in layouts(written())} == own
 
 

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
 
 # layout: names that a board's own compiler reads
 const = int
-# layout: What the reader of model.bin says
-_LOADED = const(0)
 # layout: What a store says
 _OTHER_BINDING = const(3)
 # layout: end
@@ -50,11 +48,6 @@ class LearnedStore:
         base += 2 * (pitch or self.state.slot_bytes)
         self._model_place = (storage, binding, base, pitch)
         self.end = base + 2 * (pitch or slot_bytes(MODEL_BYTES))
-
-    def model_store(self) -> Store:
-        """The Store of the effect model, made when it is asked for: it takes 2 KB of heap."""
-        storage, binding, base, pitch = self._model_place
-        return Store(storage, binding, MODEL_BYTES, base=base, pitch=pitch)
 
     def load(self, same: bool = False) -> int:
         """Put what was learned into the corrector and begin a power-on; LOADED or why not.
@@ -91,20 +84,26 @@ class LearnedStore:
         return self.corrector.save(self.state)
 
     def load_model(self) -> bytes:
-        """The bytes of the effect model, for EffectModel.load, or b"" (see model.load's reason)."""
-        padded = bytearray(MODEL_BYTES)
-        if self.model_store().load(padded) != _LOADED:
-            return b""
-        return bytes(padded[: padded[_AT_MODEL_SIZE] | padded[_AT_MODEL_SIZE + 1] << 8])
+        """The bytes of the effect model, for EffectModel.load, or b"" (see model.load's reason).
+
+        Raises ImportError on a board without the part `effects`.
+        """
+        from .kept_model import load  # who has no model has no memory taken by it
+
+        return load(self._model_store(), _AT_MODEL_SIZE)
 
     def save_model(self, data: bytes) -> bool:
         """Write an effect model, the bytes of model.bin; False when the storage failed.
 
-        Raises ValueError for one that is too large.
+        Raises ValueError for one that is too large, ImportError as load_model.
         """
-        if len(data) > MODEL_BYTES:
-            raise ValueError(f"a model of {len(data)} bytes does not fit {MODEL_BYTES}")
-        return self.model_store().save(bytes(data) + bytes(MODEL_BYTES - len(data)))
+        from .kept_model import save
+
+        return save(self._model_store(), data)
+
+    def _model_store(self):
+        storage, binding, base, pitch = self._model_place
+        return Store(storage, binding, MODEL_BYTES, base=base, pitch=pitch)
 
 
 def _fingerprint(settings):

@@ -6,7 +6,8 @@ save writes the slot that does not hold the
 newest whole record, so until the last byte stands the one before it is whole.
 """
 
-from sys import byteorder
+import gc
+from sys import byteorder, implementation
 
 from .crc32 import checksum
 
@@ -62,7 +63,7 @@ class Store:
         goes_with: "Any" = (),
     ) -> None:
         if len(binding) > 8 or not 0 < size < 65536 or not 0 <= version < 256:
-            raise ValueError("binding is of 8 bytes at most, size of 1..65535, version of 0..255")
+            raise ValueError("at most: binding 8 bytes, size 65535, version 255")
         self._goes_with = goes_with
         self._all = size + 4 * len(goes_with)
         self.slot_bytes = slot_bytes(self._all)
@@ -105,13 +106,15 @@ class Store:
     def save(self, payload: "Any") -> bool:
         """Write payload to the older slot and read it back; False when that failed."""
         self._require(payload)
-        piece = bytearray(_PIECE)
         try:
-            self._find(piece)  # anew: was the newest damaged since, the older is all there is
+            # anew: was the newest damaged since, the older is all there is; no piece is held while
+            # an open file takes heap of its own
+            self._find(bytearray(_PIECE))
             slot = 1 if self._newest == 0 else 0
             sequence = self.sequence + 1
             self._write(slot, payload, sequence)
-            written = self._judge(slot, piece) == _LOADED and self._sequence() == sequence
+            written = self._judge(slot, bytearray(_PIECE)) == _LOADED
+            written = written and self._sequence() == sequence
         except OSError:
             written = False
         if not written:
@@ -197,6 +200,7 @@ class Store:
         return self._base + slot * self._pitch
 
     def _write(self, slot, payload, sequence):
+        _tidy()
         header = (
             b"ZRS"
             + bytes(
@@ -211,10 +215,17 @@ class Store:
             parts.insert(2, packed(self._goes_with, self._all - self.size))
         for part in parts[:-1]:
             checksum(part, crc)
+        _tidy()
         if hasattr(self.storage, "write_pieces"):
             self.storage.write_pieces(self._offset(slot), parts)
         else:
             self.storage.writeblock(self._offset(slot), b"".join([bytes(part) for part in parts]))
+
+
+def _tidy():
+    """Let what is small take small gaps of the heap, and the file the long one."""
+    if implementation.name == "micropython":
+        gc.collect()
 
 
 def slot_bytes(size):

@@ -27,10 +27,13 @@ PARTS = {
         *("zerorate.gravity", "zerorate.others", "zerorate.native.gravity"),
         *("zerorate.gravity.gravity_settings", "zerorate.explain_sources"),
     ),
-    "effects": ("zerorate.model", "zerorate.others", "zerorate.native.effects"),
+    "effects": (
+        *("zerorate.model", "zerorate.others", "zerorate.native.effects"),
+        "zerorate.storage.kept_model",
+    ),
     "refine": (
         *("zerorate.model", "zerorate.others", "zerorate.native.effects"),
-        "zerorate.native.refine",
+        *("zerorate.native.refine", "zerorate.storage.kept_model"),
     ),
     "bursts": ("zerorate.bursts",),
     "self-test": ("zerorate_i2c.self_test",),

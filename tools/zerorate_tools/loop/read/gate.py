@@ -81,7 +81,10 @@ def _alike(name, one, other) -> bool:
 
 
 def _how_alike(name, one, other) -> str:
-    """How to import what differs by the scale that an import chose alone."""
+    """How to import what differs by a name that nobody gave, or a scale that was chosen alone."""
+    if name == "sensor" and "unknown" in (one, other):
+        part = other if one == "unknown" else one
+        return f": if it is the same part, import the other with --sensor {part}"
     if "_lsb_" not in name or one is None or other is None:
         return ""
     return f": if only the imports differ, import both with --{name.replace('_', '-')} N"
