@@ -1,7 +1,10 @@
 """Units that readings or names tell, and what is offered to type where nothing tells them."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
+from zerorate_tools.errors import BadRecording
 from zerorate_tools.importers.columns.guesses import (
     by_habit,
     gravity_unit,
@@ -13,6 +16,9 @@ from zerorate_tools.importers.columns.guesses import (
     unit_words,
 )
 from zerorate_tools.importers.columns.mapping import Mapped
+from zerorate_tools.importers.columns.plan import Plan
+from zerorate_tools.importers.samples.changes import refuse_change_of_unit
+from zerorate_tools.importers.tables.table import Chunk, Table
 
 COLUMNS = {"t_us": "t", "gx": "p", "gy": "q", "gz": "r", "ax": "u", "ay": "v", "az": "w"}
 COLUMNS |= {"temp": "d"}
@@ -215,3 +221,34 @@ def test_a_date_comes_before_a_count_of_rows_and_acceleration_may_stand_after_ra
     assert [word.partition(":")[0] for word in after][1:4] == ["ax=u", "ay=v", "az=w"]
     apart = {"t": some()["t"], "u": force["u"], "name": np.full(40, np.nan), **force}
     assert likely_columns({**apart, **some()})[1:4] != after[1:4]
+
+
+def judge_change(columns):
+    """What the importer does about a table of such columns."""
+    table = Table(list(columns), lambda wanted: iter([Chunk(np.arange(2000), columns)]))
+    plan = Plan({n: Mapped(n, n) for n in columns}, dict.fromkeys(columns, (1.0, 0.0)))
+    refuse_change_of_unit([columns], plan, table, Path("log.csv"))
+
+
+@pytest.mark.parametrize("ratio", [0.0573, 0.01745, 17.45, 57.3, 1000.0])
+@pytest.mark.parametrize("seed", range(3))
+def test_motion_that_begins_or_ends_is_no_change_of_unit(ratio, seed):
+    random = np.random.default_rng(seed)
+    quiet = random.normal(0.5, 0.05, (3, 1000))
+    swing = 1.1 * ratio * np.sin(np.arange(1000) / 30 + np.arange(3)[:, None])
+    swing = 0.5 + swing + random.normal(0, 0.05 * max(ratio, 1.0), (3, 1000))
+    force = random.normal(0, 0.004, (3, 2000)) + np.array([[0.1], [-0.2], [0.97]])
+    for both in ((quiet, swing), (swing, quiet)):
+        columns = dict(zip(("gx", "gy", "gz"), np.hstack(both)))
+        columns |= dict(zip(("ax", "ay", "az"), force))
+        judge_change(columns)
+
+
+def test_the_same_rest_in_another_unit_is_a_change_of_it():
+    random = np.random.default_rng(1)
+    rates = random.normal(0.5, 0.05, (3, 2000))
+    rates[:, 1000:] *= 1000
+    force = random.normal(0, 0.004, (3, 2000)) + np.array([[0.1], [-0.2], [0.97]])
+    columns = dict(zip(("gx", "gy", "gz", "ax", "ay", "az"), [*rates, *force]))
+    with pytest.raises(BadRecording, match="row 1001: the unit of gx, gy, gz changes"):
+        judge_change(columns)

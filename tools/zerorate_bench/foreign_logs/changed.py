@@ -132,24 +132,24 @@ def last_column_gone(folder: Path, world: World) -> Path:
     return text(folder / "in.csv", frame[1500:].drop(columns="temp_c"), first, header=False)
 
 
-@log("deg/s become mdps half way through", least=0.45)
+@log("deg/s become mdps on the way, at rest", least=0.43)
 def other_unit(folder: Path, world: World) -> Path:
     frame = _plain(world)
-    frame.loc[1500:, _SIX[:3]] *= 1000
+    frame.loc[1350:, _SIX[:3]] *= 1000
     return text(folder / "in.csv", frame)
 
 
-@log("deg/s become rad/s half way through", least=0.45)
+@log("deg/s become rad/s on the way, at rest", least=0.43)
 def other_unit_smaller(folder: Path, world: World) -> Path:
     frame = _plain(world)
-    frame.loc[1500:, _SIX[:3]] = np.radians(frame.loc[1500:, _SIX[:3]])
+    frame.loc[1350:, _SIX[:3]] = np.radians(frame.loc[1350:, _SIX[:3]])
     return text(folder / "in.csv", frame)
 
 
-@log("g become m/s2 half way through", least=0.45)
+@log("g become m/s2 on the way, at rest", least=0.43)
 def other_unit_of_force(folder: Path, world: World) -> Path:
     frame = _plain(world)
-    frame.loc[1500:, _SIX[3:]] *= 9.80665
+    frame.loc[1350:, _SIX[3:]] *= 9.80665
     return text(folder / "in.csv", frame)
 
 

@@ -17,6 +17,8 @@ _STRETCH, _COMPARED = 100, 3
 _UNSHAKEN = 0.02
 #: What both level and noise of one sensor keep, whatever it warms.
 _WITHIN = 1.4
+#: Standard errors of a level, within which it is the same.
+_SURE = 5.0
 _UNITS = {GYRO: RATE_DPS, ACCEL: ACCEL_G}
 
 
@@ -36,7 +38,9 @@ def refuse_change_of_unit(
             grown = last / first
         for factor in _factors(units):
             if (np.abs(np.log(grown / factor)) < np.log(_WITHIN)).all():
-                row = _first_row(table, plan, axes, factor)
+                row = _row_of_change(table, plan, axes, factor)
+                if not row:
+                    continue
                 problem = f"the unit of {', '.join(axes)} changes: from there on all is "
                 problem += f"{factor:.4g} times as large"
                 raise BadRecording(path, problem, row=row, do=cut_words(path, row))
@@ -62,14 +66,40 @@ def _rests(stretch: dict[str, np.ndarray], axes: tuple[str, ...]) -> list[tuple[
     return out
 
 
-def _first_row(table: Table, plan: Plan, axes: tuple[str, ...], factor: float) -> int:
-    """The 1-based row at which readings grow by most of the factor."""
+def _row_of_change(table: Table, plan: Plan, axes: tuple[str, ...], factor: float) -> int:
+    """The 1-based row at which readings grow by the factor; 0 where no row shows that.
+
+    There, from one row to the next, every axis' level and the noise grow by it, and the force does
+    not change: motion that begins or ends does none of that.
+    """
     before = np.nan
     for chunk in table.chunks(plan.columns):
         columns = plan.physical(chunk)
         size = np.linalg.norm([columns[name] for name in axes], axis=0)
-        grown = np.log(size / np.concatenate([[before], size[:-1]])) / np.log(factor)
-        if (grown > 0.5).any():
-            return int(chunk.place[np.argmax(grown > 0.5)]) + 1
+        with np.errstate(divide="ignore", invalid="ignore"):
+            grown = np.log(size / np.concatenate([[before], size[:-1]])) / np.log(factor)
+        at = int(np.argmax(grown > 0.5))
+        if len(grown) and grown[at] > 0.5:
+            return int(chunk.place[at]) + 1 if _is_scaled(columns, axes, at, factor) else 0
         before = size[-1] if len(size) else before
-    return 1
+    return 0
+
+
+def _is_scaled(columns: dict[str, np.ndarray], axes: tuple[str, ...], at: int, by: float) -> bool:
+    """Whether the rows on both sides of one are the same sensor's at rest, in other numbers."""
+    values = np.array([columns[name] for name in axes])
+    force = np.array([columns[name] for name in ACCEL])
+    sides = slice(max(0, at - _STRETCH), at), slice(at, at + _STRETCH)
+    if at < _STRETCH or at + _STRETCH > values.shape[1]:
+        return False
+    one, other = values[:, sides[0]], values[:, sides[1]] / by
+    noise = [float(np.median(np.abs(np.diff(side, n=3, axis=1)))) for side in (one, other)]
+    level = [np.median(side, axis=1) for side in (one, other)]
+    unsure = max(noise) / np.sqrt(_STRETCH)
+    told = np.linalg.norm(level[0]) > _SURE * unsure
+    same = (np.abs(level[1] - level[0]) < _SURE * unsure).all()
+    alike = min(noise) > 0 and max(noise) < _WITHIN * min(noise)
+    still = [np.median(force[:, side], axis=1) for side in sides]
+    still[1] = still[1] / (by if axes == ACCEL else 1.0)
+    stands = np.linalg.norm(still[1] - still[0]) < _UNSHAKEN * np.linalg.norm(still[0])
+    return bool(told and same and alike and stands)
