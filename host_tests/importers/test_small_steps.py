@@ -5,13 +5,14 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from zerorate_tools.errors import ZerorateError
-from zerorate_tools.importers import read_foreign
+from zerorate_tools.importers import parsed_mapping, read_foreign
 from zerorate_tools.importers.columns.guesses import likely_columns
 from zerorate_tools.importers.columns.names import accel_groups, most_alike
 from zerorate_tools.importers.logs import columnar
@@ -155,3 +156,30 @@ def test_any_damage_of_a_zip_is_said_in_one_line(tmp_path, at):
     with pytest.raises(ZerorateError) as caught:
         read_foreign(path)
     assert "\n" not in str(caught.value)
+
+
+def polled(every, rows=3000, lsb_dps=0.02, **more):
+    """A rest of 0.05 dps of noise, each reading written some times, on a scale of such steps."""
+    rng = np.random.default_rng(5)
+    readings = np.rint(rng.normal(0.8, 0.05, (3, rows // every + 1)) / lsb_dps) * lsb_dps
+    columns = {"t_s": np.arange(rows) * 0.005, **more}
+    rates = np.repeat(readings, every, axis=1)[:, :rows]
+    return pd.DataFrame(columns | dict(zip(("gx_dps", "gy_dps", "gz_dps"), rates)))
+
+
+@pytest.mark.parametrize("every", [2, 4])
+def test_a_sensor_read_faster_than_it_measures_has_each_reading_once(tmp_path, every):
+    path, count = tmp_path / "in.csv", np.arange(3000)
+    polled(every, lsb_dps=0.002, other=count).to_csv(path, index=False)
+    recording, report = read_foreign(path, mapping=[parsed_mapping("other=other")])
+    assert len(recording) == pytest.approx(3000 / every, rel=0.01)
+    assert recording.scales.odr_hz == pytest.approx(200 / every)
+    assert any("faster than the sensor measures" in reason for reason in report.dropped)
+    assert np.array_equal(recording.columns["other"], recording.columns["t_us"] // 5000)
+
+
+@pytest.mark.parametrize("lsb_dps", [0.002, 0.06, 0.2])
+def test_readings_that_are_alike_by_chance_or_by_a_coarse_scale_are_all_kept(tmp_path, lsb_dps):
+    path = tmp_path / "in.csv"
+    polled(1, lsb_dps=lsb_dps).to_csv(path, index=False)
+    assert len(read_foreign(path)[0]) == 3000

@@ -11,7 +11,7 @@ from ...recordings.recording import ACCEL, GYRO, TEMP
 from ..columns.guesses import unit_words
 from ..columns.plan import Plan, hz_words
 from ..columns.units import TIME_S
-from ..tables.table import Table
+from ..tables.table import Chunk, Table
 from .changes import refuse_change_of_unit
 from .clock import Pace, Unwrapped, refuse_impossible, whole_stamps
 from .counts import Counts
@@ -22,6 +22,8 @@ from .turns import refuse_turns
 
 _KEPT = 200
 _FAST_SHARE = 0.001
+#: A bus that is late now and then repeats fewer rows.
+_OFTEN_NEW = 0.8
 _NO_TIME = "the time stamp is no number"
 
 
@@ -53,6 +55,21 @@ def gathered(
     return _Gathering(table, plan, path, hz, fast_dps, folder).result()
 
 
+def _are_held(rates: np.ndarray, times: np.ndarray | None) -> bool:
+    """Whether rates often stand still and then change together while time goes on, as of a sensor
+    that is read faster than it measures. On a coarse scale each stands still by itself.
+
+    rates: (3, n) of the first rows; times: (n,), None where rows are counted.
+    """
+    steps = np.diff(rates, axis=1)
+    goes_on = np.isfinite(steps).all(axis=0) & (times is None or np.diff(times) != 0)
+    changed = steps[:, goes_on] != 0
+    if not changed.size:
+        return False
+    some, every = changed.any(axis=0), changed.all(axis=0)
+    return bool(some.any() and some.mean() < _OFTEN_NEW and every.sum() > 0.5 * some.sum())
+
+
 def _refuse_too_fast(
     too_fast: int, samples: int, fastest_dps: float, plan: Plan, path: Path
 ) -> None:
@@ -78,7 +95,10 @@ class _Gathering:
         self.largest = {"gyro": 0.0, "accel": 0.0}
         self.own: Counter[str] = Counter()
         self.unfiltered: list[dict[str, np.ndarray]] = []
-        self.before = np.full(1 + len(self.readings), np.nan)
+        first = plan.physical(Chunk(np.empty(0), table.first_rows(plan.columns)))
+        self.held = _are_held(np.array([first[name] for name in GYRO]), first.get(TIME))
+        self.compared = list(GYRO) if self.held else [TIME, *self.readings]
+        self.before = np.full(len(self.compared), np.nan)
         self.runs = Runs()
         self.clock = Unwrapped(self._step_us())
         self.counts = Counts(plan.raw)
@@ -177,11 +197,12 @@ class _Gathering:
         return rates.all(axis=0) | (~rates.any(axis=0) & beside), "a reading is no number"
 
     def _not_written_twice(self, columns):
-        """Not the row before once more, its time with it: that is no second sample."""
-        rows = np.array([columns[name] for name in (TIME, *self.readings)])
+        """Not the row before once more: that is no second sample."""
+        rows = np.array([columns[name] for name in self.compared])
         before = np.column_stack([self.before, rows[:, :-1]]) if rows.size else rows
         self.before = rows[:, -1] if rows.size else self.before
-        return ~(rows == before).all(axis=0), "the row before once more"
+        why = "the reading before once more, read faster than the sensor measures"
+        return ~(rows == before).all(axis=0), why if self.held else "the row before once more"
 
     def _not_all_zero(self, columns):
         """Three rates alone may well be zero on a coarse scale; with gravity, or 0 degC, they are
