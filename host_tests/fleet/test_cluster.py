@@ -12,6 +12,7 @@ import pytest
 from distributed import Client
 from zerorate_tools.errors import ZerorateError
 from zerorate_tools.fleet import devices_of, fleet
+from zerorate_tools.fleet.cluster import _workers_of
 
 #: What a machine has on which nobody installed zerorate.
 WITHOUT_ZERORATE = """
@@ -95,3 +96,13 @@ def test_when_all_workers_or_the_scheduler_die_it_says_so(others, data, tmp_path
     threading.Timer(2, killed.kill).start()
     with pytest.raises(ZerorateError, match=address if victim == "worker" else others.address):
         fleet(devices_of([data]), tmp_path / "out", scheduler=others.address, minutes=None)
+
+
+def test_a_scheduler_that_dies_while_it_is_asked_has_no_workers():
+    class Dying:
+        status = "running"
+
+        def nthreads(self):
+            raise OSError("Timed out trying to connect")
+
+    assert _workers_of(Dying()) == []

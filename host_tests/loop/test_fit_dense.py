@@ -211,10 +211,11 @@ def test_squares_of_acceleration_are_shrunk_by_a_thousandth_and_told_weights_by_
         expected = [own @ np.linalg.inv(v) @ own for v in p.v]
         assert g.zz[0, :, at, at] == pytest.approx(1.001 * np.array(expected), rel=1e-7)
     two = Regression([session, session])
-    two.precision[B] = 6.0
-    plain, more = Regression([session, session]).cross_products([B]), two.cross_products([B])
+    plain = Regression([session, session]).cross_products([B])
+    with two.shrinking({B: 6.0}):
+        more = two.cross_products([B])
+        tried = two.cross_products([linear], [(B,), (square,)])
     assert more.zz - plain.zz == pytest.approx(np.full_like(more.zz, 3.0))
-    tried = two.cross_products([linear], [(B,), (square,)])
     assert tried.xx[:, :, 0] == pytest.approx(more.zz)
 
 

@@ -1,7 +1,5 @@
 """The effect model of a LearnedStore, in two slots behind those of the state."""
 
-from .store import Store
-
 # layout: names that a board's own compiler reads
 const = int
 # layout: What the reader of model.bin says
@@ -9,7 +7,7 @@ _LOADED = const(0)
 # layout: end
 
 
-def load(store: Store, at_size: int) -> bytes:
+def load(store, at_size):
     """The bytes of the model that store holds, whose size is the word of 16 bits at at_size."""
     padded = bytearray(store.size)
     if store.load(padded) != _LOADED:
@@ -17,7 +15,7 @@ def load(store: Store, at_size: int) -> bytes:
     return bytes(padded[: padded[at_size] | padded[at_size + 1] << 8])
 
 
-def save(store: Store, data: bytes) -> bool:
+def save(store, data):
     """Write data to store; ValueError where it is too large."""
     if len(data) > store.size:
         raise ValueError(f"a model of {len(data)} bytes does not fit {store.size}")

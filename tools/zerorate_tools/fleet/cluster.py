@@ -194,6 +194,14 @@ def run_all(
         alone = go_on()
 
 
+def _workers_of(client: Client) -> list[str]:
+    """Addresses of the workers; none where the scheduler is gone, which its futures tell soon."""
+    try:
+        return list(client.nthreads()) if client.status == "running" else []
+    except OSError:
+        return []
+
+
 def _each(client: Client, finished: Any) -> Iterator[Any]:
     """Futures as they finish. Raises ZerorateError where a cluster of others has lost its last
     worker, or its scheduler; one made here starts workers anew by itself."""
@@ -211,7 +219,7 @@ def _each(client: Client, finished: Any) -> Iterator[Any]:
         time.sleep(_POLL_S)
         if client.cluster is not None:
             continue
-        workers = list(client.nthreads()) if client.status == "running" else []
+        workers = _workers_of(client)
         if workers:
             seen, last_s = workers, time.monotonic()
         elif time.monotonic() - last_s > _CONNECT_S:
