@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from .loop.motion.by_gravity import by_gravity
-from .loop.motion.heading import heading_lost, heading_lost_by
+from .loop.motion.heading import has_attitude, heading_lost, heading_lost_by
 from .loop.motion.in_motion import InMotion, slots_of
 from .loop.motion.rate_scale import RateScale
 from .loop.motion.windows import moving_of
@@ -69,7 +69,8 @@ def write_in_motion(
 
 def _headings(shown: RateScale, logs: list[Path], held: set[str]) -> dict[str, Any]:
     """Of what was held out, where it has an attitude; of a log alone its second half."""
-    every = {log: m for log in logs if log.name in held and (m := moving_of(log)) is not None}
+    seen = [log for log in logs if log.name in held and has_attitude(log)]
+    every = {log: m for log in seen if (m := moving_of(log)) is not None}
     lost = heading_lost(every) if len(logs) == 1 else heading_lost_by(every, shown)
     if lost is None:
         return {}

@@ -76,7 +76,7 @@ def _by_turning(
 
 
 def rate_unit_of(dps: float) -> str | None:
-    """The unit that stands for so many dps, by as little as gravity tells it."""
+    """The unit that stands for so many dps, or for up to TURNED_WITHIN times more or less."""
     near = (u for u, one in RATE_DPS.items() if abs(np.log(dps / one)) < np.log(TURNED_WITHIN))
     return next(near, None)
 

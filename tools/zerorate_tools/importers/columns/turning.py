@@ -1,14 +1,14 @@
-"""How large rates are by gravity: turned back by them, the force of some seconds points one way."""
+"""The size of rates by gravity: turned back by them, the force of some seconds points one way."""
 
 import numpy as np
 
-#: So long pushes to and fro average, and a bias turns nothing over.
+#: Over so long the pushes of a hand average, and a bias turns little.
 _SPAN_S, _STEP_S = 3.0, 0.03
 #: Fewer may fit a size by chance.
 _LEAST_SPANS = 5
 #: From mdps to radians a second, in steps that a fit tells apart.
 _SIZES_DPS = 1.25 ** np.arange(-33.0, 21.0)
-#: Of what the force lacks to point one way, the right size explains more than half.
+#: Turns of the right size explain more than half of why the force does not point one way.
 _EXPLAINED = 0.5
 
 

@@ -11,7 +11,7 @@ from ...recordings.recording import ACCEL, GYRO, TEMP
 from ..columns.guesses import unit_words
 from ..columns.plan import Plan, hz_words
 from ..columns.units import TIME_S
-from ..tables.table import Chunk, Table
+from ..tables.table import Table
 from .changes import refuse_change_of_unit
 from .clock import Pace, Unwrapped, refuse_impossible, whole_stamps
 from .counts import Counts
@@ -55,14 +55,14 @@ def gathered(
     return _Gathering(table, plan, path, hz, fast_dps, folder).result()
 
 
-def _are_held(rates: np.ndarray, times: np.ndarray | None) -> bool:
+def _are_held(rates: np.ndarray, t_us: np.ndarray) -> bool:
     """Whether rates often stand still and then change together while time goes on, as of a sensor
     that is read faster than it measures. On a coarse scale each stands still by itself.
 
-    rates: (3, n) of the first rows; times: (n,), None where rows are counted.
+    rates: (3, n) of the first rows; t_us: (n,).
     """
     steps = np.diff(rates, axis=1)
-    goes_on = np.isfinite(steps).all(axis=0) & (times is None or np.diff(times) != 0)
+    goes_on = np.isfinite(steps).all(axis=0) & (np.diff(t_us) != 0)
     changed = steps[:, goes_on] != 0
     if not changed.size:
         return False
@@ -95,9 +95,8 @@ class _Gathering:
         self.largest = {"gyro": 0.0, "accel": 0.0}
         self.own: Counter[str] = Counter()
         self.unfiltered: list[dict[str, np.ndarray]] = []
-        first = plan.physical(Chunk(np.empty(0), table.first_rows(plan.columns)))
-        self.held = _are_held(np.array([first[name] for name in GYRO]), first.get(TIME))
-        self.compared = list(GYRO) if self.held else [TIME, *self.readings]
+        self.held: bool | None = None  # until the first rates tell
+        self.compared = [TIME, *self.readings]
         self.before = np.full(len(self.compared), np.nan)
         self.runs = Runs()
         self.clock = Unwrapped(self._step_us())
@@ -198,6 +197,11 @@ class _Gathering:
 
     def _not_written_twice(self, columns):
         """Not the row before once more: that is no second sample."""
+        rates = np.array([columns[name] for name in GYRO])
+        if self.held is None and np.isfinite(rates).any():
+            self.held = _are_held(rates, columns[TIME])
+            if self.held:
+                self.compared, self.before = list(GYRO), np.full(len(GYRO), np.nan)
         rows = np.array([columns[name] for name in self.compared])
         before = np.column_stack([self.before, rows[:, :-1]]) if rows.size else rows
         self.before = rows[:, -1] if rows.size else self.before

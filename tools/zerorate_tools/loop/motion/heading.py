@@ -26,8 +26,8 @@ def heading_lost(moving: Mapping[Path, Moving]) -> tuple[float, float] | None:
     """Degrees a minute without and with the matrix, RMS over stretches; each log with the matrix
     of the others, a log alone its second half with that of its first. None without attitude."""
     errors = []
-    for path, one in moving.items():
-        others = [m for p, m in moving.items() if p != path]
+    for path in filter(has_attitude, moving):
+        one, others = moving[path], [m for p, m in moving.items() if p != path]
         middle = len(one.rate) // 2
         shown = by_gravity(others or [_part(one, slice(0, middle))], [])
         judged = slice(0 if others else middle, None)
@@ -36,17 +36,14 @@ def heading_lost(moving: Mapping[Path, Moving]) -> tuple[float, float] | None:
 
 
 def heading_lost_by(moving: Mapping[Path, Moving], shown) -> tuple[float, float] | None:
-    """The same of logs that a matrix was not fitted to."""
+    """The same of logs with an attitude, which a matrix was not fitted to."""
     whole = slice(0, None)
     return _rms([_without_and_with(p, m, whole, _deployed(shown)) for p, m in moving.items()])
 
 
 def _without_and_with(path: Path, one: Moving, judged: slice, matrix: NDArray) -> NDArray:
     """(2, k) degrees a second of each stretch."""
-    attitude = _attitude(path)
-    if attitude is None:
-        return np.zeros((2, 0))
-    own = _part(one, judged)
+    attitude, own = _attitude(path), _part(one, judged)
     return np.array([_lost(own, m, attitude[judged]) for m in (np.zeros((3, 3)), matrix)])
 
 
@@ -71,11 +68,14 @@ def _deployed(shown) -> NDArray[np.float64]:
     return np.array([s.coefficient_dps for s in slots]).T if slots else np.zeros((3, 3))
 
 
-def _attitude(path: Path) -> NDArray[np.float64] | None:
-    """(n, 4) body to world, w first, NaN where it was not seen; None without the columns."""
+def has_attitude(path: Path) -> bool:
+    """Whether a recording has the columns of one."""
+    return attitude_names(open_recording(path, keep_gaps=True).column_names) is not None
+
+
+def _attitude(path: Path) -> NDArray[np.float64]:
+    """(n, 4) body to world, w first, NaN where it was not seen."""
     opened = open_recording(path, keep_gaps=True)
-    if attitude_names(opened.column_names) is None:
-        return None
     reference = Reference(opened.column_names, opened.scales.gyro_lsb_per_dps)
     parts = [reference.quaternions(b) for b in opened.batches(rows=1 << 18) if len(b[TIME])]
     return np.concatenate(parts)
