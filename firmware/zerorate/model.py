@@ -72,7 +72,8 @@ class EffectModel:
     """An effect model and its running state, in `e`; without slots while no model is loaded.
 
     channels: names of the extra channels that the model follows, in the order of their index;
-    attend: the kernel that refines coefficients, None while it is off.
+    attend: the kernel that refines coefficients, None while it is off; crc: the last four bytes of
+    model.bin, its CRC-32, which tell models apart.
     """
 
     def __init__(self) -> None:
@@ -111,6 +112,7 @@ class EffectModel:
                 reason = _IMPOSSIBLE
         if reason == LOADED:
             self.e[_SLOT_COUNT] = data[6]
+            self.crc = bytes(data[-4:])
             self.power_on()
         else:
             self.forget()
@@ -124,6 +126,7 @@ class EffectModel:
             self.e[i] = 0
         self.e[_TICK_US] = _WITHOUT_MODEL_US  # time is divided by it all the same
         self.channels = ()
+        self.crc = b""
         self.reason = NO_MODEL
         self.attend = None
 

@@ -8,11 +8,15 @@ from time import monotonic_ns
 
 import pytest
 from zerorate import Corrector, Sensor
+from zerorate.model import EffectModel
 from zerorate.storage import codes, reasons, save_schedule
 from zerorate.storage.learned_store import MODEL_BYTES, LearnedStore
 from zerorate.storage.save_schedule import SaveSchedule
 from zerorate_fakes.memory import FakeMemory, PowerCut
 from zerorate_tools import layout
+from zerorate_tools.model import Slot, build_model, encoded
+from zerorate_tools.model.term import Term
+from zerorate_tools.recordings import Scales
 
 from .test_store import OLD, make_store
 
@@ -130,6 +134,39 @@ def test_a_refusal_names_what_differs(memory, saved, binding, sensor, options, n
     own = Corrector(Sensor(**{"odr_hz": 100.0, **sensor}), **options)
     stores = LearnedStore(memory, bytes(binding), own)
     assert named in stores.in_words(stores.load())
+
+
+def with_model(memory, constant_dps, span_degc=4.0, **options):
+    """A store of a device whose model adds a constant over that range of temperature."""
+    stores = blank(memory, **options)
+    effects, sensor = EffectModel(), stores.corrector.sensor
+    term = Term("temp", 25.0 - span_degc / 2, 25.0 + span_degc / 2, 25.0)
+    slot = Slot(term, (constant_dps,) * 3, "temperature-quadratic")
+    scales = Scales("MPU-6050", 100.0, 131.0, 16384.0, 340.0, 36.53)
+    assert effects.load(encoded(build_model([slot], scales)), sensor) == codes.LOADED
+    stores.corrector.use_model(effects)
+    return stores
+
+
+def test_what_was_learned_beside_a_model_is_loaded_beside_that_model_alone(memory, saved):
+    stores = with_model(memory, 0.01)
+    assert stores.load() == codes.OTHER_BINDING
+    assert "another effect model" in stores.in_words(codes.OTHER_BINDING)
+    stores.corrector.state[:] = saved.state
+    assert stores.save()
+    assert with_model(memory, 0.01).load() == codes.LOADED
+    assert blank(memory).load() == codes.LOADED  # the older slot
+    assert stores.save()
+    for other in (with_model(memory, 0.02), with_model(memory, 0.01, 40.0), blank(memory)):
+        assert other.load() == codes.OTHER_BINDING
+        assert "another effect model" in other.in_words(codes.OTHER_BINDING)
+
+
+def test_a_model_may_come_before_the_store_or_after_it(memory):
+    after = with_model(memory, 0.01, 40.0)
+    assert after.save()
+    corrector = with_model(FakeMemory(16384), 0.01, 40.0).corrector
+    assert LearnedStore(memory, BINDING, corrector).load() == codes.LOADED
 
 
 def test_without_the_part_that_names_it_a_refusal_says_the_reason_alone(memory, saved, monkeypatch):

@@ -9,13 +9,16 @@ from array import array
 import numpy as np
 import pytest
 from zerorate import Corrector, Sensor
+from zerorate.model import EffectModel
 from zerorate.storage import codes
 from zerorate.storage.crc32 import checksum
 from zerorate.storage.learned_store import LearnedStore
 from zerorate_fakes.memory import FakeMemory, PowerCut
+from zerorate_tools import layout
 from zerorate_tools.cli import main
 from zerorate_tools.kernels.export import export_c
 from zerorate_tools.model import read_model, write_model
+from zerorate_tools.model.check import sensor_for
 
 from ..firmware import trace
 from ..firmware.trace_on_host import checksums, corrector_for, frames
@@ -109,13 +112,16 @@ class CStore(ctypes.Structure):
     ]
 
 
-@pytest.fixture(scope="module")
-def library(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("c")
-    export_c(folder, Sensor())
+def compiled(folder, **made):
+    export_c(folder, **made)
     command = ["cc", "-O1", "-shared", "-fPIC", folder / "zerorate.c", "-o", folder / "z.so"]
     subprocess.run(command, check=True)
     return ctypes.CDLL(str(folder / "z.so"))
+
+
+@pytest.fixture(scope="module")
+def library(tmp_path_factory):
+    return compiled(tmp_path_factory.mktemp("c"), sensor=Sensor())
 
 
 class InC:
@@ -124,8 +130,9 @@ class InC:
     def __init__(self, library, memory, binding=BINDING):
         corrector = Corrector(Sensor(), motion=False, gravity=False)
         self.words, self.memory, self._c = len(corrector.state), memory, library
-        self.z = (ctypes.c_int32 * (self.words + len(corrector.settings)))()
-        size = 24 + 4 * len(self.z)
+        kept = self.words + len(corrector.settings)
+        self.z = (ctypes.c_int32 * (kept + layout.EFFECTS.size))()  # the last for a model
+        size = 24 + 4 * kept
         self.size = size
         self.store = CStore(READ(self._read), READ(self._write), None, 0, size)
         self.store.binding[:] = binding
@@ -161,8 +168,8 @@ class InC:
         return bool(self._c.zerorate_save(self.z, ctypes.byref(self.store)))
 
 
-def in_python(memory, binding=BINDING):
-    corrector = Corrector(Sensor(), motion=False, gravity=False)
+def in_python(memory, sensor=None, binding=BINDING):
+    corrector = Corrector(sensor or Sensor(), motion=False, gravity=False)
     return LearnedStore(memory, binding, corrector)
 
 
@@ -213,6 +220,19 @@ def test_a_power_on_begins_with_the_same_state_and_goes_on_alike(library, both, 
         again.update(sample, 10000)
         python.corrector.update(sample, 10000)
     assert again.state == python.corrector.state
+
+
+def test_beside_a_model_the_record_is_that_of_python_beside_it(tmp_path, matrix_model, both):
+    with_model = compiled(tmp_path, model=matrix_model.path)
+    effects, sensor = EffectModel(), sensor_for(read_model(matrix_model.path).scales)
+    python, plain = in_python(FakeMemory(8192), sensor), both[1]
+    assert effects.load(matrix_model.path.read_bytes(), sensor) == codes.LOADED
+    python.corrector.use_model(effects)
+    c = InC(with_model, FakeMemory(8192))
+    assert python.save() and c.save() and plain.save()
+    assert python.state.storage.bytes == c.memory.bytes
+    assert c.load() == python.load() == codes.LOADED
+    assert InC(with_model, plain.memory).load() == codes.OTHER_BINDING
 
 
 def test_a_cut_at_any_byte_leaves_what_was_stored_before(library, both):

@@ -1,4 +1,4 @@
-"""What differs where a record is of another binding: chip, range, filter, or which setting."""
+"""What differs where a record is of another binding: chip, range, filter, which setting, model."""
 
 from array import array
 
@@ -8,6 +8,8 @@ from .store import unpack
 
 # layout: names that a board's own compiler reads
 const = int
+# layout: The corrector's settings
+_STEP_LSB = const(29)
 # layout: end
 _AT_BINDING = const(12)
 _HEADER = const(20)
@@ -28,7 +30,10 @@ def differing(store, corrector):
     own = corrector.settings
     stored = array("i", range(len(own)))
     unpack(record, -_HEADER - store.size, stored, 4 * len(own))
-    names = moved_by(corrector.sensor, [i for i in range(len(own)) if own[i] != stored[i]])
+    words = [i for i in range(len(own)) if own[i] != stored[i]]
+    if not words or words == [_STEP_LSB]:  # which a model widens
+        return "stored with another effect model" + (" or another step_degc" if words else "")
+    names = moved_by(corrector.sensor, words)
     return "stored with another " + (" and another ".join(names) or "rule of learning")
 
 

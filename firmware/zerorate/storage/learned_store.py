@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 # layout: names that a board's own compiler reads
 const = int
+# layout: The corrector's settings
+_STEP_LSB = const(29)
 # layout: What a store says
 _OTHER_BINDING = const(3)
 # layout: end
@@ -27,10 +29,11 @@ _AT_MODEL_SIZE = const(4)
 class LearnedStore:
     """The stores of `corrector`, a Corrector, on `storage` (see storage.py) from byte `base` on.
 
-    binding: MPU6050.binding, the chip's id, range and filter; the state is bound to the
-    corrector's settings as well, which go with it into the record. pitch: distance of slots, an
-    erase block of flash (default: no
-    gap). end is the first byte behind both. Raises ValueError for a pitch that is too small.
+    binding: MPU6050.binding, the chip's id, range and filter. The state is also bound to the
+    corrector's settings, which go with it into the record, and to its effect model: the curve over
+    temperature is what the model leaves. So call use_model before load. pitch: distance of slots,
+    an erase block of flash (default: no gap). end is the first byte behind both. Raises ValueError
+    for a pitch that is too small.
     """
 
     def __init__(
@@ -43,8 +46,10 @@ class LearnedStore:
     ) -> None:
         self.corrector = corrector
         size = 4 * len(corrector.state)
-        bound = bytes(binding) + _fingerprint(corrector.settings)
-        self.state = Store(storage, bound, size, _STATE_VERSION, base, pitch, corrector.settings)
+        self._bound = bytes(binding) + _fingerprint(corrector)
+        self.state = Store(
+            storage, self._bound, size, _STATE_VERSION, base, pitch, corrector.settings
+        )
         base += 2 * (pitch or self.state.slot_bytes)
         self._model_place = (storage, binding, base, pitch)
         self.end = base + 2 * (pitch or slot_bytes(MODEL_BYTES))
@@ -55,6 +60,7 @@ class LearnedStore:
         same: the chip kept its power (MPU6050.kept_power), only the program began anew.
         in_words says each result; the corrector is as it was when it is not LOADED.
         """
+        self._bind()
         return self.corrector.load(self.state, same)
 
     def in_words(self, reason: int) -> str:
@@ -81,7 +87,16 @@ class LearnedStore:
 
         payload is for SaveSchedule, which hands over the corrector's state.
         """
+        self._bind()
         return self.corrector.save(self.state)
+
+    def _bind(self):
+        bound = bytearray(self._bound)
+        effects = self.corrector.effects
+        if effects is not None:
+            for i in range(len(effects.crc)):
+                bound[4 + i] ^= effects.crc[i]
+        self.state.binding = bytes(bound)
 
     def load_model(self) -> bytes:
         """The bytes of the effect model, for EffectModel.load, or b"" (see model.load's reason).
@@ -106,8 +121,11 @@ class LearnedStore:
         return Store(storage, binding, MODEL_BYTES, base=base, pitch=pitch)
 
 
-def _fingerprint(settings):
-    """Four bytes that differ between settings."""
-    out = bytearray(4)
+def _fingerprint(corrector):
+    """Four bytes that differ between settings, as they are without an effect model."""
+    out, settings = bytearray(4), corrector.settings
+    step = settings[_STEP_LSB]
+    settings[_STEP_LSB] = corrector._step_lsb
     checksum(packed(settings, 4 * len(settings)), out)
+    settings[_STEP_LSB] = step
     return bytes(out)

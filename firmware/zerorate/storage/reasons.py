@@ -7,7 +7,7 @@ REASONS = (
     "loaded",
     "nothing was ever stored",
     "neither slot is whole",
-    "stored for another chip, range, filter or other settings",
+    "stored for another chip, range, filter, effect model or other settings",
     "stored by another version",
     "stored with another size",
     "the storage cannot be read",

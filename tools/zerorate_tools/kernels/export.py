@@ -185,6 +185,8 @@ def _stored(corrector: Corrector) -> str:
     words |= {"NO_VALUE": MARKS.NO_VALUE, "FREE": MARKS.FREE, "STILL": STILLNESS.STILL}
     words |= {"ANY_TEMPERATURE": SOURCE.ANY_TEMPERATURE, "NEAR_Q8": _NEAR_Q8}
     words |= {"RECORD_VERSION": _STATE_VERSION, "OWN_STEP_LSB": corrector._step_lsb}
+    crc = corrector.effects.crc if corrector.effects is not None else b""
+    words |= {"MODEL_CRC": f"0x{int.from_bytes(crc, 'little'):08x}u"}
     lines = [f"#define {name} ({value})" for name, value in words.items()]
     for name in ("AXIS", "ESTIMATOR"):
         bits = "".join(f"\\x{bit:02x}" for bit in _ARRAYS[name].bits())

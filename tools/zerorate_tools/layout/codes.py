@@ -92,7 +92,7 @@ STORE = Codes(
         "LOADED": "loaded",
         "EMPTY": "nothing was ever stored",
         "DAMAGED": "neither slot is whole",
-        "OTHER_BINDING": "stored for another chip, range, filter or other settings",
+        "OTHER_BINDING": "stored for another chip, range, filter, effect model or other settings",
         "OTHER_VERSION": "stored by another version",
         "OTHER_SIZE": "stored with another size",
         "UNREADABLE": "the storage cannot be read",

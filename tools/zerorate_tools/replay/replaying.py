@@ -152,8 +152,10 @@ def load_state(corrector: Corrector, path: Path, resume: bool) -> None:
     for part in _parts(corrector):
         if corrector.effects is None or part is not corrector.effects.e:
             part[:] = words[: len(part)]
-        elif resume and not _resumed(part, words):
+        elif not _is_same_model(part, words):
             raise InFile(path, "of another effect model", do="name the model it was written with")
+        elif resume:
+            part[:] = words[: len(part)]
         words = words[len(part) :]
     if not can_be_a_state(corrector):
         raise InFile(path, "damaged, or no state at all", do="name a file that --state wrote")
@@ -161,8 +163,8 @@ def load_state(corrector: Corrector, path: Path, resume: bool) -> None:
         corrector.power_on()
 
 
-def _resumed(e: array[int], words: array[int]) -> bool:
-    """Let effect model `e` go on from the words that one left; False where that was another."""
+def _is_same_model(e: array[int], words: array[int]) -> bool:
+    """Whether the words that a model left are those of effect model `e`."""
     first = EFFECTS
     counts = (first.SLOT_COUNT, first.INPUT_COUNT, first.TICK_US, first.SLOTS_A_SAMPLE)
     given = {*counts, first.INSTANT_SLOTS, first.PLAY_COUNT, *range(first.TABLES, first.RINGS)}
@@ -174,10 +176,8 @@ def _resumed(e: array[int], words: array[int]) -> bool:
         given.update(at + i * block.size + k for i in range(most) for k in range(end))
     left = words[: len(e)]
     slots = e[first.SLOT_COUNT] + e[first.PLAY_COUNT]
-    if any(e[i] != left[i] for i in given) or not 0 <= left[first.NEXT_SLOT] < max(1, slots):
-        return False
-    e[:] = left
-    return True
+    own = all(e[i] == left[i] for i in given)
+    return own and 0 <= left[first.NEXT_SLOT] < max(1, slots)
 
 
 def state_bytes(corrector: Corrector) -> bytes:

@@ -36,7 +36,8 @@ static uint32_t word_at(const uint8_t *at) {
     return (uint32_t)at[0] | (uint32_t)at[1] << 8 | (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24;
 }
 
-/* Range and filter as the user names them, then CRC-32 of the settings before a model changed one. */
+/* Range and filter as the user names them, then CRC-32 of the settings before a model changed one,
+   exclusive or that of the model. */
 static void binding_of(const zerorate_t *z, const zerorate_store_t *store, uint8_t binding[8]) {
     uint32_t crc = 0xffffffffu;
     for (int32_t i = 0; i < ZERORATE_SETTINGS_WORDS; i++) {
@@ -45,7 +46,7 @@ static void binding_of(const zerorate_t *z, const zerorate_store_t *store, uint8
         crc = crc_on(crc, word, 4);
     }
     for (int32_t i = 0; i < 4; i++) binding[i] = store->binding[i];
-    put_word(binding + 4, ~crc);
+    put_word(binding + 4, ~crc ^ MODEL_CRC);
 }
 
 /* Whether length bytes from `at` on end in their own CRC-32; 1, 0, or -1 where they cannot be read.
