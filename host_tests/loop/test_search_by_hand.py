@@ -13,6 +13,7 @@ from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.read.earth import Earth
 from zerorate_tools.loop.read.lines import Line, Spectrum
 from zerorate_tools.loop.read.sessions import Session
+from zerorate_tools.loop.read.turns import GIVEN, GRAVITY, Turns
 from zerorate_tools.loop.search import (
     catalogue,
     confounding,
@@ -25,12 +26,13 @@ from zerorate_tools.loop.search import (
     step_places,
 )
 from zerorate_tools.loop.search.catalogue import Candidate, candidates, ranges, varies
-from zerorate_tools.loop.search.collinear import collinear
+from zerorate_tools.loop.search.collinear import cancels, collinear
 from zerorate_tools.loop.search.fits_in_slots import fits_in_slots
 from zerorate_tools.loop.search.multiple_testing import MultipleTesting
 from zerorate_tools.loop.search.ols_holdout_ratio import ols_holdout_ratio
 from zerorate_tools.loop.search.selection import Found, Selection
 from zerorate_tools.loop.search.steps import Step
+from zerorate_tools.model.effects import Effect
 from zerorate_tools.model.term import Term, first_order_lag
 
 from . import dense
@@ -114,6 +116,21 @@ def test_every_lock_must_open(sessions, monkeypatch):
     two = decide.decide(regression, [], candidate(A, B), 5.0, 1.0, [B])
     assert two.p_value == decide.family_p(5.0, 6, 1.0)
     assert decide.decide(regression, [], one, 80.0, 1e9, [B]).p_value <= 1.0
+
+
+@pytest.mark.parametrize(("nats", "speaks"), [([1.0, 1.1], True), ([3.0, -1.0], False)])
+def test_pieces_left_out_have_the_last_word_where_they_are_asked(nats, speaks):
+    said = decide.Decision(True, 1e-6, 40.0, 1.5, np.zeros(0), tried=7.0)
+
+    def judged(straight, found, candidate):
+        assert (straight, found, candidate) == ([C], [B], [A])
+        return np.array(nats)
+
+    judged.reason = "pieces do not speak for it"
+    asked = said.on_pieces(judged, [C], [B], [A])
+    assert asked.accepted is speaks and asked.session_gains.tolist() == nats
+    assert asked.reason == ("" if speaks else judged.reason)
+    assert (asked.p_value, asked.ratio, asked.inflation, asked.tried) == (1e-6, 40.0, 1.5, 7.0)
 
 
 def pool():
@@ -364,6 +381,35 @@ def test_a_memory_that_others_of_its_source_leave_nothing_of_is_the_same(session
     for memory in ({"delay_s": 20.0}, {"decay_s": 99.0}, {"width": 1.0, "memory": "backlash"}):
         one = Term("a", **memory)
         assert collinear([one], [replace(one, centre=0.01)], sessions)
+
+
+@pytest.mark.parametrize("beside", [[B], []])
+def test_an_effect_of_twice_the_error_without_it_only_stands_against_another(beside):
+    made = [dense.made(1, 20, gap=(3,)), dense.made(2, 23), dense.made(3, 26)]
+
+    def whole(values, s):
+        return (values - values[s.available].mean(axis=0))[s.available]
+
+    def squares(apart):
+        """Of what the effect adds, over those of the error without it."""
+        for s in made:
+            s.sources["b"] = s.sources["a"] + apart * s.sources["c"]
+        a, b, y = (
+            np.concatenate([whole(of(s), s) for s in made])
+            for of in (lambda s: s.sources["a"], lambda s: s.sources["b"], lambda s: s.rate_dps)
+        )
+        x = np.column_stack([a, b] if beside else [a])
+        size = np.linalg.lstsq(x, y, rcond=None)[0][0]
+        without = y - np.outer(b, b @ y) / (b @ b) if beside else y
+        return (np.outer(a, size) ** 2).sum() / (without**2).sum()
+
+    if not beside:
+        assert squares(1.0) < 4 and not cancels(made, [], [A])
+        return
+    just = brentq(lambda apart: squares(apart) - 4.0, 0.01, 1.0)
+    for apart, against in ((0.999 * just, True), (1.001 * just, False)):
+        squares(apart)
+        assert cancels(made, beside, [A]) is against
 
 
 # --- places of steps ---
@@ -625,13 +671,18 @@ def test_what_does_not_vary_or_was_not_recorded_is_no_candidate():
     assert not [c for c in found if "temp" in c.sources or "acc_x" in c.sources]
     bare = replace(warm(), sources={})
     assert {c.kind for c in candidates([bare])} == {"time-drift", "power-on-transient"}
-    turning = {f"rate_{a}": np.linspace(0.0, 9.0, 50) for a in "xyz"}
-    assert of_kind(candidates([warm(**turning)]), "rate-scale")
+    turning = warm(**{f"rate_{a}": np.linspace(0.0, 9.0, 50) for a in "xyz"})
+    for runs, beside, told in ((11, GIVEN, False), (12, GIVEN, True), (12, GRAVITY, False)):
+        # what turns tell by samples is no effect to look for
+        some = [replace(turning, turns=Turns([None] * n, beside)) for n in (5, runs - 5)]
+        assert bool(of_kind(candidates([*some, turning]), "rate-scale")) is not told
     shaken = candidates([warm(vib=np.linspace(0.0, 1.0, 50))])
     assert of_kind(shaken, "vibration")
 
 
-def test_forms_of_temperature_are_of_one_slot_and_a_late_part_adds_its_rate_times_its_slope():
+def test_forms_of_temperature_are_of_one_slot_and_a_late_part_adds_its_rate_times_its_slope(
+    monkeypatch,
+):
     session = warm()
     found = catalogue.of_temperature([session])
     late = [c for c in found if len(c.terms) == 2]
@@ -645,6 +696,10 @@ def test_forms_of_temperature_are_of_one_slot_and_a_late_part_adds_its_rate_time
     assert lags[0].centre == pytest.approx(25.0) and lags[0].lag_mode == "difference"
     bare = replace(session, sources={})
     assert catalogue.of_temperature([bare]) == [] == catalogue.lags([bare])
+    free = Effect("any-curve", "temp", "", "", free=True)
+    monkeypatch.setattr(catalogue.effects, "EFFECTS", (*catalogue.effects.EFFECTS, free))
+    assert of_kind(candidates([session]), "any-curve")
+    assert not of_kind(catalogue.of_temperature([session]), "any-curve")
 
 
 def test_only_bounded_bases_go_on_beyond_their_source():
@@ -788,25 +843,25 @@ def test_a_lag_is_refined_to_where_it_is_likeliest():
 def test_a_knot_and_two_centres_are_refined_within_a_fifth_of_the_range():
     made = [dense.made(seed, 120) for seed in (1, 2)]
     for s in made:
-        s.sources["a"] = np.random.default_rng(3).uniform(0, 10, 120)
-        s.sources["b"] = np.random.default_rng(4).uniform(-1, 1, 120)
+        s.sources["a"] = np.random.default_rng(3).uniform(2, 12, 120)
+        s.sources["b"] = np.random.default_rng(4).uniform(0, 2, 120)
         s.rate_dps[:] = np.random.default_rng(5).normal(size=(120, 3)) * 0.05
-        s.rate_dps += np.maximum(s.sources["a"] - 6.5, 0)[:, None]
-    kink = candidate(Term("a", 0.0, 10.0, 0.0, knot=5.5), refine=("knot",))
+        s.rate_dps += np.maximum(s.sources["a"] - 8.5, 0)[:, None]
+    kink = candidate(Term("a", 2.0, 12.0, 0.0, knot=7.5), refine=("knot",))
     found = refine.refined(Regression(made), [], kink)
-    assert found.terms[0].knot == pytest.approx(6.5, abs=0.1)
-    for start in (4.0, 9.0):  # a fifth of the range, and no further
+    assert found.terms[0].knot == pytest.approx(8.5, abs=0.1)
+    for start in (6.0, 11.0):  # a fifth of the range, and no further
         far = replace(kink, terms=(replace(kink.terms[0], knot=start),))
         found = refine.refined(Regression(made), [], far).terms[0].knot
         assert abs(found - start) == pytest.approx(2.0, abs=0.1)
     for s in made:
         s.rate_dps[:] = np.random.default_rng(5).normal(size=(120, 3)) * 0.05
-        s.rate_dps += ((s.sources["a"] - 4.0) * (s.sources["b"] - 0.3))[:, None]
-    both = Term("a", 0.0, 10.0, 5.0, second="b", second_lo=-1.0, second_hi=1.0)
+        s.rate_dps += ((s.sources["a"] - 6.0) * (s.sources["b"] - 1.3))[:, None]
+    both = Term("a", 2.0, 12.0, 7.0, second="b", second_lo=0.0, second_hi=2.0, second_centre=1.0)
     start = candidate(both, refine=("centre", "second_centre"))
     found = refine.refined(Regression(made), [], start).terms[0]
-    assert found.centre == pytest.approx(4.0, abs=0.15)
-    assert found.second_centre == pytest.approx(0.3, abs=0.05)
+    assert found.centre == pytest.approx(6.0, abs=0.15)
+    assert found.second_centre == pytest.approx(1.3, abs=0.05)
 
 
 def test_a_delay_is_refined_between_its_neighbours_too():

@@ -49,7 +49,7 @@ def _within(term, sessions):
 def cancels(sessions: Sequence[Session], beside: Sequence[Term], terms: Sequence[Term]) -> bool:
     """Whether terms are far larger than the error that they explain: then they only stand against
     others, as a start's decay against a warm-up, and not at another power-on."""
-    without = _squares(sessions, beside, ordinary(beside, sessions) if beside else None, True)
+    without = _squares(sessions, beside, ordinary(beside, sessions) if beside else (), True)
     fitted = ordinary([*beside, *terms], sessions)[len(beside) :]
     return _squares(sessions, terms, fitted, False) > _MOST_TIMES**2 * without
 
@@ -58,7 +58,7 @@ def _squares(sessions, terms, coefficients, left: bool) -> float:
     """Of what terms add to the bias, or leave of it, offsets aside, in all."""
     total = 0.0
     for s in sessions:
-        added = predicted(terms, coefficients, s) if len(terms) else 0.0
+        added = predicted(terms, coefficients, s)
         values = s.rate_dps - added if left else added
         total += float((s.less_offsets(values, s.available)[s.available] ** 2).sum())
     return total
