@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 from scipy.stats import chi2, f, norm
+from zerorate_tools.loop.fit.free_curve import draw, parts
 from zerorate_tools.loop.fit.left_out import gains
 from zerorate_tools.loop.fit.line import ordinary
 from zerorate_tools.loop.fit.regression import Regression
@@ -751,11 +752,12 @@ def test_a_rate_and_a_lag_are_named_by_their_seconds(kind, lag_s, name, mode):
 
 def test_a_matrix_is_named_by_where_most_of_it_is():
     rates = candidate(*(Term(f"rate_{a}") for a in "xyz"), kind="rate-scale")
-    names = [
-        confounding.named(rates, matrix).kind
-        for matrix in (np.eye(3), 1 - np.eye(3), np.ones((3, 3)))
-    ]
-    assert names == ["scale-factor", "cross-axis", "scale-factor+cross-axis"]
+    aside = np.array([[0, 1, -1], [-1, 0, 1], [1, -1, 0]])
+    for diagonal, name in (  # nine tenths of the squares are those of 4.24, a tenth of 0.471
+        *((-4.3, "scale-factor"), (4.2, "scale-factor+cross-axis")),
+        *((-0.48, "scale-factor+cross-axis"), (0.46, "cross-axis")),
+    ):
+        assert confounding.named(rates, diagonal * np.eye(3) + aside).kind == name
     same = candidate(A)
     assert confounding.named(same, np.ones((1, 3))) is same
 
@@ -778,6 +780,15 @@ def test_of_effects_that_tie_the_simplest_is_named_and_the_others_stay_beside_it
     assert alone[0] is catalogued and far not in alone
     worse = confounding.rivals(regression, [], far, every, ratios)
     assert worse[0] is far  # others explain more than it: no tie
+
+
+def test_a_curve_that_was_drawn_pays_for_its_form(sessions):
+    regression, curve = Regression(sessions), Term("a", -4.0, 4.0)
+    drawn = candidate(replace(curve, table=tuple(np.linspace(-1, 1, 9) ** 3)))
+    ratio = regression.gains([B], [drawn.terms]).sum()
+    assert confounding._worth(regression, [B], drawn) == ratio - 2 * (len(parts(curve)) - 1)
+    plain = regression.gains([B], [(A,)]).sum()
+    assert confounding._worth(regression, [B], candidate(A)) == plain
 
 
 def test_names_given_are_the_simplest_s_with_what_ties_beside_it(sessions):
@@ -875,6 +886,11 @@ def test_a_delay_is_refined_between_its_neighbours_too():
     assert round(found.delay_s / 20.0) == 5
     same = candidate(A)
     assert refine.drawn(Regression(made), [], same) is same
+    curve = Term("a", -4.0, 4.0)
+    for some in (candidate(*parts(curve), kind="x"), candidate(replace(curve, table=(0.5,) * 9))):
+        told = refine.drawn(Regression(made), [B], some)
+        first = some.terms[0]
+        assert told.terms == (draw(Regression(made), [B], first)[0],) and told.kind == some.kind
 
 
 LAG = Term("temp", lag_s=9.0, lag_mode="lag")

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from scipy.stats import chi2
+from scipy.stats import chi2, gamma
 from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.search import steps as listed
 from zerorate_tools.loop.search.catalogue import Candidate
@@ -90,6 +90,8 @@ def test_the_chance_of_a_step_pays_for_every_place_and_recording(sessions):
     many = standing(Regression([one]), [A], 7, [])
     assert len(single) == len(many) == 1
     assert many[0].p_value == pytest.approx(7 * single[0].p_value)
+    for found in (find_all(Regression([one]), [A])[0], strongest(Regression([one]), [A])):
+        assert found.p_value == pytest.approx(single[0].p_value)
     theory = chi2.sf(single[0].ratio, 3) * (BLOCKS + 1 - 15)
     assert single[0].p_value >= theory * 0.999
     assert standing(Regression([one]), [A], 10**9, []) == []
@@ -104,9 +106,8 @@ def test_a_chance_is_by_the_places_away_from_steps_where_their_tail_is_longer():
     assert listed._survival(20.0, quiet) == chi2.sf(20.0, 3)
     loud = rng.chisquare(3, 500) * 3
     mean, variance = (3 + loud.mean()) / 2, (6 + loud.var()) / 2
-    shape = mean**2 / variance
-    draws = rng.gamma(shape, mean / shape, 400_000)
-    assert listed._survival(20.0, loud) == pytest.approx((draws > 20.0).mean(), rel=0.05)
+    longer = gamma.sf(20.0, mean**2 / variance, scale=variance / mean)
+    assert listed._survival(20.0, loud) == pytest.approx(longer)
     few = loud[:4]
     assert listed._survival(20.0, few) == chi2.sf(20.0, 3)
 
@@ -125,6 +126,31 @@ def test_the_strongest_step_is_that_of_the_largest_ratio(sessions):
     found = strongest(regression, [A])
     assert (found.session, found.block) == (2, 22) and regression.events() == []
     assert strongest(Regression(sessions[:1]), [A]) is None
+
+
+def test_sizes_and_deviations_are_those_of_the_sensors_axes_however_they_are_looked_along(sessions):
+    plain, turned = Regression(sessions), Regression(sessions)
+    turned.turn(np.array([[2.0, 1.0, 0.0], [0.0, 1.0, 0.5], [0.0, 0.0, 3.0]]))
+    expected = find_all(plain, [A])
+    covariance = [
+        np.linalg.inv(turned.axes)
+        @ np.diag([u[1 + k, 1 + k] * v for u, v in zip(base.unscaled, base.variance)])
+        @ np.linalg.inv(turned.axes).T
+        for base in [_beside(turned, expected)]
+        for k in range(2)
+    ]
+    found = listed._sized(turned, [A], [replace(s) for s in expected])
+    for step, other, spread in zip(found, expected, covariance):
+        assert step.size_dps == pytest.approx(other.size_dps, abs=1.0)
+        assert step.deviation_dps == pytest.approx(np.sqrt(np.diag(spread)))
+
+
+def _beside(regression, steps):
+    """The fit with the steps as nuisances; they do not stay."""
+    regression.set_events([column(regression, s) for s in steps])
+    base = regression.fit([A]).base
+    regression.set_events([])
+    return base
 
 
 def test_a_step_s_column_is_of_its_session_alone(sessions):
@@ -223,7 +249,7 @@ def test_what_was_taken_beside_a_step_may_make_it_by_its_timing():
     step = Step(0, 30, np.array([2.0, 0.0, 0.0]), 9.0, 0.0, np.array([1.0, 1.0, 1.0]))
     forms = [Term("j")]
     assert listed._is_timing(regression, forms, np.array([[2.1, 0.0, 0.0]]), step)
-    assert not listed._is_timing(regression, forms, np.array([[1.9, 9.0, 0.0]]), step)
+    assert not listed._is_timing(regression, forms, np.array([[2.0, 9.0, 0.0]]), step)
     assert listed._is_timing(regression, forms, np.array([[-2.1, 0.0, 0.0]]), step)
     sure = replace(
         step, size_dps=np.array([2.0, 2.0, 0.0]), deviation_dps=np.array([1.0, 2.0, 9.0])
@@ -251,6 +277,41 @@ def test_what_a_recorded_channel_does_is_no_step_where_it_is_a_rival():
     rival = Candidate("channel", (Term("load"),), "generic")
     assert len(find_all(Regression([session]), [])) > 0
     assert steps_and_lags(Regression([session]), [], [rival])[0] == []
+
+
+def test_a_kink_over_temperature_is_no_steps():
+    levels = np.repeat([30.0, 20.0, 24.0, 35.0], 15)
+    session = noise(4, temp=levels + np.random.default_rng(0).normal(0, 0.01, BLOCKS))
+    session.rate_dps += np.outer(np.maximum(session.sources["temp"] - 25, 0), [3.0, -3.0, 3.0])
+    regression = Regression([session])
+    for beside in ([], [Term("temp", centre=25.0)]):
+        assert len(listed._all(regression, beside)) == 2
+        assert find_all(regression, beside) == []
+
+
+@pytest.mark.parametrize(
+    ("beyond", "gained", "signs", "stands"),
+    [
+        *((-3.9, 0.0, (1, 1), True), (-4.0, 20.5, (1, 1), True), (-4.0, 20.0, (1, 1), False)),
+        *((-4.0, 20.5, (1, -1), False), (-4.0, 20.5, (1, 0), True)),
+    ],
+)
+def test_a_step_stands_beside_a_ramp_with_those_within_eight_blocks_taken_out(
+    monkeypatch, beyond, gained, signs, stands
+):
+    there, totals = [], iter([100.0, 100.0 + (gained + 7.0) / 2])
+    monkeypatch.setattr(listed, "_set", lambda of, steps, kept: there.append(steps))
+    monkeypatch.setattr(
+        listed, "beyond_ramps", lambda of, terms, session, at: beyond - (at != 29.5)
+    )
+    monkeypatch.setattr(
+        listed, "best_slow", lambda of, terms, session, at: 7.0 + (at != [29.5, 38.0])
+    )
+    told = SimpleNamespace(fit=lambda terms: SimpleNamespace(total=next(totals)))
+    places = [(1, 30, 0.5, signs[0]), (1, 38, 0.0, signs[1]), (1, 39, 0.0, 1), (0, 31, 0.0, 1)]
+    steps = [Step(i, b, n * np.ones(3), 9.0, 0.0, share=share) for i, b, share, n in places]
+    assert listed._is_no_ramp(told, [], steps, steps[0], []) is stands
+    assert there[0] == steps[2:] and all(both == [*steps[2:], *steps[:2]] for both in there[1:])
 
 
 def test_two_are_the_same_within_two_blocks_of_one_session():

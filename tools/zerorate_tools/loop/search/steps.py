@@ -323,5 +323,4 @@ def _is_unseen(session, there, block: int) -> bool:
 def _change(along, i) -> float:
     """Mean of the blocks after place i less that of those before, one between left out."""
     before, after = along[max(0, i - 1 - _BESIDE) : max(0, i - 1)], along[i : i + _BESIDE]
-    after = after if i < len(along) else along[:0]
     return float(after.mean() - before.mean()) if len(before) and len(after) else np.nan
