@@ -149,6 +149,14 @@ def test_on_a_floor_an_axis_turned_is_no_different_from_an_accelerometers_bias(r
     assert 1.0 - abs(cosine) < 1e-4  # 3e-4 where the turn is half a sample late
 
 
+def test_a_slow_recording_may_end_with_one_sample_more_than_it_is_read_in(recorded):
+    moving = moving_of(recorded(19, np.zeros((3, 3)), minutes=1.8))
+    slow = slice(None, 513 * 5, 5)  # 10 Hz, in parts of 512
+    parts = {k: getattr(moving, k)[slow] for k in ("rate", "accel", "at_s", "usable")}
+    columns = columns_of(replace(moving, **parts), np.zeros((3, 3)), np.zeros(sum(OWN.values())))
+    assert len(columns.seen) == 513
+
+
 def test_even_shaking_on_a_floor_says_nothing_of_the_scale_about_the_vertical(recorded):
     moving = moving_of(recorded(18, np.zeros((3, 3)), about=(0.0, 0.0, 1.0), minutes=3.0))
     shaken = np.random.default_rng(1).normal([0.0, 0.0, 1.0], 0.02, moving.accel.shape)

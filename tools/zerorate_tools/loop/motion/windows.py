@@ -195,8 +195,9 @@ def columns_of(moving: Moving, matrix, own) -> Columns:
     per = max(1, round(1.0 / (_COLUMNS_HZ * moving.dt_s)))
     chunk, whole = per * _CHUNK, len(moving.rate) // per * per
     attitude, theta, parts = IDENTITY, np.zeros((3, MATRIX + 6)), []
-    for first in range(0, whole, chunk):
-        span = slice(first, min(first + chunk, whole))
+    starts = list(range(0, whole - 1, chunk))  # one sample alone has no slope: it joins the last
+    for first, end in zip(starts, [*starts[1:], whole]):
+        span = slice(first, end)
         attitude, steps, late, seen, added = _chunk_of(moving, span, per, attitude, matrix, own)
         ends = np.cumsum(steps[0], axis=0) + theta
         middle = ends - steps[0] + steps[1]
