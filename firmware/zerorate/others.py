@@ -11,12 +11,15 @@ if TYPE_CHECKING:
 const = int
 # layout: The state of the source in motion
 _MOTION_BIAS_Q8 = const(71)
+_LATE_US = const(257)
 # layout: The state of the source against gravity
 _GRAVITY_BIAS_Q8 = const(28)
+_GRAVITY_LATE_US = const(58)
 # layout: Where a bias comes from
 _IN_MOTION = const(4)
 _GRAVITY = const(5)
 # layout: end
+_MOST_US = const(0x1FFFFFFF)  # two of them fit 31 bits
 
 
 class Others:
@@ -37,6 +40,8 @@ class Others:
         rest.admit(self._of.state, self._of.settings, sample, kind)
         if kind == 0:
             self._ask_others(sample, dt_us)
+        else:
+            self._pass_over(min(max(dt_us, 0), _MOST_US))
         return rest.finish(self._of.state, self._of.settings, sample, kind)
 
     def _sense_effects(self, sample, dt_us, kind):
@@ -57,6 +62,14 @@ class Others:
         effects = owner.effects
         if effects is not None and effects.attend:
             effects.attend(owner.state, owner.settings, effects.e)
+
+    def _pass_over(self, dt_us):
+        # the next good frame tells how it turned in this one's time, too
+        owner = self._of
+        if owner.motion is not None:
+            owner.motion[_LATE_US] = min(owner.motion[_LATE_US] + dt_us, _MOST_US)
+        if owner.gravity is not None:
+            owner.gravity[_GRAVITY_LATE_US] = min(owner.gravity[_GRAVITY_LATE_US] + dt_us, _MOST_US)
 
     def _consider(self, found, bias_at, source):
         rest.consider(self._of.state, self._of.settings, found, bias_at, source)

@@ -48,6 +48,7 @@ _SKIPPED = const(50)
 _MEAN_ALONG_Q20 = const(51)
 _SPREAD_Q21 = const(54)
 _LEFT_OUT_Q13 = const(55)
+_GRAVITY_LATE_US = const(58)
 # layout: The settings of the source against gravity
 _SUB_UNIT_US = const(0)
 _GRAVITY_GAIN = const(1)
@@ -80,7 +81,7 @@ _RADIAN_Q13 = const(8192)
 
 def clear(s: ptr32, c: ptr32):
     """Forget the offsets and everything counted."""
-    for i in range(_LEFT_OUT_Q13 + 3):
+    for i in range(_GRAVITY_LATE_US + 1):
         s[i] = 0
     for i in range(3):
         s[_STEP_Q8 + i] = c[_COARSE_Q8]
@@ -89,6 +90,8 @@ def clear(s: ptr32, c: ptr32):
 
 def update(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
     """Take the raw frame `x`, dt_us after the one before; return 1 where an interval ended."""
+    dt_us += s[_GRAVITY_LATE_US]
+    s[_GRAVITY_LATE_US] = 0
     if dt_us <= 0 or dt_us > c[_GRAVITY_GAP_US]:
         s[_UNIT_ELAPSED_US] = 0
         s[_LAST_GOOD] = 0

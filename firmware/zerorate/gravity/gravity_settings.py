@@ -7,7 +7,7 @@ from ..ratio import PI, Ratio
 # layout: names that a board's own compiler reads
 const = int
 # layout: The state of the source against gravity
-_GRAVITY_WORDS = const(58)
+_GRAVITY_WORDS = const(59)
 # layout: The settings of the source against gravity
 _SUB_UNIT_US = const(0)
 _GRAVITY_GAIN = const(1)
@@ -23,6 +23,8 @@ _GRAVITY_GAP_US = const(10)
 _PUSH_Q2 = const(11)
 _GRAVITY_SETTINGS_WORDS = const(12)
 # layout: end
+_SHORT_GAP_US = 20000  # a hand turns by less than a tenth of a radian meanwhile
+_LONG_GAP_US = 500000  # its product with the gain fits 31 bits
 # Of how far the deviations go, what a motion that pushes always the same way hides from their
 # signs: at most a tenth on simulated strides (docs/motion.md), of which one sigma is some half.
 PUSH = 16
@@ -81,7 +83,7 @@ def gravity_settings(
     c[_COARSE_Q8] = max(1, (q8 * coarse_dps).floor())
     c[_FINE_Q8] = max(1, (q8 * fine_dps).floor())
     c[_ONE_G_LSB] = Ratio(accel_lsb_per_g).floor()
-    c[_GRAVITY_GAP_US] = (Ratio(2000000) / rate).floor()
+    c[_GRAVITY_GAP_US] = min(max((Ratio(3000000) / rate).floor(), _SHORT_GAP_US), _LONG_GAP_US)
     push = q8 / degree / (2048 * PUSH) / sub_unit
     c[_PUSH_Q2] = 0 if document else max(1, push.floor())
     return array("i", c)

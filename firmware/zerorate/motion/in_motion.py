@@ -10,7 +10,7 @@ line, take the slope as bias, remove it, integrate again. Two forms:
 
 A window grows from 2 s while nothing is known, for a large bias turns a long one too far to be
 linear. Work is spread: a few nodes or pieces of algebra a sample. The state is one array('i')
-of 257 words and 3 a node; motion_settings.py makes the settings.
+of 258 words and 3 a node; motion_settings.py makes the settings.
 """
 
 from ..arithmetic.fixed import clipped
@@ -67,7 +67,8 @@ _BIAS = const(179)
 _SLOPE = const(185)
 _CENTRE = const(214)
 _TURN_SUM = const(245)
-_NODES_RING = const(257)
+_LATE_US = const(257)
+_NODES_RING = const(258)
 # layout: The sums of one component
 _COMPONENT_WORDS = const(21)
 # layout: The settings of the source in motion
@@ -93,6 +94,8 @@ _ROUNDS = const(6)  # where one sigma is a fifth of the bias, less of them stop 
 
 def update(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
     """Take the raw frame `x`, dt_us after the one before; return 1 where a bias was learned."""
+    dt_us += s[_LATE_US]
+    s[_LATE_US] = 0
     if dt_us <= 0 or dt_us > c[_MOTION_GAP_US]:
         restart(s)
         s[_JOB] = _IDLE

@@ -21,7 +21,7 @@ _BIAS_Q24 = const(57)
 _FAST = const(64)
 _AGE_NODES = const(67)
 _FRAME_FORCE_Q12 = const(211)
-_NODES_RING = const(257)
+_NODES_RING = const(258)
 _FRAME_ANGLE_Q24 = const(19)
 _CONING_Q24 = const(203)
 _SCULLING_Q12 = const(206)
@@ -59,9 +59,13 @@ def carried(s: ptr32, j: int, k: int) -> int:
 
 def convert(s: ptr32, c: ptr32, x: ptr32, factor: int):
     """Write the frame's turns, Q24 rad, and forces, Q12 g, to scratch words."""
+    shift = c[_MOTION_SHIFT]
+    while factor > 0x3FFF:  # of a frame for many periods: with a rate it would not fit
+        factor = factor >> 1
+        shift -= 1
     i = 0
     while i < 3:
-        value = (x[4 + i] * factor + (1 << (c[_MOTION_SHIFT] - 1))) >> c[_MOTION_SHIFT]
+        value = (x[4 + i] * factor + (1 << (shift - 1))) >> shift
         s[_FRAME_ANGLE_Q24 + i] = clipped(value, _HALF_RAD_Q24)
         if s[_FRAME_ANGLE_Q24 + i] != value:
             s[_FAST] = c[_NODES]

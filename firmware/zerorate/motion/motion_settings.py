@@ -7,7 +7,7 @@ from ..ratio import PI, Ratio
 # layout: names that a board's own compiler reads
 const = int
 # layout: The state of the source in motion
-_NODES_RING = const(257)
+_NODES_RING = const(258)
 # layout: The settings of the source in motion
 _NODE_US = const(0)
 _MOTION_GAIN = const(1)
@@ -39,6 +39,7 @@ _MOTION_SETTINGS_WORDS = const(32)
 # layout: end
 _SPARE_NODES = 15
 _ALGEBRA = 90
+_SHORT_GAP_US = 20000  # a hand turns by less than a tenth of a radian meanwhile
 
 
 def _real(value):
@@ -130,7 +131,7 @@ def motion_settings(
     c[_MOTION_SHIFT] = shift
     c[_FORCE_GAIN] = (Ratio(1 << 25) / accel_lsb_per_g).nearest()
     c[_VISITS] = -(Ratio(-steps) / (rate * node * _SPARE_NODES)).floor()
-    c[_MOTION_GAP_US] = (Ratio(2000000) / rate).floor()
+    c[_MOTION_GAP_US] = max((Ratio(3000000) / rate).floor(), _SHORT_GAP_US)
     c[_LEAST_TRAFFIC] = (node * degree * (1 << 13) * least_dps).floor()
     c[_NODES] = longest + _SPARE_NODES
     c[_PASSES] = passes

@@ -36,6 +36,7 @@ ENTRIES = (
 _WORDS = {
     **{name: getattr(STATE, name) for name in ("OUT_Q8", "EFFECT_Q8", "QUALITY_Q8", "SOURCE")},
     **{"MOTION_BIAS_Q8": MOTION.MOTION_BIAS_Q8, "GRAVITY_BIAS_Q8": GRAVITY.GRAVITY_BIAS_Q8},
+    **{"LATE_US": MOTION.LATE_US, "GRAVITY_LATE_US": GRAVITY.GRAVITY_LATE_US},
     **{"IN_MOTION": SOURCE.IN_MOTION, "GRAVITY": SOURCE.GRAVITY},
     **{name: getattr(EFFECTS, name) for name in ("CHANNELS", "REFINE_ON")},
     "GAP": GAP,

@@ -74,6 +74,7 @@ MOTION = Array(
         ("VERTICAL", 3, "Q14", "where up is in the body, over the window: 0 before it is known"),
         ("TURN_SUM", 3, "rad Q14", "tapered sum of the half turns"),
         ("TURN_MEAN", 9, "rad Q14", "an axis: mean half turn of what taught it, a node"),
+        ("LATE_US", 1, "us", "of frames passed over since the latest good one"),
         ("NODES_RING", "3 * NODES", "", "a node and axis: turn, rad Q13, above force, g Q12"),
     ),
     (
@@ -192,6 +193,7 @@ GRAVITY = Array(
         ("MEAN_ALONG_Q20", 3, "rad", "mean turn of the other axes about gravity"),
         ("SPREAD_Q21", 1, "rad", "mean size of the deviations"),
         ("LEFT_OUT_Q13", 3, "rad", "what that mean turn would turn the pair by"),
+        ("GRAVITY_LATE_US", 1, "us", "of frames passed over since the latest good one"),
     ),
 )
 
