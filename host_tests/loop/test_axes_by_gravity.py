@@ -114,6 +114,20 @@ def test_motion_of_one_window_shows_nothing_as_nothing_is_left_to_judge_on(recor
     assert by_gravity([moving_of(recorded(13, _MATRIX, minutes=0.2))], []) is None
 
 
+def test_a_gap_of_days_leaves_the_motion_before_and_after_it(recorded):
+    whole = moving_of(recorded(13, _MATRIX, minutes=3.0))
+    late = np.arange(len(whole.at_s)) > len(whole.at_s) // 2
+    parted = replace(whole, at_s=whole.at_s + 2e5 * late)
+    assert parted.dt_s == pytest.approx(1 / _HZ)
+    np.testing.assert_allclose(by_gravity([parted], []).matrix, _MATRIX, atol=0.003)
+
+
+def test_motion_in_pieces_shorter_than_a_window_shows_nothing(recorded):
+    whole = moving_of(recorded(13, _MATRIX, minutes=2.0))
+    piece_s = 5.0 * (np.arange(len(whole.at_s)) // 20)
+    assert by_gravity([replace(whole, at_s=whole.at_s + piece_s)], []) is None
+
+
 def test_a_recording_that_differs_from_the_rest_widens_what_is_said_of_the_device():
     alike = [Shown(np.eye(9) * 1e8, np.full(9, 1e8 * x)) for x in (0.001, 0.001, 0.001)]
     apart = [*alike[:2], Shown(np.eye(9) * 1e8, np.full(9, 1e8 * 0.005))]

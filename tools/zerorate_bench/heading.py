@@ -41,7 +41,9 @@ def run(folders: list[Path], advance: Callable[[float], None] = lambda n: None) 
             others = [moving[n] for n in own if n != name]
             shown = by_gravity(others, []) if others else None
             found["others"][name] = _row(every[name], number, shown)
-            found["halves"][name] = _half(every[name], moving[name], number)
+            half = _half(every[name], moving[name], number)
+            half["others"] = _row(every[name], number, shown, 0.5)["after"]
+            found["halves"][name] = half
             advance(1)
     return found
 
@@ -129,8 +131,10 @@ def in_markdown(found: dict) -> str:
     parts.append(f"All trials as one device: {f'refused, {groups}' if groups else 'NOT refused'}.")
     for key, words in (("others", "other trials"), ("halves", "its first half")):
         heads = ["trial", "deployed", "before, degrees", f"after, fitted on {words}"]
+        heads += ["after, fitted on other trials"] if key == "halves" else []
         rows = [
-            [name, "yes" if r["found"] else "nothing", f"{r['before']:.2f}", f"{r['after']:.2f}"]
+            [name, "yes" if r["found"] else "nothing"]
+            + [f"{r[k]:.2f}" for k in ("before", "after", "others") if k in r]
             for name, r in found[key].items()
         ]
         parts.append(table(heads, rows))

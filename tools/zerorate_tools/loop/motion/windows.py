@@ -8,6 +8,7 @@ end at zero, so a slow row sees only the hand's position, which is bounded: ther
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from os import PathLike
 
 import numpy as np
@@ -69,10 +70,11 @@ class Moving:
     offset: np.ndarray
     rests: np.ndarray
 
-    @property
+    @cached_property
     def dt_s(self) -> float:
-        """Seconds between samples."""
-        return float(self.at_s[-1] - self.at_s[0]) / (len(self.at_s) - 1)
+        """Seconds between samples, gaps left out; a mean, as stamps are whole microseconds."""
+        apart_s = np.diff(self.at_s)
+        return float(apart_s[apart_s <= 1.5 * np.median(apart_s)].mean())
 
     @property
     def planar(self) -> bool:
