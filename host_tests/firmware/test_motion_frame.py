@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 from zerorate.motion import attitude, increments, tilt_frame
-from zerorate.motion.motion_settings import motion_state
+from zerorate.motion.motion_settings import motion_settings, motion_state
 from zerorate_tools.layout import MOTION, MOTION_SETTINGS
 
 from .motion_words import Q12, Q14, SETTINGS, put_rotation, put_words, rotation_at
@@ -136,6 +136,23 @@ def test_a_node_holds_the_turn_of_its_samples_and_their_mean_force(state, draw):
     assert (words >> 15) / 8192 + left == pytest.approx(angle, abs=1e-7)
     force = ((words & 0x7FFF) ^ 0x4000) - 0x4000
     assert force / Q12 == pytest.approx(total / 13, abs=0.01)
+
+
+def test_a_node_of_a_fast_hand_holds_its_turn_and_force_to_second_order(draw):
+    settings, dt_s = motion_settings(gyro_lsb_per_dps=32.8), 0.01
+    state = motion_state(settings)
+    axis, aside = np.linalg.qr(draw.normal(size=(3, 2)))[0].T
+    turn, up = Rotation.identity(), Rotation.from_rotvec(draw.normal(0, 1, 3)).apply([0, 0, 1])
+    for n in range(12):
+        # 350 dps, whose axis turns by half a radian in the node
+        rate = 350 * Rotation.from_rotvec(0.05 * n * aside).apply(axis)
+        frame = [*turn.inv().apply(up) * 16384, 0, *rate * 32.8]
+        increments.gather(state, settings, array("i", [round(v) for v in frame]), 10000)
+        turn = turn * Rotation.from_rotvec(np.radians(rate) * dt_s)
+    angle = np.array(state[MOTION.NODE_ANGLE_Q24 : MOTION.NODE_ANGLE_Q24 + 3]) / (1 << 24)
+    assert angle == pytest.approx(turn.as_rotvec(), abs=0.0006)
+    force = np.array(state[MOTION.NODE_FORCE_Q12 : MOTION.NODE_FORCE_Q12 + 3]) / 12 / Q12
+    assert force == pytest.approx(up, abs=0.02)
 
 
 def test_the_part_of_a_sample_that_reaches_over_a_node_takes_its_bias_along(state):
