@@ -1,16 +1,12 @@
 """The user's object: one sample in, the same sample out without its zero-rate output."""
 
-try:
-    from uarray import array  # so MicroPython does not look for it on its file system first
-except ImportError:
-    from array import array
-
 from .machine_code import unload
 from .native import rest
 from .sensor import Sensor
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from array import array
     from typing import Any
 
 # layout: names that a board's own compiler reads
@@ -33,11 +29,8 @@ _LEFT_Q4 = const(37)
 # layout: The corrector's settings
 _AXES = const(0)
 _AXIS_WORDS = const(15)
-_STEP_LSB = const(29)
 _GATE_Q4 = const(40)
 _TURN_ON_VARIANCE_Q8 = const(47)
-# layout: The effect model and its running state
-_CURVE_LSB = const(35)
 # layout: What a window was
 _STILL = const(1)
 # layout: Where a bias comes from
@@ -47,8 +40,6 @@ _OUT_OF_RANGE = const(7)
 # layout: Values that stand for none
 _NO_VALUE = const(-0x3FFFFFFF)
 # layout: end
-# Of twice the range of temperature: a model holds a curve half of it farther on either side.
-_ESTIMATORS_OF_A_CURVE = const(16)
 # A piece of heap held through a program's imports, or none as long is left on a small board for the
 # state, its checkpoint and an open file.
 _held = [bytearray(5600)]
@@ -77,6 +68,11 @@ class Corrector:
     _observe_motion: "Any" = None
     _observe_gravity: "Any" = None
     _with_others: "Any" = None
+    # set by making.py
+    settings: "array[int]"
+    state: "array[int]"
+    left_out: "list[str]"
+    alone = True
 
     def __init__(
         self,
@@ -91,60 +87,16 @@ class Corrector:
         gravity: "bool | None" = None,
         **limits: float,
     ) -> None:
-        from .settings import settings
+        from .making import make  # loaded here and let go, as it runs once
 
         self.sensor = sensor or Sensor()
-        if every is None:
-            every = document
-        self.settings, self._walk_q16, chosen = settings(
-            self.sensor, bins, short, long, document, every, ignore_outside, limits
+        make(
+            self, _held, bins, short, long, document, every, ignore_outside, motion, gravity, limits
         )
-        unload("zerorate", "settings")
-        c = self.settings
-        self._step_lsb = c[_STEP_LSB]
-        # before other sources are loaded, while there is heap in one piece; a list of as many zeros
-        # would want as much again
-        _held.clear()
-        self.state = array("i", range(c[_AXES] + 3 * c[_AXIS_WORDS]))
-        self.alone = True
-        self.left_out = []  # type: ignore[var-annotated]
-        if every or document:  # who asks for other rules gets those alone
-            motion, gravity = bool(motion), bool(gravity)
-        self._begin("motion", motion, document, chosen["motion_start_dps"])
-        self._begin("gravity", gravity, document, 0)
-        unload("zerorate", "ratio")
+        unload("zerorate", "making")
         if rest.run and self.alone and type(self) is Corrector:
-            self.update = _bound(self.state, c)  # type: ignore[method-assign]
+            self.update = _bound(self.state, self.settings)  # type: ignore[method-assign]
         self.reset()
-
-    def _begin(self, part, wanted, document, start_dps):
-        # loaded here, so that who does without it has no memory taken by it
-        if wanted or wanted is None:
-            package, name = "zerorate." + part, part + "_settings"
-            try:
-                __import__(package + "." + name, None, None, (part,)).join(
-                    self, document, start_dps
-                )
-                unload(package, name)
-                self._join_others()
-            except ImportError:
-                if wanted:
-                    raise
-                text = "Left out: %s is not on this board; zerorate flash --with %s sends it."
-                self.left_out.append(text % (part, part))
-            except ValueError as error:
-                if wanted:
-                    raise
-                self.left_out.append("Left out: %s." % error)
-
-    def _join_others(self):
-        if self.alone:
-            from .others import Others  # who rests alone has no memory taken by them
-
-            self._with_others = Others(self).update
-            self.alone = False
-            if "update" in self.__dict__:
-                del self.update
 
     def reset(self) -> None:
         """Forget everything that was learned."""
@@ -198,15 +150,9 @@ class Corrector:
 
     def use_model(self, effects: "Any") -> None:
         """Subtract what this model says (a loaded model.EffectModel), and learn what is left."""
-        from .native.effects import sense
+        from .others import use_model  # who has none has no memory taken by it
 
-        self._sense = sense
-        self.effects = effects
-        # A curve that the model holds whole leaves little but noise at a temperature: estimators
-        # that share its range have more of the readings each.
-        step = effects.e[_CURVE_LSB] // _ESTIMATORS_OF_A_CURVE
-        self.settings[_STEP_LSB] = max(self._step_lsb, step)
-        self._join_others()
+        use_model(self, effects)
 
     def load(self, store: "Any", same: bool = False) -> int:
         """Begin a power-on with what `store` holds; returns its reason, 0 if it was loaded.

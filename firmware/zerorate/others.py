@@ -1,6 +1,6 @@
 """The sources that need no rest, and the effects: a sample's way through them, and their start."""
 
-from .native import rest
+from .native import rest, rest_pieces
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -9,17 +9,23 @@ if TYPE_CHECKING:
 
 # layout: names that a board's own compiler reads
 const = int
+# layout: The corrector's settings
+_STEP_LSB = const(29)
 # layout: The state of the source in motion
 _MOTION_BIAS_Q8 = const(71)
 _LATE_US = const(257)
 # layout: The state of the source against gravity
 _GRAVITY_BIAS_Q8 = const(28)
 _GRAVITY_LATE_US = const(58)
+# layout: The effect model and its running state
+_CURVE_LSB = const(35)
 # layout: Where a bias comes from
 _IN_MOTION = const(4)
 _GRAVITY = const(5)
 # layout: end
 _MOST_US = const(0x1FFFFFFF)  # two of them fit 31 bits
+# Of twice the range of temperature: a model holds a curve half of it farther on either side.
+_ESTIMATORS_OF_A_CURVE = const(16)
 
 
 class Others:
@@ -27,7 +33,7 @@ class Others:
 
     def __init__(self, corrector: "Any") -> None:
         self._of = corrector
-        self._examine = rest.check
+        self._examine = rest_pieces.check
         c = corrector.settings
         # an odd address asks the guard alone
         self._guard = rest.address(c) + 1 if rest.run else c
@@ -37,12 +43,12 @@ class Others:
         """As Corrector.update."""
         kind = self._examine(self._of.state, self._guard, sample, dt_us)
         self._sense_effects(sample, dt_us, kind)
-        rest.admit(self._of.state, self._of.settings, sample, kind)
+        rest_pieces.admit(self._of.state, self._of.settings, sample, kind)
         if kind == 0:
             self._ask_others(sample, dt_us)
         else:
             self._pass_over(min(max(dt_us, 0), _MOST_US))
-        return rest.finish(self._of.state, self._of.settings, sample, kind)
+        return rest_pieces.finish(self._of.state, self._of.settings, sample, kind)
 
     def _sense_effects(self, sample, dt_us, kind):
         if self._of.effects is not None:
@@ -72,7 +78,29 @@ class Others:
             owner.gravity[_GRAVITY_LATE_US] = min(owner.gravity[_GRAVITY_LATE_US] + dt_us, _MOST_US)
 
     def _consider(self, found, bias_at, source):
-        rest.consider(self._of.state, self._of.settings, found, bias_at, source)
+        rest_pieces.consider(self._of.state, self._of.settings, found, bias_at, source)
+
+
+def join(corrector):
+    """Let its samples go by what it has besides learning at rest."""
+    if corrector.alone:
+        corrector._with_others = Others(corrector).update
+        corrector.alone = False
+        if "update" in corrector.__dict__:
+            del corrector.update
+
+
+def use_model(corrector, effects):
+    """As Corrector.use_model."""
+    from .native.effects import sense
+
+    corrector._sense = sense
+    corrector.effects = effects
+    # A curve that the model holds whole leaves little but noise at a temperature: estimators
+    # that share its range have more of the readings each.
+    step = effects.e[_CURVE_LSB] // _ESTIMATORS_OF_A_CURVE
+    corrector.settings[_STEP_LSB] = max(corrector._step_lsb, step)
+    join(corrector)
 
 
 def forget(corrector):

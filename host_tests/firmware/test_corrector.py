@@ -10,7 +10,7 @@ from zerorate.rest import bias
 from zerorate.settings import DEFAULTS
 from zerorate.storage.codes import EMPTY, LOADED, OTHER_BINDING, OUT_OF_RANGE, UNREADABLE
 from zerorate.storage.soundness import is_sound
-from zerorate.storage.store import Store
+from zerorate.storage.store import _PIECE, Store
 from zerorate_fakes.memory import FakeMemory
 from zerorate_tools.layout import AXIS, ESTIMATOR, MOTION, STATE, axis_at
 
@@ -110,7 +110,7 @@ def test_a_storage_that_reads_otherwise_while_a_state_is_filled_leaves_a_clean_s
     store = store_for(learned)
     learned.save(store)
     reads, readblock = [], store.storage.readblock
-    pieces = 2 * -(-store.slot_bytes // 256)  # of both slots, to find the newest
+    pieces = 2 * -(-store.slot_bytes // _PIECE)  # of both slots, to find the newest
 
     def read(offset, buf):
         readblock(offset, buf)

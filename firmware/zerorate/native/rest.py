@@ -6,17 +6,6 @@ run = machine_code("rest")
 if run:
     step = run
 
-    def admit(s, c, x, kind):
-        return run(s, c, x, -1073741824 + kind)
-
-    def finish(s, c, x, kind):
-        return run(s, c, x, -1073676288 + kind)
-
-    def consider(s, c, m, w, source):
-        return run(s, c, m, -1073610752 + (source << 8) + w)
-
-    check = run
-
     def reset(s, c, a):
         return run(s, c, 0, -1073545216 + a)
 
@@ -27,7 +16,6 @@ if run:
         return run(words, 0, 0, -1073414144)
 
 else:
-    from ..rest.step import admit, consider, finish, step
-    from ..rest.guard import check
+    from ..rest.step import step
     from ..rest.estimators import reset
     from ..rest.copying import copy

@@ -1,22 +1,30 @@
 """The effect model of a LearnedStore, in two slots behind those of the state."""
 
+from struct import unpack_from
+
+from .store import Store
+
 # layout: names that a board's own compiler reads
 const = int
 # layout: What the reader of model.bin says
 _LOADED = const(0)
 # layout: end
+_AT_MODEL_SIZE = const(4)
 
 
-def load(store, at_size):
-    """The bytes of the model that store holds, whose size is the word of 16 bits at at_size."""
-    padded = bytearray(store.size)
+def load(storage, binding, size, base, pitch):
+    """The bytes of the model that a Store of these holds, which say their size."""
+    store = Store(storage, binding, size, base=base, pitch=pitch)
+    padded = bytearray(size)
     if store.load(padded) != _LOADED:
         return b""
-    return bytes(padded[: padded[at_size] | padded[at_size + 1] << 8])
+    (length,) = unpack_from("<H", padded, _AT_MODEL_SIZE)
+    return bytes(padded[:length])
 
 
-def save(store, data):
-    """Write data to store; ValueError where it is too large."""
-    if len(data) > store.size:
-        raise ValueError(f"a model of {len(data)} bytes does not fit {store.size}")
-    return store.save(bytes(data) + bytes(store.size - len(data)))
+def save(data, storage, binding, size, base, pitch):
+    """Write data to a Store of these; ValueError where it is too large."""
+    if len(data) > size:
+        raise ValueError(f"a model of {len(data)} bytes does not fit {size}")
+    store = Store(storage, binding, size, base=base, pitch=pitch)
+    return store.save(bytes(data) + bytes(size - len(data)))

@@ -23,7 +23,6 @@ _OTHER_BINDING = const(3)
 # layout: end
 MODEL_BYTES = const(2048)
 _STATE_VERSION = const(2)
-_AT_MODEL_SIZE = const(4)
 
 
 class LearnedStore:
@@ -51,7 +50,7 @@ class LearnedStore:
             storage, self._bound, size, _STATE_VERSION, base, pitch, corrector.settings
         )
         base += 2 * (pitch or self.state.slot_bytes)
-        self._model_place = (storage, binding, base, pitch)
+        self._model_place = (storage, binding, MODEL_BYTES, base, pitch)
         self.end = base + 2 * (pitch or slot_bytes(MODEL_BYTES))
 
     def load(self, same: bool = False) -> int:
@@ -105,7 +104,7 @@ class LearnedStore:
         """
         from .kept_model import load  # who has no model has no memory taken by it
 
-        return load(self._model_store(), _AT_MODEL_SIZE)
+        return load(*self._model_place)
 
     def save_model(self, data: bytes) -> bool:
         """Write an effect model, the bytes of model.bin; False when the storage failed.
@@ -114,11 +113,7 @@ class LearnedStore:
         """
         from .kept_model import save
 
-        return save(self._model_store(), data)
-
-    def _model_store(self):
-        storage, binding, base, pitch = self._model_place
-        return Store(storage, binding, MODEL_BYTES, base=base, pitch=pitch)
+        return save(data, *self._model_place)
 
 
 def _fingerprint(corrector):

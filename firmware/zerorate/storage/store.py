@@ -35,8 +35,8 @@ _AT_SEQUENCE = const(8)
 _AT_BINDING = const(12)
 _HEADER = const(20)
 _CRC = const(4)
-# a record is read to be judged in pieces of so many bytes
-_PIECE = const(256)
+# a record is read to be judged in pieces of so many bytes: a gap of the heap beside an open file
+_PIECE = const(64)
 _WHOLE = b"\x1c\xdf\x44\x21"  # what CRC-32 makes of anything that ends in its own CRC-32
 
 

@@ -88,7 +88,7 @@ numbers in every mode, to the last bit. `zerorate bench boards` compares it if i
 ## The heap of the second program
 
 The second program of [pico.md](pico.md) runs in {least_heap:,} bytes of heap; the bench's limit is
-49,152 bytes. A file is open while it saves, and a record is read at power-on in pieces of 256
+49,152 bytes. A file is open while it saves, and a record is read at power-on in pieces of 64
 bytes: both take heap for a while. There are gaps between what stays. MicroPython keeps a name
 for good. So `zerorate flash` sends private names as `_a`, `_b`, the same few in every file, and
 another module's constants as numbers. The machine code is compiled for size, except for what

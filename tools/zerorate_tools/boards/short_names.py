@@ -15,8 +15,8 @@ from .parts import PARTS, part_files
 
 # Modules that no program imports: most are let go as soon as an object is made.
 _INNER = frozenset(
-    "settings trying identity parts bus_recovery machine_code crc32 plain_crc32 soundness explain "
-    "explain_sources differing ratio data_registers bias block copying estimators fit "
+    "making settings trying identity parts bus_recovery machine_code crc32 plain_crc32 soundness "
+    "explain explain_sources differing ratio data_registers bias block copying estimators fit "
     "fixed histogram recent stillness".split()
 )
 # Modules that are read once and let go: what they call the words of a user is to go with them.
@@ -29,6 +29,8 @@ _PARAMETERS = (
     *("key", "value", "index", "items", "args", "sep", "id", "main", "keys", "values", "lower"),
     *("upper", "little", "bytecode", "strip", "split", "join", "find", "replace", "remove"),
 )
+# What every MicroPython has: nothing stands in for it there.
+_ON_EVERY_BOARD = frozenset(("time", "uarray", "utime"))
 # The fields in which a node holds a name.
 _FIELDS: dict[type, tuple[str, ...]] = {
     ast.Name: ("id",),
@@ -44,6 +46,7 @@ _FIELDS: dict[type, tuple[str, ...]] = {
 def shortened(path: Path, text: str) -> str:
     """The text of a module of the packages with its private names short, for a compiler to read."""
     tree = ast.parse(text)
+    tree.body = [*chain.from_iterable(map(_without_stand_in, tree.body))]
     _put_in_constants(tree, path)
     own = {name for node in ast.walk(tree) for name in _identifiers(node)}
     for node in ast.walk(tree):
@@ -77,6 +80,15 @@ def short_names() -> dict[str, str]:
 @cache
 def _trees() -> dict[Path, ast.Module]:
     return {path: ast.parse(path.read_text("utf-8")) for path in part_files(PARTS).values()}
+
+
+def _without_stand_in(node: ast.stmt) -> list[ast.stmt]:
+    """An import that is tried, where a board has what is imported, or else the node itself."""
+    if isinstance(node, ast.Try):
+        (tried,) = node.body
+        if ast.unparse(tried).split()[1] in _ON_EVERY_BOARD:
+            return [tried]
+    return [node]
 
 
 def _put_in_constants(tree: ast.Module, path: Path) -> None:

@@ -7,7 +7,7 @@ guard alone sees the sample.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 _STAGE = [-0x40000000 + (number << 16) for number in range(7)]
 #: `what` of a burst, to which the number of its samples is added.
@@ -19,7 +19,7 @@ class Part:
     """kernels: file and function of what `body`, the entry's C, calls.
 
     calls: module of the kernels -> what the firmware imports of it from native/ -> how `run`, the
-    machine code, does the same.
+    machine code, does the same; pieces: those that few import, from a file PART_pieces.py.
     divides: its longest call is made of divisions, worth 370 bytes of a fast one where there is no
     instruction for it.
     """
@@ -27,6 +27,7 @@ class Part:
     kernels: Sequence[tuple[str, str]]
     body: str
     calls: Mapping[str, Mapping[str, str]]
+    pieces: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     divides: bool = False
 
 
@@ -56,18 +57,20 @@ PARTS = {
     return 0;
 """,
         {
-            "rest.step": {
-                "step": "run",
-                "admit(s, c, x, kind)": f"run(s, c, x, {_STAGE[0]} + kind)",
-                "finish(s, c, x, kind)": f"run(s, c, x, {_STAGE[1]} + kind)",
-                "consider(s, c, m, w, source)": f"run(s, c, m, {_STAGE[2]} + (source << 8) + w)",
-            },
-            "rest.guard": {"check": "run"},
+            "rest.step": {"step": "run"},
             "rest.estimators": {"reset(s, c, a)": f"run(s, c, 0, {_STAGE[3]} + a)"},
             "rest.copying": {
                 "copy(source, target, first, end)": f"run(source, target, end, {_STAGE[4]} + first)"
             },
             "": {"address(words)": f"run(words, 0, 0, {_STAGE[5]})"},
+        },
+        {
+            "rest.step": {
+                "admit(s, c, x, kind)": f"run(s, c, x, {_STAGE[0]} + kind)",
+                "finish(s, c, x, kind)": f"run(s, c, x, {_STAGE[1]} + kind)",
+                "consider(s, c, m, w, source)": f"run(s, c, m, {_STAGE[2]} + (source << 8) + w)",
+            },
+            "rest.guard": {"check": "run"},
         },
         divides=True,
     ),
