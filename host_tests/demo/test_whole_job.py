@@ -5,6 +5,7 @@ What it prints is what docs/commands.md shows: host_tests/package runs it and co
 
 import re
 import shutil
+import socket
 import sys
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from zerorate_tools.demo import real as by_real
 from zerorate_tools.demo.broad import trials
 from zerorate_tools.demo.real import WAYS, real
 from zerorate_tools.errors import CannotFetch
+from zerorate_tools.runtimes import node
 
 from host_tests.docs.outputs import demo_shown
 
@@ -114,11 +116,53 @@ def test_a_trial_in_the_cache_needs_no_network(filled):
     assert len(trial.rate_dps) > 50_000
 
 
-def test_without_a_network_one_line_says_so_and_what_to_do(cache, monkeypatch, capsys):
+@pytest.fixture
+def built_in(monkeypatch):
+    """The runtimes on which the built-in device was shown."""
+    shown_on = []
+    job = lambda arguments: shown_on.append(arguments.runtime) or 0  # noqa: E731
+    monkeypatch.setattr("zerorate_tools.commands.demo.run_job", job)
+    return shown_on
+
+
+@pytest.fixture
+def silent_server():
+    """The address of a server that takes connections and answers none."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        yield f"http://127.0.0.1:{server.getsockname()[1]}/"
+
+
+def test_without_a_network_it_is_said_what_to_do_and_the_built_in_device_is_shown(
+    cache, built_in, monkeypatch, capsys
+):
     monkeypatch.setattr(broad_trial, "FOLDER_URL", NOBODY)
     assert main(["demo", "--real", "--runtime", "cpython"]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
+    line, instead = capsys.readouterr().err.splitlines()
     assert "is there a network?" in line and str(cache / "broad") in line
+    assert "built-in" in instead and built_in == ["cpython"]
+
+
+def test_a_server_that_never_answers_is_waited_for_aloud_and_not_for_long(
+    cache, built_in, silent_server, monkeypatch, capsys
+):
+    monkeypatch.setattr(broad_trial, "FOLDER_URL", silent_server)
+    monkeypatch.setattr(broad_trial, "_SILENT_S", 0.5)
+    monkeypatch.setattr("zerorate_tools.progress.QUIET_S", 0.1)
+    assert main(["demo", "--real", "--runtime", "cpython"]) == 2
+    said = capsys.readouterr().err
+    assert "s so far" in said and "is there a network?" in said and built_in == ["cpython"]
+    assert list((cache / "broad").iterdir()) == []
+
+
+def test_this_python_stands_in_for_a_micropython_that_cannot_be_fetched(
+    cache, built_in, silent_server, monkeypatch, capsys
+):
+    monkeypatch.setattr(node, "_PATIENCE", ["--fetch-retries=0", "--fetch-timeout=500"])
+    monkeypatch.setenv("npm_config_registry", silent_server)
+    monkeypatch.setattr("zerorate_tools.progress.QUIET_S", 0.1)
+    assert main(["demo"]) == 0
+    said = capsys.readouterr().err
+    assert "s so far" in said and "is there a network?" in said and built_in == ["cpython"]
 
 
 def test_a_damaged_trial_is_fetched_again_and_never_used(filled):

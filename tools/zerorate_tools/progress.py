@@ -1,6 +1,7 @@
 """How far long work has come, on a terminal's standard error; silent in a pipe."""
 
 import sys
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
@@ -20,3 +21,31 @@ def progress(what: str, total: float | None = None) -> Iterator[Callable[[float]
     with Progress(console=Console(stderr=True), transient=True) as bars:
         task = bars.add_task(what, total=total)
         yield lambda n: bars.advance(task, n)
+
+
+#: For so long nothing is said while a network is waited for.
+QUIET_S = 5.0
+
+
+@contextmanager
+def waiting(what: str) -> Iterator[None]:
+    """As progress, of what nobody knows how long it takes; a pipe gets a line now and then."""
+    with progress(what):
+        if sys.stderr.isatty():
+            yield
+            return
+        done = threading.Event()
+        speaker = threading.Thread(target=_say_now_and_then, args=(what, done), daemon=True)
+        speaker.start()
+        try:
+            yield
+        finally:
+            done.set()
+            speaker.join()
+
+
+def _say_now_and_then(what: str, done: threading.Event) -> None:
+    passed_s = 0.0
+    while not done.wait(QUIET_S):
+        passed_s += QUIET_S
+        print(f"{what}: {passed_s:.0f} s so far", file=sys.stderr, flush=True)

@@ -6,6 +6,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+#: The interpreter that is fetched where nobody names one.
+BY_DEFAULT = "wasm"
+
 
 def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     parser = subparsers.add_parser(
@@ -24,21 +27,42 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         "--out", type=Path, default=Path("zerorate-demo"), metavar="DIR", help="folder to write"
     )
     parser.add_argument(
-        "--runtime", default="wasm", metavar="NAME", help="wasm (default), x86, armhf, or a path"
+        "--runtime",
+        default=BY_DEFAULT,
+        metavar="NAME",
+        help="wasm (default), x86, armhf, cpython, or a path",
     )
     parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Do the whole job, or run over the public recording."""
-    get_ready(arguments.runtime)
-    return run_real(arguments) if arguments.real else run_job(arguments)
+    """Do the whole job, or run over the public recording; exit code 2 where that was not to be had.
+
+    What needs no network takes the place of what cannot be fetched, and that is said.
+    """
+    from ..errors import CannotFetch, MissingRuntime
+
+    try:
+        get_ready(arguments.runtime)
+    except MissingRuntime as missing:
+        if arguments.runtime != BY_DEFAULT:
+            raise
+        print(f"zerorate: {missing}\nThis Python runs the firmware instead.", file=sys.stderr)
+        arguments.runtime = "cpython"
+    if not arguments.real:
+        return run_job(arguments)
+    try:
+        return run_real(arguments)
+    except CannotFetch as missing:
+        print(f"zerorate: {missing}\nThe built-in device is shown instead.", file=sys.stderr)
+        run_job(arguments)
+        return 2
 
 
 def get_ready(runtime: str) -> None:
     """Fetch the interpreter where it is not there yet. Raises MissingRuntime."""
     from ..errors import MissingRuntime
-    from ..progress import progress
+    from ..progress import waiting
     from ..runtimes import NAMES, fetch, find
 
     try:
@@ -47,7 +71,7 @@ def get_ready(runtime: str) -> None:
         if runtime not in NAMES:
             raise
         print(f"fetching MicroPython ({runtime}), once ...", file=sys.stderr, flush=True)
-        with progress(f"fetching MicroPython ({runtime})"):
+        with waiting(f"fetching MicroPython ({runtime})"):
             fetch(runtime)
 
 
@@ -88,9 +112,9 @@ def run_real(arguments: argparse.Namespace) -> int:
     from ..demo import story
     from ..demo.broad_trial import broad_trial
     from ..demo.real import real
-    from ..progress import progress
+    from ..progress import progress, waiting
 
-    with progress("fetching a trial of BROAD"):
+    with waiting("fetching a trial of BROAD"):
         trial = broad_trial()
     with progress("running the firmware over it", 4) as advance:
         shown = real(trial, arguments.runtime, advance)

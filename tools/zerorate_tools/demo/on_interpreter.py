@@ -3,18 +3,19 @@
 import sys
 from array import array
 
-from micropython import const
 from zerorate import Corrector, Sensor
 from zerorate.effects.model_file import LOADED, REASONS
 from zerorate.model import EffectModel
 from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050
 from zerorate_i2c.mpu6050 import MPU6050, RESTARTED, SUSPECT
 
-_ROWS = 256
+# layout: names that a board's own compiler reads
+const = int
 # layout: The corrector's state
 _OUT_Q8 = const(61)
 _EFFECT_Q8 = const(67)
 # layout: end
+_ROWS = 256
 
 
 class Recording:

@@ -44,12 +44,12 @@ def chapter_one(shown: Demo) -> str:
 
 def played(shown: Demo) -> list[str]:
     """What was played on what, the firmware's own words, and whether its state is the host's."""
-    minutes = seconds(shown.recording)[-1] / 60
+    minutes, interpreter = seconds(shown.recording)[-1] / 60, _interpreter(shown)
     equal = "equal to the last bit" if shown.same_state else "DIFFERENT, which is a defect"
     name, count = shown.recording.name, len(shown.recording)
     return [
         f"   {name}: {count} samples, {minutes:.0f} minutes, through",
-        "   an emulated chip on an emulated I2C bus into driver and firmware on a real MicroPython",
+        f"   an emulated chip on an emulated I2C bus into driver and firmware on {interpreter}",
         f"   ({shown.runtime}). It says:",
         *(f"     {line}" for line in shown.said.splitlines()),
         f"   Its final state and that of the same firmware on this computer: {equal}.",
@@ -107,10 +107,11 @@ def chapter_three(before: Demo, after: Demo, model: Path) -> str:
     """The same power-on on MicroPython, without and with the model."""
     ratio = before.score.firmware_mdps / after.score.firmware_mdps
     same = before.same_state and after.same_state
+    interpreter = _interpreter(after).removeprefix("a real ")
     return "\n".join(
         [
             "",
-            f"3. Back on the chip: MicroPython loads {model.name}, {model.stat().st_size} bytes",
+            f"3. Back on the chip: {interpreter} loads {model.name}, {model.stat().st_size} bytes",
             f"   {before.recording.name} once more, after the ones before it, learning as it goes:",
             "                    gx        gy        gz",
             f"     without {_axes(before)} mdps rms",
@@ -118,6 +119,10 @@ def chapter_three(before: Demo, after: Demo, model: Path) -> str:
             "   Final states equal to those of this computer: " + ("yes." if same else "NO."),
         ]
     )
+
+
+def _interpreter(shown: Demo) -> str:
+    return "this Python" if shown.runtime == "cpython" else "a real MicroPython"
 
 
 def _axes(shown: Demo) -> str:

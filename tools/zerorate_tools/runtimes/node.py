@@ -67,8 +67,10 @@ def _in_wheel(*candidates: str) -> Path | None:
 
 
 _INSTALL = ["ci", "--ignore-scripts", "--no-audit", "--no-fund", "--no-update-notifier"]
-# a machine without a network hears of it in seconds: npm tries for more than a minute by itself
-_INSTALL += ["--fetch-retries=1", "--fetch-retry-mintimeout=1000", "--fetch-timeout=60000"]
+# A machine without a network hears of it in seconds: npm tries for more than a minute by itself. A
+# file of 3 MB at most comes in half a minute, or the network is of no use for it.
+_PATIENCE = ["--fetch-retries=1", "--fetch-retry-mintimeout=1000", "--fetch-timeout=30000"]
+_LIMIT_S = 120
 
 
 def locked_version(source: Path, package: str) -> str:
@@ -86,13 +88,19 @@ def install(source: Path, folder: Path, package: str) -> None:
 def _npm_install(source: Path, folder: Path, package: str) -> None:
     for name in ("package.json", "package-lock.json"):
         shutil.copyfile(source / name, folder / name)
-    done = subprocess.run(
-        [*npm_command(), *_INSTALL],
-        cwd=folder,
-        env=npm_environment(),
-        capture_output=True,
-        text=True,
-    )
+    try:
+        done = subprocess.run(
+            [*npm_command(), *_INSTALL, *_PATIENCE],
+            cwd=folder,
+            env=npm_environment(),
+            capture_output=True,
+            text=True,
+            timeout=_LIMIT_S,
+        )
+    except subprocess.TimeoutExpired as error:
+        raise MissingRuntime(
+            f"npm did not get {package} in {_LIMIT_S} s, is there a network?"
+        ) from error
     if done.returncode:
         why = _complaint(done.stderr)
         raise MissingRuntime(f"npm could not install {package}, is there a network? {why}")
