@@ -1,9 +1,9 @@
 """What the samples are."""
 
 
-def _within(must_be, value, least, most):
+def _within(name, value, least, most, absent=""):
     if not least <= value <= most:
-        raise ValueError("%s%s..%s, not %s" % (must_be, least, most, value))
+        raise ValueError("%s must be %s%s..%s, not %s" % (name, absent, least, most, value))
     return value
 
 
@@ -24,12 +24,12 @@ class Sensor:
         temp_lsb_per_degc: float = 340.0,
         temp_offset_degc: float = 36.53,
     ) -> None:
-        self.odr_hz = _within("odr_hz must be ", odr_hz, 0.01, 8000)
-        self.gyro_lsb_per_dps = _within("gyro_lsb_per_dps must be ", gyro_lsb_per_dps, 1, 8000)
+        self.odr_hz = _within("odr_hz", odr_hz, 0.01, 8000)
+        self.gyro_lsb_per_dps = _within("gyro_lsb_per_dps", gyro_lsb_per_dps, 1, 8000)
         self.accel_lsb_per_g = accel_lsb_per_g and _within(
-            "accel_lsb_per_g must be 0 or ", accel_lsb_per_g, 1, 32768
+            "accel_lsb_per_g", accel_lsb_per_g, 1, 32768, "0 or "
         )
         self.temp_lsb_per_degc = temp_lsb_per_degc and _within(
-            "temp_lsb_per_degc must be 0 or ", temp_lsb_per_degc, 1, 2000
+            "temp_lsb_per_degc", temp_lsb_per_degc, 1, 2000, "0 or "
         )
         self.temp_offset_degc = temp_offset_degc

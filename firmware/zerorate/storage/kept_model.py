@@ -12,6 +12,14 @@ _LOADED = const(0)
 _AT_MODEL_SIZE = const(4)
 
 
+def bound(binding, crc):
+    """The binding of a state that was learned beside the model of this CRC."""
+    binding = bytearray(binding)
+    for i in range(len(crc)):
+        binding[4 + i] ^= crc[i]
+    return bytes(binding)
+
+
 def load(storage, binding, size, base, pitch):
     """The bytes of the model that a Store of these holds, which say their size."""
     store = Store(storage, binding, size, base=base, pitch=pitch)

@@ -90,19 +90,17 @@ class LearnedStore:
         return self.corrector.save(self.state)
 
     def _bind(self):
-        bound = bytearray(self._bound)
-        effects = self.corrector.effects
-        if effects is not None:
-            for i in range(len(effects.crc)):
-                bound[4 + i] ^= effects.crc[i]
-        self.state.binding = bytes(bound)
+        if self.corrector.effects is not None:
+            from .kept_model import bound  # who has no model has no memory taken by it
+
+            self.state.binding = bound(self._bound, self.corrector.effects.crc)
 
     def load_model(self) -> bytes:
         """The bytes of the effect model, for EffectModel.load, or b"" (see model.load's reason).
 
         Raises ImportError on a board without the part `effects`.
         """
-        from .kept_model import load  # who has no model has no memory taken by it
+        from .kept_model import load
 
         return load(*self._model_place)
 
