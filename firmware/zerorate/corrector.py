@@ -72,6 +72,8 @@ class Corrector:
     settings: "array[int]"
     state: "array[int]"
     left_out: "list[str]"
+    _walk_q16: int
+    _step_lsb: int
     alone = True
 
     def __init__(

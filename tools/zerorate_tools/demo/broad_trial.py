@@ -62,10 +62,8 @@ def _downloaded(url: str, output_file: str, pooch: object) -> None:
     import requests
 
     until = time.monotonic() + _LIMIT_S
-    with (
-        requests.get(url, timeout=_SILENT_S, stream=True) as answer,
-        open(output_file, "wb") as out,
-    ):
+    answer = requests.get(url, timeout=_SILENT_S, stream=True)  # type: ignore[no-untyped-call]
+    with answer, open(output_file, "wb") as out:
         answer.raise_for_status()
         for chunk in answer.iter_content(1 << 16):
             out.write(chunk)
