@@ -1,10 +1,13 @@
 """What of a recording counts as rest."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from zerorate_bench.loop.rests import NOISES_DPS, RATES_HZ, share_used, shares_with_turn
+from zerorate_tools.closing import close
+from zerorate_tools.closing_in_motion import tell_heading
 from zerorate_tools.loop.analyse import analyse
 from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.motion.in_motion import in_motion, slots_of, without_scales
@@ -12,6 +15,7 @@ from zerorate_tools.loop.read.blocks import session_of
 from zerorate_tools.loop.read.reference import Reference
 from zerorate_tools.loop.read.still import still_ticks
 from zerorate_tools.loop.read.ticks import read_ticks
+from zerorate_tools.loop.report.in_words import in_words
 from zerorate_tools.loop.report.unexplained import not_excluded
 from zerorate_tools.loop.search import steps as events
 from zerorate_tools.recordings import Recording, Scales, write_recording
@@ -137,12 +141,12 @@ TURNED = [
 ]
 
 
-def sessions(folder, effect, motion, attitude):
-    """Four sessions of ten minutes at 25 Hz; the accelerometer is off by 30 mg."""
+def sessions(folder, effect, motion, attitude, count=4, minutes=10):
+    """Sessions at 25 Hz; the accelerometer is off by 30 mg."""
     description = {
-        "sessions": 4,
+        "sessions": count,
         "sensor": {"odr_hz": 25.0, "accel_bias_g": [0.03, -0.02, 0.04]},
-        "every_session": {"minutes": 10, "motion": motion},
+        "every_session": {"minutes": minutes, "motion": motion},
         "effect": effect,
     }
     out = []
@@ -159,6 +163,30 @@ def sessions(folder, effect, motion, attitude):
 def shown(folder, effect, attitude):
     made = sessions(folder, effect, HANDLED if attitude else TURNED, attitude)
     return made, in_motion(made[:-1], made[-1:], single=False)
+
+
+def test_where_rests_suffice_and_an_attitude_is_given_the_heading_held_out_is_told(tmp_path):
+    sessions(tmp_path, [SCALE], HANDLED, True, count=2)
+    result = close([tmp_path / f"{i}.parquet" for i in range(2)], tmp_path / "closed")
+    [effect] = [e for e in result["effects"] if "in_motion" in e]
+    motion = effect["in_motion"]
+    assert motion["heading_before"] > 0.5
+    assert motion["heading_after"] < 0.4 * motion["heading_before"]
+    words = f"{motion['heading_after']:.2f} degrees a minute of heading"
+    assert words in in_words(result)
+    assert words in (tmp_path / "closed" / "report.html").read_text()
+
+
+def test_of_a_log_alone_the_second_half_tells_the_heading_beside_turns_of_the_first(tmp_path):
+    alone = sessions(tmp_path, [SCALE], HANDLED, True, count=1, minutes=20)
+    analysis = SimpleNamespace(
+        single=True, sessions=alone, holdout=alone, motion=in_motion(alone, [], single=True)
+    )
+    result = {"effects": [{"in_motion": {}, "said": "turns"}]}
+    tell_heading(result, analysis, [tmp_path / "0.parquet"])
+    motion = result["effects"][0]["in_motion"]
+    assert 0.5 < motion["heading_before"]
+    assert motion["heading_after"] < 0.4 * motion["heading_before"]
 
 
 @pytest.mark.parametrize("attitude", [True, False], ids=["attitude", "gravity"])

@@ -6,7 +6,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from .closing_in_motion import shown_in_motion, write_in_motion
+from .closing_in_motion import shown_in_motion, tell_heading, write_in_motion
 from .errors import ZerorateError
 from .loop.analyse import analyse, sessions_of
 from .loop.read.gate import CannotClose, TooLittleRest
@@ -78,6 +78,7 @@ def close(
         analysis, model = measure_and_prune(analysis, logs, corrected, online, advance)
         write_model(model, folder)
         result = json.loads(json.dumps(report(analysis), default=as_json))
+        tell_heading(result, analysis, [Path(log) for log in logs])
         _write_json(folder, result)
         write_report(analysis, result, logs, folder)
     return result

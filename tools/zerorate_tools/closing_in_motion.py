@@ -10,10 +10,12 @@ import numpy as np
 from .loop.motion.by_gravity import by_gravity
 from .loop.motion.heading import has_attitude, heading_lost, heading_lost_by
 from .loop.motion.in_motion import InMotion, slots_of
-from .loop.motion.rate_scale import RateScale
-from .loop.motion.windows import moving_of
+from .loop.motion.rate_scale import RateScale, fit_rate_scale
+from .loop.motion.windows import Moving, moving_of
+from .loop.read.beside_reference import RUN_S
 from .loop.read.ticks import Ticks
 from .loop.report.motion_effects import turning
+from .loop.verify.analysis import Analysis
 from .loop.verify.firmware import Firmware
 from .loop.verify.measure import CorrectedWriter
 from .model import Model, build_model, write_model
@@ -69,12 +71,53 @@ def write_in_motion(
 
 def _headings(shown: RateScale, logs: list[Path], held: set[str]) -> dict[str, Any]:
     """Of what was held out, where it has an attitude; of a log alone its second half."""
-    seen = [log for log in logs if log.name in held and has_attitude(log)]
-    every = {log: m for log in seen if (m := moving_of(log)) is not None}
-    lost = heading_lost(every) if len(logs) == 1 else heading_lost_by(every, shown)
-    if lost is None:
-        return {}
-    return dict(zip(("heading_before", "heading_after"), np.round(lost, 3).tolist()))
+    every = _seen([log for log in logs if log.name in held])
+    return _told(heading_lost(every) if len(logs) == 1 else heading_lost_by(every, shown))
+
+
+def _seen(logs: Sequence[Path]) -> dict[Path, Moving]:
+    return {log: m for log in logs if has_attitude(log) and (m := moving_of(log)) is not None}
+
+
+def _told(lost: tuple[float, float] | None) -> dict[str, Any]:
+    names = ("heading_before", "heading_after")
+    return {} if lost is None else dict(zip(names, np.round(lost, 3).tolist()))
+
+
+def tell_heading(result: Mapping[str, Any], analysis: Analysis, logs: Sequence[Path]) -> None:
+    """Say beside what turning shows what it is worth in heading, where an attitude is given."""
+    effect = next((e for e in result["effects"] if "in_motion" in e), None)
+    shown = analysis.motion.scales
+    if effect is None or shown is None:
+        return
+    names = {s.name for s in analysis.holdout}
+    held = _seen([log for log in logs if open_recording(log).name in names])
+    told = _told(_lost(analysis, shown, held))
+    if told:
+        effect["in_motion"].update(told)
+        effect["said"] += f"; {_heading_in_words(told)}"
+
+
+def _lost(
+    analysis: Analysis, shown: RateScale, held: Mapping[Path, Moving]
+) -> tuple[float, float] | None:
+    if not analysis.single:
+        return heading_lost_by(held, shown)
+    if shown.unseen is not None:
+        return heading_lost(held)
+    # turns beside an attitude are in time order and last alike: so many seconds are of late ones
+    turns = analysis.sessions[0].turns
+    assert turns is not None, "they showed the matrix"
+    half = len(turns.runs) // 2
+    parts = [turns.runs[: half // 2], turns.runs[half // 2 : half]]
+    early = fit_rate_scale(parts, [], turns.beside, turns.unit)
+    found = early is not None and early.found
+    return heading_lost_by(held, early, (len(turns.runs) - half) * RUN_S) if found else None
+
+
+def _heading_in_words(m: Mapping[str, Any]) -> str:
+    before, after = m["heading_before"], m["heading_after"]
+    return f"against the attitude {before:.2f} -> {after:.2f} degrees a minute of heading"
 
 
 def _correct(writer: CorrectedWriter, log: Path, model: Model, test: bool) -> None:
@@ -142,11 +185,7 @@ def motion_in_words(result: Mapping[str, Any]) -> str:
             f"{effect['effect']} ({effect['confidence']}): on motion held out, gravity sees "
             f"{m['before']:.2f} -> {m['after']:.2f} {m['unit']}"
         ]
-        if "heading_before" in m:
-            before, after = m["heading_before"], m["heading_after"]
-            lines.append(
-                f"against the attitude {before:.2f} -> {after:.2f} degrees a minute of heading"
-            )
+        lines += [_heading_in_words(m)] if "heading_before" in m else []
         rows = zip(_AXES, m["matrix_percent"], m["ci95_percent"])
         lines += [
             f"error of {axis}, % of the rate of x y z: "

@@ -35,10 +35,16 @@ def heading_lost(moving: Mapping[Path, Moving]) -> tuple[float, float] | None:
     return _rms(errors)
 
 
-def heading_lost_by(moving: Mapping[Path, Moving], shown) -> tuple[float, float] | None:
-    """The same of logs with an attitude, which a matrix was not fitted to."""
-    whole = slice(0, None)
-    return _rms([_without_and_with(p, m, whole, _deployed(shown)) for p, m in moving.items()])
+def heading_lost_by(
+    moving: Mapping[Path, Moving], shown, last_s: float = np.inf
+) -> tuple[float, float] | None:
+    """The same of logs with an attitude, or their last seconds, which a matrix was not fitted to.
+    None where no stretch of them is seen."""
+    errors = []
+    for path, one in moving.items():
+        late = slice(int(np.searchsorted(one.at_s, one.at_s[-1] - last_s)), None)
+        errors.append(_without_and_with(path, one, late, _deployed(shown)))
+    return _rms(errors)
 
 
 def _without_and_with(path: Path, one: Moving, judged: slice, matrix: NDArray) -> NDArray:

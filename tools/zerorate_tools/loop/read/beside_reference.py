@@ -4,7 +4,8 @@ import numpy as np
 
 from .reference import Run
 
-_RUN_S = 30.0
+#: A run at least.
+RUN_S = 30.0
 _LEAST_DPS = 5.0
 _PEAK = 2.0  # of a hand's motion, in its rms
 #: Sums a tick: number, error (3), rate (3), rate x rate (9), error x rate (9), error^2 (3),
@@ -29,7 +30,7 @@ def _outer(left, right):
 
 def runs_of(sums: np.ndarray, tick_s: float) -> list[Run]:
     """Runs of a session. sums: (m, WIDTH) a tick. A run's mean, its bias, is taken out."""
-    per = max(1, round(_RUN_S / tick_s))
+    per = max(1, round(RUN_S / tick_s))
     whole = sums[: len(sums) // per * per].reshape(-1, per, WIDTH).sum(axis=1)
     return [run for row in whole if (run := _run(row)) is not None]
 
