@@ -1,10 +1,12 @@
 """The estimators of one axis against a model cache: what is kept, evicted, promoted, replaced."""
 
+import random
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from zerorate import Corrector, Sensor
-from zerorate.rest import estimators
+from zerorate.rest import estimators, histogram
 from zerorate_tools.layout import AXIS, ESTIMATOR, SETTINGS, STATE
 
 FREE = -1048576
@@ -15,9 +17,9 @@ PROMOTE = 50
 class Axis:
     """The first axis of a corrector, taught directly."""
 
-    def __init__(self, **limits):
-        limits = {"promote_s": PROMOTE / 100, "range_dps": 40.0, **limits}
-        corrector = Corrector(Sensor(), document=True, **limits)
+    def __init__(self, document=True, **limits):
+        limits = {"promote_s": PROMOTE / 100, **({"range_dps": 40.0} if document else {}), **limits}
+        corrector = Corrector(Sensor(), document=document, **limits)
         self.s, self.c = corrector.state, corrector.settings
         self.a = self.c[SETTINGS.AXES]
 
@@ -86,30 +88,6 @@ def test_long_term_estimators_have_enough_samples_and_are_replaced_by_richer_one
             assert was == FREE or has > had
 
 
-def thirds(axis, temps):
-    """In which third of the observed range of temperatures each lies, by the document's words."""
-    coldest, hottest = (axis.s[axis.a + word] for word in (AXIS.COLDEST, AXIS.HOTTEST))
-    return [min(2, max(0, (temp - coldest) * 3 // (hottest - coldest + 1))) for temp in temps]
-
-
-@settings(max_examples=60, deadline=None)
-@given(visits=st.lists(st.tuples(degrees, st.sampled_from([60, 100, 300, 500])), min_size=12))
-def test_the_richest_of_another_third_is_never_replaced(visits):
-    axis = Axis()
-    for degree, weight in visits:
-        before = axis.long
-        s, a = axis.s, axis.a
-        oldest = s[s[a + AXIS.ORDER + axis.c[SETTINGS.SHORT] - 1]]
-        axis.learn(degree * STEP, 0, weight)
-        gone = [k for k, (was, now) in enumerate(zip(before, axis.long)) if was[0] != now[0]]
-        for k in gone:
-            if before[k][0] == FREE:
-                continue
-            here, candidate = thirds(axis, [before[k][0], oldest])
-            rivals = [n for t, n in before if t != FREE and thirds(axis, [t]) == [here]]
-            assert here == candidate or before[k][1] < max(rivals) or rivals.count(max(rivals)) > 1
-
-
 def test_a_short_visit_is_not_promoted(axis):
     axis.learn(0, 0, PROMOTE - 1)
     for degree in (10, 20, 30):
@@ -170,3 +148,87 @@ def test_more_readings_than_a_bin_can_count_are_still_more(axis):
         axis.learn(0, weight=10000)
     axis.learn(STEP * 5, weight=10000)
     assert sorted(count for _, count in axis.short) == [0, 10000, 30000]
+
+
+# Which long-term estimator gives way
+
+
+def filled(draw, document):
+    """An axis whose long-term estimators hold drawn temperatures, and its words of each."""
+    corrector = Corrector(Sensor(), document=document, motion=False, gravity=False)
+    s, c = corrector.state, corrector.settings
+    a, words = c[SETTINGS.AXES], c[SETTINGS.ESTIMATOR_WORDS]
+    long = list(range(a + c[SETTINGS.FIRST_LONG], a + c[SETTINGS.ESTIMATORS_END], words))
+    for e in [a + c[SETTINGS.FIRST_SHORT], *long]:
+        s[e], s[e + ESTIMATOR.EST_READINGS] = draw.randrange(-9, 10) * STEP, draw.randrange(1, 9)
+    s[a + AXIS.COLDEST], s[a + AXIS.HOTTEST] = -5 * STEP, draw.randrange(5, 9) * STEP
+    if draw.random() < 0.2:
+        s[draw.choice(long)] = FREE
+    return s, c, a, long
+
+
+def gives_way(s, c, a, long, candidate):
+    """The estimator that the candidate replaces, or itself, by plain sorting."""
+    temp = {e: s[e] for e in [*long, candidate]}
+    readings = {e: s[e + ESTIMATOR.EST_READINGS] for e in temp}
+    if FREE in temp.values():
+        return next(e for e in long if temp[e] == FREE)
+    cold, hot = s[a + AXIS.COLDEST], s[a + AXIS.HOTTEST]
+    part = {e: min(2, max(0, (temp[e] - cold) * 3 // (hot - cold + 1))) for e in temp}
+    rich = {
+        k: max((e for e in long if part[e] == k), key=readings.get, default=0) for k in range(3)
+    }
+    free = [e for e in long if part[e] == part[candidate] or rich[part[e]] != e]
+    if c[SETTINGS.LITERAL]:
+        poor = min(free, key=readings.get, default=candidate)
+        return poor if readings[poor] < readings[candidate] else candidate
+    gap = {e: min(abs(temp[e] - temp[other]) for other in long if other != e) for e in temp}
+    ends = min(temp[e] for e in long), max(temp[e] for e in long)
+    crowded = min((e for e in free if temp[e] not in ends), key=gap.get, default=candidate)
+    return crowded if gap[crowded] < gap[candidate] else candidate
+
+
+@pytest.mark.parametrize("document", [False, True])
+def test_the_poorest_gives_way_by_the_document_else_the_most_crowded_of_the_midst(document):
+    chosen = set()
+    for seed in range(400):
+        s, c, a, long = filled(random.Random(seed), document)
+        candidate = a + c[SETTINGS.FIRST_SHORT]
+        found = estimators.victim(s, c, a, candidate)
+        assert found == gives_way(s, c, a, long, candidate), seed
+        chosen.add(found)
+    assert chosen == {candidate, *long}
+
+
+def test_the_estimator_in_use_keeps_a_temperature_that_is_a_margin_beyond_its_degree(axis):
+    half, margin = STEP // 2, axis.c[SETTINGS.MARGIN_LSB]
+    axis.learn(0)
+    for temp, kept in ((half + margin, True), (half + margin + 1, False)):
+        for way in (1, -1):
+            assert bool(estimators.find(axis.s, axis.c, axis.a, way * temp)) is kept
+    axis.learn(40 * STEP)
+    for temp, kept in ((half - 1, True), (half, False), (-half, True), (-half - 1, False)):
+        assert bool(estimators.find(axis.s, axis.c, axis.a, temp)) is kept
+
+
+@pytest.mark.parametrize("document", [False, True])
+def test_a_mean_temperature_moves_by_the_share_of_what_was_learned(document):
+    draw, axis = random.Random(3), Axis(document=document)
+    e, after = axis.a + AXIS.ESTIMATORS, 0
+    for n in range(200):
+        temp, weight = draw.randrange(-150, 150), draw.choice([1, 8, 64, 250, 9000])
+        before = after if n else 16 * temp
+        axis.learn(temp, 10 * draw.randrange(-3, 4), weight)
+        held = histogram.population(axis.s, e + ESTIMATOR.EST_HISTOGRAM, axis.c[SETTINGS.BINS])
+        after = axis.s[e + ESTIMATOR.EST_MEAN_TEMP_Q4]
+        assert after == before + (16 * temp - before) * weight // max(held, weight)
+    assert axis.s[e + ESTIMATOR.EST_READINGS] > 200
+
+
+def test_an_estimator_made_free_begins_at_a_whole_degree_with_the_spread_of_any(axis):
+    spread = axis.s[axis.a + AXIS.ESTIMATORS + ESTIMATOR.EST_SPREAD_Q8] = 777
+    for temp, degree in ((STEP // 2 - 1, 0), (STEP // 2, 1), (-STEP // 2 - 1, -1)):
+        e = estimators.make_room(axis.s, axis.c, axis.a, temp)
+        assert list(axis.s[e : e + 2]) == [degree * STEP, 16 * temp]
+        assert axis.s[e + ESTIMATOR.EST_READINGS] == 0
+        assert axis.s[e + ESTIMATOR.EST_SPREAD_Q8] == spread

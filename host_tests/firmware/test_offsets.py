@@ -219,20 +219,19 @@ def test_what_a_segment_leaves_is_its_noise_times_the_gain(axis, draw):
     assert recent.left_q8(axis.s, gain) == pytest.approx(noise * gain / (1 << 14), abs=0.6)
 
 
-@pytest.mark.parametrize("age_s", [0.1, 4, 60, 600])
-def test_the_walk_follows_errors_that_noise_does_not_explain(axis, draw, age_s):
+@pytest.mark.parametrize("periods", [2, 63, 938, 1021, 1022, 1023, 1024, 9000])
+def test_the_walk_follows_errors_that_noise_does_not_explain(axis, draw, periods):
     least, most = (axis.c[at] for at in (SETTINGS.WALK_LEAST_Q16, SETTINGS.WALK_MOST_Q16))
     for excess in (-50000, 0, 3000, int(draw.integers(0, 1 << 21)), 1 << 28):
         walk = int(draw.integers(least, most))
-        axis.put(WALK_Q16=walk, OFFSET_AGE_MS=age_s * 1000)
+        axis.put(WALK_Q16=walk, OFFSET_AGE_MS=64 * periods - draw.integers(1, 64))
         recent.rewalk(axis.s, axis.c, axis.a, excess)
-        age = age_s * 1000 // 64 + 1
-        speed = max(-0x1FFFFF, min(excess, 0x1FFFFF)) * 256 / age
+        speed = max(-0x1FFFFF, min(excess, 0x1FFFFF)) * 256 / periods
         speed = min(max(-0x17FFFFF, min(speed, 0x17FFFFF)) * 16, most)
-        age = min(age, 1023)
-        share = max(age**2 / ((age**2 + 0x100000) / 1024), 24) / 4096
+        age = min(periods, 1023)
+        share = max(age**2 // ((age**2 + 0x100000) // 1024), 24) / 4096
         expected = max(walk + (speed - walk) * share, least)
-        assert expected == pytest.approx(axis.WALK_Q16, rel=0.02, abs=64)
+        assert expected - 24 < axis.WALK_Q16 < expected + 1
 
 
 @pytest.mark.parametrize(
@@ -315,3 +314,107 @@ def test_of_one_temperature_a_jump_to_another_is_no_walk(axis, points, sigmas_be
     assert axis.OFFSET_Q8 == pytest.approx(0.75 * 16 * error, rel=0.01)
     assert axis.LEFT_Q4 == pytest.approx(0.25 * error, rel=0.02, abs=1)
     assert axis.OFFSET_VARIANCE_Q8 == pytest.approx(750, rel=0.01)
+
+
+# What the curve is taught of it
+
+
+@pytest.mark.parametrize(
+    ("noise", "source", "kind", "taken"),
+    [
+        *((4000, 3, 0, True), (250, 4, 1, True), (4000, 4, 1, False), (4000, 3, 1, True)),
+        *((751, 4, 1, True), (752, 4, 1, False)),  # a quarter of the level's variance
+    ],
+)
+def test_what_another_source_found_is_the_level_if_it_is_known_twice_as_well(
+    axis, noise, source, kind, taken
+):
+    axis.put(KIND=kind, OFFER=8 * noise + source, FLOOR_Q16=0, OFFSET_FROM=3, OFFSET_Q8=640)
+    axis.put(OFFSET_VARIANCE_Q8=3008, WALK_Q16=0, LEFT_Q4=9, OFFSET_AGE_MS=8, SUSPECT=0, RESTS=1)
+    before = list(axis.s)
+    assert bool(recent.take_over(axis.s, axis.c, axis.a, 50)) is taken
+    if not taken:
+        assert before == list(axis.s)
+        return
+    assert axis.OFFSET_Q8 == (640 + 16 * 50 if kind else 640)
+    assert (axis.SUSPECT, axis.RESTS) == ((0, 1) if kind else (-1, axis.c[SETTINGS.INSIST]))
+    assert (axis.OFFSET_FROM, axis.LEFT_Q4, axis.OFFSET_AGE_MS) == (source, 0, 0)
+    assert axis.OFFSET_VARIANCE_Q8 == noise
+    axis.put(KIND=0, OFFER=8 * noise + source, FLOOR_Q16=0x1280)
+    recent.take_over(axis.s, axis.c, axis.a, 50)
+    assert axis.OFFSET_VARIANCE_Q8 == noise + 0x1280 // 128
+
+
+@pytest.mark.parametrize("rests", [0, 5])
+@pytest.mark.parametrize("beyond", [0, 300])
+def test_a_turn_on_offset_is_of_the_first_rests_less_the_curves_own_share(
+    axis, draw, rests, beyond
+):
+    insist, usual = axis.c[SETTINGS.INSIST], axis.c[SETTINGS.TURN_ON_VARIANCE_Q8]
+    kept = axis.c[SETTINGS.AXES] - 3 + axis.axis
+    axis.put(TEMP=2000 + beyond, LINE_LOW_Q4=16000, LINE_HIGH_Q4=32000, LINE_POINTS=2)
+    offset = int(draw.integers(-60000, 60000))
+    axis.put(LEAVES_Q16=4000, OFFSET_Q8=offset, RESTS=rests)
+    variance = recent.beyond_q8(axis.s, axis.c, axis.a)
+    own = variance / (variance + max((offset / 16) ** 2, usual))
+    assert recent.level_q8(axis.s, axis.c, axis.a) == pytest.approx(
+        offset * (1 - own), abs=20 + abs(offset) * 0.001
+    )
+    axis.put(RESTS=insist)
+    axis.s[kept] = 777
+    assert recent.level_q8(axis.s, axis.c, axis.a) == 777 == axis.s[kept]
+    axis.put(RESTS=insist - 1)
+    assert recent.level_q8(axis.s, axis.c, axis.a) != 777 != axis.s[kept]
+
+
+@pytest.mark.parametrize("which", [0, 1])
+def test_a_turn_on_offset_leaves_what_the_estimators_learn(which, draw):
+    axis = Axis(which)
+    insist, n = axis.c[SETTINGS.INSIST], int(draw.integers(8, 257))
+    for rests in (0, insist - 1, insist):
+        offset, total = int(draw.integers(-99999, 99999)), int(draw.integers(-99999, 99999))
+        axis.put(RESTS=rests, OFFSET_Q8=offset, WAITING_SUM=total, WAITING_N=n)
+        axis.s[axis.c[SETTINGS.AXES] - 3 + which] = offset
+        recent.remove_turn_on(axis.s, axis.c, axis.a)
+        assert axis.WAITING_SUM == pytest.approx(total - offset / 256 * n, abs=0.51)
+        assert axis.RESTS == min(rests + (which == 0), insist)
+
+
+def segment(axis, mean_lsb, readings=SEGMENT, **words):
+    """1 if the estimators may learn the segment; what is left of it waits for them."""
+    axis.put(LEARN_TEMP=1000, WAITING_N=readings, WAITING_SUM=readings * mean_lsb, **words)
+    return recent.absorb(axis.s, axis.c, axis.a)
+
+
+def test_the_very_first_segment_is_all_curve_and_no_offset(axis):
+    assert segment(axis, 200, 8, KIND=0) == 0 and segment(axis, 200, 9, KIND=0) == 1
+    axis.put(OFFSET_Q8=99, RESTS=0, LEFT_Q4=5, OFFSET_FROM=3, OFFSET_AGE_MS=7, HELD_Q4=400)
+    assert segment(axis, 200, OFFER=-2001, DOUBT_Q4=0) == 1
+    assert (axis.OFFSET_Q8, axis.SUSPECT, axis.LEFT_Q4, axis.OFFSET_FROM) == (0, -1, 0, 0)
+    assert axis.OFFSET_VARIANCE_Q8 == axis.MEAN_NOISE_Q8 and axis.OFFSET_AGE_MS == 0
+    assert axis.RESTS == axis.c[SETTINGS.INSIST] and axis.WAITING_SUM == 200 * SEGMENT
+    assert (axis.DOUBT_Q4, axis.HELD_Q4) == (1000, 0)  # by what the rest may hide
+    segment(axis, 200, OFFER=-201, HELD_Q4=400)
+    assert axis.DOUBT_Q4 == 300  # by three quarters of what was held back
+
+
+def test_the_document_and_all_readings_leave_the_offset_alone():
+    for mode in ({"document": True}, {"every": True}):
+        axis = Axis()
+        made = Corrector(motion=False, gravity=False, **mode)
+        axis.s, axis.c, axis.a = made.state, made.settings, axis_at(made.settings, 1)
+        before = list(axis.s)
+        axis.put(WAITING_N=SEGMENT, WAITING_SUM=9000, OFFER=9)
+        assert recent.update_offset(axis.s, axis.c, axis.a, 500) == 1
+        changed = [n for n, was in enumerate(before) if axis.s[n] != was]
+        assert changed == [axis.a + at for at in (AXIS.WAITING_SUM, AXIS.WAITING_N, AXIS.OFFER)]
+
+
+def test_what_the_curve_has_just_learned_leaves_the_offset(axis):
+    curve = axis.a + AXIS.ESTIMATORS
+    axis.s[curve + ESTIMATOR.EST_READINGS], axis.s[curve + ESTIMATOR.EST_BIAS_Q8] = SEGMENT, 900
+    axis.put(SUSPECT=0, OFFSET_Q8=500, CURVE_BEFORE_Q8=700, LEARN_TEMP=1000)
+    recent.keep_level(axis.s, axis.c, axis.a)
+    assert axis.OFFSET_Q8 == 300
+    recent.keep_level(axis.put(SUSPECT=-1).s, axis.c, axis.a)
+    assert (axis.OFFSET_Q8, axis.SUSPECT) == (300, 0)

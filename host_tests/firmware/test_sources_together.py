@@ -11,7 +11,6 @@ from zerorate.arithmetic import real
 from zerorate.motion import least_squares, posterior
 from zerorate.motion.motion_settings import motion_settings, motion_state
 from zerorate.motion.orientation import orientation
-from zerorate.rest import step
 from zerorate_tools.layout import GRAVITY, MOTION, SOURCE, STATE
 from zerorate_tools.model import Slot
 from zerorate_tools.model.term import Term
@@ -255,12 +254,3 @@ def test_a_steady_turn_leaves_a_hundredth_of_itself_in_one_sigma_however_many_wi
     posterior.filter_variance(s, c, 0)
     real.root_of(s, MOTION.T1, MOTION.T1)
     assert real.whole(s, MOTION.T1, 0) / UNIT == pytest.approx(0.3, rel=0.02)
-
-
-def test_a_source_that_knows_less_does_not_replace_the_bias_of_one_that_knows_more():
-    corrector = Corrector(Sensor())
-    s, c = corrector.state, corrector.settings
-    for source, bias, sigma in ((SOURCE.IN_MOTION, 100, 3000), (SOURCE.GRAVITY, 900, 9000)):
-        step.consider(s, c, array("i", [bias] * 3 + [sigma * 8] * 3), 0, source)
-    assert list(s[STATE.TARGET_Q8 : STATE.TARGET_Q8 + 3]) == [100] * 3
-    assert s[STATE.SOURCE] == SOURCE.IN_MOTION

@@ -1,6 +1,7 @@
 """What a search is told, may propose and must pay: beside plain sums and dense solutions."""
 
 from dataclasses import replace
+from itertools import product
 from types import SimpleNamespace
 
 import numpy as np
@@ -507,17 +508,18 @@ def test_a_step_explains_more_than_a_ramp_and_a_ramp_more_than_a_step(stepped):
     ]
     expected = Regression(column).gains([A], [(Term("e"),)]).sum()
     assert 0.999 * expected < found < 1.05 * expected
-    best = 0.0
-    for first in np.arange(24.0, 32.0, 0.25):
-        since = np.arange(60) + 0.5 - first
-        for length in 4.0 * np.array([0.5, 0.75, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0]):
-            ramp, curve = np.clip(since / length, 0, 1), 1 - np.exp(-np.maximum(since, 0) / length)
-            for form in (ramp, curve):
-                settles[0].sources["e"] = form
-                for s in settles[1:]:
-                    s.sources["e"] = np.zeros(60)
-                best = max(best, Regression(settles).gains([A], [(Term("e"),)]).sum())
-    assert found == pytest.approx(best, rel=1e-6)
+    lengths = 4.0 * np.array([0.5, 0.75, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0])
+    for made in (settles, slow):
+        told, forms = step_places.best_slow(Regression(made), [A], 0, [28.0, 32.0]), []
+        for first, length in product(np.arange(24.0, 32.0, 0.25), lengths):
+            since = np.arange(60) + 0.5 - first
+            forms.append(np.clip(since / length, 0, 1))
+            forms.append(1 - np.exp(-np.maximum(since, 0) / length))
+        for s in made:
+            s.sources.update({f"e{k}": form * (s is made[0]) for k, form in enumerate(forms)})
+        every = [(Term(f"e{k}"),) for k in range(len(forms))]
+        best = Regression(made).gains([A], every).sum(axis=1).max()
+        assert told == pytest.approx(best, rel=1e-6)
 
 
 def test_where_the_device_did_not_rest_a_step_may_be_at_either_end():
@@ -526,6 +528,9 @@ def test_where_the_device_did_not_rest_a_step_may_be_at_either_end():
     gap = replace(session, weight=(~np.isin(np.arange(20), (6, 7, 8, 9))).astype(float))
     around = step_places._around(gap, 8.0)
     assert {6.0, 10.0, 8.0, 5.25, 10.75} <= set(around) and around.max() == 10.75
+    near = replace(session, weight=(~np.isin(np.arange(20), (1, 2, 19))).astype(float))
+    assert {1.0, 3.0} <= set(step_places._around(near, 2.0))
+    assert step_places._around(near, 19.5).max() == 20.25
 
 
 # --- the catalogue ---

@@ -199,14 +199,6 @@ def test_a_change_across_blocks_without_rest_is_none_where_temperature_moved(gap
     assert not listed._is_unseen(session, there, 0)
 
 
-def test_a_change_is_between_means_of_two_blocks_with_one_between_left_out():
-    along = np.array([1.0, 2.0, 3.0, 10.0, 20.0, 40.0, 80.0])
-    assert listed._change(along, 3) == (10 + 20) / 2 - (1 + 2) / 2
-    assert listed._change(along, 6) == 80 - (10 + 20) / 2
-    assert listed._change(along, 2) == (3 + 10) / 2 - 1
-    assert np.isnan(listed._change(along, 1)) and np.isnan(listed._change(along, 7))
-
-
 def is_abrupt(along, at):
     """The same by plain loops: along the size of the step, in units of it."""
 
