@@ -71,9 +71,8 @@ AREAS = {
             "bias.py", "block.py", "copying.py", "estimators.py", "fit.py", "histogram.py",
             "recent.py", "step.py", "stillness.py")],
         ["host_tests/firmware/test_" + name for name in (
-            "estimators.py", "fit.py", "histogram.py", "stillness.py", "turn_on.py",
-            "quality.py", "guard.py", "bursts.py", "windows.py", "offsets.py",
-            "sources_together.py", "documents.py")]
+            "estimators.py", "fit.py", "histogram.py", "bursts.py", "windows.py", "offsets.py",
+            "published.py")]
         + [KNOWN, GOLDEN],
     ),
     "motion": (
@@ -98,8 +97,7 @@ AREAS = {
             "logs/columnar.py", "logs/messages.py")],
         ["host_tests/importers/test_" + name for name in (
             "by_a_plain_reading.py", "small_steps.py", "tables.py", "odd_files.py",
-            "odd_names.py", "odd_times.py", "units_told.py", "together.py", "logs.py",
-            "steps_of_logs.py")],
+            "odd_names.py", "odd_times.py", "units_told.py", "logs.py", "steps_of_logs.py")],
     ),
     "effects": (
         ["firmware/zerorate/effects/" + name for name in (
