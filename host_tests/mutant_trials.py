@@ -4,6 +4,8 @@ The tests that reach a mutant's line run first, the fastest first of all. If the
 run, too: what the C that is made of a kernel does is not seen here.
 """
 
+import ast
+import builtins
 import contextlib
 import importlib.abc
 import importlib.machinery
@@ -14,7 +16,6 @@ import signal
 import sys
 import tempfile
 import time
-from collections import Counter, defaultdict
 from pathlib import Path
 
 import pytest
@@ -30,13 +31,11 @@ NOT_IN_PROCESS = " and ".join(
     )
 )
 
-# Of a function, in which a test's lines are looked for: a line that it reaches later only changes
-# which tests run first.
-_CALLS = 2000
+_HIT = "__hit__"  # the name by which a file's statements say that they are reached
 
 
 class InPlaceOf(importlib.abc.MetaPathFinder, importlib.machinery.SourceFileLoader):
-    """Loads a text in the place of a module's file."""
+    """Loads a text, or what it was parsed to, in the place of a module's file."""
 
     def __init__(self, path, text):
         super().__init__("", str(path))
@@ -60,44 +59,54 @@ def put_in_place(path, text):
     Path.read_text = lambda self, *how, **more: text if self == path else plain(self, *how, **more)
 
 
+class Hits(ast.NodeTransformer):
+    """Puts a call before every statement of a file's functions, which notes its rows as reached."""
+
+    def __init__(self, file):
+        self._file = str(file)
+
+    def generic_visit(self, node):
+        super().generic_visit(node)
+        for name in ("body", "orelse", "finalbody"):
+            block = getattr(node, name, None)
+            if isinstance(block, list) and not isinstance(node, ast.Module):
+                first = 1 if name == "body" and ast.get_docstring(node, False) else 0
+                behind = [part for of in block[first:] for part in (self._hit(of), of)]
+                setattr(node, name, block[:first] + behind)
+        return node
+
+    def _hit(self, of):
+        body = getattr(of, "body", None)
+        last = body[0].lineno - 1 if body else of.end_lineno
+        said = ast.Constant((self._file, of.lineno, max(last, of.lineno)))
+        return ast.copy_location(ast.Expr(ast.Call(ast.Name(_HIT, ast.Load()), [said], [])), of)
+
+
 class Reach:
-    """A plugin of pytest: which lines of some files each test reaches, and its seconds."""
+    """A plugin of pytest: which rows of some files each test reaches, and its seconds."""
 
     def __init__(self, files, written):
-        self._files, self.written = set(map(str, files)), written
-        self.lines = defaultdict(set)  # (test, file) -> lines
-        self.took_s = {}
-        self._test, self._left, self._calls = "", {}, Counter()
+        self._files, self.written = files, written
+        self.reached, self.took_s = {}, {}
 
-    def _enter(self, frame, event, arg):
-        code = frame.f_code
-        if code.co_filename not in self._files:
-            return None
-        if code not in self._left:
-            self._left[code] = {line for *_, line in code.co_lines() if line}
-        self._calls[code] += 1
-        return self._go if self._left[code] and self._calls[code] < _CALLS else None
-
-    def _go(self, frame, event, arg):
-        left = self._left[frame.f_code]
-        if frame.f_lineno in left:
-            left.remove(frame.f_lineno)
-            self.lines[self._test, frame.f_code.co_filename].add(frame.f_lineno)
-        return self._go if left else None
+    def pytest_configure(self):
+        setattr(builtins, _HIT, set().add)
+        for file in self._files:
+            tree = Hits(file).visit(ast.parse(file.read_text(encoding="utf-8")))
+            sys.meta_path.insert(0, InPlaceOf(file, ast.fix_missing_locations(tree)))
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_protocol(self, item):
-        self._test, self._left, self._calls = item.nodeid, {}, Counter()
+        rows = self.reached[item.nodeid] = set()
+        setattr(builtins, _HIT, rows.add)
         began_s = time.process_time()
-        sys.settrace(self._enter)
         try:
             return (yield)
         finally:
-            sys.settrace(None)
             self.took_s[item.nodeid] = time.process_time() - began_s
 
     def pytest_sessionfinish(self, exitstatus):
-        rows = [[test, file, sorted(lines)] for (test, file), lines in self.lines.items()]
+        rows = [[test, *reached] for test, every in self.reached.items() for reached in every]
         # what no mutant is in, and each process would else load anew
         others = [
             n for n, m in sys.modules.items() if "site-packages" in str(vars(m).get("__file__"))
@@ -110,10 +119,10 @@ class NearestFirst:
 
     def __init__(self, reached, took_s, file, row):
         self._took_s = took_s
-        near = {test: lines for test, of, lines in reached if of == str(file)}
-        at_row = {test for test, lines in near.items() if row in lines}
+        near = {test for test, of, *_ in reached if of == str(file)}
+        at_row = {test for test, of, a, b in reached if of == str(file) and a <= row <= b}
         # a line of no function runs when its module loads
-        self._near = at_row or set(near)
+        self._near = at_row or near
 
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, items):
@@ -157,7 +166,7 @@ def ends(tests, drawn):
     """{number: how it ends} of drawn, {number: (file, row, mutated text)}."""
     before_s = os.times().children_user
     with tempfile.TemporaryDirectory(prefix="zerorate-reach-") as folder:
-        reach = Reach({REPOSITORY / file for file, _, _ in drawn.values()}, Path(folder, "reach"))
+        reach = Reach({REPOSITORY / file for file, *_ in drawn.values()}, Path(folder, "reach"))
         if _end_of(lambda: _fail(tests, reach), 900) != "passed":
             raise SystemExit("the tests fail as they are")
         reached, took_s, others = json.loads(reach.written.read_text(encoding="utf-8"))
