@@ -70,9 +70,9 @@ class Hits(ast.NodeTransformer):
         for name in ("body", "orelse", "finalbody"):
             block = getattr(node, name, None)
             if isinstance(block, list) and not isinstance(node, ast.Module):
-                first = 1 if name == "body" and ast.get_docstring(node, False) else 0
-                behind = [part for of in block[first:] for part in (self._hit(of), of)]
-                setattr(node, name, block[:first] + behind)
+                # a docstring stays the first
+                parts = [(of,) if _is_text(of) else (self._hit(of), of) for of in block]
+                setattr(node, name, [one for part in parts for one in part])
         return node
 
     def _hit(self, of):
@@ -80,6 +80,10 @@ class Hits(ast.NodeTransformer):
         last = body[0].lineno - 1 if body else of.end_lineno
         said = ast.Constant((self._file, of.lineno, max(last, of.lineno)))
         return ast.copy_location(ast.Expr(ast.Call(ast.Name(_HIT, ast.Load()), [said], [])), of)
+
+
+def _is_text(statement):
+    return isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)
 
 
 class Reach:
