@@ -34,6 +34,9 @@ SURVIVORS_AND_WHY = Path(__file__).with_name("mutants.toml")
 # there is only one of, what is done without a module that MicroPython has and the tests have too.
 _SAME = re.compile(r"^\s*(from |import |#)|TYPE_CHECKING|^@|^except ImportError:")
 _SAME_OF_SMALL_INTEGERS = ("Eq_Is", "NotEq_IsNot")
+# At the limit both are the limit.
+_LIMIT = re.compile(r"(?:return|=) (.+) if \1 [<>] (.+) else \2$")
+_AT_LIMIT = ("Lt_LtE", "Gt_GtE")
 _LAYOUT = re.compile(r"^# layout: .*?^# layout: end", re.MULTILINE | re.DOTALL)
 
 # Numbers that are committed: what boards ask their machine code for, and what a trace ends in.
@@ -196,6 +199,8 @@ def mutants(files):
 
 def same(mutant, text):
     """Why the mutant means the same, by mutants.toml, or ""."""
+    if mutant[1].endswith(_AT_LIMIT) and _LIMIT.search(text):
+        return "at the limit both are the limit"
     for entry in tomllib.loads(SURVIVORS_AND_WHY.read_text(encoding="utf-8"))["same"]:
         names = entry["operators"]
         there = mutant[0].startswith(entry["file"])
