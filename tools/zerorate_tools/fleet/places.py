@@ -80,7 +80,10 @@ def _store(url: str) -> tuple[Any, str]:
         raise MissingLibrary("fsspec") from error
     try:
         return url_to_fs(url)
-    except (ImportError, ValueError) as error:
+    except ImportError as error:
+        missing = getattr(error.__cause__, "name", None) or str(error)
+        raise ZerorateError(f"{url}: a package is missing: pip install {missing}") from error
+    except ValueError as error:
         raise ZerorateError(f"{url}: {_in_words(error)}") from error
 
 
