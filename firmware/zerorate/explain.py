@@ -42,6 +42,7 @@ STILLNESS = (
     "No rest to learn from: gravity turns, so the device turns slowly.",
     "No rest to learn from: the accelerometer sees motion.",
     "No rest to learn from: the rate has shifted within it.",
+    "No rest to learn from: the gyroscope has no noise, as if it were off.",
 )
 # layout: Where a bias comes from, in words
 SOURCES = (

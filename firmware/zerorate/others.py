@@ -9,6 +9,8 @@ if TYPE_CHECKING:
 
 # layout: names that a board's own compiler reads
 const = int
+# layout: The corrector's state
+_STILLNESS = const(50)
 # layout: The corrector's settings
 _STEP_LSB = const(29)
 # layout: The state of the source in motion
@@ -19,6 +21,8 @@ _GRAVITY_BIAS_Q8 = const(28)
 _GRAVITY_LATE_US = const(58)
 # layout: The effect model and its running state
 _CURVE_LSB = const(35)
+# layout: What a window was
+_SILENT = const(6)
 # layout: Where a bias comes from
 _IN_MOTION = const(4)
 _GRAVITY = const(5)
@@ -44,7 +48,7 @@ class Others:
         kind = self._examine(self._of.state, self._guard, sample, dt_us)
         self._sense_effects(sample, dt_us, kind)
         rest_pieces.admit(self._of.state, self._of.settings, sample, kind)
-        if kind == 0:
+        if kind == 0 and self._of.state[_STILLNESS] != _SILENT:
             self._ask_others(sample, dt_us)
         else:
             self._pass_over(min(max(dt_us, 0), _MOST_US))

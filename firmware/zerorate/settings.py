@@ -72,10 +72,12 @@ _TURNING_LSB = const(54)
 _TURN_HALVES = const(55)
 _TILT_SPEED = const(56)
 _ONE_G = const(57)
-_SETTINGS_WORDS = const(58)
+_QUIETEST_Q8 = const(58)
+_SETTINGS_WORDS = const(59)
 # layout: end
 # of how many times the variance that noise gives it gravity's slope may be: 15 by chi squared of 3
 _LEAN_NOISE = const(5)
+_QUIETEST_DPS = 0.005  # of an axis: 2 mdps a root hertz through a filter of 5 Hz
 # What a user may set, in its unit. A time of readings is that many at the output data rate.
 DEFAULTS = {
     "window_s": 0.25,  # a window
@@ -201,6 +203,7 @@ def windows(c, rate, lsb, sensor, limits):
     jump = Ratio(sensor.temp_lsb_per_degc)
     c[_JUMP_LSB] = max((jump * 400 / 340).floor(), (jump / 2 / rate).floor()) or 0xFFFF
     c[_STILL_GYRO_Q8] = (lsb * limits["still_dps"] * 16).squared()
+    c[_QUIETEST_Q8] = 3 * (lsb * _QUIETEST_DPS * 16).squared(1 << 26)
     c[_STILL_ACCEL_Q8] = (accel * limits["still_g"] * 16).squared()
     # LSB that gravity may move
     a_window = window_s * limits["turn_dps"] * 0.0174533 * accel

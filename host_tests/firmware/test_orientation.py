@@ -46,7 +46,7 @@ def test_there_is_none_before_a_second_has_passed_or_without_the_source():
     corrector = Corrector(Sensor(HZ))
     assert orientation(corrector) is None
     for n in range(60):  # a frame like the one before is none
-        corrector.update(array("i", [n & 1, 0, 16384, 0, 0, 0, 0]), 20000)
+        corrector.update(array("i", [0, 0, 16384, 0, n & 1, 0, 0]), 20000)
     assert orientation(corrector) == pytest.approx((1, 0, 0, 0), abs=1e-3)
 
 

@@ -1,8 +1,11 @@
 """What counts as a rest, and what explain() says where there is none."""
 
+from array import array
+
 import numpy as np
 import pytest
 from zerorate import Corrector, Sensor
+from zerorate_tools.layout import GRAVITY
 from zerorate_tools.peers.firmware import Decision, firmware
 from zerorate_tools.peers.given import given
 from zerorate_tools.recordings import Recording, Scales
@@ -249,3 +252,29 @@ def test_a_rest_that_agrees_ends_what_was_held_back():
     _, sigma = followed(KNOWN, (2, SHAKEN), (30, 2.0 * ABOUT_Z), (10, SHAKEN), (30, 0.0))
     assert sigma[130, 2] > 1.0
     assert sigma[-1, 2] == pytest.approx(sigma[100, 2], rel=0.05)
+
+
+def stopped(known_s, lsb_per_dps, noise_dps, hz=50.0):
+    """A Corrector behind a rest so long, then a minute of 2 dps that nothing changes."""
+    noise = np.random.default_rng(4)
+    corrector = Corrector(Sensor(hz, gyro_lsb_per_dps=lsb_per_dps))
+    for n in range(round((known_s + 60) * hz)):
+        rates = [2.0] * 3 if n >= known_s * hz else 0.3 + noise.normal(0, noise_dps, 3)
+        force = [0, 0, 16384] + noise.normal(0, 60, 3)
+        frame = np.rint([*force, 0, *np.multiply(rates, lsb_per_dps)])
+        corrector.update(array("i", [int(word) for word in frame]), round(1e6 / hz))
+    return corrector
+
+
+@pytest.mark.parametrize("known_s, lsb_per_dps", [(0, 131.0), (30, 131.0), (30, 16.4)])
+def test_a_gyroscope_without_noise_teaches_no_source(known_s, lsb_per_dps):
+    corrector = stopped(known_s, lsb_per_dps, noise_dps=0.05)
+    level = [corrector.bias_lsb(axis) / lsb_per_dps for axis in range(3)]
+    assert level == pytest.approx([0.3 if known_s else 0.0] * 3, abs=0.03)
+    assert "the gyroscope has no noise" in corrector.explain()
+    assert corrector.gravity[GRAVITY.OBSERVED] <= 2 * known_s + 1
+
+
+def test_a_part_too_coarse_to_show_its_noise_is_learned():
+    corrector = stopped(0, 1.0, noise_dps=0.0)
+    assert corrector.rests and corrector.bias_lsb(0) == pytest.approx(2.0, abs=0.1)

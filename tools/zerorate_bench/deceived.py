@@ -126,7 +126,9 @@ def _recorded(
         stuck = slice(
             n + round((_FAULT_S[0] - _WORLD_S) * hz), n + round((_FAULT_S[1] - _WORLD_S) * hz)
         )
-        gyro[stuck], force[stuck] = rng.uniform(-6, 6, 3), force[stuck.start]
+        gyro[stuck] = rng.uniform(-6, 6, 3)
+        if rng.integers(2):  # else the gyroscope alone stands still
+            force[stuck] = force[stuck.start]
     columns = {"t_us": np.round(np.arange(n) * 1e6 / hz).astype(np.int64)}
     words = {"g": gyro * _SCALES["gyro_lsb_per_dps"], "a": force * _SCALES["accel_lsb_per_g"]}
     for letter, values in words.items():

@@ -50,12 +50,14 @@ _TURNING_LSB = const(54)
 _TURN_HALVES = const(55)
 _TILT_SPEED = const(56)
 _ONE_G = const(57)
+_QUIETEST_Q8 = const(58)
 # layout: What a window was
 _STILL = const(1)
 _MOVING = const(2)
 _TURNING = const(3)
 _SHAKEN = const(4)
 _SHIFTED = const(5)
+_SILENT = const(6)
 # layout: end
 _FAR_LSB = const(512)  # a reading farther than that from the window's first is motion:
 _MOST_SEGMENTS = const(0x3FFF)
@@ -66,6 +68,7 @@ _FAR_BITS = const(10)  # of ten bits the squares of a window fit 31
 _GRAVITY_NOISE = const(18)  # the mean accelerations: 27 by chi squared of 3, for noise is coloured
 _FAR_Q8 = const(0x7FFFF)  # a temperature so far from the line begins a new one
 _SMOOTHED = const(30)  # windows that a temperature is smoothed over
+_NOISY_Q8 = const(192)  # half an LSB of noise an axis: a window of it is never all alike
 _RATE_NOISE = const(14)  # the mean rate of an axis: 2 / 3 x (4.5 sigma)^2
 
 
@@ -214,12 +217,14 @@ def white(s: ptr32, c: ptr32, spread: int) -> int:
 
 
 def classify_window(s: ptr32, c: ptr32) -> int:
-    """Return what the full window says: _STILL, _MOVING, _SHAKEN, _TURNING or _SHIFTED."""
+    """Return what the full window says: _STILL, _MOVING, _SHAKEN, _TURNING, _SHIFTED, _SILENT."""
     if s[_DIRTY] > 3:
         return _MOVING
     if s[_DIRTY]:
         return _SHAKEN
     noise_q8 = spread_q8(s, _WINDOW_SUM + 4, s[_SQUARE_GYRO], c[_WINDOW_SHIFT])
+    if noise_q8 == 0 and s[_NOISE_Q8] + c[_QUIETEST_Q8] > _NOISY_Q8:
+        return _SILENT  # no rate changed, of a part whose noise would change them
     if noise_q8 > c[_STILL_GYRO_Q8] and white(s, c, noise_q8) == 0:
         return _MOVING
     shake_q8 = spread_q8(s, _WINDOW_SUM, s[_SQUARE_ACCEL], c[_WINDOW_SHIFT])
@@ -278,7 +283,7 @@ def judge(s: ptr32, c: ptr32) -> int:
     follow_temperature(s, c)
     s[_WINDOW_N] = 0
     i = s[_SEGMENT_WINDOWS]
-    if state == _MOVING or state == _SHAKEN:
+    if state == _MOVING or state == _SHAKEN or state == _SILENT:
         s[_REST] = 0
         s[_SEGMENT_WINDOWS] = 0
         return i if i > 1 else 0

@@ -16,7 +16,7 @@ _FIT_WEIGHTS = const(98)
 # layout: The corrector's settings
 _WINDOW_SHIFT = const(4)
 _SEGMENT = const(5)
-_SETTINGS_WORDS = const(58)
+_SETTINGS_WORDS = const(59)
 # layout: The effect model and its running state
 _SLOT_COUNT = const(7)
 _SLOTS = const(119)

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from zerorate_tools.layout import EFFECTS, GRAVITY, MOTION, SOURCE, STATE
+from zerorate_tools.layout import EFFECTS, GRAVITY, MOTION, SOURCE, STATE, STILLNESS
 
 from ..errors import MissingRuntime, ZerorateError
 from ..recordings.checks import GAP
@@ -34,7 +34,11 @@ ENTRIES = (
     *(("effects", "sense"), ("effect_refine", "attend")),
 )
 _WORDS = {
-    **{name: getattr(STATE, name) for name in ("OUT_Q8", "EFFECT_Q8", "QUALITY_Q8", "SOURCE")},
+    **{
+        name: getattr(STATE, name)
+        for name in ("OUT_Q8", "EFFECT_Q8", "QUALITY_Q8", "SOURCE", "STILLNESS")
+    },
+    "SILENT": STILLNESS.SILENT,
     **{"MOTION_BIAS_Q8": MOTION.MOTION_BIAS_Q8, "GRAVITY_BIAS_Q8": GRAVITY.GRAVITY_BIAS_Q8},
     **{"LATE_US": MOTION.LATE_US, "GRAVITY_LATE_US": GRAVITY.GRAVITY_LATE_US},
     **{"IN_MOTION": SOURCE.IN_MOTION, "GRAVITY": SOURCE.GRAVITY},

@@ -9,7 +9,7 @@ int32_t zerorate_update(int32_t *s, int32_t *c, int32_t *m, int32_t *k, int32_t 
     int32_t kind = guard_check(s, c, x, dt_us);
     if (e) effects_sense(s, e, x, dt_us, kind == 0);
     step_admit(s, c, x, kind);
-    if (kind == 0) {
+    if (kind == 0 && s[STILLNESS] != SILENT) {
         int32_t *sensed = e ? e : x;
         if (m && in_motion_update(m, k, sensed, dt_us))
             step_consider(s, c, m, MOTION_BIAS_Q8, IN_MOTION);

@@ -26,6 +26,7 @@ STILLNESS = Codes(
         "TURNING": "No rest to learn from: gravity turns, so the device turns slowly.",
         "SHAKEN": "No rest to learn from: the accelerometer sees motion.",
         "SHIFTED": "No rest to learn from: the rate has shifted within it.",
+        "SILENT": "No rest to learn from: the gyroscope has no noise, as if it were off.",
     },
 )
 SOURCE = Codes(

@@ -267,5 +267,11 @@ SETTINGS = Array(
         ("TURN_HALVES", 1, "segments", "of one rest that halve it"),
         ("TILT_SPEED", 1, "", "from a tilt over a segment, Q4 g, to LSB"),
         ("ONE_G", 1, "16 LSB", "1 g"),
+        (
+            "QUIETEST_Q8",
+            1,
+            "LSB^2",
+            "variance of a sample of the quietest part, three axes together",
+        ),
     ),
 )
