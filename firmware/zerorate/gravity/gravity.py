@@ -90,16 +90,16 @@ def clear(s: ptr32, c: ptr32):
 
 def update(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
     """Take the raw frame `x`, dt_us after the one before; return 1 where an interval ended."""
-    dt_us += s[_GRAVITY_LATE_US]
+    since_us = dt_us + s[_GRAVITY_LATE_US]
     s[_GRAVITY_LATE_US] = 0
-    if dt_us <= 0 or dt_us > c[_GRAVITY_GAP_US]:
+    if since_us <= 0 or since_us > c[_GRAVITY_GAP_US]:
         s[_UNIT_ELAPSED_US] = 0
         s[_LAST_GOOD] = 0
         s[_GRAVITY_REASON] = _GRAVITY_GAP
         begin_unit(s)
         return 0
-    gather(s, x, (dt_us * c[_GRAVITY_GAIN]) >> c[_GRAVITY_GAIN_SHIFT], c[_GRAVITY_SHIFT])
-    s[_UNIT_ELAPSED_US] += dt_us
+    gather(s, x, (since_us * c[_GRAVITY_GAIN]) >> c[_GRAVITY_GAIN_SHIFT], c[_GRAVITY_SHIFT])
+    s[_UNIT_ELAPSED_US] += since_us
     s[_UNIT_N] += 1
     if s[_UNIT_ELAPSED_US] < c[_SUB_UNIT_US]:
         return 0

@@ -94,14 +94,14 @@ _ROUNDS = const(6)  # where one sigma is a fifth of the bias, less of them stop 
 
 def update(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
     """Take the raw frame `x`, dt_us after the one before; return 1 where a bias was learned."""
-    dt_us += s[_LATE_US]
+    since_us = dt_us + s[_LATE_US]
     s[_LATE_US] = 0
-    if dt_us <= 0 or dt_us > c[_MOTION_GAP_US]:
+    if since_us <= 0 or since_us > c[_MOTION_GAP_US]:
         restart(s)
         s[_JOB] = _IDLE
         s[_MOTION_REASON] = _MOTION_GAP
         return 0
-    if gather(s, c, x, dt_us):
+    if gather(s, c, x, since_us):
         follow_temperature(s, x[3])
         close(s, c)
     if s[_JOB] == _IDLE:

@@ -39,43 +39,48 @@ _MOST_ANGLE_Q13 = const(0x3FFF)
 _MOST_FORCE_Q12 = const(0x7FFF)
 
 
-def turn_back(s: ptr32, i: int, j: int, k: int):
-    """Write what turning axis i back to the node's start adds: to the turn (coning), Q24 rad, half
-    the cross product of turned angle and increment; to the force (sculling), Q12 g, the whole."""
+def turn_back(s: ptr32, j: int, k: int):
+    """Write what turning the third axis back to the node's start adds: to the turn (coning), Q24
+    rad, half the cross product with the turned angle; to the force (sculling), Q12 g, the whole."""
     a = (s[_NODE_ANGLE_Q24 + j] + 0x400) >> 11
     b = (s[_NODE_ANGLE_Q24 + k] + 0x400) >> 11
     part = a * ((s[_FRAME_ANGLE_Q24 + k] + 0x80) >> 8)
     part -= b * ((s[_FRAME_ANGLE_Q24 + j] + 0x80) >> 8)
-    s[_CONING_Q24 + i] = (part + 32) >> 6
+    s[_CONING_Q24 + 3 - j - k] = (part + 32) >> 6
     part = a * s[_FRAME_FORCE_Q12 + k] - b * s[_FRAME_FORCE_Q12 + j]
-    s[_SCULLING_Q12 + i] = clipped((part + 0x1000) >> 13, _MOST_FORCE_Q12)
+    s[_SCULLING_Q12 + 3 - j - k] = clipped((part + 0x1000) >> 13, _MOST_FORCE_Q12)
 
 
-def turn_again(s: ptr32, i: int, j: int, k: int):
-    """Add the second order of that to axis i of the frame."""
+def turn_again(s: ptr32, j: int, k: int):
+    """Add the second order of that to the third axis of the frame."""
     # A hand turns by a radian in a node: a sixth of one cross product more with the coning (Bortz
     # 1971), half of one with what turning back adds to the force.
     a = (s[_NODE_ANGLE_Q24 + j] + 0x400) >> 11
     b = (s[_NODE_ANGLE_Q24 + k] + 0x400) >> 11
     part = a * (s[_CONING_Q24 + k] >> 10) - b * (s[_CONING_Q24 + j] >> 10)
-    s[_FRAME_ANGLE_Q24 + i] += (part >> 11) * 43
+    s[_FRAME_ANGLE_Q24 + 3 - j - k] += (part >> 11) * 43
     part = a * s[_SCULLING_Q12 + k] - b * s[_SCULLING_Q12 + j]
-    s[_FRAME_FORCE_Q12 + i] += (part + 0x2000) >> 14
+    s[_FRAME_FORCE_Q12 + 3 - j - k] += (part + 0x2000) >> 14
 
 
-def convert(s: ptr32, c: ptr32, x: ptr32, factor: int):
-    """Write the frame's turns, Q24 rad, and forces, Q12 g, to scratch words."""
+def convert_turns(s: ptr32, c: ptr32, x: ptr32, factor: int):
+    """Write the frame's turns, Q24 rad, to scratch words."""
     shift = c[_MOTION_SHIFT]
-    while factor > 0x3FFF:  # of a frame for many periods: with a rate it would not fit
+    # eleven words: factor is halved where the time is long, or with a rate it would not fit
+    while factor > 0x3FFF:
         factor = factor >> 1
         shift -= 1
     i = 0
     while i < 3:
-        value = (x[4 + i] * factor + (1 << (shift - 1))) >> shift
+        value = ((x[4 + i] * factor >> (shift - 1)) + 1) >> 1
         s[_FRAME_ANGLE_Q24 + i] = clipped(value, _HALF_RAD_Q24)
         if s[_FRAME_ANGLE_Q24 + i] != value:
             s[_FAST] = c[_NODES]
         i += 1
+
+
+def convert_forces(s: ptr32, c: ptr32, x: ptr32):
+    """Write the frame's forces, Q12 g, to scratch words."""
     i = 0
     beyond = 0xFFFFFFF // c[_FORCE_GAIN]  # the most of a force
     while i < 3:
@@ -86,13 +91,14 @@ def convert(s: ptr32, c: ptr32, x: ptr32, factor: int):
 
 def gather(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
     """Add the frame `x` to the node; return 1 when the node is full, else 0."""
-    convert(s, c, x, (dt_us * c[_MOTION_GAIN]) >> c[_MOTION_GAIN_SHIFT])
-    turn_back(s, 0, 1, 2)
-    turn_back(s, 1, 2, 0)
-    turn_back(s, 2, 0, 1)
-    turn_again(s, 0, 1, 2)
-    turn_again(s, 1, 2, 0)
-    turn_again(s, 2, 0, 1)
+    convert_forces(s, c, x)
+    convert_turns(s, c, x, (dt_us * c[_MOTION_GAIN]) >> c[_MOTION_GAIN_SHIFT])
+    turn_back(s, 1, 2)
+    turn_back(s, 2, 0)
+    turn_back(s, 0, 1)
+    turn_again(s, 1, 2)
+    turn_again(s, 2, 0)
+    turn_again(s, 0, 1)
     advance(s, c)
     s[_NODE_N] += 1
     s[_NODE_ELAPSED_US] += dt_us
