@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter1d
+from zerorate_bench.loop.devices import describe
 from zerorate_tools import LoopReport
 from zerorate_tools.closing import close
 from zerorate_tools.loop.motion.by_gravity import _tilt, by_gravity
@@ -16,6 +17,7 @@ from zerorate_tools.loop.motion.windows import ACCEL_BIAS, MATRIX, OWN, columns_
 from zerorate_tools.loop.read.gate import CannotClose
 from zerorate_tools.recordings import Recording, Scales
 from zerorate_tools.recordings.writing import write_recording
+from zerorate_tools.simulate import simulate_sessions
 from zerorate_tools.simulate.attitude import IDENTITY, integrate, into_body
 
 from .test_report_form import breaches
@@ -169,6 +171,14 @@ def test_a_slow_recording_may_end_with_one_sample_more_than_it_is_read_in(record
     parts = {k: getattr(moving, k)[slow] for k in ("rate", "accel", "at_s", "usable")}
     columns = columns_of(replace(moving, **parts), np.zeros((3, 3)), np.zeros(sum(OWN.values())))
     assert len(columns.seen) == 513
+
+
+def test_a_few_bouts_of_a_hand_that_pushes_as_it_turns_show_no_matrix(tmp_path):
+    description, _, _ = describe(104)
+    recording, _ = next(iter(simulate_sessions(description, seed=104)))
+    write_recording(recording, tmp_path / "run.parquet")
+    shown = by_gravity([moving_of(tmp_path / "run.parquet")], [])
+    assert shown.runs > 8 and not shown.found  # it was told 8 % of cross-axis sensitivity
 
 
 def test_even_shaking_on_a_floor_says_nothing_of_the_scale_about_the_vertical(recorded):
