@@ -34,7 +34,7 @@ def run(folders: list[Path], advance: Callable[[float], None] = lambda n: None) 
     every = {t.name[:2]: t for folder in folders for t in trials(folder)}
     with TemporaryDirectory() as scratch:
         moving = {n: moving_in(t, Path(scratch) / f"{n}.parquet") for n, t in every.items()}
-    found: dict = {"others": {}, "halves": {}, "refused": _refused(list(moving.values()))}
+    found: dict = {"others": {}, "halves": {}, **_refused(list(moving.values()))}
     for number, group in enumerate(GROUPS):
         own = [n for n in group if n in every]
         for name in own:
@@ -58,12 +58,14 @@ def moving_in(trial: Trial, path: Path) -> Moving:
     return moving
 
 
-def _refused(moving: list[Moving]) -> list[list[str]]:
+def _refused(moving: list[Moving]) -> dict[str, list]:
+    """Both groups, and those that could also be with the others."""
     try:
         by_gravity(moving, [])
     except DifferentDevices as problem:
-        return [sorted(group) for group in problem.groups]
-    return []
+        groups = [sorted(group) for group in problem.groups]
+        return {"refused": groups, "unsure": sorted(problem.unsure)}
+    return {"refused": [], "unsure": []}
 
 
 def _row(trial: Trial, group: int, shown, first: float = 0.0) -> dict:
@@ -128,7 +130,10 @@ def in_markdown(found: dict) -> str:
                 f"degrees, must be at most {limit}: {met}."
             )
     groups = " and ".join(", ".join(g) for g in found["refused"])
-    parts.append(f"All trials as one device: {f'refused, {groups}' if groups else 'NOT refused'}.")
+    unsure = ", ".join(found["unsure"])
+    either = f"; {unsure} could also be with the others" if unsure else ""
+    told = f"refused, {groups}{either}" if groups else "NOT refused"
+    parts.append(f"All trials as one device: {told}.")
     for key, words in (("others", "other trials"), ("halves", "its first half")):
         heads = ["trial", "deployed", "before, degrees", f"after, fitted on {words}"]
         heads += ["after, fitted on other trials"] if key == "halves" else []

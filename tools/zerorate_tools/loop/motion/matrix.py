@@ -127,8 +127,9 @@ def beside(moving: Moving, matrix: np.ndarray) -> Fitted | None:
 
 def _beside(moving, seconds, matrix, before) -> Fitted | None:
     own = np.zeros(sum(OWN.values())) if before is None else before.own.copy()
-    fit_in = [s for s in _SECONDS if s <= seconds and len(moving.spans(s)) >= LEAST_WINDOWS]
-    seconds = max(fit_in, default=_SECONDS[0])
+    longest = (s for s in reversed(_SECONDS) if s <= seconds)
+    fit_in = (s for s in longest if len(moving.spans(s)) >= LEAST_WINDOWS)
+    seconds = next(fit_in, _SECONDS[0])
     rows = list(rows_of(moving, seconds, matrix, own))
     if not rows:
         return None
