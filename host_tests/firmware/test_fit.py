@@ -84,24 +84,6 @@ def test_the_line_is_the_exact_one_everywhere_in_the_fitted_range(axis, points, 
         assert abs(axis.line_lsb(temp_q4) - exact(temp_q4) / 256) <= LINE_LSB
 
 
-def test_one_point_gives_its_own_bias_at_any_temperature(axis):
-    axis.fit([(4000 * 16, -700 * 256 + 77, 250)])
-    for temp_q4 in (-32768 * 16, 4000 * 16, 32767 * 16):
-        assert axis.line_lsb(temp_q4) == pytest.approx(-700 + 77 / 256, abs=LINE_LSB)
-
-
-def test_two_points_are_both_met_however_unlike_their_weights(axis):
-    axis.fit([(0, 100 * 256, 131000), (340 * 16, 300 * 256, 2)])
-    assert axis.line_lsb(0) == pytest.approx(100, abs=LINE_LSB)
-    assert axis.line_lsb(340 * 16) == pytest.approx(300, abs=LINE_LSB)
-
-
-def test_points_of_one_temperature_give_their_weighted_mean(axis):
-    axis.fit([(800, 100 * 256, 300), (800, 200 * 256, 100), (800, 200 * 256, 100)])
-    assert axis.line_lsb(800) == pytest.approx(140, abs=LINE_LSB)
-    assert axis.line_lsb(90000) == pytest.approx(140, abs=LINE_LSB)
-
-
 def test_no_points_leave_no_line(axis):
     axis.fit([])
     assert axis.choose(1000) == (bias.NONE, 0)
