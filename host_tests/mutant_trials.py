@@ -21,13 +21,13 @@ from pathlib import Path
 import pytest
 
 REPOSITORY = Path(__file__).resolve().parents[1]
-# Tests in other processes, and two that take long and see little that others do not.
+# Tests in other processes, and some that take long and see little that others do not.
 # (An interpreter reads the file as it is, and so would tell any mutant from it.)
 NOT_IN_PROCESS = " and ".join(
     "not " + name
     for name in (
         *("micropython", "bytecode", "heap", "runtime", "last_byte", "any_slot", "no_intermediate"),
-        *("every_interpreter", "signal_at_any_rename", "end_by_a_signal"),
+        *("every_interpreter", "signal_at_any_rename", "end_by_a_signal", "log_of_another_tool"),
     )
 )
 

@@ -100,7 +100,8 @@ AREAS = {
             "logs/columnar.py", "logs/messages.py")],
         ["host_tests/importers/test_" + name for name in (
             "by_a_plain_reading.py", "small_steps.py", "tables.py", "odd_files.py",
-            "odd_names.py", "odd_times.py", "units_told.py", "steps_of_logs.py")],
+            "odd_names.py", "odd_times.py", "units_told.py", "steps_of_logs.py",
+            "together.py")],
     ),
     "effects": (
         ["firmware/zerorate/effects/" + name for name in (

@@ -182,10 +182,16 @@ def test_a_truncated_gzip_is_refused(tmp_path):
 
 
 def test_a_recording_in_this_form_only_changes_its_format(tmp_path):
-    columns = {name: np.arange(5) for name in ("t_us", "gx", "gy", "gz", "load")}
+    columns = {name: np.arange(5) for name in ("gx", "gy", "gz", "load")}
+    columns["t_us"] = 3000 + 100_000 * np.arange(5)
     write_recording(recording_from_columns(columns, Scales("X", 10, 77)), tmp_path / "in.csv")
     report = import_recording(tmp_path / "in.csv", tmp_path / "out.parquet")
     recording = read_recording(tmp_path / "out.parquet")
     assert recording.columns["load"].tolist() == [0, 1, 2, 3, 4]
     assert recording.scales.gyro_lsb_per_dps == 77
-    assert told(report, "in this form already")
+    assert report.notes == ["a recording in this form already"]
+    assert (report.rows_read, report.rows_written, report.odr_hz) == (5, 5, 10)
+    assert report.duration_s == pytest.approx(0.4)
+    for told_more in ({"options": Options(hz=5.0)}, {"units": {"gyro": "dps"}}):
+        report = read_foreign(tmp_path / "in.csv", **told_more)[1]
+        assert told(report, "its own scales and times are kept") and report.odr_hz == 10

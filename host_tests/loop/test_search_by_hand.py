@@ -377,7 +377,9 @@ def test_a_memory_that_others_of_its_source_leave_nothing_of_is_the_same(session
     assert not collinear(lags[:1], [replace(lags[1], source="b")], sessions)
     for s in sessions:
         s.sources["b"] = s.sources["a"]
-    assert not collinear([replace(lags[0], source="b")], lags[1:2], sessions)
+    for one, other in ("ab", "ba"):
+        beside = [replace(lags[1], source=other)]
+        assert not collinear([replace(lags[0], source=one)], beside, sessions)
     assert not collinear([A], lags, sessions) and not collinear(lags[:1], [A], sessions)
     assert not collinear(lags[:2], lags[1:2], sessions) and not collinear(lags[:1], [], sessions)
     for memory in ({"delay_s": 20.0}, {"decay_s": 99.0}, {"width": 1.0, "memory": "backlash"}):
