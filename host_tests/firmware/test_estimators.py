@@ -161,7 +161,7 @@ def filled(draw, document):
     long = list(range(a + c[SETTINGS.FIRST_LONG], a + c[SETTINGS.ESTIMATORS_END], words))
     for e in [a + c[SETTINGS.FIRST_SHORT], *long]:
         s[e], s[e + ESTIMATOR.EST_READINGS] = draw.randrange(-9, 10) * STEP, draw.randrange(1, 9)
-    s[a + AXIS.COLDEST], s[a + AXIS.HOTTEST] = -5 * STEP, draw.randrange(5, 9) * STEP
+    s[a + AXIS.COLDEST], s[a + AXIS.HOTTEST] = -5 * STEP - 1, draw.randrange(5, 9) * STEP
     if draw.random() < 0.2:
         s[draw.choice(long)] = FREE
     return s, c, a, long
