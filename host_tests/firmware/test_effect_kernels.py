@@ -1,11 +1,22 @@
 """Each kernel of the effects by hand: exact numbers, at every limit and one beside it."""
 
+import random
 from array import array
 
 import pytest
 from zerorate.effects import effect_basis, effect_plays, effects
 from zerorate.model import EffectModel
-from zerorate_tools.layout import EFFECTS, INPUT, INPUT_KIND, LIMITS, MARKS, PLAY, SLOT, slot_at
+from zerorate_tools.layout import (
+    EFFECTS,
+    INPUT,
+    INPUT_KIND,
+    LIMITS,
+    MARKS,
+    PLAY,
+    SLOT,
+    STATE,
+    slot_at,
+)
 
 ONE = 1 << 24
 NO_VALUE = MARKS.NO_VALUE
@@ -233,3 +244,17 @@ def test_a_channel_is_named_or_numbered():
     told = [model.channel(name, 5 + i) for i, name in enumerate(("load", 0, "vdd", 2, -1))]
     assert told == [True, True, False, False, False]
     assert list(model.e[EFFECTS.CHANNELS : EFFECTS.CHANNELS + 3]) == [6, 5, 0]
+
+
+def test_what_other_sources_sense_is_the_frame_less_the_effects_with_nothing_lost(e):
+    draw, s, due = random.Random(1), array("i", [0] * STATE.FIT_WEIGHTS), [0, 0, 0]
+    for _ in range(100):
+        frame = array("i", [draw.randrange(-32768, 32768) for _ in range(7)])
+        for i in range(3):
+            s[STATE.EFFECT_Q8 + i] = draw.randrange(-(1 << 20), 1 << 20)
+            due[i] += 256 * frame[4 + i] - s[STATE.EFFECT_Q8 + i]
+        effects.lessen(s, e, frame)
+        sensed = e[EFFECTS.SENSED : EFFECTS.SENSED + 7]
+        rounded = [(d + 128) // 256 for d in due]
+        assert list(sensed) == [*frame[:4], *(max(-0x7FFF, min(d, 0x7FFF)) for d in rounded)]
+        due = [d - 256 * r for d, r in zip(due, rounded)]
