@@ -110,8 +110,11 @@ OTHERS = [
     Term("temp", 0.0, 80.0, 40.0, knot=5.0),
     Term("temp", 0.0, 80.0, 40.0, lag_s=100.0, lag_mode="difference"),
     Term("temp", 0.0, 80.0, 40.0, second="acc_x", second_lo=-1.0, second_hi=1.0),
+    *(Term("temp", 0.0, 80.0, 40.0, **one) for one in (
+        {"memory": "peak"}, {"decay_s": 90.0}, {"delay_s": 1.0}, {"table": (0.0,) * 8 + (1.0,)}
+    )),
     Term("acc_x", -1.0, 1.0),
-]
+]  # fmt: skip
 
 
 def step_degc(corrector):

@@ -2,12 +2,14 @@
 
 import struct
 import zlib
+from array import array
 
 import pytest
 from zerorate import Sensor
+from zerorate.effects import model_file
 from zerorate.effects.model_file import IMPOSSIBLE, LOADED, OTHER_SCALE, TOO_LARGE
 from zerorate.model import EffectModel
-from zerorate_tools.layout import INPUT_KIND, PLAY, SLOT
+from zerorate_tools.layout import INPUT_KIND, MARKS, PLAY, SLOT
 from zerorate_tools.model import Binding, Slot, build_model, encoded
 from zerorate_tools.model.term import Term
 
@@ -151,3 +153,17 @@ def test_scales_are_the_same_to_a_ten_thousandth(whole, field):
     verdicts = [load(whole, sensor=Sensor(**{field: scale * (1 + x)})) == LOADED
                 for x in (-2e-4, -0.5e-4, 0.5e-4, 2e-4)]  # fmt: skip
     assert verdicts == [False, True, True, False]
+
+
+@pytest.mark.parametrize(
+    ("value", "fits"),
+    [
+        *((sign * ((1 << 29) - 1), True) for sign in (1, -1)),
+        *((sign * (1 << 29), False) for sign in (1, -1)),
+        *((MARKS.NO_VALUE, True), (MARKS.NO_VALUE - 1, False), (-1 << 31, False)),
+    ],
+)
+def test_a_number_of_a_file_that_kernels_cannot_hold_is_not_put(value, fits):
+    e = array("i", [0] * 4)
+    assert model_file.put(e, 1, 2, struct.pack("<3i", 9, 5, value), 4) is fits
+    assert list(e) == [0, 5, value if fits else 0, 0]
