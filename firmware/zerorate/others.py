@@ -14,8 +14,8 @@ _STILLNESS = const(50)
 # layout: The corrector's settings
 _STEP_LSB = const(29)
 # layout: The state of the source in motion
-_MOTION_BIAS_Q8 = const(71)
-_LATE_US = const(257)
+_MOTION_BIAS_Q8 = const(68)
+_LATE_US = const(292)
 # layout: The state of the source against gravity
 _GRAVITY_BIAS_Q8 = const(28)
 _GRAVITY_LATE_US = const(58)

@@ -4,15 +4,15 @@ from array import array
 
 import numpy as np
 from scipy.spatial.transform import Rotation
+from zerorate.arithmetic.real import pack, unpack
 from zerorate.motion.motion_settings import motion_settings
-from zerorate_tools.layout import COMPONENT
+from zerorate_tools.layout import MOTION, ROW
 
 from .motions import stored, value_at
 
 SETTINGS = motion_settings()
-Q14, Q12 = 1 << 14, 4096
-SIZE = COMPONENT.size
-UPPER = np.triu_indices(3)  # 00 01 02 11 12 22, as the kernels keep a symmetric matrix
+Q14, Q12, Q11 = 1 << 14, 4096, 2048
+SIZE = ROW.size
 
 
 def numbers(state, at, count):
@@ -38,13 +38,34 @@ def put_rotation(state, at, turn, scale):
     put_words(state, at, scale * np.array([w, *xyz]))
 
 
-def symmetric(six):
-    matrix = np.zeros((3, 3))
-    matrix[UPPER] = six
-    return matrix + matrix.T - np.diag(matrix.diagonal())
+def packed_at(state, at, count):
+    """Numbers of one word each."""
+    found = []
+    for i in range(count):
+        unpack(state, MOTION.T, at + i)
+        found.append(value_at(state, MOTION.T))
+    return np.array(found)
 
 
-def positive(draw, size=1.0):
+def put_packed(state, at, values):
+    for i, value in enumerate(values):
+        stored(state, MOTION.T, value)
+        pack(state, at + i, MOTION.T)
+
+
+def covariance_at(state, count=12):
+    """The covariance that the filter holds, over the push's variance."""
+    held, matrix = packed_at(state, MOTION.KNOWN, 78), np.zeros((12, 12))
+    matrix[np.tril_indices(12)] = held
+    matrix = matrix + np.tril(matrix, -1).T
+    return matrix[:count, :count]
+
+
+def put_covariance(state, matrix):
+    put_packed(state, MOTION.KNOWN, matrix[np.tril_indices(12)])
+
+
+def positive(draw, size=1.0, count=3):
     """A random positive definite matrix."""
-    root = draw.normal(size=(3, 3))
-    return size * (root @ root.T + 0.1 * np.eye(3))
+    root = draw.normal(size=(count, count))
+    return size * (root @ root.T + 0.1 * np.eye(count))

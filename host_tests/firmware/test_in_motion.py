@@ -10,8 +10,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 from zerorate.arithmetic import atan2, real
 from zerorate.gravity.gravity_settings import gravity_settings, gravity_state
-from zerorate.motion import attitude, in_motion, motion_verdict
-from zerorate.motion.least_squares import place
+from zerorate.motion import attitude, in_motion
 from zerorate.motion.motion_settings import motion_settings, motion_state
 from zerorate_tools.layout import MOTION, MOTION_REASON
 from zerorate_tools.simulate import simulate
@@ -83,18 +82,6 @@ def test_the_truth_lies_within_two_sigma_at_least_ninety_times_of_a_hundred():
         inside += [np.abs(b - motion.bias_dps) < 2 * s for _, b, s in learner.learned]
     assert len(inside) > 50
     assert np.mean(inside) >= 0.9
-
-
-@pytest.mark.parametrize(("moved", "expected"), [(1, 1 / 3), (0, 1 / 256), (100, 4)])
-def test_one_sigma_follows_how_far_windows_move_a_bias(moved, expected):
-    settings = motion_settings()
-    state = Words(motion_state(settings))
-    real.put(state, MOTION.KNOWN_P, 4, 0)
-    real.put(state, place(0, 0), -1, 0)  # the window leaves a quarter of the variance
-    real.put(state, MOTION.BIAS, moved, 0)
-    for _ in range(400):
-        motion_verdict.follow_misfit(state, 0)
-    assert state[MOTION.MISFIT_Q16] / 65536 == pytest.approx(expected, rel=0.01)
 
 
 @pytest.mark.parametrize(

@@ -1,24 +1,30 @@
-"""Sums and least squares of a window in motion beside the same in floats."""
+"""Rows of a window in motion, and the filter that takes them, beside the same in floats."""
 
 import numpy as np
 import pytest
-from zerorate.motion import least_squares, regression
+from scipy.spatial.transform import Rotation
+from zerorate.motion import attitude, least_squares, regression
 from zerorate.motion.motion_settings import motion_settings, motion_state
-from zerorate_tools.layout import COMPONENT, MOTION, MOTION_SETTINGS
+from zerorate_tools.layout import MOTION, MOTION_REASON, MOTION_SETTINGS
 
 from .motion_words import (
     Q12,
     Q14,
     SETTINGS,
     SIZE,
-    UPPER,
-    numbers,
+    covariance_at,
+    packed_at,
     positive,
     put_all,
+    put_covariance,
+    put_packed,
+    put_rotation,
     put_words,
-    symmetric,
 )
 from .motions import stored, value_at
+
+LONGEST = SETTINGS[MOTION_SETTINGS.LONGEST]
+SETTLED = 8  # windows
 
 
 @pytest.fixture
@@ -31,186 +37,184 @@ def draw(request):
     return np.random.default_rng(request.param)
 
 
-def summed(state, stage, even, draw, mean_m):
-    """(M, y, t) of a window whose sums were taken by the kernels, as numbers."""
+def bells(t):
+    """Both bells, the slopes that go with them (less, by t / 2), and the third shape."""
+    rest = 1 - t**2
+    shapes = [6 * t * rest**2, 2 * (7 * t**2 - 1) * rest**2, 11 * t * rest**2 * (3 * t**2 - 1)]
+    return [rest**3, 2 * t * rest**3], shapes
+
+
+def test_a_shape_is_what_its_bell_falls_by():
+    t = np.linspace(-1, 1, 4001)
+    curves, shapes = bells(t)
+    for curve, shape in zip(curves, shapes):
+        assert -np.gradient(curve, t)[1:-1] == pytest.approx(shape[1:-1], abs=2e-5)
+    # what a steady turn adds to the other shapes: nothing
+    for shape in shapes[1:]:
+        assert np.mean(shape * t) == pytest.approx(0, abs=1e-3)
+
+
+@pytest.mark.parametrize("stage", [4, 5, 7])
+def test_the_rows_are_the_sums_under_both_bells(state, draw, stage):
     n = 1 << stage
     t = (2 * np.arange(n) + 1 - n) / n
-    m = mean_m + draw.uniform(-0.3, 0.3, (n, 3))
-    y = draw.uniform(-1, 1, n)
-    state[MOTION.STAGE] = stage
+    turns = Rotation.from_rotvec(draw.normal(0, 1, (n, 3)))
+    halves, seen = draw.uniform(-0.2, 0.2, (n, 3)), draw.uniform(-1, 1, (n, 3))
     for k in range(n):
-        regression.taper(state, k, stage, even)
-        put_words(state, MOTION.SUM_R, m[k] * Q14 * n)
-        regression.regressors(state, MOTION.SUM_R, stage)
-        regression.first_sums(state, MOTION.SUMS + SIZE, round(y[k] * Q12))
-        regression.second_sums(state, MOTION.SUMS + SIZE)
-    return m, y, t
+        put_rotation(state, MOTION.Q, turns[k], 1 << 28)
+        attitude.rotation(state)
+        put_words(state, MOTION.HALF, halves[k] * Q14)
+        put_words(state, MOTION.Y, seen[k] * Q12)
+        regression.weights(state, k, stage, 0)
+        regression.rows(state)
+    (first, second), shapes = bells(t)
+    both = halves + np.vstack([np.zeros(3), halves[:-1]])
+    of = turns.as_matrix()
+    for r, (bell, shape, i) in enumerate(
+        [(first, 0, 0), (first, 0, 1), (first, 0, 2), (second, 1, 0), (second, 1, 1)]
+    ):
+        row = np.array(state[MOTION.WINDOW_ROWS + SIZE * r : MOTION.WINDOW_ROWS + SIZE * (r + 1)])
+        assert row[0] / Q12 == pytest.approx(shapes[shape] @ seen[:, i], abs=n * 0.006)
+        assert row[1:4] / Q14 == pytest.approx(bell @ of[:, i], abs=n * 0.004)
+        by = np.einsum("m,mj,mk->jk", bell, of[:, i], both)
+        assert row[4:] / Q14 == pytest.approx(by.ravel(), abs=n * 0.003)
+    stray = np.array(state[MOTION.STRAY : MOTION.STRAY + 2]) / Q12
+    assert stray == pytest.approx([shapes[1] @ seen[:, 2], shapes[2] @ seen[:, 2]], abs=n * 0.006)
 
 
-@pytest.mark.parametrize("even", [0, 1])
-@pytest.mark.parametrize("stage", [4, 5, 7])
-def test_the_sums_of_a_window_are_those_of_the_tapered_fit(state, draw, stage, even):
-    mean_m = draw.uniform(-1, 1, 3)
-    m, y, t = summed(state, stage, even, draw, mean_m)
-    taper = 1 - t**4
-    weight = np.ones(len(t)) if even else taper
-    shapes = [(21 / 5 * t**2 - 1) * taper, (15 / 7 * t**3 - t) * taper]
-    at = MOTION.SUMS + SIZE
-
-    def near(name, expected, unit):
-        word = at + getattr(COMPONENT, name)
-        found = np.array(state[word : word + np.size(expected)]) / unit
-        assert found == pytest.approx(np.ravel(expected), abs=len(t) * 0.004), name
-
-    assert state[MOTION.TAPER_SUM] / 1024 == pytest.approx(weight.sum(), abs=0.2)
-    near("SUM_MM", (m.T * weight @ m)[UPPER], 1 << 18)
-    near("SUM_MY", m.T * weight @ y, 1 << 16)
-    near("SUM_M", weight @ m, Q14)
-    near("SUM_Y", weight @ y, Q12)
-    near("SHAPES_M", [shape @ m for shape in shapes], Q14)
-    near("SHAPES_Y", [shape @ y for shape in shapes], Q12)
-    put_words(state, MOTION.CENTRE + 3, [0, 5 << stage, 0])
-    regression.centre(state, at, 3, stage)
-    centred = m - weight @ m / weight.sum()
-    near("SUM_MM", (centred.T * weight @ centred)[UPPER], 1 << 18)
-    near("SUM_MY", centred.T * weight @ y, 1 << 16)
-    near("SUM_Y", [weight @ y / weight.sum()], Q12)
-    left = np.array(state[MOTION.CENTRE + 3 : MOTION.CENTRE + 6]) / (Q14 << stage)
-    assert -left == pytest.approx(weight @ m / weight.sum(), abs=0.003)
-
-
-def test_what_a_bias_about_the_vertical_would_turn_is_taken_from_a_row(state, draw):
-    vertical, row = draw.normal(size=3), draw.uniform(-1, 1, 3)
-    vertical /= np.linalg.norm(vertical)
-    put_words(state, MOTION.VERTICAL, vertical * Q14)
-    put_words(state, MOTION.M, row * Q14)
-    regression.look_past_vertical(state)
-    left = np.array(state[MOTION.M : MOTION.M + 3]) / Q14
-    assert left == pytest.approx(row - row @ vertical * vertical, abs=3e-4)
-
-
-def test_the_normal_equations_are_solved_as_numpy_solves_them(state, draw):
-    state[MOTION.STAGE] = stage = 7
-    weights, prior = draw.uniform(0.5, 2, 3), positive(draw)
-    bias, mean = draw.normal(size=(2, 3))
-    sums = np.stack([positive(draw, 2.0**26) for _ in range(3)])
-    with_y = draw.normal(0, 2.0**18, (3, 3))
-    for i in range(3):
-        put_words(state, MOTION.SUMS + SIZE * i + COMPONENT.SUM_MM, sums[i][UPPER])
-        put_words(state, MOTION.SUMS + SIZE * i + COMPONENT.SUM_MY, with_y[i])
-    put_all(state, MOTION.OMEGA, weights)
-    put_all(state, MOTION.PRIOR, prior[UPPER])
+def filled(state, draw, accepted):
+    """A full window's state with a random row 0 and knowledge; (row, matrix, mean, bias, push)."""
+    state[MOTION.STAGE], state[MOTION.LENGTH], state[MOTION.ACCEPTED] = 7, LONGEST, accepted
+    row = np.rint(draw.normal(0, 8000, 13))
+    row[0] *= 3
+    put_words(state, MOTION.WINDOW_ROWS, row)
+    matrix, mean = positive(draw, 1e-3, 12), draw.normal(0, 1e5, 12)
+    bias, push = draw.normal(0, 1e5, 3), 10.0 ** draw.uniform(13, 15)
+    put_covariance(state, matrix)
+    put_packed(state, MOTION.MEAN, mean)
     put_all(state, MOTION.BIAS, bias)
-    put_all(state, MOTION.PRIOR_MEAN, mean)
-    for n in range(6):
-        least_squares.matrix_element(state, n)
+    stored(state, MOTION.PUSH, push)
+    return row, matrix, mean, bias, push
+
+
+def taken(state, r=0):
+    """The kernels' row r, up to the noise that it tells."""
+    least_squares.innovate(state, SETTINGS, r)
+    for j in range(12):
+        least_squares.look(state, r, j)
+    least_squares.weigh(state, r)
+
+
+@pytest.mark.parametrize(("accepted", "far"), [(0, 1.0), (SETTLED - 1, 1e3), (SETTLED, 1e3)])
+def test_a_row_moves_and_narrows_as_a_kalman_filter_with_students_tails(state, draw, accepted, far):
+    row, matrix, mean, bias, push = filled(state, draw, accepted)
+    h = row[1:] * 2.0 ** (7 - 15)
+    off = mean - np.concatenate([bias, np.zeros(9)])
+    expected = h @ matrix @ h + 2
+    # so far that its square is `far` of what was expected
+    said = h @ off + np.sqrt(far * push * expected)
+    row[0] = np.rint(said / 4096)
+    put_words(state, MOTION.WINDOW_ROWS, row)
+    innovation = row[0] * 4096 - h @ off
+    square = innovation**2 / expected / push
+    tail = (4 + square) / 5 if accepted >= SETTLED else 1
+    taken(state)
+    for_sure = state[MOTION.MOTION_REASON] == MOTION_REASON.TURNED
+    assert for_sure == (accepted >= SETTLED and square > 16)
+    gain = matrix @ h / (expected + 2 * (tail - 1))
+    least_squares.move(state)
+    for n in range(12):
+        least_squares.narrow(state, n)
+    moved = packed_at(state, MOTION.MEAN, 12)
+    assert moved == pytest.approx(mean + gain * innovation, rel=2e-3, abs=300)
+    left = matrix - np.outer(gain, matrix @ h)
+    assert covariance_at(state) == pytest.approx(left, abs=2e-5 * matrix.max())
+
+
+@pytest.mark.parametrize("square", [0.0, 1.0, 9.0])
+@pytest.mark.parametrize(("r", "gain"), [(0, 1 / 9), (2, 4 / 8)])
+def test_the_noise_follows_what_rows_say_beyond_what_was_expected(state, r, gain, square):
+    stored(state, MOTION.PUSH, 5e14)
+    stored(state, MOTION.T, square)
+    stored(state, MOTION.ROW_NOISE, 3.0)
+    stored(state, MOTION.EXPECTED, 1 / 12)  # a quarter is the row's own
+    least_squares.follow_noise(state, r)
+    share = 0.25 if r == 2 else 1
+    fit, push = value_at(state, MOTION.HEADING_FIT), value_at(state, MOTION.PUSH)
+    grown = 1 + gain * share * (square - 1)
+    assert (fit, push) == pytest.approx((grown, 5e14) if r == 2 else (1, 5e14 * grown), rel=1e-5)
+    assert state[MOTION.ROWS_SEEN] == 8 + (r != 2)
+
+
+def test_the_push_forgets_what_is_older_than_minutes(state):
+    for square in (9.0, 1.0):
+        for _ in range(600):
+            stored(state, MOTION.T, square * 1e14 / value_at(state, MOTION.PUSH))
+            least_squares.follow_noise(state, 0)
+        assert value_at(state, MOTION.PUSH) == pytest.approx(square * 1e14, rel=0.2)
+    assert state[MOTION.ROWS_SEEN] == 128
+
+
+@pytest.mark.parametrize(("stage", "accepted", "least_rad"), [(4, 0, 0.05), (7, 0, 0.3), (7, 1, 0)])
+def test_a_heading_strays_by_its_shapes_and_hardly_less_than_before(
+    state, draw, stage, accepted, least_rad
+):
+    n = 1 << stage
+    state[MOTION.STAGE], state[MOTION.LENGTH], state[MOTION.ACCEPTED] = stage, n, accepted
+    own = 1.33  # mean square of a shape
+    for strays in (0.02, 0.6):
+        held = (draw.uniform(0.1, 0.3) * (1 << 24)) ** 2 * n * own
+        stored(state, MOTION.HELD_STRAY, held)
+        shapes = strays * np.sqrt(n * own) * np.array([1, -1])
+        put_words(state, MOTION.STRAY, shapes * Q12)
+        least_squares.stray(state, SETTINGS)
+        found = np.sqrt(value_at(state, MOTION.HELD_STRAY) / n / own) / (1 << 24)
+        before = np.sqrt(0.8 * held / n / own) / (1 << 24) if accepted else least_rad
+        assert found == pytest.approx(max(before, np.hypot(strays, 0.01)), rel=0.01)
+
+
+def test_a_row_weighs_by_its_window_and_the_heading_by_what_it_strays(state):
+    stored(state, MOTION.PUSH, 2e14)
+    stored(state, MOTION.HELD_STRAY, 6e14)
+    stored(state, MOTION.HEADING_FIT, 0.5)
+    spread = SETTINGS[MOTION_SETTINGS.HEADING_SPREAD]
+    for stage, times in ((7, 2), (6, 1 / 2), (4, 1 / 8)):
+        state[MOTION.STAGE] = stage
+        for r in (0, 1, 3, 4):
+            least_squares.row_noise(state, SETTINGS, r)
+            assert value_at(state, MOTION.ROW_NOISE) == pytest.approx(times)
+        least_squares.row_noise(state, SETTINGS, 2)
+        expected = spread * (2 if stage == 7 else 1) * 6e14 * 0.5 / 2e14
+        assert value_at(state, MOTION.EXPECTED) == pytest.approx(expected, rel=1e-5)
+
+
+def test_a_swept_matrix_is_solved_as_numpy_solves_it(state, draw):
+    matrix, right = positive(draw), draw.normal(size=3)
     for i in range(3):
-        least_squares.right_side(state, i)
-    matrix = prior + np.tensordot(weights, sums, 1) * 2.0 ** (2 * stage - 42)
-    right = weights @ with_y * 2.0 ** (stage - 16) + prior @ (mean - bias)
+        for j in range(i, 3):
+            stored(state, least_squares.place(i, j), matrix[i, j])
+        stored(state, least_squares.place(i, 3), right[i])
+    stored(state, least_squares.place(3, 3), 0.0)
     for k in range(3):
         least_squares.sweep(state, k)
-    found = [value_at(state, least_squares.place(i, 3)) for i in range(3)]
+    found = [value_at(state, least_squares.place(3, i)) for i in range(3)]
     assert found == pytest.approx(np.linalg.solve(matrix, right), rel=1e-4, abs=1e-5)
-    least_squares.covariance(state, MOTION.KNOWN_P)
-    inverse = np.linalg.inv(matrix)
-    assert symmetric(numbers(state, MOTION.KNOWN_P, 6)) == pytest.approx(inverse, rel=1e-4)
-    # what is swept is put back to be swept again
-    least_squares.spread_prior(state)
-    for k in range(3):
-        least_squares.sweep(state, k)
-    least_squares.covariance(state, MOTION.PRIOR)
-    assert symmetric(numbers(state, MOTION.PRIOR, 6)) == pytest.approx(matrix, rel=1e-3, abs=1e-3)
-
-
-@pytest.mark.parametrize("size", [0.1, 1.0, 8.0])
-def test_a_step_is_no_longer_than_what_stays_linear(state, draw, size):
-    state[MOTION.STAGE] = 7
-    limit = 0.7 * (1 << 24) / 128
-    slope = size * limit * draw.choice([-1, 1], 3) * [0.2, 1, 0.5]
-    for i in range(3):
-        stored(state, least_squares.place(i, 3), slope[i])
-    least_squares.step(state)
-    expected = slope * min(1, 1 / size)
-    assert numbers(state, MOTION.SLOPE, 3) == pytest.approx(expected, rel=1e-5)
-
-
-def noise_of(state, i, slope, stage):
-    """Noise energy of component i beside the fit, Q24 rad^2 a node, by the words of the kernel."""
-    at = MOTION.SUMS + SIZE * i
-    m = np.reshape(state[at + COMPONENT.SHAPES_M : at + COMPONENT.SHAPES_M + 6], (2, 3))
-    y = np.array(state[at + COMPONENT.SHAPES_Y : at + COMPONENT.SHAPES_Y + 2])
-    left = y - m @ slope * 2.0 ** (stage - 26)
-    # the mean squares of the two shapes under the taper, each summed with half the weight
-    t = (2 * np.arange(4096) + 1 - 4096) / 4096
-    taper = 1 - t**4
-    squares = np.mean(np.square([21 / 5 * t**2 - 1, 15 / 7 * t**3 - t]) * taper, axis=1)
-    return (left**2 / squares).sum() / 2 / 2**stage
 
 
 @pytest.mark.parametrize("stage", [4, 7])
-def test_noise_is_what_the_slope_leaves_of_the_neighbouring_shapes(state, draw, stage):
-    state[MOTION.STAGE] = stage
-    slope = draw.normal(0, 2.0**16, 3)
-    put_all(state, MOTION.SLOPE, slope)
-    for i, floor_rad in enumerate([0.005, 0.005, 0.01]):
-        at = MOTION.SUMS + SIZE * i
-        put_words(state, at + COMPONENT.SHAPES_M, draw.normal(0, Q14, 6))
-        put_words(state, at + COMPONENT.SHAPES_Y, draw.normal(0, 20 * Q12, 2))
-        least_squares.noise(state, i)
-        expected = noise_of(state, i, slope, stage) + (floor_rad * Q12) ** 2
-        assert value_at(state, MOTION.OMEGA + 2 * i) == pytest.approx(expected, rel=0.02)
-        put_words(state, at + COMPONENT.SHAPES_M, np.zeros(8))
-        least_squares.noise(state, i)
-        assert value_at(state, MOTION.OMEGA + 2 * i) == pytest.approx(
-            (floor_rad * Q12) ** 2, rel=2e-3
-        )
-
-
-def test_weights_are_one_over_noise_and_false_turn(state, draw):
-    """Both tilts alike, none below what earlier windows had; the scale's error by the mean turn."""
-    state[MOTION.STAGE] = stage = 6
-    energies, held = draw.uniform(1e3, 1e5, (2, 3))
-    turns, taper = draw.normal(0, 3e5, 3), 51000
-    put_all(state, MOTION.OMEGA, energies)
-    put_all(state, MOTION.HELD_NOISE, held)
-    put_words(state, MOTION.TURN_SUM, turns)
-    state[MOTION.TAPER_SUM] = taper
-    squares = draw.uniform(0.2, 1, (3, 3)) * 2.0**26
-    for i in range(3):
-        at = MOTION.SUMS + SIZE * i + COMPONENT.SUM_MM
-        put_words(state, at, positive(draw, 1e6)[UPPER])
-        for word, square in zip((0, 3, 5), squares[i]):
-            state[at + word] = int(square)
-    least_squares.weights(state, SETTINGS)
-    energies[:2] = energies[:2].mean()
-    used = np.maximum(energies, held)
-    false = ((turns / taper * 2**21) ** 2).sum() * 0.01**2
-    spread = [SETTINGS[MOTION_SETTINGS.TILT_SPREAD]] * 2 + [
-        SETTINGS[MOTION_SETTINGS.HEADING_SPREAD]
-    ]
-    of_m = squares.sum(axis=1) * 2.0 ** (2 * stage - 42)
-    assert numbers(state, MOTION.NOISE_ENERGY, 3) == pytest.approx(used, rel=1e-5)
-    expected = 1 / (spread * used + of_m * false)
-    assert numbers(state, MOTION.OMEGA, 3) == pytest.approx(expected, rel=1e-4)
-    least_squares.held_weights(state, SETTINGS)
-    assert numbers(state, MOTION.OMEGA, 3) == pytest.approx(1 / (spread * held), rel=1e-5)
-
-
-def test_the_documents_own_slope_looks_at_no_other_axis(state, draw):
+def test_the_documents_own_slope_is_that_of_a_line_in_time(draw, stage):
     settings = motion_settings(document=True)
-    state[MOTION.STAGE] = stage = 5
-    energies = draw.uniform(1e3, 1e5, 3)
-    put_all(state, MOTION.OMEGA, energies)
+    state, n = motion_state(settings), 1 << stage
+    state[MOTION.STAGE] = stage
+    biases, slopes = draw.normal(0, 1e5, 3), draw.uniform(-0.02, 0.02, 3) * 128 / n
+    put_all(state, MOTION.BIAS, biases)
+    put_rotation(state, MOTION.Q, Rotation.identity(), 1 << 28)
+    attitude.rotation(state)
+    for k in range(n):
+        put_words(state, MOTION.Y, slopes * (k - n / 2) * Q12)
+        regression.weights(state, k, stage, 1)
+        regression.rows(state)
     for i in range(3):
-        at = MOTION.SUMS + SIZE * i
-        own, with_y = draw.uniform(0.2, 1) * 2.0**26, draw.normal(0, 2.0**18)
-        state[at + COMPONENT.SUM_MM + (0, 3, 5)[i]] = int(own)
-        state[at + COMPONENT.SUM_MY + i] = int(with_y)
         least_squares.own_slope(state, i)
-        own *= 2.0 ** (2 * stage - 42)
-        slope = with_y * 2.0 ** (stage - 16) / own
-        assert value_at(state, MOTION.SLOPE + 2 * i) == pytest.approx(slope, rel=1e-4)
-        least_squares.own_variance(state, settings, i)
-        variance = -value_at(state, least_squares.place(i, i))
-        assert variance == pytest.approx(20 * energies[i] / own, rel=1e-4)
+        found = value_at(state, MOTION.SLOPE + 2 * i)
+        assert found == pytest.approx(biases[i] + slopes[i] * (1 << 24), rel=0.02, abs=2000)

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 from zerorate import Corrector, Sensor
-from zerorate.arithmetic import real
 from zerorate.motion import least_squares, posterior
 from zerorate.motion.motion_settings import motion_settings, motion_state
 from zerorate.motion.orientation import orientation
@@ -18,6 +17,8 @@ from zerorate_tools.recordings import Scales
 from zerorate_tools.simulate import simulate
 
 from . import motions
+from .motion_words import covariance_at, put_packed
+from .motions import value_at
 from .played import by_machine_code, estimators
 from .simulated_sources import loaded
 from .test_orientation import as_rotation
@@ -209,18 +210,14 @@ UNIT = 0.125 * (1 << 24) * np.pi / 180  # of a dps
 LSB_Q8 = 131 * 256
 
 
-def put(state, word, value):
-    real.put(state, word, round(value * 1024), -10)
-
-
 def published(bias_dps, sigma_dps, **options):
     """What is published of biases that windows alone leave with those sigmas, dps."""
     c = motion_settings(**options)
     s = array("i", motion_state(c))
-    s[MOTION.MISFIT_Q16] = 0x4000
-    for axis, word in enumerate((0, 6, 10)):
-        put(s, MOTION.BIAS + 2 * axis, bias_dps[axis] * UNIT)
-        put(s, MOTION.KNOWN_P + word, (sigma_dps[axis] * UNIT) ** 2)
+    push = value_at(s, MOTION.PUSH)
+    put_packed(s, MOTION.MEAN, np.array(bias_dps) * UNIT)
+    for axis, sigma in enumerate(sigma_dps):
+        put_packed(s, least_squares.known(axis, axis), [(sigma * UNIT) ** 2 / push])
     posterior.know_prior(s)
     for _ in range(6):
         posterior.weigh_prior(s, c)
@@ -245,12 +242,22 @@ def test_a_part_at_20_dps_is_found_all_the_same():
     assert sigma == pytest.approx([1.0, 0.1, 1.0], rel=0.05)
 
 
-def test_a_steady_turn_leaves_a_hundredth_of_itself_in_one_sigma_however_many_windows_there_are():
+def test_a_steady_turn_leaves_what_scale_may_be_wrong_by_however_many_windows_there_are():
     c = motion_settings()
     s = array("i", motion_state(c))
-    put(s, MOTION.KNOWN_P, 1.0)
-    s[MOTION.MISFIT_Q16] = 0x4000
-    s[MOTION.TURN_MEAN] = round(30 * UNIT / 2048)  # 30 dps
-    posterior.filter_variance(s, c, 0)
-    real.root_of(s, MOTION.T1, MOTION.T1)
-    assert real.whole(s, MOTION.T1, 0) / UNIT == pytest.approx(0.3, rel=0.02)
+    s[MOTION.STAGE], s[MOTION.LENGTH] = 7, 128
+    turn = 30 / 8 * np.pi / 180  # a node, of 30 dps
+    telling = 1 << 22  # far beyond the noise
+    s[MOTION.WINDOW_ROWS + 1] = telling
+    s[MOTION.WINDOW_ROWS + 4] = round(telling * turn)
+    for _ in range(100):
+        least_squares.innovate(s, c, 0)
+        for state in range(12):
+            least_squares.look(s, 0, state)
+        least_squares.weigh(s, 0)
+        least_squares.move(s)
+        for state in range(12):
+            least_squares.narrow(s, state)
+    known = covariance_at(s) * value_at(s, MOTION.PUSH)
+    assert np.sqrt(known[3, 3]) / (1 << 24) == pytest.approx(0.003, rel=0.02)
+    assert np.sqrt(known[0, 0]) / UNIT == pytest.approx(0.09, rel=0.05)

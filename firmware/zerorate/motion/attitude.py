@@ -10,17 +10,17 @@ from ..arithmetic.atan2 import atan2_q13
 const = int
 ptr32 = None
 # layout: The state of the source in motion
-_HALF = const(19)
-_REAL = const(22)
-_Q = const(25)
-_QX = const(26)
-_QY = const(27)
-_QZ = const(28)
-_START = const(29)
-_START_X = const(30)
-_START_Y = const(31)
-_START_Z = const(32)
-_R = const(33)
+_HALF = const(18)
+_REAL = const(21)
+_Q = const(24)
+_QX = const(25)
+_QY = const(26)
+_QZ = const(27)
+_START = const(28)
+_START_X = const(29)
+_START_Y = const(30)
+_START_Z = const(31)
+_R = const(32)
 # layout: end
 _ONE_Q14 = const(0x4000)
 

@@ -5,8 +5,8 @@ line, take the slope as bias, remove it, integrate again. Two forms:
 
 - the document's own: each axis' slope of the orientation vector is that axis' bias;
 - the default: tilt comes from gravity in the tilt frame, only the heading from the assumption
-  that it returns; slopes are mapped to the body by the integrated rotation matrix, tapered, and
-  joined with what earlier windows know by weights that the window's own residual sets.
+  that it returns; a few rows of each window go into a filter of the bias, scale and axes, whose
+  weights come from what is left of the rows.
 
 A window grows from 2 s while nothing is known, for a large bias turns a long one too far to be
 linear. Work is spread: a few nodes or pieces of algebra a sample. The state is one array('i')
@@ -14,27 +14,25 @@ of 258 words and 3 a node; motion_settings.py makes the settings.
 """
 
 from ..arithmetic.fixed import clipped
-from ..arithmetic.real import add, copy, whole
+from ..arithmetic.real import copy, subtract, whole
 from .attitude import normalise, rotation, sines, turn
 from .increments import close, gather, restart
 from .least_squares import (
-    covariance,
-    held_weights,
-    matrix_element,
-    noise,
+    follow_noise,
+    innovate,
+    look,
+    move,
+    narrow,
     own_slope,
-    own_variance,
-    right_side,
-    spread_prior,
-    step,
+    stray,
     sweep,
-    weights,
+    weigh,
 )
-from .motion_verdict import finish, note_slope, start_window
+from .motion_verdict import finish, know_nothing, note_slope, refuse, start_window, verdict
 from .posterior import know_prior, publish, shrink, weigh_prior
-from .regression import centre, first_sums, look_past_vertical, regressors, second_sums, taper
-from .thermal import carry, follow_temperature
-from .tilt_frame import begin_attitude, find_up, find_vertical, observe, turn_centre, turn_start
+from .regression import rows, weights
+from .thermal import carry, follow_temperature, learn_slope
+from .tilt_frame import begin_attitude, find_up, level, observe
 
 # layout: names that a board's own compiler reads
 const = int
@@ -47,30 +45,29 @@ _PASS = const(14)
 _PROGRESS = const(15)
 _FIRST_NODE = const(16)
 _MOTION_REASON = const(17)
-_TAPER_SUM = const(18)
-_HALF = const(19)
-_Q = const(25)
-_R = const(33)
-_SUM_R = const(42)
-_Y = const(51)
-_BIAS_CARRY_Q24 = const(54)
-_BIAS_Q24 = const(57)
-_TAPER = const(60)
-_UP = const(63)
-_TRAFFIC = const(65)
-_TILTED = const(66)
-_ACCEPTED = const(68)
-_SUMS = const(86)
-_PRIOR = const(161)
-_PRIOR_MEAN = const(173)
-_BIAS = const(179)
-_SLOPE = const(185)
-_CENTRE = const(214)
-_TURN_SUM = const(245)
-_LATE_US = const(257)
-_NODES_RING = const(258)
-# layout: The sums of one component
-_COMPONENT_WORDS = const(21)
+_HALF = const(18)
+_Q = const(24)
+_START = const(28)
+_R = const(32)
+_HALF_BEFORE = const(46)
+_Y = const(49)
+_BIAS_CARRY_Q24 = const(52)
+_TILT = const(55)
+_BIAS_Q24 = const(56)
+_OTHER_TILT = const(59)
+_UP = const(60)
+_TRAFFIC = const(62)
+_TILTED = const(63)
+_ACCEPTED = const(65)
+_WINDOW_ROWS = const(83)
+_KNOWN = const(150)
+_BIAS = const(251)
+_SLOPE = const(257)
+_T = const(263)
+_TURN_SUM = const(286)
+_TURN_MEAN = const(289)
+_LATE_US = const(292)
+_NODES_RING = const(293)
 # layout: The settings of the source in motion
 _VISITS = const(5)
 _MOTION_GAP_US = const(6)
@@ -78,18 +75,23 @@ _NODES = const(8)
 _PASSES = const(9)
 _LONGEST = const(16)
 _MOTION_DOCUMENT = const(20)
-_SETTLED = const(23)
+_SETTLED = const(22)
 # layout: What the source in motion is doing
 _IDLE = const(0)
 _TRAVERSE = const(1)
 _SOLVE = const(2)
 # layout: What a window in motion taught
+_GROWING = const(1)
+_LEARNED = const(2)
 _MOTION_GAP = const(7)
 # layout: end
 _MOST_BIAS_Q24 = const(0x7FFFFF)  # half a radian in a node, some 200 deg/s
 _MOST_HALF_Q14 = const(0x3FFF)
 _NODES_A_PIECE = const(4)  # of algebra, by what they cost
-_ROUNDS = const(6)  # where one sigma is a fifth of the bias, less of them stop halfway
+_ROWS_A_WINDOW = const(5)
+_ROW_PIECES = const(15)
+_SETTLED_AFTER = const(8)
+_SHRUNK = const(24)  # six rounds: where one sigma is a fifth of the bias, less stop halfway
 
 
 def update(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
@@ -106,7 +108,7 @@ def update(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
         close(s, c)
     if s[_JOB] == _IDLE:
         if start_window(s, c):
-            begin_traversal(s)
+            begin_traversal(s, c)
         return 0
     return work(s, c)
 
@@ -126,23 +128,37 @@ def work(s: ptr32, c: ptr32) -> int:
     return learned
 
 
-def begin_traversal(s: ptr32):
+def begin_traversal(s: ptr32, c: ptr32):
     """Begin at the window's first node with the bias of this pass removed."""
-    for i in range(3 * _COMPONENT_WORDS):
-        s[_SUMS + i] = 0
+    # While little is known a steady turn may be a bias, so motion is what is beside it.
+    beside = 1 if s[_PASS] & 1 and s[_ACCEPTED] < _SETTLED_AFTER else 0
+    if c[_MOTION_DOCUMENT]:
+        beside = 0
+    elif s[_PASS] & 1 == 0:
+        begin_levelling(s)
+    for i in range(_KNOWN - _WINDOW_ROWS):
+        s[_WINDOW_ROWS + i] = 0
     for i in range(3):
+        s[_TURN_MEAN + i] = s[_TURN_SUM + i] >> s[_STAGE] if beside else 0
         s[_TURN_SUM + i] = 0
+        s[_HALF_BEFORE + i] = 0
         s[_BIAS_Q24 + i] = clipped(whole(s, _BIAS + 2 * i, 0), _MOST_BIAS_Q24)
         s[_BIAS_CARRY_Q24 + i] = 0
-    for i in range(9):
-        s[_SUM_R + i] = s[_CENTRE + i]
     s[_UP] = 0
-    s[_TAPER_SUM] = 0
     s[_TRAFFIC] = 0
     s[_TILTED] = 0
     s[_PROGRESS] = 0
     s[_JOB] = _TRAVERSE
     begin_attitude(s)
+
+
+def begin_levelling(s: ptr32):
+    """Find first where the mean force is up, in the attitude of the first node."""
+    s[_START] = 0x4000
+    for i in range(1, 4):
+        s[_START + i] = 0
+    s[_TILT] = 0
+    s[_OTHER_TILT] = 0
 
 
 def visit(s: ptr32, c: ptr32):
@@ -151,14 +167,17 @@ def visit(s: ptr32, c: ptr32):
     if a >= c[_NODES]:
         a -= c[_NODES]
     a = _NODES_RING + 3 * a
-    taper(s, s[_PROGRESS], s[_STAGE], c[_MOTION_DOCUMENT])
     rotation(s)
+    remove_bias(s, a)
     if c[_MOTION_DOCUMENT]:
         observe_vector(s)
-    else:
+    elif s[_PASS] & 1:
         observe(s, a)
-    sum_up(s)
-    remove_bias(s, a)
+    else:
+        level(s, a)
+    if s[_PASS] & 1 or c[_MOTION_DOCUMENT]:
+        weights(s, s[_PROGRESS], s[_STAGE], c[_MOTION_DOCUMENT])
+        rows(s)
     a = tilting(s, 0)
     a += tilting(s, 3)
     s[_TILTED] += a
@@ -172,28 +191,11 @@ def visit(s: ptr32, c: ptr32):
 
 
 def observe_vector(s: ptr32):
-    """Take the rotation vector from the start, Q12 rad, and let each slope be its own axis'."""
-    for i in range(9):
-        s[_R + i] = 0
+    """Take the rotation vector from the start, Q12 rad."""
     for i in range(3):
-        s[_R + 4 * i] = 0x4000
         s[_Y + i] = s[_Q + 1 + i] >> 15
         if s[_Q] < 0:
             s[_Y + i] = -s[_Y + i]
-
-
-def sum_up(s: ptr32):
-    """Add the node to the sums of the three components, M taken at the node's start."""
-    for i in range(9):
-        s[_SUM_R + i] += s[_R + i] >> 1
-    for i in range(3):
-        regressors(s, _SUM_R + 3 * i, s[_STAGE])
-        if i < 2:
-            look_past_vertical(s)
-        first_sums(s, _SUMS + _COMPONENT_WORDS * i, s[_Y + i])
-        second_sums(s, _SUMS + _COMPONENT_WORDS * i)
-    for i in range(9):
-        s[_SUM_R + i] += s[_R + i] - (s[_R + i] >> 1)
 
 
 def remove_bias(s: ptr32, a: int):
@@ -205,15 +207,17 @@ def remove_bias(s: ptr32, a: int):
         s[_BIAS_CARRY_Q24 + i] -= part << 11
         part = clipped((s[a + i] >> 15) - part, _MOST_HALF_Q14)
         s[_HALF + i] = part
-        s[_TURN_SUM + i] += (s[_TAPER] * part + 512) >> 10
+        part -= s[_TURN_MEAN + i]
+        s[_TURN_SUM + i] += part
         s[_TRAFFIC] += part if part > 0 else 0 - part
 
 
 def tilting(s: ptr32, row: int) -> int:
     """Return how far the node turned about a level axis, half angle, Q14 rad: gravity shows it."""
-    at = _R + row
-    part = s[at] * s[_HALF] + s[at + 1] * s[_HALF + 1]
-    part = (part + s[at + 2] * s[_HALF + 2] + 0x2000) >> 14
+    part = 0x2000
+    for i in range(3):
+        part += s[_R + row + i] * (s[_HALF + i] - s[_TURN_MEAN + i])
+    part = part >> 14
     return part if part > 0 else 0 - part
 
 
@@ -223,123 +227,132 @@ def solve(s: ptr32, c: ptr32) -> int:
     s[_PROGRESS] = k + 1
     if c[_MOTION_DOCUMENT]:
         return solve_document(s, c, k)
-    if s[_PASS] == 0:
-        level_and_prior(s, c, k)
-        return 0
-    if k < 3:
-        centre(s, _SUMS + _COMPONENT_WORDS * k, 3 * k, s[_STAGE])
-    elif k == 3:
-        turn_start(s)
-    elif k < 16:
-        normal_equations(s, k - 4)
-    elif k == 16:
-        step(s)
-    elif k < 20:
-        noise(s, k - 17)
-    elif k == 20:
-        weights(s, c)
-        if last_pass(s, c) == 0:
-            remove_slope(s, c)
-    elif k < 33:
-        normal_equations(s, k - 21)
-    elif k == 33:
-        step(s)
-        s[_PASS] = c[_PASSES]
-        remove_slope(s, c)
+    if s[_PASS] & 1 == 0:
+        find_up(s)
+        if s[_PASS] == 0:
+            carry(s, c, s[_ACCEPTED])
+        next_pass(s, c)
+    elif k == 0:
+        open_rows(s, c)
+    elif k <= _ROW_PIECES * _ROWS_A_WINDOW:
+        learn_row(s, c, (k - 1) // _ROW_PIECES, (k - 1) % _ROW_PIECES)
     else:
-        return conclude(s, c, k - 34)
+        return conclude(s, c, k - 1 - _ROW_PIECES * _ROWS_A_WINDOW)
     return 0
+
+
+def next_pass(s: ptr32, c: ptr32):
+    """Integrate the window once more."""
+    s[_PASS] += 1
+    begin_traversal(s, c)
+
+
+def open_rows(s: ptr32, c: ptr32):
+    """Refuse the window or prepare for its rows: a short one knows nothing of those before."""
+    if s[_LENGTH] < c[_LONGEST]:
+        s[_MOTION_REASON] = _GROWING
+        know_nothing(s, c)
+        stray(s, c)
+    elif refused(s, c) == 0:
+        stray(s, c)
+
+
+def learn_row(s: ptr32, c: ptr32, r: int, k: int):
+    """Do piece k of what row r teaches."""
+    if k == 0:
+        innovate(s, c, r)
+    elif k < 7:
+        look(s, r, 2 * k - 2)
+        look(s, r, 2 * k - 1)
+    elif k == 7:
+        weigh(s, r)
+        if s[_LENGTH] == c[_LONGEST]:
+            follow_noise(s, r)
+        for i in range(3):
+            learn_slope(s, i)
+    elif k == 8:
+        move(s)
+    else:
+        narrow(s, k - 9)
+        narrow(s, 20 - k)
 
 
 def conclude(s: ptr32, c: ptr32, k: int) -> int:
-    """Judge the window and, if it taught, do piece k of publishing; return 1 after the last."""
+    """Do piece k of what follows the rows; return 1 if a bias was learned."""
     if k == 0:
         know_prior(s)
-        if finish(s, c) == 0:
-            s[_JOB] = _IDLE
-    elif k > 4 * _ROUNDS + 1:
+    if k & 3:
+        sweep(s, (k & 3) - 1)
+        return 0
+    if k:
+        shrink(s, c)
+    if k < _SHRUNK:
+        weigh_prior(s, c)
+        return 0
+    if s[_LENGTH] == c[_LONGEST]:
         s[_JOB] = _IDLE
         publish(s, c)
-        return 1
-    elif k & 3 == 1:
-        if k > 1:
-            shrink(s, c)
-        weigh_prior(s, c)
+        remove(s, c)
+        return finish(s, c)
+    remove(s, c)
+    if s[_PASS] < 2 * c[_PASSES] - 1 and settled(s, c) == 0:
+        next_pass(s, c)
     else:
-        sweep(s, (k & 3) - 2 if k & 3 else 2)
+        grow(s, c)
     return 0
 
 
-def normal_equations(s: ptr32, n: int):
-    """Build element n of the normal equations, or sweep them: 6 of the matrix, 3, 3 sweeps."""
-    if n < 6:
-        matrix_element(s, n)
-    elif n < 9:
-        right_side(s, n - 6)
-    else:
-        sweep(s, n - 9)
+def remove(s: ptr32, c: ptr32):
+    """Remove the bias at _SLOPE from now on; what it was wrong by takes its place."""
+    for i in range(0, 6, 2):
+        subtract(s, _T, _SLOPE + i, _BIAS + i)
+        copy(s, _BIAS + i, _SLOPE + i, 2)
+        copy(s, _SLOPE + i, _T, 2)
+    note_slope(s, c)
+
+
+def grow(s: ptr32, c: ptr32):
+    """Take a window of twice the length next, unless this one taught nothing."""
+    s[_JOB] = _IDLE
+    if refused(s, c) == 0:
+        s[_MOTION_REASON] = _GROWING
+        s[_LENGTH] = s[_LENGTH] << 1
+        s[_STAGE] += 1
+        know_nothing(s, c)
 
 
 def solve_document(s: ptr32, c: ptr32, k: int) -> int:
     """Do one piece of the document's own form; return 1 if a bias was learned."""
     if k < 3:
-        centre(s, _SUMS + _COMPONENT_WORDS * k, 3 * k, s[_STAGE])
-    elif k < 6:
-        own_slope(s, k - 3)
-    elif k < 9:
-        noise(s, k - 6)
-    elif k == 9:
-        if last_pass(s, c):
-            s[_PASS] = c[_PASSES]
-        remove_slope(s, c)
-    elif k < 13:
-        own_variance(s, c, k - 10)
+        own_slope(s, k)
+    elif k == 3:
+        remove(s, c)
+        if s[_PASS] < c[_PASSES] and settled(s, c) == 0:
+            next_pass(s, c)
     else:
         s[_JOB] = _IDLE
-        if finish(s, c):
+        if refused(s, c) == 0:
+            copy(s, _SLOPE, _BIAS, 6)
             publish(s, c)
-            return 1
+            return finish(s, c)
     return 0
 
 
-def level_and_prior(s: ptr32, c: ptr32, k: int):
-    """After the first traversal: find the tilt frame, then invert the covariance."""
-    if k == 0:
-        find_up(s)
-        turn_centre(s, s[_STAGE])
-        find_vertical(s)
-    elif k == 1:
-        known = 1 if s[_LENGTH] == c[_LONGEST] and s[_ACCEPTED] > 0 else 0
-        carry(s, c, known)
-        if known:
-            copy(s, _BIAS, _PRIOR_MEAN, 6)
-    elif k == 2:
-        spread_prior(s)
-    elif k < 6:
-        sweep(s, k - 3)
-    else:
-        covariance(s, _PRIOR)
-        held_weights(s, c)
-        s[_PASS] = 1
-        begin_traversal(s)
+def refused(s: ptr32, c: ptr32) -> int:
+    """Return 1 if the window teaches nothing, and note why; else 0."""
+    reason = verdict(s, c)
+    if reason == _LEARNED:
+        s[_MOTION_REASON] = reason
+        return 0
+    refuse(s, c, reason)
+    s[_JOB] = _IDLE
+    return 1
 
 
-def last_pass(s: ptr32, c: ptr32) -> int:
-    """Return 1 if the slope is below its threshold or this was the last pass allowed."""
-    if s[_PASS] >= c[_PASSES]:
-        return 1
+def settled(s: ptr32, c: ptr32) -> int:
+    """Return 1 if the slope is below its threshold."""
     for i in range(3):
         slope = whole(s, _SLOPE + 2 * i, 0)
         if slope > c[_SETTLED] or slope < -c[_SETTLED]:
             return 0
     return 1
-
-
-def remove_slope(s: ptr32, c: ptr32):
-    """Add this pass' slope to the bias, note it, and integrate again unless it was the last."""
-    for i in range(0, 6, 2):
-        add(s, _BIAS + i, _BIAS + i, _SLOPE + i)
-    note_slope(s, c)
-    if s[_PASS] < c[_PASSES]:
-        s[_PASS] += 1
-        begin_traversal(s)

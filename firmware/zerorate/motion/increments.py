@@ -1,7 +1,7 @@
 """Samples gathered into nodes of a fixed time: one rotation and one specific force each.
 
 The ring keeps, a node and axis in one word, the increment (Q13 rad, 15 bits) above the mean force
-(Q12 g, 15 bits). What rounding leaves over stays for the next node, so no angle is lost in the sum.
+(Q11 g, 15 bits). What rounding leaves over stays for the next node, so no angle is lost in the sum.
 """
 
 from ..arithmetic.fixed import clipped
@@ -17,14 +17,14 @@ _NODE_FORCE_Q12 = const(5)
 _HEAD = const(8)
 _FILLED = const(9)
 _NEW_NODES = const(10)
-_BIAS_Q24 = const(57)
-_FAST = const(64)
-_AGE_NODES = const(67)
-_FRAME_FORCE_Q12 = const(211)
-_NODES_RING = const(258)
-_FRAME_ANGLE_Q24 = const(19)
-_CONING_Q24 = const(203)
-_SCULLING_Q12 = const(206)
+_BIAS_Q24 = const(56)
+_FAST = const(61)
+_AGE_NODES = const(64)
+_FRAME_FORCE_Q12 = const(271)
+_NODES_RING = const(293)
+_FRAME_ANGLE_Q24 = const(18)
+_CONING_Q24 = const(263)
+_SCULLING_Q12 = const(266)
 # layout: The settings of the source in motion
 _NODE_US = const(0)
 _MOTION_GAIN = const(1)
@@ -57,8 +57,8 @@ def turn_again(s: ptr32, j: int, k: int):
     # 1971), half of one with what turning back adds to the force.
     a = (s[_NODE_ANGLE_Q24 + j] + 0x400) >> 11
     b = (s[_NODE_ANGLE_Q24 + k] + 0x400) >> 11
-    part = a * (s[_CONING_Q24 + k] >> 10) - b * (s[_CONING_Q24 + j] >> 10)
-    s[_FRAME_ANGLE_Q24 + 3 - j - k] += (part >> 11) * 43
+    part = a * ((s[_CONING_Q24 + k] + 0x200) >> 10) - b * ((s[_CONING_Q24 + j] + 0x200) >> 10)
+    s[_FRAME_ANGLE_Q24 + 3 - j - k] += ((part + 0x400) >> 11) * 43  # rounded: what is left adds up
     part = a * s[_SCULLING_Q12 + k] - b * s[_SCULLING_Q12 + j]
     s[_FRAME_FORCE_Q12 + 3 - j - k] += (part + 0x2000) >> 14
 
@@ -126,7 +126,8 @@ def close(s: ptr32, c: ptr32):
         over = (s[_NODE_ELAPSED_US] << 10) // c[_NODE_US]
         over = ((s[_BIAS_Q24 + i] >> 8) * over) >> 2
         angle = clipped((s[_NODE_ANGLE_Q24 + i] - over + 0x400) >> 11, _MOST_ANGLE_Q13)
-        over = clipped(s[_NODE_FORCE_Q12 + i] // s[_NODE_N], _MOST_ANGLE_Q13)
+        over = (s[_NODE_FORCE_Q12 + i] + s[_NODE_N]) // (2 * s[_NODE_N])
+        over = clipped(over, _MOST_ANGLE_Q13)
         s[a + i] = (angle << 15) + (over & 0x7FFF)
         angle = s[_NODE_ANGLE_Q24 + i] - (angle << 11)
         s[_NODE_ANGLE_Q24 + i] = clipped(angle, _TWO_RAD_Q24)

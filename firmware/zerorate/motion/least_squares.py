@@ -1,47 +1,238 @@
-"""The window's normal equations: prior, weights, solution and its covariance.
+"""Bias, scale and axes by a window's rows: a Kalman filter of twelve states, one row at a time.
 
-Ten real numbers at _G: the upper triangle of a 3 x 3 matrix with a right-hand side as its fourth
-column (00 01 02 0y 11 12 1y 22 2y yy). Bias in Q24 rad a node, orientation in Q12 rad.
+The hand's push is known no better than the bias, so all covariances are over the push's own
+variance, which the rows themselves tell (the conjugate prior of a linear model: normal and inverse
+gamma; Gelman 2013, 14.8). Its tails are Student's of four degrees of freedom, for no two windows
+are alike (Lange, Little and Taylor 1989): a row that lies far off weighs less.
+
+States: the bias, Q24 rad a node, and nine entries of scale and axes by rows, Q24. _KNOWN is packed:
+column n of the upper triangle begins n (n + 1) / 2 words on.
 """
 
-from ..arithmetic.real import add, copy, divide, multiply, put, subtract
+from ..arithmetic.real import add, copy, divide, multiply, pack, put, subtract, unpack
 
 # layout: names that a board's own compiler reads
 const = int
 ptr32 = None
 # layout: The state of the source in motion
+_LENGTH = const(11)
 _STAGE = const(12)
-_TAPER_SUM = const(18)
-_SUMS = const(86)
-_KNOWN_P = const(149)
-_PRIOR = const(161)
-_PRIOR_MEAN = const(173)
-_BIAS = const(179)
-_SLOPE = const(185)
-_HELD_NOISE = const(191)
-_OMEGA = const(197)
-_T = const(203)
-_T1 = const(205)
-_T2 = const(207)
-_T3 = const(209)
-_NOISE_ENERGY = const(223)
-_TURN_SUM = const(245)
-_G = const(33)
-# layout: The sums of one component
-_SUM_MM = const(0)
-_SUM_MY = const(6)
-_SHAPES_M = const(13)
-_SHAPES_Y = const(19)
-_COMPONENT_WORDS = const(21)
+_MOTION_REASON = const(17)
+_ACCEPTED = const(65)
+_WINDOW_ROWS = const(83)
+_STRAY = const(148)
+_KNOWN = const(150)
+_MEAN = const(228)
+_PUSH = const(240)
+_ROWS_SEEN = const(242)
+_HELD_STRAY = const(243)
+_HEADING_FIT = const(245)
+_ROW_INNOVATION = const(247)
+_EXPECTED = const(249)
+_BIAS = const(251)
+_SLOPE = const(257)
+_T = const(263)
+_T1 = const(265)
+_T2 = const(267)
+_T3 = const(269)
+_G = const(32)
+_ROW_NOISE = const(28)
+_WITH = const(32)
+# layout: A row of a window in motion
+_SAID = const(0)
+_BY_BIAS = const(1)
+_ROW_WORDS = const(13)
 # layout: The settings of the source in motion
-_TILT_SPREAD = const(21)
-_HEADING_SPREAD = const(22)
-_MATRIX_ERROR = const(27)
+_START_VARIANCE = const(14)
+_LONGEST = const(16)
+_SHORTEST_STAGE = const(17)
+_HEADING_SPREAD = const(21)
+_MATRIX_ERROR = const(26)
+_PUSH_START = const(28)
+# layout: What a window in motion taught
+_TURNED = const(4)
 # layout: end
-# .005 and .01 rad, and .7 rad a window: beyond that a step is not linear
-_FLOOR_TILT_Q24 = const(419)
-_FLOOR_HEADING_Q24 = const(1678)
-_LIMIT_Q24 = const(11744051)
+_UNKNOWNS = const(12)
+_HEADING_ROW = const(2)
+# squares of .01, .05 and .3 rad, times a shape's 2.66 a half node: the least a heading strays, and
+# what it is taken to before a short and a full window has been seen
+_FLOOR_Q24 = const(4463)
+_SHORT_Q24 = const(111569)
+_FULL_Q24 = const(4016484)
+_GATE_SHIFT = const(4)
+_SETTLED_AFTER = const(8)  # windows: a minute tells the noise
+_TAILS = const(4)
+_FIRST_ROWS = const(8)
+_MOST_ROWS = const(128)
+_OWN_SPREAD = const(20)
+
+
+def forget(s: ptr32, c: ptr32):
+    """Know nothing: no bias, no entries, what the settings say of all and of the push."""
+    i = _KNOWN
+    while i < _PUSH:
+        s[i] = 0
+        i += 1
+    i = 0
+    while i < _UNKNOWNS:
+        a = _START_VARIANCE if i < 3 else _MATRIX_ERROR
+        put(s, _T, c[a], c[a + 1])
+        pack(s, known(i, i), _T)
+        i += 1
+    put(s, _PUSH, c[_PUSH_START], c[_PUSH_START + 1])
+    s[_ROWS_SEEN] = _FIRST_ROWS
+    put(s, _HEADING_FIT, 1, 0)
+
+
+def known(i: int, j: int) -> int:
+    """Return the word of element i, j of the covariance."""
+    if i > j:
+        return _KNOWN + ((i * (i + 1)) >> 1) + j
+    return _KNOWN + ((j * (j + 1)) >> 1) + i
+
+
+def regressor(s: ptr32, d: int, r: int, j: int):
+    """Store at d what state j adds to row r."""
+    put(s, d, s[_WINDOW_ROWS + _ROW_WORDS * r + _BY_BIAS + j], s[_STAGE] - 15)
+
+
+def stray(s: ptr32, c: ptr32):
+    """Hold how far the heading strays: what its own shapes say, no less than .8 of before."""
+    put(s, _T, s[_STRAY], 12)
+    multiply(s, _T, _T, _T)
+    put(s, _T1, s[_STRAY + 1], 12)
+    multiply(s, _T1, _T1, _T1)
+    add(s, _T, _T, _T1)
+    put(s, _T, s[_T], s[_T + 1] - 1)
+    put(s, _T1, _FLOOR_Q24, 23 + s[_STAGE])
+    add(s, _T, _T, _T1)
+    put(s, _T1, 13107, -14)
+    multiply(s, _HELD_STRAY, _HELD_STRAY, _T1)
+    if s[_LENGTH] < c[_LONGEST]:
+        put(s, _HELD_STRAY, _SHORT_Q24, 23 + s[_STAGE])
+    elif s[_ACCEPTED] == 0:
+        put(s, _HELD_STRAY, _FULL_Q24, 23 + s[_STAGE])
+    if less(s, _HELD_STRAY, _T):
+        copy(s, _HELD_STRAY, _T, 2)
+
+
+def row_noise(s: ptr32, c: ptr32, r: int):
+    """Store row r's variance, over the push's, at _ROW_NOISE."""
+    # Half a full window was seen before, so it counts half.
+    k = s[_STAGE] - c[_SHORTEST_STAGE] - 3
+    put(s, _ROW_NOISE, 1, k + 1 if k == 0 else k)
+    if r == _HEADING_ROW:
+        put(s, _T, c[_HEADING_SPREAD], 1 if k == 0 else 0)
+        multiply(s, _T, _T, _HELD_STRAY)
+        multiply(s, _T, _T, _HEADING_FIT)
+        divide(s, _ROW_NOISE, _T, _PUSH)
+    copy(s, _EXPECTED, _ROW_NOISE, 2)
+
+
+def innovate(s: ptr32, c: ptr32, r: int):
+    """Store at _ROW_INNOVATION what row r says beyond what is known."""
+    row_noise(s, c, r)
+    put(s, _ROW_INNOVATION, s[_WINDOW_ROWS + _ROW_WORDS * r + _SAID], 12)
+    j = 0
+    while j < _UNKNOWNS:
+        known_already(s, r, j)
+        j += 1
+
+
+def known_already(s: ptr32, r: int, j: int):
+    """Take from the row's innovation what state j adds beyond the bias that is removed."""
+    unpack(s, _T, _MEAN + j)
+    if j < 3:
+        subtract(s, _T1, _T, _BIAS + 2 * j)
+        copy(s, _T, _T1, 2)
+    regressor(s, _T1, r, j)
+    multiply(s, _T1, _T1, _T)
+    subtract(s, _T, _ROW_INNOVATION, _T1)
+    copy(s, _ROW_INNOVATION, _T, 2)
+
+
+def look(s: ptr32, r: int, j: int):
+    """Store the covariance of row r and state j, and add its share to what is expected."""
+    put(s, _T2, 0, 0)
+    k = 0
+    while k < _UNKNOWNS:
+        regressor(s, _T, r, k)
+        unpack(s, _T1, known(j, k))
+        multiply(s, _T, _T, _T1)
+        add(s, _T2, _T2, _T)
+        k += 1
+    copy(s, _WITH + 2 * j, _T2, 2)
+    regressor(s, _T, r, j)
+    multiply(s, _T, _T, _T2)
+    add(s, _EXPECTED, _EXPECTED, _T)
+
+
+def weigh(s: ptr32, r: int):
+    """Learn the noise from row r; leave its weight at _EXPECTED and its weighed innovation."""
+    multiply(s, _T, _ROW_INNOVATION, _ROW_INNOVATION)
+    divide(s, _T, _T, _EXPECTED)
+    divide(s, _T, _T, _PUSH)  # 1 is expected
+    if s[_ACCEPTED] >= _SETTLED_AFTER:
+        bear_outliers(s)
+    put(s, _T1, 1, 0)
+    divide(s, _EXPECTED, _T1, _EXPECTED)
+    multiply(s, _ROW_INNOVATION, _ROW_INNOVATION, _EXPECTED)
+
+
+def bear_outliers(s: ptr32):
+    """Let a row that lies far off, by its square at _T, weigh less, and tell less of the noise."""
+    put(s, _T1, 1, _GATE_SHIFT)
+    if less(s, _T1, _T):
+        s[_MOTION_REASON] = _TURNED
+    put(s, _T1, _TAILS, 0)
+    add(s, _T1, _T1, _T)
+    put(s, _T2, 0x10000000 // (_TAILS + 1), -28)
+    multiply(s, _T1, _T1, _T2)
+    divide(s, _T, _T, _T1)
+    multiply(s, _T1, _T1, _ROW_NOISE)
+    subtract(s, _T2, _T1, _ROW_NOISE)
+    add(s, _EXPECTED, _EXPECTED, _T2)
+    copy(s, _ROW_NOISE, _T1, 2)
+
+
+def follow_noise(s: ptr32, r: int):
+    """Follow the push, or how the heading strays, by what row r's square at _T is beyond one."""
+    put(s, _T1, 1, 0)
+    subtract(s, _T3, _T, _T1)
+    if r == _HEADING_ROW:
+        multiply(s, _T3, _T3, _ROW_NOISE)
+        multiply(s, _T3, _T3, _EXPECTED)  # its own share of what was expected
+        multiply(s, _T3, _T3, _HEADING_FIT)
+        put(s, _T1, s[_ROWS_SEEN], -2)
+        divide(s, _T3, _T3, _T1)
+        add(s, _HEADING_FIT, _HEADING_FIT, _T3)
+        return
+    s[_ROWS_SEEN] += 1 if s[_ROWS_SEEN] < _MOST_ROWS else 0
+    multiply(s, _T3, _T3, _PUSH)
+    put(s, _T1, s[_ROWS_SEEN], 0)
+    divide(s, _T3, _T3, _T1)
+    add(s, _PUSH, _PUSH, _T3)
+
+
+def move(s: ptr32):
+    """Move every state by the weighed innovation."""
+    for j in range(_UNKNOWNS):
+        multiply(s, _T, _WITH + 2 * j, _ROW_INNOVATION)
+        unpack(s, _T1, _MEAN + j)
+        add(s, _T, _T, _T1)
+        pack(s, _MEAN + j, _T)
+
+
+def narrow(s: ptr32, n: int):
+    """Take from column n of the covariance what the row told."""
+    multiply(s, _T1, _WITH + 2 * n, _EXPECTED)
+    i = 0
+    while i <= n:
+        multiply(s, _T, _T1, _WITH + 2 * i)
+        unpack(s, _T2, known(i, n))
+        subtract(s, _T3, _T2, _T)
+        pack(s, known(i, n), _T3)
+        i += 1
 
 
 def place(i: int, j: int) -> int:
@@ -51,56 +242,10 @@ def place(i: int, j: int) -> int:
     return _G + 2 * (4 * i - ((i * (i + 1)) >> 1) + j)
 
 
-def element(s: ptr32, d: int, h: int, e: int):
-    """Store at d the number at _T plus the sums of three components at word h, by their weights."""
-    # e: the exponent of those sums.
-    i = 0
-    while i < 6:
-        put(s, _T1, s[h], e)
-        multiply(s, _T1, _T1, _OMEGA + i)
-        add(s, _T, _T, _T1)
-        h += _COMPONENT_WORDS  # eleven words: h goes on to the next component
-        i += 2
-    copy(s, d, _T, 2)
-
-
-def matrix_element(s: ptr32, n: int):
-    """Build element n of six of the matrix, in the order of the sums and the prior."""
-    i = 0
-    j = n
-    while j > 2:
-        i += 1
-        j -= 3 - i
-    j = place(i, j)
-    copy(s, _T, _PRIOR + 2 * n, 2)
-    element(s, j, _SUMS + _SUM_MM + n, 2 * s[_STAGE] - 42)
-
-
-def right_side(s: ptr32, i: int):
-    """Build the right-hand side's element i: the slopes, and the prior's pull to its mean."""
-    d = place(i, 3)
-    put(s, _T, 0, 0)
-    element(s, d, _SUMS + _SUM_MY + i, s[_STAGE] - 16)
-    j = 0
-    while j < 3:
-        subtract(s, _T1, _PRIOR_MEAN + 2 * j, _BIAS + 2 * j)
-        multiply(s, _T1, _T1, prior_place(i, j))
-        add(s, d, d, _T1)
-        j += 1
-    put(s, _G + 18, 0, 0)
-
-
-def prior_place(i: int, j: int) -> int:
-    """Return the word of element i, j of the prior's six numbers."""
-    if i > j:
-        return _PRIOR + 2 * (3 * j - ((j * (j + 1)) >> 1) + i)
-    return _PRIOR + 2 * (3 * i - ((i * (i + 1)) >> 1) + j)
-
-
 def sweep(s: ptr32, k: int):
     """Sweep the matrix on pivot k."""
-    # After pivots 0, 1, 2 it holds the negative inverse and, in its fourth column, the solution
-    # (Beaton's operator; stable for a positive definite matrix).
+    # After pivots 0, 1, 2 its fourth column is the solution (Beaton's operator; stable for a
+    # positive definite matrix).
     d = place(k, k)
     put(s, _T, 1, 0)
     divide(s, _T, _T, d)
@@ -128,163 +273,19 @@ def sweep_row(s: ptr32, k: int, i: int):
             copy(s, d, _T3, 2)
 
 
-def covariance(s: ptr32, d: int):
-    """Store the negative of the six numbers of the swept matrix at d."""
-    a = _G
-    i = 0
-    while i < 6:
-        if i == 3 or i == 5:
-            a += 2
-        put(s, d + 2 * i, -s[a], s[a + 1])
-        a += 2
-        i += 1
-
-
-def spread_prior(s: ptr32):
-    """Put the covariance into the matrix."""
-    d = _G
-    for i in range(0, 20, 2):
-        put(s, _G + i, 0, 0)
-    for i in range(6):
-        if i == 3 or i == 5:
-            d += 2
-        copy(s, d, _KNOWN_P + 2 * i, 2)
-        d += 2
-
-
 def less(s: ptr32, a: int, b: int) -> int:
     """Return 1 if the number at a is less than the one at b, else 0; uses _T3."""
     subtract(s, _T3, a, b)
     return 1 if s[_T3] < 0 else 0
 
 
-def step(s: ptr32):
-    """Take the solution as this pass' slope, no longer than the step that stays linear."""
-    put(s, _T, _LIMIT_Q24, -s[_STAGE])
-    copy(s, _T1, _T, 2)
-    for i in range(3):
-        d = place(i, 3)
-        copy(s, _SLOPE + 2 * i, d, 2)
-        put(s, _T2, s[d] if s[d] >= 0 else -s[d], s[d + 1])
-        if less(s, _T1, _T2):
-            copy(s, _T1, _T2, 2)
-    divide(s, _T, _T, _T1)
-    for i in range(0, 6, 2):
-        multiply(s, _SLOPE + i, _SLOPE + i, _T)
-
-
-def shape(s: ptr32, d: int, m: int, y: int):
-    """Store at d the square of what _SLOPE leaves of a shape, with sums at m and y."""
-    put(s, _T, s[y], 0)
-    i = 0
-    while i < 6:
-        put(s, _T1, s[m], s[_STAGE] - 26)
-        multiply(s, _T1, _T1, _SLOPE + i)
-        subtract(s, _T2, _T, _T1)
-        copy(s, _T, _T2, 2)
-        m += 1  # eleven words: m goes on to the shape's next sum
-        i += 2
-    multiply(s, d, _T, _T)
-
-
-def noise(s: ptr32, i: int):
-    """Store component i's noise energy at the neighbouring shapes, with its floor, at _OMEGA."""
-    # Mean squares of the shapes under the taper: .7684 and .0481 a node.
-    a = _SUMS + _COMPONENT_WORDS * i
-    d = _OMEGA + 2 * i
-    shape(s, _T3, a + _SHAPES_M, a + _SHAPES_Y)
-    put(s, _T, 10661, -14)
-    multiply(s, d, _T3, _T)
-    shape(s, _T3, a + _SHAPES_M + 3, a + _SHAPES_Y + 1)
-    put(s, _T, 10642, -10)
-    multiply(s, _T3, _T3, _T)
-    add(s, _T3, _T3, d)
-    put(s, _T3, s[_T3], s[_T3 + 1] - s[_STAGE])
-    put(s, _T, _FLOOR_HEADING_Q24 if i == 2 else _FLOOR_TILT_Q24, 0)
-    add(s, d, _T3, _T)
-
-
-def weights(s: ptr32, c: ptr32):
-    """Turn noise energies into weights: both tilts alike, none below what earlier windows had."""
-    # The energies in use are left at _NOISE_ENERGY.
-    add(s, _T, _OMEGA, _OMEGA + 2)
-    put(s, _OMEGA, s[_T], s[_T + 1] - 1)
-    copy(s, _OMEGA + 2, _OMEGA, 2)
-    false_turn(s, c)
-    for i in range(3):
-        d = _OMEGA + 2 * i
-        if less(s, d, _HELD_NOISE + 2 * i):
-            copy(s, d, _HELD_NOISE + 2 * i, 2)
-        copy(s, _NOISE_ENERGY + 2 * i, d, 2)
-        weigh(s, c, i)
-
-
-def false_turn(s: ptr32, c: ptr32):
-    """Store at _T2 the variance of a bias that an error of scale and axes makes of the turning."""
-    # Rates that come back leave none of it; the mean rate of the window all.
-    put(s, _T2, 0, 0)
-    for i in range(3):
-        put(s, _T, s[_TURN_SUM + i], 21)
-        multiply(s, _T, _T, _T)
-        add(s, _T2, _T2, _T)
-    put(s, _T, s[_TAPER_SUM], 0)
-    multiply(s, _T, _T, _T)
-    divide(s, _T2, _T2, _T)
-    put(s, _T, c[_MATRIX_ERROR], c[_MATRIX_ERROR + 1])
-    multiply(s, _T2, _T2, _T)
-
-
-def own_squares(s: ptr32, i: int):
-    """Store at _T the sum of squares of component i's three M."""
-    k = 3
-    square = 0
-    a = _SUMS + _COMPONENT_WORDS * i
-    while k > 0:
-        square += s[a]
-        a += k
-        k -= 1
-    a = 2 * s[_STAGE] - 42
-    put(s, _T, square, a)
-
-
-def weigh(s: ptr32, c: ptr32, i: int):
-    """Replace component i's noise energy by the weight it gives beside the false turn at _T2."""
-    own_squares(s, i)
-    multiply(s, _T1, _T, _T2)
-    put(s, _T, c[_HEADING_SPREAD] if i == 2 else c[_TILT_SPREAD], 0)
-    multiply(s, _T, _T, _OMEGA + 2 * i)
-    add(s, _T1, _T1, _T)
-    put(s, _T, 1, 0)
-    divide(s, _OMEGA + 2 * i, _T, _T1)
-
-
-def held_weights(s: ptr32, c: ptr32):
-    """Set the weights from the noise energies held from earlier windows."""
-    put(s, _T2, 0, 0)
-    for i in range(3):
-        copy(s, _OMEGA + 2 * i, _HELD_NOISE + 2 * i, 2)
-        weigh(s, c, i)
-
-
-def own_square(s: ptr32, i: int):
-    """Store the sum of squares of component i's own M at _T1; the sums are in order 00 .. 22."""
-    a = _SUMS + (_COMPONENT_WORDS + 3) * i
-    if i == 2:
-        a -= 1
-    put(s, _T1, s[a], 2 * s[_STAGE] - 42)
-
-
 def own_slope(s: ptr32, i: int):
-    """Store component i's own slope at _SLOPE, as US 10,451,438 takes it: no other axis."""
-    own_square(s, i)
-    put(s, _T, s[_SUMS + (_COMPONENT_WORDS + 1) * i + _SUM_MY], s[_STAGE] - 16)
-    divide(s, _SLOPE + 2 * i, _T, _T1)
-
-
-def own_variance(s: ptr32, c: ptr32, i: int):
-    """Put the variance of component i's own slope on the matrix' diagonal, negative."""
-    own_square(s, i)
-    put(s, _T, -c[_TILT_SPREAD], 0)
-    multiply(s, _T, _T, _OMEGA + 2 * i)
-    d = place(i, i)
-    divide(s, d, _T, _T1)
+    """Store at _SLOPE the bias that component i's own slope tells, as US 10,451,438 takes it."""
+    # Its variance is that of the noise beside it, twenty times: a walk has as much in a slope.
+    put(s, _T, 6 * s[_WINDOW_ROWS + _ROW_WORDS * i], 12 - 2 * s[_STAGE])
+    add(s, _SLOPE + 2 * i, _BIAS + 2 * i, _T)
+    put(s, _T, s[_WINDOW_ROWS + _ROW_WORDS * (3 + i) if i < 2 else _STRAY], 12)
+    multiply(s, _T, _T, _T)
+    put(s, _T1, _OWN_SPREAD * 10, 0 - 4 * s[_STAGE])
+    multiply(s, _T, _T, _T1)
+    pack(s, known(i, i), _T)

@@ -7,7 +7,7 @@ from ..ratio import PI, Ratio
 # layout: names that a board's own compiler reads
 const = int
 # layout: The state of the source in motion
-_NODES_RING = const(258)
+_NODES_RING = const(293)
 # layout: The settings of the source in motion
 _NODE_US = const(0)
 _MOTION_GAIN = const(1)
@@ -27,19 +27,20 @@ _SHORTEST_STAGE = const(17)
 _LEAST_UP = const(18)
 _PATIENCE = const(19)
 _MOTION_DOCUMENT = const(20)
-_TILT_SPREAD = const(21)
-_HEADING_SPREAD = const(22)
-_SETTLED = const(23)
-_TEMP_SLOPE_START = const(24)
-_BEND = const(26)
-_MATRIX_ERROR = const(27)
-_USUAL = const(29)
-_LEAST_TILT = const(31)
-_MOTION_SETTINGS_WORDS = const(32)
+_HEADING_SPREAD = const(21)
+_SETTLED = const(22)
+_TEMP_SLOPE_START = const(23)
+_BEND = const(25)
+_MATRIX_ERROR = const(26)
+_PUSH_START = const(28)
+_USUAL = const(30)
+_LEAST_TILT = const(32)
+_MOTION_SETTINGS_WORDS = const(33)
 # layout: end
-_SPARE_NODES = 15
-_ALGEBRA = 90
+_SPARE_NODES = 6
 _SHORT_GAP_US = 20000  # a hand turns by less than a tenth of a radian meanwhile
+# mean square of a row's shape, twice
+_SHAPE = 2.66
 
 
 def _real(value):
@@ -78,11 +79,11 @@ def motion_settings(
     start_dps=20.0,
     walk_dps=0.0007,
     temp_lsb_per_degc=340.0,
-    slope_dps_per_degc=0.05,
-    bend_degc=64.0,
-    tilt_spread=2,
+    slope_dps_per_degc=0.1,
+    bend_degc=256.0,
+    push_g=0.05,
     heading_spread=11,
-    matrix_error=0.01,
+    matrix_error=0.003,
     usual_dps=0.5,
     least_dps=5.0,
     least_tilt_dps=0.3,
@@ -95,9 +96,10 @@ def motion_settings(
     odr_hz: samples a second; node_s: time of a node; longest_stage: the window is 2^that nodes;
     start_dps: one sigma of the bias before anything is known; walk_dps: its random walk a root
     second; slope_dps_per_degc: one sigma of its slope over temperature, which grows as much again
-    over bend_degc; tilt_spread, heading_spread: the variance of a window's slope over that of the
-    noise beside it; matrix_error: one sigma of an entry of scale and axes; usual_dps: half of all
-    parts have a smaller bias;
+    over bend_degc; push_g: noise of the force in a row before any was seen; matrix_error: one sigma
+    of an entry of scale and axes, where the rows are as noisy as that; heading_spread: the variance
+    of the heading's row over that of its noise beside it; usual_dps: half of all parts have a
+    smaller bias;
     least_dps: mean rate, of all axes together, below which a window is not motion, unless it
     mostly tilts and by least_tilt_dps or more. Raises ValueError.
     """
@@ -108,7 +110,7 @@ def motion_settings(
     if not 4 <= longest_stage <= 8 or not 1 <= passes <= 3:
         raise ValueError("a window needs 16..256 nodes, and 1..3 passes")
     longest = 1 << longest_stage
-    steps = (passes + 1) * longest + _ALGEBRA
+    steps = (passes if document else 2) * longest
     rate, lsb, degree = Ratio(odr_hz), Ratio(gyro_lsb_per_dps), Ratio(*PI) / 180
     rad_per_lsb_us = degree / lsb * (1 << 24) / 1000000
     least_hz = max(1 / node_s, 0.0174533 / gyro_lsb_per_dps * 4096)
@@ -137,19 +139,18 @@ def motion_settings(
     c[_PASSES] = passes
     c[_LSB_A_UNIT], c[_LSB_A_UNIT + 1] = _real(lsb * 256 / unit)
     c[_BIAS_WALK], c[_BIAS_WALK + 1] = _real(_square(unit * walk_dps) * node)
-    c[_START_VARIANCE], c[_START_VARIANCE + 1] = _real(_square(unit * start_dps))
     c[_LONGEST] = longest
     c[_SHORTEST_STAGE] = longest_stage - 3
     c[_LEAST_UP] = (Ratio(4096) * least_up_g).floor()
     c[_PATIENCE] = patience
     c[_MOTION_DOCUMENT] = 1 if document else 0
-    # Noise is as large in a slope as beside it, that of a walk 5.6 times; half a window was seen
-    # before. The document's own form has one number for all.
-    c[_TILT_SPREAD] = 20 if document else tilt_spread
     c[_HEADING_SPREAD] = heading_spread
-    if not document:
-        c[_MATRIX_ERROR], c[_MATRIX_ERROR + 1] = _real(_square(Ratio(matrix_error)))
-        c[_USUAL], c[_USUAL + 1] = _real(_square(unit * usual_dps))
+    # of a full window's row; the document's form knows no push
+    push = Ratio(1) if document else _square(Ratio(push_g) * (1 << 24)) * longest / 2 * _SHAPE
+    c[_PUSH_START], c[_PUSH_START + 1] = _real(push)
+    c[_START_VARIANCE], c[_START_VARIANCE + 1] = _real(_square(unit * start_dps) / push)
+    c[_MATRIX_ERROR], c[_MATRIX_ERROR + 1] = _real(_square(Ratio(matrix_error) * (1 << 24)) / push)
+    c[_USUAL], c[_USUAL + 1] = _real(_square(unit * usual_dps))
     c[_SETTLED] = (unit * settled_dps).floor()
     least_tilt_dps = least_dps if document else least_tilt_dps
     c[_LEAST_TILT] = (node * degree * (1 << 13) * least_tilt_dps).floor()

@@ -1,132 +1,79 @@
-"""Sums of a weighted straight-line fit of orientation against the turns of a bias.
+"""What a window says of its rates, and what an error of them adds to that, in five rows.
 
-US 10,451,438: "performing a linear fit of the orientation ... as the function of time". A bias b
-moves the orientation by M(t) b, M the integral of the rotation matrix; where the device keeps its
-attitude on average that is a straight line in time. Two tilts come from the accelerometer's
-gravity in the tilt frame, the heading from the turn about it. The window is tapered by
-1 - t^4, so that unfinished cycles at its ends count little; what remains at the neighbouring shapes
-21/5 t^2 - 1 and 15/7 t^3 - t (orthogonal under that taper) measures the noise the slope has.
+An error e of the rate turns the frame by the integral of R e, so a tilt or a heading y by one of
+its components. Under a bell w over the window that is, by parts, - integral w' y = integral w R e:
+neither where the window began nor what is constant counts, and the hand's push only by what of it
+is as slow as the window. Two bells, (1 - t^2)^3 and 2 t (1 - t^2)^3, give two rows each of the two
+tilts and one of the heading. The heading's second row, and a third shape, hold nothing of a bias
+in one pose: they measure how far the heading strays.
 
-Sums of one component, 21 words: 6 of M M', 3 of M y, 3 of M, 1 of y, 3 + 3 of M and 1 + 1 of y
-with the two shapes.
+A row is 13 words: what it says, then what the bias adds, and what the entries of scale and axes
+add, by rows: R e with e of one axis, and that times each rate.
 """
-
-from ..arithmetic.fixed import scaled
 
 # layout: names that a board's own compiler reads
 const = int
 ptr32 = None
 # layout: The state of the source in motion
-_TAPER_SUM = const(18)
-_TAPER = const(60)
-_SHAPE_2 = const(61)
-_SHAPE_3 = const(62)
-_CENTRE = const(214)
-_VERTICAL = const(242)
-_M = const(203)
-_WM = const(206)
-# layout: The sums of one component
-_SUM_MY = const(6)
-_SUM_M = const(9)
-_SUM_Y = const(12)
-_SHAPES_M = const(13)
-_SHAPES_Y = const(19)
+_HALF = const(18)
+_R = const(32)
+_BELLS = const(41)
+_SHAPES = const(43)
+_HALF_BEFORE = const(46)
+_Y = const(49)
+_WINDOW_ROWS = const(83)
+_STRAY = const(148)
+# layout: A row of a window in motion
+_BY_BIAS = const(1)
+_BY_ENTRIES = const(4)
+_ROW_WORDS = const(13)
 # layout: end
 
 
-def taper(s: ptr32, k: int, stage: int, even: int):
-    """Write the weight and the two shapes times the taper of node k of 2^stage, Q10."""
-    # even: the weight itself is 1, as in the document; the shapes stay tapered.
+def weights(s: ptr32, k: int, stage: int, document: int):
+    """Write both bells and the shapes of node k of 2^stage, Q10."""
+    # US 10,451,438 fits a line in time itself.
     t = (2 * k + 1 - (1 << stage)) << (10 - stage)
     square = (t * t) >> 10
-    weight = 1024 - (square * square >> 10)
-    s[_SHAPE_2] = ((21 * square // 5 - 1024) * weight) >> 10
-    s[_SHAPE_3] = ((((15 * square // 7 - 1024) * t) >> 10) * weight) >> 10
-    if even:
-        weight = 1024
-    s[_TAPER] = weight
-    s[_TAPER_SUM] += weight
+    rest = 1024 - square
+    falls = (rest * rest) >> 10
+    s[_BELLS] = (rest * falls) >> 10
+    s[_BELLS + 1] = (2 * t * s[_BELLS]) >> 10
+    s[_SHAPES] = t if document else (6 * t * falls) >> 10
+    s[_SHAPES + 1] = (2 * (7 * square - 1024) * falls) >> 10
+    s[_SHAPES + 2] = (((11 * t * falls) >> 10) * (3 * square - 1024)) >> 10
 
 
-def regressors(s: ptr32, row: int, shift: int):
-    """Write a row of M to scratch words."""
+def rows(s: ptr32):
+    """Add the node at its start, R, Y and half its turn, to the rows."""
     for i in range(3):
-        s[_M + i] = (s[row + i] + (1 << (shift - 1))) >> shift
-
-
-def look_past_vertical(s: ptr32):
-    """Take from the row of M what a bias about the vertical would turn."""
-    # That becomes a tilt by the swing alone, and so does what the swing does to the force: where
-    # tilts are quiet and the heading is not, they would tell the heading's bias, and wrongly.
-    part = s[_M] * s[_VERTICAL] + s[_M + 1] * s[_VERTICAL + 1]
-    part = (part + s[_M + 2] * s[_VERTICAL + 2] + 0x2000) >> 14
+        s[_HALF_BEFORE + i] += s[_HALF + i]  # of both nodes: a turn of R is seen at its middle
+    row(s, 0, 0, _WINDOW_ROWS)
+    row(s, 0, 1, _WINDOW_ROWS + _ROW_WORDS)
+    row(s, 0, 2, _WINDOW_ROWS + 2 * _ROW_WORDS)
+    row(s, 1, 0, _WINDOW_ROWS + 3 * _ROW_WORDS)
+    row(s, 1, 1, _WINDOW_ROWS + 4 * _ROW_WORDS)
+    for i in range(2):
+        s[_STRAY + i] += (s[_SHAPES + 1 + i] * s[_Y + 2] + 512) >> 10
     for i in range(3):
-        s[_M + i] -= (part * s[_VERTICAL + i] + 0x2000) >> 14
+        s[_HALF_BEFORE + i] = s[_HALF + i]
 
 
-def first_sums(s: ptr32, a: int, y: int):
-    """Add a node to the sums at a that are linear in M and y, y in Q12 within 15 bits."""
-    i = 0
-    while i < 3:
-        s[_WM + i] = (s[_TAPER] * s[_M + i] + 512) >> 10
-        s[a + _SUM_MY + i] += (s[_WM + i] * y + 512) >> 10
-        s[a + _SUM_M + i] += s[_WM + i]
-        s[a + _SHAPES_M + i] += (s[_SHAPE_2] * s[_M + i] + 512) >> 10
-        s[a + _SHAPES_M + 3 + i] += (s[_SHAPE_3] * s[_M + i] + 512) >> 10
-        i += 1
-    s[a + _SUM_Y] += (s[_TAPER] * y + 512) >> 10
-    s[a + _SHAPES_Y] += (s[_SHAPE_2] * y + 512) >> 10
-    s[a + _SHAPES_Y + 1] += (s[_SHAPE_3] * y + 512) >> 10
+def row(s: ptr32, q: int, i: int, a: int):
+    """Add to the row at a what component i says under bell q."""
+    part = (s[_SHAPES + q] * s[_Y + i] + 512) >> 10
+    s[a] += part
+    j = 0
+    while j < 3:
+        part = (s[_BELLS + q] * s[_R + 3 * i + j] + 512) >> 10
+        s[a + _BY_BIAS + j] += part
+        tell(s, a + _BY_ENTRIES + 3 * j, part)
+        j += 1
 
 
-def second_sums(s: ptr32, a: int):
-    """Add a node to the six sums at a that are square in M."""
-    at = a
-    i = 0
-    while i < 3:
-        k = i
-        while k < 3:
-            d = (s[_WM + i] * s[_M + k] + 512) >> 10
-            s[at] += d
-            at += 1
-            k += 1
-        i += 1
-
-
-def mean(s: ptr32, total: int) -> int:
-    """Return the weighted mean whose weighted sum is `total`, of 21 bits."""
-    return (total << 8) // (s[_TAPER_SUM] >> 2)
-
-
-def refer(s: ptr32, d: int, a: int, mean: int):
-    """Take (the word at a times mean) >> 10 from the word at d."""
-    taken = scaled(s[a] << 5, mean, 15)
-    s[d] -= taken
-
-
-def centre(s: ptr32, a: int, row: int, shift: int):
-    """Refer the sums at a to the weighted means, and the next traversal's M to its mean."""
-    # The mean of y replaces its sum. The row of the matrix at _CENTRE is where M begins.
-    s[a + _SUM_Y] = mean(s, s[a + _SUM_Y])
-    i = 0
-    while i < 3:
-        s[_M + i] = mean(s, s[a + _SUM_M + i])
-        s[_CENTRE + row + i] -= s[_M + i] << shift
-        i += 1
-    i = 0
-    row = a  # eleven words: row is from here on the square sums' word, shift that of a sum of M
-    s[_WM] = s[a + _SUM_Y]
-    while i < 3:
-        shift = a + _SUM_M + i
-        refer(s, shift - 3, shift, s[_WM])
-        row = centre_row(s, shift, row, i)
-        i += 1
-
-
-def centre_row(s: ptr32, a: int, h: int, k: int) -> int:
-    """Refer a row of the square sums, from word h on, to the means; return where the next is."""
+def tell(s: ptr32, at: int, part: int):
+    """Add to three words what entries add to a rate that the node shows by `part`."""
+    k = 0
     while k < 3:
-        refer(s, h, a, s[_M + k])
-        h += 1  # eleven words: h and k go on through the row
+        s[at + k] += (part * s[_HALF_BEFORE + k] + 0x2000) >> 14
         k += 1
-    return h

@@ -1,32 +1,22 @@
 """The tilt frame of a window: where its mean specific force points up."""
 
 from ..arithmetic.fixed import clipped, root
-from .attitude import heading_q12, rotation
+from .attitude import heading_q12
 
 # layout: names that a board's own compiler reads
 const = int
 ptr32 = None
 # layout: The state of the source in motion
-_STAGE = const(12)
-_TAPER_SUM = const(18)
-_LAST_HEADING_Q12 = const(23)
-_HEADING_TURNS = const(24)
-_Q = const(25)
-_START = const(29)
-_R = const(33)
-_SUM_R = const(42)
-_Y = const(51)
-_TAPER = const(60)
-_UP = const(63)
-_SUMS = const(86)
-_CENTRE = const(214)
-_VERTICAL = const(242)
-_TILT = const(98)
-_OTHER_TILT = const(119)
-_LOOK = const(203)
-# layout: The sums of one component
-_SUM_M = const(9)
-_COMPONENT_WORDS = const(21)
+_LAST_HEADING_Q12 = const(22)
+_HEADING_TURNS = const(23)
+_Q = const(24)
+_START = const(28)
+_R = const(32)
+_Y = const(49)
+_TILT = const(55)
+_OTHER_TILT = const(59)
+_UP = const(60)
+_LOOK = const(263)
 # layout: end
 _WRAP_Q12 = const(25736)
 _MOST_Q12 = const(0x7FFF)
@@ -76,49 +66,11 @@ def find_up(s: ptr32):
     look_along(s, scale)
 
 
-def turn_start(s: ptr32):
-    """Turn _START by the mean tilts that the traversal left, Q12 rad."""
-    x = clipped(-s[_TILT], 4096) << 1
-    y = clipped(-s[_OTHER_TILT], 4096) << 1
-    s[_LOOK] = s[_START] - ((x * s[_START + 1] + y * s[_START + 2]) >> 14)
-    s[_LOOK + 1] = s[_START + 1] + ((x * s[_START] + y * s[_START + 3]) >> 14)
-    s[_LOOK + 2] = s[_START + 2] + ((y * s[_START] - x * s[_START + 3]) >> 14)
-    s[_LOOK + 3] = s[_START + 3] + ((x * s[_START + 2] - y * s[_START + 1]) >> 14)
-    x = 0
-    for i in range(4):
-        s[_LOOK + i] = s[_LOOK + i] >> 1
-        x += s[_LOOK + i] * s[_LOOK + i]
-    look_along(s, root(x))
-
-
-def turn_centre(s: ptr32, shift: int):
-    """Set _CENTRE from the means of M in the first attitude's own frame."""
-    begin_attitude(s)
-    rotation(s)
-    for i in range(3):
-        for k in range(3):
-            s[_CENTRE + 3 * i + k] = -(turned_mean(s, i, k) << shift)
-
-
-def find_vertical(s: ptr32):
-    """Write the mean of up in the body over the window, from the first attitude's frame."""
-    # Its length tells how steady up was: what turned over has no vertical of its own.
-    for k in range(3):
-        total = 0
-        for j in range(0, 9, 3):
-            total += s[_R + 6 + j // 3] * (s[_SUM_R + j + k] >> s[_STAGE])
-        s[_VERTICAL + k] = total >> 14
-
-
-def turned_mean(s: ptr32, i: int, k: int) -> int:
-    """Return row i of the rotation times column k of the means of M."""
-    j = 0
-    total = 0
-    while j < 3:
-        mean = (s[_SUMS + _COMPONENT_WORDS * j + _SUM_M + k] << 8) // (s[_TAPER_SUM] >> 2)
-        total += (s[_R + 3 * i + j] * mean) >> 2
-        j += 1
-    return total >> 12
+def level(s: ptr32, a: int):
+    """Add the node's force to its sums in the frame of the window's first node."""
+    s[_TILT] -= force_q12(s, a, 3)
+    s[_OTHER_TILT] += force_q12(s, a, 0)
+    s[_UP] += force_q12(s, a, 6)
 
 
 def force_q12(s: ptr32, a: int, row: int) -> int:
@@ -127,15 +79,14 @@ def force_q12(s: ptr32, a: int, row: int) -> int:
     for i in range(3):
         # the force is the low 15 bits of the word, signed
         total += s[_R + row + i] * (((s[a + i] & 0x7FFF) ^ 0x4000) - 0x4000)
-    return (total + 0x2000) >> 14
+    return (total + 0x1000) >> 13
 
 
 def observe(s: ptr32, a: int):
     """Write both tilts and the heading of the node at word a, Q12 rad."""
     s[_Y] = -clipped(force_q12(s, a, 3), _MOST_Q12)
     s[_Y + 1] = clipped(force_q12(s, a, 0), _MOST_Q12)
-    force = force_q12(s, a, 6)
-    s[_UP] += (s[_TAPER] * force + 512) >> 10
+    s[_UP] += force_q12(s, a, 6)
     heading = heading_q12(s)
     turned = heading - s[_LAST_HEADING_Q12]
     s[_LAST_HEADING_Q12] = heading

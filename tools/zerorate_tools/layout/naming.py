@@ -3,12 +3,12 @@
 from collections.abc import Mapping, Sequence
 
 from .effects import EFFECTS, INPUT, PLAY, RING, SLOT
-from .motion import COMPONENT, GRAVITY, MOTION
+from .motion import GRAVITY, MOTION, ROW
 from .rest import AXIS, ESTIMATOR, SETTINGS, STATE, TURN_ON
 from .words import Array
 
 Names = list[tuple[str, str]]
-_BLOCKS = {"INPUTS": INPUT, "SLOTS": SLOT, "PLAYS": PLAY, "RINGS": RING, "SUMS": COMPONENT}
+_BLOCKS = {"INPUTS": INPUT, "SLOTS": SLOT, "PLAYS": PLAY, "RINGS": RING, "WINDOW_ROWS": ROW}
 
 
 def named(array: Array, length: int, blocks: Mapping[str, Array] = _BLOCKS) -> Names:
