@@ -152,7 +152,7 @@ class Corrector:
 
     def use_model(self, effects: "Any") -> None:
         """Subtract what this model says (a loaded model.EffectModel), and learn what is left."""
-        from .others import use_model  # who has none has no memory taken by it
+        from .model import use_model  # who has none has no memory taken by it
 
         use_model(self, effects)
 

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 # layout: names that a board's own compiler reads
 const = int
+# layout: The corrector's settings
+_STEP_LSB = const(29)
 # layout: The effect model and its running state
 _SLOT_COUNT = const(7)
 _INPUT_COUNT = const(8)
@@ -31,6 +33,7 @@ _SQUARES = const(30)
 _SLOW_BEGUN = const(32)
 _REFINE_ON = const(33)
 _BOUND_EIGHTHS = const(34)
+_CURVE_LSB = const(35)
 _INPUTS = const(39)
 _CHANNELS = const(111)
 _SLOTS = const(119)
@@ -66,6 +69,8 @@ LOADED = const(0)
 NO_MODEL = const(1)
 UNREADABLE = const(6)
 _WITHOUT_MODEL_US = const(1_000_000)
+# Of twice the range of temperature: a model holds a curve half of it farther on either side.
+_ESTIMATORS_OF_A_CURVE = const(16)
 
 
 class EffectModel:
@@ -188,3 +193,17 @@ class EffectModel:
                 self.e[_CHANNELS + i] = value
                 return True
         return False
+
+
+def use_model(corrector, effects):
+    """As Corrector.use_model."""
+    from .native.effects import sense
+    from .others import join
+
+    corrector._sense = sense
+    corrector.effects = effects
+    # A curve that the model holds whole leaves little but noise at a temperature: estimators
+    # that share its range have more of the readings each.
+    step = effects.e[_CURVE_LSB] // _ESTIMATORS_OF_A_CURVE
+    corrector.settings[_STEP_LSB] = max(corrector._step_lsb, step)
+    join(corrector)

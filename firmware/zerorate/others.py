@@ -11,16 +11,12 @@ if TYPE_CHECKING:
 const = int
 # layout: The corrector's state
 _STILLNESS = const(50)
-# layout: The corrector's settings
-_STEP_LSB = const(29)
 # layout: The state of the source in motion
 _MOTION_BIAS_Q8 = const(68)
 _LATE_US = const(292)
 # layout: The state of the source against gravity
 _GRAVITY_BIAS_Q8 = const(28)
 _GRAVITY_LATE_US = const(58)
-# layout: The effect model and its running state
-_CURVE_LSB = const(35)
 # layout: What a window was
 _SILENT = const(6)
 # layout: Where a bias comes from
@@ -28,8 +24,6 @@ _IN_MOTION = const(4)
 _GRAVITY = const(5)
 # layout: end
 _MOST_US = const(0x1FFFFFFF)  # two of them fit 31 bits
-# Of twice the range of temperature: a model holds a curve half of it farther on either side.
-_ESTIMATORS_OF_A_CURVE = const(16)
 
 
 class Others:
@@ -37,7 +31,6 @@ class Others:
 
     def __init__(self, corrector: "Any") -> None:
         self._of = corrector
-        self._examine = rest_pieces.check
         c = corrector.settings
         # an odd address asks the guard alone
         self._guard = rest.address(c) + 1 if rest.run else c
@@ -45,19 +38,19 @@ class Others:
     # small frames: one of more than eleven words would take heap at every call
     def update(self, sample: "array[int]", dt_us: int) -> int:
         """As Corrector.update."""
-        kind = self._examine(self._of.state, self._guard, sample, dt_us)
+        kind = rest_pieces.check(self._of.state, self._guard, sample, dt_us)
         self._sense_effects(sample, dt_us, kind)
         rest_pieces.admit(self._of.state, self._of.settings, sample, kind)
         if kind == 0 and self._of.state[_STILLNESS] != _SILENT:
             self._ask_others(sample, dt_us)
         else:
-            self._pass_over(min(max(dt_us, 0), _MOST_US))
+            self._pass_over(dt_us)
         return rest_pieces.finish(self._of.state, self._of.settings, sample, kind)
 
     def _sense_effects(self, sample, dt_us, kind):
-        if self._of.effects is not None:
-            kind = 0 if kind else 1
-            self._of._sense(self._of.state, self._of.effects.e, sample, dt_us, kind)
+        owner = self._of
+        if owner.effects is not None:
+            owner._sense(owner.state, owner.effects.e, sample, dt_us, 0 if kind else 1)
 
     def _ask_others(self, sample, dt_us):
         owner = self._of
@@ -75,6 +68,7 @@ class Others:
 
     def _pass_over(self, dt_us):
         # the next good frame tells how it turned in this one's time, too
+        dt_us = min(max(dt_us, 0), _MOST_US)
         owner = self._of
         if owner.motion is not None:
             owner.motion[_LATE_US] = min(owner.motion[_LATE_US] + dt_us, _MOST_US)
@@ -92,19 +86,6 @@ def join(corrector):
         corrector.alone = False
         if "update" in corrector.__dict__:
             del corrector.update
-
-
-def use_model(corrector, effects):
-    """As Corrector.use_model."""
-    from .native.effects import sense
-
-    corrector._sense = sense
-    corrector.effects = effects
-    # A curve that the model holds whole leaves little but noise at a temperature: estimators
-    # that share its range have more of the readings each.
-    step = effects.e[_CURVE_LSB] // _ESTIMATORS_OF_A_CURVE
-    corrector.settings[_STEP_LSB] = max(corrector._step_lsb, step)
-    join(corrector)
 
 
 def forget(corrector):

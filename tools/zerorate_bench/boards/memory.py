@@ -10,6 +10,7 @@ from .pico import EmulatedPico
 
 _MEASURED = """
 import gc, time
+aside = bytearray({aside})
 gc.collect()
 before = gc.mem_alloc()
 begun = time.ticks_us()
@@ -57,16 +58,23 @@ gc.collect()
 hog = bytearray(gc.mem_free() + gc.mem_alloc() - {heap})
 """
 _STEP = 1024
+_ASIDE = (0, 1000, 3000)
 _PATIENCE_S = 300
 
 
 def heap_and_import(pico: EmulatedPico, configuration: str) -> tuple[int, float]:
-    """Bytes of heap that a configuration keeps, and seconds of the first import."""
+    """Bytes of heap that a configuration keeps, and seconds of the first import.
+
+    A collector that looks for pointers in machine code, too, keeps up to 3 KB by chance: the least
+    of three places in the heap is what is kept for a reason.
+    """
     options, more = CONFIGURATIONS[configuration]
-    with connected(pico.port) as board:
-        said = told(board, _MEASURED.format(options=options, more=more))
-    kept, took_us = ast.literal_eval(said.splitlines()[-1])
-    return kept, took_us / 1e6
+    found = []
+    for aside in _ASIDE:
+        with connected(pico.port) as board:
+            said = told(board, _MEASURED.format(options=options, more=more, aside=aside))
+        found.append(ast.literal_eval(said.splitlines()[-1]))
+    return min(kept for kept, _ in found), min(took_us for _, took_us in found) / 1e6
 
 
 def least_heap(pico: EmulatedPico, program: str, sign: str, low: int, high: int) -> int:
