@@ -124,6 +124,12 @@ def test_a_gap_of_days_leaves_the_motion_before_and_after_it(recorded):
     np.testing.assert_allclose(by_gravity([parted], []).matrix, _MATRIX, atol=0.003)
 
 
+def test_a_sample_lost_now_and_then_stretches_the_time_between_samples_by_its_share(recorded):
+    whole = moving_of(recorded(13, _MATRIX, minutes=1.0))
+    late = np.arange(len(whole.at_s)) // 100
+    assert replace(whole, at_s=whole.at_s + late / _HZ).dt_s == pytest.approx(1.01 / _HZ, rel=1e-3)
+
+
 def test_motion_in_pieces_shorter_than_a_window_shows_nothing(recorded):
     whole = moving_of(recorded(13, _MATRIX, minutes=2.0))
     piece_s = 5.0 * (np.arange(len(whole.at_s)) // 20)

@@ -50,6 +50,8 @@ _RAIL = 32767
 LONGEST_S = 40.0
 #: Of a recording whose rates spread by less no window moves.
 _WORTH_READING_DPS = 1.0
+#: Times the usual between two samples from which on it is a gap, which no window spans.
+_GAP = 5
 #: Rests this long are a reading of the bias, with what it wanders meanwhile.
 _REST_TICKS, REST_SIGMA = 10, np.radians(0.005)
 
@@ -72,9 +74,10 @@ class Moving:
 
     @cached_property
     def dt_s(self) -> float:
-        """Seconds between samples, gaps left out; a mean, as stamps are whole microseconds."""
+        """Seconds between samples, gaps left out; a mean, as stamps are whole microseconds and a
+        sample that is lost now and then is time all the same."""
         apart_s = np.diff(self.at_s)
-        return float(apart_s[apart_s <= 1.5 * np.median(apart_s)].mean())
+        return float(apart_s[apart_s <= _GAP * np.median(apart_s)].mean())
 
     @property
     def planar(self) -> bool:
@@ -96,7 +99,7 @@ class Moving:
         return [s for s in spans if self._moves(s, n)]
 
     def _moves(self, s: slice, n: int) -> bool:
-        whole = abs(self.at_s[s][-1] - self.at_s[s][0] - (n - 1) * self.dt_s) < 5 * self.dt_s
+        whole = abs(self.at_s[s][-1] - self.at_s[s][0] - (n - 1) * self.dt_s) < _GAP * self.dt_s
         spread = np.degrees(np.sqrt(self.rate[s].var(axis=0).sum()))
         return whole and spread > LEAST_DPS and bool(self.usable[s].all())
 
