@@ -58,13 +58,15 @@ def test_each_users_next_command_is_said(said):
     assert "pydoc zerorate_fakes" in said
 
 
-def test_commands_are_said_as_a_shell_finds_them(monkeypatch):
+def test_commands_are_said_as_a_shell_finds_them(monkeypatch, tmp_path):
     own = Path(sys.executable).parent
     monkeypatch.chdir(own.parent)
     monkeypatch.setenv("PATH", "")
     assert f"  {own.name}/zerorate flash" in story.ending([(Path("a"), "b")])
-    monkeypatch.setenv("PATH", str(own))
-    assert "  zerorate flash" in story.ending([(Path("a"), "b")])
+    (tmp_path / "zerorate").symlink_to(own / "zerorate")
+    for folder in (own, tmp_path):
+        monkeypatch.setenv("PATH", str(folder))
+        assert "  zerorate flash" in story.ending([(Path("a"), "b")])
 
 
 def test_an_interpreter_that_is_not_there_is_fetched(monkeypatch, tmp_path):

@@ -148,7 +148,8 @@ def _as_typed(program: str) -> str:
     """A program of this environment by name, or by its path where the shell would not find it."""
     own = Path(sys.executable).with_name(program)
     on_path = shutil.which(program)
-    if (on_path and Path(on_path) == own) or not own.exists():
+    # pipx and uv put a link to the program on the path
+    if (on_path and own in (Path(on_path), Path(on_path).resolve())) or not own.exists():
         return program
     relative = os.path.relpath(own)
     return str(own) if relative.startswith("..") else relative
