@@ -11,6 +11,7 @@ from zerorate.effects import model_file
 from zerorate.model import EffectModel
 from zerorate_tools.cli import main
 from zerorate_tools.errors import BadModel
+from zerorate_tools.layout import SLOT, slot_at
 from zerorate_tools.model import (
     Binding,
     CannotDeploy,
@@ -231,3 +232,19 @@ def test_diff_says_what_differs_and_only_that(files, model, tmp_path, capsys):
 def test_a_missing_file_is_one_line(capsys, tmp_path):
     assert main(["model", "show", str(tmp_path / "model.bin")]) == 2
     assert "no such file" in capsys.readouterr().err
+
+
+def test_every_table_and_delay_goes_with_its_own_slot():
+    tables = TABLE, tuple(-v for v in TABLE)
+    slots = [Slot(Term("temp", 20, 45, 30, table=table), (0.1, 0, 0)) for table in tables]
+    slots.insert(1, Slot(Term("load", -1, 1), (0.1, 0, 0)))
+    slots += [Slot(Term("load", -1, 1, delay_s=s), (0.1, 0, 0)) for s in (7.0, 20.0)]
+    read = decoded(encoded(build_model(slots, SCALES)))
+    assert [slot.term.delay_s for slot in read.slots] == [0, 0, 0, 7.0, 20.0]
+    for slot, own in zip(read.slots, slots):
+        assert (slot.term.table is None) == (own.term.table is None)
+        assert slot.term.table is None or slot.term.table == pytest.approx(own.term.table, abs=1e-6)
+    model = EffectModel()
+    assert model.load(encoded(build_model(slots, SCALES)), Sensor()) == model_file.LOADED
+    at = [model.e[slot_at(n) + SLOT.SLOT_TABLE] for n in (0, 2)]
+    assert at[1] - at[0] == len(TABLE)

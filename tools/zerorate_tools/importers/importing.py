@@ -3,7 +3,6 @@
 At no time is more than some thousand rows in memory.
 """
 
-import errno
 import stat
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
@@ -142,7 +141,8 @@ def _require(path: Path) -> None:
     try:
         kind = path.stat().st_mode
     except OSError as error:
-        problem = "no such file" if error.errno == errno.ENOENT else error.strerror or str(error)
+        problem = error.strerror or str(error)
+        problem = "no such file" if isinstance(error, FileNotFoundError) else problem
         raise BadRecording(path, problem, do="name a file to import") from error
     if not stat.S_ISREG(kind) and not stat.S_ISDIR(kind):
         raise BadRecording(path, "neither a file nor a folder", do="copy it into a file first")

@@ -125,7 +125,7 @@ def likely_columns(
     rest = {name: rest[name] for name in _no_quaternion(rest)}
     accel, unit, gyro = _by_values(rest, list(first))
     usual = max((abs(float(np.median(values[name]))) for name in gyro), default=0.0)
-    if len(gyro) < len(GYRO) or unit != RAW and usual * RATE_DPS[unit] > _FASTEST_DPS:
+    if not gyro or unit != RAW and usual * RATE_DPS[unit] > _FASTEST_DPS:
         return []
     return out + accel + [f"{axis}={name}:{unit}" for axis, name in zip(GYRO, gyro)]
 
