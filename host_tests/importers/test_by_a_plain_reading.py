@@ -220,6 +220,10 @@ def test_the_usual_interval_of_a_slower_sensor_is_across_pieces():
         spool.append({"t_us": part, "gx": part, "ax": np.where(there, 1.0, np.nan)})
     spool.finish()
     assert _usual_us(spool, "ax") == np.quantile(np.diff(at), 0.9)
+    steps, spool = np.repeat([1.0, 5.0], [900, 200]), Spool(["t_us", "ax"])
+    spool.append({"t_us": np.cumsum(np.r_[0.0, steps]), "ax": np.ones(1101)})
+    spool.finish()
+    assert _usual_us(spool, "ax") == pytest.approx(np.quantile(steps[:1000], 0.9))
 
 
 @pytest.mark.parametrize(
