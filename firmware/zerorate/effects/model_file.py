@@ -219,7 +219,7 @@ def fill_plays(e, data, at):
         if not 0 <= e[a + _PLAY_RADIUS] <= 1 << 25 or not 15 <= shift <= 30:
             return IMPOSSIBLE
         for i in (_PLAY_COEFFICIENT, _PLAY_OF_SQUARE):
-            if not coefficients_are_bounded(e, a + i, shift):
+            if not coefficients_are_bounded(e, a + i):
                 return IMPOSSIBLE
         e[source] = word_of(e[source], _INPUTS + _INPUT_VALUE_Q8, _INPUT_WORDS)
     return LOADED
@@ -303,7 +303,7 @@ def bounded(e, a):
         return False
     if e[a + _SLOT_TABLE] >= 0 and not 15 <= e[a + _SLOT_TABLE_SCALE + 1] <= 30:
         return False
-    if not coefficients_are_bounded(e, a + _SLOT_COEFFICIENT, e[a + _SLOT_COEFFICIENT_SHIFT]):
+    if not coefficients_are_bounded(e, a + _SLOT_COEFFICIENT):
         return False
     return abs(e[a + _SLOT_HALF_WIDTH]) <= 1 << 25 and (
         e[a + _SLOT_KNOT] == _NO_VALUE or abs(e[a + _SLOT_KNOT]) <= 1 << 25
@@ -319,12 +319,9 @@ def source_is_bounded(e, f):
     return (most << shift if shift >= 0 else most >> -shift) <= 1 << 24
 
 
-def coefficients_are_bounded(e, f, shift):
+def coefficients_are_bounded(e, f):
     """Whether the three coefficients at f keep what is added within 31 bits."""
-    for i in range(f, f + 3):
-        if abs(e[i]) >> max(0, shift - 24) > 1 << 28 or abs(e[i]) > _MOST_COEFFICIENT:
-            return False
-    return True
+    return all(abs(e[i]) <= _MOST_COEFFICIENT for i in range(f, f + 3))
 
 
 def texts_at(data):
