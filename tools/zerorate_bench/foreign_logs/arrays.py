@@ -22,6 +22,16 @@ def matlab(folder: Path, world: World) -> Path:
     return folder / "in.mat"
 
 
+@log("MATLAB, a folder with a file a sensor")
+def matlab_folder(folder: Path, world: World) -> Path:
+    from scipy.io import savemat
+
+    for name, values in (("AngularVelocity", world.rad), ("Acceleration", world.mps2)):
+        (folder / "in").mkdir(exist_ok=True)
+        savemat(folder / "in" / f"{name}.mat", {"Timestamp": world.t_s, name: values})
+    return folder / "in"
+
+
 def _hdf5(path: Path, arrays: dict[str, np.ndarray], group: str = "") -> Path:
     import h5py
 

@@ -2,7 +2,7 @@
 
 import zipfile
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 from ..errors import BadRecording
@@ -36,6 +36,7 @@ _SUFFIXES = {
 }
 #: Logs of messages, whose readers would look for the next one through any number of zeros.
 _OF_MESSAGES = ("ulog", "dataflash", "mcap_file", "ros_bag", "blackbox")
+_OF_MATLAB = ("matlab", "hdf5")
 _LONGEST_START, _ZEROS = 64, 4096
 _DATABASE = b"SQLite format 3"
 _ZIP = b"PK\x03\x04"
@@ -55,11 +56,12 @@ def table_of(path: Path, instance: int, advance: Callable[[float], None]) -> Ite
         with table_apart(reader, path, instance, advance) as table:
             yield table
     elif path.is_dir():
-        yield folder_of_tables(path, advance)
+        with _opened(advance) as opened:
+            yield folder_of_tables(path, opened)
     elif _starts(path, _ZIP):
-        with archive(path) as unpacked:
+        with archive(path) as unpacked, _opened(advance) as opened:
             if unpacked.is_dir():
-                yield folder_of_tables(unpacked, advance, path)
+                yield folder_of_tables(unpacked, opened, path)
             else:
                 with table_of(unpacked, instance, advance) as table:
                     yield table
@@ -67,6 +69,22 @@ def table_of(path: Path, instance: int, advance: Callable[[float], None]) -> Ite
         yield checked_lines(path, advance)
     else:
         yield delimited(path, advance)
+
+
+@contextmanager
+def _opened(advance: Callable[[float], None]) -> Iterator[Callable[[Path], Table]]:
+    """What reads a file of several; all of them are closed behind it."""
+    from .logs.apart import table_apart
+
+    with ExitStack() as stack:
+
+        def opened(file: Path) -> Table:
+            reader = _reader(file)
+            if reader in _OF_MATLAB:
+                return stack.enter_context(table_apart(reader, file, 0, advance))
+            return delimited(file, advance)
+
+        yield opened
 
 
 def _reader(path: Path) -> str | None:

@@ -13,10 +13,9 @@ import numpy as np
 
 from ...errors import BadRecording
 from ..columns import names as usual
-from .delimited import delimited
 from .table import Chunk, Table
 
-_TABLES = (".csv", ".txt", ".tsv", ".dat")
+_TABLES = (".csv", ".txt", ".tsv", ".dat", ".mat")
 #: No log packs so well: deflate takes 1,032 bytes to one at its best, a table 20.
 _MOST_UNPACKED = 300
 _PER_SENSOR = re.compile("gyro|accel|angular|rotation|temp", re.I)
@@ -55,14 +54,14 @@ def _is_hidden(name: str) -> bool:
 
 
 def folder_of_tables(
-    path: Path, advance: Callable[[float], None], said: Path | None = None
+    path: Path, opened: Callable[[Path], Table], said: Path | None = None
 ) -> Table:
     """The tables of a folder beside each other, by the time that they share. Raises BadRecording.
 
     Columns get the name of their file before their own: `Gyroscope x`. Blocks of rows of the files
-    take turns. said: the file that the folder was unpacked from.
+    take turns. opened: reads a file; said: the file that the folder was unpacked from.
     """
-    found = _tables_in(path, advance)
+    found = _tables_in(path, opened)
     tables = {file.stem: table for file, table in found if _is_of_sensors(table, file)}
     path = said or path
     if not tables:
@@ -81,12 +80,12 @@ def folder_of_tables(
     return _together(tables, shared)
 
 
-def _tables_in(path: Path, advance: Callable[[float], None]) -> Iterator[tuple[Path, Table]]:
+def _tables_in(path: Path, opened: Callable[[Path], Table]) -> Iterator[tuple[Path, Table]]:
     for file in sorted(path.rglob("*")):
         hidden = _is_hidden(str(file.relative_to(path)))
         if file.suffix.lower() in _TABLES and not hidden and file.is_file():  # a pipe has no end
             try:
-                yield file, delimited(file, advance)
+                yield file, opened(file)
             except BadRecording:  # a note, a setting
                 continue
 
