@@ -10,7 +10,7 @@ line, take the slope as bias, remove it, integrate again. Two forms:
 
 A window grows from 2 s while nothing is known, for a large bias turns a long one too far to be
 linear. Work is spread: a few nodes or pieces of algebra a sample. The state is one array('i')
-of 258 words and 3 a node; motion_settings.py makes the settings.
+of 293 words and 3 a node; motion_settings.py makes the settings.
 """
 
 from ..arithmetic.fixed import clipped
