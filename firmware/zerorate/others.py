@@ -48,9 +48,9 @@ class Others:
         return rest_pieces.finish(self._of.state, self._of.settings, sample, kind)
 
     def _sense_effects(self, sample, dt_us, kind):
-        owner = self._of
-        if owner.effects is not None:
-            owner._sense(owner.state, owner.effects.e, sample, dt_us, 0 if kind else 1)
+        if self._of.effects is not None:
+            kind = 0 if kind else 1
+            self._of._sense(self._of.state, self._of.effects.e, sample, dt_us, kind)
 
     def _ask_others(self, sample, dt_us):
         owner = self._of
