@@ -174,6 +174,14 @@ def test_gaps_of_a_channel_stay_gaps_however_often_it_is_imported(tmp_path, name
         read_recording(tmp_path / name)
 
 
+def test_a_line_of_other_names_before_its_values_is_no_row_of_the_others(tmp_path):
+    rows = [f"gx:{k}.5 gy:2 gz:-3 t:{10 * k}" for k in range(9)]
+    rows[4] = rows[4].replace("gy", "ax")
+    (tmp_path / "in.txt").write_text("\n".join(["ready: 1", *rows, ""]))
+    _, report = read_foreign(tmp_path / "in.txt", units={"gyro": "dps", "time": "ms"})
+    assert (report.rows_written, sum(report.dropped.values())) == (8, 1)
+
+
 def test_a_truncated_gzip_is_refused(tmp_path):
     whole = gzip.compress(b"t_s,gx_dps,gy_dps,gz_dps\n" + b"1,2,3,4\n" * 9999)
     (tmp_path / "in.csv.gz").write_bytes(whole[:-20])

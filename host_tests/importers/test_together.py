@@ -102,7 +102,7 @@ def test_acceleration_without_gravity_in_a_file_beside_is_refused(tmp_path):
 _REFUSED = {
     *("pickled", "parquet_cut", "database", "spreadsheet", "zip_of_pictures", "zip_of_runs"),
     *("rows_of_numbered_sensors", "gnss_logger", "only_covariances", "ros2_echo", "sketch_lines"),
-    *("plotter_lines", "sentences", "offset_counts", "thousands"),
+    *("sentences", "lines_of_words", "offset_counts", "thousands"),
     *("two_at_one_time", "two_evenly", "two_clocks", "two_power_ons", "three_devices"),
     *("two_in_blocks", "whole_seconds_lost", "kitti", "opensense", "opensense_rates"),
     *("px4_angles", "influx", "grafana", "gopro", "phyphox_shorter", "json_of_lists"),

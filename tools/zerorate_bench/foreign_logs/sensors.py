@@ -161,11 +161,41 @@ def sketch_lines(folder: Path, world: World) -> Path:
     return folder / "in.txt"
 
 
-@log("a plotter's lines: gx:0.8,gy:-0.5,gz:0.3", "--hz 100")
+@log("a plotter's lines: gx:0.8,gy:-0.5,gz:0.3", "--hz 100 --gyro-unit dps")
 def plotter_lines(folder: Path, world: World) -> Path:
     lines = [f"gx:{x:.4f},gy:{y:.4f},gz:{z:.4f}\n" for x, y, z in world.dps]
     (folder / "in.txt").write_text("".join(lines))
     return folder / "in.txt"
+
+
+@log("a sketch's lines: gx:0.8 gy:-0.5 ... t:10", "--gyro-unit dps --accel-unit g")
+def labelled_lines(folder: Path, world: World) -> Path:
+    rows = zip(world.dps, world.g, world.t_s)
+    line = "gx:{:.4f} gy:{:.4f} gz:{:.4f} ax:{:.4f} ay:{:.4f} az:{:.4f} t:{:.0f}\n"
+    lines = [line.format(*dps, *g, 1e3 * t_s) for dps, g, t_s in rows]
+    (folder / "in.txt").write_text("MPU6050 ready!\n" + "".join(lines))
+    return folder / "in.txt"
+
+
+@log("Adafruit's sketch, three lines of words a sample", "--hz 100")
+def lines_of_words(folder: Path, world: World) -> Path:
+    line = "{} X: {:.2f}, Y: {:.2f}, Z: {:.2f} {}\n"
+    lines = [
+        line.format("Acceleration", *force, "m/s^2")
+        + line.format("Rotation", *rates, "rad/s")
+        + f"Temperature: {degc:.2f} degC\n\n"
+        for force, rates, degc in zip(world.mps2, world.rad, world.degc)
+    ]
+    (folder / "in.txt").write_text("Adafruit MPU6050 test!\nMPU6050 Found!\n" + "".join(lines))
+    return folder / "in.txt"
+
+
+@log("Ouster, its IMU packets as CSV", "--gyro-unit dps --time-unit ns")
+def ouster(folder: Path, world: World) -> Path:
+    at_ns = 900_000_000_000 + (world.t_s * 1e9).astype(np.int64)
+    names = "sys_ts,accel_ts,gyro_ts,accelX,accelY,accelZ,angVelX,angVelY,angVelZ"
+    frame = table(names, at_ns, at_ns + 12, at_ns + 12, world.g, world.dps)
+    return text(folder / "in.csv", frame)
 
 
 @log("sentences: Gyro X:0.01, Y: 0.02, Z: 0.03 radians/s")

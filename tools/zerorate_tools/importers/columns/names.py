@@ -31,7 +31,8 @@ _NOT_THE_DIE = re.compile(r"ambient|air|baro|bmp|bme|aht|sht|cpu|motor|batt|esc|
 _TIME = re.compile(
     r"(?:t|ts|time|timestamp|timestampsample|now|stamp|timeus|timems|secondselapsed|datetime|"
     r"date|utc|millis|micros|loggingtime|.*timestamp(?:unix|sincereboot)?(?:cal)?|.*headerstamp|sampletime|"
-    r"gpst|gpstime|tow|timeofweek|elapsed|elapsedtime|epoch?|.*offsettime|timestartup|timesincestart(?:in)?|rtctime)$"
+    r"gpst|gpstime|tow|timeofweek|elapsed|elapsedtime|epoch?|.*offsettime|timestartup|timesincestart(?:in)?|rtctime|"
+    r"(?:sys|gyro|imu)ts)$"
 )
 _SEC = re.compile(r"(.*?)(?:secs?|seconds?)$")
 _NANOSEC = re.compile(r"(.*?)(?:nanosecs?|nsecs?|nanoseconds?)$")

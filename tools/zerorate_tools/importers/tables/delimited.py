@@ -16,7 +16,7 @@ import pyarrow.csv
 from ...errors import BadRecording
 from ...recordings.text import damaged, open_text
 from ..report import cut_words
-from .sniffing import COMMENTS, DAY, Form, sniffed, without_arrows
+from .sniffing import COMMENTS, DAY, Form, sniffed, without_arrows, without_labels
 from .table import Chunk, Table
 
 _BLOCK_BYTES = 1 << 22
@@ -59,7 +59,8 @@ def _chunks(
     read = start = 0
     held = None
     try:
-        whole = _Lines(watched, form) if form.delimiter == " " or form.arrows else watched
+        changed = form.delimiter == " " or form.arrows or form.labels
+        whole = _Lines(watched, form) if changed else watched
         for batch in _reader(whole, form, names, odd):
             place = odd.places(start, batch.num_rows)
             start = int(place[-1]) + 1 if len(place) else start
@@ -143,7 +144,7 @@ def _refuse_other_names(
 
 class _Lines(io.RawIOBase):
     """A text whose lines are told apart as its form says: one blank parts cells in columns, with
-    none at either end, and a clock before an arrow is a cell."""
+    none at either end, a clock before an arrow is a cell, and names before values go."""
 
     def __init__(self, stream, form: Form) -> None:
         self._stream, self._form = stream, form
@@ -163,6 +164,7 @@ class _Lines(io.RawIOBase):
 
     def _changed(self, lines: bytes) -> bytes:
         lines = without_arrows(lines) if self._form.arrows else lines
+        lines = without_labels(lines, self._form.labels) if self._form.labels else lines
         return _single_blanks(lines) if self._form.delimiter == " " else lines
 
 

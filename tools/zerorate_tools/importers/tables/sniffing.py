@@ -31,6 +31,10 @@ DATE = re.compile(
 )
 #: What the Arduino IDE puts before each line of its monitor.
 _CLOCK = re.compile(rb"(?m)^(\d\d:\d\d:\d\d\.\d+) -> (?=[^\r\n]*?([,;\t |]))")
+#: A value behind its name, as Arduino's plotter has it: gx:0.8,gy:-0.5.
+_PAIR = rb"([A-Za-z_]\w*)[ \t]*[:=][ \t]*([-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?)"
+_PAIRS = re.compile(rb"\s*(?:" + _PAIR + rb"(?:[,;\s]+|$)){%d,}$" % _CELLS)
+_EACH_PAIR = re.compile(_PAIR)
 #: A line of such beneath the names says their units.
 _UNIT = re.compile(
     r"[\[(]?(-|[mun]?s|sec|(m?deg|rad|°)/s|m?dps|m?g|m/s(\^?2|²)|m/\(s\^2\)|°?c|degc|k|lsb)[\])]?$",
@@ -47,7 +51,7 @@ _RATE = re.compile(
 class Form:
     """How a text holds its table. names: of the columns, as numbers from 1 where nothing names
     them; skip: lines before the first row; words: by column, where its cells are few words;
-    arrows: a clock and an arrow stand before lines."""
+    arrows: a clock and an arrow stand before lines; labels: what stands before each value."""
 
     names: list[str]
     skip: int
@@ -59,6 +63,7 @@ class Form:
     note: str = ""
     said_hz: float | None = None
     arrows: bool = False
+    labels: tuple[bytes, ...] = ()
 
 
 def sniffed(path: Path) -> Form:
@@ -81,6 +86,9 @@ def sniffed(path: Path) -> Form:
             raise BadRecording(path, "empty file", do="name another file")
         problem = f"no line ends within the first {_HEAD_BYTES >> 10} KiB"
         raise BadRecording(path, problem, do="name a table with a sample on each line")
+    labelled = _labelled(lines, encoding)
+    if labelled is not None:
+        return labelled
     form = _table_in(lines[:_LINES], lines, encoding, path)
     return replace(form, arrows=plain != content)
 
@@ -88,6 +96,33 @@ def sniffed(path: Path) -> Form:
 def without_arrows(content: bytes) -> bytes:
     """A clock and an arrow before a line as a cell of its own."""
     return _CLOCK.sub(lambda found: found[1] + found[2], content)
+
+
+def _labelled(lines: list[str], encoding: str) -> Form | None:
+    """The form of lines most of which have the same name before each value; else None."""
+    labels = [_labels(line.encode()) for line in lines]
+    usual, count = Counter(labels).most_common(1)[0]
+    if not usual or 2 * count <= sum(1 for line in lines if line.strip()):
+        return None
+    skip = labels.index(usual)
+    names = _single([label.decode() for label in usual])
+    return Form(names, skip, ",", encoding, said_hz=_rate_said(lines[:skip]), labels=usual)
+
+
+def _labels(line: bytes) -> tuple[bytes, ...]:
+    pairs = _EACH_PAIR.findall(line) if _PAIRS.match(line) else []
+    return tuple(label for label, _ in pairs)
+
+
+def without_labels(lines: bytes, labels: tuple[bytes, ...]) -> bytes:
+    """The values of each line with these names before them, parted by commas; others stay."""
+
+    def values(line: bytes) -> bytes:
+        pairs = _EACH_PAIR.findall(line) if _PAIRS.match(line) else []
+        same = tuple(label for label, _ in pairs) == labels
+        return b",".join(value for _, value in pairs) if same else line
+
+    return b"\n".join(map(values, lines.split(b"\n")))
 
 
 def _table_in(lines: list[str], every: list[str], encoding: str, path: Path) -> Form:
@@ -101,6 +136,10 @@ def _table_in(lines: list[str], every: list[str], encoding: str, path: Path) -> 
             raise BadRecording(path, "no table", do="name a CSV with a row for each sample")
         raise BadRecording(path, "no data row", do="name another file")
     _, at, skip, delimiter = best
+    if at is not None and _says_its_names(lines[at], lines[skip:], delimiter):
+        problem = f"each line has words around its numbers: {lines[at].strip()[:60]}"
+        do = "print all readings of a sample on one line, as gx:0.8 gy:-0.5 gz:0.3"
+        raise BadRecording(path, problem, row=at + 1, do=do)
     first = (
         _cells(lines[skip], delimiter) if at is not None else _whole_row(lines[skip:], delimiter)
     )
@@ -117,6 +156,17 @@ def _table_in(lines: list[str], every: list[str], encoding: str, path: Path) -> 
         note=note,
         said_hz=_rate_said(lines[:skip]),
     )
+
+
+def _says_its_names(line: str, lines: list[str], delimiter: str) -> bool:
+    """Whether a line that may be one of names is such as come again with other numbers."""
+    names = _cells(line, delimiter)
+    for other in lines:
+        cells = _cells(other, delimiter)
+        same = sum(name == cell and bool(name) for name, cell in zip(names, cells))
+        if len(cells) == len(names) and 1 < same < len(names):
+            return True
+    return False
 
 
 def _words(
