@@ -16,8 +16,9 @@ def main(repository, only=()):
             print(page.relative_to(repository), flush=True)
             with tempfile.TemporaryDirectory() as folder:
                 page.write_text(refreshed(page, folder), encoding="utf-8")
-                for picture in Path(folder).glob("shown/demo.png"):
-                    shutil.copy(picture, docs)
+                for picture in ("shown/demo.png", "watch.png"):
+                    if (Path(folder) / picture).exists():
+                        shutil.copy(Path(folder) / picture, docs)
         page.write_text(with_tables(page.read_text(encoding="utf-8"), docs), encoding="utf-8")
 
 

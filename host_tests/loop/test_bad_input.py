@@ -200,6 +200,13 @@ def test_another_data_rate_is_another_setting(closing):
         closing([at_rest(0), at_rest(1)], MPU, replace(MPU, odr_hz=HZ / 2))
 
 
+def test_a_part_that_an_import_was_not_told_is_named_as_the_other_one_is(closing):
+    unknown = replace(MPU, sensor="unknown")
+    for scales in ((MPU, unknown), (unknown, MPU)):
+        with pytest.raises(CannotClose, match=f"import the other with --sensor {MPU.sensor}$"):
+            closing([at_rest(i) for i in range(2)], *scales)
+
+
 def test_scales_that_an_import_chose_are_told_how_to_agree(closing):
     wider = replace(MPU, sensor="unknown", gyro_lsb_per_dps=65.5)
     with pytest.raises(CannotClose, match="import both with --gyro-lsb-per-dps N"):
