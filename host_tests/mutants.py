@@ -200,13 +200,13 @@ def mutants(files):
     return found
 
 
-def same(mutant, text):
-    """Why the mutant means the same, by mutants.toml, or ""."""
+def same(mutant, text, mutated=""):
+    """Why the mutant of a line, which makes another of it, means the same; or ""."""
     if mutant[1].endswith(_AT_LIMIT) and _LIMIT.search(text):
         return "at the limit both are the limit"
     for entry in tomllib.loads(SURVIVORS_AND_WHY.read_text(encoding="utf-8"))["same"]:
         names = entry["operators"]
-        there = mutant[0].startswith(entry["file"])
+        there = mutant[0].startswith(entry["file"]) and mutated in entry.get("become", [mutated])
         if there and entry["line"] == text and mutant[1].rpartition("/")[2] in names:
             return entry["why"]
     return ""
@@ -231,7 +231,7 @@ def area_score(name, count, seed):
     for number, (file, operator, occurrence, row, line, text) in enumerate(
         itertools.islice(draws(files, seed), count)
     ):
-        if same((file, operator), line):
+        if same((file, operator), line, text.splitlines()[row - 1].strip()):
             found["same"] += 1
             continue
         drawn[number] = (file, row, text)
