@@ -248,3 +248,15 @@ def test_every_table_and_delay_goes_with_its_own_slot():
     assert model.load(encoded(build_model(slots, SCALES)), Sensor()) == model_file.LOADED
     at = [model.e[slot_at(n) + SLOT.SLOT_TABLE] for n in (0, 2)]
     assert at[1] - at[0] == len(TABLE)
+
+
+def test_a_name_has_at_most_63_bytes():
+    long = replace(SCALES, sensor="x" * 63)
+    assert decoded(encoded(build_model([], long))).scales.sensor == "x" * 63
+    for more in ("x", "xx"):
+        with pytest.raises(CannotDeploy, match="longer than 63 bytes"):
+            build_model([], replace(long, sensor=long.sensor + more))
+
+
+def test_a_model_says_why_there_is_none_as_its_file_does():
+    assert EffectModel().reason == model_file.NO_MODEL == 1
