@@ -280,3 +280,10 @@ def test_a_signal_at_any_rename_ends_the_program_when_all_are_done(tmp_path, num
     assert run.returncode == -number, run.stderr
     assert contents(tmp_path) == {"out/a": "new", "out/b": "new", "out/c": "new"}
     assert not list(tmp_path.rglob(".zerorate*"))
+
+
+def test_a_draft_that_somebody_removed_is_dropped_all_the_same(tmp_path):
+    draft = drafts.make_draft(tmp_path)
+    draft.rmdir()
+    drafts.drop(draft)
+    assert draft not in drafts._mine and not list(tmp_path.iterdir())

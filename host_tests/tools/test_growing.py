@@ -265,3 +265,25 @@ class TestCommand:
     def test_says_what_it_lacks(self, arguments, said, capsys):
         assert main(["record", *arguments]) == 2
         assert said in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("error", "why"),
+    [(OSError(errno.ENOSPC, ""), "No space left"), (OSError("no disk"), "no disk")],
+)
+def test_what_keeps_a_recording_from_beginning_is_said(new, monkeypatch, error, why):
+    def fails(out, scales):
+        raise error
+
+    monkeypatch.setattr(growing, "_created", fails)
+    with pytest.raises(InFile, match=f"cannot be written: {why}"), new():
+        pass
+
+
+def test_the_scales_beside_a_growing_recording_are_as_in_any_other(tmp_path, new):
+    recording = a_recording()
+    write_recording(recording, tmp_path / "whole.csv")
+    with new("grown.csv") as grown:
+        grown.append(recording.columns)
+    texts = [p.read_text() for p in sorted(tmp_path.glob("*.json"))]
+    assert len(texts) == 2 and texts[0] == texts[1]

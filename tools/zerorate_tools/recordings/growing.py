@@ -41,8 +41,9 @@ def growing_recording(
     try:
         growing = GrowingRecording(out, names, scales)
     except OSError as error:
-        problem = f"cannot be written: {os.strerror(error.errno or 0)}"
-        raise InFile(out, problem, do="name another folder, or make room") from error
+        why = os.strerror(error.errno) if error.errno else error
+        do = "name another folder, or make room"
+        raise InFile(out, f"cannot be written: {why}", do=do) from error
     try:
         yield growing
     finally:
