@@ -287,3 +287,20 @@ def test_the_scales_beside_a_growing_recording_are_as_in_any_other(tmp_path, new
         grown.append(recording.columns)
     texts = [p.read_text() for p in sorted(tmp_path.glob("*.json"))]
     assert len(texts) == 2 and texts[0] == texts[1]
+
+
+def test_the_last_whole_row_is_looked_for_from_the_end_a_block_at_a_time(tmp_path, monkeypatch):
+    monkeypatch.setattr(growing, "_BLOCK", 8)
+    for rows in (
+        "",
+        "1,2",
+        "1,2\n",
+        "1\n2\n3",
+        "1\n" + "2" * 30,
+        "1\n" + "2" * 30 + "\n3" * 9,
+        "\n" * 8,
+    ):
+        (tmp_path / "run").write_text(rows)
+        with open(tmp_path / "run", "rb", buffering=0) as file:
+            assert growing._end_of_last_row(file) == rows.rfind("\n") + 1
+            assert file.tell() <= max(0, rows.rfind("\n")) + 8  # no more is read than must be
