@@ -193,7 +193,10 @@ def motion_in_words(result: Mapping[str, Any]) -> str:
             for axis, values, spread in rows
         ]
     else:
-        lines = [f"found: nothing in motion; gravity sees {m['before']:.2f} {m['unit']}"]
+        lines = [
+            f"found: nothing in motion; gravity sees {m['before']:.2f} {m['unit']}, the device's "
+            "own acceleration among it"
+        ]
     lines += [f"not seen in this motion: {', '.join(m['not_seen'])}"] if m["not_seen"] else []
     lines.append(f"note: {result['unexplained']['what_is_known']}")
     return "\n".join(

@@ -16,7 +16,9 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
     parser.add_argument(
         "logs", type=Path, nargs="+", metavar="LOG", help="a recording of one power-on"
     )
-    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder to write")
+    parser.add_argument(
+        "-o", "--out", type=Path, required=True, metavar="DIR", help="folder to write"
+    )
     parser.add_argument("--holdout", metavar="LOG", help="which to hold out (default: the last)")
     parser.add_argument(
         "--online",

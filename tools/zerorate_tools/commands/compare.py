@@ -16,7 +16,9 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         "nothing but the logs: power-ons of one device, in their order.",
     )
     parser.add_argument("logs", nargs="+", type=Path, metavar="LOG", help="a recording")
-    parser.add_argument("--out", type=Path, metavar="FILE", help="write one HTML page with a plot")
+    parser.add_argument(
+        "-o", "--out", type=Path, metavar="FILE", help="write one HTML page with a plot"
+    )
     add_json(parser)
     parser.set_defaults(run=run)
 

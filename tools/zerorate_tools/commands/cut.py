@@ -22,7 +22,9 @@ def add_parser(subparsers: Any) -> None:
         metavar="N",
         help="the data row, counted from 1, that begins a part; may be repeated",
     )
-    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder to write")
+    parser.add_argument(
+        "-o", "--out", type=Path, required=True, metavar="DIR", help="folder to write"
+    )
     parser.set_defaults(run=run)
 
 

@@ -24,7 +24,12 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         help="a real recording of the public BROAD data set instead, fetched once (3.6 MB)",
     )
     parser.add_argument(
-        "--out", type=Path, default=Path("zerorate-demo"), metavar="DIR", help="folder to write"
+        "-o",
+        "--out",
+        type=Path,
+        default=Path("zerorate-demo"),
+        metavar="DIR",
+        help="folder to write",
     )
     parser.add_argument(
         "--runtime",

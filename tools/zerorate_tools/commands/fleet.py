@@ -22,7 +22,9 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         metavar="RECORDING",
         help="files, patterns, or folders of them; s3://, gs:// too",
     )
-    parser.add_argument("--out", type=_folder, required=True, metavar="DIR", help="folder to write")
+    parser.add_argument(
+        "-o", "--out", type=_folder, required=True, metavar="DIR", help="folder to write"
+    )
     parser.add_argument(
         "--job", choices=("replay", "close"), default="replay", help="run for each (replay)"
     )

@@ -31,6 +31,7 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         "sources", type=Path, nargs="+", metavar="SRC", help="foreign recordings of one device"
     )
     parser.add_argument(
+        "-o",
         "--out",
         type=Path,
         required=True,

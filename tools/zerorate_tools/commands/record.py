@@ -17,7 +17,7 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         "Until it ends the recording is in NAME.partial.csv, also if the program is killed.",
     )
     parser.add_argument("port", nargs="?", metavar="PORT", help="/dev/ttyACM0, COM3 or /dev/i2c-1")
-    parser.add_argument("--out", type=Path, metavar="FILE", help=".parquet, .csv or .csv.gz")
+    parser.add_argument("-o", "--out", type=Path, metavar="FILE", help=".parquet, .csv or .csv.gz")
     parser.add_argument(
         "--recover", type=Path, metavar="FILE", help="finish the .partial.csv of a killed one"
     )

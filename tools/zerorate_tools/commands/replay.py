@@ -14,7 +14,7 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         "the bias, its source and its quality.",
     )
     parser.add_argument("log", type=Path, metavar="LOG", help="a recording")
-    parser.add_argument("--out", type=Path, required=True, metavar="FILE", help="a .parquet")
+    parser.add_argument("-o", "--out", type=Path, required=True, metavar="FILE", help="a .parquet")
     parser.add_argument(
         "--runtime",
         default="native",

@@ -11,7 +11,7 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         description="Make recordings of a device described in TOML or YAML, or of a bundled one.",
     )
     parser.add_argument("description", nargs="?", help=".toml, .yaml, or a bundled scenario's name")
-    parser.add_argument("--out", type=Path, metavar="FILE", help=".parquet, .csv or .csv.gz")
+    parser.add_argument("-o", "--out", type=Path, metavar="FILE", help=".parquet, .csv or .csv.gz")
     parser.add_argument("--truth", type=Path, metavar="FILE", help="the true bias too (.parquet)")
     parser.add_argument("--session", type=int, metavar="N", help="this power-on only, 1-based")
     parser.add_argument("--seed", type=_seed, metavar="N", help="instead of the description's")

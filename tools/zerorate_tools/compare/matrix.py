@@ -32,8 +32,8 @@ class Won:
         before, after = self.tilt
         if not self.deployed:
             return (
-                f"In motion gravity sees {before:.2f} deg of tilt a minute on windows left out; "
-                "it shows no matrix that would lower that."
+                f"In motion gravity sees {before:.2f} deg of tilt a minute on windows left out, "
+                "the device's own acceleration among it; it shows no matrix that would lower that."
             )
         more = "" if self.heading is None else f", and {_of(self.heading)} of heading"
         return (
