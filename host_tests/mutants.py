@@ -147,7 +147,7 @@ AREAS = {
     # what one search is made of; its course is judged by whole closings
     "search": (
         ["tools/zerorate_tools/loop/search/" + name for name in (
-            "catalogue.py", "collinear.py", "confounding.py", "decide.py", "detectable.py",
+            "catalogue.py", "cancels.py", "confounding.py", "decide.py", "detectable.py",
             "drift_test.py", "fits_in_slots.py", "multiple_testing.py", "naming.py",
             "ols_holdout_ratio.py", "periodic.py", "refine.py", "selection.py",
             "step_places.py", "steps.py")],

@@ -7,7 +7,7 @@ import pytest
 from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.loop.fit.line import ordinary
 from zerorate_tools.loop.fit.single import PiecesByLine, held
-from zerorate_tools.loop.search.collinear import cancels
+from zerorate_tools.loop.search.cancels import cancels
 from zerorate_tools.loop.search.curve import powers
 from zerorate_tools.loop.search.hysteresis import is_like_hysteresis
 from zerorate_tools.loop.search.select import Search, select

@@ -11,8 +11,7 @@ from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.fit.single import PiecesByLine
 from zerorate_tools.loop.read.sessions import block_basis
 from zerorate_tools.loop.search.catalogue import candidates
-from zerorate_tools.loop.search.collinear import collinear
-from zerorate_tools.loop.search.decide import effective, predicts
+from zerorate_tools.loop.search.decide import effective
 from zerorate_tools.loop.search.extrapolation import MOST, followed
 from zerorate_tools.loop.search.fits_in_slots import fits_in_slots
 from zerorate_tools.loop.search.ols_holdout_ratio import ols_holdout_ratio
@@ -130,23 +129,6 @@ def test_noise_sets_how_far_it_goes():
     assert reaches[0] > reaches[1]
 
 
-@pytest.mark.parametrize(
-    ("nats", "speaks"),
-    [
-        ([5.0, 4.0, 2.0], True),
-        ([60.0, 60.0, -1.5], True),
-        ([60.0, 60.0, -4.0], False),
-        ([5.0, 3.5, -0.5], False),
-        ([60.0, -1.0, -1.0], False),
-        ([1.0, 0.5, 0.5], False),
-        ([9.0, -1.0], False),
-        ([9.0], True),
-    ],
-)
-def test_sessions_left_out_must_speak_for_it_and_none_clearly_against(nats, speaks):
-    assert predicts(np.array(nats)) is speaks
-
-
 def test_columns_that_are_alike_are_paid_for_once():
     rng = np.random.default_rng(1)
     one = rng.normal(size=(500, 1))
@@ -171,24 +153,6 @@ RATE = Term("temp", lag_s=20.0, lag_mode="rate")
 @pytest.fixture(scope="module")
 def sessions():
     return simulate(4).sessions
-
-
-def test_a_rate_with_nearly_the_same_lag_is_no_second_effect(sessions):
-    assert collinear([replace(RATE, lag_s=20.3)], [RATE], sessions)
-
-
-def test_a_lag_ten_times_as_long_is_one(sessions):
-    slow = Term("temp", lag_s=200.0, lag_mode="difference")
-    assert not collinear([slow], [RATE], sessions)
-
-
-def test_another_channel_is_one_however_like_it(sessions):
-    assert not collinear([Term("vdd_mv")], [RATE, Term("load")], sessions)
-
-
-def test_a_cubic_beside_a_quadratic_is_one_wherever_its_centre_is(sessions):
-    square = Term("temp", centre=28.0, power=2)
-    assert not collinear([Term("temp", centre=10.0, power=3)], [square], sessions)
 
 
 def test_the_sum_of_squares_that_gravity_holds_gets_no_coefficient_from_noise(sessions):

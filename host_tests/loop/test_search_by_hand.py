@@ -27,8 +27,8 @@ from zerorate_tools.loop.search import (
     refine,
     step_places,
 )
+from zerorate_tools.loop.search.cancels import cancels
 from zerorate_tools.loop.search.catalogue import Candidate, candidates, ranges, varies
-from zerorate_tools.loop.search.collinear import cancels, collinear
 from zerorate_tools.loop.search.fits_in_slots import fits_in_slots
 from zerorate_tools.loop.search.multiple_testing import MultipleTesting
 from zerorate_tools.loop.search.ols_holdout_ratio import ols_holdout_ratio
@@ -75,19 +75,6 @@ def test_as_many_tests_as_their_columns_are_apart():
     assert decide.effective(two) == pytest.approx(np.sqrt(values).sum() ** 2 / 2)
     with_none = np.column_stack([two, np.zeros(3)])
     assert decide.effective(with_none) == pytest.approx(decide.effective(two))
-
-
-@pytest.mark.parametrize(
-    ("nats", "speaks"),
-    [
-        *(([3.1], True), ([3.0], False), ([1.6, 1.6], True), ([1.4, 1.4], False)),
-        *(([4.0, 0.0], False), ([5.0, 6.0, -1.0], True), ([5.0, 5.0, -1.0], False)),
-        *(([9.0, 9.0, -2.9], True), ([9.0, 9.0, -3.0], False)),
-        *(([2.0, 2.0, 2.0, -1.0], True), ([9.0, 9.0, -1.0, -1.0], False)),
-    ],
-)
-def test_sessions_left_out_speak_for_it(nats, speaks):
-    assert decide.predicts(np.array(nats)) is speaks
 
 
 def test_every_lock_must_open(sessions, monkeypatch):
@@ -368,23 +355,6 @@ def test_the_plain_error_is_that_of_each_session_by_a_fit_to_the_others(sessions
     assert ols_holdout_ratio(regression, straight, [B], [A]) == pytest.approx(expected, rel=1e-4)
     assert expected < 0.5
     assert ols_holdout_ratio(Regression(sessions[:1]), straight, [], [A]) == 1.0
-
-
-def test_a_memory_that_others_of_its_source_leave_nothing_of_is_the_same(sessions):
-    lags = [Term("a", lag_s=s, lag_mode="lag") for s in (30.0, 31.0, 400.0)]
-    assert collinear(lags[:1], lags[1:2], sessions)
-    assert not collinear(lags[:1], lags[2:], sessions)
-    assert not collinear(lags[:1], [replace(lags[1], source="b")], sessions)
-    for s in sessions:
-        s.sources["b"] = s.sources["a"]
-    for one, other in ("ab", "ba"):
-        beside = [replace(lags[1], source=other)]
-        assert not collinear([replace(lags[0], source=one)], beside, sessions)
-    assert not collinear([A], lags, sessions) and not collinear(lags[:1], [A], sessions)
-    assert not collinear(lags[:2], lags[1:2], sessions) and not collinear(lags[:1], [], sessions)
-    for memory in ({"delay_s": 20.0}, {"decay_s": 99.0}, {"width": 1.0, "memory": "backlash"}):
-        one = Term("a", **memory)
-        assert collinear([one], [replace(one, centre=0.01)], sessions)
 
 
 @pytest.mark.parametrize("beside", [[B], []])

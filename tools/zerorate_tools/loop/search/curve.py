@@ -16,8 +16,8 @@ from ..fit.line import less_slope
 from ..fit.regression import Regression
 from ..fit.single import LEAST_OF_A_PIECE, PIECES, PiecesByLine
 from ..read.sessions import Session
+from .cancels import cancels
 from .catalogue import Candidate, ranges, varies
-from .collinear import cancels
 from .decide import LIKELY, Decision, JudgedOnPieces, family_p
 from .fits_in_slots import fits_in_slots
 from .hysteresis import MEMORIES, is_like_hysteresis

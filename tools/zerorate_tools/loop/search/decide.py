@@ -22,8 +22,6 @@ LEVEL = {"catalogue": 2.5e-3, "generic": 5e-5, "step": 2e-3}
 WEIGHT = {"time-drift": 6.0, "power-on-transient": 6.0}
 #: Nats that left-out sessions must gain in all.
 LEAST_GAIN = 3.0
-#: Nats that one of at least three may lose: odds of twenty to one against.
-MOST_LOST = 3.0
 
 #: Nats that pieces of one recording must gain; and the chance by the likelihood, all of its kind
 #: that were tried paid for, above which pieces alone tell of no memory: with one of real parts it
@@ -97,18 +95,9 @@ def decide(regression, nuisances, candidate, ratio: float, tried: float, pool) -
     if len(regression.sessions) == 1:
         return Decision(True, p, ratio, d, np.array([]))
     gain = gains(regression, nuisances, candidate.terms)
-    enough = predicts(gain)
+    enough = bool(gain.sum() > LEAST_GAIN)
     reason = "" if enough else "does not predict the sessions left out"
     return Decision(enough, p, ratio, d, gain, reason)
-
-
-def predicts(gain: np.ndarray) -> bool:
-    """Whether nats gained on each session left out speak for a candidate: all sessions do, or, with
-    three times as many nats in all, all but one in three or four and none clearly against it."""
-    if not 4 * (gain > 0).sum() >= 3 * len(gain):
-        all_but_one = len(gain) == 3 and (gain > 0).sum() == 2
-        return bool(all_but_one and gain.sum() > 3 * LEAST_GAIN and gain.min() > -MOST_LOST)
-    return bool(gain.sum() > LEAST_GAIN)
 
 
 def effective(columns: np.ndarray) -> float:

@@ -7,8 +7,8 @@ from ...model.term import Term
 from ..fit.line import less_slope
 from ..fit.single import PiecesByLine
 from . import drift_test
+from .cancels import cancels
 from .catalogue import Candidate
-from .collinear import cancels, collinear
 from .confounding import label
 from .decide import Decision, JudgedOnPieces, decide
 from .hysteresis import is_like_hysteresis
@@ -20,8 +20,6 @@ from .selection import Found
 _TRANSIENT = "power-on-transient"
 #: Decay, less two lags, below which a transient is but the start of that lag.
 _START_S = 60.0
-#: Of the plain error of sessions left out, which for an effect that is there only drift makes grow.
-_MOST_GROWTH = 1.05
 
 
 class Examiner:
@@ -49,8 +47,8 @@ class Examiner:
         and the bend beside which it is tested.
         """
         best = refined(self.regression, [*straight, *found], candidate)
-        reason = self._seen_in_others(best, found)
-        if not reason:
+        reason = "the start of a lag's own memory"
+        if not _is_a_start(best, found):
             told = drawn(self.regression, [*straight, *found], best)
             decision = self._decision(best, told, straight, found, nuisances)
             if decision.accepted:
@@ -64,14 +62,6 @@ class Examiner:
             chance = drift_test.chance(self.regression, rest, c.terms)
             return chance * self.testing.tried(c) > drift_test.LEVEL
         return float(self.regression.gains(rest, [c.terms]).sum()) < self.testing.least_ratio(c)
-
-    def _seen_in_others(self, best, found) -> str:
-        """Why what it explains is of an effect found already; empty where it is its own."""
-        if _is_a_start(best, found):
-            return "the start of a lag's own memory"
-        if collinear(best.terms, found, self.regression.sessions):
-            return "found already, all but the same"
-        return ""
 
     def _decision(self, best, told, straight, found, nuisances) -> Decision:
         """By the likelihood, by the plain error, and by pieces left out. told: the candidate with
@@ -93,7 +83,7 @@ class Examiner:
 
     def _makes_worse(self, best, straight, found) -> bool:
         """Whether the plain error of what is left out grows with a candidate as deployed."""
-        return ols_holdout_ratio(self.regression, straight, found, best.terms) > _MOST_GROWTH
+        return ols_holdout_ratio(self.regression, straight, found, best.terms) > 1.0
 
     def _by_pieces(self, decision, judged: JudgedOnPieces, best, straight, found) -> Decision:
         sessions, beside = self.regression.sessions, (straight, found)

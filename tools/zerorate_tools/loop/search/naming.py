@@ -10,7 +10,6 @@ from ..fit.regression import Regression, predicted
 from ..read.earth import ROTATION, can_be_earth
 from . import confounding
 from .catalogue import Candidate
-from .collinear import collinear
 from .selection import Found
 
 _OF_POSE = ("linear-acceleration", "squared-acceleration")
@@ -45,9 +44,7 @@ def name_found(
 
 def _near(regression, rest, chosen, pool):
     ratios = regression.gains(rest, [c.terms for c in pool]).sum(axis=1)
-    near = confounding.rivals(regression, rest, chosen, pool, ratios)
-    sessions = regression.sessions
-    return [c for c in near if c is chosen or not collinear(c.terms, rest, sessions)]
+    return confounding.rivals(regression, rest, chosen, pool, ratios)
 
 
 def _named(regression, rest, candidate):

@@ -15,7 +15,6 @@ from . import confounding, curve, hysteresis
 from . import steps as events
 from .catalogue import Candidate, ranges
 from .catalogue import candidates as all_candidates
-from .collinear import collinear
 from .decide import JudgedOnPieces
 from .detectable import smallest_dps
 from .examine import Examiner
@@ -280,9 +279,9 @@ class Search:
                 self.dropped.add(confounding.label(c))
                 del self.found[i]
             else:
-                better = drawn(self.regression, rest, refined(self.regression, rest, c))
-                if not collinear(better.terms, rest, self.regression.sessions):
-                    self.found[i].candidate = better
+                self.found[i].candidate = drawn(
+                    self.regression, rest, refined(self.regression, rest, c)
+                )
 
     def _list_steps(self):
         """Steps again from none, beside the effects found."""
