@@ -17,12 +17,28 @@ class Bursts:
     def __init__(self, corrector):
         self.corrector = corrector
         self._frame = array("i", [0] * 7)
-        self._run = None
-        if rest.run:
-            self._run = rest.step
-            # to look up where they lie takes as long as two samples
-            self._state = rest.address(corrector.state)
-            self._settings = rest.address(corrector.settings)
+        if rest.run and corrector.alone:
+            self.update = self._bound()
+
+    def _bound(self):
+        # to look up where they lie takes as long as two samples, an attribute as long as one
+        # of more than eleven words in `update` each call would take heap
+        run = rest.step
+        state = rest.address(self.corrector.state)
+        settings = rest.address(self.corrector.settings)
+
+        def update(frames, count):
+            run(state, settings, frames, _BURST + count)
+
+        def one_by_one(_state, _settings, frames, what):
+            self._one_by_one(frames, what - _BURST)
+
+        def leave():
+            nonlocal run
+            run = one_by_one
+
+        self.corrector.leave_bursts = leave
+        return update
 
     def update(self, frames, count):
         """Do what `Corrector.update` does with each of `count` samples; allocates nothing.
@@ -30,11 +46,7 @@ class Bursts:
         frames: array('i') of eight words a sample: dt_us, then ax ay az temp gx gy gz. Rates are
         corrected in place, and each first word becomes what `Corrector.update` returns.
         """
-        run = self._run
-        if run and self.corrector.alone:
-            run(self._state, self._settings, frames, _BURST + count)
-        else:
-            self._one_by_one(frames, count)
+        self._one_by_one(frames, count)
 
     def _one_by_one(self, frames, count):
         for i in range(count):

@@ -13,10 +13,10 @@ if TYPE_CHECKING:
 const = int
 # layout: The corrector's state
 _STILLNESS = const(50)
-_OUT_Q8 = const(61)
-_EFFECT_Q8 = const(67)
-_QUALITY_Q8 = const(76)
-_SOURCE = const(79)
+_OUT_Q8 = const(62)
+_EFFECT_Q8 = const(68)
+_QUALITY_Q8 = const(77)
+_SOURCE = const(80)
 # layout: An axis
 _WAITING_N = const(1)
 _OFFSET_Q8 = const(27)
@@ -75,6 +75,7 @@ class Corrector:
     _walk_q16: int
     _step_lsb: int
     alone = True
+    leave_bursts: "Any" = None
 
     def __init__(
         self,

@@ -8,9 +8,9 @@ const = int
 _COUNTS = const(8)
 _STILLNESS = const(50)
 _SEGMENT_WINDOWS = const(52)
-_OUT_Q8 = const(61)
-_QUALITY_Q8 = const(76)
-_SOURCE = const(79)
+_OUT_Q8 = const(62)
+_QUALITY_Q8 = const(77)
+_SOURCE = const(80)
 # layout: An axis
 _SUSPECT = const(30)
 _BEYOND = const(32)

@@ -86,6 +86,8 @@ def join(corrector):
         corrector.alone = False
         if "update" in corrector.__dict__:
             del corrector.update
+        if corrector.leave_bursts:
+            corrector.leave_bursts()
 
 
 def forget(corrector):

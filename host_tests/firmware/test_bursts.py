@@ -7,8 +7,11 @@ import numpy as np
 import pytest
 from zerorate import Corrector
 from zerorate.bursts import Bursts
+from zerorate.native import rest
+from zerorate.others import join
 from zerorate.rest import block
-from zerorate_tools.layout import SETTINGS
+from zerorate_tools.kernels.parts import BURST
+from zerorate_tools.layout import SETTINGS, STATE
 
 from . import trace
 from .trace_on_host import corrector_for, frames
@@ -131,6 +134,27 @@ def test_a_burst_reaches_the_other_sources_too():
         single.update(row[1:], row[0])
     Bursts(burst).update(words, len(rows))
     assert list(burst.motion) == list(single.motion) != list(Corrector(motion=True).motion)
+
+
+def test_a_source_that_joins_later_sees_the_bursts_that_machine_code_took(monkeypatch):
+    def machine_code(state, settings, frames, what):
+        room = array("i", [0] * 7)
+        block.block(state, frames, settings, room, what - BURST)
+
+    monkeypatch.setattr(rest, "run", machine_code)
+    monkeypatch.setattr(rest, "step", machine_code)
+    monkeypatch.setattr(rest, "address", lambda words: words, raising=False)
+    corrector = corrector_for("default")
+    bursts = Bursts(corrector)
+    words = array("i", b"".join(row.tobytes() for row in whole_trace("default")[:300]))
+    bursts.update(array("i", words), 300)
+    assert corrector.state[STATE.COUNTS] > 290
+    monkeypatch.undo()
+    seen = []
+    join(corrector)
+    corrector._with_others = lambda sample, dt_us: seen.append(dt_us) or 0
+    bursts.update(words, 300)
+    assert len(seen) == 300
 
 
 def on_board(runtime, mode, repository):

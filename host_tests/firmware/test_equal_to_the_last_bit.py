@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from zerorate_tools.layout import GRAVITY, MOTION
+from zerorate_tools.layout import GRAVITY, MOTION, STATE
 
 from . import swung, trace
 from .trace_on_host import GOLDEN, checksums, on_machine_code, where_it_parts
@@ -45,7 +45,7 @@ def test_the_numbers_are_those_that_were_committed(mode, trace_on_host):
 def test_where_the_numbers_part_from_those_committed_is_said(trace_on_host):
     state, biases = map(bytearray, trace_on_host("every"))
     assert where_it_parts("every", state, biases).startswith("no bias differs; 0 words")
-    state[4 * 61] ^= 1
+    state[4 * STATE.OUT_Q8] ^= 1
     biases[12 * 1234] ^= 1
     said = where_it_parts("every", state, biases)
     assert said.startswith("first at samples 1216 and on; 1 words of the state: OUT_Q8[0] ")

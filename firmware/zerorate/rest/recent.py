@@ -20,11 +20,11 @@ ptr32 = None
 _REST = const(34)
 _TEMP = const(51)
 _NOISE_Q8 = const(53)
-_LEARN_TEMP = const(58)
-_RESTS = const(60)
-_TARGET_Q8 = const(73)
-_MEAN_NOISE_Q8 = const(86)
-_GROWN_Q8 = const(87)
+_LEARN_TEMP = const(59)
+_RESTS = const(61)
+_TARGET_Q8 = const(74)
+_MEAN_NOISE_Q8 = const(87)
+_GROWN_Q8 = const(88)
 # layout: The last words before the axes
 _TURN_ON_OFFSET_Q8 = const(-3)
 # layout: An axis

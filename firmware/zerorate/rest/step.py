@@ -38,18 +38,19 @@ _SEGMENT_TEMP = const(49)
 _STILLNESS = const(50)
 _TEMP = const(51)
 _SEGMENT_WINDOWS = const(52)
-_LEARN_TEMP = const(58)
-_WORK = const(59)
-_OUT_Q8 = const(61)
-_CARRY_Q8 = const(64)
-_EFFECT_Q8 = const(67)
-_EFFECT_SUM_Q8 = const(70)
-_TARGET_Q8 = const(73)
-_QUALITY_Q8 = const(76)
-_SOURCE = const(79)
+_TILTING_Q4 = const(58)
+_LEARN_TEMP = const(59)
+_WORK = const(60)
+_OUT_Q8 = const(62)
+_CARRY_Q8 = const(65)
+_EFFECT_Q8 = const(68)
+_EFFECT_SUM_Q8 = const(71)
+_TARGET_Q8 = const(74)
+_QUALITY_Q8 = const(77)
+_SOURCE = const(80)
 _OFFERED_SOURCE = const(7)
-_MEAN_NOISE_Q8 = const(86)
-_GROWN_Q8 = const(87)
+_MEAN_NOISE_Q8 = const(87)
+_GROWN_Q8 = const(88)
 # layout: An axis
 _WAITING_SUM = const(0)
 _WAITING_N = const(1)
@@ -121,7 +122,7 @@ def moved_by_rest_q8(s: ptr32, c: ptr32, a: int, bias: int) -> int:
     n = gain_q14(s[_GROWN_Q8], s[_MEAN_NOISE_Q8])
     s[_GROWN_Q8] = left_q8(s, n)
     error = n * error >> 10
-    n = n * tilting_q4(s, c) >> 14
+    n = n * s[_TILTING_Q4] >> 14
     s[_GROWN_Q8] += n * n
     return bias + error
 
@@ -145,7 +146,8 @@ def segment_mean_q8(s: ptr32, c: ptr32, axis: int) -> int:
     """Return the mean rate of the segment so far, LSB Q8."""
     n = s[_SEGMENT_WINDOWS] << c[_WINDOW_SHIFT]
     total = s[_SEGMENT_TOTAL + axis]
-    return ((total // n) << 8) + ((total % n) << 8) // n
+    whole = total // n
+    return (whole << 8) + ((total - whole * n) << 8) // n
 
 
 def stale(s: ptr32, c: ptr32, a: int) -> int:
@@ -240,6 +242,8 @@ def end_window(s: ptr32, c: ptr32):
     while s[_WORK]:
         advance(s, c)
     still = judge(s, c)
+    if s[_STILLNESS] == _STILL and s[_SEGMENT_WINDOWS]:
+        s[_TILTING_Q4] = tilting_q4(s, c)  # once for the three axes
     if still:
         s[_LEARN_TEMP] = s[_SEGMENT_TEMP] // still
     elapsed_ms = s[_ELAPSED_US] // 1000

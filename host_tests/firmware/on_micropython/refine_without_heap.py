@@ -12,7 +12,7 @@ _WINDOW_N = const(17)
 _SEGMENT_TOTAL = const(46)
 _STILLNESS = const(50)
 _TEMP = const(51)
-_FIT_WEIGHTS = const(98)
+_FIT_WEIGHTS = const(99)
 # layout: The corrector's settings
 _WINDOW_SHIFT = const(4)
 _SEGMENT = const(5)

@@ -12,7 +12,7 @@ from zerorate import Corrector, Sensor
 
 _STRETCH = 500
 # layout: The corrector's state
-_OUT_Q8 = const(61)
+_OUT_Q8 = const(62)
 # layout: end
 
 mode, updates = sys.argv[1], int(sys.argv[2])

@@ -37,6 +37,7 @@ STATE = Array(
         ("TEMP_RISE_Q12", 1, "LSB", "by how much it rises from window to window"),
         ("TEMP_WINDOWS", 1, "windows", "that it was smoothed over, at most thirty", 0, 30),
         ("TIP_Q8", 1, "LSB^2", "how far gravity has moved since the rest began"),
+        ("TILTING_Q4", 1, "LSB", "turn about a level axis that the rest hides yet"),
         ("LEARN_TEMP", 1, "LSB", "temperature of the segment that is being learned"),
         ("WORK", 1, "", "next piece of the work that a window left, 0: none", 0, 12),
         ("RESTS", 1, "segments", "absorbed since power-on, up to INSIST"),
