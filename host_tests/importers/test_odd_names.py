@@ -321,3 +321,9 @@ def test_an_accelerometer_in_the_file_beside_is_said(tmp_path):
     (tmp_path / "Accelerometer.csv").write_text("t_s,x,y,z\n")
     _, report = read(tmp_path, frame, name="Gyroscope.csv")
     assert told(report, "Accelerometer.csv is beside it: zerorate import")
+
+
+def test_a_column_of_lists_is_not_offered_for_a_rate(tmp_path):
+    frame = pd.DataFrame({"t_s": np.arange(300) / 100, "pulse": 70, "gyro": "[0.8, -0.5, 0.3]"})
+    with pytest.raises(BadRecording, match="COLUMN one of t_s, pulse; gyro: no number alone"):
+        read(tmp_path, frame)

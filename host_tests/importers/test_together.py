@@ -106,7 +106,7 @@ _REFUSED = {
     *("two_at_one_time", "two_evenly", "two_clocks", "two_power_ons", "three_devices"),
     *("two_in_blocks", "whole_seconds_lost", "kitti", "opensense", "opensense_rates"),
     *("px4_angles", "influx", "grafana", "gopro", "phyphox_shorter", "json_of_lists"),
-    "serial_monitor_tabs",
+    *("serial_monitor_tabs", "lists_in_cells", "vectors_in_cells", "garmin_fit"),
 }
 
 

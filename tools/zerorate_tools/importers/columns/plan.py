@@ -245,7 +245,11 @@ def left_aside(plan: Plan, table: Table) -> list[str]:
 
 
 def _of(table: Table) -> str:
-    return f"COLUMN one of {_list(table.names)}"
+    first = table.first_rows(table.names)
+    readable = [name for name in table.names if np.isfinite(first[name]).any()]
+    other = [name for name in table.names if name not in readable]
+    words = f"COLUMN one of {_list(readable or table.names)}"
+    return words + (f"; {_list(other, _TOLD)}: no number alone in a cell" if other else "")
 
 
 def _list(names: list[str], most: int = _LISTED) -> str:

@@ -20,7 +20,7 @@ _SQUARED = r"(?:/s|\^?2|²|[\s_]*squared|[\s_]*/[\s_]*s)"
 _METRE = "m(?:et(?:er|re)s?)?"
 #: A unit as people write it, whatever its case.
 _WRITTEN = {
-    "dps": rf"dps|degs|(?:°|deg(?:ree)?s?){_PER_SEC}",
+    "dps": rf"dps|degs|d/s|(?:°|deg(?:ree)?s?){_PER_SEC}",
     "mdps": rf"mdps|m(?:°|deg){_PER_SEC}",
     "rad/s": rf"rads|rps|rad(?:ian)?s?ps|radpersec|rad(?:ian)?s?{_PER_SEC}",
     "mrad/s": rf"mrad(?:ian)?s?{_PER_SEC}",

@@ -254,10 +254,11 @@ class _Gathering:
         _refuse_too_fast(self.too_fast, self.samples, self.fastest, self.plan, self.path)
         if not self.samples:
             dropped = self.table.dropped + self.dropped
-            do = "; ".join(f"{count} rows: {why}" for why, count in dropped.items())
-            if not do and not self.rows:
+            if not dropped and not self.rows:
                 raise BadRecording(self.path, "no data row", do="name another file")
-            raise BadRecording(self.path, "no sample is left", do=do or "no row has three rates")
+            why = [f"{count} rows: {why}" for why, count in dropped.items()]
+            do = "write each of three rates as a number in a cell of its own"
+            raise BadRecording(self.path, "no sample is left", do="; ".join([*why, do]))
         torn = self.dropped[_NO_TIME]
         if torn > self.rows / 2:
             do = "write it as a number or a date, or give --hz"

@@ -13,11 +13,13 @@ import numpy as np
 
 from ...errors import BadRecording
 from ..columns import names as usual
+from ..columns.guesses import likely_columns
 from .table import Chunk, Table
 
 _TABLES = (".csv", ".txt", ".tsv", ".dat", ".mat")
 #: No log packs so well: deflate takes 1,032 bytes to one at its best, a table 20.
 _MOST_UNPACKED = 300
+_TOLD = 8
 _PER_SENSOR = re.compile("gyro|accel|angular|rotation|temp", re.I)
 
 
@@ -61,11 +63,17 @@ def folder_of_tables(
     Columns get the name of their file before their own: `Gyroscope x`. Blocks of rows of the files
     take turns. opened: reads a file; said: the file that the folder was unpacked from.
     """
-    found = _tables_in(path, opened)
+    found = list(_tables_in(path, opened))
     tables = {file.stem: table for file, table in found if _is_of_sensors(table, file)}
     path = said or path
     if not tables:
-        do = "name a file, or the folder of a ROS 2 bag or of a phone's tables"
+        unnamed = [one for one in found if usual.unnamed(one[1].names) and _may_hold_rates(one[1])]
+        if len(unnamed) == 1:
+            (file, table), *_ = unnamed
+            table.notes.append(f"of the table {file.name} alone")
+            return table
+        held = f" in {', '.join(file.name for file, _ in found[:_TOLD])}" if found else ""
+        do = f"name a file{held}, or the folder of a ROS 2 bag or of a phone's tables"
         raise BadRecording(path, "no table with rates in it", do=do)
     rates = [stem for stem, table in tables.items() if usual.gyro_groups(table.names)]
     if len(rates) > 1 and not any("gyro" in stem.lower() for stem in rates):
@@ -88,6 +96,11 @@ def _tables_in(path: Path, opened: Callable[[Path], Table]) -> Iterator[tuple[Pa
                 yield file, opened(file)
             except BadRecording:  # a note, a setting
                 continue
+
+
+def _may_hold_rates(table: Table) -> bool:
+    first = table.first_rows(table.names)
+    return any(words.startswith("gx=") for words in likely_columns(first, table.calendar))
 
 
 def _is_of_sensors(table: Table, file: Path) -> bool:

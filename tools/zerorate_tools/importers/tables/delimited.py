@@ -66,7 +66,9 @@ def _chunks(
             start = int(place[-1]) + 1 if len(place) else start
             if held is not None:
                 yield held
-            held = Chunk(place, {n: _numbers(batch.column(n), n, form) for n in names})
+            columns = {n: _numbers(batch.column(n), n, form) for n in names}
+            columns |= {n: columns[n] * form.scales[n] for n in names if n in form.scales}
+            held = Chunk(place, columns)
             _refuse_other_names(batch, held, path, dropped)
             advance(told() - read)
             read = told()

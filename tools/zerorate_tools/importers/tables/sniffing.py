@@ -45,13 +45,18 @@ _RATE = re.compile(
     r"[^\d\n]{0,12}([\d.]*\d)\s*(k?)",
     re.I,
 )
+#: What stands above Gyroflow's table: how many of a unit a count is.
+_SCALE = re.compile(rf"([tga])scale\s*,\s*({_NUMBER.pattern[:-1]})\s*,*\s*$")
+_SCALED = re.compile(r"t|[ga][xyz]")
+_OF_COUNTS = {"t": "s", "g": "rad/s", "a": "g"}
 
 
 @dataclass(frozen=True)
 class Form:
     """How a text holds its table. names: of the columns, as numbers from 1 where nothing names
     them; skip: lines before the first row; words: by column, where its cells are few words;
-    arrows: a clock and an arrow stand before lines; labels: what stands before each value."""
+    arrows: a clock and an arrow stand before lines; labels: what stands before each value;
+    scales: by column, what its numbers are multiplied by."""
 
     names: list[str]
     skip: int
@@ -64,6 +69,7 @@ class Form:
     said_hz: float | None = None
     arrows: bool = False
     labels: tuple[bytes, ...] = ()
+    scales: dict[str, float] = field(default_factory=dict)
 
 
 def sniffed(path: Path) -> Form:
@@ -90,7 +96,20 @@ def sniffed(path: Path) -> Form:
     if labelled is not None:
         return labelled
     form = _table_in(lines[:_LINES], lines, encoding, path)
+    if lines[0].startswith("GYROFLOW IMU LOG"):
+        form = _scaled(form, lines[: form.skip])
     return replace(form, arrows=plain != content)
+
+
+def _scaled(form: Form, above: list[str]) -> Form:
+    """Columns of counts with the scales and units that Gyroflow says above them."""
+    found = [one for one in map(_SCALE.match, above) if one]
+    said = {one[1]: float(one[2]) for one in found}
+    own = {
+        n: f"{n} ({_OF_COUNTS[n[0]]})" for n in form.names if _SCALED.fullmatch(n) and n[0] in said
+    }
+    scales = {named: said[name[0]] for name, named in own.items()}
+    return replace(form, names=[own.get(name, name) for name in form.names], scales=scales)
 
 
 def without_arrows(content: bytes) -> bytes:
