@@ -1,9 +1,11 @@
 """Watching a recording that somebody else is writing."""
 
+import os
 import signal
 import subprocess
 import sys
 import threading
+import tty
 
 import numpy as np
 import pytest
@@ -262,6 +264,27 @@ def test_what_a_board_explains_is_read_as_the_firmware_means_it(log):
     assert told.quality_dps == pytest.approx(live.quality_dps, abs=6e-4)
     assert told.source == live.source
     assert told.learning() == live.learning()
+
+
+@pytest.mark.parametrize("ends", [["--for", "0.5"], ["--once"]])
+def test_a_program_that_prints_no_bias_is_watched_and_not_drawn(tmp_path, capsys, ends):
+    board, port = os.openpty()
+    tty.setraw(board)
+    ended = threading.Event()
+
+    def program():
+        while not ended.wait(0.02):
+            os.write(board, b"yaw without +0.14  with +0.01 deg\n")
+
+    running = threading.Thread(target=program)
+    running.start()
+    own = ["watch", os.ttyname(port), "--own", *ends]
+    codes = [main(own), main([*own, "--plot", str(tmp_path / "bias.png")])]
+    ended.set()
+    running.join()
+    said = capsys.readouterr()
+    assert codes == [0, 2] and not list(tmp_path.iterdir())
+    assert "with +0.01 deg" in said.out and "no bias came to be drawn" in said.err
 
 
 def test_a_board_s_own_program_takes_no_model(capsys):

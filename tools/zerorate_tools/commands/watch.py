@@ -34,7 +34,7 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Watch; 1 where no sample ever came."""
+    """Watch; 1 where no sample, or no line, ever came."""
     if arguments.own and (arguments.model or arguments.setup):
         raise ZerorateError("--own leaves the board's program as it is; drop --model and --setup")
     from ..small_file import text_of

@@ -37,7 +37,7 @@ class Told:
         self._begin()
 
     def _begin(self) -> None:
-        self.samples = 0
+        self.samples = self.lines = 0
         self.rate_dps, self.left_dps, self.bias_dps, self.quality_dps = np.full((4, 3), np.nan)
         self.source = ["none"] * 3
         self.history: deque[np.ndarray] = deque(maxlen=HISTORY)
@@ -70,6 +70,7 @@ class Told:
             self._take(line.decode(errors="replace").strip())
 
     def _take(self, line: str) -> None:
+        self.lines += bool(line)
         if rates := _RATES.search(line):
             numbers = np.array(rates.groups(), float)
             self.rate_dps, self.left_dps = numbers[:3], numbers[3:]
@@ -111,7 +112,7 @@ def watch_own(port: str, options: WatchOptions) -> Told | None:
             told.feed(data)
             now = time.monotonic()
             heard = now if data else heard
-            if options.once and told.samples:
+            if options.once and (told.samples or told.lines > _SAID):
                 break
             silent = f"nothing was printed for {now - heard:.0f} s; Ctrl-D in a terminal starts it"
             notes = [silent] if now - heard > _SILENT_S else []
@@ -119,4 +120,4 @@ def watch_own(port: str, options: WatchOptions) -> Told | None:
                 looked = now
                 shown.show(told, notes)
         shown.show(told, notes)
-    return told if told.samples else None
+    return told if told.lines else None

@@ -14,6 +14,9 @@ def draw(live: Shown, path: Path) -> None:
         from matplotlib.figure import Figure
     except ImportError as error:
         raise MissingLibrary("matplotlib") from error
+    if not live.history:
+        do = "watch for longer, a program that prints rates as examples/main.py does"
+        raise ZerorateError(f"{path}: no bias came to be drawn; {do}")
     figure = Figure(figsize=(8, 4.5), layout="constrained")
     axes = figure.subplots()
     for name, bias_dps in zip("xyz", np.array(live.history).reshape(-1, 3).T):
