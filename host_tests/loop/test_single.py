@@ -9,7 +9,7 @@ from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.closing import close, load
 from zerorate_tools.loop.analyse import analyse
 from zerorate_tools.loop.fit.line import less_slope
-from zerorate_tools.loop.fit.single import PiecesByLine, nats, speaks_for
+from zerorate_tools.loop.fit.single import PiecesByLine, nats, pass_of, speaks_for
 from zerorate_tools.loop.search.curve import ByPieces, smooth_curve
 from zerorate_tools.loop.search.select import Search, select
 from zerorate_tools.loop.search.steps import Step
@@ -150,6 +150,52 @@ def test_pieces_lie_over_the_whole_course_of_temperature():
     fold = PiecesByLine(session).fold
     spans = [np.ptp(temp[fold == k]) for k in range(10)]
     assert np.median(spans) > 0.3 * np.ptp(temp)
+
+
+def there_and_back(bias_dps):
+    """A session that warms by 30 degC in a fifth of its time, holds for a fifth and cools slowly.
+    bias_dps: by temperature, -1..1, and by the share of time that is over."""
+    (session,) = simulate(1, sessions=1, hours=2.0).sessions
+    rng, ticks = np.random.default_rng(5), len(session.sources["temp"])
+    temp = np.interp(np.linspace(0, 1, ticks), [0.0, 0.2, 0.4, 1.0], [20.0, 50.0, 50.0, 20.0])
+    session = replace(session, sources={"temp": temp + rng.normal(0, 0.1, ticks)})
+    u = (session.block_mean(session.sources["temp"]) - 35) / 15
+    bias = bias_dps(u, np.linspace(0, 1, session.blocks))[:, None]
+    return replace(session, rate_dps=bias + rng.normal(0, 0.004, (session.blocks, 3)))
+
+
+def test_a_hold_belongs_to_the_pass_before_it():
+    session = there_and_back(lambda u, t: 0 * t)
+    passes = pass_of(session)
+    assert set(passes) == {0, 1}
+    assert np.argmax(passes) == pytest.approx(0.42 * session.blocks, abs=8)
+
+
+@pytest.mark.parametrize(
+    "bias_dps, is_curve",
+    [
+        (lambda u, t: 0.03 * u**2, True),
+        (lambda u, t: 0.02 * np.sin(10.5 * np.maximum(t - 0.4, 0)), False),
+    ],
+)
+def test_whole_passes_tell_a_curve_over_temperature_from_a_walk_that_pieces_take_for_one(
+    bias_dps, is_curve
+):
+    session = there_and_back(bias_dps)
+    line = Search([session], on_pieces=PiecesByLine(session)).line
+    (curve,) = smooth_curve([session], line, taken=0)
+    pieces = PiecesByLine(session)
+    asked = less_slope(line, curve.terms), (), curve.terms
+    assert speaks_for(pieces(*asked))
+    assert speaks_for(pieces.by_passes()(*asked)) == is_curve
+
+
+def test_one_pass_is_judged_by_pieces():
+    (session,) = simulate(1, sessions=1, hours=2.0).sessions
+    warming = replace(session, sources={"temp": np.linspace(20, 50, len(session.sources["temp"]))})
+    without = replace(session, sources={})
+    for judged in (PiecesByLine(warming), PiecesByLine(without)):
+        assert judged.by_passes() is judged
 
 
 def test_a_step_whose_size_is_misjudged_is_no_error_of_the_stretch_after_it():

@@ -134,7 +134,7 @@ class ByPieces:
         ratio = float(self.regression.gains([*straight, *beside], [tuple(bends)]).sum())
         p = family_p(ratio, 3 * len(bends), tried)
         likely = Decision(True, p, ratio, 1.0, np.array([]))
-        return Found(c, likely.on_pieces(self.judged, straight, beside, c.terms))
+        return Found(c, likely.on_pieces(self.judged.by_passes(), straight, beside, c.terms))
 
 
 def _terms(found: list[Found]) -> list[Term]:

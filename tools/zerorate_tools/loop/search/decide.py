@@ -39,6 +39,9 @@ class JudgedOnPieces(Protocol):
     ) -> np.ndarray:
         """(folds,) nats by which each piece is better predicted with the candidate."""
 
+    def by_passes(self) -> "JudgedOnPieces":
+        """The same, on whole passes of the temperature where it passes twice."""
+
 
 @dataclass
 class Decision:

@@ -39,7 +39,6 @@ class PiecesByKernels(PiecesByLine):
     ) -> None:
         super().__init__(power_on.session, beside, shrunk=shrunk)
         self.power_on, self._scales = power_on, scales
-        self._known: dict[tuple, np.ndarray] = {}
 
     def residual(
         self, straight: Sequence[Term], terms: Sequence[Term], applied: np.ndarray | None = None
