@@ -9,11 +9,12 @@ from scipy.ndimage import gaussian_filter1d
 from zerorate_bench.loop.devices import describe
 from zerorate_tools import LoopReport
 from zerorate_tools.closing import close
-from zerorate_tools.loop.motion.by_gravity import _tilt, by_gravity
+from zerorate_tools.loop.motion.by_windows import _tilt, by_windows
+from zerorate_tools.loop.motion.columns import ACCEL_BIAS, MATRIX, OWN, columns_of
 from zerorate_tools.loop.motion.device import Shown, device_of
 from zerorate_tools.loop.motion.matrix import beside
+from zerorate_tools.loop.motion.moving import moving_of
 from zerorate_tools.loop.motion.same_device import DifferentDevices
-from zerorate_tools.loop.motion.windows import ACCEL_BIAS, MATRIX, OWN, columns_of, moving_of
 from zerorate_tools.loop.read.gate import CannotClose
 from zerorate_tools.recordings import Recording, Scales
 from zerorate_tools.recordings.writing import write_recording
@@ -113,7 +114,7 @@ def test_a_recording_that_neither_rests_nor_turns_is_refused(recorded, tmp_path)
 
 
 def test_motion_of_one_window_shows_nothing_as_nothing_is_left_to_judge_on(recorded):
-    assert by_gravity([moving_of(recorded(13, _MATRIX, minutes=0.2))], []) is None
+    assert by_windows([moving_of(recorded(13, _MATRIX, minutes=0.2))], []) is None
 
 
 def test_a_gap_of_days_leaves_the_motion_before_and_after_it(recorded):
@@ -121,7 +122,7 @@ def test_a_gap_of_days_leaves_the_motion_before_and_after_it(recorded):
     late = np.arange(len(whole.at_s)) > len(whole.at_s) // 2
     parted = replace(whole, at_s=whole.at_s + 2e5 * late)
     assert parted.dt_s == pytest.approx(1 / _HZ)
-    np.testing.assert_allclose(by_gravity([parted], []).matrix, _MATRIX, atol=0.003)
+    np.testing.assert_allclose(by_windows([parted], []).matrix, _MATRIX, atol=0.003)
 
 
 def test_a_sample_lost_now_and_then_stretches_the_time_between_samples_by_its_share(recorded):
@@ -133,7 +134,7 @@ def test_a_sample_lost_now_and_then_stretches_the_time_between_samples_by_its_sh
 def test_motion_in_pieces_shorter_than_a_window_shows_nothing(recorded):
     whole = moving_of(recorded(13, _MATRIX, minutes=2.0))
     piece_s = 5.0 * (np.arange(len(whole.at_s)) // 20)
-    assert by_gravity([replace(whole, at_s=whole.at_s + piece_s)], []) is None
+    assert by_windows([replace(whole, at_s=whole.at_s + piece_s)], []) is None
 
 
 def test_a_recording_that_differs_from_the_rest_widens_what_is_said_of_the_device():
@@ -147,7 +148,7 @@ def test_hours_of_samples_give_the_same_columns_in_parts_as_at_once(recorded, mo
     moving = moving_of(recorded(14, _MATRIX, minutes=1.0))
     nothing = np.zeros((3, 3)), np.zeros(sum(OWN.values()))
     parts = columns_of(moving, *nothing)
-    monkeypatch.setattr("zerorate_tools.loop.motion.windows._CHUNK", 1 << 20)
+    monkeypatch.setattr("zerorate_tools.loop.motion.columns._CHUNK", 1 << 20)
     once = columns_of(moving, *nothing)
     np.testing.assert_allclose(parts.theta, once.theta, atol=1e-9)
     np.testing.assert_allclose(parts.seen, once.seen, atol=1e-9)
@@ -165,7 +166,7 @@ def test_what_an_error_has_turned_is_told_at_the_middle_of_a_step(recorded):
 def test_on_a_floor_an_axis_turned_is_no_different_from_an_accelerometers_bias(recorded):
     moving = moving_of(recorded(16, np.zeros((3, 3)), about=(0.0, 0.0, 1.0), minutes=3.0))
     moving = replace(moving, accel=np.zeros_like(moving.accel) + [0.0, 0.0, 1.0])
-    columns = beside(moving, np.zeros((3, 3))).columns
+    columns = beside(moving, np.zeros((3, 3))).rows.columns
     turned, bias = columns[..., 2].ravel(), columns[..., MATRIX + ACCEL_BIAS.start].ravel()
     cosine = turned @ bias / np.sqrt((turned @ turned) * (bias @ bias))
     assert 1.0 - abs(cosine) < 1e-4  # 3e-4 where the turn is half a sample late
@@ -174,8 +175,7 @@ def test_on_a_floor_an_axis_turned_is_no_different_from_an_accelerometers_bias(r
 def test_a_slow_recording_may_end_with_one_sample_more_than_it_is_read_in(recorded):
     moving = moving_of(recorded(19, np.zeros((3, 3)), minutes=1.8))
     slow = slice(None, 513 * 5, 5)  # 10 Hz, in parts of 512
-    parts = {k: getattr(moving, k)[slow] for k in ("rate", "accel", "at_s", "usable")}
-    columns = columns_of(replace(moving, **parts), np.zeros((3, 3)), np.zeros(sum(OWN.values())))
+    columns = columns_of(moving.part(slow), np.zeros((3, 3)), np.zeros(sum(OWN.values())))
     assert len(columns.seen) == 513
 
 
@@ -183,7 +183,7 @@ def test_a_few_bouts_of_a_hand_that_pushes_as_it_turns_show_no_matrix(tmp_path):
     description, _, _ = describe(104)
     recording, _ = next(iter(simulate_sessions(description, seed=104)))
     write_recording(recording, tmp_path / "run.parquet")
-    shown = by_gravity([moving_of(tmp_path / "run.parquet")], [])
+    shown = by_windows([moving_of(tmp_path / "run.parquet")], [])
     assert shown.runs > 8 and not shown.found  # it was told 8 % of cross-axis sensitivity
 
 

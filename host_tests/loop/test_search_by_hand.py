@@ -15,7 +15,6 @@ from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.read.earth import Earth
 from zerorate_tools.loop.read.lines import Line, Spectrum
 from zerorate_tools.loop.read.sessions import Session
-from zerorate_tools.loop.read.turns import GIVEN, GRAVITY, Turns
 from zerorate_tools.loop.search import (
     catalogue,
     confounding,
@@ -650,10 +649,12 @@ def test_what_does_not_vary_or_was_not_recorded_is_no_candidate():
     bare = replace(warm(), sources={})
     assert {c.kind for c in candidates([bare])} == {"time-drift", "power-on-transient"}
     turning = warm(**{f"rate_{a}": np.linspace(0.0, 9.0, 50) for a in "xyz"})
-    for runs, beside, told in ((11, GIVEN, False), (12, GIVEN, True), (12, GRAVITY, False)):
-        # what turns tell by samples is no effect to look for
-        some = [replace(turning, turns=Turns([None] * n, beside)) for n in (5, runs - 5)]
-        assert bool(of_kind(candidates([*some, turning]), "rate-scale")) is not told
+    ticks = turning.blocks * turning.ticks_per_block
+    for moves_s, delay, told in ((30, [], False), (50, [], True), (50, None, False)):
+        # what motion tells by samples beside a reference is no effect to look for
+        at_rest = np.where(np.arange(ticks) * turning.tick_s < moves_s, np.nan, 0.0)
+        known = replace(turning, delay=delay, ticks_dps=np.tile(at_rest[:, None], 3))
+        assert bool(of_kind(candidates([known, turning]), "rate-scale")) is not told
     shaken = candidates([warm(vib=np.linspace(0.0, 1.0, 50))])
     assert of_kind(shaken, "vibration")
 

@@ -162,7 +162,11 @@ def sessions(folder, effect, motion, attitude, count=4, minutes=10):
 
 def shown(folder, effect, attitude):
     made = sessions(folder, effect, HANDLED if attitude else TURNED, attitude)
-    return made, in_motion(made[:-1], made[-1:], single=False)
+    return made, in_motion(made[:-1], made[-1:], logs_of(folder, made))
+
+
+def logs_of(folder, made):
+    return {s.name: folder / f"{i}.parquet" for i, s in enumerate(made)}
 
 
 def test_where_rests_suffice_and_an_attitude_is_given_the_heading_held_out_is_told(tmp_path):
@@ -179,9 +183,8 @@ def test_where_rests_suffice_and_an_attitude_is_given_the_heading_held_out_is_to
 
 def test_of_a_log_alone_the_second_half_tells_the_heading_beside_turns_of_the_first(tmp_path):
     alone = sessions(tmp_path, [SCALE], HANDLED, True, count=1, minutes=20)
-    analysis = SimpleNamespace(
-        single=True, sessions=alone, holdout=alone, motion=in_motion(alone, [], single=True)
-    )
+    motion = in_motion(alone, [], logs_of(tmp_path, alone))
+    analysis = SimpleNamespace(single=True, sessions=alone, holdout=alone, motion=motion)
     result = {"effects": [{"in_motion": {}, "said": "turns"}]}
     tell_heading(result, analysis, [tmp_path / "0.parquet"])
     motion = result["effects"][0]["in_motion"]
@@ -198,7 +201,10 @@ def test_nothing_is_found_in_the_motion_of_a_sensor_without_fault(tmp_path, atti
 @pytest.mark.parametrize("attitude", [True, False], ids=["attitude", "gravity"])
 @pytest.mark.parametrize(
     ("effect", "kind", "matrix"),
-    [(SCALE, "scale-factor", np.diag(SCALE["dps"])), (CROSS, "cross-axis", np.array(MATRIX))],
+    [
+        (SCALE, "scale-factor", np.diag(SCALE["dps"])),
+        (CROSS, "cross-axis+turned-axes", np.array(MATRIX)),
+    ],
     ids=["scale", "cross"],
 )
 def test_scale_and_cross_axis_are_named_and_measured(tmp_path, effect, kind, matrix, attitude):
@@ -210,7 +216,7 @@ def test_scale_and_cross_axis_are_named_and_measured(tmp_path, effect, kind, mat
 
 def test_a_scale_that_turns_would_show_is_not_said_to_be_beyond_the_recordings(tmp_path):
     made = sessions(tmp_path, [], HANDLED, attitude=True)
-    assert "rate-scale" not in not_excluded(analyse(made))
+    assert "rate-scale" not in not_excluded(analyse(made, logs=logs_of(tmp_path, made)))
 
 
 def test_the_scale_is_a_slot_of_each_rate_that_subtracts_what_was_added(tmp_path):

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from zerorate_tools.cli import parser
 from zerorate_tools.layout import EFFECTS
-from zerorate_tools.loop.read.turns import GIVEN
+from zerorate_tools.loop.motion.by_windows import GIVEN
 from zerorate_tools.numbers import figure
 from zerorate_tools.report.board import deployment
 from zerorate_tools.report.sentences import (

@@ -163,9 +163,9 @@ BENCHES = {
     ),
     "heading-simulated": Bench(
         *("errors of scale and axes in five kinds of simulated motion", "heading_simulated"),
-        lambda bench, a, advance: bench.run(a.devices, a.processes, advance),
+        lambda bench, a, advance: bench.run(a.devices, a.processes, a.resume, advance),
         lambda bench, a: bench.steps(a.devices),
-        options={"--devices": _number(20, "devices of each kind"), **_PROCESSES},
+        options={"--devices": _number(80, "devices of each kind"), **_PROCESSES, **_RESUME},
     ),
     "heading-size": Bench(
         "what closing recordings in motion costs; exit code 1 where it is too much",

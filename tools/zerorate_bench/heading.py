@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 from zerorate_tools.demo.broad import Trial, trials
-from zerorate_tools.loop.motion.by_gravity import by_gravity
+from zerorate_tools.loop.motion.by_windows import by_windows
+from zerorate_tools.loop.motion.moving import Moving, moving_of
 from zerorate_tools.loop.motion.same_device import DifferentDevices
-from zerorate_tools.loop.motion.windows import Moving, moving_of
 from zerorate_tools.recordings.writing import write_recording
 
 from .tables import table
@@ -39,7 +39,7 @@ def run(folders: list[Path], advance: Callable[[float], None] = lambda n: None) 
         own = [n for n in group if n in every]
         for name in own:
             others = [moving[n] for n in own if n != name]
-            shown = by_gravity(others, []) if others else None
+            shown = by_windows(others, []) if others else None
             found["others"][name] = _row(every[name], number, shown)
             half = _half(every[name], moving[name], number)
             half["others"] = _row(every[name], number, shown, 0.5)["after"]
@@ -61,7 +61,7 @@ def moving_in(trial: Trial, path: Path) -> Moving:
 def _refused(moving: list[Moving]) -> dict[str, list]:
     """Both groups, and those that could also be with the others."""
     try:
-        by_gravity(moving, [])
+        by_windows(moving, [])
     except DifferentDevices as problem:
         groups = [sorted(group) for group in problem.groups]
         return {"refused": groups, "unsure": sorted(problem.unsure)}
@@ -79,9 +79,7 @@ def _half(trial: Trial, moving: Moving, group: int) -> dict:
     """Fitted on the first half of the motion, judged on the second."""
     at = np.flatnonzero(trial.moving)
     middle = int((at[0] + at[-1]) / 2)
-    early = moving.rests[moving.rests[:, 0] < moving.at_s[middle]]
-    part = {k: getattr(moving, k)[:middle] for k in ("rate", "accel", "at_s", "usable")}
-    return _row(trial, group, by_gravity([replace(moving, **part, rests=early)], []), 0.5)
+    return _row(trial, group, by_windows([moving.part(slice(middle))], []), 0.5)
 
 
 def heading_error_deg(trial: Trial, matrix: Array, first: float = 0.0) -> float:

@@ -4,7 +4,6 @@ zerorate bench heading-simulated --devices 20 --out docs/heading-simulated.md
 """
 
 from collections.abc import Callable, Iterator
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -14,15 +13,15 @@ from zlib import crc32
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
-from threadpoolctl import threadpool_limits
-from zerorate_tools.loop.motion.by_gravity import by_gravity
-from zerorate_tools.loop.motion.windows import moving_of
+from zerorate_tools.loop.motion.by_windows import by_windows
+from zerorate_tools.loop.motion.moving import moving_of
 from zerorate_tools.recordings import Recording, Scales
 from zerorate_tools.recordings.writing import write_recording
 from zerorate_tools.simulate.attitude import facing, integrate, into_body
 from zerorate_tools.simulate.motion import FACES, Start
 
 from .heading_worlds import KINDS, coherent
+from .outcomes import outcomes
 from .tables import table
 
 Array = NDArray[np.float64]
@@ -46,22 +45,23 @@ class Case:
     off: bool
 
 
-def run(devices: int, processes: int, advance: Callable[[float], None] = lambda n: None) -> dict:
-    """What was said of every case: `devices` of each kind with errors, and of each without, and as
-    many whose hand pushes as it turns."""
+def run(
+    devices: int,
+    processes: int,
+    resume: Path | None = None,
+    advance: Callable[[float], None] = lambda n: None,
+) -> dict:
+    """What was said of every case: `devices` of each kind with errors, of each without, and as
+    many as all of these whose hand pushes as it turns. resume: as of `outcomes`."""
     cases = [Case(k, i, off) for off in (True, False) for k in KINDS for i in range(devices)]
-    cases += [Case(COHERENT, i, False) for i in range(devices)]
-    rows = []
-    with ProcessPoolExecutor(processes, initializer=threadpool_limits, initargs=(1,)) as pool:
-        for row in pool.map(outcome, cases):
-            rows.append(row)
-            advance(1)
-    return {"devices": devices, "rows": rows}
+    cases += [Case(COHERENT, i, False) for i in range(devices * len(KINDS))]
+    rows = outcomes(outcome, cases, processes, resume, advance)
+    return {"devices": devices, "rows": list(rows)}
 
 
 def steps(devices: int) -> float:
     """Cases of a run."""
-    return (2 * len(KINDS) + 1) * devices
+    return 3 * len(KINDS) * devices
 
 
 def outcome(case: Case) -> dict[str, Any]:
@@ -71,7 +71,7 @@ def outcome(case: Case) -> dict[str, Any]:
         path = Path(scratch) / "run.parquet"
         write_recording(recording, path)
         moving = moving_of(path)
-        shown = None if moving is None else by_gravity([moving], [])
+        shown = None if moving is None else by_windows([moving], [])
     row: dict[str, Any] = {"kind": case.kind, "off": case.off, "found": False, "entries": []}
     if shown is None:
         return row

@@ -11,7 +11,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from numpy.typing import NDArray
 from zerorate_tools.demo.broad import Trial, rms_mdps, trials
-from zerorate_tools.loop.motion.by_gravity import by_gravity
+from zerorate_tools.loop.motion.by_windows import by_windows
 from zerorate_tools.loop.motion.in_motion import InMotion, slots_of
 from zerorate_tools.loop.motion.rate_scale import RateScale
 from zerorate_tools.model import Model, build_model
@@ -76,7 +76,7 @@ def matrices_of(every: Mapping[str, Trial]) -> dict[str, RateScale | None]:
     for name in every:
         group = next((g for g in GROUPS if name[:2] in g), ())
         others = [moving[n] for n in every if n != name and n[:2] in group]
-        found = by_gravity(others, []) if others else None
+        found = by_windows(others, []) if others else None
         shown[name] = found if found is not None and found.found else None
     return shown
 

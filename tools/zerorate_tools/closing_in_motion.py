@@ -7,12 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from .loop.motion.by_gravity import by_gravity
+from .loop.motion.by_windows import by_windows
 from .loop.motion.heading import has_attitude, heading_lost, heading_lost_by
 from .loop.motion.in_motion import InMotion, slots_of
-from .loop.motion.rate_scale import RateScale, fit_rate_scale
-from .loop.motion.windows import Moving, moving_of
-from .loop.read.beside_reference import RUN_S
+from .loop.motion.moving import Moving, moving_of
+from .loop.motion.rate_scale import RateScale
 from .loop.read.ticks import Ticks
 from .loop.report.motion_effects import turning
 from .loop.verify.analysis import Analysis
@@ -36,7 +35,7 @@ def shown_in_motion(ticks: Sequence[Ticks], holdout: int | None) -> RateScale | 
     at = (len(every) - 1 if holdout is None else holdout) if len(every) > 1 else None
     train = [m for i, m in enumerate(every) if m is not None and i != at]
     held = [] if at is None else [m for m in [every[at]] if m is not None]
-    return by_gravity(train, held)
+    return by_windows(train, held)
 
 
 def write_in_motion(
@@ -92,27 +91,10 @@ def tell_heading(result: Mapping[str, Any], analysis: Analysis, logs: Sequence[P
         return
     names = {s.name for s in analysis.holdout}
     held = _seen([log for log in logs if open_recording(log).name in names])
-    told = _told(_lost(analysis, shown, held))
+    told = _told(heading_lost(held) if analysis.single else heading_lost_by(held, shown))
     if told:
         effect["in_motion"].update(told)
         effect["said"] += f"; {_heading_in_words(told)}"
-
-
-def _lost(
-    analysis: Analysis, shown: RateScale, held: Mapping[Path, Moving]
-) -> tuple[float, float] | None:
-    if not analysis.single:
-        return heading_lost_by(held, shown)
-    if shown.unseen is not None:
-        return heading_lost(held)
-    # turns beside an attitude are in time order and last alike: so many seconds are of late ones
-    turns = analysis.sessions[0].turns
-    assert turns is not None, "they showed the matrix"
-    half = len(turns.runs) // 2
-    parts = [turns.runs[: half // 2], turns.runs[half // 2 : half]]
-    early = fit_rate_scale(parts, [], turns.beside, turns.unit)
-    found = early is not None and early.found
-    return heading_lost_by(held, early, (len(turns.runs) - half) * RUN_S) if found else None
 
 
 def _heading_in_words(m: Mapping[str, Any]) -> str:
@@ -161,17 +143,13 @@ def _result(shown: RateScale, names: list[str], held: list[str]) -> dict:
 
 def not_seen(shown: RateScale) -> list[str]:
     """Names of the entries that the motion did not show: the axis that reads, the axis turned."""
-    if shown.unseen is None:
-        return []
     at = zip(*np.nonzero(shown.unseen))
     return [f"{_AXES[i]} from {_AXES[j]}" if i != j else f"scale of {_AXES[i]}" for i, j in at]
 
 
 def advice(shown: RateScale) -> list[str]:
     """What to record next: turns that were missing, and rest."""
-    missing = (
-        [] if shown.unseen is None else [_AXES[j] for j in np.flatnonzero(np.diag(shown.unseen))]
-    )
+    missing = [_AXES[j] for j in np.flatnonzero(np.diag(shown.unseen))]
     turns = [f"hold {axis} level and turn the device about it, several times" for axis in missing]
     return [*turns, "leave the device untouched for two minutes to show what only rest shows"]
 

@@ -5,18 +5,16 @@ between two steps about its own mean at rest: what was left out, at rest; the sa
 hand; and a further power-on that nobody has seen.
 """
 
-import json
 import tempfile
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import chi2, ncx2
-from threadpoolctl import threadpool_limits
 
+from ..outcomes import outcomes
 from ..tables import machine_line
 from .devices import KINDS, describe
 from .figures import Figure, share
@@ -191,20 +189,9 @@ def look_at_singles(
     resume: Path | None = None,
     advance: Callable[[float], None] = lambda n: None,
 ) -> list[Single]:
-    """So many devices, of every kind alike. resume: a file of outcomes, one a line, that a run
-    broken off goes on from."""
-    lines = resume.read_text("utf-8").splitlines() if resume and resume.exists() else []
-    known = {s.seed: s for s in (Single(**json.loads(line)) for line in lines)}
-    out = [known[seed] for seed in range(number) if seed in known]
-    advance(len(out))
-    with ProcessPoolExecutor(processes, initializer=threadpool_limits, initargs=(1,)) as pool:
-        for single in pool.map(look_at_single, [s for s in range(number) if s not in known]):
-            if resume:
-                with resume.open("a", encoding="utf-8") as file:
-                    file.write(json.dumps(asdict(single)) + "\n")
-            advance(1)
-            out.append(single)
-    return out
+    """So many devices, of every kind alike. resume: as of `outcomes`."""
+    rows = outcomes(look_at_single, range(number), processes, resume, advance)
+    return [Single(**row) for row in rows]
 
 
 def single_figures(singles: list[Single]) -> list[Figure]:

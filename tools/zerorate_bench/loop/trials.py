@@ -1,16 +1,12 @@
 """The whole benchmark of the loop, which can be broken off and taken up again."""
 
-import json
 import os
 import tempfile
 from collections.abc import Callable, Iterator
-from concurrent.futures import ProcessPoolExecutor
-from dataclasses import asdict
 from os import PathLike
 from pathlib import Path
 
-from threadpoolctl import threadpool_limits
-
+from ..outcomes import outcomes
 from ..public_data import data_folder
 from ..tables import machine, machine_line, table
 from .devices import Device, devices
@@ -46,18 +42,18 @@ def run(
         os.environ[FOLDER] = scratch
         every = [*devices(nulls, seeds, quiet), *file_devices(-(-seeds // 2))]
         every = [d for d in every if not rows or rows in d.key]
-        outcomes = list(looked_at(every, processes, Path(resume) if resume else None, advance))
-    found = figures(outcomes, whole=not rows)
+        seen = list(looked_at(every, processes, Path(resume) if resume else None, advance))
+    found = figures(seen, whole=not rows)
     if not rows:
         found += rest_figures() + (figures_of(measured()) if size else [])
-    result: dict = {"devices": len(outcomes), "machine": machine()}
-    result["cpu_s_a_device"] = sum(o.cpu_s for o in outcomes) / max(len(outcomes), 1)
+    result: dict = {"devices": len(seen), "machine": machine()}
+    result["cpu_s_a_device"] = sum(o.cpu_s for o in seen) / max(len(seen), 1)
     if folder and folder.is_dir() and not rows:
         from .real import real_rows
 
         result["real_recordings"] = real_rows(folder)
     result["figures"] = [f.to_dict() for f in found]
-    result["false_alarms"] = _examples(outcomes)
+    result["false_alarms"] = _examples(seen)
     return result
 
 
@@ -68,34 +64,14 @@ def looked_at(
     advance: Callable[[float], None] = lambda n: None,
 ) -> Iterator[Outcome]:
     """The outcome of every device; what `kept` has already is not looked at again."""
-    known = _read(kept) if kept and kept.exists() else {}
-    left = [d for d in every if d.key not in known]
-    for d in every:
-        if d.key in known:
-            advance(1)
-            yield known[d.key]
-    with ProcessPoolExecutor(processes, initializer=threadpool_limits, initargs=(1,)) as pool:
-        for outcome in pool.map(_look, left, chunksize=4):
-            if kept:
-                with kept.open("a", encoding="utf-8") as file:
-                    file.write(json.dumps(asdict(outcome)) + "\n")
-            advance(1)
-            yield outcome
+    for row in outcomes(_look, every, processes, kept, advance):
+        device = row.pop("device")
+        device["effects"] = tuple((name, size) for name, size in device["effects"])
+        yield Outcome(Device(**device), **row)
 
 
 def _look(device: Device) -> Outcome:
     return look_at_files(device) if device.row in ROWS else run_trial(device)
-
-
-def _read(path: Path) -> dict[str, Outcome]:
-    out = {}
-    for line in path.read_text(encoding="utf-8").splitlines():
-        values = json.loads(line)
-        device = values.pop("device")
-        device["effects"] = tuple((name, size) for name, size in device["effects"])
-        outcome = Outcome(Device(**device), **values)
-        out[outcome.device.key] = outcome
-    return out
 
 
 def _examples(outcomes: list[Outcome], most: int = 20) -> list[list]:

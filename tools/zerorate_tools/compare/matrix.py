@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..loop.motion.by_gravity import by_gravity
+from ..loop.motion.by_windows import by_windows
 from ..loop.motion.heading import heading_lost
 from ..loop.motion.in_motion import InMotion, slots_of
+from ..loop.motion.moving import moving_of
 from ..loop.motion.same_device import DifferentDevices
-from ..loop.motion.windows import moving_of
 
 WITHOUT, WITH = "without the matrix", "with the matrix that gravity shows"
 
@@ -61,7 +61,7 @@ def matrix_of(logs: Sequence[str | Path]) -> Won | None:
     """
     moving = {Path(log): m for log in logs if (m := moving_of(log)) is not None}
     try:
-        shown = by_gravity(list(moving.values()), [])
+        shown = by_windows(list(moving.values()), [])
     except DifferentDevices as problem:
         return Won(refused=str(problem))
     if shown is None:

@@ -10,9 +10,11 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from ..loop.motion.columns import MATRIX
 from ..loop.motion.device import SIZES, Shown
-from ..loop.motion.matrix import LEAST_WINDOWS, Fitted, beside
-from ..loop.motion.windows import MATRIX, moving_of
+from ..loop.motion.matrix import Fitted, beside
+from ..loop.motion.moving import moving_of
+from ..loop.motion.windows import LEAST_WINDOWS
 from ..recordings import Recording, Scales, write_recording
 from ..recordings.recording import GYRO, TIME, Columns
 
@@ -73,7 +75,7 @@ class KnownSoFar:
             write_recording(Recording(columns, self._scales), path)
             moving = moving_of(path)
         fitted = None if moving is None else beside(moving, self.matrix)
-        return fitted if fitted is not None and len(fitted.errors) >= LEAST_WINDOWS else None
+        return fitted if fitted is not None and len(fitted.rows.errors) >= LEAST_WINDOWS else None
 
     def _know(self, fitted: Fitted) -> None:
         whole = self._kept + fitted.shown(self.matrix)

@@ -10,7 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from ..loop.motion.device import SIZES
-from ..loop.motion.windows import LEAST_DPS
+from ..loop.motion.moving import LEAST_DPS
 from ..recordings import Scales
 from ..recordings.recording import TIME, Columns
 from .known import KNOWN, KnownSoFar

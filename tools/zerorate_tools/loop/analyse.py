@@ -55,7 +55,6 @@ def analyse(
     motion = in_motion(
         [s for i, s in enumerate(sessions) if i != at] or sessions,
         [sessions[at]] if len(sessions) > 1 else [],
-        len(sessions) == 1,
         logs,
     )
     sessions = [without_scales(s, motion) for s in sessions]

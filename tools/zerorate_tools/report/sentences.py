@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from ..loop.read.turns import GIVEN
+from ..loop.motion.by_windows import GIVEN
 from ..numbers import figure
 from .kinds import title
 

@@ -12,7 +12,7 @@ from itertools import product
 import numpy as np
 from scipy.special import logsumexp
 
-from .windows import MATRIX
+from .columns import MATRIX
 
 #: Sizes that a group of entries may have; the last allows what a data sheet does.
 SIZES = (3e-4, 1e-3, 3e-3, 1e-2, 3e-2)

@@ -1,7 +1,6 @@
 """Heading lost in motion, against an attitude that somebody else saw: cameras, a second sensor."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,13 +8,13 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from ...recordings import open_recording
-from ...recordings.recording import TIME
 from ...simulate.attitude import IDENTITY, integrate
-from ..read.reference import Reference, attitude_names
-from .by_gravity import by_gravity
+from ..read.reference import attitude_names
+from .by_windows import by_windows
+from .columns import BIAS
 from .in_motion import InMotion, slots_of
 from .matrix import beside
-from .windows import BIAS, LEAST_DPS, Moving
+from .moving import LEAST_DPS, Moving
 
 #: Headings are told over stretches of this length: filters with a magnetometer forget as soon.
 _STRETCH_S = 30.0
@@ -29,28 +28,23 @@ def heading_lost(moving: Mapping[Path, Moving]) -> tuple[float, float] | None:
     for path in filter(has_attitude, moving):
         one, others = moving[path], [m for p, m in moving.items() if p != path]
         middle = len(one.rate) // 2
-        shown = by_gravity(others or [_part(one, slice(0, middle))], [])
+        shown = by_windows(others or [one.part(slice(0, middle))], [])
         judged = slice(0 if others else middle, None)
-        errors.append(_without_and_with(path, one, judged, _deployed(shown)))
+        errors.append(_without_and_with(one, judged, _deployed(shown)))
     return _rms(errors)
 
 
-def heading_lost_by(
-    moving: Mapping[Path, Moving], shown, last_s: float = np.inf
-) -> tuple[float, float] | None:
-    """The same of logs with an attitude, or their last seconds, which a matrix was not fitted to.
-    None where no stretch of them is seen."""
-    errors = []
-    for path, one in moving.items():
-        late = slice(int(np.searchsorted(one.at_s, one.at_s[-1] - last_s)), None)
-        errors.append(_without_and_with(path, one, late, _deployed(shown)))
-    return _rms(errors)
+def heading_lost_by(moving: Mapping[Path, Moving], shown) -> tuple[float, float] | None:
+    """The same of logs with an attitude, which a matrix was not fitted to. None where no stretch
+    of them is seen."""
+    matrix = _deployed(shown)
+    return _rms([_without_and_with(one, slice(None), matrix) for one in moving.values()])
 
 
-def _without_and_with(path: Path, one: Moving, judged: slice, matrix: NDArray) -> NDArray:
+def _without_and_with(one: Moving, judged: slice, matrix: NDArray) -> NDArray:
     """(2, k) degrees a second of each stretch."""
-    attitude, own = _attitude(path), _part(one, judged)
-    return np.array([_lost(own, m, attitude[judged]) for m in (np.zeros((3, 3)), matrix)])
+    own = one.part(judged)
+    return np.array([_lost(own, m) for m in (np.zeros((3, 3)), matrix)])
 
 
 def _rms(errors: list[NDArray]) -> tuple[float, float] | None:
@@ -59,13 +53,6 @@ def _rms(errors: list[NDArray]) -> tuple[float, float] | None:
         return None
     before, after = 60.0 * np.sqrt(squares.mean(axis=1))
     return float(before), float(after)
-
-
-def _part(one: Moving, span: slice) -> Moving:
-    at_s = one.at_s[span]
-    inside = (one.rests[:, 0] >= at_s[0]) & (one.rests[:, 0] <= at_s[-1])
-    parts = {k: getattr(one, k)[span] for k in ("rate", "accel", "at_s", "usable")}
-    return replace(one, rests=one.rests[inside], **parts)
 
 
 def _deployed(shown) -> NDArray[np.float64]:
@@ -79,15 +66,7 @@ def has_attitude(path: Path) -> bool:
     return attitude_names(open_recording(path, keep_gaps=True).column_names) is not None
 
 
-def _attitude(path: Path) -> NDArray[np.float64]:
-    """(n, 4) body to world, w first, NaN where it was not seen."""
-    opened = open_recording(path, keep_gaps=True)
-    reference = Reference(opened.column_names, opened.scales.gyro_lsb_per_dps)
-    parts = [reference.quaternions(b) for b in opened.batches(rows=1 << 18) if len(b[TIME])]
-    return np.concatenate(parts)
-
-
-def _lost(one: Moving, matrix: NDArray, attitude: NDArray) -> NDArray[np.float64]:
+def _lost(one: Moving, matrix: NDArray) -> NDArray[np.float64]:
     """(k,) degrees of heading a second that each moving stretch loses against the attitude.
 
     The bias is what gravity finds beside the matrix; a constant turn between the attitude's frame
@@ -96,7 +75,9 @@ def _lost(one: Moving, matrix: NDArray, attitude: NDArray) -> NDArray[np.float64
     fitted = beside(one, matrix)
     bias = np.zeros(3) if fitted is None else fitted.own[BIAS]
     rate = np.degrees(one.rate - one.rate @ matrix.T - bias)
-    ours, seen = integrate(rate, one.dt_s, IDENTITY), np.isfinite(attitude).all(axis=1)
+    assert one.given is not None, "only of an attitude"
+    attitude, ours = one.given, integrate(rate, one.dt_s, IDENTITY)
+    seen = np.isfinite(attitude).all(axis=1)
     ends, second = _stretches(one, seen), round(1.0 / one.dt_s)
     steps = [(a, a + second) for a in range(0, len(seen) - second, second)]
     steps = [(a, b) for a, b in steps if seen[a] and seen[b]]

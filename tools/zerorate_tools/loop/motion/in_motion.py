@@ -9,12 +9,11 @@ from scipy.stats import t as student
 
 from ...model import Slot
 from ...model.term import Term
-from ..read.reference import Run
 from ..read.sessions import Session
-from ..read.turns import GIVEN
-from .by_gravity import by_gravity
-from .rate_scale import RateScale, fit_rate_scale
-from .windows import LONGEST_S, moving_of
+from .by_windows import GIVEN, by_windows
+from .columns import LONGEST_S
+from .moving import moving_of
+from .rate_scale import RateScale
 
 _RATES = ("rate_x", "rate_y", "rate_z")
 LEVEL = 1e-4
@@ -61,44 +60,17 @@ class InMotion:
 def in_motion(
     train: list[Session],
     holdout: list[Session],
-    single: bool,
     logs: Mapping[str, str | PathLike[str]] | None = None,
 ) -> InMotion:
-    """What the training sessions' motion shows. single: one recording, of whose turns every third
-    is held out; logs: the recordings, whose windows in motion are asked where turns between rests
-    and references show nothing. Raises CannotClose."""
-    if any(s.turns is None for s in [*train, *holdout]):
+    """What the training sessions' motion shows. logs: the recordings, of whose samples windows in
+    motion are made; without them nothing is looked for. Raises CannotClose."""
+    if logs is None:
         return InMotion()
-    turns = [s.turns for s in train if s.turns]
-    if len({t.beside for t in turns}) > 1:
-        return InMotion()
-    runs, held = [t.runs for t in turns], [r for s in holdout if s.turns for r in s.turns.runs]
-    if single:
-        runs, held = _every_third(runs[0])
-    turning = fit_rate_scale(runs, held, turns[0].beside, turns[0].unit) if turns else None
-    if logs and (turning is None or not turning.found):
-        turning = _by_windows(train, holdout, logs) or turning
+    moving = [[s for s in some if s.moving_s > LONGEST_S] for some in (train, holdout)]
+    parts = [[moving_of(logs[s.name]) for s in some] for some in moving]
+    turning = by_windows(*([m for m in part if m is not None] for part in parts))
     delays = [(s.delay, s.tick_s) for s in train if s.delay is not None]
     return InMotion(turning, timing_of(delays) if len(delays) == len(train) else None)
-
-
-def _by_windows(train, holdout, logs) -> RateScale | None:
-    """What gravity shows of the matrix, window by window."""
-    moving = [[s for s in some if _moving_s(s) > LONGEST_S] for some in (train, holdout)]
-    parts = [[moving_of(logs[s.name]) for s in some] for some in moving]
-    return by_gravity(*([m for m in part if m is not None] for part in parts))
-
-
-def _moving_s(session: Session) -> float:
-    """Seconds that a session was not at rest."""
-    return float((1.0 - session.weight).sum() * session.block_s)
-
-
-def _every_third(runs: list[Run]) -> tuple[list[list[Run]], list[Run]]:
-    """(training runs in two parts, runs held out)."""
-    train = [r for i, r in enumerate(runs) if i % 3 != 2]
-    half = len(train) // 2
-    return [train[:half], train[half:]], runs[2::3]
 
 
 def without_scales(session: Session, motion: InMotion) -> Session:

@@ -10,28 +10,14 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
+from .columns import ACCEL_SHAPE, BIAS, DRIFT, LONGEST_S, MATRIX, OWN, OWN_SIGMA
 from .device import SIZES, Shown, device_of, groups
+from .moving import REST_SIGMA, Moving
 from .same_device import distance
-from .windows import (
-    ACCEL_SHAPE,
-    BIAS,
-    DRIFT,
-    LONGEST_S,
-    MATRIX,
-    OWN,
-    OWN_SIGMA,
-    REST_SIGMA,
-    Moving,
-    rows_of,
-    tapers,
-)
+from .windows import LEAST_WINDOWS, Rows, rows_of
 
 #: Short windows first: a large bias bends long ones.
 _SECONDS = (10.0, 20.0, LONGEST_S, LONGEST_S)
-#: Windows of a length are used where there are so many: the noise's spectrum comes from them.
-LEAST_WINDOWS = 8
-#: Of windows under a Hann taper, each a quarter on, the share that counts (Welch 1967).
-_OVERLAP = 0.52
 FOLDS = 4
 _LEAST_BLOCK, _MOST_BLOCKS = 4, 8
 #: A turn of the axes turns the frame that headings are told in, once: no heading is lost by it.
@@ -43,18 +29,13 @@ _OWN_PRECISION = np.concatenate([np.full(n, OWN_SIGMA[name] ** -2) for name, n i
 
 @dataclass
 class Fitted:
-    """A recording beside a matrix: its own errors, and rows of its windows.
-
-    errors: (w, q, 3); columns: (w, q, 3, p); tilting: (w, q, 3, 3) by a steady turn of the window's
-    frame in rad/s; precision: (q,) of a row; folds: (w,) of a window; heading: (9, 9) its mean
-    square by entries.
+    """A recording beside a matrix: its own errors, rows of its windows, precision (q,) of a row,
+    folds (w,) of a window, and heading (9, 9), its mean square by entries.
     """
 
     moving: Moving
     own: np.ndarray
-    errors: np.ndarray
-    columns: np.ndarray
-    tilting: np.ndarray
+    rows: Rows
     precision: np.ndarray
     folds: np.ndarray
     heading: np.ndarray
@@ -68,8 +49,15 @@ class Fitted:
         held = np.pad(self.folds == fold, 1)
         return self._of(matrix, ~(held[:-2] | held[1:-1] | held[2:]))
 
+    def normal(self, take) -> tuple[np.ndarray, np.ndarray]:
+        """(p, p) and (p,) normal equations of some windows."""
+        columns = self.rows.columns[take]
+        weighted = columns * (self.rows.counts * self.precision)[None, :, None, None]
+        flat = weighted.reshape(-1, columns.shape[-1])
+        return flat.T @ columns.reshape(flat.shape), flat.T @ self.rows.errors[take].ravel()
+
     def _of(self, matrix, take) -> Shown:
-        normal, right = _normal(self.errors[take], self.columns[take], self.precision)
+        normal, right = self.normal(take)
         _add_own(normal, right, self)
         own, back = normal[MATRIX:, MATRIX:], normal[:MATRIX, MATRIX:]
         bare = normal[:MATRIX, :MATRIX] - back @ np.linalg.solve(own, back.T)
@@ -81,14 +69,15 @@ class Fitted:
         (9,) in the place of the matrix, and what that is worth: a hand that pushes hides a tilt.
         What the recording has of its own is fitted anew."""
         step = entries - matrix.ravel()
-        normal, right = _normal(self.errors, self.columns, self.precision)
+        normal, right = self.normal(slice(None))
         _add_own(normal, right, self)
         right = right[MATRIX:] - normal[MATRIX:, :MATRIX] @ step
         own = np.linalg.solve(normal[MATRIX:, MATRIX:], right)
-        left = self.errors - self.columns @ np.r_[step, own]
+        rows = self.rows
+        left = rows.errors - rows.columns @ np.r_[step, own]
         take = self.folds >= 0 if fold is None else self.folds == fold
-        slow = self.tilting * self.precision[None, :, None, None]
-        square = np.einsum("wqac,wqad->wcd", slow, self.tilting)[take]
+        slow = rows.tilting * self.precision[None, :, None, None]
+        square = np.einsum("wqac,wqad->wcd", slow, rows.tilting)[take]
         score = np.einsum("wqac,wqa->wc", slow, left)[take]
         rate = np.einsum("wcd,wd->wc", np.linalg.pinv(square, rcond=1e-6, hermitian=True), score)
         tilt = np.degrees(np.linalg.norm(rate, axis=1)) * 60.0
@@ -130,19 +119,16 @@ def _beside(moving, seconds, matrix, before) -> Fitted | None:
     longest = (s for s in reversed(_SECONDS) if s <= seconds)
     fit_in = (s for s in longest if len(moving.spans(s)) >= LEAST_WINDOWS)
     seconds = next(fit_in, _SECONDS[0])
-    rows = list(rows_of(moving, seconds, matrix, own))
-    if not rows:
+    rows = rows_of(moving, seconds, matrix, own)
+    if rows is None:
         return None
-    errors, columns = np.stack([r[0] for r in rows]), np.stack([r[1][..., :-3] for r in rows])
-    tilting = np.stack([r[1][..., -3:] for r in rows])
-    blocks = min(max(len(rows) // _LEAST_BLOCK, FOLDS), _MOST_BLOCKS)
-    folds = np.arange(len(rows)) * blocks // len(rows) % FOLDS
-    even, heading = np.ones(errors.shape[1]), _NO_TURN @ np.mean([r[2] for r in rows], axis=0)
-    heading = heading @ _NO_TURN
-    fitted = Fitted(moving, own, errors, columns, tilting, even, folds, heading)
-    _, at = tapers(8, seconds)
+    windows = len(rows.errors)
+    blocks = min(max(windows // _LEAST_BLOCK, FOLDS), _MOST_BLOCKS)
+    folds = np.arange(windows) * blocks // windows % FOLDS
+    heading = rows.heading if moving.given is not None else _NO_TURN @ rows.heading @ _NO_TURN
+    fitted = Fitted(moving, own, rows, np.ones(len(rows.kinds)), folds, heading)
     for _ in range(4):
-        fitted.precision = 1.0 / _variances(fitted, matrix, at)[at]
+        fitted.precision = 1.0 / _variances(fitted, matrix)[rows.kinds]
     fitted.precision = fitted.precision / _contradiction(fitted, matrix)
     return fitted
 
@@ -154,25 +140,20 @@ def _contradiction(f: Fitted, matrix: np.ndarray) -> float:
     return max(1.0, float(np.mean(excess)) / MATRIX) if len(excess) > 1 else 1.0
 
 
-def _variances(f: Fitted, matrix, at) -> np.ndarray:
-    """(k,) of a row of each frequency, from what is left; what the fit took is put back."""
-    normal, right = _normal(f.errors, f.columns, f.precision)
+def _variances(f: Fitted, matrix) -> np.ndarray:
+    """(k,) of a row of each noise, from what is left; what the fit took is put back. Of waves those
+    of one frequency and the next are much alike; the last noise is that of rests."""
+    normal, right = f.normal(slice(None))
     _add_own(normal, right, f)
     normal[:MATRIX, :MATRIX] += np.eye(MATRIX) * SIZES[-1] ** -2
     right[:MATRIX] -= matrix.ravel() * SIZES[-1] ** -2
-    inverse = np.linalg.inv(normal)
-    left = (f.errors - f.columns @ (inverse @ right)) ** 2
-    taken = np.einsum("wqap,pr,wqar->wqa", f.columns, inverse, f.columns, optimize=True)
-    free = 1.0 - np.minimum(taken * f.precision[None, :, None], 1.0)
-    many = at.max() + 1
-    sums = [np.bincount(at, x.sum(axis=(0, 2)), many) for x in (left, free)]
-    return np.exp(uniform_filter1d(np.log(sums[0] / np.maximum(sums[1], 1e-3)), 3, mode="nearest"))
-
-
-def _normal(errors, columns, precision):
-    weighted = columns * (_OVERLAP * precision)[None, :, None, None]
-    flat = weighted.reshape(-1, columns.shape[-1])
-    return flat.T @ columns.reshape(flat.shape), flat.T @ errors.ravel()
+    inverse, columns = np.linalg.inv(normal), f.rows.columns
+    left = (f.rows.errors - columns @ (inverse @ right)) ** 2
+    taken = np.einsum("wqap,pr,wqar->wqa", columns, inverse, columns, optimize=True)
+    free = f.rows.there[..., None] - np.minimum(taken * f.precision[None, :, None], 1.0)
+    sums = [np.bincount(f.rows.kinds, x.sum(axis=(0, 2))) for x in (left, free)]
+    noise = np.log(np.where(sums[0] > 0, sums[0], 1.0) / np.maximum(sums[1], 1e-3))
+    return np.exp(np.append(uniform_filter1d(noise[:-1], 3, mode="nearest"), noise[-1]))
 
 
 def _add_own(normal, right, f: Fitted) -> None:
@@ -189,7 +170,7 @@ def _add_own(normal, right, f: Fitted) -> None:
 
 def _move(f: Fitted, step: np.ndarray) -> None:
     """Move a recording's own errors to where they are likeliest beside a moved matrix."""
-    normal, right = _normal(f.errors, f.columns, f.precision)
+    normal, right = f.normal(slice(None))
     _add_own(normal, right, f)
     right = right[MATRIX:] - normal[MATRIX:, :MATRIX] @ step.ravel()
     own = np.linalg.solve(normal[MATRIX:, MATRIX:], right)

@@ -8,10 +8,11 @@ import numpy as np
 from scipy.stats import f as fisher
 
 from ..read.gate import CannotClose
+from .columns import MATRIX
 from .device import SIZES, Shown
-from .rate_scale import LEVEL
-from .windows import MATRIX
 
+#: Of a test that tells something from chance.
+LEVEL = 1e-6
 #: Odds below which it is not said with whom a recording is: one in a thousand of ten is wrong.
 _SURE_NATS = np.log(1e4)
 

@@ -7,7 +7,6 @@ from .earth import earth_of
 from .sessions import OWN_SOURCES, Session, block_means
 from .still import runs, still_ticks
 from .ticks import Ticks, gap_filled
-from .turns import turns_of
 
 BLOCK_S = 20.0
 _WANTED_BLOCKS = 150
@@ -71,7 +70,7 @@ def session_of(ticks: Ticks, block_s: float) -> Session:
     return Session(
         ticks.name, per * ticks.tick_s, per, mean, np.where(share < _LEAST_STILL, 0.0, share),
         sources_of(ticks, m), ticks.start_us, earth=earth, delay=ticks.delay,
-        turns=turns_of(ticks), ticks_dps=np.where(still[:, None], rate_at_rest, np.nan),
+        ticks_dps=np.where(still[:, None], rate_at_rest, np.nan),
         welch=_welch(ticks), tick_weight=weight, temp_step_degc=_temp_step_degc(ticks),
     )  # fmt: skip
 

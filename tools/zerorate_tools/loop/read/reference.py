@@ -6,7 +6,6 @@ and all four 0, or without a value, where it was not seen.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -33,24 +32,6 @@ def declared(more: Mapping[str, object]) -> set[str]:
     channels = more.get("channels")
     said = channels.items() if isinstance(channels, dict) else ()
     return {n for n, c in said if isinstance(c, dict) and c.get("role") == "reference"}
-
-
-@dataclass(frozen=True)
-class Run:
-    """Normal equations of one run: normal (p, p), right (p,), square and count of its errors.
-
-    The first nine parameters are M by rows, dps per dps; fastest: (3,) dps about each axis.
-    """
-
-    normal: np.ndarray
-    right: np.ndarray
-    square: float
-    count: float
-    fastest: np.ndarray
-
-    def left(self, x: np.ndarray) -> float:
-        """Sum of squared errors with parameters x."""
-        return float(self.square - 2 * self.right @ x + x @ self.normal @ x)
 
 
 class Reference:
@@ -89,7 +70,8 @@ class Reference:
         q: what `quaternions` gave for this batch, where the reference is an attitude.
         """
         if self.rates:
-            return np.column_stack([batch[n] / self.lsb for n in self.rates])
+            words = np.column_stack([batch[n] for n in self.rates])
+            return np.where(words == GAP, np.nan, words / self.lsb)
         assert q is not None
         if self._last is None:
             self._last = int(t_us[0]), np.full(4, np.nan)

@@ -9,7 +9,6 @@ import numpy as np
 from ...model.term import Term, evaluate
 from .earth import Earth
 from .lines import Spectrum
-from .turns import Turns
 
 #: Sources of effect slots that are not extra channels, whose names extra channels cannot have.
 OWN_SOURCES = (
@@ -28,7 +27,6 @@ class Session:
     share of the block that was still, 0..1. sources: name -> (n * ticks_per_block,) tick means, no
     NaN (gaps held), units as in effect slots. earth: Earth's rate, which rate_dps is without as
     far as it is known. delay: (m, 2) of `timing.products`, where there is a reference.
-    turns: what tells the scale of the rates.
     ticks_dps: (n * ticks_per_block, 3) rate of each tick at rest, NaN elsewhere; welch: spectrum of
     the samples at rest; tick_weight: (n * ticks_per_block,) samples that count in rate_dps.
     steps: of its bias, already out of rate_dps and ticks_dps; level_dps: (n * ticks_per_block, 3)
@@ -47,7 +45,6 @@ class Session:
     noise_dps: np.ndarray | None = None
     earth: Earth | None = None
     delay: np.ndarray | None = None
-    turns: Turns | None = None
     ticks_dps: np.ndarray | None = None
     welch: Spectrum | None = None
     tick_weight: np.ndarray | None = None
@@ -91,6 +88,12 @@ class Session:
             if (own & there).any():
                 out[own] = values[own] - values[own & there].mean(axis=0)
         return out
+
+    @property
+    def moving_s(self) -> float:
+        """Seconds that it was not at rest."""
+        still = np.zeros(0) if self.ticks_dps is None else self.ticks_dps[:, 0]
+        return float(np.isnan(still).sum() * self.tick_s)
 
     @property
     def moved(self) -> np.ndarray:

@@ -14,8 +14,7 @@ from ...recordings import OpenRecording, Scales, open_recording
 from ...recordings.checks import GAP
 from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP, TIME
 from .bad_readings import BadReadings
-from .beside_reference import WIDTH, change_of, delay_products
-from .beside_reference import products as of_turning
+from .beside_reference import change_of, delay_products
 from .reference import Reference, declared
 from .welch import Segments
 
@@ -30,8 +29,7 @@ _VIBRATION_ALPHA = 1.0 / 32.0
 class Ticks:
     """Sums per tick. count: (m,) good samples; rate, rate_var: (m, 3) dps, dps^2; others (m,) or
     (m, 3). reference: true rate, NaN where it is not known; attitude: (m, 4) body to world; delay:
-    (m, 2) of `timing.products`; turning: (m, WIDTH) of
-    `beside_reference.products`.
+    (m, 2) of `beside_reference.delay_products`.
     """
 
     name: str
@@ -52,7 +50,6 @@ class Ticks:
     digest: str = ""
     attitude: np.ndarray | None = None
     delay: np.ndarray | None = None
-    turning: np.ndarray | None = None
     segments: Segments | None = None
     path: Path | None = None
 
@@ -187,7 +184,6 @@ class _Reader:
         change = change_of(t_us, rate)
         both = known & np.isfinite(change).all(axis=1)
         miss = gyro[both] / self.scales.gyro_lsb_per_dps - rate[both]
-        self._columns_of("turning", tick[both], of_turning(miss, rate[both], change[both]))
         self._columns_of("late", tick[both], delay_products(miss, change[both]))
         if q is not None:
             seen = np.isfinite(q[:, 0])
@@ -232,12 +228,12 @@ class _Reader:
             for n in self.extra
             if np.any(self.sums.get(f"{_key(n)} count", self.size))
         }
-        delay, turning = self._turning()
+        delay = self._columns("late", 2) if self.reference.names else None
         return Ticks(
             name, self.scales, self.tick_s, self.start or 0, raw, rate, rate_var,
             accel, accel_var, vib, temp,
             reference, extra, self.bad.faults, self.samples, self.digest.hexdigest(),
-            self._attitude(), delay, turning, self.segments,
+            self._attitude(), delay, self.segments,
         )  # fmt: skip
 
     def _columns(self, name, number):
@@ -249,11 +245,6 @@ class _Reader:
         whole = (known > 0) & (known >= count)
         mean = self._columns("true", 3) / np.maximum(known, 1.0)[:, None]
         return np.where(whole[:, None], mean, np.nan)
-
-    def _turning(self):
-        if not self.reference.names:
-            return None, None
-        return self._columns("late", 2), self._columns("turning", WIDTH)
 
     def _attitude(self):
         if not self.reference.attitude:

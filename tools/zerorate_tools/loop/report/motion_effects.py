@@ -47,18 +47,10 @@ def turning(t: RateScale) -> dict:
         "deviation": {n: [float(v) for v in c] for n, c in zip(names, t.deviation.T)},
         "confidence": "confirmed" if t.confirmed else "tentative",
         "p_value": t.p_value,
-        "in_motion": {"before": t.before, "after": t.after, "unit": _unit(t)},
-        "said": f"{t.kind} over {t.runs} {_of_what(t)}, measured beside {t.reference}; it does not "
+        "in_motion": {"before": t.before, "after": t.after, "unit": t.unit},
+        "said": f"{t.kind} over {t.runs} windows, measured beside {t.reference}; it does not "
         "show at rest, where before and after are measured",
     }
-
-
-def _of_what(t: RateScale) -> str:
-    return "windows" if t.unseen is not None else "turns"
-
-
-def _unit(t: RateScale) -> str:
-    return t.unit if t.unseen is not None else f"{t.unit} rms a turn"
 
 
 def _timing(t: Timing) -> dict:

@@ -114,11 +114,10 @@ def _by_kernels(analysis):
 
 def _truth(analysis):
     """What the rates are compared with, at rest and in motion."""
-    earth, turns = analysis.sessions[0].earth, analysis.sessions[0].turns
-    some = turns is not None and any(s.turns.runs for s in analysis.sessions if s.turns)
+    earth, turning = analysis.sessions[0].earth, analysis.motion.rate_scale
     return {
         "at_rest": "zero rate; " + (earth.said if earth else "Earth's rotation is in the rates"),
-        "in_motion": turns.beside if some else "no reference: what moves is set aside",
+        "in_motion": turning.reference if turning else "no reference: what moves is set aside",
     }
 
 

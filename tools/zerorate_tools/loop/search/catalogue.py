@@ -9,9 +9,8 @@ from ...model import effects
 from ...model.effects import ANY_CHANNEL, SUPPLY, Effect, table_of
 from ...model.term import Term
 from ..fit.free_curve import is_curve, parts
-from ..motion.rate_scale import LEAST_RUNS
+from ..motion.columns import LONGEST_S
 from ..read.sessions import Session, block_basis, common_sources
-from ..read.turns import GIVEN
 
 SUPPLY_NAMES = ("vdd", "vbat", "volt", "vcc", "supply")
 _OWN = ("temp", "acc_x", "acc_y", "acc_z", "rate_x", "rate_y", "rate_z", "vib")
@@ -217,9 +216,8 @@ def _group(row: Effect, span, varied, sessions) -> list[Candidate]:
 
 
 def _told_by_turns(sessions: list[Session]) -> bool:
-    """Whether `in_motion` has found the scale of the rates by samples, which tell it better."""
-    runs = [s.turns.runs for s in sessions if s.turns and s.turns.beside == GIVEN]
-    return sum(len(r) for r in runs) >= LEAST_RUNS
+    """Whether `in_motion` looked at the scale of the rates by samples, which tell it better."""
+    return any(s.delay is not None and s.moving_s > LONGEST_S for s in sessions)
 
 
 def _is_finite(candidate, sessions):

@@ -3,21 +3,24 @@
 import numpy as np
 from scipy.stats import chi2
 
+from .columns import MATRIX
 from .device import device_of, groups
 from .matrix import FOLDS, beside, fit
-from .rate_scale import LEVEL, RateScale
-from .same_device import check_one_device
-from .windows import MATRIX, Moving
+from .moving import Moving
+from .rate_scale import RateScale
+from .same_device import LEVEL, check_one_device
 
-BESIDE = "gravity while it moved"
-UNIT = "degrees a minute of tilt"
+GRAVITY, GIVEN = "gravity while it moved", "the reference given"
+_UNIT = {GRAVITY: "degrees a minute of tilt", GIVEN: "degrees a minute of turn"}
 #: Posterior sigma of an entry above which the motion did not show it: a data sheet's 0.5 %.
 UNSEEN = 0.005
 #: Of devices without errors, so many may be said to have one.
 _LEVEL = 1 / 200
+#: Of the whole matrix: a part that is smaller is not named.
+_TRIFLE = 0.1
 
 
-def by_gravity(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
+def by_windows(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
     """The matrix of the recordings to fit, judged on windows held out; None where none moves
     or too little to be judged on.
 
@@ -45,6 +48,7 @@ def by_gravity(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
         for bare in (True, False)
     )
     fastest = np.degrees(np.max([np.abs(f.moving.rate).max(axis=0) for f in fitted], axis=0))
+    reference = GIVEN if all(f.moving.given is not None for f in fitted) else GRAVITY
     unseen = np.sqrt(np.diag(np.linalg.pinv(shown.normal + _FAINT))) > UNSEEN
     return RateScale(
         matrix=entries.reshape(3, 3),
@@ -52,15 +56,15 @@ def by_gravity(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
         # a likelihood ratio averaged over sizes: Markov bounds its chance without errors. The fit
         # takes the noise for even, which a few bouts of a hand are not: parts left out must agree.
         p_value=float(np.exp(-max(min(device.nats, predicted), 0.0))),
-        level=0.0 if all(f.moving.planar for f in fitted) else _LEVEL,
+        level=0.0 if all(f.moving.planar and f.moving.given is None for f in fitted) else _LEVEL,
         share=share,
         kind=_kind(entries, covariance),
-        reference=BESIDE,
+        reference=reference,
         gains=np.array([gain, before - after]),
         before=before,
         after=after,
-        unit=UNIT,
-        runs=sum(len(f.errors) for f in fitted),
+        unit=_UNIT[reference],
+        runs=sum(len(f.rows.errors) for f in fitted),
         fastest_dps=fastest,
         unseen=unseen.reshape(3, 3),
     )
@@ -90,12 +94,14 @@ def _tilt(parts) -> float:
 
 
 def _kind(entries, covariance) -> str:
-    """Which of the three it is, by what its own entries are worth; all that are clear."""
+    """Which of the three it is, by what its own entries are worth; all that are clear and no trifle
+    beside the others."""
     said = []
     for name, onto in zip(("scale-factor", "cross-axis", "turned-axes"), groups()):
         size = onto @ entries
         spread = onto @ covariance @ onto.T
         free = round(float(np.trace(onto)))
-        if chi2.sf(size @ np.linalg.pinv(spread, rcond=1e-6) @ size, free) < LEVEL:
+        clear = np.linalg.norm(size) > _TRIFLE * np.linalg.norm(entries)
+        if clear and chi2.sf(size @ np.linalg.pinv(spread, rcond=1e-6) @ size, free) < LEVEL:
             said.append(name)
     return "+".join(said) or "scale-factor+cross-axis"

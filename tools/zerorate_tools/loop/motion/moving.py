@@ -1,0 +1,173 @@
+"""A recording as its motion is read: rates, acceleration, rests, an attitude if one is given."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from os import PathLike
+
+import numpy as np
+
+from ...recordings import open_recording
+from ...recordings.recording import ACCEL, GYRO, TIME
+from ...simulate.attitude import IDENTITY, integrate
+from ..read.reference import Reference
+from ..read.saturation import saturated
+from ..read.still import runs, still_ticks
+from ..read.ticks import TICK_S, Ticks, read_ticks
+
+#: A device is in motion where its rates spread by this in a window.
+LEAST_DPS = 5.0
+#: Shares, of the mean square, of rates about other axes than the main one and of gravity beside its
+#: mean direction, below which a device turns about one axis in one pose: a tenth of it, rms.
+_PLANAR = 0.01
+_RAIL = 32767
+#: Of a recording whose rates spread by less no window moves.
+_WORTH_READING_DPS = 1.0
+#: Times the usual between two samples from which on it is a gap, which no window spans.
+_GAP = 5
+#: Share of the samples that an attitude must be seen at: below it gravity shows more.
+_LEAST_SEEN = 0.5
+#: Rests this long are a reading of the bias, with what it wanders meanwhile.
+_REST_TICKS, REST_SIGMA = 10, np.radians(0.005)
+
+
+@dataclass(frozen=True)
+class Moving:
+    """A recording as motion needs it.
+
+    rate: (n, 3) rad/s less `offset` (3,), which is near the bias; accel: (n, 3) g; at_s: (n,) from
+    the recording's middle; usable, still: (n,) bool, no rail, at rest; rests: (k, 4) s and rad/s
+    less the offset; given: (n, 4) attitude, body to a frame that stands still, NaN where it was not
+    seen and free to change there, None where none is given.
+    """
+
+    name: str
+    rate: np.ndarray
+    accel: np.ndarray
+    at_s: np.ndarray
+    usable: np.ndarray
+    still: np.ndarray
+    offset: np.ndarray
+    rests: np.ndarray
+    given: np.ndarray | None = None
+
+    @cached_property
+    def dt_s(self) -> float:
+        """Seconds between samples, gaps left out; a mean, as stamps are whole microseconds and a
+        sample that is lost now and then is time all the same."""
+        apart_s = np.diff(self.at_s)
+        return float(apart_s[apart_s <= _GAP * np.median(apart_s)].mean())
+
+    @property
+    def planar(self) -> bool:
+        """Whether it turns about one axis in one pose, as a robot on a floor. An acceleration that
+        goes with such turns, as speed times rate does, is then no different from axes that are off.
+        """
+        n = max(1, round(1.0 / self.dt_s))
+        accel, rate = (x[: len(x) // n * n].reshape(-1, n, 3) for x in (self.accel, self.rate))
+        moves = np.degrees(np.sqrt((rate**2).sum(axis=2).mean(axis=1))) > LEAST_DPS
+        poses = accel[moves].mean(axis=1)
+        # an accelerometer that reads nothing has no pose
+        poses = poses / np.maximum(np.linalg.norm(poses, axis=1, keepdims=True), 1e-9)
+        return _beside_main(poses) < _PLANAR and _beside_main(rate[moves].reshape(-1, 3)) < _PLANAR
+
+    def part(self, span: slice) -> "Moving":
+        """Of its samples."""
+        names = ("rate", "accel", "at_s", "usable", "still")
+        parts = {n: getattr(self, n)[span] for n in names}
+        at_s = parts["at_s"]
+        inside = (self.rests[:, 0] >= at_s[0]) & (self.rests[:, 0] <= at_s[-1])
+        given = None if self.given is None else self.given[span]
+        return replace(self, **parts, rests=self.rests[inside], given=given)
+
+    def spans(self, seconds: float) -> list[slice]:
+        """Windows of so many seconds, each a quarter on, that move, without gap or rail."""
+        n = round(seconds / self.dt_s)
+        spans = [slice(a, a + n) for a in range(0, len(self.rate) - n + 1, n // 4)] if n > 8 else []
+        return [s for s in spans if self._moves(s)]
+
+    def _moves(self, s: slice) -> bool:
+        spread = np.degrees(np.sqrt(self.rate[s].var(axis=0).sum()))
+        return self.whole(s) and spread > LEAST_DPS
+
+    def whole(self, s: slice) -> bool:
+        """Whether samples are without gap or rail."""
+        apart_s = self.at_s[s][-1] - self.at_s[s][0] - (s.stop - s.start - 1) * self.dt_s
+        return bool(abs(apart_s) < _GAP * self.dt_s and self.usable[s].all())
+
+
+def _beside_main(vectors: np.ndarray) -> float:
+    """Share of the mean square of vectors (n, 3) that lies across their main direction."""
+    squares = np.linalg.eigvalsh(vectors.T @ vectors)
+    return float(1.0 - squares[-1] / max(squares.sum(), 1e-300))
+
+
+def moving_of(path: str | PathLike[str], ticks: Ticks | None = None) -> Moving | None:
+    """A recording read for its motion; None where it never turns, or has neither an accelerometer
+    nor a reference.
+
+    Raises BadRecording.
+    """
+    opened = open_recording(path, keep_gaps=True)
+    reference = Reference(opened.column_names, opened.scales.gyro_lsb_per_dps)
+    lsb_per_g = opened.scales.accel_lsb_per_g if set(ACCEL) <= set(opened.column_names) else None
+    if lsb_per_g is None and not reference.names:
+        return None
+    t_us, gyro, accel, given = _samples(opened, lsb_per_g, reference)
+    rate = gyro * np.radians(1.0) / opened.scales.gyro_lsb_per_dps
+    if len(t_us) < 16 or np.degrees(rate.std(axis=0).max()) < _WORTH_READING_DPS:
+        return None
+    ticks = ticks or read_ticks(path, TICK_S)
+    still = still_ticks(ticks)
+    rests = _rests(ticks, still)
+    offset = np.median(rests[:, 1:] if len(rests) else rate, axis=0)
+    middle_us = 0.5 * (t_us[0] + t_us[-1])
+    usable = (np.abs(np.hstack([gyro, accel])) < _RAIL).all(axis=1) & ~saturated(gyro)
+    rests[:, 0] += (ticks.start_us - middle_us) * 1e-6
+    rests[:, 1:] -= offset
+    tick = ((t_us - ticks.start_us) / (ticks.tick_s * 1e6)).astype(np.int64)
+    moving = Moving(
+        *(opened.name, rate - offset, accel / (lsb_per_g or 1.0), (t_us - middle_us) * 1e-6),
+        *(usable, still[np.clip(tick, 0, len(still) - 1)], offset, rests),
+    )
+    if reference.rates:
+        given = _attitude_by(given, moving.dt_s)
+    seen = np.isfinite(given).all(axis=1).mean() if reference.names else 0.0
+    return replace(moving, given=given if seen > _LEAST_SEEN else None)
+
+
+def _attitude_by(rate_dps: np.ndarray, dt_s: float) -> np.ndarray:
+    """(n, 4) attitude that true rates (n, 3) tell, NaN where they are not known."""
+    known = np.isfinite(rate_dps).all(axis=1)
+    attitude = integrate(np.where(known[:, None], rate_dps, 0.0), dt_s, IDENTITY)
+    attitude[~known] = np.nan
+    return attitude
+
+
+def _rests(ticks: Ticks, still: np.ndarray) -> np.ndarray:
+    """(k, 4) s from the first tick and mean rate in rad/s of its rests, ten ticks each."""
+    parts = [
+        (a, min(a + _REST_TICKS, end))
+        for first, end in runs(still)
+        for a in range(first, end, _REST_TICKS)
+    ]
+    rows = [
+        [0.5 * (a + b) * ticks.tick_s, *np.radians(ticks.rate[a:b].mean(axis=0))]
+        for a, b in parts
+        if b - a >= _REST_TICKS // 2
+    ]
+    return np.array(rows).reshape(-1, 4)
+
+
+def _samples(opened, lsb_per_g, reference):
+    """Times in us, rates and accelerations in LSB, and what the reference gives."""
+    rows = []
+    for batch in filter(lambda b: len(b[TIME]), opened.batches(rows=1 << 18)):
+        t_us, gyro = batch[TIME], np.column_stack([batch[n] for n in GYRO])
+        accel = np.column_stack([batch[n] for n in ACCEL]) if lsb_per_g else np.zeros_like(gyro)
+        given = np.zeros((len(t_us), 0))
+        if reference.rates:
+            given = reference.rate_dps(t_us, batch, None)
+        elif reference.attitude:
+            given = reference.quaternions(batch)
+        rows.append((t_us, gyro, accel, given))
+    return tuple(np.concatenate(part) for part in zip(*rows))
