@@ -14,8 +14,10 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 from zerorate_tools.demo.broad import Trial, trials
 from zerorate_tools.loop.motion.by_windows import by_windows
+from zerorate_tools.loop.motion.device import Shown
+from zerorate_tools.loop.motion.matrix import beside
 from zerorate_tools.loop.motion.moving import Moving, moving_of
-from zerorate_tools.loop.motion.same_device import DifferentDevices
+from zerorate_tools.loop.motion.same_device import DifferentDevices, distance
 from zerorate_tools.recordings.writing import write_recording
 
 from .tables import table
@@ -23,6 +25,9 @@ from .tables import table
 Array = NDArray[np.float64]
 _G = 9.80665
 _EVERY = 10
+_OPTICS = """\
+Far is a chi-squared of nine degrees of freedom: of a trial's matrix, fitted beside the optics,
+being that of the other trials named."""
 #: Two sets of axes: trials whose matrices agree with each other, and not with the other set's.
 GROUPS = (("01", "02", "06", "12", "16", "24"), ("21", "29", "30"))
 LIMITS = (0.7, 2.5)
@@ -35,6 +40,7 @@ def run(folders: list[Path], advance: Callable[[float], None] = lambda n: None) 
     with TemporaryDirectory() as scratch:
         moving = {n: moving_in(t, Path(scratch) / f"{n}.parquet") for n, t in every.items()}
     found: dict = {"others": {}, "halves": {}, **_refused(list(moving.values()))}
+    found["optics"] = _by_optics(every, moving, found["refused"])
     for number, group in enumerate(GROUPS):
         own = [n for n in group if n in every]
         for name in own:
@@ -66,6 +72,21 @@ def _refused(moving: list[Moving]) -> dict[str, list]:
         groups = [sorted(group) for group in problem.groups]
         return {"refused": groups, "unsure": sorted(problem.unsure)}
     return {"refused": [], "unsure": []}
+
+
+def _by_optics(every, moving, groups) -> dict[str, list[float]]:
+    """Trial -> chi-squared, of 9 degrees of freedom, of its matrix by the optics being that of the
+    other trials of each group."""
+    seen = {}
+    for name, trial in every.items():
+        fitted = beside(replace(moving[name], given=trial.attitude), np.zeros((3, 3)))
+        seen[name] = Shown() if fitted is None else fitted.shown(np.zeros((3, 3)))
+    return {
+        name: [
+            distance(one, sum((seen[n] for n in group if n != name), Shown())) for group in groups
+        ]
+        for name, one in sorted(seen.items())
+    }
 
 
 def _row(trial: Trial, group: int, shown, first: float = 0.0) -> dict:
@@ -132,6 +153,10 @@ def in_markdown(found: dict) -> str:
     either = f"; {unsure} could also be with the others" if unsure else ""
     told = f"refused, {groups}{either}" if groups else "NOT refused"
     parts.append(f"All trials as one device: {told}.")
+    if found["optics"]:
+        heads = ["trial, by the optics", *(f"far from {', '.join(g)}" for g in found["refused"])]
+        rows = [[n, *(f"{d:.0f}" for d in far)] for n, far in found["optics"].items()]
+        parts += [table(heads, rows), _OPTICS]
     for key, words in (("others", "other trials"), ("halves", "its first half")):
         heads = ["trial", "deployed", "before, degrees", f"after, fitted on {words}"]
         heads += ["after, fitted on other trials"] if key == "halves" else []
