@@ -1,5 +1,7 @@
 """The fixture smbus reaches a program however that program imports smbus2."""
 
+from threading import Thread
+
 import pytest
 import smbus2
 from smbus2 import SMBus  # as applications do, before any test has begun
@@ -36,3 +38,17 @@ def test_the_next_test_has_its_own_chip(smbus):
 def test_a_rate_of_two_axes_is_refused():
     with pytest.raises(ValueError, match="gyro_dps has 2 values; give three"):
         Physical(gyro_dps=(1, 2))
+
+
+def test_a_thread_s_transfer_waits_for_the_end_of_another_s(imu_bus, smbus):
+    other = Thread(target=smbus.read_byte_data, args=(_ADDRESS, _WHO_AM_I))
+
+    def in_the_middle(place):
+        imu_bus.between_bytes = None
+        other.start()
+        other.join(0.05)
+
+    smbus.write_byte_data(_ADDRESS, 0x1A, 3)
+    imu_bus.between_bytes = in_the_middle
+    assert smbus.read_i2c_block_data(_ADDRESS, 0x19, 2) == [0, 3]
+    other.join()

@@ -432,7 +432,7 @@ def test_a_model_that_fits_is_taken(tmp_path):
     assert line and "--model" not in said
 
 
-@pytest.mark.parametrize("bus", ["learned.bin", ".", "/dev/null"])
+@pytest.mark.parametrize("bus", ["learned.bin", "run.csv", ".", "/dev/null"])
 def test_what_can_never_be_a_bus_is_not_waited_for(tmp_path, bus):
     (tmp_path / "learned.bin").touch()
     line, said = first_line(tmp_path, bus=bus)

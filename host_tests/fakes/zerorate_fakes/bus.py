@@ -22,17 +22,19 @@ FAULTS = ("nack", "gone", "hang", "all_ff", "all_00")
 class FakeI2C:
     """devices is one chip (at 0x68) or {address: chip}; a missing address is OSError 19.
 
+    A chip has begin_read(), read(register), write(register, byte) and next_register(register).
+
     With clock every transfer takes the time it has at hz on a real bus. between_bytes, where set,
     is called after each byte read, with its place in the transfer.
     """
 
     def __init__(
         self,
-        devices: "FakeMPU6050 | dict[int, FakeMPU6050]",
+        devices: "FakeMPU6050 | dict[int, Any]",
         clock: "FakeClock | None" = None,
         hz: int = 400000,
     ) -> None:
-        self.devices = devices if isinstance(devices, dict) else {0x68: devices}
+        self.devices: "dict[int, Any]" = devices if isinstance(devices, dict) else {0x68: devices}
         self.transfers = 0
         self.between_bytes: "Callable[[int], object] | None" = None
         self.sda_held_bits = 0
@@ -180,7 +182,7 @@ class FakeI2C:
             self._times -= 1
         return self._fault
 
-    def _device(self, addr: int) -> "FakeMPU6050":
+    def _device(self, addr: int) -> "Any":
         if addr not in self.devices:
             raise OSError(_ENODEV, "ENODEV")
         return self.devices[addr]

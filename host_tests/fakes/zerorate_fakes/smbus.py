@@ -1,5 +1,10 @@
 """FakeI2C seen as smbus or smbus2, for drivers written for Linux."""
 
+try:
+    from threading import RLock
+except ImportError:  # MicroPython, whose programs open no bus of Linux
+    RLock = None  # type: ignore[assignment, misc]
+
 TYPE_CHECKING = False
 
 if TYPE_CHECKING:
@@ -30,6 +35,8 @@ class SMBus:
         self.bus = bus
         self.funcs = I2C_FUNC_SMBUS_BLOCKS | (I2C_FUNC_I2C if raw_i2c else 0)
         self.pec = 0
+        # as the kernel has it: no thread's transfer comes between another's register and bytes
+        self._transfer = RLock() if RLock else self
 
     def __enter__(self) -> "SMBus":
         return self
@@ -54,10 +61,7 @@ class SMBus:
     def read_byte(self, i2c_addr: int, force: "bool | None" = None) -> int:
         """One byte from the register that was written or read last."""
         data = bytearray(1)
-        try:
-            self.bus.readfrom_into(i2c_addr, data)
-        except OSError as error:
-            raise _linux_error(error) from None
+        self._read_on(i2c_addr, data)
         return data[0]
 
     def write_byte(self, i2c_addr: int, value: int, force: "bool | None" = None) -> None:
@@ -134,27 +138,35 @@ class SMBus:
         """smbus2.i2c_msg objects, reads and writes in their order."""
         if not self.funcs & I2C_FUNC_I2C:
             raise OSError(95, "Operation not supported")
-        for message in i2c_msgs:
-            if not message.flags & _I2C_M_RD:
-                self._write(message.addr, bytes(list(message)))
-                continue
-            data = bytearray(message.len)
-            try:
-                self.bus.readfrom_into(message.addr, data)
-            except OSError as error:
-                raise _linux_error(error) from None
-            for i in range(message.len):
-                message.buf[i] = bytes(data[i : i + 1])
+        with self._transfer:
+            for message in i2c_msgs:
+                if not message.flags & _I2C_M_RD:
+                    self._write(message.addr, bytes(list(message)))
+                    continue
+                data = bytearray(message.len)
+                self._read_on(message.addr, data)
+                for i in range(message.len):
+                    message.buf[i] = bytes(data[i : i + 1])
+
+    def _read_on(self, addr: int, data: bytearray) -> None:
+        """Fill data from the register that was written or read last."""
+        try:
+            with self._transfer:
+                self.bus.readfrom_into(addr, data)
+        except OSError as error:
+            raise _linux_error(error) from None
 
     def _read(self, addr: int, register: int, length: int) -> bytes:
         try:
-            return self.bus.readfrom_mem(addr, register, length)
+            with self._transfer:
+                return self.bus.readfrom_mem(addr, register, length)
         except OSError as error:
             raise _linux_error(error) from None
 
     def _write(self, addr: int, data: "Sequence[int]") -> None:
         try:
-            self.bus.writeto(addr, bytes(data))
+            with self._transfer:
+                self.bus.writeto(addr, bytes(data))
         except OSError as error:
             raise _linux_error(error) from None
 

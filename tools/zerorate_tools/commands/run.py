@@ -65,7 +65,9 @@ def run(arguments: argparse.Namespace) -> None:
         try:
             return LinuxI2C(arguments.bus)
         except OSError as error:
-            if error.errno not in _NO_BUS:
+            # a bus comes back by its name beneath /dev alone
+            gone = error.errno == errno.ENOENT and not arguments.bus.startswith("/dev/")
+            if error.errno not in _NO_BUS and not gone:
                 raise
             do = "`ls /dev/i2c-*` says which there are"
             raise ZerorateError(f"{arguments.bus}: no I2C bus; {do}") from error
