@@ -260,5 +260,7 @@ def test_every_kind_is_described_with_its_effect():
 
 def test_a_run_broken_off_goes_on_from_its_file(tmp_path):
     kept, known = tmp_path / "outcomes.jsonl", [replace(single(), seed=i) for i in range(2)]
-    kept.write_text("".join(json.dumps(asdict(s)) + "\n" for s in known), encoding="utf-8")
+    kept.write_text(
+        "".join(json.dumps([str(s.seed), asdict(s)]) + "\n" for s in known), encoding="utf-8"
+    )
     assert [s.seed for s in look_at_singles(2, resume=kept)] == [0, 1]
