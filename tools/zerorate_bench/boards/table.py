@@ -72,11 +72,11 @@ bytecode, and so they do where `mip` installed the sources.
 _FOOT = """
 Cycles a sample on the emulated Pico, with the recording of the bench:
 
-| what | mean | worst |
+| what | median | worst |
 | --- | ---: | ---: |
 | the kernels of learning at rest, with their call | {median:,.0f} | {worst:,.0f} |
 | `Corrector.update` | {object_median:,.0f} | {object_worst:,.0f} |
-| `Bursts.update`, 64 at once | {burst:,.0f} | |
+| `Bursts.update`, 64 at once: mean | {burst:,.0f} | |
 | as bytecode | some {bytecode:,.0f} | |
 
 A build can hold what fits no heap. In MicroPython's `ports/rp2` run `make FROZEN_MANIFEST=FILE`.
