@@ -221,7 +221,7 @@ def test_of_three_recordings_every_row_is_left_out_once(logs, tmp_path):
 
 def test_what_pieces_of_few_recordings_speak_against_is_withdrawn():
     rate = Found(Candidate("thermal-rate", (Term("temp"),), "catalogue"), None)
-    selection = Selection([rate], [], [], 0, None, (), (), [], {})
+    selection = Selection([rate], [], 0, None, (), (), [], {})
     ways = {"before": np.ones((4, 3)), "after": np.full((4, 3), 0.9)}
     worse = ways | {"after": np.full((4, 3), [0.9, 1.1, 0.9])}
     courses = {"a": Course(np.arange(4), {}, worse), "b": Course(np.arange(4), {}, ways)}

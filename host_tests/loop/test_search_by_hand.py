@@ -33,7 +33,6 @@ from zerorate_tools.loop.search.multiple_testing import MultipleTesting
 from zerorate_tools.loop.search.ols_holdout_ratio import ols_holdout_ratio
 from zerorate_tools.loop.search.selection import Found, Selection
 from zerorate_tools.loop.search.steps import Step
-from zerorate_tools.model.effects import Effect
 from zerorate_tools.model.term import Term, first_order_lag
 
 from . import dense
@@ -659,26 +658,18 @@ def test_what_does_not_vary_or_was_not_recorded_is_no_candidate():
     assert of_kind(shaken, "vibration")
 
 
-def test_forms_of_temperature_are_of_one_slot_and_a_late_part_adds_its_rate_times_its_slope(
-    monkeypatch,
-):
+def test_a_late_part_adds_the_rate_of_temperature_times_its_slope():
     session = warm()
-    found = catalogue.of_temperature([session])
-    late = [c for c in found if len(c.terms) == 2]
+    late = catalogue.late([session])
     assert [c.terms[0].lag_s for c in late] == [1.0, 8.0]
-    assert all(c.terms[1].second == "temp" for c in late)
+    assert all(c.terms[1].second == "temp" and c.sources == ["temp"] for c in late)
     assert late[0].terms[1].second_centre == pytest.approx(25.0)
-    assert all(c.sources == ["temp"] for c in found) and len(found) > 10
     lags = catalogue.lags([session])
     assert [t.lag_s for t in lags] == [s for s in (5, 15, 45, 135, 405, 1215) for _ in (1, 2)]
     assert [t.power for t in lags] == [1, 2] * 6 and lags[1].power_first and not lags[0].power_first
     assert lags[0].centre == pytest.approx(25.0) and lags[0].lag_mode == "difference"
     bare = replace(session, sources={})
-    assert catalogue.of_temperature([bare]) == [] == catalogue.lags([bare])
-    free = Effect("any-curve", "temp", "", "", free=True)
-    monkeypatch.setattr(catalogue.effects, "EFFECTS", (*catalogue.effects.EFFECTS, free))
-    assert of_kind(candidates([session]), "any-curve")
-    assert not of_kind(catalogue.of_temperature([session]), "any-curve")
+    assert catalogue.late([bare]) == [] == catalogue.lags([bare])
 
 
 def test_only_bounded_bases_go_on_beyond_their_source():
@@ -901,7 +892,7 @@ def test_a_selection_with_less_in_it():
     decision = decide.Decision(True, 0.0, 0.0, 1.0, np.zeros(1))
     found = [Found(candidate(A, B), decision), Found(candidate(TEMP), decision)]
     line = (Term("temp"),)
-    whole = Selection(found, [], [], 0, None, line, (), [], {})
+    whole = Selection(found, [], 0, None, line, (), [], {})
     assert whole.terms == [A, B, TEMP] and whole.straight == ()
     assert whole.first(1).straight == line and whole.first(1).found == found[:1]
     assert whole.without(0).found == found[1:] and whole.without(1).found == found[:1]

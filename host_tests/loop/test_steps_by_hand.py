@@ -15,8 +15,6 @@ from zerorate_tools.loop.search.steps import (
     column,
     find_all,
     standing,
-    steps_and_lags,
-    strongest,
 )
 from zerorate_tools.model.term import Term
 
@@ -91,8 +89,8 @@ def test_the_chance_of_a_step_pays_for_every_place_and_recording(sessions):
     many = standing(Regression([one]), [A], 7, [])
     assert len(single) == len(many) == 1
     assert many[0].p_value == pytest.approx(7 * single[0].p_value)
-    for found in (find_all(Regression([one]), [A])[0], strongest(Regression([one]), [A])):
-        assert found.p_value == pytest.approx(single[0].p_value)
+    [found] = find_all(Regression([one]), [A])
+    assert found.p_value == pytest.approx(single[0].p_value)
     theory = chi2.sf(single[0].ratio, 3) * (BLOCKS + 1 - 15)
     assert single[0].p_value >= theory * 0.999
     assert standing(Regression([one]), [A], 10**9, []) == []
@@ -120,13 +118,6 @@ def test_places_near_a_step_of_the_session_say_nothing_of_chance():
     kept = [r for a, r in zip(at, ratios) if abs(a - 30) > 15] + list(ratios)
     assert away.tolist() == kept
     assert listed._away(None, steps, []).tolist() == []
-
-
-def test_the_strongest_step_is_that_of_the_largest_ratio(sessions):
-    regression = Regression(sessions)
-    found = strongest(regression, [A])
-    assert (found.session, found.block) == (2, 22) and regression.events() == []
-    assert strongest(Regression(sessions[:1]), [A]) is None
 
 
 def test_sizes_and_deviations_are_those_of_the_sensors_axes_however_they_are_looked_along(sessions):
@@ -284,13 +275,13 @@ def test_a_form_of_several_terms_pays_for_those_that_a_step_does_not_have(sessio
     assert listed._best_form(regression, [], []) == (None, 0.0)
 
 
-def test_what_a_recorded_channel_does_is_no_step_where_it_is_a_rival():
+def test_what_a_recorded_channel_does_is_no_step():
     switched = np.where((np.arange(BLOCKS) // 15) % 2 > 0, 1.0, 0.0)
     session = noise(4, load=switched)
     session.rate_dps += np.outer(switched, [9.0, -9.0, 9.0])
-    rival = Candidate("channel", (Term("load"),), "generic")
-    assert len(find_all(Regression([session]), [])) > 0
-    assert steps_and_lags(Regression([session]), [], [rival])[0] == []
+    assert find_all(Regression([session]), []) == []
+    unrecorded = replace(session, sources={n: v for n, v in session.sources.items() if n != "load"})
+    assert len(find_all(Regression([unrecorded]), [])) > 0
 
 
 def test_a_kink_over_temperature_is_no_steps():

@@ -50,7 +50,7 @@ def effect(*terms, kind="supply-voltage", axes=(True, True, True)):
 
 
 def selected(sessions, *found, line=(), **more):
-    return Selection([*found], [], [], 0, Regression(sessions), line, (), [], {}, **more)
+    return Selection([*found], [], 0, Regression(sessions), line, (), [], {}, **more)
 
 
 # --- the firmware over a session ---
@@ -334,7 +334,7 @@ def test_something_is_left_where_axes_move_together_or_drift_smoothly(p, nats, c
 def judgement(before, after, gains, p=1.0):
     test = ResidualTest(p, 0.0, np.zeros(3))
     figures = np.array(before), np.array(after), np.array(gains)
-    return Judgement(*figures, test, [], [], [], [], None)
+    return Judgement(*figures, test, [], [], [], None)
 
 
 @pytest.mark.parametrize(
@@ -418,7 +418,6 @@ def test_an_effect_gains_what_the_session_held_out_loses_without_it(sessions):
     told = judge(selected(train, effect(A), effect(B)), held)
     whole = told.whole
     full = whole.fit([A, B]).base
-    assert told.steps == []
     clean = [replace(s, rate_dps=r) for s, r in zip(whole.sessions, whole.rate)]
     problems = [dense.problem(clean, [A, B], whole.scale[:, a]) for a in range(3)]
 
@@ -460,7 +459,7 @@ def test_of_one_recording_every_effect_is_judged_by_pieces_left_out():
     after = pieces.residual([], [A, B], np.ones((2, 3)))
     assert told.residual_after[0] == pytest.approx(after) and not told.offsets_dps[0].any()
     assert told.residual_before[0] == pytest.approx(pieces.residual([], []))
-    assert told.whole is selection.regression and told.steps == []
+    assert told.whole is selection.regression
     spared = replace(selection, found=[effect(A, axes=(False, True, True))])
     ((left, _),) = residuals(spared, [session])
     assert left[:, 0] == pytest.approx(told.residual_before[0][:, 0])

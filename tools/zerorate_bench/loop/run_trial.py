@@ -137,9 +137,11 @@ def judged(device: Device, sessions: list, noise_dps: np.ndarray) -> Outcome:
     from zerorate_tools.loop.fit.single import PiecesByLine
     from zerorate_tools.loop.search.confounding import label
     from zerorate_tools.loop.search.select import select
+    from zerorate_tools.loop.search.steps_first import remove_steps
     from zerorate_tools.loop.verify.judge import residuals, rms_dps
     from zerorate_tools.loop.verify.prune_by_holdout import prune_by_holdout
 
+    sessions = remove_steps(sessions)
     alone = PiecesByLine(sessions[0]) if len(sessions) == 2 else None
     every = select(sessions[:-1], 0, alone, judged_again=True)
     selection, verdict = prune_by_holdout(every, sessions[-1:])
@@ -152,7 +154,7 @@ def judged(device: Device, sessions: list, noise_dps: np.ndarray) -> Outcome:
         [f.candidate.sources for f in found],
         [f.confounded_with for f in found],
         [verdict.confidence(i) for i in range(len(found))],
-        len(selection.steps),
+        sum(len(s.steps) for s in sessions[:-1]),
         bool(verdict.residual_test.left),
         float(verdict.before_rms / unit),
         float(verdict.after_rms / unit),

@@ -8,7 +8,6 @@ from ..fit.intervals import block_bootstrap, rms
 from ..fit.single import STEPS_CHOSEN, WEAKER
 from ..search.confounding import label
 from ..search.periodic import QUICK_HZ
-from ..search.steps_first import may_be_a_channels
 from ..verify.analysis import Analysis
 from ..verify.judge import residuals, rms_dps
 from ..verify.measured import AFTER, BEFORE, ONLINE, ONLINE_BEFORE
@@ -223,12 +222,10 @@ def _after(analysis, effects: int) -> list[np.ndarray]:
 
 
 def _events(analysis):
-    """Steps as they were looked for first; beside the effects only where these compete with them:
-    of what an effect leaves, its own misfit is a step more often than a step is."""
-    whole, later = analysis.judgement.whole, may_be_a_channels(analysis.sessions)
+    """Steps as they were looked for before the effects: of what an effect leaves, its own misfit is
+    a step more often than a step is."""
     known = [(s, step) for s in analysis.sessions for step in (*s.steps, *s.listed)]
-    more = [(whole.sessions[step.session], step) for step in analysis.judgement.steps if later]
-    every = sorted([*known, *more], key=lambda pair: (pair[0].name, pair[1].at_s))
+    every = sorted(known, key=lambda pair: (pair[0].name, pair[1].at_s))
     return [_event(s, step) for s, step in every]
 
 

@@ -177,14 +177,6 @@ def candidates(sessions: list[Session]) -> list[Candidate]:
     return [c for c in out if _is_finite(c, sessions)]
 
 
-def of_temperature(sessions: list[Session]) -> list[Candidate]:
-    """Every candidate that is one slot of temperature alone, and what a late part adds."""
-    if "temp" not in common_sources(sessions):
-        return []
-    own = [c for c in candidates(sessions) if c.sources == ["temp"] and len(c.terms) == 1]
-    return [*own, *_late(sessions)]
-
-
 def lags(sessions: list[Session]) -> list[Term]:
     """The temperature less its lags, and the squares: what parts add that are late, or early."""
     if "temp" not in common_sources(sessions):
@@ -194,9 +186,11 @@ def lags(sessions: list[Session]) -> list[Term]:
     return [replace(t, power=k, power_first=k > 1) for t in own for k in (1, 2)]
 
 
-def _late(sessions) -> list[Candidate]:
+def late(sessions: list[Session]) -> list[Candidate]:
     """What a part adds that is late behind its thermometer by seconds, or early: the rate of
     temperature times the slope of the bias, which bends with temperature."""
+    if "temp" not in common_sources(sessions):
+        return []
     centre = float(np.mean([s.sources["temp"].mean() for s in sessions]))
     rates = [Term("temp", lag_s=lag, lag_mode="rate") for lag in _LATE_S]
     return [

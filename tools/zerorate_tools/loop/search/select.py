@@ -12,7 +12,6 @@ from ..fit.regression import Regression
 from ..fit.shrunk import evidence, has_play_operators
 from ..read.sessions import Session
 from . import confounding, curve, hysteresis
-from . import steps as events
 from .catalogue import Candidate, ranges
 from .catalogue import candidates as all_candidates
 from .decide import JudgedOnPieces
@@ -56,7 +55,6 @@ class Search:
         self.own_bend = tuple(replace(t, power=2) for t in self.line)
         self.found: list[Found] = []
         self.pool = all_candidates(sessions)
-        self.steps: list[events.Step] = []
         self.like_hysteresis: list[Found] = []
         self.refused: list[tuple[str, str]] = []
         self.dropped: set[str] = set()
@@ -99,7 +97,6 @@ class Search:
             self._by_pieces(self.on_pieces)
         else:
             self._widen_hysteresis()
-        self._list_steps()
         named = [c for c in self.pool if c.kind != curve.KIND]
         name_found(self.regression, self.straight, self.found, named, self.kept)
         if (hysteresis.KIND, hysteresis.AS_WELL) in self.refused:
@@ -112,7 +109,6 @@ class Search:
         smallest = self._smallest()
         return Selection(
             self.found,
-            self.steps,
             self.refused,
             r.outliers,
             r,
@@ -204,22 +200,16 @@ class Search:
 
     def _add_one(self) -> bool:
         self._look_afresh()
-        while True:
-            accepted, blocked = self._best_candidate()
-            if accepted:
-                self.found.append(accepted)
-                return True
-            if not blocked:
-                return False
+        accepted = self._best_candidate()
+        self.found += [accepted] if accepted else []
+        return accepted is not None
 
-    def _best_candidate(self) -> tuple[Found | None, bool]:
+    def _best_candidate(self) -> Found | None:
         choose, test = self._ratios()
         dof = np.array([3 * len(c.terms) for c in self.pool])
         need = np.array([self.testing.least_ratio(c) for c in self.pool])
         passing = np.flatnonzero(test > need)
         passing = passing[np.argsort(-(choose - 2.0 * dof)[passing])]
-        if self._step_is_larger(test[passing].max() if len(passing) else 0.0):
-            return None, True
         kinds: list[str] = []
         for i in passing:
             c = self.pool[i]
@@ -233,8 +223,8 @@ class Search:
             kinds.append(c.kind)
             found = self._beside_outliers(c)
             if found:
-                return found, False
-        return None, False
+                return found
+        return None
 
     def _beside_outliers(self, c: Candidate) -> Found | None:
         """As `_consider`, but a block that the candidate explains is no outlier."""
@@ -246,19 +236,6 @@ class Search:
         if not found:
             self.regression.settle(self._beside_bend())
         return found
-
-    def _step_is_larger(self, ratio: float) -> bool:
-        if len(self.steps) >= events.MOST_PER_SESSION * len(self.regression.sessions):
-            return False
-        step = events.strongest(self.regression, self._beside_bend())
-        if step is None or step.ratio < ratio:
-            return False
-        self._take_step(step)
-        return True
-
-    def _take_step(self, step):
-        self.steps.append(step)
-        self.regression.set_events([events.column(self.regression, s) for s in self.steps])
 
     def _consider(self, c: Candidate) -> Found | None:
         said = self.examiner.examine(c, self.straight, self.terms(), self._nuisances(c))
@@ -282,13 +259,6 @@ class Search:
                 self.found[i].candidate = drawn(
                     self.regression, rest, refined(self.regression, rest, c)
                 )
-
-    def _list_steps(self):
-        """Steps again from none, beside the effects found."""
-        self.steps = []
-        self.regression.set_events([])
-        self._look_afresh()
-        self.steps = events.find_all(self.regression, self._beside_bend())
 
 
 def select(

@@ -13,7 +13,6 @@ from ..fit.regression import Regression
 from .catalogue import Candidate
 from .confounding import label
 from .decide import Decision
-from .steps import Step
 
 
 @dataclass
@@ -38,7 +37,6 @@ class Selection:
     """What the training sessions show. line: over temperature, which the firmware learns."""
 
     found: list[Found]
-    steps: list[Step]
     refused: list[tuple[str, str]]
     outliers: int
     regression: Regression

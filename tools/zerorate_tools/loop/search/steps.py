@@ -5,7 +5,6 @@ session are looked at together at the colour that fits best, one step after the 
 stand beside all others.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -15,8 +14,9 @@ from ...model.term import Term
 from ..fit.regression import predicted
 from ..fit.shrunk import shrink
 from ..fit.surrogates import NullRatios
-from .catalogue import Candidate, lags, of_temperature
+from .catalogue import Candidate, candidates, lags, late
 from .decide import LEVEL
+from .drift_test import follows_time
 from .refine import refined
 from .step_places import EDGE, LONGEST, best_place, best_slow, beyond_ramps, heavisides, tried
 
@@ -38,7 +38,7 @@ _BESIDE_OTHERS = 1e-4
 _LEAST_BEYOND = -4.0
 #: The same of two of one sign beside the best slow change: they have sizes and a place more.
 _BOTH_BEYOND = 20.0
-#: Forms over temperature beside which steps must stand, and the likelihood ratio of one.
+#: Forms over channels beside which steps must stand, and the likelihood ratio of one.
 _MOST_FORMS, _A_FORM = 4, 45.0
 
 
@@ -60,30 +60,24 @@ class Step:
     share: float = 0.0
 
 
-def strongest(regression, terms) -> Step | None:
-    """The strongest step beside the terms and the events that the regression has already."""
-    steps = _all(regression, terms)
-    return max(steps, key=lambda s: s.ratio, default=None)
-
-
 def find_all(regression, terms) -> list[Step]:
     """Every step beside the terms, strongest first; they stay in the regression as nuisances."""
     return steps_and_lags(regression, terms)[0]
 
 
-def steps_and_lags(
-    regression, terms, rivals: Sequence[Candidate] = (), recordings: int = 1
-) -> tuple[list[Step], dict[Term, float]]:
+def steps_and_lags(regression, terms, recordings: int = 1) -> tuple[list[Step], dict[Term, float]]:
     """The steps of `find_all`, and the shrinkage of the lags of temperature beside which they stand
     (`Regression.shrinking`).
 
-    A kink or a loop that the terms lack is made of steps, too, and a part that is late behind its
-    thermometer makes one at every corner: what follows temperature, and other rivals, are taken
-    beside the terms first, wherever one explains more than the steps do, or much beside them.
+    A kink or a loop that the terms lack is made of steps, too, a part that is late behind its
+    thermometer makes one at every corner, and a channel that jumps makes the bias jump: what
+    follows a channel is taken beside the terms first, wherever it explains more than the steps do,
+    or much beside them. What follows time alone is not: a step is one.
     recordings: of one device, each searched by itself, which share the level.
     """
-    beside, forms = list(terms), [*of_temperature(regression.sessions), *rivals]
-    most, late = len(rivals) + _MOST_FORMS, dict[Term, float]()
+    beside, sessions = list(terms), regression.sessions
+    forms = [c for c in candidates(sessions) if not follows_time(c)] + late(sessions)
+    most, lagging = _MOST_FORMS, dict[Term, float]()
     while True:
         regression.set_events([])
         steps = sorted(_all(regression, beside, recordings), key=lambda s: -s.ratio)
@@ -97,16 +91,16 @@ def steps_and_lags(
             break
         beside += refined(regression, beside, form).terms
         most -= 1
-    if steps and lags(regression.sessions):
-        late = _shrunk_lags(regression, terms)
-        with regression.shrinking(late):
-            stand = _all(regression, [*beside, *late], recordings)
+    if steps and lags(sessions):
+        lagging = _shrunk_lags(regression, terms)
+        with regression.shrinking(lagging):
+            stand = _all(regression, [*beside, *lagging], recordings)
         steps = [s for s in steps if any(_is_same(s, other) for other in stand)]
     _set(regression, steps, None)
     steps = _sized(regression, beside, steps)
     fitted, first = regression.fit(beside).coefficients, len(terms)
     forms, fitted = beside[first:], fitted[first:]
-    return [s for s in steps if not _is_timing(regression, forms, fitted, s)], late
+    return [s for s in steps if not _is_timing(regression, forms, fitted, s)], lagging
 
 
 def _is_same(a: Step, b: Step) -> bool:
@@ -139,11 +133,11 @@ def _is_timing(regression, forms, fitted, step: Step) -> bool:
 
 def _best_form(regression, terms, forms) -> tuple[Candidate | None, float]:
     """The form that explains most beside the terms, and its likelihood ratio; one of several terms
-    pays for those that a step does not have (Akaike)."""
+    pays for the coefficients that a step does not have, a curve for its form (Akaike)."""
     if not forms:
         return None, 0.0
     gains = regression.gains(terms, [f.terms for f in forms]).sum(axis=1)
-    gains = gains - [6.0 * (len(f.terms) - 1) for f in forms]
+    gains = gains - [(2.0 if f.is_free else 6.0) * (len(f.terms) - 1) for f in forms]
     return forms[int(gains.argmax())], float(gains.max())
 
 

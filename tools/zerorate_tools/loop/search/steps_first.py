@@ -1,9 +1,6 @@
 """Steps before effects: each session's own are found, timed, sized and taken out of it.
 
-Each stretch between two steps has an offset of its own in every fit from then on. Where the
-sensor's own channels jump often, what follows them explains more than any one step, or is none;
-where they jump once or twice, steps must stand beside them. Where another recorded channel jumps, a
-jump of the bias may be its doing, and late: the search then lets both compete.
+Each stretch between two steps has an offset of its own in every fit from then on.
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,24 +11,14 @@ import numpy as np
 
 from ...model.term import Term
 from ..fit.regression import Regression
-from ..read.sessions import OWN_SOURCES, Session, common_sources
-from .catalogue import Candidate
+from ..read.sessions import Session
 from .steps import MOST_PER_SESSION, Step, standing, steps_and_lags
 
-#: The sensor's own channels, and one made of its temperature.
-_RATE = "rate of temp"
-_OWN = {*OWN_SOURCES, _RATE}
-#: Blocks before and after a jump of a channel, how many times its usual changes one is, and how
-#: many it takes for the channel to be judged by them.
-_BESIDE, _OF_USUAL, _JUMPS = 3, 6.0, 4
 #: Ticks around a moment in which the accelerometer is looked at; what it must see, in g and in
 #: times its usual change.
 _MOMENT, _SEEN_G, _SEEN = 10, 0.02, 6.0
 #: Blocks before and after a step in which its second is looked for, and as many rests beyond them.
 _NEAR = 2
-#: By how much an acceleration at rest differs where the device was turned over; and what is less
-#: than any pose that a part, of some tenths of a dps a g, shows: stress of the board makes it, too.
-_TURNED_G, _TILTED_G = 0.5, 0.1
 #: Steps of the thermometer by which it may be wrong, and chi-squared of two axes (1 in 1,000) by
 #: which a step is off the slope.
 _OF_READING, _OFF_SLOPE = 1.1, 13.8
@@ -44,35 +31,17 @@ _UNDONE = -0.5
 
 def remove_steps(sessions: Sequence[Session]) -> list[Session]:
     """Return the sessions without their steps, which they name."""
-    if may_be_a_channels(sessions):
-        return list(sessions)
-    jumping = _jumping(sessions)
-    return [_less(s, _steps(s, jumping, len(sessions))) for s in sessions]
+    return [_less(s, _steps(s, len(sessions))) for s in sessions]
 
 
-def may_be_a_channels(sessions: Sequence[Session]) -> bool:
-    """Whether a jump of the bias may be another recorded channel's doing: steps are then looked for
-    beside the effects."""
-    return bool(set(_jumping(sessions)) - _OWN)
-
-
-def _jumping(sessions) -> list[str]:
-    names = [n for n in _channels(sessions) if not n.startswith("acc_")]
-    tilts = {n: _range_g(sessions, n) for n in _channels(sessions) if n.startswith("acc_")}
-    names += [n for n, g in tilts.items() if g > _TILTED_G]
-    return [n for n in names if _jumps_often(sessions, n) or tilts.get(n, 0.0) > _TURNED_G]
-
-
-def _steps(session, jumping, recordings: int) -> list[Step]:
+def _steps(session, recordings: int) -> list[Step]:
     """Those of one session of so many in their order; one in the middle of a block, which two
     blocks in turn show, is one."""
     out: list[Step] = []
-    often = [n for n in jumping if n != _RATE and _jumps_often([session], n)]
-    terms = [t for c in _forms(session, set(jumping) - set(often)) for t in c.terms]
-    beside, rivals = [*bend_of(session), *terms], _forms(session, often)
+    beside = bend_of(session)
     regression = Regression([session])
     hold_disturbed(regression, beside, recordings)
-    every, late = steps_and_lags(regression, beside, rivals, recordings)
+    every, late = steps_and_lags(regression, beside, recordings)
     regression.set_events([])
     every = [s for s in every if not _is_thermometers(regression, beside, late, s)]
     for step in sorted(every, key=lambda s: s.block):
@@ -118,55 +87,6 @@ def bend_of(session: Session) -> list[Term]:
     if temp is None or np.ptp(temp) == 0:
         return []
     return [Term("temp", centre=float(temp.mean()), power=k) for k in (1, 2)]
-
-
-def _forms(session, names) -> list[Candidate]:
-    """What follows some of the sensor's own channels: acceleration on its axes together."""
-    groups = [[n for n in names if n.startswith("acc_")], [n for n in names if n == "vib"]]
-    varies = [[n for n in g if np.ptp(session.block_mean(session.source(n))) > 0] for g in groups]
-    every = [[Term(n, power=k) for n in sorted(g)] for g in varies if g for k in (1, 2)]
-    every += [[Term("temp", lag_s=20.0, lag_mode="rate")]] if _RATE in names else []
-    return [Candidate("steps", tuple(terms), "catalogue") for terms in every]
-
-
-def _channels(sessions) -> list[str]:
-    shared = [n for n in common_sources(sessions) if n != "temp"]
-    return [*shared, _RATE] if all("temp" in s.sources for s in sessions) else shared
-
-
-def _jumps_often(sessions, name) -> bool:
-    """Whether a channel has jumps that stand out, and enough of them to be judged by."""
-    jumps = [_jumps(s, name) for s in sessions]
-    usual = float(np.median(np.concatenate(jumps)))
-    return sum(_times(j > _OF_USUAL * usual) for j in jumps) >= _JUMPS
-
-
-def _range_g(sessions, name) -> float:
-    """The most by which an acceleration at rest differs within a session: no knock turns a device
-    over."""
-    return max(np.ptp(_blocks(s, name)[s.available]) for s in sessions)
-
-
-def _blocks(session, name):
-    if name == _RATE:
-        return np.gradient(session.block_mean(session.sources["temp"]))
-    return session.block_mean(session.sources[name])
-
-
-def _jumps(session, name) -> np.ndarray:
-    """(rests,) by how much the blocks at rest after each differ from those before it."""
-    values = _blocks(session, name)[session.available]
-    total = np.r_[0.0, np.cumsum(values)]
-    at = np.arange(len(values))
-    before, after = np.maximum(at - _BESIDE, 0), np.minimum(at + _BESIDE, len(values))
-    mean_after = (total[after] - total[at]) / np.maximum(after - at, 1)
-    mean_before = (total[at] - total[before]) / np.maximum(at - before, 1)
-    return np.where(at > 0, np.abs(mean_after - mean_before), 0.0)
-
-
-def _times(there) -> int:
-    """How many runs of True there are."""
-    return int((np.diff(there.astype(int), prepend=0) == 1).sum())
 
 
 def _less(session: Session, steps: list[Step]) -> Session:

@@ -11,7 +11,6 @@ from ..fit.noise import IS_STEEP
 from ..fit.regression import Regression, predicted
 from ..fit.single import PiecesByLine
 from ..read.sessions import Session
-from ..search import steps as events
 from ..search.selection import Selection
 
 _COHERENT_BELOW = 1e-3
@@ -69,7 +68,6 @@ class Judgement:
     residual_before: list[np.ndarray]
     residual_after: list[np.ndarray]
     offsets_dps: list[np.ndarray]
-    steps: list[events.Step]
     whole: Regression
 
     def confidence(self, i: int) -> str:
@@ -98,7 +96,6 @@ def judge(selection: Selection, holdout: list[Session]) -> Judgement:
     whole = train if pieces else Regression([*train.sessions, *holdout])
     if not pieces:
         whole.settle(both)
-    steps = selection.steps if pieces else events.find_all(whole, both)
     gains = _of_each(selection, pieces) if pieces else _gains(whole, selection, len(train.sessions))
     return Judgement(
         rms_dps([r for r, _ in before]),
@@ -108,7 +105,6 @@ def judge(selection: Selection, holdout: list[Session]) -> Judgement:
         [r for r, _ in before],
         [r for r, _ in after],
         [o for _, o in after],
-        steps,
         whole,
     )
 
