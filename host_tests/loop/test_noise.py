@@ -143,7 +143,7 @@ def test_in_noise_alone_the_chance_is_hardly_smaller_than_it_says():
     chances = [drift_test.chance(Regression(bare_sessions(seed)), [], DRIFT) for seed in range(120)]
     # Fitted on the same hour, the noise's colour takes some drift of its own for an effect.
     assert np.mean(np.array(chances) < 0.1) < 0.25
-    assert min(chances) > drift_test.LEVEL
+    assert min(chances) > drift_test.RARE
 
 
 def test_more_power_ons_show_a_smaller_drift():

@@ -105,7 +105,7 @@ def test_every_lock_must_open(sessions, monkeypatch):
     assert decide.decide(regression, [], one, 80.0, 1e9, [B]).p_value <= 1.0
 
 
-@pytest.mark.parametrize(("nats", "speaks"), [([1.0, 1.1], True), ([3.0, -1.0], False)])
+@pytest.mark.parametrize(("nats", "speaks"), [([1.5, 1.6], True), ([4.0, -1.0], False)])
 def test_pieces_left_out_have_the_last_word_where_they_are_asked(nats, speaks):
     said = decide.Decision(True, 1e-6, 40.0, 1.5, np.zeros(0), tried=7.0)
 

@@ -4,6 +4,8 @@ import numpy as np
 from scipy.stats import chi2
 
 _LOWEST = (3, 6, 12, 24)
+#: A chance below which something is said to be there.
+RARE = 1e-3
 
 
 def coherence(regression, terms) -> tuple[float, np.ndarray]:

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from .cross_products import CrossProducts
-from .noise import LOG_PRIOR, NO_STEEP
+from .noise import LOG_PRIOR
 
-_RIDGE = 1e-10
+#: Of a diagonal, so that columns all but alike have an inverse.
+TINY = 1e-10
 #: Share of a column's squares that nuisances must leave.
 _OWN = 1e-6
 
@@ -24,7 +25,7 @@ def _inverse(zz: np.ndarray) -> np.ndarray:
     j = zz.shape[-1]
     d = np.sqrt(np.einsum("gjj->gj", zz))
     d = np.where(d > 0, d, 1.0)
-    unit = zz / (d[:, :, None] * d[:, None, :]) + _RIDGE * np.eye(j)
+    unit = zz / (d[:, :, None] * d[:, None, :]) + TINY * np.eye(j)
     return np.linalg.inv(unit) / (d[:, :, None] * d[:, None, :])
 
 
@@ -66,13 +67,13 @@ class Base:
         return float(self.loglik.max(axis=1).sum())
 
 
-def _loglik(rss, logdet, count, scale_term, steep=True):
-    prior = (LOG_PRIOR if steep else NO_STEEP).reshape(-1, *[1] * (rss.ndim - 1))
+def _loglik(rss, logdet, count, scale_term):
+    prior = LOG_PRIOR.reshape(-1, *[1] * (rss.ndim - 1))
     return prior - 0.5 * count * np.log(np.maximum(rss, 1e-300) / count) - 0.5 * logdet - scale_term
 
 
-def fit_base(g: CrossProducts, scale: np.ndarray, steep: bool = True) -> Base:
-    """Fit of the nuisances. scale: (S, A) noise of each session; steep: allow such noise."""
+def fit_base(g: CrossProducts, scale: np.ndarray) -> Base:
+    """Fit of the nuisances. scale: (S, A) noise of each session."""
     axes, count = g.yy.shape[2], g.count.sum()
     logdet = g.logdet.sum(axis=0)
     rss, ll, coef, inv = [], [], [], []
@@ -86,11 +87,11 @@ def fit_base(g: CrossProducts, scale: np.ndarray, steep: bool = True) -> Base:
         rss.append(r)
         coef.append(b)
         inv.append(inverse)
-        ll.append(_loglik(r, logdet, count, (g.count * np.log(scale[:, a])).sum(), steep))
+        ll.append(_loglik(r, logdet, count, (g.count * np.log(scale[:, a])).sum()))
     return Base(np.array(rss), np.array(ll), np.array(coef), inv, count)
 
 
-def ratios(g: CrossProducts, base: Base, scale: np.ndarray, steep: bool = True) -> np.ndarray:
+def ratios(g: CrossProducts, base: Base, scale: np.ndarray) -> np.ndarray:
     """(K, A) twice the gain in log likelihood of each candidate, per axis, noise refitted."""
     out = np.empty((g.xx.shape[2], g.yy.shape[2]))
     count, logdet = g.count.sum(), g.logdet.sum(axis=0)
@@ -102,7 +103,7 @@ def ratios(g: CrossProducts, base: Base, scale: np.ndarray, steep: bool = True) 
         along = np.einsum("gkpi,gi->gkp", xz, base.coefficients[a])
         gain = _gain(xx, xx0, np.tensordot(w, g.xy[..., a], 1) - along)
         rss = np.maximum(base.rss[a][:, None] - gain, 1e-9 * base.rss[a][:, None])
-        ll = _loglik(rss, logdet[:, None], count, (g.count * np.log(scale[:, a])).sum(), steep)
+        ll = _loglik(rss, logdet[:, None], count, (g.count * np.log(scale[:, a])).sum())
         out[:, a] = 2 * (ll.max(axis=0) - base.loglik[a].max())
     return np.maximum(out, 0.0)
 
@@ -114,7 +115,7 @@ def _gain(xx: np.ndarray, whole: np.ndarray, xy: np.ndarray) -> np.ndarray:
         one, own, y = xx[..., 0, 0], whole[..., 0, 0], xy[..., 0]
         return np.where(one > _OWN * own, y**2 / np.maximum(one, 1e-300), 0.0)
     size = np.sqrt(np.maximum(np.einsum("gkpp->gkp", whole), 1e-300))
-    unit = xx / (size[..., :, None] * size[..., None, :]) + _RIDGE * np.eye(xx.shape[-1])
+    unit = xx / (size[..., :, None] * size[..., None, :]) + TINY * np.eye(xx.shape[-1])
     y = xy / size
     return (y * np.linalg.solve(unit, y[..., None])[..., 0]).sum(axis=-1)
 

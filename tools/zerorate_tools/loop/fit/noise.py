@@ -37,18 +37,17 @@ def shapes() -> list[Shape]:
 
 
 GRID = shapes()
-IS_STEEP = np.array([s.slope > 0 for s in GRID])
-#: Steep noise can stand for any smooth effect, so it must be worth this many nats an axis to be
-#: believed.
-STEEP_NATS = 3.0
+IS_STEEP = np.array([bool(s.slope) for s in GRID])
+#: Odds of twenty to one, as a difference of log likelihoods: by less nothing is told from what
+#: competes with it. Steep noise, which can stand for any smooth effect, starts so far behind.
+NATS = 3.0
 #: Rows of the grid that stand for all that is not steep, where many fits are asked for.
 FEW = [
     i
     for i, s in enumerate(GRID)
     if s.flicker in (0.0, 0.2, 1.3) and s.walk in (0.0, 0.03, 0.15, 1.0) and not s.slope
 ]
-LOG_PRIOR = np.where(IS_STEEP, -STEEP_NATS, 0.0)
-NO_STEEP = np.where(IS_STEEP, -1e12, 0.0)
+LOG_PRIOR = -NATS * IS_STEEP
 
 
 def frequency(n: int) -> np.ndarray:

@@ -45,7 +45,6 @@ class Regression:
         self.whiteners = [whitener(s.available, few) for s in sessions]
         self.rate = [s.rate_dps for s in sessions]
         self.outliers = 0
-        self.steep = True  # whether the noise may be steeper than a random walk
         self.axes = np.eye(3)
         self._precision: Mapping[Term, float] = {}
         self._cache: dict[Term, list[np.ndarray]] = {}
@@ -150,7 +149,7 @@ class Regression:
 
     def fit(self, terms) -> Fit:
         """Joint fit with the noise's colour refitted."""
-        base = fit_base(self.cross_products(terms), self.scale, self.steep)
+        base = fit_base(self.cross_products(terms), self.scale)
         own = base.fitted[:, : len(terms)]
         return Fit(np.linalg.solve(self.axes, own).T, base, base.total)
 
@@ -180,7 +179,7 @@ class Regression:
             for at in range(0, len(alike), chunk // size):
                 part = alike[at : at + chunk // size]
                 g = self.cross_products(terms, [candidates[i] for i in part])
-                out[part] = ratios(g, fit_base(g, self.scale, self.steep), self.scale, self.steep)
+                out[part] = ratios(g, fit_base(g, self.scale), self.scale)
         return np.maximum(out, 0.0)
 
 

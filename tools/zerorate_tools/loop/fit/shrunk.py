@@ -16,12 +16,13 @@ import numpy as np
 
 from ...model.term import Term
 from .cross_products import CrossProducts
+from .likelihood import TINY
 from .noise import LOG_PRIOR
 
-#: Variance of what all operators add, of that of a block's white noise; and of it, that of squares.
-_SIZES = np.r_[1e-3, 10.0 ** np.arange(-1.0, 4.1, 0.5)]
+#: Variance of what all operators, or waves, add, of that of a block's white noise; and of it, that
+#: of squares.
+SIZES = np.r_[1e-3, 10.0 ** np.arange(-1.0, 4.1, 0.5)]
 _OF_SQUARES = (1e-3, 0.1, 0.3, 1.0)
-_TINY = 1e-10
 
 
 def has_play_operators(terms: Sequence[Term]) -> bool:
@@ -52,7 +53,7 @@ def shrink(
     groups = _groups(terms, axes[0].zz.shape[-1], own)
     spans = [axes[0].spans(own, np.any(groups, axis=0)) for own in groups]
     precisions, told, fitted = [], [], []
-    for sizes in product(_SIZES, *[_OF_SQUARES] * (len(groups) - 1)):
+    for sizes in product(SIZES, *[_OF_SQUARES] * (len(groups) - 1)):
         shares = np.cumprod(sizes)
         parts = [own * span / share for own, span, share in zip(groups, spans, shares)]
         precision = np.sum([np.zeros(axes[0].zz.shape[-1]), *parts], axis=0)
@@ -95,7 +96,7 @@ class _Axis:
         self.yy = w @ g.yy[..., axis]
         self.logdet, self.count = g.logdet.sum(axis=0), g.count.sum()
         diagonal = np.einsum("gjj->j", self.zz)
-        self.tiny = _TINY * diagonal + 1e-300
+        self.tiny = TINY * diagonal + 1e-300
 
     def spans(self, own: np.ndarray, plays: np.ndarray) -> float:
         """Sum of the variances of columns, less what all but play operators take of them."""

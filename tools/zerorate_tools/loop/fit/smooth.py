@@ -15,13 +15,13 @@ import numpy as np
 
 from ...model.term import Term
 from ..read.sessions import Session, block_basis
+from .likelihood import TINY
+from .shrunk import SIZES
 
-#: Lengths of the waves, of the range of temperature; their variance, of that of a block's noise.
+#: Lengths of the waves, of the range of temperature.
 LENGTHS = (0.05, 0.1, 0.2, 0.4, 0.8)
-_SIZES = np.r_[0.0, 10.0 ** np.arange(-1.0, 4.1, 0.5)]
 #: Points at which the curve is computed, a segment of the line.
 _POINTS = 3
-_TINY = 1e-9
 
 
 def curve_of(terms: Sequence[Term]) -> list[int]:
@@ -96,7 +96,7 @@ def _deviation(at: np.ndarray, waves: np.ndarray, left: np.ndarray, free: int) -
         u, d, v = np.linalg.svd(waves @ root, full_matrices=False)
         own = u.T @ left
         rest = (left**2).sum(axis=0) - (own**2).sum(axis=0)
-        for size in _SIZES:
+        for size in SIZES:
             grows = 1.0 + size * d**2
             squares = rest + (own**2 / grows[:, None]).sum(axis=0)
             likely = -0.5 * np.log(grows).sum() - 0.5 * free * np.log(squares + 1e-300)
@@ -109,4 +109,4 @@ def _deviation(at: np.ndarray, waves: np.ndarray, left: np.ndarray, free: int) -
 def matern(at: np.ndarray, length: float) -> np.ndarray:
     """(points, points) covariance of waves of a length, with 1 on the diagonal."""
     apart = np.sqrt(5.0) * np.abs(at[:, None] - at) / (length * (at[-1] - at[0]))
-    return (1.0 + apart + apart**2 / 3.0) * np.exp(-apart) + _TINY * np.eye(len(at))
+    return (1.0 + apart + apart**2 / 3.0) * np.exp(-apart) + TINY * np.eye(len(at))

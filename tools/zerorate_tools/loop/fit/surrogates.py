@@ -69,5 +69,5 @@ def _ratios(regression, left, z, pool, rng) -> np.ndarray:
     x = [np.column_stack([regression.columns(t)[i] for t in pick]) for i in range(len(z))]
     x = [c * rng.normal(size=c.shape) for c in x]
     g = cross_products(regression.whiteners, left, z, x)
-    base = fit_base(g, regression.scale, regression.steep)
-    return ratios(g, base, regression.scale, regression.steep).sum(axis=1)
+    base = fit_base(g, regression.scale)
+    return ratios(g, base, regression.scale).sum(axis=1)

@@ -7,11 +7,10 @@ import numpy as np
 from ...model import effects
 from ...model.effects import is_free, of_any_channel
 from ..fit.free_curve import parts
+from ..fit.noise import NATS
 from .catalogue import Candidate
 from .refine import drawn, refined
 
-#: Effects within this many nats of the best are named beside it.
-NATS = 3.0
 _WORTH_REFINING = 15.0
 
 

@@ -9,6 +9,7 @@ from scipy.stats import chi2
 
 from ...model.term import Term
 from ..fit.left_out import gains
+from ..fit.noise import NATS
 from ..fit.surrogates import null_ratios
 
 #: Family-wise levels: the chance that anything of the family passes the first lock on a device
@@ -20,13 +21,10 @@ LEVEL = {"catalogue": 2.5e-3, "generic": 5e-5, "step": 2e-3}
 #: half its size, can spare (weighted Bonferroni: Genovese, Roeder and Wasserman 2006, Biometrika
 #: 93, 509).
 WEIGHT = {"time-drift": 6.0, "power-on-transient": 6.0}
-#: Nats that left-out sessions must gain in all.
-LEAST_GAIN = 3.0
-
-#: Nats that pieces of one recording must gain; and the chance by the likelihood, all of its kind
-#: that were tried paid for, above which pieces alone tell of no memory: with one of real parts it
-#: is below 0.0001, with seven that noise feigned it was 1.
-LEAST_OF_PIECES, LIKELY = 2.0, 0.01
+#: The chance by the likelihood, all of its kind that were tried paid for, above which a drift is
+#: not looked at, and pieces alone tell of no memory: of one of real parts it is below 0.0001, of
+#: seven that noise feigned it was 1.
+LIKELY = 0.01
 
 
 class JudgedOnPieces(Protocol):
@@ -64,7 +62,7 @@ class Decision:
     ) -> "Decision":
         """The same, unless pieces left out do not speak for the candidate."""
         gain = judged(straight, found, candidate)
-        accepted = bool(gain.sum() > LEAST_OF_PIECES)
+        accepted = bool(gain.sum() > NATS)
         reason = "" if accepted else judged.reason
         return replace(self, accepted=accepted, session_gains=gain, reason=reason)
 
@@ -98,7 +96,7 @@ def decide(regression, nuisances, candidate, ratio: float, tried: float, pool) -
     if len(regression.sessions) == 1:
         return Decision(True, p, ratio, d, np.array([]))
     gain = gains(regression, nuisances, candidate.terms)
-    enough = bool(gain.sum() > LEAST_GAIN)
+    enough = bool(gain.sum() > NATS)
     reason = "" if enough else "does not predict the sessions left out"
     return Decision(enough, p, ratio, d, gain, reason)
 

@@ -11,16 +11,15 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.stats import chi2, f
 
+from ..fit.common_cause import RARE
 from ..fit.left_out import gains
 from .catalogue import Candidate
 from .decide import Decision
 
 #: The chance that anything following time passes on a device with nothing in it, both questions
-#: taken together: by the power-ons fitted, and with the one held out among them. Noise steeper than
-#: a random walk drifts alike at three power-ons by chance, and hardly at four.
-LEVEL, LEVEL_OF_ALL = 1e-3, 1e-6
-#: Of the likelihood ratio alone, below which neither question is put.
-WORTH_ASKING = 0.01
+#: taken together, with the power-on held out among the others. Noise steeper than a random walk
+#: drifts alike at three power-ons by chance, and hardly at four.
+LEVEL_OF_ALL = RARE**2
 #: By how much the lowest frequencies' share of the noise differs between the axes of one part: the
 #: scale of Student's t of three degrees of freedom, in nats of variance.
 _SPREAD, _DOF = 0.7, 3
@@ -41,8 +40,8 @@ def considered(regression, terms, candidate: Candidate, ratio: float, tried: flo
     """
     p = min(1.0, chance(regression, terms, candidate.terms) * tried)
     gain = gains(regression, terms, candidate.terms)
-    reason = "" if p <= LEVEL else "no more than the noise's own walk, power-on by power-on"
-    return Decision(p <= LEVEL, p, ratio, 1.0, gain, reason, tried)
+    reason = "" if p <= RARE else "no more than the noise's own walk, power-on by power-on"
+    return Decision(p <= RARE, p, ratio, 1.0, gain, reason, tried)
 
 
 def comes_again(whole, terms, candidate: Candidate, tried: float) -> bool:
@@ -122,7 +121,7 @@ def _by_session(g, colour, a, weight):
 def smallest_square(tried: float, axes: int, sessions: int) -> float:
     """Square of the mean of so many sessions in its own variance that passes by them, and with one
     more, where the power-ons' spread is noise."""
-    alone = _square(LEVEL / tried, axes, sessions)
+    alone = _square(RARE / tried, axes, sessions)
     held_out = _square(LEVEL_OF_ALL / tried, axes, sessions + 1)
     return max(alone, held_out * sessions / (sessions + 1))
 

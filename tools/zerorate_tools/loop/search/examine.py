@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from ...model.term import Term
+from ..fit.common_cause import RARE
 from ..fit.line import less_slope
 from ..fit.single import PiecesByLine
 from . import drift_test
@@ -60,7 +61,7 @@ class Examiner:
         """Whether the rest of the terms explain what an effect was taken for."""
         if self.testing.is_by_time(c):
             chance = drift_test.chance(self.regression, rest, c.terms)
-            return chance * self.testing.tried(c) > drift_test.LEVEL
+            return chance * self.testing.tried(c) > RARE
         return float(self.regression.gains(rest, [c.terms]).sum()) < self.testing.least_ratio(c)
 
     def _decision(self, best, told, straight, found, nuisances) -> Decision:

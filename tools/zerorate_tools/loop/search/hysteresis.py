@@ -15,6 +15,8 @@ import numpy as np
 
 from ...model.model import MOST_PLAYS
 from ...model.term import Term, play
+from ..fit.likelihood import TINY
+from ..fit.noise import NATS
 from ..fit.regression import Regression
 from ..fit.single import PiecesByLine, speaks_for
 from ..read.sessions import Session, block_basis
@@ -31,22 +33,16 @@ MEMORIES = ("thermal-lag", "thermal-rate", "power-on-transient")
 #: Radii of the grid, as shares of the range of temperature: its ends, how many, and of how many
 #: every choice is tried.
 _FINEST, _WIDEST, _GRID, _FEW = 0.015, 0.65, 64, 12
-_MOST_OPERATORS = min(4, MOST_PLAYS)
+MOST_OPERATORS = min(4, MOST_PLAYS)
 #: Share of the range that must have been passed both warming and cooling: a part only warmed once
 #: shows no difference between the two.
 _LEAST_PASSED_TWICE = 0.25
 _BINS = 20
 _LEAST_SPAN_DEGC = 3.0
-#: Blocks for each number fitted, below which more operators are not tried.
-_BLOCKS_A_NUMBER = 6
-#: Of a coefficient's squares, on those of the columns: beside it, no two operators fight.
-_RIDGE = 1e-7
-#: Of the logarithm of the squares left, below which a choice leaves no less.
-_LEAST_GAIN = 1e-6
 #: As how many widths the grid's count: neighbours are much alike.
 _APART = 6
-#: What is simpler, and the nats by which it must predict better.
-SIMPLER, TIES_NATS = ("thermal-lag", "thermal-rate", "temperature-kink"), 3.0
+#: What is simpler.
+SIMPLER = ("thermal-lag", "thermal-rate", "temperature-kink")
 #: Why it was refused: both stand in the report.
 AS_WELL = "a lag, a rate or a kink predicts the pieces left out as well"
 BETTER = "a lag, a rate or a kink predicts the pieces left out better"
@@ -134,8 +130,8 @@ def of_one_recording(
         return None, ""
     gain, bend, candidate = best
     rival, most = _rival(straight, bend, pool, by_line)
-    if most > gain - TIES_NATS:
-        return None, AS_WELL if most < gain + TIES_NATS else BETTER
+    if most > gain - NATS:
+        return None, AS_WELL if most < gain + NATS else BETTER
     p, ratio = _chance(regression, [*straight, *bend, *rival.terms], candidate)
     if p > LEVEL["catalogue"]:
         return None, "not significant"
@@ -187,16 +183,15 @@ def _rival(straight, bend, pool, by_line) -> tuple[Candidate, float]:
 def _tried(candidate: Candidate) -> float:
     """Forms compared, times the choices among widths that differ."""
     widths = len({t.width for t in candidate.terms})
-    return 2.0 * _MOST_OPERATORS * comb(_APART, widths)
+    return 2.0 * MOST_OPERATORS * comb(_APART, widths)
 
 
 def _forms(sessions, beside) -> Iterator[tuple[Term, ...]]:
     """Of every number of operators, with squares and without, the widths that fit best."""
     fits = _Fits(sessions, beside)
     for powers in ((1,), (1, 2)):
-        for number in range(1, _MOST_OPERATORS + 1):
-            if fits.rows >= _BLOCKS_A_NUMBER * (fits.fixed + number * (1 + len(powers))):
-                yield fits.terms(fits.best(number, powers), powers)
+        for number in range(1, MOST_OPERATORS + 1):
+            yield fits.terms(fits.best(number, powers), powers)
 
 
 def _some_of(session: Session) -> np.ndarray:
@@ -217,7 +212,7 @@ class _Fits:
         self._centre = float(np.mean([d.mean() for d in degc]))
         self._columns: dict[tuple[float, int], np.ndarray] = {}
         rate = [s.rate_dps[s.available] for s in sessions]
-        self.rows, self.fixed = sum(map(len, rate)), len(beside) + len(sessions)
+        self.rows = sum(map(len, rate))
         columns = [np.column_stack([block_basis(t, s) for t in beside]) for s in sessions]
         basis = self._stacked(columns)
         self._q = np.linalg.qr(basis / np.maximum(basis.std(axis=0), 1e-300))[0]
@@ -263,14 +258,14 @@ class _Fits:
         while True:
             at = np.hstack([choices + _GRID * i for i in range(len(powers))])
             left = self._left(products[at[:, :, None], at[:, None, :]], xy[at])
-            if left.min() > least - _LEAST_GAIN:
+            if left.min() >= least:
                 return [float(r) for r in self._grid[best]]
             least, best = left.min(), choices[left.argmin()]
             choices = _exchanged(best)
 
     def _left(self, products, xy):
         """(...,) sum over the axes of the logarithm of the squares left."""
-        ridge = _RIDGE * self.rows * np.eye(products.shape[-1])
+        ridge = TINY * self.rows * np.eye(products.shape[-1])
         fitted = np.linalg.solve(products + ridge, xy)
         whole = (self._y**2).sum(axis=0)
         left = whole - (fitted * (2 * xy - products @ fitted)).sum(axis=-2)

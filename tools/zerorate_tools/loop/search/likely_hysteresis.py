@@ -12,23 +12,20 @@ from operator import itemgetter
 
 import numpy as np
 
-from ...model.model import MOST_PLAYS
 from ...model.term import Term
+from ..fit.noise import NATS
 from ..fit.regression import Regression
 from ..fit.shrunk import evidence
 from ..read.sessions import Session
 from .catalogue import Candidate
 from .decide import Decision
 from .fits_in_slots import fits_in_slots
-from .hysteresis import AS_WELL, BETTER, KIND, SIMPLER, TIES_NATS, may_show
+from .hysteresis import AS_WELL, BETTER, KIND, MOST_OPERATORS, SIMPLER, may_show
 from .selection import Found
 
-#: Radii of the finest operator, as shares of the range of temperature, how many operators there
-#: are, and how many times as wide each is as the last.
-_FINEST, _OPERATORS, _APART = (0.0125, 0.025, 0.05), min(4, MOST_PLAYS), 2.3
-#: Nats by which it must be likelier than nothing in one recording: of 270 simulated ones with
-#: nothing in them, of six kinds of noise, none gave more than 2.0.
-_LEAST_NATS = 2.5
+#: Radii of the finest operator, as shares of the range of temperature, and how many times as wide
+#: each is as the last.
+_FINEST, _APART = (0.0125, 0.025, 0.05), 2.3
 
 
 def likeliest(regression: Regression, terms: Sequence[Term]) -> tuple[Candidate | None, float]:
@@ -62,12 +59,12 @@ def of_a_pair(
     rival, most = max(simpler, key=itemgetter(1))
     most = of_bend + max(most, 0.0)
     if most > nats:
-        return None, AS_WELL if most < nats + TIES_NATS else BETTER
-    if nats < _LEAST_NATS:
+        return None, AS_WELL if most < nats + NATS else BETTER
+    if nats < NATS:
         return None, "not significant"
     # the chance that noise makes one of the forms so likely is less (Markov's inequality)
     p = min(1.0, 2 * len(_FINEST) * float(np.exp(-nats)))
-    as_well = [rival] if most > nats - TIES_NATS else []
+    as_well = [rival] if most > nats - NATS else []
     return Found(candidate, Decision(True, p, 2 * nats, 1.0, np.array([])), as_well), ""
 
 
@@ -77,7 +74,7 @@ def _forms(sessions: Sequence[Session]) -> Iterator[tuple[Term, ...]]:
     lo, hi = float(min(d.min() for d in degc)), float(max(d.max() for d in degc))
     centre = float(np.mean([d.mean() for d in degc]))
     for finest, powers in product(_FINEST, ((1,), (1, 2))):
-        widths = 2.0 * (hi - lo) * finest * _APART ** np.arange(_OPERATORS)
+        widths = 2.0 * (hi - lo) * finest * _APART ** np.arange(MOST_OPERATORS)
         yield tuple(
             Term("temp", lo, hi, centre, power, memory="play", width=float(width))
             for width in widths

@@ -7,7 +7,7 @@ from ...model.term import Term
 from ..fit.regression import Regression
 from . import drift_test
 from .catalogue import Candidate
-from .decide import WEIGHT, effective, smallest_ratio
+from .decide import LIKELY, WEIGHT, effective, smallest_ratio
 
 
 class MultipleTesting:
@@ -66,7 +66,7 @@ class MultipleTesting:
     def least_ratio(self, c: Candidate) -> float:
         """The likelihood ratio below which a candidate is not looked at."""
         if self.is_by_time(c):
-            return float(chi2.isf(drift_test.WORTH_ASKING, 3))
+            return float(chi2.isf(LIKELY, 3))
         return smallest_ratio(c.family, 3 * len(c.terms), self.tried(c))
 
     def needed(self, c: Candidate) -> float:

@@ -6,8 +6,9 @@ from functools import cached_property
 import numpy as np
 
 from ...model.term import Term
-from ..fit.common_cause import coherence, turned_axes
+from ..fit.common_cause import RARE, coherence, turned_axes
 from ..fit.line import less_slope
+from ..fit.noise import NATS
 from ..fit.regression import Regression
 from ..fit.shrunk import evidence, has_play_operators
 from ..read.sessions import Session
@@ -25,9 +26,6 @@ from .naming import name_found
 from .refine import drawn, refined
 from .selection import Found, Selection
 
-MOST_EFFECTS = 6
-_KINDS_TRIED = 4
-_TURN_BELOW = 1e-3
 #: Beside which there is no bend.
 _BENDS = ("temperature-quadratic", curve.KIND)
 
@@ -91,7 +89,7 @@ class Search:
     def run(self) -> Selection:
         if self.on_pieces:
             self._begin_with_one(self.on_pieces)
-        while len(self.found) < MOST_EFFECTS and self._add_one():
+        while self._add_one():
             self._drop_idle()
         if self.on_pieces:
             self._by_pieces(self.on_pieces)
@@ -170,11 +168,11 @@ class Search:
         found = None
         if candidate and lost < 0:
             if fits_in_slots([*self.terms(), *candidate.terms], self.taken):
-                near = [f.candidate.kind for f in own if lost > -hysteresis.TIES_NATS]
+                near = [f.candidate.kind for f in own if lost > -NATS]
                 as_well = [kind for kind in near if kind != hysteresis.KIND]
                 found = Found(candidate, own[0].decision, as_well)
         self.found = [*self.found, found] if found else before
-        if candidate and not found and lost < hysteresis.TIES_NATS:
+        if candidate and not found and lost < NATS:
             self.like_hysteresis = [f for f in own if f.candidate.kind != hysteresis.KIND]
 
     def _look_afresh(self):
@@ -182,7 +180,7 @@ class Search:
         r.turn(np.eye(3))
         nuisances = self._beside_bend()
         r.settle(nuisances)
-        if coherence(r, nuisances)[0] < _TURN_BELOW:
+        if coherence(r, nuisances)[0] < RARE:
             r.turn(turned_axes(r, nuisances))
             r.settle(nuisances)
 
@@ -215,7 +213,6 @@ class Search:
             c = self.pool[i]
             if (
                 c.kind in kinds
-                or len(kinds) >= _KINDS_TRIED
                 or confounding.label(c) in self.dropped
                 or not fits_in_slots([*self.terms(), *c.slots], self.taken)
             ):

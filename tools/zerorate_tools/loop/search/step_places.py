@@ -65,7 +65,7 @@ def beyond_ramps(regression, terms, session: int, at: float) -> float:
     """By how much a step explains more than the best ramp of some blocks around it, as twice a
     gain in log likelihood."""
     products = regression.cross_products(terms)
-    base = fit_base(products, regression.scale, regression.steep)
+    base = fit_base(products, regression.scale)
     blocks = np.arange(regression.sessions[session].blocks)[:, None] + 0.5
     half = np.repeat(_RAMPS, len(_OFF))
     ramps = np.clip((blocks - at - half * np.tile(_OFF, len(_RAMPS))) / (2 * half) + 0.5, 0.0, 1.0)
@@ -79,7 +79,7 @@ def best_slow(regression, terms, session: int, at: list[float]) -> float:
     """What the best slow change around some places explains: a ramp or an exponential, of lengths
     about theirs, as twice a gain in log likelihood."""
     products = regression.cross_products(terms)
-    base = fit_base(products, regression.scale, regression.steep)
+    base = fit_base(products, regression.scale)
     span = max(at) - min(at)
     first = np.arange(min(at) - span, max(at), 0.25)
     since = np.arange(regression.sessions[session].blocks)[:, None] + 0.5 - first
@@ -93,7 +93,7 @@ def best_place(regression, terms) -> tuple[Place | None, list]:
     """Where a step explains most beside the terms and the events that the regression has, and
     (session, places, ratios) of every session."""
     products = regression.cross_products(terms)
-    base = fit_base(products, regression.scale, regression.steep)
+    base = fit_base(products, regression.scale)
     z = regression.stack(terms)
     best, every = None, []
     for s, session in enumerate(regression.sessions):
@@ -121,7 +121,7 @@ def _ratios(regression, products, base, z, s, columns) -> np.ndarray:
     axes = y.shape[1]
     xy, xz, xx = (np.multiply.outer(own, p) for p in (cross[..., :axes], cross[..., axes:], alone))
     beside = replace(products, xy=xy, xz=xz, xx=xx)
-    return ratios(beside, base, regression.scale, regression.steep).sum(axis=1)
+    return ratios(beside, base, regression.scale).sum(axis=1)
 
 
 def tried(session) -> int:

@@ -29,8 +29,6 @@ _ABRUPT, _BESIDE, _TREND = (0.5, 1.75), 2, 0.3
 _AROUND = 10
 #: Blocks without rest across which no change is abrupt, if the temperature moved by more in them.
 _UNSEEN, _UNSEEN_DEGC = 3, 1.0
-#: How much chi-squared counts beside the ratios at all places away from every step.
-_THEORY = 1.0
 #: Level of every step but the surest of one search: recordings with several are the rarer.
 _BESIDE_OTHERS = 1e-4
 #: What a step must explain more than the best ramp in its place, as twice a gain in log likelihood:
@@ -239,10 +237,7 @@ def _survival(ratio: float, away: np.ndarray, axes: int = 3) -> float:
     """
     if len(away) < EDGE:
         return float(chi2.sf(ratio, axes))
-    mean, variance = (
-        (_THEORY * t + own) / (_THEORY + 1)
-        for t, own in zip((axes, 2 * axes), (away.mean(), away.var()))
-    )
+    mean, variance = np.mean([(axes, 2 * axes), (away.mean(), away.var())], axis=0)
     return max(
         float(chi2.sf(ratio, axes)), NullRatios.from_moments(mean, variance, axes).survival(ratio)
     )

@@ -8,8 +8,10 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
+from scipy.stats import chi2
 
 from ...model.term import Term
+from ..fit.common_cause import RARE
 from ..fit.regression import Regression
 from ..read.sessions import Session
 from .steps import MOST_PER_SESSION, Step, standing, steps_and_lags
@@ -19,9 +21,8 @@ from .steps import MOST_PER_SESSION, Step, standing, steps_and_lags
 _MOMENT, _SEEN_G, _SEEN = 10, 0.02, 6.0
 #: Blocks before and after a step in which its second is looked for, and as many rests beyond them.
 _NEAR = 2
-#: Steps of the thermometer by which it may be wrong, and chi-squared of two axes (1 in 1,000) by
-#: which a step is off the slope.
-_OF_READING, _OFF_SLOPE = 1.1, 13.8
+#: Steps of the thermometer by which it may be wrong.
+_OF_READING = 1.1
 #: Blocks between two steps that undo each other up to which they are a disturbance: none need lie
 #: between them whole.
 _DISTURBED = 2.0
@@ -67,7 +68,8 @@ def _is_thermometers(regression, beside, late: Mapping[Term, float], step: Step)
     along, most = jump @ fitted, _OF_READING * session.temp_step_degc
     weight = 1.0 / np.maximum(step.deviation_dps, 1e-12) ** 2
     off_degc = np.clip((weight * along) @ step.size_dps / ((weight * along) @ along), -most, most)
-    return bool(weight @ (step.size_dps - off_degc * along) ** 2 < _OFF_SLOPE)
+    off_slope = weight @ (step.size_dps - off_degc * along) ** 2
+    return bool(off_slope < chi2.isf(RARE, 2))
 
 
 def _slope(term: Term, degc: float, block_s: float) -> float:

@@ -4,19 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..fit.common_cause import coherence
+from ..fit.common_cause import RARE, coherence
 from ..fit.left_out import of_plays, session_misfit
 from ..fit.line import deployed
-from ..fit.noise import IS_STEEP
+from ..fit.noise import IS_STEEP, NATS
 from ..fit.regression import Regression, predicted
 from ..fit.single import PiecesByLine
 from ..read.sessions import Session
 from ..search.selection import Selection
-
-_COHERENT_BELOW = 1e-3
-_STEEP_NATS = 4.0
-#: Nats that a held-out session must gain for an effect to count as seen there.
-CONFIRMING_NATS = 2.0
 
 
 @dataclass
@@ -37,12 +32,12 @@ class ResidualTest:
     @property
     def common(self) -> bool:
         """Whether it moves the axes together."""
-        return self.coherence_p < _COHERENT_BELOW
+        return self.coherence_p < RARE
 
     @property
     def smooth(self) -> bool:
         """Whether it is smoother than white, flicker and random walk."""
-        return self.steep_nats > _STEEP_NATS
+        return self.steep_nats > NATS
 
 
 def residual_test(regression, terms) -> ResidualTest:
@@ -72,7 +67,7 @@ class Judgement:
 
     def confidence(self, i: int) -> str:
         """confirmed or tentative, of the i-th effect."""
-        better = self.gains[i] > CONFIRMING_NATS and self.after_rms <= self.before_rms
+        better = self.gains[i] > NATS and self.after_rms <= self.before_rms
         return "confirmed" if better and not self.residual_test.left else "tentative"
 
     @property

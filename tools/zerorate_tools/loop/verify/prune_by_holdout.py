@@ -21,8 +21,6 @@ from ..search.drift_test import comes_again, follows_time
 from ..search.selection import Found, Selection
 from .judge import Judgement, judge, residuals, rms_dps
 
-#: Nats that the held-out sessions may lose: a cause that rests there says nothing, not no.
-MOST_LOST = 0.5
 #: Of the error without it, on an axis, that an effect must take away where one recording alone was
 #: fitted: what takes less made a further power-on worse as often as better.
 _LEAST_TAKEN = 0.05
@@ -133,7 +131,7 @@ def _spoken_against(selection: Selection, judgement: Judgement, i: int) -> str |
         rest = [*selection.straight, *selection.without(i).terms]
         again = comes_again(judgement.whole, rest, found.candidate, found.decision.tried)
         return None if again else AGAIN
-    if judgement.gains[i] < -MOST_LOST:
+    if judgement.gains[i] < 0:
         return f"what was held out speaks against it by {-judgement.gains[i]:.1f} nats"
     return None
 
