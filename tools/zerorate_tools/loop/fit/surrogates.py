@@ -18,7 +18,7 @@ from .cross_products import cross_products
 from .likelihood import fit_base, ratios
 
 #: So many that mean and variance, and with them the decision, hardly hang on the draw: 2 and 6 %.
-COUNT, _AT_ONCE = 1500, 300
+COUNT = 1500
 
 
 @dataclass(frozen=True)
@@ -58,14 +58,12 @@ def null_ratios(regression, terms, candidate, pool) -> NullRatios:
     rng = np.random.default_rng(0)
     every = [*terms, *candidate]
     z, left = regression.stack(every), regression.left(every, regression.fit(every))
-    draws = range(COUNT // _AT_ONCE)
-    score = np.concatenate([_ratios(regression, left, z, pool, rng) for _ in draws])
-    return NullRatios.of(score, regression.y[0].shape[1])
+    return NullRatios.of(_ratios(regression, left, z, pool, rng), regression.y[0].shape[1])
 
 
 def _ratios(regression, left, z, pool, rng) -> np.ndarray:
-    """Of as many surrogates as fit in memory at once."""
-    pick = [pool[i] for i in rng.integers(0, len(pool), _AT_ONCE)]
+    """(COUNT,) of surrogates."""
+    pick = [pool[i] for i in rng.integers(0, len(pool), COUNT)]
     x = [np.column_stack([regression.columns(t)[i] for t in pick]) for i in range(len(z))]
     x = [c * rng.normal(size=c.shape) for c in x]
     g = cross_products(regression.whiteners, left, z, x)

@@ -96,8 +96,8 @@ _LATE_S = (1.0, 8.0)
 #: Lags in s of all parts that may be late, each three times the last: between two nothing is lost.
 _LAGS_S = (5.0, 15.0, 45.0, 135.0, 405.0, 1215.0)
 
-#: Share of its range by which the source of a difference may leave it.
-_MARGIN = 0.5
+#: Share of its range by which the source of a difference may leave it, or a curve go on straight.
+MARGIN = 0.5
 
 
 def is_bounded(fields: dict) -> bool:
@@ -114,7 +114,7 @@ def _fields(choice: dict, span: dict, source: str) -> dict:
     fields = dict(choice)
     fields["centre"] = _place(fields.get("centre", "mean"), (lo, hi, mean))
     if source != "one":
-        margin = _MARGIN * (hi - lo) if is_bounded(fields) else 0.0
+        margin = MARGIN * (hi - lo) if is_bounded(fields) else 0.0
         fields.update(lo=lo - margin, hi=hi + margin)
     else:
         fields["centre"] = 0.0

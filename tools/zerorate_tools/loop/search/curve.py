@@ -17,7 +17,7 @@ from ..fit.regression import Regression
 from ..fit.single import LEAST_OF_A_PIECE, PIECES, PiecesByLine
 from ..read.sessions import Session
 from .cancels import cancels
-from .catalogue import Candidate, ranges, varies
+from .catalogue import MARGIN, Candidate, ranges, varies
 from .decide import LIKELY, Decision, JudgedOnPieces, family_p
 from .fits_in_slots import fits_in_slots
 from .hysteresis import MEMORIES, is_like_hysteresis
@@ -28,8 +28,6 @@ KIND, _KINK = "temperature-curve", "temperature-kink"
 #: Powers, of which the curve takes the place; and all forms of a curve.
 _POWERS = ("temperature-quadratic", "temperature-cubic")
 FORMS = (*_POWERS, _KINK)
-#: Share of the range of temperature beyond which it goes on straight, and is held from there.
-_BEYOND = 0.5
 _LEAST_BENDS = 2
 
 
@@ -148,5 +146,5 @@ def _gained(found: Found) -> float:
 def _reaching(term: Term, sessions: list[Session]) -> tuple[Term, float, float]:
     """The term with its limits beyond those seen, and these."""
     lo, hi, _ = ranges(sessions)["temp"]
-    margin = _BEYOND * (hi - lo)
+    margin = MARGIN * (hi - lo)
     return replace(term, lo=lo - margin, hi=hi + margin), lo, hi

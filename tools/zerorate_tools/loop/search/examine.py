@@ -18,10 +18,6 @@ from .ols_holdout_ratio import ols_holdout_ratio
 from .refine import drawn, refined
 from .selection import Found
 
-_TRANSIENT = "power-on-transient"
-#: Decay, less two lags, below which a transient is but the start of that lag.
-_START_S = 60.0
-
 
 class Examiner:
     """Of all candidates of one search.
@@ -48,14 +44,9 @@ class Examiner:
         and the bend beside which it is tested.
         """
         best = refined(self.regression, [*straight, *found], candidate)
-        reason = "the start of a lag's own memory"
-        if not _is_a_start(best, found):
-            told = drawn(self.regression, [*straight, *found], best)
-            decision = self._decision(best, told, straight, found, nuisances)
-            if decision.accepted:
-                return Found(told, decision)
-            reason = decision.reason
-        return label(best), reason
+        told = drawn(self.regression, [*straight, *found], best)
+        decision = self._decision(best, told, straight, found, nuisances)
+        return Found(told, decision) if decision.accepted else (label(best), decision.reason)
 
     def is_idle(self, c: Candidate, rest: Sequence[Term]) -> bool:
         """Whether the rest of the terms explain what an effect was taken for."""
@@ -96,14 +87,3 @@ class Examiner:
         if reason:
             return replace(decision, accepted=False, reason=reason)
         return decision.on_pieces(judged, *beside, best.terms)
-
-
-def _is_a_start(candidate: Candidate, found: Sequence[Term]) -> bool:
-    """Whether a transient is no longer than a found lag of temperature takes to forget what it
-    assumed before the power-on; or what play operators assumed, which is kept for long."""
-    if candidate.kind != _TRANSIENT:
-        return False
-    if any(t.memory == "play" for t in found):
-        return True
-    lags = [t.lag_s for t in found if t.lag_mode != "none"]
-    return bool(lags) and candidate.terms[0].decay_s < _START_S + 2.0 * max(lags)

@@ -12,8 +12,6 @@ from ...model.term import Term
 from ..fit.free_curve import draw
 from .catalogue import REFINED, Candidate
 
-_ROUNDS = 2
-
 
 def drawn(regression, beside: Sequence[Term], candidate: Candidate) -> Candidate:
     """The candidate, with its curve told by the recordings where any curve will do."""
@@ -25,9 +23,8 @@ def drawn(regression, beside: Sequence[Term], candidate: Candidate) -> Candidate
 
 def refined(regression, terms, candidate: Candidate) -> Candidate:
     """The candidate with its lag, width, knot or centre where the likelihood is highest."""
-    for _ in range(_ROUNDS if len(candidate.refine) > 1 else 1):
-        for name in candidate.refine:
-            candidate = _along(regression, terms, candidate, name)
+    for name in candidate.refine:
+        candidate = _along(regression, terms, candidate, name)
     return candidate
 
 

@@ -19,15 +19,9 @@ from .steps import MOST_PER_SESSION, Step, standing, steps_and_lags
 #: Ticks around a moment in which the accelerometer is looked at; what it must see, in g and in
 #: times its usual change.
 _MOMENT, _SEEN_G, _SEEN = 10, 0.02, 6.0
-#: Blocks before and after a step in which its second is looked for, and as many rests beyond them.
+#: Blocks before and after a step in which its second is looked for, and as many rests beyond them;
+#: and between two that undo each other up to which they are a disturbance.
 _NEAR = 2
-#: Steps of the thermometer by which it may be wrong.
-_OF_READING = 1.1
-#: Blocks between two steps that undo each other up to which they are a disturbance: none need lie
-#: between them whole.
-_DISTURBED = 2.0
-#: Cosine of two steps' sizes below which they undo each other.
-_UNDONE = -0.5
 
 
 def remove_steps(sessions: Sequence[Session]) -> list[Session]:
@@ -65,7 +59,7 @@ def _is_thermometers(regression, beside, late: Mapping[Term, float], step: Step)
         fitted = regression.fit(every).coefficients
     degc = session.block_mean(session.sources["temp"])[min(step.block, session.blocks - 1)]
     jump = np.array([_slope(t, degc, session.block_s) for t in every])
-    along, most = jump @ fitted, _OF_READING * session.temp_step_degc
+    along, most = jump @ fitted, session.temp_step_degc
     weight = 1.0 / np.maximum(step.deviation_dps, 1e-12) ** 2
     off_degc = np.clip((weight * along) @ step.size_dps / ((weight * along) @ along), -most, most)
     off_slope = weight @ (step.size_dps - off_degc * along) ** 2
@@ -169,9 +163,8 @@ def hold_disturbed(regression, terms, recordings: int = 1) -> None:
 
 def _undoes(a: Step, b: Step) -> bool:
     apart = (b.block - b.share) - (a.block - a.share)
-    both = np.linalg.norm(a.size_dps) * np.linalg.norm(b.size_dps)
-    undone = a.size_dps @ b.size_dps < _UNDONE * both
-    return bool(a.session == b.session and apart <= _DISTURBED and undone)
+    undone = a.size_dps @ b.size_dps < 0
+    return bool(a.session == b.session and apart <= _NEAR and undone)
 
 
 def _hold(regression, a: Step, b: Step) -> None:
