@@ -106,7 +106,7 @@ def suspected(axis, error_lsb, up=(0, 0, 16384), known=True):
     recent.suspect_turn(axis.s, axis.c)
     offers = [axis.s[axis_at(axis.c, i) + AXIS.OFFER] for i in range(3)]
     hidden = [recent.hidden_q4(axis.s, axis.c, i) for i in range(3)]
-    assert [-(offer >> 1) - (offer & 1) for offer in offers] == hidden
+    assert [-offer >> 2 for offer in offers] == hidden
     return [offer & 1 for offer in offers]
 
 
@@ -130,6 +130,33 @@ def test_a_change_along_gravity_of_a_well_known_bias_may_be_a_turn(
     axis, error_lsb, up, known, is_turn
 ):
     assert suspected(axis, error_lsb, up, known) == [is_turn] * 3
+
+
+@pytest.mark.parametrize(
+    ("turn_lsb", "lean", "learned"),
+    [(800, 0.02, 0), (800, -0.02, 0), (0, 0.02, 1), (30, 0.02, 1), (-800, 0.0, 0)],
+)
+def test_an_axis_learns_no_share_of_a_turn_that_is_seen_along_gravity(turn_lsb, lean, learned):
+    axis = Axis(0)
+    share_lsb = lean * turn_lsb
+    for i in range(3):
+        at = axis_at(axis.c, i)
+        axis.s[at + AXIS.OFFSET_VARIANCE_Q8] = 256 * 16
+        axis.s[at + AXIS.KIND] = 1
+    suspected(axis, (share_lsb, 0, turn_lsb), (round(16384 * lean), 0, 16384))
+    assert recent.update_offset(axis.s, axis.c, axis.a, round(16 * share_lsb)) == learned
+    assert bool(axis.OFFSET_Q8) == bool(learned and share_lsb)
+
+
+def test_another_source_moves_a_well_known_bias_by_more_than_three_sigma_once_it_has_lasted(axis):
+    n = axis.c[SETTINGS.INSIST] * SEGMENT
+    axis.s[axis.a + AXIS.ESTIMATORS + ESTIMATOR.EST_READINGS] = n
+    axis.put(KIND=1, OFFER=8 * 16 + 4, OFFSET_VARIANCE_Q8=256, DOUBT_Q4=16, LEFT_Q4=0, FLOOR_Q16=0)
+    offers = 10 * axis.c[SETTINGS.TURN_HALVES] // 4
+    taken = [recent.take_over(axis.s, axis.c, axis.a, 2000) for _ in range(offers)]
+    assert taken == [0] * (offers - 1) + [1] and axis.OFFSET_Q8 == 16 * 2000
+    axis.put(OFFSET_VARIANCE_Q8=256 * 256, OFFSET_FROM=0)
+    assert recent.take_over(axis.s, axis.c, axis.a, 200) == 1, "within three sigma"
 
 
 def test_after_a_power_off_no_change_is_taken_for_a_turn(axis):
@@ -291,8 +318,8 @@ def test_the_spread_of_power_ons_moves_by_a_quarter(axis, error):
     ],
 )
 def test_a_doubt_is_what_a_rest_may_hide(axis, error, left, before, after):
-    axis.put(OFFER=-1001, LEFT_Q4=left, DOUBT_Q4=before, GROWN_Q8=2000, MEAN_NOISE_Q8=2000)
-    hidden = (0 - axis.OFFER) >> 1
+    axis.put(OFFER=-2001, LEFT_Q4=left, DOUBT_Q4=before, GROWN_Q8=2000, MEAN_NOISE_Q8=2000)
+    hidden = -axis.OFFER >> 2
     recent.doubt(axis.s, axis.a, error)
     assert hidden == 500 and after == axis.DOUBT_Q4
 
@@ -389,12 +416,12 @@ def segment(axis, mean_lsb, readings=SEGMENT, **words):
 def test_the_very_first_segment_is_all_curve_and_no_offset(axis):
     assert segment(axis, 200, 8, KIND=0) == 0 and segment(axis, 200, 9, KIND=0) == 1
     axis.put(OFFSET_Q8=99, RESTS=0, LEFT_Q4=5, OFFSET_FROM=3, OFFSET_AGE_MS=7, HELD_Q4=400)
-    assert segment(axis, 200, OFFER=-2001, DOUBT_Q4=0) == 1
+    assert segment(axis, 200, OFFER=-4001, DOUBT_Q4=0) == 1
     assert (axis.OFFSET_Q8, axis.SUSPECT, axis.LEFT_Q4, axis.OFFSET_FROM) == (0, -1, 0, 0)
     assert axis.OFFSET_VARIANCE_Q8 == axis.MEAN_NOISE_Q8 and axis.OFFSET_AGE_MS == 0
     assert axis.RESTS == axis.c[SETTINGS.INSIST] and axis.WAITING_SUM == 200 * SEGMENT
     assert (axis.DOUBT_Q4, axis.HELD_Q4) == (1000, 0)  # by what the rest may hide
-    segment(axis, 200, OFFER=-201, HELD_Q4=400)
+    segment(axis, 200, OFFER=-401, HELD_Q4=400)
     assert axis.DOUBT_Q4 == 300  # by three quarters of what was held back
 
 

@@ -187,13 +187,14 @@ def hidden_lsb(s, c, axis, up_lsb, segments):
     """One sigma of a turn that a rest of so many segments hides on the axis, in floats."""
     biases = np.array(s[STATE.TARGET_Q8 : STATE.TARGET_Q8 + 3]) / 256
     halves = c[SETTINGS.TURN_HALVES]
-    turn = math.sqrt(c[SETTINGS.TURNING_LSB] ** 2 + (biases**2).sum() / 2)
-    turn *= (1 - segments % halves / (2 * halves)) / 2 ** (segments // halves)
     g = np.linalg.norm(up_lsb)
+    lean = math.sqrt(2 * max(g / 16384 - 1, 0))
+    usual = c[SETTINGS.TURNING_LSB]
+    turn = math.sqrt(usual**2 * (1 + (9 * lean) ** 2) + (biases**2).sum() / 2)
+    turn *= (1 - segments % halves / (2 * halves)) / 2 ** (segments // halves)
     if not g or not segments:
         return turn
-    over = g / 16384 - 1
-    share = abs(up_lsb[axis]) / g + (math.sqrt(2 * over) if over > 0 else 0)
+    share = abs(up_lsb[axis]) / g + lean
     moved = math.sqrt(s[STATE.TIP_Q8] + c[SETTINGS.TIP_LIMIT_Q8])
     level = moved * c[SETTINGS.TILT_SPEED] / (g / 16) / segments / 16
     return turn * min(share, 1) + level

@@ -11,7 +11,7 @@
 from ..arithmetic.fixed import clipped, scaled
 from .bias import curve_q8
 from .estimators import find
-from .stillness import hidden_q4, lean_q10, level_q4, size, up
+from .stillness import hidden_q4, lean_q10, level_q4, share_q10, size, up
 
 # layout: names that a board's own compiler reads
 const = int
@@ -70,6 +70,8 @@ _TURN_HALVES = const(55)
 _NO_VALUE = const(-0x3FFFFFFF)
 # layout: end
 _MOST_DOUBT_Q4 = const(0x7FFFF)
+_MOST_Q10 = const(724)  # half of its square: that axis is judged by its own error
+_LEANT_Q10 = const(51)  # by the accelerometer's own offset, some 50 mg
 _NEIGHBOURS_MS = const(4000)  # segments of one rest follow each other faster
 _STEEPEST_Q16 = const(4095)  # times the farthest temperature it fits 31 bits
 
@@ -92,6 +94,11 @@ def mean_noise_q8(s: ptr32, c: ptr32, a: int, n: int) -> int:
         shorter = clipped(shorter * (c[_PROVISIONAL_Q8] >> 4) // 10, 0x3FFF)
         variance += shorter * shorter
     return s[_NOISE_Q8] // (3 * n) + variance
+
+
+def waiting_noise_q8(s: ptr32, c: ptr32, a: int) -> int:
+    """Return the same of the segment that waits."""
+    return mean_noise_q8(s, c, a, s[a + _WAITING_N])
 
 
 def beyond_q8(s: ptr32, c: ptr32, a: int) -> int:
@@ -122,7 +129,9 @@ def move_offset(s: ptr32, a: int, by: int):
 
 
 def well_known(s: ptr32, c: ptr32, a: int) -> int:
-    """Return 1 if the axis has learned from as long a rest as must insist, else 0."""
+    """Return 1 if the axis has learned from as long a rest as must insist, and since power-on."""
+    if s[a + _LEFT_Q4] == _NO_VALUE:
+        return 0
     n = c[_INSIST] * c[_SEGMENT]
     return 1 if s[a + _ESTIMATORS + _EST_READINGS] >> c[_WINDOW_SHIFT] >= n else 0
 
@@ -136,40 +145,60 @@ def off_q1(s: ptr32, c: ptr32, axis: int) -> int:
     return clipped((mean - s[_TARGET_Q8 + axis]) >> 7, 0x3FFF)
 
 
-def square(s: ptr32, c: ptr32) -> int:
-    """Return the square of the segment's error: LSB^2, Q2."""
-    total = 0
-    for i in range(3):
-        off = off_q1(s, c, i)
-        total += off * off
-    return total
-
-
 def suspect_turn(s: ptr32, c: ptr32):
     """Note for the waiting segment of every axis what it may hide, and whether it may be a turn."""
+    turn = may_turn(s, c)
+    for axis in range(3):
+        note(s, c, axis, turn)
+
+
+def may_turn(s: ptr32, c: ptr32) -> int:
+    """Return 1 if the segment may be a turn; leave at _GROWN_Q8 the one it shows: LSB, Q1."""
     # It may where its error is along gravity, or too small to show yet, and the bias is well known:
     # from as long a rest as must insist, and found again since power-on. Along: within 22 degrees,
-    # and the bank that more than 1 g tells.
+    # and the bank that more than 1 g tells. It shows one beyond the gate.
     g = size(s)
+    if g == 0:
+        return 0
     turn = 0
-    if g:
-        turn = off_q1(s, c, 0) * up(s, 0) + off_q1(s, c, 1) * up(s, 1)
-        turn = (turn + off_q1(s, c, 2) * up(s, 2)) // g
-        aside = square(s, c) - turn * turn
-        turn = turn * clipped(410 + lean_q10(c, g), 1024) >> 10
-        g = level_q4(s, c, g) >> 2  # Q1, twice
-        turn = 1 if aside <= turn * turn + g * g else 0
-    for g in range(3):
-        note(s, c, g, turn)
+    aside = 0
+    i = 0
+    while i < 3:
+        off = off_q1(s, c, i)
+        aside += off * off
+        off = off * up(s, i)
+        turn += off
+        i += 1
+    turn = turn // g
+    aside -= turn * turn
+    off = turn if turn > 0 else 0 - turn
+    s[_GROWN_Q8] = turn if off > c[_GATE_Q4] >> 3 else 0
+    off = lean_q10(c, g)
+    turn = turn * clipped(410 + off, 1024) >> 10
+    g = level_q4(s, c, g) >> 2  # Q1, twice
+    return 1 if aside <= turn * turn + g * g else 0
 
 
 def note(s: ptr32, c: ptr32, axis: int, turn: int):
     """As suspect_turn, for one axis."""
-    # _OFFER: minus twice what the segment may hide, LSB Q4, and minus 1 where it may be a turn.
+    # _OFFER: minus four times what the segment may hide, LSB Q4, minus 2 where the axis shares more
+    # of a turn that is seen along gravity than its noise is, and minus 1 where it may be a turn.
     a = c[_AXES] + axis * c[_AXIS_WORDS]
-    s[a + _OFFER] = 0 - 2 * hidden_q4(s, c, axis)
-    if turn and s[a + _LEFT_Q4] != _NO_VALUE and well_known(s, c, a):
-        s[a + _OFFER] -= 1
+    share = hidden_q4(s, c, axis)
+    s[a + _OFFER] = 0 - 4 * share
+    if turn and well_known(s, c, a):
+        share = shares(s, c, a, axis)
+        share += share + 1
+        s[a + _OFFER] -= share
+
+
+def shares(s: ptr32, c: ptr32, a: int, axis: int) -> int:
+    """Return 1 if the axis shares more of the turn that is seen than its noise, but not most."""
+    share = share_q10(s, axis)
+    if share >= _MOST_Q10:
+        return 0
+    share = clipped(s[_GROWN_Q8] * (share + _LEANT_Q10) >> 7, 0x7FFF)
+    return 1 if share * share > waiting_noise_q8(s, c, a) else 0
 
 
 def hold(s: ptr32, a: int, error: int) -> int:
@@ -311,7 +340,7 @@ def relearn_spread(s: ptr32, c: ptr32, a: int, square: int):
 
 def doubt(s: ptr32, a: int, error: int):
     """Let a segment of that error, LSB Q4, tell how much of the bias may still be a turn."""
-    hidden = (0 - s[a + _OFFER]) >> 1
+    hidden = (0 - s[a + _OFFER]) >> 2
     held = s[a + _DOUBT_Q4]
     if error * error // 9 > s[_GROWN_Q8] + s[_MEAN_NOISE_Q8]:
         # it moves the bias, perhaps by a turn
@@ -374,6 +403,23 @@ def remove_turn_on(s: ptr32, c: ptr32, a: int):
     s[a + _WAITING_SUM] = clipped(off, n * 0x7FFF)
 
 
+def contradicts(s: ptr32, c: ptr32, a: int, error: int, noise: int) -> int:
+    """Return 1 if another source lies beyond the gate and three sigma; hold it back."""
+    # It may be a turn as well, so it must last as long as a rest that may be one.
+    known = clipped(s[a + _DOUBT_Q4], 0x3FFF)
+    known = known * known + noise
+    far = beyond_q8(s, c, a)
+    known += far
+    far = grown_q8(s, a)
+    known += clipped(far, 0xFFFFFFF)
+    far = clipped(error if error > 0 else 0 - error, 0x3FFF)
+    if well_known(s, c, a) == 0 or far <= c[_GATE_Q4] or far * far // 9 <= known:
+        return 0
+    far = hold(s, a, error) + 1
+    s[a + _SUSPECT] = far
+    return 1 if far < 10 * c[_TURN_HALVES] >> 2 else 0
+
+
 def take_over(s: ptr32, c: ptr32, a: int, error: int) -> int:
     """Let what another source found be the level if it is known twice as well as the level is."""
     # That source is a filter itself: to weigh its results into another one counted them twice, and
@@ -384,6 +430,8 @@ def take_over(s: ptr32, c: ptr32, a: int, error: int) -> int:
         s[a + _SUSPECT] = -1
         s[_RESTS] = c[_INSIST]
     elif noise << 2 >= grown_q8(s, a) and s[a + _OFFSET_FROM] != s[a + _OFFER] & 7:
+        return 0
+    elif contradicts(s, c, a, error, noise):
         return 0
     else:
         move_offset(s, a, error << 4)
@@ -397,8 +445,7 @@ def take_over(s: ptr32, c: ptr32, a: int, error: int) -> int:
 def absorb(s: ptr32, c: ptr32, a: int) -> int:
     """Take the waiting segment into the offset; return 1 if the estimators may learn it."""
     # The very first one is all curve and no offset.
-    error = s[a + _WAITING_N]
-    s[_MEAN_NOISE_Q8] = mean_noise_q8(s, c, a, error)
+    s[_MEAN_NOISE_Q8] = waiting_noise_q8(s, c, a)
     error = error_q4(s, c, a)
     if update_offset(s, c, a, error) == 0:
         return 0
@@ -417,8 +464,8 @@ def update_offset(s: ptr32, c: ptr32, a: int, error: int) -> int:
     if s[a + _KIND]:
         s[_GROWN_Q8] = grown_q8(s, a)
         verdict = plausible(s, c, a, error)
-        if verdict == 0:
-            return 0
+        if verdict == 0 or (verdict == 1 and (0 - s[a + _OFFER]) & 2):
+            return 0  # the other axes of a turn have their shares of it
         held = clipped(error, 0x3FFF)
         calibrate(s, c, a, held)
     elif s[a + _WAITING_N] <= 8 and s[a + _WAITING_N] < c[_SEGMENT] << c[_WINDOW_SHIFT]:
@@ -435,7 +482,7 @@ def update_offset(s: ptr32, c: ptr32, a: int, error: int) -> int:
         s[a + _LEFT_Q4] = 0
         # it may as well be a turn, and then all of it is wrong
         held = s[a + _HELD_Q4] - (s[a + _HELD_Q4] >> 2)
-        verdict = (0 - s[a + _OFFER]) >> 1
+        verdict = (0 - s[a + _OFFER]) >> 2
         s[a + _DOUBT_Q4] = verdict if verdict > held else held
     s[a + _HELD_Q4] = 0
     s[a + _OFFSET_AGE_MS] = 0

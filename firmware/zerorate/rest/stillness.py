@@ -64,6 +64,7 @@ _MOST_SEGMENTS = const(0x3FFF)
 _MOST_G = const(0x7FF)
 _MOST_HIDDEN_Q4 = const(0x7FFFF)
 _FAR_BITS = const(10)  # of ten bits the squares of a window fit 31
+_BANKED = const(9)  # times the usual turn: g tan(bank) over an aircraft's 60 m/s, in deg/s
 # by how much of a window's variance noise alone lets two of them differ
 _GRAVITY_NOISE = const(18)  # the mean accelerations: 27 by chi squared of 3, for noise is coloured
 _FAR_Q8 = const(0x7FFFF)  # a temperature so far from the line begins a new one
@@ -345,10 +346,12 @@ def tilting_q4(s: ptr32, c: ptr32) -> int:
     return clipped(g, 0x3FFF)
 
 
-def steady_q4(s: ptr32, c: ptr32) -> int:
+def steady_q4(s: ptr32, c: ptr32, lean: int) -> int:
     """Return the turn about the vertical that lasts as long as the rest, one sigma, LSB Q4."""
     # As fast a turn as the bias is as likely as that bias; of all turns as steady half end in time.
     total = c[_TURNING_LSB] * c[_TURNING_LSB]
+    rate = clipped(lean * c[_TURNING_LSB] >> 10, 0x7FF) * _BANKED
+    total += rate * rate
     for i in range(3):
         rate = clipped(s[_TARGET_Q8 + i] >> 8, 0x3FFF)
         total += rate * rate >> 1
@@ -365,13 +368,18 @@ def lean_q10(c: ptr32, g: int) -> int:
     return root(over << 11) if over > 0 else 0
 
 
+def share_q10(s: ptr32, axis: int) -> int:
+    """Return which share of a turn about the vertical the axis has, without its sign."""
+    share = up(s, axis)
+    return ((share if share > 0 else 0 - share) << 10) // (size(s) + 1)
+
+
 def hidden_q4(s: ptr32, c: ptr32, axis: int) -> int:
     """Return how much of a turn the rest so far may hide on the axis: one sigma, LSB Q4."""
     g = size(s)
-    turn = steady_q4(s, c)
+    share = lean_q10(c, g)
+    turn = steady_q4(s, c, share)
     if g and s[_REST]:
-        share = up(s, axis)
-        share = ((share if share > 0 else 0 - share) << 10) // g
-        share += lean_q10(c, g)
+        share += share_q10(s, axis)
         turn = (turn * (share if share < 1024 else 1024) >> 10) + level_q4(s, c, g)
     return clipped(turn, _MOST_HIDDEN_Q4)
