@@ -18,7 +18,7 @@ class Bursts:
         self.corrector = corrector
         self._frame = array("i", [0] * 7)
         if rest.run and corrector.alone:
-            self.update = self._bound()
+            self.update = self._bound()  # type: ignore[method-assign]
 
     def _bound(self):
         # to look up where they lie takes as long as two samples, an attribute as long as one
