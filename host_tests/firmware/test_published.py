@@ -49,6 +49,7 @@ def test_a_rest_that_goes_on_moves_the_bias_by_its_share_within_two_sigma(
     s, c = axis.s, axis.c
     readings = rested(axis, off_lsb, GROWN_Q8=grown)
     s[STATE.ANCHOR_Q4 + 2] = 16 * axis_up
+    s[STATE.TILTING_Q4] = step.tilting_q4(s, c)  # as at the window's end
     noise = recent.mean_noise_q8(s, c, axis.a, readings)
     bias = step.moved_by_rest_q8(s, c, axis.a, 3 * 256)
     if (16 * off_lsb) ** 2 / 4 > grown + noise:
