@@ -194,7 +194,10 @@ def note(s: ptr32, c: ptr32, axis: int, turn: int):
 
 def shares(s: ptr32, c: ptr32, a: int, axis: int) -> int:
     """Return 1 if the axis shares more of the turn that is seen than its noise, but not most."""
-    share = share_q10(s, axis)
+    if s[_GROWN_Q8] == 0:
+        return 0
+    share = size(s)
+    share = share_q10(s, axis, share)
     if share >= _MOST_Q10:
         return 0
     share = clipped(s[_GROWN_Q8] * (share + _LEANT_Q10) >> 7, 0x7FFF)

@@ -368,10 +368,11 @@ def lean_q10(c: ptr32, g: int) -> int:
     return root(over << 11) if over > 0 else 0
 
 
-def share_q10(s: ptr32, axis: int) -> int:
+def share_q10(s: ptr32, axis: int, g: int) -> int:
     """Return which share of a turn about the vertical the axis has, without its sign."""
+    # g: size(s), a square root that whoever calls has at hand
     share = up(s, axis)
-    return ((share if share > 0 else 0 - share) << 10) // (size(s) + 1)
+    return ((share if share > 0 else 0 - share) << 10) // (g + 1)
 
 
 def hidden_q4(s: ptr32, c: ptr32, axis: int) -> int:
@@ -380,6 +381,6 @@ def hidden_q4(s: ptr32, c: ptr32, axis: int) -> int:
     share = lean_q10(c, g)
     turn = steady_q4(s, c, share)
     if g and s[_REST]:
-        share += share_q10(s, axis)
+        share += share_q10(s, axis, g)
         turn = (turn * (share if share < 1024 else 1024) >> 10) + level_q4(s, c, g)
     return clipped(turn, _MOST_HIDDEN_Q4)

@@ -1,7 +1,7 @@
 """Boards, what memory they have, and what the firmware needs of it: docs/boards.md.
 
 python -m zerorate_bench.boards.table [FIGURES] > docs/boards.md, where FIGURES is what
-`zerorate bench --json FIGURES boards` wrote: its needs go to boards/needs.json first.
+`zerorate bench boards --json FIGURES` wrote: its needs go to boards/needs.json first.
 """
 
 import json

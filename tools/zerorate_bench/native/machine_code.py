@@ -24,7 +24,7 @@ _COMMON = (
     # a loop that subtracts stays one, for there is no division to make of it
     *("-mllvm", "-replexitval=never"),
 )
-_SMALL = ("-mllvm", "-inline-threshold=5", "-mllvm", "-sink-common-insts=1")
+_SMALL = ("-mllvm", "-inline-threshold=18", "-mllvm", "-sink-common-insts=1")
 # What every sample runs through: where instructions are saved for the fewest bytes.
 _ALWAYS = "static inline __attribute__((always_inline))"
 _WHOLE = '_Pragma("clang loop unroll(full)")'
