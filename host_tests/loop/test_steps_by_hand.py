@@ -337,3 +337,12 @@ def test_terms_are_shrunk_inside_a_with_alone(sessions):
     with regression.shrinking({A: 1e12}):
         assert regression.fit([A]).coefficients == pytest.approx(np.zeros((1, 3)), abs=1e-6)
     assert (regression.fit([A]).coefficients == free).all()
+
+
+def test_of_two_steps_in_one_block_the_weaker_can_be_taken_out():
+    stronger, weaker = (
+        Step(0, 5, np.full(3, size), ratio, 0.0) for size, ratio in ((2, 9), (1, 4))
+    )
+    steps = [stronger, weaker]
+    steps.remove(min(steps, key=lambda s: s.ratio))
+    assert steps == [stronger]

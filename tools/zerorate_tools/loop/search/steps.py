@@ -40,7 +40,7 @@ _BOTH_BEYOND = 20.0
 _MOST_FORMS, _A_FORM = 4, 45.0
 
 
-@dataclass
+@dataclass(eq=False)  # two in one block are two, and arrays do not say whether they are equal
 class Step:
     """A step: session index, first block that is all after it, sizes in dps per axis with their
     standard deviations, and how sure. share: of the block before that one, what is after it; at_s:
