@@ -4,6 +4,7 @@ Each row is a command of its own, which also says what fell. ZERORATE_FUZZ is ho
 files each reader is given.
 """
 
+import argparse
 import os
 import re
 import subprocess
@@ -79,17 +80,20 @@ def attack(arguments):
 
 def main():
     """Print the table; 1 if an attack succeeded."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("attacks", nargs="*", choices=[*ATTACKS, []], help="default: all")
+    chosen = parser.parse_args().attacks or ATTACKS
     os.environ.setdefault("ZERORATE_FUZZ", "200")
-    fallen, told = 0, []
+    fallen, sizes = 0, []
     print("| attacked | with | succeeded | last line | s |\n|---|---|---:|---|---:|")
-    for name in sys.argv[1:] or ATTACKS:
+    for name in chosen:
         began = time.monotonic()
         fell, said, peaks = attack(ATTACKS[name][1])
         fallen += fell
-        told += peaks
+        sizes += peaks
         took_s = time.monotonic() - began
         print(f"| {name} | {ATTACKS[name][0]} | {fell} | {said} | {took_s:.0f} |", flush=True)
-    print("\n".join(told))
+    print("\n".join(sizes))
     return 1 if fallen else 0
 
 

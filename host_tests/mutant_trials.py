@@ -1,15 +1,20 @@
-"""Runs the tests of mutants: a fork for each, in which its text stands in the place of its file.
+"""Runs the tests of mutants: a fork for each, whose code stands in the place of its file's.
 
-The tests that reach a mutant's line run first, the fastest first of all. If they pass, all others
-run, too: what the C that is made of a kernel does is not seen here.
+The tests are collected once. A first fork notes which of the rows in question each test reaches.
+In the fork of a mutant the tests that reach its row run, the fastest first, until one fails or a
+budget is spent. What runs as a module loads is tried in a process that has not loaded it. A mutant
+is killed by a test that fails with it and, in a fork of its own, passes without it. One that takes
+too long, cannot be loaded or collected, or ends in another way is neither killed nor alive.
 """
 
 import ast
 import builtins
 import contextlib
+import gc
 import importlib.abc
 import importlib.machinery
 import importlib.util
+import inspect
 import json
 import os
 import signal
@@ -17,25 +22,38 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from types import CodeType, FunctionType
 
 import pytest
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 # Tests in other processes, and some that take long and see little that others do not.
 # (An interpreter reads the file as it is, and so would tell any mutant from it.)
-NOT_IN_PROCESS = " and ".join(
-    "not " + name
-    for name in (
-        *("micropython", "bytecode", "heap", "runtime", "last_byte", "any_slot", "no_intermediate"),
-        *("every_interpreter", "signal_at_any_rename", "end_by_a_signal", "log_of_another_tool"),
-    )
+_ELSEWHERE = (
+    *("micropython", "bytecode", "heap", "runtime", "last_byte", "any_slot", "no_intermediate"),
+    *("every_interpreter", "signal_at_any_rename", "end_by_a_signal", "log_of_another_tool"),
+    *("in_processes_of_their_own", "hang_up", "random_moment"),
 )
-
+_FIXTURES_OF_OTHERS = {
+    "runtime",
+    "micropython",
+    "find_runtime",
+    "chromium",
+    "browser",
+    "pico_parts",
+}
+_FIXTURES_OF_OTHERS |= {"outcome", "closed"}  # whole closings, longer than all of the budget
+# Tests of what starts an interpreter: that is host code, which the mutant is in.
+_STARTERS = ("test_interpreters", "test_boards")
+# Seconds of processor for the tests of one mutant: what lives longer has survived. And for all.
+_BUDGET_S = 10
+_PATIENCE_S = 90
+_CRASHES = (signal.SIGSEGV, signal.SIGFPE, signal.SIGABRT, signal.SIGBUS, signal.SIGILL)
 _HIT = "__hit__"  # the name by which a file's statements say that they are reached
 
 
 class InPlaceOf(importlib.abc.MetaPathFinder, importlib.machinery.SourceFileLoader):
-    """Loads a text, or what it was parsed to, in the place of a module's file."""
+    """Loads a text in the place of a module's file."""
 
     def __init__(self, path, text):
         super().__init__("", str(path))
@@ -52,98 +70,222 @@ class InPlaceOf(importlib.abc.MetaPathFinder, importlib.machinery.SourceFileLoad
         return compile(self._text, self._file, "exec")
 
 
-def put_in_place(path, text):
-    """Let this process see the text in the place of the file, wherever it is loaded or read."""
-    sys.meta_path.insert(0, InPlaceOf(path, text))
+def put_in_place(path, text, loaded=None):
+    """Let this process see the text in the place of the file, wherever it is loaded or read.
+
+    loaded: what is loaded in the place of the text.
+    """
+    sys.meta_path.insert(0, InPlaceOf(path, loaded or text))
     plain = Path.read_text
     Path.read_text = lambda self, *how, **more: text if self == path else plain(self, *how, **more)
 
 
+def _codes(code):
+    """A code object and all within it, in the order of the text."""
+    yield code
+    for part in code.co_consts:
+        if isinstance(part, CodeType):
+            yield from _codes(part)
+
+
+def _runs_alike(code, other):
+    """Whether two code objects do the same, whatever the functions within them do."""
+    pairs = zip(code.co_consts, other.co_consts)
+    consts = all(isinstance(a, CodeType) or repr(a) == repr(b) for a, b in pairs)
+    return consts and (code.co_code, code.co_names) == (other.co_code, other.co_names)
+
+
+def _before_and_after(file, changed):
+    """[(code, its new code)] of a file; changed: its new text, or what that was parsed to."""
+    texts = file.read_text(encoding="utf-8"), changed
+    before, after = ([*_codes(compile(text, str(file), "exec"))] for text in texts)
+    return list(zip(before, after)) if len(before) == len(after) else []
+
+
+def _is_function(code):
+    return bool(code.co_flags & inspect.CO_NEWLOCALS)
+
+
+def swap(file, pairs):
+    """Give every function of a file, wherever it is held, its new code."""
+    new = dict(pair for pair in pairs if _is_function(pair[0]))
+    for one in gc.get_objects():
+        if isinstance(one, FunctionType) and one.__code__.co_filename == str(file):
+            one.__code__ = new.get(one.__code__, one.__code__)
+
+
 class Hits(ast.NodeTransformer):
-    """Puts a call before every statement of a file's functions, which notes its rows as reached."""
+    """Lets a file's functions note when they run, and when statements at some rows do."""
 
-    def __init__(self, file):
-        self._file = str(file)
+    def __init__(self, file, rows):
+        self._file, self._rows = str(file), rows
 
-    def generic_visit(self, node):
-        super().generic_visit(node)
-        for name in ("body", "orelse", "finalbody"):
-            block = getattr(node, name, None)
-            if isinstance(block, list) and not isinstance(node, ast.Module):
-                # a docstring stays the first
-                parts = [(of,) if _is_text(of) else (self._hit(of), of) for of in block]
-                setattr(node, name, [one for part in parts for one in part])
+    def visit_FunctionDef(self, node):
+        for inner in ast.walk(node):
+            for name in ("body", "orelse", "finalbody"):
+                block = getattr(inner, name, None)
+                if isinstance(block, list):
+                    setattr(inner, name, [one for of in block for one in self._with_hit(of)])
+        # a docstring stays the first
+        node.body.insert(int(ast.get_docstring(node) is not None), self._hit(node, 0, 0))
         return node
 
-    def _hit(self, of):
+    visit_AsyncFunctionDef = visit_FunctionDef
+
+    def _with_hit(self, of):
         body = getattr(of, "body", None)
-        last = body[0].lineno - 1 if body else of.end_lineno
-        said = ast.Constant((self._file, of.lineno, max(last, of.lineno)))
+        last = max(body[0].lineno - 1 if body else of.end_lineno, of.lineno)
+        said = isinstance(of, ast.Expr) and isinstance(of.value, ast.Constant)
+        reached = not said and any(of.lineno <= row <= last for row in self._rows)
+        return [self._hit(of, of.lineno, last), of] if reached else [of]
+
+    def _hit(self, of, first, last):
+        said = ast.Constant((self._file, first, last))
         return ast.copy_location(ast.Expr(ast.Call(ast.Name(_HIT, ast.Load()), [said], [])), of)
 
 
-def _is_text(statement):
-    return isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)
+def _runs_elsewhere(item):
+    if item.path.stem in _STARTERS:
+        return False
+    fixtures = _FIXTURES_OF_OTHERS & set(item.fixturenames)
+    return bool(fixtures) or any(name in item.path.stem + item.name for name in _ELSEWHERE)
 
 
-class Reach:
-    """A plugin of pytest: which rows of some files each test reaches, and its seconds."""
+def _address(item):
+    """By which pytest finds a test, wherever it is started."""
+    return f"{item.path}::{item.nodeid.partition('::')[2]}"
 
-    def __init__(self, files, written):
-        self._files, self.written = files, written
-        self.reached, self.took_s = {}, {}
 
-    def pytest_configure(self):
-        setattr(builtins, _HIT, set().add)
-        for file in self._files:
-            tree = Hits(file).visit(ast.parse(file.read_text(encoding="utf-8")))
-            sys.meta_path.insert(0, InPlaceOf(file, ast.fix_missing_locations(tree)))
+def _run(item, following):
+    item.config.hook.pytest_runtest_protocol(item=item, nextitem=following)
 
-    @pytest.hookimpl(wrapper=True)
-    def pytest_runtest_protocol(self, item):
-        rows = self.reached[item.nodeid] = set()
-        setattr(builtins, _HIT, rows.add)
+
+class InProcess:
+    """A plugin of pytest that leaves out tests which a mutant of this process cannot reach."""
+
+    @pytest.hookimpl(trylast=True)
+    def pytest_collection_modifyitems(self, items):
+        items[:] = [item for item in items if not _runs_elsewhere(item)]
+
+
+class Nearest(InProcess):
+    """Which tests reach a row, and how long each takes; a plugin of pytest that tries one mutant.
+
+    tests: {nodeid: [seconds, its path, [[file, first row, last row], ...]]}. at: a file that holds
+    the test that runs.
+    """
+
+    def __init__(self, tests, at, file, row):
+        self._file, self._tests, self._at = str(file), tests, at
+        at_file = {n: [r for r in of[2] if r[0] == self._file] for n, of in tests.items()}
+        self.at_file = {name for name, rows in at_file.items() if rows}
+        self.at_row = {n for n, rows in at_file.items() if any(a <= row <= b for _, a, b in rows)}
+
+    def pytest_runtestloop(self, session):
+        self.fail(session)
+        return True
+
+    def fail(self, session):
+        """Whether a test fails, of those near to the row and within the budget."""
+        near = self.at_row or self.at_file or set(self._tests)
+        first = [item for item in session.items if item.nodeid in near]
+        # what a fixture of several tests reaches was noted for the first of them
+        modules = {item.path for item in first}
+        kernel = "firmware" in Path(self._file).parts  # its C is compiled once for all tests
+        rest = [i for i in session.items if i not in first and (kernel or i.path in modules)]
+        rest.sort(key=lambda item: item.path not in modules)
+        first.sort(key=lambda item: self._tests[item.nodeid][0])
         began_s = time.process_time()
-        try:
-            return (yield)
-        finally:
-            self.took_s[item.nodeid] = time.process_time() - began_s
+        for item, following in zip(first + rest, [*first, *rest, None][1:]):
+            if session.testsfailed or time.process_time() - began_s > _BUDGET_S:
+                break
+            signal.setitimer(signal.ITIMER_PROF, 5 + 3 * self._longest_s(item))
+            self._at.write_text(_address(item), encoding="utf-8")
+            _run(item, following)
+        return session.testsfailed > 0
 
-    def pytest_sessionfinish(self, exitstatus):
-        rows = [[test, *reached] for test, every in self.reached.items() for reached in every]
+    def _longest_s(self, item):
+        """Seconds of the slowest test in an item's module: it may have made a fixture of all."""
+        return max(s for s, path, _ in self._tests.values() if path == str(item.path))
+
+
+class Trials(InProcess):
+    """A plugin of pytest that forks in the place of running tests: for reach, then for mutants.
+
+    drawn: {number: (file, row, mutated text)}. Writes [tests as in Nearest, ends, modules].
+    """
+
+    def __init__(self, drawn, written):
+        self._drawn, self._written = drawn, written
+
+    def pytest_runtestloop(self, session):
+        if _end_of(lambda: self._note_reach(session), 1800) != "passed":
+            return True
+        tests = json.loads(self._written.read_text(encoding="utf-8"))
+        drawn = self._drawn.items()
+        ends = {n: end for n, of in drawn if (end := self._end(session, tests, *of))}
         # what no mutant is in, and each process would else load anew
         others = [
             n for n, m in sys.modules.items() if "site-packages" in str(vars(m).get("__file__"))
         ]
-        self.written.write_text(json.dumps([rows, self.took_s, others]), encoding="utf-8")
+        self._written.write_text(json.dumps([tests, ends, others]), encoding="utf-8")
+        return True
+
+    def _note_reach(self, session):
+        for file in {Path(file) for file, *_ in self._drawn.values()}:
+            rows = [row for of, row, _ in self._drawn.values() if Path(of) == file]
+            tree = Hits(file, rows).visit(ast.parse(file.read_text(encoding="utf-8")))
+            swap(file, _before_and_after(file, ast.fix_missing_locations(tree)))
+            # what is not loaded yet, or run from its text; C is made of kernels as they are
+            kernel = "firmware" in file.parts
+            put_in_place(file, file.read_text("utf-8") if kernel else ast.unparse(tree), tree)
+        tests = {}
+        for item, following in zip(session.items, [*session.items[1:], None]):
+            reached, began_s = set(), time.process_time()
+            setattr(builtins, _HIT, reached.add)
+            self._written.write_text(item.nodeid, encoding="utf-8")
+            _run(item, following)
+            took_s = time.process_time() - began_s
+            tests[item.nodeid] = [took_s, str(item.path), sorted(reached)]
+            if session.testsfailed:
+                return True
+        self._written.write_text(json.dumps(tests), encoding="utf-8")
+        return False
+
+    def _end(self, session, tests, file, row, text):
+        """How a mutant of a function ends; None where it is of what runs as a module loads."""
+        pairs = _before_and_after(Path(file), text)
+        at = self._written.with_name("at")
+        nearest = Nearest(tests, at, file, row)
+        functions = all(_is_function(code) or _runs_alike(code, new) for code, new in pairs)
+        if not (pairs and functions and nearest.at_row):
+            return None
+
+        def mutated():
+            put_in_place(Path(file), text)
+            swap(file, pairs)
+            return nearest.fail(session)
+
+        def alone(failed):
+            _run(next(item for item in session.items if _address(item) == failed), None)
+            return session.testsfailed > 0
+
+        return _tried(mutated, alone, at)
 
 
-class NearestFirst:
-    """A plugin of pytest: tests in the order of nearness, each with a limit of its own."""
-
-    def __init__(self, reached, took_s, file, row):
-        self._took_s = took_s
-        near = {test for test, of, *_ in reached if of == str(file)}
-        at_row = {test for test, of, a, b in reached if of == str(file) and a <= row <= b}
-        # a line of no function runs when its module loads
-        self._near = at_row or near
-
-    @pytest.hookimpl(trylast=True)
-    def pytest_collection_modifyitems(self, items):
-        items.sort(key=self._nearness)
-
-    def _nearness(self, item):
-        near = item.nodeid in self._near
-        return (not near, self._took_s.get(item.nodeid, 0.0) if near else 0.0)
-
-    @pytest.hookimpl(wrapper=True)
-    def pytest_runtest_protocol(self, item):
-        signal.setitimer(signal.ITIMER_PROF, 5 + 3 * self._took_s.get(item.nodeid, 0.0))
-        return (yield)
+def _tried(mutated, alone, at):
+    """How a mutant ends: killed only if the test that failed passes alone, without the change."""
+    at.write_text("", encoding="utf-8")
+    end = _end_of(mutated, _PATIENCE_S)
+    if end != "killed":
+        return end
+    failed = at.read_text(encoding="utf-8")
+    sound = failed and _end_of(lambda: alone(failed), _PATIENCE_S) == "passed"
+    return "killed" if sound else "untried"
 
 
 def _end_of(forked, seconds):
-    """How a fork ends: passed, killed (what it calls fails), slow (seconds of processor)."""
+    """How a fork ends: passed, killed (a test fails or crashes), slow (its time is up), untried."""
     child = os.fork()
     if child == 0:
         signal.alarm(8 * seconds)
@@ -153,34 +295,45 @@ def _end_of(forked, seconds):
         try:
             os._exit(int(forked()))
         finally:
-            os._exit(1)
+            os._exit(pytest.ExitCode.INTERNAL_ERROR)
     _, status = os.waitpid(child, 0)
     if os.WIFSIGNALED(status):
-        return "slow" if os.WTERMSIG(status) in (signal.SIGALRM, signal.SIGPROF) else "killed"
-    return "killed" if os.WEXITSTATUS(status) else "passed"
+        late = os.WTERMSIG(status) in (signal.SIGALRM, signal.SIGPROF)
+        return "slow" if late else "killed" if os.WTERMSIG(status) in _CRASHES else "untried"
+    return {0: "passed", 1: "killed"}.get(os.WEXITSTATUS(status), "untried")
 
 
-def _fail(tests, plugin):
+def _pytest(tests, plugin):
+    """What pytest returns for tests with a plugin of this file."""
     # plain: else pytest loads modules named like tests (drift_test.py) by itself
-    quiet = ["-q", "-x", "--assert=plain", "-p", "no:cacheprovider", "-p", "no:xdist"]
-    return pytest.main([*quiet, "-k", NOT_IN_PROCESS, *tests], plugins=[plugin]) != 0
+    quiet = ["-q", "-s", "-x", "--assert=plain", "-p", "no:cacheprovider", "-p", "no:xdist"]
+    return pytest.main([*quiet, *tests], plugins=[plugin])
 
 
 def ends(tests, drawn):
     """{number: how it ends} of drawn, {number: (file, row, mutated text)}."""
-    before_s = os.times().children_user
+    drawn = {number: (str(REPOSITORY / file), *of) for number, (file, *of) in drawn.items()}
     with tempfile.TemporaryDirectory(prefix="zerorate-reach-") as folder:
-        reach = Reach({REPOSITORY / file for file, *_ in drawn.values()}, Path(folder, "reach"))
-        if _end_of(lambda: _fail(tests, reach), 900) != "passed":
-            raise SystemExit("the tests fail as they are")
-        reached, took_s, others = json.loads(reach.written.read_text(encoding="utf-8"))
-    for name in others:
-        with contextlib.suppress(ImportError):
-            importlib.import_module(name)
-    patience_s = int(os.times().children_user - before_s) + 30
+        written = Path(folder, "reach")
+        _end_of(lambda: _pytest(tests, Trials(drawn, written)), 7200)
+        said = written.read_text(encoding="utf-8") if written.exists() else "at collection"
+        if not said.startswith("[{"):
+            raise SystemExit(f"the tests fail as they are: {said}")
+        reached, found, others = json.loads(said)
+        for name in others:
+            with contextlib.suppress(ImportError):
+                importlib.import_module(name)
+        at = Path(folder, "at")
+        return {n: found.get(str(n)) or _loaded(tests, reached, at, *of) for n, of in drawn.items()}
 
-    def mutated(file, row, text):
-        put_in_place(REPOSITORY / file, text)
-        return _fail(tests, NearestFirst(reached, took_s, REPOSITORY / file, row))
 
-    return {n: _end_of(lambda of=of: mutated(*of), patience_s) for n, of in drawn.items()}
+def _loaded(tests, reached, at, file, row, text):
+    """How a mutant ends in a process that loads it."""
+    nearest = Nearest(reached, at, file, row)
+    near = sorted({reached[name][1] for name in nearest.at_row or nearest.at_file})
+
+    def mutated():
+        put_in_place(Path(file), text)
+        return _pytest(near or tests, nearest)
+
+    return _tried(mutated, lambda failed: _pytest([failed], InProcess()), at)

@@ -9,6 +9,7 @@ Mutants that mean the same are listed in mutants.toml, each with why; they are d
 import argparse
 import ast
 import contextlib
+import functools
 import itertools
 import os
 import random
@@ -16,11 +17,13 @@ import re
 import sys
 import tempfile
 from collections import Counter
+from fnmatch import fnmatch
 from pathlib import Path
 
 from cosmic_ray import plugins
 from cosmic_ray.ast import ast_nodes, get_ast
 from cosmic_ray.mutating import mutate_code
+from zerorate_tools.runtimes.runtime import runtime_folder
 
 from .mutant_trials import REPOSITORY, ends
 
@@ -40,127 +43,176 @@ _AT_LIMIT = ("Lt_LtE", "Gt_GtE")
 _LAYOUT = re.compile(r"^# layout: .*?^# layout: end", re.MULTILINE | re.DOTALL)
 
 # Numbers that are committed: what boards ask their machine code for, and what a trace ends in.
-KNOWN = "host_tests/native/test_known_answers.py"
-GOLDEN = (
-    "host_tests/firmware/test_equal_to_the_last_bit.py::"
-    "test_the_numbers_are_those_that_were_committed"
-)
+KNOWN = "native/test_native_files.py::test_the_known_answer_on_every_board_is_the_kernels"
+GOLDEN = "firmware/test_equal_to_the_last_bit.py::test_the_numbers_are_those_that_were_committed"
+EFFECTS = GOLDEN.replace("the_numbers", "the_effects")
 SWUNG = GOLDEN.replace("the_numbers", "the_numbers_of_a_device_that_swings")
 
-_COMMANDS = REPOSITORY / "tools" / "zerorate_tools" / "commands"
-# area -> (files, tests)
+_FIGURES = "golden/test_known.py::test_the_figures_are_those_that_were_committed"
+_TOOLS = "tools/zerorate_tools/"
+# area -> (folders, tests below host_tests); a file belongs to the longest of the folders above it
 AREAS = {
     "drivers": (
-        ["drivers/zerorate_i2c/" + name for name in (
-            "mpu6050.py", "fifo.py", "data_ready.py", "bus_recovery.py", "settings.py",
-            "identity.py", "registers.py")],
-        ["host_tests/drivers/test_" + name for name in (
+        ["drivers/zerorate_i2c/"],
+        ["drivers/test_" + name for name in (
             "mpu6050.py", "faults.py", "fifo.py", "fifo_by_hand.py", "data_ready.py",
-            "settings.py")],
+            "settings.py", "record_bus.py", "fake_buses.py")],
     ),
     "storage": (
-        ["firmware/zerorate/storage/" + name for name in (
-            "store.py", "places.py", "learned_store.py", "save_schedule.py", "soundness.py")],
-        ["host_tests/firmware/test_" + name for name in (
-            "store.py", "store_records.py", "places.py", "learned_store.py", "corrector.py",
-            "soundness.py")],
-    ),
-    "guard": (
-        ["firmware/zerorate/rest/guard.py", "firmware/zerorate/checked.py"],
-        ["host_tests/firmware/test_guard.py", "host_tests/firmware/test_checked.py"],
+        ["firmware/zerorate/storage/"],
+        ["firmware/test_" + name for name in (
+            "store.py", "places.py", "learned_store.py", "corrector.py", "soundness.py")],
     ),
     "rest": (
-        ["firmware/zerorate/rest/" + name for name in (
-            "bias.py", "block.py", "copying.py", "estimators.py", "fit.py", "histogram.py",
-            "recent.py", "step.py", "stillness.py")],
-        ["host_tests/firmware/test_" + name for name in (
-            "estimators.py", "fit.py", "histogram.py", "bursts.py", "windows.py", "offsets.py",
-            "published.py")]
+        ["firmware/zerorate/rest/"],
+        ["firmware/test_" + name for name in (
+            "guard.py", "estimators.py", "fit.py", "histogram.py", "bursts.py", "windows.py",
+            "offsets.py", "published.py", "stillness.py")]
         + [KNOWN, GOLDEN],
     ),
     "motion": (
-        ["firmware/zerorate/motion/" + name for name in (
-            "attitude.py", "in_motion.py", "increments.py", "least_squares.py",
-            "motion_verdict.py", "orientation.py", "posterior.py", "regression.py", "thermal.py",
-            "tilt_frame.py")],
-        [SWUNG, KNOWN]
-        + ["host_tests/firmware/test_" + name for name in (
-            "in_motion.py", "orientation.py", "motion_frame.py", "motion_fit.py",
-            "motion_known.py", "motion_verdicts.py")],
+        ["firmware/zerorate/motion/"],
+        [SWUNG, KNOWN, _FIGURES + "[settings]"]
+        + ["firmware/test_" + name for name in (
+            "in_motion.py", "motion_frame.py", "motion_fit.py", "motion_verdicts.py")],
     ),
     "gravity": (
-        ["firmware/zerorate/gravity/gravity.py", "firmware/zerorate/gravity/gravity_settings.py"],
-        [SWUNG, KNOWN, "host_tests/firmware/test_gravity.py",
-         "host_tests/firmware/test_documents.py"],
-    ),
-    "importers": (
-        ["tools/zerorate_tools/importers/" + name for name in (
-            "importing.py", "report.py", "columns/names.py", "columns/guesses.py",
-            "samples/between.py", "samples/conversion.py", "samples/gather.py",
-            "logs/columnar.py", "logs/messages.py")],
-        ["host_tests/importers/test_" + name for name in (
-            "by_a_plain_reading.py", "small_steps.py", "tables.py", "odd_files.py",
-            "odd_names.py", "odd_times.py", "units_told.py", "steps_of_logs.py",
-            "together.py")],
+        ["firmware/zerorate/gravity/"],
+        [SWUNG, KNOWN, "firmware/test_gravity.py", "firmware/test_documents.py",
+         _FIGURES + "[settings]"],
     ),
     "effects": (
-        ["firmware/zerorate/effects/" + name for name in (
-            "effects.py", "effect_basis.py", "effect_inputs.py", "effect_plays.py")],
-        ["host_tests/firmware/test_effect" + name for name in (
-            "_refine.py", "_kernels.py", "s.py", "s_in_time.py", "s_on_interpreters.py")]
-        + [KNOWN],
+        ["firmware/zerorate/effects/", "firmware/zerorate/model.py"],
+        ["firmware/test_effect" + name for name in (
+            "_refine.py", "_kernels.py", "s.py", "s_in_time.py")]
+        + ["tools/test_model_on_device.py", KNOWN, EFFECTS],
     ),
-    "models": (
-        ["firmware/zerorate/effects/model_file.py", "firmware/zerorate/model.py",
-         "tools/zerorate_tools/model/binary.py"],
-        ["host_tests/tools/test_model_limits.py", "host_tests/firmware/test_effect_kernels.py",
-         "host_tests/firmware/test_effects_in_time.py::test_the_first_sample_speaks_until_the_first_tick_ends",
-         "host_tests/firmware/test_effects_in_time.py::test_a_power_on_begins_every_memory_anew",
-         "host_tests/firmware/test_effects_on_interpreters.py",
-         "host_tests/tools/test_model.py", "host_tests/tools/test_model_on_device.py",
-         "host_tests/firmware/test_fit.py::test_a_model_without_the_slope_leaves_them_as_they_are",
-         "host_tests/firmware/test_fit.py::test_estimators_share_the_range_of_a_curve_that_the_model_holds_whole"],
+    # what puts the firmware's parts together, and what they compute with
+    "corrector": (
+        ["firmware/zerorate/"],
+        ["firmware/test_" + name for name in (
+            "corrector.py", "checked.py", "bursts.py", "published.py", "documents.py",
+            "sources_together.py", "estimators.py", "motion_fit.py", "turn_on.py")]
+        + [KNOWN, GOLDEN, _FIGURES + "[settings]", _FIGURES + "[watched]"],
     ),
     "recordings": (
-        ["tools/zerorate_tools/recordings/" + name for name in (
-            "checks.py", "csv_format.py", "scales.py", "bounded.py")],
-        ["host_tests/tools/test_recordings.py", "host_tests/tools/test_bad_recordings.py",
-         "host_tests/tools/test_recording_limits.py"],
+        [_TOOLS + "recordings/"],
+        ["tools/test_" + name for name in (
+            "recordings.py", "bad_recordings.py", "atomic.py", "drafts.py", "growing.py")]
+        + ["hostile/test_guarded.py", "importers/test_turning.py", _FIGURES + "[turned]"],
     ),
-    "commands": (
-        sorted(str(path.relative_to(REPOSITORY)) for path in _COMMANDS.glob("[a-z]*.py")),
-        ["host_tests/tools/test_words_reach.py"],
+    "importers": (
+        [_TOOLS + "importers/"],
+        ["importers/"] + [_FIGURES + f"[imported {kind}]" for kind in (
+            *("arrays", "changed", "clocks", "flights", "phones", "robots", "sensors", "tools"),
+            "wearables")],
+    ),
+    "commands": ([_TOOLS + "commands/"], ["tools/test_words_reach.py"]),
+    # what stands in no folder: the library's own doors, and what all share
+    "tools": (
+        [_TOOLS],
+        ["tools/test_words_reach.py", "tools/test_host.py", "tools/test_tools_by_hand.py",
+         "tools/test_atomic.py"],
+    ),
+    "model": (
+        [_TOOLS + "model/"],
+        ["tools/test_model" + name for name in (
+            ".py", "_known.py", "_on_device.py")]
+        + ["loop/test_basis.py", "tools/test_host.py"],
+    ),
+    "read": (
+        [_TOOLS + "loop/read/"],
+        ["loop/test_still.py", "loop/test_ticks.py", _FIGURES + "[read]",
+         _FIGURES + "[parts of reading]"],
     ),
     "fit": (
-        ["tools/zerorate_tools/loop/fit/" + name for name in (
-            "common_cause.py", "cross_products.py", "free_curve.py", "intervals.py",
-            "left_out.py", "likelihood.py", "line.py", "noise.py", "regression.py", "shrunk.py",
-            "single.py", "smooth.py", "surrogates.py")],
-        ["host_tests/loop/test_fit_" + name for name in ("dense.py", "by_hand.py")],
+        [_TOOLS + "loop/fit/"],
+        ["loop/test_fit_dense.py", "loop/test_fit_by_hand.py", "loop/test_smooth.py"],
+    ),
+    "search": (
+        [_TOOLS + "loop/search/"],
+        ["loop/test_search_by_hand.py", "loop/test_steps_by_hand.py"]
+        + [_FIGURES + f"[{whole}]" for whole in ("steps found", "searched one", "searched two")],
     ),
     "verify": (
-        ["tools/zerorate_tools/loop/verify/" + name for name in (
-            "analysis.py", "by_kernels.py", "firmware.py", "judge.py", "measure.py",
-            "measured.py", "power_on.py", "prune_by_holdout.py", "slots.py")],
-        ["host_tests/loop/test_verify_by_hand.py", "host_tests/loop/test_kernels_by_hand.py"],
+        [_TOOLS + "loop/verify/"],
+        ["loop/test_verify_by_hand.py", "loop/test_kernels_by_hand.py"],
     ),
-    # what one search is made of; its course is judged by whole closings
-    "search": (
-        ["tools/zerorate_tools/loop/search/" + name for name in (
-            "catalogue.py", "cancels.py", "confounding.py", "decide.py", "detectable.py",
-            "drift_test.py", "fits_in_slots.py", "multiple_testing.py", "naming.py",
-            "ols_holdout_ratio.py", "periodic.py", "refine.py", "selection.py",
-            "step_places.py", "steps.py")],
-        ["host_tests/loop/test_search_by_hand.py", "host_tests/loop/test_steps_by_hand.py"],
+    "turning": (
+        [_TOOLS + "loop/motion/"],
+        ["loop/test_axes_by_gravity.py", "loop/test_verify_by_hand.py"],
     ),
-    "writers": (
-        ["tools/zerorate_tools/ending.py"]
-        + ["tools/zerorate_tools/recordings/" + name for name in (
-            "atomic.py", "drafts.py", "growing.py", "unfinished.py")],
-        ["host_tests/tools/test_" + name for name in (
-            "atomic.py", "drafts.py", "growing.py")],
+    "findings": (
+        [_TOOLS + "loop/"],
+        ["loop/test_report_form.py", _FIGURES + "[reported]"],
     ),
+    "report": (
+        [_TOOLS + "report/"],
+        ["report/test_page.py", "report/test_plots.py", "report/test_print.py",
+         _FIGURES + "[drawn]", _FIGURES + "[reported]"],
+    ),
+    "replay": ([_TOOLS + "replay/"], ["replay/"]),
+    "simulate": (
+        [_TOOLS + "simulate/"],
+        ["tools/test_simulate.py", "tools/test_simulated_effects.py",
+         _FIGURES + "[simulated]"],
+    ),
+    "fleet": (
+        [_TOOLS + "fleet/"],
+        ["fleet/test_cluster.py", "fleet/test_population.py", _FIGURES + "[fleet of ten]"],
+    ),
+    "boards": (
+        [_TOOLS + "boards/"],
+        ["drivers/test_boards.py", "drivers/test_record_bus.py", "boards/test_programs.py"],
+    ),
+    "kernels": (
+        [_TOOLS + "kernels/", _TOOLS + "layout/"],
+        ["layout/", "native/test_export_c.py", KNOWN,
+         "replay/test_library.py"],
+    ),
+    # what is shown beside others: the comparison, the demo, and the methods of others
+    "compare": (
+        [_TOOLS + "compare/", _TOOLS + "demo/", _TOOLS + "peers.py"],
+        ["compare/", "demo/", _FIGURES + "[compared]"],
+    ),
+    "watch": (
+        [_TOOLS + "watch/", _TOOLS + "guide.py"], ["watch/", _FIGURES + "[watched]"],
+    ),
+    "runtimes": (
+        [_TOOLS + "runtimes/"],
+        ["runtimes/test_interpreters.py"],
+    ),
+    "service": ([_TOOLS + "service/"], ["service/test_service.py"]),
 }  # fmt: skip
+
+
+@functools.cache
+def _listed():
+    """mutants.toml: files that are apart, and mutants that mean the same."""
+    return tomllib.loads(SURVIVORS_AND_WHY.read_text(encoding="utf-8"))
+
+
+def area_of(file):
+    """The area of a file, by the longest folder above it; None if it has none or is apart."""
+    areas = {folder: name for name, (folders, _) in AREAS.items() for folder in folders}
+    longest = max(filter(file.startswith, areas), key=len, default=None)
+    return None if apart(file) else areas.get(longest)
+
+
+def apart(file):
+    """Why a file has no mutants; or ""."""
+    return next((e["why"] for e in _listed()["apart"] if fnmatch(file, e["file"])), "")
+
+
+def files_of(name):
+    """The files of an area, below the repository's folder."""
+    paths = [path for folder in AREAS[name][0] for path in _below(REPOSITORY / folder)]
+    files = [path.relative_to(REPOSITORY).as_posix() for path in paths]
+    return sorted(f for f in set(files) if area_of(f) == name)
+
+
+def _below(path):
+    return path.rglob("*.py") if path.is_dir() else [path]
 
 
 def _annotations(source):
@@ -172,6 +224,15 @@ def _annotations(source):
     return [
         ((a.lineno, a.col_offset), (a.end_lineno, a.end_col_offset)) for a in found if a is not None
     ]
+
+
+def _is_wording(node):
+    """Whether a node of parso joins, repeats or fills a text, or is the number by which it does."""
+    beside = [n for n in (node.get_previous_sibling(), node.get_next_sibling()) if n is not None]
+    if node.type == "number":
+        return any(n.type == "operator" and _is_wording(n) for n in beside)
+    texts = {"string", "strings", "fstring"}
+    return getattr(node, "value", "") in ("+", "*", "%") and any(n.type in texts for n in beside)
 
 
 def mutants(files):
@@ -190,12 +251,13 @@ def mutants(files):
             if operator_class.arguments() or name.endswith(_SAME_OF_SMALL_INTEGERS):
                 continue
             operator = operator_class()
-            at = [start for node in nodes for start, _ in operator.mutation_positions(node)]
-            for occurrence, start in enumerate(at):
+            at = [(node, at) for node in nodes for at, _ in operator.mutation_positions(node)]
+            for occurrence, (node, start) in enumerate(at):
                 row = start[0]
                 in_layout = any(a < row <= b for a, b in zip(written[::2], written[1::2]))
                 annotates = any(a <= start < b for a, b in annotations)
-                if not in_layout and not annotates and not _SAME.search(rows[row - 1]):
+                no_code = in_layout or annotates or _is_wording(node)
+                if not no_code and not _SAME.search(rows[row - 1]):
                     found.append((file, name, occurrence, row))
     return found
 
@@ -204,12 +266,18 @@ def same(mutant, text, mutated=""):
     """Why the mutant of a line, which makes another of it, means the same; or ""."""
     if mutant[1].endswith(_AT_LIMIT) and _LIMIT.search(text):
         return "at the limit both are the limit"
-    for entry in tomllib.loads(SURVIVORS_AND_WHY.read_text(encoding="utf-8"))["same"]:
+    for entry in _listed()["same"]:
         names = entry["operators"]
         there = mutant[0].startswith(entry["file"]) and mutated in entry.get("become", [mutated])
         if there and entry["line"] == text and mutant[1].rpartition("/")[2] in names:
             return entry["why"]
     return ""
+
+
+def _keyword_only(source):
+    """How many parameters of each function go by name alone. Raises SyntaxError."""
+    nodes = ast.walk(ast.parse(source))
+    return [len(node.kwonlyargs) for node in nodes if isinstance(node, ast.arguments)]
 
 
 def draws(files, seed):
@@ -220,13 +288,14 @@ def draws(files, seed):
         # the * of a parameter list is no product, and cosmic-ray knows no dot after except
         with contextlib.suppress(SyntaxError, AttributeError):
             text = mutate_code(source, plugins.get_operator(operator)(), occurrence)
-            ast.parse(text)
+            if _keyword_only(text) != _keyword_only(source):
+                continue
             yield file, operator, occurrence, row, source.splitlines()[row - 1].strip(), text
 
 
 def area_score(name, count, seed):
-    """Counter of killed, survived, same; prints each survivor."""
-    files, tests = AREAS[name]
+    """Counter of same and of how the others end; prints each that no test killed."""
+    files, tests = files_of(name), [f"host_tests/{test}" for test in AREAS[name][1]]
     found, drawn, said = Counter(), {}, {}
     for number, (file, operator, occurrence, row, line, text) in enumerate(
         itertools.islice(draws(files, seed), count)
@@ -235,20 +304,21 @@ def area_score(name, count, seed):
             found["same"] += 1
             continue
         drawn[number] = (file, row, text)
-        said[number] = f"survived: {file}:{row} {operator} {occurrence}: {line}"
+        said[number] = f"{file}:{row} {operator} {occurrence}: {line}"
     for number, end in ends(tests, drawn).items():
-        found["survived" if end == "passed" else "killed"] += 1
-        if end == "passed":
-            print(said[number], flush=True)
+        found[end] += 1
+        if end != "killed":
+            print(f"{end}: {said[number]}", flush=True)
     return found
 
 
 def low_score(name, count, seed):
     """Whether an area's share is below nine tenths, having printed it."""
     found = area_score(name, count, seed)
-    tried = found["killed"] + found["survived"]
+    tried = found["killed"] + found["passed"]
     share = found["killed"] / tried if tried else 0.0
-    counts = f"{found['killed']} of {tried} killed, {found['same']} mean the same"
+    apart_from_them = f"{found['same']} mean the same, {found['slow']} do not end"
+    counts = f"{found['killed']} of {tried} killed, {apart_from_them}, {found['untried']} untried"
     print(f"{name:<12}{share:>6.0%}  {counts}", flush=True)
     return share < 0.9
 
@@ -265,7 +335,9 @@ def main(arguments=None):
     os.chdir(REPOSITORY)
     # one cache for all: what is compiled is kept by its text, and a mutant's is another
     with tempfile.TemporaryDirectory(prefix="zerorate-mutants-") as cache:
+        interpreters = runtime_folder("")
         os.environ["ZERORATE_CACHE"] = cache
+        Path(cache, "runtimes").symlink_to(interpreters)
         low = sum(low_score(name, chosen.each, chosen.seed) for name in chosen.areas or AREAS)
     return 1 if low else 0
 

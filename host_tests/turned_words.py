@@ -23,8 +23,7 @@ from zerorate import Corrector
 from zerorate.storage.codes import LOADED, OUT_OF_RANGE
 from zerorate.storage.learned_store import LearnedStore
 from zerorate_fakes.memory import FakeMemory
-from zerorate_tools.layout import SETTINGS
-from zerorate_tools.layout.naming import named_state
+from zerorate_tools.layout import SETTINGS, named_state
 from zerorate_tools.replay.engines import engine
 from zerorate_tools.replay.samples import Frames
 from zerorate_tools.runtimes import NAMES, find
@@ -135,7 +134,7 @@ def attack(options, count, seed, only=None):
     reason, corrector = stored(state, options)
     assert reason == LOADED
     usual = max(error_mdps(corrector, frames, bias) for _ in range(ROUNDS))
-    told = {"loaded": 0, "afresh": 0, "signals": 0, "exceptions": 0, "wrong": 0}
+    tally = {"loaded": 0, "afresh": 0, "signals": 0, "exceptions": 0, "wrong": 0}
     lines = []
     for at, value in turnings(state, settings, count, seed, only):
         turned = array("i", state)
@@ -158,13 +157,13 @@ def attack(options, count, seed, only=None):
             assert reason in (LOADED, OUT_OF_RANGE)
             if off > usual + WRONG_MDPS:
                 kind = "wrong"
-        told[kind] += 1
+        tally[kind] += 1
         if kind not in ("loaded", "afresh"):
             off = "" if fell else f", {off:.0f} mdps where {usual:.1f} are usual"
             name = named_state(settings)[at][0]
             lines.append(f"{kind}: {name}, {state[at]} became {value}{off}")
             print(lines[-1], flush=True)
-    return told, lines
+    return tally, lines
 
 
 def differences(runtime, options, count, seed, only=None):
@@ -202,9 +201,9 @@ def main():
             fallen += len(lines)
             print(f"{options or 'by default'}: {tried} on {name}, {len(lines)} otherwise", *lines)
     for options in SETTINGS_TRIED:
-        told, lines = attack(options, arguments.values, arguments.seed)
+        tally, lines = attack(options, arguments.values, arguments.seed)
         fallen += len(lines)
-        counts = ", ".join(f"{number} {kind}" for kind, number in told.items())
+        counts = ", ".join(f"{number} {kind}" for kind, number in tally.items())
         print(f"{options or 'by default'}: {counts}", flush=True)
     return 1 if fallen else 0
 

@@ -7,7 +7,7 @@ from .native import rest
 # layout: names that a board's own compiler reads
 const = int
 # layout: end
-# what the number of samples is added to (tools/zerorate_tools/kernels/parts.py)
+# what the number of samples is added to (tools/zerorate_bench/native/parts.py)
 _BURST = const(-0x3FFA0000)
 
 

@@ -17,6 +17,8 @@ _OUT_Q8 = const(62)
 _EFFECT_Q8 = const(68)
 _QUALITY_Q8 = const(77)
 _SOURCE = const(80)
+# layout: The last words before the axes
+_TURN_ON_OFFSET_Q8 = const(-3)
 # layout: An axis
 _WAITING_N = const(1)
 _OFFSET_Q8 = const(27)
@@ -140,6 +142,8 @@ class Corrector:
                 s[a + _OFFSET_VARIANCE_Q8] = c[_TURN_ON_VARIANCE_Q8]
                 s[a + _LEFT_Q4] = _NO_VALUE
                 s[a + _OFFSET_AGE_MS] = 0
+            # else what is held back until it insists would be the curve's
+            s[c[_AXES] + _TURN_ON_OFFSET_Q8 + axis] = s[a + _OFFSET_Q8]
 
     def update(self, sample: "array[int]", dt_us: int) -> int:
         """Learn from `sample` and correct its rates in place; allocates nothing.
@@ -152,7 +156,10 @@ class Corrector:
         return self._with_others(sample, dt_us)
 
     def use_model(self, effects: "Any") -> None:
-        """Subtract what this model says (a loaded model.EffectModel), and learn what is left."""
+        """Subtract what this model says (a loaded model.EffectModel), and learn what is left.
+
+        Call it before `update` is kept in a variable: one from before goes on without the model.
+        """
         from .model import use_model  # who has none has no memory taken by it
 
         use_model(self, effects)

@@ -26,7 +26,7 @@ _GRAVITY = const(5)
 _MOST_US = const(0x1FFFFFFF)  # two of them fit 31 bits
 
 
-class Others:
+class Fusion:
     """What `corrector`, a Corrector, has besides learning at rest."""
 
     def __init__(self, corrector: "Any") -> None:
@@ -82,7 +82,7 @@ class Others:
 def join(corrector):
     """Let its samples go by what it has besides learning at rest."""
     if corrector.alone:
-        corrector._with_others = Others(corrector).update
+        corrector._with_others = Fusion(corrector).update
         corrector.alone = False
         if "update" in corrector.__dict__:
             del corrector.update

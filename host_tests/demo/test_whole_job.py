@@ -6,18 +6,17 @@ What it prints is what docs/commands.md shows: host_tests/package runs it and co
 import re
 import shutil
 import socket
-import sys
-from pathlib import Path
 
 import pytest
-from zerorate_tools import demo
 from zerorate_tools.cli import main
-from zerorate_tools.demo import broad_trial, story
+from zerorate_tools.demo import broad, demo
 from zerorate_tools.demo import real as by_real
 from zerorate_tools.demo.broad import trials
 from zerorate_tools.demo.real import WAYS, real
 from zerorate_tools.errors import CannotFetch
+from zerorate_tools.recordings import write_recording
 from zerorate_tools.runtimes import node
+from zerorate_tools.simulate import simulate
 
 from host_tests.docs.outputs import demo_shown
 
@@ -52,23 +51,6 @@ def test_micropython_and_this_computer_agree_in_all_three_runs(said):
     assert "Final states equal to those of this computer: yes." in said
 
 
-def test_each_users_next_command_is_said(said):
-    for command in ("flash", "record", "import", "close"):
-        assert f"zerorate {command} " in said
-    assert "pydoc zerorate_fakes" in said
-
-
-def test_commands_are_said_as_a_shell_finds_them(monkeypatch, tmp_path):
-    own = Path(sys.executable).parent
-    monkeypatch.chdir(own.parent)
-    monkeypatch.setenv("PATH", "")
-    assert f"  {own.name}/zerorate flash" in story.ending([(Path("a"), "b")])
-    (tmp_path / "zerorate").symlink_to(own / "zerorate")
-    for folder in (own, tmp_path):
-        monkeypatch.setenv("PATH", str(folder))
-        assert "  zerorate flash" in story.ending([(Path("a"), "b")])
-
-
 def test_an_interpreter_that_is_not_there_is_fetched(monkeypatch, tmp_path):
     from zerorate_tools.commands.demo import get_ready
     from zerorate_tools.errors import MissingRuntime
@@ -78,13 +60,6 @@ def test_an_interpreter_that_is_not_there_is_fetched(monkeypatch, tmp_path):
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     with pytest.raises(MissingRuntime, match="Node.js"):
         get_ready("wasm")
-
-
-def test_nothing_found_is_said_as_such(tmp_path):
-    device = demo.Device("plain", [tmp_path / "a.parquet", tmp_path / "b.parquet"], [], [])
-    result = {"split": {"test": ["b"]}, "effects": []}
-    result |= {f"{name}_mdps": [1.0, 2.0, 3.0] for name in ("before", "after", "floor")}
-    assert "found: nothing" in story.chapter_two(device, result)
 
 
 NOBODY = "http://127.0.0.1:9/"
@@ -101,20 +76,20 @@ def cache(tmp_path, monkeypatch):
 def filled(real_data, cache):
     """The cache with the trial in it, as if fetched."""
     (cache / "broad").mkdir()
-    name = f"{broad_trial.NAME}.mat"
+    name = f"{broad.NAME}.mat"
     shutil.copyfile(real_data / "broad" / name, cache / "broad" / name)
     return cache
 
 
 @pytest.fixture(scope="module")
 def shown(real_data, find_runtime):
-    (trial,) = (t for t in trials(real_data / "broad") if t.name == broad_trial.NAME)
+    (trial,) = (t for t in trials(real_data / "broad") if t.name == broad.NAME)
     return real(trial, find_runtime("x86").name)
 
 
 def test_a_trial_in_the_cache_needs_no_network(filled):
-    trial = broad_trial.broad_trial(NOBODY)
-    assert trial.name == broad_trial.NAME
+    trial = broad.broad_trial(NOBODY)
+    assert trial.name == broad.NAME
     assert len(trial.rate_dps) > 50_000
 
 
@@ -137,18 +112,23 @@ def silent_server():
 def test_without_a_network_it_is_said_what_to_do_and_the_built_in_device_is_shown(
     cache, built_in, monkeypatch, capsys
 ):
-    monkeypatch.setattr(broad_trial, "FOLDER_URL", NOBODY)
+    monkeypatch.setattr(broad, "FOLDER_URL", NOBODY)
     assert main(["demo", "--real", "--runtime", "cpython"]) == 2
     line, instead = capsys.readouterr().err.splitlines()
     assert "is there a network?" in line and str(cache / "broad") in line
     assert "built-in" in instead and built_in == ["cpython"]
 
 
+def test_a_folder_for_what_is_only_printed_is_refused(capsys, tmp_path):
+    assert main(["demo", "--real", "--out", str(tmp_path / "out")]) == 2
+    assert "leave --out away" in capsys.readouterr().err
+
+
 def test_a_server_that_never_answers_is_waited_for_aloud_and_not_for_long(
     cache, built_in, silent_server, monkeypatch, capsys
 ):
-    monkeypatch.setattr(broad_trial, "FOLDER_URL", silent_server)
-    monkeypatch.setattr(broad_trial, "_SILENT_S", 0.5)
+    monkeypatch.setattr(broad, "FOLDER_URL", silent_server)
+    monkeypatch.setattr(broad, "_SILENT_S", 0.5)
     monkeypatch.setattr("zerorate_tools.progress.QUIET_S", 0.1)
     assert main(["demo", "--real", "--runtime", "cpython"]) == 2
     said = capsys.readouterr().err
@@ -168,16 +148,10 @@ def test_this_python_stands_in_for_a_micropython_that_cannot_be_fetched(
 
 
 def test_a_damaged_trial_is_fetched_again_and_never_used(filled):
-    file = filled / "broad" / f"{broad_trial.NAME}.mat"
+    file = filled / "broad" / f"{broad.NAME}.mat"
     file.write_bytes(file.read_bytes()[:-1] + b"x")
     with pytest.raises(CannotFetch, match="network"):
-        broad_trial.broad_trial(NOBODY)
-
-
-def test_nothing_is_left_in_the_cache_by_a_failure(cache):
-    with pytest.raises(CannotFetch):
-        broad_trial.broad_trial(NOBODY)
-    assert list((cache / "broad").iterdir()) == []
+        broad.broad_trial(NOBODY)
 
 
 def test_the_firmware_finds_the_bias_that_the_cameras_tell(shown):
@@ -194,8 +168,31 @@ def test_the_command_credits_the_authors_and_prints_the_table(filled, shown, mon
     asked = []
     monkeypatch.setattr(by_real, "real", lambda *given: asked.append(given) or shown)
     assert main(["demo", "--real", "--runtime", "x86"]) == 0
-    assert [(trial.name, runtime) for trial, runtime, _ in asked] == [(broad_trial.NAME, "x86")]
+    assert [(trial.name, runtime) for trial, runtime, _ in asked] == [(broad.NAME, "x86")]
     said = capsys.readouterr().out
     assert "D. Laidig" in said and "CC BY 4.0" in said
     rows = [line for line in said.splitlines() if re.search(r"\d\.\d\s+[\d,]+\.\d$", line)]
     assert len(rows) >= len(WAYS) - 1
+
+
+DESCRIPTION = {
+    "name": "on the table",
+    "seed": 8,
+    "sensor": {"odr_hz": 50.0, "gyro_noise_dps": 0.05},
+    "bias": {"b0": [5.0, -2.0, 0.5], "b1": [0.05, -0.03, 0.02]},
+    "session": [{"start_degc": 22.0, "temperature": [{"to": 24.0, "minutes": 1}]}],
+}
+
+
+def test_the_bias_is_gone_at_the_end_of_the_chain(micropython, tmp_path):
+    recording, truth = simulate(DESCRIPTION)
+    write_recording(recording, tmp_path / "table.parquet")
+    truth_dps = truth.bias_lsb / recording.scales.gyro_lsb_per_dps
+    shown = demo(tmp_path / "table.parquet", micropython.name, truth_dps)
+    assert shown.same_state
+    assert "MPU-6050 at 0x68" in shown.said
+    assert shown.score.firmware_mdps < shown.score.first_ten_s_mdps / 5
+    assert shown.score.first_ten_s_mdps < shown.score.uncorrected_mdps
+    last = shown.corrected_dps[-500:]
+    # 0.05 dps of noise over 500 samples leaves 2 mdps
+    assert abs(last.mean(axis=0)).max() < 0.010

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from zerorate_tools.cli import parser
-from zerorate_tools.demo import broad_trial
+from zerorate_tools.demo import broad
 from zerorate_tools.model.effects import ANY_CHANNEL, EFFECTS
 
 _NUMBER = re.compile(r"(?<![\w.])[+-]?\d[\d,]*(?:\.\d+)?(?:e[+-]?\d+)?")
@@ -48,7 +48,7 @@ def commands(block):
 
 
 def _needs_the_network(block):
-    trial = broad_trial.kept_in() / f"{broad_trial.NAME}.mat"
+    trial = broad.kept_in() / f"{broad.NAME}.mat"
     return "demo --real" in block.text and not trial.exists()
 
 

@@ -92,13 +92,6 @@ def test_every_link_of_a_page_beside_the_site_leads_to_a_file_and_a_heading(repo
                 assert heading in anchors, f"{page.name}: {link}"
 
 
-def test_a_page_that_installs_zerorate_says_what_holds_until_it_is_published(repository):
-    told = "(README.md#install)"
-    for page in (repository / "docs").glob("*.md"):
-        asked = re.search(r"pip install '?zerorate", read(page)) and page.name != "README.md"
-        assert not asked or told in read(page), page.name
-
-
 @pytest.mark.parametrize(
     ("one", "other", "same"),
     [
@@ -175,13 +168,6 @@ def test_the_wheel_that_is_named_is_of_this_version(repository):
         assert set(versions) <= {__version__}, page.name
         named += len(versions)
     assert named
-
-
-def test_every_make_target_that_is_named_is_one(repository):
-    targets = set(re.findall(r"^([a-z-]+):", (repository / "Makefile").read_text(), re.MULTILINE))
-    for page in (repository / "README.md", repository / "docs" / "README.md"):
-        named = re.findall(r"`make ([a-z-]+)`", page.read_text(encoding="utf-8"))
-        assert named and set(named) <= targets
 
 
 BESIDES = ("FloatCorrector", "fleet", "Corrector", "LearnedStore", "MPU6050", "Fifo", "LinuxI2C")

@@ -1,12 +1,9 @@
-"""An integer that minds 31 bits, and the firmware driven with it.
+"""An integer that minds 31 bits.
 
 A small integer of a 32-bit MicroPython has 31 bits; what leaves them is an object on the heap, and
 in C a wrapped number. Plain kernels compute with whatever they are given, so an I31 in every
 word of their arrays checks every intermediate result.
 """
-
-from zerorate.corrector import Corrector
-from zerorate.rest import step
 
 LEAST, MOST = -(1 << 30), (1 << 30) - 1
 
@@ -85,15 +82,3 @@ class Words(list):
         if index < 0:
             raise OutOf31Bits(f"word {int(index)} of the state")
         super().__setitem__(index, checked(value, f"word {int(index)}"))
-
-
-class CheckedCorrector:
-    """A Corrector whose kernels compute in I31."""
-
-    def __init__(self, *args, **options):
-        plain = Corrector(*args, **options)
-        self.state, self.settings = Words(plain.state), Words(plain.settings)
-
-    def update(self, frame, dt_us):
-        """As Corrector.update, on a copy of the frame."""
-        return step.step(self.state, self.settings, Words(frame), checked(dt_us))

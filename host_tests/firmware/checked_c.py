@@ -10,8 +10,7 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-from zerorate_tools.kernels.c_expressions import Expressions
-from zerorate_tools.kernels.c_functions import kernels_in_c
+from zerorate_tools.kernels.c_functions import Expressions, kernels_in_c
 from zerorate_tools.kernels.library import ENTRIES, address, compile_library, own_text
 from zerorate_tools.kernels.reading import Kernels
 

@@ -10,13 +10,13 @@ from zerorate.bursts import Bursts
 from zerorate.native import rest
 from zerorate.others import join
 from zerorate.rest import block
-from zerorate_tools.kernels.parts import BURST
+from zerorate_bench.native.parts import BURST
 from zerorate_tools.layout import SETTINGS, STATE
 
 from . import trace
 from .trace_on_host import corrector_for, frames
 
-ON_BOARD = Path(__file__).parent / "on_micropython" / "bursts_without_heap.py"
+ON_BOARD = Path(__file__).parent / "on_micropython" / "trace_without_heap.py"
 
 
 @pytest.fixture(scope="module", params=sorted(trace.MODES))
@@ -160,7 +160,7 @@ def test_a_source_that_joins_later_sees_the_bursts_that_machine_code_took(monkey
 def on_board(runtime, mode, repository):
     return runtime.run(
         ON_BOARD,
-        [mode, trace.UPDATES[mode]],
+        [mode, trace.UPDATES[mode], "bursts"],
         modules=[repository / "firmware", ON_BOARD.parents[1]],
         files_out=["state.bin", "frames.bin"],
         check=True,

@@ -72,14 +72,6 @@ def test_what_came_after_the_last_read_back_is_forgotten_to_the_last_bit(feed):
     assert feed.checked.taken_back == 1
 
 
-def test_the_guards_counts_stay(feed):
-    feed.checked.keep()
-    for _ in range(5):
-        feed.checked.update(array("i", [0] * 7), 10000)
-    feed.checked.take_back()
-    assert "5 frames of all zeros" in feed.checked.corrector.explain()
-
-
 def test_a_verified_sample_keeps_what_came_before_it_and_not_itself(feed):
     before = array("i", feed.checked.corrector.state)
     feed.rest(1, 100, checked.VERIFIED)

@@ -1,6 +1,5 @@
 """What effect slots do sample by sample: plays, tables, delays, gaps, channels, power-ons."""
 
-import math
 from array import array
 from dataclasses import replace
 
@@ -15,7 +14,7 @@ from zerorate_tools.model import Slot, build_model, encoded
 from zerorate_tools.model.term import Term, evaluate
 
 from .simulated_sources import A_TICK, SCALES, columns, loaded, on_firmware, tick_means
-from .test_effects import BASES, CENTRES, TENTH_OF_THE_FLOOR_DPS, term_over, worst
+from .test_effects import BASES, CENTRES, TENTH_OF_THE_FLOOR_DPS, term_over
 
 PLAYS = [
     Slot(Term("temp", 5.0, 45.0, 25.0, power, memory="play", width=width), coefficients)
@@ -50,26 +49,6 @@ def test_play_operators_alone_make_a_model(warm_up):
     )
 
 
-def test_a_small_table_is_straight_lines_between_nine_points(warm_up):
-    table = (0.0, 0.3, -0.2, 1.0, 0.9, 0.1, -1.0, 0.0, 0.5)
-    error, size = worst(Term("temp", 10.0, 50.0, 30.0, table=table), warm_up)
-    assert size > 0.49
-    assert error < TENTH_OF_THE_FLOOR_DPS
-
-
-def test_a_long_delay_is_straight_lines_between_what_was_kept():
-    ramp = {n: np.zeros(8000, int) for n in ("ax", "ay", "az", "gx", "gy", "gz")}
-    ramp["temp"] = np.arange(8000)
-    got = on_firmware(loaded([Slot(Term("temp", delay_s=600.0), (0.01, 0.0, 0.0))]), ramp)[:, 0]
-    # a tick's mean is used in the tick behind it, and was that of 600 ticks before
-    n = np.arange(700 * A_TICK, 8000)
-    tick = n // A_TICK - 1
-    wanted = 0.01 * ((A_TICK * (tick - 600) + (A_TICK - 1) / 2) / 340 + 36.53)
-    later = n % A_TICK == A_TICK - 1
-    assert np.abs(got[n] - wanted)[later].max() < 0.0001
-    assert np.ptp(got[50 : 600 * A_TICK]) == 0.0
-
-
 def test_two_delays_keep_what_was_apart():
     raw = {n: np.zeros(3000, int) for n in ("ax", "ay", "az", "gx", "gy", "gz")}
     raw["temp"] = np.arange(3000)
@@ -91,14 +70,6 @@ def test_only_the_effects_own_words_of_the_state_change(warm_up):
     assert changed == [STATE.EFFECT_Q8 + axis for axis in range(3)]
 
 
-def test_outside_the_fitted_range_a_slot_is_held_at_the_edge():
-    term = Term("temp", 20.0, 40.0, 30.0, power=2)
-    raw = {n: np.zeros(40, int) for n in ("ax", "ay", "az", "gx", "gy", "gz")}
-    raw["temp"] = np.full(40, round((55.0 - 36.53) * 340))
-    got = on_firmware(loaded([Slot(term, (0.002, 0.0, 0.0))]), raw)
-    assert got[-1, 0] == pytest.approx(0.002 * 10.0**2, abs=3e-5)
-
-
 def test_a_scale_error_is_of_the_very_sample(warm_up):
     raw = {name: values[:400] for name, values in warm_up[0].items()}
     slots = [
@@ -114,18 +85,6 @@ def test_a_scale_error_is_of_the_very_sample(warm_up):
     wanted = 0.02 * rate[A_TICK:] + 0.001 * rate[A_TICK:] * held
     assert np.abs(got[A_TICK:, 0] - wanted).max() < 1e-4
     assert np.abs(got[:, 1] - 0.005 * rate).max() < 5e-5
-
-
-def test_acceleration_counts_in_the_very_sample(warm_up):
-    raw = {name: values[:400] for name, values in warm_up[0].items()}
-    slots = [
-        Slot(Term("acc_x", -2.0, 2.0), (0.1, 0.02, 0.0)),
-        Slot(Term("acc_z", -2.0, 2.0, power=2), (0.0, 0.0, 0.05)),
-    ]
-    got = on_firmware(loaded(slots), raw)
-    x, z = raw["ax"] / 16384, raw["az"] / 16384
-    wanted = np.column_stack([0.1 * x, 0.02 * x, 0.05 * z**2])
-    assert np.abs(got - wanted).max() < 5e-5
 
 
 def radio(n=400):
@@ -224,15 +183,6 @@ def still_frame(temp=0):
     return array("i", [0, 0, 16384, temp, 0, 0, 0])
 
 
-def test_a_gap_lets_as_many_ticks_pass_as_it_lasted():
-    slot = Slot(Term("one", decay_s=100.0), (1.0, 0.0, 0.0))
-    state, model = array("i", [0] * STATE.FIT_WEIGHTS), loaded([slot])
-    for dt_us in [250000] * 41 + [50_000_000] + [250000] * 100:
-        effects.sense(state, model.e, still_frame(), dt_us, 1)
-    # 85 s have passed; the latest whole tick is the one that began at 84 s
-    assert state[STATE.EFFECT_Q8] / 256 / 131 == pytest.approx(math.exp(-84 / 100), abs=0.001)
-
-
 def test_a_channel_that_was_never_given_has_no_effect():
     slot = Slot(Term("load", 0.0, 100.0, 50.0), (0.01, 0.0, 0.0))
     state, model = array("i", [0] * STATE.FIT_WEIGHTS), loaded([slot])
@@ -244,18 +194,6 @@ def test_a_channel_that_was_never_given_has_no_effect():
     assert state[STATE.EFFECT_Q8] / 256 / 131 == pytest.approx(0.4, abs=1e-4)
 
 
-@pytest.mark.parametrize("value", [-1_500_000, -1, 3, 700_000, 3_000_000])
-def test_a_channel_of_millions_is_held_to_its_range(value):
-    slot = Slot(Term("load", -1e6, 1e6), (1e-6, 0.0, 0.0))
-    state, model = array("i", [0] * STATE.FIT_WEIGHTS), loaded([slot])
-    assert model.e[EFFECTS.INPUTS + 1] > 0  # its values are shifted right
-    model.channel("load", value)
-    for _ in range(30):
-        effects.sense(state, model.e, still_frame(), 250000, 1)
-    wanted = 1e-6 * max(-1e6, min(1e6, value))
-    assert state[STATE.EFFECT_Q8] / 256 / 131 == pytest.approx(wanted, abs=1e-4)
-
-
 def test_frames_that_are_no_readings_let_time_pass_and_nothing_else():
     slots = [Slot(Term("temp", 0.0, 60.0), (0.01, 0, 0)), Slot(Term("time", 0, 100), (0, 0.01, 0))]
     state, model = array("i", [0] * STATE.FIT_WEIGHTS), loaded(slots)
@@ -263,16 +201,6 @@ def test_frames_that_are_no_readings_let_time_pass_and_nothing_else():
         effects.sense(state, model.e, still_frame(-1 if n >= 40 else 3400), 250000, int(n < 40))
     assert state[STATE.EFFECT_Q8] / 256 / 131 == pytest.approx(0.01 * 46.53, abs=1e-4)
     assert state[STATE.EFFECT_Q8 + 1] / 256 / 131 == pytest.approx(0.01 * 18.5, abs=1e-4)
-
-
-def test_time_that_stands_still_or_runs_back_is_passed_over():
-    state, model = (
-        array("i", [0] * STATE.FIT_WEIGHTS),
-        loaded([Slot(Term("time", 0, 100), (0, 0.01, 0))]),
-    )
-    for n in range(200):
-        effects.sense(state, model.e, still_frame(), -(1 << 29) if n % 2 else 250000, 1)
-    assert state[STATE.EFFECT_Q8 + 1] / 256 / 131 == pytest.approx(0.01 * 23.5, abs=1e-4)
 
 
 def test_a_power_on_begins_every_memory_anew(warm_up):

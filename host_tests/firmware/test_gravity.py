@@ -163,6 +163,18 @@ def test_every_intermediate_fits_31_bits(make, lsb, document):
     assert max(state[OBSERVED : OBSERVED + 3]) > 20
 
 
+def test_a_coarse_gyroscope_at_a_low_rate_is_refused_or_fits_31_bits():
+    with pytest.raises(ValueError, match="needs 12.1"):
+        gravity_settings(odr_hz=4.0, gyro_lsb_per_dps=1.0)  # 2^30.2 in a sample at the rail
+    settings = Words(gravity_settings(odr_hz=12.5, gyro_lsb_per_dps=1.0))
+    state = Words(gravity_state(settings))
+    for _ in range(40):
+        state[GRAVITY.GRAVITY_LATE_US] = checked(100_000)
+        frame = Words([0, 0, 16384, 0, -32768, 32767, 9])
+        gravity.update(state, settings, frame, settings[GRAVITY_SETTINGS.GRAVITY_GAP_US])
+    assert state[REASON] == GRAVITY_REASON.COUNTING
+
+
 @pytest.fixture(scope="module")
 def short_motion():
     return motions.turning(80, 3.0, [1.0, 0.0, 0.0], hz=25.0, start=LEANING)

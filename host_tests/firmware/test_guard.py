@@ -4,9 +4,12 @@ from array import array
 
 import numpy as np
 import pytest
+from zerorate import Corrector, Sensor
 from zerorate.rest import guard
-from zerorate_tools.layout import SETTINGS, STATE
+from zerorate_tools.layout import GRAVITY, MOTION, MOTION_REASON, SETTINGS, STATE
 
+from . import motions
+from .motions import GYRO_LSB_PER_DPS
 from .played import estimators, play, rest
 
 COUNTS = STATE.COUNTS
@@ -93,15 +96,6 @@ def test_explain_says_which_faults_kept_it_from_learning(fault, kind, words):
     assert [corrector.source(axis) for axis in range(3)] == [0, 0, 0]
 
 
-@faults
-def test_one_broken_frame_in_a_rest_ends_it_but_a_repeat_does_not(fault, kind, words):
-    corrector, _ = play(rest(2))
-    assert corrector.state[STATE.REST] == 1  # a rest is being watched
-    frames, dt_us = broken(fault, 0.02)
-    play(frames, corrector, dt_us)
-    assert corrector.state[STATE.REST] == (1 if kind == guard.REPEAT else 0)
-
-
 def test_the_noise_of_a_thermometer_ends_no_rest():
     frames = rest(60, 1, (1.0, 2.0, 3.0))
     frames[:, 3] += np.random.default_rng(2).normal(0, 88, len(frames))  # a quarter of a degree
@@ -116,33 +110,6 @@ def test_a_temperature_that_moved_for_good_is_refused_once():
     _, outcome = play(frames)
     assert np.flatnonzero(outcome.verdict).tolist() == [3000]
     assert (outcome.verdict[3000:3001] == guard.TEMPERATURE_JUMP).all()
-
-
-def test_good_frames_are_counted_and_learned_from():
-    corrector, outcome = play(rest(20, 1, (1.0, 2.0, 3.0)))
-    assert (outcome.verdict == guard.GOOD).all()
-    assert corrector.state[COUNTS] == 2000
-    assert corrector.source(2) > 0
-
-
-@pytest.mark.parametrize(
-    "frame",
-    [[1] * 7, [-2] * 7, [0, 5, 5, 5, 5, 5, 5], [-1, 5, 5, 5, 5, 5, 5]]
-    + [[same + (word == at) for word in range(7)] for at in range(7) for same in (0, -1)],
-)
-def test_only_all_zeros_and_all_ones_say_that_the_bus_is_dead(frame):
-    corrector, _ = play(np.array([frame]))
-    assert corrector.state[COUNTS + guard.GOOD] == 1
-
-
-@pytest.mark.parametrize("word", range(7))
-@pytest.mark.parametrize("value", [-32768, -32767, 32766, 32767])
-def test_only_a_rate_that_cannot_be_larger_is_at_the_rail(word, value):
-    frame = np.arange(1, 8)
-    frame[word] = value
-    corrector, _ = play(np.array([frame]))
-    at_rail = word >= 4 and value in (-32768, 32767)
-    assert corrector.state[COUNTS + guard.RAIL] == at_rail
 
 
 FRAME, ELAPSED_US = STATE.FRAME, STATE.ELAPSED_US
@@ -248,3 +215,72 @@ class TestOneFrame:
         assert self.check(state, BEFORE, 10) == guard.REPEAT
         assert state[ELAPSED_US] == min(MOST_US, before_us + 10)
         assert state[COUNTS + guard.REPEAT] == 0
+
+
+PASSED_HZ = 50.0
+DPS = 9.0
+
+
+def fed(corrector, samples, dt_us):
+    """What the guard said of each sample."""
+    return [corrector.update(array("i", sample), dt_us) for sample in samples.tolist()]
+
+
+def turned_while_read_faster(seconds):
+    """A Corrector on a turntable about a level axis, with every tenth frame read twice."""
+    chip = motions.turning(seconds, DPS, [1, 0, 0], hz=PASSED_HZ, bias_dps=(0.0, 0.0, 0.0)).samples
+    twice = np.repeat(chip, np.where(np.arange(len(chip)) % 10, 1, 2), axis=0)
+    corrector = Corrector(Sensor(PASSED_HZ))
+    said = fed(corrector, twice, round(1e6 / PASSED_HZ * len(chip) / len(twice)))
+    assert said.count(guard.REPEAT) == len(chip) // 10
+    return corrector
+
+
+def test_a_program_that_reads_faster_than_the_chip_measures_loses_no_turn():
+    seconds = 15
+    motion = turned_while_read_faster(seconds).motion
+    assert motion[MOTION.FILLED] == pytest.approx(seconds / 0.125, abs=1)
+    turned_rad = sum(word >> 15 for word in motion[MOTION.NODES_RING :: 3]) / 8192
+    assert np.degrees(turned_rad) == pytest.approx(DPS * seconds, rel=0.02)
+
+
+def test_a_program_that_reads_eight_times_as_fast_as_the_chip_measures_learns_in_motion():
+    chip = motions.swinging(2, 100, hz=25.0)
+    corrector = Corrector(Sensor(200.0))
+    fed(corrector, np.repeat(chip.samples, 8, axis=0), 5000)
+    assert corrector.motion[MOTION.ACCEPTED] >= 6
+    assert max(corrector.gravity[GRAVITY.OBSERVED : GRAVITY.OBSERVED + 3]) > 50
+    bias = np.array(corrector.motion[MOTION.MOTION_BIAS_Q8 :][:3]) / 256 / GYRO_LSB_PER_DPS
+    np.testing.assert_allclose(bias, chip.bias_dps, atol=0.1)
+
+
+def test_nor_does_gravity_take_the_turn_that_it_would_lose_for_bias():
+    gravity = turned_while_read_faster(60).gravity
+    assert gravity[GRAVITY.OBSERVED] > 100
+    off = gravity[GRAVITY.GRAVITY_BIAS_Q8] / 256 / GYRO_LSB_PER_DPS
+    assert abs(off) < 0.15, "a tenth of the turn is 0.9"
+
+
+@pytest.mark.parametrize("hang", ["the same frame for a second", "no frame for ten seconds"])
+def test_after_a_hang_nothing_is_joined_to_what_was_before(hang):
+    samples = motions.swinging(2, 6, hz=PASSED_HZ).samples
+    corrector, dt_us = Corrector(Sensor(PASSED_HZ)), round(1e6 / PASSED_HZ)
+    fed(corrector, samples[:200], dt_us)
+    assert corrector.motion[MOTION.FILLED] > 0
+    if "same" in hang:
+        assert set(fed(corrector, np.tile(samples[199], (50, 1)), dt_us)) == {guard.REPEAT}
+    else:
+        assert fed(corrector, samples[200:201], 10_000_000) == [guard.TIME_LEAPT]
+    fed(corrector, samples[201:202], dt_us)
+    assert corrector.motion[MOTION.FILLED] == 0
+    assert corrector.motion[MOTION.MOTION_REASON] == MOTION_REASON.MOTION_GAP
+    assert corrector.gravity[GRAVITY.UNIT_N] == 0
+
+
+def test_frames_that_repeat_for_ever_keep_within_31_bits():
+    samples = motions.swinging(2, 1, hz=PASSED_HZ).samples
+    corrector = Corrector(Sensor(PASSED_HZ))
+    fed(corrector, samples[:1], 20000)
+    for dt_us in ((1 << 30) - 1, -(1 << 30), 900_000_000, (1 << 30) - 1):
+        fed(corrector, samples[:1], dt_us)
+    assert corrector.motion[MOTION.LATE_US] == corrector.gravity[GRAVITY.GRAVITY_LATE_US] < 1 << 29

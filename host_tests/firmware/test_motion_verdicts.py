@@ -2,12 +2,21 @@
 
 import numpy as np
 import pytest
-from zerorate.motion import in_motion, motion_verdict
+from zerorate.motion import in_motion, motion_verdict, traversal
 from zerorate.motion.motion_settings import motion_state
 from zerorate_tools.layout import MOTION, MOTION_REASON, MOTION_SETTINGS
 
-from .motion_words import Q12, Q14, SETTINGS, covariance_at, numbers, packed_at, put_all, put_words
-from .motions import value_at
+from .motions import (
+    Q12,
+    Q14,
+    SETTINGS,
+    covariance_at,
+    numbers,
+    packed_at,
+    put_all,
+    put_words,
+    value_at,
+)
 
 
 @pytest.fixture
@@ -134,11 +143,11 @@ def test_while_little_is_known_motion_is_what_is_beside_a_steady_turn(window, ac
     put_words(window, MOTION.R, Q14 * np.eye(3).ravel())
     at, extra = MOTION.NODES_RING, np.array([5, -3, 1])
     put_words(window, at, (2 * (np.array(steady) + extra) // 2) << 15)
-    in_motion.remove_bias(window, at)
+    traversal.remove_bias(window, at)
     turn = extra if beside else extra + steady
     assert list(window[MOTION.TURN_SUM : MOTION.TURN_SUM + 3]) == list(turn)
     assert window[MOTION.TRAFFIC] == np.abs(turn).sum()
-    assert in_motion.tilting(window, 0) == abs(turn[0])
+    assert traversal.tilting(window, 0) == abs(turn[0])
 
 
 @pytest.mark.parametrize(
@@ -168,4 +177,4 @@ def test_before_a_bias_is_known_it_may_be_anything(window):
     push = value_at(window, MOTION.PUSH)
     assert push == pytest.approx((0.05 * (1 << 24)) ** 2 * 64 * 2.66, rel=1e-3)
     assert np.sqrt(start * push) == pytest.approx(np.radians(20) / 8 * (1 << 24), rel=1e-3)
-    assert np.sqrt(entry * push) == pytest.approx(0.003 * (1 << 24), rel=1e-3)
+    assert np.sqrt(entry * push) == pytest.approx(0.01 * (1 << 24), rel=1e-3)

@@ -1,11 +1,13 @@
-"""Which states can be, by a second reading of the layout, at both sides of every edge."""
+"""Which states can be, at both sides of every edge, and what one turned word does to a device."""
 
 from array import array
 
 import pytest
+from zerorate import Corrector
 from zerorate.storage.soundness import is_sound
 from zerorate_tools.layout import AXIS, ESTIMATOR, SETTINGS, axis_at
 
+from .. import turned_words
 from . import trace
 from .trace_on_host import corrector_for
 
@@ -139,3 +141,19 @@ def test_a_word_at_any_edge_is_judged_as_by_a_second_reading(mode):
             judged[expected] += 1
             s[at] = kept
     assert min(judged.values()) > 100
+
+
+BINS = {"bins": 8}
+
+
+def test_a_turned_word_ends_on_micropython_as_on_cpython_to_the_last_bit(micropython):
+    first = axis_at(Corrector(**BINS).settings, 0)
+    tried, differences = turned_words.differences(micropython, BINS, 1, 1, range(first, first + 60))
+    assert tried > 50 and not differences
+
+
+def test_a_turned_word_does_no_harm_for_good():
+    first = axis_at(Corrector(**BINS).settings, 2)
+    words = [first + at for at in (AXIS.CURRENT, AXIS.LINE_SHIFT, AXIS.OFFSET_Q8, AXIS.ESTIMATORS)]
+    told, fallen = turned_words.attack(BINS, 2, 1, [*words, *range(first + 60, first + 66)])
+    assert told["loaded"] and told["afresh"] and not fallen

@@ -2,11 +2,17 @@
 
 from array import array
 from copy import deepcopy
+from fractions import Fraction
+from math import isqrt
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
 from zerorate import Corrector, Sensor
-from zerorate_tools.layout import AXIS, ESTIMATOR, SOURCE, axis_at
+from zerorate.arithmetic import fixed
+from zerorate_tools.layout import AXIS, ESTIMATOR, SETTINGS, SOURCE, axis_at
 
 from host_tests.firmware.played import LSB, NOISE_LSB, estimators, play, rest
 
@@ -69,6 +75,17 @@ def test_a_whole_power_on_is_corrected_by_its_own_offset(learned):
     learned = deepcopy(learned)
     power_on(learned, np.linspace(22, 30, 1200), TURN_ON_DPS, 4)
     assert learned.bias_lsb(0) / SENSOR.gyro_lsb_per_dps == pytest.approx(TURN_ON_DPS, abs=0.01)
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_a_jump_that_is_gone_at_the_next_power_on_is_in_no_curve(axis):
+    # what had not jumped is believed at once, while the axis that had is held back
+    corrector, jump_dps = Corrector(), 30.0 * np.eye(3)[axis]
+    for bias_dps in (np.zeros(3), jump_dps, np.zeros(3)):
+        corrector.power_on()
+        play(rest(200, bias_dps=bias_dps), corrector)
+    left = corrector.state[axis_at(corrector.settings, axis) + AXIS.OFFSET_Q8] / 256 / LSB
+    assert left == pytest.approx(0, abs=0.03)
 
 
 def test_a_bent_curve_is_foretold_below_all_that_was_seen():
@@ -205,3 +222,72 @@ def test_what_motion_alone_teaches_is_within_two_sigma():
     for axis in range(3):
         assert corrector.source(axis) == SOURCE.IN_MOTION
         assert abs(corrector.bias_lsb(axis)) < 2 * corrector.quality_lsb(axis)
+
+
+# --- integers that all of it is made of, beside exact ones ---
+
+_27_BITS = st.integers(-(2**27) + 1, 2**27 - 1)
+
+
+@given(st.integers(0, 2**20 - 1), st.integers(1, 2**20 - 1))
+def test_a_fraction_is_rounded_down_in_q27(a, b):
+    a, b = sorted((a, b))
+    assert fixed.fraction_q27(a, b) == (a << 27) // b
+
+
+@given(_27_BITS, st.integers(0, 2**27 - 1))
+def test_a_ratio_is_rounded_towards_zero_in_q26_and_held_at_four(a, b):
+    exact = 0 if b == 0 else min(0xFFFFFFF, (abs(a) << 26) // b)
+    assert abs(fixed.ratio_q26(a, b)) == exact and fixed.ratio_q26(a, b) * a >= 0
+
+
+@given(st.integers(-(2**30) + 1, 2**30 - 1), st.integers(1, 2**30 - 1), st.integers(-12, 12))
+@example(2**27 - 1, 3, 0)
+@example(-(2**27), 2**27, 0)
+@example(2**29, 2**29 - 1, 2)
+def test_a_floating_ratio_is_right_to_two_units_of_its_26_bits(a, b, exponent):
+    exact = Fraction(a, b) * Fraction(2) ** (exponent + 26)
+    exact = max(-(2**28) + 1, min(2**28 - 1, exact))
+    assert abs(fixed.floating_ratio_q26(a, b, exponent) - exact) <= 2 + abs(exact) * 2**-24
+
+
+@given(st.integers(-(2**27) + 1, 2**27 - 1))
+@example(0)
+def test_room_is_what_is_left_of_27_bits(value):
+    assert fixed.room(value) == 27 - abs(value).bit_length()
+
+
+@given(st.integers(0, 2**30 - 1))
+@example(2**16 - 1)
+@example(2**24 - 1)
+def test_a_root_is_the_largest_whose_square_is_no_more(square):
+    assert fixed.root(square) == isqrt(square)
+
+
+@given(st.integers(-(2**28) + 1, 2**28 - 1), st.integers(-(2**28) + 1, 2**28 - 1))
+def test_a_scaled_product_is_right_to_a_unit(a, b):
+    for shift in range(26, 31):
+        assert abs(fixed.scaled(a, b, shift) - (a * b >> shift)) <= 1
+
+
+@pytest.mark.parametrize(("beyond", "share"), [(-1, 2), (0, 1)])
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_of_an_offset_within_the_gate_half_is_kept_and_of_a_jump_all(beyond, share, sign):
+    corrector = Corrector()
+    offset = sign * ((corrector.settings[SETTINGS.GATE_Q4] + beyond) << 4)
+    at = axis_at(corrector.settings, 1) + AXIS.OFFSET_Q8
+    corrector.state[at] = offset
+    corrector.power_on(same=True)
+    assert corrector.state[at] == offset
+    corrector.power_on()
+    assert corrector.state[at] == offset // share
+
+
+def test_what_is_saved_and_held_back_is_explained_in_numbers():
+    corrector = Corrector(Sensor(odr_hz=200.0))
+    corrector.schedule = SimpleNamespace(saves=3, postponed=0, longest_us=45_000)
+    corrector.state[axis_at(corrector.settings, 2) + AXIS.SUSPECT] = 7
+    said = corrector.explain()
+    insist = corrector.settings[SETTINGS.INSIST]
+    assert f"held back (7 of {insist})" in said and said.count("held back") == 1
+    assert "Saved 3 times, for 45 ms at the longest: 9 samples pass" in said

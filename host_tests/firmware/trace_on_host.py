@@ -7,8 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from zerorate import Corrector, Sensor
-from zerorate_tools.layout import STATE
-from zerorate_tools.layout.naming import named_state
+from zerorate_tools.layout import STATE, named_state
 
 from . import trace
 from .played import by_machine_code

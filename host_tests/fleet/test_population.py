@@ -6,14 +6,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from zerorate_bench.fleet import in_markdown, on_paper
 from zerorate_tools.errors import ZerorateError
 from zerorate_tools.fleet import Device, devices_of
 from zerorate_tools.fleet.cluster import in_batches
-from zerorate_tools.fleet.curve import PER_DEGC, Curve, curve_of
 from zerorate_tools.fleet.part import curve_effects, part_of, step_effects
 from zerorate_tools.fleet.plots import headline, write_page
-from zerorate_tools.fleet.population import population
+from zerorate_tools.fleet.population import PER_DEGC, Curve, curve_of, population
 from zerorate_tools.loop.read.sessions import Session
 
 MEAN = np.array([0.5, 0.2, 0.0])
@@ -92,16 +90,6 @@ def test_without_a_thermometer_only_the_level_is_shown():
     assert (
         np.linalg.inv(curve.information)[0, 0, 0] < 1e-6 < np.linalg.inv(curve.information)[0, 1, 1]
     )
-
-
-def test_a_curve_goes_through_json_and_back():
-    curve = curve_of([Session("s", 5.0, 1, np.full((20, 3), 0.5), np.ones(20))])
-    again = Curve.from_json(curve.to_json())
-    assert (again.information == curve.information).all() and np.isnan(again.low_degc)
-
-
-def test_fewer_than_five_devices_are_no_part():
-    assert part_of(["a"] * 4, [None] * 4) is None
 
 
 def test_verdicts_tell_common_from_single():
@@ -250,9 +238,3 @@ def test_chromium_draws_every_plot_without_a_word(done, browser):
     page.close()
     assert said == []
     assert drawn >= 3 and wide <= 390
-
-
-def test_a_bench_of_too_few_devices_for_a_prior_says_so():
-    million = on_paper({"cpu_s": 1.0, "devices": 6, "out_bytes": 1}, 1.5, 25.0, 1000.0)
-    some = {"minutes": 1.5, "odr_hz": 25.0, "bytes_per_recording": 1000.0, "scaling": []}
-    assert "it takes 10 devices" in in_markdown({**some, "prior": None, "million": million})

@@ -18,9 +18,9 @@ import pytest
 from zerorate_tools.cli import main
 from zerorate_tools.errors import MissingLibrary, ZerorateError
 from zerorate_tools.fleet import devices_of, fleet
-from zerorate_tools.fleet.cluster import cluster, run_all
-from zerorate_tools.fleet.first_minutes import beginning, moving_from
+from zerorate_tools.fleet.cluster import _safe_path, cluster, run_all
 from zerorate_tools.fleet.fleet_in_words import in_words
+from zerorate_tools.fleet.prior import beginning, moving_from
 from zerorate_tools.fleet.whole_fleet import Parts
 from zerorate_tools.model import read_model
 from zerorate_tools.recordings import read_recording, write_recording
@@ -233,6 +233,17 @@ def double_or_die(batch):
     return [2 * item for item in batch]
 
 
+@pytest.mark.parametrize("before", [None, "0"])
+def test_the_callers_environment_is_afterwards_as_it_was(before, monkeypatch):
+    monkeypatch.delenv("PYTHONSAFEPATH", raising=False)
+    if before is not None:
+        monkeypatch.setenv("PYTHONSAFEPATH", before)
+    with pytest.raises(KeyError), _safe_path():
+        assert os.environ["PYTHONSAFEPATH"] == "1"
+        raise KeyError
+    assert os.environ.get("PYTHONSAFEPATH") == before
+
+
 def test_a_batch_whose_worker_dies_costs_only_the_item_that_killed_it():
     import distributed
 
@@ -251,19 +262,7 @@ def test_more_batches_than_the_scheduler_may_hold_all_come_back(monkeypatch):
     assert sorted(batch[0] for batch, _ in results) == list(range(20))
 
 
-def test_an_existing_cluster_is_used(data, tmp_path, scheduler):
-    done = fleet(devices_of([data])[:2], tmp_path, scheduler=scheduler)
-    assert done.report["sessions"] == 2
-
-
 def test_a_scheduler_that_does_not_answer_is_said(data, tmp_path, monkeypatch):
     monkeypatch.setattr("zerorate_tools.fleet.cluster._CONNECT_S", 0.2)
     with pytest.raises(ZerorateError, match="no Dask scheduler answers"):
         fleet(devices_of([data])[:1], tmp_path, scheduler="tcp://127.0.0.1:9")
-
-
-def test_motion_is_added_from_the_moment_that_was_named(data):
-    recording = read_recording(next(data.rglob("*.parquet")))
-    moved = moving_from(recording, 10.0)
-    change = moved.columns["gx"] != recording.columns["gx"]
-    assert not change[:250].any() and change[250:].mean() > 0.95

@@ -1,9 +1,11 @@
-"""python -m host_tests.golden: renew what the firmware is held to, after a change on purpose."""
+"""python -m host_tests.golden: renew what firmware and tools are held to, where that is meant."""
 
 from host_tests.firmware import swung
 from host_tests.firmware.trace_on_host import GOLDEN, renew_golden
+from host_tests.golden import known
 
 renew_golden()
 swung.renew_golden()
-print(f"{GOLDEN.name} and {swung.GOLDEN.name} are renewed: commit them with the reason why the")
-print("firmware gives other numbers")
+known.renew()
+print(f"{GOLDEN.name}, {swung.GOLDEN.name} and {known.FILE.name} are renewed: commit them with the")
+print("reason why there are other numbers")

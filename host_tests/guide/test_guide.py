@@ -13,8 +13,19 @@ from zerorate_tools.boards.bus import record_bus
 from zerorate_tools.boards.port import record_port
 from zerorate_tools.cli import main
 from zerorate_tools.closing import close
-from zerorate_tools.guide.known import KNOWN, KnownSoFar
-from zerorate_tools.guide.screen import NAMES, Bars, Guide, asked, shares, unknown
+from zerorate_tools.guide import (
+    KNOWN,
+    NAMES,
+    Bars,
+    Guide,
+    KnownSoFar,
+    asked,
+    left,
+    notes,
+    shares,
+    unknown,
+)
+from zerorate_tools.loop.motion.device import SIZES
 from zerorate_tools.recordings import read_recording
 from zerorate_tools.simulate import load_description, simulate
 
@@ -79,12 +90,9 @@ def test_the_recording_closed_gives_the_matrix_within_its_intervals(recorded, tm
     motion = result["in_motion"]
     off = np.array(motion["matrix_percent"]) / 100 - truth()
     assert result["effects"]
-    assert (np.abs(off) < 1.5 * np.array(motion["ci95_percent"]) / 100).all()  # three sigma
+    # 3.5 sigma, which the largest of nine exceeds once in 240 times
+    assert (np.abs(off) < 1.8 * np.array(motion["ci95_percent"]) / 100).all()
     assert np.abs(off).max() < 1.5 * KNOWN
-
-
-def test_every_axis_is_asked_for(recorded):
-    assert all(f"turn it about {axis}" in recorded[1].lower() for axis in "xyz")
 
 
 @pytest.fixture(scope="module")
@@ -116,7 +124,30 @@ def test_what_is_known_does_not_wait_for_the_end_nor_cost_more_the_longer_it_las
     recording, _ = simulate(described(swings("x"), minutes=2.0))
     known = fed(recording, look_s=30.0)
     assert sum(len(batch["t_us"]) for batch in known._batches) == 0
-    assert known.sigma[0, 0] < 2 * KNOWN
+    assert known.sigma[0, 0] < 2 * KNOWN and known._kept.normal.any()
+
+
+def test_what_is_said_of_nine_entries_names_the_worst_and_what_to_turn():
+    known = KnownSoFar(load_description("in-hand").sensor)
+    known.sigma = np.full((3, 3), 0.0005)
+    known.confirmed, known.seconds, known.next_axis = known.sigma.copy(), 12.4, 2
+    known.sigma[1, 2] = 0.02
+    known.lately_dps, known.clipped = np.array([1.0, 9.0, 2.0]), 3
+    assert left(known) == "8 of 9 known to 0.1 %, worst: y from z ±2.00 %"
+    assert notes(known) == [
+        "12 s; turning about y",
+        "3 samples are clipped: turn more slowly, or widen the range",
+    ]
+    assert asked(known).startswith("Turn it about z: hold z level")
+    known.sigma[1, 2], known.confirmed[0, 0], known.lately_dps[1] = 0.0005, 0.003, 5.0
+    assert left(known).endswith("worst without a quarter of it: scale of x ±0.30 %")
+    assert notes(known)[0] == "12 s; not turning" and asked(known).startswith("Once more, turn")
+    known.confirmed[0, 0], known.seconds = 0.001, 4.9
+    assert asked(known) == "All nine are known. Put it down."
+    known.sigma[0, 0] = 0.0011
+    assert asked(known) == "Leave it untouched for five seconds."
+    shown = shares(np.array([SIZES[-1] * 2, SIZES[-1], np.sqrt(SIZES[-1] * KNOWN), KNOWN, 1e-5]))
+    assert shown == pytest.approx([0.0, 0.0, 0.5, 1.0, 1.0])
 
 
 def test_samples_at_the_rail_are_counted():

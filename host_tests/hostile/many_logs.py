@@ -27,7 +27,7 @@ from types import SimpleNamespace
 
 from zerorate_bench.foreign_logs import arrays, flights, phones, robots
 from zerorate_bench.foreign_logs.world import World
-from zerorate_tools.child import ALONE, MEMORY_MB
+from zerorate_tools.bounds import ALONE, MEMORY_MB
 from zerorate_tools.errors import ZerorateError
 from zerorate_tools.importers import read_foreign
 from zerorate_tools.importers.logs import apart

@@ -27,7 +27,7 @@ from pathlib import Path
 from zerorate_tools import cli
 from zerorate_tools.replay.engines import compiled
 
-from .odd_files import make
+from .odd_files import DRAWN, drawn, make
 
 TIMES = 3000
 _MOST_S, _SERVES_S = 20, 2
@@ -48,6 +48,8 @@ _NUMBERS = (
     *(str(2**31), str(2**63), str(-(2**63)), str(10**30), "65536", "100000000", "0.5", "3"),
 )
 _WORDS = ("a=b", "=", "gx=", "gx=gx", "bins=8", "\n", "\udcff", "x" * 300, "é", "*", "[", "(")
+_WORDS += ("gx=-gy", "gx=--gy", "gx=gx:", "gx=:lsb", "gx=gx:rad/s", "gx=temp:x1e400", "vdd=gx:xnan")
+_WORDS += ("t_us=gx", "t_us=t_us:us+gx:ns", "t_us=none", "gz=none", "ax=gx:g", "qw=gx", "a=gx:x0")
 _ELSEWHERE = (
     *("/dev/null", "/dev/zero", "/dev/full", "/dev/stdin", "/proc/self/mem", "/proc/self/fd"),
     *("", ".", "..", "-", "~", "run.csv/x", "nowhere", "x" * 300 + ".csv", "d/" * 2500 + "x.csv"),
@@ -109,7 +111,8 @@ class Trial:
         self.whole.mkdir()
         make(self.whole, random.Random(seed))
         files = sorted(path.name for path in self.whole.iterdir())
-        self.odd = dict.fromkeys(("LOG", "MODEL", "STATE", "DEVICE"), (*files, *_ELSEWHERE))
+        some = ("LOG", "MODEL", "STATE", "DEVICE")
+        self.odd = {kind: (*files, *_ELSEWHERE, *DRAWN.get(kind, ()) * 100) for kind in some}
         self.odd["OUT"] = (*_OUTS, *files, *_ELSEWHERE)
         self.odd |= {"NUMBER": _NUMBERS, "WORD": (*_WORDS, *_NUMBERS, *files)}
         self.ends = Counter()
@@ -123,6 +126,7 @@ class Trial:
         )
         subprocess.run(["rm", "-rf", self.copy], check=True)
         subprocess.run(["cp", "-a", self.whole, self.copy], check=True)
+        drawn(self.copy, draw)
         before = contents(self.copy)
         self.copy.chmod(0o555 if draw.random() < 0.05 else 0o755)
         code, said = self._run(words, most)
@@ -165,7 +169,8 @@ class Trial:
             ctypes.CDLL(None).capset(ctypes.byref(ctypes.c_uint64(_CAPABILITIES)), nothing)
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         resource.setrlimit(resource.RLIMIT_CPU, (_MOST_S, _MOST_S))
-        if most is not None:  # as where a disk is full
+        if most is not None:  # as where a disk is full; Python keeps what it compiled, cut short
+            sys.dont_write_bytecode, os.environ["PYTHONDONTWRITEBYTECODE"] = True, "1"
             resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
 
 

@@ -2,10 +2,15 @@
 
 import contextlib
 import gzip
+import json
+import math
 import os
+import re
 import shutil
 import struct
 import zipfile
+import zlib
+from copy import deepcopy
 
 import numpy as np
 import pyarrow as pa
@@ -14,10 +19,15 @@ from zerorate_tools import cli
 from zerorate_tools.model import write_model
 from zerorate_tools.simulate import simulate_to_files
 
+from host_tests.golden.known import EVERYTHING
 from host_tests.tools.killed_writers import model
 
 _SCALES = '{"sensor":"x","odr_hz":%s,"gyro_lsb_per_dps":%s,"temp_lsb_per_degc":%s,'
 _SCALES += '"temp_offset_degc":36.53}'
+_ALL_SCALES = {
+    "sensor": "x", "odr_hz": 100.0, "gyro_lsb_per_dps": 131.0, "accel_lsb_per_g": 16384.0,
+    "temp_lsb_per_degc": 340.0, "temp_offset_degc": 36.53, "source": "s", "more": {"a": [1, 2]},
+}  # fmt: skip
 _HEAD = "t_us,gx,gy,gz,temp\n"
 _ROWS = [f"{i * 10000},{i % 7},{i % 5},{i % 3},{i % 9}\n" for i in range(500)]
 _LOG = _HEAD + "".join(_ROWS)
@@ -73,6 +83,73 @@ def make(folder, draw):
     _zips(folder)
     _damaged(folder, draw)
     _places(folder)
+
+
+#: What `drawn` writes: what one takes as a device, a model, a recording.
+DRAWN = {
+    "DEVICE": ("drawn.yaml",), "MODEL": ("drawn-model.json", "drawn-model.bin"),
+    "LOG": ("drawn.csv",),
+}  # fmt: skip
+_LEAVES = (
+    *(0, -1, 1, 2, 1e18, -1e18, 1e-300, 1e308, math.inf, -math.inf, math.nan, 2**31, -(2**31)),
+    *(
+        2**63,
+        10**30,
+        None,
+        True,
+        "",
+        "x",
+        "temp",
+        "rest",
+        "\x1b[31m",
+        [],
+        {},
+        [1],
+        [[1]],
+        [1, 2, 3],
+    ),
+    *("1/0", "../x", 1e6, 60, 0.001),
+)
+
+
+def drawn(folder, draw):
+    """Sound files of which a value or two are others, by the random `draw`; checksums are right."""
+    (folder / "drawn.yaml").write_text(_as_yaml(_turned(EVERYTHING, draw)))
+    model = json.loads((folder / "model.json").read_text())
+    (folder / "drawn-model.json").write_text(json.dumps(_turned(model, draw)))
+    words = bytearray((folder / "model.bin").read_bytes()[:-4])
+    at, size = draw.randrange(6, len(words) - 4), draw.choice((1, 2, 4))
+    words[at : at + size] = draw.choice((b"\xff", b"\0", b"\x80", draw.randbytes(1))) * size
+    (folder / "drawn-model.bin").write_bytes(words + zlib.crc32(words).to_bytes(4, "little"))
+    cells = [row.split(",") for row in _LOG.splitlines()]
+    for _ in range(draw.choice((0, 0, 1, 9))):
+        cells[draw.randrange(len(cells))][draw.randrange(5)] = str(draw.choice(_LEAVES))
+    (folder / "drawn.csv").write_text("\n".join(map(",".join, cells)) + "\n")
+    (folder / "drawn.json").write_text(json.dumps(_turned(_ALL_SCALES, draw)))
+
+
+def _as_yaml(value):
+    """JSON, whose numbers YAML writes otherwise."""
+    text = re.sub("(-?)Infinity", r"\1.inf", json.dumps(value)).replace("NaN", ".nan")
+    return re.sub(r"(?<![\d.])(\d)e([+-])", r"\1.0e\2", text)
+
+
+def _turned(value, draw):
+    """A copy of what JSON holds, of which one or two parts are others."""
+    other = deepcopy(value)
+    for _ in range(draw.choice((1, 1, 2))):
+        part, key = draw.choice([*_places_in(other)])
+        part[key] = deepcopy(draw.choice(_LEAVES))
+    return other
+
+
+def _places_in(value):
+    """(container, key) of every part."""
+    keys = [*value] if isinstance(value, dict) else range(len(value))
+    for key in keys:
+        yield value, key
+        if isinstance(value[key], dict | list):
+            yield from _places_in(value[key])
 
 
 def _csv(folder, name, text=_LOG, scales=("100", "131.0", "340")):

@@ -1,25 +1,50 @@
 """Whatever bytes a file holds, it ends in a recording or in one line: never in a traceback."""
 
-import gzip
+import copy
 import json
+import os
+import signal
+import subprocess
+import sys
+from array import array
+from html.parser import HTMLParser
+from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+import scipy.io
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from hypothesis.database import DirectoryBasedExampleDatabase
+from zerorate.storage import codes
+from zerorate.storage import store as stores
 from zerorate_bench.foreign_logs import binary as foreign_files
-from zerorate_tools.errors import ZerorateError
-from zerorate_tools.importers import Options, import_recording
+from zerorate_fakes.memory import FakeMemory
+from zerorate_tools.boards import port
+from zerorate_tools.boards.connection import BoardError
+from zerorate_tools.boards.port import encode
+from zerorate_tools.boards.recorder import Recorded, Recorder
+from zerorate_tools.errors import BadRecording, ZerorateError
+from zerorate_tools.importers import Options, import_recording, parsed_mapping, read_foreign
+from zerorate_tools.model import build_model, encoded, from_json, to_json
 from zerorate_tools.recordings import (
-    Scales,
     read_recording,
-    recording_from_columns,
     write_recording,
 )
+from zerorate_tools.report.page import _environment, markup, script_json
 from zerorate_tools.simulate import simulate
 
-from .patience import PATIENT
+from ..tools.test_model import SCALES, SLOTS
 
+#: How long the fuzz targets try: briefly among the tests, for hours by `make fuzz`.
+EXAMPLES = int(os.environ.get("ZERORATE_FUZZ", "30"))
+# what once failed is kept in seeds/ and tried first
+PATIENT = settings(
+    max_examples=EXAMPLES,
+    deadline=None,
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
+    database=DirectoryBasedExampleDatabase(Path(__file__).parent / "seeds"),
+)
 NAMES = ("t_us", "gx", "gy", "gz")
 CELLS = st.one_of(
     st.integers(-(10**12), 10**12).map(str),
@@ -94,29 +119,6 @@ def test_any_bytes_as_a_foreign_recording(tmp_path, content, name):
     )
 
 
-def whole_files(tmp_path):
-    """One small sound file of each kind that is read byte by byte."""
-    lines = "\n".join([foreign_files.vectornav_line((0.01, 0.02, 0.03))] * 9)
-    (tmp_path / "vn.csv.gz").write_bytes(gzip.compress(lines.encode()))
-    columns = dict.fromkeys(NAMES, np.arange(100))
-    recording = recording_from_columns(columns, Scales("X", 1, 1))
-    write_recording(recording, tmp_path / "own.parquet")
-    return sorted(p for p in tmp_path.iterdir() if p.suffix != ".json")
-
-
-@pytest.mark.parametrize("number", (0, 1))
-def test_any_cut_and_any_flipped_bit(tmp_path, number):
-    source = whole_files(tmp_path)[number]
-    whole, rng = source.read_bytes(), np.random.default_rng(number)
-    reads = read_recording if source.suffix == ".parquet" else import_recording
-    more = () if source.suffix == ".parquet" else (tmp_path / "out.csv",)
-    for _ in range(60):
-        damaged = bytearray(whole)
-        damaged[rng.integers(len(whole))] ^= 1 << rng.integers(8)
-        source.write_bytes(damaged if rng.random() < 0.5 else whole[: rng.integers(len(whole))])
-        reads_or_refuses(reads, source, *more)
-
-
 @PATIENT
 @given(
     st.dictionaries(
@@ -126,3 +128,204 @@ def test_any_cut_and_any_flipped_bit(tmp_path, number):
 )
 def test_any_description(tmp_path, entries):
     reads_or_refuses(simulate, {"every_session": {"s": 1.0}, **entries})
+
+
+_LONGEST_S = 20
+
+
+def ulog(folder):
+    stamps, rates = np.arange(20) * 4000, np.ones(20)
+    topic = {"timestamp": ("uint64_t", stamps)} | dict.fromkeys("xyz", ("float", rates))
+    foreign_files.ulog(folder / "x.ulg", {"sensor_gyro": topic})
+    return folder / "x.ulg"
+
+
+def dataflash(folder):
+    foreign_files.dataflash(folder / "x.bin", [(i, 0, *[0.5] * 7) for i in range(20)])
+    return folder / "x.bin"
+
+
+def blackbox(folder):
+    foreign_files.blackbox(folder / "x.bbl", [(i * 1000, i, -i, 5, 0, 0, 2048) for i in range(20)])
+    return folder / "x.bbl"
+
+
+def matlab(folder):
+    variables = {"w": np.ones((20, 3)), "t": np.arange(20.0)}
+    scipy.io.savemat(folder / "x.mat", variables, do_compression=False)
+    return folder / "x.mat"
+
+
+def test_any_damage_of_a_log_ends_in_words(repository):
+    words = ["-m", "host_tests.hostile.many_logs", "--times", str(EXAMPLES), "--seed", "1"]
+    done = subprocess.run([sys.executable, *words], cwd=repository, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.fixture
+def impatient():
+    """What takes longer than the child's limit would let it is stopped as there."""
+
+    def stop(number, frame):
+        raise TimeoutError
+
+    before = signal.signal(signal.SIGALRM, stop)
+    yield
+    signal.alarm(0)
+    signal.signal(signal.SIGALRM, before)
+
+
+WORDS = [parsed_mapping(w) for w in ("t_us=t:s", "gx=w[0]:dps", "gy=w[1]:dps", "gz=w[2]:dps")]
+
+
+# of the file's 880 bytes, the first 128 of which are a text: some of them, or all
+PLACES = range(128, 880, max(1, 5 * (880 - 128) // EXAMPLES))
+
+
+@pytest.mark.parametrize("place", [176, *PLACES])
+def test_a_mat_of_one_damaged_byte_kills_nobody(tmp_path, place):
+    source = matlab(tmp_path)
+    content = bytearray(source.read_bytes())
+    content[place] = 0 if content[place] else 255
+    source.write_bytes(content)
+    try:
+        recording, _ = read_foreign(source, mapping=WORDS)
+        assert len(recording) == 20
+    except BadRecording as error:
+        assert "\n" not in str(error)
+
+
+def test_libraries_say_nothing_on_the_terminal(tmp_path, capfd):
+    for make in (ulog, dataflash, blackbox):
+        source = make(tmp_path)
+        content = bytearray(source.read_bytes())
+        content[len(content) // 2 : len(content) // 2 + 40] = bytes(range(40))
+        source.write_bytes(content)
+        try:
+            read_foreign(source)
+        except BadRecording:
+            pass
+    assert capfd.readouterr() == ("", "")
+
+
+STARTS = {
+    "x.ulg": b"ULog\x01\x12\x35\x01" + bytes(8),
+    "x.mcap": b"\x89MCAP0\r\n",
+    "x.bag": b"#ROSBAG V2.0\n",
+    "x.bin": b"\xa3\x95\x80",
+    "x.bbl": b"H Product:Blackbox flight data\n",
+}
+
+
+@pytest.mark.parametrize("name", [*STARTS, "none.ulg", "none.mcap"])
+def test_gigabytes_of_zeros_are_refused_after_their_start(tmp_path, impatient, name):
+    with open(tmp_path / name, "wb") as file:
+        file.write(STARTS.get(name, b""))
+        file.truncate(3 << 30)
+    signal.alarm(_LONGEST_S)
+    with pytest.raises(BadRecording, match=name):
+        read_foreign(tmp_path / name)
+
+
+ANY_TEXT = st.text(st.characters())  # halves of characters, too, which JSON can hold
+HEADER = {"odr_hz": 100, "gyro_lsb_per_dps": 131, "accel_lsb_per_g": 1, "temp_lsb_per_degc": 1}
+HEADER |= {"temp_offset_degc": 0, "part": "X"}
+ANY_HEADER = st.dictionaries(st.sampled_from([*HEADER, "binding"]), JSON).map(HEADER.__or__)
+PAYLOADS = (JSON | ANY_HEADER).map(lambda v: json.dumps(v).encode()[:255]) | st.binary(max_size=30)
+FRAMES = st.builds(encode, st.sampled_from([1, 1, 2, 2, 3, 9]), PAYLOADS)
+SAMPLES = st.builds(encode, st.just(1), st.binary(min_size=21, max_size=21))
+
+
+class Sent:
+    """A serial port on which these pieces come, and then nothing."""
+
+    def __init__(self, pieces):
+        self.pieces = list(pieces)
+
+    @property
+    def in_waiting(self):
+        return len(self.pieces[0]) if self.pieces else 0
+
+    def read(self, count):
+        return self.pieces.pop(0) if self.pieces else b""
+
+
+@PATIENT
+@given(st.lists(FRAMES | SAMPLES | st.binary(min_size=1, max_size=40), max_size=8))
+def test_any_bytes_from_a_board(monkeypatch, pieces):
+    monkeypatch.setattr(port, "_SILENCE_S", 0.0)
+    reads_or_refuses(port.BoardStream(Sent(pieces), "port").scales)
+    batches = []
+    recorder = Recorder(batches.append, 10000.0, Recorded())
+    ended = port.BoardStream(Sent(pieces), "port").record(recorder, None, lambda seconds: None)
+    assert isinstance(ended, BoardError) and "\n" not in str(ended)
+    recorder.flush()
+
+
+def anywhere(draw, values):
+    """A place in nested values, as (container, key)."""
+    while True:
+        keys = list(values) if isinstance(values, dict) else range(len(values))
+        key = draw(st.sampled_from(sorted(keys)))
+        if not (isinstance(values[key], dict | list) and values[key] and draw(st.booleans())):
+            return values, key
+        values = values[key]
+
+
+@PATIENT
+@given(st.data())
+def test_any_value_anywhere_in_a_model(data):
+    values = copy.deepcopy(MODEL)
+    for _ in range(data.draw(st.integers(1, 3))):
+        container, key = anywhere(data.draw, values)
+        container[key] = data.draw(JSON | ANY_TEXT | st.integers())
+    reads_or_refuses(lambda: encoded(from_json(json.dumps(values))))
+
+
+MODEL = json.loads(to_json(build_model(SLOTS, SCALES)))
+
+
+@PATIENT
+@given(st.binary(min_size=160, max_size=160), st.binary(max_size=8), st.integers(0, 255))
+def test_any_bytes_in_a_store_behind_a_right_beginning(noise, start, version):
+    memory, payload = FakeMemory(200), array("i", [99] * 12)
+    memory.bytes[:160] = noise
+    memory.bytes[72 : 76 + len(start)] = b"ZRS\x01" + start
+    store = stores.Store(memory, b"\x68\0\0\3", 48, version)
+    assert store.load(payload) != codes.LOADED and set(payload) == {99}
+    assert store.save(array("i", range(12))) and store.load(payload) == codes.LOADED
+
+
+class Elements(HTMLParser):
+    def __init__(self, text):
+        super().__init__()
+        self.found = []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        self.found.append((tag, [name for name, _ in attributes]))
+
+
+@PATIENT
+@given(st.text() | st.text("<>&'\"/ =!-{}%$scriptonlad\u2028\u2029"))
+def test_any_name_on_a_page(name):
+    page = '<p title="{{ name }}">{{ name }}</p><script>{{ data|safe }}</script><b>'
+    text = _environment().from_string(page).render(name=name, data=script_json([name]))
+    assert Elements(text).found == [("p", ["title"]), ("script", []), ("b", [])]
+    assert Elements(markup(name)).found == []
+
+
+@PATIENT
+@given(ANY_TEXT, ANY_TEXT)
+def test_any_names_in_scales(tmp_path, sensor, key):
+    scales = {"odr_hz": 1, "gyro_lsb_per_dps": 1, key: sensor, "sensor": sensor}
+    (tmp_path / "x.csv").write_text("t_us,gx,gy,gz\n1,2,3,4\n")
+    (tmp_path / "x.json").write_text(json.dumps(scales))
+
+    def copied():
+        recording = read_recording(tmp_path / "x.csv")
+        write_recording(recording, tmp_path / "y.parquet")
+        assert script_json(recording.scales.to_json()).encode()
+        assert build_model([], recording.scales)
+
+    reads_or_refuses(copied)

@@ -2,7 +2,6 @@
 
 import ast
 import re
-from collections import Counter
 from pathlib import Path
 
 _CONST = re.compile(r"^(_?[A-Z][A-Z0-9_]*) = const\((-?\w+)\)", re.MULTILINE)
@@ -89,12 +88,6 @@ def set_numbers(path):
         if isinstance(name, ast.Name)
     }
     return {name for name in names if name.isupper()}
-
-
-def several(firmware):
-    """The names that stand for different numbers in different files."""
-    pairs = {pair for p in firmware for pair in _CONST.findall(p.read_text(encoding="utf-8"))}
-    return {name for name, times in Counter(name for name, _ in pairs).items() if times > 1}
 
 
 if __name__ == "__main__":

@@ -11,10 +11,10 @@ from zerorate_tools.errors import BadRecording
 from zerorate_tools.importers import Options, parsed_mapping
 from zerorate_tools.importers.importing import _gathered, _How, _ready
 from zerorate_tools.importers.samples.between import _usual_us, refuse_two_recordings
-from zerorate_tools.importers.samples.clock import duration
 from zerorate_tools.importers.samples.gather import _are_held
 from zerorate_tools.importers.samples.spool import Spool
 from zerorate_tools.importers.tables.table import Chunk, Table
+from zerorate_tools.numbers import duration
 from zerorate_tools.recordings.checks import GAP
 from zerorate_tools.recordings.reading import whole
 
@@ -44,8 +44,8 @@ def imported(columns, cuts=(), **options):
 
 def log(random, n, hz):
     """A log of a gyroscope and slower sensors, with rows that are none, in no strict order."""
-    # what goes back by 10 s, or on, is a torn stamp
-    at = np.cumsum(1 + (random.random(n) < 0.02) * random.integers(0, 90, n) * (hz > 1)) / hz
+    # what goes back by 10 s, or on, is a torn stamp: less than three gaps within four rows
+    at = np.cumsum(1 + (random.random(n) < 0.02) * random.integers(0, 30, n) * (hz > 1)) / hz
     columns = {"t_s": at + random.choice([0.0, 1.7e9])}
     fastest = random.choice([3.0, 240.0, 249.0, 400.0, 900.0, 1800.0])
     columns |= {name: fastest * random.uniform(-1, 1, n) for name in RATES}

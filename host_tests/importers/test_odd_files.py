@@ -1,11 +1,11 @@
-"""Tables as people have them: each is read, or the error has the words that mend it."""
+"""Tables and times as people have them: each is read, or the error has the words that mend it."""
 
 import re
+import shlex
 
 import numpy as np
 import pandas as pd
 import pytest
-from zerorate_bench.foreign_logs.binary import vectornav_line
 from zerorate_tools.errors import BadRecording
 from zerorate_tools.importers import Options, parsed_mapping, read_foreign
 
@@ -54,29 +54,12 @@ def test_any_encoding_is_read(tmp_path, encoding):
     assert recording.temp_degc()[0] == pytest.approx(25)
 
 
-def test_a_decimal_comma_is_read(tmp_path):
-    text = table(200).to_csv(index=False, sep=";", decimal=",")
-    recording, _ = read(tmp_path, text)
-    assert recording.gyro_dps().mean() == pytest.approx(0.8, abs=0.02)
-
-
 @pytest.mark.parametrize(
     "before", ["\n\n", "# a log\n# of a day\n", "Device: X\nStarted at noon\n\n"]
 )
 def test_lines_before_the_header_are_skipped(tmp_path, before):
     recording, _ = read(tmp_path, before + table(200).to_csv(index=False))
     assert len(recording) == 200
-
-
-@pytest.mark.parametrize("units", ["s,deg/s,deg/s,deg/s", "[ms],[rad/s],[rad/s],[rad/s]"])
-def test_a_line_of_units_beneath_the_names_is_one(tmp_path, units):
-    frame = table()[["t_s", "gx_dps", "gy_dps", "gz_dps"]]
-    if "ms" in units:
-        frame = np.radians(frame).assign(t_s=1000 * frame["t_s"])
-    text = f"t,gx,gy,gz\n{units}\n" + frame.to_csv(index=False, header=False)
-    recording, _ = read(tmp_path, text)
-    assert len(recording) == 2000 and recording.scales.odr_hz == pytest.approx(100)
-    assert recording.gyro_dps().mean() == pytest.approx(0.8, abs=0.02)
 
 
 def test_json_without_numbers_says_what_to_do(tmp_path):
@@ -121,7 +104,9 @@ def test_a_header_in_a_comment_and_columns_by_number(tmp_path):
     assert len(recording) == 50
     recording, _ = read(tmp_path, f"{rows}\n", mapping="t_us=1:s gx=2:dps gy=3:dps gz=4:dps")
     assert len(recording) == 50
-    with pytest.raises(BadRecording, match="if these are rates: --map t_us=1:s --map gx=2:dps"):
+    with pytest.raises(
+        BadRecording, match="rates: --map t_us=1:s --map gx=2 --map gy=3 --map gz=4,"
+    ):
         read(tmp_path, f"{rows}\n")
 
 
@@ -137,7 +122,7 @@ def test_a_log_that_begins_in_the_middle_of_a_line_is_as_wide_as_most_lines(tmp_
 
 def test_a_time_of_day_among_columns_without_names_is_offered_as_time(tmp_path):
     rows = "\n".join(f"2026-05-01   10:00:{i // 5:02d} 0.8  0.8   0.9" for i in range(50))
-    with pytest.raises(BadRecording, match="--map t_us=2:s --map gx=3:dps --map gy=4:dps"):
+    with pytest.raises(BadRecording, match="--map t_us=2:s --map gx=3 --map gy=4 "):
         read(tmp_path, f"{rows}\n")
 
 
@@ -158,67 +143,6 @@ def test_rows_with_a_word_and_no_header_have_columns_by_number(tmp_path):
     mapping = "t_us=2:s gx=3:dps gy=4:dps gz=5:dps"
     recording, _ = read(tmp_path, rows + "\n", mapping=mapping)
     assert len(recording) == 50
-
-
-def test_settings_above_a_table_are_not_the_table(tmp_path):
-    head = "sep=,\nFirmware,1.6\nacc_1G,2048\ngyro_scale,1\n" + "d_min,30\n" * 150
-    recording, _ = read(tmp_path, head + table(200).to_csv(index=False))
-    assert len(recording) == 200
-
-
-def test_a_line_of_units_may_have_an_empty_cell_as_the_names_do(tmp_path):
-    frame = table()[["t_s", *(f"g{a}_dps" for a in "xyz"), *(f"a{a}_g" for a in "xyz")]]
-    names = [f"S_67_Gyro_{a}_CAL" for a in "XYZ"] + [f"S_67_Accel_LN_{a}_CAL" for a in "XYZ"]
-    units = "ms\tdeg/s\tdeg/s\tdeg/s\tm/(s^2)\tm/(s^2)\tm/(s^2)\t"
-    frame["t_s"] *= 1000
-    frame.iloc[:, 4:] *= 9.80665
-    rows = frame.assign(end="").to_csv(index=False, header=False, sep="\t")
-    head = "\t".join(["S_67_Timestamp_Unix_CAL", *names]) + "\t\n" + units + "\n"
-    recording, _ = read(tmp_path, '"sep=\t"\n' + head + rows)
-    assert recording.scales.odr_hz == pytest.approx(100, rel=1e-4)
-    assert recording.accel_g()[:, 2].mean() == pytest.approx(1.0, abs=0.01)
-
-
-def test_columns_that_nothing_names_are_offered_by_what_they_hold(tmp_path):
-    rows = [[i * 20, 0.1, 0.2, 9.79, 0.01, 0.02, -0.03, 21.5] for i in range(50)]
-    ready = "t_us=1:ms ax=2:m/s2 ay=3:m/s2 az=4:m/s2 gx=5:rad/s gy=6:rad/s gz=7:rad/s"
-    text = lines(rows)
-    with pytest.raises(BadRecording, match=" ".join(f"--map {word}" for word in ready.split())):
-        read(tmp_path, text)
-    recording, _ = read(tmp_path, text, mapping=ready)
-    assert recording.scales.odr_hz == pytest.approx(50)
-    counts = [[100 + i % 3, -40 - i % 2, 7 + i % 5] for i in range(50)]
-    with pytest.raises(BadRecording, match="--map gx=1:lsb --map gy=2:lsb --map gz=3:lsb"):
-        read(tmp_path, lines(counts))
-
-
-def test_numbers_of_a_kind_and_quaternions_are_offered_as_no_rates(tmp_path):
-    rng = np.random.default_rng(6)
-    wide = [
-        [i / 50, 3, *rng.normal([0, 0, 9.8], 0.02), 4, *rng.normal(0, 0.1, 3)] for i in range(50)
-    ]
-    with pytest.raises(BadRecording, match="--map az=5:m/s2 --map gx=7:rad/s --map gy=8:rad/s"):
-        read(tmp_path, lines(wide))
-    angle = np.arange(50) / 9
-    turned = np.column_stack([np.sin(angle), np.zeros((50, 2)), np.cos(angle)])
-    wide = [[*q, *rng.normal([0, 0, 9.8], 0.02), *rng.normal(0, 0.1, 3)] for q in turned]
-    with pytest.raises(BadRecording, match="--map az=7:m/s2 --map gx=8:rad/s --map gy=9:rad/s"):
-        read(tmp_path, lines(wide))
-
-
-@pytest.mark.parametrize(
-    ("rest", "offered"),
-    [
-        # faster than any sensor
-        ([0.0, 0.0, 9.8, 8e4, 6e4, -7e4], "map it: --map gx=COLUMN:dps"),
-        # as long as gravity twice: 9.8 comes first
-        ([0.6, 0, 0.8, 0, 0, 9.8, 0, 0, 0], "--map az=6:m/s2 --map gx=7:rad/s --map gy=8:rad/s"),
-    ],
-)
-def test_a_rest_of_columns_without_names_is_told_by_how_large_they_are(tmp_path, rest, offered):
-    noise = np.random.default_rng(8).normal(0, 0.01, (50, len(rest)))
-    with pytest.raises(BadRecording, match=offered):
-        read(tmp_path, lines(rest + noise))
 
 
 def test_cells_may_stand_in_columns_of_blanks(tmp_path):
@@ -259,14 +183,6 @@ def test_a_pointer_of_git_lfs_is_told_from_a_table(tmp_path):
         read(tmp_path, "version https://git-lfs.github.com/spec/v1\noid sha256:1bf6\nsize 41\n")
 
 
-def test_lines_of_a_vectornav_need_but_their_rate(tmp_path):
-    lines = "\n".join([vectornav_line((0.01, 0.02, 0.03))] * 50)
-    recording, _ = read(tmp_path, lines, options=Options(hz=40))
-    assert recording.gyro_dps()[0] == pytest.approx(np.degrees([0.01, 0.02, 0.03]), abs=0.005)
-    assert recording.accel_g()[0, 2] == pytest.approx(-1.0, abs=0.01)
-    assert recording.temp_degc()[0] == pytest.approx(26.8, abs=0.01)
-
-
 def test_a_channel_that_would_lose_its_digits_is_offered_with_a_factor(tmp_path):
     frame = table().assign(quat_w=np.cos(np.linspace(0.0, 3.0, len(table()))))
     with pytest.raises(BadRecording, match="qw loses its digits.*--map qw=quat_w:x10000") as no:
@@ -274,3 +190,245 @@ def test_a_channel_that_would_lose_its_digits_is_offered_with_a_factor(tmp_path)
     words = str(no.value).rpartition("--map ")[2]
     recording, _ = read(tmp_path, frame, mapping=words)
     assert recording.columns["qw"] == pytest.approx(1e4 * frame["quat_w"], abs=0.51)
+
+
+def test_the_parts_of_a_quaternion_keep_their_digits(tmp_path):
+    turn = np.linspace(0.0, 0.04, len(table()))
+    frame = table().assign(qw=np.cos(turn), qx=np.sin(turn), qy=0.0, qz=0.0)
+    recording, _ = read(tmp_path, frame, mapping="qw=qw qx=qx qy=qy qz=qz")
+    assert recording.columns["qx"] == pytest.approx(1e6 * np.sin(turn), abs=0.51)
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        ["Orientation W", "Orientation X", "Orientation Y", "Orientation Z"],
+        ["imu.quat_x", "imu.quat_y", "imu.quat_z", "imu.quat_w"],
+        ["QuatI", "QuatJ", "QuatK", "QuatReal"],
+        ["qw", "qx", "qy", "qz"],
+    ],
+)
+def test_an_attitude_is_offered_with_ready_words(tmp_path, names):
+    turn = np.linspace(0.0, 0.04, len(table()))
+    parts = {"w": np.cos(turn), "x": np.sin(turn), "y": 0.0 * turn, "z": 0.0 * turn}
+    letters = {"l": "w", "i": "x", "j": "y", "k": "z"}
+    of = {name: letters.get(name[-1].lower(), name[-1].lower()) for name in names}
+    frame = table().assign(**{name: parts[letter] for name, letter in of.items()})
+    _, report = read(tmp_path, frame)
+    line = next(line for line in report.lines() if "an attitude" in line)
+    words = [word for word in shlex.split(line.rpartition(": ")[2]) if word != "--map"]
+    assert words == [
+        f"q{letter}={name}" for letter in "wxyz" for name in names if of[name] == letter
+    ]
+    _, report = read(tmp_path, frame.assign(**{names[0]: 0.5}))
+    assert not told(report, "an attitude")
+
+
+def test_rates_per_hour_are_offered_no_unit_that_is_none_of_theirs(tmp_path):
+    frame = rates(["time [s]", "wx [deg/hr]", "wy [deg/hr]", "wz [deg/hr]"])
+    with pytest.raises(
+        BadRecording, match="are not known; give deg/s instead: divide them by 3600"
+    ):
+        read(tmp_path, frame)
+
+
+def resampled(frame, hz):
+    """The same on an even grid of another rate, on lines between the readings."""
+    at = np.arange(frame.t_s.iloc[0], frame.t_s.iloc[-1], 1 / hz)
+    return pd.DataFrame({n: np.interp(at, frame.t_s, frame[n]) for n in frame}).assign(t_s=at)
+
+
+@pytest.mark.parametrize("hz", [200, 400, 1000])
+def test_rows_between_readings_are_none(tmp_path, hz):
+    frame = table()
+    recording, report = read(tmp_path, resampled(frame, hz).round(6))
+    assert recording.scales.odr_hz == pytest.approx(100)
+    assert recording.gyro_dps().std(axis=0) == pytest.approx(frame.std()[1:4], rel=0.01)
+    assert sum(report.dropped.values()) == report.rows_read - len(frame)
+
+
+@pytest.mark.parametrize("hz", [250, 333, 410])
+def test_a_log_that_was_resampled_is_refused(tmp_path, hz):
+    with pytest.raises(BadRecording, match="of a resampled log; import the log as the sensor"):
+        read(tmp_path, resampled(table(), hz))
+
+
+def test_a_gap_that_somebody_filled_is_a_gap(tmp_path):
+    frame = table()
+    frame["t_s"] += 1e-3 * RNG.random(len(frame))
+    frame.iloc[500:700, 1:] = np.nan
+    frame.iloc[np.flatnonzero(RNG.random(2000) < 0.05), 1:] = np.nan
+    lost = frame.gx_dps.isna().sum()
+    recording, report = read(tmp_path, frame.interpolate().bfill())
+    assert sum(report.dropped.values()) == pytest.approx(lost, rel=0.05)
+    assert told(report, "a gap of 2")
+
+
+def test_quick_motion_and_coarse_counts_lie_on_no_lines(tmp_path):
+    at = np.arange(20_000) / 1000
+    for noise_lsb in (0, 0.3, 1, 3):
+        frame = pd.DataFrame({"t_s": at})
+        for axis, hz in zip("xyz", (1.0, 1.3, 1.7)):
+            dps = 150 * np.sin(2 * np.pi * hz * at) + 100 * np.sin(4.4 * np.pi * hz * at)
+            counts = 16.4 * dps + noise_lsb * RNG.standard_normal(len(at))
+            frame[f"g{axis}_dps"] = np.rint(counts) / 16.4
+        recording, report = read(tmp_path, frame)
+        assert len(recording) == len(frame) and not report.dropped
+
+
+RNG = np.random.default_rng(3)
+
+
+def test_a_gap_of_five_minutes_does_not_change_the_rate(tmp_path):
+    frame = table()
+    frame.loc[1000:, "t_s"] += 300
+    recording, report = read(tmp_path, frame)
+    assert recording.scales.odr_hz == pytest.approx(100, rel=1e-4)
+    assert told(report, "a gap of 5 min in the time stamps")
+
+
+def test_two_power_ons_in_one_file_are_not_mixed(tmp_path):
+    frame = table()
+    with pytest.raises(BadRecording, match="row 2001: time begins anew; cut it there"):
+        read(tmp_path, pd.concat([frame, frame]))
+
+
+@pytest.mark.parametrize("back_s", [65.536, 3600])
+def test_a_short_counter_that_ran_over_and_the_end_of_summer_time_are_no_disorder(tmp_path, back_s):
+    frame = table()
+    frame["t_s"] += 7200
+    frame.loc[1000:, "t_s"] -= back_s
+    with pytest.raises(BadRecording, match="row 1001: time begins anew; cut it there"):
+        read(tmp_path, frame)
+
+
+def test_times_of_which_most_are_no_numbers_are_refused(tmp_path):
+    frame = table()
+    frame["t_s"] = [f"{1000 * t:,.2f}" for t in frame["t_s"]]
+    with pytest.raises(BadRecording, match=r"1900 of 2000 time stamps are no numbers; .*--hz"):
+        read(tmp_path, frame)
+
+
+def test_a_stamp_that_lost_or_won_a_digit_is_left_out(tmp_path):
+    frame = table().rename(columns={"t_s": "t_us"})
+    frame["t_us"] = 788_201_245 + 13_000 * np.arange(2000)
+    frame.loc[500, "t_us"] = 79_470_245
+    frame.loc[1500, "t_us"] = 8_077_012_459
+    recording, report = read(tmp_path, frame)
+    assert len(recording) == 1998 and np.diff(recording.columns["t_us"]).max() == 26_000
+    assert told(report, "dropped 2 rows: the time stamp is torn")
+
+
+@pytest.mark.parametrize("behind_s", [0.2, 5000])
+def test_two_clocks_that_take_turns_are_two_devices(tmp_path, behind_s):
+    frame = table()
+    frame.loc[1::2, "t_s"] += behind_s
+    with pytest.raises(BadRecording, match="2 devices take turns: time goes back .*file of its"):
+        read(tmp_path, frame)
+
+
+def test_a_column_of_days_beside_one_of_times_is_no_time(tmp_path):
+    frame = table(500).rename(columns={"t_s": "Time"})
+    frame["Time"] = [f"12:00:{t:06.3f}" for t in frame["Time"]]
+    for day in ("05/05/2021", "20210505"):
+        recording, _ = read(tmp_path, frame.assign(Date=day)[["Date", *frame]])
+        assert (np.diff(recording.columns["t_us"]) == 10_000).all()
+
+
+@pytest.mark.parametrize("name, scale", [("Zeit (s)", 1), ("Temps (s)", 1), ("uptime_ms", 1000)])
+def test_a_column_in_a_unit_of_time_that_only_grows_is_the_time(tmp_path, name, scale):
+    frame = table(500).assign(t_s=lambda f: scale * f["t_s"]).rename(columns={"t_s": name})
+    recording, _ = read(tmp_path, frame.assign(**{"delay (s)": 0.5})[["delay (s)", *frame]])
+    assert (np.diff(recording.columns["t_us"]) == 10_000).all()
+
+
+def test_a_column_of_dates_is_the_time_whatever_it_is_called(tmp_path):
+    frame = table(500).rename(columns={"t_s": "hhmmss.ms"})
+    frame["hhmmss.ms"] = [f"12:00:{t:06.3f}" for t in frame["hhmmss.ms"]]
+    recording, _ = read(tmp_path, frame)
+    assert (np.diff(recording.columns["t_us"]) == 10_000).all()
+
+
+def test_midnight_falls_between_rows_that_are_rare(tmp_path):
+    stamps = pd.Timestamp("2021-03-05T23:50") + pd.to_timedelta(np.arange(100) * 15, unit="s")
+    frame = table(100).assign(t_s=stamps.strftime("%H:%M:%S")).rename(columns={"t_s": "time"})
+    recording, _ = read(tmp_path, frame)
+    assert (np.diff(recording.columns["t_us"]) == 15_000_000).all()
+
+
+def test_a_time_that_cannot_be_read_says_how_to_write_it(tmp_path):
+    frame = table(500).rename(columns={"t_s": "time"})
+    frame["time"] = [f"May 1st, at noon and {t:06.3f}" for t in frame["time"]]
+    with pytest.raises(BadRecording, match="no time can be read from column 'time'; .*--hz N"):
+        read(tmp_path, frame)
+
+
+def test_rows_that_share_a_stamp_unevenly_are_refused(tmp_path):
+    frame = table().assign(t_s=lambda f: np.floor(f["t_s"]))
+    kept = RNG.random(2000) > 0.3
+    with pytest.raises(BadRecording, match="share each time stamp of 1 s, .*write finer times"):
+        read(tmp_path, frame[kept])
+
+
+def test_rows_of_two_devices_in_turn_are_told_by_their_levels(tmp_path):
+    frame = table()
+    frame.loc[1::2, "gy_dps"] += 0.5
+    with pytest.raises(BadRecording, match="2 devices take turns: the readings change"):
+        read(tmp_path, frame)
+
+
+def test_seconds_and_nanoseconds_are_added(tmp_path):
+    frame = table()
+    at_ns = 1_777_636_800_990_000_000 + np.arange(2000) * 10_000_000
+    frame.insert(0, "header.stamp.sec", at_ns // 10**9)
+    frame.insert(1, "header.stamp.nanosec", at_ns % 10**9)
+    recording, _ = read(tmp_path, frame.drop(columns="t_s"))
+    assert np.abs(recording.columns["t_us"] - at_ns // 1000).max() <= 1
+    named = frame.drop(columns="t_s").set_axis(["A", "B", *frame.columns[3:]], axis=1)
+    again, _ = read(tmp_path, named, mapping="t_us=A:s+B:ns")
+    assert again.columns["t_us"].tolist() == recording.columns["t_us"].tolist()
+
+
+def test_a_rate_overrides_a_time_column_and_says_so(tmp_path):
+    frame = table(50).rename(columns={"t_s": "when"}).assign(timestamp="yesterday")
+    recording, report = read(tmp_path, frame, options=Options(hz=4))
+    assert recording.columns["t_us"][1] == 250_000
+    assert told(report, "time column 'timestamp' left aside, as --hz is given")
+
+
+def test_a_time_of_unknown_unit_is_taken_where_one_can_be_and_else_offered_with_its_rate(tmp_path):
+    frame = table().rename(columns={"t_s": "time"})
+    _, report = read(tmp_path, frame)
+    assert told(report, "time taken in s: that is 100 Hz")
+    with pytest.raises(BadRecording, match=r"give --time-unit s \(100 Hz\)"):
+        read(tmp_path, frame.rename(columns={"time": "min.timestamp"}))
+    with pytest.raises(BadRecording, match=r"give --time-unit s \(0.1 Hz\) or ms \(100 Hz\)"):
+        read(tmp_path, frame.assign(time=frame["time"] * 1000))
+
+
+def test_stamps_beyond_64_bits_are_refused_with_their_row(tmp_path):
+    text = "t_us,gx_dps,gy_dps,gz_dps\n1,1,1,1\n18446744073709551615,1,1,1\n"
+    with pytest.raises(BadRecording, match="row 2: the time stamp is .*name the unit"):
+        read(tmp_path, text)
+
+
+def test_acceleration_on_rows_of_its_own_chooses_its_range(tmp_path):
+    frame = table()
+    forces = [f"a{axis}_g" for axis in "xyz"]
+    apart = frame[["t_s", *forces]].assign(az_g=1.0)
+    apart.loc[apart.index[-len(apart) // 4 :], "az_g"] = 5.0
+    apart["t_s"] += 0.003
+    merged = pd.concat([frame.drop(columns=forces), apart]).sort_values("t_s")
+    recording, report = read(tmp_path, merged)
+    at_end = recording.accel_g()[-10:, 2]
+    assert at_end == pytest.approx(np.full(10, 5.0), abs=0.001)
+    assert told(report, "strongest acceleration: 5 g")
+
+
+def test_a_column_can_be_left_out(tmp_path):
+    frame = table().assign(temp_c="broken")
+    recording, report = read(tmp_path, frame)
+    assert not recording.has_temp
+    assert told(report, "column 'temp_c' left out: no number is in it")
+    recording, _ = read(tmp_path, table(), mapping="temp=none ax=none")
+    assert not recording.has_temp and not recording.has_accel

@@ -93,57 +93,6 @@ def test_columns_that_may_hold_a_cause_are_said_to_be_left_aside(tmp_path):
     assert "vdd_mv" in recording.columns and not told(report, "left aside")
 
 
-def test_a_phones_sensor_logger_is_known_by_its_columns(tmp_path):
-    frame = table()
-    at_ns = 1_777_636_800_000_000_000 + (frame["t_s"] * 1e9).astype("int64")
-    rates = {a: np.radians(frame[f"g{a}_dps"]) for a in "zyx"}
-    logged = pd.DataFrame({"time": at_ns, "seconds_elapsed": frame["t_s"], **rates})
-    recording, report = read(tmp_path, logged, name="Gyroscope.csv")
-    assert recording.scales.odr_hz == pytest.approx(100, rel=1e-3)
-    assert recording.gyro_dps().mean() == pytest.approx(0.8, abs=0.02)
-    assert told(report, "gyro taken in rad/s: as Sensor Logger writes")
-
-
-def test_a_topic_of_px4_as_a_csv_is_known_by_its_columns(tmp_path):
-    frame = rates(["timestamp", "x", "y", "z", "device_id", "error_count"])
-    frame["timestamp"] = (1e6 * frame["timestamp"]).astype(int)
-    frame[["x", "y", "z"]] = np.radians(frame[["x", "y", "z"]])
-    recording, report = read(tmp_path, frame, name="log_sensor_gyro_0.csv")
-    assert recording.scales.odr_hz == pytest.approx(100)
-    assert told(report, "gyro taken in rad/s: as PX4 writes")
-
-
-def test_names_that_are_units_tell_them(tmp_path):
-    frame = rates(["Millis", "gx_dps", "gy_dps", "gz_dps"])
-    recording, _ = read(tmp_path, frame.assign(Millis=1000 * frame["Millis"]))
-    assert recording.scales.odr_hz == pytest.approx(100)
-
-
-def test_the_temperature_of_a_witmotion_is_known(tmp_path):
-    recording, _ = read(tmp_path, table().rename(columns={"temp_c": "T(°)"}))
-    assert recording.temp_degc()[0] == pytest.approx(25, abs=0.01)
-
-
-def test_a_phones_sensorlog_is_known_by_its_columns(tmp_path):
-    frame = table()
-    logged = {"loggingTime(txt)": [f"2026-05-01 12:00:{t:06.3f} +0200" for t in frame["t_s"]]}
-    logged |= {f"gyroRotation{a.upper()}(rad/s)": np.radians(frame[f"g{a}_dps"]) for a in "xyz"}
-    recording, _ = read(tmp_path, pd.DataFrame(logged))
-    assert recording.scales.odr_hz == pytest.approx(100, rel=1e-3)
-    assert recording.gyro_dps().mean() == pytest.approx(0.8, abs=0.02)
-
-
-def test_a_log_of_openlog_artemis_is_known_by_its_columns(tmp_path):
-    frame = table()[["t_s", *(f"a{a}_g" for a in "xyz"), *(f"g{a}_dps" for a in "xyz"), "temp_c"]]
-    frame.columns = ["rtcTime", "aX", "aY", "aZ", "gX", "gY", "gZ", "imu_degC"]
-    frame["rtcTime"] = [f"10:00:{t:05.2f}" for t in frame["rtcTime"]]
-    frame[["aX", "aY", "aZ"]] *= 1000
-    recording, report = read(tmp_path, frame)
-    assert told(report, "gyro taken in dps: as OpenLog Artemis writes")
-    assert recording.accel_g()[:, 2].mean() == pytest.approx(1.0, abs=0.01)
-    assert recording.temp_degc()[0] == pytest.approx(25, abs=0.01)
-
-
 @pytest.mark.parametrize("name", ["FreeAcc_{}_g", "lacc_{}_g", "LinAcc{} (g)"])
 def test_acceleration_less_gravity_is_none(tmp_path, name):
     frame = table().rename(columns={f"a{a}_g": name.format(a.upper()) for a in "xyz"})
@@ -217,23 +166,6 @@ def test_raw_counts_are_asked_for_units_and_then_scales_in_one_go_each(tmp_path)
     give = "--gyro-lsb-per-dps 131 --accel-lsb-per-g 16384 --temp-lsb-per-degc 340 --temp-offset"
     with pytest.raises(BadRecording, match=give):
         read(tmp_path, frame, units=units)
-
-
-def test_rare_single_readings_are_not_doubted_for_their_noise(tmp_path):
-    rng = np.random.default_rng(5)
-    frame = table(500, hz=0.5)
-    for axis in "xyz":
-        frame[f"g{axis}_dps"] = np.radians(0.8 + 0.08 * rng.standard_normal(500))
-    frame.columns = [name.replace("dps", "rad/s") for name in frame]
-    _, report = read(tmp_path, frame)
-    assert not told(report, "doubtful")
-
-
-def test_readings_with_fractions_are_offered_no_counts(tmp_path):
-    frame = table().rename(columns=lambda name: name.replace("_dps", "").replace("_g", ""))
-    frame[["ax", "ay", "az"]] *= 0.03  # of something that falls freely
-    with pytest.raises(BadRecording, match="--gyro-unit dps .* --accel-unit g [(]or"):
-        read(tmp_path, frame)
 
 
 def test_radians_named_as_degrees_are_refused_unless_somebody_types_the_unit(tmp_path):

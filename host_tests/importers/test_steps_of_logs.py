@@ -13,11 +13,10 @@ import pyarrow.parquet as pq
 import pytest
 from zerorate_i2c.parts import PARTS
 from zerorate_tools.errors import BadRecording
-from zerorate_tools.importers import Options, import_recording, parsed_mapping, read_foreign
+from zerorate_tools.importers import import_recording, parsed_mapping, read_foreign
 from zerorate_tools.importers.columns.guesses import guessed_unit, rate_unit_of
 from zerorate_tools.importers.columns.units import RATE_DPS
 from zerorate_tools.importers.logs import columnar, messages
-from zerorate_tools.importers.report import Report
 
 BAG = Path("bag")
 IMU, WARMTH = "sensor_msgs/msg/Imu", "sensor_msgs/msg/Temperature"
@@ -241,50 +240,12 @@ def test_one_reading_of_acceleration_leaves_no_sample_and_says_how_to_import(tmp
     assert len(recording.columns["gx"]) + sum(report.dropped.values()) == report.rows_read
 
 
-@pytest.mark.parametrize("value", [2**31, -(2**31), 3e12])
-def test_a_channel_beyond_32_bits_is_refused_with_its_row(tmp_path, value):
-    level = np.zeros(400)
-    level[7] = value
-    with pytest.raises(BadRecording, match="level is .*, no integer of 32 bits") as caught:
-        read_foreign(logged(tmp_path, level=level), mapping=[parsed_mapping("level=level")])
-    assert "row 8" in str(caught.value) and "--map level=COLUMN:x0.001" in str(caught.value)
-
-
-def test_the_largest_integers_of_a_channel_are_kept(tmp_path):
-    level = np.zeros(400)
-    level[:4] = 2**31 - 1, 1 - 2**31, 0.4, 0.6
-    path = logged(tmp_path, level=level)
-    recording, _ = read_foreign(path, mapping=[parsed_mapping("level=level")])
-    assert recording.columns["level"][:4].tolist() == [2**31 - 1, 1 - 2**31, 0, 1]
-
-
 def test_a_column_without_a_number_is_left_out_and_the_whole_acceleration_with_it(tmp_path):
     path = logged(tmp_path, ax_g=0.0, ay_g="none", az_g=1.0, temp_c="none")
     recording, report = read_foreign(path)
     assert {*recording.columns} == {"t_us", "gx", "gy", "gz"}
     left_out = [line for line in report.notes if "left out: no number is in it" in line]
     assert [line.split("'")[1] for line in left_out] == ["ay_g", "temp_c", "ax_g", "az_g"]
-
-
-def test_readings_at_the_rails_are_counted_and_said(tmp_path):
-    path = logged(tmp_path)
-    frame = pd.read_csv(path)
-    frame.loc[5:7, "gy_dps"] = [3000, -3000, 2000]
-    frame.to_csv(path, index=False)
-    options = Options(gyro_lsb_per_dps=16.0)
-    recording, report = read_foreign(path, options=options)
-    assert recording.columns["gy"][5:8].tolist() == [32767, -32768, 32000]
-    assert "gy: 2 readings at the end of the 16-bit range (clipped)" in report.lines()
-
-
-def test_a_report_is_a_line_for_each_thing_that_was_lost():
-    report = Report(9, 7, 61.0, 100.0, ["a doubt"], Counter(why=2), Counter(gx=1), ["a note"])
-    first, *others = report.lines()
-    assert first.startswith("7 samples: ") and first.endswith(" at 100 Hz, of 9 rows")
-    assert others == [
-        *("a doubt", "dropped 2 rows: why"),
-        *("gx: 1 readings at the end of the 16-bit range (clipped)", "a note"),
-    ]
 
 
 def test_what_is_no_file_is_said(tmp_path):

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from zerorate_bench.foreign_imports import BY_ITS_WORDS, REFUSED, RIGHT, judged
-from zerorate_bench.foreign_logs.corpus import CORPUS
+from zerorate_bench.foreign_logs import CORPUS
 from zerorate_bench.public_data import recordings, told_of
 from zerorate_tools.cli import main
 from zerorate_tools.errors import BadRecording, InFile
@@ -107,6 +107,7 @@ _REFUSED = {
     *("two_in_blocks", "whole_seconds_lost", "kitti", "opensense", "opensense_rates"),
     *("px4_angles", "influx", "grafana", "gopro", "phyphox_shorter", "json_of_lists"),
     *("serial_monitor_tabs", "lists_in_cells", "vectors_in_cells", "garmin_fit"),
+    *("per_hour", "resampled"),
 }
 
 

@@ -1,16 +1,21 @@
 """The unit of rates by gravity, which they turn: in a hand it is told, at rest it is not."""
 
+import re
+
 import numpy as np
 import pandas as pd
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
+from zerorate_tools.closing import close
 from zerorate_tools.errors import BadRecording
 from zerorate_tools.importers import Options, import_recording
 from zerorate_tools.importers.columns.mapping import parsed_mapping
-from zerorate_tools.importers.columns.turning import dps_of_one
+from zerorate_tools.loop.read.gate import CannotClose
+from zerorate_tools.recordings.turning import axes_of, dps_of_one
 
+SIGNS = st.tuples(*[st.sampled_from([-1, 1])] * 3)
 UNITS_DPS = {"dps": 1.0, "mdps": 1e-3, "rad/s": 180 / np.pi, "mrad/s": 0.18 / np.pi}
 
 
@@ -68,12 +73,40 @@ def test_at_rest_and_from_axes_that_do_not_belong_together_nothing_is_told(seed,
     assert dps_of_one(-rates, force, t_s) is None
 
 
+@settings(max_examples=12)
+@given(seed=st.integers(0, 10**6), order=st.permutations(range(3)), signs=SIGNS)
+def test_in_a_hand_gravity_tells_the_axes_of_rates(seed, order, signs):
+    t_s, rates, force = in_a_hand(seed)
+    mixed = rates[list(order)] * np.array(signs)[:, np.newaxis]
+    assert axes_of(mixed, force, t_s) @ mixed == pytest.approx(rates)
+    still = np.tile([[0.1], [0.2], [0.97]], len(t_s))
+    assert axes_of(mixed, still, t_s) is None
+
+
+def test_axes_that_do_not_agree_are_told_with_the_words_that_mend_them(tmp_path):
+    t_s, rates, force = in_a_hand()
+    names = ("gx_dps", "gy_dps", "gz_dps", "ax_g", "ay_g", "az_g")
+    mixed = rates[[1, 0, 2]] * np.array([[-1], [1], [1]])
+    pd.DataFrame({"t_s": t_s} | dict(zip(names, [*mixed, *force]))).to_csv(tmp_path / "in.csv")
+    (doubt,) = import_recording(tmp_path / "in.csv", tmp_path / "out.csv").doubts
+    assert "y -x z of the accelerometer" in doubt
+    with pytest.raises(CannotClose, match="out: gravity turns as if"):
+        close([tmp_path / "out.csv"], tmp_path / "closed")
+    words = re.findall(r"--map (\S+?)[, ]", doubt)
+    mapping = [parsed_mapping(word) for word in words]
+    mended = import_recording(tmp_path / "in.csv", tmp_path / "out.csv", mapping=mapping)
+    assert len(words) == 3 and not mended.doubts
+    assert pd.read_csv(tmp_path / "out.csv")["gy"].corr(pd.Series(rates[1])) > 0.999
+
+
 def test_gaps_and_cells_without_a_number_do_not_change_what_is_told():
     t_s, rates, force = in_a_hand(seconds=60.0)
     rates[:, 700:720] = np.nan
     t_s[1500:] += 400.0
     assert dps_of_one(rates, force, t_s) == pytest.approx(1.0, rel=0.1)
     assert dps_of_one(rates[:, :500], force[:, :500], t_s[:500]) is None  # of ten seconds
+    slow = in_a_hand(hz=0.5, seconds=600.0)
+    assert dps_of_one(*slow[1:], slow[0]) is None
 
 
 def written(tmp_path, dps=1.0, names="gyro_x,gyro_y,gyro_z", start_s=0.0):

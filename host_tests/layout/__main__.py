@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from .lines import files, refreshed
+from .page import files, refreshed
 
 repository = Path(__file__).resolve().parents[2]
 for path in files(repository):

@@ -1,17 +1,11 @@
 """The layout of the firmware's arrays: one name for one word, and every file's constants fresh."""
 
-import re
-
 import pytest
 from zerorate import Corrector
 from zerorate.model import EffectModel
 from zerorate_tools import layout
 
-from .lines import files, names_in, refreshed
-from .page import page, settings_page
-
-# a real at `a` has its exponent at `a + 1`
-_NUMBERED = re.compile(r"\b[scem]\[(\d+|[af] \+ ([2-9]|\d\d+)\b)[^]]*\]")
+from .page import files, page, refreshed, settings_page
 
 
 def firmware(repository):
@@ -42,21 +36,6 @@ def test_no_name_stands_for_two_things():
     assert sorted(names) == sorted(set(names))
 
 
-def test_no_file_of_the_firmware_indexes_a_word_by_number(repository):
-    found = {
-        path.name: [m[0] for m in _NUMBERED.finditer(path.read_text("utf-8"))]
-        for path in firmware(repository)
-    }
-    assert {name: numbered for name, numbered in found.items() if numbered} == {}
-    assert _NUMBERED.search("s[a + 24] = c[3]") and _NUMBERED.search("s[3]")
-
-
-def test_no_tool_takes_a_word_of_a_model_by_number(repository):
-    files = (repository / "tools" / "zerorate_tools" / "model").glob("*.py")
-    text = "".join(path.read_text("utf-8") for path in files)
-    assert "words[SLOT.SLOT_POWER]" in text and re.findall(r"\bwords\[\d[^]]*\]", text) == []
-
-
 def test_no_word_lies_behind_the_end():
     for array in (array for array in layout.ARRAYS if array.size):
         assert all(word.index + word.count <= array.size for word in array.words)
@@ -83,11 +62,3 @@ def test_the_arrays_are_as_long_as_the_layout_says():
     assert len(corrector.motion_settings) == layout.MOTION_SETTINGS.size
     assert len(corrector.gravity) == layout.GRAVITY.size
     assert len(EffectModel().e) == layout.EFFECTS.size
-
-
-def test_every_word_is_used_or_said_to_be_unused(repository):
-    used = set().union(*(names_in(path.read_text("utf-8")) for path in firmware(repository)))
-    words = {word.name: word.meaning for array in layout.ARRAYS for word in array.words}
-    unused = {name for name in words if f"_{name}" not in used and words[name] != "unused"}
-    whole = {"SCRATCH", "START_X", "START_Y", "START_Z"}
-    assert unused - whole == set()

@@ -10,16 +10,16 @@ from zerorate_bench.loop.devices import describe
 from zerorate_tools import LoopReport
 from zerorate_tools.closing import close
 from zerorate_tools.loop.motion.by_windows import _tilt, by_windows
-from zerorate_tools.loop.motion.columns import ACCEL_BIAS, MATRIX, OWN, columns_of
-from zerorate_tools.loop.motion.device import Shown, device_of
+from zerorate_tools.loop.motion.columns import ACCEL_BIAS, BIAS, MATRIX, OWN, columns_of
+from zerorate_tools.loop.motion.device import DifferentDevices, Shown, device_of
 from zerorate_tools.loop.motion.matrix import beside
 from zerorate_tools.loop.motion.moving import moving_of
-from zerorate_tools.loop.motion.same_device import DifferentDevices
+from zerorate_tools.loop.motion.windows import OVERLAP, tapers
 from zerorate_tools.loop.read.gate import CannotClose
 from zerorate_tools.recordings import Recording, Scales
 from zerorate_tools.recordings.writing import write_recording
 from zerorate_tools.simulate import simulate_sessions
-from zerorate_tools.simulate.attitude import IDENTITY, integrate, into_body
+from zerorate_tools.simulate.attitude import IDENTITY, integrate, into_body, multiply
 
 from .test_report_form import breaches
 
@@ -28,7 +28,9 @@ _SCALES = Scales("MPU-6050", _HZ, 32.8, 8192.0, None, None)
 _MATRIX = np.array([[0.012, 0.0, 0.003], [0.0, -0.009, 0.0], [0.003, 0.0, 0.006]])
 
 
-def handled(seed, matrix, dps=60.0, about=(1.0, 1.0, 1.0), minutes=_MINUTES, seen=False):
+def handled(
+    seed, matrix, dps=60.0, about=(1.0, 1.0, 1.0), minutes=_MINUTES, seen=False, steady=0.0
+):
     """A device turned in the hand without a rest: bias 0.4 dps, a hand that sways by 3 cm."""
     rng, n = np.random.default_rng(seed), int(_HZ * minutes * 60)
 
@@ -36,7 +38,7 @@ def handled(seed, matrix, dps=60.0, about=(1.0, 1.0, 1.0), minutes=_MINUTES, see
         waves = gaussian_filter1d(rng.standard_normal((n, 3)), seconds * _HZ, axis=0)
         return waves / waves.std(axis=0)
 
-    true = smooth(0.4) * dps * np.array(about)
+    true = smooth(0.4) * dps * np.array(about) + steady
     attitude = integrate(true, 1 / _HZ, IDENTITY)
     hand = np.gradient(np.gradient(0.03 * smooth(0.3), 1 / _HZ, axis=0), 1 / _HZ, axis=0) / 9.81
     accel = into_body(attitude, hand + [0.0, 0.0, 1.0]) + 0.003 * rng.standard_normal((n, 3))
@@ -86,6 +88,49 @@ def test_with_an_attitude_the_heading_of_what_was_held_out_is_told(recorded, tmp
     assert motion["heading_before"] > 1.0
     assert motion["heading_after"] < 0.4 * motion["heading_before"]
     assert "degrees a minute of heading" in (tmp_path / "closed" / "report.html").read_text()
+
+
+def test_a_matrix_of_one_half_that_makes_the_heading_of_the_other_worse_is_not_deployed(tmp_path):
+    halves = [
+        handled(s, np.eye(3) * scale, minutes=2.0, seen=True) for s, scale in ((1, 0.01), (51, 0.0))
+    ]
+    columns = {n: np.concatenate([h.columns[n] for h in halves]) for n in halves[0].columns}
+    columns["t_us"] = np.arange(len(columns["t_us"]), dtype=np.int64) * int(1e6 / _HZ)
+    write_recording(replace(halves[0], columns=columns), tmp_path / "run.parquet")
+    shown = by_windows([moving_of(tmp_path / "run.parquet")], [])
+    assert shown.gains[0] > 0 and not shown.found  # windows are better with it
+    assert "heading would lose" in shown.notes[0]
+
+
+def jumping(seed):
+    """A recording whose attitude jumps by 10 degrees about the vertical, six times a minute."""
+    recording = handled(seed, _MATRIX, minutes=4.0, seen=True)
+    rng, n = np.random.default_rng(seed + 99), len(recording.columns["t_us"])
+    turned = np.zeros(n)
+    for at in rng.choice(n, 24):
+        turned[at:] += rng.normal(0, np.radians(10.0))
+    jumps = np.column_stack([np.cos(turned / 2), np.zeros((n, 2)), np.sin(turned / 2)])
+    names = [f"q{part}" for part in "wxyz"]
+    attitude = multiply(jumps, np.column_stack([recording.columns[q] for q in names]))
+    recording.columns.update(zip(names, np.rint(attitude).astype(np.int64).T))
+    return recording
+
+
+def test_an_attitude_that_jumps_hides_nothing_of_what_gravity_shows(tmp_path):
+    write_recording(jumping(2), tmp_path / "run.parquet")
+    result = close([tmp_path / "run.parquet"], tmp_path / "closed")
+    [effect] = result["effects"]
+    found = np.array([effect["coefficients"][f"rate_{axis}"] for axis in "xyz"]).T
+    assert np.abs(found - _MATRIX).max() < 0.001  # 0.007 by the attitude
+    assert "run: gravity shows more" in json.dumps(result)
+
+
+def test_a_hand_that_turns_one_way_more_than_back_is_no_bias(tmp_path):
+    recording = handled(23, np.zeros((3, 3)), minutes=2.0, steady=(0.0, -150.0, 0.0))
+    write_recording(recording, tmp_path / "run.parquet")
+    moving = moving_of(tmp_path / "run.parquet")
+    bias = np.degrees(moving.offset + beside(moving, np.zeros((3, 3))).own[BIAS])
+    np.testing.assert_allclose(bias, [0.4, -0.3, 0.2], atol=0.05)  # -150 of y where it is the mean
 
 
 @pytest.mark.parametrize("seed", [4, 5])
@@ -197,6 +242,45 @@ def test_even_shaking_on_a_floor_says_nothing_of_the_scale_about_the_vertical(re
 def test_a_loud_recording_that_hides_tilts_does_not_outweigh_a_quiet_one_when_judged():
     quiet, loud = np.array([[2.0, 100.0]]), np.array([[300.0, 0.001]])
     assert _tilt([quiet, loud]) == pytest.approx(2.2, abs=0.1)
+
+
+def test_rows_of_overlapping_windows_count_every_wave_once():
+    at_s = np.arange(4000) / 10.0
+    wave = np.sin(2 * np.pi * 0.23 * at_s) * np.exp(-(((at_s - 200.0) / 30.0) ** 2))
+    rows, _ = tapers(400, 40.0)
+    seen = [rows @ wave[a : a + 400] for a in range(0, 3601, 100)]
+    assert OVERLAP * np.square(seen).sum() == pytest.approx(wave @ wave, rel=0.02)
+
+
+def test_a_hand_that_is_loud_for_a_while_hides_nothing_of_when_it_was_quiet(recorded):
+    moving = moving_of(recorded(20, _MATRIX))
+    loud = np.zeros_like(moving.accel)
+    bout = slice(len(loud) // 2, len(loud) // 2 + 2000)
+    loud[bout] = gaussian_filter1d(np.random.default_rng(20).normal(0, 0.1, (2000, 3)), 40, axis=0)
+    quiet, shaken = [
+        beside(m, _MATRIX).shown(_MATRIX).normal.trace()
+        for m in (moving, replace(moving, accel=moving.accel + loud))
+    ]
+    assert shaken > 0.2 * quiet  # 0.04 with one loudness for all
+
+
+def test_without_a_rest_strides_that_are_no_sines_do_not_pass_for_a_bias(recorded, tmp_path):
+    recording = handled(21, np.zeros((3, 3)), dps=10.0)
+    stride = np.cos(2 * np.pi * 0.9 * recording.columns["t_us"] * 1e-6)
+    recording.columns["gx"] += np.rint(3280 * (stride**2 - 0.5)).astype(np.int64)
+    recording.columns["gx"] += np.rint(3280 * (stride**4 - 0.375)).astype(np.int64)
+    write_recording(recording, tmp_path / "run.parquet")
+    offset = np.degrees(moving_of(tmp_path / "run.parquet").offset[0])
+    assert offset == pytest.approx(0.4, abs=1.0)  # the median is -12
+
+
+def test_one_turn_between_two_rests_is_told_by_gravity_before_and_after_it(recorded):
+    moving = moving_of(recorded(22, np.zeros((3, 3)), minutes=2.0))
+    n, edge = len(moving.rate), round(10 * _HZ)
+    still = (np.arange(n) < edge) | (np.arange(n) >= n - edge)
+    rests = replace(moving, rate=np.where(still[:, None], 0.0, moving.rate), still=still)
+    found = [beside(m, np.zeros((3, 3))).rows.there[:, -1].sum() for m in (moving, rests)]
+    assert found == [0, 1]
 
 
 def test_an_accelerometers_bias_is_taken_out_before_gravity_is_asked(recorded):

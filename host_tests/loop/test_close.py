@@ -13,17 +13,11 @@ from zerorate_tools.loop.read.gate import CannotClose
 from zerorate_tools.loop.read.still import still_ticks
 from zerorate_tools.loop.read.ticks import read_ticks
 from zerorate_tools.loop.report.report import report
-from zerorate_tools.loop.search.catalogue import Candidate
-from zerorate_tools.loop.search.selection import Found, Selection
 from zerorate_tools.loop.verify.firmware import Firmware, Refused
-from zerorate_tools.loop.verify.measure import _measured, _without_harmful
-from zerorate_tools.loop.verify.measured import Course, Measured
+from zerorate_tools.loop.verify.run_kernels import _measured
 from zerorate_tools.model import read_model
-from zerorate_tools.model.term import Term
 from zerorate_tools.recordings import Recording, Scales, open_recording
 from zerorate_tools.replay import replay
-from zerorate_tools.replay.engines import CPythonEngine
-from zerorate_tools.replay.samples import frames_in_batches
 
 from .power_ons import SCALES, recording, turning, written
 
@@ -38,18 +32,6 @@ def test_a_device_with_hysteresis_is_closed(closed):
         assert low < high
     assert result["smallest_detectable_mdps"]["thermal-hysteresis"] > 0
     assert (folder / "model.bin").stat().st_size > 0
-
-
-def test_corrected_rows_are_the_samples_and_agree_with_the_report(logs, closed):
-    result, folder = closed
-    frame = pq.read_table(folder / "corrected.parquet").to_pandas()
-    assert list(frame.columns[:3]) == ["recording", "t_us", "split"]
-    test = frame[frame.split == "test"]
-    assert set(test.recording) == {"session-4.parquet"} and len(test) == 3600
-    raw = pq.read_table(logs[-1]).to_pandas()
-    error = raw.gx.to_numpy() - test.bias_after_gx.to_numpy()
-    rms = np.sqrt(np.mean(error[60:] ** 2)) / 1.31
-    assert rms == pytest.approx(result["after_mdps"][0], rel=0.15)
 
 
 def test_another_recording_can_be_held_out(logs):
@@ -140,29 +122,6 @@ def test_online_is_what_replay_gives_with_the_model(closed, logs, tmp_path):
             assert (rows[f"bias_online_g{axis}"].to_numpy() == by_replay).all()
 
 
-def test_the_frozen_firmware_is_the_same_on_cpython(logs):
-    frames = next(iter(frames_in_batches(recording(simulate(7).sessions[0]), 1200)))
-    compiled, plain = Firmware(SCALES, None), Firmware(SCALES, None)
-    plain._engine = CPythonEngine()
-    for learn in (True, False):
-        assert (compiled.run(frames, learn) == plain.run(frames, learn)).all()
-
-
-def test_a_frozen_firmware_learns_nothing(logs):
-    first, second = (next(iter(frames_in_batches(recording(s)))) for s in simulate(7).sessions[:2])
-    firmware = Firmware(SCALES, None)
-    firmware.run(first)
-    twice = firmware.copy()
-    for device, runs in ((firmware, 1), (twice, 2)):
-        for _ in range(runs):
-            device.power_on()
-            device.set_offset((0, 0, 0))
-            bias = device.run(second, learn=False)
-        device.bias = bias
-    assert (firmware.bias == twice.bias).all()
-    assert np.ptp(bias, axis=0).min() > 0
-
-
 def test_the_figures_are_those_of_the_columns(closed, logs):
     result, folder = closed
     rows = corrected(folder, logs[-1])
@@ -219,17 +178,6 @@ def test_of_three_recordings_every_row_is_left_out_once(logs, tmp_path):
     assert (after <= before).all() and after.max() < 0.5 * before.max()
 
 
-def test_what_pieces_of_few_recordings_speak_against_is_withdrawn():
-    rate = Found(Candidate("thermal-rate", (Term("temp"),), "catalogue"), None)
-    selection = Selection([rate], [], 0, None, (), (), [], {})
-    ways = {"before": np.ones((4, 3)), "after": np.full((4, 3), 0.9)}
-    worse = ways | {"after": np.full((4, 3), [0.9, 1.1, 0.9])}
-    courses = {"a": Course(np.arange(4), {}, worse), "b": Course(np.arange(4), {}, ways)}
-    alone, both = (Measured(courses, ["b"], np.zeros(3), inside=some) for some in ([], ["a"]))
-    assert _without_harmful(selection, alone, None) is selection
-    assert _without_harmful(selection, both, None).found[0].axes == (True, False, True)
-
-
 def test_what_a_trial_notes_is_not_said_of_what_is_deployed(monkeypatch, logs):
     analysis = load(logs[:1])
     before = list(analysis.gate.notes)
@@ -238,6 +186,6 @@ def test_what_a_trial_notes_is_not_said_of_what_is_deployed(monkeypatch, logs):
         trial.gate.notes.append("found but left out: of the trial")
         return trial
 
-    monkeypatch.setattr("zerorate_tools.loop.verify.measure.deployable", noting)
+    monkeypatch.setattr("zerorate_tools.loop.verify.run_kernels.deployable", noting)
     _measured(analysis, logs[:1], open_recording(logs[0]).scales, analysis.selection)
     assert analysis.gate.notes == before

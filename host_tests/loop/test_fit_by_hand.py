@@ -384,7 +384,6 @@ def test_a_turn_s_nats_are_a_tenth_of_its_blocks_times_the_log_of_what_its_error
         for k in range(10)
     ]
     assert judged([LINE], [], [A]) == pytest.approx(expected)
-    assert single.nats_of(np.e, 20) == pytest.approx(6.0)
     assert single.speaks_for(np.array([1.0, -0.9])) and not single.speaks_for(np.array([1.0, -1.0]))
     one = single.nats(np.array([[4.0, 0.0, 1.0]]), np.array([[1.0, 1.0, np.inf]]), [10])
     assert one == pytest.approx([0.5 * 0.1 * 10 * np.log(4)])

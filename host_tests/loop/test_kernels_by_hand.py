@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from zerorate_tools.loop.fit.single import PiecesByLine
 from zerorate_tools.loop.search.steps import Step
-from zerorate_tools.loop.verify import measured
+from zerorate_tools.loop.verify import courses
 from zerorate_tools.loop.verify import power_on as module
 from zerorate_tools.loop.verify.by_kernels import PiecesByKernels
 from zerorate_tools.loop.verify.firmware import Firmware
@@ -131,7 +131,7 @@ def by_pieces(power_on):
 
 def test_of_one_recording_every_way_is_run_and_scored(by_pieces):
     pieces, chosen = by_pieces
-    m = measured.MeasurementByPieces(pieces, chosen, [])
+    m = courses.PieceRuns(pieces, chosen, [])
     assert list(m.models) == ["before", "after_1", "after"]
     assert [len(m.models[way][0].slots) for way in ("after_1", "after")] == [1, 2]
     seen = []
@@ -151,12 +151,12 @@ def test_of_one_recording_every_way_is_run_and_scored(by_pieces):
 def test_what_motion_showed_is_beside_all_effects_alone(by_pieces):
     pieces, chosen = by_pieces
     more = [Slot(Term("rate_x", -100.0, 100.0), (0.01, 0.0, 0.0), "scale-factor")]
-    m = measured.MeasurementByPieces(pieces, chosen, more)
+    m = courses.PieceRuns(pieces, chosen, more)
     assert list(m.models) == ["before", "after_1", "after_2", "after"]
     assert len(m.models["after"][0].slots) == 3 and len(m.models["after_2"][0].slots) == 2
-    none = measured.MeasurementByPieces(pieces, chosen.first(0), [])
+    none = courses.PieceRuns(pieces, chosen.first(0), [])
     assert list(none.models) == ["before"]
-    alone = measured.MeasurementByPieces(pieces, chosen.first(0), more)
+    alone = courses.PieceRuns(pieces, chosen.first(0), more)
     assert list(alone.models) == ["before", "after"]
 
 
@@ -170,7 +170,7 @@ def test_a_stretch_behind_a_step_is_judged_about_its_own_mean(power_on):
 
 
 def test_no_online_is_written_unless_it_was_asked_for(tmp_path, power_on):
-    from zerorate_tools.loop.verify.measure import _sink
+    from zerorate_tools.loop.verify.run_kernels import _sink
 
     class Writer:
         rows = []

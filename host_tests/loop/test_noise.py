@@ -4,72 +4,17 @@ import numpy as np
 import pytest
 from zerorate_bench.loop.simulated import flicker, simulate
 from zerorate_tools.allan import Noise, overlapping
-from zerorate_tools.loop.fit import noise
-from zerorate_tools.loop.fit.cross_products import (
-    BridgedWhitener,
-    GappyWhitener,
-    Whitener,
-    whitener,
-)
-from zerorate_tools.loop.fit.noise import noise_of, spectra
 from zerorate_tools.loop.fit.regression import Regression
-from zerorate_tools.loop.read.lines import find, spectrum
+from zerorate_tools.loop.read.lines import SEGMENT, Segments, find, spectrum
 from zerorate_tools.loop.read.sessions import Session
-from zerorate_tools.loop.read.welch import SEGMENT, Segments
 from zerorate_tools.loop.search import drift_test
-from zerorate_tools.loop.search.catalogue import Candidate
 from zerorate_tools.loop.search.periodic import periodic
 from zerorate_tools.loop.search.select import Search
 from zerorate_tools.model.term import Term
 
 
-def test_a_random_walk_is_diagonal_in_the_transform():
-    n = 40
-    walk = np.minimum.outer(np.arange(1, n + 1), np.arange(1, n + 1)).astype(float)
-    basis = noise.transform(np.eye(n))
-    covariance = basis @ walk @ basis.T
-    assert covariance == pytest.approx(np.diag(noise.frequency(n) ** -2.0), abs=1e-8)
-
-
-def test_factorised_products_equal_the_transform_where_nothing_is_missing():
-    rng = np.random.default_rng(1)
-    there = np.ones(30, bool)
-    plain, gappy = Whitener(there), GappyWhitener(there)
-    x, y = rng.normal(size=(30, 2)), rng.normal(size=(30, 2))
-    wide = rng.normal(size=(30, 100))
-    for columns in (y, y, wide):  # new, known, and too many to be kept
-        a = plain.products(plain.prepare(x), plain.prepare(columns))
-        b = gappy.products(gappy.prepare(x), gappy.prepare(columns))
-        for one, other in zip(a, b):
-            assert other == pytest.approx(one, rel=1e-6, abs=1e-9)
-    assert gappy.logdet == pytest.approx(plain.logdet, rel=1e-9)
-
-
-def test_short_gaps_are_bridged_and_long_ones_factorised():
-    short, long = np.ones(60, bool), np.ones(60, bool)
-    short[20:23], long[20:40] = False, False
-    assert isinstance(whitener(short), BridgedWhitener)
-    assert isinstance(whitener(long), GappyWhitener)
-
-
 def session(rate):
     return Session("one", 20.0, 1, rate, np.ones(len(rate)), {})
-
-
-def test_the_colour_of_a_known_noise_is_recovered():
-    rng = np.random.default_rng(5)
-    n = 1200
-    rate = np.column_stack(
-        [
-            rng.normal(0, 1, n),
-            rng.normal(0, 1, n) + np.cumsum(rng.normal(0, 0.3, n)),
-            rng.normal(0, 0.3, n) + flicker(rng, n, 1.0),
-        ]
-    )
-    white, walk, pink = noise_of(Regression([session(rate)]), [])
-    assert white.white_dps == pytest.approx(1.0, rel=0.1) and white.walk_dps < 0.01
-    assert walk.walk_dps == pytest.approx(0.3, rel=0.5)
-    assert pink.flicker_dps == pytest.approx(1.0, rel=0.3)
 
 
 def test_white_noise_falls_with_the_square_root_of_time():
@@ -94,7 +39,6 @@ def test_too_short_a_rate_has_no_deviation():
 
 
 DRIFT = (Term("time"),)
-LOW = drift_test.lowness(spectra(180))
 
 
 def bare_sessions(seed, sessions=3):
@@ -113,27 +57,6 @@ def drifting(slopes_dps_an_hour):
     return Regression(sessions)
 
 
-def test_two_chances_together_are_fishers():
-    assert drift_test.together(0.03) == pytest.approx(0.03)
-    assert drift_test.together(0.05, 0.05) == pytest.approx(0.0175, abs=1e-4)
-
-
-def test_noises_alike_cost_nothing_and_one_that_is_steeper_than_the_others_does():
-    slow, white = LOW.argmax(), LOW.argmin()
-    same, other = np.full((3, len(LOW)), -1e6), np.full((3, len(LOW)), -1e6)
-    same[:, slow] = 0.0
-    other[[0, 1, 2], [slow, white, white]] = 0.0
-    assert drift_test.common_colour(same, LOW) == pytest.approx(0.0, abs=0.1)
-    assert drift_test.common_colour(other, LOW) < -5.0
-
-
-def test_a_drift_that_comes_again_has_a_mean_and_one_that_turns_about_has_a_spread():
-    mean, spread = drift_test.repeats(drifting([0.01, 0.01, 0.01]), [], DRIFT)
-    assert mean > 100 and spread < 25
-    mean, spread = drift_test.repeats(drifting([0.01, -0.01, 0.0]), [], DRIFT)
-    assert spread > 30 and mean < 5
-
-
 def test_a_drift_that_turns_about_is_noise():
     assert drift_test.chance(drifting([0.01, 0.01, 0.01]), [], DRIFT) < 1e-6
     assert drift_test.chance(drifting([0.01, -0.01, 0.0]), [], DRIFT) > 0.05
@@ -144,20 +67,6 @@ def test_in_noise_alone_the_chance_is_hardly_smaller_than_it_says():
     # Fitted on the same hour, the noise's colour takes some drift of its own for an effect.
     assert np.mean(np.array(chances) < 0.1) < 0.25
     assert min(chances) > drift_test.RARE
-
-
-def test_more_power_ons_show_a_smaller_drift():
-    each = [drift_test.smallest_square(4.0, 3, sessions) / sessions for sessions in (2, 3, 6)]
-    assert each == sorted(each, reverse=True)
-    assert 2 < each[-1] < each[0] < 10
-
-
-def test_only_what_needs_no_channel_follows_time():
-    def follows(**fields):
-        return drift_test.follows_time(Candidate("any", (Term(**fields),), "catalogue"))
-
-    assert follows(source="time") and follows(source="one", decay_s=300.0)
-    assert not follows(source="temp") and not follows(source="time", second="temp")
 
 
 @pytest.mark.parametrize("seed", [5000012, 5000024])

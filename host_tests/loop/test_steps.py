@@ -1,18 +1,14 @@
 """Steps of the bias: found before effects, in every stretch an offset, and never invented."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from zerorate_bench.loop.corners import simulate_corners
 from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.loop import analyse as loop
 from zerorate_tools.loop.analyse import analyse
-from zerorate_tools.loop.fit.line import ordinary
 from zerorate_tools.loop.fit.single import PiecesByLine
-from zerorate_tools.loop.report.in_words import in_words
 from zerorate_tools.loop.report.report import report
-from zerorate_tools.loop.search.steps_first import bend_of, remove_steps
+from zerorate_tools.loop.search.steps_first import remove_steps
 from zerorate_tools.model.term import first_order_lag
 
 
@@ -45,7 +41,7 @@ def steps_at(session):
     return [s.block - s.share for s in remove_steps([session])[0].steps]
 
 
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", range(3))
 def test_three_large_steps_hide_none_of_them(seed):
     session, floor = stepped(seed, 40.0, 50, 90, 130)
     (clean,) = remove_steps([session])
@@ -55,30 +51,10 @@ def test_three_large_steps_hide_none_of_them(seed):
         assert (np.abs(off) < 5 * step.deviation_dps).all()
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(3))
 def test_a_step_of_twice_three_floors_stands_out_of_noise_that_walks(seed):
     session, _ = stepped(seed, 6.0, 90)
     assert steps_at(session) == [pytest.approx(90, abs=0.75)]
-
-
-def test_recordings_of_one_device_share_the_chance_of_an_invented_step():
-    session, _ = stepped(0, 6.0, 90)
-    quiet = [stepped(seed, 0.0)[0] for seed in (1, 2, 3)]
-    alone, among = (
-        remove_steps([session])[0].steps[0],
-        remove_steps([session, *quiet])[0].steps[0],
-    )
-    assert among.block == alone.block
-    assert among.p_value == pytest.approx(4 * alone.p_value)
-
-
-def test_a_step_in_the_midst_of_a_block_is_one_step_of_its_whole_size():
-    session, floor = stepped(0, 40.0, 90)
-    session.rate_dps[89] += 0.5 * 40.0 * floor * (1, -1, 1)
-    (step,) = remove_steps([session])[0].steps
-    assert (step.block, step.share) == (90, 0.5)
-    off = step.size_dps - 40 * floor * (1, -1, 1)
-    assert (np.abs(off) < 4 * step.deviation_dps).all()
 
 
 @pytest.mark.parametrize("floors", [0.0, 40.0])
@@ -111,12 +87,6 @@ def test_a_step_that_stays_in_is_listed_too():
     assert [e["kind"] for e in report(analysis)["events"]] == ["step"]
 
 
-def test_a_report_says_what_the_pieces_left_out_chose():
-    said = [report(analyse([stepped(0, f, 90)[0]])) for f in (0.0, 40.0)]
-    assert all("the same pieces, which flatters" in in_words(r) for r in said)
-    assert ["two steps" in in_words(r) for r in said] == [False, True]
-
-
 def test_a_step_beside_blocks_that_a_hand_had_mostly_is_listed():
     session, floor = stepped(0, 8.0, 90)
     per = session.ticks_per_block
@@ -141,15 +111,7 @@ def test_a_step_between_rests_is_listed_though_the_first_block_after_has_both_it
     assert np.abs(step.size_dps / floor) == pytest.approx([20.0] * 3, abs=5.0)
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_a_slow_change_is_no_step(seed):
-    session, floor = stepped(seed, 0.0)
-    ramp = np.clip((np.arange(session.blocks) - 86) / 8, 0.0, 1.0)
-    session.rate_dps += 20 * floor * np.outer(ramp, (1, -1, 1))
-    assert steps_at(session) == []
-
-
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_a_part_that_is_late_behind_its_thermometer_makes_no_step_and_hides_none(seed):
     assert steps_at(in_a_freezer(seed, 0.0, 122)) == []
     assert steps_at(in_a_freezer(seed, 10.0, 122)) == [pytest.approx(122, abs=1.0)]
@@ -171,7 +133,7 @@ def test_a_step_along_the_slope_that_a_reading_of_the_thermometer_would_make_is_
     assert len(steps_at(session)) == listed
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize("spoiled", [(0.5,), (0.25, 0.4)])
 def test_a_disturbance_of_seconds_is_no_step(seed, spoiled):
     session, floor = stepped(seed, 0.0)
@@ -179,16 +141,9 @@ def test_a_disturbance_of_seconds_is_no_step(seed, spoiled):
     assert steps_at(session) == []
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 def test_a_step_that_comes_back_after_a_minute_is_two(seed):
     session, _ = stepped(seed, 30.0, 90, 93)
-    assert steps_at(session) == [90, 93]
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_two_steps_of_one_sign_a_minute_apart_are_two(seed):
-    session, floor = stepped(seed, 40.0, 90)
-    session.rate_dps[93:] += 40.0 * floor * (1, -1, 1)
     assert steps_at(session) == [90, 93]
 
 
@@ -220,25 +175,11 @@ def test_steps_are_timed_beside_each_other_and_beside_what_follows_temperature(b
 
 def test_nothing_and_what_bends_has_no_step():
     listed = 0
-    for seed in range(10):
+    for seed in range(5):
         for effect in ((), [("thermal-hysteresis", 5.0)], [("temperature-kink", 5.0)]):
             session, _ = stepped(seed, 0.0, effects=effect)
             listed += len(remove_steps([session])[0].steps)
     assert listed == 0
-
-
-def test_jumps_of_a_recorded_supply_are_left_to_its_effect():
-    sessions = simulate(11, [("supply-voltage", 10.0)], sessions=3).sessions
-    assert not any(s.steps for s in remove_steps(sessions))
-
-
-def test_what_is_fitted_has_an_offset_in_every_stretch():
-    session, _ = stepped(3, 200.0, 60)
-    terms, without = bend_of(session), stepped(3, 0.0)[0]
-    clean = replace(remove_steps([session])[0], rate_dps=session.rate_dps)
-    fitted = ordinary(terms, [clean])
-    assert fitted == pytest.approx(ordinary(terms, [without]), abs=2e-4)
-    assert fitted != pytest.approx(ordinary(terms, [session]), abs=2e-4)
 
 
 @pytest.mark.parametrize("seen_g", [0.0, 0.4])

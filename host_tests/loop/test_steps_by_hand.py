@@ -8,6 +8,7 @@ import pytest
 from scipy.stats import chi2, gamma
 from zerorate_tools.loop.fit.regression import Regression, predicted
 from zerorate_tools.loop.read.sessions import block_basis
+from zerorate_tools.loop.search import hysteresis, steps_first
 from zerorate_tools.loop.search import steps as listed
 from zerorate_tools.loop.search.catalogue import Candidate, lags
 from zerorate_tools.loop.search.steps import (
@@ -16,7 +17,7 @@ from zerorate_tools.loop.search.steps import (
     find_all,
     standing,
 )
-from zerorate_tools.model.term import Term
+from zerorate_tools.model.term import Term, play
 
 from . import dense
 from .dense import A, B
@@ -346,3 +347,59 @@ def test_of_two_steps_in_one_block_the_weaker_can_be_taken_out():
     steps = [stronger, weaker]
     steps.remove(min(steps, key=lambda s: s.ratio))
     assert steps == [stronger]
+
+
+COLD = Term("temp", centre=20.0)
+
+
+@pytest.mark.parametrize(
+    ("term", "per_degc"),
+    [
+        *((COLD, 1.0), (replace(COLD, power=2), 10.0), (replace(COLD, power=3), 75.0), (A, 0.0)),
+        (replace(COLD, lag_s=10.0, lag_mode="lag", power=2), 10.0 * (1 - np.exp(-2.0)) / 2),
+        (replace(COLD, lag_s=10.0, lag_mode="rate"), (1 - np.exp(-2.0)) / 20.0),
+    ],
+)
+def test_a_jump_of_temperature_moves_a_term_by_its_slope_less_what_a_lag_forgets(term, per_degc):
+    assert steps_first._slope(term, 25.0, 20.0) == pytest.approx(per_degc)
+
+
+@pytest.mark.parametrize(
+    ("at", "seen"), [(90, True), (89, False), (129, True), (130, False), (1, False), (110, True)]
+)
+def test_a_knock_counts_within_ten_ticks_of_a_step(at, seen):
+    force = np.zeros(200)
+    force[at:] += 0.5
+    sources = {"acc_x": force, "acc_y": -force, "acc_z": np.ones(200)}
+    told, said = steps_first._by_accelerometer(SimpleNamespace(sources=sources), 100, 120)
+    assert (told, "0.71 g" in said) == ((at, True) if seen else (None, False))
+
+
+def test_errors_of_pieces_are_compared_with_the_best_bend_by_their_geometric_mean():
+    left = {
+        "whole": [[1.0, 2.0, 4.0]],
+        "a": [[3.0, 3.0, 3.0], [np.nan] * 3],
+        "b": [[2.0, 4.0, 8.0]],
+    }
+    pieces = SimpleNamespace(residual=lambda straight, terms: np.array(left[terms]))
+    factor = hysteresis._factor([], ["a", "b"], "whole", pieces)
+    assert factor == pytest.approx(3.0 / 2.0)
+
+
+def test_widths_are_tried_as_shares_of_the_range_about_its_middle():
+    sessions = [dense.made(seed, 24, names=("temp",)) for seed in (1, 2)]
+    for s in sessions:
+        s.sources["temp"] = np.linspace(10.0, 50.0 - s.blocks, 24)
+    fits = hysteresis._Fits(sessions, [COLD])
+    assert fits._grid[[0, -1]] == pytest.approx([16 * hysteresis._FINEST, 16 * hysteresis._WIDEST])
+    assert (fits._lo, fits._hi, fits._centre) == pytest.approx((10.0, 26.0, 18.0))
+    temp = sessions[0].sources["temp"]
+    line = np.tile(temp - temp.mean(), 2)
+    off = np.vstack([s.rate_dps - s.rate_dps.mean(axis=0) for s in sessions])
+    assert fits.rows == 48
+    assert fits._y == pytest.approx(off - np.outer(line, line @ off) / (line @ line))
+    column = play(temp, 4.0)
+    for power in (1, 2):
+        off = np.tile(((column - 18.0) / 8.0) ** power, 2)
+        off -= off.mean()
+        assert fits._column(2.0, power) == pytest.approx(off - line * (line @ off) / (line @ line))

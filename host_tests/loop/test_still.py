@@ -1,18 +1,17 @@
 """What of a recording counts as rest."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from zerorate_bench.loop.rests import NOISES_DPS, RATES_HZ, share_used, shares_with_turn
+from zerorate_bench.loop.trials import NOISES_DPS, RATES_HZ, share_used, shares_with_turn
 from zerorate_tools.closing import close
-from zerorate_tools.closing_in_motion import tell_heading
 from zerorate_tools.loop.analyse import analyse
 from zerorate_tools.loop.fit.regression import Regression
-from zerorate_tools.loop.motion.in_motion import in_motion, slots_of, without_scales
+from zerorate_tools.loop.motion.by_windows import GIVEN, UNIT, RateScale
+from zerorate_tools.loop.motion.scales_and_timing import in_motion, slots_of, without_scales
 from zerorate_tools.loop.read.blocks import session_of
-from zerorate_tools.loop.read.reference import Reference
+from zerorate_tools.loop.read.reference import RATES, Reference
 from zerorate_tools.loop.read.still import still_ticks
 from zerorate_tools.loop.read.ticks import read_ticks
 from zerorate_tools.loop.report.in_words import in_words
@@ -141,8 +140,8 @@ TURNED = [
 ]
 
 
-def sessions(folder, effect, motion, attitude, count=4, minutes=10):
-    """Sessions at 25 Hz; the accelerometer is off by 30 mg."""
+def sessions(folder, effect, motion, attitude, count=4, minutes=10, rates=False):
+    """Sessions at 25 Hz; the accelerometer is off by 30 mg. rates: whether true ones are there."""
     description = {
         "sessions": count,
         "sensor": {"odr_hz": 25.0, "accel_bias_g": [0.03, -0.02, 0.04]},
@@ -154,6 +153,8 @@ def sessions(folder, effect, motion, attitude, count=4, minutes=10):
         columns = dict(recording.columns)
         for name, q in zip(("qw", "qx", "qy", "qz"), truth.attitude.T if attitude else ()):
             columns[name] = np.rint(q * 2**29).astype(np.int32)
+        for name, dps in zip(RATES, truth.rate_dps.T if rates else ()):
+            columns[name] = np.rint(dps * recording.scales.gyro_lsb_per_dps).astype(np.int32)
         path = folder / f"{i}.parquet"
         write_recording(replace(recording, columns=columns), path)
         out.append(session_of(read_ticks(path), 20.0))
@@ -183,13 +184,8 @@ def test_where_rests_suffice_and_an_attitude_is_given_the_heading_held_out_is_to
 
 def test_of_a_log_alone_the_second_half_tells_the_heading_beside_turns_of_the_first(tmp_path):
     alone = sessions(tmp_path, [SCALE], HANDLED, True, count=1, minutes=20)
-    motion = in_motion(alone, [], logs_of(tmp_path, alone))
-    analysis = SimpleNamespace(single=True, sessions=alone, holdout=alone, motion=motion)
-    result = {"effects": [{"in_motion": {}, "said": "turns"}]}
-    tell_heading(result, analysis, [tmp_path / "0.parquet"])
-    motion = result["effects"][0]["in_motion"]
-    assert 0.5 < motion["heading_before"]
-    assert motion["heading_after"] < 0.4 * motion["heading_before"]
+    before, after = in_motion(alone, [], logs_of(tmp_path, alone)).scales.heading
+    assert 0.5 < before and after < 0.4 * before
 
 
 @pytest.mark.parametrize("attitude", [True, False], ids=["attitude", "gravity"])
@@ -224,8 +220,25 @@ def test_the_scale_is_a_slot_of_each_rate_that_subtracts_what_was_added(tmp_path
     slots = slots_of(motion)
     assert [s.term.source for s in slots] == ["rate_x", "rate_y", "rate_z"]
     assert slots[1].coefficient_dps[1] == pytest.approx(-0.02, abs=1e-3)
-    left = without_scales(made[0], motion).rate_dps
+
+
+@pytest.mark.parametrize("seen", [0, 1])
+def test_of_nine_entries_one_at_least_must_be_seen(seen):
+    unseen = np.arange(9).reshape(3, 3) >= seen
+    large = np.full((3, 3), 0.05), np.full((3, 3), 0.01), 1e-9, "scale-factor", GIVEN, np.ones(2)
+    shown = RateScale(*large, 2.0, 1.0, UNIT[GIVEN], 40, np.full(3, 300.0), unseen, 1.0)
+    assert shown.found == (seen > 0)
+
+
+def test_beside_true_rates_what_turning_adds_is_taken_out_of_the_blocks_in_motion(tmp_path):
+    made = sessions(tmp_path, [SCALE], HANDLED, False, rates=True)
+    left = without_scales(made[0], in_motion(made, [], logs_of(tmp_path, made))).rate_dps
     assert np.nanstd(left, axis=0).max() < 0.7 * np.nanstd(made[0].rate_dps, axis=0).max()
+
+
+def test_an_attitude_makes_no_rest_of_motion(tmp_path):
+    with_it, without = (sessions(tmp_path, [], HANDLED, on, count=1)[0] for on in (True, False))
+    assert np.array_equal(with_it.available, without.available) and not with_it.moved.any()
 
 
 def test_readings_that_come_late_are_said_with_how_late(tmp_path):
@@ -234,7 +247,7 @@ def test_readings_that_come_late_are_said_with_how_late(tmp_path):
 
 
 def test_no_step_of_the_bias_is_listed_in_the_midst_of_motion(tmp_path):
-    made = sessions(tmp_path, [], HANDLED, attitude=True)
+    made = sessions(tmp_path, [], HANDLED, False, rates=True)
     moved = np.flatnonzero(made[1].moved)
     assert len(moved) > 5
     made[1].rate_dps[moved[2] :] += 5.0

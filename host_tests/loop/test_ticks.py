@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from zerorate_tools.loop.read.dequantise import dequantise, step_lsb
+from zerorate_tools.loop.read.bad_readings import saturated
+from zerorate_tools.loop.read.blocks import dequantise, step_lsb
 from zerorate_tools.loop.read.earth import EARTH_DPS, can_be_earth, earth_of
 from zerorate_tools.loop.read.gate import CannotClose
-from zerorate_tools.loop.read.saturation import saturated
 from zerorate_tools.loop.read.sessions import Session
-from zerorate_tools.loop.read.stretch import deviation_of, still_stretch
+from zerorate_tools.loop.read.still import deviation_of, still_stretch
 from zerorate_tools.loop.read.ticks import read_ticks
 from zerorate_tools.recordings import Recording, Scales, write_recording
 

@@ -10,13 +10,13 @@ from zerorate_tools.loop.fit.left_out import of_plays
 from zerorate_tools.loop.fit.noise import IS_STEEP, floor_dps
 from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.fit.single import PiecesByLine
-from zerorate_tools.loop.motion.in_motion import InMotion
+from zerorate_tools.loop.motion.scales_and_timing import InMotion
 from zerorate_tools.loop.read.earth import Earth
 from zerorate_tools.loop.read.sessions import Session
 from zerorate_tools.loop.search.catalogue import Candidate
 from zerorate_tools.loop.search.decide import Decision
 from zerorate_tools.loop.search.selection import Found, Selection
-from zerorate_tools.loop.verify import measure, measured
+from zerorate_tools.loop.verify import courses, run_kernels
 from zerorate_tools.loop.verify import prune_by_holdout as prune
 from zerorate_tools.loop.verify.analysis import Analysis
 from zerorate_tools.loop.verify.firmware import Firmware, Refused, at_once, rows
@@ -531,41 +531,11 @@ def test_what_was_taken_from_every_axis_is_withdrawn_with_both_errors(three):
     assert name == "supply-voltage" and "grows: with it 2e+03 mdps, without 1e+03" in why
 
 
-def test_of_one_recording_what_takes_less_than_a_twentieth_goes(three):
-    alone = replace(three, alone=True)
-    after = parts([1, 1, 1], [0.96, 0.94, 0.5], [0.5, 0.5, 0.4], [0.4, 0.4, 0.3])
-    less = prune.without_harmful(alone, after, lambda i: parts([0.3, 1, 1])[0])
-    assert axes(less)[0] == (False, True, True)
-    assert prune.without_harmful(three, after, never) is three
-    slope = Term("temp", 10.0, 40.0)
-    sloped = replace(alone, found=[effect(slope), *alone.found[1:]])
-    after = parts([1, 1, 1], [0.96, 0.96, 0.96], [0.5, 0.5, 0.5], [0.4, 0.4, 0.4])
-    assert prune.without_harmful(sloped, after, never) is sloped
-
-
 def test_an_axis_that_an_effect_does_not_correct_is_not_its_doing(three):
     spared = replace(three, found=[effect(A, axes=(False, True, True))])
     after = parts([1, 1, 1], [2, 0.5, 0.5])
     assert prune.without_harmful(spared, after, never) is spared
     assert prune.without_harmful(replace(three, found=[]), parts([1, 1, 1]), never).found == []
-
-
-@pytest.mark.parametrize(
-    ("last", "stays"), [(1.0, False), (0.91, False), (0.901, False), (0.899, True)]
-)
-def test_of_one_recording_heat_must_take_a_tenth_in_all(three, last, stays):
-    both = [effect(Term("temp")), effect(Term("time"))]
-    heat = replace(three, alone=True, found=[*both, effect(Term("time", power=2))])
-    after = parts([1, 1, 1], [0.95] * 3, [1.0] * 3, [last] * 3)
-    less = prune.without_marginal(heat, after)
-    assert (less is heat) == stays
-    if not stays:
-        assert less.found == both and "hardly falls: with it" in less.withdrawn[0][1]
-    assert prune.without_marginal(replace(heat, alone=False), after).found == heat.found
-    volts = replace(heat, found=[effect(Term("temp")), effect(Term("vdd_mv"))])
-    assert prune.without_marginal(volts, after) is volts
-    none = replace(heat, found=[])
-    assert prune.without_marginal(none, after[:1]) is none
 
 
 def test_what_a_session_held_out_speaks_against_is_withdrawn_with_both_errors(sessions):
@@ -731,7 +701,7 @@ def test_confidence_is_tentative_with_few_power_ons_beside_earth_and_for_time_wi
     assert sure.confidence(0) == "confirmed" and not sure.few and not sure.single
     few = replace(sure, train=warm[:2])
     assert few.few and few.confidence(0) == "tentative"
-    beside = replace(effect(VOLTS), confounded_with=["earth-rotation"])
+    beside = replace(effect(VOLTS), rivals={"earth-rotation": 0.0})
     beside_earth = replace(sure, selection=replace(sure.selection, found=[beside]))
     assert beside_earth.confidence(0) == "tentative"
     time = replace(sure, selection=replace(sure.selection, found=[effect(Term("time"))]))
@@ -775,9 +745,9 @@ class Counting:
 
 @pytest.fixture
 def counting(monkeypatch):
-    monkeypatch.setattr(measured, "Firmware", Counting)
+    monkeypatch.setattr(courses, "Firmware", Counting)
     told = TurnOn(np.array([128, 0, -128]), 3)
-    monkeypatch.setattr(measured, "turn_on", lambda device, p: told)
+    monkeypatch.setattr(courses, "turn_on", lambda device, p: told)
 
 
 @pytest.fixture
@@ -790,7 +760,7 @@ def nothing(name, frames, biases):
 
 
 def test_devices_live_through_the_training_and_are_run_frozen_over_what_is_held_out(counting, pair):
-    m = measured.Measurement(pair, ["a"], ["b"], [None, 1, 2], SCALES, {})
+    m = courses.SessionRuns(pair, ["a"], ["b"], [None, 1, 2], SCALES, {})
     m.learn()
     assert [d.lived for d in m.devices] == [120] * 3 and [d.on for d in m.devices] == [1] * 3
     seen = []
@@ -817,7 +787,7 @@ def test_devices_live_through_the_training_and_are_run_frozen_over_what_is_held_
 
 
 def test_over_what_was_fitted_only_before_and_after_are_run_and_online_as_it_began(counting, pair):
-    m = measured.Measurement(pair, ["a"], ["b"], [None, 1, 2], SCALES, {})
+    m = courses.SessionRuns(pair, ["a"], ["b"], [None, 1, 2], SCALES, {})
     m.learn()
     assert set(m.course("a", False, nothing).residual) == {"before", "after"}
     course = m.course("a", True, nothing)
@@ -827,11 +797,11 @@ def test_over_what_was_fitted_only_before_and_after_are_run_and_online_as_it_beg
 
 
 def test_without_a_model_after_is_as_before(counting, pair):
-    m = measured.Measurement(pair, ["a"], ["b"], [None], SCALES, {})
+    m = courses.SessionRuns(pair, ["a"], ["b"], [None], SCALES, {})
     m.learn()
     course = m.course("b", False, nothing)
     assert course.bias["after"] == pytest.approx(course.bias["before"])
-    some = measured.Measurement(pair, ["a"], ["b"], [None, 1], SCALES, {"a": SimpleNamespace(
+    some = courses.SessionRuns(pair, ["a"], ["b"], [None, 1], SCALES, {"a": SimpleNamespace(
         course=lambda sink, learning: sorted(learning))})  # fmt: skip
     some.learn()
     assert some.course("a", False, nothing) == []
@@ -839,36 +809,36 @@ def test_without_a_model_after_is_as_before(counting, pair):
 
 
 def test_the_ways_of_what_was_measured():
-    assert [measured.after_first(k) for k in range(3)] == ["before", "after_1", "after_2"]
+    assert [courses.after_first(k) for k in range(3)] == ["before", "after_1", "after_2"]
     ways = {"before": np.ones(1), "after_1": np.ones(1) * 2, "after": np.ones(1) * 3}
     offsets = {"before": np.array([1.0, 2.0, 3.0])}
-    a, b = (measured.Course(np.zeros(1), {}, ways, o) for o in (offsets, {}))
-    found = measured.Measured({"a": a, "b": b}, ["b"], np.zeros(3))
+    a, b = (courses.Course(np.zeros(1), {}, ways, o) for o in (offsets, {}))
+    found = courses.Courses({"a": a, "b": b}, ["b"], np.zeros(3))
     assert found.residuals("after_1") == [ways["after_1"]]
     assert [found.with_first(k)[0][0] for k in range(3)] == [1, 2, 3]
     assert len(found.with_first(0, ["a", "b"])) == 2
     assert found.offsets("after")[0].tolist() == [0, 0, 0]
-    other = measured.Measured({"a": a}, ["a"], np.zeros(3))
+    other = courses.Courses({"a": a}, ["a"], np.zeros(3))
     assert other.offsets("after")[0].tolist() == [1, 2, 3]
-    assert other.inside == [] and other.by == measured.BY
+    assert other.inside == [] and other.by == courses.BY
 
 
 def test_models_are_none_those_of_the_first_effects_and_the_whole_one(warm):
     analysis = analysed(warm, effect(VOLTS), effect(WARM))
     whole = model_of(analysis, SCALES)
-    models = measure.models_of(analysis, whole, SCALES)
+    models = run_kernels.models_of(analysis, whole, SCALES)
     assert (
         models[0] is None and models[-1] is whole and [len(m.slots) for m in models[1:]] == [1, 2]
     )
     none = analysed(warm)
-    assert measure.models_of(none, model_of(none, SCALES), SCALES) == [None]
+    assert run_kernels.models_of(none, model_of(none, SCALES), SCALES) == [None]
 
 
 def test_columns_of_the_corrected_rows_are_what_was_subtracted(tmp_path):
     (frames,) = powered_on(tmp_path, at_rest(0, 2)).frames()
     test = np.arange(40) >= 30
     biases = {"before": np.full((40, 3), 256), "after": np.arange(120).reshape(40, 3), "after_1": 0}
-    writer = measure.CorrectedWriter(tmp_path / "o.parquet")
+    writer = run_kernels.CorrectedWriter(tmp_path / "o.parquet")
     writer.write("a.csv", frames, test, biases)
     writer.write("b.csv", frames, ~test, biases)
     writer.close()
@@ -890,9 +860,9 @@ def test_what_the_integers_round_is_the_difference_to_the_same_terms_in_floats(t
     term = Term("volt", 4000.0, 6000.0, 5000.0, lag_mode="lag", lag_s=8.0)
     told = np.array([[0.001, -0.002, 0.0]])
     model = drafted([Slot(term, tuple(told[0]), "x")], SCALES, tick_s=1.0)
-    exact = measure.rounding_dps(p, model, [term], told, SCALES)
+    exact = run_kernels.rounding_dps(p, model, [term], told, SCALES)
     assert exact[2] == 0 and exact[:2].max() < 2e-3
-    wrong = measure.rounding_dps(p, model, [term], told + [[0.001, 0.0, 0.0]], SCALES)
+    wrong = run_kernels.rounding_dps(p, model, [term], told + [[0.001, 0.0, 0.0]], SCALES)
     lagged = []
     at = volts[0] - 5000.0
     for v in volts:
@@ -903,7 +873,7 @@ def test_what_the_integers_round_is_the_difference_to_the_same_terms_in_floats(t
 
 
 def course(**ways):
-    return measured.Course(np.arange(4), {}, {w: np.full((4, 3), e) for w, e in ways.items()})
+    return courses.Course(np.arange(4), {}, {w: np.full((4, 3), e) for w, e in ways.items()})
 
 
 def test_what_the_kernels_find_harmful_goes_by_what_was_held_out_and_then_by_the_pieces(three):
@@ -914,8 +884,8 @@ def test_what_the_kernels_find_harmful_goes_by_what_was_held_out_and_then_by_the
 
     def of(held, pieces=None):
         every = {"h": held, **({"p": pieces} if pieces else {})}
-        told = measured.Measured(every, ["h"], np.zeros(3), inside=["p"] if pieces else [])
-        return measure._without_harmful(two, told, asked.append)
+        told = courses.Courses(every, ["h"], np.zeros(3), inside=["p"] if pieces else [])
+        return run_kernels._without_harmful(two, told, asked.append)
 
     assert of(good) is two and of(good, good) is two
     for less in (of(bad), of(bad, good), of(good, bad)):
@@ -929,22 +899,19 @@ def test_what_the_kernels_find_harmful_goes_by_what_was_held_out_and_then_by_the
 
         def again(selection, others=others):
             asked.append(selection.terms)
-            return measured.Measured({"h": others}, ["h"], np.zeros(3))
+            return courses.Courses({"h": others}, ["h"], np.zeros(3))
 
-        told = measured.Measured({"h": needed}, ["h"], np.zeros(3))
-        less = measure._without_harmful(two, told, again)
+        told = courses.Courses({"h": needed}, ["h"], np.zeros(3))
+        less = run_kernels._without_harmful(two, told, again)
         assert (less is two) == stays and asked[-1] == [B]
-    heat = replace(two, alone=True, found=[effect(Term("temp"))])
-    little = measured.Measured({"h": course(before=1.0, after=0.92)}, ["h"], np.zeros(3))
-    assert measure._without_harmful(heat, little, None).found == []
 
 
 def test_which_sessions_have_pieces_left_out(warm):
     analysis = analysed(warm, effect(VOLTS))
-    assert measure._inside(analysis) == []
+    assert run_kernels._inside(analysis) == []
     few = replace(analysis, train=warm[:2])
-    assert measure._inside(few) == ["s1", "s2"]
-    assert measure._inside(replace(few, sessions=warm[:1])) == []
+    assert run_kernels._inside(few) == ["s1", "s2"]
+    assert run_kernels._inside(replace(few, sessions=warm[:1])) == []
 
 
 def test_a_whole_device_is_measured_and_written(tmp_path):
@@ -960,7 +927,7 @@ def test_a_whole_device_is_measured_and_written(tmp_path):
         made.append(p.session)
     analysis = analysed(made, effect(Term("volt", 4000.0, 6000.0, 5000.0)))
     logs, out, steps = [p.path for p in every], tmp_path / "corrected.parquet", []
-    told, model = measure.measure_and_prune(analysis, logs, out, True, steps.append)
+    told, model = run_kernels.run_and_prune(analysis, logs, out, True, steps.append)
     assert len(model.slots) == 1 and steps == [1] * len(steps) and len(steps) % 4 == 0
     assert told.judgement.after_dps[0] < 0.3 * told.judgement.before_dps[0]
     found = told.measured
@@ -974,7 +941,7 @@ def test_a_whole_device_is_measured_and_written(tmp_path):
     blocks = left.to_numpy().reshape(40, PER).mean(axis=1)[15:] / 131
     assert np.sqrt((blocks**2).mean()) == pytest.approx(told.judgement.after_dps[0], rel=0.05)
     none = told.selection.first(0)
-    other = measure._measured(told, logs, SCALES, none)
+    other = run_kernels._measured(told, logs, SCALES, none)
     assert other.holdout == ["d"] and set(other.sessions["d"].residual) == {
         "before",
         "after",

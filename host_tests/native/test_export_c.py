@@ -18,7 +18,7 @@ from zerorate_tools import layout
 from zerorate_tools.cli import main
 from zerorate_tools.kernels.export import export_c
 from zerorate_tools.model import read_model, write_model
-from zerorate_tools.model.check import sensor_for
+from zerorate_tools.model.files import sensor_for
 
 from ..firmware import trace
 from ..firmware.trace_on_host import checksums, corrector_for, frames
@@ -85,11 +85,6 @@ def test_a_model_is_applied_to_every_sample_as_on_a_board(tmp_path, matrix_model
     # each rate is rounded to an LSB on its way in and out, and what that leaves over is carried
     wanted = -matrix_model.rates_dps @ matrix_model.error.T
     np.testing.assert_allclose(left, wanted, atol=1.1 / lsb)
-
-
-def test_a_scale_that_cannot_be_is_one_line(tmp_path, capsys):
-    assert main(["export", "c", str(tmp_path), "--odr-hz", "0"]) == 2
-    assert capsys.readouterr().err == "zerorate: odr_hz must be 0.01..8000, not 0.0\n"
 
 
 BINDING = bytes([0x68, 0, 0, 3])

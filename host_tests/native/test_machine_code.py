@@ -18,11 +18,10 @@ from zerorate.motion.motion_settings import motion_settings, motion_state
 from zerorate.rest import guard
 from zerorate.rest.estimators import reset
 from zerorate.rest.step import admit, consider, finish, step
-from zerorate_bench.native.emulated import Emulated, code_in
 from zerorate_bench.native.machine_code import INLINED, UNROLLED
+from zerorate_bench.native.native_cost import Emulated, code_in
 from zerorate_bench.native.native_files import plain_kernels
-from zerorate_tools.kernels.known import answer_by, known_model
-from zerorate_tools.kernels.parts import BURST, PARTS
+from zerorate_bench.native.parts import BURST, PARTS, answer_by, known_model
 from zerorate_tools.kernels.reading import Kernels
 from zerorate_tools.layout import EFFECTS, GRAVITY, MOTION, SETTINGS, SLOT, SOURCE, STATE, STILLNESS
 
@@ -81,12 +80,6 @@ def test_bursts_end_in_the_golden_state(machine_code, processor, mode, at_once, 
         burst = array("i", rows[first : first + at_once].tobytes())
         run(corrector.state, corrector.settings, burst, BURST + len(burst) // 8)
     assert checksums(corrector.state.tobytes(), b"")["state"] == golden[mode]["state"]
-
-
-@processors
-@pytest.mark.parametrize("part", PARTS)
-def test_the_known_answer_is_what_the_kernels_and_the_code_give(machine_code, processor, part):
-    assert answer_by(machine_code(part, processor), part) == answer_by(plain_kernels()[part], part)
 
 
 @processors

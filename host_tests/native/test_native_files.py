@@ -1,10 +1,12 @@
 """The generated files are those that the kernels give, and what they must not hold is found."""
 
+import ast
 import struct
 
 import pytest
 from zerorate_bench.native.machine_code import machine_code, problems
-from zerorate_bench.native.native_files import stale
+from zerorate_bench.native.native_files import plain_kernels, stale
+from zerorate_bench.native.parts import PARTS, answer_by, known
 from zerorate_tools.errors import ZerorateError
 from zerorate_tools.kernels.reading import Kernels
 
@@ -45,3 +47,16 @@ def test_two_kernel_files_of_one_name_are_refused(tmp_path):
     (tmp_path / "a.py").write_text(text)
     with pytest.raises(ZerorateError, match="has the name of another file with kernels"):
         Kernels(tmp_path)
+
+
+@pytest.mark.parametrize("processor", ["thumb", "rv32"])
+@pytest.mark.parametrize("part", PARTS)
+def test_the_known_answer_on_every_board_is_the_kernels(repository, part, processor):
+    file = repository / "firmware" / "zerorate" / "native" / f"{processor}_{part}.py"
+    committed = {
+        line.partition(" = ")[0]: ast.literal_eval(line.partition(" = ")[2])
+        for line in file.read_text(encoding="utf-8").splitlines()[:10]
+        if line.startswith(("KNOWN", "ANSWER"))
+    }
+    assert committed["KNOWN"] == known(part)
+    assert committed["ANSWER"] == answer_by(plain_kernels()[part], part)

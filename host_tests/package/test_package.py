@@ -156,13 +156,6 @@ def test_firmware_and_command_line_run_on_every_python_that_is_here(version, bui
     assert "zerorate demo" in done.stdout, done.stderr
 
 
-def test_without_a_checkout_bench_says_in_a_line_how_to_get_it(away):
-    done = away("-m", "zerorate_tools.cli", "bench", "faults")
-    assert done.returncode == 2
-    (line,) = done.stderr.splitlines()
-    assert "pip install -e '.[tools,bench]'" in line
-
-
 def test_without_its_extra_a_command_says_in_a_line_what_to_install(bare):
     done = bare("-m", "zerorate_tools.cli", "simulate", "day", "--out", "day.parquet")
     assert done.returncode == 2
@@ -221,11 +214,12 @@ def test_with_its_extra_alone_all_of_the_page_on_a_board_runs(built, tmp_path, r
 
 
 def test_every_file_about_the_project_says_the_same_version(repository):
-    assert f"version: {__version__}\n" in (repository / "CITATION.cff").read_text()
-    assert (
-        "/".join(["zerorate", f"firmware@v{__version__}"])
-        in (repository / "docs" / "pico.md").read_text()
-    )
+    for name, words in (
+        ("CITATION.cff", f"version: {__version__}\n"),
+        ("manifest.py", f'version="{__version__}"'),
+        ("docs/pico.md", "/".join(["zerorate", f"firmware@v{__version__}"])),
+    ):
+        assert words in (repository / name).read_text(encoding="utf-8"), name
 
 
 def test_a_release_runs_what_ci_runs_and_checks_what_it_uploads(repository):

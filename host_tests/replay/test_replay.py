@@ -212,21 +212,9 @@ def test_a_state_learned_beside_another_model_is_refused(log, tmp_path, resume):
         replay(log, from_state=state, resume=resume, model=models[1])
 
 
-def test_to_resume_from_nothing_is_refused(log, tmp_path, capsys):
-    with pytest.raises(SystemExit):
-        main(["replay", str(log), "--resume", "--out", str(tmp_path / "bias.parquet")])
-    assert "give --from-state, too" in capsys.readouterr().err
-
-
 def test_an_unknown_setting_is_refused_and_those_there_are_are_named(log):
     with pytest.raises(ZerorateError, match="no such setting: colour; .*bins, .*step_degc, "):
         replay(log, options={"colour": 1})
-
-
-def test_a_name_of_another_format_is_refused(log, tmp_path):
-    with pytest.raises(InFile, match="bias.csv: a replay is written as Parquet"):
-        replay(log, tmp_path / "bias.csv")
-    assert not any(tmp_path.iterdir())
 
 
 def test_a_broken_recording_leaves_no_output(tmp_path, capsys):

@@ -6,7 +6,7 @@ from dataclasses import replace
 from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.closing import load
 from zerorate_tools.loop.report.report import as_json, report
-from zerorate_tools.loop.verify.measure import measure
+from zerorate_tools.loop.verify.run_kernels import run_kernels
 from zerorate_tools.loop.verify.slots import model_of
 from zerorate_tools.model import write_model
 from zerorate_tools.recordings import Scales, open_recording
@@ -39,6 +39,6 @@ class Closed:
         self.folder, self.logs = folder, logs
         found, self.scales = load(logs), open_recording(logs[0]).scales
         model = model_of(found, self.scales)
-        self.analysis = measure(found, logs, model, folder / "corrected.parquet")
+        self.analysis = run_kernels(found, logs, model, folder / "corrected.parquet")
         write_model(model, folder)
         self.result = json.loads(json.dumps(report(self.analysis), default=as_json))

@@ -7,19 +7,23 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from zerorate import Corrector, Sensor
-from zerorate_tools.errors import ZerorateError
 from zerorate_tools.layout import AXIS, ESTIMATOR, SETTINGS, axis_at
+from zerorate_tools.loop.motion.by_windows import GIVEN
 from zerorate_tools.loop.search.curve import FORMS, KIND
 from zerorate_tools.model.effects import EFFECTS
-from zerorate_tools.numbers import chance, figure
 from zerorate_tools.recordings import open_recording, read_recording
 from zerorate_tools.replay import replay
-from zerorate_tools.report import kinds
+from zerorate_tools.report import sentences
 from zerorate_tools.report.estimators import moments
-from zerorate_tools.report.held_out import held_out, trend
 from zerorate_tools.report.plot import thinned
 from zerorate_tools.report.report_folder import plots_of
-from zerorate_tools.report.residual_plots import against_time, longest
+from zerorate_tools.report.residual_plots import (
+    HeldOut,
+    against_time,
+    held_out,
+    longest,
+    trend,
+)
 
 from host_tests.report.devices import Closed, device
 
@@ -122,7 +126,7 @@ def test_the_floor_is_the_lowest_point_of_the_noise(outcome, plots):
 
 def test_every_kind_that_can_be_found_has_words():
     for kind in (*(row.kind for row in EFFECTS), *FORMS, KIND):
-        assert kinds.words_of(kind)[1]
+        assert sentences.words_of(kind)[1]
 
 
 @pytest.mark.parametrize(
@@ -137,22 +141,7 @@ def test_every_kind_that_can_be_found_has_words():
     ],
 )
 def test_a_coefficient_has_its_unit(slot, unit):
-    assert kinds.per_unit(slot) == unit
-
-
-@pytest.mark.parametrize(
-    ("value", "said"),
-    [
-        *((26.3111, "26.3"), (0.808, "0.808"), (1234.5, "1,234"), (99.96, "100"), (-3.2, "−3.20")),
-        *((0, "0"), (5.9e-4, "0.000590"), (5.9e-5, "5.9 × 10⁻⁵"), (2.5e7, "2.5 × 10⁷")),
-    ],
-)
-def test_figures_have_three_digits(value, said):
-    assert figure(value) == said
-
-
-def test_a_chance_below_a_millionth_is_not_told_apart():
-    assert (chance(3e-51), chance(0.0011)) == ("below 10⁻⁶", "0.00110")
+    assert sentences.per_unit(slot) == unit
 
 
 @pytest.fixture(scope="module")
@@ -199,29 +188,106 @@ def test_a_histogram_holds_its_bias_and_its_edges_rise(seen):
                 assert len(e.readings) == len(e.edges_dps) - 1 == bins
 
 
-def test_three_short_and_five_long_are_held_at_most_and_one_learns(seen):
-    for held in seen[-1].axes:
-        count = {kind: sum(e.kind == kind for e in held) for kind in ("any", "short", "long")}
-        assert count["any"] == 1 and 1 <= count["short"] <= 3 and 1 <= count["long"] <= 5
-        assert sum(e.in_use for e in held) == 1
+@pytest.mark.parametrize("count", [0, 1, 2])
+def test_what_was_found_is_counted(count):
+    one = {"effect": "thermal-lag", "sources": ["temp"], "confidence": "confirmed"}
+    said = sentences.found_in_short({"effects": [one] * count})
+    assert said.count("(confirmed)") == count
+    assert said.startswith(["No effect", "1 effect found:", "2 effects found:"][count])
 
 
-def test_what_was_learned_outlasts_the_power_cut(outcome):
-    logs = outcome("an effect").logs[:2]
-    both = moments(logs, every_s=600.0)
-    first = [m for m in both if m.recording == both[0].recording][-1]
-    then = next(m for m in both if m.recording != first.recording)
-    kept = {round(e.temp_degc) for e in then.axes[0] if e.kind == "long"}
-    assert kept & {round(e.temp_degc) for e in first.axes[0] if e.kind == "long"}
+_LAG = {
+    "effect": "thermal-lag",
+    "sources": ["temp"],
+    "coefficients": [1],
+    "confidence": "confirmed",
+}
+_G = {**_LAG, "effect": "linear-g", "sources": ["acc_x"]}
+_TURNS = {**_LAG, "effect": "scale-factor", "in_motion": True}
+_UNEXPLAINED = {"verdict": "unexplained-residual"}
+_SAID = [
+    ("LAG explains most of the error: 10.0 to 4.99", "", [_LAG], 4.99, {}),
+    ("LAG explains part of the error: 10.0 to 5.00",
+     ". No recorded channel explains the rest", [_LAG], 5.0, _UNEXPLAINED),
+    ("LAG: no gain, 10.0 to 10.0", "", [_LAG], 10.0, {}),
+    ("LAG and G explain most of the error: 10.0 to 2.00", "", [_LAG, _G], 2.0, {}),
+    ("LAG, G and G explain part of the error: 10.0 to 9.00", "", [_LAG, _G, _G], 9.0, {}),
+    ("Nothing was found at rest that the firmware does not already correct: 2.00", "",
+     [_TURNS, {**_LAG, "coefficients": []}], 2.0, {}),
+    ("Nothing was found in the bias, beside the reference, that explains the error: 2.00", "",
+     [], 2.0, {**_UNEXPLAINED, "truth": {"in_motion": GIVEN}}),
+]  # fmt: skip
 
 
-def test_a_sensor_that_the_firmware_cannot_take_is_said(tmp_path, outcome):
-    from dataclasses import replace as changed
+@pytest.mark.parametrize(("said", "end", "effects", "after", "more"), _SAID)
+def test_the_answer_names_what_was_found_and_what_is_left(said, end, effects, after, more):
+    whole = {"before_mdps": 10.0, "after_mdps": after, "floor_mdps": 1.0}
+    told = {"in_all": whole, "verdict": "", "effects": effects, **more}
+    said += " mdps on held-out data (noise floor 1.00)" + end
+    named = said.replace("LAG", "Lag of the thermometer").replace("G", sentences.title("linear-g"))
+    assert sentences.headline(told) == named
+    assert sentences.on_the_board(told) == sentences.why_both(told) == ""
 
-    from zerorate_tools.recordings import write_recording
 
-    whole = read_recording(outcome("nothing").logs[0])
-    odd = changed(whole, scales=changed(whole.scales, gyro_lsb_per_dps=9000.0))
-    write_recording(odd, tmp_path / "odd.parquet")
-    with pytest.raises(ZerorateError, match="gyro_lsb_per_dps"):
-        moments([tmp_path / "odd.parquet"])
+@pytest.mark.parametrize(
+    ("effects", "before", "after", "gains"),
+    [
+        ([_LAG], 10.0, 10.0, "gains nothing: 10.0 to 10.0 mdps"),
+        ([_LAG], 10.0, 8.01, "gains little: 10.0 to 8.01 mdps"),
+        ([_LAG], 10.0, 8.0, "gains too: 10.0 to 8.00 mdps"),
+        ([_TURNS], 10.0, 8.0, "leaves 8.00 mdps"),
+    ],
+)
+def test_what_a_board_gains_is_said_and_why_it_has_a_figure_of_its_own(
+    effects, before, after, gains
+):
+    online = {"in_all": {"before_mdps": before, "after_mdps": after}}
+    told = {"online": online, "effects": effects, "in_all": {"after_mdps": 9.0}, "split": {}}
+    assert sentences.on_the_board(told) == "A board that keeps learning at rest " + gains
+    why = sentences.why_both(told)
+    assert ("so little error is left" in why) == (after < 9.0)
+    assert ("only the model corrects it" in why) == (effects == [_LAG])
+    assert "first minutes" in sentences.why_both(told | {"split": {"how_much_weaker": 1}})
+
+
+def test_how_sure_is_of_the_data_held_out():
+    every = map(sentences.how_sure, ({**_LAG, "confidence": "tentative"}, _TURNS, _LAG))
+    begun = ("Tentative: the fitted", "Confirmed: the held-out", "Confirmed: it also lowers")
+    assert all(map(str.startswith, every, begun))
+
+
+@pytest.mark.parametrize(
+    ("effect", "named"),
+    [
+        ("thermal-lag", "Lag of the thermometer"),
+        ("cross-axis", "Cross-axis sensitivity"),
+        ("of-nobody", "of-nobody"),
+        ("channel-lag", "any recorded channel, lagged"),
+        ("channel-lag(load, fan)", "load and fan, lagged"),
+    ],
+)
+def test_an_effect_has_a_name_and_a_channels_has_no_known_mechanism(effect, named):
+    assert sentences.title(effect) == named
+    assert sentences.title("channel-lag(load)", ["fan"]) == "fan, lagged"
+    assert sentences.meaning(effect).endswith("mechanism is unknown.") == ("channel" in effect)
+    assert sentences.sentence("so it is") == sentences.sentence("so it is.") == "So it is."
+
+
+def part(blocks, gap=None, name="a"):
+    left = np.ones((blocks, 3))
+    if gap is not None:
+        left[gap] = np.nan
+    minutes = (np.arange(blocks) + 0.5) / 3
+    return HeldOut(name, minutes, 20.0, None, np.zeros(blocks, int), left, left / 2, 0)
+
+
+def test_the_longest_stretch_has_nine_blocks_or_is_none():
+    assert longest([part(8), part(19, 10)])[1].shape == (10, 3)
+    assert longest([part(9)])[1].shape == (9, 3) and longest([part(8)]) is None
+
+
+def test_held_out_recordings_are_laid_end_to_end():
+    step = {"recording": "b", "t_us": 60_000_000}
+    plot = against_time([part(9), part(12, name="b")], [step])
+    assert plot.series[-1].x[0] == pytest.approx(9 / 3 + 0.5 / 3)
+    assert [line.value for line in plot.panels[0].lines] == [0.0, pytest.approx(9 / 3 + 1.0)]

@@ -1,5 +1,6 @@
-"""The kernels hold only what does the same on every interpreter; the checker finds the rest."""
+"""Kernels and board files hold only what every interpreter has, and does the same."""
 
+import ast
 import re
 import subprocess
 from contextlib import suppress
@@ -10,7 +11,7 @@ from zerorate_tools.errors import ZerorateError
 from zerorate_tools.kernels.reading import KernelFile, NotKernel, kernel_files
 from zerorate_tools.runtimes.runtime import UnixPort
 
-from .kernel_rules import breaches, left_open, remarks
+from .kernel_rules import breaches, left_open
 
 SOUND = '''
 def total(s: ptr32, w: ptr32, n: int) -> int:
@@ -185,53 +186,6 @@ def x86(find_runtime):
     return find_runtime("x86")
 
 
-def adder(terms):
-    names = [f"x{i}" for i in range(terms)]
-    return f"def add({', '.join(names)}):\n    return {' + '.join(names)}\n"
-
-
-def test_locals_and_temporaries_are_counted(x86, tmp_path):
-    source = tmp_path / "add.py"
-    source.write_text(adder(9))
-    assert frame_words(x86, source)["add"] == 9 + 2
-
-
-def test_a_handler_costs_three_words(x86, tmp_path):
-    source = tmp_path / "guarded.py"
-    text = "def {}(a):\n    {}\n        return a\n    {}\n        return a\n"
-    source.write_text(text.format("plain", "if a:", "else:"))
-    plain = frame_words(x86, source)["plain"]
-    source.write_text(text.format("guarded", "try:", "finally:"))
-    assert frame_words(x86, source)["guarded"] >= plain + 3
-
-
-@pytest.mark.parametrize(("terms", "fate"), [(9, "kept"), (10, "collected")])
-def test_a_frame_above_the_limit_takes_heap_at_every_call(x86, tmp_path, terms, fate):
-    source = tmp_path / "add.py"
-    source.write_text(adder(terms))
-    assert (frame_words(x86, source)["add"] > WORDS_ON_STACK) == (fate == "collected")
-    # What is taken is given back on return: only the collection that it brings on can be seen.
-    script = f"""
-import gc
-from add import add
-gc.collect()
-bytearray(20000)
-gc.threshold(30000)
-before = gc.mem_alloc()
-for i in range(2000):
-    add({", ".join("1" * terms)})
-print("kept" if gc.mem_alloc() > before - 10000 else "collected")
-"""
-    assert x86.run(script, modules=[tmp_path], check=True).stdout.strip() == fate
-
-
-def test_a_file_that_does_not_compile_is_named(x86, tmp_path):
-    source = tmp_path / "broken.py"
-    source.write_text("def (:\n")
-    with pytest.raises(ZerorateError, match="broken.py does not compile on x86"):
-        frame_words(x86, source)
-
-
 def test_every_hot_function_of_every_kernel_keeps_its_frame_on_the_stack(x86, repository):
     files = kernel_files(repository / "firmware" / "zerorate")
     files = [file for file in files if file.name not in NEVER_BYTECODE]
@@ -243,18 +197,105 @@ def test_every_hot_function_of_every_kernel_keeps_its_frame_on_the_stack(x86, re
     assert {name: words for name, words in frames.items() if words > WORDS_ON_STACK} == {}
 
 
-def test_a_parameter_becomes_something_else_only_where_the_frame_is_full(x86, repository):
-    full = 0
-    for file in kernel_files(repository / "firmware" / "zerorate"):
-        lines, words = file.read_text().splitlines(), frame_words(x86, file)
-        for name, function in KernelFile(file).kernels.items():
-            if remarks(function, lines):
-                assert words[name] == WORDS_ON_STACK, f"{file.name} {name}"
-                full += 1
-    assert full
-
-
 @pytest.mark.parametrize("name", HOT_METHODS)
 def test_every_method_of_an_update_keeps_its_frame_on_the_stack(x86, repository, name):
     words = frame_words(x86, repository / name)
     assert {m: words[m] for m in HOT_METHODS[name].split() if words[m] > WORDS_ON_STACK} == {}
+
+
+ABSENT_MODULES = {"typing", "dataclasses", "enum", "abc", "functools", "contextlib", "__future__"}
+ABSENT_NAMES = {"bit_length", "cast", "__set_name__", "__init_subclass__"}
+
+
+def lacking(tree):
+    """Row and what for everything in a file that a board does not have."""
+    plain = plain_names(tree)
+    for node in walked(tree):
+        found = [*imports(node), *attributes(node, plain), *syntax(node)]
+        yield from ((getattr(node, "lineno", 0), what) for what in found)
+
+
+def walked(tree):
+    """Every node but those under `if TYPE_CHECKING:`, which no board runs."""
+    left = [tree]
+    while left:
+        node = left.pop()
+        yield node
+        never = isinstance(node, ast.If) and getattr(node.test, "id", "") == "TYPE_CHECKING"
+        left += node.orelse if never else ast.iter_child_nodes(node)
+
+
+def imports(node):
+    if isinstance(node, ast.ImportFrom):
+        modules = [node.module or ""]
+        folded = [alias.name for alias in node.names if is_folded(alias.name)]
+        yield from (f"{name} is folded away where it is defined" for name in folded)
+    else:
+        modules = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+    yield from (f"{name} is absent" for name in modules if name.split(".")[0] in ABSENT_MODULES)
+
+
+def attributes(node, plain):
+    name = node.attr if isinstance(node, ast.Attribute) else getattr(node, "name", "")
+    if name in ABSENT_NAMES:
+        yield f"{name} is absent"
+    if isinstance(node, ast.Attribute) and is_folded(node.attr) and node.attr not in plain:
+        yield f"{node.attr} as an attribute: const(_X) leaves none on a board"
+    if isinstance(node, ast.Call) and getattr(node.func, "attr", "") == "from_bytes":
+        if any(keyword.arg == "signed" for keyword in node.keywords):
+            yield "from_bytes has no signed"
+
+
+def plain_names(tree):
+    """Names that are given a value other than const(...), which stay on a board."""
+    assignments = [node for node in ast.walk(tree) if isinstance(node, ast.Assign)]
+    plain = [a for a in assignments if getattr(getattr(a.value, "func", None), "id", "") != "const"]
+    return {target.id for a in plain for target in a.targets if isinstance(target, ast.Name)}
+
+
+def syntax(node):
+    if isinstance(node, ast.Match):
+        yield "match is a SyntaxError"
+    if isinstance(node, ast.arguments) and node.posonlyargs:
+        yield "positional-only parameters are a SyntaxError"
+
+
+def is_folded(name):
+    return name.startswith("_") and not name.startswith("__") and name == name.upper() != "_"
+
+
+def board_files(repository):
+    firmware = (repository / "firmware").rglob("*.py")
+    drivers = (repository / "drivers").rglob("*.py")
+    # linux.py runs on a Linux board, under CPython.
+    return sorted({*firmware, *drivers} - set(repository.glob("drivers/*/linux.py")))
+
+
+@pytest.mark.parametrize(
+    ("text", "what"),
+    [
+        ("import typing", "typing is absent"),
+        ("from dataclasses import field", "dataclasses is absent"),
+        ("from .parts import _WHO_AM_I", "folded away"),
+        ("_ID = const(1)\nclass A:\n    def f(self):\n        return self._ID", "leaves none"),
+        ("class A:\n    _ID = const(1)\n    def f(self):\n        return self._ID", "leaves none"),
+        ("x = (5).bit_length()", "bit_length is absent"),
+        ("class A:\n    def __set_name__(self, a, b):\n        pass", "__set_name__ is absent"),
+        ("int.from_bytes(b'1', 'big', signed=True)", "no signed"),
+        ("match x:\n    case 1:\n        pass", "match"),
+        ("def f(a, /):\n    pass", "positional-only"),
+    ],
+)
+def test_what_a_board_lacks_is_found(text, what):
+    assert any(what in found for _, found in lacking(ast.parse(text)))
+
+
+def test_firmware_and_drivers_have_no_breach(repository):
+    files = board_files(repository)
+    assert {"zerorate", "zerorate_i2c"} <= {file.parent.name for file in files}
+    found = [
+        f"{file.relative_to(repository)}:{row}: {what}"
+        for file in files
+        for row, what in lacking(ast.parse(file.read_text(encoding="utf-8"), str(file)))
+    ]
+    assert found == []

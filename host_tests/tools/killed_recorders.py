@@ -26,7 +26,7 @@ from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050
 from zerorate_tools import cli
 from zerorate_tools.boards import port, recording
 from zerorate_tools.boards.bus import record_bus
-from zerorate_tools.boards.frames import SAMPLE, SCALES, encode
+from zerorate_tools.boards.port import SAMPLE, SCALES, encode
 from zerorate_tools.recordings import read_recording, recover, write_recording
 
 from host_tests.tools.killed_writers import contents

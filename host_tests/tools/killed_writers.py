@@ -1,13 +1,12 @@
 """Every writer of files, killed at each of its renames, openings and writes.
 
-    python -m host_tests.tools.killed_writers [WRITER...]
-
 A fork writes over what a first run wrote and is killed before its n-th change of a folder (an audit
 hook of Python tells of each), or as a file of its grows beyond so many bytes (a limit of the
 kernel, whoever writes). What is there then must be old or new, each file whole; and after the next
 command in that folder all of it old or all of it new, with nothing left beside.
 """
 
+import argparse
 import json
 import os
 import resource
@@ -23,6 +22,7 @@ import numpy as np
 from zerorate_tools import closing
 from zerorate_tools.kernels.export import export_c
 from zerorate_tools.model import Slot, build_model, write_model
+from zerorate_tools.model.files import sensor_for
 from zerorate_tools.model.term import Term
 from zerorate_tools.recordings import (
     Scales,
@@ -33,7 +33,6 @@ from zerorate_tools.recordings import (
 from zerorate_tools.recordings.atomic import written_together
 from zerorate_tools.recordings.drafts import clear_left_over
 from zerorate_tools.replay import replay
-from zerorate_tools.replay.replaying import sensor_of
 from zerorate_tools.simulate import simulate_to_files
 
 CHANGES = {"os.rename", "os.remove", "os.rmdir", "os.mkdir", "os.link", "os.truncate", "open"}
@@ -93,7 +92,7 @@ WRITERS = {
     "simulate": simulated,
     "replay": replayed,
     "record": recorded,
-    "export c": lambda version: export_c("c", sensor_of(scales(version))),
+    "export c": lambda version: export_c("c", sensor_for(scales(version))),
 }
 
 
@@ -219,7 +218,9 @@ def trials(name):
 
 def main():
     """Print what fell; 1 if anything did."""
-    done = [trials(name) for name in sys.argv[1:] or WRITERS]
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("writers", nargs="*", choices=[*WRITERS, []], help="default: all")
+    done = [trials(name) for name in parser.parse_args().writers or WRITERS]
     fallen = [problem for one in done for problem in one.fallen]
     print("\n".join(fallen))
     tried = sum(one.tried for one in done)

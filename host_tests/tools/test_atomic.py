@@ -12,7 +12,7 @@ import pytest
 from zerorate_tools import cli, closing
 from zerorate_tools.ending import noted_signals, undisturbed
 from zerorate_tools.errors import InFile
-from zerorate_tools.recordings import atomic, write_recording
+from zerorate_tools.recordings import write_recording
 from zerorate_tools.recordings.atomic import all_written_together, written_beside, written_together
 from zerorate_tools.simulate import simulate_to_files
 
@@ -134,12 +134,6 @@ def test_a_disk_that_takes_no_more_is_told_from_any_other_error(tmp_path, number
     assert not list(tmp_path.iterdir())
 
 
-def test_of_a_file_in_a_draft_the_name_in_the_end_is_told(tmp_path):
-    with written_together(tmp_path / "new") as draft:
-        assert atomic.final(draft / "plots" / "a.png") == tmp_path / "new" / "plots" / "a.png"
-    assert atomic.final(tmp_path / "a.partial") == tmp_path / "a.partial"
-
-
 def test_a_name_that_does_not_fit_is_refused_and_leaves_nothing(tmp_path):
     with pytest.raises(InFile, match="longer than 255 bytes; give it a shorter one"):
         with written_beside(tmp_path / ("µ" * 128)):
@@ -150,7 +144,7 @@ def test_a_name_that_does_not_fit_is_refused_and_leaves_nothing(tmp_path):
 def test_close_leaves_the_folder_as_it_was_where_its_report_has_no_room(old, monkeypatch):
     before = contents(old)
     monkeypatch.setattr(closing, "load", lambda *arguments: None)
-    monkeypatch.setattr(closing, "measure_and_prune", lambda *arguments: (None, None))
+    monkeypatch.setattr(closing, "run_and_prune", lambda *arguments: (None, None))
     monkeypatch.setattr(closing, "write_model", lambda _, folder: write_some(folder))
     monkeypatch.setattr(closing, "report", full)
     with pytest.raises(InFile, match="No space left"):
@@ -172,15 +166,6 @@ def test_the_end_by_a_signal_leaves_nothing_half_written(tmp_path):
     run.send_signal(signal.SIGTERM)
     assert run.wait(60) == -signal.SIGTERM
     assert not list(out.iterdir())
-
-
-def test_a_csv_that_cannot_take_its_place_leaves_its_scales_as_they_were(tmp_path):
-    (tmp_path / "run.csv").mkdir()
-    (tmp_path / "run.json").write_text("old")
-    with pytest.raises(InFile, match="cannot be written"):
-        write_recording(a_recording(), tmp_path / "run.csv")
-    assert contents(tmp_path) == {"run.json": "old"}
-    assert sorted(p.name for p in tmp_path.iterdir()) == ["run.csv", "run.json"]
 
 
 NUMBERS = [signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)]

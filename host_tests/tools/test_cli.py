@@ -1,16 +1,21 @@
-"""The command line: what it lists, what it says when something is wrong, and how it ends."""
+"""The command line: what it lists, what it says when something is wrong, how it ends, JSON."""
 
 import io
+import json
+import os
 import subprocess
 import sys
 from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 
 import numpy as np
+import pandas as pd
 import pytest
 import zerorate_tools
 from zerorate_tools import cli
-from zerorate_tools.recordings import Scales, read_recording, recording_writer
+from zerorate_tools.cli import main
+from zerorate_tools.recordings import Scales, recording_writer
+from zerorate_tools.simulate import simulate_to_files
 
 SCALES = Scales("X", 1.0, 1.0)
 
@@ -42,23 +47,10 @@ def test_the_module_runs_as_a_program_and_its_exit_code_reaches_the_shell(tmp_pa
     assert ran.stderr == "zerorate: none.csv: no such file; name a file to import\n"
 
 
-def test_help_lists_every_command_that_is_there():
-    listed = zerorate("--help").stdout
-    for name in ("import", "simulate"):
-        assert f"\n    {name} " in listed
-
-
 def test_without_a_word_it_helps_and_says_where_to_begin():
     ran = zerorate()
     assert ran.returncode == 0
     assert "zerorate demo" in ran.stdout
-
-
-def test_a_command_whose_module_is_not_there_is_not_listed(monkeypatch, capsys):
-    monkeypatch.setattr(cli, "COMMANDS", ("simulate", "imagine"))
-    with pytest.raises(SystemExit):
-        cli.main(["--help"])
-    assert "simulate" in (listed := capsys.readouterr().out) and "imagine" not in listed
 
 
 def test_help_imports_nothing_that_a_command_needs():
@@ -146,13 +138,6 @@ def test_a_missing_library_is_said_with_a_command_that_a_shell_takes(
     assert ran.stderr.endswith(f"needs {library}, which is not installed; {_installing('tools')}\n")
 
 
-def test_a_library_of_another_extra_is_said_with_that_extra(tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "dask", None)
-    (tmp_path / "run.csv").write_text("")
-    ran = zerorate("fleet", tmp_path / "run.csv", "--out", tmp_path / "out")
-    assert ran.stderr.endswith(f"needs dask, which is not installed; {_installing('fleet')}\n")
-
-
 def _installing(extra):
     return f"pip install 'zerorate[{extra}]'"
 
@@ -179,51 +164,95 @@ def test_an_interrupt_ends_in_130_and_leaves_nothing_half_written(tmp_path, monk
     assert list(tmp_path.iterdir()) == []
 
 
-def test_import_prints_what_it_did(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    rows = "".join(f"{i},1,{i},3,20\n" for i in range(5)) + "9,0,0,0,0\n"
-    (tmp_path / "in.csv").write_text("t_s,gx_dps,gy_dps,gz_dps,temp_C\n" + rows)
-    ran = zerorate("import", "in.csv", "--out", "out.csv.gz")
-    assert ran.returncode == 0, ran.stderr
-    assert "out.csv.gz" in ran.stdout and "5 samples: 4 s at 1 Hz, of 6 rows" in ran.stdout
-    assert "dropped 1 rows: all readings are zero" in ran.stdout
-    assert read_recording(tmp_path / "out.csv.gz").columns["gz"].tolist() == [393] * 5
-
-
-def test_import_takes_a_fraction_as_a_rate(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "in.csv").write_text("gx_dps,gy_dps,gz_dps\n" + "0.1,0.2,0.3\n" * 3)
-    words = ["import", "in.csv", "--out", "out.parquet", "--hz"]
-    assert zerorate(*words, "1/15").returncode == 0
-    assert [zerorate(*words, bad).returncode for bad in ("1/0", "fast", "1/")] == [2, 2, 2]
-    t_us = read_recording(tmp_path / "out.parquet").columns["t_us"]
-    assert t_us.tolist() == [0, 15_000_000, 30_000_000]
-
-
-def test_import_takes_a_mapping_and_refuses_a_wrong_one(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "in.csv").write_text("a,b,c\n1,2,3\n4,5,6\n")
-    words = ["import", "in.csv", "--out", "out.parquet", "--hz", "10"]
-    maps = ["--map", "gx=a:dps", "--map", "gy=b:dps", "--map", "gz=c:dps"]
-    assert zerorate(*words, *maps).returncode == 0
-    assert read_recording(tmp_path / "out.parquet").columns["gx"].tolist() == [131, 524]
-    ran = zerorate(*words, "--map", "gx=a:knots")
-    assert ran.returncode == 2 and "unit 'knots' of gx is none of dps" in ran.stderr
-
-
-def test_simulate_writes_every_session_and_lists_its_scenarios(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    listed = zerorate("simulate", "--list").stdout.split()
-    assert "warm-up-a" in listed
-    words = ["--seed", "3", "--session", "1", "--truth", "t.parquet"]
-    ran = zerorate("simulate", "turntable", "--out", "run.parquet", *words)
-    assert ran.returncode == 0, ran.stderr
-    assert sorted(p.name for p in tmp_path.iterdir()) == ["run.parquet", "t.parquet"]
-
-
 def test_the_public_names_are_there_and_nothing_else_is():
     for name in zerorate_tools.__all__:
         assert callable(getattr(zerorate_tools, name))
         assert name in dir(zerorate_tools)
     with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
         _ = zerorate_tools.nonsense
+
+
+@pytest.mark.parametrize(
+    ("typed", "meant"),
+    [
+        (["f1eet", "x.csv"], "did you mean fleet?"),
+        (["import", "x.csv", "--out", "y", "--rate-hz", "40"], "did you mean --hz?"),
+        (["close", "x.parquet", "--out", "x", "--holdut=y"], "did you mean --holdout?"),
+        (["fleet", "x", "--out", "y", "--job", "repaly"], "did you mean replay?"),
+    ],
+)
+def test_a_wrong_word_is_answered_with_the_nearest(capsys, typed, meant):
+    with pytest.raises(SystemExit) as ended:
+        main(typed)
+    assert ended.value.code == 2 and meant in capsys.readouterr().err
+
+
+def test_a_word_like_no_other_is_answered_with_none(capsys):
+    with pytest.raises(SystemExit):
+        main(["xyzzy"])
+    assert "did you mean" not in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("line", "offered"), [("zerorate comp", "compare"), ("zerorate close --hold", "--holdout")]
+)
+def test_a_shell_is_told_what_may_come_next(tmp_path, line, offered):
+    told = tmp_path / "told"
+    shell = {"_ARGCOMPLETE": "1", "COMP_LINE": line, "COMP_POINT": str(len(line))}
+    shell |= {"_ARGCOMPLETE_STDOUT_FILENAME": str(told), "_ARGCOMPLETE_IFS": "\n"}
+    command = [sys.executable, "-m", "zerorate_tools.cli"]
+    subprocess.run(command, env=os.environ | shell, check=True, timeout=60)
+    assert offered in told.read_text()
+
+
+@pytest.fixture(scope="module")
+def sessions(tmp_path_factory):
+    """Two short power-ons of one device."""
+    folder = tmp_path_factory.mktemp("sessions")
+    described = {
+        "sensor": {"odr_hz": 10.0},
+        "bias": {"b0": [0.5, -0.3, 0.1]},
+        "session": [{"minutes": 4, "start_degc": 20}] * 2,
+    }
+    return [str(file) for file in simulate_to_files(described, folder / "run.parquet")]
+
+
+@pytest.mark.parametrize(
+    ("command", "key"),
+    [
+        ("compare {0} {1}", "ways"),
+        ("replay {0} --out {out}/r.parquet", "samples"),
+        ("close {0} {1} --out {out}/closed", "verdict"),
+        ("fleet {0} {1} --workers 1 --out {out}/fleet", "sessions"),
+    ],
+)
+def test_json_is_one_document_on_standard_output(sessions, tmp_path, capsys, command, key):
+    words = command.format(*sessions, out=tmp_path).split()
+    assert main([*words, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)[key]
+
+
+def test_json_of_an_import_has_a_recording_for_each_source(tmp_path, capsys):
+    frame = pd.DataFrame(np.ones((50, 4)), columns=["t_s", "gx_dps", "gy_dps", "gz_dps"])
+    frame["t_s"] = np.arange(50) / 10
+    frame.to_csv(tmp_path / "a.csv", index=False)
+    source, out = str(tmp_path / "a.csv"), str(tmp_path / "a.parquet")
+    assert main(["import", source, "--out", out, "--json"]) == 0
+    [one] = json.loads(capsys.readouterr().out)["recordings"]
+    assert one["file"] == out and one["rows_written"] == 50
+
+
+def test_the_demo_says_that_it_fetches_before_it_does(monkeypatch, capsys):
+    from zerorate_tools import runtimes
+    from zerorate_tools.commands.demo import get_ready
+    from zerorate_tools.errors import MissingRuntime
+
+    def not_there(name):
+        raise MissingRuntime(name)
+
+    def fetched(name):
+        assert f"fetching MicroPython ({name}), once" in capsys.readouterr().err
+
+    monkeypatch.setattr(runtimes, "find", not_there)
+    monkeypatch.setattr(runtimes, "fetch", fetched)
+    get_ready("wasm")

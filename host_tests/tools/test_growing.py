@@ -199,17 +199,6 @@ def test_no_room_for_the_first_byte_leaves_nothing(tmp_path, new, monkeypatch):
     assert names(tmp_path) == []
 
 
-def test_a_file_written_in_pieces_is_whole(tmp_path, new, monkeypatch):
-    class Slow(growing.FileIO):
-        def write(self, data):
-            return super().write(data[:5])
-
-    monkeypatch.setattr(growing, "FileIO", Slow)
-    with new() as file:
-        file.append(part(0, 70))
-    assert len(read_recording(tmp_path / "run.parquet")) == 70
-
-
 def test_a_disk_that_fails_later_is_said(tmp_path, new, monkeypatch):
     def failing(descriptor):
         raise OSError(errno.EIO, "said by the system")
@@ -235,49 +224,11 @@ def test_the_numbers_of_any_width_are_written_as_they_are(tmp_path):
 
 
 class TestCommand:
-    def test_recovers_by_name(self, tmp_path, killed, capsys):
-        left = killed()
-        assert main(["record", "--recover", str(left)]) == 0
-        assert f"{tmp_path / 'run.parquet'}: 70 samples of {left}" in capsys.readouterr().out
-
-    def test_names_what_was_left_before_it_records_again(self, tmp_path, killed, capsys):
-        left = killed()
-        main(["record", "/dev/i2c-999", "--out", str(tmp_path / "run.parquet")])
-        said = capsys.readouterr().err.splitlines()[0]
-        assert said == (
-            f"{left}: of a recording that was killed; zerorate record --recover {left} finishes it"
-        )
-
     def test_another_names_it_where_the_recording_is_asked_for(self, tmp_path, killed, capsys):
         left = killed()
         assert main(["allan", str(tmp_path / "run.parquet")]) == 2
         said = f"no such file; {left} is there: zerorate record --recover {left}"
         assert said in capsys.readouterr().err
-
-    @pytest.mark.parametrize(
-        "arguments, said",
-        [
-            ([], "name a PORT to record, or a file by --recover FILE"),
-            (["/dev/i2c-1", "--recover", "x.partial.csv"], "name a PORT to record, or a file"),
-            (["/dev/i2c-1"], "name the file to record into by --out FILE"),
-        ],
-    )
-    def test_says_what_it_lacks(self, arguments, said, capsys):
-        assert main(["record", *arguments]) == 2
-        assert said in capsys.readouterr().err
-
-
-@pytest.mark.parametrize(
-    ("error", "why"),
-    [(OSError(errno.ENOSPC, ""), "No space left"), (OSError("no disk"), "no disk")],
-)
-def test_what_keeps_a_recording_from_beginning_is_said(new, monkeypatch, error, why):
-    def fails(out, scales):
-        raise error
-
-    monkeypatch.setattr(growing, "_created", fails)
-    with pytest.raises(InFile, match=f"cannot be written: {why}"), new():
-        pass
 
 
 def test_the_scales_beside_a_growing_recording_are_as_in_any_other(tmp_path, new):

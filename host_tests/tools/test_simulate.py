@@ -1,13 +1,21 @@
-"""A simulated device does what its description says, and tells the truth about it apart."""
+"""A simulated device does what its description says; the bundled scenarios are sound."""
 
 import numpy as np
 import pytest
 from zerorate_tools.errors import BadDescription
 from zerorate_tools.recordings import read_recording
-from zerorate_tools.simulate import read_truth, simulate, simulate_sessions, simulate_to_files
-
-AXES = ("gx", "gy", "gz")
-OTHERS = ("ax", "ay", "az", "temp")
+from zerorate_tools.simulate import (
+    bundled_names,
+    load_description,
+    read_truth,
+    reference,
+    simulate,
+    simulate_sessions,
+    simulate_to_files,
+)
+from zerorate_tools.simulate.channels import CHANNELS
+from zerorate_tools.simulate.effects import EFFECTS
+from zerorate_tools.simulate.motion import MOTIONS
 
 
 def device(minutes=10, odr_hz=20.0, **more):
@@ -130,20 +138,6 @@ def test_at_rest_the_accelerometer_sees_one_g_up():
         assert recording.accel_g().mean(axis=0)[axis] == pytest.approx(sign, abs=1e-3)
 
 
-def test_gravity_follows_the_turntable_about_a_level_axis():
-    recording, truth = simulate("turntable")
-    last = recording.accel_g()[-200:].mean(axis=0)
-    turned = np.radians(truth.rate_dps[:, 0].sum() / 100)
-    assert np.degrees(turned) == pytest.approx(0.5 * 1800, rel=0.01)
-    assert last[1:] == pytest.approx([np.sin(turned), np.cos(turned)], abs=0.02)
-
-
-def test_the_car_turns_about_the_vertical_only_and_stays_turned():
-    _, truth = simulate("car")
-    assert np.abs(truth.rate_dps[:, :2]).max() < 1e-9
-    assert np.abs(truth.rate_dps[:, 2]).max() > 1.0
-
-
 def test_poses_put_each_face_up_in_turn():
     faces = ["+x", "-y", "-z", "+z"]
     motion = [
@@ -189,13 +183,6 @@ def test_files_hold_the_recordings_and_the_truth_only_where_asked(tmp_path):
     assert sorted(p.name for p in tmp_path.glob("alone*")) == ["alone.parquet"]
 
 
-def test_the_recording_says_nothing_of_the_effect():
-    effect = {"kind": "kink", "knee_degc": 35.0, "dps": 0.01}
-    recording, _ = simulate(device(effect=[effect]))
-    assert set(recording.columns) == {"t_us", *AXES, *OTHERS}
-    assert recording.scales.more == {}
-
-
 def test_yaml_and_toml_describe_alike(tmp_path):
     (tmp_path / "d.toml").write_text("seed = 4\n[every_session]\nminutes = 1.0\n")
     (tmp_path / "d.yaml").write_text("seed: 4\nevery_session: {minutes: 1.0}\n")
@@ -215,6 +202,13 @@ def test_yaml_and_toml_describe_alike(tmp_path):
         (device(every_session={"motion": [{"kind": "rest"}]}), "a motion has no duration"),
         (device(every_session={"motion": [{"kind": "rest", "s": 1, "dps": 1}]}), "motion rest"),
         (device(every_session={"temperature": [{"to": 5}]}), "a temperature has no duration"),
+        (
+            device(every_session={"temperature": [{"to": 5, "s": 0}]}),
+            "s is 0; write a number above 0",
+        ),
+        (device(sessions=2.5), "sessions is 2.5; write 1 or more"),
+        (device(sessions=0), "sessions is 0"),
+        (device(sessions=10001), "sessions is 10001"),
         (device(effect=[{"kind": "magic"}]), "effect 'magic' is unknown; choose of hysteresis"),
         (device(effect=[{"dps": 1.0}]), "effect None is unknown"),
         (device(effect=[{"kind": "kink", "at": 3}]), "effect kink"),
@@ -224,6 +218,26 @@ def test_yaml_and_toml_describe_alike(tmp_path):
             "no channel 'vdd_mv'; add .channels.vdd_mv",
         ),
         (device(channels={"load": {"kind": "none"}}), "channel load"),
+        (
+            device(channels={"load": {"kind": "constant", "value": np.inf}}),
+            "load: it is not one fi",
+        ),
+        (device(latitude_deg=10**400), "latitude_deg is 10"),
+        (device(sensor={"odr_hz": 1e12}), "session 1 has over 100,000,000 samples"),
+        *(
+            (device(every_session={"motion": [{"kind": kind, "s": s} | how]}), told)
+            for kind, s, how, told in (
+                ("rest", [[], 2], {}, r"s is \[\[\], 2\]; write \[low, high\]"),
+                ("hand", [3, 1], {}, r"s is \[3, 1\]; write \[low, high\]"),
+                ("rest", [1, 2, 3], {}, "a motion has no duration"),
+                ("turn", 2, {"deg": 9, "axis": [1]}, "motion turn: "),
+                ("tilt", 2, {"hz": 1e308}, "motion tilt: "),
+            )
+        ),
+        (
+            device(effect=[{"kind": "linear-g", "matrix": [[np.inf] * 3] * 3, "dps": 1}]),
+            "linear-g: w",
+        ),
         ("nowhere", "no such file.*warm-up-a"),
     ],
 )
@@ -238,11 +252,30 @@ def test_a_session_that_is_not_described_is_refused():
         simulate("warm-up-a", session=3)
 
 
-def test_several_files_take_their_places_together_or_not_at_all(tmp_path):
-    def stopped(sessions):
-        raise KeyboardInterrupt
+def test_all_bundled_scenarios_are_sound():
+    assert set(bundled_names()) >= {"warm-up-a", "warm-up-b", "warm-up-c", "day", "never-rests"}
+    for name in bundled_names():
+        assert load_description(name).name == name
 
-    sessions, truth = device(1, sessions=2), tmp_path / "truth.parquet"
-    with pytest.raises(KeyboardInterrupt):
-        simulate_to_files(sessions, tmp_path / "run.csv", truth=truth, done=stopped)
-    assert not list(tmp_path.iterdir())
+
+@pytest.mark.parametrize("letter", "abc")
+def test_the_warm_up_is_that_of_the_comparison(letter):
+    first, second = simulate_sessions(f"warm-up-{letter}")
+    for (recording, truth), minutes, low, high in ((first, 40, 20, 45), (second, 20, 17, 44)):
+        assert recording.duration_s == pytest.approx(minutes * 60, abs=1)
+        assert truth.temp_degc[[0, -1]] == pytest.approx([low, high], abs=0.01)
+        assert truth.still[:1500].all() and not truth.still[1500:5500].any()
+        assert truth.still[5500:7500].all() and not truth.still[7500:11500].any()
+        assert (np.abs(recording.columns["gx"]) < 32767).all()
+        moving = truth.rate_dps[~truth.still]
+        assert (moving.std(axis=0) > 60).all()
+        noise = recording.gyro_dps() - truth.rate_dps - truth.bias_lsb / 131
+        assert noise.std() == pytest.approx(0.05, rel=0.02)
+
+
+def test_the_reference_names_every_entry_that_is_taken():
+    text = reference()
+    for name in ("gyro_noise_at_hz = none", "turntable", "late", "peak-temperature", "delay_s=0.0"):
+        assert name in text
+    for kinds in (MOTIONS, CHANNELS, EFFECTS):
+        assert set(kinds) <= {line.split()[0] for line in text.splitlines() if line.strip()}

@@ -17,8 +17,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from zerorate_tools import cli
-from zerorate_tools.commands import numbers_given
-from zerorate_tools.commands.as_json import print_json
+from zerorate_tools.commands.options import above_zero, finite, print_json
 from zerorate_tools.errors import MissingRuntime, ZerorateError
 from zerorate_tools.recordings import Recording, Scales, write_recording
 
@@ -91,7 +90,7 @@ def a_log(path="run.parquet", n=4):
 
 @pytest.mark.parametrize("text", ["nan", "inf", "-inf"])
 def test_what_is_no_finite_number_is_refused(text):
-    for kind in (numbers_given.finite, numbers_given.above_zero):
+    for kind in (finite, above_zero):
         with pytest.raises(argparse.ArgumentTypeError):
             kind(text)
 
@@ -110,12 +109,12 @@ def test_what_is_no_finite_number_is_refused(text):
     ],
 )
 def test_a_rate_or_a_time_is_above_zero_and_at_most_a_billion(text, taken):
-    assert numbers_given.finite(text) == float(text)
+    assert finite(text) == float(text)
     if taken:
-        assert numbers_given.above_zero(text) == float(text)
+        assert above_zero(text) == float(text)
     else:
         with pytest.raises(argparse.ArgumentTypeError):
-            numbers_given.above_zero(text)
+            above_zero(text)
 
 
 # --- JSON ---
@@ -153,7 +152,7 @@ def test_json_has_plain_values_and_null_where_there_is_no_number(capsys):
 
 
 def test_allan_prints_milli_degrees_and_the_lowest_of_each_axis(stands_in, capsys):
-    stands_in("zerorate_tools.loop.read.stretch.still_stretch", (np.zeros((6, 3)), 0.5))
+    stands_in("zerorate_tools.loop.read.still.still_stretch", (np.zeros((6, 3)), 0.5))
     table = np.array([[0.004, 0.005, 0.006], [0.001, 0.007, 0.008]])
     overlapping = stands_in("zerorate_tools.allan.overlapping", (np.array([0.5, 12.0]), table))
     assert cli.main(["allan", "x.csv"]) == 0
@@ -164,13 +163,13 @@ def test_allan_prints_milli_degrees_and_the_lowest_of_each_axis(stands_in, capsy
     assert refused("allan")
 
 
-# --- bench ---
+# --- demo ---
 
 
 def test_without_its_package_bench_says_what_to_install(monkeypatch, capsys):
-    from zerorate_tools.commands import bench
+    from zerorate_tools.commands import demo
 
-    monkeypatch.setattr(bench, "find_spec", lambda name: None)
+    monkeypatch.setattr(demo, "find_spec", lambda name: None)
     assert cli.main(["bench", "accuracy"]) == 2
     assert "the wheel has no benchmarks" in capsys.readouterr().err
 
@@ -343,7 +342,7 @@ def test_a_picture_makes_the_folders_above_it(tmp_path):
 
 def test_the_demo_of_a_real_recording_ends_with_0(stands_in, capsys, steps):
     stands_in("zerorate_tools.runtimes.find")
-    stands_in("zerorate_tools.demo.broad_trial.broad_trial", "trial")
+    stands_in("zerorate_tools.demo.broad.broad_trial", "trial")
     real = stands_in("zerorate_tools.demo.real.real", "figures")
     story = stands_in("zerorate_tools.demo.story.real_trial", "told")
     assert cli.main(["demo", "--real"]) == 0
@@ -532,7 +531,7 @@ def test_two_models_that_differ_end_with_1(stands_in, capsys, found, code, said)
 
 
 def test_a_model_is_checked_for_the_device_that_was_described(stands_in, capsys):
-    check = stands_in("zerorate_tools.model.check.check_model", "model")
+    check = stands_in("zerorate_tools.model.files.check_model", "model")
     stands_in("zerorate_tools.model.model_in_words.slots_in_words", "two slots")
     assert cli.main(["model", "check", "m.bin"]) == 0
     assert capsys.readouterr().out == "m.bin: good, two slots\n"
@@ -762,9 +761,10 @@ def test_an_open_bus_is_closed_where_no_chip_answers_and_a_wrong_setting_is_one_
     serving.linux.result = OSError(errno.ENOTTY, "no ioctl")
     with pytest.raises(ZerorateError, match="no I2C bus"):
         open_imu()
-    serving.linux.result = OSError(errno.ENOENT, "not there yet")
-    with pytest.raises(OSError, match="not there yet"):
-        open_imu()
+    for number in (errno.ENOENT, errno.EACCES):
+        serving.linux.result = OSError(number, "not there yet")
+        with pytest.raises(OSError, match="not there yet"):
+            open_imu()
 
 
 def test_run_needs_the_folder_of_its_state(serving, capsys):
@@ -858,7 +858,7 @@ def test_a_state_s_words_are_found_by_any_part_of_their_name(stands_in, capsys):
 
 def test_watch_is_given_what_was_typed_and_ends_with_1_where_nothing_came(stands_in, capsys):
     watch = stands_in("zerorate_tools.watch.watching.watch", "live")
-    draw = stands_in("zerorate_tools.watch.picture.draw")
+    draw = stands_in("zerorate_tools.watch.screen.draw")
     assert cli.main(["watch", "x.csv"]) == 0
     source, options = watch.call[0]
     assert source == "x.csv" and options.settings == {"motion": None, "gravity": None}

@@ -18,11 +18,10 @@ from zerorate_tools.replay import replay
 from zerorate_tools.replay.replaying import state_bytes
 from zerorate_tools.simulate import simulate
 from zerorate_tools.watch import watch
-from zerorate_tools.watch.board import Watcher
-from zerorate_tools.watch.options import WatchOptions
-from zerorate_tools.watch.own import Told
-from zerorate_tools.watch.screen import Lines, sparkline
-from zerorate_tools.watch.tail import CsvTail
+from zerorate_tools.watch.live import Live
+from zerorate_tools.watch.own import OwnOutput
+from zerorate_tools.watch.screen import Lines, WatchOptions, sparkline
+from zerorate_tools.watch.watching import CsvTail, Watcher
 
 DESCRIPTION = {
     "name": "run",
@@ -92,7 +91,7 @@ def test_the_firmware_is_where_a_replay_of_the_file_leaves_it(log, capsys):
 
 
 def test_once_prints_one_line_however_long_the_reading_takes(log, capsys, monkeypatch):
-    monkeypatch.setattr("zerorate_tools.watch.tail._MOST_BYTES", 4096)
+    monkeypatch.setattr("zerorate_tools.watch.watching._MOST_BYTES", 4096)
     watch(str(log), WatchOptions(once=True, every_s=0.0))
     assert len(capsys.readouterr().out.splitlines()) == 1
 
@@ -210,6 +209,16 @@ def test_a_name_is_shown_letter_by_letter_on_a_terminal(recording, tmp_path):
     assert "temperature 29.9" in shown and "fit" in shown
 
 
+def test_the_bias_of_each_second_is_kept_and_drawn_from_its_lowest_to_its_highest(recording):
+    live = Live("run", recording.scales, recording.column_names)
+    for first, last in ((0, 40), (40, 60)):  # 25 a second: of seconds 0, 1 and 2
+        live.feed({name: column[first:last] for name, column in recording.columns.items()})
+    assert len(live.history) == 3 and live.samples == 60
+    assert live.duration_s == pytest.approx(59 / 25) and live.rate_hz == pytest.approx(25)
+    assert sparkline(np.arange(8.0)) == "▁▂▃▄▅▆▇█" and sparkline(np.array([2.0, 2.0])) == "▁▁"
+    assert len(sparkline(np.arange(99.0))) == 24 and sparkline(np.zeros(0)) == ""
+
+
 def test_a_chip_on_a_bus_is_watched():
     samples = ((k % 7, k % 5, 16384, -3000, 40 + k % 3, -20, 10 + k % 2) for k in range(10**6))
     chip = FakeMPU6050(samples)
@@ -226,13 +235,6 @@ def test_a_chip_on_a_bus_is_watched():
     assert live.bias_dps * 131 == pytest.approx([41, -20, 10.5], abs=0.5)
 
 
-def test_a_sparkline_goes_from_low_to_high():
-    assert sparkline(np.arange(8.0)) == "▁▂▃▄▅▆▇█"
-    assert sparkline(np.ones(3)) == "▁▁▁"
-    assert sparkline(np.zeros(0)) == ""
-    assert len(sparkline(np.random.default_rng(1).normal(size=500))) == 24
-
-
 def test_scales_missing_beside_the_file_are_said(writer):
     writer.path.with_suffix(".json").unlink()
     with pytest.raises(BadRecording, match="run.json"):
@@ -246,7 +248,7 @@ def test_a_bias_that_is_not_known_has_no_sigma(log, capsys):
 
 
 def test_what_a_board_prints_is_read_as_its_rates_and_their_bias():
-    told = Told("/dev/ttyACM0")
+    told = OwnOutput("/dev/ttyACM0")
     told.feed(b"found: MPU-6050\r\nbefore +0.303 -0.182 +0.084  after +0.003 +0.0")
     assert told.source == ["none"] * 3
     told.feed(b"08 -0.006 dps\r\n")
@@ -258,7 +260,7 @@ def test_what_a_board_prints_is_read_as_its_rates_and_their_bias():
 
 def test_what_a_board_explains_is_read_as_the_firmware_means_it(log):
     live = watch(str(log), WatchOptions(once=True, settings=_RESTS))
-    told = Told("/dev/ttyACM0")
+    told = OwnOutput("/dev/ttyACM0")
     told.feed(live.corrector.explain().encode() + b"\n")
     assert told.bias_dps == pytest.approx(live.bias_dps, abs=6e-4)
     assert told.quality_dps == pytest.approx(live.quality_dps, abs=6e-4)
@@ -285,8 +287,3 @@ def test_a_program_that_prints_no_bias_is_watched_and_not_drawn(tmp_path, capsys
     said = capsys.readouterr()
     assert codes == [0, 2] and not list(tmp_path.iterdir())
     assert "with +0.01 deg" in said.out and "no bias came to be drawn" in said.err
-
-
-def test_a_board_s_own_program_takes_no_model(capsys):
-    assert main(["watch", "/dev/ttyACM0", "--own", "--model", "model.bin"]) == 2
-    assert "--own" in capsys.readouterr().err

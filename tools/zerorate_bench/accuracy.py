@@ -9,15 +9,13 @@ from numpy.typing import NDArray
 from zerorate_tools.demo.broad import rms_mdps
 from zerorate_tools.importers import read_foreign
 from zerorate_tools.loop.read.still import runs
-from zerorate_tools.peers import Given, Peer, given
-from zerorate_tools.peers.firmware import within_two_sigma
-from zerorate_tools.peers.online import first_seconds
+from zerorate_tools.peers import Given, Peer, first_seconds, given
 from zerorate_tools.recordings import Recording
 from zerorate_tools.simulate import simulate_sessions
 
-from .bayes import told_everything, told_the_future
+from .floors import told_everything, told_the_future
 from .limits import ACCURACY, SESSION_2, limits_table, verdicts
-from .peers import HOW, OURS, PEERS
+from .peers import HOW, OURS, PEERS, within_two_sigma
 from .public_data import data_folder, recordings, told_of
 from .tables import machine, machine_line, number, table
 
@@ -25,8 +23,8 @@ SCENARIOS = ("warm-up-a", "warm-up-b", "warm-up-c")
 SEEDS = (1, 2, 3, 4, 5)
 FIRST_S = 15.0
 LATER_S = 60.0
-TOLD = "told the rests, the curve and its walk"
-AT_REST = "told the curve and the spectra, at rest all day, and the future"
+TOLD = "floor: knows the rests, the curve and its random walk"
+AT_REST = "floor: knows the curve and the spectra, rests all day, looks ahead"
 DAY = ("mean of the first 10 s", "imufusion", "vqf, clip 25 dps", *OURS)
 
 Figures = dict[str, dict[str, float]]

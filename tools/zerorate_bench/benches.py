@@ -103,14 +103,14 @@ _RESUME = {"--resume": {"type": Path, "metavar": "FILE", "help": "outcomes: go o
 
 
 def _number(default: float, what: str) -> dict[str, Any]:
-    told = f"{what} ({default:g})"
-    return {"type": type(default), "default": default, "metavar": "N", "help": told}
+    text = f"{what} ({default:g})"
+    return {"type": type(default), "default": default, "metavar": "N", "help": text}
 
 
 _PROCESSES = {"--processes": _number(2, "at once")}
 BENCHES = {
     "accuracy": Bench(
-        *("the bias error beside everyone else's", "accuracy"),
+        *("the bias error, beside other filters'", "accuracy"),
         lambda bench, a, advance: bench.accuracy(advance, _seeds(a)),
         lambda bench, a: bench.steps(_seeds(a)),
         options=_QUICK,
@@ -121,7 +121,7 @@ BENCHES = {
         lambda bench, a: bench.STEPS,
     ),
     "compare": Bench(
-        "what `compare` says of real recordings; exit code 1 where the truth denies it",
+        "what `compare` says of real recordings; exit code 1 if the truth contradicts it",
         "compared",
         lambda bench, a, advance: bench.run(_recordings(a), advance),
         options=_RECORDINGS,
@@ -134,19 +134,19 @@ BENCHES = {
         options=_QUICK,
     ),
     "deceived": Bench(
-        *("how often it is sure of a wrong bias among things that turn", "deceived"),
+        *("how often it is certain of a wrong bias when turns look like one", "deceived"),
         lambda bench, a, advance: bench.run(a.seeds, advance),
         lambda bench, a: bench.steps(a.seeds),
         options={"--seeds": _number(50, "runs of each world")},
     ),
     "faults": Bench(
-        "every fault of a bus and every cut of a write; exit code 1 when one goes unnoticed",
+        "every fault of a bus and every cut of a write; exit code 1 if one goes unnoticed",
         "faults",
         lambda bench, a, advance: bench.run(),
         judged=True,
     ),
     "fleet": Bench(
-        *("many devices at once, and what a prior is worth", "fleet"),
+        *("many devices at once, and what a prior gains", "fleet"),
         lambda bench, a, advance: bench.run(sorted(a.devices), advance=advance),
         lambda bench, a: bench.steps(a.devices, bench.WORKERS),
         options={
@@ -157,7 +157,7 @@ BENCHES = {
         },
     ),
     "heading": Bench(
-        *("heading lost in motion, without and with what gravity shows", "heading"),
+        *("heading lost in motion, without and with the matrix of `close`", "heading"),
         lambda bench, a, advance: bench.run(a.data, advance),
         options=_FOLDERS,
     ),
@@ -168,13 +168,13 @@ BENCHES = {
         options={"--devices": _number(80, "devices of each kind"), **_PROCESSES, **_RESUME},
     ),
     "heading-size": Bench(
-        "what closing recordings in motion costs; exit code 1 where it is too much",
+        "time and memory of `close` in motion; exit code 1 if too much",
         "heading_size",
         lambda bench, a, advance: bench.run(),
         judged=True,
     ),
     "import": Bench(
-        "logs as other tools write them: right or refused; exit code 1 where one is wrong",
+        "logs of other tools: right or refused; exit code 1 if one is wrong",
         "foreign_imports",
         lambda bench, a, advance: bench.run(a.only, advance),
         lambda bench, a: bench.steps(),
@@ -182,7 +182,7 @@ BENCHES = {
         judged=True,
     ),
     "import-size": Bench(
-        *("seconds and memory of importing a huge CSV, made and not kept", "foreign_imports"),
+        *("time and memory to import a huge CSV", "foreign_imports"),
         lambda bench, a, advance: bench.run_import_size(a.gb, a.folder, advance),
         lambda bench, a: 2,
         "in_words",
@@ -192,7 +192,7 @@ BENCHES = {
         },
     ),
     "loop": Bench(
-        *("what closing the loop finds, and what it invents", "loop"),
+        *("what `close` finds, and what it finds wrongly", "loop"),
         lambda bench, a, advance: bench.run(
             *(a.nulls, a.seeds, a.processes),
             **{name: getattr(a, name) for name in ("data", "resume", "rows")},
@@ -209,29 +209,35 @@ BENCHES = {
         },
     ),
     "motion": Bench(
-        *("the bias learned in motion beside vqf's", "motion_table"),
+        *("the bias learned in motion, beside vqf's", "motion_table"),
         lambda bench, a, advance: bench.run(a.data),
         options=_BROAD,
     ),
+    "own-axes": Bench(
+        *("scale and axes that the filter in motion finds by itself", "own_axes"),
+        lambda bench, a, advance: bench.run(a.devices, a.data, advance),
+        lambda bench, a: 2 * len(bench.WORLDS),
+        options={"--devices": _number(12, "simulated devices a row"), **_FOLDERS},
+    ),
     "real": Bench(
-        *("closing the loop on real recordings, each alone", "loop.real"),
+        *("`close` on real recordings, each alone", "loop.real"),
         lambda bench, a, advance: bench.real_rows(_recordings(a)),
         text="in_words",
         options=_RECORDINGS,
     ),
     "real-motion": Bench(
-        *("the bias at the end of real motion beside other filters'", "real_motion"),
+        *("the bias at the end of real motion, beside other filters'", "real_motion"),
         lambda bench, a, advance: bench.run(a.data, advance),
         options=_FOLDERS,
     ),
     "service": Bench(
-        *("`zerorate run` through faults, kills, full disks", "service"),
+        *("`zerorate run` under faults, kills, full disks", "service"),
         lambda bench, a, advance: bench.run(a.hours, a.faults),
         text="in_words",
         options={"--hours": _number(24.0, "simulated"), "--faults": _number(1000, "how many")},
     ),
     "singles": Bench(
-        "one or two simulated recordings: whether what is deployed makes anything worse",
+        "`close` on one or two simulated recordings: does it make anything worse?",
         "loop.singles",
         lambda bench, a, advance: bench.run_singles(a.devices, a.processes, a.resume, advance),
         lambda bench, a: a.devices,
@@ -239,7 +245,7 @@ BENCHES = {
         {"--devices": _number(400, "devices"), **_PROCESSES, **_RESUME},
     ),
     "variants": Bench(
-        "closing the loop on real recordings cut, bereft of a sensor, with a step",
+        "`close` on real recordings that were cut or damaged",
         "loop.variants",
         lambda bench, a, advance: bench.variant_rows(_recordings(a), advance),
         text="in_words",

@@ -11,8 +11,7 @@ from zerorate_tools.compare import Compared, compare
 from zerorate_tools.compare.judge import FIRST_REST, FRESH, NOTHING, TooFewRests, rests_of
 from zerorate_tools.demo.broad import Trial, trials, true_bias
 from zerorate_tools.importers import import_recording
-from zerorate_tools.peers import firmware, given
-from zerorate_tools.peers.online import fusion, vqf_default
+from zerorate_tools.peers import firmware, fusion, given, vqf_default
 
 from .public_data import recordings, told_of
 from .tables import table
@@ -106,13 +105,13 @@ def in_markdown(found: dict[str, Any]) -> str:
         cells = [f"{heading[way]:.2f}" if way in heading else "" for way in _WAYS]
         rows.append([name, str(row["rests"]), *cells, row.get("verdict", row.get("why", ""))])
     words = [row.get("verdict") for row in found["recordings"].values()]
-    told = (
+    text = (
         f"Of {len(words)} recordings zerorate is better than the mean of the first rest in "
         f"{words.count('better')}, worse in {words.count('worse')}; {words.count(SAME)} show no "
         f"difference, {words.count(None)} have no two rests. Heading lost, degrees a minute:"
     )
     heads = ["recording", "later rests", *_WAYS, "zerorate against the first rest"]
-    return "\n\n".join([told, table(heads, rows), *_of_truth(found["broad"])])
+    return "\n\n".join([text, table(heads, rows), *_of_truth(found["broad"])])
 
 
 def _of_truth(broad: dict[str, list[dict[str, Any]]]) -> list[str]:
@@ -121,7 +120,7 @@ def _of_truth(broad: dict[str, list[dict[str, Any]]]) -> list[str]:
     pairs = [pair for rows in broad.values() for pair in rows]
     sure = [pair for pair in pairs if pair["by_log"] != SAME]
     beyond = sum(pair["by_log"] == pair["by_truth"] for pair in sure)
-    told = (
+    text = (
         f"On BROAD the log alone is sure who is better in {len(sure)} of {len(pairs)} pairs of "
         f"ways: {sum(not denied(pair) for pair in sure)} as the truth says ({beyond} by more than "
         f"the truth's own uncertainty), {sum(denied(pair) for pair in sure)} against it. The truth "
@@ -136,7 +135,7 @@ def _of_truth(broad: dict[str, list[dict[str, Any]]]) -> list[str]:
             + [other[pair["by_log"]], other[pair["by_truth"]]]
         )
     heads = ["trial", "first rest, true error mdps", "zerorate", "by the log", "by the truth"]
-    return [told, table(heads, rows)]
+    return [text, table(heads, rows)]
 
 
 def denied(pair: dict[str, Any]) -> bool:

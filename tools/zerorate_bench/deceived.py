@@ -10,13 +10,13 @@ from zlib import crc32
 
 import numpy as np
 from numpy.typing import NDArray
-from zerorate_tools.peers.firmware import Decision
-from zerorate_tools.peers.given import given
+from zerorate_tools.peers import given
 from zerorate_tools.recordings import Recording, Scales
 from zerorate_tools.simulate.attitude import facing, integrate, into_body
 from zerorate_tools.simulate.motion import Bout, Start, hand
 
 from .deceived_worlds import WORLDS, aircraft, begun_in_a_turn, pieces, tremor
+from .peers import Decision
 from .tables import number, table
 
 Array = NDArray[np.float64]

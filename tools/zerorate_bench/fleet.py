@@ -1,4 +1,4 @@
-"""`zerorate bench fleet`: how it scales, what a prior is worth, and a million devices on paper."""
+"""`zerorate bench fleet`: how it scales, and what a prior is worth."""
 
 import os
 import tempfile
@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 from zerorate_tools.fleet import Fleet, devices_of, fleet
-from zerorate_tools.fleet.cluster import MOST_BYTES, MOST_DEVICES, MOST_WAITING, cluster, run_all
-from zerorate_tools.fleet.first_minutes import LEAST_DEVICES
+from zerorate_tools.fleet.cluster import cluster, run_all
 from zerorate_tools.fleet.fleet_in_words import WAYS, scenario_in_words
+from zerorate_tools.fleet.prior import LEAST_DEVICES
 from zerorate_tools.recordings import write_recording
 from zerorate_tools.simulate import simulate
 
@@ -21,13 +21,6 @@ SIZES = (100, 500, 2000)
 WORKERS = (1, 2)
 _PER_TASK = 50
 
-#: The fleet on paper.
-DEVICES = 1_000_000
-HOURS_A_DEVICE = 1.0
-CORES = 64
-#: Dask's own measure of what its scheduler spends on a task, and keeps of one: about 1 ms (up to
-#: 0.2 ms at best) and some kilobytes (distributed documentation, "Scheduling overhead").
-SCHEDULER_S_A_TASK = 1e-3
 #: Typical of an MPU-6050: devices differ in level by far more than in how they follow temperature.
 LEVEL_DPS, LEVEL_DEVIATION_DPS = (0.4, -0.9, 0.2), 1.0
 SLOPE_DPS_PER_DEGC, SLOPE_DEVIATION = (0.025, -0.018, 0.012), 0.006
@@ -58,8 +51,7 @@ def run(
             tried = minutes if (number, count) == (sizes[-1], workers[-1]) else None
             devices = devices_of([data])[:number]
             largest = fleet(devices, out, workers=count, minutes=tried, advance=advance)
-            size = sum(path.stat().st_size for path in out.rglob("*") if path.is_file())
-            rows.append(_row(number, count, largest, size))
+            rows.append(_row(number, count, largest))
     return {
         "minutes": minutes,
         "odr_hz": ODR_HZ,
@@ -67,7 +59,6 @@ def run(
         "scaling": rows,
         "effects": largest.report["effects"],
         "prior": largest.report["prior"]["benefit"],
-        "million": on_paper(rows[-1], minutes, ODR_HZ, size_bytes),
     }
 
 
@@ -86,7 +77,7 @@ def _simulate(number: int, data: Path, minutes: float, advance: Callable[[float]
             advance(len(batch))
 
 
-def _row(number: int, workers: int, done: Fleet, out_bytes: int) -> dict[str, float]:
+def _row(number: int, workers: int, done: Fleet) -> dict[str, float]:
     report = done.report
     return {
         "devices": number,
@@ -101,37 +92,6 @@ def _row(number: int, workers: int, done: Fleet, out_bytes: int) -> dict[str, fl
         "devices_per_s": number / done.work_s,
         "samples_per_s": report["samples"] / done.work_s,
         "peak_bytes": done.peak_bytes,
-        "out_bytes": out_bytes,
-    }
-
-
-def on_paper(row: dict[str, float], minutes: float, odr_hz: float, size_bytes: float) -> dict:
-    """Cores, hours, storage and tasks for a million devices with an hour each at this rate.
-
-    row: of the largest run measured. A device's cost is taken to grow with its samples, which
-    overstates it, for opening files does not.
-    """
-    times = HOURS_A_DEVICE * 60 / minutes
-    cpu_s = row["cpu_s"] / row["devices"] * times
-    recording_bytes = size_bytes * times
-    per_task = max(1, min(MOST_DEVICES, int(MOST_BYTES // recording_bytes)))
-    tasks = -(-DEVICES // per_task)
-    hours = DEVICES * cpu_s / CORES / 3600
-    return {
-        "devices": DEVICES,
-        "hours_a_device": HOURS_A_DEVICE,
-        "odr_hz": odr_hz,
-        "cores": CORES,
-        "cpu_s_a_device": cpu_s,
-        "hours": hours,
-        "recordings_bytes": DEVICES * recording_bytes,
-        "results_bytes": DEVICES * row["out_bytes"] / row["devices"],
-        "devices_per_task": per_task,
-        "tasks": tasks,
-        "seconds_a_task": per_task * cpu_s,
-        "tasks_per_s": tasks / (hours * 3600),
-        "scheduler_share": tasks * SCHEDULER_S_A_TASK / (hours * 3600),
-        "most_waiting": MOST_WAITING,
     }
 
 
@@ -170,7 +130,7 @@ def description(number: int, minutes: float = MINUTES) -> dict[str, Any]:
 
 
 def in_markdown(found: dict[str, Any]) -> str:
-    """Scaling, the prior's worth, and a million devices."""
+    """Scaling, and the prior's worth."""
     length = (
         f"Each device has one recording of {found['minutes']:g} minutes at {found['odr_hz']:g} Hz "
         f"({found['bytes_per_recording'] / 1e3:.0f} kB of Parquet), simulated; `seconds` are those "
@@ -181,7 +141,6 @@ def in_markdown(found: dict[str, Any]) -> str:
     few = f"Not tried: it takes {LEAST_DEVICES} devices."
     tried = [_about(prior), _prior(prior)] if prior else [few]
     parts += ["## A prior for a new device", *tried]
-    parts += ["## A million devices, on paper", _million(found["million"])]
     return "\n\n".join(part.strip() for part in parts) + "\n"
 
 
@@ -225,17 +184,3 @@ def _prior(tried: dict[str, Any]) -> str:
         rows.append(("", "gain by the prior, 95 %", better, f"{found['gain']['share_better']:.0%}"))
     header = ("device", "start", "median", "95th percentile (of gain: share better)")
     return table(header, rows)
-
-
-def _million(m: dict[str, Any]) -> str:
-    return (
-        f"{m['devices']:,} devices with {m['hours_a_device']:g} hour each at {m['odr_hz']:g} Hz "
-        f"take {m['cpu_s_a_device']:.2f} s of a core each: on {m['cores']} cores {m['hours']:.1f} "
-        f"hours. The recordings are {m['recordings_bytes'] / 1e12:.2f} TB of Parquet, the results "
-        f"{m['results_bytes'] / 1e9:.1f} GB. A task takes up to {m['devices_per_task']} devices or "
-        f"64 MiB, so there are {m['tasks']:,} tasks of {m['seconds_a_task']:.0f} s, "
-        f"{m['tasks_per_s']:.2f} a second; Dask's scheduler spends about a millisecond on each, "
-        f"{m['scheduler_share']:.2%} of its time, and holds no more than {m['most_waiting']:,} of "
-        "them, for the rest waits in the client. One task a device would be "
-        f"{m['devices']:,} tasks, {m['devices'] * 1e-3 / m['hours'] / 3600:.1%} of its time."
-    )

@@ -23,7 +23,7 @@ from zerorate_tools.cli import main
 from zerorate_tools.errors import ZerorateError
 from zerorate_tools.recordings import Recording, read_recording
 
-from .foreign_logs.corpus import CORPUS, Log, World
+from .foreign_logs import CORPUS, Log, World
 from .tables import table
 
 RIGHT, BY_ITS_WORDS, REFUSED = "right", "right by its words", "refused with the cure"

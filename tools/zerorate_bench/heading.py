@@ -14,10 +14,9 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 from zerorate_tools.demo.broad import Trial, trials
 from zerorate_tools.loop.motion.by_windows import by_windows
-from zerorate_tools.loop.motion.device import Shown
-from zerorate_tools.loop.motion.matrix import beside
+from zerorate_tools.loop.motion.device import DifferentDevices, Shown, distance
+from zerorate_tools.loop.motion.matrix import beside, fit
 from zerorate_tools.loop.motion.moving import Moving, moving_of
-from zerorate_tools.loop.motion.same_device import DifferentDevices, distance
 from zerorate_tools.recordings.writing import write_recording
 
 from .tables import table
@@ -28,6 +27,10 @@ _EVERY = 10
 _OPTICS = """\
 Far is a chi-squared of nine degrees of freedom: of a trial's matrix, fitted beside the optics,
 being that of the other trials named."""
+_BESIDE = {
+    "others": "after, fitted on other trials",
+    "bound": "after, fitted by the optics on what is judged",
+}
 #: Two sets of axes: trials whose matrices agree with each other, and not with the other set's.
 GROUPS = (("01", "02", "06", "12", "16", "24"), ("21", "29", "30"))
 LIMITS = (0.7, 2.5)
@@ -97,10 +100,14 @@ def _row(trial: Trial, group: int, shown, first: float = 0.0) -> dict:
 
 
 def _half(trial: Trial, moving: Moving, group: int) -> dict:
-    """Fitted on the first half of the motion, judged on the second."""
+    """Fitted on the first half of the motion, judged on the second; beside that what the optics
+    alone, fitted to that second half itself, would leave: no matrix leaves much less."""
     at = np.flatnonzero(trial.moving)
     middle = int((at[0] + at[-1]) / 2)
-    return _row(trial, group, by_windows([moving.part(slice(middle))], []), 0.5)
+    first, second = slice(middle), slice(middle, None)
+    seen = replace(moving.part(second), given=trial.attitude[second])
+    bound = heading_error_deg(trial, fit([seen])[0], 0.5)
+    return {**_row(trial, group, by_windows([moving.part(first)], []), 0.5), "bound": bound}
 
 
 def heading_error_deg(trial: Trial, matrix: Array, first: float = 0.0) -> float:
@@ -151,18 +158,18 @@ def in_markdown(found: dict) -> str:
     groups = " and ".join(", ".join(g) for g in found["refused"])
     unsure = ", ".join(found["unsure"])
     either = f"; {unsure} could also be with the others" if unsure else ""
-    told = f"refused, {groups}{either}" if groups else "NOT refused"
-    parts.append(f"All trials as one device: {told}.")
+    verdict = f"refused, {groups}{either}" if groups else "NOT refused"
+    parts.append(f"All trials as one device: {verdict}.")
     if found["optics"]:
         heads = ["trial, by the optics", *(f"far from {', '.join(g)}" for g in found["refused"])]
         rows = [[n, *(f"{d:.0f}" for d in far)] for n, far in found["optics"].items()]
         parts += [table(heads, rows), _OPTICS]
     for key, words in (("others", "other trials"), ("halves", "its first half")):
         heads = ["trial", "deployed", "before, degrees", f"after, fitted on {words}"]
-        heads += ["after, fitted on other trials"] if key == "halves" else []
+        heads += [*_BESIDE.values()] if key == "halves" else []
         rows = [
             [name, "yes" if r["found"] else "nothing"]
-            + [f"{r[k]:.2f}" for k in ("before", "after", "others") if k in r]
+            + [f"{r[k]:.2f}" for k in ("before", "after", *_BESIDE) if k in r]
             for name, r in found[key].items()
         ]
         parts.append(table(heads, rows))

@@ -21,8 +21,7 @@ from zerorate_tools.simulate.attitude import facing, integrate, into_body
 from zerorate_tools.simulate.motion import FACES, Start
 
 from .heading_worlds import KINDS, coherent
-from .outcomes import outcomes
-from .tables import table
+from .tables import outcomes, table
 
 Array = NDArray[np.float64]
 NOTHING, COHERENT = "nothing", "coherent"
@@ -78,11 +77,11 @@ def outcome(case: Case) -> dict[str, Any]:
     deployed = shown.deployed if shown.found else np.zeros((3, 3))
     parts = zip(truth.ravel(), shown.matrix.ravel(), shown.deviation.ravel())
     entries = [[float(v) for v in part] for part in parts]
-    before, after = (_lost(m, motion) for m in (truth, truth - deployed))
+    before, after = (heading_lost_deg(m, motion) for m in (truth, truth - deployed))
     return {**row, "found": shown.found, "entries": entries, "before": before, "after": after}
 
 
-def _lost(matrix: Array, motion: Array) -> float:
+def heading_lost_deg(matrix: Array, motion: Array) -> float:
     """Degrees RMS of heading lost within 6,000 samples; what only turns the frame loses none.
 
     motion: (m, 6) degrees turned in each sample and the vertical, both in the body.
@@ -101,11 +100,11 @@ def simulated(case: Case) -> tuple[Recording, Array, Array]:
     return recorded(case, rng, hz, seconds, rng.uniform(0.0, 0.9))
 
 
-def recorded(case: Case, rng, hz: float, seconds: float, resting: float):
-    """As `simulated`, for so many seconds of which a share rests."""
+def recorded(case: Case, rng, hz: float, seconds: float, resting: float, errors=None):
+    """As `simulated`, for so many seconds of which a share rests; errors: draws the matrix."""
     parts = list(_stretches(case, rng, hz, seconds, resting))
     rate, force, up = (np.concatenate(part) for part in zip(*parts))
-    gyro = np.eye(3) + (_errors(rng) if case.off else 0.0)
+    gyro = np.eye(3) + ((errors or _errors)(rng) if case.off else 0.0)
     measured = rate @ gyro.T + rng.normal(0, 0.5, 3) + _white(rng, rate, 0.004 * np.sqrt(hz))
     accel = force @ (np.eye(3) + np.diag(rng.normal(0, 0.005, 3))).T
     accel = accel + rng.normal(0, 0.02, 3) + _white(rng, rate, 0.0003 * np.sqrt(hz))
@@ -165,7 +164,7 @@ def in_markdown(found: dict) -> str:
     worse = [r for r in rows if r["off"] and r["found"] and r["after"] > 1.02 * r["before"]]
     every = [r for r in rows if r["off"]]
     others = [
-        ["nothing wrong: something found", *_share(bare, [r for r in bare if r["found"]], 0.5)],
+        ["nothing wrong: something found", *_share(bare, _found(bare), 0.5)],
         ["errors: deployed and worse by 2 %", *_share(every, worse, 0.5)],
         ["nothing wrong, pushes as it turns: found", *_share(pushed, _found(pushed), 1.0)],
     ]
@@ -189,11 +188,11 @@ def _of_kind(kind: str, rows: list[dict]) -> list[str]:
     worth = sigma < np.abs(true) / 3
     seen = worth & (found > 0) & (np.abs(said) > _SIGMAS * sigma)
     within = 100 * np.mean(np.abs(said - true) < _SIGMAS * sigma) if len(entries) else np.nan
-    told = 100 * seen.sum() / max(worth.sum(), 1)
+    percent = 100 * seen.sum() / max(worth.sum(), 1)
     deployed = [r["after"] / r["before"] for r in rows if r["found"]]
     return [
         *(kind, f"{len(_found(rows))} of {len(rows)}"),
-        *(f"{seen.sum()} of {worth.sum()} ({told:.0f} %)", "yes" if told >= 95 else "NO"),
+        *(f"{seen.sum()} of {worth.sum()} ({percent:.0f} %)", "yes" if percent >= 95 else "NO"),
         *(f"{within:.0f} %", "yes" if 90 <= within <= 99 else "NO"),
         f"{np.median(deployed):.2f}" if deployed else "-",
     ]

@@ -13,17 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 from zerorate_tools.demo.broad import Trial, TrueBias, rms_mdps, trials, true_bias
 from zerorate_tools.errors import MissingRuntime
-from zerorate_tools.peers import Given, Peer, given, vqf_clip_raised, vqf_default
-from zerorate_tools.peers.firmware import Decision
-from zerorate_tools.recordings import Recording
-from zerorate_tools.simulate import Truth, simulate
+from zerorate_tools.peers import Given, Peer, given, vqf_default
+from zerorate_tools.simulate import simulate
 from zerorate_tools.simulate.description import load_description
 from zerorate_tools.simulate.schema import Description
 
-from zerorate_bench.peers.sources import Source
+from zerorate_bench.peers import Source
 
-from .bayes import believed, segments
 from .native.native_cost import source_cost
+from .peers import Decision, vqf_clip_raised
 
 SCENARIOS = (
     *("never-rests", "rests-30", "short-rests", "trembling", "slow-tilt", "slow-log"),
@@ -36,7 +34,7 @@ TRIAL_SETTLED_S = 60.0
 FLICKER_DPS = 0.002
 FLICKERING = f"decision, of a part with {1000 * FLICKER_DPS:g} mdps of flicker noise"
 #: No estimator but a floor: what the windows tell of a bias whose curve over temperature is known.
-TOLD = "in motion, told the curve over temperature"
+TOLD = "in motion, curve over temperature given"
 NEAR_MDPS = 50.0
 _RIPPLE_S = 200.0
 _OBSERVABLE = (0, 1)
@@ -69,7 +67,6 @@ FORMS = {
 FLICKERS_MDPS = (0, 1, 2, 4)
 SCENES = ("rests-30", "short-rests", "turntable")
 FLICKER_SEEDS = range(1, 11)
-_STRETCH_S = 10.0
 
 
 def peers() -> dict[str, Peer]:
@@ -97,11 +94,11 @@ def simulated(ways: Mapping[str, Peer], seeds: Sequence[int] = SEEDS) -> dict:
             for way in (*ways, FLICKERING, TOLD)
         }
         flickering = {FLICKERING: Decision()}
-        told = {TOLD: Source("in_motion", slope_dps_per_degc=0.0001)}
+        without_curve = {TOLD: Source("in_motion", slope_dps_per_degc=0.0001)}
         for seed in seeds:
             _measure(found[name], ways, name, seed)
             _measure(found[name], flickering, with_flicker(name, FLICKER_DPS), seed)
-            _measure(found[name], told, _without_curve(name), seed)
+            _measure(found[name], without_curve, _without_curve(name), seed)
     return found
 
 
@@ -205,15 +202,13 @@ def settling() -> dict:
     return found
 
 
-def by_flicker() -> dict:
-    """Scene -> "firmware", "Bayes' rule" -> mean share within two sigma, each flicker noise's."""
-    found: dict = {}
+def by_flicker() -> dict[str, list[float]]:
+    """Scene -> mean share of the truth within two sigma, for each flicker noise."""
+    found: dict[str, list[float]] = {}
     for name in SCENES:
         scenes = [with_flicker(name, mdps / 1000) for mdps in FLICKERS_MDPS]
-        shares = np.mean(
-            [[_shares(scene, seed) for scene in scenes] for seed in FLICKER_SEEDS], axis=0
-        )
-        found[name] = dict(zip(("firmware", "Bayes' rule"), np.round(shares.T, 4).tolist()))
+        shares = [[_within(scene, seed) for scene in scenes] for seed in FLICKER_SEEDS]
+        found[name] = [round(float(share), 4) for share in np.mean(shares, axis=0)]
     return found
 
 
@@ -223,25 +218,9 @@ def with_flicker(name: str, flicker_dps: float) -> Description:
     return replace(described, noise=replace(described.noise, bias_instability_dps=flicker_dps))
 
 
-def _shares(scene: Description, seed: int) -> tuple[float, float]:
+def _within(scene: Description, seed: int) -> float:
     recording, truth = simulate(scene, session=1, seed=seed)
     firmware = Decision()
     firmware.truth_dps = [truth.bias_lsb / recording.scales.gyro_lsb_per_dps]
     firmware([given(recording)])
-    error, sigma = bayes_error(scene, recording, truth)
-    return float(np.mean(firmware.within)), float(np.mean(np.abs(error) < 2 * sigma))
-
-
-def bayes_error(
-    scene: Description, recording: Recording, truth: Truth
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Error and one sigma by Bayes' rule, dps, at each end of ten seconds after the first rest."""
-    hz = recording.scales.odr_hz
-    warm = truth.temp_degc - truth.temp_degc[0]
-    noise_dps = scene.sensor.gyro_noise_dps
-    rests = segments(recording.gyro_dps(), warm, truth.still, hz, noise_dps)
-    every = round(_STRETCH_S * hz)
-    ends = np.arange(every, len(warm) + 1, every)
-    ends = ends[ends >= rests.spans.end_s[0] * hz]
-    bias, sigma = believed(rests, ends / hz, warm[ends - 1], 1 / hz)
-    return bias - truth.bias_lsb[ends - 1] / recording.scales.gyro_lsb_per_dps, sigma
+    return float(np.mean(firmware.within))

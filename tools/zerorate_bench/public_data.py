@@ -61,8 +61,6 @@ _DATA: dict[str, tuple[dict[str, str], str, dict[str, Any]]] = {
 _OF_ONE_FILE = {"RB.csv": "heater_pct=dc"}
 
 
-#: Tables of means without time.
-BIN_TABLES = "hipnuc-bins"
 _ENDINGS = (".csv", ".csv.gz", ".parquet", ".mat")
 #: Recordings whose loop is closed, each alone; and those of one device, which are closed together.
 CLOSED_ALONE = (
@@ -91,8 +89,7 @@ def data_folder() -> Path | None:
 
 def recordings(folder: Path) -> list[Path]:
     """Every recording in the folders of `folder`, sorted."""
-    files = (path for path in sorted(folder.glob("*/*")) if path.name.endswith(_ENDINGS))
-    return [path for path in files if path.parent.name != BIN_TABLES]
+    return [path for path in sorted(folder.glob("*/*")) if path.name.endswith(_ENDINGS)]
 
 
 def told_of(path: Path) -> dict[str, Any]:

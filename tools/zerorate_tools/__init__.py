@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from .closing import close as close_loop
     from .errors import ZerorateError
     from .importers import import_recording, read_foreign
-    from .loop.read.stretch import deviation_of as allan_deviation
+    from .loop.read.still import deviation_of as allan_deviation
     from .loop.report.result import LoopReport
     from .model import Model, read_model, write_model
     from .recordings import Recording, Scales, open_recording, read_recording, write_recording
@@ -38,7 +38,7 @@ _HOME = {
     "replay.plot": "plot_replay=plot",
     "closing": "close_loop=close",
     "loop.report.result": "LoopReport",
-    "loop.read.stretch": "allan_deviation=deviation_of",
+    "loop.read.still": "allan_deviation=deviation_of",
     "model": "read_model write_model Model",
     "errors": "ZerorateError",
 }

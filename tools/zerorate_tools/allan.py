@@ -24,9 +24,7 @@ def overlapping(
     if len(rate) < 9:
         raise ValueError("an Allan deviation needs 9 samples or more")
     longest = len(rate) // 3
-    steps = np.unique(
-        np.geomspace(1, longest, max(2, int(per_octave * np.log2(longest)))).astype(int)
-    )
+    steps = np.unique(np.geomspace(1, longest, int(per_octave * np.log2(longest))).astype(int))
     angle = np.vstack([np.zeros(rate.shape[1]), np.cumsum(rate - rate.mean(axis=0), axis=0)])
     out = []
     for m in steps:

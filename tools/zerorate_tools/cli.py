@@ -9,17 +9,19 @@ import signal
 import sys
 from collections.abc import Sequence
 from importlib import import_module
-from importlib.util import find_spec
 from types import FrameType
 from typing import Any, NoReturn, TextIO
 
 from . import __version__
 from .errors import MissingLibrary, ZerorateError, os_error_in_words, printable
 
-COMMANDS = (
-    *("demo", "import", "cut", "record", "simulate", "replay", "close", "compare", "allan"),
-    *("model", "state", "flash", "fleet", "run", "watch", "bench", "runtimes", "export"),
-)
+#: Each command, in the order of the help -> the file of commands/ that holds it.
+COMMANDS = {
+    "demo": "demo", "import": "make", "cut": "make", "record": "chip", "simulate": "make",
+    "replay": "learn", "close": "learn", "compare": "learn", "allan": "learn", "model": "use",
+    "state": "use", "flash": "use", "fleet": "learn", "run": "chip", "watch": "chip",
+    "bench": "demo", "runtimes": "demo", "export": "use",
+}  # fmt: skip
 _INTERRUPTED = 130
 _BROKEN_PIPE = 141
 
@@ -87,13 +89,21 @@ def _end(number: int, frame: FrameType | None) -> None:
 class _Parser(argparse.ArgumentParser):
     """Says what was probably meant where a word is none of those that there are."""
 
+    #: The parser entered last: that of the command that was typed.
+    entered: "argparse.ArgumentParser"
+
+    def parse_known_args(self, *args: Any, **keywords: Any) -> Any:
+        """As argparse's, whose top parser reports the words that a command's own left over."""
+        _Parser.entered = self
+        return super().parse_known_args(*args, **keywords)
+
     def error(self, message: str) -> NoReturn:
         """Print usage and the message, and exit with 2."""
         wrong = re.search(r"invalid choice: '(.*?)'|unrecognized arguments: (\S+)", message)
         if wrong:
             word = wrong[1] or wrong[2].partition("=")[0]
-            near = difflib.get_close_matches(word, sorted(_words_of(self)), 1)
-            if near == [word]:
+            near = difflib.get_close_matches(word, sorted(_words_of(_Parser.entered)), 1)
+            if wrong[2] and word in _words_of(self):
                 near, message = [], f"{message}: it is an option of another command"
             message += f"; did you mean {near[0]}?" if near else ""
         super().error(printable(message))
@@ -110,19 +120,16 @@ def _words_of(parser: argparse.ArgumentParser) -> set[str]:
 
 
 def parser() -> argparse.ArgumentParser:
-    """The parser with every sub-command whose module is there."""
+    """The parser with every sub-command."""
     top = _Parser(
         prog="zerorate",
         description="Keeps a MEMS gyroscope's zero-rate output at zero.",
-        epilog="Begin with `zerorate demo`; `zerorate COMMAND --help` says more of each.",
+        epilog="Begin with `zerorate demo`; `zerorate COMMAND --help` explains each command.",
     )
     top.add_argument("--version", action="version", version=f"zerorate {__version__}")
     subparsers = top.add_subparsers(metavar="COMMAND", required=True)
-    for name in COMMANDS:
-        # `import` is a word of the language, so its module cannot bear that name alone
-        module = f"{__package__}.commands.{'import_' if name == 'import' else name}"
-        if find_spec(module) is not None:
-            import_module(module).add_parser(subparsers)
+    for name, file in COMMANDS.items():
+        import_module(f"{__package__}.commands.{file}").PARSERS[name](subparsers)
     return top
 
 

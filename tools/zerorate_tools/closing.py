@@ -6,7 +6,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from .closing_in_motion import shown_in_motion, tell_heading, write_in_motion
+from .closing_in_motion import shown_in_motion, write_in_motion
 from .errors import ZerorateError
 from .loop.analyse import analyse, sessions_of
 from .loop.read.gate import CannotClose, TooLittleRest
@@ -14,7 +14,7 @@ from .loop.read.ticks import read_ticks, tick_seconds
 from .loop.report.report import as_json, report
 from .loop.report.result import LoopReport
 from .loop.verify.analysis import Analysis
-from .loop.verify.measure import measure_and_prune
+from .loop.verify.run_kernels import run_and_prune
 from .model import write_model
 from .recordings.atomic import written_beside, written_together
 
@@ -39,7 +39,12 @@ def load(
     return analyse(sessions, at, gate, {t.name: log for t, log in zip(ticks, logs)})
 
 
-def _index(holdout, logs, names, kept):
+def _index(
+    holdout: str | PathLike[str],
+    logs: list[str | PathLike[str]],
+    names: list[str],
+    kept: list[str],
+) -> int:
     paths = [Path(log) for log in logs]
     at = next(
         (i for i, p in enumerate(paths) if p == Path(holdout) or p.name == str(holdout)), None
@@ -75,16 +80,21 @@ def close(
         return _close_in_motion(logs, out, holdout, advance, problem)
     with written_together(out) as folder:
         corrected = folder / "corrected.parquet"
-        analysis, model = measure_and_prune(analysis, logs, corrected, online, advance)
+        analysis, model = run_and_prune(analysis, logs, corrected, online, advance)
         write_model(model, folder)
         result = json.loads(json.dumps(report(analysis), default=as_json))
-        tell_heading(result, analysis, [Path(log) for log in logs])
         _write_json(folder, result)
         write_report(analysis, result, logs, folder)
     return result
 
 
-def _close_in_motion(logs, out, holdout, advance, problem: TooLittleRest) -> LoopReport:
+def _close_in_motion(
+    logs: list[str | PathLike[str]],
+    out: str | PathLike[str],
+    holdout: str | PathLike[str] | None,
+    advance: Callable[[float], None],
+    problem: TooLittleRest,
+) -> LoopReport:
     """Close the loop on what motion shows; the problem is raised where it shows nothing."""
     ticks = [read_ticks(log) for log in logs]
     names = [t.name for t in ticks]

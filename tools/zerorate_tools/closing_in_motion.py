@@ -7,18 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from .loop.motion.by_windows import by_windows
-from .loop.motion.heading import has_attitude, heading_lost, heading_lost_by
-from .loop.motion.in_motion import InMotion, slots_of
-from .loop.motion.moving import Moving, moving_of
-from .loop.motion.rate_scale import RateScale
+from .loop.motion.by_windows import GIVEN, UNIT, RateScale, by_windows
+from .loop.motion.moving import moving_of
+from .loop.motion.scales_and_timing import InMotion, slots_of
 from .loop.read.ticks import Ticks
-from .loop.report.motion_effects import turning
-from .loop.verify.analysis import Analysis
+from .loop.report.motion_effects import heading_in_words, heading_of, turning
 from .loop.verify.firmware import Firmware
-from .loop.verify.measure import CorrectedWriter
+from .loop.verify.run_kernels import CorrectedWriter
 from .model import Model, build_model, write_model
-from .model.binding import binding_of
+from .model.model import binding_of
 from .recordings import open_recording
 from .recordings.atomic import written_beside
 from .replay.samples import frames_in_batches
@@ -44,7 +41,7 @@ def write_in_motion(
     holdout: int | None,
     folder: Path,
     advance: Callable[[float], None],
-) -> dict:
+) -> dict[str, Any]:
     """Write model.json, model.bin, corrected.parquet and report.html; what report.json holds."""
     from .report.motion_page import motion_page  # its libraries are large
 
@@ -61,45 +58,9 @@ def write_in_motion(
         writer.close()
     write_model(model, folder)
     result = _result(shown, [Path(log).name for log in logs], sorted(held))
-    if shown.found:
-        result["in_motion"].update(_headings(shown, [Path(log) for log in logs], held))
     with written_beside(folder / "report.html") as temporary:
         temporary.write_text(motion_page(result, folder), encoding="utf-8")
     return result
-
-
-def _headings(shown: RateScale, logs: list[Path], held: set[str]) -> dict[str, Any]:
-    """Of what was held out, where it has an attitude; of a log alone its second half."""
-    every = _seen([log for log in logs if log.name in held])
-    return _told(heading_lost(every) if len(logs) == 1 else heading_lost_by(every, shown))
-
-
-def _seen(logs: Sequence[Path]) -> dict[Path, Moving]:
-    return {log: m for log in logs if has_attitude(log) and (m := moving_of(log)) is not None}
-
-
-def _told(lost: tuple[float, float] | None) -> dict[str, Any]:
-    names = ("heading_before", "heading_after")
-    return {} if lost is None else dict(zip(names, np.round(lost, 3).tolist()))
-
-
-def tell_heading(result: Mapping[str, Any], analysis: Analysis, logs: Sequence[Path]) -> None:
-    """Say beside what turning shows what it is worth in heading, where an attitude is given."""
-    effect = next((e for e in result["effects"] if "in_motion" in e), None)
-    shown = analysis.motion.scales
-    if effect is None or shown is None:
-        return
-    names = {s.name for s in analysis.holdout}
-    held = _seen([log for log in logs if open_recording(log).name in names])
-    told = _told(heading_lost(held) if analysis.single else heading_lost_by(held, shown))
-    if told:
-        effect["in_motion"].update(told)
-        effect["said"] += f"; {_heading_in_words(told)}"
-
-
-def _heading_in_words(m: Mapping[str, Any]) -> str:
-    before, after = m["heading_before"], m["heading_after"]
-    return f"against the attitude {before:.2f} -> {after:.2f} degrees a minute of heading"
 
 
 def _correct(writer: CorrectedWriter, log: Path, model: Model, test: bool) -> None:
@@ -111,7 +72,7 @@ def _correct(writer: CorrectedWriter, log: Path, model: Model, test: bool) -> No
         writer.write(log.name, frames, np.full(len(frames), test), biases)
 
 
-def _result(shown: RateScale, names: list[str], held: list[str]) -> dict:
+def _result(shown: RateScale, names: list[str], held: list[str]) -> dict[str, Any]:
     nothing = [None] * 3
     found = [turning(shown)] if shown.found else []
     train = names if len(names) == 1 else [n for n in names if n not in held]
@@ -135,8 +96,12 @@ def _result(shown: RateScale, names: list[str], held: list[str]) -> dict:
             "ci95_percent": np.round(196 * shown.deviation, 4).tolist(),
             "not_seen": not_seen(shown),
             "windows": shown.runs,
+            **(heading_of(shown) if found else {}),
         },
-        "unexplained": {"what_is_known": _BLIND, "measure_next": advice(shown)},
+        "unexplained": {
+            "what_is_known": "; ".join([_BLIND, *shown.notes]),
+            "measure_next": advice(shown),
+        },
         "verdict": "effects-found" if found else "nothing-found",
     }
 
@@ -158,12 +123,13 @@ def motion_in_words(result: Mapping[str, Any]) -> str:
     """The result in a few lines for a terminal."""
     m = result["in_motion"]
     effect = result["effects"][0] if result["effects"] else None
+    seen_by = "the reference" if m["unit"] == UNIT[GIVEN] else "gravity"
     if effect:
         lines = [
-            f"{effect['effect']} ({effect['confidence']}): on motion held out, gravity sees "
+            f"{effect['effect']} ({effect['confidence']}): on motion held out, {seen_by} sees "
             f"{m['before']:.2f} -> {m['after']:.2f} {m['unit']}"
         ]
-        lines += [_heading_in_words(m)] if "heading_before" in m else []
+        lines += [heading_in_words(m)] if "heading_before" in m else []
         rows = zip(_AXES, m["matrix_percent"], m["ci95_percent"])
         lines += [
             f"error of {axis}, % of the rate of x y z: "
@@ -171,12 +137,8 @@ def motion_in_words(result: Mapping[str, Any]) -> str:
             for axis, values, spread in rows
         ]
     else:
-        lines = [
-            f"found: nothing in motion; gravity sees {m['before']:.2f} {m['unit']}, the device's "
-            "own acceleration among it"
-        ]
+        among = "" if seen_by != "gravity" else ", the device's own acceleration among it"
+        lines = [f"found: nothing in motion; {seen_by} sees {m['before']:.2f} {m['unit']}{among}"]
     lines += [f"not seen in this motion: {', '.join(m['not_seen'])}"] if m["not_seen"] else []
     lines.append(f"note: {result['unexplained']['what_is_known']}")
-    return "\n".join(
-        [*lines, *(f"record next: {a}" for a in result["unexplained"]["measure_next"])]
-    )
+    return "\n".join([*lines, *(f"next: {a}" for a in result["unexplained"]["measure_next"])])

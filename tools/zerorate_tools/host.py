@@ -101,7 +101,7 @@ def _loaded(
     path: str | PathLike[str], odr_hz: float, scales: list[float], temp: list[float]
 ) -> tuple[EffectModel, list[float], list[float]]:
     """The model in a file, and the scales of rate, acceleration and temperature that it has."""
-    from .model.check import check_model  # its libraries are large
+    from .model.files import check_model  # its libraries are large
 
     own = check_model(path).scales
     scales = [own.gyro_lsb_per_dps, own.accel_lsb_per_g or scales[1]]

@@ -30,3 +30,13 @@ def fixed(value: float, digits: int, sign: str = "") -> str:
     sign: "+" for one before numbers above zero, and zero, too.
     """
     return f"{round(float(value), digits) + 0.0:{sign}.{digits}f}"
+
+
+def duration(seconds: float) -> str:
+    """As a person would say it: 250 ms, 4.2 s, 15 min, 2.5 h."""
+    if seconds < 1:
+        return f"{seconds * 1e3:.3g} ms"
+    for span, unit in ((86_400, "days"), (3600, "h"), (60, "min")):
+        if seconds >= 2 * span:
+            return f"{seconds / span:.3g} {unit}"
+    return f"{seconds:.3g} s"

@@ -70,6 +70,7 @@ _GRAVITY_GAP = const(3)
 _UNKNOWN_Q8 = const(0x1FFFFFFF)
 # layout: end
 _PI_Q13 = const(25736)
+_SLOWEST_US = const(100000)  # of a chip that is read more often than it measures
 _ONE_G_Q24 = const(0x1000000)
 _BAND_Q24 = const(0x300000)
 _HALF_Q24 = const(0x800000)
@@ -90,14 +91,15 @@ def clear(s: ptr32, c: ptr32):
 
 def update(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
     """Take the raw frame `x`, dt_us after the one before; return 1 where an interval ended."""
-    since_us = dt_us + s[_GRAVITY_LATE_US]
+    since_us = s[_GRAVITY_LATE_US]
     s[_GRAVITY_LATE_US] = 0
-    if since_us <= 0 or since_us > c[_GRAVITY_GAP_US]:
+    if dt_us <= 0 or dt_us > c[_GRAVITY_GAP_US] or since_us > _SLOWEST_US:
         s[_UNIT_ELAPSED_US] = 0
         s[_LAST_GOOD] = 0
         s[_GRAVITY_REASON] = _GRAVITY_GAP
         begin_unit(s)
         return 0
+    since_us += dt_us
     gather(s, x, (since_us * c[_GRAVITY_GAIN]) >> c[_GRAVITY_GAIN_SHIFT], c[_GRAVITY_SHIFT])
     s[_UNIT_ELAPSED_US] += since_us
     s[_UNIT_N] += 1

@@ -24,7 +24,10 @@ _PUSH_Q2 = const(11)
 _GRAVITY_SETTINGS_WORDS = const(12)
 # layout: end
 _SHORT_GAP_US = 20000  # a hand turns by less than a tenth of a radian meanwhile
-_LONG_GAP_US = 500000  # its product with the gain fits 31 bits
+# with what is passed over, _LATE_US at most, its product with the gain fits 31 bits
+_LONG_GAP_US = 400000
+_PASSED_OVER_US = 100000
+_MOST_TURN = 64  # of an LSB meanwhile, Q14 rad: a rate at the rail fits 31 bits
 # Of how far the deviations go, what a motion that pushes always the same way hides from their
 # signs: at most a tenth on simulated strides (docs/motion.md), of which one sigma is some half.
 PUSH = 16
@@ -55,13 +58,14 @@ def gravity_settings(
         threshold = 0 if document else 3
     if not accel_lsb_per_g:
         raise ValueError("learning by gravity needs an accelerometer")
-    if not odr_hz * sub_unit_s >= 2:
-        least_hz = 2 / sub_unit_s
+    rate, lsb, degree = Ratio(odr_hz), Ratio(gyro_lsb_per_dps), Ratio(*PI) / 180
+    per_lsb_us = degree / lsb * (1 << 14) / 1000000
+    most_us = (Ratio(_MOST_TURN) / per_lsb_us).floor() - _PASSED_OVER_US
+    least_hz = max(2 / sub_unit_s, 1500000 / most_us)
+    if not odr_hz >= least_hz:
         raise ValueError("learning by gravity needs %g Hz or more, not %g" % (least_hz, odr_hz))
     if not 0 <= threshold < units:
         raise ValueError("the threshold must be below the sub-units")
-    rate, lsb, degree = Ratio(odr_hz), Ratio(gyro_lsb_per_dps), Ratio(*PI) / 180
-    per_lsb_us = degree / lsb * (1 << 14) / 1000000
     a_sample = per_lsb_us / rate * 1000000
     shift = 15
     while (a_sample * (1 << shift)).floor() < 4096 and shift < 30:
@@ -83,7 +87,8 @@ def gravity_settings(
     c[_COARSE_Q8] = max(1, (q8 * coarse_dps).floor())
     c[_FINE_Q8] = max(1, (q8 * fine_dps).floor())
     c[_ONE_G_LSB] = Ratio(accel_lsb_per_g).floor()
-    c[_GRAVITY_GAP_US] = min(max((Ratio(3000000) / rate).floor(), _SHORT_GAP_US), _LONG_GAP_US)
+    gap_us = max((Ratio(3000000) / rate).floor(), _SHORT_GAP_US)
+    c[_GRAVITY_GAP_US] = min(gap_us, _LONG_GAP_US, most_us)
     push = q8 / degree / (2048 * PUSH) / sub_unit
     c[_PUSH_Q2] = 0 if document else max(1, push.floor())
     return array("i", c)

@@ -13,9 +13,7 @@ linear. Work is spread: a few nodes or pieces of algebra a sample. The state is 
 of 293 words and 3 a node; motion_settings.py makes the settings.
 """
 
-from ..arithmetic.fixed import clipped
 from ..arithmetic.real import copy, subtract, whole
-from .attitude import normalise, rotation, sines, turn
 from .increments import close, gather, restart
 from .least_squares import (
     follow_noise,
@@ -30,9 +28,9 @@ from .least_squares import (
 )
 from .motion_verdict import finish, know_nothing, note_slope, refuse, start_window, verdict
 from .posterior import know_prior, publish, shrink, weigh_prior
-from .regression import rows, weights
 from .thermal import carry, follow_temperature, learn_slope
-from .tilt_frame import begin_attitude, find_up, level, observe
+from .tilt_frame import find_up
+from .traversal import begin_traversal, visit
 
 # layout: names that a board's own compiler reads
 const = int
@@ -43,81 +41,59 @@ _STAGE = const(12)
 _JOB = const(13)
 _PASS = const(14)
 _PROGRESS = const(15)
-_FIRST_NODE = const(16)
 _MOTION_REASON = const(17)
-_HALF = const(18)
-_Q = const(24)
-_START = const(28)
-_R = const(32)
-_HALF_BEFORE = const(46)
-_Y = const(49)
-_BIAS_CARRY_Q24 = const(52)
-_TILT = const(55)
-_BIAS_Q24 = const(56)
-_OTHER_TILT = const(59)
-_UP = const(60)
-_TRAFFIC = const(62)
-_TILTED = const(63)
 _ACCEPTED = const(65)
-_WINDOW_ROWS = const(83)
-_KNOWN = const(150)
 _BIAS = const(251)
 _SLOPE = const(257)
 _T = const(263)
-_TURN_SUM = const(286)
-_TURN_MEAN = const(289)
 _LATE_US = const(292)
-_NODES_RING = const(293)
 # layout: The settings of the source in motion
 _VISITS = const(5)
 _MOTION_GAP_US = const(6)
-_NODES = const(8)
 _PASSES = const(9)
 _LONGEST = const(16)
 _MOTION_DOCUMENT = const(20)
 _SETTLED = const(22)
 # layout: What the source in motion is doing
 _IDLE = const(0)
-_TRAVERSE = const(1)
 _SOLVE = const(2)
 # layout: What a window in motion taught
 _GROWING = const(1)
 _LEARNED = const(2)
 _MOTION_GAP = const(7)
 # layout: end
-_MOST_BIAS_Q24 = const(0x7FFFFF)  # half a radian in a node, some 200 deg/s
-_MOST_HALF_Q14 = const(0x3FFF)
+_SLOWEST_US = const(100000)  # of a chip that is read more often than it measures
 _NODES_A_PIECE = const(4)  # of algebra, by what they cost
 _ROWS_A_WINDOW = const(5)
 _ROW_PIECES = const(15)
-_SETTLED_AFTER = const(8)
 _SHRUNK = const(24)  # six rounds: where one sigma is a fifth of the bias, less stop halfway
 
 
 def update(s: ptr32, c: ptr32, x: ptr32, dt_us: int) -> int:
     """Take the raw frame `x`, dt_us after the one before; return 1 where a bias was learned."""
-    since_us = dt_us + s[_LATE_US]
+    late_us = s[_LATE_US]
     s[_LATE_US] = 0
-    if since_us <= 0 or since_us > c[_MOTION_GAP_US]:
+    if dt_us <= 0 or dt_us > c[_MOTION_GAP_US] or late_us > _SLOWEST_US:
         restart(s)
         s[_JOB] = _IDLE
         s[_MOTION_REASON] = _MOTION_GAP
         return 0
-    if gather(s, c, x, since_us):
+    if gather(s, c, x, dt_us + late_us):
         follow_temperature(s, x[3])
         close(s, c)
     if s[_JOB] == _IDLE:
         if start_window(s, c):
             begin_traversal(s, c)
         return 0
-    return work(s, c)
+    # frames that were passed over have their share of the work
+    return work(s, c, c[_VISITS] + (c[_VISITS] * late_us // dt_us if late_us else 0))
 
 
-def work(s: ptr32, c: ptr32) -> int:
-    """Do the next nodes of a traversal, or the next pieces of algebra; return 1 as `update`."""
+def work(s: ptr32, c: ptr32, nodes: int) -> int:
+    """Do the next nodes of a traversal, or pieces of algebra; return 1 as `update`."""
     # At a low rate one piece a sample would take until new nodes overwrite what is yet to be read.
     learned = 0
-    i = c[_VISITS]
+    i = nodes
     while i > 0 and s[_JOB] != _IDLE:
         if s[_JOB] == _SOLVE:
             learned = solve(s, c)
@@ -126,99 +102,6 @@ def work(s: ptr32, c: ptr32) -> int:
             visit(s, c)
             i -= 1
     return learned
-
-
-def begin_traversal(s: ptr32, c: ptr32):
-    """Begin at the window's first node with the bias of this pass removed."""
-    # While little is known a steady turn may be a bias, so motion is what is beside it.
-    beside = 1 if s[_PASS] & 1 and s[_ACCEPTED] < _SETTLED_AFTER else 0
-    if c[_MOTION_DOCUMENT]:
-        beside = 0
-    elif s[_PASS] & 1 == 0:
-        begin_levelling(s)
-    for i in range(_KNOWN - _WINDOW_ROWS):
-        s[_WINDOW_ROWS + i] = 0
-    for i in range(3):
-        s[_TURN_MEAN + i] = s[_TURN_SUM + i] >> s[_STAGE] if beside else 0
-        s[_TURN_SUM + i] = 0
-        s[_HALF_BEFORE + i] = 0
-        s[_BIAS_Q24 + i] = clipped(whole(s, _BIAS + 2 * i, 0), _MOST_BIAS_Q24)
-        s[_BIAS_CARRY_Q24 + i] = 0
-    s[_UP] = 0
-    s[_TRAFFIC] = 0
-    s[_TILTED] = 0
-    s[_PROGRESS] = 0
-    s[_JOB] = _TRAVERSE
-    begin_attitude(s)
-
-
-def begin_levelling(s: ptr32):
-    """Find first where the mean force is up, in the attitude of the first node."""
-    s[_START] = 0x4000
-    for i in range(1, 4):
-        s[_START + i] = 0
-    s[_TILT] = 0
-    s[_OTHER_TILT] = 0
-
-
-def visit(s: ptr32, c: ptr32):
-    """Integrate over one node and add it to the sums."""
-    a = s[_FIRST_NODE] + s[_PROGRESS]
-    if a >= c[_NODES]:
-        a -= c[_NODES]
-    a = _NODES_RING + 3 * a
-    rotation(s)
-    remove_bias(s, a)
-    if c[_MOTION_DOCUMENT]:
-        observe_vector(s)
-    elif s[_PASS] & 1:
-        observe(s, a)
-    else:
-        level(s, a)
-    if s[_PASS] & 1 or c[_MOTION_DOCUMENT]:
-        weights(s, s[_PROGRESS], s[_STAGE], c[_MOTION_DOCUMENT])
-        rows(s)
-    a = tilting(s, 0)
-    a += tilting(s, 3)
-    s[_TILTED] += a
-    sines(s)
-    turn(s)
-    normalise(s)
-    s[_PROGRESS] += 1
-    if s[_PROGRESS] >= s[_LENGTH]:
-        s[_PROGRESS] = 0
-        s[_JOB] = _SOLVE
-
-
-def observe_vector(s: ptr32):
-    """Take the rotation vector from the start, Q12 rad."""
-    for i in range(3):
-        s[_Y + i] = s[_Q + 1 + i] >> 15
-        if s[_Q] < 0:
-            s[_Y + i] = -s[_Y + i]
-
-
-def remove_bias(s: ptr32, a: int):
-    """Take the bias from the node's increment and write its half angles, Q14 rad."""
-    # What the bias has below a unit is carried from node to node.
-    for i in range(3):
-        s[_BIAS_CARRY_Q24 + i] += s[_BIAS_Q24 + i]
-        part = (s[_BIAS_CARRY_Q24 + i] + 0x400) >> 11
-        s[_BIAS_CARRY_Q24 + i] -= part << 11
-        part = clipped((s[a + i] >> 15) - part, _MOST_HALF_Q14)
-        s[_HALF + i] = part
-        part -= s[_TURN_MEAN + i]
-        s[_TURN_SUM + i] += part
-        s[_TRAFFIC] += part if part > 0 else 0 - part
-
-
-def tilting(s: ptr32, row: int) -> int:
-    """Return how far the node turned about a level axis, half angle, Q14 rad: gravity shows it."""
-    part = 0x2000
-    for i in range(3):
-        part += s[_R + row + i] * (s[_HALF + i] - s[_TURN_MEAN + i])
-    part = part >> 14
-    return part if part > 0 else 0 - part
 
 
 def solve(s: ptr32, c: ptr32) -> int:

@@ -63,6 +63,14 @@ def turn_again(s: ptr32, j: int, k: int):
     s[_FRAME_FORCE_Q12 + 3 - j - k] += (part + 0x2000) >> 14
 
 
+def turn_q24(value: int, shift: int) -> int:
+    """Return value / 2^shift, rounded: rad Q24, half a radian and one at most where it grows."""
+    if shift > 0:
+        return ((value >> (shift - 1)) + 1) >> 1
+    # a rate of a few LSB, over a long time
+    return clipped(value, (_HALF_RAD_Q24 >> (0 - shift)) + 1) << (0 - shift)
+
+
 def convert_turns(s: ptr32, c: ptr32, x: ptr32, factor: int):
     """Write the frame's turns, Q24 rad, to scratch words."""
     shift = c[_MOTION_SHIFT]
@@ -72,7 +80,7 @@ def convert_turns(s: ptr32, c: ptr32, x: ptr32, factor: int):
         shift -= 1
     i = 0
     while i < 3:
-        value = ((x[4 + i] * factor >> (shift - 1)) + 1) >> 1
+        value = turn_q24(x[4 + i] * factor, shift)
         s[_FRAME_ANGLE_Q24 + i] = clipped(value, _HALF_RAD_Q24)
         if s[_FRAME_ANGLE_Q24 + i] != value:
             s[_FAST] = c[_NODES]

@@ -83,7 +83,7 @@ def motion_settings(
     bend_degc=256.0,
     push_g=0.05,
     heading_spread=11,
-    matrix_error=0.003,
+    matrix_error=0.01,
     usual_dps=0.5,
     least_dps=5.0,
     least_tilt_dps=0.3,

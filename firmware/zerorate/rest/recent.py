@@ -169,7 +169,7 @@ def may_turn(s: ptr32, c: ptr32) -> int:
         off = off * up(s, i)
         turn += off
         i += 1
-    turn = turn // g
+    turn = clipped(turn // g, 0x6FFF)  # gravity of a few LSB is rounded down to less
     aside -= turn * turn
     off = turn if turn > 0 else 0 - turn
     s[_GROWN_Q8] = turn if off > c[_GATE_Q4] >> 3 else 0

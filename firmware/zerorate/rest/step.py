@@ -368,6 +368,14 @@ def readings_worth(c: ptr32, sigma: int) -> int:
     return n if n < 256 else 256
 
 
+def sum_readings(s: ptr32, a: int):
+    """Turn the bias that waits, LSB Q4, into the sum of so many readings, LSB."""
+    # in two parts: the whole product would not fit
+    bias_q4 = s[a + _WAITING_SUM]
+    n = s[a + _WAITING_N]
+    s[a + _WAITING_SUM] = (bias_q4 >> 4) * n + ((bias_q4 & 15) * n >> 4)
+
+
 def offer(s: ptr32, c: ptr32, m: ptr32, w: int, axis: int):
     """Let an axis absorb and learn the bias that another source found: LSB Q8 at m[w+axis]."""
     # Its one sigma stands three words on. It weighs as many still readings as its quality is worth.
@@ -377,8 +385,8 @@ def offer(s: ptr32, c: ptr32, m: ptr32, w: int, axis: int):
         return
     s[a + _WAITING_N] = readings_worth(c, sigma)
     if s[a + _WAITING_N]:
-        # the bias, LSB Q4, as often as it counts
-        s[a + _WAITING_SUM] = (m[w + axis] >> 4) * s[a + _WAITING_N] >> 4
+        s[a + _WAITING_SUM] = m[w + axis] >> 4
+        sum_readings(s, a)
         s[a + _OFFER] = (((sigma * sigma) >> 4) << 3) + s[_OFFERED_SOURCE]
 
 

@@ -1,12 +1,13 @@
 """Learned state kept over a power cut: two slots, the newest whole one counts.
 
 A record is  "ZRS" format version size sequence binding payload crc32  with little-endian numbers
-(1, 1, 2, 4, 8 bytes) and CRC-32 of all before it; size is that of payload and what goes with it. A
+(1, 2, 2, 4, 8 bytes) and CRC-32 of all before it; size is that of payload and what goes with it. A
 save writes the slot that does not hold the
 newest whole record, so until the last byte stands the one before it is whole.
 """
 
 import gc
+from array import array
 from sys import byteorder, implementation
 
 from .crc32 import checksum
@@ -237,13 +238,14 @@ def packed(payload, size):
     """What has the bytes of payload, words little-endian whatever the machine."""
     if len(payload) == size or byteorder == "little":
         return payload
-    record = bytearray(size)
-    at = 0
-    for word in payload:
-        for shift in (0, 8, 16, 24):
-            record[at] = word >> shift & 0xFF
-            at += 1
-    return record
+    return swapped(payload)
+
+
+def swapped(words):
+    """A copy of words with their bytes the other way round, which no board needs."""
+    words = array("i", words)
+    words.byteswap()
+    return words
 
 
 def unpack(part, at, payload, size):
@@ -251,11 +253,12 @@ def unpack(part, at, payload, size):
 
     size: payload's bytes; its words, if it is of such, are little-endian.
     """
-    step = 1 if len(payload) == size else 4
-    for i in range(max(0, -at), min(len(part), size - at), step):
-        if step == 1:
-            payload[at + i] = part[i]
-        else:
-            top = part[i + 3]
-            word = part[i] | part[i + 1] << 8 | part[i + 2] << 16
-            payload[(at + i) // 4] = word | (top - ((top & 0x80) << 1)) << 24
+    part = part[max(0, -at) : size - at] if at < size else b""
+    at = max(0, at)
+    if len(payload) == size:
+        payload[at : at + len(part)] = part
+        return
+    words = array("i", bytes(part))
+    if byteorder != "little":
+        words = swapped(words)
+    payload[at // 4 : at // 4 + len(words)] = words

@@ -12,8 +12,8 @@ import tempfile
 from pathlib import Path
 
 from zerorate_tools.errors import MissingRuntime
-from zerorate_tools.runtimes import debian
-from zerorate_tools.runtimes.cache import fill, runtime_folder
+from zerorate_tools.runtimes import unix_port
+from zerorate_tools.runtimes.runtime import fill, runtime_folder
 
 NAME = "linux-bus-debian13"
 _PACKAGES = ("qemu-system-x86", "busybox-static", "linux-image-amd64")
@@ -39,7 +39,8 @@ def boot(command: str, seconds: int) -> str:
     root = folder()
     if not root.is_dir():
         raise MissingRuntime(
-            "the emulated Linux bus is not there: python -m host_tests.drivers.linux_bus fetches it"
+            "the emulated Linux bus is not there: "
+            "python -m host_tests.drivers.linux_bus.run fetches it"
         )
     with tempfile.TemporaryDirectory(prefix="zerorate-boot-") as scratch:
         initramfs = Path(scratch) / "initramfs.cpio"
@@ -51,21 +52,21 @@ def boot(command: str, seconds: int) -> str:
 
 
 def _build(target: Path) -> None:
-    if debian.host_architecture() != "amd64":
+    if unix_port.host_architecture() != "amd64":
         raise MissingRuntime("the emulated Linux bus needs an x86-64 machine")
     with tempfile.TemporaryDirectory(prefix="zerorate-debs-") as scratch:
         for deb in _debs(Path(scratch)):
             kernel = deb.name.startswith("linux-image")
-            debian.unpack(deb, Path(scratch, "kernel") if kernel else target)
+            unix_port.unpack(deb, Path(scratch, "kernel") if kernel else target)
         _keep_kernel(Path(scratch, "kernel"), target)
 
 
 def _debs(folder: Path) -> list[Path]:
     """The packages and all they depend on, as for a machine that has none installed yet."""
-    options = debian._second_configuration(folder, "amd64")
-    debian._apt([*options, "update"])
+    options = unix_port._second_configuration(folder, "amd64")
+    unix_port._apt([*options, "update"])
     wanted = ["install", "--yes", "--download-only", "--no-install-recommends", *_PACKAGES]
-    debian._apt([*options, *wanted])
+    unix_port._apt([*options, *wanted])
     return sorted(folder.glob("cache/archives/*.deb"))
 
 

@@ -1,4 +1,7 @@
-"""The driver, the recorder and the corrector on a real Linux kernel's I2C bus, emulated."""
+"""The driver, the recorder and the corrector on a real Linux kernel's I2C bus, emulated.
+
+python -m host_tests.drivers.linux_bus.run: fetch the machine, run on it, print what it found.
+"""
 
 import io
 import json
@@ -71,3 +74,8 @@ def _compared(played: np.ndarray, said: str, text: str) -> dict:
         "out_of_order": int((steps <= 0).sum()),
         "really_lost": int((steps - 1).sum()),
     }
+
+
+if __name__ == "__main__":
+    machine.fetch()
+    print(json.dumps(run_guest(), indent=2))

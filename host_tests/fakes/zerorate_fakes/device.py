@@ -4,8 +4,7 @@ Left out: the auxiliary I2C master, motion detection and the DMP; their register
 memory, only keep values.
 """
 
-from .fifo import Fifo
-from .registers import PARTS, READ, WRITE, access_of
+from .registers import PARTS, READ, WRITE, Fifo, access_of
 from .source import Physical, samples_of
 
 TYPE_CHECKING = False

@@ -1,8 +1,4 @@
-"""Register maps of the family: which of the 256 addresses are documented, and their reset values.
-
-Sources: RM-MPU-6000A-00 rev 4.2 section 3; RM-MPU-6500A-00 rev 2.1 section 3; DS-000176
-(ICM-20602) section 10. Whether an ICM part other than ICM-20602 wakes asleep has no second source.
-"""
+"""Registers of the parts, and their FIFO."""
 
 READ = 1
 WRITE = 2
@@ -74,3 +70,39 @@ def access_of(ranges: "tuple[tuple[int, int, int], ...]") -> bytearray:
         for register in range(first, last + 1):
             access[register] = kinds
     return access
+
+
+class Fifo:
+    """size bytes; keep_oldest is FIFO_MODE of the 6500 and later: full, it takes no more."""
+
+    def __init__(self, size: int) -> None:
+        self.size = size
+        self.keep_oldest = False
+        self.overflowed = False
+        self._ring = bytearray(size)
+        self.clear()
+
+    def clear(self) -> None:
+        """Empty, as FIFO_RESET does."""
+        self._first = 0
+        self.count = 0
+        self._last_read = 0xFF
+
+    def put(self, byte: int) -> None:
+        """Append a byte; when full the oldest goes, or with keep_oldest the new one."""
+        if self.count == self.size:
+            self.overflowed = True
+            if self.keep_oldest:
+                return
+            self._first = (self._first + 1) % self.size
+            self.count -= 1
+        self._ring[(self._first + self.count) % self.size] = byte
+        self.count += 1
+
+    def get(self) -> int:
+        """Take the oldest byte; empty, the last one again."""
+        if self.count:
+            self._last_read = self._ring[self._first]
+            self._first = (self._first + 1) % self.size
+            self.count -= 1
+        return self._last_read

@@ -29,10 +29,10 @@ import numpy as np
 from numpy.typing import NDArray
 from zerorate import Corrector, Sensor
 from zerorate.bursts import Bursts
-from zerorate_tools.boards.connection import connected, told
+from zerorate_tools.boards.connection import connected, output_of
 from zerorate_tools.errors import MissingRuntime
-from zerorate_tools.runtimes.cache import runtime_folder
 from zerorate_tools.runtimes.node import install, locked_version, node_command
+from zerorate_tools.runtimes.runtime import runtime_folder
 
 from ..workload import REST
 
@@ -241,7 +241,7 @@ def on_pico(pico: EmulatedPico, play: Play) -> Played:
     call = f"run({p.options!r}, {p.sensor!r}, {len(p.rows)}, {p.at_once}, {p.model!r})\n"
     text = files(__package__).joinpath("on_pico.py").read_text(encoding="utf-8")
     with connected(pico.port) as board:
-        told(board, text + call, patience_s=_PATIENCE_S)
+        output_of(board, text + call, patience_s=_PATIENCE_S)
     spans = pico.ask("spans")
     own = min(spans[:_MARKS])
     return Played(pico.taken(), tuple(span - own for span in spans[_MARKS:]))

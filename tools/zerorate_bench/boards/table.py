@@ -12,11 +12,10 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from zerorate_tools.boards import needs as kept_needs
+from zerorate_tools.boards import parts
 from zerorate_tools.boards.compiling import board_files, mpy_version
 from zerorate_tools.boards.connection import BoardFacts
-from zerorate_tools.boards.needs import BOTH, heap_needed, needs
-from zerorate_tools.boards.parts import REST
+from zerorate_tools.boards.parts import BOTH, REST, heap_needed, needs
 
 from ..native.native_cost import code_bytes
 from ..tables import table
@@ -56,18 +55,18 @@ boards`). So is every board's flash: what `zerorate flash` sends for learning at
 
 - Free heap is what makers and users report.
 - Heap needed is the Pico's, with RV32's larger code.
-- A sample's time is the Pico's cycles by the board's clock. Another core needs fewer cycles. RV32
-  is taken to be as fast as a Cortex-M0+.
+- The time of a sample is the Pico's cycle count divided by the board's clock rate. Other Cortex-M
+  cores need fewer cycles. RV32 is assumed to be as fast as a Cortex-M0+.
 
-No board was at hand.
+No real board was tested.
 
 Code for RV32 is compiled for speed: a sample takes no more instructions than with C -O2. So an
 ESP32-C3 needs {rest_more:,} bytes more of heap and flash than a Pico at rest. With motion and
 gravity it needs {both_more:,} bytes more.
 
-A program's own needs come on top of the heap: some 16 KB with a store and a FIFO. `zerorate flash`
-sends machine code to every Cortex-M and to RISC-V. On other boards the same kernels run as
-bytecode, and so they do where `mip` installed the sources.
+Your program needs heap of its own, about 16 KB with a store and a FIFO. `zerorate flash` sends
+machine code to every Cortex-M and to RISC-V. On other boards, and after an installation by `mip`,
+the same kernels run as bytecode.
 """
 _FOOT = """
 Cycles a sample on the emulated Pico, with the recording of the bench:
@@ -79,8 +78,9 @@ Cycles a sample on the emulated Pico, with the recording of the bench:
 | `Bursts.update`, 64 at once: mean | {burst:,.0f} | |
 | as bytecode | some {bytecode:,.0f} | |
 
-A build can hold what fits no heap. In MicroPython's `ports/rp2` run `make FROZEN_MANIFEST=FILE`.
-FILE includes the board's own manifest and this project's `manifest.py`. The image takes 129 KB
+If the heap is too small, freeze the packages into the firmware image: in MicroPython's `ports/rp2`
+run `make FROZEN_MANIFEST=FILE`. FILE includes the board's own manifest and this project's
+`manifest.py`. The image takes 129 KB
 more of flash; all sources together take 9 KB of heap. On the emulated Pico it gave the same
 numbers in every mode, to the last bit. `zerorate bench boards` compares it if it is
 `firmware/FROZEN-1.28.0.bin` in the folder that ZERORATE_BOARDS names.
@@ -88,12 +88,11 @@ numbers in every mode, to the last bit. `zerorate bench boards` compares it if i
 ## The heap of the second program
 
 The second program of [pico.md](pico.md) runs in {least_heap:,} bytes of heap; the bench's limit is
-49,152 bytes. A file is open while it saves, and a record is read at power-on in pieces of 64
-bytes: both take heap for a while. There are gaps between what stays. MicroPython keeps a name
-for good. So `zerorate flash` sends private names as `_a`, `_b`, the same few in every file, and
-another module's constants as numbers. The machine code is compiled for size, except for what
-every sample runs through. The checkpoint makes a brown-out of the chip harmless. Frozen into a
-build, all bytecode and most names leave the heap.
+49,152 bytes. Saving opens a file, and power-on reads a record in pieces of 64 bytes. Both take
+heap for a short time and leave gaps. MicroPython never frees a name. So `zerorate flash` sends
+private names as `_a`, `_b`, the same few in every file, and another module's constants as numbers.
+The machine code is compiled for size, except for what every sample runs through. The checkpoint
+makes a brown-out of the chip harmless. In a frozen image, bytecode and most names take no heap.
 """
 
 
@@ -170,7 +169,7 @@ def main(figures: Path | None) -> None:
     if figures is not None:
         found = needs_of(json.loads(figures.read_text(encoding="utf-8")))
         text = json.dumps(found, indent=2) + "\n"
-        Path(kept_needs.__file__).with_name("needs.json").write_text(text, encoding="utf-8")
+        Path(parts.__file__).with_name("needs.json").write_text(text, encoding="utf-8")
     print(page(), end="")
 
 

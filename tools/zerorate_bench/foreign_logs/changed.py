@@ -190,3 +190,40 @@ def quoted_times(folder: Path, world: World) -> Path:
 def quoted_clock(folder: Path, world: World) -> Path:
     said = (_START + pd.to_timedelta(world.t_s, unit="s")).strftime("%H:%M:%S,%f").str[:-3]
     return text(folder / "in.csv", _with_time("time", said, world))
+
+
+def _on_lines(folder: Path, world: World, hz: float) -> Path:
+    """The log on an even grid, as pandas' resample and interpolate make it."""
+    frame = _plain(world)
+    at = np.arange(0.0, world.t_s[-1], 1.0 / hz)
+    columns = {name: np.interp(at, world.t_s, values) for name, values in frame.items()}
+    return text(folder / "in.csv", pd.DataFrame(columns))
+
+
+@log("resampled from 100 to 400 Hz, on lines between the samples")
+def upsampled(folder: Path, world: World) -> Path:
+    return _on_lines(folder, world, 400.0)
+
+
+@log("resampled from 100 to 333 Hz, on lines between the samples")
+def resampled(folder: Path, world: World) -> Path:
+    return _on_lines(folder, world, 333.0)
+
+
+@log("seven seconds filled with a line", least=0.7, most=0.77)
+def filled(folder: Path, world: World) -> Path:
+    path = _with_hole(folder, world, [*_SIX, "temp_c"])
+    return text(path, pd.read_csv(path).interpolate())
+
+
+@log("OpenCamera Sensors: three rates and nanoseconds, no names")
+def rates_before_times(folder: Path, world: World) -> Path:
+    at_ns = (1e14 + world.t_s * 1e9).astype(np.int64)
+    frame = table("gx,gy,gz,t", world.rad, at_ns)
+    return text(folder / "VID_1gyro.csv", frame, header=False)
+
+
+@log("a fibre gyroscope's deg/h")
+def per_hour(folder: Path, world: World) -> Path:
+    names = ["time [s]", "wx [deg/hr]", "wy [deg/hr]", "wz [deg/hr]"]
+    return text(folder / "in.csv", table(names, world.t_s, 3600 * world.dps))

@@ -5,7 +5,7 @@ it with play. So the bias changes abruptly at every corner of the temperature. N
 """
 
 import numpy as np
-from zerorate_tools.loop.read.dequantise import dequantise
+from zerorate_tools.loop.read.blocks import dequantise
 from zerorate_tools.loop.read.sessions import Session
 from zerorate_tools.model.term import first_order_lag, play
 

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass
 from functools import partial
+from itertools import pairwise
 from typing import TypeVar
 
 import numpy as np
@@ -30,6 +31,8 @@ from .files import ROWS
 from .run_trial import Outcome
 
 Looked = TypeVar("Looked")
+#: Ends of the probabilities that are counted together.
+_TOLD = (0.05, 0.35, 0.65, 1.0)
 
 
 @dataclass(frozen=True)
@@ -90,6 +93,7 @@ def figures(outcomes: list[Outcome], whole: bool = True) -> list[Figure]:
         *_corners(rows.get(CORNERS, [])),
         *_unrecorded(rows),
         *_removed(rows),
+        *_told(rows),
         *_pairs(rows.get(TWO, [])),
         *_many_widths(rows),
         *_from_files(rows),
@@ -144,6 +148,28 @@ def _catalogue(rows):
 
 def _named(o: Outcome) -> bool:
     return all(o.named(e) for e, _ in o.device.effects)
+
+
+def _told(rows):
+    """Groups by the chance that they were told with: how many are right, and how far that is from
+    what was told."""
+    names = {*CATALOGUE, KINK}
+    some = [o for row in (*(f"{size:g}x" for size in SIZES), TWO) for o in rows.get(row, [])]
+    each = [
+        (p, any(effect in group.split("+") for effect, _ in o.device.effects))
+        for o in some
+        if names.issuperset(effect for effect, _ in o.device.effects)
+        for groups in o.told
+        for group, p in groups.items()
+    ]
+    for low, high in pairwise(_TOLD):
+        own = [pair for pair in each if low < pair[0] <= high]
+        if own:
+            name = f"groups told with a probability of {low:g} to {high:g}"
+            right = share(f"{name}: right", own, lambda pair: pair[1], None)
+            off = abs(right.value - 100 * float(np.mean([p for p, _ in own])))
+            yield right
+            yield Figure(f"{name}: off", off, 10.0, True, len(own), unit="points")
 
 
 def _outside(group):

@@ -183,13 +183,14 @@ def _in_motion_mdps(analysis, path: Path, truth) -> float:
 def _written(device: Device, folder: Path) -> Iterator[tuple[Path, Any]]:
     """(file, truth) of every session."""
     from zerorate_tools.recordings import write_recording
+    from zerorate_tools.recordings.recording import ATTITUDE
     from zerorate_tools.simulate import simulate_sessions
 
     made = simulate_sessions(description(device.row), seed=device.seed)
     for i, (recording, truth) in enumerate(made):
         columns = dict(recording.columns)
         if ROWS[device.row][2]:
-            for name, q in zip(("qw", "qx", "qy", "qz"), truth.attitude.T):
+            for name, q in zip(ATTITUDE, truth.attitude.T):
                 columns[name] = np.rint(q * 2**29).astype(np.int32)
         path = folder / f"session-{i + 1}.parquet"
         write_recording(replace(recording, columns=columns), path)

@@ -6,7 +6,7 @@ import numpy as np
 
 from .added_effects import CURVE_OF
 from .devices import CORNERS, CURVE, TOLD, Device
-from .quiet import cut_into_sessions
+from .simulated import cut_into_sessions
 
 
 @dataclass
@@ -14,7 +14,8 @@ class Outcome:
     """What the loop said of a device. before, after: held-out RMS over that of the noise alone;
     unpruned: after, had the held-out session taken nothing out again; withdrawn: what it took;
     in_motion_mdps: error while it moves, of devices whose row asks for it; within: whether what an
-    effect follows stays, in the held-out session, within what the others show of it."""
+    effect follows stays, in the held-out session, within what the others show of it; told: of each
+    effect found, the chance of each group that it may be."""
 
     device: Device
     found: list[str] = field(default_factory=list)
@@ -30,6 +31,7 @@ class Outcome:
     unpruned: float = 1.0
     withdrawn: list[str] = field(default_factory=list)
     within: bool = True
+    told: list[dict[str, float]] = field(default_factory=list)
 
     def named(self, effect: str) -> bool:
         """Whether an effect is among the named, or among what is confounded with one of them."""
@@ -161,6 +163,7 @@ def judged(device: Device, sessions: list, noise_dps: np.ndarray) -> Outcome:
         unpruned=_rms(unpruned) / unit,
         withdrawn=[name for name, _ in selection.withdrawn],
         within=device.row != CURVE or _is_within(sessions, CURVE_OF),
+        told=[f.probabilities for f in found],
     )
 
 

@@ -14,8 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import chi2, ncx2
 
-from ..outcomes import outcomes
-from ..tables import machine_line
+from ..tables import machine_line, outcomes
 from .devices import KINDS, describe
 from .figures import Figure, share
 from .trials import figure_table
@@ -60,7 +59,7 @@ def look_at_single(seed: int) -> Single:
     """Simulate a device, close its recordings, and judge by the truth."""
     from zerorate_tools.closing import load
     from zerorate_tools.loop.report.report import report
-    from zerorate_tools.loop.verify.measure import measure_and_prune
+    from zerorate_tools.loop.verify.run_kernels import run_and_prune
     from zerorate_tools.recordings import write_recording
     from zerorate_tools.simulate import simulate_sessions
 
@@ -71,7 +70,7 @@ def look_at_single(seed: int) -> Single:
         for log, (recording, _) in zip(logs, made):
             write_recording(recording, log)
         corrected = Path(folder) / "corrected.parquet"
-        analysis, model = measure_and_prune(load([*logs]), logs, corrected)
+        analysis, model = run_and_prune(load([*logs]), logs, corrected)
         said = report(analysis)
         errors = _held_out(corrected, logs, made, described)
         errors["a further power-on"] = _further(model, logs, further)

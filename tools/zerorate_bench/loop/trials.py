@@ -1,27 +1,155 @@
-"""The whole benchmark of the loop, which can be broken off and taken up again."""
+"""The whole benchmark of the loop, which can be broken off and taken up again, with its size."""
 
+import json
 import os
+import resource
+import subprocess
+import sys
 import tempfile
+import time
 from collections.abc import Callable, Iterator
+from itertools import product
 from os import PathLike
 from pathlib import Path
 
-from ..outcomes import outcomes
+import numpy as np
+from zerorate_tools.loop.read.still import still_ticks
+from zerorate_tools.loop.read.ticks import read_ticks
+from zerorate_tools.recordings import Recording, Scales, write_recording
+
 from ..public_data import data_folder
-from ..tables import machine, machine_line, table
+from ..tables import machine, machine_line, outcomes, table
 from .devices import Device, devices
 from .figures import Figure, figures
 from .files import ROWS, file_devices, look_at_files
-from .quiet import FOLDER, write_blocks
-from .rests import rest_figures
 from .run_trial import Outcome, run_trial
-from .size import figures_of, measured
+from .simulated import FOLDER, write_blocks
+
+SESSIONS, HOURS, HZ = 4, 8, 100.0
+MOST_S, MOST_GB = 60.0, 2.0
+_DEVICE = {
+    "sessions": SESSIONS,
+    "sensor": {"odr_hz": HZ},
+    "bias": {"b0": [1.2, -0.8, 0.4], "b1": [0.02, -0.015, 0.01], "turn_on_dps": 0.02},
+    "noise": {"bias_instability_dps": 0.002, "random_walk_dps": 0.00005},
+    "every_session": {
+        "start_degc": 22.0,
+        "temperature": [{"cycle": 12.0, "period_minutes": 95.0, "hours": HOURS}],
+        "vary_time": 0.02,
+    },
+    "effect": [{"kind": "sensor-lag", "tau_s": 120.0, "rms_dps": 0.01}],
+}
+RATES_HZ = (1 / 15, 1.0, 2.0, 4.0, 5.0, 10.0)
+NOISES_DPS = (0.05, 0.35, 1.0)
+_LONG_S, _TURN_S, _TURN_DPS = 9000.0, (4000.0, 4300.0), 3.0
+#: Around the ends of a turn, seconds: not counted either way.
+_ENDS_S, _LEAST_SHARE = 20.0, 95.0
+_BESIDE_S = 500.0
+
+
+def write_device(folder: Path) -> list[Path]:
+    """The device's recordings, a session a file."""
+    from zerorate_tools.simulate import simulate_to_files
+
+    return simulate_to_files(_DEVICE, folder / "large.parquet")
+
+
+def measured() -> dict:
+    """Seconds by the clock and of the processor, GB at the most, of `zerorate close`."""
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = Path(scratch)
+        # in a process of its own, whose memory is not counted
+        writes = f"from {__name__} import write_device; from pathlib import Path; "
+        writes += f"write_device(Path({scratch!r}))"
+        subprocess.run([sys.executable, "-c", writes], check=True)
+        logs = sorted(str(p) for p in folder.glob("large-*.parquet"))
+        close = ["close", *logs, "--out", str(folder / "out")]
+        return _run([sys.executable, "-m", "zerorate_tools.cli", *close], folder / "out")
+
+
+def _run(command: list[str], out: Path) -> dict:
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    began = time.monotonic()
+    done = subprocess.run(command, capture_output=True, check=False)
+    seconds = time.monotonic() - began
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    if done.returncode:
+        raise RuntimeError(done.stderr.decode(errors="replace")[-2000:])
+    report = json.loads((out / "report.json").read_text(encoding="utf-8"))
+    return {
+        "seconds": seconds,
+        "cpu_s": after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime,
+        # the largest child so far: writing the recordings may be it, which is then said too high
+        "most_gb": after.ru_maxrss / 1e6,
+        "found": [effect["effect"] for effect in report["effects"]],
+    }
+
+
+def figures_of(size: dict) -> list[Figure]:
+    """Time and memory beside their limits."""
+    name = f"{SESSIONS} sessions of {HOURS} h at {HZ:g} Hz: "
+    return [
+        Figure(name + "seconds by the clock", size["seconds"], MOST_S, True, 1, unit="s"),
+        Figure(name + "seconds of processor", size["cpu_s"], None, True, 1, unit="s"),
+        Figure(name + "memory", size["most_gb"], MOST_GB, True, 1, unit="GB"),
+    ]
+
+
+def resting(
+    folder: Path, odr_hz: float, noise_dps: float, accel: bool, turn_dps: float = 0.0, seed: int = 7
+) -> tuple[np.ndarray, np.ndarray]:
+    """(m,) what counts as rest, and (m,) seconds, of two and a half hours with white noise.
+
+    turn_dps: about every axis, for five of the minutes.
+    """
+    rng = np.random.default_rng(seed)
+    at_s = np.arange(0, _LONG_S, 1 / odr_hz)
+    turning = (at_s >= _TURN_S[0]) & (at_s < _TURN_S[1])
+    columns = {"t_us": np.rint(at_s * 1e6).astype(np.int64)}
+    for name in ("gx", "gy", "gz"):
+        rate = 1.3 + turn_dps * turning + rng.normal(0, noise_dps, len(at_s))
+        columns[name] = np.round(rate * 131).astype(np.int32)
+    for name, g in (("ax", 0.0), ("ay", 0.0), ("az", 1.0)) if accel else ():
+        force = g + rng.normal(0, 0.004, len(at_s))
+        columns[name] = np.round(force * 16384).astype(np.int32)
+    scales = Scales("MPU-6050", odr_hz, 131.0, 16384.0 if accel else None)
+    path = folder / "rest.parquet"
+    write_recording(Recording(columns, scales, "rest"), path)
+    ticks = read_ticks(path)
+    return still_ticks(ticks), np.arange(len(ticks.count)) * ticks.tick_s
+
+
+def share_used(folder: Path, odr_hz: float, noise_dps: float, accel: bool) -> float:
+    """Percent of a rest that is used."""
+    return 100.0 * float(resting(folder, odr_hz, noise_dps, accel)[0].mean())
+
+
+def shares_with_turn(folder: Path, odr_hz: float, noise_dps: float) -> tuple[float, float]:
+    """Percent of a turn that is taken for rest, and of the rest beside it that is used."""
+    still, at_s = resting(folder, odr_hz, noise_dps, False, _TURN_DPS)
+    inside = (at_s >= _TURN_S[0] + _ENDS_S) & (at_s < _TURN_S[1] - _ENDS_S)
+    beside = (at_s < _TURN_S[0] - _BESIDE_S) | (at_s > _TURN_S[1] + _BESIDE_S)
+    return 100.0 * float(still[inside].mean()), 100.0 * float(still[beside].mean())
+
+
+def rest_figures() -> list[Figure]:
+    """The worst of all rates and noises, with and without an accelerometer."""
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = Path(scratch)
+        rests = [share_used(folder, *one) for one in product(RATES_HZ, NOISES_DPS, (False, True))]
+        turns = [shares_with_turn(folder, *one)[0] for one in product(RATES_HZ, NOISES_DPS)]
+    span = f"1/15 to {RATES_HZ[-1]:g} Hz, noise {NOISES_DPS[0]:g} to {NOISES_DPS[-1]:g} dps"
+    return [
+        Figure(f"rest used, the least ({span})", min(rests), _LEAST_SHARE, False, len(rests)),
+        Figure(f"turn of {_TURN_DPS:g} dps taken for rest", max(turns), 0.0, True, len(turns)),
+    ]
 
 
 def run(
     nulls: int = 200,
     seeds: int = 20,
     processes: int = 2,
+    *,
     data: str | PathLike[str] | None = None,
     resume: str | PathLike[str] | None = None,
     size: bool = True,

@@ -115,22 +115,22 @@ def _looked_at(whole: Recording, variant: str, made: list[Recording], scratch: P
     from zerorate_tools.closing import load
     from zerorate_tools.errors import ZerorateError
     from zerorate_tools.loop.report.report import report
-    from zerorate_tools.loop.verify.measure import measure_and_prune
+    from zerorate_tools.loop.verify.run_kernels import run_and_prune
 
     logs = [_written(r, scratch / f"part-{i}.parquet") for i, r in enumerate(made)]
     try:
-        analysis, model = measure_and_prune(load([*logs]), logs, scratch / "corrected.parquet")
+        analysis, model = run_and_prune(load([*logs]), logs, scratch / "corrected.parquet")
     except ZerorateError as problem:
         return {"refused": str(problem)}
-    told = report(analysis)
+    result = report(analysis)
     row = {
         "before_mdps": rms_mdps(np.vstack(analysis.judgement.residual_before)),
         "after_mdps": rms_mdps(np.vstack(analysis.judgement.residual_after)),
-        "found": ", ".join(effect["effect"] for effect in told["effects"]),
-        "steps_listed": len(told["events"]),
+        "found": ", ".join(effect["effect"] for effect in result["effects"]),
+        "steps_listed": len(result["events"]),
     }
     if variant == STEP:
-        row["found_the_step"] = _is_listed(told["events"], made[0])
+        row["found_the_step"] = _is_listed(result["events"], made[0])
     if variant in (FIRST, SECOND):
         other = VARIANTS[SECOND if variant == FIRST else FIRST](whole)[0]
         row |= _elsewhere(analysis, model, logs[0], _written(other, scratch / "other.parquet"))

@@ -1,7 +1,10 @@
 """What a sample costs as machine code on emulated processors, beside C -O2 of the same kernels."""
 
+import ast
+import struct
 from array import array
 from collections.abc import Iterator
+from pathlib import Path
 from statistics import mean, median
 from typing import Any
 
@@ -12,17 +15,160 @@ from zerorate.effects.model_file import LOADED
 from zerorate.gravity.gravity_settings import gravity_settings, gravity_state
 from zerorate.model import EffectModel
 from zerorate.motion.motion_settings import motion_settings, motion_state
-from zerorate_tools.errors import ZerorateError
-from zerorate_tools.kernels.parts import BURST, PARTS
+from zerorate_tools.errors import MissingRuntime, ZerorateError
 from zerorate_tools.kernels.reading import Kernels, firmware_package
 from zerorate_tools.model import Slot, build_model, encoded
-from zerorate_tools.model.check import sensor_for
+from zerorate_tools.model.files import sensor_for
 from zerorate_tools.model.term import Term
 from zerorate_tools.simulate import simulate
 
+from zerorate_bench.native.parts import BURST, PARTS
+
 from ..workload import CYCLE, Workload
-from .emulated import Emulated, code_in, emulated
 from .machine_code import PROCESSORS, machine_code
+from .native_files import ENTERED
+
+_CODE, _END, _STACK, _DATA = 0x10000, 0x30000, 0x80000, 0x100000
+_SIZE = 0x10000
+_MOST = 20_000_000
+
+
+class Emulated:
+    """Calls of `code` with arrays of 32-bit words and ints, each array copied in and back.
+
+    processor: thumb or rv32; code may stand at any even address: at is one. instructions and cycles
+    (of a Cortex-M0+, thumb only) are those of the latest call, if counted. Raises MissingRuntime.
+    """
+
+    def __init__(self, processor: str, code: bytes, at: int = _CODE, counted: bool = True) -> None:
+        try:
+            import unicorn as u
+        except ImportError:
+            raise MissingRuntime("machine code is run by unicorn: pip install unicorn") from None
+        self._thumb = processor == "thumb"
+        self._at, self._code = at, code
+        if self._thumb:
+            from unicorn import arm_const as r
+
+            self._cpu = u.Uc(u.UC_ARCH_ARM, u.UC_MODE_THUMB | u.UC_MODE_MCLASS)
+            self._cpu.ctl_set_cpu_model(r.UC_CPU_ARM_CORTEX_M0)
+            self._arguments = [r.UC_ARM_REG_R0 + i for i in range(4)]
+            self._back, self._stack = r.UC_ARM_REG_LR, r.UC_ARM_REG_SP
+            self._counter = r.UC_ARM_REG_PC
+        else:
+            from unicorn import riscv_const as v
+
+            self._cpu = u.Uc(u.UC_ARCH_RISCV, u.UC_MODE_RISCV32)
+            self._arguments = [v.UC_RISCV_REG_A0 + i for i in range(4)]
+            self._back, self._stack = v.UC_RISCV_REG_RA, v.UC_RISCV_REG_SP
+            self._counter = v.UC_RISCV_REG_PC
+        for start, size in ((_CODE, 0x20000), (_END, 0x1000), (_STACK - _SIZE, _SIZE)):
+            self._cpu.mem_map(start, size)
+        self._cpu.mem_map(_DATA, 16 * _SIZE)
+        self._cpu.mem_write(at, code)
+        if counted:  # which takes ten times as long
+            self._cpu.hook_add(u.UC_HOOK_BLOCK, self._block, begin=at, end=at + len(code))
+        self._failed = u.UcError
+        self._blocks: dict[tuple[int, int], tuple[int, int, int]] = {}
+        self.instructions = self.cycles = 0
+
+    def __call__(self, *arguments: array | int) -> int:
+        """Its result, a signed int; arrays hold what it left. Raises ZerorateError for a crash."""
+        passed = [self._given(i, argument) for i, argument in enumerate(arguments)]
+        for register, value in zip(self._arguments, passed):
+            self._cpu.reg_write(register, value & 0xFFFFFFFF)
+        self._cpu.reg_write(self._stack, _STACK - 64)
+        self._cpu.reg_write(self._back, _END | self._thumb)
+        self.instructions = self.cycles = self._expected = self._jump = 0
+        try:
+            self._cpu.emu_start(self._at | self._thumb, _END, count=_MOST)
+        except self._failed as error:
+            raise ZerorateError(f"machine code stopped: {error}") from error
+        if self._cpu.reg_read(self._counter) != _END:
+            raise ZerorateError(f"machine code did not end within {_MOST} instructions")
+        for i, argument in enumerate(arguments):
+            if isinstance(argument, array):
+                argument[:] = array("i", self._cpu.mem_read(passed[i], 4 * len(argument)))
+        value = self._cpu.reg_read(self._arguments[0])
+        return value - (value >> 31 << 32)
+
+    def _given(self, i: int, argument: array | int) -> int:
+        if isinstance(argument, int):
+            return argument
+        self._cpu.mem_write(self.address(i), argument.tobytes())
+        return self.address(i)
+
+    def address(self, i: int) -> int:
+        """Where argument i lies where it is an array, of this call and of the latest one."""
+        return _DATA + _SIZE * i
+
+    def _block(self, cpu, at: int, size: int, _) -> None:
+        key = at, size
+        if key not in self._blocks:
+            code = self._code[at - self._at : at - self._at + size]
+            self._blocks[key] = _cycles_of(code) if self._thumb else (_rv32_count(code), 0, 0)
+        if self._expected and at != self._expected:
+            self.cycles += self._jump
+        count, cycles, self._jump = self._blocks[key]
+        self.instructions += count
+        self.cycles += cycles
+        self._expected = at + size
+
+
+def _rv32_count(code: bytes) -> int:
+    count = at = 0
+    while at < len(code):
+        at += 4 if code[at] & 3 == 3 else 2
+        count += 1
+    return count
+
+
+def _cycles_of(code: bytes) -> tuple[int, int, int]:
+    """(instructions, cycles, further cycles when the last one's condition holds) of a block.
+
+    Of straight Thumb code on a Cortex-M0+ without wait states (ARM DDI 0484C, table 3-1).
+    """
+    count = cycles = at = further = 0
+    while at < len(code):
+        (word,) = struct.unpack_from("<H", code, at)
+        further = int(word >> 12 == 0b1101)
+        cycles += _cycles(word)
+        count += 1
+        at += 4 if word >> 11 in (0b11101, 0b11110, 0b11111) else 2
+    return count, cycles, further
+
+
+def _cycles(word: int) -> int:
+    registers = (word & 0xFF).bit_count()
+    if word >> 12 in (5, 6, 7, 8, 9) or word >> 11 == 9:  # a load or a store
+        return 2
+    if word >> 9 == 0b1011010:  # push
+        return 1 + registers + (word >> 8 & 1)
+    if word >> 9 == 0b1011110:  # pop; with pc it jumps
+        return 1 + registers + 3 * (word >> 8 & 1)
+    if word >> 12 == 0b1100:  # several loads or stores
+        return 1 + registers
+    if word >> 11 == 0b11110:  # bl
+        return 3
+    if word >> 11 == 0b11100 or word >> 8 == 0x47:  # b, bx
+        return 2
+    return 1
+
+
+def code_in(path: Path) -> bytes:
+    """The machine code of a generated file, without the instructions that enter it."""
+    words: list[int] = []
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "data":
+            words += [ast.literal_eval(word) for word in node.args[1:]]
+    code = struct.pack(f"<{len(words)}H", *words)
+    return code[len(ENTERED[path.name.partition("_")[0]](0)) :]
+
+
+def emulated(package: Path, part: str, processor: str) -> Emulated:
+    """The part as it stands in the firmware, entered at its code."""
+    return Emulated(processor, code_in(package / "native" / f"{processor}_{part}.py"))
+
 
 # frames of 14 bytes in the 1024 bytes of an MPU-6050's FIFO, of which it loses none at this
 AT_ONCE = 64

@@ -120,7 +120,7 @@ def _plugged_in() -> str:
 
     ports = [port.device for port in comports() if port.vid is not None]
     if not ports:
-        return "no board is plugged in, by USB's own list; is it a cable with data wires?"
+        return "USB lists no board; has the cable data wires?"
     return f"USB ports here: {', '.join(sorted(ports))}"
 
 
@@ -144,7 +144,7 @@ def _let_run(serial) -> None:
         serial.flush()
 
 
-def told(transport, program: str, patience_s: float | None = None) -> str:
+def output_of(transport, program: str, patience_s: float | None = None) -> str:
     """What a program that is run to its end on the board prints. Raises its error.
 
     patience_s: for how long the board may print nothing.
@@ -182,7 +182,7 @@ class BoardFacts:
 
 def ask(board) -> BoardFacts:
     """The facts of a board in its raw REPL."""
-    machine, version, mpy, heap_free, disk_free = ast.literal_eval(told(board, _QUESTION))
+    machine, version, mpy, heap_free, disk_free = ast.literal_eval(output_of(board, _QUESTION))
     number = mpy >> 10
     return BoardFacts(
         machine,

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from importlib.resources import files
 from pathlib import Path, PurePosixPath
 
-from ..small_file import bytes_of
+from ..bounds import bytes_of
 from .compiling import board_files, machine_code, mpy_version
-from .connection import BoardError, BoardFacts, ask, connected, told
+from .connection import BoardError, BoardFacts, ask, connected, output_of
 from .parts import PACKAGES, REST, chosen_parts, parts_there
 
 _LIBRARY = "lib"
@@ -107,7 +107,7 @@ def _packages(parts, facts: BoardFacts, code: str) -> dict[PurePosixPath, bytes]
 
 def older(facts: BoardFacts) -> list[str]:
     """A line where a newer MicroPython would run machine code, and this one does not."""
-    from .needs import needs
+    from .parts import needs
 
     newest = mpy_version()
     kinds = ("armv", "rv32")
@@ -123,7 +123,7 @@ def older(facts: BoardFacts) -> list[str]:
 
 def room(facts: BoardFacts, parts: Iterable[str], total: int) -> list[str]:
     """What is needed of flash and heap beside what the board has, in lines."""
-    from .needs import heap_needed
+    from .parts import heap_needed
 
     needed = heap_needed(parts, machine_code(facts))
     has = f"; it has {facts.heap_free:,} free" if facts.heap_free else ""
@@ -250,7 +250,7 @@ class Installer:
     def _do(self, command: str = "") -> str:
         """Run what waits, then this; what it printed."""
         waiting, self._waiting = [*self._waiting, command], []
-        return told(self._board, "\n".join(waiting))
+        return output_of(self._board, "\n".join(waiting))
 
     def _there(self, path: str) -> dict[str, tuple[int, int]]:
         """File -> size and CRC-32, of a file or of all below a folder."""

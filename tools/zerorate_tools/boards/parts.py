@@ -1,8 +1,10 @@
 """Which files of the packages a board needs, found by following their imports from a few roots."""
 
 import ast
+import json
 from collections.abc import Iterable, Iterator
 from functools import cache
+from importlib.resources import files
 from importlib.util import find_spec
 from pathlib import Path, PurePosixPath
 
@@ -43,6 +45,9 @@ _NATIVE = "zerorate.native"
 #: Kinds of machine code, as zerorate/native names its files -> how mpy-cross calls the processor.
 CODES = {"thumb": "armv6m", "rv32": "rv32imc"}
 _EXTRA_ROOTS = frozenset(root for part in PARTS if part != REST for root in PARTS[part])
+BOTH = "motion, gravity"
+_PARTS_OF_BOTH = frozenset(BOTH.split(", "))
+_TABLE = "needs.json"
 
 
 class UnknownPart(ZerorateError):
@@ -154,3 +159,20 @@ def _with_packages(names: Iterable[str]) -> Iterator[str]:
                 module = ".".join(words[:count])
                 if _find(module) is not None:
                     yield module
+
+
+def needs() -> dict[str, dict[str, int]]:
+    """`native`, `bytecode` -> part -> heap, `rest` with driver and Corrector; `cycles`, `heap`.
+
+    BOTH stands for the two parts of its name, which share some of what each takes alone.
+    """
+    return json.loads(files(__package__).joinpath(_TABLE).read_text(encoding="utf-8"))
+
+
+def heap_needed(parts: Iterable[str], code: str) -> int:
+    """Bytes of heap that these parts take with that kind of machine code, "" for bytecode."""
+    table = needs()["native" if code else "bytecode"]
+    parts = set(parts)
+    if BOTH in table and parts.issuperset(_PARTS_OF_BOTH):
+        parts = parts.difference(_PARTS_OF_BOTH) | {BOTH}
+    return sum(table.get(part, 0) for part in parts)

@@ -1,8 +1,10 @@
 """A recording from a board: its frames over the serial port, with every drop counted."""
 
 import json
+import struct
 import time
-from collections.abc import Callable
+from binascii import crc32
+from collections.abc import Callable, Iterator
 from importlib.resources import files
 from pathlib import Path
 
@@ -10,12 +12,18 @@ from ..ending import noted_signals
 from ..recordings import Scales, growing_recording
 from ..recordings.scales import scales_from_text
 from .connection import BoardError, connected
-from .frames import MESSAGE, SAMPLE, SAMPLE_BYTES, SCALES, FrameReader, sample_of
 from .recorder import COLUMNS, Heard, Recorded, Recorder, SampleTaker, appending, scales_of
 
 _TICKS = 1 << 30
 _SILENCE_S = 10.0
 _VERIFIED, _SUSPECT, _SEEN_BEFORE = 1, 3, 0x80
+SAMPLE, SCALES, MESSAGE = 1, 2, 3
+_SYNC = b"\xa5\x5a"
+_HEAD = 4
+_CRC = 4
+_SAMPLE = struct.Struct("<HIB")
+_WORDS = struct.Struct(">7h")
+SAMPLE_BYTES = _SAMPLE.size + _WORDS.size
 
 
 def record_port(
@@ -169,3 +177,61 @@ class BoardStream:
 def _last_line(text: bytes) -> str:
     lines = [line.strip("\x04\r >") for line in text.decode(errors="replace").split("\n")]
     return [line for line in lines if line][-1]
+
+
+def encode(kind: int, payload: bytes) -> bytes:
+    """One frame. Raises ValueError for more than 255 bytes."""
+    body = _SYNC + bytes([kind, len(payload)]) + payload
+    return body + crc32(body).to_bytes(_CRC, "little")
+
+
+def sample_of(payload: bytes) -> tuple[int, int, int, tuple[int, ...]]:
+    """(sequence, ticks_us, status, seven words) of a sample's payload."""
+    sequence, ticks_us, status = _SAMPLE.unpack_from(payload)
+    return sequence, ticks_us, status, _WORDS.unpack_from(payload, _SAMPLE.size)
+
+
+class FrameReader:
+    """Frames out of a stream of bytes in pieces of any length; skipped counts what was no frame."""
+
+    def __init__(self) -> None:
+        self.skipped = 0
+        self._bytes = bytearray()
+
+    def feed(self, data: bytes) -> Iterator[tuple[int, bytes]]:
+        """Take data; yield (kind, payload) of every frame that is complete and right."""
+        self._bytes += data
+        while (frame := self._next()) is not None:
+            yield frame
+
+    def _next(self) -> tuple[int, bytes] | None:
+        while True:
+            self._skip_to_sync()
+            if len(self._bytes) >= _HEAD and not self._is_plausible():
+                self._drop(1)
+                continue
+            if len(self._bytes) < _HEAD or len(self._bytes) < self._frame_bytes():
+                return None
+            end = self._frame_bytes()
+            body, check = self._bytes[: end - _CRC], self._bytes[end - _CRC : end]
+            if crc32(body).to_bytes(_CRC, "little") == check:
+                del self._bytes[:end]
+                return body[2], bytes(body[_HEAD:])
+            self._drop(1)
+
+    def _is_plausible(self) -> bool:
+        kind, length = self._bytes[2], self._bytes[3]
+        return kind in (SCALES, MESSAGE) or (kind == SAMPLE and length == SAMPLE_BYTES)
+
+    def _frame_bytes(self) -> int:
+        return _HEAD + self._bytes[3] + _CRC
+
+    def _skip_to_sync(self) -> None:
+        start = self._bytes.find(_SYNC)
+        if start < 0:
+            start = len(self._bytes) - (1 if self._bytes.endswith(_SYNC[:1]) else 0)
+        self._drop(start)
+
+    def _drop(self, count: int) -> None:
+        self.skipped += count
+        del self._bytes[:count]

@@ -7,7 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ..model.binding import KEY, NAMES
+from ..model.model import KEY, NAMES
 from ..recordings import Scales
 from ..recordings.recording import Columns
 

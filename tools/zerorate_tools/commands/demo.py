@@ -1,52 +1,47 @@
-"""`zerorate demo`: the whole job without hardware."""
+"""Commands to begin with: `zerorate demo`, `runtimes` and `bench`."""
 
 import argparse
 import sys
 from collections.abc import Callable
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
+
+from .options import option, switch
 
 #: The interpreter that is fetched where nobody names one.
 BY_DEFAULT = "wasm"
 
 
-def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+def add_demo(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     parser = subparsers.add_parser(
         "demo",
-        help="the whole job without hardware",
-        description="The whole job on a built-in device, no hardware: an emulated chip on an "
-        "emulated I2C bus, driver and firmware on a real MicroPython, the loop closed, and what it "
-        "found run by MicroPython again.",
+        help="record, learn and correct a simulated sensor, without hardware",
+        description="Record an emulated chip on an emulated I2C bus with driver and firmware on a "
+        "real MicroPython, run `close` on the recordings, and run its model in MicroPython.",
     )
-    parser.add_argument(
-        "--real",
-        action="store_true",
-        help="a real recording of the public BROAD data set instead, fetched once (3.6 MB)",
-    )
-    parser.add_argument(
-        "-o",
-        "--out",
-        type=Path,
-        default=Path("zerorate-demo"),
-        metavar="DIR",
-        help="folder to write",
-    )
-    parser.add_argument(
+    switch(parser, "--real", "use a recording of the public BROAD data set (downloads 3.6 MB once)")
+    option(parser, "-o --out", "DIR", "folder to write (zerorate-demo); not with --real", Path)
+    option(
+        parser,
         "--runtime",
+        "NAME",
+        "wasm (default), x86, armhf, cpython, or the path of a MicroPython",
         default=BY_DEFAULT,
-        metavar="NAME",
-        help="wasm (default), x86, armhf, cpython, or a path",
     )
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run_demo)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_demo(arguments: argparse.Namespace) -> int:
     """Do the whole job, or run over the public recording; exit code 2 where that was not to be had.
 
     What needs no network takes the place of what cannot be fetched, and that is said.
     """
-    from ..errors import CannotFetch, MissingRuntime
+    from ..errors import CannotFetch, MissingRuntime, ZerorateError
 
+    if arguments.real and arguments.out:
+        raise ZerorateError("--real only prints: leave --out away, or redirect what it prints")
+    arguments.out = arguments.out or Path("zerorate-demo")
     try:
         get_ready(arguments.runtime)
     except MissingRuntime as missing:
@@ -115,7 +110,7 @@ def run_job(arguments: argparse.Namespace) -> int:
 def run_real(arguments: argparse.Namespace) -> int:
     """The firmware on a real recording, beside others."""
     from ..demo import story
-    from ..demo.broad_trial import broad_trial
+    from ..demo.broad import broad_trial
     from ..demo.real import real
     from ..progress import progress, waiting
 
@@ -146,3 +141,89 @@ def reports(folder: Path) -> list[tuple[Path, str]]:
         "model.json": "the effects found, to be read; `zerorate model show` says them in words",
     }
     return [(folder / name, what) for name, what in said.items() if (folder / name).exists()]
+
+
+_GETTABLE = ("wasm", "x86", "armhf", "x64", "rp2040")
+
+
+def add_runtimes(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    parser = subparsers.add_parser("runtimes", help="fetch and list the MicroPython interpreters")
+    actions = parser.add_subparsers(metavar="ACTION", required=True)
+    getting = actions.add_parser("get", help="fetch missing interpreters into the cache")
+    getting.add_argument("names", nargs="+", choices=_GETTABLE, metavar="NAME")
+    getting.set_defaults(run=get)
+    listing = actions.add_parser("list", help="list those in the cache, and how to get the others")
+    listing.set_defaults(run=list_all)
+    node = actions.add_parser("node", help="print which Node.js and npm wasm would use")
+    node.set_defaults(run=print_node)
+
+
+def get(arguments: argparse.Namespace) -> int:
+
+    from zerorate_tools.errors import MissingRuntime
+    from zerorate_tools.runtimes import fetch
+
+    missing = 0
+    for name in arguments.names:
+        try:
+            _fetch_emulator() if name == "rp2040" else fetch(name)
+            print(f"{name}: ready")
+        except MissingRuntime as error:
+            missing += 1
+            print(f"zerorate: {name}: {error}", file=sys.stderr)
+    return MissingRuntime.exit_code if missing else 0
+
+
+def _fetch_emulator() -> None:
+    from zerorate_tools.errors import MissingRuntime
+
+    try:
+        from zerorate_bench.boards.pico import fetch_rp2040
+    except ModuleNotFoundError:
+        raise MissingRuntime("the emulated Pico is in a checkout only") from None
+    fetch_rp2040()
+
+
+def list_all(arguments: argparse.Namespace) -> None:
+    from zerorate_tools.errors import MissingRuntime
+    from zerorate_tools.runtimes import NAMES, find
+
+    for name in (*NAMES, "x64"):
+        try:
+            find(name)
+            print(f"{name:8} ready")
+        except MissingRuntime as error:
+            print(f"{name:8} missing: {error}")
+
+
+def print_node(arguments: argparse.Namespace) -> None:
+    from zerorate_tools.runtimes.node import node_command, npm_command
+
+    print(*node_command())
+    print(*npm_command())
+
+
+def add_bench(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    """Register the sub-command with every bench that is there."""
+    parser = subparsers.add_parser(
+        "bench",
+        help="measure what this project claims",
+        description="Measure the figures on the pages. `--quick` is a short run.",
+    )
+    if find_spec("zerorate_bench") is None:
+        parser.add_argument("bench", nargs="*", metavar="BENCH")
+        parser.set_defaults(run=_refuse)
+    else:
+        from zerorate_bench.benches import add_benches
+
+        add_benches(parser)
+
+
+def _refuse(arguments: argparse.Namespace) -> None:
+    from ..errors import ZerorateError
+
+    do = "unpack the source distribution and run `pip install -e '.[tools,bench]'` there"
+    raise ZerorateError(f"the wheel has no benchmarks; {do}")
+
+
+PARSERS = {"demo": add_demo, "runtimes": add_runtimes, "bench": add_bench}

@@ -9,10 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InFile
-from ..loop.read.still import runs, still_ticks
-from ..loop.read.stretch import ticks_with_spread
-from ..peers import Given, firmware, given
-from ..peers.online import fusion, vqf_default
+from ..loop.read.still import runs, still_ticks, ticks_with_spread
+from ..peers import Given, firmware, fusion, given, vqf_default
 from ..recordings import read_recording
 
 _LEAST_TICKS = 3
@@ -21,8 +19,8 @@ _MOST_S = 60.0
 NOTHING, FIRST_REST, FRESH, TAUGHT = (
     "no correction",
     "mean of the first rest",
-    "zerorate, fresh",
-    "zerorate, taught by the logs before",
+    "zerorate",
+    "zerorate, with the earlier logs",
 )
 _OPTIONAL = {"vqf": vqf_default, "imufusion": fusion}
 #: What a way knows is taken this long before a rest, so that it has seen nothing of it.
@@ -161,15 +159,14 @@ class Compared:
         """The one sentence: how wrong the mean at boot, how wrong zerorate."""
         verdict = self.verdict(self.ours, FIRST_REST)
         words = {
-            "better": f"{verdict.times:.1f} times less wrong",
-            "worse": f"{1 / verdict.times:.1f} times more wrong",
+            "better": f"{verdict.times:.1f} times better than the mean of the first rest",
+            "worse": f"{1 / verdict.times:.1f} times worse than the mean of the first rest",
         }
         rests = f"{len(self.rests)} later rest" + ("s" if len(self.rests) > 1 else "")
+        mine, theirs = map(self.heading_deg_per_min, (self.ours, FIRST_REST))
         return (
-            f"At {rests} the mean of the first rest would have lost "
-            f"{self.heading_deg_per_min(FIRST_REST):.2f} deg of heading a minute; "
-            f"{self.ours}, {self.heading_deg_per_min(self.ours):.2f}: "
-            f"{words.get(verdict.word, verdict.word)}."
+            f"{self.ours}: {words.get(verdict.word, verdict.word)}. At {rests} it would have lost "
+            f"{mine:.2f} deg of heading a minute, and the mean {theirs:.2f}."
         )
 
 

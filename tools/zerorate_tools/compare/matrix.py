@@ -5,10 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..loop.motion.by_windows import by_windows
-from ..loop.motion.heading import heading_lost
-from ..loop.motion.in_motion import InMotion, slots_of
 from ..loop.motion.moving import moving_of
-from ..loop.motion.same_device import DifferentDevices
+from ..loop.read.gate import CannotClose
 
 WITHOUT, WITH = "without the matrix", "with the matrix that gravity shows"
 
@@ -32,13 +30,13 @@ class Won:
         before, after = self.tilt
         if not self.deployed:
             return (
-                f"In motion gravity sees {before:.2f} deg of tilt a minute on windows left out, "
-                "the device's own acceleration among it; it shows no matrix that would lower that."
+                f"In motion no matrix would lower the tilt error, {before:.2f} deg a minute "
+                "against gravity. It includes the device's own acceleration."
             )
         more = "" if self.heading is None else f", and {_of(self.heading)} of heading"
         return (
-            f"In motion the matrix would leave {after:.2f} of {before:.2f} deg of tilt a minute on "
-            f"windows left out{more}: `zerorate close` deploys it."
+            f"In motion the matrix of `zerorate close` would leave {after:.2f} of {before:.2f} deg "
+            f"of tilt a minute{more}, on windows left out."
         )
 
     def rows(self) -> list[tuple[str, str, str, str]]:
@@ -46,8 +44,8 @@ class Won:
         if self.refused:
             return []
         names = (WITHOUT, WITH) if self.deployed else (WITHOUT,)
-        told = [f"{h:.2f}" for h in self.heading] if self.heading else ["no attitude"] * 2
-        return [(n, f"{t:.2f}", h, "") for n, t, h in zip(names, self.tilt, told)]
+        headings = [f"{h:.2f}" for h in self.heading] if self.heading else ["no attitude"] * 2
+        return [(n, f"{t:.2f}", h, "") for n, t, h in zip(names, self.tilt, headings)]
 
 
 def _of(pair: tuple[float, float]) -> str:
@@ -59,12 +57,10 @@ def matrix_of(logs: Sequence[str | Path]) -> Won | None:
 
     Raises BadRecording.
     """
-    moving = {Path(log): m for log in logs if (m := moving_of(log)) is not None}
     try:
-        shown = by_windows(list(moving.values()), [])
-    except DifferentDevices as problem:
+        shown = by_windows([m for log in logs if (m := moving_of(log)) is not None], [])
+    except CannotClose as problem:
         return Won(refused=str(problem))
     if shown is None:
         return None
-    found = bool(slots_of(InMotion(shown)))
-    return Won((shown.before, shown.after), heading_lost(moving) if found else None, found)
+    return Won((shown.before, shown.after), shown.heading if shown.found else None, shown.found)

@@ -8,6 +8,7 @@ at rest and those in motion each weighted by what their residuals are.
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,13 +17,23 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ZerorateError
+from ..errors import CannotFetch, ZerorateError
 from ..recordings import Recording, Scales
+from ..runtimes.runtime import cache_folder
 
 Array = NDArray[np.float64]
 _G = 9.81
 _SCALES = {"gyro_lsb_per_dps": 32.8, "accel_lsb_per_g": 2048.0}
 _SPAN_S = 1.0
+#: In motion alone: the optics' errors count less in a longer span, but fewer are seen at both ends.
+_MOTION_SPAN_S = 4.0
+CREDIT = "BROAD, D. Laidig et al., Data 6(7):72, 2021, CC BY 4.0, github.com/dlaidig/broad"
+NAME = "02_undisturbed_slow_rotation_B"
+COMMIT = "7e2f8189bb4a3ac91eae32c69b6bc87f08a6e2ad"
+FOLDER_URL = f"https://raw.githubusercontent.com/dlaidig/broad/{COMMIT}/data_mat/"
+SHA256 = "2ab69f86aab5fcc018399068baaabc725bb4b53862aefbef70eaf0256da1930a"
+#: Without a byte, and for all of it.
+_SILENT_S, _LIMIT_S = 15, 120
 
 
 @dataclass(frozen=True)
@@ -39,14 +50,12 @@ class Trial:
     def in_motion(self) -> Trial:
         """The trial from the first to the last moving sample."""
         at = np.flatnonzero(self.moving)
-        part = slice(at[0], at[-1] + 1)
-        return replace(
-            self,
-            rate_dps=self.rate_dps[part],
-            accel_g=self.accel_g[part],
-            attitude=self.attitude[part],
-            moving=self.moving[part],
-        )
+        return self.part(slice(at[0], at[-1] + 1))
+
+    def part(self, span: slice) -> Trial:
+        """Of its samples."""
+        fields = ("rate_dps", "accel_g", "attitude", "moving")
+        return replace(self, **{name: getattr(self, name)[span] for name in fields})
 
     def recording(self) -> Recording:
         """The trial in raw LSB at +-1000 dps and +-16 g."""
@@ -103,29 +112,56 @@ def true_bias(trial: Trial) -> TrueBias:
     n = round(_SPAN_S * trial.hz)
     starts = _seen(trial, n)
     moving = trial.moving[starts[:, None] + np.arange(n)].any(axis=1)
-    both, both_sigma, matrix = _solve(trial, starts, moving, n)
-    motion, motion_sigma, _ = _solve(trial, starts[moving], moving[moving], n)
+    both, both_sigma, matrix, _ = _solve(trial, starts, moving, n)
+    motion, motion_sigma, *_ = _solve(trial, starts[moving], moving[moving], n)
     return TrueBias(both, both_sigma, motion, motion_sigma, matrix)
 
 
-def _seen(trial: Trial, n: int) -> NDArray[np.int64]:
+def bias_in_motion(trial: Trial) -> tuple[Array, Array]:
+    """The gyroscope's bias while it moves, by the optical attitude alone, and its one sigma (3,).
+
+    The optics' clock leads the sensor's, by 5.8 ms in BROAD: what a hand turns meanwhile is fitted.
+    """
+    n, lead_s = round(_MOTION_SPAN_S * trial.hz), 0.0
+    for _ in range(3):  # first order: little is left after the nearest sample
+        in_time = _led(trial, round(lead_s * trial.hz))
+        starts = _seen(in_time, n, n // 2)
+        moving = trial.moving[starts] & trial.moving[starts + n]
+        starts, moving = starts[moving], moving[moving]
+        bias, sigma, _, more_s = _solve(in_time, starts, moving, n, led=True)
+        lead_s = round(lead_s * trial.hz) / trial.hz + more_s
+    return bias, sigma * np.sqrt(2.0)  # every moment is in two spans
+
+
+def _led(trial: Trial, samples: int) -> Trial:
+    """The trial with its optical attitude so many samples later."""
+    attitude = np.roll(trial.attitude, samples, axis=0)
+    attitude[: max(samples, 0)] = np.nan
+    attitude[len(attitude) + min(samples, 0) :] = np.nan
+    return replace(trial, attitude=attitude)
+
+
+def _seen(trial: Trial, n: int, step: int | None = None) -> NDArray[np.int64]:
     """First samples of the spans at whose ends the optics saw the device."""
-    starts = np.arange(0, len(trial.rate_dps) - n - 1, n)
+    starts = np.arange(0, len(trial.rate_dps) - n - 1, step or n)
     seen = np.asarray(np.isfinite(trial.attitude).all(axis=1))
     return starts[seen[starts] & seen[starts + n]]
 
 
 def _solve(
-    trial: Trial, starts: NDArray[np.int64], moving: NDArray[np.bool_], n: int
-) -> tuple[Array, Array, Array]:
+    trial: Trial, starts: NDArray[np.int64], moving: NDArray[np.bool_], n: int, led: bool = False
+) -> tuple[Array, Array, Array, float]:
+    """Bias, its one sigma, the matrix, and where `led` the seconds by which the optics lead."""
+    unknowns = 13 if led else 12
     bias, matrix = np.zeros(3), np.eye(3)
     weight = np.ones(len(starts))
     for _ in range(6):
         residual, slopes = _compare(trial, starts, n, bias, matrix)
         rows = np.sqrt(weight)[:, None, None]
-        a, y = (slopes * rows).reshape(-1, 12), (residual * rows[..., 0]).reshape(-1)
+        slopes = slopes[..., :unknowns]
+        a, y = (slopes * rows).reshape(-1, unknowns), (residual * rows[..., 0]).reshape(-1)
         step, *_ = np.linalg.lstsq(a, y, rcond=None)
-        bias, matrix = bias + step[:3], matrix + step[3:].reshape(3, 3)
+        bias, matrix = bias + step[:3], matrix + step[3:12].reshape(3, 3)
         left = residual - slopes @ step
         for group in (moving, ~moving):
             if group.any():
@@ -134,7 +170,7 @@ def _solve(
         size = np.abs(left).max(axis=1) * np.sqrt(weight)
         weight = np.where(size < 8, weight, weight * 1e-6)
     covariance = np.linalg.pinv(a.T @ a) * np.square(a @ step - y).mean()
-    return bias, np.sqrt(np.diag(covariance)[:3]), matrix
+    return bias, np.sqrt(np.diag(covariance)[:3]), matrix, float(step[-1]) if led else 0.0
 
 
 def _compare(
@@ -145,12 +181,65 @@ def _compare(
 
     dt = 1 / trial.hz
     attitude = Rotation.from_quat(np.zeros((len(starts), 4)) + [0, 0, 0, 1])
-    slopes = np.zeros((len(starts), 3, 12))
+    slopes = np.zeros((len(starts), 3, 13))
     for k in range(n):
         rate = np.radians(trial.rate_dps[starts + k] - bias)
         turned = attitude.as_matrix()
         slopes[:, :, :3] -= turned @ matrix * np.radians(dt)
-        slopes[:, :, 3:] += np.einsum("nij,nk->nijk", turned, rate * dt).reshape(-1, 3, 9)
+        slopes[:, :, 3:12] += np.einsum("nij,nk->nijk", turned, rate * dt).reshape(-1, 3, 9)
         attitude = attitude * Rotation.from_rotvec(rate @ matrix.T * dt)
     ends = [Rotation.from_quat(trial.attitude[at][:, [1, 2, 3, 0]]) for at in (starts, starts + n)]
+    first, last = (np.radians(trial.rate_dps[at] - bias) @ matrix.T for at in (starts, starts + n))
+    slopes[:, :, 12] = attitude.apply(last) - first
     return (ends[0].inv() * ends[1] * attitude.inv()).as_rotvec(), slopes
+
+
+def broad_trial(folder_url: str | None = None) -> Trial:
+    """The trial, fetched into the cache where it is not there yet (3.6 MB). Raises CannotFetch.
+
+    folder_url: a mirror's folder instead of FOLDER_URL.
+    """
+    path = _fetched(folder_url or FOLDER_URL)
+    return next(trial for trial in trials(path.parent) if trial.name == NAME)
+
+
+def kept_in() -> Path:
+    """The folder of the cache that holds the trial."""
+    return cache_folder() / "broad"
+
+
+def _fetched(folder_url: str) -> Path:
+    import pooch
+
+    pooch.get_logger().setLevel("WARNING")
+    file = f"{NAME}.mat"
+    try:
+        path = pooch.retrieve(
+            folder_url + file,
+            known_hash=f"sha256:{SHA256}",
+            fname=file,
+            path=kept_in(),
+            downloader=_downloaded,
+        )
+    except OSError as error:  # of requests, too: its errors are OSErrors
+        do = f"try again with a network, or put that file into {kept_in()}"
+        raise CannotFetch(
+            f"{folder_url}{file} cannot be fetched, is there a network? {do}"
+        ) from error
+    except ValueError as error:
+        raise CannotFetch(f"{folder_url}{file} is not the file with SHA-256 {SHA256}") from error
+    return Path(path)
+
+
+def _downloaded(url: str, output_file: str, pooch: object) -> None:
+    """A downloader of pooch that gives up on a network that brings next to nothing."""
+    import requests
+
+    until = time.monotonic() + _LIMIT_S
+    answer = requests.get(url, timeout=_SILENT_S, stream=True)  # type: ignore[no-untyped-call]
+    with answer, open(output_file, "wb") as out:
+        answer.raise_for_status()
+        for chunk in answer.iter_content(1 << 16):
+            out.write(chunk)
+            if time.monotonic() > until:
+                raise TimeoutError

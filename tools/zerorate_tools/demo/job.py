@@ -1,19 +1,148 @@
-"""The whole job on the built-in device, a function a step: learn, close the loop, put it back."""
+"""The whole job on the built-in device, a function a step, and what each step gained."""
 
 import tempfile
 from dataclasses import dataclass
+from os import PathLike
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..closing import close
+from ..errors import ZerorateError
 from ..loop.report.result import LoopReport
-from ..recordings import write_recording
+from ..recordings import Recording, read_recording, write_recording
 from ..replay import AT_REST_ALONE, replay
+from ..replay.engines import staged_packages
+from ..replay.samples import frames_in_batches
+from ..runtimes import Runtime, find
 from ..simulate import load_description, simulate_sessions
 from ..simulate.schema import Description
-from .play_and_score import Demo, demo
+
+SETTLE_S = 10.0
+#: Part, dps and g of the emulated chip, whose scales the simulated device has.
+_CHIP = ("MPU-6050", 250, 2)
+_OUT = np.dtype([("bias", "<i4", 3), ("rates", "<i4", 3)])
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Score:
+    """Root mean square errors over three axes in mdps, and the angle lost by the end in degrees.
+
+    All are counted from SETTLE_S on, which the ten-second mean needs.
+    """
+
+    uncorrected_mdps: float
+    first_ten_s_mdps: float
+    firmware_mdps: float
+    uncorrected_deg: float
+    first_ten_s_deg: float
+    firmware_deg: float
+
+
+@dataclass(frozen=True)
+class Demo:
+    """What a demo showed.
+
+    said: what the MicroPython printed; same_state: the firmware's final state equals, to the last
+    bit, that of a replay on this host; bias_dps, corrected_dps, truth_dps: (n, 3), the last being
+    the true bias.
+    """
+
+    recording: Recording
+    runtime: str
+    said: str
+    same_state: bool
+    bias_dps: Array
+    corrected_dps: Array
+    truth_dps: Array
+    score: Score
+
+
+def demo(
+    log: str | PathLike[str],
+    runtime: str,
+    truth_dps: Array,
+    *,
+    model: Path | None = None,
+    learned: Path | None = None,
+) -> Demo:
+    """Play `log`, a simulated device's, on `runtime` and score it by the (n, 3) true bias.
+
+    model: an effect model to load; learned: a state to start from, as `replay` writes it. Raises
+    ZerorateError (BadRecording, MissingRuntime).
+    """
+    interpreter, recording = find(runtime), read_recording(log)
+    played = _play(recording, interpreter, {"model.bin": model, "learned.bin": learned})
+    here = replay(recording, model=model, from_state=learned, options=AT_REST_ALONE)
+    return Demo(
+        recording=recording,
+        runtime=interpreter.name,
+        said=played.said,
+        same_state=played.state == here.state,
+        bias_dps=played.bias_dps,
+        corrected_dps=played.corrected_dps,
+        truth_dps=truth_dps,
+        score=_score(recording, played.bias_dps, truth_dps),
+    )
+
+
+@dataclass(frozen=True)
+class _Played:
+    """What came back: bias_dps, corrected_dps (n, 3); said, what was printed; state, its bytes."""
+
+    bias_dps: Array
+    corrected_dps: Array
+    said: str
+    state: bytes
+
+
+def _play(recording: Recording, interpreter: Runtime, given: dict[str, Path | None]) -> _Played:
+    """Play every sample on `interpreter`, beside files of those names. Raises ZerorateError."""
+    with tempfile.TemporaryDirectory(prefix="zerorate-demo-") as scratch:
+        board = staged_packages(Path(scratch), ("zerorate", "zerorate_i2c", "zerorate_fakes"))
+        rows = [np.c_[b.dt_us, b.frames].astype("<i4") for b in frames_in_batches(recording)]
+        result = interpreter.run(
+            Path(__file__).with_name("on_interpreter.py"),
+            [*_CHIP, recording.scales.odr_hz],
+            modules=[board],
+            files_in={
+                "samples.bin": np.concatenate(rows).tobytes(),
+                **{name: path for name, path in given.items() if path is not None},
+            },
+            files_out=["out.bin", "state.bin"],
+            heap=8 << 20,
+            check=True,
+        )
+    out = np.frombuffer(result.files["out.bin"], _OUT)
+    if len(out) != len(recording):
+        raise ZerorateError(f"{interpreter.name} read {len(out)} samples of the recording, not all")
+    lsb = recording.scales.gyro_lsb_per_dps
+    return _Played(
+        bias_dps=out["bias"] / 256.0 / lsb,
+        corrected_dps=out["rates"] / lsb,
+        said=result.stdout.strip(),
+        state=result.files["state.bin"],
+    )
+
+
+def _score(recording: Recording, bias_dps: Array, truth_dps: Array) -> Score:
+    t_s = seconds(recording)
+    later = t_s >= SETTLE_S
+    first = recording.gyro_dps()[~later].mean(axis=0)
+    errors = [each[later] for each in (truth_dps, truth_dps - first, truth_dps - bias_dps)]
+    steps = np.diff(t_s[later], append=t_s[-1])
+    mdps = [1e3 * float(np.sqrt(np.mean(np.square(error)))) for error in errors]
+    lost = [float(np.abs((error * steps[:, None]).sum(axis=0)).max()) for error in errors]
+    return Score(*mdps, *lost)
+
+
+def seconds(recording: Recording) -> Array:
+    """Seconds since the first sample, (n,)."""
+    t_us = recording.columns["t_us"]
+    return (t_us - t_us[0]) * 1e-6
+
 
 DESCRIPTION = Path(__file__).with_name("five-power-ons.toml")
 

@@ -6,7 +6,7 @@ from typing import Any
 import matplotlib
 import numpy as np
 
-from .play_and_score import SETTLE_S, Array, Demo, seconds
+from .job import SETTLE_S, Array, Demo, seconds
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402

@@ -12,10 +12,9 @@ import numpy as np
 
 from ..compare import Compared
 from ..numbers import fixed
-from ..report.kinds import meaning
-from .broad_trial import CREDIT
-from .job import Device
-from .play_and_score import Demo, seconds
+from ..report.sentences import meaning
+from .broad import CREDIT
+from .job import Demo, Device, seconds
 from .real import MOTION_FROM_S, WAYS, WHOLE_FROM_S, Real
 
 _IN = " " * 10
@@ -25,7 +24,7 @@ What next
   Linux board, I2C bus     {zerorate} record /dev/i2c-1 --out run.parquet --seconds 600
   your own test suite      {python} -m pydoc zerorate_fakes
   recordings you have      {zerorate} import FILE --out run.parquet
-                           {zerorate} compare RUN...                (your average at boot, judged)
+                           {zerorate} compare RUN...                (would zerorate have helped?)
                            {zerorate} close RUN... --out closed     (each RUN is one power-on)"""
 
 
@@ -80,11 +79,11 @@ def chapter_two(device: Device, result: Mapping[str, Any]) -> str:
     )
     lines = [
         "",
-        "2. The loop is closed: what does the firmware's model lack?",
-        f"   Fitted on {first} to {last}; {holdout} was held out and looked at once.",
+        "2. `close` finds the causes of the error that remains",
+        f"   Fitted to {first} to {last}; judged on {holdout}, which was held out.",
         *_found(result["effects"]),
-        *(f"   hidden from the firmware: {words}" for words in device.hidden),
-        f"   Error in {holdout}, offset taken from its first still minute, then frozen:",
+        *(f"   simulated, unknown to the firmware: {words}" for words in device.hidden),
+        f"   Error in {holdout}; the device learns in its first still minute only:",
         "                    gx        gy        gz",
     ]
     for name in ("before", "after", "floor"):
@@ -112,7 +111,7 @@ def chapter_three(before: Demo, after: Demo, model: Path) -> str:
         [
             "",
             f"3. Back on the chip: {interpreter} loads {model.name}, {model.stat().st_size} bytes",
-            f"   {before.recording.name} once more, after the ones before it, learning as it goes:",
+            f"   {before.recording.name} again, after the others, learning at every rest:",
             "                    gx        gy        gz",
             f"     without {_axes(before)} mdps rms",
             f"     with it {_axes(after)} mdps rms: {ratio:.1f} times better",
@@ -133,7 +132,7 @@ def _axes(shown: Demo) -> str:
 
 def compared(found: Compared) -> str:
     """What the recordings alone say of the average at boot, as a user would ask."""
-    return "\n" + textwrap.fill(f"Told by the recordings alone: {found.headline()}", 79)
+    return "\n" + textwrap.fill(f"By the recordings alone: {found.headline()}", 79)
 
 
 def ending(files: list[tuple[Path, str]]) -> str:

@@ -25,6 +25,7 @@ MOST_DEVICES = 64
 MOST_BYTES = 64 << 20
 _TASKS_A_WORKER = 8
 _CONNECT_S = 10
+_ANSWER_S = 3
 _POLL_S = 0.1
 #: Of builtins alone: a worker without zerorate cannot even load a function of it.
 _LACKS = """next((n for n in ("numpy", "pandas", "pyarrow", "zerorate_tools", "zerorate")
@@ -69,6 +70,7 @@ def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterato
             yield client
         return
     with (
+        _safe_path(),
         dask.config.set(
             {
                 # the first death of a worker tells as much as the fourth: see run_all
@@ -85,7 +87,6 @@ def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterato
 
 def _started(distributed, workers: int) -> Any:
     """A cluster of processes of this machine. Raises ZerorateError where none can begin."""
-    _safe_path()
     try:
         return distributed.LocalCluster(
             n_workers=workers,
@@ -98,13 +99,21 @@ def _started(distributed, workers: int) -> Any:
         raise ZerorateError(f"no worker can be started here: {error}; {room}") from error
 
 
-def _safe_path() -> None:
-    """Let no child of this process import from the working folder."""
+@contextmanager
+def _safe_path() -> Iterator[None]:
+    """Let no child that this process starts meanwhile import from the working folder."""
+    before = os.environ.get("PYTHONSAFEPATH")
     os.environ["PYTHONSAFEPATH"] = "1"
     if sys.version_info < (3, 11):  # knows no such word; its children get our own paths later
         from multiprocessing import util
 
         util._args_from_interpreter_flags = lambda: ["-I"]  # type: ignore[attr-defined]
+    try:
+        yield
+    finally:
+        os.environ.pop("PYTHONSAFEPATH")
+        if before is not None:
+            os.environ["PYTHONSAFEPATH"] = before
 
 
 def _client_of(distributed, address: str) -> Client:
@@ -179,8 +188,9 @@ def run_all(
         submit(suspects.pop())
         return True
 
+    workers = _workers_of(client) or []
     alone = go_on()
-    for future in _each(client, finished):
+    for future in _each(client, finished, workers):
         batch = under_way.pop(future.key)
         error = future.exception() if future.status == "error" else None
         blamed = isinstance(error, KilledWorker) and not alone
@@ -194,26 +204,26 @@ def run_all(
         alone = go_on()
 
 
-def _workers_of(client: Client) -> list[str]:
-    """Addresses of the workers; none where the scheduler is gone, which its futures tell soon."""
+def _workers_of(client: Client) -> list[str] | None:
+    """Addresses of the workers; None where the scheduler does not answer."""
+    if client.status != "running" or client.scheduler is None:
+        return None
     try:
-        return list(client.nthreads()) if client.status == "running" else []
-    except OSError:
-        return []
+        return list(client.sync(client.scheduler.ncores, callback_timeout=_ANSWER_S))
+    except (OSError, asyncio.TimeoutError):
+        return None
 
 
-def _each(client: Client, finished: Any) -> Iterator[Any]:
-    """Futures as they finish. Raises ZerorateError where a cluster of others has lost its last
-    worker, or its scheduler; one made here starts workers anew by itself."""
-    seen: list[str] = []
+def _each(client: Client, finished: Any, seen: list[str]) -> Iterator[Any]:
+    """Futures as they finish. seen: addresses of workers. Raises ZerorateError where a cluster of
+    others has lost its last worker, or its scheduler; one made here starts workers anew."""
     last_s = time.monotonic()
-    address = client.scheduler.address if client.scheduler is not None else ""
+    address = str(client.scheduler.address if client.scheduler is not None else "")
     while finished.count():
         if finished.has_ready():
             future = next(finished)
             if future.cancelled():  # as all are when the scheduler is lost
-                do = "start it again, then this command: what was done is kept"
-                raise ZerorateError(f"{address}: the scheduler is gone; {do}")
+                raise _gone(address, None, seen)
             yield future
             continue
         time.sleep(_POLL_S)
@@ -223,6 +233,14 @@ def _each(client: Client, finished: Any) -> Iterator[Any]:
         if workers:
             seen, last_s = workers, time.monotonic()
         elif time.monotonic() - last_s > _CONNECT_S:
-            gone = f"its workers are gone ({', '.join(seen)})" if seen else "its workers are gone"
-            do = "start them again, then this command: what was done is kept"
-            raise ZerorateError(f"{address}: {gone}; {do}")
+            raise _gone(address, workers, seen)
+
+
+def _gone(address: str, workers: list[str] | None, seen: list[str]) -> ZerorateError:
+    who, it = "its workers are gone", "them"
+    if workers is None:
+        who, it = "the scheduler is gone", "it"
+    elif seen:
+        who += f" ({', '.join(seen)})"
+    do = f"start {it} again, then this command: what was done is kept"
+    return ZerorateError(f"{address}: {who}; {do}")

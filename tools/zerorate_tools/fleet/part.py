@@ -7,8 +7,16 @@ from typing import Any
 import numpy as np
 from scipy import stats
 
-from .curve import CENTRE_DEGC, PER_DEGC, TERMS, UNITS, Curve
-from .population import LEAST_DEVICES, Population, population
+from .population import (
+    CENTRE_DEGC,
+    LEAST_DEVICES,
+    PER_DEGC,
+    TERMS,
+    UNITS,
+    Curve,
+    Population,
+    population,
+)
 
 _SHOWN = 0.05
 _MOSTLY = 0.75
@@ -154,7 +162,7 @@ def step_effects(results: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
     verdict: `common` where at least half of such devices have it beyond doubt (Wilson's interval of
     95 %), `of single devices` where fewer than half, else `undecided`.
     """
-    found: dict[str, list[tuple[str, dict]]] = {}
+    found: dict[str, list[tuple[str, dict[str, Any]]]] = {}
     for result in results:
         for step in {s["effect"]: s for s in result["steps"]}.values():
             found.setdefault(step["effect"], []).append((result["device"], step))
@@ -162,7 +170,7 @@ def step_effects(results: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
     return [_step_effect(label, rows, total) for label, rows in sorted(found.items())]
 
 
-def _step_effect(label: str, rows: list[tuple[str, dict]], total: int) -> dict[str, Any]:
+def _step_effect(label: str, rows: list[tuple[str, dict[str, Any]]], total: int) -> dict[str, Any]:
     interval = stats.binomtest(len(rows), total).proportion_ci(method="wilson")
     removed = np.array([removed_mdps(step) for _, step in rows])
     verdict = "undecided"

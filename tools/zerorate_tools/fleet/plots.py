@@ -9,16 +9,16 @@ from ..numbers import figure
 from ..recordings.atomic import written_beside
 from ..report.page import rendered
 from ..report.plot import Panel, Plot, Series
-from .curve import TERMS, UNITS
 from .fleet_in_words import WAYS, scenario_in_words
 from .part import Part, scale_of
+from .population import TERMS, UNITS
 
 _POINTS = 40
 _MOST_LINES = 15
 _MOST_DEVICES = 400
 _VIEWS = ("less each one's level", "as they are")
 _AXES = "xyz"
-_ROLES = {"without": "before", "prior": "after", "prefilled": "event"}
+_ROLES = {"without": "before", "prior": "after"}
 
 
 def plots_of(report: dict[str, Any], part: Part | None) -> list[Plot]:
@@ -127,11 +127,10 @@ def first_minutes(tried: dict[str, Any]) -> Plot:
     """A panel a scenario: median error of each way to start, and where 95 % of devices are."""
     panels, series = [], []
     for number, (scenario, found) in enumerate(tried["scenarios"].items()):
-        ways = [way for way in WAYS if way in found and way != "prefilled"]
-        most = 1.05 * max(found[way]["p95_mdps"] for way in ways)
+        most = 1.05 * max(found[way]["p95_mdps"] for way in WAYS)
         title = scenario_in_words(scenario)
         panels.append(Panel(title, "mdps", "", x_range=(0.0, most), y_names=("", "")))
-        for row, way in enumerate(ways):
+        for row, way in enumerate(WAYS):
             median, p95 = found[way]["median_mdps"], found[way]["p95_mdps"]
             y = -float(row)
             look: dict[str, Any] = {"panel": number, "name": WAYS[way], "role": _ROLES[way]}

@@ -23,15 +23,12 @@ from ..recordings.guarded import read_in_safety
 from ..recordings.scales import scales_from_text
 from ..replay.engines import compiled
 from .cluster import cluster, in_batches, run_all, size_of
-from .curve import Curve
-from .devices import Device
-from .first_minutes import Runner, benefit
-from .fleet_in_words import Fleet
+from .devices import Device, is_url
+from .fleet_in_words import Fleet, table_of
 from .job import JOBS, Job, one_line, run_batch
 from .part import Part, curve_effects, part_of, step_effects
-from .places import is_url
-from .prior import prior_json, write_prior
-from .rows import table_of
+from .population import Curve
+from .prior import Runner, benefit, prior_json, write_prior
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -154,17 +151,22 @@ def _conclude(
     return report
 
 
-def _kind(sensor: dict[str, Any]) -> tuple:
+def _kind(sensor: dict[str, Any]) -> tuple[Any, ...]:
     names = ("sensor", "gyro_lsb_per_dps", "temp_lsb_per_degc", "temp_offset_degc")
     return tuple(sensor.get(name) for name in names)
 
 
-def _main_sensor(results: Sequence[dict[str, Any]]) -> tuple | None:
+def _main_sensor(results: Sequence[dict[str, Any]]) -> tuple[Any, ...] | None:
     kinds = Counter(_kind(r["sensor"]) for r in results if r["sensor"])
     return kinds.most_common(1)[0][0] if kinds else None
 
 
-def _report(found, mine, work: Job, part: Part | None) -> dict[str, Any]:
+def _report(
+    found: Sequence[dict[str, Any]],
+    mine: Sequence[dict[str, Any]],
+    work: Job,
+    part: Part | None,
+) -> dict[str, Any]:
     names = {r["device"] for r in mine}
     others = [r["device"] for r in found if r["sensor"] and r["device"] not in names]
     sessions = [s for r in found for s in r["sessions"]]

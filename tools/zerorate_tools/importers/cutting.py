@@ -8,10 +8,8 @@ from pathlib import Path
 from ..errors import BadRecording
 from ..recordings import open_recording, recording_writer
 from ..recordings.atomic import written_together
-from ..recordings.text import open_text
+from ..recordings.text import lines_of
 from .tables.sniffing import MARK, Form, sniffed
-
-_BLOCK_BYTES = 1 << 20
 
 
 def cut(
@@ -99,13 +97,7 @@ def _check_all(counts: list[int], starts: list[int], path: Path) -> None:
 
 
 def _lines(path: Path, form: Form) -> Iterator[bytes]:
-    """The lines as UTF-8, each with its end."""
-    stream, rest = open_text(path, form.encoding)[0], b""
-    first = True
-    while block := stream.read(_BLOCK_BYTES):
-        *lines, rest = (rest + block).split(b"\n")
-        for line in lines:
-            yield (line.removeprefix(MARK) if first else line) + b"\n"
-            first = False
-    if rest:
-        yield rest
+    """The lines as UTF-8, each with its end, without the mark before the first."""
+    lines = lines_of(path, form.encoding)
+    yield next(lines).removeprefix(MARK)
+    yield from lines

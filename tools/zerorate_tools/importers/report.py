@@ -5,6 +5,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from os import PathLike
 
+from ..numbers import duration
+
 
 @dataclass
 class Options:
@@ -46,8 +48,6 @@ class Report:
 
     def lines(self) -> list[str]:
         """The report in words, a line each."""
-        from .samples.clock import duration
-
         out = [
             f"{self.rows_written} samples: {duration(self.duration_s)} at {self.odr_hz:.4g} Hz, "
             f"of {self.rows_read} rows"

@@ -27,7 +27,7 @@ from zerorate_tools.layout import (
 )
 
 from ..model.binary import encoded
-from ..model.check import check_model, sensor_for
+from ..model.files import check_model, sensor_for
 from ..recordings.atomic import written_together
 from .c_functions import kernels_in_c
 from .reading import Kernels

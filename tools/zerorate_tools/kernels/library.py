@@ -24,7 +24,7 @@ from zerorate_tools.layout import EFFECTS, GRAVITY, MOTION, SOURCE, STATE, STILL
 
 from ..errors import MissingRuntime, ZerorateError
 from ..recordings.checks import GAP
-from ..runtimes.cache import cache_folder, fill
+from ..runtimes.runtime import cache_folder, fill
 from .c_functions import kernels_in_c
 from .reading import Kernels
 
@@ -138,8 +138,8 @@ def prebuild() -> list[Path]:
 
 def cross_compiled(text: str, system: tuple[str, str], target: Path) -> Path:
     """C as a library for another system, (platform, machine). Raises MissingRuntime."""
-    # Windows has no C library that every machine has, and the kernels need none
-    own = ("-nostdlib",) if system[0] == "win32" else ()
+    # Windows has no C library that every machine has: no loop may become its memset
+    own = ("-nostdlib", "-fno-builtin") if system[0] == "win32" else ()
     _compile([*_zig(), "-target", _TARGETS[system], "-s", *own], text, target)
     return target
 
@@ -184,25 +184,6 @@ def run_rows(
     if given[0] is not frames:
         frames[:] = given[0]
     return bias, source, quality, verdict
-
-
-def run_source(
-    gravity: bool,
-    state: NDArray[np.int32],
-    settings: NDArray[np.int32],
-    rows: NDArray[np.int32],
-    dt_us: NDArray[Any],
-    at: tuple[int, int],
-    learned: NDArray[np.int8],
-    words: NDArray[np.int32],
-) -> None:
-    """zerorate_source; at: (bias, sigma), words of the state; learned and words are written."""
-    dt_us = np.ascontiguousarray(dt_us, np.int32)
-    library().zerorate_source(
-        *(ctypes.c_int32(gravity), address(state), address(settings), address(rows)),
-        *(address(dt_us), ctypes.c_int64(len(rows)), ctypes.c_int32(at[0]), ctypes.c_int32(at[1])),
-        *(address(learned), address(words)),
-    )
 
 
 def compile_library(text: str, target: Path, *flags: str) -> None:

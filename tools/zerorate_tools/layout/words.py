@@ -1,79 +1,71 @@
-"""What a word, an array and a list of codes are."""
+"""What a word, an array and a list of codes are, and the table of words.csv.
+
+A line of the table is a word of an array. It takes the index behind the word before it. Where
+`array` is ARRAY@WORD the lines stand in the place of others, from that word on, while what `while`
+says holds. `count` is text where settings say how many there are. `least` and `most` are what a
+word can be; both are empty where its unit says it (bits: 0..30) or it may be anything of 31 bits.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+import csv
+from collections.abc import Mapping
+from importlib.resources import files
+from itertools import groupby
 
 END = 2**30  # every word fits 31 bits
+_Line = Mapping[str, str]
+
+
+def _lines_by_array() -> dict[tuple[str, str], list[_Line]]:
+    """(array, while) -> its lines, in their order."""
+    text = files(__package__).joinpath("words.csv").read_text(encoding="utf-8")
+    lines = csv.DictReader(text.splitlines())
+    return {key: list(own) for key, own in groupby(lines, lambda w: (w["array"], w["while"]))}
+
+
+LINES = _lines_by_array()
 
 
 class Word:
     """One name of an array: its index, how many words it has (text where settings say), and why.
 
-    least, most: what it can be; a line of the layout ends in both, or in neither where its unit
-    says it (bits: 0..30) or it may be anything of 31 bits.
+    least, most: what it can be; limited: whether its line says so.
     """
 
-    def __init__(self, index: int, line: Sequence[Any], while_text: str = "") -> None:
-        self.name: str = line[0]
-        self.count: int | str = line[1]
-        self.unit, self.meaning, *limits = line[2:]
-        self.index = index
-        self.while_text = while_text
-        self.limited = bool(limits)
-        self.least: int
-        self.most: int
-        self.least, self.most = limits or ((0, 30) if self.unit == "bits" else (-END, END - 1))
+    def __init__(self, index: int, line: _Line) -> None:
+        self.name, self.unit, self.meaning = line["name"], line["unit"], line["meaning"]
+        self.count: int | str = int(line["count"]) if line["count"].isdigit() else line["count"]
+        self.index, self.while_text = index, line["while"]
+        self.limited = bool(line["least"])
+        self.least, self.most = (0, 30) if self.unit == "bits" else (-END, END - 1)
+        if self.limited:
+            self.least, self.most = int(line["least"], 0), int(line["most"], 0)
 
     def bits(self) -> int:
         """Return what Array.bits says of one word."""
         return (96 if self.least < 0 else 64) + max(self.most, ~self.least).bit_length()
 
 
-class Overlay:
-    """Words in the place of others, from the word `at` on, `while_text`: when they are theirs."""
-
-    def __init__(self, at: str, while_text: str, *lines: Sequence[Any]) -> None:
-        self.at = at
-        self.while_text = while_text
-        self.lines = lines
-
-
 class Array:
     """The words of an array or of a block in it. `array.NAME` is that word's index.
 
-    letter: the kernels' name for the array or for the block's first word; base: where it begins.
-    size_name: the constant that says how many words it has. Raises AttributeError for no word.
+    name: of its lines; letter: the kernels' name for the array or for the block's first word; base:
+    where it begins. size_name: the constant that says how many words it has. first: the first
+    word's index. Raises AttributeError for no word.
     """
 
     def __init__(
-        self,
-        title: str,
-        letter: str,
-        base: str,
-        size_name: str,
-        lines: Sequence[Sequence[Any]],
-        overlays: Sequence[Overlay] = (),
-        first: int = 0,
+        self, name: str, title: str, letter: str, base: str, size_name: str = "", first: int = 0
     ) -> None:
-        self.title = title
-        self.letter = letter
-        self.base = base
-        self.size_name = size_name
-        self.words = self._placed(lines, first, "")
+        self.title, self.letter, self.base, self.size_name = title, letter, base, size_name
+        self.words = _placed(LINES[name, ""], first)
         last = self.words[-1]
         self.size = 0 if isinstance(last.count, str) else last.index + last.count
-        for overlay in overlays:
-            at = getattr(self, overlay.at)
-            self.words = self.words + self._placed(overlay.lines, at, overlay.while_text)
-
-    def _placed(self, lines: Sequence[Sequence[Any]], index: int, while_text: str) -> list[Word]:
-        words: list[Word] = []
-        for line in lines:
-            words.append(Word(index, line, while_text))
-            index += 0 if isinstance(words[-1].count, str) else words[-1].count
-        return words
+        for (array, _), lines in LINES.items():
+            of, _, at = array.partition("@")
+            if of == name and at:
+                self.words += _placed(lines, getattr(self, at))
 
     def bits(self) -> bytes:
         """Return ASCII that says of every word whose place no setting moves how many bits it has.
@@ -89,6 +81,14 @@ class Array:
             if word.name == name:
                 return word.index
         raise AttributeError(name)
+
+
+def _placed(lines: list[_Line], index: int) -> list[Word]:
+    words: list[Word] = []
+    for line in lines:
+        words.append(Word(index, line))
+        index += 0 if isinstance(words[-1].count, str) else words[-1].count
+    return words
 
 
 class Codes:

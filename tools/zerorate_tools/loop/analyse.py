@@ -12,7 +12,7 @@ from .fit.cross_products import whitener
 from .fit.line import deployed
 from .fit.noise import floor_dps
 from .fit.single import PiecesByLine
-from .motion.in_motion import in_motion, slots_of, without_scales
+from .motion.scales_and_timing import InMotion, in_motion, slots_of, without_scales
 from .read.blocks import sessions_from
 from .read.gate import (
     CannotClose,
@@ -38,6 +38,8 @@ from .verify.judge import rms_dps
 from .verify.power_on import PowerOn, ideal_dps
 from .verify.prune_by_holdout import prune_by_holdout
 
+Logs = Mapping[str, str | PathLike[str]]
+
 
 # The matrices are small: more threads wait for each other three times as long as one works.
 @threadpool_limits.wrap(limits=1, user_api="blas")
@@ -45,7 +47,7 @@ def analyse(
     sessions: list[Session],
     holdout: int | None = None,
     gate: GateReport | None = None,
-    logs: Mapping[str, str | PathLike[str]] | None = None,
+    logs: Logs | None = None,
 ) -> Analysis:
     """Run the loop. holdout: index of the session to hold out, the last by default; logs: each
     session's recording, for the firmware's own kernels to be run over where it stands alone.
@@ -57,6 +59,7 @@ def analyse(
         [sessions[at]] if len(sessions) > 1 else [],
         logs,
     )
+    gate.notes += motion.rate_scale.notes if motion.rate_scale is not None else []
     sessions = [without_scales(s, motion) for s in sessions]
     whiteners = [whitener(s.available) for s in sessions]  # while they live nobody makes them anew
     clean = remove_steps(sessions)
@@ -69,7 +72,7 @@ def analyse(
     return analysis
 
 
-def _left_dps(analysis: Analysis, motion, logs) -> float:
+def _left_dps(analysis: Analysis, motion: InMotion, logs: Logs | None) -> float:
     """RMS of what is left of pieces of one recording, by the firmware's own kernels where they
     can be run: they have learned the steps, too."""
     s, on_pieces = analysis.selection, _on_pieces(analysis.sessions[0], motion, logs)
@@ -77,7 +80,13 @@ def _left_dps(analysis: Analysis, motion, logs) -> float:
     return float(np.nan_to_num((left**2).sum(), nan=np.inf) ** 0.5)
 
 
-def _look(sessions: list[Session], at: int, gate: GateReport, motion, logs) -> Analysis:
+def _look(
+    sessions: list[Session],
+    at: int,
+    gate: GateReport,
+    motion: InMotion,
+    logs: Logs | None,
+) -> Analysis:
     """Effects of sessions, steps taken out of them or not, and what they are worth."""
     taken = len(slots_of(motion))
     held = [sessions[at]]
@@ -93,7 +102,9 @@ def _look(sessions: list[Session], at: int, gate: GateReport, motion, logs) -> A
     return Analysis(sessions, train, held, selection, judgement, floor, gate, motion, lines)
 
 
-def _on_pieces(session, motion, logs):
+def _on_pieces(
+    session: Session, motion: InMotion, logs: Logs | None
+) -> PiecesByLine | PiecesByKernels:
     if not logs:
         return PiecesByLine(session)
     log = logs[session.name]

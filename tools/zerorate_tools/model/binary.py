@@ -31,9 +31,8 @@ from .model import (
     sources_of,
 )
 from .plays import label_of, slots_of_play, split, words_of_play
-from .scaling import Unit, inputs_for
 from .slot_reading import slot_of
-from .slot_words import words_of
+from .slot_words import Unit, inputs_for, words_of
 
 VERSION, VERSION_WITH_PLAYS = 1, 2
 _HEAD = struct.Struct("<3sBHBBBBBx4BI5d")

@@ -68,8 +68,8 @@ def curve_of(kind: str) -> Callable[[NDArray[Any]], NDArray[Any]]:
 
 def is_free(term: Term) -> bool:
     """Whether the nine points of a term's curve were told by recordings, and by no row."""
-    told = (table_of(row.curve, term.lo, term.hi) for row in EFFECTS if row.curve)
-    return term.table is not None and term.table not in told
+    tables = (table_of(row.curve, term.lo, term.hi) for row in EFFECTS if row.curve)
+    return term.table is not None and term.table not in tables
 
 
 def of_any_channel(kind: str) -> bool:

@@ -3,6 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from zerorate_i2c.parts import part_by_name
+from zerorate_i2c.settings import ACCEL_LSB_PER_G, GYRO_LSB_PER_DPS
+
 from ..errors import ZerorateError
 from ..recordings import Scales
 from .term import Term
@@ -16,6 +19,8 @@ FRAME = (*ACCELERATIONS, "temp", *RATES)
 #: Sources that a hand moves faster than a tick, in the order of the firmware's kinds of them.
 FAST = (*RATES, *ACCELERATIONS)
 VIBRATION, TIME, ONE = "vib", "time", "one"
+KEY = "binding"
+NAMES = ("chip_id", "gyro_range", "accel_range", "filter")
 
 
 class CannotDeploy(ZerorateError):
@@ -113,3 +118,29 @@ def is_fast(name: str | None) -> bool:
 def sources_of(slots: Sequence[Slot]) -> list[tuple[str, bool]]:
     """(name, of the very sample) of every input that the slots need, each once, in order."""
     return list(dict.fromkeys(source for slot in slots for source in slot.sources()))
+
+
+def binding_of(scales: Scales) -> Binding:
+    """The binding that a recording's scales hold (`zerorate record` writes it); else what follows
+    from the sensor's name and scales for a part of the MPU-6050 family; else nothing.
+    """
+    recorded = scales.more.get(KEY)
+    if isinstance(recorded, dict):
+        codes = {name: recorded.get(name) for name in NAMES}
+        if all(c is None or (type(c) is int and 0 <= c < 255) for c in codes.values()):
+            return Binding(**codes)
+    try:
+        chip_id = part_by_name(scales.sensor)[0]
+    except ValueError:
+        return Binding()
+    return Binding(
+        chip_id,
+        _code(scales.gyro_lsb_per_dps, GYRO_LSB_PER_DPS),
+        _code(scales.accel_lsb_per_g, ACCEL_LSB_PER_G),
+    )
+
+
+def _code(lsb: float | None, known: tuple[float, ...]) -> int | None:
+    """The index of the range with that scale, within a thousandth."""
+    near = [i for i, one in enumerate(known) if lsb and abs(lsb - one) <= 1e-3 * one]
+    return near[0] if near else None

@@ -3,14 +3,12 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any
 
 from zerorate_tools.layout import PLAY, SLOT
 
 from .model import ONE, CannotDeploy, Slot
-from .scaling import Unit
-from .slot_reading import shorter
-from .slot_words import largest_shift, mantissas, most_of, source_words, value_of_one
+from .slot_reading import all_shortest, with_shortest
+from .slot_words import Unit, largest_shift, mantissas, most_of, source_words, value_of_one
 from .term import Term
 
 Pair = tuple[Slot | None, Slot | None]
@@ -94,22 +92,13 @@ def slots_of_play(
             return False
         return mine == list(words)
 
-    for field in ("lo", "hi", "centre", "width"):
-        if math.isfinite(getattr(term, field)):
-            for number in shorter(getattr(term, field)):
-                trial: dict[str, Any] = {field: number}
-                if same(replace(term, **trial), exact):
-                    term = replace(term, **trial)
-                    break
-    for i, value in enumerate(list(exact)):
-        exact[i] = next((n for n in shorter(value) if same(term, _with(exact, i, n))), value)
-    linear, square = _pair(term, exact, effect)
+    for name in ("lo", "hi", "centre", "width"):
+        if math.isfinite(getattr(term, name)):
+            term = with_shortest(term, name, lambda t: same(t, exact))
+    six = all_shortest(exact, lambda values: same(term, values))
+    linear, square = _pair(term, six, effect)
     assert linear and square
     return [s for s in (linear, square) if any(s.coefficient_dps)] or [linear]
-
-
-def _with(values: Sequence[float], i: int, value: float) -> list[float]:
-    return [*values[:i], value, *values[i + 1 :]]
 
 
 def _pair(term: Term, six: Sequence[float], effect: str) -> Pair:

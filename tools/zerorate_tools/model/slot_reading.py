@@ -28,7 +28,6 @@ def slot_of(
 
     name_of: an input's name; the inverse of words_of. Raises CannotDeploy where no slot is.
     """
-
     table_and_ring = words[SLOT.SLOT_TABLE], words[SLOT.SLOT_RING]
 
     def same(slot: Slot, among: Sequence[int]) -> bool:
@@ -38,18 +37,15 @@ def slot_of(
             return False
         return all(mine[i] == words[i] for i in among)
 
-    term = _term(words, name_of, unit_of, tick_s)
-    term = replace(term, table=tuple(table) if table else None)
-    slot = Slot(term, (0.0, 0.0, 0.0))
+    term = replace(_term(words, name_of, unit_of, tick_s), table=tuple(table) if table else None)
     for name in _numbers(term):
-        slot = _shortest(slot, name, lambda s: same(s, _OF_THE_BASIS))
+        term = with_shortest(term, name, lambda t: same(Slot(t, (0.0, 0.0, 0.0)), _OF_THE_BASIS))
     second_shift = words[SLOT.SLOT_SECOND + SLOT.SLOT_SHIFT]
-    factor = lsb_q14_per_coefficient(slot, unit_of, words[SLOT.SLOT_SHIFT], second_shift)
+    factor = lsb_q14_per_coefficient(term, unit_of, words[SLOT.SLOT_SHIFT], second_shift)
     factor *= unit_of("rate_x").q8_per_unit / 256 * 2.0 ** (words[SLOT.SLOT_COEFFICIENT_SHIFT] - Q)
-    for axis in range(3):
-        exact = [w / factor for w in words[SLOT.SLOT_COEFFICIENT : SLOT.SLOT_RING]]
-        exact[:axis] = slot.coefficient_dps[:axis]
-        slot = _shortest_of(exact, axis, slot, lambda s: same(s, _COEFFICIENTS))
+    exact = [w / factor for w in words[SLOT.SLOT_COEFFICIENT : SLOT.SLOT_RING]]
+    x, y, z = all_shortest(exact, lambda c: same(Slot(term, (c[0], c[1], c[2])), _COEFFICIENTS))
+    slot = Slot(term, (x, y, z))
     if not same(slot, (*_OF_THE_BASIS, *_COEFFICIENTS)):
         raise CannotDeploy("its numbers do not belong together")
     return slot
@@ -99,29 +95,23 @@ def _numbers(term: Term) -> list[str]:
     return [n for n in finite if math.isfinite(getattr(term, n))]
 
 
-def _shortest(slot: Slot, name: str, is_same: Callable[[Slot], bool]) -> Slot:
-    """The slot with the number of that name in as few digits as mean the same."""
-    value = getattr(slot.term, name)
-    for number in shorter(value):
-        field: dict[str, Any] = {name: number}
-        trial = replace(slot, term=replace(slot.term, **field))
-        if is_same(trial):
-            return trial
-    return slot
+def with_shortest(term: Term, name: str, is_same: Callable[[Term], bool]) -> Term:
+    """The term with the number of that name in as few digits as mean the same."""
+    fields: Iterator[dict[str, Any]] = ({name: n} for n in _shorter(getattr(term, name)))
+    return next(filter(is_same, (replace(term, **field) for field in fields)), term)
 
 
-def shorter(value: float) -> Iterator[float]:
+def all_shortest(
+    values: list[float], is_same: Callable[[Sequence[float]], bool]
+) -> Sequence[float]:
+    """Numbers, each in as few digits as mean the same beside the others."""
+    for i, value in enumerate(values):
+        trials = ([*values[:i], n, *values[i + 1 :]] for n in _shorter(value))
+        values = next(filter(is_same, trials), values)
+    return values
+
+
+def _shorter(value: float) -> Iterator[float]:
     """The number in ever more digits."""
     yield 0.0
     yield from (float(f"{value:.{digits}g}") for digits in range(1, 18))
-
-
-def _shortest_of(
-    exact: list[float], axis: int, slot: Slot, is_same: Callable[[Slot], bool]
-) -> Slot:
-    for number in shorter(exact[axis]):
-        values = [*exact[:axis], number, *exact[axis + 1 :]]
-        trial = Slot(slot.term, (values[0], values[1], values[2]), slot.effect)
-        if is_same(trial):
-            return trial
-    return Slot(slot.term, (exact[0], exact[1], exact[2]), slot.effect)

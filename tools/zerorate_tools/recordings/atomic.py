@@ -112,12 +112,12 @@ def _lowest_there(folder: Path) -> Path:
 
 
 @contextmanager
-def _draft(folder: Path, told: Path, do: str) -> Iterator[Path]:
+def _draft(folder: Path, shown: Path, do: str) -> Iterator[Path]:
     try:
         clear_left_over(folder)
         draft = make_draft(folder)
     except OSError as error:
-        raise _cannot_be_written(told, error, do) from error
+        raise _cannot_be_written(shown, error, do) from error
     try:
         yield draft
     finally:

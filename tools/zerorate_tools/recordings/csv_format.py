@@ -2,8 +2,11 @@
 
 import csv
 import io
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from glob import escape
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +15,8 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.csv
 
+from ..bounds import bytes_of
 from ..errors import BadRecording
-from ..small_file import bytes_of
 from .checks import arrow_batch, check_names
 from .recording import TIME
 from .scales import Scales, example_for, scales_from_text
@@ -22,6 +25,8 @@ from .text import damaged, head, open_text
 SUFFIXES = (".csv", ".csv.gz")
 _HEADER_BYTES = 1 << 16
 _BLOCK_BYTES = 1 << 20
+_ENDING = re.compile(r"(\.partial(-[0-9]+)?)?(\.csv|\.csv\.gz|\.parquet)$")
+_UNFINISHED = re.compile(r"\.partial(-[0-9]+)?\.csv$")
 
 
 def scales_path(path: Path) -> Path:
@@ -162,3 +167,26 @@ class CsvWriter:
     def close(self) -> None:
         self._writer.close()
         self._file.close()
+
+
+def is_unfinished(path: Path) -> bool:
+    """Whether the name is one of a recording that is not finished."""
+    return _UNFINISHED.search(path.name) is not None
+
+
+def stem(path: Path) -> str:
+    """run, of run.parquet as of run.partial.csv."""
+    return _ENDING.sub("", path.name)
+
+
+def names_for(out: Path) -> Iterator[Path]:
+    """Names for a recording that becomes `out`, until one is free."""
+    for number in count(1):
+        yield out.with_name(f"{stem(out)}.partial{f'-{number}' if number > 1 else ''}.csv")
+
+
+def unfinished_of(out: Path) -> list[Path]:
+    """What there is of `out` that is not finished, the newest last."""
+    found = out.parent.glob(f"{escape(stem(out))}.partial*.csv")
+    mine = [path for path in found if is_unfinished(path) and stem(path) == stem(out)]
+    return sorted(mine, key=lambda path: path.stat().st_mtime_ns)

@@ -96,8 +96,8 @@ def settle(folder: Path) -> None:
                     _finish(switch)
                 elif time.monotonic() > until:
                     raise TimeoutError(errno.ETIMEDOUT, "another program is at it")
-        except FileNotFoundError:
-            continue
+        except FileNotFoundError:  # another has finished it
+            return
         except OSError as error:
             problem = f"its files were being replaced, which cannot be finished: {error.strerror}"
             raise InFile(folder, problem, do="make it writable, then read it again") from error

@@ -18,11 +18,11 @@ from ..ending import undisturbed
 from ..errors import BadRecording, InFile
 from . import csv_format
 from .atomic import check_name
+from .csv_format import is_unfinished, names_for, stem, unfinished_of
 from .drafts import lock
 from .reading import open_recording
 from .recording import Columns
 from .scales import Scales, check_whole
-from .unfinished import is_unfinished, names_for, stem, unfinished_of
 from .writing import check_output, recording_writer
 
 _BLOCK = 1 << 16

@@ -14,7 +14,7 @@ from functools import lru_cache
 from pathlib import Path
 from threading import Lock
 
-from ..child import ALONE, how_it_ended, limit_myself, python_child
+from ..bounds import ALONE, how_it_ended, limit_myself, python_child
 from ..errors import BadRecording
 from .parquet_format import batches, open_file
 

@@ -8,8 +8,8 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from ..bounds import STEP_MB, at_most, each_at_most
 from ..errors import BadRecording
-from .bounded import STEP_MB, at_most, each_at_most
 from .checks import arrow_batch, check_names
 from .recording import TIME
 from .scales import Scales, scales_from_text

@@ -10,11 +10,11 @@ import numpy as np
 from ..errors import BadRecording, refuse_odd_name
 from . import csv_format, parquet_format
 from .checks import BatchChecker, check_names
+from .csv_format import unfinished_of
 from .drafts import settle
 from .guarded import read_in_safety
 from .recording import Columns, Recording, in_order
 from .scales import Scales
-from .unfinished import unfinished_of
 
 if TYPE_CHECKING:
     import pyarrow.parquet as pq

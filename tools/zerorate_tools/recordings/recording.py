@@ -17,6 +17,8 @@ TIME = "t_us"
 GYRO = ("gx", "gy", "gz")
 ACCEL = ("ax", "ay", "az")
 TEMP = "temp"
+#: Of a unit quaternion, body to world, of any common unit.
+ATTITUDE = ("qw", "qx", "qy", "qz")
 SAMPLE = (*ACCEL, TEMP, *GYRO)
 COLUMNS = (TIME, *GYRO, *ACCEL, TEMP)
 

@@ -1,12 +1,14 @@
 """A text file's bytes as UTF-8, whatever it is packed or encoded in, never more than a block."""
 
-from collections.abc import Callable
+import io
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pyarrow as pa
 
 from ..errors import BadRecording
 
+_BLOCK_BYTES = 1 << 20
 _PACKED = {
     b"\x1f\x8b": "gzip",
     b"BZh": "bz2",
@@ -32,6 +34,11 @@ def open_text(path: Path, encoding: str = "utf-8") -> tuple[pa.NativeFile, Calla
     if encoding != "utf-8":
         stream = pa.transcoding_input_stream(stream, encoding, "utf-8")
     return stream, raw.tell
+
+
+def lines_of(path: Path, encoding: str) -> Iterator[bytes]:
+    """The lines of the text as UTF-8, each with its end."""
+    return io.BufferedReader(open_text(path, encoding)[0], _BLOCK_BYTES)
 
 
 def head(path: Path, size: int) -> tuple[bytes, str]:
@@ -60,9 +67,9 @@ def _encoding(content: bytes) -> str:
         if content.startswith(mark):
             return name
     sample = content[:4096]
-    if len(sample) > 8 and sample[1::2].count(0) > 0.4 * len(sample):
+    if sample[1::2].count(0) > 0.4 * len(sample):
         return "utf-16-le"
-    if len(sample) > 8 and sample[::2].count(0) > 0.4 * len(sample):
+    if sample[::2].count(0) > 0.4 * len(sample):
         return "utf-16-be"
     try:
         content[: len(content) - 3].decode("utf-8")

@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyarrow as pa
 from zerorate import Corrector
+from zerorate.effects.model_file import LOADED, REASONS
+from zerorate.model import EffectModel
 from zerorate.settings import DEFAULTS
 from zerorate.storage.soundness import is_sound
 
@@ -31,14 +33,16 @@ from zerorate_tools.layout import (
     Array,
 )
 
+from ..bounds import bytes_of
 from ..errors import BadModel, InFile, ZerorateError
+from ..model import encoded, read_model
+from ..model.files import sensor_for
 from ..recordings import Recording, open_recording
 from ..recordings.atomic import all_written_beside, check_apart
 from ..recordings.reading import OpenRecording
-from ..small_file import bytes_of
 from .bias_table import SOURCES, VERDICTS, ReplayWriter, table
 from .engines import Outcome, engine, others_of
-from .samples import frames_in_batches, sensor_of
+from .samples import frames_in_batches
 
 if TYPE_CHECKING:
     import pandas
@@ -136,7 +140,7 @@ def corrector_for(recording: OpenRecording | Recording, options: dict[str, objec
     if unknown is not None:
         raise ZerorateError(f"no such setting: {unknown}; there are {', '.join(sorted(known))}")
     try:
-        return Corrector(sensor_of(recording.scales), **options)
+        return Corrector(sensor_for(recording.scales), **options)
     except (TypeError, ValueError) as error:
         raise ZerorateError(f"{recording.name}: {error}") from error
 
@@ -197,11 +201,6 @@ def load_model(
 
     Raises BadModel where it is refused, or follows a channel that the recording lacks.
     """
-    from zerorate.effects.model_file import LOADED, REASONS
-    from zerorate.model import EffectModel
-
-    from ..model import encoded, read_model
-
     effects = EffectModel()
     reason = effects.load(encoded(read_model(path)), corrector.sensor)
     if reason != LOADED:

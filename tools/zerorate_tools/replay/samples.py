@@ -6,9 +6,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from zerorate import Sensor
 
-from ..recordings import Recording, Scales
+from ..recordings import Recording
 from ..recordings.reading import OpenRecording
 from ..recordings.recording import Columns
 
@@ -32,17 +31,6 @@ class Frames:
 
     def __len__(self) -> int:
         return len(self.t_us)
-
-
-def sensor_of(scales: Scales) -> Sensor:
-    """The firmware's Sensor for a recording's scales; absent channels have scale 0."""
-    return Sensor(
-        odr_hz=scales.odr_hz,
-        gyro_lsb_per_dps=scales.gyro_lsb_per_dps,
-        accel_lsb_per_g=scales.accel_lsb_per_g or 0.0,
-        temp_lsb_per_degc=scales.temp_lsb_per_degc or 0.0,
-        temp_offset_degc=scales.temp_offset_degc or 0.0,
-    )
 
 
 def frames_in_batches(

@@ -12,10 +12,9 @@ from zerorate import Corrector
 from zerorate.model import EffectModel
 
 from .. import layout
+from ..bounds import bytes_of
 from ..errors import InFile, ZerorateError
-from ..layout import SETTINGS
-from ..layout.naming import Names, named, named_source, named_state
-from ..small_file import bytes_of
+from ..layout import SETTINGS, Names, named, named_source, named_state
 
 _MAGIC, _HEADER, _CRC = b"ZRS", 20, 4
 _STATE_VERSION = 2  # the models of a store are of version 1

@@ -9,12 +9,14 @@ from numpy.typing import NDArray
 from ..loop.read.sessions import Session, block_basis
 from ..loop.verify.analysis import Analysis
 from ..model.term import Term
-from .held_out import trained_residuals, trend
-from .kinds import quantity
 from .plot import Line, Panel, Plot, Series, thinned
-from .residual_plots import AXES, TRENDS
+from .residual_plots import AXES, TRENDS, trained_residuals, trend
+from .sentences import quantity
 
 _MOST_DOTS = 600
+#: Terms drawn as one curve, each with its (3,) mdps; a session with its residual (n, 3) mdps.
+Group = list[tuple[Term, NDArray[Any]]]
+Judged = tuple[Session, NDArray[Any]]
 
 
 def effect_plots(analysis: Analysis, names: list[str]) -> list[Plot]:
@@ -30,7 +32,7 @@ def effect_plots(analysis: Analysis, names: list[str]) -> list[Plot]:
     return out
 
 
-def _sessions(analysis: Analysis) -> list[tuple[Session, NDArray]]:
+def _sessions(analysis: Analysis) -> list[Judged]:
     """(session, residual (n, 3) mdps under the whole model), training first, the holdout last.
 
     Each is less its own mean: what an offset is, is no news of an effect.
@@ -40,7 +42,13 @@ def _sessions(analysis: Analysis) -> list[tuple[Session, NDArray]]:
     return [(s, r - np.nanmean(r, axis=0)) for s, r in every]
 
 
-def _plot(number, name, terms, coefficients_mdps, sessions):
+def _plot(
+    number: int,
+    name: str,
+    terms: list[Term],
+    coefficients_mdps: NDArray[Any],
+    sessions: list[Judged],
+) -> Plot:
     groups = _groups(terms, coefficients_mdps, sessions[0][0])
     views = tuple(groups) if len(groups) > 1 else ()
     series = [
@@ -65,15 +73,17 @@ def _plot(number, name, terms, coefficients_mdps, sessions):
     )
 
 
-def _groups(terms, coefficients_mdps, session) -> dict[str, list[tuple[Term, NDArray]]]:
+def _groups(
+    terms: list[Term], coefficients_mdps: NDArray[Any], session: Session
+) -> dict[str, Group]:
     """Label of the abscissa -> the terms drawn over it, as one curve, each with its (3,) mdps."""
-    out: dict[str, list[tuple[Term, NDArray]]] = {}
+    out: dict[str, Group] = {}
     for term, coefficients in zip(terms, coefficients_mdps):
         out.setdefault(abscissa(term, session)[1], []).append((term, coefficients))
     return out
 
 
-def _series(group, sessions, views):
+def _series(group: Group, sessions: list[Judged], views: tuple[str, ...]) -> list[Series]:
     out = []
     for a in range(3):
         cloud = [_points(group, a, s, left[:, a]) for s, left in sessions]
@@ -88,19 +98,23 @@ def _series(group, sessions, views):
     return out
 
 
-def _correction(group, axis, session):
+def _correction(group: Group, axis: int, session: Session) -> NDArray[Any]:
     """(n,) mdps by block."""
-    return sum(coefficients[axis] * block_basis(term, session) for term, coefficients in group)
+    each = [coefficients[axis] * block_basis(term, session) for term, coefficients in group]
+    return np.sum(each, axis=0)
 
 
-def _points(group, axis, session, left):
+def _points(
+    group: Group, axis: int, session: Session, left: NDArray[Any]
+) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
+    """Abscissa, measured mdps and trend of the blocks with a rate."""
     there = np.isfinite(left)
     x = abscissa(group[0][0], session)[0]
     y = _correction(group, axis, session) + left
     return x[there], y[there], trend(session)[there]
 
 
-def _curve(group, axis, sessions):
+def _curve(group: Group, axis: int, sessions: list[Session]) -> tuple[NDArray[Any], NDArray[Any]]:
     """Over the sorted abscissa; a loop, which hysteresis is, in the order of time."""
     term = group[0][0]
     is_loop = any(t.memory in ("backlash", "play") for t, _ in group)
@@ -113,7 +127,7 @@ def _curve(group, axis, sessions):
     return thinned(x[order], y[order])
 
 
-def abscissa(term: Term, session: Session) -> tuple[NDArray, str]:
+def abscissa(term: Term, session: Session) -> tuple[NDArray[Any], str]:
     """(n,) what the effect is best drawn over, by block, and its label."""
     name, unit = quantity(term.source)
     if term.decay_s or term.source == "time":

@@ -1,9 +1,12 @@
 """The firmware's estimators at work: its state, looked at while the recordings are replayed."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,13 +14,18 @@ from zerorate import Corrector
 
 from zerorate_tools.layout import AXIS, ESTIMATOR, MARKS, SETTINGS, STATE, axis_at
 
+from ..numbers import fixed
 from ..recordings import Scales, open_recording
 from ..replay.engines import engine
 from ..replay.replaying import corrector_for, load_model
 from ..replay.samples import FRAME, frames_in_batches
+from .plot import Line, Panel, Plot, Series
+from .residual_plots import AXES
 
 _POPULATION = 0x3FFF
 _TEMP = FRAME.index("temp")
+KINDS = (("long", "long-term estimators", "square"), ("short", "short-term estimators", "circle"))
+_AXIS = 0
 
 
 @dataclass(frozen=True)
@@ -30,8 +38,8 @@ class Estimator:
     kind: str
     temp_degc: float | None
     bias_dps: float
-    edges_dps: NDArray
-    readings: NDArray
+    edges_dps: NDArray[Any]
+    readings: NDArray[Any]
     in_use: bool
 
 
@@ -45,7 +53,7 @@ class Moment:
     minute: float
     recording: str
     temp_degc: float | None
-    bias_dps: NDArray
+    bias_dps: NDArray[Any]
     axes: tuple[tuple[Estimator, ...], ...]
 
 
@@ -77,7 +85,9 @@ def moments(
     return out
 
 
-def _moment(corrector: Corrector, scales: Scales, minute, name, raw_temp) -> Moment:
+def _moment(
+    corrector: Corrector, scales: Scales, minute: float, name: str, raw_temp: int
+) -> Moment:
     state, lsb = np.array(corrector.state), scales.gyro_lsb_per_dps
     warm = bool(scales.temp_lsb_per_degc)
     return Moment(
@@ -91,7 +101,7 @@ def _moment(corrector: Corrector, scales: Scales, minute, name, raw_temp) -> Mom
     )
 
 
-def _estimators(state: NDArray, settings, axis: int, scales: Scales) -> list[Estimator]:
+def _estimators(state: NDArray[Any], settings: Any, axis: int, scales: Scales) -> list[Estimator]:
     """Those of an axis that hold anything."""
     block = axis_at(settings, axis)
     words, short = settings[SETTINGS.ESTIMATOR_WORDS], settings[SETTINGS.SHORT]
@@ -107,7 +117,7 @@ def _estimators(state: NDArray, settings, axis: int, scales: Scales) -> list[Est
     return out
 
 
-def _estimator(kind: str, own: NDArray, bins: int, in_use: bool, scales: Scales) -> Estimator:
+def _estimator(kind: str, own: NDArray[Any], bins: int, in_use: bool, scales: Scales) -> Estimator:
     histogram, lsb = own[ESTIMATOR.EST_HISTOGRAM :], scales.gyro_lsb_per_dps
     warm = kind != "any" and scales.temp_lsb_per_degc
     return Estimator(
@@ -118,3 +128,119 @@ def _estimator(kind: str, own: NDArray, bins: int, in_use: bool, scales: Scales)
         readings=histogram[:bins] & _POPULATION,
         in_use=bool(in_use),
     )
+
+
+def held_over_time(seen: list[Moment]) -> Plot | None:
+    """Which temperatures are remembered, and by which kind; None without a thermometer."""
+    if not any(m.temp_degc is not None for m in seen):
+        return None
+    series = []
+    for kind, name, symbol in KINDS:
+        rows = [(m.minute, e) for m in seen for e in m.axes[_AXIS] if e.kind == kind]
+        x = np.array([minute for minute, _ in rows])
+        y = np.array([e.temp_degc for _, e in rows], float)
+        words = [_said(e) for _, e in rows]
+        size = 6.0 if kind == "long" else 4.0
+        series.append(Series(0, x, y, name, kind, "points", symbol, size=size, words=words))
+    warm = np.array([(m.minute, m.temp_degc) for m in seen if m.temp_degc is not None])
+    series.append(Series(0, warm[:, 0], warm[:, 1], "die temperature", "context"))
+    panel = Panel("temperature, °C", "minutes, power-ons end to end", "°C", lines=_power_ons(seen))
+    return Plot(
+        key="estimators-time",
+        title="Which temperatures the firmware remembers",
+        caption="The short-term estimators follow the temperature; those that have seen enough "
+        "become long-term ones, which keep a wide range. They outlast the power cut.",
+        description="Over time, the temperature of every short-term estimator as a circle and of "
+        "every long-term one as a square, with the die temperature as a line.",
+        panels=(panel,),
+        series=tuple(series),
+        stacked=True,
+    )
+
+
+def _power_ons(seen: list[Moment]) -> tuple[Line, ...]:
+    first = [m for before, m in zip(seen, seen[1:]) if m.recording != before.recording]
+    return tuple(Line("x", m.minute, "event", f"power-on: {m.recording}") for m in first)
+
+
+def _said(e: Estimator) -> str:
+    return f"{int(e.readings.sum())} readings, bias {fixed(e.bias_dps, 3)} dps"
+
+
+def inside(seen: list[Moment]) -> Plot | None:
+    """Each estimator's bias over temperature, and the histogram in use, at each moment.
+
+    None where nothing was learned.
+    """
+    seen = [m for m in seen if all(m.axes)]
+    if not seen:
+        return None
+    drawn = [_at(m) for m in seen]
+    warm = any(s.panel == 1 for s in drawn[-1])
+    panels = [Panel("readings in each bin", "rate, dps", "readings")]
+    if warm:
+        panels.append(Panel("bias by estimator, dps", "°C", "dps"))
+    frames = tuple(
+        (f"minute {m.minute:.0f} · {m.recording}", dict(enumerate(series)))
+        for m, series in zip(seen, drawn)
+    )
+    return Plot(
+        key="estimators-inside",
+        title="Inside the estimators",
+        caption="Move the slider through the recordings. Each estimator is a histogram of few bins "
+        "that crowd where the readings are; the one in use is drawn. Its mean is its bias; "
+        "a line through the estimators near by answers for temperatures in between.",
+        description="The histogram of the estimator in use as bars"
+        + (", and the bias of every estimator over its temperature." if warm else "."),
+        panels=tuple(panels),
+        series=tuple(drawn[-1]),
+        views=tuple(f"{a} axis" for a in AXES),
+        frames=frames,
+    )
+
+
+def _at(m: Moment) -> list[Series]:
+    out = []
+    for a, held in enumerate(m.axes):
+        view = (f"{AXES[a]} axis",)
+        in_use = next((e for e in held if e.in_use), held[0])
+        out += [_histogram(in_use, view), _edges(in_use, view), _mean(in_use, view)]
+        if m.temp_degc is None:
+            continue
+        for kind, name, symbol in KINDS:
+            own = [e for e in held if e.kind == kind]
+            out.append(_biases(own, name, kind, symbol, view))
+        now: dict[str, Any] = {"mark": "points", "symbol": "star", "size": 11.0, "views": view}
+        x, y = np.array([m.temp_degc]), np.array([m.bias_dps[a]])
+        out.append(Series(1, x, y, "the firmware's bias", "now", **now))
+    return out
+
+
+def _histogram(e: Estimator, view: tuple[str, ...]) -> Series:
+    middle, width = (e.edges_dps[:-1] + e.edges_dps[1:]) / 2, np.diff(e.edges_dps)
+    said = "at any temperature" if e.temp_degc is None else f"at {e.temp_degc:.1f} °C"
+    words = [f"{n} readings {said}" for n in e.readings]
+    look: dict[str, Any] = {"mark": "bars", "width": width, "views": view, "words": words}
+    return Series(0, middle, e.readings.astype(float), "histogram in use", "any", **look)
+
+
+def _edges(e: Estimator, view: tuple[str, ...]) -> Series:
+    """A tick at each edge of a bin, for most bins are empty."""
+    high = 0.04 * max(1, int(e.readings.max()))
+    x = np.column_stack([e.edges_dps, e.edges_dps, np.full(len(e.edges_dps), np.nan)])
+    y = np.tile([0.0, high, np.nan], len(e.edges_dps))
+    return Series(0, x.ravel(), y, "edges of its bins", "context", views=view)
+
+
+def _mean(e: Estimator, view: tuple[str, ...]) -> Series:
+    y = np.array([0.0, 1.06 * max(1, int(e.readings.max()))])
+    return Series(0, np.full(2, e.bias_dps), y, "its bias", "now", dash="dot", views=view)
+
+
+def _biases(
+    own: list[Estimator], name: str, kind: str, symbol: str, view: tuple[str, ...]
+) -> Series:
+    x = np.array([e.temp_degc for e in own], float)
+    y = np.array([e.bias_dps for e in own])
+    look: dict[str, Any] = {"mark": "points", "symbol": symbol, "size": 9.0, "views": view}
+    return Series(1, x, y, name, kind, words=[_said(e) for e in own], **look)

@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 
 from ..model import read_model
-from ..model.rate_matrix import rate_matrix
-from .board import deployment
-from .page import rendered
+from ..model.model_in_words import rate_matrix
+from .page import deployment, rendered
 
 _AXES = "xyz"
 _TURN_DEG = 360.0

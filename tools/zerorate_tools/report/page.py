@@ -1,19 +1,22 @@
 """report.html: one file that needs nothing else."""
 
+from __future__ import annotations
+
 import json
+import shlex
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from functools import lru_cache
 from html import escape
 from importlib.metadata import version
 from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..numbers import chance, figure
-from . import kinds, sentences
-from .board import Deployment
+from . import sentences
 from .plot import Line, Panel, Plot, Series
 
 # Heights in CSS pixels: of a panel in a stack, alone, beside others and under others, and of what
@@ -39,6 +42,17 @@ ROLES: dict[str, tuple[str, str]] = {
     "any": ("#00795a", "#2fc49b"),
     "now": ("#1b1b1f", "#f2f2f4"),
 }
+_LOAD = """\
+from zerorate.model import EffectModel
+from zerorate.effects.model_file import LOADED, REASONS
+
+effects = EffectModel()
+reason = effects.load_file("model.bin", corrector.sensor, imu.binding)
+if reason == LOADED:
+    corrector.use_model(effects)
+else:
+    print("model.bin is not used:", REASONS[reason])
+"""
 
 
 def page(
@@ -83,7 +97,7 @@ def rendered(
 
 
 @lru_cache
-def _environment(package: str = __package__):
+def _environment(package: str = __package__) -> Any:
     from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 
     environment = Environment(
@@ -97,7 +111,7 @@ def _environment(package: str = __package__):
         figure=figure, chance=chance, sentence=sentences.sentence, capital=sentences.capital
     )
     environment.globals.update(
-        kinds=kinds, words=sentences, height=height, legend=legend, zip=zip, axes="xyz"
+        kinds=sentences, words=sentences, height=height, legend=legend, zip=zip, axes="xyz"
     )
     return environment
 
@@ -132,7 +146,9 @@ def legend(plot: Plot) -> list[dict[str, str]]:
 def smallest(result: Mapping[str, Any]) -> list[tuple[str, float]]:
     """(effect in words, mdps), the best shown first."""
     sizes = result["smallest_detectable_mdps"].items()
-    return [(kinds.title(kind), value) for kind, value in sorted(sizes, key=lambda item: item[1])]
+    return [
+        (sentences.title(kind), value) for kind, value in sorted(sizes, key=lambda item: item[1])
+    ]
 
 
 def faults(result: Mapping[str, Any]) -> list[tuple[str, str]]:
@@ -200,3 +216,24 @@ def _values(series: Series) -> dict[str, Any]:
 def _numbers(values: Iterable[float]) -> list[float | None]:
     """Five digits, which a screen cannot show; None where a line breaks."""
     return [float(f"{v:.5g}") if np.isfinite(v) else None for v in np.asarray(values, float)]
+
+
+@dataclass(frozen=True)
+class Deployment:
+    """Shell commands, lines for the program after `corrector` was made, and for its loop."""
+
+    commands: str
+    program: str
+    each_reading: str
+
+
+def deployment(folder: Path, channels: Sequence[str]) -> Deployment:
+    """What to type and to write for the model in `folder`, which follows these extra channels."""
+    model = shlex.quote(str(folder / "model.bin"))
+    commands = f"zerorate model check {model}\nzerorate flash /dev/ttyACM0 --model {model}\n"
+    lines = [f"effects.channel({name!r}, {_variable(name)})" for name in channels]
+    return Deployment(commands, _LOAD, "".join(f"{line}\n" for line in lines))
+
+
+def _variable(name: str) -> str:
+    return name if name.isidentifier() and name.isascii() else "value"

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,8 +20,8 @@ class Series:
     """
 
     panel: int
-    x: NDArray
-    y: NDArray
+    x: NDArray[Any]
+    y: NDArray[Any]
     name: str
     role: str
     mark: str = "line"
@@ -28,7 +29,7 @@ class Series:
     dash: str = "solid"
     size: float = 6.0
     views: tuple[str, ...] = ()
-    width: NDArray | None = None
+    width: NDArray[Any] | None = None
     words: Sequence[str] | None = None
 
 
@@ -83,7 +84,9 @@ class Plot:
     frames: tuple[tuple[str, Mapping[int, Series]], ...] = field(default=())
 
 
-def thinned(x: NDArray, y: NDArray, most: int = MOST_POINTS) -> tuple[NDArray, NDArray]:
+def thinned(
+    x: NDArray[Any], y: NDArray[Any], most: int = MOST_POINTS
+) -> tuple[NDArray[Any], NDArray[Any]]:
     """Of each stretch of a long line its lowest and its highest point, in their order."""
     n = len(x)
     if n <= most:

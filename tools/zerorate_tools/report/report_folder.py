@@ -9,15 +9,19 @@ from ..errors import ZerorateError
 from ..loop.verify.analysis import Analysis
 from ..model import read_model
 from ..recordings.atomic import final, written_beside
-from .board import deployment
 from .effect_plots import effect_plots
-from .estimator_plots import held_over_time, inside
-from .estimators import moments
-from .held_out import fitted_noise, held_out
-from .kinds import title
-from .page import page
+from .estimators import held_over_time, inside, moments
+from .page import deployment, page
 from .plot import Plot
-from .residual_plots import against_temperature, against_time, at_a_glance, deviations
+from .residual_plots import (
+    against_temperature,
+    against_time,
+    at_a_glance,
+    deviations,
+    fitted_noise,
+    held_out,
+)
+from .sentences import title
 
 #: Moments at which the firmware's state is looked at, of all recordings together.
 _MOST_MOMENTS = 120

@@ -1,13 +1,20 @@
 """The error of the held-out part: against time, and against temperature by heating and cooling."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..allan import Noise, overlapping
-from .held_out import HeldOut
+from ..loop.fit.noise import noise_of
+from ..loop.fit.regression import predicted
+from ..loop.read.sessions import Session
+from ..loop.verify.analysis import Analysis
+from ..loop.verify.judge import scored
 from .plot import Line, Panel, Plot, Series, thinned
 
 _LEAST = 9
@@ -17,9 +24,13 @@ _LONGEST_LABEL = 48
 TRENDS = ((1, "heating", "triangle-up"), (-1, "cooling", "triangle-down"), (0, "held", "circle"))
 _ROWS = ("all axes", "x axis", "y axis", "z axis")
 _APART = 0.14
+_MDPS = 1e3
+#: Blocks on either side from which a temperature's trend is taken.
+_TREND_BLOCKS = 2
+_HELD_DEGC_PER_MIN = 0.06
 
 
-def against_time(parts: list[HeldOut], events: list[dict]) -> Plot:
+def against_time(parts: list[HeldOut], events: list[dict[str, Any]]) -> Plot:
     """Before and after by axis, the temperature below, steps as lines across."""
     series, warm = [], any(p.temp_degc is not None for p in parts)
     for part, start in zip(parts, _starts(parts)):
@@ -85,9 +96,12 @@ def against_temperature(parts: list[HeldOut]) -> Plot | None:
     )
 
 
-def _pooled(parts, view, axis, code):
+def _pooled(
+    parts: list[HeldOut], view: str, axis: int, code: int
+) -> tuple[NDArray[Any], NDArray[Any]]:
     x, y = [], []
     for part in parts:
+        assert part.temp_degc is not None, "others were left out"
         error = (part.after_mdps if view == "after" else part.before_mdps)[:, axis]
         there = (part.trend == code) & np.isfinite(error)
         x.append(part.temp_degc[there])
@@ -95,13 +109,13 @@ def _pooled(parts, view, axis, code):
     return thinned(np.concatenate(x), np.concatenate(y))
 
 
-def _starts(parts):
+def _starts(parts: list[HeldOut]) -> NDArray[Any]:
     """Minute at which each part begins when they are laid end to end."""
     lengths = [p.minutes[-1] + p.block_s / 120 for p in parts]
     return np.cumsum([0.0, *lengths[:-1]])
 
 
-def _steps(parts, events):
+def _steps(parts: list[HeldOut], events: list[dict[str, Any]]) -> list[Line]:
     lines = []
     for part, start in zip(parts, _starts(parts)):
         for event in events:
@@ -135,7 +149,9 @@ def at_a_glance(result: Mapping[str, Any]) -> Plot:
     )
 
 
-def _figures(result, name):
+def _figures(
+    result: Mapping[str, Any], name: str
+) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
     """Value and limits, each (4,): all axes first."""
     whole = result["in_all"]
     limits = np.array([whole["ci95_mdps"][name], *result["ci95_mdps"][name]])
@@ -181,7 +197,7 @@ def deviations(parts: list[HeldOut], noise: list[Noise], floor_mdps: list[float]
     )
 
 
-def longest(parts: list[HeldOut]) -> tuple[float, NDArray, NDArray] | None:
+def longest(parts: list[HeldOut]) -> tuple[float, NDArray[Any], NDArray[Any]] | None:
     """block_s, before and after, each (n, 3), of the longest stretch without a gap, if enough."""
     best = None
     for part in parts:
@@ -190,3 +206,77 @@ def longest(parts: list[HeldOut]) -> tuple[float, NDArray, NDArray] | None:
             if there[run[0]] and (best is None or len(run) > len(best[1])):
                 best = (part.block_s, part.before_mdps[run], part.after_mdps[run])
     return best if best is not None and len(best[1]) >= _LEAST else None
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """A held-out recording by blocks: minutes (n,), temp_degc (n,) or None, trend (n,) +1 heating,
+    -1 cooling, 0 held; before_mdps, after_mdps (n, 3), NaN where nothing was scored.
+    """
+
+    name: str
+    minutes: NDArray[Any]
+    block_s: float
+    temp_degc: NDArray[Any] | None
+    trend: NDArray[Any]
+    before_mdps: NDArray[Any]
+    after_mdps: NDArray[Any]
+    start_us: int
+
+
+def held_out(analysis: Analysis) -> list[HeldOut]:
+    """The recordings that were held out, with their error before and after."""
+    judged = analysis.judgement
+    return [
+        HeldOut(
+            name=session.name,
+            minutes=minutes(session),
+            block_s=session.block_s,
+            temp_degc=temperature(session),
+            trend=trend(session),
+            before_mdps=_MDPS * before,
+            after_mdps=_MDPS * after,
+            start_us=session.start_us,
+        )
+        for session, before, after in zip(
+            analysis.holdout, judged.residual_before, judged.residual_after
+        )
+    ]
+
+
+def trained_residuals(analysis: Analysis) -> list[tuple[Session, NDArray[Any]]]:
+    """(session, (n, 3) mdps left by the whole model) of what was fitted on."""
+    terms = [*analysis.selection.straight, *analysis.selection.terms]
+    out = []
+    for session in analysis.train:
+        model = predicted(terms, analysis.coefficients, session)
+        out.append((session, _MDPS * scored(session, model, session)[0]))
+    return out
+
+
+def fitted_noise(analysis: Analysis) -> list[Noise]:
+    """White noise, flicker and random walk of each axis, as the floor is taken from."""
+    whole = [*analysis.selection.straight, *analysis.selection.terms]
+    return noise_of(analysis.judgement.whole, whole)
+
+
+def minutes(session: Session) -> NDArray[Any]:
+    """(n,) middle of each block, minutes since the recording's start."""
+    return (np.arange(session.blocks) + 0.5) * session.block_s / 60
+
+
+def temperature(session: Session) -> NDArray[Any] | None:
+    """(n,) degC by block, None without a thermometer."""
+    ticks = session.sources.get("temp")
+    return None if ticks is None else session.block_mean(ticks)
+
+
+def trend(session: Session) -> NDArray[Any]:
+    """(n,) int: 1 where the temperature rises, -1 where it falls, 0 where it is held."""
+    temp = temperature(session)
+    if temp is None or len(temp) < 2 * _TREND_BLOCKS + 1:
+        return np.zeros(session.blocks, int)
+    padded = np.pad(temp, _TREND_BLOCKS, mode="edge")
+    rise = padded[2 * _TREND_BLOCKS :] - padded[: -2 * _TREND_BLOCKS]
+    per_min = rise / (2 * _TREND_BLOCKS * session.block_s / 60)
+    return np.where(np.abs(per_min) < _HELD_DEGC_PER_MIN, 0, np.sign(per_min)).astype(int)

@@ -11,7 +11,7 @@ from pathlib import Path
 from zerorate_tools.errors import MissingRuntime
 from zerorate_tools.runtimes.runtime import Job, Runtime
 
-from .cache import fill, runtime_folder
+from .runtime import fill, runtime_folder
 
 _OLDEST = 18
 _SYSTEM_CERTIFICATES = Path("/etc/ssl/certs/ca-certificates.crt")

@@ -4,18 +4,31 @@ No reader can hold the service up or end it: what one does not take in time is d
 whole line, and counted in `lost`.
 """
 
+import json
 import os
 import select
 import socket
+from collections.abc import Iterator
 from ipaddress import IPv4Address, IPv6Address, ip_address
 from pathlib import Path
-from typing import Protocol, TextIO
+from typing import Any, Protocol, TextIO
 
-from ..errors import InFile, ZerorateError
+from zerorate_fakes import FakeI2C, FakeMPU6050, Physical
+from zerorate_i2c import clock
+
+from ..errors import InFile, MissingLibrary, ZerorateError
 
 #: Readers of a socket at once: the service keeps descriptors for its bus and its file.
 MOST_READERS = 100
 _HIGHEST_PORT = 65535
+#: Entry of a line -> (metric, what it is).
+_VECTORS = {
+    "rate_dps": ("zerorate_rate_dps", "Rate without bias."),
+    "bias_dps": ("zerorate_bias_dps", "Bias that is subtracted."),
+    "accel_g": ("zerorate_acceleration_g", "Specific force."),
+}
+_TEMPERATURE = ("zerorate_temperature_degc", "Temperature of the chip.")
+_BIAS_DPS = (0.31, -0.19, 0.08)
 
 
 class Sink(Protocol):
@@ -177,3 +190,71 @@ def _answers(path: Path) -> bool:
         except BlockingIOError:
             pass
     return True
+
+
+class Metrics:
+    """http://HOST:PORT/metrics, loopback unless remote. A line is read when somebody asks.
+
+    Raises ZerorateError for an address that cannot be had, and MissingLibrary.
+    """
+
+    lost = 0
+
+    def __init__(self, address: str, remote: bool = False) -> None:
+        try:
+            from prometheus_client import CollectorRegistry, start_http_server
+        except ModuleNotFoundError as error:
+            raise MissingLibrary("prometheus_client") from error
+        host, port = address_of("--metrics", address, remote)
+        registry = CollectorRegistry()
+        registry.register(self)
+        self._line = b""
+        self._lines = 0
+        try:
+            self._server, self._thread = start_http_server(port, str(host), registry)
+        except OSError as error:
+            do = "name another port"
+            raise ZerorateError(f"--metrics {address}: {error.strerror or error}; {do}") from error
+
+    def put(self, line: bytes) -> None:
+        """Keep it until the next one."""
+        self._line = line
+        self._lines += 1
+
+    def collect(self) -> Iterator[Any]:
+        """The metrics of the newest line; samples alone before the first."""
+        from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily
+
+        line = json.loads(self._line or b"{}")
+        yield CounterMetricFamily("zerorate_samples", "Samples published.", self._lines)
+        for entry, (name, what) in _VECTORS.items():
+            metric = GaugeMetricFamily(name, what, labels=["axis"])
+            for axis, value in zip("xyz", line.get(entry, ())):
+                metric.add_metric([axis], value)
+            yield metric
+        if "temp_degc" in line:
+            yield GaugeMetricFamily(*_TEMPERATURE, value=line["temp_degc"])
+
+    def close(self) -> None:
+        """Answer nobody any more."""
+        self._server.shutdown()
+        self._server.server_close()
+        self._thread.join()
+
+
+class FakeBus(FakeI2C):
+    """The bus of a chip with a bias, whose time is this machine's."""
+
+    def __init__(self, address: int = 0x68, part: str | None = None) -> None:
+        self.chip = FakeMPU6050(Physical(gyro_dps=_BIAS_DPS), part=part or "MPU-6050")
+        super().__init__({address: self.chip})
+        self._last_us = clock.ticks_us()
+
+    def _begin(self, wire_bytes: int) -> str | None:
+        now_us = clock.ticks_us()
+        self.chip.advance_us(clock.ticks_diff(now_us, self._last_us))
+        self._last_us = now_us
+        return super()._begin(wire_bytes)
+
+    def close(self) -> None:
+        """Nothing to close: the chip goes on."""

@@ -44,9 +44,8 @@ def _running_product(q: np.ndarray) -> np.ndarray:
     padded = padded.reshape(blocks, _STRIDE, 4)
     for at in range(1, _STRIDE):
         padded[:, at] = multiply(padded[:, at - 1], padded[:, at])
-    if blocks > 1:
-        ends = _running_product(padded[:, -1].copy())
-        padded[1:] = multiply(ends[:-1, None], padded[1:])
+    ends = _running_product(padded[:, -1].copy())
+    padded[1:] = multiply(ends[:-1, None], padded[1:])
     out = padded.reshape(-1, 4)[:n]
     return out / np.linalg.norm(out, axis=-1, keepdims=True)
 

@@ -1,15 +1,91 @@
-"""Extra channels: supply, load, humidity, or one that nobody records."""
+"""What goes its way over time: noise by its colour, a path of temperature, extra channels."""
 
-from collections.abc import Callable, Mapping
+import zlib
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy.signal import lfilter
 
-from .noise import gauss_markov
-from .paths import durations, path
+_OCTAVES_TO_S = 4e4
+
+
+def stream(seed: int, session: int, purpose: str) -> np.random.Generator:
+    """A generator for one purpose of one session.
+
+    Noise stays the same sample for sample when an effect is added, so two runs differ by it alone.
+    """
+    return np.random.default_rng([seed, session, zlib.crc32(purpose.encode())])
+
+
+def flicker(rng: np.random.Generator, n: int, dt_s: float, floor: np.ndarray) -> np.ndarray:
+    """(n, axes) flicker noise whose Allan deviation is flat at `floor` (axes,), same unit.
+
+    A sum of first-order Gauss-Markov processes, one per octave of time constant from dt to 4e4 s,
+    all of one variance s2: one-sided density h/f with h = s2/ln 2, Allan variance 2 ln2 h
+    (IEEE Std 952, annex C; the factor 0.664 of some data sheets is this over the bias instability).
+    """
+    std = np.asarray(floor, float) / np.sqrt(2.0)
+    total = np.zeros((n, len(std)))
+    for tau_s in octaves_s(dt_s):
+        total += gauss_markov(rng, n, dt_s, tau_s, std)
+    return total
+
+
+def octaves_s(dt_s: float) -> np.ndarray:
+    """Time constants of flicker noise, s: an octave each, from a sample's to 4e4 s."""
+    return dt_s * 2.0 ** np.arange(max(int(np.ceil(np.log2(_OCTAVES_TO_S / dt_s))), 1))
+
+
+def gauss_markov(
+    rng: np.random.Generator, n: int, dt_s: float, tau_s: float, std: np.ndarray
+) -> np.ndarray:
+    """(n, axes) stationary first-order process of correlation time tau_s and deviation `std`."""
+    keep = np.exp(-dt_s / tau_s)
+    drive = rng.standard_normal((n, len(std))) * (std * np.sqrt(1 - keep**2))
+    first = rng.standard_normal((1, len(std))) * std
+    return lfilter([1.0], [1.0, -keep], drive, axis=0, zi=keep * first)[0]
+
+
+def random_walk(rng: np.random.Generator, n: int, dt_s: float, step: np.ndarray) -> np.ndarray:
+    """(n, axes) walk from zero; step (axes,) is its deviation after one second."""
+    steps = rng.standard_normal((n, len(step))) * (np.asarray(step) * np.sqrt(dt_s))
+    steps[:1] = 0.0
+    return np.cumsum(steps, axis=0)
+
+
+def telegraph(
+    rng: np.random.Generator, n: int, dt_s: float, size: np.ndarray, mean_s: float
+) -> np.ndarray:
+    """(n, axes) jumps between -size/2 and +size/2, each level held mean_s on average."""
+    flips = rng.random((n, len(size))) < dt_s / mean_s
+    flips[0] = rng.random(len(size)) < 0.5
+    return (np.cumsum(flips, axis=0) % 2 - 0.5) * size
+
+
+def power_law(
+    rng: np.random.Generator, n: int, dt_s: float, std: np.ndarray, exponent: float
+) -> np.ndarray:
+    """(n, axes) noise with density f**-exponent and deviation `std` over these n samples."""
+    frequency = np.fft.rfftfreq(n, dt_s)
+    shape = np.zeros_like(frequency)
+    shape[1:] = frequency[1:] ** (-exponent / 2)
+    spectrum = np.fft.rfft(rng.standard_normal((n, len(std))), axis=0) * shape[:, None]
+    coloured = np.fft.irfft(spectrum, n, axis=0)
+    return coloured / np.maximum(coloured.std(axis=0), 1e-300) * std
+
+
+def outliers(
+    rng: np.random.Generator, n: int, dt_s: float, size: float, per_hour: float
+) -> np.ndarray:
+    """(n, 3) rare single readings off by a normal deviate of deviation `size`."""
+    hit = rng.random(n) < per_hour * dt_s / 3600
+    return np.where(hit[:, None], rng.standard_normal((n, 3)) * size, 0.0)
+
 
 Table = Mapping[str, Any]
+_SECONDS = {"s": 1.0, "minutes": 60.0, "hours": 3600.0}
 
 
 @dataclass
@@ -75,3 +151,48 @@ CHANNELS: dict[str, Callable[..., np.ndarray]] = {
     "path": along,
     "constant": constant,
 }
+
+
+def seconds(table: Mapping[str, Any]) -> float | None:
+    """The duration that a table gives as s, minutes or hours (their sum), or None."""
+    given = [float(table[key]) * factor for key, factor in _SECONDS.items() if key in table]
+    return sum(given) if given else None
+
+
+def durations(start: float, segments: Sequence[Mapping[str, Any]]) -> list[float]:
+    """Seconds of each segment; a ramp may give `degc_per_min` instead."""
+    lengths, value = [], start
+    for segment in segments:
+        length = seconds(segment)
+        if length is None:
+            length = abs(segment["to"] - value) / abs(segment["degc_per_min"]) * 60
+        lengths.append(length)
+        value = float(segment.get("to", value))
+    return lengths
+
+
+def path(
+    t_s: np.ndarray, start: float, segments: Sequence[Mapping[str, Any]], lengths: Sequence[float]
+) -> np.ndarray:
+    """(n,) values at t_s; after the last segment the last value holds.
+
+    Segment: `to` alone is a ramp; `to` with tau_s an exponential that arrives there at its end;
+    `cycle` with period_minutes a sine of that amplitude about the value reached; neither a hold.
+    """
+    out, value, begin = np.full(len(t_s), float(start)), float(start), 0.0
+    for segment, length in zip(segments, lengths):
+        here = t_s >= begin
+        u = np.minimum(t_s[here] - begin, length)
+        out[here] = _segment(u, value, segment, length)
+        value = float(_segment(np.array([length]), value, segment, length)[0])
+        begin += length
+    return out
+
+
+def _segment(u: np.ndarray, value: float, segment: Mapping[str, Any], length: float) -> np.ndarray:
+    if "cycle" in segment:
+        return value + segment["cycle"] * np.sin(2 * np.pi * u / (segment["period_minutes"] * 60))
+    if "tau_s" in segment:
+        tau_s = segment["tau_s"]
+        return value + (segment["to"] - value) * np.expm1(-u / tau_s) / np.expm1(-length / tau_s)
+    return value + (segment.get("to", value) - value) * u / length

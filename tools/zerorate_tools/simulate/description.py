@@ -1,15 +1,18 @@
 """A simulated device's description: TOML, YAML or a dict, checked before anything runs."""
 
-from collections.abc import Mapping
+import dataclasses
+import inspect
+import textwrap
+from collections.abc import Callable, Mapping
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
+from ..bounds import bytes_of
 from ..errors import BadDescription, MissingLibrary
-from ..small_file import bytes_of
+from .channels import CHANNELS, seconds
 from .effects import EFFECTS, TIMING
 from .motion import FACES, MOTIONS
-from .paths import seconds
 from .schema import (
     Bias,
     Description,
@@ -20,6 +23,7 @@ from .schema import (
     check_value,
     filled,
     is_number,
+    is_pair,
     known,
     table,
     tables,
@@ -34,6 +38,26 @@ _TOP = (
 _SEGMENT = ("to", "s", "minutes", "hours", "degc_per_min", "tau_s", "cycle", "period_minutes")
 _POSITIVE = ("s", "minutes", "hours", "degc_per_min", "tau_s", "period_minutes")
 _LONGEST_S = 366 * 86400.0
+_HEAD = """\
+name, seed, latitude_deg (Earth's rotation is then in it), sessions = N or one [[session]] each
+
+A path (temperature, or a channel of kind path) is a list of segments, each with s, minutes or
+hours: { to } a ramp (or { to, degc_per_min }), { to, tau_s } an exponential, { cycle,
+period_minutes } a sine of that amplitude, { minutes } alone a hold.
+Motion is a list of bouts, each with kind and s, minutes or hours, repeated to the end.
+"""
+_EFFECTS = """\
+An effect takes dps = [x, y, z] per unit of what follows; or rms_dps (one number or [x, y, z]), its
+size over the still samples of all sessions about each session's mean, with beyond_temperature =
+true of what a common parabola over temperature leaves of it. session = N: in that one alone.
+
+  timing             delay_ms, clock_ppm, jitter_us: readings late, stamps fast, stamps unsteady
+"""
+_CHANNELS = """\
+A channel takes recorded = false (a hidden cause), lsb = unit of a count, noise = rms of a reading.
+
+  copy               of
+"""
 
 
 def load_description(source: str | PathLike[str] | Table | Description) -> Description:
@@ -69,7 +93,7 @@ def parsed(path: Path) -> Any:
         return load(data)
     except RecursionError as error:
         raise BadDescription(path, "nested too deeply", do="correct the text there") from error
-    except (ValueError, UnicodeDecodeError) as error:
+    except ValueError as error:
         raise BadDescription(path, str(error), do="correct the text there") from error
 
 
@@ -183,7 +207,52 @@ def _check_bout(bout: Table, where: str, path: str) -> None:
     if str(bout.get("kind")) not in MOTIONS:
         problem = f"{where}: motion {bout.get('kind')!r} is unknown"
         raise BadDescription(path, problem, do=f"choose of {', '.join(MOTIONS)}")
+    for key, value in bout.items():
+        if is_pair(value) and not (all(map(is_number, value)) and value[0] <= value[1]):
+            raise BadDescription(path, f"{where}: {key} is {value!r}", do="write [low, high]")
     lengths = [bout[key] for key in ("s", "minutes", "hours") if key in bout]
-    shortest = [value[0] if isinstance(value, list) and value else value for value in lengths]
+    shortest = [value[0] if is_pair(value) else value for value in lengths]
     if not lengths or not all(is_number(value) and value > 0 for value in shortest):
         raise BadDescription(path, f"{where}: a motion has no duration", do="add s = 20")
+
+
+def reference() -> str:
+    """The entries of a description in plain text."""
+    tables = (("sensor", Sensor), ("bias", Bias), ("noise", Noise), ("every_session", Session))
+    parts = [_HEAD, *(_table(name, cls) for name, cls in tables)]
+    parts.append("motion = [{ kind = ... }]\n\n" + _kinds(MOTIONS))
+    parts.append("[channels.NAME]\n" + _CHANNELS + _kinds(CHANNELS))
+    parts.append("[[effect]]\n" + _EFFECTS + _kinds(EFFECTS))
+    return "\n".join(parts)
+
+
+def _table(name: str, cls: type) -> str:
+    entries = [
+        f"  {field.name} = {_value(field.default)}"
+        for field in dataclasses.fields(cls)
+        if field.default is not dataclasses.MISSING
+    ]
+    return f"[{name}]  {inspect.getdoc(cls)}\n\n" + "\n".join(entries) + "\n"
+
+
+def _kinds(kinds: Mapping[str, Callable[..., Any]]) -> str:
+    return "".join(_kind(name, kind) for name, kind in kinds.items())
+
+
+def _kind(name: str, kind: Callable[..., Any]) -> str:
+    options = [
+        option.name if option.default is option.empty else f"{option.name}={_value(option.default)}"
+        for option in inspect.signature(kind).parameters.values()
+        if option.kind is option.KEYWORD_ONLY
+    ]
+    text = " ".join((inspect.getdoc(kind) or "").split())
+    head = textwrap.fill(
+        f"  {name:<18} {', '.join(options)}".rstrip(), 98, subsequent_indent=" " * 21
+    )
+    return f"{head}\n{textwrap.indent(textwrap.fill(text, 90), ' ' * 6)}\n"
+
+
+def _value(default: object) -> str:
+    if default is None:
+        return "none"
+    return str(default).lower() if isinstance(default, bool) else repr(default).replace("'", '"')

@@ -9,10 +9,9 @@ from scipy.interpolate import CubicSpline
 
 from ..errors import BadDescription
 from ..recordings import Recording, Scales, recording_from_columns
-from . import noise
+from .channels import flicker, outliers, power_law, random_walk, stream, telegraph
 from .description import load_description
 from .effects import RATE_EFFECTS, lagged
-from .noise import stream
 from .scaling import coefficients, waveform
 from .schema import Description, Sensor, Table, axes
 from .world import World, build
@@ -197,15 +196,15 @@ def _coloured(described: Description, world: World, seed: int) -> np.ndarray:
         return stream(seed, world.number, purpose)
 
     if size("bias_instability_dps").any():
-        total += noise.flicker(rng("flicker"), n, dt_s, size("bias_instability_dps"))
+        total += flicker(rng("flicker"), n, dt_s, size("bias_instability_dps"))
     if size("random_walk_dps").any():
-        total += noise.random_walk(rng("walk"), n, dt_s, size("random_walk_dps"))
+        total += random_walk(rng("walk"), n, dt_s, size("random_walk_dps"))
     if size("telegraph_dps").any():
         jumps = size("telegraph_dps")
-        total += noise.telegraph(rng("telegraph"), n, dt_s, jumps, given.telegraph_mean_s)
+        total += telegraph(rng("telegraph"), n, dt_s, jumps, given.telegraph_mean_s)
     if size("coloured_dps").any():
         rms = size("coloured_dps")
-        total += noise.power_law(rng("coloured"), n, dt_s, rms, given.coloured_exponent)
+        total += power_law(rng("coloured"), n, dt_s, rms, given.coloured_exponent)
     return total
 
 
@@ -217,7 +216,7 @@ def white_dps(described: Description, world: World, seed: int) -> np.ndarray:
     white = rng.standard_normal((n, 3)) * (_white_rms_dps(sensor) * louder)
     if given.outlier_dps and given.outlier_per_hour:
         far = stream(seed, world.number, "outliers")
-        white += noise.outliers(far, n, world.dt_s, given.outlier_dps, given.outlier_per_hour)
+        white += outliers(far, n, world.dt_s, given.outlier_dps, given.outlier_per_hour)
     return white
 
 

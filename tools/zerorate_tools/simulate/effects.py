@@ -143,7 +143,7 @@ def channel(
         u = np.gradient(u, world.dt_s) * 60
     if knee is not None:
         u = np.maximum(u - knee, 0.0)
-    u = u if power == 1 else np.sign(u) ** (power % 2) * np.abs(u) ** power
+    u = u**power
     return u if times is None else u * (of(world, times) - times_centre)
 
 

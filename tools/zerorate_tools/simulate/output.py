@@ -11,11 +11,10 @@ import pyarrow.parquet as pq
 
 from ..recordings import check_output, write_recording
 from ..recordings.atomic import all_written_together, check_apart, written_beside
+from ..recordings.recording import ATTITUDE
 from .description import load_description
 from .device import Truth, simulate, simulate_sessions
 from .schema import Description, Table
-
-_QUATERNION = ("qw", "qx", "qy", "qz")
 
 
 def simulate_to_files(
@@ -68,7 +67,7 @@ def write_truth(truth: Truth, path: str | PathLike[str]) -> None:
     for i, axis in enumerate("xyz"):
         columns[f"bias_g{axis}_lsb"] = truth.bias_lsb[:, i]
         columns[f"rate_g{axis}_dps"] = truth.rate_dps[:, i]
-    columns |= {name: truth.attitude[:, i] for i, name in enumerate(_QUATERNION)}
+    columns |= {name: truth.attitude[:, i] for i, name in enumerate(ATTITUDE)}
     effects = json.dumps([list(per_unit) for per_unit in truth.effects_dps]).encode()
     table = pa.table(columns).replace_schema_metadata({b"zerorate-truth": effects})
     with written_beside(path) as temporary:
@@ -84,7 +83,7 @@ def read_truth(path: str | PathLike[str]) -> Truth:
         t_us=columns["t_us"],
         bias_lsb=np.stack([columns[f"bias_g{axis}_lsb"] for axis in "xyz"], axis=1),
         still=columns["still"],
-        attitude=np.stack([columns[name] for name in _QUATERNION], axis=1),
+        attitude=np.stack([columns[name] for name in ATTITUDE], axis=1),
         rate_dps=np.stack([columns[f"rate_g{axis}_dps"] for axis in "xyz"], axis=1),
         temp_degc=columns["temp_degc"],
         effects_dps=[np.array(per_unit) for per_unit in effects],

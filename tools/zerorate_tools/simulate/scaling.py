@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from ..errors import BadDescription
+from .channels import stream
 from .effects import EFFECTS, RATE_EFFECTS
-from .noise import stream
 from .schema import Description, axes
 from .world import World
 
@@ -19,6 +19,7 @@ _ROWS = 4000
 _NOTHING = 1e-12
 
 
+@np.errstate(over="ignore", invalid="ignore")
 def waveform(world: World, effect: Mapping[str, Any], path: str) -> np.ndarray:
     """(n, 3) an effect's waveform per unit of coefficient. Raises BadDescription."""
     options = {k: v for k, v in effect.items() if k not in _ALWAYS}
@@ -27,10 +28,12 @@ def waveform(world: World, effect: Mapping[str, Any], path: str) -> np.ndarray:
         return np.zeros((len(world.t_s), 3))
     try:
         shape = EFFECTS[kind](world, **options)
+        if not np.isfinite(shape).all():
+            raise ValueError("what it follows or how is not finite")
     except KeyError as error:
         problem = f"effect {kind}: there is no channel {error}"
         raise BadDescription(path, problem, do=f"add [channels.{error.args[0]}]") from error
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, ArithmeticError) as error:
         raise BadDescription(path, f"effect {kind}: {error}", do="correct it") from error
     return shape if shape.ndim == 2 else np.repeat(shape[:, None], 3, axis=1)
 
@@ -89,7 +92,7 @@ def _sizes(description: Description, sized: list[int], worlds: Iterable[World]) 
     for world in worlds:
         for effect, shape, temp in zip(effects, shapes, temps):
             at = _scored(world, effect)
-            warm = world.temp_degc[at, None] - 25
+            warm = world.temp_degc[at, None]
             shape.append(_about_mean(waveform(world, effect, description.path)[at]))
             temp.append(_about_mean(np.hstack([warm, warm**2])))
     return [

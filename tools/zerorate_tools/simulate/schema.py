@@ -1,5 +1,6 @@
 """The entries of a simulated device's description, with their units, and what each must be."""
 
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any, get_origin
@@ -7,7 +8,7 @@ from typing import Any, get_origin
 import numpy as np
 
 from ..errors import BadDescription
-from .paths import durations
+from .channels import durations
 
 Table = Mapping[str, Any]
 
@@ -164,7 +165,12 @@ def axes(value: Any, where: str, path: str) -> np.ndarray:
     return np.array([float(v) for v in values])
 
 
+def is_pair(value: Any) -> bool:
+    """Whether it is [low, high], between which a motion's number is drawn."""
+    return isinstance(value, list) and len(value) == 2
+
+
 def is_number(value: Any) -> bool:
-    """Whether it is a finite int or float (a bool is none)."""
+    """Whether it is a finite int or float (a bool is none, nor is one that no float can be)."""
     is_number = isinstance(value, (int, float, np.number)) and not isinstance(value, bool)
-    return is_number and bool(np.isfinite(value))
+    return is_number and bool(abs(value) <= sys.float_info.max)

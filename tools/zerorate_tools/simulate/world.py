@@ -8,13 +8,12 @@ import numpy as np
 
 from ..errors import BadDescription
 from .attitude import facing, integrate, into_body, multiply, rotation
-from .channels import CHANNELS, Channel, Clock
+from .channels import CHANNELS, Channel, Clock, durations, path, seconds, stream
 from .motion import MOTIONS, Start, face_up
-from .noise import stream
-from .paths import durations, path, seconds
-from .schema import Description, Session
+from .schema import Description, Session, is_pair
 
 _EARTH_DPS = 360 / 86164.0905
+_MOST_SAMPLES = 10**8
 UP = np.array([0.0, 0.0, 1.0])
 
 
@@ -34,12 +33,16 @@ class World:
     channels: dict[str, Channel]
 
 
+@np.errstate(over="ignore", invalid="ignore")  # it is looked at what came of it
 def build(description: Description, number: int, seed: int) -> World:
     """The world of session `number` (1-based). Raises BadDescription."""
     session = description.sessions[number - 1]
     dt_s = 1.0 / description.sensor.odr_hz
     session, lengths = _varied(session, stream(seed, number, "temperature"))
     duration_s = session.s + 60 * session.minutes + 3600 * session.hours or sum(lengths)
+    if duration_s > _MOST_SAMPLES * dt_s:
+        problem = f"session {number} has over {_MOST_SAMPLES:,} samples"
+        raise BadDescription(description.path, problem, do="make it shorter, or odr_hz smaller")
     n = max(int(round(duration_s / dt_s)), 1)
     t_s = np.arange(n) * dt_s
     temp = path(t_s, session.start_degc, session.temperature, lengths)
@@ -101,17 +104,17 @@ def _first_attitude(session: Session, rng: np.random.Generator) -> np.ndarray:
 
 
 def _drawn(bout: Mapping[str, Any], rng: np.random.Generator) -> dict[str, Any]:
-    return {
-        key: rng.uniform(*value) if isinstance(value, list) and len(value) == 2 else value
-        for key, value in bout.items()
-    }
+    return {key: rng.uniform(*value) if is_pair(value) else value for key, value in bout.items()}
 
 
 def _bout(bout: dict[str, Any], start: Start, path: str) -> Any:
     options = {k: v for k, v in bout.items() if k not in ("kind", "s", "minutes", "hours")}
     try:
-        return MOTIONS[bout["kind"]](start, **options)
-    except (TypeError, KeyError, ValueError) as error:
+        moved = MOTIONS[bout["kind"]](start, **options)
+        if moved.rate_dps.shape != (len(start.t_s), 3) or not np.isfinite(moved.rate_dps).all():
+            raise ValueError("its rates are not three finite numbers a sample")
+        return moved
+    except (TypeError, KeyError, ValueError, ArithmeticError) as error:
         raise BadDescription(path, f"motion {bout['kind']}: {error}", do="correct it") from error
 
 
@@ -124,7 +127,10 @@ def _channel(
     try:
         if kind == "copy":
             return Channel(world.channels[options["of"]].values, **how)
-        return Channel(CHANNELS[kind](Clock(rng, world.t_s, world.dt_s), **options), **how)
-    except (TypeError, KeyError, ValueError) as error:
+        values = CHANNELS[kind](Clock(rng, world.t_s, world.dt_s), **options)
+        if values.shape != world.t_s.shape or not np.isfinite(values).all():
+            raise ValueError("it is not one finite number a sample")
+        return Channel(values, **how)
+    except (TypeError, KeyError, ValueError, ArithmeticError) as error:
         do = f"choose kind of {', '.join(CHANNELS)}, copy, and its options"
         raise BadDescription(path, f"channel {name}: {error}", do=do) from error

@@ -12,8 +12,7 @@ from ..boards.connection import BoardError, listening
 from ..ending import noted_signals
 from ..replay.bias_table import SOURCES
 from .live import HISTORY
-from .options import WatchOptions
-from .screen import screen
+from .screen import WatchOptions, screen
 
 _NUMBER = r"([-+]?\d+\.\d+)"
 _RATES = re.compile(rf"before {_NUMBER} {_NUMBER} {_NUMBER}  after {_NUMBER} {_NUMBER} {_NUMBER}")
@@ -24,7 +23,7 @@ _SAID = 12
 _SILENT_S = 5.0
 
 
-class Told:
+class OwnOutput:
     """What the lines of a program say, with the names of Live.
 
     Lines of examples/main.py give the rates and, as their difference, the bias. Corrector.explain()
@@ -98,26 +97,26 @@ class Told:
             self.source["xyz".index(unknown[1])] = "none"
 
 
-def watch_own(port: str, options: WatchOptions) -> Told | None:
+def watch_own(port: str, options: WatchOptions) -> OwnOutput | None:
     """Show what the program on the board at port says: see `watch`. Raises BoardError."""
-    told = Told(port)
+    output = OwnOutput(port)
     heard = looked = time.monotonic()
     notes: list[str] = []
     with listening(port) as serial, screen(options.plain) as shown, noted_signals() as came:
-        while not came and (options.seconds is None or told.duration_s < options.seconds):
+        while not came and (options.seconds is None or output.duration_s < options.seconds):
             try:
                 data = serial.read(serial.in_waiting or 1)
             except OSError as error:
                 raise BoardError(f"{port}: unplugged, or taken by another program") from error
-            told.feed(data)
+            output.feed(data)
             now = time.monotonic()
             heard = now if data else heard
-            if options.once and (told.samples or told.lines > _SAID):
+            if options.once and (output.samples or output.lines > _SAID):
                 break
             silent = f"nothing was printed for {now - heard:.0f} s; Ctrl-D in a terminal starts it"
             notes = [silent] if now - heard > _SILENT_S else []
             if now - looked > options.seconds_between_looks(shown):
                 looked = now
-                shown.show(told, notes)
-        shown.show(told, notes)
-    return told if told.lines else None
+                shown.show(output, notes)
+        shown.show(output, notes)
+    return output if output.lines else None

@@ -4,10 +4,13 @@ import sys
 from collections import deque
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
 
+from ..errors import MissingLibrary, ZerorateError
 from ..numbers import fixed
 
 _BARS = "▁▂▃▄▅▆▇█"
@@ -15,7 +18,7 @@ _WIDTH = 24
 
 
 class Shown(Protocol):
-    """What is shown: Live, or Told of a board's own program. A quality of NaN is not known."""
+    """What is shown: Live, or OwnOutput of a board's own program. A quality of NaN is not known."""
 
     name: str
     temp_degc: float | None
@@ -132,3 +135,49 @@ def _learning(live: Shown) -> list[str]:
         elif behind:
             said.append(f"{axis[:2]}: {what}")
     return said
+
+
+@dataclass(frozen=True)
+class WatchOptions:
+    """How to watch.
+
+    seconds: end after so long; once: end with what is there; every_s: between two looks (default
+    0.5 on a terminal, 2 in a pipe); settings, model: as of Live; setup: as of
+    record_port; own: show what the board's own program prints, and leave it running.
+    """
+
+    seconds: float | None = None
+    once: bool = False
+    every_s: float | None = None
+    plain: bool = False
+    settings: dict[str, Any] | None = None
+    model: Path | None = None
+    setup: str = ""
+    own: bool = False
+
+    def seconds_between_looks(self, shown: Screen) -> float:
+        """Seconds between two looks on that screen."""
+        if self.every_s is not None:
+            return self.every_s
+        return 2.0 if isinstance(shown, Lines) else 0.5
+
+
+def draw(live: Shown, path: Path) -> None:
+    """Draw a second's bias after the other into a PNG, SVG or PDF. Raises ZerorateError."""
+    try:
+        from matplotlib.figure import Figure
+    except ImportError as error:
+        raise MissingLibrary("matplotlib") from error
+    if not live.history:
+        do = "watch for longer, a program that prints rates as examples/main.py does"
+        raise ZerorateError(f"{path}: no bias came to be drawn; {do}")
+    figure = Figure(figsize=(8, 4.5), layout="constrained")
+    axes = figure.subplots()
+    for name, bias_dps in zip("xyz", np.array(live.history).reshape(-1, 3).T):
+        axes.plot(bias_dps, label=f"g{name}")
+    axes.set(title=live.name, xlabel="s", ylabel="bias, dps")
+    axes.legend()
+    try:
+        figure.savefig(path)
+    except ValueError as error:
+        raise ZerorateError(f"{path}: no picture is named so; end it in .png or .svg") from error

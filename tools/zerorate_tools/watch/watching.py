@@ -1,14 +1,177 @@
-"""`watch`: follow a source until it is told to end."""
+"""`watch`: follow a growing CSV, or what a board or a Linux bus streams, until told to end."""
 
+import io
 import re
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
+import numpy as np
+import pyarrow as pa
+import pyarrow.csv
+
+from ..boards.recorder import COLUMNS, Recorded
+from ..boards.recording import stream
+from ..errors import BadRecording
+from ..recordings import Scales, csv_format
+from ..recordings.checks import check_names
+from ..recordings.csv_format import unfinished_of
+from ..recordings.recording import TIME, Columns
 from .live import Live
-from .options import WatchOptions
-from .screen import Screen, Shown, screen
-from .tail import CsvTail
+from .screen import Screen, Shown, WatchOptions, screen
+
+_MOST_BYTES = 1 << 20
+
+
+def growing_file(path: Path) -> Path:
+    """The file to follow for a recording of this name.
+
+    While `zerorate record` makes it, it is the CSV beside (recordings.growing). Raises BadRecording
+    for what cannot be followed.
+    """
+    if not path.is_file() and (unfinished := unfinished_of(path)):
+        return unfinished[-1]
+    if path.name.endswith(".parquet"):
+        problem = "a Parquet file has its index at its end, so it cannot be read while it grows"
+        raise BadRecording(path, problem, do="record to .csv, or use `zerorate replay` afterwards")
+    if path.name.endswith(".gz"):
+        problem = "gzip holds rows back until a block of them is full"
+        raise BadRecording(path, problem, do="record to .csv, or use `zerorate replay` afterwards")
+    if not path.is_file():
+        do = "name a .csv that is being written, a board's port or /dev/i2c-N"
+        raise BadRecording(path, "no such file", do=do)
+    return path
+
+
+class CsvTail:
+    """Reads the rows of a growing CSV, each once; the last one only when its line has ended.
+
+    scales, column_names: as of OpenRecording; bad_rows: rows left out because they are no rows of
+    integers; restarts: times that the file became shorter and was read from its beginning.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = growing_file(path)
+        self.name = path.name
+        self.column_names = csv_format.read_header(self.path).names
+        check_names(self.column_names, self.path)
+        self.scales = csv_format.read_scales(self.path, self.column_names)
+        self.bad_rows = self.restarts = 0
+        self._begin()
+
+    def _begin(self) -> None:
+        self._offset, self._rest, self._is_header = 0, b"", True
+
+    def read(self) -> Columns | None:
+        """Columns of the rows that came since, at most a megabyte of them; None without any.
+
+        Raises BadRecording when the file is gone.
+        """
+        data = self._new_bytes()
+        whole, end, self._rest = data.rpartition(b"\n")
+        if self._is_header and end:
+            _, _, whole = whole.partition(b"\n")
+            self._is_header = False
+        return self._columns(whole) if whole else None
+
+    def _new_bytes(self) -> bytes:
+        try:
+            with self.path.open("rb") as file:
+                if file.seek(0, io.SEEK_END) < self._offset:
+                    self.restarts += 1
+                    self._begin()
+                file.seek(self._offset)
+                data = file.read(_MOST_BYTES)
+        except FileNotFoundError as error:
+            raise BadRecording(self.path, "the file is gone", do="watch another") from error
+        self._offset += len(data)
+        return self._rest + data
+
+    def _columns(self, rows: bytes) -> Columns | None:
+        try:
+            return _parsed(rows, self.column_names)
+        except pa.ArrowInvalid:
+            good = [row for row in rows.splitlines() if self._is_row(row)]
+            return _parsed(b"\n".join(good), self.column_names) if good else None
+
+    def _is_row(self, row: bytes) -> bool:
+        cells = [cell.strip().lstrip(b"-+") for cell in row.split(b",")]
+        good = len(cells) == len(self.column_names) and all(cell.isdigit() for cell in cells)
+        self.bad_rows += not good and bool(row.strip())
+        return good
+
+
+def _parsed(rows: bytes, names: list[str]) -> Columns:
+    table = pyarrow.csv.read_csv(
+        io.BytesIO(rows),
+        read_options=pyarrow.csv.ReadOptions(column_names=names, use_threads=False),
+        convert_options=pyarrow.csv.ConvertOptions(
+            column_types={name: pa.int64() for name in names}, null_values=[]
+        ),
+    )
+    types = {name: np.int64 if name == TIME else np.int32 for name in names}
+    return {name: table[name].to_numpy().astype(types[name]) for name in names}
+
+
+_PATIENCE_S = 0.25
+
+
+class Watcher:
+    """A SampleTaker that shows samples through the firmware instead of keeping them.
+
+    In doubt or not, all are given to it: its guard is there to judge them.
+    """
+
+    def __init__(self, source: str, scales: Scales, options: WatchOptions, shown: Screen) -> None:
+        self.live = Live(source, scales, COLUMNS, options.settings, options.model)
+        self.result = Recorded()
+        self._shown, self._every_s = shown, options.seconds_between_looks(shown)
+        self._waiting: list[tuple[int, ...]] = []
+        self._fed = self._looked = time.monotonic()
+
+    def add(self, t_us: int, sample: Sequence[int]) -> None:
+        """One sample of seven words."""
+        self._waiting.append((t_us, *sample))
+        if time.monotonic() - self._fed > _PATIENCE_S:
+            self.flush()
+
+    def flush(self) -> None:
+        """Hand to the firmware what waits, and show it when it is time."""
+        self._fed = time.monotonic()
+        if self._waiting:
+            rows = np.array(self._waiting, np.int64)
+            self._waiting.clear()
+            self.live.feed(dict(zip(COLUMNS, rows.T)))
+        if self._fed - self._looked > self._every_s:
+            self.look()
+
+    def look(self) -> None:
+        """Show what there is."""
+        self._looked = time.monotonic()
+        self._shown.show(self.live, [])
+
+    def confirm(self) -> None:
+        """The chip was configured right: nothing to do, for nothing is kept."""
+
+    def discard(self) -> None:
+        """It was not, perhaps: the firmware's guard has seen it too."""
+
+
+def watch_board(source: str, options: WatchOptions) -> Live | None:
+    """Watch a board's port or a Linux bus: see `watch`."""
+    made: list[Watcher] = []
+    more = {"setup": options.setup} if options.setup else {}
+    with screen(options.plain) as shown:
+
+        def take(scales: Scales) -> Watcher:
+            made.append(Watcher(source, scales, options, shown))
+            return made[0]
+
+        seconds = 1.0 if options.once and options.seconds is None else options.seconds
+        stream(source, take, seconds=seconds, done=lambda _: made[0].flush(), **more)
+        made[0].look()
+        return made[0].live if made[0].live.samples else None
+
 
 _DEVICE = re.compile(r"/dev/.+|COM\d+|\d+")
 _POLL_S = 0.1
@@ -29,8 +192,6 @@ def watch(source: str, options: WatchOptions | None = None) -> Shown | None:
 
         return watch_own(source, options)
     if is_device(source):
-        from .board import watch_board
-
         return watch_board(source, options)
     tail = CsvTail(Path(source))
     with screen(options.plain) as shown:

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from ...recordings.recording import ACCEL, GYRO, TEMP, TIME
+from ...recordings.turning import dps_of_one
 from .mapping import Mapped
 from .names import spelled
-from .turning import dps_of_one
 from .units import RATE_DPS, RAW, STANDARD_GRAVITY, TIME_S, factors_of, kind_of, unit_in_name
 
 _GRAVITY = {"m/s2": STANDARD_GRAVITY, "g": 1.0, "mg": 1000.0}
@@ -23,6 +23,7 @@ _OF_ONE = 3e-4
 _LIKELY_HZ = (0.02, 40_000.0)
 #: Names of times in none of the units that a recording may have.
 _OTHER_TIME = re.compile(r"min|hour|hr|day|frame|tick|count")
+_PER_HOUR = re.compile(r"(?:deg|°)\w*\s*(?:/|per)\s*h")
 #: Pushes that move with the turning, as a pendulum's, make gravity seem to turn up to so many times
 #: slower. Units are 17 times apart, or more.
 TURNED_WITHIN = 4.1
@@ -85,6 +86,8 @@ def ready_words(target: str, wanted: Mapping[str, Mapped], first: Mapping[str, n
     """What to type for a unit that nothing tells."""
     if target == TIME:
         return _time_words(first[wanted[target].column])
+    if target in GYRO and _PER_HOUR.search(wanted[target].column.lower()):
+        return "deg/s instead: divide them by 3600 and call them dps"
     unit = _likely(target, wanted, first)
     others = ", ".join(u for u in (*factors_of(target), "lsb") if u != unit and u != "c")
     left_out = ", or leave it out: --map temp=none" if target == TEMP else ""
@@ -122,12 +125,14 @@ def likely_columns(
     moving = {name: column for name, column in rest.items() if np.ptp(column) > 0}
     # where some readings change, what never does is a covariance or a setting
     rest = moving if len(moving) >= len(GYRO) else rest
-    rest = {name: rest[name] for name in _no_quaternion(rest)}
+    four = _quaternion(rest)
+    rest = {name: column for name, column in rest.items() if name not in four}
     accel, unit, gyro = _by_values(rest, list(first))
     usual = max((abs(float(np.median(values[name]))) for name in gyro), default=0.0)
-    if not gyro or unit != RAW and usual * RATE_DPS[unit] > _FASTEST_DPS:
+    if not gyro or unit in RATE_DPS and usual * RATE_DPS[unit] > _FASTEST_DPS:
         return []
-    return out + accel + [f"{axis}={name}:{unit}" for axis, name in zip(GYRO, gyro)]
+    behind = f":{unit}" if unit else ""
+    return out + accel + [f"{axis}={name}{behind}" for axis, name in zip(GYRO, gyro)]
 
 
 def _by_values(
@@ -145,7 +150,7 @@ def _by_values(
     if unit is None:
         every = np.array(list(values.values()))
         counted = (every % 1 == 0).all() or np.abs(np.median(every, axis=1)).max() > _FASTEST_DPS
-        return [], RAW if counted else "dps", names if len(names) == len(GYRO) else []
+        return [], RAW if counted else "", names if len(names) == len(GYRO) else []
     at = units.index(unit)
     accel = [f"{axis}={name}:{unit}" for axis, name in zip(ACCEL, names[at : at + 3])]
     others = [n for n in (*range(at + 3, len(threes)), *range(at - 2)) if _beside(threes[n], order)]
@@ -161,14 +166,21 @@ def _varies(values: np.ndarray) -> bool:
     return len(values) < 2 or np.ptp(values) > 0 or values[0] == 0 or values[0] % 1 != 0
 
 
-def _no_quaternion(values: Mapping[str, np.ndarray]) -> list[str]:
-    """Names without four columns beside each other whose length is always one."""
+def _quaternion(values: Mapping[str, np.ndarray]) -> list[str]:
+    """Four columns beside each other whose length is always one, where it is known; or none."""
     names = list(values)
     for at in range(len(names) - 3):
         four = np.array([values[name] for name in names[at : at + 4]])
-        if four.shape[1] > 1 and np.abs((four**2).sum(axis=0) - 1.0).max() < _OF_ONE:
-            return names[:at] + names[at + 4 :]
-    return names
+        if is_unit(four):
+            return names[at : at + 4]
+    return []
+
+
+def is_unit(four: np.ndarray) -> bool:
+    """Whether the parts (4, n) are of unit quaternions; all 0, or without a value, is not seen."""
+    squares = (four**2).sum(axis=0)
+    squares = squares[np.isfinite(squares) & (squares > 0)]
+    return len(squares) > 1 and bool(np.abs(squares - 1.0).max() < _OF_ONE)
 
 
 def only_grows(values: np.ndarray) -> bool:

@@ -12,13 +12,15 @@ LEFT_OUT = "none"
 class Mapped:
     """One column of the recording: where it comes from, and its unit or factor (None: by name).
 
-    plus: a further column and its unit to be added, as nanoseconds to seconds.
+    plus: a further column and its unit to be added, as nanoseconds to seconds. negative: whether
+    the readings change their sign.
     """
 
     target: str
     column: str
     unit: str | None = None
     plus: tuple[str, str] | None = None
+    negative: bool = False
 
     @property
     def is_left_out(self) -> bool:

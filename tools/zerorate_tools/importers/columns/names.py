@@ -41,6 +41,9 @@ _ARRAY = re.compile(r"\[\d+\]$")
 _LAST_AXIS = re.compile(f".*{_AXIS}(?:axis)?$")
 #: Of an array that is called by all its axes, or by nothing, too.
 _BARE = re.compile(f"(?:xyz|values?)?{_AXIS}(?:axis)?$")
+#: Of a quaternion; BNO08x's are called i j k real.
+_PART = re.compile("(.*?)(real|[wxyzijk])$")
+_PARTS = {"real": "w", "i": "x", "j": "y", "k": "z"}
 _BODY_RATES = dict(zip(("gx", "gy", "gz"), "pqr"))
 _TURNS = {"rollrate": "gyrox", "pitchrate": "gyroy", "yawrate": "gyroz"}
 
@@ -91,6 +94,16 @@ def bare_axes(names: list[str]) -> dict[str, str]:
     if all(letter in by_letter for letter in _BODY_RATES.values()):
         return {target: by_letter[letter] for target, letter in _BODY_RATES.items()}
     return {} if "w" in by_letter else next(iter(_groups(names, _BARE, "g")), {})
+
+
+def attitudes(names: list[str]) -> list[dict[str, str]]:
+    """Columns that go together as a quaternion's parts by their last letter: {qw, qx, qy, qz}."""
+    groups: dict[str, dict[str, str]] = {}
+    for name in names:
+        found = _PART.match(spelled(name))
+        if found:
+            groups.setdefault(found[1], {}).setdefault("q" + _PARTS.get(found[2], found[2]), name)
+    return [group for group in groups.values() if len(group) == 4]
 
 
 def temperature(names: list[str]) -> str | None:

@@ -1,20 +1,22 @@
 """Which columns of a table an import takes, in which units, decided once before the rows."""
 
 import re
+import shlex
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
 from ...errors import BadRecording
-from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP, TIME
+from ...recordings.recording import ACCEL, ATTITUDE, COLUMNS, GYRO, TEMP, TIME
 from ..tables.table import Chunk, Table
 from . import names as usual
 from .guesses import (
     by_habit,
     gravity_unit,
     guessed_unit,
+    is_unit,
     likely_columns,
     only_grows,
     ready_words,
@@ -23,6 +25,8 @@ from .mapping import Mapped, factor_in, parsed_mapping
 from .units import RAW, factors_of, kind_of, unit_in_name, units_of
 
 _LISTED, _TOLD = 24, 8
+#: LSB of a unit quaternion's part: finer than what cameras see.
+_PART = 1e6
 _OTHER_SENSOR = re.compile("acc|mag|euler|quat|orient|heading|grav|baro|gps|location", re.I)
 
 
@@ -50,7 +54,8 @@ class Plan:
         out = {}
         for target, mapped in self.wanted.items():
             factor, offset = self.factors[target]
-            out[target] = chunk.columns[mapped.column] * factor + offset
+            sign = -1.0 if mapped.negative else 1.0
+            out[target] = chunk.columns[mapped.column] * (sign * factor) + offset
             if mapped.plus:
                 out[target] += chunk.columns[mapped.plus[0]] * self.plus[target]
         return out
@@ -72,7 +77,7 @@ def planned(
     nobody named.
     """
     notes: list[str] = []
-    given = {mapped.target: mapped for mapped in mapping}
+    given = {mapped.target: _signed(mapped, table) for mapped in mapping}
     wanted = _found(table, given, instance, path, notes)
     wanted = {t: m for t, m in {**wanted, **given}.items() if not m.is_left_out}
     if without_time and TIME in wanted:
@@ -87,9 +92,11 @@ def planned(
     raw, unknown = set(), {}
     first = table.first_rows(plan.columns)
     t_s = _times_s(plan, table, units or {}, first, path)
+    scaled = _of_attitude(wanted, first)
     for target, mapped in wanted.items():
         if target not in COLUMNS:
-            plan.factors[target] = (factor_in(mapped.unit or "1") or 1.0, 0.0)
+            factor = factor_in(mapped.unit) if mapped.unit else scaled.get(target)
+            plan.factors[target] = (factor or 1.0, 0.0)
             continue
         unit = _unit(target, plan, table, units or {}, first, path, t_s)
         if unit is None and target == TIME and np.isnan(first[mapped.column]).all():
@@ -110,6 +117,22 @@ def planned(
         raise BadRecording(path, problem, do="give " + ", ".join(dict.fromkeys(unknown.values())))
     plan.raw = frozenset(raw)
     return plan
+
+
+def _of_attitude(wanted: Mapping[str, Mapped], first: Mapping[str, np.ndarray]) -> dict[str, float]:
+    """Factors that keep the digits of a unit quaternion, whose parts would all be 0 and 1."""
+    parts = [wanted[n].column for n in ATTITUDE if n in wanted]
+    if len(parts) < len(ATTITUDE) or not is_unit(np.array([first[c] for c in parts])):
+        return {}
+    return dict.fromkeys(ATTITUDE, _PART)
+
+
+def _signed(mapped: Mapped, table: Table) -> Mapped:
+    """`-gyro_x` where only `gyro_x` is a column: its readings with the other sign."""
+    bare = mapped.column.removeprefix("-")
+    if mapped.column in table.names or bare not in table.names:
+        return mapped
+    return replace(mapped, column=bare, negative=True)
 
 
 def _found(
@@ -241,6 +264,11 @@ def left_aside(plan: Plan, table: Table) -> list[str]:
     aside = [n for n in aside if n not in usual.time_columns(table.names)]
     if plan.by_format or usual.unnamed(table.names) or not aside:
         return []
+    for parts in usual.attitudes(aside):
+        first = table.first_rows(list(parts.values()))
+        if is_unit(np.array([first[parts[name]] for name in ATTITUDE])):
+            words = " ".join(f"--map {shlex.quote(f'{n}={parts[n]}')}" for n in ATTITUDE)
+            return [f"an attitude left aside; if it turns the body's axes into z up: {words}"]
     return [f"left aside: {_list(aside, _TOLD)}; take one along as --map NAME=COLUMN"]
 
 

@@ -9,19 +9,32 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from importlib import import_module
 from pathlib import Path
 
 import pyarrow as pa
 
-from ...child import ALONE, MEMORY_MB, how_it_ended, limit_myself, python_child
+from ...bounds import ALONE, MEMORY_MB, how_it_ended, limit_myself, python_child
 from ...errors import BadRecording, MissingLibrary
 from ..samples.spool import PLACE
 from ..tables.table import Chunk, Table
+from . import arrays, columnar, flight_logs, json_file, mcap_file, ros_bag
 
 _WORDS_BYTES = 1 << 16
 _ABOUT, _READ = b"about", b"read"
 _TOLD = ("names", "mapping", "sensor", "lsb", "notes", "words")
+#: Reader -> its function, and what it reads.
+_READERS = {
+    "ulog": (flight_logs.ulog, "ULog"),
+    "dataflash": (flight_logs.dataflash, "DataFlash log"),
+    "blackbox": (flight_logs.blackbox, "blackbox log"),
+    "ros_bag": (ros_bag.read, "ROS bag"),
+    "mcap_file": (mcap_file.read, "MCAP file"),
+    "matlab": (arrays.matlab, ".mat file"),
+    "hdf5": (arrays.hdf5, "HDF5 file"),
+    "numpy_file": (arrays.numpy_file, "NumPy file"),
+    "columnar": (columnar.read, "Parquet or Feather file"),
+    "json_file": (json_file.read, "JSON"),
+}
 _RUN = "from zerorate_tools.importers.logs.apart import main; main()"
 
 
@@ -29,10 +42,10 @@ _RUN = "from zerorate_tools.importers.logs.apart import main; main()"
 def table_apart(
     reader: str, path: Path, instance: int, advance: Callable[[float], None]
 ) -> Iterator[Table]:
-    """The table that `read` of a module of this folder makes of a file.
+    """The table that a reader makes of a file.
 
-    instance: which of several sensors; advance: takes bytes as they are read. Raises BadRecording,
-    MissingLibrary.
+    reader: a name of `_READERS`; instance: which of several sensors; advance: takes bytes as they
+    are read. Raises BadRecording, MissingLibrary.
     """
     child = subprocess.Popen(
         python_child(_RUN, reader, str(path), str(instance), str(os.getpid())),
@@ -131,9 +144,9 @@ def main() -> None:
 
 def written(reader: str, path: Path, instance: int, out: int) -> dict:
     """Write the rows to a file descriptor, and return the words of what came of it."""
+    read, kind = _READERS[reader]
     try:
-        module = import_module(f"{__package__}.{reader}")
-        table = module.read(path, instance)
+        table = read(path, instance)
         _write(table, out)
     except MemoryError:
         problem = f"needs more than {MEMORY_MB} MB to be read"
@@ -145,7 +158,6 @@ def written(reader: str, path: Path, instance: int, out: int) -> dict:
     except Exception as error:  # parsers raise whatever they stumble over
         text = str(error)
         what = " ".join((text if " " in text else f"{type(error).__name__} {text}").split())[:120]
-        kind = module.KIND
         return {"problem": f"no {kind}, or damaged ({what})", "do": "copy the file again"}
     return {"dropped": table.dropped, "notes": table.notes}
 

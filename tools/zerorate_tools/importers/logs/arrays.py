@@ -1,15 +1,65 @@
-"""Named arrays as a table: an (n, k) array `name` becomes columns name[0] ... name[k-1], a field of
-a structure `name.field`."""
+"""Named arrays as a table, out of MATLAB's .mat, HDF5, and NumPy's .npy and .npz.
+
+An array `name` of n samples by k, in this order or the other, becomes columns name[0] ...
+name[k-1], a field of a structure `name.field`. The longer side has the samples.
+"""
 
 from collections import Counter
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ...errors import BadRecording
-from ..tables.table import Table
-from .streams import one_after_the_other
+from ..tables.table import Table, one_after_the_other
+
+#: Bytes that MATLAB writes before its HDF5, whose arrays have their axes in turned order.
+_MATLAB_BYTES = 512
+
+
+def matlab(path: Path, instance: int = 0) -> Table:
+    """A .mat up to version 7; 7.3 is HDF5. Raises BadRecording."""
+    import scipy.io
+
+    do = "objects, tables and timetables only MATLAB reads: save plain arrays, by save -v7"
+    found = scipy.io.loadmat(path)
+    found.pop("None", None)  # what an object of MATLAB's own comes as
+    return table_of_arrays(found, path, do)
+
+
+def hdf5(path: Path, instance: int = 0) -> Table:
+    """Its data sets. Raises BadRecording, ModuleNotFoundError."""
+    import h5py
+
+    found: dict[str, Any] = {}
+    with h5py.File(path) as file:
+        turned = file.userblock_size == _MATLAB_BYTES
+
+        def take(name: str, part: Any) -> None:
+            if isinstance(part, h5py.Dataset) and part.ndim in (1, 2):
+                values = part[()]
+                fields = getattr(values.dtype, "names", None)
+                found["" if fields else name] = values.T if turned else values
+
+        file.visititems(take)
+    return table_of_arrays(found, path, "write its table as a CSV, as pandas does by to_csv")
+
+
+def numpy_file(path: Path, instance: int = 0) -> Table:
+    """The arrays of an .npy or .npz, without what is pickled in them. Raises BadRecording."""
+    do = "write its arrays by numpy.savez(..., t_s=..., gyro_dps=...), without objects in them"
+    with open(path, "rb") as file:
+        packed = file.read(2) == b"PK"
+    if not packed:
+        return table_of_arrays({"": np.load(path, allow_pickle=False)}, path, do)
+    found: dict[str, object] = {}
+    with np.load(path, allow_pickle=False) as arrays:
+        for name in arrays.files:
+            with suppress(ValueError):  # a pickle
+                found[name] = arrays[name]
+    return table_of_arrays(found, path, do)
 
 
 def table_of_arrays(found: dict[str, object], path: Path, do: str) -> Table:
@@ -25,7 +75,7 @@ def table_of_arrays(found: dict[str, object], path: Path, do: str) -> Table:
         and value.dtype.kind in "fiub"
         and value.ndim <= 2
     }
-    numeric = {n: v.T if v.shape[0] == 1 and v.shape[1] > 1 else v for n, v in numeric.items()}
+    numeric = {n: v.T if v.shape[0] < v.shape[1] else v for n, v in numeric.items()}
     rows = max(Counter(len(v) for v in numeric.values()), default=0)
     columns: dict[str, np.ndarray] = {}
     for name, value in numeric.items():

@@ -13,7 +13,6 @@ from ...recordings.parquet_format import batches, open_file
 from ..tables.sniffing import MOST_WORDS
 from ..tables.table import Chunk, Table
 
-KIND = "Parquet or Feather file"
 #: Cells of a batch: 32 MB of numbers.
 _CELLS, _ROWS = 1 << 22, 1 << 16
 

@@ -11,13 +11,12 @@ import numpy as np
 import pyarrow as pa
 
 from ...errors import BadRecording
-from ...recordings.text import head, open_text
+from ...recordings.text import head, lines_of, open_text
 from ..tables.delimited import seconds_of
 from ..tables.sniffing import DATE, MOST_WORDS
 from ..tables.table import Chunk, Table
 from .arrays import table_of_arrays
 
-KIND = "JSON"
 _ROWS, _SEEN = 1 << 13, 3000
 _LONGEST_LIST = 9
 _DO = "write an object for each sample, one a line"
@@ -53,12 +52,9 @@ def _is_records(held: Any) -> bool:
 
 def _lines(path: Path, dropped: Counter[str]) -> Iterator[Any]:
     """The object of each line; None where a line holds none."""
-    stream, rest = open_text(path, head(path, 4096)[1])[0], b""
-    while block := stream.read(1 << 20):
-        *lines, rest = (rest + block).split(b"\n")
-        yield from (_object(line, dropped) for line in lines if line.strip())
-    if rest.strip():
-        yield _object(rest, dropped)
+    for line in lines_of(path, head(path, 4096)[1]):
+        if line.strip():
+            yield _object(line, dropped)
 
 
 def _object(line: bytes, dropped: Counter[str]) -> Any:

@@ -9,7 +9,6 @@ from typing import Any
 from ..tables.table import Table
 from .messages import Logged, is_wanted, table_of_messages
 
-KIND = "MCAP file"
 _CODINGS = ("cdr", "ros1", "json")
 
 

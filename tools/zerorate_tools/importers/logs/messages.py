@@ -6,8 +6,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from ...errors import BadRecording
-from ..tables.table import Table
-from .streams import chunks_of
+from ..tables.table import Table, chunks_of
 
 #: Type -> paths of the numbers in a message.
 _FIELDS = {

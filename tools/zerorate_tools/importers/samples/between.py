@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import BadRecording
+from ...numbers import duration
 from ...recordings.recording import ACCEL, COLUMNS, TEMP
-from .clock import duration, longest_us
+from .clock import longest_us
 from .gather import Gathered
 from .spool import PLACE, TIME, Spool
 

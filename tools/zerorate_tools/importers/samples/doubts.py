@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import BadRecording
+from ...numbers import duration
 from ...recordings import Scales
 from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP, TIME
+from ...recordings.turning import axes_of, axes_words, dps_of_one
 from ..columns.guesses import TURNED_WITHIN, likely_units_of_time, rate_unit_of, unit_words
 from ..columns.plan import Plan
-from ..columns.turning import dps_of_one
-from .clock import duration
 from .gather import Gathered
 
 #: The widest range of these sensors, and a little.
@@ -50,7 +50,7 @@ def doubts(found: Gathered, plan: Plan, scales: Scales, path: Path) -> list[str]
     _refuse_coarse_channels(found.looked_at, plan, path)
     times = _gravity_turns_times(found.looked_at, plan, scales)
     if times is None:
-        out = _of_rates(found, plan, path)
+        out = _of_rates(found, plan, path) + _of_axes(found.looked_at, plan, scales)
     else:
         out = _of_turning(times, plan, scales, path)
     out += _of_temperature(found.looked_at, plan)
@@ -117,18 +117,22 @@ def _refuse_pace(found: Gathered, plan: Plan, path: Path) -> None:
 
 
 def _refuse_coarse_channels(seen: dict[str, np.ndarray], plan: Plan, path: Path) -> None:
-    """A channel is stored in whole numbers: those of a quaternion would all be 0 and 1."""
+    """A channel is stored in whole numbers."""
     for name, mapped in plan.wanted.items():
         if name in COLUMNS or mapped.unit is not None:
             continue
         values = seen[name][np.isfinite(seen[name])]
         spread = float(np.std(values)) if len(values) else 0.0
         if spread and np.std(values - np.rint(values)) > _MOST_ROUNDED * spread:
-            factor = 10.0 ** (4 - math.floor(math.log10(np.abs(values).max())))
-            do = (
-                f"keep its digits: --map {name}={mapped.column}:x{factor * plan.factors[name][0]:g}"
-            )
-            raise BadRecording(path, f"{name} loses its digits as a whole number", do=do)
+            words = _with_digits(name, float(np.abs(values).max()), plan)
+            problem = f"{name} loses its digits as a whole number"
+            raise BadRecording(path, problem, do=f"keep its digits: {words}")
+
+
+def _with_digits(name: str, largest: float, plan: Plan) -> str:
+    """Words that keep four digits."""
+    scale = 10.0 ** (4 - math.floor(math.log10(largest))) * plan.factors[name][0]
+    return f"--map {name}={plan.wanted[name].column}:x{scale:g}"
 
 
 def _of_rates(found: Gathered, plan: Plan, path: Path) -> list[str]:
@@ -169,10 +173,33 @@ def _gravity_turns_times(seen: dict[str, np.ndarray], plan: Plan, scales: Scales
     """How much faster gravity turns than the rates say; None where it does not tell."""
     if plan.by_format or len(seen.get("ax", ())) != len(seen[TIME]):
         return None
+    return dps_of_one(*_turns(seen, plan, scales))
+
+
+def _turns(seen, plan, scales) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(3, n) rates in dps, (3, n) force and (n,) seconds."""
     rates, force = (np.array([seen[name] for name in axes]) for axes in (GYRO, ACCEL))
-    dps = dps_of_one(rates, force, seen[TIME] * 1e-6)
     lsb = scales.gyro_lsb_per_dps if "gyro" in plan.raw else None
-    return dps and dps * (lsb or 1.0)
+    return rates / (lsb or 1.0), force, seen[TIME] * 1e-6
+
+
+def _of_axes(seen: dict[str, np.ndarray], plan: Plan, scales: Scales) -> list[str]:
+    """Rates that turn gravity as it is seen to turn if their axes are taken in another way."""
+    if len(seen.get("ax", ())) != len(seen[TIME]):
+        return []
+    axes = axes_of(*_turns(seen, plan, scales))
+    if axes is None or (axes == np.eye(3)).all():
+        return []
+    words = [
+        f"--map {target}={'-' if name.startswith('-') else ''}{one.column}"
+        + (f":{one.unit}" if one.unit else "")
+        for target, name in zip(GYRO, axes_words(axes).split())
+        for one in [plan.wanted[f"g{name[-1]}"]]
+    ]
+    said = (
+        f"gravity turns as if the rates x y z were {axes_words(axes)} of the accelerometer's axes"
+    )
+    return [f"{said}: give {' '.join(words)}, or motion teaches nothing true"]
 
 
 def _of_turning(times: float, plan: Plan, scales: Scales, path: Path) -> list[str]:

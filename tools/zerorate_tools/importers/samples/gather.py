@@ -12,13 +12,12 @@ from ..columns.guesses import unit_words
 from ..columns.plan import Plan, hz_words
 from ..columns.units import TIME_S
 from ..tables.table import Table
-from .changes import refuse_change_of_unit
-from .clock import Pace, Unwrapped, refuse_impossible, whole_stamps
+from .bursts import arrive_in_bursts, evened
+from .clock import Pace, Ticks, Unwrapped, evenly, refuse_impossible, whole_stamps
 from .counts import Counts
-from .order import Runs, in_order
-from .spool import PLACE, TIME, Spool
-from .ticks import Ticks, evenly
-from .turns import refuse_turns
+from .lines import without_lines
+from .one_device import refuse_change_of_unit, refuse_turns
+from .spool import PLACE, TIME, Runs, Spool, in_order
 
 _KEPT = 200
 _FAST_SHARE = 0.001
@@ -113,6 +112,7 @@ class _Gathering:
             counted = self.counts.notes(self.path)
             self._refuse_turns(self.unfiltered)
             self.spool = in_order(self.spool, self.path, self.folder)
+            self._leave_lines_out()
             if self.runs.steps_back:
                 self._refuse_turns([self._some(n, columns) for n, columns in enumerate(self.spool)])
         except BaseException:
@@ -122,17 +122,25 @@ class _Gathering:
         back = self.runs.steps_back
         if back:
             notes.append(f"time goes back at {back} rows: sorted by time")
+        interval_us, repeated = self._interval_us()
         looked_at = {
             n: np.concatenate([k[n] for k in self.kept]) for n in (TIME, *self.readings)
         }  # fmt: skip
         looked_at |= {name: np.concatenate(pieces) for name, pieces in self.beside.items()}
-        interval_us, repeated = self._interval_us()
         return Gathered(
             self.spool, self.rows + sum(self.table.dropped.values()), self.samples,
             interval_us, self.largest, dict(self.own),
             self.table.dropped + self.dropped, repeated + notes, TIME not in self.plan.wanted,
             looked_at,
         )  # fmt: skip
+
+    def _leave_lines_out(self) -> None:
+        self.spool, lost = without_lines(self.spool, self.path, self.folder)
+        if lost:
+            self.dropped["on a straight line between readings, so it is none"] += lost
+            self.samples -= lost
+            self.own = Counter({name: max(0, of - lost) for name, of in self.own.items()})
+            self.kept = [self._some(n, columns) for n, columns in enumerate(self.spool)]
 
     def _step_us(self) -> float:
         """Microseconds of one count of the time column, where it may be a counter."""
@@ -275,7 +283,14 @@ class _Gathering:
         if ticks.coarse:
             self.spool, note = evenly(self.spool, ticks, self.path, self.folder)
             pace, notes = self._pace(), [note]
-        return pace.interval_us(self.path), notes
+        interval_us = pace.interval_us(self.path)
+        every_row = self.samples == sum(piece.rows for piece in self.spool.pieces)
+        if every_row and arrive_in_bursts(self.spool.read(0), pace.mean_us):
+            interval_us = pace.mean_us
+            self.spool = evened(self.spool, interval_us, self.folder)
+            self.kept = [self._some(n, columns) for n, columns in enumerate(self.spool)]
+            notes.append("time stamps come in bursts: samples are spread evenly between them")
+        return interval_us, notes
 
     def _pace(self) -> Pace:
         pace = Pace()

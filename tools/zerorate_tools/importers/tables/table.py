@@ -1,11 +1,13 @@
 """A file as named columns of numbers that come in chunks."""
 
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from itertools import islice
 
 import numpy as np
+
+_ROWS = 1 << 15
 
 
 @dataclass
@@ -49,3 +51,30 @@ class Table:
         self.dropped.clear()
         self.dropped.update(dropped)
         return {n: np.concatenate([np.empty(0), *(one[n] for one in found)]) for n in names}
+
+
+def chunks_of(begun: Callable[[], Iterable[dict[str, float]]], names: list[str]) -> Iterator[Chunk]:
+    """Chunks of rows, from the first on, that each have some of the columns; the others are NaN."""
+    start, rows = 0, iter(begun())
+    while some := list(islice(rows, _ROWS)):
+        columns = {name: np.array([row.get(name, np.nan) for row in some], float) for name in names}
+        yield Chunk(np.arange(start, start + len(some)), columns)
+        start += len(some)
+
+
+def one_after_the_other(
+    streams: Iterable[dict[str, np.ndarray]], names: list[str]
+) -> Iterator[Chunk]:
+    """Chunks of whole streams of columns: the rows of the first, then those of the next."""
+    start = 0
+    for stream in streams:
+        size = len(next(iter(stream.values())))
+        for first in range(0, size, _ROWS):
+            end = min(first + _ROWS, size)
+            nan = np.full(end - first, np.nan)
+            columns = {
+                name: stream[name][first:end].astype(float) if name in stream else nan
+                for name in names
+            }
+            yield Chunk(np.arange(start + first, start + end), columns)
+        start += size

@@ -11,12 +11,15 @@ void zerorate_power_on(zerorate_t *z, int32_t same) {
         a[AXIS_WAITING_N] = 0;
         a[AXIS_SUSPECT] = 0;
         a[AXIS_LINE_TEMP] = -32768;
-        if (same) continue;
-        /* what is beyond the gate was a jump, and stays */
-        if ((offset < 0 ? -offset : offset) >> 4 < c[SETTINGS_GATE_Q4]) a[AXIS_OFFSET_Q8] >>= 1;
-        a[AXIS_OFFSET_VARIANCE_Q8] = c[SETTINGS_TURN_ON_VARIANCE_Q8];
-        a[AXIS_LEFT_Q4] = NO_VALUE;
-        a[AXIS_OFFSET_AGE_MS] = 0;
+        if (!same) {
+            /* what is beyond the gate was a jump, and stays */
+            if ((offset < 0 ? -offset : offset) >> 4 < c[SETTINGS_GATE_Q4]) a[AXIS_OFFSET_Q8] >>= 1;
+            a[AXIS_OFFSET_VARIANCE_Q8] = c[SETTINGS_TURN_ON_VARIANCE_Q8];
+            a[AXIS_LEFT_Q4] = NO_VALUE;
+            a[AXIS_OFFSET_AGE_MS] = 0;
+        }
+        /* TURN_ON_OFFSET_Q8: else what is held back until it insists would be the curve's */
+        s[c[SETTINGS_AXES] - 3 + axis] = a[AXIS_OFFSET_Q8];
     }
 }
 

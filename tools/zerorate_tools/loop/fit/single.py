@@ -31,11 +31,10 @@ LEAST_OF_A_PIECE, _GAP_SHARE = 3, 1 / 8
 _TURNS_BACK, _HOLD = 0.25, 0.05
 _WORTH = 0.1
 WEAKER = (
-    f"One recording only: {PIECES} pieces of it, interleaved over its course, were held out in "
-    f"{FOLDS} turns instead of a whole power-on, each judged by a model fitted to the others. "
-    "Which effects are kept is chosen by the same pieces, which flatters the error after a little. "
-    "An effect that repeats at every power-on cannot be told from one that happened once, and a "
-    "slow cause spans the gaps; nothing is confirmed before a second power-on shows it too."
+    f"One recording only: it was cut into {PIECES} pieces, which were left out in {FOLDS} turns. "
+    "Each was judged by a model fitted to the others. The same pieces chose the effects, so the "
+    "error after is a little too low. One recording does not show whether an effect repeats at the "
+    "next power-on, so nothing is confirmed before a second one."
 )
 #: Said beside it where the recording has steps.
 STEPS_CHOSEN = (
@@ -211,11 +210,6 @@ def nats(before: np.ndarray, after: np.ndarray, blocks: Sequence[int] | np.ndarr
     shown = (count > 0) & (before > 0) & (after > 0) & np.isfinite(before + after)
     ratio = np.log(np.where(shown, before, 1.0) / np.where(shown, after, 1.0))
     return (0.5 * _WORTH * count * ratio).sum(axis=1)
-
-
-def nats_of(factor: float, blocks: int) -> float:
-    """Nats that a factor by which the error of so many blocks falls, on every axis, is worth."""
-    return 3 * _WORTH * blocks * float(np.log(factor))
 
 
 def speaks_for(gain: np.ndarray) -> bool:

@@ -1,17 +1,78 @@
 """What recordings in motion show of the nine entries, and whether it holds on windows held out."""
 
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
 import numpy as np
 from scipy.stats import chi2
 
 from .columns import MATRIX
-from .device import device_of, groups
-from .matrix import FOLDS, beside, fit
-from .moving import Moving
-from .rate_scale import RateScale
-from .same_device import LEVEL, check_one_device
+from .device import LEVEL, check_one_device, device_of, groups
+from .heading import heading_lost
+from .matrix import FOLDS, beside, fit, of_what_shows_more
+from .moving import Moving, check_axes
+
+
+@dataclass(frozen=True)
+class RateScale:
+    """What the windows of the training recordings say, and what those held out say of it.
+
+    matrix: (3, 3) dps per dps, what the gyroscope adds; p_value: of no such matrix; kind:
+    scale-factor, cross-axis, turned-axes or several; reference: what it was measured against;
+    gains: by how much windows left out are better, each way to tell it; before, after: RMS of what
+    turns them, in `unit`; fastest_dps: (3,) up to which it was seen; unseen: (3, 3) bool, entries
+    that the motion did not show; level: of p; share: how much of the matrix is deployed; heading:
+    degrees a minute lost against an attitude that was given, without and with the matrix of what
+    was left out; unused: names of recordings whose attitude shows less than gravity.
+    """
+
+    matrix: np.ndarray
+    deviation: np.ndarray
+    p_value: float
+    kind: str
+    reference: str
+    gains: np.ndarray
+    before: float
+    after: float
+    unit: str
+    runs: int
+    fastest_dps: np.ndarray
+    unseen: np.ndarray
+    level: float
+    share: float = 1.0
+    heading: tuple[float, float] | None = None
+    unused: tuple[str, ...] = ()
+
+    @property
+    def found(self) -> bool:
+        """Whether M is significant, some of it seen, and what was left out is better with it."""
+        better = bool((self.gains > 0).all())
+        return self.p_value < self.level and better and not self.unseen.all()
+
+    @property
+    def deployed(self) -> np.ndarray:
+        """(3, 3) of the matrix, what is taken out."""
+        return self.share * self.matrix
+
+    @property
+    def confirmed(self) -> bool:
+        """Whether the windows held out, of which there must be some, are better with it."""
+        return self.found and bool(np.isfinite(self.after)) and self.after < self.before
+
+    @property
+    def notes(self) -> list[str]:
+        """What an attitude forbids, or why it was not used, a sentence each."""
+        why = "gravity shows more of its axes than the reference given, which was left out"
+        said = [f"{name}: {why}" for name in self.unused]
+        if self.heading is not None and not self.found:
+            before, after = self.heading
+            lost = f"heading would lose {after:.2f} degrees a minute against the attitude"
+            said.append(f"the matrix is not deployed: {lost}, {before:.2f} without it")
+        return said
+
 
 GRAVITY, GIVEN = "gravity while it moved", "the reference given"
-_UNIT = {GRAVITY: "degrees a minute of tilt", GIVEN: "degrees a minute of turn"}
+UNIT = {GRAVITY: "degrees a minute of tilt", GIVEN: "degrees a minute of turn"}
 #: Posterior sigma of an entry above which the motion did not show it: a data sheet's 0.5 %.
 UNSEEN = 0.005
 #: Of devices without errors, so many may be said to have one.
@@ -21,12 +82,51 @@ _TRIFLE = 0.1
 
 
 def by_windows(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
-    """The matrix of the recordings to fit, judged on windows held out; None where none moves
-    or too little to be judged on.
+    """The matrix of the recordings to fit, judged on windows held out and on the heading where an
+    attitude is given; None where none moves or too little to be judged on.
 
     holdout: recordings held out whole; without any, every fourth part of each is, in turn. Raises
-    DifferentDevices.
+    CannotClose for axes that do not agree, and DifferentDevices.
     """
+    for moving in [*train, *holdout]:
+        check_axes(moving)
+    used = [[of_what_shows_more(m) for m in part] for part in (train, holdout)]
+    shown = _by_windows(*used)
+    if shown is None:
+        return None
+    pairs = zip([*train, *holdout], [m for part in used for m in part])
+    unused = tuple(m.name for m, now in pairs if now is not m)
+    return replace(_judged_by_heading(shown, *used) if shown.found else shown, unused=unused)
+
+
+def _judged_by_heading(shown: RateScale, train: list[Moving], holdout: list[Moving]) -> RateScale:
+    """With what the heading gains in what was left out, and in what was fitted."""
+    heading = heading_lost(list(_left_out(shown, train, holdout)))
+    fitted = heading_lost([(m, shown.deployed) for m in train])
+    gains = [before - after for before, after in filter(None, (heading, fitted))]
+    return replace(shown, heading=heading, gains=np.r_[shown.gains, gains])
+
+
+def _left_out(shown, train, holdout) -> Iterator[tuple[Moving, np.ndarray]]:
+    """Recordings with an attitude, beside a matrix that they were not fitted to: each that is held
+    out, else each beside the others, one alone its second half beside its first."""
+    if holdout:
+        yield from ((m, shown.deployed) for m in holdout)
+    elif len(train) == 1:
+        middle = len(train[0].rate) // 2
+        first, second = (train[0].part(s) for s in (slice(middle), slice(middle, None)))
+        yield second, _deployed([first])
+    else:
+        seen = [m for m in train if m.given is not None]
+        yield from ((one, _deployed([m for m in train if m is not one])) for one in seen)
+
+
+def _deployed(train: list[Moving]) -> np.ndarray:
+    shown = _by_windows(train, [])
+    return shown.deployed if shown is not None and shown.found else np.zeros((3, 3))
+
+
+def _by_windows(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
     matrix, fitted = fit(train)
     if not fitted:
         return None
@@ -63,7 +163,7 @@ def by_windows(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
         gains=np.array([gain, before - after]),
         before=before,
         after=after,
-        unit=_UNIT[reference],
+        unit=UNIT[reference],
         runs=sum(len(f.rows.errors) for f in fitted),
         fastest_dps=fastest,
         unseen=unseen.reshape(3, 3),

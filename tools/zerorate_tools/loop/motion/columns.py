@@ -155,7 +155,9 @@ def _chunk_of(moving, span, per, attitude, matrix, own):
     first = np.diff(still, axis=0)
     first = np.concatenate([first[:1], first, first[-1:]])
     lever = (first[per::per] - first[:-per:per]) / (per * dt_s**2 * _G_MPS2)
-    velocity = np.add.reduceat(first[1:], np.arange(0, len(still), per)) / (per * dt_s * _G_MPS2)
+    moved = np.append(~moving.still[span], ~moving.still[span][-1:])[::per, None, None]
+    ahead = moved * np.vstack([still[::per], still[-1:] + first[-1:]])  # at rest there is no speed
+    velocity = np.diff(ahead, axis=0) / (per * dt_s * _G_MPS2)
     own = np.concatenate([sums[..., 6], velocity, lever], axis=2)
     return attitudes, steps, late[..., None], seen, own
 

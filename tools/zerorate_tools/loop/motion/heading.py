@@ -1,18 +1,13 @@
 """Heading lost in motion, against an attitude that somebody else saw: cameras, a second sensor."""
 
-from collections.abc import Mapping
-from pathlib import Path
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from ...recordings import open_recording
 from ...simulate.attitude import IDENTITY, integrate
-from ..read.reference import attitude_names
-from .by_windows import by_windows
 from .columns import BIAS
-from .in_motion import InMotion, slots_of
 from .matrix import beside
 from .moving import LEAST_DPS, Moving
 
@@ -21,49 +16,18 @@ _STRETCH_S = 30.0
 _W_LAST = [1, 2, 3, 0]
 
 
-def heading_lost(moving: Mapping[Path, Moving]) -> tuple[float, float] | None:
-    """Degrees a minute without and with the matrix, RMS over stretches; each log with the matrix
-    of the others, a log alone its second half with that of its first. None without attitude."""
-    errors = []
-    for path in filter(has_attitude, moving):
-        one, others = moving[path], [m for p, m in moving.items() if p != path]
-        middle = len(one.rate) // 2
-        shown = by_windows(others or [one.part(slice(0, middle))], [])
-        judged = slice(0 if others else middle, None)
-        errors.append(_without_and_with(one, judged, _deployed(shown)))
-    return _rms(errors)
-
-
-def heading_lost_by(moving: Mapping[Path, Moving], shown) -> tuple[float, float] | None:
-    """The same of logs with an attitude, which a matrix was not fitted to. None where no stretch
-    of them is seen."""
-    matrix = _deployed(shown)
-    return _rms([_without_and_with(one, slice(None), matrix) for one in moving.values()])
-
-
-def _without_and_with(one: Moving, judged: slice, matrix: NDArray) -> NDArray:
-    """(2, k) degrees a second of each stretch."""
-    own = one.part(judged)
-    return np.array([_lost(own, m) for m in (np.zeros((3, 3)), matrix)])
-
-
-def _rms(errors: list[NDArray]) -> tuple[float, float] | None:
+def heading_lost(
+    judged: Sequence[tuple[Moving, NDArray[np.float64]]],
+) -> tuple[float, float] | None:
+    """Degrees a minute without and with a matrix (3, 3), RMS over stretches of recordings, each
+    beside a matrix. None where no stretch is seen."""
+    seen = [(one, matrix) for one, matrix in judged if one.given is not None]
+    errors = [[_lost(one, m) for m in (0.0 * matrix, matrix)] for one, matrix in seen]
     squares = np.concatenate([np.zeros((2, 0)), *errors], axis=1) ** 2
     if not squares.shape[1]:
         return None
     before, after = 60.0 * np.sqrt(squares.mean(axis=1))
     return float(before), float(after)
-
-
-def _deployed(shown) -> NDArray[np.float64]:
-    """(3, 3) what the slots of a model would add; zeros where nothing is found."""
-    slots = slots_of(InMotion(shown))
-    return np.array([s.coefficient_dps for s in slots]).T if slots else np.zeros((3, 3))
-
-
-def has_attitude(path: Path) -> bool:
-    """Whether a recording has the columns of one."""
-    return attitude_names(open_recording(path, keep_gaps=True).column_names) is not None
 
 
 def _lost(one: Moving, matrix: NDArray) -> NDArray[np.float64]:

@@ -5,21 +5,24 @@ its accelerometer's errors, a delay and a lever arm. All are fitted beside them.
 The noise is the hand's acceleration: its spectrum comes from the residuals of each recording.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
 from .columns import ACCEL_SHAPE, BIAS, DRIFT, LONGEST_S, MATRIX, OWN, OWN_SIGMA
-from .device import SIZES, Shown, device_of, groups
+from .device import SIZES, Shown, device_of, distance, groups
 from .moving import REST_SIGMA, Moving
-from .same_device import distance
 from .windows import LEAST_WINDOWS, Rows, rows_of
 
 #: Short windows first: a large bias bends long ones.
 _SECONDS = (10.0, 20.0, LONGEST_S, LONGEST_S)
 FOLDS = 4
 _LEAST_BLOCK, _MOST_BLOCKS = 4, 8
+#: Rows that a data sheet's word on turns between rests is worth: three turns.
+_TURN_WORTH = 6.0
+#: Degrees of freedom of a hand's loudness: few, and yet it has a variance.
+_FREEDOM, _ROUNDS = 4.0, 6
 #: A turn of the axes turns the frame that headings are told in, once: no heading is lost by it.
 _NO_TURN = np.eye(MATRIX) - groups()[-1]
 #: Of its own errors those before a delay and a lever arm, which are small, are taken out.
@@ -29,8 +32,8 @@ _OWN_PRECISION = np.concatenate([np.full(n, OWN_SIGMA[name] ** -2) for name, n i
 
 @dataclass
 class Fitted:
-    """A recording beside a matrix: its own errors, rows of its windows, precision (q,) of a row,
-    folds (w,) of a window, and heading (9, 9), its mean square by entries.
+    """A recording beside a matrix: its own errors, rows of its windows, precision (w, q, 3) of
+    them, folds (w,) of a window, and heading (9, 9), its mean square by entries.
     """
 
     moving: Moving
@@ -52,7 +55,7 @@ class Fitted:
     def normal(self, take) -> tuple[np.ndarray, np.ndarray]:
         """(p, p) and (p,) normal equations of some windows."""
         columns = self.rows.columns[take]
-        weighted = columns * (self.rows.counts * self.precision)[None, :, None, None]
+        weighted = columns * (self.rows.counts[:, None] * self.precision[take])[..., None]
         flat = weighted.reshape(-1, columns.shape[-1])
         return flat.T @ columns.reshape(flat.shape), flat.T @ self.rows.errors[take].ravel()
 
@@ -76,7 +79,7 @@ class Fitted:
         rows = self.rows
         left = rows.errors - rows.columns @ np.r_[step, own]
         take = self.folds >= 0 if fold is None else self.folds == fold
-        slow = rows.tilting * self.precision[None, :, None, None]
+        slow = rows.tilting * self.precision[..., None]
         square = np.einsum("wqac,wqad->wcd", slow, rows.tilting)[take]
         score = np.einsum("wqac,wqa->wc", slow, left)[take]
         rate = np.einsum("wcd,wd->wc", np.linalg.pinv(square, rcond=1e-6, hermitian=True), score)
@@ -114,6 +117,22 @@ def beside(moving: Moving, matrix: np.ndarray) -> Fitted | None:
     return fitted
 
 
+def of_what_shows_more(moving: Moving) -> Moving:
+    """The recording, without its attitude where gravity shows more of the matrix: an attitude with
+    jumps or drift, or one that is hardly seen."""
+    if moving.given is None:
+        return moving
+    every = (moving, replace(moving, given=None))
+    fitted = [(f, m) for m in every if (f := beside(m, np.zeros((3, 3)))) is not None]
+    return max(fitted, key=lambda f: _known(f[0]), default=(None, moving))[1]
+
+
+def _known(f: Fitted) -> float:
+    """Nats by which its windows narrow the entries of a data sheet."""
+    shown = f.shown(np.zeros((3, 3)))
+    return float(np.linalg.slogdet(np.eye(MATRIX) + SIZES[-1] ** 2 * shown.normal)[1])
+
+
 def _beside(moving, seconds, matrix, before) -> Fitted | None:
     own = np.zeros(sum(OWN.values())) if before is None else before.own.copy()
     longest = (s for s in reversed(_SECONDS) if s <= seconds)
@@ -126,9 +145,8 @@ def _beside(moving, seconds, matrix, before) -> Fitted | None:
     blocks = min(max(windows // _LEAST_BLOCK, FOLDS), _MOST_BLOCKS)
     folds = np.arange(windows) * blocks // windows % FOLDS
     heading = rows.heading if moving.given is not None else _NO_TURN @ rows.heading @ _NO_TURN
-    fitted = Fitted(moving, own, rows, np.ones(len(rows.kinds)), folds, heading)
-    for _ in range(4):
-        fitted.precision = 1.0 / _variances(fitted, matrix)[rows.kinds]
+    fitted = Fitted(moving, own, rows, np.ones(rows.errors.shape), folds, heading)
+    _weigh(fitted, matrix)
     fitted.precision = fitted.precision / _contradiction(fitted, matrix)
     return fitted
 
@@ -140,20 +158,43 @@ def _contradiction(f: Fitted, matrix: np.ndarray) -> float:
     return max(1.0, float(np.mean(excess)) / MATRIX) if len(excess) > 1 else 1.0
 
 
-def _variances(f: Fitted, matrix) -> np.ndarray:
-    """(k,) of a row of each noise, from what is left; what the fit took is put back. Of waves those
-    of one frequency and the next are much alike; the last noise is that of rests."""
+def _weigh(f: Fitted, matrix: np.ndarray) -> None:
+    """Set the precision of rows. A hand is now quiet and now loud: beside the noise of each
+    frequency each window and band has a loudness of its own (Student's t, by expectation and
+    maximisation: Lange, Little and Taylor 1989)."""
+    rows, weight = f.rows, np.ones(f.rows.errors.shape)
+    number = 2.0 * (rows.counts * rows.there) @ rows.bands.T
+    for _ in range(_ROUNDS):
+        left, taken = _left(f, matrix)
+        free = rows.there[..., None] - np.minimum(taken * f.precision, 1.0)
+        noise = _variances(rows, weight * left, free)[rows.kinds]
+        level = (rows.counts[:, None] * (left + taken) / noise)[..., :2].sum(axis=2)
+        quiet = (_FREEDOM + number) / (_FREEDOM + level @ rows.bands.T)
+        weight = (quiet @ rows.bands)[..., None]
+        f.precision = weight / noise
+
+
+def _left(f: Fitted, matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(w, q, 3) squares of what is left of rows, and the variance of what the fit took there."""
     normal, right = f.normal(slice(None))
     _add_own(normal, right, f)
     normal[:MATRIX, :MATRIX] += np.eye(MATRIX) * SIZES[-1] ** -2
     right[:MATRIX] -= matrix.ravel() * SIZES[-1] ** -2
     inverse, columns = np.linalg.inv(normal), f.rows.columns
     left = (f.rows.errors - columns @ (inverse @ right)) ** 2
-    taken = np.einsum("wqap,pr,wqar->wqa", columns, inverse, columns, optimize=True)
-    free = f.rows.there[..., None] - np.minimum(taken * f.precision[None, :, None], 1.0)
-    sums = [np.bincount(f.rows.kinds, x.sum(axis=(0, 2))) for x in (left, free)]
-    noise = np.log(np.where(sums[0] > 0, sums[0], 1.0) / np.maximum(sums[1], 1e-3))
-    return np.exp(np.append(uniform_filter1d(noise[:-1], 3, mode="nearest"), noise[-1]))
+    return left, np.einsum("wqap,pr,wqar->wqa", columns, inverse, columns, optimize=True)
+
+
+def _variances(rows: Rows, left: np.ndarray, free: np.ndarray) -> np.ndarray:
+    """(k,) of each noise. Of waves those of one frequency and the next are much alike; the last,
+    of turns between rests, is what data sheets say where there are few."""
+    sums = [np.bincount(rows.kinds.ravel(), x.sum(axis=0).ravel()) for x in (left, free)]
+    parts = np.reshape(sums, (2, -1, rows.kinds[-1, 0] + 1))
+    parts[..., -1] += _TURN_WORTH
+    noise = np.log(np.where(parts[0] > 0, parts[0], 1.0) / np.maximum(parts[1], 1e-3))
+    noise[:, :-1] = uniform_filter1d(noise[:, :-1], 3, axis=1, mode="nearest")
+    # a large tilt is vertical, too: what the columns have of it is linear
+    return np.exp([noise[0], noise.max(axis=0)]).ravel()
 
 
 def _add_own(normal, right, f: Fitted) -> None:

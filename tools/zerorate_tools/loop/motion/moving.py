@@ -8,9 +8,11 @@ import numpy as np
 
 from ...recordings import open_recording
 from ...recordings.recording import ACCEL, GYRO, TIME
-from ...simulate.attitude import IDENTITY, integrate
+from ...recordings.turning import axes_of, axes_words
+from ...simulate.attitude import IDENTITY, integrate, into_body
+from ..read.bad_readings import saturated
+from ..read.gate import CannotClose
 from ..read.reference import Reference
-from ..read.saturation import saturated
 from ..read.still import runs, still_ticks
 from ..read.ticks import TICK_S, Ticks, read_ticks
 
@@ -26,6 +28,8 @@ _WORTH_READING_DPS = 1.0
 _GAP = 5
 #: Share of the samples that an attitude must be seen at: below it gravity shows more.
 _LEAST_SEEN = 0.5
+#: Seconds over which gravity is held in one place by about the right bias, and samples asked.
+_HELD_S, _SOME = 3.0, 1 << 16
 #: Rests this long are a reading of the bias, with what it wanders meanwhile.
 _REST_TICKS, REST_SIGMA = 10, np.radians(0.005)
 
@@ -101,6 +105,19 @@ def _beside_main(vectors: np.ndarray) -> float:
     return float(1.0 - squares[-1] / max(squares.sum(), 1e-300))
 
 
+def check_axes(moving: Moving) -> None:
+    """Raise CannotClose where gravity turns as it would about other axes than those of the rates:
+    no small error of a matrix is told then."""
+    if moving.given is not None or not moving.accel.any():
+        return
+    axes = axes_of(np.degrees(moving.rate).T, moving.accel.T, moving.at_s)
+    if axes is not None and (axes != np.eye(3)).any():
+        raise CannotClose(
+            f"{moving.name}: gravity turns as if the rates x y z were {axes_words(axes)} of the "
+            "accelerometer's axes: import it with --map gx=-COLUMN or the like, so that both agree"
+        )
+
+
 def moving_of(path: str | PathLike[str], ticks: Ticks | None = None) -> Moving | None:
     """A recording read for its motion; None where it never turns, or has neither an accelerometer
     nor a reference.
@@ -119,7 +136,7 @@ def moving_of(path: str | PathLike[str], ticks: Ticks | None = None) -> Moving |
     ticks = ticks or read_ticks(path, TICK_S)
     still = still_ticks(ticks)
     rests = _rests(ticks, still)
-    offset = np.median(rests[:, 1:] if len(rests) else rate, axis=0)
+    offset = np.median(rests[:, 1:], axis=0) if len(rests) else _offset(rate, accel, t_us)
     middle_us = 0.5 * (t_us[0] + t_us[-1])
     usable = (np.abs(np.hstack([gyro, accel])) < _RAIL).all(axis=1) & ~saturated(gyro)
     rests[:, 0] += (ticks.start_us - middle_us) * 1e-6
@@ -133,6 +150,22 @@ def moving_of(path: str | PathLike[str], ticks: Ticks | None = None) -> Moving |
         given = _attitude_by(given, moving.dt_s)
     seen = np.isfinite(given).all(axis=1).mean() if reference.names else 0.0
     return replace(moving, given=given if seen > _LEAST_SEEN else None)
+
+
+def _offset(rate: np.ndarray, accel: np.ndarray, t_us: np.ndarray) -> np.ndarray:
+    """(3,) rad/s near the bias of what never rests: the mean, or nothing where that holds gravity
+    more in one place over seconds, as of a hand that turns one way more than back."""
+    some = slice(_SOME)
+    dt_s = float(np.median(np.diff(t_us[some]))) * 1e-6
+    n = max(1, round(_HELD_S / dt_s))
+
+    def held(offset: np.ndarray) -> float:
+        attitude = integrate(np.degrees(rate[some] - offset), dt_s, IDENTITY)
+        seen = [(into_body(attitude, e) * accel[some]).sum(axis=1) for e in np.eye(3)]
+        means = np.add.reduceat(seen, np.arange(0, len(attitude), n), axis=1)
+        return float(np.linalg.norm(means, axis=0).sum())
+
+    return max(rate.mean(axis=0), np.zeros(3), key=held)
 
 
 def _attitude_by(rate_dps: np.ndarray, dt_s: float) -> np.ndarray:

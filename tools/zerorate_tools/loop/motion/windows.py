@@ -15,11 +15,17 @@ from .moving import Moving
 
 #: Of so many rows their noise is told; fewer are not used.
 LEAST_WINDOWS = 8
-#: Of windows under a Hann taper, each a quarter on, the share that counts (Welch 1967).
-_OVERLAP = 0.52
+#: What a row of waves counts: windows a quarter on are a tight frame, four rows for each number.
+OVERLAP = 0.25
+#: A band of frequencies in which a hand has one loudness.
+_BAND_HZ = 0.1
 #: A turn between rests: seconds of rest on either side, next to it left out as the turn may reach
-#: into them, used; seconds of the longest turn; degrees by which gravity moves.
-_REST_S, _EDGE_S, _USED_S, _LONGEST_TURN_S, _LEAST_DEG = 3.0, 1.0, 10.0, 60.0, 20.0
+#: into them, used; seconds of the longest turn.
+_REST_S, _EDGE_S, _USED_S, _LONGEST_TURN_S = 3.0, 1.0, 10.0, 180.0
+#: What a turn adds up to between rests: a gyroscope's noise, rad in a root of a second, and what is
+#: not in proportion to its rate, a share of it, as if drawn anew each second. Data sheets: 0.01 dps
+#: in a root of a Hz, 0.1 %.
+_NOISE, _BENT = np.radians(0.01), 1e-3
 
 
 def tapers(n: int, seconds: float) -> tuple[np.ndarray, np.ndarray]:
@@ -38,9 +44,10 @@ class Rows:
     """What windows of a recording measure, in time order.
 
     errors: (w, q, 3); columns: (w, q, 3, p); tilting: (w, q, 3, 3) by a steady turn of the window's
-    frame in rad/s; there: (w, q) bool, other rows are zeros; kinds: (q,) number of rows of one
-    noise; counts: (q,) share of such rows that is independent; heading: (9, 9) mean square of the
-    heading, or beside an attitude of all three turns, by entries.
+    frame in rad/s; there: (w, q) bool, other rows are zeros; kinds: (q, 3) number of rows of one
+    noise, the vertical's apart; counts: (q,) share of a row that is no other row's; bands: (b, q)
+    whether a row is of a band, the last one of turns between rests; heading: (9, 9) mean square of
+    the heading, or beside an attitude of all three turns, by entries.
     """
 
     errors: np.ndarray
@@ -49,6 +56,7 @@ class Rows:
     there: np.ndarray
     kinds: np.ndarray
     counts: np.ndarray
+    bands: np.ndarray
     heading: np.ndarray
 
 
@@ -66,18 +74,22 @@ def rows_of(moving: Moving, seconds: float, matrix, own) -> Rows | None:
         steps = np.arange(first, min(first + long, len(columns.at)))
         seen, of = columns.of(steps)
         if len(seen) == long and np.isfinite(seen).all():
-            found.append((first, rows @ seen, np.tensordot(rows, of, 1)))
+            level = _level(seen) if moving.given is None else np.eye(3)
+            found.append((first, rows @ seen @ level.T, level @ np.tensordot(rows, of, 1)))
             headings.append(_heading(columns, steps))
     if not found:
         return None
     turns = _rests_beside_turns(columns, moving) if moving.given is None else []
-    if len(turns) >= LEAST_WINDOWS:
-        found += [(t[0][0], *_between(columns, *t, len(rows))) for t in turns]
+    found += [(t[0][0], *_between(columns, moving, *t, len(rows))) for t in turns]
     _, errors, of = (np.stack(part) for part in zip(*sorted(found, key=lambda f: f[0])))
-    counts = np.append(np.full(len(rows) - 1, _OVERLAP), 1.0)
+    counts = np.append(np.full(len(rows) - 1, OVERLAP), 1.0)
+    band = np.append(kinds[:-1] / seconds // _BAND_HZ, -1)
+    bands = (band == np.unique(band)[:, None]) * 1.0
+    upright = 0 if moving.given is not None else kinds[-1] + 1
+    kinds = kinds[:, None] + [0, 0, upright]
     heading = np.mean(headings, axis=0)
     there = np.asarray(of.any(axis=(2, 3)))
-    return Rows(errors, of[..., :-3], of[..., -3:], there, kinds, counts, heading)
+    return Rows(errors, of[..., :-3], of[..., -3:], there, kinds, counts, bands, heading)
 
 
 def _rests_beside_turns(columns: Columns, moving: Moving) -> list[tuple[np.ndarray, np.ndarray]]:
@@ -92,26 +104,27 @@ def _rests_beside_turns(columns: Columns, moving: Moving) -> list[tuple[np.ndarr
         before = np.arange(max(first, end - used), end - edge)
         after = np.arange(start + edge, min(stop, start + used))
         brief = (start - end) * columns.step_s < _LONGEST_TURN_S
-        if brief and moving.whole(between) and _felt_deg(columns, before, after) > _LEAST_DEG:
+        if brief and moving.whole(between):
             found.append((before, after))
     return found
 
 
-def _felt_deg(columns: Columns, *both: np.ndarray) -> float:
-    """Between the directions of gravity in the body during two rests."""
-    felt = [np.einsum("mai,ma->i", columns.own[s][..., :3], columns.seen[s]) for s in both]
-    length = np.prod([np.linalg.norm(f) for f in felt])
-    # an accelerometer that gives nothing has no direction
-    return float(np.degrees(np.arccos(np.clip(np.dot(*felt) / max(length, 1e-300), -1, 1))))
-
-
-def _between(columns: Columns, before: np.ndarray, after: np.ndarray, q: int):
-    """(q, 3) and (q, 3, p + 3) of gravity after a turn less gravity before it, as the last row."""
+def _between(columns: Columns, moving: Moving, before: np.ndarray, after: np.ndarray, q: int):
+    """(q, 3) and (q, 3, p + 3) of gravity after a turn less gravity before it, as the last row:
+    over what a data sheet lets the turn between be wrong by."""
     row = np.r_[np.full(len(before), -1 / len(before)), np.full(len(after), 1 / len(after))]
+    turn = moving.rate[columns.at[before[-1]] : columns.at[after[0]]]
+    row /= np.sqrt((len(turn) * _NOISE**2 + (turn**2).sum() * _BENT**2) * moving.dt_s)
     seen, of = columns.of(np.r_[before, after])
-    last = np.arange(q) == q - 1
-    error, column = row @ seen, np.tensordot(row, of, 1)
+    last, level = np.arange(q) == q - 1, _level(seen)
+    error, column = row @ seen @ level.T, level @ np.tensordot(row, of, 1)
     return last[:, None] * error, last[:, None, None] * column
+
+
+def _level(seen: np.ndarray) -> np.ndarray:
+    """(3, 3) from the frame of specific force (k, 3) to one whose third axis is up."""
+    up = seen.mean(axis=0) / max(np.linalg.norm(seen.mean(axis=0)), 1e-300)
+    return np.roll(np.linalg.qr(np.column_stack([up, np.eye(3)]))[0].T, -1, axis=0)
 
 
 def _heading(columns: Columns, steps: np.ndarray) -> np.ndarray:

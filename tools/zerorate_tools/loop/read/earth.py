@@ -10,6 +10,7 @@ import numpy as np
 
 from ...simulate.attitude import into_body
 from ...simulate.world import earth_rate_dps
+from .ticks import Ticks
 
 EARTH_DPS = float(np.linalg.norm(earth_rate_dps(0.0)))
 ATTITUDE, LATITUDE = "attitude", "latitude_deg"
@@ -28,7 +29,7 @@ class Earth:
     said: str
 
 
-def earth_of(ticks) -> Earth:
+def earth_of(ticks: Ticks) -> Earth:
     """What is known of Earth's rate at the ticks of a recording."""
     none = np.zeros((len(ticks.count), 3))
     latitude = ticks.scales.more.get(LATITUDE)
@@ -50,7 +51,7 @@ def _left(dps: float, why: str) -> str:
     return f"up to {1e3 * dps:.1f} mdps of Earth's rotation are in the rates: {why}"
 
 
-def _attitude(ticks) -> np.ndarray | None:
+def _attitude(ticks: Ticks) -> np.ndarray | None:
     """(m, 4) or (4,) attitude, or None. A constant one travels in the scales as w x y z."""
     if ticks.attitude is not None:
         return ticks.attitude

@@ -2,14 +2,16 @@
 
 from dataclasses import dataclass, field
 from math import ceil, floor
+from typing import Any
 
 import numpy as np
 from scipy.stats import spearmanr
 from zerorate.settings import DEFAULTS
 
 from ...errors import ZerorateError
-from ...model.binding import NAMES, binding_of
+from ...model.model import NAMES, binding_of
 from .sessions import OWN_SOURCES, Session
+from .ticks import Ticks
 
 LEAST_BLOCKS = 15
 #: Half of it is the turn-on minute, which nothing is judged by.
@@ -52,7 +54,7 @@ class GateReport:
     notes: list[str] = field(default_factory=list)
 
 
-def same_settings(ticks: list) -> None:
+def same_settings(ticks: list[Ticks]) -> None:
     """Raise CannotClose for a session of another sensor or scale, or a recording given twice."""
     first = ticks[0]
     for t in ticks[1:]:
@@ -73,14 +75,14 @@ def same_settings(ticks: list) -> None:
         seen[t.digest] = t.name
 
 
-def _alike(name, one, other) -> bool:
+def _alike(name: str, one: Any, other: Any) -> bool:
     """Whether two recordings may have these settings: equal, a data rate within five percent."""
     if name == "odr_hz":
         return abs(one - other) <= _MOST_RATE_APART * max(one, other)
     return one == other
 
 
-def _how_alike(name, one, other) -> str:
+def _how_alike(name: str, one: Any, other: Any) -> str:
     """How to import what differs by a name that nobody gave, or a scale that was chosen alone."""
     if name == "sensor" and "unknown" in (one, other):
         part = other if one == "unknown" else one
@@ -90,7 +92,7 @@ def _how_alike(name, one, other) -> str:
     return f": if only the imports differ, import both with --{name.replace('_', '-')} N"
 
 
-def readable(ticks: list) -> None:
+def readable(ticks: list[Ticks]) -> None:
     """Raise CannotClose for a recording most of which are faults; the text says of which kind."""
     for t in ticks:
         for kind, count in t.faults.items():
@@ -101,7 +103,7 @@ def readable(ticks: list) -> None:
                 )
 
 
-def without_long_gaps(ticks: list) -> None:
+def without_long_gaps(ticks: list[Ticks]) -> None:
     """Raise CannotClose for a recording most of whose time nothing was recorded."""
     for t in ticks:
         filled = np.flatnonzero(t.count > 0)
@@ -115,7 +117,7 @@ def without_long_gaps(ticks: list) -> None:
             )
 
 
-def _same_chip(first, other) -> None:
+def _same_chip(first: Ticks, other: Ticks) -> None:
     one, its = binding_of(first.scales), binding_of(other.scales)
     for name in NAMES:
         a, b = getattr(one, name), getattr(its, name)
@@ -198,7 +200,7 @@ def usable_channels(sessions: list[Session], report: GateReport) -> None:
                 s.sources.pop(name)
 
 
-def _unusable(name, sessions):
+def _unusable(name: str, sessions: list[Session]) -> str | None:
     missing = [s.name for s in sessions if name not in s.sources]
     if missing:
         return f"not in {', '.join(missing)}"
@@ -228,7 +230,7 @@ def _has_the_noise(session: Session, name: str) -> bool:
     return max(alike, default=0.0) > _OWN_NOISE
 
 
-def _copies(a, b, sessions):
+def _copies(a: str, b: str, sessions: list[Session]) -> bool:
     if a.startswith(("acc_", "rate_")) and b.startswith(("acc_", "rate_")):
         return False
     x = np.concatenate([s.sources[a] - s.sources[a].mean() for s in sessions])

@@ -24,6 +24,8 @@ _HUMP = 0.8  # share of the nearest, whose few bins are known badly, that counts
 #: a session gives one periodogram, whose continuum is known badly at its slow end.
 _EACH_RATIO, _SINGLE_RATIO = 2.0, 12.0
 _EDGE_HZ = 0.96  # of half the rate: above, a padded spectrum's bins are not independent
+SEGMENT = 2048
+_MOST_SEGMENTS = 1500
 
 
 @dataclass(frozen=True)
@@ -75,7 +77,7 @@ def beside_neighbours(s: Spectrum, wide: float) -> np.ndarray:
     return flat / np.maximum(usual / bias, 1e-300)
 
 
-def _ring(wide):
+def _ring(wide: float) -> np.ndarray:
     """(bins, 1) bool: the nearest neighbours without the line itself."""
     inner, outer = (round(n * wide) for n in _NEXT)
     away = np.abs(np.arange(-outer, outer + 1))
@@ -94,7 +96,9 @@ def _continuum(power: np.ndarray) -> np.ndarray:
     return fit
 
 
-def find(train: list[Spectrum], holdout: list[Spectrum], wide: float, slowest_hz: float):
+def find(
+    train: list[Spectrum], holdout: list[Spectrum], wide: float, slowest_hz: float
+) -> list[Line]:
     """Lines in all training sessions, the strongest first. wide: bins that one line covers."""
     ratios = [beside_neighbours(s, wide) for s in train]
     total = sum(s.averages for s in train) * 3
@@ -115,7 +119,7 @@ def find(train: list[Spectrum], holdout: list[Spectrum], wide: float, slowest_hz
     return out
 
 
-def _hump(p, at, reach):
+def _hump(p: np.ndarray, at: int, reach: int) -> slice:
     """Slice around a line: what stands out beside it without a gap is the same hump."""
     low = high = at
     while low > 0 and (p[max(0, low - reach) : low] < LEVEL).any():
@@ -125,7 +129,45 @@ def _hump(p, at, reach):
     return slice(max(0, low - reach), high + reach + 1)
 
 
-def _line(at, hz, p, train, holdout, wide):
+def _line(
+    at: int, hz: float, p: float, train: list[Spectrum], holdout: list[Spectrum], wide: float
+) -> Line:
     power = np.mean([s.power[at] for s in train], axis=0)
     seen = [beside_neighbours(s, wide)[at].max() > _EACH_RATIO for s in holdout]
     return Line(float(hz), np.sqrt(2 * power), p, bool(seen) and all(seen))
+
+
+class Segments:
+    """Power of segments of samples; which of them were at rest is known when all is read."""
+
+    def __init__(self) -> None:
+        self.power: list[np.ndarray] = []
+        self.ticks: list[tuple[int, int]] = []
+        self._kept = np.zeros((0, 3))
+        self._kept_tick = np.zeros(0, np.int64)
+        self._window = np.hanning(SEGMENT)[:, None]
+
+    def add(self, tick: np.ndarray, rate_dps: np.ndarray) -> None:
+        """Samples (n, 3) in time order with the tick of each."""
+        rate = np.vstack([self._kept, rate_dps])
+        tick = np.concatenate([self._kept_tick, tick])
+        whole = len(rate) // SEGMENT
+        for i in range(whole if len(self.power) < _MOST_SEGMENTS else 0):
+            part = slice(i * SEGMENT, (i + 1) * SEGMENT)
+            centred = rate[part] - rate[part].mean(axis=0)
+            bins = np.abs(np.fft.rfft(centred * self._window, axis=0)) / self._window.sum()
+            self.power.append((2 * bins**2).astype(np.float32))
+            self.ticks.append((int(tick[part][0]), int(tick[part][-1])))
+        self._kept, self._kept_tick = rate[whole * SEGMENT :], tick[whole * SEGMENT :]
+
+    def at_rest(self, still: np.ndarray, odr_hz: float) -> Spectrum | None:
+        """Mean over the segments all of whose ticks were still; None with fewer than four."""
+        use = [
+            power
+            for power, (first, last) in zip(self.power, self.ticks)
+            if still[first : last + 1].all() and (last - first + 2) > 0.9 * SEGMENT / odr_hz
+        ]
+        if len(use) < 4:
+            return None
+        mean = np.mean(use, axis=0, dtype=float)
+        return Spectrum(mean, odr_hz / SEGMENT, float(len(use)))

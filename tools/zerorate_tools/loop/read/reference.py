@@ -10,17 +10,17 @@ from collections.abc import Mapping
 import numpy as np
 
 from ...recordings.checks import GAP
+from ...recordings.recording import ATTITUDE
 from ...simulate.attitude import multiply
 
 RATES = ("ref_gx", "ref_gy", "ref_gz")
-_PARTS = ("qw", "qx", "qy", "qz")
 
 
 def attitude_names(names: list[str]) -> tuple[str, ...] | None:
     """The four columns of an attitude among a recording's, or None."""
     for name in names:
         if name.endswith("qw"):
-            four = tuple(name[:-2] + part for part in _PARTS)
+            four = tuple(name[:-2] + part for part in ATTITUDE)
             if all(n in names for n in four):
                 return four
     return None
@@ -49,7 +49,7 @@ class Reference:
         """Columns that are reference and no channel that a bias could follow."""
         return (*(self.rates or ()), *(self.attitude or ()))
 
-    def quaternions(self, batch) -> np.ndarray:
+    def quaternions(self, batch: Mapping[str, np.ndarray]) -> np.ndarray:
         """(n, 4) unit attitude of one sign from sample to sample, NaN where it was not seen."""
         assert self.attitude is not None
         q = np.column_stack([batch[n].astype(float) for n in self.attitude])
@@ -64,7 +64,9 @@ class Reference:
             self._signed = q[seen[-1]]
         return q
 
-    def rate_dps(self, t_us: np.ndarray, batch, q: np.ndarray | None) -> np.ndarray:
+    def rate_dps(
+        self, t_us: np.ndarray, batch: Mapping[str, np.ndarray], q: np.ndarray | None
+    ) -> np.ndarray:
         """(n, 3) dps, NaN where it is not known: at a gap, and at the first sample.
 
         q: what `quaternions` gave for this batch, where the reference is an attitude.
@@ -85,3 +87,22 @@ class Reference:
         with np.errstate(invalid="ignore", divide="ignore"):
             axis = np.where(sine[:, None] > 1e-12, turned[:, 1:] / sine[:, None], 0.0)
             return axis * (angle / dt_s)[:, None]
+
+
+def change_of(t_us: np.ndarray, reference_dps: np.ndarray) -> np.ndarray:
+    """(n, 3) dps a second; NaN at the ends, beside a gap and where the reference is not known."""
+    change = np.full(reference_dps.shape, np.nan)
+    if len(t_us) < 3:
+        return change
+    span_s = (t_us[2:] - t_us[:-2]) * 1e-6
+    with np.errstate(invalid="ignore", divide="ignore"):
+        slope = (reference_dps[2:] - reference_dps[:-2]) / span_s[:, None]
+    change[1:-1] = np.where((span_s < 1.5 * np.median(span_s))[:, None], slope, np.nan)
+    return change
+
+
+def delay_products(miss_dps: np.ndarray, change_dps2: np.ndarray) -> np.ndarray:
+    """(n, 2) from which a delay is estimated: the error (n, 3) about its mean with the rate's
+    change a second (n, 3), and that squared."""
+    miss = miss_dps - (miss_dps.mean(axis=0) if len(miss_dps) else 0.0)
+    return np.column_stack([(miss * change_dps2).sum(axis=1), (change_dps2**2).sum(axis=1)])

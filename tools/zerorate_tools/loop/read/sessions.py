@@ -3,6 +3,7 @@ of everything else.
 """
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -48,11 +49,11 @@ class Session:
     ticks_dps: np.ndarray | None = None
     welch: Spectrum | None = None
     tick_weight: np.ndarray | None = None
-    steps: tuple = ()
-    listed: tuple = ()
+    steps: tuple[Any, ...] = ()
+    listed: tuple[Any, ...] = ()
     level_dps: np.ndarray | None = None
     temp_step_degc: float = 0.0
-    known: dict = field(default_factory=dict, repr=False, compare=False)
+    known: dict[Any, Any] = field(default_factory=dict, repr=False, compare=False)
 
     @property
     def blocks(self) -> int:
@@ -155,5 +156,5 @@ def block_basis(term: Term, session: Session) -> np.ndarray:
     return basis
 
 
-def _basis(term, session):
+def _basis(term: Term, session: Session) -> np.ndarray:
     return session.block_mean(evaluate(term, session.source, session.tick_s))

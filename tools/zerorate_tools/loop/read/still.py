@@ -1,8 +1,14 @@
 """Which ticks were still, judged without assuming a small bias."""
 
+from os import PathLike
+
 import numpy as np
 from scipy.ndimage import binary_dilation, median_filter, uniform_filter1d
 from scipy.stats import chi2
+
+from ...allan import overlapping
+from .gate import CannotClose
+from .ticks import TICK_S, Ticks, gap_filled, read_ticks, tick_seconds
 
 _SPREAD = 2.0  # times the quiet spread
 _OFF_DPS = 1.0  # from the running middle of quiet ticks
@@ -19,9 +25,14 @@ _WINDOW_S = 900.0
 _SLOPE_LAG_S = 120.0
 #: Normal deviations in a median of absolute ones.
 _MAD = 1.4826
+_LEAST_TICKS = 30
+_SAMPLES = 50
+#: The shortest averages, s, and the share of them without a sample that is bridged.
+_FINE_S = 0.1
+_MOST_EMPTY = 0.02
 
 
-def still_ticks(ticks, edges: bool = True) -> np.ndarray:
+def still_ticks(ticks: Ticks, edges: bool = True) -> np.ndarray:
     """(m,) bool. Quiet: the rate's spread within a tick is near that of the quietest ticks. Still:
     its mean, less a line over temperature, is also near the running middle of quiet ticks, so a
     steady turn does not count; a turn below 1 dps is told by the accelerometer alone, if its axis
@@ -46,7 +57,7 @@ def runs(mask: np.ndarray) -> np.ndarray:
     return np.flatnonzero(np.diff(np.r_[0, mask.astype(int), 0])).reshape(-1, 2)
 
 
-def _is_near(off, there, quiet):
+def _is_near(off: np.ndarray, there: np.ndarray, quiet: np.ndarray) -> np.ndarray:
     """(m,) bool: no mean, and no mean of so many that their noise is small, is far off."""
     near = np.ones(len(off), bool)
     for values in off.T:
@@ -61,7 +72,7 @@ def _is_near(off, there, quiet):
     return near
 
 
-def _less_temperature(ticks, quiet):
+def _less_temperature(ticks: Ticks, quiet: np.ndarray) -> np.ndarray:
     """(m, 3) rate less a line over temperature: a fast ramp of a steep part is no motion.
 
     The slope is the median of what quiet ticks two minutes apart show, weighed by how much the
@@ -79,13 +90,15 @@ def _less_temperature(ticks, quiet):
     return ticks.rate - np.outer(ticks.temp - ticks.temp[at[0]], slope)
 
 
-def _weighted_median(values, weights):
+def _weighted_median(values: np.ndarray, weights: np.ndarray) -> float:
     order = np.argsort(values)
     total = np.cumsum(weights[order])
     return values[order[np.searchsorted(total, 0.5 * total[-1])]]
 
 
-def _edges(rate, middle, still, there, tick_s):
+def _edges(
+    rate: np.ndarray, middle: np.ndarray, still: np.ndarray, there: np.ndarray, tick_s: float
+) -> np.ndarray:
     """(m,) bool: ticks that lead without a break into motion and are off the still ones around them
     by more than noise; no motion takes longer to die down than a lag of the bias does, and what
     stays where a knock put it is a step of the bias. Near the recording's ends, where still ones
@@ -104,7 +117,7 @@ def _edges(rate, middle, still, there, tick_s):
     return binary_dilation(moving, mask=beside, iterations=longest)
 
 
-def _is_quiet(ticks, there):
+def _is_quiet(ticks: Ticks, there: np.ndarray) -> np.ndarray:
     """(m,) bool: the spread is at most twice that of the quietest fifth, or what so few samples as
     a tick has may show of the same noise."""
     if np.median(ticks.count[there]) < 4:
@@ -123,7 +136,7 @@ def _is_quiet(ticks, there):
     return ~binary_dilation(moving, iterations=1)
 
 
-def _running_middle(rate, quiet, window):
+def _running_middle(rate: np.ndarray, quiet: np.ndarray, window: int) -> np.ndarray:
     """(m, 3) median of quiet ticks around each; the whole recording's where there are none."""
     out = np.empty_like(rate)
     at = np.flatnonzero(quiet)
@@ -137,13 +150,14 @@ def _running_middle(rate, quiet, window):
     return out
 
 
-def _gravity_holds(ticks, there):
+def _gravity_holds(ticks: Ticks, there: np.ndarray) -> np.ndarray:
     """(m,) bool: the direction of gravity does not turn by more than its own noise allows over ten
     ticks; near the recording's ends, from there inwards.
     """
     lag = max(1, int(10.0 / ticks.tick_s))
     if len(there) <= 2 * lag:
         return np.ones(len(there), bool)
+    assert ticks.accel is not None, "asked only where gravity was recorded"
     smooth = np.column_stack(
         [median_filter(ticks.accel[:, a], 5, mode="nearest") for a in range(3)]
     )
@@ -152,3 +166,46 @@ def _gravity_holds(ticks, there):
     turned = np.linalg.norm(smooth[after] - smooth[before], axis=1)
     usual = np.quantile(turned[lag:-lag], 0.5)
     return turned < max(8.0 * usual, 0.03)
+
+
+def deviation_of(path: str | PathLike[str]) -> tuple[np.ndarray, np.ndarray]:
+    """Cluster times (k,) in s from one tick up, and Allan deviation (k, 3) in dps, at rest.
+
+    Of the longest still stretch, overlapping (IEEE Std 952-1997, annex C). Raises BadRecording, and
+    CannotClose where less than thirty ticks of 0.1 s in a row are still.
+    """
+    return overlapping(*still_stretch(path))
+
+
+def still_stretch(path: str | PathLike[str]) -> tuple[np.ndarray, float]:
+    """(n, 3) dps, means of the longest still stretch, and of how many s each is: 0.1 where the
+    recording has samples for it. Raises BadRecording, CannotClose.
+
+    What is still is judged over fifty samples: fewer spread by chance, and a recording of hours
+    would fall to pieces. Below 4 Hz one sample is a tick, which has no spread.
+    """
+    own_s = tick_seconds(path, 0.0)
+    ticks = ticks_with_spread(path)
+    first, last = longest_run(still_ticks(ticks) & (ticks.count > 0))
+    per = max(1, int(ticks.tick_s / max(_FINE_S, own_s) + 1e-6))
+    fine = read_ticks(path, ticks.tick_s / per)
+    rate = fine.rate[first * per : last * per]
+    empty = ~np.isfinite(rate).all(axis=1)
+    if not len(rate) or empty.mean() > _MOST_EMPTY:
+        rate, fine = ticks.rate[first:last], ticks
+    if len(rate) < _LEAST_TICKS:
+        seconds = _LEAST_TICKS * fine.tick_s
+        raise CannotClose(f"{ticks.name}: never still for {seconds:.0f} s; leave it at rest longer")
+    return np.column_stack([gap_filled(rate[:, a]) for a in range(3)]), fine.tick_s
+
+
+def ticks_with_spread(path: str | PathLike[str]) -> Ticks:
+    """Ticks of at least fifty samples, by whose spread rest is told. Raises BadRecording."""
+    own_s = tick_seconds(path, 0.0)
+    return read_ticks(path, max(TICK_S, _SAMPLES * own_s) if own_s < 0.25 else TICK_S)
+
+
+def longest_run(mask: np.ndarray) -> tuple[int, int]:
+    """First and one past the last index of the longest run of True; (0, 0) without any."""
+    first, last = max(runs(mask), key=lambda run: run[1] - run[0], default=(0, 0))
+    return int(first), int(last)

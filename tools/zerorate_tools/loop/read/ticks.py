@@ -3,6 +3,7 @@ and counted.
 """
 
 import hashlib
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from os import PathLike
 from pathlib import Path
@@ -14,10 +15,10 @@ from ...recordings import OpenRecording, Scales, open_recording
 from ...recordings.checks import GAP
 from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP, TIME
 from .bad_readings import BadReadings
-from .beside_reference import change_of, delay_products
-from .reference import Reference, declared
-from .welch import Segments
+from .lines import Segments
+from .reference import Reference, change_of, declared, delay_products
 
+Batch = Mapping[str, np.ndarray]
 TICK_S = 1.0
 #: Samples a tick below which it is taken to hold one.
 _ALONE = 1.5
@@ -28,8 +29,9 @@ _VIBRATION_ALPHA = 1.0 / 32.0
 @dataclass
 class Ticks:
     """Sums per tick. count: (m,) good samples; rate, rate_var: (m, 3) dps, dps^2; others (m,) or
-    (m, 3). reference: true rate, NaN where it is not known; attitude: (m, 4) body to world; delay:
-    (m, 2) of `beside_reference.delay_products`.
+    (m, 3). reference: true rate where one is given, NaN where it is not known; attitude: (m, 4)
+    body to world, from which no bias in motion is read: its frame, delay and noise would be in it;
+    delay: (m, 2) of `reference.delay_products`.
     """
 
     name: str
@@ -57,17 +59,17 @@ class Ticks:
 class _Sums:
     """Growing sums per tick of named columns."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.sums: dict[str, np.ndarray] = {}
 
-    def add(self, name, tick, values, size):
+    def add(self, name: str, tick: np.ndarray, values: np.ndarray, size: int) -> None:
         total = np.bincount(tick, values, minlength=size)
         old = self.sums.get(name)
         if old is not None:
             total[: len(old)] += old
         self.sums[name] = total
 
-    def get(self, name, size):
+    def get(self, name: str, size: int) -> np.ndarray:
         """(size,) sums; 0 where nothing was ever added, as of a recording all faulty."""
         there = self.sums.get(name, np.zeros(0))
         return np.pad(there, (0, size - len(there)))
@@ -76,8 +78,8 @@ class _Sums:
 class _Vibration:
     """Squared distance of each acceleration from its slow part; keeps the filter's state."""
 
-    def __init__(self):
-        self.state = None
+    def __init__(self) -> None:
+        self.state: np.ndarray | None = None
 
     def __call__(self, accel: np.ndarray) -> np.ndarray:
         keep = 1.0 - _VIBRATION_ALPHA
@@ -116,20 +118,20 @@ def read_ticks(path: str | PathLike[str], tick_s: float = TICK_S) -> Ticks:
 
 
 class _Reader:
-    def __init__(self, scales, names, tick_s):
+    def __init__(self, scales: Scales, names: list[str], tick_s: float) -> None:
         self.scales, self.names, self.tick_s = scales, names, tick_s
         self.sums, self.vibration = _Sums(), _Vibration()
         self.start: int | None = None
         self.size = self.samples = 0
         self.bad = BadReadings(names, scales.odr_hz)
         self.digest = hashlib.sha256()
-        self.centre = None
+        self.centre = np.zeros(3)
         self.reference = Reference(names, scales.gyro_lsb_per_dps)
         self.segments = Segments()
         known = {*COLUMNS, *self.reference.names, *declared(scales.more)}
         self.extra = [n for n in names if n not in known]
 
-    def add(self, batch):
+    def add(self, batch: Batch) -> None:
         t_us = batch[TIME]
         if not len(t_us):
             return
@@ -155,26 +157,33 @@ class _Reader:
             if len(accel):
                 self.sums.add("vib", tick, self.vibration(accel), self.size)
 
-    def _start_us(self, t_us):
+    def _start_us(self, t_us: np.ndarray) -> int:
         """Of the first tick. Where a tick holds one sample, that is in its middle, so that neither
         jitter nor a rate that is not quite what it says puts two into one and none in the next.
         """
         alone = has_one_sample(self.scales, self.tick_s)
         return int(t_us[0]) - (round(0.5e6 * self.tick_s) if alone else 0)
 
-    def _moments(self, name, tick, values):
+    def _moments(self, name: str, tick: np.ndarray, values: np.ndarray) -> None:
         for a in range(3):
             self.sums.add(f"{name}{a}", tick, values[:, a], self.size)
             self.sums.add(f"{name}{a}^2", tick, values[:, a] ** 2, self.size)
 
-    def _channels(self, batch, tick, good):
+    def _channels(self, batch: Batch, tick: np.ndarray, good: np.ndarray) -> None:
         for name in [*self.extra, *([TEMP] if TEMP in self.names else [])]:
             there = good if name == TEMP else batch[name] != GAP
             key = _key(name)
             self.sums.add(key, tick[there], batch[name][there].astype(float), self.size)
             self.sums.add(f"{key} count", tick[there], np.ones(int(there.sum())), self.size)
 
-    def _true_rate(self, batch, t_us, tick, gyro, good):
+    def _true_rate(
+        self,
+        batch: Batch,
+        t_us: np.ndarray,
+        tick: np.ndarray,
+        gyro: np.ndarray,
+        good: np.ndarray,
+    ) -> None:
         q = self.reference.quaternions(batch) if self.reference.attitude else None
         rate = self.reference.rate_dps(t_us, batch, q)
         known = good & np.isfinite(rate).all(axis=1)
@@ -190,15 +199,15 @@ class _Reader:
             for i in range(4):
                 self.sums.add(f"attitude{i}", tick[seen], q[seen, i], self.size)
 
-    def _columns_of(self, name, tick, rows):
+    def _columns_of(self, name: str, tick: np.ndarray, rows: np.ndarray) -> None:
         for i, column in enumerate(rows.T):
             self.sums.add(f"{name}{i}", tick, column, self.size)
 
-    def _mean(self, name):
+    def _mean(self, name: str) -> np.ndarray:
         total, count = (self.sums.get(_key(name) + of, self.size) for of in ("", " count"))
         return gap_filled(np.where(count > 0, total / np.maximum(count, 1), np.nan))
 
-    def _triple(self, name, count):
+    def _triple(self, name: str, count: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         mean = (
             np.column_stack([self.sums.get(f"{name}{a}", self.size) for a in range(3)])
             / count[:, None]
@@ -209,7 +218,7 @@ class _Reader:
         )
         return mean, np.maximum(square - mean**2, 0.0)
 
-    def result(self, name):
+    def result(self, name: str) -> Ticks:
         raw = self.sums.get("count", self.size)
         count = np.where(raw > 0, raw, np.nan)
         rate, rate_var = self._triple("gyro", count)
@@ -221,7 +230,7 @@ class _Reader:
             accel = np.column_stack([gap_filled(accel[:, a]) for a in range(3)])
         if TEMP in self.names:
             temp = self.scales.temp_degc(self._mean(TEMP))
-        if self.reference.names:
+        if self.reference.rates:
             reference = self._true_rates(raw)
         extra = {
             n: self._mean(n)
@@ -236,17 +245,17 @@ class _Reader:
             self._attitude(), delay, self.segments,
         )  # fmt: skip
 
-    def _columns(self, name, number):
+    def _columns(self, name: str, number: int) -> np.ndarray:
         return np.column_stack([self.sums.get(f"{name}{i}", self.size) for i in range(number)])
 
-    def _true_rates(self, count):
+    def _true_rates(self, count: np.ndarray) -> np.ndarray:
         """(m, 3) mean over the good samples of ticks in which all of them have a reference."""
         known = self.sums.get("known", self.size)
         whole = (known > 0) & (known >= count)
         mean = self._columns("true", 3) / np.maximum(known, 1.0)[:, None]
         return np.where(whole[:, None], mean, np.nan)
 
-    def _attitude(self):
+    def _attitude(self) -> np.ndarray | None:
         if not self.reference.attitude:
             return None
         total = self._columns("attitude", 4)

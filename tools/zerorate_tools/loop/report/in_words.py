@@ -14,13 +14,15 @@ def in_words(result: Mapping[str, Any]) -> str:
         f"error after   {_axes(result['after_mdps'])}",
         f"noise floor   {_axes(result['floor_mdps'])}",
     ]
-    lines += [_effect(effect) for effect in result["effects"]] or ["found: nothing"]
-    lines += [f"taken out again: {what}: {why}" for what, why in result["gate"]["withdrawn"]]
+    lines += [_effect(effect) for effect in result["effects"]] or [
+        "found: nothing, so nothing is deployed"
+    ]
+    lines += [f"withdrawn: {what}: {why}" for what, why in result["gate"]["withdrawn"]]
     lines += [_event(event) for event in result["events"]]
     lines += [_line(line) for line in result["interference"]]
     unexplained = result["unexplained"]
-    lines.append(f"remaining: {unexplained['what_is_known']}")
-    lines += [f"record next: {what}" for what in unexplained["measure_next"]]
+    lines.append(f"remaining error: {unexplained['what_is_known']}")
+    lines += [f"next: {what}" for what in unexplained["measure_next"]]
     lines += [f"note: {note}" for note in result["gate"]["notes"]]
     lines += [
         f"channel {n} not used: {why}" for n, why in result["gate"]["channels_dropped"].items()
@@ -46,8 +48,8 @@ def _axes(mdps):
 
 
 def _effect(effect):
-    rivals = effect["confounded_with"]
-    tie = f"; cannot be told from {', '.join(rivals)}" if rivals else ""
+    each = effect.get("probabilities", {})
+    tie = ": " + ", ".join(f"{name} {p:.2g}" for name, p in each.items()) if len(each) > 1 else ""
     said = effect["said"].removeprefix(effect["effect"]).strip()
     return f"found: {effect['effect']} {said}".rstrip() + f" ({effect['confidence']}){tie}"
 

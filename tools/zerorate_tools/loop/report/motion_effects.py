@@ -1,9 +1,12 @@
 """Effects not fitted on blocks, in the form of the report: of motion, and periodic ones."""
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 
-from ..motion.in_motion import Timing
-from ..motion.rate_scale import RateScale
+from ..motion.by_windows import RateScale
+from ..motion.scales_and_timing import Timing
 from ..read.lines import Line
 from ..search.periodic import QUICK_HZ
 from ..verify.analysis import Analysis
@@ -37,8 +40,21 @@ def interference(lines: list[Line]) -> list[dict]:
     ]
 
 
+def heading_of(t: RateScale) -> dict[str, float]:
+    """Degrees a minute of heading lost before and after, where an attitude tells."""
+    names = ("heading_before", "heading_after")
+    return {} if t.heading is None else dict(zip(names, np.round(t.heading, 3).tolist()))
+
+
+def heading_in_words(m: Mapping[str, Any]) -> str:
+    before, after = m["heading_before"], m["heading_after"]
+    return f"against the attitude {before:.2f} -> {after:.2f} degrees a minute of heading"
+
+
 def turning(t: RateScale) -> dict:
     names = ("rate_x", "rate_y", "rate_z")
+    heading = heading_of(t)
+    more = f"; {heading_in_words(heading)}" if heading else ""
     return {
         "effect": t.kind,
         "sources": list(names),
@@ -47,9 +63,9 @@ def turning(t: RateScale) -> dict:
         "deviation": {n: [float(v) for v in c] for n, c in zip(names, t.deviation.T)},
         "confidence": "confirmed" if t.confirmed else "tentative",
         "p_value": t.p_value,
-        "in_motion": {"before": t.before, "after": t.after, "unit": t.unit},
+        "in_motion": {"before": t.before, "after": t.after, "unit": t.unit, **heading},
         "said": f"{t.kind} over {t.runs} windows, measured beside {t.reference}; it does not "
-        "show at rest, where before and after are measured",
+        f"show at rest, where before and after are measured{more}",
     }
 
 

@@ -9,8 +9,8 @@ from ..fit.single import STEPS_CHOSEN, WEAKER
 from ..search.confounding import label
 from ..search.periodic import QUICK_HZ
 from ..verify.analysis import Analysis
+from ..verify.courses import AFTER, BEFORE, ONLINE, ONLINE_BEFORE
 from ..verify.judge import residuals, rms_dps
-from ..verify.measured import AFTER, BEFORE, ONLINE, ONLINE_BEFORE
 from ..verify.slots import slots
 from .motion_effects import interference, motion_effects
 from .unexplained import measure_next, not_excluded, what_is_known
@@ -116,7 +116,7 @@ def _truth(analysis):
     earth, turning = analysis.sessions[0].earth, analysis.motion.rate_scale
     return {
         "at_rest": "zero rate; " + (earth.said if earth else "Earth's rotation is in the rates"),
-        "in_motion": turning.reference if turning else "no reference: what moves is set aside",
+        "in_motion": turning.reference if turning else "none, so samples in motion are not used",
     }
 
 
@@ -161,6 +161,7 @@ def _effects(analysis):
                 "ci95_mdps": _interval(after),
                 "p_value": f.decision.p_value,
                 "confounded_with": f.confounded_with,
+                "probabilities": {name: round(p, 2) for name, p in f.probabilities.items()},
                 "likelihood_ratio": round(f.decision.ratio, 2),
                 "noise_inflation": round(f.decision.inflation, 2),
                 "nats_on_sessions_left_out": [round(float(g), 2) for g in f.decision.session_gains],
@@ -210,7 +211,7 @@ def _said(found):
 
 def _uncorrected_axes(found):
     axes = [axis for axis, used in zip("xyz", found.axes) if not used]
-    why = "where the error would grow or hardly fall"
+    why = "where the error would grow"
     return f"; not corrected on {', '.join(axes)}, {why}" if axes else ""
 
 

@@ -71,7 +71,8 @@ class Effect(_Effect, total=False):
     """What was found: what it follows, its slots, and the error before it and with it.
 
     coefficients: of each slot three, dps per unit of its basis; empty where it corrects nothing;
-    lost_by_projection: share of the squares of a curve that one form for all axes loses.
+    lost_by_projection: share of the squares of a curve that one form for all axes loses;
+    probabilities: by name, of what it may be, those above 0.05.
     """
 
     ci95_mdps: list[list[float]]
@@ -83,6 +84,7 @@ class Effect(_Effect, total=False):
     amplitude_mdps: list[float]
     in_motion: dict[str, Any]
     lost_by_projection: float
+    probabilities: dict[str, float]
 
 
 class _Event(TypedDict):

@@ -5,40 +5,39 @@ import numpy as np
 from ...model import effects
 from ...numbers import fixed
 from ..search.catalogue import is_supply, varies
-from ..verify.measured import BEFORE
+from ..verify.courses import BEFORE
 
 #: A sensor of the part's own that was not recorded, by a name of what it gives.
 _LACKING = {
-    "temp": "record the sensor's own temperature: most of what moves a bias follows it",
-    "acc_x": "record acceleration as well: a slow turn is no rest, and gravity shows it",
+    "temp": "record the sensor's own temperature, which most biases follow",
+    "acc_x": "record acceleration, in which a slow turn shows that looks like a rest",
 }
 _ORIENTATION = "hold the device in six orientations, each twice, at constant temperature"
-_COOLING = "a cool-down at the same rate as the warm-up (tells lag, rate and hysteresis apart)"
-_WARMING = "a warm-up at the same rate as the cool-down (tells lag, rate and hysteresis apart)"
+_COOLING = "record a cool-down as fast as the warm-up, to tell lag, rate and hysteresis apart"
+_WARMING = "record a warm-up as fast as the cool-down, to tell lag, rate and hysteresis apart"
 _SUPPLY = "record the supply voltage, and step it by 100 mV up and down at constant temperature"
-_POWER = "three power-ons at constant temperature, one of them a warm restart"
-_MORE = "more power-ons: {}; best are 6 or more"
-_FEW = "with fewer than 3 to learn from nothing is confirmed"
-_CHANCE = "with {} to learn from chance often looks like an effect"
-_LOGGERS, _LOOSEN = "a logger of {} beside the device", "one screw loosened"
+_POWER = "record three power-ons at constant temperature, one of them a warm restart"
+_MORE = "record more power-ons, 6 or more in all: {}"
+_FEW = "fewer than 3 fitted ones confirm nothing"
+_CHANCE = "with {} fitted ones chance often looks like an effect"
+_LOGGERS, _LOOSEN = "log {} beside the device", "loosen one screw"
 #: What may be at work unseen, and what a channel of it is called.
 _LOGGED = {"humidity": "hum", "board temperature": "_temp"}
 #: Share of the widest range that is a course up or down.
 _OF_RANGE = 0.3
-_LONGER = "an hour or more at rest in each recording"
+_LONGER = "let each recording rest for an hour or more"
 _ONE_DEVICE = (
-    "make sure that all recordings are of one device: {} begins {:.2g} dps away from what the "
-    "others taught"
+    "check that all recordings are of one device: {} begins {:.2g} dps away from the others"
 )
 _WHOLE_RANGE = (
-    "the whole range of temperature in every power-on: {} goes from {:.0f} to {:.0f} degC, what "
-    "was fitted from {:.0f} to {:.0f}"
+    "record the whole range of temperature in every power-on: {} has {:.0f} to {:.0f} degC, the "
+    "fitted ones {:.0f} to {:.0f}"
 )
 #: Beyond it, a turn-on offset is rather another device's: parts repeat theirs far better.
 _ANOTHERS_DPS = 0.5
 #: Times the floor up to which a residual without a form of its own is the sensor's noise.
 _OF_FLOOR = 3.0
-_WANDERS = "It wanders as slow noise does, and follows nothing that was recorded."
+_WANDERS = "It varies slowly, as noise does, and follows no recorded channel."
 #: Share of what is held out at temperatures that nothing fitted has seen, and by how much.
 _UNSEEN_SHARE, _UNSEEN_DEGC = 0.25, 1.0
 
@@ -52,7 +51,7 @@ def what_is_known(analysis, after_dps: np.ndarray) -> str:
         return f"{size}. It looks like sensor noise."
     if not residual.left:
         return f"{size}, {times:.1f} times the noise floor. {_WANDERS}"
-    parts = [f"{size}, {times:.1f} times the noise floor, and it is more than noise"]
+    parts = [f"{size}, {times:.1f} times the noise floor, which is more than noise"]
     if residual.smooth:
         parts.append("it drifts slowly")
     if residual.common:
@@ -65,19 +64,19 @@ def what_is_known(analysis, after_dps: np.ndarray) -> str:
 def _nearest_channel(analysis):
     s = analysis.selection
     if not s.pool:
-        return "nothing was recorded that could explain it"
+        return "no recorded channel could explain it"
     terms = [*s.straight, *s.bend, *s.terms]
     ratios = s.regression.gains(terms, [c.terms for c in s.pool]).sum(axis=1)
     best = s.pool[int(ratios.argmax())]
     sources = " and ".join(best.sources) or "time since power-on"
-    return f"of what was recorded it moves most like {sources}, which does not explain it"
+    return f"the nearest recorded channel is {sources}, which does not explain it"
 
 
 def measure_next(analysis) -> list[str]:
     """What to record so that more could be told, the most useful first."""
     sessions, found = analysis.sessions, analysis.selection.found
     kinds = {f.candidate.kind for f in found}
-    out = [told for name, told in _LACKING.items() if name not in sessions[0].sources]
+    out = [advice for name, advice in _LACKING.items() if name not in sessions[0].sources]
     out += [*_another_device(analysis), *_other_temperatures(analysis)]
     if len(sessions) < 5:
         fitted = len(sessions) - 1

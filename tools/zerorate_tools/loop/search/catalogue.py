@@ -96,26 +96,26 @@ _LATE_S = (1.0, 8.0)
 #: Lags in s of all parts that may be late, each three times the last: between two nothing is lost.
 _LAGS_S = (5.0, 15.0, 45.0, 135.0, 405.0, 1215.0)
 
-#: Share of its range by which the source of a difference may leave it, or a curve go on straight.
+#: Share of the range seen by which a source may leave it before the board holds its term. Within it
+#: the posterior mean goes on: to hold a term at the edge made the next power-on worse.
 MARGIN = 0.5
 
 
-def is_bounded(fields: dict) -> bool:
-    """Whether a basis stays in its fitted range though its source leaves its own.
-
-    Backlash, the difference from a lag and a rate do: holding their source at the edge would break
-    their memory and extrapolate nothing less.
-    """
-    return fields.get("lag_mode") in ("difference", "rate") or fields.get("memory") == "backlash"
+def beyond(lo: float, hi: float, name: str) -> tuple[float, float]:
+    """The limits at which a term is held. A hand takes what motion carries far beyond what rests
+    show, and time goes on forever: both are held where they end."""
+    margin = 0.0 if name in (*OF_MOTION, "time") else MARGIN * (hi - lo)
+    return lo - margin, hi + margin
 
 
-def _fields(choice: dict, span: dict, source: str) -> dict:
+def _fields(choice: dict, span: dict, source: str, drawn: bool = False) -> dict:
+    """Fields of a term. drawn: whether it follows a curve, which ends where the range seen does."""
     lo, hi, mean = span.get(source, (0.0, 1.0, 0.0))
     fields = dict(choice)
     fields["centre"] = _place(fields.get("centre", "mean"), (lo, hi, mean))
     if source != "one":
-        margin = MARGIN * (hi - lo) if is_bounded(fields) else 0.0
-        fields.update(lo=lo - margin, hi=hi + margin)
+        ends = (lo, hi) if drawn else beyond(lo, hi, source)
+        fields.update(zip(("lo", "hi"), ends))
     else:
         fields["centre"] = 0.0
     if source == "time":
@@ -130,7 +130,8 @@ def _fields(choice: dict, span: dict, source: str) -> dict:
     if fields.get("second"):
         second = span[fields["second"]]
         centre = _place(fields.get("second_centre", "mean"), second)
-        fields.update(second_lo=second[0], second_hi=second[1], second_centre=centre)
+        ends = beyond(second[0], second[1], fields["second"])
+        fields.update(second_lo=ends[0], second_hi=ends[1], second_centre=centre)
     return fields
 
 
@@ -147,7 +148,8 @@ def _expand(row: Effect, source: str, family: str, span, others=()) -> list[Cand
     refine = tuple(n for n in grids if n in REFINED)
     out = []
     for values in product(*grids.values()):
-        fields = _fields({**fixed, **dict(zip(grids, values))}, span, source)
+        choice = {**fixed, **dict(zip(grids, values))}
+        fields = _fields(choice, span, source, bool(row.free or row.curve))
         term = Term(source, **fields)
         terms = parts(term) if row.free else (term,)
         out.append(Candidate(row.kind, terms, family, refine))

@@ -1,56 +1,50 @@
-"""What competes with a found effect within the noise, and which of the tied ones to name."""
+"""What may stand in the place of a found effect: the posterior over the groups of candidates."""
 
 from dataclasses import replace
 
 import numpy as np
+from scipy.special import logsumexp
 
-from ...model import effects
 from ...model.effects import is_free, of_any_channel
 from ..fit.free_curve import parts
-from ..fit.noise import NATS
 from .catalogue import Candidate
+from .decide import LEVEL
 from .refine import drawn, refined
 
+#: Nats behind the likeliest beyond which a group is not refined: its grid is coarse.
 _WORTH_REFINING = 15.0
 
 
-def rivals(regression, terms, chosen, candidates, ratios) -> list[Candidate]:
-    """All that fit as well or nearly so in the chosen one's place, refined, the simplest first.
+def posterior(regression, terms, chosen, candidates, ratios) -> list[tuple[Candidate, float]]:
+    """Every group that may stand in the chosen one's place, its best candidate refined, and the
+    nats of its posterior; the likeliest first.
 
-    The first is the one to name: the chosen, or a simpler one that ties with it.
-
+    A group's likelihood is the mean over its grid, whose best point is refined. Its prior odds are
+    the level of its family, and every coefficient costs a nat (Akaike): a group of many fits more.
     ratios: (K,) of the candidates beside the same terms.
     """
-    best = _worth(regression, terms, chosen)
-    tried = {label(chosen): (chosen, best)}
+    groups: dict[str, list[int]] = {label(chosen): []}
     for i in np.argsort(-ratios):
-        c = candidates[i]
-        if label(c) in tried or ratios[i] < best - 2 * _WORTH_REFINING:
+        groups.setdefault(label(candidates[i]), []).append(int(i))
+    least = regression.gains(terms, [chosen.terms]).sum() - 2 * _WORTH_REFINING
+    out = []
+    for name, grid in groups.items():
+        if name == label(chosen):
+            best = chosen
+        elif ratios[grid[0]] > least:
+            best = drawn(regression, terms, refined(regression, terms, candidates[grid[0]]))
+        else:
             continue
-        c = drawn(regression, terms, refined(regression, terms, c))
-        tried[label(c)] = (c, _worth(regression, terms, c))
-    top = max(r for _, r in tried.values())
-    near = [c for c, r in tried.values() if r > top - 2 * NATS and c is not chosen]
-    tied = tried[label(chosen)][1] > top - 2 * NATS
-    simpler = [c for c in near if tied and complexity(c) < complexity(chosen)]
-    first = min(simpler, key=complexity, default=chosen)
-    rest = [chosen, *near] if first is not chosen else near
-    return [first, *(c for c in rest if c is not first)]
+        top = regression.gains(terms, [best.terms]).sum()
+        mean = logsumexp(np.r_[top, ratios[grid[1:]]] / 2) - np.log(max(len(grid), 1))
+        out.append((best, float(mean - _coefficients(best) + np.log(LEVEL[best.family]))))
+    return sorted(out, key=lambda pair: -pair[1])
 
 
-def _worth(regression, terms, c: Candidate) -> float:
-    """The likelihood ratio, less what a curve that was drawn chose its form by (Akaike)."""
+def _coefficients(c: Candidate) -> int:
+    """Fitted numbers: three a slot, and the form of a curve that was drawn."""
     form = len(parts(c.terms[0])) - 1 if is_free(c.terms[0]) else 0
-    return float(regression.gains(terms, [c.terms]).sum()) - 2 * form
-
-
-def complexity(candidate) -> tuple[int, int]:
-    """What a tie is broken by: a catalogue's effect before a form of any channel, these in the
-    order of their rows, then fewer free parameters.
-    """
-    if candidate.family == "catalogue":
-        return 0, len(candidate.refine)
-    return 1, [row.kind for row in effects.EFFECTS].index(candidate.kind)
+    return 3 * len(c.terms) + form
 
 
 def label(candidate) -> str:

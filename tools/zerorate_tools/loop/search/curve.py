@@ -17,7 +17,7 @@ from ..fit.regression import Regression
 from ..fit.single import LEAST_OF_A_PIECE, PIECES, PiecesByLine
 from ..read.sessions import Session
 from .cancels import cancels
-from .catalogue import MARGIN, Candidate, ranges, varies
+from .catalogue import Candidate, beyond, ranges, varies
 from .decide import LIKELY, Decision, JudgedOnPieces, family_p
 from .fits_in_slots import fits_in_slots
 from .hysteresis import MEMORIES, is_like_hysteresis
@@ -50,7 +50,9 @@ def smooth_curve(sessions: list[Session], line: Sequence[Term], taken: int) -> l
     bends = MOST_SLOTS - 1 - taken
     if not line or bends < _LEAST_BENDS:
         return []
-    slope, lo, hi = _reaching(line[0], sessions)
+    lo, hi, _ = ranges(sessions)["temp"]
+    ends = beyond(lo, hi, "temp")
+    slope = replace(line[0], lo=ends[0], hi=ends[1])
     at = np.linspace(lo, hi, bends + 2)[1:-1] - slope.centre
     terms = slope, *(replace(slope, knot=float(knot)) for knot in at)
     return [Candidate(KIND, terms, "catalogue")]
@@ -90,11 +92,11 @@ class ByPieces:
         no bend to be likely, but a better line than the firmware's. kept: slots left free."""
         if not self.line:
             return []
-        beside = _terms(found)
-        taken = self.taken + len(beside) + kept
-        every = [*smooth_curve(self.regression.sessions, self.line, taken), *self._kink(beside)]
+        beside, sessions = _terms(found), self.regression.sessions
+        smooth = smooth_curve(sessions, self.line, self.taken + len(beside) + kept)
+        every = [*smooth, *self._kink(beside)]
         told = [self._judged(c, beside, c.terms[1:] or c.terms, 1) for c in every]
-        most = LIKELY if varies("temp", self.regression.sessions) else 1.0
+        most = LIKELY if varies("temp", sessions) else 1.0
         told = [f for f in told if f.decision.accepted and f.decision.p_value <= most]
         return sorted(told, key=_gained, reverse=True)
 
@@ -115,12 +117,16 @@ class ByPieces:
         return [] if alike or cancels(sessions, [*straight, *beside], best.terms) else [told]
 
     def _kink(self, beside) -> list[Candidate]:
-        """The best by least squares, whose place the likelihood then refines."""
+        """The best by least squares, refined by the likelihood. Its slope is followed beyond the
+        last temperature no further than it was seen."""
+        sessions = self.regression.sessions
         best = self._best([c for c in self.pool if c.kind == _KINK], self.line, beside)
         if best is None:
             return []
-        terms = tuple(_reaching(t, self.regression.sessions)[0] for t in best.terms)
-        return [refined(self.regression, [*self.line, *beside], replace(best, terms=terms))]
+        best = refined(self.regression, [*self.line, *beside], best)
+        [term], (_, last, _) = best.terms, ranges(sessions)["temp"]
+        seen = last - term.centre - (term.knot or 0.0)
+        return [replace(best, terms=(replace(term, hi=min(term.hi, last + seen)),))]
 
     def _best(self, some, straight, beside) -> Candidate | None:
         by_line = PiecesByLine(self.regression.sessions[0])
@@ -141,10 +147,3 @@ def _terms(found: list[Found]) -> list[Term]:
 
 def _gained(found: Found) -> float:
     return float(found.decision.session_gains.sum())
-
-
-def _reaching(term: Term, sessions: list[Session]) -> tuple[Term, float, float]:
-    """The term with its limits beyond those seen, and these."""
-    lo, hi, _ = ranges(sessions)["temp"]
-    margin = MARGIN * (hi - lo)
-    return replace(term, lo=lo - margin, hi=hi + margin), lo, hi

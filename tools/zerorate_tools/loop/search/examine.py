@@ -12,9 +12,8 @@ from .cancels import cancels
 from .catalogue import Candidate
 from .confounding import label
 from .decide import Decision, JudgedOnPieces, decide
-from .hysteresis import is_like_hysteresis
+from .hysteresis import KIND, is_like_hysteresis, may_show
 from .multiple_testing import MultipleTesting
-from .ols_holdout_ratio import ols_holdout_ratio
 from .refine import drawn, refined
 from .selection import Found
 
@@ -48,6 +47,16 @@ class Examiner:
         decision = self._decision(best, told, straight, found, nuisances)
         return Found(told, decision) if decision.accepted else (label(best), decision.reason)
 
+    def accepts(
+        self,
+        told: Candidate,
+        straight: Sequence[Term],
+        found: Sequence[Term],
+        nuisances: Sequence[Term],
+    ) -> bool:
+        """Whether an effect passes whose parameters are refined, its curve drawn, already."""
+        return self._decision(told, told, straight, found, nuisances).accepted
+
     def is_idle(self, c: Candidate, rest: Sequence[Term]) -> bool:
         """Whether the rest of the terms explain what an effect was taken for."""
         if self.testing.is_by_time(c):
@@ -56,11 +65,8 @@ class Examiner:
         return float(self.regression.gains(rest, [c.terms]).sum()) < self.testing.least_ratio(c)
 
     def _decision(self, best, told, straight, found, nuisances) -> Decision:
-        """By the likelihood, by the plain error, and by pieces left out. told: the candidate with
-        its curve drawn."""
+        """By the likelihood, and by pieces left out. told: the candidate with its curve drawn."""
         decision = self._by_likelihood(best, nuisances)
-        if decision.accepted and self._makes_worse(best, straight, found):
-            return replace(decision, accepted=False, reason="makes what is left out worse")
         if decision.accepted and self.judged:
             return self._by_pieces(decision, self.judged, told, straight, found)
         return decision
@@ -73,15 +79,13 @@ class Examiner:
             return drift_test.considered(r, nuisances, best, ratio, tried)
         return decide(r, nuisances, best, ratio, tried, self.singles)
 
-    def _makes_worse(self, best, straight, found) -> bool:
-        """Whether the plain error of what is left out grows with a candidate as deployed."""
-        return ols_holdout_ratio(self.regression, straight, found, best.terms) > 1.0
-
     def _by_pieces(self, decision, judged: JudgedOnPieces, best, straight, found) -> Decision:
         sessions, beside = self.regression.sessions, (straight, found)
         reason = ""
         if cancels(sessions, [*less_slope(straight, best.terms), *found], best.terms):
             reason = "it would only cancel another"
+        elif best.kind == KIND and not may_show(sessions):
+            reason = "the temperature never turned back"
         elif is_like_hysteresis(*beside, best, self.pool, PiecesByLine(sessions[0])):
             reason = "a hysteresis predicts as well"
         if reason:

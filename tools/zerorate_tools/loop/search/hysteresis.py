@@ -18,9 +18,9 @@ from ...model.term import Term, play
 from ..fit.likelihood import TINY
 from ..fit.noise import NATS
 from ..fit.regression import Regression
-from ..fit.single import PiecesByLine, speaks_for
+from ..fit.single import PiecesByLine, pass_of, speaks_for
 from ..read.sessions import Session, block_basis
-from .catalogue import Candidate
+from .catalogue import Candidate, varies
 from .decide import LEVEL, Decision, JudgedOnPieces, family_p
 from .fits_in_slots import fits_in_slots
 from .selection import Found
@@ -34,11 +34,6 @@ MEMORIES = ("thermal-lag", "thermal-rate", "power-on-transient")
 #: every choice is tried.
 _FINEST, _WIDEST, _GRID, _FEW = 0.015, 0.65, 64, 12
 MOST_OPERATORS = min(4, MOST_PLAYS)
-#: Share of the range that must have been passed both warming and cooling: a part only warmed once
-#: shows no difference between the two.
-_LEAST_PASSED_TWICE = 0.25
-_BINS = 20
-_LEAST_SPAN_DEGC = 3.0
 #: As how many widths the grid's count: neighbours are much alike.
 _APART = 6
 #: What is simpler.
@@ -57,25 +52,11 @@ _A_BLOCK = 8
 Judged = Callable[[Sequence[Term], Sequence[Term], Sequence[Term]], np.ndarray]
 
 
-def passed_twice(sessions: Sequence[Session]) -> float:
-    """Share of the temperatures seen that some session passed both warming and cooling."""
-    degc = [s.block_mean(s.source("temp"))[s.available] for s in sessions]
-    edges = np.linspace(min(d.min() for d in degc), max(d.max() for d in degc), _BINS + 1)
-    both = np.zeros(_BINS, bool)
-    for d in degc:
-        step = np.diff(d)
-        at = np.clip(np.searchsorted(edges, (d[1:] + d[:-1]) / 2) - 1, 0, _BINS - 1)
-        ways = [np.bincount(at, np.maximum(sign * step, 0), _BINS) for sign in (1, -1)]
-        both |= np.minimum(*ways) > 0.3 * (edges[1] - edges[0])
-    return float(both.mean())
-
-
 def may_show(sessions: Sequence[Session]) -> bool:
-    """Whether the courses of temperature can show a difference between warming and cooling."""
-    if any("temp" not in s.sources for s in sessions):
-        return False
-    degc = np.concatenate([s.block_mean(s.source("temp"))[s.available] for s in sessions])
-    return np.ptp(degc) >= _LEAST_SPAN_DEGC and passed_twice(sessions) >= _LEAST_PASSED_TWICE
+    """Whether temperature turns back in some session: a part only warmed shows no difference
+    between warming and cooling."""
+    there = all("temp" in s.sources for s in sessions) and varies("temp", list(sessions))
+    return there and any(pass_of(s).any() for s in sessions)
 
 
 def is_like_hysteresis(straight, beside, best: Candidate, pool, by_line: PiecesByLine) -> bool:

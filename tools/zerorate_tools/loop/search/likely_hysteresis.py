@@ -64,8 +64,9 @@ def of_a_pair(
         return None, "not significant"
     # the chance that noise makes one of the forms so likely is less (Markov's inequality)
     p = min(1.0, 2 * len(_FINEST) * float(np.exp(-nats)))
-    as_well = [rival] if most > nats - NATS else []
-    return Found(candidate, Decision(True, p, 2 * nats, 1.0, np.array([])), as_well), ""
+    return Found(
+        candidate, Decision(True, p, 2 * nats, 1.0, np.array([])), {rival: most - nats}
+    ), ""
 
 
 def _forms(sessions: Sequence[Session]) -> Iterator[tuple[Term, ...]]:

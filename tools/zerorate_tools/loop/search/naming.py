@@ -1,6 +1,6 @@
-"""The name of every effect found, and of what ties with it."""
+"""The name of every effect found, and the posterior of what may stand in its place."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -21,30 +21,28 @@ def name_found(
     found: list[Found],
     pool: list[Candidate],
     bends: int,
+    passes: Callable[[Candidate, Sequence[Term]], bool],
 ) -> None:
-    """Give each effect, in place, the simplest of the candidates that tie with it.
+    """Make each effect, in place, the likeliest of the candidates in its place that pass.
 
-    bends: how many at the start stay what they are, with none but the catalogue's beside them.
+    bends: how many at the start stay what they are, with none but the catalogue's beside them;
+    passes: whether a candidate may be deployed beside terms.
     """
     for i, f in enumerate(found):
         if any(is_slope(t) for t in f.candidate.terms):
             continue  # beside it there is no line
         others = [t for j, g in enumerate(found) if j != i for t in g.candidate.terms]
         rest = [*straight, *others]
-        near = _near(regression, rest, f.candidate, pool)
-        if i < bends:
-            beside = [c for c in near if c is not f.candidate and c.family == "catalogue"]
-            near = [f.candidate, *beside]
-        f.candidate = _named(regression, rest, near[0])
-        names = [confounding.label(_named(regression, rest, c)) for c in near[1:]]
-        names = [*f.confounded_with, *names]
-        own = confounding.label(f.candidate)
-        f.confounded_with = [n for n in dict.fromkeys(names) if n != own]
-
-
-def _near(regression, rest, chosen, pool):
-    ratios = regression.gains(rest, [c.terms for c in pool]).sum(axis=1)
-    return confounding.rivals(regression, rest, chosen, pool, ratios)
+        some = [c for c in pool if c.family == "catalogue"] if i < bends else pool
+        ratios = regression.gains(rest, [c.terms for c in some]).sum(axis=1)
+        near = confounding.posterior(regression, rest, f.candidate, some, ratios)
+        own = f.candidate
+        best, nats = next((c, n) for c, n in near if c is own or (i >= bends and passes(c, others)))
+        f.candidate = _named(regression, rest, best)
+        called, beside = confounding.label(f.candidate), dict(f.rivals)
+        for c, n in near:
+            beside.setdefault(confounding.label(_named(regression, rest, c)), n - nats)
+        f.rivals = {name: n for name, n in beside.items() if name != called}
 
 
 def _named(regression, rest, candidate):
@@ -65,4 +63,4 @@ def name_earth(found: list, terms: list, coefficients: np.ndarray, sessions: lis
             rows = np.array([coefficients[terms.index(t)] for t in f.candidate.terms])
             effect = [predicted(f.candidate.terms, rows, s)[s.available] for s in sessions]
             if can_be_earth(np.vstack(effect), unknown):
-                f.confounded_with.append(ROTATION)
+                f.rivals[ROTATION] = 0.0  # it turns with the pose alike

@@ -10,7 +10,7 @@ from scipy.optimize import minimize_scalar
 from ...model.effects import DELAY_STEP_S, is_free
 from ...model.term import Term
 from ..fit.free_curve import draw
-from .catalogue import REFINED, Candidate
+from .catalogue import MARGIN, REFINED, Candidate
 
 
 def drawn(regression, beside: Sequence[Term], candidate: Candidate) -> Candidate:
@@ -65,8 +65,9 @@ def _intervals(term, name, at):
         yield max(at / 2.2, limits[0]), min(at * 2.2, limits[1]), np.log, np.exp
     else:
         span = term.second_hi - term.second_lo if name == "second_centre" else term.hi - term.lo
-        unit = span or 1.0
-        yield at - 0.2 * span, at + 0.2 * span, (lambda v: v / unit), (lambda v: v * unit)
+        seen = span / (1.0 + 2.0 * MARGIN)
+        unit = seen or 1.0
+        yield at - 0.2 * seen, at + 0.2 * seen, (lambda v: v / unit), (lambda v: v * unit)
     if name == "delay_s":
         step = DELAY_STEP_S
         yield max(at - step, 1.0), at + step, (lambda v: v / step), (lambda v: v * step)

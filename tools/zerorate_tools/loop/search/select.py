@@ -1,5 +1,6 @@
 """Find an effect, add it, look again: until nothing passes."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 
@@ -8,7 +9,6 @@ import numpy as np
 from ...model.term import Term
 from ..fit.common_cause import RARE, coherence, turned_axes
 from ..fit.line import less_slope
-from ..fit.noise import NATS
 from ..fit.regression import Regression
 from ..fit.shrunk import evidence, has_play_operators
 from ..read.sessions import Session
@@ -17,8 +17,8 @@ from .catalogue import Candidate, ranges
 from .catalogue import candidates as all_candidates
 from .decide import JudgedOnPieces
 from .detectable import smallest_dps
+from .drift_test import follows_time
 from .examine import Examiner
-from .extrapolation import follow_further
 from .fits_in_slots import fits_in_slots
 from .likely_hysteresis import likeliest, of_a_pair
 from .multiple_testing import MultipleTesting
@@ -55,7 +55,6 @@ class Search:
         self.own_bend = tuple(replace(t, power=2) for t in self.line)
         self.found: list[Found] = []
         self.pool = all_candidates(sessions)
-        self.like_hysteresis: list[Found] = []
         self.refused: list[tuple[str, str]] = []
         self.dropped: set[str] = set()
         self.kept = 0
@@ -98,13 +97,11 @@ class Search:
         else:
             self._widen_hysteresis()
         named = [c for c in self.pool if c.kind != curve.KIND]
-        name_found(self.regression, self.straight, self.found, named, self.kept)
+        name_found(self.regression, self.straight, self.found, named, self.kept, self._passes)
         if (hysteresis.KIND, hysteresis.AS_WELL) in self.refused:
-            self.like_hysteresis = [f for f in self.found if f.candidate.kind in hysteresis.SIMPLER]
-        for f in self.like_hysteresis:
-            f.confounded_with = list(dict.fromkeys([*f.confounded_with, hysteresis.KIND]))
-        if not self.on_pieces:
-            follow_further(self.regression, self.straight, self.found)
+            for f in self.found:
+                if f.candidate.kind in hysteresis.SIMPLER:
+                    f.rivals[hysteresis.KIND] = 0.0
         r = self.regression
         smallest = self._smallest()
         return Selection(
@@ -132,6 +129,9 @@ class Search:
     def _begin_with_one(self, judged: JudgedOnPieces):
         """The hysteresis that one course of temperature shows, else a curve as a candidate."""
         r, every = self.regression, self.pool
+        if self.line and not self.judged_again:
+            # a start is told from a lag of the warm-up by another power-on alone
+            every = [c for c in every if not follows_time(c)]
         self.pool = [c for c in every if c.kind not in curve.FORMS]
         if not curve.shows_a_curve(r.sessions[0]):
             self.refused.append((curve.KIND, "too few rests to tell by pieces left out"))
@@ -170,12 +170,11 @@ class Search:
         found = None
         if candidate and lost < 0:
             if fits_in_slots([*self.terms(), *candidate.terms], self.taken):
-                near = [f.candidate.kind for f in own if lost > -NATS]
-                as_well = [kind for kind in near if kind != hysteresis.KIND]
-                found = Found(candidate, own[0].decision, as_well)
+                found = Found(candidate, own[0].decision, {f.candidate.kind: lost for f in own})
         self.found = [*self.found, found] if found else before
-        if candidate and not found and lost < NATS:
-            self.like_hysteresis = [f for f in own if f.candidate.kind != hysteresis.KIND]
+        if candidate and not found:
+            for f in own:
+                f.rivals[hysteresis.KIND] = -lost
 
     def _look_afresh(self):
         r = self.regression
@@ -243,6 +242,14 @@ class Search:
             return said
         self.refused.append(said)
         return None
+
+    def _passes(self, c: Candidate, others: Sequence[Term]) -> bool:
+        """Whether a candidate, its parameters refined, would be found beside other effects."""
+        straight = less_slope(self.line, [*others, *c.terms])
+        if not fits_in_slots([*others, *c.slots], self.taken):
+            return False
+        bend = () if c.kind in _BENDS else less_slope(self.own_bend, others)
+        return self.examiner.accepts(c, straight, others, [*straight, *bend, *others])
 
     def _drop_idle(self):
         """An effect that the later ones explain is taken out again; the others' parameters are

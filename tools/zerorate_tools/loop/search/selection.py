@@ -6,9 +6,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from scipy.special import softmax
 
 from ...model.term import Term
 from ..fit.line import less_slope
+from ..fit.noise import NATS
 from ..fit.regression import Regression
 from .catalogue import Candidate
 from .confounding import label
@@ -17,14 +19,28 @@ from .decide import Decision
 
 @dataclass
 class Found:
-    """An accepted effect, with its rivals and what the locks said of it. axes: those of the
-    gyroscope that it corrects, where not all do better with it.
+    """An accepted effect, what the locks said of it, and the nats of what may stand in its place
+    above its own. axes: those of the gyroscope that it corrects, where not all do better with it.
     """
 
     candidate: Candidate
     decision: Decision
-    confounded_with: list[str] = field(default_factory=list)
+    rivals: dict[str, float] = field(default_factory=dict)
     axes: tuple[bool, ...] = (True, True, True)
+
+    @property
+    def probabilities(self) -> dict[str, float]:
+        """The chance that it is itself, or each of what may stand in its place, by name, the
+        likeliest first; chances below one in twenty are left out."""
+        nats = {label(self.candidate): 0.0, **self.rivals}
+        names = sorted(nats, key=lambda name: -nats[name])
+        chances = softmax([nats[name] for name in names])
+        return {name: float(p) for name, p in zip(names, chances) if p > np.exp(-NATS)}
+
+    @property
+    def confounded_with(self) -> list[str]:
+        """What else it may be."""
+        return [name for name in self.probabilities if name != label(self.candidate)]
 
     def without_axes(self, axes: Iterable[bool]) -> Found:
         """The same without what it corrects on some axes, (3,) bool."""

@@ -5,14 +5,14 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..fit.line import deployed
-from ..motion.in_motion import InMotion
+from ..motion.scales_and_timing import InMotion
 from ..read.earth import ROTATION
 from ..read.gate import GateReport
 from ..read.lines import Line
 from ..read.sessions import Session
 from ..search.selection import Selection
+from .courses import Courses
 from .judge import Judgement
-from .measured import Measured
 
 #: Power-ons to fit on below which nothing is confirmed: of two, one in two devices has a chance
 #: agreement of all signs.
@@ -36,7 +36,7 @@ class Analysis:
     gate: GateReport = field(default_factory=GateReport)
     motion: InMotion = field(default_factory=InMotion)
     lines: list[Line] = field(default_factory=list)
-    measured: Measured | None = None
+    measured: Courses | None = None
 
     @property
     def single(self) -> bool:

@@ -15,7 +15,7 @@ from zerorate_tools.layout import AXIS, SETTINGS, STATE, axis_at
 
 from ...errors import ZerorateError
 from ...model import Model, encoded
-from ...model.check import sensor_for
+from ...model.files import sensor_for
 from ...recordings import Scales
 from ...replay.engines import Engine, NativeEngine, compiled
 from ...replay.samples import Frames

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...recordings import open_recording
 from ...replay.samples import Frames, frames_in_batches
-from ..motion.in_motion import InMotion, rates_of_turning
+from ..motion.scales_and_timing import InMotion, rates_of_turning
 from ..read.sessions import Session, block_means
 from .firmware import Firmware, rows
 

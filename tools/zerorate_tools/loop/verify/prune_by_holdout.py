@@ -14,19 +14,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..fit.line import is_slope
 from ..read.sessions import Session
 from ..search.confounding import label
 from ..search.drift_test import comes_again, follows_time
-from ..search.selection import Found, Selection
+from ..search.selection import Selection
 from .judge import Judgement, judge, residuals, rms_dps
 
-#: Of the error without it, on an axis, that an effect must take away where one recording alone was
-#: fitted: what takes less made a further power-on worse as often as better.
-_LEAST_TAKEN = 0.05
-#: Of the error over the axes, that all which follows temperature or time must take away there: of
-#: what takes less a further power-on was worse as often as better, and the worse by more.
-_LEAST_IN_ALL = 0.1
 AGAIN = "it does not come again alike in what was held out"
 
 
@@ -61,9 +54,8 @@ def without_harmful(
     after: Sequence[list[np.ndarray]],
     without: Callable[[int], list[np.ndarray]],
 ) -> Selection:
-    """The selection without what makes the error larger, or where one recording alone was fitted
-    hardly smaller: of every axis the effect that does so most, or the selection itself where none
-    does.
+    """The selection without what makes the error larger: of every axis the effect that does so
+    most, or the selection itself where none does.
 
     after: residuals (n, 3) of what was held out with the first 0, 1, ... effects; without: with all
     but the i-th.
@@ -78,49 +70,24 @@ def without_harmful(
     return selection
 
 
-def without_marginal(selection: Selection, after: Sequence[list[np.ndarray]]) -> Selection:
-    """The selection without its last effect, where one recording alone was fitted and all of them,
-    which follow temperature or time, take hardly anything of the error over the axes.
-
-    after: as for `without_harmful`.
-    """
-    errors = np.array([rms_dps(r) for r in after])
-    of_heat = {t.source for t in selection.terms} <= {"temp", "time"}
-    if not (selection.alone and selection.found and of_heat):
-        return selection
-    if np.linalg.norm(errors[-1]) <= (1.0 - _LEAST_IN_ALL) * np.linalg.norm(errors[0]):
-        return selection
-    last = len(selection.found) - 1
-    return selection.without_axes(last, [True] * 3, _grown(errors, last))
-
-
 def _grows(selection: Selection, errors: np.ndarray, without) -> np.ndarray:
-    """(effects, 3) by which the error is too large with an effect; zero where later ones need it.
+    """(effects, 3) by which the error is larger with an effect; zero where later ones need it.
 
     errors: (1 + effects, 3) with the first so many; without: as for `without_harmful`.
     """
     used = np.array([f.axes for f in selection.found], bool).reshape(-1, 3)
-    least = [_LEAST_TAKEN * (selection.alone and not _has_slope(f)) for f in selection.found]
-    share = 1.0 - np.array(least)[:, None]
-    grows = np.where(used, errors[1:] - errors[:-1] * share, 0.0)
+    grows = np.where(used, errors[1:] - errors[:-1], 0.0)
     for i in range(len(grows) - 1):
-        needed = (grows[i] > 0) & (errors[-1] <= errors[i] * share[i])
+        needed = (grows[i] > 0) & (errors[-1] <= errors[i])
         if needed.any():
-            needed &= errors[-1] <= rms_dps(without(i)) * share[i]
+            needed &= errors[-1] <= rms_dps(without(i))
             grows[i, needed] = 0.0
     return grows
 
 
-def _has_slope(found: Found) -> bool:
-    """Whether an effect takes the place of the firmware's own curve: least squares beside a line,
-    which has its slope, do not show what that is worth."""
-    return any(is_slope(t) for t in found.candidate.terms)
-
-
 def _grown(errors: np.ndarray, i: int) -> str:
     with_it, now = (1e3 * float(np.sqrt((e**2).mean())) for e in (errors[i + 1], errors[i]))
-    what = "grows" if with_it > now else "hardly falls"
-    return f"the error of what was held out {what}: with it {with_it:.3g} mdps, without {now:.3g}"
+    return f"the error of what was held out grows: with it {with_it:.3g} mdps, without {now:.3g}"
 
 
 def _spoken_against(selection: Selection, judgement: Judgement, i: int) -> str | None:

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 
 from ...model import CannotDeploy, Model, Slot, build_model
-from ...model.binding import binding_of
+from ...model.model import binding_of
 from ...recordings import Scales
 from ..fit.line import deployed
 from ..fit.noise import floor_dps
-from ..motion.in_motion import slots_of
+from ..motion.scales_and_timing import slots_of
 from ..search.selection import Selection
 from .analysis import Analysis
 from .judge import judge

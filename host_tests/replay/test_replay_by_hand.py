@@ -1,0 +1,183 @@
+"""A replay in this process: what a MicroPython is given and gives back, drawings, kept states."""
+
+import os
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from zerorate_tools.errors import InFile, ZerorateError
+from zerorate_tools.layout import MOTION, MOTION_SETTINGS
+from zerorate_tools.model import Slot, build_model, encoded, write_model
+from zerorate_tools.model.files import sensor_for
+from zerorate_tools.model.term import Term
+from zerorate_tools.recordings import Scales, recording_from_columns
+from zerorate_tools.replay import replay
+from zerorate_tools.replay.engines import (
+    CPythonEngine,
+    InterpreterEngine,
+    Outcome,
+    staged_packages,
+)
+from zerorate_tools.replay.plot import plot
+from zerorate_tools.replay.replaying import (
+    can_be_a_state,
+    corrector_for,
+    load_model,
+    state_bytes,
+)
+from zerorate_tools.replay.samples import frames_in_batches
+from zerorate_tools.replay.state_in_words import words_of_file
+from zerorate_tools.simulate import simulate
+
+DEVICE = {
+    "sensor": {"odr_hz": 25.0},
+    "bias": {"b0": [1.5, -2.0, 0.5], "b1": 0.02},
+    "every_session": {
+        "temperature": [{"to": 30.0, "s": 40}],
+        "motion": [{"kind": "rest", "s": 15}, {"kind": "hand", "s": 5}],
+    },
+    "channels": {"load": {"kind": "levels", "low": 10, "high": 250, "mean_s": 6}},
+}
+SLOTS = [
+    Slot(Term("load", 0, 250, 100), (0.001, -0.002, 0.0)),
+    Slot(Term("temp", 20, 45, 30, lag_mode="lag", lag_s=20), (0.01, 0.0, 0.02)),
+]
+
+
+class Here:
+    """A Runtime that runs a script in this process, in a folder of its own."""
+
+    name = "here"
+
+    def __init__(self, folder, lost=0):
+        self.folder, self.lost = folder, lost
+
+    def run(self, script, arguments, *, modules, files_in, files_out, heap, check):
+        assert check and heap >= 1 << 20
+        assert [(m / "zerorate" / "corrector.py").is_file() for m in modules] == [True]
+        for name, content in files_in.items():
+            data = content.read_bytes() if isinstance(content, Path) else content
+            (self.folder / name).write_bytes(data)
+        before, sys.argv = (os.getcwd(), sys.argv), ["main.py", *map(str, arguments)]
+        os.chdir(self.folder)
+        try:
+            exec(compile(script.read_text(encoding="utf-8"), str(script), "exec"), {})
+        finally:
+            os.chdir(before[0])
+            sys.argv = before[1]
+        files = {name: (self.folder / name).read_bytes() for name in files_out}
+        files["out.bin"] = files["out.bin"][: len(files["out.bin"]) - 68 * self.lost]
+        return SimpleNamespace(files=files)
+
+
+@pytest.fixture(scope="module")
+def recording():
+    return simulate(DEVICE)[0]
+
+
+@pytest.fixture
+def model(recording, tmp_path):
+    write_model(build_model(SLOTS, recording.scales), tmp_path)
+    return tmp_path / "model.bin"
+
+
+@pytest.fixture(autouse=True)
+def const(monkeypatch):
+    monkeypatch.setitem(sys.modules, "micropython", SimpleNamespace(const=lambda value: value))
+
+
+def played(engine, recording, model, rows=300):
+    corrector = corrector_for(recording, {})
+    channels = load_model(corrector, model, recording) if model else ()
+    outcomes = list(engine.run(corrector, frames_in_batches(recording, rows, channels)))
+    names = ("t_us", "frames", "bias_q8", "source", "quality_q8", "verdict")
+    whole = {n: np.concatenate([getattr(o, n) for o in outcomes]) for n in names}
+    return whole, state_bytes(corrector), [len(o.t_us) for o in outcomes]
+
+
+@pytest.mark.parametrize("with_model", [False, True])
+def test_what_goes_through_files_comes_back_as_if_it_had_stayed(
+    recording, model, with_model, tmp_path
+):
+    theirs, state, sizes = played(engine_here(tmp_path), recording, model if with_model else None)
+    ours, own_state, own_sizes = played(CPythonEngine(), recording, model if with_model else None)
+    assert state == own_state and sizes == own_sizes == [300, 300, 300, 100]
+    for name, values in ours.items():
+        assert np.array_equal(theirs[name], values), name
+    assert len(set(ours["source"].ravel())) > 1 and ours["quality_q8"].any()
+
+
+def engine_here(folder, lost=0):
+    work = folder / "work"
+    work.mkdir()
+    return InterpreterEngine(Here(work, lost))
+
+
+def test_samples_that_an_interpreter_lost_are_said(recording, tmp_path):
+    with pytest.raises(ZerorateError, match="here lost samples"):
+        played(engine_here(tmp_path, lost=1), recording, None)
+
+
+def test_a_package_that_is_not_there_is_named(tmp_path):
+    with pytest.raises(ZerorateError, match="the package nowhere is not installed"):
+        staged_packages(tmp_path, ("nowhere",))
+
+
+def test_a_drawing_has_at_most_some_thousand_points_in_dps_over_minutes(recording):
+    long = {name: np.tile(column, 5) for name, column in recording.columns.items()}
+    long["t_us"] = np.arange(5000, dtype=np.int64) * 40_000 + 7_000_000
+    whole = recording_from_columns(long, recording.scales, "<b>run")
+    found = replay(whole, options={"motion": False, "gravity": False})
+    figure = plot(whole, found)
+    frame, lines = found.to_frame().iloc[::2], {t.name: t for t in figure.data if t.name}
+    known = frame["source"] != "none"
+    assert lines["gx"].x.tolist() == pytest.approx((np.arange(2500) * 0.08 / 60).tolist())
+    bias = np.where(known, frame["bias_gy"] / 131.0, np.nan)
+    assert lines["gy"].y == pytest.approx(bias, nan_ok=True)
+    upper, lower = (t for t in figure.data[:2])
+    sigma = 2 * frame["quality_gx"].to_numpy() / 131.0
+    assert upper.y - lower.y == pytest.approx(np.where(known, 2 * sigma, np.nan), nan_ok=True)
+    assert lines["temperature"].y == pytest.approx(whole.temp_degc()[::2])
+    assert figure.layout.title.text == "&lt;b>run"
+    assert (figure.layout.yaxis.title.text, figure.layout.yaxis2.title.text) == (
+        "bias, dps",
+        "degC",
+    )
+    assert figure.layout.xaxis2.title.text == "minutes" and figure.layout.xaxis.title.text is None
+
+
+def test_absent_channels_have_no_scale():
+    sensor = sensor_for(Scales("X", 10.0, 131.0))
+    assert (sensor.accel_lsb_per_g, sensor.temp_lsb_per_degc, sensor.temp_offset_degc) == (0, 0, 0)
+
+
+def test_a_kept_state_is_of_the_same_model_or_refused(recording, model, tmp_path):
+    state, again = tmp_path / "state.bin", tmp_path / "again.bin"
+    replay(recording, model=model, state=state)
+    replay(recording, model=model, from_state=state, state=again)
+    assert len(again.read_bytes()) == len(state.read_bytes())
+    other = build_model([SLOTS[0], SLOTS[0]], recording.scales)
+    (tmp_path / "other.bin").write_bytes(encoded(other))
+    with pytest.raises(InFile, match="of another effect model"):
+        replay(recording, model=tmp_path / "other.bin", from_state=state)
+
+
+def test_a_state_has_as_many_nodes_filled_as_there_are_at_most(recording):
+    corrector = corrector_for(recording, {})
+    nodes = corrector.motion_settings[MOTION_SETTINGS.NODES]
+    for filled in (0, nodes - 1, nodes, nodes + 1):
+        corrector.motion[MOTION.FILLED] = filled
+        assert can_be_a_state(corrector) == (filled <= nodes)
+
+
+def test_the_least_trusted_axis_counts():
+    source = np.array([[1, 2, 3], [3, 1, 2], [2, 3, 1]], np.int8)
+    assert Outcome(*[None] * 3, source, None, None).least_source.tolist() == [1, 1, 1]
+
+
+def test_a_state_whose_last_word_is_cut_has_the_words_before(tmp_path):
+    state = bytes(corrector_for(recording_from_columns({}, Scales("a", 100.0, 131.0)), {}).state)
+    (tmp_path / "s.bin").write_bytes(state + b"\1\2")
+    assert len(words_of_file(tmp_path / "s.bin")) == len(state) // 4

@@ -1,0 +1,257 @@
+"""What stands in no folder of the tools: words, limits, deviations, results, worked out by hand."""
+
+import errno
+import io
+import signal
+import sys
+from math import radians
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from zerorate_tools import bounds, cli, closing, closing_in_motion, numbers, progress
+from zerorate_tools.allan import Noise, overlapping
+from zerorate_tools.errors import InFile, ZerorateError, os_error_in_words, printable
+from zerorate_tools.host import FloatCorrector
+from zerorate_tools.model import Slot, build_model, write_model
+from zerorate_tools.model.term import Term
+from zerorate_tools.recordings import Scales
+
+
+@pytest.fixture
+def heard():
+    """heard(corrector): the (words, dt_us) that the integer corrector in it is given from then on;
+    its bias is 10, 20 and 30 LSB."""
+
+    def listen(corrector):
+        given = []
+        corrector.corrector = SimpleNamespace(
+            update=lambda sample, dt_us: given.append((list(sample), dt_us)),
+            bias_lsb=lambda axis: 10 * (axis + 1),
+            sensor=corrector.corrector.sensor,
+        )
+        return given
+
+    return listen
+
+
+def test_floats_become_words_of_the_full_scale(heard):
+    corrector = FloatCorrector(50, 250.0, 2.0, "rad/s", "m/s2")
+    given = heard(corrector)
+    said = "1 LSB is 0.000133 rad/s (0.00763 dps) and 0.061 mg"
+    assert corrector.said == said
+    x, y, z = corrector.update(
+        (radians(10), -99.0, 0.0), (9.80665, -4.903325, 999.0), 27.0, dt_s=0.03
+    )
+    corrector.update((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    assert given == [
+        ([16384, -8192, 32767, 680, 1311, -32768, 0], 30_000),
+        ([0, 0, 0, 0, 0, 0, 0], 20_000),
+    ]
+    lsb = radians(250 / 32767)
+    assert (x, y, z) == pytest.approx((radians(10) - 10 * lsb, -99 - 20 * lsb, -30 * lsb))
+
+
+def test_ranges_that_are_not_told_are_the_widest_and_a_model_has_its_own(tmp_path):
+    sensor = FloatCorrector(50).corrector.sensor
+    assert (sensor.gyro_lsb_per_dps, sensor.accel_lsb_per_g) == (32767 / 2000, 32767 / 16)
+    slot = Slot(Term("temp", 20, 45, 30), (0.01, 0.0, 0.0))
+    write_model(build_model([slot], Scales("X", 50.0, 131.0, None, 340.0, 36.53)), tmp_path)
+    own = FloatCorrector(50, model=tmp_path / "model.bin").corrector.sensor
+    assert (own.gyro_lsb_per_dps, own.accel_lsb_per_g) == (131.0, 32767 / 16)
+    assert (own.temp_lsb_per_degc, own.temp_offset_degc) == (340.0, 36.53)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        *((26.34, "26.3"), (0.808, "0.808"), (1240.4, "1,240"), (5.94e-5, "5.9 × 10⁻⁵")),
+        *((0, "0"), (-2.5, "−2.50"), (1e-4, "0.000100"), (9.996e-5, "0.000100")),
+        *((123456.0, "123,456"), (1.5e6, "1.5 × 10⁶")),
+    ],
+)
+def test_a_figure_has_three_digits(value, text):
+    assert numbers.figure(value) == text
+
+
+def test_a_chance_below_a_millionth_is_not_told_apart_and_zero_has_no_minus():
+    assert [numbers.chance(p) for p in (1e-7, 1e-6)] == ["below 10⁻⁶", "1 × 10⁻⁶"]
+    said = numbers.fixed(-0.0001, 2), numbers.fixed(1.236, 2, "+"), numbers.fixed(0.0, 1, "+")
+    assert said == ("0.00", "+1.24", "+0.0")
+
+
+def test_a_small_file_is_a_file_of_one_mebibyte_at_most(tmp_path):
+    file = tmp_path / "x"
+    file.write_bytes(b"a" * (1 << 20))
+    assert len(bounds.bytes_of(file, "do")) == 1 << 20
+    file.write_bytes(b"a" * ((1 << 20) + 1))
+    for path, said in (
+        (file, "more than 1 MiB; do"),
+        (tmp_path, "is no file; do"),
+        (tmp_path / "y", "no such file; do"),
+    ):
+        with pytest.raises(InFile, match=said):
+            bounds.bytes_of(path, "do")
+    file.write_bytes(b"\xff")
+    with pytest.raises(InFile, match="no text in UTF-8"):
+        bounds.text_of(file, "do")
+
+
+def test_a_session_is_held_out_by_its_path_or_its_name_if_it_was_still():
+    logs = ["a/x.csv", "a/y.csv", "a/z.csv"]
+    for named in ("a/z.csv", "z.csv"):
+        assert closing._index(named, logs, ["x", "y", "z"], ["x", "z"]) == 1
+    with pytest.raises(ZerorateError, match="none of the recordings given"):
+        closing._index("b/z.csv", logs, ["x", "y", "z"], ["x", "z"])
+    with pytest.raises(ZerorateError, match="cannot be held out"):
+        closing._index("y.csv", logs, ["x", "y", "z"], ["x", "z"])
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGHUP")
+def test_a_program_of_its_own_ends_by_a_signal_unless_nohup_ignores_it(monkeypatch, capsys):
+    monkeypatch.setattr(sys, "argv", ["zerorate", "--version"])
+    monkeypatch.setattr(sys, "stdout", sys.stdout)
+    before = {n: signal.getsignal(n) for n in (signal.SIGTERM, signal.SIGHUP)}
+    signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        with pytest.raises(SystemExit):
+            cli.main()
+        assert signal.getsignal(signal.SIGTERM) == cli._end
+        assert signal.getsignal(signal.SIGHUP) == signal.SIG_IGN
+        print("a\x1bb")
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+    assert capsys.readouterr().out.endswith("a\\x1bb\n")
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["repla"], "did you mean replay?"),
+        (["close", "a.csv", "-o", "b", "--onlyne=b"], "did you mean --online?"),
+        (["allan", "a.csv", "--holdout", "b"], "it is an option of another command"),
+    ],
+)
+def test_a_word_that_is_none_is_told_the_nearest(words, said, capsys):
+    with pytest.raises(SystemExit) as ended:
+        cli.main(words)
+    assert ended.value.code == 2 and said in capsys.readouterr().err
+
+
+def test_the_system_s_own_words_come_with_the_file_s_name_and_what_to_do_of_a_bus():
+    for number, path, said in (
+        (errno.ENOENT, "/dev/i2c-1", "is I2C switched on"),
+        (errno.EACCES, "/dev/i2c-1", "usermod"),
+    ):
+        assert said in os_error_in_words(OSError(number, "words", path))
+    assert os_error_in_words(OSError(errno.EACCES, "words", "x")) == "x: words"
+    assert os_error_in_words(OSError(errno.EACCES, "words")) == "words"
+    assert printable("a\x1b\u202e\tb\n") == "a\\x1b\\u202e\tb\n"
+
+
+def test_the_allan_deviation_is_that_of_all_pairs_of_means():
+    rate = np.cumsum(np.random.default_rng(1).normal(size=(40, 2)), axis=0)
+    cluster_s, deviation = overlapping(rate, 0.5)
+    for tau_s, found in zip(cluster_s, deviation):
+        m = round(tau_s / 0.5)
+        means = np.array([rate[i : i + m].mean(axis=0) for i in range(len(rate) - m + 1)])
+        expected = np.sqrt(((means[m:] - means[:-m]) ** 2).mean(axis=0) / 2)
+        assert found == pytest.approx(expected)
+    assert cluster_s.tolist() == [0.5 * m for m in (1, 2, 3, 4, 5, 7, 8, 10, 13)]
+    with pytest.raises(ValueError, match="9 samples"):
+        overlapping(rate[:8], 1.0)
+
+
+def test_the_deviation_of_noise_has_its_three_slopes_and_a_floor():
+    noise = Noise(2.0, 0.3, 0.0, 0.0)
+    assert noise.deviation(np.array([2.0, 8.0])) == pytest.approx([0.3, 0.15])
+    walk = Noise(2.0, 0.0, 0.0, 0.3)
+    assert walk.deviation(np.array([6.0])) == pytest.approx([0.3])
+    flat = Noise(2.0, 0.0, 0.3, 0.0)
+    assert flat.deviation(np.array([1.0, 9.0])) == pytest.approx([0.3 * 0.6643] * 2, rel=1e-3)
+    assert noise.floor_dps(100.0) == pytest.approx(0.3 / (100 / 6) ** 0.5)
+    assert walk.floor_dps(96.0) == pytest.approx(0.3 / 3**0.5)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such limits")
+def test_a_child_limits_itself_by_the_file_s_size_and_never_beyond_what_its_user_set(monkeypatch):
+    import resource
+
+    put = {}
+    hard = {resource.RLIMIT_DATA: -1, resource.RLIMIT_CORE: 0, resource.RLIMIT_CPU: 70}
+    used = SimpleNamespace(ru_utime=1.0, ru_stime=2.0)
+    monkeypatch.setattr(resource, "getrusage", lambda who: used)
+    monkeypatch.setattr(resource, "getrlimit", lambda what: (-1, hard[what]))
+    monkeypatch.setattr(resource, "setrlimit", put.__setitem__)
+    bounds.limit_myself(1_000_000)
+    assert put[resource.RLIMIT_DATA] == (400 << 20, -1) and put[resource.RLIMIT_CORE] == (0, 0)
+    assert put[resource.RLIMIT_CPU] == (69, 70)
+    bounds.limit_myself(2_000_000)
+    assert put[resource.RLIMIT_CPU] == (70, 70)
+
+
+@pytest.mark.parametrize(
+    ("code", "problem", "do"),
+    [
+        (-24, "too long", "cut it"),
+        (1, "ended with 1", "ulimit"),
+        (-11, "with -11", "copy it again"),
+    ],
+)
+def test_how_a_child_ended_says_what_to_do(code, problem, do):
+    said = bounds.how_it_ended(code)
+    assert problem in said[0] and do in said[1]
+
+
+@pytest.mark.parametrize("terminal", [False, True])
+def test_a_pipe_is_told_now_and_then_how_long_it_takes_and_a_terminal_has_a_bar(
+    monkeypatch, terminal
+):
+    told = io.StringIO()
+    told.isatty = lambda: terminal
+    monkeypatch.setattr(sys, "stderr", told)
+    monkeypatch.setattr(progress, "QUIET_S", 0.001)
+    with progress.waiting("fetching"):
+        while not told.getvalue():
+            pass
+    assert ("fetching: 0 s so far" in told.getvalue()) is not terminal
+
+
+UNSEEN = np.array([[1, 0, 0], [0, 0, 1], [0, 0, 0]])
+SHOWN = SimpleNamespace(
+    **{"matrix": np.diag([0.01, 0.0, -0.02]), "deviation": np.full((3, 3), 0.001)},
+    **{"before": 3.0, "after": 1.25, "unit": "deg/min", "runs": 7, "unseen": UNSEEN},
+    found=False,
+    notes=["a: left out"],
+)
+
+
+@pytest.mark.parametrize(("names", "held"), [(["a", "b", "c"], ["b"]), (["a"], ["a"])])
+def test_what_motion_shows_is_told_with_what_it_did_not_show(names, held):
+    result = closing_in_motion._result(SHOWN, names, held)
+    assert result["split"]["train"] == (["a"] if len(names) == 1 else ["a", "c"])
+    assert result["split"]["unit"].startswith("windows" if len(names) == 1 else "power-on")
+    told = result["in_motion"]
+    assert told["matrix_percent"] == [[1.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, -2.0]]
+    assert told["ci95_percent"] == [[0.196] * 3] * 3 and told["not_seen"] == [
+        "scale of x",
+        "y from z",
+    ]
+    assert (told["before"], told["after"], told["windows"]) == (3.0, 3.0, 7)
+    assert result["unexplained"]["measure_next"][0].startswith("hold x level")
+    assert result["unexplained"]["what_is_known"].endswith("; a: left out")
+    assert len(result["unexplained"]["measure_next"]) == 2 and result["verdict"] == "nothing-found"
+    words = closing_in_motion.motion_in_words(result).splitlines()
+    assert words[0].startswith("found: nothing in motion; gravity sees 3.00 deg/min")
+    assert "not seen in this motion: scale of x, y from z" in words
+
+
+def test_the_last_recording_is_held_out_unless_another_is_named(monkeypatch):
+    asked = []
+    monkeypatch.setattr(closing_in_motion, "moving_of", lambda path, ticks: path)
+    monkeypatch.setattr(closing_in_motion, "by_windows", lambda *of: asked.append(of))
+    ticks = [SimpleNamespace(path=name) for name in "abc"]
+    for given, holdout in ((ticks, None), (ticks, 0), (ticks[:1], None)):
+        closing_in_motion.shown_in_motion(given, holdout)
+    assert asked == [(["a", "b"], ["c"]), (["b", "c"], ["a"]), (["a"], [])]

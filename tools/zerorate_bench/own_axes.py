@@ -1,0 +1,150 @@
+"""Scale and axes that the firmware's filter in motion finds itself: what applying them would do.
+
+zerorate bench own-axes --data FOLDER [FOLDER ...] --out docs/own-axes.md
+"""
+
+from array import array
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from zlib import crc32
+
+import numpy as np
+from numpy.typing import NDArray
+from zerorate.arithmetic.real import unpack
+from zerorate.motion.least_squares import known
+from zerorate_tools.demo.broad import trials
+from zerorate_tools.layout import MOTION
+from zerorate_tools.peers import given
+from zerorate_tools.recordings import Recording
+
+from .heading import GROUPS, heading_error_deg
+from .heading_simulated import Case, heading_lost_deg, recorded
+from .peers import Source
+from .tables import table
+
+Array = NDArray[np.float64]
+WORLDS = ("hand", "headset", "walking", "drone", "robot", "coherent")
+ERROR = 0.01
+_SECONDS, _RESTING, _RATES_HZ = 600.0, 0.05, (25.0, 50.0, 100.0, 200.0)
+#: An entry is wrong where applying it leaves so much more than before, and so many of its sigmas.
+_WRONG, _SIGMAS = 0.002, 3.0
+_STATES = range(3, 12)
+
+
+def run(devices: int, folders: Sequence[Path], advance: Callable[[float], None]) -> dict:
+    """Rows of `devices` in each world, with errors and without, and of each trial of BROAD."""
+    found: dict = {"devices": devices, "simulated": {}}
+    for world in WORLDS:
+        for off in (True, False):
+            rows = [one_device(Case(world, i, off)) for i in range(devices)]
+            found["simulated"][f"{world}, {'1 %' if off else 'no'} errors"] = rows
+            advance(1)
+    return found | {"broad": _on_broad(folders)}
+
+
+def one_device(case: Case) -> dict[str, float]:
+    """What is left of a device's nine entries, how honest they are, and the heading, degrees."""
+    rng = np.random.default_rng([case.number, crc32(case.kind.encode()), case.off])
+    hz = float(rng.choice(_RATES_HZ))
+    recording, truth, motion = recorded(case, rng, hz, _SECONDS, _RESTING, _errors)
+    mean, sigma = entries(recording)
+    left = truth - weighted(mean, sigma)
+    wrong = np.abs(left) > np.maximum(_SIGMAS * sigma, np.abs(truth) + _WRONG)
+    return {
+        "left": float(np.sqrt(np.mean(left**2))),
+        "within": float(np.mean(np.abs(mean - truth) < 2 * sigma)),
+        "wrong": int(wrong.sum()),
+        "before": heading_lost_deg(truth, motion),
+        "after": heading_lost_deg(left, motion),
+    }
+
+
+def _errors(rng: np.random.Generator) -> Array:
+    return rng.normal(0, ERROR, (3, 3))
+
+
+def entries(recording: Recording) -> tuple[Array, Array]:
+    """Mean and one sigma, (3, 3) each, of `error = matrix rate` at the recording's end."""
+    source = Source("in_motion")
+    source([given(recording)])
+    state = array("i", source.state.tolist())
+    push = float(np.ldexp(state[MOTION.PUSH], state[MOTION.PUSH + 1]))
+    means = [_number(state, MOTION.MEAN + i) for i in _STATES]
+    variances = [push * max(_number(state, known(i, i)), 0.0) for i in _STATES]
+    mean, sigma = (np.reshape(one, (3, 3)) / 2.0**24 for one in (means, np.sqrt(variances)))
+    return mean, sigma
+
+
+def _number(state, at: int) -> float:
+    unpack(state, MOTION.T, at)
+    return float(np.ldexp(state[MOTION.T], state[MOTION.T + 1]))
+
+
+def weighted(mean: Array, sigma: Array) -> Array:
+    """The mean, less where its sigma is not small beside the prior's."""
+    return mean * np.clip(1 - (sigma / ERROR) ** 2, 0, 1)
+
+
+def _on_broad(folders: Sequence[Path]) -> dict[str, list[float]]:
+    """Trial -> degrees of heading lost: in its second half before and after what its first half
+    shows; in all of it before, and after what each other trial of its device shows."""
+    every = {t.name[:2]: t for folder in folders for t in trials(folder)}
+    whole = {name: weighted(*entries(t.recording())) for name, t in every.items()}
+    found = {}
+    for name, trial in sorted(every.items()):
+        at = np.flatnonzero(trial.moving)
+        first = trial.part(slice(int((at[0] + at[-1]) / 2)))
+        half = [np.zeros((3, 3)), weighted(*entries(first.recording()))]
+        group = next((g for g in GROUPS if name in g), ())
+        others = [half[0], *(whole[n] for n in group if n != name and n in every)]
+        found[name] = [heading_error_deg(trial, m, 0.5) for m in half]
+        found[name] += [heading_error_deg(trial, m) for m in others]
+    return found
+
+
+def in_markdown(found: dict) -> str:
+    """The page."""
+    heads = ["ten minutes of", "left, %", "worst, %", "within two sigma", "wrong", "heading, deg"]
+    trial = ["trial", "second half", "by its first half", "all", "by another trial", "worst"]
+    return "\n".join(
+        [
+            _WORDS.format(n=found["devices"]),
+            table(heads, [_row(world, rows) for world, rows in found["simulated"].items()]),
+            _BROAD,
+            table(trial, list(_trials(found["broad"]))),
+        ]
+    )
+
+
+def _row(world: str, rows: list[dict]) -> list[str]:
+    left, within, wrong, before, after = (np.array([r[k] for r in rows]) for k in rows[0])
+    return [
+        *(world, f"{100 * np.median(left):.2f}", f"{100 * left.max():.2f}"),
+        *(f"{100 * within.mean():.0f} %", f"{wrong.sum()} of {9 * len(rows)}"),
+        f"{np.median(before):.2f} -> {np.median(after):.2f}",
+    ]
+
+
+def _trials(found: dict[str, list[float]]) -> Iterator[list[str]]:
+    for name, (before, after, whole, *others) in found.items():
+        by = [np.median(others), max(others)] if others else [np.nan, np.nan]
+        yield [name, *(f"{value:.2f}" for value in (before, after, whole, *by))]
+
+
+_WORDS = """\
+# Scale and axes that the board finds in motion
+
+`zerorate bench own-axes` wrote this page: {n} simulated devices a row, and nine trials of BROAD.
+
+The filter in motion estimates nine entries of scale and axes, beside the bias. The firmware does
+not subtract them. This page shows what that would do. An entry is its mean under a prior of 1 %.
+Its weight is one less its share of the prior's variance. Left is the RMS of the nine entries
+afterwards, a median. An entry is wrong if it leaves 0.2 % more than before, and three of its
+sigmas. Heading is lost within 6,000 samples. It stands before and after, a median.
+"""
+_BROAD = """\
+This is the heading lost on BROAD, in degrees, as in [heading-figures.md](heading-figures.md). The
+second half of the motion is judged first, without the entries and with those of the first half.
+Then all of it is judged, without and with those of one other trial of the same device. The last
+columns are the median and the worst of these.
+"""

@@ -1,0 +1,248 @@
+"""Who is compared with whom: every way to a bias by name, and how each is run.
+
+The cubic fits over temperature are made offline from session 1 with the true rests given. They are
+written from the descriptions in flight stacks' documentation: PX4 filters by a median of 31, takes
+2000 steps of temperature and fits order 3; ArduPilot takes the means of 0.5 degC steps and fits
+order 3 about 35 degC. Both hold the value at the ends of the fitted range. A Source is one of the
+firmware's two sources that need no rest, on its own; a Decision is the firmware's choice of them.
+"""
+
+import ctypes
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.polynomial import Polynomial
+from numpy.typing import NDArray
+from scipy.ndimage import median_filter
+from zerorate.effects.model_file import LOADED, REASONS
+from zerorate.model import EffectModel
+from zerorate_tools.errors import ZerorateError
+from zerorate_tools.kernels.library import address, library
+from zerorate_tools.layout import GRAVITY, MOTION
+from zerorate_tools.model import Model, encoded
+from zerorate_tools.peers import (
+    Given,
+    Peer,
+    firmware,
+    first_seconds,
+    fusion,
+    outcomes_of,
+    vqf_biases,
+    vqf_default,
+)
+from zerorate_tools.replay.replaying import corrector_for
+
+RAISED = {"biasClip": 25.0, "biasSigmaInit": 8.0}
+_STRETCH_S = 10.0
+_ORDER = 3
+_MEDIAN = 31
+_STEPS = 2000
+_STEP_DEGC = 0.5
+_ABOUT_DEGC = 35.0
+_MOTION_WORDS = MOTION.MOTION_BIAS_Q8, MOTION.MOTION_QUALITY_Q8
+_GRAVITY_WORDS = GRAVITY.GRAVITY_BIAS_Q8, GRAVITY.GRAVITY_QUALITY_Q8
+
+
+def px4_cubic(sessions: Sequence[Given]) -> list[NDArray[np.float64]]:
+    """Each session's bias (n, 3), dps, by PX4's rules."""
+    return _fitted_on_the_first(sessions, _px4_points)
+
+
+def ardupilot_cubic(sessions: Sequence[Given]) -> list[NDArray[np.float64]]:
+    """Each session's bias (n, 3), dps, by ArduPilot's rules."""
+    return _fitted_on_the_first(sessions, _ardupilot_points)
+
+
+Points = Callable[[NDArray, NDArray], tuple[NDArray, NDArray]]
+
+
+def _fitted_on_the_first(sessions: Sequence[Given], points: Points) -> list[NDArray[np.float64]]:
+    first = sessions[0]
+    if first.temp_degc is None:
+        return [np.full(one.rate_dps.shape, np.nan) for one in sessions]
+    temp, rates = points(first.temp_degc[first.still], first.rate_dps[first.still])
+    if len(temp) <= _ORDER:
+        return [np.full(one.rate_dps.shape, np.nan) for one in sessions]
+    curves = [Polynomial.fit(temp - _ABOUT_DEGC, axis, _ORDER) for axis in rates.T]
+    low, high = temp.min(), temp.max()
+
+    def of(one: Given) -> NDArray[np.float64]:
+        held = np.clip(np.asarray(one.temp_degc), low, high) - _ABOUT_DEGC
+        return np.stack([curve(held) for curve in curves], axis=1)
+
+    return [of(one) for one in sessions]
+
+
+def _px4_points(temp: NDArray, rates: NDArray) -> tuple[NDArray, NDArray]:
+    filtered = median_filter(rates, size=(_MEDIAN, 1), mode="nearest")
+    edges = np.linspace(temp.min(), temp.max(), _STEPS + 1)
+    return _step_means(temp, filtered, np.clip(np.digitize(temp, edges) - 1, 0, _STEPS - 1))
+
+
+def _ardupilot_points(temp: NDArray, rates: NDArray) -> tuple[NDArray, NDArray]:
+    # a step is taken when the temperature reaches it, so only while it rises
+    rising = temp >= np.maximum.accumulate(temp) - _STEP_DEGC
+    steps = np.floor((temp - temp.min()) / _STEP_DEGC).astype(int)
+    return _step_means(temp[rising], rates[rising], steps[rising])
+
+
+def _step_means(temp: NDArray, rates: NDArray, steps: NDArray) -> tuple[NDArray, NDArray]:
+    counts = np.bincount(steps)
+    filled = counts > 0
+    means = [np.bincount(steps, values)[filled] / counts[filled] for values in (temp, *rates.T)]
+    return means[0], np.stack(means[1:], axis=1)
+
+
+class Source:
+    """A source as a peer; calling it returns each session's bias (n, 3), dps, 0 while unknown.
+
+    name: in_motion or gravity; options: keywords of its settings. After a call, `within` holds
+    for every learned value and axis whether the truth given in `truth_dps` lay within two sigma;
+    `learned` counts the windows or intervals, `wrong` those with an axis beyond four sigma;
+    `state` is that at the end.
+    """
+
+    def __init__(self, name: str, **options: object) -> None:
+        self.name = name
+        self.options = options
+        self.truth_dps: Sequence[NDArray[np.float64]] | None = None
+        self.within: list[bool] = []
+        self.learned = self.wrong = 0
+
+    def __call__(self, sessions: Sequence[Given]) -> list[NDArray[np.float64]]:
+        """Run every session from nothing."""
+        self.within, self.learned, self.wrong = [], 0, 0
+        return [self._biases(number, one) for number, one in enumerate(sessions)]
+
+    def _biases(self, number: int, one: Given) -> NDArray[np.float64]:
+        state, settings, (bias_at, sigma_at) = self._made(one)
+        lsb = 256 * one.recording.scales.gyro_lsb_per_dps
+        self.state = state
+        rows = np.ascontiguousarray(one.recording.samples(), np.int32)
+        t_us = one.recording.columns["t_us"]
+        dt_us = np.diff(t_us, prepend=2 * t_us[0] - t_us[1]).astype(np.int32)
+        learned = np.zeros(len(rows), np.int8)
+        words = np.zeros((len(rows), 2, 3), np.int32)
+        is_gravity = ctypes.c_int32(self.name == "gravity")
+        library().zerorate_source(
+            *(is_gravity, *map(address, (state, settings, rows, dt_us)), ctypes.c_int64(len(rows))),
+            *(ctypes.c_int32(bias_at), ctypes.c_int32(sigma_at), address(learned), address(words)),
+        )
+        for i in np.flatnonzero(learned):
+            self._judge(number, int(i), words[i, 0] / lsb, words[i, 1] / lsb)
+        return words[:, 0] / lsb
+
+    def _made(self, one: Given) -> tuple:
+        scales = one.recording.scales
+        sensor = (scales.odr_hz, scales.gyro_lsb_per_dps, scales.accel_lsb_per_g)
+        if self.name == "in_motion":
+            from zerorate.motion.motion_settings import motion_settings, motion_state
+
+            degree = {"temp_lsb_per_degc": scales.temp_lsb_per_degc}
+            settings = motion_settings(*sensor, **degree, **self.options)
+            state, at = motion_state(settings), _MOTION_WORDS
+        else:
+            from zerorate.gravity.gravity_settings import gravity_settings, gravity_state
+
+            settings = gravity_settings(*sensor, **self.options)
+            state, at = gravity_state(settings), _GRAVITY_WORDS
+        return np.array(state, np.int32), np.array(settings, np.int32), at
+
+    def _judge(
+        self, number: int, i: int, bias: NDArray[np.float64], sigma: NDArray[np.float64]
+    ) -> None:
+        self.learned += 1
+        if self.truth_dps is None:
+            return
+        known = sigma < 1000
+        off = np.abs(bias - self.truth_dps[number][i])
+        inside = off < 2 * sigma
+        self.wrong += bool(np.any(off[known] > 4 * sigma[known]))
+        self.within += inside[known].tolist()
+
+
+def vqf_clip_raised(sessions: Sequence[Given]) -> list[NDArray[np.float64]]:
+    """The same with clip 25 dps and initial sigma 8 dps."""
+    return [vqf_biases(one, RAISED) for one in sessions]
+
+
+class Decision:
+    """As `firmware`, one power-on a session; options: keywords of zerorate.Corrector.
+
+    model: the effects that are taken out first; the bias is what is left of the rate then.
+    After a call `within` holds, for each axis at the end of every stretch of ten seconds in which
+    it had a bias, whether the truth given in `truth_dps` lay within two sigma.
+    """
+
+    def __init__(self, model: Model | None = None, **options: object) -> None:
+        self.model, self.options = model, options
+        self.truth_dps: Sequence[NDArray[np.float64]] | None = None
+        self.within: list[bool] = []
+
+    def __call__(self, sessions: Sequence[Given]) -> list[NDArray[np.float64]]:
+        """Run every session from nothing."""
+        self.within = []
+        return [self._biases(number, one) for number, one in enumerate(sessions)]
+
+    def states(self, one: Given) -> list[NDArray[Any]]:
+        """Bias and its one sigma, dps, and the source, each (n, 3), from nothing.
+
+        Raises ZerorateError for a model that the firmware refuses.
+        """
+        corrector = corrector_for(one.recording, dict(self.options))
+        if self.model is not None:
+            effects = EffectModel()
+            reason = effects.load(encoded(self.model), corrector.sensor)
+            if reason != LOADED:
+                raise ZerorateError(f"the firmware refuses the model: {REASONS[reason]}")
+            corrector.use_model(effects)
+        return outcomes_of(corrector, one, "bias_q8", "quality_q8", "source")
+
+    def _biases(self, number: int, one: Given) -> NDArray[np.float64]:
+        bias, sigma, source = self.states(one)
+        if self.truth_dps is not None:
+            known = source > 0
+            inside = np.abs(bias - self.truth_dps[number]) < 2 * sigma
+            ends = slice(round(_STRETCH_S * one.odr_hz) - 1, None, round(_STRETCH_S * one.odr_hz))
+            self.within += inside[ends][known[ends]].tolist()
+        return bias
+
+
+def within_two_sigma(
+    sessions: Sequence[Given], truth_dps: NDArray[np.float64], first_s: float
+) -> tuple[float, float]:
+    """Shares of the last session's axes and samples whose truth lies within two sigma.
+
+    Of all in which there was a bias, and of those of the first `first_s` seconds.
+    """
+    corrector = corrector_for(sessions[0].recording, {})
+    for one in sessions:
+        corrector.power_on()
+        bias, sigma, source = outcomes_of(corrector, one, "bias_q8", "quality_q8", "source")
+    inside = np.where(source > 0, np.abs(bias - truth_dps) < 2 * sigma, np.nan)
+    first = inside[: round(first_s * sessions[-1].odr_hz)]
+    return float(np.nanmean(inside)), float(np.nanmean(first))
+
+
+ONLINE: dict[str, Peer] = {
+    "mean of the first 10 s": first_seconds,
+    "imufusion": fusion,
+    "vqf": vqf_default,
+    "vqf, clip 25 dps": vqf_clip_raised,
+}
+OFFLINE: dict[str, Peer] = {
+    "PX4-style cubic": px4_cubic,
+    "ArduPilot-style cubic": ardupilot_cubic,
+}
+OURS: dict[str, Peer] = {
+    "US 9,354,080's rules": firmware(document=True),
+    "US 9,354,080's rules, on rests": firmware(document=True, every=False),
+    "zerorate": firmware(),
+}
+PEERS = {**ONLINE, **OFFLINE, **OURS}
+HOW = {
+    **dict.fromkeys(ONLINE, "on the device, knowing nothing"),
+    **dict.fromkeys(OFFLINE, "fitted to the first power-on and its true rests"),
+    **dict.fromkeys(OURS, "on the device, after the first power-on"),
+}

@@ -1,0 +1,275 @@
+"""Commands that talk to a chip: `zerorate record`, `watch` and `run`."""
+
+import argparse
+import errno
+import sys
+from pathlib import Path
+from typing import Any
+
+from ..errors import ZerorateError
+from .learn import add_sources
+from .options import above_zero, any_base, option, switch
+
+
+def add_record(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    parser = subparsers.add_parser(
+        "record",
+        help="make a recording from a board or a Linux I2C bus",
+        description="Record a chip until Ctrl-C. PORT is the serial port of a board, /dev/i2c-N, "
+        "or fake: for an emulated chip in a simulated hand. Meanwhile the samples are in "
+        "NAME.partial.csv, where they stay if the program is killed.",
+    )
+    option(parser, "port", "PORT", "/dev/ttyACM0, COM3 or /dev/i2c-1", nargs="?")
+    option(parser, "-o --out", "FILE", ".parquet, .csv or .csv.gz", Path)
+    option(parser, "--recover", "FILE", "finish the .partial.csv of a killed recording", Path)
+    option(parser, "--seconds", "S", "stop after this time", above_zero)
+    switch(
+        parser, "--guide", "say how to turn the device until its scale factors and axes are known"
+    )
+    group = parser.add_argument_group("on a Linux bus")
+    option(group, "--address", "N", "I2C address of the chip (0x68)", any_base)
+    option(group, "--hz", "N", "samples a second (100)", float, dest="odr_hz")
+    option(
+        group,
+        "--dps",
+        "N",
+        "range of the gyroscope: 250, 500, 1000 or 2000",
+        int,
+        dest="full_scale_dps",
+    )
+    option(group, "--g", "N", "range of the accelerometer: 2, 4, 8 or 16", int, dest="full_scale_g")
+    option(group, "--dlpf-hz", "N", "bandwidth of the gyroscope's low-pass filter", float)
+    option(group, "--part", "NAME", "name of the part, as MPU-6500, if its id is unknown")
+    board = parser.add_argument_group("on a board")
+    option(board, "--setup", "FILE", "a MicroPython file that makes `imu`, for other pins", Path)
+    parser.set_defaults(run=run_record)
+
+
+def run_record(arguments: argparse.Namespace) -> int:
+    """Record, or finish a recording; 1 where no sample came."""
+    from ..errors import ZerorateError
+
+    if (arguments.port is None) == (arguments.recover is None):
+        raise ZerorateError("name a PORT to record, or a file by --recover FILE")
+    if arguments.recover is not None:
+        _recover(arguments)
+    elif arguments.out is None:
+        raise ZerorateError("name the file to record into by --out FILE")
+    else:
+        return _record(arguments)
+    return 0
+
+
+def _recover(arguments: argparse.Namespace) -> None:
+    from ..recordings import open_recording, recover
+
+    target = recover(arguments.recover, arguments.out)
+    samples = sum(len(columns["t_us"]) for columns in open_recording(target).batches())
+    print(f"{target}: {samples} samples of {arguments.recover}")
+
+
+def _record(arguments: argparse.Namespace) -> int:
+    from ..boards.recording import record
+    from ..bounds import text_of
+    from ..progress import progress
+    from ..recordings.growing import left_over
+
+    for partial in left_over(arguments.out):
+        finish = f"zerorate record --recover {partial} finishes it"
+        print(f"{partial}: of a recording that was killed; {finish}", file=sys.stderr)
+    names = ("address", "odr_hz", "full_scale_dps", "full_scale_g", "dlpf_hz", "part", "setup")
+    options = {k: v for k in names if (v := getattr(arguments, k)) is not None}
+    if "setup" in options:
+        options["setup"] = text_of(options["setup"], "name MicroPython source")
+    if arguments.guide:
+        return _guided(arguments, options)
+    with progress(f"recording {arguments.port}", arguments.seconds) as done:
+        result = record(
+            arguments.port, arguments.out, seconds=arguments.seconds, done=done, **options
+        )
+    return _made(arguments.out, result)
+
+
+def _guided(arguments: argparse.Namespace, options: dict[str, Any]) -> int:
+    """Record until every entry is known; say what is not where it ends before."""
+    from ..boards.recording import FAKE, record
+    from ..guide import Guide, screen, unknown
+
+    with screen() as shown, Guide(shown, waits=arguments.port == FAKE) as guide:
+        result = record(
+            *(arguments.port, arguments.out),
+            seconds=arguments.seconds,
+            done=guide.done,
+            heard=guide.heard,
+            **options,
+        )
+    code = _made(arguments.out, result)
+    if guide.known is not None and not guide.known.all_known:
+        print(f"not known yet: {', '.join(unknown(guide.known))}")
+    if not code:
+        print(f"next: zerorate close {arguments.out} --out closed")
+    return code
+
+
+def _made(out: Path, result: Any) -> int:
+    print(f"{out}: {result}" if result.samples else "no sample came, nothing is written")
+    return 0 if result.samples else 1
+
+
+def add_watch(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    parser = subparsers.add_parser(
+        "watch",
+        help="show live what is learned, from a board or a growing recording",
+        description="Show rates, bias with its source and one sigma, temperature and what is "
+        "learned, until Ctrl-C. SOURCE is a growing .csv, as of `zerorate record`, the serial port "
+        "of a board, or /dev/i2c-N.",
+    )
+    option(parser, "source", "SOURCE", "run.csv, /dev/ttyACM0 or /dev/i2c-1")
+    option(parser, "--for", "SECONDS", "stop after this time", above_zero, dest="seconds")
+    switch(parser, "--once", "read what is there, and stop")
+    option(parser, "--every", "SECONDS", "time between two lines", above_zero)
+    switch(parser, "--plain", "print lines on a terminal too")
+    option(parser, "--model", "FILE", "an effect model to load", Path)
+    add_sources(parser)
+    switch(parser, "--own", "only read what the board's own program prints")
+    option(parser, "--plot", "FILE", "draw the bias over time at the end", Path)
+    option(parser, "--setup", "FILE", "on a board: a MicroPython file that makes `imu`", Path)
+    parser.set_defaults(run=run_watch)
+
+
+def run_watch(arguments: argparse.Namespace) -> int:
+    """Watch; 1 where no sample, or no line, ever came."""
+    if arguments.own and (arguments.model or arguments.setup):
+        raise ZerorateError("--own leaves the board's program as it is; drop --model and --setup")
+    from ..bounds import text_of
+    from ..watch.screen import WatchOptions
+    from ..watch.watching import watch
+
+    options = WatchOptions(
+        seconds=arguments.seconds,
+        once=arguments.once,
+        every_s=arguments.every,
+        plain=arguments.plain,
+        settings={"motion": arguments.motion, "gravity": arguments.gravity},
+        model=arguments.model,
+        setup=text_of(arguments.setup, "name MicroPython source") if arguments.setup else "",
+        own=arguments.own,
+    )
+    live = watch(arguments.source, options)
+    if live and arguments.plot:
+        from ..watch.screen import draw
+
+        draw(live, arguments.plot)
+        print(arguments.plot)
+    return 0 if live else 1
+
+
+def add_run(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    parser = subparsers.add_parser(
+        "run",
+        help="correct continuously on a Linux board, as a service",
+        description="Read the chip, learn its bias at rest, store what is learned, and publish the "
+        "corrected samples as lines of JSON on standard output, a Unix socket, or by UDP. A line "
+        "has rate_dps (without bias), raw_dps (with it), bias_dps, accel_g, temp_degc, t_us since "
+        "the start, and gap_us if samples are missing before it. `zerorate import` reads them.",
+    )
+    option(parser, "bus", "BUS", "/dev/i2c-1, or fake: for an emulated chip")
+    option(parser, "--state", "FILE", "file for what is learned", Path, default=Path("learned.bin"))
+    option(parser, "--socket", "FILE", "Unix socket for readers", Path)
+    option(parser, "--udp", "HOST:PORT", "send datagrams, only to this machine")
+    option(parser, "--metrics", "HOST:PORT", "serve metrics for Prometheus")
+    what = "let other machines reach --udp and --metrics"
+    switch(parser, "--remote", what)
+    for flag, dest, kind, default, what in (
+        ("--address", "address", lambda text: int(text, 0), 0x68, "I2C address of the chip (0x68)"),
+        ("--hz", "odr_hz", float, 100.0, "samples a second (100)"),
+        ("--dps", "full_scale_dps", int, 250, "range of the gyroscope: 250, 500, 1000 or 2000"),
+        ("--g", "full_scale_g", int, 2, "range of the accelerometer: 2, 4, 8 or 16"),
+        (
+            "--dlpf-hz",
+            "dlpf_hz",
+            float,
+            None,
+            "bandwidth of the gyroscope's low-pass filter (by --hz)",
+        ),
+    ):
+        parser.add_argument(flag, dest=dest, type=kind, default=default, metavar="N", help=what)
+    option(parser, "--part", "NAME", "name of the part, if its id is ambiguous")
+    option(parser, "--model", "FILE", "effect model to apply", Path)
+    parser.set_defaults(run=run_run)
+
+
+#: What opening says of a path that is something else, and stays so.
+_NO_BUS = (errno.ENOTTY, errno.EISDIR, errno.ENOTDIR)
+
+
+def run_run(arguments: argparse.Namespace) -> None:
+    import signal
+    import time
+
+    from zerorate.storage.places import FileStorage
+    from zerorate_i2c import clock
+    from zerorate_i2c.linux import LinuxI2C
+    from zerorate_i2c.mpu6050 import MPU6050
+
+    from ..errors import InFile, ZerorateError
+    from ..service import Datagrams, FakeBus, Lines, Metrics, Service, Sink, System, UnixSocket
+
+    if not arguments.state.parent.is_dir():
+        raise InFile(arguments.state.parent, "no such folder", do="make it, or name another")
+    names = ("odr_hz", "full_scale_dps", "full_scale_g", "dlpf_hz", "part")
+    options = {name: getattr(arguments, name) for name in names}
+    model = _model_bytes(arguments.model) if arguments.model else b""
+    fake = FakeBus(arguments.address, arguments.part) if arguments.bus == "fake:" else None
+
+    def open_bus() -> Any:
+        try:
+            return LinuxI2C(arguments.bus)
+        except OSError as error:
+            # a bus comes back by its name beneath /dev alone
+            gone = error.errno == errno.ENOENT and not arguments.bus.startswith("/dev/")
+            if error.errno not in _NO_BUS and not gone:
+                raise
+            do = "`ls /dev/i2c-*` says which there are"
+            raise ZerorateError(f"{arguments.bus}: no I2C bus; {do}") from error
+
+    def open_imu() -> MPU6050:
+        bus = fake or open_bus()
+        try:
+            return MPU6050(bus, arguments.address, **options)
+        except ValueError as error:
+            raise ZerorateError(str(error)) from error
+        except OSError:
+            bus.close()
+            raise
+
+    def say(line: str) -> None:
+        print(line, file=sys.stderr, flush=True)
+
+    def stored_ago_s() -> float:
+        return time.time() - arguments.state.stat().st_mtime
+
+    sinks: list[Sink] = []
+    if arguments.udp:
+        sinks.append(Datagrams(arguments.udp, arguments.remote))
+    if arguments.metrics:
+        sinks.append(Metrics(arguments.metrics, arguments.remote))
+    if arguments.socket:  # last: it leaves a file where another is refused
+        sinks.append(UnixSocket(arguments.socket))
+    # systemd ends a service with SIGTERM; Ctrl-C and it do the same
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    storage = FileStorage(str(arguments.state))
+    system = System(open_imu, storage, clock, say, stored_ago_s=stored_ago_s)
+    Service(system, sinks or [Lines(sys.stdout)], model).run()
+
+
+def _model_bytes(path: Path) -> bytes:
+    """The bytes of model.bin, which need no library; those of its readable twin need tools."""
+    if path.suffix != ".json":
+        return path.read_bytes()
+    from ..model import encoded, read_model
+
+    return encoded(read_model(path))
+
+
+PARSERS = {"record": add_record, "watch": add_watch, "run": add_run}

@@ -1,0 +1,131 @@
+"""Rows that somebody put on straight lines between others: a gap filled, or a log resampled."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ...errors import BadRecording
+from ...recordings.recording import GYRO
+from .spool import TIME, Spool
+
+#: Of a step, that much is lost where times are dates of seconds since 1970.
+_OF_STEP = 1e-4
+#: Steps of so many digits tell a line; what is off it by so many is none.
+_CLEARLY = 8.0
+#: Noise puts some rows near a line, and by chance one of so many upon it.
+_BETWEEN, _BY_CHANCE, _RUN = 0.05, 0.01, 5
+_MOST_A_SAMPLE = 200
+#: Resampled off its samples' times, a log leaves two rows of every line, or of several; rows that
+#: were lost at random leave one of these numbers less often.
+_TWO, _EVEN = 0.35, 0.7
+
+
+@dataclass
+class _Seen:
+    """Rows of a log by where they lie; apart: rows between one run on a line and the next."""
+
+    rows: int = 0
+    on: int = 0
+    near: int = 0
+    off: int = 0
+    longest: int = 0
+    runs: int = 0
+    two: int = 0
+    even: int = 0
+
+    def add(self, off: np.ndarray, moves: np.ndarray) -> None:
+        on = off <= 1.0
+        self.rows += len(off)
+        self.on += int((on & moves).sum())
+        self.off += int((moves & (off > _CLEARLY)).sum())
+        self.near += int((moves & ~on & (off <= _CLEARLY)).sum())
+        begins, ends = (np.flatnonzero(d) for d in _edges(on))
+        self.longest = max(self.longest, int((ends - begins).max(initial=0)))
+        apart = begins[1:] - ends[:-1]
+        self.runs += len(apart)
+        self.two += int((apart == 2).sum())
+        self.even += int((apart % 2 == 0).sum())
+
+    @property
+    def are_lines(self) -> bool:
+        two_kinds = self.near < _BETWEEN * self.off and self.off > self.on / _MOST_A_SAMPLE
+        return two_kinds and (self.on > _BY_CHANCE * self.rows or self.longest >= _RUN)
+
+    @property
+    def are_no_samples(self) -> bool:
+        """Whether no row of them is a reading."""
+        often = self.runs > _BY_CHANCE * self.rows
+        return often and (self.two > _TWO * self.runs or self.even > _EVEN * self.runs)
+
+
+def without_lines(spool: Spool, path: Path, folder: Path | None) -> tuple[Spool, int]:
+    """The rows that lie on no line between those around them, and how many did; the spool itself
+    where none did. Raises BadRecording where a line's ends are no readings either."""
+    digits = _digits(spool)
+    seen = _Seen()
+    for _, off, moves in _pieces(spool, digits):
+        seen.add(off, moves)
+    if not seen.are_lines:
+        return spool, 0
+    if seen.are_no_samples:
+        problem = (
+            f"{seen.on} of {seen.rows} rows lie on lines between others, as of a resampled log"
+        )
+        raise BadRecording(path, problem, do="import the log as the sensor wrote it")
+    out, lost = Spool(spool.names, folder), 0
+    for columns, off, _ in _pieces(spool, digits):
+        whole = np.flatnonzero(np.isfinite(columns["gx"]))
+        drop = whole[off <= 1.0]
+        out.append({name: np.delete(values, drop) for name, values in columns.items()})
+        lost += len(drop)
+    out.finish()
+    spool.close()
+    return out, lost
+
+
+def _pieces(
+    spool: Spool, digits: np.ndarray
+) -> Iterator[tuple[dict[str, np.ndarray], np.ndarray, np.ndarray]]:
+    """Columns of each piece; of its samples, how far each is off the line through its neighbours,
+    by what digits lose, and whether these differ. What has no two is off it."""
+    before = _frame({name: np.empty(0) for name in (TIME, *GYRO)})
+    for number, columns in enumerate(spool):
+        frame = _frame(columns)
+        more = number + 1 < len(spool.pieces)
+        after = _frame(spool.read(number + 1))[:, :1] if more else frame[:, :0]
+        off, moves = _off_line(np.hstack([before, frame, after]), digits)
+        first = before.shape[1]
+        yield columns, off[first : first + frame.shape[1]], moves[first : first + frame.shape[1]]
+        before = np.hstack([before, frame])[:, -1:]
+
+
+def _frame(columns: dict[str, np.ndarray]) -> np.ndarray:
+    """(4, n) time and rates of the samples."""
+    frame = np.array([columns[name] for name in (TIME, *GYRO)])
+    return frame[:, np.isfinite(frame).all(axis=0)]
+
+
+def _off_line(frame: np.ndarray, digits: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    off, moves = np.full(frame.shape[1], np.inf), np.zeros(frame.shape[1], bool)
+    t_us, rates = frame[0], frame[1:]
+    step, from_first = rates[:, 2:] - rates[:, :-2], rates[:, 1:-1] - rates[:, :-2]
+    lost = digits[:, None] + _OF_STEP * np.abs(step)
+    by_time = np.diff(t_us)[:-1] / np.maximum(t_us[2:] - t_us[:-2], 1e-9)
+    ways = [(np.abs(from_first - w * step) / lost).max(axis=0) for w in (by_time, 0.5)]
+    off[1:-1] = np.minimum(*ways)
+    moves[1:-1] = (np.abs(step) > _CLEARLY * digits[:, None]).all(axis=0)
+    return off, moves
+
+
+def _digits(spool: Spool) -> np.ndarray:
+    """(3,) the least by which readings of an axis differ."""
+    rates = _frame(spool.read(0))[1:] if spool.pieces else np.empty((3, 0))
+    steps = [np.diff(np.unique(axis)) for axis in rates]
+    return np.array([s[s > 1e-9 * s.max()].min() if s.any() else 1.0 for s in steps])
+
+
+def _edges(on: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    padded = np.concatenate([[False], on, [False]])
+    return ~padded[:-1] & padded[1:], padded[:-1] & ~padded[1:]

@@ -1,0 +1,184 @@
+"""Rows that are not of one device in one unit: devices that take turns, a unit that changes."""
+
+from pathlib import Path
+
+import numpy as np
+
+from ...errors import BadRecording
+from ...recordings.recording import ACCEL, GYRO
+from ..columns.plan import Plan
+from ..columns.units import ACCEL_G, RATE_DPS
+from ..report import cut_words
+from ..tables.table import Table
+
+#: Devices that a loop reads one after the other.
+_MOST_DEVICES = 8
+#: Rows that are looked at together: a whole number of cycles of nearly any number of devices.
+_BLOCK = 120
+#: Levels scatter more than that many times the rows of each: three standard deviations apart for
+#: two devices, where a row nearly always tells whose it is.
+_APART = 1.5
+#: Of the stretches; a device that shakes at a fraction of its rate does not do so throughout.
+_MOST_STRETCHES = 0.5
+_GOES_ON = 0.95
+#: Of the largest reading, what the decomposition itself may be off.
+_ROUNDING, _TINY = 1e-9, 1e-300
+#: Samples of a stretch at rest, and the stretches at either end that are compared.
+_STRETCH, _COMPARED = 100, 3
+#: From one sample to the next, of what is at rest; of the length of the force, as it has no unit.
+_UNSHAKEN = 0.02
+#: What both level and noise of one sensor keep, whatever it warms.
+_WITHIN = 1.4
+#: Standard errors of a level, within which it is the same.
+_SURE = 5.0
+_UNITS = {GYRO: RATE_DPS, ACCEL: ACCEL_G}
+
+
+def refuse_turns(stretches: list[dict[str, np.ndarray]], names: list[str], path: Path) -> None:
+    """Raise BadRecording where it depends on a row's number at which level or time it is: in the
+    samples of one device nothing does. stretches: consecutive rows, each with t_us and names."""
+    for time in (stretch["t_us"] for stretch in stretches):
+        if devices := clocks_in_turn(time):
+            raise _refused(devices, "time goes back and forth from row to row", path)
+    rows = [np.column_stack([stretch[name] for name in names]) for stretch in stretches]
+    if devices := levels_in_turn(rows):
+        raise _refused(devices, "the readings change their level from row to row", path)
+
+
+def _refused(devices: int, why: str, path: Path) -> BadRecording:
+    problem = f"rows of {devices} devices take turns: {why}"
+    do = "write the rows of each into a file of its own, or add a column `device` and give "
+    return BadRecording(path, problem, do=f"{do}--instance 0 to {devices - 1}")
+
+
+def clocks_in_turn(t_us: np.ndarray) -> int:
+    """How many clocks take turns; 0 where there is one. Each goes on from its own last row, and one
+    is behind the row before by more than that step."""
+    for devices in range(2, _MOST_DEVICES + 1):
+        steps = t_us[devices:] - t_us[:-devices]
+        if len(steps) < _BLOCK // 2 or (steps >= 0).mean() < _GOES_ON:
+            continue
+        back = np.diff(t_us) < -max(float(np.median(steps)), 0.0)
+        if back.mean() > 0.5 / devices:
+            return devices
+    return 0
+
+
+def levels_in_turn(stretches: list[np.ndarray]) -> int:
+    """How many devices take turns by the levels of their rows; 0 where none is told apart.
+
+    stretches: (rows, columns) each.
+    """
+    blocks = [
+        rows[at : at + _BLOCK]
+        for rows in stretches
+        for at in range(0, len(rows) - _BLOCK + 1, _BLOCK)
+    ]
+    whole = [block for block in blocks if np.isfinite(block).all()]
+    for devices in range(2, _MOST_DEVICES + 1) if whole else ():
+        told = sum(_apart(block, devices) > _APART for block in whole)
+        if told > _MOST_STRETCHES * len(whole):
+            return devices
+    return 0
+
+
+def _apart(block: np.ndarray, devices: int) -> float:
+    """How far the levels of each row of a cycle are apart, in what its rows scatter about them: a
+    seasonal decomposition, whose moving mean holds every device alike and any steady change."""
+    ends = [0.5] if devices % 2 == 0 else []
+    weights = np.array([*ends, *[1.0] * (devices - len(ends)), *ends]) / devices
+    half = len(weights) // 2
+    trend = np.apply_along_axis(np.convolve, 0, block, weights, "valid")
+    rest = block[half : len(block) - half] - trend
+    cycles = len(rest) // devices
+    rest = rest[: cycles * devices].reshape(cycles, devices, -1)
+    levels = rest.mean(axis=0)
+    scatter = ((rest - levels) ** 2).sum(axis=(0, 1)) / (devices * (cycles - 1))
+    between = levels.var(axis=0) - scatter / cycles
+    rounding = (_ROUNDING * np.abs(block).max(axis=0)) ** 2
+    return float(
+        np.sqrt((np.maximum(between - rounding, 0.0) / (scatter + rounding + _TINY)).sum())
+    )
+
+
+def refuse_change_of_unit(
+    stretches: list[dict[str, np.ndarray]], plan: Plan, table: Table, path: Path
+) -> None:
+    """Raise BadRecording where readings at rest are at the end by the factor of a unit larger or
+    smaller than at the beginning, their noise with them. stretches: samples in the file's order."""
+    for axes, units in _UNITS.items():
+        if not all(axis in plan.wanted for axis in (*axes, *ACCEL)):
+            continue
+        rests = [rest for stretch in stretches for rest in _rests(stretch, axes)]
+        if len(rests) < 2 * _COMPARED:
+            continue
+        first, last = (np.median(part, axis=0) for part in (rests[:_COMPARED], rests[-_COMPARED:]))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            grown = np.log(last / first)
+        for factor in _factors(units):
+            if (np.abs(grown - np.log(factor)) < np.log(_WITHIN)).all():
+                row = _row_of_change(table, plan, axes, factor)
+                if not row:
+                    continue
+                problem = f"the unit of {', '.join(axes)} changes: from there on all is "
+                problem += f"{factor:.4g} times as large"
+                raise BadRecording(path, problem, row=row, do=cut_words(path, row))
+
+
+def _factors(units: dict[str, float]) -> list[float]:
+    """Of every unit in every other, where it is no hair's breadth."""
+    every = {one / other for one in units.values() for other in units.values()}
+    return [factor for factor in sorted(every) if abs(np.log(factor)) > 2 * np.log(_WITHIN)]
+
+
+def _rests(stretch: dict[str, np.ndarray], axes: tuple[str, ...]) -> list[tuple[float, float]]:
+    """(usual length, noise) of the readings of each stretch in which the force stands still."""
+    values = np.array([stretch[name] for name in axes])
+    force = np.array([stretch[name] for name in ACCEL])
+    out = []
+    for at in range(0, values.shape[1] - _STRETCH + 1, _STRETCH):
+        seen, still = values[:, at : at + _STRETCH], force[:, at : at + _STRETCH]
+        usual = float(np.linalg.norm(np.median(still, axis=1)))
+        if np.median(np.abs(np.diff(still, axis=1))) < _UNSHAKEN * usual:
+            noise = float(np.median(np.abs(np.diff(seen, n=2, axis=1))))
+            out.append((float(np.linalg.norm(np.median(seen, axis=1))), noise))
+    return out
+
+
+def _row_of_change(table: Table, plan: Plan, axes: tuple[str, ...], factor: float) -> int:
+    """The 1-based row at which readings grow by the factor; 0 where no row shows that.
+
+    There, from one row to the next, every axis' level and the noise grow by it, and the force does
+    not change: motion that begins or ends does none of that.
+    """
+    before = np.nan
+    for chunk in table.chunks(plan.columns):
+        columns = plan.physical(chunk)
+        size = np.linalg.norm([columns[name] for name in axes], axis=0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            grown = np.log(size / np.concatenate([[before], size[:-1]])) / np.log(factor)
+        at = int(np.argmax(grown > 0.5))
+        if len(grown) and grown[at] > 0.5:
+            return int(chunk.place[at]) + 1 if _is_scaled(columns, axes, at, factor) else 0
+        before = size[-1] if len(size) else before
+    return 0
+
+
+def _is_scaled(columns: dict[str, np.ndarray], axes: tuple[str, ...], at: int, by: float) -> bool:
+    """Whether the rows on both sides of one are the same sensor's at rest, in other numbers."""
+    values = np.array([columns[name] for name in axes])
+    force = np.array([columns[name] for name in ACCEL])
+    sides = slice(max(0, at - _STRETCH), at), slice(at, at + _STRETCH)
+    if at < _STRETCH or at + _STRETCH > values.shape[1]:
+        return False
+    one, other = values[:, sides[0]], values[:, sides[1]] / by
+    noise = [float(np.median(np.abs(np.diff(side, n=3, axis=1)))) for side in (one, other)]
+    level = [np.median(side, axis=1) for side in (one, other)]
+    unsure = max(noise) / np.sqrt(_STRETCH)
+    told = np.linalg.norm(level[0]) > _SURE * unsure
+    same = (np.abs(level[1] - level[0]) < _SURE * unsure).all()
+    alike = min(noise) > 0 and max(noise) < _WITHIN * min(noise)
+    still = [np.median(force[:, side], axis=1) for side in sides]
+    still[1] = still[1] / (by if axes == ACCEL else 1.0)
+    stands = np.linalg.norm(still[1] - still[0]) < _UNSHAKEN * np.linalg.norm(still[0])
+    return bool(told and same and alike and stands)

@@ -1,0 +1,110 @@
+"""The size and axes of rates by gravity: turned back by them, the force of some seconds points one
+way."""
+
+from itertools import permutations, product
+
+import numpy as np
+
+#: Over so long the pushes of a hand average, and a bias turns little.
+_SPAN_S, _STEP_S = 3.0, 0.03
+#: Fewer may fit a size by chance, and more tell no more.
+_LEAST_SPANS, _MOST_SPANS = 5, 100
+#: From mdps to radians a second, in steps that a fit tells apart.
+_SIZES_DPS = 1.25 ** np.arange(-33.0, 21.0)
+#: Turns of the right size explain more than half of why the force does not point one way.
+_EXPLAINED = 0.5
+#: Every order of the axes with every sign.
+_AXES = np.array(
+    [
+        np.diag(signs)[list(order)]
+        for order in permutations(range(3))
+        for signs in product((1, -1), repeat=3)
+    ]
+)
+
+
+def dps_of_one(rates: np.ndarray, force: np.ndarray, t_s: np.ndarray) -> float | None:
+    """Degrees a second that 1.0 of the rates stands for; None where gravity does not tell.
+
+    rates, force: (3, n) in any unit, row by row; t_s: (n,). At rest and about the vertical gravity
+    points one way whatever the size is.
+    """
+    whole = np.isfinite([*rates, *force, t_s]).all(axis=0)
+    spans = _spans(rates[:, whole], force[:, whole], t_s[whole])
+    if spans is None:
+        return None
+    turns, forces = spans
+    lacking = _lacking(turns, forces, _sized(np.append(_SIZES_DPS, 0.0)))
+    near = _SIZES_DPS[np.argmin(lacking[:-1])] * 1.25 ** np.linspace(-1.0, 1.0, 9)
+    finer = _lacking(turns, forces, _sized(near))
+    return float(near[np.argmin(finer)]) if finer.min() < _EXPLAINED * lacking[-1] else None
+
+
+def axes_of(rates_dps: np.ndarray, force: np.ndarray, t_s: np.ndarray) -> np.ndarray | None:
+    """(3, 3) an order of the axes with signs that the rates must be taken in to turn gravity as it
+    is seen to turn; None where gravity does not tell.
+
+    rates_dps, force: (3, n), row by row; t_s: (n,).
+    """
+    whole = np.isfinite([*rates_dps, *force, t_s]).all(axis=0)
+    spans = _spans(rates_dps[:, whole], force[:, whole], t_s[whole])
+    if spans is None:
+        return None
+    turns, forces = spans
+    lacking = _lacking(turns, forces, np.concatenate([_AXES, np.zeros((1, 3, 3))]))
+    best, second = np.argsort(lacking[:-1])[:2]
+    clear = lacking[best] < _EXPLAINED * min(lacking[second], lacking[-1])
+    return _AXES[best] if clear else None
+
+
+def axes_words(axes: np.ndarray) -> str:
+    """-x -y z, say: which reading each axis is."""
+    return " ".join(("-" if row.sum() < 0 else "") + "xyz"[np.argmax(np.abs(row))] for row in axes)
+
+
+def _sized(sizes: np.ndarray) -> np.ndarray:
+    return sizes[:, np.newaxis, np.newaxis] * np.eye(3)
+
+
+def _spans(
+    rates: np.ndarray, force: np.ndarray, t_s: np.ndarray
+) -> tuple[np.ndarray, np.ndarray] | None:
+    """Turns and forces (steps, 3, spans), both means over a step; None where there are too few."""
+    step_s = float(np.median(np.diff(t_s))) if len(t_s) > 1 else 0.0
+    rows = max(1, round(_STEP_S / step_s)) if step_s > 0 else 0
+    steps = int(_SPAN_S / (rows * step_s)) if rows else 0
+    if steps < 2:
+        return None
+    every = np.arange(0, len(t_s) - steps * rows, steps * rows)
+    away_s = t_s[every + steps * rows] - t_s[every] - steps * rows * step_s
+    every = every[np.abs(away_s) < 0.1 * _SPAN_S]
+    if len(every) < _LEAST_SPANS:
+        return None
+    every = every[:: 1 + len(every) // _MOST_SPANS]
+    at = every + rows * np.arange(steps)[:, np.newaxis]
+    rates, force = (
+        np.mean([of[:, at + n] for n in range(rows)], axis=0).swapaxes(0, 1)
+        for of in (rates, force)
+    )
+    return np.radians(rates * rows * step_s), force
+
+
+def _lacking(turns: np.ndarray, forces: np.ndarray, taken: np.ndarray) -> np.ndarray:
+    """What the mean force is shorter by in a frame that does not turn, as a share, with the rates
+    taken so: (k, 3, 3) as many matrices."""
+    summed = np.zeros((3, len(taken), forces.shape[2]))
+    for turn, force in zip(turns[::-1], forces[::-1]):
+        # from the end of the span to its start, so that one turn a step serves all after it
+        summed = _turned(summed, np.einsum("kij,js->iks", taken, turn))
+        summed += force[:, np.newaxis]
+    lengths = np.linalg.norm(forces, axis=1).sum()
+    return 1.0 - np.linalg.norm(summed, axis=0).sum(axis=1) / lengths
+
+
+def _turned(vectors: np.ndarray, turn: np.ndarray) -> np.ndarray:
+    """Vectors about an axis by an angle, as rotation vectors; their three axes come first."""
+    angle = np.linalg.norm(turn, axis=0)
+    axis = turn / np.maximum(angle, 1e-12)
+    along = (axis * vectors).sum(axis=0) * axis
+    across = np.cross(axis, vectors, axis=0)
+    return along + (vectors - along) * np.cos(angle) + across * np.sin(angle)
