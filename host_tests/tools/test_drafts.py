@@ -281,3 +281,25 @@ def test_a_draft_that_somebody_removed_is_dropped_all_the_same(tmp_path):
     draft.rmdir()
     drafts.drop(draft)
     assert draft not in drafts._mine and not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_while_a_draft_is_made_leaves_none(tmp_path, monkeypatch, number):
+    locked = drafts._lock
+
+    def signalled(folder):
+        signal.raise_signal(number)
+        return locked(folder)
+
+    def ended(number, frame):
+        drop_all()
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(drafts, "_lock", signalled)
+    before = signal.signal(number, ended)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            drafts.make_draft(tmp_path)
+    finally:
+        signal.signal(number, before)
+    assert not list(tmp_path.iterdir())

@@ -60,6 +60,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except OSError as error:
         return _complain(os_error_in_words(error), ZerorateError.exit_code)
     except KeyboardInterrupt:
+        _drop_drafts()
         return _complain("interrupted; nothing half-written was left", _INTERRUPTED)
 
 
@@ -79,11 +80,15 @@ class _Printable:
 
 def _end(number: int, frame: FrameType | None) -> None:
     # no exception: one that is raised while a library's C calls back is lost in there
-    # and nothing is imported here: where it was not, nothing is half-written
-    if drafts := sys.modules.get(f"{__package__}.recordings.drafts"):
-        drafts.drop_all()
+    _drop_drafts()
     signal.signal(number, signal.SIG_DFL)
     os.kill(os.getpid(), number)
+
+
+def _drop_drafts() -> None:
+    # nothing is imported here: where it was not, nothing is half-written
+    if drafts := sys.modules.get(f"{__package__}.recordings.drafts"):
+        drafts.drop_all()
 
 
 class _Parser(argparse.ArgumentParser):

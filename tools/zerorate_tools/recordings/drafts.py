@@ -18,6 +18,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+from ..ending import undisturbed
 from ..errors import InFile
 
 try:
@@ -48,12 +49,13 @@ def make_draft(folder: Path) -> Path:
     """A new draft in the folder, locked, to be given to drop() in the end. Raises OSError."""
     while True:
         draft = _new_name(folder)
-        draft.mkdir()
-        with suppress(FileNotFoundError, BlockingIOError):  # cleaned away before it was locked
-            held = _lock(draft)
-            if held is None or os.path.samestat(os.stat(draft), os.fstat(held)):
-                _mine[draft] = held
-                return draft
+        with undisturbed():  # a signal's end removes what is noted in _mine
+            draft.mkdir()
+            with suppress(FileNotFoundError, BlockingIOError):  # cleaned away before it was locked
+                held = _lock(draft)
+                if held is None or os.path.samestat(os.stat(draft), os.fstat(held)):
+                    _mine[draft] = held
+                    return draft
 
 
 def drop(draft: Path) -> None:
