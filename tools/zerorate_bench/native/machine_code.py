@@ -97,10 +97,10 @@ ASSERT(SIZEOF(.other) == 0, "machine code with data")
 
 @dataclass(frozen=True)
 class Processor:
-    """target, level, flags: of the compiler; arithmetic: floor_div, floor_mod, shift_left in C."""
+    """target, aims (what code is made for), flags: of the compiler; arithmetic: floor_div, floor_mod, shift_left in C."""
 
     target: str
-    level: str
+    aims: tuple[str, ...]
     flags: tuple[str, ...]
     arithmetic: str
     decorator: str
@@ -109,12 +109,12 @@ class Processor:
 
 PROCESSORS = {
     "thumb": Processor(
-        *("thumb-freestanding-eabi", "-Os", (*_SMALL, "-mcpu=cortex_m0plus", "-mexecute-only")),
+        *("thumb-freestanding-eabi", ("-Os", *_SMALL), ("-mcpu=cortex_m0plus", "-mexecute-only")),
         *(_WITHOUT_DIVISION, "asm_thumb", "r0, r1, r2, r3"),
     ),
     # for speed: the boards that have it have heap for half as much again
     "rv32": Processor(
-        *("riscv32-freestanding-none", "-O2", ("-mcpu=generic_rv32+m+c", "-mrelax")),
+        *("riscv32-freestanding-none", ("-O2",), ("-mcpu=generic_rv32+m+c", "-mrelax")),
         *(ARITHMETIC, "asm_rv32", "a0, a1, a2, a3"),
     ),
 }
@@ -132,8 +132,8 @@ def machine_code(kernels: Kernels, part: str, processor: str, fast: bool = False
     text = kernels_in_c(kernels, *what.kernels, arithmetic=arithmetic)
     text = (text if fast else _hinted(text)) + _ENTRY.format(body=what.body)
     with tempfile.TemporaryDirectory(prefix="zerorate-native-") as folder:
-        level = "-O2" if fast else how.level
-        codes = [_linked(Path(folder), text, how, base, level) for base in (0, 0x4000)]
+        aims = ("-O2",) if fast else how.aims
+        codes = [_linked(Path(folder), text, how, base, aims) for base in (0, 0x4000)]
     if codes[0] != codes[1]:
         raise ZerorateError(f"the code of {part} for {processor} holds an absolute address")
     if found := [*problems(codes[0], processor)]:
@@ -151,10 +151,10 @@ def _hinted(text: str) -> str:
     return text
 
 
-def _linked(folder: Path, text: str, how: Processor, base: int, level: str) -> bytes:
+def _linked(folder: Path, text: str, how: Processor, base: int, aims: tuple[str, ...]) -> bytes:
     (folder / "part.c").write_text(text, encoding="utf-8")
     (folder / "part.ld").write_text(_SECTIONS.format(base=base), encoding="utf-8")
-    flags = [level, *_COMMON, *how.flags, "-target", how.target, "-Wl,-T,part.ld"]
+    flags = [*aims, *_COMMON, *how.flags, "-target", how.target, "-Wl,-T,part.ld"]
     zig = zig_cc("machine code is made by ziglang: pip install 'zerorate[bench]'")
     command = [*zig, *flags, "part.c", "-o", "part.elf"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
