@@ -24,8 +24,8 @@ _SEGMENT = const(5)
 _STILL_GYRO_Q8 = const(7)
 _STILL_ACCEL_Q8 = const(8)
 _TIP_LIMIT_Q8 = const(9)
-_LEAN_LIMIT_Q4 = const(10)
-_LEAN_NOISE_FACTOR_Q4 = const(11)
+_TILT_LIMIT_Q4 = const(10)
+_TILT_NOISE_FACTOR_Q4 = const(11)
 _CHANGE_LIMIT_Q8 = const(12)
 _SLEW_Q8 = const(13)
 _WORK_A_SAMPLE = const(14)
@@ -76,7 +76,7 @@ _QUIETEST_Q8 = const(58)
 _SETTINGS_WORDS = const(59)
 # layout: end
 # of how many times the variance that noise gives it gravity's slope may be: 15 by chi squared of 3
-_LEAN_NOISE = const(5)
+_TILT_NOISE = const(5)
 _QUIETEST_DPS = 0.005  # of an axis: 2 mdps a root hertz through a filter of 5 Hz
 # What a user may set, in its unit. A time of readings is that many at the output data rate.
 DEFAULTS = {
@@ -209,8 +209,8 @@ def windows(c, rate, lsb, sensor, limits):
     a_window = window_s * limits["turn_dps"] * 0.0174533 * accel
     c[_ONE_G] = max(1, min(0x7FF, (accel / 16).nearest()))
     c[_TIP_LIMIT_Q8] = (a_window * max(1, n - 1) * 16).squared()
-    c[_LEAN_LIMIT_Q4] = (a_window * n * (n * n - 1) / 6 * 4).squared()
-    c[_LEAN_NOISE_FACTOR_Q4] = _LEAN_NOISE * (n * n - 1) // 3
+    c[_TILT_LIMIT_Q4] = (a_window * n * (n * n - 1) / 6 * 4).squared()
+    c[_TILT_NOISE_FACTOR_Q4] = _TILT_NOISE * (n * n - 1) // 3
     c[_CHANGE_LIMIT_Q8] = (lsb * limits["change_dps"] * 16).squared()
     c[_SLEW_Q8] = max(1, min(1 << 24, (lsb * limits["slew_dps_per_s"] * 256 / rate).floor()))
 

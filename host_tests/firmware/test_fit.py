@@ -203,7 +203,7 @@ def test_a_bend_of_five_points_is_the_parabola_through_them_held_a_quarter_beyon
     s[STATE.TEMP] = 4 * 340
     for count in (4, 5):
         near.fit(bent[:count])
-        assert bool(s[a + AXIS.BOW_Q6]) is (count == 5)
+        assert bool(s[a + AXIS.PARABOLA_Q6]) is (count == 5)
     for k in (0.0, 1.0, 4.5, 8.0, 10.0, -2.0):
         t = round(16 * 340 * k)
         found = (fit.line_q8(s, a, t) + fit.bent_q8(s, a, t)) / 256
@@ -218,11 +218,11 @@ def test_a_bend_of_five_points_is_the_parabola_through_them_held_a_quarter_beyon
     ("left", "share"), [(0, 1.0), (40, 1.0), (60, 0.5), (79, 0.025), (80, 0.0)]
 )
 def test_a_bow_is_less_where_it_leaves_as_much_as_it_explains(axis, left, share):
-    bow, axis.s[STATE.BEND_DOT_Q12] = 1000, 4 * 41
+    parabola, axis.s[STATE.BEND_DOT_Q12] = 1000, 4 * 41
     explained = 1000 * 41 // 1024
     assert explained == 40
     axis.s[STATE.BEND_LEFT_Q6] = left
-    assert fit.significant(axis.s, bow) == pytest.approx(1000 * share, abs=2)
+    assert fit.significant(axis.s, parabola) == pytest.approx(1000 * share, abs=2)
 
 
 @pytest.mark.parametrize("way", [1, -1])

@@ -259,8 +259,8 @@ def settings_page(repository):
     fixed.append(
         f"| in `white` | {white[1]} | steps of samples, squared, for their variance: noise |"
     )
-    lean = re.search(r"# (.+)\n_LEAN_NOISE = const\((\d+)\)", source)
-    fixed.append(f"| `LEAN_NOISE` in settings.py | {lean[2]} | {lean[1]} |")
+    tilt = re.search(r"# (.+)\n_TILT_NOISE = const\((\d+)\)", source)
+    fixed.append(f"| `TILT_NOISE` in settings.py | {tilt[2]} | {tilt[1]} |")
     for name, value, meaning in _CONSTANT.findall(stillness):
         fixed.append(f"| `{name}` | {value} | {meaning.rstrip(':')} |")
     return "\n".join([_HEAD_SETTINGS_PAGE, *rows, "", _FIXED, *fixed, ""])

@@ -43,9 +43,9 @@ _LINE_LOW_Q4 = const(19)
 _LINE_HIGH_Q4 = const(20)
 _LINE_SAMPLES = const(21)
 _LINE_POINTS = const(22)
-_BOW_Q6 = const(23)
-_BOW_MEAN_Q14 = const(24)
-_BOW_LEAN_Q14 = const(25)
+_PARABOLA_Q6 = const(23)
+_PARABOLA_MEAN_Q14 = const(24)
+_PARABOLA_SKEW_Q14 = const(25)
 _ESTIMATORS = const(40)
 # layout: An estimator
 _EST_TEMP = const(0)
@@ -188,7 +188,7 @@ def settle(s: ptr32, c: ptr32, a: int):
     s[a + _LINE_SLOPE_Q26] = slope
     s[a + _LINE_LOW_Q4] = s[_FIT_LOW_Q4]
     s[a + _LINE_HIGH_Q4] = s[_FIT_HIGH_Q4]
-    s[a + _BOW_Q6] = 0
+    s[a + _PARABOLA_Q6] = 0
 
 
 def along_q14(s: ptr32, a: int, t: int) -> int:
@@ -199,8 +199,8 @@ def along_q14(s: ptr32, a: int, t: int) -> int:
 
 def parabola_q14(s: ptr32, a: int, t: int) -> int:
     """Return the parabola that no line through the weighted points holds any of."""
-    bow = (t * t - s[a + _BOW_LEAN_Q14] * t >> 14) - s[a + _BOW_MEAN_Q14]
-    return clipped(bow, 0x7FFF)
+    parabola = (t * t - s[a + _PARABOLA_SKEW_Q14] * t >> 14) - s[a + _PARABOLA_MEAN_Q14]
+    return clipped(parabola, 0x7FFF)
 
 
 def share_q13(s: ptr32, i: int) -> int:
@@ -222,11 +222,11 @@ def add_moments(s: ptr32, c: ptr32, a: int, i: int):
 
 
 def add_parabola(s: ptr32, c: ptr32, a: int, i: int):
-    """Add estimator i to the squares of bow and of what the line leaves, and to their product."""
+    """Add estimator i to the squares of parabola and remainder, and to their product."""
     w = share_q13(s, i)
     if w == 0:
         return
-    # eleven words: i is from here on its first word, then its temperature, then its bow
+    # eleven words: i is from here on its first word, then its temperature, then its parabola
     i = a + i * c[_ESTIMATOR_WORDS] + _ESTIMATORS
     left = s[i + _EST_BIAS_Q8]
     i = within(s, s[i + _EST_MEAN_TEMP_Q4])
@@ -240,16 +240,16 @@ def add_parabola(s: ptr32, c: ptr32, a: int, i: int):
     s[_BEND_LEFT_Q6] += ((left * left >> 10) * w + 0x100) >> 9
 
 
-def significant(s: ptr32, bow: int) -> int:
-    """Return the bow, LSB Q6, less where it explains little more than it leaves unexplained."""
-    # Of eight points that lie on a line a bow takes a sixth of what noise there is.
-    explained = (bow * (clipped(s[_BEND_DOT_Q12], 0x1FFFF) >> 2)) >> 10
+def significant(s: ptr32, parabola: int) -> int:
+    """Return the parabola, LSB Q6, less where it explains little more than it leaves."""
+    # Of eight points that lie on a line a parabola takes a sixth of what noise there is.
+    explained = (parabola * (clipped(s[_BEND_DOT_Q12], 0x1FFFF) >> 2)) >> 10
     noise = s[_BEND_LEFT_Q6] - explained
     if noise <= 0:
-        return bow
+        return parabola
     if noise >= explained:
         return 0
-    return bow * (((explained - noise) << 9) // explained) >> 9
+    return parabola * (((explained - noise) << 9) // explained) >> 9
 
 
 def bend(s: ptr32, c: ptr32, a: int):
@@ -264,18 +264,18 @@ def bend(s: ptr32, c: ptr32, a: int):
     s[_BEND_LEFT_Q6] = 0
     for i in range(1, c[_ESTIMATOR_COUNT]):
         add_moments(s, c, a, i)
-    s[a + _BOW_MEAN_Q14] = s[_BEND_SQUARE_Q14]
-    s[a + _BOW_LEAN_Q14] = (s[_BEND_CUBE_Q14] << 14) // (s[_BEND_SQUARE_Q14] + 1)
+    s[a + _PARABOLA_MEAN_Q14] = s[_BEND_SQUARE_Q14]
+    s[a + _PARABOLA_SKEW_Q14] = (s[_BEND_CUBE_Q14] << 14) // (s[_BEND_SQUARE_Q14] + 1)
     for i in range(1, c[_ESTIMATOR_COUNT]):
         add_parabola(s, c, a, i)
     i = (clipped(s[_BEND_DOT_Q12], 0x1FFFF) << 12) // s[_BEND_NORM_Q18]
     i = clipped(i, 0x7FFF)
-    s[a + _BOW_Q6] = i if c[_LITERAL] else significant(s, i)
+    s[a + _PARABOLA_Q6] = i if c[_LITERAL] else significant(s, i)
 
 
 def bent_q8(s: ptr32, a: int, t: int) -> int:
     """Return what the bend adds to the line at `t`, Q4; farther out than a quarter it is held."""
-    if s[a + _BOW_Q6] == 0:
+    if s[a + _PARABOLA_Q6] == 0:
         return 0
     margin = (s[a + _LINE_HIGH_Q4] - s[a + _LINE_LOW_Q4]) >> 2
     at = t
@@ -284,7 +284,7 @@ def bent_q8(s: ptr32, a: int, t: int) -> int:
     if at < s[a + _LINE_LOW_Q4] - margin:
         at = s[a + _LINE_LOW_Q4] - margin
     at = along_q14(s, a, at)
-    return parabola_q14(s, a, at) * s[a + _BOW_Q6] >> 12
+    return parabola_q14(s, a, at) * s[a + _PARABOLA_Q6] >> 12
 
 
 def draw_line(s: ptr32, c: ptr32, a: int):

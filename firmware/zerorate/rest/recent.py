@@ -11,7 +11,7 @@
 from ..arithmetic.fixed import clipped, scaled
 from .bias import curve_q8
 from .estimators import find
-from .stillness import hidden_q4, lean_q10, level_q4, share_q10, size, up
+from .stillness import bank_q10, hidden_q4, level_q4, share_q10, size, up
 
 # layout: names that a board's own compiler reads
 const = int
@@ -173,7 +173,7 @@ def may_turn(s: ptr32, c: ptr32) -> int:
     aside -= turn * turn
     off = turn if turn > 0 else 0 - turn
     s[_GROWN_Q8] = turn if off > c[_GATE_Q4] >> 3 else 0
-    off = lean_q10(c, g)
+    off = bank_q10(c, g)
     turn = turn * clipped(410 + off, 1024) >> 10
     g = level_q4(s, c, g) >> 2  # Q1, twice
     return 1 if aside <= turn * turn + g * g else 0

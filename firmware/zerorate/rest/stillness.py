@@ -19,7 +19,7 @@ _REST = const(34)
 _SQUARE_GYRO = const(35)
 _ANCHOR_Q4 = const(36)
 _LEAN_Q4 = const(39)
-_LEAN_NOISE_Q8 = const(42)
+_TILT_NOISE_Q8 = const(42)
 _FIRST_RATE_Q4 = const(43)
 _SEGMENT_TOTAL = const(46)
 _SEGMENT_TEMP = const(49)
@@ -43,8 +43,8 @@ _SEGMENT = const(5)
 _STILL_GYRO_Q8 = const(7)
 _STILL_ACCEL_Q8 = const(8)
 _TIP_LIMIT_Q8 = const(9)
-_LEAN_LIMIT_Q4 = const(10)
-_LEAN_NOISE_FACTOR_Q4 = const(11)
+_TILT_LIMIT_Q4 = const(10)
+_TILT_NOISE_FACTOR_Q4 = const(11)
 _CHANGE_LIMIT_Q8 = const(12)
 _TURNING_LSB = const(54)
 _TURN_HALVES = const(55)
@@ -158,7 +158,7 @@ def gravity_moved_q8(s: ptr32, c: ptr32) -> int:
 def begin_tilt(s: ptr32):
     """Begin to watch how gravity tilts."""
     for i in range(4):
-        s[_LEAN_Q4 + i] = 0  # LEAN_NOISE_Q8 stands behind them
+        s[_LEAN_Q4 + i] = 0  # TILT_NOISE_Q8 stands behind them
 
 
 def tilts_steadily(s: ptr32, c: ptr32) -> int:
@@ -167,8 +167,8 @@ def tilts_steadily(s: ptr32, c: ptr32) -> int:
     for i in range(3):
         d = clipped(s[_LEAN_Q4 + i] >> 2, 17000)
         square += d * d
-    d = clipped(s[_LEAN_NOISE_Q8], 0x3FFFFF) * c[_LEAN_NOISE_FACTOR_Q4] >> 4
-    return 1 if square > c[_LEAN_LIMIT_Q4] + d else 0
+    d = clipped(s[_TILT_NOISE_Q8], 0x3FFFFF) * c[_TILT_NOISE_FACTOR_Q4] >> 4
+    return 1 if square > c[_TILT_LIMIT_Q4] + d else 0
 
 
 def change_q4(s: ptr32, c: ptr32) -> int:
@@ -236,7 +236,7 @@ def classify_window(s: ptr32, c: ptr32) -> int:
         return _STILL
     s[_TIP_Q8] = gravity_moved_q8(s, c)
     shake_q8 = shake_q8 >> c[_WINDOW_SHIFT]
-    s[_LEAN_NOISE_Q8] += shake_q8
+    s[_TILT_NOISE_Q8] += shake_q8
     if s[_TIP_Q8] > c[_TIP_LIMIT_Q8] + _GRAVITY_NOISE * shake_q8:
         return _TURNING
     if s[_SEGMENT_WINDOWS]:
@@ -346,11 +346,11 @@ def tilting_q4(s: ptr32, c: ptr32) -> int:
     return clipped(g, 0x3FFF)
 
 
-def steady_q4(s: ptr32, c: ptr32, lean: int) -> int:
+def steady_q4(s: ptr32, c: ptr32, share: int) -> int:
     """Return the turn about the vertical that lasts as long as the rest, one sigma, LSB Q4."""
     # As fast a turn as the bias is as likely as that bias; of all turns as steady half end in time.
     total = c[_TURNING_LSB] * c[_TURNING_LSB]
-    rate = clipped(lean * c[_TURNING_LSB] >> 10, 0x7FF) * _BANKED
+    rate = clipped(share * c[_TURNING_LSB] >> 10, 0x7FF) * _BANKED
     total += rate * rate
     for i in range(3):
         rate = clipped(s[_TARGET_Q8 + i] >> 8, 0x3FFF)
@@ -361,8 +361,8 @@ def steady_q4(s: ptr32, c: ptr32, lean: int) -> int:
     return total >> rate if rate < 30 else 0
 
 
-def lean_q10(c: ptr32, g: int) -> int:
-    """Return the tangent of how far an acceleration leans gravity that makes it more than 1 g."""
+def bank_q10(c: ptr32, g: int) -> int:
+    """Return the tangent of the bank that makes an acceleration more than 1 g."""
     # It is the bank of an aircraft in a coordinated turn, whose load is 1 / cos(bank).
     over = clipped((g << 10) // c[_ONE_G], 0x3FFF) - 1024
     return root(over << 11) if over > 0 else 0
@@ -378,7 +378,7 @@ def share_q10(s: ptr32, axis: int, g: int) -> int:
 def hidden_q4(s: ptr32, c: ptr32, axis: int) -> int:
     """Return how much of a turn the rest so far may hide on the axis: one sigma, LSB Q4."""
     g = size(s)
-    share = lean_q10(c, g)
+    share = bank_q10(c, g)
     turn = steady_q4(s, c, share)
     if g and s[_REST]:
         share += share_q10(s, axis, g)

@@ -97,7 +97,9 @@ ASSERT(SIZEOF(.other) == 0, "machine code with data")
 
 @dataclass(frozen=True)
 class Processor:
-    """target, aims (what code is made for), flags: of the compiler; arithmetic: floor_div, floor_mod, shift_left in C."""
+    """target, aims (what the code is made for), flags: of the compiler; arithmetic: floor_div,
+    floor_mod, shift_left in C.
+    """
 
     target: str
     aims: tuple[str, ...]
