@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -36,6 +37,9 @@ hypothesis.settings.load_profile("zerorate")
 
 
 def pytest_configure():
+    # where a machine asks for no bytecode each of hundreds of children would compile all it imports
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+    sys.dont_write_bytecode = False
     known = (*NAMES, _CHROMIUM, _BOARDS)
     unknown = _REQUIRED - set(known)
     if unknown:
