@@ -8,8 +8,8 @@ IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
 
 def multiply(p: np.ndarray, q: np.ndarray) -> np.ndarray:
     """(..., 4) Hamilton product."""
-    pw, px, py, pz = np.moveaxis(p, -1, 0)
-    qw, qx, qy, qz = np.moveaxis(q, -1, 0)
+    pw, px, py, pz = (p[..., i] for i in range(4))
+    qw, qx, qy, qz = (q[..., i] for i in range(4))
     return np.stack(
         [
             pw * qw - px * qx - py * qy - pz * qz,
