@@ -63,8 +63,9 @@ class Cluster:
 
 
 @pytest.fixture
-def others(tmp_path):
-    """A cluster without workers."""
+def others(tmp_path, monkeypatch):
+    """A cluster without workers, which is given up sooner than a user's."""
+    monkeypatch.setattr("zerorate_tools.fleet.cluster._CONNECT_S", 4)
     cluster = Cluster(tmp_path)
     yield cluster
     cluster.end()
@@ -89,7 +90,7 @@ def test_a_worker_that_stands_still_is_named(others, data, tmp_path):
 
 def test_a_worker_that_is_busy_for_long_is_no_fault(others, data, tmp_path):
     others.worker()
-    busy = others.client.submit(time.sleep, 12, pure=False)
+    busy = others.client.submit(time.sleep, 6, pure=False)
     done = fleet(devices_of([data])[:1], tmp_path / "out", scheduler=others.address, minutes=None)
     assert done.report["sessions"] == 1 and busy.done()
 
