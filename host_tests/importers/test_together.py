@@ -46,6 +46,51 @@ def test_two_files_of_one_name_are_not_written_over_each_other(tmp_path):
         import_together(sources, tmp_path / "out")
 
 
+def of_sensor(path, sensor, at_s, level=0.0):
+    """A CSV of one sensor, as phones write; the last axis is about a level."""
+    rows = np.column_stack([at_s, *(np.sin(at_s * k) for k in (1, 2, 3))])
+    rows[:, -1] += level
+    head = ["time_s", *(f"{sensor}_{axis}" for axis in "xyz")]
+    pd.DataFrame(rows).to_csv(path, index=False, header=head)
+    return path
+
+
+@pytest.fixture
+def sensors(tmp_path):
+    """Files of a gyroscope and of an accelerometer that is read a little later."""
+    at_s = np.arange(500) / 100
+    gyro = of_sensor(tmp_path / "gyro.csv", "gyro", at_s)
+    return [gyro, of_sensor(tmp_path / "my acc.csv", "acc", at_s + 0.003, level=9.81)]
+
+
+def test_files_of_sensors_become_one_recording_where_one_is_to_be_written(tmp_path, sensors):
+    out = tmp_path / "run.parquet"
+    how = ["--gyro-unit", "dps", "--accel-unit", "m/s2"]
+    assert main(["import", *map(str, sensors), *how, "--out", str(out)]) == 0
+    one = read_recording(out)
+    assert len(one) == 500 and {"gx", "ax"} <= set(one.columns)
+    gx_dps = one.columns["gx"] / one.scales.gyro_lsb_per_dps
+    assert np.allclose(gx_dps, np.sin(np.arange(500) / 100), atol=0.01)
+
+
+def test_a_file_of_rates_says_how_the_acceleration_beside_it_is_taken(tmp_path, sensors, capsys):
+    names = ("Gyro.csv", "my Accel.csv")
+    gyro, _ = [sensor.rename(tmp_path / name) for sensor, name in zip(sensors, names)]
+    assert main(["import", str(gyro), "--gyro-unit", "dps", "-o", str(tmp_path / "o.csv")]) == 0
+    said = capsys.readouterr().out
+    assert f"zerorate import {gyro} '{tmp_path / 'my Accel.csv'}' --out FILE.parquet" in said
+
+
+def test_files_of_sensors_without_rates_are_refused(tmp_path, sensors):
+    (tmp_path / "other").mkdir()
+    other = of_sensor(tmp_path / "other" / "acc.csv", "acc", np.arange(500) / 100)
+    with pytest.raises(BadRecording, match="no table with rates in it, nor in the others"):
+        import_recording([other, sensors[1]], tmp_path / "o.csv")
+    same = of_sensor(tmp_path / "other" / "gyro.csv", "gyro", np.arange(500) / 100)
+    with pytest.raises(BadRecording, match="two files of that name"):
+        import_recording([sensors[0], same], tmp_path / "o.csv")
+
+
 def test_a_table_is_cut_into_tables_with_the_names_of_the_first(tmp_path, capsys):
     source = table(tmp_path / "in.csv", 1.0)
     again = source.read_text().partition("\n")[2]

@@ -456,7 +456,7 @@ def test_import_is_given_what_was_typed(importing, capsys, steps):
     assert cli.main(["import", "a.csv", "--out", "o.csv"]) == 0
     assert capsys.readouterr().out.splitlines() == ["o.csv", "  first", "  second"]
     (source, out), named = importing.one.call
-    assert (source, out) == (Path("a.csv"), Path("o.csv")) and steps[0][:2] == (
+    assert (source, out) == ([Path("a.csv")], Path("o.csv")) and steps[0][:2] == (
         "importing a.csv",
         5,
     )

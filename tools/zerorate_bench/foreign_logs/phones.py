@@ -55,6 +55,26 @@ def sensor_logger_file(folder: Path, world: World) -> Path:
     return _sensor_logger(folder, world)[4]
 
 
+@log("two chips of one phone: uncalibrated beside calibrated, times in ms by another time's unit")
+def two_chips(folder: Path, world: World) -> Path:
+    for number, (chip, late_ms) in enumerate({"": 0, "second_": 4}.items()):
+        t_ms = 801_439_402 + np.round(world.t_s * 1e3).astype(np.int64) + late_ms
+        utc_ns = _EPOCH_NS + t_ms * 1_000_000
+        times = "imuTimestamp,accuracy(more=better),utcTimestamp(nanos)"
+        rates, force = ",ang_vel{}_{}[rad/s]", ",acc{}_{}[m/s^2]"
+        for sensor, column, values in (
+            ("accelerometer", force, world.mps2),
+            ("gyroscope", rates, world.rad - np.radians(BIAS_DPS)),
+            ("gyroscope_uncalibrated", rates, world.rad),
+        ):
+            of = f"{'2' * number}{'_uncal' * ('uncal' in sensor)}"
+            head = times + "".join(column.format(of, axis) for axis in "xyz")
+            frame = table(head, t_ms, np.full(len(t_ms), 3), utc_ns, values)
+            lines = f"{chip}{sensor} Non-wakeup,STMicro,2025-03-06\n{frame.to_csv(index=False)}"
+            (folder / f"{chip}{sensor}_{number + 1}.csv").write_text(lines)
+    return folder
+
+
 def _long(world: World, names: tuple[str, str], time: str = "time") -> pd.DataFrame:
     rates = table(f"{time},sensor,x,y,z", world.t_s, np.full(world.samples, names[0]), world.rad)
     force = table(f"{time},sensor,x,y,z", world.t_s, np.full(world.samples, names[1]), world.mps2)

@@ -70,12 +70,13 @@ def add_import(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    option(parser, "sources", "SRC", "recordings of one device", Path, nargs="+")
+    what = "a recording; files of its sensors; or recordings of one device"
+    option(parser, "sources", "SRC", what, Path, nargs="+")
     option(
         parser,
         "-o --out",
         "FILE",
-        ".parquet, .csv or .csv.gz; with several SRC the folder for their .parquet",
+        ".parquet, .csv or .csv.gz, of one recording; or the folder for a .parquet of each SRC",
         Path,
         required=True,
     )
@@ -107,6 +108,7 @@ def add_import(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
 def run_import(arguments: argparse.Namespace) -> None:
     from ..importers import Options, import_recording, import_together
     from ..progress import progress
+    from ..recordings.writing import is_recording_name
 
     known = {k: v for k, v in vars(arguments).items() if k in Options.__dataclass_fields__}
     units = {k: getattr(arguments, f"{k}_unit") for k in ("time", "gyro", "accel", "temp")}
@@ -119,8 +121,9 @@ def run_import(arguments: argparse.Namespace) -> None:
         "instance": arguments.instance,
     }
     with progress(f"importing {sources[0].name}", size or None) as advance:
-        if len(sources) == 1 and not arguments.out.is_dir():
-            report = import_recording(sources[0], arguments.out, **how, advance=advance)
+        one = len(sources) == 1 or is_recording_name(arguments.out)
+        if one and not arguments.out.is_dir():
+            report = import_recording(sources, arguments.out, **how, advance=advance)
             reports = {arguments.out: report}
         else:
             reports = import_together(sources, arguments.out, **how, advance=advance)

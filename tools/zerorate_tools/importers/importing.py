@@ -19,7 +19,7 @@ from ..recordings.reading import recording_name, whole
 from ..recordings.recording import ACCEL, COLUMNS
 from .columns.mapping import Mapped
 from .columns.plan import Plan, left_aside, planned
-from .kinds import table_of
+from .kinds import table_of, table_of_files
 from .report import Options, Report
 from .samples.between import refuse_two_recordings
 from .samples.conversion import (
@@ -69,7 +69,7 @@ class _Source:
 
 
 def import_recording(
-    source: str | PathLike[str],
+    source: str | PathLike[str] | Sequence[str | PathLike[str]],
     out: str | PathLike[str],
     *,
     options: Options | None = None,
@@ -80,12 +80,14 @@ def import_recording(
 ) -> Report:
     """Convert a foreign file and write it as `out` (.parquet, .csv, .csv.gz); say what was lost.
 
+    source: a file; or several, each with sensors of the one recording, by the time that they share.
     Takes at most 600 MB of memory, however large the file is. advance: called with the bytes of it
     that were read since it was called last. The other arguments are those of `read_foreign`.
     Raises BadRecording, MissingLibrary.
     """
     how = _How(options or Options(), mapping, units, instance)
-    return _imported([Path(source)], [Path(out)], how, advance)[0]
+    sources = [source] if isinstance(source, (str, PathLike)) else source
+    return _imported([[Path(one) for one in sources]], [Path(out)], how, advance)[0]
 
 
 def import_together(
@@ -108,7 +110,8 @@ def import_together(
     how = _How(options or Options(), mapping, units, instance)
     check_apart([Path(folder) / name for name in names], paths)
     with written_together(folder) as draft:
-        reports = _imported(paths, [draft / name for name in names], how, advance)
+        outs = [draft / name for name in names]
+        reports = _imported([[path] for path in paths], outs, how, advance)
     return {Path(folder) / name: report for name, report in zip(names, reports)}
 
 
@@ -130,7 +133,7 @@ def read_foreign(
     path = Path(source)
     how = _How(options or Options(), mapping, units, instance)
     with ExitStack() as files:
-        one = _ready([_opened(path, how, lambda n: None, None, files)])[0]
+        one = _ready([_opened([path], how, lambda n: None, None, files)])[0]
         columns = whole(one.batches, one.names, path)
     return Recording(columns, one.scales, recording_name(path)), one.report
 
@@ -148,11 +151,16 @@ def _require(path: Path) -> None:
         raise BadRecording(path, "neither a file nor a folder", do="copy it into a file first")
 
 
-def _imported(sources: list[Path], outs: list[Path], how: _How, advance: Advance) -> list[Report]:
-    for source, out in zip(sources, outs):
+def _imported(
+    sources: list[list[Path]], outs: list[Path], how: _How, advance: Advance
+) -> list[Report]:
+    """sources: the files of each recording."""
+    every = [path for files in sources for path in files]
+    for source in every:
         _require(source)
+    for out in outs:
         check_output(out)
-    check_apart(outs, sources)
+    check_apart(outs, every)
     folder = outs[0].absolute().parent
     with ExitStack() as files:
         opened = [_opened(source, how, advance, folder, files) for source in sources]
@@ -168,16 +176,19 @@ def _imported(sources: list[Path], outs: list[Path], how: _How, advance: Advance
 
 
 def _opened(
-    path: Path, how: _How, advance: Advance, folder: Path | None, files: ExitStack
+    paths: list[Path], how: _How, advance: Advance, folder: Path | None, files: ExitStack
 ) -> _Import | _Source:
     """files: closes what lies in a spool."""
-    _require(path)
-    if path.is_file() and path.stat().st_size == 0:
-        raise BadRecording(path, "empty file", do="name another file")
-    own = None if how.mapping else _own_form(path, how)
+    for path in paths:
+        _require(path)
+        if path.is_file() and path.stat().st_size == 0:
+            raise BadRecording(path, "empty file", do="name another file")
+    path, *others = paths
+    own = None if how.mapping or others else _own_form(path, how)
     if own is not None:
         return own
-    with table_of(path, how.instance, advance) as table:
+    read = table_of_files(paths, advance) if others else table_of(path, how.instance, advance)
+    with read as table:
         source = _gathered(table, path, how, folder)
     files.callback(source.found.spool.close)
     return source

@@ -1,13 +1,13 @@
 """Which reader a file needs, told by its first bytes and then by its name."""
 
 import zipfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 from ..errors import BadRecording
 from ..recordings.text import head
-from .tables.archive import archive, folder_of_tables
+from .tables.archive import archive, folder_of_tables, tables_of_sensors
 from .tables.checked_lines import checked_lines, has_checked_lines
 from .tables.delimited import delimited
 from .tables.table import Table
@@ -69,6 +69,13 @@ def table_of(path: Path, instance: int, advance: Callable[[float], None]) -> Ite
         yield checked_lines(path, advance)
     else:
         yield delimited(path, advance)
+
+
+@contextmanager
+def table_of_files(files: Sequence[Path], advance: Callable[[float], None]) -> Iterator[Table]:
+    """The table of a recording whose sensors have a file each. Raises BadRecording."""
+    with _opened(advance) as opened:
+        yield tables_of_sensors(files, opened)
 
 
 @contextmanager

@@ -30,10 +30,15 @@ def write_recording(recording: Recording, path: str | PathLike[str]) -> None:
             writer.append(recording.between(first, first + _ROWS).columns)
 
 
+def is_recording_name(path: Path) -> bool:
+    """Whether a file of this name would be in a form of recordings."""
+    return path.name.endswith((*csv_format.SUFFIXES, *parquet_format.SUFFIXES))
+
+
 def check_output(path: str | PathLike[str]) -> None:
     """Raise BadRecording if no recording can be written there: ask before long work."""
     path = Path(path)
-    if not path.name.endswith((*csv_format.SUFFIXES, *parquet_format.SUFFIXES)):
+    if not is_recording_name(path):
         do = "end the name in .parquet, .csv or .csv.gz"
         raise BadRecording(path, "no format goes by this name", do=do)
     if not path.parent.is_dir():

@@ -10,13 +10,13 @@ _AXIS = "([xyz])"
 _MADE = "(?:cal|mean|avg)?"
 _GYRO = re.compile(
     r"(?:.*(?:gyroscope|gyrorotation|gyro|gyr|angularvelocity|angularrate|angvel|rotationrate|omega)"
-    r"(?:uncalibrated|calibrated|corrected|unfilt|adc|raw|rad|data|rate|dps|values?|static|noise)"
+    r"\d?(?:uncalibrated|uncal|calibrated|corrected|unfilt|adc|raw|rad|data|rate|dps|values?|static|noise)"
     r"{0,2}"
     r"|(?:.*imu)?(?:gy|[wg]|pqr))" + f"{_AXIS}{_MADE}$|^{_AXIS}(?:gyroscope|gyro|gyr)$"
 )
 _ACCEL = re.compile(
     r"(?:.*(?:accelerometer|acceleration|accel|acc|specificforce)"
-    r"(?:uncalibrated|calibrated|smooth|adc|raw|data|ms2|values?|ln|wr|static|noise){0,2}"
+    r"\d?(?:uncalibrated|uncal|calibrated|smooth|adc|raw|data|ms2|values?|ln|wr|static|noise){0,2}"
     r"|(?:.*imu)?(?:ac?|gf))" + f"{_AXIS}{_MADE}$|^{_AXIS}(?:accelerometer|accel|acc)$"
 )
 #: Less gravity, or gravity as a filter has it: no measure of it.
@@ -80,9 +80,11 @@ def most_alike(groups: list[dict[str, str]], gyro: dict[str, str], instance: int
     if not groups:
         return {}
 
-    def alike(number: int) -> tuple[int, bool, int]:
-        common = os.path.commonprefix([groups[number]["ax"], gyro.get("gx", "")])
-        return len(common), number == instance, -number
+    def alike(number: int) -> tuple[float, int, bool, int]:
+        two = groups[number]["ax"], gyro.get("gx", "")
+        ours, theirs = (set(re.split(r"[^a-z0-9]+", without_unit(name.lower()))) for name in two)
+        begun = len(os.path.commonprefix(two))
+        return len(ours & theirs) / len(ours | theirs), begun, number == instance, -number
 
     return groups[max(range(len(groups)), key=alike)]
 

@@ -22,11 +22,13 @@ from .guesses import (
     ready_words,
 )
 from .mapping import Mapped, factor_in, parsed_mapping
-from .units import RAW, factors_of, kind_of, unit_in_name, units_of
+from .units import RAW, TIME_S, factors_of, kind_of, unit_in_name, units_of
 
 _LISTED, _TOLD = 24, 8
 #: LSB of a unit quaternion's part: finer than what cameras see.
 _PART = 1e6
+#: Logarithm of the times by which two clocks of a device are apart at most; units are 1000 times.
+_ONE_TIME = np.log(2.0)
 _OTHER_SENSOR = re.compile("acc|mag|euler|quat|orient|heading|grav|baro|gps|location", re.I)
 
 
@@ -228,7 +230,12 @@ def _beside(path: Path) -> str:
     gyro = next((f for f in sorted(path.parent.glob("*.csv")) if "gyro" in f.stem.lower()), None)
     if gyro is None:
         return ""
-    return f", which are likely in {gyro.name}: zerorate import {path.parent} takes both"
+    return f", which are likely in {gyro.name}: {take_both(gyro, path)}"
+
+
+def take_both(gyro: Path, other: Path) -> str:
+    """The command that takes the files of two sensors as one recording."""
+    return f"zerorate import {shlex.quote(str(gyro))} {shlex.quote(str(other))} --out FILE.parquet"
 
 
 def _offered(table: Table, wanted: Mapping[str, Mapped], missing: list[str]) -> str:
@@ -299,6 +306,21 @@ def _times_s(
     return t_s + (first[mapped.plus[0]] * plan.plus[TIME] if mapped.plus else 0.0)
 
 
+def _as_another_time(column: str, table: Table) -> tuple[str, str] | None:
+    """(unit, why) of a time beside which another one goes on, whose name says its unit."""
+    for other in usual.in_units_of_time(table.names):
+        first = table.first_rows([column, other]) if other != column else {}
+        both = np.isfinite(list(first.values())).all(axis=0)
+        spans = [np.ptp(values[both]) for values in first.values() if only_grows(values[both])]
+        if len(spans) == 2 and all(spans):
+            theirs = TIME_S[unit_in_name(TIME, other) or "s"]
+            off = {u: abs(np.log(spans[0] * s / (spans[1] * theirs))) for u, s in TIME_S.items()}
+            unit = min(off, key=off.__getitem__)
+            if off[unit] < _ONE_TIME:
+                return unit, f"it goes on as {other!r}"
+    return None
+
+
 def _unit(
     target: str,
     plan: Plan,
@@ -314,7 +336,9 @@ def _unit(
     kind = kind_of(target)
     unit = mapped.unit or unit_in_name(target, mapped.column) or units.get(kind)
     if unit is None:
-        unit, why = guessed_unit(target, plan.wanted, table.names, first, t_s)
+        unit, why = (_as_another_time(mapped.column, table) if target == TIME else None) or (
+            guessed_unit(target, plan.wanted, table.names, first, t_s)
+        )
         note = f"{kind} taken in {unit}: {why}"
         if unit is not None and note not in plan.notes:
             plan.notes.append(note)

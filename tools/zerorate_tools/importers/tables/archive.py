@@ -4,7 +4,7 @@ import re
 import tempfile
 import zipfile
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from itertools import chain, zip_longest
 from pathlib import Path
@@ -80,6 +80,27 @@ def folder_of_tables(
         problem = f"several recordings ({', '.join(rates)})"
         do = "import them together: zerorate import FILE FILE ... --out FOLDER"
         raise BadRecording(path, problem, do=do)
+    return _by_shared_time(tables, path)
+
+
+def tables_of_sensors(files: Sequence[Path], opened: Callable[[Path], Table]) -> Table:
+    """As `folder_of_tables`, of these files and no others. Raises BadRecording."""
+    tables: dict[str, Table] = {}
+    for file in files:
+        if file.stem in tables:
+            raise BadRecording(file, "two files of that name", do="give one of them another name")
+        tables[file.stem] = opened(file)
+    if not any(usual.gyro_groups(t.names) or _is_of_rates(s, t) for s, t in tables.items()):
+        do = "name the file with the rates, too; or a folder after --out: each is a recording then"
+        raise BadRecording(files[0], "no table with rates in it, nor in the others", do=do)
+    return _by_shared_time(tables, files[0])
+
+
+def _is_of_rates(stem: str, table: Table) -> bool:
+    return "gyro" in stem.lower() and bool(usual.bare_axes(table.names))
+
+
+def _by_shared_time(tables: dict[str, Table], path: Path) -> Table:
     times = Counter(name for t in tables.values() for name in usual.time_columns(t.names))
     shared = [name for name, count in times.items() if count == len(tables)]
     if not shared and len(tables) > 1:
