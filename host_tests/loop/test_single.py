@@ -189,8 +189,11 @@ def test_rests_that_are_few_and_far_between_teach_no_bend(seed):
     assert any("too few rests" in reason for _, reason in found.refused)
 
 
-def test_one_recording_with_temperature_tells_no_start_from_a_lag():
+@pytest.mark.parametrize("source", ["temp", "none"])
+def test_one_recording_shows_nothing_that_follows_time_alone(source):
     (session,) = simulate(3, [("power-on-transient", 10.0)], sessions=1, bare=True).sessions
+    sources = {k: v for k, v in session.sources.items() if k != "temp" or source == "temp"}
+    session = replace(session, sources=sources)
     found = select([session], on_pieces=PiecesByLine(session)).found
     assert not {f.candidate.kind for f in found} & {"power-on-transient", "time-drift"}
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from .loop.motion.by_windows import GIVEN, UNIT, RateScale, by_windows
+from .loop.motion.by_windows import GIVEN, UNIT, RateScale, by_windows, nothing_in_words
 from .loop.motion.moving import moving_of
 from .loop.motion.scales_and_timing import InMotion, slots_of
 from .loop.read.ticks import Ticks
@@ -137,8 +137,7 @@ def motion_in_words(result: Mapping[str, Any]) -> str:
             for axis, values, spread in rows
         ]
     else:
-        among = "" if seen_by != "gravity" else ", the device's own acceleration among it"
-        lines = [f"found: nothing in motion; {seen_by} sees {m['before']:.2f} {m['unit']}{among}"]
+        lines = [f"found: {nothing_in_words(m['before'], m['unit'])}"]
     lines += [f"not seen in this motion: {', '.join(m['not_seen'])}"] if m["not_seen"] else []
     lines.append(f"note: {result['unexplained']['what_is_known']}")
     return "\n".join([*lines, *(f"next: {a}" for a in result["unexplained"]["measure_next"])])

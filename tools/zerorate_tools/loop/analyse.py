@@ -12,10 +12,16 @@ from .fit.cross_products import whitener
 from .fit.line import deployed
 from .fit.noise import floor_dps
 from .fit.single import PiecesByLine
-from .motion.scales_and_timing import InMotion, in_motion, slots_of, without_scales
+from .motion.by_windows import nothing_in_words
+from .motion.scales_and_timing import (
+    InMotion,
+    in_motion,
+    may_show_motion,
+    slots_of,
+    without_scales,
+)
 from .read.blocks import sessions_from
 from .read.gate import (
-    CannotClose,
     GateReport,
     TooLittleRest,
     enough,
@@ -58,8 +64,12 @@ def analyse(
         [s for i, s in enumerate(sessions) if i != at] or sessions,
         [sessions[at]] if len(sessions) > 1 else [],
         logs,
+        gate.moving,
     )
-    gate.notes += motion.rate_scale.notes if motion.rate_scale is not None else []
+    shown = motion.rate_scale
+    gate.notes += shown.notes if shown is not None else []
+    if gate.moving and shown is not None and not shown.found:
+        gate.notes.append(f"found: {nothing_in_words(shown.before, shown.unit)}")
     sessions = [without_scales(s, motion) for s in sessions]
     whiteners = [whitener(s.available) for s in sessions]  # while they live nobody makes them anew
     clean = remove_steps(sessions)
@@ -120,17 +130,18 @@ def sessions_of(ticks: list[Ticks]) -> tuple[list[Session], GateReport]:
     same_settings(ticks)
     without_long_gaps(ticks)
     sessions = sessions_from(ticks)
-    kept = []
+    kept, problems = [], []
     for s in sessions:
         try:
             enough(s)
             kept.append(s)
-        except CannotClose as problem:
-            if len(sessions) == 1:
-                raise
-            gate.notes.append(f"left out: {problem}")
+        except TooLittleRest as problem:
+            problems.append(str(problem))
+            moves = may_show_motion(s)
+            gate.moving += [s] if moves else []
+            gate.notes.append(f"{'looked at in motion alone' if moves else 'left out'}: {problem}")
     if not kept:
-        raise TooLittleRest("; ".join(n.removeprefix("left out: ") for n in gate.notes))
+        raise TooLittleRest("; ".join(problems))
     for name in {n for t in ticks for n in t.extra if n in OWN_SOURCES}:
         gate.dropped[name] = "named like a source of the model's own: rename the column"
     shaken(kept, gate)

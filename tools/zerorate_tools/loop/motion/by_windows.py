@@ -73,6 +73,15 @@ class RateScale:
 
 GRAVITY, GIVEN = "gravity while it moved", "the reference given"
 UNIT = {GRAVITY: "degrees a minute of tilt", GIVEN: "degrees a minute of turn"}
+
+
+def nothing_in_words(before: float, unit: str) -> str:
+    """What is said where motion shows no matrix. before: RMS of what turns windows, in the unit."""
+    seen_by = "gravity" if unit == UNIT[GRAVITY] else "the reference"
+    among = ", the device's own acceleration among it" if unit == UNIT[GRAVITY] else ""
+    return f"nothing in motion; {seen_by} sees {before:.2f} {unit}{among}"
+
+
 #: Posterior sigma of an entry above which the motion did not show it: a data sheet's 0.5 %.
 UNSEEN = 0.005
 #: Of devices without errors, so many may be said to have one.

@@ -1,6 +1,6 @@
 """What motion shows: scale factor and cross-axis, and readings that come late."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from os import PathLike
 
@@ -60,16 +60,23 @@ def in_motion(
     train: list[Session],
     holdout: list[Session],
     logs: Mapping[str, str | PathLike[str]] | None = None,
+    beside: Sequence[Session] = (),
 ) -> InMotion:
     """What the training sessions' motion shows. logs: the recordings, of whose samples windows in
-    motion are made; without them nothing is looked for. Raises CannotClose."""
+    motion are made; without them nothing is looked for; beside: sessions that hardly rest. Raises
+    CannotClose."""
     if logs is None:
         return InMotion()
-    moving = [[s for s in some if s.moving_s > LONGEST_S] for some in (train, holdout)]
+    moving = [list(filter(may_show_motion, some)) for some in ([*train, *beside], holdout)]
     parts = [[moving_of(logs[s.name]) for s in some] for some in moving]
     turning = by_windows(*([m for m in part if m is not None] for part in parts))
     delays = [(s.delay, s.tick_s) for s in train if s.delay is not None]
     return InMotion(turning, timing_of(delays) if len(delays) == len(train) else None)
+
+
+def may_show_motion(session: Session) -> bool:
+    """Whether it moves for longer than the longest window."""
+    return session.moving_s > LONGEST_S
 
 
 def without_scales(session: Session, motion: InMotion) -> Session:

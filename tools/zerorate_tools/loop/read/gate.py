@@ -46,12 +46,13 @@ class CannotClose(ZerorateError):
 @dataclass
 class GateReport:
     """What was set aside: faults by recording, dropped channels by reason, sentences for the
-    report.
+    report; and moving, the sessions of which only motion may show anything.
     """
 
     faults: dict[str, dict[str, int]] = field(default_factory=dict)
     dropped: dict[str, str] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
+    moving: list[Session] = field(default_factory=list)
 
 
 def same_settings(ticks: list[Ticks]) -> None:

@@ -129,8 +129,8 @@ class Search:
     def _begin_with_one(self, judged: JudgedOnPieces):
         """The hysteresis that one course of temperature shows, else a curve as a candidate."""
         r, every = self.regression, self.pool
-        if self.line and not self.judged_again:
-            # a start is told from a lag of the warm-up by another power-on alone
+        if not self.judged_again:
+            # what follows time alone must come again: only another power-on shows whether it does
             every = [c for c in every if not follows_time(c)]
         self.pool = [c for c in every if c.kind not in curve.FORMS]
         if not curve.shows_a_curve(r.sessions[0]):
