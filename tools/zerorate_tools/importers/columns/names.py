@@ -9,7 +9,7 @@ _AXIS = "([xyz])"
 #: After the axis: calibrated, or a mean of many readings.
 _MADE = "(?:cal|mean|avg)?"
 _GYRO = re.compile(
-    r"(?:.*(?:gyroscope|gyrorotation|gyro|gyr|angularvelocity|angularrate|angvel|rotationrate|omega)"
+    r"(?:.*(?:gyroscope|gyrorotation|gyro|gyr|angularvelocity|ang(?:ular)?rate|angvel|rotationrate|omega)"
     r"\d?(?:uncalibrated|uncal|calibrated|corrected|unfilt|adc|raw|rad|data|rate|dps|values?|static|noise)"
     r"{0,2}"
     r"|(?:.*imu)?(?:gy|[wg]|pqr))" + f"{_AXIS}{_MADE}$|^{_AXIS}(?:gyroscope|gyro|gyr)$"
