@@ -232,27 +232,6 @@ def test_rates_per_hour_are_offered_no_unit_that_is_none_of_theirs(tmp_path):
         read(tmp_path, frame)
 
 
-def resampled(frame, hz):
-    """The same on an even grid of another rate, on lines between the readings."""
-    at = np.arange(frame.t_s.iloc[0], frame.t_s.iloc[-1], 1 / hz)
-    return pd.DataFrame({n: np.interp(at, frame.t_s, frame[n]) for n in frame}).assign(t_s=at)
-
-
-@pytest.mark.parametrize("hz", [200, 400, 1000])
-def test_rows_between_readings_are_none(tmp_path, hz):
-    frame = table()
-    recording, report = read(tmp_path, resampled(frame, hz).round(6))
-    assert recording.scales.odr_hz == pytest.approx(100)
-    assert recording.gyro_dps().std(axis=0) == pytest.approx(frame.std()[1:4], rel=0.01)
-    assert sum(report.dropped.values()) == report.rows_read - len(frame)
-
-
-@pytest.mark.parametrize("hz", [250, 333, 410])
-def test_a_log_that_was_resampled_is_refused(tmp_path, hz):
-    with pytest.raises(BadRecording, match="of a resampled log; import the log as the sensor"):
-        read(tmp_path, resampled(table(), hz))
-
-
 def test_a_gap_that_somebody_filled_is_a_gap(tmp_path):
     frame = table()
     frame["t_s"] += 1e-3 * RNG.random(len(frame))

@@ -24,6 +24,7 @@ from zerorate_tools.errors import ZerorateError
 from zerorate_tools.recordings import Recording, read_recording
 
 from .foreign_logs import CORPUS, Log, World
+from .resampled import false_alarms
 from .tables import table
 
 RIGHT, BY_ITS_WORDS, REFUSED = "right", "right by its words", "refused with the cure"
@@ -50,6 +51,16 @@ _WORDS = f"""
 
 What a name claims and no reading denies is believed: a time in milliseconds that is called seconds,
 say, at a rate at which somebody might have recorded.
+"""
+_RESAMPLED = """
+## Resampled logs
+
+Rows on straight lines between readings have less noise than these, on average two thirds of its
+square. Where some rows lie on lines exactly, between readings that are rows, they are left out. Any
+other log of 8 % more rows than readings or more is refused, where lines between readings at one
+period are e^20 times as likely as a reading in each row. Not noticed are fewer rows more, logs
+thinned on lines (each row has noise of its own then), and noise of a digit or two. Each kind below
+is drawn anew, in 2,500 rows, and resampled to 1.1, 1.3, 1.7 or 2.6 times as many.
 """
 _OPTION = re.compile(r"--[a-z-]+ [^\s,;()]+(?: \(or [^)]*\))?")
 #: A reading of time by another unit: `us (1000 Hz) or ms (1 Hz)`.
@@ -78,7 +89,7 @@ def run(only: str = "", advance: Callable[[float], None] = lambda n: None) -> di
         if only.lower() in log.what.lower():
             rows.append(judged(log))
         advance(1)
-    return {"rows": rows}
+    return {"rows": rows, "resampled": "" if only else false_alarms()}
 
 
 def steps() -> int:
@@ -209,7 +220,8 @@ def in_markdown(found: dict) -> str:
     kinds = (RIGHT, BY_ITS_WORDS, REFUSED, *_BAD)
     counted = table(["of", *kinds], [[len(outcomes), *(outcomes.count(kind) for kind in kinds)]])
     rows = [[row["log"], row["outcome"]] for row in found["rows"]]
-    return f"{_HEAD}\n{counted}{_WORDS}\n{table(['log', 'import'], rows)}"
+    page = f"{_HEAD}\n{counted}{_WORDS}\n{table(['log', 'import'], rows)}"
+    return page + (f"{_RESAMPLED}\n{found['resampled']}" if found["resampled"] else "")
 
 
 def run_import_size(

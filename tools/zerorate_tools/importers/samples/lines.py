@@ -8,6 +8,7 @@ import numpy as np
 
 from ...errors import BadRecording
 from ...recordings.recording import GYRO
+from .resampled import base_period
 from .spool import TIME, Spool
 
 #: Of a step, that much is lost where times are dates of seconds since 1970.
@@ -16,48 +17,36 @@ _OF_STEP = 1e-4
 _CLEARLY = 8.0
 #: Noise puts some rows near a line, and by chance one of so many upon it.
 _BETWEEN, _BY_CHANCE, _RUN = 0.05, 0.01, 5
-_MOST_A_SAMPLE = 200
-#: Resampled off its samples' times, a log leaves two rows of every line, or of several; rows that
-#: were lost at random leave one of these numbers less often.
-_TWO, _EVEN = 0.35, 0.7
+#: Rows that are on no line are as many as the readings, where they are these; else twice as many,
+#: or half as many more where every other reading is on a row.
+_TOO_MANY = 1.25
 
 
 @dataclass
 class _Seen:
-    """Rows of a log by where they lie; apart: rows between one run on a line and the next."""
+    """Rows of a log by where they lie; on, near, off: of those whose neighbours differ."""
 
     rows: int = 0
+    lines: int = 0
     on: int = 0
     near: int = 0
     off: int = 0
     longest: int = 0
-    runs: int = 0
-    two: int = 0
-    even: int = 0
 
     def add(self, off: np.ndarray, moves: np.ndarray) -> None:
         on = off <= 1.0
         self.rows += len(off)
+        self.lines += int(on.sum())
         self.on += int((on & moves).sum())
         self.off += int((moves & (off > _CLEARLY)).sum())
         self.near += int((moves & ~on & (off <= _CLEARLY)).sum())
         begins, ends = (np.flatnonzero(d) for d in _edges(on))
         self.longest = max(self.longest, int((ends - begins).max(initial=0)))
-        apart = begins[1:] - ends[:-1]
-        self.runs += len(apart)
-        self.two += int((apart == 2).sum())
-        self.even += int((apart % 2 == 0).sum())
 
     @property
     def are_lines(self) -> bool:
-        two_kinds = self.near < _BETWEEN * self.off and self.off > self.on / _MOST_A_SAMPLE
+        two_kinds = self.near < _BETWEEN * self.off
         return two_kinds and (self.on > _BY_CHANCE * self.rows or self.longest >= _RUN)
-
-    @property
-    def are_no_samples(self) -> bool:
-        """Whether no row of them is a reading."""
-        often = self.runs > _BY_CHANCE * self.rows
-        return often and (self.two > _TWO * self.runs or self.even > _EVEN * self.runs)
 
 
 def without_lines(spool: Spool, path: Path, folder: Path | None) -> tuple[Spool, int]:
@@ -67,13 +56,16 @@ def without_lines(spool: Spool, path: Path, folder: Path | None) -> tuple[Spool,
     seen = _Seen()
     for _, off, moves in _pieces(spool, digits):
         seen.add(off, moves)
-    if not seen.are_lines:
-        return spool, 0
-    if seen.are_no_samples:
+    first = _frame(spool.read(0)) if spool.pieces else np.empty((4, 0))
+    period = base_period(first, digits, longer=seen.are_lines)
+    left = seen.rows - seen.lines
+    if period and not (seen.are_lines and left * period <= _TOO_MANY * seen.rows):
         problem = (
-            f"{seen.on} of {seen.rows} rows lie on lines between others, as of a resampled log"
+            f"its rows lie on lines between {100 / period:.0f} % as many, as of a resampled log"
         )
         raise BadRecording(path, problem, do="import the log as the sensor wrote it")
+    if not seen.are_lines:
+        return spool, 0
     out, lost = Spool(spool.names, folder), 0
     for columns, off, _ in _pieces(spool, digits):
         whole = np.flatnonzero(np.isfinite(columns["gx"]))

@@ -1,0 +1,63 @@
+"""Rows on lines between readings: those of a resampled log are refused, and no readings are."""
+
+import numpy as np
+import pandas as pd
+import pytest
+from zerorate_bench.public_data import data_folder, recordings, told_of
+from zerorate_bench.resampled import KINDS, digits, drawn, of_a_recording, on_lines, timed
+from zerorate_tools.errors import BadRecording
+from zerorate_tools.importers import read_foreign
+from zerorate_tools.importers.samples.resampled import base_period, evidence
+
+from .test_odd_files import read, table
+
+
+def resampled(frame, hz):
+    """The same on an even grid of another rate, on lines between the readings."""
+    at = np.arange(frame.t_s.iloc[0], frame.t_s.iloc[-1], 1 / hz)
+    return pd.DataFrame({n: np.interp(at, frame.t_s, frame[n]) for n in frame}).assign(t_s=at)
+
+
+@pytest.mark.parametrize("hz", [200, 400, 1000])
+def test_rows_between_readings_are_none(tmp_path, hz):
+    frame = table()
+    recording, report = read(tmp_path, resampled(frame, hz).round(6))
+    assert recording.scales.odr_hz == pytest.approx(100)
+    assert recording.gyro_dps().std(axis=0) == pytest.approx(frame.std()[1:4], rel=0.01)
+    assert sum(report.dropped.values()) == report.rows_read - len(frame)
+
+
+@pytest.mark.parametrize("hz", [115, 130, 160, 190, 203, 250, 333, 410])
+def test_a_log_that_was_resampled_is_refused(tmp_path, hz):
+    with pytest.raises(BadRecording, match="of a resampled log; import the log as the sensor"):
+        read(tmp_path, resampled(table(), hz))
+
+
+@pytest.mark.parametrize("hz", [130, 190, 333])
+def test_one_of_few_digits_is_refused_too(tmp_path, hz):
+    with pytest.raises(BadRecording, match="of a resampled log"):
+        read(tmp_path, resampled(table(), hz).round(2))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_noise_of_any_kind_is_not_refused_and_its_lines_are(kind):
+    luck = np.random.default_rng(3)
+    for _ in range(3):
+        rates = drawn(kind, luck)
+        assert base_period(timed(rates), digits(kind)) == 0
+        if kind not in ("coarse", "with spikes"):
+            period = base_period(timed(on_lines(rates, 1.3)), digits(kind))
+            assert period == pytest.approx(1.3, abs=0.02)
+
+
+def test_no_real_recording_is_refused():
+    folder = data_folder()
+    if folder is None:
+        pytest.skip("ZERORATE_DATA names no folder of recordings")
+    most = 0.0
+    for path in recordings(folder):
+        recording, _ = read_foreign(path, **told_of(path))
+        frame, lsb = of_a_recording(recording)
+        kept = [frame[:, :16384:n] for n in (1, 2, 4) if frame.shape[1] >= 512 * n]
+        most = max([most, *(evidence(rows, lsb)[0] for rows in kept)])
+    assert most < 15
