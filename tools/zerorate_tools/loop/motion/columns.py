@@ -65,19 +65,25 @@ class Columns:
         theta, own = self.theta[steps], self.own[steps]
         turned = theta - theta[len(theta) // 2]
         turned[..., -1] = theta[..., -1]  # a delay turns at once
-        steady = np.eye(3) * ((steps - steps[0]) * self.step_s)[:, None, None]
+        at_s = ((steps - steps[0]) * self.step_s)[:, None, None]
         if self.off is not None:
             nothing = np.zeros((len(steps), 3, _NOT_RATES))
-            return _apart(self.off[steps]), _in_columns(-turned, nothing, -steady)
+            return _apart(self.off[steps]), _in_columns(-turned, nothing, -at_s * np.eye(3))
         seen, attitude = self.seen[steps], own[..., :3]
         gravity = seen.mean(axis=0)
         force = gravity + self.loud[steps]
-        by_rate = -np.cross(turned, force[..., None], axis=1)
-        by_turn = -np.cross(steady, gravity[None, :, None], axis=1)
+        by_rate = _across(force, turned)
+        by_turn = at_s * _across(gravity[None], np.eye(3)[None])
         felt = np.einsum("mai,ma->mi", attitude, force)
-        shape = np.einsum("mai,kij,mj->mak", attitude, _SHAPES, felt, optimize=True)
+        shape = attitude @ np.tensordot(felt, _SHAPES, (1, 2)).transpose(0, 2, 1)
         own = np.concatenate([attitude, shape, own[..., 3:]], axis=2)
         return seen, _in_columns(by_rate, own, by_turn)
+
+
+def _across(force: np.ndarray, turned: np.ndarray) -> np.ndarray:
+    """(k, 3, r) products of (k, 3) with each column of (k, 3, r), without np.cross's axes."""
+    (x, y, z), (u, v, w) = force.T[..., None], turned.transpose(1, 0, 2)
+    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=1)
 
 
 def _in_columns(by_rate: np.ndarray, own: np.ndarray, by_turn: np.ndarray) -> np.ndarray:
