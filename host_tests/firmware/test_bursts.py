@@ -36,7 +36,7 @@ def whole_trace(mode):
     return [array("i", [dt, *row]) for row, dt in zip(rows.tolist(), dt_us.tolist())]
 
 
-@pytest.mark.parametrize("at_once", [1, 73, 500])
+@pytest.mark.parametrize("at_once", [1, 73])
 def test_the_kernel_gives_what_single_updates_give(one_by_one, at_once):
     mode, state, words = one_by_one
     corrector, done, room = corrector_for(mode), array("i"), array("i", [0] * 7)
@@ -167,9 +167,8 @@ def on_board(runtime, mode, repository):
     ).files
 
 
-# Single updates are compared under qemu-arm as well, at ten times these two's time.
-@pytest.mark.parametrize("name", ["wasm", "x86"])
-def test_bytecode_gives_the_same_and_allocates_nothing(one_by_one, find_runtime, name, repository):
+# Single updates are compared on all, at several times the time of this one's.
+def test_bytecode_gives_the_same_and_allocates_nothing(one_by_one, find_runtime, repository):
     mode, state, words = one_by_one
-    files = on_board(find_runtime(name), mode, repository)
+    files = on_board(find_runtime("x86"), mode, repository)
     assert (files["state.bin"], files["frames.bin"]) == (state, words)

@@ -140,7 +140,7 @@ TURNED = [
 ]
 
 
-def sessions(folder, effect, motion, attitude, count=4, minutes=5, rates=False):
+def sessions(folder, effect, motion, attitude, count=3, minutes=5, rates=False):
     """Sessions at 25 Hz; the accelerometer is off by 30 mg. rates: whether true ones are there."""
     description = {
         "sessions": count,
