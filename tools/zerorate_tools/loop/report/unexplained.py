@@ -19,7 +19,7 @@ _SUPPLY = "record the supply voltage, and step it by 100 mV up and down at const
 _POWER = "record three power-ons at constant temperature, one of them a warm restart"
 _MORE = "record more power-ons, 6 or more in all: {}"
 _FEW = "fewer than 3 fitted ones confirm nothing"
-_CHANCE = "with {} fitted ones chance often looks like an effect"
+_EACH = "each tests every effect once more"
 _LOGGERS, _LOOSEN = "log {} beside the device", "loosen one screw"
 #: What may be at work unseen, and what a channel of it is called.
 _LOGGED = {"humidity": "hum", "board temperature": "_temp"}
@@ -80,7 +80,7 @@ def measure_next(analysis) -> list[str]:
     out += [*_another_device(analysis), *_other_temperatures(analysis)]
     if len(sessions) < 5:
         fitted = len(sessions) - 1
-        out.append(_MORE.format(_FEW if fitted < 3 else _CHANCE.format(fitted)))
+        out.append(_MORE.format(_FEW if fitted < 3 else _EACH))
     out += _other_way(sessions)
     if kinds & {"power-on-transient", "time-drift"}:
         out.append(_POWER)
