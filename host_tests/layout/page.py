@@ -4,9 +4,7 @@ import ast
 import io
 import re
 import tokenize
-from pathlib import Path
 
-import zerorate
 from zerorate.settings import DEFAULTS, LEAST, MOST, OF_THE_DOCUMENT
 from zerorate_tools import layout
 from zerorate_tools.layout.words import Codes
@@ -102,23 +100,22 @@ exponent of 2; a packed one is one word. Three words of one name are x, y, z. Be
 stands what it can be, where that is less than 31 bits: a stored state with anything else is not
 loaded.
 
-Some words are shared: below "While ..." stands who else has them, and when. The last column has the
-functions that write the word, `|`, and those that read it, behind their file below
-`firmware/zerorate`. Who only calls one of these is not listed, nor are the tools: `loop/verify` of
-theirs reads a replay's state by these names.
+Some words are shared: below "While ..." stands who else has them, and when. A name is one word's
+alone, so `grep -rw _OFFSET_Q8 firmware` tells who writes and reads it. `loop/verify` of the tools
+reads a replay's state by these names.
 """
 
 
 def page():
     """Return the page's text."""
-    parts, uses = [_HEAD], used_in(Path(zerorate.__file__).parent)
+    parts = [_HEAD]
     for array in layout.ARRAYS:
         parts.append(f"## {array.title}\n\n`{array.letter}`: {array.base}{size_of(array)}.\n")
         shared = set().union(*(places(word) for word in array.words if word.while_text))
-        parts.append(table([word for word in array.words if not word.while_text], uses, shared))
+        parts.append(table([word for word in array.words if not word.while_text], shared))
         for text in dict.fromkeys(w.while_text for w in array.words if w.while_text):
             parts.append(f"While {text}:\n")
-            parts.append(table([word for word in array.words if word.while_text == text], uses))
+            parts.append(table([word for word in array.words if word.while_text == text]))
     parts.append("## Codes\n")
     for called, codes in vars(layout).items():
         if not isinstance(codes, Codes):
@@ -143,15 +140,14 @@ def places(word):
     return set(range(word.index, word.index + word.count)) if isinstance(word.count, int) else set()
 
 
-def table(words, uses, shared=frozenset()):
+def table(words, shared=frozenset()):
     """Return the words as a table; `shared`: the indices that other words have at times."""
-    head = ["| word | name | unit | what | written, used in |", "|---|---|---|---|---|"]
-    rows = (row(word, shared, *uses.get(word.name, ((), ()))) for word in words)
-    return "\n".join([*head, *rows, ""])
+    head = ["| word | name | unit | what |", "|---|---|---|---|"]
+    return "\n".join([*head, *(row(word, shared) for word in words), ""])
 
 
-def row(word, shared, writers, users):
-    """Return a word as a row: its index, or first and last; who writes it and who else uses it."""
+def row(word, shared):
+    """Return a word as a row: its index, or first and last."""
     last = word.index + word.count - 1 if isinstance(word.count, int) else word.count
     index = f"{word.index}" if last == word.index else f"{word.index}..{last}"
     if isinstance(word.count, str):
@@ -159,58 +155,7 @@ def row(word, shared, writers, users):
     what = word.meaning if isinstance(word.count, int) else f"{word.meaning} ({word.count} words)"
     what += " (shared)" if places(word) & shared else ""
     what += f"; {word.least}..{word.most}" if word.limited else ""
-    where = f"{by_file(writers)} \\| {by_file(users)}"
-    return f"| {index} | `{word.name}` | {word.unit} | {what} | {where} |"
-
-
-def by_file(functions):
-    """Return (file, function) pairs as text."""
-    names = {}
-    for file, function in sorted(functions):
-        names.setdefault(file, []).append(function)
-    return "; ".join(f"{file}: {' '.join(names[file])}" for file in names)
-
-
-def used_in(firmware):
-    """Return name -> (file, function) pairs that write it into an array, and that read it."""
-    found = {}
-    for path in sorted(firmware.rglob("*.py")):
-        if path.parent.name == "native":
-            continue
-        file = path.relative_to(firmware).with_suffix("").as_posix()
-        for function in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if not isinstance(function, ast.FunctionDef):
-                continue
-            stored = {id(name) for name in written_names(function)}
-            for node in ast.walk(function):
-                if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load):
-                    writers, users = found.setdefault(node.id[1:], (set(), set()))
-                    (writers if id(node) in stored else users).add((file, function.name))
-    return found
-
-
-def written_names(function):
-    """Yield the names in the indices of what a function writes, by way of its locals too."""
-    nodes = list(ast.walk(function))
-    through = {}
-    for node in nodes:
-        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
-            through.setdefault(node.targets[0].id, []).append(node.value)
-    for node in nodes:
-        if isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Store):
-            for name in index_names(node.slice):
-                yield name
-                for value in through.get(name.id, ()):
-                    yield from index_names(value)
-
-
-def index_names(node):
-    """Yield the names of an index, but for those by which it looks up a part of itself."""
-    if isinstance(node, ast.Name):
-        yield node
-    elif not isinstance(node, (ast.Subscript, ast.Call)):
-        for child in ast.iter_child_nodes(node):
-            yield from index_names(child)
+    return f"| {index} | `{word.name}` | {word.unit} | {what} |"
 
 
 _ENTRY = re.compile(r'^    "(\w+)": [-\w.]+,  # (.+)$', re.MULTILINE)
