@@ -148,21 +148,6 @@ def test_json_has_plain_values_and_null_where_there_is_no_number(capsys):
         print_json(Of)
 
 
-# --- allan ---
-
-
-def test_allan_prints_milli_degrees_and_the_lowest_of_each_axis(stands_in, capsys):
-    stands_in("zerorate_tools.loop.read.still.still_stretch", (np.zeros((6, 3)), 0.5))
-    table = np.array([[0.004, 0.005, 0.006], [0.001, 0.007, 0.008]])
-    overlapping = stands_in("zerorate_tools.allan.overlapping", (np.array([0.5, 12.0]), table))
-    assert cli.main(["allan", "x.csv"]) == 0
-    first, _, *rows, floor = capsys.readouterr().out.splitlines()
-    assert first.endswith(": 3.0 s") and overlapping.call[0][1] == 0.5
-    assert [[float(w) for w in row.split()] for row in rows] == [[0.5, 4, 5, 6], [12, 1, 7, 8]]
-    assert floor.split()[0] == "floor" and [float(w) for w in floor.split()[1:]] == [1, 5, 6]
-    assert refused("allan")
-
-
 # --- demo ---
 
 
@@ -206,8 +191,8 @@ def test_close_is_given_what_was_typed_and_prints_what_it_found(
     assert json.loads(capsys.readouterr().out) == {**result, "folder": "o"}
 
 
-def test_close_needs_a_log_and_a_folder():
-    assert refused("close", "a.csv") and refused("close", "--out", "o")
+def test_close_needs_a_log_and_a_folder_and_allan_a_log():
+    assert refused("close", "a.csv") and refused("close", "--out", "o") and refused("allan")
 
 
 # --- compare ---
