@@ -27,6 +27,15 @@ def test_rows_between_readings_are_none(tmp_path, hz):
     assert sum(report.dropped.values()) == report.rows_read - len(frame)
 
 
+def test_a_quiet_rest_of_few_digits_has_no_rows_between_readings(tmp_path):
+    frame, luck = table(), np.random.default_rng(5)
+    moves = np.arange(len(frame)) < 500
+    for name in frame.columns[1:4]:
+        frame[name] = 0.1 * np.round(luck.normal(0, np.where(moves, 200.0, 0.3)))
+    _, report = read(tmp_path, frame)
+    assert "on a straight line" not in " ".join(report.dropped)
+
+
 @pytest.mark.parametrize("hz", [115, 130, 160, 190, 203, 250, 333, 410])
 def test_a_log_that_was_resampled_is_refused(tmp_path, hz):
     with pytest.raises(BadRecording, match="of a resampled log; import the log as the sensor"):

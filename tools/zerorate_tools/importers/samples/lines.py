@@ -34,10 +34,10 @@ class _Seen:
     longest: int = 0
 
     def add(self, off: np.ndarray, moves: np.ndarray) -> None:
-        on = off <= 1.0
+        on = (off <= 1.0) & moves
         self.rows += len(off)
-        self.lines += int(on.sum())
-        self.on += int((on & moves).sum())
+        self.lines += int((off <= 1.0).sum())
+        self.on += int(on.sum())
         self.off += int((moves & (off > _CLEARLY)).sum())
         self.near += int((moves & ~on & (off <= _CLEARLY)).sum())
         begins, ends = (np.flatnonzero(d) for d in _edges(on))
