@@ -34,6 +34,19 @@ def test_usual_names_need_but_a_unit_and_the_words_for_it_work(tmp_path, names):
     assert recording.gyro_dps().mean() == pytest.approx(0.8, abs=0.02)
 
 
+def test_a_column_that_goes_on_as_a_time_does_is_offered_as_one(tmp_path):
+    frame = rates(["Zeit", "gx_dps", "gy_dps", "gz_dps"])
+    with pytest.raises(BadRecording, match="give --map t_us=Zeit:s"):
+        read(tmp_path, frame)
+    recording, _ = read(tmp_path, frame, mapping="t_us=Zeit:s")
+    assert recording.scales.odr_hz == pytest.approx(100)
+
+
+def test_a_counter_of_rows_is_offered_as_no_time(tmp_path):
+    with pytest.raises(BadRecording, match="no time stamps; give --hz"):
+        read(tmp_path, rates(["n", "gx_dps", "gy_dps", "gz_dps"]).assign(n=range(2000)))
+
+
 def test_a_unit_in_the_name_is_enough(tmp_path):
     names = ["Time (s)", "GyroX [deg/s]", "GyroY [deg/s]", "GyroZ [deg/s]"]
     recording, _ = read(tmp_path, rates(names))

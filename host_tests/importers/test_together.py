@@ -148,7 +148,16 @@ def test_acceleration_without_gravity_in_a_file_beside_is_refused(tmp_path):
 
 #: What cannot be read, or not without knowing more than the file says.
 _REFUSED = {
-    *("pickled", "parquet_cut", "database", "spreadsheet", "zip_of_pictures", "zip_of_runs"),
+    *(
+        "samples_in_messages",
+        "mvnx",
+        "pickled",
+        "parquet_cut",
+        "database",
+        "spreadsheet",
+        "zip_of_pictures",
+        "zip_of_runs",
+    ),
     *("rows_of_numbered_sensors", "gnss_logger", "only_covariances", "ros2_echo", "sketch_lines"),
     *("sentences", "lines_of_words", "offset_counts", "thousands"),
     *("two_at_one_time", "two_evenly", "two_clocks", "two_power_ons", "three_devices"),

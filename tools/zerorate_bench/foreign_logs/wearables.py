@@ -72,3 +72,25 @@ def numbers_in_zip(folder: Path, world: World) -> Path:
         text(folder / "in" / "ATT.txt", att, sep=" ", header=False),
     ]
     return zipped(folder / "in.zip", files, folder / "in")
+
+
+@log("a watch's JSON lines: a list of 25 samples in each")
+def samples_in_messages(folder: Path, world: World) -> Path:
+    said = [dict(zip("xyz", row.tolist())) for row in world.dps]
+    parts = [{"ts": 40 * n, "gyro": said[n : n + 25]} for n in range(0, world.samples, 25)]
+    (folder / "in.jsonl").write_text("".join(json.dumps(part) + "\n" for part in parts))
+    return folder / "in.jsonl"
+
+
+@log("Xsens MTw, .mvnx")
+def mvnx(folder: Path, world: World) -> Path:
+    frames = (f'<frame time="{n}"><x>{row}</x></frame>' for n, row in enumerate(world.dps.tolist()))
+    content = f'<?xml version="1.0"?>\n<mvnx version="4">{"".join(frames)}</mvnx>\n'
+    (folder / "in.mvnx").write_text(content)
+    return folder / "in.mvnx"
+
+
+@log("a time by another name: Zeit;wx;wy;wz", "--gyro-unit rad/s")
+def time_of_another_name(folder: Path, world: World) -> Path:
+    frame = table("Zeit,wx,wy,wz", world.t_s, world.rad).round(5)
+    return text(folder / "in.csv", frame, sep=";", decimal=",")

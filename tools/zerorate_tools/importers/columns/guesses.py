@@ -120,7 +120,7 @@ def likely_columns(
     times = [name for name in values if name in calendar]
     times += [name for name in values if name not in calendar and only_grows(values[name])]
     time = next(iter(times), None)
-    out = [] if time is None else [f"t_us={time}:{_likely_time(values[time])}"]
+    out = [] if time is None else [f"t_us={time}:{likely_time(values[time])}"]
     rest = {n: values[n] for n in values if n not in times and _varies(values[n])}
     moving = {name: column for name, column in rest.items() if np.ptp(column) > 0}
     # where some readings change, what never does is a covariance or a setting
@@ -189,7 +189,7 @@ def only_grows(values: np.ndarray) -> bool:
     return len(steps) > 0 and bool((steps >= 0).mean() > 0.999 and (steps > 0).mean() > 0.5)
 
 
-def _likely_time(values: np.ndarray) -> str:
+def likely_time(values: np.ndarray) -> str:
     step = float(np.median(np.diff(values)))
     by_date = _by_calendar(values)[0]
     return by_date or next((u for u, s in TIME_S.items() if 1e-4 <= step * s <= 0.1), "s")

@@ -18,6 +18,7 @@ from .guesses import (
     guessed_unit,
     is_unit,
     likely_columns,
+    likely_time,
     only_grows,
     ready_words,
 )
@@ -260,7 +261,14 @@ def divided_by(plan: Plan, kind: str, lsb: float) -> None:
 
 
 def hz_words(table: Table) -> str:
-    """What to type where there are no time stamps."""
+    """What to type where nothing is called a time: a column that goes on as one does, or a rate."""
+    others = [name for name in table.names if name != usual.temperature(table.names)]
+    first = {} if usual.unnamed(others) else table.first_rows(others)
+    for name, values in first.items():
+        steps = np.diff(values)
+        # whole numbers may count anything
+        if not table.said_hz and only_grows(values) and steps.min() > 0 and (steps % 1).any():
+            return f"--map {shlex.quote(f't_us={name}:{likely_time(values)}')}"
     said = f" {table.said_hz:g} (as the file says)" if table.said_hz else ""
     return f"--hz{said or ', samples a second'}"
 

@@ -67,6 +67,11 @@ def _object(line: bytes, dropped: Counter[str]) -> Any:
 
 def _of_records(begun, path: Path) -> Table:
     """begun: makes the records from the first on, of which some may be no object."""
+    first = next(begun(Counter()), None)
+    for name, value in first.items() if isinstance(first, dict) else ():
+        if _is_records(value) and len(value) > _LONGEST_LIST:
+            problem = f"each record holds {len(value)} samples or so, in {name!r}"
+            raise BadRecording(path, problem, do=f"{_DO}, each with a time of its own")
     seen = [dict(_flat(record)) for record in islice(begun(Counter()), _SEEN)]
     by_name: dict[str, list[Any]] = {}
     for name, value in chain.from_iterable(record.items() for record in seen):

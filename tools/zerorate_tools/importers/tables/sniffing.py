@@ -84,6 +84,9 @@ def sniffed(path: Path) -> Form:
     if text.startswith("version https://git-lfs"):
         do = "fetch the file itself: git lfs pull"
         raise BadRecording(path, "a pointer of Git LFS, not the file", do=do)
+    if text.lstrip().startswith("<?xml"):
+        do = "write its table as CSV by the program that made it"
+        raise BadRecording(path, "XML, which is no table", do=do)
     lines = text.splitlines()
     if not whole:
         lines = lines[:-1]
