@@ -57,7 +57,7 @@ _RESAMPLED = """
 
 Rows on straight lines between readings have less noise than these, on average two thirds of its
 square. Where some rows lie on lines exactly, between readings that are rows, they are left out. Any
-other log of 8 % more rows than readings or more is refused, where lines between readings at one
+other log of 10 % more rows than readings or more is refused, where lines between readings at one
 period are e^20 times as likely as a reading in each row. Not noticed are fewer rows more, logs
 thinned on lines (each row has noise of its own then), and noise of a digit or two. Each kind below
 is drawn anew, in 2,500 rows, and resampled to 1.1, 1.3, 1.7 or 2.6 times as many.
