@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from .loop.motion.by_windows import GIVEN, UNIT, RateScale, by_windows, nothing_in_words
 from .loop.motion.moving import moving_of
@@ -25,6 +26,8 @@ _ROWS = 1 << 17
 _BLIND = "no rest was long enough, so nothing that only rest shows was looked for"
 
 
+# The matrices are small: more threads wait for each other longer than one works.
+@threadpool_limits.wrap(limits=1, user_api="blas")
 def shown_in_motion(ticks: Sequence[Ticks], holdout: int | None) -> RateScale | None:
     """What windows in motion show of the matrix; None without motion. holdout: index of the
     recording held out, by default the last. Raises CannotClose."""

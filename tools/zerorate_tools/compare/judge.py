@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 
 from ..errors import InFile
 from ..loop.read.still import runs, still_ticks, ticks_with_spread
@@ -174,6 +175,8 @@ class TooFewRests(InFile):
     """A recording that never lay still twice."""
 
 
+# The matrices are small: more threads wait for each other longer than one works.
+@threadpool_limits.wrap(limits=1, user_api="blas")
 def compare(
     logs: Sequence[str | Path], advance: Callable[[float], None] = lambda n: None
 ) -> Compared:

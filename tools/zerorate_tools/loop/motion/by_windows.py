@@ -77,9 +77,10 @@ UNIT = {GRAVITY: "degrees a minute of tilt", GIVEN: "degrees a minute of turn"}
 
 def nothing_in_words(before: float, unit: str) -> str:
     """What is said where motion shows no matrix. before: RMS of what turns windows, in the unit."""
-    seen_by = "gravity" if unit == UNIT[GRAVITY] else "the reference"
-    among = ", the device's own acceleration among it" if unit == UNIT[GRAVITY] else ""
-    return f"nothing in motion; {seen_by} sees {before:.2f} {unit}{among}"
+    if unit == UNIT[GIVEN]:
+        return f"nothing in motion; the reference sees {before:.2f} {unit}"
+    among = "the device's own acceleration among it"
+    return f"nothing in motion; gravity sees {before:.2f} {unit}, {among}"
 
 
 #: Posterior sigma of an entry above which the motion did not show it: a data sheet's 0.5 %.
