@@ -411,3 +411,21 @@ def test_a_column_can_be_left_out(tmp_path):
     assert told(report, "column 'temp_c' left out: no number is in it")
     recording, _ = read(tmp_path, table(), mapping="temp=none ax=none")
     assert not recording.has_temp and not recording.has_accel
+
+
+def test_one_unit_is_offered_for_the_three_rates_if_one_of_them_is_fast(tmp_path):
+    frame = table()[["gx_dps", "gy_dps", "gz_dps", "ax_g", "ay_g", "az_g"]]
+    frame = frame.set_axis(["Gyro_X", "Gyro_Y", "Gyro_Z", "Accel_X", "Accel_Y", "Accel_Z"], axis=1)
+    frame.iloc[:, 3:] *= 9.81
+    frame["Gyro_Z"] *= 200.0
+    with pytest.raises(BadRecording) as refused:
+        read(tmp_path, frame)
+    assert str(refused.value).count("--gyro-unit") == 1 and "--gyro-unit dps" in str(refused.value)
+
+
+def test_p_q_r_are_offered_as_rates_even_as_long_as_gravity(tmp_path):
+    frame = table()[["ax_g", "ay_g", "az_g", "gx_dps", "gy_dps", "gz_dps"]]
+    frame = frame.set_axis(["Ax", "Ay", "Az", "p", "q", "r"], axis=1)
+    frame[["p", "q", "r"]] = [0.6, 0.0, 0.8]
+    with pytest.raises(BadRecording, match="if these are rates: --map gx=p"):
+        read(tmp_path, frame)

@@ -266,7 +266,9 @@ def _likely(target: str, wanted: Mapping[str, Mapped], first: Mapping[str, np.nd
         return unit or ("lsb" if counted else "g")
     # those who keep to one system of units keep to it for both
     likely = {"m/s2": "rad/s", None: "lsb" if counted else "dps", "lsb": "lsb"}.get(unit, "dps")
-    fast = float(np.abs(values).max(initial=0.0)) * RATE_DPS.get(likely, 1.0) > _FASTEST_DPS
+    # one unit for the three, by the fastest
+    every = np.abs([first[wanted[axis].column] for axis in GYRO if axis in wanted])
+    fast = float(np.nanmax(every, initial=0.0)) * RATE_DPS.get(likely, 1.0) > _FASTEST_DPS
     return "dps" if fast and likely == "rad/s" else likely
 
 

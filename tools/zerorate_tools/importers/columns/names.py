@@ -44,7 +44,8 @@ _BARE = re.compile(f"(?:xyz|values?)?{_AXIS}(?:axis)?$")
 #: Of a quaternion; BNO08x's are called i j k real.
 _PART = re.compile("(.*?)(real|[wxyzijk])$")
 _PARTS = {"real": "w", "i": "x", "j": "y", "k": "z"}
-_BODY_RATES = dict(zip(("gx", "gy", "gz"), "pqr"))
+#: What aircraft call their rates.
+BODY_RATES = dict(zip(("gx", "gy", "gz"), "pqr"))
 _TURNS = {"rollrate": "gyrox", "pitchrate": "gyroy", "yawrate": "gyroz"}
 
 
@@ -93,8 +94,8 @@ def bare_axes(names: list[str]) -> dict[str, str]:
     """Columns that are called by their axis alone (x, xaxis), or p q r, as if they were rates;
     beside a w they are a quaternion's."""
     by_letter = {name.lower(): name for name in names}
-    if all(letter in by_letter for letter in _BODY_RATES.values()):
-        return {target: by_letter[letter] for target, letter in _BODY_RATES.items()}
+    if all(letter in by_letter for letter in BODY_RATES.values()):
+        return {target: by_letter[letter] for target, letter in BODY_RATES.items()}
     return {} if "w" in by_letter else next(iter(_groups(names, _BARE, "g")), {})
 
 

@@ -221,7 +221,8 @@ def _of_another_sensor(table: Table, path: Path) -> str:
     three = list(usual.bare_axes(table.names).values())
     if any(map(usual.of_other_unit, three)):
         return f"the unit of {three[0]!r}"
-    if three and gravity_unit(list(table.first_rows(three).values())):
+    named_xyz = [name for name in three if name.lower() not in usual.BODY_RATES.values()]
+    if named_xyz and gravity_unit(list(table.first_rows(three).values())):
         return "they are as long as gravity"
     return ""
 
