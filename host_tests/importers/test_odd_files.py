@@ -429,3 +429,24 @@ def test_p_q_r_are_offered_as_rates_even_as_long_as_gravity(tmp_path):
     frame[["p", "q", "r"]] = [0.6, 0.0, 0.8]
     with pytest.raises(BadRecording, match="if these are rates: --map gx=p"):
         read(tmp_path, frame)
+
+
+@pytest.mark.parametrize(("unit", "of_unit"), [("dps", 1.0), ("rad/s", 57.29578)])
+@pytest.mark.parametrize("lsb_per_dps", [131.0, 65.536, 16.4, 57.14])
+def test_the_steps_of_a_chip_tell_the_unit_whatever_the_name_says(
+    tmp_path, unit, of_unit, lsb_per_dps
+):
+    frame = rates(["stamp", *(f"angular_velocity.{a}" for a in "xyz")])
+    readings = np.round(30 * frame.iloc[:, 1:] * lsb_per_dps) / lsb_per_dps
+    frame.iloc[:, 1:] = (readings / of_unit).round(7)
+    recording, report = read(tmp_path, frame, units={"time": "s"})
+    assert f"gyro taken in {unit}: its steps are those of a chip" in report.notes
+    assert recording.gyro_dps() == pytest.approx(readings.to_numpy(), abs=0.01)
+
+
+@pytest.mark.parametrize("step", [0.1, 0.01, 0.001, 0.0001, 0.05, 0.002, 0.0625, 1 / 900])
+def test_digits_that_somebody_printed_are_no_steps_of_a_chip(tmp_path, step):
+    frame = rates(["stamp", *(f"angular_velocity.{a}" for a in "xyz")])
+    frame.iloc[:, 1:] = step * np.round(40 * (frame.iloc[:, 1:] - 0.8) / 0.05)
+    _, report = read(tmp_path, frame, units={"time": "s"})
+    assert "gyro taken in rad/s: as in ROS" in report.notes
