@@ -7,6 +7,7 @@ import numpy as np
 
 from ...recordings.recording import ACCEL, GYRO, TEMP, TIME
 from ...recordings.turning import dps_of_one
+from .chip_steps import unit_by_steps
 from .mapping import Mapped
 from .names import spelled
 from .units import RATE_DPS, RAW, STANDARD_GRAVITY, TIME_S, factors_of, kind_of, unit_in_name
@@ -23,13 +24,6 @@ _OF_ONE = 3e-4
 _LIKELY_HZ = (0.02, 40_000.0)
 #: Names of times in none of the units that a recording may have.
 _OTHER_TIME = re.compile(r"min|hour|hr|day|frame|tick|count")
-#: Of gyroscopes of 16 bits, by their ranges, and of ST's, by their data sheets.
-_LSB_PER_DPS = np.r_[
-    32768.0 / np.array([125, 250, 500, 1000, 2000, 4000]), 1 / 0.00875 / 2.0 ** np.arange(4)
-]
-#: Logarithm of what printed digits and data sheets round; distances of levels that tell a step,
-#: those of so few steps; and what is a digit of floating point.
-_ONE_STEP, _LEVELS, _FEW_STEPS, _ROUNDED = 0.003, 16, 8, 1e-7
 _PER_HOUR = re.compile(r"(?:deg|°)\w*\s*(?:/|per)\s*h")
 #: Pushes that move with the turning, as a pendulum's, make gravity seem to turn up to so many times
 #: slower. Units are 17 times apart, or more.
@@ -54,7 +48,7 @@ def guessed_unit(
     if turned is not None:
         return turned, "gravity turns with it"
     axes = [wanted[axis].column for axis in GYRO if axis in wanted] if target in GYRO else []
-    stepped = {unit for axis in axes if (unit := _by_step(first[axis]))}
+    stepped = {unit for axis in axes if (unit := unit_by_steps(first[axis]))}
     if len(stepped) == 1:
         return stepped.pop(), "its steps are those of a chip"
     habit = by_habit(target, column, names)
@@ -85,23 +79,6 @@ def _by_turning(
     if dps is None or counted and _COUNTS_DPS[0] < dps < _COUNTS_DPS[1]:
         return None
     return rate_unit_of(dps)
-
-
-def _by_step(rates: np.ndarray) -> str | None:
-    """The unit in which rates have the steps of a gyroscope of 16 bits."""
-    levels = np.unique(rates[np.isfinite(rates)])
-    apart = np.diff(levels)
-    apart = apart[apart > _ROUNDED * np.abs(levels).max(initial=0.0)]
-    if len(apart) < _LEVELS:
-        return None
-    apart = apart[apart < _FEW_STEPS * apart.min()]
-    counts = np.round(apart / apart.min())
-    step = apart.sum() / counts.sum()
-    if len(apart) < _LEVELS or (np.abs(apart - counts * step) > step / 20).any():
-        return None
-    off = {u: np.abs(np.log(step * one * _LSB_PER_DPS)).min() for u, one in RATE_DPS.items()}
-    unit = min(off, key=off.__getitem__)
-    return unit if off[unit] < _ONE_STEP else None
 
 
 def rate_unit_of(dps: float) -> str | None:
