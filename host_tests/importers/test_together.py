@@ -94,6 +94,13 @@ def test_files_of_sensors_without_rates_are_refused(tmp_path, sensors):
         import_recording([sensors[0], same], tmp_path / "o.csv")
 
 
+def test_whole_recordings_are_not_put_into_one(tmp_path):
+    sources = [table(tmp_path / "a.csv", 100.0), table(tmp_path / "b.csv", 400.0)]
+    with pytest.raises(BadRecording, match=r"several recordings \(a, b\).*--out FOLDER"):
+        import_recording(sources, tmp_path / "o.csv")
+    assert not (tmp_path / "o.csv").exists()
+
+
 def test_a_table_is_cut_into_tables_with_the_names_of_the_first(tmp_path, capsys):
     source = table(tmp_path / "in.csv", 1.0)
     again = source.read_text().partition("\n")[2]

@@ -75,11 +75,6 @@ def folder_of_tables(
         held = f" in {', '.join(file.name for file, _ in found[:_TOLD])}" if found else ""
         do = f"name a file{held}, or the folder of a ROS 2 bag or of a phone's tables"
         raise BadRecording(path, "no table with rates in it", do=do)
-    rates = [stem for stem, table in tables.items() if usual.gyro_groups(table.names)]
-    if len(rates) > 1 and not any("gyro" in stem.lower() for stem in rates):
-        problem = f"several recordings ({', '.join(rates)})"
-        do = "import them together: zerorate import FILE FILE ... --out FOLDER"
-        raise BadRecording(path, problem, do=do)
     return _by_shared_time(tables, path)
 
 
@@ -101,6 +96,11 @@ def _is_of_rates(stem: str, table: Table) -> bool:
 
 
 def _by_shared_time(tables: dict[str, Table], path: Path) -> Table:
+    rates = [stem for stem, table in tables.items() if usual.gyro_groups(table.names)]
+    if len(rates) > 1 and not any("gyro" in stem.lower() for stem in rates):
+        problem = f"several recordings ({', '.join(rates)})"
+        do = "import them together: zerorate import FILE FILE ... --out FOLDER"
+        raise BadRecording(path, problem, do=do)
     times = Counter(name for t in tables.values() for name in usual.time_columns(t.names))
     shared = [name for name, count in times.items() if count == len(tables)]
     if not shared and len(tables) > 1:
