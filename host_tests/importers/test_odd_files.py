@@ -100,7 +100,8 @@ def test_comments_between_rows_are_no_rows(tmp_path):
 
 def test_a_header_in_a_comment_and_columns_by_number(tmp_path):
     rows = lines([i / 100, 0.8, 0.8, 0.9] for i in range(50))
-    recording, _ = read(tmp_path, f"# {HEAD}\n{rows}\n")
+    of_another_table = "# gx_dps,gy_dps,gz_dps,t_s"
+    recording, _ = read(tmp_path, f"# {HEAD}\n{rows}\n{of_another_table}\n")
     assert len(recording) == 50
     recording, _ = read(tmp_path, f"{rows}\n", mapping="t_us=1:s gx=2:dps gy=3:dps gz=4:dps")
     assert len(recording) == 50

@@ -41,6 +41,37 @@ def lines_of(path: Path, encoding: str) -> Iterator[bytes]:
     return io.BufferedReader(open_text(path, encoding)[0], _BLOCK_BYTES)
 
 
+def line_blocks(
+    path: Path, encoding: str, advance: Callable[[float], None], size: int
+) -> Iterator[bytes]:
+    """The text as UTF-8 in blocks of whole lines; the last line may lack its end.
+
+    advance: called with the bytes of the file that were read since. Raises BadRecording.
+    """
+    stream, told = open_text(path, encoding)
+    rest, read = b"", 0
+    while block := _read(path, stream, size):
+        text = rest + block
+        cut = max(text.rfind(b"\n"), text.rfind(b"\r")) + 1
+        rest = text[cut:]
+        if len(rest) >= size:
+            problem = f"a row is longer than {size >> 20} MiB"
+            raise BadRecording(path, problem, do="name a table with a sample on each line")
+        if cut:
+            yield text[:cut]
+        advance(told() - read)
+        read = told()
+    if rest:
+        yield rest
+
+
+def _read(path: Path, stream: pa.NativeFile, size: int) -> bytes:
+    try:
+        return stream.read(size)
+    except (OSError, EOFError, pa.ArrowException) as error:
+        raise damaged(path) from error
+
+
 def head(path: Path, size: int) -> tuple[bytes, str]:
     """The first `size` bytes, unpacked, and the encoding that they are in. Raises BadRecording."""
     try:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import re
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -14,7 +13,7 @@ import pyarrow.compute as pc
 import pyarrow.csv
 
 from ...errors import BadRecording
-from ...recordings.text import damaged, open_text
+from ...recordings.text import line_blocks
 from ..report import cut_words
 from .sniffing import COMMENTS, DAY, Form, sniffed, without_arrows, without_labels
 from .table import Chunk, Table
@@ -22,6 +21,8 @@ from .table import Chunk, Table
 _BLOCK_BYTES = 1 << 22
 _HALF_DAY_S = 43_200.0
 _A_NAME = re.compile(r"[^\W\d]")
+#: Where a program fills a file before it writes, zeros stand behind the last line.
+_ENDS = (b"\n", b"\r", b"\0")
 _NO_VALUE = ["", "nan", "NaN", "NAN", "NA", "null", "None", "-", "--"]
 
 
@@ -53,83 +54,59 @@ def _chunks(
     dropped: Counter[str],
     advance: Callable[[float], None],
 ) -> Iterator[Chunk]:
-    stream, told = open_text(path, form.encoding)
-    watched = _Watched(stream)
-    odd = _OddLines(form.skip)
-    read = start = 0
-    held = None
-    try:
-        changed = form.delimiter == " " or form.arrows or form.labels
-        whole = _Lines(watched, form) if changed else watched
-        for batch in _reader(whole, form, names, odd):
-            place = odd.places(start, batch.num_rows)
-            start = int(place[-1]) + 1 if len(place) else start
-            if held is not None:
-                yield held
-            columns = {n: _numbers(batch.column(n), n, form) for n in names}
-            columns |= {n: columns[n] * form.scales[n] for n in names if n in form.scales}
-            held = Chunk(place, columns)
-            _refuse_other_names(batch, held, path, dropped)
-            advance(told() - read)
-            read = told()
-        if held is not None and len(held.place) and not watched.ended and not odd.is_last:
-            held = Chunk(held.place[:-1], {n: values[:-1] for n, values in held.columns.items()})
+    start, skip = 0, form.skip
+    for lines in line_blocks(path, form.encoding, advance, _BLOCK_BYTES):
+        odd = _OddLines(skip)
+        rows = _rows(path, _changed(lines, form), form, names, odd)
+        place = odd.places(start, rows.num_rows)
+        start, skip = start + rows.num_rows + odd.count, 0
+        dropped.update({"not as many cells as the header": odd.count} if odd.count else {})
+        if rows.num_rows and not lines.endswith(_ENDS):
             dropped["the last line does not end, so a digit may be missing"] += 1
-        if held is not None:
-            yield held
+            break
+        columns = {n: _numbers(rows.column(n).combine_chunks(), n, form) for n in names}
+        columns |= {n: columns[n] * form.scales[n] for n in names if n in form.scales}
+        chunk = Chunk(place, columns)
+        _refuse_other_names(rows, chunk, path, dropped)
+        yield chunk
+
+
+def _rows(path: Path, lines: bytes, form: Form, names: list[str], odd: _OddLines) -> pa.Table:
+    """The cells of whole lines as texts. A block at a time: a reader of the whole file reads ahead
+    in a thread, which aborts the process where it calls Python while that ends."""
+    try:
+        return pyarrow.csv.read_csv(
+            pa.BufferReader(lines or b"\n"),
+            read_options=pyarrow.csv.ReadOptions(
+                block_size=len(lines) + 1,
+                column_names=form.names,
+                skip_rows=odd.before,
+                use_threads=False,
+            ),
+            parse_options=pyarrow.csv.ParseOptions(
+                delimiter=form.delimiter, invalid_row_handler=odd.take
+            ),
+            convert_options=pyarrow.csv.ConvertOptions(
+                column_types={name: pa.string() for name in form.names},
+                include_columns=names,
+                null_values=_NO_VALUE,
+                strings_can_be_null=True,
+                check_utf8=False,
+            ),
+        )
     except pa.ArrowInvalid as error:
-        raise _in_words(path, error) from error
-    except (OSError, EOFError, pa.ArrowException) as error:
-        raise damaged(path) from error
-    finally:
-        dropped.update(odd.counted())
+        problem = f"no table: {str(error)[:120]}"
+        do = "name a CSV with a row for each sample"
+        raise BadRecording(path, problem, do=do) from error
 
 
-def _reader(stream, form: Form, names: list[str], odd: _OddLines) -> pyarrow.csv.CSVStreamingReader:
-    return pyarrow.csv.open_csv(
-        stream,
-        read_options=pyarrow.csv.ReadOptions(
-            block_size=_BLOCK_BYTES, column_names=form.names, skip_rows=form.skip, use_threads=False
-        ),
-        parse_options=pyarrow.csv.ParseOptions(
-            delimiter=form.delimiter, invalid_row_handler=odd.take
-        ),
-        convert_options=pyarrow.csv.ConvertOptions(
-            column_types={name: pa.string() for name in form.names},
-            include_columns=names,
-            null_values=_NO_VALUE,
-            strings_can_be_null=True,
-            check_utf8=False,
-        ),
-    )
-
-
-class _Watched(io.RawIOBase):
-    """A stream that knows whether what was read of it ended with the end of a line."""
-
-    def __init__(self, stream) -> None:
-        self._stream = stream
-        self.ended = True
-
-    def readable(self) -> bool:
-        return True
-
-    def read(self, size: int = -1) -> bytes:
-        block = self._stream.read(size)
-        if block:
-            self.ended = block.endswith((b"\n", b"\r", b"\0"))
-        return block
-
-
-def _refuse_other_names(
-    batch: pa.RecordBatch, chunk: Chunk, path: Path, dropped: Counter[str]
-) -> None:
+def _refuse_other_names(rows: pa.Table, chunk: Chunk, path: Path, dropped: Counter[str]) -> None:
     """Raise BadRecording where a line of other names stands among the rows: what follows may be
     anything. The same names again are counted, and their row taken away."""
     unread = np.isnan(np.array(list(chunk.columns.values()), ndmin=2)).all(axis=0)
     same = []
     for at in np.flatnonzero(unread)[:100].tolist():
-        cells = _decoded(pa.array([column[at].as_py() for column in batch.columns], pa.string()))
+        cells = _decoded(pa.array([column[at].as_py() for column in rows.columns], pa.string()))
         words = [(cell or "").strip() for cell in cells]
         if not all(map(_A_NAME.match, words)) or len(set(words)) < max(len(words), len("xyz")):
             continue
@@ -144,30 +121,12 @@ def _refuse_other_names(
         dropped["the line of names again"] += len(same)
 
 
-class _Lines(io.RawIOBase):
-    """A text whose lines are told apart as its form says: one blank parts cells in columns, with
-    none at either end, a clock before an arrow is a cell, and names before values go."""
-
-    def __init__(self, stream, form: Form) -> None:
-        self._stream, self._form = stream, form
-        self._rest = b""
-
-    def readable(self) -> bool:
-        return True
-
-    def read(self, size: int = -1) -> bytes:
-        """Some `size` bytes of whole lines, more or less; b"" at the end."""
-        while block := self._stream.read(_BLOCK_BYTES if size < 0 else size):
-            lines, newline, self._rest = (self._rest + block).rpartition(b"\n")
-            if newline:
-                return self._changed(lines) + newline
-        block, self._rest = self._rest, b""
-        return self._changed(block)
-
-    def _changed(self, lines: bytes) -> bytes:
-        lines = without_arrows(lines) if self._form.arrows else lines
-        lines = without_labels(lines, self._form.labels) if self._form.labels else lines
-        return _single_blanks(lines) if self._form.delimiter == " " else lines
+def _changed(lines: bytes, form: Form) -> bytes:
+    """Lines told apart as the form says: one blank parts cells in columns, with none at either end,
+    a clock before an arrow is a cell, and names before values go."""
+    lines = without_arrows(lines) if form.arrows else lines
+    lines = without_labels(lines, form.labels) if form.labels else lines
+    return _single_blanks(lines) if form.delimiter == " " else lines
 
 
 def _single_blanks(text: bytes) -> bytes:
@@ -176,38 +135,25 @@ def _single_blanks(text: bytes) -> bytes:
 
 
 class _OddLines:
-    """Lines that are no row: comments, and those with too many or too few cells."""
+    """Lines of a block that are no row: comments, and those with too many or too few cells."""
 
     def __init__(self, before: int) -> None:
-        self._before = before
+        self.before = before
+        self.count = 0
         self._rows: list[int] = []
-        self._count = 0
 
     def take(self, row: pyarrow.csv.InvalidRow) -> str:
         """Arrow's handler of such a line."""
         text = str(row.text).lstrip()
         if text and not text.startswith(COMMENTS):
-            self._count += 1
-            if row.number is not None:
-                self._rows.append(row.number - self._before - 1)
+            self.count += 1
+            self._rows.append(row.number - self.before - 1)
         return "skip"
 
     def places(self, start: int, size: int) -> np.ndarray:
-        """(size,) numbers of the rows of a batch, of which the first may be `start`."""
-        every = np.arange(start, start + size + len(self._rows))
-        kept = np.setdiff1d(every, self._rows, assume_unique=True)[:size]
-        if size:
-            self._rows = [row for row in self._rows if row > kept[-1]]
-        return kept
-
-    @property
-    def is_last(self) -> bool:
-        """Whether such a line came after the last row."""
-        return bool(self._rows)
-
-    def counted(self) -> Counter[str]:
-        """How many rows there were that cannot be read."""
-        return Counter({"not as many cells as the header": self._count} if self._count else {})
+        """(size,) numbers of the rows of a block, of which the first may be `start`."""
+        every = np.arange(size + self.count)
+        return start + np.setdiff1d(every, self._rows, assume_unique=True)[:size]
 
 
 def _numbers(cells: pa.Array, name: str, form: Form) -> np.ndarray:
@@ -266,11 +212,3 @@ def _since_midnight(text) -> np.ndarray:
 def _decoded(cells: pa.Array) -> list[str | None]:
     raw = cells.cast(pa.binary()).to_pylist()
     return [None if cell is None else cell.decode("utf-8", "replace") for cell in raw]
-
-
-def _in_words(path: Path, error: Exception) -> BadRecording:
-    if "straddling" in str(error):
-        problem = f"a row is longer than {_BLOCK_BYTES >> 20} MiB"
-        return BadRecording(path, problem, do="name a table with a sample on each line")
-    problem = f"no table: {str(error)[:120]}"
-    return BadRecording(path, problem, do="name a CSV with a row for each sample")

@@ -165,7 +165,7 @@ def _table_in(lines: list[str], every: list[str], encoding: str, path: Path) -> 
     first = (
         _cells(lines[skip], delimiter) if at is not None else _whole_row(lines[skip:], delimiter)
     )
-    names, note = _names(lines, at, first, delimiter)
+    names, note = _names(lines, at, skip, first, delimiter)
     dates = frozenset(name for name, cell in zip(names, first) if DATE.match(cell.strip()))
     return Form(
         names,
@@ -270,7 +270,7 @@ def _numbers(cells: list[str], delimiter: str) -> int:
     return sum(is_one(cell.strip()) for cell in cells)
 
 
-def _names(lines: list[str], at: int | None, first: list[str], delimiter: str):
+def _names(lines: list[str], at: int | None, skip: int, first: list[str], delimiter: str):
     if at is not None:
         names = [name.strip() for name in _cells(lines[at], delimiter)]
         above = next((line for line in reversed(lines[:at]) if line.strip()), "")
@@ -285,7 +285,7 @@ def _names(lines: list[str], at: int | None, first: list[str], delimiter: str):
         else:
             names = _with_those_above(names, lines[:at], delimiter)
         return _as_wide(names, first), ""
-    for line in reversed(lines):
+    for line in reversed([*lines[skip:], *lines[:skip]]):
         text = line.strip()
         if text.startswith(COMMENTS):
             names = _in_comment(text, delimiter)
