@@ -20,7 +20,7 @@ from ..errors import BadRecording
 from .checks import arrow_batch, check_names
 from .recording import TIME
 from .scales import Scales, example_for, scales_from_text
-from .text import damaged, head, open_text
+from .text import head, line_blocks, rows_of
 
 SUFFIXES = (".csv", ".csv.gz")
 _HEADER_BYTES = 1 << 16
@@ -74,69 +74,47 @@ def read_header(path: Path) -> Header:
 
 def batches(path: Path, header: Header) -> Iterator[pa.RecordBatch]:
     """Arrow batches of int64 columns, read as they are needed. Raises BadRecording."""
-    try:
-        yield from _open(path, header, pa.int64())
-    except (pa.ArrowException, OSError, EOFError) as error:
-        raise _diagnosis(path, header, error) from error
+    start, skip = 0, header.skip
+    for lines in line_blocks(path, header.encoding, lambda read: None, _BLOCK_BYTES):
+        try:
+            rows = rows_of(lines, header.names, pa.int64(), skip)
+        except pa.ArrowInvalid as error:
+            raise _diagnosis(path, header.names, lines, skip, start, error) from error
+        yield from rows.to_batches()
+        start, skip = start + rows.num_rows, 0
 
 
-def _open(path: Path, header: Header, kind: pa.DataType, take_odd: Any = None) -> Any:
-    return pyarrow.csv.open_csv(
-        open_text(path, header.encoding)[0],
-        read_options=pyarrow.csv.ReadOptions(
-            block_size=_BLOCK_BYTES,
-            column_names=header.names,
-            skip_rows=header.skip,
-            use_threads=False,
-        ),
-        parse_options=pyarrow.csv.ParseOptions(invalid_row_handler=take_odd),
-        convert_options=pyarrow.csv.ConvertOptions(
-            column_types=dict.fromkeys(header.names, kind),
-            null_values=["", "nan", "NaN", "NA", "null", "None"],
-            strings_can_be_null=True,
-            check_utf8=False,
-        ),
-    )
-
-
-def _diagnosis(path: Path, header: Header, error: Exception) -> BadRecording:
-    """Find the row that Arrow stumbled over, as its own message does not always name it."""
+def _diagnosis(
+    path: Path, names: list[str], lines: bytes, skip: int, start: int, error: Exception
+) -> BadRecording:
+    """Find the row of a block that Arrow stumbled over, as its own message may not name it."""
     odd: list[Any] = []
 
     def take(row: Any) -> str:
         odd.append(row)
         return "skip"
 
-    rows = 0
     try:
-        for batch in _open(path, header, pa.string(), take):
-            found = _first_bad_cell(batch)
-            if odd and (found is None or odd[0].number - header.skip <= rows + found[0] + 1):
-                break
-            if found is not None:
-                at, name, cell = found
-                do = "give raw LSB as integers, or convert with `zerorate import`"
-                problem = f"{name} is {cell[:40]!r}, no integer"
-                return BadRecording(path, problem, row=rows + at + 1, do=do)
-            rows += batch.num_rows
-    except pa.ArrowInvalid as again:
-        if "straddling" in str(again):
-            problem = f"a row is longer than {_BLOCK_BYTES >> 20} MiB"
-            return BadRecording(path, problem, do="name a CSV file with a sample on each line")
-    except (pa.ArrowException, OSError, EOFError):
-        return damaged(path)
-    if odd:
-        problem = f"{odd[0].actual_columns} cells where the header names {len(header.names)}"
-        row = odd[0].number - header.skip
+        found = _first_bad_cell(rows_of(lines, names, pa.string(), skip, take))
+    except pa.ArrowInvalid:
+        found = None
+    if odd and (found is None or odd[0].number - skip <= found[0] + 1):
+        problem = f"{odd[0].actual_columns} cells where the header names {len(names)}"
+        row = start + odd[0].number - skip
         return BadRecording(path, problem, row=row, do="complete or drop the row")
+    if found is not None:
+        at, name, cell = found
+        do = "give raw LSB as integers, or convert with `zerorate import`"
+        problem = f"{name} is {cell[:40]!r}, no integer"
+        return BadRecording(path, problem, row=start + at + 1, do=do)
     return BadRecording(path, str(error)[:200], do="name a CSV file")
 
 
-def _first_bad_cell(batch: pa.RecordBatch) -> tuple[int, str, str] | None:
-    """(row within the batch, column, cell) of the first cell that is no integer of 64 bits."""
+def _first_bad_cell(rows: pa.Table) -> tuple[int, str, str] | None:
+    """(row within the block, column, cell) of the first cell that is no integer of 64 bits."""
     found = None
-    for name in batch.schema.names:
-        cells = batch.column(name).cast(pa.binary())
+    for name in rows.schema.names:
+        cells = rows.column(name).combine_chunks().cast(pa.binary())
         good = pc.match_substring_regex(cells, rb"^[ \t]*[+-]?[0-9]{1,18}[ \t]*$")
         bad = pc.invert(pc.fill_null(good, True)).to_numpy(zero_copy_only=False)
         at = int(np.argmax(bad)) if bad.any() else None

@@ -5,10 +5,12 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pyarrow as pa
+import pyarrow.csv
 
 from ..errors import BadRecording
 
 _BLOCK_BYTES = 1 << 20
+_NO_VALUE = ["", "nan", "NaN", "NA", "null", "None"]
 _PACKED = {
     b"\x1f\x8b": "gzip",
     b"BZh": "bz2",
@@ -63,6 +65,34 @@ def line_blocks(
         read = told()
     if rest:
         yield rest
+
+
+def rows_of(
+    lines: bytes,
+    names: list[str],
+    kind: pa.DataType,
+    skip: int,
+    take_odd: Callable[[pyarrow.csv.InvalidRow], str] | None = None,
+    delimiter: str = ",",
+    wanted: list[str] | None = None,
+) -> pa.Table:
+    """The cells of whole lines but the first `skip`, by column. A block at a time: a reader of the
+    whole file reads ahead in a thread, which aborts the process where it calls Python while that
+    ends. Raises pa.ArrowInvalid."""
+    return pyarrow.csv.read_csv(
+        pa.BufferReader(lines or b"\n"),
+        read_options=pyarrow.csv.ReadOptions(
+            block_size=len(lines) + 1, column_names=names, skip_rows=skip, use_threads=False
+        ),
+        parse_options=pyarrow.csv.ParseOptions(delimiter=delimiter, invalid_row_handler=take_odd),
+        convert_options=pyarrow.csv.ConvertOptions(
+            column_types=dict.fromkeys(names, kind),
+            include_columns=wanted,
+            null_values=_NO_VALUE,
+            strings_can_be_null=True,
+            check_utf8=False,
+        ),
+    )
 
 
 def _read(path: Path, stream: pa.NativeFile, size: int) -> bytes:

@@ -13,7 +13,7 @@ import pyarrow.compute as pc
 import pyarrow.csv
 
 from ...errors import BadRecording
-from ...recordings.text import line_blocks
+from ...recordings.text import line_blocks, rows_of
 from ..report import cut_words
 from .sniffing import COMMENTS, DAY, Form, sniffed, without_arrows, without_labels
 from .table import Chunk, Table
@@ -23,7 +23,6 @@ _HALF_DAY_S = 43_200.0
 _A_NAME = re.compile(r"[^\W\d]")
 #: Where a program fills a file before it writes, zeros stand behind the last line.
 _ENDS = (b"\n", b"\r", b"\0")
-_NO_VALUE = ["", "nan", "NaN", "NAN", "NA", "null", "None", "-", "--"]
 
 
 def delimited(path: Path, advance: Callable[[float], None] = lambda n: None) -> Table:
@@ -72,28 +71,9 @@ def _chunks(
 
 
 def _rows(path: Path, lines: bytes, form: Form, names: list[str], odd: _OddLines) -> pa.Table:
-    """The cells of whole lines as texts. A block at a time: a reader of the whole file reads ahead
-    in a thread, which aborts the process where it calls Python while that ends."""
     try:
-        return pyarrow.csv.read_csv(
-            pa.BufferReader(lines or b"\n"),
-            read_options=pyarrow.csv.ReadOptions(
-                block_size=len(lines) + 1,
-                column_names=form.names,
-                skip_rows=odd.before,
-                use_threads=False,
-            ),
-            parse_options=pyarrow.csv.ParseOptions(
-                delimiter=form.delimiter, invalid_row_handler=odd.take
-            ),
-            convert_options=pyarrow.csv.ConvertOptions(
-                column_types={name: pa.string() for name in form.names},
-                include_columns=names,
-                null_values=_NO_VALUE,
-                strings_can_be_null=True,
-                check_utf8=False,
-            ),
-        )
+        kind, skip = pa.string(), odd.before
+        return rows_of(lines, form.names, kind, skip, odd.take, form.delimiter, names)
     except pa.ArrowInvalid as error:
         problem = f"no table: {str(error)[:120]}"
         do = "name a CSV with a row for each sample"
