@@ -451,3 +451,25 @@ def test_digits_that_somebody_printed_are_no_steps_of_a_chip(tmp_path, step):
     frame.iloc[:, 1:] = step * np.round(40 * (frame.iloc[:, 1:] - 0.8) / 0.05)
     _, report = read(tmp_path, frame, units={"time": "s"})
     assert "gyro taken in rad/s: as in ROS" in report.notes
+
+
+def test_milliseconds_beside_a_second_are_the_time(tmp_path):
+    frame = rates(["Timestamp", "X", "Y", "Z"]).assign(Milliseconds=np.arange(2000) * 10 + 7)
+    frame["Timestamp"] = pd.Timestamp("2026-05-01") + pd.to_timedelta(frame["Timestamp"] // 1, "s")
+    recording, _ = read(tmp_path, frame, "Gyroscope.csv", "gx=X:dps gy=Y:dps gz=Z:dps")
+    assert (np.diff(recording.columns["t_us"]) == 10_000).all() and len(recording) == 2000
+
+
+def test_the_file_beside_is_that_of_the_same_recording(tmp_path):
+    for name in ("Accelerometer.csv", "Accelerometer_2.csv"):
+        (tmp_path / name).write_text("t_s,x,y,z\n")
+    _, report = read(
+        tmp_path, rates(["t_s", "x", "y", "z"]), "Gyroscope_2.csv", "gx=x:dps gy=y:dps gz=z:dps"
+    )
+    assert any("Accelerometer_2.csv" in words for words in report.notes)
+
+
+def test_lines_of_a_receiver_are_no_rates(tmp_path):
+    lines = "$GPGGA,205250.75,5242.3734,N,0,,*0F\n$GNGSA,A,1,,*1D\n" * 20
+    with pytest.raises(BadRecording, match="no column for gx"):
+        read(tmp_path, lines)

@@ -2,8 +2,9 @@
 
 import re
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from difflib import SequenceMatcher
 from pathlib import Path
 
 import numpy as np
@@ -179,16 +180,19 @@ def _with_gravity(table: Table) -> list[dict[str, str]]:
 
 
 def _time_column(table: Table) -> str | None:
-    """Of the columns called as times the first in which one goes on: no day beside a time of it.
-    Where none is, one of dates, or one in a unit of time that only grows."""
+    """Of the columns called as times the first in which one goes on: no day beside a time of it; or
+    one of finer steps that says its unit: no second beside its milliseconds. Where none is called
+    so, one of dates, or one in a unit of time that only grows."""
     found = usual.time_columns(table.names)
     if not found:
         other = [*sorted(table.calendar), *usual.in_units_of_time(table.names)]
         first = table.first_rows(list(dict.fromkeys(other))) if other else {}
         return next((name for name, values in first.items() if only_grows(values)), None)
     first = table.first_rows(found) if len(found) > 1 else {}
-    differ = (name for name, values in first.items() if len(np.unique(values[values > 0])) > 1)
-    return next(differ, next(iter(found), None))
+    steps = {n: len(np.unique(values[values > 0])) for n, values in first.items()}
+    usual_one = next((n for n, count in steps.items() if count > 1), found[0])
+    finer = [n for n in usual.in_units_of_time(found) if n in first and only_grows(first[n])]
+    return max([usual_one, *finer], key=lambda n: steps.get(n, 0))
 
 
 def _axes_of_a_gyro_file(table: Table, path: Path) -> dict[str, str]:
@@ -229,10 +233,17 @@ def _of_another_sensor(table: Table, path: Path) -> str:
 
 def _beside(path: Path) -> str:
     """Where the rates are likely to be."""
-    gyro = next((f for f in sorted(path.parent.glob("*.csv")) if "gyro" in f.stem.lower()), None)
+    gyro = named_alike(path, (f for f in path.parent.glob("*.csv") if "gyro" in f.stem.lower()))
     if gyro is None:
         return ""
     return f", which are likely in {gyro.name}: {take_both(gyro, path)}"
+
+
+def named_alike(path: Path, files: Iterable[Path]) -> Path | None:
+    """Of other files, maybe of several recordings, that whose name is most like the path's."""
+    return max(
+        sorted(files), key=lambda f: SequenceMatcher(None, f.stem, path.stem).ratio(), default=None
+    )
 
 
 def take_both(gyro: Path, other: Path) -> str:

@@ -47,7 +47,8 @@ _WRITTEN_BY_KIND = {
 #: Whole names that tell a unit; T(°) is what WitMotion writes.
 _BY_NAME = {
     "time": {
-        "timeus": "us", "timems": "ms", "micros": "us", "millis": "ms", "seconds_elapsed": "s",
+        "timeus": "us", "timems": "ms", "micros": "us", "microseconds": "us",
+        "millis": "ms", "milliseconds": "ms", "seconds_elapsed": "s",
         "__time": "s",
     },
     "temp": {"t(°)": "degc"},

@@ -13,7 +13,7 @@ from ...recordings.checks import GAP
 from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP
 from ...recordings.scales import EXAMPLE
 from ..columns.names import other_temperatures
-from ..columns.plan import Plan, divided_by, take_both
+from ..columns.plan import Plan, divided_by, named_alike, take_both
 from ..columns.units import kind_of
 from ..report import Options, Report
 from ..tables.table import Table
@@ -202,9 +202,10 @@ def absent(plan: Plan, names: list[str], path: Path) -> list[str]:
     out = []
     if ACCEL[0] not in plan.wanted:
         in_gyro = path.is_file() and "gyro" in path.stem.lower()
-        found = sorted(path.parent.glob("*[Aa]ccel*.csv")) if in_gyro else []
-        beside = [f for f in found if "linear" not in f.name.lower()]  # which has no gravity
-        take = f"; {beside[0].name} is beside it: {take_both(path, beside[0])}" if beside else ""
+        found = path.parent.glob("*[Aa]ccel*.csv") if in_gyro else ()
+        of_gravity = (f for f in found if "linear" not in f.name.lower())
+        beside = named_alike(path, of_gravity)
+        take = f"; {beside.name} is beside it: {take_both(path, beside)}" if beside else ""
         out.append(f"no acceleration: nothing can be learned against gravity{take}")
     if TEMP not in plan.wanted:
         other = other_temperatures(names)

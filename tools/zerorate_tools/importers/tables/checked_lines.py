@@ -7,10 +7,8 @@ from operator import xor
 from pathlib import Path
 
 import numpy as np
-import pyarrow as pa
 
-from ...errors import BadRecording
-from ...recordings.text import damaged, head, open_text
+from ...recordings.text import head, line_blocks
 from .table import Chunk, Table
 
 _BLOCK_BYTES = 1 << 20
@@ -41,36 +39,18 @@ def checked_lines(path: Path, advance: Callable[[float], None] = lambda n: None)
     def chunks(wanted: list[str]) -> Iterator[Chunk]:
         at = [int(name) for name in wanted]
         place = 0
-        for lines in _blocks(path, advance):
-            ours = [line for line in lines if not _is_other(line, kind)]
+        for lines in line_blocks(path, "utf-8", advance, _BLOCK_BYTES):
+            ours = [line for line in lines.splitlines() if not _is_other(line, kind)]
             rows = [_row(line, kind, len(names), table.dropped) for line in ours]
             good = [number for number, row in enumerate(rows) if row is not None]
             cells = np.array([[row[i] for i in at] for row in rows if row is not None], float)
-            by_name = dict(zip(wanted, cells.reshape(-1, len(at)).T))
+            by_name = dict(zip(wanted, cells.reshape(len(good), len(at)).T))
             yield Chunk(place + np.array(good, np.int64), by_name)
             place += len(ours)
 
     notes = [f"lines of ${kind.decode('ascii', 'replace')}"]
     table = Table(names, chunks, mapping=_KNOWN.get(kind, "").split(), notes=notes)
     return table
-
-
-def _blocks(path: Path, advance: Callable[[float], None]) -> Iterator[list[bytes]]:
-    stream, told = open_text(path)
-    rest, read = b"", 0
-    try:
-        while block := stream.read(_BLOCK_BYTES):
-            *lines, rest = (rest + block).split(b"\n")
-            if len(rest) > _LONGEST_LINE:
-                problem = f"a line is longer than {_LONGEST_LINE} bytes"
-                raise BadRecording(path, problem, do="copy the file again")
-            yield lines
-            advance(told() - read)
-            read = told()
-    except (OSError, EOFError, pa.ArrowException) as error:
-        raise damaged(path) from error
-    if rest.strip():
-        yield [rest]
 
 
 def _is_other(line: bytes, kind: bytes) -> bool:
