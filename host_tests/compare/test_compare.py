@@ -78,11 +78,12 @@ def test_what_is_not_installed_is_said(drifting, monkeypatch):
     assert "vqf" not in compared.error_dps
 
 
-def test_a_log_with_one_rest_is_refused_with_what_to_do(tmp_path, capsys):
+def test_a_log_with_one_rest_is_judged_by_nothing_and_says_what_to_do(tmp_path, capsys):
     log = a_log(tmp_path / "once.parquet", [0.5])
     with pytest.raises(TooFewRests, match="leave it at rest again"):
         compare([log])
-    assert main(["compare", str(log)]) == 2
+    still = a_log(tmp_path / "still.parquet", [0.5], turn_s=0)
+    assert main(["compare", str(still)]) == 2
 
 
 def test_the_page_needs_no_other_file(drifting, tmp_path, capsys):
@@ -216,5 +217,7 @@ def test_a_log_that_never_rests_is_still_told_what_the_matrix_wins(tmp_path, cap
     description = described(TRUTH, 1.5)
     del description["every_session"]["motion"][0]
     write_recording(simulate(description)[0], tmp_path / "never.parquet")
-    assert main(["compare", str(tmp_path / "never.parquet")]) == 0
-    assert capsys.readouterr().out.startswith("In motion the matrix of")
+    page = tmp_path / "page.html"
+    assert main(["compare", str(tmp_path / "never.parquet"), "--out", str(page)]) == 0
+    for said in (capsys.readouterr().out, page.read_text()):
+        assert "never lay still twice" in said and "In motion the matrix of" in said

@@ -461,8 +461,12 @@ def test_milliseconds_beside_a_second_are_the_time(tmp_path):
 
 
 def test_the_file_beside_is_that_of_the_same_recording(tmp_path):
-    for name in ("Accelerometer.csv", "Accelerometer_2.csv"):
-        (tmp_path / name).write_text("t_s,x,y,z\n")
+    for name, force in (
+        ("Accelerometer", 1),
+        ("Accelerometer_2", 1),
+        ("Accelerometer_2-linear", 0),
+    ):
+        (tmp_path / f"{name}.csv").write_text(f"t_s,x,y,z\n0,0,0,{force}\n1,0,0,{force}\n")
     _, report = read(
         tmp_path, rates(["t_s", "x", "y", "z"]), "Gyroscope_2.csv", "gx=x:dps gy=y:dps gz=z:dps"
     )

@@ -157,7 +157,7 @@ def add_compare(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]
 def run_compare(arguments: argparse.Namespace) -> None:
     """Print the headline and the table, and what the matrix would win; write the page."""
     from ..compare import TooFewRests, compare, matrix_of
-    from ..compare.show import in_motion, table, write_page
+    from ..compare.show import NO_RESTS, in_motion, table, write_page
     from ..progress import progress
     from ..recordings.atomic import check_apart
 
@@ -168,20 +168,18 @@ def run_compare(arguments: argparse.Namespace) -> None:
         try:
             compared = compare(arguments.logs, advance)
         except TooFewRests:
-            if won is None or not won.deployed or arguments.out is not None:
+            if won is None:
                 raise
-            print_json({"in_motion": won}) if arguments.json else print(in_motion(won))
-            return
+            compared = None
     if arguments.out is not None:
         write_page(compared, arguments.out, won)
     if arguments.json:
-        print_json({**compared.figures(), "in_motion": won, "page": arguments.out})
+        figures = {"later_rests": 0} if compared is None else compared.figures()
+        print_json({**figures, "in_motion": won, "page": arguments.out})
         return
-    print(table(compared))
-    if won is not None:
-        print(f"\n{in_motion(won)}")
-    if arguments.out is not None:
-        print(f"\n{arguments.out}")
+    parts = [NO_RESTS if compared is None else table(compared)]
+    parts += [in_motion(won)] if won is not None else []
+    print("\n\n".join([*parts, *([str(arguments.out)] if arguments.out is not None else [])]))
 
 
 def add_allan(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:

@@ -28,6 +28,10 @@ _NOTE = (
     "Rests of over a minute count as several. The Earth's rate, 0.25 deg/min at most, is in every "
     "rest: what differs by less is no difference."
 )
+NO_RESTS = (
+    "No method was judged: the device never lay still twice. Leave it at rest for some seconds, "
+    "move it, and leave it at rest again."
+)
 _STYLE = """
 body { font: 16px/1.5 sans-serif; max-width: 60rem; margin: 1rem auto; padding: 0 1rem }
 h1, h2 { font-size: 1.4rem; line-height: 1.25 }
@@ -75,8 +79,20 @@ def _aligned(lines: list[tuple[str, str, str, str]]) -> list[str]:
     ]
 
 
-def write_page(compared: Compared, path: Path, won: Won | None = None) -> None:
-    """One HTML file with headline, plot and tables, which needs no other."""
+def write_page(compared: Compared | None, path: Path, won: Won | None = None) -> None:
+    """One HTML file with headline, plot and tables, which needs no other; without a method judged
+    at a rest, what the motion shows."""
+    at_rests = f"<h1>{NO_RESTS}</h1>" if compared is None else _rests_html(compared)
+    page = (
+        f"<!doctype html><html lang=en><meta charset=utf-8><title>zerorate compare</title>"
+        f"<meta name=viewport content='width=device-width'><style>{_STYLE}</style>"
+        f"{at_rests}{_motion_html(won)}</html>\n"
+    )
+    with written_beside(path) as temporary:
+        temporary.write_text(page, encoding="utf-8")
+
+
+def _rests_html(compared: Compared) -> str:
     escaped = [[html.escape(cell) for cell in row] for row in rows(compared)]
     body = "".join(
         f"<tr{' class=ours' if row[0] == compared.ours else ''}>"
@@ -86,16 +102,12 @@ def write_page(compared: Compared, path: Path, won: Won | None = None) -> None:
     )
     head = "".join(f"<th>{cell}</th>" for cell in _HEAD)
     names = html.escape(", ".join(compared.names))
-    page = (
-        f"<!doctype html><html lang=en><meta charset=utf-8><title>zerorate compare</title>"
-        f"<meta name=viewport content='width=device-width'><style>{_STYLE}</style>"
+    return (
         f"<h1>{html.escape(compared.headline())}</h1><p>{names}</p>"
         f"<div class=wide>{_plot(compared, _WIDE)}</div>"
         f"<div class=narrow>{_plot(compared, _NARROW)}</div>"
-        f"<table><tr>{head}</tr>{body}</table><p>{_NOTE}</p>{_motion_html(won)}</html>\n"
+        f"<table><tr>{head}</tr>{body}</table><p>{_NOTE}</p>"
     )
-    with written_beside(path) as temporary:
-        temporary.write_text(page, encoding="utf-8")
 
 
 def _motion_html(won: Won | None) -> str:

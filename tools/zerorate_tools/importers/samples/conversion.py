@@ -12,10 +12,12 @@ from ...recordings import Scales
 from ...recordings.checks import GAP
 from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP
 from ...recordings.scales import EXAMPLE
-from ..columns.names import other_temperatures
+from ..columns.guesses import gravity_unit
+from ..columns.names import accel_groups, bare_axes, other_temperatures
 from ..columns.plan import Plan, divided_by, named_alike, take_both
 from ..columns.units import kind_of
 from ..report import Options, Report
+from ..tables.delimited import delimited
 from ..tables.table import Table
 from .between import SAID, Bridged
 from .clock import Gaps
@@ -197,14 +199,26 @@ def _channel(name: str, values: np.ndarray, place: np.ndarray, path: Path) -> np
     return np.where(np.isnan(values), GAP, np.rint(values)).astype(np.int32)
 
 
+def _has_gravity(path: Path) -> bool:
+    """Whether a file's acceleration is as long as gravity: some programs take gravity away."""
+    try:
+        table = delimited(path)
+    except BadRecording:
+        return False
+    axes, *_ = [*accel_groups(table.names), bare_axes(table.names)]
+    return (
+        bool(axes)
+        and gravity_unit(list(table.first_rows(list(axes.values())).values())) is not None
+    )
+
+
 def absent(plan: Plan, names: list[str], path: Path) -> list[str]:
     """What cannot be learned without the columns that are not there. names: of all columns."""
     out = []
     if ACCEL[0] not in plan.wanted:
         in_gyro = path.is_file() and "gyro" in path.stem.lower()
         found = path.parent.glob("*[Aa]ccel*.csv") if in_gyro else ()
-        of_gravity = (f for f in found if "linear" not in f.name.lower())
-        beside = named_alike(path, of_gravity)
+        beside = named_alike(path, filter(_has_gravity, found))
         take = f"; {beside.name} is beside it: {take_both(path, beside)}" if beside else ""
         out.append(f"no acceleration: nothing can be learned against gravity{take}")
     if TEMP not in plan.wanted:
