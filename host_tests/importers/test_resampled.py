@@ -54,7 +54,7 @@ def test_noise_of_any_kind_is_not_refused_and_its_lines_are(kind):
     for _ in range(3):
         rates = drawn(kind, luck)
         assert base_period(timed(rates), digits(kind)) == 0
-        if kind not in ("coarse", "with spikes"):
+        if kind not in ("coarse", "smooth motion", "with spikes"):
             period = base_period(timed(on_lines(rates, 1.3)), digits(kind))
             assert period == pytest.approx(1.3, abs=0.02)
 

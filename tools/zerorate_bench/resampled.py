@@ -9,7 +9,15 @@ from zerorate_tools.recordings import Recording
 from .public_data import data_folder, recordings, told_of
 from .tables import table
 
-KINDS = ("white noise", "low-pass", "coloured", "coarse", "in motion", "with spikes")
+KINDS = (
+    "white noise",
+    "low-pass",
+    "coloured",
+    "coarse",
+    "in motion",
+    "smooth motion",
+    "with spikes",
+)
 _ROWS, _DRAWS, _SEED = 2500, 50, 11
 _RATIOS = (1.1, 1.3, 1.7, 2.6)
 
@@ -26,6 +34,12 @@ def drawn(kind: str, luck: np.random.Generator, rows: int = _ROWS) -> np.ndarray
     if kind == "in motion":
         waves = (np.sin(at * luck.uniform(0.01, 0.3) + luck.uniform(0, 6, 3)) for _ in range(4))
         return noise + sum(luck.normal(0, 30, 3) * wave for wave in waves)
+    if kind == "smooth motion":
+        motion = lfilter(
+            *butter(4, luck.uniform(0.03, 0.1)), luck.standard_normal((2 * rows, 3)), axis=0
+        )
+        loud = np.exp(luck.normal(0, 1.5, 1 + rows // 250)).repeat(250)[:rows, None]
+        return 1000 * loud * motion[rows:] + 0.02 * noise
     if kind == "with spikes":
         return noise + 50 * (luck.random((rows, 3)) < 0.02)
     return noise

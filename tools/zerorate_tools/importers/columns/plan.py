@@ -180,19 +180,21 @@ def _with_gravity(table: Table) -> list[dict[str, str]]:
 
 
 def _time_column(table: Table) -> str | None:
-    """Of the columns called as times the first in which one goes on: no day beside a time of it; or
-    one of finer steps that says its unit: no second beside its milliseconds. Where none is called
-    so, one of dates, or one in a unit of time that only grows."""
+    """Of the columns called as times the first in which one goes on: no day beside a time of it.
+    Where that stands still, one that says its unit: no second beside its milliseconds. Where none
+    is called so, one of dates, or one in a unit of time that only grows."""
     found = usual.time_columns(table.names)
     if not found:
         other = [*sorted(table.calendar), *usual.in_units_of_time(table.names)]
         first = table.first_rows(list(dict.fromkeys(other))) if other else {}
         return next((name for name, values in first.items() if only_grows(values)), None)
     first = table.first_rows(found) if len(found) > 1 else {}
-    steps = {n: len(np.unique(values[values > 0])) for n, values in first.items()}
-    usual_one = next((n for n, count in steps.items() if count > 1), found[0])
-    finer = [n for n in usual.in_units_of_time(found) if n in first and only_grows(first[n])]
-    return max([usual_one, *finer], key=lambda n: steps.get(n, 0))
+    differ = (n for n, values in first.items() if len(np.unique(values[values > 0])) > 1)
+    usual_one = next(differ, found[0])
+    if len(found) == 1 or only_grows(first[usual_one]):
+        return usual_one
+    finer = (n for n in usual.in_units_of_time(found) if only_grows(first[n]))
+    return next(finer, usual_one)
 
 
 def _axes_of_a_gyro_file(table: Table, path: Path) -> dict[str, str]:

@@ -57,7 +57,7 @@ def without_lines(spool: Spool, path: Path, folder: Path | None) -> tuple[Spool,
     for _, off, moves in _pieces(spool, digits):
         seen.add(off, moves)
     first = _frame(spool.read(0)) if spool.pieces else np.empty((4, 0))
-    period = base_period(first, digits, longer=seen.are_lines)
+    period = base_period(first, digits)
     left = seen.rows - seen.lines
     if period and not (seen.are_lines and left * period <= _TOO_MANY * seen.rows):
         problem = (

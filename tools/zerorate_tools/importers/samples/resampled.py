@@ -15,20 +15,19 @@ _BLOCK, _FEWEST, _MOST = 64, 8, 64
 #: Rows to a reading. Fewer leave too few rows too many, and of more a block has too few.
 _PERIODS = (1.07, 2.2)
 _PHASES = 6
-#: A log without a row on a line is looked at for periods of so many rows, twice.
-_USUAL = 4
 #: Nats for it in half of the blocks.
 _SURE = 20.0
 
 
-def base_period(frame: np.ndarray, digits: np.ndarray, longer: bool = False) -> float:
+def base_period(frame: np.ndarray, digits: np.ndarray) -> float:
     """Rows to a reading of (4, n) times and rates of that many digits, that were resampled from
-    fewer; 0 where they were not. longer: look for periods of any length."""
-    found, every = 0.0, 1
-    while frame.shape[1] >= every * _BLOCK * _FEWEST and (longer or every <= _USUAL):
+    fewer; 0 where they were not."""
+    found, every, unsure = 0.0, 1, 0
+    # lines of a period are lines of its half, too: two in a row without them rule out longer ones
+    while frame.shape[1] >= every * _BLOCK * _FEWEST and unsure < 2:
         nats, period = evidence(frame[:, ::every], digits)
-        # lines of a period are lines of its half, too
         found = every * period if nats > _SURE else found
+        unsure = 0 if nats > _SURE else unsure + 1
         every *= 2
     return found
 
@@ -62,11 +61,14 @@ def _taken_off(counts: np.ndarray, starts: np.ndarray) -> np.ndarray:
 
 
 def _nats(news: np.ndarray, usual: np.ndarray, rounded: float, phases: list[np.ndarray]) -> float:
-    """The log likelihood ratio of the best phase to the usual noise and to the middle phase."""
+    """The log likelihood ratio of the best phase to the usual noise and to the opposite phase,
+    which is as far from the rows: lines through rows fit what is smooth better than others."""
     left = [((left @ news) ** 2).mean(axis=0) + rounded for left in phases]
     noise = (np.array(left) / usual).reshape(len(phases), -1, 3).mean(axis=2)
-    other = np.minimum(1, np.median(noise, axis=0))
-    return 1.5 * len(phases[0]) * float(np.median(np.log(other / noise.min(axis=0))))
+    opposite = np.roll(noise, len(phases) // 2, axis=0)
+    best = noise.argmin(axis=0)[np.newaxis]
+    least, other = (np.take_along_axis(one, best, axis=0) for one in (noise, opposite))
+    return 1.5 * len(phases[0]) * float(np.median(np.log(np.minimum(1, other) / least)))
 
 
 def _lines(taken_off: np.ndarray) -> Iterator[tuple[float, list[np.ndarray]]]:
