@@ -163,7 +163,11 @@ AREAS = {
     ),
     "boards": (
         [_TOOLS + "boards/"],
-        ["drivers/test_boards.py", "drivers/test_record_bus.py", "boards/test_programs.py"],
+        ["drivers/test_" + name for name in (
+            "streams_by_hand.py", "flashing_by_hand.py", "record_bus.py", "packages.py",
+            "boards.py::TestFrames", "boards.py::TestPortThatDoesNotOpen",
+            "boards.py::test_a_micropython_too_old_for_machine_code_is_told",
+            "boards.py::TestLinuxBus")],
     ),
     "kernels": (
         [_TOOLS + "kernels/", _TOOLS + "layout/"],

@@ -14,6 +14,7 @@ from zerorate_fakes.smbus import SMBus
 from zerorate_tools.boards import compiling
 from zerorate_tools.boards.connection import BoardError, BoardFacts
 from zerorate_tools.boards.flashing import flash, older
+from zerorate_tools.boards.parts import needs
 from zerorate_tools.boards.port import MESSAGE, SAMPLE, FrameReader, encode
 from zerorate_tools.boards.recording import record
 from zerorate_tools.cli import main
@@ -89,7 +90,11 @@ class TestPortThatDoesNotOpen:
 def test_a_micropython_too_old_for_machine_code_is_told(mpy, architecture, told):
     lines = older(BoardFacts(version=(1, 22, 0), mpy=mpy, architecture=architecture))
     assert bool(lines) == told
-    assert all("bytecode" in line and "1.23" in line for line in lines)
+    cycles = needs()["cycles"]
+    slower = cycles["bytecode"] / cycles["median"]
+    for line in lines:
+        assert "bytecode" in line and "1.23" in line
+        assert float(re.search(r"(\d+) times", line)[1]) == pytest.approx(slower, abs=5)
 
 
 class TestFlash:

@@ -176,7 +176,9 @@ def public(text):
     }
 
 
-@pytest.mark.parametrize("name", ["checked", "corrector", "storage/store", "storage/places"])
+@pytest.mark.parametrize(
+    "name", ["checked", "corrector", "motion/orientation", "storage/store", "storage/places"]
+)
 def test_what_a_program_may_call_keeps_its_names(short, files, name):
     name = PurePosixPath(f"zerorate/{name}.py")
     nested = {("update", "x", "dt_us", "kept")}

@@ -16,12 +16,14 @@ from zerorate_i2c.mpu6050 import MPU6050
 from zerorate_tools import cli
 from zerorate_tools.boards import fake_hand
 from zerorate_tools.boards.bus import record_bus
-from zerorate_tools.boards.recorder import Recorded, Recorder
 from zerorate_tools.errors import InFile, ZerorateError
-from zerorate_tools.recordings import growing, read_recording
+from zerorate_tools.recordings import Recording, Scales, growing, read_recording
+from zerorate_tools.recordings.recording import GYRO
 
 from host_tests.drivers.linux_bus.machine import fetch
 from host_tests.drivers.linux_bus.run import run_guest
+
+SCALES = Scales("MPU-6050", 10.0, 131.0)
 
 
 def counting():
@@ -154,6 +156,19 @@ def test_a_signal_ends_a_recording_that_is_then_whole(machine, name):
     assert [p.name for p in machine.out.parent.iterdir()] == ["run.parquet"]
 
 
+def test_progress_is_told_each_second_and_may_end_a_recording(machine):
+    told = []
+    result = machine.record(seconds=8.5, done=told.append)
+    assert len(told) == 8 and sum(told) == pytest.approx(8, abs=0.5)
+    assert machine.record(seconds=60, done=lambda seconds: True).seconds < 1.5 < result.seconds
+
+
+def test_what_was_not_verified_at_the_end_is_not_believed(machine):
+    result = machine.record(done=lambda seconds: machine.bus.fault("nack", times=None) or True)
+    assert len(machine.columns()["gz"]) == result.samples < 99
+    assert result.samples + result.doubtful == pytest.approx(100, abs=9)
+
+
 @pytest.mark.parametrize("number", [errno.ENOSPC, errno.EIO, errno.EFBIG])
 def test_a_full_disk_is_no_bus_error_and_all_before_it_is_kept(machine, monkeypatch, number):
     class FullFile(FileIO):
@@ -199,32 +214,9 @@ def test_what_is_recorded_is_in_the_file_twice_a_second_at_any_rate(machine):
     assert rows[0] > 10 * (6.1 - 2)
 
 
-class TestLostSamples:
-    @pytest.fixture
-    def lost(self):
-        def count(times_us):
-            recorder = Recorder(lambda columns: None, 10000, Recorded())
-            for t_us in times_us:
-                recorder.add(int(t_us), [0] * 7)
-            return recorder.result.lost
-
-        return count
-
-    def test_a_steady_clock_loses_none(self, lost):
-        assert lost(np.arange(1000) * 10000) == 0
-
-    @pytest.mark.parametrize("percent", [-3, 3])
-    def test_a_chip_whose_clock_is_off_loses_none(self, lost, percent):
-        assert lost(np.arange(5000) * 10000 * (1 + percent / 100)) == 0
-
-    def test_jitter_loses_none(self, lost):
-        jitter = np.random.default_rng(1).uniform(-4500, 4500, 2000)
-        assert lost(np.arange(2000) * 10000 + jitter) == 0
-
-    @pytest.mark.parametrize("missing", [1, 2, 17, 500])
-    def test_a_gap_counts_what_is_missing(self, lost, missing):
-        times = np.arange(1000) * 10000
-        assert lost(np.delete(times, range(300, 300 + missing))) == missing
+def test_a_simulated_hand_feels_nothing_new_after_its_recording():
+    felt = fake_hand._over_time(Recording({n: np.arange(9) for n in GYRO}, SCALES, "run"), GYRO, 2)
+    assert [felt(s)[0] for s in (0.0, 0.26, 0.8, 99.0)] == [0.0, 1.5, 4.0, 4.0]
 
 
 pytest.importorskip("smbus2")

@@ -120,16 +120,16 @@ class Recorder:
         """One sample of seven words at t_us on any clock; gaps in time count as lost samples."""
         if self._start_us is None:
             self._start_us = t_us
-            self._expected_us = float(t_us)
-        self._count_lost(t_us)
-        self._waiting.append((t_us - self._start_us, *sample))
+        since_us = t_us - self._start_us
+        self._count_lost(since_us)
+        self._waiting.append((since_us, *sample))
 
-    def _count_lost(self, t_us: int) -> None:
+    def _count_lost(self, since_us: int) -> None:
         """A sample may be late, and the chip's clock off by a few percent, without any lost.
 
         So a gap counts when it is long, or when the samples stay late after it.
         """
-        late = (t_us - self._expected_us) / self._period_us
+        late = (since_us - self._expected_us) / self._period_us
         self._late_in_a_row = self._late_in_a_row + 1 if late > 0.5 else 0
         if late > 1.7 or self._late_in_a_row == _STAYS_LATE:
             missing = max(1, round(late))

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from zerorate import Corrector
 
-from zerorate_tools.layout import AXIS, ESTIMATOR, MARKS, SETTINGS, STATE, axis_at
+from zerorate_tools.layout import AXIS, ESTIMATOR, SETTINGS, STATE, axis_at
 
 from ..numbers import fixed
 from ..recordings import Scales, open_recording
@@ -110,8 +110,7 @@ def _estimators(state: NDArray[Any], settings: Any, axis: int, scales: Scales) -
     for number, at in enumerate(starts):
         own = state[at : at + words]
         kind = "any" if number == 0 else "short" if number <= short else "long"
-        free = number > 0 and own[ESTIMATOR.EST_TEMP] == MARKS.FREE
-        if own[ESTIMATOR.EST_READINGS] > 0 and not free:
+        if own[ESTIMATOR.EST_READINGS] > 0:
             in_use = at == state[block + AXIS.CURRENT]
             out.append(_estimator(kind, own, settings[SETTINGS.BINS], in_use, scales))
     return out

@@ -1,0 +1,211 @@
+"""What a board sends and what becomes of it, without a board: every row, time and count."""
+
+import json
+import re
+
+import numpy as np
+import pytest
+from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050
+from zerorate_i2c.mpu6050 import MPU6050
+from zerorate_tools.boards.connection import BoardError
+from zerorate_tools.boards.on_board.stream import Streamer
+from zerorate_tools.boards.port import MESSAGE, SAMPLE, SAMPLE_BYTES, SCALES, BoardStream, encode
+from zerorate_tools.boards.recorder import COLUMNS, Recorded, Recorder, scales_of
+from zerorate_tools.model.model import NAMES
+
+FRESH, VERIFIED, SUSPECT, SEEN = 0, 1, 3, 0x80
+WORDS = [-32768, 32767, -1, 1, 256, -256]
+
+
+class Sent:
+    """A serial port on which these bytes come."""
+
+    def __init__(self, data):
+        self.data = data
+
+    @property
+    def in_waiting(self):
+        return min(len(self.data), 97)
+
+    def read(self, count):
+        data, self.data = self.data[:count], self.data[count:]
+        return data
+
+
+def recorded(data, seconds=None):
+    """The rows that are believed, and the counts, of bytes from a board."""
+    rows, serial = [], Sent(data)
+    recorder = Recorder(lambda c: rows.extend(zip(*(c[n] for n in COLUMNS))), 10000.0, Recorded())
+    assert BoardStream(serial, "port").record(recorder, None, lambda s: not serial.data) is None
+    return [tuple(map(int, row)) for row in rows], recorder.result
+
+
+def sample(sequence, t_us, status, last=0):
+    words = b"".join(word.to_bytes(2, "big", signed=True) for word in [*WORDS, last])
+    head = sequence.to_bytes(2, "little") + t_us.to_bytes(4, "little") + bytes([status])
+    assert len(head + words) == SAMPLE_BYTES
+    return encode(SAMPLE, head + words)
+
+
+def frames(*statuses, first=0, t_us=0):
+    """Samples 10 ms apart with these statuses, numbered in gz."""
+    return b"".join(
+        sample((first + i) % 65536, (t_us + 10000 * i) % (1 << 30), status, i)
+        for i, status in enumerate(statuses)
+    )
+
+
+def numbers(rows):
+    return [row[-1] for row in rows]
+
+
+def test_what_was_verified_is_believed_and_what_came_after_it_waits():
+    rows, result = recorded(frames(FRESH, FRESH, VERIFIED, FRESH))
+    assert rows == [(0, *WORDS, 0), (10000, *WORDS, 1)]
+    assert (result.samples, result.seconds, result.doubtful) == (2, 0.01, 0)
+
+
+def test_counter_and_clock_run_round():
+    rows, result = recorded(frames(*[FRESH] * 4, VERIFIED, first=65534, t_us=(1 << 30) - 15000))
+    assert [row[0] for row in rows] == [0, 10000, 20000, 30000]
+    assert (result.dropped, result.lost) == (0, 0)
+
+
+@pytest.mark.parametrize("first", [100, 65534])
+def test_frames_that_never_came_are_counted_by_their_numbers_and_by_time(first):
+    data = frames(*[FRESH] * 9, VERIFIED, first=first)
+    size = len(data) // 10
+    rows, result = recorded(data[: 3 * size] + data[6 * size :])
+    assert numbers(rows) == [0, 1, 2, 6, 7, 8]
+    assert (result.dropped, result.lost) == (3, 3)
+
+
+def test_a_sample_in_doubt_is_counted_and_one_seen_before_is_no_row():
+    rows, result = recorded(frames(FRESH, SUSPECT, SEEN, FRESH, SEEN | SUSPECT, SEEN | VERIFIED))
+    assert numbers(rows) == [0, 3]
+    assert result.doubtful == 2
+
+
+def test_after_a_restart_what_waited_is_in_doubt_and_a_bus_error_leaves_it():
+    restart, bus = encode(MESSAGE, b"restarted"), encode(MESSAGE, b"bus: 5")
+    data = frames(FRESH, VERIFIED) + frames(FRESH, FRESH, first=2) + restart
+    rows, result = recorded(data + bus + bus + frames(FRESH, VERIFIED, first=4))
+    assert numbers(rows) == [0, 0]
+    assert (result.restarts, result.doubtful, result.bus_errors, result.dropped) == (1, 3, 2, 0)
+
+
+class Ended(Exception):
+    """Enough was streamed."""
+
+
+@pytest.fixture
+def board():
+    """A board that streams a chip whose samples count in gz; faults: what happens at which one."""
+
+    def streamed(count, faults):
+        chip = FakeMPU6050([[*WORDS, n] for n in range(2 * count)])
+        clock = FakeClock(chip)
+        bus, sent, waited = FakeI2C(chip, clock=clock), bytearray(), []
+        imu = MPU6050(bus, clock=clock, check_every=50)
+
+        def wait():
+            waited.append(None)
+            if len(waited) == 2 * count:
+                raise Ended
+            clock.advance_us(imu.period_us // 2)
+            faults.get(len(waited) // 2, lambda chip, bus: None)(chip, bus)
+
+        with pytest.raises(Ended):
+            Streamer(imu, sent.extend).run(wait)
+        return bytes(sent)
+
+    return streamed
+
+
+def test_what_a_board_streams_is_recorded_sample_by_sample(board):
+    data = board(450, {})
+    scales = BoardStream(Sent(data), "port").scales()
+    assert (scales.sensor, scales.odr_hz, scales.temp_offset_degc) == ("MPU-6050", 100.0, 36.53)
+    assert 3 <= data.count(b'"part"') <= 5  # for who listens later
+    rows, result = recorded(data)
+    assert numbers(rows) == list(range(rows[0][-1], rows[0][-1] + len(rows)))
+    assert len(rows) == result.samples >= 399 and {row[1:-1] for row in rows} == {tuple(WORDS)}
+    assert rows[-1][0] / (len(rows) - 1) == pytest.approx(10000, rel=0.01)
+    assert (result.dropped, result.lost, result.bytes_skipped, result.restarts) == (0, 0, 0, 0)
+
+
+def test_a_brown_out_and_a_dead_bus_of_a_board_are_told(board):
+    faults = {
+        120: lambda chip, bus: chip.power_up(),
+        300: lambda chip, bus: bus.fault("nack", times=30),
+    }
+    rows, result = recorded(board(450, faults))
+    assert result.restarts == 1 and result.bus_errors >= 1
+    assert {row[1:-1] for row in rows} == {tuple(WORDS)}
+    assert all(a < b for a, b in zip(numbers(rows), numbers(rows)[1:]))
+
+
+HEADER = {"odr_hz": 50, "gyro_lsb_per_dps": 16.4, "accel_lsb_per_g": 2048, "part": "X"}
+HEADER |= {"temp_lsb_per_degc": 340, "temp_offset_degc": 36.53, "source": "a board"}
+
+
+@pytest.mark.parametrize("binding", [None, [*range(3, 3 + len(NAMES))]])
+def test_scales_say_all_that_a_board_said(binding):
+    said = HEADER if binding is None else {**HEADER, "binding": binding}
+    scales = scales_of(said)
+    assert (scales.odr_hz, scales.gyro_lsb_per_dps, scales.accel_lsb_per_g) == (50, 16.4, 2048)
+    assert scales.more["source"] == "a board"
+    kept = [value for value in scales.more.values() if isinstance(value, dict)]
+    assert [[*v.values()] for v in kept] == ([] if binding is None else [said["binding"]])
+
+
+def test_the_scales_come_behind_what_else_a_board_says():
+    head = {**HEADER, "binding": [*range(len(NAMES))]}
+    data = b"MPY: soft reboot\r\n" + frames(FRESH) + encode(SCALES, json.dumps(head).encode())
+    assert BoardStream(Sent(data), "port").scales().gyro_lsb_per_dps == 16.4
+
+
+def test_a_board_that_says_too_few_of_its_registers_is_refused():
+    head = {**HEADER, "binding": [0] * (len(NAMES) - 1)}
+    with pytest.raises(BoardError, match="cannot be read"):
+        BoardStream(Sent(encode(SCALES, json.dumps(head).encode())), "port").scales()
+
+
+def test_the_rate_of_a_recording_is_of_its_whole_periods():
+    assert Recorded(samples=101, seconds=2.0).rate_hz == 50.0
+    assert Recorded(samples=1).rate_hz == 0.0
+
+
+def test_all_that_was_counted_is_said_in_a_recordings_line():
+    counts = {"lost": 11, "doubtful": 12, "restarts": 13, "bus_errors": 14, "dropped": 15}
+    said = str(Recorded(samples=10, seconds=17.0, bytes_skipped=16, part="X", **counts))
+    assert re.findall(r"\b1[1-6]\b", said) == ["11", "12", "13", "14", "15", "16"]
+    assert not re.search("restart|bus|port|bytes", str(Recorded(samples=10, seconds=17.0)))
+
+
+class TestLostSamples:
+    @pytest.fixture
+    def lost(self):
+        def count(times_us):
+            recorder = Recorder(lambda columns: None, 10000, Recorded())
+            for t_us in times_us:
+                recorder.add(int(t_us), [0] * 7)
+            return recorder.result.lost
+
+        return count
+
+    def test_a_steady_clock_loses_none(self, lost):
+        assert lost(np.arange(1000) * 10000) == 0
+
+    @pytest.mark.parametrize("percent", [-3, 3])
+    def test_a_chip_whose_clock_is_off_loses_none(self, lost, percent):
+        assert lost(np.arange(5000) * 10000 * (1 + percent / 100)) == 0
+
+    def test_jitter_loses_none(self, lost):
+        jitter = np.random.default_rng(1).uniform(-4500, 4500, 2000)
+        assert lost(np.arange(2000) * 10000 + jitter) == 0
+
+    @pytest.mark.parametrize("missing", [1, 2, 17, 500])
+    def test_a_gap_counts_what_is_missing(self, lost, missing):
+        times = np.arange(1000) * 10000
+        assert lost(np.delete(times, range(300, 300 + missing))) == missing
