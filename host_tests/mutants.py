@@ -122,8 +122,8 @@ AREAS = {
     ),
     "read": (
         [_TOOLS + "loop/read/"],
-        ["loop/test_still.py", "loop/test_ticks.py", _FIGURES + "[read]",
-         _FIGURES + "[parts of reading]"],
+        ["loop/test_gate_by_hand.py", "loop/test_still.py", "loop/test_ticks.py",
+         _FIGURES + "[read]", _FIGURES + "[parts of reading]"],
     ),
     "fit": (
         [_TOOLS + "loop/fit/"],
