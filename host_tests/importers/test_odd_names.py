@@ -259,11 +259,11 @@ def test_axes_of_another_sensor_are_offered_as_no_rates(tmp_path, name, names, t
 
 
 def test_an_accelerometer_in_the_file_beside_is_said(tmp_path):
-    (tmp_path / "Linear Accelerometer.csv").write_text("t_s,x,y,z\n")
+    (tmp_path / "Linear Accelerometer.csv").write_text("t_s,x,y,z\n0,0,0,0.01\n1,0,0,0.02\n")
     frame = table()[["t_s", "gx_dps", "gy_dps", "gz_dps"]]
     _, report = read(tmp_path, frame, name="Gyroscope.csv")
     assert not told(report, "is beside it")  # it has no gravity
-    (tmp_path / "Accelerometer.csv").write_text("t_s,x,y,z\n")
+    (tmp_path / "Accelerometer.csv").write_text("t_s,x,y,z\n0,0,0,1.01\n1,0,0,1.0\n")
     _, report = read(tmp_path, frame, name="Gyroscope.csv")
     assert told(report, "Accelerometer.csv is beside it: zerorate import")
 
