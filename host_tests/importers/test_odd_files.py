@@ -73,6 +73,28 @@ def test_a_line_that_is_no_json_is_counted(tmp_path):
     assert len(recording) == 49 and report.dropped["a line that is no JSON"] == 1
 
 
+def test_dicts_as_python_prints_them_are_read_one_a_line(tmp_path):
+    printed = [str({"t": r.t_s, "gyro": {"x": r.gx_dps, "y": r.gy_dps, "z": r.gz_dps}})
+               for r in table(50).itertuples()]  # fmt: skip
+    text = "\n".join([*printed, printed[0][:30]])
+    mapping = "t_us=t:s gx=gyro.x:dps gy=gyro.y:dps gz=gyro.z:dps"
+    recording, report = read(tmp_path, text, mapping=mapping)
+    assert len(recording) == 50 and report.dropped["a line that is no JSON"] == 1
+    assert recording.gyro_dps() == pytest.approx(
+        table(50)[["gx_dps", "gy_dps", "gz_dps"]], abs=0.01
+    )
+
+
+@pytest.mark.parametrize("tag", ["[IMU DEBUG] ", "[12:00:01.250]"])
+def test_a_tag_in_brackets_before_named_values_is_no_json(tmp_path, tag):
+    rows = table(50)[["gx_dps", "gy_dps", "gz_dps"]]
+    text = "\n".join(
+        f"{tag}gx_dps={x:.4f} gy_dps={y:.4f} gz_dps={z:.4f}" for x, y, z in rows.to_numpy()
+    )
+    recording, _ = read(tmp_path, text, options=Options(hz=100.0))
+    assert recording.gyro_dps() == pytest.approx(rows.to_numpy(), abs=0.01)
+
+
 @pytest.mark.parametrize(
     "first, words",
     [

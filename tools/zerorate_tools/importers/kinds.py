@@ -1,5 +1,6 @@
 """Which reader a file needs, told by its first bytes and then by its name."""
 
+import re
 import zipfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
@@ -40,6 +41,8 @@ _OF_MATLAB = ("matlab", "hdf5")
 _LONGEST_START, _ZEROS = 64, 4096
 _DATABASE = b"SQLite format 3"
 _ZIP = b"PK\x03\x04"
+#: An object, or a list of what a list may hold; what begins as [INFO] or [12:00:01] is a text.
+_JSON = re.compile(rb"\s*(\{|\[\s*([\[{\"]|[-\d.eE]+\s*,))")
 _OF_TEXT = bytes([9, 10, 13, *range(32, 127)])
 
 
@@ -107,7 +110,7 @@ def _reader(path: Path) -> str | None:
         if by_magic in _OF_MESSAGES and _goes_on_with_zeros(path):
             raise BadRecording(path, "nothing but zeros behind its start", do="copy the file again")
         return by_magic
-    if head(path, 1000)[0].removeprefix(b"\xef\xbb\xbf").lstrip()[:1] in (b"{", b"["):
+    if _JSON.match(head(path, 1000)[0].removeprefix(b"\xef\xbb\xbf")):
         return "json_file"
     return None if _is_text(path) else _SUFFIXES.get(path.suffix.lower())
 

@@ -1,6 +1,10 @@
-"""JSON: an object a line, a list of objects, an object of lists, or pandas' object of objects."""
+"""JSON: an object a line, a list of objects, an object of lists, or pandas' object of objects.
+
+Python's dicts, one a line as `print` writes them, are taken as objects.
+"""
 
 import json
+from ast import literal_eval
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from itertools import chain, islice
@@ -41,9 +45,22 @@ def read(path: Path, instance: int = 0) -> Table:
 
 def _is_object(line: bytes) -> bool:
     try:
-        return isinstance(json.loads(line), dict)
+        return isinstance(_loaded(line), dict)
     except ValueError:
         return False
+
+
+def _loaded(line: bytes) -> Any:
+    """Raises ValueError."""
+    try:
+        return json.loads(line)
+    except ValueError:
+        if b"'" not in line:
+            raise
+    try:
+        return literal_eval(line.decode().strip())
+    except (SyntaxError, TypeError, RecursionError, MemoryError) as error:
+        raise ValueError from error
 
 
 def _is_records(held: Any) -> bool:
@@ -59,7 +76,7 @@ def _lines(path: Path, dropped: Counter[str]) -> Iterator[Any]:
 
 def _object(line: bytes, dropped: Counter[str]) -> Any:
     try:
-        return json.loads(line)
+        return _loaded(line)
     except ValueError:
         dropped["a line that is no JSON"] += 1
         return None

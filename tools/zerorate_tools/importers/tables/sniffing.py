@@ -31,9 +31,9 @@ DATE = re.compile(
 )
 #: What the Arduino IDE puts before each line of its monitor.
 _CLOCK = re.compile(rb"(?m)^(\d\d:\d\d:\d\d\.\d+) -> (?=[^\r\n]*?([,;\t |]))")
-#: A value behind its name, as Arduino's plotter has it: gx:0.8,gy:-0.5.
+#: A value behind its name, as Arduino's plotter has it: gx:0.8,gy:-0.5; or behind [a tag].
 _PAIR = rb"([A-Za-z_]\w*)[ \t]*[:=][ \t]*([-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?)"
-_PAIRS = re.compile(rb"\s*(?:" + _PAIR + rb"(?:[,;\s]+|$)){%d,}$" % _CELLS)
+_PAIRS = re.compile(rb"\s*(?:\[[^\]\r\n]*\]\s*)?(?:" + _PAIR + rb"(?:[,;\s]+|$)){%d,}$" % _CELLS)
 _EACH_PAIR = re.compile(_PAIR)
 #: A line of such beneath the names says their units.
 _UNIT = re.compile(
