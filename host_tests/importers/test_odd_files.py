@@ -85,6 +85,15 @@ def test_dicts_as_python_prints_them_are_read_one_a_line(tmp_path):
     )
 
 
+@pytest.mark.parametrize("kind", [list, tuple])
+def test_numbers_as_python_prints_a_list_or_a_tuple_are_columns(tmp_path, kind):
+    rows = table(50)[["gx_dps", "gy_dps", "gz_dps"]].to_numpy()
+    text = "\n".join(str(kind(row.tolist())) for row in rows)
+    mapping = "gx=[0]:dps gy=[1]:dps gz=[2]:dps"
+    recording, _ = read(tmp_path, text, mapping=mapping, options=Options(hz=100.0))
+    assert recording.gyro_dps() == pytest.approx(rows, abs=0.01)
+
+
 @pytest.mark.parametrize("tag", ["[IMU DEBUG] ", "[12:00:01.250]"])
 def test_a_tag_in_brackets_before_named_values_is_no_json(tmp_path, tag):
     rows = table(50)[["gx_dps", "gy_dps", "gz_dps"]]

@@ -42,7 +42,7 @@ _LONGEST_START, _ZEROS = 64, 4096
 _DATABASE = b"SQLite format 3"
 _ZIP = b"PK\x03\x04"
 #: An object, or a list of what a list may hold; what begins as [INFO] or [12:00:01] is a text.
-_JSON = re.compile(rb"\s*(\{|\[\s*([\[{\"]|[-\d.eE]+\s*,))")
+_JSON = re.compile(rb"\s*(\{|\[\s*[\[{\"]|[\[(]\s*[-\d.eE]+\s*,)")
 _OF_TEXT = bytes([9, 10, 13, *range(32, 127)])
 
 

@@ -1,6 +1,6 @@
 """JSON: an object a line, a list of objects, an object of lists, or pandas' object of objects.
 
-Python's dicts, one a line as `print` writes them, are taken as objects.
+A line may also be a list of numbers, and what Python prints of a dict, a list or a tuple.
 """
 
 import json
@@ -28,7 +28,7 @@ _DO = "write an object for each sample, one a line"
 
 def read(path: Path, instance: int = 0) -> Table:
     """Raises BadRecording."""
-    if _is_object(head(path, 1 << 18)[0].partition(b"\n")[0]):
+    if _is_sample(head(path, 1 << 18)[0].partition(b"\n")[0]):
         return _of_records(lambda dropped: _lines(path, dropped), path)
     stream = open_text(path, head(path, 4096)[1])[0]
     held = json.loads(stream.read())
@@ -43,11 +43,16 @@ def read(path: Path, instance: int = 0) -> Table:
     return table_of_arrays(arrays, path, _DO)
 
 
-def _is_object(line: bytes) -> bool:
+def _is_sample(line: bytes) -> bool:
     try:
-        return isinstance(_loaded(line), dict)
+        held = _loaded(line)
     except ValueError:
         return False
+    return isinstance(held, dict) or _is_numbers(held)
+
+
+def _is_numbers(held: Any) -> bool:
+    return isinstance(held, (list, tuple)) and all(isinstance(v, (int, float)) for v in held)
 
 
 def _loaded(line: bytes) -> Any:
@@ -55,7 +60,7 @@ def _loaded(line: bytes) -> Any:
     try:
         return json.loads(line)
     except ValueError:
-        if b"'" not in line:
+        if b"'" not in line and not line.lstrip().startswith(b"("):
             raise
     try:
         return literal_eval(line.decode().strip())
@@ -122,10 +127,10 @@ def _flat(record: Any, before: str = "") -> Iterator[tuple[str, Any]]:
     items: Iterable[tuple[str, Any]] = ()
     if isinstance(record, dict):
         items = ((f"{before}.{key}".lstrip("."), value) for key, value in record.items())
-    elif isinstance(record, list) and len(record) <= _LONGEST_LIST:
+    elif isinstance(record, (list, tuple)) and len(record) <= _LONGEST_LIST:
         items = ((f"{before}[{at}]", value) for at, value in enumerate(record))
     for name, value in items:
-        if isinstance(value, (dict, list)):
+        if isinstance(value, (dict, list, tuple)):
             yield from _flat(value, name)
         elif isinstance(value, str):
             yield name, _number(value)
