@@ -11,6 +11,7 @@ from zerorate_tools.compare.judge import FIRST_REST, FRESH, NOTHING, TAUGHT, Too
 from zerorate_tools.compare.matrix import WITH, matrix_of
 from zerorate_tools.compare.show import write_page
 from zerorate_tools.demo.broad import trials
+from zerorate_tools.errors import BadRecording
 from zerorate_tools.recordings import Recording, Scales, write_recording
 from zerorate_tools.simulate import load_description, simulate
 
@@ -41,6 +42,13 @@ def a_log(path, biases_dps, seed=1, rest_s=20, turn_s=10):
 def drifting(tmp_path):
     """A log whose bias wanders by 0.1 dps from rest to rest."""
     return a_log(tmp_path / "drifting.parquet", [0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1])
+
+
+def test_a_log_named_twice_is_refused_as_nothing_was_learned_before_it(drifting, tmp_path):
+    copy = tmp_path / "copy.parquet"
+    copy.write_bytes(drifting.read_bytes())
+    with pytest.raises(BadRecording, match="copy.parquet: holds the same samples as .*drifting"):
+        compare([drifting, copy])
 
 
 def test_what_is_known_before_a_rest_is_held_against_it(drifting):

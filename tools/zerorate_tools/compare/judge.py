@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from hashlib import sha256
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -9,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from ..errors import InFile
+from ..errors import BadRecording, InFile
 from ..loop.read.still import runs, still_ticks, ticks_with_spread
 from ..peers import Given, firmware, fusion, given, vqf_default
 from ..recordings import read_recording
@@ -187,8 +188,14 @@ def compare(
     """
     paths = [Path(log) for log in logs]
     sessions, rests = [], []
+    seen: dict[bytes, Path] = {}
     for path in paths:
-        sessions.append(given(read_recording(path, keep_gaps=True)))
+        recording = read_recording(path, keep_gaps=True)
+        first = seen.setdefault(sha256(recording.gyro_lsb().tobytes()).digest(), path)
+        if first is not path:
+            do = "name each recording once"
+            raise BadRecording(path, f"holds the same samples as {first}", do=do)
+        sessions.append(given(recording))
         rests.append(rests_of(path, sessions[-1]))
         advance(1)
     later = [(number, rest) for number, found in enumerate(rests) for rest in found[1:]]
