@@ -21,7 +21,7 @@ from zerorate_tools.watch import watch
 from zerorate_tools.watch.live import Live
 from zerorate_tools.watch.own import OwnOutput
 from zerorate_tools.watch.screen import Lines, WatchOptions, sparkline
-from zerorate_tools.watch.watching import CsvTail, Watcher
+from zerorate_tools.watch.watching import CsvTail, Watcher, growing_file
 
 DESCRIPTION = {
     "name": "run",
@@ -123,6 +123,11 @@ def test_a_writer_in_another_process_is_followed(writer, log, tmp_path):
         following.run()
     assert len(set(lines)) > 1  # how often it looks is up to how busy the machine is
     assert state_bytes(following.live.corrector) == replay(log).state
+
+
+def test_a_folder_is_named_as_one(tmp_path):
+    with pytest.raises(BadRecording, match="is a folder; name a .csv that is being written"):
+        growing_file(tmp_path)
 
 
 def test_ctrl_c_ends_it_well(log):

@@ -39,7 +39,7 @@ def growing_file(path: Path) -> Path:
         raise BadRecording(path, problem, do="record to .csv, or use `zerorate replay` afterwards")
     if not path.is_file():
         do = "name a .csv that is being written, a board's port or /dev/i2c-N"
-        raise BadRecording(path, "no such file", do=do)
+        raise BadRecording(path, "is a folder" if path.is_dir() else "no such file", do=do)
     return path
 
 
