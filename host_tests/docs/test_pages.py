@@ -190,6 +190,7 @@ def test_the_reference_has_every_public_name(site):
     named = {name.rpartition(".")[2] for name in re.findall(r'<h3 id="([\w.]+)"', page)}
     assert {*zerorate_tools.__all__, *BESIDES, *FAKES} <= named
     text = re.sub(r"<[^>]+>", "", page)
+    assert "Integer columns of equal length" in text  # and what their docstrings say
     assert "ignore_outside: bool" in text and "odr_hz: float = 100.0" in text  # constructors, too
 
 

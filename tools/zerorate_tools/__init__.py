@@ -3,8 +3,8 @@
     import zerorate_tools as zt
 
     recording = zt.read_recording("run.parquet")
-    recording.to_frame(physical=True)               # a pandas DataFrame in dps, g and degC
-    replayed = zt.replay_recording(recording)       # the firmware over it
+    recording.to_frame(physical=True)          # a pandas DataFrame in dps, g and degC
+    replayed = zt.replay_recording(recording)  # the firmware over it
     zt.plot_replay(recording, replayed).show()
     zt.close_loop(["run-1.parquet", "run-2.parquet"], "closed")
 
