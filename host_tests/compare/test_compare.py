@@ -86,7 +86,7 @@ def test_what_is_not_installed_is_said(drifting, monkeypatch):
     assert "vqf" not in compared.error_dps
 
 
-def test_a_log_with_one_rest_is_judged_by_nothing_and_says_what_to_do(tmp_path, capsys):
+def test_one_rest_judges_no_method_and_without_motion_the_log_is_refused(tmp_path, capsys):
     log = a_log(tmp_path / "once.parquet", [0.5])
     with pytest.raises(TooFewRests, match="leave it at rest again"):
         compare([log])

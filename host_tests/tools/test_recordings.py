@@ -3,6 +3,7 @@
 import json
 import sys
 from pathlib import Path
+from threading import current_thread, main_thread
 
 import numpy as np
 import pyarrow as pa
@@ -24,6 +25,7 @@ from zerorate_tools.recordings.atomic import written_beside
 from zerorate_tools.recordings.checks import GAP, check_names
 from zerorate_tools.recordings.csv_format import read_header
 from zerorate_tools.recordings.scales import example_for, scales_from_text
+from zerorate_tools.recordings.text import rows_of
 
 if sys.platform == "linux":
     import resource
@@ -137,6 +139,17 @@ def test_physical_units_follow_the_scales():
     assert recording.accel_g().tolist() == [[0.0, 0.0, 1.0]]
     assert recording.temp_degc().tolist() == [34.53]
     assert recording.samples().tolist() == [[0, 0, 16384, -680, 131, 0, -262]]
+
+
+def test_no_other_thread_calls_python_while_a_text_is_read():
+    threads = []
+
+    def take(row):
+        threads.append(current_thread())
+        return "skip"
+
+    assert rows_of(b"1,2\n3\n" * 100_000, ["a", "b"], pa.int64(), 0, take).num_rows == 100_000
+    assert set(threads) == {main_thread()}
 
 
 def test_time_begins_with_the_first_sample():

@@ -11,6 +11,7 @@ from zerorate_tools.compare import Compared, compare
 from zerorate_tools.compare.judge import FIRST_REST, FRESH, NOTHING, TooFewRests, rests_of
 from zerorate_tools.demo.broad import Trial, trials, true_bias
 from zerorate_tools.importers import import_recording
+from zerorate_tools.loop.read.still import ticks_with_spread
 from zerorate_tools.peers import firmware, fusion, given, vqf_default
 
 from .public_data import recordings, told_of
@@ -81,7 +82,7 @@ def errors_between(trial: Trial, log: Path) -> tuple[dict[str, float], float]:
     """Way -> RMS error by the optics from the first question to the last, most of it in motion,
     mdps; and one sigma of the truth itself."""
     one, truth = given(trial.recording()), true_bias(trial)
-    rests = rests_of(log, one)
+    rests = rests_of(ticks_with_spread(log), one)
     biases = {
         NOTHING: np.zeros_like(one.rate_dps),
         FIRST_REST: np.broadcast_to(rests[0].bias_dps, one.rate_dps.shape),

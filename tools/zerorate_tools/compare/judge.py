@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from hashlib import sha256
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -12,6 +11,7 @@ from threadpoolctl import threadpool_limits
 
 from ..errors import BadRecording, InFile
 from ..loop.read.still import runs, still_ticks, ticks_with_spread
+from ..loop.read.ticks import Ticks
 from ..peers import Given, firmware, fusion, given, vqf_default
 from ..recordings import read_recording
 
@@ -47,9 +47,8 @@ class Rest:
     down: NDArray[np.float64] | None
 
 
-def rests_of(path: Path, one: Given) -> list[Rest]:
-    """Every rest of three ticks and more, those of over a minute in pieces. Raises BadRecording."""
-    ticks = ticks_with_spread(path)
+def rests_of(ticks: Ticks, one: Given) -> list[Rest]:
+    """Every rest of three ticks and more, those of over a minute in pieces."""
     still = still_ticks(ticks, edges=False) & (ticks.count > 0)
     t_us = one.recording.columns["t_us"]
     found = []
@@ -188,15 +187,15 @@ def compare(
     """
     paths = [Path(log) for log in logs]
     sessions, rests = [], []
-    seen: dict[bytes, Path] = {}
+    seen: dict[str, Path] = {}
     for path in paths:
-        recording = read_recording(path, keep_gaps=True)
-        first = seen.setdefault(sha256(recording.gyro_lsb().tobytes()).digest(), path)
+        ticks = ticks_with_spread(path)
+        first = seen.setdefault(ticks.digest, path)
         if first is not path:
             do = "name each recording once"
             raise BadRecording(path, f"holds the same samples as {first}", do=do)
-        sessions.append(given(recording))
-        rests.append(rests_of(path, sessions[-1]))
+        sessions.append(given(read_recording(path, keep_gaps=True)))
+        rests.append(rests_of(ticks, sessions[-1]))
         advance(1)
     later = [(number, rest) for number, found in enumerate(rests) for rest in found[1:]]
     if not later:

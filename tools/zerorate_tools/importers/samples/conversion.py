@@ -206,10 +206,8 @@ def _has_gravity(path: Path) -> bool:
     except BadRecording:
         return False
     axes, *_ = [*accel_groups(table.names), bare_axes(table.names)]
-    return (
-        bool(axes)
-        and gravity_unit(list(table.first_rows(list(axes.values())).values())) is not None
-    )
+    first = table.first_rows(list(axes.values())) if axes else {}
+    return bool(first) and gravity_unit(list(first.values())) is not None
 
 
 def absent(plan: Plan, names: list[str], path: Path) -> list[str]:
