@@ -229,3 +229,4 @@ def test_a_log_that_never_rests_is_still_told_what_the_matrix_wins(tmp_path, cap
     assert main(["compare", str(tmp_path / "never.parquet"), "--out", str(page)]) == 0
     for said in (capsys.readouterr().out, page.read_text()):
         assert "never lay still twice" in said and "In motion the matrix of" in said
+    assert "<p>never.parquet</p>" in page.read_text()  # which log it was

@@ -6,10 +6,11 @@ What it prints is what docs/commands.md shows: host_tests/package runs it and co
 import re
 import shutil
 import socket
+from dataclasses import replace
 
 import pytest
 from zerorate_tools.cli import main
-from zerorate_tools.demo import broad, demo
+from zerorate_tools.demo import broad, demo, story
 from zerorate_tools.demo import real as by_real
 from zerorate_tools.demo.broad import trials
 from zerorate_tools.demo.real import WAYS, real
@@ -173,6 +174,12 @@ def test_the_command_credits_the_authors_and_prints_the_table(filled, shown, mon
     assert "D. Laidig" in said and "CC BY 4.0" in said
     rows = [line for line in said.splitlines() if re.search(r"\d\.\d\s+[\d,]+\.\d$", line)]
     assert len(rows) >= len(WAYS) - 1
+
+
+def test_a_filter_that_is_not_installed_is_said_in_its_row(shown):
+    rest = {way: rms for way, rms in shown.whole_mdps.items() if way != "vqf"}
+    said = story.real_trial(replace(shown, whole_mdps=rest, motion_mdps=rest), "x86")
+    assert re.search(r"^ +vqf +not installed: pip install vqf$", said, re.MULTILINE)
 
 
 DESCRIPTION = {

@@ -221,7 +221,7 @@ def test_compare_prints_the_table_and_what_motion_won_and_writes_a_page(comparin
     comparing.matrix.result = WON
     assert cli.main(["compare", "a.csv", "--out", "p.html"]) == 0
     assert capsys.readouterr().out == "the table\n\nin motion\n\np.html\n"
-    assert comparing.page.call[0] == (COMPARED, Path("p.html"), WON)
+    assert comparing.page.call[0] == (COMPARED, Path("p.html"), WON, ["a.csv"])
     assert cli.main(["compare", "a.csv", "--json"]) == 0
     assert json.loads(capsys.readouterr().out) == {"ways": 1, "in_motion": "won", "page": None}
 

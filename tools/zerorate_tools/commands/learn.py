@@ -172,7 +172,7 @@ def run_compare(arguments: argparse.Namespace) -> None:
                 raise
             compared = None
     if arguments.out is not None:
-        write_page(compared, arguments.out, won)
+        write_page(compared, arguments.out, won, [log.name for log in arguments.logs])
     if arguments.json:
         figures = {"later_rests": 0} if compared is None else compared.figures()
         print_json({**figures, "in_motion": won, "page": arguments.out})

@@ -2,6 +2,7 @@
 
 import html
 import io
+from collections.abc import Sequence
 from pathlib import Path
 
 import matplotlib
@@ -79,10 +80,13 @@ def _aligned(lines: list[tuple[str, str, str, str]]) -> list[str]:
     ]
 
 
-def write_page(compared: Compared | None, path: Path, won: Won | None = None) -> None:
+def write_page(
+    compared: Compared | None, path: Path, won: Won | None = None, names: Sequence[str] = ()
+) -> None:
     """One HTML file with headline, plot and tables, which needs no other; without a method judged
-    at a rest, what the motion shows."""
-    at_rests = f"<h1>{NO_RESTS}</h1>" if compared is None else _rests_html(compared)
+    at a rest, the logs' names and what the motion shows."""
+    without = f"<h1>{NO_RESTS}</h1><p>{html.escape(', '.join(names))}</p>"
+    at_rests = without if compared is None else _rests_html(compared)
     page = (
         f"<!doctype html><html lang=en><meta charset=utf-8><title>zerorate compare</title>"
         f"<meta name=viewport content='width=device-width'><style>{_STYLE}</style>"

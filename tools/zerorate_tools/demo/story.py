@@ -169,7 +169,10 @@ def real_trial(shown: Real, runtime: str) -> str:
         f"{'':42}{'whole trial':>14}{'its motion alone':>20}",
         f"{'':42}{f'from {WHOLE_FROM_S:.0f} s on':>14}{f'from {MOTION_FROM_S:.0f} s on':>20}",
     ]
-    for way in (way for way in WAYS if way in shown.whole_mdps):
+    for way in WAYS:
+        if way not in shown.whole_mdps:
+            lines.append(f"  {way:40}not installed: pip install {way}")
+            continue
         whole, motion = shown.whole_mdps[way], shown.motion_mdps[way]
         lines.append(f"  {way:40}{whole:14,.1f}{motion:20,.1f}")
     lines += ["", "What the firmware says at the end of the whole trial:"]
