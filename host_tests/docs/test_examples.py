@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 import zerorate_tools as zt
 from zerorate_fakes import FakeClock
+from zerorate_tools.cli import main
 from zerorate_tools.recordings import Recording, Scales
 
 from host_tests.docs.outputs import blocks
@@ -154,6 +155,16 @@ def test_on_linux_it_goes_on_with_what_was_learned(repository, tmp_path):
     takes_the_bias_off(first)
     assert second.startswith("loaded")
     assert rows(second)[0][3:] == pytest.approx([0, 0, 0], abs=0.02)
+
+
+def test_a_recording_without_a_chip_ends_with_the_line_of_the_page(
+    repository, tmp_path, monkeypatch, capsys
+):
+    page = (repository / "docs" / "raspberry-pi.md").read_text()
+    (command,) = re.findall(r"^zerorate (record .*)$", page, re.MULTILINE)
+    monkeypatch.chdir(tmp_path)
+    assert main(command.replace("/dev/i2c-1", "fake:").split()) == 0
+    assert capsys.readouterr().out == snippets(repository, "raspberry-pi.md", "text")[0]
 
 
 class OtherChip:

@@ -7,13 +7,15 @@ import subprocess
 import sys
 from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 import pytest
 import zerorate_tools
-from zerorate_tools import cli
+from zerorate_tools import cli, installed
 from zerorate_tools.cli import main
+from zerorate_tools.installed import adding
 from zerorate_tools.recordings import Scales, recording_writer
 from zerorate_tools.simulate import simulate_to_files
 
@@ -135,11 +137,34 @@ def test_a_missing_library_is_said_with_a_command_that_a_shell_takes(
     monkeypatch.syspath_prepend(tmp_path)
     (tmp_path / name).write_bytes(b"ULog\x01")
     ran = zerorate("import", tmp_path / name, "--out", tmp_path / "run.parquet")
-    assert ran.stderr.endswith(f"needs {library}, which is not installed; {_installing('tools')}\n")
+    assert ran.stderr.endswith(f"needs {library}, which is not installed; {adding('tools')}\n")
 
 
-def _installing(extra):
-    return f"pip install 'zerorate[{extra}]'"
+@pytest.mark.parametrize(
+    ("record", "command"),
+    [
+        (None, "pip install 'zerorate[linux]'"),
+        ({"url": "https://host/a.whl", "archive_info": {}}, "pip install 'zerorate[linux]'"),
+        ({"url": "file:///a%20b/c.whl", "archive_info": {}}, "pip install '/a b/c.whl[linux]'"),
+        ({"url": "file:///src", "dir_info": {"editable": True}}, "pip install -e '/src[linux]'"),
+    ],
+)
+def test_an_extra_is_added_from_where_the_package_came(monkeypatch, record, command):
+    came = SimpleNamespace(read_text=lambda name: record and json.dumps(record))
+    monkeypatch.setattr(installed, "distribution", lambda name: came)
+    assert adding("linux") == command
+
+
+@pytest.mark.parametrize(
+    ("left", "command"),
+    [("pipx_metadata.json", "pipx install --force"), ("uv-receipt.toml", "uv tool install")],
+)
+def test_an_installer_of_commands_adds_an_extra_to_its_own(monkeypatch, tmp_path, left, command):
+    (tmp_path / left).touch()
+    monkeypatch.setattr(sys, "prefix", str(tmp_path))
+    monkeypatch.setattr(installed, "_source", lambda: ("a.whl", False))
+    assert adding("linux") == f"{command} 'a.whl[tools,linux]'"
+    assert adding("tools") == f"{command} 'a.whl[tools]'"
 
 
 class _Parser:

@@ -292,3 +292,19 @@ def test_a_program_that_prints_no_bias_is_watched_and_not_drawn(tmp_path, capsys
     said = capsys.readouterr()
     assert codes == [0, 2] and not list(tmp_path.iterdir())
     assert "with +0.01 deg" in said.out and "no bias came to be drawn" in said.err
+
+
+@pytest.mark.parametrize(
+    ("name", "said"), [("bias.txt", "end it in .png"), ("none/bias.png", "no folder")]
+)
+def test_a_picture_that_could_not_be_written_is_refused_before_the_watch(
+    tmp_path, capsys, name, said
+):
+    assert main(["watch", "no-such.csv", "--plot", str(tmp_path / name)]) == 2
+    assert said in capsys.readouterr().err
+
+
+def test_without_what_draws_the_watch_does_not_begin(tmp_path, monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
+    assert main(["watch", str(tmp_path / "run.csv"), "--plot", str(tmp_path / "bias.png")]) == 2
+    assert "needs matplotlib" in capsys.readouterr().err

@@ -82,8 +82,9 @@ class MissingLibrary(ZerorateError):
 
     def __init__(self, library: str) -> None:
         extra = self._EXTRAS.get(library, "tools")
-        do = f"pip install 'zerorate[{extra}]'"
-        super().__init__(f"this needs {library}, which is not installed; {do}")
+        from .installed import adding  # loads what the start of a command need not wait for
+
+        super().__init__(f"this needs {library}, which is not installed; {adding(extra)}")
 
 
 class CannotFetch(ZerorateError):

@@ -142,9 +142,11 @@ def run_watch(arguments: argparse.Namespace) -> int:
     if arguments.own and (arguments.model or arguments.setup):
         raise ZerorateError("--own leaves the board's program as it is; drop --model and --setup")
     from ..bounds import text_of
-    from ..watch.screen import WatchOptions
+    from ..watch.screen import WatchOptions, check_picture, draw
     from ..watch.watching import watch
 
+    if arguments.plot:
+        check_picture(arguments.plot)
     options = WatchOptions(
         seconds=arguments.seconds,
         once=arguments.once,
@@ -157,8 +159,6 @@ def run_watch(arguments: argparse.Namespace) -> int:
     )
     live = watch(arguments.source, options)
     if live and arguments.plot:
-        from ..watch.screen import draw
-
         draw(live, arguments.plot)
         print(arguments.plot)
     return 0 if live else 1

@@ -162,12 +162,22 @@ class WatchOptions:
         return 2.0 if isinstance(shown, Lines) else 0.5
 
 
-def draw(live: Shown, path: Path) -> None:
-    """Draw a second's bias after the other into a PNG, SVG or PDF. Raises ZerorateError."""
+def check_picture(path: Path) -> None:
+    """Raise ZerorateError if `draw` could not write that picture, before anything is watched."""
     try:
         from matplotlib.figure import Figure
     except ImportError as error:
         raise MissingLibrary("matplotlib") from error
+    if path.suffix.lower()[1:] not in Figure().canvas.get_supported_filetypes():
+        raise ZerorateError(f"{path}: no picture is named so; end it in .png or .svg")
+    if not path.parent.is_dir():
+        raise ZerorateError(f"{path}: there is no folder {path.parent}; make it first")
+
+
+def draw(live: Shown, path: Path) -> None:
+    """Draw a second's bias after the other into a PNG, SVG or PDF. Raises ZerorateError."""
+    from matplotlib.figure import Figure
+
     if not live.history:
         do = "watch for longer, a program that prints rates as examples/main.py does"
         raise ZerorateError(f"{path}: no bias came to be drawn; {do}")
@@ -177,7 +187,4 @@ def draw(live: Shown, path: Path) -> None:
         axes.plot(bias_dps, label=f"g{name}")
     axes.set(title=live.name, xlabel="s", ylabel="bias, dps")
     axes.legend()
-    try:
-        figure.savefig(path)
-    except ValueError as error:
-        raise ZerorateError(f"{path}: no picture is named so; end it in .png or .svg") from error
+    figure.savefig(path)
