@@ -1,128 +1,103 @@
 """Logs that change on the way, hold two devices, or have holes."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-from .clocks import _START, _plain, _stamps, _with_time
-from .world import World, log, table, text
+from .clocks import _dates, _plain, _with_time
+from .world import STANDARD_GRAVITY, World, Writer, log, table, text
 
-_DEVICES = 3
 _SIX = ["gx_dps", "gy_dps", "gz_dps", "ax_g", "ay_g", "az_g"]
 
 
-def _in_turn(world: World, devices: int, late_s: float, apart_s: float = 0.0) -> pd.DataFrame:
+def _in_turn(devices: int, late_s: float, apart_s: float = 0.0, block: int = 1) -> Writer:
     """Rows of several devices, each with its own bias and mounting, without a word of whose."""
-    rng = np.random.default_rng(3)
-    frame = _plain(world)
-    one = []
-    for number in range(devices):
-        other = World(world.samples, world.hz, world.seed + 10 * number)
-        mounted = np.roll(other.g, number, axis=1)
-        at = world.t_s + number * late_s + (number > 0) * apart_s
-        rates = other.dps + number * rng.uniform(-1, 1, 3)
-        part = table("t_s,temp_c,order", at, world.degc + number, np.arange(world.samples))
-        part[_SIX] = np.column_stack([rates, mounted])
-        one.append(part.assign(device=number))
-    both = pd.concat(one).sort_values(["order", "device"])
-    return both[frame.columns]
+
+    def write(folder: Path, world: World) -> Path:
+        rng = np.random.default_rng(3)
+        one = []
+        for number in range(devices):
+            other = World(world.samples, world.hz, world.seed + 10 * number)
+            mounted = np.roll(other.g, number, axis=1)
+            at = world.t_s + number * late_s + (number > 0) * apart_s
+            rates = other.dps + number * rng.uniform(-1, 1, 3)
+            block_of = np.arange(world.samples) // block
+            part = table("t_s,temp_c,block", at, world.degc + number, block_of)
+            part[_SIX] = np.column_stack([rates, mounted])
+            one.append(part.assign(device=number, row=np.arange(world.samples)))
+        both = pd.concat(one).sort_values(["block", "device", "row"])
+        return text(folder / "in.csv", both[_plain(world).columns])
+
+    return write
 
 
-@log("two devices in turn, without a word of whose: at the same times", least=2.0)
-def two_at_one_time(folder: Path, world: World) -> Path:
-    return text(folder / "in.csv", _in_turn(world, 2, 0.0))
-
-
-@log("two devices in turn: half a period apart", least=2.0)
-def two_evenly(folder: Path, world: World) -> Path:
-    return text(folder / "in.csv", _in_turn(world, 2, 0.005))
-
-
-@log("two devices in turn: each has its own clock, so times go back and forth", least=2.0)
-def two_clocks(folder: Path, world: World) -> Path:
-    return text(folder / "in.csv", _in_turn(world, 2, 0.0, 0.237))
-
-
-@log("two devices in turn: one was switched on an hour before", least=2.0)
-def two_power_ons(folder: Path, world: World) -> Path:
-    return text(folder / "in.csv", _in_turn(world, 2, 0.0, 3600.0))
-
-
-@log("three devices in turn", least=2.0)
-def three_devices(folder: Path, world: World) -> Path:
-    return text(folder / "in.csv", _in_turn(world, _DEVICES, 0.002))
-
-
-@log("two devices: ten rows of one, ten of the other, at the same times", least=2.0)
-def two_in_blocks(folder: Path, world: World) -> Path:
-    frame = _in_turn(world, 2, 0.0)
-    number = np.arange(len(frame))
-    order = np.lexsort((number // 2, number % 2, number // 20))
-    return text(folder / "in.csv", frame.iloc[order])
+for _what, _devices in {
+    ", without a word of whose: at the same times": (2, 0.0),
+    ": half a period apart": (2, 0.005),
+    ": each has its own clock, so times go back and forth": (2, 0.0, 0.237),
+    ": one was switched on an hour before": (2, 0.0, 3600.0),
+}.items():
+    log(f"two devices in turn{_what}", least=2.0)(_in_turn(*_devices))
+log("three devices in turn", least=2.0)(_in_turn(3, 0.002))
+log("two devices: ten rows of one, ten of the other, at the same times", least=2.0)(
+    _in_turn(2, 0.0, block=10)
+)
 
 
 @log("dates of whole seconds: a hundred rows share each")
 def whole_seconds(folder: Path, world: World) -> Path:
-    said = _stamps(world).strftime("%Y-%m-%dT%H:%M:%SZ")
+    said = _dates(world.t_s, "%Y-%m-%dT%H:%M:%SZ")
     return text(folder / "in.csv", _with_time("datetime", said, world))
 
 
 @log("times of the day of whole seconds, begun within one, over midnight")
 def whole_seconds_of_day(folder: Path, world: World) -> Path:
-    said = (_stamps(world) + pd.Timedelta("0.63s")).strftime("%H:%M:%S")
+    said = _dates(world.t_s + 0.63, "%H:%M:%S")
     return text(folder / "in.csv", _with_time("time", said, world))
 
 
-@log("dates of whole seconds, and a pause of five", least=0.8)
-def whole_seconds_paused(folder: Path, world: World) -> Path:
-    said = _stamps(world).strftime("%Y-%m-%d %H:%M:%S")
-    at = world.t_s
-    return text(folder / "in.csv", _with_time("datetime", said, world)[(at < 5) | (at >= 10)])
+def _seconds(kept: Callable[[np.ndarray], np.ndarray]) -> Writer:
+    """Dates of whole seconds beside some of the rows."""
+
+    def write(folder: Path, world: World) -> Path:
+        said = _dates(world.t_s, "%Y-%m-%d %H:%M:%S")
+        return text(folder / "in.csv", _with_time("datetime", said, world)[kept(world.t_s)])
+
+    return write
 
 
-@log("dates of whole seconds, some of whose rows are lost")
-def whole_seconds_lost(folder: Path, world: World) -> Path:
-    said = _stamps(world).strftime("%Y-%m-%d %H:%M:%S")
-    kept = np.random.default_rng(4).random(world.samples) > 0.3
-    return text(folder / "in.csv", _with_time("datetime", said, world)[kept])
+log("dates of whole seconds, and a pause of five", least=0.8)(
+    _seconds(lambda t_s: (t_s < 5) | (t_s >= 10))
+)
+log("dates of whole seconds, some of whose rows are lost")(
+    _seconds(lambda t_s: np.random.default_rng(4).random(len(t_s)) > 0.3)
+)
 
 
 @log("two samples in every tick of 20 ms")
 def coarse_ticks(folder: Path, world: World) -> Path:
-    at_ms = 20 * np.floor(world.t_s / 0.02 + 1e-9).astype(int)
-    return text(folder / "in.csv", _with_time("t_ms", at_ms, world))
+    said = 20 * np.floor(world.t_s / 0.02 + 1e-9).astype(int)
+    return text(folder / "in.csv", _with_time("t_ms", said, world))
 
 
-def _with_hole(folder: Path, world: World, names: list[str], last: int = 1500) -> Path:
-    frame = _plain(world)
-    frame.loc[800 : last - 1, names] = np.nan
-    return text(folder / "in.csv", frame)
+def _with_hole(names: list[str], last: int | None = 1500, fill: bool = False) -> Writer:
+    """No number in some columns from row 800 on."""
+
+    def write(folder: Path, world: World) -> Path:
+        frame = _plain(world)
+        frame.iloc[800:last, [*map(frame.columns.get_loc, names)]] = np.nan
+        return text(folder / "in.csv", frame.interpolate() if fill else frame)
+
+    return write
 
 
-@log("no rates for seven seconds", least=0.7, most=0.77)
-def hole_of_rates(folder: Path, world: World) -> Path:
-    return _with_hole(folder, world, ["gx_dps", "gy_dps", "gz_dps"])
-
-
-@log("nothing but times for seven seconds", least=0.7, most=0.77)
-def hole_of_all(folder: Path, world: World) -> Path:
-    return _with_hole(folder, world, [*_SIX, "temp_c"])
-
-
-@log("no acceleration for seven seconds", least=0.7, most=0.84)
-def hole_of_forces(folder: Path, world: World) -> Path:
-    return _with_hole(folder, world, ["ax_g", "ay_g", "az_g"])
-
-
-@log("no temperature for seven seconds", least=0.7, most=0.84)
-def hole_of_temperature(folder: Path, world: World) -> Path:
-    return _with_hole(folder, world, ["temp_c"])
-
-
-@log("no temperature after eight seconds", least=0.25, most=0.34)
-def no_more_temperature(folder: Path, world: World) -> Path:
-    return _with_hole(folder, world, ["temp_c"], world.samples)
+log("no rates for seven seconds", least=0.7, most=0.77)(_with_hole(_SIX[:3]))
+log("nothing but times for seven seconds", least=0.7, most=0.77)(_with_hole([*_SIX, "temp_c"]))
+log("no acceleration for seven seconds", least=0.7, most=0.84)(_with_hole(_SIX[3:]))
+log("no temperature for seven seconds", least=0.7, most=0.84)(_with_hole(["temp_c"]))
+log("no temperature after eight seconds", least=0.25, most=0.34)(_with_hole(["temp_c"], None))
 
 
 @log("the last column is missing half way through", least=0.48, most=0.55)
@@ -132,25 +107,20 @@ def last_column_gone(folder: Path, world: World) -> Path:
     return text(folder / "in.csv", frame[1500:].drop(columns="temp_c"), first, header=False)
 
 
-@log("deg/s become mdps on the way, at rest", least=0.43)
-def other_unit(folder: Path, world: World) -> Path:
-    frame = _plain(world)
-    frame.loc[1350:, _SIX[:3]] *= 1000
-    return text(folder / "in.csv", frame)
+def _other_unit(names: list[str], times: float) -> Writer:
+    """Another unit from a row at rest on."""
+
+    def write(folder: Path, world: World) -> Path:
+        frame = _plain(world)
+        frame.loc[1350:, names] *= times
+        return text(folder / "in.csv", frame)
+
+    return write
 
 
-@log("deg/s become rad/s on the way, at rest", least=0.43)
-def other_unit_smaller(folder: Path, world: World) -> Path:
-    frame = _plain(world)
-    frame.loc[1350:, _SIX[:3]] = np.radians(frame.loc[1350:, _SIX[:3]])
-    return text(folder / "in.csv", frame)
-
-
-@log("g become m/s2 on the way, at rest", least=0.43)
-def other_unit_of_force(folder: Path, world: World) -> Path:
-    frame = _plain(world)
-    frame.loc[1350:, _SIX[3:]] *= 9.80665
-    return text(folder / "in.csv", frame)
+log("deg/s become mdps on the way, at rest", least=0.43)(_other_unit(_SIX[:3], 1000))
+log("deg/s become rad/s on the way, at rest", least=0.43)(_other_unit(_SIX[:3], np.radians(1)))
+log("g become m/s2 on the way, at rest", least=0.43)(_other_unit(_SIX[3:], STANDARD_GRAVITY))
 
 
 @log("units in a comment above the names")
@@ -188,32 +158,26 @@ def quoted_times(folder: Path, world: World) -> Path:
 
 @log("times of the day with a comma before the milliseconds, within quotes")
 def quoted_clock(folder: Path, world: World) -> Path:
-    said = (_START + pd.to_timedelta(world.t_s, unit="s")).strftime("%H:%M:%S,%f").str[:-3]
+    said = _dates(world.t_s, "%H:%M:%S,%f", 3)
     return text(folder / "in.csv", _with_time("time", said, world))
 
 
-def _on_lines(folder: Path, world: World, hz: float) -> Path:
+def _on_lines(hz: float) -> Writer:
     """The log on an even grid, as pandas' resample and interpolate make it."""
-    frame = _plain(world)
-    at = np.arange(0.0, world.t_s[-1], 1.0 / hz)
-    columns = {name: np.interp(at, world.t_s, values) for name, values in frame.items()}
-    return text(folder / "in.csv", pd.DataFrame(columns))
+
+    def write(folder: Path, world: World) -> Path:
+        at = np.arange(0.0, world.t_s[-1], 1.0 / hz)
+        columns = {n: np.interp(at, world.t_s, values) for n, values in _plain(world).items()}
+        return text(folder / "in.csv", pd.DataFrame(columns))
+
+    return write
 
 
-@log("resampled from 100 to 400 Hz, on lines between the samples")
-def upsampled(folder: Path, world: World) -> Path:
-    return _on_lines(folder, world, 400.0)
-
-
-@log("resampled from 100 to 333 Hz, on lines between the samples")
-def resampled(folder: Path, world: World) -> Path:
-    return _on_lines(folder, world, 333.0)
-
-
-@log("seven seconds filled with a line", least=0.7, most=0.77)
-def filled(folder: Path, world: World) -> Path:
-    path = _with_hole(folder, world, [*_SIX, "temp_c"])
-    return text(path, pd.read_csv(path).interpolate())
+log("resampled from 100 to 400 Hz, on lines between the samples")(_on_lines(400.0))
+log("resampled from 100 to 333 Hz, on lines between the samples")(_on_lines(333.0))
+log("seven seconds filled with a line", least=0.7, most=0.77)(
+    _with_hole([*_SIX, "temp_c"], fill=True)
+)
 
 
 @log("OpenCamera Sensors: three rates and nanoseconds, no names")

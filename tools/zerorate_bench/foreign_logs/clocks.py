@@ -1,13 +1,15 @@
 """Tables whose times, rows or ends are odd."""
 
 import gzip
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from .phones import zipped
-from .world import World, log, table, text
+from .world import World, Writer, log, table, text
 
 _NAMES = "gx_dps,gy_dps,gz_dps,ax_g,ay_g,az_g,temp_c"
 _START = pd.Timestamp("2026-05-01T23:59:50")
@@ -21,44 +23,39 @@ def _plain(world: World) -> pd.DataFrame:
     return _with_time("t_s", world.t_s, world)
 
 
-def _stamps(world: World):
-    return _START + pd.to_timedelta(world.t_s, unit="s")
+def _dates(t_s: np.ndarray, form: str, digits: int = 6) -> pd.Index:
+    """Dates as strftime writes them; digits: so many of a second's fraction, which ends them."""
+    said = (_START + pd.to_timedelta(t_s, unit="s")).strftime(form)
+    return said.str[: len(said[0]) + digits - 6]
 
 
-@log("dates of ISO 8601 with a zone")
-def iso_dates(folder: Path, world: World) -> Path:
-    said = _stamps(world).strftime("%Y-%m-%dT%H:%M:%S.%f+02:00")
-    return text(folder / "in.csv", _with_time("datetime", said, world))
+def _whole(t_s: np.ndarray, times: float) -> np.ndarray:
+    return np.rint(t_s * times).astype(np.int64)
 
 
-@log("times of the day over midnight, comma before the milliseconds")
-def over_midnight(folder: Path, world: World) -> Path:
-    said = _stamps(world).strftime("%H:%M:%S,%f").str[:-3]
-    return text(folder / "in.csv", _with_time("time", said, world), sep=";")
+def _timed(name: str, said: Callable[[np.ndarray], Any], **how: Any) -> Writer:
+    """The world's columns beside its time as `said` writes it."""
+
+    def write(folder: Path, world: World) -> Path:
+        return text(folder / "in.csv", _with_time(name, said(world.t_s), world), **how)
+
+    return write
 
 
-@log("milliseconds since 1970")
-def epoch_ms(folder: Path, world: World) -> Path:
-    at_ms = np.rint(world.t_s * 1e3).astype(np.int64) + 1_777_000_000_000
-    return text(folder / "in.csv", _with_time("timestamp", at_ms, world))
-
-
-@log("nanoseconds, no unit named", "--time-unit ns")
-def plain_ns(folder: Path, world: World) -> Path:
-    at_ns = np.rint(world.t_s * 1e9).astype(np.int64) + 4_000_000_000
-    return text(folder / "in.csv", _with_time("timestamp", at_ns, world))
-
-
-@log("a time whose unit nothing tells")
-def unknown_time(folder: Path, world: World) -> Path:
-    at_ms = np.rint(world.t_s * 1e3).astype(np.int64)
-    return text(folder / "in.csv", _with_time("t", at_ms, world))
-
-
-@log("micros() that runs over after 71 minutes")
-def micros_over(folder: Path, world: World) -> Path:
-    at_us = (np.rint(world.t_s * 1e6).astype(np.int64) + 2**32 - 10_000_000) % 2**32
-    return text(folder / "in.csv", _with_time("micros", at_us, world))
+log("dates of ISO 8601 with a zone")(
+    _timed("datetime", lambda t_s: _dates(t_s, "%Y-%m-%dT%H:%M:%S.%f+02:00"))
+)
+log("times of the day over midnight, comma before the milliseconds")(
+    _timed("time", lambda t_s: _dates(t_s, "%H:%M:%S,%f", 3), sep=";")
+)
+log("milliseconds since 1970")(_timed("timestamp", lambda t_s: _whole(t_s, 1e3) + 1_777 * 10**9))
+log("nanoseconds, no unit named", "--time-unit ns")(
+    _timed("timestamp", lambda t_s: _whole(t_s, 1e9) + 4 * 10**9)
+)
+log("a time whose unit nothing tells")(_timed("t", lambda t_s: _whole(t_s, 1e3)))
+log("micros() that runs over after 71 minutes")(
+    _timed("micros", lambda t_s: (_whole(t_s, 1e6) + 2**32 - 10**7) % 2**32)
+)
 
 
 @log("seconds and nanoseconds in two columns")
@@ -69,21 +66,22 @@ def two_columns_of_time(folder: Path, world: World) -> Path:
     return text(folder / "in.csv", frame)
 
 
-@log("no time at all", "--hz 100")
-def no_time(folder: Path, world: World) -> Path:
-    return text(folder / "in.csv", _plain(world).drop(columns="t_s"))
+def _rows(chosen: Callable[[pd.DataFrame], pd.DataFrame]) -> Writer:
+    """Some of the rows, or some of them again."""
+
+    def write(folder: Path, world: World) -> Path:
+        return text(folder / "in.csv", chosen(_plain(world)))
+
+    return write
 
 
-@log("a pause of five seconds", least=0.8)
-def paused(folder: Path, world: World) -> Path:
-    at = world.t_s
-    return text(folder / "in.csv", _plain(world)[(at < 5) | (at > 10)])
-
-
-@log("time begins anew: the logger was switched off and on")
-def restarted(folder: Path, world: World) -> Path:
-    frame = _plain(world)
-    return text(folder / "in.csv", pd.concat([frame, frame]))
+log("no time at all", "--hz 100")(_rows(lambda rows: rows.drop(columns="t_s")))
+log("a pause of five seconds", least=0.8)(
+    _rows(lambda rows: rows[(rows["t_s"] < 5) | (rows["t_s"] > 10)])
+)
+log("time begins anew: the logger was switched off and on")(
+    _rows(lambda rows: pd.concat([rows, rows]))
+)
 
 
 @log("rows out of order")
@@ -94,20 +92,11 @@ def out_of_order(folder: Path, world: World) -> Path:
     return text(folder / "in.csv", frame.iloc[order])
 
 
-@log("every row written twice")
-def written_twice(folder: Path, world: World) -> Path:
-    return text(folder / "in.csv", _plain(world).loc[np.repeat(np.arange(world.samples), 2)])
-
-
-@log("rows shuffled throughout")
-def shuffled(folder: Path, world: World) -> Path:
-    return text(folder / "in.csv", _plain(world).sample(frac=1, random_state=1))
-
-
-@log("milliseconds with commas between thousands")
-def thousands(folder: Path, world: World) -> Path:
-    said = [f"{1000 * t:,.2f}" for t in world.t_s]
-    return text(folder / "in.csv", _with_time("time_ms", said, world))
+log("every row written twice")(_rows(lambda rows: rows.loc[rows.index.repeat(2)]))
+log("rows shuffled throughout")(_rows(lambda rows: rows.sample(frac=1, random_state=1)))
+log("milliseconds with commas between thousands")(
+    _timed("time_ms", lambda t_s: [f"{1000 * t:,.2f}" for t in t_s])
+)
 
 
 @log("the same line of names again among the rows")

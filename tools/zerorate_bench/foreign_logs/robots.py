@@ -6,61 +6,34 @@ from pathlib import Path
 import numpy as np
 
 from . import binary
-from .world import BIAS_DPS, World, log, table, text
+from .world import BIAS_DPS, World, Writer, log, table, text
 
 _IMU = "angular_velocity.x,angular_velocity.y,angular_velocity.z"
 _FORCE = "linear_acceleration.x,linear_acceleration.y,linear_acceleration.z"
 _AT_NS = 1_700_000_000 * 10**9
 
 
-def _cut(path: Path, share: float = 0.7) -> Path:
-    path.write_bytes(path.read_bytes()[: int(path.stat().st_size * share)])
-    return path
+def _bag(kind: str, share: float = 1.0, **how) -> Writer:
+    """A bag of ROS, or what a crash left of it."""
+
+    def write(folder: Path, world: World) -> Path:
+        path = binary.bag(folder, kind, world=world, **how)
+        if share < 1.0:
+            path.write_bytes(path.read_bytes()[: int(path.stat().st_size * share)])
+        return path
+
+    return write
 
 
-@log("ROS 1, bag")
-def ros1(folder: Path, world: World) -> Path:
-    return binary.bag(folder, "ros1", world=world)
-
-
-@log("ROS 1, bag that was cut off", least=0.3)
-def ros1_cut(folder: Path, world: World) -> Path:
-    return _cut(binary.bag(folder, "ros1", world=world))
-
-
-@log("ROS 2, folder of a bag")
-def ros2(folder: Path, world: World) -> Path:
-    return binary.bag(folder, "ros2", world=world)
-
-
-@log("ROS 2, .db3 alone")
-def db3(folder: Path, world: World) -> Path:
-    return binary.bag(folder, "db3", world=world)
-
-
-@log("ROS 2, .db3 that was cut off", least=0.2)
-def db3_cut(folder: Path, world: World) -> Path:
-    return _cut(binary.bag(folder, "db3", world=world))
-
-
-@log("MCAP of ROS 2")
-def mcap(folder: Path, world: World) -> Path:
-    return binary.bag(folder, "mcap", world=world)
-
-
-@log("MCAP that was cut off", least=0.3)
-def mcap_cut(folder: Path, world: World) -> Path:
-    return _cut(binary.bag(folder, "mcap-json", world=world))
-
-
-@log("MCAP of JSON")
-def mcap_json(folder: Path, world: World) -> Path:
-    return binary.bag(folder, "mcap-json", world=world)
-
-
-@log("MCAP of JSON, one message of which is none", least=0.97)
-def mcap_bad_json(folder: Path, world: World) -> Path:
-    return binary.bag(folder, "mcap-json", world=world, torn=(70, 700))
+ros1 = log("ROS 1, bag")(_bag("ros1"))
+log("ROS 1, bag that was cut off", least=0.3)(_bag("ros1", 0.7))
+log("ROS 2, folder of a bag")(_bag("ros2"))
+db3 = log("ROS 2, .db3 alone")(_bag("db3"))
+log("ROS 2, .db3 that was cut off", least=0.2)(_bag("db3", 0.7))
+mcap = log("MCAP of ROS 2")(_bag("mcap"))
+log("MCAP that was cut off", least=0.3)(_bag("mcap-json", 0.7))
+mcap_json = log("MCAP of JSON")(_bag("mcap-json"))
+log("MCAP of JSON, one message of which is none", least=0.97)(_bag("mcap-json", torn=(70, 700)))
 
 
 def _covariances(name: str, world: World) -> tuple[list[str], np.ndarray]:

@@ -6,15 +6,11 @@ import numpy as np
 import pandas as pd
 
 from . import binary
-from .world import World, log, table, text
+from .world import World, Writer, log, table, text
 
 _SCALES = "--gyro-lsb-per-dps 131 --accel-lsb-per-g 16384"
 _RAW = f"--gyro-unit lsb --accel-unit lsb {_SCALES}"
 _SIX = "gx,gy,gz,ax,ay,az"
-
-
-def _raw(folder: Path, world: World, counts, names: str = f"t_ms,{_SIX}") -> Path:
-    return text(folder / "in.csv", table(names, np.rint(world.t_s * 1e3).astype(int), *counts))
 
 
 @log("WitMotion, its table")
@@ -93,64 +89,45 @@ def shimmer(folder: Path, world: World) -> Path:
     return text(folder / "in.csv", frame, head, sep="\t", header=False, float_format="%.6f")
 
 
-@log("counts of a sketch, as they are", _RAW)
-def counts(folder: Path, world: World) -> Path:
-    return _raw(folder, world, world.counts())
+def _counts(names: str = f"t_ms,{_SIX}", more: int = 0, most: int = 0, **lsb: float) -> Writer:
+    """Counts of so many LSB, with an offset or as a word of so many without a sign."""
+
+    def write(folder: Path, world: World) -> Path:
+        found = [one % most if most else one + more for one in world.counts(**lsb)]
+        columns = np.column_stack([np.rint(world.t_s * 1e3).astype(int), *found])
+        return text(folder / "in.csv", table(names, columns[:, : names.count(",") + 1]))
+
+    return write
 
 
-@log("counts printed as words of 16 bits without a sign", _RAW)
-def unsigned_counts(folder: Path, world: World) -> Path:
-    return _raw(folder, world, [one % 65536 for one in world.counts()])
+log("counts of a sketch, as they are", _RAW)(_counts())
+log("counts printed as words of 16 bits without a sign", _RAW)(_counts(most=65536))
+log("counts around 32,768", _RAW)(_counts(more=32768))
+log("counts of 32 bits", "--gyro-unit lsb --gyro-lsb-per-dps 655360")(
+    _counts("t_ms,gx,gy,gz", gyro=655360.0)
+)
+log("counts of +-8 g, said to be of +-2 g: gravity of 0.25 g", _RAW)(_counts(accel=4096.0))
 
 
-@log("counts around 32,768", _RAW)
-def offset_counts(folder: Path, world: World) -> Path:
-    return _raw(folder, world, [one + 32768 for one in world.counts()])
+def _called(names: str, *columns: str, times: float = 1.0) -> Writer:
+    """Columns of the world by names of another unit; times: of the last of them."""
+
+    def write(folder: Path, world: World) -> Path:
+        *others, last = (getattr(world, name) for name in columns)
+        return text(folder / "in.csv", table(names, world.t_s, *others, last * times))
+
+    return write
 
 
-@log("counts of 32 bits", "--gyro-unit lsb --gyro-lsb-per-dps 655360")
-def wide_counts(folder: Path, world: World) -> Path:
-    return _raw(folder, world, world.counts(655360.0)[:1], "t_ms,gx,gy,gz")
-
-
-@log("counts of +-8 g, said to be of +-2 g: gravity of 0.25 g", _RAW)
-def quarter_gravity(folder: Path, world: World) -> Path:
-    return _raw(folder, world, world.counts(accel=4096.0))
-
-
-@log("acceleration in g, printed at a quarter of its size")
-def quarter_g(folder: Path, world: World) -> Path:
-    names = "t_s,gx_dps,gy_dps,gz_dps,ax_g,ay_g,az_g"
-    return text(folder / "in.csv", table(names, world.t_s, world.dps, world.g / 4))
-
-
-@log("acceleration in m/s2, called g")
-def mps2_called_g(folder: Path, world: World) -> Path:
-    names = "t_s,gx_dps,gy_dps,gz_dps,ax_g,ay_g,az_g"
-    return text(folder / "in.csv", table(names, world.t_s, world.dps, world.mps2))
-
-
-@log("rates in rad/s, called dps")
-def rad_called_dps(folder: Path, world: World) -> Path:
-    names = "t_s,gx_dps,gy_dps,gz_dps,ax_g,ay_g,az_g"
-    return text(folder / "in.csv", table(names, world.t_s, world.rad, world.g))
-
-
-@log("rates in dps, called rad/s")
-def dps_called_rad(folder: Path, world: World) -> Path:
-    names = "t_s,gx_rad/s,gy_rad/s,gz_rad/s,ax_g,ay_g,az_g"
-    return text(folder / "in.csv", table(names, world.t_s, world.dps, world.g))
-
-
-@log("time in seconds, called milliseconds")
-def s_called_ms(folder: Path, world: World) -> Path:
-    names = "t_ms,gx_dps,gy_dps,gz_dps,temp_c"
-    return text(folder / "in.csv", table(names, world.t_s, world.dps, world.degc))
-
-
-@log("plain names without a unit, rad/s and m/s2")
-def plain_names(folder: Path, world: World) -> Path:
-    return text(folder / "in.csv", table(f"t_s,{_SIX}", world.t_s, world.rad, world.mps2))
+_IN_DPS = "t_s,gx_dps,gy_dps,gz_dps,ax_g,ay_g,az_g"
+log("acceleration in g, printed at a quarter of its size")(_called(_IN_DPS, "dps", "g", times=0.25))
+log("acceleration in m/s2, called g")(_called(_IN_DPS, "dps", "mps2"))
+log("rates in rad/s, called dps")(_called(_IN_DPS, "rad", "g"))
+log("rates in dps, called rad/s")(_called(_IN_DPS.replace("dps", "rad/s"), "dps", "g"))
+log("time in seconds, called milliseconds")(
+    _called("t_ms,gx_dps,gy_dps,gz_dps,temp_c", "dps", "degc")
+)
+log("plain names without a unit, rad/s and m/s2")(_called(f"t_s,{_SIX}", "rad", "mps2"))
 
 
 @log("a sketch's lines, a/g: and six counts", f"{_RAW} --hz 100")

@@ -65,13 +65,17 @@ class World:
         return np.rint(self.dps * gyro).astype(int), np.rint(self.g * accel).astype(int)
 
 
+#: Takes a folder and a world, writes a log of it there, and returns the log's path.
+Writer = Callable[[Path, World], Path]
+
+
 @dataclass(frozen=True)
 class Log:
     """One log of the corpus. words: what a user knows and types beside the file's name; least and
     most: the share of the samples that a sound import holds, which is none beyond all of them."""
 
     what: str
-    write: Callable[[Path, World], Path]
+    write: Writer
     words: str = ""
     least: float = 0.98
     most: float = 1.0
@@ -82,9 +86,9 @@ CORPUS: list[Log] = []
 
 
 def log(what: str, words: str = "", least: float = 0.98, most: float = 1.0):
-    """Register a writer of a log: it takes a folder and a world, and returns the log's path."""
+    """Register a writer of a log."""
 
-    def add(write: Callable[[Path, World], Path]) -> Callable[[Path, World], Path]:
+    def add(write: Writer) -> Writer:
         CORPUS.append(Log(what, write, words, least, most))
         return write
 
