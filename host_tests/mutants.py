@@ -107,7 +107,12 @@ AREAS = {
             *("arrays", "changed", "clocks", "flights", "phones", "robots", "sensors", "tools"),
             "wearables")],
     ),
-    "commands": ([_TOOLS + "commands/"], ["tools/test_words_reach.py"]),
+    # what they print is seen where they really run
+    "commands": (
+        [_TOOLS + "commands/"],
+        ["tools/test_words_reach.py", "tools/test_cli.py", "compare/test_compare.py",
+         "guide/test_guide.py", "replay/test_replay.py"],
+    ),
     # what stands in no folder: the library's own doors, and what all share
     "tools": (
         [_TOOLS],

@@ -125,20 +125,6 @@ def test_a_program_of_its_own_ends_by_a_signal_unless_nohup_ignores_it(monkeypat
     assert capsys.readouterr().out.endswith("a\\x1bb\n")
 
 
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (["repla"], "did you mean replay?"),
-        (["close", "a.csv", "-o", "b", "--onlyne=b"], "did you mean --online?"),
-        (["allan", "a.csv", "--holdout", "b"], "it is an option of another command"),
-    ],
-)
-def test_a_word_that_is_none_is_told_the_nearest(words, said, capsys):
-    with pytest.raises(SystemExit) as ended:
-        cli.main(words)
-    assert ended.value.code == 2 and said in capsys.readouterr().err
-
-
 def test_the_system_s_own_words_come_with_the_file_s_name_and_what_to_do_of_a_bus():
     for number, path, said in (
         (errno.ENOENT, "/dev/i2c-1", "is I2C switched on"),

@@ -16,6 +16,7 @@ from unittest.mock import ANY, Mock, call
 import numpy as np
 import pytest
 from zerorate_tools import cli
+from zerorate_tools.commands.learn import _shares
 from zerorate_tools.commands.options import above_zero, finite, print_json
 from zerorate_tools.errors import MissingRuntime, ZerorateError
 from zerorate_tools.importers import Options, parsed_mapping
@@ -251,9 +252,9 @@ A, B = Path("a.csv"), Path("b.csv")
         ("simulate car --out o.parquet", "simulate.load_description", call("car")),
         ("simulate car --out o.parquet", "simulate.simulate_to_files", call(ANY, OUT, **SIMULATE)),
         (
-            "simulate car --out o.parquet --truth t.parquet --session 2 --seed 0",
+            "simulate car --out o.parquet --truth t.parquet --session 2 --seed 3",
             "simulate.simulate_to_files",
-            call(ANY, OUT, **also(SIMULATE, truth=Path("t.parquet"), session=2, seed=0)),
+            call(ANY, OUT, **also(SIMULATE, truth=Path("t.parquet"), session=2, seed=3)),
         ),
         ("state show s.bin", "replay.state_in_words.words_of_file", call(Path("s.bin"), {})),
         (
@@ -352,6 +353,10 @@ def test_what_the_function_could_not_do_ends_with_2(words):
 def test_1_says_that_nothing_came(stands_in, words, function, nothing):
     stands_in(f"zerorate_tools.{function}", nothing)
     assert cli.main(words.split()) == 1
+
+
+def test_shares_are_of_all_samples():
+    assert _shares({"still": 6, "moving": 2}, 8) == "still 6 (75.0%), moving 2 (25.0%)"
 
 
 def test_what_was_watched_is_drawn_where_that_is_asked(stands_in, capsys):
@@ -550,15 +555,12 @@ def serving(stands_in, monkeypatch):
     return SimpleNamespace(service=service, imu=imu, bus=bus, linux=linux, **made)
 
 
-def test_run_serves_lines_of_an_mpu6050_at_100_hz_unless_told(serving, capsys):
+def test_run_serves_lines_unless_told(serving, capsys):
     assert cli.main(["run", "/dev/i2c-7"]) == 0
     system, sinks, model = serving.service.call_args.args
     assert sinks == ["Lines"] and model == b"" and not serving.FakeBus.called
     assert system.open_imu() == "imu" and serving.linux.call_args.args == ("/dev/i2c-7",)
-    (bus, address), named = serving.imu.call_args
-    assert (bus, address) == (serving.bus, 0x68)
-    plain = {"odr_hz": 100.0, "full_scale_dps": 250, "full_scale_g": 2}
-    assert named == {**plain, "dlpf_hz": None, "part": None}
+    assert serving.imu.call_args == call(serving.bus)  # which has the defaults
     Path("learned.bin").touch()
     os.utime("learned.bin", (0, time.time() - 500))
     assert system.stored_ago_s() == pytest.approx(500, abs=60)
@@ -577,11 +579,10 @@ def test_run_is_given_what_was_typed(serving):
         "h:2",
         True,
     )
-    assert serving.FakeBus.call_args.args == (0x69, "P") and system.open_imu() == "imu"
-    (bus, address), named = serving.imu.call_args
-    assert (bus, address) == ("FakeBus", 0x69) and not serving.linux.called
+    assert serving.FakeBus.call_args == call(address=0x69, part="P")
+    assert system.open_imu() == "imu" and not serving.linux.called
     typed = {"odr_hz": 50, "full_scale_dps": 500, "full_scale_g": 8, "dlpf_hz": 20, "part": "P"}
-    assert named == typed
+    assert serving.imu.call_args == call("FakeBus", address=0x69, **typed)
     assert cli.main(["run", "fake:", "--udp", "h:1"]) == 0
     assert serving.Datagrams.call_args.args == ("h:1", False)
 

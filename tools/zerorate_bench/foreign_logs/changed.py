@@ -33,13 +33,12 @@ def _in_turn(devices: int, late_s: float, apart_s: float = 0.0, block: int = 1) 
     return write
 
 
-for _what, _devices in {
-    ", without a word of whose: at the same times": (2, 0.0),
-    ": half a period apart": (2, 0.005),
-    ": each has its own clock, so times go back and forth": (2, 0.0, 0.237),
-    ": one was switched on an hour before": (2, 0.0, 3600.0),
-}.items():
-    log(f"two devices in turn{_what}", least=2.0)(_in_turn(*_devices))
+log("two devices in turn, without a word of whose: at the same times", least=2.0)(_in_turn(2, 0.0))
+log("two devices in turn: half a period apart", least=2.0)(_in_turn(2, 0.005))
+log("two devices in turn: each has its own clock, so times go back and forth", least=2.0)(
+    _in_turn(2, 0.0, 0.237)
+)
+log("two devices in turn: one was switched on an hour before", least=2.0)(_in_turn(2, 0.0, 3600.0))
 log("three devices in turn", least=2.0)(_in_turn(3, 0.002))
 log("two devices: ten rows of one, ten of the other, at the same times", least=2.0)(
     _in_turn(2, 0.0, block=10)

@@ -8,7 +8,7 @@ from typing import Any
 
 from ..errors import ZerorateError
 from .learn import add_sources
-from .options import above_zero, any_base, option, switch
+from .options import Parser, above_zero, any_base, option, switch
 
 
 def add_record(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -26,23 +26,33 @@ def add_record(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
     switch(
         parser, "--guide", "say how to turn the device until its scale factors and axes are known"
     )
-    group = parser.add_argument_group("on a Linux bus")
-    option(group, "--address", "N", "I2C address of the chip (0x68)", any_base)
-    option(group, "--hz", "N", "samples a second (100)", float, dest="odr_hz")
-    option(
-        group,
-        "--dps",
-        "N",
-        "range of the gyroscope: 250, 500, 1000 or 2000",
-        int,
-        dest="full_scale_dps",
-    )
-    option(group, "--g", "N", "range of the accelerometer: 2, 4, 8 or 16", int, dest="full_scale_g")
-    option(group, "--dlpf-hz", "N", "bandwidth of the gyroscope's low-pass filter", float)
-    option(group, "--part", "NAME", "name of the part, as MPU-6500, if its id is unknown")
+    _add_chip(parser.add_argument_group("on a Linux bus"))
     board = parser.add_argument_group("on a board")
     option(board, "--setup", "FILE", "a MicroPython file that makes `imu`, for other pins", Path)
     parser.set_defaults(run=run_record)
+
+
+#: Names of MPU6050's keywords that are options of a command.
+_CHIP = ("address", "odr_hz", "full_scale_dps", "full_scale_g", "dlpf_hz", "part")
+
+
+def _add_chip(parser: Parser) -> None:
+    """Add the options of a chip on a Linux bus, which have the driver's own defaults."""
+    option(parser, "--address", "N", "I2C address of the chip (0x68)", any_base)
+    option(parser, "--hz", "N", "samples a second (100)", float, dest="odr_hz")
+    dps = "range of the gyroscope: 250, 500, 1000 or 2000"
+    option(parser, "--dps", "N", dps, int, dest="full_scale_dps")
+    option(
+        parser, "--g", "N", "range of the accelerometer: 2, 4, 8 or 16", int, dest="full_scale_g"
+    )
+    filtered = "bandwidth of the gyroscope's low-pass filter (by --hz)"
+    option(parser, "--dlpf-hz", "N", filtered, float)
+    option(parser, "--part", "NAME", "name of the part, as MPU-6500, if its id is unknown")
+
+
+def _chip(arguments: argparse.Namespace) -> dict[str, Any]:
+    """The options of a chip that were typed, as MPU6050 takes them."""
+    return {name: v for name in _CHIP if (v := getattr(arguments, name)) is not None}
 
 
 def run_record(arguments: argparse.Namespace) -> int:
@@ -77,10 +87,9 @@ def _record(arguments: argparse.Namespace) -> int:
     for partial in left_over(arguments.out):
         finish = f"zerorate record --recover {partial} finishes it"
         print(f"{partial}: of a recording that was killed; {finish}", file=sys.stderr)
-    names = ("address", "odr_hz", "full_scale_dps", "full_scale_g", "dlpf_hz", "part", "setup")
-    options = {k: v for k in names if (v := getattr(arguments, k)) is not None}
-    if "setup" in options:
-        options["setup"] = text_of(options["setup"], "name MicroPython source")
+    options = _chip(arguments)
+    if arguments.setup is not None:
+        options["setup"] = text_of(arguments.setup, "name MicroPython source")
     if arguments.guide:
         return _guided(arguments, options)
     with progress(f"recording {arguments.port}", arguments.seconds) as done:
@@ -180,21 +189,7 @@ def add_run(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -
     option(parser, "--metrics", "HOST:PORT", "serve metrics for Prometheus")
     what = "let other machines reach --udp and --metrics"
     switch(parser, "--remote", what)
-    for flag, dest, kind, default, what in (
-        ("--address", "address", lambda text: int(text, 0), 0x68, "I2C address of the chip (0x68)"),
-        ("--hz", "odr_hz", float, 100.0, "samples a second (100)"),
-        ("--dps", "full_scale_dps", int, 250, "range of the gyroscope: 250, 500, 1000 or 2000"),
-        ("--g", "full_scale_g", int, 2, "range of the accelerometer: 2, 4, 8 or 16"),
-        (
-            "--dlpf-hz",
-            "dlpf_hz",
-            float,
-            None,
-            "bandwidth of the gyroscope's low-pass filter (by --hz)",
-        ),
-    ):
-        parser.add_argument(flag, dest=dest, type=kind, default=default, metavar="N", help=what)
-    option(parser, "--part", "NAME", "name of the part, if its id is ambiguous")
+    _add_chip(parser)
     option(parser, "--model", "FILE", "effect model to apply", Path)
     parser.set_defaults(run=run_run)
 
@@ -217,10 +212,11 @@ def run_run(arguments: argparse.Namespace) -> None:
 
     if not arguments.state.parent.is_dir():
         raise InFile(arguments.state.parent, "no such folder", do="make it, or name another")
-    names = ("odr_hz", "full_scale_dps", "full_scale_g", "dlpf_hz", "part")
-    options = {name: getattr(arguments, name) for name in names}
+    options = _chip(arguments)
     model = _model_bytes(arguments.model) if arguments.model else b""
-    fake = FakeBus(arguments.address, arguments.part) if arguments.bus == "fake:" else None
+    fake = None
+    if arguments.bus == "fake:":
+        fake = FakeBus(**{name: options[name] for name in ("address", "part") if name in options})
 
     def open_bus() -> Any:
         try:
@@ -236,7 +232,7 @@ def run_run(arguments: argparse.Namespace) -> None:
     def open_imu() -> MPU6050:
         bus = fake or open_bus()
         try:
-            return MPU6050(bus, arguments.address, **options)
+            return MPU6050(bus, **options)
         except ValueError as error:
             raise ZerorateError(str(error)) from error
         except OSError:
