@@ -1,20 +1,17 @@
-"""Runs the tests of mutants: a fork for each, whose code stands in the place of its file's.
+"""Runs the tests of mutants: a fork for each, which loads a text in the place of its file.
 
-The tests are collected once. A first fork notes which of the rows in question each test reaches.
-In the fork of a mutant the tests that reach its row run, the fastest first, until one fails or a
-budget is spent. What runs as a module loads is tried in a process that has not loaded it. A mutant
-is killed by a test that fails with it and, in a fork of its own, passes without it. One that takes
-too long, cannot be loaded or collected, or ends in another way is neither killed nor alive.
+A first fork notes which of the rows in question each test reaches. In the fork of a mutant the
+tests that reach its row run, the fastest first, until one fails or a budget is spent. A mutant is
+killed by a test that fails with it and, in a fork of its own, passes without it. One that takes too
+long, cannot be loaded or collected, or ends in another way is neither killed nor alive.
 """
 
 import ast
 import builtins
 import contextlib
-import gc
 import importlib.abc
 import importlib.machinery
 import importlib.util
-import inspect
 import json
 import os
 import signal
@@ -22,7 +19,6 @@ import sys
 import tempfile
 import time
 from pathlib import Path
-from types import CodeType, FunctionType
 
 import pytest
 
@@ -49,11 +45,20 @@ _STARTERS = ("test_interpreters", "test_boards")
 _BUDGET_S = 10
 _PATIENCE_S = 90
 _CRASHES = (signal.SIGSEGV, signal.SIGFPE, signal.SIGABRT, signal.SIGBUS, signal.SIGILL)
+# Packages whose modules stand in the repository.
+_OWN = (
+    "zerorate",
+    "zerorate_i2c",
+    "zerorate_tools",
+    "zerorate_bench",
+    "zerorate_fakes",
+    "host_tests",
+)
 _HIT = "__hit__"  # the name by which a file's statements say that they are reached
 
 
 class InPlaceOf(importlib.abc.MetaPathFinder, importlib.machinery.SourceFileLoader):
-    """Loads a text in the place of a module's file."""
+    """Loads a text, or what was parsed of one, in the place of a module's file."""
 
     def __init__(self, path, text):
         super().__init__("", str(path))
@@ -78,40 +83,6 @@ def put_in_place(path, text, loaded=None):
     sys.meta_path.insert(0, InPlaceOf(path, loaded or text))
     plain = Path.read_text
     Path.read_text = lambda self, *how, **more: text if self == path else plain(self, *how, **more)
-
-
-def _codes(code):
-    """A code object and all within it, in the order of the text."""
-    yield code
-    for part in code.co_consts:
-        if isinstance(part, CodeType):
-            yield from _codes(part)
-
-
-def _runs_alike(code, other):
-    """Whether two code objects do the same, whatever the functions within them do."""
-    pairs = zip(code.co_consts, other.co_consts)
-    consts = all(isinstance(a, CodeType) or repr(a) == repr(b) for a, b in pairs)
-    return consts and (code.co_code, code.co_names) == (other.co_code, other.co_names)
-
-
-def _before_and_after(file, changed):
-    """[(code, its new code)] of a file; changed: its new text, or what that was parsed to."""
-    texts = file.read_text(encoding="utf-8"), changed
-    before, after = ([*_codes(compile(text, str(file), "exec"))] for text in texts)
-    return list(zip(before, after)) if len(before) == len(after) else []
-
-
-def _is_function(code):
-    return bool(code.co_flags & inspect.CO_NEWLOCALS)
-
-
-def swap(file, pairs):
-    """Give every function of a file, wherever it is held, its new code."""
-    new = dict(pair for pair in pairs if _is_function(pair[0]))
-    for one in gc.get_objects():
-        if isinstance(one, FunctionType) and one.__code__.co_filename == str(file):
-            one.__code__ = new.get(one.__code__, one.__code__)
 
 
 class Hits(ast.NodeTransformer):
@@ -182,11 +153,7 @@ class Nearest(InProcess):
         self.at_row = {n for n, rows in at_file.items() if any(a <= row <= b for _, a, b in rows)}
 
     def pytest_runtestloop(self, session):
-        self.fail(session)
-        return True
-
-    def fail(self, session):
-        """Whether a test fails, of those near to the row and within the budget."""
+        """Run the tests near to the row until one fails or the budget is spent."""
         near = self.at_row or self.at_file or set(self._tests)
         first = [item for item in session.items if item.nodeid in near]
         # what a fixture of several tests reaches was noted for the first of them
@@ -202,43 +169,24 @@ class Nearest(InProcess):
             signal.setitimer(signal.ITIMER_PROF, 5 + 3 * self._longest_s(item))
             self._at.write_text(_address(item), encoding="utf-8")
             _run(item, following)
-        return session.testsfailed > 0
+        return True
 
     def _longest_s(self, item):
         """Seconds of the slowest test in an item's module: it may have made a fixture of all."""
         return max(s for s, path, _ in self._tests.values() if path == str(item.path))
 
 
-class Trials(InProcess):
-    """A plugin of pytest that forks in the place of running tests: for reach, then for mutants.
+class Reach(InProcess):
+    """A plugin of pytest that notes which hits each test has, and how long it takes.
 
-    drawn: {number: (file, row, mutated text)}. Writes [tests as in Nearest, ends, modules].
+    Writes [{nodeid: [seconds, its path, [[file, first row, last row], ...]]}, modules of others
+    that are loaded by then]; or, where a test fails, its nodeid.
     """
 
-    def __init__(self, drawn, written):
-        self._drawn, self._written = drawn, written
+    def __init__(self, written):
+        self._written = written
 
     def pytest_runtestloop(self, session):
-        if _end_of(lambda: self._note_reach(session), 1800) != "passed":
-            return True
-        tests = json.loads(self._written.read_text(encoding="utf-8"))
-        drawn = self._drawn.items()
-        ends = {n: end for n, of in drawn if (end := self._end(session, tests, *of))}
-        # what no mutant is in, and each process would else load anew
-        others = [
-            n for n, m in sys.modules.items() if "site-packages" in str(vars(m).get("__file__"))
-        ]
-        self._written.write_text(json.dumps([tests, ends, others]), encoding="utf-8")
-        return True
-
-    def _note_reach(self, session):
-        for file in {Path(file) for file, *_ in self._drawn.values()}:
-            rows = [row for of, row, _ in self._drawn.values() if Path(of) == file]
-            tree = Hits(file, rows).visit(ast.parse(file.read_text(encoding="utf-8")))
-            swap(file, _before_and_after(file, ast.fix_missing_locations(tree)))
-            # what is not loaded yet, or run from its text; C is made of kernels as they are
-            kernel = "firmware" in file.parts
-            put_in_place(file, file.read_text("utf-8") if kernel else ast.unparse(tree), tree)
         tests = {}
         for item, following in zip(session.items, [*session.items[1:], None]):
             reached, began_s = set(), time.process_time()
@@ -249,28 +197,11 @@ class Trials(InProcess):
             tests[item.nodeid] = [took_s, str(item.path), sorted(reached)]
             if session.testsfailed:
                 return True
-        self._written.write_text(json.dumps(tests), encoding="utf-8")
-        return False
-
-    def _end(self, session, tests, file, row, text):
-        """How a mutant of a function ends; None where it is of what runs as a module loads."""
-        pairs = _before_and_after(Path(file), text)
-        at = self._written.with_name("at")
-        nearest = Nearest(tests, at, file, row)
-        functions = all(_is_function(code) or _runs_alike(code, new) for code, new in pairs)
-        if not (pairs and functions and nearest.at_row):
-            return None
-
-        def mutated():
-            put_in_place(Path(file), text)
-            swap(file, pairs)
-            return nearest.fail(session)
-
-        def alone(failed):
-            _run(next(item for item in session.items if _address(item) == failed), None)
-            return session.testsfailed > 0
-
-        return _tried(mutated, alone, at)
+        others = [
+            n for n, m in sys.modules.items() if "site-packages" in str(vars(m).get("__file__"))
+        ]
+        self._written.write_text(json.dumps([tests, others]), encoding="utf-8")
+        return True
 
 
 def _tried(mutated, alone, at):
@@ -304,36 +235,56 @@ def _end_of(forked, seconds):
 
 
 def _pytest(tests, plugin):
-    """What pytest returns for tests with a plugin of this file."""
+    """What pytest returns for tests with a plugin of this file; our own modules are loaded anew."""
+    for name in [n for n in sys.modules if n.partition(".")[0] in _OWN]:
+        del sys.modules[name]
     # plain: else pytest loads modules named like tests (drift_test.py) by itself
     quiet = ["-q", "-s", "-x", "--assert=plain", "-p", "no:cacheprovider", "-p", "no:xdist"]
     return pytest.main([*quiet, *tests], plugins=[plugin])
 
 
-def ends(tests, drawn):
-    """{number: how it ends} of drawn, {number: (file, row, mutated text)}."""
-    drawn = {number: (str(REPOSITORY / file), *of) for number, (file, *of) in drawn.items()}
+def _reached(tests, drawn):
+    """What `Reach` writes of the rows that are drawn."""
     with tempfile.TemporaryDirectory(prefix="zerorate-reach-") as folder:
         written = Path(folder, "reach")
-        _end_of(lambda: _pytest(tests, Trials(drawn, written)), 7200)
+
+        def note():
+            setattr(builtins, _HIT, lambda hit: None)
+            for file in {Path(file) for file, *_ in drawn.values()}:
+                text = file.read_text(encoding="utf-8")
+                tree = Hits(file, [row for of, row, _ in drawn.values() if Path(of) == file])
+                tree = ast.fix_missing_locations(tree.visit(ast.parse(text)))
+                # C is made of kernels as they are, and some files are run from their text
+                kernel = "firmware" in file.parts
+                put_in_place(file, text if kernel else ast.unparse(tree), tree)
+            return _pytest(tests, Reach(written))
+
+        _end_of(note, 1800)
         said = written.read_text(encoding="utf-8") if written.exists() else "at collection"
         if not said.startswith("[{"):
             raise SystemExit(f"the tests fail as they are: {said}")
-        reached, found, others = json.loads(said)
-        for name in others:
-            with contextlib.suppress(ImportError):
-                importlib.import_module(name)
+        return json.loads(said)
+
+
+def ends(tests, drawn):
+    """{number: how it ends} of drawn, {number: (file, row, mutated text)}."""
+    drawn = {number: (str(REPOSITORY / file), *of) for number, (file, *of) in drawn.items()}
+    reached, others = _reached(tests, drawn)
+    for name in others:  # what no mutant is in, and each fork would else load anew
+        with contextlib.suppress(ImportError):
+            importlib.import_module(name)
+    return {number: _end(tests, reached, *of) for number, of in drawn.items()}
+
+
+def _end(tests, reached, file, row, text):
+    """How a mutant ends."""
+    with tempfile.TemporaryDirectory(prefix="zerorate-mutant-") as folder:
         at = Path(folder, "at")
-        return {n: found.get(str(n)) or _loaded(tests, reached, at, *of) for n, of in drawn.items()}
+        nearest = Nearest(reached, at, file, row)
+        near = sorted({reached[name][1] for name in nearest.at_row or nearest.at_file})
 
+        def mutated():
+            put_in_place(Path(file), text)
+            return _pytest(near or tests, nearest)
 
-def _loaded(tests, reached, at, file, row, text):
-    """How a mutant ends in a process that loads it."""
-    nearest = Nearest(reached, at, file, row)
-    near = sorted({reached[name][1] for name in nearest.at_row or nearest.at_file})
-
-    def mutated():
-        put_in_place(Path(file), text)
-        return _pytest(near or tests, nearest)
-
-    return _tried(mutated, lambda failed: _pytest([failed], InProcess()), at)
+        return _tried(mutated, lambda failed: _pytest([failed], InProcess()), at)
