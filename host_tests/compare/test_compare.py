@@ -86,6 +86,13 @@ def test_what_is_not_installed_is_said(drifting, monkeypatch):
     assert "vqf" not in compared.error_dps
 
 
+@pytest.mark.parametrize("ticks", [3, 6, 30])
+def test_a_rest_of_a_few_ticks_knows_its_mean_as_well_as_it_says(ticks):
+    means = np.random.default_rng(7).normal(0, 0.05, (ticks, 20_000))
+    off = np.abs(means.mean(axis=0)) > 2 * judge.standard_error(means)
+    assert 0.04 < off.mean() < 0.05  # of a normal deviate, 4.6 % are beyond two sigma
+
+
 def test_one_rest_judges_no_method_and_without_motion_the_log_is_refused(tmp_path, capsys):
     log = a_log(tmp_path / "once.parquet", [0.5])
     with pytest.raises(TooFewRests, match="leave it at rest again"):

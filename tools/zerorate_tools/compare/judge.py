@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import norm, t
 from threadpoolctl import threadpool_limits
 
 from ..errors import BadRecording, InFile
@@ -64,13 +65,22 @@ def rests_of(ticks: Ticks, one: Given) -> list[Rest]:
 
 def _rest(one: Given, means: NDArray[np.float64], first: int, last: int) -> Rest:
     bias = one.rate_dps[first:last].mean(axis=0)
-    sigma = np.nanstd(means, axis=0, ddof=1) / np.sqrt(len(means))
+    sigma = standard_error(means)
     down = None
     if one.accel_g is not None:
         down = one.accel_g[first:last].mean(axis=0)
         down = down / (np.linalg.norm(down) or 1.0)
     t_us = one.recording.columns["t_us"]
     return Rest(first, last, float(t_us[first] - t_us[0]) / 1e6, bias, sigma, down)
+
+
+def standard_error(means: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(axes,) of the mean of (n, axes) means, wide enough that the truth lies within two of them as
+    often as within two sigma: a few means hardly know their own scatter (Student's t)."""
+    n = len(means)
+    few = t.isf(norm.sf(_SIGMAS), n - 1) / _SIGMAS
+    error: NDArray[np.float64] = few * np.nanstd(means, axis=0, ddof=1) / np.sqrt(n)
+    return error
 
 
 @dataclass(frozen=True)
