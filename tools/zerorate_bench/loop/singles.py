@@ -7,7 +7,8 @@ hand; and a further power-on that nobody has seen.
 
 import tempfile
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -182,21 +183,16 @@ def _first(frames, recording) -> NDArray[np.bool_]:
     return frames.t_us - recording.columns["t_us"][0] < 1e6 * _LEARNED_S
 
 
-def look_at_singles(
-    number: int,
-    processes: int = 2,
-    resume: Path | None = None,
-    advance: Callable[[float], None] = lambda n: None,
-) -> list[Single]:
-    """So many devices, of every kind alike. resume: as of `outcomes`."""
-    rows = outcomes(look_at_single, range(number), processes, resume, advance)
-    return [Single(**row) for row in rows]
-
-
 def single_figures(singles: list[Single]) -> list[Figure]:
     """Shares made worse, and of steps listed and invented."""
     rows = [
-        share(f"deployed and worse by more than 2 %, {where}", singles, _is_worse(where), 1.0, True)
+        share(
+            f"deployed and worse by more than 2 %, {where}",
+            singles,
+            partial(Single.worse, where=where),
+            1.0,
+            True,
+        )
         for where in ("at rest", "in motion", "a further power-on")
     ]
     for kind, what, limit in (("step", "RMS", 95.0), ("small step", "jump", None)):
@@ -217,20 +213,15 @@ def single_figures(singles: list[Single]) -> list[Figure]:
     return rows
 
 
-def _is_worse(where: str) -> Callable[[Single], bool]:
-    return lambda s: s.worse(where)
-
-
 def run_singles(
-    number: int,
-    processes: int = 2,
-    resume: Path | None = None,
-    advance: Callable[[float], None] = lambda n: None,
+    number: int, processes: int, resume: Path | None, advance: Callable[[float], None]
 ) -> dict:
-    """So many devices: their figures, and what became of each, as plain values."""
-    singles = look_at_singles(number, processes, resume, advance)
+    """So many devices, of every kind alike: their figures, and what became of each, as plain
+    values. resume: as of `outcomes`."""
+    each = list(outcomes(look_at_single, range(number), processes, resume, advance))
+    singles = [Single(**row) for row in each]
     figures = [f.to_dict() for f in single_figures(singles)]
-    return {"devices": number, "figures": figures, "each": [asdict(s) for s in singles]}
+    return {"devices": number, "figures": figures, "each": each}
 
 
 def in_words(result: dict) -> str:

@@ -202,10 +202,10 @@ def _look(device: Device) -> Outcome:
     return look_at_files(device) if device.row in ROWS else run_trial(device)
 
 
-def _examples(outcomes: list[Outcome], most: int = 20) -> list[list]:
+def _examples(outcomes: list[Outcome]) -> list[list]:
     """[row, seed, names] of devices without an effect in which one was found."""
     nothing = [o for o in outcomes if not o.device.effects and o.found]
-    return [[o.device.row, o.device.seed, o.found, o.confidence] for o in nothing[:most]]
+    return [[o.device.row, o.device.seed, o.found, o.confidence] for o in nothing[:20]]
 
 
 def markdown(result: dict) -> str:

@@ -10,9 +10,9 @@ from ..recordings.recording import ACCEL, GYRO
 from ..simulate import simulate
 
 
-def in_hand(scenario: str = "in-hand", part: str = "MPU-6050") -> tuple[FakeI2C, FakeClock]:
-    """The bus of a chip that feels what a bundled scenario says, and the clock of both."""
-    recording, _ = simulate(scenario)
+def in_hand() -> tuple[FakeI2C, FakeClock]:
+    """The bus of a chip that feels what the bundled scenario says, and the clock of both."""
+    recording, _ = simulate("in-hand")
     scales = recording.scales
     assert scales.accel_lsb_per_g is not None, "a hand is felt"
     felt = Physical(
@@ -21,7 +21,7 @@ def in_hand(scenario: str = "in-hand", part: str = "MPU-6050") -> tuple[FakeI2C,
         noise=0,
     )
     clock = FakeClock()
-    chip = FakeMPU6050(felt, part=part)
+    chip = FakeMPU6050(felt)
     clock.devices.append(chip)
     return FakeI2C(chip, clock=clock), clock
 

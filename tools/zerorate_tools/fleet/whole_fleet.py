@@ -33,6 +33,9 @@ from .prior import Runner, benefit, prior_json, write_prior
 if TYPE_CHECKING:
     from distributed import Client
 
+#: Devices that the report names as those furthest off.
+_MOST_WORST = 10
+
 
 def fleet(
     devices: Sequence[Device],
@@ -188,7 +191,7 @@ def _report(
     }
 
 
-def _worst(found: Sequence[dict[str, Any]], most: int = 10) -> list[dict[str, Any]]:
+def _worst(found: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
     """The devices on which the firmware was furthest off in some power-on, worst first."""
     rows = [
         {"device": r["device"], "session": s["name"], "error_mdps": s["error_mdps"]}
@@ -196,7 +199,7 @@ def _worst(found: Sequence[dict[str, Any]], most: int = 10) -> list[dict[str, An
         for s in r["sessions"]
         if s["error_mdps"]
     ]
-    return sorted(rows, key=lambda row: -max(row["error_mdps"]))[:most]
+    return sorted(rows, key=lambda row: -max(row["error_mdps"]))[:_MOST_WORST]
 
 
 class Parts:
