@@ -5,57 +5,24 @@ nothing acknowledges. The device rests and moves in turn while its bias follows 
 """
 
 import argparse
-import math
 import random
 import sys
 import types
 from pathlib import Path
 
 from zerorate import checked
-from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050, Physical
+from zerorate_bench.service import World
+from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050
 from zerorate_i2c.mpu6050 import MPU6050
 
 PROGRAM = Path(__file__).resolve().parents[2] / "examples" / "main.py"
 LEARNING_S = 60.0
 CORRECTED_DPS = 0.05
 _AWAY_S = (0.2, 5.0)
-_CYCLE_S, _REST_S = 50.0, 30.0
 
 
 class EndOfDay(BaseException):
     """Time is up; no handler of the program's catches it."""
-
-
-class Device:
-    """What the chip feels at any time; its bias drifts, by temperature or not."""
-
-    def __init__(self, clock, drift_dps_per_h):
-        self.clock, self.drift_dps_per_h = clock, drift_dps_per_h
-        names = ("gyro_dps", "accel_g", "temp_degc")
-        self.felt = Physical(**{name: getattr(self, name) for name in names})
-
-    @property
-    def seconds(self):
-        return self.clock.now_us / 1e6
-
-    def temp_degc(self, _=0.0):
-        return 25 + 8 * math.sin(2 * math.pi * self.seconds / 86400)
-
-    def bias_dps(self):
-        warm = self.temp_degc() - 25
-        away = self.drift_dps_per_h * self.seconds / 3600
-        return 1.1 + 0.02 * warm + away, -0.7 - 0.01 * warm, 0.3 + 0.005 * warm
-
-    def _shake(self):
-        return self.seconds if self.seconds % _CYCLE_S >= _REST_S else 0.0
-
-    def gyro_dps(self, _):
-        t, bias = self._shake(), self.bias_dps()
-        return [b + a * math.sin(w * t) for b, a, w in zip(bias, (40, 30, 50), (1.3, 2.1, 0.7))]
-
-    def accel_g(self, _):
-        t = self._shake()
-        return 0.3 * math.sin(3.1 * t), 0.2 * math.sin(2.3 * t), 1 + 0.2 * math.sin(4.7 * t)
 
 
 class Day(FakeClock):
@@ -68,7 +35,7 @@ class Day(FakeClock):
     def __init__(self, hours, resets, unplugs, odr_hz, seed, drift_dps_per_h=0.0):
         super().__init__()
         luck, self.end_us = random.Random(seed), round(hours * 3.6e9)
-        self.device = Device(self, drift_dps_per_h)
+        self.device = World(self, (1.1, -0.7, 0.3), 50.0, 30.0, 25.0, 8.0, drift_dps_per_h)
         self.chip = FakeMPU6050(self.device.felt)
         self.devices.append(self.chip)
         self.bus, self.odr_hz = FakeI2C(self.chip), odr_hz

@@ -37,11 +37,6 @@ def state():
     return state
 
 
-@pytest.fixture(params=range(4))
-def draw(request):
-    return np.random.default_rng(request.param)
-
-
 def bells(t):
     """Both bells, the slopes that go with them (less, by t / 2), and the third shape."""
     rest = 1 - t**2

@@ -21,11 +21,6 @@ def state():
     return motion_state(SETTINGS)
 
 
-@pytest.fixture(params=range(4))
-def draw(request):
-    return np.random.default_rng(request.param)
-
-
 @pytest.mark.parametrize("size", [60, 4096, 300000])
 @pytest.mark.parametrize("way", [[0, 0, 1], [0, 0, -1], [1, 0, 0], [0, -1, 0], [0.6, 0.3, -0.7]])
 def test_the_least_turn_makes_the_mean_force_vertical(state, draw, way, size):

@@ -2,7 +2,6 @@
 
 import math
 
-import numpy as np
 import pytest
 from zerorate import Corrector
 from zerorate.rest import recent
@@ -38,11 +37,6 @@ OF_ALL = {"TEMP", "NOISE_Q8", "GROWN_Q8", "MEAN_NOISE_Q8", "LEARN_TEMP", "RESTS"
 @pytest.fixture
 def axis():
     return Axis()
-
-
-@pytest.fixture(params=range(4))
-def draw(request):
-    return np.random.default_rng(request.param)
 
 
 @pytest.mark.parametrize("age_s", [0, 1, 60, 1000, 2043, 2044, 2045, 60000])

@@ -23,11 +23,6 @@ def rest():
     return corrector.state, c
 
 
-@pytest.fixture(params=range(4))
-def draw(request):
-    return np.random.default_rng(request.param)
-
-
 def fill(s, c, frames):
     """Gather the frames, (32, 7); whether the window is full with the last of them alone."""
     full = [stillness.gather(s, c, array("i", row)) for row in np.rint(frames).astype(int).tolist()]

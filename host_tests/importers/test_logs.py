@@ -7,12 +7,10 @@ from zerorate_bench.foreign_logs import binary as foreign_files
 from zerorate_tools.errors import BadRecording
 from zerorate_tools.importers import parsed_mapping, read_foreign
 
+from .test_odd_files import told
+
 RNG = np.random.default_rng(5)
 G = 9.80665
-
-
-def told(report, words):
-    return any(words in line for line in report.lines())
 
 
 @pytest.mark.parametrize("turned", [False, True], ids=["a row a sample", "a column a sample"])

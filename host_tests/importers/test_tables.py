@@ -13,6 +13,8 @@ from zerorate_tools.recordings import (
 )
 from zerorate_tools.recordings.checks import GAP
 
+from .test_odd_files import told
+
 G = 9.80665
 
 
@@ -20,10 +22,6 @@ def table(path, **columns):
     """A CSV of these columns."""
     pd.DataFrame(columns).to_csv(path, index=False)
     return path
-
-
-def told(report, words):
-    return any(words in line for line in report.lines())
 
 
 def test_a_mapping_with_units_gives_integers(tmp_path):

@@ -11,6 +11,7 @@ import random
 import tempfile
 from collections import Counter
 from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,6 @@ from zerorate_i2c.mpu6050 import MPU6050
 from zerorate_tools.service import Service, System
 
 ODR_HZ = 5
-_CYCLE_S, _REST_S = 600.0, 360.0
 _SETTLE_S = 60.0
 _PERIOD_US = 1_000_000 // ODR_HZ
 _DOWN_US, _HURRY_US = 1_000_000, 20_000_000
@@ -63,11 +63,26 @@ class Disk(FileStorage):
         return (self.clock.now_us - self._written_us) / 1e6
 
 
+@dataclass(frozen=True)
 class World:
-    """The device's true bias and motion at any time."""
+    """A device at rest and in the hand in turn, whose bias follows the day's temperature.
 
-    def __init__(self, clock: FakeClock) -> None:
-        self.clock = clock
+    at_mean_dps: its bias at the mean temperature; cycle_s, rest_s: of a turn, and of the rest that begins it;
+    degc, swing_degc: the day's mean, and how far it is left; drift_dps_per_h: of axis x.
+    """
+
+    clock: FakeClock
+    at_mean_dps: tuple[float, float, float] = (0.5, -0.3, 0.1)
+    cycle_s: float = 600.0
+    rest_s: float = 360.0
+    degc: float = 22.0
+    swing_degc: float = 10.0
+    drift_dps_per_h: float = 0.0
+
+    @property
+    def felt(self) -> Physical:
+        """What a chip on it feels."""
+        return Physical(self.gyro_dps, self.accel_g, self.temp_degc)
 
     @property
     def seconds(self) -> float:
@@ -76,31 +91,30 @@ class World:
 
     def temp_degc(self, _: float = 0) -> float:
         """A day's course."""
-        return 22 + 10 * math.sin(2 * math.pi * self.seconds / 86400)
+        return self.degc + self.swing_degc * math.sin(2 * math.pi * self.seconds / 86400)
 
     def bias_dps(self) -> tuple[float, float, float]:
         """Follows the temperature."""
-        warm = self.temp_degc() - 22
-        return 0.5 + 0.02 * warm, -0.3 - 0.01 * warm, 0.1 + 0.005 * warm
+        warm, (x, y, z) = self.temp_degc() - self.degc, self.at_mean_dps
+        away = self.drift_dps_per_h * self.seconds / 3600
+        return x + 0.02 * warm + away, y - 0.01 * warm, z + 0.005 * warm
 
     def resting_s(self) -> float:
         """Seconds since this rest began, below 0 in motion."""
-        phase = self.seconds % _CYCLE_S
-        return phase if phase < _REST_S else -1.0
+        phase = self.seconds % self.cycle_s
+        return phase if phase < self.rest_s else -1.0
 
-    def gyro_dps(self, _: float) -> tuple[float, float, float]:
+    def _moves_s(self) -> float:
+        return 0.0 if self.resting_s() >= 0 else self.seconds
+
+    def gyro_dps(self, _: float) -> list[float]:
         """Bias, and in motion a rate that never stays."""
-        x, y, z = self.bias_dps()
-        if self.resting_s() >= 0:
-            return x, y, z
-        t = self.seconds
-        return x + 40 * math.sin(1.3 * t), y + 30 * math.sin(2.1 * t), z + 50 * math.sin(0.7 * t)
+        t, swings = self._moves_s(), ((40, 1.3), (30, 2.1), (50, 0.7))
+        return [b + dps * math.sin(w * t) for b, (dps, w) in zip(self.bias_dps(), swings)]
 
     def accel_g(self, _: float) -> tuple[float, float, float]:
         """Gravity, and in motion shaking."""
-        if self.resting_s() >= 0:
-            return 0.0, 0.0, 1.0
-        t = self.seconds
+        t = self._moves_s()
         return 0.3 * math.sin(3.1 * t), 0.2 * math.sin(2.3 * t), 1 + 0.2 * math.sin(4.7 * t)
 
 
@@ -159,8 +173,7 @@ def run(hours: float = 24, faults: int = 1000, seed: int = 1) -> dict:
     luck = random.Random(seed)
     clock = FakeClock()
     world = World(clock)
-    felt = {name: getattr(world, name) for name in ("gyro_dps", "accel_g", "temp_degc")}
-    chip = FakeMPU6050(Physical(**felt))
+    chip = FakeMPU6050(world.felt)
     clock.devices.append(chip)
     bus, judge = FakeI2C(chip, clock), Judge(world)
     end_us = round(hours * 3.6e9)
