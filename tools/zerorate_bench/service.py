@@ -67,7 +67,7 @@ class Disk(FileStorage):
 class World:
     """A device at rest and in the hand in turn, whose bias follows the day's temperature.
 
-    at_mean_dps: its bias at the mean temperature; cycle_s, rest_s: of a turn, and of the rest that begins it;
+    at_mean_dps: its bias at the mean temperature; cycle_s, rest_s: of a turn, and of its rest;
     degc, swing_degc: the day's mean, and how far it is left; drift_dps_per_h: of axis x.
     """
 
