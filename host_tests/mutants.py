@@ -111,7 +111,7 @@ AREAS = {
     "commands": (
         [_TOOLS + "commands/"],
         ["tools/test_words_reach.py", "tools/test_cli.py", "compare/test_compare.py",
-         "guide/test_guide.py", "replay/test_replay.py"],
+         "guide/test_guide.py", "replay/test_replay.py", "tools/test_model.py"],
     ),
     # what stands in no folder: the library's own doors, and what all share
     "tools": (

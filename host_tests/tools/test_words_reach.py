@@ -285,6 +285,23 @@ def test_a_function_is_given_what_was_typed(stands_in, words, function, given):
 
 
 @pytest.mark.parametrize(
+    ("words", "total"),
+    [
+        *(("close a.csv b.csv --out o", 4), ("compare a.csv b.csv", 6)),
+        *(("fleet run.parquet --out o", 1), ("replay run.parquet --out o.parquet", 4)),
+        *(("import s.py --out o.csv", 7), ("import none.csv --out o.csv", None)),
+        *(("record 0 --out o.csv --seconds 9", 9), ("record 0 --out o.csv", None)),
+        *(("simulate warm-up-a --out o.csv", 2), ("simulate car --out o.csv --session 1", 1)),
+    ],
+)
+def test_the_bar_is_as_long_as_the_work(stands_in, words, total):
+    progress = stands_in("zerorate_tools.progress.progress", Asked())
+    with pytest.raises(Asked):
+        cli.main(words.split())
+    assert progress.call_args.args[1:] == (total,)
+
+
+@pytest.mark.parametrize(
     ("words", "scales", "model"),
     [
         ("", (100, 131, 16384, 340), None),
@@ -353,6 +370,34 @@ def test_what_the_function_could_not_do_ends_with_2(words):
 def test_1_says_that_nothing_came(stands_in, words, function, nothing):
     stands_in(f"zerorate_tools.{function}", nothing)
     assert cli.main(words.split()) == 1
+
+
+def test_an_import_says_what_came_of_each_file(stands_in, capsys):
+    report = SimpleNamespace(lines=lambda: ["first", "second"])
+    stands_in("zerorate_tools.importers.import_recording", report)
+    assert cli.main(["import", "a.csv", "--out", "o.csv"]) == 0
+    assert capsys.readouterr().out.splitlines() == ["o.csv", "  first", "  second"]
+
+
+@pytest.mark.parametrize(("words", "said"), [("", "the table"), ("--out p", "the table\n\np")])
+def test_compare_says_where_its_page_is(stands_in, capsys, words, said):
+    stands_in("zerorate_tools.compare.matrix_of")
+    stands_in("zerorate_tools.compare.compare", "found")
+    stands_in("zerorate_tools.compare.show.table", "the table")
+    stands_in("zerorate_tools.compare.show.write_page")
+    assert cli.main(["compare", "a.csv", *words.split()]) == 0
+    assert capsys.readouterr().out == said + "\n"
+
+
+def test_allan_prints_mdps_of_each_length_and_the_lowest(stands_in, capsys):
+    rates = np.random.default_rng(1).normal(0, 1e-3, (50, 3))
+    stands_in("zerorate_tools.loop.read.still.still_stretch", (rates, 0.5))
+    assert cli.main(["allan", "run.parquet"]) == 0
+    first, _, *rows, floor = capsys.readouterr().out.splitlines()
+    numbers = np.array([row.split() for row in rows], float)
+    assert first == "the longest stretch at rest: 25.0 s" and numbers[0, 0] == 0.5
+    assert numbers[0, 1:] == pytest.approx(np.full(3, 1.0), abs=0.3)
+    assert [float(n) for n in floor.split()[1:]] == numbers[:, 1:].min(axis=0).tolist()
 
 
 def test_shares_are_of_all_samples():
