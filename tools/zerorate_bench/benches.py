@@ -167,6 +167,12 @@ BENCHES = {
         lambda bench, a: bench.steps(a.devices),
         options={"--devices": _number(80, "devices of each kind"), **_PROCESSES, **_RESUME},
     ),
+    "heading-size": Bench(
+        "time and memory of `close` in motion; exit code 1 if too much",
+        "heading_size",
+        lambda bench, a, advance: bench.run(),
+        judged=True,
+    ),
     "import": Bench(
         "logs of other tools: right or refused; exit code 1 if one is wrong",
         "foreign_imports",
