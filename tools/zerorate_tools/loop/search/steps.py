@@ -22,11 +22,7 @@ from .step_places import EDGE, LONGEST, best_place, best_slow, beyond_ramps, hea
 
 MOST_PER_SESSION = 4
 _AWAY = 15  # blocks from a step at which a step beside it no longer shows it
-#: Shares of a step's size that the blocks next to it differ by, as how many means, and the most by
-#: which as many anywhere near do.
-_ABRUPT, _BESIDE, _TREND = (0.5, 1.75), 2, 0.3
-#: Blocks around a step whose own trend is taken from that.
-_AROUND = 10
+_SAME = 2  # blocks by which one step is found apart beside other terms
 #: Blocks without rest across which no change is abrupt, if the temperature moved by more in them.
 _UNSEEN, _UNSEEN_DEGC = 3, 1.0
 #: Level of every step but the surest of one search: recordings with several are the rarer.
@@ -103,7 +99,7 @@ def steps_and_lags(regression, terms, recordings: int = 1) -> tuple[list[Step], 
 
 def _is_same(a: Step, b: Step) -> bool:
     """Whether two are the same one, found beside other terms."""
-    return a.session == b.session and abs(a.block - b.block) <= _BESIDE
+    return a.session == b.session and abs(a.block - b.block) <= _SAME
 
 
 def _shrunk_lags(regression, terms) -> dict[Term, float]:
@@ -151,8 +147,8 @@ def _all(regression, terms, recordings: int = 1) -> list[Step]:
     """Abrupt steps that stand beside each other; the regression is left as it was."""
     kept = regression.events()
     steps = standing(regression, terms, recordings, kept)
-    abrupt = [s for s in steps if _is_abrupt(regression, terms, s)]
-    abrupt = [s for s in abrupt if _is_no_ramp(regression, terms, steps, s, kept)]
+    seen = [s for s in steps if not _is_unseen(regression.sessions[s.session], s.block)]
+    abrupt = [s for s in seen if _is_no_ramp(regression, terms, steps, s, kept)]
     _set(regression, [], kept)
     return abrupt
 
@@ -260,24 +256,6 @@ def _sized(regression, terms, steps, kept=()) -> list[Step]:
     return steps
 
 
-def _is_abrupt(regression, terms, step: Step) -> bool:
-    """Whether the blocks next to it differ by about its size, less the trend around it, which is
-    none to speak of: a bend or a slow loop is not so."""
-    session = regression.sessions[step.session]
-    there = np.flatnonzero(session.available)
-    if _is_unseen(session, there, step.block):
-        return False
-    weight = step.size_dps / np.maximum(step.deviation_dps, 1e-12) ** 2
-    rate = session.rate_dps - predicted(terms, regression.fit(terms).coefficients, session)
-    along = rate[there] @ weight / (step.size_dps @ weight)
-    at = int(np.searchsorted(there, step.block))
-    change = np.array([_change(along, i) for i in range(at - _AROUND, at + _AROUND + 1)])
-    near = np.abs(np.arange(-_AROUND, _AROUND + 1)) <= 2 * _BESIDE
-    trend = np.nanmedian(change[~near]) if np.isfinite(change[~near]).any() else 0.0
-    largest = np.nanmax(np.r_[change[_AROUND - 1 : _AROUND + 2], -np.inf])
-    return bool(abs(trend) < _TREND and _ABRUPT[0] < largest - trend < _ABRUPT[1])
-
-
 def _is_no_ramp(regression, terms, steps, step, kept) -> bool:
     """Whether no ramp explains clearly more than the step, where those near it are taken out: a
     slow loop looks like a ramp or like a few small steps. Two near each other may stand together.
@@ -296,9 +274,10 @@ def _is_no_ramp(regression, terms, steps, step, kept) -> bool:
     return 2.0 * (regression.fit(terms).total - alone) - slow > _BOTH_BEYOND
 
 
-def _is_unseen(session, there, block: int) -> bool:
+def _is_unseen(session, block: int) -> bool:
     """Whether the device did not rest around the place for so long, and at such temperatures, that
     the bias may have drifted there: along a slow loop, for one."""
+    there = np.flatnonzero(session.available)
     at = int(np.searchsorted(there, block))
     if not 0 < at < len(there):
         return False
@@ -307,9 +286,3 @@ def _is_unseen(session, there, block: int) -> bool:
         return False
     temp = session.sources.get("temp")
     return temp is None or np.ptp(session.block_mean(temp)[first : last + 1]) > _UNSEEN_DEGC
-
-
-def _change(along, i) -> float:
-    """Mean of the blocks after place i less that of those before, one between left out."""
-    before, after = along[max(0, i - 1 - _BESIDE) : max(0, i - 1)], along[i : i + _BESIDE]
-    return float(after.mean() - before.mean()) if len(before) and len(after) else np.nan
