@@ -9,7 +9,7 @@ import sys
 from pathlib import PurePosixPath
 
 import pytest
-from zerorate_bench.boards.table import needs_of
+from zerorate_bench.boards.table import needs_of, page
 from zerorate_bench.native.manifests import FOLDERS, manifests
 from zerorate_tools.boards.compiling import board_files, mpy_version
 from zerorate_tools.boards.connection import BoardFacts
@@ -148,6 +148,10 @@ def test_the_page_of_boards_prints_the_heap_that_was_measured(monkeypatch):
         (["rest", "motion", "gravity"], 170),
     ):
         assert heap_needed(parts, "thumb") == bytes_
+
+
+def test_the_page_of_boards_is_what_the_bench_writes_of_the_needs_kept(repository):
+    assert (repository / "docs" / "boards.md").read_text(encoding="utf-8") == page()
 
 
 @pytest.fixture(scope="module")
