@@ -35,7 +35,15 @@ class Day(FakeClock):
     def __init__(self, hours, resets, unplugs, odr_hz, seed, drift_dps_per_h=0.0):
         super().__init__()
         luck, self.end_us = random.Random(seed), round(hours * 3.6e9)
-        self.device = World(self, (1.1, -0.7, 0.3), 50.0, 30.0, 25.0, 8.0, drift_dps_per_h)
+        self.device = World(
+            self,
+            at_mean_dps=(1.1, -0.7, 0.3),
+            cycle_s=50.0,
+            rest_s=30.0,
+            degc=25.0,
+            swing_degc=8.0,
+            drift_dps_per_h=drift_dps_per_h,
+        )
         self.chip = FakeMPU6050(self.device.felt)
         self.devices.append(self.chip)
         self.bus, self.odr_hz = FakeI2C(self.chip), odr_hz

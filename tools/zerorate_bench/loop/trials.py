@@ -45,6 +45,8 @@ _LONG_S, _TURN_S, _TURN_DPS = 9000.0, (4000.0, 4300.0), 3.0
 #: Around the ends of a turn, seconds: not counted either way.
 _ENDS_S, _LEAST_SHARE = 20.0, 95.0
 _BESIDE_S = 500.0
+#: Devices without an effect that the page names where one was found in them.
+_MOST_EXAMPLES = 20
 
 
 def write_device(folder: Path) -> list[Path]:
@@ -205,7 +207,7 @@ def _look(device: Device) -> Outcome:
 def _examples(outcomes: list[Outcome]) -> list[list]:
     """[row, seed, names] of devices without an effect in which one was found."""
     nothing = [o for o in outcomes if not o.device.effects and o.found]
-    return [[o.device.row, o.device.seed, o.found, o.confidence] for o in nothing[:20]]
+    return [[o.device.row, o.device.seed, o.found, o.confidence] for o in nothing[:_MOST_EXAMPLES]]
 
 
 def markdown(result: dict) -> str:

@@ -22,7 +22,7 @@ from .step_places import EDGE, LONGEST, best_place, best_slow, beyond_ramps, hea
 
 MOST_PER_SESSION = 4
 _AWAY = 15  # blocks from a step at which a step beside it no longer shows it
-_SAME = 2  # blocks by which one step is found apart beside other terms
+_SAME = 2  # blocks that the place of a step may move by when other terms stand beside it
 #: Blocks without rest across which no change is abrupt, if the temperature moved by more in them.
 _UNSEEN, _UNSEEN_DEGC = 3, 1.0
 #: Level of every step but the surest of one search: recordings with several are the rarer.
