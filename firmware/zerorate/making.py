@@ -59,11 +59,14 @@ def join(corrector, part, wanted, document, start_dps):
 
             join_others(corrector)
         except ImportError:
-            if wanted:
-                raise
-            text = "Left out: %s is not on this board; zerorate flash --with %s sends it."
-            corrector.left_out.append(text % (part, part))
+            text = "%s is not on this board; zerorate flash --with %s sends it"
+            left_out(corrector, wanted, ImportError(text % (part, part)))
         except ValueError as error:
-            if wanted:
-                raise
-            corrector.left_out.append("Left out: %s." % error)
+            left_out(corrector, wanted, error)
+
+
+def left_out(corrector, wanted, error):
+    """Say why a source is missing. Raises `error` if the source is wanted."""
+    if wanted:
+        raise error
+    corrector.left_out.append("Left out: %s." % error)

@@ -186,6 +186,8 @@ def test_a_board_that_was_sent_the_rest_path_alone_goes_without_the_others(monke
     for part in ("motion", "gravity"):
         cure = f"Left out: {part} is not on this board; zerorate flash --with {part} sends it."
         assert cure in corrector.explain()
+        with pytest.raises(ImportError, match=f"zerorate flash --with {part}"):
+            Corrector(**{part: True})
 
 
 def test_where_rests_exist_the_other_sources_do_not_touch_what_they_teach():

@@ -6,6 +6,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from zerorate_i2c.settings import ACCEL_RANGES_G, GYRO_RANGES_DPS
+
 from ..errors import ZerorateError
 from .learn import add_sources
 from .options import Parser, above_zero, any_base, option, switch
@@ -34,17 +36,19 @@ def add_record(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
 
 #: Names of MPU6050's keywords that are options of a command.
 _CHIP = ("address", "odr_hz", "full_scale_dps", "full_scale_g", "dlpf_hz", "part")
+_RANGES = (
+    ("--dps", "gyroscope", GYRO_RANGES_DPS, "full_scale_dps"),
+    ("--g", "accelerometer", ACCEL_RANGES_G, "full_scale_g"),
+)
 
 
 def _add_chip(parser: Parser) -> None:
     """Add the options of a chip on a Linux bus, which have the driver's own defaults."""
     option(parser, "--address", "N", "I2C address of the chip (0x68)", any_base)
     option(parser, "--hz", "N", "samples a second (100)", float, dest="odr_hz")
-    dps = "range of the gyroscope: 250, 500, 1000 or 2000"
-    option(parser, "--dps", "N", dps, int, dest="full_scale_dps")
-    option(
-        parser, "--g", "N", "range of the accelerometer: 2, 4, 8 or 16", int, dest="full_scale_g"
-    )
+    for flag, of, ranges, dest in _RANGES:
+        help = f"range of the {of}: {', '.join(map(str, ranges))}"
+        option(parser, flag, "N", help, int, dest=dest, choices=ranges)
     filtered = "bandwidth of the gyroscope's low-pass filter (by --hz)"
     option(parser, "--dlpf-hz", "N", filtered, float)
     option(parser, "--part", "NAME", "name of the part, as MPU-6500, if its id is unknown")

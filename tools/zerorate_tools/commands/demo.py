@@ -3,6 +3,7 @@
 import argparse
 import sys
 from collections.abc import Callable
+from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -42,6 +43,7 @@ def run_demo(arguments: argparse.Namespace) -> int:
     if arguments.real and arguments.out:
         raise ZerorateError("--real only prints: leave --out away, or redirect what it prints")
     arguments.out = arguments.out or Path("zerorate-demo")
+    import_module("..demo", __package__)  # a missing library is told before anything is fetched
     try:
         get_ready(arguments.runtime)
     except MissingRuntime as missing:
