@@ -12,7 +12,7 @@ import pytest
 from zerorate_fakes import FakeI2C, FakeMPU6050
 from zerorate_fakes.smbus import SMBus
 from zerorate_tools.boards import compiling
-from zerorate_tools.boards.connection import BoardError, BoardFacts
+from zerorate_tools.boards.connection import BoardError, BoardFacts, listening
 from zerorate_tools.boards.flashing import flash, older
 from zerorate_tools.boards.parts import needs
 from zerorate_tools.boards.port import MESSAGE, SAMPLE, FrameReader, encode
@@ -73,6 +73,15 @@ class TestPortThatDoesNotOpen:
     def test_what_is_no_serial_port(self, capsys, tmp_path, name):
         (tmp_path / "a-file").write_text("")
         assert "is no serial port" in self.said(capsys, tmp_path / name)
+
+    def test_who_listens_has_the_port_alone_and_sends_nothing(self):
+        board, slave = pty.openpty()
+        os.set_blocking(board, False)
+        with listening(os.ttyname(slave)):
+            with pytest.raises(BoardError), listening(os.ttyname(slave)):
+                pass
+            with pytest.raises(BlockingIOError):
+                os.read(board, 1)
 
     def test_a_port_of_another_group(self, capsys, monkeypatch):
         def refuse(*args, **options):
@@ -203,13 +212,6 @@ class TestFlash:
         said, again = flashed()
         assert 7 <= sum("sent before" in line for line in said) <= 10
         assert again.sent_bytes < again.total
-
-    def test_a_package_that_was_not_put_in_place_any_more_is(self, flashed, blank_board):
-        flashed()
-        (blank_board.folder / "lib" / "zerorate").rename(blank_board.folder / "zerorate")
-        _, again = flashed()
-        assert again.sent_bytes == 0
-        assert [p.name for p in blank_board.folder.iterdir()] == ["lib"]
 
     def test_a_board_of_another_mpy_version_gets_the_source(self, flashed, monkeypatch):
         monkeypatch.setattr("zerorate_tools.boards.compiling.mpy_version", lambda: (7, 0))

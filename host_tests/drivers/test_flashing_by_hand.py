@@ -1,5 +1,6 @@
 """What flashing sends, byte by byte: its programs run on this host, in a folder of their own."""
 
+import re
 from contextlib import redirect_stdout
 from functools import cache
 from io import StringIO
@@ -7,9 +8,12 @@ from pathlib import Path, PurePosixPath
 from types import SimpleNamespace
 
 import pytest
-from zerorate_tools.boards import flashing
-from zerorate_tools.boards.connection import BoardFacts, ask
+from zerorate_tools.boards import compiling, flashing
+from zerorate_tools.boards.connection import BoardError, BoardFacts, ask, connected
 from zerorate_tools.boards.parts import chosen_parts, heap_needed, part_files
+from zerorate_tools.errors import ZerorateError
+
+mpremote = pytest.importorskip("mpremote.transport")
 
 FACTS = BoardFacts("a board", (1, 24, 0), (6, 3), "x64", 100_000, 1_000_000)
 MAIN = PurePosixPath("main.py")
@@ -96,6 +100,9 @@ def test_what_an_attempt_left_is_used_and_what_it_should_not_have_sent_goes(flas
     Path("zerorate.new/zerorate/other.py").write_text("of another version")
     again, _ = flashed()
     assert again.sent == [] and there() == first.files
+    Path("lib/zerorate").rename("zerorate")  # it was not put in place any more
+    again, _ = flashed()
+    assert again.sent == [] and there() == first.files
 
 
 def test_a_part_that_is_not_named_stays_and_goes_with_only(flashed):
@@ -118,6 +125,7 @@ def test_no_command_is_too_long_for_a_small_board(flashed):
         (0x2E06, (6, 2), "rv32imc"),
         (0x0006, (6, 0), ""),
         (0x3506, (6, 1), ""),
+        (0x3E06, (6, 2), ""),
         (0, (0, 0), ""),
     ],
 )
@@ -125,6 +133,7 @@ def test_a_board_says_what_it_loads_by_one_number(number, mpy, architecture):
     said = repr(("Pico", (1, 24, 1), number, 190_000, 800_000)).encode()
     facts = ask(SimpleNamespace(exec_raw=lambda program, timeout: (said, b"")))
     assert facts == BoardFacts("Pico", (1, 24, 1), mpy, architecture, 190_000, 800_000)
+    assert re.findall(r"\d+(?:\.\d+)+", str(facts)) == ["1.24.1", "{}.{}".format(*mpy)]
 
 
 @pytest.mark.parametrize("short", [0, 1])
@@ -134,3 +143,103 @@ def test_a_board_with_too_little_heap_is_told(short):
     lines = flashing.room(facts, ["rest"], 40_000)
     assert any("more heap than" in line for line in lines) == bool(short)
     assert not any("flash" in line for line in lines)
+
+
+@pytest.mark.parametrize("runs", [True, False])
+def test_machine_code_that_does_not_run_is_followed_by_bytecode(flashed, monkeypatch, runs):
+    asked, files = [], texts(("rest",))
+    facts = BoardFacts("a board", (1, 24, 0), compiling.mpy_version(), "armv6m")
+    monkeypatch.setattr(flashing, "ask", lambda board: facts)
+    monkeypatch.setattr(
+        *(flashing, "board_files"),
+        lambda parts, facts, code: (
+            asked.append(code) or {n: files[n] for n in sorted(files)[code == "" :]}
+        ),
+    )
+    monkeypatch.setattr(flashing, "_TRIAL", "pass" if runs else "print('why')")
+    done, _ = flashed()
+    assert asked == (["thumb"] if runs else ["thumb", ""])
+    assert there() == done.files and len(files) - len(there()) == (not runs)
+    assert done.sent_bytes == sum(map(len, files.values()))
+
+
+class Port:
+    """mpremote's transport of a board that answers after some tries; told: what it was told."""
+
+    def __init__(self, tries):
+        self.tries, self.patience_s, self.told, self.closed = tries, [], b"", False
+        self.serial = SimpleNamespace(write=self.write, flush=lambda: None)
+
+    def write(self, data):
+        self.told += data
+
+    def close(self):
+        self.closed = True
+
+    def enter_raw_repl(self, soft_reset, timeout_overall):
+        self.patience_s.append(timeout_overall)
+        if len(self.patience_s) <= self.tries:
+            raise mpremote.TransportError("silent")
+
+
+@pytest.fixture
+def port(monkeypatch):
+    def made(tries=0):
+        port = Port(tries)
+        monkeypatch.setattr("mpremote.transport_serial.SerialTransport", lambda *a, **more: port)
+        return port
+
+    return made
+
+
+@pytest.mark.parametrize("tries", range(5))
+def test_a_board_is_tried_for_longer_each_time_and_given_up_at_last(port, tries):
+    board, used = port(tries), []
+    try:
+        with connected("port") as transport:
+            used.append(transport)
+    except BoardError:
+        assert tries > 2
+    assert used == [board] * (tries < 3) and board.closed
+    assert board.patience_s == [3, 10, 30][: tries + 1]
+
+
+@pytest.mark.parametrize("go_on", [True, False])
+def test_a_board_is_left_to_its_own_program_unless_told_otherwise(port, go_on):
+    board = port()
+    with connected("port", go_on):
+        assert board.told == b""
+    keys = [key for key in board.told if key != 13]  # Ctrl-C stops, Ctrl-B and Ctrl-D restart
+    assert keys == ([3, 3, 2, 4] if go_on else []) and board.closed
+
+
+@pytest.mark.parametrize(
+    ("last", "words"),
+    [
+        ("MemoryError: memory allocation failed", "docs/boards.md"),
+        ("OSError: [Errno 28] ENOSPC", "mpremote rm"),
+        ("OSError: 28", "OSError: 28"),
+    ],
+)
+def test_the_last_line_of_what_a_program_met_is_told_with_a_remedy(port, last, words):
+    port()
+    with pytest.raises(BoardError, match=words), connected("port"):
+        raise mpremote.TransportExecError(b"", f"Traceback:\n  File x\n{last}\n\n")
+
+
+def test_a_file_that_does_not_compile_is_told_by_its_name_and_line(tmp_path):
+    file = tmp_path / "wrong.py"
+    file.write_text("a = 1\nb = (\n")
+    with pytest.raises(ZerorateError, match=r"wrong\.py.*SyntaxError"):
+        compiling.compiled(file, "wrong")
+
+
+@pytest.mark.parametrize(
+    ("said", "version"),
+    [("MicroPython v1.24 on x; mpy-cross emitting mpy v6.3", (6, 3)), ("mpy v7", (7, 0))],
+)
+def test_the_version_of_compiled_files_is_what_the_compiler_says(monkeypatch, said, version):
+    monkeypatch.setattr(
+        compiling.subprocess, "run", lambda *a, **more: SimpleNamespace(stdout=said)
+    )
+    assert compiling.mpy_version.__wrapped__() == version

@@ -5,6 +5,7 @@ import os
 import signal
 from array import array
 from io import FileIO
+from unittest import mock
 
 import numpy as np
 import pytest
@@ -14,8 +15,9 @@ from zerorate_i2c.fifo import Fifo
 from zerorate_i2c.linux import LinuxI2C
 from zerorate_i2c.mpu6050 import MPU6050
 from zerorate_tools import cli
-from zerorate_tools.boards import fake_hand
-from zerorate_tools.boards.bus import record_bus
+from zerorate_tools.boards import bus, fake_hand
+from zerorate_tools.boards.bus import record_bus, stream_bus
+from zerorate_tools.boards.recorder import Recorded, Recorder
 from zerorate_tools.errors import InFile, ZerorateError
 from zerorate_tools.recordings import Recording, Scales, growing, read_recording
 from zerorate_tools.recordings.recording import GYRO
@@ -94,6 +96,17 @@ def test_every_sample_is_recorded_once_with_its_time(request, kind):
     assert result.rate_hz == pytest.approx(100, rel=0.01)
 
 
+@pytest.mark.parametrize(("hz", "every"), [(4, 2), (10, 5), (None, 50), (200, 100), (1000, 100)])
+def test_a_chip_is_verified_twice_a_second_or_every_hundred_samples(
+    machine, monkeypatch, hz, every
+):
+    asked = mock.Mock(side_effect=OSError)
+    monkeypatch.setattr(bus, "MPU6050", asked)
+    with pytest.raises(OSError):
+        machine.record(**({"odr_hz": hz} if hz else {}))
+    assert asked.call_args.kwargs["check_every"] == every
+
+
 def test_the_scales_are_those_of_the_chip(machine):
     machine.record(seconds=1, full_scale_dps=2000, full_scale_g=16)
     scales = read_recording(machine.out).scales
@@ -127,6 +140,26 @@ def test_a_bus_that_fails_for_good_keeps_what_was_verified_and_says_so(machine):
     with pytest.raises(ZerorateError, match=r"I2C: .*; 4\d\d samples, .* are in .*run.parquet"):
         machine.record(seconds=60)
     assert len(machine.columns()["gz"]) == pytest.approx(475, abs=25)
+    assert machine.clock.now_us / 1e6 == pytest.approx(10.2, abs=0.3)  # 5 s of patience
+
+
+@pytest.mark.parametrize("kind", ["machine", "polled"])
+def test_what_is_streamed_is_what_is_recorded(request, kind, tmp_path):
+    rows = []
+
+    def take(scales):
+        assert (scales.odr_hz, scales.more["source"]) == (100.0, "I2C")
+        append = lambda columns: rows.extend(columns["gz"])  # noqa: E731
+        return Recorder(append, 1e6 / scales.odr_hz, Recorded())
+
+    machine = request.getfixturevalue(kind)
+    machine.at(3, lambda: machine.bus.fault("nack", times=5))
+    stream_bus(machine.bus, take, seconds=6, time_source=machine.clock)
+    assert 450 < len(rows) < 600 and (np.diff(rows) > 0).all()
+    assert machine.bus.transfers < {"machine": 2, "polled": 4}[kind] * 600
+    machine.bus.fault("nack", times=None)
+    with pytest.raises(OSError):
+        stream_bus(machine.bus, take, seconds=60, time_source=machine.clock)
 
 
 def test_another_chip_ends_the_recording_with_an_error_that_names_it(machine):

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050
 from zerorate_i2c.mpu6050 import MPU6050
+from zerorate_tools.boards import port
 from zerorate_tools.boards.connection import BoardError
 from zerorate_tools.boards.on_board.stream import Streamer
 from zerorate_tools.boards.port import MESSAGE, SAMPLE, SAMPLE_BYTES, SCALES, BoardStream, encode
@@ -161,7 +162,8 @@ def test_scales_say_all_that_a_board_said(binding):
 
 def test_the_scales_come_behind_what_else_a_board_says():
     head = {**HEADER, "binding": [*range(len(NAMES))]}
-    data = b"MPY: soft reboot\r\n" + frames(FRESH) + encode(SCALES, json.dumps(head).encode())
+    data = b"MPY: soft reboot\r\n" + frames(FRESH) + encode(MESSAGE, b"restarted")
+    data += encode(SCALES, json.dumps(head).encode())
     assert BoardStream(Sent(data), "port").scales().gyro_lsb_per_dps == 16.4
 
 
@@ -169,6 +171,45 @@ def test_a_board_that_says_too_few_of_its_registers_is_refused():
     head = {**HEADER, "binding": [0] * (len(NAMES) - 1)}
     with pytest.raises(BoardError, match="cannot be read"):
         BoardStream(Sent(encode(SCALES, json.dumps(head).encode())), "port").scales()
+
+
+class Says:
+    """A serial port that gives these answers, each a second after the one before."""
+
+    def __init__(self, monkeypatch, *answers):
+        self.answers, self.seconds, self.in_waiting = [*answers], 0.0, 0
+        monkeypatch.setattr(port.time, "monotonic", lambda: self.seconds)
+
+    def read(self, count):
+        self.seconds += 1
+        answer = self.answers.pop(0) if self.answers else b""
+        if isinstance(answer, Exception):
+            raise answer
+        return answer
+
+
+@pytest.mark.parametrize(
+    ("answers", "after_s", "told"),
+    [
+        ([], 11, "10 s"),
+        ([b"."] * 7, 18, "10 s"),
+        ([b"Traceback (most", b" recent call last):\n", b"OSError: 5\r\n\x04>"], 4, "OSError: 5"),
+        ([b".", OSError(5)], 2, "port: "),
+    ],
+)
+def test_a_board_that_ends_or_falls_silent_is_told_in_time(monkeypatch, answers, after_s, told):
+    serial = Says(monkeypatch, *answers)
+    with pytest.raises(BoardError, match=told):
+        BoardStream(serial, "port").scales()
+    assert serial.seconds == after_s
+
+
+def test_a_stream_ends_when_its_time_is_up(monkeypatch):
+    serial = Says(monkeypatch, *[frames(VERIFIED)] * 99)
+    told = []
+    recorder = Recorder(lambda columns: None, 10000.0, Recorded())
+    assert BoardStream(serial, "port").record(recorder, 8.0, told.append) is None
+    assert serial.seconds == 8 and told == [1.0] * 8
 
 
 def test_the_rate_of_a_recording_is_of_its_whole_periods():
@@ -209,3 +250,11 @@ class TestLostSamples:
     def test_a_gap_counts_what_is_missing(self, lost, missing):
         times = np.arange(1000) * 10000
         assert lost(np.delete(times, range(300, 300 + missing))) == missing
+
+    @pytest.mark.parametrize(("more", "counted"), [(7, 0), (8, 1)])
+    def test_one_is_missing_once_those_after_it_stay_late(self, lost, more, counted):
+        assert lost(np.delete(np.arange(301 + more) * 10000, 300)) == counted
+
+    @pytest.mark.parametrize(("late_us", "counted"), [(16_900, 0), (17_100, 2)])
+    def test_a_single_late_one_counts_when_it_is_far_too_late(self, lost, late_us, counted):
+        assert lost(np.arange(300) * 10000 + late_us * (np.arange(300) == 200)) == counted

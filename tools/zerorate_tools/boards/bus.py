@@ -38,7 +38,7 @@ def record_bus(
     twice a second. A bus that fails is waited for up to 5 s; then ZerorateError says so, and out
     holds what had been verified. Raises OSError where no chip answers, InFile without room.
     """
-    check_every = max(1, min(100, round(options.get("odr_hz", 100) * _VERIFY_S)))
+    check_every = min(100, round(options.get("odr_hz", 100) * _VERIFY_S))
     imu = MPU6050(i2c, clock=time_source, **{"check_every": check_every, **options})
     values = {name: getattr(imu, name) for name in (*_SCALES, "temp_offset_degc", "binding")}
     result, scales = Recorded(part=values["part"]), scales_of({**values, "source": source})

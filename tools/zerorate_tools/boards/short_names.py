@@ -158,7 +158,7 @@ def _const(node: ast.AST) -> Iterator[tuple[str, int]]:
 
 
 def _is_private(name: str) -> bool:
-    return name.startswith("_") and len(name) > 1 and not name.endswith("__")
+    return name.startswith("_") and not name.endswith("__")
 
 
 def _is_inner(function: str, path: Path) -> bool:
