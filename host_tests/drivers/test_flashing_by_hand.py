@@ -1,7 +1,7 @@
 """What flashing sends, byte by byte: its programs run on this host, in a folder of their own."""
 
 import re
-from contextlib import redirect_stdout
+from contextlib import nullcontext, redirect_stdout
 from functools import cache
 from io import StringIO
 from pathlib import Path, PurePosixPath
@@ -34,6 +34,7 @@ class HostBoard:
         return said.getvalue().encode(), b""
 
     def fs_readfile(self, path):
+        assert not self._has_crc, "what a board works out is not read back"
         return bytearray(Path(path).read_bytes())
 
 
@@ -81,6 +82,18 @@ def test_a_file_of_any_size_arrives_byte_by_byte(flashed, size):
     more, _ = flashed(extra={MAIN: data + b"x"})
     assert (more.sent, more.sent_bytes) == ([MAIN], size + 1)
     assert Path(MAIN).read_bytes() == data + b"x" and there() == more.files
+
+
+def test_a_dry_run_writes_nothing_and_counts_what_would_be_there(flashed, monkeypatch, tmp_path):
+    monkeypatch.setattr(flashing, "connected", lambda port: nullcontext(HostBoard(True)))
+    main, said = tmp_path / "a program.py", []
+    main.write_bytes(b"1" * 99)
+    dry = flashing.flash("port", True, main, said.append, parts=["bursts"])
+    assert [*there()] == [PurePosixPath(main.name)] and dry.sent == []
+    main.rename(tmp_path.with_suffix(".py"))
+    done = flashing.flash("port", False, tmp_path.with_suffix(".py"), said.append, parts=["bursts"])
+    assert there() == done.files == dry.files and done.files[MAIN] == 99
+    assert f"{dry.total:,}" in "".join(said) and f"{FACTS.heap_free:,}" in "".join(said)
 
 
 def test_one_changed_byte_is_sent_anew_and_the_rest_of_its_package_is_copied(flashed):

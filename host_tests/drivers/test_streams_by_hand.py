@@ -2,6 +2,7 @@
 
 import json
 import re
+from contextlib import nullcontext
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from zerorate_tools.boards.on_board.stream import Streamer
 from zerorate_tools.boards.port import MESSAGE, SAMPLE, SAMPLE_BYTES, SCALES, BoardStream, encode
 from zerorate_tools.boards.recorder import COLUMNS, Recorded, Recorder, scales_of
 from zerorate_tools.model.model import NAMES
+from zerorate_tools.recordings import read_recording
 
 FRESH, VERIFIED, SUSPECT, SEEN = 0, 1, 3, 0x80
 WORDS = [-32768, 32767, -1, 1, 256, -256]
@@ -144,6 +146,45 @@ def test_a_brown_out_and_a_dead_bus_of_a_board_are_told(board):
     assert result.restarts == 1 and result.bus_errors >= 1
     assert {row[1:-1] for row in rows} == {tuple(WORDS)}
     assert all(a < b for a, b in zip(numbers(rows), numbers(rows)[1:]))
+
+
+@pytest.mark.parametrize("ends", [False, True])
+def test_a_port_is_recorded_and_streamed_as_its_frames_say(board, monkeypatch, tmp_path, ends):
+    data, programs = board(300, {}), []
+
+    class Board(Sent):
+        exec_raw_no_follow, serial = programs.append, property(lambda self: self)
+
+        def read(self, count):
+            if ends and not self.data:
+                raise OSError
+            return super().read(count)
+
+    there = [Board(data), Board(data)]
+    monkeypatch.setattr(port, "connected", lambda name: nullcontext(there[len(programs)]))
+    rows, out, alone = [], tmp_path / "run.csv", recorded(data)[0]
+
+    def done(seconds):
+        return not ends and not there[len(programs) - 1].data
+
+    def take(scales):
+        append = lambda c: rows.extend(zip(*(c[n].tolist() for n in COLUMNS)))  # noqa: E731
+        return Recorder(append, 1e6 / scales.odr_hz, Recorded())
+
+    with pytest.raises(BoardError) if ends else nullcontext():
+        result = port.record_port("port", out, setup="imu = 1", done=done)
+        assert (result.samples, result.lost, result.part) == (
+            len(read_recording(out)),
+            0,
+            "MPU-6050",
+        )
+    with pytest.raises(BoardError) if ends else nullcontext():
+        port.stream_port("port", take, done=done)
+    assert rows == alone
+    columns = read_recording(out).columns
+    found = [*zip(*(columns[name].tolist() for name in COLUMNS))]
+    assert found[: len(alone)] == alone and (len(found) == len(alone)) is ends
+    assert "imu = 1" in programs[0] and "I2C(0, freq=400000)" in programs[1]
 
 
 HEADER = {"odr_hz": 50, "gyro_lsb_per_dps": 16.4, "accel_lsb_per_g": 2048, "part": "X"}
