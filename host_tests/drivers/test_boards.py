@@ -155,22 +155,6 @@ class TestFlash:
         names = {path.name for path in (blank_board.folder / "lib/zerorate").rglob("*.mpy")}
         assert {"model.mpy", "effects.mpy", "model_file.mpy"} <= names
 
-    def test_a_part_sent_before_stays_until_only_is_asked_for(self, flashed, blank_board):
-        flashed(parts=["bursts"])
-        bursts = blank_board.folder / "lib/zerorate/bursts.mpy"
-        said, _ = flashed()
-        assert bursts.exists() and any("kept" in line and "bursts" in line for line in said)
-        said, _ = flashed(dry_run=True, only=True)
-        assert bursts.exists() and any("removed" in line for line in said)
-        said, _ = flashed(only=True)
-        assert not bursts.exists() and any("removed" in line for line in said)
-
-    def test_flashing_again_sends_nothing(self, flashed):
-        flashed()
-        said, again = flashed()
-        assert again.sent_bytes == 0
-        assert all("the same already" in line for line in said[1:-1])
-
     def test_only_what_changed_is_sent_and_what_was_there_goes(self, flashed, blank_board):
         flashed()
         library = blank_board.folder / "lib"
