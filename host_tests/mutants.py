@@ -145,7 +145,7 @@ AREAS = {
     ),
     "turning": (
         [_TOOLS + "loop/motion/"],
-        ["loop/test_axes_by_gravity.py", "loop/test_verify_by_hand.py"],
+        ["loop/test_axes_by_gravity.py", "loop/test_verify_by_hand.py", _FIGURES + "[moved]"],
     ),
     "findings": (
         [_TOOLS + "loop/"],

@@ -27,7 +27,7 @@ from zerorate_tools.recordings import Recording, turning, write_recording
 from zerorate_tools.report.page import plain
 from zerorate_tools.simulate import reference, simulate_sessions
 
-from . import reported, watched
+from . import moved, reported, watched
 from .imported import IMPORTED
 
 FILE = Path(__file__).with_name("known.json")
@@ -305,6 +305,12 @@ def drawn():
         return reported.drawn([*_logs(Path(folder))][:2], Path(folder))
 
 
+def moved_figures():
+    """Of what motion shows, and its words."""
+    found = moved.moved()
+    return {n: [of] if isinstance(of, str) else figures({n: of})[n] for n, of in found.items()}
+
+
 KNOWN = {
     "settings": settings,
     "reported": reported.reported,
@@ -312,6 +318,7 @@ KNOWN = {
     "simulated": simulated,
     "read": read,
     "parts of reading": parts_of_reading,
+    "moved": moved_figures,
     "turned": turned,
     "compared": compared,
     "fleet of ten": fleet_of_ten,

@@ -1,0 +1,106 @@
+"""What motion shows, step by step: recordings as motion is read, columns, rows, fits, devices."""
+
+from dataclasses import asdict, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+from zerorate_tools.loop.motion.by_windows import by_windows
+from zerorate_tools.loop.motion.columns import OWN, columns_of
+from zerorate_tools.loop.motion.device import Shown, device_of, distance
+from zerorate_tools.loop.motion.heading import heading_lost
+from zerorate_tools.loop.motion.matrix import beside
+from zerorate_tools.loop.motion.moving import moving_of
+from zerorate_tools.loop.motion.scales_and_timing import timing_of
+from zerorate_tools.loop.motion.windows import rows_of
+from zerorate_tools.recordings import write_recording
+from zerorate_tools.simulate import simulate_sessions
+
+from host_tests.loop.test_axes_by_gravity import handled
+
+_MATRIX = np.array([[0.012, 0.001, 0.003], [-0.002, -0.009, 0.0], [0.003, 0.0, 0.006]])
+#: Turns between rests, so that gravity before and after each tells, too.
+_TURNS = [
+    bout
+    for face in ("+x", "-y", "-z", "+y", "+z")
+    for bout in (
+        {"kind": "rest", "s": 9},
+        {"kind": "turn", "axis": "random", "deg": 100, "s": 3},
+        {"kind": "pose", "face": face, "s": 3},
+        {"kind": "rest", "s": 9},
+        {"kind": "hand", "s": 12},
+    )
+]
+_RESTING = {
+    **{"seed": 5, "sensor": {"odr_hz": 25.0}, "session": [{}]},
+    "every_session": {"minutes": 3, "motion": _TURNS},
+    "effect": [{"kind": "scale", "dps": [0.01, -0.02, 0.015]}],
+}
+
+
+def _recordings():
+    """In the hand, without and with an attitude that is not seen for a while; and between rests."""
+    seen = handled(2, _MATRIX, minutes=1.5, seen=True)
+    lost = np.abs(np.arange(len(seen.columns["qw"])) - 300) < 20
+    for name in ("qw", "qx", "qy", "qz"):
+        seen.columns[name] = np.where(lost, 0, seen.columns[name])
+    late = handled(3, _MATRIX, minutes=1.2, about=(1.0, 0.7, 0.2))
+    late.columns["t_us"][2000:] += 4_000_000
+    late.columns["gx"][900:903] = 32767
+    resting, _ = next(iter(simulate_sessions(_RESTING)))
+    return [late, seen, resting, handled(4, np.zeros((3, 3)), minutes=1.0)]
+
+
+def _steps(moving):
+    """Of one recording: what is read, what each error does to it, its windows and their fit."""
+    own = np.linspace(-1e-3, 2e-3, sum(OWN.values()))
+    columns = columns_of(moving, _MATRIX / 2, own)
+    rows, fitted = rows_of(moving, 10.0, _MATRIX / 2, own), beside(moving, _MATRIX / 2)
+    seen, added = columns.of(np.arange(150, 300))
+    found = {"moving": moving.__dict__, "columns": columns.__dict__, "rows": rows.__dict__}
+    found["of"] = {"seen": seen, "added": added, "spans": [s.start for s in moving.spans(10.0)]}
+    found["fitted"] = {n: getattr(fitted, n) for n in ("own", "precision", "folds", "heading")}
+    shown, without = fitted.shown(_MATRIX / 2), fitted.without(_MATRIX / 2, 1)
+    found["shown"] = {"normal": shown.normal, "right": shown.right, "without": without.normal}
+    found["shown"] |= {"tilts": fitted.tilts(_MATRIX / 2, 0.1 * own[:9], 2)}
+    found["is"] = {"dt_s": moving.dt_s, "planar": moving.planar, "apart": distance(shown, without)}
+    return found, fitted
+
+
+def _together(every, statements, headings):
+    """What recordings show of one device: (name, fields) of each way to ask."""
+    for large in (False, True):
+        device = device_of(statements, large)
+        names = ("entries", "covariance", "nats", "weight")
+        yield f"device {large}", {n: getattr(device, n) for n in names}
+        yield f"share {large}", {"": device.share(headings)}
+    for name, of in (("held", (every[:2], every[2:])), ("alone", (every[1:2], []))):
+        yield name, asdict(by_windows(*of))
+    yield "none", asdict(by_windows(every[3:], []))
+    yield "heading", {"": heading_lost([(every[1], _MATRIX), (every[0], _MATRIX)])}
+    rng = np.random.default_rng(1)
+    late = [
+        (np.column_stack([-0.003 * w + rng.normal(0, 0.02, 400), w]), 1.0)
+        for w in rng.random((2, 400))
+    ]
+    yield "timing", asdict(timing_of(late))
+
+
+def moved():
+    """{figure: numbers, or a word} of all that, and of what the recordings show together."""
+    with TemporaryDirectory() as folder:
+        paths = [Path(folder, f"{n}.parquet") for n in range(4)]
+        for path, recording in zip(paths, _recordings()):
+            write_recording(replace(recording, name=path.stem), path)
+        every = [moving_of(path) for path in paths]
+    parts, statements, headings = [], [], []
+    for number, moving in enumerate(every[:3]):
+        steps, fitted = _steps(moving)
+        parts += [(f"{number} {name}", of) for name, of in steps.items()]
+        shown = fitted.shown(_MATRIX)  # of so little that neither scatter nor size is sure
+        statements.append(Shown(3e-6 * shown.normal, 3e-6 * shown.right))
+        headings.append(fitted.heading)
+    parts += _together(every, statements, headings)
+    every = {f"{name} {key}".strip(): of for name, fields in parts for key, of in fields.items()}
+    every = {name: of for name, of in every.items() if of is not None and np.size(of)}
+    return {n: of if isinstance(of, str) else np.nan_to_num(of) for n, of in every.items()}
