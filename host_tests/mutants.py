@@ -117,7 +117,7 @@ AREAS = {
     "tools": (
         [_TOOLS],
         ["tools/test_words_reach.py", "tools/test_host.py", "tools/test_tools_by_hand.py",
-         "tools/test_atomic.py"],
+         "tools/test_atomic.py", "tools/test_cli.py", _FIGURES + "[moved]"],
     ),
     "model": (
         [_TOOLS + "model/"],

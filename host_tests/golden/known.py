@@ -306,9 +306,11 @@ def drawn():
 
 
 def moved_figures():
-    """Of what motion shows, and its words."""
-    found = moved.moved()
-    return {n: [of] if isinstance(of, str) else figures({n: of})[n] for n, of in found.items()}
+    """Of what motion shows, its words, and what it is closed with."""
+    found, written = moved.moved()
+    told = {n: [of] if isinstance(of, str) else figures({n: of})[n] for n, of in found.items()}
+    rows = figures(written.pop("rows"))
+    return told | rows | flat(written)
 
 
 KNOWN = {

@@ -1,10 +1,13 @@
 """What motion shows, step by step: recordings as motion is read, columns, rows, fits, devices."""
 
+import re
 from dataclasses import asdict, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
+import pyarrow.parquet as pq
+from zerorate_tools.closing_in_motion import motion_in_words, write_in_motion
 from zerorate_tools.loop.motion.by_windows import by_windows
 from zerorate_tools.loop.motion.columns import OWN, columns_of
 from zerorate_tools.loop.motion.device import Shown, device_of, distance
@@ -86,13 +89,28 @@ def _together(every, statements, headings):
     yield "timing", asdict(timing_of(late))
 
 
+def _written(path, shown):
+    """What a recording that hardly rests is closed with: the report, its words, its columns."""
+    result = write_in_motion(shown, [path], None, path.parent, lambda n: None)
+    columns = pq.read_table(path.parent / "corrected.parquet").to_pandas()
+    numbers = columns.select_dtypes("number").to_dict("list")
+    words = [re.findall(r"-?\d+\.\d+", motion_in_words(result))]
+    return {
+        "report": result,
+        "words": words,
+        "rows": {**numbers, "test": columns["split"] == "test"},
+    }
+
+
 def moved():
-    """{figure: numbers, or a word} of all that, and of what the recordings show together."""
+    """({figure: numbers, or a word} of all that and of what the recordings show together, what a
+    recording is closed with)."""
     with TemporaryDirectory() as folder:
         paths = [Path(folder, f"{n}.parquet") for n in range(4)]
         for path, recording in zip(paths, _recordings()):
             write_recording(replace(recording, name=path.stem), path)
         every = [moving_of(path) for path in paths]
+        written = _written(paths[1], by_windows(every[1:2], []))
     parts, statements, headings = [], [], []
     for number, moving in enumerate(every[:3]):
         steps, fitted = _steps(moving)
@@ -103,4 +121,4 @@ def moved():
     parts += _together(every, statements, headings)
     every = {f"{name} {key}".strip(): of for name, fields in parts for key, of in fields.items()}
     every = {name: of for name, of in every.items() if of is not None and np.size(of)}
-    return {n: of if isinstance(of, str) else np.nan_to_num(of) for n, of in every.items()}
+    return {n: of if isinstance(of, str) else np.nan_to_num(of) for n, of in every.items()}, written

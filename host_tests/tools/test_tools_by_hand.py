@@ -2,6 +2,7 @@
 
 import errno
 import io
+import json
 import signal
 import sys
 from math import radians
@@ -13,6 +14,7 @@ from zerorate_tools import bounds, cli, closing, closing_in_motion, numbers, pro
 from zerorate_tools.allan import Noise, overlapping
 from zerorate_tools.errors import InFile, ZerorateError, os_error_in_words, printable
 from zerorate_tools.host import FloatCorrector
+from zerorate_tools.loop.read.gate import TooLittleRest
 from zerorate_tools.model import Slot, build_model, write_model
 from zerorate_tools.model.term import Term
 from zerorate_tools.recordings import Scales
@@ -202,6 +204,93 @@ def test_a_pipe_is_told_now_and_then_how_long_it_takes_and_a_terminal_has_a_bar(
         while not told.getvalue():
             pass
     assert ("fetching: 0 s so far" in told.getvalue()) is not terminal
+
+
+@pytest.fixture
+def closed(monkeypatch, tmp_path):
+    """closed(lsb_per_g, shown, rests) -> (the report, calls, files) of three logs by stand-ins."""
+
+    def run(lsb_per_g=None, shown=None, rests=True, holdout=None):
+        calls, logs = [], ["a/x.csv", "a/y.csv", "a/z.csv"]
+
+        def noted(name, result=None):
+            return lambda *of, **more: (calls.append((name, *of)), result)[1]
+
+        def ticks(log, tick_s=0.0):
+            calls.append(("ticks", log, tick_s))
+            scales = SimpleNamespace(accel_lsb_per_g=lsb_per_g)
+            return SimpleNamespace(name=log[2], scales=scales)
+
+        def sessions(every):
+            if not rests:
+                raise TooLittleRest("too short")
+            return every[::2], "gate"
+
+        stand_ins = {
+            **{"tick_seconds": lambda log: {"a/y.csv": 9.0}.get(log, 1.0), "read_ticks": ticks},
+            **{"sessions_of": sessions, "analyse": noted("analyse", "an analysis")},
+            **{"run_and_prune": noted("run", ("pruned", "model")), "write_model": noted("model")},
+            **{"report": lambda of: {"of": of, "n": np.float64(0.5)}},
+            **{"shown_in_motion": noted("shown", shown)},
+            **{"write_in_motion": noted("moved", {"n": np.arange(2)})},
+        }
+        for name, stand_in in stand_ins.items():
+            monkeypatch.setattr(closing, name, stand_in)
+        monkeypatch.setattr("zerorate_tools.report.write_report", noted("page"))
+        told = []
+        result = closing.close(logs, tmp_path / "out", holdout, told.append, online=True)
+        assert json.loads((tmp_path / "out" / "report.json").read_text()) == result
+        return result, calls, told
+
+    return run
+
+
+@pytest.mark.parametrize(("holdout", "at"), [(None, None), ("z.csv", 1), ("a/x.csv", 0)])
+def test_recordings_that_rest_are_read_in_one_tick_and_analysed_run_and_written(
+    closed, holdout, at
+):
+    result, calls, told = closed(holdout=holdout)
+    assert result == {"of": "pruned", "n": 0.5} and told == [1, 1, 1]
+    by_name = {name: of for name, *of in calls}
+    assert [of[2] for of in calls if of[0] == "ticks"] == [9.0] * 3
+    kept, held, gate, logs = by_name["analyse"]
+    assert [s.name for s in kept] == ["x", "z"] and (held, gate) == (at, "gate")
+    assert logs == {"x": "a/x.csv", "y": "a/y.csv", "z": "a/z.csv"}
+    assert by_name["run"][0] == "an analysis" and by_name["run"][2].name == "corrected.parquet"
+    assert by_name["run"][3] is True and by_name["model"][0] == "model"
+    assert by_name["page"][:2] == ["pruned", result]
+
+
+@pytest.mark.parametrize(("holdout", "at"), [(None, None), ("y.csv", 1)])
+def test_recordings_that_hardly_rest_are_closed_on_their_motion(closed, holdout, at):
+    result, calls, _ = closed(8192.0, "shown", rests=False, holdout=holdout)
+    shown, moved = (next(of for of in calls if of[0] == name) for name in ("shown", "moved"))
+    assert result == {"n": [0, 1]} and shown[2] == at and moved[1] == "shown" and moved[3] == at
+
+
+@pytest.mark.parametrize("lsb_per_g", [None, 8192.0])
+def test_where_motion_shows_nothing_either_gravity_is_asked_for_if_it_was_not_there(
+    closed, lsb_per_g
+):
+    with pytest.raises(TooLittleRest, match="too short") as refused:
+        closed(lsb_per_g, rests=False)
+    assert ("gravity" in str(refused.value)) is (lsb_per_g is None)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems have no such limit")
+def test_each_step_may_take_so_much_beyond_what_there_is_and_no_more_afterwards():
+    import resource
+
+    def limits():
+        return resource.getrlimit(resource.RLIMIT_DATA)
+
+    before, seen = limits(), []
+    items = bounds.each_at_most((seen.append(limits()) or n for n in range(3)), 50)
+    assert [(n, limits()) for n in items] == [(n, before) for n in range(3)]
+    taken = bounds._taken_bytes()
+    assert all(0 < soft - taken < 60 << 20 and hard == before[1] for soft, hard in seen)
+    with pytest.raises(MemoryError), bounds.at_most(20):
+        bytearray(60 << 20)
 
 
 UNSEEN = np.array([[1, 0, 0], [0, 0, 1], [0, 0, 0]])
