@@ -59,6 +59,8 @@ def _loaded(line: bytes) -> Any:
     """Raises ValueError."""
     try:
         return json.loads(line)
+    except RecursionError as error:
+        raise ValueError from error
     except ValueError:
         if b"'" not in line and not line.lstrip().startswith(b"("):
             raise

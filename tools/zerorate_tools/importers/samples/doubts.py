@@ -109,10 +109,12 @@ def _refuse_pace(found: Gathered, plan: Plan, path: Path) -> None:
     hz = 1e6 / found.interval_us
     if hz > _FASTEST_HZ and not found.counted:
         step = found.interval_us * 1e-6 / plan.factors[TIME][0]
-        unit, likely_hz = next(iter(likely_units_of_time(step).items()), ("s", 0.0))
-        words = f"--map t_us={plan.wanted[TIME].column}:{unit}"
+        likely = next(iter(likely_units_of_time(step).items()), None)
         problem = f"{hz:.3g} samples a second are more than such a sensor has"
-        do = f"did you mean {unit} ({likely_hz:.4g} Hz)? Give {words}"
+        do = "give the true --hz"
+        if likely:
+            words = f"--map t_us={plan.wanted[TIME].column}:{likely[0]}"
+            do = f"did you mean {likely[0]} ({likely[1]:.4g} Hz)? Give {words}"
         raise BadRecording(path, problem, do=do)
 
 
