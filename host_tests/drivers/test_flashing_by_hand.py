@@ -52,7 +52,8 @@ def flashed(request, tmp_path, monkeypatch):
 
     def run(parts=(), only=False, extra=None):
         board = HostBoard(request.param)
-        installer = flashing.Installer(board, "port", lambda line: None)
+        run.said = []
+        installer = flashing.Installer(board, "port", run.said.append)
         return installer.install(chosen_parts(parts), extra or {}, only), board.programs
 
     return run
@@ -66,6 +67,10 @@ def there():
 
 def test_every_file_is_there_and_was_counted_once(flashed):
     done, _ = flashed()
+    for _ in range(2):  # written, and the same already
+        told = (re.match(r" *(\d+)  (lib/\S+)  \w", line) for line in flashed.said)
+        assert {PurePosixPath(one[2]): int(one[1]) for one in told if one} == done.files
+        flashed()
     assert there() == done.files
     assert sorted(done.sent) == sorted(done.files)
     assert done.sent_bytes == done.total == sum(there().values())

@@ -38,7 +38,12 @@ class Sent:
 def recorded(data, seconds=None):
     """The rows that are believed, and the counts, of bytes from a board."""
     rows, serial = [], Sent(data)
-    recorder = Recorder(lambda c: rows.extend(zip(*(c[n] for n in COLUMNS))), 10000.0, Recorded())
+
+    def append(columns):
+        assert [of.dtype for of in columns.values()] == [np.int64] + [np.int32] * 7
+        rows.extend(zip(*(columns[name] for name in COLUMNS)))
+
+    recorder = Recorder(append, 10000.0, Recorded())
     assert BoardStream(serial, "port").record(recorder, None, lambda s: not serial.data) is None
     return [tuple(map(int, row)) for row in rows], recorder.result
 
