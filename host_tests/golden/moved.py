@@ -89,10 +89,10 @@ def _together(every, statements, headings):
     yield "timing", asdict(timing_of(late))
 
 
-def _written(path, shown):
-    """What a recording that hardly rests is closed with: the report, its words, its columns."""
-    result = write_in_motion(shown, [path], None, path.parent, lambda n: None)
-    columns = pq.read_table(path.parent / "corrected.parquet").to_pandas()
+def _written(paths, shown):
+    """What recordings that hardly rest are closed with: the report, its words, its columns."""
+    result = write_in_motion(shown, paths, None, paths[0].parent, lambda n: None)
+    columns = pq.read_table(paths[0].parent / "corrected.parquet").to_pandas()
     numbers = columns.select_dtypes("number").to_dict("list")
     words = [re.findall(r"-?\d+\.\d+", motion_in_words(result))]
     return {
@@ -103,14 +103,14 @@ def _written(path, shown):
 
 
 def moved():
-    """({figure: numbers, or a word} of all that and of what the recordings show together, what a
-    recording is closed with)."""
+    """({figure: numbers, or a word} of all that and of what the recordings show together, what
+    recordings are closed with)."""
     with TemporaryDirectory() as folder:
         paths = [Path(folder, f"{n}.parquet") for n in range(4)]
         for path, recording in zip(paths, _recordings()):
             write_recording(replace(recording, name=path.stem), path)
         every = [moving_of(path) for path in paths]
-        written = _written(paths[1], by_windows(every[1:2], []))
+        written = _written(paths[:2], by_windows(every[1:2], []))
     parts, statements, headings = [], [], []
     for number, moving in enumerate(every[:3]):
         steps, fitted = _steps(moving)

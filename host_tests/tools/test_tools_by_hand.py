@@ -3,9 +3,11 @@
 import errno
 import io
 import json
+import re
 import signal
 import sys
 from math import radians
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -80,6 +82,17 @@ def test_a_chance_below_a_millionth_is_not_told_apart_and_zero_has_no_minus():
     assert [numbers.chance(p) for p in (1e-7, 1e-6)] == ["below 10⁻⁶", "1 × 10⁻⁶"]
     said = numbers.fixed(-0.0001, 2), numbers.fixed(1.236, 2, "+"), numbers.fixed(0.0, 1, "+")
     assert said == ("0.00", "+1.24", "+0.0")
+
+
+@pytest.mark.parametrize(
+    ("seconds", "said"),
+    [
+        *((0.25, "250 ms"), (0.0042, "4.2 ms"), (1, "1 s"), (4.2, "4.2 s"), (119, "119 s")),
+        *((120, "2 min"), (7199, "120 min"), (7200, "2 h"), (172_799, "48 h"), (172_800, "2 days")),
+    ],
+)
+def test_a_time_is_said_in_the_largest_unit_of_which_there_are_two(seconds, said):
+    assert numbers.duration(seconds) == said
 
 
 def test_a_small_file_is_a_file_of_one_mebibyte_at_most(tmp_path):
@@ -207,8 +220,8 @@ def test_a_pipe_is_told_now_and_then_how_long_it_takes_and_a_terminal_has_a_bar(
 
 
 @pytest.fixture
-def closed(monkeypatch, tmp_path):
-    """closed(lsb_per_g, shown, rests) -> (the report, calls, files) of three logs by stand-ins."""
+def stood_in(monkeypatch, tmp_path):
+    """stood_in(lsb_per_g, shown, rests) -> (the report, calls, progress) of three logs."""
 
     def run(lsb_per_g=None, shown=None, rests=True, holdout=None):
         calls, logs = [], ["a/x.csv", "a/y.csv", "a/z.csv"]
@@ -247,9 +260,9 @@ def closed(monkeypatch, tmp_path):
 
 @pytest.mark.parametrize(("holdout", "at"), [(None, None), ("z.csv", 1), ("a/x.csv", 0)])
 def test_recordings_that_rest_are_read_in_one_tick_and_analysed_run_and_written(
-    closed, holdout, at
+    stood_in, holdout, at
 ):
-    result, calls, told = closed(holdout=holdout)
+    result, calls, told = stood_in(holdout=holdout)
     assert result == {"of": "pruned", "n": 0.5} and told == [1, 1, 1]
     by_name = {name: of for name, *of in calls}
     assert [of[2] for of in calls if of[0] == "ticks"] == [9.0] * 3
@@ -262,18 +275,18 @@ def test_recordings_that_rest_are_read_in_one_tick_and_analysed_run_and_written(
 
 
 @pytest.mark.parametrize(("holdout", "at"), [(None, None), ("y.csv", 1)])
-def test_recordings_that_hardly_rest_are_closed_on_their_motion(closed, holdout, at):
-    result, calls, _ = closed(8192.0, "shown", rests=False, holdout=holdout)
+def test_recordings_that_hardly_rest_are_closed_on_their_motion(stood_in, holdout, at):
+    result, calls, _ = stood_in(8192.0, "shown", rests=False, holdout=holdout)
     shown, moved = (next(of for of in calls if of[0] == name) for name in ("shown", "moved"))
     assert result == {"n": [0, 1]} and shown[2] == at and moved[1] == "shown" and moved[3] == at
 
 
 @pytest.mark.parametrize("lsb_per_g", [None, 8192.0])
 def test_where_motion_shows_nothing_either_gravity_is_asked_for_if_it_was_not_there(
-    closed, lsb_per_g
+    stood_in, lsb_per_g
 ):
     with pytest.raises(TooLittleRest, match="too short") as refused:
-        closed(lsb_per_g, rests=False)
+        stood_in(lsb_per_g, rests=False)
     assert ("gravity" in str(refused.value)) is (lsb_per_g is None)
 
 
@@ -287,7 +300,8 @@ def test_each_step_may_take_so_much_beyond_what_there_is_and_no_more_afterwards(
     before, seen = limits(), []
     items = bounds.each_at_most((seen.append(limits()) or n for n in range(3)), 50)
     assert [(n, limits()) for n in items] == [(n, before) for n in range(3)]
-    taken = bounds._taken_bytes()
+    status = Path("/proc/self/status").read_text()
+    taken = 1024 * sum(map(int, re.findall(r"Vm(?:Data|Stk):\s*(\d+) kB", status)))
     assert all(0 < soft - taken < 60 << 20 and hard == before[1] for soft, hard in seen)
     with pytest.raises(MemoryError), bounds.at_most(20):
         bytearray(60 << 20)
