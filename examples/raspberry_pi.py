@@ -6,15 +6,15 @@ from array import array
 from zerorate import Corrector, Sensor
 from zerorate.checked import CheckedCorrector
 from zerorate.storage.learned_store import LearnedStore
-from zerorate.storage.places import FileStorage
 from zerorate.storage.save_schedule import SaveSchedule
 from zerorate_i2c.fifo import EMPTY, Fifo
 from zerorate_i2c.linux import LinuxI2C
 from zerorate_i2c.mpu6050 import MPU6050
+from zerorate_tools.host import store_file
 
 imu = MPU6050(LinuxI2C(1), odr_hz=100)
 learner = Corrector(Sensor(*imu.scales))
-store = LearnedStore(FileStorage("learned.bin"), imu.binding, learner)
+store = LearnedStore(store_file("learned.bin"), imu.binding, learner)
 print(store.in_words(store.load(imu.kept_power)))
 corrector = CheckedCorrector(learner)
 schedule = SaveSchedule(store, 3, tolerance=13)  # 0.1 dps at 131 LSB/dps

@@ -146,7 +146,7 @@ def test_while_the_bus_is_gone_it_says_so_once_and_shows_that_it_lives(board):
     board.told.clear()
     board.live(60)
     assert len(board.told) >= 10 and set(board.told) == {"WATCHDOG=1"}
-    assert [line for line in board.said if "bus" in line] == board.said[1:2]
+    assert [line for line in board.said if line.startswith("bus: ")] == board.said[1:2]
     board.bus.mend()
     lines = len(board.kept.lines)
     board.live(5)
@@ -443,6 +443,15 @@ def test_what_can_never_be_a_bus_is_not_waited_for(tmp_path, bus):
 def test_a_folder_that_is_missing_is_named(tmp_path, option):
     line, said = first_line(tmp_path, *option)
     assert line is None and said.startswith("zerorate: no: no such folder; make it, or name")
+
+
+def test_its_state_is_named_and_no_other_file_is_taken_for_one(tmp_path):
+    assert "learned.bin" in first_line(tmp_path)[1].splitlines()[0]
+    (tmp_path / "mine.csv").write_text("t_us,gx,gy,gz\n0,1,2,3\n")
+    line, said = first_line(tmp_path, "--state", "mine.csv")
+    assert line is None and said.startswith("zerorate: mine.csv: ") and said.count("\n") == 1
+    assert (tmp_path / "mine.csv").read_text() == "t_us,gx,gy,gz\n0,1,2,3\n"
+    assert first_line(tmp_path, "--state", ".")[0] is None
 
 
 def test_a_slow_reader_gets_whole_lines_and_holds_nobody_up(tmp_path):

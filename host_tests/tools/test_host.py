@@ -8,8 +8,9 @@ from random import Random
 import numpy as np
 import pytest
 import yaml
-from zerorate_tools.errors import BadModel
-from zerorate_tools.host import FloatCorrector
+from zerorate.storage.learned_store import LearnedStore
+from zerorate_tools.errors import BadModel, InFile
+from zerorate_tools.host import FloatCorrector, store_file
 from zerorate_tools.model import Slot, build_model, read_model
 from zerorate_tools.model.model_in_words import in_words, rate_matrix
 from zerorate_tools.model.term import Term
@@ -138,3 +139,22 @@ def test_a_model_without_rates_has_no_matrix():
     slot = Slot(Term("temp", 10.0, 40.0), (0.01, 0.0, 0.0), "channel")
     scales = Scales("MPU-6050", 100.0, 131.0, 16384.0, 340.0, 36.53)
     assert rate_matrix(build_model([slot], scales)) is None
+
+
+@pytest.mark.parametrize("data", [b"t_us,gx\n0,1\n" * 999, b"ZRM" + bytes(2045), bytes(9999)])
+def test_a_file_that_holds_something_else_is_no_store(tmp_path, data):
+    (tmp_path / "mine.csv").write_bytes(data)
+    with pytest.raises(InFile, match="mine.csv"):
+        store_file(tmp_path / "mine.csv")
+    assert (tmp_path / "mine.csv").read_bytes() == data
+
+
+def test_a_store_is_known_however_torn_or_rotten_it_is(tmp_path):
+    path = tmp_path / "learned.bin"
+    store = LearnedStore(store_file(path), b"", FloatCorrector(100).corrector)
+    torn, one = tmp_path / "torn.bin", (store.save(), path.read_bytes())[1]
+    two = (store.save(), path.read_bytes())[1]
+    rotten = Random(1).randbytes(len(one))
+    for left in (b"", b"Z", one[:100], one, two, rotten + one, rotten + rotten, bytes(100)):
+        torn.write_bytes(left)
+        assert LearnedStore(store_file(torn), b"", FloatCorrector(100).corrector).save()

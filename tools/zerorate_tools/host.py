@@ -7,10 +7,15 @@ which they know to 1/256 of one, is taken off the reading as it came.
 from array import array
 from collections.abc import Sequence
 from math import isfinite, pi
-from os import PathLike
+from os import PathLike, fspath
+from os.path import exists, isfile
 
 from zerorate import Corrector, Sensor
 from zerorate.model import EffectModel
+from zerorate.storage.learned_store import LearnedStore
+from zerorate.storage.places import FileStorage
+
+from .errors import InFile
 
 _WORD = 32767
 #: Of an LSB a degC; the words then hold -96 to 96 degC about 25.
@@ -95,6 +100,26 @@ class FloatCorrector:
 
     def _bias(self, axis: int) -> float:
         return self.corrector.bias_lsb(axis) / self._rate_lsb
+
+
+def store_file(path: str | PathLike[str]) -> FileStorage:
+    """The storage of a LearnedStore in a file, new or a store's own; InFile where it is another's.
+
+    A store is begun afresh where its two places are torn or rotten: it is known by the mark in
+    either of them, by its size with both written, or by no bit that was ever written.
+    """
+    store = LearnedStore(None, b"", Corrector(Sensor(100.0, 131.0)))
+    slot_bytes = store.state.slot_bytes
+    data = b""
+    if isfile(path):
+        with open(path, "rb") as file:
+            data = file.read(store.end + 1)
+    marked = data[:3] == b"ZRS"[: len(data)] or data[slot_bytes : slot_bytes + 3] == b"ZRS"
+    written = len(data) in (2 * slot_bytes, store.end)
+    blank = len(data) <= store.end and not data.strip(b"\0\xff")
+    if exists(path) and not (isfile(path) and (marked or written or blank)):
+        raise InFile(path, "is no store of zerorate", do="name another file")
+    return FileStorage(fspath(path))
 
 
 def _loaded(

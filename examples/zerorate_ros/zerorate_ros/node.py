@@ -5,9 +5,8 @@ from math import radians
 from pathlib import Path
 
 from zerorate.storage.learned_store import LearnedStore
-from zerorate.storage.places import FileStorage
 from zerorate.storage.save_schedule import SaveSchedule
-from zerorate_tools.host import FloatCorrector
+from zerorate_tools.host import FloatCorrector, store_file
 
 TOLERANCE_DPS = 0.01  # a bias that moved by less need not be written
 
@@ -21,7 +20,7 @@ class ImuCore:
         self.corrector = FloatCorrector(odr_hz, full_scale_dps, rate="rad/s", accel="m/s2")
         self.learner = self.corrector.corrector
         self.lsb_per_dps = self.learner.sensor.gyro_lsb_per_dps
-        self.store = LearnedStore(FileStorage(str(path)), b"ros2", self.learner)
+        self.store = LearnedStore(store_file(path), b"ros2", self.learner)
         self.said = f"{path}: {self.store.in_words(self.store.load())}"
         tolerance = max(1, round(TOLERANCE_DPS * self.lsb_per_dps * 256))
         self.schedule = SaveSchedule(self.store, 3, tolerance, corrector=self.learner)

@@ -187,7 +187,14 @@ def add_run(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -
         "the start, and gap_us if samples are missing before it. `zerorate import` reads them.",
     )
     option(parser, "bus", "BUS", "/dev/i2c-1, or fake: for an emulated chip")
-    option(parser, "--state", "FILE", "file for what is learned", Path, default=Path("learned.bin"))
+    option(
+        parser,
+        "--state",
+        "FILE",
+        "file for what is learned (learned.bin)",
+        Path,
+        default=Path("learned.bin"),
+    )
     option(parser, "--socket", "FILE", "Unix socket for readers", Path)
     option(parser, "--udp", "HOST:PORT", "send datagrams, only to this machine")
     option(parser, "--metrics", "HOST:PORT", "serve metrics for Prometheus")
@@ -206,16 +213,17 @@ def run_run(arguments: argparse.Namespace) -> None:
     import signal
     import time
 
-    from zerorate.storage.places import FileStorage
     from zerorate_i2c import clock
     from zerorate_i2c.linux import LinuxI2C
     from zerorate_i2c.mpu6050 import MPU6050
 
     from ..errors import InFile, ZerorateError
+    from ..host import store_file
     from ..service import Datagrams, FakeBus, Lines, Metrics, Service, Sink, System, UnixSocket
 
     if not arguments.state.parent.is_dir():
         raise InFile(arguments.state.parent, "no such folder", do="make it, or name another")
+    storage = store_file(arguments.state)
     options = _chip(arguments)
     model = _model_bytes(arguments.model) if arguments.model else b""
     fake = None
@@ -258,7 +266,6 @@ def run_run(arguments: argparse.Namespace) -> None:
         sinks.append(UnixSocket(arguments.socket))
     # systemd ends a service with SIGTERM; Ctrl-C and it do the same
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    storage = FileStorage(str(arguments.state))
     system = System(open_imu, storage, clock, say, stored_ago_s=stored_ago_s)
     Service(system, sinks or [Lines(sys.stdout)], model).run()
 

@@ -40,9 +40,9 @@ def notify(text: str) -> None:
 class System:
     """What the service stands on; a test has its own.
 
-    open_imu: a new MPU6050, raises OSError; storage: as zerorate.storage.places; clock: functions
-    of zerorate_i2c.clock, which only goes forward, so that a clock set back is not seen; say: a
-    line of log; notify: to systemd; stored_ago_s: since the storage was last written, seconds, by
+    open_imu: a new MPU6050, raises OSError; storage: a FileStorage; clock: functions of
+    zerorate_i2c.clock, which only goes forward, so that a clock set back is not seen; say: a line
+    of log; notify: to systemd; stored_ago_s: since the storage was last written, seconds, by
     whatever clock outlives the process. A wrong one costs a write, or puts one off by an hour.
     """
 
@@ -174,7 +174,9 @@ class Service:
             self._use_model(learner)
         self._store = LearnedStore(self.system.storage, imu.binding, learner)
         reason = self._store.load(imu.kept_power)
-        self.system.say(f"{imu.part}, {imu.odr_hz:g} Hz: {REASONS[reason]}")
+        self.system.say(
+            f"{imu.part}, {imu.odr_hz:g} Hz, {self.system.storage.path}: {REASONS[reason]}"
+        )
         self._corrector = CheckedCorrector(learner)
         tolerance = max(1, round(_TOLERANCE_DPS * imu.gyro_lsb_per_dps))
         self._schedule = SaveSchedule(self._store, 3, tolerance, self.system.writes_a_day, learner)
