@@ -470,6 +470,14 @@ def test_a_rate_or_a_time_is_above_zero_and_at_most_a_billion(text, taken):
             above_zero(text)
 
 
+@pytest.mark.parametrize("words", ["--seconds abc", "--address 300", "--address 0x7", "--hz 1,5"])
+def test_a_number_that_is_none_is_told_without_a_functions_name(words, capsys):
+    with pytest.raises(SystemExit):
+        cli.main(["record", "0", "--out", "o.csv", *words.split()])
+    said = capsys.readouterr().err.splitlines()[-1]
+    assert words.split()[1] in said and "_" not in said and "invalid" not in said
+
+
 # --- JSON ---
 
 
@@ -615,7 +623,7 @@ def test_run_serves_lines_unless_told(serving, capsys):
 
 def test_run_is_given_what_was_typed(serving):
     Path("m.bin").write_bytes(b"model")
-    words = "--address 0x69 --hz 50 --dps 500 --g 8 --dlpf-hz 20 --part P --model m.bin"
+    words = "--address 0x69 --hz 50 --dps 500 --g 8 --dlpf-hz 20 --part mpu6500 --model m.bin"
     words += " --udp h:1 --metrics h:2 --socket s --remote"
     assert cli.main(["run", "fake:", *words.split()]) == 0
     system, sinks, model = serving.service.call_args.args
@@ -624,10 +632,10 @@ def test_run_is_given_what_was_typed(serving):
         "h:2",
         True,
     )
-    assert serving.FakeBus.call_args == call(address=0x69, part="P")
+    assert serving.FakeBus.call_args == call(address=0x69, part="mpu6500")
     assert system.open_imu() == "imu" and not serving.linux.called
-    typed = {"odr_hz": 50, "full_scale_dps": 500, "full_scale_g": 8, "dlpf_hz": 20, "part": "P"}
-    assert serving.imu.call_args == call("FakeBus", address=0x69, **typed)
+    typed = {"odr_hz": 50, "full_scale_dps": 500, "full_scale_g": 8, "dlpf_hz": 20}
+    assert serving.imu.call_args == call("FakeBus", address=0x69, part="mpu6500", **typed)
     assert cli.main(["run", "fake:", "--udp", "h:1"]) == 0
     assert serving.Datagrams.call_args.args == ("h:1", False)
 
@@ -663,6 +671,15 @@ def test_an_open_bus_is_closed_where_no_chip_answers_and_a_wrong_setting_is_one_
 def test_run_needs_the_folder_of_its_state(serving, capsys):
     assert cli.main(["run", "fake:", "--state", "no/learned.bin"]) == 2
     assert not serving.service.called and capsys.readouterr().err.startswith("zerorate: no: ")
+
+
+@pytest.mark.parametrize("words", ["--hz 3000", "--dlpf-hz 2", "--part nosuch"])
+def test_a_setting_that_no_chip_takes_is_not_waited_for(serving, words, capsys):
+    assert cli.main(["run", "/dev/i2c-7", *words.split()]) == 2
+    assert words.split()[1] in capsys.readouterr().err
+    assert not serving.service.called and not serving.linux.called
+    for right in ("--hz 8000 --dlpf-hz 256", "--hz 10 --dlpf-hz 256 --part MPU-6500"):
+        assert cli.main(["run", "/dev/i2c-7", *right.split()]) == 0
 
 
 # --- runtimes ---

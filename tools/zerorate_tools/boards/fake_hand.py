@@ -3,15 +3,19 @@
 from collections.abc import Callable
 
 import numpy as np
-from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050, Physical
+from zerorate_fakes import FakeClock, FakeI2C, Physical
 
 from ..recordings import Recording
 from ..recordings.recording import ACCEL, GYRO
 from ..simulate import simulate
+from .fake_chip import fake_chip
 
 
-def in_hand() -> tuple[FakeI2C, FakeClock]:
-    """The bus of a chip that feels what the bundled scenario says, and the clock of both."""
+def in_hand(address: int = 0x68, part: str | None = None) -> tuple[FakeI2C, FakeClock]:
+    """The bus of a chip that feels what the bundled scenario says, and the clock of both.
+
+    Raises ValueError for an unknown part.
+    """
     recording, _ = simulate("in-hand")
     scales = recording.scales
     assert scales.accel_lsb_per_g is not None, "a hand is felt"
@@ -21,9 +25,9 @@ def in_hand() -> tuple[FakeI2C, FakeClock]:
         noise=0,
     )
     clock = FakeClock()
-    chip = FakeMPU6050(felt)
+    chip = fake_chip(felt, part)
     clock.devices.append(chip)
-    return FakeI2C(chip, clock=clock), clock
+    return FakeI2C({address: chip}, clock=clock), clock
 
 
 def _over_time(
@@ -31,4 +35,11 @@ def _over_time(
 ) -> Callable[[float], list[float]]:
     values = np.column_stack([recording.columns[name] for name in names]) / lsb
     last, hz = len(values) - 1, recording.scales.odr_hz
-    return lambda seconds: values[min(int(seconds * hz + 0.5), last)].tolist()
+
+    def felt(seconds: float) -> list[float]:
+        # between two rows, too: a faster chip that felt one of them for long would be a frozen one
+        row, share = divmod(min(seconds * hz, last), 1)
+        before, after = values[int(row)], values[min(int(row) + 1, last)]
+        return (before + share * (after - before)).tolist()
+
+    return felt

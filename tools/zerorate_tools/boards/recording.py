@@ -62,8 +62,9 @@ def _record_fake(out: Path, **options) -> Recorded:
     from .bus import record_bus
     from .fake_hand import in_hand
 
-    bus, clock = in_hand()
+    given = {name: options[name] for name in ("address", "part") if name in options}
     try:
+        bus, clock = in_hand(**given)
         return record_bus(bus, out, source=FAKE, time_source=clock, **options)
     except ValueError as error:
         raise ZerorateError(f"{FAKE} {error}") from error

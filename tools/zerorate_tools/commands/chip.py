@@ -10,7 +10,7 @@ from zerorate_i2c.settings import ACCEL_RANGES_G, GYRO_RANGES_DPS
 
 from ..errors import ZerorateError
 from .learn import add_sources
-from .options import Parser, above_zero, any_base, option, switch
+from .options import Parser, above_zero, address_7_bits, option, switch
 
 
 def add_record(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -44,13 +44,13 @@ _RANGES = (
 
 def _add_chip(parser: Parser) -> None:
     """Add the options of a chip on a Linux bus, which have the driver's own defaults."""
-    option(parser, "--address", "N", "I2C address of the chip (0x68)", any_base)
-    option(parser, "--hz", "N", "samples a second (100)", float, dest="odr_hz")
+    option(parser, "--address", "N", "I2C address of the chip (0x68)", address_7_bits)
+    option(parser, "--hz", "N", "samples a second (100)", above_zero, dest="odr_hz")
     for flag, of, ranges, dest in _RANGES:
         help = f"range of the {of}: {', '.join(map(str, ranges))}"
         option(parser, flag, "N", help, int, dest=dest, choices=ranges)
     filtered = "bandwidth of the gyroscope's low-pass filter (by --hz)"
-    option(parser, "--dlpf-hz", "N", filtered, float)
+    option(parser, "--dlpf-hz", "N", filtered, above_zero)
     option(parser, "--part", "NAME", "name of the part, as MPU-6500, if its id is unknown")
 
 
@@ -125,7 +125,7 @@ def _guided(arguments: argparse.Namespace, options: dict[str, Any]) -> int:
 
 
 def _made(out: Path, result: Any) -> int:
-    print(f"{out}: {result}" if result.samples else "no sample came, nothing is written")
+    print(f"{out}: {result}" if result.samples else f"no sample came, nothing is written: {result}")
     return 0 if result.samples else 1
 
 
@@ -227,6 +227,7 @@ def run_run(arguments: argparse.Namespace) -> None:
     options = _chip(arguments)
     model = _model_bytes(arguments.model) if arguments.model else b""
     fake = None
+    _require_settings(options)
     if arguments.bus == "fake:":
         fake = FakeBus(**{name: options[name] for name in ("address", "part") if name in options})
 
@@ -268,6 +269,17 @@ def run_run(arguments: argparse.Namespace) -> None:
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     system = System(open_imu, storage, clock, say, stored_ago_s=stored_ago_s)
     Service(system, sinks or [Lines(sys.stdout)], model).run()
+
+
+def _require_settings(options: dict[str, Any]) -> None:
+    """Raise ZerorateError for what no chip can take, before the bus is waited for."""
+    from ..boards.fake_chip import require_settings
+
+    names = ("odr_hz", "dlpf_hz", "part")
+    try:
+        require_settings(**{name: options[name] for name in names if name in options})
+    except ValueError as error:
+        raise ZerorateError(str(error)) from error
 
 
 def _model_bytes(path: Path) -> bytes:

@@ -17,7 +17,24 @@ def option(
     parser: Parser, flags: str, metavar: str, help: str, type: Callable[..., Any] = str, **how: Any
 ) -> None:
     """Add an option, or an argument, that takes a value. flags: `-o --out`; how: as argparse."""
-    parser.add_argument(*flags.split(), metavar=metavar, help=help, type=type, **how)
+
+    def read(text: str) -> Any:
+        # what argparse would say of a ValueError has the name of a function in it
+        try:
+            return type(text)
+        except ValueError:
+            raise argparse.ArgumentTypeError(f"{text} is no {_kind_of(text)}") from None
+
+    parser.add_argument(*flags.split(), metavar=metavar, help=help, type=read, **how)
+
+
+def _kind_of(text: str) -> str:
+    """The kind of number that it is not."""
+    try:
+        float(text)
+    except ValueError:
+        return "number"
+    return "whole number"
 
 
 def switch(parser: Parser, flag: str, help: str) -> None:
@@ -41,9 +58,11 @@ def above_zero(text: str) -> float:
     return value
 
 
-def any_base(text: str) -> int:
-    """A whole number, 0x68 too."""
-    return int(text, 0)
+def address_7_bits(text: str) -> int:
+    """An address that a chip on an I2C bus may have, as 0x68; the bus keeps the others."""
+    if not 0x08 <= (address := int(text, 0)) <= 0x77:
+        raise argparse.ArgumentTypeError(f"{text} is no I2C address; they are 0x08 to 0x77")
+    return address
 
 
 def add_json(parser: Parser) -> None:

@@ -116,10 +116,10 @@ def add_export(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
     c = actions.add_parser("c", help="a header, a C file, a test program, and build files")
     option(c, "folder", "DIR", "folder to write", Path)
     for name, default in (("odr-hz", 100.0), ("gyro-lsb-per-dps", 131.0)):
-        c.add_argument(f"--{name}", type=float, default=default, metavar="N", help=f"{default:g}")
+        option(c, f"--{name}", "N", f"{default:g}", float, default=default)
     for name, default in (("accel-lsb-per-g", 16384.0), ("temp-lsb-per-degc", 340.0)):
         text = f"{default:g}; 0 where there is none"
-        c.add_argument(f"--{name}", type=float, default=default, metavar="N", help=text)
+        option(c, f"--{name}", "N", text, float, default=default)
     option(c, "--model", "FILE", "a model.bin; its scales replace those above", Path)
     c.set_defaults(run=run_export)
 

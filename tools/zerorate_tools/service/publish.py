@@ -13,9 +13,10 @@ from ipaddress import IPv4Address, IPv6Address, ip_address
 from pathlib import Path
 from typing import Any, Protocol, TextIO
 
-from zerorate_fakes import FakeI2C, FakeMPU6050, Physical
+from zerorate_fakes import FakeI2C, Physical
 from zerorate_i2c import clock
 
+from ..boards.fake_chip import fake_chip
 from ..errors import InFile, MissingLibrary, ZerorateError
 
 #: Readers of a socket at once: the service keeps descriptors for its bus and its file.
@@ -243,10 +244,10 @@ class Metrics:
 
 
 class FakeBus(FakeI2C):
-    """The bus of a chip with a bias, whose time is this machine's."""
+    """The bus of a chip with a bias, whose time is this machine's. Raises ValueError."""
 
     def __init__(self, address: int = 0x68, part: str | None = None) -> None:
-        self.chip = FakeMPU6050(Physical(gyro_dps=_BIAS_DPS), part=part or "MPU-6050")
+        self.chip = fake_chip(Physical(gyro_dps=_BIAS_DPS), part)
         super().__init__({address: self.chip})
         self._last_us = clock.ticks_us()
 
