@@ -117,7 +117,7 @@ AREAS = {
     "tools": (
         [_TOOLS],
         ["tools/test_words_reach.py", "tools/test_host.py", "tools/test_tools_by_hand.py",
-         "tools/test_atomic.py", "tools/test_cli.py", _FIGURES + "[moved]"],
+         "tools/test_atomic.py", "tools/test_cli.py", _FIGURES + "[moved together]"],
     ),
     "model": (
         [_TOOLS + "model/"],
@@ -146,7 +146,8 @@ AREAS = {
     ),
     "turning": (
         [_TOOLS + "loop/motion/"],
-        ["loop/test_axes_by_gravity.py", "loop/test_verify_by_hand.py", _FIGURES + "[moved]"],
+        ["loop/test_axes_by_gravity.py", "loop/test_verify_by_hand.py",
+         "loop/test_motion_by_hand.py", _FIGURES + "[moved]", _FIGURES + "[moved together]"],
     ),
     "findings": (
         [_TOOLS + "loop/"],

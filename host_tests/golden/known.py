@@ -305,12 +305,15 @@ def drawn():
         return reported.drawn([*_logs(Path(folder))][:2], Path(folder))
 
 
-def moved_figures():
-    """Of what motion shows, its words, and what it is closed with."""
-    found, written = moved.moved()
-    told = {n: [of] if isinstance(of, str) else figures({n: of})[n] for n, of in found.items()}
-    rows = figures(written.pop("rows"))
-    return told | rows | flat(written)
+def moved_figures(found):
+    """Of what motion shows: its words, and the figures of its numbers."""
+    return {n: [of] if isinstance(of, str) else figures({n: of})[n] for n, of in found.items()}
+
+
+def moved_together():
+    """Of what recordings in motion show together, and what they are closed with."""
+    found, written = moved.moved_together()
+    return moved_figures(found) | figures(written.pop("rows")) | flat(written)
 
 
 KNOWN = {
@@ -320,7 +323,8 @@ KNOWN = {
     "simulated": simulated,
     "read": read,
     "parts of reading": parts_of_reading,
-    "moved": moved_figures,
+    "moved": lambda: moved_figures(moved.moved()),
+    "moved together": moved_together,
     "turned": turned,
     "compared": compared,
     "fleet of ten": fleet_of_ten,

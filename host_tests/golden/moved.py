@@ -70,25 +70,6 @@ def _steps(moving):
     return found, fitted
 
 
-def _together(every, statements, headings):
-    """What recordings show of one device: (name, fields) of each way to ask."""
-    for large in (False, True):
-        device = device_of(statements, large)
-        names = ("entries", "covariance", "nats", "weight")
-        yield f"device {large}", {n: getattr(device, n) for n in names}
-        yield f"share {large}", {"": device.share(headings)}
-    for name, of in (("held", (every[:2], every[2:])), ("alone", (every[1:2], []))):
-        yield name, asdict(by_windows(*of))
-    yield "none", asdict(by_windows(every[3:], []))
-    yield "heading", {"": heading_lost([(every[1], _MATRIX), (every[0], _MATRIX)])}
-    rng = np.random.default_rng(1)
-    late = [
-        (np.column_stack([-0.003 * w + rng.normal(0, 0.02, 400), w]), 1.0)
-        for w in rng.random((2, 400))
-    ]
-    yield "timing", asdict(timing_of(late))
-
-
 def _written(paths, shown):
     """What recordings that hardly rest are closed with: the report, its words, its columns."""
     result = write_in_motion(shown, paths, None, paths[0].parent, lambda n: None)
@@ -102,15 +83,25 @@ def _written(paths, shown):
     }
 
 
+def _moving(folder):
+    """The recordings' paths, and they as their motion is read."""
+    paths = [Path(folder, f"{n}.parquet") for n in range(4)]
+    for path, recording in zip(paths, _recordings()):
+        write_recording(replace(recording, name=path.stem), path)
+    return paths, [moving_of(path) for path in paths]
+
+
+def _figures(parts):
+    """{figure: numbers, or a word} of (name, fields)."""
+    every = {f"{name} {key}".strip(): of for name, fields in parts for key, of in fields.items()}
+    every = {name: of for name, of in every.items() if of is not None and np.size(of)}
+    return {n: of if isinstance(of, str) else np.nan_to_num(of) for n, of in every.items()}
+
+
 def moved():
-    """({figure: numbers, or a word} of all that and of what the recordings show together, what
-    recordings are closed with)."""
+    """Of each recording, and of the device that so little as a part of them tells."""
     with TemporaryDirectory() as folder:
-        paths = [Path(folder, f"{n}.parquet") for n in range(4)]
-        for path, recording in zip(paths, _recordings()):
-            write_recording(replace(recording, name=path.stem), path)
-        every = [moving_of(path) for path in paths]
-        written = _written(paths[:2], by_windows(every[1:2], []))
+        _, every = _moving(folder)
     parts, statements, headings = [], [], []
     for number, moving in enumerate(every[:3]):
         steps, fitted = _steps(moving)
@@ -118,7 +109,26 @@ def moved():
         shown = fitted.shown(_MATRIX)  # of so little that neither scatter nor size is sure
         statements.append(Shown(3e-6 * shown.normal, 3e-6 * shown.right))
         headings.append(fitted.heading)
-    parts += _together(every, statements, headings)
-    every = {f"{name} {key}".strip(): of for name, fields in parts for key, of in fields.items()}
-    every = {name: of for name, of in every.items() if of is not None and np.size(of)}
-    return {n: of if isinstance(of, str) else np.nan_to_num(of) for n, of in every.items()}, written
+    for large in (False, True):
+        device = device_of(statements, large)
+        names = ("entries", "covariance", "nats", "weight")
+        parts.append((f"device {large}", {n: getattr(device, n) for n in names}))
+        parts.append((f"share {large}", {"": device.share(headings)}))
+    rng = np.random.default_rng(1)
+    late = [
+        (np.column_stack([-0.003 * w + rng.normal(0, 0.02, 400), w]), 1.0)
+        for w in rng.random((2, 400))
+    ]
+    return _figures([*parts, ("timing", asdict(timing_of(late)))])
+
+
+def moved_together():
+    """Of what the recordings show together, and what they are closed with."""
+    with TemporaryDirectory() as folder:
+        paths, every = _moving(folder)
+        alone = by_windows(every[1:2], [])
+        written = _written(paths[:2], alone)
+    parts = [("held", asdict(by_windows(every[:2], every[2:]))), ("alone", asdict(alone))]
+    parts.append(("none", asdict(by_windows(every[3:], []))))
+    parts.append(("heading", {"": heading_lost([(every[1], _MATRIX), (every[0], _MATRIX)])}))
+    return _figures(parts), written
