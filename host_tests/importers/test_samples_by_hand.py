@@ -12,7 +12,8 @@ from zerorate_tools.importers.columns.chip_steps import unit_by_steps
 from zerorate_tools.importers.columns.units import factors_of
 from zerorate_tools.importers.logs import json_file, ros_bag
 from zerorate_tools.importers.samples import lines
-from zerorate_tools.importers.samples.clock import Gaps, Pace, Ticks, evenly, longest_us
+from zerorate_tools.importers.samples.clock import Gaps, Pace, Ticks, Unwrapped, evenly, longest_us
+from zerorate_tools.importers.samples.one_device import clocks_in_turn, levels_in_turn
 from zerorate_tools.importers.samples.spool import Runs, Spool, in_order
 from zerorate_tools.numbers import duration
 
@@ -232,6 +233,41 @@ def test_a_steady_rate_that_no_bias_has_is_doubted(dps, spread, doubted):
 def test_temperatures_of_other_scales_become_degrees_celsius(unit, read, degc):
     factor, offset = factors_of("temp")[unit]
     assert read * factor + offset == pytest.approx(degc)
+
+
+@pytest.mark.parametrize(
+    ("holds_us", "step_us", "every_us"),
+    [
+        *((2.0**30, 1.0, 1e4), (2.0**31, 1.0, 9e6), (2.0**32, 1.0, 1e4), (86_400e6, 1.0, 1e4)),
+        *((2.0**30 * 1e3, 1e3, 1e4), (2.0**32 * 1e3, 1e3, 1e4), (86_400e6, 0.0, 3e9)),
+    ],
+)
+@pytest.mark.parametrize("cut", [1, 5, 6, 7, 12])
+def test_a_clock_that_runs_over_goes_on(holds_us, step_us, every_us, cut):
+    true = holds_us - 5.5 * every_us + every_us * np.arange(12)
+    clock, found = Unwrapped(step_us), []
+    for part in (slice(cut), slice(cut, None)):
+        found += clock(true[part] % holds_us, np.arange(12)[part]).tolist()
+    assert found == true.tolist() and len(clock.notes) == 1 and "row 7:" in clock.notes[0]
+
+
+@pytest.mark.parametrize(("back_us", "every_us"), [(2.0**30 - 1e8, 1e4), (2.0**30, 11e6)])
+def test_a_clock_that_goes_back_by_what_no_counter_holds_is_left(back_us, every_us):
+    t_us = 2.0**30 - 5.5 * every_us + every_us * np.arange(12)
+    t_us[6:] -= back_us
+    clock = Unwrapped(1.0)
+    assert (clock(t_us, np.arange(12)) == t_us).all() and clock.notes == []
+
+
+@pytest.mark.parametrize("devices", range(1, 10))
+def test_up_to_eight_devices_that_take_turns_are_counted(devices):
+    row, rng = np.arange(1200), np.random.default_rng(1)
+    of = rng.permutation(devices)[row % devices]
+    told = devices if 1 < devices < 9 else 0
+    assert clocks_in_turn(row // devices * 1e4 - 5e6 * (row % devices)) == told
+    rates = 10.0 * of[:, None] + rng.normal(0, 0.5, (1200, 3))
+    found = levels_in_turn([rates[:700], rates[700:]])
+    assert found > 1 and devices % found == 0 if devices > 1 else found == 0
 
 
 LSB_DPS = [*(range_dps / 32768 for range_dps in (125, 250, 500, 1000, 2000, 4000))]
