@@ -65,7 +65,8 @@ def _steps(moving):
     found["fitted"] = {n: getattr(fitted, n) for n in ("own", "precision", "folds", "heading")}
     shown, without = fitted.shown(_MATRIX / 2), fitted.without(_MATRIX / 2, 1)
     found["shown"] = {"normal": shown.normal, "right": shown.right, "without": without.normal}
-    found["shown"] |= {"tilts": fitted.tilts(_MATRIX / 2, 0.1 * own[:9], 2)}
+    for name, fold in (("tilts", 2), ("every tilt", None)):
+        found["shown"][name] = fitted.tilts(_MATRIX / 2, 0.1 * own[:9], fold)
     found["is"] = {"dt_s": moving.dt_s, "planar": moving.planar, "apart": distance(shown, without)}
     return found, fitted
 
