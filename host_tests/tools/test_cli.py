@@ -85,6 +85,16 @@ def test_a_folder_that_is_not_there_ends_in_one_line_and_2(tmp_path):
     assert "nowhere" in ran.stderr and ran.stderr.count("\n") == 1
 
 
+@pytest.mark.skipif(not os.path.isdir("/proc"), reason="a folder that even root cannot write")
+@pytest.mark.parametrize("words", ["import in.csv --out", "record /dev/ttyNONE --out"])
+def test_a_folder_that_cannot_be_written_is_told_at_once_by_the_name_given(tmp_path, words, capsys):
+    (tmp_path / "in.csv").write_text("t_s,gx_dps,gy_dps,gz_dps\n" + "0,1,2,3\n" * 9)
+    command, source, option = words.replace("in.csv", str(tmp_path / "in.csv")).split()
+    for out in ("/proc/x.parquet", "/proc/x.csv"):
+        assert main([command, source, option, out]) == 2
+        assert capsys.readouterr().err.startswith(f"zerorate: {out}: ")
+
+
 @pytest.mark.parametrize(
     "words",
     [

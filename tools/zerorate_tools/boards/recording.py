@@ -8,6 +8,7 @@ from typing import Any
 
 from ..errors import MissingLibrary, ZerorateError
 from ..recordings import Scales
+from ..recordings.writing import check_output
 from .recorder import Recorded, SampleTaker
 
 FAKE = "fake:"
@@ -29,6 +30,7 @@ def record(
     MissingLibrary without smbus2 or mpremote, ZerorateError for a board that does not answer or a
     setting that no part can take, OSError for a bus that does not.
     """
+    check_output(out)
     if port_or_bus == FAKE:
         return _record_fake(Path(out), seconds=seconds, done=done, **options)
     if _BUS.fullmatch(port_or_bus):

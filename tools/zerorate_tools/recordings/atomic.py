@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from os.path import realpath
 from pathlib import Path
+from tempfile import TemporaryFile
 
 from ..ending import undisturbed
 from ..errors import InFile
@@ -52,6 +53,14 @@ def check_name(path: Path) -> None:
     if len(os.fsencode(path.name)) > _LONGEST_NAME:
         problem = f"the name is longer than {_LONGEST_NAME} bytes"
         raise InFile(path, problem, do="give it a shorter one")
+
+
+def check_room_for(path: Path) -> None:
+    """Raise InFile if no file can be made in its folder."""
+    try:
+        TemporaryFile(dir=path.parent).close()
+    except OSError as error:
+        raise _cannot_be_written(path, error, "name a folder that is yours") from error
 
 
 def check_apart(outputs: Iterable[_Path | None], inputs: Iterable[_Path | None]) -> None:

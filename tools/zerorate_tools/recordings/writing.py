@@ -10,7 +10,7 @@ import numpy as np
 
 from ..errors import BadRecording
 from . import csv_format, parquet_format
-from .atomic import check_name, written_beside, written_together
+from .atomic import check_name, check_room_for, written_beside, written_together
 from .csv_format import CsvWriter
 from .parquet_format import ParquetWriter
 from .recording import Recording
@@ -36,13 +36,16 @@ def is_recording_name(path: Path) -> bool:
 
 
 def check_output(path: str | PathLike[str]) -> None:
-    """Raise BadRecording if no recording can be written there: ask before long work."""
+    """Raise InFile if no recording can be written there: ask before long work."""
     path = Path(path)
     if not is_recording_name(path):
         do = "end the name in .parquet, .csv or .csv.gz"
         raise BadRecording(path, "no format goes by this name", do=do)
     if not path.parent.is_dir():
         raise BadRecording(path, f"there is no folder {path.parent}", do="make it first")
+    if path.is_dir():
+        raise BadRecording(path, "is a folder", do="name a file in it")
+    check_room_for(path)
 
 
 @contextmanager
