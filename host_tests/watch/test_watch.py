@@ -20,7 +20,7 @@ from zerorate_tools.simulate import simulate
 from zerorate_tools.watch import watch
 from zerorate_tools.watch.live import Live
 from zerorate_tools.watch.own import OwnOutput
-from zerorate_tools.watch.screen import Lines, WatchOptions, sparkline
+from zerorate_tools.watch.screen import Lines, WatchOptions, screen, sparkline
 from zerorate_tools.watch.watching import CsvTail, Watcher, growing_file
 
 DESCRIPTION = {
@@ -186,6 +186,29 @@ def test_what_cannot_be_followed_is_said_in_a_line(tmp_path, capsys, name, said)
     assert main(["watch", str(tmp_path / name)]) == 2
     error = capsys.readouterr().err
     assert said in error and error.count("\n") == 1
+
+
+@pytest.mark.parametrize("name", ["run.parquet", "run.csv.gz"])
+def test_a_finished_recording_is_shown_once(tmp_path, recording, name):
+    write_recording(recording, tmp_path / name)
+    live = watch(str(tmp_path / name), WatchOptions(once=True))
+    assert state_bytes(live.corrector) == replay(tmp_path / name).state
+
+
+def test_an_emulated_chip_is_watched_and_has_no_pins_to_set_up(tmp_path, capsys):
+    assert main(["watch", "fake:", "--for", "0.2"]) == 0
+    (tmp_path / "pins.py").write_text("imu = None")
+    for words in ("watch fake: --for 1", f"record fake: --out {tmp_path / 'x.csv'}"):
+        assert main([*words.split(), "--setup", str(tmp_path / "pins.py")]) == 2
+        assert "--setup" in capsys.readouterr().err
+
+
+def test_a_terminal_too_narrow_for_the_numbers_gets_lines(monkeypatch):
+    monkeypatch.setattr("sys.stdout.isatty", lambda: True)
+    for columns, is_narrow in ((40, True), (80, False)):
+        monkeypatch.setenv("COLUMNS", str(columns))
+        with screen() as shown:
+            assert isinstance(shown, Lines) == is_narrow
 
 
 def test_a_file_that_goes_away_is_said(writer):

@@ -31,6 +31,7 @@ def record(
     setting that no part can take, OSError for a bus that does not.
     """
     check_output(out)
+    _require_a_board(port_or_bus, options)
     if port_or_bus == FAKE:
         return _record_fake(Path(out), seconds=seconds, done=done, **options)
     if _BUS.fullmatch(port_or_bus):
@@ -48,7 +49,14 @@ def stream(
     done: Callable[[float], object] = lambda seconds: None,
     **options,
 ) -> None:
-    """As record, but into the SampleTaker that take(scales) makes."""
+    """As record, but into the SampleTaker that take(scales) makes; `fake:` rests, in real time."""
+    _require_a_board(port_or_bus, options)
+    if port_or_bus == FAKE:
+        from .bus import stream_bus
+        from .fake_chip import FakeBus
+
+        stream_bus(FakeBus(), take, source=FAKE, seconds=seconds, done=done)
+        return
     if _BUS.fullmatch(port_or_bus):
         from .bus import stream_bus
 
@@ -58,6 +66,11 @@ def stream(
     from .port import stream_port
 
     stream_port(port_or_bus, take, seconds=seconds, done=done, **options)
+
+
+def _require_a_board(port_or_bus: str, options: dict[str, Any]) -> None:
+    if "setup" in options and (port_or_bus == FAKE or _BUS.fullmatch(port_or_bus)):
+        raise ZerorateError(f"{port_or_bus} is no board: leave out --setup")
 
 
 def _record_fake(out: Path, **options) -> Recorded:

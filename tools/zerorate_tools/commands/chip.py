@@ -135,7 +135,7 @@ def add_watch(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]")
         help="show live what is learned, from a board or a growing recording",
         description="Show rates, bias with its source and one sigma, temperature and what is "
         "learned, until Ctrl-C. SOURCE is a growing .csv, as of `zerorate record`, the serial port "
-        "of a board, or /dev/i2c-N.",
+        "of a board, /dev/i2c-N, or fake: for an emulated chip at rest.",
     )
     option(parser, "source", "SOURCE", "run.csv, /dev/ttyACM0 or /dev/i2c-1")
     option(parser, "--for", "SECONDS", "stop after this time", above_zero, dest="seconds")

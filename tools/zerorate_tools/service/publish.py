@@ -13,10 +13,6 @@ from ipaddress import IPv4Address, IPv6Address, ip_address
 from pathlib import Path
 from typing import Any, Protocol, TextIO
 
-from zerorate_fakes import FakeI2C, Physical
-from zerorate_i2c import clock
-
-from ..boards.fake_chip import fake_chip
 from ..errors import InFile, MissingLibrary, ZerorateError
 
 #: Readers of a socket at once: the service keeps descriptors for its bus and its file.
@@ -29,7 +25,6 @@ _VECTORS = {
     "accel_g": ("zerorate_acceleration_g", "Specific force."),
 }
 _TEMPERATURE = ("zerorate_temperature_degc", "Temperature of the chip.")
-_BIAS_DPS = (0.31, -0.19, 0.08)
 
 
 class Sink(Protocol):
@@ -241,21 +236,3 @@ class Metrics:
         self._server.shutdown()
         self._server.server_close()
         self._thread.join()
-
-
-class FakeBus(FakeI2C):
-    """The bus of a chip with a bias, whose time is this machine's. Raises ValueError."""
-
-    def __init__(self, address: int = 0x68, part: str | None = None) -> None:
-        self.chip = fake_chip(Physical(gyro_dps=_BIAS_DPS), part)
-        super().__init__({address: self.chip})
-        self._last_us = clock.ticks_us()
-
-    def _begin(self, wire_bytes: int) -> str | None:
-        now_us = clock.ticks_us()
-        self.chip.advance_us(clock.ticks_diff(now_us, self._last_us))
-        self._last_us = now_us
-        return super()._begin(wire_bytes)
-
-    def close(self) -> None:
-        """Nothing to close: the chip goes on."""

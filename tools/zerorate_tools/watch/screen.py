@@ -15,6 +15,8 @@ from ..numbers import fixed
 
 _BARS = "▁▂▃▄▅▆▇█"
 _WIDTH = 24
+#: Columns of a terminal in which every number is whole, with the first letters of its source.
+_LEAST_COLUMNS = 70
 
 
 class Shown(Protocol):
@@ -48,13 +50,18 @@ class Screen(Protocol):
 
 @contextmanager
 def screen(plain: bool = False) -> Iterator[Screen]:
-    """A screen for this terminal; lines on standard output where there is none, or `plain`."""
+    """A screen for this terminal; lines where there is none, or a narrow one, or `plain`."""
     if plain or not sys.stdout.isatty():
         yield Lines()
         return
+    from rich.console import Console
     from rich.live import Live as RichLive
 
-    with RichLive(auto_refresh=False) as area:
+    console = Console()
+    if console.width < _LEAST_COLUMNS:
+        yield Lines()
+        return
+    with RichLive(console=console, auto_refresh=False) as area:
         yield Area(area)
 
 
@@ -113,7 +120,7 @@ def _table(live: Shown) -> Any:
 
     table = Table(box=box.SIMPLE_HEAD)
     for name in ("", "rate dps", "corrected", "bias dps", "± one sigma"):
-        table.add_column(name, justify="right")
+        table.add_column(name, justify="right", no_wrap=True)
     table.add_column("from")
     table.add_column("bias of late")
     past = np.array(live.history).reshape(-1, 3)

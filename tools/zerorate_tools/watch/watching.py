@@ -11,9 +11,9 @@ import pyarrow as pa
 import pyarrow.csv
 
 from ..boards.recorder import COLUMNS, Recorded
-from ..boards.recording import stream
+from ..boards.recording import FAKE, stream
 from ..errors import BadRecording
-from ..recordings import Scales, csv_format
+from ..recordings import Scales, csv_format, open_recording
 from ..recordings.checks import check_names
 from ..recordings.csv_format import unfinished_of
 from ..recordings.recording import TIME, Columns
@@ -33,10 +33,10 @@ def growing_file(path: Path) -> Path:
         return unfinished[-1]
     if path.name.endswith(".parquet"):
         problem = "a Parquet file has its index at its end, so it cannot be read while it grows"
-        raise BadRecording(path, problem, do="record to .csv, or use `zerorate replay` afterwards")
+        raise BadRecording(path, problem, do="record to .csv, or add --once when it is finished")
     if path.name.endswith(".gz"):
         problem = "gzip holds rows back until a block of them is full"
-        raise BadRecording(path, problem, do="record to .csv, or use `zerorate replay` afterwards")
+        raise BadRecording(path, problem, do="record to .csv, or add --once when it is finished")
     if not path.is_file():
         do = "name a .csv that is being written, a board's port or /dev/i2c-N"
         raise BadRecording(path, "is a folder" if path.is_dir() else "no such file", do=do)
@@ -99,6 +99,22 @@ class CsvTail:
         good = len(cells) == len(self.column_names) and all(cell.isdigit() for cell in cells)
         self.bad_rows += not good and bool(row.strip())
         return good
+
+
+class Finished:
+    """A recording of any form that grows no more, read as a CsvTail is."""
+
+    bad_rows = restarts = 0
+
+    def __init__(self, path: Path) -> None:
+        recording = open_recording(path)
+        self.name, self.scales = path.name, recording.scales
+        self.column_names = recording.column_names
+        self._batches = recording.batches()
+
+    def read(self) -> Columns | None:
+        """The next batch, None behind the last. Raises BadRecording."""
+        return next(self._batches, None)
 
 
 def _parsed(rows: bytes, names: list[str]) -> Columns:
@@ -180,11 +196,11 @@ _STALLED_SAMPLES = 20
 
 
 def watch(source: str, options: WatchOptions | None = None) -> Shown | None:
-    """Run the firmware on what comes from a growing CSV, a board's port or /dev/i2c-N, and show it.
+    """Run the firmware on what comes from a growing CSV, a board's port or a bus, and show it.
 
-    Ends at Ctrl-C as well. Returns the firmware as it was at the end, what the board's own program
-    said with `own`, None where nothing came.
-    Raises ZerorateError for a source that cannot be followed.
+    With `once` a finished recording of any form will do. Ends at Ctrl-C as well. Returns the
+    firmware as it was at the end, what the board's own program said with `own`, None where nothing
+    came. Raises ZerorateError for a source that cannot be followed.
     """
     options = options or WatchOptions()
     if options.own:
@@ -193,7 +209,9 @@ def watch(source: str, options: WatchOptions | None = None) -> Shown | None:
         return watch_own(source, options)
     if is_device(source):
         return watch_board(source, options)
-    tail = CsvTail(Path(source))
+    path = Path(source)
+    is_whole = options.once and path.is_file() and path.name.endswith((".parquet", ".gz"))
+    tail = Finished(path) if is_whole else CsvTail(path)
     with screen(options.plain) as shown:
         following = Following(tail, options, shown)
         try:
@@ -206,13 +224,13 @@ def watch(source: str, options: WatchOptions | None = None) -> Shown | None:
 
 def is_device(source: str) -> bool:
     """Whether the source is a port or a bus: by its name, or a device under any other name."""
-    return bool(_DEVICE.fullmatch(source)) or Path(source).is_char_device()
+    return source == FAKE or bool(_DEVICE.fullmatch(source)) or Path(source).is_char_device()
 
 
 class Following:
     """A growing file, the firmware on it, and the screen."""
 
-    def __init__(self, tail: CsvTail, options: WatchOptions, shown: Screen) -> None:
+    def __init__(self, tail: CsvTail | Finished, options: WatchOptions, shown: Screen) -> None:
         self.tail, self.options, self._shown = tail, options, shown
         self.live = self._fresh()
         self._begun = self._grown = self._looked = time.monotonic()
