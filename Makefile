@@ -73,7 +73,10 @@ runtimes: $(VENV)/.dev node
 
 node: $(VENV)/.tools
 	-@$(BIN)/zerorate runtimes node >/dev/null 2>&1 || \
-		$(BIN)/python -m pip install --quiet -r requirements/node.txt
+		$(PIP) -r requirements/node.txt
+
+# Python compiles what it imports; pip would compile all that it installs, for as long as it fetches.
+PIP := $(BIN)/python -m pip install --quiet --no-compile
 
 # Without ensurepip (Debian's python3 without python3-venv) the machine's own pip fills the folder.
 $(BIN)/python:
@@ -84,18 +87,18 @@ $(BIN)/python:
 
 $(VENV)/.tools: requirements/tools.txt pyproject.toml | $(BIN)/python
 	@echo "Fetching the tools' Python packages into $(VENV), 225 MB, once"
-	$(BIN)/python -m pip install --quiet -r requirements/tools.txt
-	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation -e .
+	$(PIP) -r requirements/tools.txt
+	$(PIP) --no-deps --no-build-isolation -e .
 	touch $@
 
 $(VENV)/.dev: requirements/dev.txt $(VENV)/.tools
 	@echo "Fetching what the tests need, once"
-	$(BIN)/python -m pip install --quiet -r requirements/dev.txt
+	$(PIP) -r requirements/dev.txt
 	touch $@
 
 $(VENV)/.board-stubs: requirements/dev.txt $(VENV)/.dev
 	rm -rf $(VENV)/board-stubs
-	$(BIN)/python -m pip install --quiet --no-deps --target $(VENV)/board-stubs \
+	$(PIP) --no-deps --target $(VENV)/board-stubs \
 		$$(grep -oE '^micropython-(rp2|stdlib)-stubs==[^ ;]+' requirements/dev.txt)
 	touch $@
 
