@@ -295,7 +295,7 @@ def turned():
     turns, forces = turning._spans(truth.rate_dps.T, force, t_s)
     taken = {"sizes": turning._sized(turning._SIZES_DPS), "orders": turning._AXES}
     left = {name: list(turning._lacking(turns, forces, of)) for name, of in taken.items()}
-    told = turning.dps_of_one(truth.rate_dps.T / 4, force, t_s)
+    told = turning.dps_of_one(truth.rate_dps.T / 4, force, t_s).dps
     return figures({"turns": turns, "forces": forces, "told": told}) | left
 
 

@@ -5,7 +5,7 @@ import pytest
 import scipy.io
 from zerorate_bench.foreign_logs import binary as foreign_files
 from zerorate_tools.errors import BadRecording
-from zerorate_tools.importers import parsed_mapping, read_foreign
+from zerorate_tools.importers import Options, parsed_mapping, read_foreign
 
 from .test_odd_files import told
 
@@ -39,7 +39,7 @@ def test_a_mat_of_arrays_of_three_is_read_by_their_names(tmp_path):
     arrays = {"Gyr_noise": RNG.normal(size=(50, 3)), "Acc_noise": RNG.normal(size=(50, 3))}
     scipy.io.savemat(tmp_path / "in.mat", arrays)
     with pytest.raises(BadRecording, match=r"units of columns 'Gyr_noise\[0\]'.* are not known"):
-        read_foreign(tmp_path / "in.mat")
+        read_foreign(tmp_path / "in.mat", options=Options(hz=100.0))
 
 
 def test_the_fields_of_a_structure_are_columns(tmp_path):

@@ -160,7 +160,7 @@ def test_a_time_of_day_among_columns_without_names_is_offered_as_time(tmp_path):
 
 def test_no_mapping_is_offered_where_nothing_tells_which_columns_are_rates(tmp_path):
     values = [0.01, 0.02, 0.01, 0.1, 0.1, 0.1] * np.random.default_rng(4).normal(size=(50, 6))
-    with pytest.raises(BadRecording, match="map it: --map gx=COLUMN:dps, COLUMN one of 1, 2, 3"):
+    with pytest.raises(BadRecording, match="map it: --map gx=COLUMN:UNIT.* COLUMN one of 1, 2, 3"):
         read(tmp_path, lines(values + [49.0, 0, 0, 0, 0, 0]))
 
 
@@ -401,6 +401,16 @@ def test_acceleration_on_rows_of_its_own_chooses_its_range(tmp_path):
     assert told(report, "strongest acceleration: 5 g")
 
 
+def test_lines_of_esp_idf_have_their_own_clock_and_colours(tmp_path):
+    clock = [f"\x1b[0;32mI ({320 + 10 * n}) imu:" for n in range(300)]
+    rates = np.random.default_rng(1).normal(0.5, 0.1, 300)
+    rows = [f"{c} gx={x:.3f} gy=1 gz=2\x1b[0m" for c, x in zip(clock, rates)]
+    text = "\n".join(["rst:0x1 (POWERON_RESET)", "I (28) boot: ESP-IDF v5.1", *rows])
+    words = "gx=gx:dps gy=gy:dps gz=gz:dps"
+    recording, report = read(tmp_path, text, name="in.log", mapping=words)
+    assert len(recording) == 300 and recording.scales.odr_hz == pytest.approx(100)
+
+
 def test_a_column_can_be_left_out(tmp_path):
     frame = table().assign(temp_c="broken")
     recording, report = read(tmp_path, frame)
@@ -416,7 +426,7 @@ def test_one_unit_is_offered_for_the_three_rates_if_one_of_them_is_fast(tmp_path
     frame.iloc[:, 3:] *= 9.81
     frame["Gyro_Z"] *= 200.0
     with pytest.raises(BadRecording) as refused:
-        read(tmp_path, frame)
+        read(tmp_path, frame, options=Options(hz=100.0))
     assert str(refused.value).count("--gyro-unit") == 1 and "--gyro-unit dps" in str(refused.value)
 
 

@@ -78,7 +78,7 @@ def test_a_unit_of_rates_tells_what_a_column_is(tmp_path, names):
         ("t_s p q r", "if these are rates: --map gx=p:dps --map gy=q:dps"),
         ("t_s xaxis yaxis zaxis", "--map gx=xaxis:dps --map gy=yaxis:dps"),
         # a quaternion is none
-        ("t_s x y z w", "map it: --map gx=COLUMN:dps, COLUMN one of t_s, x"),
+        ("t_s x y z w", "map it: --map gx=COLUMN:UNIT.* COLUMN one of t_s, x"),
         # a phone's Sensor Logger
         ("seconds_elapsed x y z", "--map gx=x:rad/s --map gy=y:rad/s"),
     ],

@@ -44,7 +44,7 @@ def in_a_hand(seed=1, hz=50.0, seconds=30.0, axes=(1, 1, 1), push_g=0.3):
 )
 def test_in_a_hand_gravity_tells_the_size_of_rates(seed, hz, dps):
     t_s, rates, force = in_a_hand(seed, hz)
-    assert dps_of_one(rates / dps, force, t_s) == pytest.approx(dps, rel=0.15)
+    assert dps_of_one(rates / dps, force, t_s).dps == pytest.approx(dps, rel=0.15)
 
 
 @pytest.mark.parametrize("length_m", [0.3, 2.0])
@@ -103,7 +103,7 @@ def test_gaps_and_cells_without_a_number_do_not_change_what_is_told():
     t_s, rates, force = in_a_hand(seconds=60.0)
     rates[:, 700:720] = np.nan
     t_s[1500:] += 400.0
-    assert dps_of_one(rates, force, t_s) == pytest.approx(1.0, rel=0.1)
+    assert dps_of_one(rates, force, t_s).dps == pytest.approx(1.0, rel=0.1)
     assert dps_of_one(rates[:, :500], force[:, :500], t_s[:500]) is None  # of ten seconds
     slow = in_a_hand(hz=0.5, seconds=600.0)
     assert dps_of_one(*slow[1:], slow[0]) is None
@@ -117,7 +117,7 @@ def written(tmp_path, dps=1.0, names="gyro_x,gyro_y,gyro_z", start_s=0.0):
     return path, rates
 
 
-@pytest.mark.parametrize("unit", UNITS_DPS)
+@pytest.mark.parametrize("unit", ["dps", "mdps", "rad/s"])
 def test_rates_and_times_whose_unit_nobody_names_are_taken_as_they_must_be(tmp_path, unit):
     path, rates = written(tmp_path, UNITS_DPS[unit])
     report = import_recording(path, tmp_path / "out.csv")
@@ -134,6 +134,64 @@ def test_a_unit_in_a_name_that_gravity_contradicts_is_refused_with_the_true_one(
     given = [parsed_mapping(f"{axis}={axis}_dps:dps") for axis in ("gx", "gy", "gz")]
     report = import_recording(path, tmp_path / "out.csv", mapping=given)
     assert "did you mean rad/s?" in " ".join(report.doubts)
+
+
+@pytest.mark.parametrize("times", [0.5, 1.6])
+def test_times_and_scales_that_gravity_denies_are_doubted(tmp_path, times):
+    path, _ = written(tmp_path, 1.0, "gx_dps,gy_dps,gz_dps")
+    report = import_recording(path, tmp_path / "out.csv", options=Options(hz=50.0 * times))
+    (doubt,) = report.doubts
+    assert f"{times:.1f}" in doubt and "--hz" in doubt
+    path, _ = written(tmp_path, times / 16.4)
+    how = {"units": {"gyro": "lsb"}, "options": Options(gyro_lsb_per_dps=16.4)}
+    (doubt,) = import_recording(path, tmp_path / "out.csv", **how).doubts
+    assert "--gyro-lsb-per-dps" in doubt
+
+
+def test_rows_that_are_no_samples_are_doubted_where_rows_count_the_time(tmp_path):
+    rates = np.random.default_rng(1).normal(0.5, 0.1, (400, 3))
+    rows = [f"{x:.3f},{y:.3f},{z:.3f}\n" for x, y, z in rates]
+    rows[::9] = [f"{row}--\n" for row in rows[::9]]
+    (tmp_path / "in.csv").write_text("gx_dps,gy_dps,gz_dps\n" + "".join(rows))
+    report = import_recording(tmp_path / "in.csv", tmp_path / "out.csv", options=Options(hz=100))
+    assert "45 of 445 rows" in " ".join(report.doubts)
+
+
+def test_columns_that_do_not_turn_gravity_are_doubted_as_rates(tmp_path):
+    t_s, _, force = in_a_hand(push_g=0.0)
+    columns = {"t_s": t_s} | dict(zip(("gx_dps", "gy_dps", "gz_dps"), 90 * force[[1, 2, 0]] ** 2))
+    path = tmp_path / "in.csv"
+    pd.DataFrame(columns | dict(zip(("ax_g", "ay_g", "az_g"), force))).to_csv(path, index=False)
+    (doubt,) = import_recording(path, tmp_path / "out.csv").doubts
+    assert "gx_dps" in doubt
+
+
+@pytest.mark.parametrize(("unit", "dps"), [("deg/min", 1 / 60), ("0.1 deg/s", 0.1)])
+def test_a_quotient_that_is_no_known_unit_is_refused_and_taken_by_its_size(tmp_path, unit, dps):
+    names = [f"gyro {axis} [{unit}]" for axis in "xyz"]
+    path, rates = written(tmp_path, dps, ",".join(names))
+    with pytest.raises(BadRecording, match=f"{unit}.*:x0.1"):
+        import_recording(path, tmp_path / "out.csv")
+    mapping = [parsed_mapping(f"g{name[5]}={name}:x{dps}") for name in names]
+    import_recording(path, tmp_path / "out.csv", mapping=mapping)
+    read = pd.read_csv(tmp_path / "out.csv")
+    assert np.allclose(read["gx"] * np.ptp(rates[0]) / np.ptp(read["gx"]), rates[0], atol=0.1)
+
+
+def test_sizes_between_those_of_units_and_those_of_counts_are_not_guessed(tmp_path):
+    for dps in (0.1, 1 / 16.4):
+        path, _ = written(tmp_path, dps)
+        with pytest.raises(BadRecording, match="--gyro-unit"):
+            import_recording(path, tmp_path / "out.csv")
+
+
+def test_of_columns_without_names_those_that_turn_gravity_are_offered_as_rates(tmp_path):
+    t_s, rates, force = in_a_hand()
+    force *= 9.80665
+    np.save(tmp_path / "in.npy", np.transpose([t_s, *force, *force, *rates / 57.3]))
+    with pytest.raises(BadRecording) as refused:
+        import_recording(tmp_path / "in.npy", tmp_path / "out.csv")
+    assert "t_us=[0]:s" in str(refused.value) and "gx=[7]:rad/s" in str(refused.value)
 
 
 def test_counts_of_another_range_are_doubted_by_the_scale_that_gravity_tells(tmp_path):

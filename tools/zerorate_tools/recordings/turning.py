@@ -1,6 +1,7 @@
 """The size and axes of rates by gravity: turned back by them, the force of some seconds points one
 way."""
 
+from dataclasses import dataclass
 from itertools import permutations, product
 
 import numpy as np
@@ -13,6 +14,13 @@ _LEAST_SPANS, _MOST_SPANS = 5, 100
 _SIZES_DPS = 1.25 ** np.arange(-33.0, 21.0)
 #: Turns of the right size explain more than half of why the force does not point one way.
 _EXPLAINED = 0.5
+#: Pushes make recorded hands, robots and sticks seem to turn up to 1.3 times as fast, or as slow;
+#: where the force swings by little, they may be a pendulum's, which slow it up to 4 times.
+_PUSHED, _SWUNG = 1.4, 4.1
+#: What the mean force lacks where it swings by 15 degrees (RMS), about which no pendulum does more.
+_SWINGS = 0.035
+#: Forces that differ by so little, as a share of their length (RMS), are gravity alone.
+_UNPUSHED = 0.1
 #: Every order of the axes with every sign.
 _AXES = np.array(
     [
@@ -23,21 +31,52 @@ _AXES = np.array(
 )
 
 
-def dps_of_one(rates: np.ndarray, force: np.ndarray, t_s: np.ndarray) -> float | None:
-    """Degrees a second that 1.0 of the rates stands for; None where gravity does not tell.
+@dataclass(frozen=True)
+class Size:
+    """Degrees a second that 1.0 of some rates stands for: as gravity turns, the least and the most
+    that it may be where pushes move with the turning. left: the share of why the force does not
+    point one way that the rates do not explain."""
+
+    dps: float
+    least: float
+    most: float
+    left: float = 0.0
+
+
+def dps_of_one(rates: np.ndarray, force: np.ndarray, t_s: np.ndarray) -> Size | None:
+    """The size of rates by which gravity turns; None where it does not tell.
 
     rates, force: (3, n) in any unit, row by row; t_s: (n,). At rest and about the vertical gravity
     points one way whatever the size is.
     """
-    whole = np.isfinite([*rates, *force, t_s]).all(axis=0)
-    spans = _spans(rates[:, whole], force[:, whole], t_s[whole])
+    spans = _spans(rates, force, t_s)
     if spans is None:
         return None
     turns, forces = spans
     lacking = _lacking(turns, forces, _sized(np.append(_SIZES_DPS, 0.0)))
-    near = _SIZES_DPS[np.argmin(lacking[:-1])] * 1.25 ** np.linspace(-1.0, 1.0, 9)
+    best = int(np.argmin(lacking[:-1]))
+    near = _SIZES_DPS[best] * 1.25 ** np.linspace(-1.0, 1.0, 9)
     finer = _lacking(turns, forces, _sized(near))
-    return float(near[np.argmin(finer)]) if finer.min() < _EXPLAINED * lacking[-1] else None
+    at_an_end = best in (0, len(_SIZES_DPS) - 1)
+    left = float(finer.min() / lacking[-1])
+    if at_an_end or not left < _EXPLAINED:
+        return None
+    dps = float(near[np.argmin(finer)])
+    most = dps * (_SWUNG if lacking[-1] < _SWINGS else _PUSHED)
+    return Size(dps, dps / _PUSHED, most, left)
+
+
+def turns_otherwise(rates: np.ndarray, force: np.ndarray, t_s: np.ndarray) -> bool:
+    """Whether gravity alone turns widely, and not as rates of any size would turn it.
+
+    rates, force, t_s: as those of dps_of_one.
+    """
+    spans = _spans(rates, force, t_s)
+    if spans is None or dps_of_one(rates, force, t_s) is not None:
+        return False
+    lengths = np.linalg.norm(spans[1], axis=1)
+    unpushed = np.std(lengths) < _UNPUSHED * np.median(lengths)
+    return bool(unpushed and _lacking(*spans, np.zeros((1, 3, 3)))[0] > _SWINGS)
 
 
 def axes_of(rates_dps: np.ndarray, force: np.ndarray, t_s: np.ndarray) -> np.ndarray | None:
@@ -46,8 +85,7 @@ def axes_of(rates_dps: np.ndarray, force: np.ndarray, t_s: np.ndarray) -> np.nda
 
     rates_dps, force: (3, n), row by row; t_s: (n,).
     """
-    whole = np.isfinite([*rates_dps, *force, t_s]).all(axis=0)
-    spans = _spans(rates_dps[:, whole], force[:, whole], t_s[whole])
+    spans = _spans(rates_dps, force, t_s)
     if spans is None:
         return None
     turns, forces = spans
@@ -70,6 +108,8 @@ def _spans(
     rates: np.ndarray, force: np.ndarray, t_s: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray] | None:
     """Turns and forces (steps, 3, spans), both means over a step; None where there are too few."""
+    whole = np.isfinite([*rates, *force, t_s]).all(axis=0)
+    rates, force, t_s = rates[:, whole], force[:, whole], t_s[whole]
     step_s = float(np.median(np.diff(t_s))) if len(t_s) > 1 else 0.0
     rows = max(1, round(_STEP_S / step_s)) if step_s > 0 else 0
     steps = int(_SPAN_S / (rows * step_s)) if rows else 0

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ...recordings.recording import ACCEL, GYRO, TEMP, TIME
-from ...recordings.turning import dps_of_one
+from ...recordings.turning import Size, dps_of_one
 from .chip_steps import unit_by_steps
 from .mapping import Mapped
 from .names import spelled
@@ -25,11 +25,10 @@ _LIKELY_HZ = (0.02, 40_000.0)
 #: Names of times in none of the units that a recording may have.
 _OTHER_TIME = re.compile(r"min|hour|hr|day|frame|tick|count")
 _PER_HOUR = re.compile(r"(?:deg|°)\w*\s*(?:/|per)\s*h")
-#: Pushes that move with the turning, as a pendulum's, make gravity seem to turn up to so many times
-#: slower. Units are 17 times apart, or more.
-TURNED_WITHIN = 4.1
-#: Of such sizes in dps, within that, are counts of gyroscopes; and so is mrad/s.
-_COUNTS_DPS = (0.002, 0.4)
+#: Where no time is known; of 25 Hz or 400 Hz rates in their usual units still have a size.
+_ANY_HZ = 20.0
+#: Of such sizes in dps are counts of gyroscopes, and means of counts; and so is mrad/s.
+_COUNTS_DPS, _AS_COUNTS = (0.002, 0.4), "mrad/s"
 
 
 def guessed_unit(
@@ -74,17 +73,18 @@ def _by_turning(
     if not all(axis in wanted for axis in ACCEL):
         return None
     rates, force = (np.array([first[wanted[n].column] for n in axes]) for axes in (GYRO, ACCEL))
-    dps = dps_of_one(rates, force, t_s)
+    size = dps_of_one(rates, force, t_s)
     counted = (rates[np.isfinite(rates)] % 1 == 0).all()
-    if dps is None or counted and _COUNTS_DPS[0] < dps < _COUNTS_DPS[1]:
+    if size is None or counted and _COUNTS_DPS[0] < size.dps < _COUNTS_DPS[1]:
         return None
-    return rate_unit_of(dps)
+    unit = rate_unit_of(size)
+    return None if unit == _AS_COUNTS else unit
 
 
-def rate_unit_of(dps: float) -> str | None:
-    """The unit that stands for so many dps, or for up to TURNED_WITHIN times more or less."""
-    near = (u for u, one in RATE_DPS.items() if abs(np.log(dps / one)) < np.log(TURNED_WITHIN))
-    return next(near, None)
+def rate_unit_of(size: Size, factor: float = 1.0) -> str | None:
+    """The unit of rates that may have that size, times a factor, nearest to it."""
+    may_be = [u for u, one in RATE_DPS.items() if size.least < one / factor < size.most]
+    return min(may_be, key=lambda u: abs(np.log(RATE_DPS[u] / factor / size.dps)), default=None)
 
 
 def ready_words(target: str, wanted: Mapping[str, Mapped], first: Mapping[str, np.ndarray]) -> str:
@@ -132,7 +132,10 @@ def likely_columns(
     rest = moving if len(moving) >= len(GYRO) else rest
     four = _quaternion(rest)
     rest = {name: column for name, column in rest.items() if name not in four}
-    accel, unit, gyro = _by_values(rest, list(first))
+    t_s = np.arange(whole.sum()) / _ANY_HZ
+    if time is not None:
+        t_s = (values[time] - values[time][0]) * TIME_S[likely_time(values[time])]
+    accel, unit, gyro = _by_values(rest, list(first), t_s)
     usual = max((abs(float(np.median(values[name]))) for name in gyro), default=0.0)
     if not gyro or unit in RATE_DPS and usual * RATE_DPS[unit] > _FASTEST_DPS:
         return []
@@ -141,9 +144,10 @@ def likely_columns(
 
 
 def _by_values(
-    values: Mapping[str, np.ndarray], order: list[str]
+    values: Mapping[str, np.ndarray], order: list[str], t_s: np.ndarray
 ) -> tuple[list[str], str, list[str]]:
-    """Words for three columns as long as gravity, the unit of the rates, and which may be rates.
+    """Words for three columns as long as gravity, the unit of the rates, and which may be rates:
+    those that explain best how gravity turns, else the first behind.
 
     order: of all columns; three go together only where they are beside each other.
     """
@@ -159,7 +163,10 @@ def _by_values(
     at = units.index(unit)
     accel = [f"{axis}={name}:{unit}" for axis, name in zip(ACCEL, names[at : at + 3])]
     others = [n for n in (*range(at + 3, len(threes)), *range(at - 2)) if _beside(threes[n], order)]
-    return accel, "rad/s" if unit == "m/s2" else "dps", threes[others[0]] if others else []
+    force = np.array([values[name] for name in names[at : at + 3]])
+    told = {n: dps_of_one(np.array([values[m] for m in threes[n]]), force, t_s) for n in others}
+    rates = min(others, key=lambda n: size.left if (size := told[n]) else 1.0, default=None)
+    return accel, "rad/s" if unit == "m/s2" else "dps", [] if rates is None else threes[rates]
 
 
 def _beside(names: list[str], order: list[str]) -> bool:

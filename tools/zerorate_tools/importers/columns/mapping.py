@@ -1,8 +1,9 @@
 """`--map gx=gyro_x:rad/s` in words and in Python."""
 
+import math
 from dataclasses import dataclass
 
-from ...recordings.recording import COLUMNS, TIME
+from ...recordings.recording import COLUMNS, TEMP, TIME
 from .units import units_of
 
 LEFT_OUT = "none"
@@ -34,8 +35,8 @@ class Mapped:
 
 
 def parsed_mapping(text: str) -> Mapped:
-    """`gx=gyro_x:rad/s`, `temp=none`, `t_us=sec:s+nanosec:ns` or, for an extra channel,
-    `vdd_mv=volt:x1000`. Raises ValueError."""
+    """`gx=gyro_x:rad/s`, `gx=gyro_x:x0.1` for tenths of dps, `temp=none`, `t_us=sec:s+nanosec:ns`
+    or, for an extra channel, `vdd_mv=volt:x1000`. Raises ValueError."""
     target, equals, rest = text.partition("=")
     if not equals or not target or not rest:
         raise ValueError(f"{text!r} is no mapping: write gx=COLUMN:UNIT")
@@ -59,11 +60,12 @@ def _check_unit(mapped: Mapped) -> None:
     for unit in (mapped.unit, mapped.plus and mapped.plus[1]):
         if unit is None:
             continue
-        if mapped.target in COLUMNS:
+        sized = mapped.target not in (TIME, TEMP) and factor_in(unit)
+        if mapped.target in COLUMNS and not sized:
             known = units_of(mapped.target)
             if unit not in known:
                 raise ValueError(f"unit {unit!r} of {mapped.target} is none of {', '.join(known)}")
-        elif not factor_in(unit):
+        elif not sized:
             raise ValueError(
                 f"{mapped.target} is none of {', '.join(COLUMNS)}, and an extra channel takes a "
                 f"factor: {mapped.target}={mapped.column}:x100"
@@ -73,6 +75,7 @@ def _check_unit(mapped: Mapped) -> None:
 def factor_in(unit: str) -> float | None:
     """1000.0 for `x1000`; None for what is no factor."""
     try:
-        return float(unit.removeprefix("x")) or None
+        factor = float(unit.removeprefix("x"))
     except ValueError:
         return None
+    return factor if factor and math.isfinite(factor) else None

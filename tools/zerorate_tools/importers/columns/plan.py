@@ -24,7 +24,7 @@ from .guesses import (
     ready_words,
 )
 from .mapping import Mapped, factor_in, parsed_mapping
-from .units import RAW, TIME_S, factors_of, kind_of, unit_in_name, units_of
+from .units import RAW, TIME_S, factors_of, kind_of, unit_in_name, unit_in_quotient, units_of
 
 _LISTED, _TOLD = 24, 8
 #: LSB of a unit quaternion's part: finer than what cameras see.
@@ -98,8 +98,8 @@ def planned(
     t_s = _times_s(plan, table, units or {}, first, path)
     scaled = _of_attitude(wanted, first)
     for target, mapped in wanted.items():
-        if target not in COLUMNS:
-            factor = factor_in(mapped.unit) if mapped.unit else scaled.get(target)
+        factor = factor_in(mapped.unit) if mapped.unit else scaled.get(target)
+        if target not in COLUMNS or factor:
             plan.factors[target] = (factor or 1.0, 0.0)
             continue
         unit = _unit(target, plan, table, units or {}, first, path, t_s)
@@ -112,12 +112,14 @@ def planned(
             raw.add(kind_of(target))
         plan.factors[target] = factors_of(target).get(unit or "", (1.0, 0.0))
     if unknown and TIME not in wanted and not without_time:
-        unknown[""] = hz_words(table)
+        # with its time a turning device tells the units itself
+        unknown = {**({} if "ax" in wanted else unknown), "": hz_words(table)}
     if unknown:
         named = [repr(column) for column in unknown if column]
         what = "unit of column" if len(named) == 1 else "units of columns"
         problem = f"the {what} {', '.join(named)} {'is' if len(named) == 1 else 'are'} not known"
-        problem += ", and there are no time stamps" if "" in unknown else ""
+        if "" in unknown:
+            problem = f"{problem}, and there are no time stamps" if named else "no time stamps"
         raise BadRecording(path, problem, do="give " + ", ".join(dict.fromkeys(unknown.values())))
     plan.raw = frozenset(raw)
     return plan
@@ -211,7 +213,7 @@ def _check_there(table: Table, wanted: Mapping[str, Mapped], path: Path) -> None
                 )
     missing = [target for target in GYRO if target not in wanted]
     if missing:
-        do = f"map it: --map {missing[0]}=COLUMN:dps"
+        do = f"map it: --map {missing[0]}=COLUMN:UNIT, as dps, rad/s or x0.1 (dps)"
         if other := _of_another_sensor(table, path):
             do = f"these are no rates ({other}){_beside(path)}; else {do}"
         elif words := _offered(table, wanted, missing):
@@ -255,14 +257,12 @@ def take_both(gyro: Path, other: Path) -> str:
 
 def _offered(table: Table, wanted: Mapping[str, Mapped], missing: list[str]) -> str:
     """A ready mapping of what may be rates, by names or, where nothing names columns, by values."""
+    if usual.unnamed(table.names):
+        first = table.first_rows(table.names) if not set(wanted) - {TIME} else {}
+        return " ".join(f"--map {words}" for words in likely_columns(first, table.calendar))
     bare = usual.bare_axes(table.names)
-    if bare:
-        unit = (by_habit("gx", bare["gx"], table.names) or ("dps", ""))[0]
-        return " ".join(f"--map {t}={c}:{unit}" for t, c in bare.items() if t in missing)
-    if set(wanted) - {TIME} or not usual.unnamed(table.names):
-        return ""
-    first = table.first_rows(table.names)
-    return " ".join(f"--map {words}" for words in likely_columns(first, table.calendar))
+    unit = (by_habit("gx", bare["gx"], table.names) or ("dps", ""))[0] if bare else ""
+    return " ".join(f"--map {t}={c}:{unit}" for t, c in bare.items() if t in missing)
 
 
 def divided_by(plan: Plan, kind: str, lsb: float) -> None:
@@ -357,6 +357,12 @@ def _unit(
         return "s"
     kind = kind_of(target)
     unit = mapped.unit or unit_in_name(target, mapped.column) or units.get(kind)
+    other = unit_in_quotient(mapped.column) if unit is None and target in (*GYRO, *ACCEL) else None
+    if other is not None:
+        words = shlex.quote(f"{target}={mapped.column}:x0.1")
+        do = f"tell its size in {'dps' if target in GYRO else 'g'} on each axis, as --map {words}"
+        problem = f"the unit {other!r} of column {mapped.column!r} is not known"
+        raise BadRecording(path, problem, do=do)
     if unit is None:
         unit, why = (_as_another_time(mapped.column, table) if target == TIME else None) or (
             guessed_unit(target, plan.wanted, table.names, first, t_s)

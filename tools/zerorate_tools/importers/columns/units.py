@@ -91,6 +91,12 @@ def unit_in_name(target: str, column: str) -> str | None:
     return next((u for u, ending in _ENDINGS[kind].items() if ending.search(name)), None)
 
 
+def unit_in_quotient(column: str) -> str | None:
+    """What a name has in brackets at its end if that is a quotient, as no channel's number is."""
+    in_brackets = _BRACKETS.search(column.strip())
+    return in_brackets[1] if in_brackets and "/" in in_brackets[1] else None
+
+
 def without_unit(name: str) -> str:
     """A lower-case name without the unit in brackets, or of words, at its end."""
     name = _DENOMINATOR.sub(r"/\1", name)

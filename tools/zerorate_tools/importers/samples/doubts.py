@@ -11,8 +11,8 @@ from ...errors import BadRecording
 from ...numbers import duration
 from ...recordings import Scales
 from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP, TIME
-from ...recordings.turning import axes_of, axes_words, dps_of_one
-from ..columns.guesses import TURNED_WITHIN, likely_units_of_time, rate_unit_of, unit_words
+from ...recordings.turning import Size, axes_of, axes_words, dps_of_one, turns_otherwise
+from ..columns.guesses import likely_units_of_time, rate_unit_of, unit_words
 from ..columns.plan import Plan
 from .gather import Gathered
 
@@ -39,6 +39,8 @@ _UNSHAKEN_G = 0.02
 _STEADY_DPS = 25.0
 #: At rest the rates spread by their noise, moved by a multiple of it.
 _STILL = 3.0
+#: A hundredth of the time counted wrongly is what a scale factor may be off by.
+_LOST = 0.01
 #: A tenth of what a channel does may be lost by rounding.
 _MOST_ROUNDED = 0.1
 
@@ -52,8 +54,14 @@ def doubts(found: Gathered, plan: Plan, scales: Scales, path: Path) -> list[str]
     if times is None:
         out = _of_rates(found, plan, path) + _of_axes(found.looked_at, plan, scales)
     else:
-        out = _of_turning(times, plan, scales, path)
+        out = _of_turning(times, found.counted, plan, scales, path)
     out += _of_temperature(found.looked_at, plan)
+    lost = sum(found.dropped.values())
+    if found.counted and lost > _LOST * found.rows:
+        out.append(
+            f"{lost} of {found.rows} rows are dropped, and --hz counts them as time: "
+            "take out of the file what are no samples"
+        )
     return [f"doubtful: {words}" for words in out]
 
 
@@ -171,7 +179,7 @@ def _of_rates(found: Gathered, plan: Plan, path: Path) -> list[str]:
     raise BadRecording(path, said, do=do)
 
 
-def _gravity_turns_times(seen: dict[str, np.ndarray], plan: Plan, scales: Scales) -> float | None:
+def _gravity_turns_times(seen: dict[str, np.ndarray], plan: Plan, scales: Scales) -> Size | None:
     """How much faster gravity turns than the rates say; None where it does not tell."""
     if plan.by_format or len(seen.get("ax", ())) != len(seen[TIME]):
         return None
@@ -189,7 +197,11 @@ def _of_axes(seen: dict[str, np.ndarray], plan: Plan, scales: Scales) -> list[st
     """Rates that turn gravity as it is seen to turn if their axes are taken in another way."""
     if len(seen.get("ax", ())) != len(seen[TIME]):
         return []
-    axes = axes_of(*_turns(seen, plan, scales))
+    turns = _turns(seen, plan, scales)
+    axes = axes_of(*turns)
+    if axes is None and turns_otherwise(*turns):
+        columns = ", ".join(plan.wanted[axis].column for axis in GYRO)
+        return [f"gravity turns, but not as {columns} say: are these the rates, at this time?"]
     if axes is None or (axes == np.eye(3)).all():
         return []
     words = [
@@ -204,17 +216,17 @@ def _of_axes(seen: dict[str, np.ndarray], plan: Plan, scales: Scales) -> list[st
     return [f"{said}: give {' '.join(words)}, or motion teaches nothing true"]
 
 
-def _of_turning(times: float, plan: Plan, scales: Scales, path: Path) -> list[str]:
-    # pushes that move with the turning, as a pendulum's, slow it: twice as much is left to them
-    if 0.5 / TURNED_WITHIN < times < TURNED_WITHIN:
+def _of_turning(times: Size, counted: bool, plan: Plan, scales: Scales, path: Path) -> list[str]:
+    if times.least < 1.0 < times.most:
         return []
-    said = f"gravity turns {times:.2g} times as fast as the rates"
+    said = f"gravity turns {times.dps:.2g} times as fast as the rates"
+    time = "--hz" if counted else "the time"
     if "gyro" in plan.raw:
-        lsb = (scales.gyro_lsb_per_dps or 1.0) / times
-        return [f"{said}: did you mean --gyro-lsb-per-dps {lsb:.3g}? Or is the time wrong"]
-    meant = rate_unit_of(times * plan.factors["gx"][0])
+        lsb = (scales.gyro_lsb_per_dps or 1.0) / times.dps
+        return [f"{said}: did you mean --gyro-lsb-per-dps {lsb:.3g}? Or is {time} wrong"]
+    meant = rate_unit_of(times, plan.factors["gx"][0])
     if meant is None:
-        return []
+        return [f"{said}: is their unit, or {time}, wrong?"]
     words = unit_words(plan.wanted, "gx", meant)
     if "gyro" in plan.typed:
         return [f"{said}: did you mean {meant}? ({words})"]

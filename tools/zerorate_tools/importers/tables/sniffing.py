@@ -19,6 +19,7 @@ _LINES = 400
 _CELLS = 3
 #: Rows that are looked at for words, and how many words at most tell rows apart.
 _SEEN, MOST_WORDS = 3000, 12
+_DO = "print the readings of a sample on a line of their own, as 0.8,-0.5,0.3 or gx:0.8 gy:-0.5"
 _DELIMITERS = (",", ";", "\t", "|", " ")
 COMMENTS = ("#", "//", "%", "*")
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")
@@ -31,6 +32,11 @@ DATE = re.compile(
 )
 #: What the Arduino IDE puts before each line of its monitor.
 _CLOCK = re.compile(rb"(?m)^(\d\d:\d\d:\d\d\.\d+) -> (?=[^\r\n]*?([,;\t |]))")
+#: What ESP-IDF's log puts before names and values: I (320) imu: gx=0.8, in milliseconds.
+_ESP_LOG = re.compile(
+    rb"(?m)^(?:\x1b\[[\d;]*m)?[EWIDV] \((\d+)\) [^:\r\n]+:[ \t]+(?=[A-Za-z_]\w*[ \t]*[:=])"
+)
+_COLOUR = re.compile(rb"\x1b\[[\d;]*m")
 #: A value behind its name, as Arduino's plotter has it: gx:0.8,gy:-0.5; or behind [a tag].
 _PAIR = rb"([A-Za-z_]\w*)[ \t]*[:=][ \t]*([-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?)"
 _PAIRS = re.compile(rb"\s*(?:\[[^\]\r\n]*\]\s*)?(?:" + _PAIR + rb"(?:[,;\s]+|$)){%d,}$" % _CELLS)
@@ -55,7 +61,7 @@ _OF_COUNTS = {"t": "s", "g": "rad/s", "a": "g"}
 class Form:
     """How a text holds its table. names: of the columns, as numbers from 1 where nothing names
     them; skip: lines before the first row; words: by column, where its cells are few words;
-    arrows: a clock and an arrow stand before lines; labels: what stands before each value;
+    arrows: a clock stands before lines; labels: what stands before each value;
     scales: by column, what its numbers are multiplied by."""
 
     names: list[str]
@@ -97,7 +103,7 @@ def sniffed(path: Path) -> Form:
         raise BadRecording(path, problem, do="name a table with a sample on each line")
     labelled = _labelled(lines, encoding)
     if labelled is not None:
-        return labelled
+        return replace(labelled, arrows=plain != content)
     form = _table_in(lines[:_LINES], lines, encoding, path)
     if lines[0].startswith("GYROFLOW IMU LOG"):
         form = _scaled(form, lines[: form.skip])
@@ -116,8 +122,9 @@ def _scaled(form: Form, above: list[str]) -> Form:
 
 
 def without_arrows(content: bytes) -> bytes:
-    """A clock and an arrow before a line as a cell of its own."""
-    return _CLOCK.sub(lambda found: found[1] + found[2], content)
+    """A clock before a line, that of Arduino's monitor or of ESP-IDF, as a cell of its own."""
+    content = _CLOCK.sub(lambda found: found[1] + found[2], content)
+    return _COLOUR.sub(b"", _ESP_LOG.sub(rb"esp_log_ms=\1 ", content))
 
 
 def _labelled(lines: list[str], encoding: str) -> Form | None:
@@ -156,12 +163,11 @@ def _table_in(lines: list[str], every: list[str], encoding: str, path: Path) -> 
         header = next(line for line in lines if line.strip())
         if not any(delimiter in header for delimiter in _DELIMITERS):
             raise BadRecording(path, "no table", do="name a CSV with a row for each sample")
-        raise BadRecording(path, "no data row", do="name another file")
+        raise BadRecording(path, "no data row", do=_DO)
     _, at, skip, delimiter = best
     if at is not None and _says_its_names(lines[at], lines[skip:], delimiter):
         problem = f"each line has words around its numbers: {lines[at].strip()[:60]}"
-        do = "print all readings of a sample on one line, as gx:0.8 gy:-0.5 gz:0.3"
-        raise BadRecording(path, problem, row=at + 1, do=do)
+        raise BadRecording(path, problem, row=at + 1, do=_DO)
     first = (
         _cells(lines[skip], delimiter) if at is not None else _whole_row(lines[skip:], delimiter)
     )
