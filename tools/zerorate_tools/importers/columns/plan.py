@@ -213,7 +213,7 @@ def _check_there(table: Table, wanted: Mapping[str, Mapped], path: Path) -> None
                 )
     missing = [target for target in GYRO if target not in wanted]
     if missing:
-        do = f"map it: --map {missing[0]}=COLUMN:UNIT, as dps, rad/s or x0.1 (dps)"
+        do = f"map it: --map {missing[0]}=COLUMN:UNIT"
         if other := _of_another_sensor(table, path):
             do = f"these are no rates ({other}){_beside(path)}; else {do}"
         elif words := _offered(table, wanted, missing):
@@ -359,8 +359,8 @@ def _unit(
     unit = mapped.unit or unit_in_name(target, mapped.column) or units.get(kind)
     other = unit_in_quotient(mapped.column) if unit is None and target in (*GYRO, *ACCEL) else None
     if other is not None:
-        words = shlex.quote(f"{target}={mapped.column}:x0.1")
-        do = f"tell its size in {'dps' if target in GYRO else 'g'} on each axis, as --map {words}"
+        base = "dps" if target in GYRO else "g"
+        do = f"give each axis by --map {target}=COLUMN:xSIZE; SIZE is how many {base} one is"
         problem = f"the unit {other!r} of column {mapped.column!r} is not known"
         raise BadRecording(path, problem, do=do)
     if unit is None:

@@ -39,8 +39,8 @@ _UNSHAKEN_G = 0.02
 _STEADY_DPS = 25.0
 #: At rest the rates spread by their noise, moved by a multiple of it.
 _STILL = 3.0
-#: A hundredth of the time counted wrongly is what a scale factor may be off by.
-_LOST = 0.01
+#: A damaged line was a sample, and took its time; so many are lines of another kind.
+_LOST = 0.05
 #: A tenth of what a channel does may be lost by rounding.
 _MOST_ROUNDED = 0.1
 
