@@ -78,7 +78,8 @@ def test_mip_installs_the_driver_from_package_json_and_it_imports(
     sources = [str(repository / "drivers" / name) for name in ("package.json", "self-test.json")]
     command = [sys.executable, "-m", "mpremote", "connect", board.port]
     try:
-        subprocess.run([*command, "mip", "install", "--target", "lib", *sources], check=True)
+        words = [*command, "mip", "install", "--target", "lib", *sources]
+        subprocess.run(words, check=True, timeout=300)  # an interpreter that dies never answers
     finally:
         board.close()
     installed = [n for n in part_files([REST, "self-test"]) if n.parts[0] == "zerorate_i2c"]
