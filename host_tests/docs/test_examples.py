@@ -248,7 +248,7 @@ def test_the_snippets_for_pytest_pass(unit_tests):
     plugin = ["-p", "zerorate_fakes.pytest_plugin"]
     done = in_folder(unit_tests, "pytest", "-q", *plugin, "-p", "no:cacheprovider")
     assert done.returncode == 0, done.stdout
-    assert "8 passed" in done.stdout
+    assert "9 passed" in done.stdout
 
 
 def test_a_typed_test_passes_the_strict_type_check(unit_tests):

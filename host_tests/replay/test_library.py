@@ -159,6 +159,8 @@ def test_of_a_store_the_newest_whole_record_counts(tmp_path, corrector, capsys):
     path.write_bytes(memory.bytes)
     assert main(["state", "show", str(path), "--find", "out_q8[0]"]) == 0
     assert capsys.readouterr().out.split()[-5:] == ["62", "OUT_Q8[0]", "512", "2", "LSB"]
+    assert main(["state", "show", str(path), "--find", "nosuch"]) == 2
+    assert "nosuch" in capsys.readouterr().err
     assert store.save_model(b"ZRM")  # a record of another kind
     path.write_bytes(memory.bytes)
     assert by_name(path)["WINDOW"].raw == 32  # of the settings, which are stored, too

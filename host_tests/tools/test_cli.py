@@ -214,7 +214,8 @@ def test_the_public_names_are_there_and_nothing_else_is():
         (["import", "x.csv", "--out", "y", "--rate-hz", "40"], "did you mean --hz?"),
         (["close", "x.parquet", "--out", "x", "--holdut=y"], "did you mean --holdout?"),
         (["fleet", "x", "--out", "y", "--job", "repaly"], "did you mean replay?"),
-        (["allan", "a.csv", "--holdout", "b"], "it is an option of another command"),
+        (["allan", "a.csv", "--holdout", "b"], "it is an option of close"),
+        (["replay", "a.csv", "--out", "b", "--plot", "c"], "it is an option of watch"),
     ],
 )
 def test_a_wrong_word_is_answered_with_the_nearest(capsys, typed, meant):

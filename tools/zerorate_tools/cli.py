@@ -108,8 +108,8 @@ class _Parser(argparse.ArgumentParser):
         if wrong:
             word = wrong[1] or wrong[2].partition("=")[0]
             near = difflib.get_close_matches(word, sorted(_words_of(_Parser.entered)), 1)
-            if wrong[2] and word in _words_of(self):
-                near, message = [], f"{message}: it is an option of another command"
+            if wrong[2] and (others := _commands_with(word, self)):
+                near, message = [], f"{message}: it is an option of {', '.join(others)}"
             message += f"; did you mean {near[0]}?" if near else ""
         super().error(printable(message))
 
@@ -122,6 +122,13 @@ def _words_of(parser: argparse.ArgumentParser) -> set[str]:
         if isinstance(action, argparse._SubParsersAction):
             words.update(*(_words_of(below) for below in action.choices.values()))
     return words
+
+
+def _commands_with(word: str, parser: argparse.ArgumentParser) -> list[str]:
+    """The commands of a parser that have an option, or one below them has."""
+    subparsers = [a for a in parser._actions if isinstance(a, argparse._SubParsersAction)]
+    commands = [named for action in subparsers for named in action.choices.items()]
+    return [name for name, below in commands if word in _words_of(below)]
 
 
 def parser() -> argparse.ArgumentParser:

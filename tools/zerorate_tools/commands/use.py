@@ -3,6 +3,7 @@
 import argparse
 from pathlib import Path
 
+from ..errors import ZerorateError
 from .learn import setting
 from .options import option, switch
 
@@ -107,7 +108,10 @@ def run_state(arguments: argparse.Namespace) -> None:
     from ..replay.state_in_words import in_words, words_of_file
 
     words = words_of_file(arguments.file, dict(arguments.set))
-    print(in_words([word for word in words if arguments.find.upper() in word.name.upper()]))
+    found = [word for word in words if arguments.find.upper() in word.name.upper()]
+    if arguments.find and not found:
+        raise ZerorateError(f"{arguments.file}: no word has {arguments.find} in its name")
+    print(in_words(found))
 
 
 def add_export(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -127,7 +131,6 @@ def add_export(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
 def run_export(arguments: argparse.Namespace) -> None:
     from zerorate import Sensor
 
-    from zerorate_tools.errors import ZerorateError
     from zerorate_tools.kernels.export import export_c
 
     try:
