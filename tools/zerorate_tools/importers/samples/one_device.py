@@ -18,8 +18,6 @@ _BLOCK = 120
 #: Levels scatter more than that many times the rows of each: three standard deviations apart for
 #: two devices, where a row nearly always tells whose it is.
 _APART = 1.5
-#: Of the stretches; a device that shakes at a fraction of its rate does not do so throughout.
-_MOST_STRETCHES = 0.5
 _GOES_ON = 0.95
 #: Of the largest reading, what the decomposition itself may be off.
 _ROUNDING, _TINY = 1e-9, 1e-300
@@ -65,7 +63,8 @@ def clocks_in_turn(t_us: np.ndarray) -> int:
 
 
 def levels_in_turn(stretches: list[np.ndarray]) -> int:
-    """How many devices take turns by the levels of their rows; 0 where none is told apart.
+    """How many devices take turns by the levels of their rows; 0 where none is told apart in half
+    of the blocks: a device that shakes at a fraction of its rate does not do so throughout.
 
     stretches: (rows, columns) each.
     """
@@ -75,11 +74,13 @@ def levels_in_turn(stretches: list[np.ndarray]) -> int:
         for at in range(0, len(rows) - _BLOCK + 1, _BLOCK)
     ]
     whole = [block for block in blocks if np.isfinite(block).all()]
-    for devices in range(2, _MOST_DEVICES + 1) if whole else ():
-        told = sum(_apart(block, devices) > _APART for block in whole)
-        if told > _MOST_STRETCHES * len(whole):
-            return devices
-    return 0
+    if not whole:
+        return 0
+    counts = range(2, _MOST_DEVICES + 1)
+    apart = {n: float(np.median([_apart(block, n) for block in whole])) for n in counts}
+    # twice as many tell no more, and half as many much less
+    least = max(_APART, max(apart.values()) / 2)
+    return next((n for n in counts if apart[n] > least), 0)
 
 
 def _apart(block: np.ndarray, devices: int) -> float:
