@@ -4,6 +4,7 @@ import json
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from os import PathLike
+from os.path import isdir
 from pathlib import Path
 
 import numpy as np
@@ -43,7 +44,7 @@ def check_output(path: str | PathLike[str]) -> None:
         raise BadRecording(path, "no format goes by this name", do=do)
     if not path.parent.is_dir():
         raise BadRecording(path, f"there is no folder {path.parent}", do="make it first")
-    if path.is_dir():
+    if isdir(path):  # a name that is too long is told where it is written
         raise BadRecording(path, "is a folder", do="name a file in it")
     check_room_for(path)
 
