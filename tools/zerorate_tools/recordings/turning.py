@@ -14,10 +14,10 @@ _LEAST_SPANS, _MOST_SPANS = 5, 100
 _SIZES_DPS = 1.25 ** np.arange(-33.0, 21.0)
 #: Turns of the right size explain more than half of why the force does not point one way.
 _EXPLAINED = 0.5
-#: Pushes make recorded hands, robots and sticks seem to turn up to 1.3 times as fast, or as slow;
-#: where the force swings by little, they may be a pendulum's, which slow it up to 4 times.
+#: Pushes make gravity seem to turn up to 1.3 times as fast in recordings of hands and sticks.
+#: Where the force swings little they may be a pendulum's, which make it up to 4 times as slow.
 _PUSHED, _SWUNG = 1.4, 4.1
-#: What the mean force lacks where it swings by 15 degrees (RMS), about which no pendulum does more.
+#: What the mean force lacks where it swings by 15 degrees (RMS): recorded pendulums swing it less.
 _SWINGS = 0.035
 #: Forces that differ by so little, as a share of their length (RMS), are gravity alone.
 _UNPUSHED = 0.1

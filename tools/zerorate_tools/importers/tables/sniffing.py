@@ -19,7 +19,7 @@ _LINES = 400
 _CELLS = 3
 #: Rows that are looked at for words, and how many words at most tell rows apart.
 _SEEN, MOST_WORDS = 3000, 12
-_DO = "print the readings of a sample on a line of their own, as 0.8,-0.5,0.3 or gx:0.8 gy:-0.5"
+_ONE_LINE = "print each sample on a line of its own, as 0.8,-0.5,0.3 or gx:0.8 gy:-0.5 gz:0.3"
 _DELIMITERS = (",", ";", "\t", "|", " ")
 COMMENTS = ("#", "//", "%", "*")
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")
@@ -163,11 +163,11 @@ def _table_in(lines: list[str], every: list[str], encoding: str, path: Path) -> 
         header = next(line for line in lines if line.strip())
         if not any(delimiter in header for delimiter in _DELIMITERS):
             raise BadRecording(path, "no table", do="name a CSV with a row for each sample")
-        raise BadRecording(path, "no data row", do=_DO)
+        raise BadRecording(path, "no data row", do=_ONE_LINE)
     _, at, skip, delimiter = best
     if at is not None and _says_its_names(lines[at], lines[skip:], delimiter):
         problem = f"each line has words around its numbers: {lines[at].strip()[:60]}"
-        raise BadRecording(path, problem, row=at + 1, do=_DO)
+        raise BadRecording(path, problem, row=at + 1, do=_ONE_LINE)
     first = (
         _cells(lines[skip], delimiter) if at is not None else _whole_row(lines[skip:], delimiter)
     )
