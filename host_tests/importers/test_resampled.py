@@ -3,11 +3,9 @@
 import numpy as np
 import pandas as pd
 import pytest
-from zerorate_bench.public_data import data_folder, recordings, told_of
-from zerorate_bench.resampled import KINDS, digits, drawn, of_a_recording, on_lines, timed
+from zerorate_bench.resampled import KINDS, digits, drawn, on_lines, timed
 from zerorate_tools.errors import BadRecording
-from zerorate_tools.importers import read_foreign
-from zerorate_tools.importers.samples.resampled import base_period, evidence
+from zerorate_tools.importers.samples.resampled import base_period
 
 from .test_odd_files import read, table
 
@@ -57,16 +55,3 @@ def test_noise_of_any_kind_is_not_refused_and_its_lines_are(kind):
         if kind not in ("coarse", "smooth motion", "with spikes"):
             period = base_period(timed(on_lines(rates, 1.3)), digits(kind))
             assert period == pytest.approx(1.3, abs=0.02)
-
-
-def test_no_real_recording_is_refused():
-    folder = data_folder()
-    if folder is None:
-        pytest.skip("ZERORATE_DATA names no folder of recordings")
-    most = 0.0
-    for path in recordings(folder):
-        recording, _ = read_foreign(path, **told_of(path))
-        frame, lsb = of_a_recording(recording)
-        kept = [frame[:, :16384:n] for n in (1, 2, 4) if frame.shape[1] >= 512 * n]
-        most = max([most, *(evidence(rows, lsb)[0] for rows in kept)])
-    assert most < 15

@@ -205,9 +205,13 @@ def _words(
     rows = [[cell.strip() for cell in row] for row in rows if len(row) == len(names)]
     out = {}
     for name, cells in zip(names, zip(*rows)):
-        found = [cell for cell in cells if cell and not _numbers([cell], delimiter)]
-        kinds = list(dict.fromkeys(found))
-        if name not in dates and len(found) > 0.8 * len(cells) and 2 <= len(kinds) <= MOST_WORDS:
+        counts = Counter(cells)
+        most = 0.8 * len(cells)
+        if sum(count for _, count in counts.most_common(MOST_WORDS + 1)) <= most:
+            continue  # with the empty one, so many words at most
+        kinds = [cell for cell in counts if cell and not _numbers([cell], delimiter)]
+        found = sum(counts[kind] for kind in kinds)
+        if name not in dates and found > most and 2 <= len(kinds) <= MOST_WORDS:
             out[name] = kinds
     return out
 
