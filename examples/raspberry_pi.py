@@ -1,5 +1,6 @@
 """A Linux board: once a second the rates before and after; what is learned is kept in a file."""
 
+import signal
 import time
 from array import array
 
@@ -12,6 +13,7 @@ from zerorate_i2c.linux import LinuxI2C
 from zerorate_i2c.mpu6050 import MPU6050
 from zerorate_tools.host import store_file
 
+signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C ends it without a traceback
 imu = MPU6050(LinuxI2C(1), odr_hz=100)
 learner = Corrector(Sensor(*imu.scales))
 store = LearnedStore(store_file("learned.bin"), imu.binding, learner)

@@ -220,11 +220,21 @@ def test_a_full_disk_is_no_bus_error_and_all_before_it_is_kept(machine, monkeypa
 
 def test_the_command_ends_with_1_where_every_sample_is_in_doubt(machine, monkeypatch, capsys):
     machine.at(0.28, machine.chip.power_up)
-    monkeypatch.setattr(fake_hand, "in_hand", lambda: (machine.bus, machine.clock))
+    monkeypatch.setattr(fake_hand, "in_hand", lambda: (machine.bus, machine.clock, 60.0))
     words = ["record", "fake:", "--out", str(machine.out), "--seconds", "0.3"]
     assert cli.main(words) == 1
     assert " 5 dropped" in capsys.readouterr().out
     assert list(machine.out.parent.iterdir()) == []
+
+
+def test_an_emulated_chip_is_recorded_for_no_longer_than_its_hand_moves(tmp_path, monkeypatch):
+    bus, clock, seconds = fake_hand.in_hand()
+    assert seconds > 100
+    monkeypatch.setattr(fake_hand, "in_hand", lambda: (bus, clock, 2.0))
+    for words in ([], ["--seconds", "3"]):
+        out = tmp_path / f"run{len(words)}.csv"
+        assert cli.main(["record", "fake:", "--out", str(out), *words]) == 0
+        assert out.read_text().count("\n") in range(190, 210)
 
 
 def test_an_older_recording_stays_where_no_sample_comes(machine):

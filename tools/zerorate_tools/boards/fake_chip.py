@@ -1,9 +1,8 @@
-"""Emulated chips for `fake:` by the driver's names of parts; settings judged without a chip."""
+"""Emulated chips for `fake:` by the driver's names of parts."""
 
 from zerorate_fakes import FakeI2C, FakeMPU6050, Physical
 from zerorate_i2c import clock
-from zerorate_i2c.parts import MPU6050_KIND, MPU6500_KIND, part_by_id, part_by_name
-from zerorate_i2c.settings import choose_divider, choose_filter
+from zerorate_i2c.parts import part_by_id, part_by_name
 
 _BIAS_DPS = (0.31, -0.19, 0.08)
 
@@ -13,20 +12,6 @@ def fake_chip(felt: Physical, part: str | None = None) -> FakeMPU6050:
     # parts of one id are the same chip
     row = part_by_id(part_by_name(part or "MPU-6050")[0])
     return FakeMPU6050(felt, part=row[1])
-
-
-def require_settings(
-    odr_hz: float = 100, dlpf_hz: float | None = None, part: str | None = None
-) -> None:
-    """Raise ValueError for a rate and a filter that no part can take, or not the part named."""
-    kinds = (part_by_name(part)[6],) if part else (MPU6050_KIND, MPU6500_KIND)
-    for kind in kinds:
-        try:
-            choose_divider(choose_filter(kind, odr_hz, dlpf_hz)[0], odr_hz)
-            return
-        except ValueError:
-            if kind == kinds[-1]:
-                raise
 
 
 class FakeBus(FakeI2C):

@@ -11,8 +11,9 @@ from ..simulate import simulate
 from .fake_chip import fake_chip
 
 
-def in_hand(address: int = 0x68, part: str | None = None) -> tuple[FakeI2C, FakeClock]:
-    """The bus of a chip that feels what the bundled scenario says, and the clock of both.
+def in_hand(address: int = 0x68, part: str | None = None) -> tuple[FakeI2C, FakeClock, float]:
+    """The bus of a chip that feels what the bundled scenario says, the clock of both, and for how
+    many seconds it does.
 
     Raises ValueError for an unknown part.
     """
@@ -27,7 +28,8 @@ def in_hand(address: int = 0x68, part: str | None = None) -> tuple[FakeI2C, Fake
     clock = FakeClock()
     chip = fake_chip(felt, part)
     clock.devices.append(chip)
-    return FakeI2C({address: chip}, clock=clock), clock
+    seconds = (len(recording) - 1) / scales.odr_hz
+    return FakeI2C({address: chip}, clock=clock), clock, seconds
 
 
 def _over_time(

@@ -24,7 +24,7 @@ def record(
     **options,
 ) -> Recorded:
     """Record from /dev/i2c-N (or N) or from a board on a serial port into out; `fake:` is an
-    emulated chip in a simulated hand, whose time costs none.
+    emulated chip in a simulated hand, for as long as that moves and without waiting.
 
     seconds None records until KeyboardInterrupt. options: see record_bus and record_port. Raises
     MissingLibrary without smbus2 or mpremote, ZerorateError for a board that does not answer or a
@@ -73,14 +73,15 @@ def _require_a_board(port_or_bus: str, options: dict[str, Any]) -> None:
         raise ZerorateError(f"{port_or_bus} is no board: leave out --setup")
 
 
-def _record_fake(out: Path, **options) -> Recorded:
+def _record_fake(out: Path, *, seconds: float | None, **options) -> Recorded:
     from .bus import record_bus
     from .fake_hand import in_hand
 
     given = {name: options[name] for name in ("address", "part") if name in options}
     try:
-        bus, clock = in_hand(**given)
-        return record_bus(bus, out, source=FAKE, time_source=clock, **options)
+        bus, clock, longest = in_hand(**given)
+        seconds = longest if seconds is None else min(seconds, longest)
+        return record_bus(bus, out, source=FAKE, seconds=seconds, time_source=clock, **options)
     except ValueError as error:
         raise ZerorateError(f"{FAKE} {error}") from error
 

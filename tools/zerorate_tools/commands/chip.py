@@ -61,8 +61,6 @@ def _chip(arguments: argparse.Namespace) -> dict[str, Any]:
 
 def run_record(arguments: argparse.Namespace) -> int:
     """Record, or finish a recording; 1 where no sample came."""
-    from ..errors import ZerorateError
-
     if (arguments.port is None) == (arguments.recover is None):
         raise ZerorateError("name a PORT to record, or a file by --recover FILE")
     if arguments.recover is not None:
@@ -272,14 +270,24 @@ def run_run(arguments: argparse.Namespace) -> None:
 
 
 def _require_settings(options: dict[str, Any]) -> None:
-    """Raise ZerorateError for what no chip can take, before the bus is waited for."""
-    from ..boards.fake_chip import require_settings
+    """Raise ZerorateError for a rate and a filter that no part can take, or not the part named:
+    before the bus is waited for."""
+    from zerorate_i2c.parts import MPU6050_KIND, MPU6500_KIND, part_by_name
+    from zerorate_i2c.settings import choose_divider, choose_filter
 
-    names = ("odr_hz", "dlpf_hz", "part")
+    odr_hz, refused = options.get("odr_hz", 100), None
     try:
-        require_settings(**{name: options[name] for name in names if name in options})
+        part = options.get("part")
+        kinds = (part_by_name(part)[6],) if part else (MPU6050_KIND, MPU6500_KIND)
     except ValueError as error:
         raise ZerorateError(str(error)) from error
+    for kind in kinds:
+        try:
+            choose_divider(choose_filter(kind, odr_hz, options.get("dlpf_hz"))[0], odr_hz)
+            return
+        except ValueError as error:
+            refused = error
+    raise ZerorateError(str(refused))
 
 
 def _model_bytes(path: Path) -> bytes:
