@@ -88,8 +88,6 @@ class Bridged:
             at, readings = np.append(before[0], at), np.append(before[1], readings)
         if after is not None:
             at, readings = np.append(at, after[0]), np.append(readings, after[1])
-        if not len(at):
-            return values
         lacking = whole & ~there
         filled = values.copy()
         filled[lacking] = np.interp(t_us[lacking], at, readings)

@@ -16,7 +16,7 @@ _DAY_US = 86_400e6
 _LONGEST_NIGHT_US = 3_600e6
 _MOST_US = 2.0**62
 _STRIDE = 64
-_KEPT = 1 << 18
+_KEPT = 250_000
 #: Beyond as many usual intervals, and a second, is a gap.
 GAP_INTERVALS, GAP_LEAST_US = 3.0, 1e6
 #: Of all steps: beyond that the stamps are coarser than the samples.
@@ -31,11 +31,10 @@ def whole_stamps(t_us: np.ndarray) -> np.ndarray:
     """(n,) bool: not a stamp far from both neighbours, which are beside each other: on its way a
     digit was lost, or one added. Where that is usual, two clocks take turns, and all are whole."""
     whole = np.ones(len(t_us), bool)
-    if len(t_us) > 2:
-        steps = np.abs(np.diff(t_us))
-        far = np.minimum(steps[:-1], steps[1:]) > _LONGEST_PAUSE_US
-        torn = far & (np.abs(t_us[2:] - t_us[:-2]) < _BESIDE_US)
-        whole[1:-1] = ~torn | (torn.mean() > _MOST_TORN)
+    steps = np.abs(np.diff(t_us))
+    far = np.minimum(steps[:-1], steps[1:]) > _LONGEST_PAUSE_US
+    torn = far & (np.abs(t_us[2:] - t_us[:-2]) < _BESIDE_US)
+    whole[1:-1] = ~torn | (torn.sum() > _MOST_TORN * len(torn))
     return whole
 
 
@@ -47,19 +46,17 @@ class Unwrapped:
 
     def __init__(self, step_us: float) -> None:
         self._step_us = step_us
-        self._last: float | None = None
+        self._last = -np.inf
         self._added = 0.0
         self.notes: list[str] = []
 
     def __call__(self, t_us: np.ndarray, place: np.ndarray) -> np.ndarray:
         """(n,) the same stamps, going on where the counter ran over."""
-        if not len(t_us):
-            return t_us
-        before = np.concatenate([[t_us[0] if self._last is None else self._last], t_us[:-1]])
-        self._last = t_us[-1]
+        read = np.append(self._last, t_us)
+        self._last = read[-1]
         t_us = t_us + self._added
-        for at in np.flatnonzero(np.diff(t_us - self._added, prepend=before[0]) < 0)[:1000]:
-            clock, span = self._clock(before[at], t_us[at] - self._added)
+        for at in np.flatnonzero(read[1:] < read[:-1]):
+            clock, span = self._clock(read[at], read[at + 1])
             t_us[at:] += span
             self._added += span
             if span:
@@ -82,36 +79,31 @@ class Pace:
     means over 64 intervals, or fewer in a short recording."""
 
     def __init__(self) -> None:
-        self._means: list[np.ndarray] = []
-        self._spent_us = self._steps = 0.0
+        self._means: list[np.ndarray] = [np.empty(0)]
+        self._spent_us, self._steps = 0.0, 0
         self.first: np.ndarray = np.empty(0)
 
     def add(self, t_us: np.ndarray) -> None:
         """Take the stamps of samples in order."""
-        if len(self.first) < _KEPT:
-            self.first = np.concatenate([self.first, t_us[: _KEPT - len(self.first)]])
+        self.first = np.append(self.first, t_us)[:_KEPT]
         steps = np.diff(t_us)
-        self._spent_us += float(steps[steps <= GAP_LEAST_US].sum())
-        self._steps += float((steps <= GAP_LEAST_US).sum())
+        steps = steps[steps <= GAP_LEAST_US]
+        self._spent_us += float(steps.sum())
+        self._steps += len(steps)
         self._means.append(np.diff(t_us[::_STRIDE]) / _STRIDE)
-        if len(self._means) > 4096:
-            self._means = [np.concatenate(self._means)[:: 1 + len(self._means) // 8192]]
 
     @property
     def mean_us(self) -> float:
         """The mean interval but for gaps: of bursts the only one that is true."""
-        return self._spent_us / max(self._steps, 1.0)
+        return self._spent_us / max(self._steps, 1)
 
     def interval_us(self, path: Path) -> float:
         """Raises BadRecording where time stands still."""
-        stride = min(_STRIDE, max(1, len(self.first) // 16))
-        means = np.concatenate(self._means) if self._means else np.empty(0)
+        means = np.concatenate(self._means)
+        stride = max(1, len(self.first) // 16)
         if stride < _STRIDE:
             means = np.diff(self.first[::stride]) / stride
-        usual = float(np.median(means)) if len(means) else 0.0
-        if usual <= 0:
-            usual = float(np.mean(means)) if len(means) else 0.0
-        if usual <= 0:
+        if not len(means) or not (usual := float(np.median(means))):
             raise BadRecording(path, "time stands still", do="give --hz, samples a second")
         return usual
 
@@ -126,20 +118,18 @@ class Gaps:
 
     def __init__(self, interval_us: float) -> None:
         self._least_us = longest_us(interval_us)
-        self._last: float | None = None
+        self._last = np.nan
         self.count = 0
         self.longest_us = 0.0
 
     def add(self, t_us: np.ndarray) -> None:
         """Take the stamps of samples in order."""
-        if not len(t_us):
-            return
-        pauses = np.diff(t_us, prepend=t_us[0] if self._last is None else self._last)
-        pauses = pauses[pauses > self._least_us]
+        t_us = np.append(self._last, t_us)
         self._last = t_us[-1]
-        if len(pauses):
-            self.count += len(pauses)
-            self.longest_us = max(self.longest_us, float(pauses.max()))
+        pauses = np.diff(t_us)
+        pauses = pauses[pauses > self._least_us]
+        self.count += len(pauses)
+        self.longest_us = max(self.longest_us, float(pauses.max(initial=0.0)))
 
     def note(self) -> list[str]:
         """In words, where there are any."""

@@ -21,8 +21,8 @@ _APART = 1.5
 _GOES_ON = 0.95
 #: Of the largest reading, what the decomposition itself may be off.
 _ROUNDING, _TINY = 1e-9, 1e-300
-#: Samples of a stretch at rest, and the stretches at either end that are compared.
-_STRETCH, _COMPARED = 100, 3
+#: Samples that are compared: at either end, and before and after a change.
+_STRETCH = 100
 #: From one sample to the next, of what is at rest; of the length of the force, as it has no unit.
 _UNSHAKEN = 0.02
 #: What both level and noise of one sensor keep, whatever it warms.
@@ -105,22 +105,20 @@ def _apart(block: np.ndarray, devices: int) -> float:
 def refuse_change_of_unit(
     stretches: list[dict[str, np.ndarray]], plan: Plan, table: Table, path: Path
 ) -> None:
-    """Raise BadRecording where readings at rest are at the end by the factor of a unit larger or
-    smaller than at the beginning, their noise with them. stretches: samples in the file's order."""
+    """Raise BadRecording where readings grow or shrink by the factor of a unit at some row, and are
+    so at the end. stretches: samples in the file's order."""
     for axes, units in _UNITS.items():
         if not all(axis in plan.wanted for axis in (*axes, *ACCEL)):
             continue
-        rests = [rest for stretch in stretches for rest in _rests(stretch, axes)]
-        if len(rests) < 2 * _COMPARED:
+        every = np.concatenate([[s[axis] for axis in axes] for s in stretches], axis=1)
+        sizes = np.linalg.norm(every[:, np.isfinite(every).all(axis=0)], axis=0)
+        if len(sizes) < 2 * _STRETCH:
             continue
-        first, last = (np.median(part, axis=0) for part in (rests[:_COMPARED], rests[-_COMPARED:]))
         with np.errstate(divide="ignore", invalid="ignore"):
-            grown = np.log(last / first)
+            grown = np.log(np.median(sizes[-_STRETCH:]) / np.median(sizes[:_STRETCH]))
         for factor in _factors(units):
-            if (np.abs(grown - np.log(factor)) < np.log(_WITHIN)).all():
-                row = _row_of_change(table, plan, axes, factor)
-                if not row:
-                    continue
+            near = abs(grown - np.log(factor)) < np.log(_WITHIN)
+            if near and (row := _row_of_change(table, plan, axes, factor)):
                 problem = f"the unit of {', '.join(axes)} changes: from there on all is "
                 problem += f"{factor:.4g} times as large"
                 raise BadRecording(path, problem, row=row, do=cut_words(path, row))
@@ -132,46 +130,35 @@ def _factors(units: dict[str, float]) -> list[float]:
     return [factor for factor in sorted(every) if abs(np.log(factor)) > 2 * np.log(_WITHIN)]
 
 
-def _rests(stretch: dict[str, np.ndarray], axes: tuple[str, ...]) -> list[tuple[float, float]]:
-    """(usual length, noise) of the readings of each stretch in which the force stands still."""
-    values = np.array([stretch[name] for name in axes])
-    force = np.array([stretch[name] for name in ACCEL])
-    out = []
-    for at in range(0, values.shape[1] - _STRETCH + 1, _STRETCH):
-        seen, still = values[:, at : at + _STRETCH], force[:, at : at + _STRETCH]
-        usual = float(np.linalg.norm(np.median(still, axis=1)))
-        if np.median(np.abs(np.diff(still, axis=1))) < _UNSHAKEN * usual:
-            noise = float(np.median(np.abs(np.diff(seen, n=2, axis=1))))
-            out.append((float(np.linalg.norm(np.median(seen, axis=1))), noise))
-    return out
-
-
 def _row_of_change(table: Table, plan: Plan, axes: tuple[str, ...], factor: float) -> int:
     """The 1-based row at which readings grow by the factor; 0 where no row shows that.
 
     There, from one row to the next, every axis' level and the noise grow by it, and the force does
     not change: motion that begins or ends does none of that.
     """
-    before = np.nan
+    dropped, row = table.dropped.copy(), 0
     for chunk in table.chunks(plan.columns):
         columns = plan.physical(chunk)
         size = np.linalg.norm([columns[name] for name in axes], axis=0)
         with np.errstate(divide="ignore", invalid="ignore"):
-            grown = np.log(size / np.concatenate([[before], size[:-1]])) / np.log(factor)
-        at = int(np.argmax(grown > 0.5))
-        if len(grown) and grown[at] > 0.5:
-            return int(chunk.place[at]) + 1 if _is_scaled(columns, axes, at, factor) else 0
-        before = size[-1] if len(size) else before
-    return 0
+            grown = np.diff(np.log(size)) / np.log(factor)
+        jumps = np.flatnonzero(grown > 0.5) + 1
+        if len(jumps):
+            at = int(jumps[0])
+            row = int(chunk.place[at]) + 1 if _is_scaled(columns, axes, at, factor) else 0
+            break
+    table.dropped.clear()
+    table.dropped.update(dropped)  # which counted them before
+    return row
 
 
 def _is_scaled(columns: dict[str, np.ndarray], axes: tuple[str, ...], at: int, by: float) -> bool:
     """Whether the rows on both sides of one are the same sensor's at rest, in other numbers."""
     values = np.array([columns[name] for name in axes])
     force = np.array([columns[name] for name in ACCEL])
-    sides = slice(max(0, at - _STRETCH), at), slice(at, at + _STRETCH)
-    if at < _STRETCH or at + _STRETCH > values.shape[1]:
+    if not _STRETCH <= at <= values.shape[1] - _STRETCH:
         return False
+    sides = slice(at - _STRETCH, at), slice(at, at + _STRETCH)
     one, other = values[:, sides[0]], values[:, sides[1]] / by
     noise = [float(np.median(np.abs(np.diff(side, n=3, axis=1)))) for side in (one, other)]
     level = [np.median(side, axis=1) for side in (one, other)]

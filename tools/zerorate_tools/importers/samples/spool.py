@@ -142,7 +142,7 @@ class Runs:
                 latest, before = end, place
 
     def _close(self, end: float) -> None:
-        if self._begin is not None and self._rows >= _LONG and len(self._long) < 10_000:
+        if self._begin is not None and self._rows >= _LONG:
             self._long.append((self._begin[0], end, self._begin[1]))
         self._rows = 0
 
@@ -165,9 +165,8 @@ def in_order(spool: Spool, path: Path, folder: Path | None) -> Spool:
             raise BadRecording(path, problem, do="sort it by time first, as `sort -n` does")
         order = np.lexsort((waiting[PLACE], waiting[TIME]))
         waiting = {name: values[order] for name, values in waiting.items()}
-        following = numbers[at + 1] if at + 1 < len(numbers) else None
-        until = np.inf if following is None else pieces[following].first_us
-        ready = int(np.searchsorted(waiting[TIME], until, "right" if following is None else "left"))
+        until = pieces[numbers[at + 1]].first_us if at + 1 < len(numbers) else np.inf
+        ready = int(np.searchsorted(waiting[TIME], until))
         out.append({name: values[:ready] for name, values in waiting.items()})
         waiting = {name: values[ready:] for name, values in waiting.items()}
     out.finish()
