@@ -105,7 +105,7 @@ AREAS = {
         [_TOOLS + "importers/"],
         ["importers/"] + [_FIGURES + f"[imported {kind}]" for kind in (
             *("arrays", "changed", "clocks", "flights", "phones", "robots", "sensors", "tools"),
-            "wearables")],
+            *("wearables", "parts"))],
     ),
     # what they print is seen where they really run
     "commands": (

@@ -1,4 +1,4 @@
-"""Binary logs of others, each read in a process of its own."""
+"""Binary logs of others; host_tests/hostile tries the process of its own that reads each."""
 
 import numpy as np
 import pytest
@@ -6,11 +6,21 @@ import scipy.io
 from zerorate_bench.foreign_logs import binary as foreign_files
 from zerorate_tools.errors import BadRecording
 from zerorate_tools.importers import Options, parsed_mapping, read_foreign
+from zerorate_tools.importers.logs import apart
+
+from host_tests.hostile.many_logs import in_this_process
 
 from .test_odd_files import told
 
 RNG = np.random.default_rng(5)
 G = 9.80665
+
+
+@pytest.fixture(autouse=True)
+def child(monkeypatch):
+    """What the child does is done here."""
+    monkeypatch.setattr(apart, "table_apart", in_this_process)
+    monkeypatch.setattr("resource.setrlimit", lambda *limits: None)
 
 
 @pytest.mark.parametrize("turned", [False, True], ids=["a row a sample", "a column a sample"])

@@ -202,14 +202,6 @@ def test_rows_without_readings_have_no_say_about_the_clock(tmp_path):
     assert not told(report, "ran over")
 
 
-def test_a_flight_is_no_steady_rate(tmp_path):
-    frame = table()
-    frame["gz_dps"] = 60 + 40 * np.sin(np.arange(len(frame)) / 500)
-    assert not told(read(tmp_path, frame)[1], "a steady rate")
-    frame["gz_dps"] = 60 + 0.05 * np.sin(np.arange(len(frame)))
-    assert told(read(tmp_path, frame)[1], "a steady rate of 60 dps")
-
-
 def test_a_pointer_of_git_lfs_is_told_from_a_table(tmp_path):
     with pytest.raises(BadRecording, match="a pointer of Git LFS, not the file; .*git lfs pull"):
         read(tmp_path, "version https://git-lfs.github.com/spec/v1\noid sha256:1bf6\nsize 41\n")

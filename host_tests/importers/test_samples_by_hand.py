@@ -12,7 +12,15 @@ from zerorate_tools.importers.columns.chip_steps import unit_by_steps
 from zerorate_tools.importers.columns.units import factors_of
 from zerorate_tools.importers.logs import json_file, ros_bag
 from zerorate_tools.importers.samples import lines
-from zerorate_tools.importers.samples.clock import Gaps, Pace, Ticks, Unwrapped, evenly, longest_us
+from zerorate_tools.importers.samples.clock import (
+    Gaps,
+    Pace,
+    Ticks,
+    Unwrapped,
+    evenly,
+    longest_us,
+    whole_stamps,
+)
 from zerorate_tools.importers.samples.one_device import clocks_in_turn, levels_in_turn
 from zerorate_tools.importers.samples.spool import Runs, Spool, in_order
 from zerorate_tools.numbers import duration
@@ -259,12 +267,27 @@ def test_a_clock_that_goes_back_by_what_no_counter_holds_is_left(back_us, every_
     assert (clock(t_us, np.arange(12)) == t_us).all() and clock.notes == []
 
 
+@pytest.mark.parametrize(
+    ("off_s", "beside_s", "torn"),
+    [(10.1, 0.01, 1), (-10.1, 0.01, 1), (9.8, 0.01, 0), (99.0, 0.49, 1), (99.0, 0.51, 0)],
+)
+def test_a_stamp_far_from_both_neighbours_is_torn_where_it_is_one_of_a_hundred(
+    off_s, beside_s, torn
+):
+    t_us = 1e6 * beside_s * np.arange(102)
+    t_us[50] += 1e6 * off_s
+    assert np.flatnonzero(~whole_stamps(t_us)).tolist() == [50] * torn
+    assert whole_stamps(t_us[:101]).all() and whole_stamps(t_us[:2]).all()
+
+
 @pytest.mark.parametrize("devices", range(1, 10))
 def test_up_to_eight_devices_that_take_turns_are_counted(devices):
     row, rng = np.arange(1200), np.random.default_rng(1)
     of = rng.permutation(devices)[row % devices]
     told = devices if 1 < devices < 9 else 0
-    assert clocks_in_turn(row // devices * 1e4 - 5e6 * (row % devices)) == told
+    t_us = row // devices * 1e4 - 5e6 * (row % devices)
+    assert clocks_in_turn(t_us) == told == clocks_in_turn(t_us[: 60 + told])
+    assert clocks_in_turn(t_us[: 59 + told]) == 0
     rates = 10.0 * of[:, None] + rng.normal(0, 0.5, (1200, 3))
     found = levels_in_turn([rates[:700], rates[700:]])
     assert found > 1 and devices % found == 0 if devices > 1 else found == 0

@@ -1,10 +1,15 @@
 """Foreign recordings come out as integers in LSB, and every loss is told."""
 
+from functools import reduce
+from operator import xor
+
 import numpy as np
 import pandas as pd
 import pytest
 from zerorate_tools.errors import BadRecording
 from zerorate_tools.importers import Options, import_recording, parsed_mapping, read_foreign
+from zerorate_tools.importers.tables import checked_lines, delimited
+from zerorate_tools.importers.tables.sniffing import _says_its_names
 from zerorate_tools.recordings import (
     Scales,
     read_recording,
@@ -152,6 +157,53 @@ def test_gaps_of_a_channel_stay_gaps_however_often_it_is_imported(tmp_path, name
     assert read_recording(tmp_path / name, keep_gaps=True).columns["load"].tolist() == [1, GAP]
     with pytest.raises(BadRecording, match="row 2: load has no value"):
         read_recording(tmp_path / name)
+
+
+@pytest.mark.parametrize("block", [60, 500, 1 << 20])
+@pytest.mark.parametrize("checked", [False, True])
+def test_a_line_that_is_no_row_keeps_its_place_in_blocks_of_any_size(
+    tmp_path, monkeypatch, checked, block
+):
+    rows = [f"{number % 7 + 0.25},2,{number}" for number in range(60)]
+    lost = [3, 4, 29, 59]
+    for number in lost:
+        rows[number] = rows[number].rpartition(",")[0]
+    if checked:
+        rows = [f"$IMU,{row}*{reduce(xor, f'IMU,{row}'.encode()):02X}" for row in rows]
+    head = [] if checked else ["A note", "", "a,b,c"]
+    (tmp_path / "in.csv").write_text("\n".join([*head, *rows, ""]))
+    for reader in (checked_lines, delimited):
+        monkeypatch.setattr(reader, "_BLOCK_BYTES", block)
+    read = checked_lines.checked_lines if checked else delimited.delimited
+    table = read(tmp_path / "in.csv")
+    name = table.names[2]
+    chunks = list(table.chunks([name]))
+    places = np.concatenate([chunk.place for chunk in chunks])
+    values = np.concatenate([chunk.columns[name] for chunk in chunks])
+    whole = [number for number in range(60) if number not in lost]
+    assert places.tolist() == values.tolist() == whole and sum(table.dropped.values()) == len(lost)
+
+
+@pytest.mark.parametrize(
+    ("line", "says"),
+    [
+        *(("Gyro X,3,Y,4,Z,5", True), ("Gyro X,1,Y,2,Z,3", False), ("7,3,Y,4,8,5", False)),
+        *(("Gyro X,3,Y,4", False), (",3,,4,,5", False)),
+    ],
+)
+def test_words_that_come_again_with_other_numbers_are_no_names(line, says):
+    assert _says_its_names("Gyro X,1,Y,2,Z,3", [line], ",") is says
+
+
+def test_of_two_accelerations_that_of_the_mapped_rates_is_taken(tmp_path):
+    columns = {f"imu{n}_{k}": [x] * 9 for n in (1, 2) for k, x in zip("pqr", (n, 2.0, 3.0))}
+    columns |= {f"imu{n}_acc_{k}_g": [n / 100] * 9 for n in (1, 2) for k in "xy"}
+    columns |= {f"imu{n}_acc_z_g": [1.0] * 9 for n in (1, 2)}
+    source = table(tmp_path / "in.csv", t_s=np.arange(9) / 10, **columns)
+    for n in (1, 2):
+        mapping = [parsed_mapping(f"g{a}=imu{n}_{k}:dps") for a, k in zip("xyz", "pqr")]
+        recording, _ = read_foreign(source, mapping=mapping)
+        assert recording.columns["ax"][0] == pytest.approx(163.84 * n, abs=0.5)
 
 
 def test_a_line_of_other_names_before_its_values_is_no_row_of_the_others(tmp_path):

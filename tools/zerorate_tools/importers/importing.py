@@ -16,7 +16,7 @@ from ..errors import BadRecording, refuse_odd_name
 from ..recordings import Recording, Scales, check_output, open_recording, recording_writer
 from ..recordings.atomic import check_apart, written_together
 from ..recordings.reading import recording_name, whole
-from ..recordings.recording import ACCEL, COLUMNS
+from ..recordings.recording import ACCEL, COLUMNS, TIME
 from .columns.mapping import Mapped
 from .columns.plan import Plan, left_aside, planned
 from .kinds import table_of, table_of_files
@@ -233,8 +233,8 @@ def _converted(source: _Source, common: Common) -> _Import:
 
 def _leave_out_unread(found: Gathered, plan, report: Report) -> None:
     """Take columns away in which no cell is a number."""
-    read = {name for piece in found.spool.pieces for name in piece.ends}
-    unread = [name for name in plan.wanted if name in found.own and name not in read]
+    read = {TIME, *(name for piece in found.spool.pieces for name in piece.ends)}
+    unread = [name for name in plan.wanted if name not in read]
     if any(name in ACCEL for name in unread):
         unread = [*dict.fromkeys([*unread, *ACCEL])]
     for name in unread:

@@ -159,7 +159,7 @@ def _found(
             do = f"give --instance 0 to {last}" if last else "leave --instance away"
             raise BadRecording(path, problem, do=do)
         names = groups[instance] if groups else _axes_of_a_gyro_file(table, path)
-    gyro = names or {t: m.column for t, m in given.items() if t in GYRO}
+    gyro = {target: mapped.column for target, mapped in given.items()} | names
     names = {**names, **usual.most_alike(_with_gravity(table), gyro, instance)}
     temp = usual.temperature(table.names)
     found = {t: Mapped(t, c) for t, c in {**names, **({TEMP: temp} if temp else {})}.items()}
@@ -325,7 +325,9 @@ def _times_s(
     if unit is None:
         return None
     t_s = first[mapped.column] * factors_of(TIME)[unit][0]
-    return t_s + (first[mapped.plus[0]] * plan.plus[TIME] if mapped.plus else 0.0)
+    if mapped.plus:
+        t_s = t_s + first[mapped.plus[0]] * plan.plus[TIME]
+    return t_s
 
 
 def _as_another_time(column: str, table: Table) -> tuple[str, str] | None:

@@ -8,9 +8,8 @@ import numpy as np
 
 from ...errors import BadRecording
 from ...numbers import duration
-from ...recordings.recording import ACCEL, COLUMNS, TEMP
+from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP
 from .clock import longest_us
-from .gather import Gathered
 from .spool import PLACE, TIME, Spool
 
 SAID = {"ax": "acceleration", TEMP: "temperature"}
@@ -40,11 +39,11 @@ class Bridged:
     stretches: by column, the longest time in microseconds that such a line spans.
     """
 
-    def __init__(self, found: Gathered) -> None:
-        self._found, self._spool = found, found.spool
+    def __init__(self, spool: Spool) -> None:
+        self._spool = spool
         self.stretches: dict[str, float] = {}
         self.dropped: Counter[str] = Counter()
-        self._columns = [name for name in self._spool.names if self._is_bridged(name)]
+        self._columns = self._bridged()
         self._after = {name: _next_readings(self._spool, name) for name in self._columns}
         self._longest_us = {
             name: longest_us(_usual_us(self._spool, name)) for name in self._columns
@@ -73,12 +72,17 @@ class Bridged:
             if name not in ACCEL[1:]
         ]
 
-    def _is_bridged(self, name: str) -> bool:
-        if name in (TIME, PLACE, "gx", "gy", "gz"):
-            return False
-        own, samples = self._found.own.get(name, 0), self._found.samples
+    def _bridged(self) -> list[str]:
+        """The columns of which samples lack readings."""
+        names = [name for name in self._spool.names if name not in (PLACE, TIME, *GYRO)]
+        lacking, own = set(), set()
+        for columns in self._spool:
+            for name in names:
+                there = np.isfinite(columns[name][np.isfinite(columns["gx"])])
+                lacking |= set() if there.all() else {name}
+                own |= {name} if there.any() else set()
         # a further channel may have gaps; where it never comes with a sample it has its own rows
-        return own < samples and (name in COLUMNS or own == 0)
+        return [n for n in names if n in lacking and (n in COLUMNS or n not in own)]
 
     def _line(self, name, columns, whole, before, after):
         t_us, values = columns[TIME], columns[name]

@@ -203,7 +203,7 @@ class _Spread:
         begins = np.concatenate([[self.begins], ends[:-1]])
         self.begins = bool(ends[-1])
         off = np.abs(count - due)
-        partly = (begins | ends) & (count <= np.minimum(due, tick_us / sample_us) + _ROWS_OFF)
+        partly = (begins | ends) & (count <= tick_us / sample_us + _ROWS_OFF)
         odd = (off > _ROWS_OFF) & ~partly & (count > 0)
         self.uneven += int(odd.sum())
         self.groups += int((count > 0).sum())

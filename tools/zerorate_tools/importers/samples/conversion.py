@@ -141,7 +141,7 @@ def integer_batches(
     found: Gathered, plan: Plan, scales: Scales, path: Path, report: Report
 ) -> Iterator[dict[str, np.ndarray]]:
     """Batches as a recording has them, in its order of columns; completes the report."""
-    bridged, gaps = Bridged(found), Gaps(found.interval_us)
+    bridged, gaps = Bridged(found.spool), Gaps(found.interval_us)
     names = [name for name in (*COLUMNS, *plan.wanted) if name in found.spool.names]
     temps: list[np.ndarray] = []
     first = last = None

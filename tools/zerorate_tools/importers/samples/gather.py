@@ -28,16 +28,15 @@ _NO_TIME = "the time stamp is no number"
 
 @dataclass
 class Gathered:
-    """The rows, by time, and what they have in common. largest: by kind (gyro, accel). own: by
-    column, samples that have a reading of their own. looked_at: some hundred samples, and
-    readings of acceleration and temperature, which may have times of their own."""
+    """The rows, by time, and what they have in common. largest: by kind (gyro, accel).
+    looked_at: some hundred samples, and readings of acceleration and temperature, which may have
+    times of their own."""
 
     spool: Spool
     rows: int
     samples: int
     interval_us: float
     largest: dict[str, float]
-    own: dict[str, int]
     dropped: Counter[str]
     notes: list[str]
     counted: bool = False
@@ -92,7 +91,6 @@ class _Gathering:
         self.rows = self.samples = self.too_fast = 0
         self.fastest = 0.0
         self.largest = {"gyro": 0.0, "accel": 0.0}
-        self.own: Counter[str] = Counter()
         self.unfiltered: list[dict[str, np.ndarray]] = []
         self.held: bool | None = None  # until the first rates tell
         self.compared = [TIME, *self.readings]
@@ -129,7 +127,7 @@ class _Gathering:
         looked_at |= {name: np.concatenate(pieces) for name, pieces in self.beside.items()}
         return Gathered(
             self.spool, self.rows + sum(self.table.dropped.values()), self.samples,
-            interval_us, self.largest, dict(self.own),
+            interval_us, self.largest,
             self.table.dropped + self.dropped, repeated + notes, TIME not in self.plan.wanted,
             looked_at,
         )  # fmt: skip
@@ -139,7 +137,6 @@ class _Gathering:
         if lost:
             self.dropped["on a straight line between readings, so it is none"] += lost
             self.samples -= lost
-            self.own = Counter({name: max(0, of - lost) for name, of in self.own.items()})
             self.kept = [self._some(n, columns) for n, columns in enumerate(self.spool)]
 
     def _step_us(self) -> float:
@@ -173,7 +170,7 @@ class _Gathering:
         whole = np.isfinite([columns[name] for name in GYRO]).all(axis=0)
         self.samples += int(whole.sum())
         self.runs.add(columns[TIME][whole], columns[PLACE][whole])
-        self._measure(columns, whole)
+        self._measure(columns)
         self.spool.append(columns)
 
     def _refuse_turns(self, stretches):
@@ -233,14 +230,12 @@ class _Gathering:
         self.fastest = max(self.fastest, float(rates[:, fast].max(initial=0.0)))
         return ~fast, f"faster than any such sensor measures ({self.fast_dps:g} dps)"
 
-    def _measure(self, columns, whole):
+    def _measure(self, columns):
         for kind, axes in (("gyro", GYRO), ("accel", ACCEL)):
             if axes[0] in columns:
                 sizes = np.abs([columns[name] for name in axes])
                 sizes = sizes[np.isfinite(sizes)]
                 self.largest[kind] = max(self.largest[kind], float(sizes.max(initial=0.0)))
-        for name in self.readings:
-            self.own[name] += int(np.isfinite(columns[name][whole]).sum())
         self.kept.append(self._some(len(self.kept), columns))
         for group in (ACCEL, (TEMP,)):
             if group[0] in columns:

@@ -55,7 +55,7 @@ def _taken_off(counts: np.ndarray, starts: np.ndarray) -> np.ndarray:
     windows = sliding_window_view(counts, _BLOCK, axis=0)[starts[:: 1 + len(starts) // 20000]]
     windows = (windows - windows.mean(axis=2, keepdims=True)) / (counts.std(axis=0)[:, None] + 1)
     flat = windows.reshape(-1, _BLOCK)
-    common = flat.T @ flat / len(flat)
+    common = flat.T @ flat
     common += 1e-9 * (1 + np.trace(common)) * np.eye(_BLOCK) + common.max()
     return np.linalg.inv(np.linalg.cholesky(common))
 
