@@ -2,7 +2,6 @@
 
 import json
 from dataclasses import replace
-from functools import partial
 from types import NoneType, SimpleNamespace, UnionType
 from typing import Any, Literal, Union, get_args, get_origin, get_type_hints, is_typeddict
 
@@ -12,13 +11,17 @@ from zerorate_bench.loop.simulated import simulate
 from zerorate_tools import LoopReport
 from zerorate_tools.loop import analyse as loop
 from zerorate_tools.loop.analyse import analyse
-from zerorate_tools.loop.motion.scales_and_timing import InMotion
-from zerorate_tools.loop.read.gate import GateReport
+from zerorate_tools.loop.fit.free_curve import draw
+from zerorate_tools.loop.fit.regression import Regression
+from zerorate_tools.loop.motion.scales_and_timing import InMotion, Timing
+from zerorate_tools.loop.read.gate import GateReport, TooLittleRest
+from zerorate_tools.loop.report import report as form
 from zerorate_tools.loop.report import unexplained
+from zerorate_tools.loop.report.motion_effects import interference, motion_effects
 from zerorate_tools.loop.report.unexplained import measure_next
 
-from . import power_ons
-from .power_ons import MPU
+from . import dense
+from .power_ons import MPU, at_rest
 
 
 def breaches(value, form, where="report"):
@@ -71,41 +74,11 @@ def test_nothing_is_left_half_written(closed):
     assert names == wanted
 
 
-N = 3000
-at_rest = partial(power_ons.at_rest, n=N, swing_degc=4.0)
-
-
-@pytest.mark.parametrize(
-    ("other", "asked"),
-    [
-        ({"bias_lsb": 160}, "of one device: s2 begins 1.2 dps away from the others"),
-        ({"middle_degc": 40.0}, "s2 has 36 to 44 degC, the fitted ones 21 to 29"),
-    ],
-)
-def test_a_recording_unlike_the_others_is_asked_about(closing, other, asked):
-    assert asked in measure_next(closing([at_rest(0), at_rest(1), at_rest(2, **other)]))[0]
-
-
-def test_of_recordings_alike_neither_is_asked(closing):
-    asked = " ".join(measure_next(closing([at_rest(i) for i in range(3)])))
-    assert "one device" not in asked and "whole range" not in asked
-
-
-@pytest.mark.parametrize(
-    ("lacking", "asked"),
-    [(("temp",), "own temperature"), (("ax", "ay", "az"), "record acceleration")],
-)
-def test_a_sensor_that_was_not_recorded_is_asked_for_first(closing, lacking, asked):
-    columns = {name: values for name, values in at_rest(0).items() if name not in lacking}
-    first, *rest = measure_next(closing([columns]))
-    assert asked in first
-    assert not any("own temperature" in r or "record acceleration" in r for r in rest)
-
-
 def test_what_an_import_declares_a_reference_is_no_channel(closing):
     declared = replace(MPU, more={"channels": {"moving": {"role": "reference"}, "odd": None}})
-    wander = np.cumsum(np.random.default_rng(5).normal(0, 3, N)).astype(np.int32)
-    analysis = closing([at_rest(i, moving=wander) for i in range(3)], *[declared] * 3)
+    wander = np.cumsum(np.random.default_rng(5).normal(0, 3, 3000)).astype(np.int32)
+    every = [at_rest(i, n=3000, swing_degc=4.0, moving=wander) for i in range(3)]
+    analysis = closing(every, *[declared] * 3)
     assert "moving" not in analysis.sessions[0].sources and analysis.gate.dropped == {}
 
 
@@ -120,12 +93,54 @@ def test_what_an_import_declares_a_reference_is_no_channel(closing):
     ],
 )
 def test_a_course_that_is_there_is_not_asked_for(course, asked):
-    (session,) = simulate(1, sessions=1).sessions
-    places = np.linspace(0, 1, len(course))
-    at = np.linspace(0, 1, len(session.sources["temp"]))
+    places, at = np.linspace(0, 1, len(course)), np.linspace(0, 1, 60)
+    session = dense.made(1, 60, names=("temp",))
     session.sources["temp"] = np.interp(at, places, course)
-    asks = [ask for ask in measure_next(analyse([session])) if "as fast as" in ask]
+    asks = unexplained._other_way([session])
     assert [ask.split(",")[0] for ask in asks] == ([asked] if asked else [])
+
+
+POSE = {f"acc_{axis}": np.linspace(0.0, 1.0, 160) for axis in "xyz"}
+FULL = {"temp": np.sin(np.arange(160.0) / 9), **POSE, "vdd_mv": np.zeros(160)}
+
+
+@pytest.mark.parametrize(
+    ("lacking", "change", "asked"),
+    [
+        ((), {}, []),
+        (("temp",), {}, ["own temperature"]),
+        (tuple(POSE), {}, ["record acceleration", "six orientations"]),
+        (("vdd_mv",), {}, ["supply voltage"]),
+        ((), {"still": True}, ["six orientations"]),
+        ((), {"count": 4}, ["6 or more"]),
+        ((), {"blocks": 149}, ["an hour"]),
+        ((), {"blocks": 150}, []),
+        ((), {"kind": "time-drift"}, ["constant temperature, one of them"]),
+        ((), {"kind": "power-on-transient"}, ["constant temperature, one of them"]),
+        ((), {"left": True}, ["log humidity and board temperature beside"]),
+        ((), {"left": True, "more": ("hum",)}, ["log board temperature beside"]),
+        ((), {"left": True, "more": ("Humidity", "pcb_temp")}, ["loosen"]),
+        ((), {"away_dps": 0.51}, ["of one device"]),
+        ((), {"away_dps": 0.49}, []),
+    ],
+)
+def test_what_to_record_next_is_what_the_recordings_lack(lacking, change, asked):
+    def of(blocks=160, count=5, still=False, kind="vibration", left=False, away_dps=0.1, more=()):
+        named = {**FULL, **dict.fromkeys(more, np.zeros(160))}
+        own = {n: v[:blocks] * (not (still and n in POSE)) for n, v in named.items()}
+        own = {n: v for n, v in own.items() if n not in lacking}
+        every = [replace(dense.made(k, blocks), sources=own) for k in range(count)]
+        found = [SimpleNamespace(candidate=SimpleNamespace(kind=kind))]
+        judgement = SimpleNamespace(residual_test=SimpleNamespace(left=left))
+        judgement.offsets_dps = [np.array([0.0, -away_dps, 0.0])]
+        return SimpleNamespace(
+            **{"sessions": every, "train": every[:-1], "holdout": every[-1:], "measured": None},
+            **{"selection": SimpleNamespace(found=found), "judgement": judgement},
+            single=count == 1,
+        )
+
+    told = measure_next(of(**change))
+    assert len(told) == len(asked) and all(part in one for part, one in zip(asked, told))
 
 
 STEPPED = replace(simulate(1, sessions=1).sessions[0], steps=("a step",))
@@ -192,3 +207,99 @@ def test_temperatures_are_unseen_a_degree_beyond_what_was_fitted(middle_degc, as
     )
     held.degc[1:3] = held.degc[[0, 3]]  # half of it lies at an end
     assert len(unexplained._other_temperatures(analysis)) == asked
+
+
+@pytest.mark.parametrize(
+    ("moving", "found", "notes"),
+    [
+        ([], False, ["a note"]),
+        (["s"], True, ["a note"]),
+        (["s"], False, ["a note", "found: nothing in motion; gravity sees 2.50 g"]),
+    ],
+)
+def test_what_motion_shows_is_asked_of_what_is_fitted_and_noted(monkeypatch, moving, found, notes):
+    shown = SimpleNamespace(notes=["a note"], found=found, before=2.5, unit="g", reference="")
+    asked, gate = [], GateReport(moving=moving)
+    monkeypatch.setattr(loop, "in_motion", lambda *of: asked.append(of) or InMotion(shown))
+    monkeypatch.setattr(loop, "remove_steps", lambda sessions: sessions)
+    monkeypatch.setattr(loop, "_look", lambda sessions, at, *_: at)
+    one, two, three = every = simulate(1, sessions=3).sessions
+    assert analyse(every, 1, gate, {}) == 1 and analyse(every, gate=GateReport()) == 2
+    assert analyse([one]) == 0
+    assert [note.split(",")[0] for note in gate.notes] == notes
+    trained = [[s.name for s in train] for train, *_ in asked]
+    assert trained == [[one.name, three.name], [one.name, two.name], [one.name]]
+    assert [[s.name for s in held] for _, held, *_ in asked] == [[two.name], [three.name], []]
+    assert [of[2:] for of in asked] == [({}, moving), (None, []), (None, [])]
+
+
+def test_recordings_that_hardly_rest_are_left_out_or_looked_at_in_motion(monkeypatch):
+    calls, faults = [], {"jumps": 1}
+    ticks = [SimpleNamespace(name=n, faults=faults, extra={"temp": 0, "load": 0}) for n in "abc"]
+
+    def enough(name):
+        if name in rests_not:
+            raise TooLittleRest(f"{name} is short")
+
+    for name in ("readable", "same_settings", "without_long_gaps", "shaken", "usable_channels"):
+        monkeypatch.setattr(loop, name, lambda *of, name=name: calls.append((name, of[0])))
+    monkeypatch.setattr(loop, "sessions_from", lambda of: [t.name for t in of])
+    monkeypatch.setattr(loop, "enough", enough)
+    monkeypatch.setattr(loop, "may_show_motion", lambda name: name == "b")
+    rests_not = "bc"
+    kept, gate = loop.sessions_of(ticks)
+    assert kept == ["a"] and gate.moving == ["b"] and gate.faults == dict.fromkeys("abc", faults)
+    assert gate.notes == ["looked at in motion alone: b is short", "left out: c is short"]
+    assert list(gate.dropped) == ["temp"] and "rename" in gate.dropped["temp"]
+    before = [(name, ticks) for name in ("readable", "same_settings", "without_long_gaps")]
+    assert calls == [*before, ("shaken", ["a"]), ("usable_channels", ["a"])]
+    rests_not = "abc"
+    with pytest.raises(TooLittleRest, match="a is short; b is short; c is short"):
+        loop.sessions_of(ticks)
+
+
+def line(hz):
+    return SimpleNamespace(hz=hz, amplitude_dps=np.ones(3), p_value=1e-9, in_holdout=True)
+
+
+@pytest.mark.parametrize(
+    ("found", "moved", "hz", "left", "said"),
+    [
+        ([], False, (), False, "nothing-found"),
+        ([], False, (0.5, 2.0), False, "nothing-found"),
+        ([], False, (0.5,), True, "unexplained-residual"),
+        ([1], False, (), True, "effects-found"),
+        ([], True, (), True, "effects-found"),
+        ([], False, (2.0, 0.49), True, "effects-found"),
+    ],
+)
+def test_a_verdict_is_by_what_is_in_the_bias(found, moved, hz, left, said):
+    analysis = SimpleNamespace(
+        selection=SimpleNamespace(found=found),
+        motion=InMotion(timing=Timing(1.0, 0.1, 1e-9, (1.0,)) if moved else None),
+        lines=[line(one) for one in hz],
+        judgement=SimpleNamespace(residual_test=SimpleNamespace(left=left)),
+        few=False,
+    )
+    assert form.verdict(analysis) == said
+    told = [one["effect"] for one in motion_effects(analysis, [1.0, 2.0, 3.0])]
+    slow = [one for one in hz if one < 0.5]
+    assert told == ["sample-timing"] * moved + ["periodic-interference"] * len(slow)
+    assert [one["hz"] for one in interference(analysis.lines)] == [h for h in hz if h >= 0.5]
+
+
+@pytest.mark.parametrize(
+    ("table", "beside", "told"),
+    [((0.5,) * 9, (), True), (None, (), False), ((0.5,) * 9, (1,), False)],
+)
+def test_what_a_curve_s_one_form_loses_is_told_of_a_single_slot(table, beside, told):
+    term = replace(dense.A, lo=-4.0, hi=4.0, table=table)
+    regression = Regression([dense.made(1, 40), dense.made(2, 40)])
+    rest = SimpleNamespace(straight=[dense.B], terms=[dense.C])
+    selection = SimpleNamespace(regression=regression, without=[rest].__getitem__)
+    selection.found = [SimpleNamespace(candidate=SimpleNamespace(terms=[term, *beside]))]
+    lost = form._lost(selection, 0)
+    assert (list(lost) == ["lost_by_projection"]) is told
+    if told:
+        every = draw(regression, [dense.B, dense.C], term)[1]
+        assert list(lost.values()) == [pytest.approx(every, abs=6e-5)]

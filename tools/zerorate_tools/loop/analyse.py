@@ -60,16 +60,13 @@ def analyse(
     """
     gate = gate or GateReport()
     at = len(sessions) - 1 if holdout is None else holdout
-    motion = in_motion(
-        [s for i, s in enumerate(sessions) if i != at] or sessions,
-        [sessions[at]] if len(sessions) > 1 else [],
-        logs,
-        gate.moving,
-    )
+    train, held = _apart(sessions, at)
+    motion = in_motion(train, held if len(sessions) > 1 else [], logs, gate.moving)
     shown = motion.rate_scale
-    gate.notes += shown.notes if shown is not None else []
-    if gate.moving and shown is not None and not shown.found:
-        gate.notes.append(f"found: {nothing_in_words(shown.before, shown.unit)}")
+    if shown is not None:
+        gate.notes += shown.notes
+        if gate.moving and not shown.found:
+            gate.notes.append(f"found: {nothing_in_words(shown.before, shown.unit)}")
     sessions = [without_scales(s, motion) for s in sessions]
     whiteners = [whitener(s.available) for s in sessions]  # while they live nobody makes them anew
     clean = remove_steps(sessions)
@@ -80,6 +77,12 @@ def analyse(
         analysis = min(analysis, whole, key=lambda a: _left_dps(a, motion, logs))
     del whiteners
     return analysis
+
+
+def _apart(sessions: list[Session], at: int) -> tuple[list[Session], list[Session]]:
+    """The sessions to fit on, and the one held out; one alone is both."""
+    held = [sessions[at]]
+    return [s for i, s in enumerate(sessions) if i != at] or held, held
 
 
 def _left_dps(analysis: Analysis, motion: InMotion, logs: Logs | None) -> float:
@@ -99,8 +102,7 @@ def _look(
 ) -> Analysis:
     """Effects of sessions, steps taken out of them or not, and what they are worth."""
     taken = len(slots_of(motion))
-    held = [sessions[at]]
-    train = [s for i, s in enumerate(sessions) if i != at] or held
+    train, held = _apart(sessions, at)
     on_pieces = _on_pieces(train[0], motion, logs) if len(train) == 1 else None
     selection = select(train, taken, on_pieces, len(sessions) > 1)
     selection, judgement = prune_by_holdout(selection, held)

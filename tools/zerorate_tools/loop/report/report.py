@@ -75,10 +75,9 @@ def _interval(parts):
 def _in_all(analysis):
     """Root mean squares over the three axes together."""
     j = analysis.judgement
+    whole = _mdps([j.before_rms, j.after_rms, rms(analysis.floor_dps)])
     return {
-        "before_mdps": round(1e3 * j.before_rms, 4),
-        "after_mdps": round(1e3 * j.after_rms, 4),
-        "floor_mdps": round(1e3 * float(rms(analysis.floor_dps)), 4),
+        **dict(zip(("before_mdps", "after_mdps", "floor_mdps"), whole)),
         "ci95_mdps": {
             name: _mdps(block_bootstrap(parts, lambda rows: rms(rows.ravel())))
             for name, parts in (("before", j.residual_before), ("after", j.residual_after))
@@ -99,7 +98,7 @@ def _by_kernels(analysis):
             "after_mdps": _mdps(rms_dps(after)),
             "ci95_mdps": {"before": _interval(before), "after": _interval(after)},
             "in_all": {
-                name: round(1e3 * float(rms(rms_dps(parts))), 4)
+                name: _mdps([rms(rms_dps(parts))])[0]
                 for name, parts in (("before_mdps", before), ("after_mdps", after))
             },
         },

@@ -17,9 +17,7 @@ _COOLING = "record a cool-down as fast as the warm-up, to tell lag, rate and hys
 _WARMING = "record a warm-up as fast as the cool-down, to tell lag, rate and hysteresis apart"
 _SUPPLY = "record the supply voltage, and step it by 100 mV up and down at constant temperature"
 _POWER = "record three power-ons at constant temperature, one of them a warm restart"
-_MORE = "record more power-ons, 6 or more in all: {}"
-_FEW = "fewer than 3 fitted ones confirm nothing"
-_EACH = "each tests every effect once more"
+_MORE = "record more power-ons, 6 or more in all: each tests every effect once more"
 _LOGGERS, _LOOSEN = "log {} beside the device", "loosen one screw"
 #: What may be at work unseen, and what a channel of it is called.
 _LOGGED = {"humidity": "hum", "board temperature": "_temp"}
@@ -79,8 +77,7 @@ def measure_next(analysis) -> list[str]:
     out = [advice for name, advice in _LACKING.items() if name not in sessions[0].sources]
     out += [*_another_device(analysis), *_other_temperatures(analysis)]
     if len(sessions) < 5:
-        fitted = len(sessions) - 1
-        out.append(_MORE.format(_FEW if fitted < 3 else _EACH))
+        out.append(_MORE)
     out += _other_way(sessions)
     if kinds & {"power-on-transient", "time-drift"}:
         out.append(_POWER)
