@@ -1,6 +1,7 @@
 """The whole job on the built-in device, a function a step, and what each step gained."""
 
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -194,7 +195,10 @@ def back_on_the_chip(device: Device, model: Path, runtime: str = "wasm") -> tupl
 
     Each goes on from what the firmware had learned, without and with it, in the power-ons before.
     """
-    return _last_power_on(device, None, runtime), _last_power_on(device, model, runtime)
+    with ThreadPoolExecutor() as at_once:  # each waits for an interpreter of its own
+        without = at_once.submit(_last_power_on, device, None, runtime)
+        beside = _last_power_on(device, model, runtime)
+        return without.result(), beside
 
 
 def _last_power_on(device: Device, model: Path | None, runtime: str) -> Demo:
