@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 from zerorate_tools.errors import BadRecording
+from zerorate_tools.importers.samples.counts import Counts
 
-from .test_by_a_plain_reading import FORCE, imported
+from .test_by_a_plain_reading import FORCE, PATH, imported
 
 
 def a_rest(hz=100.0, n=1000, noise=0.05, unit="dps", **force):
@@ -110,3 +111,32 @@ def test_many_dropped_rows_make_a_counted_time_doubtful(lost, told):
     columns["gx (dps)"][:lost] = np.nan
     said = said_of(columns, hz=100.0)
     assert said_of(columns) == "" and told in said and bool(told) is bool(said)
+
+
+@pytest.mark.parametrize(
+    ("counts", "said"),
+    [
+        *(([-32_768, 32_767], ""), ([0, 32_767], ""), ([0] * 99 + [32_768], "negative ones")),
+        *(([0, 65_535], "negative ones"), ([0, 65_536], "0 to 65536 are no words of 16 bits")),
+        *(([-1, 32_768], "are no words of 16 bits"), ([-32_769, 0], "-32769 to 0 are no words")),
+        *(([0] * 98 + [65_000, 24_576], "negative ones"), ([0] * 98 + [24_576] * 2, "")),
+        *(([0] * 97 + [65_000] + [24_576] * 2, "around 32768"),),
+        *(([0] * 98 + [40_959] * 2, "around 32768"), ([0] * 98 + [40_960] * 2, "negative ones")),
+        *(([0] * 97 + [65_000] + [24_575] * 2, "negative ones"), ([np.nan] * 9, "")),
+    ],
+)
+@pytest.mark.parametrize("kind", ["gyro", "accel", "temp"])
+def test_counts_are_words_of_16_bits_with_a_sign_or_without(kind, counts, said):
+    name = {"gyro": "gy", "accel": "az", "temp": "temp"}[kind]
+    seen, found = Counts(frozenset([kind])), []
+    for part in np.split(np.array(counts, float), [len(counts) // 2]):
+        columns = {name: part, "level": part.copy()}
+        seen.signed(columns)
+        found += columns[name].tolist()
+    try:
+        told = seen.notes(PATH)
+    except BadRecording as error:
+        told = [str(error)]
+    assert said in "".join(told) and bool(told) is bool(said)
+    signed = [n - 65_536 if 32_768 <= n < 65_536 else n for n in counts]
+    assert np.array_equal(found, signed, equal_nan=True)

@@ -12,7 +12,12 @@ from zerorate_tools.cli import main
 from zerorate_tools.errors import BadRecording, InFile
 from zerorate_tools.importers import cut, import_recording, import_together, read_foreign
 from zerorate_tools.importers.logs import apart
-from zerorate_tools.recordings import read_recording
+from zerorate_tools.recordings import (
+    Scales,
+    read_recording,
+    recording_from_columns,
+    write_recording,
+)
 from zerorate_tools.recordings.checks import GAP
 
 from host_tests.hostile.many_logs import in_this_process
@@ -118,12 +123,16 @@ def test_a_table_is_cut_into_tables_with_the_names_of_the_first(tmp_path, capsys
 
 
 def test_a_recording_is_cut_with_nothing_lost(tmp_path):
-    [whole] = import_together([table(tmp_path / "in.csv", 1.0)], tmp_path / "out")
-    parts = [read_recording(part) for part in cut(whole, [200, 401], tmp_path / "parts")]
-    assert [len(part) for part in parts] == [199, 201, 100]
-    joined = np.concatenate([part.columns["gx"] for part in parts])
-    assert joined.tolist() == read_recording(whole).columns["gx"].tolist()
-    assert parts[1].scales.to_json() == read_recording(whole).scales.to_json()
+    columns = {name: np.arange(140_000) % 9000 for name in ("gx", "gy", "gz")}
+    columns["t_us"] = np.arange(140_000) * 10_000
+    whole = recording_from_columns(columns, Scales("X", 100, 77))
+    write_recording(whole, tmp_path / "in.parquet")
+    at = [200, 401, 66_000, 131_073]
+    parts = [read_recording(part) for part in cut(tmp_path / "in.parquet", at, tmp_path / "parts")]
+    assert [len(part) for part in parts] == [199, 201, 65_599, 65_073, 8928]
+    joined = np.concatenate([part.columns["t_us"] for part in parts])
+    assert (joined == columns["t_us"]).all()
+    assert parts[1].scales.to_json() == whole.scales.to_json()
 
 
 @pytest.mark.parametrize("rows", [[501], [9000]])
