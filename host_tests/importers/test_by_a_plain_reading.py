@@ -175,6 +175,17 @@ def test_tables_of_one_recording_begin_and_end_together(rates_s, force_s, is_one
         refuse_two_recordings(spool, PATH)
 
 
+@pytest.mark.parametrize("every", [3, 120])
+def test_what_lies_on_lines_is_said_with_the_longest_of_them(every):
+    columns, at = at_rest(1000), np.arange(1000)
+    for name in (*FORCE, "temp_c"):
+        columns[name] = np.where(at % every, np.nan, columns[name])
+    _, _, report = imported(columns)
+    lines = [note for note in report.notes if "interpolated" in note]
+    assert [line.partition("over at most ")[2] for line in lines] == [duration(every / 100)] * 2
+    assert report.rows_written == 1000 and not report.dropped
+
+
 @given(st.floats(0.01, 1000.0), st.lists(st.integers(1, 79), max_size=3))
 def test_rows_that_are_counted_come_at_the_rate_that_is_given(hz, cuts):
     columns = {name: np.sin(np.arange(80.0)) for name in RATES}

@@ -54,23 +54,9 @@ def test_any_encoding_is_read(tmp_path, encoding):
     assert recording.temp_degc()[0] == pytest.approx(25)
 
 
-@pytest.mark.parametrize(
-    "before", ["\n\n", "# a log\n# of a day\n", "Device: X\nStarted at noon\n\n"]
-)
-def test_lines_before_the_header_are_skipped(tmp_path, before):
-    recording, _ = read(tmp_path, before + table(200).to_csv(index=False))
-    assert len(recording) == 200
-
-
 def test_json_without_numbers_says_what_to_do(tmp_path):
     with pytest.raises(BadRecording, match="JSON, and no numbers in it; write an object for each"):
         read(tmp_path, '{"t": "now"}\n{"t": "then"}\n')
-
-
-def test_a_line_that_is_no_json_is_counted(tmp_path):
-    lines = table(50).to_json(orient="records", lines=True).splitlines()
-    recording, report = read(tmp_path, "\n".join([*lines[:49], lines[49][:20]]), "in.jsonl")
-    assert len(recording) == 49 and report.dropped["a line that is no JSON"] == 1
 
 
 def test_dicts_as_python_prints_them_are_read_one_a_line(tmp_path):
@@ -116,15 +102,9 @@ def test_what_holds_tables_and_is_not_read_says_what_to_do_with_it(tmp_path, fir
         read(tmp_path, first + bytes(500))
 
 
-def test_lines_of_blanks_are_no_rows(tmp_path):
-    text = table(50).to_csv(index=False).replace("\n", "\n  \n")
-    recording, report = read(tmp_path, text)
-    assert len(recording) == 50 and not report.dropped
-
-
-def test_comments_between_rows_are_no_rows(tmp_path):
+def test_comments_and_blanks_between_rows_are_no_rows(tmp_path):
     lines = table(200).to_csv(index=False).splitlines()
-    lines.insert(50, "# somebody knocked")
+    lines[50:50] = ["# somebody knocked", "  ", ""]
     recording, report = read(tmp_path, "\n".join(lines))
     assert len(recording) == 200 and not report.dropped
 
@@ -248,20 +228,9 @@ def test_an_attitude_is_offered_with_ready_words(tmp_path, names):
     assert not told(report, "an attitude")
 
 
-def test_a_gap_that_somebody_filled_is_a_gap(tmp_path):
-    frame = table()
-    frame["t_s"] += 1e-3 * RNG.random(len(frame))
-    frame.iloc[500:700, 1:] = np.nan
-    frame.iloc[np.flatnonzero(RNG.random(2000) < 0.05), 1:] = np.nan
-    lost = frame.gx_dps.isna().sum()
-    recording, report = read(tmp_path, frame.interpolate().bfill())
-    assert sum(report.dropped.values()) == pytest.approx(lost, rel=0.05)
-    assert told(report, "a gap of 2")
-
-
 def test_quick_motion_and_coarse_counts_lie_on_no_lines(tmp_path):
-    at = np.arange(20_000) / 1000
-    for noise_lsb in (0, 0.3, 1, 3):
+    at = np.arange(5000) / 1000
+    for noise_lsb in (0, 1):
         frame = pd.DataFrame({"t_s": at})
         for axis, hz in zip("xyz", (1.0, 1.3, 1.7)):
             dps = 150 * np.sin(2 * np.pi * hz * at) + 100 * np.sin(4.4 * np.pi * hz * at)
@@ -272,41 +241,6 @@ def test_quick_motion_and_coarse_counts_lie_on_no_lines(tmp_path):
 
 
 RNG = np.random.default_rng(3)
-
-
-def test_a_gap_of_five_minutes_does_not_change_the_rate(tmp_path):
-    frame = table()
-    frame.loc[1000:, "t_s"] += 300
-    recording, report = read(tmp_path, frame)
-    assert recording.scales.odr_hz == pytest.approx(100, rel=1e-4)
-    assert told(report, "a gap of 5 min in the time stamps")
-
-
-@pytest.mark.parametrize("back_s", [65.536, 3600])
-def test_a_short_counter_that_ran_over_and_the_end_of_summer_time_are_no_disorder(tmp_path, back_s):
-    frame = table()
-    frame["t_s"] += 7200
-    frame.loc[1000:, "t_s"] -= back_s
-    with pytest.raises(BadRecording, match="row 1001: time begins anew; cut it there"):
-        read(tmp_path, frame)
-
-
-def test_a_stamp_that_lost_or_won_a_digit_is_left_out(tmp_path):
-    frame = table().rename(columns={"t_s": "t_us"})
-    frame["t_us"] = 788_201_245 + 13_000 * np.arange(2000)
-    frame.loc[500, "t_us"] = 79_470_245
-    frame.loc[1500, "t_us"] = 8_077_012_459
-    recording, report = read(tmp_path, frame)
-    assert len(recording) == 1998 and np.diff(recording.columns["t_us"]).max() == 26_000
-    assert told(report, "dropped 2 rows: the time stamp is torn")
-
-
-@pytest.mark.parametrize("behind_s", [0.2, 5000])
-def test_two_clocks_that_take_turns_are_two_devices(tmp_path, behind_s):
-    frame = table()
-    frame.loc[1::2, "t_s"] += behind_s
-    with pytest.raises(BadRecording, match="2 devices take turns: time goes back .*file of its"):
-        read(tmp_path, frame)
 
 
 def test_a_column_of_days_beside_one_of_times_is_no_time(tmp_path):
@@ -380,19 +314,6 @@ def test_stamps_beyond_64_bits_are_refused_with_their_row(tmp_path):
         read(tmp_path, text)
 
 
-def test_acceleration_on_rows_of_its_own_chooses_its_range(tmp_path):
-    frame = table()
-    forces = [f"a{axis}_g" for axis in "xyz"]
-    apart = frame[["t_s", *forces]].assign(az_g=1.0)
-    apart.loc[apart.index[-len(apart) // 4 :], "az_g"] = 5.0
-    apart["t_s"] += 0.003
-    merged = pd.concat([frame.drop(columns=forces), apart]).sort_values("t_s")
-    recording, report = read(tmp_path, merged)
-    at_end = recording.accel_g()[-10:, 2]
-    assert at_end == pytest.approx(np.full(10, 5.0), abs=0.001)
-    assert told(report, "strongest acceleration: 5 g")
-
-
 def test_lines_of_esp_idf_have_their_own_clock_and_colours(tmp_path):
     clock = [f"\x1b[0;32mI ({320 + 10 * n}) imu:" for n in range(300)]
     rates = np.random.default_rng(1).normal(0.5, 0.1, 300)
@@ -401,15 +322,6 @@ def test_lines_of_esp_idf_have_their_own_clock_and_colours(tmp_path):
     words = "gx=gx:dps gy=gy:dps gz=gz:dps"
     recording, report = read(tmp_path, text, name="in.log", mapping=words)
     assert len(recording) == 300 and recording.scales.odr_hz == pytest.approx(100)
-
-
-def test_a_column_can_be_left_out(tmp_path):
-    frame = table().assign(temp_c="broken")
-    recording, report = read(tmp_path, frame)
-    assert not recording.has_temp
-    assert told(report, "column 'temp_c' left out: no number is in it")
-    recording, _ = read(tmp_path, table(), mapping="temp=none ax=none")
-    assert not recording.has_temp and not recording.has_accel
 
 
 def test_one_unit_is_offered_for_the_three_rates_if_one_of_them_is_fast(tmp_path):
@@ -428,27 +340,6 @@ def test_p_q_r_are_offered_as_rates_even_as_long_as_gravity(tmp_path):
     frame[["p", "q", "r"]] = [0.6, 0.0, 0.8]
     with pytest.raises(BadRecording, match="if these are rates: --map gx=p"):
         read(tmp_path, frame)
-
-
-@pytest.mark.parametrize(("unit", "of_unit"), [("dps", 1.0), ("rad/s", 57.29578)])
-@pytest.mark.parametrize("lsb_per_dps", [131.0, 65.536, 16.4, 57.14])
-def test_the_steps_of_a_chip_tell_the_unit_whatever_the_name_says(
-    tmp_path, unit, of_unit, lsb_per_dps
-):
-    frame = rates(["stamp", *(f"angular_velocity.{a}" for a in "xyz")])
-    readings = np.round(30 * frame.iloc[:, 1:] * lsb_per_dps) / lsb_per_dps
-    frame.iloc[:, 1:] = (readings / of_unit).round(7)
-    recording, report = read(tmp_path, frame, units={"time": "s"})
-    assert f"gyro taken in {unit}: its steps are those of a chip" in report.notes
-    assert recording.gyro_dps() == pytest.approx(readings.to_numpy(), abs=0.01)
-
-
-@pytest.mark.parametrize("step", [0.1, 0.01, 0.001, 0.0001, 0.05, 0.002, 0.0625, 1 / 900])
-def test_digits_that_somebody_printed_are_no_steps_of_a_chip(tmp_path, step):
-    frame = rates(["stamp", *(f"angular_velocity.{a}" for a in "xyz")])
-    frame.iloc[:, 1:] = step * np.round(40 * (frame.iloc[:, 1:] - 0.8) / 0.05)
-    _, report = read(tmp_path, frame, units={"time": "s"})
-    assert "gyro taken in rad/s: as in ROS" in report.notes
 
 
 def test_milliseconds_beside_a_second_are_the_time(tmp_path):

@@ -34,23 +34,9 @@ def test_usual_names_need_but_a_unit_and_the_words_for_it_work(tmp_path, names):
     assert recording.gyro_dps().mean() == pytest.approx(0.8, abs=0.02)
 
 
-def test_a_column_that_goes_on_as_a_time_does_is_offered_as_one(tmp_path):
-    frame = rates(["Zeit", "gx_dps", "gy_dps", "gz_dps"])
-    with pytest.raises(BadRecording, match="give --map t_us=Zeit:s"):
-        read(tmp_path, frame)
-    recording, _ = read(tmp_path, frame, mapping="t_us=Zeit:s")
-    assert recording.scales.odr_hz == pytest.approx(100)
-
-
 def test_a_counter_of_rows_is_offered_as_no_time(tmp_path):
     with pytest.raises(BadRecording, match="no time stamps; give --hz"):
         read(tmp_path, rates(["n", "gx_dps", "gy_dps", "gz_dps"]).assign(n=range(2000)))
-
-
-def test_a_unit_in_the_name_is_enough(tmp_path):
-    names = ["Time (s)", "GyroX [deg/s]", "GyroY [deg/s]", "GyroZ [deg/s]"]
-    recording, _ = read(tmp_path, rates(names))
-    assert recording.gyro_dps().mean() == pytest.approx(0.8, abs=0.02)
 
 
 @pytest.mark.parametrize(
@@ -170,16 +156,6 @@ def test_raw_counts_are_asked_for_units_and_then_scales_in_one_go_each(tmp_path)
         read(tmp_path, frame, units=units)
 
 
-def test_radians_named_as_degrees_are_refused_unless_somebody_types_the_unit(tmp_path):
-    frame = table()
-    for axis in "xyz":
-        frame[f"g{axis}_dps"] = np.radians(frame[f"g{axis}_dps"])
-    with pytest.raises(BadRecording, match="did you mean rad/s[?] Give --map gx=gx_dps:rad/s"):
-        read(tmp_path, frame)
-    _, report = read(tmp_path, frame, mapping="gx=gx_dps:dps gy=gy_dps:dps gz=gz_dps:dps")
-    assert "did you mean rad/s?" in report.doubts[0]
-
-
 @pytest.mark.parametrize(
     ("times", "words", "cure"),
     [
@@ -194,14 +170,6 @@ def test_a_force_that_cannot_be_gravity_is_refused(tmp_path, times, words, cure)
     with pytest.raises(BadRecording, match=cure):
         read(tmp_path, frame, mapping=words, options=scale)
     assert "ax" not in read(tmp_path, frame, mapping="ax=none")[0].columns
-
-
-def test_rows_that_are_means_are_known_as_such(tmp_path):
-    frame = table(200, 1 / 15)
-    recording, report = read(tmp_path, frame)
-    assert recording.scales.more["row_is_mean_of_s"] == 15
-    assert recording.scales.gyro_lsb_per_dps == 1000
-    assert told(report, "a row every 15 s: each taken as the mean over that time")
 
 
 def test_a_name_as_long_as_names_may_be_is_written(tmp_path):

@@ -189,16 +189,26 @@ def test_lines_whose_ends_are_no_readings_are_refused_with_their_share(
     assert lost == 99 and (read(out)["gx"] == readings[0]).all()
 
 
-@pytest.mark.parametrize(("louder", "is_change"), [(1 / 1.38, True), (1.38, True), (1.42, False)])
-def test_noise_may_differ_by_two_fifths_beside_a_change_of_unit(louder, is_change):
-    noise = np.tile(np.random.default_rng(1).normal(0, 0.05, (3, 100)), 10)
-    rates = np.hstack([0.5 + noise, 1000 * (0.5 + louder * noise)])
+@pytest.mark.parametrize(
+    ("louder", "shift", "push", "at", "is_change"),
+    [
+        *((1 / 1.38, 0, 0, 1000, True), (1.38, 0, 0, 1000, True), (1.42, 0, 0, 1000, False)),
+        *((1, 0.06, 0, 1000, True), (1, -0.06, 0, 1000, True), (1, 0.09, 0, 1000, False)),
+        *((1, 0, 0.018, 1000, True), (1, 0, 0.022, 1000, False), (1, 0, 0, 100, True)),
+        *((1, 0, 0, 60, False), (1, 0, 0, 1900, True), (1, 0, 0, 1940, False)),
+    ],
+)
+def test_a_change_of_unit_is_the_same_rest_in_other_numbers(louder, shift, push, at, is_change):
+    noise = np.tile(np.random.default_rng(1).normal(0, 0.05, (3, 100)), 20)
+    rates = 0.5 + noise
+    rates[:, at:] = 1000 * (0.5 + shift + louder * noise[:, at:])
     force = np.random.default_rng(2).normal(0, 0.004, (3, 2000)) + np.array([[0.1], [-0.2], [0.97]])
+    force[2, at:] += push
     columns = dict(zip(("gx", "gy", "gz", "ax", "ay", "az"), [*rates, *force]))
     if not is_change:
         judge_change(columns)
         return
-    with pytest.raises(BadRecording, match="row 1001: .* 1000 times"):
+    with pytest.raises(BadRecording, match=f"row {at + 1}: .* 1000 times"):
         judge_change(columns)
 
 
@@ -303,6 +313,11 @@ def test_the_steps_of_a_chip_tell_the_unit(lsb, unit, of):
     counts = np.random.default_rng(1).integers(-99, 99, 400)
     assert unit_by_steps(counts * lsb / of) == unit
     assert unit_by_steps(counts * 1.01 * lsb / of) != unit
+
+
+@pytest.mark.parametrize("step", [0.1, 0.01, 0.001, 0.0001, 0.05, 0.002, 0.0625, 1 / 900])
+def test_digits_that_somebody_printed_are_no_steps_of_a_chip(step):
+    assert unit_by_steps(step * np.random.default_rng(1).integers(-99, 99, 400)) is None
 
 
 @pytest.mark.parametrize("line", [b"(1, 2", b"{[]: 1, 'a': 2}", b"(" * 3000, b"[" * 10**6, b"'"])

@@ -56,18 +56,6 @@ def test_dates_of_any_unit_are_seconds_since_1970(tmp_path, unit, ns):
     assert chunk.columns["at"].tolist() == [count * ns * 1e-9 for count in counts]
 
 
-@pytest.mark.parametrize("rows", [1, 1000, 200_000])
-def test_rows_come_in_order_a_batch_at_a_time(tmp_path, rows):
-    path = tmp_path / "in.parquet"
-    pq.write_table(pa.table({"gx": np.arange(rows), "name": ["a"] * rows}), path)
-    table = columnar.read(path)
-    assert table.names == ["gx"]
-    chunks = [*table.chunks(["gx"])]
-    for found in ([c.place for c in chunks], [c.columns["gx"] for c in chunks]):
-        assert (np.concatenate(found) == np.arange(rows)).all()
-    assert len(chunks) == 1 + (rows - 1 >> 16)
-
-
 def stamped(**stamp):
     """A message of an IMU whose header has that stamp."""
     vector = SimpleNamespace(x=1.0, y=2.0, z=3.0)

@@ -148,15 +148,6 @@ def test_times_and_scales_that_gravity_denies_are_doubted(tmp_path, times):
     assert "--gyro-lsb-per-dps" in doubt
 
 
-def test_rows_that_are_no_samples_are_doubted_where_rows_count_the_time(tmp_path):
-    rates = np.random.default_rng(1).normal(0.5, 0.1, (400, 3))
-    rows = [f"{x:.3f},{y:.3f},{z:.3f}\n" for x, y, z in rates]
-    rows[::9] = [f"{row}--\n" for row in rows[::9]]
-    (tmp_path / "in.csv").write_text("gx_dps,gy_dps,gz_dps\n" + "".join(rows))
-    report = import_recording(tmp_path / "in.csv", tmp_path / "out.csv", options=Options(hz=100))
-    assert "45 of 445 rows" in " ".join(report.doubts)
-
-
 def test_columns_that_do_not_turn_gravity_are_doubted_as_rates(tmp_path):
     t_s, _, force = in_a_hand(push_g=0.0)
     columns = {"t_s": t_s} | dict(zip(("gx_dps", "gy_dps", "gz_dps"), 90 * force[[1, 2, 0]] ** 2))

@@ -280,7 +280,7 @@ def _likely(target: str, wanted: Mapping[str, Mapped], first: Mapping[str, np.nd
     likely = {"m/s2": "rad/s", None: "lsb" if counted else "dps", "lsb": "lsb"}.get(unit, "dps")
     # one unit for the three, by the fastest
     every = np.abs([first[wanted[axis].column] for axis in GYRO if axis in wanted])
-    fast = float(np.nanmax(every, initial=0.0)) * RATE_DPS.get(likely, 1.0) > _FASTEST_DPS
+    fast = np.nanmax(every, initial=0.0) > _FASTEST_DPS / RATE_DPS["rad/s"]
     return "dps" if fast and likely == "rad/s" else likely
 
 

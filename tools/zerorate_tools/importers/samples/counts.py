@@ -42,11 +42,10 @@ class _Seen:
         self.least, self.most, self.middle, self.size = float("inf"), 0.0, 0, 0
 
     def add(self, values: np.ndarray) -> None:
-        if len(values):
-            self.least = min(self.least, float(values.min()))
-            self.most = max(self.most, float(values.max()))
-            self.middle += int(((values >= _MIDDLE[0]) & (values < _MIDDLE[1])).sum())
-            self.size += len(values)
+        self.least = min(self.least, float(values.min(initial=np.inf)))
+        self.most = max(self.most, float(values.max(initial=0.0)))
+        self.middle += int(((values >= _MIDDLE[0]) & (values < _MIDDLE[1])).sum())
+        self.size += len(values)
 
     def refuse(self, kind: str, path: Path) -> None:
         span = f"{kind}: counts from {self.least:.0f} to {self.most:.0f}"

@@ -104,11 +104,11 @@ def _refuse_gravity(seen: dict[str, np.ndarray], plan: Plan, scales: Scales, pat
 def _meant(usual_g: float, plan: Plan, lsb: float) -> str:
     """Ready words for a unit or scale in which it would be gravity, where one is known."""
     if "accel" in plan.raw:
-        near = [r for r in _RANGES_LSB if abs(math.log(usual_g * lsb / r)) < _GRAVITY_WITHIN]
+        near = [r for r in _RANGES_LSB if abs(usual_g * lsb / r - 1.0) < _GRAVITY_WITHIN]
         return f"give --accel-lsb-per-g {near[0]}; else " if near else ""
     for unit, size in _GRAVITY.items():
         for ratio, meant in ((size, unit), (1 / size, "g")):
-            if usual_g > 0 and abs(math.log(usual_g / ratio)) < _GRAVITY_WITHIN:
+            if abs(usual_g / ratio - 1.0) < _GRAVITY_WITHIN:
                 return f"did you mean {meant}? Give {unit_words(plan.wanted, 'ax', meant)}; else "
     return ""
 
@@ -189,8 +189,8 @@ def _gravity_turns_times(seen: dict[str, np.ndarray], plan: Plan, scales: Scales
 def _turns(seen, plan, scales) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(3, n) rates in dps, (3, n) force and (n,) seconds."""
     rates, force = (np.array([seen[name] for name in axes]) for axes in (GYRO, ACCEL))
-    lsb = scales.gyro_lsb_per_dps if "gyro" in plan.raw else None
-    return rates / (lsb or 1.0), force, seen[TIME] * 1e-6
+    lsb = scales.gyro_lsb_per_dps if "gyro" in plan.raw else 1.0
+    return rates / lsb, force, seen[TIME] * 1e-6
 
 
 def _of_axes(seen: dict[str, np.ndarray], plan: Plan, scales: Scales) -> list[str]:
@@ -222,7 +222,7 @@ def _of_turning(times: Size, counted: bool, plan: Plan, scales: Scales, path: Pa
     said = f"gravity turns {times.dps:.2g} times as fast as the rates"
     time = "--hz" if counted else "the time"
     if "gyro" in plan.raw:
-        lsb = (scales.gyro_lsb_per_dps or 1.0) / times.dps
+        lsb = scales.gyro_lsb_per_dps / times.dps
         return [f"{said}: did you mean --gyro-lsb-per-dps {lsb:.3g}? Or is {time} wrong"]
     meant = rate_unit_of(times, plan.factors["gx"][0])
     if meant is None:

@@ -68,12 +68,8 @@ def levels_in_turn(stretches: list[np.ndarray]) -> int:
 
     stretches: (rows, columns) each.
     """
-    blocks = [
-        rows[at : at + _BLOCK]
-        for rows in stretches
-        for at in range(0, len(rows) - _BLOCK + 1, _BLOCK)
-    ]
-    whole = [block for block in blocks if np.isfinite(block).all()]
+    blocks = [r[at : at + _BLOCK] for r in stretches for at in range(0, len(r), _BLOCK)]
+    whole = [block for block in blocks if len(block) == _BLOCK and np.isfinite(block).all()]
     if not whole:
         return 0
     counts = range(2, _MOST_DEVICES + 1)

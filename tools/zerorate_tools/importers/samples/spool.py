@@ -109,20 +109,17 @@ class Runs:
 
     def add(self, t_us: np.ndarray, place: np.ndarray) -> None:
         """Take the time stamps of the next rows."""
-        if not len(t_us):
-            return
-        if self._begin is None:
+        if self._begin is None and len(t_us):
             self._begin, self._last = (t_us[0], int(place[0])), t_us[0]
-        before = self._last
-        back = np.flatnonzero(np.diff(t_us, prepend=before) < 0)
+        read, start = np.append(self._last, t_us), 0
+        back = np.flatnonzero(np.diff(read) < 0).tolist()
         self.steps_back += len(back)
-        start = 0
-        for at in back.tolist():
-            self._rows += int(at - start)
-            self._close(t_us[at - 1] if at else before)
-            start, self._begin = int(at), (t_us[at], int(place[at]))
+        for at in back:
+            self._rows += at - start
+            self._close(read[at])
+            start, self._begin = at, (t_us[at], int(place[at]))
         self._rows += len(t_us) - start
-        self._last = t_us[-1]
+        self._last = read[-1]
 
     def refuse_a_restart(self, path: Path) -> None:
         """Raise BadRecording where two long stretches claim the same time, or where one leads back
