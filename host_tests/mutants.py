@@ -166,7 +166,8 @@ AREAS = {
     ),
     "fleet": (
         [_TOOLS + "fleet/"],
-        ["fleet/test_cluster.py", "fleet/test_population.py", _FIGURES + "[fleet of ten]"],
+        ["fleet/test_run.py", "fleet/test_population.py", "fleet/test_cluster.py",
+         _FIGURES + "[fleet of ten]"],
     ),
     "boards": (
         [_TOOLS + "boards/"],

@@ -26,6 +26,7 @@ class HostBoard:
         self._names, self._has_crc, self.programs = {}, has_crc, []
 
     def exec_raw(self, program, timeout):
+        assert timeout == 120
         self.programs.append(program)
         with redirect_stdout(StringIO()) as said:
             exec(program, self._names)

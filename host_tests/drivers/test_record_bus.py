@@ -17,6 +17,7 @@ from zerorate_i2c.mpu6050 import MPU6050
 from zerorate_tools import cli
 from zerorate_tools.boards import bus, fake_hand
 from zerorate_tools.boards.bus import record_bus, stream_bus
+from zerorate_tools.boards.fake_chip import FakeBus
 from zerorate_tools.boards.recorder import Recorded, Recorder
 from zerorate_tools.errors import InFile, ZerorateError
 from zerorate_tools.recordings import Recording, Scales, growing, read_recording
@@ -272,6 +273,13 @@ def test_the_emulated_chip_is_of_the_part_and_the_rate_asked_for(tmp_path, words
     assert cli.main(line) == 0 and cli.main([*line, "--part", "nosuch"]) == 2
     recording = read_recording(out)
     assert recording.scales.sensor == part and len(recording) > 1.9 * hz
+
+
+def test_an_emulated_chip_that_rests_has_a_bias():
+    imu, rates = MPU6050(FakeBus()), array("i", [0] * 7)
+    imu.clock.sleep_ms(20)
+    imu.read(rates)
+    assert list(rates[4:]) == pytest.approx([0.31 * 131, -0.19 * 131, 0.08 * 131], abs=20)
 
 
 def test_a_simulated_hand_feels_nothing_new_after_its_recording():

@@ -1,9 +1,10 @@
 """A small fleet of simulated devices that all tests of this area run."""
 
+from contextlib import nullcontext
+
 import pytest
-from distributed import LocalCluster
 from zerorate_bench.fleet import write_devices
-from zerorate_tools.fleet import devices_of, fleet
+from zerorate_tools.fleet import devices_of, fleet, whole_fleet
 
 DEVICES = 12
 
@@ -20,15 +21,20 @@ def data(tmp_path_factory):
 def done(data, tmp_path_factory):
     """(what came of running it, the folder with what was written)."""
     out = tmp_path_factory.mktemp("fleet") / "out"
-    return fleet(devices_of([data]), out, workers=2, minutes=1.5), out
+    with pytest.MonkeyPatch.context() as patch:
+        run_here(patch)
+        return fleet(devices_of([data]), out), out
 
 
-@pytest.fixture(scope="module")
-def scheduler():
-    """The address of a cluster of one worker, which starts once: it imports for seconds.
+def run_here(patch):
+    """Let this process do the tasks of a fleet, one after the other, without a cluster."""
 
-    It ends with the file, for its threads would see what other tests put in the place of the clock.
-    """
-    with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address="127.0.0.1:0") as there:
-        yield there.scheduler_address
-        assert len(there.workers) == 1
+    def run(client, function, batches):
+        return ((batch, function(batch)) for batch in batches)
+
+    for name, instead in (
+        ("cluster", lambda *of: nullcontext()),
+        ("size_of", lambda client: 1),
+        ("run_all", run),
+    ):
+        patch.setattr(whole_fleet, name, instead)

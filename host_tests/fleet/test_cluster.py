@@ -8,13 +8,15 @@ import sys
 import textwrap
 import threading
 import time
+from functools import partial
 from pathlib import Path
 
 import pytest
 from distributed import Client
 from zerorate_tools.cli import main
-from zerorate_tools.errors import ZerorateError
+from zerorate_tools.errors import MissingLibrary, ZerorateError
 from zerorate_tools.fleet import devices_of, fleet
+from zerorate_tools.fleet.cluster import _safe_path, cluster, run_all
 from zerorate_tools.fleet.devices import here, size_and_change, urls_of
 from zerorate_tools.recordings import read_recording, write_recording
 
@@ -23,6 +25,7 @@ from .conftest import DEVICES
 #: What a machine has on which nobody installed zerorate.
 WITHOUT_ZERORATE = """
 import sys
+from functools import partial
 from pathlib import Path
 sys.path[:] = [p for p in sys.path if not (Path(p) / "zerorate_tools").exists()]
 sys.meta_path[:] = [f for f in sys.meta_path if "editable" not in str(f)]
@@ -119,6 +122,68 @@ def test_when_all_workers_or_the_scheduler_die_it_says_so(others, data, tmp_path
     with pytest.raises(ZerorateError, match=named):
         fleet(devices_of([data]), tmp_path / "out", scheduler=others.address, minutes=None)
     assert time.monotonic() - died_s[0] < 15
+
+
+def test_without_a_cache_it_runs_and_says_so_once(data, tmp_path):
+    home = tmp_path / "not a folder"
+    home.write_text("")
+    environment = {name: text for name, text in os.environ.items() if name != "XDG_CACHE_HOME"}
+    environment.update(HOME=str(home), ZERORATE_CACHE="")
+    folders = sorted(str(path.parent) for path in data.rglob("*.parquet"))[:2]
+    command = [sys.executable, "-m", "zerorate_tools.cli", "fleet", *folders, "--workers", "1"]
+    command += ["--out", str(tmp_path / "out"), "--minutes", "1"]
+    ran = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    assert ran.stderr.count("no cache can be kept (Not a directory)") == 1
+    report = json.loads((tmp_path / "out" / "fleet.json").read_text())
+    assert (report["devices"], report["failures"]) == (2, [])
+
+
+def test_without_dask_nothing_is_left_behind(data, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "dask", None)
+    with pytest.raises(MissingLibrary):
+        fleet(devices_of([data]), tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def double_or_die(batch):
+    if "die" in batch:
+        os._exit(1)
+    return [2 * item for item in batch]
+
+
+@pytest.mark.parametrize("before", [None, "0"])
+def test_the_callers_environment_is_afterwards_as_it_was(before, monkeypatch):
+    monkeypatch.delenv("PYTHONSAFEPATH", raising=False)
+    if before is not None:
+        monkeypatch.setenv("PYTHONSAFEPATH", before)
+    with pytest.raises(KeyError), _safe_path():
+        assert os.environ["PYTHONSAFEPATH"] == "1"
+        raise KeyError
+    assert os.environ.get("PYTHONSAFEPATH") == before
+
+
+def test_a_batch_whose_worker_dies_costs_only_the_item_that_killed_it():
+    import distributed
+
+    with cluster(workers=1) as client:
+        batches = [["a", "die", "b"], ["c"]]
+        results = {tuple(b): result for b, result in run_all(client, double_or_die, batches)}
+    died = results.pop(("die",))
+    assert isinstance(died, distributed.scheduler.KilledWorker)
+    assert results == {("a",): ["aa"], ("b",): ["bb"], ("c",): ["cc"]}
+
+
+def test_more_batches_than_the_scheduler_may_hold_all_come_back(monkeypatch):
+    monkeypatch.setattr("zerorate_tools.fleet.cluster.MOST_WAITING", 3)
+    with cluster(workers=1) as client:
+        results = list(run_all(client, partial(map, abs), [[i] for i in range(20)]))
+    assert sorted(batch[0] for batch, _ in results) == list(range(20))
+
+
+def test_a_scheduler_that_does_not_answer_is_said(data, tmp_path, monkeypatch):
+    monkeypatch.setattr("zerorate_tools.fleet.cluster._CONNECT_S", 0.2)
+    with pytest.raises(ZerorateError, match="no Dask scheduler answers"):
+        fleet(devices_of([data])[:1], tmp_path, scheduler="tcp://127.0.0.1:9")
 
 
 @pytest.fixture

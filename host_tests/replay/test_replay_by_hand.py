@@ -2,13 +2,15 @@
 
 import os
 import sys
+from contextlib import nullcontext
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from zerorate.model import EffectModel
 from zerorate_tools.errors import InFile, ZerorateError
-from zerorate_tools.layout import MOTION, MOTION_SETTINGS
+from zerorate_tools.layout import EFFECTS, MOTION, MOTION_SETTINGS
 from zerorate_tools.model import Slot, build_model, encoded, write_model
 from zerorate_tools.model.files import sensor_for
 from zerorate_tools.model.term import Term
@@ -38,10 +40,14 @@ DEVICE = {
         "temperature": [{"to": 30.0, "s": 40}],
         "motion": [{"kind": "rest", "s": 15}, {"kind": "hand", "s": 5}],
     },
-    "channels": {"load": {"kind": "levels", "low": 10, "high": 250, "mean_s": 6}},
+    "channels": {
+        name: {"kind": "levels", "low": 10, "high": 250, "mean_s": s}
+        for name, s in (("load", 6), ("fan", 4))
+    },
 }
 SLOTS = [
     Slot(Term("load", 0, 250, 100), (0.001, -0.002, 0.0)),
+    Slot(Term("fan", 0, 250, 100), (-0.002, 0.001, 0.001)),
     Slot(Term("temp", 20, 45, 30, lag_mode="lag", lag_s=20), (0.01, 0.0, 0.02)),
 ]
 
@@ -153,15 +159,25 @@ def test_absent_channels_have_no_scale():
     assert (sensor.accel_lsb_per_g, sensor.temp_lsb_per_degc, sensor.temp_offset_degc) == (0, 0, 0)
 
 
-def test_a_kept_state_is_of_the_same_model_or_refused(recording, model, tmp_path):
-    state, again = tmp_path / "state.bin", tmp_path / "again.bin"
-    replay(recording, model=model, state=state)
-    replay(recording, model=model, from_state=state, state=again)
-    assert len(again.read_bytes()) == len(state.read_bytes())
-    other = build_model([SLOTS[0], SLOTS[0]], recording.scales)
-    (tmp_path / "other.bin").write_bytes(encoded(other))
-    with pytest.raises(InFile, match="of another effect model"):
-        replay(recording, model=tmp_path / "other.bin", from_state=state)
+@pytest.mark.parametrize("slots", [[], SLOTS])
+def test_a_kept_state_is_of_the_same_model_or_refused(recording, tmp_path, slots):
+    short, state, model = recording.between(0, 99), tmp_path / "state.bin", tmp_path / "model.bin"
+    model.write_bytes(encoded(build_model(slots, recording.scales)))
+    replay(short, model=model, state=state)
+    kept = np.frombuffer(state.read_bytes(), "<i4")
+    first = len(kept) - len(EffectModel().e)
+    last = max(0, len(slots) - 1)
+    for word, more, is_taken in (
+        (EFFECTS.NEXT_SLOT, last, True),
+        (EFFECTS.NEXT_SLOT, last + 1, False),
+        (EFFECTS.NEXT_SLOT, -1, False),
+        *((given, more, False) for given in (EFFECTS.TICK_US, EFFECTS.INPUTS) for more in (-1, 1)),
+    ):
+        changed = kept.copy()
+        changed[first + word] = more + (word != EFFECTS.NEXT_SLOT) * kept[first + word]
+        state.write_bytes(changed.tobytes())
+        with nullcontext() if is_taken else pytest.raises(InFile, match="another effect model"):
+            replay(short, model=model, from_state=state)
 
 
 def test_a_state_has_as_many_nodes_filled_as_there_are_at_most(recording):

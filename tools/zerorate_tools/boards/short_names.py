@@ -154,7 +154,8 @@ def _const(node: ast.AST) -> Iterator[tuple[str, int]]:
     """Name and value of `NAME = const(value)`."""
     if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call):
         if _identifiers(node.value.func) == ["const"]:
-            yield _identifiers(node.targets[0])[0], ast.literal_eval(node.value.args[0])
+            [[name]], [value] = map(_identifiers, node.targets), node.value.args
+            yield name, ast.literal_eval(value)
 
 
 def _is_private(name: str) -> bool:
@@ -171,7 +172,7 @@ def _inner_names(path: Path, tree: ast.Module) -> Iterator[str]:
         if isinstance(node, ast.FunctionDef):
             yield node.name
         elif isinstance(node, ast.Assign):
-            yield from (name for name in _identifiers(node.targets[0]) if name.isupper())
+            yield from filter(str.isupper, chain(*map(_identifiers, node.targets)))
 
 
 def _fixed(nodes: Iterable[ast.AST]) -> set[str]:

@@ -78,12 +78,8 @@ def engine(name: str) -> Engine:
 
     Raises MissingRuntime.
     """
-    if name == "native":
-        return NativeEngine()
-    if name == "cpython":
-        return CPythonEngine()
-
-    return InterpreterEngine(find(name))
+    own = {"native": NativeEngine, "cpython": CPythonEngine}
+    return own[name]() if name in own else InterpreterEngine(find(name))
 
 
 class NativeEngine(Engine):
@@ -143,9 +139,8 @@ class CPythonEngine(Engine):
     def run(self, corrector: Corrector, batches: Iterable[Frames]) -> Iterator[Outcome]:
         for batch in batches:
             rows = np.empty(len(batch), _OUTPUT)
-            frame = array("i", [0] * 7)
             for i in range(len(batch)):
-                frame[:] = array("i", batch.frames[i].tolist())
+                frame = array("i", batch.frames[i].tolist())
                 for k, value in enumerate(batch.extra[i].tolist()):
                     if value != GAP:
                         corrector.effects.channel(k, value)

@@ -54,8 +54,7 @@ if effects:
     corrector.use_model(model)
     channels = int(sys.argv[1])
 row_words = 8 + channels
-frame = array("i", [0] * 7)
-out = array("i", [0] * 17)
+out = array("i", bytes(68))
 words = bytearray(4 * row_words * _ROWS)
 
 with open("frames.bin", "rb") as source, open("out.bin", "wb") as target:
@@ -66,8 +65,7 @@ with open("frames.bin", "rb") as source, open("out.bin", "wb") as target:
         rows = array("i", words)
         for i in range(count):
             start = row_words * i
-            for k in range(7):
-                frame[k] = rows[start + 1 + k]
+            frame = rows[start + 1 : start + 8]
             for k in range(channels):
                 if rows[start + 8 + k] != _GAP:
                     effects[_CHANNELS + k] = rows[start + 8 + k]
