@@ -11,7 +11,7 @@ from zerorate_tools.closing import close, load
 from zerorate_tools.loop.read.gate import CannotClose
 from zerorate_tools.recordings import Recording
 
-from .power_ons import HZ, MPU, at_rest, written
+from .power_ons import MPU, at_rest, written
 
 N = 6000
 
@@ -22,41 +22,6 @@ def invented(analysis):
 
 def wander(seed, n=N):
     return np.cumsum(np.random.default_rng(seed + 50).normal(0, 3, n)).astype(np.int32)
-
-
-def test_a_constant_channel_is_set_aside_and_named(closing):
-    analysis = closing([{**at_rest(i), "vdd_mv": np.full(N, 3300)} for i in range(4)])
-    assert analysis.gate.dropped == {"vdd_mv": "constant"} and invented(analysis) == []
-
-
-def test_of_two_channels_that_are_copies_the_first_is_kept(closing):
-    analysis = closing([{**at_rest(i), "a": wander(i), "b": 3 * wander(i) + 2} for i in range(4)])
-    assert "copy of a" in analysis.gate.dropped["b"] and invented(analysis) == []
-
-
-def test_a_channel_with_the_gyroscopes_own_noise_is_no_cause(closing):
-    every = [at_rest(i) for i in range(4)]
-    for one in every:
-        one["rate2"] = 7 * one["gy"] + 40
-    analysis = closing(every)
-    assert "own noise" in analysis.gate.dropped["rate2"] and invented(analysis) == []
-
-
-def test_where_the_firmware_sees_shaking_and_learns_nothing_it_is_said(closing):
-    every = [at_rest(i) for i in range(4)]
-    for i, one in enumerate(every):
-        one["az"] = one["az"] + np.random.default_rng(i).normal(0, 1000, N).astype(np.int32)
-    (note,) = closing(every).gate.notes
-    assert " % of the rests" in note and "0.03 g" in note
-    assert closing([at_rest(i) for i in range(4)]).gate.notes == []
-
-
-@pytest.mark.filterwarnings("error")
-@pytest.mark.parametrize(("samples", "minutes"), [(10, "0.0"), (100, "0.2")])
-def test_of_four_a_short_one_is_left_out_and_named(closing, samples, minutes):
-    few = {name: values[:samples] for name, values in at_rest(4).items()}
-    analysis = closing([*(at_rest(i) for i in range(3)), few])
-    assert len(analysis.sessions) == 3 and f"s3: {minutes} minutes" in analysis.gate.notes[0]
 
 
 def test_a_channel_that_one_recording_lacks_is_set_aside_and_named(closing):
@@ -155,19 +120,6 @@ def test_a_channel_of_any_name_leaves_the_rates_alone(closing, name):
     assert invented(analysis) == []
 
 
-def test_a_channel_named_like_a_source_of_the_model_is_set_aside_and_named(closing):
-    every = [{**at_rest(i), "vib": np.arange(N)} for i in range(3)]
-    assert "rename the column" in closing(every).gate.dropped["vib"]
-
-
-@pytest.mark.parametrize("hours, words", [(10, "10.0 h of its"), (1.9, "114.0 min of its")])
-def test_a_recording_that_is_mostly_a_gap_is_told_to_be_cut(closing, hours, words):
-    one = at_rest(1)
-    one["t_us"][N // 2 :] += int(hours * 3600 * 1_000_000)
-    with pytest.raises(CannotClose, match=f"s0: nothing for {words} .* cut it there"):
-        closing([one])
-
-
 def test_a_temperature_at_the_rails_is_no_temperature(closing):
     every = [at_rest(i) for i in range(3)]
     for i, one in enumerate(every):
@@ -184,20 +136,10 @@ def test_an_accelerometer_that_gives_nothing_is_none(closing):
     assert invented(closing(every)) == []
 
 
-def test_power_ons_whose_clocks_differ_a_little_are_of_one_device(closing):
-    clocks = [replace(MPU, odr_hz=HZ * k) for k in (1.0, 1.0002, 0.97)]
-    assert len(closing([at_rest(i) for i in range(3)], *clocks).sessions) == 3
-
-
 def test_rows_of_fifteen_seconds_lie_alike_in_every_power_on(closing):
     slow = [{**at_rest(i, 480), "t_us": 15_000_000 * np.arange(480)} for i in range(3)]
     sessions = closing(slow, *(replace(MPU, odr_hz=hz) for hz in (1 / 15, 0.0667, 0.066))).sessions
     assert len({(s.block_s, s.ticks_per_block) for s in sessions}) == 1
-
-
-def test_another_data_rate_is_another_setting(closing):
-    with pytest.raises(CannotClose, match="odr_hz is 2.5, but 5.0 in s0"):
-        closing([at_rest(0), at_rest(1)], MPU, replace(MPU, odr_hz=HZ / 2))
 
 
 def test_a_part_that_an_import_was_not_told_is_named_as_the_other_one_is(closing):

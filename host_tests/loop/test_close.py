@@ -12,7 +12,6 @@ from zerorate_tools.loop.analyse import sessions_of
 from zerorate_tools.loop.read.gate import CannotClose
 from zerorate_tools.loop.read.still import still_ticks
 from zerorate_tools.loop.read.ticks import read_ticks
-from zerorate_tools.loop.report.report import report
 from zerorate_tools.loop.verify.firmware import Firmware, Refused
 from zerorate_tools.loop.verify.run_kernels import _measured
 from zerorate_tools.model import read_model
@@ -32,11 +31,6 @@ def test_a_device_with_hysteresis_is_closed(closed):
         assert low < high
     assert result["smallest_detectable_mdps"]["thermal-hysteresis"] > 0
     assert (folder / "model.bin").stat().st_size > 0
-
-
-def test_another_recording_can_be_held_out(logs):
-    analysis = load(logs, holdout=logs[0])
-    assert [s.name for s in analysis.holdout] == ["session-1"]
 
 
 def test_the_same_recording_twice_is_refused(logs):
@@ -77,20 +71,6 @@ def test_a_steady_turn_is_not_stillness(tmp_path):
     [path] = written(tmp_path, [Recording(columns, scales, "turning")])
     still = still_ticks(read_ticks(path))
     assert not still[5:55].any() and still[70:290].all()
-
-
-def test_two_sessions_leave_one_to_choose_on_and_one_to_judge_by(logs):
-    analysis = load(logs[:2])
-    assert [s.name for s in analysis.train] == ["session-1"]
-    assert "thermal-hysteresis" in [f.candidate.kind for f in analysis.selection.found]
-
-
-def test_nothing_that_is_deployed_is_told_as_refused(logs):
-    analysis = load(logs[:2])
-    for effect in ("thermal-hysteresis", "temperature-kink"):
-        analysis.selection.refused.append((effect, "another of its kind"))
-    told = dict(report(analysis)["gate"]["considered_and_refused"])
-    assert "thermal-hysteresis" not in told and "temperature-kink" in told
 
 
 def test_long_recordings_with_long_gaps_get_longer_blocks(tmp_path):

@@ -6,31 +6,8 @@ import numpy as np
 import pytest
 from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.loop.fit.regression import Regression
-from zerorate_tools.loop.fit.single import PiecesByLine
 from zerorate_tools.loop.search.catalogue import candidates
-from zerorate_tools.loop.search.select import select
 from zerorate_tools.model.term import Term
-
-
-@pytest.fixture(scope="module")
-def known():
-    """Kind -> its first candidate's first term, and by source what the sessions show of it."""
-    sessions = simulate(1).sessions[:-1]
-    terms = {c.kind: c.terms[0] for c in reversed(candidates(sessions))}
-    return terms, {n: np.concatenate([s.source(n) for s in sessions]) for n in ("temp", "vdd_mv")}
-
-
-@pytest.mark.parametrize("kind", ["temperature-cubic", "thermal-lag", "supply-voltage"])
-def test_what_rests_show_is_followed_beyond_it(known, kind):
-    terms, seen = known
-    term = terms[kind]
-    assert term.lo < seen[term.source].min() and term.hi > seen[term.source].max()
-
-
-def test_a_product_is_followed_in_both_of_its_sources(known):
-    terms, seen = known
-    term = terms["supply-temperature"]
-    assert term.lo < seen[term.source].min() and term.second_hi > seen[term.second].max()
 
 
 @pytest.mark.parametrize("kind", ["time-drift", "vibration", "linear-acceleration"])
@@ -39,13 +16,6 @@ def test_time_and_what_a_hand_takes_far_are_held_where_they_end(kind):
     (term, *_) = next(c for c in candidates(sessions) if c.kind == kind).terms
     values = np.concatenate([s.source(term.source) for s in sessions])
     assert values.min() <= term.lo < term.hi <= values.max()
-
-
-@pytest.mark.parametrize("kind", ["temperature-kink", "temperature-quadratic"])
-def test_the_curve_of_one_recording_goes_on_beyond_its_temperatures(kind):
-    (session,) = simulate(3, [(kind, 10.0)], sessions=1, bare=True).sessions
-    (found,) = select([session], on_pieces=PiecesByLine(session)).found
-    assert all(t.hi > session.sources["temp"].max() for t in found.candidate.terms)
 
 
 # 6 mdps of noise a block over a hundred poses and more, thrice
@@ -70,9 +40,3 @@ def test_the_sum_of_squares_that_gravity_holds_gets_no_coefficient_from_noise(se
     fitted = Regression([turned]).fit(terms).coefficients
     assert np.abs(fitted[3:].sum(axis=0)).max() < 3 * FLOOR_DPS_A_G2
     assert fitted[:3] == pytest.approx(0.08 * np.eye(3), abs=FLOOR_DPS_A_G2)
-
-
-def test_no_more_is_found_than_there_is_room_for():
-    train = simulate(13, [("linear-acceleration", 3.0), ("supply-voltage", 5.0)]).sessions[:-1]
-    assert len(select(train).terms) == 4
-    assert len(select(train, taken=6).terms) <= 2

@@ -8,9 +8,7 @@ import numpy as np
 import pytest
 from zerorate_bench.loop.simulated import HOSTILE, simulate
 from zerorate_tools.loop.analyse import analyse
-from zerorate_tools.loop.fit.single import PiecesByLine
 from zerorate_tools.loop.read.sessions import block_basis
-from zerorate_tools.loop.report.in_words import in_words
 from zerorate_tools.loop.report.report import report
 from zerorate_tools.loop.search.confounding import label
 from zerorate_tools.loop.search.select import select
@@ -50,16 +48,6 @@ def test_an_undeclared_effect_of_three_floors_is_found_named_and_removed(effect)
     assert judgement.after_rms < judgement.before_rms
 
 
-def test_a_cubic_has_the_centre_that_the_part_has():
-    device = simulate(15)
-    for s in device.sessions:
-        from_centre = s.block_mean((s.sources["temp"] - 28.0) ** 3)
-        s.rate_dps += 4e-5 * from_centre[:, None] * [1.0, -0.7, 0.4]
-    selection, _ = run_trial(device)
-    assert names(selection) == ["temperature-cubic"]
-    assert selection.terms[0].centre == pytest.approx(28.0, abs=0.5)
-
-
 def test_a_square_of_a_delayed_channel_is_tied_to_that_channel():
     selection, _ = run_trial(simulate(12, [("load-squared-delayed", 3.0)]))
     assert selection.found and selection.found[0].candidate.sources == ["load"]
@@ -90,34 +78,11 @@ def test_a_product_is_one_effect_wherever_its_factors_are_zero():
     assert judgement.after_rms < 0.7 * judgement.before_rms
 
 
-def test_two_effects_at_once_are_both_named():
-    selection, _ = run_trial(simulate(13, [("thermal-hysteresis", 3.0), ("supply-voltage", 3.0)]))
-    assert {"thermal-hysteresis", "supply-voltage"} <= set(names(selection))
-
-
 def test_a_cause_nobody_recorded_is_never_confirmed_and_said_to_be_left():
     for seed in (21, 22, 23):
         selection, judgement = run_trial(simulate(seed, hidden=5.0))
         assert not any(judgement.confidence(i) == "confirmed" for i in range(len(selection.found)))
         assert judgement.residual_test.left
-
-
-def test_a_step_is_listed_with_its_time_and_size_and_not_corrected():
-    device = simulate(31, [("step", 4.0)])
-    sessions = remove_steps(device.sessions)
-    selection = select(sessions[:-1])
-    judgement = judge(selection, sessions[-1:])
-    [step] = [step for s in sessions[:-1] for step in s.steps]
-    assert selection.found == []
-    assert abs(step.size_dps) == pytest.approx(16 * device.floor_dps, rel=0.3)
-    assert judgement.before_rms == judgement.after_rms
-
-
-def test_one_recording_alone_still_shows_a_large_effect():
-    (session,) = simulate(41, [("thermal-hysteresis", 5.0)], sessions=1).sessions
-    selection = select([session], on_pieces=PiecesByLine(session))
-    assert "thermal-hysteresis" in names(selection)
-    assert judge(selection, [session]).gains[0] > 5
 
 
 def test_a_path_that_repeats_without_a_temperature_is_told_by_time_and_never_confirmed():
@@ -161,14 +126,6 @@ def test_a_rate_of_change_is_followed_where_another_day_begins_colder():
     assert term.lo < low - 0.4 * (high - low)
 
 
-def test_a_step_in_every_power_on_is_listed_in_every_one():
-    device = simulate(16)
-    for s, at in zip(device.sessions, (50, 90, 130, 70)):
-        s.rate_dps[at:] += 8 * device.floor_dps * [1, -1, 1]
-    made = remove_steps(device.sessions[:-1])
-    assert [[step.block for step in s.steps] for s in made] == [[50], [90], [130]]
-
-
 def test_a_source_that_one_session_alone_shows_does_not_hide_what_the_others_show():
     device = simulate(5000014, [("squared-acceleration", 5.0)])
     y = [s.block_mean(s.sources["acc_y"]) ** 2 for s in device.sessions[:3]]
@@ -190,32 +147,8 @@ def test_bursts_that_an_effect_explains_are_no_outliers(seed, effect, named):
     assert selection.outliers <= 3  # of some 500 blocks: a burst at an edge may stay one
 
 
-def test_of_three_power_ons_nothing_is_confirmed_and_of_four_it_may_be():
-    sessions = simulate(11, [("thermal-hysteresis", 3.0)]).sessions
-    four, three = analyse(sessions), analyse(sessions[1:])
-    assert four.confidence(0) == "confirmed" and four.judgement.confidence(0) == "confirmed"
-    assert three.judgement.confidence(0) == "confirmed" and three.confidence(0) == "tentative"
-
-
 def kinds(selection):
     return [f.candidate.kind for f in selection.found]
-
-
-@pytest.fixture(scope="module")
-def turning_about():
-    """Three power-ons that drift alike and a fourth that drifts back."""
-    sessions = simulate(5).sessions
-    for s, slope in zip(sessions, (0.01, 0.01, 0.01, -0.01)):
-        s.rate_dps += np.outer(np.linspace(0.0, 1.0, s.blocks), [slope, -slope, slope])
-    return sessions
-
-
-def test_what_was_withdrawn_is_said_with_both_errors(turning_about):
-    result = report(analyse(turning_about))
-    [(name, why)] = result["gate"]["withdrawn"]
-    assert name == "time-drift" and "does not come again" in why
-    assert "withdrawn: time-drift: " in in_words(result)
-    assert result["effects"] == [] and result["before_mdps"] == result["after_mdps"]
 
 
 def test_what_noise_steeper_than_a_walk_feigns_is_withdrawn():
@@ -232,11 +165,3 @@ def test_a_cause_that_rests_in_the_session_held_out_stays():
     last.sources["vib"] = np.full_like(last.sources["vib"], sessions[0].sources["vib"].mean())
     selection, _ = prune_by_holdout(select(sessions[:-1]), [last])
     assert kinds(selection) == ["vibration"] and not selection.withdrawn
-
-
-def test_no_effect_reaches_further_than_blocks_that_judged_it():
-    sessions = simulate(11, [("vibration", 5.0)]).sessions
-    for s in sessions:
-        s.sources["vib"][100 * s.ticks_per_block] = 40.0
-    (found,) = select(sessions).found
-    assert found.candidate.kind == "vibration" and found.candidate.terms[0].hi < 0.1

@@ -6,18 +6,16 @@ import numpy as np
 import pytest
 from zerorate_bench.loop.added_effects import PRANDTL_ISHLINSKII, PRANDTL_ISHLINSKII_KNOWN
 from zerorate_bench.loop.simulated import simulate
-from zerorate_tools.loop.fit.line import ordinary, shrunk
+from zerorate_tools.loop.fit.line import ordinary
 from zerorate_tools.loop.fit.regression import Regression, predicted
-from zerorate_tools.loop.fit.shrunk import evidence
 from zerorate_tools.loop.fit.single import PiecesByLine
 from zerorate_tools.loop.read.sessions import Session
 from zerorate_tools.loop.search.catalogue import candidates
 from zerorate_tools.loop.search.hysteresis import KIND, best_hysteresis, may_show
-from zerorate_tools.loop.search.likely_hysteresis import likeliest, of_a_pair
+from zerorate_tools.loop.search.likely_hysteresis import of_a_pair
 from zerorate_tools.loop.search.select import select, straight_line
-from zerorate_tools.loop.verify.judge import rms_dps, scored
 from zerorate_tools.model import Slot, build_model
-from zerorate_tools.model.term import Term, play
+from zerorate_tools.model.term import play
 from zerorate_tools.recordings import Scales
 
 SCALES = Scales("MPU-6050", 1.0, 131.0, 16384.0, 340.0, 36.53)
@@ -136,33 +134,10 @@ def test_the_widths_found_leave_hardly_more_than_the_true_ones(plays):
     )
 
 
-class CurveBendsAlready(PiecesByLine):
-    """As the firmware's kernels may judge: no bend gains on their own curve, play operators do."""
-
-    def __call__(self, straight, found, candidate):
-        return np.full(10, 1.0 if any(t.memory == "play" for t in candidate) else -1.0)
-
-
-@pytest.mark.parametrize("seed", [1, 2])
-def test_a_bend_that_the_firmware_s_curve_has_is_none_of_a_hysteresis_s_gain(seed):
-    session = recording(DOWN_UP_DOWN, seed=seed, hysteresis=0.0, walk=0.001, cubic_dps=0.1)
-    assert select([session], on_pieces=CurveBendsAlready(session)).found == []
-
-
 @pytest.mark.parametrize("seed", [304_000, 304_020])
 def test_a_wide_loop_that_is_gone_through_one_way_is_no_memory_of_a_peak(seed):
     sessions = simulate(seed, [(PRANDTL_ISHLINSKII_KNOWN, 2.0)], 4).sessions
     assert [f.candidate.kind for f in select(sessions[:-1]).found] == [KIND]
-
-
-def test_what_predicts_no_better_is_not_proposed():
-    session = recording(DOWN_UP_DOWN, hysteresis=0.0)
-    straight = straight_line([session])
-    candidate, gain = best_hysteresis([session], straight, (), lambda *terms: np.zeros(10))
-    assert (candidate, gain) == (None, 0.0)
-
-
-LAG = Term("temp", lag_s=120.0, lag_mode="difference")
 
 
 def regression_of(effects, seed=302_011, sessions=1):
@@ -170,63 +145,10 @@ def regression_of(effects, seed=302_011, sessions=1):
     return Regression(made), straight_line(made)
 
 
-def of_two(seed):
-    """Two power-ons with a loop at twice the floor, and its likeliest form by the first."""
-    first, second = simulate(seed, [(PRANDTL_ISHLINSKII_KNOWN, 2.0)], 2).sessions
-    line = straight_line([first])
-    candidate, _ = likeliest(Regression([first]), line)
-    return first, second, [*line, *candidate.terms]
-
-
-def left_of(second, terms, coefficients):
-    return float(
-        np.sqrt((rms_dps([scored(second, predicted(terms, coefficients, second))[0]]) ** 2).mean())
-    )
-
-
-def test_weights_as_large_as_is_likely_take_a_loop_from_a_power_on_that_they_have_not_seen():
-    left = []
-    for seed in (*range(302_200, 302_205), *range(302_206, 302_212)):  # temperature turns back
-        first, second, terms = of_two(seed)
-        by_line = left_of(second, terms[:1], ordinary(terms[:1], [first]))
-        left.append(left_of(second, terms, shrunk(Regression([first]), terms)) / by_line)
-    assert np.exp(np.mean(np.log(left))) < 0.75
-
-
-def test_what_the_noise_hides_has_no_weights():
-    regression, line = regression_of([])
-    terms = [*line, *likeliest_or_any(regression, line)]
-    held, free = shrunk(regression, terms), regression.fit(terms).coefficients
-    assert np.abs(held[1:]).max() < 0.3 * np.abs(free[1:]).max()
-
-
-def likeliest_or_any(regression, line):
-    """The form of another device, of the same temperatures, where noise shows none."""
-    candidate, _ = likeliest(regression, line)
-    return (candidate or of_likely(regression)).terms
-
-
-def of_likely(regression):
-    loud, line = regression_of([(PRANDTL_ISHLINSKII_KNOWN, 9.0)])
-    return likeliest(loud, line)[0]
-
-
 @pytest.mark.parametrize("seed", range(10_000, 10_008))
 def test_noise_makes_no_hysteresis_likely(seed):
     regression, line = regression_of([], seed)
     assert of_a_pair(regression, line, (), candidates(regression.sessions), 0)[0] is None
-
-
-def test_a_lag_is_likelier_than_a_hysteresis_where_there_is_one():
-    regression, line = regression_of([("thermal-lag", 4.0)])
-    assert evidence(regression, line, [LAG]) > likeliest(regression, line)[1] + 3.0
-
-
-def test_a_loop_that_two_power_ons_show_is_named():
-    sessions = simulate(303_070, [(PRANDTL_ISHLINSKII_KNOWN, 3.0)], 3).sessions
-    (found,) = select(sessions[:-1]).found
-    assert found.candidate.kind == KIND
-    assert {t.memory for t in found.candidate.terms} == {"play"}
 
 
 def test_a_lag_that_is_nearly_as_likely_is_named_beside_it():

@@ -8,7 +8,6 @@ from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.read.lines import SEGMENT, Segments, find, spectrum
 from zerorate_tools.loop.read.sessions import Session
 from zerorate_tools.loop.search import drift_test
-from zerorate_tools.loop.search.periodic import periodic
 from zerorate_tools.loop.search.select import Search
 from zerorate_tools.model.term import Term
 
@@ -47,19 +46,6 @@ def bare_sessions(seed, sessions=3):
     for s, alone in zip(device.sessions, device.noise_dps):
         s.rate_dps = alone
     return device.sessions
-
-
-def drifting(slopes_dps_an_hour):
-    sessions = bare_sessions(3)
-    for s, slope in zip(sessions, slopes_dps_an_hour):
-        hours = np.linspace(0.0, 1.0, s.blocks)
-        s.rate_dps = s.rate_dps + np.outer(hours, [slope, -slope, 0.5 * slope])
-    return Regression(sessions)
-
-
-def test_a_drift_that_turns_about_is_noise():
-    assert drift_test.chance(drifting([0.01, 0.01, 0.01]), [], DRIFT) < 1e-6
-    assert drift_test.chance(drifting([0.01, -0.01, 0.0]), [], DRIFT) > 0.05
 
 
 def test_in_noise_alone_the_chance_is_hardly_smaller_than_it_says():
@@ -126,22 +112,6 @@ def test_a_broad_hump_is_said_once():
         rates.append(np.fft.irfft(spectrum_of * gain[:, None], N, axis=0))
     found = lines(rates)
     assert len(found) == 1 and found[0].hz == pytest.approx(0.2, abs=0.01)
-
-
-def test_the_steps_of_a_ramping_temperature_that_was_subtracted_are_no_line():
-    rng = np.random.default_rng(3)
-    temp = np.floor(8 * (20 + 0.04 * np.arange(N))) / 8
-    rate = Term("temp", lag_s=8.0, lag_mode="rate")
-    sessions = []
-    for name in ("a", "b", "c"):
-        whole = np.ones(N // 20)
-        ticks = coloured(rng)
-        block = ticks.reshape(-1, 20, 3).mean(axis=1)
-        session = Session(name, 20.0, 20, block, whole, {"temp": temp}, ticks_dps=ticks)
-        sessions.append(session)
-    alone = np.array([[0.0, 0.0, 0.0]])
-    assert periodic(sessions[:2], sessions[2:], [rate], alone) == []
-    assert periodic(sessions[:2], sessions[2:], [rate], np.array([[2.0, -1.5, 3.0]])) == []
 
 
 def test_a_line_of_one_session_alone_is_not_the_devices():

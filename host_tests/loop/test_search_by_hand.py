@@ -1,7 +1,7 @@
 """What a search is told, may propose and must pay: beside plain sums and dense solutions."""
 
 from dataclasses import replace
-from itertools import product
+from itertools import combinations, product
 from types import SimpleNamespace
 
 import numpy as np
@@ -17,9 +17,12 @@ from zerorate_tools.loop.read.sessions import Session
 from zerorate_tools.loop.search import (
     catalogue,
     confounding,
+    curve,
     decide,
     detectable,
     drift_test,
+    hysteresis,
+    likely_hysteresis,
     naming,
     periodic,
     refine,
@@ -30,7 +33,7 @@ from zerorate_tools.loop.search.catalogue import MARGIN, Candidate, candidates, 
 from zerorate_tools.loop.search.fits_in_slots import fits_in_slots
 from zerorate_tools.loop.search.multiple_testing import MultipleTesting
 from zerorate_tools.loop.search.selection import Found, Selection
-from zerorate_tools.model.term import Term, first_order_lag
+from zerorate_tools.model.term import Term, first_order_lag, play
 
 from . import dense
 from .dense import A, B, C, D
@@ -336,6 +339,263 @@ def test_an_effect_of_twice_the_error_without_it_only_stands_against_another(bes
         assert cancels(made, beside, [A]) is against
 
 
+# --- hysteresis, and curves over temperature ---
+
+
+def widths_by_trial(fits, number, powers):
+    """The choice of radii that leaves least, by the logarithms of the axes' squares."""
+    left = {}
+    for some in combinations(fits._grid, number):
+        x = np.column_stack([fits._column(r, p) for r in some for p in powers])
+        rest = fits._y - x @ np.linalg.lstsq(x, fits._y, rcond=None)[0]
+        left[some] = np.log((rest**2).sum(axis=0)).sum()
+    return sorted(min(left, key=left.get))
+
+
+@pytest.mark.parametrize(("number", "powers"), [(1, (1,)), (1, (1, 2)), (2, (1,)), (2, (1, 2))])
+def test_the_widths_of_play_operators_are_those_that_leave_least_of_all_axes(number, powers):
+    s = dense.made(5, 60, names=("temp",))
+    s.sources["temp"] = degc = 25 + 9 * np.sin(np.arange(60) / 7)
+    loops = np.column_stack([play(degc, 2 * r) ** k for r, k in ((1.0, 1), (4.0, 1), (2.5, 2))])
+    size = np.array([[1.0, 300.0, 0.01], [2.0, -100.0, 0.02], [0.01, 3.0, 1e-4]])
+    noise = np.random.default_rng(2).normal(size=(60, 3)) * [0.3, 60.0, 0.003]
+    fits = hysteresis._Fits([replace(s, rate_dps=loops @ size + noise)], [Term("temp")])
+    told = sorted(fits.best(number, powers))
+    assert told == widths_by_trial(fits, number, powers)
+    terms = fits.terms(told[::-1], powers)
+    assert [(t.width, t.power) for t in terms] == [(2 * r, k) for r in told for k in powers]
+
+
+LOOP = candidate(Term("temp", memory="play", width=4.0), kind=hysteresis.KIND)
+SIMPLER = [candidate(A, kind="thermal-lag"), candidate(B, kind="temperature-kink")]
+AS_WELL, BETTER = hysteresis.AS_WELL, hysteresis.BETTER
+
+
+@pytest.mark.parametrize(
+    ("nats", "of_bend", "simpler", "fits", "rivals", "said"),
+    [
+        (9.0, 2.0, (6.5, 6.9), True, {"temperature-kink": -0.1}, ""),
+        (9.0, 8.5, (-3.0, -4.0), True, {"thermal-lag": -0.5}, ""),
+        (9.0, 2.0, (7.1, 6.0), True, None, AS_WELL),
+        (9.0, 2.0, (9.9, 6.0), True, None, AS_WELL),
+        (9.0, 2.0, (10.1, 6.0), True, None, BETTER),
+        (9.0, 9.5, (-3.0, -4.0), True, None, AS_WELL),
+        (2.9, 0.0, (0.0, 0.0), True, None, "not significant"),
+        (9.0, 2.0, (6.5, 6.9), False, None, ""),
+        (None, 2.0, (6.5, 6.9), True, None, ""),
+    ],
+)
+def test_a_hysteresis_of_a_pair_is_likelier_than_what_is_simpler(
+    monkeypatch, nats, of_bend, simpler, fits, rivals, said
+):
+    told = {(TEMP,): of_bend, (A,): simpler[0], (B,): simpler[1], (C,): 99.0}
+    asked, bend = [], [TEMP] if of_bend else []
+
+    def evidence(regression, terms, tried):
+        asked.append((tuple(terms), tuple(tried)))
+        return told[tuple(tried)]
+
+    shown = (LOOP, nats) if nats else (None, 0.0)
+    monkeypatch.setattr(likely_hysteresis, "likeliest", lambda *of: shown)
+    monkeypatch.setattr(likely_hysteresis, "evidence", evidence)
+    monkeypatch.setattr(likely_hysteresis, "fits_in_slots", lambda terms, taken: fits)
+    every = [*SIMPLER, candidate(C, kind="supply-voltage")]
+    found, reason = likely_hysteresis.of_a_pair(None, [D], bend, every, 3)
+    assert reason == said and (found is None) is (rivals is None)
+    if found:
+        assert found.candidate is LOOP and found.rivals == pytest.approx(rivals)
+        assert found.decision.accepted and found.decision.ratio == 2 * nats
+        assert found.decision.p_value == pytest.approx(6 * np.exp(-nats))
+        assert asked == [((D,), (TEMP,)), ((D, TEMP), (A,)), ((D, TEMP), (B,))]
+
+
+def test_forms_of_a_likely_hysteresis_span_all_sessions_temperatures(monkeypatch):
+    made = [warm(temp=np.linspace(*ends, 50)) for ends in ((10.0, 20.0), (14.0, 30.0))]
+    every = list(likely_hysteresis._forms(made))
+    assert [len(form) for form in every] == [4, 8] * 3
+    for form, finest in zip(every[::2], (0.0125, 0.025, 0.05)):
+        widths = 2 * 20.0 * finest * 2.3 ** np.arange(4)
+        assert [t.width for t in form] == pytest.approx(widths.tolist())
+        assert {(t.lo, t.hi, t.centre, t.power) for t in form} == {(10.0, 30.0, 18.5, 1)}
+    assert [t.power for t in every[1]] == [1, 2] * 4
+    monkeypatch.setattr(likely_hysteresis, "may_show", lambda sessions: True)
+    for nats in (0.5, -0.5):
+        of = lambda r, terms, form, nats=nats: nats - (form != every[3])  # noqa: E731
+        monkeypatch.setattr(likely_hysteresis, "evidence", of)
+        likely, gain = likely_hysteresis.likeliest(SimpleNamespace(sessions=made), [])
+        assert gain == nats and (likely.terms == every[3] if nats > 0 else likely is None)
+
+
+@pytest.mark.parametrize(
+    ("gain", "rival", "p", "factor", "nats", "said"),
+    [
+        (9.0, 5.9, 2.4e-3, 2.6, 0.1, ""),
+        (9.0, 6.1, 1e-4, 2.6, 1.0, AS_WELL),
+        (9.0, 11.9, 1e-4, 2.6, 1.0, AS_WELL),
+        (9.0, 12.1, 1e-4, 2.6, 1.0, BETTER),
+        (9.0, 5.9, 2.6e-3, 2.6, 1.0, "not significant"),
+        (9.0, 5.9, 1e-4, 2.4, 1.0, "too little of the error to tell it from the noise's walk"),
+        (9.0, 5.9, 1e-4, 2.6, -1.0, "the kernels say no"),
+        (None, 5.9, 1e-4, 2.6, 1.0, ""),
+    ],
+)
+def test_a_hysteresis_of_one_recording_passes_every_question(
+    monkeypatch, gain, rival, p, factor, nats, said
+):
+    answers = {
+        **{"_with_a_bend": gain and (gain, (TEMP,), LOOP), "_rival": (SIMPLER[0], rival)},
+        **{"_chance": (p, 33.0), "_factor": factor},
+    }
+    for name, answer in answers.items():
+        monkeypatch.setattr(hysteresis, name, lambda *of, answer=answer: answer)
+
+    def judged(*of):
+        assert of == ([D], (), (TEMP, *LOOP.terms))
+        return np.full(2, nats)
+
+    judged.reason = "the kernels say no"
+    one = SimpleNamespace(sessions=[dense.made(1, 60)])
+    found, reason = hysteresis.of_one_recording(one, [D], [()], [], judged, 0)
+    assert reason == said and (found is None) is bool(said or gain is None)
+    if found:
+        assert found.candidate == candidate(TEMP, *LOOP.terms, kind=hysteresis.KIND)
+        assert (found.decision.p_value, found.decision.ratio) == (p, 33.0)
+        assert found.decision.accepted and found.decision.session_gains.tolist() == [nats] * 2
+
+
+@pytest.mark.parametrize(
+    ("nats", "chosen", "gain"),
+    [((0.9, 1.9), None, 0.0), ((1.5, 2.4), 0, 0.5), ((1.1, 2.2), 1, 0.2), ((3.0, 4.0), 0, 2.0)],
+)
+def test_a_form_of_a_hysteresis_pays_a_nat_for_each_width(monkeypatch, nats, chosen, gain):
+    one, wide = LOOP.terms[0], replace(LOOP.terms[0], width=9.0)
+    forms = [(one, replace(one, power=2)), (one, wide)]
+    monkeypatch.setattr(hysteresis, "may_show", lambda sessions: True)
+    monkeypatch.setattr(hysteresis, "_forms", lambda sessions, beside: forms)
+    by = lambda straight, beside, terms: np.array([nats[forms.index(terms)]])  # noqa: E731
+    found, most = hysteresis.best_hysteresis([], [], [], by)
+    assert most == pytest.approx(gain)
+    assert found == (None if chosen is None else candidate(*forms[chosen], kind=hysteresis.KIND))
+
+
+def test_a_bend_gains_with_its_hysteresis_and_both_need_their_slots(monkeypatch):
+    bends, one = [(), (A,), (A, B), (C,)], SimpleNamespace(sessions=["s"])
+    gains = {(): 5.0, (A,): 3.0, (A, B): 9.0, (C,): 2.0}
+    alone = {(A,): [1.0, 1.1], (A, B): [0.0], (C,): [9.0]}
+    loops = {bend: None if bend == (C,) else replace(LOOP, family=str(bend)) for bend in bends}
+
+    def best(sessions, straight, bend, by_line):
+        assert (sessions, straight) == (["s"], [D])
+        return loops[bend], gains[bend]
+
+    monkeypatch.setattr(hysteresis, "best_hysteresis", best)
+    by_line = lambda straight, beside, bend: np.array(alone[bend])  # noqa: E731
+    for some, taken, chosen in (
+        *((bends[:2], 0, (5.1, (A,))), (bends, 0, (9.0, (A, B)))),
+        *((bends, 7, (5.1, (A,))), (bends, 8, (5.0, ())), (bends[3:], 0, None)),
+    ):
+        told = hysteresis._with_a_bend(one, [D], some, by_line, taken)
+        assert told == (chosen and (pytest.approx(chosen[0]), chosen[1], loops[chosen[1]]))
+
+
+def test_a_rival_is_the_simpler_effect_that_predicts_best_with_the_bend():
+    pool = [*SIMPLER, candidate(C, kind="supply-voltage")]
+    told = {(D, A): [1.0, 2.0], (D, B): [4.0, -0.5], (D, C): [9.0, 9.0]}
+    by_line = lambda straight, beside, terms: np.array(told[terms])  # noqa: E731
+    assert hysteresis._rival([], (D,), pool, by_line) == (SIMPLER[1], 3.5)
+    one = SimpleNamespace(gains=lambda beside, groups: np.full((1, 3), 8.0))
+    p, ratio = hysteresis._chance(one, [], LOOP)
+    assert (p, ratio) == (pytest.approx(chi2.sf(24.0, 3) * 8 * 6), 24.0)
+
+
+@pytest.mark.parametrize(
+    ("slots", "p", "accepted", "alike", "kept"),
+    [
+        *((8, 0.009, True, False, True), (8, 0.011, True, False, False)),
+        *((8, 0.009, False, False, False), (8, 0.009, True, True, False)),
+        (0, 0.009, True, False, False),
+    ],
+)
+def test_a_memory_of_one_recording_is_likely_and_no_hysteresis(
+    monkeypatch, slots, p, accepted, alike, kept
+):
+    lags = [candidate(t, kind="thermal-lag") for t in (A, B)]
+    pool = [*lags, candidate(C, kind="temperature-kink")]
+    one = SimpleNamespace(sessions=[dense.made(1, 60)])
+    monkeypatch.setattr(curve, "refined", lambda of, beside, best: best)
+    monkeypatch.setattr(curve, "cancels", lambda *of: False)
+    monkeypatch.setattr(curve, "is_like_hysteresis", lambda *of: alike)
+    monkeypatch.setattr(
+        curve, "PiecesByLine", lambda s: lambda straight, beside, t: np.array([9.0 * (t == (B,))])
+    )
+    asked, told = [], Found(lags[1], decide.Decision(accepted, p, 0.0, 1.0, np.zeros(1)))
+    monkeypatch.setattr(curve.ByPieces, "_judged", lambda self, *of: asked.append(of) or told)
+    by = curve.ByPieces(one, [TEMP], pool, None, 8 - slots)
+    assert by._memory([]) == ([told] if kept else [])
+    assert asked == ([(lags[1], [], (B,), 2)] if slots else [])
+
+
+def test_a_curve_bends_in_every_slot_that_is_left_at_places_evenly_apart():
+    made = [warm()]
+    line = (Term("temp", centre=25.0),)
+    for taken, bends in ((0, 7), (5, 2), (6, 0)):
+        every = curve.smooth_curve(made, line, taken)
+        assert len(every) == bool(bends)
+        for one in every:
+            slope, *knots = one.terms
+            assert (slope.lo, slope.hi, slope.knot) == (15.0, 35.0, None)
+            at = 20.0 + 10.0 * np.arange(1, bends + 1) / (bends + 1)
+            assert [t.knot + 25.0 for t in knots] == pytest.approx(at)
+    assert curve.smooth_curve(made, (), 0) == []
+
+
+@pytest.mark.parametrize(("blocks", "shows"), [(None, True), (1, False)])
+def test_a_curve_takes_enough_rests_and_each_power_once(blocks, shows):
+    least = curve.PIECES * curve.LEAST_OF_A_PIECE
+    s = dense.made(1, least + 3, gap=range(3 + (blocks or 0)))
+    assert curve.shows_a_curve(s) is shows
+    kinds = ("temperature-quadratic", "temperature-cubic", "temperature-cubic", "vibration")
+    terms = [replace(TEMP, power=p, centre=c) for p, c in ((2, 1.0), (3, 2.0), (3, 3.0), (1, 4.0))]
+    pool = [candidate(t, kind=kind) for t, kind in zip(terms, kinds)]
+    assert [t.centre for t in curve.powers(pool)] == [1.0, 3.0]
+
+
+@pytest.mark.parametrize(
+    ("curves", "memories", "kinds"),
+    [
+        ([], [], ["supply"]),
+        ([5.0], [], ["supply", curve.KIND]),
+        ([5.0], [7.0], ["supply", "thermal-lag", curve.KIND]),
+        ([], [7.0], ["supply", "thermal-lag"]),
+    ],
+)
+def test_what_gains_more_is_taken_first_and_the_curve_gets_the_slots_that_are_left(
+    monkeypatch, curves, memories, kinds
+):
+    def found(kind, gain=0.0):
+        decision = decide.Decision(True, 0.0, 0.0, 1.0, np.array([gain]))
+        return Found(candidate(A, kind=kind), decision)
+
+    asked = []
+
+    def way(name, kind, gains):
+        def look(self, some, kept=0):
+            asked.append((name, [f.candidate.kind for f in some], kept))
+            return [found(kind, gain) for gain in gains]
+
+        return look
+
+    monkeypatch.setattr(curve.ByPieces, "_curve", way("curve", curve.KIND, curves))
+    monkeypatch.setattr(curve.ByPieces, "_memory", way("memory", "thermal-lag", memories))
+    told = curve.ByPieces(None, [], [], None, 0).look([found("supply")])
+    assert [f.candidate.kind for f in told] == kinds
+    assert asked[:2] == [("curve", ["supply"], 1), ("memory", ["supply"], 1)]
+    if memories:
+        assert asked[2] == ("curve", ["supply", "thermal-lag"], 0)
+    if curves:
+        assert asked[-1] == ("curve", kinds[:-1], 0)
+
+
 # --- places of steps ---
 
 
@@ -400,15 +660,7 @@ def test_the_best_place_is_where_a_step_explains_most_to_a_quarter_of_a_block(st
     assert every[1][2][at] == pytest.approx(
         Regression(with_it).gains([A], [(Term("s"),)]).sum(), rel=1e-6
     )
-    short = Session(
-        "x",
-        20.0,
-        1,
-        np.random.default_rng(0).normal(size=(12, 3)),
-        np.ones(12),
-        {"a": np.arange(12.0)},
-    )
-    assert step_places.best_place(Regression([short]), [A]) == (None, [])
+    assert step_places.best_place(Regression([dense.made(0, 12)]), [A]) == (None, [])
 
 
 def test_a_step_explains_more_than_a_ramp_and_a_ramp_more_than_a_step(stepped):
@@ -517,10 +769,7 @@ def test_a_source_that_hardly_moves_shows_nothing(name, span, moves):
     [
         ("vdd_mv", True),
         ("VBAT", True),
-        ("Supply 5V", True),
-        ("my_volts", True),
-        ("vcc", True),
-        ("load", False),
+        *(("Supply 5V", True), ("my_volts", True), ("vcc", True), ("load", False)),
     ],
 )
 def test_a_supply_is_told_by_its_name(name, supply):
@@ -553,8 +802,7 @@ def test_candidates_are_the_rows_of_effects_in_their_places():
     assert (rate[0].terms[0].lo, rate[0].terms[0].hi) == (15.0, 35.0)
     loop = of_kind(found, "thermal-hysteresis")
     assert (loop[0].terms[0].lo, loop[0].terms[0].hi) == (15.0, 35.0)
-    [peak] = of_kind(found, "temperature-peak") or [None]
-    assert peak is None  # it only ever rises here: no memory of anything
+    assert not of_kind(found, "temperature-peak")  # it only ever rises here: no memory of anything
     [drift] = of_kind(found, "time-drift")
     assert drift.terms[0].centre == 0.0 and drift.sources == ["time"]
     decay = of_kind(found, "power-on-transient")
@@ -572,22 +820,12 @@ def test_candidates_are_the_rows_of_effects_in_their_places():
     [squared] = of_kind(found, "squared-acceleration")
     lo, hi, _ = span["acc_x"]
     reach = max(-lo, hi)
-    assert (squared.terms[0].lo, squared.terms[0].hi, squared.terms[0].centre) == (
-        -reach,
-        reach,
-        0.0,
-    )
+    first = squared.terms[0]
+    assert (first.lo, first.hi, first.centre) == (-reach, reach, 0.0)
     assert not of_kind(found, "vibration") and not of_kind(found, "rate-scale")
-    others = {
-        c.terms[0].second for c in of_kind(found, "channel-product") if c.terms[0].source == "load"
-    }
-    assert others == {"temp"}  # the supply comes before it, and has the two's product
-    first = {
-        c.terms[0].second
-        for c in of_kind(found, "channel-product")
-        if c.terms[0].source == "vdd_mv"
-    }
-    assert first == {"temp", "load"}
+    pairs = {(c.terms[0].source, c.terms[0].second) for c in of_kind(found, "channel-product")}
+    # the supply comes before the load, and has the two's product
+    assert pairs == {("load", "temp"), ("vdd_mv", "temp"), ("vdd_mv", "load")}
     curve = of_kind(found, "channel-curve")
     assert {c.family for c in curve} == {"generic"} and all(c.is_free for c in curve)
     assert len(curve[0].slots) == 1 and len(volts.slots) == 1 and not volts.is_free
@@ -858,16 +1096,8 @@ def test_a_slow_line_may_be_a_quick_one_as_ticks_show_it(quick, slow, same):
 
 
 def with_ticks(rate, name="x", temp=None):
-    sources = {} if temp is None else {"temp": temp}
-    return Session(
-        name,
-        20.0,
-        20,
-        rate.reshape(-1, 20, 3).mean(axis=1),
-        np.ones(len(rate) // 20),
-        sources,
-        ticks_dps=rate,
-    )
+    sources, blocks = {} if temp is None else {"temp": temp}, rate.reshape(-1, 20, 3).mean(axis=1)
+    return Session(name, 20.0, 20, blocks, np.ones(len(blocks)), sources, ticks_dps=rate)
 
 
 def test_a_line_in_ticks_is_found_where_there_are_enough_of_them_at_rest():

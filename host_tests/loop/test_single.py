@@ -15,7 +15,6 @@ from zerorate_tools.loop.search.curve import ByPieces, powers, smooth_curve
 from zerorate_tools.loop.search.hysteresis import is_like_hysteresis
 from zerorate_tools.loop.search.select import Search, select
 from zerorate_tools.loop.verify.run_kernels import run_and_prune
-from zerorate_tools.model.term import Term
 from zerorate_tools.recordings import Recording, Scales, read_recording, write_recording
 
 SCALES = Scales("MPU-6050", 1.0, 1310.0, 16384.0, 340.0, 36.53)
@@ -89,18 +88,6 @@ def by_pieces(search):
     return found
 
 
-class SpeakAgainst(PiecesByLine):
-    reason = "the kernels say no"
-
-    def __call__(self, straight, found, candidate):
-        return np.array([-1.0, 0.1, 0.0, 0.1, -1.0])
-
-
-def test_a_curve_that_pieces_speak_against_is_refused(bent):
-    session = bent.regression.sessions[0]
-    assert select([session], on_pieces=SpeakAgainst(session)).found == []
-
-
 def test_a_bend_that_pieces_show_is_a_smooth_curve_with_a_slope_of_its_own(bent):
     best = by_pieces(bent)
     assert best.candidate.kind == "temperature-curve" and best.decision.accepted
@@ -114,12 +101,6 @@ def test_a_kink_is_no_smooth_curve_and_is_followed_no_further_than_it_was_seen()
     assert kink.kind == "temperature-kink"
     [term], last = kink.terms, session.sources["temp"].max()
     assert last < term.hi <= 2 * last - term.centre - term.knot + 1e-9
-
-
-@pytest.mark.parametrize("taken, bends", [(0, 7), (3, 4), (6, 0)])
-def test_a_curve_bends_in_the_slots_that_others_leave(bent, taken, bends):
-    every = smooth_curve(bent.regression.sessions, bent.line, taken)
-    assert sum(len(c.terms) - 1 for c in every) == bends
 
 
 def there_and_back(bias_dps):
@@ -242,13 +223,6 @@ def test_a_lag_is_no_curve_over_temperature(lagging):
 def test_a_lag_is_none_where_a_hysteresis_predicts_as_well(lagging):
     (session,) = simulate(5, [("thermal-hysteresis", 20.0)], sessions=1, bare=True).sessions
     for search, alike in ((Search([session]), True), (lagging, False)):
-        by_line = PiecesByLine(search.regression.sessions[0])
         lag = next(c for c in search.pool if c.kind == "thermal-lag" and c.terms[0].lag_s > 100.0)
-        assert is_like_hysteresis(search.line, (), lag, search.pool, by_line) == alike
-
-
-def test_a_decay_that_only_stands_against_a_warm_up_cancels():
-    (session,) = simulate(5, sessions=1, bare=True).sessions
-    session.sources["temp"] = 40.0 - 18.0 * np.exp(-session.time_s() / 900.0)
-    line = [Term("temp", centre=30.0)]
-    assert cancels([session], line, [Term("one", decay_s=960.0)])
+        own = search.regression.sessions
+        assert is_like_hysteresis(search.line, (), lag, search.pool, own) == alike

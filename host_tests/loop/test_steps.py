@@ -4,10 +4,6 @@ import numpy as np
 import pytest
 from zerorate_bench.loop.corners import simulate_corners
 from zerorate_bench.loop.simulated import simulate
-from zerorate_tools.loop import analyse as loop
-from zerorate_tools.loop.analyse import analyse
-from zerorate_tools.loop.fit.single import PiecesByLine
-from zerorate_tools.loop.report.report import report
 from zerorate_tools.loop.search.steps_first import remove_steps
 from zerorate_tools.model.term import first_order_lag
 
@@ -55,36 +51,6 @@ def test_three_large_steps_hide_none_of_them(seed):
 def test_a_step_of_twice_three_floors_stands_out_of_noise_that_walks(seed):
     session, _ = stepped(seed, 6.0, 90)
     assert steps_at(session) == [pytest.approx(90, abs=0.75)]
-
-
-@pytest.mark.parametrize("floors", [0.0, 40.0])
-def test_a_step_is_taken_out_where_that_leaves_less(floors):
-    session, _ = stepped(0, floors, 90)
-    analysis = analyse([session])
-    (looked_at,) = analysis.sessions
-    assert (len(looked_at.steps), looked_at.listed) == (int(floors > 0), ())
-
-
-class StretchesAreDear(PiecesByLine):
-    """As the firmware's kernels may judge, whose curve has learned the steps."""
-
-    def residual(self, straight, terms, applied=None):
-        return (100.0 if self.session.steps else 1.0) * super().residual(straight, terms, applied)
-
-
-def test_who_judges_the_pieces_says_whether_a_step_stays_in(monkeypatch):
-    session, _ = stepped(0, 40.0, 90)
-    monkeypatch.setattr(loop, "_on_pieces", lambda session, motion, logs: StretchesAreDear(session))
-    (looked_at,) = analyse([session]).sessions
-    assert (len(looked_at.steps), len(looked_at.listed)) == (0, 1)
-
-
-def test_a_step_that_stays_in_is_listed_too():
-    session, _ = stepped(0, 40.0, 90)
-    (clean,) = remove_steps([session])
-    analysis = analyse([clean])
-    analysis.sessions[0].steps, analysis.sessions[0].listed = (), clean.steps
-    assert [e["kind"] for e in report(analysis)["events"]] == ["step"]
 
 
 def test_a_step_beside_blocks_that_a_hand_had_mostly_is_listed():
@@ -147,16 +113,6 @@ def test_a_step_that_comes_back_after_a_minute_is_two(seed):
     assert steps_at(session) == [90, 93]
 
 
-@pytest.mark.parametrize("blocks", [3, 5, 8])
-@pytest.mark.parametrize("settles", [False, True])
-def test_a_change_of_minutes_is_not_two_steps(blocks, settles):
-    session, floor = stepped(1, 0.0)
-    since = np.maximum((np.arange(session.blocks) - 86) / blocks, 0.0)
-    change = 1 - np.exp(-since) if settles else np.minimum(since, 1.0)
-    session.rate_dps += 60 * floor * np.outer(change, (1, -1, 1))
-    assert steps_at(session) == []
-
-
 @pytest.mark.parametrize("back, slope", [(93, 0.0), (140, -0.2)])
 def test_steps_are_timed_beside_each_other_and_beside_what_follows_temperature(back, slope):
     session, floor = stepped(5, 0.0)
@@ -180,23 +136,6 @@ def test_nothing_and_what_bends_has_no_step():
             session, _ = stepped(seed, 0.0, effects=effect)
             listed += len(remove_steps([session])[0].steps)
     assert listed == 0
-
-
-@pytest.mark.parametrize("seen_g", [0.0, 0.4])
-def test_a_step_is_timed_to_the_second_and_the_accelerometer_is_asked(seen_g):
-    session, floor = stepped(5, 60.0)
-    rng, per = np.random.default_rng(5), session.ticks_per_block
-    ticks = np.repeat(session.rate_dps, per, axis=0) + rng.normal(0, 1e-3, (180 * per, 3))
-    moment = 90 * per + 2
-    ticks[moment:] += 60 * floor
-    session.ticks_dps, session.tick_weight = ticks, np.ones(len(ticks))
-    session.rate_dps = ticks.reshape(180, per, 3).mean(axis=1)
-    for i, axis in enumerate("xyz"):
-        session.sources[f"acc_{axis}"] = (i == 2) + rng.normal(0, 1e-3, len(ticks))
-    session.sources["acc_x"][moment:] += seen_g
-    (step,) = remove_steps([session])[0].steps
-    assert step.at_s == pytest.approx(moment * session.tick_s, abs=session.tick_s)
-    assert ("the accelerometer saw 0.4 g" in step.said) == bool(seen_g)
 
 
 def test_stress_that_the_accelerometer_sees_in_hundredths_of_a_g_is_no_sensitivity_to_it():

@@ -14,8 +14,8 @@ from zerorate_tools.loop.search.catalogue import Candidate, lags
 from zerorate_tools.loop.search.steps import (
     Step,
     column,
-    find_all,
     standing,
+    steps_and_lags,
 )
 from zerorate_tools.model.term import Term, play
 
@@ -47,6 +47,11 @@ def sessions():
         stepped(noise(5), (31, 0.75, [25.0, -25.0, 0.0])),
         stepped(noise(6), (22, 0.0, [30.0, 30.0, 30.0])),
     ]
+
+
+def find_all(regression, terms):
+    """The steps beside the terms."""
+    return steps_and_lags(regression, terms)[0]
 
 
 def as_terms(sessions, steps):
@@ -304,15 +309,6 @@ def test_terms_are_shrunk_inside_a_with_alone(sessions):
     assert (regression.fit([A]).coefficients == free).all()
 
 
-def test_of_two_steps_in_one_block_the_weaker_can_be_taken_out():
-    stronger, weaker = (
-        Step(0, 5, np.full(3, size), ratio, 0.0) for size, ratio in ((2, 9), (1, 4))
-    )
-    steps = [stronger, weaker]
-    steps.remove(min(steps, key=lambda s: s.ratio))
-    assert steps == [stronger]
-
-
 COLD = Term("temp", centre=20.0)
 
 
@@ -337,6 +333,103 @@ def test_a_knock_counts_within_ten_ticks_of_a_step(at, seen):
     sources = {"acc_x": force, "acc_y": -force, "acc_z": np.ones(200)}
     told, said = steps_first._by_accelerometer(SimpleNamespace(sources=sources), 100, 120)
     assert (told, "0.71 g" in said) == ((at, True) if seen else (None, False))
+
+
+def in_ticks(known, jump, size=(1.0, -1.0, 0.0), **sources):
+    """12 blocks of 10 ticks of 2 s, of which some are known; after a jump the bias is another."""
+    level = np.arange(120.0)[:, None] >= jump
+    ticks = np.where(known[:, None], level * np.array(size), np.nan)
+    session = replace(noise(4, 12), ticks_per_block=10, ticks_dps=ticks)
+    return replace(session, sources=sources)
+
+
+TICKS = np.arange(120)
+
+
+@pytest.mark.parametrize(
+    ("known", "jump", "tick"),
+    [
+        (TICKS >= 0, 63, 63.0),
+        (TICKS >= 0, 80, 79.0),  # two blocks off at most
+        ((TICKS < 60) | (TICKS > 66), 63, 63.5),  # in the middle of what is not known
+        (TICKS < 50, 99, 49.5),
+        (TICKS > 59, 0, 60.5),
+    ],
+)
+def test_a_step_is_in_the_middle_of_the_ticks_where_it_may_have_been(known, jump, tick):
+    step = Step(0, 6, np.array([1.0, -1.0, 0.0]), 9.0, 0.0, np.array([0.1, 0.1, 1.0]))
+    other = np.outer(TICKS >= 30, [0.0, 5.0, 9.0])
+    session = in_ticks(known, jump)
+    session.ticks_dps += other
+    told = steps_first._timed(session, step, other)
+    assert (told.at_s, told.said) == (2.0 * tick, "")
+    assert steps_first._timed(replace(session, ticks_dps=None), step, other) is step
+
+
+def test_a_knock_within_its_ticks_has_the_step_s_moment():
+    force = (TICKS > 68) * 0.5
+    session = in_ticks((TICKS < 60) | (TICKS > 66), 63, acc_x=force, acc_y=force, acc_z=force)
+    step = Step(0, 6, np.array([1.0, -1.0, 0.0]), 9.0, 0.0, np.ones(3))
+    told = steps_first._timed(session, step, np.zeros((120, 3)))
+    assert told.at_s == 138.0 and "0.87 g" in told.said
+    shaken = np.where(TICKS == 64, 0.01, 0.0009)  # squares of what shakes within a tick
+    quiet = in_ticks(TICKS >= 0, 63, vib=shaken, **{f"acc_{a}": 0.0 * TICKS for a in "xyz"})
+    told = steps_first._timed(quiet, step, np.zeros((120, 3)))
+    assert told.at_s == 128.0 and "0.07 g" in told.said
+
+
+@pytest.mark.parametrize(
+    ("second", "undone"),
+    [
+        ((0, 32, 0.0, -0.1), True),
+        ((0, 33, 0.5, -0.1), True),
+        ((0, 33, 0.25, -0.1), False),
+        ((0, 32, 0.0, 0.1), False),
+        ((1, 32, 0.0, -0.1), False),
+    ],
+)
+def test_two_that_undo_each_other_within_two_blocks_are_a_disturbance(second, undone):
+    session, block, share, size = second
+    first = Step(0, 31, np.ones(3), 9.0, 0.0, share=0.5)
+    other = Step(session, block, np.full(3, size), 9.0, 0.0, share=share)
+    assert steps_first._undoes(first, other) is undone
+
+
+@pytest.mark.parametrize(("share", "held"), [(0.0, [31, 32]), (0.25, [30, 31, 32])])
+def test_a_disturbance_is_held_on_a_line_between_its_neighbours(share, held):
+    sessions = [noise(4), noise(5)]
+    sessions[1].weight[33] = 0.0  # the next one that is known is 34
+    regression = Regression(sessions)
+    before = regression.rate[1].copy()
+    steps_first._hold(
+        regression, *(Step(1, b, np.ones(3), 9.0, 0.0, share=share) for b in (31, 33))
+    )
+    rate = regression.rate[1]
+    assert np.flatnonzero((rate != before).any(axis=1)).tolist() == held
+    a, b = held[0] - 1, 34
+    line = [before[a] + (before[b] - before[a]) * (k - a) / (b - a) for k in held]
+    assert rate[held] == pytest.approx(np.array(line))
+
+
+@pytest.mark.parametrize(
+    ("second", "sign", "listed"), [(31, 1, [2.0]), (31, -1, [1.0, -1.0]), (32, 1, [1.0, 1.0])]
+)
+def test_a_step_that_two_blocks_in_turn_show_is_one(monkeypatch, second, sign, listed):
+    one = Step(0, 30, np.ones(3), 9.0, 0.0, np.full(3, 0.3))
+    two = Step(0, second, sign * np.ones(3), 9.0, 0.0, np.full(3, 0.4))
+    monkeypatch.setattr(steps_first, "hold_disturbed", lambda *of: None)
+    monkeypatch.setattr(steps_first, "steps_and_lags", lambda *of: ([two, one], {}))
+    found = steps_first._steps(noise(4), 1)
+    assert [s.size_dps.tolist() for s in found] == [[size] * 3 for size in listed]
+    assert found[0].block == 30
+    assert found[0].deviation_dps == pytest.approx([0.5 if len(listed) == 1 else 0.3] * 3)
+
+
+def test_a_line_and_a_bend_are_beside_steps_where_temperature_varies():
+    assert steps_first.bend_of(noise(4)) == []
+    assert steps_first.bend_of(noise(4, temp=np.full(BLOCKS, 20.0))) == []
+    line, bend = steps_first.bend_of(noise(4, temp=np.arange(60.0)))
+    assert (line, bend) == (Term("temp", centre=29.5), Term("temp", centre=29.5, power=2))
 
 
 def test_errors_of_pieces_are_compared_with_the_best_bend_by_their_geometric_mean():

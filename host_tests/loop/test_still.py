@@ -7,7 +7,6 @@ import pytest
 from zerorate_bench.loop.trials import NOISES_DPS, RATES_HZ, share_used, shares_with_turn
 from zerorate_tools.closing import close
 from zerorate_tools.loop.analyse import analyse
-from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.motion.by_windows import GIVEN, UNIT, RateScale
 from zerorate_tools.loop.motion.scales_and_timing import in_motion, slots_of, without_scales
 from zerorate_tools.loop.read.blocks import session_of
@@ -16,7 +15,6 @@ from zerorate_tools.loop.read.still import still_ticks
 from zerorate_tools.loop.read.ticks import read_ticks
 from zerorate_tools.loop.report.in_words import in_words
 from zerorate_tools.loop.report.unexplained import not_excluded
-from zerorate_tools.loop.search import steps as events
 from zerorate_tools.recordings import Recording, Scales, write_recording
 from zerorate_tools.recordings.checks import GAP
 from zerorate_tools.simulate import simulate_sessions
@@ -240,15 +238,6 @@ def test_an_attitude_makes_no_rest_of_motion(tmp_path):
 def test_readings_that_come_late_are_said_with_how_late(tmp_path):
     _, motion = shown(tmp_path, [LATE], attitude=True)
     assert motion.timing.found and motion.timing.delay_s == pytest.approx(5e-3, rel=0.05)
-
-
-def test_no_step_of_the_bias_is_listed_in_the_midst_of_motion(tmp_path):
-    made = sessions(tmp_path, [], HANDLED, False, rates=True)
-    moved = np.flatnonzero(made[1].moved)
-    assert len(moved) > 5
-    made[1].rate_dps[moved[2] :] += 5.0
-    listed = events.find_all(Regression(made), [])
-    assert all(s.block not in (*moved, *(moved + 1)) for s in listed if s.session == 1)
 
 
 def test_an_attitude_without_a_value_was_not_seen():

@@ -10,7 +10,6 @@ from zerorate_tools.loop.read.bad_readings import saturated
 from zerorate_tools.loop.read.blocks import dequantise, step_lsb
 from zerorate_tools.loop.read.earth import EARTH_DPS, can_be_earth, earth_of
 from zerorate_tools.loop.read.gate import CannotClose
-from zerorate_tools.loop.read.sessions import Session
 from zerorate_tools.loop.read.still import deviation_of, still_stretch
 from zerorate_tools.loop.read.ticks import read_ticks
 from zerorate_tools.recordings import Recording, Scales, write_recording
@@ -44,22 +43,6 @@ def test_quick_samples_begin_with_the_first_tick(tmp_path):
     t_us = 5_000_000 + np.arange(1000) * 40_000
     ticks = read(tmp_path / "quick.parquet", t_us, 25.0)
     assert ticks.start_us == 5_000_000 and (ticks.count == 25).all()
-
-
-def session(weight):
-    return Session("s", 4.0, 4, np.zeros((2, 3)), np.ones(2), tick_weight=weight)
-
-
-def test_a_source_is_averaged_over_the_ticks_that_the_rate_is():
-    shaken = np.array([1.0, 1, 9, 9, 2, 2, 2, 6])
-    still = np.array([25.0, 25, 0, 0, 25, 25, 25, 25])
-    assert session(still).block_mean(shaken).tolist() == [1.0, 3.0]
-
-
-def test_a_block_without_a_rate_has_the_mean_of_all_its_ticks():
-    values = np.array([1.0, 1, 9, 9, 2, 2, 2, 6])
-    assert session(np.zeros(8)).block_mean(values).tolist() == [5.0, 3.0]
-    assert session(None).block_mean(values).tolist() == [5.0, 3.0]
 
 
 SWING_DPS, NOISE_DPS, LIMIT_DPS = 500.0, 0.3, 422.0

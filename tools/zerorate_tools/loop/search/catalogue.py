@@ -113,13 +113,11 @@ def _fields(choice: dict, span: dict, source: str, drawn: bool = False) -> dict:
     lo, hi, mean = span.get(source, (0.0, 1.0, 0.0))
     fields = dict(choice)
     fields["centre"] = _place(fields.get("centre", "mean"), (lo, hi, mean))
+    if source in ("one", "time"):
+        fields["centre"] = 0.0
     if source != "one":
         ends = (lo, hi) if drawn else beyond(lo, hi, source)
         fields.update(zip(("lo", "hi"), ends))
-    else:
-        fields["centre"] = 0.0
-    if source == "time":
-        fields["centre"] = 0.0
     if choice.get("power") == 2 and choice.get("centre") == 0.0:  # one side shows the other
         reach = max(-fields["lo"], fields["hi"])
         fields.update(lo=-reach, hi=reach)
@@ -222,15 +220,8 @@ def _is_finite(candidate, sessions):
 
 
 #: Below this peak-to-peak of block means a source says nothing.
-_SMALLEST = {
-    "temp": 0.3,
-    "acc_x": 0.1,
-    "acc_y": 0.1,
-    "acc_z": 0.1,
-    "rate_x": 2.0,
-    "rate_y": 2.0,
-    "rate_z": 2.0,
-}
+_SMALLEST = {"temp": 0.3, "acc_x": 0.1, "acc_y": 0.1, "acc_z": 0.1}
+_SMALLEST |= {"rate_x": 2.0, "rate_y": 2.0, "rate_z": 2.0}
 
 
 def varies(name: str, sessions: list[Session]) -> bool:

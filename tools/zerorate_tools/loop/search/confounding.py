@@ -67,12 +67,6 @@ def named(c: Candidate, coefficients: np.ndarray) -> Candidate:
     if c.kind == "rate-scale":
         diagonal = (np.diag(coefficients) ** 2).sum()
         share = diagonal / (coefficients**2).sum()
-        kind = (
-            "scale-factor"
-            if share > 0.9
-            else "cross-axis"
-            if share < 0.1
-            else "scale-factor+cross-axis"
-        )
-        return replace(c, kind=kind)
+        kinds = ("cross-axis", "scale-factor+cross-axis", "scale-factor")
+        return replace(c, kind=kinds[int(share >= 0.1) + int(share > 0.9)])
     return c

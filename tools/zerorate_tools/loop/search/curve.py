@@ -112,8 +112,7 @@ class ByPieces:
         told = self._judged(best, beside, best.terms, len(own))
         if not told.decision.accepted or told.decision.p_value > LIKELY:
             return []
-        by_line = PiecesByLine(sessions[0])
-        alike = is_like_hysteresis(straight, beside, best, self.pool, by_line)
+        alike = is_like_hysteresis(straight, beside, best, self.pool, sessions)
         return [] if alike or cancels(sessions, [*straight, *beside], best.terms) else [told]
 
     def _kink(self, beside) -> list[Candidate]:
@@ -129,7 +128,8 @@ class ByPieces:
         return [replace(best, terms=(replace(term, hi=min(term.hi, last + seen)),))]
 
     def _best(self, some, straight, beside) -> Candidate | None:
-        by_line = PiecesByLine(self.regression.sessions[0])
+        [session] = self.regression.sessions
+        by_line = PiecesByLine(session)
         gains = [float(by_line(straight, beside, c.terms).sum()) for c in some]
         return some[int(np.argmax(gains))] if gains else None
 

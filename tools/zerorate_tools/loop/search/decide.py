@@ -84,17 +84,16 @@ def decide(regression, nuisances, candidate, ratio: float, tried: float, pool) -
     """
     dof = 3 * len(candidate.terms)
     level = LEVEL[candidate.family]
-    p = family_p(ratio, dof, tried)
+    p, none = family_p(ratio, dof, tried), np.array([])
     if p > level:
-        return Decision(False, p, ratio, 1.0, np.array([]), "not significant")
+        return Decision(False, p, ratio, 1.0, none, "not significant")
     null = null_ratios(regression, nuisances, candidate.terms, pool)
     p, d = min(1.0, null.survival(ratio, len(candidate.terms)) * tried), null.inflation
     if p > level:
-        return Decision(
-            False, p, ratio, d, np.array([]), "no better than irrelevant channels on this noise"
-        )
+        reason = "no better than irrelevant channels on this noise"
+        return Decision(False, p, ratio, d, none, reason)
     if len(regression.sessions) == 1:
-        return Decision(True, p, ratio, d, np.array([]))
+        return Decision(True, p, ratio, d, none)
     gain = gains(regression, nuisances, candidate.terms)
     enough = bool(gain.sum() > NATS)
     reason = "" if enough else "does not predict the sessions left out"

@@ -6,7 +6,6 @@ from dataclasses import replace
 from ...model.term import Term
 from ..fit.common_cause import RARE
 from ..fit.line import less_slope
-from ..fit.single import PiecesByLine
 from . import drift_test
 from .cancels import cancels
 from .catalogue import Candidate
@@ -86,7 +85,7 @@ class Examiner:
             reason = "it would only cancel another"
         elif best.kind == KIND and not may_show(sessions):
             reason = "the temperature never turned back"
-        elif is_like_hysteresis(*beside, best, self.pool, PiecesByLine(sessions[0])):
+        elif is_like_hysteresis(*beside, best, self.pool, sessions):
             reason = "a hysteresis predicts as well"
         if reason:
             return replace(decision, accepted=False, reason=reason)

@@ -30,9 +30,8 @@ KIND = "thermal-hysteresis"
 LIKE_IT = (KIND, "temperature-peak", "thermal-lag", "thermal-rate", "power-on-transient")
 #: What may lag behind temperature, or only seem to: the start of a power-on.
 MEMORIES = ("thermal-lag", "thermal-rate", "power-on-transient")
-#: Radii of the grid, as shares of the range of temperature: its ends, how many, and of how many
-#: every choice is tried.
-_FINEST, _WIDEST, _GRID, _FEW = 0.015, 0.65, 64, 12
+#: Radii of the grid, as shares of the range of temperature: its ends, and how many.
+_FINEST, _WIDEST, _GRID = 0.015, 0.65, 64
 MOST_OPERATORS = min(4, MOST_PLAYS)
 #: As how many widths the grid's count: neighbours are much alike.
 _APART = 6
@@ -59,11 +58,13 @@ def may_show(sessions: Sequence[Session]) -> bool:
     return there and any(pass_of(s).any() for s in sessions)
 
 
-def is_like_hysteresis(straight, beside, best: Candidate, pool, by_line: PiecesByLine) -> bool:
-    """Whether a hysteresis of one width predicts the pieces left out as well as a lag, a rate or a
-    start: one course does not tell which it is, and at another power-on they part."""
+def is_like_hysteresis(straight, beside, best: Candidate, pool, sessions: list[Session]) -> bool:
+    """Whether a hysteresis of one width predicts the pieces left out of a session as well as a lag,
+    a rate or a start: one course does not tell which it is, and at another power-on they part."""
     if best.kind not in MEMORIES:
         return False
+    [session] = sessions
+    by_line = PiecesByLine(session)
     loops = [c.terms for c in pool if c.kind == KIND]
     most = max((float(by_line(straight, beside, terms).sum()) for terms in loops), default=-np.inf)
     return most >= float(by_line(straight, beside, best.terms).sum())
@@ -105,7 +106,8 @@ def of_one_recording(
     steep as it likes: a course with few turns is much like a walk.
     """
     # beside play operators no bend is held at the edges: then none is in what they are compared to
-    by_line = PiecesByLine(regression.sessions[0], hold=False)
+    [session] = regression.sessions
+    by_line = PiecesByLine(session, hold=False)
     best = _with_a_bend(regression, straight, bends, by_line, taken)
     if best is None:
         return None, ""
@@ -230,19 +232,18 @@ class _Fits:
         return self._columns[radius, power]
 
     def best(self, number: int, powers: Sequence[int]) -> list[float]:
-        """The radii of the grid that leave least: of every choice from a few of them, then with two
-        in the places of any others, until none leaves less. One by one they stop short of it."""
+        """The radii of the grid that leave least: evenly apart, then with two in the places
+        of any others, until none leaves less. One by one they stop short of it."""
         x = np.column_stack([self._column(r, p) for p in powers for r in self._grid])
         products, xy = x.T @ x, x.T @ self._y
-        few = np.linspace(0, _GRID - 1, _FEW).round().astype(int)
-        choices, least, best = few[np.array(list(combinations(range(_FEW), number)))], np.inf, few
+        best, least = np.linspace(0, _GRID - 1, number).round().astype(int), np.inf
         while True:
+            choices = _exchanged(best)
             at = np.hstack([choices + _GRID * i for i in range(len(powers))])
             left = self._left(products[at[:, :, None], at[:, None, :]], xy[at])
             if left.min() >= least:
                 return [float(r) for r in self._grid[best]]
             least, best = left.min(), choices[left.argmin()]
-            choices = _exchanged(best)
 
     def _left(self, products, xy):
         """(...,) sum over the axes of the logarithm of the squares left."""

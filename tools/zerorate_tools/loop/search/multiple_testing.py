@@ -1,5 +1,7 @@
 """What a candidate must reach: each pays for all that are tried beside it."""
 
+from dataclasses import dataclass, field
+
 import numpy as np
 from scipy.stats import chi2
 
@@ -10,6 +12,7 @@ from .catalogue import Candidate
 from .decide import LIKELY, WEIGHT, effective, smallest_ratio
 
 
+@dataclass
 class MultipleTesting:
     """Of the candidates of one search.
 
@@ -17,18 +20,12 @@ class MultipleTesting:
     several power-ons, at each of which what follows time must come again.
     """
 
-    def __init__(
-        self,
-        regression: Regression,
-        pool: list[Candidate],
-        straight: tuple[Term, ...],
-        bend: tuple[Term, ...],
-        power_ons: bool,
-    ) -> None:
-        self.regression, self.pool = regression, pool
-        self.straight, self.bend = straight, bend
-        self.power_ons = power_ons
-        self._paid: dict[str, float] = {}
+    regression: Regression
+    pool: list[Candidate]
+    straight: tuple[Term, ...]
+    bend: tuple[Term, ...]
+    power_ons: bool
+    _paid: dict[str, float] = field(default_factory=dict, init=False)
 
     def tried(self, candidate: Candidate) -> float:
         """Candidates paid for: every kind of a family has its share of the family's level, split
@@ -52,12 +49,10 @@ class MultipleTesting:
 
     def _stacked(self, terms: list[Term]) -> np.ndarray:
         r = self.regression
-        return np.vstack(
-            [
-                np.column_stack([r.columns(t)[i] for t in terms] or [np.zeros(len(y))])
-                for i, y in enumerate(r.y)
-            ]
-        )
+        columns = [
+            [r.columns(t)[i] for t in terms] or [np.zeros(len(y))] for i, y in enumerate(r.y)
+        ]
+        return np.vstack([np.column_stack(of) for of in columns])
 
     def is_by_time(self, c: Candidate) -> bool:
         """Whether it follows time alone and there are power-ons at which it must come again."""

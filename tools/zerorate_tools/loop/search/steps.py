@@ -54,14 +54,9 @@ class Step:
     share: float = 0.0
 
 
-def find_all(regression, terms) -> list[Step]:
-    """Every step beside the terms, strongest first; they stay in the regression as nuisances."""
-    return steps_and_lags(regression, terms)[0]
-
-
 def steps_and_lags(regression, terms, recordings: int = 1) -> tuple[list[Step], dict[Term, float]]:
-    """The steps of `find_all`, and the shrinkage of the lags of temperature beside which they stand
-    (`Regression.shrinking`).
+    """Every step beside the terms, strongest first, which stay in the regression as nuisances; and
+    the shrinkage of the lags of temperature beside which they stand (`Regression.shrinking`).
 
     A kink or a loop that the terms lack is made of steps, too, a part that is late behind its
     thermometer makes one at every corner, and a channel that jumps makes the bias jump: what

@@ -111,10 +111,9 @@ def _timed(session: Session, step: Step, others: np.ndarray) -> Step:
     at = _parting(along, step.block, session.ticks_per_block)
     there = np.flatnonzero(np.isfinite(along))
     place = int(np.searchsorted(there, at))
-    next_there = there[min(place, len(there) - 1)]
-    middle = (there[max(place - 1, 0)] + 1 + next_there) / 2
-    moment, said = _by_accelerometer(session, at, int(next_there))
-    at_s = (moment if moment is not None else middle) * session.tick_s
+    last, following = (int(there[np.clip(k, 0, len(there) - 1)]) for k in (place - 1, place))
+    moment, said = _by_accelerometer(session, at, following)
+    at_s = ((last + 1 + following) / 2 if moment is None else moment) * session.tick_s
     return replace(step, at_s=float(at_s), said=said)
 
 
