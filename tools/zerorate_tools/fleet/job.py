@@ -96,9 +96,10 @@ def run_device(job: Job, device: Device) -> dict[str, Any]:
             try:
                 with here(place, scratch) as path:
                     session = still_session(path)
-                    state = Path(scratch) / "state.bin"
-                    summaries.append(_replayed(job, path, session, state, device) | {"file": place})
-                    sensor = sensor or open_recording(path).scales.to_json()
+                    state, scales = Path(scratch) / "state.bin", open_recording(path).scales
+                    how = job.folder(device), scales.gyro_lsb_per_dps
+                    summaries.append(_replayed(job, path, session, state, *how) | {"file": place})
+                    sensor = sensor or scales.to_json()
                 sessions.append(session)
                 good.append(place)
             except Exception as error:  # of a stranger's file; the fleet goes on
@@ -113,12 +114,6 @@ def run_device(job: Job, device: Device) -> dict[str, Any]:
         "steps": _steps(job, device, good, failures) if job.kind == "close" and good else [],
         "failures": failures,
     }
-
-
-def _replayed(job: Job, path: str, session: Session, state: Path, device: Device) -> dict[str, Any]:
-    return replay_power_on(
-        *(path, session, state, job.folder(device)), model=job.model, options=dict(job.options)
-    )
 
 
 def still_session(path: str) -> Session:
@@ -151,20 +146,13 @@ def _steps(
             return []
 
 
-def replay_power_on(
-    path: str,
-    session: Session,
-    state: Path,
-    folder: Path | None,
-    *,
-    model: str | None,
-    options: dict[str, Any],
+def _replayed(
+    job: Job, path: str, session: Session, state: Path, folder: Path | None, lsb_per_dps: float
 ) -> dict[str, Any]:
     """Replay a recording from what `state` holds, if it is there, and leave the state in it.
 
-    folder: keeps the replay's table; model, options: as of `replay`.
-    error_mdps: per axis the rms of what the firmware's bias misses of the still blocks, the first
-    minute not counted. Raises ZerorateError.
+    folder: keeps the replay's table. error_mdps: per axis the rms of what the firmware's bias
+    misses of the still blocks, the first minute not counted. Raises ZerorateError.
     """
     name = recording_name(Path(path))
     out = (folder or state.parent) / f"{name}.replay.parquet"
@@ -173,22 +161,18 @@ def replay_power_on(
         out,
         state=state,
         from_state=state if state.exists() else None,
-        model=model,
-        options=options,
+        model=job.model,
+        options=job.options,
     )
     columns = ["t_us", *_GYRO]
     bias_lsb = block_means(pq.ParquetFile(out).iter_batches(columns=columns), session)
     if folder is None:
         out.unlink()
-    per_dps = _lsb_per_dps(path)
     return {
         "name": name,
-        "file": path,
         "samples": done.samples,
         "duration_s": session.blocks * session.block_s,
-        "still_share": float(session.available.mean()) if session.blocks else 0.0,
-        "sources": done.sources,
-        "error_mdps": error_mdps(session, bias_lsb / per_dps, from_s=_FIRST_S),
+        "error_mdps": error_mdps(session, bias_lsb / lsb_per_dps, from_s=_FIRST_S),
     }
 
 
@@ -217,9 +201,3 @@ def error_mdps(
         return None
     left = session.rate_dps[within] - bias_dps[within]
     return [round(float(v), 4) for v in 1e3 * np.sqrt((left**2).mean(axis=0))]
-
-
-def _lsb_per_dps(path: str) -> float:
-    from ..recordings import open_recording
-
-    return open_recording(path).scales.gyro_lsb_per_dps

@@ -134,7 +134,7 @@ def _differ(part: Part, axis: int, term: int) -> tuple[float, float]:
     mean = (weight * values[rows, term]).sum() / weight.sum()
     q = (weight * (values[rows, term] - mean) ** 2).sum()
     expected = len(rows) - 1
-    return float(stats.chi2.sf(q, expected)), float(max(0.0, 1 - expected / max(q, 1e-9)))
+    return float(stats.chi2.sf(q, expected)), float(1 - expected / max(q, expected))
 
 
 def alone(part: Part, axis: int) -> tuple[np.ndarray, np.ndarray]:

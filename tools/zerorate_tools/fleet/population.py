@@ -48,7 +48,7 @@ class Curve:
     def shown(self) -> list[str]:
         """The terms that this span of temperature shows."""
         span = self.high_degc - self.low_degc
-        return [t for t, least in zip(TERMS, _LEAST_SPAN_DEGC) if least == 0 or span >= least]
+        return [t for t, least in zip(TERMS, _LEAST_SPAN_DEGC) if np.nan_to_num(span) >= least]
 
     def to_json(self) -> dict[str, Any]:
         seen = None if np.isnan(self.low_degc) else [self.low_degc, self.high_degc]
@@ -162,13 +162,13 @@ class Population:
 
     def interval(self) -> NDArray[np.float64]:
         """(k, 2) 95 % interval of the mean, by Student's t with the devices less one."""
-        reach = stats.t.ppf(0.975, max(1, self.used.sum() - 1)) * self.mean_error
+        reach = stats.t.ppf(0.975, self.used.sum() - 1) * self.mean_error
         return np.stack([self.mean - reach, self.mean + reach], axis=1)
 
     def p_mean(self) -> NDArray[np.float64]:
         """(k,) probability of a mean so far from 0 if the part had none."""
         ratio = np.abs(self.mean) / self.mean_error
-        return 2 * stats.t.sf(ratio, max(1, self.used.sum() - 1))
+        return 2 * stats.t.sf(ratio, self.used.sum() - 1)
 
 
 def population(information: NDArray[Any], score: NDArray[Any]) -> Population:
@@ -213,7 +213,7 @@ def _em(
         error = np.linalg.inv(weight.sum(axis=0))
         mean = error @ (narrow @ np.einsum("nij,nj->i", covariance, score))
         own = np.einsum("nij,nj->ni", covariance, score + narrow @ mean) - mean
-        update = covariance.mean(axis=0) + own.T @ own / max(1, n - 1)
+        update = covariance.mean(axis=0) + own.T @ own / (n - 1)
         change = np.abs(np.diag(update) / np.diag(spread) - 1).max()
         spread = (update + update.T) / 2 + 1e-12 * np.eye(k)
         if change < _SETTLED:
