@@ -10,8 +10,10 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 from zerorate_tools.cli import main
+from zerorate_tools.errors import ZerorateError
 from zerorate_tools.fleet import devices_of, fleet
 from zerorate_tools.fleet.fleet_in_words import in_words
+from zerorate_tools.fleet.job import one_line
 from zerorate_tools.fleet.prior import beginning, moving_from
 from zerorate_tools.fleet.whole_fleet import Parts
 from zerorate_tools.model import read_model
@@ -136,8 +138,12 @@ def test_a_failed_recording_is_reported_and_stops_nothing(with_bad_ones, capsys)
     reasons = {Path(f["file"]).name: f["reason"] for f in report["failures"]}
     assert set(reasons) == {"s2.parquet", "lone.csv"}
     assert "cut off" in reasons["s2.parquet"] and "lone.json" in reasons["lone.csv"]
-    assert all("\n" not in reason for reason in reasons.values())
     assert "2 left out" in capsys.readouterr().out
+
+
+def test_an_error_is_a_line_that_says_its_kind_unless_it_is_our_own():
+    errors = ZerorateError("a\n b"), KeyError("c")
+    assert [one_line(error) for error in errors] == ["a b", "KeyError: 'c'"]
 
 
 def test_a_failed_device_is_tried_again_and_the_others_are_not(with_bad_ones):

@@ -13,7 +13,7 @@ from ..errors import MissingLibrary, ZerorateError
 # A board that is just starting loses the key that stops its program; it is pressed again. Its own
 # programs and a busy machine between them may take long to answer.
 _PATIENCE_S = (3, 10, 30)
-_LONG_S = 120  # for which a board may print nothing
+_LONG_S = 120
 _QUESTION = """
 import gc, os, sys
 gc.collect()
@@ -144,11 +144,14 @@ def _let_run(serial) -> None:
         serial.flush()
 
 
-def output_of(transport, program: str) -> str:
-    """What a program that is run to its end on the board prints. Raises its error."""
+def output_of(transport, program: str, patience_s: float = _LONG_S) -> str:
+    """What a program that is run to its end on the board prints. Raises its error.
+
+    patience_s: for how long the board may print nothing.
+    """
     from mpremote.transport import TransportExecError
 
-    said, error = transport.exec_raw(program, timeout=_LONG_S)
+    said, error = transport.exec_raw(program, timeout=patience_s)
     if error:
         raise TransportExecError(said, error.decode())
     return said.decode()
