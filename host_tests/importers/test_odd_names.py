@@ -45,13 +45,14 @@ def test_a_counter_of_rows_is_offered_as_no_time(tmp_path):
         "w_RS_S_x [rad s^-1] w_RS_S_y [rad s^-1] w_RS_S_z [rad s^-1]",
         "raw_angular_rate_x_rad_per_s raw_angular_rate_y_rad_per_s raw_angular_rate_z_rad_per_s",
         "X (rad/sec) Y (rad/sec) Z (rad/sec)",
+        "gx_rad_s gy_rad_s gz_rad_s",
         "x-axis (rad/s) y-axis (rad/s) z-axis (rad/s)",
         "imu rate x [radians per second] imu rate y [radians per second] "
         "imu rate z [radians per second]",
     ],
 )
 def test_a_unit_of_rates_tells_what_a_column_is(tmp_path, names):
-    names = re.findall(r"\S.*?(?:[])]|per_s)", names)
+    names = re.findall(r"\S.*?(?:[])]|_s\b)", names)
     frame = rates(["timestamp_seconds", *names])
     frame[names] = np.radians(frame[names])
     recording, _ = read(tmp_path, frame)

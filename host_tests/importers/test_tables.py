@@ -195,6 +195,10 @@ def test_words_that_come_again_with_other_numbers_are_no_names(line, says):
     assert _says_its_names("Gyro X,1,Y,2,Z,3", [line], ",") is says
 
 
+def test_letters_that_mark_the_ends_of_rows_are_no_words_around_numbers():
+    assert not _says_its_names("S,ACCx,GYRx,E", ["S,0.1,0.2,E"], ",")
+
+
 def test_of_two_accelerations_that_of_the_mapped_rates_is_taken(tmp_path):
     columns = {f"imu{n}_{k}": [x] * 9 for n in (1, 2) for k, x in zip("pqr", (n, 2.0, 3.0))}
     columns |= {f"imu{n}_acc_{k}_g": [n / 100] * 9 for n in (1, 2) for k in "xy"}

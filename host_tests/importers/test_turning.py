@@ -127,6 +127,21 @@ def test_rates_and_times_whose_unit_nobody_names_are_taken_as_they_must_be(tmp_p
     assert np.allclose(read["gx"] * np.ptp(rates[0]) / np.ptp(read["gx"]), rates[0], atol=0.1)
 
 
+@pytest.mark.parametrize(("unit", "per_s"), [("ms", 1e3), ("us", 1e6), ("ns", 1e9)])
+def test_times_that_may_be_of_two_units_are_taken_so_that_the_rates_turn_gravity(
+    tmp_path, unit, per_s
+):
+    path, _ = written(tmp_path)
+    frame = pd.read_csv(path)
+    frame.assign(t=(frame["t"] * per_s).astype(int)).to_csv(path, index=False)
+    report = import_recording(path, tmp_path / "out.csv")
+    assert f"time taken in {unit}: that is 50 Hz, and gravity turns with the rates" in report.notes
+    still = frame.assign(t=(frame["t"] * per_s).astype(int), acc_x=0, acc_y=0, acc_z=9.8)
+    still.to_csv(path, index=False)
+    with pytest.raises(BadRecording, match=rf"--time-unit .*\(0.05 Hz\) or {unit} \(50 Hz\)"):
+        import_recording(path, tmp_path / "out.csv")
+
+
 def test_a_unit_in_a_name_that_gravity_contradicts_is_refused_with_the_true_one(tmp_path):
     path, _ = written(tmp_path, UNITS_DPS["rad/s"], "gx_dps,gy_dps,gz_dps")
     with pytest.raises(BadRecording, match="gravity turns 5[5-9] times as fast.*gx=gx_dps:rad/s"):

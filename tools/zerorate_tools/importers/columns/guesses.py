@@ -58,7 +58,7 @@ def guessed_unit(
         return None, ""
     if target == TIME:
         by_date = _by_calendar(values)
-        return by_date if by_date[0] else _by_pace(values, column)
+        return by_date if by_date[0] else _by_pace(column, wanted, first)
     if target == TEMP:
         return _by_range(values)
     if target in ACCEL:
@@ -70,15 +70,25 @@ def _by_turning(
     wanted: Mapping[str, Mapped], first: Mapping[str, np.ndarray], t_s: np.ndarray
 ) -> str | None:
     """The unit of rates in which they turn gravity as it is seen to turn."""
-    if not all(axis in wanted for axis in ACCEL):
+    size = _turned(wanted, first, t_s)
+    if size is None:
         return None
-    rates, force = (np.array([first[wanted[n].column] for n in axes]) for axes in (GYRO, ACCEL))
-    size = dps_of_one(rates, force, t_s)
+    rates = np.array([first[wanted[axis].column] for axis in GYRO])
     counted = (rates[np.isfinite(rates)] % 1 == 0).all()
-    if size is None or counted and _COUNTS_DPS[0] < size.dps < _COUNTS_DPS[1]:
+    if counted and _COUNTS_DPS[0] < size.dps < _COUNTS_DPS[1]:
         return None
     unit = rate_unit_of(size)
     return None if unit == _AS_COUNTS else unit
+
+
+def _turned(
+    wanted: Mapping[str, Mapped], first: Mapping[str, np.ndarray], t_s: np.ndarray
+) -> Size | None:
+    """The size of rates by which they turn gravity, if both are there and it tells."""
+    if not all(axis in wanted for axis in (*GYRO, *ACCEL)):
+        return None
+    rates, force = (np.array([first[wanted[n].column] for n in axes]) for axes in (GYRO, ACCEL))
+    return dps_of_one(rates, force, t_s)
 
 
 def rate_unit_of(size: Size, factor: float = 1.0) -> str | None:
@@ -290,13 +300,23 @@ def likely_units_of_time(step: float) -> dict[str, float]:
     return {unit: f for unit, f in hz.items() if _LIKELY_HZ[0] <= f <= _LIKELY_HZ[1]}
 
 
-def _by_pace(values: np.ndarray, column: str) -> tuple[str | None, str]:
-    """The only unit in which anyone would have recorded so fast, where the name is of no other."""
-    likely = likely_units_of_time(_usual_step(values))
-    if len(likely) != 1 or _OTHER_TIME.search(column.lower()):
+def _by_pace(
+    column: str, wanted: Mapping[str, Mapped], first: Mapping[str, np.ndarray]
+) -> tuple[str | None, str]:
+    """The only unit in which anyone would have recorded so fast, where the name is of no other;
+    of several that in which rates turn gravity."""
+    likely = likely_units_of_time(_usual_step(first[column]))
+    if _OTHER_TIME.search(column.lower()):
+        return None, ""
+    turned = ""
+    if len(likely) > 1:
+        at = first[column] - first[column][0]
+        likely = {u: hz for u, hz in likely.items() if _turned(wanted, first, at * TIME_S[u])}
+        turned = ", and gravity turns with the rates"
+    if len(likely) != 1:
         return None, ""
     unit, hz = next(iter(likely.items()))
-    return unit, f"that is {hz:.4g} Hz"
+    return unit, f"that is {hz:.4g} Hz{turned}"
 
 
 def _usual_step(values: np.ndarray) -> float:

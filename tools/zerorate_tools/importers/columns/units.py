@@ -15,7 +15,7 @@ RAW = "lsb"
 KINDS = {"t": "time", "g": "gyro", "a": "accel"}
 
 _SEC = "(?:seconds?|secs?|s)"
-_PER_SEC = rf"(?:[\s_]*(?:/|per)[\s_]*{_SEC}|[\s_*·]{_SEC}\^?-1)"
+_PER_SEC = rf"(?:(?:[\s_]*(?:/|per)[\s_]*|_){_SEC}|[\s_*·]{_SEC}\^?-1)"
 _SQUARED = r"(?:/s|\^?2|²|[\s_]*squared|[\s_]*/[\s_]*s)"
 _METRE = "m(?:et(?:er|re)s?)?"
 #: A unit as people write it, whatever its case.
@@ -24,7 +24,7 @@ _WRITTEN = {
     "mdps": rf"mdps|m(?:°|deg){_PER_SEC}",
     "rad/s": rf"rads|rps|rad(?:ian)?s?ps|radpersec|rad(?:ian)?s?{_PER_SEC}",
     "mrad/s": rf"mrad(?:ian)?s?{_PER_SEC}",
-    "m/s2": rf"mss|ms2|mps2|{_METRE}[\s_]*(?:/|per)[\s_]*{_SEC}{_SQUARED}"
+    "m/s2": rf"mss|ms2|mps2|{_METRE}(?:[\s_]*(?:/|per)[\s_]*|_){_SEC}{_SQUARED}"
     rf"|m[\s_*·]{_SEC}\^?-2",
     "g": "gs?|gees?",
     "mg": "mg",

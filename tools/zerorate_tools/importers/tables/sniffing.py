@@ -189,6 +189,8 @@ def _table_in(lines: list[str], every: list[str], encoding: str, path: Path) -> 
 def _says_its_names(line: str, lines: list[str], delimiter: str) -> bool:
     """Whether a line that may be one of names is such as come again with other numbers."""
     names = _cells(line, delimiter)
+    if not _numbers(names, delimiter):
+        return False  # the words of its rows may be letters that mark their ends
     for other in lines:
         cells = _cells(other, delimiter)
         same = sum(name == cell and bool(name) for name, cell in zip(names, cells))
