@@ -11,7 +11,7 @@ import pyarrow.parquet as pq
 import pytest
 from zerorate_tools.cli import main
 from zerorate_tools.errors import ZerorateError
-from zerorate_tools.fleet import devices_of, fleet
+from zerorate_tools.fleet import devices_of, fleet, whole_fleet
 from zerorate_tools.fleet.fleet_in_words import in_words
 from zerorate_tools.fleet.job import one_line
 from zerorate_tools.fleet.prior import beginning, moving_from
@@ -65,6 +65,13 @@ def test_left_out_devices_gain_by_the_prior(done):
     gain = scenarios["always-at-rest"]["gain"]
     assert gain["ci95_mdps"][0] > 0 and gain["share_better"] > 0.7
     assert "error in the first 1.5 minutes" in in_words(done[0])  # no more were recorded
+
+
+def test_what_a_run_took_is_counted(done):
+    run = done[0]
+    assert 50e6 < run.peak_bytes < 50e9 and run.tasks == 6
+    assert 0 < run.cpu_s < 600 and 0 < run.busy_s <= run.work_s < 600
+    assert 0 <= run.start_s < 10 and 0 < run.conclude_s < 600
 
 
 def test_a_second_run_does_nothing_again(done, data, tmp_path):
@@ -139,6 +146,20 @@ def test_a_failed_recording_is_reported_and_stops_nothing(with_bad_ones, capsys)
     assert set(reasons) == {"s2.parquet", "lone.csv"}
     assert "cut off" in reasons["s2.parquet"] and "lone.json" in reasons["lone.csv"]
     assert "2 left out" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(("kind", "said"), [("KilledWorker", "out of memory"), ("E", "E: why")])
+def test_a_task_that_is_lost_is_said_of_each_of_its_recordings(
+    data, tmp_path, monkeypatch, kind, said
+):
+    lost = type(kind, (Exception,), {})("why")
+    lose = lambda client, function, batches: ((batch, lost) for batch in batches)  # noqa: E731
+    monkeypatch.setattr(whole_fleet, "run_all", lose)
+    failures = fleet(devices_of([data])[:2], tmp_path).report["failures"]
+    assert [(f["device"], said in f["reason"]) for f in failures] == [
+        ("00000", True),
+        ("00001", True),
+    ]
 
 
 def test_an_error_is_a_line_that_says_its_kind_unless_it_is_our_own():
