@@ -156,7 +156,7 @@ def test_a_board_says_what_it_loads_by_one_number(number, mpy, architecture):
 
 
 @pytest.mark.parametrize("short", [0, 1])
-def test_a_board_with_too_little_heap_is_told(short):
+def test_a_board_with_too_little_memory_is_told(short):
     needed = heap_needed(["rest"], "")
     facts = BoardFacts(version=(1, 24, 0), heap_free=needed - short)
     lines = flashing.room(facts, ["rest"], 40_000)
@@ -165,7 +165,7 @@ def test_a_board_with_too_little_heap_is_told(short):
 
 
 @pytest.mark.parametrize("runs", [True, False])
-def test_machine_code_that_does_not_run_is_followed_by_bytecode(flashed, monkeypatch, runs):
+def test_machine_code_that_does_not_run_is_done_without(flashed, monkeypatch, runs):
     asked, files = [], texts(("rest",))
     facts = BoardFacts("a board", (1, 24, 0), compiling.mpy_version(), "armv6m")
     monkeypatch.setattr(flashing, "ask", lambda board: facts)

@@ -139,7 +139,7 @@ class TestFreezing:
         assert freeze(both) >= names(["all"])
 
 
-def test_the_page_of_boards_prints_the_heap_that_was_measured(monkeypatch):
+def test_the_page_of_boards_prints_the_bytes_that_were_measured(monkeypatch):
     heap = {"rest": 100, "all": 170, "motion": 150, "gravity": 130, "effects": 140}
     kept = needs_of({"heap_bytes": heap, "least_heap_bytes": 200, "cycles": {}})
     monkeypatch.setattr("zerorate_tools.boards.parts.needs", lambda: kept)
