@@ -10,7 +10,7 @@ from zerorate_tools.errors import InFile, ZerorateError
 from zerorate_tools.layout import AXIS, STATE, axis_at
 from zerorate_tools.model import Slot, build_model, write_model
 from zerorate_tools.model.term import Term
-from zerorate_tools.recordings import open_recording, write_recording
+from zerorate_tools.recordings import write_recording
 from zerorate_tools.replay import replay
 from zerorate_tools.simulate import simulate
 
@@ -196,20 +196,6 @@ def test_a_damaged_state_is_refused_and_no_kernel_goes_where_it_says(
     state.write_bytes(damage(reference.state).astype("<i4").tobytes())
     with pytest.raises(InFile, match="state.bin: damaged, or no state at all; name a file"):
         replay(log, from_state=state)
-
-
-@pytest.mark.parametrize("resume", [False, True])
-def test_a_state_learned_beside_another_model_is_refused(log, tmp_path, resume):
-    scales, models = open_recording(log).scales, []
-    for dps in (0.01, 0.02):
-        slot = Slot(Term("temp", 20.0, 40.0, 30.0), (dps,) * 3, "temperature-quadratic")
-        write_model(build_model([slot], scales), tmp_path / str(dps))
-        models.append(tmp_path / str(dps) / "model.bin")
-    state = tmp_path / "state.bin"
-    replay(log, state=state, model=models[0])
-    replay(log, from_state=state, resume=resume, model=models[0])
-    with pytest.raises(InFile, match="of another effect model"):
-        replay(log, from_state=state, resume=resume, model=models[1])
 
 
 def test_an_unknown_setting_is_refused_and_those_there_are_are_named(log):

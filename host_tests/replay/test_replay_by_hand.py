@@ -159,25 +159,27 @@ def test_absent_channels_have_no_scale():
     assert (sensor.accel_lsb_per_g, sensor.temp_lsb_per_degc, sensor.temp_offset_degc) == (0, 0, 0)
 
 
+@pytest.mark.parametrize("resume", [False, True])
 @pytest.mark.parametrize("slots", [[], SLOTS])
-def test_a_kept_state_is_of_the_same_model_or_refused(recording, tmp_path, slots):
+def test_a_kept_state_is_of_the_same_model_or_refused(recording, tmp_path, slots, resume):
     short, state, model = recording.between(0, 99), tmp_path / "state.bin", tmp_path / "model.bin"
     model.write_bytes(encoded(build_model(slots, recording.scales)))
     replay(short, model=model, state=state)
     kept = np.frombuffer(state.read_bytes(), "<i4")
     first = len(kept) - len(EffectModel().e)
     last = max(0, len(slots) - 1)
+    given_words = EFFECTS.TICK_US, EFFECTS.INPUTS, EFFECTS.SLOTS, EFFECTS.TABLES
     for word, more, is_taken in (
         (EFFECTS.NEXT_SLOT, last, True),
         (EFFECTS.NEXT_SLOT, last + 1, False),
         (EFFECTS.NEXT_SLOT, -1, False),
-        *((given, more, False) for given in (EFFECTS.TICK_US, EFFECTS.INPUTS) for more in (-1, 1)),
+        *((given, more, False) for given in given_words for more in (-1, 1)),
     ):
         changed = kept.copy()
         changed[first + word] = more + (word != EFFECTS.NEXT_SLOT) * kept[first + word]
         state.write_bytes(changed.tobytes())
         with nullcontext() if is_taken else pytest.raises(InFile, match="another effect model"):
-            replay(short, model=model, from_state=state)
+            replay(short, model=model, from_state=state, resume=resume)
 
 
 def test_a_state_has_as_many_nodes_filled_as_there_are_at_most(recording):
