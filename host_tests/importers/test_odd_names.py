@@ -7,6 +7,7 @@ import pandas as pd
 import pytest
 from zerorate_tools.errors import BadRecording, InFile
 from zerorate_tools.importers import Options, import_recording
+from zerorate_tools.importers.columns import names as usual
 
 from .test_odd_files import rates, read, table, told
 
@@ -214,3 +215,8 @@ def test_a_column_of_lists_is_not_offered_for_a_rate(tmp_path):
     frame = pd.DataFrame({"t_s": np.arange(300) / 100, "pulse": 70, "gyro": "[0.8, -0.5, 0.3]"})
     with pytest.raises(BadRecording, match="COLUMN one of t_s, pulse; gyro: no number alone"):
         read(tmp_path, frame)
+
+
+@pytest.mark.parametrize("three", ["acc_g_0 acc_g_1 acc_g_2", "acc_mg_x acc_mg_y acc_mg_z"])
+def test_acceleration_may_have_its_unit_before_its_axis(three):
+    assert list(usual.accel_groups(three.split())[0].values()) == three.split()

@@ -16,7 +16,7 @@ _GYRO = re.compile(
 )
 _ACCEL = re.compile(
     r"(?:.*(?:accelerometer|acceleration|accel|acc|specificforce)"
-    r"\d?(?:uncalibrated|uncal|calibrated|smooth|adc|raw|data|ms2|values?|ln|wr|static|noise){0,2}"
+    r"\d?(?:uncalibrated|uncal|calibrated|smooth|adc|raw|data|ms2|m?g|values?|ln|wr|static|noise){0,2}"
     r"|(?:.*imu)?(?:ac?|gf))" + f"{_AXIS}{_MADE}$|^{_AXIS}(?:accelerometer|accel|acc)$"
 )
 #: Less gravity, or gravity as a filter has it: no measure of it.
