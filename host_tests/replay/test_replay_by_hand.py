@@ -16,6 +16,7 @@ from zerorate_tools.model.files import sensor_for
 from zerorate_tools.model.term import Term
 from zerorate_tools.recordings import Scales, recording_from_columns
 from zerorate_tools.replay import replay
+from zerorate_tools.replay.bias_table import SOURCES, table
 from zerorate_tools.replay.engines import (
     CPythonEngine,
     InterpreterEngine,
@@ -192,7 +193,10 @@ def test_a_state_has_as_many_nodes_filled_as_there_are_at_most(recording):
 
 def test_the_least_trusted_axis_counts():
     source = np.array([[1, 2, 3], [3, 1, 2], [2, 3, 1]], np.int8)
-    assert Outcome(*[None] * 3, source, None, None).least_source.tolist() == [1, 1, 1]
+    q8 = 256 * source.astype(np.int32)
+    rows = table(Outcome(np.arange(3), None, q8, source, q8, source[0])).to_pydict()
+    assert rows["source"] == [SOURCES[1]] * 3 and rows["quality_lsb"] == [3, 3, 3]
+    assert rows["quality_gy"] == rows["bias_gy"] == [2, 1, 3]
 
 
 def test_a_state_whose_last_word_is_cut_has_the_words_before(tmp_path):

@@ -152,9 +152,9 @@ class CPythonEngine(Engine):
     def _one(corrector: Corrector, frame: array[int], dt_us: int) -> tuple[Any, ...]:
         verdict = corrector.update(frame, dt_us)
         s = corrector.state
-        bias = [s[STATE.OUT_Q8 + axis] + s[STATE.EFFECT_Q8 + axis] for axis in range(3)]
-        source, quality = STATE.SOURCE, STATE.QUALITY_Q8
-        return verdict, bias, s[source : source + 3], s[quality : quality + 3]
+        first = STATE.OUT_Q8, STATE.EFFECT_Q8, STATE.SOURCE, STATE.QUALITY_Q8
+        out, effect, source, quality = (s[at : at + 3] for at in first)
+        return verdict, [a + b for a, b in zip(out, effect)], source, quality
 
 
 class InterpreterEngine(Engine):

@@ -249,9 +249,7 @@ def can_be_a_state(corrector: Corrector) -> bool:
 
 
 def _words_hold(words: Sequence[int], array: Array) -> bool:
-    for word in array.words:
-        if word.while_text:
-            continue
+    for word in (word for word in array.words if not word.while_text):
         kind, _, name = word.unit.partition(" ")
         codes = set(getattr(layout, name).numbers.values()) if kind == "code" else None
         end = len(words) if isinstance(word.count, str) else word.index + word.count

@@ -56,7 +56,7 @@ def words_of_file(
     size. Raises InFile.
     """
     data = bytes_of(path, "name a state or a store")
-    if data[:3] == _MAGIC:
+    if data.startswith(_MAGIC):
         words = np.frombuffer(_newest_record(Path(path), data), "<i4")
         first = len(words) - SETTINGS.size  # its settings lie behind the state
         settings = words[first:].tolist()
