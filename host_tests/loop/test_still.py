@@ -7,7 +7,13 @@ import pytest
 from zerorate_bench.loop.trials import NOISES_DPS, RATES_HZ, share_used, shares_with_turn
 from zerorate_tools.closing import close
 from zerorate_tools.loop.analyse import analyse
-from zerorate_tools.loop.motion.by_windows import GIVEN, UNIT, RateScale
+from zerorate_tools.loop.motion.by_windows import (
+    GIVEN,
+    GRAVITY,
+    UNIT,
+    RateScale,
+    _judged_by_heading,
+)
 from zerorate_tools.loop.motion.scales_and_timing import in_motion, slots_of, without_scales
 from zerorate_tools.loop.read.blocks import session_of
 from zerorate_tools.loop.read.reference import RATES, Reference
@@ -222,6 +228,22 @@ def test_of_nine_entries_one_at_least_must_be_seen(seen):
     large = np.full((3, 3), 0.05), np.full((3, 3), 0.01), 1e-9, "scale-factor", GIVEN, np.ones(2)
     shown = RateScale(*large, 2.0, 1.0, UNIT[GIVEN], 40, np.full(3, 300.0), unseen, 1.0)
     assert shown.found == (seen > 0)
+
+
+@pytest.mark.parametrize(
+    ("reference", "after", "found"),
+    [(GIVEN, 6.1, True), (GIVEN, 6.2, False), (GRAVITY, 6.01, False), (GRAVITY, 5.9, True)],
+)
+def test_a_heading_given_may_scatter_by_2_percent_and_one_beside_gravity_may_not(
+    monkeypatch, reference, after, found
+):
+    large = np.full((3, 3), 0.05), np.full((3, 3), 0.01), 1e-9, "scale-factor", reference
+    seen = np.full(3, 300.0), np.zeros((3, 3), bool)
+    shown = RateScale(*large, np.ones(2), 2.0, 1.0, UNIT[reference], 40, *seen, 1.0)
+    monkeypatch.setattr(
+        "zerorate_tools.loop.motion.by_windows.heading_lost", lambda judged: (6.0, after)
+    )
+    assert _judged_by_heading(shown, [], []).found is found
 
 
 def test_beside_true_rates_what_turning_adds_is_taken_out_of_the_blocks_in_motion(tmp_path):
