@@ -158,7 +158,7 @@ def test_samples_at_the_rail_are_counted():
 def test_a_guide_beside_the_recording_sees_what_one_that_waits_sees(tmp_path):
     seen = {}
     for waits in (True, False):
-        bus, clock = fake_hand.in_hand()
+        bus, clock, _ = fake_hand.in_hand()
         with Guide(Silent(), waits=waits) as guide:
             record_bus(
                 *(bus, tmp_path / f"{waits}.parquet"),
@@ -210,7 +210,7 @@ def test_a_recording_that_ends_before_says_what_is_not_known(tmp_path, capsys):
 
 
 def test_a_recording_that_is_told_it_is_enough_ends_and_keeps_all(tmp_path):
-    bus, clock = fake_hand.in_hand()
+    bus, clock, _ = fake_hand.in_hand()
     result = record_bus(bus, tmp_path / "x.csv", time_source=clock, done=lambda s: True)
     assert isinstance(clock, FakeClock) and 0.9 < result.seconds < 1.5
 
