@@ -104,8 +104,18 @@ class Search:
                     f.rivals[hysteresis.KIND] = 0.0
         r = self.regression
         smallest = self._smallest()
-        told = self.found, self.refused, r.outliers, r, self.line, self.own_bend, self.pool
-        return Selection(*told, smallest, bool(self.on_pieces), self.judged_again)
+        return Selection(
+            self.found,
+            self.refused,
+            r.outliers,
+            r,
+            self.line,
+            self.own_bend,
+            self.pool,
+            smallest,
+            bool(self.on_pieces),
+            judged_again=self.judged_again,
+        )
 
     def _smallest(self):
         r, needed, beside = self.regression, self.testing.needed, [*self.straight, *self.terms()]
