@@ -12,11 +12,11 @@ from zerorate_tools.cli import main
 from zerorate_tools.errors import InFile, MissingRuntime, ZerorateError
 from zerorate_tools.kernels import library as library_module
 from zerorate_tools.kernels.library import library as compiled_library
-from zerorate_tools.layout import AXIS, STATE, axis_at
+from zerorate_tools.layout import STATE
 from zerorate_tools.model import build_model
 from zerorate_tools.replay import engines, replay
 from zerorate_tools.replay.replaying import state_bytes
-from zerorate_tools.replay.state_in_words import words_of_file
+from zerorate_tools.replay.state_in_words import Word, in_words, words_of_file
 from zerorate_tools.simulate import simulate
 
 from ..tools.test_model import SCALES, SLOTS
@@ -112,10 +112,7 @@ def test_a_library_for_windows_is_made_here_and_shows_what_python_calls(tmp_path
 
 @pytest.fixture
 def corrector():
-    made = Corrector()
-    made.state[STATE.OUT_Q8 + 1] = -384
-    made.state[axis_at(made.settings, 2) + AXIS.OFFSET_FROM] = 4
-    return made
+    return Corrector()
 
 
 def by_name(path, **options):
@@ -131,11 +128,25 @@ def test_every_word_of_a_state_has_a_name_of_its_own(tmp_path, options):
     assert len(words) == len(state_bytes(Corrector(**options))) // 4 == len(set(names))
 
 
-def test_a_word_has_its_value_in_its_unit_and_a_code_its_name(tmp_path, corrector):
-    (tmp_path / "s.bin").write_bytes(state_bytes(corrector))
-    words = by_name(tmp_path / "s.bin")
-    assert words["OUT_Q8[1]"].shown == "-1.5 LSB"
-    assert words["z.OFFSET_FROM"].shown == "IN_MOTION"
+def test_words_are_shown_in_their_units_and_codes_by_name():
+    words = [
+        Word("state", 4, "FRAME[0]", 3, "LSB"),
+        Word("state", 63, "OUT_Q8[1]", -384, "LSB"),
+        Word("state", 80, "SOURCE[0]", 4, "code SOURCE"),
+        Word("state", 81, "SOURCE[1]", 99, "code SOURCE"),
+        Word("motion", 0, "MEAN_Q14", 8192, ""),
+        Word("motion", 1, "WORK", 7, ""),
+    ]
+    assert [" ".join(line.split()) for line in in_words(words).splitlines()] == [
+        "state: word, name, raw, in its unit",
+        "4 FRAME[0] 3 3 LSB",
+        "63 OUT_Q8[1] -384 -1.5 LSB",
+        "80 SOURCE[0] 4 IN_MOTION",
+        "81 SOURCE[1] 99 no such code",
+        "motion: word, name, raw, in its unit",
+        "0 MEAN_Q14 8192 0.5",
+        "1 WORK 7",
+    ]
 
 
 def test_the_words_of_a_model_are_those_of_its_slots(tmp_path, corrector):

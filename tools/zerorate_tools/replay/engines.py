@@ -76,24 +76,19 @@ class Engine(ABC):
 def engine(name: str) -> Engine:
     """The engine of that name: native, cpython, wasm, x86, armhf, or a MicroPython executable.
 
-    Raises MissingRuntime.
+    Native is CPython's where there is no compiler. Raises MissingRuntime.
     """
-    own = {"native": NativeEngine, "cpython": CPythonEngine}
-    return own[name]() if name in own else InterpreterEngine(find(name))
+    if name == "cpython" or name == "native" and not compiled():
+        return CPythonEngine()
+    return NativeEngine() if name == "native" else InterpreterEngine(find(name))
 
 
 class NativeEngine(Engine):
-    """The kernels compiled from their C, in this process; CPython where there is no compiler."""
+    """The kernels compiled from their C, in this process: where they are `compiled`."""
 
-    @property
-    def way(self) -> str:  # type: ignore[override]
-        """Compiled, or as CPythonEngine."""
-        return "as compiled C" if compiled() else CPythonEngine.way
+    way = "as compiled C"
 
     def run(self, corrector: Corrector, batches: Iterable[Frames]) -> Iterator[Outcome]:
-        if not compiled():
-            yield from CPythonEngine().run(corrector, batches)
-            return
         arrays = _arrays(corrector)
         for batch in batches:
             found = run_rows(arrays, batch.frames, batch.dt_us, batch.extra)
@@ -103,8 +98,7 @@ class NativeEngine(Engine):
     def run_partly(
         corrector: Corrector, batch: Frames, learn: NDArray[np.bool_], frozen: array[int]
     ) -> Outcome:
-        """One batch, by other settings, `frozen`, at the samples where learn, (n,), is not; only
-        where the kernels are compiled."""
+        """One batch, by other settings, `frozen`, at the samples where learn, (n,), is not."""
         others, where = np.array(frozen, np.int32), np.ascontiguousarray(learn, np.int8)
         rows = batch.frames, batch.dt_us, batch.extra
         found = run_rows(_arrays(corrector), *rows, others, where)
@@ -174,7 +168,7 @@ class InterpreterEngine(Engine):
                     file.write(rows.astype("<i4").tobytes())
             result = self._runtime.run(
                 Path(__file__).with_name("on_interpreter.py"),
-                [kept[0].extra.shape[1] if kept else 0],
+                [sum(batch.extra.shape[1] for batch in kept[:1])],
                 modules=[staged_packages(Path(scratch), ("zerorate",))],
                 files_in={
                     "frames.bin": recording,
@@ -186,7 +180,6 @@ class InterpreterEngine(Engine):
                     },
                 },
                 files_out=["state.bin", "out.bin", *_OTHERS],
-                heap=4 << 20,
                 check=True,
             )
         yield from self._outcomes(corrector, kept, result.files)

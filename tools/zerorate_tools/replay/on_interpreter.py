@@ -7,7 +7,6 @@ from micropython import const
 from zerorate.corrector import Corrector
 from zerorate.model import EffectModel
 
-_ROWS = 256
 _GAP = -0x80000000
 # layout: The corrector's state
 _OUT_Q8 = const(62)
@@ -34,7 +33,7 @@ def store(name, words):
 motion = whole("motion.bin")
 gravity = whole("gravity.bin")
 effects = whole("effects.bin")
-corrector = Corrector(motion=len(motion) > 0, gravity=len(gravity) > 0)
+corrector = Corrector(motion=bool(motion), gravity=bool(gravity))
 corrector.settings = whole("settings.bin")
 corrector.state = state = whole("state.bin")
 if motion:
@@ -43,7 +42,6 @@ if motion:
 if gravity:
     corrector.gravity_settings = whole("gravity_settings.bin")
     corrector.gravity = gravity
-channels = 0
 if effects:
     model = EffectModel()
     model.e = effects
@@ -52,31 +50,24 @@ if effects:
 
         model.attend = attend
     corrector.use_model(model)
-    channels = int(sys.argv[1])
-row_words = 8 + channels
-out = array("i", bytes(68))
-words = bytearray(4 * row_words * _ROWS)
 
+
+def out(verdict):
+    bias, effect, source, quality = (
+        state[at : at + 3] for at in (_OUT_Q8, _EFFECT_Q8, _SOURCE, _QUALITY_Q8)
+    )
+    total = [a + b for a, b in zip(bias, effect)]
+    return array("i", [verdict] + total) + source + quality
+
+
+row = array("i", bytes(4 * (8 + int(sys.argv[1]))))
 with open("frames.bin", "rb") as source, open("out.bin", "wb") as target:
-    while True:
-        count = source.readinto(words) // (4 * row_words)
-        if count == 0:
-            break
-        rows = array("i", words)
-        for i in range(count):
-            start = row_words * i
-            frame = rows[start + 1 : start + 8]
-            for k in range(channels):
-                if rows[start + 8 + k] != _GAP:
-                    effects[_CHANNELS + k] = rows[start + 8 + k]
-            out[0] = corrector.update(frame, rows[start])
-            for axis in range(3):
-                out[1 + axis] = state[_OUT_Q8 + axis] + state[_EFFECT_Q8 + axis]
-                out[4 + axis] = state[_SOURCE + axis]
-                out[7 + axis] = state[_QUALITY_Q8 + axis]
-            for k in range(7):
-                out[10 + k] = frame[k]
-            target.write(out)
+    while source.readinto(row):
+        for k, value in enumerate(row[8:]):
+            if value != _GAP:
+                effects[_CHANNELS + k] = value
+        frame = row[1:8]
+        target.write(out(corrector.update(frame, row[0])) + frame)
 store("state.bin", state)
 store("motion.bin", motion)
 store("gravity.bin", gravity)

@@ -17,7 +17,7 @@ from ...errors import ZerorateError
 from ...model import Model, encoded
 from ...model.files import sensor_for
 from ...recordings import Scales
-from ...replay.engines import Engine, NativeEngine, compiled
+from ...replay.engines import Engine, NativeEngine, engine
 from ...replay.samples import Frames
 
 
@@ -36,7 +36,7 @@ class Firmware:
             self._corrector = Corrector(sensor_for(scales), motion=False, gravity=False)
         except ValueError as problem:
             raise Refused(f"the firmware cannot run at these scales: {problem}") from problem
-        self._engine: Engine = NativeEngine()
+        self._engine: Engine = engine("native")
         self._extra: list[int] = []
         if model is not None:
             self._load(model, channels)
@@ -67,7 +67,7 @@ class Firmware:
         learn: whether rests are learned, (n,) bool or one for all.
         """
         learn = np.broadcast_to(learn, len(frames))
-        if isinstance(self._engine, NativeEngine) and compiled():
+        if isinstance(self._engine, NativeEngine):
             own = self._own(frames)
             return self._engine.run_partly(self._corrector, own, learn, self._frozen).bias_q8
         edges = np.flatnonzero(np.diff(learn)) + 1
