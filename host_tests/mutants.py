@@ -167,7 +167,7 @@ AREAS = {
     "fleet": (
         [_TOOLS + "fleet/"],
         ["fleet/test_run.py", "fleet/test_population.py", "fleet/test_cluster.py",
-         _FIGURES + "[fleet of ten]"],
+         _FIGURES + "[fleet of ten]", _FIGURES + "[parts of a fleet]"],
     ),
     "boards": (
         [_TOOLS + "boards/"],

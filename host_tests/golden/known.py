@@ -4,30 +4,23 @@ A figure is the mean and the root mean square of a column. `python -m host_tests
 """
 
 import json
-from contextlib import nullcontext
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from unittest import mock
 
 import numpy as np
-import pyarrow.parquet as pq
 from zerorate import Corrector, Sensor
-from zerorate_bench.fleet import write_devices
 from zerorate_tools.compare import compare
 from zerorate_tools.compare.matrix import matrix_of
 from zerorate_tools.compare.show import table
-from zerorate_tools.fleet import Fleet, devices_of, fleet, plots, whole_fleet
-from zerorate_tools.fleet.fleet_in_words import in_words
 from zerorate_tools.loop.analyse import sessions_of
 from zerorate_tools.loop.read.blocks import dequantise, step_lsb
 from zerorate_tools.loop.read.lines import beside_neighbours, find, spectrum
 from zerorate_tools.loop.read.still import _is_near, deviation_of, still_ticks
 from zerorate_tools.loop.read.ticks import read_ticks, tick_seconds
 from zerorate_tools.recordings import Recording, turning, write_recording
-from zerorate_tools.report.page import plain
 from zerorate_tools.simulate import reference, simulate_sessions
 
-from . import moved, reported, watched
+from . import fleets, moved, reported, watched
 from .imported import IMPORTED
 
 FILE = Path(__file__).with_name("known.json")
@@ -233,36 +226,9 @@ def compared():
     return flat({**found.figures(), "table": table(found).splitlines(), "won": vars(won)})
 
 
-_STEP = {"effect": "thermal-lag", "verdict": "of the part", "devices": 3, "of_devices": 7,
-         "share_ci95": [0.12, 0.77]}  # fmt: skip
-_LEFT_OUT = [{"file": f"{n}.csv", "reason": f"{n}.csv: no"} for n in range(12)]
-_TOLD_ELSE = {"steps": [_STEP], "failures": _LEFT_OUT, "prior": {"devices": 6, "benefit": None}}
-_TOLD_NONE = {"job": "close", "effects": [], "steps": [], "prior": None, "hours": 2000.0,
-                  "failures": _LEFT_OUT[:10]}  # fmt: skip
-
-
 def fleet_of_ten():
     """Of ten devices' recordings, without a cluster: report, table, words and plots."""
-
-    def run(client, function, batches):
-        return ((batch, function(batch)) for batch in batches)
-
-    local = {"cluster": lambda *of: nullcontext(), "run_all": run, "size_of": lambda client: 2}
-    with (
-        TemporaryDirectory() as folder,
-        mock.patch.multiple(whole_fleet, **local),
-        mock.patch.object(plots, "rendered", return_value="") as page,
-    ):
-        write_devices(Path(folder, "data"), 1.5, range(10))
-        done = fleet(devices_of([Path(folder, "data")]), Path(folder, "out"), minutes=0.5)
-        rows = pq.read_table(Path(folder, "out", "fleet.parquet"))
-    drawn = json.loads(json.dumps({p.key: plain(p) for p in page.call_args.args[1]}))
-    words = [
-        in_words(Fleet(report, resumed)).splitlines()
-        for resumed, report in enumerate([done.report | of for of in ({}, _TOLD_ELSE, _TOLD_NONE)])
-    ]
-    whole = {"report": done.report, "rows": rows.to_pydict(), "words": sum(words, [])}
-    drawn["headline"] = page.call_args.kwargs["headline"]
+    whole, drawn = fleets.fleet_of_ten()
     return flat(whole) | reported.gathered(drawn)
 
 
@@ -328,6 +294,7 @@ KNOWN = {
     "turned": turned,
     "compared": compared,
     "fleet of ten": fleet_of_ten,
+    "parts of a fleet": lambda: reported.gathered(reported._plain(fleets.parts_of_a_fleet())),
     "steps found": reported.steps_found,
     "searched two": reported.searched_two,
     "searched one": reported.searched_one,

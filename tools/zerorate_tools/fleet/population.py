@@ -209,7 +209,7 @@ def _em(
         narrow = np.linalg.inv(spread)
         covariance = np.linalg.inv(information + narrow)
         # inverse of a device's noise and the spread together
-        weight = narrow - narrow @ covariance @ narrow
+        weight = information @ covariance @ narrow
         error = np.linalg.inv(weight.sum(axis=0))
         mean = error @ (narrow @ np.einsum("nij,nj->i", covariance, score))
         own = np.einsum("nij,nj->ni", covariance, score + narrow @ mean) - mean

@@ -1,0 +1,118 @@
+"""What a fleet's devices have in common: of ten recorded ones, and of parts made by hand."""
+
+import json
+from contextlib import nullcontext
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from unittest import mock
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+from zerorate_bench.fleet import write_devices
+from zerorate_tools.fleet import Fleet, devices_of, fleet, plots, whole_fleet
+from zerorate_tools.fleet.fleet_in_words import in_words
+from zerorate_tools.fleet.job import block_means, error_mdps
+from zerorate_tools.fleet.part import curve_effects, part_of, step_effects
+from zerorate_tools.fleet.population import curve_of
+from zerorate_tools.fleet.prior import _summary, moving_from, prior_json, prior_model
+from zerorate_tools.loop.read.sessions import Session
+from zerorate_tools.recordings import Recording, Scales
+from zerorate_tools.report.page import plain
+
+_STEP = {"effect": "thermal-lag", "verdict": "of the part", "devices": 3, "of_devices": 7,
+         "share_ci95": [0.12, 0.77]}  # fmt: skip
+_LEFT_OUT = [{"file": f"{n}.csv", "reason": f"{n}.csv: no"} for n in range(12)]
+_TOLD_ELSE = {"steps": [_STEP], "failures": _LEFT_OUT, "prior": {"devices": 6, "benefit": None}}
+_TOLD_NONE = {"job": "close", "effects": [], "steps": [], "prior": None, "hours": 2000.0,
+                  "failures": _LEFT_OUT[:10]}  # fmt: skip
+
+
+def fleet_of_ten():
+    """Of ten devices' recordings, without a cluster: report and rows, words, what is drawn."""
+
+    def run(client, function, batches):
+        return ((batch, function(batch)) for batch in batches)
+
+    local = {"cluster": lambda *of: nullcontext(), "run_all": run, "size_of": lambda client: 2}
+    with (
+        TemporaryDirectory() as folder,
+        mock.patch.multiple(whole_fleet, **local),
+        mock.patch.object(plots, "rendered", return_value="") as page,
+    ):
+        write_devices(Path(folder, "data"), 1.5, range(10))
+        done = fleet(devices_of([Path(folder, "data")]), Path(folder, "out"), minutes=0.5)
+        rows = pq.read_table(Path(folder, "out", "fleet.parquet"))
+    drawn = json.loads(json.dumps({p.key: plain(p) for p in page.call_args.args[1]}))
+    words = [
+        in_words(Fleet(report, resumed)).splitlines()
+        for resumed, report in enumerate([done.report | of for of in ({}, _TOLD_ELSE, _TOLD_NONE)])
+    ]
+    whole = {"report": done.report, "rows": rows.to_pydict(), "words": sum(words, [])}
+    return whole, drawn | {"headline": page.call_args.kwargs["headline"]}
+
+
+def _device(rng, number, tempered, power_ons):
+    """Power-ons of a device over 25 degrees, with gaps; the eleventh and the last are unlike."""
+    sessions = []
+    level = rng.normal(0.5, 0.3) + 9.0 * (number == 10)
+    slope = rng.normal(0.02, 0.002) + 0.1 * (number == 12)
+    for one in range(power_ons):
+        degc = np.linspace(12 + number % 4 + one, 37 + one, 90)
+        noise = np.cumsum(rng.normal(0, 1e-3, (90, 3)), axis=0) + rng.normal(0, 4e-3, (90, 3))
+        course = level + slope * (degc - 25) + 1e-4 * (number % 3) * (degc - 25) ** 2
+        rates = course[:, None] * [1, -0.5, 0.1] + rng.normal(0, 0.02, 3) + noise
+        rates[40:44] = np.nan
+        temp = {"temp": degc} if tempered else {}
+        sessions.append(Session(str(one), 5.0, 1, rates, np.ones(90), temp, start_us=7_000_000))
+    return sessions
+
+
+def _part(seed, number, tempered=True):
+    """Curves of so many devices, and what is made of them."""
+    rng, scales = np.random.default_rng(seed), Scales("X", 25.0, 131.0, None, 340.0, 36.53)
+    curves = [curve_of(_device(rng, n, tempered, 1 + n % 3)) for n in range(number)]
+    part = part_of([f"d{n}" for n in range(number)], curves)
+    kept = ("own", "own_covariance", "p_unusual", "used", "mean_covariance")
+    own = {name: [getattr(a, name).ravel().tolist() for a in part.axes] for name in kept}
+    slots = [[s.coefficient_dps, vars(s.term)] for s in prior_model(part, scales).slots]
+    return {
+        "curves": [[c.information.ravel().tolist(), c.score.tolist(), c.to_json()["degc"], c.blocks]
+                   for c in curves], "shown": [c.shown for c in curves],
+        "effects": curve_effects(part), "own": own, "json": prior_json(part), "slots": slots,
+        "centre": part.to_centre.tolist(), "few": part_of(["a"] * 4, curves[:4]),
+    }  # fmt: skip
+
+
+def _steps():
+    """What close found in 40 devices: an effect of all, of half of them, of a few."""
+    step = {"effect": "of all", "confidence": "confirmed", "before_mdps": [5, 5, 3]}
+    step["after_mdps"] = [3, 5, 5]
+    half = step | {"effect": "of half", "confidence": "tentative", "before_mdps": [9, 4, 1]}
+    return step_effects([
+        {"device": f"d{n}", "steps": [step, step] * (n < 38) + [half] * (n % 2)
+         + [half | {"effect": "of few"}] * (n < 3)} for n in range(40)
+    ])  # fmt: skip
+
+
+def parts_of_a_fleet():
+    """Of parts made by hand: their devices' curves, what they share, priors, what close found."""
+    (session, *_) = _device(np.random.default_rng(1), 0, True, 1)
+    bias = np.linspace(0.3, 0.6, 90)[:, None] * [1, -0.5, 0.1]
+    errors = [error_mdps(session, bias, *of) for of in ((), (60.0,), (60.0, 300.0), (445.0, 449.0))]
+    at = np.arange(40)
+    t_us = 7_000_000 + at * 1_700_000 + 90_000_000 * (at > 30)
+    biases = {f"bias_g{axis}": np.sin(at / n) for n, axis in enumerate("xyz", 2)}
+    batches = pa.table({"t_us": t_us, **biases}).to_batches(max_chunksize=9)
+    means = block_means(batches, replace(session, rate_dps=bias[:12]))
+    columns = {"t_us": at * 40_000 + 9, "gx": at, "gy": 9 * at, "gz": 0 * at + 31_000}
+    swung = moving_from(Recording(columns, Scales("X", 25.0, 131.0), "swung"), 0.6).columns
+    rows = ({"without": 9.0 + n, "prior": 4.0 + n * n / 9} for n in range(12))
+    gains = {str(n): {"always-at-rest": row} for n, row in enumerate(rows)}
+    return {
+        "fifteen": _part(1, 15), "six": _part(2, 6), "cold": _part(3, 9, tempered=False),
+        "few blocks": curve_of([Session("s", 5.0, 1, np.ones((4, 3)), np.ones(4))]),
+        "steps": _steps(), "errors": errors, "benefit": _summary(gains, 2.0),
+        "means": means.T.tolist(), "swung": [swung[name].tolist() for name in ("gx", "gy", "gz")],
+    }  # fmt: skip
