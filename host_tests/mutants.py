@@ -188,7 +188,8 @@ AREAS = {
     # what is shown beside others: the comparison, the demo, and the methods of others
     "compare": (
         [_TOOLS + "compare/", _TOOLS + "demo/", _TOOLS + "peers.py"],
-        ["compare/", "demo/", _FIGURES + "[compared]"],
+        ["compare/", "demo/", _FIGURES + "[compared]",
+         _FIGURES + "[demonstrated]"],
     ),
     "watch": (
         [_TOOLS + "watch/", _TOOLS + "guide.py"], ["watch/", _FIGURES + "[watched]"],

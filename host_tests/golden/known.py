@@ -20,7 +20,7 @@ from zerorate_tools.loop.read.ticks import read_ticks, tick_seconds
 from zerorate_tools.recordings import Recording, turning, write_recording
 from zerorate_tools.simulate import reference, simulate_sessions
 
-from . import fleets, moved, reported, watched
+from . import fleets, moved, reported, shown, watched
 from .imported import IMPORTED
 
 FILE = Path(__file__).with_name("known.json")
@@ -223,7 +223,9 @@ def compared():
     with TemporaryDirectory() as folder:
         logs = list(_logs(Path(folder)))
         found, won = compare(logs), matrix_of(logs)
-    return flat({**found.figures(), "table": table(found).splitlines(), "won": vars(won)})
+        pages = reported.gathered_plain(shown.compared_on_a_page(logs, Path(folder)))
+    figures_of = {**found.figures(), "table": table(found).splitlines(), "won": vars(won)}
+    return flat(figures_of) | pages
 
 
 def fleet_of_ten():
@@ -293,8 +295,9 @@ KNOWN = {
     "moved together": moved_together,
     "turned": turned,
     "compared": compared,
+    "demonstrated": lambda: reported.gathered_plain(shown.demonstrated()),
     "fleet of ten": fleet_of_ten,
-    "parts of a fleet": lambda: reported.gathered(reported._plain(fleets.parts_of_a_fleet())),
+    "parts of a fleet": lambda: reported.gathered_plain(fleets.parts_of_a_fleet()),
     "steps found": reported.steps_found,
     "searched two": reported.searched_two,
     "searched one": reported.searched_one,

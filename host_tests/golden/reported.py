@@ -128,6 +128,11 @@ def gathered(parts):
     return found
 
 
+def gathered_plain(parts):
+    """The same of values that only JSON makes plain."""
+    return gathered(_plain(parts))
+
+
 def _gather(value, words, numbers):
     """Words and integers; numbers; of long rows their mean, slope and size."""
     row = value if isinstance(value, list) and len(value) > 3 else ()
@@ -197,7 +202,7 @@ def drawn(logs, folder):
             told = [page.plain(plot), sizes, page.legend(plot)]
             told[0]["frames"] = told[0]["frames"][-2:]
             found |= gathered({f"{number} {plot.key}": told})
-    return found | gathered({"motion": _plain(_in_motion(folder, scales))})
+    return found | gathered_plain({"motion": _in_motion(folder, scales)})
 
 
 def _in_motion(folder, scales):
@@ -234,7 +239,7 @@ def steps_found():
         {n: v for n, v in vars(step).items() if n != "at"} for s in sessions for step in s.steps
     ]
     left = {f"rate {n}": s.rate_dps.ravel().tolist() for n, s in enumerate(sessions)}
-    return gathered({"steps": _plain(steps), **left})
+    return gathered_plain({"steps": steps, **left})
 
 
 _PLAIN = vars(Term(""))
@@ -249,7 +254,7 @@ def _selected(selection):
     ]
     refused = [label for label, _ in selection.refused]
     told = {"found": found, "refused": refused, "least": selection.smallest_dps}
-    return gathered(_plain(told))
+    return gathered_plain(told)
 
 
 def searched_two():
