@@ -137,7 +137,7 @@ AREAS = {
     ),
     "search": (
         [_TOOLS + "loop/search/"],
-        ["loop/test_search_by_hand.py", "loop/test_steps_by_hand.py"]
+        ["loop/test_search_by_hand.py", "loop/test_steps_by_hand.py", "loop/test_select_by_hand.py"]
         + [_FIGURES + f"[{whole}]" for whole in ("steps found", "searched one", "searched two")],
     ),
     "verify": (

@@ -234,11 +234,15 @@ def steps_found():
     one.rate_dps[70:] += [0.02, -0.03, 0.0]
     other.rate_dps[40:] += [0.0, 0.0, 0.05]
     other.rate_dps[90:92] += 0.1
-    sessions = remove_steps([one, other])
+    per, rng = one.ticks_per_block, np.random.default_rng(1)
+    ticks = np.repeat(one.rate_dps, per, axis=0) + rng.normal(0, 0.01, (len(one.rate_dps) * per, 3))
+    at_rest = replace(one, ticks_dps=ticks, temp_step_degc=0.2)
+    sessions = remove_steps([at_rest, other])
     steps = [
         {n: v for n, v in vars(step).items() if n != "at"} for s in sessions for step in s.steps
     ]
     left = {f"rate {n}": s.rate_dps.ravel().tolist() for n, s in enumerate(sessions)}
+    left |= {n: getattr(sessions[0], n).ravel().tolist() for n in ("ticks_dps", "level_dps")}
     return gathered_plain({"steps": steps, **left})
 
 

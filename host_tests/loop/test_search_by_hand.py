@@ -236,6 +236,7 @@ def test_a_mean_and_a_spread_are_of_the_sessions_own_coefficients(sessions):
     assert decision.session_gains == pytest.approx(gains(regression, [B], [A]))
     dear = drift_test.considered(regression, [B], candidate(A), 50.0, 1.01e-3 / told)
     assert not dear.accepted and "walk" in dear.reason
+    assert drift_test.considered(regression, [B], candidate(A), 50.0, 9.0 / told).p_value == 1.0
     for tried, again in ((0.99e-6 / told, True), (1.01e-6 / told, False)):
         assert drift_test.comes_again(regression, [B], candidate(A), tried) is again
 
@@ -308,6 +309,10 @@ def test_the_smallest_effect_is_what_passes_nine_times_in_ten(sessions):
     assert found["y"] == pytest.approx(sizes[D], rel=1e-5)
     assert set(found) == {"x", "y"}  # what B holds, and what has two terms, is not named
     assert detectable.smallest_dps(regression, [B], kinds[-1:], None) == {}
+    for s in sessions:
+        s.sources["same"] = np.ones(s.blocks)
+    with_it, without = (detectable._own_rms(A, of, sessions) for of in ([B, Term("same")], [B]))
+    assert with_it == pytest.approx(without)
 
 
 @pytest.mark.parametrize("beside", [[B], []])
@@ -418,11 +423,13 @@ def test_forms_of_a_likely_hysteresis_span_all_sessions_temperatures(monkeypatch
         assert [t.width for t in form] == pytest.approx(widths.tolist())
         assert {(t.lo, t.hi, t.centre, t.power) for t in form} == {(10.0, 30.0, 18.5, 1)}
     assert [t.power for t in every[1]] == [1, 2] * 4
+    one = SimpleNamespace(sessions=made)
+    assert likely_hysteresis.likeliest(one, []) == (None, 0.0), "the temperature never turned back"
     monkeypatch.setattr(likely_hysteresis, "may_show", lambda sessions: True)
     for nats in (0.5, -0.5):
         of = lambda r, terms, form, nats=nats: nats - (form != every[3])  # noqa: E731
         monkeypatch.setattr(likely_hysteresis, "evidence", of)
-        likely, gain = likely_hysteresis.likeliest(SimpleNamespace(sessions=made), [])
+        likely, gain = likely_hysteresis.likeliest(one, [])
         assert gain == nats and (likely.terms == every[3] if nats > 0 else likely is None)
 
 
@@ -547,6 +554,8 @@ def test_a_curve_bends_in_every_slot_that_is_left_at_places_evenly_apart():
             at = 20.0 + 10.0 * np.arange(1, bends + 1) / (bends + 1)
             assert [t.knot + 25.0 for t in knots] == pytest.approx(at)
     assert curve.smooth_curve(made, (), 0) == []
+    by = curve.ByPieces(SimpleNamespace(sessions=made), (), [], None, 0)
+    assert by._curve([]) == [] == by._kink([])
 
 
 @pytest.mark.parametrize(("blocks", "shows"), [(None, True), (1, False)])

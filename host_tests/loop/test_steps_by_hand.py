@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from scipy.stats import chi2, gamma
+from zerorate_tools.loop.fit.free_curve import parts
 from zerorate_tools.loop.fit.regression import Regression, predicted
 from zerorate_tools.loop.read.sessions import block_basis
 from zerorate_tools.loop.search import hysteresis, steps_first
@@ -158,6 +159,17 @@ def test_a_step_s_column_is_of_its_session_alone(sessions):
     assert second[:30].max() == 0 and second[30] == 0.75 and second[31:].min() == 1
 
 
+def test_the_weakest_goes_where_not_all_stand_beside_each_other(sessions, monkeypatch):
+    asked = []
+    stand = lambda regression, terms, steps, *of: asked.append([*steps]) or len(steps) < 2  # noqa: E731
+    monkeypatch.setattr(listed, "_stand", stand)
+    regression = Regression(sessions)
+    left = standing(regression, [A], 1, [])
+    assert left == asked[1] == [max(asked[0], key=lambda s: s.ratio)]
+    assert len(regression.events()) == 1
+    assert standing(Regression([dense.made(0, 12)]), [A], 1, []) == []
+
+
 def test_no_more_than_four_steps_a_recording_are_looked_for():
     places = [(b, 0.0, [20.0 * (-1) ** k] * 3) for k, b in enumerate((12, 20, 28, 36, 44, 52))]
     found = standing(Regression([stepped(noise(9, 70), *places)]), [], 1, [])
@@ -200,7 +212,8 @@ def test_what_was_taken_beside_a_step_may_make_it_by_its_timing():
     session = noise(4)
     session.sources["j"] = np.where(np.arange(BLOCKS) >= 30, 1.0, 0.0)
     regression = Regression([session])
-    step = Step(0, 30, np.array([2.0, 0.0, 0.0]), 9.0, 0.0, np.array([1.0, 1.0, 1.0]))
+    step = Step(0, 30, np.array([2.0, 0.0, 0.0]), 9.0, 0.0, np.array([0.7, 1.0, 1.0]))
+    assert not Step(0, 5, np.zeros(3), 0.0, 1.0).deviation_dps.any()
     forms = [Term("j")]
     assert listed._is_timing(regression, forms, np.array([[2.1, 0.0, 0.0]]), step)
     assert not listed._is_timing(regression, forms, np.array([[2.0, 9.0, 0.0]]), step)
@@ -208,10 +221,13 @@ def test_what_was_taken_beside_a_step_may_make_it_by_its_timing():
     sure = replace(
         step, size_dps=np.array([2.0, 2.0, 0.0]), deviation_dps=np.array([1.0, 2.0, 9.0])
     )
-    weight = np.array([2.0, 0.5, 0.0])
-    along = np.array([3.0, -1.0, 0.0]) @ weight / (sure.size_dps @ weight)
-    both = np.array([[3.0, -1.0, 0.0]])
-    assert listed._is_timing(regression, forms, both, sure) is bool(along > 1)
+    for first in (2.49, 2.51):  # the second counts for a quarter
+        both = np.array([[first, 0.04, 99.0]])
+        assert listed._is_timing(regression, forms, both, sure) is bool(first > 2.5)
+    assert sure.times_in(np.array([[3.0, -1.0, 0.0]])) == pytest.approx([1.1])
+    session.sources["j"][:] = np.where(np.arange(BLOCKS) >= BLOCKS - 1, 1.0, 0.0)
+    last = replace(step, block=BLOCKS)
+    assert not listed._is_timing(regression, forms, np.array([[2.1, 0.0, 0.0]]), last)
 
 
 @pytest.mark.parametrize("size_dps", [0.0, 9.0])
@@ -237,11 +253,16 @@ def test_lags_that_the_recordings_show_stay_and_all_others_are_held_at_zero(size
 
 def test_a_form_of_several_terms_pays_for_those_that_a_step_does_not_have(sessions):
     regression = Regression(sessions[:1])
-    one, two = (Candidate("x", terms, "catalogue") for terms in ((A,), (A, B)))
-    gains = [regression.gains([], [c.terms]).sum() for c in (one, two)]
-    form, gain = listed._best_form(regression, [], [one, two])
-    worth = [gains[0], gains[1] - 6.0]
-    assert gain == pytest.approx(max(worth)) and form is (one, two)[int(np.argmax(worth))]
+    every = [
+        Candidate("x", terms, "catalogue") for terms in ((A,), (A, B), parts(Term("a", -3, 9)))
+    ]
+    gains = [regression.gains([], [c.terms]).sum() for c in every]
+    worth = [gains[0], gains[1] - 6.0, gains[2] - 2.0 * (len(every[2].terms) - 1)]
+    for some in (slice(0, 2), slice(2, 3), slice(0, 3)):
+        form, gain = listed._best_form(regression, [], every[some])
+        assert (
+            gain == pytest.approx(max(worth[some])) and form is every[worth.index(max(worth[some]))]
+        )
     assert listed._best_form(regression, [], []) == (None, 0.0)
 
 
@@ -322,6 +343,38 @@ COLD = Term("temp", centre=20.0)
 )
 def test_a_jump_of_temperature_moves_a_term_by_its_slope_less_what_a_lag_forgets(term, per_degc):
     assert steps_first._slope(term, 25.0, 20.0) == pytest.approx(per_degc)
+
+
+@pytest.mark.parametrize(
+    ("degc", "beside", "reading_degc", "explained"),
+    [
+        *((0.4, 0.99, 0.5, True), (-0.4, 0.99, 0.5, True), (0.4, 1.01, 0.5, False)),
+        *((0.4, 0.99, None, False), (0.5 + 0.99, 0.0, 0.5, True), (0.5 + 1.01, 0.0, 0.5, False)),
+        *((-0.5 - 0.99, 0.0, 0.5, True), (-0.5 - 1.01, 0.0, 0.5, False)),
+    ],
+)
+@pytest.mark.parametrize("block", [37, BLOCKS])
+def test_a_step_that_a_reading_of_the_thermometer_explains_is_none(
+    block, degc, beside, reading_degc, explained
+):
+    temp = 25 + 9 * np.sin(np.arange(BLOCKS) / 9)
+    session = replace(noise(4, temp=temp), temp_step_degc=reading_degc)
+    session.rate_dps += np.outer(temp, [3.0, -2.0, 1.0])
+    regression, late = Regression([session]), {Term("temp", lag_s=45.0, lag_mode="lag"): 9.0}
+    line, bend = steps_first.bend_of(session)
+    with regression.shrinking(late):
+        own, squares, lagged = regression.fit([line, bend, *late]).coefficients
+    warm = temp[min(block, BLOCKS - 1)]
+    slope = own + 2 * (warm - temp.mean()) * squares
+    slope += lagged * 45.0 / 20.0 * (1 - np.exp(-20.0 / 45.0))
+    deviation = np.array([0.3, 0.2, 0.5])
+    deviation *= np.linalg.norm(slope / deviation) / np.sqrt(chi2.isf(1e-3, 2))  # of 1 degC
+    aside = np.array([1.0, 0.0, -slope[0] / deviation[0] / (slope[2] / deviation[2])])
+    aside *= deviation * np.sqrt(chi2.isf(1e-3, 2)) / np.linalg.norm(aside)
+    step = Step(0, block, degc * slope + beside * aside, 9.0, 0.0, deviation)
+    told = steps_first._is_thermometers(regression, [line, bend], late, step)
+    assert told is explained
+    assert not steps_first._is_thermometers(Regression([noise(4)]), [], {}, step)
 
 
 @pytest.mark.parametrize(

@@ -66,8 +66,8 @@ def ranges(sessions: list[Session]) -> dict[str, tuple[float, float, float]]:
         slow = name in ("temp", "time")
         values = np.concatenate([_known(s, name, slow) for s in sessions])
         few = 0 if slow else min(int(_FEW + _FEW_SHARE * len(values)), (len(values) - 1) // 2)
-        ends = np.partition(values, (few, len(values) - 1 - few))
-        out[name] = (float(ends[few]), float(ends[-1 - few]), float(values.mean()))
+        ends = np.partition(values, (few, last := len(values) - 1 - few))
+        out[name] = (float(ends[few]), float(ends[last]), float(values.mean()))
     return out
 
 

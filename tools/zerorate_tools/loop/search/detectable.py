@@ -39,7 +39,7 @@ def _information(g, base, scale):
     total = np.zeros(g.xx.shape[2])
     for a, i in enumerate(base.best):
         w = scale[:, a] ** -2.0
-        xz, xx = np.tensordot(w, g.xz[:, i, :, 0], 1), w @ g.xx[:, i, :, 0, 0]
+        xz, xx = np.tensordot(w, g.xz[:, i].squeeze(2), 1), w @ g.xx[:, i].squeeze((2, 3))
         left = xx - np.einsum("ki,ij,kj->k", xz, base.inverse[a][i], xz)
         total += np.where(left > 1e-6 * xx, left, 0.0) / base.variance[a]
     return total
@@ -53,6 +53,6 @@ def _own_rms(term, nuisances, sessions):
     ]
     whole = np.vstack([m - m.mean(axis=0) for m in stacks])
     scale = whole.std(axis=0)
-    whole = whole / np.where(scale > 0, scale, 1.0)
+    whole = whole / np.maximum(scale, 1e-300)
     left = whole[:, 0] - whole[:, 1:] @ np.linalg.lstsq(whole[:, 1:], whole[:, 0], rcond=1e-10)[0]
     return float(left.std() * scale[0])

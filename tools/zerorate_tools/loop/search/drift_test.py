@@ -109,13 +109,12 @@ def repeats(regression, terms, candidate) -> tuple[float, float]:
 def _by_session(g, colour, a, weight):
     """(S,) products of what the nuisances leave of a column with what they leave of the residual,
     and with itself."""
-    zz = g.zz[:, colour]
+    xx, xy = g.xx[:, colour].squeeze((1, 2, 3)), g.xy[:, colour, ..., a].squeeze((1, 2))
+    xz, zy, zz = g.xz[:, colour].squeeze((1, 2)), g.zy[:, colour, :, a], g.zz[:, colour]
     inverse = np.linalg.pinv(np.tensordot(weight, zz, 1))
-    of_x = inverse @ (weight @ g.xz[:, colour, 0, 0])
-    of_y = inverse @ (weight @ g.zy[:, colour, :, a])
-    xz, zy = g.xz[:, colour, 0, 0], g.zy[:, colour, :, a]
-    along = g.xy[:, colour, 0, 0, a] - xz @ of_y - zy @ of_x + (zz @ of_y) @ of_x
-    return weight * along, weight * (g.xx[:, colour, 0, 0, 0] - 2 * xz @ of_x + (zz @ of_x) @ of_x)
+    of_x, of_y = inverse @ (weight @ xz), inverse @ (weight @ zy)
+    along = xy - xz @ of_y - zy @ of_x + (zz @ of_y) @ of_x
+    return weight * along, weight * (xx - 2 * xz @ of_x + (zz @ of_x) @ of_x)
 
 
 def smallest_square(tried: float, axes: int, sessions: int) -> float:

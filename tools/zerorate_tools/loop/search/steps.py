@@ -53,6 +53,16 @@ class Step:
     said: str = ""
     share: float = 0.0
 
+    @property
+    def weight(self) -> np.ndarray:
+        """(3,) how sure each size is: one over its variance."""
+        return 1.0 / np.maximum(self.deviation_dps, 1e-12) ** 2
+
+    def times_in(self, dps: np.ndarray) -> np.ndarray:
+        """(...,) how many times the step is in (..., 3) dps."""
+        along = self.size_dps * self.weight
+        return dps @ along / (self.size_dps @ along)
+
 
 def steps_and_lags(regression, terms, recordings: int = 1) -> tuple[list[Step], dict[Term, float]]:
     """Every step beside the terms, strongest first, which stay in the regression as nuisances; and
@@ -114,10 +124,9 @@ def _is_timing(regression, forms, fitted, step: Step) -> bool:
     """Whether the forms taken beside a step change by more than its size from the block before it
     to that after it: a reading that is late by seconds makes such a step."""
     session = regression.sessions[step.session]
-    weight = step.size_dps / np.maximum(step.deviation_dps, 1e-12) ** 2
-    along = predicted(forms, fitted, session) @ weight / (step.size_dps @ weight)
-    last = len(along) - 1
-    return bool(abs(along[min(step.block + 1, last)] - along[max(step.block - 1, 0)]) > 1.0)
+    times = step.times_in(predicted(forms, fitted, session))
+    following = min(step.block + 1, session.blocks - 1)
+    return bool(abs(times[following] - times[step.block - 1]) > 1.0)
 
 
 def _best_form(regression, terms, forms) -> tuple[Candidate | None, float]:

@@ -60,9 +60,9 @@ def _is_thermometers(regression, beside, late: Mapping[Term, float], step: Step)
     degc = session.block_mean(session.sources["temp"])[min(step.block, session.blocks - 1)]
     jump = np.array([_slope(t, degc, session.block_s) for t in every])
     along, most = jump @ fitted, session.temp_step_degc
-    weight = 1.0 / np.maximum(step.deviation_dps, 1e-12) ** 2
-    off_degc = np.clip((weight * along) @ step.size_dps / ((weight * along) @ along), -most, most)
-    off_slope = weight @ (step.size_dps - off_degc * along) ** 2
+    weighed = step.weight * along
+    off_degc = np.clip(weighed @ step.size_dps / (weighed @ along), -most, most)
+    off_slope = step.weight @ (step.size_dps - off_degc * along) ** 2
     return bool(off_slope < chi2.isf(RARE, 2))
 
 
@@ -106,8 +106,7 @@ def _timed(session: Session, step: Step, others: np.ndarray) -> Step:
     others: (ticks, 3) dps that the other steps add."""
     if session.ticks_dps is None:
         return step
-    weight = step.size_dps / np.maximum(step.deviation_dps, 1e-12) ** 2
-    along = (session.ticks_dps - others) @ (weight / (step.size_dps @ weight))
+    along = step.times_in(session.ticks_dps - others)
     at = _parting(along, step.block, session.ticks_per_block)
     there = np.flatnonzero(np.isfinite(along))
     place = int(np.searchsorted(there, at))

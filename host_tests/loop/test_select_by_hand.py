@@ -1,0 +1,315 @@
+"""One search, decision by decision: who is asked, in which order, and what is made of it."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from zerorate_tools.loop.search import curve, examine, hysteresis, select
+from zerorate_tools.loop.search.catalogue import Candidate
+from zerorate_tools.loop.search.decide import Decision
+from zerorate_tools.loop.search.examine import Examiner
+from zerorate_tools.loop.search.select import Search
+from zerorate_tools.loop.search.selection import Found
+from zerorate_tools.model.term import Term
+
+from . import dense
+from .dense import A, B, C, D
+
+PASSED = Decision(True, 1e-6, 40.0, 1.0, np.zeros(0))
+LAG, RATE, KINK, LOOP, BEND, VOLTS = (
+    Candidate(kind, (Term("temp", centre=float(k)),), "catalogue")
+    for k, kind in enumerate((
+        *("thermal-lag", "thermal-rate", "temperature-kink"),
+        *(hysteresis.KIND, "temperature-quadratic", "supply-voltage"),
+    ))
+)  # fmt: skip
+START = Candidate("power-on-transient", (Term("one", decay_s=9.0),), "catalogue")
+DRIFT = Candidate("time-drift", (Term("time"),), "catalogue")
+
+
+def found(candidate, **rivals):
+    return Found(candidate, PASSED, rivals)
+
+
+def searching(**fields):
+    """A search that has come so far."""
+    search = object.__new__(Search)
+    empty = {"taken": 0, "found": [], "refused": [], "dropped": set(), "kept": 0, "pool": []}
+    more = {"forms": [], "line": (), "own_bend": (), "on_pieces": None, "judged_again": False}
+    regression = SimpleNamespace(sessions=[dense.made(1, 60)], outliers=0)
+    vars(search).update({**empty, **more, "regression": regression, **fields})
+    return search
+
+
+# --- one candidate ---
+
+
+@pytest.fixture
+def examiner():
+    """Of terms that gain ten times as much as there are of them beside so many nuisances."""
+    gains = lambda beside, groups: np.array([[10.0 * len(g) - len(beside)] for g in groups])  # noqa: E731
+    regression = SimpleNamespace(sessions=["s"], gains=gains)
+    testing = SimpleNamespace(
+        regression=regression, pool=[LAG, Candidate("two", (A, B), "catalogue"), VOLTS],
+        tried=lambda c: 3.0, is_by_time=lambda c: c is DRIFT, least_ratio=lambda c: 8.5,
+    )  # fmt: skip
+    return Examiner(testing, None)
+
+
+def test_a_candidate_is_examined_as_it_is_refined_and_drawn(examiner, monkeypatch):
+    better, drawn = replace(LAG, refine=("better",)), replace(LAG, refine=("drawn",))
+    told = {"refined": {LAG: better}, "drawn": {better: drawn}}
+    for name, by in told.items():
+        of = lambda r, beside, c, by=by: beside == [A, B] and by[c]  # noqa: E731
+        monkeypatch.setattr(examine, name, of)
+    asked, said = [], PASSED
+    decide = lambda r, nuisances, *of: asked.append((nuisances, of)) or said  # noqa: E731
+    monkeypatch.setattr(examine, "decide", decide)
+    assert examiner.examine(LAG, (A,), [B], [C]) == Found(drawn, PASSED)
+    assert asked == [([C], (better, 9.0, 3.0, [LAG.terms[0], VOLTS.terms[0]]))]
+    said = replace(PASSED, accepted=False, reason="no")
+    assert examiner.examine(LAG, (A,), [B], [C]) == ("thermal-lag", "no")
+    assert not examiner.accepts(VOLTS, (A,), [B], []) and asked[-1][1][:2] == (VOLTS, 10.0)
+    considered = lambda r, nuisances, *of: asked.append(of) or PASSED  # noqa: E731
+    monkeypatch.setattr(examine.drift_test, "considered", considered)
+    assert examiner.accepts(DRIFT, (A,), [B], [C]) and asked[-1] == (DRIFT, 9.0, 3.0)
+    examiner.judged, said = "pieces", PASSED
+    right = ("pieces", VOLTS, (A,), [B])
+    by_pieces = lambda self, said, *of: replace(said, accepted=of == right)  # noqa: E731
+    monkeypatch.setattr(Examiner, "_by_pieces", by_pieces)
+    assert examiner.accepts(VOLTS, (A,), [B], []) and not examiner.accepts(VOLTS, (A,), [C], [])
+
+
+@pytest.mark.parametrize(("chance", "idle"), [(0.34e-3, True), (0.33e-3, False)])
+def test_an_effect_is_idle_where_the_rest_explains_it(examiner, monkeypatch, chance, idle):
+    assert examiner.is_idle(LAG, [A, B]) and not examiner.is_idle(LAG, [A])
+    monkeypatch.setattr(examine.drift_test, "chance", lambda r, rest, terms: chance)
+    assert examiner.is_idle(DRIFT, []) is idle
+
+
+@pytest.mark.parametrize(
+    ("candidate", "cancels", "turned", "alike", "said"),
+    [
+        (LOOP, True, False, True, "it would only cancel another"),
+        (LOOP, False, False, True, "the temperature never turned back"),
+        (LAG, False, False, True, "a hysteresis predicts as well"),
+        (LOOP, False, True, False, "pieces"),
+        (LAG, False, False, False, "pieces"),
+    ],
+)
+def test_on_one_recording_more_speaks_against_an_effect(
+    examiner, monkeypatch, candidate, cancels, turned, alike, said
+):
+    answers = {"cancels": cancels, "may_show": turned, "is_like_hysteresis": alike}
+    for name, answer in answers.items():
+        monkeypatch.setattr(examine, name, lambda *of, answer=answer: answer)
+    judged = lambda straight, beside, terms: np.array([9.0 * ((straight, beside) == ((A,), [B]))])  # noqa: E731
+    told = examiner._by_pieces(PASSED, judged, candidate, (A,), [B])
+    assert (told.accepted, told.reason or "pieces") == (said == "pieces", said)
+    assert told.session_gains.sum() == 9.0 * (said == "pieces")
+
+
+@pytest.mark.parametrize(
+    ("best", "loops", "alike"),
+    [
+        *((LAG, 5.0, True), (LAG, 4.9, False), (START, 5.0, True)),
+        *((KINK, 9.0, False), (RATE, None, False)),
+    ],
+)
+def test_a_loop_that_predicts_as_well_stands_for_a_memory(monkeypatch, best, loops, alike):
+    told = {best.terms: [2.0, 3.0], LOOP.terms: [1.0, (loops or 0.0) - 1.0]}
+    by_line = lambda session: lambda straight, beside, terms: np.array(told[terms])  # noqa: E731
+    monkeypatch.setattr(hysteresis, "PiecesByLine", by_line)
+    pool = [LAG, *([LOOP] if loops else [])]
+    assert hysteresis.is_like_hysteresis([], [], best, pool, ["s"]) is alike
+
+
+def test_forms_of_a_hysteresis_have_one_to_four_operators_without_and_with_squares(monkeypatch):
+    fits = SimpleNamespace(best=lambda *of: of, terms=lambda best, powers: best)
+    monkeypatch.setattr(hysteresis, "_Fits", lambda sessions, beside: fits)
+    every = [(number, powers) for powers in ((1,), (1, 2)) for number in (1, 2, 3, 4)]
+    assert list(hysteresis._forms([], [])) == every
+    bare = [replace(dense.made(1, 60), sources={})]
+    assert hysteresis.best_hysteresis(bare, [], [], None) == (None, 0.0)
+    assert hysteresis.of_one_recording(SimpleNamespace(sessions=bare), [], [()], [], None, 0) == (
+        None,
+        "",
+    )
+
+
+# --- the whole search ---
+
+
+def test_what_later_effects_explain_is_taken_out_and_the_others_are_refined(monkeypatch):
+    refined = lambda r, rest, c: replace(c, refine=tuple(str(t.centre) for t in rest))  # noqa: E731
+    monkeypatch.setattr(select, "refined", refined)
+    monkeypatch.setattr(select, "drawn", lambda r, rest, c: c)
+    idle = SimpleNamespace(is_idle=lambda c, rest: c in (RATE, LAG))
+    search = searching(found=[*map(found, (LAG, KINK, RATE, VOLTS))], kept=1, examiner=idle)
+    search._drop_idle()
+    assert [f.candidate.kind for f in search.found] == [c.kind for c in (LAG, KINK, VOLTS)]
+    assert [f.candidate.refine for f in search.found] == [(), ("0.0", "5.0"), ("0.0", "2.0", "1.0")]
+    assert search.dropped == {"thermal-rate"}
+    assert search.refused == [("thermal-rate", "explained by effects found later")]
+
+
+@pytest.mark.parametrize(
+    ("own", "nats", "evidence", "fits", "kinds", "rivals"),
+    [
+        ([VOLTS], 9.0, 8.0, True, ["supply-voltage"], [{}]),
+        ([LAG, VOLTS, START], 9.0, 8.0, True, ["supply-voltage", hysteresis.KIND],
+         [{}, {"thermal-lag": -1.0, "power-on-transient": -1.0}]),
+        ([LAG, VOLTS], 9.0, 9.5, True, ["thermal-lag", "supply-voltage"],
+         [{hysteresis.KIND: -0.5}, {}]),
+        ([LAG, VOLTS], 9.0, 8.0, False, ["thermal-lag", "supply-voltage"],
+         [{hysteresis.KIND: 1.0}, {}]),
+        ([LAG, VOLTS], None, 8.0, True, ["thermal-lag", "supply-voltage"], [{}, {}]),
+    ],
+)  # fmt: skip
+def test_a_sum_of_play_operators_takes_the_place_of_what_remembers_if_it_is_likelier(
+    monkeypatch, own, nats, evidence, fits, kinds, rivals
+):
+    search = searching(found=[*map(found, own)], line=(A,))
+    beside = [A, *VOLTS.terms]
+
+    def told(regression, terms, simpler=None):
+        assert terms == beside
+        if simpler is None:
+            return (LOOP if nats else None), nats or 0.0
+        assert simpler == [t for c in own if c is not VOLTS for t in c.terms]
+        return evidence
+
+    room = lambda terms, taken: fits and terms == [*VOLTS.terms, *LOOP.terms]  # noqa: E731
+    monkeypatch.setattr(select, "likeliest", told)
+    monkeypatch.setattr(select, "evidence", told)
+    monkeypatch.setattr(select, "fits_in_slots", room)
+    search._widen_hysteresis()
+    assert [f.candidate.kind for f in search.found] == kinds
+    assert [f.rivals for f in search.found] == rivals
+
+
+POOL = [LAG, KINK, BEND, DRIFT, START, VOLTS]
+
+
+@pytest.mark.parametrize(
+    ("again", "rests", "loop", "why", "kinds", "refused"),
+    [
+        (False, 12, None, "", [LAG, VOLTS, "curve"], []),
+        (False, 12, LOOP, "", [LAG, VOLTS], []),
+        (False, 12, None, "as well", [LAG, VOLTS, "curve"], [(hysteresis.KIND, "as well")]),
+        (True, 12, None, "", [LAG, DRIFT, START, VOLTS, "curve"], []),
+        (True, 12, LOOP, "", [LAG, DRIFT, START, VOLTS], []),
+        (False, 1, LOOP, "", [LAG, VOLTS],
+         [(curve.KIND, "too few rests to tell by pieces left out")]),
+    ],
+)  # fmt: skip
+def test_a_recording_alone_is_asked_for_a_hysteresis_first(
+    monkeypatch, again, rests, loop, why, kinds, refused
+):
+    session, bend, judged = dense.made(1, rests), BEND.terms, object()
+    said = (found(loop) if loop else None), why
+    every = POOL if again else [c for c in POOL if c not in (DRIFT, START)]
+    pair, alone = (bend, every, 5), ([(), bend, bend], every, judged, 5)
+    monkeypatch.setattr(curve, "LEAST_OF_A_PIECE", 12 / curve.PIECES)
+    monkeypatch.setattr(
+        select, "of_a_pair", lambda r, line, *of: said if of == pair and again else 1
+    )
+    one = lambda r, line, *of: said if of == alone and not again else 1  # noqa: E731
+    monkeypatch.setattr(hysteresis, "of_one_recording", one)
+    smooth = lambda sessions, line, taken: ["curve"] * (taken == 5)  # noqa: E731
+    monkeypatch.setattr(curve, "smooth_curve", smooth)
+    search = searching(pool=POOL, judged_again=again, taken=5)
+    search.regression.sessions = [session]
+    search._begin_with_one(judged)
+    assert search.pool == kinds and search.refused == refused
+    assert search.forms == ([KINK, BEND] if rests > 9 else [])
+    begun = loop is not None and rests > 9
+    assert (len(search.found), search.kept) == (begun, begun)
+
+
+def test_the_best_of_four_kinds_are_tried_by_their_likelihood_less_what_they_cost():
+    every = [replace(LAG, kind=str(k), terms=(A,) * (1 + (k == 3))) for k in range(9)]
+    every += [
+        replace(every[0], refine=("again",)),
+        VOLTS,
+        replace(VOLTS, kind="full", terms=(C,) * 9),
+    ]
+    test = np.array([40.0, 30.0, 9.0, 33.0, 25.0, 41.0, 20.0, 15.0, 12.0, 39.0, 80.0, 90.0])
+    tried = []
+    testing = SimpleNamespace(least_ratio=lambda c: 9.0)
+    search = searching(pool=every, testing=testing, dropped={"supply-voltage"})
+    search._ratios = lambda: (test, test)
+    search._beside_outliers = lambda c: tried.append(c.kind)
+    assert search._best_candidate() is None and tried == ["5", "0", "1", "3"]
+    one = found(VOLTS)
+    search._beside_outliers = lambda c: one if c.kind == "1" else None
+    assert search._best_candidate() is one
+    search._look_afresh = lambda: None
+    assert search._add_one() and search.found == [one]
+    search._best_candidate = lambda: None
+    assert not search._add_one() and search.found == [one]
+
+
+@pytest.mark.parametrize("outliers", [0, 3])
+@pytest.mark.parametrize("said", [found(LAG), ("thermal-lag", "no")])
+def test_a_block_that_a_candidate_explains_is_no_outlier(outliers, said):
+    settled = []
+    search = searching(line=(A,), own_bend=(B,), found=[found(VOLTS)])
+    search.regression = SimpleNamespace(outliers=outliers, settle=settled.append)
+    nuisances = [A, B, *VOLTS.terms]
+    examined = lambda *of: said if of == (LAG, (A,), [*VOLTS.terms], nuisances) else None  # noqa: E731
+    search.examiner = SimpleNamespace(examine=examined)
+    told = search._beside_outliers(LAG)
+    assert told is (said if isinstance(said, Found) else None)
+    assert search.refused == ([] if told else [said])
+    assert settled == ([[*nuisances, *LAG.terms]] + [nuisances] * (not told) if outliers else [])
+
+
+def test_what_is_named_anew_must_pass_beside_the_others(monkeypatch):
+    asked = []
+    search = searching(line=(A,), own_bend=(B,), taken=2)
+    search.examiner = SimpleNamespace(accepts=lambda *of: asked.append(of) or True)
+    assert search._passes(LAG, [C]) and search._passes(BEND, [C])
+    assert asked == [(LAG, (A,), [C], [A, B, C]), (BEND, (A,), [C], [A, C])]
+    assert not search._passes(LAG, [D] * 6) and len(asked) == 2
+    assert search._nuisances(BEND) == [A] and search._nuisances(LAG) == [A, B]
+
+
+@pytest.mark.parametrize("refused", [True, False])
+def test_where_a_simpler_effect_predicts_as_well_a_hysteresis_is_named_beside_it(
+    monkeypatch, refused
+):
+    asked = []
+    every = [LAG, Candidate(curve.KIND, (A,), "catalogue"), VOLTS]
+    search = searching(pool=every, found=[*map(found, (LAG, VOLTS, KINK))], kept=1, own_bend=(B,))
+    search.refused = [(hysteresis.KIND, hysteresis.AS_WELL)] if refused else []
+    search._add_one = lambda: False
+    search._smallest = lambda: {"x": 1.0}
+    search._widen_hysteresis = lambda: None
+    monkeypatch.setattr(select, "name_found", lambda r, *of: asked.append(of))
+    selection = search.run()
+    assert asked == [((), search.found, [LAG, VOLTS], 1, search._passes)]
+    assert [bool(f.rivals) for f in selection.found] == [refused, False, refused]
+    assert selection.smallest_dps == {"x": 1.0} and selection.stands_alone is False
+
+
+@pytest.mark.parametrize(
+    ("rests", "terms", "asked"),
+    [(12, (A,), True), (1, (A,), False), (12, (replace(A, memory="play", width=2.0),), False)],
+)
+def test_pieces_tell_of_a_curve_where_there_are_enough_and_no_hysteresis(
+    monkeypatch, rests, terms, asked
+):
+    monkeypatch.setattr(curve, "LEAST_OF_A_PIECE", 12 / curve.PIECES)
+    bent = found(Candidate(curve.KIND, (B,), "catalogue"))
+    search = searching(
+        pool=[LAG], forms=[KINK], found=[found(replace(VOLTS, terms=terms)), bent], taken=3
+    )
+    search.regression.sessions = [dense.made(1, rests)]
+    by = lambda *of: SimpleNamespace(look=lambda others: [of[1:], *others])  # noqa: E731
+    monkeypatch.setattr(curve, "ByPieces", by)
+    before = search.found
+    search._by_pieces("judged")
+    told = [((), [LAG, KINK], "judged", 3), before[0]]
+    assert search.found == (told if asked else before)
