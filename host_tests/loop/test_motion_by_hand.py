@@ -1,10 +1,23 @@
 """What motion shows, part by part: whether recordings are of one device, and how one moves."""
 
+from dataclasses import replace
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.stats import f as fisher
+from zerorate_tools.loop.motion import by_windows, scales_and_timing, windows
 from zerorate_tools.loop.motion.device import LEVEL, DifferentDevices, Shown, check_one_device
-from zerorate_tools.loop.motion.moving import Moving, _attitude_by
+from zerorate_tools.loop.motion.heading import heading_lost
+from zerorate_tools.loop.motion.moving import Moving, _attitude_by, check_axes, moving_of
+from zerorate_tools.loop.motion.scales_and_timing import InMotion, Timing
+from zerorate_tools.loop.read.gate import CannotClose
+from zerorate_tools.loop.read.sessions import Session
+from zerorate_tools.model import Slot
+from zerorate_tools.model.term import Term
+from zerorate_tools.recordings import write_recording
+
+from .test_axes_by_gravity import handled
 
 
 def said(entry, precision=1e8):
@@ -68,3 +81,174 @@ def test_an_attitude_by_true_rates_is_known_where_these_are():
     steps = np.diff(turned)
     assert steps[np.isfinite(steps)] == pytest.approx(np.full(93, 1.8), abs=1e-6)
     assert turned[45] - turned[39] == pytest.approx(1.8, abs=1.9)
+
+
+# --- what is found, and what is made of it ---
+
+
+def six_blocks(name, moving, block_s=20.0, ticks_per_block=4, sources=(), **more):
+    """A session of which so many ticks of 5 s are no rest."""
+    ticks = np.where(np.arange(6 * ticks_per_block) < moving, np.nan, 0.0)[:, None] * np.ones(3)
+    rate, sources = np.ones((6, 3)), dict(sources)
+    whole = Session(name, block_s, ticks_per_block, rate, np.ones(6), sources, **more)
+    return replace(whole, ticks_dps=ticks)
+
+
+def late(delay_s=0.004, p=1e-5, sessions_s=(0.003, 0.005)):
+    return Timing(delay_s, 0.001, p, sessions_s)
+
+
+@pytest.mark.parametrize(
+    ("timing", "found"),
+    [
+        *((late(), True), (late(-0.004, sessions_s=(-0.1,)), True), (late(p=1.1e-4), False)),
+        *((late(p=0.9e-4), True), (late(sessions_s=(0.01, -0.01)), False), (late(9e-5), False)),
+        *((late(1.1e-4), True), (late(-9e-5), False), (late(sessions_s=()), False)),
+    ],
+)
+def test_a_delay_is_found_where_it_is_sure_alike_in_all_and_not_small(timing, found):
+    assert timing.found is found and InMotion(timing=timing).found is found
+
+
+def test_a_matrix_that_a_reference_shows_goes_out_of_the_blocks_and_into_three_slots():
+    matrix = np.arange(9.0).reshape(3, 3) / 100
+    scale = SimpleNamespace(
+        found=True, deployed=matrix, reference=by_windows.GIVEN, kind="cross-axis",
+        fastest_dps=np.array([10.0, 20.0, 30.0]),
+    )  # fmt: skip
+    rates = {f"rate_{a}": np.arange(12.0) * k for k, a in enumerate("xyz", 1)}
+    session = six_blocks("s", 8, sources=rates, ticks_per_block=2, block_s=10.0)
+    block = np.outer(np.arange(6) * 2 + 0.5, [1.0, 2.0, 3.0])
+    left = scales_and_timing.without_scales(session, InMotion(scale)).rate_dps
+    assert left == pytest.approx(1.0 - block @ matrix.T)
+    terms = [Term(f"rate_{a}", -10.0 * k, 10.0 * k) for k, a in enumerate("xyz", 1)]
+    slots = [Slot(t, tuple(c), "cross-axis") for t, c in zip(terms, matrix.T.tolist())]
+    assert scales_and_timing.slots_of(InMotion(scale)) == slots and InMotion(scale).found
+    unsure = SimpleNamespace(**{**vars(scale), "found": False})
+    by_gravity = SimpleNamespace(**{**vars(scale), "reference": by_windows.GRAVITY})
+    bare = replace(session, sources={})
+    cases = ((session, unsure), (session, by_gravity), (bare, scale), (session, None))
+    for some, shown in cases:
+        turned = scales_and_timing.rates_of_turning(some, InMotion(shown))
+        assert turned.shape == (6, 3) and not turned.any()
+    assert scales_and_timing.slots_of(InMotion(unsure)) == [] and not InMotion(unsure).found
+    assert scales_and_timing.in_motion([session], [], None) == InMotion()
+    assert not scales_and_timing.may_show_motion(session)
+    assert scales_and_timing.may_show_motion(six_blocks("s", 9))
+
+
+def test_sessions_that_move_are_asked_and_all_must_have_a_delay_to_tell_one(monkeypatch):
+    delay = np.random.default_rng(1).random((600, 2))
+    one, still = six_blocks("a", 9, delay=delay), six_blocks("b", 8, delay=delay)
+    monkeypatch.setattr(scales_and_timing, "moving_of", lambda log: None if log == "of c" else log)
+    monkeypatch.setattr(scales_and_timing, "by_windows", lambda *of: of)
+    logs = {name: f"of {name}" for name in "abcde"}
+    beside, held = [replace(one, name="c"), replace(one, name="d")], [replace(one, name="e"), still]
+    told = scales_and_timing.in_motion([one, still], held, logs, beside)
+    assert told.rate_scale == (["of a", "of d"], ["of e"])
+    assert told.timing == scales_and_timing.timing_of([(delay, 5.0)] * 2)
+    without = scales_and_timing.in_motion([one, replace(one, delay=None)], [], logs)
+    assert without.timing is None
+
+
+@pytest.mark.parametrize(
+    ("ticks", "still", "told"), [(240, 0, True), (239, 0, False), (240, 30, False), (270, 30, True)]
+)
+def test_a_delay_is_told_of_eight_half_minutes_in_motion_and_more(ticks, still, told):
+    products = np.random.default_rng(2).random((ticks, 2)) + [0.0, 1.0]
+    products[:still] = 0.0
+    assert (scales_and_timing.timing_of([(products, 1.0)]) is not None) is told
+    if told:
+        assert scales_and_timing.timing_of([(products, 1.0), (0 * products, 1.0)]) is None
+
+
+def test_what_is_said_of_motion_without_a_matrix():
+    nothing = by_windows.nothing_in_words
+    assert nothing(1.234, by_windows.UNIT[by_windows.GIVEN]) == (
+        "nothing in motion; the reference sees 1.23 degrees a minute of turn"
+    )
+    assert "gravity sees 1.23" in nothing(1.234, by_windows.UNIT[by_windows.GRAVITY])
+
+
+# --- recordings as their motion is read ---
+
+
+def written(tmp_path, change=lambda columns: columns, scales=None, **how):
+    recording = handled(7, np.zeros((3, 3)), **{"minutes": 0.5, **how})
+    columns = change(dict(recording.columns))
+    more = {"columns": columns, "scales": replace(recording.scales, **(scales or {}))}
+    write_recording(replace(recording, **more), tmp_path / "run.parquet")
+    return tmp_path / "run.parquet"
+
+
+def with_true_rates(columns):
+    return columns | {f"ref_g{a}": columns[f"g{a}"] for a in "xyz"}
+
+
+def without_acceleration(columns):
+    return {n: of for n, of in columns.items() if n not in ("ax", "ay", "az")}
+
+
+def test_a_recording_says_nothing_of_motion_without_turns_or_what_sees_them(tmp_path):
+    bare = written(tmp_path, without_acceleration)
+    assert moving_of(bare) is None
+    assert moving_of(written(tmp_path, dps=0.5)) is None
+    assert (
+        moving_of(written(tmp_path, lambda columns: {n: c[:15] for n, c in columns.items()}))
+        is None
+    )
+    few = moving_of(written(tmp_path, lambda columns: {n: c[:16] for n, c in columns.items()}))
+    assert len(few.rate) == 16 and few.given is None
+
+
+def test_true_rates_beside_a_recording_are_an_attitude_where_most_are_known(tmp_path):
+    path = written(tmp_path, lambda columns: with_true_rates(without_acceleration(columns)))
+    moving = moving_of(path)
+    assert not moving.accel.any() and np.isfinite(moving.given).all()
+    turned = _attitude_by(np.degrees(moving.rate + moving.offset), moving.dt_s)
+    assert moving.given == pytest.approx(turned, abs=1e-3)
+    check_axes(moving)
+
+
+@pytest.mark.parametrize(("unseen", "given"), [(749, True), (750, False)])
+def test_an_attitude_that_is_seen_at_half_of_the_samples_is_none(tmp_path, unseen, given):
+    def hidden(columns):
+        for name in ("qw", "qx", "qy", "qz"):
+            columns[name][:unseen] = 0
+        return columns
+
+    moving = moving_of(written(tmp_path, hidden, seen=True))
+    assert (moving.given is not None) is given
+    alone = replace(moving, given=None)
+    assert heading_lost([(alone, np.eye(3))]) is None
+    if given:  # no stretch of half a minute is seen at both ends
+        assert heading_lost([(moving, 0.01 * np.eye(3))]) is None
+
+
+def test_axes_that_gravity_contradicts_are_refused_by_name(tmp_path):
+    def swapped(columns):
+        return columns | {"gx": columns["gy"], "gy": -columns["gx"]}
+
+    turned = moving_of(written(tmp_path, swapped, minutes=2.0))
+    with pytest.raises(CannotClose, match="run: gravity turns as if the rates x y z were .*--map"):
+        check_axes(turned)
+    check_axes(replace(turned, accel=0.0 * turned.accel))
+    check_axes(replace(turned, given=np.ones((len(turned.rate), 4))))
+
+
+def test_windows_are_whole_and_move_and_parts_have_their_own_rests(tmp_path):
+    moving = moving_of(written(tmp_path))
+    assert [s.start for s in moving.spans(10.0)] == [*range(0, 1001, 125)]
+    assert all(s.stop - s.start == 500 for s in moving.spans(10.0)) and moving.spans(0.16) == []
+    for gaps, spans in ((3.9, 9), (5.1, 5)):  # more than five samples apart is a gap
+        late_s = 0.02 * gaps * (np.arange(1500) > 700)
+        assert len(replace(moving, at_s=moving.at_s + late_s).spans(10.0)) == spans
+    railed = replace(moving, usable=np.arange(1500) != 1499)
+    assert [s.start for s in railed.spans(10.0)] == [*range(0, 876, 125)]
+    slow = replace(moving, rate=moving.rate * 1e-3)
+    assert slow.spans(10.0) == [] and windows.rows_of(slow, 10.0, None, None) is None
+    rests = np.column_stack(
+        [[moving.at_s[499], moving.at_s[500], moving.at_s[999], 14.0], np.eye(4)[:, :3]]
+    )
+    part = replace(moving, rests=rests).part(slice(500, 1000))
+    assert part.rests[:, 0].tolist() == rests[1:3, 0].tolist() and len(part.rate) == 500

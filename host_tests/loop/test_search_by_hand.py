@@ -232,7 +232,8 @@ def test_a_mean_and_a_spread_are_of_the_sessions_own_coefficients(sessions):
     assert np.log(told) == pytest.approx(expected) and -600 < expected < 0
     decision = drift_test.considered(regression, [B], candidate(A), 50.0, 2.0)
     assert decision.p_value == pytest.approx(2 * told) and decision.tried == 2.0
-    assert decision.accepted and decision.reason == "" and decision.ratio == 50.0
+    assert (decision.accepted, decision.reason, decision.ratio) == (True, "", 50.0)
+    assert decision.inflation == 1.0
     assert decision.session_gains == pytest.approx(gains(regression, [B], [A]))
     dear = drift_test.considered(regression, [B], candidate(A), 50.0, 1.01e-3 / told)
     assert not dear.accepted and "walk" in dear.reason
@@ -410,6 +411,7 @@ def test_a_hysteresis_of_a_pair_is_likelier_than_what_is_simpler(
     if found:
         assert found.candidate is LOOP and found.rivals == pytest.approx(rivals)
         assert found.decision.accepted and found.decision.ratio == 2 * nats
+        assert found.decision.inflation == 1.0 and len(found.decision.session_gains) == 0
         assert found.decision.p_value == pytest.approx(6 * np.exp(-nats))
         assert asked == [((D,), (TEMP,)), ((D, TEMP), (A,)), ((D, TEMP), (B,))]
 
@@ -468,6 +470,7 @@ def test_a_hysteresis_of_one_recording_passes_every_question(
         assert found.candidate == candidate(TEMP, *LOOP.terms, kind=hysteresis.KIND)
         assert (found.decision.p_value, found.decision.ratio) == (p, 33.0)
         assert found.decision.accepted and found.decision.session_gains.tolist() == [nats] * 2
+        assert found.decision.inflation == 1.0
 
 
 @pytest.mark.parametrize(

@@ -403,7 +403,7 @@ TICKS = np.arange(120)
     ("known", "jump", "tick"),
     [
         (TICKS >= 0, 63, 63.0),
-        (TICKS >= 0, 80, 79.0),  # two blocks off at most
+        *((TICKS >= 0, 33, 41.0), (TICKS >= 0, 80, 79.0)),  # two blocks off at most
         ((TICKS < 60) | (TICKS > 66), 63, 63.5),  # in the middle of what is not known
         (TICKS < 50, 99, 49.5),
         (TICKS > 59, 0, 60.5),

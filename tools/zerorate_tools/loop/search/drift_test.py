@@ -40,8 +40,8 @@ def considered(regression, terms, candidate: Candidate, ratio: float, tried: flo
     """
     p = min(1.0, chance(regression, terms, candidate.terms) * tried)
     gain = gains(regression, terms, candidate.terms)
-    reason = "" if p <= RARE else "no more than the noise's own walk, power-on by power-on"
-    return Decision(p <= RARE, p, ratio, 1.0, gain, reason, tried)
+    reason = "no more than the noise's own walk, power-on by power-on" if p > RARE else ""
+    return Decision(not reason, p, ratio, 1.0, gain, reason, tried)
 
 
 def comes_again(whole, terms, candidate: Candidate, tried: float) -> bool:
