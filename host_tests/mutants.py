@@ -93,7 +93,8 @@ AREAS = {
         ["firmware/test_" + name for name in (
             "corrector.py", "checked.py", "bursts.py", "published.py", "documents.py",
             "sources_together.py", "estimators.py", "motion_fit.py", "turn_on.py")]
-        + [KNOWN, GOLDEN, _FIGURES + "[settings]", _FIGURES + "[watched]"],
+        + [KNOWN, GOLDEN, _FIGURES + "[settings]", _FIGURES + "[watched]"]
+        + [_FIGURES + "[arithmetic]"],
     ),
     "recordings": (
         [_TOOLS + "recordings/"],

@@ -20,7 +20,7 @@ from zerorate_tools.loop.read.ticks import read_ticks, tick_seconds
 from zerorate_tools.recordings import Recording, turning, write_recording
 from zerorate_tools.simulate import reference, simulate_sessions
 
-from . import fleets, moved, reported, shown, watched
+from . import arithmetic, fleets, moved, reported, shown, watched
 from .imported import IMPORTED
 
 FILE = Path(__file__).with_name("known.json")
@@ -286,6 +286,7 @@ def moved_together():
 
 KNOWN = {
     "settings": settings,
+    "arithmetic": arithmetic.arithmetic,
     "reported": reported.reported,
     "drawn": drawn,
     "simulated": simulated,
