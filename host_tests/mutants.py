@@ -92,7 +92,8 @@ AREAS = {
         ["firmware/zerorate/"],
         ["firmware/test_" + name for name in (
             "corrector.py", "checked.py", "bursts.py", "published.py", "documents.py",
-            "sources_together.py", "estimators.py", "motion_fit.py", "turn_on.py")]
+            "sources_together.py", "estimators.py", "motion_fit.py", "turn_on.py",
+            "machine_code_by_hand.py")]
         + [KNOWN, GOLDEN, _FIGURES + "[settings]", _FIGURES + "[watched]"]
         + [_FIGURES + "[arithmetic]"],
     ),
