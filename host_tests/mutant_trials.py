@@ -9,6 +9,7 @@ long, cannot be loaded or collected, or ends in another way is neither killed no
 import ast
 import builtins
 import contextlib
+import functools
 import importlib.abc
 import importlib.machinery
 import importlib.util
@@ -205,15 +206,20 @@ class Reach(InProcess):
         return True
 
 
-def _tried(mutated, alone, at):
+@functools.cache
+def _passes_alone(failed):
+    """Whether a test passes without any change; asked once of each that has failed."""
+    return _end_of(lambda: _pytest([failed], InProcess()), _PATIENCE_S) == "passed"
+
+
+def _tried(mutated, at):
     """How a mutant ends: killed only if the test that failed passes alone, without the change."""
     at.write_text("", encoding="utf-8")
     end = _end_of(mutated, _PATIENCE_S)
     if end != "killed":
         return end
     failed = at.read_text(encoding="utf-8")
-    sound = failed and _end_of(lambda: alone(failed), _PATIENCE_S) == "passed"
-    return "killed" if sound else "untried"
+    return "killed" if failed and _passes_alone(failed) else "untried"
 
 
 def _end_of(forked, seconds):
@@ -288,4 +294,4 @@ def _end(tests, reached, file, row, text):
             put_in_place(Path(file), text)
             return _pytest(near or tests, nearest)
 
-        return _tried(mutated, lambda failed: _pytest([failed], InProcess()), at)
+        return _tried(mutated, at)
