@@ -200,7 +200,9 @@ AREAS = {
         [_TOOLS + "runtimes/"],
         ["runtimes/test_interpreters.py"],
     ),
-    "service": ([_TOOLS + "service/"], ["service/test_service.py"]),
+    "service": (
+        [_TOOLS + "service/"], ["service/test_service.py", _FIGURES + "[served]"],
+    ),
 }  # fmt: skip
 
 
