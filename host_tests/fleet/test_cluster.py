@@ -242,15 +242,36 @@ def test_a_folder_of_s3_gives_what_the_disk_gives(s3, data, done, tmp_path, caps
 
 def test_a_file_of_gs_is_found_copied_and_seen_to_change(gs, tmp_path):
     gs.mkdir("fleet")
-    gs.pipe({"fleet/a/run.csv": b"t_us\n", "fleet/a/run.json": b"{}", "fleet/a/note.txt": b""})
-    (url,) = urls_of("gs://fleet/a")
-    assert url == "gs://fleet/a/run.csv"
+    found_copied_and_changed(gs, "gs://fleet/a", tmp_path)
+
+
+def test_a_store_in_memory_is_searched_like_any(tmp_path):
+    import fsspec
+
+    found_copied_and_changed(fsspec.filesystem("memory"), "memory:///fleet/a", tmp_path)
+    for url in ("memory://fleet/*/run.csv", "memory://fleet/a/run.csv"):
+        assert urls_of(url) == ["memory:///fleet/a/run.csv"]
+    with here("memory:///fleet/b/run.parquet", tmp_path) as copy:
+        assert sorted(p.name for p in Path(copy).parent.iterdir()) == ["run.parquet"]
+    assert size_and_change("memory://fleet/none.csv") == (0, "")
+    with pytest.raises(ZerorateError, match="memory://nobody: no recording there"):
+        devices_of(["memory://nobody"])
+
+
+def found_copied_and_changed(store, folder, tmp_path):
+    """Of a store's folder the one recording is found, comes with its scales, and may change."""
+    text = {"a/run.csv": b"t_us\n", "a/run.json": b"{}", "a/note.txt": b""}
+    text |= {"b/run.parquet": b"PAR1", "b/run.json": b"{}"}
+    store.pipe({f"fleet/{name}": content for name, content in text.items()})
+    (url,) = urls_of(folder)
+    assert url == f"{folder}/run.csv"
     with here(url, tmp_path) as copy:
         assert Path(copy).read_bytes() == b"t_us\n"
         assert Path(copy).with_name("run.json").read_bytes() == b"{}"
+    assert list(tmp_path.iterdir()) == [] and size_and_change(url)[0] == 5
     before = size_and_change(url)
-    gs.pipe("fleet/a/run.csv", b"t_us,gx\n")
-    type(gs).clear_instance_cache()  # as in another run
+    store.pipe("fleet/a/run.csv", b"t_us,gx\n")
+    type(store).clear_instance_cache()  # as in another run
     assert size_and_change(url) != before
 
 

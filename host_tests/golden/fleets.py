@@ -12,7 +12,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from zerorate_bench.fleet import write_devices
 from zerorate_tools.fleet import Fleet, devices_of, fleet, plots, whole_fleet
-from zerorate_tools.fleet.fleet_in_words import in_words
+from zerorate_tools.fleet.fleet_in_words import in_words, table_of
 from zerorate_tools.fleet.job import block_means, error_mdps
 from zerorate_tools.fleet.part import curve_effects, part_of, step_effects
 from zerorate_tools.fleet.population import curve_of
@@ -23,8 +23,19 @@ from zerorate_tools.report.page import plain
 
 _STEP = {"effect": "thermal-lag", "verdict": "of the part", "devices": 3, "of_devices": 7,
          "share_ci95": [0.12, 0.77]}  # fmt: skip
+_FOUND = {"effect": "thermal-lag", "confidence": "confirmed", "before_mdps": [5, 5, 3],
+          "after_mdps": [3, 5, 5]}  # fmt: skip
 _LEFT_OUT = [{"file": f"{n}.csv", "reason": f"{n}.csv: no"} for n in range(12)]
-_TOLD_ELSE = {"steps": [_STEP], "failures": _LEFT_OUT, "prior": {"devices": 6, "benefit": None}}
+_UNLIKE = {"effect": "slope", "unit": "dps/degC", "mean": [1e-3] * 3, "ci95": [[0, 2e-3]] * 3,
+           "deviation_between_devices": [0.1] * 3, "verdict": ["common"] * 3,
+           "unusual_devices": [*map(str, range(40))]}  # fmt: skip
+_TOLD_ELSE = {
+    "steps": [_STEP],
+    "effects": [_UNLIKE],
+    "reference_degc": 25.0,
+    "failures": _LEFT_OUT,
+    "prior": {"devices": 6, "benefit": None},
+}
 _TOLD_NONE = {"job": "close", "effects": [], "steps": [], "prior": None, "hours": 2000.0,
                   "failures": _LEFT_OUT[:10]}  # fmt: skip
 
@@ -53,10 +64,10 @@ def fleet_of_ten():
     return whole, drawn | {"headline": page.call_args.kwargs["headline"]}
 
 
-def _device(rng, number, tempered, power_ons):
-    """Power-ons of a device over 25 degrees, with gaps; the eleventh and the last are unlike."""
+def _device(rng, number, tempered, power_ons, far=10):
+    """Power-ons of a device over 25 degrees, with gaps; two of many are unlike the others."""
     sessions = []
-    level = rng.normal(0.5, 0.3) + 9.0 * (number == 10)
+    level = rng.normal(0.5, 0.3) + 9.0 * (number == far)
     slope = rng.normal(0.02, 0.002) + 0.1 * (number == 12)
     for one in range(power_ons):
         degc = np.linspace(12 + number % 4 + one, 37 + one, 90)
@@ -69,11 +80,15 @@ def _device(rng, number, tempered, power_ons):
     return sessions
 
 
-def _part(seed, number, tempered=True):
-    """Curves of so many devices, and what is made of them."""
-    rng, scales = np.random.default_rng(seed), Scales("X", 25.0, 131.0, None, 340.0, 36.53)
-    curves = [curve_of(_device(rng, n, tempered, 1 + n % 3)) for n in range(number)]
-    part = part_of([f"d{n}" for n in range(number)], curves)
+def _part_of(seed, number, tempered=True, far=10):
+    rng = np.random.default_rng(seed)
+    curves = [curve_of(_device(rng, n, tempered, 1 + n % 3, far)) for n in range(number)]
+    return part_of([f"d{n}" for n in range(number)], curves)
+
+
+def _told(part):
+    """Curves of a part's devices, and what is made of them."""
+    scales, curves = Scales("X", 25.0, 131.0, None, 340.0, 36.53), part.curves
     kept = ("own", "own_covariance", "p_unusual", "used", "mean_covariance")
     own = {name: [getattr(a, name).ravel().tolist() for a in part.axes] for name in kept}
     slots = [[s.coefficient_dps, vars(s.term)] for s in prior_model(part, scales).slots]
@@ -85,10 +100,20 @@ def _part(seed, number, tempered=True):
     }  # fmt: skip
 
 
+def _shown(part):
+    """Rows of the table of some of a part's devices and of one that is in none, and the plots."""
+    results = [
+        {"device": f"d{n}", "curve": c.to_json(), "sessions": [0] * (1 + n % 3), "steps": []}
+        for n, c in enumerate(part.curves[:2])
+    ]
+    alone = {"device": "lone", "steps": [_FOUND | {"p_value": 0.25}], "sessions": [0]}
+    rows = table_of([*results, results[1] | alone, results[0] | {"curve": None}], part)
+    return [rows.to_pylist(), *map(plain, plots.plots_of({"prior": None}, part))]
+
+
 def _steps():
     """What close found in 40 devices: an effect of all, of half of them, of a few."""
-    step = {"effect": "of all", "confidence": "confirmed", "before_mdps": [5, 5, 3]}
-    step["after_mdps"] = [3, 5, 5]
+    step = _FOUND | {"effect": "of all"}
     half = step | {"effect": "of half", "confidence": "tentative", "before_mdps": [9, 4, 1]}
     return step_effects([
         {"device": f"d{n}", "steps": [step, step] * (n < 38) + [half] * (n % 2)
@@ -111,7 +136,9 @@ def parts_of_a_fleet():
     rows = ({"without": 9.0 + n, "prior": 4.0 + n * n / 9} for n in range(12))
     gains = {str(n): {"always-at-rest": row} for n, row in enumerate(rows)}
     return {
-        "fifteen": _part(1, 15), "six": _part(2, 6), "cold": _part(3, 9, tempered=False),
+        "fifteen": _told(_part_of(1, 15)), "six": _told(_part_of(2, 6)),
+        "five": _told(_part_of(4, 5, far=4)), "cold": _told(_part_of(3, 9, tempered=False)),
+        "shown": _shown(_part_of(1, 15)),
         "few blocks": curve_of([Session("s", 5.0, 1, np.ones((4, 3)), np.ones(4))]),
         "steps": _steps(), "errors": errors, "benefit": _summary(gains, 2.0),
         "means": means.T.tolist(), "swung": [swung[name].tolist() for name in ("gx", "gy", "gz")],

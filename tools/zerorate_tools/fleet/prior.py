@@ -208,8 +208,8 @@ def prior_model(part: Part, scales: Scales) -> Model:
     for power in range(3):
         mean = np.array([axis.mean[power] for axis in part.axes])
         error = np.array([axis.mean_error[power] for axis in part.axes])
-        keep = np.maximum(0.0, 1.0 - (error / np.where(mean == 0, 1e-12, mean)) ** 2)
-        value = mean * keep * scale_of(power)
+        beyond = np.maximum(0.0, mean**2 - error**2)
+        value = np.divide(beyond, mean, np.zeros(3), where=mean != 0) * scale_of(power)
         if value.any() and (power == 0 or scales.temp_lsb_per_degc):
             slots.append(_slot(part, power, (float(value[0]), float(value[1]), float(value[2]))))
     return build_model(slots, scales)
