@@ -184,8 +184,8 @@ AREAS = {
     ),
     "kernels": (
         [_TOOLS + "kernels/", _TOOLS + "layout/"],
-        ["layout/", "native/test_export_c.py", KNOWN,
-         "replay/test_library.py"],
+        ["layout/", "native/test_export_c.py", "native/test_kernels_in_c.py", KNOWN,
+         "replay/test_library.py", _FIGURES + "[exported]"],
     ),
     # what is shown beside others: the comparison, the demo, and the methods of others
     "compare": (

@@ -20,7 +20,7 @@ from zerorate_tools.loop.read.ticks import read_ticks, tick_seconds
 from zerorate_tools.recordings import Recording, turning, write_recording
 from zerorate_tools.simulate import reference, simulate_sessions
 
-from . import arithmetic, fleets, moved, reported, served, shown, watched
+from . import arithmetic, exported, fleets, moved, reported, served, shown, watched
 from .imported import IMPORTED
 
 FILE = Path(__file__).with_name("known.json")
@@ -304,6 +304,7 @@ KNOWN = {
     "searched one": reported.searched_one,
     **IMPORTED,
     "served": served.served,
+    "exported": exported.exported,
     "watched": lambda: reported.gathered(watched.watched()),
 }
 

@@ -1,5 +1,7 @@
 """The layout of the firmware's arrays: one name for one word, and every file's constants fresh."""
 
+import re
+
 import pytest
 from zerorate import Corrector
 from zerorate.model import EffectModel
@@ -62,3 +64,41 @@ def test_the_arrays_are_as_long_as_the_layout_says():
     assert len(corrector.motion_settings) == layout.MOTION_SETTINGS.size
     assert len(corrector.gravity) == layout.GRAVITY.size
     assert len(EffectModel().e) == layout.EFFECTS.size
+
+
+BLOCKS = {"INPUTS": "INPUT", "SLOTS": "SLOT", "PLAYS": "PLAY", "RINGS": "RING"}
+BLOCKS |= {"WINDOW_ROWS": "ROW", "ESTIMATORS": "ESTIMATOR"}
+
+
+def place(array, name, settings):
+    """The index and the unit of a word by its name, in an array or in a block of it."""
+    word, number, inside = re.fullmatch(r"(\w+)(?:\[(\d+)\])?(?:\.(.+))?", name).groups()
+    if array is layout.STATE and word in ("x", "y", "z"):
+        at, unit = place(layout.AXIS, inside, settings)
+        return layout.axis_at(settings, "xyz".index(word)) + at, unit
+    behind = layout.TURN_ON.words if array is layout.STATE else []
+    own = next(one for one in array.words + behind if one.name == word)
+    first = own.index + (settings[layout.SETTINGS.AXES] if own in behind else 0)
+    if not inside:
+        return first + int(number or 0), own.unit
+    block = getattr(layout, BLOCKS[word])
+    at, unit = place(block, inside, settings)
+    size = block.size or settings[layout.SETTINGS.ESTIMATOR_WORDS]
+    return first + int(number) * size + at, unit
+
+
+@pytest.mark.parametrize("options", [{}, {"document": True}, {"bins": 5}])
+def test_every_word_of_every_array_has_its_name_and_unit_at_its_place(options):
+    corrector = Corrector(**{**options, "motion": True, "gravity": True})
+    c = corrector.settings
+    lengths = {"motion": len(corrector.motion), "gravity": len(corrector.gravity)}
+    lengths["effects"] = layout.EFFECTS.size
+    named = [(layout.STATE, layout.named_state(c), len(corrector.state))]
+    named.append((layout.SETTINGS, layout.named(layout.SETTINGS, 9), 9))
+    for name, length in lengths.items():
+        source = layout.named_source(name, length)
+        named.append((getattr(layout, name.upper()), source, length))
+    for array, words, length in named:
+        found = [place(array, name, c) for name, _ in words]
+        assert found == [(at, unit) for at, (_, unit) in enumerate(words)]
+        assert len(words) == length

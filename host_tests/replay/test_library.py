@@ -3,9 +3,12 @@
 import errno
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 
+import numpy as np
 import pytest
 from zerorate import Corrector
+from zerorate.model import EffectModel
 from zerorate.storage.learned_store import LearnedStore
 from zerorate_fakes.memory import FakeMemory
 from zerorate_tools.cli import main
@@ -13,9 +16,12 @@ from zerorate_tools.errors import InFile, MissingRuntime, ZerorateError
 from zerorate_tools.kernels import library as library_module
 from zerorate_tools.kernels.library import library as compiled_library
 from zerorate_tools.layout import STATE
-from zerorate_tools.model import build_model
+from zerorate_tools.model import Slot, build_model, encoded
+from zerorate_tools.model.term import Term
+from zerorate_tools.recordings.checks import GAP
 from zerorate_tools.replay import engines, replay
 from zerorate_tools.replay.replaying import state_bytes
+from zerorate_tools.replay.samples import frames_in_batches
 from zerorate_tools.replay.state_in_words import Word, in_words, words_of_file
 from zerorate_tools.simulate import simulate
 
@@ -99,6 +105,49 @@ def test_a_library_that_the_full_cache_has_no_room_to_link_is_compiled_elsewhere
     assert "compiled for this run" in capsys.readouterr().err
 
 
+def test_each_row_and_channel_goes_through_the_compiled_kernels_as_through_cpython(minute):
+    slot = Slot(Term("vdd_mv", 4900, 5100, 5000), (1e-3, -2e-3, 3e-3))
+    (batch,) = frames_in_batches(minute.between(0, 400))
+    steps, found = np.arange(800, dtype=np.int32).reshape(400, 2) % 50, []
+    for engine in (engines.NativeEngine(), engines.CPythonEngine()):
+        corrector, effects = Corrector(), EffectModel()
+        data = encoded(build_model([slot, replace(slot, term=Term("load", 0, 90))], SCALES))
+        assert effects.load(data, corrector.sensor) == 0
+        corrector.use_model(effects)
+        extra = np.where(steps % 7 == 0, GAP, 4950 * np.array([1, 0]) + steps).astype(np.int32)
+        given = replace(batch, frames=np.asfortranarray(batch.frames), extra=extra)
+        (outcome,) = engine.run(corrector, [given])
+        parts = [of for of in vars(outcome).values() if isinstance(of, np.ndarray)]
+        found.append([*parts, np.array(corrector.state), np.array(effects.e)])
+    for compiled, plain in zip(*found, strict=True):
+        np.testing.assert_array_equal(compiled, plain)
+
+
+def test_a_wheel_has_a_library_of_each_system_and_no_older_one(tmp_path, untried):
+    made = tmp_path / "prebuilt"
+    untried.setattr(library_module, "_PREBUILT", made)
+
+    def compiled(text, system, target):
+        target.write_text(" ".join(system))
+        return target
+
+    untried.setattr(library_module, "cross_compiled", compiled)
+    for _ in range(2):
+        paths = library_module.prebuild()
+        assert paths == sorted(made.iterdir())
+        (made / "older.so").touch()
+    told = {path.name.partition("-")[2]: path.read_text() for path in paths}
+    assert told == {
+        f"{system}-{machine}{ending}": f"{system} {machine}"
+        for system, machines, ending in (
+            ("linux", ("x86_64", "aarch64"), ".so"),
+            ("darwin", ("x86_64", "arm64"), ".dylib"),
+            ("win32", ("amd64", "arm64"), ".dll"),
+        )
+        for machine in machines
+    }
+
+
 @pytest.mark.parametrize(("machine", "number"), [("amd64", 0x8664), ("arm64", 0xAA64)])
 def test_a_library_for_windows_is_made_here_and_shows_what_python_calls(tmp_path, machine, number):
     text = library_module.text_of("sample.c", "rows.c")  # which no C library helps there
@@ -150,9 +199,6 @@ def test_words_are_shown_in_their_units_and_codes_by_name():
 
 
 def test_the_words_of_a_model_are_those_of_its_slots(tmp_path, corrector):
-    from zerorate.model import EffectModel
-    from zerorate_tools.model import encoded
-
     model = EffectModel()
     model.load(encoded(build_model(SLOTS, SCALES)), corrector.sensor)
     corrector.use_model(model)

@@ -6,7 +6,6 @@ from pathlib import Path
 
 from .reading import KernelFile, Kernels, NotKernel
 
-_KINDS = {"int": "int32_t ", "ptr32": "int32_t *"}
 ARITHMETIC = """\
 static inline int32_t floor_div(int32_t a, int32_t b) {
     return a / b - (a % b != 0 && (a < 0) != (b < 0));
@@ -80,6 +79,8 @@ class Expressions:
         return self.binary(node.op, self.text(node.left), self.text(node.right), node)
 
     def _unaryop(self, node: ast.UnaryOp) -> str:
+        if type(node.op) not in _UNARY:
+            raise self.refused(node)
         return f"({_UNARY[type(node.op)]}{self.text(node.operand)})"
 
     def _boolop(self, node: ast.BoolOp) -> str:
@@ -87,6 +88,8 @@ class Expressions:
         return f"({word.join(self.text(value) for value in node.values)})"
 
     def _compare(self, node: ast.Compare) -> str:
+        if any(type(op) not in _COMPARED for op in node.ops):
+            raise self.refused(node)
         operands = [self.text(part) for part in (node.left, *node.comparators)]
         pairs = zip(operands, node.ops, operands[1:])
         tests = [f"({a} {_COMPARED[type(op)]} {b})" for a, op, b in pairs]
@@ -134,8 +137,8 @@ class _Function:
 
     def head(self) -> str:
         arguments = self._node.args.args
-        kinds = [_KINDS.get(getattr(a.annotation, "id", "int"), "int32_t ") for a in arguments]
-        given = ", ".join(kind + a.arg for kind, a in zip(kinds, arguments))
+        stars = ["*" * (getattr(a.annotation, "id", "") == "ptr32") for a in arguments]
+        given = ", ".join(f"int32_t {star}{a.arg}" for star, a in zip(stars, arguments))
         return (
             f"{'int32_t' if self._node.returns else 'void'} {self._file.name}_{self._name}({given})"
         )
