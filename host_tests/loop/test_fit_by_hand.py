@@ -329,6 +329,28 @@ def test_a_block_without_a_rate_goes_with_its_neighbour():
     assert len(fold) == 100
 
 
+@pytest.mark.parametrize(
+    ("degc", "passes"),
+    [
+        ([20, 30, 40, 50, 50, 49, 48, 40, 30, 20, 20], [0] * 6 + [1] * 5),
+        ([20, 30, 40, 50, 48.6, 48.4, 20, 21.4, 40, 50], [0] * 5 + [1] * 3 + [2] * 2),
+        ([20, 30, 40, 50, 44, 50, 43, 50, 42, 50], [0] * 8 + [1, 2]),  # by less than a quarter
+        ([50, 40, 30, 20, 21, 22, 50], [0] * 5 + [1] * 2),
+        ([20, 30, 40, 50], [0] * 4),
+    ],
+)
+def test_a_pass_ends_where_temperature_turns_back_after_what_it_holds(degc, passes):
+    session = replace(dense.made(1, len(degc)), sources={"temp": np.array(degc, float)})
+    assert single.pass_of(session).tolist() == passes
+    pieces = single.PiecesByLine(session)
+    other = pieces.by_passes()
+    assert (other is pieces) is not any(passes)
+    assert other.fold.tolist() == (passes if any(passes) else pieces.fold.tolist())
+    assert len(other.parts) == max(other.fold) + 1
+    bare = single.PiecesByLine(replace(session, sources={}))
+    assert bare.by_passes() is bare
+
+
 @pytest.mark.parametrize("blocks, gap", [(400, 2), (800, 5), (60, 1), (10, 1)])
 def test_the_gap_is_an_eighth_of_a_piece_and_a_block_at_least(blocks, gap):
     session = replace(alone(blocks), sources={})
@@ -366,6 +388,14 @@ def test_what_is_left_of_a_piece_is_by_a_fit_to_the_others():
     spared = judged.residual([LINE], [A], np.zeros((1, 3)))
     assert spared == pytest.approx(judged.residual([LINE], []))
     assert judged.fitted_to(session, [], [])[0] == []
+    assert judged.about_stretches(left) is left
+    stepped = single.PiecesByLine(replace(session, steps=STEP))
+    about, stretch = stepped.about_stretches(left), np.arange(200) >= 12
+    for k, part in enumerate(stepped.parts):
+        for own in (stretch, ~stretch):
+            known = left[own & part.available].mean(axis=0)
+            judged_here = own & (stepped.fold == k)
+            assert about[judged_here] == pytest.approx(left[judged_here] - known)
     beside = single.PiecesByLine(session, [alone(200, 9)])
     kept, told = beside.fitted_to(session, [LINE], [])
     assert told == pytest.approx(line.ordinary([LINE], [session, alone(200, 9)]))

@@ -9,7 +9,7 @@ from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.closing import close, load
 from zerorate_tools.loop.analyse import analyse
 from zerorate_tools.loop.fit.line import less_slope
-from zerorate_tools.loop.fit.single import PiecesByLine, pass_of, speaks_for
+from zerorate_tools.loop.fit.single import PiecesByLine, speaks_for
 from zerorate_tools.loop.search.cancels import cancels
 from zerorate_tools.loop.search.curve import ByPieces, powers, smooth_curve
 from zerorate_tools.loop.search.hysteresis import is_like_hysteresis
@@ -115,13 +115,6 @@ def there_and_back(bias_dps):
     return replace(session, rate_dps=bias + rng.normal(0, 0.004, (session.blocks, 3)))
 
 
-def test_a_hold_belongs_to_the_pass_before_it():
-    session = there_and_back(lambda u, t: 0 * t)
-    passes = pass_of(session)
-    assert set(passes) == {0, 1}
-    assert np.argmax(passes) == pytest.approx(0.42 * session.blocks, abs=8)
-
-
 @pytest.mark.parametrize(
     "bias_dps, is_curve",
     [
@@ -139,14 +132,6 @@ def test_whole_passes_tell_a_curve_over_temperature_from_a_walk_that_pieces_take
     asked = less_slope(line, curve.terms), (), curve.terms
     assert speaks_for(pieces(*asked))
     assert speaks_for(pieces.by_passes()(*asked)) == is_curve
-
-
-def test_one_pass_is_judged_by_pieces():
-    (session,) = simulate(1, sessions=1, hours=2.0).sessions
-    warming = replace(session, sources={"temp": np.linspace(20, 50, len(session.sources["temp"]))})
-    without = replace(session, sources={})
-    for judged in (PiecesByLine(warming), PiecesByLine(without)):
-        assert judged.by_passes() is judged
 
 
 def test_every_row_is_test_and_by_a_model_that_has_not_seen_it(tmp_path):
