@@ -308,6 +308,8 @@ def test_a_model_is_subtracted_by_the_device_that_holds_it_channel_by_channel(tm
     expected = (frames.extra[-1, 0] - 5000) * np.array([0.001, 0.0, -0.002]) * 131
     assert bias[-1] / 256 == pytest.approx(expected, abs=0.5)
     other = Scales("MPU-6050", 5.0, 65.5, 16384.0, 340.0, 36.53)
+    with pytest.raises(Refused, match="cannot run at these scales"):
+        Firmware(replace(SCALES, odr_hz=1e9), None)
     with pytest.raises(Refused, match="refuses the model"):
         Firmware(other, model, ("volt",))
 
@@ -604,10 +606,12 @@ def test_what_follows_time_alone_must_come_again(monkeypatch):
     answer = False
     left, _ = prune.prune_by_holdout(selection, made[3:])
     assert drift not in left.found and prune.AGAIN in left.withdrawn[0][1]
-    alone = selected(made[:1], drift)
     again.clear()
-    prune.prune_by_holdout(alone, made[3:])
+    for more in ({}, {"alone": True, "judged_again": True}):
+        prune.prune_by_holdout(selected(made[:1], drift, **more), made[3:])
     assert not again  # one recording cannot say whether it comes again
+    alone = selected(made[:1], drift, alone=True)
+    assert prune.prune_by_holdout(alone, made[:1])[0] is alone
 
 
 # --- slots, and what an analysis says ---
@@ -832,6 +836,39 @@ def test_models_are_none_those_of_the_first_effects_and_the_whole_one(warm):
     )
     none = analysed(warm)
     assert run_kernels.models_of(none, model_of(none, SCALES), SCALES) == [None]
+    scales = SimpleNamespace(found=True, fastest_dps=np.ones(3), deployed=np.eye(3) / 99, kind="x")
+    moved = replace(analysis, motion=InMotion(scales))
+    models = run_kernels.models_of(moved, whole, SCALES)
+    assert [len(m.slots) for m in models[1:]] == [1, 2, 2] and models[-1] is whole
+
+
+@pytest.mark.parametrize(("fitted", "inside"), [(3, []), (2, ["s1", "s2"]), (0, [])])
+def test_of_one_recording_pieces_run_and_of_few_they_run_beside_the_sessions(
+    monkeypatch, warm, fitted, inside
+):
+    train = warm[:fitted] or warm[:1]
+    analysis = replace(analysed(warm, effect(VOLTS)), train=train, holdout=warm[3:])
+    analysis = replace(analysis, sessions=[*train, *warm[3:]] if fitted else train)
+    power_ons = [SimpleNamespace(session=s) for s in analysis.sessions]
+    made = lambda *of, **how: SimpleNamespace(of=of, **how, course=lambda *of: of, learn=int)  # noqa: E731
+    for name in ("PiecesByKernels", "PieceRuns", "SessionRuns"):
+        monkeypatch.setattr(run_kernels, name, made)
+    asked = []
+    runs = lambda *of: asked.append(of) or made(*of)  # noqa: E731
+    monkeypatch.setattr(run_kernels, "SessionRuns", runs)
+    course = run_kernels._course_of(analysis, power_ons, model_of(analysis, SCALES), SCALES)
+    if not fitted:
+        assert course("s1", True, "sink") == ("sink",) and asked == []
+        return
+    assert course("s1", True, "sink") == ("s1", True, "sink")
+    [(every, names, held, models, scales, pieces)] = asked
+    assert (every, names, held) == (power_ons, [s.name for s in train], ["s4"])
+    assert list(pieces) == inside and len(models) == 2 and scales is SCALES
+    for name, one in pieces.items():
+        judged, selection, more = one.of
+        assert selection is analysis.selection and more == [] and judged.shrunk
+        assert judged.of[0].session.name == name and judged.of[1] is SCALES
+        assert [s.name for s in judged.of[2]] == [n for n in inside if n != name]
 
 
 def test_columns_of_the_corrected_rows_are_what_was_subtracted(tmp_path):
