@@ -27,7 +27,7 @@ from zerorate_tools.loop.search.steps import Step
 from zerorate_tools.loop.search.steps_first import remove_steps
 from zerorate_tools.loop.verify.analysis import Analysis
 from zerorate_tools.loop.verify.courses import AFTER, BEFORE, ONLINE, ONLINE_BEFORE, Course, Courses
-from zerorate_tools.loop.verify.judge import judge
+from zerorate_tools.loop.verify.judge import ResidualTest, judge
 from zerorate_tools.loop.verify.slots import model_of
 from zerorate_tools.model import build_model, write_model
 from zerorate_tools.model.term import Term
@@ -50,7 +50,7 @@ _TERMS = {
     "power-on-transient": (Term("one", decay_s=300.0),),
     "lagged-square": (replace(_T, lag_s=60.0, lag_mode="lag", power=2, power_first=True),),
     "peak-temperature": (replace(_T, memory="peak"),),
-    "load": (Term("load", 10.0, 250.0, 100.0, delay_s=40.0),),
+    "channel": (Term("load", 10.0, 250.0, 100.0, delay_s=40.0),),
     "temperature-kink": (replace(_T, knot=3.0),),
 }
 _STEP = Step(0, 40, np.array([0.03, -0.01, 0.0]), 9.0, 1e-6, np.full(3, 0.002), 800.0, "seen")
@@ -158,13 +158,18 @@ def _variants():
         Line(3.5, np.full(3, 1 / 3), 1e-7),
     ]
     late = InMotion(_scale(False), Timing(0.004, 0.001, 1e-9, (0.004, 0.003, 0.005)))
-    early = InMotion(_scale(True), Timing(-0.7, 0.1, 1e-9, (-0.7,)))
+    early = InMotion(replace(_scale(True), heading=(3.21, 1.05)), Timing(-0.7, 0.1, 1e-9, (-0.7,)))
     yield "many", analysed(kinds[:4], motion=late, lines=lines)
-    measured = analysed(kinds[4:6], sessions=5)
+    measured = analysed([*kinds[4:6], "channel"], sessions=5)
     yield "measured", replace(measured, measured=_measured(measured))
     yield "alone", analysed(kinds[:1], sessions=1, motion=early)
     yield "cold", analysed(["power-on-transient"], sessions=3, tempered=False)
-    yield "nothing", analysed([])
+    nothing = analysed([])
+    yield "nothing", nothing
+    drifts = ResidualTest(0.0, 99.0, np.array([-0.4, 0.1, 0.2]))
+    judged = replace(nothing.judgement, residual_test=drifts)
+    blind = replace(nothing.selection, pool=[])
+    yield "drifting", replace(nothing, judgement=judged, selection=blind)
 
 
 def _plain(value):
