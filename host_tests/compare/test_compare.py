@@ -4,10 +4,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 from zerorate_bench.compared import SAME, beside_truth, denied
 from zerorate_tools.cli import main
 from zerorate_tools.compare import compare, judge
-from zerorate_tools.compare.judge import FIRST_REST, FRESH, NOTHING, TAUGHT, TooFewRests
+from zerorate_tools.compare.judge import (
+    FIRST_REST,
+    FRESH,
+    NOTHING,
+    TAUGHT,
+    Compared,
+    Rest,
+    TooFewRests,
+)
 from zerorate_tools.compare.matrix import WITH, matrix_of
 from zerorate_tools.compare.show import write_page
 from zerorate_tools.demo.broad import trials
@@ -60,10 +69,59 @@ def test_what_is_known_before_a_rest_is_held_against_it(drifting):
     assert np.abs(compared.error_dps[FRESH]) == pytest.approx(0.1, abs=0.05)
 
 
-def test_the_vertical_is_where_gravity_points(drifting):
-    compared = compare([drifting])
-    rms = np.sqrt(np.mean(np.square([0.1, 0.2, 0.3, 0.4, 0.5, 0.6])))
-    assert compared.heading_deg_per_min(FIRST_REST) == pytest.approx(60 * rms, rel=0.03)
+EARTH_DPS = 15.04 / 3600 / np.sqrt(3)
+
+
+def told(theirs, sigma_dps=0.0, down=(0.0, 0.0, 1.0)):
+    """A comparison at so many rests: zerorate is right, the mean off by (rests, 3)."""
+    down = None if down is None else np.array(down)
+    rest = Rest(0, 9, 0.0, np.zeros(3), np.full(3, sigma_dps), down)
+    errors = {FRESH: np.zeros_like(theirs), FIRST_REST: theirs}
+    return Compared(["a"], [(0, rest)] * len(theirs), errors, {})
+
+
+@pytest.mark.parametrize("share", [0.99, 1.01])
+@pytest.mark.parametrize(
+    ("rests", "sigma_dps", "limit_dps"),
+    [
+        *((1, 0.0, 4 * EARTH_DPS), (4, 0.0, 2 * EARTH_DPS), (99, 0.0, np.sqrt(3) * EARTH_DPS)),
+        *((1, 0.03, 4 * np.hypot(0.03, EARTH_DPS)), (4, 0.03, 2 * np.hypot(0.03, EARTH_DPS))),
+    ],
+)
+def test_a_way_is_better_beyond_twice_what_the_rests_themselves_do_not_know(
+    rests, sigma_dps, limit_dps, share
+):
+    compared = told(np.full((rests, 3), [share * limit_dps, 0.0, 0.0]), sigma_dps)
+    ways = ((FRESH, FIRST_REST), (FIRST_REST, FRESH))
+    words = [compared.verdict(*pair).word for pair in ways]
+    assert words == ["better", "worse"] if share > 1 else all(w.startswith(SAME) for w in words)
+
+
+def test_five_rests_and_more_show_by_their_scatter_what_is_chance():
+    def word(*gains):
+        errors = np.outer(np.sqrt(gains), [0.0, 1.0, 0.0])
+        return told(errors).verdict(FRESH, FIRST_REST).word
+
+    def beyond(third):
+        gain = np.array([1.0, 1.0, third, 0.0, 0.0])
+        return gain.mean() - 2 * gain.std(ddof=1) / np.sqrt(5)
+
+    third = brentq(beyond, 0.0, 0.9)
+    assert word(1.0, 1.0, 0.98 * third, 0.0, 0.0).startswith(SAME)
+    assert word(1.0, 1.0, 1.02 * third, 0.0, 0.0) == word(1.0, 1.0, 0.0, 0.0) == "better"
+
+
+def test_heading_is_lost_about_the_vertical_or_the_worst_axis_where_nobody_knows_it():
+    theirs = np.array([[0.3, 0.0, 0.4], [0.0, 0.1, 0.0]])
+    for down, lost in (((0.0, 0.6, 0.8), (0.32, 0.06)), (None, (0.4, 0.0))):
+        compared = told(theirs, down=down)
+        rms = 60 * np.sqrt(np.mean(np.square(lost)))
+        assert compared.heading_deg_per_min(FIRST_REST) == pytest.approx(rms)
+        assert compared.verdict(FIRST_REST, FRESH).times == pytest.approx(1e-9 / rms)
+        assert compared.verdict(FRESH, FIRST_REST).times == pytest.approx(rms / 1e-9)
+    assert compared.rms_dps(FIRST_REST) == pytest.approx(np.sqrt(0.26 / 6))
+    assert "At 2 later rests it would" in compared.headline() and compared.ours == FRESH
+    assert "At 1 later rest it would" in told(theirs[:1]).headline()
 
 
 def test_a_bias_that_stays_shows_no_difference(tmp_path):

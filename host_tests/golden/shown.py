@@ -139,26 +139,28 @@ def _by_optics():
     lines = story.real_trial(shown, "native").splitlines()
     less = {way: of for way, of in shown.whole_mdps.items() if way != "vqf"}
     lines += story.real_trial(replace(shown, whole_mdps=less), "native").splitlines()
+    led = {
+        str(n): np.nan_to_num(broad._led(trial, n).attitude.ravel()).tolist() for n in (-3, 0, 2)
+    }
     columns = {n: [*map(float, of)] for n, of in trial.recording().columns.items()}
-    told = {"real": lines, "of trial": columns, "truth": _listed(vars(shown.truth))}
+    told = {"real": lines, "of trial": columns, "led": led, "truth": _listed(vars(shown.truth))}
     return {"in motion": _listed({"bias": bias, "sigma": sigma}), **told}
 
 
-def _write_trial(path, hz=25, fine=5, lead_s=0.048):
+def _write_trial(path, hz=25, fine=5, lead_s=0.168):
     """A hand's turns between two rests, as a gyroscope and late cameras that slip see them."""
     rng, at_s = np.random.default_rng(4), np.arange(100 * hz * fine) / (hz * fine)
     moves = (at_s > 14) & (at_s < 86)
     phase = 2 * np.pi * (np.outer(at_s, [0.31, 0.23, 0.41, 0.9]) + rng.random(4))
     rate = 60 * moves[:, None] * np.sin(phase)[:, :3] * (1 + 0.5 * np.sin(phase)[:, 3:])
     turns = Rotation.from_rotvec(np.radians(rate) / (hz * fine))
-    attitude, seen = Rotation.identity(), []
-    for number in range(len(at_s)):
-        if (number - round(lead_s * hz * fine)) % fine == 0:
-            seen.append(attitude)
-        attitude = attitude * turns[number]
-    seen = Rotation.concatenate(seen)
+    attitudes = [Rotation.identity()]
+    for turn in turns:
+        attitudes.append(attitudes[-1] * turn)
+    ahead = attitudes[round(lead_s * hz * fine) :: fine]  # the device rests at the end
+    seen = Rotation.concatenate([*ahead, *attitudes[-1:] * len(at_s)])[: len(at_s) // fine]
     rate = rate.reshape(-1, fine, 3).mean(axis=1)
-    down = seen.inv().apply([0, 0, 9.81])
+    down = Rotation.concatenate(attitudes[:-1:fine]).inv().apply([0, 0, 9.81])
     optics = (seen * Rotation.from_rotvec(rng.normal(0, 2e-4, (len(rate), 3)))).as_quat()
     optics[700] = optics[100]
     optics = optics[:, [3, 0, 1, 2]]

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.constants import g as G_MPS2
 from zerorate import Corrector
 
 from .recordings import Recording
@@ -20,7 +21,6 @@ from .replay.replaying import corrector_for
 from .replay.samples import frames_in_batches
 
 SECONDS = 10.0
-_G = 9.80665
 _ROWS = 200_000
 
 
@@ -56,12 +56,9 @@ def given(recording: Recording, still: NDArray[np.bool_] | None = None) -> Given
 
 def first_seconds(sessions: Sequence[Given]) -> list[NDArray[np.float64]]:
     """The mean of the first ten seconds, as most small drivers take it; known from the start on."""
-    return [np.broadcast_to(_mean(one), one.rate_dps.shape) for one in sessions]
-
-
-def _mean(one: Given) -> NDArray[np.float64]:
-    samples = max(1, round(SECONDS * one.odr_hz))
-    return one.rate_dps[:samples].mean(axis=0)
+    rates = [one.rate_dps for one in sessions]
+    means = [r[: round(SECONDS * one.odr_hz)].mean(axis=0) for r, one in zip(rates, sessions)]
+    return [np.broadcast_to(mean, r.shape) for mean, r in zip(means, rates)]
 
 
 def fusion(sessions: Sequence[Given]) -> list[NDArray[np.float64]]:
@@ -95,7 +92,7 @@ def vqf_biases(one: Given, settings: dict[str, float]) -> NDArray[np.float64]:
     if one.accel_g is None:
         return np.full(one.rate_dps.shape, np.nan)
     the_filter = VQF(1 / one.odr_hz, **settings)
-    rates, forces = np.radians(one.rate_dps), one.accel_g * _G
+    rates, forces = np.radians(one.rate_dps), one.accel_g * G_MPS2
     parts = []
     for start in range(0, len(rates), _ROWS):
         end = start + _ROWS

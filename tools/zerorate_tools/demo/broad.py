@@ -180,7 +180,7 @@ def _compare(
     from scipy.spatial.transform import Rotation
 
     dt = 1 / trial.hz
-    attitude = Rotation.from_quat(np.zeros((len(starts), 4)) + [0, 0, 0, 1])
+    attitude = Rotation.identity(len(starts))
     slopes = np.zeros((len(starts), 3, 13))
     for k in range(n):
         rate = np.radians(trial.rate_dps[starts + k] - bias)

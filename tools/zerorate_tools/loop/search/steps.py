@@ -32,8 +32,8 @@ _BESIDE_OTHERS = 1e-4
 _LEAST_BEYOND = -4.0
 #: The same of two of one sign beside the best slow change: they have sizes and a place more.
 _BOTH_BEYOND = 20.0
-#: Forms over channels beside which steps must stand, and the likelihood ratio of one.
-_MOST_FORMS, _A_FORM = 4, 45.0
+#: The likelihood ratio of a form over channels beside which steps must stand.
+_A_FORM = 45.0
 
 
 @dataclass(eq=False)  # two in one block are two, and arrays do not say whether they are equal
@@ -76,11 +76,11 @@ def steps_and_lags(regression, terms, recordings: int = 1) -> tuple[list[Step], 
     """
     beside, sessions = list(terms), regression.sessions
     forms = [c for c in candidates(sessions) if not follows_time(c)] + late(sessions)
-    most, lagging = _MOST_FORMS, dict[Term, float]()
+    lagging = dict[Term, float]()
     while True:
         regression.set_events([])
         steps = sorted(_all(regression, beside, recordings), key=lambda s: -s.ratio)
-        if not steps or not most:
+        if not steps:
             break
         form, gain = _best_form(regression, beside, forms)
         if gain < steps[0].ratio:
@@ -89,7 +89,6 @@ def steps_and_lags(regression, terms, recordings: int = 1) -> tuple[list[Step], 
         if form is None or gain < _A_FORM:
             break
         beside += refined(regression, beside, form).terms
-        most -= 1
     if steps and lags(sessions):
         lagging = _shrunk_lags(regression, terms)
         with regression.shrinking(lagging):
