@@ -90,12 +90,39 @@ def test_two_recordings_are_of_one_setting_whose_clocks_are_within_five_percent(
     assert refused(same_settings, two)
 
 
+@pytest.mark.parametrize(
+    ("one", "other", "more", "said"),
+    [
+        *(
+            ("unknown", "BMI160", {}, "--sensor BMI160"),
+            ("BMI160", "unknown", {}, "--sensor BMI160"),
+        ),
+        ("BMI160", "ICM-20948", {}, None),
+        ("BMI160", "BMI160", {"gyro_lsb_per_dps": 65.5}, "--gyro-lsb-per-dps N"),
+        ("X", "X", {"more": {"binding": {"chip_id": 2}}}, "its chip_id is 2, but 1 in a"),
+    ],
+)
+def test_what_differs_by_its_import_alone_is_said_how_to_import(one, other, more, said):
+    kept = {
+        "odr_hz": 100.0,
+        "gyro_lsb_per_dps": 131.0,
+        "more": {"binding": {"chip_id": 1, "filter": 3}},
+    }
+    kept |= {"accel_lsb_per_g": None, "temp_lsb_per_degc": 340.0, "temp_offset_degc": 36.53}
+    every = [Scales(**{**kept, "sensor": one}), Scales(**{**kept, "sensor": other, **more})]
+    two = [SimpleNamespace(name=n, scales=of, digest=n) for n, of in zip("ab", every)]
+    text = refused(same_settings, two)
+    assert text and (said in text if said else "--" not in text)
+
+
 @pytest.mark.parametrize("over, told", [(3, ""), (4, "40 %")])
 def test_shaking_in_more_than_three_tenths_of_the_rests_is_told_with_its_share(over, told):
     report, limit = GateReport(), DEFAULTS["still_g"] ** 2
     vib = np.repeat(np.where(np.arange(10) < over, 1.01, 0.99) * limit, 2)
     shaken([session(10), session(10, vib=vib)], report)
     assert len(report.notes) == bool(told) and told in "".join(report.notes)
+    shaken([session(10)], quiet := GateReport())
+    assert quiet.notes == []
 
 
 def test_channels_that_show_nothing_of_their_own_are_left_out():
@@ -118,5 +145,8 @@ def test_a_channel_with_the_rates_own_noise_is_no_cause(noise, kept):
     of.ticks_dps = rng.normal(size=(80, 3))
     of.ticks_dps[10:20] = np.nan
     of.sources["fan"] = np.nan_to_num(-of.ticks_dps[:, 1]) + noise * rng.normal(size=80)
+    ramp = session(40, fan=np.arange(80.0))
+    ramp.ticks_dps = of.ticks_dps
     usable_channels([of], GateReport())
-    assert ("fan" in of.sources) == kept
+    usable_channels([ramp], GateReport())
+    assert ("fan" in of.sources) == kept and "fan" in ramp.sources

@@ -1,5 +1,6 @@
 """How recordings are read, part by part: at the edges, in batches, and as a plain computation."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -7,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
-from zerorate_tools.loop.read import blocks, lines
+from zerorate_tools.loop.read import blocks, lines, sessions
 from zerorate_tools.loop.read.bad_readings import BadReadings
 from zerorate_tools.loop.read.reference import (
     Reference,
@@ -16,7 +17,13 @@ from zerorate_tools.loop.read.reference import (
     declared,
     delay_products,
 )
-from zerorate_tools.loop.read.sessions import Session, block_means, common_sources
+from zerorate_tools.loop.read.sessions import (
+    Session,
+    block_basis,
+    block_means,
+    common_sources,
+)
+from zerorate_tools.model.term import Term, play
 from zerorate_tools.recordings.checks import GAP
 
 FRAME = {"t_us": 0, "gx": 5, "gy": 6, "gz": 7, "ax": 1, "ay": 2, "az": 3, "temp": 100}
@@ -230,6 +237,25 @@ def test_a_session_tells_its_stretches_first_minute_and_what_moved():
     assert left[8] == 24 - rate[there, 0].mean()  # none of its own is there
     assert common_sources([one, Session("t", 20.0, 2, rate, weight, {"a": 3, "c": 4})]) == ["a"]
     assert (one.source("one") == 1).all() and one.source("a") == 2
+    bare = Session("u", 20.0, 2, rate, weight, {})
+    assert bare.moving_s == 0.0 and bare.moved.tolist() == [False] * 10
+
+
+def test_what_remembers_is_told_once_for_the_sources_of_a_session():
+    one = Session("s", 20.0, 2, np.zeros((4, 3)), np.ones(4), {"temp": np.arange(8.0)})
+    late = Term("temp", memory="play", width=2.0)
+    told = block_basis(late, one)
+    assert told == pytest.approx(play(np.arange(8.0), 2.0).reshape(4, 2).mean(axis=1))
+    one.sources["temp"][:] = 0.0
+    assert block_basis(late, one) is told
+    assert not block_basis(Term("temp"), one).any() and set(one.known) == {late}
+    one.sources = {"temp": np.zeros(8)}
+    assert not block_basis(late, one).any()
+    for k in range(sessions._MOST_KNOWN):
+        block_basis(replace(late, width=3.0 + k), one)
+    assert len(one.known) == sessions._MOST_KNOWN + 1
+    block_basis(replace(late, width=1.0), one)
+    assert len(one.known) == 1
 
 
 def test_the_mean_of_a_block_is_weighed_and_nothing_where_nothing_counts():
