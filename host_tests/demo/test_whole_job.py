@@ -19,7 +19,7 @@ from zerorate_tools.demo import broad, demo, story
 from zerorate_tools.demo import real as by_real
 from zerorate_tools.demo.broad import trials
 from zerorate_tools.demo.real import WAYS, real
-from zerorate_tools.errors import CannotFetch
+from zerorate_tools.errors import CannotFetch, ZerorateError
 from zerorate_tools.recordings import write_recording
 from zerorate_tools.runtimes import node
 from zerorate_tools.simulate import simulate
@@ -158,6 +158,11 @@ def test_a_damaged_trial_is_fetched_again_and_never_used(filled):
     file.write_bytes(file.read_bytes()[:-1] + b"x")
     with pytest.raises(CannotFetch, match="network"):
         broad.broad_trial(NOBODY)
+
+
+def test_a_folder_without_a_trial_is_said(tmp_path):
+    with pytest.raises(ZerorateError, match="no BROAD trial .* --data"):
+        next(trials(tmp_path))
 
 
 class Answer(io.BytesIO):

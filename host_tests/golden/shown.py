@@ -94,7 +94,7 @@ def demonstrated():
             story.chapter_three(before, after, folder / "model.bin"),
             story.chapter_three(after, replace(before, same_state=False), folder / "model.bin"),
             *story.played(replace(first, runtime="wasm", same_state=False)),
-            *story._found([]),
+            *(*story._found([]), story.compared(SimpleNamespace(headline=lambda: 30 * "a word "))),
         ]
         words = "\n".join(told).replace(str(folder), "FOLDER").splitlines()
         size = (folder / "demo.png").read_bytes()[16:24].hex()
@@ -134,7 +134,8 @@ def _by_optics():
         _write_trial(Path(folder, "trial.mat"))
         [trial] = broad.trials(Path(folder))
     bias, sigma = broad.bias_in_motion(trial)
-    shown = real(trial, "native")
+    steps = []
+    shown = real(trial, "native", steps.append)
     shown = replace(shown, said=shown.said.rpartition("\n")[0])  # how the kernels ran
     lines = story.real_trial(shown, "native").splitlines()
     less = {way: of for way, of in shown.whole_mdps.items() if way != "vqf"}
@@ -144,7 +145,7 @@ def _by_optics():
     }
     columns = {n: [*map(float, of)] for n, of in trial.recording().columns.items()}
     told = {"real": lines, "of trial": columns, "led": led, "truth": _listed(vars(shown.truth))}
-    return {"in motion": _listed({"bias": bias, "sigma": sigma}), **told}
+    return {"in motion": _listed({"bias": bias, "sigma": sigma}), **told, "steps": steps}
 
 
 def _write_trial(path, hz=25, fine=5, lead_s=0.168):
