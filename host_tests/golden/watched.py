@@ -1,8 +1,8 @@
 """What is shown of a sensor while it is watched or guided: figures and words."""
 
 import io
-from contextlib import redirect_stdout
-from dataclasses import dataclass, field
+from contextlib import nullcontext, redirect_stdout
+from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 from unittest import mock
 
@@ -12,13 +12,13 @@ from zerorate_tools import guide
 from zerorate_tools.boards.recorder import COLUMNS
 from zerorate_tools.loop.motion.device import Shown
 from zerorate_tools.simulate import simulate
-from zerorate_tools.watch import watching
+from zerorate_tools.watch import own, watching
 from zerorate_tools.watch.live import Live
 from zerorate_tools.watch.own import OwnOutput
 from zerorate_tools.watch.screen import Area, Lines, WatchOptions, sparkline
 
 _WARM = {
-    "name": "run", "seed": 4, "sensor": {"odr_hz": 10.0}, "bias": {"b0": [1.5, -2.0, 0.5]},
+    "name": "run", "seed": 4, "sensor": {"odr_hz": 12.5}, "bias": {"b0": [1.5, -2.0, 0.5]},
     "every_session": {"temperature": [{"to": 30.0, "s": 40}], "motion": [
         {"kind": "rest", "s": 30}, {"kind": "hand", "s": 10},
     ]},
@@ -91,6 +91,7 @@ def _watched():
     yield "lines", _printed(lambda: Lines().show(live, ["a note"]))
     yield "screen", _drawn(Area, live, ["a note"])
     yield "followed", _followed(recording.scales, [pieces[1], None, pieces[2], None, pieces[3]])
+    yield "slow", _followed(replace(recording.scales, odr_hz=2.0), [pieces[1], None, pieces[2]])
     yield "board", _on_board(recording.scales, pieces[2])
 
 
@@ -142,11 +143,39 @@ def _own():
         yield [*np.nan_to_num(rates).tolist(), output.source, *counts]
 
 
+def _listened():
+    """When a program's lines are read, shown and noted, and after what it ends."""
+    for options, came in (
+        (WatchOptions(seconds=30.0, every_s=2.0), []),
+        (WatchOptions(once=True), []),
+        (WatchOptions(), ["a signal"]),
+    ):
+        clock, looked = _Clock(), []
+        said = iter([b"", b"", *[b"a line\n"] * 14, _OWN[:60], _OWN[60:], *[b""] * 99])
+
+        def read(size, clock=clock, said=said):
+            clock.now += 1.0
+            return next(said)
+
+        shown = SimpleNamespace(
+            show=lambda own, notes, c=clock, of=looked: of.append([c.now, own.lines, *notes])
+        )
+        fakes = {
+            "time": SimpleNamespace(monotonic=clock),
+            "listening": lambda port, of=read: nullcontext(SimpleNamespace(read=of, in_waiting=0)),
+            "screen": lambda plain, of=shown: nullcontext(of),
+            "noted_signals": lambda of=came: nullcontext(of),
+        }
+        with mock.patch.multiple(own, **fakes):
+            heard = own.watch_own("port", options)
+        yield [looked, heard and heard.samples]
+
+
 class _Fitted:
     """Windows that show more of an axis the more of it was turned; of four folds."""
 
     def __init__(self, information):
-        self.information, self.folds = np.repeat(information, 3), np.arange(4)
+        self.information, self.folds = np.tile(information, 3), np.arange(4)
         self.rows = SimpleNamespace(errors=np.zeros(guide.LEAST_WINDOWS))
 
     def shown(self, matrix, fold=None):
@@ -154,7 +183,8 @@ class _Fitted:
 
     def without(self, matrix, fold):
         return Shown(
-            (1 - fold / 9) * self.shown(matrix).normal, (1 - fold / 8) * self.shown(matrix).right
+            self.shown(matrix).normal * np.tile([1, 1 - fold / 9, 1 - fold / 4], 3),
+            (1 - fold / 8) * self.shown(matrix).right,
         )
 
 
@@ -172,8 +202,12 @@ def _guided():
     ]
     for number, information in enumerate(shows):
         fitted = information and _Fitted(np.array(information))
-        t_us = np.arange(0, 4_000_000 if number < 3 else 110_000_000, 100_000) + number * 4_000_000
-        rates = rng.normal(0, 500, (len(t_us), 3)) * np.roll([4.0, 1.0, 0.1], number)
+        t_us = np.arange(0, 3_300_000 if number < 3 else 110_000_000, 100_000) + number * 3_300_000
+        rates = (
+            rng.normal(0, 500, (len(t_us), 3))
+            * np.roll([4.0, 1.0, 0.1], number)
+            / (1 + 999 * (number == 1))
+        )
         rates[: 2 * (number > 3), 0] = -32768
         new = {"t_us": t_us, **dict(zip(guide.GYRO, rates.astype(np.int64).T))}
         with mock.patch.object(guide.KnownSoFar, "_fitted", lambda *of, fitted=fitted: fitted):
@@ -203,4 +237,10 @@ def _looks():
 def watched():
     """All that is watched and guided."""
     found = dict(_watched())
-    return {**found, "own": [*_own()], "guided": [*_guided()], "looks": _looks()}
+    return {
+        **found,
+        "own": [*_own()],
+        "listened": [*_listened()],
+        "guided": [*_guided()],
+        "looks": _looks(),
+    }

@@ -20,7 +20,7 @@ from zerorate_tools.simulate import simulate
 from zerorate_tools.watch import watch
 from zerorate_tools.watch.live import Live
 from zerorate_tools.watch.own import OwnOutput
-from zerorate_tools.watch.screen import Lines, WatchOptions, screen, sparkline
+from zerorate_tools.watch.screen import Lines, WatchOptions, draw, screen, sparkline
 from zerorate_tools.watch.watching import CsvTail, Watcher, growing_file
 
 DESCRIPTION = {
@@ -205,7 +205,7 @@ def test_an_emulated_chip_is_watched_and_has_no_pins_to_set_up(tmp_path, capsys)
 
 def test_a_terminal_too_narrow_for_the_numbers_gets_lines(monkeypatch):
     monkeypatch.setattr("sys.stdout.isatty", lambda: True)
-    for columns, is_narrow in ((40, True), (80, False)):
+    for columns, is_narrow in ((69, True), (70, False)):
         monkeypatch.setenv("COLUMNS", str(columns))
         with screen() as shown:
             assert isinstance(shown, Lines) == is_narrow
@@ -294,6 +294,14 @@ def test_what_a_board_explains_is_read_as_the_firmware_means_it(log):
     assert told.quality_dps == pytest.approx(live.quality_dps, abs=6e-4)
     assert told.source == live.source
     assert told.learning() == live.learning()
+
+
+def test_a_picture_has_eight_hundred_by_four_hundred_and_fifty_points(tmp_path):
+    told = OwnOutput("port")
+    told.feed(b"before 1.0 2.0 3.0  after 0.5 0.5 0.5\n" * 2)
+    draw(told, tmp_path / "bias.png")
+    size = (tmp_path / "bias.png").read_bytes()[16:24]
+    assert [int.from_bytes(size[at : at + 4], "big") for at in (0, 4)] == [800, 450]
 
 
 @pytest.mark.parametrize("ends", [["--for", "0.5"], ["--once"]])

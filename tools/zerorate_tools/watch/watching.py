@@ -16,7 +16,7 @@ from ..errors import BadRecording
 from ..recordings import Scales, csv_format, open_recording
 from ..recordings.checks import check_names
 from ..recordings.csv_format import unfinished_of
-from ..recordings.recording import TIME, Columns
+from ..recordings.recording import Columns
 from .live import Live
 from .screen import Screen, Shown, WatchOptions, screen
 
@@ -125,8 +125,7 @@ def _parsed(rows: bytes, names: list[str]) -> Columns:
             column_types={name: pa.int64() for name in names}, null_values=[]
         ),
     )
-    types = {name: np.int64 if name == TIME else np.int32 for name in names}
-    return {name: table[name].to_numpy().astype(types[name]) for name in names}
+    return {name: table[name].to_numpy() for name in names}
 
 
 _PATIENCE_S = 0.25
