@@ -114,7 +114,7 @@ def _lives(device):
     for number in (1, 0):
         device.put_in(number)
         yield device.live(5 + 4 * number)
-    for ago_s, shifted_dps, last in ((3598, 0.1, 120), (-1, 0.2, 80), (60, 0.3, 80), (9e9, 0.3, 9)):
+    for ago_s, shifted_dps, last in ((3598, 0.1, 120), (-1, 0.2, 80), (0, 0.3, 80), (9e9, 0.3, 9)):
         device.ago_s, device.shifted_dps = ago_s, shifted_dps
         device.begin(last=last)
         yield device.end()

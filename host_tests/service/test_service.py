@@ -337,15 +337,32 @@ def test_a_pipe_whose_reader_sleeps_holds_nobody_up_and_gets_whole_lines():
         for number in range(5000):
             sink.put(json.dumps({"number": number, "more": "x" * 100}).encode() + b"\n")
             if number == 3000:
-                os.read(reader, 30000)
-    lines = open(reader, "rb").read().split(b"\n")
-    assert sink.lost > 1000 and json.loads(lines[-2])["number"] > 3000
+                taken = os.read(reader, 30000)
+    *lines, begun = (taken + open(reader, "rb").read()).split(b"\n")
+    assert sink.lost == 5000 - len(lines) - bool(begun) > 1000
+    assert json.loads(lines[-1])["number"] > 3000
 
 
-@pytest.mark.parametrize("address", [":99999", "127.0.0.1:99999", "127.0.0.1:0", "127.0.0.1"])
+@pytest.mark.parametrize("address", [":99999", "127.0.0.1:65536", "127.0.0.1:0", "127.0.0.1"])
 def test_an_address_that_cannot_be_is_one_line(address):
     with pytest.raises(ZerorateError, match=f"--udp {address}: write ADDRESS:PORT"):
         Datagrams(address)
+    for family, whole in ((socket.AF_INET, "127.0.0.1:65535"), (socket.AF_INET6, "[::1]:1")):
+        sink = Datagrams(whole)
+        assert sink._socket.family == family
+        sink.close()
+
+
+@pytest.mark.parametrize("place", ["@zerorate-{}", "{}"])
+def test_systemd_is_told_by_its_socket_with_a_file_or_without(tmp_path, monkeypatch, place):
+    place = place.format(tmp_path / "notify")
+    monkeypatch.setenv("NOTIFY_SOCKET", place)
+    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as systemd:
+        systemd.bind(place.replace("@", "\0"))
+        notify("READY=1")
+        assert systemd.recv(100) == b"READY=1"
+    monkeypatch.delenv("NOTIFY_SOCKET")
+    notify("READY=1")
 
 
 def test_a_bus_that_opens_but_is_none_leaves_no_descriptor(tmp_path):
@@ -443,8 +460,10 @@ def test_a_slow_reader_gets_whole_lines_and_holds_nobody_up(tmp_path):
         sink.put(json.dumps({"number": number, "more": "x" * 100}).encode() + b"\n")
     sink.close()
     text = b"".join(iter(lambda: reader.recv(1 << 16), b""))
-    numbers = [json.loads(line)["number"] for line in text.split(b"\n")[:-1]]
+    *lines, begun = text.split(b"\n")
+    numbers = [json.loads(line)["number"] for line in lines]
     assert numbers == sorted(numbers) and 100 < len(numbers) < 20000
+    assert sink.lost == 20000 - len(numbers) - bool(begun)
 
 
 def test_datagrams_stay_on_this_machine_unless_told():
@@ -458,6 +477,8 @@ def test_datagrams_stay_on_this_machine_unless_told():
         sink.put(b"{}\n")
         assert reader.recv(100) == b"{}\n"
         assert not sink._socket.getblocking()  # where the network is full, nobody waits
+        sink.put(bytes(70_000))  # more than a datagram has
+        assert sink.lost == 1
         sink.close()
 
 

@@ -24,7 +24,7 @@ _LEAST_PAUSE_MS = 10
 _BUS_PAUSE_MS = 1000
 _ALIVE_US = 2_000_000
 _RETRY_S = 60
-_TOLERANCE_DPS = 0.01
+_TOLERANCE_LSB = 1  # 0.008 dps in the finest range
 
 
 def notify(text: str) -> None:
@@ -77,8 +77,8 @@ class Service:
         self._fifo: Any = None
         self._corrector: Any = None
         self._binding = b""
-        self._sample = array("i", [0] * 7)
-        self._bias_lsb = array("i", [0] * 3)
+        self._sample = array("i", bytes(28))  # words of four bytes
+        self._bias_lsb = array("i", bytes(12))
         self._newest_us: int | None = None
         self._published_us: int | None = None
         self._is_stored = False
@@ -178,8 +178,8 @@ class Service:
             f"{imu.part}, {imu.odr_hz:g} Hz, {self.system.storage.path}: {REASONS[reason]}"
         )
         self._corrector = CheckedCorrector(learner)
-        tolerance = max(1, round(_TOLERANCE_DPS * imu.gyro_lsb_per_dps))
-        self._schedule = SaveSchedule(self._store, 3, tolerance, self.system.writes_a_day, learner)
+        budget = self.system.writes_a_day
+        self._schedule = SaveSchedule(self._store, 3, _TOLERANCE_LSB, budget, learner)
         self._is_stored = reason == LOADED
         if self._is_stored:
             ago_s = self.system.stored_ago_s()
@@ -234,10 +234,10 @@ class Service:
         lsb = imu.gyro_lsb_per_dps
         line = {
             "t_us": self.t_us,
-            "rate_dps": [round(sample[4 + axis] / lsb, 5) for axis in range(3)],
+            "rate_dps": [round(left / lsb, 5) for left in sample[4:7]],
             "raw_dps": [round(raw / lsb, 5) for raw in raw_lsb],
             "bias_dps": [round(learner.bias_lsb(axis) / lsb, 5) for axis in range(3)],
-            "accel_g": [round(sample[axis] / imu.accel_lsb_per_g, 5) for axis in range(3)],
+            "accel_g": [round(force / imu.accel_lsb_per_g, 5) for force in sample[:3]],
             "temp_degc": round(imu.temperature_degc(sample[3]), 2),
         }
         last_us, self._published_us = self._published_us, self.t_us
