@@ -107,7 +107,8 @@ AREAS = {
         [_TOOLS + "importers/"],
         ["importers/"] + [_FIGURES + f"[imported {kind}]" for kind in (
             *("arrays", "changed", "clocks", "flights", "phones", "robots", "sensors", "tools"),
-            *("wearables", "parts"))],
+            *("wearables", "parts", "columns", "units", "stamps", "devices", "doubted"),
+            *("texts", "records", "checked", "cuts", "spools", "plans", "logs"))],
     ),
     # what they print is seen where they really run
     "commands": (
@@ -289,7 +290,8 @@ def same(mutant, text, mutated=""):
     for entry in _listed()["same"]:
         names = entry["operators"]
         there = mutant[0].startswith(entry["file"]) and mutated in entry.get("become", [mutated])
-        if there and entry["line"] == text and mutant[1].rpartition("/")[2] in names:
+        lines = entry["line"] if isinstance(entry["line"], list) else [entry["line"]]
+        if there and text in lines and mutant[1].rpartition("/")[2] in names:
             return entry["why"]
     return ""
 

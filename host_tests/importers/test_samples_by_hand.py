@@ -1,6 +1,7 @@
 """Steps from rows to samples, each against a plain computation or at the edges of what it asks."""
 
 from collections import Counter
+from itertools import groupby
 from pathlib import Path
 
 import numpy as np
@@ -149,13 +150,23 @@ def test_more_than_a_tenth_of_stamps_two_rows_off_tell_no_times(odd, rows, told)
     assert duration(1.0) in note and each in note and (f"in {told} of" in note) is bool(told)
 
 
+def test_many_rows_of_the_last_stamp_lie_within_its_tick():
+    columns, ticks = stamped([2] * 30 + [5], [1] * 30)
+    out, _ = evenly(spooled(columns), ticks, PATH, None)
+    assert read(out)["t_us"][-5:] == pytest.approx(30e6 + 2e5 * np.arange(5))
+
+
 @given(st.lists(st.tuples(st.sampled_from([0.5, 1, 1.5, 8, 9]), st.booleans()), max_size=40), cuts)
 def test_rows_on_lines_are_counted_as_they_lie(rows, cuts):
     off, moves = np.array(rows, float).reshape(-1, 2).T
     seen = lines._Seen()
+    longest = 0
     for a, b in zip([0, *sorted(cuts)], [*sorted(cuts), len(off)]):
         seen.add(off[a:b], moves[a:b] > 0)
+        runs = groupby(o <= 1 and m for o, m in rows[a:b])
+        longest = max(longest, *(len([*run]) for on, run in runs if on), 0)
     moved = [o for o, m in rows if m]
+    assert seen.longest == longest
     assert (seen.rows, seen.lines) == (len(rows), sum(o <= 1 for o, _ in rows))
     assert seen.on == sum(o <= 1 for o in moved) and seen.off == sum(o > 8 for o in moved)
     assert seen.near == sum(1 < o <= 8 for o in moved)

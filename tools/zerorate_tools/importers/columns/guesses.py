@@ -127,7 +127,7 @@ def likely_columns(
 
     first: the first rows of every column, in the file's order; calendar: those that are dates.
     """
-    values = {n: v for n, v in first.items() if np.isfinite(v).sum() > len(v) / 2}
+    values = {n: v for n, v in first.items() if 2 * np.isfinite(v).sum() > len(v)}
     whole = np.isfinite(list(values.values())).all(axis=0)
     if not whole.any():
         return []
@@ -208,7 +208,8 @@ def is_unit(four: np.ndarray) -> bool:
 def only_grows(values: np.ndarray) -> bool:
     """Whether a column goes on from row to row, as times do."""
     steps = np.diff(values)
-    return len(steps) > 0 and bool((steps >= 0).mean() > 0.999 and (steps > 0).mean() > 0.5)
+    forward, back = np.sum(steps > 0), np.sum(~(steps >= 0))
+    return bool(1000 * back < len(steps) < 2 * forward)
 
 
 def likely_time(values: np.ndarray) -> str:

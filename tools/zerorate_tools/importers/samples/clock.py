@@ -199,7 +199,7 @@ class _Spread:
         """(when its rows begin after its stamp, how long they last) of each stamp, microseconds."""
         tick_us, sample_us = self.ticks.tick_us, self.ticks.sample_us
         due = np.minimum(step_us, GAP_INTERVALS * tick_us) / sample_us
-        ends = (step_us > 1.5 * tick_us) & (count < due - _ROWS_OFF)
+        ends = (step_us > 1.5 * tick_us) & (count < due - _ROWS_OFF) | np.isinf(step_us)
         begins = np.concatenate([[self.begins], ends[:-1]])
         self.begins = bool(ends[-1])
         off = np.abs(count - due)

@@ -263,7 +263,7 @@ class _Gathering:
             do = "write each of three rates as a number in a cell of its own"
             raise BadRecording(self.path, "no sample is left", do="; ".join([*why, do]))
         torn = self.dropped[_NO_TIME]
-        if torn > self.rows / 2:
+        if 2 * torn > self.rows:
             do = "write it as a number or a date, or give --hz"
             raise BadRecording(
                 self.path, f"{torn} of {self.rows} time stamps are no numbers", do=do

@@ -1,0 +1,149 @@
+"""What single steps of an import compute of rows in a spool, drawn by a seed."""
+
+import re
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+from zerorate_bench.resampled import digits, drawn, on_lines, timed
+from zerorate_tools.errors import BadRecording
+from zerorate_tools.importers.samples import bursts, clock, lines, one_device, resampled
+from zerorate_tools.importers.samples.spool import Spool
+
+from .import_steps import mostly
+
+
+def _spooled(pieces):
+    spool = Spool(list(pieces[0]))
+    for piece in pieces:
+        spool.append(piece)
+    spool.finish()
+    return spool
+
+
+def _times(spool):
+    return np.concatenate([columns["t_us"] for columns in spool]) * 1e-4
+
+
+def _of_lines(luck):
+    """Evidence for lines between rows at some ratios, and how far rows are off them."""
+    for kind, ratio in (("white noise", 0), ("in motion", 1.3), ("coarse", 1.7)):
+        rates = drawn(kind, luck, 1800)
+        frame = timed(on_lines(rates, ratio) if ratio else rates)
+        frame[0, 900:] += 4.0  # a gap
+        yield f"evidence {kind}", list(resampled.evidence(frame, digits(kind)))
+        off, moves = lines._off_line(frame[:, ::2], digits(kind))
+        yield f"off {kind}", [float(np.log1p(off[1:-1]).mean()), int(moves.sum())]
+    frame = timed(on_lines(drawn("white noise", luck, 1000), 4.2))
+    yield "period", [resampled.base_period(frame, digits(""))]
+
+
+def _of_devices(luck):
+    """How far the levels of rows are apart that three devices write in turn."""
+    levels = np.resize([[0.0, 3.0, 1.0], [0.5, 0.0, 1.0], [0.2, 2.0, 0.0]], (120, 3))
+    block = levels + luck.normal(0, 0.5, (120, 3)) + np.arange(120)[:, None] / 30
+    yield "apart", [one_device._apart(block, devices) for devices in range(2, 9)]
+
+
+def _of_clocks(luck):
+    """Stamps of bursts, and of rows that share coarse ones, spread as time went on."""
+    taken = 1e4 * np.arange(1200)
+    late = np.maximum.accumulate(taken + 3e4 * luck.random(1200) * (np.arange(1200) % 25 > 4))
+    rates = np.sin(taken * 4e-6 + np.arange(3)[:, None]) + luck.normal(0, 0.01, (3, 1200))
+    some = slice(1, -1), np.arange(1198) % 25 < 2
+    weight = np.diff(late)[1:] / np.maximum(late[2:] - late[:-2], 1.0)
+    yield "misfit", [bursts._misfit(rates, of, some[1]) for of in (weight, 0 * weight + 0.5)]
+    parts = [{"t_us": part} for part in np.split(late, [500, 640])]
+    yield "evened", _times(bursts.evened(_spooled(parts), 1e4, None))[::60].tolist()
+    counts = [4, *[10, 9, 11, 10] * 6, 3, 7, *[10] * 12, 12, 6, *[10, 11] * 6, 5]
+    stamps = 1e6 * np.cumsum([0, *[1] * 24, 1, 6, *[1] * 26, 4])[: len(counts)]
+    t_us = np.repeat(stamps, counts)
+    rows = {"t_us": t_us, "place": np.arange(len(t_us)) + 0.0}
+    rows["gx"] = np.where(luck.random(len(t_us)) < 0.04, np.nan, 1.0)
+    parts = [{n: v[a:b] for n, v in rows.items()} for a, b in ((0, 150), (150, 260), (260, 9999))]
+    spread, said = clock.evenly(_spooled(parts), clock.Ticks(t_us), Path("log"), None)
+    yield "spread", _times(spread)[::20].tolist()
+    yield "said", [said]
+
+
+def parts():
+    """What single steps compute of drawn rows."""
+    luck = np.random.default_rng(4)
+    steps = (_of_lines, _of_devices, _of_clocks)
+    return {name: figures for step in steps for name, figures in step(luck)}
+
+
+def _cut(luck, columns):
+    """The same columns in pieces, as a spool has them."""
+    size = len(columns["t_us"])
+    bounds = pairwise([0, *sorted(luck.integers(0, size, luck.choice([0, 1, 3]))), size])
+    return _spooled([{n: v[a:b] for n, v in columns.items()} for a, b in bounds])
+
+
+def _sizes(spool):
+    """Of its rows: the mean time, and times and places that tell their order."""
+    rows = {n: np.concatenate([one[n] for one in spool]) for n in spool.names}
+    weights = np.cos(np.arange(len(rows["t_us"])))
+    return [rows["t_us"].mean(), *(float(weights @ rows[n]) for n in ("t_us", "place"))]
+
+
+def _evenly(luck):
+    """Rows that share coarse stamps."""
+    usual = luck.choice([2, 7, 10])
+    odd, rare = luck.choice([-9, -3, -2, -1, 1, 2, 3, 9], 40), luck.choice([0.02, 0.1, 0.3])
+    counts = np.maximum(usual + np.where(luck.random(40) < rare, odd, 0), 0)
+    ticks = np.where(luck.random(40) < rare, luck.choice([1, 2, 3, 4, 9], 40), 1)
+    t_us = np.repeat(mostly(luck, 1e6, 2e4) * np.cumsum(ticks), counts)
+    rows = {"t_us": t_us, "place": np.arange(len(t_us)) + 0.0}
+    rows["gx"] = np.where(luck.random(len(t_us)) < mostly(luck, 0.0, 0.1), np.nan, 1.0)
+    out, said = clock.evenly(_cut(luck, rows), clock.Ticks(t_us), Path("log"), None)
+    return [*_sizes(out), *map(float, re.findall(r"[\d.]*\d", said))]
+
+
+def _bursts(luck):
+    """Samples that come several at a time, of a logger that paused or of none."""
+    size, every = mostly(luck, 400, 2, 3, 150), mostly(luck, 1e4, 4e5)
+    row, of = np.arange(size), luck.choice([1, 3, 8, 25])
+    taken = row * every
+    late = taken[row // of * of] + row % of * mostly(luck, 100.0, 0.6 * every)
+    late[size // 2 :] += mostly(luck, 0.0, 1.5e6)
+    of_rates = luck.choice([1.0, 0.0]) * taken + luck.choice([1.0, 0.0]) * late
+    rates = np.sin(of_rates / every * 0.06 + np.arange(3)[:, None])
+    rates += luck.normal(0, mostly(luck, 0.001, 1.0), (3, size))
+    rates[:, luck.integers(size)] *= mostly(luck, 1.0, np.nan)
+    columns = {"t_us": late, "place": np.arange(size) + 0.0, **dict(zip(("gx", "gy", "gz"), rates))}
+    told = bursts.arrive_in_bursts(columns, every)
+    return [float(told), *_sizes(bursts.evened(_cut(luck, columns), every, None))]
+
+
+def _lined(luck):
+    """Readings, some of which lie on lines between those around them."""
+    size, share = mostly(luck, 300, 1, 2, 3, 40), luck.choice([0.0, 0.01, 0.02, 0.5, 0.9])
+    t_us = np.cumsum(mostly(luck, 1e4, 1e4 * (1 + luck.random(size))) * np.ones(size))
+    rates = np.rint(luck.normal(0, mostly(luck, 99, 3), (3, size))) * mostly(luck, 0.01, 1.0)
+    some = np.sort(np.append(luck.random(size - 1) > share, True).nonzero()[0])
+    if luck.random() < 0.2 and size > 40:
+        some = some[(some < 20) | (some > 20 + luck.choice([3, 5, 6, 7]))]
+    along = mostly(luck, t_us, np.arange(size) + 0.0)
+    rates = np.array([np.interp(along, along[some], axis[some]) for axis in rates])
+    rates += luck.normal(0, 1, (3, size)) * mostly(luck, 0.0, 0.01, 0.04, 0.1)
+    columns = {"t_us": t_us, "place": np.arange(size) + 0.0, **dict(zip(("gx", "gy", "gz"), rates))}
+    columns["gx"][luck.random(size) < mostly(luck, 0.0, 0.1)] = np.nan
+    out, lost = lines.without_lines(_cut(luck, columns), Path("log"), None)
+    return [*_sizes(out), lost]
+
+
+def spools():
+    """What is made of the rows of a spool."""
+    luck, found = np.random.default_rng(11), {}
+    for step in (_evenly, _bursts, _lined):
+        made = found[step.__name__.strip("_")] = []
+        for _ in range(80):
+            try:
+                made += step(luck)
+            except BadRecording as error:
+                made += map(float, re.findall(r"\d+", str(error)))
+    return found
+
+
+SPOOLS = {"imported spools": spools}
