@@ -16,6 +16,7 @@ from zerorate_tools.loop.read.sessions import Session
 from zerorate_tools.model import Slot
 from zerorate_tools.model.term import Term
 from zerorate_tools.recordings import write_recording
+from zerorate_tools.simulate.attitude import IDENTITY, integrate
 
 from .test_axes_by_gravity import handled
 
@@ -170,6 +171,26 @@ def test_what_is_said_of_motion_without_a_matrix():
     assert "gravity sees 1.23" in nothing(1.234, by_windows.UNIT[by_windows.GRAVITY])
 
 
+@pytest.mark.parametrize(
+    ("sizes", "sigma", "kind"),
+    [
+        *(((1.0, 0.09, 0.09), 1e-4, "scale-factor"), ((1.0, 0.11, 0.09), 1e-4, "+cross-axis")),
+        *(
+            ((0.09, 0.11, 1.0), 1e-4, "cross-axis+turned-axes"),
+            ((0.0, 0.0, 1.0), 0.1, "turned-axes"),
+        ),
+        *(((1.0, 1.0, 1.0), 0.1, "+cross-axis+turned-axes"), ((1.0, 1.0, 1.0), 9.0, "+cross-axis")),
+    ],
+)
+def test_a_matrix_is_named_by_its_parts_that_are_sure_and_no_tenth_of_the_whole(sizes, sigma, kind):
+    parts = [np.diag([1.0, -1.0, 0.0]), np.ones((3, 3)) - np.eye(3), np.zeros((3, 3))]
+    parts[2][0, 1], parts[2][1, 0] = 1.0, -1.0
+    length = np.sqrt(1.0 + sum(size**2 for size in sorted(sizes)[:2]))
+    entries = sum(s * length * p / np.linalg.norm(p) for s, p in zip(sizes, parts)).ravel()
+    told = by_windows._kind(entries, sigma**2 * np.eye(9))
+    assert told == (f"scale-factor{kind}" if kind.startswith("+") else kind)
+
+
 # --- recordings as their motion is read ---
 
 
@@ -223,6 +244,17 @@ def test_an_attitude_that_is_seen_at_half_of_the_samples_is_none(tmp_path, unsee
     assert heading_lost([(alone, np.eye(3))]) is None
     if given:  # no stretch of half a minute is seen at both ends
         assert heading_lost([(moving, 0.01 * np.eye(3))]) is None
+
+
+def test_heading_is_told_where_no_window_sees_the_attitude_throughout():
+    at_s = np.arange(3002) / 50
+    rate = np.radians(60) * np.sin(np.outer(at_s, [1.3, 1.7, 0.9]))
+    given = integrate(np.degrees(rate), 0.02, IDENTITY)[:3002]
+    given[137::200] = np.nan
+    every, none = np.ones(3002, bool), np.zeros((3002, 3))
+    one = Moving("x", rate, none, at_s, every, ~every, np.zeros(3), np.zeros((0, 4)), given)
+    before, after = heading_lost([(one, np.diag([0.0, 0.0, 0.01]))])
+    assert before == pytest.approx(0.0, abs=1e-6) and 0.01 < after
 
 
 def test_axes_that_gravity_contradicts_are_refused_by_name(tmp_path):

@@ -111,7 +111,7 @@ def check_axes(moving: Moving) -> None:
     if moving.given is not None or not moving.accel.any():
         return
     axes = axes_of(np.degrees(moving.rate).T, moving.accel.T, moving.at_s)
-    if axes is not None and (axes != np.eye(3)).any():
+    if axes is not None and not np.array_equal(axes, np.eye(3)):
         raise CannotClose(
             f"{moving.name}: gravity turns as if the rates x y z were {axes_words(axes)} of the "
             "accelerometer's axes: import it with --map gx=-COLUMN or the like, so that both agree"
