@@ -526,11 +526,12 @@ def test_an_effect_that_later_ones_need_stays_where_with_them_it_is_better_than_
 
 
 def test_what_was_taken_from_every_axis_is_withdrawn_with_both_errors(three):
-    after = parts([1, 1, 1], [2, 2, 2], [2, 2, 2], [2, 2, 2])
-    less = prune.without_harmful(three, after, never)
-    assert len(less.found) == 2
-    [(name, why)] = less.withdrawn
-    assert name == "supply-voltage" and "grows: with it 2e+03 mdps, without 1e+03" in why
+    every = [[1, 1, 1], [2, 2, 2], [2, 2, 2], [2, 2, 2]]
+    for before in ([], [[4, 4, 4]]):
+        less = prune.without_harmful(three, parts(*before, *every[: 4 - len(before)]), never)
+        assert less.found == [f for i, f in enumerate(three.found) if i != len(before)]
+        [(name, why)] = less.withdrawn
+        assert name == "supply-voltage" and "grows: with it 2e+03 mdps, without 1e+03" in why
 
 
 def test_an_axis_that_an_effect_does_not_correct_is_not_its_doing(three):

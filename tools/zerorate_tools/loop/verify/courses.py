@@ -169,8 +169,7 @@ class PieceRuns:
             self.models[AFTER] = self._models(selection, more)
 
     def _models(self, selection, more=()):
-        applied = selection.applied if selection.found else None
-        return self.pieces.models(selection.straight, selection.terms, applied, more)
+        return self.pieces.models(selection.straight, selection.terms, selection.applied, more)
 
     def course(self, sink: Sink, learning: dict | None = None) -> Course:
         """Run the devices over the recording: frozen ones, and those that learn as they go, by

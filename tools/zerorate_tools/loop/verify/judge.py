@@ -106,8 +106,8 @@ def judge(selection: Selection, holdout: list[Session]) -> Judgement:
 
 def _pieces(selection, holdout) -> PiecesByLine | None:
     fitted = selection.regression.sessions
-    alone = len(fitted) == len(holdout) == 1 and fitted[0].name == holdout[0].name
-    return PiecesByLine(fitted[0]) if alone else None
+    alone = [s.name for s in fitted] == [s.name for s in holdout]
+    return PiecesByLine(*fitted) if alone else None
 
 
 def _of_each(selection, pieces) -> np.ndarray:

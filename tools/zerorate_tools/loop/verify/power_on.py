@@ -83,8 +83,8 @@ def ideal_dps(session: Session, motion: InMotion) -> np.ndarray:
     """
     rate = session.rate_dps + rates_of_turning(session, motion)
     if session.earth is not None:
-        ticks = session.earth.rate_dps[: session.blocks * session.ticks_per_block]
-        by_block = ticks.reshape(session.blocks, -1, 3).mean(axis=1)
+        shape = session.blocks, session.ticks_per_block, 3
+        by_block = session.earth.rate_dps[: shape[0] * shape[1]].reshape(shape).mean(axis=1)
         rate = rate + by_block[session.first_still].mean(axis=0)
     return rate
 

@@ -257,7 +257,7 @@ def rounding_dps(
     exact = np.zeros((s.blocks * s.ticks_per_block, 3))
     for term, c in zip(terms, coefficients):
         added = np.outer(evaluate(term, s.source, s.tick_s), c)
-        at_once = has_one_sample(scales, s.tick_s) or Slot(term, (0.0,) * 3).is_of_the_sample
+        at_once = has_one_sample(scales, s.tick_s) or Slot(term, tuple(c)).is_of_the_sample
         exact += added if at_once else np.vstack([added[:1], added[:-1]])
     error = means.blocks_dps() - power_on.block_means(exact)
     return np.sqrt(np.nanmean(error[s.available] ** 2, axis=0))
