@@ -1,9 +1,10 @@
 """Runs the tests of mutants: a fork for each, which loads a text in the place of its file.
 
 A first fork notes which of the rows in question each test reaches. In the fork of a mutant the
-tests that reach its row run, the fastest first, until one fails or a budget is spent. A mutant is
-killed by a test that fails with it and, in a fork of its own, passes without it. One that takes too
-long, cannot be loaded or collected, or ends in another way is neither killed nor alive.
+tests that reach its row run, those that reach the least else first, until one fails or a budget is
+spent. A mutant is killed by a test that fails with it and, in a fork of its own, passes without it.
+One that takes too long, cannot be loaded or collected, or ends in another way is neither killed nor
+alive.
 """
 
 import ast
@@ -45,7 +46,7 @@ _FIXTURES_OF_OTHERS |= {"others", "s3", "gs"}  # clusters and stores, whose thre
 # Tests of what starts an interpreter: that is host code, which the mutant is in.
 _STARTERS = ("test_interpreters", "test_boards")
 # Seconds of processor for the tests of one mutant: what lives longer has survived. And for all.
-_BUDGET_S = 10
+_BUDGET_S, _LONG_S = 10, 4
 _PATIENCE_S = 90
 _CRASHES = (signal.SIGSEGV, signal.SIGFPE, signal.SIGABRT, signal.SIGBUS, signal.SIGILL)
 # Packages whose modules stand in the repository.
@@ -164,7 +165,7 @@ class Nearest(InProcess):
         kernel = "firmware" in Path(self._file).parts  # its C is compiled once for all tests
         rest = [i for i in session.items if i not in first and (kernel or i.path in modules)]
         rest.sort(key=lambda item: item.path not in modules)
-        first.sort(key=lambda item: self._tests[item.nodeid][0])
+        first.sort(key=lambda item: self._turn(*self._tests[item.nodeid]))
         began_s = time.process_time()
         for item, following in zip(first + rest, [*first, *rest, None][1:]):
             if session.testsfailed or time.process_time() - began_s > _BUDGET_S:
@@ -173,6 +174,11 @@ class Nearest(InProcess):
             self._at.write_text(_address(item), encoding="utf-8")
             _run(item, following)
         return True
+
+    @staticmethod
+    def _turn(seconds, _, reached):
+        """When it is a test's turn: what reaches little else asks most of a row; long ones wait."""
+        return seconds > _LONG_S, len(reached), seconds
 
     def _longest_s(self, item):
         """Seconds of the slowest test in an item's module: it may have made a fixture of all."""

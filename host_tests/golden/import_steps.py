@@ -184,6 +184,7 @@ def _in_turn(luck):
     levels = mostly(luck, 5.0, 0.0, 0.7, 1.5) * luck.permutation(of)[row % of]
     rates = levels[:, None] + luck.normal(0, mostly(luck, 0.5, 0.0), (len(row), 3)) + 1
     rates[:, 0] += mostly(luck, 0.0, 0.1, 10.0) * row
+    rates = mostly(luck, rates, 1e6 + 0.01 * np.rint(levels[:, None]) + np.zeros((len(row), 3)))
     rates[luck.integers(len(row))] *= mostly(luck, 1.0, np.nan)
     pieces = np.split(rates, [luck.integers(0, len(row))])
     return one_device.clocks_in_turn(t_us), one_device.levels_in_turn(pieces)
@@ -201,7 +202,10 @@ def _changed(luck, rows=700):
     louder = mostly(luck, 1, 1 / 1.38, 1 / 1.42, 1.38, 1.42)
     values[axes, at:] += mostly(luck, 0, 0.003, 0.006, 0.4) + noise[axes, at:] * (louder - 1)
     values[5, at:] += mostly(luck, 0, 0.018, 0.022)
-    values[axes, at:] *= by ** luck.choice([1, -1])
+    by **= luck.choice([1, -1])
+    values[axes] *= mostly(
+        luck, np.where(np.arange(rows) < at, 1, by), by ** np.linspace(0, 1, rows)
+    )
     values[:, 350] *= mostly(luck, 1.0, 0.0, np.nan)
     return dict(zip((*GYRO, *ACCEL), values[: mostly(luck, 6, 5)]))
 

@@ -184,7 +184,9 @@ def test_lines_are_clear_and_more_than_chance_gives(on, longest, near, off, are)
     assert seen.are_lines is are
 
 
-@pytest.mark.parametrize(("period", "refused"), [(0.0, False), (2.4, False), (2.6, True)])
+@pytest.mark.parametrize(
+    ("period", "refused"), [(0.0, False), (2.4, False), (2.53, True), (2.6, True)]
+)
 def test_lines_whose_ends_are_no_readings_are_refused_with_their_share(
     monkeypatch, period, refused
 ):

@@ -130,7 +130,7 @@ def without_arrows(content: bytes) -> bytes:
 def _labelled(lines: list[str], encoding: str) -> Form | None:
     """The form of lines most of which have the same name before each value; else None."""
     labels = [_labels(line.encode()) for line in lines]
-    usual, count = Counter(labels).most_common(1)[0]
+    [(usual, count)] = Counter(labels).most_common(1)
     if not usual or 2 * count <= sum(1 for line in lines if line.strip()):
         return None
     skip = labels.index(usual)
@@ -222,7 +222,7 @@ def _whole_row(lines: list[str], delimiter: str) -> list[str]:
     """The first row as wide as most: a log of a serial port may begin in the middle of one."""
     every = (_cells(line, delimiter) for line in lines if not line.lstrip().startswith(COMMENTS))
     rows = [cells for cells in every if len(cells) >= _CELLS] or [_cells(lines[0], delimiter)]
-    usual = Counter(map(len, rows)).most_common(1)[0][0]
+    [(usual, _)] = Counter(map(len, rows)).most_common(1)
     return next(cells for cells in rows if len(cells) == usual)
 
 
