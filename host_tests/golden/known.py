@@ -138,6 +138,7 @@ def _logs(folder):
         if number == 2:
             parts = np.rint(truth.attitude * 10000).astype(np.int32).T
             columns |= dict(zip(("ref_qw", "ref_qx", "ref_qy", "ref_qz"), parts))
+        columns["t_us"] += 3_700_000 * number
         kept = np.arange(len(truth.still))
         if number < 3:
             columns["gx"][500:503] = 32767

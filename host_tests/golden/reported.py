@@ -32,8 +32,7 @@ from zerorate_tools.loop.verify.slots import model_of
 from zerorate_tools.model import build_model, write_model
 from zerorate_tools.model.term import Term
 from zerorate_tools.recordings import open_recording
-from zerorate_tools.report import motion_page, page
-from zerorate_tools.report.report_folder import plots_of
+from zerorate_tools.report import motion_page, page, report_folder
 
 from host_tests.conftest import matrix_slots
 from host_tests.loop import dense
@@ -197,7 +196,8 @@ def drawn(logs, folder):
     for number, analysis in enumerate((analysed(kinds[:4]), analysed(kinds[4:], 3), blind)):
         write_model(model_of(analysis, scales), folder)
         result = _plain(report(analysis))
-        plots, notes = plots_of(analysis, result, logs, folder)
+        with mock.patch.object(report_folder, "_MOST_MOMENTS", 9):
+            plots, notes = report_folder.plots_of(analysis, result, logs, folder)
         text = page.page(result, plots, page.deployment(folder, ["temp", "a b"]), notes)
         told = re.findall(r'<data value="([^"]+)"', text)
         found[f"{number} page"] = [float(value) for value in told]

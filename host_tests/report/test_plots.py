@@ -233,6 +233,7 @@ def test_the_answer_names_what_was_found_and_what_is_left(said, end, effects, af
     ("effects", "before", "after", "gains"),
     [
         ([_LAG], 10.0, 10.0, "gains nothing: 10.0 to 10.0 mdps"),
+        ([_LAG], 10.0, 12.0, "gains nothing: 10.0 to 12.0 mdps"),
         ([_LAG], 10.0, 8.01, "gains little: 10.0 to 8.01 mdps"),
         ([_LAG], 10.0, 8.0, "gains too: 10.0 to 8.00 mdps"),
         ([_TURNS], 10.0, 8.0, "leaves 8.00 mdps"),

@@ -108,7 +108,7 @@ def _estimators(state: NDArray[Any], settings: Any, axis: int, scales: Scales) -
     starts = range(block + AXIS.ESTIMATORS, block + settings[SETTINGS.ESTIMATORS_END], words)
     out = []
     for number, at in enumerate(starts):
-        own = state[at : at + words]
+        own = state[at:]
         kind = "any" if number == 0 else "short" if number <= short else "long"
         if own[ESTIMATOR.EST_READINGS] > 0:
             in_use = at == state[block + AXIS.CURRENT]

@@ -103,7 +103,7 @@ def _pooled(
     for part in parts:
         assert part.temp_degc is not None, "others were left out"
         error = (part.after_mdps if view == "after" else part.before_mdps)[:, axis]
-        there = (part.trend == code) & np.isfinite(error)
+        there = np.isfinite(np.where(part.trend == code, error, np.nan))
         x.append(part.temp_degc[there])
         y.append(error[there])
     return thinned(np.concatenate(x), np.concatenate(y))
@@ -201,7 +201,7 @@ def longest(parts: list[HeldOut]) -> tuple[float, NDArray[Any], NDArray[Any]] | 
     """block_s, before and after, each (n, 3), of the longest stretch without a gap, if enough."""
     best = None
     for part in parts:
-        there = np.isfinite(part.before_mdps).all(axis=1) & np.isfinite(part.after_mdps).all(axis=1)
+        there = np.isfinite(np.hstack([part.before_mdps, part.after_mdps])).all(axis=1)
         for run in np.split(np.arange(len(there)), np.flatnonzero(np.diff(there)) + 1):
             if there[run[0]] and (best is None or len(run) > len(best[1])):
                 best = (part.block_s, part.before_mdps[run], part.after_mdps[run])
