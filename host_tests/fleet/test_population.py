@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from zerorate_tools.errors import ZerorateError
 from zerorate_tools.fleet import Device, devices_of
 from zerorate_tools.fleet.cluster import in_batches
-from zerorate_tools.fleet.part import curve_effects, part_of, step_effects
+from zerorate_tools.fleet.part import curve_effects, part_of
 from zerorate_tools.fleet.plots import headline, write_page
 from zerorate_tools.fleet.population import PER_DEGC, Curve, curve_of, population
 from zerorate_tools.loop.read.sessions import Session
@@ -84,15 +84,6 @@ def test_a_devices_curve_is_found_whatever_it_is(level, slope, power_ons):
     assert (np.abs(told - wanted) < 5 * error + 1e-6).all()
 
 
-def test_without_a_thermometer_only_the_level_is_shown():
-    sessions = [Session("s", 5.0, 1, np.full((20, 3), 0.5), np.ones(20))]
-    curve = curve_of(sessions)
-    assert curve.shown == ["level"]
-    assert (
-        np.linalg.inv(curve.information)[0, 0, 0] < 1e-6 < np.linalg.inv(curve.information)[0, 1, 1]
-    )
-
-
 def test_verdicts_tell_common_from_single():
     rng = np.random.default_rng(7)
     curves = []
@@ -105,15 +96,6 @@ def test_verdicts_tell_common_from_single():
     assert slope["verdict"] == ["common"] * 3
     assert bend["verdict"] == ["not shown"] * 3
     assert slope["mean"][0] == pytest.approx(0.03, abs=0.002)
-
-
-def test_an_effect_found_in_few_devices_is_of_single_devices():
-    step = {"effect": "hysteresis", "confidence": "tentative"}
-    step |= {"before_mdps": [5, 5, 5], "after_mdps": [3, 3, 3]}
-    results = [{"device": str(i), "steps": [step] * (i < 3)} for i in range(20)]
-    (found,) = step_effects(results)
-    assert (found["devices"], found["verdict"]) == (3, "of single devices")
-    assert found["removed_mdps_median"] == [4, 4, 4]
 
 
 @pytest.fixture
