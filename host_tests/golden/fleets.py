@@ -88,10 +88,11 @@ def _part_of(seed, number, tempered=True, far=10):
 
 def _told(part):
     """Curves of a part's devices, and what is made of them."""
-    scales, curves = Scales("X", 25.0, 131.0, None, 340.0, 36.53), part.curves
+    warm, curves = Scales("X", 25.0, 131.0, None, 340.0, 36.53), part.curves
+    models = [prior_model(part, scales) for scales in (warm, Scales("X", 25.0, 131.0))]
     kept = ("own", "own_covariance", "p_unusual", "used", "mean_covariance")
     own = {name: [getattr(a, name).ravel().tolist() for a in part.axes] for name in kept}
-    slots = [[s.coefficient_dps, vars(s.term)] for s in prior_model(part, scales).slots]
+    slots = [[s.coefficient_dps, vars(s.term)] for m in models for s in m.slots]
     return {
         "curves": [[c.information.ravel().tolist(), c.score.tolist(), c.to_json()["degc"], c.blocks]
                    for c in curves], "shown": [c.shown for c in curves],
@@ -127,7 +128,7 @@ def parts_of_a_fleet():
     bias = np.linspace(0.3, 0.6, 90)[:, None] * [1, -0.5, 0.1]
     errors = [error_mdps(session, bias, *of) for of in ((), (60.0,), (60.0, 300.0), (445.0, 449.0))]
     at = np.arange(40)
-    t_us = 7_000_000 + at * 1_700_000 + 90_000_000 * (at > 30)
+    t_us = 7_000_000 + at * 1_250_000 + 90_000_000 * (at > 30)
     biases = {f"bias_g{axis}": np.sin(at / n) for n, axis in enumerate("xyz", 2)}
     batches = pa.table({"t_us": t_us, **biases}).to_batches(max_chunksize=9)
     means = block_means(batches, replace(session, rate_dps=bias[:12]))
