@@ -258,6 +258,14 @@ def test_recordings_that_hardly_rest_are_left_out_or_looked_at_in_motion(monkeyp
         loop.sessions_of(ticks)
 
 
+@pytest.mark.parametrize(("times", "said"), [(3.0, "looks like sensor noise"), (3.1, "3.1 times")])
+def test_up_to_three_times_the_floor_a_residual_without_a_form_is_noise(times, said):
+    judgement = SimpleNamespace(residual_test=SimpleNamespace(left=False))
+    analysis = SimpleNamespace(judgement=judgement, floor_dps=np.array([0.5, 1.0, 0.0]))
+    told = unexplained.what_is_known(analysis, np.array([times * 0.5, 1.0, 0.0]))
+    assert said in told and ("follows no recorded channel" in told) is (times > 3)
+
+
 def line(hz):
     return SimpleNamespace(hz=hz, amplitude_dps=np.ones(3), p_value=1e-9, in_holdout=True)
 
