@@ -111,14 +111,16 @@ def test_steps_are_taken_out_of_the_samples_in_whole_counts(tmp_path):
     plain = powered_on(tmp_path, columns)
     level = np.zeros((6 * TICKS, 3))
     level[10:] = np.array([3.7, -2.25, 5.0]) / 131.0
+    level[22:] = np.array([1.0, 2.0, -3.0]) / 131.0
     stepped = replace(plain, session=replace(plain.session, level_dps=level))
     (frames,), (less,) = plain.frames(), stepped.frames()
     taken = (frames.frames - less.frames)[:, 4:]
     assert (taken[: 10 * HZ] == 0).all()
-    after = taken[10 * HZ :]
+    assert (taken[22 * HZ :] == [1, 2, -3]).all()
+    after = taken[10 * HZ : 22 * HZ]
     for axis, counts in enumerate((3.7, -2.25, 5.0)):
         assert set(after[:, axis]) <= {np.floor(counts), np.ceil(counts)}
-        assert after[:60, axis].mean() == pytest.approx(counts, abs=0.02)
+        assert after[:, axis].mean() == pytest.approx(counts, abs=0.02)
     assert (frames.frames[:, :4] == less.frames[:, :4]).all()
 
 

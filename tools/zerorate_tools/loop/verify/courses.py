@@ -129,19 +129,18 @@ class SessionRuns:
     def _frozen(self, p, held_out):
         """Ways to run frames through a frozen copy of each device, its turn-on offset in place."""
         last = len(self.devices) - 1
-        runs, unscored, offsets = {}, 0, {}
+        runs, taken = {}, {}
         for k, device in enumerate(self.devices):
             way = AFTER if k == last and k else after_first(k)
             if way not in (BEFORE, AFTER) and not held_out:
                 continue
             ready = device.copy()
             ready.power_on()
-            taken = turn_on(device, p)
-            ready.set_offset(taken.offset_q8)
-            unscored = max(unscored, taken.blocks)
-            offsets[way] = taken.offset_q8 / (256.0 * p.lsb)
+            taken[way] = turn_on(device, p)
+            ready.set_offset(taken[way].offset_q8)
             runs[way] = lambda frames, ready=ready: ready.run(frames, learn=False)
-        return runs, unscored, offsets
+        offsets = {way: of.offset_q8 / (256.0 * p.lsb) for way, of in taken.items()}
+        return runs, max(of.blocks for of in taken.values()), offsets
 
     def _online(self, name):
         if name in self.begun:
@@ -179,7 +178,7 @@ class PieceRuns:
         frozen = {way: of.learned(models) for way, models in self.models.items()}
         ways = {way: partial(of.bias_q8, devices) for way, devices in frozen.items()}
         if learning is None:
-            last = list(self.models.values())[-1]
+            *_, last = self.models.values()
             new = {ONLINE_BEFORE: of.new(self.models[BEFORE][:1]), ONLINE: of.new(last)}
             learning = {way: partial(of.bias_q8, d, learn=True) for way, d in new.items()}
         ways |= learning

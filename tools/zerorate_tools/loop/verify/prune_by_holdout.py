@@ -40,7 +40,8 @@ def prune_by_holdout(selection: Selection, holdout: list[Session]) -> tuple[Sele
         if reason is AGAIN or without.after_rms <= judgement.after_rms:
             said = (label(selection.found[i].candidate), _said(reason, judgement, without))
             return prune_by_holdout(replace(less, withdrawn=[*less.withdrawn, said]), holdout)
-    after = [_left(selection.first(k), holdout) for k in range(len(selection.found) + 1)]
+    some = [*map(selection.first, range(len(selection.found))), selection]
+    after = [_left(one, holdout) for one in some]
     less = without_harmful(selection, after, lambda i: _left(selection.without(i), holdout))
     return (selection, judgement) if less is selection else prune_by_holdout(less, holdout)
 
