@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from zerorate_bench.resampled import digits, drawn, on_lines, timed
 from zerorate_tools.errors import BadRecording
-from zerorate_tools.importers.samples import bursts, clock, lines, one_device, resampled
+from zerorate_tools.importers.samples import bursts, clock, lines, resampled
 from zerorate_tools.importers.samples.spool import Spool
 
 from .import_steps import mostly
@@ -19,10 +19,6 @@ def _spooled(pieces):
         spool.append(piece)
     spool.finish()
     return spool
-
-
-def _times(spool):
-    return np.concatenate([columns["t_us"] for columns in spool]) * 1e-4
 
 
 def _of_lines(luck):
@@ -38,39 +34,22 @@ def _of_lines(luck):
     yield "period", [resampled.base_period(frame, digits(""))]
 
 
-def _of_devices(luck):
-    """How far the levels of rows are apart that three devices write in turn."""
-    levels = np.resize([[0.0, 3.0, 1.0], [0.5, 0.0, 1.0], [0.2, 2.0, 0.0]], (120, 3))
-    block = levels + luck.normal(0, 0.5, (120, 3)) + np.arange(120)[:, None] / 30
-    yield "apart", [one_device._apart(block, devices) for devices in range(2, 9)]
-
-
-def _of_clocks(luck):
-    """Stamps of bursts, and of rows that share coarse ones, spread as time went on."""
+def _misfit(luck):
+    """How far rates are off the lines between their neighbours, by late stamps and by even ones."""
     taken = 1e4 * np.arange(1200)
     late = np.maximum.accumulate(taken + 3e4 * luck.random(1200) * (np.arange(1200) % 25 > 4))
     rates = np.sin(taken * 4e-6 + np.arange(3)[:, None]) + luck.normal(0, 0.01, (3, 1200))
-    some = slice(1, -1), np.arange(1198) % 25 < 2
-    weight = np.diff(late)[1:] / np.maximum(late[2:] - late[:-2], 1.0)
-    yield "misfit", [bursts._misfit(rates, of, some[1]) for of in (weight, 0 * weight + 0.5)]
-    parts = [{"t_us": part} for part in np.split(late, [500, 640])]
-    yield "evened", _times(bursts.evened(_spooled(parts), 1e4, None))[::60].tolist()
-    counts = [4, *[10, 9, 11, 10] * 6, 3, 7, *[10] * 12, 12, 6, *[10, 11] * 6, 5]
-    stamps = 1e6 * np.cumsum([0, *[1] * 24, 1, 6, *[1] * 26, 4])[: len(counts)]
-    t_us = np.repeat(stamps, counts)
-    rows = {"t_us": t_us, "place": np.arange(len(t_us)) + 0.0}
-    rows["gx"] = np.where(luck.random(len(t_us)) < 0.04, np.nan, 1.0)
-    parts = [{n: v[a:b] for n, v in rows.items()} for a, b in ((0, 150), (150, 260), (260, 9999))]
-    spread, said = clock.evenly(_spooled(parts), clock.Ticks(t_us), Path("log"), None)
-    yield "spread", _times(spread)[::20].tolist()
-    yield "said", [said]
+    weight, some = (
+        np.diff(late)[1:] / np.maximum(late[2:] - late[:-2], 1.0),
+        np.arange(1198) % 25 < 2,
+    )
+    return [bursts._misfit(rates, of, some) for of in (weight, 0 * weight + 0.5)]
 
 
 def parts():
     """What single steps compute of drawn rows."""
     luck = np.random.default_rng(4)
-    steps = (_of_lines, _of_devices, _of_clocks)
-    return {name: figures for step in steps for name, figures in step(luck)}
+    return {**dict(_of_lines(luck)), "misfit": _misfit(luck)}
 
 
 def _cut(luck, columns):

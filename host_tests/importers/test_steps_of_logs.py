@@ -16,7 +16,7 @@ from zerorate_tools.errors import BadRecording
 from zerorate_tools.importers import import_recording, parsed_mapping, read_foreign
 from zerorate_tools.importers.columns.guesses import guessed_unit, rate_unit_of
 from zerorate_tools.importers.columns.units import RATE_DPS
-from zerorate_tools.importers.logs import columnar, messages
+from zerorate_tools.importers.logs import apart, columnar, messages
 from zerorate_tools.recordings.turning import Size
 
 BAG = Path("bag")
@@ -130,6 +130,13 @@ def test_a_lack_of_memory_is_no_damage():
     table = table_of({"/imu": IMU}, [("/imu", 5, lacks_memory)])
     with pytest.raises(MemoryError):
         list(table.chunks(table.names))
+
+
+def test_a_folder_is_as_large_as_the_files_in_it(tmp_path):
+    (tmp_path / "of").mkdir()
+    (tmp_path / "a").write_bytes(bytes(7))
+    (tmp_path / "of" / "b").write_bytes(bytes(30))
+    assert (apart._size(tmp_path), apart._size(tmp_path / "a")) == (37, 7)
 
 
 # Parquet and Feather
