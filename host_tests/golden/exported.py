@@ -10,12 +10,12 @@ from zerorate_tools.model import Slot, build_model, write_model
 from zerorate_tools.model.term import Term
 from zerorate_tools.recordings import Scales
 
-_OWN = Path(export.__file__)
-
 
 def _templates():
-    files = [_OWN, *(path for path in _OWN.with_name("exported").rglob("*") if path.is_file())]
-    return {line for path in files for line in path.read_text(encoding="utf-8").splitlines()}
+    files = Path(export.__file__).with_name("exported").rglob("*")
+    texts = [path.read_text(encoding="utf-8") for path in files if path.is_file()]
+    texts += [text for text in vars(export).values() if isinstance(text, str)]
+    return {line for text in texts for line in text.splitlines()}
 
 
 def _model(folder):
