@@ -8,6 +8,7 @@ import json
 import os
 import sys
 import time
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
@@ -367,9 +368,10 @@ def test_what_the_function_could_not_do_ends_with_2(words):
         ("watch x.csv --plot p.png", "watch.watching.watch", None),
     ],
 )
-def test_1_says_that_nothing_came(stands_in, words, function, nothing):
+def test_1_says_that_nothing_came(stands_in, words, function, nothing, capsys):
     stands_in(f"zerorate_tools.{function}", nothing)
     assert cli.main(words.split()) == 1
+    assert words[:6] != "record" or "no sample came" in capsys.readouterr().out
 
 
 def test_an_import_says_what_came_of_each_file(stands_in, capsys):
@@ -385,8 +387,10 @@ def test_compare_says_where_its_page_is(stands_in, capsys, words, said):
     stands_in("zerorate_tools.compare.compare", "found")
     stands_in("zerorate_tools.compare.show.table", "the table")
     stands_in("zerorate_tools.compare.show.write_page")
+    advance = Mock()
+    stands_in("zerorate_tools.progress.progress", nullcontext(advance))
     assert cli.main(["compare", "a.csv", *words.split()]) == 0
-    assert capsys.readouterr().out == said + "\n"
+    assert capsys.readouterr().out == said + "\n" and advance.call_args_list == [call(1)]
 
 
 def test_allan_prints_mdps_of_each_length_and_the_lowest(stands_in, capsys):
@@ -412,9 +416,10 @@ def test_what_was_watched_is_drawn_where_that_is_asked(stands_in, capsys):
 
 
 def test_what_simulate_knows_is_listed(capsys):
-    assert cli.main(["simulate", "--list"]) == cli.main(["simulate", "--entries"]) == 0
-    said = capsys.readouterr().out
-    assert "turntable" in said.splitlines() and "turn_on_dps" in said
+    assert cli.main(["simulate", "--list"]) == 0
+    assert "turntable" in capsys.readouterr().out.splitlines()
+    assert cli.main(["simulate", "--entries"]) == 0
+    assert "turn_on_dps" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(("words", "said"), [("", "in words\n"), ("--json", "{}\n")])
@@ -685,7 +690,7 @@ def test_a_setting_that_no_chip_takes_is_not_waited_for(serving, words, capsys):
 # --- runtimes ---
 
 
-def test_runtimes_are_fetched_in_turn_and_2_says_that_one_could_not_be(stands_in, capsys):
+def test_interpreters_are_fetched_in_turn_and_2_says_that_one_could_not_be(stands_in, capsys):
     fetch = stands_in("zerorate_tools.runtimes.fetch")
     pico = stands_in("zerorate_bench.boards.pico.fetch_rp2040")
     assert cli.main(["runtimes", "get", "wasm", "rp2040", "x64"]) == 0
@@ -705,7 +710,7 @@ def test_the_emulated_pico_is_in_a_checkout_only(monkeypatch, capsys):
     assert "in a checkout only" in capsys.readouterr().err
 
 
-def test_runtimes_are_listed_with_how_to_get_those_missing(monkeypatch, capsys):
+def test_interpreters_are_listed_with_how_to_get_those_missing(monkeypatch, capsys):
     def find(name):
         if name == "x86":
             raise MissingRuntime("zerorate runtimes get x86")
