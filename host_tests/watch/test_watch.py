@@ -311,8 +311,11 @@ def test_a_program_that_prints_no_bias_is_watched_and_not_drawn(tmp_path, capsys
     ended = threading.Event()
 
     def program():
-        while not ended.wait(0.02):
+        for _ in range(1000):  # a watch that does not end loses its board
             os.write(board, b"yaw without +0.14  with +0.01 deg\n")
+            if ended.wait(0.02):
+                return
+        os.close(board)
 
     running = threading.Thread(target=program)
     running.start()
