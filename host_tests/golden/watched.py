@@ -140,13 +140,14 @@ def _own():
         rates = [output.rate_dps, output.left_dps, output.bias_dps, output.quality_dps]
         counts = [output.samples, output.lines, output.learning(), output.headline()]
         rates += [*output.history]
-        yield [*np.nan_to_num(rates).tolist(), output.source, *counts]
+        said = _printed(lambda: Lines().show(output, []))[0].partition(" s")[2]
+        yield [*np.nan_to_num(rates).tolist(), output.source, *counts, said]
 
 
 def _listened():
     """When a program's lines are read, shown and noted, and after what it ends."""
     for options, came in (
-        (WatchOptions(seconds=30.0, every_s=2.0), []),
+        (WatchOptions(seconds=30.0, every_s=0.5), []),
         (WatchOptions(once=True), []),
         (WatchOptions(), ["a signal"]),
     ):
@@ -229,7 +230,7 @@ def _looks():
     hear = guiding.heard(SimpleNamespace(gyro_lsb_per_dps=1.0))
     with guiding, mock.patch.object(guide.KnownSoFar, "look", lambda _, of: looked.append(len(of))):
         for number in range(9):
-            hear({"t_us": np.array([0, 900_000]) + number * 1_000_000})
+            hear({"t_us": np.array([0, 400_000, 900_000]) + number * 1_000_000})
             asked.append([guiding.done(0.0), len(looked), len(shown)])
     return [asked, looked]
 
