@@ -58,15 +58,10 @@ def join(corrector, part, wanted, document, start_dps):
             from .others import join as join_others
 
             join_others(corrector)
-        except ImportError:
-            text = "%s is not on this board; zerorate flash --with %s sends it"
-            left_out(corrector, wanted, ImportError(text % (part, part)))
-        except ValueError as error:
-            left_out(corrector, wanted, error)
-
-
-def left_out(corrector, wanted, error):
-    """Say why a source is missing. Raises `error` if the source is wanted."""
-    if wanted:
-        raise error
-    corrector.left_out.append("Left out: %s." % error)
+        except (ImportError, ValueError) as why:
+            if isinstance(why, ImportError):
+                text = "%s is not on this board; zerorate flash --with %s sends it"
+                why = ImportError(text % (part, part))
+            if wanted:
+                raise why
+            corrector.left_out.append("Left out: %s." % why)
