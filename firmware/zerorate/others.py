@@ -13,7 +13,7 @@ const = int
 _STILLNESS = const(50)
 # layout: The state of the source in motion
 _MOTION_BIAS_Q8 = const(68)
-_LATE_US = const(292)
+_LATE_US = const(352)
 # layout: The state of the source against gravity
 _GRAVITY_BIAS_Q8 = const(28)
 _GRAVITY_LATE_US = const(58)

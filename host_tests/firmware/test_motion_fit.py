@@ -12,6 +12,7 @@ from .motions import (
     Q14,
     SETTINGS,
     SIZE,
+    STATES,
     covariance_at,
     numbers,
     packed_at,
@@ -77,7 +78,10 @@ def test_the_rows_are_the_sums_under_both_bells(state, draw, stage):
         assert row[0] / Q12 == pytest.approx(shapes[shape] @ seen[:, i], abs=n * 0.006)
         assert row[1:4] / Q14 == pytest.approx(bell @ of[:, i], abs=n * 0.004)
         by = np.einsum("m,mj,mk->jk", bell, of[:, i], both)
-        assert row[4:] / Q14 == pytest.approx(by.ravel(), abs=n * 0.003)
+        assert row[4:13] / Q14 == pytest.approx(by.ravel(), abs=n * 0.003)
+        # a force that is too large along an axis of the part tilts the level frame's y or x
+        tilting = [-of[:, 1], of[:, 0], 0 * of[:, 2]][i]
+        assert row[13:] / Q14 == pytest.approx(shapes[shape] @ tilting, abs=n * 0.004)
     stray = np.array(state[MOTION.STRAY : MOTION.STRAY + 2]) / Q12
     assert stray == pytest.approx([shapes[1] @ seen[:, 2], shapes[2] @ seen[:, 2]], abs=n * 0.006)
 
@@ -85,10 +89,10 @@ def test_the_rows_are_the_sums_under_both_bells(state, draw, stage):
 def filled(state, draw, accepted):
     """A full window's state with a random row 0 and knowledge; (row, matrix, mean, bias, push)."""
     state[MOTION.STAGE], state[MOTION.LENGTH], state[MOTION.ACCEPTED] = 7, LONGEST, accepted
-    row = np.rint(draw.normal(0, 8000, 13))
+    row = np.rint(draw.normal(0, 8000, SIZE))
     row[0] *= 3
     put_words(state, MOTION.WINDOW_ROWS, row)
-    matrix, mean = positive(draw, 1e-3, 12), draw.normal(0, 1e5, 12)
+    matrix, mean = positive(draw, 1e-3, STATES), draw.normal(0, 1e5, STATES)
     bias, push = draw.normal(0, 1e5, 3), 10.0 ** draw.uniform(13, 15)
     put_covariance(state, matrix)
     put_packed(state, MOTION.MEAN, mean)
@@ -100,7 +104,7 @@ def filled(state, draw, accepted):
 def taken(state, r=0):
     """The kernels' row r, up to the noise that it tells."""
     least_squares.innovate(state, SETTINGS, r)
-    for j in range(12):
+    for j in range(STATES):
         least_squares.look(state, r, j)
     least_squares.weigh(state, r)
 
@@ -108,8 +112,8 @@ def taken(state, r=0):
 @pytest.mark.parametrize(("accepted", "far"), [(0, 1.0), (SETTLED - 1, 1e3), (SETTLED, 1e3)])
 def test_a_row_moves_and_narrows_as_a_kalman_filter_with_students_tails(state, draw, accepted, far):
     row, matrix, mean, bias, push = filled(state, draw, accepted)
-    h = row[1:] * 2.0 ** (7 - 15)
-    off = mean - np.concatenate([bias, np.zeros(9)])
+    h = row[1:] * np.repeat([2.0 ** (7 - 15), 2.0**-14], [12, 3])
+    off = mean - np.concatenate([bias, np.zeros(STATES - 3)])
     expected = h @ matrix @ h + 2
     # so far that its square is `far` of what was expected
     said = h @ off + np.sqrt(far * push * expected)
@@ -123,9 +127,9 @@ def test_a_row_moves_and_narrows_as_a_kalman_filter_with_students_tails(state, d
     assert for_sure == (accepted >= SETTLED and square > 16)
     gain = matrix @ h / (expected + 2 * (tail - 1))
     least_squares.move(state)
-    for n in range(12):
+    for n in range(STATES):
         least_squares.narrow(state, n)
-    moved = packed_at(state, MOTION.MEAN, 12)
+    moved = packed_at(state, MOTION.MEAN, STATES)
     assert moved == pytest.approx(mean + gain * innovation, rel=2e-3, abs=300)
     left = matrix - np.outer(gain, matrix @ h)
     assert covariance_at(state) == pytest.approx(left, abs=2e-5 * matrix.max())
@@ -232,7 +236,7 @@ def test_the_slope_over_temperature_is_a_kalman_filters(state, draw, degrees):
     start = value_at(SETTINGS, MOTION_SETTINGS.TEMP_SLOPE_START) / PUSH
     walk = value_at(SETTINGS, MOTION_SETTINGS.BIAS_WALK) / PUSH
     assert slopes_at(state) == pytest.approx(np.outer([0, 0, start], np.ones(3)), rel=1e-5)
-    means, matrix = draw.normal(0, 1e5, 3), positive(draw, 1e-6, 12)
+    means, matrix = draw.normal(0, 1e5, 3), positive(draw, 1e-6, STATES)
     slopes, covariances, spreads = np.zeros(3), np.zeros(3), np.full(3, start)
     put_covariance(state, matrix)
     put_packed(state, MOTION.MEAN, means)
@@ -281,10 +285,10 @@ def test_the_slope_over_temperature_is_a_kalman_filters(state, draw, degrees):
 
 
 def test_nothing_is_carried_while_nothing_is_known(state):
-    before = state[MOTION.KNOWN : MOTION.MEAN + 12]
+    before = state[MOTION.KNOWN : MOTION.MEAN + STATES]
     state[MOTION.TEMP_Q8], state[MOTION.AGE_NODES] = 1 << 16, 64
     thermal.carry(state, SETTINGS, 0)
-    assert state[MOTION.KNOWN : MOTION.MEAN + 12] == before
+    assert state[MOTION.KNOWN : MOTION.MEAN + STATES] == before
     assert (state[MOTION.THEN_TEMP_Q8], state[MOTION.AGE_NODES]) == (1 << 16, 0)
 
 
@@ -305,7 +309,7 @@ def test_what_is_published_is_the_mean_under_a_prior_with_cauchys_tails(state, d
     """Rounds of a normal prior of variance (usual^2 + b^2) / 2, by numpy."""
     lsb = value_at(SETTINGS, MOTION_SETTINGS.LSB_A_UNIT)
     usual = value_at(SETTINGS, MOTION_SETTINGS.USUAL)
-    matrix = positive(draw, usual * 4 / PUSH, 12)
+    matrix = positive(draw, usual * 4 / PUSH, STATES)
     bias = draw.normal(0, 3, 3) * usual**0.5
     put_covariance(state, matrix)
     put_packed(state, MOTION.MEAN, bias)

@@ -10,6 +10,7 @@ from .motions import (
     Q12,
     Q14,
     SETTINGS,
+    STATES,
     covariance_at,
     numbers,
     packed_at,
@@ -170,11 +171,13 @@ def test_before_a_bias_is_known_it_may_be_anything(window):
     motion_verdict.know_nothing(window, SETTINGS)
     start = value_at(SETTINGS, MOTION_SETTINGS.START_VARIANCE)
     entry = value_at(SETTINGS, MOTION_SETTINGS.MATRIX_ERROR)
-    expected = np.diag([start] * 3 + [entry] * 9)
+    force = value_at(SETTINGS, MOTION_SETTINGS.FORCE_ERROR)
+    expected = np.diag([start] * 3 + [entry] * 9 + [force] * 3)
     assert covariance_at(window) == pytest.approx(expected, rel=1e-5)
-    assert not packed_at(window, MOTION.MEAN, 12).any()
-    # by the settings: 20 dps, 0.3 % and 50 mg, of the half windows that a row sums
+    assert not packed_at(window, MOTION.MEAN, STATES).any()
+    # by the settings: 20 dps, 1 %, 5 mg and 50 mg, of the half windows that a row sums
     push = value_at(window, MOTION.PUSH)
     assert push == pytest.approx((0.05 * (1 << 24)) ** 2 * 64 * 2.66, rel=1e-3)
+    assert np.sqrt(force * push) == pytest.approx(0.005 * (1 << 24), rel=1e-3)
     assert np.sqrt(start * push) == pytest.approx(np.radians(20) / 8 * (1 << 24), rel=1e-3)
     assert np.sqrt(entry * push) == pytest.approx(0.01 * (1 << 24), rel=1e-3)

@@ -1,12 +1,13 @@
-"""Bias, scale and axes by a window's rows: a Kalman filter of twelve states, one row at a time.
+"""Bias, scale and axes by a window's rows: a Kalman filter of 15 states, one row at a time.
 
 The hand's push is known no better than the bias, so all covariances are over the push's own
 variance, which the rows themselves tell (the conjugate prior of a linear model: normal and inverse
 gamma; Gelman 2013, 14.8). Its tails are Student's of four degrees of freedom, for no two windows
 are alike (Lange, Little and Taylor 1989): a row that lies far off weighs less.
 
-States: the bias, Q24 rad a node, and nine entries of scale and axes by rows, Q24. _KNOWN is packed:
-column n of the upper triangle begins n (n + 1) / 2 words on.
+States: the bias, Q24 rad a node, nine entries of scale and axes by rows, Q24, and the bias of the
+accelerometer, Q24 g, which would pass for a tilt. _KNOWN is packed: column n of the upper triangle
+begins n (n + 1) / 2 words on.
 """
 
 from ..arithmetic.real import add, copy, divide, multiply, pack, put, subtract, unpack
@@ -20,39 +21,41 @@ _STAGE = const(12)
 _MOTION_REASON = const(17)
 _ACCEPTED = const(65)
 _WINDOW_ROWS = const(83)
-_STRAY = const(148)
-_KNOWN = const(150)
-_MEAN = const(228)
-_PUSH = const(240)
-_ROWS_SEEN = const(242)
-_HELD_STRAY = const(243)
-_HEADING_FIT = const(245)
-_ROW_INNOVATION = const(247)
-_EXPECTED = const(249)
-_BIAS = const(251)
-_SLOPE = const(257)
-_T = const(263)
-_T1 = const(265)
-_T2 = const(267)
-_T3 = const(269)
+_STRAY = const(163)
+_KNOWN = const(165)
+_MEAN = const(285)
+_PUSH = const(300)
+_ROWS_SEEN = const(302)
+_HELD_STRAY = const(303)
+_HEADING_FIT = const(305)
+_ROW_INNOVATION = const(307)
+_EXPECTED = const(309)
+_BIAS = const(311)
+_SLOPE = const(317)
+_T = const(323)
+_T1 = const(325)
+_T2 = const(327)
+_T3 = const(329)
 _G = const(32)
-_ROW_NOISE = const(28)
-_WITH = const(32)
+_ROW_NOISE = const(24)
+_WITH = const(26)
 # layout: A row of a window in motion
 _SAID = const(0)
 _BY_BIAS = const(1)
-_ROW_WORDS = const(13)
+_ROW_WORDS = const(16)
 # layout: The settings of the source in motion
 _START_VARIANCE = const(14)
 _LONGEST = const(16)
 _SHORTEST_STAGE = const(17)
 _HEADING_SPREAD = const(21)
 _MATRIX_ERROR = const(26)
-_PUSH_START = const(28)
+_FORCE_ERROR = const(28)
+_PUSH_START = const(30)
 # layout: What a window in motion taught
 _TURNED = const(4)
 # layout: end
-_UNKNOWNS = const(12)
+_UNKNOWNS = const(15)
+_FIRST_FORCE = const(12)
 _HEADING_ROW = const(2)
 # squares of .01, .05 and .3 rad, times a shape's 2.66 a half node: the least a heading strays, and
 # what it is taken to before a short and a full window has been seen
@@ -76,6 +79,8 @@ def forget(s: ptr32, c: ptr32):
     i = 0
     while i < _UNKNOWNS:
         a = _START_VARIANCE if i < 3 else _MATRIX_ERROR
+        if i >= _FIRST_FORCE:
+            a = _FORCE_ERROR
         put(s, _T, c[a], c[a + 1])
         pack(s, known(i, i), _T)
         i += 1
@@ -93,7 +98,8 @@ def known(i: int, j: int) -> int:
 
 def regressor(s: ptr32, d: int, r: int, j: int):
     """Store at d what state j adds to row r."""
-    put(s, d, s[_WINDOW_ROWS + _ROW_WORDS * r + _BY_BIAS + j], s[_STAGE] - 15)
+    e = s[_STAGE] - 15 if j < _FIRST_FORCE else -14
+    put(s, d, s[_WINDOW_ROWS + _ROW_WORDS * r + _BY_BIAS + j], e)
 
 
 def stray(s: ptr32, c: ptr32):

@@ -16,17 +16,17 @@ ptr32 = None
 # layout: The state of the source in motion
 _MOTION_BIAS_Q8 = const(68)
 _MOTION_QUALITY_Q8 = const(71)
-_MEAN = const(228)
-_PUSH = const(240)
-_SLOPE = const(257)
-_T = const(263)
-_T1 = const(265)
-_T2 = const(267)
-_T3 = const(269)
+_MEAN = const(285)
+_PUSH = const(300)
+_SLOPE = const(317)
+_T = const(323)
+_T1 = const(325)
+_T2 = const(327)
+_T3 = const(329)
 # layout: The settings of the source in motion
 _LSB_A_UNIT = const(10)
 _MOTION_DOCUMENT = const(20)
-_USUAL = const(30)
+_USUAL = const(32)
 # layout: end
 
 

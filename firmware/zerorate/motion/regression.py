@@ -7,8 +7,9 @@ is as slow as the window. Two bells, (1 - t^2)^3 and 2 t (1 - t^2)^3, give two r
 tilts and one of the heading. The heading's second row, and a third shape, hold nothing of a bias
 in one pose: they measure how far the heading strays.
 
-A row is 13 words: what it says, then what the bias adds, and what the entries of scale and axes
-add, by rows: R e with e of one axis, and that times each rate.
+A row is 16 words: what it says, then what the bias adds, and what the entries of scale and axes
+add, by rows: R e with e of one axis, and that times each rate. A bias f of the accelerometer adds
+R f to the force, so a level component of it to each tilt.
 """
 
 # layout: names that a board's own compiler reads
@@ -22,11 +23,12 @@ _SHAPES = const(43)
 _HALF_BEFORE = const(46)
 _Y = const(49)
 _WINDOW_ROWS = const(83)
-_STRAY = const(148)
+_STRAY = const(163)
 # layout: A row of a window in motion
 _BY_BIAS = const(1)
 _BY_ENTRIES = const(4)
-_ROW_WORDS = const(13)
+_BY_FORCE = const(13)
+_ROW_WORDS = const(16)
 # layout: end
 
 
@@ -68,6 +70,9 @@ def row(s: ptr32, q: int, i: int, a: int):
         part = (s[_BELLS + q] * s[_R + 3 * i + j] + 512) >> 10
         s[a + _BY_BIAS + j] += part
         tell(s, a + _BY_ENTRIES + 3 * j, part)
+        if i < 2:
+            part = (s[_SHAPES + q] * s[_R + 3 - 3 * i + j] + 512) >> 10
+            s[a + _BY_FORCE + j] += part if i else 0 - part
         j += 1
 
 

@@ -16,7 +16,7 @@ _Y = const(49)
 _TILT = const(55)
 _OTHER_TILT = const(59)
 _UP = const(60)
-_LOOK = const(263)
+_LOOK = const(323)
 # layout: end
 _WRAP_Q12 = const(25736)
 _MOST_Q12 = const(0x7FFF)
