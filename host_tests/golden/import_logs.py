@@ -168,8 +168,13 @@ def logs():
             for a, b in zip(bounds, bounds[1:]):
                 yield Chunk(np.arange(a, b), {n: columns[n][a:b].copy() for n in wanted})
 
+        clock = mostly(luck, "s", "ms")
+        if clock == "ms" and "t_us" in columns:
+            columns["t_us"] = (columns["t_us"] * 1e3 + 2.0**32 - 2000) % 2.0**32
         units = dict(
-            zip(COLUMNS, ("s", *["lsb" if counts else "dps"] * 3, *["lsb" if counts else "g"] * 3))
+            zip(
+                COLUMNS, (clock, *["lsb" if counts else "dps"] * 3, *["lsb" if counts else "g"] * 3)
+            )
         )
         mapping = [Mapped(n, n, units.get(n, "degc" if n == "temp" else None)) for n in columns]
         scales = {"gyro_lsb_per_dps": mostly(luck, 131.0, 2185.0, None), "accel_lsb_per_g": 8192.0}

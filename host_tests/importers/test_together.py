@@ -154,6 +154,12 @@ def test_files_of_two_recordings_in_a_folder_are_not_mixed(tmp_path):
     assert read_recording(out).accel_g()[:, 2].mean() == pytest.approx(1.0)
 
 
+def test_files_of_sensors_that_share_no_time_are_refused(tmp_path, sensors):
+    sensors[1].write_text(sensors[1].read_text().replace("time_s", "elapsed"))
+    with pytest.raises(BadRecording, match="the tables gyro, my acc share no time"):
+        import_recording(sensors, tmp_path / "o.csv")
+
+
 def test_acceleration_without_gravity_in_a_file_beside_is_refused(tmp_path):
     table(tmp_path / "Gyroscope.csv", 1.0)
     names = ["t_s", "X (m/s^2)", "Y (m/s^2)", "Z (m/s^2)"]

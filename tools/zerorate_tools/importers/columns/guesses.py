@@ -92,9 +92,9 @@ def _turned(
 
 
 def rate_unit_of(size: Size, factor: float = 1.0) -> str | None:
-    """The unit of rates that may have that size, times a factor, nearest to it."""
-    may_be = [u for u, one in RATE_DPS.items() if size.least < one / factor < size.most]
-    return min(may_be, key=lambda u: abs(np.log(RATE_DPS[u] / factor / size.dps)), default=None)
+    """The unit of rates that may have that size, times a factor; no two are so near each other."""
+    may_be = (u for u, one in RATE_DPS.items() if size.least < one / factor < size.most)
+    return next(may_be, None)
 
 
 def ready_words(target: str, wanted: Mapping[str, Mapped], first: Mapping[str, np.ndarray]) -> str:
