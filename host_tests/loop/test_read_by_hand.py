@@ -152,6 +152,39 @@ def test_lines_of_every_session_are_found_by_their_size_the_strongest_first():
     )
 
 
+@pytest.mark.parametrize(
+    ("sessions", "averages", "ratio", "found"),
+    [(1, 1.0, 11.0, 0), (1, 1.0, 20.0, 1), (1, 2.0, 11.0, 1), (2, 1.0, 11.0, 0), (2, 1.0, 20.0, 1)],
+)
+def test_in_a_spectrum_that_averages_nothing_a_line_is_twelve_times_its_neighbours(
+    sessions, averages, ratio, found
+):
+    power = np.ones((1024, 3))
+    power[300] = ratio
+    train = [lines.Spectrum(power, 0.01, averages)] * sessions
+    assert [line.hz for line in lines.find(train, [], 1.0, 0.0)] == [3.0] * found
+
+
+def test_a_hump_reaches_over_short_gaps_and_ends_with_the_spectrum():
+    p = np.ones(100)
+    p[50:60] = p[63] = p[:3] = 0.0
+    assert lines._hump(p, 55, 4) == slice(46, 68)
+    assert lines._hump(p, 1, 4) == slice(0, 7)
+
+
+def test_of_a_long_recording_the_first_segments_are_kept(monkeypatch):
+    monkeypatch.setattr(lines, "_MOST_SEGMENTS", 3)
+    segments = lines.Segments()
+    for i in range(5):
+        segments.add(np.full(lines.SEGMENT, i), noise(i, lines.SEGMENT))
+    assert segments.ticks == [(0, 0), (1, 1), (2, 2)] and len(segments.power) == 3
+
+
+@pytest.mark.parametrize(("want_s", "block_s"), [(1.1, 1.1), (1.11, 1.2), (0.01, 0.1)])
+def test_a_block_is_the_next_whole_number_of_ticks(want_s, block_s):
+    assert blocks._whole_ticks([SimpleNamespace(tick_s=0.1)], want_s) == pytest.approx(block_s)
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_noise_slopes_and_what_is_beyond_the_spectrum_are_no_lines(seed):
     walk = np.cumsum(noise(seed), axis=0) * 0.1 + noise(seed + 50)

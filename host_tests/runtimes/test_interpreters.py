@@ -186,6 +186,8 @@ def test_the_cache_is_in_the_xdg_folder_when_none_is_named(tmp_path, monkeypatch
     monkeypatch.delenv("ZERORATE_CACHE", raising=False)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     assert runtime.cache_folder() == tmp_path / "zerorate"
+    monkeypatch.delenv("XDG_CACHE_HOME")
+    assert runtime.cache_folder() == Path.home() / ".cache" / "zerorate"
 
 
 def test_a_folder_whose_building_fails_does_not_appear(own_cache):
@@ -346,6 +348,17 @@ def test_armhf_comes_on_any_processor_with_qemu_where_there_is_none(qemu, monkey
     monkeypatch.setattr(unix_port, "fill", lambda folder, build: fetched.append(folder.name))
     unix_port.fetch_unix_port("armhf")
     assert fetched == ["armhf-debian13"] + ["qemu-arm-debian13"] * (qemu is None)
+    monkeypatch.setattr(unix_port, "host_architecture", lambda: "amd64")
+    unix_port.fetch_unix_port("x86")
+    assert fetched[-1] == "x86-debian13"
+
+
+def test_a_folder_has_all_packages_and_the_link_that_is_asked_for(own_cache, monkeypatch):
+    monkeypatch.setattr(unix_port, "fetch_packages", lambda folder, of, names: [*names])
+    monkeypatch.setattr(unix_port, "unpack", lambda deb, folder: (folder / deb).touch())
+    for link_lib in (False, True):
+        folder = unix_port.fetch_folder(f"of {link_lib}", "armhf", ["one", "two"], link_lib)
+        assert {one.name for one in folder.iterdir()} == {"one", "two", *["lib"] * link_lib}
 
 
 def test_a_missing_node_says_where_it_comes_from(own_cache, monkeypatch):
