@@ -98,8 +98,8 @@ def known(i: int, j: int) -> int:
 
 def regressor(s: ptr32, d: int, r: int, j: int):
     """Store at d what state j adds to row r."""
-    e = s[_STAGE] - 15 if j < _FIRST_FORCE else -14
-    put(s, d, s[_WINDOW_ROWS + _ROW_WORDS * r + _BY_BIAS + j], e)
+    at = _WINDOW_ROWS + _ROW_WORDS * r + _BY_BIAS + j
+    put(s, d, s[at], s[_STAGE] - 15 if j < _FIRST_FORCE else -14)
 
 
 def stray(s: ptr32, c: ptr32):
