@@ -168,7 +168,7 @@ class InterpreterEngine(Engine):
                     file.write(rows.astype("<i4").tobytes())
             result = self._runtime.run(
                 Path(__file__).with_name("on_interpreter.py"),
-                [sum(batch.extra.shape[1] for batch in kept[:1])],
+                [kept[0].extra.shape[1] if kept else 0],
                 modules=[staged_packages(Path(scratch), ("zerorate",))],
                 files_in={
                     "frames.bin": recording,

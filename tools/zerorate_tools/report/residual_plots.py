@@ -103,7 +103,7 @@ def _pooled(
     for part in parts:
         assert part.temp_degc is not None, "others were left out"
         error = (part.after_mdps if view == "after" else part.before_mdps)[:, axis]
-        there = np.isfinite(np.where(part.trend == code, error, np.nan))
+        there = (part.trend == code) & np.isfinite(error)
         x.append(part.temp_degc[there])
         y.append(error[there])
     return thinned(np.concatenate(x), np.concatenate(y))

@@ -53,6 +53,6 @@ def _own_rms(term, nuisances, sessions):
     ]
     whole = np.vstack([m - m.mean(axis=0) for m in stacks])
     scale = whole.std(axis=0)
-    whole = whole / np.maximum(scale, 1e-300)
+    whole = whole / np.where(scale > 0, scale, 1.0)
     left = whole[:, 0] - whole[:, 1:] @ np.linalg.lstsq(whole[:, 1:], whole[:, 0], rcond=1e-10)[0]
     return float(left.std() * scale[0])
