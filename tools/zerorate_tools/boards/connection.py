@@ -144,14 +144,14 @@ def _let_run(serial) -> None:
         serial.flush()
 
 
-def output_of(transport, program: str, patience_s: float = _LONG_S) -> str:
+def output_of(transport, program: str, patience_s: float | None = None) -> str:
     """What a program that is run to its end on the board prints. Raises its error.
 
-    patience_s: for how long the board may print nothing.
+    patience_s: for how long the board may print nothing; two minutes where None.
     """
     from mpremote.transport import TransportExecError
 
-    said, error = transport.exec_raw(program, timeout=patience_s)
+    said, error = transport.exec_raw(program, timeout=patience_s or _LONG_S)
     if error:
         raise TransportExecError(said, error.decode())
     return said.decode()
